@@ -1,0 +1,10 @@
+/* libgstcloth-1.0: everything.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include <gst/cloth/cloth-prelude.h>
+#include <gst/cloth/gstclothsaddles.h>
+#include <gst/cloth/gstclothquads.h>
+#include <gst/cloth/gstclothmesh.h>
+#include <gst/cloth/gstclothobservations.h>
