@@ -1,0 +1,33 @@
+# Installs the packages of tests/packages.txt that are missing: to be sourced.
+# SPDX-License-Identifier: LGPL-2.1-or-later
+
+# cloth_packages: the names, one a line.
+cloth_packages ()
+{
+  sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' "$1/tests/packages.txt"
+}
+
+# cloth_install_packages ROOT: leaves apt alone when nothing is missing.
+cloth_install_packages ()
+{
+  local missing="" package status as_root=""
+
+  for package in $(cloth_packages "$1"); do
+    status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) || true
+    [ "$status" = installed ] || missing="$missing $package"
+  done
+  [ -n "$missing" ] || return 0
+
+  if [ "$(id -u)" -ne 0 ]; then
+    as_root="sudo"
+    command -v sudo >/dev/null || {
+      echo "Missing packages:$missing. Install them as root, or install sudo." >&2
+      return 1
+    }
+  fi
+  echo "Installing:$missing"
+  $as_root apt-get update -q </dev/null || return 1
+  # shellcheck disable=SC2086
+  $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q \
+      --no-install-recommends $missing </dev/null
+}
