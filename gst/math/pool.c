@@ -1,0 +1,188 @@
+/* A pool of threads that share out a loop.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/math/pool.h"
+
+typedef struct
+{
+  ClothPool *pool;
+  guint index;
+  GThread *thread;
+} Worker;
+
+struct _ClothPool
+{
+  /* one run at a time */
+  GMutex run_lock;
+
+  GMutex lock;
+  GCond start, done;
+  guint generation;
+  guint pending;
+  gboolean quit;
+  ClothPoolFunc func;
+  gpointer data;
+  guint n_items;
+
+  guint n_threads;
+  Worker workers[];
+};
+
+/* Worker i does items [n·i/w, n·(i+1)/w): contiguous, and a function of n and w only. */
+static void
+do_part (ClothPoolFunc func, gpointer data, guint n_items, guint n_workers,
+    guint index)
+{
+  guint begin = (guint) ((guint64) n_items * index / n_workers);
+  guint end = (guint) ((guint64) n_items * (index + 1) / n_workers);
+
+  if (begin < end)
+    func (data, begin, end, index);
+}
+
+static gpointer
+worker_main (gpointer user_data)
+{
+  Worker *self = user_data;
+  ClothPool *pool = self->pool;
+  guint generation = 0;
+
+  g_mutex_lock (&pool->lock);
+  while (TRUE) {
+    ClothPoolFunc func;
+    gpointer data;
+    guint n_items;
+
+    while (pool->generation == generation && !pool->quit)
+      g_cond_wait (&pool->start, &pool->lock);
+    if (pool->quit)
+      break;
+    generation = pool->generation;
+    func = pool->func;
+    data = pool->data;
+    n_items = pool->n_items;
+    g_mutex_unlock (&pool->lock);
+
+    do_part (func, data, n_items, pool->n_threads, self->index);
+
+    g_mutex_lock (&pool->lock);
+    if (--pool->pending == 0)
+      g_cond_signal (&pool->done);
+  }
+  g_mutex_unlock (&pool->lock);
+  return NULL;
+}
+
+/**
+ * cloth_pool_new:
+ * @threads: threads that work on a loop, the calling one included; 0: as many as the
+ *   machine has processors
+ *
+ * Returns: (transfer full): a pool whose threads wait for cloth_pool_run ()
+ *
+ * Since: 0.1
+ */
+ClothPool *
+cloth_pool_new (guint threads)
+{
+  ClothPool *pool;
+
+  if (threads == 0)
+    threads = g_get_num_processors ();
+  threads = CLAMP (threads, 1, 1024);
+  pool = g_malloc0 (sizeof (*pool) + threads * sizeof (Worker));
+  g_mutex_init (&pool->run_lock);
+  g_mutex_init (&pool->lock);
+  g_cond_init (&pool->start);
+  g_cond_init (&pool->done);
+  pool->n_threads = threads;
+  for (guint i = 1; i < threads; i++) {
+    pool->workers[i].pool = pool;
+    pool->workers[i].index = i;
+    pool->workers[i].thread = g_thread_new ("cloth-pool", worker_main,
+        &pool->workers[i]);
+  }
+  return pool;
+}
+
+/**
+ * cloth_pool_free:
+ * @pool: (nullable) (transfer full): pool with no run under way
+ *
+ * Since: 0.1
+ */
+void
+cloth_pool_free (ClothPool * pool)
+{
+  if (pool == NULL)
+    return;
+  g_mutex_lock (&pool->lock);
+  pool->quit = TRUE;
+  g_cond_broadcast (&pool->start);
+  g_mutex_unlock (&pool->lock);
+  for (guint i = 1; i < pool->n_threads; i++)
+    g_thread_join (pool->workers[i].thread);
+  g_mutex_clear (&pool->run_lock);
+  g_mutex_clear (&pool->lock);
+  g_cond_clear (&pool->start);
+  g_cond_clear (&pool->done);
+  g_free (pool);
+}
+
+/**
+ * cloth_pool_get_n_threads:
+ * @pool: (nullable): pool
+ *
+ * Returns: how many workers there are; 1 for %NULL
+ *
+ * Since: 0.1
+ */
+guint
+cloth_pool_get_n_threads (const ClothPool * pool)
+{
+  return pool != NULL ? pool->n_threads : 1;
+}
+
+/**
+ * cloth_pool_run:
+ * @pool: (nullable): pool; %NULL does everything in the calling thread
+ * @func: does a range of items
+ * @data: for @func
+ * @n_items: items 0 … @n_items − 1 are shared out in contiguous ranges of nearly equal
+ *   length
+ *
+ * Returns when all is done. It allocates nothing. @func must do each item so that the
+ * result does not depend on the range it came in; then it does not depend on the number
+ * of threads either. Calls from several threads take turns; @func must not call it on
+ * the same pool.
+ *
+ * Since: 0.1
+ */
+void
+cloth_pool_run (ClothPool * pool, ClothPoolFunc func, gpointer data,
+    guint n_items)
+{
+  if (n_items == 0)
+    return;
+  if (pool == NULL || pool->n_threads == 1 || n_items == 1) {
+    func (data, 0, n_items, 0);
+    return;
+  }
+  g_mutex_lock (&pool->run_lock);
+  g_mutex_lock (&pool->lock);
+  pool->func = func;
+  pool->data = data;
+  pool->n_items = n_items;
+  pool->pending = pool->n_threads - 1;
+  pool->generation++;
+  g_cond_broadcast (&pool->start);
+  g_mutex_unlock (&pool->lock);
+
+  do_part (func, data, n_items, pool->n_threads, 0);
+
+  g_mutex_lock (&pool->lock);
+  while (pool->pending > 0)
+    g_cond_wait (&pool->done, &pool->lock);
+  g_mutex_unlock (&pool->lock);
+  g_mutex_unlock (&pool->run_lock);
+}
