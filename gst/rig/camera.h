@@ -58,4 +58,30 @@ typedef struct {
   gdouble K_sd[4], k_sd[8], r_sd[3], t_sd[3];
 } ClothCamera;
 
+/**
+ * CLOTH_CAMERA_N_PARAMETERS:
+ *
+ * Columns of the derivative with respect to a camera's parameters, in this order:
+ * fx fy cx cy, k[0] … k[7], rotation vector (3), t (3).
+ *
+ * Since: 0.1
+ */
+#define CLOTH_CAMERA_N_PARAMETERS 18
+
+guint cloth_lens_n_coefficients (ClothLens lens);
+void cloth_camera_copy (ClothCamera * to, const ClothCamera * from);
+void cloth_camera_clear (ClothCamera * camera);
+
+gboolean cloth_camera_project (const ClothCamera * camera,
+    const gdouble X[3], gdouble px[2], gdouble * d_point,
+    gdouble * d_parameters);
+
+void cloth_camera_distort (const ClothCamera * camera, const gdouble xy[2],
+    gdouble px[2], gdouble * d_xy);
+
+guint cloth_camera_undistort_points (const ClothCamera * camera, guint n,
+    const gdouble * u, const gdouble * v, gdouble * x, gdouble * y,
+    gdouble * jacobian);
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (ClothCamera, cloth_camera_clear)
 G_END_DECLS

@@ -1,0 +1,182 @@
+/* Rotation vectors and matrices (Rodrigues), with derivatives.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/rig/rotation.h"
+
+#include <math.h>
+#include <string.h>
+
+/* I + a [r]x + b [r]x². Both maps and both Jacobians have this form. */
+static void
+series (const gdouble r[3], gdouble a, gdouble b, gdouble M[9])
+{
+  gdouble xx = r[0] * r[0], yy = r[1] * r[1], zz = r[2] * r[2];
+
+  M[0] = 1 - b * (yy + zz);
+  M[1] = b * r[0] * r[1] - a * r[2];
+  M[2] = b * r[0] * r[2] + a * r[1];
+  M[3] = b * r[0] * r[1] + a * r[2];
+  M[4] = 1 - b * (xx + zz);
+  M[5] = b * r[1] * r[2] - a * r[0];
+  M[6] = b * r[0] * r[2] - a * r[1];
+  M[7] = b * r[1] * r[2] + a * r[0];
+  M[8] = 1 - b * (xx + yy);
+}
+
+/**
+ * cloth_rotation_from_vector:
+ * @r: rotation vector: axis times angle, rad
+ * @R: (out): row-major rotation matrix exp([r]x)
+ *
+ * Rodrigues' formula.
+ *
+ * Since: 0.1
+ */
+void
+cloth_rotation_from_vector (const gdouble r[3], gdouble R[9])
+{
+  gdouble t2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+
+  if (t2 < 1e-8) {
+    series (r, 1 - t2 / 6, 0.5 - t2 / 24, R);
+  } else {
+    gdouble t = sqrt (t2), h = sin (0.5 * t);
+
+    series (r, sin (t) / t, 2 * h * h / t2, R);
+  }
+}
+
+/**
+ * cloth_rotation_to_vector:
+ * @R: row-major rotation matrix
+ * @r: (out): rotation vector, its length in [0, π]
+ *
+ * By way of the unit quaternion, so that it is exact to rounding at every angle, half
+ * turns included.
+ *
+ * Since: 0.1
+ */
+void
+cloth_rotation_to_vector (const gdouble R[9], gdouble r[3])
+{
+  gdouble q[4], n, s;
+  gdouble trace = R[0] + R[4] + R[8];
+
+  /* The largest of the four is computed first: no small divisor. */
+  if (trace >= R[0] && trace >= R[4] && trace >= R[8]) {
+    q[0] = 1 + trace;
+    q[1] = R[7] - R[5];
+    q[2] = R[2] - R[6];
+    q[3] = R[3] - R[1];
+  } else if (R[0] >= R[4] && R[0] >= R[8]) {
+    q[0] = R[7] - R[5];
+    q[1] = 1 + R[0] - R[4] - R[8];
+    q[2] = R[1] + R[3];
+    q[3] = R[2] + R[6];
+  } else if (R[4] >= R[8]) {
+    q[0] = R[2] - R[6];
+    q[1] = R[1] + R[3];
+    q[2] = 1 + R[4] - R[0] - R[8];
+    q[3] = R[5] + R[7];
+  } else {
+    q[0] = R[3] - R[1];
+    q[1] = R[2] + R[6];
+    q[2] = R[5] + R[7];
+    q[3] = 1 + R[8] - R[0] - R[4];
+  }
+  if (q[0] < 0) {
+    for (gint i = 0; i < 4; i++)
+      q[i] = -q[i];
+  }
+  n = sqrt (q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  s = n > 1e-150 ? 2 * atan2 (n, q[0]) / n : 0;
+  for (gint i = 0; i < 3; i++)
+    r[i] = s * q[i + 1];
+}
+
+/**
+ * cloth_rotation_left_jacobian:
+ * @r: rotation vector
+ * @J: (out): row-major 3×3: exp(r + J⁻¹ w) = exp(w) exp(r) to first order in w
+ *
+ * d(R X)/dr = −[R X]x J.
+ *
+ * Since: 0.1
+ */
+void
+cloth_rotation_left_jacobian (const gdouble r[3], gdouble J[9])
+{
+  gdouble t2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+
+  if (t2 < 1e-4) {
+    series (r, 0.5 - t2 / 24 + t2 * t2 / 720,
+        1. / 6 - t2 / 120 + t2 * t2 / 5040, J);
+  } else {
+    gdouble t = sqrt (t2), h = sin (0.5 * t);
+
+    series (r, 2 * h * h / t2, (t - sin (t)) / (t2 * t), J);
+  }
+}
+
+/**
+ * cloth_rotation_left_jacobian_inverse:
+ * @r: rotation vector, shorter than 2π
+ * @J: (out): row-major 3×3, the inverse of cloth_rotation_left_jacobian()
+ *
+ * Since: 0.1
+ */
+void
+cloth_rotation_left_jacobian_inverse (const gdouble r[3], gdouble J[9])
+{
+  gdouble t2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+
+  if (t2 < 1e-4) {
+    series (r, -0.5, 1. / 12 + t2 / 720 + t2 * t2 / 30240, J);
+  } else {
+    gdouble h = 0.5 * sqrt (t2);
+
+    series (r, -0.5, (1 - h * cos (h) / sin (h)) / t2, J);
+  }
+}
+
+/**
+ * cloth_rotation_nearest:
+ * @M: row-major 3×3 of positive determinant, near a rotation
+ * @R: (out): the rotation nearest to it in Frobenius norm; may be @M
+ *
+ * The orthogonal polar factor by Newton's iteration (Higham 1986).
+ *
+ * Since: 0.1
+ */
+void
+cloth_rotation_nearest (const gdouble M[9], gdouble R[9])
+{
+  gdouble A[9], B[9];
+
+  memcpy (A, M, sizeof A);
+  for (gint iteration = 0; iteration < 60; iteration++) {
+    gdouble det, change = 0;
+
+    for (gint i = 0; i < 3; i++) {
+      for (gint j = 0; j < 3; j++) {
+        gint i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+        gint j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+
+        B[3 * i + j] = A[3 * i1 + j1] * A[3 * i2 + j2]
+            - A[3 * i1 + j2] * A[3 * i2 + j1];
+      }
+    }
+    det = A[0] * B[0] + A[1] * B[1] + A[2] * B[2];
+    if (!(det > 0))
+      break;
+    for (gint i = 0; i < 9; i++) {
+      gdouble a = 0.5 * (A[i] + B[i] / det);
+
+      change = fmax (change, fabs (a - A[i]));
+      A[i] = a;
+    }
+    if (change < 1e-15)
+      break;
+  }
+  memcpy (R, A, sizeof A);
+}
