@@ -8,6 +8,37 @@
 G_BEGIN_DECLS
 
 /**
+ * CLOTH_PATTERN_MAX_SQUARES:
+ *
+ * Most squares a board may have each way.
+ *
+ * Since: 0.1
+ */
+#define CLOTH_PATTERN_MAX_SQUARES 500
+
+/**
+ * ClothPatternError:
+ * @CLOTH_PATTERN_ERROR_FORMAT: the file is no pattern.json
+ * @CLOTH_PATTERN_ERROR_UNSUPPORTED: a version or a kind of pattern this build doesn't
+ *   know
+ * @CLOTH_PATTERN_ERROR_VALUE: a number outside its limits
+ * @CLOTH_PATTERN_ERROR_CODE: no code with the wanted distance was found
+ * @CLOTH_PATTERN_ERROR_PRINT: the print file could not be drawn
+ *
+ * Since: 0.1
+ */
+typedef enum {
+  CLOTH_PATTERN_ERROR_FORMAT,
+  CLOTH_PATTERN_ERROR_UNSUPPORTED,
+  CLOTH_PATTERN_ERROR_VALUE,
+  CLOTH_PATTERN_ERROR_CODE,
+  CLOTH_PATTERN_ERROR_PRINT
+} ClothPatternError;
+
+#define CLOTH_PATTERN_ERROR (cloth_pattern_error_quark ())
+GQuark cloth_pattern_error_quark (void);
+
+/**
  * ClothPattern:
  * @columns: squares in a row
  * @rows: squares in a column
@@ -35,10 +66,32 @@ typedef struct {
   gdouble dot_ratio;
 } ClothPattern;
 
+ClothPattern *cloth_pattern_new_checker (gint columns, gint rows,
+    gdouble square_m, gdouble margin_m, gboolean first_black, GError ** error);
+ClothPattern *cloth_pattern_copy (const ClothPattern * pattern);
+void cloth_pattern_free (ClothPattern * pattern);
+
+gboolean cloth_pattern_check (const ClothPattern * pattern, GError ** error);
+
+ClothPattern *cloth_pattern_load (const gchar * path, GError ** error);
+ClothPattern *cloth_pattern_load_data (const gchar * data, gsize size,
+    GError ** error);
+gboolean cloth_pattern_save (const ClothPattern * pattern, const gchar * path,
+    GError ** error);
+gchar *cloth_pattern_to_json (const ClothPattern * pattern);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothPattern, cloth_pattern_free)
+
 static inline gboolean
 cloth_pattern_is_black (const ClothPattern * pattern, gint column, gint row)
 {
   return (((column + row) & 1) == 0) == !!pattern->first_black;
+}
+
+static inline gboolean
+cloth_pattern_has_dot (const ClothPattern * pattern, gint column, gint row)
+{
+  return pattern->code && pattern->code[row * pattern->columns + column];
 }
 
 G_END_DECLS

@@ -1,0 +1,30 @@
+/* Fuzz target: pattern.json.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/pattern/pattern.h"
+
+#include <string.h>
+
+int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
+
+int
+LLVMFuzzerTestOneInput (const guint8 * data, gsize size)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothPattern) pattern =
+      cloth_pattern_load_data ((const gchar *) data, size, &error);
+
+  g_assert_true ((pattern != NULL) == (error == NULL));
+  if (pattern) {
+    /* What was read is written and reads back the same. */
+    g_autofree gchar *text = cloth_pattern_to_json (pattern);
+    g_autoptr (ClothPattern) again =
+        cloth_pattern_load_data (text, strlen (text), &error);
+    g_autofree gchar *same = NULL;
+
+    g_assert_no_error (error);
+    same = cloth_pattern_to_json (again);
+    g_assert_cmpstr (same, ==, text);
+  }
+  return 0;
+}
