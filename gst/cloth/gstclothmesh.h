@@ -7,31 +7,65 @@
 
 G_BEGIN_DECLS
 
+/**
+ * GST_CLOTH_MESH_MEDIA_TYPE:
+ *
+ * Since: 0.1
+ */
 #define GST_CLOTH_MESH_MEDIA_TYPE "application/x-cloth-mesh"
+
+/**
+ * GST_CLOTH_MESH_CAPS:
+ *
+ * Template caps of a mesh stream. Caps on a pad also carry the topology as streamheader.
+ *
+ * Since: 0.1
+ */
 #define GST_CLOTH_MESH_CAPS GST_CLOTH_MESH_MEDIA_TYPE ", version=(int)1, " \
     "vertices=(int)[ 1, 1000000 ], framerate=(fraction)[ 0/1, max ]"
+
+/**
+ * GST_CLOTH_NO_VERTEX:
+ *
+ * Stands for the absent fourth vertex of a triangle.
+ *
+ * Since: 0.1
+ */
+#define GST_CLOTH_NO_VERTEX 0xffffffffu
 
 typedef struct _GstClothTopology GstClothTopology;
 typedef struct _GstClothMesh GstClothMesh;
 
+/**
+ * GstClothVertexState:
+ * @GST_CLOTH_VERTEX_UNSEEN: not known; its position is NaN
+ * @GST_CLOTH_VERTEX_MEASURED: three or more views agree
+ * @GST_CLOTH_VERTEX_TWO_VIEWS: two views: no view left to check it
+ * @GST_CLOTH_VERTEX_FILLED: interpolated from its neighbourhood
+ * @GST_CLOTH_VERTEX_PREDICTED: carried on in time or simulated
+ *
+ * What a vertex's position rests on.
+ *
+ * Since: 0.1
+ */
 typedef enum {
-  GST_CLOTH_VERTEX_UNSEEN,      /* position is NaN */
-  GST_CLOTH_VERTEX_MEASURED,    /* three or more views agree */
-  GST_CLOTH_VERTEX_TWO_VIEWS,   /* two views: no view left to check it */
-  GST_CLOTH_VERTEX_FILLED,      /* interpolated from its neighbourhood */
-  GST_CLOTH_VERTEX_PREDICTED    /* carried on in time or simulated */
+  GST_CLOTH_VERTEX_UNSEEN,
+  GST_CLOTH_VERTEX_MEASURED,
+  GST_CLOTH_VERTEX_TWO_VIEWS,
+  GST_CLOTH_VERTEX_FILLED,
+  GST_CLOTH_VERTEX_PREDICTED
 } GstClothVertexState;
 
 #define GST_TYPE_CLOTH_TOPOLOGY (gst_cloth_topology_get_type ())
 #define GST_TYPE_CLOTH_MESH (gst_cloth_mesh_get_type ())
 
-/* Topology: columns and rows of *vertices* when the mesh is one regular grid (vertex =
- * row * columns + column), else 0; uv 2 floats a vertex, metres on the flat cloth;
- * faces: 4 indices each, the last one 0xffffffff for a triangle. Immutable. */
 GST_CLOTH_API GType gst_cloth_topology_get_type (void);
 GST_CLOTH_API GstClothTopology *gst_cloth_topology_new (guint n_vertices,
     guint columns, guint rows, const gfloat * uv, const guint32 * faces,
     guint n_faces, GError ** error);
+GST_CLOTH_API GstClothTopology *gst_cloth_topology_new_from_arrays (guint columns,
+    guint rows, const gfloat * uv, guint n_floats, const guint32 * faces,
+    guint n_indices, GError ** error);
 GST_CLOTH_API GstClothTopology *gst_cloth_topology_new_grid (guint columns,
     guint rows, gfloat width_m, gfloat height_m, GError ** error);
 GST_CLOTH_API GstClothTopology *gst_cloth_topology_ref (GstClothTopology * topology);
@@ -39,19 +73,22 @@ GST_CLOTH_API void gst_cloth_topology_unref (GstClothTopology * topology);
 GST_CLOTH_API guint gst_cloth_topology_get_n_vertices (const GstClothTopology * topology);
 GST_CLOTH_API guint gst_cloth_topology_get_columns (const GstClothTopology * topology);
 GST_CLOTH_API guint gst_cloth_topology_get_rows (const GstClothTopology * topology);
+GST_CLOTH_API guint gst_cloth_topology_get_n_faces (const GstClothTopology * topology);
 GST_CLOTH_API const gfloat *gst_cloth_topology_get_uv (const GstClothTopology * topology, guint * n_floats);
 GST_CLOTH_API const guint32 *gst_cloth_topology_get_faces (const GstClothTopology * topology, guint * n_indices);
-/* caps with the topology as streamheader; framerate 0/1 = variable */
+GST_CLOTH_API GstBuffer *gst_cloth_topology_to_buffer (const GstClothTopology * topology);
+GST_CLOTH_API GstClothTopology *gst_cloth_topology_from_buffer (GstBuffer * buffer, GError ** error);
 GST_CLOTH_API GstCaps *gst_cloth_topology_to_caps (const GstClothTopology * topology, gint fps_n, gint fps_d);
 GST_CLOTH_API GstClothTopology *gst_cloth_topology_from_caps (const GstCaps * caps, GError ** error);
 
-/* Mesh: one frame. positions 3 floats a vertex, metres, world, NaN when unseen; states
- * one GstClothVertexState byte a vertex; covariances (nullable) 6 floats a vertex:
- * xx, xy, xz, yy, yz, zz, m². Immutable. */
 GST_CLOTH_API GType gst_cloth_mesh_get_type (void);
 GST_CLOTH_API GstClothMesh *gst_cloth_mesh_new (guint64 sequence,
     guint n_vertices, const gfloat * positions, const guint8 * states,
     const gfloat * covariances);
+GST_CLOTH_API GstClothMesh *gst_cloth_mesh_new_from_arrays (guint64 sequence,
+    const gfloat * positions, guint n_positions, const guint8 * states,
+    guint n_states, const gfloat * covariances, guint n_covariances,
+    GError ** error);
 GST_CLOTH_API GstClothMesh *gst_cloth_mesh_ref (GstClothMesh * mesh);
 GST_CLOTH_API void gst_cloth_mesh_unref (GstClothMesh * mesh);
 GST_CLOTH_API guint64 gst_cloth_mesh_get_sequence (const GstClothMesh * mesh);

@@ -1,2 +1,436 @@
-/* SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/cloth/cloth.h"
+/* Tracked squares of one picture, as buffer metadata.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <gst/video/video.h>
+
+#include "gst/cloth/gstclothprivate.h"
+
+/* One allocation: this, the quads, the camera's name. */
+struct _GstClothQuads
+{
+  gatomicrefcount refs;
+  guint columns, rows;
+  guint n_quads;
+  guint64 sequence;
+  GstClothQuad *quads;
+  gchar *camera;
+};
+
+G_DEFINE_BOXED_TYPE (GstClothQuad, gst_cloth_quad, gst_cloth_quad_copy,
+    gst_cloth_quad_free);
+G_DEFINE_BOXED_TYPE (GstClothQuads, gst_cloth_quads, gst_cloth_quads_ref,
+    gst_cloth_quads_unref);
+
+/**
+ * gst_cloth_quad_copy:
+ * @quad: a quad
+ *
+ * Returns: (transfer full): a copy
+ *
+ * Since: 0.1
+ */
+GstClothQuad *
+gst_cloth_quad_copy (const GstClothQuad * quad)
+{
+  return g_memdup2 (quad, sizeof *quad);
+}
+
+/**
+ * gst_cloth_quad_free:
+ * @quad: (transfer full): a quad
+ *
+ * Since: 0.1
+ */
+void
+gst_cloth_quad_free (GstClothQuad * quad)
+{
+  g_free (quad);
+}
+
+static GstClothQuads *
+quads_alloc (const gchar * camera, guint64 sequence, guint columns, guint rows,
+    guint n_quads)
+{
+  gsize name = camera ? strlen (camera) : 0;
+  GstClothQuads *quads = g_malloc (sizeof (GstClothQuads)
+      + n_quads * sizeof (GstClothQuad) + name + 1);
+
+  g_atomic_ref_count_init (&quads->refs);
+  quads->sequence = sequence;
+  quads->columns = columns;
+  quads->rows = rows;
+  quads->n_quads = n_quads;
+  quads->quads = (GstClothQuad *) (quads + 1);
+  quads->camera = (gchar *) (quads->quads + n_quads);
+  if (name)
+    memcpy (quads->camera, camera, name);
+  quads->camera[name] = 0;
+  return quads;
+}
+
+/**
+ * gst_cloth_quads_new:
+ * @camera: (nullable): name of the camera in the rig, UTF-8 of at most
+ *   #GST_CLOTH_MAX_CAMERA_NAME bytes; %NULL or "" when it isn't known
+ * @sequence: number of the frame, counted by the camera
+ * @columns: squares in a row of the whole board
+ * @rows: squares in a column of the whole board
+ * @quads: (array length=n_quads) (nullable): the quads, copied
+ * @n_quads: how many, at most #GST_CLOTH_MAX_FEATURES
+ *
+ * The squares of a board that one picture shows. Immutable; none seen is a valid
+ * payload and says so.
+ *
+ * Returns: (transfer full): new quads
+ *
+ * Since: 0.1
+ */
+GstClothQuads *
+gst_cloth_quads_new (const gchar * camera, guint64 sequence, guint columns,
+    guint rows, const GstClothQuad * quads, guint n_quads)
+{
+  GstClothQuads *payload;
+
+  g_return_val_if_fail (gst_cloth_camera_is_valid (camera), NULL);
+  g_return_val_if_fail (quads || !n_quads, NULL);
+  g_return_val_if_fail (n_quads <= GST_CLOTH_MAX_FEATURES, NULL);
+  g_return_val_if_fail (columns <= GST_CLOTH_MAX_FEATURES
+      && rows <= GST_CLOTH_MAX_FEATURES, NULL);
+
+  payload = quads_alloc (camera, sequence, columns, rows, n_quads);
+  if (n_quads)
+    memcpy (payload->quads, quads, n_quads * sizeof *quads);
+  return payload;
+}
+
+/**
+ * gst_cloth_quads_ref:
+ * @quads: quads
+ *
+ * Returns: (transfer full): the same, with one more reference
+ *
+ * Since: 0.1
+ */
+GstClothQuads *
+gst_cloth_quads_ref (GstClothQuads * quads)
+{
+  g_atomic_ref_count_inc (&quads->refs);
+  return quads;
+}
+
+/**
+ * gst_cloth_quads_unref:
+ * @quads: (transfer full): quads
+ *
+ * Gives a reference back; the last one frees.
+ *
+ * Since: 0.1
+ */
+void
+gst_cloth_quads_unref (GstClothQuads * quads)
+{
+  if (g_atomic_ref_count_dec (&quads->refs))
+    g_free (quads);
+}
+
+/**
+ * gst_cloth_quads_get_camera:
+ * @quads: quads
+ *
+ * Returns: (transfer none): name of the camera, "" when it isn't known
+ *
+ * Since: 0.1
+ */
+const gchar *
+gst_cloth_quads_get_camera (const GstClothQuads * quads)
+{
+  return quads->camera;
+}
+
+/**
+ * gst_cloth_quads_get_sequence:
+ * @quads: quads
+ *
+ * Returns: number of the frame, counted by the camera
+ *
+ * Since: 0.1
+ */
+guint64
+gst_cloth_quads_get_sequence (const GstClothQuads * quads)
+{
+  return quads->sequence;
+}
+
+/**
+ * gst_cloth_quads_get_columns:
+ * @quads: quads
+ *
+ * Returns: squares in a row of the whole board
+ *
+ * Since: 0.1
+ */
+guint
+gst_cloth_quads_get_columns (const GstClothQuads * quads)
+{
+  return quads->columns;
+}
+
+/**
+ * gst_cloth_quads_get_rows:
+ * @quads: quads
+ *
+ * Returns: squares in a column of the whole board
+ *
+ * Since: 0.1
+ */
+guint
+gst_cloth_quads_get_rows (const GstClothQuads * quads)
+{
+  return quads->rows;
+}
+
+/**
+ * gst_cloth_quads_get_n_quads:
+ * @quads: quads
+ *
+ * Returns: how many quads there are
+ *
+ * Since: 0.1
+ */
+guint
+gst_cloth_quads_get_n_quads (const GstClothQuads * quads)
+{
+  return quads->n_quads;
+}
+
+/**
+ * gst_cloth_quads_get_quads:
+ * @quads: quads
+ * @n_quads: (out) (optional): how many
+ *
+ * Returns: (array length=n_quads) (transfer none): the quads, valid as long as @quads
+ *   is
+ *
+ * Since: 0.1
+ */
+const GstClothQuad *
+gst_cloth_quads_get_quads (const GstClothQuads * quads, guint * n_quads)
+{
+  if (n_quads)
+    *n_quads = quads->n_quads;
+  return quads->quads;
+}
+
+/**
+ * gst_cloth_quads_get_quad:
+ * @quads: quads
+ * @index: which
+ * @quad: (out caller-allocates): its copy
+ *
+ * Returns: %FALSE when @index is past the end
+ *
+ * Since: 0.1
+ */
+gboolean
+gst_cloth_quads_get_quad (const GstClothQuads * quads, guint index,
+    GstClothQuad * quad)
+{
+  if (index >= quads->n_quads)
+    return FALSE;
+  *quad = quads->quads[index];
+  return TRUE;
+}
+
+/**
+ * gst_cloth_quads_get_points:
+ * @quads: quads
+ *
+ * The corners as an array of 32 bit floats of the host, shape (n_quads, 4, 2): x, y of
+ * corners 0..3.
+ *
+ * Returns: (transfer full): new bytes
+ *
+ * Since: 0.1
+ */
+GBytes *
+gst_cloth_quads_get_points (GstClothQuads * quads)
+{
+  gfloat *points = g_new (gfloat, 8 * quads->n_quads);
+  gfloat *p = points;
+
+  for (guint i = 0; i < quads->n_quads; i++) {
+    for (guint c = 0; c < 4; c++) {
+      *p++ = quads->quads[i].x[c];
+      *p++ = quads->quads[i].y[c];
+    }
+  }
+  return g_bytes_new_take (points, 8 * quads->n_quads * sizeof (gfloat));
+}
+
+/**
+ * gst_cloth_quads_scale:
+ * @quads: quads
+ * @scale_x: new width over old width, over 0
+ * @scale_y: new height over old height, over 0
+ *
+ * The quads of the same picture at another size: x' = (x + ½)·@scale_x − ½, the
+ * covariances in the new pixels.
+ *
+ * Returns: (transfer full): new quads
+ *
+ * Since: 0.1
+ */
+GstClothQuads *
+gst_cloth_quads_scale (GstClothQuads * quads, gdouble scale_x, gdouble scale_y)
+{
+  GstClothQuads *scaled;
+
+  g_return_val_if_fail (quads != NULL, NULL);
+  g_return_val_if_fail (scale_x > 0 && scale_y > 0, NULL);
+
+  scaled = quads_alloc (quads->camera, quads->sequence, quads->columns,
+      quads->rows, quads->n_quads);
+  for (guint i = 0; i < quads->n_quads; i++) {
+    GstClothQuad *q = &scaled->quads[i];
+
+    *q = quads->quads[i];
+    for (guint c = 0; c < 4; c++) {
+      q->x[c] = gst_cloth_scale_place (q->x[c], scale_x);
+      q->y[c] = gst_cloth_scale_place (q->y[c], scale_y);
+      q->cov_xx[c] = (gfloat) (q->cov_xx[c] * scale_x * scale_x);
+      q->cov_xy[c] = (gfloat) (q->cov_xy[c] * scale_x * scale_y);
+      q->cov_yy[c] = (gfloat) (q->cov_yy[c] * scale_y * scale_y);
+    }
+  }
+  return scaled;
+}
+
+static gboolean
+quads_meta_init (GstMeta * meta, gpointer params, GstBuffer * buffer)
+{
+  ((GstClothQuadsMeta *) meta)->quads = NULL;
+  return TRUE;
+}
+
+static void
+quads_meta_free (GstMeta * meta, GstBuffer * buffer)
+{
+  g_clear_pointer (&((GstClothQuadsMeta *) meta)->quads, gst_cloth_quads_unref);
+}
+
+static gboolean
+quads_meta_transform (GstBuffer * target, GstMeta * meta, GstBuffer * buffer,
+    GQuark type, gpointer data)
+{
+  GstClothQuads *quads = ((GstClothQuadsMeta *) meta)->quads;
+  gdouble sx, sy;
+
+  if (GST_META_TRANSFORM_IS_COPY (type))
+    quads = gst_cloth_quads_ref (quads);
+  else if (gst_cloth_meta_get_scale (type, data, &sx, &sy))
+    quads = gst_cloth_quads_scale (quads, sx, sy);
+  else
+    return FALSE;
+  return gst_buffer_add_cloth_quads_meta (target, quads) != NULL;
+}
+
+/**
+ * gst_cloth_quads_meta_api_get_type: (skip)
+ *
+ * Returns: the type of the meta's API
+ *
+ * Since: 0.1
+ */
+GType
+gst_cloth_quads_meta_api_get_type (void)
+{
+  static GType type;
+  static const gchar *tags[] = { GST_META_TAG_VIDEO_STR,
+    GST_META_TAG_VIDEO_ORIENTATION_STR, GST_META_TAG_VIDEO_SIZE_STR, NULL
+  };
+
+  if (g_once_init_enter (&type)) {
+    GType registered = gst_meta_api_type_register ("GstClothQuadsMetaAPI",
+        tags);
+
+    g_once_init_leave (&type, registered);
+  }
+  return type;
+}
+
+/**
+ * gst_cloth_quads_meta_get_info: (skip)
+ *
+ * Returns: (transfer none): the meta's implementation
+ *
+ * Since: 0.1
+ */
+const GstMetaInfo *
+gst_cloth_quads_meta_get_info (void)
+{
+  static const GstMetaInfo *info;
+
+  if (g_once_init_enter (&info)) {
+    const GstMetaInfo *registered =
+        gst_meta_register (gst_cloth_quads_meta_api_get_type (),
+        "GstClothQuadsMeta", sizeof (GstClothQuadsMeta), quads_meta_init,
+        quads_meta_free, quads_meta_transform);
+
+    g_once_init_leave (&info, registered);
+  }
+  return info;
+}
+
+/**
+ * gst_buffer_add_cloth_quads_meta:
+ * @buffer: a writable buffer
+ * @quads: (transfer full): what was seen in its picture
+ *
+ * Puts @quads on @buffer, in place of those it may have had.
+ *
+ * Returns: (transfer none): the meta that now holds @quads
+ *
+ * Since: 0.1
+ */
+GstClothQuadsMeta *
+gst_buffer_add_cloth_quads_meta (GstBuffer * buffer, GstClothQuads * quads)
+{
+  GstClothQuadsMeta *meta;
+
+  g_return_val_if_fail (GST_IS_BUFFER (buffer), NULL);
+  g_return_val_if_fail (gst_buffer_is_writable (buffer), NULL);
+  g_return_val_if_fail (quads != NULL, NULL);
+
+  meta = (GstClothQuadsMeta *) gst_buffer_get_meta (buffer,
+      gst_cloth_quads_meta_api_get_type ());
+  if (!meta)
+    meta = (GstClothQuadsMeta *) gst_buffer_add_meta (buffer,
+        gst_cloth_quads_meta_get_info (), NULL);
+  if (!meta) {
+    gst_cloth_quads_unref (quads);
+    return NULL;
+  }
+  g_clear_pointer (&meta->quads, gst_cloth_quads_unref);
+  meta->quads = quads;
+  return meta;
+}
+
+/**
+ * gst_buffer_get_cloth_quads:
+ * @buffer: a buffer
+ *
+ * Returns: (transfer none) (nullable): the quads on @buffer, owned by it; %NULL when it
+ *   has none
+ *
+ * Since: 0.1
+ */
+GstClothQuads *
+gst_buffer_get_cloth_quads (GstBuffer * buffer)
+{
+  GstMeta *meta;
+
+  g_return_val_if_fail (GST_IS_BUFFER (buffer), NULL);
+
+  meta = gst_buffer_get_meta (buffer, gst_cloth_quads_meta_api_get_type ());
+  return meta ? ((GstClothQuadsMeta *) meta)->quads : NULL;
+}

@@ -1,0 +1,73 @@
+/* Shared inside libgstcloth-1.0: picture scaling and bounded reading of bytes.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include <gst/cloth/cloth.h>
+
+G_BEGIN_DECLS
+
+G_STATIC_ASSERT (sizeof (GstClothSaddle) == 7 * sizeof (gfloat));
+G_STATIC_ASSERT (sizeof (GstClothCandidate) == 3 * sizeof (gfloat));
+
+/* Places keep to pixel centres, so the picture's edge stays its edge. */
+static inline gfloat
+gst_cloth_scale_place (gfloat place, gdouble scale)
+{
+  return (gfloat) ((place + 0.5) * scale - 0.5);
+}
+
+gboolean gst_cloth_meta_get_scale (GQuark type, gpointer data,
+    gdouble * scale_x, gdouble * scale_y);
+gboolean gst_cloth_camera_is_valid (const gchar * camera);
+GstCaps *gst_cloth_caps_with_header (GstCaps * caps, GstBuffer * header);
+gboolean gst_cloth_map (GstBuffer * buffer, GstMapInfo * map, GError ** error);
+gboolean gst_cloth_check_header (const guint8 * bytes, gsize size,
+    const gchar * magic, guint version, gsize header, const gchar * what,
+    GError ** error);
+gboolean gst_cloth_check_size (gsize size, gsize expected, const gchar * what,
+    GError ** error);
+
+/* Numbers are kept little-endian on the wire. */
+static inline guint32
+gst_cloth_float_to_le (gfloat value)
+{
+  union
+  {
+    gfloat f;
+    guint32 u;
+  } bits = {.f = value };
+
+  return GUINT32_TO_LE (bits.u);
+}
+
+static inline gfloat
+gst_cloth_float_from_le (guint32 value)
+{
+  union
+  {
+    gfloat f;
+    guint32 u;
+  } bits = {.u = GUINT32_FROM_LE (value) };
+
+  return bits.f;
+}
+
+/* Copies n 32 bit words, swapping them on a big-endian host. */
+static inline void
+gst_cloth_copy_le32 (gpointer target, gconstpointer source, gsize n)
+{
+#if G_BYTE_ORDER == G_LITTLE_ENDIAN
+  memcpy (target, source, n * 4);
+#else
+  for (gsize i = 0; i < n; i++) {
+    guint32 word;
+
+    memcpy (&word, (const guint8 *) source + 4 * i, 4);
+    word = GUINT32_SWAP_LE_BE (word);
+    memcpy ((guint8 *) target + 4 * i, &word, 4);
+  }
+#endif
+}
+
+G_END_DECLS
