@@ -1,0 +1,70 @@
+/* Files of the mesh room: bounded reads, writes that appear whole or not at all.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include <glib.h>
+
+G_BEGIN_DECLS
+
+/* Limits on untrusted input. */
+#define CLOTH_MAX_VERTICES 1000000u
+#define CLOTH_MAX_FACES 2000000u
+#define CLOTH_MAX_BUFFER (512u << 20)
+
+/**
+ * ClothMeshError:
+ * @CLOTH_MESH_ERROR_INVALID: the bytes break the rules of the format
+ * @CLOTH_MESH_ERROR_TRUNCATED: fewer bytes than the header promises
+ * @CLOTH_MESH_ERROR_LIMIT: larger than this library accepts
+ * @CLOTH_MESH_ERROR_UNSUPPORTED: a valid file of a kind that is not read here
+ *
+ * What can be wrong with the contents of a file. Failures of the system come as
+ * #GIOErrorEnum.
+ *
+ * Since: 0.1
+ */
+typedef enum {
+  CLOTH_MESH_ERROR_INVALID,
+  CLOTH_MESH_ERROR_TRUNCATED,
+  CLOTH_MESH_ERROR_LIMIT,
+  CLOTH_MESH_ERROR_UNSUPPORTED
+} ClothMeshError;
+
+#define CLOTH_MESH_ERROR (cloth_mesh_error_quark ())
+GQuark cloth_mesh_error_quark (void);
+
+/* Bytes that can be read at any offset: a regular file or memory. */
+typedef struct _ClothInput ClothInput;
+
+ClothInput *cloth_input_open (const gchar * path, GError ** error);
+ClothInput *cloth_input_new_memory (const guint8 * data, gsize size);
+guint64 cloth_input_get_size (const ClothInput * input);
+gboolean cloth_input_read_at (ClothInput * input, guint64 offset,
+    gpointer destination, gsize size, GError ** error);
+gboolean cloth_input_load (ClothInput * input, gsize limit,
+    GByteArray * bytes, GError ** error);
+void cloth_input_free (ClothInput * input);
+
+/* A file under a temporary name beside its final one. */
+typedef struct _ClothOutput ClothOutput;
+
+ClothOutput *cloth_output_new (const gchar * path, GError ** error);
+gboolean cloth_output_write (ClothOutput * output, gconstpointer data,
+    gsize size, GError ** error);
+gboolean cloth_output_printf (ClothOutput * output, GError ** error,
+    const gchar * format, ...) G_GNUC_PRINTF (3, 4);
+gboolean cloth_output_write_at (ClothOutput * output, guint64 offset,
+    gconstpointer data, gsize size, GError ** error);
+gboolean cloth_output_finish (ClothOutput * output, GError ** error);
+gboolean cloth_output_commit (ClothOutput * const *outputs, guint n_outputs,
+    GError ** error);
+void cloth_output_free (ClothOutput * output);
+
+gchar *cloth_path_inside (const gchar * folder, const gchar * name,
+    GError ** error);
+void cloth_swap_little_endian (gpointer items, gsize item_size, gsize n_items);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothInput, cloth_input_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothOutput, cloth_output_free)
+G_END_DECLS
