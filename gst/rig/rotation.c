@@ -4,7 +4,6 @@
 #include "gst/rig/rotation.h"
 
 #include <math.h>
-#include <string.h>
 
 /* I + a [r]x + b [r]x². Both maps and both Jacobians have this form. */
 static void
@@ -137,46 +136,4 @@ cloth_rotation_left_jacobian_inverse (const gdouble r[3], gdouble J[9])
 
     series (r, -0.5, (1 - h * cos (h) / sin (h)) / t2, J);
   }
-}
-
-/**
- * cloth_rotation_nearest:
- * @M: row-major 3×3 of positive determinant, near a rotation
- * @R: (out): the rotation nearest to it in Frobenius norm; may be @M
- *
- * The orthogonal polar factor by Newton's iteration (Higham 1986).
- *
- * Since: 0.1
- */
-void
-cloth_rotation_nearest (const gdouble M[9], gdouble R[9])
-{
-  gdouble A[9], B[9];
-
-  memcpy (A, M, sizeof A);
-  for (gint iteration = 0; iteration < 60; iteration++) {
-    gdouble det, change = 0;
-
-    for (gint i = 0; i < 3; i++) {
-      for (gint j = 0; j < 3; j++) {
-        gint i1 = (i + 1) % 3, i2 = (i + 2) % 3;
-        gint j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-
-        B[3 * i + j] = A[3 * i1 + j1] * A[3 * i2 + j2]
-            - A[3 * i1 + j2] * A[3 * i2 + j1];
-      }
-    }
-    det = A[0] * B[0] + A[1] * B[1] + A[2] * B[2];
-    if (!(det > 0))
-      break;
-    for (gint i = 0; i < 9; i++) {
-      gdouble a = 0.5 * (A[i] + B[i] / det);
-
-      change = fmax (change, fabs (a - A[i]));
-      A[i] = a;
-    }
-    if (change < 1e-15)
-      break;
-  }
-  memcpy (R, A, sizeof A);
 }

@@ -149,17 +149,6 @@ test_rotation (void)
       }
     }
   }
-
-  /* Nearest rotation: a rotation printed with few digits is made one again. */
-  for (gint i = 0; i < 9; i++)
-    R[i] = round (rodrigues[i] * 1e4) / 1e4;
-  cloth_rotation_nearest (R, R);
-  for (gint i = 0; i < 9; i++) {
-    assert_near (R[i], rodrigues[i], 1e-4);
-    assert_near (R[i / 3 * 3] * R[i % 3 * 3]
-        + R[i / 3 * 3 + 1] * R[i % 3 * 3 + 1]
-        + R[i / 3 * 3 + 2] * R[i % 3 * 3 + 2], i % 4 == 0, 1e-15);
-  }
 }
 
 static void

@@ -1,0 +1,509 @@
+/* rig.json: the cameras of a rig in a file.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/rig/rigfile.h"
+
+#include <json-glib/json-glib.h>
+#include <math.h>
+#include <string.h>
+
+#include "gst/rig/textfile.h"
+
+/* rig.json needs 5; the parser descends by recursion, so this guards its stack. */
+#define MAX_DEPTH 32
+
+G_GNUC_PRINTF (4, 5)
+static gboolean
+bad (GError ** error, const gchar * where, const gchar * key,
+    const gchar * format, ...)
+{
+  va_list args;
+  g_autofree gchar *what = NULL;
+
+  va_start (args, format);
+  what = g_strdup_vprintf (format, args);
+  va_end (args);
+  g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_VALUE, "%s%s%s: %s",
+      where, *where && *key ? "." : "", key, what);
+  return FALSE;
+}
+
+/* Bounds the nesting, and keeps out the comments and single quotes that json-glib takes
+ * beyond JSON, which could hide brackets from this count. */
+static gboolean
+check_text (const gchar * data, gsize length, GError ** error)
+{
+  gint depth = 0;
+  gboolean quoted = FALSE;
+
+  for (gsize i = 0; i < length; i++) {
+    gchar c = data[i];
+
+    if (quoted) {
+      if (c == '\\')
+        i++;
+      else if (c == '"')
+        quoted = FALSE;
+      else if (c == 0)
+        break;
+    } else if (c == '"') {
+      quoted = TRUE;
+    } else if (c == '[' || c == '{') {
+      if (++depth > MAX_DEPTH) {
+        g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_LIMIT,
+            "nested deeper than %d levels", MAX_DEPTH);
+        return FALSE;
+      }
+    } else if (c == ']' || c == '}') {
+      depth--;
+    } else if (!strchr (" \t\r\n,:+-.", c) && !g_ascii_isalnum (c)) {
+      g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_SYNTAX,
+          "not JSON: byte 0x%02x at offset %" G_GSIZE_FORMAT, (guchar) c, i);
+      return FALSE;
+    } else if (c == 0) {
+      break;
+    }
+  }
+  if (memchr (data, 0, length) || !g_utf8_validate_len (data, length, NULL)) {
+    g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_SYNTAX,
+        "not JSON: it is not valid UTF-8 text");
+    return FALSE;
+  }
+  return TRUE;
+}
+
+static gboolean
+check_keys (JsonObject * object, const gchar * where,
+    const gchar * const *known, GError ** error)
+{
+  g_autoptr (GList) keys = json_object_get_members (object);
+
+  for (GList * l = keys; l; l = l->next) {
+    if (!g_strv_contains (known, l->data)) {
+      g_autofree gchar *all = g_strjoinv (", ", (gchar **) known);
+
+      return bad (error, where, l->data, "unknown key; known are %s", all);
+    }
+  }
+  return TRUE;
+}
+
+static gboolean
+read_number (JsonNode * node, const gchar * where, const gchar * key,
+    gdouble * value, GError ** error)
+{
+  GType type = JSON_NODE_HOLDS_VALUE (node) ? json_node_get_value_type (node)
+      : G_TYPE_INVALID;
+
+  if (type != G_TYPE_INT64 && type != G_TYPE_DOUBLE)
+    return bad (error, where, key, "must hold numbers only");
+  *value = json_node_get_double (node);
+  if (!isfinite (*value))
+    return bad (error, where, key, "holds a number that is not finite");
+  return TRUE;
+}
+
+/* A list of n numbers. */
+static gboolean
+read_list (JsonNode * node, const gchar * where, const gchar * key, guint n,
+    gdouble * values, GError ** error)
+{
+  JsonArray *array;
+
+  if (!node)
+    return bad (error, where, key, "is missing");
+  if (!JSON_NODE_HOLDS_ARRAY (node))
+    return bad (error, where, key, "must be a list of %u numbers", n);
+  array = json_node_get_array (node);
+  if (json_array_get_length (array) != n)
+    return bad (error, where, key, "holds %u numbers, not %u",
+        json_array_get_length (array), n);
+  for (guint i = 0; i < n; i++) {
+    if (!read_number (json_array_get_element (array, i), where, key,
+            &values[i], error))
+      return FALSE;
+  }
+  return TRUE;
+}
+
+static gboolean
+read_matrix (JsonNode * node, const gchar * where, const gchar * key,
+    gdouble M[9], GError ** error)
+{
+  JsonArray *array;
+
+  if (!node)
+    return bad (error, where, key, "is missing");
+  if (!JSON_NODE_HOLDS_ARRAY (node)
+      || json_array_get_length (json_node_get_array (node)) != 3)
+    return bad (error, where, key, "must be 3 rows of 3 numbers");
+  array = json_node_get_array (node);
+  for (guint i = 0; i < 3; i++) {
+    g_autofree gchar *row = g_strdup_printf ("%s[%u]", key, i);
+
+    if (!read_list (json_array_get_element (array, i), where, row, 3,
+            M + 3 * i, error))
+      return FALSE;
+  }
+  return TRUE;
+}
+
+static gboolean
+read_string (JsonNode * node, const gchar * where, const gchar * key,
+    gchar ** string, GError ** error)
+{
+  if (!node)
+    return bad (error, where, key, "is missing");
+  if (!JSON_NODE_HOLDS_VALUE (node)
+      || json_node_get_value_type (node) != G_TYPE_STRING)
+    return bad (error, where, key, "must be a string");
+  *string = json_node_dup_string (node);
+  return TRUE;
+}
+
+static gboolean
+read_distortion (JsonNode * node, const gchar * camera, ClothCamera * c,
+    GError ** error)
+{
+  static const gchar *const known[] = { "model", "coefficients", NULL };
+  g_autofree gchar *where = g_strdup_printf ("%s.distortion", camera);
+  g_autofree gchar *model = NULL;
+  JsonObject *object;
+  guint n;
+
+  if (!node)
+    return bad (error, where, "", "is missing; without any write "
+        "{\"model\": \"none\", \"coefficients\": []}");
+  if (!JSON_NODE_HOLDS_OBJECT (node))
+    return bad (error, where, "", "must be an object");
+  object = json_node_get_object (node);
+  if (!check_keys (object, where, known, error)
+      || !read_string (json_object_get_member (object, "model"), where,
+          "model", &model, error))
+    return FALSE;
+  if (!cloth_lens_from_string (model, &c->lens))
+    return bad (error, where, "model",
+        "\"%s\" is unknown; known are none, brown5, brown8, fisheye", model);
+  n = cloth_lens_n_coefficients (c->lens);
+  if (n == 0 && !json_object_has_member (object, "coefficients"))
+    return TRUE;
+  return read_list (json_object_get_member (object, "coefficients"), where,
+      "coefficients", n, c->k, error);
+}
+
+static gboolean
+read_deviations (JsonNode * node, const gchar * camera, ClothCamera * c,
+    GError ** error)
+{
+  static const gchar *const known[] = { "K", "distortion", "rotation", "t",
+    NULL
+  };
+  g_autofree gchar *where = g_strdup_printf ("%s.standard_deviations", camera);
+  struct {
+    const gchar *key;
+    guint n;
+    gdouble *values;
+  } lists[] = {
+    {"K", 4, c->K_sd},
+    {"distortion", cloth_lens_n_coefficients (c->lens), c->k_sd},
+    {"rotation", 3, c->r_sd}, {"t", 3, c->t_sd}
+  };
+  JsonObject *object;
+
+  if (!node)
+    return TRUE;
+  if (!JSON_NODE_HOLDS_OBJECT (node))
+    return bad (error, where, "", "must be an object");
+  object = json_node_get_object (node);
+  if (!check_keys (object, where, known, error))
+    return FALSE;
+  for (guint i = 0; i < G_N_ELEMENTS (lists); i++) {
+    if (json_object_has_member (object, lists[i].key)) {
+      if (!read_list (json_object_get_member (object, lists[i].key), where,
+              lists[i].key, lists[i].n, lists[i].values, error))
+        return FALSE;
+      for (guint j = 0; j < lists[i].n; j++) {
+        if (lists[i].values[j] < 0)
+          return bad (error, where, lists[i].key, "is negative: %g",
+              lists[i].values[j]);
+      }
+    }
+  }
+  return TRUE;
+}
+
+static gboolean
+read_camera (JsonNode * node, const gchar * where, ClothCamera * c,
+    GError ** error)
+{
+  static const gchar *const known[] = { "name", "size", "K", "distortion",
+    "R", "t", "device", "rolling_shutter_s", "offset_s",
+    "standard_deviations", NULL
+  };
+  JsonObject *object;
+  gdouble size[2];
+
+  if (!JSON_NODE_HOLDS_OBJECT (node))
+    return bad (error, where, "", "must be an object");
+  object = json_node_get_object (node);
+  if (!check_keys (object, where, known, error)
+      || !read_string (json_object_get_member (object, "name"), where,
+          "name", &c->name, error)
+      || !read_list (json_object_get_member (object, "size"), where, "size",
+          2, size, error))
+    return FALSE;
+  for (gint i = 0; i < 2; i++) {
+    if (size[i] != floor (size[i]) || size[i] < 1
+        || size[i] > CLOTH_RIG_MAX_SIZE)
+      return bad (error, where, "size", "%g; each must be a whole number "
+          "between 1 and %d", size[i], CLOTH_RIG_MAX_SIZE);
+  }
+  c->width = (gint) size[0];
+  c->height = (gint) size[1];
+  if (!read_matrix (json_object_get_member (object, "K"), where, "K", c->K,
+          error)
+      || !read_distortion (json_object_get_member (object, "distortion"),
+          where, c, error)
+      || !read_matrix (json_object_get_member (object, "R"), where, "R", c->R,
+          error)
+      || !read_list (json_object_get_member (object, "t"), where, "t", 3,
+          c->t, error)
+      || !read_deviations (json_object_get_member (object,
+              "standard_deviations"), where, c, error))
+    return FALSE;
+  if (json_object_has_member (object, "device")
+      && !read_string (json_object_get_member (object, "device"), where,
+          "device", &c->device, error))
+    return FALSE;
+  if ((json_object_has_member (object, "rolling_shutter_s")
+          && !read_number (json_object_get_member (object,
+                  "rolling_shutter_s"), where, "rolling_shutter_s",
+              &c->rolling_shutter_s, error))
+      || (json_object_has_member (object, "offset_s")
+          && !read_number (json_object_get_member (object, "offset_s"), where,
+              "offset_s", &c->offset_s, error)))
+    return FALSE;
+  return TRUE;
+}
+
+/**
+ * cloth_rig_load_data:
+ * @data: the text of a rig.json, at most 16 MiB
+ * @length: its bytes
+ * @error: #ClothRigError, naming key and value
+ *
+ * Returns: (transfer full): the rig, or %NULL.
+ *
+ * Since: 0.1
+ */
+ClothRig *
+cloth_rig_load_data (const gchar * data, gsize length, GError ** error)
+{
+  static const gchar *const known[] = { "version", "cameras", NULL };
+  g_autoptr (JsonParser) parser = json_parser_new_immutable ();
+  g_autoptr (ClothRig) rig = NULL;
+  g_autoptr (GError) parse_error = NULL;
+  JsonNode *root, *node;
+  JsonObject *object;
+  JsonArray *cameras;
+  gdouble version = 0;
+  guint n;
+
+  if (!check_text (data, length, error))
+    return NULL;
+  if (!json_parser_load_from_data (parser, data, (gssize) length,
+          &parse_error)) {
+    g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_SYNTAX,
+        "not JSON: %s", parse_error->message);
+    return NULL;
+  }
+  root = json_parser_get_root (parser);
+  if (!root || !JSON_NODE_HOLDS_OBJECT (root)) {
+    bad (error, "", "rig", "must be an object with \"version\" and "
+        "\"cameras\"");
+    return NULL;
+  }
+  object = json_node_get_object (root);
+  if (!(node = json_object_get_member (object, "version"))) {
+    bad (error, "", "version", "is missing; it must be 1");
+    return NULL;
+  }
+  if (!read_number (node, "", "version", &version, error))
+    return NULL;
+  if (version != 1) {
+    bad (error, "", "version", "%g; this program reads version 1", version);
+    return NULL;
+  }
+  if (!check_keys (object, "", known, error))
+    return NULL;
+  node = json_object_get_member (object, "cameras");
+  if (!node || !JSON_NODE_HOLDS_ARRAY (node)) {
+    bad (error, "", "cameras", "must be a list of cameras");
+    return NULL;
+  }
+  cameras = json_node_get_array (node);
+  n = json_array_get_length (cameras);
+  if (n < 1 || n > CLOTH_RIG_MAX_CAMERAS) {
+    bad (error, "", "cameras", "%u of them; 1 to %d are allowed", n,
+        CLOTH_RIG_MAX_CAMERAS);
+    return NULL;
+  }
+  rig = cloth_rig_new (n);
+  for (guint i = 0; i < n; i++) {
+    g_autofree gchar *where = g_strdup_printf ("cameras[%u]", i);
+
+    if (!read_camera (json_array_get_element (cameras, i), where,
+            &rig->cameras[i], error))
+      return NULL;
+  }
+  if (!cloth_rig_check (rig, error))
+    return NULL;
+  cloth_rig_mend_rotations (rig);
+  return g_steal_pointer (&rig);
+}
+
+/**
+ * cloth_rig_load:
+ * @path: a rig.json
+ * @error: #GFileError or #ClothRigError, naming file, key and value
+ *
+ * Returns: (transfer full): the rig, or %NULL.
+ *
+ * Since: 0.1
+ */
+ClothRig *
+cloth_rig_load (const gchar * path, GError ** error)
+{
+  gsize length;
+  g_autofree gchar *data = cloth_text_file_load (path, &length, error);
+  ClothRig *rig;
+
+  if (!data)
+    return NULL;
+  rig = cloth_rig_load_data (data, length, error);
+  if (!rig)
+    g_prefix_error (error, "%s: ", path);
+  return rig;
+}
+
+static void
+add_list (JsonBuilder * b, const gchar * key, const gdouble * values, guint n)
+{
+  if (key)
+    json_builder_set_member_name (b, key);
+  json_builder_begin_array (b);
+  for (guint i = 0; i < n; i++)
+    json_builder_add_double_value (b, values[i]);
+  json_builder_end_array (b);
+}
+
+static void
+add_matrix (JsonBuilder * b, const gchar * key, const gdouble M[9])
+{
+  json_builder_set_member_name (b, key);
+  json_builder_begin_array (b);
+  for (guint i = 0; i < 3; i++)
+    add_list (b, NULL, M + 3 * i, 3);
+  json_builder_end_array (b);
+}
+
+static gboolean
+any_set (const gdouble * values, guint n)
+{
+  for (guint i = 0; i < n; i++) {
+    if (values[i] != 0)
+      return TRUE;
+  }
+  return FALSE;
+}
+
+static void
+add_camera (JsonBuilder * b, const ClothCamera * c)
+{
+  guint n = cloth_lens_n_coefficients (c->lens);
+
+  json_builder_begin_object (b);
+  json_builder_set_member_name (b, "name");
+  json_builder_add_string_value (b, c->name);
+  json_builder_set_member_name (b, "size");
+  json_builder_begin_array (b);
+  json_builder_add_int_value (b, c->width);
+  json_builder_add_int_value (b, c->height);
+  json_builder_end_array (b);
+  add_matrix (b, "K", c->K);
+  json_builder_set_member_name (b, "distortion");
+  json_builder_begin_object (b);
+  json_builder_set_member_name (b, "model");
+  json_builder_add_string_value (b, cloth_lens_to_string (c->lens));
+  add_list (b, "coefficients", c->k, n);
+  json_builder_end_object (b);
+  add_matrix (b, "R", c->R);
+  add_list (b, "t", c->t, 3);
+  if (c->device) {
+    json_builder_set_member_name (b, "device");
+    json_builder_add_string_value (b, c->device);
+  }
+  if (c->rolling_shutter_s != 0) {
+    json_builder_set_member_name (b, "rolling_shutter_s");
+    json_builder_add_double_value (b, c->rolling_shutter_s);
+  }
+  if (c->offset_s != 0) {
+    json_builder_set_member_name (b, "offset_s");
+    json_builder_add_double_value (b, c->offset_s);
+  }
+  if (any_set (c->K_sd, 4) || any_set (c->k_sd, n) || any_set (c->r_sd, 3)
+      || any_set (c->t_sd, 3)) {
+    json_builder_set_member_name (b, "standard_deviations");
+    json_builder_begin_object (b);
+    add_list (b, "K", c->K_sd, 4);
+    add_list (b, "distortion", c->k_sd, n);
+    add_list (b, "rotation", c->r_sd, 3);
+    add_list (b, "t", c->t_sd, 3);
+    json_builder_end_object (b);
+  }
+  json_builder_end_object (b);
+}
+
+/**
+ * cloth_rig_save:
+ * @rig: a rig that passes cloth_rig_check()
+ * @path: where to; replaced whole or not at all
+ * @error: #GFileError or #ClothRigError
+ *
+ * Writes version 1. Numbers are written so that they read back as the same doubles.
+ *
+ * Returns: whether it was written.
+ *
+ * Since: 0.1
+ */
+gboolean
+cloth_rig_save (const ClothRig * rig, const gchar * path, GError ** error)
+{
+  g_autoptr (JsonBuilder) b = NULL;
+  g_autoptr (JsonGenerator) generator = NULL;
+  g_autoptr (JsonNode) root = NULL;
+  g_autofree gchar *text = NULL, *line = NULL;
+
+  if (!cloth_rig_check (rig, error)) {
+    g_prefix_error (error, "%s: not written: ", path);
+    return FALSE;
+  }
+  b = json_builder_new ();
+  json_builder_begin_object (b);
+  json_builder_set_member_name (b, "version");
+  json_builder_add_int_value (b, 1);
+  json_builder_set_member_name (b, "cameras");
+  json_builder_begin_array (b);
+  for (guint i = 0; i < rig->n_cameras; i++)
+    add_camera (b, &rig->cameras[i]);
+  json_builder_end_array (b);
+  json_builder_end_object (b);
+  root = json_builder_get_root (b);
+  generator = json_generator_new ();
+  json_generator_set_pretty (generator, TRUE);
+  json_generator_set_root (generator, root);
+  text = json_generator_to_data (generator, NULL);
+  line = g_strconcat (text, "\n", NULL);
+  return g_file_set_contents_full (path, line, -1,
+      G_FILE_SET_CONTENTS_CONSISTENT, 0666, error);
+}

@@ -1,0 +1,286 @@
+/* rig.json: reading, writing and refusing.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <glib/gstdio.h>
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "gst/rig/rigfile.h"
+
+static const gchar good[] =
+    "{\"version\":1,\"cameras\":[{\"name\":\"left\",\"size\":[640,480],"
+    "\"K\":[[500.5,0,320],[0,501,240],[0,0,1]],"
+    "\"distortion\":{\"model\":\"fisheye\",\"coefficients\":[0.1,0.2,-3e-3,4]},"
+    "\"R\":[[0,-1,0],[1,0,0],[0,0,1]],\"t\":[0.1,0.2,3],"
+    "\"device\":\"/dev/video0\",\"rolling_shutter_s\":0.02,\"offset_s\":-0.5,"
+    "\"standard_deviations\":{\"K\":[1,2,3,4],\"rotation\":[1,2,3]}}]}";
+
+static void
+test_load (void)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRig) rig = cloth_rig_load_data (good, strlen (good), &error);
+  const ClothCamera *c;
+
+  g_assert_no_error (error);
+  g_assert_cmpuint (rig->n_cameras, ==, 1);
+  g_assert_null (cloth_rig_find (rig, "right"));
+  c = cloth_rig_find (rig, "left");
+  g_assert_nonnull (c);
+  g_assert_cmpint (c->width, ==, 640);
+  g_assert_cmpint (c->height, ==, 480);
+  g_assert_cmpfloat (c->K[0], ==, 500.5);
+  g_assert_cmpfloat (c->K[5], ==, 240);
+  g_assert_cmpint (c->lens, ==, CLOTH_LENS_FISHEYE);
+  g_assert_cmpfloat (c->k[2], ==, -3e-3);
+  g_assert_cmpfloat (c->R[1], ==, -1);
+  g_assert_cmpfloat (c->t[2], ==, 3);
+  g_assert_cmpstr (c->device, ==, "/dev/video0");
+  g_assert_cmpfloat (c->rolling_shutter_s, ==, 0.02);
+  g_assert_cmpfloat (c->offset_s, ==, -0.5);
+  g_assert_cmpfloat (c->K_sd[3], ==, 4);
+  g_assert_cmpfloat (c->r_sd[2], ==, 3);
+  g_assert_cmpfloat (c->t_sd[2], ==, 0);
+}
+
+static void
+test_rendered (void)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRig) rig =
+      cloth_rig_load (TEST_DATA "/checker_pair/rig.json", &error);
+
+  g_assert_no_error (error);
+  g_assert_cmpuint (rig->n_cameras, ==, 2);
+  g_assert_cmpfloat (cloth_rig_find (rig, "cam1")->t[1], ==,
+      0.8496097922325134);
+  g_assert_cmpint (rig->cameras[0].lens, ==, CLOTH_LENS_NONE);
+}
+
+/* What is saved loads as the same doubles, and saving again gives the same bytes. */
+static void
+test_save (void)
+{
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *dir = g_dir_make_tmp ("rigXXXXXX", NULL);
+  g_autofree gchar *a = g_build_filename (dir, "a.json", NULL);
+  g_autofree gchar *b = g_build_filename (dir, "b.json", NULL);
+  g_autofree gchar *text_a = NULL, *text_b = NULL;
+  g_autoptr (ClothRig) rig =
+      cloth_rig_load (TEST_DATA "/checker_pair/rig.json", &error);
+  g_autoptr (ClothRig) again = NULL;
+  g_autofree gchar *missing = g_build_filename (dir, "no", "a.json", NULL);
+
+  g_assert_no_error (error);
+  rig->cameras[1].lens = CLOTH_LENS_BROWN8;
+  rig->cameras[1].k[7] = 1. / 3;
+  rig->cameras[1].t_sd[0] = 1e-7 / 3;
+  rig->cameras[0].device = g_strdup ("quote \" and ü");
+  g_assert_true (cloth_rig_save (rig, a, &error));
+  again = cloth_rig_load (a, &error);
+  g_assert_no_error (error);
+  for (guint i = 0; i < 2; i++) {
+    g_assert_cmpmem (rig->cameras[i].K, sizeof rig->cameras[i].K,
+        again->cameras[i].K, sizeof rig->cameras[i].K);
+    g_assert_cmpmem (rig->cameras[i].R, sizeof rig->cameras[i].R,
+        again->cameras[i].R, sizeof rig->cameras[i].R);
+    g_assert_cmpmem (rig->cameras[i].t, sizeof rig->cameras[i].t,
+        again->cameras[i].t, sizeof rig->cameras[i].t);
+    g_assert_cmpmem (rig->cameras[i].k, sizeof rig->cameras[i].k,
+        again->cameras[i].k, sizeof rig->cameras[i].k);
+  }
+  g_assert_cmpfloat (again->cameras[1].t_sd[0], ==, 1e-7 / 3);
+  g_assert_cmpstr (again->cameras[0].device, ==, rig->cameras[0].device);
+  g_assert_true (cloth_rig_save (again, b, &error));
+  g_assert_true (g_file_get_contents (a, &text_a, NULL, NULL));
+  g_assert_true (g_file_get_contents (b, &text_b, NULL, NULL));
+  g_assert_cmpstr (text_a, ==, text_b);
+
+  g_assert_false (cloth_rig_save (rig, missing, &error));
+  g_assert_error (error, G_FILE_ERROR, G_FILE_ERROR_NOENT);
+  g_clear_error (&error);
+
+  /* A rig that could not be read back is not written over a good one. */
+  again->cameras[0].K[0] = NAN;
+  g_assert_false (cloth_rig_save (again, b, &error));
+  g_assert_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_VALUE);
+  g_clear_pointer (&text_b, g_free);
+  g_assert_true (g_file_get_contents (b, &text_b, NULL, NULL));
+  g_assert_cmpstr (text_a, ==, text_b);
+  g_unlink (a);
+  g_unlink (b);
+  g_assert_cmpint (g_rmdir (dir), ==, 0);
+}
+
+/* A matrix typed with five digits is a rotation again once loaded. */
+static void
+test_mend (void)
+{
+  g_autofree gchar *text = NULL;
+  g_auto (GStrv) parts = g_strsplit (good, "[[0,-1,0],[1,0,0],[0,0,1]]", 2);
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRig) rig = NULL;
+  const gdouble *R;
+
+  text = g_strjoin ("[[0.81340,-0.50232,-0.29335],[0.42737,0.85816,-0.28446],"
+      "[0.39463,0.10601,0.91270]]", parts[0], parts[1], NULL);
+  rig = cloth_rig_load_data (text, strlen (text), &error);
+  g_assert_no_error (error);
+  R = rig->cameras[0].R;
+  g_assert_cmpfloat (fabs (R[0] - 0.8134), <, 1e-5);
+  g_assert_cmpfloat (fabs (R[0] * R[0] + R[1] * R[1] + R[2] * R[2] - 1), <,
+      1e-15);
+  g_assert_cmpfloat (fabs (R[0] * R[3] + R[1] * R[4] + R[2] * R[5]), <, 1e-15);
+}
+
+/* What is replaced in the good text, by what, the code, and what the message says. */
+typedef struct {
+  const gchar *from, *to;
+  ClothRigError code;
+  const gchar *says;
+} Bad;
+
+static const Bad bads[] = {
+  {"{\"version\":1,", "{", CLOTH_RIG_ERROR_VALUE, "version"},
+  {"\"version\":1", "\"version\":2", CLOTH_RIG_ERROR_VALUE, "version: 2"},
+  {"\"version\":1", "\"version\":\"1\"", CLOTH_RIG_ERROR_VALUE, "version"},
+  {"{\"version\":1,", "{\"version\":1,\"camera\":[],", CLOTH_RIG_ERROR_VALUE,
+      "camera: unknown key"},
+  {"\"name\":\"left\"", "\"name\":\"\"", CLOTH_RIG_ERROR_VALUE, "name"},
+  {"\"name\":\"left\"", "\"name\":\"../x\"", CLOTH_RIG_ERROR_VALUE, "slash"},
+  {"\"name\":\"left\"", "\"name\":\"..\"", CLOTH_RIG_ERROR_VALUE, "\"..\""},
+  {"\"name\":\"left\"", "\"name\":\"a\\u0000b\\n\"", CLOTH_RIG_ERROR_VALUE,
+      "name"},
+  {"\"name\":\"left\"", "\"name\":7", CLOTH_RIG_ERROR_VALUE, "name"},
+  {"\"name\":\"left\",", "", CLOTH_RIG_ERROR_VALUE, "name"},
+  {"[640,480]", "[640]", CLOTH_RIG_ERROR_VALUE, "cameras[0].size"},
+  {"[640,480]", "[640,480,3]", CLOTH_RIG_ERROR_VALUE, "cameras[0].size"},
+  {"[640,480]", "[640,0]", CLOTH_RIG_ERROR_VALUE, "cameras[0].size: 0"},
+  {"[640,480]", "[640,-4]", CLOTH_RIG_ERROR_VALUE, "cameras[0].size"},
+  {"[640,480]", "[640,480.5]", CLOTH_RIG_ERROR_VALUE, "cameras[0].size"},
+  {"[640,480]", "[20000,480]", CLOTH_RIG_ERROR_VALUE, "20000"},
+  {"[640,480]", "[9999999999999,480]", CLOTH_RIG_ERROR_VALUE, "size"},
+  {"500.5,0,320", "0,0,320", CLOTH_RIG_ERROR_VALUE, "cameras[0].K"},
+  {"500.5,0,320", "-500,0,320", CLOTH_RIG_ERROR_VALUE, "cameras[0].K"},
+  {"500.5,0,320", "1e999,0,320", CLOTH_RIG_ERROR_VALUE, "cameras[0].K[0]"},
+  {"500.5,0,320", "NaN,0,320", CLOTH_RIG_ERROR_SYNTAX, "not JSON"},
+  {"500.5,0,320", "500.5,0", CLOTH_RIG_ERROR_VALUE, "cameras[0].K[0]"},
+  {"500.5,0,320", "500.5,0,null", CLOTH_RIG_ERROR_VALUE, "cameras[0].K[0]"},
+  {"[0,501,240]", "[0.1,501,240]", CLOTH_RIG_ERROR_VALUE, "cameras[0].K"},
+  {",[0,501,240]", "", CLOTH_RIG_ERROR_VALUE, "cameras[0].K"},
+  {"\"fisheye\"", "\"fish\"", CLOTH_RIG_ERROR_VALUE, "\"fish\""},
+  {"\"fisheye\"", "\"brown5\"", CLOTH_RIG_ERROR_VALUE, "4 numbers, not 5"},
+  {"\"fisheye\"", "\"none\"", CLOTH_RIG_ERROR_VALUE, "4 numbers, not 0"},
+  {"\"distortion\"", "\"distorsion\"", CLOTH_RIG_ERROR_VALUE, "distorsion"},
+  {"[[0,-1,0],[1,0,0],", "[[0,1,0],[1,0,0],", CLOTH_RIG_ERROR_VALUE,
+      "reflection"},
+  {"[[0,-1,0],", "[[0.01,-1,0],", CLOTH_RIG_ERROR_VALUE, "not a rotation"},
+  {"[[0,-1,0],", "[[0,0,0],", CLOTH_RIG_ERROR_VALUE, "not a rotation"},
+  {"[0.1,0.2,3]", "[0.1,0.2]", CLOTH_RIG_ERROR_VALUE, "cameras[0].t"},
+  {"[0.1,0.2,3]", "{}", CLOTH_RIG_ERROR_VALUE, "cameras[0].t"},
+  {"\"t\":[0.1,0.2,3],", "", CLOTH_RIG_ERROR_VALUE, "cameras[0].t: is missing"},
+  {"-0.5", "true", CLOTH_RIG_ERROR_VALUE, "offset_s"},
+  {"\"/dev/video0\"", "[]", CLOTH_RIG_ERROR_VALUE, "device"},
+  {"[1,2,3,4]", "[1,2,3]", CLOTH_RIG_ERROR_VALUE, "standard_deviations"},
+  {"[1,2,3,4]", "[1,2,-3,4]", CLOTH_RIG_ERROR_VALUE, "-3"},
+  {"[1,2,3]}", "[1,2,3],\"R\":3}", CLOTH_RIG_ERROR_VALUE, "unknown key"},
+  {"}]}", "}", CLOTH_RIG_ERROR_SYNTAX, "not JSON"},
+  {"{\"version\"", "/* */{\"version\"", CLOTH_RIG_ERROR_SYNTAX, "0x2f"},
+  {"{\"version\"", "\xff{\"version\"", CLOTH_RIG_ERROR_SYNTAX, "not JSON"},
+  {"\"left\"", "\"\xc3\x28\"", CLOTH_RIG_ERROR_SYNTAX, "UTF-8"},
+};
+
+static void
+assert_refused (const gchar * text, gssize length, ClothRigError code,
+    const gchar * says)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRig) rig = cloth_rig_load_data (text,
+      length < 0 ? strlen (text) : (gsize) length, &error);
+
+  g_assert_null (rig);
+  g_test_message ("%s", error->message);
+  g_assert_error (error, CLOTH_RIG_ERROR, (gint) code);
+  g_assert_nonnull (strstr (error->message, says));
+}
+
+static void
+test_bad (void)
+{
+  for (guint i = 0; i < G_N_ELEMENTS (bads); i++) {
+    g_auto (GStrv) parts = g_strsplit (good, bads[i].from, 2);
+    g_autofree gchar *text = g_strjoinv (bads[i].to, parts);
+
+    g_assert_cmpuint (g_strv_length (parts), ==, 2);
+    assert_refused (text, -1, bads[i].code, bads[i].says);
+  }
+  assert_refused ("", -1, CLOTH_RIG_ERROR_VALUE, "must be an object");
+  assert_refused ("[]", -1, CLOTH_RIG_ERROR_VALUE, "must be an object");
+  assert_refused ("{\"version\":1,\"cameras\":[]}", -1, CLOTH_RIG_ERROR_VALUE,
+      "0 of them");
+  assert_refused ("{\"version\":1,\"cameras\":[[]]}", -1,
+      CLOTH_RIG_ERROR_VALUE, "cameras[0]");
+  assert_refused ("{\"a\0\"}", 6, CLOTH_RIG_ERROR_SYNTAX, "not JSON");
+}
+
+static void
+test_limits (void)
+{
+  g_autoptr (GString) many = g_string_new ("{\"version\":1,\"cameras\":[");
+  g_autofree gchar *deep = g_strnfill (1000000, '[');
+  g_autoptr (GString) twice = g_string_new ("");
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *dir = g_dir_make_tmp ("rigXXXXXX", NULL);
+  g_autofree gchar *path = g_build_filename (dir, "big.json", NULL);
+  g_autofree gchar *pipe = g_build_filename (dir, "pipe", NULL);
+  const gchar *camera = strchr (good, '[') + 1;
+  gsize camera_length = strlen (camera) - 2;
+
+  assert_refused (deep, -1, CLOTH_RIG_ERROR_LIMIT, "nested");
+  for (guint i = 0; i < 65; i++)
+    g_string_append (many, i ? ",{}" : "{}");
+  g_string_append (many, "]}");
+  assert_refused (many->str, -1, CLOTH_RIG_ERROR_VALUE, "65 of them");
+
+  g_string_append_len (twice, good, strlen (good) - 2);
+  g_string_append_c (twice, ',');
+  g_string_append_len (twice, camera, camera_length);
+  g_string_append (twice, "]}");
+  assert_refused (twice->str, -1, CLOTH_RIG_ERROR_VALUE,
+      "cameras[1].name: \"left\" is also the name of cameras[0]");
+
+  g_assert_null (cloth_rig_load (path, &error));
+  g_assert_error (error, G_FILE_ERROR, G_FILE_ERROR_NOENT);
+  g_clear_error (&error);
+  g_assert_null (cloth_rig_load (dir, &error));
+  g_assert_error (error, G_FILE_ERROR, G_FILE_ERROR_INVAL);
+  g_clear_error (&error);
+  g_assert_cmpint (mkfifo (pipe, 0600), ==, 0);
+  g_assert_null (cloth_rig_load (pipe, &error));
+  g_assert_error (error, G_FILE_ERROR, G_FILE_ERROR_INVAL);
+  g_clear_error (&error);
+  g_assert_true (g_file_set_contents (path, good, 40, NULL));
+  g_assert_null (cloth_rig_load (path, &error));
+  g_assert_true (g_str_has_prefix (error->message, path));
+  g_clear_error (&error);
+  g_assert_cmpint (truncate (path, 16 * 1024 * 1024 + 1), ==, 0);
+  g_assert_null (cloth_rig_load (path, &error));
+  g_assert_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_LIMIT);
+  g_unlink (path);
+  g_unlink (pipe);
+  g_rmdir (dir);
+}
+
+int
+main (int argc, char **argv)
+{
+  g_test_init (&argc, &argv, NULL);
+  g_test_add_func ("/rigfile/load", test_load);
+  g_test_add_func ("/rigfile/rendered", test_rendered);
+  g_test_add_func ("/rigfile/save", test_save);
+  g_test_add_func ("/rigfile/mend", test_mend);
+  g_test_add_func ("/rigfile/bad", test_bad);
+  g_test_add_func ("/rigfile/limits", test_limits);
+  return g_test_run ();
+}

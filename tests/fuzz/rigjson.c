@@ -1,0 +1,20 @@
+/* Fuzz target: rig.json. What loads must pass its own check.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/rig/rigfile.h"
+
+int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
+
+int
+LLVMFuzzerTestOneInput (const guint8 * data, gsize size)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRig) rig =
+      cloth_rig_load_data ((const gchar *) data, size, &error);
+
+  if (!rig == !error)
+    g_error ("neither a rig nor an error, or both");
+  if (rig && !cloth_rig_check (rig, &error))
+    g_error ("loaded, yet: %s", error->message);
+  return 0;
+}
