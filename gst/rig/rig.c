@@ -11,11 +11,10 @@
 /* How far R R' may be from the identity: a matrix typed with five digits passes. */
 #define ROTATION_TOLERANCE 1e-4
 
-G_DEFINE_QUARK (cloth-rig-error-quark, cloth_rig_error)
-
-static const gchar *const lens_names[] = { "none", "brown5", "brown8",
-  "fisheye"
-};
+G_DEFINE_QUARK (cloth - rig - error - quark, cloth_rig_error)
+     static const gchar *const lens_names[] = { "none", "brown5", "brown8",
+       "fisheye"
+     };
 
 /**
  * cloth_lens_to_string:
@@ -114,8 +113,8 @@ cloth_rig_find (const ClothRig * rig, const gchar * name)
 }
 
 G_GNUC_PRINTF (4, 5)
-static gboolean
-bad (GError ** error, const gchar * where, const gchar * key,
+     static gboolean
+         bad (GError ** error, const gchar * where, const gchar * key,
     const gchar * format, ...)
 {
   va_list args;

@@ -13,8 +13,8 @@
 #define MAX_DEPTH 32
 
 G_GNUC_PRINTF (4, 5)
-static gboolean
-bad (GError ** error, const gchar * where, const gchar * key,
+     static gboolean
+         bad (GError ** error, const gchar * where, const gchar * key,
     const gchar * format, ...)
 {
   va_list args;
@@ -199,7 +199,8 @@ read_deviations (JsonNode * node, const gchar * camera, ClothCamera * c,
     NULL
   };
   g_autofree gchar *where = g_strdup_printf ("%s.standard_deviations", camera);
-  struct {
+  struct
+  {
     const gchar *key;
     guint n;
     gdouble *values;
@@ -309,10 +310,11 @@ cloth_rig_load_data (const gchar * data, gsize length, GError ** error)
   gdouble version = 0;
   guint n;
 
+  if (length == 0)
+    data = "";
   if (!check_text (data, length, error))
     return NULL;
-  if (!json_parser_load_from_data (parser, data, (gssize) length,
-          &parse_error)) {
+  if (!json_parser_load_from_data (parser, data, (gssize) length, &parse_error)) {
     g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_SYNTAX,
         "not JSON: %s", parse_error->message);
     return NULL;

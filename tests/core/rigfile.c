@@ -135,7 +135,8 @@ test_mend (void)
 }
 
 /* What is replaced in the good text, by what, the code, and what the message says. */
-typedef struct {
+typedef struct
+{
   const gchar *from, *to;
   ClothRigError code;
   const gchar *says;
@@ -150,7 +151,7 @@ static const Bad bads[] = {
   {"\"name\":\"left\"", "\"name\":\"\"", CLOTH_RIG_ERROR_VALUE, "name"},
   {"\"name\":\"left\"", "\"name\":\"../x\"", CLOTH_RIG_ERROR_VALUE, "slash"},
   {"\"name\":\"left\"", "\"name\":\"..\"", CLOTH_RIG_ERROR_VALUE, "\"..\""},
-  {"\"name\":\"left\"", "\"name\":\"a\\u0000b\\n\"", CLOTH_RIG_ERROR_VALUE,
+  {"\"name\":\"left\"", "\"name\":\"a\\nb\"", CLOTH_RIG_ERROR_VALUE,
       "name"},
   {"\"name\":\"left\"", "\"name\":7", CLOTH_RIG_ERROR_VALUE, "name"},
   {"\"name\":\"left\",", "", CLOTH_RIG_ERROR_VALUE, "name"},
