@@ -2,3 +2,458 @@
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/vision/saddle.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/vision/saddle-mask.h"
+#include "gst/vision/saddle-refine.h"
+
+struct _ClothSaddleDetector {
+  ClothSaddleKernel kernel;
+  gfloat kernel_sigma;
+  ClothSaddleRefiner *refiner;
+  ClothSaddleMask mask;
+
+  ClothSaddleCandidate *candidates;
+  guint n_candidates, candidates_allocated;
+  ClothSaddle *saddles;
+  guint n_saddles, saddles_allocated;
+  guint32 *peaks;
+  guint n_peaks, peaks_allocated;
+
+  gboolean cut;
+  gfloat epsilon;
+  gfloat noise;
+};
+
+/**
+ * cloth_saddle_default_params:
+ *
+ * Returns: the parameters that suit a printed board filmed in focus.
+ *
+ * Since: 0.1
+ */
+ClothSaddleParams
+cloth_saddle_default_params (void)
+{
+  return (ClothSaddleParams) {
+    .sigma = 1.5f,
+    .epsilon = 3.0f,
+    .relative = 0.01f,
+    .refine = CLOTH_SADDLE_REFINE_STREAM,
+    .radius = 5.0f,
+    .max_candidates = CLOTH_SADDLE_MAX,
+    .max_saddles = CLOTH_SADDLE_MAX,
+  };
+}
+
+/**
+ * cloth_saddle_detector_new:
+ *
+ * Returns: (transfer full): a detector; it keeps its buffers from picture to picture, so
+ *   that pictures of one size allocate nothing after the first. One thread at a time.
+ *
+ * Since: 0.1
+ */
+ClothSaddleDetector *
+cloth_saddle_detector_new (void)
+{
+  return g_new0 (ClothSaddleDetector, 1);
+}
+
+/**
+ * cloth_saddle_detector_free:
+ * @detector: (transfer full) (nullable): freed
+ *
+ * Since: 0.1
+ */
+void
+cloth_saddle_detector_free (ClothSaddleDetector * detector)
+{
+  if (!detector)
+    return;
+  cloth_saddle_mask_clear (&detector->mask);
+  cloth_saddle_refiner_free (detector->refiner);
+  g_free (detector->candidates);
+  g_free (detector->saddles);
+  g_free (detector->peaks);
+  g_free (detector);
+}
+
+/* Distance between the 5th and the 95th percentile of the grey levels in the region,
+ * read at no more than about 16,000 places. */
+static gfloat
+measure_contrast (const ClothSaddleMask * mask, const ClothImage * image)
+{
+  gint step = 1 + (gint) sqrt ((gdouble) mask->width * mask->height / 16384.0);
+  guint histogram[256] = { 0 }, total = 0, below = 0;
+  gint low = -1, high = 255;
+
+  for (gint y = step / 2; y < mask->height; y += step) {
+    const guint8 *row = image->data + (gsize) (mask->y + y) *
+        (gsize) image->stride + mask->x;
+    for (gint x = step / 2; x < mask->width; x += step) {
+      histogram[row[x]]++;
+      total++;
+    }
+  }
+  for (gint i = 0; i < 256; i++) {
+    below += histogram[i];
+    if (low < 0 && below * 20 > total)
+      low = i;
+    if (below * 20 >= total * 19) {
+      high = i;
+      break;
+    }
+  }
+  return (gfloat) (high - MAX (low, 0));
+}
+
+/* Standard deviation of white noise, grey levels, by the median of a second mixed
+ * difference that planes and straight axis-parallel edges don't touch. Not below the
+ * noise of rounding to whole levels. */
+static gfloat
+measure_noise (const ClothSaddleMask * mask, const ClothImage * image)
+{
+  gint step = 1 + (gint) sqrt ((gdouble) mask->width * mask->height / 8192.0);
+  guint histogram[2041] = { 0 }, total = 0, below = 0;
+  gint x1 = MIN (mask->x + mask->width, image->width - 1);
+  gint y1 = MIN (mask->y + mask->height, image->height - 1);
+  const gfloat least = 0.2886751f;
+
+  for (gint y = mask->y + 1; y < y1; y += step) {
+    const guint8 *b = image->data + (gsize) y * (gsize) image->stride;
+    const guint8 *a = b - image->stride, *c = b + image->stride;
+    for (gint x = mask->x + 1; x < x1; x += step) {
+      gint v = a[x - 1] + a[x + 1] + c[x - 1] + c[x + 1] + 4 * b[x] -
+          2 * (a[x] + b[x - 1] + b[x + 1] + c[x]);
+      histogram[ABS (v)]++;
+      total++;
+    }
+  }
+  for (gint i = 0; i < 2041; i++) {
+    guint next = below + histogram[i];
+    if (2 * next >= total && histogram[i] > 0) {
+      /* The median within the step of one level, of |v| which is 6 sigma wide. */
+      gdouble m = i == 0 ? 0.5 * total / (gdouble) next * 0.5 :
+          i - 0.5 + (0.5 * total - below) / (gdouble) histogram[i];
+      return MAX (least, (gfloat) (m / (0.67448975 * 6.0)));
+    }
+    below = next;
+  }
+  return least;
+}
+
+static inline gint
+mask_det (const ClothSaddleMask * mask, gint x, gint y, gint threshold)
+{
+  gsize row = (gsize) y * (gsize) mask->words;
+  gint d;
+
+  if (x < 0 || y < 0 || x >= mask->width || y >= mask->height
+      || !(mask->bits[row + (gsize) (x >> 6)] >> (x & 63) & 1))
+    return 0;
+  d = mask->det[row * 64 + (gsize) x];
+  return d < -threshold ? d : 0;
+}
+
+/* A peak is not surpassed within @reach pixels; of equals the first one counts. */
+static gboolean
+is_peak (const ClothSaddleMask * mask, gint x, gint y, gint reach, gint d,
+    gint threshold)
+{
+  for (gint ring = 1; ring <= reach; ring++) {
+    for (gint j = -ring; j <= ring; j++) {
+      gint step = ABS (j) == ring ? 1 : 2 * ring;
+      for (gint i = -ring; i <= ring; i += step) {
+        gint other = mask_det (mask, x + i, y + j, threshold);
+        if (other < d || (other == d && (j < 0 || (j == 0 && i < 0))))
+          return FALSE;
+      }
+    }
+  }
+  return TRUE;
+}
+
+/* The lowest threshold, not below @threshold, that lets at most @limit pixels pass. */
+static gint
+raise_threshold (const ClothSaddleMask * mask, gint threshold, guint limit)
+{
+  guint histogram[1024] = { 0 }, above = 0;
+  gsize n = (gsize) mask->words * (gsize) mask->height;
+  gint bin = 1023;
+
+  for (gsize w = 0; w < n; w++) {
+    for (guint64 bits = mask->bits[w]; bits; bits &= bits - 1)
+      histogram[(guint) (-mask->det[w * 64 +
+                  (gsize) __builtin_ctzll (bits)]) >> 5 & 1023]++;
+  }
+  for (; bin >= 0; bin--) {
+    above += histogram[bin];
+    if (above > limit)
+      break;
+  }
+  return MAX (threshold, 32 * (bin + 1) - 1);
+}
+
+/* Grows an array that the scan fills, by whole powers of two. */
+static gpointer
+grow (gpointer array, guint * allocated, guint need, gsize size)
+{
+  if (need <= *allocated)
+    return array;
+  *allocated = MAX (1024, need + need / 2);
+  return g_realloc_n (array, *allocated, size);
+}
+
+static void
+scan_mask (ClothSaddleDetector * self, gint threshold, gint reach)
+{
+  const ClothSaddleMask *mask = &self->mask;
+
+  self->n_candidates = 0;
+  self->n_peaks = 0;
+  for (gint y = 0; y < mask->height; y++) {
+    const guint64 *bits = mask->bits + (gsize) y * (gsize) mask->words;
+    const gint16 *det = mask->det + (gsize) y * (gsize) mask->words * 64;
+
+    for (gint w = 0; w < mask->words; w++) {
+      guint64 word = bits[w];
+      if (!word)
+        continue;
+      self->candidates = grow (self->candidates, &self->candidates_allocated,
+          self->n_candidates + 64, sizeof (ClothSaddleCandidate));
+      self->peaks = grow (self->peaks, &self->peaks_allocated,
+          self->n_peaks + 64, sizeof (guint32));
+      for (; word; word &= word - 1) {
+        gint x = 64 * w + __builtin_ctzll (word);
+        gint d = det[x];
+        if (d >= -threshold)
+          continue;
+        self->candidates[self->n_candidates] = (ClothSaddleCandidate) {
+          .x = (guint16) (mask->x + x),
+          .y = (guint16) (mask->y + y),
+          .response = (gfloat) -d * self->kernel.scale,
+        };
+        if (is_peak (mask, x, y, reach, d, threshold))
+          self->peaks[self->n_peaks++] = self->n_candidates;
+        self->n_candidates++;
+      }
+    }
+  }
+}
+
+/* Two peaks of one flat blob may lead to the same saddle. Saddles come row after row,
+ * so an equal one is near the end of the list. */
+static gboolean
+is_known (const ClothSaddleDetector * self, const ClothSaddle * saddle,
+    gfloat distance)
+{
+  for (guint i = self->n_saddles; i > 0; i--) {
+    const ClothSaddle *other = &self->saddles[i - 1];
+    gfloat dx = other->x - saddle->x, dy = other->y - saddle->y;
+
+    if (dx * dx + dy * dy < distance * distance)
+      return TRUE;
+    if (dy < -4.0f * distance - 8.0f)
+      return FALSE;
+  }
+  return FALSE;
+}
+
+static void
+refine_peaks (ClothSaddleDetector * self, const ClothSaddleParams * params,
+    const ClothImage * image, ClothSimd level)
+{
+  guint limit = MIN (params->max_saddles, CLOTH_SADDLE_MAX);
+
+  for (guint i = 0; i < self->n_peaks; i++) {
+    const ClothSaddleCandidate *peak = &self->candidates[self->peaks[i]];
+    ClothSaddle saddle;
+
+    if (!cloth_saddle_refiner_run (self->refiner, image, peak, self->noise,
+            &saddle, level))
+      continue;
+    if (saddle.response <= self->epsilon || is_known (self, &saddle, 1.0f))
+      continue;
+    if (self->n_saddles >= limit) {
+      self->cut = TRUE;
+      return;
+    }
+    self->saddles = grow (self->saddles, &self->saddles_allocated,
+        self->n_saddles + 1, sizeof (ClothSaddle));
+    self->saddles[self->n_saddles++] = saddle;
+  }
+}
+
+static void
+set_region (ClothSaddleMask * mask, const ClothSaddleParams * params,
+    const ClothImage * image)
+{
+  gint64 x1 = params->roi_width > 0 ?
+      (gint64) params->roi_x + params->roi_width : image->width;
+  gint64 y1 = params->roi_height > 0 ?
+      (gint64) params->roi_y + params->roi_height : image->height;
+
+  mask->x = MAX (params->roi_x, 0);
+  mask->y = MAX (params->roi_y, 0);
+  mask->width = (gint) (MIN (x1, image->width) - mask->x);
+  mask->height = (gint) (MIN (y1, image->height) - mask->y);
+}
+
+static gfloat
+in_range (gfloat value, gfloat low, gfloat high)
+{
+  /* The negation takes NaN to the low end. */
+  return !(value > low) ? low : MIN (value, high);
+}
+
+/**
+ * cloth_saddle_detector_run:
+ * @detector: a detector
+ * @params: what to look for
+ * @image: the picture, at most 65,536 pixels a side; read only during the call
+ * @level: the highest instruction set to use; every one gives the same bytes
+ *
+ * Finds the candidates of (3.4) of Guskov & Zhukov, "Direct pattern tracking on flexible
+ * geometry", and one refined saddle for each peak of their response. The results belong
+ * to @detector and hold until its next run.
+ *
+ * Since: 0.1
+ */
+void
+cloth_saddle_detector_run (ClothSaddleDetector * detector,
+    const ClothSaddleParams * params, const ClothImage * image, ClothSimd level)
+{
+  ClothSaddleMask *mask = &detector->mask;
+  gfloat sigma = in_range (params->sigma, 0.5f, 5.0f);
+  gfloat epsilon = in_range (params->epsilon, 0.0f, 1e9f);
+  gfloat relative = in_range (params->relative, 0.0f, 1.0f);
+  guint limit = MIN (params->max_candidates, CLOTH_SADDLE_MAX);
+  gint threshold;
+
+  detector->n_candidates = detector->n_saddles = 0;
+  detector->cut = FALSE;
+  detector->epsilon = epsilon;
+  g_return_if_fail (image->width > 0 && image->width <= 65536);
+  g_return_if_fail (image->height > 0 && image->height <= 65536);
+
+  set_region (mask, params, image);
+  if (mask->width <= 0 || mask->height <= 0)
+    return;
+
+  level = cloth_simd_resolve (level);
+  if (sigma != detector->kernel_sigma) {
+    cloth_saddle_kernel_init (&detector->kernel, sigma);
+    detector->kernel_sigma = sigma;
+  }
+  if (relative > 0) {
+    /* A sharp corner between levels C apart has Fxy = C / (pi sigma²). */
+    gfloat peak = measure_contrast (mask, image) / (3.1415927f * sigma * sigma);
+    epsilon = MAX (epsilon, relative * peak * peak);
+  }
+  threshold = (gint) MIN (epsilon / detector->kernel.scale, 32767.0f);
+
+  cloth_saddle_mask_run (mask, &detector->kernel, image, threshold, level);
+  {
+    gsize n = (gsize) mask->words * (gsize) mask->height, count = 0;
+    for (gsize w = 0; w < n; w++)
+      count += (gsize) __builtin_popcountll (mask->bits[w]);
+    if (count > limit) {
+      threshold = raise_threshold (mask, threshold, limit);
+      epsilon = (gfloat) threshold * detector->kernel.scale;
+      detector->cut = TRUE;
+    }
+  }
+  detector->epsilon = epsilon;
+  scan_mask (detector, threshold, MAX (2, (gint) ceilf (sigma)));
+
+  detector->noise = measure_noise (mask, image);
+  if (params->refine != CLOTH_SADDLE_REFINE_NONE) {
+    if (!detector->refiner)
+      detector->refiner = cloth_saddle_refiner_new ();
+    cloth_saddle_refiner_set (detector->refiner, sigma,
+        params->refine == CLOTH_SADDLE_REFINE_MODEL ?
+        in_range (params->radius, 2.0f, 12.0f) : 0.0f);
+    refine_peaks (detector, params, image, level);
+  }
+}
+
+/**
+ * cloth_saddle_detector_get_candidates:
+ * @detector: a detector
+ * @n_candidates: (out): how many
+ *
+ * Returns: (transfer none): the hyperbolic pixels of the last picture, row after row.
+ *
+ * Since: 0.1
+ */
+const ClothSaddleCandidate *
+cloth_saddle_detector_get_candidates (const ClothSaddleDetector * detector,
+    guint * n_candidates)
+{
+  *n_candidates = detector->n_candidates;
+  return detector->candidates;
+}
+
+/**
+ * cloth_saddle_detector_get_saddles:
+ * @detector: a detector
+ * @n_saddles: (out): how many
+ *
+ * Returns: (transfer none): the refined saddles of the last picture, in the order of the
+ *   rows of their strongest pixels.
+ *
+ * Since: 0.1
+ */
+const ClothSaddle *
+cloth_saddle_detector_get_saddles (const ClothSaddleDetector * detector,
+    guint * n_saddles)
+{
+  *n_saddles = detector->n_saddles;
+  return detector->saddles;
+}
+
+/**
+ * cloth_saddle_detector_was_cut:
+ * @detector: a detector
+ *
+ * Returns: whether the last picture had more candidates or saddles than allowed. Of
+ *   candidates the strongest were kept, of saddles the topmost.
+ *
+ * Since: 0.1
+ */
+gboolean
+cloth_saddle_detector_was_cut (const ClothSaddleDetector * detector)
+{
+  return detector->cut;
+}
+
+/**
+ * cloth_saddle_detector_get_epsilon:
+ * @detector: a detector
+ *
+ * Returns: the bound that was in force for the last picture, grey levels² / px⁴.
+ *
+ * Since: 0.1
+ */
+gfloat
+cloth_saddle_detector_get_epsilon (const ClothSaddleDetector * detector)
+{
+  return detector->epsilon;
+}
+
+/**
+ * cloth_saddle_detector_get_noise:
+ * @detector: a detector
+ *
+ * Returns: the last picture's noise, standard deviation in grey levels.
+ *
+ * Since: 0.1
+ */
+gfloat
+cloth_saddle_detector_get_noise (const ClothSaddleDetector * detector)
+{
+  return detector->noise;
+}

@@ -1,0 +1,270 @@
+/* The hyperbolic pixels of a picture as a bit mask: the inner loop of the detector.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/vision/saddle-mask.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Positive part of the second difference of the weights: what a picture of 0 and 1
+ * can make of it at most. */
+static gdouble
+second_difference_bound (const gdouble * w, gint radius, gint h)
+{
+  gdouble sum = 0;
+
+  for (gint i = -radius - h; i <= radius + h; i++) {
+    gdouble a = ABS (i - h) <= radius ? w[ABS (i - h)] : 0;
+    gdouble b = ABS (i) <= radius ? w[ABS (i)] : 0;
+    gdouble c = ABS (i + h) <= radius ? w[ABS (i + h)] : 0;
+    sum += MAX (0, a - 2 * b + c);
+  }
+  return sum;
+}
+
+static gdouble
+mixed_difference_bound (const gdouble * w, gint radius, gint h)
+{
+  gdouble sum = 0;
+
+  for (gint i = -radius - h; i <= radius + h; i++) {
+    gdouble a = ABS (i - h) <= radius ? w[ABS (i - h)] : 0;
+    gdouble c = ABS (i + h) <= radius ? w[ABS (i + h)] : 0;
+    sum += fabs (c - a);
+  }
+  return 0.5 * sum * sum;
+}
+
+/* Rounds the weights to a whole sum; the middle weight takes the remainder. */
+static gint
+round_weights (const gdouble * w, gint total, gint * rounded)
+{
+  gint sum = 0, radius = 0;
+
+  for (gint k = 1; k <= CLOTH_SADDLE_MAX_RADIUS; k++) {
+    rounded[k] = (gint) floor (w[k] * total + 0.5);
+    sum += 2 * rounded[k];
+    if (rounded[k] > 0)
+      radius = k;
+  }
+  rounded[0] = total - sum;
+  return radius;
+}
+
+/**
+ * cloth_saddle_kernel_init:
+ * @kernel: (out caller-allocates): filled
+ * @sigma: width of the Gaussian, px, 0.5 to 5
+ *
+ * Since: 0.1
+ */
+void
+cloth_saddle_kernel_init (ClothSaddleKernel * kernel, gfloat sigma)
+{
+  gdouble w[CLOTH_SADDLE_MAX_RADIUS + 1], sum = 0;
+  gint rounded[CLOTH_SADDLE_MAX_RADIUS + 1];
+  gint total = 256, radius, h;
+  gdouble s;
+
+  memset (kernel, 0, sizeof (*kernel));
+  for (gint k = 0; k <= CLOTH_SADDLE_MAX_RADIUS; k++) {
+    w[k] = exp (-0.5 * k * k / ((gdouble) sigma * sigma));
+    sum += k > 0 ? 2 * w[k] : w[k];
+  }
+  for (gint k = 0; k <= CLOTH_SADDLE_MAX_RADIUS; k++)
+    w[k] /= sum;
+
+  radius = round_weights (w, total, rounded);
+  if (rounded[0] + rounded[1] > 128) {
+    total = 128;
+    radius = round_weights (w, total, rounded);
+  }
+  /* The second difference of weights rounded to 8 bits is too coarse for a wide
+   * filter; a longer step gains its square. */
+  h = sigma < 2.0f ? 1 : sigma < 3.5f ? 2 : 3;
+
+  kernel->radius = radius;
+  kernel->step = h;
+  for (gint k = 0; k <= radius; k++) {
+    kernel->across[radius - k] = (gint8) rounded[k];
+    kernel->across[radius + k] = (gint8) rounded[k];
+    w[k] = (gdouble) rounded[k] / total;
+  }
+  s = 32600.0 / (255.0 * 4.0 * second_difference_bound (w, radius, h));
+  s = MIN (s, 32600.0 / (255.0 * mixed_difference_bound (w, radius, h)));
+  for (gint k = 0; k <= radius; k++) {
+    gdouble t = floor (w[k] * s * 65536.0 / total * (k > 0 ? 2 : 1) + 0.5);
+    kernel->down[k] = (guint16) MIN (t, 65535.0);
+  }
+  kernel->scale = (gfloat) (65536.0 / (16.0 * s * s * h * h * h * h));
+}
+
+static void
+mask_resize (ClothSaddleMask * mask)
+{
+  gsize need = (gsize) mask->words * (gsize) mask->height;
+
+  if (need > mask->bits_allocated) {
+    g_free (mask->bits);
+    g_free (mask->det);
+    mask->bits = g_new (guint64, need);
+    mask->det = g_new (gint16, need * 64);
+    mask->bits_allocated = need;
+  }
+}
+
+static guint8 *
+mask_scratch (ClothSaddleMask * mask, gsize need)
+{
+  need += 64;
+  if (need > mask->scratch_allocated) {
+    g_free (mask->scratch);
+    mask->scratch = g_malloc (need);
+    mask->scratch_allocated = need;
+  }
+  return (guint8 *) (((gsize) mask->scratch + 63) & ~(gsize) 63);
+}
+
+void
+cloth_saddle_mask_clear (ClothSaddleMask * mask)
+{
+  g_free (mask->bits);
+  g_free (mask->det);
+  g_free (mask->scratch);
+  memset (mask, 0, sizeof (*mask));
+}
+
+/* Pixels [x, x + n) of row y, the picture's border repeated outwards. */
+static void
+copy_row (guint8 * out, const ClothImage * image, gint x, gint y, gint n)
+{
+  const guint8 *row =
+      image->data + (gsize) CLAMP (y, 0, image->height - 1) *
+      (gsize) image->stride;
+  gint left = CLAMP (-x, 0, n);
+  gint right = CLAMP (x + n - image->width, 0, n - left);
+
+  memset (out, row[0], (gsize) left);
+  memcpy (out + left, row + x + left, (gsize) (n - left - right));
+  memset (out + n - right, row[image->width - 1], (gsize) right);
+}
+
+/* The reference: every vector level gives these very bits. */
+static void
+mask_run_scalar (ClothSaddleMask * mask, const ClothSaddleKernel * kernel,
+    const ClothImage * image, gint threshold)
+{
+  const gint r = kernel->radius, h = kernel->step;
+  const gint n = mask->words * 64 + 2 * h;
+  const gint n_ring = 2 * r + 1, n_smooth = 2 * h + 1;
+  guint8 *bytes = mask_scratch (mask,
+      (gsize) (n_ring + n_smooth) * (gsize) n * 2 + (gsize) (n + 2 * r));
+  guint16 *ring = (guint16 *) bytes;
+  guint16 *smooth = ring + (gsize) n_ring * (gsize) n;
+  guint8 *line = (guint8 *) (smooth + (gsize) n_smooth * (gsize) n);
+  const gint top = mask->y - h, bottom = mask->y + mask->height + h;
+
+  for (gint y = top - r; y < bottom + r; y++) {
+    guint16 *out = ring + (gsize) ((y - top + r) % n_ring) * (gsize) n;
+    gint row = y - r, centre;
+
+    copy_row (line, image, mask->x - h - r, y, n + 2 * r);
+    for (gint x = 0; x < n; x++) {
+      gint sum = 0;
+      for (gint k = 0; k <= 2 * r; k++)
+        sum += kernel->across[k] * line[x + k];
+      out[x] = (guint16) sum;
+    }
+    if (row < top)
+      continue;
+
+    out = smooth + (gsize) ((row - top) % n_smooth) * (gsize) n;
+    for (gint x = 0; x < n; x++) {
+      const guint16 *middle =
+          ring + (gsize) ((row - top + r) % n_ring) * (gsize) n;
+      guint sum = ((guint32) middle[x] * kernel->down[0]) >> 16;
+      for (gint k = 1; k <= r; k++) {
+        guint a = ring[(gsize) ((row - top + r - k) % n_ring) * (gsize) n +
+            (gsize) x];
+        guint b = ring[(gsize) ((row - top + r + k) % n_ring) * (gsize) n +
+            (gsize) x];
+        sum += (((a + b + 1) >> 1) * kernel->down[k]) >> 16;
+      }
+      out[x] = (guint16) sum;
+    }
+    centre = row - h;
+    if (centre < mask->y)
+      continue;
+
+    {
+      const guint16 *a =
+          smooth + (gsize) ((centre - h - top) % n_smooth) * (gsize) n + h;
+      const guint16 *b =
+          smooth + (gsize) ((centre - top) % n_smooth) * (gsize) n + h;
+      const guint16 *c =
+          smooth + (gsize) ((centre + h - top) % n_smooth) * (gsize) n + h;
+      guint64 *bits = mask->bits + (gsize) (centre - mask->y) *
+          (gsize) mask->words;
+      gint16 *det = mask->det + (gsize) (centre - mask->y) *
+          (gsize) mask->words * 64;
+
+      for (gint w = 0; w < mask->words; w++) {
+        guint64 word = 0;
+        for (gint i = 0; i < 64; i++) {
+          gint x = 64 * w + i;
+          gint16 fxx = (gint16) (4 * (b[x - h] + b[x + h] - 2 * b[x]));
+          gint16 fyy = (gint16) (4 * (a[x] + c[x] - 2 * b[x]));
+          gint16 fxy = (gint16) (c[x + h] - a[x + h] - c[x - h] + a[x - h]);
+          gint d = ((fxx * fyy) >> 16) - ((fxy * fxy) >> 16);
+          det[x] = (gint16) d;
+          word |= (guint64) (d < -threshold) << i;
+        }
+        bits[w] = word;
+      }
+    }
+  }
+}
+
+/* Nothing is told where a difference would reach over the picture's border: there the
+ * repeated border itself makes corners of edges. */
+static void
+mask_cut_border (ClothSaddleMask * mask, const ClothImage * image, gint h)
+{
+  gint x0 = CLAMP (h - mask->x, 0, mask->width);
+  gint x1 = CLAMP (image->width - h - mask->x, x0, mask->width);
+
+  for (gint y = 0; y < mask->height; y++) {
+    guint64 *bits = mask->bits + (gsize) y * (gsize) mask->words;
+
+    if (mask->y + y < h || mask->y + y >= image->height - h) {
+      memset (bits, 0, (gsize) mask->words * sizeof (guint64));
+      continue;
+    }
+    for (gint w = 0; w * 64 < x0; w++)
+      bits[w] &= x0 >= 64 * (w + 1) ? 0 : ~G_GUINT64_CONSTANT (0) << (x0 % 64);
+    for (gint w = x1 / 64; w < mask->words; w++)
+      bits[w] &= x1 <= 64 * w ? 0 :
+          ~(~G_GUINT64_CONSTANT (0) << (x1 - 64 * w));
+  }
+}
+
+/**
+ * cloth_saddle_mask_run:
+ * @mask: its region set; the rest is filled
+ * @kernel: the smoothing filter
+ * @image: the picture
+ * @threshold: a bit is set where the 16-bit determinant is below −@threshold
+ * @level: the instruction set
+ *
+ * Since: 0.1
+ */
+void
+cloth_saddle_mask_run (ClothSaddleMask * mask,
+    const ClothSaddleKernel * kernel, const ClothImage * image,
+    gint threshold, ClothSimd level)
+{
+  mask->words = (mask->width + 63) / 64;
+  mask_resize (mask);
+  mask_run_scalar (mask, kernel, image, threshold);
+  mask_cut_border (mask, image, kernel->step);
+}

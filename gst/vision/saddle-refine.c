@@ -1,0 +1,261 @@
+/* The sub-pixel place of a saddle from the pixels around its strongest one.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/vision/saddle-refine.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PHASES 32
+#define TAPS 16
+#define RADIUS 7
+/* The window holds 15 pixels; a wider Gaussian than this would be cut off by it. */
+#define WIDEST 2.3
+
+/* Sixteen lanes in every instruction set, so that sums come out the same in all. */
+typedef gfloat v16f __attribute__((vector_size (64)));
+typedef guint8 v16u8 __attribute__((vector_size (16)));
+
+struct _ClothSaddleRefiner {
+  gfloat sigma, radius;
+  /* Standard deviation of F_x for unit white noise. */
+  gfloat gradient_noise;
+  /* Gaussian and its first two derivatives, centred at RADIUS + phase / PHASES - 1/2. */
+  v16f taps[PHASES + 1][3];
+};
+
+ClothSaddleRefiner *
+cloth_saddle_refiner_new (void)
+{
+  ClothSaddleRefiner *self;
+
+  /* g_new() promises no more than 16 bytes of alignment. */
+  self = g_aligned_alloc0 (1, sizeof (ClothSaddleRefiner), 64);
+  return self;
+}
+
+void
+cloth_saddle_refiner_free (ClothSaddleRefiner * refiner)
+{
+  if (refiner)
+    g_aligned_free (refiner);
+}
+
+/**
+ * cloth_saddle_refiner_set:
+ * @refiner: a refiner
+ * @sigma: width of the Gaussian, px; no more than 2.3 is used
+ * @radius: window radius of the model fit, px; 0: no model fit
+ *
+ * Since: 0.1
+ */
+void
+cloth_saddle_refiner_set (ClothSaddleRefiner * refiner, gfloat sigma,
+    gfloat radius)
+{
+  gdouble s = CLAMP ((gdouble) sigma, 0.8, WIDEST), s2 = s * s;
+  gdouble sum_g = 0, sum_d = 0;
+
+  refiner->radius = radius;
+  if (refiner->sigma == sigma)
+    return;
+  refiner->sigma = sigma;
+  for (gint p = 0; p <= PHASES; p++) {
+    gdouble centre = RADIUS + (gdouble) p / PHASES - 0.5;
+    gdouble w[TAPS], sum = 0, sum2 = 0, g2 = 0, bias = 0, first = 0;
+
+    for (gint k = 0; k < TAPS; k++) {
+      gdouble d = k - centre;
+      w[k] = k < TAPS - 1 ? exp (-0.5 * d * d / s2) : 0;
+      sum += w[k];
+    }
+    for (gint k = 0; k < TAPS; k++) {
+      gdouble d = k - centre;
+      w[k] /= sum;
+      bias += w[k] * (d * d / s2 - 1) / s2;
+      first += w[k] * d / s2;
+    }
+    for (gint k = 0; k < TAPS; k++) {
+      gdouble d = k - centre, second = w[k] * (d * d / s2 - 1) / s2;
+      /* A plane must have no curvature, a level no slope, in spite of the cut. */
+      gdouble slope = w[k] * d / s2 - w[k] * first;
+      refiner->taps[p][0][k] = (gfloat) w[k];
+      refiner->taps[p][1][k] = (gfloat) slope;
+      refiner->taps[p][2][k] = (gfloat) (second - w[k] * bias);
+      g2 += w[k] * w[k];
+      sum2 += slope * slope;
+    }
+    if (p == PHASES / 2) {
+      sum_g = g2;
+      sum_d = sum2;
+    }
+  }
+  refiner->gradient_noise = (gfloat) sqrt (sum_g * sum_d);
+}
+
+/* Smoothed derivatives at a place of sixteenths: out = Fx, Fy, Fxx, Fxy, Fyy. */
+static inline __attribute__((always_inline))
+void
+derivatives (const guint8 * data, gsize stride, const v16f * gx,
+    const v16f * gy, gfloat * out)
+{
+  v16f a0 = { 0 }, a1 = { 0 }, a2 = { 0 };
+  v16f p[5];
+
+  for (gint j = 0; j < TAPS - 1; j++) {
+    v16u8 bytes;
+    v16f row;
+
+    memcpy (&bytes, data + (gsize) j * stride, sizeof (bytes));
+    row = __builtin_convertvector (bytes, v16f);
+    a0 += row * gy[0][j];
+    a1 += row * gy[1][j];
+    a2 += row * gy[2][j];
+  }
+  p[0] = a0 * gx[1];
+  p[1] = a1 * gx[0];
+  p[2] = a0 * gx[2];
+  p[3] = a1 * gx[1];
+  p[4] = a2 * gx[0];
+  for (gint k = 0; k < 5; k++) {
+    gfloat s[8];
+    for (gint i = 0; i < 8; i++)
+      s[i] = p[k][i] + p[k][i + 8];
+    out[k] = ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
+  }
+}
+
+static void
+derivatives_scalar (const guint8 * data, gsize stride, const v16f * gx,
+    const v16f * gy, gfloat * out)
+{
+  derivatives (data, stride, gx, gy, out);
+}
+
+#if defined (__x86_64__) && defined (__GNUC__)
+__attribute__((target ("avx2")))
+static void
+derivatives_avx2 (const guint8 * data, gsize stride, const v16f * gx,
+    const v16f * gy, gfloat * out)
+{
+  derivatives (data, stride, gx, gy, out);
+}
+
+__attribute__((target ("avx512f,avx512bw,avx512dq,avx512vl")))
+static void
+derivatives_avx512 (const guint8 * data, gsize stride, const v16f * gx,
+    const v16f * gy, gfloat * out)
+{
+  derivatives (data, stride, gx, gy, out);
+}
+#endif
+
+/* The window around (x, y); a copy with the border repeated where it leaves the
+ * picture. One column more than the taps is read. */
+static const guint8 *
+window (const ClothImage * image, gint x, gint y, guint8 * copy,
+    gsize * stride)
+{
+  gint x0 = x - RADIUS, y0 = y - RADIUS;
+
+  if (x0 >= 0 && y0 >= 0 && x0 + TAPS <= image->width
+      && y0 + TAPS <= image->height) {
+    *stride = (gsize) image->stride;
+    return image->data + (gsize) y0 * (gsize) image->stride + x0;
+  }
+  for (gint j = 0; j < TAPS; j++) {
+    const guint8 *row = image->data +
+        (gsize) CLAMP (y0 + j, 0, image->height - 1) * (gsize) image->stride;
+    for (gint i = 0; i < TAPS; i++)
+      copy[j * TAPS + i] = row[CLAMP (x0 + i, 0, image->width - 1)];
+  }
+  *stride = TAPS;
+  return copy;
+}
+
+/**
+ * cloth_saddle_refiner_run:
+ * @refiner: a refiner
+ * @image: the picture
+ * @peak: where to start
+ * @noise: standard deviation of the picture's noise, grey levels
+ * @saddle: (out): the saddle
+ * @level: the instruction set
+ *
+ * Newton's method on the intensity smoothed by a Gaussian that is centred at the place
+ * sought itself, to 1/32 px; the last step is the exact saddle of the quadratic there.
+ * Covariance: of the gradient for white noise, through the inverse Hessian.
+ *
+ * Returns: FALSE when there is no saddle within 2 px and a bit of @peak.
+ *
+ * Since: 0.1
+ */
+gboolean
+cloth_saddle_refiner_run (const ClothSaddleRefiner * refiner,
+    const ClothImage * image, const ClothSaddleCandidate * peak, gfloat noise,
+    ClothSaddle * saddle, ClothSimd level)
+{
+  gfloat x = peak->x, y = peak->y, f[5] = { 0 }, det = 0;
+  gfloat reach = 1.0f + MAX (1.5f, refiner->sigma);
+
+  for (gint i = 0; i < 8; i++) {
+    guint8 copy[TAPS * TAPS];
+    gint ix = (gint) floorf (x + 0.5f), iy = (gint) floorf (y + 0.5f);
+    gint px = (gint) floorf ((x - (gfloat) ix + 0.5f) * PHASES + 0.5f);
+    gint py = (gint) floorf ((y - (gfloat) iy + 0.5f) * PHASES + 0.5f);
+    gfloat dx, dy;
+    gsize stride;
+    const guint8 *data = window (image, ix, iy, copy, &stride);
+
+#if defined (__x86_64__) && defined (__GNUC__)
+    if (level == CLOTH_SIMD_AVX512)
+      derivatives_avx512 (data, stride, refiner->taps[px], refiner->taps[py],
+          f);
+    else if (level == CLOTH_SIMD_AVX2)
+      derivatives_avx2 (data, stride, refiner->taps[px], refiner->taps[py], f);
+    else
+#endif
+      derivatives_scalar (data, stride, refiner->taps[px], refiner->taps[py],
+          f);
+
+    det = f[2] * f[4] - f[3] * f[3];
+    if (!(det < 0))
+      return FALSE;
+    dx = -(f[4] * f[0] - f[3] * f[1]) / det;
+    dy = -(f[2] * f[1] - f[3] * f[0]) / det;
+    x = (gfloat) ix + ((gfloat) px / PHASES - 0.5f);
+    y = (gfloat) iy + ((gfloat) py / PHASES - 0.5f);
+    if (dx * dx + dy * dy < 0.02f * 0.02f * 2) {
+      x += dx;
+      y += dy;
+      break;
+    }
+    if (dx * dx + dy * dy > 1.0f) {
+      gfloat scale = 1.0f / sqrtf (dx * dx + dy * dy);
+      dx *= scale;
+      dy *= scale;
+    }
+    x += dx;
+    y += dy;
+    if (fabsf (x - peak->x) > reach || fabsf (y - peak->y) > reach)
+      return FALSE;
+  }
+  if (x < 0 || y < 0 || x > (gfloat) (image->width - 1)
+      || y > (gfloat) (image->height - 1))
+    return FALSE;
+
+  saddle->x = x;
+  saddle->y = y;
+  saddle->response = -det;
+  saddle->axis = 0.5f * atan2f (2 * f[3], f[2] - f[4]);
+  if (saddle->axis < 0)
+    saddle->axis += 3.1415927f;
+  {
+    gfloat v = noise * refiner->gradient_noise / det;
+    v *= v;
+    saddle->cov[0] = v * (f[4] * f[4] + f[3] * f[3]);
+    saddle->cov[1] = -v * f[3] * (f[2] + f[4]);
+    saddle->cov[2] = v * (f[2] * f[2] + f[3] * f[3]);
+  }
+  return TRUE;
+}
