@@ -180,21 +180,21 @@ is_peak (const ClothSaddleMask * mask, gint x, gint y, gint reach, gint d,
 static gint
 raise_threshold (const ClothSaddleMask * mask, gint threshold, guint limit)
 {
-  guint histogram[1024] = { 0 }, above = 0;
+  guint histogram[8192] = { 0 }, above = 0;
   gsize n = (gsize) mask->words * (gsize) mask->height;
-  gint bin = 1023;
+  gint bin = 8191;
 
   for (gsize w = 0; w < n; w++) {
     for (guint64 bits = mask->bits[w]; bits; bits &= bits - 1)
       histogram[(guint) (-mask->det[w * 64 +
-                  (gsize) __builtin_ctzll (bits)]) >> 5 & 1023]++;
+                  (gsize) __builtin_ctzll (bits)]) >> 2 & 8191]++;
   }
   for (; bin >= 0; bin--) {
     above += histogram[bin];
     if (above > limit)
       break;
   }
-  return MAX (threshold, 32 * (bin + 1) - 1);
+  return MAX (threshold, 4 * (bin + 1) - 1);
 }
 
 /* Grows an array that the scan fills, by whole powers of two. */
