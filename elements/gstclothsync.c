@@ -1,0 +1,877 @@
+/* Base of the elements that join several streams by running time.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+
+/* How a set is made. The earliest frame at the head of any pad gives the set its time
+ * t; every head of running time <= t + tolerance belongs to it, one frame a pad. When
+ * not live the base waits until every pad that is not at EOS has a head, so the sets
+ * depend on the time stamps alone and not on which thread came first. When live it
+ * waits no longer than clock time t + latency (upstream's, the tolerance and the
+ * latency property) and goes on with what is there. A GAP says that a pad has nothing
+ * for a while: it is never a view, but it spares the wait. */
+#ifdef HAVE_CONFIG_H
+#include "config.h"
+#endif
+
+#include "elements/gstclothsync.h"
+
+#include <gst/video/video.h>
+
+GST_DEBUG_CATEGORY_STATIC (cloth_sync_debug);
+#define GST_CAT_DEFAULT cloth_sync_debug
+
+/* Half a frame at 30 Hz, when no pad says how fast its frames come. */
+#define FALLBACK_TOLERANCE (GST_SECOND / 60)
+#define DEFAULT_TOLERANCE GST_CLOCK_TIME_NONE
+#define DEFAULT_MIN_VIEWS 1
+/* Keeps sums of times far from overflow. */
+#define MAX_TOLERANCE (3600 * GST_SECOND)
+
+struct _GstClothSyncPad
+{
+  GstAggregatorPad parent;
+
+  guint index;
+  GstClockTime period;          /* of a frame, by the caps; NONE when they don't say */
+  guint64 used, dropped;
+};
+
+G_DEFINE_TYPE (GstClothSyncPad, gst_cloth_sync_pad, GST_TYPE_AGGREGATOR_PAD);
+
+typedef struct
+{
+  /* with the object lock */
+  GstClockTime tolerance;
+  guint min_views;
+  GstClockTimeDiff offset[GST_CLOTH_SYNC_MAX_PADS];
+  GstClockTime effective;       /* the tolerance in force */
+  guint64 taken;                /* indices in use */
+  guint64 released;             /* of pads that the subclass still believes in */
+  guint64 n_sets, n_incomplete, n_dropped;
+
+  /* streaming thread */
+  gboolean has_last;
+  GstClockTimeDiff last_time, last_tolerance;
+  guint64 last_mask;
+} GstClothSyncPrivate;
+
+G_DEFINE_ABSTRACT_TYPE_WITH_CODE (GstClothSync, gst_cloth_sync,
+    GST_TYPE_AGGREGATOR, G_ADD_PRIVATE (GstClothSync)
+    GST_DEBUG_CATEGORY_INIT (cloth_sync_debug, "clothsync", 0,
+        "joining of streams by running time"));
+
+enum
+{
+  PROP_0,
+  PROP_TOLERANCE,
+  PROP_MIN_VIEWS,
+  PROP_STATS
+};
+
+/* The heads of all pads, by index. */
+typedef struct
+{
+  GstClothSyncPad *pad[GST_CLOTH_SYNC_MAX_PADS];
+  GstBuffer *head[GST_CLOTH_SYNC_MAX_PADS];
+  GstClockTimeDiff time[GST_CLOTH_SYNC_MAX_PADS];
+  gboolean gap[GST_CLOTH_SYNC_MAX_PADS];
+  guint n, n_pads, n_eos, n_waiting;
+} Heads;
+
+static void
+gst_cloth_sync_pad_class_init (GstClothSyncPadClass * klass)
+{
+}
+
+static void
+gst_cloth_sync_pad_init (GstClothSyncPad * pad)
+{
+  pad->period = GST_CLOCK_TIME_NONE;
+}
+
+/* Tolerance and latency follow from the pads' frame rates and offsets. */
+static void
+gst_cloth_sync_update_timing (GstClothSync * self)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  GstClockTime fastest = GST_CLOCK_TIME_NONE, latency;
+  GstClockTimeDiff latest = 0;
+  GList *l;
+  guint i;
+
+  GST_OBJECT_LOCK (self);
+  for (l = GST_ELEMENT (self)->sinkpads; l; l = l->next) {
+    /* NONE is the largest value */
+    fastest = MIN (fastest, GST_CLOTH_SYNC_PAD (l->data)->period);
+  }
+  if (GST_CLOCK_TIME_IS_VALID (priv->tolerance)) {
+    priv->effective = MIN (priv->tolerance, MAX_TOLERANCE);
+  } else if (GST_CLOCK_TIME_IS_VALID (fastest)) {
+    priv->effective = fastest / 2;
+  } else {
+    priv->effective = FALLBACK_TOLERANCE;
+  }
+  for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
+    latest = MAX (latest, priv->offset[i]);
+  }
+  latency = priv->effective + latest;
+  GST_OBJECT_UNLOCK (self);
+
+  gst_aggregator_set_latency (GST_AGGREGATOR (self), latency, latency);
+}
+
+static gboolean
+gst_cloth_sync_take_index (GstClothSync * self, guint index)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  gboolean is_free;
+
+  GST_OBJECT_LOCK (self);
+  is_free = !(priv->taken & (G_GUINT64_CONSTANT (1) << index));
+  priv->taken |= G_GUINT64_CONSTANT (1) << index;
+  GST_OBJECT_UNLOCK (self);
+  return is_free;
+}
+
+static gint
+gst_cloth_sync_take_free_index (GstClothSync * self)
+{
+  guint i;
+
+  for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
+    if (gst_cloth_sync_take_index (self, i)) {
+      return (gint) i;
+    }
+  }
+  return -1;
+}
+
+static GstAggregatorPad *
+gst_cloth_sync_create_new_pad (GstAggregator * agg, GstPadTemplate * templ,
+    const gchar * req_name, const GstCaps * caps)
+{
+  GstClothSync *self = GST_CLOTH_SYNC (agg);
+  GstClothSyncPad *pad;
+  g_autofree gchar *name = NULL;
+  gint index;
+
+  if (templ->direction != GST_PAD_SINK || templ->presence != GST_PAD_REQUEST) {
+    return NULL;
+  }
+  if (!strchr (templ->name_template, '%')) {
+    g_autoptr (GstPad) present =
+        gst_element_get_static_pad (GST_ELEMENT (self), templ->name_template);
+
+    if (present) {
+      GST_WARNING_OBJECT (self, "pad %s is there already",
+          templ->name_template);
+      return NULL;
+    }
+    index = gst_cloth_sync_take_free_index (self);
+    name = g_strdup (templ->name_template);
+  } else if (req_name && !strchr (req_name, '%')) {
+    const gchar *digits = req_name + strcspn (templ->name_template, "%");
+    guint64 number;
+
+    /* gst_element_request_pad has matched the name against the template */
+    if (!g_ascii_string_to_unsigned (digits, 10, 0,
+            GST_CLOTH_SYNC_MAX_PADS - 1, &number, NULL)) {
+      GST_WARNING_OBJECT (self, "no pad %s: pads are numbered 0 to %d",
+          req_name, GST_CLOTH_SYNC_MAX_PADS - 1);
+      return NULL;
+    }
+    if (!gst_cloth_sync_take_index (self, (guint) number)) {
+      GST_WARNING_OBJECT (self, "pad %s is there already", req_name);
+      return NULL;
+    }
+    index = (gint) number;
+    name = g_strdup (req_name);
+  } else {
+    index = gst_cloth_sync_take_free_index (self);
+    name = g_strdup_printf ("%.*s%d", (int) strcspn (templ->name_template, "%"),
+        templ->name_template, index);
+  }
+  if (index < 0) {
+    GST_WARNING_OBJECT (self, "no more than %d pads", GST_CLOTH_SYNC_MAX_PADS);
+    return NULL;
+  }
+
+  pad = g_object_new (GST_TYPE_CLOTH_SYNC_PAD, "name", name, "direction",
+      GST_PAD_SINK, "template", templ, NULL);
+  pad->index = (guint) index;
+  return GST_AGGREGATOR_PAD (pad);
+}
+
+void
+gst_cloth_sync_add_always_pad (GstClothSync * self, const gchar * templ_name)
+{
+  GstPadTemplate *templ =
+      gst_element_get_pad_template (GST_ELEMENT (self), templ_name);
+  GstClothSyncPad *pad = g_object_new (GST_TYPE_CLOTH_SYNC_PAD, "name",
+      templ_name, "direction", GST_PAD_SINK, "template", templ, NULL);
+
+  pad->index = (guint) gst_cloth_sync_take_free_index (self);
+  gst_element_add_pad (GST_ELEMENT (self), GST_PAD (pad));
+}
+
+void
+gst_cloth_sync_set_pad_offset (GstClothSync * self, guint index,
+    GstClockTimeDiff offset)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+
+  g_return_if_fail (index < GST_CLOTH_SYNC_MAX_PADS);
+
+  GST_OBJECT_LOCK (self);
+  priv->offset[index] = offset;
+  GST_OBJECT_UNLOCK (self);
+  gst_cloth_sync_update_timing (self);
+}
+
+static void
+gst_cloth_sync_release_pad (GstElement * element, GstPad * pad)
+{
+  GstClothSync *self = GST_CLOTH_SYNC (element);
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  guint64 bit = G_GUINT64_CONSTANT (1) << GST_CLOTH_SYNC_PAD (pad)->index;
+
+  GST_ELEMENT_CLASS (gst_cloth_sync_parent_class)->release_pad (element, pad);
+
+  GST_OBJECT_LOCK (self);
+  priv->taken &= ~bit;
+  priv->released |= bit;
+  GST_OBJECT_UNLOCK (self);
+  gst_cloth_sync_update_timing (self);
+}
+
+/* Tells the subclass, from the streaming thread, of the pads that have gone. */
+static void
+gst_cloth_sync_forget_released (GstClothSync * self)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  GstClothSyncClass *klass = GST_CLOTH_SYNC_GET_CLASS (self);
+  guint64 released;
+  guint i;
+
+  GST_OBJECT_LOCK (self);
+  released = priv->released;
+  priv->released = 0;
+  GST_OBJECT_UNLOCK (self);
+  if (!released) {
+    return;
+  }
+  for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS && klass->set_pad_caps; i++) {
+    if (released >> i & 1) {
+      klass->set_pad_caps (self, i, NULL);
+    }
+  }
+  priv->last_mask &= ~released;
+  gst_pad_mark_reconfigure (GST_AGGREGATOR_SRC_PAD (self));
+}
+
+static GstClockTime
+gst_cloth_sync_period_of_caps (const GstCaps * caps)
+{
+  const GstStructure *s = gst_caps_get_structure (caps, 0);
+  gint n, d;
+
+  if (gst_structure_get_fraction (s, "framerate", &n, &d) && n > 0 && d > 0) {
+    return gst_util_uint64_scale (GST_SECOND, (guint64) d, (guint64) n);
+  }
+  if (gst_structure_get_fraction (s, "max-framerate", &n, &d) && n > 0 && d > 0) {
+    return gst_util_uint64_scale (GST_SECOND, (guint64) d, (guint64) n);
+  }
+  return GST_CLOCK_TIME_NONE;
+}
+
+static gboolean
+gst_cloth_sync_sink_event (GstAggregator * agg, GstAggregatorPad * aggpad,
+    GstEvent * event)
+{
+  GstClothSync *self = GST_CLOTH_SYNC (agg);
+  GstClothSyncClass *klass = GST_CLOTH_SYNC_GET_CLASS (self);
+  GstClothSyncPad *pad = GST_CLOTH_SYNC_PAD (aggpad);
+
+  if (GST_EVENT_TYPE (event) == GST_EVENT_CAPS) {
+    GstCaps *caps;
+
+    gst_cloth_sync_forget_released (self);
+    gst_event_parse_caps (event, &caps);
+    GST_OBJECT_LOCK (self);
+    pad->period = gst_cloth_sync_period_of_caps (caps);
+    GST_OBJECT_UNLOCK (self);
+    gst_cloth_sync_update_timing (self);
+    if (klass->set_pad_caps && !klass->set_pad_caps (self, pad->index, caps)) {
+      gst_event_unref (event);
+      return FALSE;
+    }
+    gst_pad_mark_reconfigure (GST_AGGREGATOR_SRC_PAD (self));
+  } else if (GST_EVENT_TYPE (event) == GST_EVENT_SEGMENT) {
+    const GstSegment *segment;
+
+    gst_event_parse_segment (event, &segment);
+    if (segment->format != GST_FORMAT_TIME) {
+      GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+          ("Pad %s has a segment in %s, not in time.", GST_PAD_NAME (pad),
+              gst_format_get_name (segment->format)),
+          ("Streams are joined by running time. Put a parser or decoder that gives "
+              "times before this element, or a source with format=time."));
+      gst_event_unref (event);
+      return FALSE;
+    }
+  }
+  return GST_AGGREGATOR_CLASS (gst_cloth_sync_parent_class)->sink_event (agg,
+      aggpad, event);
+}
+
+static GstBuffer *
+gst_cloth_sync_clip (GstAggregator * agg, GstAggregatorPad * aggpad,
+    GstBuffer * buffer)
+{
+  GstClockTime start = GST_BUFFER_PTS (buffer);
+  GstClockTime stop = GST_CLOCK_TIME_NONE;
+  guint64 new_start, new_stop;
+
+  if (!GST_CLOCK_TIME_IS_VALID (start)
+      || aggpad->segment.format != GST_FORMAT_TIME) {
+    return buffer;
+  }
+  if (GST_BUFFER_DURATION_IS_VALID (buffer)) {
+    stop = start + GST_BUFFER_DURATION (buffer);
+  }
+  if (!gst_segment_clip (&aggpad->segment, GST_FORMAT_TIME, start, stop,
+          &new_start, &new_stop)) {
+    gst_buffer_unref (buffer);
+    return NULL;
+  }
+  if (new_start != start) {
+    buffer = gst_buffer_make_writable (buffer);
+    GST_BUFFER_PTS (buffer) = new_start;
+    GST_BUFFER_DURATION (buffer) =
+        GST_CLOCK_TIME_IS_VALID (new_stop) ? new_stop - new_start : new_stop;
+  }
+  return buffer;
+}
+
+/* Time of a frame on the common clock; GST_CLOCK_STIME_NONE when it has none. */
+static GstClockTimeDiff
+gst_cloth_sync_time (GstClothSync * self, GstClothSyncPad * pad,
+    GstBuffer * buffer)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  GstSegment *segment = &GST_AGGREGATOR_PAD_CAST (pad)->segment;
+  guint64 running = GST_CLOCK_TIME_NONE;
+  GstClockTimeDiff offset;
+
+  GST_OBJECT_LOCK (self);
+  offset = priv->offset[pad->index];
+  GST_OBJECT_UNLOCK (self);
+  GST_OBJECT_LOCK (pad);
+  if (GST_BUFFER_PTS_IS_VALID (buffer) && segment->format == GST_FORMAT_TIME) {
+    running = gst_segment_to_running_time (segment, GST_FORMAT_TIME,
+        GST_BUFFER_PTS (buffer));
+  }
+  GST_OBJECT_UNLOCK (pad);
+  if (!GST_CLOCK_TIME_IS_VALID (running)) {
+    return GST_CLOCK_STIME_NONE;
+  }
+  return (GstClockTimeDiff) running - offset;
+}
+
+static void
+gst_cloth_sync_gather (GstClothSync * self, Heads * heads)
+{
+  GList *l;
+  guint i;
+
+  memset (heads, 0, sizeof (*heads));
+  GST_OBJECT_LOCK (self);
+  for (l = GST_ELEMENT (self)->sinkpads; l; l = l->next) {
+    i = GST_CLOTH_SYNC_PAD (l->data)->index;
+    heads->pad[i] = gst_object_ref (l->data);
+    heads->n = MAX (heads->n, i + 1);
+    heads->n_pads++;
+  }
+  GST_OBJECT_UNLOCK (self);
+
+  for (i = 0; i < heads->n; i++) {
+    GstAggregatorPad *pad = GST_AGGREGATOR_PAD_CAST (heads->pad[i]);
+    GstBuffer *head;
+
+    if (!pad) {
+      continue;
+    }
+    head = heads->head[i] = gst_aggregator_pad_peek_buffer (pad);
+    if (!head) {
+      if (gst_aggregator_pad_is_eos (pad)) {
+        heads->n_eos++;
+      } else if (!gst_aggregator_pad_is_inactive (pad)) {
+        heads->n_waiting++;
+      }
+      continue;
+    }
+    heads->gap[i] = GST_BUFFER_FLAG_IS_SET (head, GST_BUFFER_FLAG_GAP);
+    heads->time[i] = gst_cloth_sync_time (self, heads->pad[i], head);
+  }
+}
+
+static void
+gst_cloth_sync_release_heads (Heads * heads)
+{
+  guint i;
+
+  for (i = 0; i < heads->n; i++) {
+    gst_clear_buffer (&heads->head[i]);
+    gst_clear_object (&heads->pad[i]);
+  }
+}
+
+/* The running time from which the live deadline counts: the next set's. NONE makes the
+ * aggregator wait without a deadline, right while there is no frame at all. */
+static GstClockTime
+gst_cloth_sync_get_next_time (GstAggregator * agg)
+{
+  GstClothSync *self = GST_CLOTH_SYNC (agg);
+  GstClockTimeDiff first = G_MAXINT64;
+  Heads heads;
+  guint i;
+
+  gst_cloth_sync_gather (self, &heads);
+  for (i = 0; i < heads.n; i++) {
+    if (heads.head[i]) {
+      /* a frame without a time is dealt with at once: its time is the least value */
+      first = MIN (first, heads.time[i]);
+    }
+  }
+  gst_cloth_sync_release_heads (&heads);
+  return first == G_MAXINT64 ? GST_CLOCK_TIME_NONE : (GstClockTime) MAX (first,
+      0);
+}
+
+static void
+gst_cloth_sync_drop (GstClothSync * self, GstClothSyncPad * pad,
+    GstBuffer * buffer)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  GstAggregatorPad *aggpad = GST_AGGREGATOR_PAD (pad);
+  GstClockTime pts = GST_BUFFER_PTS (buffer);
+  GstMessage *message;
+
+  GST_OBJECT_LOCK (self);
+  priv->n_dropped++;
+  pad->dropped++;
+  GST_OBJECT_UNLOCK (self);
+  GST_DEBUG_OBJECT (pad, "late frame dropped: %" GST_PTR_FORMAT, buffer);
+  message = gst_message_new_qos (GST_OBJECT (self), TRUE,
+      gst_segment_to_running_time (&aggpad->segment, GST_FORMAT_TIME, pts),
+      gst_segment_to_stream_time (&aggpad->segment, GST_FORMAT_TIME, pts), pts,
+      GST_BUFFER_DURATION (buffer));
+  gst_message_set_qos_stats (message, GST_FORMAT_BUFFERS, pad->used,
+      pad->dropped);
+  gst_element_post_message (GST_ELEMENT (self), message);
+  gst_aggregator_pad_drop_buffer (aggpad);
+}
+
+/* Takes away heads that no set will want: frames too late for a set that has gone, and
+ * gaps that end before the set at @first closes. TRUE when one was taken: what follows
+ * it has to be looked at first. */
+static gboolean
+gst_cloth_sync_discard (GstClothSync * self, Heads * heads,
+    GstClockTimeDiff first, GstClockTimeDiff tolerance)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  gboolean discarded = FALSE;
+  guint i;
+
+  for (i = 0; i < heads->n; i++) {
+    GstClockTimeDiff time = heads->time[i];
+    gboolean late;
+
+    if (!heads->head[i] || !GST_CLOCK_STIME_IS_VALID (time)) {
+      continue;
+    }
+    if (heads->gap[i]) {
+      if (GST_BUFFER_DURATION_IS_VALID (heads->head[i])) {
+        time += (GstClockTimeDiff) GST_BUFFER_DURATION (heads->head[i]);
+      }
+      if (first == G_MAXINT64 || time <= first + tolerance) {
+        gst_aggregator_pad_drop_buffer (GST_AGGREGATOR_PAD (heads->pad[i]));
+        discarded = TRUE;
+      }
+      continue;
+    }
+    late = time < 0;
+    if (priv->has_last) {
+      late |= time <= priv->last_time;
+      late |= !(priv->last_mask >> i & 1)
+          && time <= priv->last_time + priv->last_tolerance;
+    }
+    if (late) {
+      gst_cloth_sync_drop (self, heads->pad[i], heads->head[i]);
+      discarded = TRUE;
+    }
+  }
+  return discarded;
+}
+
+/* Pops the heads of the set and hands them to the subclass. */
+static GstFlowReturn
+gst_cloth_sync_emit (GstClothSync * self, Heads * heads, guint64 mask,
+    GstClockTimeDiff time)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  GstAggregator *agg = GST_AGGREGATOR (self);
+  GstSegment *segment = &GST_AGGREGATOR_PAD (agg->srcpad)->segment;
+  GstBuffer *views[GST_CLOTH_SYNC_MAX_PADS] = { NULL };
+  GstBuffer *out = NULL;
+  GstClockTime duration = GST_CLOCK_TIME_NONE, pts = GST_CLOCK_TIME_NONE;
+  GstFlowReturn ret = GST_FLOW_OK;
+  gboolean enough, inside = TRUE;
+  guint i, n_views = 0;
+
+  for (i = 0; i < heads->n; i++) {
+    if (!(mask >> i & 1)) {
+      continue;
+    }
+    /* only one reference must be left, so that the subclass can write in place */
+    gst_clear_buffer (&heads->head[i]);
+    views[i] =
+        gst_aggregator_pad_pop_buffer (GST_AGGREGATOR_PAD (heads->pad[i]));
+    if (!views[i]) {
+      mask &= ~(G_GUINT64_CONSTANT (1) << i);   /* flushed meanwhile */
+      continue;
+    }
+    n_views++;
+    duration = MIN (duration, GST_BUFFER_DURATION (views[i]));
+    GST_OBJECT_LOCK (self);
+    heads->pad[i]->used++;
+    if (!GST_CLOCK_TIME_IS_VALID (duration)) {
+      duration = heads->pad[i]->period;
+    }
+    GST_OBJECT_UNLOCK (self);
+  }
+  if (GST_CLOCK_STIME_IS_VALID (time)) {
+    GST_OBJECT_LOCK (self);
+    pts = gst_segment_position_from_running_time (segment, GST_FORMAT_TIME,
+        (guint64) time);
+    inside = GST_CLOCK_TIME_IS_VALID (pts);
+    if (inside) {
+      segment->position = pts;
+    }
+    GST_OBJECT_UNLOCK (self);
+  }
+
+  GST_OBJECT_LOCK (self);
+  enough = n_views > 0 && n_views >= priv->min_views;
+  if (!enough || !inside) {
+    priv->n_incomplete++;
+  } else {
+    priv->n_sets++;
+  }
+  GST_OBJECT_UNLOCK (self);
+  GST_LOG_OBJECT (self, "set at %" GST_STIME_FORMAT ", views %#"
+      G_GINT64_MODIFIER "x%s", GST_STIME_ARGS (time), mask,
+      enough ? "" : ": too few");
+
+  /* without caps (a live deadline before any pad had them) there is nothing to send */
+  if (enough && inside && gst_pad_has_current_caps (agg->srcpad)) {
+    ret =
+        GST_CLOTH_SYNC_GET_CLASS (self)->process_set (self, views, heads->n,
+        mask, pts, duration, &out);
+  }
+  for (i = 0; i < heads->n; i++) {
+    gst_clear_buffer (&views[i]);
+  }
+  if (!out) {
+    return ret;
+  }
+  if (ret != GST_FLOW_OK) {
+    gst_buffer_unref (out);
+    return ret;
+  }
+  GST_BUFFER_PTS (out) = pts;
+  GST_BUFFER_DTS (out) = GST_CLOCK_TIME_NONE;
+  GST_BUFFER_DURATION (out) = duration;
+  return gst_aggregator_finish_buffer (agg, out);
+}
+
+static GstFlowReturn
+gst_cloth_sync_end (GstClothSync * self)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  gboolean all_incomplete;
+  guint min_views;
+
+  GST_OBJECT_LOCK (self);
+  all_incomplete = priv->n_sets == 0 && priv->n_incomplete > 0;
+  min_views = priv->min_views;
+  GST_OBJECT_UNLOCK (self);
+  if (all_incomplete) {
+    GST_ELEMENT_WARNING (self, STREAM, FAILED,
+        ("No instant had frames from %u pads, so nothing was sent.", min_views),
+        ("Lower min-views, raise tolerance, or check that the streams' times "
+            "overlap."));
+  }
+  return GST_FLOW_EOS;
+}
+
+static GstFlowReturn
+gst_cloth_sync_aggregate (GstAggregator * agg, gboolean timeout)
+{
+  GstClothSync *self = GST_CLOTH_SYNC (agg);
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  GstFlowReturn ret = GST_AGGREGATOR_FLOW_NEED_DATA;
+  GstClockTimeDiff first = G_MAXINT64, tolerance;
+  guint64 mask = 0;
+  gint untimed = -1;
+  Heads heads;
+  guint i;
+
+  gst_cloth_sync_forget_released (self);
+  GST_OBJECT_LOCK (self);
+  tolerance = (GstClockTimeDiff) priv->effective;
+  GST_OBJECT_UNLOCK (self);
+
+  gst_cloth_sync_gather (self, &heads);
+  if (heads.n_eos == heads.n_pads) {
+    ret = gst_cloth_sync_end (self);
+    goto done;
+  }
+  if (heads.n_waiting > 0 && !timeout) {
+    goto done;                  /* what came was clipped away, or the pad is new */
+  }
+  for (i = 0; i < heads.n; i++) {
+    if (!heads.head[i]) {
+      continue;
+    }
+    if (!GST_CLOCK_STIME_IS_VALID (heads.time[i])) {
+      untimed = (gint) i;
+    } else if (!heads.gap[i]) {
+      first = MIN (first, heads.time[i]);
+    }
+  }
+  if (untimed >= 0) {
+    if (heads.n_pads > 1) {
+      GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+          ("A frame on pad %s has no time stamp.",
+              GST_PAD_NAME (heads.pad[untimed])),
+          ("Streams are joined by running time. Let the source stamp its frames "
+              "(do-timestamp=true) or put videorate before this pad."));
+      ret = GST_FLOW_ERROR;
+    } else {
+      /* nothing to join with: order is enough */
+      ret =
+          gst_cloth_sync_emit (self, &heads, G_GUINT64_CONSTANT (1) << untimed,
+          GST_CLOCK_STIME_NONE);
+    }
+    goto done;
+  }
+  if (gst_cloth_sync_discard (self, &heads, first, tolerance)
+      || first == G_MAXINT64) {
+    goto done;
+  }
+
+  for (i = 0; i < heads.n; i++) {
+    if (heads.head[i] && !heads.gap[i] && heads.time[i] <= first + tolerance) {
+      mask |= G_GUINT64_CONSTANT (1) << i;
+    }
+  }
+  priv->has_last = TRUE;
+  priv->last_time = first;
+  priv->last_tolerance = tolerance;
+  priv->last_mask = mask;
+  if (timeout) {
+    GST_DEBUG_OBJECT (self, "deadline: set at %" GST_STIME_FORMAT
+        " goes without the missing views", GST_STIME_ARGS (first));
+  }
+  ret = gst_cloth_sync_emit (self, &heads, mask, first);
+
+done:
+  gst_cloth_sync_release_heads (&heads);
+  return ret;
+}
+
+static GstFlowReturn
+gst_cloth_sync_update_src_caps (GstAggregator * agg, GstCaps * downstream,
+    GstCaps ** caps)
+{
+  GstClothSyncClass *klass = GST_CLOTH_SYNC_GET_CLASS (agg);
+
+  if (klass->negotiate_src) {
+    return klass->negotiate_src (GST_CLOTH_SYNC (agg), downstream, caps);
+  }
+  *caps = gst_caps_ref (downstream);
+  return GST_FLOW_OK;
+}
+
+/* Any stride and plane offset is fine: frames are read through GstVideoMeta. */
+static gboolean
+gst_cloth_sync_propose_allocation (GstAggregator * agg, GstAggregatorPad * pad,
+    GstQuery * decide_query, GstQuery * query)
+{
+  gst_query_add_allocation_meta (query, GST_VIDEO_META_API_TYPE, NULL);
+  return TRUE;
+}
+
+static void
+gst_cloth_sync_restart (GstClothSync * self)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  GstClothSyncClass *klass = GST_CLOTH_SYNC_GET_CLASS (self);
+
+  priv->has_last = FALSE;
+  GST_OBJECT_LOCK (self);
+  GST_AGGREGATOR_PAD (GST_AGGREGATOR_SRC_PAD (self))->segment.position =
+      GST_CLOCK_TIME_NONE;
+  GST_OBJECT_UNLOCK (self);
+  if (klass->reset) {
+    klass->reset (self);
+  }
+}
+
+static GstFlowReturn
+gst_cloth_sync_flush (GstAggregator * agg)
+{
+  gst_cloth_sync_restart (GST_CLOTH_SYNC (agg));
+  return GST_FLOW_OK;
+}
+
+static gboolean
+gst_cloth_sync_start (GstAggregator * agg)
+{
+  GstClothSync *self = GST_CLOTH_SYNC (agg);
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+
+  GST_OBJECT_LOCK (self);
+  priv->n_sets = priv->n_incomplete = priv->n_dropped = 0;
+  GST_OBJECT_UNLOCK (self);
+  gst_cloth_sync_restart (self);
+  return TRUE;
+}
+
+static gboolean
+gst_cloth_sync_stop (GstAggregator * agg)
+{
+  gst_cloth_sync_restart (GST_CLOTH_SYNC (agg));
+  return TRUE;
+}
+
+static void
+gst_cloth_sync_set_property (GObject * object, guint id, const GValue * value,
+    GParamSpec * pspec)
+{
+  GstClothSync *self = GST_CLOTH_SYNC (object);
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+
+  switch (id) {
+    case PROP_TOLERANCE:
+      GST_OBJECT_LOCK (self);
+      priv->tolerance = g_value_get_uint64 (value);
+      GST_OBJECT_UNLOCK (self);
+      gst_cloth_sync_update_timing (self);
+      break;
+    case PROP_MIN_VIEWS:
+      GST_OBJECT_LOCK (self);
+      priv->min_views = g_value_get_uint (value);
+      GST_OBJECT_UNLOCK (self);
+      break;
+    default:
+      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
+      break;
+  }
+}
+
+static void
+gst_cloth_sync_get_property (GObject * object, guint id, GValue * value,
+    GParamSpec * pspec)
+{
+  GstClothSync *self = GST_CLOTH_SYNC (object);
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+
+  GST_OBJECT_LOCK (self);
+  switch (id) {
+    case PROP_TOLERANCE:
+      g_value_set_uint64 (value, priv->tolerance);
+      break;
+    case PROP_MIN_VIEWS:
+      g_value_set_uint (value, priv->min_views);
+      break;
+    case PROP_STATS:
+      g_value_take_boxed (value, gst_structure_new ("stats",
+              "sets", G_TYPE_UINT64, priv->n_sets,
+              "incomplete", G_TYPE_UINT64, priv->n_incomplete,
+              "dropped", G_TYPE_UINT64, priv->n_dropped, NULL));
+      break;
+    default:
+      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
+      break;
+  }
+  GST_OBJECT_UNLOCK (self);
+}
+
+static void
+gst_cloth_sync_class_init (GstClothSyncClass * klass)
+{
+  GObjectClass *object_class = G_OBJECT_CLASS (klass);
+  GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
+  GstAggregatorClass *agg_class = GST_AGGREGATOR_CLASS (klass);
+
+  object_class->set_property = gst_cloth_sync_set_property;
+  object_class->get_property = gst_cloth_sync_get_property;
+  element_class->release_pad = gst_cloth_sync_release_pad;
+  agg_class->create_new_pad = gst_cloth_sync_create_new_pad;
+  agg_class->sink_event = gst_cloth_sync_sink_event;
+  agg_class->clip = gst_cloth_sync_clip;
+  agg_class->get_next_time = gst_cloth_sync_get_next_time;
+  agg_class->aggregate = gst_cloth_sync_aggregate;
+  agg_class->update_src_caps = gst_cloth_sync_update_src_caps;
+  agg_class->propose_allocation = gst_cloth_sync_propose_allocation;
+  agg_class->flush = gst_cloth_sync_flush;
+  agg_class->start = gst_cloth_sync_start;
+  agg_class->stop = gst_cloth_sync_stop;
+
+  /**
+   * GstClothSync:tolerance:
+   *
+   * Since: 0.1
+   */
+  g_object_class_install_property (object_class, PROP_TOLERANCE,
+      g_param_spec_uint64 ("tolerance", "Tolerance",
+          "Frames at most this long after the earliest frame of a set belong to "
+          "it, in ns; less than a frame period. Default (the largest value): half "
+          "the frame period of the fastest pad, or 1/60 s when no pad has a "
+          "frame rate", 0, G_MAXUINT64, DEFAULT_TOLERANCE,
+          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+          GST_PARAM_MUTABLE_PLAYING));
+  /**
+   * GstClothSync:min-views:
+   *
+   * Since: 0.1
+   */
+  g_object_class_install_property (object_class, PROP_MIN_VIEWS,
+      g_param_spec_uint ("min-views", "Minimum views",
+          "Sets with frames from fewer pads than this are dropped", 1,
+          GST_CLOTH_SYNC_MAX_PADS, DEFAULT_MIN_VIEWS,
+          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+          GST_PARAM_MUTABLE_PLAYING));
+  /**
+   * GstClothSync:stats:
+   *
+   * Since: 0.1
+   */
+  g_object_class_install_property (object_class, PROP_STATS,
+      g_param_spec_boxed ("stats", "Statistics",
+          "Counts since the start: sets processed, sets dropped as incomplete "
+          "(fewer than min-views frames), frames dropped as late",
+          GST_TYPE_STRUCTURE, G_PARAM_READABLE | G_PARAM_STATIC_STRINGS));
+}
+
+static void
+gst_cloth_sync_init (GstClothSync * self)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+
+  priv->tolerance = DEFAULT_TOLERANCE;
+  priv->min_views = DEFAULT_MIN_VIEWS;
+  priv->effective = FALLBACK_TOLERANCE;
+}

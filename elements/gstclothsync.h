@@ -1,0 +1,82 @@
+/* Base of the elements that join several streams by running time.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include <gst/gst.h>
+#include <gst/base/gstaggregator.h>
+
+G_BEGIN_DECLS
+
+#define GST_CLOTH_SYNC_MAX_PADS 64
+
+#define GST_TYPE_CLOTH_SYNC_PAD (gst_cloth_sync_pad_get_type ())
+G_DECLARE_FINAL_TYPE (GstClothSyncPad, gst_cloth_sync_pad, GST, CLOTH_SYNC_PAD,
+    GstAggregatorPad)
+
+#define GST_TYPE_CLOTH_SYNC (gst_cloth_sync_get_type ())
+G_DECLARE_DERIVABLE_TYPE (GstClothSync, gst_cloth_sync, GST, CLOTH_SYNC,
+    GstAggregator)
+
+/**
+ * GstClothSyncClass:
+ * @parent_class: the parent class
+ * @set_pad_caps: the caps of pad @index have changed, or, with @caps %NULL, the pad is
+ *   gone. The subclass posts an element error and returns %FALSE when it can't work
+ *   with them. The source pad is negotiated again before the next set.
+ * @negotiate_src: puts the source caps into @caps (transfer full) and returns
+ *   %GST_FLOW_OK, or returns %GST_AGGREGATOR_FLOW_NEED_DATA when a pad without caps
+ *   has to give its own first. @downstream is what the peer allows. Optional: without
+ *   it the source pad takes what the peer allows.
+ * @process_set: one set of frames of the same instant. @views has @n entries, one for
+ *   every pad index up to the highest in use; %NULL where the pad has no frame in this
+ *   set. Bit i of @mask is set when @views[i] is there. @pts and @duration are the
+ *   set's, in the source segment. The buffers are borrowed; to keep one or write into
+ *   it without a copy take it and put %NULL in its place. @out takes the result; left
+ *   %NULL nothing is sent for this set. The base sets its time stamps.
+ * @reset: forgets what earlier frames have left (flush, stop). Optional.
+ *
+ * All of them are called from the streaming thread, with no lock held.
+ *
+ * Since: 0.1
+ */
+struct _GstClothSyncClass {
+  GstAggregatorClass parent_class;
+
+  gboolean (*set_pad_caps) (GstClothSync * sync, guint index, GstCaps * caps);
+  GstFlowReturn (*negotiate_src) (GstClothSync * sync, GstCaps * downstream,
+      GstCaps ** caps);
+  GstFlowReturn (*process_set) (GstClothSync * sync, GstBuffer ** views, guint n,
+      guint64 mask, GstClockTime pts, GstClockTime duration, GstBuffer ** out);
+  void (*reset) (GstClothSync * sync);
+
+  gpointer _reserved[4];
+};
+
+/**
+ * gst_cloth_sync_add_always_pad:
+ * @sync: the element, in its instance init
+ * @templ_name: name of an always sink pad template of its class
+ *
+ * Adds the pad of an always template; it takes the lowest free index.
+ *
+ * Since: 0.1
+ */
+void gst_cloth_sync_add_always_pad (GstClothSync * sync,
+    const gchar * templ_name);
+
+/**
+ * gst_cloth_sync_set_pad_offset:
+ * @sync: the element
+ * @index: pad index, below %GST_CLOTH_SYNC_MAX_PADS
+ * @offset: the stream's time minus the common time, ns (`offset_s` of rig.json)
+ *
+ * Running times of the pad are lowered by @offset before the streams are joined; the
+ * sets carry the common time. Frames that come to lie before time 0 are dropped.
+ *
+ * Since: 0.1
+ */
+void gst_cloth_sync_set_pad_offset (GstClothSync * sync, guint index,
+    GstClockTimeDiff offset);
+
+G_END_DECLS
