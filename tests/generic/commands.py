@@ -1,0 +1,100 @@
+#!/usr/bin/python3
+"""Runs what the documents and the scripts in pipelines/ tell people to type.
+
+  commands.py document FILE.md ROOT BUILD    every sh and python block, in order, one shell
+  commands.py script FILE.sh ROOT BUILD [ARGUMENT...]
+
+They run in a new folder that holds links to the repository's folders, so that what
+they write goes nowhere else. A command that is shown but stands in no block that is
+run is a fault too.
+
+SPDX-License-Identifier: LGPL-2.1-or-later
+"""
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+FENCE = re.compile(r'^```([^\n]*)\n(.*?)^```\s*$', re.M | re.S)
+# What is shown, not run: no line of it may look like one of our commands.
+SHOWN = ('c', 'json', 'text', 'meson')
+COMMAND = re.compile(r'^\s*\$?\s*(gst-launch-1\.0|gst-inspect-1\.0|gst-cloth-[a-z]+-1\.0|meson|ninja|'
+                     r'\./|\. pipelines|CC=)', re.M)
+# The command that runs this very test.
+OURSELVES = './tests/run.sh'
+
+
+def environment(root, build):
+    variables = dict(os.environ)
+    variables.update({
+        'CLOTH_BUILD': build,
+        'CLOTH_TEST': '1',
+        'LC_ALL': 'C.UTF-8',
+        'GST_REGISTRY_1_0': os.path.join(build, 'tests/registry-commands.bin'),
+        'GST_REGISTRY_FORK': 'no',
+        'PATH': '/usr/bin:/bin:/usr/sbin:/sbin',
+    })
+    # What the document sets up must be enough, so none of this comes from outside.
+    for name in ('GST_PLUGIN_PATH_1_0', 'GST_PLUGIN_PATH', 'GI_TYPELIB_PATH', 'MALLOC_PERTURB_',
+                 'LD_LIBRARY_PATH', 'DISPLAY', 'WAYLAND_DISPLAY', 'GST_DEBUG', 'GST_TRACERS'):
+        variables.pop(name, None)
+    return variables
+
+
+def lay_links(root, folder):
+    for name in os.listdir(root):
+        if not name.startswith(('.', 'build', 'cloth-quickstart')):
+            os.symlink(os.path.join(root, name), os.path.join(folder, name))
+
+
+def run(script, root, build, arguments=()):
+    with tempfile.TemporaryDirectory(prefix='cloth-commands-') as folder:
+        lay_links(root, folder)
+        done = subprocess.run(['bash', '-e', '-o', 'pipefail', '-c', script, 'bash', *arguments],
+                              cwd=folder, env=environment(root, build),
+                              stdin=subprocess.DEVNULL, timeout=570)
+        left = [os.path.join(at, name) for at, _, names in os.walk(folder) for name in names]
+        empty = [name for name in left if not os.path.islink(name) and not os.path.getsize(name)]
+        for name in empty:
+            print('left empty: ' + os.path.relpath(name, folder))
+        return 1 if done.returncode or empty else 0
+
+
+def document(path, root, build):
+    with open(path, encoding='utf-8') as file:
+        text = file.read()
+    script = ''
+    faults = []
+    for match in FENCE.finditer(text):
+        kind, block = match.group(1).strip(), match.group(2)
+        line = text.count('\n', 0, match.start()) + 1
+        if kind == 'sh':
+            block = '\n'.join(row for row in block.split('\n') if row.strip() != OURSELVES)
+            script += "echo '--- %s:%d' >&2\n%s\n" % (os.path.basename(path), line, block)
+        elif kind == 'python':
+            script += "echo '--- %s:%d' >&2\n/usr/bin/python3 - <<'END_OF_BLOCK'\n%sEND_OF_BLOCK\n" \
+                % (os.path.basename(path), line, block)
+        elif kind not in SHOWN:
+            faults.append('line %d: a block marked "%s" is neither run nor known' % (line, kind))
+        elif COMMAND.search(block):
+            faults.append('line %d: shows a command that no test runs' % line)
+    rest = FENCE.sub('', text)
+    if COMMAND.search(rest):
+        faults.append('a command outside any block: ' + COMMAND.search(rest).group(0).strip())
+    for fault in faults:
+        print('%s: %s' % (path, fault))
+    if not script:
+        print('%s: no commands' % path)
+        return 1 if faults else 0
+    # The first set-up command of the README makes this available to a reader.
+    if not re.search(r'^\. pipelines/environment\.sh', script, re.M):
+        script = '. pipelines/environment.sh\n' + script
+    return run(script, root, build) or (1 if faults else 0)
+
+
+kind, path, root, build, *rest = sys.argv[1:]
+root, build = os.path.abspath(root), os.path.abspath(build)
+if kind == 'document':
+    sys.exit(document(path, root, build))
+sys.exit(run('exec "./pipelines/%s" "$@"' % os.path.basename(path), root, build, rest))
