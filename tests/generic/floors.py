@@ -63,9 +63,10 @@ def check_file(root, path, text):
     room = room_of(path)
     if room is None:
         faults.append('%s: in no room of the house' % path)
-    if LICENCE not in text[:600]:
+    if LICENCE not in text[:2000]:
         faults.append('%s: no line with the licence near the top' % path)
-    if text.count('\n') > MAX_LINES:
+    # Tests are lists of cases: their length hides nothing.
+    if room != 'tests' and text.count('\n') > MAX_LINES:
         faults.append('%s: %d lines, split it' % (path, text.count('\n')))
     for name in INCLUDE.findall(text):
         other = room_of(name)

@@ -106,19 +106,19 @@ set_extremes (GstElement * element, GParamSpec * pspec)
   g_auto (GValue) value = G_VALUE_INIT;
 
   g_value_init (&value, pspec->value_type);
-#define BOTH_ENDS(TYPE, Type, type) \
+#define BOTH_ENDS(TYPE, Type, type) G_STMT_START { \
   if (G_IS_PARAM_SPEC_##TYPE (pspec)) { \
     g_value_set_##type (&value, G_PARAM_SPEC_##TYPE (pspec)->minimum); \
     set_and_compare (element, pspec, &value); \
     g_value_set_##type (&value, G_PARAM_SPEC_##TYPE (pspec)->maximum); \
     set_and_compare (element, pspec, &value); \
-  }
-  BOTH_ENDS (INT, Int, int)
-  BOTH_ENDS (UINT, UInt, uint)
-  BOTH_ENDS (INT64, Int64, int64)
-  BOTH_ENDS (UINT64, UInt64, uint64)
-  BOTH_ENDS (FLOAT, Float, float)
-  BOTH_ENDS (DOUBLE, Double, double)
+  } } G_STMT_END
+  BOTH_ENDS (INT, Int, int);
+  BOTH_ENDS (UINT, UInt, uint);
+  BOTH_ENDS (INT64, Int64, int64);
+  BOTH_ENDS (UINT64, UInt64, uint64);
+  BOTH_ENDS (FLOAT, Float, float);
+  BOTH_ENDS (DOUBLE, Double, double);
 #undef BOTH_ENDS
   if (G_IS_PARAM_SPEC_BOOLEAN (pspec)) {
     g_value_set_boolean (&value, TRUE);
@@ -250,8 +250,7 @@ test_words (gconstpointer data)
   {
     g_autofree gchar *wanted =
         g_strconcat ("gst", GST_OBJECT_NAME (factory), NULL);
-    g_autofree gchar *type =
-        g_ascii_strdown (G_OBJECT_TYPE_NAME (element), -1);
+    g_autofree gchar *type = g_ascii_strdown (G_OBJECT_TYPE_NAME (element), -1);
 
     g_assert_cmpstr (type, ==, wanted);
   }
