@@ -1,0 +1,217 @@
+/* Sums of the corner model over a window, for corner.c: sixteen pixels at a time, the
+ * same rounding in every instruction set.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/vision/corner-model.h"
+
+#include <math.h>
+#include <string.h>
+
+#define INLINE static inline __attribute__((always_inline))
+
+typedef gint32 LanesInt __attribute__((vector_size (64)));
+typedef gfloat Lanes8 __attribute__((vector_size (32)));
+typedef gfloat Lanes4 __attribute__((vector_size (16)));
+
+INLINE gfloat
+sum_lanes (const ClothLanes * v)
+{
+  Lanes8 h[2], s;
+  Lanes4 q[2], t;
+
+  memcpy (h, v, sizeof (h));
+  s = h[0] + h[1];
+  memcpy (q, &s, sizeof (q));
+  t = q[0] + q[1];
+  return (t[0] + t[2]) + (t[1] + t[3]);
+}
+
+/* e = erf (u) to 1.5e-7 and g = exp (−u²), by formula 7.1.26 of Abramowitz & Stegun,
+ * "Handbook of Mathematical Functions". */
+INLINE void
+erf_lanes (const ClothLanes * u, ClothLanes * e, ClothLanes * g)
+{
+  const ClothLanes zero = { 0 };
+  ClothLanes a = *u, x, n, f, p, t;
+  LanesInt sign = (LanesInt) a & (LanesInt) (zero - 0.0f - 1.0f) &
+      (gint32) 0x80000000;
+  LanesInt k;
+
+  a = (ClothLanes) ((LanesInt) a & 0x7fffffff);
+  /* Beyond 4 the Gaussian is below 1.2e-7. */
+  {
+    LanesInt far = a > 4.5f;
+    a = (ClothLanes) (((LanesInt) a & ~far) | ((LanesInt) (zero + 4.5f) & far));
+  }
+  x = -(a * a) * 1.44269504f;
+  n = (x + 12582912.0f) - 12582912.0f;
+  f = x - n;
+  p = f * 1.8775767e-3f + 8.9893397e-3f;
+  p = p * f + 5.5826318e-2f;
+  p = p * f + 2.4015361e-1f;
+  p = p * f + 6.9315308e-1f;
+  p = p * f + 9.9999994e-1f;
+  k = __builtin_convertvector (n, LanesInt);
+  *g = p * (ClothLanes) ((k + 127) << 23);
+
+  t = 1.0f / (1.0f + 0.3275911f * a);
+  p = t * 1.061405429f - 1.453152027f;
+  p = p * t + 1.421413741f;
+  p = p * t - 0.284496736f;
+  p = p * t + 0.254829592f;
+  f = 1.0f - p * t * *g;
+  *e = (ClothLanes) ((LanesInt) f | sign);
+}
+
+INLINE void
+basis (ClothCornerWindow * win, const ClothCornerState * st, gfloat * sums)
+{
+  const gfloat k = 0.70710678f / st->blur;
+  const gfloat sin1 = k * sinf (st->theta1), cos1 = k * cosf (st->theta1);
+  const gfloat sin2 = k * sinf (st->theta2), cos2 = k * cosf (st->theta2);
+  ClothLanes acc[13] = { {0} };
+
+  for (gint v = 0; v < win->n_vectors; v++) {
+    ClothLanes dx = win->x[v] - st->x, dy = win->y[v] - st->y;
+    ClothLanes u1 = dy * cos1 - dx * sin1, u2 = dy * cos2 - dx * sin2;
+    ClothLanes w = win->weight[v], i = win->value[v];
+    ClothLanes e1, e2, w1, w2, w12, wi;
+
+    erf_lanes (&u1, &e1, &win->g1[v]);
+    erf_lanes (&u2, &e2, &win->g2[v]);
+    win->e1[v] = e1;
+    win->e2[v] = e2;
+    w1 = w * e1;
+    w2 = w * e2;
+    w12 = w1 * e2;
+    wi = w * i;
+    acc[0] += w;
+    acc[1] += w1;
+    acc[2] += w2;
+    acc[3] += w12;
+    acc[4] += w1 * e1;
+    acc[5] += w2 * e2;
+    acc[6] += w12 * e1;
+    acc[7] += w12 * e2;
+    acc[8] += w12 * (e1 * e2);
+    acc[9] += wi;
+    acc[10] += wi * e1;
+    acc[11] += wi * e2;
+    acc[12] += wi * (e1 * e2);
+  }
+  for (gint j = 0; j < 13; j++)
+    sums[j] = sum_lanes (&acc[j]);
+}
+
+INLINE void
+normal (const ClothCornerWindow * win, const ClothCornerState * st,
+    const gfloat * c, gint power, gfloat * out, gfloat * gradient,
+    gfloat * cost)
+{
+  const gfloat k = 0.70710678f / st->blur, two = 1.1283792f;
+  const gfloat sin1 = sinf (st->theta1), cos1 = cosf (st->theta1);
+  const gfloat sin2 = sinf (st->theta2), cos2 = cosf (st->theta2);
+  ClothLanes acc[CLOTH_CORNER_N_SUMS + 6] = { {0} };
+
+  for (gint v = 0; v < win->n_vectors; v++) {
+    ClothLanes dx = win->x[v] - st->x, dy = win->y[v] - st->y;
+    ClothLanes t1 = dx * cos1 + dy * sin1, t2 = dx * cos2 + dy * sin2;
+    ClothLanes d1 = dy * cos1 - dx * sin1, d2 = dy * cos2 - dx * sin2;
+    ClothLanes e1 = win->e1[v], e2 = win->e2[v], w = win->weight[v];
+    ClothLanes e12 = e1 * e2;
+    ClothLanes a1 = (c[1] + c[3] * e2) * win->g1[v] * two;
+    ClothLanes a2 = (c[2] + c[3] * e1) * win->g2[v] * two;
+    ClothLanes r = win->value[v] - (c[0] + c[1] * e1 + c[2] * e2 + c[3] * e12);
+    ClothLanes j[CLOTH_CORNER_N];
+    gint n = 0;
+
+    /* Along its normal an edge moves against the signed distance. */
+    j[0] = -a1;
+    j[1] = -a2;
+    j[2] = t1 * a1 * -k;
+    j[3] = t2 * a2 * -k;
+    j[4] = (d1 * a1 + d2 * a2) * (-k / st->blur);
+    j[5] = 1.0f + 0.0f * w;
+    j[6] = e1;
+    j[7] = e2;
+    j[8] = e12;
+    if (power == 2)
+      w *= w;
+#pragma GCC unroll 9
+    for (gint a = 0; a < CLOTH_CORNER_N; a++) {
+      ClothLanes wa = w * j[a];
+#pragma GCC unroll 9
+      for (gint b = a; b < CLOTH_CORNER_N; b++)
+        acc[n++] += wa * j[b];
+    }
+    w *= r;
+#pragma GCC unroll 5
+    for (gint a = 0; a < 5; a++)
+      acc[n++] += w * j[a];
+    acc[n] += w * r;
+  }
+  for (gint n = 0; n < CLOTH_CORNER_N_SUMS; n++)
+    out[n] = sum_lanes (&acc[n]);
+  for (gint n = 0; n < 5; n++)
+    gradient[n] = sum_lanes (&acc[CLOTH_CORNER_N_SUMS + n]);
+  *cost = sum_lanes (&acc[CLOTH_CORNER_N_SUMS + 5]);
+}
+
+#define KERNELS(suffix, target_attribute) \
+target_attribute static void \
+basis_##suffix (ClothCornerWindow * window, const ClothCornerState * state, \
+    gfloat * sums) \
+{ \
+  basis (window, state, sums); \
+} \
+target_attribute static void \
+normal_##suffix (const ClothCornerWindow * window, \
+    const ClothCornerState * state, const gfloat * c, gint power, \
+    gfloat * out, gfloat * gradient, gfloat * cost) \
+{ \
+  normal (window, state, c, power, out, gradient, cost); \
+}
+
+KERNELS (scalar,)
+#if defined (__x86_64__) && defined (__GNUC__)
+#define WITH_X86 1
+KERNELS (avx2, __attribute__((target ("avx2"))))
+KERNELS (avx512,
+    __attribute__((target ("avx512f,avx512bw,avx512dq,avx512vl"))))
+#endif
+
+void
+cloth_corner_basis (ClothCornerWindow * window,
+    const ClothCornerState * state, gfloat sums[13], ClothSimd level)
+{
+#ifdef WITH_X86
+  if (level == CLOTH_SIMD_AVX512) {
+    basis_avx512 (window, state, sums);
+    return;
+  }
+  if (level == CLOTH_SIMD_AVX2) {
+    basis_avx2 (window, state, sums);
+    return;
+  }
+#endif
+  basis_scalar (window, state, sums);
+}
+
+void
+cloth_corner_normal (const ClothCornerWindow * window,
+    const ClothCornerState * state, const gfloat c[4], gint power,
+    gfloat out[CLOTH_CORNER_N_SUMS], gfloat gradient[5], gfloat * cost,
+    ClothSimd level)
+{
+#ifdef WITH_X86
+  if (level == CLOTH_SIMD_AVX512) {
+    normal_avx512 (window, state, c, power, out, gradient, cost);
+    return;
+  }
+  if (level == CLOTH_SIMD_AVX2) {
+    normal_avx2 (window, state, c, power, out, gradient, cost);
+    return;
+  }
+#endif
+  normal_scalar (window, state, c, power, out, gradient, cost);
+}

@@ -1,0 +1,52 @@
+/* Sums of the corner model over a window, for corner.c: sixteen pixels at a time, the
+ * same rounding in every instruction set.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/math/cpu.h"
+
+G_BEGIN_DECLS
+
+#define CLOTH_CORNER_LANES 16
+/* A disc of radius 12 with its rim, in whole vectors. */
+#define CLOTH_CORNER_MAX_VECTORS 36
+
+typedef gfloat ClothLanes __attribute__((vector_size (64)));
+
+/* The window's pixels: offsets from its middle, grey levels less their mean, weights.
+ * Padding lanes have weight 0. */
+typedef struct {
+  ClothLanes x[CLOTH_CORNER_MAX_VECTORS];
+  ClothLanes y[CLOTH_CORNER_MAX_VECTORS];
+  ClothLanes value[CLOTH_CORNER_MAX_VECTORS];
+  ClothLanes weight[CLOTH_CORNER_MAX_VECTORS];
+  /* Left by cloth_corner_basis() for cloth_corner_normal(). */
+  ClothLanes e1[CLOTH_CORNER_MAX_VECTORS];
+  ClothLanes e2[CLOTH_CORNER_MAX_VECTORS];
+  ClothLanes g1[CLOTH_CORNER_MAX_VECTORS];
+  ClothLanes g2[CLOTH_CORNER_MAX_VECTORS];
+  gint n_vectors;
+} ClothCornerWindow;
+
+typedef struct {
+  gfloat x, y, theta1, theta2, blur;
+} ClothCornerState;
+
+/* Parameters of the linearised model: place of edge 1 and 2 across their directions in
+ * units of sqrt(2)·blur, their angles, blur; then c0 to c3. */
+#define CLOTH_CORNER_N 9
+#define CLOTH_CORNER_N_SUMS 45
+
+/* basis: w, we1, we2, we1e2, we1², we2², we1²e2, we1e2², we1²e2²; then wI, wIe1, wIe2,
+ * wIe1e2. */
+void cloth_corner_basis (ClothCornerWindow * window,
+    const ClothCornerState * state, gfloat sums[13], ClothSimd level);
+/* normal: upper triangle by rows of JᵀWJ (@power 1) or JᵀW²J (@power 2); gradient: JᵀWr
+ * of the first five; cost: rᵀWr. */
+void cloth_corner_normal (const ClothCornerWindow * window,
+    const ClothCornerState * state, const gfloat c[4], gint power,
+    gfloat normal[CLOTH_CORNER_N_SUMS], gfloat gradient[5], gfloat * cost,
+    ClothSimd level);
+
+G_END_DECLS

@@ -1,0 +1,448 @@
+/* The exact place of a corner where two straight edges cross.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/vision/corner.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/vision/corner-model.h"
+
+#define SECTORS 32
+#define MAX_EVALUATIONS 16
+
+/**
+ * cloth_corner_default_params:
+ *
+ * Returns: parameters for squares of 12 px and more.
+ *
+ * Since: 0.1
+ */
+ClothCornerParams
+cloth_corner_default_params (void)
+{
+  return (ClothCornerParams) {
+    .radius = 5.0f,
+    .max_shift = 2.0f,
+    .blur = 0.8f,
+  };
+}
+
+/* Takes the pixels of a disc around (x, y); its weight falls to 0 at its rim, so that
+ * what lies beyond enters gently. Offsets are from the pixel (ix, iy). */
+static gboolean
+take_window (ClothCornerWindow * win, const ClothImage * image, gfloat x,
+    gfloat y, gint ix, gint iy, gfloat radius)
+{
+  const gfloat rim = radius + 0.5f, shape = 1.0f / (rim * rim);
+  const gint reach = (gint) ceilf (rim);
+  const gfloat fx = x - (gfloat) ix, fy = y - (gfloat) iy;
+  gfloat *px = (gfloat *) win->x, *py = (gfloat *) win->y;
+  gfloat *value = (gfloat *) win->value, *weight = (gfloat *) win->weight;
+  gfloat sum = 0, sum_weight = 0, mean;
+  gint n = 0, n_padded;
+
+  for (gint j = MAX (-reach, -iy); j <= MIN (reach, image->height - 1 - iy);
+      j++) {
+    const guint8 *row =
+        image->data + (gsize) (iy + j) * (gsize) image->stride + ix;
+    gfloat dy = (gfloat) j - fy, left = rim * rim - dy * dy;
+    gint i0, i1;
+
+    if (left <= 0)
+      continue;
+    left = sqrtf (left);
+    i0 = MAX ((gint) ceilf (fx - left), -ix);
+    i1 = MIN ((gint) floorf (fx + left), image->width - 1 - ix);
+    for (gint i = i0; i <= i1; i++) {
+      gfloat dx = (gfloat) i - fx;
+      gfloat w = MAX (1.0f - (dx * dx + dy * dy) * shape, 0.0f);
+      px[n] = (gfloat) i;
+      py[n] = (gfloat) j;
+      value[n] = row[i];
+      weight[n] = w;
+      sum += w * value[n];
+      sum_weight += w;
+      n++;
+    }
+  }
+  /* Nine parameters and something left over to tell the noise from. */
+  if (n < 14)
+    return FALSE;
+  mean = sum / sum_weight;
+  for (gint i = 0; i < n; i++)
+    value[i] -= mean;
+  n_padded = (n + CLOTH_CORNER_LANES - 1) / CLOTH_CORNER_LANES *
+      CLOTH_CORNER_LANES;
+  for (gint i = n; i < n_padded; i++)
+    px[i] = py[i] = value[i] = weight[i] = 0;
+  win->n_vectors = n_padded / CLOTH_CORNER_LANES;
+  return TRUE;
+}
+
+/* Both directions whose four sectors explain most of the grey levels around (x, y). */
+static gboolean
+find_angles (const ClothCornerWindow * win, gfloat x, gfloat y, gfloat radius,
+    gfloat * theta)
+{
+  const gfloat *px = (const gfloat *) win->x, *py = (const gfloat *) win->y;
+  const gfloat *value = (const gfloat *) win->value;
+  const gfloat *weight = (const gfloat *) win->weight;
+  gfloat sum[2 * SECTORS + 1] = { 0 }, mass[2 * SECTORS + 1] = { 0 };
+  gfloat best = 0;
+  gint best_a = -1, best_b = -1;
+  const gfloat inner = MIN (0.16f * radius * radius, 4.0f);
+
+  for (gint i = 0; i < win->n_vectors * CLOTH_CORNER_LANES; i++) {
+    gfloat dx = px[i] - x, dy = py[i] - y, turn;
+    gint sector;
+
+    if (weight[i] <= 0 || dx * dx + dy * dy < inner)
+      continue;
+    /* A diamond in place of a circle: one division, no arc tangent. */
+    turn = dy / (fabsf (dx) + fabsf (dy));
+    turn = dx < 0 ? 2 - turn : dy < 0 ? 4 + turn : turn;
+    sector = MIN ((gint) (turn * (SECTORS / 4)), SECTORS - 1);
+    sum[sector + 1] += value[i];
+    mass[sector + 1] += 1;
+  }
+  for (gint i = 1; i <= SECTORS; i++) {
+    sum[SECTORS + i] = sum[i];
+    mass[SECTORS + i] = mass[i];
+  }
+  for (gint i = 1; i <= 2 * SECTORS; i++) {
+    sum[i] += sum[i - 1];
+    mass[i] += mass[i - 1];
+  }
+  for (gint a = 0; a < SECTORS / 2; a++) {
+    for (gint b = a + 2; b < SECTORS / 2 && b <= a + SECTORS / 2 - 2; b++) {
+      const gint cut[5] = { a, b, a + SECTORS / 2, b + SECTORS / 2,
+        a + SECTORS
+      };
+      gfloat explained = 0;
+
+      for (gint q = 0; q < 4; q++) {
+        gfloat m = mass[cut[q + 1]] - mass[cut[q]];
+        gfloat s = sum[cut[q + 1]] - sum[cut[q]];
+        if (m > 0)
+          explained += s * s / m;
+      }
+      if (explained > best) {
+        best = explained;
+        best_a = a;
+        best_b = b;
+      }
+    }
+  }
+  if (best_a < 0)
+    return FALSE;
+  for (gint i = 0; i < 2; i++) {
+    gfloat turn = (gfloat) (i ? best_b : best_a) / (SECTORS / 4);
+    gfloat dx = 1 - turn, dy = turn > 1 ? 2 - turn : turn;
+    theta[i] = atan2f (dy, dx);
+  }
+  return TRUE;
+}
+
+/* Cholesky's factor of the upper triangle given by rows, in place. */
+static gboolean
+factor (gdouble * a, gint n)
+{
+  for (gint i = 0; i < n; i++) {
+    for (gint j = i; j < n; j++) {
+      gdouble s = a[i * n + j];
+      for (gint k = 0; k < i; k++)
+        s -= a[k * n + i] * a[k * n + j];
+      if (i == j) {
+        if (!(s > 0))
+          return FALSE;
+        a[i * n + i] = sqrt (s);
+      } else {
+        a[i * n + j] = s / a[i * n + i];
+      }
+    }
+  }
+  return TRUE;
+}
+
+static void
+solve (const gdouble * u, gint n, gdouble * b)
+{
+  for (gint i = 0; i < n; i++) {
+    for (gint k = 0; k < i; k++)
+      b[i] -= u[k * n + i] * b[k];
+    b[i] /= u[i * n + i];
+  }
+  for (gint i = n - 1; i >= 0; i--) {
+    for (gint k = i + 1; k < n; k++)
+      b[i] -= u[i * n + k] * b[k];
+    b[i] /= u[i * n + i];
+  }
+}
+
+static void
+unpack (const gfloat * packed, gdouble damping, gdouble * a)
+{
+  gint m = 0;
+
+  for (gint i = 0; i < CLOTH_CORNER_N; i++) {
+    for (gint j = i; j < CLOTH_CORNER_N; j++)
+      a[i * CLOTH_CORNER_N + j] = packed[m++];
+    a[i * CLOTH_CORNER_N + i] *= 1 + (i < 5 ? damping : 1e-9);
+  }
+}
+
+/* The best c0 to c3 for the edges as they are. */
+static gboolean
+solve_levels (const gfloat * s, gfloat * c)
+{
+  const gdouble ridge = 1e-4 * s[0];
+  gdouble a[16] = {
+    s[0], s[1], s[2], s[3],
+    0, s[4] + ridge, s[3], s[6],
+    0, 0, s[5] + ridge, s[7],
+    0, 0, 0, s[8] + ridge
+  };
+  gdouble b[4] = { s[9], s[10], s[11], s[12] };
+
+  if (!factor (a, 4))
+    return FALSE;
+  solve (a, 4, b);
+  for (gint i = 0; i < 4; i++)
+    c[i] = (gfloat) b[i];
+  return TRUE;
+}
+
+/* From the places of both edges to the place of their crossing:
+ * n_i · (dx, dy) = sqrt(2)·blur·delta_i with n_i = (−sin, cos). */
+static gboolean
+crossing (const ClothCornerState * st, gdouble m[4])
+{
+  gdouble k = 1.4142135623730951 * st->blur;
+  gdouble det = sin ((gdouble) st->theta2 - st->theta1);
+
+  if (fabs (det) < 0.1)
+    return FALSE;
+  m[0] = k * cos (st->theta2) / det;
+  m[1] = -k * cos (st->theta1) / det;
+  m[2] = k * sin (st->theta2) / det;
+  m[3] = -k * sin (st->theta1) / det;
+  return TRUE;
+}
+
+typedef struct {
+  ClothCornerState state;
+  gfloat c[4];
+  gfloat normal[CLOTH_CORNER_N_SUMS];
+  gfloat gradient[5];
+  gfloat cost;
+} Evaluation;
+
+static gboolean
+evaluate (ClothCornerWindow * win, Evaluation * e, ClothSimd level)
+{
+  gfloat sums[13];
+
+  cloth_corner_basis (win, &e->state, sums, level);
+  if (!solve_levels (sums, e->c))
+    return FALSE;
+  cloth_corner_normal (win, &e->state, e->c, 1, e->normal, e->gradient,
+      &e->cost, level);
+  return isfinite (e->cost);
+}
+
+static gboolean
+step (const Evaluation * from, gdouble damping, gfloat radius,
+    ClothCornerState * to, gdouble * moved)
+{
+  gdouble a[CLOTH_CORNER_N * CLOTH_CORNER_N], b[CLOTH_CORNER_N] = { 0 };
+  gdouble m[4], dx, dy, length;
+
+  unpack (from->normal, damping, a);
+  for (gint i = 0; i < 5; i++)
+    b[i] = from->gradient[i];
+  if (!crossing (&from->state, m) || !factor (a, CLOTH_CORNER_N))
+    return FALSE;
+  solve (a, CLOTH_CORNER_N, b);
+  dx = m[0] * b[0] + m[1] * b[1];
+  dy = m[2] * b[0] + m[3] * b[1];
+  length = sqrt (dx * dx + dy * dy);
+  if (length > 1) {
+    dx /= length;
+    dy /= length;
+  }
+  b[2] = CLAMP (b[2], -0.3, 0.3);
+  b[3] = CLAMP (b[3], -0.3, 0.3);
+  b[4] = CLAMP (b[4], -0.4 * from->state.blur, 0.6 * from->state.blur);
+  *moved = length + (fabs (b[2]) + fabs (b[3])) * 0.1;
+  *to = from->state;
+  to->x += (gfloat) dx;
+  to->y += (gfloat) dy;
+  to->theta1 += (gfloat) b[2];
+  to->theta2 += (gfloat) b[3];
+  to->blur = CLAMP (to->blur + (gfloat) b[4], 0.25f, 0.5f * radius);
+  return isfinite (*moved);
+}
+
+/* What white noise of the residual's own size does to the estimate: with unequal weights
+ * that is (JᵀWJ)⁻¹ JᵀW²J (JᵀWJ)⁻¹. */
+static gboolean
+covariance (const ClothCornerWindow * win, const Evaluation * e,
+    gfloat sum_weights, ClothCornerFit * fit, ClothSimd level)
+{
+  gfloat squared[CLOTH_CORNER_N_SUMS], unused_gradient[5], unused_cost;
+  gdouble a[CLOTH_CORNER_N * CLOTH_CORNER_N];
+  gdouble w2[CLOTH_CORNER_N * CLOTH_CORNER_N];
+  gdouble row[2][CLOTH_CORNER_N] = { {0} }, cov[3] = { 0 }, m[4];
+  gdouble fitted = 0, variance;
+
+  cloth_corner_normal (win, &e->state, e->c, 2, squared, unused_gradient,
+      &unused_cost, level);
+  unpack (e->normal, 0, a);
+  unpack (squared, 0, w2);
+  if (!crossing (&e->state, m) || !factor (a, CLOTH_CORNER_N))
+    return FALSE;
+  for (gint i = 0; i < CLOTH_CORNER_N; i++) {
+    for (gint j = 0; j < i; j++)
+      w2[i * CLOTH_CORNER_N + j] = w2[j * CLOTH_CORNER_N + i];
+  }
+  /* The trace of (JᵀWJ)⁻¹JᵀW²J: the weight that the fit itself has eaten. */
+  for (gint i = 0; i < CLOTH_CORNER_N; i++) {
+    gdouble column[CLOTH_CORNER_N];
+    memcpy (column, w2 + i * CLOTH_CORNER_N, sizeof (column));
+    solve (a, CLOTH_CORNER_N, column);
+    fitted += column[i];
+  }
+  if (!(sum_weights > fitted))
+    return FALSE;
+  variance = e->cost / (sum_weights - fitted);
+  /* Rounding to whole levels is noise too. */
+  variance = MAX (variance, 1.0 / 12.0);
+
+  for (gint i = 0; i < 2; i++) {
+    row[i][0] = m[2 * i];
+    row[i][1] = m[2 * i + 1];
+    solve (a, CLOTH_CORNER_N, row[i]);
+  }
+  for (gint i = 0; i < CLOTH_CORNER_N; i++) {
+    for (gint j = 0; j < CLOTH_CORNER_N; j++) {
+      gdouble v = variance * w2[i * CLOTH_CORNER_N + j];
+      cov[0] += row[0][i] * v * row[0][j];
+      cov[1] += row[0][i] * v * row[1][j];
+      cov[2] += row[1][i] * v * row[1][j];
+    }
+  }
+  for (gint i = 0; i < 3; i++)
+    fit->cov[i] = (gfloat) cov[i];
+  fit->rms = (gfloat) sqrt (variance);
+  return isfinite (cov[0] + cov[1] + cov[2]) && cov[0] > 0 && cov[2] > 0;
+}
+
+/**
+ * cloth_corner_refine:
+ * @image: the picture
+ * @x: where to start, px
+ * @y: where to start, px
+ * @params: the window and the start
+ * @level: the highest instruction set to use; every one gives the same bytes
+ * @fit: (out): the corner
+ *
+ * Fits, by least squares over a disc, two straight edges with a common Gaussian blur and
+ * a grey level for each of the four quadrants they make: the inner corner of a
+ * checkerboard, the outer corner of a square, and what lies between. Variable projection
+ * (Golub & Pereyra 1973) with Levenberg's damping; the noise is that of the residual.
+ *
+ * Returns: FALSE when the fit doesn't settle near its start, when the edges are within
+ *   6 degrees of each other or when the window holds too few pixels.
+ *
+ * Since: 0.1
+ */
+gboolean
+cloth_corner_refine (const ClothImage * image, gfloat x, gfloat y,
+    const ClothCornerParams * params, ClothSimd level, ClothCornerFit * fit)
+{
+  ClothCornerWindow win;
+  Evaluation best, next;
+  gfloat radius = params->radius > 2 ? MIN (params->radius, 12.0f) : 2.0f;
+  gfloat sum_weights = 0, mean = 0, low = G_MAXFLOAT, high = -G_MAXFLOAT;
+  gdouble damping = 1e-3, moved = 0;
+  gboolean settled = FALSE;
+  gint ix, iy, evaluations = 1;
+
+  if (!(x >= 0 && y >= 0 && x <= (gfloat) (image->width - 1)
+          && y <= (gfloat) (image->height - 1)))
+    return FALSE;
+  level = cloth_simd_resolve (level);
+  ix = (gint) floorf (x + 0.5f);
+  iy = (gint) floorf (y + 0.5f);
+  if (!take_window (&win, image, x, y, ix, iy, radius))
+    return FALSE;
+
+  best.state.x = x - (gfloat) ix;
+  best.state.y = y - (gfloat) iy;
+  best.state.blur = params->blur > 0.25f ? MIN (params->blur, 0.5f * radius) :
+      0.25f;
+  if (params->known_angles) {
+    best.state.theta1 = params->theta[0];
+    best.state.theta2 = params->theta[1];
+    if (!isfinite (params->theta[0] + params->theta[1]))
+      return FALSE;
+  } else {
+    gfloat theta[2];
+    if (!find_angles (&win, best.state.x, best.state.y, radius, theta))
+      return FALSE;
+    best.state.theta1 = theta[0];
+    best.state.theta2 = theta[1];
+  }
+  if (!evaluate (&win, &best, level))
+    return FALSE;
+
+  while (evaluations < MAX_EVALUATIONS && !settled) {
+    if (!step (&best, damping, radius, &next.state, &moved))
+      return FALSE;
+    if (!evaluate (&win, &next, level))
+      return FALSE;
+    evaluations++;
+    if (next.cost <= best.cost * 1.000001f) {
+      best = next;
+      damping = MAX (damping * 0.1, 1e-6);
+      settled = moved < 2e-3;
+    } else {
+      damping *= 10;
+      settled = moved < 1e-4;
+    }
+    if (fabsf (best.state.x - x + (gfloat) ix) > params->max_shift
+        || fabsf (best.state.y - y + (gfloat) iy) > params->max_shift)
+      return FALSE;
+  }
+  if (!settled && moved > 0.02)
+    return FALSE;
+
+  for (gint v = 0; v < win.n_vectors * CLOTH_CORNER_LANES; v++)
+    sum_weights += ((const gfloat *) win.weight)[v];
+  if (!covariance (&win, &best, sum_weights, fit, level))
+    return FALSE;
+  {
+    /* The window's values had their mean taken away; the centre pixel tells it. */
+    const gfloat *px = (const gfloat *) win.x, *py = (const gfloat *) win.y;
+    const gfloat *value = (const gfloat *) win.value;
+    mean = (gfloat) image->data[(gsize) (iy + (gint) py[0]) *
+        (gsize) image->stride + (gsize) (ix + (gint) px[0])] - value[0];
+  }
+  fit->x = (gfloat) ix + best.state.x;
+  fit->y = (gfloat) iy + best.state.y;
+  fit->theta[0] = best.state.theta1;
+  fit->theta[1] = best.state.theta2;
+  fit->blur = best.state.blur;
+  memcpy (fit->c, best.c, sizeof (fit->c));
+  fit->c[0] += mean;
+  for (gint q = 0; q < 4; q++) {
+    gfloat s1 = q & 1 ? 1 : -1, s2 = q & 2 ? 1 : -1;
+    gfloat v = s1 * best.c[1] + s2 * best.c[2] + s1 * s2 * best.c[3];
+    low = MIN (low, v);
+    high = MAX (high, v);
+  }
+  fit->contrast = high - low;
+  fit->iterations = evaluations;
+  return TRUE;
+}
