@@ -1,0 +1,185 @@
+/* The printed cloth as an anti-aliased picture.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/pattern/texture.h"
+
+#include <math.h>
+
+/* Points a side that a pixel under the edge of a dot is sampled with. */
+#define DOT_SAMPLES 16
+
+/**
+ * cloth_pattern_white_at:
+ * @pattern: a sound pattern
+ * @u: metres along the flat cloth's width
+ * @v: metres along its height
+ *
+ * Returns: 1 where the cloth is white (all of it outside the board), 0 where black
+ *
+ * Since: 0.1
+ */
+gdouble
+cloth_pattern_white_at (const ClothPattern * pattern, gdouble u, gdouble v)
+{
+  const gdouble x = (u - pattern->origin_uv_m[0]) / pattern->square_m;
+  const gdouble y = (v - pattern->origin_uv_m[1]) / pattern->square_m;
+  gint column, row;
+  gboolean black;
+
+  if (!(x >= 0 && x < pattern->columns && y >= 0 && y < pattern->rows))
+    return 1;
+  column = (gint) x;
+  row = (gint) y;
+  black = cloth_pattern_is_black (pattern, column, row);
+  if (cloth_pattern_has_dot (pattern, column, row)) {
+    gdouble dx = x - column - 0.5, dy = y - row - 0.5;
+
+    if (4 * (dx * dx + dy * dy) < pattern->dot_ratio * pattern->dot_ratio)
+      black = !black;
+  }
+  return !black;
+}
+
+/* Over [a, b] in squares: @share becomes the part of it on the board, the value is the
+ * mean of +1 on even squares, −1 on odd ones, 0 off the board. */
+static gdouble
+mean_wave (gdouble a, gdouble b, gint squares, gdouble * share)
+{
+  const gdouble lo = CLAMP (a, 0, squares), hi = CLAMP (b, 0, squares);
+  gdouble sum = 0;
+
+  *share = (hi - lo) / (b - a);
+  for (gint n = (gint) lo; n < squares && n < hi; n++) {
+    gdouble length = MIN (hi, n + 1) - MAX (lo, n);
+
+    sum += n & 1 ? -length : length;
+  }
+  return sum / (b - a);
+}
+
+/* Part of the pixel [x, x + w] × [y, y + w], in squares, under the dot's disc. */
+static gdouble
+dot_share (gdouble x, gdouble y, gdouble w, gdouble cx, gdouble cy,
+    gdouble radius)
+{
+  const gdouble far_x = MAX (fabs (x - cx), fabs (x + w - cx));
+  const gdouble far_y = MAX (fabs (y - cy), fabs (y + w - cy));
+  const gdouble near_x = MAX (0, MAX (x - cx, cx - x - w));
+  const gdouble near_y = MAX (0, MAX (y - cy, cy - y - w));
+  gint hits = 0;
+
+  if (near_x * near_x + near_y * near_y >= radius * radius)
+    return 0;
+  if (far_x * far_x + far_y * far_y <= radius * radius)
+    return 1;
+  for (gint j = 0; j < DOT_SAMPLES; j++) {
+    for (gint i = 0; i < DOT_SAMPLES; i++) {
+      gdouble dx = x + w * (i + 0.5) / DOT_SAMPLES - cx;
+      gdouble dy = y + w * (j + 0.5) / DOT_SAMPLES - cy;
+
+      hits += dx * dx + dy * dy < radius * radius;
+    }
+  }
+  return (gdouble) hits / (DOT_SAMPLES * DOT_SAMPLES);
+}
+
+/* What the dots add to the whiteness of the pixel whose top-left is (x, y), squares. */
+static gdouble
+dots_white (const ClothPattern * pattern, gdouble x, gdouble y, gdouble w)
+{
+  gdouble white = 0;
+
+  if (!pattern->code)
+    return 0;
+  for (gint row = MAX (0, (gint) floor (y)); row < pattern->rows && row < y + w;
+      row++) {
+    for (gint column = MAX (0, (gint) floor (x));
+        column < pattern->columns && column < x + w; column++) {
+      gdouble share;
+
+      if (!cloth_pattern_has_dot (pattern, column, row))
+        continue;
+      share = dot_share (x, y, w, column + 0.5, row + 0.5,
+          pattern->dot_ratio / 2);
+      white += cloth_pattern_is_black (pattern, column, row) ? share : -share;
+    }
+  }
+  return white;
+}
+
+/**
+ * cloth_pattern_texture:
+ * @pattern: a pattern
+ * @px_per_m: scale, pixels per metre
+ * @black: grey value of black
+ * @white: grey value of white, and of the cloth outside the board
+ * @error: return location
+ *
+ * Draws the flat cloth. Each pixel is the mean over its area: exact for squares (the
+ * mean of a product of two square waves is the product of their means), within 1/256
+ * for dots.
+ *
+ * Returns: (transfer full): a texture of round(cloth_m·px_per_m) pixels, at least 1
+ *   each way; free with cloth_texture_free(). %NULL with %CLOTH_PATTERN_ERROR_VALUE
+ *   when a side would exceed %CLOTH_TEXTURE_MAX_PX
+ *
+ * Since: 0.1
+ */
+ClothTexture *
+cloth_pattern_texture (const ClothPattern * pattern, gdouble px_per_m,
+    guint8 black, guint8 white, GError ** error)
+{
+  ClothTexture *texture;
+  gdouble size[2], w;
+
+  if (!cloth_pattern_check (pattern, error))
+    return NULL;
+  for (gint i = 0; i < 2; i++) {
+    size[i] = MAX (1, floor (pattern->cloth_m[i] * px_per_m + 0.5));
+    if (!(px_per_m > 0 && size[i] <= CLOTH_TEXTURE_MAX_PX)) {
+      g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_VALUE,
+          "a texture of %g pixels per metre for %g m of cloth: use more than 0, "
+          "and at most %d pixels a side", px_per_m, pattern->cloth_m[i],
+          CLOTH_TEXTURE_MAX_PX);
+      return NULL;
+    }
+  }
+  texture = g_new0 (ClothTexture, 1);
+  texture->width = (gint) size[0];
+  texture->height = (gint) size[1];
+  texture->px_per_m = px_per_m;
+  texture->data = g_malloc ((gsize) texture->width * (gsize) texture->height);
+  w = 1 / (px_per_m * pattern->square_m);
+  for (gint j = 0; j < texture->height; j++) {
+    gdouble y = j * w - pattern->origin_uv_m[1] / pattern->square_m;
+    gdouble share_y, wave_y = mean_wave (y, y + w, pattern->rows, &share_y);
+
+    for (gint i = 0; i < texture->width; i++) {
+      gdouble x = i * w - pattern->origin_uv_m[0] / pattern->square_m;
+      gdouble share_x, wave_x =
+          mean_wave (x, x + w, pattern->columns, &share_x);
+      gdouble wave = pattern->first_black ? -wave_x * wave_y : wave_x * wave_y;
+      gdouble part = 1 - share_x * share_y / 2 + wave / 2
+          + dots_white (pattern, x, y, w);
+
+      texture->data[(gsize) j * (gsize) texture->width + (gsize) i] =
+          (guint8) (black + part * (white - black) + 0.5);
+    }
+  }
+  return texture;
+}
+
+/**
+ * cloth_texture_free:
+ * @texture: (nullable) (transfer full): a texture
+ *
+ * Since: 0.1
+ */
+void
+cloth_texture_free (ClothTexture * texture)
+{
+  if (!texture)
+    return;
+  g_free (texture->data);
+  g_free (texture);
+}

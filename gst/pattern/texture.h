@@ -1,0 +1,42 @@
+/* The printed cloth as a picture.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/pattern/pattern.h"
+
+G_BEGIN_DECLS
+
+/**
+ * CLOTH_TEXTURE_MAX_PX:
+ *
+ * Most pixels a texture may have each way.
+ *
+ * Since: 0.1
+ */
+#define CLOTH_TEXTURE_MAX_PX 16384
+
+/**
+ * ClothTexture:
+ * @width: pixels a row
+ * @height: rows
+ * @data: (array): @height·@width grey values
+ * @px_per_m: scale; pixel (x, y) is the mean over the square of cloth from
+ *   (x, y) / @px_per_m to (x + 1, y + 1) / @px_per_m
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  gint width, height;
+  guint8 *data;
+  gdouble px_per_m;
+} ClothTexture;
+
+gdouble cloth_pattern_white_at (const ClothPattern * pattern, gdouble u,
+    gdouble v);
+ClothTexture *cloth_pattern_texture (const ClothPattern * pattern,
+    gdouble px_per_m, guint8 black, guint8 white, GError ** error);
+void cloth_texture_free (ClothTexture * texture);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothTexture, cloth_texture_free)
+G_END_DECLS
