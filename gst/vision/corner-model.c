@@ -26,80 +26,118 @@ sum_lanes (const ClothLanes * v)
   return (t[0] + t[2]) + (t[1] + t[3]);
 }
 
-/* e = erf (u) to 1.5e-7 and g = exp (−u²), by formula 7.1.26 of Abramowitz & Stegun,
- * "Handbook of Mathematical Functions". */
+/* exp (x) for x <= 0, to 3e-7. */
 INLINE void
-erf_lanes (const ClothLanes * u, ClothLanes * e, ClothLanes * g)
+exp_lanes (ClothLanes * x)
 {
   const ClothLanes zero = { 0 };
-  ClothLanes a = *u, x, n, f, p, t;
-  LanesInt sign = (LanesInt) a & (LanesInt) (zero - 0.0f - 1.0f) &
-      (gint32) 0x80000000;
-  LanesInt k;
+  ClothLanes n, f, p, t = *x * 1.44269504f;
+  LanesInt far = t < -100.0f, k;
 
-  a = (ClothLanes) ((LanesInt) a & 0x7fffffff);
-  /* Beyond 4 the Gaussian is below 1.2e-7. */
-  {
-    LanesInt far = a > 4.5f;
-    a = (ClothLanes) (((LanesInt) a & ~far) | ((LanesInt) (zero + 4.5f) & far));
-  }
-  x = -(a * a) * 1.44269504f;
-  n = (x + 12582912.0f) - 12582912.0f;
-  f = x - n;
+  t = (ClothLanes) (((LanesInt) t & ~far) | ((LanesInt) (zero - 100.0f) & far));
+  n = (t + 12582912.0f) - 12582912.0f;
+  f = t - n;
   p = f * 1.8775767e-3f + 8.9893397e-3f;
   p = p * f + 5.5826318e-2f;
   p = p * f + 2.4015361e-1f;
   p = p * f + 6.9315308e-1f;
   p = p * f + 9.9999994e-1f;
   k = __builtin_convertvector (n, LanesInt);
-  *g = p * (ClothLanes) ((k + 127) << 23);
+  *x = p * (ClothLanes) ((k + 127) << 23);
+}
 
+/* e = erf (u) to 1.5e-7 and g = exp (−u²), by formula 7.1.26 of Abramowitz & Stegun,
+ * "Handbook of Mathematical Functions". */
+INLINE void
+erf_lanes (const ClothLanes * u, ClothLanes * e, ClothLanes * g)
+{
+  const LanesInt sign = (LanesInt) * u & (gint32) 0x80000000;
+  const ClothLanes a = (ClothLanes) ((LanesInt) * u & 0x7fffffff);
+  ClothLanes p, t;
+
+  *g = -(a * a);
+  exp_lanes (g);
   t = 1.0f / (1.0f + 0.3275911f * a);
   p = t * 1.061405429f - 1.453152027f;
   p = p * t + 1.421413741f;
   p = p * t - 0.284496736f;
   p = p * t + 0.254829592f;
-  f = 1.0f - p * t * *g;
-  *e = (ClothLanes) ((LanesInt) f | sign);
+  t = 1.0f - p * t * *g;
+  *e = (ClothLanes) ((LanesInt) t | sign);
 }
 
+/* Nodes and weights of Gauss and Legendre on [0, 1]. */
+#define N_NODES 3
+static const gfloat node[N_NODES] = { 0.11270167f, 0.5f, 0.88729833f };
+static const gfloat node_weight[N_NODES] =
+    { 0.27777778f, 0.44444444f, 0.27777778f };
+
+/* The blurred product of two steps is not the product of the blurred steps unless they
+ * cross at right angles: with r the correlation of the distances to both edges,
+ * d E[sgn sgn] / dr = 4 phi2 (Plackett 1954), integrated from r = 0 by r = sin t. */
 INLINE void
 basis (ClothCornerWindow * win, const ClothCornerState * st, gfloat * sums)
 {
   const gfloat k = 0.70710678f / st->blur;
   const gfloat sin1 = k * sinf (st->theta1), cos1 = k * cosf (st->theta1);
   const gfloat sin2 = k * sinf (st->theta2), cos2 = k * cosf (st->theta2);
-  ClothLanes acc[13] = { {0} };
+  const gfloat r = cosf (st->theta1 - st->theta2), turn = asinf (r);
+  const gfloat across = sqrtf (MAX (1.0f - r * r, 1e-4f));
+  const gfloat inv = 1.0f / across, inv2 = inv * inv;
+  gfloat weight[N_NODES], node_sin[N_NODES], node_inv[N_NODES];
+  ClothLanes acc[CLOTH_CORNER_N_BASIS] = { {0} };
 
+  for (gint i = 0; i < N_NODES; i++) {
+    gfloat c = cosf (turn * node[i]);
+    node_sin[i] = 2 * sinf (turn * node[i]);
+    node_inv[i] = -1 / (c * c);
+    weight[i] = 0.63661977f * turn * node_weight[i];
+  }
   for (gint v = 0; v < win->n_vectors; v++) {
     ClothLanes dx = win->x[v] - st->x, dy = win->y[v] - st->y;
     ClothLanes u1 = dy * cos1 - dx * sin1, u2 = dy * cos2 - dx * sin2;
+    ClothLanes q1 = (u2 - u1 * r) * inv, q2 = (u1 - u2 * r) * inv;
     ClothLanes w = win->weight[v], i = win->value[v];
-    ClothLanes e1, e2, w1, w2, w12, wi;
+    ClothLanes e1, e2, e12, w1, w2, w12, wi, unused;
+    ClothLanes squares = u1 * u1 + u2 * u2, product = u1 * u2;
+    ClothLanes ridge = (product * (2 * r) - squares) * inv2;
 
     erf_lanes (&u1, &e1, &win->g1[v]);
     erf_lanes (&u2, &e2, &win->g2[v]);
+    erf_lanes (&q1, &win->q1[v], &unused);
+    erf_lanes (&q2, &win->q2[v], &unused);
+    e12 = e1 * e2;
+#pragma GCC unroll 3
+    for (gint n = 0; n < N_NODES; n++) {
+      ClothLanes t = (squares - product * node_sin[n]) * node_inv[n];
+      exp_lanes (&t);
+      e12 += t * weight[n];
+    }
+    exp_lanes (&ridge);
+    win->ridge[v] = ridge;
     win->e1[v] = e1;
     win->e2[v] = e2;
+    win->e12[v] = e12;
     w1 = w * e1;
     w2 = w * e2;
-    w12 = w1 * e2;
+    w12 = w * e12;
     wi = w * i;
     acc[0] += w;
     acc[1] += w1;
     acc[2] += w2;
     acc[3] += w12;
     acc[4] += w1 * e1;
-    acc[5] += w2 * e2;
-    acc[6] += w12 * e1;
-    acc[7] += w12 * e2;
-    acc[8] += w12 * (e1 * e2);
-    acc[9] += wi;
-    acc[10] += wi * e1;
-    acc[11] += wi * e2;
-    acc[12] += wi * (e1 * e2);
+    acc[5] += w1 * e2;
+    acc[6] += w1 * e12;
+    acc[7] += w2 * e2;
+    acc[8] += w2 * e12;
+    acc[9] += w12 * e12;
+    acc[10] += wi;
+    acc[11] += wi * e1;
+    acc[12] += wi * e2;
+    acc[13] += wi * e12;
   }
-  for (gint j = 0; j < 13; j++)
+  for (gint j = 0; j < CLOTH_CORNER_N_BASIS; j++)
     sums[j] = sum_lanes (&acc[j]);
 }
 
@@ -111,16 +149,18 @@ normal (const ClothCornerWindow * win, const ClothCornerState * st,
   const gfloat k = 0.70710678f / st->blur, two = 1.1283792f;
   const gfloat sin1 = sinf (st->theta1), cos1 = cosf (st->theta1);
   const gfloat sin2 = sinf (st->theta2), cos2 = cosf (st->theta2);
+  const gfloat skew = c[3] *
+      (sinf (st->theta1 - st->theta2) > 0 ? 0.63661977f : -0.63661977f);
   ClothLanes acc[CLOTH_CORNER_N_SUMS + 6] = { {0} };
 
   for (gint v = 0; v < win->n_vectors; v++) {
     ClothLanes dx = win->x[v] - st->x, dy = win->y[v] - st->y;
     ClothLanes t1 = dx * cos1 + dy * sin1, t2 = dx * cos2 + dy * sin2;
     ClothLanes d1 = dy * cos1 - dx * sin1, d2 = dy * cos2 - dx * sin2;
-    ClothLanes e1 = win->e1[v], e2 = win->e2[v], w = win->weight[v];
-    ClothLanes e12 = e1 * e2;
-    ClothLanes a1 = (c[1] + c[3] * e2) * win->g1[v] * two;
-    ClothLanes a2 = (c[2] + c[3] * e1) * win->g2[v] * two;
+    ClothLanes e1 = win->e1[v], e2 = win->e2[v], e12 = win->e12[v];
+    ClothLanes w = win->weight[v];
+    ClothLanes a1 = (c[1] + c[3] * win->q1[v]) * win->g1[v] * two;
+    ClothLanes a2 = (c[2] + c[3] * win->q2[v]) * win->g2[v] * two;
     ClothLanes r = win->value[v] - (c[0] + c[1] * e1 + c[2] * e2 + c[3] * e12);
     ClothLanes j[CLOTH_CORNER_N];
     gint n = 0;
@@ -128,8 +168,8 @@ normal (const ClothCornerWindow * win, const ClothCornerState * st,
     /* Along its normal an edge moves against the signed distance. */
     j[0] = -a1;
     j[1] = -a2;
-    j[2] = t1 * a1 * -k;
-    j[3] = t2 * a2 * -k;
+    j[2] = t1 * a1 * -k - win->ridge[v] * skew;
+    j[3] = t2 * a2 * -k + win->ridge[v] * skew;
     j[4] = (d1 * a1 + d2 * a2) * (-k / st->blur);
     j[5] = 1.0f + 0.0f * w;
     j[6] = e1;
@@ -182,7 +222,7 @@ KERNELS (avx512,
 
 void
 cloth_corner_basis (ClothCornerWindow * window,
-    const ClothCornerState * state, gfloat sums[13], ClothSimd level)
+    const ClothCornerState * state, gfloat sums[CLOTH_CORNER_N_BASIS], ClothSimd level)
 {
 #ifdef WITH_X86
   if (level == CLOTH_SIMD_AVX512) {

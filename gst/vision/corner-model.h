@@ -26,6 +26,10 @@ typedef struct {
   ClothLanes e2[CLOTH_CORNER_MAX_VECTORS];
   ClothLanes g1[CLOTH_CORNER_MAX_VECTORS];
   ClothLanes g2[CLOTH_CORNER_MAX_VECTORS];
+  ClothLanes e12[CLOTH_CORNER_MAX_VECTORS];
+  ClothLanes q1[CLOTH_CORNER_MAX_VECTORS];
+  ClothLanes q2[CLOTH_CORNER_MAX_VECTORS];
+  ClothLanes ridge[CLOTH_CORNER_MAX_VECTORS];
   gint n_vectors;
 } ClothCornerWindow;
 
@@ -37,11 +41,12 @@ typedef struct {
  * units of sqrt(2)·blur, their angles, blur; then c0 to c3. */
 #define CLOTH_CORNER_N 9
 #define CLOTH_CORNER_N_SUMS 45
+#define CLOTH_CORNER_N_BASIS 14
 
-/* basis: w, we1, we2, we1e2, we1², we2², we1²e2, we1e2², we1²e2²; then wI, wIe1, wIe2,
- * wIe1e2. */
+/* sums: upper triangle by rows of BᵀWB with B = (1, e1, e2, e12), then BᵀWI. e12 is the
+ * blurred product of both steps. */
 void cloth_corner_basis (ClothCornerWindow * window,
-    const ClothCornerState * state, gfloat sums[13], ClothSimd level);
+    const ClothCornerState * state, gfloat sums[CLOTH_CORNER_N_BASIS], ClothSimd level);
 /* normal: upper triangle by rows of JᵀWJ (@power 1) or JᵀW²J (@power 2); gradient: JᵀWr
  * of the first five; cost: rᵀWr. */
 void cloth_corner_normal (const ClothCornerWindow * window,

@@ -199,11 +199,11 @@ solve_levels (const gfloat * s, gfloat * c)
   const gdouble ridge = 1e-4 * s[0];
   gdouble a[16] = {
     s[0], s[1], s[2], s[3],
-    0, s[4] + ridge, s[3], s[6],
-    0, 0, s[5] + ridge, s[7],
-    0, 0, 0, s[8] + ridge
+    0, s[4] + ridge, s[5], s[6],
+    0, 0, s[7] + ridge, s[8],
+    0, 0, 0, s[9] + ridge
   };
-  gdouble b[4] = { s[9], s[10], s[11], s[12] };
+  gdouble b[4] = { s[10], s[11], s[12], s[13] };
 
   if (!factor (a, 4))
     return FALSE;
@@ -241,7 +241,7 @@ typedef struct {
 static gboolean
 evaluate (ClothCornerWindow * win, Evaluation * e, ClothSimd level)
 {
-  gfloat sums[13];
+  gfloat sums[CLOTH_CORNER_N_BASIS];
 
   cloth_corner_basis (win, &e->state, sums, level);
   if (!solve_levels (sums, e->c))
