@@ -514,6 +514,27 @@ gst_cloth_sync_discard (GstClothSync * self, Heads * heads,
   return discarded;
 }
 
+/* Says downstream that nothing comes for this set. Without it an element that joins our
+ * stream with another one would wait, and fill the queues of the other, for ever. */
+static void
+gst_cloth_sync_push_gap (GstClothSync * self, GstClockTime pts,
+    GstClockTime duration)
+{
+  GstPad *srcpad = GST_AGGREGATOR_SRC_PAD (self);
+  g_autoptr (GstEvent) segment = NULL;
+
+  if (!gst_pad_has_current_caps (srcpad)) {
+    return;
+  }
+  segment = gst_pad_get_sticky_event (srcpad, GST_EVENT_SEGMENT, 0);
+  if (!segment) {
+    /* the aggregator sends it with its first buffer only */
+    gst_pad_push_event (srcpad,
+        gst_event_new_segment (&GST_AGGREGATOR_PAD (srcpad)->segment));
+  }
+  gst_pad_push_event (srcpad, gst_event_new_gap (pts, duration));
+}
+
 /* Pops the heads of the set and hands them to the subclass. */
 static GstFlowReturn
 gst_cloth_sync_emit (GstClothSync * self, Heads * heads, guint64 mask,
@@ -582,16 +603,18 @@ gst_cloth_sync_emit (GstClothSync * self, Heads * heads, guint64 mask,
   for (i = 0; i < heads->n; i++) {
     gst_clear_buffer (&views[i]);
   }
-  if (!out) {
+  if (ret != GST_FLOW_OK || !out) {
+    gst_clear_buffer (&out);
+    if (ret == GST_FLOW_OK && GST_CLOCK_TIME_IS_VALID (pts)) {
+      gst_cloth_sync_push_gap (self, pts, duration);
+    }
     return ret;
   }
-  if (ret != GST_FLOW_OK) {
-    gst_buffer_unref (out);
-    return ret;
+  if (GST_BUFFER_PTS (out) != pts || GST_BUFFER_DURATION (out) != duration) {
+    out = gst_buffer_make_writable (out);
+    GST_BUFFER_PTS (out) = pts;
+    GST_BUFFER_DURATION (out) = duration;
   }
-  GST_BUFFER_PTS (out) = pts;
-  GST_BUFFER_DTS (out) = GST_CLOCK_TIME_NONE;
-  GST_BUFFER_DURATION (out) = duration;
   return gst_aggregator_finish_buffer (agg, out);
 }
 

@@ -33,7 +33,7 @@ G_DECLARE_DERIVABLE_TYPE (GstClothSync, gst_cloth_sync, GST, CLOTH_SYNC,
  *   set. Bit i of @mask is set when @views[i] is there. @pts and @duration are the
  *   set's, in the source segment. The buffers are borrowed; to keep one or write into
  *   it without a copy take it and put %NULL in its place. @out takes the result; left
- *   %NULL nothing is sent for this set. The base sets its time stamps.
+ *   %NULL a GAP event is sent for this set. The base sets its time stamps.
  * @reset: forgets what earlier frames have left (flush, stop). Optional.
  *
  * All of them are called from the streaming thread, with no lock held.

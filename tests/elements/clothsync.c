@@ -568,6 +568,37 @@ GST_START_TEST (test_one_eos)
 
 GST_END_TEST;
 
+/* Downstream hears of the sets that are not sent, from the first one on. */
+GST_START_TEST (test_gap_for_incomplete)
+{
+  GstClockTime pts = GST_CLOCK_TIME_NONE, duration;
+  gboolean segment = FALSE;
+  Bench b;
+
+  bench_init (&b, 2, FALSE);
+  g_object_set (b.sync, "min-views", 2, NULL);
+  push (&b, 0, 0);
+  push (&b, 0, 33 * MS);
+  push (&b, 1, 33 * MS);
+  while (!GST_CLOCK_TIME_IS_VALID (pts)) {
+    GstEvent *event = gst_harness_pull_event (b.src);
+
+    fail_unless (event != NULL);
+    segment |= GST_EVENT_TYPE (event) == GST_EVENT_SEGMENT;
+    if (GST_EVENT_TYPE (event) == GST_EVENT_GAP) {
+      gst_event_parse_gap (event, &pts, &duration);
+    }
+    gst_event_unref (event);
+  }
+  fail_unless (segment);
+  fail_unless_equals_uint64 (pts, 0);
+  fail_unless_equals_uint64 (duration, 33 * MS);
+  expect (&b, 33 * MS, 3);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
 GST_START_TEST (test_min_views)
 {
   Bench b;
@@ -1035,6 +1066,7 @@ clothsync_suite (void)
   tcase_add_test (tc, test_running_time);
   tcase_add_test (tc, test_gap);
   tcase_add_test (tc, test_one_eos);
+  tcase_add_test (tc, test_gap_for_incomplete);
   tcase_add_test (tc, test_min_views);
   tcase_add_test (tc, test_never_enough_views);
   tcase_add_test (tc, test_one_pad);
