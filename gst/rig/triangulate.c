@@ -1,0 +1,820 @@
+/* Points in space from what several cameras saw, with their covariance.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/rig/triangulate.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/math/linalg.h"
+#include "gst/rig/triangulatekernel.h"
+
+/* Points whose fisheye undistortion is done in one call. */
+#define CHUNK (32 * BLOCK)
+#define N_LENS_PLANES 6
+
+/* One thread's memory. */
+typedef struct
+{
+  gdouble *obs;
+  gdouble *weighted;
+  gdouble *lens;
+  gdouble out[N_OUT * BLOCK];
+  gdouble trial[N_OUT * BLOCK];
+  gdouble pad[N_IN * BLOCK];
+} Scratch;
+
+struct _ClothTriangulator
+{
+  guint n_cameras;
+  TriangulateCamera *cameras;
+  /* The world that the kernels see is (X − origin) / scale. */
+  gdouble origin[3], scale;
+  gboolean has_fisheye;
+
+  ClothTriangulateParameters parameters;
+  ClothPool *pool;
+  const TriangulateKernel *kernel;
+
+  guint n_scratch;
+  Scratch **scratch;
+  guint n_allocated;
+  gdouble *reals;
+  guint64 *words;
+  guint8 *bytes;
+  ClothTriangulation result;
+
+  /* of the run under way */
+  const ClothTriangulateView *views;
+};
+
+G_DEFINE_QUARK (cloth - triangulate - error - quark, cloth_triangulate_error)
+     static const gdouble ones[BLOCK] = { 1., 1., 1., 1., 1., 1., 1., 1. };
+static const gdouble zeros[BLOCK] = { 0. };
+
+/* The place that all optical axes pass nearest to becomes the origin, the cameras' mean
+ * distance from it the unit: the linear estimate is then well conditioned wherever the
+ * world's own origin is. */
+static void
+normalise_world (ClothTriangulator * self, const gdouble (*centres)[3])
+{
+  gdouble a[9] = { 0. }, b[3] = { 0. }, mean[3] = { 0. };
+  gdouble values[3], vectors[9];
+  gdouble distance = 0.;
+
+  for (guint i = 0; i < self->n_cameras; i++) {
+    const gdouble *d = self->cameras[i].P + 8, *c = centres[i];
+
+    for (gint j = 0; j < 3; j++) {
+      for (gint k = 0; k < 3; k++) {
+        gdouble p = (j == k ? 1. : 0.) - d[j] * d[k];
+
+        a[3 * j + k] += p;
+        b[j] += p * c[k];
+      }
+      mean[j] += c[j] / self->n_cameras;
+    }
+  }
+  /* parallel axes meet nowhere */
+  if (cloth_sym_eigen (3, a, values, vectors) && values[0] > 1e-4 * values[2]
+      && cloth_cholesky_factor (3, a)) {
+    cloth_cholesky_solve (3, a, b);
+    memcpy (mean, b, sizeof (mean));
+  }
+  for (guint i = 0; i < self->n_cameras; i++) {
+    gdouble s = 0.;
+
+    for (gint j = 0; j < 3; j++)
+      s += (centres[i][j] - mean[j]) * (centres[i][j] - mean[j]);
+    distance += sqrt (s) / self->n_cameras;
+  }
+  memcpy (self->origin, mean, sizeof (mean));
+  self->scale = distance > 0. && isfinite (distance) ? distance : 1.;
+  for (guint i = 0; i < self->n_cameras; i++) {
+    gdouble *P = self->cameras[i].P;
+
+    for (gint j = 0; j < 3; j++)
+      P[4 * j + 3] = (P[4 * j] * mean[0] + P[4 * j + 1] * mean[1] +
+          P[4 * j + 2] * mean[2] + P[4 * j + 3]) / self->scale;
+  }
+}
+
+/* Fits the polynomial that guesses the true place from the distorted one, over the
+ * picture. */
+static void
+fit_inverse (TriangulateCamera * self)
+{
+  enum
+  { SIDE = 16, N = SIDE * SIDE };
+  const ClothCamera *camera = &self->camera;
+  gdouble width = camera->width > 1 ? camera->width - 1 : 2. * self->cx;
+  gdouble height = camera->height > 1 ? camera->height - 1 : 2. * self->cy;
+  g_autofree gdouble *u = g_new (gdouble, 4 * N);
+  g_autofree gdouble *a = g_new (gdouble, 2 * N * 6);
+  g_autofree gdouble *b = g_new (gdouble, 2 * N);
+  gdouble *v = u + N, *x = v + N, *y = x + N;
+  guint m = 0;
+
+  for (guint i = 0; i < N; i++) {
+    u[i] = width * (i % SIDE) / (SIDE - 1);
+    v[i] = height * (i / SIDE) / (SIDE - 1);
+  }
+  cloth_camera_undistort_points (camera, N, u, v, x, y, NULL);
+  for (guint i = 0; i < N; i++) {
+    gdouble dy = (v[i] - self->cy) * self->ify;
+    gdouble dx = (u[i] - self->cx - self->skew * dy) * self->ifx;
+    gdouble q = dx * dx + dy * dy, r2 = x[i] * x[i] + y[i] * y[i];
+    gdouble *row;
+
+    if (!isfinite (r2))
+      continue;
+    self->max_r2 = fmax (self->max_r2, 1.05 * r2);
+    for (gint axis = 0; axis < 2; axis++, m++) {
+      gdouble d = axis ? dy : dx;
+
+      row = a + 6 * m;
+      row[0] = d * q;
+      row[1] = row[0] * q;
+      row[2] = row[1] * q;
+      row[3] = row[2] * q;
+      row[4] = axis ? q + 2. * dy * dy : 2. * dx * dy;
+      row[5] = axis ? 2. * dx * dy : q + 2. * dx * dx;
+      b[m] = (axis ? y[i] : x[i]) - d;
+    }
+  }
+  if (cloth_least_squares (m, 6, a, b))
+    memcpy (self->inverse, b, sizeof (self->inverse));
+}
+
+static gboolean
+all_finite (const gdouble * x, guint n)
+{
+  for (guint i = 0; i < n; i++)
+    if (!isfinite (x[i]))
+      return FALSE;
+  return TRUE;
+}
+
+static ClothTriangulator *
+new_empty (guint n_cameras, GError ** error)
+{
+  static const ClothTriangulateParameters parameters =
+      CLOTH_TRIANGULATE_PARAMETERS_DEFAULT;
+  ClothTriangulator *self;
+
+  if (n_cameras < 2 || n_cameras > CLOTH_TRIANGULATE_MAX_CAMERAS) {
+    g_set_error (error, CLOTH_TRIANGULATE_ERROR,
+        CLOTH_TRIANGULATE_ERROR_CAMERAS,
+        "Triangulation takes 2 to %d cameras, not %u",
+        CLOTH_TRIANGULATE_MAX_CAMERAS, n_cameras);
+    return NULL;
+  }
+  self = g_new0 (ClothTriangulator, 1);
+  self->n_cameras = n_cameras;
+  self->cameras = g_new0 (TriangulateCamera, n_cameras);
+  self->parameters = parameters;
+  self->kernel = cloth_triangulate_kernel (CLOTH_SIMD_BEST);
+  return self;
+}
+
+/**
+ * cloth_triangulator_new:
+ * @n_cameras: 2 … %CLOTH_TRIANGULATE_MAX_CAMERAS
+ * @cameras: (array length=n_cameras): copied
+ * @error: return location
+ *
+ * Returns: (transfer full) (nullable): a triangulator for these cameras; %NULL when
+ *   there are too few or too many or one has numbers that make no camera
+ *
+ * Since: 0.1
+ */
+ClothTriangulator *
+cloth_triangulator_new (guint n_cameras, const ClothCamera * cameras,
+    GError ** error)
+{
+  g_autoptr (ClothTriangulator) self = new_empty (n_cameras, error);
+  gdouble centres[CLOTH_TRIANGULATE_MAX_CAMERAS][3];
+
+  if (self == NULL)
+    return NULL;
+  for (guint i = 0; i < n_cameras; i++) {
+    TriangulateCamera *c = &self->cameras[i];
+    const ClothCamera *camera = &cameras[i];
+    const gdouble *K = camera->K, *R = camera->R, *t = camera->t;
+    gdouble identity[9], off = 0.;
+
+    if (!all_finite (K, 9) || !all_finite (R, 9) || !all_finite (t, 3)
+        || !all_finite (camera->k, 8) || !(K[0] > 0.) || !(K[4] > 0.)) {
+      g_set_error (error, CLOTH_TRIANGULATE_ERROR,
+          CLOTH_TRIANGULATE_ERROR_CAMERA,
+          "Camera %u (%s) has a focal length that is not positive or a number that "
+          "is not finite; calibrate it again", i,
+          camera->name ? camera->name : "no name");
+      return NULL;
+    }
+    cloth_mat3_mul_nt (R, R, identity);
+    for (gint j = 0; j < 9; j++)
+      off = fmax (off, fabs (identity[j] - (j % 4 == 0 ? 1. : 0.)));
+    if (off > 1e-3 || cloth_mat3_det (R) < 0.) {
+      g_set_error (error, CLOTH_TRIANGULATE_ERROR,
+          CLOTH_TRIANGULATE_ERROR_CAMERA,
+          "R of camera %u (%s) is no rotation", i,
+          camera->name ? camera->name : "no name");
+      return NULL;
+    }
+    cloth_camera_copy (&c->camera, camera);
+    for (gint j = 0; j < 3; j++) {
+      memcpy (c->P + 4 * j, R + 3 * j, 3 * sizeof (gdouble));
+      c->P[4 * j + 3] = t[j];
+    }
+    cloth_mat3_vec_t (R, t, centres[i]);
+    for (gint j = 0; j < 3; j++)
+      centres[i][j] = -centres[i][j];
+    c->fx = K[0];
+    c->skew = K[1];
+    c->cx = K[2];
+    c->fy = K[4];
+    c->cy = K[5];
+    c->ifx = 1. / K[0];
+    c->ify = 1. / K[4];
+    c->area = K[0] * K[4];
+    c->lens = camera->lens;
+    memcpy (c->k, camera->k, sizeof (c->k));
+    if (c->lens == CLOTH_LENS_BROWN5 || c->lens == CLOTH_LENS_BROWN8)
+      fit_inverse (c);
+    else if (c->lens == CLOTH_LENS_FISHEYE)
+      self->has_fisheye = TRUE;
+  }
+  normalise_world (self, (const gdouble (*)[3]) centres);
+  return g_steal_pointer (&self);
+}
+
+/**
+ * cloth_triangulator_new_projections:
+ * @n_cameras: 2 … %CLOTH_TRIANGULATE_MAX_CAMERAS
+ * @projections: (array): 12·@n_cameras: row-major 3×4 matrices P, x ~ P·X in px, of any
+ *   scale and sign
+ * @error: return location
+ *
+ * For cameras that are known by their projection matrix only, such as a direct linear
+ * transformation's; observations have no lens distortion then. The sign is set so that
+ * depth is positive in front of the camera if the picture's y axis points down.
+ *
+ * Returns: (transfer full) (nullable): a triangulator
+ *
+ * Since: 0.1
+ */
+ClothTriangulator *
+cloth_triangulator_new_projections (guint n_cameras,
+    const gdouble * projections, GError ** error)
+{
+  g_autoptr (ClothTriangulator) self = new_empty (n_cameras, error);
+  gdouble centres[CLOTH_TRIANGULATE_MAX_CAMERAS][3];
+
+  if (self == NULL)
+    return NULL;
+  for (guint i = 0; i < n_cameras; i++) {
+    TriangulateCamera *c = &self->cameras[i];
+    const gdouble *p = projections + 12 * i;
+    gdouble m[9], inverse[9], column[3], scale, rest[2], P[12];
+    gboolean good = all_finite (p, 12);
+
+    for (gint j = 0; j < 9; j++)
+      m[j] = p[4 * (j / 3) + j % 3];
+    scale = sqrt (m[6] * m[6] + m[7] * m[7] + m[8] * m[8]);
+    good = good && scale > 0. && cloth_mat3_inverse (m, inverse);
+    if (good) {
+      if (cloth_mat3_det (m) < 0.)
+        scale = -scale;
+      for (gint j = 0; j < 12; j++)
+        P[j] = p[j] / scale;
+      /* Split off principal point and focal lengths: the rest is a rotation, but for
+       * skew. */
+      c->cx = P[0] * P[8] + P[1] * P[9] + P[2] * P[10];
+      c->cy = P[4] * P[8] + P[5] * P[9] + P[6] * P[10];
+      for (gint axis = 0; axis < 2; axis++) {
+        gdouble *row = P + 4 * axis;
+
+        for (gint j = 0; j < 4; j++)
+          row[j] -= (axis ? c->cy : c->cx) * P[8 + j];
+        rest[axis] = sqrt (row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
+        for (gint j = 0; j < 4; j++)
+          row[j] /= rest[axis];
+      }
+      c->fx = rest[0];
+      c->fy = rest[1];
+      good = all_finite (P, 12) && c->fx > 0. && c->fy > 0.;
+    }
+    if (!good) {
+      g_set_error (error, CLOTH_TRIANGULATE_ERROR,
+          CLOTH_TRIANGULATE_ERROR_CAMERA,
+          "Projection matrix %u is not finite or has no camera centre", i);
+      return NULL;
+    }
+    memcpy (c->P, P, sizeof (P));
+    c->ifx = 1. / c->fx;
+    c->ify = 1. / c->fy;
+    c->area = c->fx * c->fy;
+    c->lens = CLOTH_LENS_NONE;
+    for (gint j = 0; j < 3; j++)
+      column[j] = -p[4 * j + 3];
+    cloth_mat3_vec (inverse, column, centres[i]);
+  }
+  normalise_world (self, (const gdouble (*)[3]) centres);
+  return g_steal_pointer (&self);
+}
+
+static void
+free_scratch (ClothTriangulator * self)
+{
+  for (guint i = 0; i < self->n_scratch; i++) {
+    g_aligned_free (self->scratch[i]->obs);
+    g_free (self->scratch[i]->lens);
+    g_free (self->scratch[i]);
+  }
+  g_clear_pointer (&self->scratch, g_free);
+  self->n_scratch = 0;
+}
+
+/**
+ * cloth_triangulator_free:
+ * @self: (nullable) (transfer full): a triangulator
+ *
+ * Since: 0.1
+ */
+void
+cloth_triangulator_free (ClothTriangulator * self)
+{
+  if (self == NULL)
+    return;
+  for (guint i = 0; i < self->n_cameras; i++)
+    cloth_camera_clear (&self->cameras[i].camera);
+  g_free (self->cameras);
+  free_scratch (self);
+  g_free (self->reals);
+  g_free (self->words);
+  g_free (self->bytes);
+  g_free (self);
+}
+
+/**
+ * cloth_triangulator_set_parameters:
+ * @self: a triangulator
+ * @parameters: copied; by default %CLOTH_TRIANGULATE_PARAMETERS_DEFAULT
+ *
+ * Since: 0.1
+ */
+void
+cloth_triangulator_set_parameters (ClothTriangulator * self,
+    const ClothTriangulateParameters * parameters)
+{
+  self->parameters = *parameters;
+  self->parameters.min_views = MAX (parameters->min_views, 2);
+}
+
+/**
+ * cloth_triangulator_set_pool:
+ * @self: a triangulator
+ * @pool: (nullable): threads to use, which must outlive their use; %NULL: the calling
+ *   thread
+ *
+ * The results are the same bytes whatever the number of threads.
+ *
+ * Since: 0.1
+ */
+void
+cloth_triangulator_set_pool (ClothTriangulator * self, ClothPool * pool)
+{
+  self->pool = pool;
+}
+
+/**
+ * cloth_triangulator_set_simd:
+ * @self: a triangulator
+ * @simd: vector instructions to use at most; by default the best
+ *
+ * The results are the same bytes whatever the instructions.
+ *
+ * Since: 0.1
+ */
+void
+cloth_triangulator_set_simd (ClothTriangulator * self, ClothSimd simd)
+{
+  self->kernel = cloth_triangulate_kernel (simd);
+}
+
+/* One observation with the lens model's own undistortion: fisheye, or where the kernel's
+ * short Newton iteration did not do. */
+static void
+load_one (const TriangulateCamera * camera, const gdouble * const *in,
+    guint lane, gdouble error_floor, const gdouble * lens, gsize stride,
+    gdouble * obs)
+{
+  gdouble cxx = in[IN_XX][lane] + error_floor, cxy = in[IN_XY][lane];
+  gdouble cyy = in[IN_YY][lane] + error_floor;
+  gdouble own[N_LENS_PLANES], det, sxx, sxy, syy;
+  const gdouble *J;
+
+  for (guint i = 0; i < N_OBS; i++)
+    obs[i * BLOCK + lane] = 0.;
+  if (lens == NULL) {
+    cloth_camera_undistort_points (&camera->camera, 1, in[IN_U] + lane,
+        in[IN_V] + lane, own, own + 1, own + 2);
+    lens = own;
+    stride = 1;
+  }
+  J = lens + 2 * stride;
+  /* covariance in normalised coordinates: J·C·Jᵀ */
+#define AT(i) J[(i) * stride]
+  sxx = AT (0) * AT (0) * cxx + 2. * AT (0) * AT (1) * cxy +
+      AT (1) * AT (1) * cyy;
+  sxy = AT (0) * AT (2) * cxx + (AT (0) * AT (3) + AT (1) * AT (2)) * cxy +
+      AT (1) * AT (3) * cyy;
+  syy = AT (2) * AT (2) * cxx + 2. * AT (2) * AT (3) * cxy +
+      AT (3) * AT (3) * cyy;
+#undef AT
+  det = sxx * syy - sxy * sxy;
+  /* false also when anything is NaN */
+  if (!(cxx > 0. && cyy > 0. && cxx * cyy - cxy * cxy > 0.)
+      || !(sxx > 0. && det > 0. && isfinite (det) && isfinite (lens[0])
+          && isfinite (lens[stride])))
+    return;
+  obs[OBS_X * BLOCK + lane] = lens[0];
+  obs[OBS_Y * BLOCK + lane] = lens[stride];
+  obs[OBS_IXX * BLOCK + lane] = syy / det;
+  obs[OBS_IXY * BLOCK + lane] = -sxy / det;
+  obs[OBS_IYY * BLOCK + lane] = sxx / det;
+}
+
+/* Fills obs of one block; views: those that saw anything. */
+static guint
+load_block (ClothTriangulator * self, Scratch * scratch, guint first,
+    guint chunk_first, guint8 * views)
+{
+  guint n = MIN (self->result.n_points - first, BLOCK), n_views = 0;
+
+  for (guint i = 0; i < self->n_cameras; i++) {
+    const ClothTriangulateView *view = &self->views[i];
+    const TriangulateCamera *camera = &self->cameras[i];
+    gdouble *obs = scratch->obs + i * (N_OBS * BLOCK);
+    const gdouble *in[N_IN] = { NULL, NULL, ones, zeros, ones };
+    guint again, seen = 0;
+
+    if (view->x == NULL || view->y == NULL)
+      continue;
+    in[IN_U] = view->x + first;
+    in[IN_V] = view->y + first;
+    if (view->xx != NULL && view->yy != NULL) {
+      in[IN_XX] = view->xx + first;
+      in[IN_YY] = view->yy + first;
+      if (view->xy != NULL)
+        in[IN_XY] = view->xy + first;
+    }
+    if (n < BLOCK) {
+      for (guint k = 0; k < N_IN; k++) {
+        for (guint l = 0; l < BLOCK; l++)
+          scratch->pad[k * BLOCK + l] = l < n ? in[k][l] : NAN;
+        in[k] = scratch->pad + k * BLOCK;
+      }
+    }
+    if (camera->lens == CLOTH_LENS_FISHEYE) {
+      const gdouble *lens = scratch->lens + i * (N_LENS_PLANES * CHUNK) +
+          (first - chunk_first);
+
+      for (guint l = 0; l < BLOCK; l++)
+        load_one (camera, in, l, self->parameters.error_floor, lens + l, CHUNK,
+            obs);
+    } else {
+      again = self->kernel->load (camera, in, self->parameters.error_floor,
+          obs);
+      for (guint l = 0; again != 0; l++, again >>= 1)
+        if (again & 1)
+          load_one (camera, in, l, self->parameters.error_floor, NULL, 0, obs);
+    }
+    for (guint l = 0; l < BLOCK; l++)
+      seen |= obs[OBS_IXX * BLOCK + l] > 0.;
+    if (seen)
+      views[n_views++] = (guint8) i;
+  }
+  return n_views;
+}
+
+static void
+load_fisheyes (ClothTriangulator * self, Scratch * scratch, guint first,
+    guint n)
+{
+  for (guint i = 0; i < self->n_cameras; i++) {
+    const ClothTriangulateView *view = &self->views[i];
+    gdouble *lens = scratch->lens + i * (N_LENS_PLANES * CHUNK);
+    gdouble *jacobian = lens + 2 * CHUNK;
+
+    if (self->cameras[i].lens != CLOTH_LENS_FISHEYE || view->x == NULL
+        || view->y == NULL)
+      continue;
+    for (guint k = 0; k < CHUNK; k++)
+      lens[k] = lens[CHUNK + k] = NAN;
+    memcpy (lens, view->x + first, n * sizeof (gdouble));
+    memcpy (lens + CHUNK, view->y + first, n * sizeof (gdouble));
+    cloth_camera_undistort_points (&self->cameras[i].camera, CHUNK, lens,
+        lens + CHUNK, lens, lens + CHUNK, jacobian);
+  }
+}
+
+/* What a solution is worth, but for the agreement of its views. */
+static ClothPointReason
+judge (const gdouble * out)
+{
+  gdouble depth = out[OUT_DEPTH * BLOCK];
+  gdouble trace = out[OUT_XX * BLOCK] + out[OUT_YY * BLOCK] +
+      out[OUT_ZZ * BLOCK];
+
+  /* a standard deviation of half the distance is no measurement */
+  if (out[OUT_SINGULAR * BLOCK] != 0. || !(trace < 0.25 * depth * depth))
+    return CLOTH_POINT_PARALLEL;
+  if (!(depth > 0.))
+    return CLOTH_POINT_BEHIND;
+  return CLOTH_POINT_FINE;
+}
+
+static gboolean
+agrees (const ClothTriangulator * self, const gdouble * out)
+{
+  gdouble threshold = self->parameters.threshold;
+  gdouble max_error = self->parameters.max_error;
+
+  return out[OUT_WORST * BLOCK] <= threshold * threshold && (max_error <= 0.
+      || out[OUT_WORST_PX * BLOCK] <= max_error * max_error);
+}
+
+/* The view with the greatest normalised error from Huber's estimate, which several
+ * outliers together pull less than the least squares. */
+static guint
+worst_by_huber (ClothTriangulator * self, Scratch * scratch,
+    const gdouble * obs, const guint8 * views, guint n_views)
+{
+  gdouble *weighted = scratch->weighted, *out = scratch->trial;
+  guint worst = 0;
+
+  for (guint i = 0; i < n_views; i++)
+    for (guint j = 0; j < N_OBS; j++)
+      weighted[(views[i] * N_OBS + j) * BLOCK] =
+          obs[(views[i] * N_OBS + j) * BLOCK];
+
+  /* iteratively re-weighted least squares (Huber, Robust Statistics, 7.8) */
+  for (guint step = 0; step < 20; step++) {
+    gdouble greatest = -1.;
+
+    cloth_triangulate_solve_one (self->cameras, weighted, views, n_views, out);
+    for (guint i = 0; i < n_views; i++) {
+      const gdouble *P = self->cameras[views[i]].P;
+      const gdouble *o = obs + views[i] * (N_OBS * BLOCK);
+      gdouble *w = weighted + views[i] * (N_OBS * BLOCK);
+      gdouble p[3], ex, ey, error, weight;
+
+      for (gint j = 0; j < 3; j++)
+        p[j] = P[4 * j] * out[OUT_X * BLOCK] + P[4 * j + 1] *
+            out[OUT_Y * BLOCK] + P[4 * j + 2] * out[OUT_Z * BLOCK] +
+            P[4 * j + 3];
+      ex = p[0] / p[2] - o[OBS_X * BLOCK];
+      ey = p[1] / p[2] - o[OBS_Y * BLOCK];
+      error = sqrt (ex * ex * o[OBS_IXX * BLOCK] +
+          2. * ex * ey * o[OBS_IXY * BLOCK] + ey * ey * o[OBS_IYY * BLOCK]);
+      if (!isfinite (error))
+        return worst;
+      if (error > greatest) {
+        greatest = error;
+        worst = i;
+      }
+      weight = error > self->parameters.huber ?
+          self->parameters.huber / error : 1.;
+      for (gint j = OBS_IXX; j <= OBS_IYY; j++)
+        w[j * BLOCK] = weight * o[j * BLOCK];
+    }
+  }
+  return worst;
+}
+
+/* Looks for the views that disagree. On success out holds the solution of the rest, and
+ * views those that are left. */
+static ClothPointReason
+leave_out (ClothTriangulator * self, Scratch * scratch, const gdouble * obs,
+    guint8 * views, guint * n_views, gdouble * out)
+{
+  gdouble *trial = scratch->trial;
+  guint n_seen = *n_views;
+  guint8 rest[CLOTH_TRIANGULATE_MAX_CAMERAS];
+
+  while (*n_views > 2) {
+    guint n = *n_views, best = n, n_agreeing = 0, worst;
+
+    for (guint i = 0; i < n; i++) {
+      memcpy (rest, views, i);
+      memcpy (rest + i, views + i + 1, n - 1 - i);
+      cloth_triangulate_solve_one (self->cameras, obs, rest, n - 1, trial);
+      if (judge (trial) != CLOTH_POINT_FINE || !agrees (self, trial))
+        continue;
+      n_agreeing++;
+      if (best == n || trial[OUT_CHI2 * BLOCK] < out[OUT_CHI2 * BLOCK]) {
+        best = i;
+        for (guint j = 0; j < N_OUT; j++)
+          out[j * BLOCK] = trial[j * BLOCK];
+      }
+    }
+    if (best < n) {
+      /* Of three views two pairs may agree by chance along the epipolar lines; nothing
+       * tells which pair is right. */
+      if (n == 3 && n_agreeing > 1)
+        return CLOTH_POINT_DISAGREE;
+      memmove (views + best, views + best + 1, n - 1 - best);
+      *n_views = n - 1;
+      return CLOTH_POINT_FINE;
+    }
+    /* what would agree after two more are gone must still be a majority */
+    if (2 * (n - 2) <= n_seen)
+      break;
+    worst = worst_by_huber (self, scratch, obs, views, n);
+    memmove (views + worst, views + worst + 1, n - 1 - worst);
+    *n_views = n - 1;
+  }
+  return CLOTH_POINT_DISAGREE;
+}
+
+static void
+store_point (ClothTriangulator * self, guint point, ClothPointReason reason,
+    const gdouble * out, const guint8 * views, guint n_views, guint n_seen)
+{
+  ClothTriangulation *r = &self->result;
+  gdouble s2 = self->scale * self->scale;
+  guint64 mask = 0;
+
+  r->reason[point] = (guint8) reason;
+  if (reason != CLOTH_POINT_FINE) {
+    for (gint j = 0; j < 3; j++)
+      r->position[j][point] = NAN;
+    for (gint j = 0; j < 6; j++)
+      r->covariance[j][point] = j == 0 || j == 3 || j == 5 ? INFINITY : 0.;
+    r->state[point] = CLOTH_POINT_UNSEEN;
+    r->n_views[point] = r->n_rejected[point] = 0;
+    r->views[point] = 0;
+    r->chi2[point] = NAN;
+    return;
+  }
+  for (gint j = 0; j < 3; j++)
+    r->position[j][point] = self->origin[j] + self->scale *
+        out[(OUT_X + j) * BLOCK];
+  for (gint j = 0; j < 6; j++)
+    r->covariance[j][point] = s2 * out[(OUT_XX + j) * BLOCK];
+  for (guint i = 0; i < n_views; i++)
+    mask |= G_GUINT64_CONSTANT (1) << views[i];
+  r->views[point] = mask;
+  r->n_views[point] = (guint8) n_views;
+  r->n_rejected[point] = (guint8) (n_seen - n_views);
+  r->chi2[point] = out[OUT_CHI2 * BLOCK];
+  r->state[point] = n_views > 2 ? CLOTH_POINT_MEASURED : CLOTH_POINT_TWO_VIEWS;
+}
+
+static void
+finish_point (ClothTriangulator * self, Scratch * scratch, guint point,
+    guint lane, const guint8 * views, guint n_views)
+{
+  gdouble *out = scratch->out + lane;
+  const gdouble *obs = scratch->obs + lane;
+  guint8 seen[CLOTH_TRIANGULATE_MAX_CAMERAS];
+  guint n = 0, n_seen;
+  ClothPointReason reason;
+
+  for (guint i = 0; i < n_views; i++)
+    if (obs[(views[i] * N_OBS + OBS_IXX) * BLOCK] > 0.)
+      seen[n++] = views[i];
+  n_seen = n;
+  if (n < self->parameters.min_views) {
+    reason = CLOTH_POINT_FEW_VIEWS;
+  } else {
+    reason = judge (out);
+    if (reason == CLOTH_POINT_FINE && !agrees (self, out))
+      reason = CLOTH_POINT_DISAGREE;
+    if (reason != CLOTH_POINT_FINE && n > 2) {
+      if (leave_out (self, scratch, obs, seen, &n, out) == CLOTH_POINT_FINE)
+        reason = n < self->parameters.min_views ? CLOTH_POINT_FEW_VIEWS :
+            CLOTH_POINT_FINE;
+    }
+  }
+  store_point (self, point, reason, out, seen, n, n_seen);
+}
+
+static void
+run_blocks (gpointer data, guint begin, guint end, guint worker)
+{
+  ClothTriangulator *self = data;
+  Scratch *scratch = self->scratch[worker];
+  guint8 views[CLOTH_TRIANGULATE_MAX_CAMERAS];
+  guint chunk = 0;
+
+  for (guint b = begin; b < end; b++) {
+    guint first = b * BLOCK;
+    guint n = MIN (self->result.n_points - first, BLOCK), n_views;
+
+    if (self->has_fisheye && (b == begin || first - chunk == CHUNK)) {
+      chunk = first;
+      load_fisheyes (self, scratch, first,
+          MIN (self->result.n_points - first, CHUNK));
+    }
+    n_views = load_block (self, scratch, first, chunk, views);
+    if (n_views > 1)
+      self->kernel->solve (self->cameras, scratch->obs, views, n_views,
+          scratch->out);
+    for (guint l = 0; l < n; l++)
+      finish_point (self, scratch, first + l, l, views, n_views);
+  }
+}
+
+static void
+ensure_memory (ClothTriangulator * self, guint n_points)
+{
+  guint n_threads = cloth_pool_get_n_threads (self->pool);
+  ClothTriangulation *r = &self->result;
+
+  if (n_threads > self->n_scratch) {
+    free_scratch (self);
+    self->scratch = g_new0 (Scratch *, n_threads);
+    self->n_scratch = n_threads;
+    for (guint i = 0; i < n_threads; i++) {
+      Scratch *s = self->scratch[i] = g_new0 (Scratch, 1);
+
+      s->obs = g_aligned_alloc0 (2 * self->n_cameras * N_OBS * BLOCK,
+          sizeof (gdouble), 64);
+      s->weighted = s->obs + self->n_cameras * N_OBS * BLOCK;
+      if (self->has_fisheye)
+        s->lens = g_new (gdouble, self->n_cameras * N_LENS_PLANES * CHUNK);
+    }
+  }
+  if (n_points > self->n_allocated) {
+    self->n_allocated = n_points;
+    g_free (self->reals);
+    g_free (self->words);
+    g_free (self->bytes);
+    self->reals = g_new (gdouble, 10 * (gsize) n_points);
+    self->words = g_new (guint64, n_points);
+    self->bytes = g_new (guint8, 4 * (gsize) n_points);
+    for (gint j = 0; j < 3; j++)
+      r->position[j] = self->reals + j * (gsize) n_points;
+    for (gint j = 0; j < 6; j++)
+      r->covariance[j] = self->reals + (3 + j) * (gsize) n_points;
+    r->chi2 = self->reals + 9 * (gsize) n_points;
+    r->views = self->words;
+    r->state = self->bytes;
+    r->reason = self->bytes + n_points;
+    r->n_views = self->bytes + 2 * (gsize) n_points;
+    r->n_rejected = self->bytes + 3 * (gsize) n_points;
+  }
+  r->n_points = n_points;
+}
+
+/**
+ * cloth_triangulator_run:
+ * @self: a triangulator
+ * @n_views: as many as there are cameras
+ * @views: (array length=n_views): what each camera saw, in the cameras' order
+ * @n_points: number of points, 0 … %CLOTH_TRIANGULATE_MAX_POINTS
+ * @result: (out) (transfer none): belongs to @self until the next run
+ * @error: return location
+ *
+ * Each point on its own: observations are undistorted and their covariances carried
+ * along; the linear estimate (Hartley & Zisserman, 12.2) starts Gauss–Newton on the
+ * normalised reprojection error, whose minimum is the maximum-likelihood point for
+ * Gaussian errors. Every view is tested against the others, by how much χ² falls when it
+ * is left out. If one is above the threshold, views are left out in turn; while no
+ * remainder agrees, the view with the greatest error from Huber's robust estimate goes,
+ * as long as a majority is left. The covariance is the inverse of the information of the
+ * views used: it scales with the stated covariances only, not with how well they fit.
+ *
+ * Memory is allocated when the number of points or threads grows, not otherwise.
+ *
+ * Returns: %FALSE on wrong counts
+ *
+ * Since: 0.1
+ */
+gboolean
+cloth_triangulator_run (ClothTriangulator * self, guint n_views,
+    const ClothTriangulateView * views, guint n_points,
+    const ClothTriangulation ** result, GError ** error)
+{
+  if (n_views != self->n_cameras) {
+    g_set_error (error, CLOTH_TRIANGULATE_ERROR, CLOTH_TRIANGULATE_ERROR_VIEWS,
+        "%u views for %u cameras; give one view a camera, an empty one where a "
+        "camera saw nothing", n_views, self->n_cameras);
+    return FALSE;
+  }
+  if (n_points > CLOTH_TRIANGULATE_MAX_POINTS) {
+    g_set_error (error, CLOTH_TRIANGULATE_ERROR,
+        CLOTH_TRIANGULATE_ERROR_POINTS, "%u points are more than %d", n_points,
+        CLOTH_TRIANGULATE_MAX_POINTS);
+    return FALSE;
+  }
+  ensure_memory (self, n_points);
+  self->views = views;
+  cloth_pool_run (self->pool, run_blocks, self, (n_points + BLOCK - 1) / BLOCK);
+  self->views = NULL;
+  *result = &self->result;
+  return TRUE;
+}

@@ -1,0 +1,822 @@
+/* Triangulation against exact geometry, its own predicted scatter, a printed cylinder
+ * measured by others (MultiDIC), and everything that is not a measurement.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "gst/math/linalg.h"
+#include "gst/math/random.h"
+#include "gst/rig/triangulate.h"
+
+#define MAX_VIEWS 8
+
+typedef struct
+{
+  guint n_views, n_points;
+  gdouble *planes;
+  ClothTriangulateView views[MAX_VIEWS];
+} Scene;
+
+static gdouble *
+plane (Scene * scene, guint view, guint k)
+{
+  return scene->planes + (view * 5 + k) * (gsize) scene->n_points;
+}
+
+static void
+scene_init (Scene * scene, guint n_views, guint n_points)
+{
+  scene->n_views = n_views;
+  scene->n_points = n_points;
+  scene->planes = g_new0 (gdouble, 5 * n_views * (gsize) n_points);
+  for (guint i = 0; i < n_views; i++) {
+    ClothTriangulateView view = { plane (scene, i, 0), plane (scene, i, 1),
+      plane (scene, i, 2), plane (scene, i, 3), plane (scene, i, 4)
+    };
+
+    scene->views[i] = view;
+    for (guint k = 0; k < n_points; k++)
+      plane (scene, i, 2)[k] = plane (scene, i, 4)[k] = 0.01;
+  }
+}
+
+static void
+scene_clear (Scene * scene)
+{
+  g_free (scene->planes);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Scene, scene_clear)
+/* Camera i of n on an arc of radius 2 m about (10, -5, 1), looking at it; z is up. */
+     static void
+         make_camera (ClothCamera * camera, guint i, guint n, ClothLens lens)
+{
+  static const gdouble brown[8] =
+      { -0.28, 0.09, 1e-3, -5e-4, -0.012, 0.02, 0.003, -0.001 };
+  static const gdouble fisheye[8] = { 0.02, -0.01, 0.003, -0.0005 };
+  gdouble angle = n > 1 ? -0.9 + 1.8 * i / (n - 1) : 0., tilt = 0.2 - 0.05 * i;
+  gdouble f[3] = { sin (angle) * cos (tilt), cos (angle) * cos (tilt),
+    -sin (tilt)
+  };
+  gdouble r[3] = { cos (angle), -sin (angle), 0. };
+  const gdouble target[3] = { 10., -5., 1. };
+
+  memset (camera, 0, sizeof (*camera));
+  camera->width = 1920;
+  camera->height = 1080;
+  camera->K[0] = 1500.;
+  camera->K[4] = 1490.;
+  camera->K[1] = 0.7;
+  camera->K[2] = 955.;
+  camera->K[5] = 545.;
+  camera->K[8] = 1.;
+  camera->lens = lens;
+  if (lens == CLOTH_LENS_FISHEYE)
+    memcpy (camera->k, fisheye, sizeof (fisheye));
+  else if (lens != CLOTH_LENS_NONE)
+    memcpy (camera->k, brown,
+        cloth_lens_n_coefficients (lens) * sizeof (gdouble));
+  for (gint j = 0; j < 3; j++) {
+    camera->R[j] = r[j];
+    camera->R[6 + j] = f[j];
+  }
+  /* down = forward × right */
+  camera->R[3] = f[1] * r[2] - f[2] * r[1];
+  camera->R[4] = f[2] * r[0] - f[0] * r[2];
+  camera->R[5] = f[0] * r[1] - f[1] * r[0];
+  cloth_mat3_vec (camera->R, target, camera->t);
+  for (gint j = 0; j < 3; j++)
+    camera->t[j] = -camera->t[j];
+  camera->t[2] += 2.;
+}
+
+static void
+random_point (ClothRandom * random, gdouble X[3])
+{
+  X[0] = 10. + 0.8 * (cloth_random_uniform (random) - 0.5);
+  X[1] = -5. + 0.8 * (cloth_random_uniform (random) - 0.5);
+  X[2] = 1. + 0.5 * (cloth_random_uniform (random) - 0.5);
+}
+
+static void
+film (Scene * scene, const ClothCamera * cameras, guint k, const gdouble X[3])
+{
+  for (guint i = 0; i < scene->n_views; i++) {
+    gdouble px[2];
+
+    g_assert_true (cloth_camera_project (&cameras[i], X, px, NULL, NULL));
+    plane (scene, i, 0)[k] = px[0];
+    plane (scene, i, 1)[k] = px[1];
+  }
+}
+
+static const ClothTriangulation *
+run (ClothTriangulator * triangulator, Scene * scene)
+{
+  const ClothTriangulation *result = NULL;
+  g_autoptr (GError) error = NULL;
+
+  g_assert_true (cloth_triangulator_run (triangulator, scene->n_views,
+          scene->views, scene->n_points, &result, &error));
+  g_assert_no_error (error);
+  g_assert_cmpuint (result->n_points, ==, scene->n_points);
+  return result;
+}
+
+static ClothTriangulator *
+make (const ClothCamera * cameras, guint n)
+{
+  g_autoptr (GError) error = NULL;
+  ClothTriangulator *triangulator = cloth_triangulator_new (n, cameras, &error);
+
+  g_assert_no_error (error);
+  g_assert_nonnull (triangulator);
+  return triangulator;
+}
+
+static gdouble
+distance (const ClothTriangulation * r, guint k, const gdouble X[3])
+{
+  gdouble s = 0.;
+
+  for (gint j = 0; j < 3; j++)
+    s += (r->position[j][k] - X[j]) * (r->position[j][k] - X[j]);
+  return sqrt (s);
+}
+
+static void
+assert_unseen (const ClothTriangulation * r, guint k, ClothPointReason reason)
+{
+  g_assert_cmpuint (r->state[k], ==, CLOTH_POINT_UNSEEN);
+  g_assert_cmpuint (r->reason[k], ==, reason);
+  g_assert_cmpuint (r->n_views[k], ==, 0);
+  g_assert_cmpuint (r->views[k], ==, 0);
+  for (gint j = 0; j < 3; j++)
+    g_assert_true (isnan (r->position[j][k]));
+  g_assert_true (isinf (r->covariance[0][k]) && isinf (r->covariance[3][k])
+      && isinf (r->covariance[5][k]));
+}
+
+/* Points filmed without noise come back, through every lens, by 2 to 8 cameras. */
+static void
+test_exact (void)
+{
+  static const gchar *const names[] = { "none", "brown5", "brown8", "fisheye" };
+
+  for (guint lens = 0; lens < 4; lens++) {
+    gdouble worst = 0., worst_chi2 = 0.;
+
+    for (guint n = 2; n <= MAX_VIEWS; n++) {
+      ClothCamera cameras[MAX_VIEWS];
+      ClothRandom random;
+      g_auto (Scene) scene = { 0 };
+      g_autofree gdouble *truth = g_new (gdouble, 3 * 501);
+      g_autoptr (ClothTriangulator) triangulator = NULL;
+      const ClothTriangulation *r;
+
+      cloth_random_init (&random, n);
+      scene_init (&scene, n, 501);
+      for (guint i = 0; i < n; i++)
+        make_camera (&cameras[i], i, n, (ClothLens) lens);
+      for (guint k = 0; k < scene.n_points; k++) {
+        random_point (&random, truth + 3 * k);
+        film (&scene, cameras, k, truth + 3 * k);
+      }
+      triangulator = make (cameras, n);
+      r = run (triangulator, &scene);
+      for (guint k = 0; k < scene.n_points; k++) {
+        g_assert_cmpuint (r->state[k], ==,
+            n > 2 ? CLOTH_POINT_MEASURED : CLOTH_POINT_TWO_VIEWS);
+        g_assert_cmpuint (r->reason[k], ==, CLOTH_POINT_FINE);
+        g_assert_cmpuint (r->n_views[k], ==, n);
+        g_assert_cmpuint (r->n_rejected[k], ==, 0);
+        g_assert_cmpuint (r->views[k], ==, (1u << n) - 1);
+        worst = fmax (worst, distance (r, k, truth + 3 * k));
+        worst_chi2 = fmax (worst_chi2, r->chi2[k]);
+      }
+    }
+    g_test_message ("%s: greatest error %.2g m, greatest chi2 %.2g",
+        names[lens], worst, worst_chi2);
+    g_assert_cmpfloat (worst, <, 1e-12);
+    g_assert_cmpfloat (worst_chi2, <, 1e-16);
+  }
+}
+
+/* A draw of a bivariate normal of covariance c. */
+static void
+draw (ClothRandom * random, const gdouble c[3], gdouble e[2])
+{
+  gdouble a = cloth_random_gaussian (random), b =
+      cloth_random_gaussian (random);
+  gdouble l = sqrt (c[0]);
+
+  e[0] = l * a;
+  e[1] = c[1] / l * a + sqrt (c[2] - c[1] * c[1] / c[0]) * b;
+}
+
+/* The scatter of many noisy takes is the covariance predicted, in every direction. */
+static void
+test_covariance (void)
+{
+  static const guint counts[] = { 2, 3, 5, 8 };
+  enum
+  { N = 20000 };
+
+  for (guint c = 0; c < G_N_ELEMENTS (counts); c++) {
+    for (guint lens = 0; lens < 3; lens += 2) {
+      guint n = counts[c], used = 0;
+      ClothCamera cameras[MAX_VIEWS];
+      ClothRandom random;
+      g_auto (Scene) scene = { 0 };
+      g_autoptr (ClothTriangulator) triangulator = NULL;
+      const ClothTriangulation *r;
+      const gdouble X[3] = { 10.2, -4.9, 1.15 };
+      gdouble mean[3] = { 0. }, scatter[6] = { 0. }, predicted[6] = { 0. };
+      gdouble chi2 = 0., mahalanobis = 0.;
+      ClothTriangulateParameters p = CLOTH_TRIANGULATE_PARAMETERS_DEFAULT;
+
+      cloth_random_init (&random, 100 + n);
+      scene_init (&scene, n, N);
+      for (guint i = 0; i < n; i++)
+        make_camera (&cameras[i], i, n, (ClothLens) lens);
+      for (guint k = 0; k < N; k++) {
+        film (&scene, cameras, k, X);
+        for (guint i = 0; i < n; i++) {
+          /* each camera its own, half of it by way of the error floor */
+          gdouble s = 0.04 * (i + 1), floor = 0.01, e[2];
+          gdouble cov[3] = { s * s + floor, -0.4 * s * s,
+            0.5 * s * s + floor
+          };
+
+          draw (&random, cov, e);
+          plane (&scene, i, 0)[k] += e[0];
+          plane (&scene, i, 1)[k] += e[1];
+          plane (&scene, i, 2)[k] = s * s;
+          plane (&scene, i, 3)[k] = cov[1];
+          plane (&scene, i, 4)[k] = 0.5 * s * s;
+        }
+      }
+      triangulator = make (cameras, n);
+      p.error_floor = 0.01;
+      cloth_triangulator_set_parameters (triangulator, &p);
+      r = run (triangulator, &scene);
+      for (guint k = 0; k < N; k++) {
+        gdouble e[3], w[3], l[9];
+        guint at = 0;
+
+        if (r->n_views[k] < n)
+          continue;
+        used++;
+        for (gint j = 0; j < 3; j++)
+          w[j] = e[j] = r->position[j][k] - X[j];
+        for (gint i = 0; i < 3; i++) {
+          mean[i] += e[i];
+          for (gint j = i; j < 3; j++, at++) {
+            scatter[at] += e[i] * e[j];
+            predicted[at] += r->covariance[at][k];
+            l[3 * j + i] = r->covariance[at][k];
+          }
+        }
+        g_assert_true (cloth_cholesky_factor (3, l));
+        cloth_cholesky_solve (3, l, w);
+        mahalanobis += e[0] * w[0] + e[1] * w[1] + e[2] * w[2];
+        chi2 += r->chi2[k];
+      }
+      g_test_message ("%u views, lens %u: scatter/predicted %.3f %.3f %.3f, "
+          "mahalanobis²/3 %.3f, chi2/dof %.3f, σ %.3f %.3f %.3f mm, "
+          "rejected %.2f%%", n, lens, scatter[0] / predicted[0],
+          scatter[3] / predicted[3], scatter[5] / predicted[5],
+          mahalanobis / used / 3., chi2 / used / (2. * n - 3.),
+          1e3 * sqrt (predicted[0] / used), 1e3 * sqrt (predicted[3] / used),
+          1e3 * sqrt (predicted[5] / used), 100. - 100. * used / N);
+      g_assert_cmpuint (used, >, N * 0.99);
+      for (guint k = 0; k < 6; k++) {
+        static const guint diagonal[6][2] = { {0, 0}, {0, 3}, {0, 5}, {3, 3},
+        {3, 5}, {5, 5}
+        };
+        gdouble size = sqrt (predicted[diagonal[k][0]] *
+            predicted[diagonal[k][1]]);
+
+        g_assert_cmpfloat (fabs (scatter[k] - predicted[k]), <, 0.05 * size);
+      }
+      for (gint j = 0; j < 3; j++)
+        g_assert_cmpfloat (fabs (mean[j]), <,
+            5. * sqrt (predicted[j == 0 ? 0 : j == 1 ? 3 : 5]));
+      g_assert_cmpfloat_with_epsilon (mahalanobis / used / 3., 1., 0.05);
+      g_assert_cmpfloat_with_epsilon (chi2 / used / (2. * n - 3.), 1., 0.05);
+    }
+  }
+}
+
+/* One to three wrong views among the others: found, named and left out. */
+static void
+test_outliers (void)
+{
+  static const struct
+  {
+    guint n_views, n_wrong;
+  } cases[] = { {3, 1}, {4, 1}, {5, 2}, {8, 1}, {8, 2}, {8, 3} };
+
+  for (guint c = 0; c < G_N_ELEMENTS (cases); c++) {
+    guint n = cases[c].n_views, n_points = 500;
+    guint found = 0, false_point = 0, given_up = 0;
+    ClothCamera cameras[MAX_VIEWS];
+    ClothRandom random;
+    g_auto (Scene) scene = { 0 };
+    g_autofree gdouble *truth = g_new (gdouble, 3 * n_points);
+    g_autofree guint *wrong = g_new0 (guint, n_points);
+    g_autoptr (ClothTriangulator) triangulator = NULL;
+    const ClothTriangulation *r;
+
+    cloth_random_init (&random, 7 + c);
+    scene_init (&scene, n, n_points);
+    for (guint i = 0; i < n; i++)
+      make_camera (&cameras[i], i, n, CLOTH_LENS_BROWN5);
+    for (guint k = 0; k < n_points; k++) {
+      random_point (&random, truth + 3 * k);
+      film (&scene, cameras, k, truth + 3 * k);
+      for (guint i = 0; i < n; i++) {
+        plane (&scene, i, 0)[k] += 0.1 * cloth_random_gaussian (&random);
+        plane (&scene, i, 1)[k] += 0.1 * cloth_random_gaussian (&random);
+      }
+      for (guint w = 0; w < cases[c].n_wrong; w++) {
+        guint view;
+        gdouble angle = 2. * G_PI * cloth_random_uniform (&random);
+        gdouble size = 3. + 40. * cloth_random_uniform (&random);
+
+        do {
+          view = cloth_random_below (&random, n);
+        } while (wrong[k] & (1u << view));
+        wrong[k] |= 1u << view;
+        plane (&scene, view, 0)[k] += size * cos (angle);
+        plane (&scene, view, 1)[k] += size * sin (angle);
+      }
+    }
+    triangulator = make (cameras, n);
+    r = run (triangulator, &scene);
+    for (guint k = 0; k < n_points; k++) {
+      if (r->state[k] == CLOTH_POINT_UNSEEN)
+        given_up++;
+      else if (r->views[k] & wrong[k])
+        false_point++;
+      else
+        found++;
+      if (r->state[k] != CLOTH_POINT_UNSEEN && !(r->views[k] & wrong[k])) {
+        /* 0.1 px is 0.13 mm at 2 m; two views see depth three times worse */
+        g_assert_cmpfloat (distance (r, k, truth + 3 * k), <, 4e-3);
+        g_assert_cmpuint (r->n_views[k] + r->n_rejected[k], ==, n);
+      }
+    }
+    g_test_message
+        ("%u views, %u of them wrong: %u of %u points right, %u given "
+        "up, %u with a wrong view", n, cases[c].n_wrong, found, n_points,
+        given_up, false_point);
+    g_assert_cmpuint (false_point, <=, n_points / 100);
+    g_assert_cmpuint (found, >=, n_points * (n == 3 ? 80 : n == 5 ? 80 : 97)
+        / 100);
+  }
+}
+
+/* max_error alone also removes a view. */
+static void
+test_max_error (void)
+{
+  ClothCamera cameras[4];
+  g_auto (Scene) scene = { 0 };
+  g_autoptr (ClothTriangulator) triangulator = NULL;
+  ClothTriangulateParameters p = CLOTH_TRIANGULATE_PARAMETERS_DEFAULT;
+  const ClothTriangulation *r;
+  const gdouble X[3] = { 10., -5., 1. };
+
+  scene_init (&scene, 4, 1);
+  for (guint i = 0; i < 4; i++)
+    make_camera (&cameras[i], i, 4, CLOTH_LENS_NONE);
+  film (&scene, cameras, 0, X);
+  plane (&scene, 2, 0)[0] += 3.;
+  for (guint i = 0; i < 4; i++)
+    plane (&scene, i, 2)[0] = plane (&scene, i, 4)[0] = 9.;
+  triangulator = make (cameras, 4);
+  r = run (triangulator, &scene);
+  g_assert_cmpuint (r->views[0], ==, 15);
+  p.max_error = 1.;
+  cloth_triangulator_set_parameters (triangulator, &p);
+  r = run (triangulator, &scene);
+  g_assert_cmpuint (r->views[0], ==, 11);
+  g_assert_cmpuint (r->n_rejected[0], ==, 1);
+  g_assert_cmpfloat (distance (r, 0, X), <, 1e-12);
+  p.min_views = 4;
+  cloth_triangulator_set_parameters (triangulator, &p);
+  r = run (triangulator, &scene);
+  assert_unseen (r, 0, CLOTH_POINT_FEW_VIEWS);
+}
+
+static guint
+read_csv (const gchar * name, guint n_columns, gdouble * rows, guint max_rows)
+{
+  g_autofree gchar *path = g_build_filename (TEST_DATA, "multidic", name, NULL);
+  g_autofree gchar *text = NULL;
+  g_autoptr (GError) error = NULL;
+  g_auto (GStrv) lines = NULL;
+  guint n = 0;
+
+  g_file_get_contents (path, &text, NULL, &error);
+  g_assert_no_error (error);
+  lines = g_strsplit (text, "\n", -1);
+  for (guint i = 0; lines[i] != NULL; i++) {
+    g_auto (GStrv) fields = g_strsplit (lines[i], ",", -1);
+
+    if (g_strv_length (fields) != n_columns || g_ascii_isalpha (lines[i][0]))
+      continue;
+    g_assert_cmpuint (n, <, max_rows);
+    for (guint j = 0; j < n_columns; j++)
+      rows[n * n_columns + j] = g_ascii_strtod (fields[j], NULL);
+    n++;
+  }
+  return n;
+}
+
+/* MultiDIC's printed cylinder: its centroids and DLT parameters, its own reconstruction
+ * to compare with, and the printed truth. No alignment: the DLT's world is the
+ * cylinder's. */
+static void
+test_multidic (void)
+{
+  static gdouble centroids[2][200 * 4], truth[300 * 5], reference[120 * 6];
+  gdouble projections[24], rms[2], reference_sum = 0.;
+  guint n[2], n_truth, n_reference, at = 0;
+  g_auto (Scene) scene = { 0 };
+  g_autoptr (ClothTriangulator) triangulator = NULL;
+  g_autoptr (GError) error = NULL;
+  static gdouble points[200][3];
+
+  n[0] = read_csv ("reference_centroids_201.csv", 4, centroids[0], 200);
+  n[1] = read_csv ("reference_centroids_202.csv", 4, centroids[1], 200);
+  n_truth = read_csv ("cylinder_true_points_mm.csv", 5, truth, 300);
+  n_reference = read_csv ("reference_reconstruction_mm.csv", 6, reference, 120);
+  g_assert_cmpuint (n_truth, ==, 280);
+  g_assert_cmpuint (n_reference, ==, 100);
+  g_assert_cmpuint (read_csv ("reference_DLT_201.csv", 12, projections, 1), ==,
+      1);
+  g_assert_cmpuint (read_csv ("reference_DLT_202.csv", 12, projections + 12, 1),
+      ==, 1);
+
+  scene_init (&scene, 2, 100);
+  for (guint i = 0; i < n[0]; i++) {
+    const gdouble *a = centroids[0] + 4 * i;
+
+    for (guint j = 0; j < n[1]; j++) {
+      const gdouble *b = centroids[1] + 4 * j;
+
+      if (a[0] != b[0] || a[1] != b[1])
+        continue;
+      g_assert_cmpuint (at, <, 100);
+      plane (&scene, 0, 0)[at] = a[2];
+      plane (&scene, 0, 1)[at] = a[3];
+      plane (&scene, 1, 0)[at] = b[2];
+      plane (&scene, 1, 1)[at] = b[3];
+      for (guint k = 0; k < n_truth; k++)
+        if (truth[5 * k] == a[0] && truth[5 * k + 1] == a[1])
+          memcpy (points[at], truth + 5 * k + 2, sizeof (points[at]));
+      at++;
+    }
+  }
+  g_assert_cmpuint (at, ==, 100);
+  for (guint i = 0; i < n_reference; i++)
+    for (gint j = 3; j < 6; j++)
+      reference_sum += pow (reference[6 * i + j], 2) / 100.;
+
+  triangulator = cloth_triangulator_new_projections (2, projections, &error);
+  g_assert_no_error (error);
+  for (guint weighted = 0; weighted < 2; weighted++) {
+    /* the RMS residual of each camera's own DLT fit */
+    static const gdouble sigma[2][2] = { {0.35, 0.35}, {0.367, 0.322} };
+    gdouble sum[3] = { 0. }, worst = 0., difference = 0.;
+    const ClothTriangulation *r;
+
+    for (guint i = 0; i < 2; i++)
+      for (guint k = 0; k < 100; k++)
+        plane (&scene, i, 2)[k] = plane (&scene, i, 4)[k] =
+            sigma[weighted][i] * sigma[weighted][i];
+    r = run (triangulator, &scene);
+    for (guint k = 0; k < 100; k++) {
+      gdouble nearest = G_MAXDOUBLE;
+
+      g_assert_cmpuint (r->state[k], ==, CLOTH_POINT_TWO_VIEWS);
+      for (gint j = 0; j < 3; j++)
+        sum[j] += pow (r->position[j][k] - points[k][j], 2) / 100.;
+      worst = fmax (worst, distance (r, k, points[k]));
+      for (guint i = 0; i < n_reference; i++)
+        nearest = fmin (nearest, distance (r, k, reference + 6 * i));
+      difference += nearest * nearest / 100.;
+    }
+    rms[weighted] = sqrt (sum[0] + sum[1] + sum[2]);
+    g_test_message ("%s: 100 points, RMS %.5f mm (%.4f %.4f %.4f per axis), "
+        "greatest %.4f; MultiDIC's RMS %.5f; RMS difference from it %.5f mm",
+        weighted ? "each camera its own sigma" : "equal sigma", rms[weighted],
+        sqrt (sum[0]), sqrt (sum[1]), sqrt (sum[2]), worst,
+        sqrt (reference_sum), sqrt (difference));
+  }
+  g_assert_cmpfloat (rms[0], <, sqrt (reference_sum));
+  g_assert_cmpfloat (rms[1], <=, 0.0598);
+}
+
+/* Any instructions and any number of threads: the same bytes. */
+static void
+test_same_bytes (void)
+{
+  static const ClothSimd levels[] = { CLOTH_SIMD_SCALAR, CLOTH_SIMD_AVX2,
+    CLOTH_SIMD_AVX512
+  };
+  enum
+  { N = 1003, SIZE = N * (10 * sizeof (gdouble) + 4 + 8) };
+
+  for (guint lens = 0; lens < 4; lens++) {
+    ClothCamera cameras[MAX_VIEWS];
+    ClothRandom random;
+    g_auto (Scene) scene = { 0 };
+    g_autofree guint8 *first = NULL;
+
+    cloth_random_init (&random, 3);
+    scene_init (&scene, MAX_VIEWS, N);
+    for (guint i = 0; i < MAX_VIEWS; i++)
+      make_camera (&cameras[i], i, MAX_VIEWS, (ClothLens) lens);
+    for (guint k = 0; k < N; k++) {
+      gdouble X[3];
+
+      random_point (&random, X);
+      film (&scene, cameras, k, X);
+      for (guint i = 0; i < MAX_VIEWS; i++) {
+        plane (&scene, i, 0)[k] += 0.1 * cloth_random_gaussian (&random);
+        plane (&scene, i, 3)[k] = 0.002 * cloth_random_gaussian (&random);
+        if (cloth_random_below (&random, 4) == 0)
+          plane (&scene, i, 1)[k] = NAN;
+        if (cloth_random_below (&random, 20) == 0)
+          plane (&scene, i, 1)[k] += 50.;
+      }
+    }
+    for (guint l = 0; l < G_N_ELEMENTS (levels); l++) {
+      for (guint threads = 1; threads <= 3; threads++) {
+        g_autoptr (ClothPool) pool = cloth_pool_new (threads);
+        g_autoptr (ClothTriangulator) triangulator = make (cameras, MAX_VIEWS);
+        g_autofree guint8 *bytes = g_malloc (SIZE);
+        const ClothTriangulation *r;
+        guint8 *p = bytes;
+
+        cloth_triangulator_set_pool (triangulator, pool);
+        cloth_triangulator_set_simd (triangulator, levels[l]);
+        r = run (triangulator, &scene);
+        for (gint j = 0; j < 3; j++, p += N * 8)
+          memcpy (p, r->position[j], N * 8);
+        for (gint j = 0; j < 6; j++, p += N * 8)
+          memcpy (p, r->covariance[j], N * 8);
+        memcpy (p, r->chi2, N * 8);
+        memcpy (p + N * 8, r->views, N * 8);
+        memcpy (p + N * 16, r->state, N);
+        memcpy (p + N * 17, r->reason, N);
+        memcpy (p + N * 18, r->n_views, N);
+        memcpy (p + N * 19, r->n_rejected, N);
+        if (first == NULL)
+          first = g_steal_pointer (&bytes);
+        else
+          g_assert_cmpmem (first, SIZE, bytes, SIZE);
+      }
+    }
+  }
+}
+
+static void
+test_wrong_counts (void)
+{
+  ClothCamera cameras[3];
+  ClothTriangulateView views[3] = { {NULL} };
+  g_autoptr (ClothTriangulator) triangulator = NULL;
+  g_autoptr (GError) error = NULL;
+  const ClothTriangulation *r;
+
+  for (guint i = 0; i < 3; i++)
+    make_camera (&cameras[i], i, 3, CLOTH_LENS_NONE);
+  for (guint n = 0; n < 2; n++) {
+    g_assert_null (cloth_triangulator_new (n, cameras, &error));
+    g_assert_error (error, CLOTH_TRIANGULATE_ERROR,
+        CLOTH_TRIANGULATE_ERROR_CAMERAS);
+    g_clear_error (&error);
+  }
+  g_assert_null (cloth_triangulator_new (65, cameras, &error));
+  g_assert_error (error, CLOTH_TRIANGULATE_ERROR,
+      CLOTH_TRIANGULATE_ERROR_CAMERAS);
+  g_clear_error (&error);
+
+  triangulator = make (cameras, 3);
+  g_assert_false (cloth_triangulator_run (triangulator, 2, views, 1, &r,
+          &error));
+  g_assert_error (error, CLOTH_TRIANGULATE_ERROR,
+      CLOTH_TRIANGULATE_ERROR_VIEWS);
+  g_clear_error (&error);
+  g_assert_false (cloth_triangulator_run (triangulator, 3, views, 1000001, &r,
+          &error));
+  g_assert_error (error, CLOTH_TRIANGULATE_ERROR,
+      CLOTH_TRIANGULATE_ERROR_POINTS);
+  g_clear_error (&error);
+
+  /* no points and no camera with anything are fine */
+  g_assert_true (cloth_triangulator_run (triangulator, 3, views, 0, &r,
+          &error));
+  g_assert_cmpuint (r->n_points, ==, 0);
+  g_assert_true (cloth_triangulator_run (triangulator, 3, views, 9, &r,
+          &error));
+  for (guint k = 0; k < 9; k++)
+    assert_unseen (r, k, CLOTH_POINT_FEW_VIEWS);
+}
+
+static void
+test_bad_cameras (void)
+{
+  ClothCamera cameras[2];
+  g_autoptr (GError) error = NULL;
+  gdouble P[24] = { 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 1.,
+    1., 0., 0., -1., 0., 1., 0., 0., 0., 0., 1., 1.
+  };
+  ClothTriangulator *triangulator;
+
+  for (guint fault = 0; fault < 7; fault++) {
+    for (guint i = 0; i < 2; i++)
+      make_camera (&cameras[i], i, 2, CLOTH_LENS_NONE);
+    switch (fault) {
+      case 0:
+        cameras[1].K[0] = 0.;
+        break;
+      case 1:
+        cameras[1].K[4] = -3.;
+        break;
+      case 2:
+        cameras[1].t[1] = NAN;
+        break;
+      case 3:
+        cameras[1].k[0] = INFINITY;
+        break;
+      case 4:
+        cameras[1].R[0] *= -1.;
+        break;
+      case 5:
+        memset (cameras[1].R, 0, sizeof (cameras[1].R));
+        break;
+      default:
+        cameras[1].K[2] = NAN;
+        break;
+    }
+    g_assert_null (cloth_triangulator_new (2, cameras, &error));
+    g_assert_error (error, CLOTH_TRIANGULATE_ERROR,
+        CLOTH_TRIANGULATE_ERROR_CAMERA);
+    g_clear_error (&error);
+  }
+
+  triangulator = cloth_triangulator_new_projections (2, P, &error);
+  g_assert_no_error (error);
+  cloth_triangulator_free (triangulator);
+  for (guint j = 0; j < 2; j++) {
+    /* an affine camera, then not a number */
+    if (j == 0)
+      P[22] = 0.;
+    else
+      P[22] = NAN;
+    g_assert_null (cloth_triangulator_new_projections (2, P, &error));
+    g_assert_error (error, CLOTH_TRIANGULATE_ERROR,
+        CLOTH_TRIANGULATE_ERROR_CAMERA);
+    g_clear_error (&error);
+  }
+  g_assert_null (cloth_triangulator_new_projections (1, P, &error));
+  g_assert_error (error, CLOTH_TRIANGULATE_ERROR,
+      CLOTH_TRIANGULATE_ERROR_CAMERAS);
+  g_clear_error (&error);
+  cloth_triangulator_free (NULL);
+}
+
+/* What counts as not seen, for every lens: NaN and infinite places, covariances that are
+ * none. The others of the same block are not touched by it. */
+static void
+test_not_seen (void)
+{
+  for (guint lens = 0; lens < 4; lens++) {
+    ClothCamera cameras[3];
+    g_auto (Scene) scene = { 0 };
+    g_autoptr (ClothTriangulator) triangulator = NULL;
+    const ClothTriangulation *r;
+    const gdouble X[3] = { 10.1, -5.1, 1.1 };
+    enum
+    { N = 14 };
+
+    scene_init (&scene, 3, N);
+    for (guint i = 0; i < 3; i++)
+      make_camera (&cameras[i], i, 3, (ClothLens) lens);
+    for (guint k = 0; k < N; k++)
+      film (&scene, cameras, k, X);
+    /* two of three views spoilt */
+    for (guint i = 0; i < 2; i++) {
+      plane (&scene, i, 0)[0] = NAN;
+      plane (&scene, i, 1)[1] = NAN;
+      plane (&scene, i, 0)[2] = INFINITY;
+      plane (&scene, i, 1)[3] = -INFINITY;
+      plane (&scene, i, 2)[4] = NAN;
+      plane (&scene, i, 2)[5] = INFINITY;
+      plane (&scene, i, 4)[6] = INFINITY;
+      plane (&scene, i, 2)[7] = 0.;
+      plane (&scene, i, 4)[8] = -1.;
+      plane (&scene, i, 3)[9] = 0.01;
+      plane (&scene, i, 3)[10] = NAN;
+    }
+    /* one of three */
+    plane (&scene, 2, 3)[12] = INFINITY;
+    triangulator = make (cameras, 3);
+    r = run (triangulator, &scene);
+    for (guint k = 0; k < 11; k++)
+      assert_unseen (r, k, CLOTH_POINT_FEW_VIEWS);
+    for (guint k = 11; k < N; k++) {
+      g_assert_cmpuint (r->views[k], ==, k == 12 ? 3 : 7);
+      g_assert_cmpuint (r->state[k], ==,
+          k == 12 ? CLOTH_POINT_TWO_VIEWS : CLOTH_POINT_MEASURED);
+      g_assert_cmpfloat (distance (r, k, X), <, 1e-12);
+    }
+  }
+}
+
+/* Equal cameras, parallel rays, rays that meet behind, two views that contradict each
+ * other: never a point. */
+static void
+test_degenerate (void)
+{
+  ClothCamera cameras[3];
+  g_auto (Scene) scene = { 0 };
+  g_autoptr (ClothTriangulator) triangulator = NULL;
+  const ClothTriangulation *r;
+  const gdouble X[3] = { 10., -5., 1. };
+  ClothRandom random;
+
+  cloth_random_init (&random, 5);
+  scene_init (&scene, 3, 64);
+  for (guint i = 0; i < 3; i++)
+    make_camera (&cameras[i], 1, 3, CLOTH_LENS_BROWN5);
+  for (guint k = 0; k < 64; k++) {
+    film (&scene, cameras, k, X);
+    for (guint i = 0; i < 3 && k >= 8; i++) {
+      plane (&scene, i, 0)[k] += 0.1 * cloth_random_gaussian (&random);
+      plane (&scene, i, 1)[k] += 0.1 * cloth_random_gaussian (&random);
+    }
+  }
+  triangulator = make (cameras, 3);
+  r = run (triangulator, &scene);
+  for (guint k = 0; k < 64; k++)
+    assert_unseen (r, k, CLOTH_POINT_PARALLEL);
+  g_clear_pointer (&triangulator, cloth_triangulator_free);
+  scene_clear (&scene);
+
+  /* two cameras side by side, 0.2 mm apart, and one point 2 m away: with 0.1 px nothing
+   * is known of its distance */
+  scene_init (&scene, 2, 3);
+  for (guint i = 0; i < 2; i++) {
+    make_camera (&cameras[i], 0, 1, CLOTH_LENS_NONE);
+    cameras[i].t[0] += 0.0002 * i;
+    cameras[i].K[1] = 0.;
+  }
+  for (guint k = 0; k < 3; k++)
+    film (&scene, cameras, k, X);
+  /* 0.1 m apart: rays that diverge, they meet behind; and rays 20 px off their epipolar
+   * line */
+  cameras[1].t[0] += 0.0998;
+  triangulator = make (cameras, 2);
+  film (&scene, cameras, 0, X);
+  film (&scene, cameras, 2, X);
+  plane (&scene, 1, 1)[2] += 20.;
+  plane (&scene, 1, 0)[1] = plane (&scene, 0, 0)[1] - 75.;
+  r = run (triangulator, &scene);
+  g_assert_cmpuint (r->state[0], ==, CLOTH_POINT_TWO_VIEWS);
+  assert_unseen (r, 1, CLOTH_POINT_BEHIND);
+  assert_unseen (r, 2, CLOTH_POINT_DISAGREE);
+  g_clear_pointer (&triangulator, cloth_triangulator_free);
+
+  cameras[1].t[0] -= 0.0998;
+  triangulator = make (cameras, 2);
+  for (guint k = 0; k < 3; k++)
+    film (&scene, cameras, k, X);
+  r = run (triangulator, &scene);
+  for (guint k = 0; k < 3; k++)
+    assert_unseen (r, k, CLOTH_POINT_PARALLEL);
+}
+
+int
+main (int argc, char **argv)
+{
+  g_test_init (&argc, &argv, NULL);
+  g_test_add_func ("/triangulate/exact", test_exact);
+  g_test_add_func ("/triangulate/covariance", test_covariance);
+  g_test_add_func ("/triangulate/outliers", test_outliers);
+  g_test_add_func ("/triangulate/max-error", test_max_error);
+  g_test_add_func ("/triangulate/multidic", test_multidic);
+  g_test_add_func ("/triangulate/same-bytes", test_same_bytes);
+  g_test_add_func ("/triangulate/wrong-counts", test_wrong_counts);
+  g_test_add_func ("/triangulate/bad-cameras", test_bad_cameras);
+  g_test_add_func ("/triangulate/not-seen", test_not_seen);
+  g_test_add_func ("/triangulate/degenerate", test_degenerate);
+  return g_test_run ();
+}
