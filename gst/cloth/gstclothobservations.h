@@ -8,14 +8,26 @@
 
 G_BEGIN_DECLS
 
+/**
+ * GST_CLOTH_OBSERVATIONS_MEDIA_TYPE:
+ *
+ * Since: 0.1
+ */
 #define GST_CLOTH_OBSERVATIONS_MEDIA_TYPE "application/x-cloth-observations"
+
+/**
+ * GST_CLOTH_OBSERVATIONS_CAPS:
+ *
+ * Template caps of an observation stream; width and height are those of the picture
+ * that the places refer to.
+ *
+ * Since: 0.1
+ */
 #define GST_CLOTH_OBSERVATIONS_CAPS GST_CLOTH_OBSERVATIONS_MEDIA_TYPE ", " \
     "version=(int)1, width=(int)[ 1, 16384 ], height=(int)[ 1, 16384 ], " \
     "framerate=(fraction)[ 0/1, max ]"
 
-/* A new buffer with the cloth metas of @buffer serialised, timestamps copied. */
 GST_CLOTH_API GstBuffer *gst_cloth_observations_pack (GstBuffer * buffer);
-/* Adds to @target (writable) the metas that @observation holds. */
 GST_CLOTH_API gboolean gst_cloth_observations_unpack (GstBuffer * observation,
     GstBuffer * target, GError ** error);
 
