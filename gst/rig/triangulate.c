@@ -702,6 +702,47 @@ finish_point (ClothTriangulator * self, Scratch * scratch, guint point,
   store_point (self, point, reason, out, seen, n, n_seen);
 }
 
+/* Whether all points of a block were seen by all of its views and agree. */
+static gboolean
+block_is_clean (const ClothTriangulator * self, const gdouble * out,
+    guint n_views)
+{
+  guint bad = n_views < self->parameters.min_views;
+
+  for (guint l = 0; l < BLOCK; l++)
+    bad |= (guint) (out[OUT_COUNT * BLOCK + l] != n_views)
+        | (guint) (judge (out + l) != CLOTH_POINT_FINE)
+        | (guint) ! agrees (self, out + l);
+  return !bad;
+}
+
+static void
+store_block (ClothTriangulator * self, guint first, const gdouble * out,
+    const guint8 * views, guint n_views)
+{
+  ClothTriangulation *r = &self->result;
+  gdouble s2 = self->scale * self->scale;
+  guint64 mask = 0;
+
+  for (guint i = 0; i < n_views; i++)
+    mask |= G_GUINT64_CONSTANT (1) << views[i];
+  for (gint j = 0; j < 3; j++)
+    for (guint l = 0; l < BLOCK; l++)
+      r->position[j][first + l] = self->origin[j] + self->scale *
+          out[(OUT_X + j) * BLOCK + l];
+  for (gint j = 0; j < 6; j++)
+    for (guint l = 0; l < BLOCK; l++)
+      r->covariance[j][first + l] = s2 * out[(OUT_XX + j) * BLOCK + l];
+  memcpy (r->chi2 + first, out + OUT_CHI2 * BLOCK, BLOCK * sizeof (gdouble));
+  for (guint l = 0; l < BLOCK; l++)
+    r->views[first + l] = mask;
+  memset (r->reason + first, CLOTH_POINT_FINE, BLOCK);
+  memset (r->n_rejected + first, 0, BLOCK);
+  memset (r->n_views + first, (int) n_views, BLOCK);
+  memset (r->state + first,
+      n_views > 2 ? CLOTH_POINT_MEASURED : CLOTH_POINT_TWO_VIEWS, BLOCK);
+}
+
 static void
 run_blocks (gpointer data, guint begin, guint end, guint worker)
 {
@@ -723,6 +764,11 @@ run_blocks (gpointer data, guint begin, guint end, guint worker)
     if (n_views > 1)
       self->kernel->solve (self->cameras, scratch->obs, views, n_views,
           scratch->out);
+    if (n == BLOCK && n_views > 1
+        && block_is_clean (self, scratch->out, n_views)) {
+      store_block (self, first, scratch->out, views, n_views);
+      continue;
+    }
     for (guint l = 0; l < n; l++)
       finish_point (self, scratch, first + l, l, views, n_views);
   }

@@ -5,11 +5,13 @@
 
 #include <math.h>
 
-/* Gauss–Newton steps; two or three are the rule. */
+/* Gauss–Newton steps; one or two are the rule. */
 #define MAX_STEPS 12
-/* δᵀHδ below which a step is the last one: 1e-4 standard deviations. What is left after
- * it is smaller by the ratio of error to distance. */
-#define LAST_STEP 1e-8
+/* A step of at most one standard deviation (δᵀHδ) and of a thousandth of the cameras'
+ * distance is the last one: it leaves a thousandth of itself, and the chord step after it
+ * a thousandth of that. */
+#define LAST_SIGMA 1.
+#define LAST_RELATIVE 1e-6
 /* A pivot this small against the trace: the distance is not determined. */
 #define SINGULAR 1e-13
 /* Newton steps that undistort, and the error before the last of them: it leaves its

@@ -45,7 +45,7 @@ INLINE void
 NAME (brown) (const TriangulateCamera * camera, V x, V y, V * dx, V * dy,
     V J[3])
 {
-  const gdouble *k = camera->k;
+  const gdouble * k = camera->k;
   V xx = x * x, yy = y * y, xy = x * y, q = xx + yy;
   V c = 1. + q * (k[0] + q * (k[1] + q * k[4]));
   V dc = k[0] + q * (2. * k[1] + q * (3. * k[4]));
@@ -231,16 +231,18 @@ NAME (linear) (const TriangulateCamera * cameras, const gdouble * obs,
   X[2] = x2 * b;
 }
 
-/* Reprojection of X in one view: error e, derivative of (e·depth) J0, J1, 1/depth. */
+/* Reprojection of X in one view: error e, derivative of (e·depth) J0, J1, depth,
+ * returns 1/depth. */
 INLINE V
 NAME (reproject) (const gdouble * P, const gdouble * o, const V X[3], V e[2],
-    V J0[3], V J1[3])
+    V J0[3], V J1[3], V * depth)
 {
   V p = P[0] * X[0] + P[1] * X[1] + P[2] * X[2] + P[3];
   V q = P[4] * X[0] + P[5] * X[1] + P[6] * X[2] + P[7];
   V r = P[8] * X[0] + P[9] * X[1] + P[10] * X[2] + P[11];
   V i = 1. / r;
 
+  *depth = r;
   p = p * i;
   q = q * i;
   e[0] = p - LOAD (o + OBS_X * BLOCK);
@@ -257,12 +259,13 @@ INLINE void
 NAME (solve_group) (const TriangulateCamera * cameras, const gdouble * obs,
     const guint8 * views, guint n_views, gdouble * out)
 {
-  V zero = (V) {0.}, X[3], C[6];
+  V zero = (V) {0.}, X[3], C[6], g[3];
   V i0 = zero, i1 = zero, i2 = zero, l10 = zero, l20 = zero, l21 = zero;
   V chi2 = zero, worst = zero, worst_px = zero, depth = zero + G_MAXDOUBLE;
   V count = zero;
   M open, singular = (M) { 0 };
 
+  g[0] = g[1] = g[2] = zero;
   for (guint i = 0; i < n_views; i++) {
     V w = LOAD (obs + views[i] * (N_OBS * BLOCK) + OBS_IXX * BLOCK);
 
@@ -279,9 +282,9 @@ NAME (solve_group) (const TriangulateCamera * cameras, const gdouble * obs,
 
     for (guint i = 0; i < n_views; i++) {
       const gdouble *o = obs + views[i] * (N_OBS * BLOCK);
-      V e[2], J0[3], J1[3], iz, iz2, ixx, ixy, iyy, B0[3], B1[3];
+      V e[2], J0[3], J1[3], z, iz, iz2, ixx, ixy, iyy, B0[3], B1[3];
 
-      iz = NAME (reproject) (cameras[views[i]].P, o, X, e, J0, J1);
+      iz = NAME (reproject) (cameras[views[i]].P, o, X, e, J0, J1, &z);
       iz2 = iz * iz;
       ixx = LOAD (o + OBS_IXX * BLOCK);
       ixy = LOAD (o + OBS_IXY * BLOCK);
@@ -329,7 +332,8 @@ NAME (solve_group) (const TriangulateCamera * cameras, const gdouble * obs,
     X[1] = NAME (choose) (open, X[1] - d1, X[1]);
     X[2] = NAME (choose) (open, X[2] - d2, X[2]);
     /* NaN ends it too, and is found out afterwards */
-    open &= MASK (size > LAST_STEP);
+    open &= MASK (size > LAST_SIGMA) | MASK (d0 * d0 + d1 * d1 + d2 * d2 >
+        LAST_RELATIVE);
   }
 
   /* inverse of L·D·Lᵀ */
@@ -346,11 +350,11 @@ NAME (solve_group) (const TriangulateCamera * cameras, const gdouble * obs,
   for (guint i = 0; i < n_views; i++) {
     const TriangulateCamera *camera = &cameras[views[i]];
     const gdouble *o = obs + views[i] * (N_OBS * BLOCK);
-    V e[2], J0[3], J1[3], iz, ixx, ixy, iyy, B0[3], B1[3], D0[3], D1[3];
+    V e[2], J0[3], J1[3], z, iz, ixx, ixy, iyy, B0[3], B1[3], D0[3], D1[3];
     V f0, f1, q00, q01, q11, det, w;
     M seen;
 
-    iz = NAME (reproject) (camera->P, o, X, e, J0, J1);
+    iz = NAME (reproject) (camera->P, o, X, e, J0, J1, &z);
     ixx = LOAD (o + OBS_IXX * BLOCK);
     ixy = LOAD (o + OBS_IXY * BLOCK);
     iyy = LOAD (o + OBS_IYY * BLOCK);
@@ -358,6 +362,10 @@ NAME (solve_group) (const TriangulateCamera * cameras, const gdouble * obs,
     f0 = ixx * e[0] + ixy * e[1];
     f1 = ixy * e[0] + iyy * e[1];
     chi2 += f0 * e[0] + f1 * e[1];
+    q00 = f0 * iz;
+    q11 = f1 * iz;
+    for (gint j = 0; j < 3; j++)
+      g[j] += J0[j] * q00 + J1[j] * q11;
     for (gint j = 0; j < 3; j++) {
       B0[j] = (ixx * J0[j] + ixy * J1[j]) * iz;
       B1[j] = (ixy * J0[j] + iyy * J1[j]) * iz;
@@ -383,10 +391,13 @@ NAME (solve_group) (const TriangulateCamera * cameras, const gdouble * obs,
     seen = MASK (ixx > 0.);
     w = (e[0] * e[0] + e[1] * e[1]) * camera->area;
     worst_px = NAME (choose) (seen & MASK (w > worst_px), w, worst_px);
-    w = 1. / iz;
     /* also when it is NaN */
-    depth = NAME (choose) (seen & ~MASK (w > depth), w, depth);
+    depth = NAME (choose) (seen & ~MASK (z > depth), z, depth);
   }
+  /* One more step with the matrix at hand. */
+  X[0] -= C[0] * g[0] + C[1] * g[1] + C[2] * g[2];
+  X[1] -= C[1] * g[0] + C[3] * g[1] + C[4] * g[2];
+  X[2] -= C[2] * g[0] + C[4] * g[1] + C[5] * g[2];
   /* Two views have one degree of freedom together, none apart. */
   worst = NAME (choose) (MASK (count > 2.), worst, chi2);
 
