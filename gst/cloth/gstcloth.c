@@ -13,7 +13,11 @@
  *
  * Since: 0.1
  */
-G_DEFINE_QUARK (gst - cloth - error - quark, gst_cloth_error);
+GQuark
+gst_cloth_error_quark (void)
+{
+  return g_quark_from_static_string ("gst-cloth-error-quark");
+}
 
 /* TRUE when a meta's transformation is a change of the picture's size */
 gboolean

@@ -31,7 +31,7 @@ G_BEGIN_DECLS
  *
  * Since: 0.1
  */
-#define GST_CLOTH_NO_VERTEX 0xffffffffu
+#define GST_CLOTH_NO_VERTEX ((guint32) 0xffffffff)
 
 typedef struct _GstClothTopology GstClothTopology;
 typedef struct _GstClothMesh GstClothMesh;

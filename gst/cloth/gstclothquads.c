@@ -47,6 +47,71 @@ gst_cloth_quad_free (GstClothQuad * quad)
   g_free (quad);
 }
 
+/**
+ * gst_cloth_quad_get_corner:
+ * @quad: a quad
+ * @corner: 0..3: top-left, top-right, bottom-right, bottom-left on the flat cloth
+ * @x: (out) (optional): column, px
+ * @y: (out) (optional): row, px
+ * @cov_xx: (out) (optional): variance of @x, px²
+ * @cov_xy: (out) (optional): covariance of @x and @y, px²
+ * @cov_yy: (out) (optional): variance of @y, px²
+ *
+ * For languages that can't read arrays inside a struct.
+ *
+ * Returns: %FALSE when there is no such corner
+ *
+ * Since: 0.1
+ */
+gboolean
+gst_cloth_quad_get_corner (const GstClothQuad * quad, guint corner, gfloat * x,
+    gfloat * y, gfloat * cov_xx, gfloat * cov_xy, gfloat * cov_yy)
+{
+  if (corner > 3)
+    return FALSE;
+  if (x)
+    *x = quad->x[corner];
+  if (y)
+    *y = quad->y[corner];
+  if (cov_xx)
+    *cov_xx = quad->cov_xx[corner];
+  if (cov_xy)
+    *cov_xy = quad->cov_xy[corner];
+  if (cov_yy)
+    *cov_yy = quad->cov_yy[corner];
+  return TRUE;
+}
+
+/**
+ * gst_cloth_quad_set_corner:
+ * @quad: a quad
+ * @corner: 0..3: top-left, top-right, bottom-right, bottom-left on the flat cloth
+ * @x: column, px
+ * @y: row, px
+ * @cov_xx: variance of @x, px²
+ * @cov_xy: covariance of @x and @y, px²
+ * @cov_yy: variance of @y, px²
+ *
+ * For languages that can't write arrays inside a struct.
+ *
+ * Returns: %FALSE when there is no such corner
+ *
+ * Since: 0.1
+ */
+gboolean
+gst_cloth_quad_set_corner (GstClothQuad * quad, guint corner, gfloat x,
+    gfloat y, gfloat cov_xx, gfloat cov_xy, gfloat cov_yy)
+{
+  if (corner > 3)
+    return FALSE;
+  quad->x[corner] = x;
+  quad->y[corner] = y;
+  quad->cov_xx[corner] = cov_xx;
+  quad->cov_xy[corner] = cov_xy;
+  quad->cov_yy[corner] = cov_yy;
+  return TRUE;
+}
+
 static GstClothQuads *
 quads_alloc (const gchar * camera, guint64 sequence, guint columns, guint rows,
     guint n_quads)

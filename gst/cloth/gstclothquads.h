@@ -76,6 +76,10 @@ struct _GstClothQuadsMeta {
 GST_CLOTH_API GType gst_cloth_quad_get_type (void);
 GST_CLOTH_API GstClothQuad *gst_cloth_quad_copy (const GstClothQuad * quad);
 GST_CLOTH_API void gst_cloth_quad_free (GstClothQuad * quad);
+GST_CLOTH_API gboolean gst_cloth_quad_get_corner (const GstClothQuad * quad, guint corner,
+    gfloat * x, gfloat * y, gfloat * cov_xx, gfloat * cov_xy, gfloat * cov_yy);
+GST_CLOTH_API gboolean gst_cloth_quad_set_corner (GstClothQuad * quad, guint corner,
+    gfloat x, gfloat y, gfloat cov_xx, gfloat cov_xy, gfloat cov_yy);
 
 GST_CLOTH_API GType gst_cloth_quads_get_type (void);
 GST_CLOTH_API GstClothQuads *gst_cloth_quads_new (const gchar * camera,
