@@ -15,24 +15,27 @@
 
 #define OUTPUT_BUFFER (1u << 18)
 
-G_DEFINE_QUARK (cloth - mesh - error - quark, cloth_mesh_error)
-     struct _ClothInput
-     {
-       gint fd;                 /* -1: memory */
-       const guint8 *data;
-       guint64 size;
-     };
+/* *INDENT-OFF* */
+G_DEFINE_QUARK (cloth-mesh-error-quark, cloth_mesh_error)
+/* *INDENT-ON* */
 
-     struct _ClothOutput
-     {
-       gchar *path;
-       gchar *temporary;        /* NULL once renamed */
-       FILE *file;              /* NULL once finished */
-     };
+struct _ClothInput
+{
+  gint fd;                      /* -1: memory */
+  const guint8 *data;
+  guint64 size;
+};
 
-     static gboolean
-         fail_errno (GError ** error, gint code, const gchar * doing,
-    const gchar * path)
+struct _ClothOutput
+{
+  gchar *path;
+  gchar *temporary;             /* NULL once renamed */
+  FILE *file;                   /* NULL once finished */
+  gboolean sync;
+};
+
+static gboolean
+fail_errno (GError ** error, gint code, const gchar * doing, const gchar * path)
 {
   g_autofree gchar *shown = g_filename_display_name (path);
 
@@ -240,6 +243,7 @@ cloth_output_new (const gchar * path, GError ** error)
   }
   output = g_new0 (ClothOutput, 1);
   output->path = g_strdup (path);
+  output->sync = TRUE;
   output->temporary = g_steal_pointer (&temporary);
   output->file = fdopen (fd, "wb");
   if (!output->file) {
@@ -250,6 +254,20 @@ cloth_output_new (const gchar * path, GError ** error)
   }
   setvbuf (output->file, NULL, _IOFBF, OUTPUT_BUFFER);
   return output;
+}
+
+/**
+ * cloth_output_set_sync:
+ * @output: an output
+ * @sync: whether finishing waits until the bytes are on the disk, as it does by
+ *   default. A sequence of small files would wait for each of them.
+ *
+ * Since: 0.1
+ */
+void
+cloth_output_set_sync (ClothOutput * output, gboolean sync)
+{
+  output->sync = sync;
 }
 
 /**
@@ -336,7 +354,8 @@ cloth_output_finish (ClothOutput * output, GError ** error)
 
   if (!output->file)
     return TRUE;
-  if (fflush (output->file) != 0 || fsync (fileno (output->file)) < 0)
+  if (fflush (output->file) != 0 ||
+      (output->sync && fsync (fileno (output->file)) < 0))
     failed = errno;
   if (fclose (output->file) != 0 && !failed)
     failed = errno;

@@ -493,6 +493,35 @@ cloth_npy_reader_read_double (ClothNpyReader * reader, guint64 first_row,
 }
 
 /**
+ * cloth_npy_reader_read_raw:
+ * @reader: a reader
+ * @first_row: the first row wanted
+ * @n_rows: how many rows
+ * @items: (out caller-allocates): room for `n_rows * row_items` items of the file's
+ *   own type
+ * @error: #ClothMeshError, #GIOErrorEnum
+ *
+ * Reads rows as they are, in the processor's byte order.
+ *
+ * Returns: %TRUE when all were read
+ * Since: 0.1
+ */
+gboolean
+cloth_npy_reader_read_raw (ClothNpyReader * reader, guint64 first_row,
+    guint64 n_rows, gpointer items, GError ** error)
+{
+  gsize size = reader->info.item_size;
+  guint64 offset, n_items;
+
+  if (!find_rows (&reader->info, first_row, n_rows, &offset, &n_items, error) ||
+      !cloth_input_read_at (reader->input, offset, items,
+          (gsize) n_items * size, error))
+    return FALSE;
+  cloth_swap_little_endian (items, size, (gsize) n_items);
+  return TRUE;
+}
+
+/**
  * cloth_npy_reader_free:
  * @reader: (transfer full) (nullable): a reader
  *

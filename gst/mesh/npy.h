@@ -73,6 +73,8 @@ gboolean cloth_npy_reader_read_float (ClothNpyReader * reader,
     guint64 first_row, guint64 n_rows, gfloat * items, GError ** error);
 gboolean cloth_npy_reader_read_double (ClothNpyReader * reader,
     guint64 first_row, guint64 n_rows, gdouble * items, GError ** error);
+gboolean cloth_npy_reader_read_raw (ClothNpyReader * reader,
+    guint64 first_row, guint64 n_rows, gpointer items, GError ** error);
 void cloth_npy_reader_free (ClothNpyReader * reader);
 gfloat *cloth_npy_load_float (const gchar * path, ClothNpyInfo * info,
     GError ** error);

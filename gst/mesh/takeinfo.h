@@ -1,0 +1,97 @@
+/* take.json: what a take says of itself.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/mesh/topology.h"
+
+G_BEGIN_DECLS
+
+/**
+ * ClothHeld:
+ * @vertex: a vertex that a clamp holds
+ * @from_s: held from here on, seconds; −∞ when from the beginning
+ * @until_s: let go here, seconds; ∞ when held to the end
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  guint vertex;
+  gdouble from_s;
+  gdouble until_s;
+} ClothHeld;
+
+/**
+ * ClothObstacleKind:
+ * @CLOTH_OBSTACLE_SPHERE: a ball
+ * @CLOTH_OBSTACLE_PLANE: a half-space that the normal points out of
+ *
+ * Since: 0.1
+ */
+typedef enum {
+  CLOTH_OBSTACLE_SPHERE,
+  CLOTH_OBSTACLE_PLANE
+} ClothObstacleKind;
+
+/**
+ * ClothObstacle:
+ * @kind: its shape
+ * @point: centre of the sphere, or a point of the plane, metres
+ * @normal: unit normal of the plane
+ * @radius_m: radius of the sphere, metres
+ * @friction: coefficient of friction, NaN when unknown
+ *
+ * Something at rest that the cloth may touch.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  ClothObstacleKind kind;
+  gdouble point[3];
+  gdouble normal[3];
+  gdouble radius_m;
+  gdouble friction;
+} ClothObstacle;
+
+/**
+ * ClothTakeInfo:
+ * @name: its name
+ * @fps: frames a second, 0 when only times.npy says
+ * @columns: vertices of a row of the grid, 0 with a mesh file
+ * @rows: rows of vertices of the grid
+ * @width_m: width of the grid, metres
+ * @height_m: its height, metres
+ * @mesh: (nullable): name of the OBJ file in the folder, when it is no grid
+ * @held: (element-type ClothHeld): what clamps hold, in the order of clamps.npy
+ * @noise_sigma_m: standard deviation of a coordinate, metres; NaN: estimate it
+ * @gravity: m/s²
+ * @obstacles: (element-type ClothObstacle): what the cloth may touch
+ * @notes: (nullable): for people
+ *
+ * The contents of take.json.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  gchar *name;
+  gdouble fps;
+  guint columns;
+  guint rows;
+  gdouble width_m;
+  gdouble height_m;
+  gchar *mesh;
+  GArray *held;
+  gdouble noise_sigma_m;
+  gdouble gravity[3];
+  GArray *obstacles;
+  gchar *notes;
+} ClothTakeInfo;
+
+ClothTakeInfo *cloth_take_info_new (const gchar * name);
+ClothTakeInfo *cloth_take_info_parse (const gchar * json, gsize size,
+    GError ** error);
+gchar *cloth_take_info_to_json (const ClothTakeInfo * info);
+void cloth_take_info_free (ClothTakeInfo * info);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothTakeInfo, cloth_take_info_free)
+G_END_DECLS

@@ -1,0 +1,23 @@
+/* Fuzz target: OBJ files.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <string.h>
+
+#include "gst/mesh/obj.h"
+
+int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
+
+int
+LLVMFuzzerTestOneInput (const guint8 * data, gsize size)
+{
+  g_autofree gchar *text = g_malloc (size + 1);
+  g_autoptr (ClothObj) obj = NULL;
+
+  if (size > 0)
+    memcpy (text, data, size);
+  text[size] = 0;
+  obj = cloth_obj_parse (text, size, NULL);
+  if (obj && !cloth_topology_check (obj->topology, NULL))
+    g_error ("an accepted mesh is not valid");
+  return 0;
+}
