@@ -1,0 +1,375 @@
+/* Print files of patterns at true size: layout on sheets, PDF and SVG files.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/pattern/print.h"
+
+#include "gst/pattern/sheet.h"
+
+#include <cairo-pdf.h>
+#include <cairo-svg.h>
+#include <math.h>
+#include <string.h>
+
+#define MM_PER_POINT (25.4 / 72)
+/* What PDF viewers take: 14,400 points. */
+#define MAX_PAGE_MM 5080.0
+#define MAX_SHEETS 400
+#define MIN_TILE_MM 50.0
+
+/**
+ * cloth_print_paper:
+ * @name: "A0" to "A5", "letter", "legal", "tabloid", "cloth" or a size as "600x900mm"
+ * @paper_mm: (out): width and height, mm; 0, 0 for "cloth"
+ *
+ * Returns: whether the name is known
+ *
+ * Since: 0.1
+ */
+gboolean
+cloth_print_paper (const gchar * name, gdouble paper_mm[2])
+{
+  static const struct
+  {
+    const gchar *name;
+    gdouble width, height;
+  } papers[] = {
+    {"cloth", 0, 0}, {"A0", 841, 1189}, {"A1", 594, 841}, {"A2", 420, 594},
+    {"A3", 297, 420}, {"A4", 210, 297}, {"A5", 148, 210},
+    {"letter", 215.9, 279.4}, {"legal", 215.9, 355.6}, {"tabloid", 279.4,
+        431.8}
+  };
+  gchar *end;
+
+  for (gsize i = 0; i < G_N_ELEMENTS (papers); i++) {
+    if (!g_ascii_strcasecmp (name, papers[i].name)) {
+      paper_mm[0] = papers[i].width;
+      paper_mm[1] = papers[i].height;
+      return TRUE;
+    }
+  }
+  if (!g_ascii_isdigit (name[0]))
+    return FALSE;
+  paper_mm[0] = g_ascii_strtod (name, &end);
+  if (*end != 'x' || !g_ascii_isdigit (end[1]))
+    return FALSE;
+  paper_mm[1] = g_ascii_strtod (end + 1, &end);
+  return !strcmp (end, "mm") && paper_mm[0] > 0 && paper_mm[1] > 0
+      && isfinite (paper_mm[0]) && isfinite (paper_mm[1]);
+}
+
+static gboolean
+refuse (GError ** error, const gchar * why)
+{
+  g_set_error_literal (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_VALUE,
+      why);
+  return FALSE;
+}
+
+/* Sheets that tiles of @tile take for @cloth along one direction. */
+static gdouble
+count_sheets (gdouble cloth, gdouble tile, gdouble overlap)
+{
+  return cloth <= tile ? 1 : ceil ((cloth - overlap) / (tile - overlap) - 1e-9);
+}
+
+static gboolean
+lay_paper (const ClothPrintOptions * options, ClothPrintLayout * layout,
+    GError ** error)
+{
+  const gdouble margin = options->margin_mm, overlap = options->overlap_mm;
+  gdouble least = G_MAXDOUBLE;
+
+  for (gint turned = 0; turned < 2; turned++) {
+    const gdouble page[2] =
+        { options->paper_mm[turned], options->paper_mm[1 - turned] };
+    const gdouble room[2] = { page[0] - 2 * margin,
+      page[1] - 2 * margin - CLOTH_SHEET_STRIP_MM
+    };
+    gdouble sheets[2];
+
+    if (!(room[0] >= CLOTH_SHEET_STRIP_WIDTH_MM && room[1] >= MIN_TILE_MM
+            && MIN (room[0], room[1]) >= 2 * overlap))
+      continue;
+    for (gint i = 0; i < 2; i++)
+      sheets[i] = count_sheets (layout->cloth_mm[i], room[i], overlap);
+    if (sheets[0] * sheets[1] >= least)
+      continue;
+    least = sheets[0] * sheets[1];
+    for (gint i = 0; i < 2; i++) {
+      layout->page_mm[i] = page[i];
+      layout->tile_mm[2 + i] = MIN (room[i], layout->cloth_mm[i]);
+      layout->step_mm[i] = layout->tile_mm[2 + i] - overlap;
+      layout->sheets[i] = (gint) MIN (sheets[i], MAX_SHEETS + 1);
+    }
+  }
+  if (least == G_MAXDOUBLE)
+    return refuse (error, "the paper is too small for a ruler of 100 mm and a "
+        "part of the cloth: use A5 or larger, less margin or less overlap");
+  if (least > MAX_SHEETS) {
+    g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_VALUE,
+        "the cloth would take %.0f sheets: use larger paper, at most %d are "
+        "made", least, MAX_SHEETS);
+    return FALSE;
+  }
+  return TRUE;
+}
+
+/**
+ * cloth_print_layout:
+ * @pattern: a pattern
+ * @options: paper, margin, overlap
+ * @layout: (out): where everything goes
+ * @error: return location
+ *
+ * Lays the cloth out on sheets of paper, upright or lying, whichever takes fewer. Below
+ * the cloth every sheet has a strip with a ruler, grey patches and a caption.
+ *
+ * Returns: %FALSE with %CLOTH_PATTERN_ERROR_VALUE
+ *
+ * Since: 0.1
+ */
+gboolean
+cloth_print_layout (const ClothPattern * pattern,
+    const ClothPrintOptions * options, ClothPrintLayout * layout,
+    GError ** error)
+{
+  const gdouble margin = options->margin_mm;
+
+  if (!cloth_pattern_check (pattern, error))
+    return FALSE;
+  if (!(margin >= 0 && margin <= 100))
+    return refuse (error, "the paper's margin must be 0 to 100 mm");
+  if (!(options->overlap_mm >= 0 && options->overlap_mm <= 100))
+    return refuse (error, "the sheets' overlap must be 0 to 100 mm");
+  memset (layout, 0, sizeof *layout);
+  /* A nanometre is enough; it rids 0.63 m of its 630.0000000000001 mm. */
+  for (gint i = 0; i < 2; i++)
+    layout->cloth_mm[i] = round (pattern->cloth_m[i] * 1e9) / 1e6;
+  if (options->paper_mm[0] == 0 && options->paper_mm[1] == 0) {
+    layout->sheets[0] = layout->sheets[1] = 1;
+    layout->page_mm[0] = 2 * margin
+        + MAX (layout->cloth_mm[0], CLOTH_SHEET_STRIP_WIDTH_MM);
+    layout->page_mm[1] =
+        2 * margin + layout->cloth_mm[1] + CLOTH_SHEET_STRIP_MM;
+    for (gint i = 0; i < 2; i++)
+      layout->tile_mm[2 + i] = layout->step_mm[i] = layout->cloth_mm[i];
+  } else if (!lay_paper (options, layout, error)) {
+    return FALSE;
+  }
+  if (!(MAX (layout->page_mm[0], layout->page_mm[1]) <= MAX_PAGE_MM)) {
+    g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_VALUE,
+        "a page of %.0f by %.0f mm: at most %.0f mm print; choose a paper to "
+        "spread it on sheets", layout->page_mm[0], layout->page_mm[1],
+        MAX_PAGE_MM);
+    return FALSE;
+  }
+  layout->tile_mm[0] = layout->tile_mm[1] = margin;
+  return TRUE;
+}
+
+static cairo_status_t
+append_bytes (void *closure, const unsigned char *data, unsigned int length)
+{
+  g_byte_array_append (closure, data, length);
+  return CAIRO_STATUS_SUCCESS;
+}
+
+/* Takes @cr and @surface; the bytes they wrote are in @bytes. */
+static gboolean
+finish (cairo_t * cr, cairo_surface_t * surface, GError ** error)
+{
+  cairo_status_t status = cairo_status (cr);
+
+  cairo_destroy (cr);
+  cairo_surface_finish (surface);
+  if (status == CAIRO_STATUS_SUCCESS)
+    status = cairo_surface_status (surface);
+  cairo_surface_destroy (surface);
+  if (status == CAIRO_STATUS_SUCCESS)
+    return TRUE;
+  g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_PRINT,
+      "drawing the pattern failed: %s", cairo_status_to_string (status));
+  return FALSE;
+}
+
+/* Equal input gives equal bytes: the date is the one that reproducible builds set, or
+ * the epoch. */
+static void
+set_pdf_date (cairo_surface_t * surface)
+{
+  const gchar *epoch = g_getenv ("SOURCE_DATE_EPOCH");
+  gint64 seconds = epoch ? g_ascii_strtoll (epoch, NULL, 10) : 0;
+  g_autoptr (GDateTime) date = g_date_time_new_from_unix_utc (seconds);
+  g_autofree gchar *text = NULL;
+
+  if (!date)
+    date = g_date_time_new_from_unix_utc (0);
+  text = g_date_time_format (date, "%Y-%m-%dT%H:%M:%SZ");
+  cairo_pdf_surface_set_metadata (surface, CAIRO_PDF_METADATA_CREATE_DATE,
+      text);
+}
+
+/**
+ * cloth_print_pdf:
+ * @pattern: a pattern
+ * @options: paper, margin, overlap
+ * @error: return location
+ *
+ * Draws @pattern as a PDF with a page for each sheet, row by row, at true size. Equal
+ * input gives equal bytes on a machine; the creation date is that of the environment
+ * variable SOURCE_DATE_EPOCH, else 1970.
+ *
+ * Returns: (transfer full): the file, or %NULL with a #ClothPatternError
+ *
+ * Since: 0.1
+ */
+GBytes *
+cloth_print_pdf (const ClothPattern * pattern,
+    const ClothPrintOptions * options, GError ** error)
+{
+  g_autoptr (GByteArray) bytes = g_byte_array_new ();
+  ClothPrintLayout layout;
+  cairo_surface_t *surface;
+  cairo_t *cr;
+
+  if (!cloth_print_layout (pattern, options, &layout, error))
+    return NULL;
+  surface = cairo_pdf_surface_create_for_stream (append_bytes, bytes,
+      layout.page_mm[0] / MM_PER_POINT, layout.page_mm[1] / MM_PER_POINT);
+  set_pdf_date (surface);
+  cr = cairo_create (surface);
+  cairo_scale (cr, 1 / MM_PER_POINT, 1 / MM_PER_POINT);
+  for (gint row = 0; row < layout.sheets[1]; row++) {
+    for (gint column = 0; column < layout.sheets[0]; column++) {
+      cloth_sheet_draw (cr, pattern, options, &layout, column, row);
+      cairo_show_page (cr);
+    }
+  }
+  if (!finish (cr, surface, error))
+    return NULL;
+  return g_byte_array_free_to_bytes (g_steal_pointer (&bytes));
+}
+
+/* cairo numbers its surfaces within the process and writes the number as an id. */
+static void
+drop_surface_number (GByteArray * bytes)
+{
+  static const gchar mark[] = "id=\"surface";
+  guint8 *at = memmem (bytes->data, bytes->len, mark, strlen (mark));
+  guint start, n = 0;
+
+  if (!at)
+    return;
+  start = (guint) (at - bytes->data) + (guint) strlen (mark);
+  while (start + n < bytes->len && g_ascii_isdigit (bytes->data[start + n]))
+    n++;
+  if (n > 0)
+    g_byte_array_remove_range (bytes, start, n);
+}
+
+/**
+ * cloth_print_svg:
+ * @pattern: a pattern
+ * @options: paper, margin, overlap
+ * @column: which sheet across
+ * @row: which sheet down
+ * @error: return location
+ *
+ * Draws one sheet as an SVG whose size is given in mm. Equal input gives equal bytes.
+ *
+ * Returns: (transfer full): the file, or %NULL with a #ClothPatternError
+ *
+ * Since: 0.1
+ */
+GBytes *
+cloth_print_svg (const ClothPattern * pattern,
+    const ClothPrintOptions * options, gint column, gint row, GError ** error)
+{
+  g_autoptr (GByteArray) bytes = g_byte_array_new ();
+  ClothPrintLayout layout;
+  cairo_surface_t *surface;
+  cairo_t *cr;
+
+  if (!cloth_print_layout (pattern, options, &layout, error))
+    return NULL;
+  if (column < 0 || row < 0 || column >= layout.sheets[0]
+      || row >= layout.sheets[1]) {
+    refuse (error, "there is no such sheet");
+    return NULL;
+  }
+  surface = cairo_svg_surface_create_for_stream (append_bytes, bytes,
+      layout.page_mm[0], layout.page_mm[1]);
+  cairo_svg_surface_set_document_unit (surface, CAIRO_SVG_UNIT_MM);
+  cr = cairo_create (surface);
+  cloth_sheet_draw (cr, pattern, options, &layout, column, row);
+  if (!finish (cr, surface, error))
+    return NULL;
+  drop_surface_number (bytes);
+  return g_byte_array_free_to_bytes (g_steal_pointer (&bytes));
+}
+
+static gboolean
+save_bytes (GBytes * bytes, const gchar * path, GError ** error)
+{
+  gsize size;
+  const gchar *data;
+
+  if (!bytes)
+    return FALSE;
+  data = g_bytes_get_data (bytes, &size);
+  return g_file_set_contents (path, data, (gssize) size, error);
+}
+
+/**
+ * cloth_print_save:
+ * @pattern: a pattern
+ * @options: paper, margin, overlap
+ * @path: (type filename): where to; ends with .pdf or .svg
+ * @error: return location
+ *
+ * Writes the print file. Sheets of an SVG that takes several are files of their own:
+ * board.svg becomes board-1-1.svg, board-1-2.svg … (row, column). Each file appears
+ * whole or not at all.
+ *
+ * Returns: (transfer full) (array zero-terminated=1): the files' names; free with
+ *   g_strfreev(). %NULL with a #ClothPatternError or #GFileError
+ *
+ * Since: 0.1
+ */
+gchar **
+cloth_print_save (const ClothPattern * pattern,
+    const ClothPrintOptions * options, const gchar * path, GError ** error)
+{
+  g_autoptr (GPtrArray) names = g_ptr_array_new_with_free_func (g_free);
+  g_autofree gchar *stem = g_strdup (path);
+  ClothPrintLayout layout;
+
+  if (!cloth_print_layout (pattern, options, &layout, error))
+    return NULL;
+  if (g_str_has_suffix (path, ".pdf")) {
+    g_autoptr (GBytes) bytes = cloth_print_pdf (pattern, options, error);
+
+    if (!save_bytes (bytes, path, error))
+      return NULL;
+    g_ptr_array_add (names, g_strdup (path));
+  } else if (g_str_has_suffix (path, ".svg")) {
+    stem[strlen (path) - 4] = 0;
+    for (gint n = 0; n < layout.sheets[0] * layout.sheets[1]; n++) {
+      const gint column = n % layout.sheets[0], row = n / layout.sheets[0];
+      g_autoptr (GBytes) bytes =
+          cloth_print_svg (pattern, options, column, row, error);
+      gchar *name = layout.sheets[0] * layout.sheets[1] == 1 ? g_strdup (path)
+          : g_strdup_printf ("%s-%d-%d.svg", stem, row + 1, column + 1);
+
+      g_ptr_array_add (names, name);
+      if (!save_bytes (bytes, name, error))
+        return NULL;
+    }
+  } else {
+    g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_VALUE,
+        "%s: the name must end with .pdf or .svg", path);
+    return NULL;
+  }
+  g_ptr_array_add (names, NULL);
+  return (gchar **) g_ptr_array_free (g_steal_pointer (&names), FALSE);
+}

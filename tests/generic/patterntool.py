@@ -1,0 +1,127 @@
+#!/usr/bin/python3
+"""Runs gst-cloth-pattern-1.0 as a user does: good calls, bad calls, equal bytes.
+
+  patterntool.py TOOL VERSION MANPAGE
+
+SPDX-License-Identifier: LGPL-2.1-or-later
+"""
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+tool, version, manpage = os.path.abspath(sys.argv[1]), sys.argv[2], os.path.abspath(sys.argv[3])
+faults = []
+
+
+def run(folder, *arguments, **variables):
+    return subprocess.run([tool, *arguments], cwd=folder, capture_output=True, text=True, timeout=60,
+                          env=dict(os.environ, LC_ALL='C.UTF-8', **variables))
+
+
+def expect(true, what):
+    print('%s: %s' % ('ok' if true else 'FAULT', what))
+    if not true:
+        faults.append(what)
+
+
+def good_calls(folder):
+    done = run(folder, 'checker', '--columns', '8', '--rows', '8', '--square', '50mm',
+               '--first', 'black', '--paper', 'A3', '--output', 'board.pdf')
+    expect(done.returncode == 0 and not done.stderr, 'a checker on A3 ' + done.stderr)
+    expect(done.stdout == 'board.pdf\npattern.json\n', 'names of the files: %r' % done.stdout)
+    with open(os.path.join(folder, 'pattern.json'), encoding='utf-8') as file:
+        pattern = json.load(file)
+    expect(pattern == {'version': 1, 'pattern': 'checker', 'columns': 8, 'rows': 8,
+                       'square_m': 0.05, 'origin_uv_m': [0.025, 0.025],
+                       'cloth_m': [0.45, 0.45], 'first_square': 'black'}, 'pattern.json: %s' % pattern)
+    with open(os.path.join(folder, 'board.pdf'), 'rb') as file:
+        expect(file.read(5) == b'%PDF-', 'a PDF')
+
+    calls = []
+    for name in ('one', 'two'):
+        os.mkdir(os.path.join(folder, name))
+        done = run(folder, 'coded-checker', '--columns', '12', '--rows', '10', '--square', '1in',
+                   '--margin', '2cm', '--first', 'white', '--seed', '5', '--paper', 'letter',
+                   '--output', name + '/board.svg', SOURCE_DATE_EPOCH='1')
+        expect(done.returncode == 0, 'a coded checker ' + done.stderr)
+        names = done.stdout.split()
+        expect(names[-1] == name + '/pattern.json' and len(names) > 2, 'its sheets: %s' % names)
+        calls.append([open(os.path.join(folder, at), 'rb').read() for at in names])
+    expect(calls[0] == calls[1], 'equal calls give equal bytes')
+    pattern = json.loads(calls[0][-1])
+    rows = pattern['code']
+    expect(len(rows) == 10 and all(re.fullmatch('[01]{12}', row) for row in rows), 'a code')
+    expect(abs(pattern['square_m'] - 0.0254) < 1e-15 and pattern['origin_uv_m'] == [0.02, 0.02]
+           and pattern['first_square'] == 'white' and pattern['dot_ratio'] == 0.3, 'its numbers')
+    left = sorted(os.listdir(os.path.join(folder, 'one')))
+    expect(left == sorted(os.path.basename(name) for name in names), 'nothing else is left: %s' % left)
+
+
+def told(folder):
+    done = run(folder, '--version')
+    expect(done.returncode == 0 and version in done.stdout, '--version')
+    done = run(folder, '--help')
+    expect(done.returncode == 0, '--help')
+    with open(manpage, encoding='utf-8') as file:
+        page = file.read().replace('\\-', '-')
+    options = re.findall(r'--[a-z-]+', done.stdout)
+    expect(len(options) > 10, 'options in --help')
+    for option in sorted(set(options)):
+        expect(option in page, 'the manual page has ' + option)
+    expect(version in page, "the manual page's version")
+
+
+BAD_USAGE = [
+    ([], 'kind of pattern'),
+    (['--output', 'x.pdf'], 'kind of pattern'),
+    (['checker', 'checker', '--output', 'x.pdf'], 'kind of pattern'),
+    (['chequer', '--output', 'x.pdf'], 'no pattern "chequer"'),
+    (['checker'], '--output'),
+    (['checker', '--output', 'x.png'], '.pdf or .svg'),
+    (['checker', '--output', 'x.pdf', '--frist', 'black'], '--frist'),
+    (['checker', '--output', 'x.pdf', '--first', 'red'], 'black or white'),
+    (['checker', '--output', 'x.pdf', '--columns', 'eight'], 'eight'),
+    (['checker', '--output', 'x.pdf', '--columns', '0'], '1 to 500'),
+    (['checker', '--output', 'x.pdf', '--rows', '-3'], '1 to 500'),
+    (['checker', '--output', 'x.pdf', '--columns', '501'], '1 to 500'),
+    (['checker', '--output', 'x.pdf', '--columns', '99999999999999'], '--columns'),
+    (['checker', '--output', 'x.pdf', '--square', '50'], 'with its unit'),
+    (['checker', '--output', 'x.pdf', '--square', 'mm'], 'with its unit'),
+    (['checker', '--output', 'x.pdf', '--square', '-5mm'], 'with its unit'),
+    (['checker', '--output', 'x.pdf', '--square', 'nanmm'], 'with its unit'),
+    (['checker', '--output', 'x.pdf', '--square', '0mm'], 'square_m'),
+    (['checker', '--output', 'x.pdf', '--margin', '5parsec'], 'with its unit'),
+    (['checker', '--output', 'x.pdf', '--paper', 'A9'], 'A0 to A5'),
+    (['checker', '--output', 'x.pdf', '--paper', '20x20mm'], 'too small'),
+    (['checker', '--output', 'x.pdf', '--square', '5m', '--paper', 'A4'], 'sheets'),
+    (['checker', '--output', 'x.pdf', '--square', '5m'], 'paper'),
+    (['checker', '--output', 'x.pdf', '--page-margin', '1m'], 'margin'),
+    (['checker', '--output', 'x.pdf', '--overlap', '1m'], 'overlap'),
+    (['coded-checker', '--output', 'x.pdf', '--columns', '3'], 'at least 4 by 4'),
+    (['coded-checker', '--output', 'x.pdf', '--dot-ratio', '1'], 'dot'),
+    (['coded-checker', '--output', 'x.pdf', '--dot-ratio', 'nan'], 'dot'),
+]
+
+
+def bad_calls(folder):
+    for arguments, says in BAD_USAGE:
+        done = run(folder, *arguments)
+        expect(done.returncode == 2 and says in done.stderr and not done.stdout,
+               '%s: %d %r' % (' '.join(arguments), done.returncode, done.stderr))
+    done = run(folder, 'checker', '--output', 'nowhere/board.pdf')
+    expect(done.returncode == 1 and 'nowhere/board.pdf' in done.stderr, 'no such folder: %r' % done.stderr)
+    os.makedirs(os.path.join(folder, 'taken', 'pattern.json'))
+    done = run(folder, 'checker', '--output', 'taken/board.svg')
+    expect(done.returncode == 1 and 'pattern.json' in done.stderr, 'a folder in the way: %r' % done.stderr)
+    left = [name for _, _, names in os.walk(folder) for name in names]
+    expect(left == ['board.svg'], 'nothing half-written is left: %s' % left)
+
+
+for calls in (good_calls, told, bad_calls):
+    with tempfile.TemporaryDirectory(prefix='cloth-pattern-') as place:
+        calls(place)
+print('%d faults' % len(faults))
+sys.exit(1 if faults else 0)
