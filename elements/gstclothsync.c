@@ -27,15 +27,6 @@ GST_DEBUG_CATEGORY_STATIC (cloth_sync_debug);
 /* Keeps sums of times far from overflow. */
 #define MAX_TOLERANCE (3600 * GST_SECOND)
 
-struct _GstClothSyncPad
-{
-  GstAggregatorPad parent;
-
-  guint index;
-  GstClockTime period;          /* of a frame, by the caps; NONE when they don't say */
-  guint64 used, dropped;
-};
-
 G_DEFINE_TYPE (GstClothSyncPad, gst_cloth_sync_pad, GST_TYPE_AGGREGATOR_PAD);
 
 typedef struct
@@ -196,8 +187,10 @@ gst_cloth_sync_create_new_pad (GstAggregator * agg, GstPadTemplate * templ,
     return NULL;
   }
 
-  pad = g_object_new (GST_TYPE_CLOTH_SYNC_PAD, "name", name, "direction",
-      GST_PAD_SINK, "template", templ, NULL);
+  pad = g_object_new (g_type_is_a (GST_PAD_TEMPLATE_GTYPE (templ),
+          GST_TYPE_CLOTH_SYNC_PAD) ? GST_PAD_TEMPLATE_GTYPE (templ) :
+      GST_TYPE_CLOTH_SYNC_PAD, "name", name, "direction", GST_PAD_SINK,
+      "template", templ, NULL);
   pad->index = (guint) index;
   return GST_AGGREGATOR_PAD (pad);
 }

@@ -11,12 +11,42 @@ G_BEGIN_DECLS
 #define GST_CLOTH_SYNC_MAX_PADS 64
 
 #define GST_TYPE_CLOTH_SYNC_PAD (gst_cloth_sync_pad_get_type ())
-G_DECLARE_FINAL_TYPE (GstClothSyncPad, gst_cloth_sync_pad, GST, CLOTH_SYNC_PAD,
-    GstAggregatorPad)
+#define GST_CLOTH_SYNC_PAD(obj) (G_TYPE_CHECK_INSTANCE_CAST ((obj), \
+    GST_TYPE_CLOTH_SYNC_PAD, GstClothSyncPad))
+typedef struct _GstClothSyncPad GstClothSyncPad;
+typedef struct _GstClothSyncPadClass GstClothSyncPadClass;
 
 #define GST_TYPE_CLOTH_SYNC (gst_cloth_sync_get_type ())
 G_DECLARE_DERIVABLE_TYPE (GstClothSync, gst_cloth_sync, GST, CLOTH_SYNC,
     GstAggregator)
+
+/**
+ * GstClothSyncPad:
+ * @parent: the parent
+ * @index: what the pad is known by in the methods of #GstClothSyncClass
+ * @period: of a frame, by the caps; %GST_CLOCK_TIME_NONE when they don't say
+ * @used: frames that came into sets
+ * @dropped: frames that came too late
+ *
+ * A sink pad. A subclass that gives its pads properties derives them from this type and
+ * names its own in the pad template; all fields are the base's.
+ *
+ * Since: 0.1
+ */
+struct _GstClothSyncPad {
+  GstAggregatorPad parent;
+
+  guint index;
+  GstClockTime period;
+  guint64 used, dropped;
+};
+
+struct _GstClothSyncPadClass {
+  GstAggregatorPadClass parent_class;
+};
+
+GType gst_cloth_sync_pad_get_type (void);
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (GstClothSyncPad, gst_object_unref)
 
 /**
  * GstClothSyncClass:
