@@ -105,7 +105,9 @@ gst_cloth_sync_update_timing (GstClothSync * self)
   for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
     latest = MAX (latest, priv->offset[i]);
   }
-  latency = priv->effective + latest;
+  /* one stream alone waits for nothing */
+  latency =
+      latest + (GST_ELEMENT (self)->numsinkpads > 1 ? priv->effective : 0);
   GST_OBJECT_UNLOCK (self);
 
   gst_aggregator_set_latency (GST_AGGREGATOR (self), latency, latency);

@@ -7,10 +7,14 @@
 
 #include <gst/gst.h>
 
+#include "elements/gstclothoverlay.h"
+
 static gboolean
 plugin_init (GstPlugin * plugin)
 {
   gboolean registered = TRUE;
+
+  registered &= GST_ELEMENT_REGISTER (clothoverlay, plugin);
 
   return registered;
 }

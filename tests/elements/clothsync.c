@@ -834,10 +834,12 @@ GST_START_TEST (test_live_latency)
 {
   Bench b;
 
-  bench_init (&b, 1, TRUE);
+  bench_init (&b, 2, TRUE);
   push (&b, 0, 0);
-  expect (&b, 0, 1);
+  push (&b, 1, 0);
+  expect (&b, 0, 3);
   gst_harness_set_upstream_latency (b.in[0], 20 * MS);
+  gst_harness_set_upstream_latency (b.in[1], 10 * MS);
   g_object_set (b.sync, "latency", (guint64) 7 * MS, "tolerance",
       (guint64) 5 * MS, NULL);
   gst_cloth_sync_set_pad_offset (GST_CLOTH_SYNC (b.sync), 0, 2 * MS);

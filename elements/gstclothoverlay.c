@@ -1,0 +1,828 @@
+/* clothoverlay: draws what the other elements have found.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+
+/**
+ * SECTION:element-clothoverlay
+ * @title: clothoverlay
+ *
+ * Draws the saddles and squares that a picture carries as metadata, and, when its
+ * `mesh` pad is linked, a mesh as the camera `camera` of `rig` sees it. The picture is
+ * drawn on in place; one with nothing to draw passes untouched.
+ *
+ * ## Squares over a film
+ * |[
+ * gst-launch-1.0 filesrc location=cam0.mp4 ! decodebin ! saddledetect ! quadtrack ! \
+ *     clothoverlay draw-indices=true ! videoconvert ! autovideosink
+ * ]|
+ *
+ * ## A mesh over the picture of one of its cameras
+ * |[
+ * gst-launch-1.0 filesrc location=cam0.mp4 ! decodebin ! clothoverlay name=o \
+ *     rig=rig.json camera=cam0 ! videoconvert ! autovideosink \
+ *     meshsrc location=take ! o.mesh
+ * ]|
+ *
+ * Since: 0.1
+ */
+#ifdef HAVE_CONFIG_H
+#include "config.h"
+#endif
+
+#include "elements/gstclothoverlay.h"
+
+#include <gst/cloth/cloth.h>
+#include <gst/video/video.h>
+#include <math.h>
+
+#include "gst/rig/rigfile.h"
+#include "gst/vision/draw.h"
+#include "gst/vision/wireframe.h"
+
+GST_DEBUG_CATEGORY_STATIC (cloth_overlay_debug);
+#define GST_CAT_DEFAULT cloth_overlay_debug
+
+#define DEFAULT_DRAW_SADDLES TRUE
+#define DEFAULT_DRAW_QUADS TRUE
+#define DEFAULT_DRAW_INDICES FALSE
+#define DEFAULT_DRAW_MESH TRUE
+#define DEFAULT_LINE_WIDTH 1.5
+#define DEFAULT_OPACITY 1.0
+#define DEFAULT_FILL_OPACITY 0.3
+#define DEFAULT_C_LOW 0.62
+#define DEFAULT_ELLIPSE_SCALE 0.0
+
+/* indices of the pads */
+#define VIDEO 0
+#define MESH 1
+
+/* px: the arms of a saddle's cross, the dashes of a predicted square */
+#define CROSS_ARM 4.0f
+#define DASH 4.0f
+/* Of the lines of a mesh that lie behind another part of it. */
+#define HIDDEN_OPACITY 0.25f
+/* Indices on squares smaller than this could not be read, px. */
+#define LEAST_SIZE_FOR_INDEX 14.0f
+/* A calibration fits a picture of other size when the shapes agree this well. */
+#define ASPECT_SLACK 0.01
+
+#define FORMATS "{ GRAY8, I420, YV12, NV12, NV21, Y41B, Y42B, Y444, YUY2, UYVY, " \
+    "YVYU, AYUV, BGRx, RGBx, xBGR, xRGB, BGRA, RGBA, ABGR, ARGB, RGB, BGR }"
+
+static const ClothColour saddle_colour = { 0.10f, 0.90f, 0.95f, 1 };
+static const ClothColour text_on_black = { 1, 1, 1, 0.95f };
+static const ClothColour text_on_white = { 0.05f, 0.05f, 0.15f, 0.95f };
+
+/* by GstClothVertexState */
+static const ClothColour vertex_colours[] = {
+  {0.55f, 0.55f, 0.55f, 1},     /* unseen */
+  {0.20f, 0.85f, 0.45f, 1},     /* measured: green */
+  {1.00f, 0.72f, 0.15f, 1},     /* two views: amber */
+  {0.25f, 0.60f, 1.00f, 1},     /* filled: blue */
+  {0.75f, 0.45f, 1.00f, 1}      /* predicted: violet */
+};
+
+typedef struct
+{
+  gboolean draw_saddles, draw_quads, draw_indices, draw_mesh;
+  gfloat line_width, opacity, fill_opacity, c_low, ellipse_scale;
+} Style;
+
+struct _GstClothOverlay
+{
+  GstClothSync parent;
+
+  /* with the object lock */
+  Style style;
+  gchar *rig_path, *camera_name;
+  gboolean rig_changed;
+
+  /* streaming thread */
+  GstVideoInfo info;
+  GstCaps *video_caps;
+  ClothWireframe *wire;
+  guint n_vertices;
+  ClothRig *rig;
+  const ClothCamera *camera;    /* of @rig */
+};
+
+G_DEFINE_TYPE (GstClothOverlay, gst_cloth_overlay, GST_TYPE_CLOTH_SYNC);
+GST_ELEMENT_REGISTER_DEFINE_WITH_CODE (clothoverlay, "clothoverlay",
+    GST_RANK_NONE, GST_TYPE_CLOTH_OVERLAY,
+    GST_DEBUG_CATEGORY_INIT (cloth_overlay_debug, "clothoverlay", 0,
+        "drawing of cloth metadata and meshes"));
+
+enum
+{
+  PROP_0,
+  PROP_DRAW_SADDLES,
+  PROP_DRAW_QUADS,
+  PROP_DRAW_INDICES,
+  PROP_DRAW_MESH,
+  PROP_LINE_WIDTH,
+  PROP_OPACITY,
+  PROP_FILL_OPACITY,
+  PROP_C_LOW,
+  PROP_ELLIPSE_SCALE,
+  PROP_RIG,
+  PROP_CAMERA
+};
+
+static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE ("sink",
+    GST_PAD_SINK, GST_PAD_ALWAYS,
+    GST_STATIC_CAPS (GST_VIDEO_CAPS_MAKE (FORMATS)));
+static GstStaticPadTemplate mesh_template = GST_STATIC_PAD_TEMPLATE ("mesh",
+    GST_PAD_SINK, GST_PAD_REQUEST, GST_STATIC_CAPS (GST_CLOTH_MESH_CAPS));
+static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE ("src",
+    GST_PAD_SRC, GST_PAD_ALWAYS,
+    GST_STATIC_CAPS (GST_VIDEO_CAPS_MAKE (FORMATS)));
+
+/* ---- what is drawn ---- */
+
+static ClothColour
+with_opacity (ClothColour colour, gfloat opacity)
+{
+  colour.a *= opacity;
+  return colour;
+}
+
+static void
+draw_index (const ClothCanvas * canvas, const GstClothQuad * quad,
+    const ClothColour * colour)
+{
+  const gfloat *x = quad->x, *y = quad->y;
+  /* edges of the square as it lies in the picture */
+  gfloat right[2] = { 0.5f * (x[1] - x[0] + x[2] - x[3]),
+    0.5f * (y[1] - y[0] + y[2] - y[3])
+  };
+  gfloat down[2] = { 0.5f * (x[3] - x[0] + x[2] - x[1]),
+    0.5f * (y[3] - y[0] + y[2] - y[1])
+  };
+  gfloat size = MIN (hypotf (right[0], right[1]), hypotf (down[0], down[1]));
+  gint line, numbers[2] = { quad->column, quad->row };
+
+  if (!(size >= LEAST_SIZE_FOR_INDEX)) {
+    return;
+  }
+  for (line = 0; line < 2; line++) {
+    /* column above, row below; digits 0.16 wide and 0.28 high of the square */
+    gint digits = numbers[line] < 0 || numbers[line] > 9 ? 2 : 1;
+    gfloat u = 0.5f - 0.08f * (1 + 1.6f * (gfloat) (digits - 1));
+    gfloat v = line ? 0.57f : 0.15f;
+    gfloat origin[2] = { x[0] + u * right[0] + v * down[0],
+      y[0] + u * right[1] + v * down[1]
+    };
+    gfloat r[2] = { 0.16f * right[0], 0.16f * right[1] };
+    gfloat d[2] = { 0.28f * down[0], 0.28f * down[1] };
+
+    cloth_draw_number (canvas, numbers[line], origin, r, d,
+        MAX (1.0f, 0.04f * size), colour);
+  }
+}
+
+static void
+draw_quads (const ClothCanvas * canvas, const GstClothQuad * quads, guint n,
+    const Style * style)
+{
+  guint i;
+  gint k;
+
+  for (i = 0; i < n && style->draw_quads; i++) {
+    const GstClothQuad *q = &quads[i];
+    ClothColour colour =
+        cloth_draw_confidence_colour (q->confidence, style->c_low);
+
+    if (q->state == GST_CLOTH_QUAD_TRACKED) {
+      ClothColour fill =
+          with_opacity (colour, style->fill_opacity * style->opacity);
+
+      cloth_draw_quad (canvas, q->x, q->y, &fill);
+    }
+  }
+  for (i = 0; i < n && style->draw_quads; i++) {
+    const GstClothQuad *q = &quads[i];
+    ClothColour colour =
+        with_opacity (cloth_draw_confidence_colour (q->confidence,
+            style->c_low), style->opacity);
+
+    for (k = 0; k < 4; k++) {
+      gint l = (k + 1) & 3;
+
+      if (q->state == GST_CLOTH_QUAD_TRACKED) {
+        cloth_draw_line (canvas, q->x[k], q->y[k], q->x[l], q->y[l],
+            style->line_width, &colour);
+      } else if (q->state == GST_CLOTH_QUAD_PREDICTED) {
+        cloth_draw_dashes (canvas, q->x[k], q->y[k], q->x[l], q->y[l],
+            style->line_width, DASH, &colour);
+      }
+    }
+  }
+  for (i = 0; i < n && style->draw_indices; i++) {
+    ClothColour colour =
+        with_opacity (quads[i].black ? text_on_black : text_on_white,
+        style->opacity);
+
+    if (quads[i].state != GST_CLOTH_QUAD_LOST) {
+      draw_index (canvas, &quads[i], &colour);
+    }
+  }
+}
+
+static void
+draw_cross (const ClothCanvas * canvas, gfloat x, gfloat y, gfloat arm,
+    gfloat width, const ClothColour * colour)
+{
+  cloth_draw_line (canvas, x - arm, y, x + arm, y, width, colour);
+  cloth_draw_line (canvas, x, y - arm, x, y + arm, width, colour);
+}
+
+/* Refined saddles; the raw candidates only where nothing was refined. */
+static void
+draw_saddles (const ClothCanvas * canvas, GstClothSaddles * saddles,
+    const Style * style)
+{
+  ClothColour colour = with_opacity (saddle_colour, style->opacity);
+  guint i, n_refined, n_candidates;
+  const GstClothSaddle *refined =
+      gst_cloth_saddles_get_refined (saddles, &n_refined);
+  const GstClothCandidate *candidates =
+      gst_cloth_saddles_get_candidates (saddles, &n_candidates);
+
+  for (i = 0; i < n_refined; i++) {
+    const GstClothSaddle *s = &refined[i];
+    gfloat scale2 = style->ellipse_scale * style->ellipse_scale;
+
+    draw_cross (canvas, s->x, s->y, CROSS_ARM, style->line_width, &colour);
+    if (scale2 > 0) {
+      cloth_draw_ellipse (canvas, s->x, s->y, scale2 * s->cov_xx,
+          scale2 * s->cov_xy, scale2 * s->cov_yy, style->line_width, &colour);
+    }
+  }
+  for (i = 0; i < n_candidates && n_refined == 0; i++) {
+    cloth_draw_line (canvas, candidates[i].x, candidates[i].y, candidates[i].x,
+        candidates[i].y, style->line_width, &colour);
+  }
+}
+
+/* ---- the picture ---- */
+
+/* How a colour becomes sample values, by the picture's colorimetry. */
+static void
+fill_weights (const GstVideoInfo * info, guint component, gfloat weights[4])
+{
+  const GstVideoFormatInfo *finfo = info->finfo;
+  gint offset[4], scale[4];
+  gdouble Kr = 0.299, Kb = 0.114, Kg;
+  guint k;
+
+  gst_video_color_range_offsets (info->colorimetry.range, finfo, offset, scale);
+  gst_video_color_matrix_get_Kr_Kb (info->colorimetry.matrix, &Kr, &Kb);
+  Kg = 1 - Kr - Kb;
+  for (k = 0; k < 4; k++) {
+    weights[k] = 0;
+  }
+  weights[3] = (gfloat) offset[component];
+  if (component == GST_VIDEO_COMP_A) {
+    weights[3] = 255;
+  } else if (GST_VIDEO_FORMAT_INFO_IS_RGB (finfo)) {
+    weights[component] = (gfloat) scale[component];
+  } else {
+    gdouble w[3] = { Kr, Kg, Kb };
+
+    if (component == GST_VIDEO_COMP_U) {
+      gdouble f = 1 / (2 * (1 - Kb));
+
+      w[0] = -Kr * f;
+      w[1] = -Kg * f;
+      w[2] = 0.5;
+    } else if (component == GST_VIDEO_COMP_V) {
+      gdouble f = 1 / (2 * (1 - Kr));
+
+      w[0] = 0.5;
+      w[1] = -Kg * f;
+      w[2] = -Kb * f;
+    }
+    for (k = 0; k < 3; k++) {
+      weights[k] = (gfloat) (w[k] * scale[component]);
+    }
+  }
+}
+
+static void
+canvas_of_frame (GstVideoFrame * frame, ClothCanvas * canvas)
+{
+  guint i;
+
+  canvas->n_components = GST_VIDEO_FRAME_N_COMPONENTS (frame);
+  for (i = 0; i < canvas->n_components; i++) {
+    ClothComponent *c = &canvas->components[i];
+
+    c->data = GST_VIDEO_FRAME_COMP_DATA (frame, i);
+    c->stride = GST_VIDEO_FRAME_COMP_STRIDE (frame, i);
+    c->step = GST_VIDEO_FRAME_COMP_PSTRIDE (frame, i);
+    c->width = GST_VIDEO_FRAME_COMP_WIDTH (frame, i);
+    c->height = GST_VIDEO_FRAME_COMP_HEIGHT (frame, i);
+    c->shift_x = GST_VIDEO_FORMAT_INFO_W_SUB (frame->info.finfo, i);
+    c->shift_y = GST_VIDEO_FORMAT_INFO_H_SUB (frame->info.finfo, i);
+    fill_weights (&frame->info, i, c->weights);
+  }
+}
+
+/* ---- the mesh ---- */
+
+static gboolean
+gst_cloth_overlay_load_rig (GstClothOverlay * self)
+{
+  g_autofree gchar *path = NULL, *name = NULL;
+  g_autoptr (GError) error = NULL;
+
+  GST_OBJECT_LOCK (self);
+  if (!self->rig_changed && self->camera) {
+    GST_OBJECT_UNLOCK (self);
+    return TRUE;
+  }
+  self->rig_changed = FALSE;
+  path = g_strdup (self->rig_path);
+  name = g_strdup (self->camera_name);
+  GST_OBJECT_UNLOCK (self);
+
+  self->camera = NULL;
+  g_clear_pointer (&self->rig, cloth_rig_free);
+  if (!path) {
+    GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
+        ("No calibration to draw the mesh with."),
+        ("Set rig= to a rig.json and camera= to the name of the camera there."));
+    return FALSE;
+  }
+  self->rig = cloth_rig_load (path, &error);
+  if (!self->rig) {
+    GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ,
+        ("Can't read the calibration: %s", error->message), ("rig=%s", path));
+    return FALSE;
+  }
+  if (name) {
+    self->camera = cloth_rig_find (self->rig, name);
+  } else if (self->rig->n_cameras == 1) {
+    self->camera = &self->rig->cameras[0];
+  }
+  if (!self->camera) {
+    GString *names = g_string_new (NULL);
+    guint i;
+
+    for (i = 0; i < self->rig->n_cameras; i++) {
+      const gchar *one = self->rig->cameras[i].name;
+
+      g_string_append_printf (names, "%s%s", i ? ", " : "",
+          one ? one : "(unnamed)");
+    }
+    GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
+        ("%s has no camera \"%s\".", path, name ? name : ""),
+        ("Set camera= to one of: %s", names->str));
+    g_string_free (names, TRUE);
+    return FALSE;
+  }
+  /* meshes come in the rig's time, pictures in their camera's */
+  gst_cloth_sync_set_pad_offset (GST_CLOTH_SYNC (self), MESH,
+      -(GstClockTimeDiff) (self->camera->offset_s * GST_SECOND));
+  return TRUE;
+}
+
+static gboolean
+gst_cloth_overlay_check_size (GstClothOverlay * self)
+{
+  gint width = GST_VIDEO_INFO_WIDTH (&self->info);
+  gint height = GST_VIDEO_INFO_HEIGHT (&self->info);
+  const ClothCamera *camera = self->camera;
+  gdouble ratio = (gdouble) width / height * camera->height / camera->width;
+
+  if (fabs (ratio - 1) <= ASPECT_SLACK) {
+    return TRUE;
+  }
+  GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+      ("The picture is %d×%d, camera \"%s\" was calibrated at %d×%d.", width,
+          height, camera->name ? camera->name : "", camera->width,
+          camera->height),
+      ("Draw before the picture is cropped or rotated, or set camera= to the "
+          "camera that took it."));
+  return FALSE;
+}
+
+static gboolean
+gst_cloth_overlay_draw_mesh (GstClothOverlay * self, const ClothCanvas * canvas,
+    GstBuffer * buffer, const Style * style)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_from_buffer (buffer, &error);
+  ClothWireStyle wire_style = {
+    G_N_ELEMENTS (vertex_colours), vertex_colours, style->line_width,
+    style->opacity, HIDDEN_OPACITY
+  };
+
+  if (!mesh) {
+    GST_ELEMENT_ERROR (self, STREAM, DECODE, ("Bad mesh: %s", error->message),
+        (NULL));
+    return FALSE;
+  }
+  if (gst_cloth_mesh_get_n_vertices (mesh) != self->n_vertices) {
+    GST_ELEMENT_ERROR (self, STREAM, DECODE,
+        ("A mesh of %u vertices in a stream of %u.",
+            gst_cloth_mesh_get_n_vertices (mesh), self->n_vertices), (NULL));
+    return FALSE;
+  }
+  cloth_wireframe_draw (self->wire, canvas, GST_VIDEO_INFO_WIDTH (&self->info),
+      GST_VIDEO_INFO_HEIGHT (&self->info), self->camera,
+      gst_cloth_mesh_get_positions (mesh, NULL),
+      gst_cloth_mesh_get_states (mesh, NULL), &wire_style);
+  return TRUE;
+}
+
+/* ---- GstClothSync ---- */
+
+static gboolean
+gst_cloth_overlay_set_pad_caps (GstClothSync * sync, guint index,
+    GstCaps * caps)
+{
+  GstClothOverlay *self = GST_CLOTH_OVERLAY (sync);
+  g_autoptr (GstClothTopology) topology = NULL;
+  g_autoptr (GError) error = NULL;
+  const guint32 *faces;
+  guint n_indices;
+
+  if (index == VIDEO) {
+    gst_caps_replace (&self->video_caps, caps);
+    if (caps && !gst_video_info_from_caps (&self->info, caps)) {
+      GST_ELEMENT_ERROR (self, STREAM, FORMAT, ("Bad video caps."),
+          ("%" GST_PTR_FORMAT, caps));
+      return FALSE;
+    }
+    return TRUE;
+  }
+
+  g_clear_pointer (&self->wire, cloth_wireframe_free);
+  if (!caps) {
+    return TRUE;
+  }
+  topology = gst_cloth_topology_from_caps (caps, &error);
+  if (!topology) {
+    GST_ELEMENT_ERROR (self, STREAM, FORMAT, ("Bad mesh caps: %s",
+            error->message), (NULL));
+    return FALSE;
+  }
+  self->n_vertices = gst_cloth_topology_get_n_vertices (topology);
+  faces = gst_cloth_topology_get_faces (topology, &n_indices);
+  self->wire = cloth_wireframe_new (self->n_vertices,
+      gst_cloth_topology_get_columns (topology),
+      gst_cloth_topology_get_rows (topology), faces, n_indices / 4);
+  return gst_cloth_overlay_load_rig (self);
+}
+
+static GstFlowReturn
+gst_cloth_overlay_negotiate_src (GstClothSync * sync, GstCaps * downstream,
+    GstCaps ** caps)
+{
+  GstClothOverlay *self = GST_CLOTH_OVERLAY (sync);
+
+  if (!self->video_caps) {
+    return GST_AGGREGATOR_FLOW_NEED_DATA;
+  }
+  *caps = gst_caps_ref (self->video_caps);
+  return GST_FLOW_OK;
+}
+
+static GstFlowReturn
+gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
+    guint64 mask, GstClockTime pts, GstClockTime duration, GstBuffer ** out)
+{
+  GstClothOverlay *self = GST_CLOTH_OVERLAY (sync);
+  GstFlowReturn ret = GST_FLOW_OK;
+  GstBuffer *mesh = n > MESH ? views[MESH] : NULL;
+  gboolean has_quads, has_saddles;
+  GstVideoFrame frame;
+  ClothCanvas canvas;
+  Style style;
+
+  if (!views[VIDEO]) {
+    return GST_FLOW_OK;         /* a mesh for which there is no picture */
+  }
+  GST_OBJECT_LOCK (self);
+  style = self->style;
+  GST_OBJECT_UNLOCK (self);
+  if (!style.draw_mesh || !self->wire) {
+    mesh = NULL;
+  }
+  has_quads = (style.draw_quads || style.draw_indices)
+      && gst_buffer_get_cloth_quads (views[VIDEO]);
+  has_saddles = style.draw_saddles
+      && gst_buffer_get_cloth_saddles (views[VIDEO]);
+
+  if (mesh && (!gst_cloth_overlay_load_rig (self)
+          || !gst_cloth_overlay_check_size (self))) {
+    return GST_FLOW_ERROR;
+  }
+  *out = g_steal_pointer (&views[VIDEO]);
+  if (!mesh && !has_quads && !has_saddles) {
+    return GST_FLOW_OK;
+  }
+
+  *out = gst_buffer_make_writable (*out);
+  if (!gst_video_frame_map (&frame, &self->info, *out, GST_MAP_READWRITE)) {
+    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+        ("The picture does not fit its caps."),
+        ("%" GST_PTR_FORMAT " in %" GST_PTR_FORMAT, *out, self->video_caps));
+    return GST_FLOW_ERROR;
+  }
+  canvas_of_frame (&frame, &canvas);
+  if (has_quads) {
+    guint n_quads;
+    const GstClothQuad *quads =
+        gst_cloth_quads_get_quads (gst_buffer_get_cloth_quads (*out), &n_quads);
+
+    draw_quads (&canvas, quads, n_quads, &style);
+  }
+  if (mesh && !gst_cloth_overlay_draw_mesh (self, &canvas, mesh, &style)) {
+    ret = GST_FLOW_ERROR;
+  }
+  if (has_saddles) {
+    draw_saddles (&canvas, gst_buffer_get_cloth_saddles (*out), &style);
+  }
+  gst_video_frame_unmap (&frame);
+  return ret;
+}
+
+/* What one side of the video path takes is what the other takes. */
+static void
+gst_cloth_overlay_proxy_caps (GstPad * pad, GstPad * other, GstQuery * query)
+{
+  g_autoptr (GstCaps) templ = gst_pad_get_pad_template_caps (pad);
+  g_autoptr (GstCaps) peer = NULL;
+  g_autoptr (GstCaps) result = NULL;
+  GstCaps *filter;
+
+  gst_query_parse_caps (query, &filter);
+  peer = gst_pad_peer_query_caps (other, templ);
+  if (filter) {
+    result = gst_caps_intersect_full (filter, peer, GST_CAPS_INTERSECT_FIRST);
+  } else {
+    result = gst_caps_ref (peer);
+  }
+  gst_query_set_caps_result (query, result);
+}
+
+static gboolean
+gst_cloth_overlay_sink_query (GstAggregator * agg, GstAggregatorPad * pad,
+    GstQuery * query)
+{
+  if (GST_QUERY_TYPE (query) == GST_QUERY_CAPS
+      && !g_strcmp0 (GST_PAD_NAME (pad), "sink")) {
+    gst_cloth_overlay_proxy_caps (GST_PAD (pad), GST_AGGREGATOR_SRC_PAD (agg),
+        query);
+    return TRUE;
+  }
+  return GST_AGGREGATOR_CLASS (gst_cloth_overlay_parent_class)->sink_query (agg,
+      pad, query);
+}
+
+static gboolean
+gst_cloth_overlay_src_query (GstAggregator * agg, GstQuery * query)
+{
+  if (GST_QUERY_TYPE (query) == GST_QUERY_CAPS) {
+    g_autoptr (GstPad) sink =
+        gst_element_get_static_pad (GST_ELEMENT (agg), "sink");
+
+    gst_cloth_overlay_proxy_caps (GST_AGGREGATOR_SRC_PAD (agg), sink, query);
+    return TRUE;
+  }
+  return GST_AGGREGATOR_CLASS (gst_cloth_overlay_parent_class)->src_query (agg,
+      query);
+}
+
+static gboolean
+gst_cloth_overlay_stop (GstAggregator * agg)
+{
+  GstClothOverlay *self = GST_CLOTH_OVERLAY (agg);
+
+  gst_caps_replace (&self->video_caps, NULL);
+  g_clear_pointer (&self->wire, cloth_wireframe_free);
+  self->camera = NULL;
+  g_clear_pointer (&self->rig, cloth_rig_free);
+  return GST_AGGREGATOR_CLASS (gst_cloth_overlay_parent_class)->stop (agg);
+}
+
+/* ---- GObject ---- */
+
+static void
+gst_cloth_overlay_set_property (GObject * object, guint id,
+    const GValue * value, GParamSpec * pspec)
+{
+  GstClothOverlay *self = GST_CLOTH_OVERLAY (object);
+
+  GST_OBJECT_LOCK (self);
+  switch (id) {
+    case PROP_DRAW_SADDLES:
+      self->style.draw_saddles = g_value_get_boolean (value);
+      break;
+    case PROP_DRAW_QUADS:
+      self->style.draw_quads = g_value_get_boolean (value);
+      break;
+    case PROP_DRAW_INDICES:
+      self->style.draw_indices = g_value_get_boolean (value);
+      break;
+    case PROP_DRAW_MESH:
+      self->style.draw_mesh = g_value_get_boolean (value);
+      break;
+    case PROP_LINE_WIDTH:
+      self->style.line_width = (gfloat) g_value_get_double (value);
+      break;
+    case PROP_OPACITY:
+      self->style.opacity = (gfloat) g_value_get_double (value);
+      break;
+    case PROP_FILL_OPACITY:
+      self->style.fill_opacity = (gfloat) g_value_get_double (value);
+      break;
+    case PROP_C_LOW:
+      self->style.c_low = (gfloat) g_value_get_double (value);
+      break;
+    case PROP_ELLIPSE_SCALE:
+      self->style.ellipse_scale = (gfloat) g_value_get_double (value);
+      break;
+    case PROP_RIG:
+      g_free (self->rig_path);
+      self->rig_path = g_value_dup_string (value);
+      self->rig_changed = TRUE;
+      break;
+    case PROP_CAMERA:
+      g_free (self->camera_name);
+      self->camera_name = g_value_dup_string (value);
+      self->rig_changed = TRUE;
+      break;
+    default:
+      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
+      break;
+  }
+  GST_OBJECT_UNLOCK (self);
+}
+
+static void
+gst_cloth_overlay_get_property (GObject * object, guint id, GValue * value,
+    GParamSpec * pspec)
+{
+  GstClothOverlay *self = GST_CLOTH_OVERLAY (object);
+
+  GST_OBJECT_LOCK (self);
+  switch (id) {
+    case PROP_DRAW_SADDLES:
+      g_value_set_boolean (value, self->style.draw_saddles);
+      break;
+    case PROP_DRAW_QUADS:
+      g_value_set_boolean (value, self->style.draw_quads);
+      break;
+    case PROP_DRAW_INDICES:
+      g_value_set_boolean (value, self->style.draw_indices);
+      break;
+    case PROP_DRAW_MESH:
+      g_value_set_boolean (value, self->style.draw_mesh);
+      break;
+    case PROP_LINE_WIDTH:
+      g_value_set_double (value, self->style.line_width);
+      break;
+    case PROP_OPACITY:
+      g_value_set_double (value, self->style.opacity);
+      break;
+    case PROP_FILL_OPACITY:
+      g_value_set_double (value, self->style.fill_opacity);
+      break;
+    case PROP_C_LOW:
+      g_value_set_double (value, self->style.c_low);
+      break;
+    case PROP_ELLIPSE_SCALE:
+      g_value_set_double (value, self->style.ellipse_scale);
+      break;
+    case PROP_RIG:
+      g_value_set_string (value, self->rig_path);
+      break;
+    case PROP_CAMERA:
+      g_value_set_string (value, self->camera_name);
+      break;
+    default:
+      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
+      break;
+  }
+  GST_OBJECT_UNLOCK (self);
+}
+
+static void
+gst_cloth_overlay_finalize (GObject * object)
+{
+  GstClothOverlay *self = GST_CLOTH_OVERLAY (object);
+
+  gst_caps_replace (&self->video_caps, NULL);
+  g_clear_pointer (&self->wire, cloth_wireframe_free);
+  g_clear_pointer (&self->rig, cloth_rig_free);
+  g_free (self->rig_path);
+  g_free (self->camera_name);
+  G_OBJECT_CLASS (gst_cloth_overlay_parent_class)->finalize (object);
+}
+
+static void
+install_boolean (GObjectClass * klass, guint id, const gchar * name,
+    const gchar * blurb, gboolean value)
+{
+  g_object_class_install_property (klass, id, g_param_spec_boolean (name, name,
+          blurb, value, G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+          GST_PARAM_CONTROLLABLE | GST_PARAM_MUTABLE_PLAYING));
+}
+
+static void
+install_double (GObjectClass * klass, guint id, const gchar * name,
+    const gchar * blurb, gdouble low, gdouble high, gdouble value)
+{
+  g_object_class_install_property (klass, id, g_param_spec_double (name, name,
+          blurb, low, high, value, G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+          GST_PARAM_CONTROLLABLE | GST_PARAM_MUTABLE_PLAYING));
+}
+
+static void
+install_string (GObjectClass * klass, guint id, const gchar * name,
+    const gchar * blurb)
+{
+  g_object_class_install_property (klass, id, g_param_spec_string (name, name,
+          blurb, NULL, G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+          GST_PARAM_MUTABLE_PLAYING));
+}
+
+static void
+gst_cloth_overlay_class_init (GstClothOverlayClass * klass)
+{
+  GObjectClass *object_class = G_OBJECT_CLASS (klass);
+  GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
+  GstAggregatorClass *agg_class = GST_AGGREGATOR_CLASS (klass);
+  GstClothSyncClass *sync_class = GST_CLOTH_SYNC_CLASS (klass);
+
+  object_class->set_property = gst_cloth_overlay_set_property;
+  object_class->get_property = gst_cloth_overlay_get_property;
+  object_class->finalize = gst_cloth_overlay_finalize;
+  agg_class->sink_query = gst_cloth_overlay_sink_query;
+  agg_class->src_query = gst_cloth_overlay_src_query;
+  agg_class->stop = gst_cloth_overlay_stop;
+  sync_class->set_pad_caps = gst_cloth_overlay_set_pad_caps;
+  sync_class->negotiate_src = gst_cloth_overlay_negotiate_src;
+  sync_class->process_set = gst_cloth_overlay_process_set;
+
+  install_boolean (object_class, PROP_DRAW_SADDLES, "draw-saddles",
+      "Draw the saddle points as crosses; the raw candidates as dots when none "
+      "was refined", DEFAULT_DRAW_SADDLES);
+  install_boolean (object_class, PROP_DRAW_QUADS, "draw-quads",
+      "Draw the squares, coloured by confidence: yellow for 1, purple for c-low; "
+      "dashed when only predicted", DEFAULT_DRAW_QUADS);
+  install_boolean (object_class, PROP_DRAW_INDICES, "draw-indices",
+      "Write column (above) and row (below) into the squares",
+      DEFAULT_DRAW_INDICES);
+  install_boolean (object_class, PROP_DRAW_MESH, "draw-mesh",
+      "Draw the mesh of the mesh pad as a wireframe: green measured, amber from two "
+      "views, blue filled, violet predicted; faint where hidden",
+      DEFAULT_DRAW_MESH);
+  install_double (object_class, PROP_LINE_WIDTH, "line-width",
+      "Width of all lines, px", 0.25, 100, DEFAULT_LINE_WIDTH);
+  install_double (object_class, PROP_OPACITY, "opacity",
+      "Opacity of everything drawn", 0, 1, DEFAULT_OPACITY);
+  install_double (object_class, PROP_FILL_OPACITY, "fill-opacity",
+      "Opacity of the inside of tracked squares; times opacity", 0, 1,
+      DEFAULT_FILL_OPACITY);
+  install_double (object_class, PROP_C_LOW, "c-low",
+      "Confidence drawn in purple: the one below which the tracker gives a square "
+      "up", -1, 1, DEFAULT_C_LOW);
+  install_double (object_class, PROP_ELLIPSE_SCALE, "ellipse-scale",
+      "Draw the one-sigma covariance ellipses of the saddles enlarged this many "
+      "times; 0: don't", 0, 100000, DEFAULT_ELLIPSE_SCALE);
+  install_string (object_class, PROP_RIG, "rig",
+      "Calibration file (rig.json) by which the mesh is projected");
+  install_string (object_class, PROP_CAMERA, "camera",
+      "Name in the rig of the camera that took the picture; may be left out when "
+      "the rig has one camera");
+
+  gst_element_class_add_static_pad_template_with_gtype (element_class,
+      &sink_template, GST_TYPE_CLOTH_SYNC_PAD);
+  gst_element_class_add_static_pad_template_with_gtype (element_class,
+      &mesh_template, GST_TYPE_CLOTH_SYNC_PAD);
+  gst_element_class_add_static_pad_template_with_gtype (element_class,
+      &src_template, GST_TYPE_AGGREGATOR_PAD);
+  gst_element_class_set_static_metadata (element_class, "Cloth overlay",
+      "Filter/Effect/Video",
+      "Draws saddles, tracked squares and meshes over the picture",
+      "The gst-cloth developers");
+}
+
+static void
+gst_cloth_overlay_init (GstClothOverlay * self)
+{
+  self->style.draw_saddles = DEFAULT_DRAW_SADDLES;
+  self->style.draw_quads = DEFAULT_DRAW_QUADS;
+  self->style.draw_indices = DEFAULT_DRAW_INDICES;
+  self->style.draw_mesh = DEFAULT_DRAW_MESH;
+  self->style.line_width = (gfloat) DEFAULT_LINE_WIDTH;
+  self->style.opacity = (gfloat) DEFAULT_OPACITY;
+  self->style.fill_opacity = (gfloat) DEFAULT_FILL_OPACITY;
+  self->style.c_low = (gfloat) DEFAULT_C_LOW;
+  self->style.ellipse_scale = (gfloat) DEFAULT_ELLIPSE_SCALE;
+  gst_cloth_sync_add_always_pad (GST_CLOTH_SYNC (self), "sink");
+}

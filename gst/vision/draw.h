@@ -1,0 +1,79 @@
+/* Anti-aliased drawing on 8-bit pictures of any layout.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include <glib.h>
+
+G_BEGIN_DECLS
+
+/**
+ * ClothColour:
+ * @r: red, 0 … 1
+ * @g: green, 0 … 1
+ * @b: blue, 0 … 1
+ * @a: opacity, 0 … 1
+ *
+ * Gamma-encoded, not premultiplied.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  gfloat r, g, b, a;
+} ClothColour;
+
+/**
+ * ClothComponent:
+ * @data: first sample
+ * @stride: bytes from one row to the next
+ * @step: bytes from one sample to the next of its row
+ * @width: samples a row
+ * @height: rows
+ * @shift_x: binary logarithm of the horizontal subsampling
+ * @shift_y: binary logarithm of the vertical subsampling
+ * @weights: sample value 0 … 255 of a colour: w[0]·r + w[1]·g + w[2]·b + w[3]
+ *
+ * One colour component of a picture: luma, a chroma difference, red, …
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  guint8 *data;
+  gint stride, step;
+  gint width, height;
+  gint shift_x, shift_y;
+  gfloat weights[4];
+} ClothComponent;
+
+/**
+ * ClothCanvas:
+ * @n_components: 1 … 4
+ * @components: components of equal subsampling next to each other
+ *
+ * A picture to draw on; owns nothing. All coordinates are full-resolution pixels with
+ * the centre of the top-left pixel at (0, 0). Whatever lies outside is clipped; shapes
+ * with coordinates that are not finite are not drawn.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  guint n_components;
+  ClothComponent components[4];
+} ClothCanvas;
+
+void cloth_draw_line (const ClothCanvas * canvas, gfloat x0, gfloat y0,
+    gfloat x1, gfloat y1, gfloat width, const ClothColour * colour);
+void cloth_draw_dashes (const ClothCanvas * canvas, gfloat x0, gfloat y0,
+    gfloat x1, gfloat y1, gfloat width, gfloat dash,
+    const ClothColour * colour);
+void cloth_draw_quad (const ClothCanvas * canvas, const gfloat x[4],
+    const gfloat y[4], const ClothColour * colour);
+void cloth_draw_ellipse (const ClothCanvas * canvas, gfloat x, gfloat y,
+    gfloat xx, gfloat xy, gfloat yy, gfloat width, const ClothColour * colour);
+void cloth_draw_number (const ClothCanvas * canvas, gint number,
+    const gfloat origin[2], const gfloat right[2], const gfloat down[2],
+    gfloat width, const ClothColour * colour);
+
+ClothColour cloth_draw_confidence_colour (gfloat confidence, gfloat low);
+
+G_END_DECLS
