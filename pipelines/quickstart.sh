@@ -1,7 +1,7 @@
 #!/bin/bash
 # From a fresh Debian 12 to films, meshes and a table of errors, with the data that is
-# shipped: installs packages, builds, calibrates a real stereo pair, then tracks and
-# triangulates a cloth filmed by two cameras.
+# shipped: installs packages, builds, calibrates a real stereo pair from pictures of a
+# board, then tracks a cloth filmed by two cameras and puts it into space.
 #
 #   pipelines/quickstart.sh [OUTPUT-FOLDER]      (default: cloth-quickstart)
 #
@@ -10,7 +10,7 @@
 set -euo pipefail
 here=$PWD
 root=$(cd "$(dirname "$0")/.." && pwd)
-out=${1:-$here/cloth-quickstart}
+out=${1:-cloth-quickstart}
 export LC_ALL=C.UTF-8
 
 heading () { printf '\n== %s\n' "$*"; }
@@ -27,22 +27,55 @@ if [ -z "${CLOTH_BUILD:-}" ]; then
 fi
 . "$root/pipelines/environment.sh"
 
-started=$(date +%s)
+started=$SECONDS
 mkdir -p "$out"
 out=$(cd "$out" && pwd)
 boards=$root/tests/data/opencv_boards
 pair=$root/tests/data/checker_pair
 
-heading "Real pictures: calibration of a stereo pair from a board"
+heading "Real pictures of a board: calibration of the stereo pair"
 gst-cloth-calibrate-1.0 --pattern "$boards/pattern.json" \
     --camera "left=$boards/left*.jpg" --camera "right=$boards/right*.jpg" \
-    --output "$out/boards-rig.json"
+    --output "$out/boards-rig.json" | tee "$out/boards-report.txt"
 
-heading "Real pictures: the corners found in them"
+heading "Real pictures of a board: the squares found, drawn in"
 mkdir -p "$out/boards"
-for picture in "$boards"/{left,right}??.jpg; do
-  gst-launch-1.0 -q filesrc location="$picture" ! jpegdec \
-      ! video/x-raw,format=GRAY8 ! saledetect_placeholder
+for picture in "$boards"/left??.jpg "$boards"/right??.jpg; do
+  gst-launch-1.0 -q filesrc location="$picture" \
+      ! jpegdec ! video/x-raw,format=GRAY8 \
+      ! saddledetect ! quadtrack pattern="$boards/pattern.json" \
+      ! videoconvert ! clothoverlay ! videoconvert ! pngenc \
+      ! filesink location="$out/boards/$(basename "$picture" .jpg).png"
 done
+echo "$(find "$out/boards" -name '*.png' -size +0 | wc -l) pictures"
 
-heading "Rendered film: two cameras to a mesh, and the overlay"
+heading "A cloth filmed by two cameras: squares, mesh and overlay"
+camera ()
+{
+  echo "filesrc location=$pair/$1.mp4 ! qtdemux ! h264parse ! avdec_h264
+      ! saddledetect ! quadtrack pattern=$pair/pattern.json camera=$1 ! tee name=$1
+      $1. ! queue ! join.
+      $1. ! queue ! clothoverlay ! videoconvert ! openh264enc bitrate=6000000
+      ! h264parse ! mp4mux ! filesink location=$out/$1-overlay.mp4"
+}
+# shellcheck disable=SC2046
+gst-launch-1.0 -q triangulate name=join rig="$pair/rig.json" ! tee name=mesh \
+    mesh. ! queue ! meshsink location="$out/cloth.obj" \
+    mesh. ! queue ! meshsink location="$out/cloth-take" format=take \
+    $(camera cam0) $(camera cam1)
+
+heading "Errors against the true cloth"
+/usr/bin/python3 "$root/pipelines/compare-truth.py" "$out/cloth-take" \
+    --truth "$pair/vertices.npy" --grid 33x35 --pattern "$pair/pattern.json" \
+    --max-rms-mm 0.9 | tee "$out/errors.txt"
+
+heading "Done in $((SECONDS - started)) s"
+cat <<END
+  calibrated rig           $out/boards-rig.json
+  squares found            $out/boards/*.png
+  films with the overlay   $out/cam0-overlay.mp4, $out/cam1-overlay.mp4
+  mesh (Blender: OBJ+PC2)  $out/cloth.obj, $out/cloth.pc2
+  mesh (NumPy)             $out/cloth-take
+
+To use the elements in this shell:  . $root/pipelines/environment.sh
+END

@@ -1,0 +1,321 @@
+#!/usr/bin/python3
+"""Whole chains, from files or live sources to meshes and films.
+
+  chains.py CASE DATA      DATA is tests/data
+
+Each case runs gst-launch strings as a user would write them and holds what comes out
+against the truth that comes with the data. An exit code proves nothing: frames are
+counted.
+
+SPDX-License-Identifier: LGPL-2.1-or-later
+"""
+import importlib.util
+import json
+import os
+import sys
+import tempfile
+
+import gi
+import numpy
+
+gi.require_version('Gst', '1.0')
+gi.require_version('GstCloth', '1.0')
+from gi.repository import Gst, GstCloth  # noqa: E402
+
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), '../..')
+SPEC = importlib.util.spec_from_file_location(
+    'compare_truth', os.path.join(ROOT, 'pipelines/compare-truth.py'))
+compare_truth = importlib.util.module_from_spec(SPEC)
+SPEC.loader.exec_module(compare_truth)
+
+TIMEOUT_S = 150
+FRAMES = 63
+
+
+class Failure(Exception):
+    """What did not hold."""
+
+
+def check(condition, text):
+    print('%s: %s' % ('ok' if condition else 'NOT OK', text))
+    if not condition:
+        raise Failure(text)
+
+
+def run(description, on_buffer=None):
+    """Plays a pipeline to its end. Every appsink feeds on_buffer (name, buffer, caps).
+    Returns the element messages and the errors."""
+    print('gst-launch-1.0 ' + description)
+    pipeline = Gst.parse_launch(description)
+    counts = {}
+
+    def take(sink):
+        sample = sink.emit('pull-sample')
+        if sample:
+            counts[sink.get_name()] = counts.get(sink.get_name(), 0) + 1
+            if on_buffer:
+                on_buffer(sink.get_name(), sample.get_buffer(), sample.get_caps())
+        return Gst.FlowReturn.OK
+
+    iterator = pipeline.iterate_recurse()
+    while True:
+        result, element = iterator.next()
+        if result != Gst.IteratorResult.OK:
+            break
+        if element.get_factory().get_name() == 'appsink':
+            element.set_property('emit-signals', True)
+            element.set_property('sync', False)
+            counts[element.get_name()] = 0
+            element.connect('new-sample', take)
+
+    bus = pipeline.get_bus()
+    pipeline.set_state(Gst.State.PLAYING)
+    message = bus.timed_pop_filtered(TIMEOUT_S * Gst.SECOND,
+                                     Gst.MessageType.EOS | Gst.MessageType.ERROR)
+    error = None
+    if message is None:
+        error = 'neither an end nor an error within %d s' % TIMEOUT_S
+    elif message.type == Gst.MessageType.ERROR:
+        error = message.parse_error().gerror.message
+    check(pipeline.set_state(Gst.State.NULL) == Gst.StateChangeReturn.SUCCESS, 'it stops')
+    return counts, error
+
+
+def play(description, on_buffer=None):
+    counts, error = run(description, on_buffer)
+    check(error is None, 'it runs to its end' + (': ' + error if error else ''))
+    return counts
+
+
+class Pair:
+    """The rendered cloth: two cameras, the truth of every vertex."""
+
+    def __init__(self, data):
+        self.folder = os.path.join(data, 'checker_pair')
+        with open(os.path.join(self.folder, 'pattern.json'), encoding='utf-8') as file:
+            self.pattern = json.load(file)
+        with open(os.path.join(self.folder, 'rig.json'), encoding='utf-8') as file:
+            self.cameras = {c['name']: c for c in json.load(file)['cameras']}
+        truth = numpy.load(os.path.join(self.folder, 'vertices.npy'))
+        self.corners = compare_truth.true_corners(truth, 33, 35, self.pattern)
+
+    def film(self, camera):
+        return ('filesrc location=%s/%s.mp4 ! qtdemux ! h264parse ! avdec_h264'
+                % (self.folder, camera))
+
+    def track(self, camera):
+        return ('saddledetect ! quadtrack pattern=%s/pattern.json camera=%s'
+                % (self.folder, camera))
+
+    def join(self, *settings):
+        return 'triangulate name=join rig=%s/rig.json %s' % (self.folder, ' '.join(settings))
+
+    def seen(self, camera):
+        """[frames][vertices][2]: where the camera truly sees the corners, px."""
+        c = self.cameras[camera]
+        x = self.corners @ numpy.array(c['R']).T + numpy.array(c['t'])
+        x = x @ numpy.array(c['K']).T
+        return x[..., :2] / x[..., 2:]
+
+    def quad_errors(self, camera, frame, quads):
+        """Distance of each tracked corner from its true place, px."""
+        truth = self.seen(camera)[frame]
+        errors = []
+        for n in range(quads.get_n_quads()):
+            ok, quad = quads.get_quad(n)
+            if not ok or quad.state != GstCloth.QuadState.TRACKED:
+                continue
+            x, y = list(quad.x), list(quad.y)
+            for corner, (right, down) in enumerate(((0, 0), (1, 0), (1, 1), (0, 1))):
+                vertex = (quad.row + down) * (self.pattern['columns'] + 1) + quad.column + right
+                errors.append(numpy.hypot(x[corner] - truth[vertex][0],
+                                          y[corner] - truth[vertex][1]))
+        return errors
+
+
+def rms(errors):
+    return float(numpy.sqrt(numpy.mean(numpy.square(errors))))
+
+
+def case_pair(data):
+    """Two films to a mesh: 63 frames, 0.9 mm, and no corner mistaken."""
+    pair = Pair(data)
+    with tempfile.TemporaryDirectory() as folder:
+        play('%s ! tee name=mesh  mesh. ! queue ! meshsink location=%s/cloth.obj'
+             '  mesh. ! queue ! meshsink location=%s/take format=take'
+             '  %s ! %s ! queue ! join.  %s ! %s ! queue ! join.'
+             % (pair.join(), folder, folder, pair.film('cam0'), pair.track('cam0'),
+                pair.film('cam1'), pair.track('cam1')))
+        positions = numpy.load(folder + '/take/positions.npy')
+        check(positions.shape == (FRAMES, 81, 3), 'positions %s' % (positions.shape,))
+        for name in ('cloth.obj', 'cloth.pc2'):
+            check(os.path.getsize(os.path.join(folder, name)) > 100, name + ' is there')
+        sys.argv = ['compare-truth', folder + '/take', '--truth', pair.folder + '/vertices.npy',
+                    '--grid', '33x35', '--pattern', pair.folder + '/pattern.json',
+                    '--max-rms-mm', '0.9']
+        check(compare_truth.main() == 0, 'within the limits')
+
+
+def case_overlay(data):
+    """What is drawn into a film changes it, and its frames stay all there."""
+    pair = Pair(data)
+    pictures = {'plain': [], 'drawn': []}
+
+    def keep(name, buffer, caps):
+        ok, view = buffer.map(Gst.MapFlags.READ)
+        pictures[name].append(numpy.frombuffer(view.data, numpy.uint8).copy())
+        buffer.unmap(view)
+
+    play('%s ! tee name=t  t. ! queue ! videoconvert ! video/x-raw,format=RGB ! appsink name=plain'
+         '  t. ! queue ! %s ! clothoverlay ! videoconvert ! video/x-raw,format=RGB'
+         ' ! appsink name=drawn' % (pair.film('cam0'), pair.track('cam0')), keep)
+    check(len(pictures['plain']) == len(pictures['drawn']) == FRAMES, 'all frames')
+    changed = [(a != b).mean() for a, b in zip(pictures['plain'], pictures['drawn'])]
+    check(min(changed) > 0.002, 'each is drawn on (least %.2f%% of the bytes)' % (100 * min(changed)))
+    check(max(changed) < 0.5, 'the picture stays visible (most %.2f%%)' % (100 * max(changed)))
+
+
+def case_encoded(data):
+    """The metadata outlives conversion, an encoder and a decoder."""
+    pair = Pair(data)
+    found = []
+
+    def keep(name, buffer, caps):
+        quads = GstCloth.buffer_get_cloth_quads(buffer)
+        found.append(0 if quads is None else quads.get_n_quads())
+
+    play('%s ! %s ! tee ! queue ! videoconvert ! jpegenc ! jpegdec ! appsink name=sink'
+         % (pair.film('cam0'), pair.track('cam0')), keep)
+    check(len(found) == FRAMES and min(found) > 10, 'squares in each frame, least %d' % min(found))
+
+
+def case_boards(data):
+    """Real pictures of a board, one after the other: each is a new start."""
+    boards = os.path.join(data, 'opencv_boards')
+    for side in ('left', 'right'):
+        names = sorted(n for n in os.listdir(boards) if n.startswith(side) and n.endswith('.jpg'))
+        check(len(names) == 13, '13 pictures')
+        for name in names:
+            found = []
+
+            def keep(sink, buffer, caps):
+                quads = GstCloth.buffer_get_cloth_quads(buffer)
+                found.append(0 if quads is None else quads.get_n_quads())
+
+            play('filesrc location=%s/%s ! jpegdec ! video/x-raw,format=GRAY8 ! saddledetect'
+                 ' ! quadtrack pattern=%s/pattern.json ! appsink name=sink'
+                 % (boards, name, boards), keep)
+            # 10 × 7 squares, those of the margin are often cut: 8 × 5 lie inside.
+            check(found and found[0] >= 20, '%s: %s squares' % (name, found))
+
+
+def case_live(data):
+    """A live camera: every frame comes out, and on time."""
+    count = play('videotestsrc is-live=true pattern=checkers-8 num-buffers=20'
+                 ' ! video/x-raw,format=I420,width=322,height=240,framerate=25/1 ! saddledetect'
+                 ' ! quadtrack pattern=%s/checker_pair/pattern.json ! clothoverlay'
+                 ' ! videoconvert ! appsink name=sink' % data)
+    check(count['sink'] == 20, '%d frames of 20' % count['sink'])
+
+
+def case_live_pair(data):
+    """Two live cameras that see no board: meshes without points, on time, no hang."""
+    pair = Pair(data)
+    camera = ('videotestsrc is-live=true num-buffers=20 ! video/x-raw,format=GRAY8,width=752,'
+              'height=480,framerate=25/1 ! %s ! queue ! join.')
+    count = play('%s ! appsink name=sink  %s  %s'
+                 % (pair.join(), camera % pair.track('cam0'), camera % pair.track('cam1')))
+    check(count['sink'] >= 15, '%d meshes' % count['sink'])
+
+
+def case_early_end(data):
+    """One camera ends after 20 frames: the mesh ends in order, nothing hangs."""
+    pair = Pair(data)
+    count = play('%s ! appsink name=sink  %s ! %s ! queue ! join.'
+                 '  %s ! identity eos-after=21 ! %s ! queue ! join.'
+                 % (pair.join(), pair.film('cam0'), pair.track('cam0'),
+                    pair.film('cam1'), pair.track('cam1')))
+    check(count['sink'] >= 20, '%d meshes' % count['sink'])
+
+
+def case_cuts(data):
+    """A film with cuts and a black stretch: the right squares, or none."""
+    pair = Pair(data)
+    # The order in which the frames of the film are shown; −1 is black.
+    order = list(range(0, 15)) + [-1] * 5 + list(range(30, 45)) + list(range(5, 15)) \
+        + [-1] * 2 + list(range(50, 63))
+    frames = []
+
+    def keep(name, buffer, caps):
+        ok, view = buffer.map(Gst.MapFlags.READ)
+        frames.append(bytes(view.data))
+        buffer.unmap(view)
+
+    play('%s ! videoconvert ! video/x-raw,format=GRAY8 ! appsink name=sink' % pair.film('cam0'),
+         keep)
+    check(len(frames) == FRAMES, 'all frames')
+    black = bytes([16]) * len(frames[0])
+    seen = []
+
+    def look(name, buffer, caps):
+        frame = order[len(seen)]
+        quads = GstCloth.buffer_get_cloth_quads(buffer)
+        errors = pair.quad_errors('cam0', frame, quads) if quads and frame >= 0 else []
+        tracked = 0
+        for n in range(quads.get_n_quads() if quads else 0):
+            tracked += quads.get_quad(n)[1].state == GstCloth.QuadState.TRACKED
+        seen.append((frame, tracked, errors))
+
+    with tempfile.TemporaryDirectory() as folder:
+        with open(folder + '/cut.gray', 'wb') as file:
+            for frame in order:
+                file.write(black if frame < 0 else frames[frame])
+        play('filesrc location=%s/cut.gray ! rawvideoparse format=gray8 width=752 height=480'
+             ' framerate=25/1 ! %s ! appsink name=sink' % (folder, pair.track('cam0')), look)
+    check(len(seen) == len(order), 'all frames')
+    starts = [n for n in range(len(order)) if order[n] >= 0
+              and (n == 0 or order[n] != order[n - 1] + 1)]
+    # Half a square is 12 px and more here: no noise reaches that.
+    wrong = [n for n, (_, _, errors) in enumerate(seen) if errors and max(errors) > 8]
+    check(not wrong, 'no wrong index (frames %s)' % wrong)
+    ghosts = [n for n, (frame, tracked, _) in enumerate(seen) if frame < 0 and tracked]
+    check(not ghosts, 'nothing tracked on black (frames %s)' % ghosts)
+    for start in starts:
+        counts = [seen[n][1] for n in range(start, min(start + 5, len(seen)))]
+        check(max(counts) >= 25, 'within 5 frames of frame %d again: %s squares' % (start, counts))
+    check(rms([e for _, _, errors in seen for e in errors]) < 0.3,
+          'corners lie %.3f px RMS from the truth'
+          % rms([e for _, _, errors in seen for e in errors]))
+
+
+def case_bad(data):
+    """What is wrong is said, and stops the pipeline."""
+    pair = Pair(data)
+    chain = 'videotestsrc num-buffers=5 ! video/x-raw,format=GRAY8,width=64,height=48 ! '
+    for description, word in (
+            (chain + 'saddledetect ! quadtrack pattern=/nowhere/pattern.json ! fakesink',
+             'pattern'),
+            (chain + 'saddledetect ! quadtrack ! fakesink', 'pattern'),
+            (chain + 'saddledetect ! quadtrack pattern=%s/rig.json ! fakesink' % pair.folder,
+             'pattern'),
+            ('triangulate name=join rig=/nowhere/rig.json ! fakesink  %s %s ! join.'
+             % (chain, pair.track('cam0')), 'rig'),
+            ('triangulate name=join ! fakesink  %s %s ! join.' % (chain, pair.track('cam0')),
+             'rig'),
+            ('%s ! fakesink  %s %s ! join.' % (pair.join(), chain, pair.track('nobody')),
+             'camera')):
+        _, error = run(description)
+        check(error is not None and word in error.lower(), 'error: %s' % error)
+
+
+def main():
+    Gst.init(None)
+    try:
+        globals()['case_' + sys.argv[1].replace('-', '_')](sys.argv[2])
+    except Failure as failure:
+        print('failed: %s' % failure)
+        return 1
+    return 0
+
+
+sys.exit(main())
