@@ -2,7 +2,7 @@
 """Runs what the documents and the scripts in pipelines/ tell people to type.
 
   commands.py document FILE.md ROOT BUILD    every sh and python block, in order, one shell
-  commands.py script FILE.sh ROOT BUILD [ARGUMENT...]
+  commands.py reached ROOT                   every file in pipelines/ is run by one of them
 
 They run in a new folder that holds links to the repository's folders, so that what
 they write goes nowhere else. A command that is shown but stands in no block that is
@@ -48,10 +48,10 @@ def lay_links(root, folder):
             os.symlink(os.path.join(root, name), os.path.join(folder, name))
 
 
-def run(script, root, build, arguments=()):
+def run(script, root, build):
     with tempfile.TemporaryDirectory(prefix='cloth-commands-') as folder:
         lay_links(root, folder)
-        done = subprocess.run(['bash', '-e', '-o', 'pipefail', '-c', script, 'bash', *arguments],
+        done = subprocess.run(['bash', '-e', '-o', 'pipefail', '-c', script],
                               cwd=folder, env=environment(root, build),
                               stdin=subprocess.DEVNULL, timeout=570)
         left = [os.path.join(at, name) for at, _, names in os.walk(folder) for name in names]
@@ -93,8 +93,30 @@ def document(path, root, build):
     return run(script, root, build) or (1 if faults else 0)
 
 
-kind, path, root, build, *rest = sys.argv[1:]
-root, build = os.path.abspath(root), os.path.abspath(build)
-if kind == 'document':
-    sys.exit(document(path, root, build))
-sys.exit(run('exec "./pipelines/%s" "$@"' % os.path.basename(path), root, build, rest))
+def reached(root):
+    """A script is run by a block of a document, or by a script that is."""
+    text = ''
+    for folder in ('.', 'docs'):
+        for name in os.listdir(os.path.join(root, folder)):
+            if name.endswith('.md'):
+                with open(os.path.join(root, folder, name), encoding='utf-8') as file:
+                    text += ''.join(block for kind, block in FENCE.findall(file.read())
+                                    if kind.strip() == 'sh')
+    waiting = set(os.listdir(os.path.join(root, 'pipelines'))) - {'README.md', '__pycache__'}
+    print('%d files in pipelines/' % len(waiting))
+    while True:
+        now = {name for name in waiting if 'pipelines/' + name in text}
+        if not now:
+            break
+        waiting -= now
+        for name in now:
+            with open(os.path.join(root, 'pipelines', name), encoding='utf-8') as file:
+                text += file.read()
+    for name in sorted(waiting):
+        print('pipelines/%s is run by no document' % name)
+    return 1 if waiting else 0
+
+
+if sys.argv[1] == 'reached':
+    sys.exit(reached(sys.argv[2]))
+sys.exit(document(sys.argv[2], os.path.abspath(sys.argv[3]), os.path.abspath(sys.argv[4])))
