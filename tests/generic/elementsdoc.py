@@ -27,12 +27,13 @@ def number(value):
         if abs(value) > 1e300:
             return '∞' if value > 0 else '−∞'
         return '%.7g' % value
-    return str(value)
+    return {2 ** 64 - 1: '2⁶⁴−1', 2 ** 63 - 1: '2⁶³−1', 2 ** 32 - 1: '2³²−1',
+            2 ** 31 - 1: '2³¹−1'}.get(value, str(value))
 
 
 def describe(spec):
     """Type with range, default."""
-    default = spec.get_default_value()
+    default = spec.default_value
     kind = spec.value_type
     if GObject.type_is_a(kind, GObject.TYPE_ENUM):
         nicks = ['`%s`' % v.value_nick for v in kind.pytype.__enum_values__.values()] \
@@ -63,8 +64,9 @@ def caps_line(caps):
         if features and not features.is_equal(Gst.CapsFeatures.from_string('memory:SystemMemory')):
             name = '`%s(%s)`' % (structure.get_name(), features.to_string())
         if structure.has_field('format'):
-            formats = re.findall(r'[A-Z][A-Z0-9_]+', structure.copy().to_string()
-                                 .split('format=')[1].split('}')[0].split(', width')[0])
+            value = re.search(r'format=(?:\(string\))?(\{[^}]*\}|[A-Za-z0-9_]+)',
+                              structure.to_string()).group(1)
+            formats = re.findall(r'[A-Za-z0-9_]+', value.replace('(string)', ''))
             name += ' ' + ', '.join(formats)
         if name not in names:
             names.append(name)
@@ -79,7 +81,9 @@ def table(factory):
             template.name_template, DIRECTION[template.direction], PRESENCE[template.presence],
             caps_line(template.get_caps())))
     rows = []
-    for spec in element.list_properties():
+    # The element's own before those of its base.
+    for spec in sorted(element.list_properties(),
+                       key=lambda spec: spec.owner_type != element.__gtype__):
         if spec.owner_type.name in FOREIGN:
             continue
         kind, default = describe(spec)

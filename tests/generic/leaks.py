@@ -18,7 +18,7 @@ def alive(command):
     # The tracer wants the main thread's gst_deinit: gst-launch-1.0 does it too.
     done = subprocess.run(command, env=environment, stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True, errors='replace', timeout=280)
-    found = re.findall(r'object-alive.*', done.stderr)
+    found = re.findall(r'object-alive, type-name=\(string\)[^%\n].*', done.stderr)
     return done, found
 
 

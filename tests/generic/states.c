@@ -80,6 +80,15 @@ test_states_straight (gconstpointer data)
   }
 }
 
+/* A double that an element keeps as a float is the same value. */
+static gboolean
+same_value (GParamSpec * pspec, const GValue * a, const GValue * b)
+{
+  if (G_IS_PARAM_SPEC_DOUBLE (pspec))
+    return (gfloat) g_value_get_double (a) == (gfloat) g_value_get_double (b);
+  return g_param_values_cmp (pspec, (GValue *) a, (GValue *) b) == 0;
+}
+
 static void
 set_and_compare (GstElement * element, GParamSpec * pspec, const GValue * value)
 {
@@ -90,7 +99,7 @@ set_and_compare (GstElement * element, GParamSpec * pspec, const GValue * value)
     return;
   g_value_init (&back, pspec->value_type);
   g_object_get_property (G_OBJECT (element), pspec->name, &back);
-  if (g_param_values_cmp (pspec, value, &back) != 0) {
+  if (!same_value (pspec, value, &back)) {
     g_autofree gchar *wanted = g_strdup_value_contents (value);
     g_autofree gchar *got = g_strdup_value_contents (&back);
 
@@ -168,7 +177,8 @@ test_properties (gconstpointer data)
       g_value_init (&initial, specs[n]->value_type);
       g_object_get_property (G_OBJECT (element), specs[n]->name, &initial);
       if ((specs[n]->flags & G_PARAM_WRITABLE) &&
-          !g_param_value_defaults (specs[n], &initial)) {
+          !same_value (specs[n], g_param_spec_get_default_value (specs[n]),
+              &initial)) {
         g_test_message ("%s does not start with its default", specs[n]->name);
         g_test_fail ();
       }
@@ -266,19 +276,21 @@ test_request_pads (gconstpointer data)
       gst_element_factory_get_static_pad_templates (GST_ELEMENT_FACTORY (data));
       item; item = item->next) {
     GstStaticPadTemplate *pad_template = item->data;
+    /* A template without a number gives one pad. */
+    guint wanted = strchr (pad_template->name_template, '%') ? 3 : 1;
 
     if (pad_template->presence != GST_PAD_REQUEST)
       continue;
     for (guint cycle = 0; cycle < CYCLES; cycle++) {
-      GstPad *pads[3];
+      GstPad *pads[3] = { NULL };
 
-      for (guint n = 0; n < G_N_ELEMENTS (pads); n++) {
+      for (guint n = 0; n < wanted; n++) {
         pads[n] = gst_element_request_pad_simple (element,
             pad_template->name_template);
         g_assert_nonnull (pads[n]);
       }
       gst_element_set_state (element, GST_STATE_PLAYING);
-      for (guint n = 0; n < G_N_ELEMENTS (pads); n++) {
+      for (guint n = 0; n < wanted; n++) {
         gst_element_release_request_pad (element, pads[n]);
         gst_object_unref (pads[n]);
       }
