@@ -1,0 +1,202 @@
+/* Which stock elements keep the metas: the table of docs/metadata.md, row by row.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <gst/check/gstcheck.h>
+#include <gst/video/video.h>
+#include <gst/cloth/cloth.h>
+
+#define FRAMES 8
+#define WIDTH 320
+#define HEIGHT 240
+#define IN_CAPS "video/x-raw,format=I420,width=320,height=240,framerate=25/1"
+
+typedef struct
+{
+  const gchar *chain;
+  const gchar *places;          /* kept, scaled or lost */
+  const gchar *time;            /* kept or lost */
+} Row;
+
+static const Row rows[] = {
+#include "tests/elements/metasurvival.inc"
+};
+
+static GstBuffer *
+make_picture (guint number)
+{
+  const gfloat place = 10.25f + number;
+  GstClothSaddle saddle = {.x = place,.y = 20.5f,.response = 9,.axis = 1,
+    .cov_xx = 0.01f,.cov_yy = 0.04f
+  };
+  GstClothQuad quad = {.column = 1,.row = 1,.x = {place, 30, 30, place},.y =
+      {20.5f, 20.5f, 40, 40}
+  };
+  GstBuffer *picture = gst_buffer_new_allocate (NULL, WIDTH * HEIGHT * 3 / 2,
+      NULL);
+  g_autoptr (GstCaps) clock = gst_caps_from_string ("timestamp/x-unix");
+
+  gst_buffer_memset (picture, 0, (guint8) (90 + 10 * number), -1);
+  gst_buffer_add_cloth_saddles_meta (picture, gst_cloth_saddles_new ("cam0",
+          number, &saddle, 1, NULL, 0));
+  gst_buffer_add_cloth_quads_meta (picture, gst_cloth_quads_new ("cam0", number,
+          8, 8, &quad, 1));
+  gst_buffer_add_reference_timestamp_meta (picture, clock,
+      GST_SECOND + number, GST_CLOCK_TIME_NONE);
+  GST_BUFFER_PTS (picture) = gst_util_uint64_scale (number, GST_SECOND, 25);
+  GST_BUFFER_DURATION (picture) = GST_SECOND / 25;
+  return picture;
+}
+
+/* What became of the places on @picture: kept, scaled to its size, lost, or wrong. */
+static const gchar *
+judge_places (GstBuffer * picture, const GstVideoInfo * info)
+{
+  GstClothSaddles *saddles = gst_buffer_get_cloth_saddles (picture);
+  GstClothQuads *quads = gst_buffer_get_cloth_quads (picture);
+  gfloat sx = (gfloat) GST_VIDEO_INFO_WIDTH (info) / WIDTH;
+  gfloat sy = (gfloat) GST_VIDEO_INFO_HEIGHT (info) / HEIGHT;
+  GstClothSaddle saddle;
+  GstClothQuad quad;
+  gfloat x, most = sx == 1 && sy == 1 ? G_MINFLOAT : 1e-4f;
+
+  if (!saddles && !quads)
+    return "lost";
+  if (!saddles || !quads || !gst_cloth_saddles_get_saddle (saddles, 0, &saddle)
+      || !gst_cloth_quads_get_quad (quads, 0, &quad)
+      || g_strcmp0 (gst_cloth_saddles_get_camera (saddles), "cam0") != 0
+      || gst_cloth_saddles_get_sequence (saddles) >= FRAMES
+      || gst_cloth_quads_get_sequence (quads) !=
+      gst_cloth_saddles_get_sequence (saddles))
+    return "wrong";
+  x = 10.25f + (gfloat) gst_cloth_saddles_get_sequence (saddles);
+  if (!G_APPROX_VALUE (saddle.x, (x + 0.5f) * sx - 0.5f, most)
+      || !G_APPROX_VALUE (saddle.y, 21 * sy - 0.5f, most)
+      || !G_APPROX_VALUE (saddle.cov_xx, 0.01f * sx * sx, most)
+      || !G_APPROX_VALUE (saddle.cov_yy, 0.04f * sy * sy, most)
+      || !G_APPROX_VALUE (quad.x[3], (x + 0.5f) * sx - 0.5f, most)
+      || !G_APPROX_VALUE (quad.y[2], 40.5f * sy - 0.5f, most))
+    return "wrong";
+  return sx == 1 && sy == 1 ? "kept" : "scaled";
+}
+
+static const gchar *
+judge_time (GstBuffer * picture)
+{
+  GstReferenceTimestampMeta *time =
+      gst_buffer_get_reference_timestamp_meta (picture, NULL);
+
+  if (!time)
+    return "lost";
+  return time->timestamp >= GST_SECOND && time->timestamp < GST_SECOND + FRAMES
+      ? "kept" : "wrong";
+}
+
+/* All pictures that come out must be judged alike. */
+static void
+agree (const gchar ** verdict, const gchar * next)
+{
+  if (*verdict == NULL || g_str_equal (*verdict, next))
+    *verdict = next;
+  else
+    *verdict = "mixed";
+}
+
+static guint
+run_chain (const gchar * chain, const gchar ** places, const gchar ** time)
+{
+  g_autofree gchar *line = g_strdup_printf ("appsrc name=source format=time "
+      "caps=%s ! %s ! appsink name=sink sync=false", IN_CAPS, chain);
+  g_autoptr (GError) error = NULL;
+  g_autoptr (GstElement) pipeline = gst_parse_launch (line, &error);
+  g_autoptr (GstElement) source = NULL;
+  g_autoptr (GstElement) sink = NULL;
+  guint seen = 0;
+  GstFlowReturn flow;
+
+  g_assert_no_error (error);
+  source = gst_bin_get_by_name (GST_BIN (pipeline), "source");
+  sink = gst_bin_get_by_name (GST_BIN (pipeline), "sink");
+  gst_element_set_state (pipeline, GST_STATE_PLAYING);
+  for (guint i = 0; i < FRAMES; i++) {
+    GstBuffer *picture = make_picture (i);
+
+    g_signal_emit_by_name (source, "push-buffer", picture, &flow);
+    gst_buffer_unref (picture);
+  }
+  g_signal_emit_by_name (source, "end-of-stream", &flow);
+
+  *places = *time = NULL;
+  while (TRUE) {
+    g_autoptr (GstSample) sample = NULL;
+    GstVideoInfo info;
+
+    g_signal_emit_by_name (sink, "try-pull-sample", 30 * GST_SECOND, &sample);
+    if (!sample)
+      break;
+    if (!gst_video_info_from_caps (&info, gst_sample_get_caps (sample)))
+      gst_video_info_set_format (&info, GST_VIDEO_FORMAT_GRAY8, WIDTH, HEIGHT);
+    agree (places, judge_places (gst_sample_get_buffer (sample), &info));
+    agree (time, judge_time (gst_sample_get_buffer (sample)));
+    seen++;
+  }
+  gst_element_set_state (pipeline, GST_STATE_NULL);
+  return seen;
+}
+
+GST_START_TEST (test_rows)
+{
+  guint wrong = 0;
+
+  for (guint i = 0; i < G_N_ELEMENTS (rows); i++) {
+    const gchar *places, *time;
+    guint seen = run_chain (rows[i].chain, &places, &time);
+
+    if (seen == 0 || g_strcmp0 (places, rows[i].places) != 0
+        || g_strcmp0 (time, rows[i].time) != 0) {
+      g_printerr ("%s: %u pictures, places %s, time %s; the table says %s, "
+          "%s\n", rows[i].chain, seen, places, time, rows[i].places,
+          rows[i].time);
+      wrong++;
+    }
+  }
+  fail_unless_equals_int (wrong, 0);
+}
+
+GST_END_TEST;
+
+/* The page has exactly these rows, in this order. */
+GST_START_TEST (test_page)
+{
+  g_autoptr (GString) table =
+      g_string_new ("| chain | saddles, quads | capture "
+      "time |\n|---|---|---|\n");
+  g_autofree gchar *text = NULL;
+  g_autoptr (GError) error = NULL;
+
+  for (guint i = 0; i < G_N_ELEMENTS (rows); i++)
+    g_string_append_printf (table, "| `%s` | %s | %s |\n", rows[i].chain,
+        rows[i].places, rows[i].time);
+  g_string_append (table, "\n");
+  g_file_get_contents (TEST_DATA "/../../docs/metadata.md", &text, NULL,
+      &error);
+  g_assert_no_error (error);
+  if (!strstr (text, table->str))
+    g_printerr ("docs/metadata.md should have this table:\n%s", table->str);
+  fail_unless (strstr (text, table->str) != NULL);
+}
+
+GST_END_TEST;
+
+static Suite *
+metasurvival_suite (void)
+{
+  Suite *suite = suite_create ("metasurvival");
+  TCase *chain = tcase_create ("general");
+
+  suite_add_tcase (suite, chain);
+  tcase_add_test (chain, test_rows);
+  tcase_add_test (chain, test_page);
+  return suite;
+}
+
+GST_CHECK_MAIN (metasurvival);
