@@ -7,8 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* A 500×500 code takes 1/4 MiB; json-glib descends by recursion, so depth is bounded
- * before it sees the text. */
+/* A 500×500 code takes 1/4 MiB. */
 #define MAX_BYTES (4 * 1024 * 1024)
 #define MAX_DEPTH 16
 /* Sizes of cloth beyond this are a mistake of the unit. */
@@ -178,21 +177,40 @@ bad (GError ** error, const gchar * key, const gchar * wanted)
   return FALSE;
 }
 
+/* One object, not too deep, and nothing after it. json-glib descends by recursion, and
+ * loses memory where several values follow each other. */
 static gboolean
-too_deep (const gchar * data, gsize size)
+is_one_object (const gchar * data, gsize size)
 {
+  gboolean in_string = FALSE;
   gint depth = 0;
+  gsize i = 0;
 
-  /* Brackets inside strings count too: a pattern's strings have none. */
-  for (gsize i = 0; i < size; i++) {
-    if (data[i] == '[' || data[i] == '{') {
+  while (i < size && g_ascii_isspace (data[i]))
+    i++;
+  if (i == size || data[i] != '{')
+    return FALSE;
+  for (; i < size; i++) {
+    if (in_string) {
+      if (data[i] == '\\')
+        i++;
+      else if (data[i] == '"')
+        in_string = FALSE;
+    } else if (data[i] == '"') {
+      in_string = TRUE;
+    } else if (data[i] == '[' || data[i] == '{') {
       if (++depth > MAX_DEPTH)
-        return TRUE;
+        return FALSE;
     } else if (data[i] == ']' || data[i] == '}') {
-      depth--;
+      if (--depth == 0)
+        break;
     }
   }
-  return FALSE;
+  for (i++; i < size; i++) {
+    if (!g_ascii_isspace (data[i]))
+      return FALSE;
+  }
+  return depth == 0;
 }
 
 static gboolean
@@ -370,11 +388,11 @@ cloth_pattern_load_data (const gchar * data, gsize size, GError ** error)
   JsonObject *object;
   const gchar *kind;
 
-  if (size == 0 || size > MAX_BYTES || too_deep (data, size)
+  if (size == 0 || size > MAX_BYTES || !is_one_object (data, size)
       || !g_utf8_validate (data, (gssize) size, NULL)) {
     g_set_error_literal (error, CLOTH_PATTERN_ERROR,
-        CLOTH_PATTERN_ERROR_FORMAT,
-        "not a pattern.json: empty, too long, too deep or not UTF-8 text");
+        CLOTH_PATTERN_ERROR_FORMAT, "not a pattern.json: UTF-8 text of one "
+        "JSON object is wanted, of at most 4 MiB and 16 levels");
     return NULL;
   }
   if (!json_parser_load_from_data (parser, data, (gssize) size, &parse_error)) {
