@@ -8,6 +8,8 @@
 #include <gst/gst.h>
 
 #include "elements/gstclothoverlay.h"
+#include "elements/gstmeshsink.h"
+#include "elements/gstmeshsrc.h"
 
 static gboolean
 plugin_init (GstPlugin * plugin)
@@ -16,6 +18,8 @@ plugin_init (GstPlugin * plugin)
 
   registered &= GST_ELEMENT_REGISTER (clothoverlay, plugin);
 
+  registered &= GST_ELEMENT_REGISTER (meshsink, plugin);
+  registered &= GST_ELEMENT_REGISTER (meshsrc, plugin);
   return registered;
 }
 

@@ -95,6 +95,26 @@ is_grid (const ClothTopology * topology)
   return cloth_topology_equal (grid, topology);
 }
 
+/* The shortest number that is this float32: 0.63, not 0.629999995. */
+static gdouble
+shortest (gfloat value)
+{
+  gdouble number = value;
+
+  for (gint digits = 1; digits <= 9; digits++) {
+    gchar format[8], text[G_ASCII_DTOSTR_BUF_SIZE];
+    volatile gfloat narrowed;
+
+    g_snprintf (format, sizeof format, "%%.%dg", digits);
+    number = g_ascii_strtod (g_ascii_formatd (text, sizeof text, format, value),
+        NULL);
+    narrowed = (gfloat) number;
+    if (narrowed == value)
+      break;
+  }
+  return number;
+}
+
 static gboolean
 start_take (ClothMeshWriter * writer, GError ** error)
 {
@@ -107,8 +127,8 @@ start_take (ClothMeshWriter * writer, GError ** error)
 
     info->columns = topology->columns;
     info->rows = topology->rows;
-    info->width_m = last[0];
-    info->height_m = last[1];
+    info->width_m = shortest (last[0]);
+    info->height_m = shortest (last[1]);
   } else {
     info->mesh = g_strdup ("mesh.obj");
   }

@@ -46,7 +46,7 @@ load_topology (ClothTake * take, const gchar * folder, GError ** error)
 
   if (!info->mesh) {
     take->topology = cloth_topology_new_grid (info->columns, info->rows,
-        info->width_m, info->height_m);
+        (gfloat) info->width_m, (gfloat) info->height_m);
     return TRUE;
   }
   path = cloth_path_inside (folder, info->mesh, error);

@@ -41,8 +41,8 @@ cloth_topology_new (guint n_vertices, guint n_faces)
  * Since: 0.1
  */
 ClothTopology *
-cloth_topology_new_grid (guint columns, guint rows, gdouble width_m,
-    gdouble height_m)
+cloth_topology_new_grid (guint columns, guint rows, gfloat width_m,
+    gfloat height_m)
 {
   ClothTopology *topology =
       cloth_topology_new (columns * rows, (columns - 1) * (rows - 1));
@@ -55,9 +55,9 @@ cloth_topology_new_grid (guint columns, guint rows, gdouble width_m,
       guint vertex = row * columns + column;
 
       topology->uv[2 * vertex] =
-          (gfloat) ((gfloat) width_m * (gdouble) column / (columns - 1));
+          (gfloat) ((gdouble) width_m * column / (columns - 1));
       topology->uv[2 * vertex + 1] =
-          (gfloat) ((gfloat) height_m * (gdouble) row / (rows - 1));
+          (gfloat) ((gdouble) height_m * row / (rows - 1));
       if (row + 1 < rows && column + 1 < columns) {
         face[0] = vertex;
         face[1] = vertex + columns;

@@ -71,7 +71,7 @@ typedef struct {
 
 ClothTopology *cloth_topology_new (guint n_vertices, guint n_faces);
 ClothTopology *cloth_topology_new_grid (guint columns, guint rows,
-    gdouble width_m, gdouble height_m);
+    gfloat width_m, gfloat height_m);
 ClothTopology *cloth_topology_copy (const ClothTopology * topology);
 gboolean cloth_topology_equal (const ClothTopology * a, const ClothTopology * b);
 gboolean cloth_topology_check (const ClothTopology * topology, GError ** error);

@@ -1,0 +1,57 @@
+/* What meshsink and meshsrc share: the formats and how a file's error is told.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#ifdef HAVE_CONFIG_H
+#include "config.h"
+#endif
+
+#include "elements/gstmeshformat.h"
+
+#include <gio/gio.h>
+#include <gst/cloth/cloth.h>
+
+G_STATIC_ASSERT ((int) CLOTH_VERTEX_PREDICTED ==
+    (int) GST_CLOTH_VERTEX_PREDICTED);
+G_STATIC_ASSERT (CLOTH_NO_VERTEX == GST_CLOTH_NO_VERTEX);
+
+GType
+gst_mesh_format_get_type (void)
+{
+  static gsize type = 0;
+  static const GEnumValue values[] = {
+    {CLOTH_MESH_FORMAT_AUTO, "What the location's ending says, else OBJ + PC2",
+        "auto"},
+    {CLOTH_MESH_FORMAT_OBJ_PC2, "OBJ mesh with a PC2 point cache", "obj-pc2"},
+    {CLOTH_MESH_FORMAT_PLY, "One PLY file a frame", "ply"},
+    {CLOTH_MESH_FORMAT_TAKE, "Folder of a take", "take"},
+    {0, NULL, NULL}
+  };
+
+  if (g_once_init_enter (&type))
+    g_once_init_leave (&type, g_enum_register_static ("GstMeshFormat", values));
+  return type;
+}
+
+/* The system's failures are of the resource, wrong contents of the stream. */
+void
+gst_mesh_post_error (GstElement * element, const gchar * doing,
+    const gchar * location, gboolean writing, const GError * error)
+{
+  GQuark domain = GST_RESOURCE_ERROR;
+  gint code = writing ? GST_RESOURCE_ERROR_WRITE : GST_RESOURCE_ERROR_READ;
+
+  if (error->domain == CLOTH_MESH_ERROR) {
+    domain = GST_STREAM_ERROR;
+    code = GST_STREAM_ERROR_FORMAT;
+  } else if (g_error_matches (error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND)) {
+    code = writing ? GST_RESOURCE_ERROR_OPEN_WRITE :
+        GST_RESOURCE_ERROR_NOT_FOUND;
+  } else if (g_error_matches (error, G_IO_ERROR, G_IO_ERROR_NO_SPACE)) {
+    code = GST_RESOURCE_ERROR_NO_SPACE_LEFT;
+  } else if (g_error_matches (error, G_IO_ERROR, G_IO_ERROR_PERMISSION_DENIED)) {
+    code = GST_RESOURCE_ERROR_NOT_AUTHORIZED;
+  }
+  gst_element_message_full (element, GST_MESSAGE_ERROR, domain, code,
+      g_strdup_printf ("Cannot %s “%s”: %s", doing, location,
+          error->message), NULL, __FILE__, GST_FUNCTION, __LINE__);
+}

@@ -1,0 +1,18 @@
+/* What meshsink and meshsrc share: the formats and how a file's error is told.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include <gst/gst.h>
+
+#include "gst/mesh/sequence.h"
+
+G_BEGIN_DECLS
+
+#define GST_TYPE_MESH_FORMAT (gst_mesh_format_get_type ())
+GType gst_mesh_format_get_type (void);
+
+void gst_mesh_post_error (GstElement * element, const gchar * doing,
+    const gchar * location, gboolean writing, const GError * error);
+
+G_END_DECLS

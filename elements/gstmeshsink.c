@@ -1,0 +1,388 @@
+/* meshsink: a mesh stream into files.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+/**
+ * SECTION:element-meshsink
+ * @title: meshsink
+ * @short_description: writes a mesh stream to files
+ *
+ * Writes OBJ + PC2 (what Blender and most others read), one PLY file a frame, or the
+ * folder of a take. Frames go to temporary names as they come; at EOS, or when the
+ * element is stopped, the files get their names. After an error nothing is left. A
+ * flush starts the recording anew, as in filesink.
+ *
+ * OBJ, PC2 and PLY have no NaN: a vertex that is not seen holds its last place, one
+ * never seen so far the mean of its neighbours; `state` tells them apart.
+ *
+ * ## Example
+ * |[
+ * gst-launch-1.0 meshsrc location=take ! meshsink location=cloth.obj
+ * ]|
+ *
+ * Since: 0.1
+ */
+#ifdef HAVE_CONFIG_H
+#include "config.h"
+#endif
+
+#include "elements/gstmeshsink.h"
+
+#include <gst/cloth/cloth.h>
+
+#include "elements/gstmeshformat.h"
+
+GST_DEBUG_CATEGORY_STATIC (mesh_sink_debug);
+#define GST_CAT_DEFAULT mesh_sink_debug
+
+enum
+{
+  PROP_0,
+  PROP_LOCATION,
+  PROP_FORMAT,
+  PROP_MESH_NAME
+};
+
+struct _GstMeshSink
+{
+  GstBaseSink parent;
+
+  /* with the object lock */
+  gchar *location;
+  ClothMeshFormat format;
+  gchar *mesh_name;
+
+  /* streaming thread */
+  ClothTopology *topology;
+  gint fps_n, fps_d;
+  ClothMeshWriter *writer;      /* NULL before the first frame and after EOS */
+  gboolean failed;              /* until the next flush or start */
+};
+
+static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE ("sink",
+    GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS (GST_CLOTH_MESH_CAPS));
+
+G_DEFINE_TYPE (GstMeshSink, gst_mesh_sink, GST_TYPE_BASE_SINK);
+GST_ELEMENT_REGISTER_DEFINE (meshsink, "meshsink", GST_RANK_NONE,
+    GST_TYPE_MESH_SINK);
+
+static void
+fail (GstMeshSink * self, const gchar * doing, const GError * error)
+{
+  g_clear_pointer (&self->writer, cloth_mesh_writer_free);
+  self->failed = TRUE;
+  gst_mesh_post_error (GST_ELEMENT (self), doing, self->location, TRUE, error);
+}
+
+static ClothTopology *
+copy_topology (const GstClothTopology * from)
+{
+  guint n_indices;
+  const guint32 *faces = gst_cloth_topology_get_faces (from, &n_indices);
+  guint n_vertices = gst_cloth_topology_get_n_vertices (from);
+  ClothTopology *to = cloth_topology_new (n_vertices, n_indices / 4);
+
+  to->columns = gst_cloth_topology_get_columns (from);
+  to->rows = gst_cloth_topology_get_rows (from);
+  memcpy (to->uv, gst_cloth_topology_get_uv (from, NULL),
+      2 * sizeof (gfloat) * n_vertices);
+  memcpy (to->faces, faces, sizeof (guint32) * n_indices);
+  return to;
+}
+
+static gboolean
+gst_mesh_sink_set_caps (GstBaseSink * sink, GstCaps * caps)
+{
+  GstMeshSink *self = GST_MESH_SINK (sink);
+  g_autoptr (GError) error = NULL;
+  g_autoptr (GstClothTopology) parsed = NULL;
+  g_autoptr (ClothTopology) topology = NULL;
+  gint fps_n = 0, fps_d = 1;
+
+  parsed = gst_cloth_topology_from_caps (caps, &error);
+  if (!parsed) {
+    GST_ELEMENT_ERROR (self, STREAM, FORMAT, ("The caps hold no valid mesh: %s",
+            error->message), ("%" GST_PTR_FORMAT, caps));
+    return FALSE;
+  }
+  topology = copy_topology (parsed);
+  gst_structure_get_fraction (gst_caps_get_structure (caps, 0), "framerate",
+      &fps_n, &fps_d);
+  if (self->writer && (!cloth_topology_equal (topology, self->topology) ||
+          fps_n != self->fps_n || fps_d != self->fps_d)) {
+    g_clear_pointer (&self->writer, cloth_mesh_writer_free);
+    self->failed = TRUE;
+    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+        ("The mesh or its frame rate changed in the middle of the recording; "
+            "stop and record to another location"), ("%" GST_PTR_FORMAT, caps));
+    return FALSE;
+  }
+  cloth_topology_free (self->topology);
+  self->topology = g_steal_pointer (&topology);
+  self->fps_n = fps_n;
+  self->fps_d = fps_d;
+  return TRUE;
+}
+
+static gboolean
+open_writer (GstMeshSink * self)
+{
+  g_autoptr (GError) error = NULL;
+
+  self->writer = cloth_mesh_writer_new (self->location, self->format,
+      self->mesh_name, self->topology, self->fps_n, self->fps_d, &error);
+  if (!self->writer)
+    fail (self, "write", error);
+  return self->writer != NULL;
+}
+
+/* Seconds of running time; frames without a time stamp follow the frame rate. */
+static gboolean
+frame_time (GstMeshSink * self, GstBuffer * buffer, gdouble * time_s)
+{
+  const GstSegment *segment = &GST_BASE_SINK (self)->segment;
+  guint64 n_frames = cloth_mesh_writer_get_n_frames (self->writer);
+  GstClockTime time = GST_CLOCK_TIME_NONE;
+
+  if (segment->format == GST_FORMAT_TIME && GST_BUFFER_PTS_IS_VALID (buffer))
+    time = gst_segment_to_running_time (segment, GST_FORMAT_TIME,
+        GST_BUFFER_PTS (buffer));
+  if (GST_CLOCK_TIME_IS_VALID (time))
+    *time_s = (gdouble) time / GST_SECOND;
+  else if (self->fps_n > 0)
+    *time_s = (gdouble) n_frames *self->fps_d / self->fps_n;
+  else
+    return FALSE;
+  return TRUE;
+}
+
+static GstFlowReturn
+gst_mesh_sink_render (GstBaseSink * sink, GstBuffer * buffer)
+{
+  GstMeshSink *self = GST_MESH_SINK (sink);
+  g_autoptr (GError) error = NULL;
+  g_autoptr (GstClothMesh) mesh = NULL;
+  ClothMeshFrame frame;
+  gdouble time_s;
+
+  if (self->failed)
+    return GST_FLOW_ERROR;
+  if (!self->topology)
+    return GST_FLOW_NOT_NEGOTIATED;
+  mesh = gst_cloth_mesh_from_buffer (buffer, &error);
+  if (!mesh) {
+    g_clear_pointer (&self->writer, cloth_mesh_writer_free);
+    self->failed = TRUE;
+    GST_ELEMENT_ERROR (self, STREAM, DECODE,
+        ("A buffer holds no valid mesh: %s", error->message), (NULL));
+    return GST_FLOW_ERROR;
+  }
+  if (gst_cloth_mesh_get_n_vertices (mesh) != self->topology->n_vertices) {
+    g_clear_pointer (&self->writer, cloth_mesh_writer_free);
+    self->failed = TRUE;
+    GST_ELEMENT_ERROR (self, STREAM, DECODE,
+        ("A mesh of %u vertices in a stream of %u",
+            gst_cloth_mesh_get_n_vertices (mesh), self->topology->n_vertices),
+        (NULL));
+    return GST_FLOW_ERROR;
+  }
+  if (!self->writer && !open_writer (self))
+    return GST_FLOW_ERROR;
+  if (!frame_time (self, buffer, &time_s)) {
+    g_set_error (&error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID,
+        "a frame has neither a time stamp nor a frame rate");
+    fail (self, "write", error);
+    return GST_FLOW_ERROR;
+  }
+  frame.positions = gst_cloth_mesh_get_positions (mesh, NULL);
+  frame.states = gst_cloth_mesh_get_states (mesh, NULL);
+  frame.covariances = gst_cloth_mesh_get_covariances (mesh, NULL);
+  if (!cloth_mesh_writer_append (self->writer, time_s, &frame, &error)) {
+    fail (self, "write", error);
+    return GST_FLOW_ERROR;
+  }
+  return GST_FLOW_OK;
+}
+
+static gboolean
+finish (GstMeshSink * self)
+{
+  g_autoptr (GError) error = NULL;
+
+  if (!self->writer)
+    return TRUE;
+  if (!cloth_mesh_writer_close (self->writer, &error)) {
+    fail (self, "write", error);
+    return FALSE;
+  }
+  GST_INFO_OBJECT (self, "%" G_GUINT64_FORMAT " frames written to %s",
+      cloth_mesh_writer_get_n_frames (self->writer), self->location);
+  g_clear_pointer (&self->writer, cloth_mesh_writer_free);
+  return TRUE;
+}
+
+static gboolean
+gst_mesh_sink_event (GstBaseSink * sink, GstEvent * event)
+{
+  GstMeshSink *self = GST_MESH_SINK (sink);
+
+  switch (GST_EVENT_TYPE (event)) {
+    case GST_EVENT_EOS:
+      if (!self->writer && !self->failed) {
+        self->failed = TRUE;
+        GST_ELEMENT_ERROR (self, STREAM, FAILED,
+            ("The stream ended without a single mesh: nothing was written"),
+            (NULL));
+      }
+      if (self->failed || !finish (self)) {
+        gst_event_unref (event);
+        return FALSE;
+      }
+      break;
+    case GST_EVENT_FLUSH_STOP:
+      g_clear_pointer (&self->writer, cloth_mesh_writer_free);
+      self->failed = FALSE;
+      break;
+    default:
+      break;
+  }
+  return GST_BASE_SINK_CLASS (gst_mesh_sink_parent_class)->event (sink, event);
+}
+
+static gboolean
+gst_mesh_sink_start (GstBaseSink * sink)
+{
+  GstMeshSink *self = GST_MESH_SINK (sink);
+
+  if (!self->location || !*self->location) {
+    GST_ELEMENT_ERROR (self, RESOURCE, NOT_FOUND,
+        ("No location given: set the property “location” to a file or folder"),
+        (NULL));
+    return FALSE;
+  }
+  self->failed = FALSE;
+  return TRUE;
+}
+
+static gboolean
+gst_mesh_sink_stop (GstBaseSink * sink)
+{
+  GstMeshSink *self = GST_MESH_SINK (sink);
+  gboolean done = finish (self);
+
+  g_clear_pointer (&self->topology, cloth_topology_free);
+  return done;
+}
+
+static void
+gst_mesh_sink_set_property (GObject * object, guint id, const GValue * value,
+    GParamSpec * spec)
+{
+  GstMeshSink *self = GST_MESH_SINK (object);
+
+  GST_OBJECT_LOCK (self);
+  if (GST_STATE (self) > GST_STATE_READY) {
+    GST_WARNING_OBJECT (self, "“%s” cannot change while running",
+        spec->name);
+    GST_OBJECT_UNLOCK (self);
+    return;
+  }
+  switch (id) {
+    case PROP_LOCATION:
+      g_free (self->location);
+      self->location = g_value_dup_string (value);
+      break;
+    case PROP_FORMAT:
+      self->format = g_value_get_enum (value);
+      break;
+    case PROP_MESH_NAME:
+      g_free (self->mesh_name);
+      self->mesh_name = g_value_dup_string (value);
+      break;
+    default:
+      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, spec);
+      break;
+  }
+  GST_OBJECT_UNLOCK (self);
+}
+
+static void
+gst_mesh_sink_get_property (GObject * object, guint id, GValue * value,
+    GParamSpec * spec)
+{
+  GstMeshSink *self = GST_MESH_SINK (object);
+
+  GST_OBJECT_LOCK (self);
+  switch (id) {
+    case PROP_LOCATION:
+      g_value_set_string (value, self->location);
+      break;
+    case PROP_FORMAT:
+      g_value_set_enum (value, self->format);
+      break;
+    case PROP_MESH_NAME:
+      g_value_set_string (value, self->mesh_name);
+      break;
+    default:
+      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, spec);
+      break;
+  }
+  GST_OBJECT_UNLOCK (self);
+}
+
+static void
+gst_mesh_sink_finalize (GObject * object)
+{
+  GstMeshSink *self = GST_MESH_SINK (object);
+
+  cloth_mesh_writer_free (self->writer);
+  cloth_topology_free (self->topology);
+  g_free (self->location);
+  g_free (self->mesh_name);
+  G_OBJECT_CLASS (gst_mesh_sink_parent_class)->finalize (object);
+}
+
+static void
+gst_mesh_sink_class_init (GstMeshSinkClass * klass)
+{
+  GObjectClass *object_class = G_OBJECT_CLASS (klass);
+  GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
+  GstBaseSinkClass *sink_class = GST_BASE_SINK_CLASS (klass);
+
+  GST_DEBUG_CATEGORY_INIT (mesh_sink_debug, "meshsink", 0,
+      "mesh stream into files");
+  object_class->set_property = gst_mesh_sink_set_property;
+  object_class->get_property = gst_mesh_sink_get_property;
+  object_class->finalize = gst_mesh_sink_finalize;
+  g_object_class_install_property (object_class, PROP_LOCATION,
+      g_param_spec_string ("location", "Location",
+          "File or folder to write: name.obj (with name.pc2 beside it), name.ply "
+          "(name_00000.ply and so on) or the folder of a take", NULL,
+          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+          GST_PARAM_MUTABLE_READY));
+  g_object_class_install_property (object_class, PROP_FORMAT,
+      g_param_spec_enum ("format", "Format", "Format of the files",
+          GST_TYPE_MESH_FORMAT, CLOTH_MESH_FORMAT_AUTO,
+          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+          GST_PARAM_MUTABLE_READY));
+  g_object_class_install_property (object_class, PROP_MESH_NAME,
+      g_param_spec_string ("mesh-name", "Mesh name",
+          "Name of the object or take in the files; by default, that of the file",
+          NULL, G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+          GST_PARAM_MUTABLE_READY));
+  gst_element_class_add_static_pad_template (element_class, &sink_template);
+  gst_element_class_set_static_metadata (element_class, "Mesh file sink",
+      "Sink/File", "Writes a mesh stream to OBJ + PC2, PLY or a take",
+      PACKAGE_NAME);
+  sink_class->set_caps = gst_mesh_sink_set_caps;
+  sink_class->render = gst_mesh_sink_render;
+  sink_class->event = gst_mesh_sink_event;
+  sink_class->start = gst_mesh_sink_start;
+  sink_class->stop = gst_mesh_sink_stop;
+  gst_type_mark_as_plugin_api (GST_TYPE_MESH_FORMAT, 0);
+}
+
+static void
+gst_mesh_sink_init (GstMeshSink * self)
+{
+  gst_base_sink_set_sync (GST_BASE_SINK (self), FALSE);
+}
