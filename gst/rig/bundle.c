@@ -1,0 +1,654 @@
+/* Least-squares refinement of cameras and board poses together.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/rig/bundle.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/math/linalg.h"
+#include "gst/rig/rig.h"
+#include "gst/rig/rotation.h"
+
+#define N_CAMERA CLOTH_CAMERA_N_PARAMETERS
+#define N_ALL (N_CAMERA + 6)
+
+/* Poses are eliminated first: with C the cameras' parameters and P those of poses,
+ *   [ A   W ] [dC]   [g]
+ *   [ W'  B ] [dP] = [h],  B block-diagonal (6×6 a pose),
+ * so (A − W B⁻¹ W') dC = g − W B⁻¹ h. W has one block (18×6) a view. */
+typedef struct
+{
+  const ClothBundle *bundle;
+  guint n;                      /* free camera parameters */
+  gint *map;                    /* N_CAMERA a camera: column, or -1 */
+  guint *first, *order;         /* views by pose */
+  gdouble *A, *g;
+  gdouble *B, *h;
+  gdouble *W;
+  gdouble *S, *B_inverse;
+  gdouble *dc, *dp;
+} Normal;
+
+static void
+normal_init (Normal * s, const ClothBundle * b)
+{
+  guint *fill = g_new0 (guint, b->n_poses + 1);
+  gint shared[8];
+
+  memset (s, 0, sizeof *s);
+  s->bundle = b;
+  s->map = g_new (gint, b->n_cameras * N_CAMERA);
+  for (guint j = 0; j < 8; j++)
+    shared[j] = -1;
+  for (guint c = 0; c < b->n_cameras; c++) {
+    for (guint j = 0; j < N_CAMERA; j++) {
+      gboolean lens = j >= 4 && j < 12;
+      gint *column = &s->map[c * N_CAMERA + j];
+
+      if (!(b->free[c] & (1u << j)))
+        *column = -1;
+      else if (lens && b->share_lens && shared[j - 4] >= 0)
+        *column = shared[j - 4];
+      else
+        *column = (gint) s->n++;
+      if (lens && b->share_lens && *column >= 0)
+        shared[j - 4] = *column;
+    }
+  }
+  s->first = g_new0 (guint, b->n_poses + 1);
+  s->order = g_new (guint, MAX (b->n_views, 1));
+  for (guint v = 0; v < b->n_views; v++)
+    s->first[b->views[v].pose + 1]++;
+  for (guint p = 0; p < b->n_poses; p++)
+    s->first[p + 1] += s->first[p];
+  for (guint v = 0; v < b->n_views; v++) {
+    guint p = b->views[v].pose;
+
+    s->order[s->first[p] + fill[p]++] = v;
+  }
+  g_free (fill);
+  s->A = g_new (gdouble, (gsize) s->n * s->n + 1);
+  s->S = g_new (gdouble, (gsize) s->n * s->n + 1);
+  s->g = g_new (gdouble, s->n + 1);
+  s->dc = g_new (gdouble, s->n + 1);
+  s->B = g_new (gdouble, (gsize) b->n_poses * 36 + 1);
+  s->B_inverse = g_new (gdouble, (gsize) b->n_poses * 36 + 1);
+  s->h = g_new (gdouble, (gsize) b->n_poses * 6 + 1);
+  s->dp = g_new (gdouble, (gsize) b->n_poses * 6 + 1);
+  s->W = g_new (gdouble, (gsize) b->n_views * N_CAMERA * 6 + 1);
+}
+
+static void
+normal_clear (Normal * s)
+{
+  g_free (s->map);
+  g_free (s->first);
+  g_free (s->order);
+  g_free (s->A);
+  g_free (s->S);
+  g_free (s->g);
+  g_free (s->dc);
+  g_free (s->B);
+  g_free (s->B_inverse);
+  g_free (s->h);
+  g_free (s->dp);
+  g_free (s->W);
+}
+
+/* Inverse of a point's covariance, with the variance e added. */
+static void
+information (const ClothBundleView * view, guint i, gdouble e, gdouble M[3])
+{
+  gdouble xx = e, xy = 0, yy = e, det;
+
+  if (view->cov) {
+    xx += view->cov[3 * i];
+    xy = view->cov[3 * i + 1];
+    yy += view->cov[3 * i + 2];
+  }
+  det = xx * yy - xy * xy;
+  M[0] = yy / det;
+  M[1] = -xy / det;
+  M[2] = xx / det;
+}
+
+/* One point: residual (seen − predicted), and with J its derivative of the prediction:
+ * row-major 2×N_ALL, columns of the camera (rotation: a small one about the camera's axes,
+ * on the left), then of the pose (rotation on the left, translation). */
+static gboolean
+point (const ClothBundle * b, const ClothBundleView * view, guint i,
+    gdouble e[2], gdouble * J)
+{
+  ClothCamera camera = b->cameras[view->camera];
+  const gdouble *P = b->poses + 12 * (gsize) view->pose;
+  const gdouble *X = b->board + 3 * (gsize) view->vertex[i];
+  const gdouble *R = b->cameras[view->camera].R;
+  const gdouble *t = b->cameras[view->camera].t;
+  static const gdouble identity[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
+  gdouble PX[3], Y[3], RY[3], Z[3], px[2], a[6], d[2 * N_CAMERA];
+
+  cloth_mat3_vec (P, X, PX);
+  for (gint j = 0; j < 3; j++)
+    Y[j] = PX[j] + P[9 + j];
+  cloth_mat3_vec (R, Y, RY);
+  for (gint j = 0; j < 3; j++)
+    Z[j] = RY[j] + t[j];
+  memcpy (camera.R, identity, sizeof identity);
+  memset (camera.t, 0, sizeof camera.t);
+  if (!cloth_camera_project (&camera, Z, px, J ? a : NULL, J ? d : NULL))
+    return FALSE;
+  e[0] = view->x[i] - px[0];
+  e[1] = view->y[i] - px[1];
+  if (!isfinite (e[0]) || !isfinite (e[1]))
+    return FALSE;
+  for (gint r = 0; J && r < 2; r++) {
+    gdouble *row = J + r * N_ALL, aR[3];
+    const gdouble *ar = a + 3 * r;
+
+    memcpy (row, d + r * N_CAMERA, 12 * sizeof (gdouble));
+    for (gint j = 0; j < 3; j++) {
+      gint k = (j + 1) % 3, l = (j + 2) % 3;
+
+      /* a · (w × v) = w · (v × a) */
+      row[12 + j] = RY[k] * ar[l] - RY[l] * ar[k];
+      row[15 + j] = ar[j];
+    }
+    cloth_mat3_vec_t (R, ar, aR);
+    for (gint j = 0; j < 3; j++) {
+      gint k = (j + 1) % 3, l = (j + 2) % 3;
+
+      row[18 + j] = PX[k] * aR[l] - PX[l] * aR[k];
+      row[21 + j] = aR[j];
+    }
+  }
+  return TRUE;
+}
+
+/* Huber's cost of a distance in standard deviations, doubled so that it is d² inside. */
+static gdouble
+huber_cost (gdouble d2, gdouble limit, gdouble * weight)
+{
+  gdouble d = sqrt (d2);
+
+  if (d <= limit) {
+    *weight = 1;
+    return d2;
+  }
+  *weight = limit / d;
+  return limit * (2 * d - limit);
+}
+
+/* The cost, or infinity when a point isn't in front of its camera. With s the normal
+ * equations too. */
+static gdouble
+build (const ClothBundle * b, Normal * s)
+{
+  gdouble cost = 0;
+
+  if (s) {
+    memset (s->A, 0, (gsize) s->n * s->n * sizeof (gdouble));
+    memset (s->g, 0, s->n * sizeof (gdouble));
+    memset (s->B, 0, (gsize) b->n_poses * 36 * sizeof (gdouble));
+    memset (s->h, 0, (gsize) b->n_poses * 6 * sizeof (gdouble));
+    memset (s->W, 0, (gsize) b->n_views * N_CAMERA * 6 * sizeof (gdouble));
+  }
+  for (guint v = 0; v < b->n_views; v++) {
+    const ClothBundleView *view = &b->views[v];
+    gdouble H[N_ALL][N_ALL], f[N_ALL], excess = b->excess[view->camera];
+    guint active[N_ALL], n_active = 0;
+    const gint *map;
+
+    if (!view->use)
+      continue;
+    if (s) {
+      memset (H, 0, sizeof H);
+      memset (f, 0, sizeof f);
+      map = s->map + view->camera * N_CAMERA;
+      for (guint j = 0; j < N_ALL; j++) {
+        if (j >= N_CAMERA || map[j] >= 0)
+          active[n_active++] = j;
+      }
+    }
+    for (guint i = 0; i < view->n; i++) {
+      gdouble e[2], M[3], J[2 * N_ALL], Me[2], w;
+
+      if (!point (b, view, i, e, s ? J : NULL))
+        return HUGE_VAL;
+      information (view, i, excess * excess, M);
+      Me[0] = M[0] * e[0] + M[1] * e[1];
+      Me[1] = M[1] * e[0] + M[2] * e[1];
+      cost += huber_cost (e[0] * Me[0] + e[1] * Me[1], b->huber, &w);
+      if (!s)
+        continue;
+      for (guint a = 0; a < n_active; a++) {
+        guint j = active[a];
+        gdouble p = w * (M[0] * J[j] + M[1] * J[N_ALL + j]);
+        gdouble q = w * (M[1] * J[j] + M[2] * J[N_ALL + j]);
+
+        f[j] += p * e[0] + q * e[1];
+        for (guint c = 0; c <= a; c++)
+          H[j][active[c]] += p * J[active[c]] + q * J[N_ALL + active[c]];
+      }
+    }
+    if (!s)
+      continue;
+    map = s->map + view->camera * N_CAMERA;
+    for (guint j = 0; j < N_CAMERA; j++) {
+      if (map[j] < 0)
+        continue;
+      s->g[map[j]] += f[j];
+      for (guint k = 0; k <= j; k++) {
+        if (map[k] < 0)
+          continue;
+        s->A[(gsize) map[j] * s->n + map[k]] += H[j][k];
+        if (map[j] != map[k])
+          s->A[(gsize) map[k] * s->n + map[j]] += H[j][k];
+      }
+      for (guint k = 0; k < 6; k++)
+        s->W[((gsize) v * N_CAMERA + j) * 6 + k] = H[N_CAMERA + k][j];
+    }
+    for (guint j = 0; j < 6; j++) {
+      s->h[6 * (gsize) view->pose + j] += f[N_CAMERA + j];
+      for (guint k = 0; k < 6; k++)
+        s->B[36 * (gsize) view->pose + 6 * j + k] +=
+            H[N_CAMERA + MAX (j, k)][N_CAMERA + MIN (j, k)];
+    }
+  }
+  return cost;
+}
+
+/* Whether any view in use shows the pose. */
+static gboolean
+pose_used (const Normal * s, guint p)
+{
+  for (guint i = s->first[p]; i < s->first[p + 1]; i++) {
+    if (s->bundle->views[s->order[i]].use)
+      return TRUE;
+  }
+  return FALSE;
+}
+
+/* S = A − W B⁻¹ W', dc = g − W B⁻¹ h, both damped by @lambda times the diagonal. */
+static gboolean
+reduce (Normal * s, gdouble lambda)
+{
+  const ClothBundle *b = s->bundle;
+  guint n = s->n;
+
+  memcpy (s->S, s->A, (gsize) n * n * sizeof (gdouble));
+  memcpy (s->dc, s->g, n * sizeof (gdouble));
+  for (guint i = 0; i < n; i++)
+    s->S[(gsize) i * n + i] *= 1 + lambda;
+  for (guint p = 0; p < b->n_poses; p++) {
+    gdouble L[36], *inverse = s->B_inverse + 36 * (gsize) p;
+
+    if (!pose_used (s, p))
+      continue;
+    memcpy (L, s->B + 36 * (gsize) p, sizeof L);
+    for (guint i = 0; i < 6; i++)
+      L[7 * i] *= 1 + lambda;
+    if (!cloth_cholesky_factor (6, L))
+      return FALSE;
+    cloth_cholesky_inverse (6, L, inverse);
+    for (guint i = s->first[p]; i < s->first[p + 1]; i++) {
+      guint v = s->order[i];
+      const gint *map = s->map + b->views[v].camera * N_CAMERA;
+      gdouble WB[N_CAMERA][6];
+
+      if (!b->views[v].use)
+        continue;
+      for (guint j = 0; j < N_CAMERA; j++) {
+        const gdouble *w = s->W + ((gsize) v * N_CAMERA + j) * 6;
+
+        if (map[j] < 0)
+          continue;
+        for (guint k = 0; k < 6; k++) {
+          WB[j][k] = 0;
+          for (guint l = 0; l < 6; l++)
+            WB[j][k] += w[l] * inverse[6 * l + k];
+          s->dc[map[j]] -= WB[j][k] * s->h[6 * (gsize) p + k];
+        }
+      }
+      for (guint o = s->first[p]; o < s->first[p + 1]; o++) {
+        guint u = s->order[o];
+        const gint *other = s->map + b->views[u].camera * N_CAMERA;
+
+        if (!b->views[u].use)
+          continue;
+        for (guint j = 0; j < N_CAMERA; j++) {
+          for (guint k = 0; map[j] >= 0 && k < N_CAMERA; k++) {
+            const gdouble *w = s->W + ((gsize) u * N_CAMERA + k) * 6;
+            gdouble sum = 0;
+
+            if (other[k] < 0)
+              continue;
+            for (guint l = 0; l < 6; l++)
+              sum += WB[j][l] * w[l];
+            s->S[(gsize) map[j] * n + other[k]] -= sum;
+          }
+        }
+      }
+    }
+  }
+  return n == 0 || cloth_cholesky_factor (n, s->S);
+}
+
+static void
+back_substitute (Normal * s)
+{
+  const ClothBundle *b = s->bundle;
+
+  if (s->n > 0)
+    cloth_cholesky_solve (s->n, s->S, s->dc);
+  for (guint p = 0; p < b->n_poses; p++) {
+    gdouble rest[6];
+
+    if (!pose_used (s, p)) {
+      memset (s->dp + 6 * (gsize) p, 0, 6 * sizeof (gdouble));
+      continue;
+    }
+    memcpy (rest, s->h + 6 * (gsize) p, sizeof rest);
+    for (guint i = s->first[p]; i < s->first[p + 1]; i++) {
+      guint v = s->order[i];
+      const gint *map = s->map + b->views[v].camera * N_CAMERA;
+
+      if (!b->views[v].use)
+        continue;
+      for (guint j = 0; j < N_CAMERA; j++) {
+        for (guint k = 0; map[j] >= 0 && k < 6; k++)
+          rest[k] -= s->W[((gsize) v * N_CAMERA + j) * 6 + k] * s->dc[map[j]];
+      }
+    }
+    for (guint j = 0; j < 6; j++) {
+      gdouble sum = 0;
+
+      for (guint k = 0; k < 6; k++)
+        sum += s->B_inverse[36 * (gsize) p + 6 * j + k] * rest[k];
+      s->dp[6 * (gsize) p + j] = sum;
+    }
+  }
+}
+
+static void
+turn (gdouble R[9], const gdouble w[3])
+{
+  gdouble D[9], M[9];
+
+  cloth_rotation_from_vector (w, D);
+  cloth_mat3_mul (D, R, M);
+  /* Rounding would add up over many steps. */
+  if (!cloth_mat3_nearest_rotation (M, R))
+    memcpy (R, M, sizeof M);
+}
+
+static void
+apply (ClothBundle * b, const Normal * s)
+{
+  for (guint c = 0; c < b->n_cameras; c++) {
+    static const guint k_index[4] = { 0, 4, 2, 5 };
+    ClothCamera *camera = &b->cameras[c];
+    gdouble d[N_CAMERA];
+
+    for (guint j = 0; j < N_CAMERA; j++) {
+      gint column = s->map[c * N_CAMERA + j];
+
+      d[j] = column < 0 ? 0 : s->dc[column];
+    }
+    for (guint j = 0; j < 4; j++)
+      camera->K[k_index[j]] += d[j];
+    for (guint j = 0; j < 8; j++)
+      camera->k[j] += d[4 + j];
+    if (b->free[c] & CLOTH_BUNDLE_PLACE)
+      turn (camera->R, d + 12);
+    for (guint j = 0; j < 3; j++)
+      camera->t[j] += d[15 + j];
+  }
+  for (guint p = 0; p < b->n_poses; p++) {
+    gdouble *P = b->poses + 12 * (gsize) p;
+
+    if (!pose_used (s, p))
+      continue;
+    turn (P, s->dp + 6 * (gsize) p);
+    for (guint j = 0; j < 3; j++)
+      P[9 + j] += s->dp[6 * (gsize) p + 3 + j];
+  }
+}
+
+static gboolean
+sane (const ClothBundle * b)
+{
+  for (guint c = 0; c < b->n_cameras; c++) {
+    if (!(b->cameras[c].K[0] > 0) || !(b->cameras[c].K[4] > 0))
+      return FALSE;
+  }
+  return TRUE;
+}
+
+/**
+ * cloth_bundle_solve:
+ * @bundle: the problem, its cameras and poses replaced by the result
+ * @cost: (out) (optional): the sum of Huber's costs, in squared standard deviations
+ * @error: #GIOErrorEnum cancelled, or #ClothRigError when the start is impossible
+ *
+ * Levenberg and Marquardt's method on whitened reprojection errors with Huber's weights,
+ * board poses eliminated by the Schur complement (Triggs et al., "Bundle adjustment, a
+ * modern synthesis", 2000). The order of all sums is fixed: equal input gives equal bytes.
+ *
+ * Returns: whether a minimum, or the last iteration, was reached.
+ *
+ * Since: 0.1
+ */
+gboolean
+cloth_bundle_solve (ClothBundle * bundle, gdouble * cost, GError ** error)
+{
+  Normal s;
+  g_autofree ClothCamera *cameras =
+      g_memdup2 (bundle->cameras, bundle->n_cameras * sizeof (ClothCamera));
+  g_autofree gdouble *poses = g_memdup2 (bundle->poses,
+      12 * bundle->n_poses * sizeof (gdouble));
+  gdouble lambda = 1e-4, now;
+  gboolean ok = TRUE;
+  guint settled = 0;
+
+  normal_init (&s, bundle);
+  now = build (bundle, &s);
+  if (!isfinite (now)) {
+    g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_VALUE,
+        "a board lies behind its camera at the start of the fit");
+    ok = FALSE;
+  }
+  for (guint i = 0; ok && i < bundle->max_iterations && settled < 2; i++) {
+    gdouble next = HUGE_VAL;
+
+    if (g_cancellable_set_error_if_cancelled (bundle->cancellable, error)) {
+      ok = FALSE;
+      break;
+    }
+    if (reduce (&s, lambda)) {
+      back_substitute (&s);
+      apply (bundle, &s);
+      if (sane (bundle))
+        next = build (bundle, NULL);
+    }
+    if (next <= now) {
+      /* Twice no gain worth a digit of any parameter: there. */
+      settled = now - next <= 1e-11 * now ? settled + 1 : 0;
+      memcpy (cameras, bundle->cameras,
+          bundle->n_cameras * sizeof (ClothCamera));
+      memcpy (poses, bundle->poses, 12 * bundle->n_poses * sizeof (gdouble));
+      lambda = fmax (lambda / 10, 1e-12);
+      now = build (bundle, &s);
+    } else {
+      memcpy (bundle->cameras, cameras,
+          bundle->n_cameras * sizeof (ClothCamera));
+      memcpy (bundle->poses, poses, 12 * bundle->n_poses * sizeof (gdouble));
+      lambda *= 10;
+      if (lambda > 1e10)
+        break;
+    }
+  }
+  if (cost)
+    *cost = now;
+  normal_clear (&s);
+  return ok;
+}
+
+/**
+ * cloth_bundle_covariance:
+ * @bundle: a problem at its minimum
+ * @covariance: (out caller-allocates): 18×18 a camera, columns as in
+ *   #CLOTH_CAMERA_N_PARAMETERS but for the rotation, which is a small one about the
+ *   camera's own axes; zeros for what is not free
+ * @variance: (out): variance of the standardised residuals, by which @covariance is scaled
+ * @error: #ClothRigError when the data leave a direction undetermined
+ *
+ * Inverse of the information matrix, board poses marginalised, times the residual variance.
+ *
+ * Returns: whether the matrix could be inverted.
+ *
+ * Since: 0.1
+ */
+gboolean
+cloth_bundle_covariance (const ClothBundle * bundle, gdouble * covariance,
+    gdouble * variance, GError ** error)
+{
+  Normal s;
+  gdouble sum = 0, dof;
+  guint n_points = 0, n_poses = 0;
+  gboolean ok;
+
+  normal_init (&s, bundle);
+  build (bundle, &s);
+  for (guint v = 0; v < bundle->n_views; v++) {
+    const ClothBundleView *view = &bundle->views[v];
+    gdouble excess = bundle->excess[view->camera];
+
+    for (guint i = 0; view->use && i < view->n; i++) {
+      gdouble e[2], M[3], d2, w;
+
+      if (!point (bundle, view, i, e, NULL))
+        continue;
+      information (view, i, excess * excess, M);
+      d2 = M[0] * e[0] * e[0] + 2 * M[1] * e[0] * e[1] + M[2] * e[1] * e[1];
+      huber_cost (d2, bundle->huber, &w);
+      sum += w * d2;
+      n_points++;
+    }
+  }
+  for (guint p = 0; p < bundle->n_poses; p++)
+    n_poses += pose_used (&s, p);
+  dof = 2. * n_points - s.n - 6. * n_poses;
+  *variance = dof > 0 ? sum / dof : NAN;
+  ok = dof > 0 && reduce (&s, 0);
+  if (ok) {
+    gdouble *inverse = s.A;
+
+    cloth_cholesky_inverse (s.n, s.S, inverse);
+    for (guint c = 0; c < bundle->n_cameras; c++) {
+      const gint *map = s.map + c * N_CAMERA;
+
+      for (guint i = 0; i < N_CAMERA; i++) {
+        for (guint j = 0; j < N_CAMERA; j++)
+          covariance[(c * N_CAMERA + i) * N_CAMERA + j] =
+              map[i] < 0 || map[j] < 0 ? 0
+              : *variance * inverse[(gsize) map[i] * s.n + map[j]];
+      }
+    }
+  } else {
+    g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_VALUE,
+        "the views don't determine all parameters");
+  }
+  normal_clear (&s);
+  return ok;
+}
+
+/**
+ * cloth_bundle_residuals:
+ * @bundle: a problem
+ * @view: which view
+ * @dx: (out caller-allocates): seen minus predicted, px, a number a point; NaN where the
+ *   point is not in front of the camera
+ * @dy: (out caller-allocates): likewise
+ *
+ * Since: 0.1
+ */
+void
+cloth_bundle_residuals (const ClothBundle * bundle, guint view, gdouble * dx,
+    gdouble * dy)
+{
+  const ClothBundleView *v = &bundle->views[view];
+
+  for (guint i = 0; i < v->n; i++) {
+    gdouble e[2];
+
+    if (!point (bundle, v, i, e, NULL))
+      e[0] = e[1] = NAN;
+    dx[i] = e[0];
+    dy[i] = e[1];
+  }
+}
+
+/* The median of a squared distance in two dimensions that has unit variances. */
+#define MEDIAN_D2 (2 * G_LN2)
+
+/**
+ * cloth_bundle_excess:
+ * @bundle: a problem at, or near, its minimum
+ * @camera: a camera
+ *
+ * What the residuals scatter beyond the covariances of the corners: a board that is not
+ * flat, a lens that the model does not follow. The standard deviation that, added to all
+ * covariances, brings the median standardised distance to that of a Gaussian; at least
+ * 0.0001 px. Outliers don't move it.
+ *
+ * Returns: the standard deviation, px.
+ *
+ * Since: 0.1
+ */
+gdouble
+cloth_bundle_excess (const ClothBundle * bundle, guint camera)
+{
+  g_autoptr (GArray) points = g_array_new (FALSE, FALSE, 4 * sizeof (gdouble));
+  gdouble low = 1e-4, high = 1e-4;
+
+  for (guint v = 0; v < bundle->n_views; v++) {
+    const ClothBundleView *view = &bundle->views[v];
+
+    if (!view->use || view->camera != camera)
+      continue;
+    for (guint i = 0; i < view->n; i++) {
+      gdouble e[2];
+
+      if (point (bundle, view, i, e, NULL)) {
+        gdouble entry[4] = { e[0], e[1], v, i };
+
+        g_array_append_vals (points, entry, 1);
+        high = fmax (high, fabs (e[0]) + fabs (e[1]));
+      }
+    }
+  }
+  if (points->len == 0)
+    return low;
+  for (gint step = -1; step < 40; step++) {
+    gdouble middle = step < 0 ? low : 0.5 * (low + high);
+    guint n_above = 0;
+
+    for (guint i = 0; i < points->len; i++) {
+      const gdouble *p = (const gdouble *) points->data + 4 * i;
+      gdouble M[3];
+
+      information (&bundle->views[(guint) p[2]], (guint) p[3],
+          middle * middle, M);
+      n_above += M[0] * p[0] * p[0] + 2 * M[1] * p[0] * p[1]
+          + M[2] * p[1] * p[1] > MEDIAN_D2;
+    }
+    if (2 * n_above > points->len)
+      low = middle;
+    else if (step < 0)
+      return low;
+    else
+      high = middle;
+  }
+  return 0.5 * (low + high);
+}

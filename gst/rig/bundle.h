@@ -1,0 +1,85 @@
+/* Least-squares refinement of cameras and board poses together.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include <gio/gio.h>
+
+#include "gst/rig/camera.h"
+
+G_BEGIN_DECLS
+
+/**
+ * ClothBundleView:
+ * @camera: which camera
+ * @pose: which pose of the board
+ * @use: whether it takes part in the fit
+ * @n: points
+ * @vertex: (array length=n): which vertex of the board each point is
+ * @x: (array length=n): px
+ * @y: (array length=n): px
+ * @cov: (array) (nullable): 3·@n: covariances xx, xy, yy, px²
+ *
+ * What one camera sees of the board in one pose. Owns nothing.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  guint camera, pose;
+  gboolean use;
+  guint n;
+  const guint *vertex;
+  const gdouble *x, *y;
+  const gdouble *cov;
+} ClothBundleView;
+
+/* Parameters of a camera that a fit may change; the bits of ClothBundle.free. */
+#define CLOTH_BUNDLE_FOCAL 0x3u
+#define CLOTH_BUNDLE_CENTRE 0xcu
+#define CLOTH_BUNDLE_COEFFICIENT(i) (0x10u << (i))
+#define CLOTH_BUNDLE_COEFFICIENTS 0xff0u
+#define CLOTH_BUNDLE_PLACE 0x3f000u
+
+/**
+ * ClothBundle:
+ * @n_cameras: cameras
+ * @cameras: (array length=n_cameras): in: start, out: result; K, k, R, t
+ * @free: (array length=n_cameras): bits of the parameters that may change
+ * @share_lens: whether all cameras have the same coefficients
+ * @n_poses: poses of the board
+ * @poses: (array): 12·@n_poses: row-major R, then t, board to world; in and out
+ * @n_views: views
+ * @views: (array length=n_views): what was seen
+ * @board: (array): 3 numbers a vertex, m
+ * @excess: (array length=n_cameras): standard deviation added to every covariance, px
+ * @huber: points farther off than this many standard deviations get less weight
+ * @max_iterations: of Levenberg and Marquardt's method
+ * @cancellable: (nullable): stops it
+ *
+ * A problem of bundle adjustment. Since: 0.1
+ */
+typedef struct {
+  guint n_cameras;
+  ClothCamera *cameras;
+  guint *free;
+  gboolean share_lens;
+  guint n_poses;
+  gdouble *poses;
+  guint n_views;
+  const ClothBundleView *views;
+  const gdouble *board;
+  const gdouble *excess;
+  gdouble huber;
+  guint max_iterations;
+  GCancellable *cancellable;
+} ClothBundle;
+
+gboolean cloth_bundle_solve (ClothBundle * bundle, gdouble * cost,
+    GError ** error);
+gboolean cloth_bundle_covariance (const ClothBundle * bundle,
+    gdouble * covariance, gdouble * variance, GError ** error);
+void cloth_bundle_residuals (const ClothBundle * bundle, guint view,
+    gdouble * dx, gdouble * dy);
+gdouble cloth_bundle_excess (const ClothBundle * bundle, guint camera);
+
+G_END_DECLS
