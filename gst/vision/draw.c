@@ -57,20 +57,30 @@ value_of (const ClothComponent * c, const ClothColour * colour)
   return (guint8) CLAMP (value + 0.5f, 0.0f, 255.0f);
 }
 
-/* Blends a run of coverages (0 … 256) at sample (x, y) of every component. */
+/* Blends a run of coverages (0 … 256) at sample (x, y) of every component. Sixteen bits
+ * hold 255 · 256 + 128. */
 static void
 blend (const ClothCanvas * canvas, const Group * group, gint x, gint y,
-    const gint * coverage, gint n, const guint8 * values)
+    const guint16 * restrict coverage, gint n, const guint8 * values)
 {
   gint k, i;
 
   for (k = 0; k < group->n; k++) {
     const ClothComponent *c = &canvas->components[group->first + k];
-    gint step = c->step, value = values[group->first + k];
-    guint8 *p = c->data + (gsize) y * c->stride + (gsize) x * step;
+    gint step = c->step;
+    guint16 value = values[group->first + k];
+    guint8 *restrict p = c->data + (gsize) y * c->stride + (gsize) x * step;
 
-    for (i = 0; i < n; i++, p += step) {
-      *p = (guint8) (*p + (((value - *p) * coverage[i] + 128) >> 8));
+    if (step == 1) {
+      for (i = 0; i < n; i++) {
+        p[i] = (guint8) ((guint16) (p[i] * (guint16) (256 - coverage[i]) +
+                value * coverage[i] + 128) >> 8);
+      }
+    } else {
+      for (i = 0; i < n; i++, p += step) {
+        *p = (guint8) ((*p * (256 - coverage[i]) + value * coverage[i] +
+                128) >> 8);
+      }
     }
   }
 }
@@ -92,11 +102,13 @@ static void
 clip_range (gfloat low, gfloat high, gfloat offset, gfloat scale, gint size,
     gint * first, gint * last)
 {
-  gfloat a = ceilf ((low - offset) / scale);
-  gfloat b = floorf ((high - offset) / scale);
+  gfloat a = (low - offset) / scale, b = (high - offset) / scale;
 
-  *first = (gint) CLAMP (a, 0.0f, (gfloat) size);
-  *last = (gint) CLAMP (b, -1.0f, (gfloat) (size - 1));
+  a = CLAMP (a, 0.0f, (gfloat) size);
+  b = CLAMP (b, -1.0f, (gfloat) (size - 1));
+  /* ceil and floor, which plain SSE2 lacks; adding 1 keeps floor from below zero */
+  *first = (gint) a + ((gfloat) (gint) a < a);
+  *last = (gint) (b + 1) - 1;
 }
 
 /**
@@ -120,7 +132,8 @@ cloth_draw_line (const ClothCanvas * canvas, gfloat x0, gfloat y0, gfloat x1,
   Group group = { 0 };
   guint8 values[4];
   gfloat dx = x1 - x0, dy = y1 - y0, length2 = dx * dx + dy * dy;
-  gfloat inverse = length2 > 0 ? 1 / length2 : 0;
+  gfloat length = sqrtf (length2);
+  gfloat ux = length > 0 ? dx / length : 1, uy = length > 0 ? dy / length : 0;
   gfloat strip = 0;             /* half width of the line along a row, per radius */
 
   if (!isfinite (length2) || !isfinite (x0) || !isfinite (y0)
@@ -128,7 +141,7 @@ cloth_draw_line (const ClothCanvas * canvas, gfloat x0, gfloat y0, gfloat x1,
     return;
   }
   if (fabsf (dy) > 1e-3f) {
-    strip = sqrtf (length2) / fabsf (dy);
+    strip = length / fabsf (dy);
   }
   values_of (canvas, colour, values);
 
@@ -143,6 +156,7 @@ cloth_draw_line (const ClothCanvas * canvas, gfloat x0, gfloat y0, gfloat x1,
     for (y = row_first; y <= row_last; y++) {
       gfloat py = group.offset_y + (gfloat) y * group.scale_y;
       gfloat low = MIN (x0, x1) - radius, high = MAX (x0, x1) + radius;
+      gfloat row_along = (py - y0) * uy, row_across = (py - y0) * ux;
       gint x, first, last;
 
       if (strip > 0) {
@@ -154,22 +168,21 @@ cloth_draw_line (const ClothCanvas * canvas, gfloat x0, gfloat y0, gfloat x1,
       clip_range (low, high, group.offset_x, group.scale_x, group.width, &first,
           &last);
       for (x = first; x <= last; x += RUN) {
-        gint i, n = MIN (RUN, last - x + 1), coverage[RUN];
+        gint i, n = MIN (RUN, last - x + 1);
+        guint16 coverage[RUN];
 
         for (i = 0; i < n; i++) {
           gfloat qx = group.offset_x + (gfloat) (x + i) * group.scale_x - x0;
-          gfloat qy = py - y0;
-          gfloat t = (qx * dx + qy * dy) * inverse;
-          gfloat ex, ey, c;
+          gfloat along = qx * ux + row_along, across = qx * uy - row_across;
+          gfloat beyond = along - length, c;
 
-          t = t < 0 ? 0 : t;
-          t = t > 1 ? 1 : t;
-          ex = qx - t * dx;
-          ey = qy - t * dy;
-          c = (radius - sqrtf (ex * ex + ey * ey)) * strength;
+          /* how far past either end */
+          beyond = beyond > -along ? beyond : -along;
+          c = beyond > 0 ? sqrtf (across * across + beyond * beyond) :
+              fabsf (across);
+          c = (radius - c) * strength;
           c = c < 0 ? 0 : c;
-          c = c > most ? most : c;
-          coverage[i] = (gint) c;
+          coverage[i] = (guint16) (gint) (c > most ? most : c);
         }
         blend (canvas, &group, x, y, coverage, n, values);
       }
@@ -263,28 +276,50 @@ cloth_draw_quad (const ClothCanvas * canvas, const gfloat x[4],
   while (next_group (canvas, &group)) {
     gfloat soft = group.softness, full = 256 * colour->a;
     gfloat strength = full / soft, margin = 0.5f * soft;
+    guint16 coverage[RUN], inside[RUN];
     gint row, row_first, row_last;
+
+    for (k = 0; k < RUN; k++) {
+      inside[k] = (guint16) (gint) full;
+    }
 
     clip_range (top - margin, bottom + margin, group.offset_y, group.scale_y,
         group.height, &row_first, &row_last);
     for (row = row_first; row <= row_last; row++) {
       gfloat py = group.offset_y + (gfloat) row * group.scale_y;
       gfloat low = -1e9f, high = 1e9f, rest[4];
-      gint column, first, last;
+      gfloat inner_low = -1e9f, inner_high = 1e9f;
+      gint column, first, last, inner_first, inner_last, n;
 
       for (k = 0; k < 4; k++) {
         rest[k] = ny[k] * py + d[k] + margin;
+        /* the row's part with any coverage, and within it the part with all */
         if (nx[k] > 1e-6f) {
           low = MAX (low, -rest[k] / nx[k]);
+          inner_low = MAX (inner_low, (soft - rest[k]) / nx[k]);
         } else if (nx[k] < -1e-6f) {
           high = MIN (high, -rest[k] / nx[k]);
+          inner_high = MIN (inner_high, (soft - rest[k]) / nx[k]);
+        } else if (rest[k] < soft) {
+          inner_high = -1e9f;
         }
       }
       clip_range (low, high, group.offset_x, group.scale_x, group.width, &first,
           &last);
-      for (column = first; column <= last; column += RUN) {
-        gint i, n = MIN (RUN, last - column + 1), coverage[RUN];
+      clip_range (inner_low, inner_high, group.offset_x, group.scale_x,
+          group.width, &inner_first, &inner_last);
+      for (column = first; column <= last; column += n) {
+        gint i;
 
+        if (column >= inner_first && column <= inner_last) {
+          n = MIN (RUN, inner_last - column + 1);
+          blend (canvas, &group, column, row, inside, n, values);
+          continue;
+        }
+        n = MIN (RUN, last - column + 1);
+        if (column < inner_first && inner_first <= inner_last) {
+          n = MIN (n, inner_first - column);
+        }
         for (i = 0; i < n; i++) {
           gfloat px = group.offset_x + (gfloat) (column + i) * group.scale_x;
           gfloat a = nx[0] * px + rest[0], b = nx[1] * px + rest[1];
@@ -294,7 +329,7 @@ cloth_draw_quad (const ClothCanvas * canvas, const gfloat x[4],
           e = e < f ? e : f;
           a = (a < e ? a : e) * strength;
           a = a < 0 ? 0 : a;
-          coverage[i] = (gint) (a > full ? full : a);
+          coverage[i] = (guint16) (gint) (a > full ? full : a);
         }
         blend (canvas, &group, column, row, coverage, n, values);
       }

@@ -287,6 +287,7 @@ cloth_wireframe_draw (ClothWireframe * wire, const ClothCanvas * canvas,
     const Projected *a = &wire->points[v[0]], *b = &wire->points[v[1]];
     const gfloat *p = &positions[3 * (gsize) v[0]];
     const gfloat *q = &positions[3 * (gsize) v[1]];
+    ClothColour colour[2];
     gfloat slack, mx, my;
     gint k;
 
@@ -295,20 +296,24 @@ cloth_wireframe_draw (ClothWireframe * wire, const ClothCanvas * canvas,
     }
     slack = sqrtf ((p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] -
             q[1]) + (p[2] - q[2]) * (p[2] - q[2]));
-    mx = 0.5f * (a->x + b->x);
-    my = 0.5f * (a->y + b->y);
     for (k = 0; k < 2; k++) {
       const Projected *end = k ? b : a, *other = k ? a : b;
-      ClothColour colour =
-          style->colours[MIN (states[v[k]], style->n_colours - 1)];
 
-      colour.a *= style->opacity;
+      colour[k] = style->colours[MIN (states[v[k]], style->n_colours - 1)];
+      colour[k].a *= style->opacity;
       if (is_hidden (wire, columns, rows, 0.75f * end->x + 0.25f * other->x,
               0.75f * end->y + 0.25f * other->y,
               0.75f * end->z + 0.25f * other->z, slack)) {
-        colour.a *= style->hidden_opacity;
+        colour[k].a *= style->hidden_opacity;
       }
-      cloth_draw_line (canvas, end->x, end->y, mx, my, style->width, &colour);
     }
+    if (memcmp (&colour[0], &colour[1], sizeof (ClothColour)) == 0) {
+      cloth_draw_line (canvas, a->x, a->y, b->x, b->y, style->width, colour);
+      continue;
+    }
+    mx = 0.5f * (a->x + b->x);
+    my = 0.5f * (a->y + b->y);
+    cloth_draw_line (canvas, a->x, a->y, mx, my, style->width, &colour[0]);
+    cloth_draw_line (canvas, b->x, b->y, mx, my, style->width, &colour[1]);
   }
 }
