@@ -7,6 +7,8 @@
 
 #include <gst/gst.h>
 
+#include "elements/gstclothmetadepay.h"
+#include "elements/gstclothmetapay.h"
 #include "elements/gstclothoverlay.h"
 #include "elements/gstmeshsink.h"
 #include "elements/gstmeshsrc.h"
@@ -16,6 +18,8 @@ plugin_init (GstPlugin * plugin)
 {
   gboolean registered = TRUE;
 
+  registered &= GST_ELEMENT_REGISTER (clothmetadepay, plugin);
+  registered &= GST_ELEMENT_REGISTER (clothmetapay, plugin);
   registered &= GST_ELEMENT_REGISTER (clothoverlay, plugin);
 
   registered &= GST_ELEMENT_REGISTER (meshsink, plugin);

@@ -1,0 +1,126 @@
+/* clothmetapay: what was seen in pictures, as an observation stream.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <gst/video/video.h>
+#include <gst/cloth/cloth.h>
+
+#include "elements/gstclothmetapay.h"
+
+GST_DEBUG_CATEGORY_STATIC (cloth_meta_pay_debug);
+#define GST_CAT_DEFAULT cloth_meta_pay_debug
+
+/**
+ * SECTION:element-clothmetapay
+ *
+ * Takes pictures with the metas of saddledetect and quadtrack and gives the metas
+ * without the pictures, one buffer a picture. `gdppay` and `rtpgstpay` carry them to
+ * another process or host, where clothmetadepay undoes this.
+ *
+ * ## Example
+ * ```
+ * gst-launch-1.0 videotestsrc num-buffers=10 ! clothmetapay ! gdppay !
+ *     filesink location=cam0.gdp
+ * ```
+ *
+ * Since: 0.1
+ */
+struct _GstClothMetaPay
+{
+  GstBaseTransform parent;
+};
+
+static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE ("sink",
+    GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS ("video/x-raw(ANY), "
+        "width=(int)[ 1, 16384 ], height=(int)[ 1, 16384 ]"));
+static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE ("src",
+    GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS (GST_CLOTH_OBSERVATIONS_CAPS));
+
+G_DEFINE_TYPE (GstClothMetaPay, gst_cloth_meta_pay, GST_TYPE_BASE_TRANSFORM);
+GST_ELEMENT_REGISTER_DEFINE (clothmetapay, "clothmetapay", GST_RANK_NONE,
+    GST_TYPE_CLOTH_META_PAY);
+
+/* Size and rate go through; all else belongs to the pixels. */
+static GstCaps *
+gst_cloth_meta_pay_transform_caps (GstBaseTransform * trans,
+    GstPadDirection direction, GstCaps * caps, GstCaps * filter)
+{
+  static const gchar *const kept[] = { "width", "height", "framerate" };
+  GstCaps *result = gst_caps_new_empty ();
+
+  for (guint i = 0; i < gst_caps_get_size (caps); i++) {
+    GstStructure *from = gst_caps_get_structure (caps, i);
+    GstStructure *to = direction == GST_PAD_SINK ?
+        gst_structure_new (GST_CLOTH_OBSERVATIONS_MEDIA_TYPE, "version",
+        G_TYPE_INT, 1, NULL) : gst_structure_new_empty ("video/x-raw");
+
+    for (guint k = 0; k < G_N_ELEMENTS (kept); k++)
+      if (gst_structure_has_field (from, kept[k]))
+        gst_structure_set_value (to, kept[k], gst_structure_get_value (from,
+                kept[k]));
+    if (direction == GST_PAD_SINK && !gst_structure_has_field (to, "framerate"))
+      gst_structure_set (to, "framerate", GST_TYPE_FRACTION, 0, 1, NULL);
+    gst_caps_append_structure_full (result, to, direction == GST_PAD_SINK ?
+        NULL : gst_caps_features_new_any ());
+  }
+  if (filter) {
+    GstCaps *both = gst_caps_intersect_full (filter, result,
+        GST_CAPS_INTERSECT_FIRST);
+
+    gst_caps_unref (result);
+    result = both;
+  }
+  return result;
+}
+
+static GstFlowReturn
+gst_cloth_meta_pay_prepare_output_buffer (GstBaseTransform * trans,
+    GstBuffer * picture, GstBuffer ** observation)
+{
+  *observation = gst_cloth_observations_pack (picture);
+  GST_LOG_OBJECT (trans, "%" GST_PTR_FORMAT, *observation);
+  return GST_FLOW_OK;
+}
+
+/* The buffer is whole already. */
+static GstFlowReturn
+gst_cloth_meta_pay_transform (GstBaseTransform * trans, GstBuffer * picture,
+    GstBuffer * observation)
+{
+  return GST_FLOW_OK;
+}
+
+/* The metas ride on whatever memory upstream likes; only nothing of ours does. */
+static gboolean
+gst_cloth_meta_pay_propose_allocation (GstBaseTransform * trans,
+    GstQuery * decide_query, GstQuery * query)
+{
+  gst_query_add_allocation_meta (query, GST_VIDEO_META_API_TYPE, NULL);
+  return TRUE;
+}
+
+static void
+gst_cloth_meta_pay_class_init (GstClothMetaPayClass * klass)
+{
+  GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
+  GstBaseTransformClass *trans_class = GST_BASE_TRANSFORM_CLASS (klass);
+
+  trans_class->transform_caps = gst_cloth_meta_pay_transform_caps;
+  trans_class->prepare_output_buffer = gst_cloth_meta_pay_prepare_output_buffer;
+  trans_class->transform = gst_cloth_meta_pay_transform;
+  trans_class->propose_allocation = gst_cloth_meta_pay_propose_allocation;
+
+  gst_element_class_add_static_pad_template (element_class, &sink_template);
+  gst_element_class_add_static_pad_template (element_class, &src_template);
+  gst_element_class_set_static_metadata (element_class,
+      "Cloth metadata payloader", "Codec/Payloader",
+      "Turns the saddles and quads on pictures into an observation stream "
+      "without pixels", "The gst-cloth developers");
+  GST_DEBUG_CATEGORY_INIT (cloth_meta_pay_debug, "clothmetapay", 0,
+      "metadata without pixels");
+}
+
+static void
+gst_cloth_meta_pay_init (GstClothMetaPay * self)
+{
+  gst_base_transform_set_qos_enabled (GST_BASE_TRANSFORM (self), FALSE);
+}
