@@ -76,7 +76,9 @@ def caps_line(caps):
 def table(factory):
     element = factory.create(None)
     lines = ['', '| pad | direction | there | carries |', '|---|---|---|---|']
-    for template in factory.get_static_pad_templates():
+    # The registry gives them in either order.
+    for template in sorted(factory.get_static_pad_templates(), key=lambda pad: (
+            pad.direction != Gst.PadDirection.SINK, pad.presence, pad.name_template)):
         lines.append('| `%s` | %s | %s | %s |' % (
             template.name_template, DIRECTION[template.direction], PRESENCE[template.presence],
             caps_line(template.get_caps())))
