@@ -1,0 +1,298 @@
+/* Following the edge of a square from one of its corners to the next.
+ *
+ * On bent cloth the next corner is rarely where a straight line from the last two would
+ * put it, but the edge between black and white leads there.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/vision/edge.h"
+
+#include <math.h>
+
+#include "gst/vision/corner.h"
+
+/* Samples on either side of an edge, between these shares of its length. */
+#define SAMPLES 6
+#define FROM 0.2f
+#define TO 0.8f
+/* Grey levels between the two sides of an edge below which it is noise. */
+#define CONTRAST 10.0f
+/* The weakest sample of an edge over the mean one. */
+#define EVEN 0.25f
+/* Pixels from step to step. */
+#define STEP 1.0f
+/* The edge is looked for this far to either side of where it is expected, px. */
+#define ASIDE 2
+/* An edge ends where its contrast falls below this share of what it was. */
+#define FADED 0.4f
+/* Steps at the start, within the blur of the corner, in which it may be weak. */
+#define CORNER_STEPS 3
+/* Share of a step's sideways move that turns the direction. */
+#define TURN 0.25f
+/* A turn this sharp within TRAIL steps is the next corner, rad; it lies half way. */
+#define SHARP 0.5f
+#define TRAIL 6
+/* Largest bend of an edge in all, rad. */
+#define MAX_BEND 1.3f
+
+static inline gfloat
+bilinear (const ClothImage * image, gfloat x, gfloat y)
+{
+  gint column = (gint) floorf (x), row = (gint) floorf (y);
+  gfloat fx = x - (gfloat) column, fy = y - (gfloat) row;
+  const guint8 *at;
+
+  if (column < 0 || row < 0 || column + 1 >= image->width
+      || row + 1 >= image->height)
+    return -1;
+  at = image->data + row * image->stride + column;
+  return (1 - fy) * ((1 - fx) * at[0] + fx * at[1])
+      + fy * ((1 - fx) * at[image->stride] + fx * at[image->stride + 1]);
+}
+
+static inline gfloat
+nearest (const ClothImage * image, gfloat x, gfloat y)
+{
+  gint column = (gint) lrintf (x), row = (gint) lrintf (y);
+
+  if (column < 0 || row < 0 || column >= image->width || row >= image->height)
+    return -1.0f;
+  return image->data[row * image->stride + column];
+}
+
+/* The contrast of the edge as seen by samples this far from the line. */
+static gfloat
+contrast_at (const ClothImage * image, gfloat ax, gfloat ay, gfloat dx, gfloat dy,
+    gfloat offset)
+{
+  gfloat scale = offset / sqrtf (dx * dx + dy * dy);
+  gfloat nx = -dy * scale, ny = dx * scale;
+  gfloat sum = 0, least = G_MAXFLOAT, most = -G_MAXFLOAT;
+
+  for (gint k = 0; k < SAMPLES; k++) {
+    gfloat t = FROM + (TO - FROM) * (gfloat) k / (SAMPLES - 1);
+    gfloat x = ax + t * dx, y = ay + t * dy;
+    gfloat ahead = nearest (image, x + nx, y + ny);
+    gfloat behind = nearest (image, x - nx, y - ny);
+    gfloat d = ahead - behind;
+
+    if (ahead < 0 || behind < 0)
+      return 0;
+    sum += d;
+    least = MIN (least, d);
+    most = MAX (most, d);
+  }
+  sum /= SAMPLES;
+  if ((sum > CONTRAST && least > EVEN * sum)
+      || (sum < -CONTRAST && most < EVEN * sum))
+    return sum;
+  return 0;
+}
+
+/**
+ * cloth_edge_contrast:
+ * @image: the picture
+ * @ax: column of one end, px
+ * @ay: row of it
+ * @bx: column of the other end
+ * @by: row of it
+ *
+ * Whether black lies on one side and white on the other of a line, all the way between two
+ * corners.
+ *
+ * Returns: mean difference of grey levels, positive if the bright side is the one reached
+ *   by a turn from x towards y, negative if it is the other one, 0 if there is no such edge
+ *
+ * Since: 0.1
+ */
+gfloat
+cloth_edge_contrast (const ClothImage * image, gfloat ax, gfloat ay,
+    gfloat bx, gfloat by)
+{
+  gfloat dx = bx - ax, dy = by - ay, length = hypotf (dx, dy);
+  /* Near the line, for squares seen obliquely; farther off, for bent edges. */
+  gfloat contrast = contrast_at (image, ax, ay, dx, dy,
+      CLAMP (0.2f * length, 1.2f, 2.5f));
+
+  if (contrast == 0 && length > 14)
+    contrast = contrast_at (image, ax, ay, dx, dy, 0.2f * length);
+  return contrast;
+}
+
+/**
+ * cloth_edge_wedge:
+ * @image: the picture
+ * @x: column of a corner, px
+ * @y: row of it
+ * @radius: of the window in which its edges are fitted, px
+ * @black: whether the wedge looked for is dark
+ * @towards: direction in which the wedge lies, roughly, rad from +x towards +y
+ * @rays: (out) (array fixed-size=2): directions of the two edges that bound the wedge, the
+ *   second one turned from the first towards +y
+ * @contrast: (out): grey levels between the wedge and the one beside it
+ *
+ * Finds the edges of the square that has a corner here.
+ *
+ * Returns: %FALSE when there is no such corner
+ *
+ * Since: 0.1
+ */
+gboolean
+cloth_edge_wedge (const ClothImage * image, gfloat x, gfloat y,
+    gfloat radius, gboolean black, gfloat towards, gfloat rays[2],
+    gfloat * contrast)
+{
+  ClothCornerParams params = cloth_corner_default_params ();
+  ClothCornerFit fit;
+  gfloat angle[4], level[4], least_off = G_MAXFLOAT, least = 255, most = 0;
+  gint best = -1;
+
+  params.radius = CLAMP (radius, 2.0f, 6.0f);
+  params.max_shift = 1.5f;
+  if (!cloth_corner_refine (image, x, y, &params, CLOTH_SIMD_BEST, &fit))
+    return FALSE;
+  for (gint k = 0; k < 4; k++) {
+    gfloat a = fit.theta[k & 1] + (k >= 2 ? (gfloat) G_PI : 0);
+    gint at;
+
+    a = fmodf (a + 4 * (gfloat) G_PI, 2 * (gfloat) G_PI);
+    for (at = k; at > 0 && angle[at - 1] > a; at--)
+      angle[at] = angle[at - 1];
+    angle[at] = a;
+  }
+  for (gint k = 0; k < 4; k++) {
+    gfloat next = k < 3 ? angle[k + 1] : angle[0] + 2 * (gfloat) G_PI;
+    gfloat middle = 0.5f * (angle[k] + next);
+
+    level[k] = bilinear (image, fit.x + params.radius * 0.8f * cosf (middle),
+        fit.y + params.radius * 0.8f * sinf (middle));
+    if (level[k] < 0)
+      return FALSE;
+    least = MIN (least, level[k]);
+    most = MAX (most, level[k]);
+  }
+  for (gint k = 0; k < 4; k++) {
+    gfloat next = k < 3 ? angle[k + 1] : angle[0] + 2 * (gfloat) G_PI;
+    gfloat off = remainderf (0.5f * (angle[k] + next) - towards,
+        2 * (gfloat) G_PI);
+
+    if ((level[k] < 0.5f * (least + most)) != black || fabsf (off) > least_off)
+      continue;
+    least_off = fabsf (off);
+    best = k;
+  }
+  if (best < 0 || least_off > 1.2f)
+    return FALSE;
+  rays[0] = angle[best];
+  rays[1] = angle[(best + 1) & 3];
+  *contrast = most - least;
+  return TRUE;
+}
+
+/* Grey levels by which the side ahead (turned from x towards y) is darker, averaged over
+ * two distances from the edge. G_MINFLOAT outside the picture. */
+static inline gboolean
+step_across (const ClothImage * image, gfloat x, gfloat y, gfloat nx,
+    gfloat ny, gfloat * step)
+{
+  gfloat a1 = bilinear (image, x + 1.5f * nx, y + 1.5f * ny);
+  gfloat b1 = bilinear (image, x - 1.5f * nx, y - 1.5f * ny);
+
+  if (a1 < 0 || b1 < 0)
+    return FALSE;
+  *step = b1 - a1;
+  return TRUE;
+}
+
+/**
+ * cloth_edge_walk:
+ * @image: the picture
+ * @x: column of the corner to start from, px
+ * @y: row of it
+ * @angle: direction in which the edge leaves it, rad from +x towards +y
+ * @dark_ahead: whether the dark side is the one reached by a turn from x towards y
+ * @contrast: grey levels across the edge
+ * @longest: where to give up, px
+ * @end_x: (out): column at which the edge ends
+ * @end_y: (out): row of it
+ * @end_angle: (out): direction in which it arrives there
+ *
+ * Follows an edge, which may bend, to its end.
+ *
+ * Returns: %FALSE when it has no end within reach
+ *
+ * Since: 0.1
+ */
+gboolean
+cloth_edge_walk (const ClothImage * image, gfloat x, gfloat y, gfloat angle,
+    gboolean dark_ahead, gfloat contrast, gfloat longest, gfloat * end_x,
+    gfloat * end_y, gfloat * end_angle)
+{
+  gfloat sign = dark_ahead ? 1.0f : -1.0f, start = angle;
+  gfloat last_x = x, last_y = y, usual = contrast;
+  gfloat trail[TRAIL][3];       /* x, y, angle of the last steps */
+  gint steps = (gint) (longest / STEP), weak = 0, walked = 0;
+
+  for (gint k = 1; k <= steps; k++) {
+    gfloat dx = cosf (angle), dy = sinf (angle), best = -G_MAXFLOAT;
+    gfloat at[2 * ASIDE + 1], offset = 0;
+    gint peak = 0;
+
+    x += STEP * dx;
+    y += STEP * dy;
+    for (gint o = -ASIDE; o <= ASIDE; o++) {
+      gfloat step;
+
+      if (!step_across (image, x - (gfloat) o * 0.7f * dy,
+              y + (gfloat) o * 0.7f * dx, -dy, dx, &step))
+        return FALSE;
+      at[o + ASIDE] = sign * step;
+      if (at[o + ASIDE] > best) {
+        best = at[o + ASIDE];
+        peak = o;
+      }
+    }
+    if (k <= CORNER_STEPS)
+      continue;
+    if (best < FADED * usual) {
+      /* Two weak steps in a row: noise alone makes single ones. */
+      if (++weak == 2) {
+        *end_x = last_x;
+        *end_y = last_y;
+        *end_angle = angle;
+        return TRUE;
+      }
+      continue;
+    }
+    weak = 0;
+    usual += 0.1f * (best - usual);
+    offset = (gfloat) peak;
+    if (peak > -ASIDE && peak < ASIDE) {
+      gfloat l = at[peak + ASIDE - 1], r = at[peak + ASIDE + 1];
+      gfloat bend = l - 2 * best + r;
+
+      if (bend < 0)
+        offset += CLAMP (0.5f * (l - r) / bend, -0.5f, 0.5f);
+    }
+    offset *= 0.7f;
+    x -= 0.5f * offset * dy;
+    y += 0.5f * offset * dx;
+    angle += TURN * 0.5f * offset / STEP;
+    last_x = x;
+    last_y = y;
+    if (walked >= TRAIL && fabsf (angle - trail[walked % TRAIL][2]) > SHARP) {
+      const gfloat *corner = trail[(walked + TRAIL / 2) % TRAIL];
+
+      *end_x = corner[0];
+      *end_y = corner[1];
+      *end_angle = trail[walked % TRAIL][2];
+      return TRUE;
+    }
+    trail[walked % TRAIL][0] = x;
+    trail[walked % TRAIL][1] = y;
+    trail[walked % TRAIL][2] = angle;
+    walked++;
+    if (fabsf (remainderf (angle - start, 2 * (gfloat) G_PI)) > MAX_BEND)
+      return FALSE;
+  }
+  return FALSE;
+}
