@@ -5,7 +5,7 @@
 
 #include "gst/pattern/pattern.h"
 #include "gst/vision/image.h"
-#include "gst/vision/saddle.h"
+#include "gst/vision/patch.h"
 
 G_BEGIN_DECLS
 
@@ -14,7 +14,7 @@ G_BEGIN_DECLS
  * @columns: vertices in a row, the pattern's squares + 1
  * @rows: vertices in a column
  * @n_seen: vertices seen
- * @seen: rows·columns, 1 where the vertex was found
+ * @seen: rows·columns, #ClothVertexKind: how the vertex was found, 0 where it wasn't
  * @x: rows·columns, px
  * @y: rows·columns, px
  * @cov: 3·rows·columns, covariance xx, xy, yy, px²
@@ -37,8 +37,6 @@ typedef struct _ClothBoardFinder ClothBoardFinder;
 ClothBoardFinder *cloth_board_finder_new (const ClothPattern * pattern);
 void cloth_board_finder_free (ClothBoardFinder * finder);
 
-/* Finds the board in @image from its refined saddles; FALSE when it is absent or its
- * place on the pattern can't be told. @view belongs to the finder until its next call. */
 gboolean cloth_board_finder_find (ClothBoardFinder * finder,
     const ClothImage * image, const ClothSaddle * saddles, guint n_saddles,
     const ClothBoardView ** view);

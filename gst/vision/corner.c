@@ -32,7 +32,8 @@ cloth_corner_default_params (void)
  * what lies beyond enters gently. Offsets are from the pixel (ix, iy). */
 static gboolean
 take_window (ClothCornerWindow * win, const ClothImage * image, gfloat x,
-    gfloat y, gint ix, gint iy, gfloat radius)
+    gfloat y, gint ix, gint iy, gfloat radius,
+    gboolean linear)
 {
   const gfloat rim = radius + 0.5f, shape = 1.0f / (rim * rim);
   const gint reach = (gint) ceilf (rim);
@@ -59,7 +60,7 @@ take_window (ClothCornerWindow * win, const ClothImage * image, gfloat x,
       gfloat w = MAX (1.0f - (dx * dx + dy * dy) * shape, 0.0f);
       px[n] = (gfloat) i;
       py[n] = (gfloat) j;
-      value[n] = row[i];
+      value[n] = linear ? (gfloat) (row[i] * row[i]) / 255.0f : row[i];
       weight[n] = w;
       sum += w * value[n];
       sum_weight += w;
@@ -375,7 +376,8 @@ cloth_corner_refine (const ClothImage * image, gfloat x, gfloat y,
   level = cloth_simd_resolve (level);
   ix = (gint) floorf (x + 0.5f);
   iy = (gint) floorf (y + 0.5f);
-  if (!take_window (&win, image, x, y, ix, iy, radius))
+  if (!take_window (&win, image, x, y, ix, iy, radius,
+          params->linear_light))
     return FALSE;
 
   best.state.x = x - (gfloat) ix;

@@ -1,0 +1,13 @@
+/* How well four corners delineate a square: the cross template.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/vision/image.h"
+
+G_BEGIN_DECLS
+
+gfloat cloth_quad_confidence (const ClothImage * image, const gfloat x[4],
+    const gfloat y[4], gfloat alpha, gboolean black);
+
+G_END_DECLS
