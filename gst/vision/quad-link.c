@@ -1,0 +1,346 @@
+/* Quad tracker: squares found by linking, placed on the board with the help of memory.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <math.h>
+
+#include "gst/vision/quad-private.h"
+#include "gst/vision/template.h"
+
+/* Patches looked at in a picture, largest first. */
+#define MAX_PATCHES 48
+/* Different placements that the vertices of one patch may vote for. */
+#define MAX_VOTES 12
+/* Log-likelihood of one vertex near its guess, and of all of them together. */
+#define VOTE 2.0f
+#define MAX_VOTE 14.0f
+/* A vertex votes for a guess this near, in squares. */
+#define VOTE_REACH 0.5f
+/* Lead of a placement that is believed. */
+#define MIN_LEAD 3.0f
+/* Log-likelihood of a seed whose place on the board was told, and of one without. */
+#define SEED 40.0f
+#define SEED_UNTOLD 3.0f
+
+/* Rotation of a patch whose +i runs along (@dx, @dy) where the board's columns run along
+ * (@bx, @by). */
+static gint
+rotation_between (gfloat dx, gfloat dy, gfloat bx, gfloat by)
+{
+  gfloat angle = atan2f (dx * by - dy * bx, dx * bx + dy * by);
+  gint quarters = (gint) lrintf (angle / (gfloat) G_PI_2);
+
+  return (4 - (quarters & 3)) & 3;
+}
+
+/* Direction of the patch's +i at vertex (@i, @j). */
+static gboolean
+patch_direction (const ClothPatch * patch, gint i, gint j, gfloat * dx,
+    gfloat * dy)
+{
+  gint at = j * patch->columns + i;
+  gint from = i > 0 && patch->kind[at - 1] ? at - 1 : at;
+  gint to = i + 1 < patch->columns && patch->kind[at + 1] ? at + 1 : at;
+
+  *dx = patch->x[to] - patch->x[from];
+  *dy = patch->y[to] - patch->y[from];
+  return from != to;
+}
+
+static gboolean
+guess_direction (ClothQuadTracker * tracker, gint column, gint row,
+    gfloat * dx, gfloat * dy)
+{
+  const ClothQuadVertex *at = cloth_quad_vertex (tracker, column, row);
+  const ClothQuadVertex *from = column > 0 && at[-1].guessed ? at - 1 : at;
+  const ClothQuadVertex *to = column < tracker->pattern.columns
+      && at[1].guessed ? at + 1 : at;
+
+  *dx = to->guess_x - from->guess_x;
+  *dy = to->guess_y - from->guess_y;
+  return from != to;
+}
+
+static void
+add_vote (ClothPlacement * votes, guint * n, const ClothPlacement * vote)
+{
+  guint k;
+
+  for (k = 0; k < *n; k++)
+    if (votes[k].rotation == vote->rotation && votes[k].column == vote->column
+        && votes[k].row == vote->row)
+      break;
+  if (k == MAX_VOTES)
+    return;
+  if (k == *n) {
+    votes[(*n)++] = *vote;
+    return;
+  }
+  votes[k].weight += vote->weight;
+}
+
+/* What the remembered vertices say of the place of the patch. */
+static guint
+vote_by_memory (ClothQuadTracker * tracker, ClothPlacement votes[MAX_VOTES])
+{
+  const ClothPatch *patch = &tracker->patch;
+  gint columns = tracker->pattern.columns + 1;
+  guint n = 0, voters = 0;
+  gfloat sum = 0;
+
+  for (gint j = 0; j < patch->rows; j++)
+    for (gint i = 0; i < patch->columns; i++) {
+      gint at = j * patch->columns + i, vertex, column, row;
+      const ClothQuadVertex *guess;
+      gfloat dx, dy, bx, by, distance;
+      ClothPlacement vote;
+      ClothNear near;
+
+      if (patch->kind[at] != CLOTH_VERTEX_SADDLE
+          || !patch_direction (patch, i, j, &dx, &dy)
+          || !cloth_point_grid_nearest (tracker->guesses, patch->x[at],
+              patch->y[at], 200, &near, 1))
+        continue;
+      vertex = g_array_index (tracker->guess_vertex, gint, near.index);
+      guess = &tracker->vertices[vertex];
+      distance = sqrtf (near.distance2) / guess->size;
+      if (distance > VOTE_REACH || !guess_direction (tracker,
+              vertex % columns, vertex / columns, &bx, &by))
+        continue;
+      vote.rotation = rotation_between (dx, dy, bx, by);
+      vote.column = vote.row = 0;
+      cloth_placement_vertex (&vote, i, j, &column, &row);
+      vote.column = vertex % columns - column;
+      vote.row = vertex / columns - row;
+      vote.weight = guess->weight * (1 - distance / VOTE_REACH);
+      add_vote (votes, &n, &vote);
+      voters++;
+    }
+  for (guint k = 0; k < n; k++)
+    sum += votes[k].weight;
+  /* Many that agree say little more than a few: they err together. */
+  for (guint k = 0; k < n; k++)
+    votes[k].weight = votes[k].weight / MAX (sum, 1e-6f)
+        * MIN (VOTE * votes[k].weight, MAX_VOTE);
+  return n;
+}
+
+/* What a square given by the user says of it. */
+static guint
+vote_by_seed (ClothQuadTracker * tracker, const ClothQuadSeed * seed,
+    ClothPlacement * vote)
+{
+  const ClothPatch *patch = &tracker->patch;
+  const ClothPattern *pattern = &tracker->pattern;
+  gfloat sx = 0, sy = 0, nearest = cloth_quad_shortest (seed->x, seed->y) / 2;
+  gint best = -1, column, row, wanted_column, wanted_row;
+  gfloat dx, dy;
+
+  for (gint k = 0; k < 4; k++) {
+    sx += seed->x[k] / 4;
+    sy += seed->y[k] / 4;
+  }
+  for (gint at = 0; at < patch->rows * patch->columns; at++) {
+    gfloat cx, cy;
+
+    if (!patch->square[at])
+      continue;
+    cx = (patch->x[at] + patch->x[at + patch->columns + 1]) / 2;
+    cy = (patch->y[at] + patch->y[at + patch->columns + 1]) / 2;
+    if (hypotf (cx - sx, cy - sy) < nearest) {
+      nearest = hypotf (cx - sx, cy - sy);
+      best = at;
+    }
+  }
+  if (best < 0)
+    return 0;
+  dx = patch->x[best + 1] - patch->x[best];
+  dy = patch->y[best + 1] - patch->y[best];
+  *vote = (ClothPlacement) {
+  rotation_between (dx, dy, seed->x[1] - seed->x[0],
+        seed->y[1] - seed->y[0]), 0, 0, SEED};
+  wanted_column = seed->column;
+  wanted_row = seed->row;
+  if (seed->column < 0) {
+    /* As in the paper: a square in the middle of the pattern. */
+    wanted_column = pattern->columns / 2;
+    wanted_row = pattern->rows / 2;
+    if (cloth_pattern_is_black (pattern, wanted_column, wanted_row)
+        != cloth_patch_is_black (patch, best % patch->columns,
+            best / patch->columns))
+      wanted_column--;
+    vote->weight = SEED_UNTOLD;
+  }
+  cloth_placement_cell (vote, best % patch->columns, best / patch->columns,
+      &column, &row);
+  vote->column = wanted_column - column;
+  vote->row = wanted_row - row;
+  return 1;
+}
+
+/* Takes one square of a placed patch. */
+static void
+take_square (ClothQuadTracker * tracker, const ClothPlacement * placement,
+    gint i, gint j)
+{
+  const ClothPatch *patch = &tracker->patch;
+  const ClothQuadParams *params = tracker->params;
+  gboolean black = cloth_patch_is_black (patch, i, j);
+  gint column, row;
+  ClothQuadCell *cell;
+
+  cloth_placement_cell (placement, i, j, &column, &row);
+  cell = cloth_quad_cell (tracker, column, row);
+  if (!cell || !cell->wanted || cell->found)
+    return;
+  for (gint k = 0; k < 4; k++) {
+    gint li = i + cloth_quad_corner_column[k];
+    gint lj = j + cloth_quad_corner_row[k];
+    gint from = lj * patch->columns + li, c, r, to;
+
+    cloth_placement_vertex (placement, li, lj, &c, &r);
+    /* An inner corner that is no saddle is where a fold cuts the square. */
+    if (patch->kind[from] == CLOTH_VERTEX_RIM
+        && cloth_quad_is_inner (tracker, c, r))
+      return;
+    to = r == row ? c - column : 3 - (c - column);
+    cell->guess_x[to] = patch->x[from];
+    cell->guess_y[to] = patch->y[from];
+    for (gint m = 0; m < 3; m++)
+      cell->cov[to][m] = patch->cov[3 * from + m];
+  }
+  cell->confidence = cloth_quad_confidence (tracker->image, cell->guess_x,
+      cell->guess_y, params->alpha, black);
+  if (cell->confidence < params->c_low)
+    return;
+  cell->found = cell->linked = TRUE;
+}
+
+static void
+take_patch (ClothQuadTracker * tracker, const ClothPlacement * placement)
+{
+  const ClothPatch *patch = &tracker->patch;
+
+  for (gint j = 0; j + 1 < patch->rows; j++)
+    for (gint i = 0; i + 1 < patch->columns; i++)
+      if (patch->square[j * patch->columns + i])
+        take_square (tracker, placement, i, j);
+  for (gint j = 0; j < patch->rows; j++)
+    for (gint i = 0; i < patch->columns; i++) {
+      gint from = j * patch->columns + i, column, row;
+      ClothQuadVertex *vertex;
+
+      if (!patch->kind[from])
+        continue;
+      cloth_placement_vertex (placement, i, j, &column, &row);
+      if (column < 0 || row < 0 || column > tracker->pattern.columns
+          || row > tracker->pattern.rows)
+        continue;
+      vertex = cloth_quad_vertex (tracker, column, row);
+      if (vertex->seen)
+        continue;
+      vertex->seen = TRUE;
+      vertex->x = patch->x[from];
+      vertex->y = patch->y[from];
+    }
+}
+
+/* Remembers which board vertex each corner of the patch is, -1: its patch could not be
+ * placed. */
+static void
+note_corners (ClothQuadTracker * tracker, const ClothPlacement * placement)
+{
+  const ClothPatch *patch = &tracker->patch;
+
+  for (gint j = 0; j < patch->rows; j++)
+    for (gint i = 0; i < patch->columns; i++) {
+      gint at = j * patch->columns + i, column, row, vertex = -1;
+
+      if (!patch->kind[at])
+        continue;
+      if (placement) {
+        cloth_placement_vertex (placement, i, j, &column, &row);
+        vertex = row * (tracker->pattern.columns + 1) + column;
+      }
+      cloth_point_grid_add (tracker->corners, patch->x[at], patch->y[at]);
+      g_array_append_val (tracker->corner_vertex, vertex);
+    }
+}
+
+static void
+forget (ClothQuadTracker * tracker)
+{
+  gint n = tracker->pattern.columns * tracker->pattern.rows;
+
+  for (gint k = 0; k < n; k++) {
+    tracker->cells[k].age = G_MAXUINT;
+    tracker->cells[k].run = 0;
+  }
+  n = (tracker->pattern.columns + 1) * (tracker->pattern.rows + 1);
+  for (gint k = 0; k < n; k++)
+    tracker->vertices[k].guessed = FALSE;
+  cloth_point_grid_clear (tracker->guesses, tracker->image->width,
+      tracker->image->height, 1);
+}
+
+static void
+index_guesses (ClothQuadTracker * tracker)
+{
+  gint n = (tracker->pattern.columns + 1) * (tracker->pattern.rows + 1);
+
+  cloth_point_grid_clear (tracker->guesses, tracker->image->width,
+      tracker->image->height, (guint) n);
+  g_array_set_size (tracker->guess_vertex, 0);
+  for (gint k = 0; k < n; k++)
+    if (tracker->vertices[k].guessed) {
+      cloth_point_grid_add (tracker->guesses, tracker->vertices[k].guess_x,
+          tracker->vertices[k].guess_y);
+      g_array_append_val (tracker->guess_vertex, k);
+    }
+}
+
+void
+cloth_quad_link (ClothQuadTracker * tracker)
+{
+  ClothPatchParams params = { tracker->params->alpha, tracker->params->c_low,
+    tracker->params->c_high, tracker->pattern.code != NULL
+  };
+  const ClothLinkPatch *links;
+  guint order[MAX_PATCHES], n_links, n;
+
+  index_guesses (tracker);
+  cloth_point_grid_clear (tracker->corners, tracker->image->width,
+      tracker->image->height, tracker->n_saddles);
+  g_array_set_size (tracker->corner_vertex, 0);
+  n_links = cloth_linker_run (tracker->linker, tracker->image,
+      tracker->saddles, tracker->n_saddles, &links, NULL);
+  n = cloth_link_largest (links, n_links, order, MAX_PATCHES);
+  for (guint k = 0; k < n; k++) {
+    ClothPlacement votes[MAX_VOTES + 4], placement;
+    guint n_votes, n_seeds = 0;
+    gfloat strongest = 0;
+    gboolean placed;
+
+    cloth_patch_build (&tracker->patch, tracker->image, tracker->saddles,
+        &links[order[k]], &params);
+    n_votes = vote_by_memory (tracker, votes);
+    for (guint s = 0; s < tracker->seeds->len && n_seeds < 4; s++)
+      n_seeds += vote_by_seed (tracker,
+          &g_array_index (tracker->seeds, ClothQuadSeed, s),
+          &votes[n_votes + n_seeds]);
+    placed = cloth_place_patch (&tracker->pattern, &tracker->patch, votes,
+        n_votes + n_seeds, tracker->scratch, &placement)
+        && placement.weight >= MIN_LEAD;
+    note_corners (tracker, placed ? &placement : NULL);
+    if (!placed)
+      continue;
+    for (guint v = 0; v < n_votes; v++)
+      if (votes[v].rotation != placement.rotation
+          || votes[v].column != placement.column
+          || votes[v].row != placement.row)
+        strongest = MAX (strongest, votes[v].weight);
+    /* The evidence overrules what the memory is sure of: the memory had slipped. */
+    if (strongest > 0.5f * MAX_VOTE)
+      forget (tracker);
+    take_patch (tracker, &placement);
+  }
+}

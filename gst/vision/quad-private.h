@@ -1,0 +1,105 @@
+/* What the steps of the quad tracker share.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/vision/place.h"
+#include "gst/vision/pointgrid.h"
+#include "gst/vision/quad.h"
+
+G_BEGIN_DECLS
+
+/* Pictures for which a square that is no longer seen is remembered. */
+#define CLOTH_QUAD_MEMORY 12
+
+/* One square of the board. */
+typedef struct {
+  gboolean wanted;              /* of a colour that is tracked */
+  gboolean found;               /* in this picture */
+  gboolean linked;              /* and all its corners by linking */
+  gboolean fresh;               /* added by extension in this picture */
+  guint age;                    /* pictures since it was last found; G_MAXUINT: never */
+  guint run;                    /* pictures in a row it was found in */
+  gfloat confidence;
+  gfloat x[4], y[4];            /* in this picture if found, else in the last one found */
+  gfloat before_x[4], before_y[4];      /* one picture before those */
+  gfloat guess_x[4], guess_y[4];        /* predicted for this picture */
+  gfloat cov[4][3];
+} ClothQuadCell;
+
+/* One corner of the board. */
+typedef struct {
+  gboolean guessed;             /* some remembered square predicts it */
+  gboolean seen;                /* linked in this picture */
+  gfloat guess_x, guess_y;
+  gfloat size;                  /* of the squares around it, px */
+  gfloat x, y;
+  gfloat shift_x, shift_y;      /* seen less guessed, spread to those not seen */
+  gfloat weight;
+} ClothQuadVertex;
+
+typedef struct {
+  gfloat x[4], y[4];
+  gint column, row;             /* -1: not told */
+} ClothQuadSeed;
+
+struct _ClothQuadTracker
+{
+  ClothPattern pattern;
+  ClothQuadCell *cells;         /* rows·columns */
+  ClothQuadVertex *vertices;    /* (rows + 1)·(columns + 1) */
+  ClothLinker *linker;
+  ClothPatch patch;
+  ClothPointGrid *guesses;      /* guessed vertices */
+  GArray *guess_vertex;         /* gint, vertex of each point of that grid */
+  ClothPointGrid *candidates;
+  ClothPointGrid *corners;      /* linked saddles that were placed or rejected */
+  GArray *corner_vertex;        /* gint, their board vertex, -1: on no known place */
+  GArray *scratch;
+  GArray *seeds;                /* ClothQuadSeed */
+  GArray *out;                  /* ClothQuad */
+
+  /* Of the picture being worked on. */
+  const ClothQuadParams *params;
+  const ClothImage *image;
+  const ClothSaddle *saddles;
+  guint n_saddles;
+  const ClothSaddleCandidate *raw;
+};
+
+static inline ClothQuadCell *
+cloth_quad_cell (ClothQuadTracker * tracker, gint column, gint row)
+{
+  if (column < 0 || row < 0 || column >= tracker->pattern.columns
+      || row >= tracker->pattern.rows)
+    return NULL;
+  return &tracker->cells[row * tracker->pattern.columns + column];
+}
+
+static inline ClothQuadVertex *
+cloth_quad_vertex (ClothQuadTracker * tracker, gint column, gint row)
+{
+  return &tracker->vertices[row * (tracker->pattern.columns + 1) + column];
+}
+
+/* Whether four squares meet at a vertex. */
+static inline gboolean
+cloth_quad_is_inner (const ClothQuadTracker * tracker, gint column, gint row)
+{
+  return column > 0 && row > 0 && column < tracker->pattern.columns
+      && row < tracker->pattern.rows;
+}
+
+/* Corner k of cell (column, row) is vertex (column, row) plus these. */
+static const gint cloth_quad_corner_column[4] = { 0, 1, 1, 0 };
+static const gint cloth_quad_corner_row[4] = { 0, 0, 1, 1 };
+
+gfloat cloth_quad_shortest (const gfloat x[4], const gfloat y[4]);
+gfloat cloth_quad_longest (const gfloat x[4], const gfloat y[4]);
+
+/* quad-link.c: places the patches found by linking and takes over their squares. */
+void cloth_quad_link (ClothQuadTracker * tracker);
+/* quad-search.c: looks for one square around its guess. */
+gboolean cloth_quad_search (ClothQuadTracker * tracker, gint column, gint row);
+
+G_END_DECLS

@@ -1,0 +1,168 @@
+/* Quad tracker: the paper's local search for one square around its guess.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <math.h>
+#include <string.h>
+
+#include "gst/vision/outline.h"
+#include "gst/vision/quad-private.h"
+#include "gst/vision/template.h"
+
+/* Candidates looked at for a corner. */
+#define MAX_CANDIDATES 8
+/* They may lie this far from its guess, in shortest edges. */
+#define REACH 0.5f
+/* A corner's sub-pixel fit may move it this far, in shortest edges. */
+#define MAX_FIT 0.3f
+/* A linked corner this near a found one is the same, px. */
+#define SAME 2.0f
+
+gfloat
+cloth_quad_shortest (const gfloat x[4], const gfloat y[4])
+{
+  gfloat least = G_MAXFLOAT;
+
+  for (gint k = 0; k < 4; k++)
+    least = MIN (least, hypotf (x[(k + 1) & 3] - x[k], y[(k + 1) & 3] - y[k]));
+  return least;
+}
+
+gfloat
+cloth_quad_longest (const gfloat x[4], const gfloat y[4])
+{
+  gfloat most = 0;
+
+  for (gint k = 0; k < 4; k++)
+    most = MAX (most, hypotf (x[(k + 1) & 3] - x[k], y[(k + 1) & 3] - y[k]));
+  return most;
+}
+
+/* Section 3.7: three corners go over the candidates near them, in order of the sum of
+ * their places in the lists; the fourth closes the parallelogram. The corner left out is
+ * the one whose nearest candidate is farthest. */
+static gfloat
+search_candidates (ClothQuadTracker * tracker, gboolean black,
+    const gfloat guess_x[4], const gfloat guess_y[4], gfloat x[4], gfloat y[4])
+{
+  const ClothQuadParams *params = tracker->params;
+  gfloat radius = REACH * cloth_quad_shortest (guess_x, guess_y);
+  gfloat best = -1, farthest = -1;
+  ClothNear near[4][MAX_CANDIDATES];
+  guint n[4], tried = 0, most = 0;
+  gint left_out = 0, used[3];
+
+  for (gint k = 0; k < 4; k++) {
+    gfloat distance;
+
+    n[k] = cloth_point_grid_nearest (tracker->candidates, guess_x[k],
+        guess_y[k], radius, near[k], MAX_CANDIDATES);
+    distance = n[k] ? near[k][0].distance2 : G_MAXFLOAT;
+    if (distance > farthest) {
+      farthest = distance;
+      left_out = k;
+    }
+  }
+  for (gint k = 0; k < 3; k++) {
+    used[k] = (left_out + 1 + k) & 3;
+    if (!n[used[k]])
+      return -1;
+    most += n[used[k]] - 1;
+  }
+  for (guint sum = 0; sum <= most; sum++)
+    for (guint a = 0; a <= MIN (sum, n[used[0]] - 1); a++)
+      for (guint b = 0; b <= MIN (sum - a, n[used[1]] - 1); b++) {
+        guint place[3] = { a, b, sum - a - b };
+        gfloat tx[4], ty[4], confidence;
+
+        if (place[2] >= n[used[2]])
+          continue;
+        if (tried++ >= params->max_variants)
+          return best;
+        for (gint k = 0; k < 3; k++) {
+          const ClothSaddleCandidate *candidate =
+              &tracker->raw[near[used[k]][place[k]].index];
+
+          tx[used[k]] = candidate->x;
+          ty[used[k]] = candidate->y;
+        }
+        tx[left_out] = tx[used[0]] + tx[used[2]] - tx[used[1]];
+        ty[left_out] = ty[used[0]] + ty[used[2]] - ty[used[1]];
+        confidence = cloth_quad_confidence (tracker->image, tx, ty,
+            params->alpha, black);
+        if (confidence > best) {
+          best = confidence;
+          for (gint k = 0; k < 4; k++) {
+            x[k] = tx[k];
+            y[k] = ty[k];
+          }
+          if (best >= params->c_high)
+            return best;
+        }
+      }
+  return best;
+}
+
+/* Whether a corner lies on a linked corner that is some other vertex of the board. */
+static gboolean
+is_elsewhere (ClothQuadTracker * tracker, gfloat x, gfloat y, gint column,
+    gint row)
+{
+  ClothNear near;
+
+  return tracker->params->link
+      && cloth_point_grid_nearest (tracker->corners, x, y, SAME, &near, 1)
+      && g_array_index (tracker->corner_vertex, gint, near.index)
+      != row * (tracker->pattern.columns + 1) + column;
+}
+
+/* Fits all corners to sub-pixel places, whose square need not be a parallelogram. */
+static gboolean
+fit_outline (ClothQuadTracker * tracker, gint column, gint row,
+    ClothOutline * outline)
+{
+  gfloat reach = MAX (MAX_FIT * cloth_quad_shortest (outline->x, outline->y),
+      1.5f);
+
+  for (gint k = 0; k < 4; k++)
+    cloth_outline_fit (outline, tracker->image, k, outline->x[k],
+        outline->y[k], reach);
+  if (!cloth_outline_complete (outline, tracker->image,
+          cloth_pattern_is_black (&tracker->pattern, column, row)))
+    return FALSE;
+  /* An inner corner that is no saddle is where a fold cuts the square. */
+  for (gint k = 0; k < 4; k++)
+    if (cloth_quad_is_inner (tracker, column + cloth_quad_corner_column[k],
+            row + cloth_quad_corner_row[k]) && !outline->saddle[k])
+      return FALSE;
+  return TRUE;
+}
+
+gboolean
+cloth_quad_search (ClothQuadTracker * tracker, gint column, gint row)
+{
+  const ClothQuadParams *params = tracker->params;
+  ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
+  gboolean black = cloth_pattern_is_black (&tracker->pattern, column, row);
+  ClothOutline outline = { {0} };
+  gfloat confidence;
+
+  if (search_candidates (tracker, black, cell->guess_x, cell->guess_y,
+          outline.x, outline.y) < params->c_low
+      || !fit_outline (tracker, column, row, &outline))
+    return FALSE;
+  confidence = cloth_quad_confidence (tracker->image, outline.x, outline.y,
+      params->alpha, black);
+  if (confidence < params->c_low)
+    return FALSE;
+  for (gint k = 0; k < 4; k++)
+    if (is_elsewhere (tracker, outline.x[k], outline.y[k],
+            column + cloth_quad_corner_column[k],
+            row + cloth_quad_corner_row[k]))
+      return FALSE;
+  memcpy (cell->guess_x, outline.x, sizeof outline.x);
+  memcpy (cell->guess_y, outline.y, sizeof outline.y);
+  memcpy (cell->cov, outline.cov, sizeof outline.cov);
+  cell->confidence = confidence;
+  cell->found = TRUE;
+  return TRUE;
+}

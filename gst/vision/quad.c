@@ -1,0 +1,531 @@
+/* Tracking the squares of a checkerboard on cloth.
+ *
+ * Follows "Direct Pattern Tracking On Flexible Geometry" (I. Guskov, L. Zhukov): every
+ * square is tracked on its own, the grid only constrains. What is added: each picture's
+ * saddles are first joined into patches of the grid, which finds squares however far they
+ * moved; memory, the board's rim and its code tell where on the board a patch lies. The
+ * paper's prediction, local search, consistency and extension then serve the squares that
+ * linking missed, and everything when linking is off.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/vision/quad.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/vision/quad-private.h"
+#include "gst/vision/template.h"
+
+/* Passes that spread the shift of linked corners to the others. */
+#define SPREAD_PASSES 6
+/* Pictures for which a square not seen is still given out as predicted. */
+#define PREDICTED_FOR 5
+/* Weight that each picture of age takes from a remembered corner. */
+#define FADE 0.85f
+
+static const gint diagonal_column[4] = { -1, 1, 1, -1 };
+static const gint diagonal_row[4] = { -1, -1, 1, 1 };
+
+/**
+ * cloth_quad_default_params:
+ *
+ * Returns: the paper's constants, linking on, black squares.
+ *
+ * Since: 0.1
+ */
+ClothQuadParams
+cloth_quad_default_params (void)
+{
+  return (ClothQuadParams) {
+  .alpha = 0.25f,.c_low = 0.62f,.c_high = 0.75f,.c_pred = 0.7f,.damping =
+        0.9f,.consistency = 0.4f,.max_variants = 64,.link = TRUE,.squares =
+        CLOTH_SQUARES_BLACK};
+}
+
+/**
+ * cloth_quad_tracker_new:
+ * @pattern: the board; copied
+ *
+ * Returns: (transfer full): a tracker for that board. It keeps its memory from picture to
+ *   picture and allocates none in steady state.
+ *
+ * Since: 0.1
+ */
+ClothQuadTracker *
+cloth_quad_tracker_new (const ClothPattern * pattern)
+{
+  ClothQuadTracker *tracker = g_new0 (ClothQuadTracker, 1);
+  gsize n = (gsize) pattern->columns * (gsize) pattern->rows;
+
+  tracker->pattern = *pattern;
+  if (pattern->code)
+    tracker->pattern.code = g_memdup2 (pattern->code, n);
+  tracker->cells = g_new0 (ClothQuadCell, n);
+  tracker->vertices = g_new0 (ClothQuadVertex,
+      (gsize) (pattern->columns + 1) * (gsize) (pattern->rows + 1));
+  tracker->linker = cloth_linker_new ();
+  tracker->guesses = cloth_point_grid_new ();
+  tracker->guess_vertex = g_array_new (FALSE, FALSE, sizeof (gint));
+  tracker->candidates = cloth_point_grid_new ();
+  tracker->corners = cloth_point_grid_new ();
+  tracker->corner_vertex = g_array_new (FALSE, FALSE, sizeof (gint));
+  tracker->scratch = cloth_place_scratch_new ();
+  tracker->seeds = g_array_new (FALSE, FALSE, sizeof (ClothQuadSeed));
+  tracker->out = g_array_sized_new (FALSE, FALSE, sizeof (ClothQuad), (guint) n);
+  cloth_quad_tracker_reset (tracker);
+  return tracker;
+}
+
+/**
+ * cloth_quad_tracker_free:
+ * @tracker: (transfer full): the tracker
+ *
+ * Since: 0.1
+ */
+void
+cloth_quad_tracker_free (ClothQuadTracker * tracker)
+{
+  g_free (tracker->pattern.code);
+  g_free (tracker->cells);
+  g_free (tracker->vertices);
+  cloth_linker_free (tracker->linker);
+  cloth_patch_clear (&tracker->patch);
+  cloth_point_grid_free (tracker->guesses);
+  g_array_unref (tracker->guess_vertex);
+  cloth_point_grid_free (tracker->candidates);
+  cloth_point_grid_free (tracker->corners);
+  g_array_unref (tracker->corner_vertex);
+  g_array_unref (tracker->scratch);
+  g_array_unref (tracker->seeds);
+  g_array_unref (tracker->out);
+  g_free (tracker);
+}
+
+/**
+ * cloth_quad_tracker_reset:
+ * @tracker: the tracker
+ *
+ * Forgets all squares and seeds, as at the start of another film.
+ *
+ * Since: 0.1
+ */
+void
+cloth_quad_tracker_reset (ClothQuadTracker * tracker)
+{
+  gint n = tracker->pattern.columns * tracker->pattern.rows;
+
+  for (gint k = 0; k < n; k++) {
+    tracker->cells[k].age = G_MAXUINT;
+    tracker->cells[k].run = 0;
+  }
+  g_array_set_size (tracker->seeds, 0);
+}
+
+/**
+ * cloth_quad_tracker_seed:
+ * @tracker: the tracker
+ * @x: columns of the corners of one square, roughly, px: top-left, top-right,
+ *   bottom-right, bottom-left as they lie on the flat board
+ * @y: rows of them
+ * @column: column of the square on the board, -1 when not known
+ * @row: row of it
+ *
+ * Tells the tracker where a square lies in the next picture (section 4 of the paper). A
+ * square without place on the board counts as one in the board's middle, unless rim or
+ * code say otherwise.
+ *
+ * Since: 0.1
+ */
+void
+cloth_quad_tracker_seed (ClothQuadTracker * tracker, const gfloat x[4],
+    const gfloat y[4], gint column, gint row)
+{
+  ClothQuadSeed seed;
+
+  memcpy (seed.x, x, sizeof seed.x);
+  memcpy (seed.y, y, sizeof seed.y);
+  seed.column = row < 0 ? -1 : column;
+  seed.row = column < 0 ? -1 : row;
+  g_array_append_val (tracker->seeds, seed);
+}
+
+/* Section 3.6, and what it means for the corners. */
+static void
+predict (ClothQuadTracker * tracker)
+{
+  gint columns = tracker->pattern.columns, rows = tracker->pattern.rows;
+
+  for (gint k = 0; k < (columns + 1) * (rows + 1); k++)
+    tracker->vertices[k] = (ClothQuadVertex) {
+    0};
+  for (gint row = 0; row < rows; row++)
+    for (gint column = 0; column < columns; column++) {
+      ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
+      gfloat weight = 1;
+
+      cell->wanted = tracker->params->squares == CLOTH_SQUARES_BOTH
+          || cloth_pattern_is_black (&tracker->pattern, column, row)
+          == (tracker->params->squares == CLOTH_SQUARES_BLACK);
+      cell->found = cell->linked = cell->fresh = FALSE;
+      if (cell->age > CLOTH_QUAD_MEMORY)
+        continue;
+      for (guint a = 0; a < cell->age; a++)
+        weight *= FADE;
+      for (gint k = 0; k < 4; k++) {
+        ClothQuadVertex *vertex = cloth_quad_vertex (tracker,
+            column + cloth_quad_corner_column[k],
+            row + cloth_quad_corner_row[k]);
+
+        cell->guess_x[k] = cell->x[k];
+        cell->guess_y[k] = cell->y[k];
+        if (cell->age == 0 && cell->run >= 2) {
+          cell->guess_x[k] += cell->x[k] - cell->before_x[k];
+          cell->guess_y[k] += cell->y[k] - cell->before_y[k];
+        }
+        vertex->guess_x += weight * cell->guess_x[k];
+        vertex->guess_y += weight * cell->guess_y[k];
+        vertex->size += weight * cloth_quad_shortest (cell->x, cell->y);
+        vertex->weight += weight;
+      }
+    }
+  for (gint k = 0; k < (columns + 1) * (rows + 1); k++) {
+    ClothQuadVertex *vertex = &tracker->vertices[k];
+
+    if (vertex->weight == 0)
+      continue;
+    vertex->guessed = TRUE;
+    vertex->guess_x /= vertex->weight;
+    vertex->guess_y /= vertex->weight;
+    vertex->size = MAX (vertex->size / vertex->weight, 1.0f);
+    vertex->weight = MIN (vertex->weight, 1);
+  }
+}
+
+/* Moves the guesses of squares not found by linking along with the corners around them
+ * that were. */
+static void
+spread_shift (ClothQuadTracker * tracker)
+{
+  gint columns = tracker->pattern.columns + 1, rows = tracker->pattern.rows + 1;
+
+  for (gint k = 0; k < columns * rows; k++) {
+    ClothQuadVertex *vertex = &tracker->vertices[k];
+    gboolean known = vertex->seen && vertex->guessed;
+
+    vertex->shift_x = known ? vertex->x - vertex->guess_x : 0;
+    vertex->shift_y = known ? vertex->y - vertex->guess_y : 0;
+    vertex->weight = known ? 1 : 0;
+  }
+  for (gint pass = 0; pass < SPREAD_PASSES; pass++)
+    for (gint row = 0; row < rows; row++)
+      for (gint column = 0; column < columns; column++) {
+        ClothQuadVertex *own = cloth_quad_vertex (tracker, column, row);
+        gfloat sum_x = 0, sum_y = 0, weight = 0;
+
+        if (own->seen && own->guessed)
+          continue;
+        for (gint k = 0; k < 4; k++) {
+          static const gint dc[4] = { -1, 1, 0, 0 }, dr[4] = { 0, 0, -1, 1 };
+          const ClothQuadVertex *other;
+
+          if (column + dc[k] < 0 || column + dc[k] >= columns
+              || row + dr[k] < 0 || row + dr[k] >= rows)
+            continue;
+          other = cloth_quad_vertex (tracker, column + dc[k], row + dr[k]);
+          sum_x += other->weight * other->shift_x;
+          sum_y += other->weight * other->shift_y;
+          weight += other->weight;
+        }
+        if (weight == 0)
+          continue;
+        own->shift_x = sum_x / weight;
+        own->shift_y = sum_y / weight;
+        own->weight = MIN (0.5f * weight, 0.9f);
+      }
+  for (gint row = 0; row + 1 < rows; row++)
+    for (gint column = 0; column + 1 < columns; column++) {
+      ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
+
+      if (cell->found || cell->age > CLOTH_QUAD_MEMORY)
+        continue;
+      for (gint k = 0; k < 4; k++) {
+        const ClothQuadVertex *vertex = cloth_quad_vertex (tracker,
+            column + cloth_quad_corner_column[k],
+            row + cloth_quad_corner_row[k]);
+
+        cell->guess_x[k] += vertex->shift_x;
+        cell->guess_y[k] += vertex->shift_y;
+      }
+    }
+}
+
+/* Section 3.8: the most inconsistent neighbours over the number of confident ones. The
+ * paper's table has 0 for no neighbour, which would drop a lone square, the one that
+ * starts it all included: read here as "no test". */
+static gboolean
+is_consistent (ClothQuadTracker * tracker, gint column, gint row)
+{
+  static const gint most[5] = { G_MAXINT, 1, 1, 2, 2 };
+  const ClothQuadParams *params = tracker->params;
+  const ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
+  gint n = 0, bad = 0;
+
+  for (gint k = 0; k < 4; k++) {
+    const ClothQuadCell *other = cloth_quad_cell (tracker,
+        column + diagonal_column[k], row + diagonal_row[k]);
+    gfloat size, distance;
+
+    if (!other || !other->found || other->confidence <= params->c_high)
+      continue;
+    /* Corner k of this square is the other one's opposite corner. */
+    size = MAX (cloth_quad_longest (cell->guess_x, cell->guess_y),
+        cloth_quad_longest (other->guess_x, other->guess_y));
+    distance = hypotf (cell->guess_x[k] - other->guess_x[(k + 2) & 3],
+        cell->guess_y[k] - other->guess_y[(k + 2) & 3]);
+    n++;
+    bad += distance > params->consistency * size;
+  }
+  return bad < most[n];
+}
+
+static void
+check_consistency (ClothQuadTracker * tracker)
+{
+  gint columns = tracker->pattern.columns, rows = tracker->pattern.rows;
+
+  for (gint row = 0; row < rows; row++)
+    for (gint column = 0; column < columns; column++) {
+      ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
+
+      if (cell->found && !is_consistent (tracker, column, row))
+        cell->found = FALSE;
+    }
+}
+
+/* Whether (@x, @y) lies well inside a square found already. */
+static gboolean
+is_taken (ClothQuadTracker * tracker, gint column, gint row)
+{
+  const ClothQuadCell *own = cloth_quad_cell (tracker, column, row);
+  gfloat x = 0, y = 0, size;
+
+  size = cloth_quad_shortest (own->guess_x, own->guess_y);
+  for (gint k = 0; k < 4; k++) {
+    x += own->guess_x[k] / 4;
+    y += own->guess_y[k] / 4;
+  }
+  for (gint k = 0; k < tracker->pattern.columns * tracker->pattern.rows; k++) {
+    const ClothQuadCell *cell = &tracker->cells[k];
+    gfloat cx, cy;
+
+    if (!cell->found || cell == own)
+      continue;
+    cx = (cell->guess_x[0] + cell->guess_x[2]) / 2;
+    cy = (cell->guess_y[0] + cell->guess_y[2]) / 2;
+    if (fabsf (cx - x) < 0.5f * size && fabsf (cy - y) < 0.5f * size)
+      return TRUE;
+  }
+  return FALSE;
+}
+
+/* Looks for a square at its guess and keeps it if the grid allows. */
+static gboolean
+try_square (ClothQuadTracker * tracker, gint column, gint row)
+{
+  ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
+
+  if (!cloth_quad_search (tracker, column, row))
+    return FALSE;
+  if (!is_consistent (tracker, column, row) || is_taken (tracker, column, row))
+    cell->found = FALSE;
+  return cell->found;
+}
+
+/* Section 3.9: squares not found are looked for where a confident neighbour's
+ * parallelogram puts them. One ring of squares a picture, as in the paper. */
+static void
+extend (ClothQuadTracker * tracker)
+{
+  const ClothQuadParams *params = tracker->params;
+  gint columns = tracker->pattern.columns, rows = tracker->pattern.rows;
+
+  for (gint row = 0; row < rows; row++)
+    for (gint column = 0; column < columns; column++) {
+      ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
+
+      if (cell->found || !cell->wanted)
+        continue;
+      for (gint k = 0; k < 4; k++) {
+        const ClothQuadCell *from = cloth_quad_cell (tracker,
+            column + diagonal_column[k], row + diagonal_row[k]);
+        const gfloat *fx, *fy;
+        gfloat ux, uy, vx, vy;
+
+        if (!from || !from->found || from->fresh
+            || from->confidence <= params->c_pred)
+          continue;
+        fx = from->guess_x;
+        fy = from->guess_y;
+        ux = (fx[1] - fx[0] + fx[2] - fx[3]) / 2;
+        uy = (fy[1] - fy[0] + fy[2] - fy[3]) / 2;
+        vx = (fx[3] - fx[0] + fx[2] - fx[1]) / 2;
+        vy = (fy[3] - fy[0] + fy[2] - fy[1]) / 2;
+        for (gint m = 0; m < 4; m++) {
+          cell->guess_x[m] = fx[m] - (gfloat) diagonal_column[k] * ux
+              - (gfloat) diagonal_row[k] * vx;
+          cell->guess_y[m] = fy[m] - (gfloat) diagonal_column[k] * uy
+              - (gfloat) diagonal_row[k] * vy;
+        }
+        if (try_square (tracker, column, row)) {
+          cell->confidence *= params->damping;
+          cell->fresh = TRUE;
+          break;
+        }
+      }
+    }
+}
+
+/* Without linking, seeds start squares themselves. */
+static void
+start_seeds (ClothQuadTracker * tracker)
+{
+  const ClothPattern *pattern = &tracker->pattern;
+
+  for (guint s = 0; s < tracker->seeds->len; s++) {
+    const ClothQuadSeed *seed =
+        &g_array_index (tracker->seeds, ClothQuadSeed, s);
+    gint column = seed->column, row = seed->row;
+    ClothQuadCell *cell;
+
+    if (column < 0) {
+      column = pattern->columns / 2;
+      row = pattern->rows / 2;
+      cell = cloth_quad_cell (tracker, column, row);
+      if (!cell->wanted && column > 0)
+        column--;
+    }
+    cell = cloth_quad_cell (tracker, column, row);
+    if (!cell || !cell->wanted)
+      continue;
+    memcpy (cell->guess_x, seed->x, sizeof seed->x);
+    memcpy (cell->guess_y, seed->y, sizeof seed->y);
+    cloth_quad_search (tracker, column, row);
+  }
+}
+
+static void
+put_out (ClothQuadTracker * tracker, gint column, gint row,
+    ClothQuadState state)
+{
+  const ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
+  ClothQuad quad = { column, row, state,
+    cloth_pattern_is_black (&tracker->pattern, column, row)
+  };
+
+  quad.confidence = state == CLOTH_QUAD_TRACKED ? cell->confidence : 0;
+  memcpy (quad.x, state == CLOTH_QUAD_PREDICTED ? cell->guess_x : cell->x,
+      sizeof quad.x);
+  memcpy (quad.y, state == CLOTH_QUAD_PREDICTED ? cell->guess_y : cell->y,
+      sizeof quad.y);
+  memcpy (quad.cov, cell->cov, sizeof quad.cov);
+  g_array_append_val (tracker->out, quad);
+}
+
+/* Remembers what was found and gives it out. */
+static void
+conclude (ClothQuadTracker * tracker)
+{
+  gint columns = tracker->pattern.columns, rows = tracker->pattern.rows;
+
+  g_array_set_size (tracker->out, 0);
+  for (gint row = 0; row < rows; row++)
+    for (gint column = 0; column < columns; column++) {
+      ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
+
+      if (cell->found) {
+        if (cell->age == 0) {
+          memcpy (cell->before_x, cell->x, sizeof cell->x);
+          memcpy (cell->before_y, cell->y, sizeof cell->y);
+          cell->run++;
+        } else {
+          cell->run = 1;
+        }
+        memcpy (cell->x, cell->guess_x, sizeof cell->x);
+        memcpy (cell->y, cell->guess_y, sizeof cell->y);
+        cell->age = 0;
+        put_out (tracker, column, row, CLOTH_QUAD_TRACKED);
+        continue;
+      }
+      if (cell->age == G_MAXUINT)
+        continue;
+      cell->age++;
+      cell->run = 0;
+      if (cell->age <= PREDICTED_FOR)
+        put_out (tracker, column, row, CLOTH_QUAD_PREDICTED);
+      else if (cell->age == PREDICTED_FOR + 1)
+        put_out (tracker, column, row, CLOTH_QUAD_LOST);
+      else if (cell->age > CLOTH_QUAD_MEMORY)
+        cell->age = G_MAXUINT;
+    }
+}
+
+/**
+ * cloth_quad_tracker_run:
+ * @tracker: the tracker
+ * @params: parameters; may change from picture to picture
+ * @image: the next picture
+ * @saddles: (array length=n_saddles): its refined saddles
+ * @n_saddles: how many
+ * @candidates: (array length=n_candidates): its saddle candidates (paper 3.4)
+ * @n_candidates: how many
+ * @n_quads: (out): number of squares returned
+ *
+ * Tracks the board's squares into the next picture.
+ *
+ * Returns: (array length=n_quads) (transfer none): squares tracked, predicted and just
+ *   lost, by row and column; valid until the next call
+ *
+ * Since: 0.1
+ */
+const ClothQuad *
+cloth_quad_tracker_run (ClothQuadTracker * tracker,
+    const ClothQuadParams * params, const ClothImage * image,
+    const ClothSaddle * saddles, guint n_saddles,
+    const ClothSaddleCandidate * candidates, guint n_candidates,
+    guint * n_quads)
+{
+  gint columns = tracker->pattern.columns, rows = tracker->pattern.rows;
+
+  tracker->params = params;
+  tracker->image = image;
+  tracker->saddles = saddles;
+  tracker->n_saddles = n_saddles;
+  tracker->raw = candidates;
+  cloth_point_grid_clear (tracker->candidates, image->width, image->height,
+      n_candidates);
+  for (guint k = 0; k < n_candidates; k++)
+    cloth_point_grid_add (tracker->candidates, candidates[k].x, candidates[k].y);
+
+  predict (tracker);
+  if (params->link) {
+    cloth_quad_link (tracker);
+    spread_shift (tracker);
+  } else {
+    start_seeds (tracker);
+  }
+  for (gint row = 0; row < rows; row++)
+    for (gint column = 0; column < columns; column++) {
+      ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
+
+      if (!cell->found && cell->wanted && cell->age == 0
+          && cloth_quad_search (tracker, column, row)
+          && is_taken (tracker, column, row))
+        cell->found = FALSE;
+    }
+  check_consistency (tracker);
+  extend (tracker);
+  g_array_set_size (tracker->seeds, 0);
+  conclude (tracker);
+  *n_quads = tracker->out->len;
+  return (const ClothQuad *) tracker->out->data;
+}
