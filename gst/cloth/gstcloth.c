@@ -82,10 +82,10 @@ gst_cloth_check_header (const guint8 * bytes, gsize size, const gchar * magic,
         "These bytes are no %s: they don't begin with %s", what, magic);
     return FALSE;
   }
-  if (size >= 6 && GST_READ_UINT16_LE (bytes + 4) != version) {
+  if (size >= 6 && gst_cloth_read_u16 (bytes + 4) != version) {
     g_set_error (error, GST_CLOTH_ERROR, GST_CLOTH_ERROR_VERSION,
         "The %s is of version %u; this library reads version %u", what,
-        GST_READ_UINT16_LE (bytes + 4), version);
+        gst_cloth_read_u16 (bytes + 4), version);
     return FALSE;
   }
   if (size < header) {
@@ -94,10 +94,10 @@ gst_cloth_check_header (const guint8 * bytes, gsize size, const gchar * magic,
         G_GSIZE_FORMAT, what, size, header);
     return FALSE;
   }
-  if (GST_READ_UINT16_LE (bytes + 6) != header) {
+  if (gst_cloth_read_u16 (bytes + 6) != header) {
     g_set_error (error, GST_CLOTH_ERROR, GST_CLOTH_ERROR_VALUE,
         "The header of the %s is %u bytes long instead of %" G_GSIZE_FORMAT,
-        what, GST_READ_UINT16_LE (bytes + 6), header);
+        what, gst_cloth_read_u16 (bytes + 6), header);
     return FALSE;
   }
   return TRUE;

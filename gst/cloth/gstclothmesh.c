@@ -389,9 +389,9 @@ gst_cloth_mesh_from_buffer (GstBuffer * buffer, GError ** error)
   if (!gst_cloth_check_header (map.data, map.size, MESH_MAGIC, MESH_VERSION,
           MESH_HEADER, "mesh", error))
     goto bad;
-  sequence = GST_READ_UINT64_LE (map.data + 8);
-  n_vertices = GST_READ_UINT32_LE (map.data + 16);
-  flags = GST_READ_UINT32_LE (map.data + 20);
+  sequence = gst_cloth_read_u64 (map.data + 8);
+  n_vertices = gst_cloth_read_u32 (map.data + 16);
+  flags = gst_cloth_read_u32 (map.data + 20);
   covariances = (flags & MESH_HAS_COVARIANCES) != 0;
   if (n_vertices < 1 || n_vertices > GST_CLOTH_MAX_VERTICES) {
     g_set_error (error, GST_CLOTH_ERROR, GST_CLOTH_ERROR_LIMIT,

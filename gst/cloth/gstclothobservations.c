@@ -78,11 +78,10 @@ put_u64 (GByteArray * bytes, guint64 value)
 static void
 put_floats (GByteArray * bytes, const gfloat * values, guint n)
 {
-  for (guint i = 0; i < n; i++) {
-    guint32 le = gst_cloth_float_to_le (values[i]);
+  guint at = bytes->len;
 
-    g_byte_array_append (bytes, (guint8 *) & le, 4);
-  }
+  g_byte_array_set_size (bytes, at + 4 * n);
+  gst_cloth_copy_le32 (bytes->data + at, values, n);
 }
 
 static void
@@ -313,17 +312,6 @@ observed_clear (Observed * observed)
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Observed, observed_clear);
 
-static void
-get_floats (const guint8 * bytes, gfloat * values, guint n)
-{
-  for (guint i = 0; i < n; i++) {
-    guint32 word;
-
-    memcpy (&word, bytes + 4 * i, 4);
-    values[i] = gst_cloth_float_from_le (word);
-  }
-}
-
 static gboolean
 fail (GError ** error, GstClothError code, const gchar * what,
     const gchar * problem)
@@ -373,10 +361,10 @@ read_saddles (const Section * section, Observed * observed, GError ** error)
   if (section->size < SADDLES_HEADER)
     return fail (error, GST_CLOTH_ERROR_TRUNCATED, SECTION_SADDLES,
         "it ends inside its header");
-  sequence = GST_READ_UINT64_LE (at);
-  n_refined = GST_READ_UINT32_LE (at + 8);
-  n_candidates = GST_READ_UINT32_LE (at + 12);
-  length = GST_READ_UINT16_LE (at + 16);
+  sequence = gst_cloth_read_u64 (at);
+  n_refined = gst_cloth_read_u32 (at + 8);
+  n_candidates = gst_cloth_read_u32 (at + 12);
+  length = gst_cloth_read_u16 (at + 16);
   if (n_refined > GST_CLOTH_MAX_FEATURES
       || n_candidates > GST_CLOTH_MAX_FEATURES)
     return fail (error, GST_CLOTH_ERROR_LIMIT, SECTION_SADDLES,
@@ -395,13 +383,13 @@ read_saddles (const Section * section, Observed * observed, GError ** error)
   refined = g_new (GstClothSaddle, n_refined);
   candidates = g_new (GstClothCandidate, n_candidates);
   for (guint i = 0; i < n_refined; i++, at += SADDLE_BYTES) {
-    get_floats (at, (gfloat *) & refined[i], 7);
+    gst_cloth_copy_le32 (&refined[i], at, 7);
     if (!all_finite ((const gfloat *) &refined[i], 7))
       return fail (error, GST_CLOTH_ERROR_VALUE, SECTION_SADDLES,
           "a float is not finite");
   }
   for (guint i = 0; i < n_candidates; i++, at += CANDIDATE_BYTES) {
-    get_floats (at, (gfloat *) & candidates[i], 3);
+    gst_cloth_copy_le32 (&candidates[i], at, 3);
     if (!all_finite ((const gfloat *) &candidates[i], 3))
       return fail (error, GST_CLOTH_ERROR_VALUE, SECTION_SADDLES,
           "a float is not finite");
@@ -427,11 +415,11 @@ read_quads (const Section * section, Observed * observed, GError ** error)
   if (section->size < QUADS_HEADER)
     return fail (error, GST_CLOTH_ERROR_TRUNCATED, SECTION_QUADS,
         "it ends inside its header");
-  sequence = GST_READ_UINT64_LE (at);
-  columns = GST_READ_UINT32_LE (at + 8);
-  rows = GST_READ_UINT32_LE (at + 12);
-  n_quads = GST_READ_UINT32_LE (at + 16);
-  length = GST_READ_UINT16_LE (at + 20);
+  sequence = gst_cloth_read_u64 (at);
+  columns = gst_cloth_read_u32 (at + 8);
+  rows = gst_cloth_read_u32 (at + 12);
+  n_quads = gst_cloth_read_u32 (at + 16);
+  length = gst_cloth_read_u16 (at + 20);
   if (columns > GST_CLOTH_MAX_FEATURES || rows > GST_CLOTH_MAX_FEATURES
       || n_quads > GST_CLOTH_MAX_FEATURES)
     return fail (error, GST_CLOTH_ERROR_LIMIT, SECTION_QUADS,
@@ -450,15 +438,15 @@ read_quads (const Section * section, Observed * observed, GError ** error)
   for (guint i = 0; i < n_quads; i++, at += QUAD_BYTES) {
     GstClothQuad *quad = &quads[i];
 
-    quad->column = (gint) MIN (GST_READ_UINT32_LE (at), (guint) G_MAXINT);
-    quad->row = (gint) MIN (GST_READ_UINT32_LE (at + 4), (guint) G_MAXINT);
+    quad->column = (gint) MIN (gst_cloth_read_u32 (at), (guint) G_MAXINT);
+    quad->row = (gint) MIN (gst_cloth_read_u32 (at + 4), (guint) G_MAXINT);
     quad->state = (GstClothQuadState) at[8];
     quad->black = at[9];
-    get_floats (at + 12, &quad->confidence, 1);
+    gst_cloth_copy_le32 (&quad->confidence, at + 12, 1);
     for (guint c = 0; c < 4; c++) {
       gfloat corner[5];
 
-      get_floats (at + 16 + 20 * c, corner, 5);
+      gst_cloth_copy_le32 (corner, at + 16 + 20 * c, 5);
       quad->x[c] = corner[0];
       quad->y[c] = corner[1];
       quad->cov_xx[c] = corner[2];
@@ -488,7 +476,7 @@ read_time (const Section * section, Observed * observed, GError ** error)
   if (section->size < TIME_HEADER)
     return fail (error, GST_CLOTH_ERROR_TRUNCATED, SECTION_TIME,
         "it ends inside its header");
-  length = GST_READ_UINT32_LE (section->data + 16);
+  length = gst_cloth_read_u32 (section->data + 16);
   if (length > MAX_REFERENCE)
     return fail (error, GST_CLOTH_ERROR_LIMIT, SECTION_TIME,
         "the caps of the reference clock are too long");
@@ -499,15 +487,15 @@ read_time (const Section * section, Observed * observed, GError ** error)
   reference = reference_is_plain (text, strlen (text)) && strlen (text)
       == length ? gst_caps_from_string (text) : NULL;
   if (!reference || !gst_caps_is_fixed (reference)
-      || GST_READ_UINT64_LE (section->data) == GST_CLOCK_TIME_NONE) {
+      || gst_cloth_read_u64 (section->data) == GST_CLOCK_TIME_NONE) {
     g_clear_pointer (&reference, gst_caps_unref);
     return fail (error, GST_CLOTH_ERROR_VALUE, SECTION_TIME,
         "the reference clock is no fixed caps, or there is no time");
   }
   observed->references[observed->n_times] = reference;
-  observed->timestamps[observed->n_times] = GST_READ_UINT64_LE (section->data);
+  observed->timestamps[observed->n_times] = gst_cloth_read_u64 (section->data);
   observed->durations[observed->n_times] =
-      GST_READ_UINT64_LE (section->data + 8);
+      gst_cloth_read_u64 (section->data + 8);
   observed->n_times++;
   return TRUE;
 }
@@ -534,10 +522,10 @@ read_observation (const guint8 * bytes, gsize size, Observed * observed,
 
   if (!gst_cloth_check_header (bytes, size, OBSERVATIONS_MAGIC,
           OBSERVATIONS_VERSION, OBSERVATIONS_HEADER, "observation", error)
-      || !gst_cloth_check_size (size, GST_READ_UINT32_LE (bytes + 8),
+      || !gst_cloth_check_size (size, gst_cloth_read_u32 (bytes + 8),
           "observation", error))
     return FALSE;
-  n_sections = GST_READ_UINT32_LE (bytes + 12);
+  n_sections = gst_cloth_read_u32 (bytes + 12);
   if (n_sections > MAX_SECTIONS)
     return fail (error, GST_CLOTH_ERROR_LIMIT, "count",
         "there are more than 64 sections");
@@ -548,7 +536,7 @@ read_observation (const guint8 * bytes, gsize size, Observed * observed,
       return fail (error, GST_CLOTH_ERROR_TRUNCATED, "list",
           "the bytes end before the last section");
     section.data = bytes + at + SECTION_HEADER;
-    section.size = GST_READ_UINT32_LE (bytes + at + 4);
+    section.size = gst_cloth_read_u32 (bytes + at + 4);
     if (section.size > size - at - SECTION_HEADER)
       return fail (error, GST_CLOTH_ERROR_TRUNCATED, "list",
           "a section is longer than what remains");

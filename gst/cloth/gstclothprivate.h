@@ -4,6 +4,7 @@
 #pragma once
 
 #include <gst/cloth/cloth.h>
+#include <string.h>
 
 G_BEGIN_DECLS
 
@@ -28,29 +29,32 @@ gboolean gst_cloth_check_header (const guint8 * bytes, gsize size,
 gboolean gst_cloth_check_size (gsize size, gsize expected, const gchar * what,
     GError ** error);
 
-/* Numbers are kept little-endian on the wire. */
-static inline guint32
-gst_cloth_float_to_le (gfloat value)
+/* Numbers are kept little-endian on the wire, at any address. */
+static inline guint16
+gst_cloth_read_u16 (const guint8 * bytes)
 {
-  union
-  {
-    gfloat f;
-    guint32 u;
-  } bits = {.f = value };
+  guint16 value;
 
-  return GUINT32_TO_LE (bits.u);
+  memcpy (&value, bytes, 2);
+  return GUINT16_FROM_LE (value);
 }
 
-static inline gfloat
-gst_cloth_float_from_le (guint32 value)
+static inline guint32
+gst_cloth_read_u32 (const guint8 * bytes)
 {
-  union
-  {
-    gfloat f;
-    guint32 u;
-  } bits = {.u = GUINT32_FROM_LE (value) };
+  guint32 value;
 
-  return bits.f;
+  memcpy (&value, bytes, 4);
+  return GUINT32_FROM_LE (value);
+}
+
+static inline guint64
+gst_cloth_read_u64 (const guint8 * bytes)
+{
+  guint64 value;
+
+  memcpy (&value, bytes, 8);
+  return GUINT64_FROM_LE (value);
 }
 
 /* Copies n 32 bit words, swapping them on a big-endian host. */

@@ -375,10 +375,10 @@ topology_parse (const guint8 * bytes, gsize size, GError ** error)
   if (!gst_cloth_check_header (bytes, size, TOPOLOGY_MAGIC, TOPOLOGY_VERSION,
           TOPOLOGY_HEADER, "topology", error))
     return NULL;
-  n_vertices = GST_READ_UINT32_LE (bytes + 8);
-  columns = GST_READ_UINT32_LE (bytes + 12);
-  rows = GST_READ_UINT32_LE (bytes + 16);
-  n_faces = GST_READ_UINT32_LE (bytes + 20);
+  n_vertices = gst_cloth_read_u32 (bytes + 8);
+  columns = gst_cloth_read_u32 (bytes + 12);
+  rows = gst_cloth_read_u32 (bytes + 16);
+  n_faces = gst_cloth_read_u32 (bytes + 20);
   if (!check_counts (n_vertices, columns, rows, n_faces, error)
       || !gst_cloth_check_size (size, TOPOLOGY_HEADER + 8 * (gsize) n_vertices
           + 16 * (gsize) n_faces, "topology", error))

@@ -208,7 +208,9 @@ check_hostile (Reader reader, const guint8 * bytes, gsize size,
     g_autoptr (GstBuffer) buffer = NULL;
     g_autoptr (GError) error = NULL;
 
-    GST_WRITE_UINT32_LE (bent + bends[i].at, bends[i].word);
+    guint32 word = GUINT32_TO_LE (bends[i].word);
+
+    memcpy (bent + bends[i].at, &word, 4);
     buffer = buffer_of (bent, size);
     g_assert_null (reader (buffer, &error));
     g_test_message ("%s: %s", bends[i].name, error->message);
