@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/vision/saddle-mask-x86.h"
+
 /* Positive part of the second difference of the weights: what a picture of 0 and 1
  * can make of it at most. */
 static gdouble
@@ -134,9 +136,9 @@ cloth_saddle_mask_clear (ClothSaddleMask * mask)
   memset (mask, 0, sizeof (*mask));
 }
 
-/* Pixels [x, x + n) of row y, the picture's border repeated outwards. */
-static void
-copy_row (guint8 * out, const ClothImage * image, gint x, gint y, gint n)
+void
+cloth_saddle_copy_row (guint8 * out, const ClothImage * image, gint x,
+    gint y, gint n)
 {
   const guint8 *row =
       image->data + (gsize) CLAMP (y, 0, image->height - 1) *
@@ -168,7 +170,7 @@ mask_run_scalar (ClothSaddleMask * mask, const ClothSaddleKernel * kernel,
     guint16 *out = ring + (gsize) ((y - top + r) % n_ring) * (gsize) n;
     gint row = y - r, centre;
 
-    copy_row (line, image, mask->x - h - r, y, n + 2 * r);
+    cloth_saddle_copy_row (line, image, mask->x - h - r, y, n + 2 * r);
     for (gint x = 0; x < n; x++) {
       gint sum = 0;
       for (gint k = 0; k <= 2 * r; k++)
@@ -225,6 +227,34 @@ mask_run_scalar (ClothSaddleMask * mask, const ClothSaddleKernel * kernel,
   }
 }
 
+#if defined (__x86_64__) && defined (__GNUC__)
+static void
+mask_run_tiles (ClothSaddleMask * mask, const ClothSaddleKernel * kernel,
+    const ClothImage * image, gint threshold, ClothSimd level)
+{
+  const gsize rows = (gsize) (2 * kernel->radius + 2 * kernel->step + 2);
+  /* Rows of even and odd columns of 16 bits, all in 26 KiB of cache. */
+  const gint widest = MAX (3, (gint) (26624 / (rows * 4 * 32)) - 1);
+  const gint n_tiles = (mask->words + widest - 1) / widest;
+  const gint lanes =
+      CLOTH_SADDLE_TILE_LANES ((mask->words + n_tiles - 1) / n_tiles);
+  guint8 *scratch = mask_scratch (mask,
+      rows * 4 * (gsize) (lanes + 32) + 2 * (gsize) lanes + 512);
+
+  for (gint i = 0; i < n_tiles; i++) {
+    gint from = (gint) ((gint64) mask->words * i / n_tiles);
+    gint to = (gint) ((gint64) mask->words * (i + 1) / n_tiles);
+
+    if (level == CLOTH_SIMD_AVX512)
+      cloth_saddle_mask_tile_avx512 (mask, kernel, image, threshold, from,
+          to - from, scratch);
+    else
+      cloth_saddle_mask_tile_avx2 (mask, kernel, image, threshold, from,
+          to - from, scratch);
+  }
+}
+#endif
+
 /* Nothing is told where a difference would reach over the picture's border: there the
  * repeated border itself makes corners of edges. */
 static void
@@ -265,6 +295,11 @@ cloth_saddle_mask_run (ClothSaddleMask * mask,
 {
   mask->words = (mask->width + 63) / 64;
   mask_resize (mask);
-  mask_run_scalar (mask, kernel, image, threshold);
+#if defined (__x86_64__) && defined (__GNUC__)
+  if (level == CLOTH_SIMD_AVX2 || level == CLOTH_SIMD_AVX512)
+    mask_run_tiles (mask, kernel, image, threshold, level);
+  else
+#endif
+    mask_run_scalar (mask, kernel, image, threshold);
   mask_cut_border (mask, image, kernel->step);
 }

@@ -1,0 +1,107 @@
+/* The hyperbolic mask by AVX2 and AVX-512.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/vision/saddle-mask-x86.h"
+
+#if defined (__x86_64__) && defined (__GNUC__)
+
+#include <immintrin.h>
+#include <string.h>
+
+/* Columns left of a tile's first one that the differences may reach. */
+#define MARGIN CLOTH_SADDLE_TILE_MARGIN
+/* Lanes between even and odd columns, so that whole vectors may run over the end. */
+#define GAP 32
+
+static inline gint16
+pair_of (const gint8 * taps)
+{
+  gint16 pair;
+
+  memcpy (&pair, taps, sizeof (pair));
+  return pair;
+}
+
+#define SUFFIX avx2
+#define TARGET __attribute__((target ("avx2")))
+#define LANES 16
+#define VEC __m256i
+#define LOAD(p) _mm256_loadu_si256 ((const __m256i *) (p))
+#define STORE(p, v) _mm256_storeu_si256 ((__m256i *) (p), (v))
+#define SET(v) _mm256_set1_epi16 ((gint16) (v))
+#define PAIR(taps) _mm256_set1_epi16 (pair_of (taps))
+#define ADD _mm256_add_epi16
+#define SUB _mm256_sub_epi16
+#define AVERAGE _mm256_avg_epu16
+#define MUL_BYTES _mm256_maddubs_epi16
+#define MUL_HIGH _mm256_mulhi_epi16
+#define MUL_HIGH_U _mm256_mulhi_epu16
+#define TIMES_4(v) _mm256_slli_epi16 ((v), 2)
+#define ANY_BELOW(a, b, bound) \
+  (!_mm256_testz_si256 (_mm256_cmpgt_epi16 ((bound), \
+          _mm256_min_epi16 ((a), (b))), _mm256_set1_epi8 (-1)))
+#define BITS_BELOW(a, b, bound) \
+  ((guint32) _mm256_movemask_epi8 (_mm256_blendv_epi8 ( \
+          _mm256_cmpgt_epi16 ((bound), (a)), \
+          _mm256_cmpgt_epi16 ((bound), (b)), \
+          _mm256_set1_epi16 ((gint16) 0xff00))))
+#define STORE_MIXED(p, a, b) \
+  do { \
+    VEC low_ = _mm256_unpacklo_epi16 ((a), (b)); \
+    VEC high_ = _mm256_unpackhi_epi16 ((a), (b)); \
+    STORE ((p), _mm256_permute2x128_si256 (low_, high_, 0x20)); \
+    STORE ((p) + 16, _mm256_permute2x128_si256 (low_, high_, 0x31)); \
+  } while (0)
+#include "gst/vision/saddle-mask-tile.h"
+#undef SUFFIX
+#undef TARGET
+#undef LANES
+#undef VEC
+#undef LOAD
+#undef STORE
+#undef SET
+#undef PAIR
+#undef ADD
+#undef SUB
+#undef AVERAGE
+#undef MUL_BYTES
+#undef MUL_HIGH
+#undef MUL_HIGH_U
+#undef TIMES_4
+#undef ANY_BELOW
+#undef BITS_BELOW
+#undef STORE_MIXED
+
+#define SUFFIX avx512
+#define TARGET __attribute__((target ("avx512f,avx512bw,avx512dq,avx512vl")))
+#define LANES 32
+#define VEC __m512i
+#define LOAD(p) _mm512_loadu_si512 ((const void *) (p))
+#define STORE(p, v) _mm512_storeu_si512 ((void *) (p), (v))
+#define SET(v) _mm512_set1_epi16 ((gint16) (v))
+#define PAIR(taps) _mm512_set1_epi16 (pair_of (taps))
+#define ADD _mm512_add_epi16
+#define SUB _mm512_sub_epi16
+#define AVERAGE _mm512_avg_epu16
+#define MUL_BYTES _mm512_maddubs_epi16
+#define MUL_HIGH _mm512_mulhi_epi16
+#define MUL_HIGH_U _mm512_mulhi_epu16
+#define TIMES_4(v) _mm512_slli_epi16 ((v), 2)
+#define ANY_BELOW(a, b, bound) \
+  (_mm512_cmpgt_epi16_mask ((bound), _mm512_min_epi16 ((a), (b))) != 0)
+#define BITS_BELOW(a, b, bound) \
+  _mm512_movepi8_mask (_mm512_mask_blend_epi8 (0xaaaaaaaaaaaaaaaaull, \
+          _mm512_movm_epi16 (_mm512_cmpgt_epi16_mask ((bound), (a))), \
+          _mm512_movm_epi16 (_mm512_cmpgt_epi16_mask ((bound), (b)))))
+#define STORE_MIXED(p, a, b) \
+  do { \
+    VEC low_ = _mm512_unpacklo_epi16 ((a), (b)); \
+    VEC high_ = _mm512_unpackhi_epi16 ((a), (b)); \
+    STORE ((p), _mm512_permutex2var_epi64 (low_, \
+            _mm512_setr_epi64 (0, 1, 8, 9, 2, 3, 10, 11), high_)); \
+    STORE ((p) + 32, _mm512_permutex2var_epi64 (low_, \
+            _mm512_setr_epi64 (4, 5, 12, 13, 6, 7, 14, 15), high_)); \
+  } while (0)
+#include "gst/vision/saddle-mask-tile.h"
+
+#endif

@@ -1,0 +1,28 @@
+/* The hyperbolic mask by AVX2 and AVX-512.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/vision/saddle-mask.h"
+
+G_BEGIN_DECLS
+
+/* Columns computed on either side of a tile; even, and no less than the longest step. */
+#define CLOTH_SADDLE_TILE_MARGIN 4
+/* Even (or odd) columns of a tile with its margins, in whole vectors of 32. */
+#define CLOTH_SADDLE_TILE_LANES(words) (32 * (words) + 32)
+
+/* Pixels [x, x + n) of row y, the picture's border repeated outwards. */
+void cloth_saddle_copy_row (guint8 * out, const ClothImage * image, gint x,
+    gint y, gint n);
+
+/* @scratch: aligned to 64 bytes, cloth_saddle_tile_size() of them. Words [word,
+ * word + words) of every row of @mask are filled. */
+void cloth_saddle_mask_tile_avx2 (ClothSaddleMask * mask,
+    const ClothSaddleKernel * kernel, const ClothImage * image,
+    gint threshold, gint word, gint words, guint8 * scratch);
+void cloth_saddle_mask_tile_avx512 (ClothSaddleMask * mask,
+    const ClothSaddleKernel * kernel, const ClothImage * image,
+    gint threshold, gint word, gint words, guint8 * scratch);
+
+G_END_DECLS
