@@ -10,17 +10,6 @@
 
 /* Columns left of a tile's first one that the differences may reach. */
 #define MARGIN CLOTH_SADDLE_TILE_MARGIN
-/* Lanes between even and odd columns, so that whole vectors may run over the end. */
-#define GAP 32
-
-static inline gint16
-pair_of (const gint8 * taps)
-{
-  gint16 pair;
-
-  memcpy (&pair, taps, sizeof (pair));
-  return pair;
-}
 
 #define SUFFIX avx2
 #define TARGET __attribute__((target ("avx2")))
@@ -29,7 +18,8 @@ pair_of (const gint8 * taps)
 #define LOAD(p) _mm256_loadu_si256 ((const __m256i *) (p))
 #define STORE(p, v) _mm256_storeu_si256 ((__m256i *) (p), (v))
 #define SET(v) _mm256_set1_epi16 ((gint16) (v))
-#define PAIR(taps) _mm256_set1_epi16 (pair_of (taps))
+#define PAIR(a, b) \
+  _mm256_set1_epi16 ((gint16) (((guint8) (b)) << 8 | (guint8) (a)))
 #define ADD _mm256_add_epi16
 #define SUB _mm256_sub_epi16
 #define AVERAGE _mm256_avg_epu16
@@ -79,7 +69,8 @@ pair_of (const gint8 * taps)
 #define LOAD(p) _mm512_loadu_si512 ((const void *) (p))
 #define STORE(p, v) _mm512_storeu_si512 ((void *) (p), (v))
 #define SET(v) _mm512_set1_epi16 ((gint16) (v))
-#define PAIR(taps) _mm512_set1_epi16 (pair_of (taps))
+#define PAIR(a, b) \
+  _mm512_set1_epi16 ((gint16) (((guint8) (b)) << 8 | (guint8) (a)))
 #define ADD _mm512_add_epi16
 #define SUB _mm512_sub_epi16
 #define AVERAGE _mm512_avg_epu16

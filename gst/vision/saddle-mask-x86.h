@@ -11,6 +11,10 @@ G_BEGIN_DECLS
 #define CLOTH_SADDLE_TILE_MARGIN 4
 /* Even (or odd) columns of a tile with its margins, in whole vectors of 32. */
 #define CLOTH_SADDLE_TILE_LANES(words) (32 * (words) + 32)
+/* From row to row in 16 bits; an odd number of cache lines, so that rows don't contend
+ * for the same ones. */
+#define CLOTH_SADDLE_TILE_ROW(words) \
+  ((gsize) (2 * CLOTH_SADDLE_TILE_LANES (words) + 32))
 
 /* Pixels [x, x + n) of row y, the picture's border repeated outwards. */
 void cloth_saddle_copy_row (guint8 * out, const ClothImage * image, gint x,

@@ -104,7 +104,8 @@ cloth_saddle_kernel_init (ClothSaddleKernel * kernel, gfloat sigma)
 static void
 mask_resize (ClothSaddleMask * mask)
 {
-  gsize need = (gsize) mask->words * (gsize) mask->height;
+  /* Rows come in twos. */
+  gsize need = (gsize) mask->words * (gsize) (mask->height + 1);
 
   if (need > mask->bits_allocated) {
     g_free (mask->bits);
@@ -232,14 +233,13 @@ static void
 mask_run_tiles (ClothSaddleMask * mask, const ClothSaddleKernel * kernel,
     const ClothImage * image, gint threshold, ClothSimd level)
 {
-  const gsize rows = (gsize) (2 * kernel->radius + 2 * kernel->step + 2);
-  /* Rows of even and odd columns of 16 bits, all in 26 KiB of cache. */
-  const gint widest = MAX (3, (gint) (26624 / (rows * 4 * 32)) - 1);
+  const gsize rows = (gsize) (2 * kernel->radius + 2 * kernel->step + 4);
+  /* All rows of a tile stay in the first-level cache. */
+  const gint widest = MAX (3, (gint) (30720 / (rows * 4 * 32)) - 1);
   const gint n_tiles = (mask->words + widest - 1) / widest;
-  const gint lanes =
-      CLOTH_SADDLE_TILE_LANES ((mask->words + n_tiles - 1) / n_tiles);
+  const gint wide = (mask->words + n_tiles - 1) / n_tiles;
   guint8 *scratch = mask_scratch (mask,
-      rows * 4 * (gsize) (lanes + 32) + 2 * (gsize) lanes + 512);
+      rows * 2 * CLOTH_SADDLE_TILE_ROW (wide) + 256 * (gsize) wide + 1024);
 
   for (gint i = 0; i < n_tiles; i++) {
     gint from = (gint) ((gint64) mask->words * i / n_tiles);

@@ -14,6 +14,8 @@
 
 /* Sixteen lanes in every instruction set, so that sums come out the same in all. */
 typedef gfloat v16f __attribute__((vector_size (64)));
+typedef gfloat v8f __attribute__((vector_size (32)));
+typedef gfloat v4f __attribute__((vector_size (16)));
 typedef guint8 v16u8 __attribute__((vector_size (16)));
 
 struct _ClothSaddleRefiner {
@@ -118,10 +120,14 @@ derivatives (const guint8 * data, gsize stride, const v16f * gx,
   p[3] = a1 * gx[1];
   p[4] = a2 * gx[0];
   for (gint k = 0; k < 5; k++) {
-    gfloat s[8];
-    for (gint i = 0; i < 8; i++)
-      s[i] = p[k][i] + p[k][i + 8];
-    out[k] = ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
+    v8f half[2], s;
+    v4f quarter[2], t;
+
+    memcpy (half, &p[k], sizeof (half));
+    s = half[0] + half[1];
+    memcpy (quarter, &s, sizeof (quarter));
+    t = quarter[0] + quarter[1];
+    out[k] = (t[0] + t[2]) + (t[1] + t[3]);
   }
 }
 

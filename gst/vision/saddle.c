@@ -145,32 +145,37 @@ measure_noise (const ClothSaddleMask * mask, const ClothImage * image)
   return least;
 }
 
-static inline gint
-mask_det (const ClothSaddleMask * mask, gint x, gint y, gint threshold)
+/* The bits of columns [x - reach, x + reach], the first in bit 0. */
+static inline guint64
+mask_window (const ClothSaddleMask * mask, gint x, gint y, gint reach)
 {
-  gsize row = (gsize) y * (gsize) mask->words;
-  gint d;
+  const guint64 *bits = mask->bits + (gsize) y * (gsize) mask->words;
+  gint from = x - reach, w = from >> 6, shift = from & 63;
+  guint64 window = w >= 0 ? bits[w] >> shift : 0;
 
-  if (x < 0 || y < 0 || x >= mask->width || y >= mask->height
-      || !(mask->bits[row + (gsize) (x >> 6)] >> (x & 63) & 1))
-    return 0;
-  d = mask->det[row * 64 + (gsize) x];
-  return d < -threshold ? d : 0;
+  if (shift > 0 && w + 1 < mask->words)
+    window |= bits[w + 1] << (64 - shift);
+  return window & ((G_GUINT64_CONSTANT (1) << (2 * reach + 1)) - 1);
 }
 
 /* A peak is not surpassed within @reach pixels; of equals the first one counts. */
 static gboolean
-is_peak (const ClothSaddleMask * mask, gint x, gint y, gint reach, gint d,
-    gint threshold)
+is_peak (const ClothSaddleMask * mask, gint x, gint y, gint reach, gint d)
 {
-  for (gint ring = 1; ring <= reach; ring++) {
-    for (gint j = -ring; j <= ring; j++) {
-      gint step = ABS (j) == ring ? 1 : 2 * ring;
-      for (gint i = -ring; i <= ring; i += step) {
-        gint other = mask_det (mask, x + i, y + j, threshold);
-        if (other < d || (other == d && (j < 0 || (j == 0 && i < 0))))
-          return FALSE;
-      }
+  /* The nearest rows first: they refuse most. */
+  for (gint k = 0; k <= 2 * reach; k++) {
+    gint row = y + (k % 2 ? -(k + 1) / 2 : k / 2);
+    const gint16 *det = mask->det + (gsize) row * (gsize) mask->words * 64;
+    guint64 window;
+
+    if (row < 0 || row >= mask->height)
+      continue;
+    for (window = mask_window (mask, x, row, reach); window;
+        window &= window - 1) {
+      gint i = __builtin_ctzll (window) - reach;
+      gint other = det[x + i];
+      if (other < d || (other == d && (row < y || (row == y && i < 0))))
+        return FALSE;
     }
   }
   return TRUE;
@@ -207,8 +212,10 @@ grow (gpointer array, guint * allocated, guint need, gsize size)
   return g_realloc_n (array, *allocated, size);
 }
 
-static void
-scan_mask (ClothSaddleDetector * self, gint threshold, gint reach)
+/* Lists the candidates and the peaks among them; FALSE when there are more than
+ * @limit. */
+static gboolean
+scan_mask (ClothSaddleDetector * self, gint threshold, gint reach, guint limit)
 {
   const ClothSaddleMask *mask = &self->mask;
 
@@ -227,7 +234,7 @@ scan_mask (ClothSaddleDetector * self, gint threshold, gint reach)
       self->peaks = grow (self->peaks, &self->peaks_allocated,
           self->n_peaks + 64, sizeof (guint32));
       for (; word; word &= word - 1) {
-        gint x = 64 * w + __builtin_ctzll (word);
+        gint i = __builtin_ctzll (word), x = 64 * w + i;
         gint d = det[x];
         if (d >= -threshold)
           continue;
@@ -236,12 +243,18 @@ scan_mask (ClothSaddleDetector * self, gint threshold, gint reach)
           .y = (guint16) (mask->y + y),
           .response = (gfloat) -d * self->kernel.scale,
         };
-        if (is_peak (mask, x, y, reach, d, threshold))
+        /* Neighbours in the row refuse most without a closer look. */
+        if (!(i > 0 && bits[w] >> (i - 1) & 1 && det[x - 1] <= d)
+            && !(i < 63 && bits[w] >> (i + 1) & 1 && det[x + 1] < d)
+            && is_peak (mask, x, y, reach, d))
           self->peaks[self->n_peaks++] = self->n_candidates;
         self->n_candidates++;
       }
+      if (self->n_candidates > limit)
+        return FALSE;
     }
   }
+  return TRUE;
 }
 
 /* Two peaks of one flat blob may lead to the same saddle. Saddles come row after row,
@@ -331,6 +344,7 @@ cloth_saddle_detector_run (ClothSaddleDetector * detector,
   gfloat epsilon = in_range (params->epsilon, 0.0f, 1e9f);
   gfloat relative = in_range (params->relative, 0.0f, 1.0f);
   guint limit = MIN (params->max_candidates, CLOTH_SADDLE_MAX);
+  gint reach = MAX (2, (gint) ceilf (sigma));
   gint threshold;
 
   detector->n_candidates = detector->n_saddles = 0;
@@ -356,18 +370,13 @@ cloth_saddle_detector_run (ClothSaddleDetector * detector,
   threshold = (gint) MIN (epsilon / detector->kernel.scale, 32767.0f);
 
   cloth_saddle_mask_run (mask, &detector->kernel, image, threshold, level);
-  {
-    gsize n = (gsize) mask->words * (gsize) mask->height, count = 0;
-    for (gsize w = 0; w < n; w++)
-      count += (gsize) __builtin_popcountll (mask->bits[w]);
-    if (count > limit) {
-      threshold = raise_threshold (mask, threshold, limit);
-      epsilon = (gfloat) threshold * detector->kernel.scale;
-      detector->cut = TRUE;
-    }
+  if (!scan_mask (detector, threshold, reach, limit)) {
+    threshold = raise_threshold (mask, threshold, limit);
+    epsilon = (gfloat) threshold * detector->kernel.scale;
+    detector->cut = TRUE;
+    scan_mask (detector, threshold, reach, limit);
   }
   detector->epsilon = epsilon;
-  scan_mask (detector, threshold, MAX (2, (gint) ceilf (sigma)));
 
   detector->noise = measure_noise (mask, image);
   if (params->refine != CLOTH_SADDLE_REFINE_NONE) {
