@@ -6,6 +6,11 @@
 #include <math.h>
 #include <string.h>
 
+#if defined (__x86_64__) && defined (__GNUC__)
+#include <immintrin.h>
+#define WITH_X86 1
+#endif
+
 #define PHASES 32
 #define TAPS 16
 #define RADIUS 7
@@ -16,10 +21,9 @@
 typedef gfloat v16f __attribute__((vector_size (64)));
 typedef gfloat v8f __attribute__((vector_size (32)));
 typedef gfloat v4f __attribute__((vector_size (16)));
-typedef guint8 v16u8 __attribute__((vector_size (16)));
 
 struct _ClothSaddleRefiner {
-  gfloat sigma, radius;
+  gfloat sigma;
   /* Standard deviation of F_x for unit white noise. */
   gfloat gradient_noise;
   /* Gaussian and its first two derivatives, centred at RADIUS + phase / PHASES - 1/2. */
@@ -47,18 +51,15 @@ cloth_saddle_refiner_free (ClothSaddleRefiner * refiner)
  * cloth_saddle_refiner_set:
  * @refiner: a refiner
  * @sigma: width of the Gaussian, px; no more than 2.3 is used
- * @radius: window radius of the model fit, px; 0: no model fit
  *
  * Since: 0.1
  */
 void
-cloth_saddle_refiner_set (ClothSaddleRefiner * refiner, gfloat sigma,
-    gfloat radius)
+cloth_saddle_refiner_set (ClothSaddleRefiner * refiner, gfloat sigma)
 {
   gdouble s = CLAMP ((gdouble) sigma, 0.8, WIDEST), s2 = s * s;
   gdouble sum_g = 0, sum_d = 0;
 
-  refiner->radius = radius;
   if (refiner->sigma == sigma)
     return;
   refiner->sigma = sigma;
@@ -95,24 +96,20 @@ cloth_saddle_refiner_set (ClothSaddleRefiner * refiner, gfloat sigma,
   refiner->gradient_noise = (gfloat) sqrt (sum_g * sum_d);
 }
 
-/* Smoothed derivatives at a place of sixteenths: out = Fx, Fy, Fxx, Fxy, Fyy. */
-static inline __attribute__((always_inline))
-void
-derivatives (const guint8 * data, gsize stride, const v16f * gx,
-    const v16f * gy, gfloat * out)
+#define INLINE static inline __attribute__((always_inline))
+
+/* Smoothed derivatives: out = Fx, Fy, Fxx, Fxy, Fyy. */
+INLINE void
+derivatives (const v16f * rows, const v16f * gx, const v16f * gy, gfloat * out)
 {
   v16f a0 = { 0 }, a1 = { 0 }, a2 = { 0 };
   v16f p[5];
 
+#pragma GCC unroll 15
   for (gint j = 0; j < TAPS - 1; j++) {
-    v16u8 bytes;
-    v16f row;
-
-    memcpy (&bytes, data + (gsize) j * stride, sizeof (bytes));
-    row = __builtin_convertvector (bytes, v16f);
-    a0 += row * gy[0][j];
-    a1 += row * gy[1][j];
-    a2 += row * gy[2][j];
+    a0 += rows[j] * gy[0][j];
+    a1 += rows[j] * gy[1][j];
+    a2 += rows[j] * gy[2][j];
   }
   p[0] = a0 * gx[1];
   p[1] = a1 * gx[0];
@@ -135,16 +132,33 @@ static void
 derivatives_scalar (const guint8 * data, gsize stride, const v16f * gx,
     const v16f * gy, gfloat * out)
 {
-  derivatives (data, stride, gx, gy, out);
+  v16f rows[TAPS - 1];
+
+  for (gint j = 0; j < TAPS - 1; j++) {
+    for (gint i = 0; i < TAPS; i++)
+      rows[j][i] = data[(gsize) j * stride + (gsize) i];
+  }
+  derivatives (rows, gx, gy, out);
 }
 
-#if defined (__x86_64__) && defined (__GNUC__)
+#ifdef WITH_X86
 __attribute__((target ("avx2")))
 static void
 derivatives_avx2 (const guint8 * data, gsize stride, const v16f * gx,
     const v16f * gy, gfloat * out)
 {
-  derivatives (data, stride, gx, gy, out);
+  v16f rows[TAPS - 1];
+
+  for (gint j = 0; j < TAPS - 1; j++) {
+    __m128i bytes = _mm_loadu_si128 ((const __m128i *) (data +
+            (gsize) j * stride));
+    __m256 half[2] = {
+      _mm256_cvtepi32_ps (_mm256_cvtepu8_epi32 (bytes)),
+      _mm256_cvtepi32_ps (_mm256_cvtepu8_epi32 (_mm_srli_si128 (bytes, 8)))
+    };
+    memcpy (&rows[j], half, sizeof (half));
+  }
+  derivatives (rows, gx, gy, out);
 }
 
 __attribute__((target ("avx512f,avx512bw,avx512dq,avx512vl")))
@@ -152,7 +166,12 @@ static void
 derivatives_avx512 (const guint8 * data, gsize stride, const v16f * gx,
     const v16f * gy, gfloat * out)
 {
-  derivatives (data, stride, gx, gy, out);
+  v16f rows[TAPS - 1];
+
+  for (gint j = 0; j < TAPS - 1; j++)
+    rows[j] = (v16f) _mm512_cvtepi32_ps (_mm512_cvtepu8_epi32 (_mm_loadu_si128 (
+                (const __m128i *) (data + (gsize) j * stride))));
+  derivatives (rows, gx, gy, out);
 }
 #endif
 
@@ -186,6 +205,7 @@ window (const ClothImage * image, gint x, gint y, guint8 * copy,
  * @peak: where to start
  * @noise: standard deviation of the picture's noise, grey levels
  * @saddle: (out): the saddle
+ * @theta: (out): directions of both edges, radians from +x towards +y
  * @level: the instruction set
  *
  * Newton's method on the intensity smoothed by a Gaussian that is centred at the place
@@ -199,7 +219,7 @@ window (const ClothImage * image, gint x, gint y, guint8 * copy,
 gboolean
 cloth_saddle_refiner_run (const ClothSaddleRefiner * refiner,
     const ClothImage * image, const ClothSaddleCandidate * peak, gfloat noise,
-    ClothSaddle * saddle, ClothSimd level)
+    ClothSaddle * saddle, gfloat theta[2], ClothSimd level)
 {
   gfloat x = peak->x, y = peak->y, f[5] = { 0 }, det = 0;
   gfloat reach = 1.0f + MAX (1.5f, refiner->sigma);
@@ -213,7 +233,7 @@ cloth_saddle_refiner_run (const ClothSaddleRefiner * refiner,
     gsize stride;
     const guint8 *data = window (image, ix, iy, copy, &stride);
 
-#if defined (__x86_64__) && defined (__GNUC__)
+#ifdef WITH_X86
     if (level == CLOTH_SIMD_AVX512)
       derivatives_avx512 (data, stride, refiner->taps[px], refiner->taps[py],
           f);
@@ -262,6 +282,14 @@ cloth_saddle_refiner_run (const ClothSaddleRefiner * refiner,
     saddle->cov[0] = v * (f[4] * f[4] + f[3] * f[3]);
     saddle->cov[1] = -v * f[3] * (f[2] + f[4]);
     saddle->cov[2] = v * (f[2] * f[2] + f[3] * f[3]);
+  }
+  /* The edges run where the quadratic form of the Hessian vanishes:
+   * Fyy t² + 2 Fxy t + Fxx = 0 for t = dy / dx, written so that nothing cancels. */
+  {
+    gfloat root = sqrtf (-det);
+    gfloat sum = f[3] > 0 ? -f[3] - root : -f[3] + root;
+    theta[0] = atan2f (sum, f[4]);
+    theta[1] = atan2f (f[2], sum);
   }
   return TRUE;
 }

@@ -11,10 +11,9 @@ typedef struct _ClothSaddleRefiner ClothSaddleRefiner;
 
 ClothSaddleRefiner *cloth_saddle_refiner_new (void);
 void cloth_saddle_refiner_free (ClothSaddleRefiner * refiner);
-void cloth_saddle_refiner_set (ClothSaddleRefiner * refiner, gfloat sigma,
-    gfloat radius);
+void cloth_saddle_refiner_set (ClothSaddleRefiner * refiner, gfloat sigma);
 gboolean cloth_saddle_refiner_run (const ClothSaddleRefiner * refiner,
     const ClothImage * image, const ClothSaddleCandidate * peak, gfloat noise,
-    ClothSaddle * saddle, ClothSimd level);
+    ClothSaddle * saddle, gfloat theta[2], ClothSimd level);
 
 G_END_DECLS

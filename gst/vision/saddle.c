@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/vision/corner.h"
 #include "gst/vision/saddle-mask.h"
 #include "gst/vision/saddle-refine.h"
 
@@ -19,6 +20,8 @@ struct _ClothSaddleDetector {
   guint n_candidates, candidates_allocated;
   ClothSaddle *saddles;
   guint n_saddles, saddles_allocated;
+  gfloat (*theta)[2];
+  guint theta_allocated;
   guint32 *peaks;
   guint n_peaks, peaks_allocated;
 
@@ -42,7 +45,7 @@ cloth_saddle_default_params (void)
     .epsilon = 3.0f,
     .relative = 0.01f,
     .refine = CLOTH_SADDLE_REFINE_STREAM,
-    .radius = 5.0f,
+    .radius = 8.0f,
     .max_candidates = CLOTH_SADDLE_MAX,
     .max_saddles = CLOTH_SADDLE_MAX,
   };
@@ -77,6 +80,7 @@ cloth_saddle_detector_free (ClothSaddleDetector * detector)
   cloth_saddle_refiner_free (detector->refiner);
   g_free (detector->candidates);
   g_free (detector->saddles);
+  g_free (detector->theta);
   g_free (detector->peaks);
   g_free (detector);
 }
@@ -284,9 +288,10 @@ refine_peaks (ClothSaddleDetector * self, const ClothSaddleParams * params,
   for (guint i = 0; i < self->n_peaks; i++) {
     const ClothSaddleCandidate *peak = &self->candidates[self->peaks[i]];
     ClothSaddle saddle;
+    gfloat theta[2];
 
     if (!cloth_saddle_refiner_run (self->refiner, image, peak, self->noise,
-            &saddle, level))
+            &saddle, theta, level))
       continue;
     if (saddle.response <= self->epsilon || is_known (self, &saddle, 1.0f))
       continue;
@@ -296,7 +301,58 @@ refine_peaks (ClothSaddleDetector * self, const ClothSaddleParams * params,
     }
     self->saddles = grow (self->saddles, &self->saddles_allocated,
         self->n_saddles + 1, sizeof (ClothSaddle));
+    self->theta = grow (self->theta, &self->theta_allocated,
+        self->n_saddles + 1, sizeof (self->theta[0]));
+    memcpy (self->theta[self->n_saddles], theta, sizeof (theta));
     self->saddles[self->n_saddles++] = saddle;
+  }
+}
+
+/* Distance to the nearest saddle that is not much weaker, at most @most. The list goes
+ * row after row but for a few pixels. */
+static gfloat
+spacing (const ClothSaddleDetector * self, guint index, gfloat most)
+{
+  const ClothSaddle *saddle = &self->saddles[index];
+  gfloat best = most * most;
+
+  for (gint direction = -1; direction <= 1; direction += 2) {
+    for (gint64 i = (gint64) index + direction; i >= 0 && i < self->n_saddles;
+        i += direction) {
+      const ClothSaddle *other = &self->saddles[i];
+      gfloat dx = other->x - saddle->x, dy = other->y - saddle->y;
+
+      if ((gfloat) direction * dy > most + 8.0f)
+        break;
+      if (other->response > 0.2f * saddle->response)
+        best = MIN (best, dx * dx + dy * dy);
+    }
+  }
+  return sqrtf (best);
+}
+
+/* Where the model doesn't fit, the saddle of the smoothed intensity stays. */
+static void
+fit_models (ClothSaddleDetector * self, gfloat radius,
+    const ClothImage * image, ClothSimd level)
+{
+  ClothCornerParams params = cloth_corner_default_params ();
+
+  params.known_angles = TRUE;
+  params.max_shift = 1.0f;
+  for (guint i = 0; i < self->n_saddles; i++) {
+    ClothSaddle *saddle = &self->saddles[i];
+    ClothCornerFit fit;
+
+    /* Half way to the next corner its edges come in. */
+    params.radius = MIN (radius, 0.5f * spacing (self, i, 2 * radius));
+    memcpy (params.theta, self->theta[i], sizeof (params.theta));
+    if (!cloth_corner_refine (image, saddle->x, saddle->y, &params, level,
+            &fit))
+      continue;
+    saddle->x = fit.x;
+    saddle->y = fit.y;
+    memcpy (saddle->cov, fit.cov, sizeof (saddle->cov));
   }
 }
 
@@ -382,10 +438,11 @@ cloth_saddle_detector_run (ClothSaddleDetector * detector,
   if (params->refine != CLOTH_SADDLE_REFINE_NONE) {
     if (!detector->refiner)
       detector->refiner = cloth_saddle_refiner_new ();
-    cloth_saddle_refiner_set (detector->refiner, sigma,
-        params->refine == CLOTH_SADDLE_REFINE_MODEL ?
-        in_range (params->radius, 2.0f, 12.0f) : 0.0f);
+    cloth_saddle_refiner_set (detector->refiner, sigma);
     refine_peaks (detector, params, image, level);
+    if (params->refine == CLOTH_SADDLE_REFINE_MODEL)
+      fit_models (detector, in_range (params->radius, 2.0f, 12.0f), image,
+          level);
   }
 }
 

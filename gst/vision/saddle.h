@@ -66,7 +66,8 @@ typedef enum {
  * @roi_width: columns searched, 0: all
  * @roi_height: rows searched, 0: all
  * @refine: how the sub-pixel position is found
- * @radius: window radius of the model fit, px, 2 to 12
+ * @radius: window radius of the model fit, px, 2 to 12; no more than half the distance to
+ *   the next saddle is used. On bent cloth 4 to 5 px is best, on a flat board 8 to 10
  * @max_candidates: when more pixels than this pass, the bound is raised, at most
  *   %CLOTH_SADDLE_MAX
  * @max_saddles: the most refined saddles, at most %CLOTH_SADDLE_MAX
