@@ -12,6 +12,7 @@
 #include "elements/gstclothoverlay.h"
 #include "elements/gstmeshsink.h"
 #include "elements/gstmeshsrc.h"
+#include "elements/gstquadtrack.h"
 
 static gboolean
 plugin_init (GstPlugin * plugin)
@@ -24,6 +25,7 @@ plugin_init (GstPlugin * plugin)
 
   registered &= GST_ELEMENT_REGISTER (meshsink, plugin);
   registered &= GST_ELEMENT_REGISTER (meshsrc, plugin);
+  registered &= GST_ELEMENT_REGISTER (quadtrack, plugin);
   return registered;
 }
 
