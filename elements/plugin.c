@@ -13,6 +13,7 @@
 #include "elements/gstmeshsink.h"
 #include "elements/gstmeshsrc.h"
 #include "elements/gstquadtrack.h"
+#include "elements/gsttriangulate.h"
 
 static gboolean
 plugin_init (GstPlugin * plugin)
@@ -22,10 +23,11 @@ plugin_init (GstPlugin * plugin)
   registered &= GST_ELEMENT_REGISTER (clothmetadepay, plugin);
   registered &= GST_ELEMENT_REGISTER (clothmetapay, plugin);
   registered &= GST_ELEMENT_REGISTER (clothoverlay, plugin);
-
   registered &= GST_ELEMENT_REGISTER (meshsink, plugin);
   registered &= GST_ELEMENT_REGISTER (meshsrc, plugin);
   registered &= GST_ELEMENT_REGISTER (quadtrack, plugin);
+  registered &= GST_ELEMENT_REGISTER (triangulate, plugin);
+
   return registered;
 }
 

@@ -7,8 +7,13 @@
 #include "gst/math/linalg.h"
 #include "gst/rig/triangulateprivate.h"
 
-G_DEFINE_QUARK (cloth - triangulate - error - quark, cloth_triangulate_error)
-     /* The place that all optical axes pass nearest to becomes the origin, the cameras' mean
+GQuark
+cloth_triangulate_error_quark (void)
+{
+  return g_quark_from_static_string ("cloth-triangulate-error-quark");
+}
+
+/* The place that all optical axes pass nearest to becomes the origin, the cameras' mean
  * distance from it the unit: the linear estimate is then well conditioned wherever the
  * world's own origin is. */
 static void

@@ -1,0 +1,778 @@
+/* triangulate: N cameras' observations become a mesh in space.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+
+/**
+ * SECTION:element-triangulate
+ * @title: triangulate
+ *
+ * Joins the pictures of a rig's cameras by time and triangulates the corners of the
+ * squares that they carry as #GstClothQuads. Each frame of the mesh has a vertex for
+ * every corner of the board: its place, its 3×3 covariance, and whether three or more
+ * views agree on it, only two saw it, or it is unseen. A corner seen by one camera, or
+ * contradicted, is unseen; nothing is carried over from earlier frames.
+ *
+ * A sink pad is given its camera of `rig` by its own property `camera`, else by the name
+ * that the metadata carries, else by the order of the pads.
+ *
+ * ## A mesh from two films
+ * |[
+ * gst-launch-1.0 triangulate name=t rig=rig.json pattern=pattern.json \
+ *     sink_0::camera=cam0 sink_1::camera=cam1 ! meshsink location=cloth.obj \
+ *     filesrc location=cam0.mp4 ! decodebin ! saddledetect ! quadtrack ! t.sink_0 \
+ *     filesrc location=cam1.mp4 ! decodebin ! saddledetect ! quadtrack ! t.sink_1
+ * ]|
+ *
+ * Since: 0.1
+ */
+#ifdef HAVE_CONFIG_H
+#include "config.h"
+#endif
+
+#include "elements/gsttriangulate.h"
+#include "elements/gsttriangulatepad.h"
+#include "elements/gsttriangulateviews.h"
+
+#include <gst/cloth/cloth.h>
+#include <math.h>
+
+#include "gst/pattern/pattern.h"
+#include "gst/rig/merge.h"
+#include "gst/rig/rigfile.h"
+#include "gst/rig/triangulate.h"
+
+GST_DEBUG_CATEGORY_STATIC (triangulate_debug);
+#define GST_CAT_DEFAULT triangulate_debug
+
+#define DEFAULT_THRESHOLD 4.0
+#define DEFAULT_MAX_ERROR 0.0
+#define DEFAULT_ERROR_FLOOR 0.0
+#define DEFAULT_HUBER 2.0
+#define DEFAULT_THREADS 0
+#define MAX_THREADS 64
+/* Sets after which the lack of any metadata is reported. */
+#define SETS_WITHOUT_QUADS 25
+
+#define SINK_CAPS "video/x-raw(ANY), width=(int)[ 1, 16384 ], " \
+    "height=(int)[ 1, 16384 ]; " GST_CLOTH_OBSERVATIONS_CAPS
+
+struct _GstTriangulate
+{
+  GstClothSync parent;
+
+  /* object lock */
+  gchar *rig_location, *pattern_location;
+  gboolean rig_changed, pattern_changed, parameters_changed;
+  ClothTriangulateParameters parameters;
+  guint threads;
+
+  /* streaming thread */
+  ClothRig *rig;
+  ClothPattern *pattern;
+  GstClothTopology *topology;
+  ClothTriangulator *triangulator;
+  ClothPool *pool;
+  guint n_vertices;
+  ClothMerge *merge[CLOTH_RIG_MAX_CAMERAS];
+  gdouble threshold;
+  GstTriangulateView view[GST_CLOTH_SYNC_MAX_PADS];
+  gfloat *positions, *covariances;
+  guint64 sequence;
+  guint n_without;
+};
+
+enum
+{
+  PROP_0,
+  PROP_RIG,
+  PROP_PATTERN,
+  PROP_THRESHOLD,
+  PROP_MAX_ERROR,
+  PROP_ERROR_FLOOR,
+  PROP_HUBER,
+  PROP_THREADS
+};
+
+G_DEFINE_TYPE_WITH_CODE (GstTriangulate, gst_triangulate, GST_TYPE_CLOTH_SYNC,
+    G_IMPLEMENT_INTERFACE (GST_TYPE_CHILD_PROXY,
+        gst_triangulate_pad_child_proxy_init)
+    GST_DEBUG_CATEGORY_INIT (triangulate_debug, "triangulate", 0,
+        "points in space from several cameras"));
+GST_ELEMENT_REGISTER_DEFINE (triangulate, "triangulate", GST_RANK_NONE,
+    GST_TYPE_TRIANGULATE);
+
+static GstStaticPadTemplate sink_template =
+GST_STATIC_PAD_TEMPLATE ("sink_%u", GST_PAD_SINK, GST_PAD_REQUEST,
+    GST_STATIC_CAPS (SINK_CAPS));
+static GstStaticPadTemplate src_template =
+GST_STATIC_PAD_TEMPLATE ("src", GST_PAD_SRC, GST_PAD_ALWAYS,
+    GST_STATIC_CAPS (GST_CLOTH_MESH_CAPS));
+
+static void
+gst_triangulate_clear_merges (GstTriangulate * self)
+{
+  guint i;
+
+  for (i = 0; i < CLOTH_RIG_MAX_CAMERAS; i++) {
+    g_clear_pointer (&self->merge[i], cloth_merge_free);
+  }
+}
+
+static gboolean
+gst_triangulate_load_rig (GstTriangulate * self)
+{
+  g_autofree gchar *location = NULL;
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRig) rig = NULL;
+  ClothTriangulator *triangulator;
+
+  GST_OBJECT_LOCK (self);
+  location = g_strdup (self->rig_location);
+  self->rig_changed = FALSE;
+  self->parameters_changed = TRUE;
+  GST_OBJECT_UNLOCK (self);
+
+  if (!location) {
+    GST_ELEMENT_ERROR (self, RESOURCE, NOT_FOUND,
+        ("No cameras are known: the property rig is not set."),
+        ("Set rig to the rig.json that gst-cloth-calibrate-1.0 has written."));
+    return FALSE;
+  }
+  rig = cloth_rig_load (location, &error);
+  if (!rig) {
+    GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ,
+        ("The cameras could not be read: %s", error->message),
+        ("Set rig to a rig.json; it is now \"%s\".", location));
+    return FALSE;
+  }
+  triangulator = cloth_triangulator_new (rig->n_cameras, rig->cameras, &error);
+  if (!triangulator) {
+    GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
+        ("%s (%s).", error->message, location),
+        ("Calibrate two or more cameras together into one rig.json."));
+    return FALSE;
+  }
+  cloth_triangulator_free (self->triangulator);
+  self->triangulator = triangulator;
+  cloth_rig_free (self->rig);
+  self->rig = g_steal_pointer (&rig);
+  return TRUE;
+}
+
+static gboolean
+gst_triangulate_load_pattern (GstTriangulate * self)
+{
+  g_autofree gchar *location = NULL;
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothPattern) pattern = NULL;
+  g_autofree gfloat *uv = NULL;
+  GstClothTopology *topology;
+  guint columns, rows, i;
+
+  GST_OBJECT_LOCK (self);
+  location = g_strdup (self->pattern_location);
+  self->pattern_changed = FALSE;
+  GST_OBJECT_UNLOCK (self);
+
+  if (!location) {
+    GST_ELEMENT_ERROR (self, RESOURCE, NOT_FOUND,
+        ("The board is not known: the property pattern is not set."),
+        ("Set pattern to the pattern.json that gst-cloth-pattern-1.0 has "
+            "written beside the print."));
+    return FALSE;
+  }
+  pattern = cloth_pattern_load (location, &error);
+  if (!pattern) {
+    GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ,
+        ("The board could not be read: %s", error->message),
+        ("Set pattern to a pattern.json; it is now \"%s\".", location));
+    return FALSE;
+  }
+  columns = (guint) pattern->columns + 1;
+  rows = (guint) pattern->rows + 1;
+  uv = g_new (gfloat, 2 * (gsize) columns * rows);
+  for (i = 0; i < columns * rows; i++) {
+    uv[2 * i] = (gfloat) (pattern->origin_uv_m[0] +
+        (i % columns) * pattern->square_m);
+    uv[2 * i + 1] = (gfloat) (pattern->origin_uv_m[1] +
+        (i / columns) * pattern->square_m);
+  }
+  {
+    g_autoptr (GstClothTopology) grid = NULL;
+    const guint32 *faces;
+    guint n_indices;
+
+    /* the faces of a regular grid, at the board's place on the cloth */
+    grid = gst_cloth_topology_new_grid (columns, rows, 1.0f, 1.0f, &error);
+    if (!grid) {
+      goto refused;
+    }
+    faces = gst_cloth_topology_get_faces (grid, &n_indices);
+    topology = gst_cloth_topology_new (columns * rows, columns, rows, uv, faces,
+        n_indices / 4, &error);
+  }
+  if (!topology) {
+    goto refused;
+  }
+  g_clear_pointer (&self->topology, gst_cloth_topology_unref);
+  self->topology = topology;
+  cloth_pattern_free (self->pattern);
+  self->pattern = g_steal_pointer (&pattern);
+  self->n_vertices = columns * rows;
+  gst_triangulate_clear_merges (self);
+  self->positions = g_renew (gfloat, self->positions,
+      3 * (gsize) self->n_vertices);
+  self->covariances = g_renew (gfloat, self->covariances,
+      6 * (gsize) self->n_vertices);
+  return TRUE;
+
+refused:
+  GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
+      ("The board of %s makes no mesh: %s", location, error->message),
+      ("Use a board of fewer squares."));
+  return FALSE;
+}
+
+static gboolean
+gst_triangulate_apply_parameters (GstTriangulate * self)
+{
+  ClothTriangulateParameters parameters;
+  gboolean rig_changed, changed;
+  guint threads;
+
+  GST_OBJECT_LOCK (self);
+  rig_changed = self->rig_changed;
+  GST_OBJECT_UNLOCK (self);
+  if ((rig_changed || !self->rig) && !gst_triangulate_load_rig (self)) {
+    return FALSE;
+  }
+  GST_OBJECT_LOCK (self);
+  parameters = self->parameters;
+  threads = self->threads;
+  changed = self->parameters_changed;
+  self->parameters_changed = FALSE;
+  GST_OBJECT_UNLOCK (self);
+  if (!changed) {
+    return TRUE;
+  }
+  self->threshold = parameters.threshold;
+  cloth_triangulator_set_parameters (self->triangulator, &parameters);
+  if (threads == 0) {
+    threads = MIN (g_get_num_processors (), MAX_THREADS);
+  }
+  if (threads != cloth_pool_get_n_threads (self->pool) || !self->pool) {
+    cloth_pool_free (self->pool);
+    self->pool = cloth_pool_new (threads);
+  }
+  cloth_triangulator_set_pool (self->triangulator, self->pool);
+  return TRUE;
+}
+
+static gboolean
+gst_triangulate_start (GstAggregator * agg)
+{
+  GstTriangulate *self = GST_TRIANGULATE (agg);
+
+  return GST_AGGREGATOR_CLASS (gst_triangulate_parent_class)->start (agg)
+      && gst_triangulate_load_rig (self) && gst_triangulate_load_pattern (self);
+}
+
+static gboolean
+gst_triangulate_stop (GstAggregator * agg)
+{
+  GstTriangulate *self = GST_TRIANGULATE (agg);
+  guint i;
+
+  g_clear_pointer (&self->triangulator, cloth_triangulator_free);
+  g_clear_pointer (&self->rig, cloth_rig_free);
+  g_clear_pointer (&self->pattern, cloth_pattern_free);
+  g_clear_pointer (&self->topology, gst_cloth_topology_unref);
+  g_clear_pointer (&self->pool, cloth_pool_free);
+  gst_triangulate_clear_merges (self);
+  for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
+    gst_triangulate_view_forget (&self->view[i]);
+  }
+  return GST_AGGREGATOR_CLASS (gst_triangulate_parent_class)->stop (agg);
+}
+
+static gboolean
+gst_triangulate_set_pad_caps (GstClothSync * sync, guint index, GstCaps * caps)
+{
+  GstTriangulate *self = GST_TRIANGULATE (sync);
+  GstTriangulateView *view = &self->view[index];
+  const GstStructure *s;
+
+  gst_triangulate_view_forget (view);
+  if (!caps) {
+    return TRUE;
+  }
+  s = gst_caps_get_structure (caps, 0);
+  view->observations =
+      gst_structure_has_name (s, GST_CLOTH_OBSERVATIONS_MEDIA_TYPE);
+  if (!gst_structure_get_int (s, "width", &view->width)
+      || !gst_structure_get_int (s, "height", &view->height)) {
+    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+        ("Caps on sink_%u do not give the size of the picture.", index),
+        ("They are %" GST_PTR_FORMAT, caps));
+    return FALSE;
+  }
+  if (!gst_structure_get_fraction (s, "framerate", &view->fps_n, &view->fps_d)) {
+    view->fps_n = 0;
+    view->fps_d = 1;
+  }
+  view->has_caps = TRUE;
+  return TRUE;
+}
+
+static GstFlowReturn
+gst_triangulate_negotiate_src (GstClothSync * sync, GstCaps * downstream,
+    GstCaps ** caps)
+{
+  GstTriangulate *self = GST_TRIANGULATE (sync);
+  gboolean changed;
+  gint fps_n = -1, fps_d = 1;
+  guint i;
+
+  GST_OBJECT_LOCK (self);
+  changed = self->pattern_changed;
+  GST_OBJECT_UNLOCK (self);
+  if ((changed || !self->topology) && !gst_triangulate_load_pattern (self)) {
+    return GST_FLOW_ERROR;
+  }
+  for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
+    const GstTriangulateView *view = &self->view[i];
+
+    if (!view->has_caps) {
+      continue;
+    }
+    if (fps_n < 0) {
+      fps_n = view->fps_n;
+      fps_d = view->fps_d;
+    } else if (fps_n != view->fps_n || fps_d != view->fps_d) {
+      fps_n = 0;                /* they differ: sets come when they come */
+      fps_d = 1;
+      break;
+    }
+  }
+  if (fps_n < 0) {
+    return GST_AGGREGATOR_FLOW_NEED_DATA;
+  }
+  *caps = gst_cloth_topology_to_caps (self->topology, fps_n, fps_d);
+  return GST_FLOW_OK;
+}
+
+/* Takes what one picture carries into the memory of its camera. */
+static gboolean
+gst_triangulate_take_quads (GstTriangulate * self, guint index,
+    GstClothQuads * quads, ClothMerge * merge)
+{
+  guint columns = (guint) self->pattern->columns;
+  guint rows = (guint) self->pattern->rows;
+  const GstClothQuad *quad;
+  guint n, i, c;
+
+  if (gst_cloth_quads_get_columns (quads) != columns
+      || gst_cloth_quads_get_rows (quads) != rows) {
+    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+        ("The squares on sink_%u are of a board of %u×%u, but pattern has "
+            "%u×%u.", index, gst_cloth_quads_get_columns (quads),
+            gst_cloth_quads_get_rows (quads), columns, rows),
+        ("Give the detector and this element the same pattern."));
+    return FALSE;
+  }
+  quad = gst_cloth_quads_get_quads (quads, &n);
+  for (i = 0; i < n; i++, quad++) {
+    if (quad->state != GST_CLOTH_QUAD_TRACKED || quad->column < 0
+        || quad->row < 0 || (guint) quad->column >= columns
+        || (guint) quad->row >= rows) {
+      continue;
+    }
+    for (c = 0; c < 4; c++) {
+      guint column = (guint) quad->column + (c == 1 || c == 2);
+      guint row = (guint) quad->row + (c >= 2);
+      gdouble cov[3] = { quad->cov_xx[c], quad->cov_xy[c], quad->cov_yy[c] };
+
+      cloth_merge_add (merge, row * (columns + 1) + column, quad->x[c],
+          quad->y[c], cov);
+    }
+  }
+  return TRUE;
+}
+
+static GstFlowReturn
+gst_triangulate_make_mesh (GstTriangulate * self,
+    const ClothTriangulateView * views, GstBuffer ** out)
+{
+  static const GstClothVertexState states[] = {
+    [CLOTH_POINT_UNSEEN] = GST_CLOTH_VERTEX_UNSEEN,
+    [CLOTH_POINT_MEASURED] = GST_CLOTH_VERTEX_MEASURED,
+    [CLOTH_POINT_TWO_VIEWS] = GST_CLOTH_VERTEX_TWO_VIEWS
+  };
+  g_autoptr (GError) error = NULL;
+  g_autoptr (GstClothMesh) mesh = NULL;
+  const ClothTriangulation *r;
+  guint i, k, n_known = 0;
+
+  if (!cloth_triangulator_run (self->triangulator, self->rig->n_cameras, views,
+          self->n_vertices, &r, &error)) {
+    GST_ELEMENT_ERROR (self, STREAM, FAILED, ("%s", error->message), (NULL));
+    return GST_FLOW_ERROR;
+  }
+  for (i = 0; i < self->n_vertices; i++) {
+    for (k = 0; k < 3; k++) {
+      self->positions[3 * i + k] = (gfloat) r->position[k][i];
+    }
+    for (k = 0; k < 6; k++) {
+      self->covariances[6 * i + k] = (gfloat) r->covariance[k][i];
+    }
+    r->state[i] = (guint8) states[r->state[i]];
+    n_known += r->state[i] != GST_CLOTH_VERTEX_UNSEEN;
+  }
+  mesh = gst_cloth_mesh_new (self->sequence, self->n_vertices, self->positions,
+      r->state, self->covariances);
+  *out = gst_cloth_mesh_to_buffer (mesh);
+  GST_LOG_OBJECT (self, "frame %" G_GUINT64_FORMAT ": %u of %u vertices",
+      self->sequence, n_known, self->n_vertices);
+  return GST_FLOW_OK;
+}
+
+/* The quads of a view, from its own or from unpacked metadata. */
+static GstClothQuads *
+gst_triangulate_quads_of (GstTriangulate * self, guint index, GstBuffer * view,
+    GstBuffer ** unpacked)
+{
+  g_autoptr (GError) error = NULL;
+
+  if (!self->view[index].observations) {
+    return gst_buffer_get_cloth_quads (view);
+  }
+  *unpacked = gst_buffer_new ();
+  if (!gst_cloth_observations_unpack (view, *unpacked, &error)) {
+    GST_ELEMENT_WARNING (self, STREAM, DECODE,
+        ("A buffer on sink_%u holds no observations: %s", index,
+            error->message), ("It counts as a picture with nothing seen."));
+    return NULL;
+  }
+  return gst_buffer_get_cloth_quads (*unpacked);
+}
+
+static GstFlowReturn
+gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
+    guint64 mask, GstClockTime pts, GstClockTime duration, GstBuffer ** out)
+{
+  GstTriangulate *self = GST_TRIANGULATE (sync);
+  ClothTriangulateView seen[CLOTH_RIG_MAX_CAMERAS] = { {NULL} };
+  GstBuffer *unpacked[GST_CLOTH_SYNC_MAX_PADS] = { NULL };
+  GstClothQuads *quads[GST_CLOTH_SYNC_MAX_PADS] = { NULL };
+  GstReferenceTimestampMeta *stamp = NULL;
+  GstFlowReturn ret = GST_FLOW_ERROR;
+  guint i, n_quads = 0;
+
+  if (!gst_triangulate_apply_parameters (self)) {
+    return GST_FLOW_ERROR;
+  }
+  self->sequence++;
+  for (i = 0; i < n; i++) {
+    const gchar *name;
+
+    self->view[i].has_quads = FALSE;
+    if (!views[i]) {
+      continue;
+    }
+    quads[i] = gst_triangulate_quads_of (self, i, views[i], &unpacked[i]);
+    if (!stamp) {
+      stamp = gst_buffer_get_reference_timestamp_meta (views[i], NULL);
+    }
+    if (!quads[i]) {
+      continue;
+    }
+    self->view[i].has_quads = TRUE;
+    if (n_quads++ == 0) {
+      self->sequence = gst_cloth_quads_get_sequence (quads[i]);
+    }
+    name = gst_cloth_quads_get_camera (quads[i]);
+    if (name[0] != '\0' && g_strcmp0 (name, self->view[i].meta) != 0) {
+      g_free (self->view[i].meta);
+      self->view[i].meta = g_strdup (name);
+    }
+  }
+  if (!gst_triangulate_views_map (GST_CLOTH_SYNC (self), self->view, self->rig)) {
+    goto done;
+  }
+  for (i = 0; i < n; i++) {
+    gint camera = self->view[i].camera;
+
+    if (!quads[i] || camera < 0) {
+      continue;
+    }
+    if (!self->merge[camera]) {
+      self->merge[camera] = cloth_merge_new (self->n_vertices);
+    }
+    cloth_merge_clear (self->merge[camera]);
+    if (!gst_triangulate_take_quads (self, i, quads[i], self->merge[camera])) {
+      goto done;
+    }
+    cloth_merge_finish (self->merge[camera], self->threshold, &seen[camera]);
+  }
+  ret = gst_triangulate_make_mesh (self, seen, out);
+  if (ret == GST_FLOW_OK && stamp) {
+    gst_buffer_add_reference_timestamp_meta (*out, stamp->reference,
+        stamp->timestamp, stamp->duration);
+  }
+
+  if (n_quads > 0) {
+    self->n_without = SETS_WITHOUT_QUADS;       /* not again */
+  } else if (self->n_without < SETS_WITHOUT_QUADS
+      && ++self->n_without == SETS_WITHOUT_QUADS) {
+    GST_ELEMENT_WARNING (self, STREAM, FAILED,
+        ("No picture so far carries squares, so every vertex is unseen."),
+        ("Put saddledetect ! quadtrack before each sink pad, and nothing that "
+            "drops metadata between them and it."));
+  }
+
+done:
+  for (i = 0; i < n; i++) {
+    gst_clear_buffer (&unpacked[i]);
+  }
+  return ret;
+}
+
+static void
+gst_triangulate_reset (GstClothSync * sync)
+{
+  GstTriangulate *self = GST_TRIANGULATE (sync);
+
+  self->n_without = 0;
+  self->sequence = G_MAXUINT64; /* the first set's is 0 */
+}
+
+static void
+gst_triangulate_set_property (GObject * object, guint id, const GValue * value,
+    GParamSpec * pspec)
+{
+  GstTriangulate *self = GST_TRIANGULATE (object);
+
+  GST_OBJECT_LOCK (self);
+  switch (id) {
+    case PROP_RIG:
+      g_free (self->rig_location);
+      self->rig_location = g_value_dup_string (value);
+      self->rig_changed = TRUE;
+      break;
+    case PROP_PATTERN:
+      g_free (self->pattern_location);
+      self->pattern_location = g_value_dup_string (value);
+      self->pattern_changed = TRUE;
+      break;
+    case PROP_THRESHOLD:
+      self->parameters.threshold = g_value_get_double (value);
+      break;
+    case PROP_MAX_ERROR:
+      self->parameters.max_error = g_value_get_double (value);
+      break;
+    case PROP_ERROR_FLOOR:
+      self->parameters.error_floor = g_value_get_double (value);
+      break;
+    case PROP_HUBER:
+      self->parameters.huber = g_value_get_double (value);
+      break;
+    case PROP_THREADS:
+      self->threads = g_value_get_uint (value);
+      break;
+    default:
+      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
+      break;
+  }
+  self->parameters_changed = TRUE;
+  GST_OBJECT_UNLOCK (self);
+  if (id == PROP_PATTERN) {
+    /* new caps before the next set */
+    gst_pad_mark_reconfigure (GST_AGGREGATOR_SRC_PAD (self));
+  }
+}
+
+static void
+gst_triangulate_get_property (GObject * object, guint id, GValue * value,
+    GParamSpec * pspec)
+{
+  GstTriangulate *self = GST_TRIANGULATE (object);
+
+  GST_OBJECT_LOCK (self);
+  switch (id) {
+    case PROP_RIG:
+      g_value_set_string (value, self->rig_location);
+      break;
+    case PROP_PATTERN:
+      g_value_set_string (value, self->pattern_location);
+      break;
+    case PROP_THRESHOLD:
+      g_value_set_double (value, self->parameters.threshold);
+      break;
+    case PROP_MAX_ERROR:
+      g_value_set_double (value, self->parameters.max_error);
+      break;
+    case PROP_ERROR_FLOOR:
+      g_value_set_double (value, self->parameters.error_floor);
+      break;
+    case PROP_HUBER:
+      g_value_set_double (value, self->parameters.huber);
+      break;
+    case PROP_THREADS:
+      g_value_set_uint (value, self->threads);
+      break;
+    default:
+      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
+      break;
+  }
+  GST_OBJECT_UNLOCK (self);
+}
+
+static void
+gst_triangulate_finalize (GObject * object)
+{
+  GstTriangulate *self = GST_TRIANGULATE (object);
+
+  g_free (self->rig_location);
+  g_free (self->pattern_location);
+  g_free (self->positions);
+  g_free (self->covariances);
+  G_OBJECT_CLASS (gst_triangulate_parent_class)->finalize (object);
+}
+
+static GstPad *
+gst_triangulate_request_new_pad (GstElement * element, GstPadTemplate * templ,
+    const gchar * name, const GstCaps * caps)
+{
+  GstPad *pad =
+      GST_ELEMENT_CLASS (gst_triangulate_parent_class)->request_new_pad
+      (element, templ, name, caps);
+
+  if (pad) {
+    gst_child_proxy_child_added (GST_CHILD_PROXY (element), G_OBJECT (pad),
+        GST_OBJECT_NAME (pad));
+  }
+  return pad;
+}
+
+static void
+gst_triangulate_release_pad (GstElement * element, GstPad * pad)
+{
+  gst_child_proxy_child_removed (GST_CHILD_PROXY (element), G_OBJECT (pad),
+      GST_OBJECT_NAME (pad));
+  GST_ELEMENT_CLASS (gst_triangulate_parent_class)->release_pad (element, pad);
+}
+
+static void
+gst_triangulate_class_init (GstTriangulateClass * klass)
+{
+  const GParamFlags flags = G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+      GST_PARAM_MUTABLE_PLAYING;
+  GObjectClass *object_class = G_OBJECT_CLASS (klass);
+  GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
+  GstAggregatorClass *agg_class = GST_AGGREGATOR_CLASS (klass);
+  GstClothSyncClass *sync_class = GST_CLOTH_SYNC_CLASS (klass);
+
+  object_class->set_property = gst_triangulate_set_property;
+  object_class->get_property = gst_triangulate_get_property;
+  object_class->finalize = gst_triangulate_finalize;
+  element_class->request_new_pad = gst_triangulate_request_new_pad;
+  element_class->release_pad = gst_triangulate_release_pad;
+  agg_class->start = gst_triangulate_start;
+  agg_class->stop = gst_triangulate_stop;
+  sync_class->set_pad_caps = gst_triangulate_set_pad_caps;
+  sync_class->negotiate_src = gst_triangulate_negotiate_src;
+  sync_class->process_set = gst_triangulate_process_set;
+  sync_class->reset = gst_triangulate_reset;
+
+  /**
+   * GstTriangulate:rig:
+   *
+   * Since: 0.1
+   */
+  g_object_class_install_property (object_class, PROP_RIG,
+      g_param_spec_string ("rig", "Rig",
+          "File rig.json with the calibrated cameras; a new one counts from the "
+          "next set on", NULL, flags));
+  /**
+   * GstTriangulate:pattern:
+   *
+   * Since: 0.1
+   */
+  g_object_class_install_property (object_class, PROP_PATTERN,
+      g_param_spec_string ("pattern", "Pattern",
+          "File pattern.json of the printed board: the mesh has a vertex for each "
+          "corner of its squares", NULL, flags));
+  /**
+   * GstTriangulate:threshold:
+   *
+   * Since: 0.1
+   */
+  g_object_class_install_property (object_class, PROP_THRESHOLD,
+      g_param_spec_double ("threshold", "Threshold",
+          "A view is left out when it is further from what the others say than "
+          "this many standard deviations", 0.1, G_MAXDOUBLE, DEFAULT_THRESHOLD,
+          flags));
+  /**
+   * GstTriangulate:max-error:
+   *
+   * Since: 0.1
+   */
+  g_object_class_install_property (object_class, PROP_MAX_ERROR,
+      g_param_spec_double ("max-error", "Maximum error",
+          "A view is left out when its reprojection error is larger than this, in "
+          "px, whatever its covariance says; 0: no such limit", 0.0,
+          G_MAXDOUBLE, DEFAULT_MAX_ERROR, flags));
+  /**
+   * GstTriangulate:error-floor:
+   *
+   * Since: 0.1
+   */
+  g_object_class_install_property (object_class, PROP_ERROR_FLOOR,
+      g_param_spec_double ("error-floor", "Error floor",
+          "Variance in px² added to every corner's own: what calibration and lens "
+          "model leave", 0.0, 1e6, DEFAULT_ERROR_FLOOR, flags));
+  /**
+   * GstTriangulate:huber:
+   *
+   * Since: 0.1
+   */
+  g_object_class_install_property (object_class, PROP_HUBER,
+      g_param_spec_double ("huber", "Huber",
+          "While looking for the view to leave out, errors beyond this many "
+          "standard deviations weigh less", 0.1, G_MAXDOUBLE, DEFAULT_HUBER,
+          flags));
+  /**
+   * GstTriangulate:threads:
+   *
+   * Since: 0.1
+   */
+  g_object_class_install_property (object_class, PROP_THREADS,
+      g_param_spec_uint ("threads", "Threads",
+          "Threads that triangulate; 0: as many as there are processors. The "
+          "result is the same", 0, MAX_THREADS, DEFAULT_THREADS, flags));
+
+  gst_element_class_add_static_pad_template_with_gtype (element_class,
+      &sink_template, GST_TYPE_TRIANGULATE_PAD);
+  gst_element_class_add_static_pad_template_with_gtype (element_class,
+      &src_template, GST_TYPE_AGGREGATOR_PAD);
+  gst_element_class_set_static_metadata (element_class, "Triangulate",
+      "Filter/Analyzer/Video",
+      "Makes a mesh with covariances from what several cameras see of a board",
+      "The gst-cloth developers");
+  gst_type_mark_as_plugin_api (GST_TYPE_TRIANGULATE_PAD, 0);
+}
+
+static void
+gst_triangulate_init (GstTriangulate * self)
+{
+  static const ClothTriangulateParameters parameters = { 2, DEFAULT_THRESHOLD,
+    DEFAULT_MAX_ERROR, DEFAULT_ERROR_FLOOR, DEFAULT_HUBER
+  };
+  guint i;
+
+  self->parameters = parameters;
+  self->threads = DEFAULT_THREADS;
+  for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
+    self->view[i].camera = -1;
+  }
+}

@@ -1,0 +1,125 @@
+/* Which camera each pad of triangulate belongs to.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#ifdef HAVE_CONFIG_H
+#include "config.h"
+#endif
+
+#include "elements/gsttriangulateviews.h"
+
+#include "elements/gsttriangulatepad.h"
+
+void
+gst_triangulate_view_forget (GstTriangulateView * view)
+{
+  GstClockTimeDiff offset = view->offset;       /* the base still has it */
+
+  g_free (view->property);
+  g_free (view->meta);
+  memset (view, 0, sizeof (*view));
+  view->camera = -1;
+  view->offset = offset;
+}
+
+/* Notes which pads there are and the cameras that their properties name. */
+static guint
+look_at_pads (GstClothSync * self, GstTriangulateView * views)
+{
+  guint i, n_pads = 0;
+  GList *l;
+
+  for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
+    views[i].present = FALSE;
+    views[i].camera = -1;
+  }
+  GST_OBJECT_LOCK (self);
+  for (l = GST_ELEMENT (self)->sinkpads; l; l = l->next) {
+    GstTriangulatePad *pad = GST_TRIANGULATE_PAD (l->data);
+    GstTriangulateView *view = &views[GST_CLOTH_SYNC_PAD (pad)->index];
+
+    view->present = TRUE;
+    n_pads++;
+    gst_triangulate_pad_update_camera (pad, &view->property);
+  }
+  GST_OBJECT_UNLOCK (self);
+  return n_pads;
+}
+
+gboolean
+gst_triangulate_views_map (GstClothSync * self, GstTriangulateView * views,
+    const ClothRig * rig)
+{
+  guint n_pads = look_at_pads (self, views);
+  gint taken[CLOTH_RIG_MAX_CAMERAS];
+  guint i, rank = 0;
+
+  for (i = 0; i < rig->n_cameras; i++) {
+    taken[i] = -1;
+  }
+  if (n_pads > rig->n_cameras) {
+    GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
+        ("There are %u sink pads but rig has %u cameras.", n_pads,
+            rig->n_cameras),
+        ("Link one pad a camera, or set rig to one with all of them."));
+    return FALSE;
+  }
+  for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
+    GstTriangulateView *view = &views[i];
+    const gchar *name = view->property ? view->property : view->meta;
+    const ClothCamera *camera;
+    GstClockTimeDiff offset;
+
+    if (!view->present) {
+      continue;
+    }
+    if (name) {
+      camera = cloth_rig_find (rig, name);
+      if (!camera) {
+        GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
+            ("Pad sink_%u is of camera \"%s\", which rig does not have.", i,
+                name),
+            ("Set sink_%u::camera to a name in rig, the first of which is "
+                "\"%s\".", i, rig->cameras[0].name));
+        return FALSE;
+      }
+    } else if (n_pads != rig->n_cameras) {
+      if (!view->has_quads) {
+        continue;               /* nothing to place; its metadata may still say */
+      }
+      GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
+          ("There are %u sink pads for %u cameras, so which is pad sink_%u's "
+              "can't be told.", n_pads, rig->n_cameras, i),
+          ("Set sink_%u::camera, or camera on the detector before it, to a name "
+              "in rig.", i));
+      return FALSE;
+    } else {
+      camera = &rig->cameras[rank];
+    }
+    rank++;
+    view->camera = (gint) (camera - rig->cameras);
+    if (taken[view->camera] >= 0) {
+      GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
+          ("Pads sink_%d and sink_%u are both of camera \"%s\".",
+              taken[view->camera], i, camera->name),
+          ("Set the pads' property camera to different names in rig."));
+      return FALSE;
+    }
+    taken[view->camera] = (gint) i;
+    if (view->has_caps && (view->width != camera->width
+            || view->height != camera->height)) {
+      GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+          ("Pictures on sink_%u are %d×%d, but camera \"%s\" was calibrated at "
+              "%d×%d.", i, view->width, view->height, camera->name,
+              camera->width, camera->height),
+          ("Film at the calibrated size, put videoscale after the detector, or "
+              "calibrate at this size."));
+      return FALSE;
+    }
+    offset = (GstClockTimeDiff) (camera->offset_s * GST_SECOND);
+    if (view->offset != offset) {
+      view->offset = offset;
+      gst_cloth_sync_set_pad_offset (self, i, offset);
+    }
+  }
+  return TRUE;
+}

@@ -1,0 +1,29 @@
+/* Which camera each pad of triangulate belongs to.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "elements/gstclothsync.h"
+#include "gst/rig/rig.h"
+
+G_BEGIN_DECLS
+
+/* What is known of a pad; streaming thread. */
+typedef struct {
+  gboolean has_caps, observations;
+  gint width, height;
+  gint fps_n, fps_d;
+  gchar *property;              /* the pad's property, of this set */
+  gchar *meta;                  /* the name that the metadata carries */
+  gboolean present, has_quads;
+  gint camera;                  /* in rig; -1 when not known */
+  GstClockTimeDiff offset;
+} GstTriangulateView;
+
+void gst_triangulate_view_forget (GstTriangulateView * view);
+/* Finds each pad its camera: by its property, by the name in the metadata, by the order
+ * of pads; %FALSE after an element error. @views: one for every pad index. */
+gboolean gst_triangulate_views_map (GstClothSync * sync,
+    GstTriangulateView * views, const ClothRig * rig);
+
+G_END_DECLS
