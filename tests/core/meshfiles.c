@@ -1,0 +1,572 @@
+/* OBJ + PC2 and PLY against readers of other people, and hostile ones.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/mesh/hold.h"
+#include "gst/mesh/obj.h"
+#include "gst/mesh/pc2.h"
+#include "gst/mesh/ply.h"
+#include "gst/mesh/sequence.h"
+#include "tests/core/meshpeer.h"
+
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+#define COLUMNS 5
+#define ROWS 4
+#define N (COLUMNS * ROWS)
+#define FRAMES 7
+
+/* x = column + frame / 8, y = row, z = frame²: exact in float32. */
+static void
+fill_frame (guint frame, gfloat * positions, guint8 * states,
+    gfloat * covariances)
+{
+  for (guint i = 0; i < N; i++) {
+    positions[3 * i] = (gfloat) (i % COLUMNS) + (gfloat) frame / 8;
+    positions[3 * i + 1] = (gfloat) (i / COLUMNS);
+    positions[3 * i + 2] = (gfloat) (frame * frame);
+    states[i] = (guint8) (1 + i % 4);
+    for (guint k = 0; k < 6; k++)
+      covariances[6 * i + k] = (gfloat) (k == 0 || k == 3 || k == 5) * 4e-6f;
+  }
+}
+
+/* Vertex 7 is never seen, vertex 3 not from frame 2 to 4. */
+static void
+hide (guint frame, gfloat * positions, guint8 * states)
+{
+  for (guint k = 0; k < 3; k++)
+    positions[21 + k] = NAN;
+  states[7] = CLOTH_VERTEX_UNSEEN;
+  if (frame >= 2 && frame <= 4) {
+    for (guint k = 0; k < 3; k++)
+      positions[9 + k] = NAN;
+    states[3] = CLOTH_VERTEX_UNSEEN;
+  }
+}
+
+static ClothMeshWriter *
+write_frames (const gchar * location, ClothMeshFormat format, guint n_frames)
+{
+  g_autoptr (ClothTopology) topology =
+      cloth_topology_new_grid (COLUMNS, ROWS, 0.5f, 0.25f);
+  g_autoptr (GError) error = NULL;
+  ClothMeshWriter *writer = cloth_mesh_writer_new (location, format, "my cloth",
+      topology, 30000, 1001, &error);
+
+  g_assert_no_error (error);
+  for (guint frame = 0; frame < n_frames; frame++) {
+    gfloat positions[3 * N], covariances[6 * N];
+    guint8 states[N];
+    ClothMeshFrame contents = { positions, states, covariances };
+
+    fill_frame (frame, positions, states, covariances);
+    hide (frame, positions, states);
+    g_assert_true (cloth_mesh_writer_append (writer, frame, &contents, &error));
+    g_assert_no_error (error);
+  }
+  return writer;
+}
+
+static void
+write_sequence (const gchar * name, ClothMeshFormat format, guint n_frames)
+{
+  g_autofree gchar *path = scratch_path (name);
+  g_autoptr (ClothMeshWriter) writer = write_frames (path, format, n_frames);
+  g_autoptr (GError) error = NULL;
+
+  g_assert_true (cloth_mesh_writer_close (writer, &error));
+  g_assert_no_error (error);
+}
+
+/* What fill_frame and hide say must come back. */
+static void
+check_sequence (const gchar * name, gboolean covariances_kept)
+{
+  g_autofree gchar *path = scratch_path (name);
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothMeshReader) reader =
+      cloth_mesh_reader_open (path, CLOTH_MESH_FORMAT_AUTO, &error);
+  g_autoptr (ClothTopology) topology =
+      cloth_topology_new_grid (COLUMNS, ROWS, 0.5f, 0.25f);
+
+  g_assert_no_error (error);
+  g_assert_true (cloth_topology_equal (topology,
+          cloth_mesh_reader_get_topology (reader)));
+  g_assert_cmpuint (cloth_mesh_reader_get_n_frames (reader), ==, FRAMES);
+  g_assert_cmpfloat_with_epsilon (cloth_mesh_reader_get_fps (reader),
+      30000 / 1001.0, 1e-9);
+  for (guint frame = FRAMES; frame-- > 0;) {
+    gfloat positions[3 * N], covariances[6 * N];
+    guint8 states[N];
+    ClothMeshFrame contents;
+
+    fill_frame (frame, positions, states, covariances);
+    hide (frame, positions, states);
+    g_assert_true (cloth_mesh_reader_read (reader, frame, &contents, &error));
+    for (guint i = 0; i < 3 * N; i++)
+      g_assert_true (isnan (positions[i]) ? isnan (contents.positions[i]) :
+          positions[i] == contents.positions[i]);
+    g_assert_cmpmem (states, N, contents.states, N);
+    g_assert_true (!contents.covariances == !covariances_kept);
+    if (covariances_kept)
+      g_assert_cmpmem (covariances, sizeof covariances, contents.covariances,
+          sizeof covariances);
+  }
+}
+
+static void
+test_obj_pc2 (void)
+{
+  scratch_begin ();
+  write_sequence ("c.obj", CLOTH_MESH_FORMAT_AUTO, FRAMES);
+  check_sequence ("c.obj", FALSE);
+  check_sequence ("c.pc2", FALSE);
+  check_sequence ("c", FALSE);
+  /* A plain reader of the format, and NumPy for the states. */
+  peer_run ("d=open('c.pc2','rb').read()\n"
+      "m,ver,n,start,rate,k=struct.unpack('<12siiffi',d[:32])\n"
+      "assert (m,ver,n,start,rate,k)==(b'POINTCACHE2\\0',1,20,0,1,7)\n"
+      "p=np.frombuffer(d[32:],'<f4').reshape(7,20,3)\n"
+      "i=np.arange(20); f=np.arange(7)[:,None]\n"
+      "t=np.stack(np.broadcast_arrays(i%5+f/8,i//5,f**2),-1)\n"
+      "seen=np.ones((7,20),bool); seen[:,7]=0; seen[2:5,3]=0\n"
+      "assert (p[seen]==t[seen]).all() and np.isfinite(p).all()\n"
+      "assert (p[2:5,3]==t[1,3]).all()\n"
+      "assert np.allclose(p[0,7],t[0,[2,6,8,12]].mean(0))\n"
+      "s=np.load('c.states.npy')\n"
+      "assert ((s==0)==~seen).all() and (s[seen]==(1+i%4+0*f)[seen]).all()\n"
+      "v=[];vt=[];q=[]\n"
+      "for l in open('c.obj'):\n"
+      "  w=l.split()\n"
+      "  if w[0]=='v': v.append([float(x) for x in w[1:]])\n"
+      "  if w[0]=='vt': vt.append([float(x) for x in w[1:]])\n"
+      "  if w[0]=='f': q.append([int(x.split('/')[0])-1 for x in w[1:]]); "
+      "assert all(x.split('/')[0]==x.split('/')[1] for x in w[1:])\n"
+      "  if w[0]=='o': assert w[1]=='my_cloth'\n"
+      "assert (np.array(v,'f4')==p[0]).all()\n"
+      "assert np.allclose(vt,np.stack([i%5*.125,i//5*.25/3],1),atol=1e-8)\n"
+      "assert len(q)==12 and q[0]==[0,5,6,1]\n"
+      "assert sorted(os.listdir('.'))==['c.obj','c.pc2','c.states.npy']\n");
+  scratch_end ();
+}
+
+static void
+test_ply (void)
+{
+  scratch_begin ();
+  write_sequence ("c.ply", CLOTH_MESH_FORMAT_AUTO, FRAMES);
+  check_sequence ("c.ply", TRUE);
+  check_sequence ("c_%05d.ply", TRUE);
+  peer_run ("for f in range(7):\n"
+      "  d=open('c_%05d.ply'%f,'rb').read()\n"
+      "  h,b=d.split(b'end_header\\n',1)\n"
+      "  assert h.startswith(b'ply\\nformat binary_little_endian 1.0\\n')\n"
+      "  p=[l.split()[2].decode() for l in h.splitlines() if "
+      "l.startswith(b'property') and b'list' not in l]\n"
+      "  t=np.dtype([(x,'u1' if x=='state' else '<f4') for x in p])\n"
+      "  v=np.frombuffer(b[:20*t.itemsize],t); i=np.arange(20)\n"
+      "  seen=i!=7\n"
+      "  if 2<=f<=4: seen[3]=False\n"
+      "  assert (v['x']==i%5+f/8)[seen].all() and (v['y']==i//5)[seen].all()\n"
+      "  assert (v['z']==f*f)[seen].all() and np.isfinite(v['x']).all()\n"
+      "  assert ((v['state']==0)==~seen).all()\n"
+      "  assert np.allclose(v['quality'],.002) and (v['cov_xy']==0).all()\n"
+      "  assert np.allclose(v['s'],i%5*.125)\n"
+      "  q=b[20*t.itemsize:]\n"
+      "  assert len(q)==12*17 and struct.unpack('<B4I',q[:17])==(4,0,5,6,1)\n"
+      "assert len(os.listdir('.'))==7\n");
+  scratch_end ();
+}
+
+/* PLY and PC2 as other programs write them. */
+static void
+test_foreign_files (void)
+{
+  ClothMeshFrame contents;
+
+  scratch_begin ();
+  peer_run ("for f in range(1,4):\n"
+      "  h='ply\\r\\nformat binary_big_endian 1.0\\r\\nelement face 1\\r\\n'\\\n"
+      "  'property list uchar int vertex_index\\r\\nelement vertex 5\\r\\n'\\\n"
+      "  'property double x\\r\\nproperty double y\\r\\nproperty double z\\r\\n'\\\n"
+      "  'property list int double junk\\r\\nend_header\\r\\n'\n"
+      "  v=b''.join(struct.pack('>3dI2d',i,f,-i,2,8,9) for i in range(5))\n"
+      "  q=struct.pack('>B5i',5,0,1,2,3,4)\n"
+      "  h2=h.replace('element face 1\\r\\nproperty list uchar int "
+      "vertex_index\\r\\n','').replace('end_header','element face 1\\r\\n"
+      "property list uchar int vertex_index\\r\\nend_header')\n"
+      "  open('b_%05d.ply'%f,'wb').write(h2.encode()+v+q)\n"
+      "open('k.obj','w').write('v 0 0 0\\nv 1 0 0\\nv 0 1 0\\n"
+      "f 1 2 3\\n')\n"
+      "open('k.pc2','wb').write(b'POINTCACHE2\\0'+struct.pack('<iiffi',1,3,1,1,2)"
+      "+np.arange(18,dtype='<f4').tobytes())\n");
+  {
+    g_autofree gchar *path = scratch_path ("b.ply");
+    g_autoptr (GError) error = NULL;
+    g_autoptr (ClothMeshReader) reader =
+        cloth_mesh_reader_open (path, CLOTH_MESH_FORMAT_AUTO, &error);
+    const ClothTopology *topology;
+
+    g_assert_no_error (error);
+    g_assert_cmpuint (cloth_mesh_reader_get_n_frames (reader), ==, 3);
+    topology = cloth_mesh_reader_get_topology (reader);
+    g_assert_cmpuint (topology->n_faces, ==, 3);
+    g_assert_cmpuint (topology->faces[10], ==, 4);
+    g_assert_cmpuint (topology->faces[11], ==, CLOTH_NO_VERTEX);
+    g_assert_true (cloth_mesh_reader_read (reader, 2, &contents, &error));
+    g_assert_cmpfloat (contents.positions[12], ==, 4);
+    g_assert_cmpfloat (contents.positions[13], ==, 3);
+    g_assert_cmpfloat (contents.positions[14], ==, -4);
+    g_assert_cmpuint (contents.states[4], ==, CLOTH_VERTEX_MEASURED);
+  }
+  {
+    g_autofree gchar *path = scratch_path ("k.obj");
+    g_autoptr (GError) error = NULL;
+    g_autoptr (ClothMeshReader) reader =
+        cloth_mesh_reader_open (path, CLOTH_MESH_FORMAT_AUTO, &error);
+
+    g_assert_no_error (error);
+    g_assert_cmpuint (cloth_mesh_reader_get_n_frames (reader), ==, 2);
+    g_assert_cmpfloat (cloth_mesh_reader_get_fps (reader), ==, 0);
+    g_assert_true (cloth_mesh_reader_read (reader, 1, &contents, &error));
+    g_assert_cmpfloat (contents.positions[8], ==, 17);
+  }
+  scratch_end ();
+}
+
+static void
+test_obj_tolerance (void)
+{
+  static const gchar text[] = "# made elsewhere\r\nmtllib a.mtl\r\n"
+      "o thing\nv 0 0 0 1.0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0 0\nvt .5 0\n"
+      "vt 0.5 0.5\nvt 0 5e-1\nvn 0 0 1\ng a\nusemtl b\ns off\n"
+      "f -4/-4/-1 -3/-3/-1 \\\n -2/-2/-1 -1/-1/-1\n"
+      "f 1//1 2//1 3//1 # a triangle\nf 1/2 2 3/3 4 1\nl 1 2\n";
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothObj) obj = cloth_obj_parse (text, strlen (text), &error);
+  static const guint32 faces[] = { 0, 1, 2, 3, 0, 1, 2, CLOTH_NO_VERTEX,
+    0, 1, 2, CLOTH_NO_VERTEX, 0, 2, 3, CLOTH_NO_VERTEX, 0, 3, 0,
+    CLOTH_NO_VERTEX
+  };
+  static const gfloat uv[] = { 0, 0, .5, 0, .5, .5, 0, .5 };
+
+  g_assert_no_error (error);
+  g_assert_cmpuint (obj->topology->n_vertices, ==, 4);
+  g_assert_cmpmem (obj->topology->faces, obj->topology->n_faces * 16, faces,
+      sizeof faces);
+  g_assert_cmpmem (obj->topology->uv, 32, uv, sizeof uv);
+  g_assert_true (obj->has_uv);
+  g_assert_cmpuint (obj->n_seam_vertices, ==, 1);
+}
+
+static const struct
+{
+  const gchar *text;
+  gint code;
+} bad_obj[] = {
+  {"", CLOTH_MESH_ERROR_LIMIT},
+  {"f 1 2 3\n", CLOTH_MESH_ERROR_LIMIT},
+  {"v 0 0\n", CLOTH_MESH_ERROR_INVALID},
+  {"v 0 0 nan\n", CLOTH_MESH_ERROR_INVALID},
+  {"v 0 0 1e99\n", CLOTH_MESH_ERROR_INVALID},
+  {"v 0 0 x\n", CLOTH_MESH_ERROR_INVALID},
+  {"v 0 0\n1\n", CLOTH_MESH_ERROR_INVALID},
+  {"v 0 0 0\nf 1 1\n", CLOTH_MESH_ERROR_INVALID},
+  {"v 0 0 0\nf 1 1 2\n", CLOTH_MESH_ERROR_INVALID},
+  {"v 0 0 0\nf 1 1 0\n", CLOTH_MESH_ERROR_INVALID},
+  {"v 0 0 0\nf 1 1 -2\n", CLOTH_MESH_ERROR_INVALID},
+  {"v 0 0 0\nf 1 1 4294967297\n", CLOTH_MESH_ERROR_INVALID},
+  {"v 0 0 0\nf 1 1 1.5\n", CLOTH_MESH_ERROR_INVALID},
+  {"v 0 0 0\nf 1/1 1/1 1/1\n", CLOTH_MESH_ERROR_INVALID},
+  {"v 0 0 0\nvt inf 0\n", CLOTH_MESH_ERROR_INVALID},
+  {"v 0 0 0\nf 1/ 1/x 1\n", CLOTH_MESH_ERROR_INVALID},
+};
+
+static const struct
+{
+  const gchar *text;
+  gint code;
+} bad_ply[] = {
+  {"", CLOTH_MESH_ERROR_INVALID},
+  {"plx\n", CLOTH_MESH_ERROR_INVALID},
+  {"ply\nend_header\n", CLOTH_MESH_ERROR_INVALID},
+  {"ply\nformat ascii 2.0\n", CLOTH_MESH_ERROR_UNSUPPORTED},
+  {"ply\nformat ascii 1.0\nend_header\n", CLOTH_MESH_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 999999999999\n",
+      CLOTH_MESH_ERROR_LIMIT},
+  {"ply\nformat ascii 1.0\nelement vertex -1\n", CLOTH_MESH_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nproperty float x\n", CLOTH_MESH_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 1\nproperty quux x\n",
+      CLOTH_MESH_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
+        "property float x\n", CLOTH_MESH_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 1\nelement vertex 1\n",
+      CLOTH_MESH_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement junk 100000000\nend_header\n",
+      CLOTH_MESH_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
+        "property float y\nend_header\n1 2\n", CLOTH_MESH_ERROR_INVALID},
+#define XYZ "property float x\nproperty float y\nproperty float z\n"
+  {"ply\nformat ascii 1.0\nelement vertex 1000000\n" XYZ "end_header\n1 2 3\n",
+      CLOTH_MESH_ERROR_TRUNCATED},
+  {"ply\nformat binary_little_endian 1.0\nelement vertex 1\n" XYZ
+        "end_header\nabcdefghijk", CLOTH_MESH_ERROR_TRUNCATED},
+  {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "end_header\n1 2 inf\n",
+      CLOTH_MESH_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "end_header\n1 nan 2\n",
+      CLOTH_MESH_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "property uchar state\n"
+        "end_header\n1 2 3 5\n", CLOTH_MESH_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "element face 1\n"
+        "property list uchar int vertex_indices\nend_header\n1 2 3 3 0 0 1\n",
+      CLOTH_MESH_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "element face 1\n"
+        "property list uchar int vertex_indices\nend_header\n1 2 3 2 0 0\n",
+      CLOTH_MESH_ERROR_INVALID},
+};
+
+static void
+test_hostile_text (void)
+{
+  for (guint i = 0; i < G_N_ELEMENTS (bad_obj); i++) {
+    g_autoptr (GError) error = NULL;
+
+    g_assert_null (cloth_obj_parse (bad_obj[i].text, strlen (bad_obj[i].text),
+            &error));
+    g_test_message ("obj %u: %s", i, error->message);
+    g_assert_error (error, CLOTH_MESH_ERROR, bad_obj[i].code);
+  }
+  for (guint i = 0; i < G_N_ELEMENTS (bad_ply); i++) {
+    g_autoptr (ClothPly) ply = cloth_ply_new ();
+    g_autoptr (GError) error = NULL;
+
+    g_assert_false (cloth_ply_parse (ply, bad_ply[i].text,
+            strlen (bad_ply[i].text), &error));
+    g_test_message ("ply %u: %s", i, error->message);
+    g_assert_error (error, CLOTH_MESH_ERROR, bad_ply[i].code);
+  }
+}
+
+static void
+test_hostile_pc2 (void)
+{
+  static const struct
+  {
+    gint32 version, points;
+    gfloat start, rate;
+    gint32 samples;
+    gint code;
+  } cases[] = {
+    {2, 1, 0, 1, 1, CLOTH_MESH_ERROR_INVALID},
+    {1, 0, 0, 1, 1, CLOTH_MESH_ERROR_LIMIT},
+    {1, -5, 0, 1, 1, CLOTH_MESH_ERROR_LIMIT},
+    {1, 2000000, 0, 1, 0, CLOTH_MESH_ERROR_LIMIT},
+    {1, 1, 0, 1, -1, CLOTH_MESH_ERROR_INVALID},
+    {1, 1, NAN, 1, 1, CLOTH_MESH_ERROR_INVALID},
+    {1, 1, 0, 0, 1, CLOTH_MESH_ERROR_INVALID},
+    {1, 1, 0, 1, 3, CLOTH_MESH_ERROR_TRUNCATED},
+    {1, 1000000, 0, 1, G_MAXINT32, CLOTH_MESH_ERROR_TRUNCATED},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    guint8 bytes[56] = "POINTCACHE2";
+    g_autoptr (GError) error = NULL;
+
+    memcpy (bytes + 12, &cases[i].version, 4);
+    memcpy (bytes + 16, &cases[i].points, 4);
+    memcpy (bytes + 20, &cases[i].start, 4);
+    memcpy (bytes + 24, &cases[i].rate, 4);
+    memcpy (bytes + 28, &cases[i].samples, 4);
+    cloth_swap_little_endian (bytes + 12, 4, 5);
+    g_assert_null (cloth_pc2_reader_new (cloth_input_new_memory (bytes,
+                sizeof bytes), &error));
+    g_assert_error (error, CLOTH_MESH_ERROR, cases[i].code);
+  }
+}
+
+static void
+expect_open_error (const gchar * name)
+{
+  g_autofree gchar *path = scratch_path (name);
+  g_autoptr (GError) error = NULL;
+
+  g_assert_null (cloth_mesh_reader_open (path, CLOTH_MESH_FORMAT_AUTO, &error));
+  g_test_message ("%s", error->message);
+  g_assert_nonnull (error);
+}
+
+static void
+test_sets_that_do_not_fit (void)
+{
+  scratch_begin ();
+  write_sequence ("c.obj", CLOTH_MESH_FORMAT_AUTO, FRAMES);
+  peer_run ("np.save('c.states.npy',np.zeros((7,19),'u1'))");
+  expect_open_error ("c.obj");
+  peer_run ("os.remove('c.states.npy')\n"
+      "d=bytearray(open('c.pc2','rb').read()); d[16]=21\n"
+      "open('c.pc2','wb').write(d)");
+  expect_open_error ("c.obj");
+  expect_open_error ("nothing.obj");
+  expect_open_error ("nothing.ply");
+  expect_open_error ("nothing.take");
+  /* The mesh changes in the middle of a PLY sequence. */
+  write_sequence ("p.ply", CLOTH_MESH_FORMAT_AUTO, 3);
+  scratch_write ("p_00001.ply", "ply\nformat ascii 1.0\nelement vertex 1\n" XYZ
+      "end_header\n1 2 3\n", -1);
+  {
+    g_autofree gchar *path = scratch_path ("p.ply");
+    g_autoptr (GError) error = NULL;
+    g_autoptr (ClothMeshReader) reader =
+        cloth_mesh_reader_open (path, CLOTH_MESH_FORMAT_AUTO, &error);
+    ClothMeshFrame contents;
+
+    g_assert_no_error (error);
+    g_assert_false (cloth_mesh_reader_read (reader, 1, &contents, &error));
+    g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+    g_clear_error (&error);
+    g_assert_false (cloth_mesh_reader_read (reader, 3, &contents, &error));
+    g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+  }
+  scratch_end ();
+}
+
+static void
+test_abort_and_replace (void)
+{
+  static const gchar *const names[] = { "c.obj", "c.ply", "c.take" };
+
+  for (guint i = 0; i < G_N_ELEMENTS (names); i++) {
+    g_autofree gchar *path = NULL;
+    ClothMeshWriter *writer;
+    g_autoptr (GError) error = NULL;
+
+    scratch_begin ();
+    path = scratch_path (names[i]);
+    /* Nothing under its name before the close, nothing at all after an abort. */
+    writer = write_frames (path, CLOTH_MESH_FORMAT_AUTO, 3);
+    g_assert_cmpuint (scratch_count (), >, 0);
+    expect_open_error (names[i]);
+    cloth_mesh_writer_free (writer);
+    g_assert_cmpuint (scratch_count (), ==, 0);
+    /* An empty sequence is refused. */
+    writer = write_frames (path, CLOTH_MESH_FORMAT_AUTO, 0);
+    g_assert_false (cloth_mesh_writer_close (writer, &error));
+    g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+    cloth_mesh_writer_free (writer);
+    g_assert_cmpuint (scratch_count (), ==, 0);
+    /* A shorter one replaces a longer one, whole. */
+    write_sequence (names[i], CLOTH_MESH_FORMAT_AUTO, FRAMES + 5);
+    write_sequence (names[i], CLOTH_MESH_FORMAT_AUTO, FRAMES);
+    check_sequence (names[i], i > 0);
+    scratch_end ();
+  }
+}
+
+static void
+test_refused_frames (void)
+{
+  g_autofree gchar *path = NULL;
+  g_autoptr (ClothMeshWriter) writer = NULL;
+  g_autoptr (GError) error = NULL;
+  gfloat positions[3 * N] = { 0 };
+  guint8 states[N] = { 0 };
+  ClothMeshFrame contents = { positions, states, NULL };
+
+  scratch_begin ();
+  path = scratch_path ("c.obj");
+  writer = write_frames (path, CLOTH_MESH_FORMAT_AUTO, 1);
+  positions[4] = INFINITY;
+  g_assert_false (cloth_mesh_writer_append (writer, 1, &contents, &error));
+  g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+  g_clear_error (&error);
+  positions[4] = NAN;
+  g_assert_false (cloth_mesh_writer_append (writer, 1, &contents, &error));
+  g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+  g_clear_error (&error);
+  positions[4] = 0;
+  states[3] = 9;
+  g_assert_false (cloth_mesh_writer_append (writer, 1, &contents, &error));
+  g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+  scratch_end ();
+}
+
+/* A strip of which one end was seen takes that end's place; a part that is joined to
+ * nothing seen lies flat. */
+static void
+test_hold_unseen_parts (void)
+{
+  g_autoptr (ClothTopology) topology = cloth_topology_new (8, 2);
+  static const guint32 faces[] = { 0, 1, 2, 3, 4, 5, 6, CLOTH_NO_VERTEX };
+  g_autoptr (ClothHold) hold = NULL;
+  gfloat positions[24];
+  const gfloat *shown;
+
+  memcpy (topology->faces, faces, sizeof faces);
+  for (guint i = 0; i < 16; i++)
+    topology->uv[i] = (gfloat) i;
+  hold = cloth_hold_new (topology);
+  for (guint i = 0; i < 24; i++)
+    positions[i] = NAN;
+  shown = cloth_hold_apply (hold, positions);
+  g_assert_cmpfloat (shown[3 * 5], ==, 10);
+  g_assert_cmpfloat (shown[3 * 5 + 1], ==, 11);
+  g_assert_cmpfloat (shown[3 * 5 + 2], ==, 0);
+  positions[0] = 100;
+  positions[1] = 200;
+  positions[2] = 300;
+  shown = cloth_hold_apply (hold, positions);
+  for (guint i = 0; i < 4; i++)
+    for (guint k = 0; k < 3; k++)
+      g_assert_cmpfloat (shown[3 * i + k], ==, (gfloat) (100 * (k + 1)));
+  g_assert_cmpfloat (shown[3 * 7], ==, 14);
+}
+
+static void
+test_paths_stay_inside (void)
+{
+  static const gchar *const bad[] = { "", "/etc/passwd", "../a", "a/../../b",
+    "link", "dir/passwd"
+  };
+  g_autofree gchar *link = NULL, *dir = NULL, *found = NULL;
+  g_autoptr (GError) error = NULL;
+
+  scratch_begin ();
+  link = scratch_path ("link");
+  dir = scratch_path ("dir");
+  g_assert_cmpint (symlink ("/etc/passwd", link), ==, 0);
+  g_assert_cmpint (symlink ("/etc", dir), ==, 0);
+  for (guint i = 0; i < G_N_ELEMENTS (bad); i++) {
+    g_autoptr (GError) fault = NULL;
+
+    g_assert_null (cloth_path_inside (scratch, bad[i], &fault));
+    g_assert_error (fault, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+  }
+  scratch_write ("a", "x", 1);
+  found = cloth_path_inside (scratch, "a", &error);
+  g_assert_no_error (error);
+  g_assert_nonnull (found);
+  g_assert_null (cloth_path_inside (scratch, "b", &error));
+  g_assert_error (error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND);
+  scratch_end ();
+}
+
+int
+main (int argc, char **argv)
+{
+  g_test_init (&argc, &argv, NULL);
+  g_test_add_func ("/meshfiles/obj-pc2", test_obj_pc2);
+  g_test_add_func ("/meshfiles/ply", test_ply);
+  g_test_add_func ("/meshfiles/foreign", test_foreign_files);
+  g_test_add_func ("/meshfiles/obj-tolerance", test_obj_tolerance);
+  g_test_add_func ("/meshfiles/hold-unseen-parts", test_hold_unseen_parts);
+  g_test_add_func ("/meshfiles/hostile-text", test_hostile_text);
+  g_test_add_func ("/meshfiles/hostile-pc2", test_hostile_pc2);
+  g_test_add_func ("/meshfiles/sets-that-do-not-fit",
+      test_sets_that_do_not_fit);
+  g_test_add_func ("/meshfiles/abort-and-replace", test_abort_and_replace);
+  g_test_add_func ("/meshfiles/refused-frames", test_refused_frames);
+  g_test_add_func ("/meshfiles/paths-stay-inside", test_paths_stay_inside);
+  return g_test_run ();
+}

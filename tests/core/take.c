@@ -1,0 +1,377 @@
+/* Takes: a real one, one we write read by NumPy, and hostile ones.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/mesh/take.h"
+#include "tests/core/meshpeer.h"
+
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Figures of this file were read off the data with NumPy. */
+static void
+test_real_take (void)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothTake) take = cloth_take_open (TEST_DATA "/take_drop", &error);
+  const ClothTakeInfo *info;
+  const ClothHeld *held;
+  gfloat positions[1155 * 3], clamps[6];
+  guint8 states[1155];
+  guint n_unseen = 0;
+  gdouble worst = 0;
+
+  g_assert_no_error (error);
+  info = cloth_take_get_info (take);
+  g_assert_cmpstr (info->name, ==, "take_drop");
+  g_assert_cmpuint (info->columns, ==, 33);
+  g_assert_cmpuint (info->rows, ==, 35);
+  g_assert_cmpfloat (info->noise_sigma_m, ==, 0.0004);
+  g_assert_cmpfloat (info->gravity[2], ==, -9.81);
+  g_assert_cmpuint (info->held->len, ==, 2);
+  held = &g_array_index (info->held, ClothHeld, 1);
+  g_assert_cmpuint (held->vertex, ==, 32);
+  g_assert_cmpfloat (held->until_s, ==, 0.32);
+  g_assert_true (isinf (held->from_s));
+  g_assert_cmpuint (cloth_take_get_n_frames (take), ==, 32);
+  g_assert_null (cloth_take_get_times (take));
+  g_assert_cmpfloat_with_epsilon (cloth_take_get_time (take, 31), 0.62, 1e-12);
+  g_assert_false (cloth_take_has_covariances (take));
+  g_assert_true (cloth_take_has_clamps (take));
+  for (guint frame = 0; frame < 32; frame++) {
+    g_assert_true (cloth_take_read_positions (take, frame, positions, &error));
+    g_assert_true (cloth_take_read_states (take, frame, positions, states,
+            &error));
+    g_assert_true (cloth_take_read_clamps (take, frame, clamps, &error));
+    for (guint i = 0; i < 1155; i++)
+      n_unseen += states[i] == CLOTH_VERTEX_UNSEEN;
+    /* The clamped corner is where its clamp is logged, but for the noise. */
+    for (guint k = 0; k < 3; k++)
+      worst = MAX (worst, fabs (positions[k] - clamps[k]));
+  }
+  g_test_message ("%u unseen; corner off its clamp by %.2f mm at most",
+      n_unseen, worst * 1000);
+  g_assert_cmpuint (n_unseen, ==, 1152 / 3);
+  g_assert_cmpfloat (worst, <, 5 * 0.0004);
+}
+
+static ClothTakeWriter *
+write_frames (const gchar * name, guint n_frames, gboolean mesh)
+{
+  g_autofree gchar *path = scratch_path (name);
+  g_autoptr (ClothTakeInfo) info = cloth_take_info_new ("Umhang „ä“");
+  g_autoptr (ClothTopology) topology = cloth_topology_new_grid (3, 2, 0.5f, 1);
+  g_autoptr (GError) error = NULL;
+  ClothTakeWriter *writer;
+  ClothHeld held = {.vertex = 2,.from_s = -INFINITY,.until_s = 1.5 };
+  ClothObstacle ball = {.kind = CLOTH_OBSTACLE_SPHERE,.point = {1, 2, 3},
+  .radius_m = 0.25,.friction = NAN
+  };
+
+  if (mesh) {
+    info->mesh = g_strdup ("mesh.obj");
+  } else {
+    info->columns = 3;
+    info->rows = 2;
+    info->width_m = 0.5;
+    info->height_m = 1;
+  }
+  info->noise_sigma_m = 0.001;
+  g_array_append_val (info->held, held);
+  g_array_append_val (info->obstacles, ball);
+  writer = cloth_take_writer_new (path, info, topology, &error);
+  g_assert_no_error (error);
+  for (guint frame = 0; frame < n_frames; frame++) {
+    gfloat positions[18], covariances[36], clamps[3] = { 1, 2, (gfloat) frame };
+    guint8 states[6];
+
+    for (guint i = 0; i < 6; i++) {
+      states[i] = (guint8) (i % 5);
+      for (guint k = 0; k < 3; k++)
+        positions[3 * i + k] = states[i] ? (gfloat) (frame + i + k) : NAN;
+      for (guint k = 0; k < 6; k++)
+        covariances[6 * i + k] = (gfloat) (frame + 1);
+    }
+    /* Covariances begin in the second frame and miss the fourth. */
+    g_assert_true (cloth_take_writer_append (writer, 0.1 * (frame + frame / 3),
+            positions, states, frame == 0 || frame == 3 ? NULL : covariances,
+            clamps, &error));
+    g_assert_no_error (error);
+  }
+  return writer;
+}
+
+static void
+write_take (const gchar * name, guint n_frames, gboolean mesh)
+{
+  g_autoptr (ClothTakeWriter) writer = write_frames (name, n_frames, mesh);
+  g_autoptr (GError) error = NULL;
+
+  g_assert_true (cloth_take_writer_close (writer, &error));
+  g_assert_no_error (error);
+}
+
+static void
+test_written_take (void)
+{
+  for (guint mesh = 0; mesh < 2; mesh++) {
+    g_autofree gchar *path = NULL;
+    g_autoptr (GError) error = NULL;
+    g_autoptr (ClothTake) take = NULL;
+    g_autoptr (ClothTopology) topology =
+        cloth_topology_new_grid (3, 2, 0.5f, 1);
+    gfloat covariances[36];
+
+    scratch_begin ();
+    write_take ("t", 5, mesh);
+    peer_run ("import json\nos.chdir('t')\n"
+        "j=json.load(open('take.json',encoding='utf8'))\n"
+        "assert j['version']==1 and j['name']=='Umhang „ä“' and 'fps' not in j\n"
+        "assert j['held']==[{'vertex':2,'until_s':1.5}]\n"
+        "assert j['noise_sigma_m']==.001 and j['gravity']==[0,0,-9.81]\n"
+        "assert j['obstacles']==[{'type':'sphere','centre':[1,2,3],"
+        "'radius_m':.25,'friction':None}]\n"
+        "p=np.load('positions.npy'); f=np.arange(5)[:,None,None]\n"
+        "i=np.arange(6)[None,:,None]; t=f+i+np.arange(3)[None,None]\n"
+        "t=np.where(i%5==0,np.nan,t)\n"
+        "assert p.dtype=='f4' and np.array_equal(p,t,equal_nan=True)\n"
+        "c=np.load('covariance.npy')\n"
+        "assert c.dtype=='f4' and c.shape==(5,6,6)\n"
+        "assert np.isnan(c[[0,3]]).all() and (c[[1,2,4]]==[[[2]],[[3]],[[5]]])"
+        ".all()\n"
+        "x=np.load('times.npy'); assert x.dtype=='f8'\n"
+        "assert np.allclose(x,[0,.1,.2,.4,.5])\n"
+        "assert (np.load('states.npy')==np.arange(6)%5).all()\n"
+        "k=np.load('clamps.npy')\n"
+        "assert k.shape==(5,1,3) and (k[:,0,2]==np.arange(5)).all()\n");
+    path = scratch_path ("t");
+    take = cloth_take_open (path, &error);
+    g_assert_no_error (error);
+    g_assert_true (cloth_topology_equal (cloth_take_get_topology (take),
+            topology));
+    g_assert_cmpfloat (cloth_take_get_time (take, 3), ==, 0.1 * 4);
+    g_assert_true (cloth_take_read_covariances (take, 4, covariances, &error));
+    g_assert_cmpfloat (covariances[35], ==, 5);
+    scratch_end ();
+  }
+}
+
+/* A take without what the earlier one in its folder had does not inherit it. */
+static void
+test_replaces_whole (void)
+{
+  g_autofree gchar *path = NULL;
+  g_autoptr (ClothTake) take = NULL;
+  g_autoptr (GError) error = NULL;
+  ClothTakeWriter *writer;
+
+  scratch_begin ();
+  path = scratch_path ("t");
+  write_take ("t", 5, FALSE);
+  peer_run ("open('t/rig.json','w').write('{}')");
+  write_take ("t", 1, FALSE);
+  take = cloth_take_open (path, &error);
+  g_assert_no_error (error);
+  g_assert_cmpuint (cloth_take_get_n_frames (take), ==, 1);
+  g_assert_false (cloth_take_has_covariances (take));
+  /* An abort leaves the old one, and what else is in the folder. */
+  writer = write_frames ("t", 3, TRUE);
+  cloth_take_writer_free (writer);
+  peer_run ("assert sorted(os.listdir('t'))==['clamps.npy','positions.npy',"
+      "'rig.json','states.npy','take.json','times.npy'],os.listdir('t')");
+  scratch_end ();
+}
+
+static void
+test_refused_frames (void)
+{
+  g_autoptr (ClothTakeWriter) writer = NULL;
+  g_autoptr (GError) error = NULL;
+  gfloat positions[18] = { 0 }, clamps[3] = { 0 };
+  guint8 states[6] = { 1, 1, 1, 1, 1, 1 };
+
+  scratch_begin ();
+  writer = write_frames ("t", 2, FALSE);
+  g_assert_false (cloth_take_writer_append (writer, 0.1, positions, states,
+          NULL, clamps, &error));
+  g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+  g_clear_error (&error);
+  g_assert_false (cloth_take_writer_append (writer, NAN, positions, states,
+          NULL, clamps, &error));
+  g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+  g_clear_error (&error);
+  g_assert_false (cloth_take_writer_append (writer, 1, positions, states, NULL,
+          NULL, &error));
+  g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+  scratch_end ();
+}
+
+#define GRID "\"grid\":{\"columns\":3,\"rows\":2,\"width_m\":1,\"height_m\":1}"
+#define OK "{\"version\":1,\"fps\":25," GRID
+
+static const gchar *const bad_json[] = {
+  "", "{}", "[]", "null", "{", OK, "{\"version\":2," GRID "}",
+  "{\"version\":\"1\"," GRID "}", "{\"version\":1.5," GRID "}",
+  "{\"version\":1}", OK ",\"mesh\":\"a.obj\"}", OK ",\"fsp\":25}",
+  OK ",\"name\":3}", OK ",\"gravity\":[0,0]}", OK ",\"gravity\":[0,0,\"x\"]}",
+  OK ",\"gravity\":9.81}", OK ",\"noise_sigma_m\":-1}",
+  OK ",\"noise_sigma_m\":\"small\"}", OK ",\"held\":3}", OK ",\"held\":[3]}",
+  OK ",\"held\":[{}]}", OK ",\"held\":[{\"vertex\":6}]}",
+  OK ",\"held\":[{\"vertex\":-1}]}", OK ",\"held\":[{\"vertex\":0.5}]}",
+  OK ",\"held\":[{\"vertex\":1,\"until\":3}]}",
+  OK ",\"held\":[{\"vertex\":1,\"from_s\":3,\"until_s\":2}]}",
+  OK ",\"obstacles\":[{}]}", OK ",\"obstacles\":[{\"type\":\"cube\"}]}",
+  OK ",\"obstacles\":[{\"type\":\"sphere\",\"centre\":[0,0,0]}]}",
+  OK ",\"obstacles\":[{\"type\":\"plane\",\"point\":[0,0,0],"
+      "\"normal\":[0,0,0]}]}",
+  "{\"version\":1,\"fps\":0," GRID "}", "{\"version\":1,\"fps\":-25," GRID "}",
+  "{\"version\":1,\"grid\":{\"columns\":1,\"rows\":2,\"width_m\":1,"
+      "\"height_m\":1}}",
+  "{\"version\":1,\"grid\":{\"columns\":3,\"rows\":2,\"width_m\":0,"
+      "\"height_m\":1}}",
+  "{\"version\":1,\"grid\":{\"columns\":3,\"rows\":2,\"width_m\":1}}",
+  "{\"version\":1,\"grid\":{\"columns\":400000,\"rows\":400000,\"width_m\":1,"
+      "\"height_m\":1}}",
+  "{\"version\":1,\"grid\":[3,2]}", OK ",\"notes\":\"\xff\"}",
+  OK ",/* [ */\"notes\":\"x\"}",
+};
+
+static void
+test_hostile_json (void)
+{
+  g_autoptr (GString) deep = g_string_new (OK ",\"held\":");
+  g_autoptr (GError) fault = NULL;
+
+  for (guint i = 0; i < G_N_ELEMENTS (bad_json); i++) {
+    g_autoptr (GError) error = NULL;
+
+    g_assert_null (cloth_take_info_parse (bad_json[i], strlen (bad_json[i]),
+            &error));
+    g_assert_nonnull (error);
+    g_assert_cmpint (error->domain, ==, CLOTH_MESH_ERROR);
+    g_test_message ("%s", error->message);
+  }
+  /* Deep enough to overflow the stack of a recursive parser. */
+  for (guint i = 0; i < 1000000; i++)
+    g_string_append_c (deep, '[');
+  g_assert_null (cloth_take_info_parse (deep->str, deep->len, &fault));
+  g_assert_error (fault, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+}
+
+/* Each line breaks a whole take in one way. */
+static const gchar *const breaks[] = {
+  "os.remove('t/positions.npy')",
+  "os.remove('t/times.npy')",   /* and there is no fps */
+  "os.remove('t/take.json')",
+  "np.save('t/positions.npy',np.zeros((5,5,3),'f4'))",
+  "np.save('t/positions.npy',np.zeros((0,6,3),'f4'))",
+  "np.save('t/positions.npy',np.zeros((5,6,3),'i4'))",
+  "np.save('t/positions.npy',np.zeros((4,6,3),'f4'))",
+  "np.save('t/covariance.npy',np.zeros((5,6,3,3),'f4'))",
+  "np.save('t/times.npy',np.zeros(5))",
+  "np.save('t/times.npy',np.array([0,1,2,np.nan,4]))",
+  "np.save('t/times.npy',np.arange(4.))",
+  "np.save('t/clamps.npy',np.zeros((5,2,3),'f4'))",
+  "np.save('t/states.npy',np.zeros((5,6),'f4'))",
+  "d=open('t/positions.npy','rb').read()\n"
+      "open('t/positions.npy','wb').write(d[:-1])",
+  "os.rename('t/positions.npy','p.npy'); os.symlink('../p.npy',"
+      "'t/positions.npy')",
+  "os.remove('t/states.npy'); os.symlink('/dev/zero','t/states.npy')",
+  "os.remove('t/states.npy'); os.mkdir('t/states.npy')",
+  "s=open('t/take.json').read()\n"
+      "open('t/take.json','w').write(s.replace('mesh.obj','../mesh.obj'))\n"
+      "os.rename('t/mesh.obj','mesh.obj')",
+  "open('t/mesh.obj','w').write('v 0 0 0\\n'*6)",
+  "open('t/mesh.obj','w').write('v 0 0 0\\nvt 0 0\\nf 1/1 1/1 1/1\\n')",
+};
+
+/* These show only when the frame is read. */
+static const gchar *const frame_breaks[] = {
+  "a=np.load('t/positions.npy'); a[2,3,1]=np.inf; np.save('t/positions.npy',a)",
+  "a=np.load('t/positions.npy'); a[2,3,1]=np.nan; np.save('t/positions.npy',a)",
+  "a=np.load('t/covariance.npy'); a[2,3,1]=np.inf; "
+      "np.save('t/covariance.npy',a)",
+  "a=np.load('t/covariance.npy'); a[2,3,5]=-1; np.save('t/covariance.npy',a)",
+  "a=np.load('t/states.npy'); a[2,3]=5; np.save('t/states.npy',a)",
+  "a=np.load('t/clamps.npy'); a[2]=np.nan; np.save('t/clamps.npy',a)",
+};
+
+static gboolean
+read_frame (ClothTake * take, guint frame, GError ** error)
+{
+  gfloat positions[18], covariances[36], clamps[3];
+  guint8 states[6];
+
+  return cloth_take_read_positions (take, frame, positions, error) &&
+      cloth_take_read_states (take, frame, positions, states, error) &&
+      cloth_take_read_covariances (take, frame, covariances, error) &&
+      cloth_take_read_clamps (take, frame, clamps, error);
+}
+
+static void
+test_broken_takes (void)
+{
+  for (guint i = 0; i < G_N_ELEMENTS (breaks); i++) {
+    g_autofree gchar *path = NULL;
+    g_autoptr (GError) error = NULL;
+
+    scratch_begin ();
+    path = scratch_path ("t");
+    write_take ("t", 5, TRUE);
+    peer_run (breaks[i]);
+    g_assert_null (cloth_take_open (path, &error));
+    g_test_message ("%s", error->message);
+    scratch_end ();
+  }
+  for (guint i = 0; i < G_N_ELEMENTS (frame_breaks); i++) {
+    g_autofree gchar *path = NULL;
+    g_autoptr (ClothTake) take = NULL;
+    g_autoptr (GError) error = NULL;
+
+    scratch_begin ();
+    path = scratch_path ("t");
+    write_take ("t", 5, FALSE);
+    peer_run (frame_breaks[i]);
+    take = cloth_take_open (path, &error);
+    g_assert_no_error (error);
+    g_assert_true (read_frame (take, 1, &error));
+    g_assert_no_error (error);
+    g_assert_false (read_frame (take, 2, &error));
+    g_test_message ("%s", error->message);
+    g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+    scratch_end ();
+  }
+}
+
+static void
+test_unwritable (void)
+{
+  g_autoptr (ClothTakeInfo) info = cloth_take_info_new ("x");
+  g_autoptr (ClothTopology) topology = cloth_topology_new_grid (3, 2, 1, 1);
+  g_autoptr (GError) error = NULL;
+
+  info->columns = 3;
+  info->rows = 2;
+  info->width_m = info->height_m = 1;
+  g_assert_null (cloth_take_writer_new ("/nonexistent/t", info, topology,
+          &error));
+  g_assert_error (error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND);
+  g_clear_error (&error);
+  g_assert_null (cloth_take_writer_new ("/dev/null", info, topology, &error));
+  g_assert_nonnull (error);
+}
+
+int
+main (int argc, char **argv)
+{
+  g_test_init (&argc, &argv, NULL);
+  g_test_add_func ("/take/real", test_real_take);
+  g_test_add_func ("/take/written", test_written_take);
+  g_test_add_func ("/take/replaces-whole", test_replaces_whole);
+  g_test_add_func ("/take/refused-frames", test_refused_frames);
+  g_test_add_func ("/take/hostile-json", test_hostile_json);
+  g_test_add_func ("/take/broken", test_broken_takes);
+  g_test_add_func ("/take/unwritable", test_unwritable);
+  return g_test_run ();
+}
