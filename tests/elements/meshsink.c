@@ -1,0 +1,397 @@
+/* meshsink: files appear whole or not at all.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <gst/check/gstcheck.h>
+#include <gst/check/gstharness.h>
+#include <gst/cloth/cloth.h>
+#include <math.h>
+
+#include "gst/mesh/sequence.h"
+#include "tests/core/meshpeer.h"
+
+#define COLUMNS 3
+#define ROWS 2
+#define N (COLUMNS * ROWS)
+
+typedef struct
+{
+  GstHarness *harness;
+  GstBus *bus;
+} Sink;
+
+static GstCaps *
+make_caps (guint columns, gint fps_n)
+{
+  g_autoptr (GstClothTopology) topology =
+      gst_cloth_topology_new_grid (columns, ROWS, 0.5f, 0.25f, NULL);
+
+  return gst_cloth_topology_to_caps (topology, fps_n, 1);
+}
+
+static GstBuffer *
+make_buffer (guint frame, guint n)
+{
+  gfloat positions[3 * 32], covariances[6 * 32];
+  guint8 states[32];
+  g_autoptr (GstClothMesh) mesh = NULL;
+  GstBuffer *buffer;
+
+  for (guint i = 0; i < n; i++) {
+    for (guint k = 0; k < 3; k++)
+      positions[3 * i + k] = (gfloat) (frame + i);
+    for (guint k = 0; k < 6; k++)
+      covariances[6 * i + k] = 1e-6f;
+    states[i] = i == 1 ? GST_CLOTH_VERTEX_UNSEEN : GST_CLOTH_VERTEX_TWO_VIEWS;
+  }
+  mesh = gst_cloth_mesh_new (frame, n, positions, states, covariances);
+  buffer = gst_cloth_mesh_to_buffer (mesh);
+  GST_BUFFER_PTS (buffer) = frame * GST_SECOND / 25;
+  GST_BUFFER_DURATION (buffer) = GST_SECOND / 25;
+  return buffer;
+}
+
+static Sink
+open_sink (const gchar * location, const gchar * format)
+{
+  GstElement *element = gst_element_factory_make ("meshsink", NULL);
+  Sink sink;
+
+  fail_unless (element != NULL);
+  if (location) {
+    g_autofree gchar *path = *location == '/' ? g_strdup (location) :
+        scratch_path (location);
+
+    g_object_set (element, "location", path, NULL);
+  }
+  gst_util_set_object_arg (G_OBJECT (element), "format", format);
+  sink.bus = gst_bus_new ();
+  gst_element_set_bus (element, sink.bus);
+  sink.harness = gst_harness_new_with_element (element, "sink", NULL);
+  gst_harness_set_src_caps (sink.harness, make_caps (COLUMNS, 25));
+  gst_object_unref (element);
+  return sink;
+}
+
+static void
+push_frames (Sink * sink, guint begin, guint n)
+{
+  for (guint i = 0; i < n; i++)
+    fail_unless_equals_int (gst_harness_push (sink->harness,
+            make_buffer (begin + i, N)), GST_FLOW_OK);
+}
+
+static void
+close_sink (Sink * sink)
+{
+  gst_element_set_bus (sink->harness->element, NULL);
+  gst_harness_teardown (sink->harness);
+  gst_object_unref (sink->bus);
+}
+
+/* The error that was posted must be the one expected and say @text. */
+static void
+expect_error (Sink * sink, GQuark domain, gint code, const gchar * text)
+{
+  g_autoptr (GstMessage) message = gst_bus_pop_filtered (sink->bus,
+      GST_MESSAGE_ERROR);
+  g_autoptr (GError) error = NULL;
+
+  fail_unless (message != NULL, "no error was posted");
+  gst_message_parse_error (message, &error, NULL);
+  GST_INFO ("%s", error->message);
+  fail_unless (g_error_matches (error, domain, code), "%s", error->message);
+  fail_unless (strstr (error->message, text) != NULL, "%s", error->message);
+}
+
+static void
+expect_no_error (Sink * sink)
+{
+  g_autoptr (GstMessage) message = gst_bus_pop_filtered (sink->bus,
+      GST_MESSAGE_ERROR);
+
+  fail_unless (message == NULL);
+}
+
+static void
+expect_frames (const gchar * location, guint begin, guint n, gdouble fps)
+{
+  g_autofree gchar *path = scratch_path (location);
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothMeshReader) reader =
+      cloth_mesh_reader_open (path, CLOTH_MESH_FORMAT_AUTO, &error);
+  ClothMeshFrame frame;
+
+  g_assert_no_error (error);
+  fail_unless_equals_int (cloth_mesh_reader_get_n_frames (reader), n);
+  fail_unless_equals_float (cloth_mesh_reader_get_fps (reader), fps);
+  for (guint i = 0; i < n; i++) {
+    fail_unless (cloth_mesh_reader_read (reader, i, &frame, &error));
+    fail_unless_equals_float (frame.positions[15], begin + i + 5);
+    fail_unless (isnan (frame.positions[3]));
+    fail_unless_equals_int (frame.states[1], GST_CLOTH_VERTEX_UNSEEN);
+    fail_unless_equals_int (frame.states[2], GST_CLOTH_VERTEX_TWO_VIEWS);
+  }
+}
+
+static const gchar *const names[] = { "c.obj", "c.ply", "c.take" };
+
+/* The property wins over the ending; there is nothing before EOS. */
+GST_START_TEST (test_writes_at_eos)
+{
+  static const gchar *const odd[] = { "a.dat", "b.obj", "d" };
+  static const gchar *const formats[] = { "obj-pc2", "ply", "take" };
+  static const gchar *const read_as[] = { "a.dat.obj", "b.obj.ply", "d" };
+
+  for (guint i = 0; i < 6; i++) {
+    const gchar *name = i < 3 ? names[i] : odd[i - 3];
+    Sink sink;
+
+    scratch_begin ();
+    sink = open_sink (name, i < 3 ? "auto" : formats[i - 3]);
+    push_frames (&sink, 0, 4);
+    {
+      g_autofree gchar *path = scratch_path (i < 3 ? name : read_as[i - 3]);
+      g_autoptr (ClothMeshReader) reader =
+          cloth_mesh_reader_open (path, CLOTH_MESH_FORMAT_AUTO, NULL);
+
+      fail_unless (reader == NULL);
+    }
+    fail_unless (gst_harness_push_event (sink.harness, gst_event_new_eos ()));
+    expect_no_error (&sink);
+    expect_frames (i < 3 ? name : read_as[i - 3], 0, 4, 25);
+    close_sink (&sink);
+    expect_frames (i < 3 ? name : read_as[i - 3], 0, 4, 25);
+    scratch_end ();
+  }
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_writes_at_stop)
+{
+  for (guint i = 0; i < G_N_ELEMENTS (names); i++) {
+    Sink sink;
+
+    scratch_begin ();
+    sink = open_sink (names[i], "auto");
+    push_frames (&sink, 0, 3);
+    close_sink (&sink);
+    expect_frames (names[i], 0, 3, 25);
+    scratch_end ();
+  }
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_times_of_take)
+{
+  Sink sink;
+
+  scratch_begin ();
+  sink = open_sink ("c.take", "auto");
+  push_frames (&sink, 3, 2);
+  push_frames (&sink, 9, 1);
+  fail_unless (gst_harness_push_event (sink.harness, gst_event_new_eos ()));
+  close_sink (&sink);
+  peer_run ("t=np.load('c.take/times.npy')\n"
+      "assert np.allclose(t,[.12,.16,.36],atol=1e-12),t\n"
+      "c=np.load('c.take/covariance.npy')\n"
+      "assert np.isnan(c[:,1]).all() and np.allclose(c[:,[0,2,5]],1e-6)\n");
+  scratch_end ();
+}
+
+GST_END_TEST;
+
+/* As filesink does, a flush starts anew. */
+GST_START_TEST (test_flush)
+{
+  for (guint i = 0; i < G_N_ELEMENTS (names); i++) {
+    Sink sink;
+    GstSegment segment;
+
+    scratch_begin ();
+    sink = open_sink (names[i], "auto");
+    push_frames (&sink, 0, 5);
+    fail_unless (gst_harness_push_event (sink.harness,
+            gst_event_new_flush_start ()));
+    fail_unless (gst_harness_push_event (sink.harness,
+            gst_event_new_flush_stop (TRUE)));
+    gst_segment_init (&segment, GST_FORMAT_TIME);
+    fail_unless (gst_harness_push_event (sink.harness,
+            gst_event_new_segment (&segment)));
+    push_frames (&sink, 1, 2);
+    fail_unless (gst_harness_push_event (sink.harness, gst_event_new_eos ()));
+    expect_no_error (&sink);
+    close_sink (&sink);
+    expect_frames (names[i], 1, 2, 25);
+    scratch_end ();
+  }
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_renegotiation)
+{
+  for (guint i = 0; i < G_N_ELEMENTS (names); i++) {
+    for (guint rate = 0; rate < 2; rate++) {
+      Sink sink;
+
+      scratch_begin ();
+      sink = open_sink (names[i], "auto");
+      push_frames (&sink, 0, 2);
+      /* The same again is nothing new. */
+      gst_harness_set_src_caps (sink.harness, make_caps (COLUMNS, 25));
+      push_frames (&sink, 2, 2);
+      expect_no_error (&sink);
+      gst_harness_set_src_caps (sink.harness,
+          make_caps (rate ? COLUMNS : 4, rate ? 30 : 25));
+      expect_error (&sink, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT,
+          "changed in the middle");
+      close_sink (&sink);
+      fail_unless_equals_int (scratch_count (), 0);
+      scratch_end ();
+    }
+  }
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_bad_buffers)
+{
+  for (guint i = 0; i < 3; i++) {
+    Sink sink;
+    GstBuffer *buffer = i == 0 ? make_buffer (3, 8) :
+        i == 1 ? gst_buffer_new_wrapped (g_strdup ("garbage"), 7) :
+        gst_buffer_new ();
+
+    scratch_begin ();
+    sink = open_sink ("c.obj", "auto");
+    push_frames (&sink, 0, 3);
+    fail_unless_equals_int (gst_harness_push (sink.harness, buffer),
+        GST_FLOW_ERROR);
+    expect_error (&sink, GST_STREAM_ERROR, GST_STREAM_ERROR_DECODE, "mesh");
+    fail_unless_equals_int (scratch_count (), 0);
+    /* It stays an error: nothing half appears at EOS or stop. */
+    fail_unless_equals_int (gst_harness_push (sink.harness, make_buffer (4,
+                N)), GST_FLOW_ERROR);
+    gst_harness_push_event (sink.harness, gst_event_new_eos ());
+    close_sink (&sink);
+    fail_unless_equals_int (scratch_count (), 0);
+    scratch_end ();
+  }
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_time_that_does_not_rise)
+{
+  Sink sink;
+
+  scratch_begin ();
+  sink = open_sink ("c.take", "auto");
+  push_frames (&sink, 2, 1);
+  fail_unless_equals_int (gst_harness_push (sink.harness, make_buffer (2, N)),
+      GST_FLOW_ERROR);
+  expect_error (&sink, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT, "later");
+  close_sink (&sink);
+  fail_unless_equals_int (scratch_count (), 0);
+  scratch_end ();
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_no_mesh)
+{
+  Sink sink;
+
+  scratch_begin ();
+  sink = open_sink ("c.obj", "auto");
+  fail_if (gst_harness_push_event (sink.harness, gst_event_new_eos ()));
+  expect_error (&sink, GST_STREAM_ERROR, GST_STREAM_ERROR_FAILED,
+      "single mesh");
+  close_sink (&sink);
+  fail_unless_equals_int (scratch_count (), 0);
+  scratch_end ();
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_unwritable)
+{
+  static const gchar *const places[] = { "/nonexistent/c.obj",
+    "/nonexistent/c.ply", "/nonexistent/c.take", "/dev/null/c.take"
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (places); i++) {
+    Sink sink = open_sink (places[i], "auto");
+
+    fail_unless_equals_int (gst_harness_push (sink.harness, make_buffer (0,
+                N)), GST_FLOW_ERROR);
+    expect_error (&sink, GST_RESOURCE_ERROR,
+        i < 3 ? GST_RESOURCE_ERROR_OPEN_WRITE : GST_RESOURCE_ERROR_WRITE,
+        places[i]);
+    close_sink (&sink);
+  }
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_no_location)
+{
+  g_autoptr (GstElement) element =
+      gst_object_ref_sink (gst_element_factory_make ("meshsink", NULL));
+  GstBus *bus = gst_bus_new ();
+  Sink sink = { NULL, bus };
+
+  gst_element_set_bus (element, bus);
+  fail_unless_equals_int (gst_element_set_state (element, GST_STATE_PAUSED),
+      GST_STATE_CHANGE_FAILURE);
+  expect_error (&sink, GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_NOT_FOUND,
+      "location");
+  gst_element_set_bus (element, NULL);
+  gst_element_set_state (element, GST_STATE_NULL);
+  gst_object_unref (bus);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_bad_caps)
+{
+  Sink sink;
+  GstCaps *caps;
+
+  scratch_begin ();
+  sink = open_sink ("c.obj", "auto");
+  caps = gst_caps_from_string ("application/x-cloth-mesh, version=1, "
+      "vertices=6, framerate=25/1");
+  gst_harness_push_event (sink.harness, gst_event_new_caps (caps));
+  gst_caps_unref (caps);
+  expect_error (&sink, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT, "caps");
+  close_sink (&sink);
+  scratch_end ();
+}
+
+GST_END_TEST;
+
+static Suite *
+meshsink_suite (void)
+{
+  Suite *suite = suite_create ("meshsink");
+  TCase *tests = tcase_create ("general");
+
+  suite_add_tcase (suite, tests);
+  tcase_add_test (tests, test_writes_at_eos);
+  tcase_add_test (tests, test_writes_at_stop);
+  tcase_add_test (tests, test_times_of_take);
+  tcase_add_test (tests, test_flush);
+  tcase_add_test (tests, test_renegotiation);
+  tcase_add_test (tests, test_bad_buffers);
+  tcase_add_test (tests, test_time_that_does_not_rise);
+  tcase_add_test (tests, test_no_mesh);
+  tcase_add_test (tests, test_unwritable);
+  tcase_add_test (tests, test_no_location);
+  tcase_add_test (tests, test_bad_caps);
+  return suite;
+}
+
+GST_CHECK_MAIN (meshsink);
