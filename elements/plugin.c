@@ -14,6 +14,7 @@
 #include "elements/gstmeshsrc.h"
 #include "elements/gstquadtrack.h"
 #include "elements/gsttriangulate.h"
+#include "elements/gstsaddledetect.h"
 
 static gboolean
 plugin_init (GstPlugin * plugin)
@@ -28,6 +29,7 @@ plugin_init (GstPlugin * plugin)
   registered &= GST_ELEMENT_REGISTER (quadtrack, plugin);
   registered &= GST_ELEMENT_REGISTER (triangulate, plugin);
 
+  registered &= GST_ELEMENT_REGISTER (saddledetect, plugin);
   return registered;
 }
 

@@ -1,0 +1,348 @@
+/* saddledetect: finds the corners of checkerboards in a picture.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+
+/**
+ * SECTION:element-saddledetect
+ * @title: saddledetect
+ *
+ * Marks every pixel where the smoothed intensity is hyperbolic (a saddle) as a candidate
+ * for a corner, and finds one place to a fraction of a pixel, with its covariance, for
+ * each of their peaks: the detector of section 3.4 of Guskov and Zhukov, "Direct pattern
+ * tracking on flexible geometry". Both go along with the picture as #GstClothSaddlesMeta;
+ * the picture itself stays as it is and where it is.
+ *
+ * ## Corners over a film
+ * |[
+ * gst-launch-1.0 filesrc location=board.mp4 ! decodebin ! saddledetect ! \
+ *     clothoverlay ! videoconvert ! autovideosink
+ * ]|
+ *
+ * Since: 0.1
+ */
+#ifdef HAVE_CONFIG_H
+#include "config.h"
+#endif
+
+#include "elements/gstsaddledetect.h"
+
+#include <gst/cloth/cloth.h>
+
+#include "gst/vision/saddle.h"
+
+GST_DEBUG_CATEGORY_STATIC (saddle_detect_debug);
+#define GST_CAT_DEFAULT saddle_detect_debug
+
+/* The refined saddles go into the metadata as they are. */
+G_STATIC_ASSERT (sizeof (ClothSaddle) == sizeof (GstClothSaddle));
+G_STATIC_ASSERT (G_STRUCT_OFFSET (ClothSaddle, cov) ==
+    G_STRUCT_OFFSET (GstClothSaddle, cov_xx));
+
+enum
+{
+  PROP_0,
+  PROP_SIGMA,
+  PROP_EPSILON,
+  PROP_RELATIVE,
+  PROP_ROI_X,
+  PROP_ROI_Y,
+  PROP_ROI_WIDTH,
+  PROP_ROI_HEIGHT,
+  PROP_REFINE,
+  PROP_RADIUS,
+  PROP_MAX_CANDIDATES,
+  PROP_MAX_SADDLES,
+};
+
+struct _GstSaddleDetect {
+  GstClothFilter parent;
+
+  /* under the object lock */
+  ClothSaddleParams params;
+
+  /* the streaming thread's own */
+  ClothSaddleDetector *detector;
+  GstClothCandidate *candidates;
+  guint candidates_allocated;
+  gboolean warned;
+};
+
+G_DEFINE_TYPE_WITH_CODE (GstSaddleDetect, gst_saddle_detect,
+    GST_TYPE_CLOTH_FILTER,
+    GST_DEBUG_CATEGORY_INIT (saddle_detect_debug, "saddledetect", 0,
+        "corners of checkerboards"));
+GST_ELEMENT_REGISTER_DEFINE (saddledetect, "saddledetect", GST_RANK_NONE,
+    GST_TYPE_SADDLE_DETECT);
+
+#define GST_TYPE_SADDLE_DETECT_REFINE (gst_saddle_detect_refine_get_type ())
+static GType
+gst_saddle_detect_refine_get_type (void)
+{
+  static gsize type = 0;
+  static const GEnumValue values[] = {
+    {CLOTH_SADDLE_REFINE_NONE, "Candidates only", "none"},
+    {CLOTH_SADDLE_REFINE_STREAM,
+        "The saddle of the smoothed intensity", "stream"},
+    {CLOTH_SADDLE_REFINE_MODEL,
+        "A fit of two crossing edges; slower and more exact", "model"},
+    {0, NULL, NULL}
+  };
+
+  if (g_once_init_enter (&type)) {
+    GType registered = g_enum_register_static ("GstSaddleDetectRefine", values);
+    g_once_init_leave (&type, registered);
+  }
+  return type;
+}
+
+static void
+gst_saddle_detect_set_property (GObject * object, guint id,
+    const GValue * value, GParamSpec * pspec)
+{
+  ClothSaddleParams *params = &GST_SADDLE_DETECT (object)->params;
+
+  GST_OBJECT_LOCK (object);
+  switch (id) {
+    case PROP_SIGMA:
+      params->sigma = (gfloat) g_value_get_double (value);
+      break;
+    case PROP_EPSILON:
+      params->epsilon = (gfloat) g_value_get_double (value);
+      break;
+    case PROP_RELATIVE:
+      params->relative = (gfloat) g_value_get_double (value);
+      break;
+    case PROP_ROI_X:
+      params->roi_x = g_value_get_int (value);
+      break;
+    case PROP_ROI_Y:
+      params->roi_y = g_value_get_int (value);
+      break;
+    case PROP_ROI_WIDTH:
+      params->roi_width = g_value_get_int (value);
+      break;
+    case PROP_ROI_HEIGHT:
+      params->roi_height = g_value_get_int (value);
+      break;
+    case PROP_REFINE:
+      params->refine = g_value_get_enum (value);
+      break;
+    case PROP_RADIUS:
+      params->radius = (gfloat) g_value_get_double (value);
+      break;
+    case PROP_MAX_CANDIDATES:
+      params->max_candidates = g_value_get_uint (value);
+      break;
+    case PROP_MAX_SADDLES:
+      params->max_saddles = g_value_get_uint (value);
+      break;
+    default:
+      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
+      break;
+  }
+  GST_OBJECT_UNLOCK (object);
+}
+
+static void
+gst_saddle_detect_get_property (GObject * object, guint id, GValue * value,
+    GParamSpec * pspec)
+{
+  const ClothSaddleParams *params = &GST_SADDLE_DETECT (object)->params;
+
+  GST_OBJECT_LOCK (object);
+  switch (id) {
+    case PROP_SIGMA:
+      g_value_set_double (value, params->sigma);
+      break;
+    case PROP_EPSILON:
+      g_value_set_double (value, params->epsilon);
+      break;
+    case PROP_RELATIVE:
+      g_value_set_double (value, params->relative);
+      break;
+    case PROP_ROI_X:
+      g_value_set_int (value, params->roi_x);
+      break;
+    case PROP_ROI_Y:
+      g_value_set_int (value, params->roi_y);
+      break;
+    case PROP_ROI_WIDTH:
+      g_value_set_int (value, params->roi_width);
+      break;
+    case PROP_ROI_HEIGHT:
+      g_value_set_int (value, params->roi_height);
+      break;
+    case PROP_REFINE:
+      g_value_set_enum (value, params->refine);
+      break;
+    case PROP_RADIUS:
+      g_value_set_double (value, params->radius);
+      break;
+    case PROP_MAX_CANDIDATES:
+      g_value_set_uint (value, params->max_candidates);
+      break;
+    case PROP_MAX_SADDLES:
+      g_value_set_uint (value, params->max_saddles);
+      break;
+    default:
+      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
+      break;
+  }
+  GST_OBJECT_UNLOCK (object);
+}
+
+static void
+gst_saddle_detect_finalize (GObject * object)
+{
+  GstSaddleDetect *self = GST_SADDLE_DETECT (object);
+
+  cloth_saddle_detector_free (self->detector);
+  g_free (self->candidates);
+  G_OBJECT_CLASS (gst_saddle_detect_parent_class)->finalize (object);
+}
+
+/* An earlier element's saddles would be read in place of these. */
+static gboolean
+drop_saddles (GstBuffer * buffer, GstMeta ** meta, gpointer user_data)
+{
+  if ((*meta)->info->api == gst_cloth_saddles_meta_api_get_type ())
+    *meta = NULL;
+  return TRUE;
+}
+
+static GstFlowReturn
+gst_saddle_detect_analyse (GstClothFilter * filter,
+    const GstClothFilterFrame * frame)
+{
+  GstSaddleDetect *self = GST_SADDLE_DETECT (filter);
+  const ClothSaddleCandidate *candidates;
+  const ClothSaddle *saddles;
+  GstClothSaddles *payload;
+  ClothSaddleParams params;
+  guint n_candidates, n_saddles;
+
+  GST_OBJECT_LOCK (self);
+  params = self->params;
+  GST_OBJECT_UNLOCK (self);
+
+  cloth_saddle_detector_run (self->detector, &params, &frame->luma,
+      CLOTH_SIMD_BEST);
+  candidates = cloth_saddle_detector_get_candidates (self->detector,
+      &n_candidates);
+  saddles = cloth_saddle_detector_get_saddles (self->detector, &n_saddles);
+  if (cloth_saddle_detector_was_cut (self->detector) && !self->warned) {
+    GST_WARNING_OBJECT (self, "more saddles than allowed, the weaker ones are "
+        "left out; raise epsilon or sigma, or set a region of interest");
+    self->warned = TRUE;
+  }
+
+  if (n_candidates > self->candidates_allocated) {
+    self->candidates_allocated = n_candidates + n_candidates / 2;
+    self->candidates = g_renew (GstClothCandidate, self->candidates,
+        self->candidates_allocated);
+  }
+  for (guint i = 0; i < n_candidates; i++) {
+    self->candidates[i] = (GstClothCandidate) {
+      .x = candidates[i].x,
+      .y = candidates[i].y,
+      .response = candidates[i].response,
+    };
+  }
+  payload = gst_cloth_saddles_new (frame->camera, frame->sequence,
+      (const GstClothSaddle *) saddles, n_saddles, self->candidates,
+      n_candidates);
+  if (!payload) {
+    GST_ELEMENT_ERROR (self, STREAM, FAILED,
+        ("The saddles of a picture can't be kept; set a camera name of fewer "
+            "characters"), (NULL));
+    return GST_FLOW_ERROR;
+  }
+  gst_buffer_foreach_meta (frame->buffer, drop_saddles, NULL);
+  gst_buffer_add_cloth_saddles_meta (frame->buffer, payload);
+  GST_LOG_OBJECT (self, "%u saddles, %u candidates, epsilon %g, noise %g",
+      n_saddles, n_candidates,
+      cloth_saddle_detector_get_epsilon (self->detector),
+      cloth_saddle_detector_get_noise (self->detector));
+  return GST_FLOW_OK;
+}
+
+static void
+gst_saddle_detect_reset (GstClothFilter * filter)
+{
+  GST_SADDLE_DETECT (filter)->warned = FALSE;
+}
+
+static void
+gst_saddle_detect_class_init (GstSaddleDetectClass * klass)
+{
+  GObjectClass *object_class = G_OBJECT_CLASS (klass);
+  GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
+  GstClothFilterClass *filter_class = GST_CLOTH_FILTER_CLASS (klass);
+  const ClothSaddleParams defaults = cloth_saddle_default_params ();
+  const GParamFlags flags = G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+      GST_PARAM_MUTABLE_PLAYING;
+
+  object_class->set_property = gst_saddle_detect_set_property;
+  object_class->get_property = gst_saddle_detect_get_property;
+  object_class->finalize = gst_saddle_detect_finalize;
+  filter_class->analyse = gst_saddle_detect_analyse;
+  filter_class->reset = gst_saddle_detect_reset;
+
+  g_object_class_install_property (object_class, PROP_SIGMA,
+      g_param_spec_double ("sigma", "Sigma",
+          "Width of the Gaussian that smooths the picture, px", 0.5, 5.0,
+          defaults.sigma, flags));
+  g_object_class_install_property (object_class, PROP_EPSILON,
+      g_param_spec_double ("epsilon", "Epsilon",
+          "A pixel is a candidate when the determinant of the Hessian is below "
+          "minus this, grey levels squared per px^4", 0.0, 1e6,
+          defaults.epsilon, flags));
+  g_object_class_install_property (object_class, PROP_RELATIVE,
+      g_param_spec_double ("relative-epsilon", "Relative epsilon",
+          "The same bound as a share of what a sharp corner with the picture's "
+          "own contrast would give; the larger of both holds", 0.0, 1.0,
+          defaults.relative, flags));
+  g_object_class_install_property (object_class, PROP_ROI_X,
+      g_param_spec_int ("roi-x", "Region's left",
+          "Left column of the region searched", 0, 16383, 0, flags));
+  g_object_class_install_property (object_class, PROP_ROI_Y,
+      g_param_spec_int ("roi-y", "Region's top",
+          "Top row of the region searched", 0, 16383, 0, flags));
+  g_object_class_install_property (object_class, PROP_ROI_WIDTH,
+      g_param_spec_int ("roi-width", "Region's width",
+          "Columns searched (0 = up to the right border)", 0, 16384, 0,
+          flags));
+  g_object_class_install_property (object_class, PROP_ROI_HEIGHT,
+      g_param_spec_int ("roi-height", "Region's height",
+          "Rows searched (0 = down to the lower border)", 0, 16384, 0, flags));
+  g_object_class_install_property (object_class, PROP_REFINE,
+      g_param_spec_enum ("refine", "Refine",
+          "How the place to a fraction of a pixel is found",
+          GST_TYPE_SADDLE_DETECT_REFINE, defaults.refine, flags));
+  g_object_class_install_property (object_class, PROP_RADIUS,
+      g_param_spec_double ("radius", "Radius",
+          "Window radius of refine=model, px; at most half the distance to the "
+          "next saddle is used. Bent cloth wants 4 to 5, a flat board 8 to 10",
+          2.0, 12.0, defaults.radius, flags));
+  g_object_class_install_property (object_class, PROP_MAX_CANDIDATES,
+      g_param_spec_uint ("max-candidates", "Most candidates",
+          "When more pixels than this pass, epsilon is raised for the picture",
+          0, CLOTH_SADDLE_MAX, defaults.max_candidates, flags));
+  g_object_class_install_property (object_class, PROP_MAX_SADDLES,
+      g_param_spec_uint ("max-saddles", "Most saddles",
+          "The most refined saddles a picture", 0, CLOTH_SADDLE_MAX,
+          defaults.max_saddles, flags));
+
+  gst_element_class_set_static_metadata (element_class, "Saddle detector",
+      "Filter/Analyzer/Video",
+      "Finds the corners of checkerboards to a fraction of a pixel",
+      "The gst-cloth project");
+  gst_type_mark_as_plugin_api (GST_TYPE_SADDLE_DETECT_REFINE, 0);
+}
+
+static void
+gst_saddle_detect_init (GstSaddleDetect * self)
+{
+  self->params = cloth_saddle_default_params ();
+  self->detector = cloth_saddle_detector_new ();
+}
