@@ -336,7 +336,7 @@ gst_saddle_detect_class_init (GstSaddleDetectClass * klass)
   gst_element_class_set_static_metadata (element_class, "Saddle detector",
       "Filter/Analyzer/Video",
       "Finds the corners of checkerboards to a fraction of a pixel",
-      "The gst-cloth project");
+      "The gst-cloth developers");
   gst_type_mark_as_plugin_api (GST_TYPE_SADDLE_DETECT_REFINE, 0);
 }
 
