@@ -1,0 +1,138 @@
+/* The table that gst-cloth-calibrate-1.0 prints.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "calibrate-report.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/math/linalg.h"
+#include "gst/rig/rotation.h"
+
+static const gchar *
+coefficient_name (ClothLens lens, guint i)
+{
+  static const gchar *const brown[] = { "k1", "k2", "p1", "p2", "k3", "k4",
+    "k5", "k6"
+  };
+  static const gchar *const fisheye[] = { "k1", "k2", "k3", "k4" };
+
+  return lens == CLOTH_LENS_FISHEYE ? fisheye[i] : brown[i];
+}
+
+static void
+add_rms (GString * s, const gchar * text, gdouble rms)
+{
+  if (isnan (rms))
+    g_string_append_printf (s, "%s –", text);
+  else
+    g_string_append_printf (s, "%s %.3f px", text, rms);
+}
+
+/* Where a camera is, seen from the first one. */
+static void
+add_place (GString * s, const ClothCamera * first, const ClothCamera * camera)
+{
+  gdouble R[9], r[3], Rt[3], t[3], length = 0, angle;
+
+  cloth_mat3_mul_nt (camera->R, first->R, R);
+  cloth_mat3_vec (R, first->t, Rt);
+  cloth_rotation_to_vector (R, r);
+  for (guint i = 0; i < 3; i++) {
+    t[i] = camera->t[i] - Rt[i];
+    length += t[i] * t[i];
+  }
+  angle = sqrt (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+  g_string_append_printf (s, "  from %s: %.1f mm away, turned by %.3f°\n",
+      first->name, 1e3 * sqrt (length), angle * 180 / G_PI);
+  for (guint i = 0; i < 3; i++)
+    g_string_append_printf (s, "    r%c  %12.6f ± %-10.2g rad    "
+        "t%c  %12.4f ± %-8.2g mm\n", "xyz"[i], r[i], camera->r_sd[i],
+        "xyz"[i], 1e3 * t[i], 1e3 * camera->t_sd[i]);
+}
+
+static void
+add_camera (GString * s, const ClothCalibration * result, guint c,
+    const ClothShotCamera * shots)
+{
+  static const gchar *const k_names[] = { "fx", "fy", "cx", "cy" };
+  static const guint k_index[] = { 0, 4, 2, 5 };
+  const ClothCamera *camera = &result->rig->cameras[c];
+  const ClothCalibrateCamera *quality = &result->cameras[c];
+
+  g_string_append_printf (s,
+      "\ncamera %s: %d×%d, %s lens; board found in %u of "
+      "%u pictures, %u views and %u corners used\n", camera->name,
+      camera->width, camera->height, cloth_lens_to_string (camera->lens),
+      shots->shots->len, shots->n_pictures, quality->n_views,
+      quality->n_points);
+  add_rms (s, "  RMS", quality->rms);
+  add_rms (s, ", on views left out of the fit", quality->left_out_rms);
+  g_string_append_printf (s, ", scatter beyond that of the corners %.3f px\n",
+      quality->excess);
+  for (guint i = 0; i < 4; i++)
+    g_string_append_printf (s, "    %s  %12.4f ± %-8.2g px\n", k_names[i],
+        camera->K[k_index[i]], camera->K_sd[i]);
+  for (guint i = 0; i < cloth_lens_n_coefficients (camera->lens); i++)
+    g_string_append_printf (s, "    %s  %12.6f ± %.2g\n",
+        coefficient_name (camera->lens, i), camera->k[i], camera->k_sd[i]);
+  if (result->placed && c > 0)
+    add_place (s, &result->rig->cameras[0], camera);
+}
+
+static void
+add_views (GString * s, const ClothCalibrateInput * in,
+    const ClothCalibration * result, GPtrArray * cameras)
+{
+  g_autofree guint *next = g_new0 (guint, in->n_cameras);
+
+  g_string_append (s, "\nviews: RMS, px, of the corners used\n");
+  for (guint p = 0; p < in->n_poses; p++) {
+    for (guint c = 0; c < in->n_cameras; c++) {
+      const ClothShotCamera *camera = g_ptr_array_index (cameras, c);
+
+      for (guint v = 0; v < in->n_views; v++) {
+        const ClothShot *shot;
+
+        if (in->views[v].camera != c || in->views[v].pose != p)
+          continue;
+        shot = g_ptr_array_index (camera->shots, next[c]);
+        next[c]++;
+        if (isnan (result->view_rms[v]))
+          g_string_append_printf (s, "  %-12s %-24s unused, %u corners\n",
+              camera->name, shot->label, in->views[v].n);
+        else
+          g_string_append_printf (s, "  %-12s %-24s %.3f of %u\n",
+              camera->name, shot->label, result->view_rms[v], in->views[v].n);
+      }
+    }
+  }
+}
+
+/**
+ * cloth_calibrate_report:
+ * @input: what was calibrated; views of a camera in the order of its shots
+ * @result: what came of it
+ * @cameras: (element-type ClothShotCamera): where it came from
+ *
+ * Returns: (transfer full): RMS, parameters with standard deviations, and views, for people.
+ */
+gchar *
+cloth_calibrate_report (const ClothCalibrateInput * input,
+    const ClothCalibration * result, GPtrArray * cameras)
+{
+  GString *s = g_string_new (NULL);
+
+  add_rms (s, "RMS", result->rms);
+  add_rms (s, ", on views left out of the fit", result->left_out_rms);
+  g_string_append_printf (s,
+      "; standard deviations scaled by residual variance " "%.2f\n",
+      result->variance);
+  if (!result->placed)
+    g_string_append (s, "Intrinsics only: the cameras were not placed; all "
+        "stand at the origin.\n");
+  for (guint c = 0; c < input->n_cameras; c++)
+    add_camera (s, result, c, g_ptr_array_index (cameras, c));
+  add_views (s, input, result, cameras);
+  return g_string_free (s, FALSE);
+}

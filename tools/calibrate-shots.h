@@ -1,0 +1,44 @@
+/* What the cameras of a calibration saw of the board.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/pattern/pattern.h"
+#include "gst/rig/bundle.h"
+
+G_BEGIN_DECLS
+
+/* One picture with the board in it. Corners of the board's inside only: those of its rim
+ * are no saddles. */
+typedef struct {
+  gint64 number;                /* what pictures of several cameras agree in */
+  gchar *label;                 /* file name or frame number */
+  guint n;
+  guint *vertex;
+  gdouble *x, *y, *cov;
+  gdouble outline[8];           /* the board's four corners over the picture's size */
+} ClothShot;
+
+typedef struct {
+  gchar *name;
+  GPtrArray *files;
+  gboolean film;
+  gint width, height;
+  guint n_pictures;             /* looked at */
+  GPtrArray *shots;             /* ClothShot, the board found */
+} ClothShotCamera;
+
+typedef void (*ClothShotProgress) (const ClothShotCamera * camera,
+    guint n_files_done, gpointer user_data);
+
+ClothShotCamera *cloth_shot_camera_new (const gchar * name);
+void cloth_shot_camera_free (ClothShotCamera * camera);
+gboolean cloth_shot_camera_add (ClothShotCamera * camera,
+    const gchar * pattern, GError ** error);
+void cloth_shot_cameras_number (GPtrArray * cameras);
+gboolean cloth_shot_camera_read (ClothShotCamera * camera,
+    const ClothPattern * pattern, guint every, ClothShotProgress progress,
+    gpointer user_data, GError ** error);
+void cloth_shot_cameras_choose (GPtrArray * cameras, guint max_views);
+
+G_END_DECLS

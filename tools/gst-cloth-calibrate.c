@@ -1,0 +1,416 @@
+/* gst-cloth-calibrate-1.0: calibrates a rig from pictures or films of a board.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "config.h"
+
+#include <gio/gio.h>
+#include <gst/gst.h>
+#include <locale.h>
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "calibrate-report.h"
+#include "calibrate-shots.h"
+#include "gst/pattern/pattern.h"
+#include "gst/rig/calibrate.h"
+#include "gst/rig/rigfile.h"
+#include "gst/rig/rigyaml.h"
+
+#define TOOL "gst-cloth-calibrate-1.0"
+
+enum
+{ DONE = 0, FAILED = 1, BAD_USAGE = 2 };
+
+typedef struct
+{
+  gboolean version, share_lens, intrinsics_only;
+  gint columns, rows, every, max_views, leave_out;
+  gchar *pattern, *square, *first, *lens, *world, *size, *output;
+  gchar **opencv, *kalibr;
+  gchar **cameras;
+} Arguments;
+
+static gint
+complain (gint code, const gchar * message)
+{
+  g_printerr (TOOL ": %s\n", message);
+  if (code == BAD_USAGE)
+    g_printerr ("Try \"" TOOL " --help\".\n");
+  return code;
+}
+
+/* "25mm" in metres. */
+static gboolean
+parse_length (const gchar * text, gdouble * metres)
+{
+  static const struct
+  {
+    const gchar *name;
+    gdouble per_metre;
+  } units[] = { {"mm", 1000}, {"cm", 100}, {"m", 1}, {"in", 1000 / 25.4} };
+  gchar *end;
+  gdouble value = g_ascii_strtod (text, &end);
+
+  for (gsize i = 0; i < G_N_ELEMENTS (units) && end != text; i++) {
+    if (!strcmp (end, units[i].name) && isfinite (value) && value > 0) {
+      *metres = value / units[i].per_metre;
+      return TRUE;
+    }
+  }
+  return FALSE;
+}
+
+static ClothPattern *
+make_pattern (const Arguments * a, gint * code, GError ** error)
+{
+  gdouble square;
+  gboolean described = a->columns || a->rows || a->square;
+
+  *code = BAD_USAGE;
+  if (a->pattern && described) {
+    g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
+        "give --pattern, or --columns, --rows and --square, not both");
+    return NULL;
+  }
+  if (a->pattern) {
+    *code = FAILED;
+    return cloth_pattern_load (a->pattern, error);
+  }
+  if (!a->columns || !a->rows || !a->square) {
+    g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
+        "say what board it is: --pattern pattern.json, or --columns, --rows and "
+        "--square");
+    return NULL;
+  }
+  if (!parse_length (a->square, &square)) {
+    g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
+        "--square %s: give a length with its unit, mm, cm, m or in, for "
+        "instance 25mm", a->square);
+    return NULL;
+  }
+  if (strcmp (a->first, "black") && strcmp (a->first, "white")) {
+    g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
+        "--first %s: give black or white", a->first);
+    return NULL;
+  }
+  return cloth_pattern_new_checker (a->columns, a->rows, square, square / 2,
+      !strcmp (a->first, "black"), error);
+}
+
+/* CAMERA=FILE arguments by camera, in the order of their first appearance. */
+static GPtrArray *
+sort_arguments (gchar ** arguments, gint * code, GError ** error)
+{
+  g_autoptr (GPtrArray) cameras =
+      g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_shot_camera_free);
+
+  *code = BAD_USAGE;
+  for (gchar ** argument = arguments; argument && *argument; argument++) {
+    const gchar *equals = strchr (*argument, '=');
+    g_autofree gchar *name = NULL;
+    ClothShotCamera *camera = NULL;
+
+    if (!equals || equals == *argument || !equals[1]) {
+      g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
+          "%s: give CAMERA=FILE, for instance left=left.mp4 or "
+          "\"left=left*.jpg\"", *argument);
+      return NULL;
+    }
+    name = g_strndup (*argument, (gsize) (equals - *argument));
+    for (guint c = 0; c < cameras->len && !camera; c++) {
+      ClothShotCamera *known = g_ptr_array_index (cameras, c);
+
+      if (!strcmp (known->name, name))
+        camera = known;
+    }
+    if (!camera) {
+      camera = cloth_shot_camera_new (name);
+      g_ptr_array_add (cameras, camera);
+    }
+    if (!cloth_shot_camera_add (camera, equals + 1, error)) {
+      *code = FAILED;
+      return NULL;
+    }
+  }
+  if (cameras->len < 1 || cameras->len > CLOTH_RIG_MAX_CAMERAS) {
+    g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
+        "name 1 to %d cameras with their pictures: CAMERA=FILE",
+        CLOTH_RIG_MAX_CAMERAS);
+    return NULL;
+  }
+  return g_steal_pointer (&cameras);
+}
+
+static void
+show_reading (const ClothShotCamera * camera, guint n_files, gpointer user_data)
+{
+  gboolean terminal = isatty (2);
+
+  /* A line that rewrites itself, or now and then a line. */
+  if (terminal || camera->n_pictures % 10 == 0
+      || (!camera->film && n_files == camera->files->len))
+    g_printerr ("%s%s: %u pictures, the board in %u%s", terminal ? "\r" : "",
+        camera->name, camera->n_pictures, camera->shots->len,
+        terminal && (camera->film || n_files < camera->files->len) ? "" : "\n");
+}
+
+static void
+show_fit (const gchar * stage, gdouble fraction, gpointer user_data)
+{
+  if (isatty (2))
+    g_printerr ("\r\033[Kcalibrating: %s %.0f%%", stage, 100 * fraction);
+}
+
+/* The input of a calibration, over the shots' own arrays. */
+static void
+fill_input (GPtrArray * cameras, const ClothPattern * pattern, ClothLens lens,
+    ClothCalibrateInput * in, GArray * views, GArray * numbers, ClothRig * rig,
+    GArray * board)
+{
+  for (gint i = 0; i < (pattern->columns + 1) * (pattern->rows + 1); i++) {
+    gdouble X[3] = { i % (pattern->columns + 1) * pattern->square_m,
+      i / (pattern->columns + 1) * pattern->square_m, 0
+    };
+
+    g_array_append_vals (board, X, 3);
+  }
+  /* Numbers in order, each once, are the poses. */
+  for (;;) {
+    gint64 least = G_MAXINT64;
+
+    for (guint c = 0; c < cameras->len; c++) {
+      const ClothShotCamera *camera = g_ptr_array_index (cameras, c);
+
+      for (guint i = 0; i < camera->shots->len; i++) {
+        const ClothShot *shot = g_ptr_array_index (camera->shots, i);
+
+        if (numbers->len == 0 || shot->number > g_array_index (numbers, gint64,
+                numbers->len - 1))
+          least = MIN (least, shot->number);
+      }
+    }
+    if (least == G_MAXINT64)
+      break;
+    g_array_append_val (numbers, least);
+  }
+  for (guint c = 0; c < cameras->len; c++) {
+    const ClothShotCamera *camera = g_ptr_array_index (cameras, c);
+    guint pose = 0;
+
+    rig->cameras[c].name = g_strdup (camera->name);
+    rig->cameras[c].width = camera->width;
+    rig->cameras[c].height = camera->height;
+    rig->cameras[c].lens = lens;
+    for (guint i = 0; i < camera->shots->len; i++) {
+      const ClothShot *shot = g_ptr_array_index (camera->shots, i);
+      ClothBundleView view = { c, 0, TRUE, shot->n, shot->vertex, shot->x,
+        shot->y, shot->cov
+      };
+
+      while (g_array_index (numbers, gint64, pose) < shot->number)
+        pose++;
+      view.pose = pose;
+      g_array_append_val (views, view);
+    }
+  }
+  in->n_cameras = rig->n_cameras;
+  in->cameras = rig->cameras;
+  in->n_vertices = board->len / 3;
+  in->board = (const gdouble *) board->data;
+  in->n_poses = numbers->len;
+  in->n_views = views->len;
+  in->views = (const ClothBundleView *) views->data;
+}
+
+static gint
+calibrate (const Arguments * a, GPtrArray * cameras,
+    const ClothPattern * pattern, ClothLens lens)
+{
+  g_autoptr (GArray) views = g_array_new (FALSE, FALSE,
+      sizeof (ClothBundleView));
+  g_autoptr (GArray) numbers = g_array_new (FALSE, FALSE, sizeof (gint64));
+  g_autoptr (GArray) board = g_array_new (FALSE, FALSE, sizeof (gdouble));
+  g_autoptr (ClothRig) rig = cloth_rig_new (cameras->len);
+  g_autoptr (ClothCalibration) result = NULL;
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *report = NULL;
+  ClothCalibrateInput in;
+  ClothCalibrateParams params;
+
+  fill_input (cameras, pattern, lens, &in, views, numbers, rig, board);
+  cloth_calibrate_params_init (&params);
+  params.share_lens = a->share_lens;
+  params.intrinsics_only = a->intrinsics_only;
+  params.leave_out = (guint) a->leave_out;
+  params.world = !strcmp (a->world, "board") ? CLOTH_CALIBRATE_WORLD_BOARD
+      : CLOTH_CALIBRATE_WORLD_CAMERA;
+  result = cloth_calibrate (&in, &params, show_fit, NULL, NULL, &error);
+  if (isatty (2))
+    g_printerr ("\r\033[K");
+  if (!result || !cloth_rig_save (result->rig, a->output, &error))
+    return complain (FAILED, error->message);
+  report = cloth_calibrate_report (&in, result, cameras);
+  g_print ("board: %d × %d squares of %g mm\n%s\nwrote %s\n", pattern->columns,
+      pattern->rows, 1e3 * pattern->square_m, report, a->output);
+  return DONE;
+}
+
+static gint
+import (const Arguments * a)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRig) rig = NULL;
+  gint width = 0, height = 0;
+  gchar rest;
+
+  if ((a->opencv && a->kalibr) || a->cameras)
+    return complain (BAD_USAGE, "--import-opencv and --import-kalibr stand "
+        "alone, without each other and without pictures");
+  if (a->size && (sscanf (a->size, "%dx%d%c", &width, &height, &rest) != 2
+          || width < 1 || height < 1))
+    return complain (BAD_USAGE, "--size: give WIDTHxHEIGHT, for instance "
+        "640x480");
+  rig = a->opencv ? cloth_rig_import_opencv ((const gchar * const *) a->opencv,
+      width, height, &error)
+      : cloth_rig_import_kalibr (a->kalibr, &error);
+  if (!rig && width == 0 && strstr (error->message, "no picture size"))
+    g_prefix_error (&error, "give --size: ");
+  if (!rig || !cloth_rig_save (rig, a->output, &error))
+    return complain (FAILED, error->message);
+  for (guint c = 0; c < rig->n_cameras; c++)
+    g_print ("camera %s: %d×%d, %s lens\n", rig->cameras[c].name,
+        rig->cameras[c].width, rig->cameras[c].height,
+        cloth_lens_to_string (rig->cameras[c].lens));
+  g_print ("wrote %s\n", a->output);
+  return DONE;
+}
+
+static gint
+run (const Arguments * a)
+{
+  g_autoptr (ClothPattern) pattern = NULL;
+  g_autoptr (GPtrArray) cameras = NULL;
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *folder = NULL;
+  ClothLens lens;
+  gint code;
+
+  if (a->version) {
+    g_print (TOOL " (%s) %s\n", PACKAGE, PACKAGE_VERSION);
+    return DONE;
+  }
+  if (!a->output)
+    return complain (BAD_USAGE, "name the file to write: --output rig.json");
+  if (a->opencv || a->kalibr)
+    return import (a);
+  if (!cloth_lens_from_string (a->lens, &lens))
+    return complain (BAD_USAGE, "--lens: give none, brown5, brown8 or fisheye");
+  if (strcmp (a->world, "camera") && strcmp (a->world, "board"))
+    return complain (BAD_USAGE, "--world: give camera or board");
+  if (a->every < 1 || a->max_views < 3 || a->leave_out < 0 || a->leave_out == 1)
+    return complain (BAD_USAGE, "--every takes 1 or more, --max-views 3 or "
+        "more, --leave-out 0 or 2 or more");
+  pattern = make_pattern (a, &code, &error);
+  if (!pattern)
+    return complain (code, error->message);
+  cameras = sort_arguments (a->cameras, &code, &error);
+  if (!cameras)
+    return complain (code, error->message);
+  /* Better now than after an hour of reading. */
+  folder = g_path_get_dirname (a->output);
+  if (access (folder, W_OK) != 0)
+    return complain (FAILED, "--output: its folder does not exist or can't be "
+        "written to");
+
+  cloth_shot_cameras_number (cameras);
+  for (guint c = 0; c < cameras->len; c++) {
+    ClothShotCamera *camera = g_ptr_array_index (cameras, c);
+
+    if (!cloth_shot_camera_read (camera, pattern, (guint) a->every,
+            show_reading, NULL, &error)) {
+      if (isatty (2))
+        g_printerr ("\n");
+      return complain (FAILED, error->message);
+    }
+    if (isatty (2) && camera->film)
+      g_printerr ("\n");
+  }
+  cloth_shot_cameras_choose (cameras, (guint) a->max_views);
+  return calibrate (a, cameras, pattern, lens);
+}
+
+int
+main (int argc, char **argv)
+{
+  Arguments a = {.every = 10,.max_views = 60,.leave_out = 5 };
+  const GOptionEntry entries[] = {
+    {"pattern", 'p', 0, G_OPTION_ARG_FILENAME, &a.pattern,
+        "The board's pattern.json", "FILE"},
+    {"columns", 0, 0, G_OPTION_ARG_INT, &a.columns,
+        "Without it: squares in a row", "N"},
+    {"rows", 0, 0, G_OPTION_ARG_INT, &a.rows, "Squares in a column", "N"},
+    {"square", 0, 0, G_OPTION_ARG_STRING, &a.square,
+        "Edge of a square, measured, for instance 25mm", "LENGTH"},
+    {"first", 0, 0, G_OPTION_ARG_STRING, &a.first,
+        "Colour of the top-left square (black)", "black|white"},
+    {"lens", 0, 0, G_OPTION_ARG_STRING, &a.lens,
+        "none, brown5, brown8 or fisheye (brown5)", "MODEL"},
+    {"share-lens", 0, 0, G_OPTION_ARG_NONE, &a.share_lens,
+        "All cameras have the same distortion", NULL},
+    {"intrinsics-only", 0, 0, G_OPTION_ARG_NONE, &a.intrinsics_only,
+        "The cameras' pictures were not taken at the same moments", NULL},
+    {"world", 0, 0, G_OPTION_ARG_STRING, &a.world,
+        "World's origin: the first camera, z up in its picture, or the board "
+          "in the first picture, z off it (camera)", "camera|board"},
+    {"every", 0, 0, G_OPTION_ARG_INT, &a.every,
+        "Look at every so many-th frame of films (10)", "N"},
+    {"max-views", 0, 0, G_OPTION_ARG_INT, &a.max_views,
+        "Keep so many frames of films, those that differ most (60)", "N"},
+    {"leave-out", 0, 0, G_OPTION_ARG_INT, &a.leave_out,
+          "Check by fitting without every so many-th view; 0: no check (5)",
+        "N"},
+    {"import-opencv", 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &a.opencv,
+        "Take over OpenCV's YAML; several times for intrinsics and extrinsics "
+          "in files of their own, or for several cameras", "FILE"},
+    {"import-kalibr", 0, 0, G_OPTION_ARG_FILENAME, &a.kalibr,
+        "Take over Kalibr's camera chain", "FILE"},
+    {"size", 0, 0, G_OPTION_ARG_STRING, &a.size,
+          "Picture size of an OpenCV calibration that doesn't say it",
+        "WIDTHxHEIGHT"},
+    {"output", 'o', 0, G_OPTION_ARG_FILENAME, &a.output,
+        "The rig.json to write", "FILE"},
+    {"version", 0, 0, G_OPTION_ARG_NONE, &a.version,
+        "Show the version and exit", NULL},
+    {G_OPTION_REMAINING, 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &a.cameras, NULL,
+        "CAMERA=FILE…"},
+    {NULL}
+  };
+  g_autoptr (GOptionContext) context =
+      g_option_context_new ("- calibrate cameras from a board");
+  g_autoptr (GError) error = NULL;
+  gint code;
+
+  /* Only the characters: numbers stay with the decimal point. */
+  setlocale (LC_CTYPE, "");
+  gst_init (NULL, NULL);
+  a.first = g_strdup ("black");
+  a.lens = g_strdup ("brown5");
+  a.world = g_strdup ("camera");
+  g_option_context_add_main_entries (context, entries, NULL);
+  if (g_option_context_parse (context, &argc, &argv, &error))
+    code = run (&a);
+  else
+    code = complain (BAD_USAGE, error->message);
+  g_free (a.pattern);
+  g_free (a.square);
+  g_free (a.first);
+  g_free (a.lens);
+  g_free (a.world);
+  g_free (a.size);
+  g_free (a.output);
+  g_strfreev (a.opencv);
+  g_free (a.kalibr);
+  g_strfreev (a.cameras);
+  return code;
+}
