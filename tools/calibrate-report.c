@@ -62,10 +62,14 @@ add_camera (GString * s, const ClothCalibration * result, guint c,
 
   g_string_append_printf (s,
       "\ncamera %s: %d×%d, %s lens; board found in %u of "
-      "%u pictures, %u views and %u corners used\n", camera->name,
+      "%u pictures, %u views and %u corners used", camera->name,
       camera->width, camera->height, cloth_lens_to_string (camera->lens),
       shots->shots->len, shots->n_pictures, quality->n_views,
       quality->n_points);
+  if (result->placed && result->rig->n_cameras > 1)
+    g_string_append_printf (s, ", %u views shared with other cameras%s",
+        quality->n_shared, quality->n_shared < 3 ? " – too few to check" : "");
+  g_string_append_c (s, '\n');
   add_rms (s, "  RMS", quality->rms);
   add_rms (s, ", on views left out of the fit", quality->left_out_rms);
   g_string_append_printf (s, ", scatter beyond that of the corners %.3f px\n",
@@ -81,37 +85,41 @@ add_camera (GString * s, const ClothCalibration * result, guint c,
 }
 
 static void
+add_view (GString * s, const ClothCalibrateInput * in,
+    const ClothCalibration * result, const ClothShotCamera * camera, guint v,
+    guint shot)
+{
+  const ClothShot *picture = g_ptr_array_index (camera->shots, shot);
+
+  if (isnan (result->view_rms[v]))
+    g_string_append_printf (s, "  %-12s %-24s unused, %u corners\n",
+        camera->name, picture->label, in->views[v].n);
+  else
+    g_string_append_printf (s, "  %-12s %-24s %.3f of %u\n", camera->name,
+        picture->label, result->view_rms[v], in->views[v].n);
+}
+
+/* Together what was seen together. */
+static void
 add_views (GString * s, const ClothCalibrateInput * in,
     const ClothCalibration * result, GPtrArray * cameras)
 {
-  g_autofree guint *next = g_new0 (guint, in->n_cameras);
-
   g_string_append (s, "\nviews: RMS, px, of the corners used\n");
-  for (guint p = 0; p < in->n_poses; p++) {
-    for (guint c = 0; c < in->n_cameras; c++) {
-      const ClothShotCamera *camera = g_ptr_array_index (cameras, c);
+  for (guint p = 0; p < (result->placed ? in->n_poses : 1); p++) {
+    for (guint v = 0, shot = 0; v < in->n_views; v++) {
+      const ClothBundleView *view = &in->views[v];
 
-      for (guint v = 0; v < in->n_views; v++) {
-        const ClothShot *shot;
-
-        if (in->views[v].camera != c || in->views[v].pose != p)
-          continue;
-        shot = g_ptr_array_index (camera->shots, next[c]);
-        next[c]++;
-        if (isnan (result->view_rms[v]))
-          g_string_append_printf (s, "  %-12s %-24s unused, %u corners\n",
-              camera->name, shot->label, in->views[v].n);
-        else
-          g_string_append_printf (s, "  %-12s %-24s %.3f of %u\n",
-              camera->name, shot->label, result->view_rms[v], in->views[v].n);
-      }
+      shot = v > 0 && view->camera == view[-1].camera ? shot + 1 : 0;
+      if (!result->placed || view->pose == p)
+        add_view (s, in, result, g_ptr_array_index (cameras, view->camera), v,
+            shot);
     }
   }
 }
 
 /**
  * cloth_calibrate_report:
- * @input: what was calibrated; views of a camera in the order of its shots
+ * @input: what was calibrated; views camera by camera, in the order of the shots
  * @result: what came of it
  * @cameras: (element-type ClothShotCamera): where it came from
  *

@@ -7,6 +7,7 @@
 #include <gst/gst.h>
 #include <locale.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 

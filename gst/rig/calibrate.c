@@ -247,30 +247,31 @@ view_rms (const ClothBundle * b, guint v)
 }
 
 static gint
-compare (gconstpointer a, gconstpointer b)
+compare_doubles (gconstpointer a, gconstpointer b)
 {
   gdouble x = *(const gdouble *) a, y = *(const gdouble *) b;
 
   return (x > y) - (x < y);
 }
 
+/* Over the views whose poses other cameras see too; only these can contradict. */
 static gdouble
-median_view_rms (const ClothBundle * b)
+median_view_rms (const ClothBundle * b, const gboolean * shared)
 {
   g_autofree gdouble *rms = g_new (gdouble, b->n_views + 1);
   guint n = 0;
 
   for (guint v = 0; v < b->n_views; v++) {
-    if (b->views[v].use)
+    if (b->views[v].use && shared[v])
       rms[n++] = view_rms (b, v);
   }
-  qsort (rms, n, sizeof *rms, compare);
+  qsort (rms, n, sizeof *rms, compare_doubles);
   return n ? rms[n / 2] : NAN;
 }
 
 /* What each camera reaches without the others. */
 static gdouble
-median_alone (const Work * w)
+median_alone (const Work * w, const gboolean * shared)
 {
   g_autofree ClothBundleView *views =
       g_memdup2 (w->views, w->in->n_views * sizeof (ClothBundleView));
@@ -290,7 +291,22 @@ median_alone (const Work * w)
   b.views = views;
   b.n_poses = b.n_views;
   b.poses = w->view_poses;
-  return median_view_rms (&b);
+  return median_view_rms (&b, shared);
+}
+
+/* Which views show poses that several cameras see. */
+static gboolean *
+find_shared (const Work * w)
+{
+  guint n = w->in->n_views;
+  g_autofree guint *count = g_new0 (guint, w->in->n_poses + 1);
+  gboolean *shared = g_new0 (gboolean, n + 1);
+
+  for (guint v = 0; v < n; v++)
+    count[w->in->views[v].pose] += w->views[v].use;
+  for (guint v = 0; v < n; v++)
+    shared[v] = w->views[v].use && count[w->in->views[v].pose] > 1;
+  return shared;
 }
 
 /* Every view a pose of its own, in its camera's frame. */
@@ -326,13 +342,14 @@ static gboolean
 fit (Work * w, GError ** error)
 {
   ClothBundle *b = &w->bundle;
+  g_autofree gboolean *shared = find_shared (w);
   gboolean one = w->in->n_cameras == 1;
   gdouble alone, together;
 
   for (guint c = 0; c < b->n_cameras; c++)
     w->free_bits[c] = CLOTH_BUNDLE_FOCAL | CLOTH_BUNDLE_CENTRE
         | cloth_calibrate_lens_bits (b->cameras[c].lens);
-  alone = median_alone (w);
+  alone = median_alone (w, shared);
   if (w->params->share_lens)
     share_lens (w);
   if (w->params->intrinsics_only) {
@@ -350,7 +367,7 @@ fit (Work * w, GError ** error)
     w->excess[c] = fmax (w->excess[c], 0.5);
   if (!settle (w, "all cameras", error))
     return FALSE;
-  together = median_view_rms (b);
+  together = median_view_rms (b, shared);
   if (together > 3 * alone + 0.3)
     return bad (error, "the views don't fit one rigid rig: %.2f px together, "
         "%.2f px camera by camera; views of the same number must be taken at "
@@ -361,6 +378,7 @@ fit (Work * w, GError ** error)
 static void
 sum_up (const Work * w, ClothCalibration * result)
 {
+  g_autofree gboolean *shared = find_shared (w);
   gdouble total = 0;
   guint n = 0;
 
@@ -375,6 +393,7 @@ sum_up (const Work * w, ClothCalibration * result)
       result->view_rms[v] = view_rms (&w->bundle, v);
       camera->rms += result->view_rms[v] * result->view_rms[v] * w->views[v].n;
       camera->n_views++;
+      camera->n_shared += result->placed && shared[v];
       camera->n_points += w->views[v].n;
     }
     total += camera->rms;

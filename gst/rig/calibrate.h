@@ -71,6 +71,7 @@ typedef struct {
 /**
  * ClothCalibrateCamera:
  * @n_views: views used
+ * @n_shared: of these, views that other cameras saw at the same moment
  * @n_points: corners used
  * @rms: root mean square reprojection error, px: of the distance, over all corners used
  * @left_out_rms: the same on views that took no part in the fit but for their own pose; NaN
@@ -80,7 +81,7 @@ typedef struct {
  * Since: 0.1
  */
 typedef struct {
-  guint n_views, n_points;
+  guint n_views, n_shared, n_points;
   gdouble rms;
   gdouble left_out_rms;
   gdouble excess;
