@@ -35,8 +35,8 @@ pair=$root/tests/data/checker_pair
 
 heading "Real pictures of a board: calibration of the stereo pair"
 gst-cloth-calibrate-1.0 --pattern "$boards/pattern.json" \
-    --camera "left=$boards/left*.jpg" --camera "right=$boards/right*.jpg" \
-    --output "$out/boards-rig.json" | tee "$out/boards-report.txt"
+    --output "$out/boards-rig.json" \
+    "left=$boards/left*.jpg" "right=$boards/right*.jpg" | tee "$out/boards-report.txt"
 
 heading "Real pictures of a board: the squares found, drawn in"
 mkdir -p "$out/boards"
