@@ -610,7 +610,7 @@ grid_lines (Line * lines, gdouble scale, gint missing)
   return n;
 }
 
-/* Also with a picture half again as large as the calibration's. */
+/* Also with a picture three times as large as the calibration's. */
 GST_START_TEST (test_mesh)
 {
   g_autofree gchar *rig = write_rig ("");
@@ -621,7 +621,7 @@ GST_START_TEST (test_mesh)
         g_strdup_printf ("rig=%s line-width=1.5 %s", rig,
         pass ? "camera=left" : "");
     gint missing = pass == 2 ? 5 : -1;
-    gdouble scale = pass == 1 ? 1.5 : 1;
+    gdouble scale = pass == 1 ? 3 : 1;
     GstVideoInfo info;
     GstBuffer *buffer =
         picture ("I420", (gint) (80 * scale), (gint) (60 * scale), 3, &info);
