@@ -12,9 +12,9 @@
 
 static const gchar *const formats[] = {
   "GRAY8", "I420", "YV12", "NV12", "NV21", "Y41B", "Y42B", "Y444", "YUY2",
-      "UYVY",
+  "UYVY",
   "YVYU", "AYUV", "BGRx", "RGBx", "xBGR", "xRGB", "BGRA", "RGBA", "ABGR",
-      "ARGB",
+  "ARGB",
   "RGB", "BGR"
 };
 
@@ -728,6 +728,49 @@ GST_START_TEST (test_caps_query)
 
 GST_END_TEST;
 
+/* A flushing seek in a real pipeline: the frame asked for comes next, and the film goes
+ * on to its end. */
+GST_START_TEST (test_seek)
+{
+  GstElement *pipeline =
+      gst_parse_launch ("videotestsrc num-buffers=300 ! "
+      "video/x-raw,format=I420,width=32,height=32,framerate=30/1 ! clothoverlay ! "
+      "fakesink name=sink sync=false", NULL);
+  GstElement *sink = gst_bin_get_by_name (GST_BIN (pipeline), "sink");
+  GstBus *bus = gst_element_get_bus (pipeline);
+  GstSample *sample = NULL;
+  GstMessage *message;
+
+  gst_element_set_state (pipeline, GST_STATE_PAUSED);
+  fail_unless_equals_int (gst_element_get_state (pipeline, NULL, NULL,
+          GST_CLOCK_TIME_NONE), GST_STATE_CHANGE_SUCCESS);
+  fail_unless (gst_element_seek_simple (pipeline, GST_FORMAT_TIME,
+          GST_SEEK_FLAG_FLUSH | GST_SEEK_FLAG_ACCURATE, 5 * GST_SECOND));
+  fail_unless_equals_int (gst_element_get_state (pipeline, NULL, NULL,
+          GST_CLOCK_TIME_NONE), GST_STATE_CHANGE_SUCCESS);
+  g_object_get (sink, "last-sample", &sample, NULL);
+  fail_unless (sample != NULL);
+  fail_unless_equals_uint64 (GST_BUFFER_PTS (gst_sample_get_buffer (sample)),
+      5 * GST_SECOND);
+  gst_sample_unref (sample);
+
+  gst_element_set_state (pipeline, GST_STATE_PLAYING);
+  message = gst_bus_timed_pop_filtered (bus, GST_CLOCK_TIME_NONE,
+      GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
+  fail_unless_equals_int (GST_MESSAGE_TYPE (message), GST_MESSAGE_EOS);
+  gst_message_unref (message);
+  g_object_get (sink, "last-sample", &sample, NULL);
+  fail_unless (GST_BUFFER_PTS (gst_sample_get_buffer (sample)) >
+      9900 * GST_MSECOND);
+  gst_sample_unref (sample);
+  gst_element_set_state (pipeline, GST_STATE_NULL);
+  gst_object_unref (bus);
+  gst_object_unref (sink);
+  gst_object_unref (pipeline);
+}
+
+GST_END_TEST;
+
 /* ---- bad input ---- */
 
 GST_START_TEST (test_one_pixel)
@@ -962,6 +1005,7 @@ clothoverlay_suite (void)
   tcase_add_test (tc, test_mesh_pairing);
   tcase_add_test (tc, test_caps_change);
   tcase_add_test (tc, test_caps_query);
+  tcase_add_test (tc, test_seek);
   tcase_add_test (tc, test_one_pixel);
   tcase_add_test (tc, test_bad_coordinates);
   tcase_add_test (tc, test_degenerate_squares);
