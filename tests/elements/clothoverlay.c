@@ -516,7 +516,7 @@ GST_END_TEST;
 /* ---- mesh ---- */
 
 static gchar *
-write_rig (const gchar * extra_camera)
+write_rig (const gchar * extra_keys, const gchar * extra_camera)
 {
   gchar *path = NULL;
   gint fd = g_file_open_tmp ("cloth-overlay-XXXXXX.json", &path, NULL);
@@ -524,8 +524,8 @@ write_rig (const gchar * extra_camera)
       g_strdup_printf ("{\"version\": 1, \"cameras\": [{\"name\": \"left\", "
       "\"size\": [80, 60], \"K\": [[100, 0, 39.5], [0, 100, 29.5], [0, 0, 1]], "
       "\"distortion\": {\"model\": \"none\", \"coefficients\": []}, "
-      "\"R\": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], \"t\": [0, 0, 0]}%s]}",
-      extra_camera);
+      "\"R\": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], \"t\": [0, 0, 0]%s}%s]}",
+      extra_keys, extra_camera);
 
   fail_unless (fd >= 0);
   g_close (fd, NULL);
@@ -613,7 +613,7 @@ grid_lines (Line * lines, gdouble scale, gint missing)
 /* Also with a picture three times as large as the calibration's. */
 GST_START_TEST (test_mesh)
 {
-  g_autofree gchar *rig = write_rig ("");
+  g_autofree gchar *rig = write_rig ("", "");
   gint pass;
 
   for (pass = 0; pass < 3; pass++) {
@@ -647,7 +647,7 @@ GST_END_TEST;
 /* Pictures without a mesh pass, meshes without a picture are dropped. */
 GST_START_TEST (test_mesh_pairing)
 {
-  g_autofree gchar *rig = write_rig ("");
+  g_autofree gchar *rig = write_rig ("", "");
   g_autofree gchar *properties = g_strdup_printf ("rig=%s", rig);
   GstVideoInfo info;
   GstBuffer *buffer = picture ("I420", 80, 60, 0, &info), *out;
@@ -671,6 +671,31 @@ GST_START_TEST (test_mesh_pairing)
   gst_harness_push (h, buffer);
   out = gst_harness_pull (h);
   fail_unless_equals_uint64 (GST_BUFFER_PTS (out), 3 * GST_SECOND);
+  gst_buffer_unref (out);
+  gst_harness_teardown (m);
+  gst_harness_teardown (h);
+  g_unlink (rig);
+}
+
+GST_END_TEST;
+
+/* Meshes are in the rig's time; this camera's clock is half a second ahead of it. */
+GST_START_TEST (test_camera_offset)
+{
+  g_autofree gchar *rig = write_rig (", \"offset_s\": 0.5", "");
+  g_autofree gchar *properties = g_strdup_printf ("rig=%s", rig);
+  GstVideoInfo info;
+  GstBuffer *buffer = picture ("I420", 80, 60, 0, &info), *out;
+  GstHarness *h = overlay (properties, &info), *m = mesh_pad (h);
+  Line lines[40];
+  guint n = grid_lines (lines, 1, -1);
+
+  GST_BUFFER_PTS (buffer) = 500 * GST_MSECOND;
+  gst_harness_push (h, buffer);
+  gst_harness_push (m, mesh_buffer (COLUMNS * ROWS, -1));       /* at 0 s */
+  out = gst_harness_pull (h);
+  fail_unless_equals_uint64 (GST_BUFFER_PTS (out), 500 * GST_MSECOND);
+  fail_unless (check_lines (out, &info, lines, n, 1.5) > 400);
   gst_buffer_unref (out);
   gst_harness_teardown (m);
   gst_harness_teardown (h);
@@ -920,7 +945,7 @@ GST_END_TEST;
 
 GST_START_TEST (test_which_camera)
 {
-  g_autofree gchar *rig = write_rig (second_camera);
+  g_autofree gchar *rig = write_rig ("", second_camera);
   g_autofree gchar *none = g_strdup_printf ("rig=%s", rig);
   g_autofree gchar *wrong = g_strdup_printf ("rig=%s camera=middle", rig);
 
@@ -935,7 +960,7 @@ GST_END_TEST;
 
 GST_START_TEST (test_other_shape)
 {
-  g_autofree gchar *rig = write_rig ("");
+  g_autofree gchar *rig = write_rig ("", "");
   g_autofree gchar *properties = g_strdup_printf ("rig=%s", rig);
 
   expect_error (properties, 60, 80, mesh_buffer (COLUMNS * ROWS, -1), 0,
@@ -947,7 +972,7 @@ GST_END_TEST;
 
 GST_START_TEST (test_bad_mesh)
 {
-  g_autofree gchar *rig = write_rig ("");
+  g_autofree gchar *rig = write_rig ("", "");
   g_autofree gchar *properties = g_strdup_printf ("rig=%s", rig);
   GstBuffer *garbage = gst_buffer_new_memdup ("garbage", 7);
 
@@ -1003,6 +1028,7 @@ clothoverlay_suite (void)
   tcase_add_test (tc, test_indices);
   tcase_add_test (tc, test_mesh);
   tcase_add_test (tc, test_mesh_pairing);
+  tcase_add_test (tc, test_camera_offset);
   tcase_add_test (tc, test_caps_change);
   tcase_add_test (tc, test_caps_query);
   tcase_add_test (tc, test_seek);
