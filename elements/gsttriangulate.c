@@ -46,7 +46,8 @@ GST_DEBUG_CATEGORY_STATIC (triangulate_debug);
 
 #define DEFAULT_THRESHOLD 4.0
 #define DEFAULT_MAX_ERROR 0.0
-#define DEFAULT_ERROR_FLOOR 0.0
+/* (0.1 px)²: what a good calibration and a film's compression leave. */
+#define DEFAULT_ERROR_FLOOR 0.01
 #define DEFAULT_HUBER 2.0
 #define DEFAULT_THREADS 0
 #define MAX_THREADS 64
@@ -74,7 +75,7 @@ struct _GstTriangulate
   ClothPool *pool;
   guint n_vertices;
   ClothMerge *merge[CLOTH_RIG_MAX_CAMERAS];
-  gdouble threshold;
+  gdouble threshold, error_floor;
   GstTriangulateView view[GST_CLOTH_SYNC_MAX_PADS];
   gfloat *positions, *covariances;
   guint64 sequence;
@@ -256,6 +257,7 @@ gst_triangulate_apply_parameters (GstTriangulate * self)
     return TRUE;
   }
   self->threshold = parameters.threshold;
+  self->error_floor = parameters.error_floor;
   cloth_triangulator_set_parameters (self->triangulator, &parameters);
   if (threads == 0) {
     threads = MIN (g_get_num_processors (), MAX_THREADS);
@@ -512,7 +514,8 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
     if (!gst_triangulate_take_quads (self, i, quads[i], self->merge[camera])) {
       goto done;
     }
-    cloth_merge_finish (self->merge[camera], self->threshold, &seen[camera]);
+    cloth_merge_finish (self->merge[camera], self->threshold,
+        self->error_floor, &seen[camera]);
   }
   ret = gst_triangulate_make_mesh (self, seen, out);
   if (ret == GST_FLOW_OK && stamp) {
@@ -729,8 +732,9 @@ gst_triangulate_class_init (GstTriangulateClass * klass)
    */
   g_object_class_install_property (object_class, PROP_ERROR_FLOOR,
       g_param_spec_double ("error-floor", "Error floor",
-          "Variance in px² added to every corner's own: what calibration and lens "
-          "model leave", 0.0, 1e6, DEFAULT_ERROR_FLOOR, flags));
+          "Variance in px² added to every corner's own, which knows of the "
+          "picture's noise only: what calibration, lens model and compression "
+          "leave", 0.0, 1e6, DEFAULT_ERROR_FLOOR, flags));
   /**
    * GstTriangulate:huber:
    *

@@ -111,7 +111,8 @@ cloth_merge_add (ClothMerge * self, guint point, gdouble x, gdouble y,
 
 /* FALSE when they contradict each other. */
 static gboolean
-merge (const Estimate * estimates, guint n, gdouble threshold, Estimate * out)
+merge (const Estimate * estimates, guint n, gdouble threshold,
+    gdouble error_floor, Estimate * out)
 {
   gdouble a = 0., b = 0., c = 0., p = 0., q = 0., det;
 
@@ -135,10 +136,11 @@ merge (const Estimate * estimates, guint n, gdouble threshold, Estimate * out)
   for (guint i = 0; i < n; i++) {
     const Estimate *e = &estimates[i];
     gdouble x = e->x - out->x, y = e->y - out->y;
-    gdouble d = e->cov[0] * e->cov[2] - e->cov[1] * e->cov[1];
+    gdouble xx = e->cov[0] + error_floor, yy = e->cov[2] + error_floor;
+    gdouble d = xx * yy - e->cov[1] * e->cov[1];
 
     /* false also when it is NaN */
-    if (!(x * x * e->cov[2] - 2. * x * y * e->cov[1] + y * y * e->cov[0] <=
+    if (!(x * x * yy - 2. * x * y * e->cov[1] + y * y * xx <=
             threshold * threshold * d))
       return FALSE;
   }
@@ -150,6 +152,8 @@ merge (const Estimate * estimates, guint n, gdouble threshold, Estimate * out)
  * @self: estimates of a picture
  * @threshold: distance from the common place, in an estimate's own standard deviations,
  *   above which the estimates contradict each other
+ * @error_floor: variance on top of an estimate's own, px², in that comparison; it is not
+ *   in the merged covariance
  * @view: (out): what the picture says of each point; its arrays belong to @self until
  *   the next cloth_merge_finish ()
  *
@@ -163,7 +167,7 @@ merge (const Estimate * estimates, guint n, gdouble threshold, Estimate * out)
  */
 void
 cloth_merge_finish (ClothMerge * self, gdouble threshold,
-    ClothTriangulateView * view)
+    gdouble error_floor, ClothTriangulateView * view)
 {
   gdouble *plane[5];
 
@@ -175,7 +179,8 @@ cloth_merge_finish (ClothMerge * self, gdouble threshold,
 
     if (self->n[i] == 1)
       one = have[0];
-    else if (self->n[i] > 1 && !merge (have, self->n[i], threshold, &one))
+    else if (self->n[i] > 1 && !merge (have, self->n[i], threshold, error_floor,
+            &one))
       one.x = one.y = NAN;
     plane[0][i] = one.x;
     plane[1][i] = one.y;

@@ -15,7 +15,7 @@ void cloth_merge_clear (ClothMerge * self);
 void cloth_merge_add (ClothMerge * self, guint point, gdouble x, gdouble y,
     const gdouble cov[3]);
 void cloth_merge_finish (ClothMerge * self, gdouble threshold,
-    ClothTriangulateView * view);
+    gdouble error_floor, ClothTriangulateView * view);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothMerge, cloth_merge_free)
 G_END_DECLS

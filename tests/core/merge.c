@@ -41,7 +41,7 @@ test_merge (void)
     /* 8: the same place, of other covariance */
     cloth_merge_add (merge, 8, 1., 2., small);
     cloth_merge_add (merge, 8, 1., 2., large);
-    cloth_merge_finish (merge, 4., &view);
+    cloth_merge_finish (merge, 4., 0., &view);
 
     NEAR (view.x[0], 10.);
     NEAR (view.y[0], 20.);
@@ -73,6 +73,10 @@ test_merge (void)
     NEAR (view.yy[6], 1.);
     NEAR (view.x[8], 1.);
     NEAR (view.xx[8], 1.5);
+    /* 5 px from the middle: with a variance of 1 + 1 they agree within 4 σ */
+    cloth_merge_finish (merge, 4., 1., &view);
+    NEAR (view.x[4], 5.);
+    NEAR (view.xx[4], 1.);
   }
   cloth_merge_free (NULL);
 }
