@@ -68,7 +68,8 @@ add_camera (GString * s, const ClothCalibration * result, guint c,
       quality->n_points);
   if (result->placed && result->rig->n_cameras > 1)
     g_string_append_printf (s, ", %u views shared with other cameras%s",
-        quality->n_shared, quality->n_shared < 3 ? " – too few to check" : "");
+        quality->n_shared,
+        quality->n_shared < 3 ? " – too few to check" : "");
   g_string_append_c (s, '\n');
   add_rms (s, "  RMS", quality->rms);
   add_rms (s, ", on views left out of the fit", quality->left_out_rms);

@@ -163,11 +163,36 @@ show_fit (const gchar * stage, gdouble fraction, gpointer user_data)
     g_printerr ("\r\033[Kcalibrating: %s %.0f%%", stage, 100 * fraction);
 }
 
+/* Turns after which a plain board looks the same: half a turn, or any quarter. */
+static void
+add_symmetries (const ClothPattern * pattern, GArray * symmetries)
+{
+  gint columns = pattern->columns, rows = pattern->rows;
+
+  for (gint quarters = 1; quarters < 4 && !pattern->code; quarters++) {
+    gboolean odd = quarters & 1;
+    /* Onto which square the first one comes. */
+    gint c = quarters == 3 ? 0 : columns - 1, r = quarters == 1 ? 0 : rows - 1;
+
+    if ((odd && columns != rows)
+        || cloth_pattern_is_black (pattern, c, r) != !!pattern->first_black)
+      continue;
+    for (gint i = 0; i < (columns + 1) * (rows + 1); i++) {
+      gint x = i % (columns + 1), y = i / (columns + 1);
+      gint u = quarters == 1 ? rows - y : quarters == 2 ? columns - x : y;
+      gint v = quarters == 1 ? x : quarters == 2 ? rows - y : columns - x;
+      guint to = (guint) (v * (columns + 1) + u);
+
+      g_array_append_val (symmetries, to);
+    }
+  }
+}
+
 /* The input of a calibration, over the shots' own arrays. */
 static void
 fill_input (GPtrArray * cameras, const ClothPattern * pattern, ClothLens lens,
     ClothCalibrateInput * in, GArray * views, GArray * numbers, ClothRig * rig,
-    GArray * board)
+    GArray * board, GArray * symmetries)
 {
   for (gint i = 0; i < (pattern->columns + 1) * (pattern->rows + 1); i++) {
     gdouble X[3] = { i % (pattern->columns + 1) * pattern->square_m,
@@ -222,6 +247,9 @@ fill_input (GPtrArray * cameras, const ClothPattern * pattern, ClothLens lens,
   in->n_poses = numbers->len;
   in->n_views = views->len;
   in->views = (const ClothBundleView *) views->data;
+  add_symmetries (pattern, symmetries);
+  in->n_symmetries = symmetries->len / in->n_vertices;
+  in->symmetries = (const guint *) symmetries->data;
 }
 
 static gint
@@ -232,6 +260,7 @@ calibrate (const Arguments * a, GPtrArray * cameras,
       sizeof (ClothBundleView));
   g_autoptr (GArray) numbers = g_array_new (FALSE, FALSE, sizeof (gint64));
   g_autoptr (GArray) board = g_array_new (FALSE, FALSE, sizeof (gdouble));
+  g_autoptr (GArray) symmetries = g_array_new (FALSE, FALSE, sizeof (guint));
   g_autoptr (ClothRig) rig = cloth_rig_new (cameras->len);
   g_autoptr (ClothCalibration) result = NULL;
   g_autoptr (GError) error = NULL;
@@ -239,7 +268,8 @@ calibrate (const Arguments * a, GPtrArray * cameras,
   ClothCalibrateInput in;
   ClothCalibrateParams params;
 
-  fill_input (cameras, pattern, lens, &in, views, numbers, rig, board);
+  fill_input (cameras, pattern, lens, &in, views, numbers, rig, board,
+      symmetries);
   cloth_calibrate_params_init (&params);
   params.share_lens = a->share_lens;
   params.intrinsics_only = a->intrinsics_only;

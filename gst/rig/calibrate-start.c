@@ -344,11 +344,12 @@ distance (const gdouble A[12], const gdouble B[12])
   return turned + sqrt (moved / fmax (size, 1e-300));
 }
 
-/* From camera a to camera b: of what their common poses say, the one nearest to all
- * others. Returns how many poses they share. */
+/* From one camera to another: of what their common poses say, the one nearest to what all
+ * of them say. Where the board looks the same after a turn, each pose says several things,
+ * and only the right ones agree with other poses. Returns how many poses they share. */
 static guint
-pair (const ClothBundle * b, const gdouble * view_poses, guint from, guint to,
-    gdouble best[12])
+pair (const ClothBundle * b, const gdouble * view_poses, guint n_turns,
+    const gdouble * turns, guint from, guint to, gdouble best[12])
 {
   g_autoptr (GArray) all = g_array_new (FALSE, FALSE, 12 * sizeof (gdouble));
   gdouble best_sum = HUGE_VAL;
@@ -356,33 +357,46 @@ pair (const ClothBundle * b, const gdouble * view_poses, guint from, guint to,
   for (guint u = 0; u < b->n_views; u++) {
     for (guint v = 0; b->views[u].use && b->views[u].camera == from
         && v < b->n_views; v++) {
-      gdouble T[12];
-
       if (!b->views[v].use || b->views[v].camera != to
           || b->views[v].pose != b->views[u].pose)
         continue;
-      relative (view_poses + 12 * (gsize) u, view_poses + 12 * (gsize) v, T);
-      g_array_append_vals (all, T, 1);
+      for (guint k = 0; k < n_turns; k++) {
+        gdouble P[12], T[12];
+
+        compose (view_poses + 12 * (gsize) v, turns + 12 * k, P);
+        relative (view_poses + 12 * (gsize) u, P, T);
+        g_array_append_vals (all, T, 1);
+      }
     }
   }
   for (guint i = 0; i < all->len; i++) {
     const gdouble *T = (const gdouble *) all->data + 12 * i;
     gdouble sum = 0;
 
-    for (guint j = 0; j < all->len; j++)
-      sum += distance (T, (const gdouble *) all->data + 12 * j);
+    for (guint j = 0; j < all->len; j += n_turns) {
+      gdouble least = HUGE_VAL;
+
+      for (guint k = 0; k < n_turns; k++)
+        least = fmin (least, distance (T, (const gdouble *) all->data
+                + 12 * (j + k)));
+      sum += least;
+    }
     if (sum < best_sum) {
       best_sum = sum;
       memcpy (best, T, 12 * sizeof (gdouble));
     }
   }
-  return all->len;
+  return all->len / n_turns;
 }
 
 /**
  * cloth_calibrate_place:
  * @bundle: (inout): R and t of the cameras and all poses are written
- * @view_poses: 12 numbers a view: board to the view's camera
+ * @view_poses: (inout): 12 numbers a view: board to the view's camera
+ * @n_turns: ways to lay the board that look the same, 1 or more
+ * @turns: 12 numbers each: the board's motion, the first one none
+ * @turned: (out caller-allocates): for each view which of @turns comes before the pose
+ *   that was found, so that views of the same pose agree; @view_poses have it applied
  * @error: #ClothRigError, naming the cameras that share no view with the others
  *
  * Places the cameras relative to the first one along a spanning tree that joins the
@@ -393,8 +407,8 @@ pair (const ClothBundle * b, const gdouble * view_poses, guint from, guint to,
  * Since: 0.1
  */
 gboolean
-cloth_calibrate_place (ClothBundle * bundle, const gdouble * view_poses,
-    GError ** error)
+cloth_calibrate_place (ClothBundle * bundle, gdouble * view_poses,
+    guint n_turns, const gdouble * turns, guint * turned, GError ** error)
 {
   guint n = bundle->n_cameras;
   g_autofree gboolean *placed = g_new0 (gboolean, n);
@@ -406,7 +420,7 @@ cloth_calibrate_place (ClothBundle * bundle, const gdouble * view_poses,
   for (guint a = 0; a < n; a++) {
     for (guint b = 0; b < n; b++) {
       if (a != b)
-        shared[a * n + b] = pair (bundle, view_poses, a, b,
+        shared[a * n + b] = pair (bundle, view_poses, n_turns, turns, a, b,
             steps + 12 * ((gsize) a * n + b));
     }
   }
@@ -458,6 +472,29 @@ cloth_calibrate_place (ClothBundle * bundle, const gdouble * view_poses,
     relative (T + 12 * view->camera, identity, inverse);
     compose (inverse, view_poses + 12 * (gsize) v,
         bundle->poses + 12 * (gsize) view->pose);
+  }
+  for (guint v = 0; v < bundle->n_views; v++) {
+    const ClothBundleView *view = &bundle->views[v];
+    gdouble seen[12], turn[12], best[12], least = HUGE_VAL;
+    gdouble *pose = view_poses + 12 * (gsize) v;
+
+    turned[v] = 0;
+    if (!view->use)
+      continue;
+    compose (T + 12 * view->camera, bundle->poses + 12 * (gsize) view->pose,
+        seen);
+    for (guint k = 0; k < n_turns; k++) {
+      gdouble d;
+
+      compose (pose, turns + 12 * k, turn);
+      d = distance (seen, turn);
+      if (d < least) {
+        least = d;
+        turned[v] = k;
+        memcpy (best, turn, sizeof best);
+      }
+    }
+    memcpy (pose, best, sizeof best);
   }
   return TRUE;
 }

@@ -11,8 +11,8 @@ gboolean cloth_calibrate_alone (ClothCamera * camera, guint n_views,
     const ClothBundleView * views, const gdouble * board, gdouble huber,
     guint max_iterations, gdouble * poses, gdouble * excess,
     GCancellable * cancellable, GError ** error);
-gboolean cloth_calibrate_place (ClothBundle * bundle,
-    const gdouble * view_poses, GError ** error);
+gboolean cloth_calibrate_place (ClothBundle * bundle, gdouble * view_poses,
+    guint n_turns, const gdouble * turns, guint * turned, GError ** error);
 guint cloth_calibrate_lens_bits (ClothLens lens);
 
 G_END_DECLS

@@ -28,6 +28,7 @@ typedef struct
   gdouble *poses;
   gdouble *excess;
   guint *free_bits;
+  GPtrArray *renumbered;        /* vertices of views, owned */
   ClothRig *rig;
   ClothBundle bundle;
   ClothCalibrateProgress progress;
@@ -75,6 +76,7 @@ work_clear (Work * w)
   g_free (w->poses);
   g_free (w->excess);
   g_free (w->free_bits);
+  g_clear_pointer (&w->renumbered, g_ptr_array_unref);
   cloth_rig_free (w->rig);
 }
 
@@ -154,6 +156,11 @@ check_input (const ClothCalibrateInput * in,
     if (!isfinite (in->board[i]) || (i % 3 == 2 && in->board[i] != 0))
       return bad (error, "vertex %u of the board is not finite or not at 0 "
           "height", i / 3);
+  }
+  for (guint i = 0; i < in->n_symmetries * in->n_vertices; i++) {
+    if (in->symmetries[i] >= in->n_vertices)
+      return bad (error, "symmetry %u: vertex %u is out of range",
+          i / in->n_vertices, in->symmetries[i]);
   }
   for (guint v = 0; v < in->n_views; v++) {
     if (!check_view (in, v, error))
@@ -338,6 +345,64 @@ share_lens (Work * w)
   }
 }
 
+/* The motions of the board that its symmetries are, after none: 12 numbers each. */
+static gdouble *
+find_turns (const ClothCalibrateInput * in)
+{
+  gdouble *turns = g_new0 (gdouble, 12 * (in->n_symmetries + 1));
+  gdouble middle[2] = { 0, 0 };
+
+  for (guint i = 0; i < in->n_vertices; i++) {
+    middle[0] += in->board[3 * i] / in->n_vertices;
+    middle[1] += in->board[3 * i + 1] / in->n_vertices;
+  }
+  for (guint k = 0; k <= in->n_symmetries; k++) {
+    const gdouble *X = in->board, *Y = in->board;
+    gdouble *T = turns + 12 * k, angle;
+
+    /* The inverse motion is the one that comes before the pose that was found. */
+    if (k > 0)
+      Y += 3 * (gsize) in->symmetries[(gsize) (k - 1) * in->n_vertices];
+    angle = k == 0 ? 0 : atan2 (X[1] - middle[1], X[0] - middle[0])
+        - atan2 (Y[1] - middle[1], Y[0] - middle[0]);
+    T[0] = T[4] = cos (angle);
+    T[3] = sin (angle);
+    T[1] = -T[3];
+    T[8] = 1;
+    T[9] = middle[0] - T[0] * middle[0] - T[1] * middle[1];
+    T[10] = middle[1] - T[3] * middle[0] - T[4] * middle[1];
+  }
+  return turns;
+}
+
+/* Places the cameras and lets the views of each pose number the board alike. */
+static gboolean
+place (Work * w, GError ** error)
+{
+  const ClothCalibrateInput *in = w->in;
+  g_autofree gdouble *turns = find_turns (in);
+  g_autofree guint *turned = g_new0 (guint, in->n_views + 1);
+
+  if (!cloth_calibrate_place (&w->bundle, w->view_poses, in->n_symmetries + 1,
+          turns, turned, error))
+    return FALSE;
+  w->renumbered = g_ptr_array_new_with_free_func (g_free);
+  for (guint v = 0; v < in->n_views; v++) {
+    ClothBundleView *view = &w->views[v];
+    guint *vertex;
+
+    if (turned[v] == 0)
+      continue;
+    vertex = g_new (guint, view->n);
+    for (guint i = 0; i < view->n; i++)
+      vertex[i] = in->symmetries[(gsize) (turned[v] - 1) * in->n_vertices
+          + view->vertex[i]];
+    g_ptr_array_add (w->renumbered, vertex);
+    view->vertex = vertex;
+  }
+  return TRUE;
+}
+
 static gboolean
 fit (Work * w, GError ** error)
 {
@@ -349,15 +414,17 @@ fit (Work * w, GError ** error)
   for (guint c = 0; c < b->n_cameras; c++)
     w->free_bits[c] = CLOTH_BUNDLE_FOCAL | CLOTH_BUNDLE_CENTRE
         | cloth_calibrate_lens_bits (b->cameras[c].lens);
-  alone = median_alone (w, shared);
-  if (w->params->share_lens)
-    share_lens (w);
   if (w->params->intrinsics_only) {
+    if (w->params->share_lens)
+      share_lens (w);
     separate (w);
     return settle (w, "intrinsics", error);
   }
-  if (!cloth_calibrate_place (b, w->view_poses, error))
+  if (!place (w, error))
     return FALSE;
+  alone = median_alone (w, shared);
+  if (w->params->share_lens)
+    share_lens (w);
   if (one)
     return settle (w, "refinement", error);
 

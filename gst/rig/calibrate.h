@@ -18,6 +18,10 @@ G_BEGIN_DECLS
  *   at the same moment
  * @n_views: views
  * @views: (array length=n_views): what each camera saw in each pose; at most one each
+ * @n_symmetries: turns after which the board looks the same, 0 for none
+ * @symmetries: (array) (nullable): for each of them @n_vertices numbers: the vertex that
+ *   each vertex is turned onto. Cameras may have numbered the same pose from different
+ *   ends; they are brought to agree
  *
  * Since: 0.1
  */
@@ -29,6 +33,8 @@ typedef struct {
   guint n_poses;
   guint n_views;
   const ClothBundleView *views;
+  guint n_symmetries;
+  const guint *symmetries;
 } ClothCalibrateInput;
 
 /**

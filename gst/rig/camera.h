@@ -40,7 +40,7 @@ typedef enum {
  * @offset_s: this camera's time minus the rig's, s
  * @K_sd: standard deviations of fx, fy, cx, cy, px; 0 when unknown
  * @k_sd: standard deviations of @k
- * @r_sd: standard deviations of the rotation vector, rad
+ * @r_sd: standard deviations of a small rotation about the camera's axes, rad
  * @t_sd: standard deviations of @t, m
  *
  * Since: 0.1

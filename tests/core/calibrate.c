@@ -532,6 +532,86 @@ test_outliers (void)
   }
 }
 
+static void
+assert_fails (Problem * p, const ClothCalibrateParams * custom,
+    const gchar * says)
+{
+  ClothCalibrateParams params;
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothCalibration) result = NULL;
+
+  cloth_calibrate_params_init (&params);
+  result = cloth_calibrate (&p->input, custom ? custom : &params, NULL, NULL,
+      NULL, &error);
+  g_assert_null (result);
+  g_test_message ("%s", error->message);
+  g_assert_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_VALUE);
+  g_assert_nonnull (strstr (error->message, says));
+}
+
+/* A square board that looks the same after each quarter turn, numbered by each camera from
+ * whichever corner. */
+static void
+test_symmetric (void)
+{
+  ClothRandom random;
+  ClothCamera truth[4] = { 0, };
+  guint turns[3][64];
+  g_auto (Problem) p;
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothCalibration) result = NULL;
+  ClothCalibrateParams params;
+  gdouble R[9], Rt[3], worst = 0;
+
+  cloth_random_init (&random, 11);
+  problem_init (&p, 3, 8, 8, 0.03, 15);
+  true_rig (p.cameras);
+  memcpy (truth, p.cameras, 3 * sizeof *truth);
+  for (guint i = 0; i < 64; i++) {
+    turns[0][i] = i % 8 * 8 + 7 - i / 8;
+    turns[1][i] = 63 - i;
+    turns[2][i] = (7 - i % 8) * 8 + i / 8;
+  }
+  for (guint v = 0; v < 15; v++) {
+    gdouble P[12];
+
+    true_pose (&random, 0.7, P);
+    for (guint c = 0; c < 3; c++) {
+      guint turn = cloth_random_below (&random, 4);
+      ClothBundleView *view;
+
+      see (&p, &truth[c], c, v, P, &random, 0.05, FALSE);
+      view = &g_array_index (p.views, ClothBundleView, p.views->len - 1);
+      for (guint i = 0; turn > 0 && i < view->n; i++)
+        ((guint *) view->vertex)[i] = turns[turn - 1][view->vertex[i]];
+    }
+  }
+  cloth_calibrate_params_init (&params);
+  g_assert_null (cloth_calibrate (&p.input, &params, NULL, NULL, NULL, &error));
+  g_assert_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_VALUE);
+  g_clear_error (&error);
+  p.input.n_symmetries = 3;
+  p.input.symmetries = turns[0];
+  result = cloth_calibrate (&p.input, &params, NULL, NULL, NULL, &error);
+  g_assert_no_error (error);
+  for (guint c = 1; c < 3; c++) {
+    const ClothCamera *a = &result->rig->cameras[0];
+    const ClothCamera *b = &result->rig->cameras[c];
+
+    cloth_mat3_mul_nt (b->R, a->R, R);
+    cloth_mat3_vec (R, a->t, Rt);
+    for (gint i = 0; i < 3; i++)
+      worst = fmax (worst, fabs (b->t[i] - Rt[i] - truth[c].t[i])
+          / b->t_sd[i]);
+  }
+  g_test_message ("RMS %.4f px, cameras placed within %.1f σ", result->rms,
+      worst);
+  g_assert_cmpfloat (result->rms, <, 0.1);
+  g_assert_cmpfloat (worst, <, 4);
+  turns[2][5] = 64;
+  assert_fails (&p, NULL, "symmetry 2: vertex 64 is out of range");
+}
+
 /* The board as world: its first pose is the plane z = 0, the cameras above it. */
 static void
 test_world (void)
@@ -573,23 +653,6 @@ test_world (void)
         sizeof camera->k);
   }
   g_assert_true (isnan (result->left_out_rms));
-}
-
-static void
-assert_fails (Problem * p, const ClothCalibrateParams * custom,
-    const gchar * says)
-{
-  ClothCalibrateParams params;
-  g_autoptr (GError) error = NULL;
-  g_autoptr (ClothCalibration) result = NULL;
-
-  cloth_calibrate_params_init (&params);
-  result = cloth_calibrate (&p->input, custom ? custom : &params, NULL, NULL,
-      NULL, &error);
-  g_assert_null (result);
-  g_test_message ("%s", error->message);
-  g_assert_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_VALUE);
-  g_assert_nonnull (strstr (error->message, says));
 }
 
 /* Poses @first to @last of the corners of both cameras of the real pair. */
@@ -744,6 +807,7 @@ main (int argc, char **argv)
   g_test_add_func ("/calibrate/exact", test_exact);
   g_test_add_func ("/calibrate/deviations", test_deviations);
   g_test_add_func ("/calibrate/outliers", test_outliers);
+  g_test_add_func ("/calibrate/symmetric", test_symmetric);
   g_test_add_func ("/calibrate/world", test_world);
   g_test_add_func ("/calibrate/bad", test_bad);
   g_test_add_data_func ("/calibrate/straight", &straight, test_parallel);
