@@ -354,7 +354,8 @@ covariance (const ClothCornerWindow * win, const Evaluation * e,
  * (Golub & Pereyra 1973) with Levenberg's damping; the noise is that of the residual.
  *
  * Returns: FALSE when the fit doesn't settle near its start, when the edges are within
- *   6 degrees of each other or when the window holds too few pixels.
+ *   6 degrees of each other, when the window holds too few pixels or when the corner is
+ *   uncertain by more than @params lets it move.
  *
  * Since: 0.1
  */
@@ -366,7 +367,7 @@ cloth_corner_refine (const ClothImage * image, gfloat x, gfloat y,
   Evaluation best, next;
   gfloat radius = params->radius > 2 ? MIN (params->radius, 12.0f) : 2.0f;
   gfloat sum_weights = 0, mean = 0, low = G_MAXFLOAT, high = -G_MAXFLOAT;
-  gdouble damping = 1e-3, moved = 0;
+  gdouble damping = 1e-4, moved = 0;
   gboolean settled = FALSE;
   gint ix, iy, evaluations = 1;
 
@@ -407,8 +408,9 @@ cloth_corner_refine (const ClothImage * image, gfloat x, gfloat y,
     evaluations++;
     if (next.cost <= best.cost * 1.000001f) {
       best = next;
-      damping = MAX (damping * 0.1, 1e-6);
-      settled = moved < 2e-3;
+      /* A damped step is short in the directions that are hardly known. */
+      settled = moved < 2e-3 && damping < 2e-5;
+      damping = MAX (damping * 0.1, 1e-7);
     } else {
       damping *= 10;
       settled = moved < 1e-4;
@@ -446,5 +448,7 @@ cloth_corner_refine (const ClothImage * image, gfloat x, gfloat y,
   }
   fit->contrast = high - low;
   fit->iterations = evaluations;
-  return TRUE;
+  /* A corner that can't be told from the noise is none. */
+  return fit->contrast >= 1
+      && fit->cov[0] + fit->cov[2] < params->max_shift * params->max_shift;
 }
