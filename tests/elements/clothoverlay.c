@@ -11,7 +11,8 @@
 #define FILL 128
 
 static const gchar *const formats[] = {
-  "GRAY8", "I420", "YV12", "NV12", "NV21", "Y41B", "Y42B", "Y444", "YUY2",
+  "GRAY8", "I420", "YV12", "NV12", "NV21", "Y42B", "NV16", "NV61", "Y444",
+  "NV24", "Y41B", "YUV9", "YVU9", "A420", "YUY2",
   "UYVY",
   "YVYU", "AYUV", "BGRx", "RGBx", "xBGR", "xRGB", "BGRA", "RGBA", "ABGR",
   "ARGB",
