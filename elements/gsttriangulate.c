@@ -30,6 +30,8 @@
 #endif
 
 #include "elements/gsttriangulate.h"
+#include "elements/gsttriangulateboard.h"
+#include "elements/gsttriangulatecheck.h"
 #include "elements/gsttriangulatepad.h"
 #include "elements/gsttriangulateviews.h"
 
@@ -51,9 +53,6 @@ GST_DEBUG_CATEGORY_STATIC (triangulate_debug);
 #define DEFAULT_HUBER 2.0
 #define DEFAULT_THREADS 0
 #define MAX_THREADS 64
-/* Sets after which the lack of any metadata is reported. */
-#define SETS_WITHOUT_QUADS 25
-
 #define SINK_CAPS "video/x-raw(ANY), width=(int)[ 1, 16384 ], " \
     "height=(int)[ 1, 16384 ]; " GST_CLOTH_OBSERVATIONS_CAPS
 
@@ -79,7 +78,7 @@ struct _GstTriangulate
   GstTriangulateView view[GST_CLOTH_SYNC_MAX_PADS];
   gfloat *positions, *covariances;
   guint64 sequence;
-  guint n_without;
+  GstTriangulateCheck check;
 };
 
 enum
@@ -166,9 +165,7 @@ gst_triangulate_load_pattern (GstTriangulate * self)
   g_autofree gchar *location = NULL;
   g_autoptr (GError) error = NULL;
   g_autoptr (ClothPattern) pattern = NULL;
-  g_autofree gfloat *uv = NULL;
   GstClothTopology *topology;
-  guint columns, rows, i;
 
   GST_OBJECT_LOCK (self);
   location = g_strdup (self->pattern_location);
@@ -189,49 +186,24 @@ gst_triangulate_load_pattern (GstTriangulate * self)
         ("Set pattern to a pattern.json; it is now \"%s\".", location));
     return FALSE;
   }
-  columns = (guint) pattern->columns + 1;
-  rows = (guint) pattern->rows + 1;
-  uv = g_new (gfloat, 2 * (gsize) columns * rows);
-  for (i = 0; i < columns * rows; i++) {
-    uv[2 * i] = (gfloat) (pattern->origin_uv_m[0] +
-        (i % columns) * pattern->square_m);
-    uv[2 * i + 1] = (gfloat) (pattern->origin_uv_m[1] +
-        (i / columns) * pattern->square_m);
-  }
-  {
-    g_autoptr (GstClothTopology) grid = NULL;
-    const guint32 *faces;
-    guint n_indices;
-
-    /* the faces of a regular grid, at the board's place on the cloth */
-    grid = gst_cloth_topology_new_grid (columns, rows, 1.0f, 1.0f, &error);
-    if (!grid) {
-      goto refused;
-    }
-    faces = gst_cloth_topology_get_faces (grid, &n_indices);
-    topology = gst_cloth_topology_new (columns * rows, columns, rows, uv, faces,
-        n_indices / 4, &error);
-  }
+  topology = gst_triangulate_board_to_topology (pattern, &error);
   if (!topology) {
-    goto refused;
+    GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
+        ("The board of %s makes no mesh: %s", location, error->message),
+        ("Use a board of fewer squares."));
+    return FALSE;
   }
   g_clear_pointer (&self->topology, gst_cloth_topology_unref);
   self->topology = topology;
   cloth_pattern_free (self->pattern);
   self->pattern = g_steal_pointer (&pattern);
-  self->n_vertices = columns * rows;
+  self->n_vertices = gst_cloth_topology_get_n_vertices (topology);
   gst_triangulate_clear_merges (self);
   self->positions = g_renew (gfloat, self->positions,
       3 * (gsize) self->n_vertices);
   self->covariances = g_renew (gfloat, self->covariances,
       6 * (gsize) self->n_vertices);
   return TRUE;
-
-refused:
-  GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
-      ("The board of %s makes no mesh: %s", location, error->message),
-      ("Use a board of fewer squares."));
-  return FALSE;
 }
 
 static gboolean
@@ -270,19 +242,9 @@ gst_triangulate_apply_parameters (GstTriangulate * self)
   return TRUE;
 }
 
-static gboolean
-gst_triangulate_start (GstAggregator * agg)
+static void
+gst_triangulate_forget (GstTriangulate * self)
 {
-  GstTriangulate *self = GST_TRIANGULATE (agg);
-
-  return GST_AGGREGATOR_CLASS (gst_triangulate_parent_class)->start (agg)
-      && gst_triangulate_load_rig (self) && gst_triangulate_load_pattern (self);
-}
-
-static gboolean
-gst_triangulate_stop (GstAggregator * agg)
-{
-  GstTriangulate *self = GST_TRIANGULATE (agg);
   guint i;
 
   g_clear_pointer (&self->triangulator, cloth_triangulator_free);
@@ -294,6 +256,26 @@ gst_triangulate_stop (GstAggregator * agg)
   for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
     gst_triangulate_view_forget (&self->view[i]);
   }
+}
+
+static gboolean
+gst_triangulate_start (GstAggregator * agg)
+{
+  GstTriangulate *self = GST_TRIANGULATE (agg);
+
+  if (GST_AGGREGATOR_CLASS (gst_triangulate_parent_class)->start (agg)
+      && gst_triangulate_load_rig (self) && gst_triangulate_load_pattern (self)) {
+    return TRUE;
+  }
+  /* stop is not called then */
+  gst_triangulate_forget (self);
+  return FALSE;
+}
+
+static gboolean
+gst_triangulate_stop (GstAggregator * agg)
+{
+  gst_triangulate_forget (GST_TRIANGULATE (agg));
   return GST_AGGREGATOR_CLASS (gst_triangulate_parent_class)->stop (agg);
 }
 
@@ -363,44 +345,6 @@ gst_triangulate_negotiate_src (GstClothSync * sync, GstCaps * downstream,
   return GST_FLOW_OK;
 }
 
-/* Takes what one picture carries into the memory of its camera. */
-static gboolean
-gst_triangulate_take_quads (GstTriangulate * self, guint index,
-    GstClothQuads * quads, ClothMerge * merge)
-{
-  guint columns = (guint) self->pattern->columns;
-  guint rows = (guint) self->pattern->rows;
-  const GstClothQuad *quad;
-  guint n, i, c;
-
-  if (gst_cloth_quads_get_columns (quads) != columns
-      || gst_cloth_quads_get_rows (quads) != rows) {
-    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
-        ("The squares on sink_%u are of a board of %u×%u, but pattern has "
-            "%u×%u.", index, gst_cloth_quads_get_columns (quads),
-            gst_cloth_quads_get_rows (quads), columns, rows),
-        ("Give the detector and this element the same pattern."));
-    return FALSE;
-  }
-  quad = gst_cloth_quads_get_quads (quads, &n);
-  for (i = 0; i < n; i++, quad++) {
-    if (quad->state != GST_CLOTH_QUAD_TRACKED || quad->column < 0
-        || quad->row < 0 || (guint) quad->column >= columns
-        || (guint) quad->row >= rows) {
-      continue;
-    }
-    for (c = 0; c < 4; c++) {
-      guint column = (guint) quad->column + (c == 1 || c == 2);
-      guint row = (guint) quad->row + (c >= 2);
-      gdouble cov[3] = { quad->cov_xx[c], quad->cov_xy[c], quad->cov_yy[c] };
-
-      cloth_merge_add (merge, row * (columns + 1) + column, quad->x[c],
-          quad->y[c], cov);
-    }
-  }
-  return TRUE;
-}
-
 static GstFlowReturn
 gst_triangulate_make_mesh (GstTriangulate * self,
     const ClothTriangulateView * views, GstBuffer ** out)
@@ -430,6 +374,8 @@ gst_triangulate_make_mesh (GstTriangulate * self,
     r->state[i] = (guint8) states[r->state[i]];
     n_known += r->state[i] != GST_CLOTH_VERTEX_UNSEEN;
   }
+  gst_triangulate_check_add (&self->check, GST_ELEMENT (self), self->rig,
+      views, r);
   mesh = gst_cloth_mesh_new (self->sequence, self->n_vertices, self->positions,
       r->state, self->covariances);
   *out = gst_cloth_mesh_to_buffer (mesh);
@@ -511,7 +457,8 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
       self->merge[camera] = cloth_merge_new (self->n_vertices);
     }
     cloth_merge_clear (self->merge[camera]);
-    if (!gst_triangulate_take_quads (self, i, quads[i], self->merge[camera])) {
+    if (!gst_triangulate_board_take (GST_ELEMENT (self), i, self->pattern,
+            quads[i], self->merge[camera])) {
       goto done;
     }
     cloth_merge_finish (self->merge[camera], self->threshold,
@@ -521,16 +468,6 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   if (ret == GST_FLOW_OK && stamp) {
     gst_buffer_add_reference_timestamp_meta (*out, stamp->reference,
         stamp->timestamp, stamp->duration);
-  }
-
-  if (n_quads > 0) {
-    self->n_without = SETS_WITHOUT_QUADS;       /* not again */
-  } else if (self->n_without < SETS_WITHOUT_QUADS
-      && ++self->n_without == SETS_WITHOUT_QUADS) {
-    GST_ELEMENT_WARNING (self, STREAM, FAILED,
-        ("No picture so far carries squares, so every vertex is unseen."),
-        ("Put saddledetect ! quadtrack before each sink pad, and nothing that "
-            "drops metadata between them and it."));
   }
 
 done:
@@ -545,7 +482,7 @@ gst_triangulate_reset (GstClothSync * sync)
 {
   GstTriangulate *self = GST_TRIANGULATE (sync);
 
-  self->n_without = 0;
+  memset (&self->check, 0, sizeof (self->check));
   self->sequence = G_MAXUINT64; /* the first set's is 0 */
 }
 

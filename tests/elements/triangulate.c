@@ -439,6 +439,27 @@ GST_START_TEST (test_no_detector)
 
 GST_END_TEST;
 
+/* The pads are mixed up, or a camera was moved: said once, with its name. */
+GST_START_TEST (test_cameras_do_not_fit)
+{
+  Bench b;
+  guint frame, i;
+
+  bench_init (&b, 4);
+  b.rig->cameras[2].t[1] += 0.02;
+  for (frame = 0; frame < 30; frame++) {
+    for (i = 0; i < 4; i++) {
+      push_seen (&b, i, i, frame, ALL, NULL);
+    }
+    gst_buffer_unref (gst_harness_pull (b.src));
+  }
+  expect_message (&b, GST_MESSAGE_WARNING, "Camera \"cam2\"");
+  fail_unless (gst_bus_pop_filtered (b.bus, GST_MESSAGE_WARNING) == NULL);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
 /* A camera without a frame for an instant: the others make the mesh. */
 GST_START_TEST (test_missing_camera)
 {
@@ -1003,6 +1024,7 @@ triangulate_suite (void)
   tcase_add_test (tc, test_unseen);
   tcase_add_test (tc, test_nothing_seen);
   tcase_add_test (tc, test_no_detector);
+  tcase_add_test (tc, test_cameras_do_not_fit);
   tcase_add_test (tc, test_missing_camera);
   tcase_add_test (tc, test_names_in_metadata);
   tcase_add_test (tc, test_names_of_pads);
