@@ -65,6 +65,8 @@ def check_file(root, path, text):
         faults.append('%s: in no room of the house' % path)
     if LICENCE not in text[:2000]:
         faults.append('%s: no line with the licence near the top' % path)
+    if re.search(r'\b(TODO|FIXME|XXX)\b', text):
+        faults.append('%s: unfinished work is not left in the source' % path)
     # Tests are lists of cases: their length hides nothing.
     if room != 'tests' and text.count('\n') > MAX_LINES:
         faults.append('%s: %d lines, split it' % (path, text.count('\n')))
@@ -101,6 +103,7 @@ def self_test():
         'gst/math/b.c': '/* no licence */\n',
         'gst/math/c.c': head + '\n' * (MAX_LINES + 1),
         'gst/other/a.c': head,
+        'tools/a.c': head + '/* TO' + 'DO: think */\n',
     }
     status = 0
     for path, text in wrong.items():
