@@ -33,14 +33,14 @@ cloth_corner_default_params (void)
 static gboolean
 take_window (ClothCornerWindow * win, const ClothImage * image, gfloat x,
     gfloat y, gint ix, gint iy, gfloat radius,
-    gboolean linear)
+    gboolean linear, gfloat * mean)
 {
   const gfloat rim = radius + 0.5f, shape = 1.0f / (rim * rim);
   const gint reach = (gint) ceilf (rim);
   const gfloat fx = x - (gfloat) ix, fy = y - (gfloat) iy;
   gfloat *px = (gfloat *) win->x, *py = (gfloat *) win->y;
   gfloat *value = (gfloat *) win->value, *weight = (gfloat *) win->weight;
-  gfloat sum = 0, sum_weight = 0, mean;
+  gfloat sum = 0, sum_weight = 0;
   gint n = 0, n_padded;
 
   for (gint j = MAX (-reach, -iy); j <= MIN (reach, image->height - 1 - iy);
@@ -60,7 +60,7 @@ take_window (ClothCornerWindow * win, const ClothImage * image, gfloat x,
       gfloat w = MAX (1.0f - (dx * dx + dy * dy) * shape, 0.0f);
       px[n] = (gfloat) i;
       py[n] = (gfloat) j;
-      value[n] = linear ? (gfloat) (row[i] * row[i]) / 255.0f : row[i];
+      value[n] = row[i];
       weight[n] = w;
       sum += w * value[n];
       sum_weight += w;
@@ -70,9 +70,20 @@ take_window (ClothCornerWindow * win, const ClothImage * image, gfloat x,
   /* Nine parameters and something left over to tell the noise from. */
   if (n < 14)
     return FALSE;
-  mean = sum / sum_weight;
+  *mean = sum / sum_weight;
+  if (linear) {
+    /* Scaled such that contrast stays what it is in grey levels, about. */
+    gfloat scale = 0.5f / MAX (*mean, 1.0f);
+
+    sum = 0;
+    for (gint i = 0; i < n; i++) {
+      value[i] *= scale * value[i];
+      sum += weight[i] * value[i];
+    }
+    *mean = sum / sum_weight;
+  }
   for (gint i = 0; i < n; i++)
-    value[i] -= mean;
+    value[i] -= *mean;
   n_padded = (n + CLOTH_CORNER_LANES - 1) / CLOTH_CORNER_LANES *
       CLOTH_CORNER_LANES;
   for (gint i = n; i < n_padded; i++)
@@ -378,7 +389,7 @@ cloth_corner_refine (const ClothImage * image, gfloat x, gfloat y,
   ix = (gint) floorf (x + 0.5f);
   iy = (gint) floorf (y + 0.5f);
   if (!take_window (&win, image, x, y, ix, iy, radius,
-          params->linear_light))
+          params->linear_light, &mean))
     return FALSE;
 
   best.state.x = x - (gfloat) ix;
@@ -426,13 +437,6 @@ cloth_corner_refine (const ClothImage * image, gfloat x, gfloat y,
     sum_weights += ((const gfloat *) win.weight)[v];
   if (!covariance (&win, &best, sum_weights, fit, level))
     return FALSE;
-  {
-    /* The window's values had their mean taken away; the centre pixel tells it. */
-    const gfloat *px = (const gfloat *) win.x, *py = (const gfloat *) win.y;
-    const gfloat *value = (const gfloat *) win.value;
-    mean = (gfloat) image->data[(gsize) (iy + (gint) py[0]) *
-        (gsize) image->stride + (gsize) (ix + (gint) px[0])] - value[0];
-  }
   fit->x = (gfloat) ix + best.state.x;
   fit->y = (gfloat) iy + best.state.y;
   fit->theta[0] = best.state.theta1;

@@ -8,8 +8,6 @@
 
 #include <math.h>
 
-#include "gst/vision/corner.h"
-
 /* Samples on either side of an edge, between these shares of its length. */
 #define SAMPLES 6
 #define FROM 0.2f
@@ -18,6 +16,13 @@
 #define CONTRAST 10.0f
 /* The weakest sample of an edge over the mean one. */
 #define EVEN 0.25f
+/* Samples on a circle around a corner. */
+#define AROUND 32
+/* Angle between the two edges of a square at a corner, rad. */
+#define MIN_WEDGE 0.25f
+#define MAX_WEDGE 2.8f
+/* Angle between a wedge and where it is looked for, rad. */
+#define MAX_OFF 1.2f
 /* Pixels from step to step. */
 #define STEP 1.0f
 /* The edge is looked for this far to either side of where it is expected, px. */
@@ -118,19 +123,29 @@ cloth_edge_contrast (const ClothImage * image, gfloat ax, gfloat ay,
   return contrast;
 }
 
+/* Where a circle's samples cross @level between sample @k and the next, as a share of a
+ * turn. */
+static inline gfloat
+crossing (const gfloat * at, gint k, gfloat level)
+{
+  gfloat here = at[k], next = at[(k + 1) % AROUND];
+
+  return ((gfloat) k + (level - here) / (next - here)) / AROUND;
+}
+
 /**
  * cloth_edge_wedge:
  * @image: the picture
  * @x: column of a corner, px
  * @y: row of it
- * @radius: of the window in which its edges are fitted, px
+ * @radius: of a circle that reaches no other corner, px
  * @black: whether the wedge looked for is dark
  * @towards: direction in which the wedge lies, roughly, rad from +x towards +y
  * @rays: (out) (array fixed-size=2): directions of the two edges that bound the wedge, the
  *   second one turned from the first towards +y
- * @contrast: (out): grey levels between the wedge and the one beside it
+ * @contrast: (out): grey levels between dark and bright
  *
- * Finds the edges of the square that has a corner here.
+ * Finds the edges of the square that has a corner here, where they cross a circle.
  *
  * Returns: %FALSE when there is no such corner
  *
@@ -141,51 +156,48 @@ cloth_edge_wedge (const ClothImage * image, gfloat x, gfloat y,
     gfloat radius, gboolean black, gfloat towards, gfloat rays[2],
     gfloat * contrast)
 {
-  ClothCornerParams params = cloth_corner_default_params ();
-  ClothCornerFit fit;
-  gfloat angle[4], level[4], least_off = G_MAXFLOAT, least = 255, most = 0;
-  gint best = -1;
+  const gfloat turn = 2 * (gfloat) G_PI;
+  gfloat at[AROUND], least = 255, most = 0, middle, least_off = MAX_OFF;
+  gboolean found = FALSE;
 
-  params.radius = CLAMP (radius, 2.0f, 6.0f);
-  params.max_shift = 1.5f;
-  if (!cloth_corner_refine (image, x, y, &params, CLOTH_SIMD_BEST, &fit))
-    return FALSE;
-  for (gint k = 0; k < 4; k++) {
-    gfloat a = fit.theta[k & 1] + (k >= 2 ? (gfloat) G_PI : 0);
-    gint at;
+  for (gint k = 0; k < AROUND; k++) {
+    gfloat angle = turn * (gfloat) k / AROUND;
 
-    a = fmodf (a + 4 * (gfloat) G_PI, 2 * (gfloat) G_PI);
-    for (at = k; at > 0 && angle[at - 1] > a; at--)
-      angle[at] = angle[at - 1];
-    angle[at] = a;
-  }
-  for (gint k = 0; k < 4; k++) {
-    gfloat next = k < 3 ? angle[k + 1] : angle[0] + 2 * (gfloat) G_PI;
-    gfloat middle = 0.5f * (angle[k] + next);
-
-    level[k] = bilinear (image, fit.x + params.radius * 0.8f * cosf (middle),
-        fit.y + params.radius * 0.8f * sinf (middle));
-    if (level[k] < 0)
+    at[k] = bilinear (image, x + radius * cosf (angle),
+        y + radius * sinf (angle));
+    if (at[k] < 0)
       return FALSE;
-    least = MIN (least, level[k]);
-    most = MAX (most, level[k]);
+    least = MIN (least, at[k]);
+    most = MAX (most, at[k]);
   }
-  for (gint k = 0; k < 4; k++) {
-    gfloat next = k < 3 ? angle[k + 1] : angle[0] + 2 * (gfloat) G_PI;
-    gfloat off = remainderf (0.5f * (angle[k] + next) - towards,
-        2 * (gfloat) G_PI);
-
-    if ((level[k] < 0.5f * (least + most)) != black || fabsf (off) > least_off)
-      continue;
-    least_off = fabsf (off);
-    best = k;
-  }
-  if (best < 0 || least_off > 1.2f)
+  if (most - least < CONTRAST)
     return FALSE;
-  rays[0] = angle[best];
-  rays[1] = angle[(best + 1) & 3];
+  middle = 0.5f * (least + most);
+  for (gint k = 0; k < AROUND; k++) {
+    gint end = k, n = 0;
+    gfloat from, to, off;
+
+    /* A run begins where the next sample is of the colour and this one is not. */
+    if ((at[k] < middle) == black || (at[(k + 1) % AROUND] < middle) != black)
+      continue;
+    do {
+      end = (end + 1) % AROUND;
+      n++;
+    } while (n < AROUND && (at[(end + 1) % AROUND] < middle) == black);
+    from = turn * crossing (at, k, middle);
+    to = turn * crossing (at, end, middle);
+    if (to < from)
+      to += turn;
+    off = fabsf (remainderf (0.5f * (from + to) - towards, turn));
+    if (to - from < MIN_WEDGE || to - from > MAX_WEDGE || off > least_off)
+      continue;
+    least_off = off;
+    rays[0] = from;
+    rays[1] = to;
+    found = TRUE;
+  }
   *contrast = most - least;
-  return TRUE;
+  return found;
 }
 
 /* Grey levels by which the side ahead (turned from x towards y) is darker, averaged over

@@ -12,9 +12,11 @@
 #include "gst/vision/edge.h"
 
 /* Radius of the window a corner is fitted in, over the square's shortest edge. */
-#define WINDOW 0.35f
+#define WINDOW 0.42f
 /* Contrast of a corner over that of the one it was reached from. */
 #define MIN_CONTRAST 0.4f
+/* Sine of the angle between a corner's edges: blunter ones are no corners. */
+#define MIN_SINE 0.5f
 /* A fit moves the end of an edge by no more than this, px. */
 #define MAX_SHIFT 2.5f
 /* An edge arrives at a corner when it ends this near, px and share of its length. */
@@ -47,21 +49,38 @@ window_radius (const ClothOutline * outline)
 
   for (gint k = 0; k < 4; k++)
     least = MIN (least, edge_length (outline, k));
-  return CLAMP (WINDOW * least, 2.0f, 6.0f);
+  return CLAMP (WINDOW * least, 2.0f, 7.0f);
+}
+
+/* The way from (@x, @y) to the square's middle. */
+static gfloat
+inwards (const ClothOutline * outline, gfloat x, gfloat y)
+{
+  gfloat cx = 0, cy = 0;
+
+  for (gint k = 0; k < 4; k++) {
+    cx += outline->x[k] / 4;
+    cy += outline->y[k] / 4;
+  }
+  return atan2f (cy - y, cx - x);
 }
 
 static gboolean
 fit (ClothOutline * outline, const ClothImage * image, gint corner, gfloat x,
-    gfloat y, gfloat max_shift, gfloat contrast)
+    gfloat y, gfloat max_shift, gfloat contrast, gboolean black)
 {
   ClothCornerParams params = cloth_corner_default_params ();
   ClothCornerFit found;
+  gfloat unused;
 
   params.radius = window_radius (outline);
   params.max_shift = max_shift;
   params.linear_light = TRUE;
+  params.known_angles = cloth_edge_wedge (image, x, y, params.radius, black,
+      inwards (outline, x, y), params.theta, &unused);
   if (!cloth_corner_refine (image, x, y, &params, CLOTH_SIMD_BEST, &found)
-      || found.contrast < MIN_CONTRAST * contrast)
+      || found.contrast < MIN_CONTRAST * contrast
+      || fabsf (sinf (found.theta[1] - found.theta[0])) < MIN_SINE)
     return FALSE;
   outline->x[corner] = found.x;
   outline->y[corner] = found.y;
@@ -80,6 +99,7 @@ fit (ClothOutline * outline, const ClothImage * image, gint corner, gfloat x,
  * @x: where it lies, roughly, px
  * @y: likewise
  * @max_shift: how far the fit may move it, px
+ * @black: colour of the square
  *
  * Fits one corner to sub-pixel accuracy and takes it into the outline.
  *
@@ -89,9 +109,9 @@ fit (ClothOutline * outline, const ClothImage * image, gint corner, gfloat x,
  */
 gboolean
 cloth_outline_fit (ClothOutline * outline, const ClothImage * image,
-    gint corner, gfloat x, gfloat y, gfloat max_shift)
+    gint corner, gfloat x, gfloat y, gfloat max_shift, gboolean black)
 {
-  return fit (outline, image, corner, x, y, max_shift, 0);
+  return fit (outline, image, corner, x, y, max_shift, 0, black);
 }
 
 /* Follows the edge from corner @from to its neighbour @to. */
@@ -104,18 +124,11 @@ follow (const ClothOutline * outline, const ClothImage * image,
   gboolean forwards = to == ((from + 1) & 3);
   gfloat longest = 0, arrives;
 
-  if (!wedge->state) {
-    gfloat cx = 0, cy = 0;
-
-    for (gint k = 0; k < 4; k++) {
-      cx += outline->x[k] / 4;
-      cy += outline->y[k] / 4;
-    }
+  if (!wedge->state)
     wedge->state = cloth_edge_wedge (image, outline->x[from],
         outline->y[from], window_radius (outline), black,
-        atan2f (cy - outline->y[from], cx - outline->x[from]), wedge->rays,
+        inwards (outline, outline->x[from], outline->y[from]), wedge->rays,
         &wedge->contrast) ? 1 : -1;
-  }
   if (wedge->state < 0)
     return FALSE;
   for (gint k = 0; k < 4; k++)
@@ -175,7 +188,7 @@ cloth_outline_complete (ClothOutline * outline, const ClothImage * image,
         if (!outline->have[from]
             || !follow (outline, image, black, wedges, from, k, &x, &y)
             || !fit (outline, image, k, x, y, MAX_SHIFT,
-                wedges[from].contrast))
+                wedges[from].contrast, black))
           continue;
         outline->joined[way == 1 ? k : from] = TRUE;
       }

@@ -27,7 +27,7 @@ typedef struct {
 } ClothOutline;
 
 gboolean cloth_outline_fit (ClothOutline * outline, const ClothImage * image,
-    gint corner, gfloat x, gfloat y, gfloat max_shift);
+    gint corner, gfloat x, gfloat y, gfloat max_shift, gboolean black);
 gboolean cloth_outline_complete (ClothOutline * outline,
     const ClothImage * image, gboolean black);
 

@@ -45,7 +45,7 @@ make_room (ClothPatch * patch, gint columns, gint rows)
   patch->rows = rows;
   if (n > patch->capacity) {
     g_free (patch->memory);
-    patch->memory = g_malloc (n * (8 * sizeof (gfloat) + 2));
+    patch->memory = g_malloc (n * (8 * sizeof (gfloat) + 3));
     patch->capacity = n;
   }
   at = patch->memory;
@@ -57,9 +57,10 @@ make_room (ClothPatch * patch, gint columns, gint rows)
   patch->bit = at + 7 * n;
   patch->kind = (guint8 *) (at + 8 * n);
   patch->square = patch->kind + n;
+  patch->tried = patch->square + n;
   for (gsize k = 0; k < n; k++) {
     patch->kind[k] = CLOTH_VERTEX_UNKNOWN;
-    patch->square[k] = 0;
+    patch->square[k] = patch->tried[k] = 0;
     patch->confidence[k] = patch->inside[k] = patch->bit[k] = 0;
   }
 }
@@ -234,8 +235,13 @@ extend_cell (ClothPatch * patch, const ClothImage * image, gint i, gint j,
   ClothOutline outline = { {0} };
   gfloat confidence;
 
-  if (cell_corners (patch, i, j, outline.x, outline.y) < 1)
+  gint at = j * patch->columns + i, n_known;
+
+  n_known = cell_corners (patch, i, j, outline.x, outline.y);
+  /* The same corners would fail again. */
+  if (n_known < 1 || n_known <= patch->tried[at])
     return FALSE;
+  patch->tried[at] = (guint8) n_known;
   for (gint k = 0; k < 4; k++)
     outline.have[k] = known (patch, i + corner_i[k], j + corner_j[k]);
   if (!cloth_outline_complete (&outline, image, TRUE))
@@ -245,19 +251,19 @@ extend_cell (ClothPatch * patch, const ClothImage * image, gint i, gint j,
   if (confidence < params->c_low)
     return FALSE;
   for (gint k = 0; k < 4; k++) {
-    gint at = (j + corner_j[k]) * patch->columns + i + corner_i[k];
+    gint to = (j + corner_j[k]) * patch->columns + i + corner_i[k];
 
-    if (patch->kind[at] != CLOTH_VERTEX_UNKNOWN)
+    if (patch->kind[to] != CLOTH_VERTEX_UNKNOWN)
       continue;
-    patch->kind[at] = outline.saddle[k] ? CLOTH_VERTEX_SADDLE
+    patch->kind[to] = outline.saddle[k] ? CLOTH_VERTEX_SADDLE
         : CLOTH_VERTEX_RIM;
-    patch->x[at] = outline.x[k];
-    patch->y[at] = outline.y[k];
+    patch->x[to] = outline.x[k];
+    patch->y[to] = outline.y[k];
     for (gint m = 0; m < 3; m++)
-      patch->cov[3 * at + m] = outline.cov[k][m];
+      patch->cov[3 * to + m] = outline.cov[k][m];
   }
-  patch->square[j * patch->columns + i] = 1;
-  patch->confidence[j * patch->columns + i] = confidence;
+  patch->square[at] = 1;
+  patch->confidence[at] = confidence;
   return TRUE;
 }
 
@@ -335,6 +341,7 @@ cloth_patch_build (ClothPatch * patch, const ClothImage * image,
     const ClothPatchParams * params)
 {
   const gint margin = CLOTH_PATCH_MARGIN;
+  gboolean added = TRUE;
   gint n;
 
   make_room (patch, link->columns + 2 * margin, link->rows + 2 * margin);
@@ -359,11 +366,13 @@ cloth_patch_build (ClothPatch * patch, const ClothImage * image,
     for (gint i = 0; i + 1 < n; i++)
       if (patch->square[j * n + i] && cloth_patch_is_black (patch, i, j))
         check_square (patch, image, i, j, params);
-  for (gint round = 0; round < ROUNDS; round++)
+  for (gint round = 0; round < ROUNDS && added; round++) {
+    added = FALSE;
     for (gint j = 0; j + 1 < patch->rows; j++)
       for (gint i = 0; i + 1 < n; i++)
         if (!patch->square[j * n + i] && cloth_patch_is_black (patch, i, j))
-          extend_cell (patch, image, i, j, params);
+          added |= extend_cell (patch, image, i, j, params);
+  }
   for (gint j = 0; j + 1 < patch->rows; j++)
     for (gint i = 0; i + 1 < n; i++) {
       gint at = j * n + i;

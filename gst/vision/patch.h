@@ -55,6 +55,7 @@ typedef struct {
   gfloat *bit;
   gboolean odd_black;
   /*< private > */
+  guint8 *tried;
   gpointer memory;
   gsize capacity;
 } ClothPatch;

@@ -210,7 +210,8 @@ take_square (ClothQuadTracker * tracker, const ClothPlacement * placement,
   }
   cell->confidence = cloth_quad_confidence (tracker->image, cell->guess_x,
       cell->guess_y, params->alpha, black);
-  if (cell->confidence < params->c_low)
+  if (cell->confidence < params->c_low
+      || !cloth_quad_is_steady (cell, cell->guess_x, cell->guess_y))
     return;
   cell->found = cell->linked = TRUE;
 }

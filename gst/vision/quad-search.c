@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/vision/edge.h"
 #include "gst/vision/outline.h"
 #include "gst/vision/quad-private.h"
 #include "gst/vision/template.h"
@@ -14,6 +15,8 @@
 #define REACH 0.5f
 /* A corner's sub-pixel fit may move it this far, in shortest edges. */
 #define MAX_FIT 0.3f
+/* A corner may move this much otherwise than the other three, in longest edges. */
+#define MAX_STRAY 0.3f
 /* A linked corner this near a found one is the same, px. */
 #define SAME 2.0f
 
@@ -35,6 +38,30 @@ cloth_quad_longest (const gfloat x[4], const gfloat y[4])
   for (gint k = 0; k < 4; k++)
     most = MAX (most, hypotf (x[(k + 1) & 3] - x[k], y[(k + 1) & 3] - y[k]));
   return most;
+}
+
+/* Whether a square tracked so far moved as one: a corner that left the other three is where
+ * a fold has begun to cover it. */
+gboolean
+cloth_quad_is_steady (const ClothQuadCell * cell, const gfloat x[4],
+    const gfloat y[4])
+{
+  gfloat limit = MAX (MAX_STRAY * cloth_quad_longest (x, y), 3.0f);
+  gfloat sum_x = 0, sum_y = 0;
+
+  if (cell->age > 0)
+    return TRUE;
+  for (gint k = 0; k < 4; k++) {
+    sum_x += x[k] - cell->x[k];
+    sum_y += y[k] - cell->y[k];
+  }
+  for (gint k = 0; k < 4; k++) {
+    gfloat dx = x[k] - cell->x[k], dy = y[k] - cell->y[k];
+
+    if (hypotf (dx - (sum_x - dx) / 3, dy - (sum_y - dy) / 3) > limit)
+      return FALSE;
+  }
+  return TRUE;
 }
 
 /* Section 3.7: three corners go over the candidates near them, in order of the sum of
@@ -115,19 +142,36 @@ is_elsewhere (ClothQuadTracker * tracker, gfloat x, gfloat y, gint column,
       != row * (tracker->pattern.columns + 1) + column;
 }
 
+/* Whether at least three sides of a quad are edges of its colour: fitting corners is too
+ * dear for what is none. */
+static gboolean
+has_edges (const ClothImage * image, const gfloat x[4], const gfloat y[4],
+    gboolean black)
+{
+  gint n = 0;
+
+  for (gint k = 0; k < 4; k++) {
+    gint to = (k + 1) & 3;
+    gfloat contrast = cloth_edge_contrast (image, x[k], y[k], x[to], y[to]);
+
+    n += black ? contrast < 0 : contrast > 0;
+  }
+  return n >= 3;
+}
+
 /* Fits all corners to sub-pixel places, whose square need not be a parallelogram. */
 static gboolean
 fit_outline (ClothQuadTracker * tracker, gint column, gint row,
     ClothOutline * outline)
 {
+  gboolean black = cloth_pattern_is_black (&tracker->pattern, column, row);
   gfloat reach = MAX (MAX_FIT * cloth_quad_shortest (outline->x, outline->y),
       1.5f);
 
   for (gint k = 0; k < 4; k++)
     cloth_outline_fit (outline, tracker->image, k, outline->x[k],
-        outline->y[k], reach);
-  if (!cloth_outline_complete (outline, tracker->image,
-          cloth_pattern_is_black (&tracker->pattern, column, row)))
+        outline->y[k], reach, black);
+  if (!cloth_outline_complete (outline, tracker->image, black))
     return FALSE;
   /* An inner corner that is no saddle is where a fold cuts the square. */
   for (gint k = 0; k < 4; k++)
@@ -148,11 +192,13 @@ cloth_quad_search (ClothQuadTracker * tracker, gint column, gint row)
 
   if (search_candidates (tracker, black, cell->guess_x, cell->guess_y,
           outline.x, outline.y) < params->c_low
+      || !has_edges (tracker->image, outline.x, outline.y, black)
       || !fit_outline (tracker, column, row, &outline))
     return FALSE;
   confidence = cloth_quad_confidence (tracker->image, outline.x, outline.y,
       params->alpha, black);
-  if (confidence < params->c_low)
+  if (confidence < params->c_low
+      || !cloth_quad_is_steady (cell, outline.x, outline.y))
     return FALSE;
   for (gint k = 0; k < 4; k++)
     if (is_elsewhere (tracker, outline.x[k], outline.y[k],
