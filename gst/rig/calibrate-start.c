@@ -59,8 +59,17 @@ pose_of_view (const ClothCamera * camera, const ClothBundleView * view,
     X[n] = board[3 * view->vertex[i]];
     Y[n++] = board[3 * view->vertex[i] + 1];
   }
-  return cloth_planar_homography (n, X, Y, x, y, H)
-      && cloth_planar_pose (H, pose, pose + 9);
+  if (!cloth_planar_homography (n, X, Y, x, y, H)
+      || !cloth_planar_pose (H, pose, pose + 9))
+    return FALSE;
+  for (guint i = 0; i < view->n; i++) {
+    gdouble p[3];
+
+    cloth_mat3_vec (pose, board + 3 * (gsize) view->vertex[i], p);
+    if (!(p[2] + pose[11] > 0))
+      return FALSE;
+  }
+  return TRUE;
 }
 
 /* Seen from afar, a board tilted to one side looks like one tilted to the other. */
@@ -99,37 +108,92 @@ flip (const ClothBundleView * view, const gdouble * board,
     flipped[9 + j] = sight[j] - flipped[9 + j];
 }
 
-/* Tries every view's other tilt; TRUE when one fitted better. */
+static gdouble
+rms_of_view (const ClothBundle * b, guint v)
+{
+  guint n = b->views[v].n;
+  g_autofree gdouble *e = g_new (gdouble, 2 * n);
+  gdouble sum = 0;
+
+  cloth_bundle_residuals (b, v, e, e + n);
+  for (guint i = 0; i < 2 * n; i++)
+    sum += e[i] * e[i];
+  return isnan (sum) ? HUGE_VAL : sqrt (sum / n);
+}
+
+static gint
+compare (gconstpointer a, gconstpointer b)
+{
+  gdouble x = *(const gdouble *) a, y = *(const gdouble *) b;
+
+  return (x > y) - (x < y);
+}
+
+/* A pose can be caught in the wrong tilt, or thrown away by a step that helped the others.
+ * Views that fit worse than @factor times the median try the other tilt, and both tilts
+ * of a new start. TRUE when one fitted better. */
 static gboolean
-mend_poses (const ClothBundle * bundle)
+mend_poses (const ClothBundle * bundle, gdouble factor)
 {
   gboolean better = FALSE;
+  g_autofree gdouble *rms = g_new (gdouble, bundle->n_views);
+  g_autofree gdouble *sorted = g_new (gdouble, bundle->n_views);
+  guint n_used = 0;
 
+  for (guint v = 0; v < bundle->n_views; v++) {
+    rms[v] = bundle->views[v].use ? rms_of_view (bundle, v) : 0;
+    if (bundle->views[v].use)
+      sorted[n_used++] = rms[v];
+  }
+  qsort (sorted, n_used, sizeof *sorted, compare);
   for (guint v = 0; v < bundle->n_views; v++) {
     ClothBundleView view = bundle->views[v];
     gdouble *pose = bundle->poses + 12 * (gsize) v;
-    gdouble both[2][12], cost[2];
-    guint nothing = 0;
+    gdouble tries[4][12], least = HUGE_VAL;
+    guint nothing = 0, n = 2, best = 0;
     ClothBundle one = *bundle;
 
-    memcpy (both[0], pose, sizeof both[0]);
-    flip (&view, bundle->board, pose, both[1]);
+    if (!view.use || rms[v] < factor * sorted[n_used / 2])
+      continue;
+    memcpy (tries[0], pose, sizeof tries[0]);
+    flip (&view, bundle->board, pose, tries[1]);
+    if (pose_of_view (&bundle->cameras[0], &view, bundle->board, tries[2])) {
+      flip (&view, bundle->board, tries[2], tries[3]);
+      n = 4;
+    }
     one.free = &nothing;
     one.n_poses = one.n_views = 1;
     one.max_iterations = 20;
     view.pose = 0;
     one.views = &view;
-    for (gint i = 0; i < 2; i++) {
-      one.poses = both[i];
-      if (!cloth_bundle_solve (&one, &cost[i], NULL))
-        cost[i] = HUGE_VAL;
+    for (guint i = 0; i < n; i++) {
+      gdouble cost = HUGE_VAL;
+
+      one.poses = tries[i];
+      if (!cloth_bundle_solve (&one, &cost, NULL))
+        continue;
+      /* Another one must be clearly better. */
+      if (cost < (i ? 0.9 : 1) * least) {
+        least = cost;
+        best = i;
+      }
     }
-    if (cost[1] < 0.9 * cost[0]) {
-      memcpy (pose, both[1], sizeof both[1]);
+    if (best > 0) {
+      memcpy (pose, tries[best], sizeof tries[best]);
       better = TRUE;
     }
   }
   return better;
+}
+
+static guint
+count_used (const ClothBundle * bundle)
+{
+  guint n = 0;
+
+  for (guint v = 0; v < bundle->n_views; v++)
+    n += !!bundle->views[v].use;
+  return n;
 }
 
 static gboolean
@@ -139,18 +203,19 @@ check_tilts (const ClothBundle * bundle, GError ** error)
   gdouble least = 1;
 
   for (guint a = 0; a < bundle->n_poses; a++) {
-    for (guint b = 0; b < a; b++) {
+    for (guint b = 0; bundle->views[a].use && b < a; b++) {
       const gdouble *A = bundle->poses + 12 * (gsize) a;
       const gdouble *B = bundle->poses + 12 * (gsize) b;
 
-      least = fmin (least, fabs (A[2] * B[2] + A[5] * B[5] + A[8] * B[8]));
+      if (bundle->views[b].use)
+        least = fmin (least, fabs (A[2] * B[2] + A[5] * B[5] + A[8] * B[8]));
     }
   }
   if (least > cos (MIN_TILT_DEGREES * G_PI / 180)) {
     g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_VALUE,
         "camera %s: all %u views of the board are parallel within %.1f°, which "
         "does not determine the focal length; tilt the board by 20° to 45° to "
-        "different sides", name, bundle->n_poses,
+        "different sides", name, count_used (bundle),
         acos (fmin (1, least)) * 180 / G_PI);
     return FALSE;
   }
@@ -180,15 +245,37 @@ check_focal (const ClothBundle * bundle, GError ** error)
   return TRUE;
 }
 
-/* Focal length and poses from the best of several guesses. */
+/* Poses of all views that a camera can tell one of. Returns how many points the others
+ * have. */
+static guint
+start_poses (const ClothBundle * bundle, ClothBundleView * views)
+{
+  guint lost = 0;
+
+  for (guint v = 0; v < bundle->n_views; v++) {
+    gdouble pose[12];
+
+    views[v].use = pose_of_view (&bundle->cameras[0], &views[v],
+        bundle->board, pose);
+    if (views[v].use)
+      memcpy (bundle->poses + 12 * (gsize) v, pose, sizeof pose);
+    else
+      lost += views[v].n;
+  }
+  return lost;
+}
+
+/* Focal length and poses from the best of several guesses. A view that shows too little
+ * for a pose under a guess counts as if all its corners were at the limit. */
 static gboolean
-guess (ClothBundle * bundle, GError ** error)
+guess (ClothBundle * bundle, ClothBundleView * views, GError ** error)
 {
   static const gdouble factors[] = { 0, 0.35, 0.6, 1, 1.7, 3, 6 };
   ClothCamera *c = &bundle->cameras[0], best = *c;
   gsize size = 12 * bundle->n_views * sizeof (gdouble);
   g_autofree gdouble *H = g_new (gdouble, 9 * bundle->n_views);
   g_autofree gdouble *best_poses = g_malloc (size);
+  g_autofree gboolean *best_use = g_new0 (gboolean, bundle->n_views);
   gdouble best_cost = HUGE_VAL, zhang[2];
   gdouble longer = MAX (c->width, c->height);
 
@@ -207,7 +294,7 @@ guess (ClothBundle * bundle, GError ** error)
   }
   for (guint i = 0; i < G_N_ELEMENTS (factors); i++) {
     gdouble cost;
-    guint v;
+    guint lost;
 
     c->K[0] = c->K[4] = factors[i] * longer;
     if (i == 0) {
@@ -216,17 +303,17 @@ guess (ClothBundle * bundle, GError ** error)
       c->K[0] = zhang[0];
       c->K[4] = zhang[1];
     }
-    for (v = 0; v < bundle->n_views; v++) {
-      if (!pose_of_view (c, &bundle->views[v], bundle->board,
-              bundle->poses + 12 * (gsize) v))
-        break;
-    }
-    if (v < bundle->n_views || !cloth_bundle_solve (bundle, &cost, NULL)
-        || !(cost < best_cost))
+    lost = start_poses (bundle, views);
+    if (count_used (bundle) < 3 || !cloth_bundle_solve (bundle, &cost, NULL))
+      continue;
+    cost += lost * bundle->huber * bundle->huber;
+    if (!(cost < best_cost))
       continue;
     best_cost = cost;
     best = *c;
     memcpy (best_poses, bundle->poses, size);
+    for (guint v = 0; v < bundle->n_views; v++)
+      best_use[v] = views[v].use;
   }
   if (g_cancellable_set_error_if_cancelled (bundle->cancellable, error))
     return FALSE;
@@ -237,7 +324,24 @@ guess (ClothBundle * bundle, GError ** error)
   }
   *c = best;
   memcpy (bundle->poses, best_poses, size);
+  for (guint v = 0; v < bundle->n_views; v++)
+    views[v].use = best_use[v];
   return TRUE;
+}
+
+/* Views that had no pose under the first guess may have one under a better one. */
+static void
+take_back (const ClothBundle * bundle, ClothBundleView * views)
+{
+  for (guint v = 0; v < bundle->n_views; v++) {
+    gdouble pose[12];
+
+    if (!views[v].use && pose_of_view (&bundle->cameras[0], &views[v],
+            bundle->board, pose)) {
+      memcpy (bundle->poses + 12 * (gsize) v, pose, sizeof pose);
+      views[v].use = TRUE;
+    }
+  }
 }
 
 /**
@@ -249,6 +353,7 @@ guess (ClothBundle * bundle, GError ** error)
  * @huber: as in #ClothBundle
  * @max_iterations: as in #ClothBundle
  * @poses: (out caller-allocates): 12 numbers a view: board to camera
+ * @used: (out caller-allocates): for each view whether its pose could be told
  * @excess: (out): as cloth_bundle_excess() gives it
  * @cancellable: (nullable): stops it
  * @error: #ClothRigError, naming the camera
@@ -263,7 +368,7 @@ guess (ClothBundle * bundle, GError ** error)
 gboolean
 cloth_calibrate_alone (ClothCamera * camera, guint n_views,
     const ClothBundleView * views, const gdouble * board, gdouble huber,
-    guint max_iterations, gdouble * poses, gdouble * excess,
+    guint max_iterations, gdouble * poses, gboolean * used, gdouble * excess,
     GCancellable * cancellable, GError ** error)
 {
   g_autofree ClothBundleView *own =
@@ -287,22 +392,26 @@ cloth_calibrate_alone (ClothCamera * camera, guint n_views,
   }
   *excess = START_EXCESS;
   memset (camera->k, 0, sizeof camera->k);
-  if (!guess (&bundle, error))
+  if (!guess (&bundle, own, error))
     return FALSE;
   bundle.max_iterations = max_iterations;
   for (guint i = 0; i < G_N_ELEMENTS (stages); i++) {
     free_bits = stages[i];
     if (!cloth_bundle_solve (&bundle, NULL, error)
-        || (i == 0 && mend_poses (&bundle)
+        || (mend_poses (&bundle, i == 0 ? 0 : 2)
             && !cloth_bundle_solve (&bundle, NULL, error))) {
       g_prefix_error (error, "camera %s: ", camera->name);
       return FALSE;
     }
     *excess = cloth_bundle_excess (&bundle, 0);
+    if (i == 0)
+      take_back (&bundle, own);
   }
   if (!cloth_bundle_solve (&bundle, NULL, error))
     return FALSE;
   *excess = cloth_bundle_excess (&bundle, 0);
+  for (guint v = 0; v < n_views; v++)
+    used[v] = own[v].use;
   return check_tilts (&bundle, error) && check_focal (&bundle, error);
 }
 

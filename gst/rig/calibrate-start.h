@@ -9,7 +9,7 @@ G_BEGIN_DECLS
 
 gboolean cloth_calibrate_alone (ClothCamera * camera, guint n_views,
     const ClothBundleView * views, const gdouble * board, gdouble huber,
-    guint max_iterations, gdouble * poses, gdouble * excess,
+    guint max_iterations, gdouble * poses, gboolean * used, gdouble * excess,
     GCancellable * cancellable, GError ** error);
 gboolean cloth_calibrate_place (ClothBundle * bundle, gdouble * view_poses,
     guint n_turns, const gdouble * turns, guint * turned, GError ** error);

@@ -193,6 +193,7 @@ start_cameras (Work * w, GError ** error)
     g_autofree ClothBundleView *own = g_new (ClothBundleView, in->n_views + 1);
     g_autofree guint *index = g_new (guint, in->n_views + 1);
     g_autofree gdouble *poses = NULL;
+    g_autofree gboolean *used = NULL;
     guint n = 0;
 
     tell (w, in->cameras[c].name, (gdouble) c / in->n_cameras);
@@ -207,13 +208,16 @@ start_cameras (Work * w, GError ** error)
           "%d are needed, 10 or more with different tilts are better",
           in->cameras[c].name, n, MIN_VIEWS);
     poses = g_new (gdouble, 12 * n);
+    used = g_new (gboolean, n);
     if (!cloth_calibrate_alone (&w->rig->cameras[c], n, own, in->board,
-            w->params->huber, w->params->max_iterations, poses, &w->excess[c],
+            w->params->huber, w->params->max_iterations, poses, used, &w->excess[c],
             w->bundle.cancellable, error))
       return FALSE;
-    for (guint i = 0; i < n; i++)
+    for (guint i = 0; i < n; i++) {
       memcpy (w->view_poses + 12 * (gsize) index[i], poses + 12 * i,
           12 * sizeof (gdouble));
+      w->views[index[i]].use = used[i];
+    }
   }
   return TRUE;
 }

@@ -612,6 +612,55 @@ test_symmetric (void)
   assert_fails (&p, NULL, "symmetry 2: vertex 64 is out of range");
 }
 
+/* Boards that reach out of the picture, down to shreds of few corners. */
+static void
+test_shreds (void)
+{
+  ClothRandom random;
+  ClothCamera truth[4] = { 0, };
+  g_auto (Problem) p;
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothCalibration) result = NULL;
+  ClothCalibrateParams params;
+  gdouble worst = 0;
+  guint least = 99;
+
+  cloth_random_init (&random, 3);
+  problem_init (&p, 2, 12, 9, 0.03, 50);
+  true_rig (p.cameras);
+  memcpy (truth, p.cameras, 2 * sizeof *truth);
+  for (guint v = 0; v < 50; v++) {
+    gdouble P[12];
+
+    true_pose (&random, 0.7, P);
+    P[9] += 0.5 * (cloth_random_uniform (&random) - 0.5);
+    P[10] += 0.4 * (cloth_random_uniform (&random) - 0.5);
+    for (guint c = 0; c < 2; c++)
+      see (&p, &truth[c], c, v, P, &random, 0.1, TRUE);
+  }
+  for (guint v = 0; v < p.views->len; v++)
+    least = MIN (least, p.input.views[v].n);
+  cloth_calibrate_params_init (&params);
+  result = cloth_calibrate (&p.input, &params, NULL, NULL, NULL, &error);
+  g_assert_no_error (error);
+  for (guint c = 0; c < 2; c++) {
+    for (guint i = 0; i < 12; i++) {
+      gdouble sd, zero;
+      gdouble value = parameter (&result->rig->cameras[c], i, &sd);
+
+      if (sd > 0)
+        worst = fmax (worst, fabs (value - parameter (&truth[c], i, &zero))
+            / sd);
+    }
+  }
+  g_test_message ("least view %u corners, %u and %u views used, RMS %.3f px, "
+      "parameters within %.1f σ", least, result->cameras[0].n_views,
+      result->cameras[1].n_views, result->rms, worst);
+  g_assert_cmpuint (least, <, 10);
+  g_assert_cmpuint (result->cameras[0].n_views, >, 40);
+  g_assert_cmpfloat (worst, <, 4);
+}
+
 /* The board as world: its first pose is the plane z = 0, the cameras above it. */
 static void
 test_world (void)
@@ -808,6 +857,7 @@ main (int argc, char **argv)
   g_test_add_func ("/calibrate/deviations", test_deviations);
   g_test_add_func ("/calibrate/outliers", test_outliers);
   g_test_add_func ("/calibrate/symmetric", test_symmetric);
+  g_test_add_func ("/calibrate/shreds", test_shreds);
   g_test_add_func ("/calibrate/world", test_world);
   g_test_add_func ("/calibrate/bad", test_bad);
   g_test_add_data_func ("/calibrate/straight", &straight, test_parallel);
