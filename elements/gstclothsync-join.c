@@ -79,7 +79,7 @@ gst_cloth_sync_gather (GstClothSync * self, Heads * heads)
     if (!head) {
       if (gst_aggregator_pad_is_eos (pad)) {
         heads->n_eos++;
-      } else if (!gst_aggregator_pad_is_inactive (pad)) {
+      } else {
         heads->n_waiting++;
       }
       continue;

@@ -948,6 +948,34 @@ GST_START_TEST (test_pads_come_and_go)
 
 GST_END_TEST;
 
+/* A pad that comes and goes at any moment takes nothing from the other one. */
+GST_START_TEST (test_pads_come_and_go_quickly)
+{
+  GstBuffer *out;
+  guint i, n = 0;
+  Bench b;
+
+  bench_init (&b, 1, FALSE);
+  for (i = 0; i < 150; i++) {
+    push (&b, 0, i * 33 * MS);
+  }
+  for (i = 0; i < 150; i++) {
+    bench_add_pad (&b, 1, "test/x-frames,framerate=30/1");
+    push (&b, 1, i * 33 * MS);
+    bench_remove_pad (&b, 1);
+  }
+  eos (&b, 0);
+  expect_eos (&b);
+  while ((out = gst_harness_try_pull (b.src)) != NULL) {
+    n += GST_BUFFER_OFFSET (out) & 1;
+    gst_buffer_unref (out);
+  }
+  fail_unless_equals_int (n, 150);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
 /* ---- bad input ---- */
 
 GST_START_TEST (test_no_time_stamp)
@@ -1081,6 +1109,7 @@ clothsync_suite (void)
   tcase_add_test (tc, test_flush);
   tcase_add_test (tc, test_caps_change);
   tcase_add_test (tc, test_pads_come_and_go);
+  tcase_add_test (tc, test_pads_come_and_go_quickly);
   tcase_add_test (tc, test_no_time_stamp);
   tcase_add_test (tc, test_segment_in_bytes);
   tcase_add_test (tc, test_refused_caps);
