@@ -38,13 +38,12 @@ gst-cloth-calibrate-1.0 --pattern "$boards/pattern.json" \
     --output "$out/boards-rig.json" \
     "left=$boards/left*.jpg" "right=$boards/right*.jpg" | tee "$out/boards-report.txt"
 
-heading "Real pictures of a board: the squares found, drawn in"
+heading "Real pictures of a board: the squares found"
 mkdir -p "$out/boards"
 for picture in "$boards"/left??.jpg "$boards"/right??.jpg; do
   gst-launch-1.0 -q filesrc location="$picture" \
-      ! jpegdec ! video/x-raw,format=GRAY8 \
-      ! saddledetect ! quadtrack pattern="$boards/pattern.json" \
-      ! videoconvert ! clothoverlay ! videoconvert ! pngenc \
+      ! jpegdec ! saddledetect ! quadtrack pattern="$boards/pattern.json" \
+      ! videoconvert ! video/x-raw,format=RGB ! clothoverlay ! pngenc \
       ! filesink location="$out/boards/$(basename "$picture" .jpg).png"
 done
 echo "$(find "$out/boards" -name '*.png' -size +0 | wc -l) pictures"
@@ -55,11 +54,13 @@ camera ()
   echo "filesrc location=$pair/$1.mp4 ! qtdemux ! h264parse ! avdec_h264
       ! saddledetect ! quadtrack pattern=$pair/pattern.json camera=$1 ! tee name=$1
       $1. ! queue ! join.
-      $1. ! queue ! clothoverlay ! videoconvert ! openh264enc bitrate=6000000
-      ! h264parse ! mp4mux ! filesink location=$out/$1-overlay.mp4"
+      $1. ! queue ! clothoverlay ! videoconvert
+      ! vp8enc deadline=1 target-bitrate=6000000 ! webmmux
+      ! filesink location=$out/$1-overlay.webm"
 }
 # shellcheck disable=SC2046
-gst-launch-1.0 -q triangulate name=join rig="$pair/rig.json" ! tee name=mesh \
+gst-launch-1.0 -q triangulate name=join rig="$pair/rig.json" pattern="$pair/pattern.json" \
+    ! tee name=mesh \
     mesh. ! queue ! meshsink location="$out/cloth.obj" \
     mesh. ! queue ! meshsink location="$out/cloth-take" format=take \
     $(camera cam0) $(camera cam1)
@@ -73,7 +74,7 @@ heading "Done in $((SECONDS - started)) s"
 cat <<END
   calibrated rig           $out/boards-rig.json
   squares found            $out/boards/*.png
-  films with the overlay   $out/cam0-overlay.mp4, $out/cam1-overlay.mp4
+  films with the overlay   $out/cam0-overlay.webm, $out/cam1-overlay.webm
   mesh (Blender: OBJ+PC2)  $out/cloth.obj, $out/cloth.pc2
   mesh (NumPy)             $out/cloth-take
 

@@ -108,7 +108,8 @@ class Pair:
                 % (self.folder, camera))
 
     def join(self, *settings):
-        return 'triangulate name=join rig=%s/rig.json %s' % (self.folder, ' '.join(settings))
+        return ('triangulate name=join rig=%s/rig.json pattern=%s/pattern.json %s'
+                % (self.folder, self.folder, ' '.join(settings)))
 
     def seen(self, camera):
         """[frames][vertices][2]: where the camera truly sees the corners, px."""
