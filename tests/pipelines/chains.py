@@ -119,23 +119,27 @@ class Pair:
         return x[..., :2] / x[..., 2:]
 
     def quad_errors(self, camera, frame, quads):
-        """Distance of each tracked corner from its true place, px."""
-        truth = self.seen(camera)[frame]
-        errors = []
+        """Of each tracked square: its index, the distances of its four corners from
+        their true places, px, and whether it lies rather on another square."""
+        truth = self.seen(camera)[frame].reshape(self.pattern['rows'] + 1, -1, 2)
+        squares = numpy.stack([truth[:-1, :-1], truth[:-1, 1:], truth[1:, 1:], truth[1:, :-1]], 2)
+        found = []
         for n in range(quads.get_n_quads()):
             ok, quad = quads.get_quad(n)
             if not ok or quad.state != GstCloth.QuadState.TRACKED:
                 continue
-            x, y = list(quad.x), list(quad.y)
-            for corner, (right, down) in enumerate(((0, 0), (1, 0), (1, 1), (0, 1))):
-                vertex = (quad.row + down) * (self.pattern['columns'] + 1) + quad.column + right
-                errors.append(numpy.hypot(x[corner] - truth[vertex][0],
-                                          y[corner] - truth[vertex][1]))
-        return errors
-
-
-def rms(errors):
-    return float(numpy.sqrt(numpy.mean(numpy.square(errors))))
+            corners = numpy.stack([list(quad.x), list(quad.y)], 1)
+            distance = numpy.linalg.norm(squares - corners, axis=3)
+            each = numpy.sqrt((distance ** 2).mean(axis=2))
+            own = each[quad.row, quad.column]
+            # Turned squares count as well: the corners of a square in another order.
+            turned = min(numpy.sqrt((numpy.linalg.norm(
+                squares[quad.row, quad.column] - numpy.roll(corners, turn, 0), axis=1) ** 2)
+                .mean()) for turn in (1, 2, 3))
+            each[quad.row, quad.column] = turned
+            found.append(((quad.column, quad.row), distance[quad.row, quad.column],
+                          own > 4 and each.min() < own / 2))
+        return found
 
 
 def case_pair(data):
@@ -261,11 +265,11 @@ def case_cuts(data):
     def look(name, buffer, caps):
         frame = order[len(seen)]
         quads = GstCloth.buffer_get_cloth_quads(buffer)
-        errors = pair.quad_errors('cam0', frame, quads) if quads and frame >= 0 else []
+        found = pair.quad_errors('cam0', frame, quads) if quads and frame >= 0 else []
         tracked = 0
         for n in range(quads.get_n_quads() if quads else 0):
             tracked += quads.get_quad(n)[1].state == GstCloth.QuadState.TRACKED
-        seen.append((frame, tracked, errors))
+        seen.append((frame, tracked, found))
 
     with tempfile.TemporaryDirectory() as folder:
         with open(folder + '/cut.gray', 'wb') as file:
@@ -276,17 +280,18 @@ def case_cuts(data):
     check(len(seen) == len(order), 'all frames')
     starts = [n for n in range(len(order)) if order[n] >= 0
               and (n == 0 or order[n] != order[n - 1] + 1)]
-    # Half a square is 12 px and more here: no noise reaches that.
-    wrong = [n for n, (_, _, errors) in enumerate(seen) if errors and max(errors) > 8]
-    check(not wrong, 'no wrong index (frames %s)' % wrong)
+    wrong = [(n, index) for n, (_, _, found) in enumerate(seen)
+             for index, _, other in found if other]
+    check(not wrong, 'no wrong index (frame, square: %s)' % wrong)
     ghosts = [n for n, (frame, tracked, _) in enumerate(seen) if frame < 0 and tracked]
     check(not ghosts, 'nothing tracked on black (frames %s)' % ghosts)
     for start in starts:
         counts = [seen[n][1] for n in range(start, min(start + 5, len(seen)))]
         check(max(counts) >= 25, 'within 5 frames of frame %d again: %s squares' % (start, counts))
-    check(rms([e for _, _, errors in seen for e in errors]) < 0.3,
-          'corners lie %.3f px RMS from the truth'
-          % rms([e for _, _, errors in seen for e in errors]))
+    errors = numpy.concatenate([d for _, _, found in seen for _, d, _ in found])
+    print('corners: median %.3f px, 95%% within %.3f px, largest %.2f px'
+          % (numpy.median(errors), numpy.percentile(errors, 95), errors.max()))
+    check(numpy.median(errors) < 0.2, 'half of the corners lie within 0.2 px')
 
 
 def case_bad(data):
@@ -296,7 +301,6 @@ def case_bad(data):
     for description, word in (
             (chain + 'saddledetect ! quadtrack pattern=/nowhere/pattern.json ! fakesink',
              'pattern'),
-            (chain + 'saddledetect ! quadtrack ! fakesink', 'pattern'),
             (chain + 'saddledetect ! quadtrack pattern=%s/rig.json ! fakesink' % pair.folder,
              'pattern'),
             ('triangulate name=join rig=/nowhere/rig.json ! fakesink  %s %s ! join.'
