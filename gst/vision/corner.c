@@ -8,7 +8,7 @@
 
 #include "gst/vision/corner-model.h"
 
-#define SECTORS 32
+#define SECTORS 24
 #define MAX_EVALUATIONS 16
 
 /**
@@ -156,7 +156,8 @@ find_angles (const ClothCornerWindow * win, gfloat x, gfloat y, gfloat radius,
   return TRUE;
 }
 
-/* Cholesky's factor of the upper triangle given by rows, in place. */
+/* Cholesky's factor of the upper triangle given by rows, in place; its diagonal is left
+ * inverted. */
 static gboolean
 factor (gdouble * a, gint n)
 {
@@ -168,9 +169,9 @@ factor (gdouble * a, gint n)
       if (i == j) {
         if (!(s > 0))
           return FALSE;
-        a[i * n + i] = sqrt (s);
+        a[i * n + i] = 1 / sqrt (s);
       } else {
-        a[i * n + j] = s / a[i * n + i];
+        a[i * n + j] = s * a[i * n + i];
       }
     }
   }
@@ -183,12 +184,12 @@ solve (const gdouble * u, gint n, gdouble * b)
   for (gint i = 0; i < n; i++) {
     for (gint k = 0; k < i; k++)
       b[i] -= u[k * n + i] * b[k];
-    b[i] /= u[i * n + i];
+    b[i] *= u[i * n + i];
   }
   for (gint i = n - 1; i >= 0; i--) {
     for (gint k = i + 1; k < n; k++)
       b[i] -= u[i * n + k] * b[k];
-    b[i] /= u[i * n + i];
+    b[i] *= u[i * n + i];
   }
 }
 
@@ -378,7 +379,7 @@ cloth_corner_refine (const ClothImage * image, gfloat x, gfloat y,
   Evaluation best, next;
   gfloat radius = params->radius > 2 ? MIN (params->radius, 12.0f) : 2.0f;
   gfloat sum_weights = 0, mean = 0, low = G_MAXFLOAT, high = -G_MAXFLOAT;
-  gdouble damping = 1e-4, moved = 0;
+  gdouble damping = 1e-5, moved = 0;
   gboolean settled = FALSE;
   gint ix, iy, evaluations = 1;
 
@@ -414,13 +415,17 @@ cloth_corner_refine (const ClothImage * image, gfloat x, gfloat y,
   while (evaluations < MAX_EVALUATIONS && !settled) {
     if (!step (&best, damping, radius, &next.state, &moved))
       return FALSE;
+    /* The last step is so short that what was learnt before it still holds. */
+    if (moved < 3e-3 && damping < 2e-5) {
+      best.state = next.state;
+      settled = TRUE;
+      break;
+    }
     if (!evaluate (&win, &next, level))
       return FALSE;
     evaluations++;
     if (next.cost <= best.cost * 1.000001f) {
       best = next;
-      /* A damped step is short in the directions that are hardly known. */
-      settled = moved < 2e-3 && damping < 2e-5;
       damping = MAX (damping * 0.1, 1e-7);
     } else {
       damping *= 10;
