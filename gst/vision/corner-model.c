@@ -141,42 +141,49 @@ basis (ClothCornerWindow * win, const ClothCornerState * st, gfloat * sums)
     sums[j] = sum_lanes (&acc[j]);
 }
 
+/* The residual, and the derivatives of the model by its parameters. */
 INLINE void
-normal (const ClothCornerWindow * win, const ClothCornerState * st,
-    const gfloat * c, gint power, gfloat * out, gfloat * gradient,
-    gfloat * cost)
+linearise (const ClothCornerWindow * win, gint v, const ClothCornerState * st,
+    const gfloat * trig, const gfloat * c, ClothLanes * r, ClothLanes * j)
 {
   const gfloat k = 0.70710678f / st->blur, two = 1.1283792f;
-  const gfloat sin1 = sinf (st->theta1), cos1 = cosf (st->theta1);
-  const gfloat sin2 = sinf (st->theta2), cos2 = cosf (st->theta2);
+  const gfloat sin1 = trig[0], cos1 = trig[1], sin2 = trig[2], cos2 = trig[3];
   const gfloat skew = c[3] *
-      (sinf (st->theta1 - st->theta2) > 0 ? 0.63661977f : -0.63661977f);
+      (sin1 * cos2 - cos1 * sin2 > 0 ? 0.63661977f : -0.63661977f);
+  ClothLanes dx = win->x[v] - st->x, dy = win->y[v] - st->y;
+  ClothLanes t1 = dx * cos1 + dy * sin1, t2 = dx * cos2 + dy * sin2;
+  ClothLanes d1 = dy * cos1 - dx * sin1, d2 = dy * cos2 - dx * sin2;
+  ClothLanes e1 = win->e1[v], e2 = win->e2[v], e12 = win->e12[v];
+  ClothLanes a1 = (c[1] + c[3] * win->q1[v]) * win->g1[v] * two;
+  ClothLanes a2 = (c[2] + c[3] * win->q2[v]) * win->g2[v] * two;
+
+  *r = win->value[v] - (c[0] + c[1] * e1 + c[2] * e2 + c[3] * e12);
+  /* Along its normal an edge moves against the signed distance. */
+  j[0] = -a1;
+  j[1] = -a2;
+  j[2] = t1 * a1 * -k - win->ridge[v] * skew;
+  j[3] = t2 * a2 * -k + win->ridge[v] * skew;
+  j[4] = (d1 * a1 + d2 * a2) * (-k / st->blur);
+  j[5] = 1.0f + 0.0f * e1;
+  j[6] = e1;
+  j[7] = e2;
+  j[8] = e12;
+}
+
+INLINE void
+normal (const ClothCornerWindow * win, const ClothCornerState * st,
+    const gfloat * c, gfloat * out, gfloat * gradient, gfloat * cost)
+{
+  const gfloat trig[4] = { sinf (st->theta1), cosf (st->theta1),
+    sinf (st->theta2), cosf (st->theta2)
+  };
   ClothLanes acc[CLOTH_CORNER_N_SUMS + 6] = { {0} };
 
   for (gint v = 0; v < win->n_vectors; v++) {
-    ClothLanes dx = win->x[v] - st->x, dy = win->y[v] - st->y;
-    ClothLanes t1 = dx * cos1 + dy * sin1, t2 = dx * cos2 + dy * sin2;
-    ClothLanes d1 = dy * cos1 - dx * sin1, d2 = dy * cos2 - dx * sin2;
-    ClothLanes e1 = win->e1[v], e2 = win->e2[v], e12 = win->e12[v];
-    ClothLanes w = win->weight[v];
-    ClothLanes a1 = (c[1] + c[3] * win->q1[v]) * win->g1[v] * two;
-    ClothLanes a2 = (c[2] + c[3] * win->q2[v]) * win->g2[v] * two;
-    ClothLanes r = win->value[v] - (c[0] + c[1] * e1 + c[2] * e2 + c[3] * e12);
-    ClothLanes j[CLOTH_CORNER_N];
+    ClothLanes j[CLOTH_CORNER_N], r, w = win->weight[v];
     gint n = 0;
 
-    /* Along its normal an edge moves against the signed distance. */
-    j[0] = -a1;
-    j[1] = -a2;
-    j[2] = t1 * a1 * -k - win->ridge[v] * skew;
-    j[3] = t2 * a2 * -k + win->ridge[v] * skew;
-    j[4] = (d1 * a1 + d2 * a2) * (-k / st->blur);
-    j[5] = 1.0f + 0.0f * w;
-    j[6] = e1;
-    j[7] = e2;
-    j[8] = e12;
-    if (power == 2)
-      w *= w;
+    linearise (win, v, st, trig, c, &r, j);
 #pragma GCC unroll 9
     for (gint a = 0; a < CLOTH_CORNER_N; a++) {
       ClothLanes wa = w * j[a];
@@ -197,6 +204,47 @@ normal (const ClothCornerWindow * win, const ClothCornerState * st,
   *cost = sum_lanes (&acc[CLOTH_CORNER_N_SUMS + 5]);
 }
 
+INLINE void
+influence (const ClothCornerWindow * win, const ClothCornerState * st,
+    const gfloat * c, const gfloat * root, const gfloat * row, gfloat * out)
+{
+  const gfloat trig[4] = { sinf (st->theta1), cosf (st->theta1),
+    sinf (st->theta2), cosf (st->theta2)
+  };
+  ClothLanes acc[3] = { {0} };
+
+  for (gint v = 0; v < win->n_vectors; v++) {
+    ClothLanes j[CLOTH_CORNER_N], y[CLOTH_CORNER_N], r, w = win->weight[v];
+    ClothLanes px = 0.0f * w, py = px, lever = px, noise;
+
+    linearise (win, v, st, trig, c, &r, j);
+#pragma GCC unroll 9
+    for (gint a = 0; a < CLOTH_CORNER_N; a++) {
+      px += j[a] * row[a];
+      py += j[a] * row[CLOTH_CORNER_N + a];
+      y[a] = j[a];
+#pragma GCC unroll 9
+      for (gint b = 0; b < a; b++)
+        y[a] -= y[b] * root[b * CLOTH_CORNER_N + a];
+      y[a] *= root[a * CLOTH_CORNER_N + a];
+      lever += y[a] * y[a];
+    }
+    /* A pixel that nearly fixes a parameter alone has next to no residual. */
+    noise = 1.0f - w * lever;
+    {
+      LanesInt low = noise < 0.1f;
+      noise = (ClothLanes) (((LanesInt) noise & ~low) |
+          ((LanesInt) (0.0f * w + 0.1f) & low));
+    }
+    noise = w * w * (r * r + 0.01f) / noise;
+    acc[0] += noise * px * px;
+    acc[1] += noise * px * py;
+    acc[2] += noise * py * py;
+  }
+  for (gint n = 0; n < 3; n++)
+    out[n] = sum_lanes (&acc[n]);
+}
+
 #define KERNELS(suffix, target_attribute) \
 target_attribute static void \
 basis_##suffix (ClothCornerWindow * window, const ClothCornerState * state, \
@@ -206,52 +254,59 @@ basis_##suffix (ClothCornerWindow * window, const ClothCornerState * state, \
 } \
 target_attribute static void \
 normal_##suffix (const ClothCornerWindow * window, \
-    const ClothCornerState * state, const gfloat * c, gint power, \
-    gfloat * out, gfloat * gradient, gfloat * cost) \
+    const ClothCornerState * state, const gfloat * c, gfloat * out, \
+    gfloat * gradient, gfloat * cost) \
 { \
-  normal (window, state, c, power, out, gradient, cost); \
+  normal (window, state, c, out, gradient, cost); \
+} \
+target_attribute static void \
+influence_##suffix (const ClothCornerWindow * window, \
+    const ClothCornerState * state, const gfloat * c, const gfloat * root, \
+    const gfloat * row, gfloat * out) \
+{ \
+  influence (window, state, c, root, row, out); \
 }
 
 KERNELS (scalar,)
 #if defined (__x86_64__) && defined (__GNUC__)
-#define WITH_X86 1
 KERNELS (avx2, __attribute__((target ("avx2"))))
 KERNELS (avx512,
     __attribute__((target ("avx512f,avx512bw,avx512dq,avx512vl"))))
+#define DISPATCH(level, function, ...) \
+  do { \
+    if ((level) == CLOTH_SIMD_AVX512) \
+      function##_avx512 (__VA_ARGS__); \
+    else if ((level) == CLOTH_SIMD_AVX2) \
+      function##_avx2 (__VA_ARGS__); \
+    else \
+      function##_scalar (__VA_ARGS__); \
+  } while (0)
+#else
+#define DISPATCH(level, function, ...) function##_scalar (__VA_ARGS__)
 #endif
 
 void
 cloth_corner_basis (ClothCornerWindow * window,
-    const ClothCornerState * state, gfloat sums[CLOTH_CORNER_N_BASIS], ClothSimd level)
+    const ClothCornerState * state, gfloat sums[CLOTH_CORNER_N_BASIS],
+    ClothSimd level)
 {
-#ifdef WITH_X86
-  if (level == CLOTH_SIMD_AVX512) {
-    basis_avx512 (window, state, sums);
-    return;
-  }
-  if (level == CLOTH_SIMD_AVX2) {
-    basis_avx2 (window, state, sums);
-    return;
-  }
-#endif
-  basis_scalar (window, state, sums);
+  DISPATCH (level, basis, window, state, sums);
 }
 
 void
 cloth_corner_normal (const ClothCornerWindow * window,
-    const ClothCornerState * state, const gfloat c[4], gint power,
+    const ClothCornerState * state, const gfloat c[4],
     gfloat out[CLOTH_CORNER_N_SUMS], gfloat gradient[5], gfloat * cost,
     ClothSimd level)
 {
-#ifdef WITH_X86
-  if (level == CLOTH_SIMD_AVX512) {
-    normal_avx512 (window, state, c, power, out, gradient, cost);
-    return;
-  }
-  if (level == CLOTH_SIMD_AVX2) {
-    normal_avx2 (window, state, c, power, out, gradient, cost);
-    return;
-  }
-#endif
-  normal_scalar (window, state, c, power, out, gradient, cost);
+  DISPATCH (level, normal, window, state, c, out, gradient, cost);
+}
+
+void
+cloth_corner_influence (const ClothCornerWindow * window,
+    const ClothCornerState * state, const gfloat c[4],
+    const gfloat root[CLOTH_CORNER_N * CLOTH_CORNER_N],
+    const gfloat row[2 * CLOTH_CORNER_N], gfloat cov[3], ClothSimd level)
+{
+  DISPATCH (level, influence, window, state, c, root, row, cov);
 }

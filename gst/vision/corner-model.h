@@ -47,11 +47,18 @@ typedef struct {
  * blurred product of both steps. */
 void cloth_corner_basis (ClothCornerWindow * window,
     const ClothCornerState * state, gfloat sums[CLOTH_CORNER_N_BASIS], ClothSimd level);
-/* normal: upper triangle by rows of JᵀWJ (@power 1) or JᵀW²J (@power 2); gradient: JᵀWr
- * of the first five; cost: rᵀWr. */
+/* normal: upper triangle by rows of JᵀWJ; gradient: JᵀWr of the first five; cost: rᵀWr. */
 void cloth_corner_normal (const ClothCornerWindow * window,
-    const ClothCornerState * state, const gfloat c[4], gint power,
+    const ClothCornerState * state, const gfloat c[4],
     gfloat normal[CLOTH_CORNER_N_SUMS], gfloat gradient[5], gfloat * cost,
     ClothSimd level);
+/* What the residuals, taken for independent noise, do to two linear combinations of the
+ * parameters: the covariance xx, xy, yy. @root: Cholesky's factor of JᵀWJ, its diagonal
+ * inverted; @row: both combinations times (JᵀWJ)⁻¹. Each squared residual is divided by
+ * one minus its leverage (MacKinnon & White 1985, HC2). */
+void cloth_corner_influence (const ClothCornerWindow * window,
+    const ClothCornerState * state, const gfloat c[4],
+    const gfloat root[CLOTH_CORNER_N * CLOTH_CORNER_N],
+    const gfloat row[2 * CLOTH_CORNER_N], gfloat cov[3], ClothSimd level);
 
 G_END_DECLS

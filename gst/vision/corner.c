@@ -259,7 +259,7 @@ evaluate (ClothCornerWindow * win, Evaluation * e, ClothSimd level)
   cloth_corner_basis (win, &e->state, sums, level);
   if (!solve_levels (sums, e->c))
     return FALSE;
-  cloth_corner_normal (win, &e->state, e->c, 1, e->normal, e->gradient,
+  cloth_corner_normal (win, &e->state, e->c, e->normal, e->gradient,
       &e->cost, level);
   return isfinite (e->cost);
 }
@@ -297,58 +297,40 @@ step (const Evaluation * from, gdouble damping, gfloat radius,
   return isfinite (*moved);
 }
 
-/* What white noise of the residual's own size does to the estimate: with unequal weights
- * that is (JᵀWJ)⁻¹ JᵀW²J (JᵀWJ)⁻¹. */
+/* Each pixel's own residual stands for its noise (White 1980), since that of edges is
+ * often larger than that of areas. */
 static gboolean
 covariance (const ClothCornerWindow * win, const Evaluation * e,
-    gfloat sum_weights, ClothCornerFit * fit, ClothSimd level)
+    ClothCornerFit * fit, ClothSimd level)
 {
-  gfloat squared[CLOTH_CORNER_N_SUMS], unused_gradient[5], unused_cost;
-  gdouble a[CLOTH_CORNER_N * CLOTH_CORNER_N];
-  gdouble w2[CLOTH_CORNER_N * CLOTH_CORNER_N];
-  gdouble row[2][CLOTH_CORNER_N] = { {0} }, cov[3] = { 0 }, m[4];
-  gdouble fitted = 0, variance;
+  gdouble a[CLOTH_CORNER_N * CLOTH_CORNER_N], m[4], sum = 0, square = 0, left;
+  gfloat root[CLOTH_CORNER_N * CLOTH_CORNER_N], row[2 * CLOTH_CORNER_N];
 
-  cloth_corner_normal (win, &e->state, e->c, 2, squared, unused_gradient,
-      &unused_cost, level);
+  for (gint i = 0; i < win->n_vectors * CLOTH_CORNER_LANES; i++) {
+    gdouble w = ((const gfloat *) win->weight)[i];
+    sum += w;
+    square += w * w;
+  }
+  /* The fit has eaten part of the residual. */
+  left = sum - CLOTH_CORNER_N * square / sum;
+  if (!(left > 0))
+    return FALSE;
+  fit->rms = (gfloat) sqrt (e->cost / left);
+
   unpack (e->normal, 0, a);
-  unpack (squared, 0, w2);
   if (!crossing (&e->state, m) || !factor (a, CLOTH_CORNER_N))
     return FALSE;
-  for (gint i = 0; i < CLOTH_CORNER_N; i++) {
-    for (gint j = 0; j < i; j++)
-      w2[i * CLOTH_CORNER_N + j] = w2[j * CLOTH_CORNER_N + i];
-  }
-  /* The trace of (JᵀWJ)⁻¹JᵀW²J: the weight that the fit itself has eaten. */
-  for (gint i = 0; i < CLOTH_CORNER_N; i++) {
-    gdouble column[CLOTH_CORNER_N];
-    memcpy (column, w2 + i * CLOTH_CORNER_N, sizeof (column));
-    solve (a, CLOTH_CORNER_N, column);
-    fitted += column[i];
-  }
-  if (!(sum_weights > fitted))
-    return FALSE;
-  variance = e->cost / (sum_weights - fitted);
-  /* Rounding to whole levels is noise too. */
-  variance = MAX (variance, 1.0 / 12.0);
-
   for (gint i = 0; i < 2; i++) {
-    row[i][0] = m[2 * i];
-    row[i][1] = m[2 * i + 1];
-    solve (a, CLOTH_CORNER_N, row[i]);
+    gdouble b[CLOTH_CORNER_N] = { m[2 * i], m[2 * i + 1] };
+    solve (a, CLOTH_CORNER_N, b);
+    for (gint k = 0; k < CLOTH_CORNER_N; k++)
+      row[i * CLOTH_CORNER_N + k] = (gfloat) b[k];
   }
-  for (gint i = 0; i < CLOTH_CORNER_N; i++) {
-    for (gint j = 0; j < CLOTH_CORNER_N; j++) {
-      gdouble v = variance * w2[i * CLOTH_CORNER_N + j];
-      cov[0] += row[0][i] * v * row[0][j];
-      cov[1] += row[0][i] * v * row[1][j];
-      cov[2] += row[1][i] * v * row[1][j];
-    }
-  }
-  for (gint i = 0; i < 3; i++)
-    fit->cov[i] = (gfloat) cov[i];
-  fit->rms = (gfloat) sqrt (variance);
-  return isfinite (cov[0] + cov[1] + cov[2]) && cov[0] > 0 && cov[2] > 0;
+  for (gint i = 0; i < CLOTH_CORNER_N * CLOTH_CORNER_N; i++)
+    root[i] = i % CLOTH_CORNER_N >= i / CLOTH_CORNER_N ? (gfloat) a[i] : 0;
+  cloth_corner_influence (win, &e->state, e->c, root, row, fit->cov, level);
+  return isfinite (fit->cov[0] + fit->cov[1] + fit->cov[2]) &&
+      fit->cov[0] > 0 && fit->cov[2] > 0;
 }
 
 /**
@@ -363,7 +345,8 @@ covariance (const ClothCornerWindow * win, const Evaluation * e,
  * Fits, by least squares over a disc, two straight edges with a common Gaussian blur and
  * a grey level for each of the four quadrants they make: the inner corner of a
  * checkerboard, the outer corner of a square, and what lies between. Variable projection
- * (Golub & Pereyra 1973) with Levenberg's damping; the noise is that of the residual.
+ * (Golub & Pereyra 1973) with Levenberg's damping. The covariance is that of independent
+ * noise of which each pixel's residual is a sample.
  *
  * Returns: FALSE when the fit doesn't settle near its start, when the edges are within
  *   6 degrees of each other, when the window holds too few pixels or when the corner is
@@ -378,7 +361,7 @@ cloth_corner_refine (const ClothImage * image, gfloat x, gfloat y,
   ClothCornerWindow win;
   Evaluation best, next;
   gfloat radius = params->radius > 2 ? MIN (params->radius, 12.0f) : 2.0f;
-  gfloat sum_weights = 0, mean = 0, low = G_MAXFLOAT, high = -G_MAXFLOAT;
+  gfloat mean = 0, low = G_MAXFLOAT, high = -G_MAXFLOAT;
   gdouble damping = 1e-5, moved = 0;
   gboolean settled = FALSE;
   gint ix, iy, evaluations = 1;
@@ -438,9 +421,7 @@ cloth_corner_refine (const ClothImage * image, gfloat x, gfloat y,
   if (!settled && moved > 0.02)
     return FALSE;
 
-  for (gint v = 0; v < win.n_vectors * CLOTH_CORNER_LANES; v++)
-    sum_weights += ((const gfloat *) win.weight)[v];
-  if (!covariance (&win, &best, sum_weights, fit, level))
+  if (!covariance (&win, &best, fit, level))
     return FALSE;
   fit->x = (gfloat) ix + best.state.x;
   fit->y = (gfloat) iy + best.state.y;

@@ -139,6 +139,39 @@ test_levels (void)
   }
 }
 
+/* Edges that a camera blurred before its gamma: dark squares look smaller, and the outer
+ * corner moves inwards, until the fit knows of it. */
+static void
+test_gamma (void)
+{
+  g_autoptr (GRand) rand = g_rand_new_with_seed (16);
+  g_autofree gfloat *picture = g_new (gfloat, CHECKER_SIZE * CHECKER_SIZE);
+  guint8 data[CHECKER_SIZE * CHECKER_SIZE];
+  gdouble error[2] = { 0 };
+
+  for (gint i = 0; i < 10; i++) {
+    CheckerCorner c = checker_random (CHECKER_L, rand);
+    const ClothImage image = view (data);
+
+    checker_render (&c, picture);
+    for (gint k = 0; k < CHECKER_SIZE * CHECKER_SIZE; k++)
+      picture[k] = 255 * sqrtf (picture[k] / 255);
+    checker_expose (picture, 0, rand, data);
+    for (gint linear = 0; linear < 2; linear++) {
+      ClothCornerParams params = cloth_corner_default_params ();
+      ClothCornerFit fit;
+      params.linear_light = linear;
+      g_assert_true (cloth_corner_refine (&image, (gfloat) c.x, (gfloat) c.y,
+              &params, CLOTH_SIMD_BEST, &fit));
+      error[linear] = MAX (error[linear], hypot (fit.x - c.x, fit.y - c.y));
+    }
+  }
+  g_test_message ("outer corners under gamma 2: off by up to %.3f px, with "
+      "gamma told %.3f px", error[0], error[1]);
+  g_assert_cmpfloat (error[0], >, 0.1);
+  g_assert_cmpfloat (error[1], <, 0.05);
+}
+
 /* Near the picture's border the window is cut; the corner is still found. */
 static void
 test_border (void)
@@ -252,6 +285,7 @@ main (int argc, char **argv)
   g_test_add_func ("/corner/exact", test_exact);
   g_test_add_func ("/corner/scatter", test_scatter);
   g_test_add_func ("/corner/levels", test_levels);
+  g_test_add_func ("/corner/gamma", test_gamma);
   g_test_add_func ("/corner/border", test_border);
   g_test_add_func ("/corner/refusals", test_refusals);
   g_test_add_func ("/corner/noise", test_noise);
