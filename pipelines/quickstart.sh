@@ -66,9 +66,10 @@ gst-launch-1.0 -q triangulate name=join rig="$pair/rig.json" pattern="$pair/patt
     $(camera cam0) $(camera cam1)
 
 heading "Errors against the true cloth"
+status=0
 /usr/bin/python3 "$root/pipelines/compare-truth.py" "$out/cloth-take" \
     --truth "$pair/vertices.npy" --grid 33x35 --pattern "$pair/pattern.json" \
-    --max-rms-mm 0.9 | tee "$out/errors.txt"
+    --max-rms-mm 0.9 | tee "$out/errors.txt" || status=$?
 
 heading "Done in $((SECONDS - started)) s"
 cat <<END
@@ -80,3 +81,4 @@ cat <<END
 
 To use the elements in this shell:  . $root/pipelines/environment.sh
 END
+exit $status
