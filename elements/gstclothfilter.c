@@ -9,7 +9,8 @@
 GST_DEBUG_CATEGORY_STATIC (cloth_filter_debug);
 #define GST_CAT_DEFAULT cloth_filter_debug
 
-typedef struct {
+typedef struct
+{
   gchar *camera;                /* protected by the object lock */
   GstVideoInfo info;
   guint64 count;

@@ -238,8 +238,8 @@ gst_quad_track_analyse (GstClothFilter * filter,
       g_array_index (self->candidates, ClothSaddleCandidate, k) =
           (ClothSaddleCandidate) {
       (guint16) CLAMP (lrintf (from[k].x), 0, frame->luma.width - 1),
-            (guint16) CLAMP (lrintf (from[k].y), 0, frame->luma.height - 1),
-            from[k].response};
+          (guint16) CLAMP (lrintf (from[k].y), 0, frame->luma.height - 1),
+          from[k].response};
     candidates = (const ClothSaddleCandidate *) self->candidates->data;
   } else {
     ClothSaddleParams saddle_params = cloth_saddle_default_params ();

@@ -54,7 +54,8 @@ enum
   PROP_MAX_SADDLES,
 };
 
-struct _GstSaddleDetect {
+struct _GstSaddleDetect
+{
   GstClothFilter parent;
 
   /* under the object lock */
@@ -242,11 +243,13 @@ gst_saddle_detect_analyse (GstClothFilter * filter,
         self->candidates_allocated);
   }
   for (guint i = 0; i < n_candidates; i++) {
+    /* *INDENT-OFF* */
     self->candidates[i] = (GstClothCandidate) {
       .x = candidates[i].x,
       .y = candidates[i].y,
       .response = candidates[i].response,
     };
+    /* *INDENT-ON* */
   }
   payload = gst_cloth_saddles_new (frame->camera, frame->sequence,
       (const GstClothSaddle *) saddles, n_saddles, self->candidates,
@@ -310,8 +313,7 @@ gst_saddle_detect_class_init (GstSaddleDetectClass * klass)
           "Top row of the region searched", 0, 16383, 0, flags));
   g_object_class_install_property (object_class, PROP_ROI_WIDTH,
       g_param_spec_int ("roi-width", "Region's width",
-          "Columns searched (0 = up to the right border)", 0, 16384, 0,
-          flags));
+          "Columns searched (0 = up to the right border)", 0, 16384, 0, flags));
   g_object_class_install_property (object_class, PROP_ROI_HEIGHT,
       g_param_spec_int ("roi-height", "Region's height",
           "Rows searched (0 = down to the lower border)", 0, 16384, 0, flags));

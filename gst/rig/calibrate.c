@@ -210,8 +210,8 @@ start_cameras (Work * w, GError ** error)
     poses = g_new (gdouble, 12 * n);
     used = g_new (gboolean, n);
     if (!cloth_calibrate_alone (&w->rig->cameras[c], n, own, in->board,
-            w->params->huber, w->params->max_iterations, poses, used, &w->excess[c],
-            w->bundle.cancellable, error))
+            w->params->huber, w->params->max_iterations, poses, used,
+            &w->excess[c], w->bundle.cancellable, error))
       return FALSE;
     for (guint i = 0; i < n; i++) {
       memcpy (w->view_poses + 12 * (gsize) index[i], poses + 12 * i,

@@ -91,8 +91,7 @@ take_over (ClothBoardView * view, const ClothPatch * patch,
       if (!patch->kind[from])
         continue;
       cloth_placement_vertex (placement, i, j, &column, &row);
-      if (column < 0 || row < 0 || column >= view->columns
-          || row >= view->rows)
+      if (column < 0 || row < 0 || column >= view->columns || row >= view->rows)
         continue;
       at = row * view->columns + column;
       if (view->seen[at])
@@ -227,7 +226,8 @@ cloth_board_finder_find (ClothBoardFinder * finder, const ClothImage * image,
     const ClothSaddle * saddles, guint n_saddles, const ClothBoardView ** view)
 {
   ClothBoardView *out = &finder->view;
-  ClothPatchParams params = { 0.25f, 0.62f, 0.75f, finder->pattern.code != NULL };
+  ClothPatchParams params =
+      { 0.25f, 0.62f, 0.75f, finder->pattern.code != NULL };
   const ClothLinkPatch *links;
   guint order[MAX_PATCHES], n_links, n;
 

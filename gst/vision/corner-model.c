@@ -267,11 +267,13 @@ influence_##suffix (const ClothCornerWindow * window, \
   influence (window, state, c, root, row, out); \
 }
 
+/* *INDENT-OFF* */
 KERNELS (scalar,)
 #if defined (__x86_64__) && defined (__GNUC__)
 KERNELS (avx2, __attribute__((target ("avx2"))))
 KERNELS (avx512,
     __attribute__((target ("avx512f,avx512bw,avx512dq,avx512vl"))))
+/* *INDENT-ON* */
 #define DISPATCH(level, function, ...) \
   do { \
     if ((level) == CLOTH_SIMD_AVX512) \

@@ -21,19 +21,20 @@
 ClothCornerParams
 cloth_corner_default_params (void)
 {
+  /* *INDENT-OFF* */
   return (ClothCornerParams) {
     .radius = 5.0f,
     .max_shift = 2.0f,
     .blur = 0.8f,
   };
+  /* *INDENT-ON* */
 }
 
 /* Takes the pixels of a disc around (x, y); its weight falls to 0 at its rim, so that
  * what lies beyond enters gently. Offsets are from the pixel (ix, iy). */
 static gboolean
 take_window (ClothCornerWindow * win, const ClothImage * image, gfloat x,
-    gfloat y, gint ix, gint iy, gfloat radius,
-    gboolean linear, gfloat * mean)
+    gfloat y, gint ix, gint iy, gfloat radius, gboolean linear, gfloat * mean)
 {
   const gfloat rim = radius + 0.5f, shape = 1.0f / (rim * rim);
   const gint reach = (gint) ceilf (rim);
@@ -243,7 +244,8 @@ crossing (const ClothCornerState * st, gdouble m[4])
   return TRUE;
 }
 
-typedef struct {
+typedef struct
+{
   ClothCornerState state;
   gfloat c[4];
   gfloat normal[CLOTH_CORNER_N_SUMS];

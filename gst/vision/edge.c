@@ -66,8 +66,8 @@ nearest (const ClothImage * image, gfloat x, gfloat y)
 
 /* The contrast of the edge as seen by samples this far from the line. */
 static gfloat
-contrast_at (const ClothImage * image, gfloat ax, gfloat ay, gfloat dx, gfloat dy,
-    gfloat offset)
+contrast_at (const ClothImage * image, gfloat ax, gfloat ay, gfloat dx,
+    gfloat dy, gfloat offset)
 {
   gfloat scale = offset / sqrtf (dx * dx + dy * dy);
   gfloat nx = -dy * scale, ny = dx * scale;

@@ -29,7 +29,8 @@
 #define UNSEEN -1
 #define REJECTED -2
 
-typedef struct {
+typedef struct
+{
   gint to[4];                   /* saddle in each quarter, -1 for none */
   guint8 in_square;             /* bit s: the ring over quarters s and s + 1 closes */
   guint8 turn;                  /* quarter that points along the patch's columns */

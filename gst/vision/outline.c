@@ -27,7 +27,8 @@
 /* The shorter of two opposite edges over the longer. */
 #define MIN_RATIO 0.4f
 
-typedef struct {
+typedef struct
+{
   gint state;                   /* 0: not looked at, 1: found, -1: none */
   gfloat rays[2];
   gfloat contrast;
@@ -117,8 +118,7 @@ cloth_outline_fit (ClothOutline * outline, const ClothImage * image,
 /* Follows the edge from corner @from to its neighbour @to. */
 static gboolean
 follow (const ClothOutline * outline, const ClothImage * image,
-    gboolean black, Wedge wedges[4], gint from, gint to, gfloat * x,
-    gfloat * y)
+    gboolean black, Wedge wedges[4], gint from, gint to, gfloat * x, gfloat * y)
 {
   Wedge *wedge = &wedges[from];
   gboolean forwards = to == ((from + 1) & 3);

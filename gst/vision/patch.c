@@ -293,8 +293,7 @@ judge_cell (const ClothPatch * patch, const ClothImage * image, gint i, gint j)
 {
   gfloat x[4], y[4], range[2], black, white;
 
-  if (cell_corners (patch, i, j, x, y) < 1
-      || !cell_range (image, x, y, range)
+  if (cell_corners (patch, i, j, x, y) < 1 || !cell_range (image, x, y, range)
       || !local_levels (patch, image, i, j, &black, &white))
     return 0;
   if (range[0] > black + 0.6f * (white - black))

@@ -18,7 +18,8 @@
 #define UPRIGHT 3.0f
 
 /* What a cell or an inner corner of the patch says, in the patch's own grid. */
-typedef struct {
+typedef struct
+{
   gint i, j;
   gboolean corner;              /* four squares meet at vertex (i, j) */
   gfloat on_board;              /* score if it lies on the board */

@@ -8,7 +8,8 @@
 
 #include <math.h>
 
-typedef struct {
+typedef struct
+{
   gfloat x, y;
   gint next;                    /* in the same cell, -1 at its end */
 } Point;

@@ -71,7 +71,8 @@ cloth_quad_tracker_new (const ClothPattern * pattern)
   tracker->corner_vertex = g_array_new (FALSE, FALSE, sizeof (gint));
   tracker->scratch = cloth_place_scratch_new ();
   tracker->seeds = g_array_new (FALSE, FALSE, sizeof (ClothQuadSeed));
-  tracker->out = g_array_sized_new (FALSE, FALSE, sizeof (ClothQuad), (guint) n);
+  tracker->out =
+      g_array_sized_new (FALSE, FALSE, sizeof (ClothQuad), (guint) n);
   cloth_quad_tracker_reset (tracker);
   return tracker;
 }
@@ -504,7 +505,8 @@ cloth_quad_tracker_run (ClothQuadTracker * tracker,
   cloth_point_grid_clear (tracker->candidates, image->width, image->height,
       n_candidates);
   for (guint k = 0; k < n_candidates; k++)
-    cloth_point_grid_add (tracker->candidates, candidates[k].x, candidates[k].y);
+    cloth_point_grid_add (tracker->candidates, candidates[k].x,
+        candidates[k].y);
 
   predict (tracker);
   if (params->link) {

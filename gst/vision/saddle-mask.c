@@ -273,8 +273,7 @@ mask_cut_border (ClothSaddleMask * mask, const ClothImage * image, gint h)
     for (gint w = 0; w * 64 < x0; w++)
       bits[w] &= x0 >= 64 * (w + 1) ? 0 : ~G_GUINT64_CONSTANT (0) << (x0 % 64);
     for (gint w = x1 / 64; w < mask->words; w++)
-      bits[w] &= x1 <= 64 * w ? 0 :
-          ~(~G_GUINT64_CONSTANT (0) << (x1 - 64 * w));
+      bits[w] &= x1 <= 64 * w ? 0 : ~(~G_GUINT64_CONSTANT (0) << (x1 - 64 * w));
   }
 }
 

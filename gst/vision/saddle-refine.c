@@ -22,7 +22,8 @@ typedef gfloat v16f __attribute__((vector_size (64)));
 typedef gfloat v8f __attribute__((vector_size (32)));
 typedef gfloat v4f __attribute__((vector_size (16)));
 
-struct _ClothSaddleRefiner {
+struct _ClothSaddleRefiner
+{
   gfloat sigma;
   /* Standard deviation of F_x for unit white noise. */
   gfloat gradient_noise;
@@ -142,7 +143,9 @@ derivatives_scalar (const guint8 * data, gsize stride, const v16f * gx,
 }
 
 #ifdef WITH_X86
+/* *INDENT-OFF* */
 __attribute__((target ("avx2")))
+/* *INDENT-ON* */
 static void
 derivatives_avx2 (const guint8 * data, gsize stride, const v16f * gx,
     const v16f * gy, gfloat * out)
@@ -161,7 +164,10 @@ derivatives_avx2 (const guint8 * data, gsize stride, const v16f * gx,
   derivatives (rows, gx, gy, out);
 }
 
+/* *INDENT-OFF* */
 __attribute__((target ("avx512f,avx512bw,avx512dq,avx512vl")))
+/* *INDENT-ON* */
+
 static void
 derivatives_avx512 (const guint8 * data, gsize stride, const v16f * gx,
     const v16f * gy, gfloat * out)
@@ -178,15 +184,14 @@ derivatives_avx512 (const guint8 * data, gsize stride, const v16f * gx,
 /* The window around (x, y); a copy with the border repeated where it leaves the
  * picture. One column more than the taps is read. */
 static const guint8 *
-window (const ClothImage * image, gint x, gint y, guint8 * copy,
-    gsize * stride)
+window (const ClothImage * image, gint x, gint y, guint8 * copy, gsize * stride)
 {
   gint x0 = x - RADIUS, y0 = y - RADIUS;
 
   if (x0 >= 0 && y0 >= 0 && x0 + TAPS <= image->width
       && y0 + TAPS <= image->height) {
     *stride = (gsize) image->stride;
-    return image->data + (gsize) y0 * (gsize) image->stride + x0;
+    return image->data + (gsize) y0 *(gsize) image->stride + x0;
   }
   for (gint j = 0; j < TAPS; j++) {
     const guint8 *row = image->data +

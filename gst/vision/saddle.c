@@ -10,7 +10,8 @@
 #include "gst/vision/saddle-mask.h"
 #include "gst/vision/saddle-refine.h"
 
-struct _ClothSaddleDetector {
+struct _ClothSaddleDetector
+{
   ClothSaddleKernel kernel;
   gfloat kernel_sigma;
   ClothSaddleRefiner *refiner;
@@ -20,7 +21,7 @@ struct _ClothSaddleDetector {
   guint n_candidates, candidates_allocated;
   ClothSaddle *saddles;
   guint n_saddles, saddles_allocated;
-  gfloat (*theta)[2];
+    gfloat (*theta)[2];
   guint theta_allocated;
   guint32 *peaks;
   guint n_peaks, peaks_allocated;
@@ -40,6 +41,7 @@ struct _ClothSaddleDetector {
 ClothSaddleParams
 cloth_saddle_default_params (void)
 {
+  /* *INDENT-OFF* */
   return (ClothSaddleParams) {
     .sigma = 1.5f,
     .epsilon = 3.0f,
@@ -49,6 +51,7 @@ cloth_saddle_default_params (void)
     .max_candidates = CLOTH_SADDLE_MAX,
     .max_saddles = CLOTH_SADDLE_MAX,
   };
+  /* *INDENT-ON* */
 }
 
 /**
@@ -242,11 +245,13 @@ scan_mask (ClothSaddleDetector * self, gint threshold, gint reach, guint limit)
         gint d = det[x];
         if (d >= -threshold)
           continue;
+        /* *INDENT-OFF* */
         self->candidates[self->n_candidates] = (ClothSaddleCandidate) {
           .x = (guint16) (mask->x + x),
           .y = (guint16) (mask->y + y),
           .response = (gfloat) -d * self->kernel.scale,
         };
+        /* *INDENT-ON* */
         /* Neighbours in the row refuse most without a closer look. */
         if (!(i > 0 && bits[w] >> (i - 1) & 1 && det[x - 1] <= d)
             && !(i < 63 && bits[w] >> (i + 1) & 1 && det[x + 1] < d)
@@ -428,7 +433,7 @@ cloth_saddle_detector_run (ClothSaddleDetector * detector,
   cloth_saddle_mask_run (mask, &detector->kernel, image, threshold, level);
   if (!scan_mask (detector, threshold, reach, limit)) {
     threshold = raise_threshold (mask, threshold, limit);
-    epsilon = (gfloat) threshold * detector->kernel.scale;
+    epsilon = (gfloat) threshold *detector->kernel.scale;
     detector->cut = TRUE;
     scan_mask (detector, threshold, reach, limit);
   }

@@ -57,17 +57,21 @@ cloth_quad_confidence (const ClothImage * image, const gfloat x[4],
   for (gint v = -across; v < ALONG + across; v++) {
     gboolean in_v = v >= 0 && v < ALONG;
     gint first = in_v ? -across : 0, last = in_v ? ALONG + across : ALONG;
+    /* *INDENT-OFF* */
     gfloat t = v < 0 ? alpha * ((gfloat) v + 0.5f) / (gfloat) across
         : v >= ALONG ? 1 + alpha * ((gfloat) (v - ALONG) + 0.5f) / (gfloat) across
         : ((gfloat) v + 0.5f) / ALONG;
+    /* *INDENT-ON* */
     /* Left and right edge at height t. */
     gfloat x0 = x[0] + t * (x[3] - x[0]), x1 = x[1] + t * (x[2] - x[1]);
     gfloat y0 = y[0] + t * (y[3] - y[0]), y1 = y[1] + t * (y[2] - y[1]);
 
     for (gint u = first; u < last; u++) {
+      /* *INDENT-OFF* */
       gfloat s = u < 0 ? alpha * ((gfloat) u + 0.5f) / (gfloat) across
           : u >= ALONG ? 1 + alpha * ((gfloat) (u - ALONG) + 0.5f) / (gfloat) across
           : ((gfloat) u + 0.5f) / ALONG;
+      /* *INDENT-ON* */
       gfloat px = x0 + s * (x1 - x0), py = y0 + s * (y1 - y0);
       guint8 level;
 

@@ -60,7 +60,7 @@ main (void)
   ClothCvSaddle *reference = cloth_cv_saddle_new ();
   ClothSimd best = cloth_simd_resolve (CLOTH_SIMD_BEST);
   ClothSaddleKernel kernel;
-  ClothSaddleMask mask = { .width = WIDTH,.height = HEIGHT };
+  ClothSaddleMask mask = {.width = WIDTH,.height = HEIGHT };
   gint64 times[ROUNDS];
   gdouble peer, own = 0;
   guint n = 0;

@@ -9,7 +9,7 @@ static ClothImage
 view (const guint8 * data)
 {
   return (ClothImage) {
-    data, CHECKER_SIZE, CHECKER_SIZE, CHECKER_SIZE};
+  data, CHECKER_SIZE, CHECKER_SIZE, CHECKER_SIZE};
 }
 
 /* Without noise only the rounding to whole levels is left. */
@@ -62,7 +62,8 @@ test_scatter (void)
   static const gfloat radii[] = { 3, 5, 8 };
 
   for (CheckerKind kind = CHECKER_X; kind <= CHECKER_L; kind++) {
-    CheckerScatter scatter[G_N_ELEMENTS (radii)] = { {0} };
+    CheckerScatter scatter[G_N_ELEMENTS (radii)] = { {0}
+    };
     gdouble rms = 0;
     guint evaluations = 0;
 
@@ -81,8 +82,7 @@ test_scatter (void)
           params.theta[1] = (gfloat) c.theta[1] - 0.1f;
           g_assert_true (cloth_corner_refine (&image, (gfloat) c.x + 0.3f,
                   (gfloat) c.y - 0.2f, &params, CLOTH_SIMD_BEST, &fit));
-          checker_scatter_add (&scatter[r], fit.x - c.x, fit.y - c.y,
-              fit.cov);
+          checker_scatter_add (&scatter[r], fit.x - c.x, fit.y - c.y, fit.cov);
           if (radii[r] == 8) {
             rms += fit.rms;
             evaluations += (guint) fit.iterations;
@@ -133,8 +133,7 @@ test_levels (void)
           &params, level, &fit[level]);
       if (!found)
         memset (&fit[level], 0, sizeof (fit[level]));
-      g_assert_cmpmem (&fit[level], sizeof (fit[0]), &fit[0],
-          sizeof (fit[0]));
+      g_assert_cmpmem (&fit[level], sizeof (fit[0]), &fit[0], sizeof (fit[0]));
     }
   }
 }

@@ -73,8 +73,7 @@ test_levels (void)
       params.sigma = sigmas[s];
       params.refine = s % 2 ? CLOTH_SADDLE_REFINE_MODEL :
           CLOTH_SADDLE_REFINE_STREAM;
-      cloth_saddle_detector_run (reference, &params, &image,
-          CLOTH_SIMD_SCALAR);
+      cloth_saddle_detector_run (reference, &params, &image, CLOTH_SIMD_SCALAR);
       for (ClothSimd level = CLOTH_SIMD_AVX2; level <= best; level++) {
         cloth_saddle_detector_run (tested, &params, &image, level);
         assert_equal_results (reference, tested);
@@ -229,8 +228,9 @@ test_closed_form (void)
       for (gint x = 0; x < N; x++) {
         gdouble u = (x - x0) * cos (phi) + (y - y0) * sin (phi);
         gdouble v = (y - y0) * cos (phi) - (x - x0) * sin (phi);
-        data[y * N + x] = (guint8) CLAMP (floor (128 + 100 * sin (k * u) * sin (k * v)),
-            0, 255);
+        data[y * N + x] =
+            (guint8) CLAMP (floor (128 + 100 * sin (k * u) * sin (k * v)), 0,
+            255);
       }
     }
     cloth_saddle_detector_run (detector, &params, &image, CLOTH_SIMD_BEST);
