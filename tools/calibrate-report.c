@@ -51,6 +51,26 @@ add_place (GString * s, const ClothCamera * first, const ClothCamera * camera)
         "xyz"[i], 1e3 * t[i], 1e3 * camera->t_sd[i]);
 }
 
+/* A distortion fitted where the board was may fold back elsewhere. */
+static void
+add_reach (GString * s, const ClothCamera * camera)
+{
+  enum
+  { COLUMNS = 41, ROWS = 31 };
+  gdouble x[COLUMNS * ROWS], y[COLUMNS * ROWS];
+  guint n;
+
+  for (guint i = 0; i < COLUMNS * ROWS; i++) {
+    x[i] = (camera->width - 1.) * (i % COLUMNS) / (COLUMNS - 1);
+    y[i] = (camera->height - 1.) * (i / COLUMNS) / (ROWS - 1);
+  }
+  n = cloth_camera_undistort_points (camera, COLUMNS * ROWS, x, y, x, y, NULL);
+  if (n < COLUMNS * ROWS)
+    g_string_append_printf (s, "  the lens is known over %.0f%% of the picture "
+        "only: bring the board to its corners, or take a lens model of fewer "
+        "coefficients\n", floor (100. * n / (COLUMNS * ROWS)));
+}
+
 static void
 add_camera (GString * s, const ClothCalibration * result, guint c,
     const ClothShotCamera * shots)
@@ -81,6 +101,7 @@ add_camera (GString * s, const ClothCalibration * result, guint c,
   for (guint i = 0; i < cloth_lens_n_coefficients (camera->lens); i++)
     g_string_append_printf (s, "    %s  %12.6f ± %.2g\n",
         coefficient_name (camera->lens, i), camera->k[i], camera->k_sd[i]);
+  add_reach (s, camera);
   if (result->placed && c > 0)
     add_place (s, &result->rig->cameras[0], camera);
 }

@@ -13,6 +13,10 @@
 #define N_CAMERA CLOTH_CAMERA_N_PARAMETERS
 #define N_ALL (N_CAMERA + 6)
 
+/* Bounds of the rational lens model's denominator, over the picture and a rim. */
+#define MIN_DENOMINATOR 0.1
+#define MAX_DENOMINATOR 10
+
 /* Poses are eliminated first: with C the cameras' parameters and P those of poses,
  *   [ A   W ] [dC]   [g]
  *   [ W'  B ] [dP] = [h],  B block-diagonal (6×6 a pose),
@@ -415,11 +419,32 @@ apply (ClothBundle * b, const Normal * s)
   }
 }
 
+/* A fit of the rational model to few corners would hide a pole between them, or a cusp at
+ * the centre from numerator and denominator that are both huge. */
+static gboolean
+has_pole (const ClothCamera * camera)
+{
+  const gdouble *k = camera->k;
+  gdouble x = fmax (camera->K[2], camera->width - camera->K[2]) / camera->K[0];
+  gdouble y = fmax (camera->K[5], camera->height - camera->K[5]) / camera->K[4];
+
+  for (gint i = 1; camera->lens == CLOTH_LENS_BROWN8 && i <= 64; i++) {
+    gdouble r = 1.2 * i / 64, s = r * r * (x * x + y * y);
+
+    gdouble d = 1 + s * (k[5] + s * (k[6] + s * k[7]));
+
+    if (!(d > MIN_DENOMINATOR && d < MAX_DENOMINATOR))
+      return TRUE;
+  }
+  return FALSE;
+}
+
 static gboolean
 sane (const ClothBundle * b)
 {
   for (guint c = 0; c < b->n_cameras; c++) {
-    if (!(b->cameras[c].K[0] > 0) || !(b->cameras[c].K[4] > 0))
+    if (!(b->cameras[c].K[0] > 0) || !(b->cameras[c].K[4] > 0)
+        || has_pole (&b->cameras[c]))
       return FALSE;
   }
   return TRUE;

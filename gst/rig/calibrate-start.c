@@ -17,9 +17,6 @@
 /* Boards closer to parallel than this don't determine a focal length. */
 #define MIN_TILT_DEGREES 4.0
 
-/* A focal length less certain than this is none. */
-#define MAX_FOCAL_DEVIATION 0.05
-
 /**
  * cloth_calibrate_lens_bits:
  * @lens: a lens model
@@ -222,29 +219,6 @@ check_tilts (const ClothBundle * bundle, GError ** error)
   return TRUE;
 }
 
-/* Covariance that says the focal length is a guess. */
-static gboolean
-check_focal (const ClothBundle * bundle, GError ** error)
-{
-  const ClothCamera *c = &bundle->cameras[0];
-  gdouble C[CLOTH_CAMERA_N_PARAMETERS * CLOTH_CAMERA_N_PARAMETERS], variance;
-  gdouble sd;
-
-  if (!cloth_bundle_covariance (bundle, C, &variance, error)) {
-    g_prefix_error (error, "camera %s: ", c->name);
-    return FALSE;
-  }
-  sd = sqrt (fmax (C[0], C[CLOTH_CAMERA_N_PARAMETERS + 1]));
-  if (!(sd < MAX_FOCAL_DEVIATION * c->K[0])) {
-    g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_VALUE,
-        "camera %s: the focal length is known to ±%.0f%% only; add views that "
-        "fill the picture, with the board tilted by 20° to 45° to different "
-        "sides", c->name, 100 * sd / c->K[0]);
-    return FALSE;
-  }
-  return TRUE;
-}
-
 /* Poses of all views that a camera can tell one of. Returns how many points the others
  * have. */
 static guint
@@ -329,6 +303,41 @@ guess (ClothBundle * bundle, ClothBundleView * views, GError ** error)
   return TRUE;
 }
 
+/* The rational model has many minima, and poles between them. Several ways to write the
+ * same distortion, N (1 + a r²) / (1 + a r²), each start a fit. */
+static gboolean
+solve_brown8 (ClothBundle * bundle, GError ** error)
+{
+  static const gdouble factors[] = { 0, 0.3, 1, 3 };
+  ClothCamera start = bundle->cameras[0], best = start;
+  gsize size = 12 * bundle->n_poses * sizeof (gdouble);
+  g_autofree gdouble *poses = g_memdup2 (bundle->poses, size);
+  g_autofree gdouble *best_poses = g_memdup2 (bundle->poses, size);
+  gdouble least = HUGE_VAL;
+
+  for (guint i = 0; i < G_N_ELEMENTS (factors); i++) {
+    ClothCamera *c = &bundle->cameras[0];
+    gdouble a = factors[i], cost;
+
+    *c = start;
+    memcpy (bundle->poses, poses, size);
+    c->k[0] += a;
+    c->k[1] += a * start.k[0];
+    c->k[4] += a * start.k[1];
+    c->k[5] = a;
+    if (!cloth_bundle_solve (bundle, &cost, error))
+      return FALSE;
+    if (cost < least) {
+      least = cost;
+      best = *c;
+      memcpy (best_poses, bundle->poses, size);
+    }
+  }
+  bundle->cameras[0] = best;
+  memcpy (bundle->poses, best_poses, size);
+  return TRUE;
+}
+
 /* Views that had no pose under the first guess may have one under a better one. */
 static void
 take_back (const ClothBundle * bundle, ClothBundleView * views)
@@ -397,7 +406,9 @@ cloth_calibrate_alone (ClothCamera * camera, guint n_views,
   bundle.max_iterations = max_iterations;
   for (guint i = 0; i < G_N_ELEMENTS (stages); i++) {
     free_bits = stages[i];
-    if (!cloth_bundle_solve (&bundle, NULL, error)
+    if (!(i == 2 && camera->lens == CLOTH_LENS_BROWN8 ?
+            solve_brown8 (&bundle, error)
+            : cloth_bundle_solve (&bundle, NULL, error))
         || (mend_poses (&bundle, i == 0 ? 0 : 2)
             && !cloth_bundle_solve (&bundle, NULL, error))) {
       g_prefix_error (error, "camera %s: ", camera->name);
@@ -412,7 +423,7 @@ cloth_calibrate_alone (ClothCamera * camera, guint n_views,
   *excess = cloth_bundle_excess (&bundle, 0);
   for (guint v = 0; v < n_views; v++)
     used[v] = own[v].use;
-  return check_tilts (&bundle, error) && check_focal (&bundle, error);
+  return check_tilts (&bundle, error);
 }
 
 /* B after A⁻¹: from the frame A leads to, to the one B leads to. */

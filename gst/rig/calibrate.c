@@ -12,6 +12,9 @@
 
 #define N CLOTH_CAMERA_N_PARAMETERS
 
+/* A focal length less certain than this is none. */
+#define MAX_FOCAL_DEVIATION 0.05
+
 /* Fewer corners than this say nothing that their own pose doesn't absorb. */
 #define MIN_POINTS 6
 #define MIN_VIEWS 3
@@ -446,6 +449,24 @@ fit (Work * w, GError ** error)
   return TRUE;
 }
 
+static gboolean
+check_focal (const Work * w, const gdouble * C, GError ** error)
+{
+  for (guint c = 0; c < w->in->n_cameras; c++) {
+    const ClothCamera *camera = &w->rig->cameras[c];
+    const gdouble *V = C + N * N * c;
+    gdouble sd = sqrt (fmax (V[0], V[N + 1]));
+
+    if (!(sd < MAX_FOCAL_DEVIATION * camera->K[0]))
+      return bad (error,
+          "camera %s: the focal length is known to ±%.0f%% only; "
+          "add views that fill the picture, with the board tilted by 20° to "
+          "45° to different sides, or take a lens model of fewer coefficients",
+          camera->name, 100 * sd / camera->K[0]);
+  }
+  return TRUE;
+}
+
 static void
 sum_up (const Work * w, ClothCalibration * result)
 {
@@ -690,7 +711,12 @@ cloth_calibrate (const ClothCalibrateInput * input,
   }
   sum_up (&w, result);
   C = g_new0 (gdouble, N * N * input->n_cameras);
-  if (!cloth_bundle_covariance (&w.bundle, C, &result->variance, error))
+  if (!cloth_bundle_covariance (&w.bundle, C, &result->variance, error)) {
+    g_prefix_error (error, "add views, or take a lens model of fewer "
+        "coefficients: ");
+    return NULL;
+  }
+  if (!check_focal (&w, C, error))
     return NULL;
   if (params->leave_out > 1 && !leave_out (&w, result, error))
     return NULL;

@@ -116,6 +116,8 @@ apart = ['--columns', '20', '--rows', '15', '--square', '10mm',
 report, cameras = calibrate('--intrinsics-only', *apart)
 check('Intrinsics only' in report and 'board found in 13 of 13' in report,
       'MultiDIC: intrinsics only, RMS %.3f and %.3f px' % tuple(rms(report)[1:3]))
+check('the lens is known over 92% of the picture only' in report,
+      'MultiDIC: says that no board reached the corners')
 check(max(rms(report)[:3]) < 0.3, 'MultiDIC: RMS below 0.3 px')
 refused(1, 'taken at the same moment', '--output', output, *apart)
 
