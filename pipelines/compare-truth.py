@@ -86,7 +86,7 @@ def main():
     for name, value in table:
         print('  %-*s  %s' % (width, name, value))
 
-    kept = wrong == 0
+    kept = options.max_rms_mm is None or wrong == 0
     if options.max_rms_mm is not None and rms > options.max_rms_mm:
         print('the RMS error is above %g mm' % options.max_rms_mm)
         kept = False
