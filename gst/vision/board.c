@@ -226,8 +226,7 @@ cloth_board_finder_find (ClothBoardFinder * finder, const ClothImage * image,
     const ClothSaddle * saddles, guint n_saddles, const ClothBoardView ** view)
 {
   ClothBoardView *out = &finder->view;
-  ClothPatchParams params =
-      { 0.25f, 0.62f, 0.75f, finder->pattern.code != NULL };
+  ClothPatchParams params = { 0.25f, 0.62f, finder->pattern.code != NULL };
   const ClothLinkPatch *links;
   guint order[MAX_PATCHES], n_links, n;
 

@@ -13,11 +13,12 @@
 #include "gst/vision/outline.h"
 #include "gst/vision/template.h"
 
+/* Confidence from which the outline of a linked square is not checked. */
+#define SURE 0.85f
 /* Rounds of taking in squares beside those taken in before. */
 #define ROUNDS 4
-/* Log-likelihood ratios of a cell just beyond the squares seen, by its look. */
-#define SEEN_WHITE -3.0f
-#define SEEN_BLACK 1.0f
+/* Log-likelihood ratio of the board going on at a cell that shows the other colour. */
+#define OTHER_COLOUR -3.0f
 
 /**
  * cloth_patch_clear:
@@ -227,15 +228,17 @@ local_levels (const ClothPatch * patch, const ClothImage * image, gint i,
   return *white > *black;
 }
 
-/* Looks for black cell (@i, @j) where the grid puts it; takes it in if it is there. */
+/* Looks for cell (@i, @j) where the grid puts it; takes it in if it is there. A white
+ * square can be seen on the rim only of a board on dark cloth, a black one only on white
+ * cloth; a cell that is none of the kind fails at once for want of edges. */
 static gboolean
 extend_cell (ClothPatch * patch, const ClothImage * image, gint i, gint j,
     const ClothPatchParams * params)
 {
   ClothOutline outline = { {0} };
-  gfloat confidence;
-
+  gboolean black = cloth_patch_is_black (patch, i, j);
   gint at = j * patch->columns + i, n_known;
+  gfloat confidence;
 
   n_known = cell_corners (patch, i, j, outline.x, outline.y);
   /* The same corners would fail again. */
@@ -244,10 +247,10 @@ extend_cell (ClothPatch * patch, const ClothImage * image, gint i, gint j,
   patch->tried[at] = (guint8) n_known;
   for (gint k = 0; k < 4; k++)
     outline.have[k] = known (patch, i + corner_i[k], j + corner_j[k]);
-  if (!cloth_outline_complete (&outline, image, TRUE))
+  if (!cloth_outline_complete (&outline, image, black))
     return FALSE;
   confidence = cloth_quad_confidence (image, outline.x, outline.y,
-      params->alpha, TRUE);
+      params->alpha, black);
   if (confidence < params->c_low)
     return FALSE;
   for (gint k = 0; k < 4; k++) {
@@ -279,7 +282,7 @@ check_square (ClothPatch * patch, const ClothImage * image, gint i, gint j,
   cell_corners (patch, i, j, outline.x, outline.y);
   patch->confidence[at] = cloth_quad_confidence (image, outline.x, outline.y,
       params->alpha, TRUE);
-  if (patch->confidence[at] >= params->c_high)
+  if (patch->confidence[at] >= SURE)
     return;
   for (gint k = 0; k < 4; k++)
     outline.have[k] = TRUE;
@@ -287,20 +290,20 @@ check_square (ClothPatch * patch, const ClothImage * image, gint i, gint j,
     patch->square[at] = 0;
 }
 
-/* Whether the board goes on at black cell (@i, @j), which was not seen as a square. */
+/* Whether the board goes on at cell (@i, @j), which was not seen as a square: hardly, if
+ * it shows the other colour. Its own colour says nothing, for the cloth has it too. */
 static gfloat
 judge_cell (const ClothPatch * patch, const ClothImage * image, gint i, gint j)
 {
-  gfloat x[4], y[4], range[2], black, white;
+  gfloat x[4], y[4], range[2], black, white, lower, upper;
 
   if (cell_corners (patch, i, j, x, y) < 1 || !cell_range (image, x, y, range)
       || !local_levels (patch, image, i, j, &black, &white))
     return 0;
-  if (range[0] > black + 0.6f * (white - black))
-    return SEEN_WHITE;
-  if (range[1] < black + 0.4f * (white - black))
-    return SEEN_BLACK;
-  return 0;
+  lower = black + 0.4f * (white - black);
+  upper = black + 0.6f * (white - black);
+  return (cloth_patch_is_black (patch, i, j) ? range[0] > upper
+      : range[1] < lower) ? OTHER_COLOUR : 0;
 }
 
 /* Log-likelihood ratio that the square carries a dot of the other colour. */
@@ -369,7 +372,7 @@ cloth_patch_build (ClothPatch * patch, const ClothImage * image,
     added = FALSE;
     for (gint j = 0; j + 1 < patch->rows; j++)
       for (gint i = 0; i + 1 < n; i++)
-        if (!patch->square[j * n + i] && cloth_patch_is_black (patch, i, j))
+        if (!patch->square[j * n + i])
           added |= extend_cell (patch, image, i, j, params);
   }
   for (gint j = 0; j + 1 < patch->rows; j++)
@@ -387,7 +390,7 @@ cloth_patch_build (ClothPatch * patch, const ClothImage * image,
     for (gint i = 0; i + 1 < n; i++) {
       gint at = j * n + i;
 
-      if (!patch->square[at] && cloth_patch_is_black (patch, i, j))
+      if (!patch->square[at])
         patch->inside[at] = judge_cell (patch, image, i, j);
       else if (patch->square[at] && params->read_bits)
         patch->bit[at] = read_bit (patch, image, i, j);

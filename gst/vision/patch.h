@@ -64,14 +64,13 @@ typedef struct {
  * ClothPatchParams:
  * @alpha: width of the template's lapels over the square's edge
  * @c_low: confidence from which a black cell is taken for a square
- * @c_high: confidence below which the outline of a linked square is checked
  * @read_bits: whether to look for the dots of a coded board
  *
  * Since: 0.1
  */
 typedef struct {
   gfloat alpha;
-  gfloat c_low, c_high;
+  gfloat c_low;
   gboolean read_bits;
 } ClothPatchParams;
 

@@ -210,8 +210,7 @@ take_square (ClothQuadTracker * tracker, const ClothPlacement * placement,
   }
   cell->confidence = cloth_quad_confidence (tracker->image, cell->guess_x,
       cell->guess_y, params->alpha, black);
-  if (cell->confidence < params->c_low
-      || !cloth_quad_is_steady (cell, cell->guess_x, cell->guess_y))
+  if (cell->confidence < params->c_low)
     return;
   cell->found = cell->linked = TRUE;
 }
@@ -303,7 +302,7 @@ void
 cloth_quad_link (ClothQuadTracker * tracker)
 {
   ClothPatchParams params = { tracker->params->alpha, tracker->params->c_low,
-    tracker->params->c_high, tracker->pattern.code != NULL
+    tracker->pattern.code != NULL
   };
   const ClothLinkPatch *links;
   guint order[MAX_PATCHES], n_links, n;

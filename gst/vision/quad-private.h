@@ -96,8 +96,6 @@ static const gint cloth_quad_corner_row[4] = { 0, 0, 1, 1 };
 
 gfloat cloth_quad_shortest (const gfloat x[4], const gfloat y[4]);
 gfloat cloth_quad_longest (const gfloat x[4], const gfloat y[4]);
-gboolean cloth_quad_is_steady (const ClothQuadCell * cell, const gfloat x[4],
-    const gfloat y[4]);
 
 /* quad-link.c: places the patches found by linking and takes over their squares. */
 void cloth_quad_link (ClothQuadTracker * tracker);

@@ -15,8 +15,6 @@
 #define REACH 0.5f
 /* A corner's sub-pixel fit may move it this far, in shortest edges. */
 #define MAX_FIT 0.3f
-/* A corner may move this much otherwise than the other three, in longest edges. */
-#define MAX_STRAY 0.3f
 /* A linked corner this near a found one is the same, px. */
 #define SAME 2.0f
 
@@ -38,30 +36,6 @@ cloth_quad_longest (const gfloat x[4], const gfloat y[4])
   for (gint k = 0; k < 4; k++)
     most = MAX (most, hypotf (x[(k + 1) & 3] - x[k], y[(k + 1) & 3] - y[k]));
   return most;
-}
-
-/* Whether a square tracked so far moved as one: a corner that left the other three is where
- * a fold has begun to cover it. */
-gboolean
-cloth_quad_is_steady (const ClothQuadCell * cell, const gfloat x[4],
-    const gfloat y[4])
-{
-  gfloat limit = MAX (MAX_STRAY * cloth_quad_longest (x, y), 3.0f);
-  gfloat sum_x = 0, sum_y = 0;
-
-  if (cell->age > 0)
-    return TRUE;
-  for (gint k = 0; k < 4; k++) {
-    sum_x += x[k] - cell->x[k];
-    sum_y += y[k] - cell->y[k];
-  }
-  for (gint k = 0; k < 4; k++) {
-    gfloat dx = x[k] - cell->x[k], dy = y[k] - cell->y[k];
-
-    if (hypotf (dx - (sum_x - dx) / 3, dy - (sum_y - dy) / 3) > limit)
-      return FALSE;
-  }
-  return TRUE;
 }
 
 /* Section 3.7: three corners go over the candidates near them, in order of the sum of
@@ -197,8 +171,7 @@ cloth_quad_search (ClothQuadTracker * tracker, gint column, gint row)
     return FALSE;
   confidence = cloth_quad_confidence (tracker->image, outline.x, outline.y,
       params->alpha, black);
-  if (confidence < params->c_low
-      || !cloth_quad_is_steady (cell, outline.x, outline.y))
+  if (confidence < params->c_low)
     return FALSE;
   for (gint k = 0; k < 4; k++)
     if (is_elsewhere (tracker, outline.x[k], outline.y[k],
