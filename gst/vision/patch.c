@@ -270,6 +270,27 @@ extend_cell (ClothPatch * patch, const ClothImage * image, gint i, gint j,
   return TRUE;
 }
 
+/* Takes in squares of one colour, beside those there and then beside these; whether one of
+ * them lies on a rim. */
+static gboolean
+extend_colour (ClothPatch * patch, const ClothImage * image, gboolean black,
+    const ClothPatchParams * params)
+{
+  gboolean added = TRUE, rim = FALSE;
+
+  for (gint round = 0; round < ROUNDS && added; round++) {
+    added = FALSE;
+    for (gint j = 0; j + 1 < patch->rows; j++)
+      for (gint i = 0; i + 1 < patch->columns; i++)
+        if (!patch->square[j * patch->columns + i]
+            && cloth_patch_is_black (patch, i, j) == black)
+          added |= extend_cell (patch, image, i, j, params);
+  }
+  for (gint at = 0; at < patch->columns * patch->rows; at++)
+    rim |= patch->kind[at] == CLOTH_VERTEX_RIM;
+  return rim;
+}
+
 /* Measures a black square that linking found, and looks closer if it is no good one: its
  * corners may be chance crossings of a fold with the print. */
 static void
@@ -343,7 +364,6 @@ cloth_patch_build (ClothPatch * patch, const ClothImage * image,
     const ClothPatchParams * params)
 {
   const gint margin = CLOTH_PATCH_MARGIN;
-  gboolean added = TRUE;
   gint n;
 
   make_room (patch, link->columns + 2 * margin, link->rows + 2 * margin);
@@ -368,13 +388,9 @@ cloth_patch_build (ClothPatch * patch, const ClothImage * image,
     for (gint i = 0; i + 1 < n; i++)
       if (patch->square[j * n + i] && cloth_patch_is_black (patch, i, j))
         check_square (patch, image, i, j, params);
-  for (gint round = 0; round < ROUNDS && added; round++) {
-    added = FALSE;
-    for (gint j = 0; j + 1 < patch->rows; j++)
-      for (gint i = 0; i + 1 < n; i++)
-        if (!patch->square[j * n + i])
-          added |= extend_cell (patch, image, i, j, params);
-  }
+  /* The rim has squares of the colour that the cloth has not. */
+  if (!extend_colour (patch, image, TRUE, params))
+    extend_colour (patch, image, FALSE, params);
   for (gint j = 0; j + 1 < patch->rows; j++)
     for (gint i = 0; i + 1 < n; i++) {
       gint at = j * n + i;
