@@ -15,8 +15,11 @@
 #define MAX_VOTE 14.0f
 /* A vertex votes for a guess this near, in squares. */
 #define VOTE_REACH 0.5f
-/* Lead of a placement that is believed. */
+/* Lead of a placement that is believed, and of one believed against the memory. */
 #define MIN_LEAD 3.0f
+#define SURE_LEAD 8.0f
+/* Seeds looked at for one patch. */
+#define MAX_SEEDS 4
 /* Log-likelihood of a seed whose place on the board was told, and of one without. */
 #define SEED 40.0f
 #define SEED_UNTOLD 3.0f
@@ -298,6 +301,40 @@ index_guesses (ClothQuadTracker * tracker)
     }
 }
 
+/* Places the patch that was just built. */
+static gboolean
+place (ClothQuadTracker * tracker, gboolean first, ClothPlacement * placement)
+{
+  ClothPlacement votes[MAX_VOTES + MAX_SEEDS];
+  guint n_memory = vote_by_memory (tracker, votes), n = n_memory;
+  gfloat agrees = 0, contradicts = 0;
+
+  for (guint s = 0; s < tracker->seeds->len && n < n_memory + MAX_SEEDS; s++)
+    n += vote_by_seed (tracker,
+        &g_array_index (tracker->seeds, ClothQuadSeed, s), &votes[n]);
+  if (!cloth_place_patch (&tracker->pattern, &tracker->patch, votes, n,
+          tracker->scratch, placement) || placement->weight < MIN_LEAD)
+    return FALSE;
+  for (guint v = 0; v < n_memory; v++)
+    if (votes[v].rotation == placement->rotation
+        && votes[v].column == placement->column
+        && votes[v].row == placement->row)
+      agrees = votes[v].weight;
+    else
+      contradicts = MAX (contradicts, votes[v].weight);
+  /* What the largest patch shows overrules the memory: it had slipped. The others must
+   * fit to what is known by then, or show their place beyond doubt. */
+  if (!first && (contradicts > agrees || agrees == 0)
+      && placement->weight < SURE_LEAD)
+    return FALSE;
+  if (first && contradicts > 0.5f * MAX_VOTE) {
+    if (placement->weight < SURE_LEAD)
+      return FALSE;
+    forget (tracker);
+  }
+  return TRUE;
+}
+
 void
 cloth_quad_link (ClothQuadTracker * tracker)
 {
@@ -306,6 +343,7 @@ cloth_quad_link (ClothQuadTracker * tracker)
   };
   const ClothLinkPatch *links;
   guint order[MAX_PATCHES], n_links, n;
+  gboolean first = TRUE;
 
   index_guesses (tracker);
   cloth_point_grid_clear (tracker->corners, tracker->image->width,
@@ -315,32 +353,21 @@ cloth_quad_link (ClothQuadTracker * tracker)
       tracker->saddles, tracker->n_saddles, &links, NULL);
   n = cloth_link_largest (links, n_links, order, MAX_PATCHES);
   for (guint k = 0; k < n; k++) {
-    ClothPlacement votes[MAX_VOTES + 4], placement;
-    guint n_votes, n_seeds = 0;
-    gfloat strongest = 0;
-    gboolean placed;
+    ClothPlacement placement;
 
     cloth_patch_build (&tracker->patch, tracker->image, tracker->saddles,
         &links[order[k]], &params);
-    n_votes = vote_by_memory (tracker, votes);
-    for (guint s = 0; s < tracker->seeds->len && n_seeds < 4; s++)
-      n_seeds += vote_by_seed (tracker,
-          &g_array_index (tracker->seeds, ClothQuadSeed, s),
-          &votes[n_votes + n_seeds]);
-    placed = cloth_place_patch (&tracker->pattern, &tracker->patch, votes,
-        n_votes + n_seeds, tracker->scratch, &placement)
-        && placement.weight >= MIN_LEAD;
-    note_corners (tracker, placed ? &placement : NULL);
-    if (!placed)
+    if (!place (tracker, first, &placement)) {
+      note_corners (tracker, NULL);
       continue;
-    for (guint v = 0; v < n_votes; v++)
-      if (votes[v].rotation != placement.rotation
-          || votes[v].column != placement.column
-          || votes[v].row != placement.row)
-        strongest = MAX (strongest, votes[v].weight);
-    /* The evidence overrules what the memory is sure of: the memory had slipped. */
-    if (strongest > 0.5f * MAX_VOTE)
-      forget (tracker);
+    }
+    note_corners (tracker, &placement);
     take_patch (tracker, &placement);
+    /* The others are looked for where the first one's motion has brought them. */
+    if (first) {
+      cloth_quad_spread_shift (tracker);
+      index_guesses (tracker);
+    }
+    first = FALSE;
   }
 }

@@ -34,8 +34,9 @@ typedef struct {
   gfloat guess_x, guess_y;
   gfloat size;                  /* of the squares around it, px */
   gfloat x, y;
+  gfloat weight;                /* of the guess, 1 if it is of the last picture */
   gfloat shift_x, shift_y;      /* seen less guessed, spread to those not seen */
-  gfloat weight;
+  gfloat spread;                /* weight of the shift */
 } ClothQuadVertex;
 
 typedef struct {
@@ -97,6 +98,9 @@ static const gint cloth_quad_corner_row[4] = { 0, 0, 1, 1 };
 gfloat cloth_quad_shortest (const gfloat x[4], const gfloat y[4]);
 gfloat cloth_quad_longest (const gfloat x[4], const gfloat y[4]);
 
+/* quad.c: moves the guesses of what was not found yet along with the corners around it
+ * that were. */
+void cloth_quad_spread_shift (ClothQuadTracker * tracker);
 /* quad-link.c: places the patches found by linking and takes over their squares. */
 void cloth_quad_link (ClothQuadTracker * tracker);
 /* quad-search.c: looks for one square around its guess. */

@@ -202,10 +202,8 @@ predict (ClothQuadTracker * tracker)
   }
 }
 
-/* Moves the guesses of squares not found by linking along with the corners around them
- * that were. */
-static void
-spread_shift (ClothQuadTracker * tracker)
+void
+cloth_quad_spread_shift (ClothQuadTracker * tracker)
 {
   gint columns = tracker->pattern.columns + 1, rows = tracker->pattern.rows + 1;
 
@@ -215,7 +213,7 @@ spread_shift (ClothQuadTracker * tracker)
 
     vertex->shift_x = known ? vertex->x - vertex->guess_x : 0;
     vertex->shift_y = known ? vertex->y - vertex->guess_y : 0;
-    vertex->weight = known ? 1 : 0;
+    vertex->spread = known ? 1 : 0;
   }
   for (gint pass = 0; pass < SPREAD_PASSES; pass++)
     for (gint row = 0; row < rows; row++)
@@ -233,15 +231,15 @@ spread_shift (ClothQuadTracker * tracker)
               || row + dr[k] < 0 || row + dr[k] >= rows)
             continue;
           other = cloth_quad_vertex (tracker, column + dc[k], row + dr[k]);
-          sum_x += other->weight * other->shift_x;
-          sum_y += other->weight * other->shift_y;
-          weight += other->weight;
+          sum_x += other->spread * other->shift_x;
+          sum_y += other->spread * other->shift_y;
+          weight += other->spread;
         }
         if (weight == 0)
           continue;
         own->shift_x = sum_x / weight;
         own->shift_y = sum_y / weight;
-        own->weight = MIN (0.5f * weight, 0.9f);
+        own->spread = MIN (0.5f * weight, 0.9f);
       }
   for (gint row = 0; row + 1 < rows; row++)
     for (gint column = 0; column + 1 < columns; column++) {
@@ -258,6 +256,14 @@ spread_shift (ClothQuadTracker * tracker)
         cell->guess_y[k] += vertex->shift_y;
       }
     }
+  for (gint k = 0; k < columns * rows; k++) {
+    ClothQuadVertex *vertex = &tracker->vertices[k];
+
+    if (!vertex->guessed)
+      continue;
+    vertex->guess_x += vertex->shift_x;
+    vertex->guess_y += vertex->shift_y;
+  }
 }
 
 /* Section 3.8: the most inconsistent neighbours over the number of confident ones. The
@@ -511,7 +517,7 @@ cloth_quad_tracker_run (ClothQuadTracker * tracker,
   predict (tracker);
   if (params->link) {
     cloth_quad_link (tracker);
-    spread_shift (tracker);
+    cloth_quad_spread_shift (tracker);
   } else {
     start_seeds (tracker);
   }
