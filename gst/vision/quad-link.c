@@ -13,8 +13,14 @@
 /* Log-likelihood of one vertex near its guess, and of all of them together. */
 #define VOTE 2.0f
 #define MAX_VOTE 14.0f
+/* More than a few stray vertices. */
+#define STRONG_VOTE 3.0f
 /* A vertex votes for a guess this near, in squares. */
 #define VOTE_REACH 0.5f
+/* A vertex this near a guess is that vertex, in squares. */
+#define SURE_REACH 0.3f
+/* Guesses are looked for this far away, px. */
+#define MAX_GUESS 200.0f
 /* Lead of a placement that is believed, and of one believed against the memory. */
 #define MIN_LEAD 3.0f
 #define SURE_LEAD 8.0f
@@ -101,7 +107,7 @@ vote_by_memory (ClothQuadTracker * tracker, ClothPlacement votes[MAX_VOTES])
       if (patch->kind[at] != CLOTH_VERTEX_SADDLE
           || !patch_direction (patch, i, j, &dx, &dy)
           || !cloth_point_grid_nearest (tracker->guesses, patch->x[at],
-              patch->y[at], 200, &near, 1))
+              patch->y[at], MAX_GUESS, &near, 1))
         continue;
       vertex = g_array_index (tracker->guess_vertex, gint, near.index);
       guess = &tracker->vertices[vertex];
@@ -218,21 +224,59 @@ take_square (ClothQuadTracker * tracker, const ClothPlacement * placement,
   cell->found = cell->linked = TRUE;
 }
 
+/* What the memory says of vertex (@i, @j) of the patch under a placement: 1 yes, -1 no, 0
+ * nothing. */
+static gint
+recall (ClothQuadTracker * tracker, const ClothPlacement * placement, gint i,
+    gint j)
+{
+  const ClothPatch *patch = &tracker->patch;
+  gint at = j * patch->columns + i, column, row, vertex;
+  ClothNear near;
+
+  if (!cloth_point_grid_nearest (tracker->guesses, patch->x[at], patch->y[at],
+          MAX_GUESS, &near, 1))
+    return 0;
+  vertex = g_array_index (tracker->guess_vertex, gint, near.index);
+  if (sqrtf (near.distance2) > SURE_REACH * tracker->vertices[vertex].size)
+    return 0;
+  cloth_placement_vertex (placement, i, j, &column, &row);
+  return vertex == row * (tracker->pattern.columns + 1) + column ? 1 : -1;
+}
+
+/* The same of the cell (@i, @j): for less against. */
+static gint
+recall_square (ClothQuadTracker * tracker, const ClothPlacement * placement,
+    gint i, gint j)
+{
+  gint sum = 0;
+
+  for (gint k = 0; k < 4; k++)
+    sum += recall (tracker, placement, i + cloth_quad_corner_column[k],
+        j + cloth_quad_corner_row[k]);
+  return sum;
+}
+
+/* Takes the squares of the patch that the memory puts where the placement does, by at
+ * least @least corners. */
 static void
-take_patch (ClothQuadTracker * tracker, const ClothPlacement * placement)
+take_patch (ClothQuadTracker * tracker, const ClothPlacement * placement,
+    gint least)
 {
   const ClothPatch *patch = &tracker->patch;
 
   for (gint j = 0; j + 1 < patch->rows; j++)
     for (gint i = 0; i + 1 < patch->columns; i++)
-      if (patch->square[j * patch->columns + i])
+      if (patch->square[j * patch->columns + i]
+          && recall_square (tracker, placement, i, j) >= least)
         take_square (tracker, placement, i, j);
   for (gint j = 0; j < patch->rows; j++)
     for (gint i = 0; i < patch->columns; i++) {
       gint from = j * patch->columns + i, column, row;
       ClothQuadVertex *vertex;
 
-      if (!patch->kind[from])
+      if (!patch->kind[from]
+          || recall (tracker, placement, i, j) < MIN (least, 1))
         continue;
       cloth_placement_vertex (placement, i, j, &column, &row);
       if (column < 0 || row < 0 || column > tracker->pattern.columns
@@ -301,13 +345,15 @@ index_guesses (ClothQuadTracker * tracker)
     }
 }
 
-/* Places the patch that was just built. */
+/* Places the patch that was just built. Linking may have joined pieces on both sides of a
+ * fold: @other is the place that memory knows of the second piece, weight 0 for none. */
 static gboolean
-place (ClothQuadTracker * tracker, gboolean first, ClothPlacement * placement)
+place (ClothQuadTracker * tracker, gboolean first, ClothPlacement * placement,
+    ClothPlacement * other)
 {
   ClothPlacement votes[MAX_VOTES + MAX_SEEDS];
   guint n_memory = vote_by_memory (tracker, votes), n = n_memory;
-  gfloat agrees = 0, contradicts = 0;
+  gfloat agrees = 0;
 
   for (guint s = 0; s < tracker->seeds->len && n < n_memory + MAX_SEEDS; s++)
     n += vote_by_seed (tracker,
@@ -320,17 +366,18 @@ place (ClothQuadTracker * tracker, gboolean first, ClothPlacement * placement)
         && votes[v].column == placement->column
         && votes[v].row == placement->row)
       agrees = votes[v].weight;
-    else
-      contradicts = MAX (contradicts, votes[v].weight);
+    else if (votes[v].weight > other->weight)
+      *other = votes[v];
   /* What the largest patch shows overrules the memory: it had slipped. The others must
    * fit to what is known by then, or show their place beyond doubt. */
-  if (!first && (contradicts > agrees || agrees == 0)
+  if (!first && (other->weight > agrees || agrees == 0)
       && placement->weight < SURE_LEAD)
     return FALSE;
-  if (first && contradicts > 0.5f * MAX_VOTE) {
+  if (first && other->weight > agrees && other->weight > STRONG_VOTE) {
     if (placement->weight < SURE_LEAD)
       return FALSE;
     forget (tracker);
+    other->weight = 0;
   }
   return TRUE;
 }
@@ -353,16 +400,18 @@ cloth_quad_link (ClothQuadTracker * tracker)
       tracker->saddles, tracker->n_saddles, &links, NULL);
   n = cloth_link_largest (links, n_links, order, MAX_PATCHES);
   for (guint k = 0; k < n; k++) {
-    ClothPlacement placement;
+    ClothPlacement placement, other = { 0 };
 
     cloth_patch_build (&tracker->patch, tracker->image, tracker->saddles,
         &links[order[k]], &params);
-    if (!place (tracker, first, &placement)) {
+    if (!place (tracker, first, &placement, &other)) {
       note_corners (tracker, NULL);
       continue;
     }
     note_corners (tracker, &placement);
-    take_patch (tracker, &placement);
+    take_patch (tracker, &placement, 0);
+    if (other.weight > STRONG_VOTE)
+      take_patch (tracker, &other, 3);
     /* The others are looked for where the first one's motion has brought them. */
     if (first) {
       cloth_quad_spread_shift (tracker);
