@@ -110,6 +110,7 @@ gst_cloth_sync_get_next_time (GstAggregator * agg)
   Heads heads;
   guint i;
 
+  /* the aggregator calls us with the lock that releasing a pad takes */
   gst_cloth_sync_gather (self, &heads);
   for (i = 0; i < heads.n; i++) {
     if (heads.head[i]) {
@@ -120,6 +121,27 @@ gst_cloth_sync_get_next_time (GstAggregator * agg)
   gst_cloth_sync_release_heads (&heads);
   return first == G_MAXINT64 ? GST_CLOCK_TIME_NONE : (GstClockTime) MAX (first,
       0);
+}
+
+/* Takes the head of a pad; see the release lock. */
+static GstBuffer *
+gst_cloth_sync_pop (GstClothSync * self, GstClothSyncPad * pad)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_private (self);
+  GstBuffer *buffer;
+
+  g_mutex_lock (&priv->release_lock);
+  buffer = gst_aggregator_pad_pop_buffer (GST_AGGREGATOR_PAD_CAST (pad));
+  g_mutex_unlock (&priv->release_lock);
+  return buffer;
+}
+
+static void
+gst_cloth_sync_discard_head (GstClothSync * self, GstClothSyncPad * pad)
+{
+  g_autoptr (GstBuffer) buffer = gst_cloth_sync_pop (self, pad);
+
+  GST_LOG_OBJECT (pad, "discarded %" GST_PTR_FORMAT, buffer);
 }
 
 static void
@@ -143,7 +165,7 @@ gst_cloth_sync_drop (GstClothSync * self, GstClothSyncPad * pad,
   gst_message_set_qos_stats (message, GST_FORMAT_BUFFERS, pad->used,
       pad->dropped);
   gst_element_post_message (GST_ELEMENT (self), message);
-  gst_aggregator_pad_drop_buffer (aggpad);
+  gst_cloth_sync_discard_head (self, pad);
 }
 
 /* Takes away heads that no set will want: frames too late for a set that has gone, and
@@ -169,7 +191,7 @@ gst_cloth_sync_discard (GstClothSync * self, Heads * heads,
         time += (GstClockTimeDiff) GST_BUFFER_DURATION (heads->head[i]);
       }
       if (first == G_MAXINT64 || time <= first + tolerance) {
-        gst_aggregator_pad_drop_buffer (GST_AGGREGATOR_PAD (heads->pad[i]));
+        gst_cloth_sync_discard_head (self, heads->pad[i]);
         discarded = TRUE;
       }
       continue;
@@ -230,8 +252,7 @@ gst_cloth_sync_emit (GstClothSync * self, Heads * heads, guint64 mask,
     }
     /* only one reference must be left, so that the subclass can write in place */
     gst_clear_buffer (&heads->head[i]);
-    views[i] =
-        gst_aggregator_pad_pop_buffer (GST_AGGREGATOR_PAD (heads->pad[i]));
+    views[i] = gst_cloth_sync_pop (self, heads->pad[i]);
     if (!views[i]) {
       mask &= ~(G_GUINT64_CONSTANT (1) << i);   /* flushed meanwhile */
       continue;
@@ -329,7 +350,9 @@ gst_cloth_sync_aggregate (GstAggregator * agg, gboolean timeout)
   tolerance = (GstClockTimeDiff) priv->effective;
   GST_OBJECT_UNLOCK (self);
 
+  g_mutex_lock (&priv->release_lock);
   gst_cloth_sync_gather (self, &heads);
+  g_mutex_unlock (&priv->release_lock);
   if (heads.n_eos == heads.n_pads) {
     ret = gst_cloth_sync_end (self);
     goto done;

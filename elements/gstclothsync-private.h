@@ -10,6 +10,11 @@ G_BEGIN_DECLS
 GST_DEBUG_CATEGORY_EXTERN (cloth_sync_debug);
 
 typedef struct {
+  /* Held while a pad is released and while the streaming thread takes frames from pads:
+   * GstAggregator drops the frame that a subclass has looked at without the pad's
+   * lock. Taken before all of the aggregator's own locks. */
+  GMutex release_lock;
+
   /* with the object lock */
   GstClockTime tolerance;
   guint min_views;

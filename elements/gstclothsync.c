@@ -41,9 +41,18 @@ enum
   PROP_STATS
 };
 
+/* What was looked at before the flush, to know the deadline, is still held. */
+static GstFlowReturn
+gst_cloth_sync_pad_flush (GstAggregatorPad * pad, GstAggregator * agg)
+{
+  gst_aggregator_pad_drop_buffer (pad);
+  return GST_FLOW_OK;
+}
+
 static void
 gst_cloth_sync_pad_class_init (GstClothSyncPadClass * klass)
 {
+  GST_AGGREGATOR_PAD_CLASS (klass)->flush = gst_cloth_sync_pad_flush;
 }
 
 static void
@@ -202,7 +211,9 @@ gst_cloth_sync_release_pad (GstElement * element, GstPad * pad)
   GstClothSyncPrivate *priv = gst_cloth_sync_get_private (self);
   guint64 bit = G_GUINT64_CONSTANT (1) << GST_CLOTH_SYNC_PAD (pad)->index;
 
+  g_mutex_lock (&priv->release_lock);
   GST_ELEMENT_CLASS (gst_cloth_sync_parent_class)->release_pad (element, pad);
+  g_mutex_unlock (&priv->release_lock);
 
   GST_OBJECT_LOCK (self);
   priv->taken &= ~bit;
@@ -439,6 +450,16 @@ gst_cloth_sync_get_property (GObject * object, guint id, GValue * value,
 }
 
 static void
+gst_cloth_sync_finalize (GObject * object)
+{
+  GstClothSyncPrivate *priv =
+      gst_cloth_sync_get_private (GST_CLOTH_SYNC (object));
+
+  g_mutex_clear (&priv->release_lock);
+  G_OBJECT_CLASS (gst_cloth_sync_parent_class)->finalize (object);
+}
+
+static void
 gst_cloth_sync_class_init (GstClothSyncClass * klass)
 {
   GObjectClass *object_class = G_OBJECT_CLASS (klass);
@@ -447,6 +468,7 @@ gst_cloth_sync_class_init (GstClothSyncClass * klass)
 
   object_class->set_property = gst_cloth_sync_set_property;
   object_class->get_property = gst_cloth_sync_get_property;
+  object_class->finalize = gst_cloth_sync_finalize;
   element_class->release_pad = gst_cloth_sync_release_pad;
   agg_class->create_new_pad = gst_cloth_sync_create_new_pad;
   agg_class->sink_event = gst_cloth_sync_sink_event;
@@ -503,6 +525,7 @@ gst_cloth_sync_init (GstClothSync * self)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_private (self);
 
+  g_mutex_init (&priv->release_lock);
   priv->tolerance = DEFAULT_TOLERANCE;
   priv->min_views = DEFAULT_MIN_VIEWS;
   priv->effective = FALLBACK_TOLERANCE;
