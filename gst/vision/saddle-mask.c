@@ -152,6 +152,50 @@ cloth_saddle_copy_row (guint8 * out, const ClothImage * image, gint x,
   memset (out + n - right, row[image->width - 1], (gsize) right);
 }
 
+/* Rows of the reference, in loops that any compiler makes vectors of. */
+static void
+across (guint16 * restrict out, gint n, const guint8 * restrict line,
+    const ClothSaddleKernel * kernel)
+{
+  memset (out, 0, (gsize) n * sizeof (guint16));
+  for (gint k = 0; k <= 2 * kernel->radius; k++) {
+    guint16 weight = (guint16) kernel->across[k];
+    for (gint x = 0; x < n; x++)
+      out[x] = (guint16) (out[x] + weight * line[x + k]);
+  }
+}
+
+static void
+down (guint16 * restrict out, gint n, const guint16 * ring, gint row,
+    const ClothSaddleKernel * kernel)
+{
+  const gint r = kernel->radius, n_ring = 2 * r + 1;
+
+  for (gint k = 0; k <= r; k++) {
+    const guint16 *a = ring + (gsize) ((row + r - k) % n_ring) * (gsize) n;
+    const guint16 *b = ring + (gsize) ((row + r + k) % n_ring) * (gsize) n;
+    guint32 weight = kernel->down[k];
+
+    for (gint x = 0; x < n; x++) {
+      guint32 pair = ((guint32) a[x] + b[x] + 1) >> 1;
+      guint32 part = (pair * weight) >> 16;
+      out[x] = (guint16) (k > 0 ? out[x] + part : part);
+    }
+  }
+}
+
+static void
+determinants (gint16 * restrict det, gint n, const guint16 * a,
+    const guint16 * b, const guint16 * c, gint h)
+{
+  for (gint x = 0; x < n; x++) {
+    gint16 fxx = (gint16) (4 * (b[x - h] + b[x + h] - 2 * b[x]));
+    gint16 fyy = (gint16) (4 * (a[x] + c[x] - 2 * b[x]));
+    gint16 fxy = (gint16) (c[x + h] - a[x + h] - c[x - h] + a[x - h]);
+    det[x] = (gint16) (((fxx * fyy) >> 16) - ((fxy * fxy) >> 16));
+  }
+}
+
 /* The reference: every vector level gives these very bits. */
 static void
 mask_run_scalar (ClothSaddleMask * mask, const ClothSaddleKernel * kernel,
@@ -165,63 +209,31 @@ mask_run_scalar (ClothSaddleMask * mask, const ClothSaddleKernel * kernel,
   guint16 *ring = (guint16 *) bytes;
   guint16 *smooth = ring + (gsize) n_ring * (gsize) n;
   guint8 *line = (guint8 *) (smooth + (gsize) n_smooth * (gsize) n);
-  const gint top = mask->y - h, bottom = mask->y + mask->height + h;
 
-  for (gint y = top - r; y < bottom + r; y++) {
-    guint16 *out = ring + (gsize) ((y - top + r) % n_ring) * (gsize) n;
-    gint row = y - r, centre;
+  for (gint i = 0; i < mask->height + 2 * (h + r); i++) {
+    gint row = i - 2 * r, centre = row - 2 * h;
 
-    cloth_saddle_copy_row (line, image, mask->x - h - r, y, n + 2 * r);
-    for (gint x = 0; x < n; x++) {
-      gint sum = 0;
-      for (gint k = 0; k <= 2 * r; k++)
-        sum += kernel->across[k] * line[x + k];
-      out[x] = (guint16) sum;
-    }
-    if (row < top)
+    cloth_saddle_copy_row (line, image, mask->x - h - r,
+        mask->y - h - r + i, n + 2 * r);
+    across (ring + (gsize) (i % n_ring) * (gsize) n, n, line, kernel);
+    if (row < 0)
       continue;
-
-    out = smooth + (gsize) ((row - top) % n_smooth) * (gsize) n;
-    for (gint x = 0; x < n; x++) {
-      const guint16 *middle =
-          ring + (gsize) ((row - top + r) % n_ring) * (gsize) n;
-      guint sum = ((guint32) middle[x] * kernel->down[0]) >> 16;
-      for (gint k = 1; k <= r; k++) {
-        guint a = ring[(gsize) ((row - top + r - k) % n_ring) * (gsize) n +
-            (gsize) x];
-        guint b = ring[(gsize) ((row - top + r + k) % n_ring) * (gsize) n +
-            (gsize) x];
-        sum += (((a + b + 1) >> 1) * kernel->down[k]) >> 16;
-      }
-      out[x] = (guint16) sum;
-    }
-    centre = row - h;
-    if (centre < mask->y)
+    down (smooth + (gsize) (row % n_smooth) * (gsize) n, n, ring, row, kernel);
+    if (centre < 0)
       continue;
 
     {
-      const guint16 *a =
-          smooth + (gsize) ((centre - h - top) % n_smooth) * (gsize) n + h;
-      const guint16 *b =
-          smooth + (gsize) ((centre - top) % n_smooth) * (gsize) n + h;
-      const guint16 *c =
-          smooth + (gsize) ((centre + h - top) % n_smooth) * (gsize) n + h;
-      guint64 *bits = mask->bits + (gsize) (centre - mask->y) *
-          (gsize) mask->words;
-      gint16 *det = mask->det + (gsize) (centre - mask->y) *
-          (gsize) mask->words * 64;
+      guint64 *bits = mask->bits + (gsize) centre * (gsize) mask->words;
+      gint16 *det = mask->det + (gsize) centre * (gsize) mask->words * 64;
 
+      determinants (det, 64 * mask->words,
+          smooth + (gsize) (centre % n_smooth) * (gsize) n + h,
+          smooth + (gsize) ((centre + h) % n_smooth) * (gsize) n + h,
+          smooth + (gsize) (row % n_smooth) * (gsize) n + h, h);
       for (gint w = 0; w < mask->words; w++) {
         guint64 word = 0;
-        for (gint i = 0; i < 64; i++) {
-          gint x = 64 * w + i;
-          gint16 fxx = (gint16) (4 * (b[x - h] + b[x + h] - 2 * b[x]));
-          gint16 fyy = (gint16) (4 * (a[x] + c[x] - 2 * b[x]));
-          gint16 fxy = (gint16) (c[x + h] - a[x + h] - c[x - h] + a[x - h]);
-          gint d = ((fxx * fyy) >> 16) - ((fxy * fxy) >> 16);
-          det[x] = (gint16) d;
-          word |= (guint64) (d < -threshold) << i;
-        }
+        for (gint k = 0; k < 64; k++)
+          word |= (guint64) (det[64 * w + k] < -threshold) << k;
         bits[w] = word;
       }
     }

@@ -210,7 +210,7 @@ window (const ClothImage * image, gint x, gint y, guint8 * copy, gsize * stride)
  * @peak: where to start
  * @noise: standard deviation of the picture's noise, grey levels
  * @saddle: (out): the saddle
- * @theta: (out): directions of both edges, radians from +x towards +y
+ * @theta: (out) (optional): directions of both edges, radians from +x towards +y
  * @level: the instruction set
  *
  * Newton's method on the intensity smoothed by a Gaussian that is centred at the place
@@ -256,7 +256,8 @@ cloth_saddle_refiner_run (const ClothSaddleRefiner * refiner,
     dy = -(f[2] * f[1] - f[3] * f[0]) / det;
     x = (gfloat) ix + ((gfloat) px / PHASES - 0.5f);
     y = (gfloat) iy + ((gfloat) py / PHASES - 0.5f);
-    if (dx * dx + dy * dy < 0.02f * 0.02f * 2) {
+    /* From here the quadratic is exact to 0.0005 px. */
+    if (dx * dx + dy * dy < 0.1f * 0.1f) {
       x += dx;
       y += dy;
       break;
@@ -290,7 +291,7 @@ cloth_saddle_refiner_run (const ClothSaddleRefiner * refiner,
   }
   /* The edges run where the quadratic form of the Hessian vanishes:
    * Fyy t² + 2 Fxy t + Fxx = 0 for t = dy / dx, written so that nothing cancels. */
-  {
+  if (theta) {
     gfloat root = sqrtf (-det);
     gfloat sum = f[3] > 0 ? -f[3] - root : -f[3] + root;
     theta[0] = atan2f (sum, f[4]);

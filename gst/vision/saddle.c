@@ -225,12 +225,14 @@ static gboolean
 scan_mask (ClothSaddleDetector * self, gint threshold, gint reach, guint limit)
 {
   const ClothSaddleMask *mask = &self->mask;
+  const gssize row = (gssize) mask->words * 64;
 
   self->n_candidates = 0;
   self->n_peaks = 0;
   for (gint y = 0; y < mask->height; y++) {
     const guint64 *bits = mask->bits + (gsize) y * (gsize) mask->words;
     const gint16 *det = mask->det + (gsize) y * (gsize) mask->words * 64;
+    const guint64 *above = bits - mask->words, *below = bits + mask->words;
 
     for (gint w = 0; w < mask->words; w++) {
       guint64 word = bits[w];
@@ -252,9 +254,11 @@ scan_mask (ClothSaddleDetector * self, gint threshold, gint reach, guint limit)
           .response = (gfloat) -d * self->kernel.scale,
         };
         /* *INDENT-ON* */
-        /* Neighbours in the row refuse most without a closer look. */
+        /* The four neighbours refuse most without a closer look. */
         if (!(i > 0 && bits[w] >> (i - 1) & 1 && det[x - 1] <= d)
             && !(i < 63 && bits[w] >> (i + 1) & 1 && det[x + 1] < d)
+            && !(y > 0 && above[w] >> i & 1 && det[x - row] <= d)
+            && !(y + 1 < mask->height && below[w] >> i & 1 && det[x + row] < d)
             && is_peak (mask, x, y, reach, d))
           self->peaks[self->n_peaks++] = self->n_candidates;
         self->n_candidates++;
@@ -296,7 +300,8 @@ refine_peaks (ClothSaddleDetector * self, const ClothSaddleParams * params,
     gfloat theta[2];
 
     if (!cloth_saddle_refiner_run (self->refiner, image, peak, self->noise,
-            &saddle, theta, level))
+            &saddle, params->refine == CLOTH_SADDLE_REFINE_MODEL ? theta :
+            NULL, level))
       continue;
     if (saddle.response <= self->epsilon || is_known (self, &saddle, 1.0f))
       continue;
@@ -306,9 +311,11 @@ refine_peaks (ClothSaddleDetector * self, const ClothSaddleParams * params,
     }
     self->saddles = grow (self->saddles, &self->saddles_allocated,
         self->n_saddles + 1, sizeof (ClothSaddle));
-    self->theta = grow (self->theta, &self->theta_allocated,
-        self->n_saddles + 1, sizeof (self->theta[0]));
-    memcpy (self->theta[self->n_saddles], theta, sizeof (theta));
+    if (params->refine == CLOTH_SADDLE_REFINE_MODEL) {
+      self->theta = grow (self->theta, &self->theta_allocated,
+          self->n_saddles + 1, sizeof (self->theta[0]));
+      memcpy (self->theta[self->n_saddles], theta, sizeof (theta));
+    }
     self->saddles[self->n_saddles++] = saddle;
   }
 }
