@@ -39,6 +39,7 @@
 #include <math.h>
 
 #include "gst/pattern/pattern.h"
+#include "gst/mesh/isometry.h"
 #include "gst/rig/merge.h"
 #include "gst/rig/rigfile.h"
 #include "gst/rig/triangulate.h"
@@ -51,6 +52,9 @@ GST_DEBUG_CATEGORY_STATIC (triangulate_debug);
 /* (0.1 px)²: what a good calibration and a film's compression leave. */
 #define DEFAULT_ERROR_FLOOR 0.01
 #define DEFAULT_HUBER 2.0
+/* Bent into a fold a square's edge is a chord; woven cloth stretches a little. */
+#define DEFAULT_MIN_LENGTH 0.8
+#define DEFAULT_MAX_LENGTH 1.05
 #define DEFAULT_THREADS 0
 #define MAX_THREADS 64
 #define SINK_CAPS "video/x-raw(ANY), width=(int)[ 1, 16384 ], " \
@@ -64,6 +68,7 @@ struct _GstTriangulate
   gchar *rig_location, *pattern_location;
   gboolean rig_changed, pattern_changed, parameters_changed;
   ClothTriangulateParameters parameters;
+  gdouble min_length, max_length;
   guint threads;
 
   /* streaming thread */
@@ -76,7 +81,9 @@ struct _GstTriangulate
   ClothMerge *merge[CLOTH_RIG_MAX_CAMERAS];
   gdouble threshold, error_floor;
   GstTriangulateView view[GST_CLOTH_SYNC_MAX_PADS];
+  ClothIsometry isometry;
   gfloat *positions, *covariances;
+  gboolean *wrong;
   guint64 sequence;
   GstTriangulateCheck check;
 };
@@ -90,6 +97,8 @@ enum
   PROP_MAX_ERROR,
   PROP_ERROR_FLOOR,
   PROP_HUBER,
+  PROP_MIN_LENGTH,
+  PROP_MAX_LENGTH,
   PROP_THREADS
 };
 
@@ -203,6 +212,7 @@ gst_triangulate_load_pattern (GstTriangulate * self)
       3 * (gsize) self->n_vertices);
   self->covariances = g_renew (gfloat, self->covariances,
       6 * (gsize) self->n_vertices);
+  self->wrong = g_renew (gboolean, self->wrong, self->n_vertices);
   return TRUE;
 }
 
@@ -221,6 +231,8 @@ gst_triangulate_apply_parameters (GstTriangulate * self)
   }
   GST_OBJECT_LOCK (self);
   parameters = self->parameters;
+  self->isometry.shortest = self->min_length;
+  self->isometry.longest = self->max_length;
   threads = self->threads;
   changed = self->parameters_changed;
   self->parameters_changed = FALSE;
@@ -376,6 +388,18 @@ gst_triangulate_make_mesh (GstTriangulate * self,
   }
   gst_triangulate_check_add (&self->check, GST_ELEMENT (self), self->rig,
       views, r);
+  self->isometry.columns = (guint) self->pattern->columns + 1;
+  self->isometry.rows = (guint) self->pattern->rows + 1;
+  self->isometry.edge_m = self->pattern->square_m;
+  if (cloth_isometry_check (&self->isometry, self->positions,
+          self->covariances, self->wrong)) {
+    for (i = 0; i < self->n_vertices; i++) {
+      if (self->wrong[i]) {
+        r->state[i] = GST_CLOTH_VERTEX_UNSEEN;
+        n_known--;
+      }
+    }
+  }
   mesh = gst_cloth_mesh_new (self->sequence, self->n_vertices, self->positions,
       r->state, self->covariances);
   *out = gst_cloth_mesh_to_buffer (mesh);
@@ -516,6 +540,12 @@ gst_triangulate_set_property (GObject * object, guint id, const GValue * value,
     case PROP_HUBER:
       self->parameters.huber = g_value_get_double (value);
       break;
+    case PROP_MIN_LENGTH:
+      self->min_length = g_value_get_double (value);
+      break;
+    case PROP_MAX_LENGTH:
+      self->max_length = g_value_get_double (value);
+      break;
     case PROP_THREADS:
       self->threads = g_value_get_uint (value);
       break;
@@ -557,6 +587,12 @@ gst_triangulate_get_property (GObject * object, guint id, GValue * value,
     case PROP_HUBER:
       g_value_set_double (value, self->parameters.huber);
       break;
+    case PROP_MIN_LENGTH:
+      g_value_set_double (value, self->min_length);
+      break;
+    case PROP_MAX_LENGTH:
+      g_value_set_double (value, self->max_length);
+      break;
     case PROP_THREADS:
       g_value_set_uint (value, self->threads);
       break;
@@ -576,6 +612,7 @@ gst_triangulate_finalize (GObject * object)
   g_free (self->pattern_location);
   g_free (self->positions);
   g_free (self->covariances);
+  g_free (self->wrong);
   G_OBJECT_CLASS (gst_triangulate_parent_class)->finalize (object);
 }
 
@@ -683,6 +720,27 @@ gst_triangulate_class_init (GstTriangulateClass * klass)
           "standard deviations weigh less", 0.1, G_MAXDOUBLE, DEFAULT_HUBER,
           flags));
   /**
+   * GstTriangulate:min-length:
+   *
+   * Since: 0.1
+   */
+  g_object_class_install_property (object_class, PROP_MIN_LENGTH,
+      g_param_spec_double ("min-length", "Least length",
+          "Corners are dropped that are nearer to their neighbours in space than "
+          "this share of their distance on the flat cloth; 0: no such limit",
+          0.0, 1.0, DEFAULT_MIN_LENGTH, flags));
+  /**
+   * GstTriangulate:max-length:
+   *
+   * Since: 0.1
+   */
+  g_object_class_install_property (object_class, PROP_MAX_LENGTH,
+      g_param_spec_double ("max-length", "Largest length",
+          "Corners are dropped that are farther from their neighbours in space "
+          "than this share of their distance on the flat cloth, more for cloth "
+          "that stretches; 0: no such limit", 0.0, 10.0, DEFAULT_MAX_LENGTH,
+          flags));
+  /**
    * GstTriangulate:threads:
    *
    * Since: 0.1
@@ -712,6 +770,8 @@ gst_triangulate_init (GstTriangulate * self)
   guint i;
 
   self->parameters = parameters;
+  self->min_length = DEFAULT_MIN_LENGTH;
+  self->max_length = DEFAULT_MAX_LENGTH;
   self->threads = DEFAULT_THREADS;
   for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
     self->view[i].camera = -1;

@@ -1,0 +1,118 @@
+/* Cloth bends but hardly stretches: points that deny it are wrong.
+ *
+ * A point seen by two cameras alone can't be checked by a third, and a corner that a fold
+ * has cut off looks like any other. Their distance from their neighbours tells.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/mesh/isometry.h"
+
+#include <math.h>
+
+/* Standard deviations of a distance that are forgiven. */
+#define FORGIVEN 3.0
+
+/* By how much the distance of two vertices is out of its limits, metres. */
+static gdouble
+excess (const ClothIsometry * isometry, const gfloat * positions,
+    const gfloat * covariances, guint a, guint b)
+{
+  /* xx, xy, xz, yy, yz, zz */
+  static const gint at[3][3] = { {0, 1, 2}, {1, 3, 4}, {2, 4, 5} };
+  gdouble d[3], length = 0, variance = 0, least, most, out = 0;
+
+  for (gint i = 0; i < 3; i++) {
+    d[i] = (gdouble) positions[3 * a + i] - positions[3 * b + i];
+    length += d[i] * d[i];
+  }
+  length = sqrt (length);
+  if (!(length > 0))
+    return isometry->shortest > 0 ? isometry->edge_m : 0;
+  if (covariances)
+    for (gint i = 0; i < 3; i++)
+      for (gint j = 0; j < 3; j++)
+        variance += d[i] * d[j] / (length * length)
+            * ((gdouble) covariances[6 * a + at[i][j]]
+            + covariances[6 * b + at[i][j]]);
+  least = isometry->shortest * isometry->edge_m;
+  most = isometry->longest * isometry->edge_m;
+  if (isometry->longest > 0 && length > most)
+    out = length - most;
+  else if (length < least)
+    out = least - length;
+  return out > FORGIVEN * sqrt (MAX (variance, 0)) ? out : 0;
+}
+
+/* The sum of a vertex's excesses over its four neighbours. */
+static gdouble
+denial (const ClothIsometry * isometry, const gfloat * positions,
+    const gfloat * covariances, const gboolean * wrong, guint k)
+{
+  guint column = k % isometry->columns, row = k / isometry->columns;
+  guint near[4], n = 0;
+  gdouble sum = 0;
+
+  if (wrong[k] || !isfinite (positions[3 * k]))
+    return 0;
+  if (column > 0)
+    near[n++] = k - 1;
+  if (column + 1 < isometry->columns)
+    near[n++] = k + 1;
+  if (row > 0)
+    near[n++] = k - isometry->columns;
+  if (row + 1 < isometry->rows)
+    near[n++] = k + isometry->columns;
+  for (guint i = 0; i < n; i++)
+    if (!wrong[near[i]] && isfinite (positions[3 * near[i]]))
+      sum += excess (isometry, positions, covariances, k, near[i]);
+  return sum;
+}
+
+static gdouble
+size (const gfloat * covariances, guint k)
+{
+  return covariances ? (gdouble) covariances[6 * k]
+      + covariances[6 * k + 3] + covariances[6 * k + 5] : 0;
+}
+
+/**
+ * cloth_isometry_check:
+ * @isometry: the grid and its limits
+ * @positions: (array): 3·columns·rows, metres; NaN: not seen
+ * @covariances: (array) (nullable): 6·columns·rows: xx, xy, xz, yy, yz, zz, m²
+ * @wrong: (out) (array): columns·rows: whether the vertex can't be where it is
+ *
+ * Finds the vertices whose distances from their neighbours no cloth allows. The one that
+ * is most out of place goes first, and with it what it made of its neighbours' distances;
+ * of two that only deny each other, the less certain one.
+ *
+ * Returns: number of wrong vertices
+ *
+ * Since: 0.1
+ */
+guint
+cloth_isometry_check (const ClothIsometry * isometry,
+    const gfloat * positions, const gfloat * covariances, gboolean * wrong)
+{
+  guint n = isometry->columns * isometry->rows, found = 0;
+
+  for (guint k = 0; k < n; k++)
+    wrong[k] = FALSE;
+  for (;;) {
+    guint worst = 0;
+    gdouble most = 0;
+
+    for (guint k = 0; k < n; k++) {
+      gdouble sum = denial (isometry, positions, covariances, wrong, k);
+
+      if (sum > most || (sum > 0 && sum == most
+              && size (covariances, k) > size (covariances, worst))) {
+        most = sum;
+        worst = k;
+      }
+    }
+    if (most == 0)
+      return found;
+    wrong[worst] = TRUE;
+    found++;
+  }
+}
