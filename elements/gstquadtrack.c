@@ -142,6 +142,13 @@ gst_quad_track_start (GstClothFilter * filter)
   first_black = self->first_black;
   GST_OBJECT_UNLOCK (self);
 
+  if (seed && !parse_seed (seed, numbers)) {
+    GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
+        ("Can't read the seed \"%s\".", seed),
+        ("\"seed\" takes x0,y0,x1,y1,x2,y2,x3,y3 in pixels, and column,row if "
+            "known"));
+    return FALSE;
+  }
   if (path) {
     self->pattern = cloth_pattern_load (path, &error);
     if (!self->pattern) {
@@ -155,13 +162,6 @@ gst_quad_track_start (GstClothFilter * filter)
     self->pattern = cloth_pattern_new_checker (columns, rows, 1.0, 0.0,
         first_black, &error);
     g_assert (self->pattern);
-  }
-  if (seed && !parse_seed (seed, numbers)) {
-    GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
-        ("Can't read the seed \"%s\".", seed),
-        ("\"seed\" takes x0,y0,x1,y1,x2,y2,x3,y3 in pixels, and column,row if "
-            "known"));
-    return FALSE;
   }
   self->tracker = cloth_quad_tracker_new (self->pattern);
   self->found = FALSE;

@@ -295,6 +295,7 @@ test_dots (void)
   g_auto (GStrv) names = cloth_print_save (pattern, &options, svg, NULL);
   g_auto (Raster) raster = raster_svg (svg);
 
+  g_assert_cmpuint (g_strv_length (names), ==, 1);
   for (gint row = 0; row < 8; row++) {
     for (gint column = 0; column < 8; column++) {
       const gboolean black = (row + column) % 2 == 0;
