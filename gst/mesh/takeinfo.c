@@ -3,13 +3,10 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/mesh/takeinfo.h"
 
-#include <json-glib/json-glib.h>
 #include <math.h>
-#include <string.h>
 
-#define MAX_BYTES (16u << 20)
-/* json-glib descends by recursion. */
-#define MAX_DEPTH 16
+#include "gst/file/json.h"
+
 #define MAX_OBSTACLES 1024
 
 static gboolean
@@ -25,40 +22,6 @@ invalid (GError ** error, const gchar * format, ...)
   g_set_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID,
       "take.json: %s", text);
   return FALSE;
-}
-
-/* Size, text and depth, before the parser sees a byte. */
-static gboolean
-check_text (const gchar * json, gsize size, GError ** error)
-{
-  gboolean quoted = FALSE;
-  guint depth = 0;
-
-  if (size > MAX_BYTES) {
-    g_set_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_LIMIT,
-        "take.json: %" G_GSIZE_FORMAT " bytes are more than the %u accepted",
-        size, MAX_BYTES);
-    return FALSE;
-  }
-  if (!g_utf8_validate (json, (gssize) size, NULL))
-    return invalid (error, "it is not UTF-8 text");
-  for (gsize i = 0; i < size; i++) {
-    if (json[i] == '"') {
-      quoted = !quoted;
-    } else if (quoted) {
-      if (json[i] == '\\')
-        i++;
-    } else if (json[i] == '[' || json[i] == '{') {
-      if (++depth > MAX_DEPTH)
-        return invalid (error, "nested deeper than %d levels", MAX_DEPTH);
-    } else if (json[i] == ']' || json[i] == '}') {
-      depth -= depth > 0;
-    } else if (json[i] == '/' || json[i] == '\'') {
-      /* The parser would take comments and single quotes, which hide brackets. */
-      return invalid (error, "comments and single quotes are not JSON");
-    }
-  }
-  return TRUE;
 }
 
 static gboolean
@@ -385,18 +348,12 @@ cloth_take_info_parse (const gchar * json, gsize size, GError ** error)
   g_autoptr (GError) fault = NULL;
   JsonNode *root;
 
-  if (!check_text (json, size, error))
-    return NULL;
-  parser = json_parser_new_immutable ();
-  if (!json_parser_load_from_data (parser, json, (gssize) size, &fault)) {
+  parser = cloth_json_parse (json, size, &fault);
+  if (!parser) {
     invalid (error, "%s", fault->message);
     return NULL;
   }
   root = json_parser_get_root (parser);
-  if (!root || !JSON_NODE_HOLDS_OBJECT (root)) {
-    invalid (error, "it must hold one object");
-    return NULL;
-  }
   info = cloth_take_info_new (NULL);
   if (!parse_root (json_node_get_object (root), info, error))
     return NULL;

@@ -3,13 +3,11 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/pattern/pattern.h"
 
-#include <json-glib/json-glib.h>
 #include <math.h>
 #include <string.h>
 
-/* A 500×500 code takes 1/4 MiB. */
-#define MAX_BYTES (4 * 1024 * 1024)
-#define MAX_DEPTH 16
+#include "gst/file/json.h"
+
 /* Sizes of cloth beyond this are a mistake of the unit. */
 #define MAX_METRES 1000.0
 /* Rounding of decimal sizes that should add up exactly. */
@@ -175,42 +173,6 @@ bad (GError ** error, const gchar * key, const gchar * wanted)
   g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_FORMAT,
       "\"%s\" must be %s", key, wanted);
   return FALSE;
-}
-
-/* One object, not too deep, and nothing after it. json-glib descends by recursion, and
- * loses memory where several values follow each other. */
-static gboolean
-is_one_object (const gchar * data, gsize size)
-{
-  gboolean in_string = FALSE;
-  gint depth = 0;
-  gsize i = 0;
-
-  while (i < size && g_ascii_isspace (data[i]))
-    i++;
-  if (i == size || data[i] != '{')
-    return FALSE;
-  for (; i < size; i++) {
-    if (in_string) {
-      if (data[i] == '\\')
-        i++;
-      else if (data[i] == '"')
-        in_string = FALSE;
-    } else if (data[i] == '"') {
-      in_string = TRUE;
-    } else if (data[i] == '[' || data[i] == '{') {
-      if (++depth > MAX_DEPTH)
-        return FALSE;
-    } else if (data[i] == ']' || data[i] == '}') {
-      if (--depth == 0)
-        break;
-    }
-  }
-  for (i++; i < size; i++) {
-    if (!g_ascii_isspace (data[i]))
-      return FALSE;
-  }
-  return depth == 0;
 }
 
 static gboolean
@@ -381,29 +343,16 @@ read_version (JsonObject * object, GError ** error)
 ClothPattern *
 cloth_pattern_load_data (const gchar * data, gsize size, GError ** error)
 {
-  g_autoptr (JsonParser) parser = json_parser_new_immutable ();
+  g_autoptr (GError) fault = NULL;
+  g_autoptr (JsonParser) parser = cloth_json_parse (data, size, &fault);
   g_autoptr (ClothPattern) pattern = NULL;
   g_autoptr (GList) members = NULL;
-  g_autoptr (GError) parse_error = NULL;
   JsonObject *object;
   const gchar *kind;
 
-  if (size == 0 || size > MAX_BYTES || !is_one_object (data, size)
-      || !g_utf8_validate (data, (gssize) size, NULL)) {
-    g_set_error_literal (error, CLOTH_PATTERN_ERROR,
-        CLOTH_PATTERN_ERROR_FORMAT, "not a pattern.json: UTF-8 text of one "
-        "JSON object is wanted, of at most 4 MiB and 16 levels");
-    return NULL;
-  }
-  if (!json_parser_load_from_data (parser, data, (gssize) size, &parse_error)) {
+  if (!parser) {
     g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_FORMAT,
-        "not a pattern.json: %s", parse_error->message);
-    return NULL;
-  }
-  if (!json_parser_get_root (parser)
-      || !JSON_NODE_HOLDS_OBJECT (json_parser_get_root (parser))) {
-    g_set_error_literal (error, CLOTH_PATTERN_ERROR,
-        CLOTH_PATTERN_ERROR_FORMAT, "not a pattern.json: no object in it");
+        "no pattern.json: %s", fault->message);
     return NULL;
   }
   object = json_node_get_object (json_parser_get_root (parser));
@@ -440,8 +389,8 @@ cloth_pattern_load_data (const gchar * data, gsize size, GError ** error)
  * Reads a pattern; see cloth_pattern_load_data() for what the file holds. The error's
  * message begins with @path.
  *
- * Returns: (transfer full): the pattern, or %NULL with a #ClothPatternError or
- *   #GFileError
+ * Returns: (transfer full): the pattern, or %NULL with a #ClothPatternError,
+ *   #ClothFileError when the file is too large, or #GFileError
  *
  * Since: 0.1
  */
@@ -452,7 +401,7 @@ cloth_pattern_load (const gchar * path, GError ** error)
   ClothPattern *pattern;
   gsize size;
 
-  if (!g_file_get_contents (path, &data, &size, error))
+  if (!(data = cloth_text_file_load (path, &size, error)))
     return NULL;
   pattern = cloth_pattern_load_data (data, size, error);
   if (!pattern)

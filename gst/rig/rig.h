@@ -27,9 +27,9 @@ G_BEGIN_DECLS
 
 /**
  * ClothRigError:
- * @CLOTH_RIG_ERROR_SYNTAX: the file is not JSON or YAML
+ * @CLOTH_RIG_ERROR_SYNTAX: the file is not YAML
  * @CLOTH_RIG_ERROR_VALUE: a key is missing or has an impossible value
- * @CLOTH_RIG_ERROR_LIMIT: the file is larger, deeper or longer than allowed
+ * @CLOTH_RIG_ERROR_LIMIT: a YAML file is deeper or longer than allowed
  *
  * Since: 0.1
  */

@@ -3,14 +3,9 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/rig/rigfile.h"
 
-#include <json-glib/json-glib.h>
 #include <math.h>
-#include <string.h>
 
-#include "gst/rig/textfile.h"
-
-/* rig.json needs 5; the parser descends by recursion, so this guards its stack. */
-#define MAX_DEPTH 32
+#include "gst/file/json.h"
 
 G_GNUC_PRINTF (4, 5)
      static gboolean
@@ -26,50 +21,6 @@ G_GNUC_PRINTF (4, 5)
   g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_VALUE, "%s%s%s: %s",
       where, *where && *key ? "." : "", key, what);
   return FALSE;
-}
-
-/* Bounds the nesting, and keeps out the comments and single quotes that json-glib takes
- * beyond JSON, which could hide brackets from this count. */
-static gboolean
-check_text (const gchar * data, gsize length, GError ** error)
-{
-  gint depth = 0;
-  gboolean quoted = FALSE;
-
-  for (gsize i = 0; i < length; i++) {
-    gchar c = data[i];
-
-    if (quoted) {
-      if (c == '\\')
-        i++;
-      else if (c == '"')
-        quoted = FALSE;
-      else if (c == 0)
-        break;
-    } else if (c == '"') {
-      quoted = TRUE;
-    } else if (c == '[' || c == '{') {
-      if (++depth > MAX_DEPTH) {
-        g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_LIMIT,
-            "nested deeper than %d levels", MAX_DEPTH);
-        return FALSE;
-      }
-    } else if (c == ']' || c == '}') {
-      depth--;
-    } else if (!strchr (" \t\r\n,:+-.", c) && !g_ascii_isalnum (c)) {
-      g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_SYNTAX,
-          "not JSON: byte 0x%02x at offset %" G_GSIZE_FORMAT, (guchar) c, i);
-      return FALSE;
-    } else if (c == 0) {
-      break;
-    }
-  }
-  if (memchr (data, 0, length) || !g_utf8_validate_len (data, length, NULL)) {
-    g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_SYNTAX,
-        "not JSON: it is not valid UTF-8 text");
-    return FALSE;
-  }
-  return TRUE;
 }
 
 static gboolean
@@ -291,7 +242,7 @@ read_camera (JsonNode * node, const gchar * where, ClothCamera * c,
  * cloth_rig_load_data:
  * @data: the text of a rig.json, at most 16 MiB
  * @length: its bytes
- * @error: #ClothRigError, naming key and value
+ * @error: #ClothFileError, or #ClothRigError naming key and value
  *
  * Returns: (transfer full): the rig, or %NULL.
  *
@@ -301,31 +252,17 @@ ClothRig *
 cloth_rig_load_data (const gchar * data, gsize length, GError ** error)
 {
   static const gchar *const known[] = { "version", "cameras", NULL };
-  g_autoptr (JsonParser) parser = json_parser_new_immutable ();
+  g_autoptr (JsonParser) parser = cloth_json_parse (data, length, error);
   g_autoptr (ClothRig) rig = NULL;
-  g_autoptr (GError) parse_error = NULL;
-  JsonNode *root, *node;
+  JsonNode *node;
   JsonObject *object;
   JsonArray *cameras;
   gdouble version = 0;
   guint n;
 
-  if (length == 0)
-    data = "";
-  if (!check_text (data, length, error))
+  if (!parser)
     return NULL;
-  if (!json_parser_load_from_data (parser, data, (gssize) length, &parse_error)) {
-    g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_SYNTAX,
-        "not JSON: %s", parse_error->message);
-    return NULL;
-  }
-  root = json_parser_get_root (parser);
-  if (!root || !JSON_NODE_HOLDS_OBJECT (root)) {
-    bad (error, "", "rig", "must be an object with \"version\" and "
-        "\"cameras\"");
-    return NULL;
-  }
-  object = json_node_get_object (root);
+  object = json_node_get_object (json_parser_get_root (parser));
   if (!(node = json_object_get_member (object, "version"))) {
     bad (error, "", "version", "is missing; it must be 1");
     return NULL;
@@ -367,7 +304,7 @@ cloth_rig_load_data (const gchar * data, gsize length, GError ** error)
 /**
  * cloth_rig_load:
  * @path: a rig.json
- * @error: #GFileError or #ClothRigError, naming file, key and value
+ * @error: #GFileError, #ClothFileError or #ClothRigError, naming file, key and value
  *
  * Returns: (transfer full): the rig, or %NULL.
  *

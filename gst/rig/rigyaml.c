@@ -6,9 +6,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/file/textfile.h"
 #include "gst/math/linalg.h"
 #include "gst/rig/rotation.h"
-#include "gst/rig/textfile.h"
 #include "gst/rig/yamltree.h"
 
 /* OpenCV's longest: 8 rational, 4 thin prism, 2 tilt. */
@@ -284,7 +284,7 @@ import_opencv (GPtrArray * documents, const gchar * const *names, gint width,
  * @paths: (array zero-terminated=1): files of one calibration
  * @width: picture width for files that don't say it, else 0
  * @height: picture height for files that don't say it, else 0
- * @error: #GFileError or #ClothRigError, naming key and value
+ * @error: #GFileError, #ClothFileError or #ClothRigError, naming key and value
  *
  * Reads what OpenCV's FileStorage writes as YAML. Either stereo files, whose keys M1, D1,
  * M2, D2, R and T may be spread over several files: cameras "left", at the world's origin,
@@ -502,7 +502,7 @@ cloth_rig_import_kalibr_data (const gchar * data, gsize length, GError ** error)
 /**
  * cloth_rig_import_kalibr:
  * @path: a camchain file
- * @error: #GFileError or #ClothRigError
+ * @error: #GFileError, #ClothFileError or #ClothRigError
  *
  * As cloth_rig_import_kalibr_data(), from a file.
  *

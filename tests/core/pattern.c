@@ -131,13 +131,14 @@ test_refused (void)
   } cases[] = {
     {"", CLOTH_PATTERN_ERROR_FORMAT, "pattern.json"},
     {"  ", CLOTH_PATTERN_ERROR_FORMAT, "pattern.json"},
-    {"[]", CLOTH_PATTERN_ERROR_FORMAT, "one JSON object"},
-    {"{}{}", CLOTH_PATTERN_ERROR_FORMAT, "one JSON object"},
-    {"{\"a\":\"}\\\"}", CLOTH_PATTERN_ERROR_FORMAT, "one JSON object"},
+    {"[]", CLOTH_PATTERN_ERROR_FORMAT, "one object"},
+    {"{}{}", CLOTH_PATTERN_ERROR_FORMAT, "one object"},
+    {"{\"a\":\"}\\\"}", CLOTH_PATTERN_ERROR_FORMAT, "one object"},
     {"{", CLOTH_PATTERN_ERROR_FORMAT, "pattern.json"},
     {"\xff\xfe{}", CLOTH_PATTERN_ERROR_FORMAT, "UTF-8"},
-    {"[[[[[[[[[[[[[[[[[[[[[[", CLOTH_PATTERN_ERROR_FORMAT, "16 levels"},
+    {"{\"a\":[[[[[[[[[[[[[[[[[[[[[[", CLOTH_PATTERN_ERROR_FORMAT, "16 levels"},
     {"{}", CLOTH_PATTERN_ERROR_FORMAT, "\"pattern\""},
+    {HEAD SIZE ",\"rows\":2}", CLOTH_PATTERN_ERROR_FORMAT, "twice"},
     {"{\"pattern\":7}", CLOTH_PATTERN_ERROR_FORMAT, "\"pattern\""},
     {"{\"pattern\":\"m-array\"}", CLOTH_PATTERN_ERROR_UNSUPPORTED, "m-array"},
     {"{\"version\":2,\"pattern\":\"checker\"}",
@@ -203,6 +204,10 @@ test_missing_file (void)
 
   g_assert_null (cloth_pattern_load ("/nowhere/pattern.json", &error));
   g_assert_error (error, G_FILE_ERROR, G_FILE_ERROR_NOENT);
+  g_clear_error (&error);
+  /* which has no end */
+  g_assert_null (cloth_pattern_load ("/dev/zero", &error));
+  g_assert_error (error, G_FILE_ERROR, G_FILE_ERROR_INVAL);
 }
 
 static void

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "gst/file/textfile.h"
 #include "gst/rig/rigfile.h"
 
 static const gchar good[] =
@@ -134,11 +135,18 @@ test_mend (void)
   g_assert_cmpfloat (fabs (R[0] * R[3] + R[1] * R[4] + R[2] * R[5]), <, 1e-15);
 }
 
+/* Codes of CLOTH_FILE_ERROR, apart from those of CLOTH_RIG_ERROR. */
+enum
+{
+  NOT_JSON = 100 + CLOTH_FILE_ERROR_SYNTAX,
+  TOO_MUCH = 100 + CLOTH_FILE_ERROR_LIMIT
+};
+
 /* What is replaced in the good text, by what, the code, and what the message says. */
 typedef struct
 {
   const gchar *from, *to;
-  ClothRigError code;
+  gint code;
   const gchar *says;
 } Bad;
 
@@ -165,7 +173,7 @@ static const Bad bads[] = {
   {"500.5,0,320", "0,0,320", CLOTH_RIG_ERROR_VALUE, "cameras[0].K"},
   {"500.5,0,320", "-500,0,320", CLOTH_RIG_ERROR_VALUE, "cameras[0].K"},
   {"500.5,0,320", "1e999,0,320", CLOTH_RIG_ERROR_VALUE, "cameras[0].K[0]"},
-  {"500.5,0,320", "NaN,0,320", CLOTH_RIG_ERROR_SYNTAX, "not JSON"},
+  {"500.5,0,320", "NaN,0,320", NOT_JSON, "not JSON"},
   {"500.5,0,320", "500.5,0", CLOTH_RIG_ERROR_VALUE, "cameras[0].K[0]"},
   {"500.5,0,320", "500.5,0,null", CLOTH_RIG_ERROR_VALUE, "cameras[0].K[0]"},
   {"[0,501,240]", "[0.1,501,240]", CLOTH_RIG_ERROR_VALUE, "cameras[0].K"},
@@ -186,14 +194,23 @@ static const Bad bads[] = {
   {"[1,2,3,4]", "[1,2,3]", CLOTH_RIG_ERROR_VALUE, "standard_deviations"},
   {"[1,2,3,4]", "[1,2,-3,4]", CLOTH_RIG_ERROR_VALUE, "-3"},
   {"[1,2,3]}", "[1,2,3],\"R\":3}", CLOTH_RIG_ERROR_VALUE, "unknown key"},
-  {"}]}", "}", CLOTH_RIG_ERROR_SYNTAX, "not JSON"},
-  {"{\"version\"", "/* */{\"version\"", CLOTH_RIG_ERROR_SYNTAX, "0x2f"},
-  {"{\"version\"", "\xff{\"version\"", CLOTH_RIG_ERROR_SYNTAX, "not JSON"},
-  {"\"left\"", "\"\xc3\x28\"", CLOTH_RIG_ERROR_SYNTAX, "UTF-8"},
+  {"}]}", "}", NOT_JSON, "not JSON"},
+  {"{\"version\"", "/* */{\"version\"", NOT_JSON, "0x2f"},
+  {"{\"version\"", "{/* */\"version\"", NOT_JSON, "0x2f"},
+  {"{\"version\"", "{}{\"version\"", NOT_JSON, "offset 2"},
+  {"}]}", "}]},{}", NOT_JSON, "nothing else"},
+  {"}]}", "}]} x", NOT_JSON, "nothing else"},
+  {"}]}", "}}]}", NOT_JSON, "not JSON"},
+  {"{\"version\":1", "{\"version\":2,\"version\":1",
+      NOT_JSON, "twice"},
+  {"\"name\":\"left\"", "\"name\":\"a\",\"name\":\"left\"",
+      NOT_JSON, "twice"},
+  {"{\"version\"", "\xff{\"version\"", NOT_JSON, "not JSON"},
+  {"\"left\"", "\"\xc3\x28\"", NOT_JSON, "UTF-8"},
 };
 
 static void
-assert_refused (const gchar * text, gssize length, ClothRigError code,
+assert_refused (const gchar * text, gssize length, gint code,
     const gchar * says)
 {
   g_autoptr (GError) error = NULL;
@@ -202,7 +219,10 @@ assert_refused (const gchar * text, gssize length, ClothRigError code,
 
   g_assert_null (rig);
   g_test_message ("%s", error->message);
-  g_assert_error (error, CLOTH_RIG_ERROR, (gint) code);
+  if (code < NOT_JSON)
+    g_assert_error (error, CLOTH_RIG_ERROR, code);
+  else
+    g_assert_error (error, CLOTH_FILE_ERROR, code - NOT_JSON);
   g_assert_nonnull (strstr (error->message, says));
 }
 
@@ -216,13 +236,13 @@ test_bad (void)
     g_assert_cmpuint (g_strv_length (parts), ==, 2);
     assert_refused (text, -1, bads[i].code, bads[i].says);
   }
-  assert_refused ("", -1, CLOTH_RIG_ERROR_VALUE, "must be an object");
-  assert_refused ("[]", -1, CLOTH_RIG_ERROR_VALUE, "must be an object");
+  assert_refused ("", -1, NOT_JSON, "one object");
+  assert_refused ("[]", -1, NOT_JSON, "one object");
   assert_refused ("{\"version\":1,\"cameras\":[]}", -1, CLOTH_RIG_ERROR_VALUE,
       "0 of them");
   assert_refused ("{\"version\":1,\"cameras\":[[]]}", -1,
       CLOTH_RIG_ERROR_VALUE, "cameras[0]");
-  assert_refused ("{\"a\0\"}", 6, CLOTH_RIG_ERROR_SYNTAX, "not JSON");
+  assert_refused ("{\"a\0\"}", 6, NOT_JSON, "not JSON");
 }
 
 static void
@@ -230,6 +250,7 @@ test_limits (void)
 {
   g_autoptr (GString) many = g_string_new ("{\"version\":1,\"cameras\":[");
   g_autofree gchar *deep = g_strnfill (1000000, '[');
+  g_autofree gchar *objects = g_strconcat ("{\"a\":", deep, NULL);
   g_autoptr (GString) twice = g_string_new ("");
   g_autoptr (GError) error = NULL;
   g_autofree gchar *dir = g_dir_make_tmp ("rigXXXXXX", NULL);
@@ -237,8 +258,11 @@ test_limits (void)
   g_autofree gchar *pipe = g_build_filename (dir, "pipe", NULL);
   const gchar *camera = strchr (good, '[') + 1;
   gsize camera_length = strlen (camera) - 2;
+  g_autofree gchar *commas = g_strnfill (300000, ',');
+  g_autofree gchar *list = g_strconcat ("{\"cameras\":[0", commas, "0]}", NULL);
 
-  assert_refused (deep, -1, CLOTH_RIG_ERROR_LIMIT, "nested");
+  assert_refused (objects, -1, TOO_MUCH, "nested");
+  assert_refused (list, -1, TOO_MUCH, "200000 values");
   for (guint i = 0; i < 65; i++)
     g_string_append (many, i ? ",{}" : "{}");
   g_string_append (many, "]}");
@@ -267,7 +291,7 @@ test_limits (void)
   g_clear_error (&error);
   g_assert_cmpint (truncate (path, 16 * 1024 * 1024 + 1), ==, 0);
   g_assert_null (cloth_rig_load (path, &error));
-  g_assert_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_LIMIT);
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT);
   g_unlink (path);
   g_unlink (pipe);
   g_rmdir (dir);

@@ -233,7 +233,8 @@ static const gchar *const bad_json[] = {
   "{\"version\":1,\"grid\":{\"columns\":400000,\"rows\":400000,\"width_m\":1,"
       "\"height_m\":1}}",
   "{\"version\":1,\"grid\":[3,2]}", OK ",\"notes\":\"\xff\"}",
-  OK ",/* [ */\"notes\":\"x\"}",
+  OK ",/* [ */\"notes\":\"x\"}", OK "}{}", OK "} 7", OK ",\"fps\":30}",
+  OK ",\"held\":[{\"vertex\":1,\"vertex\":2}]}",
 };
 
 static void

@@ -23,6 +23,7 @@ LLVMFuzzerTestOneInput (const guint8 * data, gsize size)
         &error);
 
     g_assert_no_error (error);
+    g_assert_nonnull (again);
   }
   return 0;
 }

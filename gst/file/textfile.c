@@ -1,19 +1,21 @@
 /* Reading small text files that nobody vouches for.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/rig/textfile.h"
+#include "gst/file/textfile.h"
 
 #include <glib/gstdio.h>
 
-#include "gst/rig/rig.h"
-
 #define MAX_BYTES (16 * 1024 * 1024)
+
+/* *INDENT-OFF* */
+G_DEFINE_QUARK (cloth-file-error-quark, cloth_file_error)
+/* *INDENT-ON* */
 
 /**
  * cloth_text_file_load:
  * @path: a file
  * @length: (out): its bytes
- * @error: #GFileError, or #ClothRigError when it exceeds 16 MiB
+ * @error: #GFileError, or #ClothFileError when it exceeds 16 MiB
  *
  * Looks at the size before it reads. Devices and pipes are refused: they may never end.
  *
@@ -34,7 +36,7 @@ cloth_text_file_load (const gchar * path, gsize * length, GError ** error)
       return NULL;
     }
     if (st.st_size > MAX_BYTES) {
-      g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_LIMIT,
+      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT,
           "%s: %" G_GINT64_FORMAT " bytes are more than the %d allowed", path,
           (gint64) st.st_size, MAX_BYTES);
       return NULL;
@@ -43,7 +45,7 @@ cloth_text_file_load (const gchar * path, gsize * length, GError ** error)
   if (!g_file_get_contents (path, &data, length, error))
     return NULL;
   if (*length > MAX_BYTES) {
-    g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_LIMIT,
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT,
         "%s: grew beyond the %d bytes allowed", path, MAX_BYTES);
     g_free (data);
     return NULL;
