@@ -21,7 +21,7 @@ if [ -z "${CLOTH_BUILD:-}" ]; then
   cloth_install_packages "$root"
   heading "Build"
   cd "$root"
-  [ -f build/build.ninja ] || meson setup build --buildtype=release
+  cloth_set_up_build --buildtype=release
   ninja -C build
   cd "$here"
 fi

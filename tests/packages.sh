@@ -1,4 +1,5 @@
-# Installs the packages of tests/packages.txt that are missing: to be sourced.
+# Installs the packages of tests/packages.txt that are missing, and sets up the build
+# folder: to be sourced.
 # SPDX-License-Identifier: LGPL-2.1-or-later
 
 # cloth_packages: the names, one a line.
@@ -30,4 +31,15 @@ cloth_install_packages ()
   # shellcheck disable=SC2086
   $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q \
       --no-install-recommends $missing </dev/null
+}
+
+# cloth_set_up_build [OPTION...]: sets up ./build, with these options when it is new. A
+# folder of meson's that another checkout or an aborted set-up left is made anew.
+cloth_set_up_build ()
+{
+  if [ -d build/meson-private ]; then
+    meson setup --reconfigure build && return 0
+    rm -rf build
+  fi
+  meson setup build "$@"
 }

@@ -18,12 +18,7 @@ fail ()
 
 cloth_install_packages "$root" || fail "the packages could not be installed"
 
-# A folder left by another checkout or an aborted set-up is made anew.
-if [ -d build ]; then
-  meson setup --reconfigure build || { rm -rf build && meson setup build; }
-else
-  meson setup build
-fi || fail "meson could not set up the build"
+cloth_set_up_build || fail "meson could not set up the build"
 ninja -C build || fail "the build is broken"
 
 # A name of its own: tests of the documents run meson as well.

@@ -156,7 +156,7 @@ cloth_calibrate_report (const ClothCalibrateInput * input,
   add_rms (s, "RMS", result->rms);
   add_rms (s, ", on views left out of the fit", result->left_out_rms);
   g_string_append_printf (s,
-      "; standard deviations scaled by residual variance " "%.2f\n",
+      "; variance of the residuals %.2f times the expected one\n",
       result->variance);
   if (!result->placed)
     g_string_append (s, "Intrinsics only: the cameras were not placed; all "

@@ -290,8 +290,8 @@ test_covariance (void)
           scatter[3] / predicted[3], scatter[5] / predicted[5],
           mahalanobis / used / 3., chi2 / used / (2. * n - 3.),
           1e3 * sqrt (predicted[0] / used), 1e3 * sqrt (predicted[3] / used),
-          1e3 * sqrt (predicted[5] / used), 100. - 100. * used / N);
-      g_assert_cmpuint (used, >, N * 0.99);
+          1e3 * sqrt (predicted[5] / used), 100. - 100. * (gdouble) used / N);
+      g_assert_cmpfloat ((gdouble) used, >, N * 0.99);
       for (guint k = 0; k < 6; k++) {
         static const guint diagonal[6][2] = { {0, 0}, {0, 3}, {0, 5}, {3, 3},
         {3, 5}, {5, 5}

@@ -360,8 +360,8 @@ GST_END_TEST;
 /* Neither 16-bit grey nor packed nor huge pictures are taken. */
 GST_START_TEST (test_refused_caps)
 {
-  static const gchar *const bad[] = { "video/x-raw,format=GRAY16_LE,"
-        "width=16,height=16,framerate=25/1",
+  static const gchar *const bad[] = {
+    "video/x-raw,format=GRAY16_LE,width=16,height=16,framerate=25/1",
     "video/x-raw,format=YUY2,width=16,height=16,framerate=25/1",
     "video/x-raw,format=RGB,width=16,height=16,framerate=25/1",
     "video/x-raw,format=GRAY8,width=16385,height=16,framerate=25/1",
