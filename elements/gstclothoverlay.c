@@ -297,7 +297,15 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   GstClothOverlayStyle style;
 
   if (!views[VIDEO]) {
-    return GST_FLOW_OK;         /* a mesh for which there is no picture */
+    g_autoptr (GstPad) video =
+        gst_element_get_static_pad (GST_ELEMENT (self), "sink");
+
+    /* a mesh for which there is no picture: not yet, or no more */
+    return gst_aggregator_pad_is_eos (GST_AGGREGATOR_PAD (video)) ?
+        GST_FLOW_EOS : GST_FLOW_OK;
+  }
+  if (GST_CLOCK_TIME_IS_VALID (pts)) {
+    gst_object_sync_values (GST_OBJECT (self), pts);
   }
   GST_OBJECT_LOCK (self);
   style = self->style;
@@ -390,6 +398,21 @@ gst_cloth_overlay_src_query (GstAggregator * agg, GstQuery * query)
   }
   return GST_AGGREGATOR_CLASS (gst_cloth_overlay_parent_class)->src_query (agg,
       query);
+}
+
+/* Clicks into a video sink are for the tracker upstream; the base class would drop
+ * them. */
+static gboolean
+gst_cloth_overlay_src_event (GstAggregator * agg, GstEvent * event)
+{
+  if (GST_EVENT_TYPE (event) == GST_EVENT_NAVIGATION) {
+    g_autoptr (GstPad) sink =
+        gst_element_get_static_pad (GST_ELEMENT (agg), "sink");
+
+    return gst_pad_push_event (sink, event);
+  }
+  return GST_AGGREGATOR_CLASS (gst_cloth_overlay_parent_class)->src_event (agg,
+      event);
 }
 
 static gboolean
@@ -559,6 +582,7 @@ gst_cloth_overlay_class_init (GstClothOverlayClass * klass)
   object_class->finalize = gst_cloth_overlay_finalize;
   agg_class->sink_query = gst_cloth_overlay_sink_query;
   agg_class->src_query = gst_cloth_overlay_src_query;
+  agg_class->src_event = gst_cloth_overlay_src_event;
   agg_class->stop = gst_cloth_overlay_stop;
   sync_class->set_pad_caps = gst_cloth_overlay_set_pad_caps;
   sync_class->negotiate_src = gst_cloth_overlay_negotiate_src;

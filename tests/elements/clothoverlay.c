@@ -680,6 +680,37 @@ GST_START_TEST (test_mesh_pairing)
 
 GST_END_TEST;
 
+/* When the pictures end the film ends, however long the meshes go on. */
+GST_START_TEST (test_film_ends)
+{
+  g_autofree gchar *rig = write_rig ("", "");
+  g_autofree gchar *properties = g_strdup_printf ("rig=%s", rig);
+  GstVideoInfo info;
+  GstBuffer *buffer = picture ("I420", 80, 60, 0, &info);
+  GstHarness *h = overlay (properties, &info), *m = mesh_pad (h);
+  GstEventType type = GST_EVENT_UNKNOWN;
+
+  gst_harness_push (h, buffer);
+  gst_harness_push (m, mesh_buffer (COLUMNS * ROWS, -1));
+  gst_buffer_unref (gst_harness_pull (h));
+  gst_harness_push_event (h, gst_event_new_eos ());
+  buffer = mesh_buffer (COLUMNS * ROWS, -1);
+  GST_BUFFER_PTS (buffer) = 1 * GST_SECOND;
+  gst_harness_push (m, buffer);
+  while (type != GST_EVENT_EOS) {
+    GstEvent *event = gst_harness_pull_event (h);
+
+    fail_unless (event != NULL);
+    type = GST_EVENT_TYPE (event);
+    gst_event_unref (event);
+  }
+  gst_harness_teardown (m);
+  gst_harness_teardown (h);
+  g_unlink (rig);
+}
+
+GST_END_TEST;
+
 /* Meshes are in the rig's time; this camera's clock is half a second ahead of it. */
 GST_START_TEST (test_camera_offset)
 {
@@ -1029,6 +1060,7 @@ clothoverlay_suite (void)
   tcase_add_test (tc, test_indices);
   tcase_add_test (tc, test_mesh);
   tcase_add_test (tc, test_mesh_pairing);
+  tcase_add_test (tc, test_film_ends);
   tcase_add_test (tc, test_camera_offset);
   tcase_add_test (tc, test_caps_change);
   tcase_add_test (tc, test_caps_query);
