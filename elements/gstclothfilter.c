@@ -6,6 +6,8 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "elements/gstclothfilter.h"
 
+#include <gst/cloth/cloth.h>
+
 GST_DEBUG_CATEGORY_STATIC (cloth_filter_debug);
 #define GST_CAT_DEFAULT cloth_filter_debug
 
@@ -131,7 +133,24 @@ gst_cloth_filter_transform_ip (GstBaseTransform * trans, GstBuffer * buffer)
   GstClothFilterFrame frame;
   GstVideoFrame video;
   GstFlowReturn flow;
+  GstClockTime time;
   g_autofree gchar *camera = NULL;
+
+  GST_OBJECT_LOCK (self);
+  camera = g_strdup (priv->camera ? priv->camera : "");
+  GST_OBJECT_UNLOCK (self);
+  if (strlen (camera) > GST_CLOTH_MAX_CAMERA_NAME
+      || !g_utf8_validate (camera, -1, NULL)) {
+    GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
+        ("The camera's name does not fit into the metadata."),
+        ("Set camera to UTF-8 of at most %d bytes, as in the rig.",
+            GST_CLOTH_MAX_CAMERA_NAME));
+    return GST_FLOW_ERROR;
+  }
+  time = gst_segment_to_stream_time (&trans->segment, GST_FORMAT_TIME,
+      GST_BUFFER_PTS (buffer));
+  if (GST_CLOCK_TIME_IS_VALID (time))
+    gst_object_sync_values (GST_OBJECT (self), time);
 
   /* No reference for the map: the buffer must stay writable for its metas. */
   if (!gst_video_frame_map (&video, &priv->info, buffer,
@@ -144,9 +163,6 @@ gst_cloth_filter_transform_ip (GstBaseTransform * trans, GstBuffer * buffer)
             GST_VIDEO_INFO_HEIGHT (&priv->info), GST_OBJECT_NAME (self)));
     return GST_FLOW_ERROR;
   }
-  GST_OBJECT_LOCK (self);
-  camera = g_strdup (priv->camera ? priv->camera : "");
-  GST_OBJECT_UNLOCK (self);
   frame.luma.data = GST_VIDEO_FRAME_COMP_DATA (&video, 0);
   frame.luma.width = GST_VIDEO_FRAME_WIDTH (&video);
   frame.luma.height = GST_VIDEO_FRAME_HEIGHT (&video);
@@ -222,7 +238,8 @@ gst_cloth_filter_class_init (GstClothFilterClass * klass)
   g_object_class_install_property (object_class, PROP_CAMERA,
       g_param_spec_string ("camera", "Camera",
           "Name of the camera in the rig, which is written into the metadata.",
-          NULL, G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS));
+          NULL, G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+          GST_PARAM_MUTABLE_PLAYING));
   gst_element_class_add_static_pad_template (element_class, &sink_template);
   gst_element_class_add_static_pad_template (element_class, &src_template);
   trans_class->start = gst_cloth_filter_start;

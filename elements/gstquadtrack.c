@@ -14,6 +14,9 @@
 GST_DEBUG_CATEGORY_STATIC (quad_track_debug);
 #define GST_CAT_DEFAULT quad_track_debug
 
+/* Four corners, column, row. */
+#define SEED_NUMBERS 10
+
 /**
  * SECTION:element-quadtrack
  *
@@ -54,6 +57,9 @@ struct _GstQuadTrack
   GArray *candidates;           /* ClothSaddleCandidate */
   GArray *quads;                /* GstClothQuad */
   gboolean found;
+  gfloat first_seed[SEED_NUMBERS];      /* of the property */
+  gboolean has_first_seed, knows_first, was_reset;
+  guint64 first_sequence;       /* of the picture that the property is about */
 };
 
 enum
@@ -74,8 +80,6 @@ enum
   PROP_CONSISTENCY,
   PROP_MAX_VARIANTS
 };
-
-#define SEED_NUMBERS 10
 
 #define GST_TYPE_QUAD_TRACK_SQUARES (gst_quad_track_squares_get_type ())
 static GType
@@ -130,7 +134,6 @@ gst_quad_track_start (GstClothFilter * filter)
   GstQuadTrack *self = GST_QUAD_TRACK (filter);
   g_autoptr (GError) error = NULL;
   g_autofree gchar *path = NULL, *seed = NULL;
-  gfloat numbers[SEED_NUMBERS];
   gint columns, rows;
   gboolean first_black;
 
@@ -142,7 +145,10 @@ gst_quad_track_start (GstClothFilter * filter)
   first_black = self->first_black;
   GST_OBJECT_UNLOCK (self);
 
-  if (seed && !parse_seed (seed, numbers)) {
+  self->has_first_seed = seed != NULL;
+  self->knows_first = FALSE;
+  self->was_reset = TRUE;
+  if (seed && !parse_seed (seed, self->first_seed)) {
     GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
         ("Can't read the seed \"%s\".", seed),
         ("\"seed\" takes x0,y0,x1,y1,x2,y2,x3,y3 in pixels, and column,row if "
@@ -165,11 +171,6 @@ gst_quad_track_start (GstClothFilter * filter)
   }
   self->tracker = cloth_quad_tracker_new (self->pattern);
   self->found = FALSE;
-  if (seed) {
-    GST_OBJECT_LOCK (self);
-    g_array_append_vals (self->seeds, numbers, SEED_NUMBERS);
-    GST_OBJECT_UNLOCK (self);
-  }
   return TRUE;
 }
 
@@ -192,8 +193,15 @@ gst_quad_track_reset (GstClothFilter * filter)
 {
   GstQuadTrack *self = GST_QUAD_TRACK (filter);
 
-  if (self->tracker)
-    cloth_quad_tracker_reset (self->tracker);
+  if (!self->tracker)
+    return;
+  cloth_quad_tracker_reset (self->tracker);
+  self->was_reset = TRUE;
+  /* what was clicked into earlier pictures is of them */
+  GST_OBJECT_LOCK (self);
+  g_array_set_size (self->clicks, 0);
+  g_array_set_size (self->seeds, 0);
+  GST_OBJECT_UNLOCK (self);
 }
 
 /* Tells the bus when the board comes into sight and when it is gone. */
@@ -253,8 +261,16 @@ gst_quad_track_analyse (GstClothFilter * filter,
         &n_candidates);
   }
 
+  if (!self->knows_first)
+    self->first_sequence = frame->sequence;
+  self->knows_first = TRUE;
   GST_OBJECT_LOCK (self);
   params = self->params;
+  /* again after a seek back to it, not elsewhere: there it would be wrong */
+  if (self->has_first_seed && self->was_reset
+      && frame->sequence == self->first_sequence)
+    g_array_append_vals (self->seeds, self->first_seed, SEED_NUMBERS);
+  self->was_reset = FALSE;
   for (guint k = 0; k + SEED_NUMBERS <= self->seeds->len; k += SEED_NUMBERS) {
     const gfloat *seed = &g_array_index (self->seeds, gfloat, k);
     gfloat x[4], y[4];
@@ -271,6 +287,7 @@ gst_quad_track_analyse (GstClothFilter * filter,
 
   quads = cloth_quad_tracker_run (self->tracker, &params, &frame->luma,
       saddles, n_saddles, candidates, n_candidates, &n);
+  n = MIN (n, GST_CLOTH_MAX_FEATURES);
   g_array_set_size (self->quads, n);
   for (guint k = 0; k < n; k++) {
     GstClothQuad *quad = &g_array_index (self->quads, GstClothQuad, k);

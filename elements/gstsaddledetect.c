@@ -202,15 +202,6 @@ gst_saddle_detect_finalize (GObject * object)
   G_OBJECT_CLASS (gst_saddle_detect_parent_class)->finalize (object);
 }
 
-/* An earlier element's saddles would be read in place of these. */
-static gboolean
-drop_saddles (GstBuffer * buffer, GstMeta ** meta, gpointer user_data)
-{
-  if ((*meta)->info->api == gst_cloth_saddles_meta_api_get_type ())
-    *meta = NULL;
-  return TRUE;
-}
-
 static GstFlowReturn
 gst_saddle_detect_analyse (GstClothFilter * filter,
     const GstClothFilterFrame * frame)
@@ -254,13 +245,6 @@ gst_saddle_detect_analyse (GstClothFilter * filter,
   payload = gst_cloth_saddles_new (frame->camera, frame->sequence,
       (const GstClothSaddle *) saddles, n_saddles, self->candidates,
       n_candidates);
-  if (!payload) {
-    GST_ELEMENT_ERROR (self, STREAM, FAILED,
-        ("The saddles of a picture can't be kept; set a camera name of fewer "
-            "characters"), (NULL));
-    return GST_FLOW_ERROR;
-  }
-  gst_buffer_foreach_meta (frame->buffer, drop_saddles, NULL);
   gst_buffer_add_cloth_saddles_meta (frame->buffer, payload);
   GST_LOG_OBJECT (self, "%u saddles, %u candidates, epsilon %g, noise %g",
       n_saddles, n_candidates,

@@ -3,6 +3,8 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <gst/check/check.h>
 #include <gst/cloth/cloth.h>
+#include <gst/controller/gstdirectcontrolbinding.h>
+#include <gst/controller/gstinterpolationcontrolsource.h>
 #include <gst/video/navigation.h>
 #include <gst/video/video.h>
 #include <math.h>
@@ -244,10 +246,12 @@ click (GstHarness * h, gint button, gdouble x, gdouble y)
           GST_NAVIGATION_MODIFIER_NONE));
 }
 
-/* Four clicks are a seed; another button takes back those made so far. */
+/* Four clicks are a seed; another button takes back those made so far. They come from
+ * a video sink, so through the overlay. */
 GST_START_TEST (test_clicks)
 {
-  GstHarness *h = start ("quadtrack link=false" BOARD, "GRAY8", WIDTH, HEIGHT);
+  GstHarness *h = start ("quadtrack link=false" BOARD " ! clothoverlay",
+      "GRAY8", WIDTH, HEIGHT);
   static const gint corner[4][2] = { {0, 0}, {1, 0}, {1, 1}, {0, 1} };
   guint frame = 0, n = 0;
 
@@ -396,6 +400,131 @@ GST_START_TEST (test_refused)
 
 GST_END_TEST;
 
+/* The seed is of the first picture: it holds again after a seek back to it, and never
+ * for another one. */
+GST_START_TEST (test_seed_and_seeks)
+{
+  static const guint to[] = { 0, 7, 0 };
+  g_autofree gchar *seeded = g_strdup_printf ("quadtrack link=false "
+      "seed=%d,%d,%d,%d,%d,%d,%d,%d,4,2" BOARD, LEFT + 4 * SIDE,
+      TOP + 2 * SIDE, LEFT + 5 * SIDE, TOP + 2 * SIDE, LEFT + 5 * SIDE,
+      TOP + 3 * SIDE, LEFT + 4 * SIDE, TOP + 3 * SIDE);
+  GstHarness *h = start (seeded, "GRAY8", WIDTH, HEIGHT);
+
+  for (guint k = 0; k < G_N_ELEMENTS (to); k++) {
+    guint n;
+
+    if (k > 0) {
+      GstSegment segment;
+
+      gst_harness_push_event (h, gst_event_new_flush_start ());
+      gst_harness_push_event (h, gst_event_new_flush_stop (TRUE));
+      gst_segment_init (&segment, GST_FORMAT_TIME);
+      segment.start = segment.time = segment.position =
+          to[k] * 40 * GST_MSECOND;
+      gst_harness_push_event (h, gst_event_new_segment (&segment));
+    }
+    n = push (h, at (picture ("GRAY8", WIDTH, HEIGHT, 0, LEFT, TOP, TRUE),
+            to[k]), LEFT, TOP);
+    fail_unless ((n > 0) == (to[k] == 0), "%u squares at %u", n, to[k]);
+  }
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+/* Saddles may come over a network: finite is all that their reader has made sure of. */
+GST_START_TEST (test_lying_saddles)
+{
+  static const gfloat values[] = { -1e30f, 1e30f, -40000, 70000, 1e9f, -1, 0,
+    127.5f, 0.25f, 1e-30f
+  };
+  enum
+  { N = G_N_ELEMENTS (values) };
+  GstHarness *h = start ("quadtrack "
+      "seed=1e6,1e6,-1e6,0,0,0,1,1,99999,99999" BOARD, "GRAY8", WIDTH, HEIGHT);
+
+  for (guint shift = 0; shift < N; shift++) {
+    GstClothSaddle saddles[N * N];
+    GstClothCandidate candidates[N * N];
+    GstBuffer *buffer = picture ("GRAY8", WIDTH, HEIGHT, 0, LEFT, TOP, TRUE);
+
+    for (guint i = 0; i < N * N; i++) {
+      saddles[i].x = candidates[i].x = values[i % N];
+      saddles[i].y = candidates[i].y = values[i / N];
+      saddles[i].response = candidates[i].response = values[(i + shift) % N];
+      saddles[i].axis = values[(i / N + shift) % N];
+      saddles[i].cov_xx = values[(2 * i + shift) % N];
+      saddles[i].cov_xy = values[(3 * i + shift) % N];
+      saddles[i].cov_yy = values[(7 * i + shift) % N];
+    }
+    gst_buffer_add_cloth_saddles_meta (buffer, gst_cloth_saddles_new ("", shift,
+            saddles, N * N, candidates, N * N));
+    fail_unless_equals_int ((gint) push (h, at (buffer, shift), LEFT, TOP), 0);
+  }
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+/* A property bound to a controller follows it, picture by picture. */
+GST_START_TEST (test_controlled)
+{
+  GstHarness *h = start ("quadtrack" BOARD, "GRAY8", WIDTH, HEIGHT);
+  g_autoptr (GstElement) track = gst_harness_find_element (h, "quadtrack");
+  g_autoptr (GstControlSource) source = gst_interpolation_control_source_new ();
+  gfloat damping;
+
+  g_object_set (source, "mode", GST_INTERPOLATION_MODE_LINEAR, NULL);
+  gst_timed_value_control_source_set ((GstTimedValueControlSource *) source, 0,
+      0.0);
+  gst_timed_value_control_source_set ((GstTimedValueControlSource *) source,
+      400 * GST_MSECOND, 1.0);
+  gst_object_add_control_binding (GST_OBJECT (track),
+      gst_direct_control_binding_new (GST_OBJECT (track), "damping", source));
+  for (guint i = 0; i <= 10; i += 5) {
+    push (h, at (picture ("GRAY8", WIDTH, HEIGHT, 0, LEFT, TOP, TRUE), i), LEFT,
+        TOP);
+    g_object_get (track, "damping", &damping, NULL);
+    fail_unless (fabsf (damping - 0.1f * (gfloat) i) < 1e-3f, "%g at %u",
+        damping, i);
+  }
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+/* A camera's name that the metadata can't hold: an error, no critical. */
+GST_START_TEST (test_long_camera_name)
+{
+  static const gchar *const elements[] = { "quadtrack", "saddledetect" };
+  g_autofree gchar *name = g_strnfill (256, 'a');
+
+  for (guint k = 0; k < G_N_ELEMENTS (elements); k++) {
+    GstHarness *h = gst_harness_new (elements[k]);
+    g_autofree gchar *caps = caps_of ("GRAY8", WIDTH, HEIGHT);
+    GstBus *bus = gst_bus_new ();
+    GstMessage *message;
+    g_autofree gchar *debug = NULL;
+
+    gst_harness_set_src_caps_str (h, caps);
+    gst_element_set_bus (h->element, bus);
+    g_object_set (h->element, "camera", name, NULL);
+    fail_unless_equals_int (gst_harness_push (h, at (picture ("GRAY8", WIDTH,
+                    HEIGHT, 0, LEFT, TOP, TRUE), 0)), GST_FLOW_ERROR);
+    message = gst_bus_pop_filtered (bus, GST_MESSAGE_ERROR);
+    fail_unless (message != NULL);
+    gst_message_parse_error (message, NULL, &debug);
+    fail_unless (strstr (debug, "255") != NULL, "%s", debug);
+    gst_message_unref (message);
+    gst_element_set_bus (h->element, NULL);
+    gst_object_unref (bus);
+    gst_harness_teardown (h);
+  }
+}
+
+GST_END_TEST;
+
 static Suite *
 quadtrack_suite (void)
 {
@@ -407,7 +536,11 @@ quadtrack_suite (void)
   tcase_add_test (tc, test_both_colours);
   tcase_add_test (tc, test_board_absent);
   tcase_add_test (tc, test_seed);
+  tcase_add_test (tc, test_seed_and_seeks);
   tcase_add_test (tc, test_clicks);
+  tcase_add_test (tc, test_lying_saddles);
+  tcase_add_test (tc, test_controlled);
+  tcase_add_test (tc, test_long_camera_name);
   tcase_add_test (tc, test_changes);
   tcase_add_test (tc, test_tiny);
   tcase_add_test (tc, test_deterministic);
