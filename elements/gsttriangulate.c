@@ -10,7 +10,9 @@
  * squares that they carry as #GstClothQuads. Each frame of the mesh has a vertex for
  * every corner of the board: its place, its 3×3 covariance, and whether three or more
  * views agree on it, only two saw it, or it is unseen. A corner seen by one camera, or
- * contradicted, is unseen; nothing is carried over from earlier frames.
+ * contradicted, is unseen; nothing is carried over from earlier frames. Clocks that the
+ * rig knows to differ (`offset_s`) are known from the first pictures on, which make no
+ * mesh then.
  *
  * A sink pad is given its camera of `rig` by its own property `camera`, else by the name
  * that the metadata carries, else by the order of the pads.
@@ -438,6 +440,7 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   GstClothQuads *quads[GST_CLOTH_SYNC_MAX_PADS] = { NULL };
   GstReferenceTimestampMeta *stamp = NULL;
   GstFlowReturn ret = GST_FLOW_ERROR;
+  gboolean moved;
   guint i, n_quads = 0;
 
   if (!gst_triangulate_apply_parameters (self)) {
@@ -468,7 +471,13 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
       self->view[i].meta = g_strdup (name);
     }
   }
-  if (!gst_triangulate_views_map (GST_CLOTH_SYNC (self), self->view, self->rig)) {
+  if (!gst_triangulate_views_map (sync, self->view, self->rig, &moved)) {
+    goto done;
+  }
+  if (moved) {
+    GST_DEBUG_OBJECT (self,
+        "these pictures are of different instants: no mesh");
+    ret = GST_FLOW_OK;
     goto done;
   }
   for (i = 0; i < n; i++) {

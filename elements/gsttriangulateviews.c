@@ -47,12 +47,13 @@ look_at_pads (GstClothSync * self, GstTriangulateView * views)
 
 gboolean
 gst_triangulate_views_map (GstClothSync * self, GstTriangulateView * views,
-    const ClothRig * rig)
+    const ClothRig * rig, gboolean * moved)
 {
   guint n_pads = look_at_pads (self, views);
   gint taken[CLOTH_RIG_MAX_CAMERAS];
   guint i, rank = 0;
 
+  *moved = FALSE;
   for (i = 0; i < rig->n_cameras; i++) {
     taken[i] = -1;
   }
@@ -118,6 +119,7 @@ gst_triangulate_views_map (GstClothSync * self, GstTriangulateView * views,
     offset = (GstClockTimeDiff) (camera->offset_s * GST_SECOND);
     if (view->offset != offset) {
       view->offset = offset;
+      *moved = TRUE;
       gst_cloth_sync_set_pad_offset (self, i, offset);
     }
   }

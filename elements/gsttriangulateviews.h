@@ -22,8 +22,9 @@ typedef struct {
 
 void gst_triangulate_view_forget (GstTriangulateView * view);
 /* Finds each pad its camera: by its property, by the name in the metadata, by the order
- * of pads; %FALSE after an element error. @views: one for every pad index. */
+ * of pads; %FALSE after an element error. @views: one for every pad index. @moved: a
+ * camera's clock turned out to be another than the set was joined by. */
 gboolean gst_triangulate_views_map (GstClothSync * sync,
-    GstTriangulateView * views, const ClothRig * rig);
+    GstTriangulateView * views, const ClothRig * rig, gboolean * moved);
 
 G_END_DECLS

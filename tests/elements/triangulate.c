@@ -487,6 +487,39 @@ GST_START_TEST (test_missing_camera)
 
 GST_END_TEST;
 
+/* A camera whose clock is two frames ahead: pictures of different instants, which the
+ * first ones are, make no mesh. */
+GST_START_TEST (test_offset)
+{
+  /* pad and frame, in an order in which no pad waits for another */
+  static const guint order[][2] = { {0, 0}, {1, 0}, {2, 0}, {0, 1}, {2, 1},
+  {1, 1}, {1, 2}, {1, 3}
+  };
+  g_autoptr (GError) error = NULL;
+  g_autoptr (GstClothMesh) mesh = NULL;
+  Bench b;
+  guint i;
+
+  bench_open (&b, 3);
+  b.rig->cameras[1].offset_s = 2. * PERIOD / GST_SECOND;
+  cloth_rig_save (b.rig, b.rig_path, &error);
+  g_assert_no_error (error);
+  bench_link (&b, 3, FALSE, VIDEO);
+  for (i = 0; i < G_N_ELEMENTS (order); i++) {
+    guint pad = order[i][0], frame = order[i][1];
+    GstClothQuad quads[N_QUADS];
+
+    see (&b, pad, frame + (pad == 1 ? 0 : 2), quads);
+    push (&b, pad, gst_cloth_quads_new (NULL, frame, COLUMNS, ROWS, quads,
+            N_QUADS), frame);
+  }
+  mesh = pull (&b, 1);
+  fail_unless (check_all (mesh, 3, GST_CLOTH_VERTEX_MEASURED) < 1e-6);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
 /* Cameras by the name in the metadata, whatever the order of the pads. */
 GST_START_TEST (test_names_in_metadata)
 {
@@ -1026,6 +1059,7 @@ triangulate_suite (void)
   tcase_add_test (tc, test_no_detector);
   tcase_add_test (tc, test_cameras_do_not_fit);
   tcase_add_test (tc, test_missing_camera);
+  tcase_add_test (tc, test_offset);
   tcase_add_test (tc, test_names_in_metadata);
   tcase_add_test (tc, test_names_of_pads);
   tcase_add_test (tc, test_observations);
