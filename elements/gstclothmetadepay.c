@@ -88,17 +88,18 @@ gst_cloth_meta_depay_set_caps (GstBaseTransform * trans, GstCaps * in,
 {
   GstClothMetaDepay *self = GST_CLOTH_META_DEPAY (trans);
   GstVideoInfo info;
-  GstMapInfo map;
+  gpointer zeros;
 
   g_clear_pointer (&self->black, gst_memory_unref);
   if (!gst_video_info_from_caps (&info, out))
     return FALSE;
-  self->black = gst_allocator_alloc (NULL, GST_VIDEO_INFO_SIZE (&info), NULL);
-  if (!self->black || !gst_memory_map (self->black, &map, GST_MAP_WRITE))
+  /* pages that nobody reads are never there, however large the caps say */
+  zeros = g_try_malloc0 (GST_VIDEO_INFO_SIZE (&info));
+  if (!zeros)
     return FALSE;
-  memset (map.data, 0, map.size);
-  gst_memory_unmap (self->black, &map);
-  GST_MINI_OBJECT_FLAG_SET (self->black, GST_MEMORY_FLAG_READONLY);
+  self->black = gst_memory_new_wrapped (GST_MEMORY_FLAG_READONLY, zeros,
+      GST_VIDEO_INFO_SIZE (&info), 0, GST_VIDEO_INFO_SIZE (&info), zeros,
+      g_free);
   return TRUE;
 }
 
