@@ -27,6 +27,10 @@ GST_DEBUG_CATEGORY_STATIC (quad_track_debug);
  * into any video sink (navigation events; a right click starts over) or by the property
  * `seed`; with `link=false` the tracker is that of the paper alone and needs one.
  *
+ * The bus is told by the element messages `quadtrack/found` and `quadtrack/lost` when the
+ * board comes into sight and when all of it is gone; their fields are `camera`,
+ * `sequence`, `timestamp` (PTS, ns) and `squares`, the number of those tracked.
+ *
  * ## Example
  * ```
  * gst-launch-1.0 filesrc location=cam0.mp4 ! decodebin ! saddledetect !
