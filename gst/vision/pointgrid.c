@@ -130,13 +130,19 @@ cloth_point_grid_nearest (const ClothPointGrid * grid, gfloat x, gfloat y,
 {
   const gint *cells = (const gint *) grid->cells->data;
   const Point *points = (const Point *) grid->points->data;
-  gfloat limit = radius * radius;
+  gfloat limit = radius * radius, inside;
   gint column, row, last = MAX (grid->columns, grid->rows);
   guint n = 0;
 
   cell_of (grid, x, y, &column, &row);
+  /* How far it is to the next cell at least; less a little, for cells are found by
+   * rounded division. */
+  inside = MIN (MIN (x - (gfloat) column * grid->size,
+          (gfloat) (column + 1) * grid->size - x),
+      MIN (y - (gfloat) row * grid->size, (gfloat) (row + 1) * grid->size - y));
+  inside = MAX (inside - 0.01f, 0);
   for (gint ring = 0; ring <= last; ring++) {
-    gfloat reach = grid->size * (gfloat) MAX (ring - 1, 0);
+    gfloat reach = ring ? grid->size * (gfloat) (ring - 1) + inside : 0;
 
     if (reach * reach > limit)
       break;
