@@ -378,43 +378,110 @@ undistort_brown (const gdouble k[8], gdouble fold, gdouble a, gdouble b,
   xy[1] = y;
   /* Not the last step but what it led to decides. */
   distort_brown (k, x, y, d, J, NULL);
-  return fabs (a - d[0]) + fabs (b - d[1]) <= 1e-12 * size
+  return isfinite (size) && fabs (a - d[0]) + fabs (b - d[1]) <= 1e-12 * size
       && J[0] * J[3] - J[1] * J[2] > 0;
 }
 
-static gboolean
-undistort_fisheye (const gdouble k[8], gdouble fold, gdouble a, gdouble b,
-    gdouble xy[2])
-{
-  gdouble rd = sqrt (a * a + b * b), theta = fmin (rd, 0.9 * fold);
-  gdouble last = G_MAXDOUBLE, error = 0, scale;
+/* Points that go through the iteration abreast. */
+#define LANES 8
 
-  if (rd < 1e-12) {
-    xy[0] = a;
-    xy[1] = b;
-    return TRUE;
+/* The angle of each distorted radius, NaN where there is none. Lanes stop one by one, so
+ * that none depends on its neighbours. */
+static void
+fisheye_angles (const gdouble k[8], gdouble fold, const gdouble rd[LANES],
+    gdouble theta[LANES])
+{
+  gdouble error[LANES] = { 0, }, last[LANES];
+  gdouble going[LANES];
+  gdouble q = fold * fold;
+  gdouble reach = fold * (1 + q * (k[0] + q * (k[1] + q * (k[2] + q * k[3]))));
+
+  for (guint l = 0; l < LANES; l++) {
+    theta[l] = fmin (rd[l], 0.9 * fold);
+    last[l] = G_MAXDOUBLE;
+    going[l] = rd[l] < reach;
   }
   for (gint i = 0; i < MAX_NEWTON; i++) {
-    gdouble q = theta * theta, next;
+    gdouble any = 0;
 
-    error = rd - theta * (1 + q * (k[0] + q * (k[1] + q * (k[2] + q * k[3]))));
-    if (fabs (error) <= 4e-15 * (1 + rd) && !(fabs (error) < 0.5 * last))
+    for (guint l = 0; l < LANES; l++) {
+      gdouble at = theta[l], next, size, go;
+      gdouble r = at * at;
+      gdouble bend = 1 + r * (k[0] + r * (k[1] + r * (k[2] + r * k[3])));
+      gdouble slope = 1 + r * (3 * k[0]
+          + r * (5 * k[1] + r * (7 * k[2] + r * 9 * k[3])));
+      gdouble e = rd[l] - at * bend;
+
+      size = fabs (e);
+      next = at + e / slope;
+      next = next < fold ? next : 0.5 * (at + fold);
+      next = next < 0 ? 0.5 * at : next;
+      /* at the limit of rounding the error stops to shrink */
+      go = size > 4e-15 * (1 + rd[l]) ? 1. : size < 0.5 * last[l] ? 1. : 0.;
+      go *= going[l];
+      error[l] = going[l] != 0 ? size : error[l];
+      last[l] = size;
+      theta[l] = go != 0 ? next : at;
+      going[l] = go;
+    }
+    for (guint l = 0; l < LANES; l++)
+      any += going[l];
+    if (any == 0)
       break;
-    last = fabs (error);
-    next = theta + error / (1 + q * (3 * k[0]
-            + q * (5 * k[1] + q * (7 * k[2] + q * 9 * k[3]))));
-    if (!(next < fold))
-      next = 0.5 * (theta + fold);
-    if (next < 0)
-      next = 0.5 * theta;
-    theta = next;
   }
-  if (!(fabs (error) <= 1e-12 * (1 + rd)) || !(theta < fold))
-    return FALSE;
-  scale = tan (theta) / rd;
-  xy[0] = a * scale;
-  xy[1] = b * scale;
-  return TRUE;
+  for (guint l = 0; l < LANES; l++)
+    if (!(rd[l] < reach) || !(error[l] <= 1e-12 * (1 + rd[l]))
+        || !(theta[l] < fold))
+      theta[l] = NAN;
+}
+
+/* cloth_camera_undistort_points() for a fisheye. */
+static guint
+undistort_fisheye (const ClothCamera * camera, guint n, const gdouble * u,
+    const gdouble * v, gdouble * x, gdouble * y, gdouble * jacobian)
+{
+  const gdouble *K = camera->K, *k = camera->k;
+  gdouble fold = fold_radius (camera);
+  gdouble ifx = 1 / K[0], ify = 1 / K[4], shear = -K[1] * ifx * ify;
+  guint n_good = 0;
+
+  for (guint first = 0; first < n; first += LANES) {
+    guint m = MIN (n - first, LANES);
+    gdouble a[LANES] = { 0, }, b[LANES] = { 0, }, rd[LANES], theta[LANES];
+
+    for (guint l = 0; l < m; l++) {
+      b[l] = (v[first + l] - K[5]) / K[4];
+      a[l] = (u[first + l] - K[2] - K[1] * b[l]) / K[0];
+    }
+    for (guint l = 0; l < LANES; l++)
+      rd[l] = sqrt (a[l] * a[l] + b[l] * b[l]);
+    fisheye_angles (k, fold, rd, theta);
+    for (guint l = 0; l < m; l++) {
+      gboolean centre = rd[l] < 1e-12;
+      gdouble tangent = tan (theta[l]), scale = centre ? 1 : tangent / rd[l];
+      guint i = first + l;
+
+      x[i] = a[l] * scale;
+      y[i] = b[l] * scale;
+      n_good += !isnan (x[i]);
+      if (jacobian) {
+        gdouble q = theta[l] * theta[l];
+        gdouble along = (1 + tangent * tangent) / (1 + q * (3 * k[0]
+                + q * (5 * k[1] + q * (7 * k[2] + q * 9 * k[3]))));
+        gdouble cx = centre ? 1 : a[l] / rd[l], cy = centre ? 0 : b[l] / rd[l];
+        /* along the radius, and across it */
+        gdouble xx = scale + (along - scale) * cx * cx;
+        gdouble xy = (along - scale) * cx * cy;
+        gdouble yy = scale + (along - scale) * cy * cy;
+
+        jacobian[i] = xx * ifx;
+        jacobian[n + i] = xx * shear + xy * ify;
+        jacobian[2 * (gsize) n + i] = xy * ifx;
+        jacobian[3 * (gsize) n + i] = xy * shear + yy * ify;
+      }
+    }
+  }
+  return n_good;
 }
 
 /**
@@ -442,28 +509,19 @@ cloth_camera_undistort_points (const ClothCamera * camera, guint n,
     gdouble * jacobian)
 {
   const gdouble *K = camera->K;
-  gdouble fold = camera->lens == CLOTH_LENS_NONE ? 0 : fold_radius (camera);
+  gdouble fold;
   guint n_good = 0;
 
+  if (camera->lens == CLOTH_LENS_FISHEYE)
+    return undistort_fisheye (camera, n, u, v, x, y, jacobian);
+  fold = camera->lens == CLOTH_LENS_NONE ? 0 : fold_radius (camera);
   for (guint i = 0; i < n; i++) {
     gdouble b = (v[i] - K[5]) / K[4];
     gdouble a = (u[i] - K[2] - K[1] * b) / K[0];
     gdouble xy[2] = { a, b };
-    gboolean good;
+    gboolean good = camera->lens == CLOTH_LENS_NONE ? isfinite (a)
+        && isfinite (b) : undistort_brown (camera->k, fold, a, b, xy);
 
-    switch (camera->lens) {
-      case CLOTH_LENS_BROWN5:
-      case CLOTH_LENS_BROWN8:
-        good = undistort_brown (camera->k, fold, a, b, xy);
-        break;
-      case CLOTH_LENS_FISHEYE:
-        good = undistort_fisheye (camera->k, fold, a, b, xy);
-        break;
-      case CLOTH_LENS_NONE:
-      default:
-        good = isfinite (a) && isfinite (b);
-        break;
-    }
     if (!good)
       xy[0] = xy[1] = NAN;
     n_good += !!good;

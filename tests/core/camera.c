@@ -303,6 +303,18 @@ test_no_inverse (void)
   g_assert_cmpfloat (x[4], ==, 0);
   g_assert_cmpfloat (J[4], ==, 0.01);
 
+  /* So far off that squares overflow. */
+  for (ClothLens lens = CLOTH_LENS_BROWN5; lens <= CLOTH_LENS_FISHEYE; lens++) {
+    gdouble far[4] = { 1e300, -1e300, INFINITY, 0 };
+    gdouble off[4] = { 0, 1e300, 0, -INFINITY };
+
+    camera.lens = lens;
+    g_assert_cmpuint (cloth_camera_undistort_points (&camera, 4, far, off, x, y,
+            J), ==, 0);
+    for (gint i = 0; i < 4; i++)
+      g_assert_true (isnan (x[i]) && isnan (y[i]) && isnan (J[i]));
+  }
+
   /* The rational model's pole, and a fisheye that would need more than 90°. */
   camera.lens = CLOTH_LENS_BROWN8;
   memset (camera.k, 0, sizeof camera.k);
