@@ -9,6 +9,9 @@
 #include "gst/math/linalg.h"
 #include "gst/rig/rotation.h"
 
+/* Good views give about 1, a board of other squares than said 6. */
+#define MAX_VARIANCE 2.5
+
 static const gchar *
 coefficient_name (ClothLens lens, guint i)
 {
@@ -158,6 +161,10 @@ cloth_calibrate_report (const ClothCalibrateInput * input,
   g_string_append_printf (s,
       "; variance of the residuals %.2f times the expected one\n",
       result->variance);
+  if (result->variance > MAX_VARIANCE)
+    g_string_append (s, "The views contradict each other: don't use this rig. "
+        "Check that the board has these squares, first one included, and is "
+        "flat; take out pictures of great RMS below.\n");
   if (!result->placed)
     g_string_append (s, "Intrinsics only: the cameras were not placed; all "
         "stand at the origin.\n");
