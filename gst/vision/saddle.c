@@ -23,7 +23,7 @@ struct _ClothSaddleDetector
   guint n_saddles, saddles_allocated;
     gfloat (*theta)[2];
   guint theta_allocated;
-  guint32 *peaks;
+  ClothSaddleCandidate *peaks;
   guint n_peaks, peaks_allocated;
 
   gboolean cut;
@@ -188,7 +188,8 @@ is_peak (const ClothSaddleMask * mask, gint x, gint y, gint reach, gint d)
   return TRUE;
 }
 
-/* The lowest threshold, not below @threshold, that lets at most @limit pixels pass. */
+/* The threshold, not below @threshold, above which the @limit strongest pixels lie; those
+ * just at it may be more. */
 static gint
 raise_threshold (const ClothSaddleMask * mask, gint threshold, guint limit)
 {
@@ -206,7 +207,7 @@ raise_threshold (const ClothSaddleMask * mask, gint threshold, guint limit)
     if (above > limit)
       break;
   }
-  return MAX (threshold, 4 * (bin + 1) - 1);
+  return MAX (threshold, 4 * bin - 1);
 }
 
 /* Grows an array that the scan fills, by whole powers of two. */
@@ -219,12 +220,14 @@ grow (gpointer array, guint * allocated, guint need, gsize size)
   return g_realloc_n (array, *allocated, size);
 }
 
-/* Lists the candidates and the peaks among them; FALSE when there are more than
- * @limit. */
+/* Lists the pixels beyond @listed as candidates, and all peaks; FALSE when there are more
+ * candidates than @limit, of which the first are listed. */
 static gboolean
-scan_mask (ClothSaddleDetector * self, gint threshold, gint reach, guint limit)
+scan_mask (ClothSaddleDetector * self, gint threshold, gint listed, gint reach,
+    guint limit)
 {
   const ClothSaddleMask *mask = &self->mask;
+  gboolean all = TRUE;
   const gssize row = (gssize) mask->words * 64;
 
   self->n_candidates = 0;
@@ -241,33 +244,36 @@ scan_mask (ClothSaddleDetector * self, gint threshold, gint reach, guint limit)
       self->candidates = grow (self->candidates, &self->candidates_allocated,
           self->n_candidates + 64, sizeof (ClothSaddleCandidate));
       self->peaks = grow (self->peaks, &self->peaks_allocated,
-          self->n_peaks + 64, sizeof (guint32));
+          self->n_peaks + 64, sizeof (ClothSaddleCandidate));
       for (; word; word &= word - 1) {
         gint i = __builtin_ctzll (word), x = 64 * w + i;
         gint d = det[x];
+        ClothSaddleCandidate pixel;
+
         if (d >= -threshold)
           continue;
-        /* *INDENT-OFF* */
-        self->candidates[self->n_candidates] = (ClothSaddleCandidate) {
-          .x = (guint16) (mask->x + x),
-          .y = (guint16) (mask->y + y),
-          .response = (gfloat) -d * self->kernel.scale,
-        };
-        /* *INDENT-ON* */
+        pixel.x = (guint16) (mask->x + x);
+        pixel.y = (guint16) (mask->y + y);
+        pixel.response = (gfloat) - d * self->kernel.scale;
+        if (d >= -listed || self->n_candidates == limit)
+          all &= d >= -listed;
+        else
+          self->candidates[self->n_candidates++] = pixel;
         /* The four neighbours refuse most without a closer look. */
         if (!(i > 0 && bits[w] >> (i - 1) & 1 && det[x - 1] <= d)
             && !(i < 63 && bits[w] >> (i + 1) & 1 && det[x + 1] < d)
             && !(y > 0 && above[w] >> i & 1 && det[x - row] <= d)
             && !(y + 1 < mask->height && below[w] >> i & 1 && det[x + row] < d)
-            && is_peak (mask, x, y, reach, d))
-          self->peaks[self->n_peaks++] = self->n_candidates;
-        self->n_candidates++;
+            && is_peak (mask, x, y, reach, d)) {
+          if (self->n_peaks < CLOTH_SADDLE_MAX)
+            self->peaks[self->n_peaks++] = pixel;
+          else
+            self->cut = TRUE;
+        }
       }
-      if (self->n_candidates > limit)
-        return FALSE;
     }
   }
-  return TRUE;
+  return all;
 }
 
 /* Two peaks of one flat blob may lead to the same saddle. Saddles come row after row,
@@ -295,7 +301,7 @@ refine_peaks (ClothSaddleDetector * self, const ClothSaddleParams * params,
   guint limit = MIN (params->max_saddles, CLOTH_SADDLE_MAX);
 
   for (guint i = 0; i < self->n_peaks; i++) {
-    const ClothSaddleCandidate *peak = &self->candidates[self->peaks[i]];
+    const ClothSaddleCandidate *peak = &self->peaks[i];
     ClothSaddle saddle;
     gfloat theta[2];
 
@@ -438,13 +444,13 @@ cloth_saddle_detector_run (ClothSaddleDetector * detector,
   threshold = (gint) MIN (epsilon / detector->kernel.scale, 32767.0f);
 
   cloth_saddle_mask_run (mask, &detector->kernel, image, threshold, level);
-  if (!scan_mask (detector, threshold, reach, limit)) {
-    threshold = raise_threshold (mask, threshold, limit);
-    epsilon = (gfloat) threshold *detector->kernel.scale;
-    detector->cut = TRUE;
-    scan_mask (detector, threshold, reach, limit);
-  }
   detector->epsilon = epsilon;
+  if (!scan_mask (detector, threshold, threshold, reach, limit)) {
+    /* Only the list of candidates is cut, to the strongest; each corner has many. */
+    scan_mask (detector, threshold, raise_threshold (mask, threshold, limit),
+        reach, limit);
+    detector->cut = TRUE;
+  }
 
   detector->noise = measure_noise (mask, image);
   if (params->refine != CLOTH_SADDLE_REFINE_NONE) {

@@ -68,8 +68,8 @@ typedef enum {
  * @refine: how the sub-pixel position is found
  * @radius: window radius of the model fit, px, 2 to 12; no more than half the distance to
  *   the next saddle is used. On bent cloth 4 to 5 px is best, on a flat board 8 to 10
- * @max_candidates: when more pixels than this pass, the bound is raised, at most
- *   %CLOTH_SADDLE_MAX
+ * @max_candidates: when more pixels than this pass, the strongest are listed, at most
+ *   %CLOTH_SADDLE_MAX; refined saddles are not affected
  * @max_saddles: the most refined saddles, at most %CLOTH_SADDLE_MAX
  *
  * Values out of range are brought into it; the region is cut to the picture.

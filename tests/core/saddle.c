@@ -539,6 +539,35 @@ test_noise_estimate (void)
   }
 }
 
+/* A clean board over the whole of a large picture: pixels of equal response by the
+ * hundred thousand. */
+static void
+test_many (void)
+{
+  const gint width = 1920, height = 1080;
+  g_autoptr (ClothSaddleDetector) detector = cloth_saddle_detector_new ();
+  ClothSaddleParams params = cloth_saddle_default_params ();
+  g_autofree guint8 *data = g_malloc (width * height);
+  ClothImage image = { data, width, height, width };
+
+  for (gint edge = 6; edge <= 12; edge += 2) {
+    guint corners = (guint) ((width / edge - 3) * (height / edge - 3));
+    guint n_saddles, n_candidates;
+
+    for (gint y = 0; y < height; y++)
+      for (gint x = 0; x < width; x++)
+        data[y * width + x] = (x / edge + y / edge) & 1 ? 200 : 40;
+    cloth_saddle_detector_run (detector, &params, &image, CLOTH_SIMD_BEST);
+    cloth_saddle_detector_get_saddles (detector, &n_saddles);
+    cloth_saddle_detector_get_candidates (detector, &n_candidates);
+    g_test_message ("squares of %d px: %u saddles of %u, %u candidates", edge,
+        n_saddles, corners, n_candidates);
+    g_assert_cmpuint (n_saddles, >=, corners);
+    g_assert_cmpuint (n_candidates, <=, params.max_candidates);
+    g_assert_cmpuint (n_candidates, >, 0);
+  }
+}
+
 int
 main (int argc, char **argv)
 {
@@ -554,5 +583,6 @@ main (int argc, char **argv)
   g_test_add_func ("/saddle/limits", test_limits);
   g_test_add_func ("/saddle/bad-params", test_bad_params);
   g_test_add_func ("/saddle/noise-estimate", test_noise_estimate);
+  g_test_add_func ("/saddle/many", test_many);
   return g_test_run ();
 }
