@@ -2,6 +2,7 @@
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <math.h>
+#include <string.h>
 
 #include "gst/vision/quad-private.h"
 #include "gst/vision/template.h"
@@ -28,7 +29,7 @@
 #define MAX_SEEDS 4
 /* Log-likelihood of a seed whose place on the board was told, and of one without. */
 #define SEED 40.0f
-#define SEED_UNTOLD 3.0f
+#define SEED_UNTOLD 4.0f
 
 /* Rotation of a patch whose +i runs along (@dx, @dy) where the board's columns run along
  * (@bx, @by). */
@@ -78,8 +79,19 @@ add_vote (ClothPlacement * votes, guint * n, const ClothPlacement * vote)
     if (votes[k].rotation == vote->rotation && votes[k].column == vote->column
         && votes[k].row == vote->row)
       break;
-  if (k == MAX_VOTES)
+  if (k == MAX_VOTES) {
+    /* The weakest gives way, and its weight with it. */
+    k = 0;
+    for (guint m = 1; m < *n; m++)
+      if (votes[m].weight < votes[k].weight)
+        k = m;
+    if (votes[k].weight >= vote->weight) {
+      votes[k].weight -= vote->weight;
+      return;
+    }
+    votes[k] = *vote;
     return;
+  }
   if (k == *n) {
     votes[(*n)++] = *vote;
     return;
@@ -195,6 +207,7 @@ take_square (ClothQuadTracker * tracker, const ClothPlacement * placement,
   const ClothQuadParams *params = tracker->params;
   gboolean black = cloth_patch_is_black (patch, i, j);
   gint column, row;
+  gfloat x[4], y[4], cov[4][3], confidence;
   ClothQuadCell *cell;
 
   cloth_placement_cell (placement, i, j, &column, &row);
@@ -212,16 +225,20 @@ take_square (ClothQuadTracker * tracker, const ClothPlacement * placement,
         && cloth_quad_is_inner (tracker, c, r))
       return;
     to = r == row ? c - column : 3 - (c - column);
-    cell->guess_x[to] = patch->x[from];
-    cell->guess_y[to] = patch->y[from];
+    x[to] = patch->x[from];
+    y[to] = patch->y[from];
     for (gint m = 0; m < 3; m++)
-      cell->cov[to][m] = patch->cov[3 * from + m];
+      cov[to][m] = patch->cov[3 * from + m];
   }
-  cell->confidence = cloth_quad_confidence (tracker->image, cell->guess_x,
-      cell->guess_y, params->alpha, black);
-  if (cell->confidence < params->c_low)
+  confidence = cloth_quad_confidence (tracker->image, x, y, params->alpha,
+      black);
+  if (confidence < params->c_low)
     return;
-  cell->found = cell->linked = TRUE;
+  memcpy (cell->here_x, x, sizeof x);
+  memcpy (cell->here_y, y, sizeof y);
+  memcpy (cell->cov, cov, sizeof cov);
+  cell->confidence = confidence;
+  cell->found = TRUE;
 }
 
 /* What the memory says of vertex (@i, @j) of the patch under a placement: 1 yes, -1 no, 0
@@ -241,7 +258,8 @@ recall (ClothQuadTracker * tracker, const ClothPlacement * placement, gint i,
   if (sqrtf (near.distance2) > SURE_REACH * tracker->vertices[vertex].size)
     return 0;
   cloth_placement_vertex (placement, i, j, &column, &row);
-  return vertex == row * (tracker->pattern.columns + 1) + column ? 1 : -1;
+  return column >= 0 && column <= tracker->pattern.columns
+      && vertex == row * (tracker->pattern.columns + 1) + column ? 1 : -1;
 }
 
 /* The same of the cell (@i, @j): for less against. */
@@ -306,7 +324,9 @@ note_corners (ClothQuadTracker * tracker, const ClothPlacement * placement)
         continue;
       if (placement) {
         cloth_placement_vertex (placement, i, j, &column, &row);
-        vertex = row * (tracker->pattern.columns + 1) + column;
+        if (column >= 0 && row >= 0 && column <= tracker->pattern.columns
+            && row <= tracker->pattern.rows)
+          vertex = row * (tracker->pattern.columns + 1) + column;
       }
       cloth_point_grid_add (tracker->corners, patch->x[at], patch->y[at]);
       g_array_append_val (tracker->corner_vertex, vertex);

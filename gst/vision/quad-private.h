@@ -16,15 +16,15 @@ G_BEGIN_DECLS
 typedef struct {
   gboolean wanted;              /* of a colour that is tracked */
   gboolean found;               /* in this picture */
-  gboolean linked;              /* and all its corners by linking */
   gboolean fresh;               /* added by extension in this picture */
   guint age;                    /* pictures since it was last found; G_MAXUINT: never */
   guint run;                    /* pictures in a row it was found in */
   gfloat confidence;
-  gfloat x[4], y[4];            /* in this picture if found, else in the last one found */
+  gfloat x[4], y[4];            /* in the last picture, guessed if not found there */
   gfloat before_x[4], before_y[4];      /* one picture before those */
   gfloat guess_x[4], guess_y[4];        /* predicted for this picture */
-  gfloat cov[4][3];
+  gfloat here_x[4], here_y[4];  /* in this picture, if found */
+  gfloat cov[4][3];             /* of those */
 } ClothQuadCell;
 
 /* One corner of the board. */
@@ -103,7 +103,8 @@ gfloat cloth_quad_longest (const gfloat x[4], const gfloat y[4]);
 void cloth_quad_spread_shift (ClothQuadTracker * tracker);
 /* quad-link.c: places the patches found by linking and takes over their squares. */
 void cloth_quad_link (ClothQuadTracker * tracker);
-/* quad-search.c: looks for one square around its guess. */
-gboolean cloth_quad_search (ClothQuadTracker * tracker, gint column, gint row);
+/* quad-search.c: looks for one square around a guess. */
+gboolean cloth_quad_search (ClothQuadTracker * tracker, gint column, gint row,
+    const gfloat guess_x[4], const gfloat guess_y[4]);
 
 G_END_DECLS

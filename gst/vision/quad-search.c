@@ -156,7 +156,8 @@ fit_outline (ClothQuadTracker * tracker, gint column, gint row,
 }
 
 gboolean
-cloth_quad_search (ClothQuadTracker * tracker, gint column, gint row)
+cloth_quad_search (ClothQuadTracker * tracker, gint column, gint row,
+    const gfloat guess_x[4], const gfloat guess_y[4])
 {
   const ClothQuadParams *params = tracker->params;
   ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
@@ -164,8 +165,8 @@ cloth_quad_search (ClothQuadTracker * tracker, gint column, gint row)
   ClothOutline outline = { {0} };
   gfloat confidence;
 
-  if (search_candidates (tracker, black, cell->guess_x, cell->guess_y,
-          outline.x, outline.y) < params->c_low
+  if (search_candidates (tracker, black, guess_x, guess_y, outline.x,
+          outline.y) < params->c_low
       || !has_edges (tracker->image, outline.x, outline.y, black)
       || !fit_outline (tracker, column, row, &outline))
     return FALSE;
@@ -178,8 +179,8 @@ cloth_quad_search (ClothQuadTracker * tracker, gint column, gint row)
             column + cloth_quad_corner_column[k],
             row + cloth_quad_corner_row[k]))
       return FALSE;
-  memcpy (cell->guess_x, outline.x, sizeof outline.x);
-  memcpy (cell->guess_y, outline.y, sizeof outline.y);
+  memcpy (cell->here_x, outline.x, sizeof outline.x);
+  memcpy (cell->here_y, outline.y, sizeof outline.y);
   memcpy (cell->cov, outline.cov, sizeof outline.cov);
   cell->confidence = confidence;
   cell->found = TRUE;

@@ -20,6 +20,10 @@
 #define SPREAD_PASSES 6
 /* Pictures for which a square not seen is still given out as predicted. */
 #define PREDICTED_FOR 5
+/* Share of its speed that a square not seen keeps from picture to picture. */
+#define SLOWING 0.7f
+/* Standard deviation of a predicted corner, in shortest edges for each picture of age. */
+#define PREDICTED_SD 0.1f
 /* Weight that each picture of age takes from a remembered corner. */
 #define FADE 0.85f
 
@@ -145,6 +149,13 @@ cloth_quad_tracker_seed (ClothQuadTracker * tracker, const gfloat x[4],
 
   memcpy (seed.x, x, sizeof seed.x);
   memcpy (seed.y, y, sizeof seed.y);
+  /* Given the other way round the ring is turned over: its first corner stays. */
+  if ((x[2] - x[0]) * (y[3] - y[1]) < (y[2] - y[0]) * (x[3] - x[1])) {
+    seed.x[1] = x[3];
+    seed.y[1] = y[3];
+    seed.x[3] = x[1];
+    seed.y[3] = y[1];
+  }
   seed.column = row < 0 ? -1 : column;
   seed.row = column < 0 ? -1 : row;
   g_array_append_val (tracker->seeds, seed);
@@ -162,12 +173,12 @@ predict (ClothQuadTracker * tracker)
   for (gint row = 0; row < rows; row++)
     for (gint column = 0; column < columns; column++) {
       ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
-      gfloat weight = 1;
+      gfloat weight = 1, speed = cell->age == 0 ? 1 : SLOWING;
 
       cell->wanted = tracker->params->squares == CLOTH_SQUARES_BOTH
           || cloth_pattern_is_black (&tracker->pattern, column, row)
           == (tracker->params->squares == CLOTH_SQUARES_BLACK);
-      cell->found = cell->linked = cell->fresh = FALSE;
+      cell->found = cell->fresh = FALSE;
       if (cell->age > CLOTH_QUAD_MEMORY)
         continue;
       for (guint a = 0; a < cell->age; a++)
@@ -179,9 +190,9 @@ predict (ClothQuadTracker * tracker)
 
         cell->guess_x[k] = cell->x[k];
         cell->guess_y[k] = cell->y[k];
-        if (cell->age == 0 && cell->run >= 2) {
-          cell->guess_x[k] += cell->x[k] - cell->before_x[k];
-          cell->guess_y[k] += cell->y[k] - cell->before_y[k];
+        if (cell->run >= 2) {
+          cell->guess_x[k] += speed * (cell->x[k] - cell->before_x[k]);
+          cell->guess_y[k] += speed * (cell->y[k] - cell->before_y[k]);
         }
         vertex->guess_x += weight * cell->guess_x[k];
         vertex->guess_y += weight * cell->guess_y[k];
@@ -285,10 +296,10 @@ is_consistent (ClothQuadTracker * tracker, gint column, gint row)
     if (!other || !other->found || other->confidence <= params->c_high)
       continue;
     /* Corner k of this square is the other one's opposite corner. */
-    size = MAX (cloth_quad_longest (cell->guess_x, cell->guess_y),
-        cloth_quad_longest (other->guess_x, other->guess_y));
-    distance = hypotf (cell->guess_x[k] - other->guess_x[(k + 2) & 3],
-        cell->guess_y[k] - other->guess_y[(k + 2) & 3]);
+    size = MAX (cloth_quad_longest (cell->here_x, cell->here_y),
+        cloth_quad_longest (other->here_x, other->here_y));
+    distance = hypotf (cell->here_x[k] - other->here_x[(k + 2) & 3],
+        cell->here_y[k] - other->here_y[(k + 2) & 3]);
     n++;
     bad += distance > params->consistency * size;
   }
@@ -316,10 +327,10 @@ is_taken (ClothQuadTracker * tracker, gint column, gint row)
   const ClothQuadCell *own = cloth_quad_cell (tracker, column, row);
   gfloat x = 0, y = 0, size;
 
-  size = cloth_quad_shortest (own->guess_x, own->guess_y);
+  size = cloth_quad_shortest (own->here_x, own->here_y);
   for (gint k = 0; k < 4; k++) {
-    x += own->guess_x[k] / 4;
-    y += own->guess_y[k] / 4;
+    x += own->here_x[k] / 4;
+    y += own->here_y[k] / 4;
   }
   for (gint k = 0; k < tracker->pattern.columns * tracker->pattern.rows; k++) {
     const ClothQuadCell *cell = &tracker->cells[k];
@@ -327,21 +338,22 @@ is_taken (ClothQuadTracker * tracker, gint column, gint row)
 
     if (!cell->found || cell == own)
       continue;
-    cx = (cell->guess_x[0] + cell->guess_x[2]) / 2;
-    cy = (cell->guess_y[0] + cell->guess_y[2]) / 2;
+    cx = (cell->here_x[0] + cell->here_x[2]) / 2;
+    cy = (cell->here_y[0] + cell->here_y[2]) / 2;
     if (fabsf (cx - x) < 0.5f * size && fabsf (cy - y) < 0.5f * size)
       return TRUE;
   }
   return FALSE;
 }
 
-/* Looks for a square at its guess and keeps it if the grid allows. */
+/* Looks for a square at a guess and keeps it if the grid allows. */
 static gboolean
-try_square (ClothQuadTracker * tracker, gint column, gint row)
+try_square (ClothQuadTracker * tracker, gint column, gint row,
+    const gfloat guess_x[4], const gfloat guess_y[4])
 {
   ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
 
-  if (!cloth_quad_search (tracker, column, row))
+  if (!cloth_quad_search (tracker, column, row, guess_x, guess_y))
     return FALSE;
   if (!is_consistent (tracker, column, row) || is_taken (tracker, column, row))
     cell->found = FALSE;
@@ -366,24 +378,24 @@ extend (ClothQuadTracker * tracker)
         const ClothQuadCell *from = cloth_quad_cell (tracker,
             column + diagonal_column[k], row + diagonal_row[k]);
         const gfloat *fx, *fy;
-        gfloat ux, uy, vx, vy;
+        gfloat ux, uy, vx, vy, x[4], y[4];
 
         if (!from || !from->found || from->fresh
             || from->confidence <= params->c_pred)
           continue;
-        fx = from->guess_x;
-        fy = from->guess_y;
+        fx = from->here_x;
+        fy = from->here_y;
         ux = (fx[1] - fx[0] + fx[2] - fx[3]) / 2;
         uy = (fy[1] - fy[0] + fy[2] - fy[3]) / 2;
         vx = (fx[3] - fx[0] + fx[2] - fx[1]) / 2;
         vy = (fy[3] - fy[0] + fy[2] - fy[1]) / 2;
         for (gint m = 0; m < 4; m++) {
-          cell->guess_x[m] = fx[m] - (gfloat) diagonal_column[k] * ux
+          x[m] = fx[m] - (gfloat) diagonal_column[k] * ux
               - (gfloat) diagonal_row[k] * vx;
-          cell->guess_y[m] = fy[m] - (gfloat) diagonal_column[k] * uy
+          y[m] = fy[m] - (gfloat) diagonal_column[k] * uy
               - (gfloat) diagonal_row[k] * vy;
         }
-        if (try_square (tracker, column, row)) {
+        if (try_square (tracker, column, row, x, y)) {
           cell->confidence *= params->damping;
           cell->fresh = TRUE;
           break;
@@ -414,9 +426,7 @@ start_seeds (ClothQuadTracker * tracker)
     cell = cloth_quad_cell (tracker, column, row);
     if (!cell || !cell->wanted)
       continue;
-    memcpy (cell->guess_x, seed->x, sizeof seed->x);
-    memcpy (cell->guess_y, seed->y, sizeof seed->y);
-    cloth_quad_search (tracker, column, row);
+    cloth_quad_search (tracker, column, row, seed->x, seed->y);
   }
 }
 
@@ -430,11 +440,21 @@ put_out (ClothQuadTracker * tracker, gint column, gint row,
   };
 
   quad.confidence = state == CLOTH_QUAD_TRACKED ? cell->confidence : 0;
-  memcpy (quad.x, state == CLOTH_QUAD_PREDICTED ? cell->guess_x : cell->x,
+  memcpy (quad.x, state == CLOTH_QUAD_TRACKED ? cell->x : cell->guess_x,
       sizeof quad.x);
-  memcpy (quad.y, state == CLOTH_QUAD_PREDICTED ? cell->guess_y : cell->y,
+  memcpy (quad.y, state == CLOTH_QUAD_TRACKED ? cell->y : cell->guess_y,
       sizeof quad.y);
-  memcpy (quad.cov, cell->cov, sizeof quad.cov);
+  if (state == CLOTH_QUAD_TRACKED) {
+    memcpy (quad.cov, cell->cov, sizeof quad.cov);
+  } else {
+    gfloat sd = PREDICTED_SD * (gfloat) cell->age
+        * cloth_quad_shortest (quad.x, quad.y);
+
+    for (gint k = 0; k < 4; k++) {
+      quad.cov[k][0] = quad.cov[k][2] = sd * sd;
+      quad.cov[k][1] = 0;
+    }
+  }
   g_array_append_val (tracker->out, quad);
 }
 
@@ -457,8 +477,8 @@ conclude (ClothQuadTracker * tracker)
         } else {
           cell->run = 1;
         }
-        memcpy (cell->x, cell->guess_x, sizeof cell->x);
-        memcpy (cell->y, cell->guess_y, sizeof cell->y);
+        memcpy (cell->x, cell->here_x, sizeof cell->x);
+        memcpy (cell->y, cell->here_y, sizeof cell->y);
         cell->age = 0;
         put_out (tracker, column, row, CLOTH_QUAD_TRACKED);
         continue;
@@ -466,13 +486,19 @@ conclude (ClothQuadTracker * tracker)
       if (cell->age == G_MAXUINT)
         continue;
       cell->age++;
-      cell->run = 0;
       if (cell->age <= PREDICTED_FOR)
         put_out (tracker, column, row, CLOTH_QUAD_PREDICTED);
       else if (cell->age == PREDICTED_FOR + 1)
         put_out (tracker, column, row, CLOTH_QUAD_LOST);
-      else if (cell->age > CLOTH_QUAD_MEMORY)
+      if (cell->age > CLOTH_QUAD_MEMORY) {
         cell->age = G_MAXUINT;
+        cell->run = 0;
+        continue;
+      }
+      memcpy (cell->before_x, cell->x, sizeof cell->x);
+      memcpy (cell->before_y, cell->y, sizeof cell->y);
+      memcpy (cell->x, cell->guess_x, sizeof cell->x);
+      memcpy (cell->y, cell->guess_y, sizeof cell->y);
     }
 }
 
@@ -526,7 +552,8 @@ cloth_quad_tracker_run (ClothQuadTracker * tracker,
       ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
 
       if (!cell->found && cell->wanted && cell->age == 0
-          && cloth_quad_search (tracker, column, row)
+          && cloth_quad_search (tracker, column, row, cell->guess_x,
+              cell->guess_y)
           && is_taken (tracker, column, row))
         cell->found = FALSE;
     }

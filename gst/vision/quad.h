@@ -14,7 +14,7 @@ G_BEGIN_DECLS
  * @CLOTH_QUAD_TRACKED: seen in this picture
  * @CLOTH_QUAD_PREDICTED: not seen; placed by its past motion and its neighbours
  * @CLOTH_QUAD_LOST: was tracked or predicted in the last picture and is no more; its
- *   corners are where it was last
+ *   corners are where it was guessed last
  *
  * Since: 0.1
  */
