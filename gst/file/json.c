@@ -33,6 +33,40 @@ G_GNUC_PRINTF (3, 4)
   return FALSE;
 }
 
+/* Four hexadecimal digits behind \u, or -1. */
+static gint
+unicode_escape (const gchar * at, gsize rest)
+{
+  gint code = 0;
+
+  if (rest < 6 || at[0] != '\\' || at[1] != 'u')
+    return -1;
+  for (guint i = 2; i < 6; i++) {
+    gint digit = g_ascii_xdigit_value (at[i]);
+
+    if (digit < 0)
+      return -1;
+    code = 16 * code + digit;
+  }
+  return code;
+}
+
+/* Bytes of the escape at @at; 0 for one that is no JSON or no character: json-glib would
+ * make invalid UTF-8 of half a surrogate pair or an octal number, and end a text at
+ * \u0000. */
+static gsize
+check_escape (const gchar * at, gsize rest)
+{
+  gint code = unicode_escape (at, rest), second;
+
+  if (code < 0)
+    return rest > 1 && at[1] != 0 && strchr ("\"\\/bfnrt", at[1]) ? 2 : 0;
+  if (code < 0xd800 || code > 0xdfff)
+    return code ? 6 : 0;
+  second = unicode_escape (at + 6, rest - 6);
+  return code < 0xdc00 && second >= 0xdc00 && second <= 0xdfff ? 12 : 0;
+}
+
 /* Counts before the parser sees a byte. Comments and single quotes, which json-glib takes
  * beyond JSON, could hide brackets from the count; after the object it would take further
  * values. */
@@ -52,10 +86,16 @@ check_text (const gchar * data, gsize length, GError ** error)
     gchar c = data[i];
 
     if (quoted) {
-      if (c == '\\')
-        i++;
-      else if (c == '"')
+      if (c == '\\') {
+        gsize n = check_escape (data + i, length - i);
+
+        if (n == 0)
+          return refuse (error, CLOTH_FILE_ERROR_SYNTAX,
+              "the escape at offset %" G_GSIZE_FORMAT " is no character", i);
+        i += n - 1;
+      } else if (c == '"') {
         quoted = FALSE;
+      }
       continue;
     }
     if (c != 0 && strchr (" \t\r\n", c))

@@ -234,6 +234,9 @@ static const gchar *const bad_json[] = {
       "\"height_m\":1}}",
   "{\"version\":1,\"grid\":[3,2]}", OK ",\"notes\":\"\xff\"}",
   OK ",/* [ */\"notes\":\"x\"}", OK "}{}", OK "} 7", OK ",\"fps\":30}",
+  OK ",\"name\":\"\\ud800\"}", OK ",\"name\":\"\\udc00\\ud800\"}",
+  OK ",\"name\":\"a\\u0000b\"}", OK ",\"name\":\"\\ud83d\\u0041\"}",
+  OK ",\"name\":\"\\ud8", OK ",\"name\":\"\\222\"}", OK ",\"name\":\"\\",
   OK ",\"held\":[{\"vertex\":1,\"vertex\":2}]}",
 };
 

@@ -22,9 +22,9 @@ LLVMFuzzerTestOneInput (const guint8 * data, gsize size)
     g_autofree gdouble *row = g_new (gdouble, info->row_items);
 
     /* The header was accepted: every row it promises must be readable. */
-    if (!cloth_npy_reader_read_double (reader, 0, 1, row, NULL) ||
-        !cloth_npy_reader_read_double (reader, info->n_rows - 1, 1, row, NULL))
-      g_error ("a promised row is missing");
+    g_assert_true (cloth_npy_reader_read_double (reader, 0, 1, row, NULL));
+    g_assert_true (cloth_npy_reader_read_double (reader, info->n_rows - 1, 1,
+            row, NULL));
     sum += row[0];
   }
   return sum > 1e300;
