@@ -230,8 +230,8 @@ take_square (ClothQuadTracker * tracker, const ClothPlacement * placement,
     for (gint m = 0; m < 3; m++)
       cov[to][m] = patch->cov[3 * from + m];
   }
-  confidence = cloth_quad_confidence (tracker->image, x, y, params->alpha,
-      black);
+  confidence = black ? patch->confidence[j * patch->columns + i]
+      : cloth_quad_confidence (tracker->image, x, y, params->alpha, FALSE);
   if (confidence < params->c_low)
     return;
   memcpy (cell->here_x, x, sizeof x);

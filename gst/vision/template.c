@@ -25,6 +25,41 @@ signs (const guint8 * level, gint n, gint mean_times_n, gint total)
   return sum;
 }
 
+/* Whether the whole cross lies in the picture: its outermost corners do. */
+static gboolean
+is_inside (const ClothImage * image, const gfloat x[4], const gfloat y[4],
+    gfloat alpha)
+{
+  gfloat limit_x = (gfloat) image->width - 1, limit_y =
+      (gfloat) image->height - 1;
+
+  for (gint k = 0; k < 4; k++)
+    for (gint way = 1; way <= 3; way += 2) {
+      gint from = (k + way) & 3;
+      gfloat px = x[k] + alpha * (x[k] - x[from]);
+      gfloat py = y[k] + alpha * (y[k] - y[from]);
+
+      if (!(px >= 0 && py >= 0 && px <= limit_x && py <= limit_y))
+        return FALSE;
+    }
+  return TRUE;
+}
+
+/* Takes @n levels along (@x, @y) + s·(@dx, @dy) from s = @first in steps of @step, in
+ * fixed point with 16 bits behind the point. */
+static inline gint
+take (const ClothImage * image, gfloat x, gfloat y, gfloat dx, gfloat dy,
+    gfloat first, gfloat step, gint n, guint8 * levels)
+{
+  gint px = (gint) ((x + first * dx + 0.5f) * 65536.0f);
+  gint py = (gint) ((y + first * dy + 0.5f) * 65536.0f);
+  gint sx = (gint) (step * dx * 65536.0f), sy = (gint) (step * dy * 65536.0f);
+
+  for (gint k = 0; k < n; k++, px += sx, py += sy)
+    levels[k] = image->data[(py >> 16) * image->stride + (px >> 16)];
+  return n;
+}
+
 /**
  * cloth_quad_confidence:
  * @image: the picture
@@ -50,42 +85,36 @@ cloth_quad_confidence (const ClothImage * image, const gfloat x[4],
 {
   guint8 inside[ALONG * ALONG], lapels[4 * ALONG * MAX_ACROSS];
   gint across = CLAMP ((gint) lrintf (alpha * ALONG), 1, MAX_ACROSS);
+  gfloat wide = alpha / (gfloat) across;
   gint n_inside = 0, n_lapels = 0, total, sum = 0, score;
-  gfloat limit_x = (gfloat) image->width - 0.5f;
-  gfloat limit_y = (gfloat) image->height - 0.5f;
 
+  if (!is_inside (image, x, y, alpha))
+    return -1;
   for (gint v = -across; v < ALONG + across; v++) {
     gboolean in_v = v >= 0 && v < ALONG;
-    gint first = in_v ? -across : 0, last = in_v ? ALONG + across : ALONG;
-    /* *INDENT-OFF* */
-    gfloat t = v < 0 ? alpha * ((gfloat) v + 0.5f) / (gfloat) across
-        : v >= ALONG ? 1 + alpha * ((gfloat) (v - ALONG) + 0.5f) / (gfloat) across
+    gfloat t = v < 0 ? wide * ((gfloat) v + 0.5f)
+        : v >= ALONG ? 1 + wide * ((gfloat) (v - ALONG) + 0.5f)
         : ((gfloat) v + 0.5f) / ALONG;
-    /* *INDENT-ON* */
     /* Left and right edge at height t. */
     gfloat x0 = x[0] + t * (x[3] - x[0]), x1 = x[1] + t * (x[2] - x[1]);
     gfloat y0 = y[0] + t * (y[3] - y[0]), y1 = y[1] + t * (y[2] - y[1]);
 
-    for (gint u = first; u < last; u++) {
-      /* *INDENT-OFF* */
-      gfloat s = u < 0 ? alpha * ((gfloat) u + 0.5f) / (gfloat) across
-          : u >= ALONG ? 1 + alpha * ((gfloat) (u - ALONG) + 0.5f) / (gfloat) across
-          : ((gfloat) u + 0.5f) / ALONG;
-      /* *INDENT-ON* */
-      gfloat px = x0 + s * (x1 - x0), py = y0 + s * (y1 - y0);
-      guint8 level;
-
-      if (!(px > -0.5f && py > -0.5f && px < limit_x && py < limit_y))
-        return -1;
-      level = image->data[(gint) (py + 0.5f) * image->stride
-          + (gint) (px + 0.5f)];
-      if (in_v && u >= 0 && u < ALONG)
-        inside[n_inside++] = level;
-      else
-        lapels[n_lapels++] = level;
-      sum += level;
+    if (in_v) {
+      n_lapels += take (image, x0, y0, x1 - x0, y1 - y0,
+          wide * (0.5f - (gfloat) across), wide, across, lapels + n_lapels);
+      n_inside += take (image, x0, y0, x1 - x0, y1 - y0, 0.5f / ALONG,
+          1.0f / ALONG, ALONG, inside + n_inside);
+      n_lapels += take (image, x0, y0, x1 - x0, y1 - y0, 1 + 0.5f * wide, wide,
+          across, lapels + n_lapels);
+    } else {
+      n_lapels += take (image, x0, y0, x1 - x0, y1 - y0, 0.5f / ALONG,
+          1.0f / ALONG, ALONG, lapels + n_lapels);
     }
   }
+  for (gint k = 0; k < n_inside; k++)
+    sum += inside[k];
+  for (gint k = 0; k < n_lapels; k++)
+    sum += lapels[k];
   total = n_inside + n_lapels;
   score = signs (lapels, n_lapels, sum, total)
       - signs (inside, n_inside, sum, total);
