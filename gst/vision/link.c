@@ -17,7 +17,7 @@
 
 /* Saddles looked at around each one: on a board without clutter the eight neighbours of
  * a corner contain its four, the rest is for clutter and oblique views. */
-#define NEAREST 28
+#define NEAREST 16
 /* Shorter edges can't be told from noise, px. */
 #define MIN_EDGE 3.0f
 /* Contrast of a corner's weakest edge over that of its strongest. */
