@@ -24,6 +24,9 @@
 #define MIN_CONTRAST 0.3f
 /* Neighbouring corners have their bright bisectors across: this far from 90°, rad. */
 #define AXIS_TOLERANCE 0.75f
+/* A link this much longer than its opposite, and with this slope to it, skips a corner. */
+#define SKIP_LENGTH 1.7f
+#define SKIP_SLOPE 0.27f
 
 /* Patch numbers of saddles in no patch. */
 #define UNSEEN -1
@@ -33,6 +36,7 @@ typedef struct
 {
   gint to[4];                   /* saddle in each quarter, -1 for none */
   guint8 in_square;             /* bit s: the ring over quarters s and s + 1 closes */
+  guint8 skips;                 /* bit s: the link in quarter s skips a corner */
   guint8 turn;                  /* quarter that points along the patch's columns */
 } Corner;
 
@@ -96,7 +100,7 @@ find_neighbours (const ClothLinker * linker, const ClothImage * image,
 
   for (gint s = 0; s < 4; s++)
     corner->to[s] = -1;
-  corner->in_square = 0;
+  corner->in_square = corner->skips = 0;
   corner->turn = 0;
   for (guint m = 0; m < n; m++) {
     const ClothSaddle *b = &saddles[near[m].index];
@@ -173,6 +177,40 @@ square_ring (const Corner * corners, gint k, gint s, gint ring[4])
   ring[2] = c;
   ring[3] = d;
   return TRUE;
+}
+
+/* Cuts links that skip a corner: over a corner that was not found, the next one whose
+ * edge looks right is a knight's move away, twice as far as the link that leads the other
+ * way, and askew to it. */
+static void
+cut_skips (Corner * corners, const ClothSaddle * saddles, guint n)
+{
+  for (guint k = 0; k < n; k++)
+    for (gint s = 0; s < 4; s++) {
+      gint to = corners[k].to[s], from = corners[k].to[(s + 2) & 3];
+      gfloat ax, ay, bx, by, along, across;
+
+      if (to < 0 || from < 0)
+        continue;
+      ax = saddles[to].x - saddles[k].x;
+      ay = saddles[to].y - saddles[k].y;
+      bx = saddles[k].x - saddles[from].x;
+      by = saddles[k].y - saddles[from].y;
+      along = ax * bx + ay * by;
+      across = ax * by - ay * bx;
+      if (hypotf (ax, ay) > SKIP_LENGTH * hypotf (bx, by)
+          && fabsf (across) > SKIP_SLOPE * along)
+        corners[k].skips |= (guint8) (1 << s);
+    }
+  for (guint k = 0; k < n; k++)
+    for (gint s = 0; s < 4; s++) {
+      gint to = corners[k].to[s];
+
+      if (!(corners[k].skips & (1 << s)) || to < 0)
+        continue;
+      corners[to].to[quarter_to (&corners[to], (gint) k)] = -1;
+      corners[k].to[s] = -1;
+    }
 }
 
 static void
@@ -350,6 +388,7 @@ cloth_linker_run (ClothLinker * linker, const ClothImage * image,
     node[k].i = node[k].j = 0;
   }
   keep_mutual (corners, n_saddles);
+  cut_skips (corners, saddles, n_saddles);
   find_squares (corners, n_saddles);
   for (guint k = 0; k < n_saddles; k++)
     if (node[k].patch == UNSEEN && corners[k].in_square) {
