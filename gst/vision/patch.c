@@ -19,6 +19,9 @@
 #define ROUNDS 4
 /* Log-likelihood ratio of the board going on at a cell that shows the other colour. */
 #define OTHER_COLOUR -3.0f
+/* What is brighter than the cloth around by more than this share of the print's contrast,
+ * or darker, is something else before the board. */
+#define BEYOND 0.3f
 
 /**
  * cloth_patch_clear:
@@ -316,15 +319,17 @@ check_square (ClothPatch * patch, const ClothImage * image, gint i, gint j,
 static gfloat
 judge_cell (const ClothPatch * patch, const ClothImage * image, gint i, gint j)
 {
-  gfloat x[4], y[4], range[2], black, white, lower, upper;
+  gfloat x[4], y[4], range[2], black, white, lower, upper, beyond;
 
   if (cell_corners (patch, i, j, x, y) < 1 || !cell_range (image, x, y, range)
       || !local_levels (patch, image, i, j, &black, &white))
     return 0;
   lower = black + 0.4f * (white - black);
   upper = black + 0.6f * (white - black);
-  return (cloth_patch_is_black (patch, i, j) ? range[0] > upper
-      : range[1] < lower) ? OTHER_COLOUR : 0;
+  beyond = BEYOND * (white - black);
+  if (cloth_patch_is_black (patch, i, j))
+    return range[0] > upper && range[1] < white + beyond ? OTHER_COLOUR : 0;
+  return range[1] < lower && range[0] > black - beyond ? OTHER_COLOUR : 0;
 }
 
 /* Log-likelihood ratio that the square carries a dot of the other colour. */

@@ -25,6 +25,13 @@
 /* Lead of a placement that is believed, and of one believed against the memory. */
 #define MIN_LEAD 3.0f
 #define SURE_LEAD 8.0f
+/* Pictures in a row that may speak against the memory before they are believed. */
+#define MAX_DOUBTS 2
+/* Squares over which vertices are reckoned from those known, what each square takes from
+ * their weight, and patches after which it is done. */
+#define RECKON_STEPS 4
+#define RECKON_FADE 0.5f
+#define RECKON_PATCHES 6
 /* Seeds looked at for one patch. */
 #define MAX_SEEDS 4
 /* Log-likelihood of a seed whose place on the board was told, and of one without. */
@@ -56,14 +63,21 @@ patch_direction (const ClothPatch * patch, gint i, gint j, gfloat * dx,
   return from != to;
 }
 
+static inline gboolean
+is_guessed (const ClothQuadVertex * vertex)
+{
+  return vertex->guessed || vertex->reckoned > 0;
+}
+
 static gboolean
 guess_direction (ClothQuadTracker * tracker, gint column, gint row,
     gfloat * dx, gfloat * dy)
 {
   const ClothQuadVertex *at = cloth_quad_vertex (tracker, column, row);
-  const ClothQuadVertex *from = column > 0 && at[-1].guessed ? at - 1 : at;
+  const ClothQuadVertex *from = column > 0
+      && is_guessed (&at[-1]) ? at - 1 : at;
   const ClothQuadVertex *to = column < tracker->pattern.columns
-      && at[1].guessed ? at + 1 : at;
+      && is_guessed (&at[1]) ? at + 1 : at;
 
   *dx = to->guess_x - from->guess_x;
   *dy = to->guess_y - from->guess_y;
@@ -106,7 +120,7 @@ vote_by_memory (ClothQuadTracker * tracker, ClothPlacement votes[MAX_VOTES])
   const ClothPatch *patch = &tracker->patch;
   gint columns = tracker->pattern.columns + 1;
   guint n = 0, voters = 0;
-  gfloat sum = 0;
+  gfloat sum = 0, fresh = 0;
 
   for (gint j = 0; j < patch->rows; j++)
     for (gint i = 0; i < patch->columns; i++) {
@@ -134,14 +148,15 @@ vote_by_memory (ClothQuadTracker * tracker, ClothPlacement votes[MAX_VOTES])
       vote.row = vertex / columns - row;
       vote.weight = guess->weight * (1 - distance / VOTE_REACH);
       add_vote (votes, &n, &vote);
+      fresh += guess->weight;
       voters++;
     }
   for (guint k = 0; k < n; k++)
     sum += votes[k].weight;
-  /* Many that agree say little more than a few: they err together. */
+  /* Many that agree say little more than a few: they err, and grow old, together. */
   for (guint k = 0; k < n; k++)
     votes[k].weight = votes[k].weight / MAX (sum, 1e-6f)
-        * MIN (VOTE * votes[k].weight, MAX_VOTE);
+        * MIN (VOTE * votes[k].weight, MAX_VOTE * fresh / (gfloat) voters);
   return n;
 }
 
@@ -198,6 +213,40 @@ vote_by_seed (ClothQuadTracker * tracker, const ClothQuadSeed * seed,
   return 1;
 }
 
+/* What the memory says of vertex (@i, @j) of the patch under a placement: 1 yes, -1 no, 0
+ * nothing. */
+static gint
+recall (ClothQuadTracker * tracker, const ClothPlacement * placement, gint i,
+    gint j)
+{
+  const ClothPatch *patch = &tracker->patch;
+  gint at = j * patch->columns + i, column, row, vertex;
+  ClothNear near;
+
+  if (!cloth_point_grid_nearest (tracker->guesses, patch->x[at], patch->y[at],
+          MAX_GUESS, &near, 1))
+    return 0;
+  vertex = g_array_index (tracker->guess_vertex, gint, near.index);
+  if (sqrtf (near.distance2) > SURE_REACH * tracker->vertices[vertex].size)
+    return 0;
+  cloth_placement_vertex (placement, i, j, &column, &row);
+  return column >= 0 && column <= tracker->pattern.columns
+      && vertex == row * (tracker->pattern.columns + 1) + column ? 1 : -1;
+}
+
+/* The same of the cell (@i, @j): for less against. */
+static gint
+recall_square (ClothQuadTracker * tracker, const ClothPlacement * placement,
+    gint i, gint j)
+{
+  gint sum = 0;
+
+  for (gint k = 0; k < 4; k++)
+    sum += recall (tracker, placement, i + cloth_quad_corner_column[k],
+        j + cloth_quad_corner_row[k]);
+  return sum;
+}
+
 /* Takes one square of a placed patch. */
 static void
 take_square (ClothQuadTracker * tracker, const ClothPlacement * placement,
@@ -234,45 +283,15 @@ take_square (ClothQuadTracker * tracker, const ClothPlacement * placement,
       : cloth_quad_confidence (tracker->image, x, y, params->alpha, FALSE);
   if (confidence < params->c_low)
     return;
+  /* Of a doubtful one the memory, if there is any, must know. */
+  if (confidence < params->c_high && tracker->guess_vertex->len > 0
+      && recall_square (tracker, placement, i, j) < (cell->age == 0 ? 3 : 1))
+    return;
   memcpy (cell->here_x, x, sizeof x);
   memcpy (cell->here_y, y, sizeof y);
   memcpy (cell->cov, cov, sizeof cov);
   cell->confidence = confidence;
   cell->found = TRUE;
-}
-
-/* What the memory says of vertex (@i, @j) of the patch under a placement: 1 yes, -1 no, 0
- * nothing. */
-static gint
-recall (ClothQuadTracker * tracker, const ClothPlacement * placement, gint i,
-    gint j)
-{
-  const ClothPatch *patch = &tracker->patch;
-  gint at = j * patch->columns + i, column, row, vertex;
-  ClothNear near;
-
-  if (!cloth_point_grid_nearest (tracker->guesses, patch->x[at], patch->y[at],
-          MAX_GUESS, &near, 1))
-    return 0;
-  vertex = g_array_index (tracker->guess_vertex, gint, near.index);
-  if (sqrtf (near.distance2) > SURE_REACH * tracker->vertices[vertex].size)
-    return 0;
-  cloth_placement_vertex (placement, i, j, &column, &row);
-  return column >= 0 && column <= tracker->pattern.columns
-      && vertex == row * (tracker->pattern.columns + 1) + column ? 1 : -1;
-}
-
-/* The same of the cell (@i, @j): for less against. */
-static gint
-recall_square (ClothQuadTracker * tracker, const ClothPlacement * placement,
-    gint i, gint j)
-{
-  gint sum = 0;
-
-  for (gint k = 0; k < 4; k++)
-    sum += recall (tracker, placement, i + cloth_quad_corner_column[k],
-        j + cloth_quad_corner_row[k]);
-  return sum;
 }
 
 /* Takes the squares of the patch that the memory puts where the placement does, by at
@@ -343,10 +362,13 @@ forget (ClothQuadTracker * tracker)
     tracker->cells[k].run = 0;
   }
   n = (tracker->pattern.columns + 1) * (tracker->pattern.rows + 1);
-  for (gint k = 0; k < n; k++)
+  for (gint k = 0; k < n; k++) {
     tracker->vertices[k].guessed = FALSE;
+    tracker->vertices[k].reckoned = 0;
+  }
   cloth_point_grid_clear (tracker->guesses, tracker->image->width,
       tracker->image->height, 1);
+  g_array_set_size (tracker->guess_vertex, 0);
 }
 
 static void
@@ -358,11 +380,67 @@ index_guesses (ClothQuadTracker * tracker)
       tracker->image->height, (guint) n);
   g_array_set_size (tracker->guess_vertex, 0);
   for (gint k = 0; k < n; k++)
-    if (tracker->vertices[k].guessed) {
+    if (is_guessed (&tracker->vertices[k])) {
       cloth_point_grid_add (tracker->guesses, tracker->vertices[k].guess_x,
           tracker->vertices[k].guess_y);
       g_array_append_val (tracker->guess_vertex, k);
     }
+}
+
+static inline gboolean
+is_known (const ClothQuadVertex * vertex, guint8 step)
+{
+  return vertex->seen || vertex->guessed || (vertex->reckoned
+      && vertex->reckoned < step);
+}
+
+/* Vertices that nobody remembers lie straight on from those known by now, if at all. */
+static void
+reckon_guesses (ClothQuadTracker * tracker)
+{
+  static const gint dc[4] = { -1, 1, 0, 0 }, dr[4] = { 0, 0, -1, 1 };
+  gint columns = tracker->pattern.columns + 1, rows = tracker->pattern.rows + 1;
+  gfloat weight = 1;
+
+  for (guint8 step = 1; step <= RECKON_STEPS; step++) {
+    weight *= RECKON_FADE;
+    for (gint k = 0; k < columns * rows; k++) {
+      ClothQuadVertex *own = &tracker->vertices[k];
+      gfloat x = 0, y = 0, size = 0;
+      gint n = 0;
+
+      if (own->seen || own->guessed || (own->reckoned && own->reckoned < step))
+        continue;
+      for (gint way = 0; way < 4; way++) {
+        gint column = k % columns + 2 * dc[way], row =
+            k / columns + 2 * dr[way];
+        const ClothQuadVertex *near, *far;
+        gfloat nx, ny, fx, fy;
+
+        if (column < 0 || row < 0 || column >= columns || row >= rows)
+          continue;
+        near = cloth_quad_vertex (tracker, column - dc[way], row - dr[way]);
+        far = cloth_quad_vertex (tracker, column, row);
+        if (!is_known (near, step) || !is_known (far, step))
+          continue;
+        nx = near->seen ? near->x : near->guess_x;
+        ny = near->seen ? near->y : near->guess_y;
+        fx = far->seen ? far->x : far->guess_x;
+        fy = far->seen ? far->y : far->guess_y;
+        x += 2 * nx - fx;
+        y += 2 * ny - fy;
+        size += hypotf (nx - fx, ny - fy);
+        n++;
+      }
+      if (!n)
+        continue;
+      own->reckoned = step;
+      own->guess_x = x / (gfloat) n;
+      own->guess_y = y / (gfloat) n;
+      own->size = MAX (size / (gfloat) n, 1.0f);
+      own->weight = weight;
+    }
+  }
 }
 
 /* Places the patch that was just built. Linking may have joined pieces on both sides of a
@@ -394,11 +472,13 @@ place (ClothQuadTracker * tracker, gboolean first, ClothPlacement * placement,
       && placement->weight < SURE_LEAD)
     return FALSE;
   if (first && other->weight > agrees && other->weight > STRONG_VOTE) {
-    if (placement->weight < SURE_LEAD)
+    if (placement->weight < SURE_LEAD && tracker->doubts++ < MAX_DOUBTS)
       return FALSE;
     forget (tracker);
     other->weight = 0;
   }
+  if (first)
+    tracker->doubts = 0;
   return TRUE;
 }
 
@@ -409,7 +489,7 @@ cloth_quad_link (ClothQuadTracker * tracker)
     tracker->pattern.code != NULL
   };
   const ClothLinkPatch *links;
-  guint order[MAX_PATCHES], n_links, n;
+  guint order[MAX_PATCHES], n_links, n, n_placed = 0;
   gboolean first = TRUE;
 
   index_guesses (tracker);
@@ -433,10 +513,11 @@ cloth_quad_link (ClothQuadTracker * tracker)
     if (other.weight > STRONG_VOTE)
       take_patch (tracker, &other, 3);
     /* The others are looked for where the first one's motion has brought them. */
-    if (first) {
+    if (first)
       cloth_quad_spread_shift (tracker);
-      index_guesses (tracker);
-    }
+    if (n_placed++ < RECKON_PATCHES)
+      reckon_guesses (tracker);
+    index_guesses (tracker);
     first = FALSE;
   }
 }

@@ -16,6 +16,7 @@ G_BEGIN_DECLS
 typedef struct {
   gboolean wanted;              /* of a colour that is tracked */
   gboolean found;               /* in this picture */
+  gboolean doubled;             /* another square claims the same place */
   gboolean fresh;               /* added by extension in this picture */
   guint age;                    /* pictures since it was last found; G_MAXUINT: never */
   guint run;                    /* pictures in a row it was found in */
@@ -30,11 +31,13 @@ typedef struct {
 /* One corner of the board. */
 typedef struct {
   gboolean guessed;             /* some remembered square predicts it */
+  guint8 reckoned;              /* else reckoned from others, this many squares away */
   gboolean seen;                /* linked in this picture */
   gfloat guess_x, guess_y;
   gfloat size;                  /* of the squares around it, px */
   gfloat x, y;
-  gfloat weight;                /* of the guess, 1 if it is of the last picture */
+  gfloat weight;                /* of the guess: 1 if seen in the last picture */
+  gfloat freshest;              /* of the squares that make the guess */
   gfloat shift_x, shift_y;      /* seen less guessed, spread to those not seen */
   gfloat spread;                /* weight of the shift */
 } ClothQuadVertex;
@@ -56,6 +59,7 @@ struct _ClothQuadTracker
   ClothPointGrid *candidates;
   ClothPointGrid *corners;      /* linked saddles that were placed or rejected */
   GArray *corner_vertex;        /* gint, their board vertex, -1: on no known place */
+  guint doubts;                 /* pictures in a row that spoke against the memory */
   GArray *scratch;
   GArray *seeds;                /* ClothQuadSeed */
   GArray *out;                  /* ClothQuad */

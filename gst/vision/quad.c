@@ -24,6 +24,8 @@
 #define SLOWING 0.7f
 /* Standard deviation of a predicted corner, in shortest edges for each picture of age. */
 #define PREDICTED_SD 0.1f
+/* Squares this far from one on the board may be taken for it. */
+#define DOUBLED 4
 /* Weight that each picture of age takes from a remembered corner. */
 #define FADE 0.85f
 
@@ -123,6 +125,7 @@ cloth_quad_tracker_reset (ClothQuadTracker * tracker)
     tracker->cells[k].age = G_MAXUINT;
     tracker->cells[k].run = 0;
   }
+  tracker->doubts = 0;
   g_array_set_size (tracker->seeds, 0);
 }
 
@@ -198,6 +201,7 @@ predict (ClothQuadTracker * tracker)
         vertex->guess_y += weight * cell->guess_y[k];
         vertex->size += weight * cloth_quad_shortest (cell->x, cell->y);
         vertex->weight += weight;
+        vertex->freshest = MAX (vertex->freshest, weight);
       }
     }
   for (gint k = 0; k < (columns + 1) * (rows + 1); k++) {
@@ -209,7 +213,7 @@ predict (ClothQuadTracker * tracker)
     vertex->guess_x /= vertex->weight;
     vertex->guess_y /= vertex->weight;
     vertex->size = MAX (vertex->size / vertex->weight, 1.0f);
-    vertex->weight = MIN (vertex->weight, 1);
+    vertex->weight = vertex->freshest;
   }
 }
 
@@ -344,6 +348,42 @@ is_taken (ClothQuadTracker * tracker, gint column, gint row)
       return TRUE;
   }
   return FALSE;
+}
+
+/* Whether a square near by on the board is found in the same place. */
+static gboolean
+is_doubled (ClothQuadTracker * tracker, gint column, gint row)
+{
+  const ClothQuadCell *own = cloth_quad_cell (tracker, column, row);
+  gfloat x = (own->here_x[0] + own->here_x[2]) / 2;
+  gfloat y = (own->here_y[0] + own->here_y[2]) / 2;
+  gfloat reach = 0.5f * cloth_quad_shortest (own->here_x, own->here_y);
+
+  for (gint r = row - DOUBLED; r <= row + DOUBLED; r++)
+    for (gint c = column - DOUBLED; c <= column + DOUBLED; c++) {
+      const ClothQuadCell *other = cloth_quad_cell (tracker, c, r);
+
+      if (other && other != own && other->found
+          && fabsf ((other->here_x[0] + other->here_x[2]) / 2 - x) < reach
+          && fabsf ((other->here_y[0] + other->here_y[2]) / 2 - y) < reach)
+        return TRUE;
+    }
+  return FALSE;
+}
+
+/* Where a fold joins the pieces of two squares into what looks like one, both may claim it:
+ * neither is what it seems. */
+static void
+drop_doubles (ClothQuadTracker * tracker)
+{
+  gint columns = tracker->pattern.columns, n = columns * tracker->pattern.rows;
+
+  for (gint k = 0; k < n; k++)
+    tracker->cells[k].doubled = tracker->cells[k].found
+        && is_doubled (tracker, k % columns, k / columns);
+  for (gint k = 0; k < n; k++)
+    if (tracker->cells[k].doubled)
+      tracker->cells[k].found = FALSE;
 }
 
 /* Looks for a square at a guess and keeps it if the grid allows. */
@@ -557,6 +597,7 @@ cloth_quad_tracker_run (ClothQuadTracker * tracker,
           && is_taken (tracker, column, row))
         cell->found = FALSE;
     }
+  drop_doubles (tracker);
   check_consistency (tracker);
   extend (tracker);
   g_array_set_size (tracker->seeds, 0);
