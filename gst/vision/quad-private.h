@@ -57,6 +57,7 @@ struct _ClothQuadTracker
   ClothPointGrid *guesses;      /* guessed vertices */
   GArray *guess_vertex;         /* gint, vertex of each point of that grid */
   ClothPointGrid *candidates;
+  ClothPointGrid *refined;      /* saddles */
   ClothPointGrid *corners;      /* linked saddles that were placed or rejected */
   GArray *corner_vertex;        /* gint, their board vertex, -1: on no known place */
   guint doubts;                 /* pictures in a row that spoke against the memory */

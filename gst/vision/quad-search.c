@@ -9,8 +9,9 @@
 #include "gst/vision/quad-private.h"
 #include "gst/vision/template.h"
 
-/* Candidates looked at for a corner. */
+/* Candidates looked at for a corner, and how many of them may be refined saddles. */
 #define MAX_CANDIDATES 8
+#define MAX_REFINED 4
 /* They may lie this far from its guess, in shortest edges. */
 #define REACH 0.5f
 /* A corner's sub-pixel fit may move it this far, in shortest edges. */
@@ -38,6 +39,39 @@ cloth_quad_longest (const gfloat x[4], const gfloat y[4])
   return most;
 }
 
+typedef struct
+{
+  gfloat x[MAX_CANDIDATES], y[MAX_CANDIDATES];
+  guint n;
+  gfloat distance2;             /* of the nearest */
+} Candidates;
+
+/* Refined saddles first, as a corner far from its guess has only the near rim of its spot
+ * of candidates among the nearest. */
+static void
+list_candidates (ClothQuadTracker * tracker, gfloat x, gfloat y,
+    gfloat radius, Candidates * list)
+{
+  ClothNear near[MAX_CANDIDATES];
+  guint n_refined = cloth_point_grid_nearest (tracker->refined, x, y, radius,
+      near, MAX_REFINED), n;
+
+  list->distance2 = n_refined ? near[0].distance2 : G_MAXFLOAT;
+  for (guint k = 0; k < n_refined; k++) {
+    list->x[k] = tracker->saddles[near[k].index].x;
+    list->y[k] = tracker->saddles[near[k].index].y;
+  }
+  n = cloth_point_grid_nearest (tracker->candidates, x, y, radius, near,
+      MAX_CANDIDATES - n_refined);
+  if (n)
+    list->distance2 = MIN (list->distance2, near[0].distance2);
+  for (guint k = 0; k < n; k++) {
+    list->x[n_refined + k] = tracker->raw[near[k].index].x;
+    list->y[n_refined + k] = tracker->raw[near[k].index].y;
+  }
+  list->n = n_refined + n;
+}
+
 /* Section 3.7: three corners go over the candidates near them, in order of the sum of
  * their places in the lists; the fourth closes the parallelogram. The corner left out is
  * the one whose nearest candidate is farthest. */
@@ -48,43 +82,36 @@ search_candidates (ClothQuadTracker * tracker, gboolean black,
   const ClothQuadParams *params = tracker->params;
   gfloat radius = REACH * cloth_quad_shortest (guess_x, guess_y);
   gfloat best = -1, farthest = -1;
-  ClothNear near[4][MAX_CANDIDATES];
-  guint n[4], tried = 0, most = 0;
+  Candidates list[4];
+  guint tried = 0, most = 0;
   gint left_out = 0, used[3];
 
   for (gint k = 0; k < 4; k++) {
-    gfloat distance;
-
-    n[k] = cloth_point_grid_nearest (tracker->candidates, guess_x[k],
-        guess_y[k], radius, near[k], MAX_CANDIDATES);
-    distance = n[k] ? near[k][0].distance2 : G_MAXFLOAT;
-    if (distance > farthest) {
-      farthest = distance;
+    list_candidates (tracker, guess_x[k], guess_y[k], radius, &list[k]);
+    if (list[k].distance2 > farthest) {
+      farthest = list[k].distance2;
       left_out = k;
     }
   }
   for (gint k = 0; k < 3; k++) {
     used[k] = (left_out + 1 + k) & 3;
-    if (!n[used[k]])
+    if (!list[used[k]].n)
       return -1;
-    most += n[used[k]] - 1;
+    most += list[used[k]].n - 1;
   }
   for (guint sum = 0; sum <= most; sum++)
-    for (guint a = 0; a <= MIN (sum, n[used[0]] - 1); a++)
-      for (guint b = 0; b <= MIN (sum - a, n[used[1]] - 1); b++) {
+    for (guint a = 0; a <= MIN (sum, list[used[0]].n - 1); a++)
+      for (guint b = 0; b <= MIN (sum - a, list[used[1]].n - 1); b++) {
         guint place[3] = { a, b, sum - a - b };
         gfloat tx[4], ty[4], confidence;
 
-        if (place[2] >= n[used[2]])
+        if (place[2] >= list[used[2]].n)
           continue;
         if (tried++ >= params->max_variants)
           return best;
         for (gint k = 0; k < 3; k++) {
-          const ClothSaddleCandidate *candidate =
-              &tracker->raw[near[used[k]][place[k]].index];
-
-          tx[used[k]] = candidate->x;
-          ty[used[k]] = candidate->y;
+          tx[used[k]] = list[used[k]].x[place[k]];
+          ty[used[k]] = list[used[k]].y[place[k]];
         }
         tx[left_out] = tx[used[0]] + tx[used[2]] - tx[used[1]];
         ty[left_out] = ty[used[0]] + ty[used[2]] - ty[used[1]];

@@ -73,6 +73,7 @@ cloth_quad_tracker_new (const ClothPattern * pattern)
   tracker->guesses = cloth_point_grid_new ();
   tracker->guess_vertex = g_array_new (FALSE, FALSE, sizeof (gint));
   tracker->candidates = cloth_point_grid_new ();
+  tracker->refined = cloth_point_grid_new ();
   tracker->corners = cloth_point_grid_new ();
   tracker->corner_vertex = g_array_new (FALSE, FALSE, sizeof (gint));
   tracker->scratch = cloth_place_scratch_new ();
@@ -100,6 +101,7 @@ cloth_quad_tracker_free (ClothQuadTracker * tracker)
   cloth_point_grid_free (tracker->guesses);
   g_array_unref (tracker->guess_vertex);
   cloth_point_grid_free (tracker->candidates);
+  cloth_point_grid_free (tracker->refined);
   cloth_point_grid_free (tracker->corners);
   g_array_unref (tracker->corner_vertex);
   g_array_unref (tracker->scratch);
@@ -579,6 +581,10 @@ cloth_quad_tracker_run (ClothQuadTracker * tracker,
   for (guint k = 0; k < n_candidates; k++)
     cloth_point_grid_add (tracker->candidates, candidates[k].x,
         candidates[k].y);
+  cloth_point_grid_clear (tracker->refined, image->width, image->height,
+      n_saddles);
+  for (guint k = 0; k < n_saddles; k++)
+    cloth_point_grid_add (tracker->refined, saddles[k].x, saddles[k].y);
 
   predict (tracker);
   if (params->link) {
