@@ -7,14 +7,18 @@
 
 #include "gst/math/linalg.h"
 #include "gst/vision/link.h"
-#include "gst/vision/place.h"
+#include "gst/vision/place-board.h"
 
 /* Patches looked at, largest first. */
 #define MAX_PATCHES 16
 /* Fewer squares are as likely clutter. */
 #define MIN_SQUARES 4
+/* Share of them that are black. */
+#define MIN_BLACK 0.3f
+/* Distance of a corner from where a straight line of others puts it, over theirs. */
+#define MAX_STRAY 0.25f
 /* Lead, in log-likelihood, of the placement believed over the next best. */
-#define MIN_LEAD 2.5f
+#define MIN_LEAD 6.0f
 /* What a flat board's homography adds for a patch it predicts. */
 #define HOMOGRAPHY_WEIGHT 12.0f
 
@@ -23,7 +27,7 @@ struct _ClothBoardFinder
   ClothPattern pattern;
   ClothLinker *linker;
   ClothPatch patch;
-  GArray *scratch;
+  ClothBoardScratch *scratch;
   ClothBoardView view;
 };
 
@@ -48,7 +52,7 @@ cloth_board_finder_new (const ClothPattern * pattern)
     finder->pattern.code = g_memdup2 (pattern->code,
         (gsize) pattern->columns * (gsize) pattern->rows);
   finder->linker = cloth_linker_new ();
-  finder->scratch = cloth_place_scratch_new ();
+  finder->scratch = cloth_board_scratch_new ();
   view->columns = pattern->columns + 1;
   view->rows = pattern->rows + 1;
   n = (gsize) view->columns * (gsize) view->rows;
@@ -71,12 +75,66 @@ cloth_board_finder_free (ClothBoardFinder * finder)
   g_free (finder->pattern.code);
   cloth_linker_free (finder->linker);
   cloth_patch_clear (&finder->patch);
-  g_array_unref (finder->scratch);
+  cloth_board_scratch_free (finder->scratch);
   g_free (finder->view.seen);
   g_free (finder->view.x);
   g_free (finder->view.y);
   g_free (finder->view.cov);
   g_free (finder);
+}
+
+/* Whether four squares meet at a vertex of the board. */
+static gboolean
+is_inner (const ClothBoardView * view, gint column, gint row)
+{
+  return column > 0 && row > 0 && column < view->columns - 1
+      && row < view->rows - 1;
+}
+
+/* Whether a corner lies where no row or column of the patch that leads to it would put
+ * it. */
+static gboolean
+is_astray (const ClothPatch * patch, gint i, gint j)
+{
+  gboolean astray = FALSE;
+
+  for (gint side = 0; side < 4; side++) {
+    static const gint step_i[4] = { 1, 0, -1, 0 }, step_j[4] = { 0, 1, 0, -1 };
+    gint i2 = i + 2 * step_i[side], j2 = j + 2 * step_j[side];
+    gint at = j * patch->columns + i, a, b;
+    gfloat length, away;
+
+    if (i2 < 0 || j2 < 0 || i2 >= patch->columns || j2 >= patch->rows)
+      continue;
+    a = at + step_j[side] * patch->columns + step_i[side];
+    b = j2 * patch->columns + i2;
+    if (!patch->kind[a] || !patch->kind[b])
+      continue;
+    length = hypotf (patch->x[a] - patch->x[b], patch->y[a] - patch->y[b]);
+    away = hypotf (2 * patch->x[a] - patch->x[b] - patch->x[at],
+        2 * patch->y[a] - patch->y[b] - patch->y[at]);
+    if (away < MAX_STRAY * length)
+      return FALSE;
+    astray = TRUE;
+  }
+  return astray;
+}
+
+/* Whether a corner is surely one where four squares meet: a fit may take the edge of what
+ * covers the board for the other two, unless both squares of a colour were seen. */
+static gboolean
+is_saddle (const ClothPatch * patch, gint i, gint j)
+{
+  const gint n = patch->columns, at = j * n + i;
+
+  if (is_astray (patch, i, j))
+    return FALSE;
+  if (patch->linked[at])
+    return TRUE;
+  if (patch->kind[at] != CLOTH_VERTEX_SADDLE || i == 0 || j == 0)
+    return FALSE;
+  return (patch->square[at] && patch->square[at - n - 1])
+      || (patch->square[at - 1] && patch->square[at - n]);
 }
 
 /* Writes the placed patch's vertices into the view; vertices already there stay. */
@@ -94,7 +152,8 @@ take_over (ClothBoardView * view, const ClothPatch * patch,
       if (column < 0 || row < 0 || column >= view->columns || row >= view->rows)
         continue;
       at = row * view->columns + column;
-      if (view->seen[at])
+      if (view->seen[at] || (is_inner (view, column, row)
+              && !is_saddle (patch, i, j)))
         continue;
       view->seen[at] = patch->kind[from];
       view->x[at] = patch->x[from];
@@ -204,6 +263,49 @@ vote_by_plane (const ClothBoardView * view, const ClothPatch * patch,
   return best >= 0;
 }
 
+/* Half of a board's squares are black, and black squares are looked at closely. */
+static gboolean
+is_board (const ClothPatch * patch)
+{
+  guint n = 0;
+
+  for (gint j = 0; j < patch->rows; j++)
+    for (gint i = 0; i < patch->columns; i++)
+      n += patch->square[j * patch->columns + i]
+          && cloth_patch_is_black (patch, i, j);
+  return patch->n_squares >= MIN_SQUARES
+      && (gfloat) n >= MIN_BLACK * (gfloat) patch->n_squares;
+}
+
+typedef enum
+{
+  OTHER,                        /* no piece of the board */
+  UNPLACED,
+  PLACED
+} Fate;
+
+static Fate
+try_patch (ClothBoardFinder * finder, const ClothImage * image,
+    const ClothSaddle * saddles, const ClothLinkPatch * link)
+{
+  ClothPatchParams params =
+      { 0.25f, 0.62f, -1.0f, TRUE, finder->pattern.code != NULL };
+  ClothPlacement vote, placement;
+  guint n_votes;
+
+  cloth_patch_build (&finder->patch, image, saddles, link, &params);
+  if (!is_board (&finder->patch))
+    return OTHER;
+  n_votes = vote_by_plane (&finder->view, &finder->patch, &vote) ? 1 : 0;
+  if (!cloth_place_board (&finder->pattern, &finder->patch, &vote, n_votes,
+          finder->scratch, &placement))
+    return OTHER;
+  if (placement.weight < MIN_LEAD || (finder->view.n_seen && !n_votes))
+    return UNPLACED;
+  take_over (&finder->view, &finder->patch, &placement);
+  return PLACED;
+}
+
 /**
  * cloth_board_finder_find:
  * @finder: the finder
@@ -215,7 +317,8 @@ vote_by_plane (const ClothBoardView * view, const ClothPatch * patch,
  *
  * Finds the board, or what is visible of it. A part is only reported when its place on
  * the board can be told: by the board's rim, by its code, or, for a flat board, by its
- * lying in one plane with a part that can.
+ * lying in one plane with a part that can. Nothing is reported when a larger piece of
+ * checkerboard stays without place.
  *
  * Returns: whether the board was found
  *
@@ -226,9 +329,9 @@ cloth_board_finder_find (ClothBoardFinder * finder, const ClothImage * image,
     const ClothSaddle * saddles, guint n_saddles, const ClothBoardView ** view)
 {
   ClothBoardView *out = &finder->view;
-  ClothPatchParams params = { 0.25f, 0.62f, finder->pattern.code != NULL };
   const ClothLinkPatch *links;
-  guint order[MAX_PATCHES], n_links, n;
+  guint order[MAX_PATCHES], n_links, n, anchor;
+  Fate fate[MAX_PATCHES];
 
   for (gint k = 0; k < out->columns * out->rows; k++)
     out->seen[k] = CLOTH_VERTEX_UNKNOWN;
@@ -236,21 +339,20 @@ cloth_board_finder_find (ClothBoardFinder * finder, const ClothImage * image,
   *view = out;
   n_links = cloth_linker_run (finder->linker, image, saddles, n_saddles,
       &links, NULL);
-  n = cloth_link_largest (links, n_links, order, MAX_PATCHES);
+  n = anchor = cloth_link_largest (links, n_links, order, MAX_PATCHES);
   for (guint k = 0; k < n; k++) {
-    ClothPlacement vote, placement;
-    guint n_votes;
-
-    cloth_patch_build (&finder->patch, image, saddles, &links[order[k]],
-        &params);
-    if (finder->patch.n_squares < MIN_SQUARES)
-      continue;
-    n_votes = vote_by_plane (out, &finder->patch, &vote) ? 1 : 0;
-    if (out->n_seen && !n_votes)
-      continue;
-    if (cloth_place_patch (&finder->pattern, &finder->patch, &vote, n_votes,
-            finder->scratch, &placement) && placement.weight >= MIN_LEAD)
-      take_over (out, &finder->patch, &placement);
+    fate[k] = try_patch (finder, image, saddles, &links[order[k]]);
+    if (fate[k] == PLACED)
+      anchor = MIN (anchor, k);
   }
+  /* A larger piece goes where the plane of a smaller one puts it. If it does not lie in
+   * that plane, one of them is another board, and which one can't be told. */
+  for (guint k = 0; k < anchor && anchor < n; k++)
+    if (fate[k] == UNPLACED
+        && try_patch (finder, image, saddles, &links[order[k]]) != PLACED)
+      out->n_seen = 0;
+  if (!out->n_seen)
+    for (gint k = 0; k < out->columns * out->rows; k++)
+      out->seen[k] = CLOTH_VERTEX_UNKNOWN;
   return out->n_seen > 0;
 }

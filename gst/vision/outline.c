@@ -17,6 +17,9 @@
 #define MIN_CONTRAST 0.4f
 /* Sine of the angle between a corner's edges: blunter ones are no corners. */
 #define MIN_SINE 0.5f
+/* Residual of a saddle's fit over its contrast: where more is left, something else than four
+ * squares meets there. */
+#define MAX_RESIDUAL 0.12f
 /* A fit moves the end of an edge by no more than this, px. */
 #define MAX_SHIFT 2.5f
 /* An edge arrives at a corner when it ends this near, px and share of its length. */
@@ -67,14 +70,15 @@ inwards (const ClothOutline * outline, gfloat x, gfloat y)
 }
 
 static gboolean
-fit (ClothOutline * outline, const ClothImage * image, gint corner, gfloat x,
-    gfloat y, gfloat max_shift, gfloat contrast, gboolean black)
+fit_within (ClothOutline * outline, const ClothImage * image, gint corner,
+    gfloat x, gfloat y, gfloat radius, gfloat max_shift, gfloat contrast,
+    gboolean black)
 {
   ClothCornerParams params = cloth_corner_default_params ();
   ClothCornerFit found;
   gfloat unused;
 
-  params.radius = window_radius (outline);
+  params.radius = radius;
   params.max_shift = max_shift;
   params.linear_light = TRUE;
   params.known_angles = cloth_edge_wedge (image, x, y, params.radius, black,
@@ -88,8 +92,22 @@ fit (ClothOutline * outline, const ClothImage * image, gint corner, gfloat x,
   for (gint m = 0; m < 3; m++)
     outline->cov[corner][m] = found.cov[m];
   outline->saddle[corner] = cloth_corner_is_saddle (&found);
+  outline->sure[corner] = found.rms < MAX_RESIDUAL * found.contrast;
   outline->have[corner] = TRUE;
   return TRUE;
+}
+
+static gboolean
+fit (ClothOutline * outline, const ClothImage * image, gint corner, gfloat x,
+    gfloat y, gfloat max_shift, gfloat contrast, gboolean black)
+{
+  gfloat radius = window_radius (outline);
+
+  /* A large window may reach beyond the cloth's edge; a small one is less exact. */
+  return fit_within (outline, image, corner, x, y, radius, max_shift, contrast,
+      black) || (outline->thorough && radius > 4
+      && fit_within (outline, image, corner, x, y, 0.6f * radius, max_shift,
+          contrast, black));
 }
 
 /**

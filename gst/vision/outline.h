@@ -14,6 +14,9 @@ G_BEGIN_DECLS
  * @cov: covariance xx, xy, yy of each, px²
  * @have: which corners are there; the others are guesses
  * @saddle: which corners have black and white alternating around them
+ * @sure: which corners left little to explain when fitted; at the others something else
+ *   than squares may meet
+ * @thorough: whether to try a smaller window where the usual one fails
  * @joined: which edges, from corner k to k + 1, are known to be edges
  *
  * Since: 0.1
@@ -23,6 +26,8 @@ typedef struct {
   gfloat cov[4][3];
   gboolean have[4];
   gboolean saddle[4];
+  gboolean sure[4];
+  gboolean thorough;
   gboolean joined[4];
 } ClothOutline;
 

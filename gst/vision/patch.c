@@ -17,8 +17,6 @@
 #define SURE 0.85f
 /* Rounds of taking in squares beside those taken in before. */
 #define ROUNDS 4
-/* Log-likelihood ratio of the board going on at a cell that shows the other colour. */
-#define OTHER_COLOUR -3.0f
 /* What is brighter than the cloth around by more than this share of the print's contrast,
  * or darker, is something else before the board. */
 #define BEYOND 0.3f
@@ -49,7 +47,7 @@ make_room (ClothPatch * patch, gint columns, gint rows)
   patch->rows = rows;
   if (n > patch->capacity) {
     g_free (patch->memory);
-    patch->memory = g_malloc (n * (8 * sizeof (gfloat) + 3));
+    patch->memory = g_malloc (n * (8 * sizeof (gfloat) + 4));
     patch->capacity = n;
   }
   at = patch->memory;
@@ -62,9 +60,10 @@ make_room (ClothPatch * patch, gint columns, gint rows)
   patch->kind = (guint8 *) (at + 8 * n);
   patch->square = patch->kind + n;
   patch->tried = patch->square + n;
+  patch->linked = patch->tried + n;
   for (gsize k = 0; k < n; k++) {
     patch->kind[k] = CLOTH_VERTEX_UNKNOWN;
-    patch->square[k] = patch->tried[k] = 0;
+    patch->square[k] = patch->tried[k] = patch->linked[k] = 0;
     patch->confidence[k] = patch->inside[k] = patch->bit[k] = 0;
   }
 }
@@ -244,6 +243,7 @@ extend_cell (ClothPatch * patch, const ClothImage * image, gint i, gint j,
   gfloat confidence;
 
   n_known = cell_corners (patch, i, j, outline.x, outline.y);
+  outline.thorough = params->thorough;
   /* The same corners would fail again. */
   if (n_known < 1 || n_known <= patch->tried[at])
     return FALSE;
@@ -261,8 +261,9 @@ extend_cell (ClothPatch * patch, const ClothImage * image, gint i, gint j,
 
     if (patch->kind[to] != CLOTH_VERTEX_UNKNOWN)
       continue;
-    patch->kind[to] = outline.saddle[k] ? CLOTH_VERTEX_SADDLE
-        : CLOTH_VERTEX_RIM;
+    patch->kind[to] = !outline.saddle[k] ? CLOTH_VERTEX_RIM
+        : outline.sure[k] || !params->thorough ? CLOTH_VERTEX_SADDLE
+        : CLOTH_VERTEX_UNSURE;
     patch->x[to] = outline.x[k];
     patch->y[to] = outline.y[k];
     for (gint m = 0; m < 3; m++)
@@ -290,7 +291,8 @@ extend_colour (ClothPatch * patch, const ClothImage * image, gboolean black,
           added |= extend_cell (patch, image, i, j, params);
   }
   for (gint at = 0; at < patch->columns * patch->rows; at++)
-    rim |= patch->kind[at] == CLOTH_VERTEX_RIM;
+    rim |= patch->kind[at] == CLOTH_VERTEX_RIM || (params->thorough
+        && patch->kind[at] == CLOTH_VERTEX_UNSURE);
   return rim;
 }
 
@@ -317,7 +319,8 @@ check_square (ClothPatch * patch, const ClothImage * image, gint i, gint j,
 /* Whether the board goes on at cell (@i, @j), which was not seen as a square: hardly, if
  * it shows the other colour. Its own colour says nothing, for the cloth has it too. */
 static gfloat
-judge_cell (const ClothPatch * patch, const ClothImage * image, gint i, gint j)
+judge_cell (const ClothPatch * patch, const ClothImage * image, gint i, gint j,
+    gfloat other_colour)
 {
   gfloat x[4], y[4], range[2], black, white, lower, upper, beyond;
 
@@ -328,8 +331,8 @@ judge_cell (const ClothPatch * patch, const ClothImage * image, gint i, gint j)
   upper = black + 0.6f * (white - black);
   beyond = BEYOND * (white - black);
   if (cloth_patch_is_black (patch, i, j))
-    return range[0] > upper && range[1] < white + beyond ? OTHER_COLOUR : 0;
-  return range[1] < lower && range[0] > black - beyond ? OTHER_COLOUR : 0;
+    return range[0] > upper && range[1] < white + beyond ? other_colour : 0;
+  return range[1] < lower && range[0] > black - beyond ? other_colour : 0;
 }
 
 /* Log-likelihood ratio that the square carries a dot of the other colour. */
@@ -384,6 +387,7 @@ cloth_patch_build (ClothPatch * patch, const ClothImage * image,
       if (from < 0)
         continue;
       patch->kind[at] = CLOTH_VERTEX_SADDLE;
+      patch->linked[at] = 1;
       patch->x[at] = saddles[from].x;
       patch->y[at] = saddles[from].y;
       for (gint m = 0; m < 3; m++)
@@ -412,7 +416,8 @@ cloth_patch_build (ClothPatch * patch, const ClothImage * image,
       gint at = j * n + i;
 
       if (!patch->square[at])
-        patch->inside[at] = judge_cell (patch, image, i, j);
+        patch->inside[at] = judge_cell (patch, image, i, j,
+            params->other_colour);
       else if (patch->square[at] && params->read_bits)
         patch->bit[at] = read_bit (patch, image, i, j);
     }

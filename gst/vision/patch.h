@@ -14,6 +14,7 @@ G_BEGIN_DECLS
  * ClothVertexKind:
  * @CLOTH_VERTEX_UNKNOWN: not seen
  * @CLOTH_VERTEX_SADDLE: an inner corner, four squares meet
+ * @CLOTH_VERTEX_UNSURE: an inner corner by its look, fitted with a doubt
  * @CLOTH_VERTEX_RIM: a corner fitted where fewer edges meet, e.g. on the board's rim
  *
  * Since: 0.1
@@ -21,6 +22,7 @@ G_BEGIN_DECLS
 typedef enum {
   CLOTH_VERTEX_UNKNOWN,
   CLOTH_VERTEX_SADDLE,
+  CLOTH_VERTEX_UNSURE,
   CLOTH_VERTEX_RIM
 } ClothVertexKind;
 
@@ -33,6 +35,8 @@ typedef enum {
  * @x: rows·columns, px
  * @y: rows·columns, px
  * @cov: 3·rows·columns, xx, xy, yy, px²
+ * @linked: rows·columns, 1 for saddles that linking joined; others were found later, with
+ *   less certainty of what they are
  * @square: rows·columns, 1 where the cell right of and below the vertex was seen as a
  *   square of the board
  * @confidence: rows·columns, of the black squares seen, else 0
@@ -49,6 +53,7 @@ typedef struct {
   guint8 *kind;
   gfloat *x, *y;
   gfloat *cov;
+  guint8 *linked;
   guint8 *square;
   gfloat *confidence;
   gfloat *inside;
@@ -64,6 +69,9 @@ typedef struct {
  * ClothPatchParams:
  * @alpha: width of the template's lapels over the square's edge
  * @c_low: confidence from which a black cell is taken for a square
+ * @other_colour: log-likelihood ratio of the board going on at a cell that shows the other
+ *   colour
+ * @thorough: whether to try harder to find corners, at the cost of exactness
  * @read_bits: whether to look for the dots of a coded board
  *
  * Since: 0.1
@@ -71,6 +79,8 @@ typedef struct {
 typedef struct {
   gfloat alpha;
   gfloat c_low;
+  gfloat other_colour;
+  gboolean thorough;
   gboolean read_bits;
 } ClothPatchParams;
 

@@ -486,7 +486,7 @@ void
 cloth_quad_link (ClothQuadTracker * tracker)
 {
   ClothPatchParams params = { tracker->params->alpha, tracker->params->c_low,
-    tracker->pattern.code != NULL
+    -3.0f, FALSE, tracker->pattern.code != NULL
   };
   const ClothLinkPatch *links;
   guint order[MAX_PATCHES], n_links, n, n_placed = 0;
