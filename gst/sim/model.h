@@ -1,0 +1,108 @@
+/* A model of a cloth: what the simulator knows of it (model.json).
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/rig/effect.h"
+
+G_BEGIN_DECLS
+
+/**
+ * ClothForceModel:
+ * @CLOTH_FORCE_MEMBRANE: orthotropic membrane on triangles with hinge bending
+ * @CLOTH_FORCE_MASS_SPRING: structural, shear and bend springs
+ *
+ * How the inner forces of the cloth are computed.
+ *
+ * Since: 0.1
+ */
+typedef enum {
+  CLOTH_FORCE_MEMBRANE,
+  CLOTH_FORCE_MASS_SPRING
+} ClothForceModel;
+
+/**
+ * ClothIntegrator:
+ * @CLOTH_INTEGRATOR_EXPLICIT: symplectic Euler, the reference
+ * @CLOTH_INTEGRATOR_IMPLICIT: linearly implicit, for stiff cloth
+ *
+ * How time passes.
+ *
+ * Since: 0.1
+ */
+typedef enum {
+  CLOTH_INTEGRATOR_EXPLICIT,
+  CLOTH_INTEGRATOR_IMPLICIT
+} ClothIntegrator;
+
+/**
+ * ClothModelEffect:
+ * @effect: an effect that the model has
+ * @values: its parameters, in the order of @effect
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  const ClothEffect *effect;
+  gdouble values[CLOTH_EFFECT_MAX_PARAMETERS];
+} ClothModelEffect;
+
+/**
+ * ClothModelFree:
+ * @name: a parameter that may be fitted, as cloth_model_get () names it
+ * @range: between which values
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  gchar *name;
+  gdouble range[2];
+} ClothModelFree;
+
+/**
+ * ClothModel:
+ * @force_model: how inner forces are computed
+ * @areal_density: kg/m²
+ * @stretch_warp: stretch stiffness along u, N/m
+ * @stretch_weft: stretch stiffness along v, N/m
+ * @shear: shear stiffness, N/m
+ * @bending_warp: bending stiffness of a fold that bends the u direction, N·m
+ * @bending_weft: bending stiffness of a fold that bends the v direction, N·m
+ * @damping_mass: velocity is lost at this rate, 1/s (α of αM + βK)
+ * @damping_stiffness: inner forces lag by this time, s (β of αM + βK)
+ * @compression_ratio: stiffness of compressed cloth over that of stretched cloth
+ * @air_density: kg/m³
+ * @integrator: how time passes
+ * @time_step: s, 0 = automatic
+ * @effects: (element-type ClothModelEffect): effects that are modelled
+ * @free: (element-type ClothModelFree): what may be fitted
+ *
+ * The contents of model.json.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  ClothForceModel force_model;
+  gdouble areal_density;
+  gdouble stretch_warp;
+  gdouble stretch_weft;
+  gdouble shear;
+  gdouble bending_warp;
+  gdouble bending_weft;
+  gdouble damping_mass;
+  gdouble damping_stiffness;
+  gdouble compression_ratio;
+  gdouble air_density;
+  ClothIntegrator integrator;
+  gdouble time_step;
+  GArray *effects;
+  GArray *free;
+} ClothModel;
+
+ClothModel *cloth_model_new (void);
+void cloth_model_set_effect (ClothModel * model, const ClothEffect * effect,
+    const gdouble * values);
+void cloth_model_free (ClothModel * model);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothModel, cloth_model_free)
+G_END_DECLS

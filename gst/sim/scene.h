@@ -1,0 +1,63 @@
+/* A scene: the cloth at rest, what holds it and what it may touch.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/mesh/takeinfo.h"
+
+G_BEGIN_DECLS
+
+/**
+ * ClothSeam:
+ * @a: a vertex
+ * @b: the vertex sewn to it
+ *
+ * Two vertices that are one particle.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  guint a;
+  guint b;
+} ClothSeam;
+
+/**
+ * ClothScene:
+ * @topology: vertices, faces and where they lie on the flat cloth (metres)
+ * @positions: where the vertices are at the start, n_vertices · 3, metres
+ * @velocities: (nullable): how fast they are then, m/s; %NULL: at rest
+ * @held: (element-type ClothHeld): what clamps hold
+ * @clamps: logged paths of the clamps, [n_frames][held][3], metres
+ * @n_frames: number of frames
+ * @times: their times, seconds, growing
+ * @fps: frames a second
+ * @gravity: m/s²
+ * @obstacles: (element-type ClothObstacle): what the cloth may touch
+ * @seams: (element-type ClothSeam): what is sewn together
+ *
+ * All that a simulation needs but the model. World coordinates, z up. The
+ * simulation starts at @times[0].
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  ClothTopology *topology;
+  gdouble *positions;
+  gdouble *velocities;
+  GArray *held;
+  gdouble *clamps;
+  guint n_frames;
+  gdouble *times;
+  gdouble fps;
+  gdouble gravity[3];
+  GArray *obstacles;
+  GArray *seams;
+} ClothScene;
+
+ClothScene *cloth_scene_new (ClothTopology * topology, gdouble fps,
+    guint n_frames);
+guint cloth_scene_hold (ClothScene * scene, guint vertex);
+void cloth_scene_free (ClothScene * scene);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothScene, cloth_scene_free)
+G_END_DECLS
