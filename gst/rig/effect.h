@@ -8,7 +8,7 @@
 G_BEGIN_DECLS
 
 /* No effect has more parameters. */
-#define CLOTH_EFFECT_MAX_PARAMETERS 4
+#define CLOTH_EFFECT_MAX_PARAMETERS 5
 
 /**
  * ClothEffectSide:

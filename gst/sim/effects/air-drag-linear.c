@@ -1,0 +1,36 @@
+/* Drag in proportion to the velocity, the same in all directions.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/sim/effects/effects.h"
+
+#ifndef CLOTH_SIM_LANES
+static const gchar *const confusions[] = {
+  "air_drag", "air_drag_tangential", "damping_mass",
+  NULL
+};
+
+/* *INDENT-OFF* */
+const ClothEffect cloth_effect_air_drag_linear = {
+  .id = "air_drag_linear",
+  .side = CLOTH_EFFECT_PHYSICS,
+  .blurb =
+      "Air brakes every piece of cloth against its velocity, in "
+      "proportion to it, whichever way the piece faces: force −c v on "
+      "each unit of area.",
+  .source =
+      "drag of some simulators, Blender’s among them; prior: the slope "
+      "of ½ρ C_N v² at 0.3 m/s",
+  .regressor =
+      "A force against the whole velocity, tangential parts included, "
+      "in proportion to it; cosine 0.93 with air_drag, and the same as "
+      "damping_mass where the areal mass is even.",
+  .confusions = confusions,
+  .n_parameters = 1,
+  .parameters = {
+    {.name = "coefficient", .unit = "N s/m³", .null_value = 0, .min = 0, .max = 20,
+        .prior = 0.3, .one_sided = TRUE,
+        .blurb = "Force on each unit of area over the velocity."},
+  }
+};
+/* *INDENT-ON* */
+#endif

@@ -1,0 +1,34 @@
+/* Friction of air along the cloth.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/sim/effects/effects.h"
+
+#ifndef CLOTH_SIM_LANES
+static const gchar *const confusions[] = {
+  "air_drag", "air_drag_linear", "damping_mass",
+  NULL
+};
+
+/* *INDENT-OFF* */
+const ClothEffect cloth_effect_air_drag_tangential = {
+  .id = "air_drag_tangential",
+  .side = CLOTH_EFFECT_PHYSICS,
+  .blurb =
+      "Air rubs along the cloth: force −c v_t on each unit of area, v_t "
+      "the velocity within the plane of the cloth.",
+  .source =
+      "skin friction of a plate, 0.01 to 0.1 N s/m³: Schlichting, "
+      "Boundary-Layer Theory",
+  .regressor =
+      "A force against the velocity within the plane of the cloth, in "
+      "proportion to it, none along the normal.",
+  .confusions = confusions,
+  .n_parameters = 1,
+  .parameters = {
+    {.name = "coefficient", .unit = "N s/m³", .null_value = 0, .min = 0, .max = 2,
+        .prior = 0.05, .one_sided = TRUE,
+        .blurb = "Force on each unit of area over the tangential velocity."},
+  }
+};
+/* *INDENT-ON* */
+#endif

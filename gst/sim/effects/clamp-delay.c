@@ -1,0 +1,34 @@
+/* Clamps logged at another time.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/sim/effects/effects.h"
+
+#ifndef CLOTH_SIM_LANES
+static const gchar *const confusions[] = {
+  "sync_offset", "clamp_slip",
+  NULL
+};
+
+/* *INDENT-OFF* */
+const ClothEffect cloth_effect_clamp_delay = {
+  .id = "clamp_delay",
+  .side = CLOTH_EFFECT_CLAMP,
+  .blurb =
+      "Clamps really were at time t where their log has them at t − "
+      "delay.",
+  .source =
+      "delays of 10 to 350 ms between a robot’s log and pictures",
+  .regressor =
+      "A displacement of the clamps along their velocity; all of the "
+      "cloth follows them later, where sync_offset shifts every point "
+      "alike.",
+  .confusions = confusions,
+  .n_parameters = 1,
+  .parameters = {
+    {.name = "delay", .unit = "s", .null_value = 0, .min = -1, .max = 1,
+        .prior = 0.1,
+        .blurb = "How much later than logged the clamps moved."},
+  }
+};
+/* *INDENT-ON* */
+#endif

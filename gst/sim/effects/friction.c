@@ -1,0 +1,34 @@
+/* Friction on obstacles.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/sim/effects/effects.h"
+
+#ifndef CLOTH_SIM_LANES
+static const gchar *const confusions[] = {
+  "air_drag_tangential", "self_contact",
+  NULL
+};
+
+/* *INDENT-OFF* */
+const ClothEffect cloth_effect_friction = {
+  .id = "friction",
+  .side = CLOTH_EFFECT_PHYSICS,
+  .blurb =
+      "Obstacles hold on to cloth that slides on them, by Coulomb’s "
+      "law.",
+  .source =
+      "cloth on wood, plastic or skin: 0.2 to 0.8",
+  .regressor =
+      "A tangential force at contacts, against sliding and bounded by "
+      "the normal force.",
+  .confusions = confusions,
+  .n_parameters = 1,
+  .parameters = {
+    {.name = "coefficient", .unit = "1", .null_value = 0, .min = 0, .max = 2,
+        .prior = 0.4, .one_sided = TRUE,
+        .blurb = "What is added to the friction of every obstacle; one whose "
+            "friction is not known has 0."},
+  }
+};
+/* *INDENT-ON* */
+#endif

@@ -1,0 +1,32 @@
+/* Gravity, or the time base, is off.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/sim/effects/effects.h"
+
+#ifndef CLOTH_SIM_LANES
+static const gchar *const confusions[] = {
+  "areal_mass", "added_mass", "focal_length",
+  NULL
+};
+
+/* *INDENT-OFF* */
+const ClothEffect cloth_effect_gravity_scale = {
+  .id = "gravity_scale",
+  .side = CLOTH_EFFECT_PHYSICS,
+  .blurb =
+      "Gravity is multiplied by a factor. A frame rate that is wrong by "
+      "a factor f looks the same as f².",
+  .source =
+      "prior: own choice",
+  .regressor =
+      "A steady force in proportion to weight.",
+  .confusions = confusions,
+  .n_parameters = 1,
+  .parameters = {
+    {.name = "factor", .unit = "1", .null_value = 1, .min = 0.25, .max = 4,
+        .prior = 0.02,
+        .blurb = "What gravity is multiplied with."},
+  }
+};
+/* *INDENT-ON* */
+#endif

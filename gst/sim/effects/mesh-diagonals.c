@@ -1,0 +1,33 @@
+/* How squares are cut into triangles.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/sim/effects/effects.h"
+
+#ifndef CLOTH_SIM_LANES
+static const gchar *const confusions[] = {
+  "shear", "mesh_resolution",
+  NULL
+};
+
+/* *INDENT-OFF* */
+const ClothEffect cloth_effect_mesh_diagonals = {
+  .id = "mesh_diagonals",
+  .side = CLOTH_EFFECT_NUMERICS,
+  .blurb =
+      "Squares of the mesh are cut along other diagonals: 0 leaves "
+      "them, 1 takes the other diagonal, 2 alternates.",
+  .source =
+      "the diagonals alone moved a swaying sheet by 43 mm",
+  .regressor =
+      "Forces within the plane in proportion to shear, of a sign that "
+      "the direction of the diagonals sets.",
+  .confusions = confusions,
+  .n_parameters = 1,
+  .parameters = {
+    {.name = "pattern", .unit = "1", .null_value = 0, .min = 0, .max = 2,
+        .prior = 1, .one_sided = TRUE,
+        .blurb = "0, 1 or 2."},
+  }
+};
+/* *INDENT-ON* */
+#endif

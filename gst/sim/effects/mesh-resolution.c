@@ -1,0 +1,32 @@
+/* The size of the triangles.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/sim/effects/effects.h"
+
+#ifndef CLOTH_SIM_LANES
+static const gchar *const confusions[] = {
+  "bending", "mesh_diagonals", "time_step",
+  NULL
+};
+
+/* *INDENT-OFF* */
+const ClothEffect cloth_effect_mesh_resolution = {
+  .id = "mesh_resolution",
+  .side = CLOTH_EFFECT_NUMERICS,
+  .blurb =
+      "The mesh has other triangles: edges are divided by the factor.",
+  .source =
+      "compare h with h/2",
+  .regressor =
+      "Folds finer than the mesh, and a coarse mesh’s false stiffness "
+      "in bending and shear.",
+  .confusions = confusions,
+  .n_parameters = 1,
+  .parameters = {
+    {.name = "factor", .unit = "1", .null_value = 1, .min = 0.25, .max = 4,
+        .prior = 1,
+        .blurb = "How many times as many edges lie along a length."},
+  }
+};
+/* *INDENT-ON* */
+#endif

@@ -1,0 +1,36 @@
+/* Cloth that curls by itself.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/sim/effects/effects.h"
+
+#ifndef CLOTH_SIM_LANES
+static const gchar *const confusions[] = {
+  "plasticity", "bending",
+  NULL
+};
+
+/* *INDENT-OFF* */
+const ClothEffect cloth_effect_rest_curvature = {
+  .id = "rest_curvature",
+  .side = CLOTH_EFFECT_PHYSICS,
+  .blurb =
+      "The cloth at rest is curved, positive towards the side its "
+      "normal u × v points to.",
+  .source =
+      "creases and curling edges of 10 to 50 1/m",
+  .regressor =
+      "A steady bending moment along folds and edges, whatever the "
+      "motion.",
+  .confusions = confusions,
+  .n_parameters = 2,
+  .parameters = {
+    {.name = "warp", .unit = "1/m", .null_value = 0, .min = -500, .max = 500,
+        .prior = 20,
+        .blurb = "Curvature of threads along u."},
+    {.name = "weft", .unit = "1/m", .null_value = 0, .min = -500, .max = 500,
+        .prior = 20,
+        .blurb = "Curvature of threads along v."},
+  }
+};
+/* *INDENT-ON* */
+#endif

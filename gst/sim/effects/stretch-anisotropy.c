@@ -1,0 +1,34 @@
+/* Warp and weft stretch differently.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/sim/effects/effects.h"
+
+#ifndef CLOTH_SIM_LANES
+static const gchar *const confusions[] = {
+  "bending_anisotropy", "grain_angle", "shrinkage",
+  NULL
+};
+
+/* *INDENT-OFF* */
+const ClothEffect cloth_effect_stretch_anisotropy = {
+  .id = "stretch_anisotropy",
+  .side = CLOTH_EFFECT_PHYSICS,
+  .blurb =
+      "Stretch stiffness along the warp is the model’s times "
+      "exp(log_ratio/2), along the weft times exp(−log_ratio/2).",
+  .source =
+      "prior: own choice",
+  .regressor =
+      "Forces within the plane of one sign along the warp, of the other "
+      "along the weft.",
+  .confusions = confusions,
+  .n_parameters = 1,
+  .parameters = {
+    {.name = "log_ratio", .unit = "1", .null_value = 0, .min = -4.6, .max = 4.6,
+        .prior = 0.6,
+        .blurb = "Natural logarithm of what the ratio warp to weft is multiplied "
+            "with."},
+  }
+};
+/* *INDENT-ON* */
+#endif
