@@ -1,0 +1,357 @@
+/* What a diagnosis found: the contents of gap.json, and what the report shows besides.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/mesh/topology.h"
+#include "gst/rig/effect.h"
+
+G_BEGIN_DECLS
+
+/**
+ * ClothGapVerdict:
+ * @CLOTH_GAP_UNDECIDABLE: the data can't tell; `reason` says why
+ * @CLOTH_GAP_NO_GAP: the simulation agrees with the recording
+ * @CLOTH_GAP_EXPLAINED: the accepted effects explain the gap
+ * @CLOTH_GAP_AMBIGUOUS: so they do, but others would do as well
+ * @CLOTH_GAP_UNEXPLAINED: something remains that no effect of the library explains
+ *
+ * Since: 0.1
+ */
+typedef enum {
+  CLOTH_GAP_UNDECIDABLE,
+  CLOTH_GAP_NO_GAP,
+  CLOTH_GAP_EXPLAINED,
+  CLOTH_GAP_AMBIGUOUS,
+  CLOTH_GAP_UNEXPLAINED
+} ClothGapVerdict;
+
+/**
+ * ClothGapEstimate:
+ * @value: the best estimate
+ * @low: lower end of its 95% interval
+ * @high: upper end
+ *
+ * A number and how sure it is. NaN: not known (null in gap.json).
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  gdouble value;
+  gdouble low;
+  gdouble high;
+} ClothGapEstimate;
+
+/**
+ * ClothGapEffect:
+ * @effect: which one: its names, units and side are taken from here
+ * @probability: that it acts, calibrated, 0 to 1
+ * @values: its fitted parameters, in the order of @effect; NaN: not fitted
+ * @sigmas: their standard deviations
+ * @p_value: of its score test
+ * @constancy_p_value: that it is the same all the time and everywhere; NaN: not tested
+ * @shrink: by how much the held-out gap shrinks when it alone is added, of variance
+ * @group: index into `groups`, or -1 when nothing is confused with it
+ * @accepted: whether it is part of the model that `gap_after` is measured with
+ * @refitted: whether it equals a free parameter that was re-fitted on the take, so
+ *   that it can't be told from it
+ *
+ * What was found of one effect.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  const ClothEffect *effect;
+  gdouble probability;
+  gdouble values[CLOTH_EFFECT_MAX_PARAMETERS];
+  gdouble sigmas[CLOTH_EFFECT_MAX_PARAMETERS];
+  gdouble p_value;
+  gdouble constancy_p_value;
+  ClothGapEstimate shrink;
+  gint group;
+  gboolean accepted;
+  gboolean refitted;
+} ClothGapEffect;
+
+/**
+ * ClothGapGroup:
+ * @experiment: (nullable): the capture that would tell them apart, a sentence; %NULL:
+ *   none of those tried would
+ * @evidence: what it is expected to bring, log Bayes factor; NaN: not known
+ *
+ * Effects that these data can't tell apart: those whose `group` is its index.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  gchar *experiment;
+  gdouble evidence;
+} ClothGapGroup;
+
+/**
+ * ClothGapUntested:
+ * @effect: an effect that could not be tested
+ * @reason: why, and what would help, a sentence
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  const ClothEffect *effect;
+  gchar *reason;
+} ClothGapUntested;
+
+/**
+ * ClothGapShare:
+ * @name: what it is the share of
+ * @share: of the gap's variance, 0 to 1; NaN: could not be measured
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  gchar *name;
+  gdouble share;
+} ClothGapShare;
+
+/**
+ * ClothGapBand:
+ * @from_hz: lowest frequency
+ * @to_hz: highest frequency
+ * @share: of the gap's variance, 0 to 1
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  gdouble from_hz;
+  gdouble to_hz;
+  gdouble share;
+} ClothGapBand;
+
+/**
+ * ClothGapRole:
+ * @CLOTH_GAP_TAKE: it is diagnosed
+ * @CLOTH_GAP_BASELINE: the model is accepted on it
+ * @CLOTH_GAP_HOLD_OUT: it judges, and nothing was fitted on it
+ * @CLOTH_GAP_MODEL: model.json
+ *
+ * Since: 0.1
+ */
+typedef enum {
+  CLOTH_GAP_TAKE,
+  CLOTH_GAP_BASELINE,
+  CLOTH_GAP_HOLD_OUT,
+  CLOTH_GAP_MODEL
+} ClothGapRole;
+
+/**
+ * ClothGapInput:
+ * @role: what it was used for
+ * @name: its name
+ * @sha256: (nullable): hash of its contents, in hexadecimal digits
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  ClothGapRole role;
+  gchar *name;
+  gchar *sha256;
+} ClothGapInput;
+
+/**
+ * ClothGapThreshold:
+ * @name: which one
+ * @value: its value
+ * @unit: in the notation of the SI, "1" for a ratio
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  gchar *name;
+  gdouble value;
+  gchar *unit;
+} ClothGapThreshold;
+
+/**
+ * ClothGapNote:
+ * @name: of what
+ * @text: what there is to say of it
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  gchar *name;
+  gchar *text;
+} ClothGapNote;
+
+/**
+ * ClothGapSeries:
+ * @n: number of windows
+ * @times: centre of each, seconds, growing
+ * @before: gap in it, RMS in metres; NaN: nothing was seen
+ * @after: (nullable): with the accepted effects
+ * @null_low: lower end of the 95% band of a simulation that lacks nothing
+ * @null_high: upper end
+ *
+ * The gap over time.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  guint n;
+  gdouble *times;
+  gdouble *before;
+  gdouble *after;
+  gdouble *null_low;
+  gdouble *null_high;
+} ClothGapSeries;
+
+/**
+ * ClothGapSpectrum:
+ * @n_frequencies: number of frequencies
+ * @n_waves: number of wave numbers
+ * @frequencies: Hz, growing
+ * @waves: wave numbers over the flat cloth, whichever way: cycles per metre, growing
+ * @before: mean square of the residual, [n_waves][n_frequencies], m²
+ * @after: (nullable): with the accepted effects
+ * @null: 95% quantile of a simulation that lacks nothing
+ *
+ * Where in space and time the residual's energy lies.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  guint n_frequencies;
+  guint n_waves;
+  gdouble *frequencies;
+  gdouble *waves;
+  gdouble *before;
+  gdouble *after;
+  gdouble *null;
+} ClothGapSpectrum;
+
+/**
+ * ClothGapPlayback:
+ * @take: (nullable): name of the take that is shown
+ * @topology: (nullable): its mesh; %NULL: there is nothing to show
+ * @n_frames: number of frames
+ * @times: their times, seconds, growing
+ * @recorded: recorded positions, [n_frames][n_vertices][3], metres; NaN: not seen
+ * @before: (nullable): simulated without the accepted effects
+ * @after: (nullable): simulated with them
+ * @sigma: (nullable): what the distance of recorded and simulated would be without a
+ *   gap, RMS, [n_frames][n_vertices], metres
+ *
+ * The cloth as it moved.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  gchar *take;
+  ClothTopology *topology;
+  guint n_frames;
+  gdouble *times;
+  gfloat *recorded;
+  gfloat *before;
+  gfloat *after;
+  gfloat *sigma;
+} ClothGapPlayback;
+
+/**
+ * ClothGapResult:
+ * @verdict: the outcome
+ * @reason: (nullable): why it is undecidable, and what would help, a sentence
+ * @gap_before: recorded minus simulated on held-out data, RMS in metres
+ * @gap_after: the same with the accepted effects; NaN without any
+ * @noise_floor: what it would be if the simulation lacked nothing
+ * @shrink: (V_before − V_after) ÷ (V_before − V_floor), V = squared gap
+ * @rest_p_value: that what remains is no more than noise
+ * @held_out_takes: whether "held-out" means takes of their own, else blocks of time
+ * @effects: (element-type ClothGapEffect): the tested effects, the likeliest first
+ * @groups: (element-type ClothGapGroup): what can't be told apart
+ * @untested: (element-type ClothGapUntested): what could not be tested
+ * @n_vertices: number of vertices of the cloth
+ * @vertices: (nullable): share of the gap per vertex; NaN: never seen
+ * @n_frames: number of frames of the playback's take
+ * @frames: (nullable): share of the gap per frame
+ * @onset_s: when the gap begins, seconds; NaN: it is there from the beginning, or
+ *   there is none
+ * @directions: share along warp, weft and normal
+ * @bands: (element-type ClothGapBand): share per band of frequencies
+ * @stages: (element-type ClothGapShare): share per stage, from camera to physics
+ * @seconds: wall time of the diagnosis
+ * @simulations: number of simulations that it ran
+ * @seed: of its random numbers
+ * @versions: (element-type ClothGapNote): of the program, the library of effects, its
+ *   priors …
+ * @inputs: (element-type ClothGapInput): what it worked on
+ * @thresholds: (element-type ClothGapThreshold): what it decided by
+ * @failures: (element-type ClothGapNote): simulations that failed, and how
+ * @series: the gap over time of the playback's take, for the report
+ * @spectrum: its spectrum, for the report
+ * @playback: the cloth, for the report
+ *
+ * All that a diagnosis has to say. Everything is owned by the result, but the effects'
+ * constant descriptions. A number that is not known is NaN, a list without entries is
+ * empty.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  ClothGapVerdict verdict;
+  gchar *reason;
+  ClothGapEstimate gap_before;
+  ClothGapEstimate gap_after;
+  ClothGapEstimate noise_floor;
+  ClothGapEstimate shrink;
+  gdouble rest_p_value;
+  gboolean held_out_takes;
+  GArray *effects;
+  GArray *groups;
+  GArray *untested;
+  guint n_vertices;
+  gdouble *vertices;
+  guint n_frames;
+  gdouble *frames;
+  gdouble onset_s;
+  gdouble directions[3];
+  GArray *bands;
+  GArray *stages;
+  gdouble seconds;
+  guint64 simulations;
+  guint64 seed;
+  GArray *versions;
+  GArray *inputs;
+  GArray *thresholds;
+  GArray *failures;
+  ClothGapSeries series;
+  ClothGapSpectrum spectrum;
+  ClothGapPlayback playback;
+} ClothGapResult;
+
+ClothGapResult *cloth_gap_result_new (void);
+ClothGapEffect *cloth_gap_result_add_effect (ClothGapResult * result,
+    const ClothEffect * effect);
+void cloth_gap_result_add_group (ClothGapResult * result,
+    const gchar * experiment, gdouble evidence);
+void cloth_gap_result_add_untested (ClothGapResult * result,
+    const ClothEffect * effect, const gchar * reason);
+void cloth_gap_result_add_band (ClothGapResult * result, gdouble from_hz,
+    gdouble to_hz, gdouble share);
+void cloth_gap_result_add_stage (ClothGapResult * result, const gchar * name,
+    gdouble share);
+void cloth_gap_result_add_version (ClothGapResult * result,
+    const gchar * name, const gchar * version);
+void cloth_gap_result_add_input (ClothGapResult * result, ClothGapRole role,
+    const gchar * name, const gchar * sha256);
+void cloth_gap_result_add_threshold (ClothGapResult * result,
+    const gchar * name, gdouble value, const gchar * unit);
+void cloth_gap_result_add_failure (ClothGapResult * result,
+    const gchar * run, const gchar * what);
+const gchar *cloth_gap_verdict_name (ClothGapVerdict verdict);
+gchar *cloth_gap_result_summary (const ClothGapResult * result);
+gchar *cloth_gap_result_to_json (const ClothGapResult * result);
+gboolean cloth_gap_result_write_json (const ClothGapResult * result,
+    const gchar * path, GError ** error);
+void cloth_gap_result_free (ClothGapResult * result);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothGapResult, cloth_gap_result_free)
+G_END_DECLS
