@@ -7,7 +7,7 @@
 
 #include "gst/file/jsonvalue.h"
 
-#define MAX_OBSTACLES 1024
+#define MAX_SEAMS 1024
 
 static const ClothJsonFile take_json =
     { "take.json", cloth_mesh_error_quark, CLOTH_MESH_ERROR_INVALID };
@@ -81,72 +81,75 @@ parse_held (JsonObject * root, ClothTakeInfo * info, GError ** error)
   return TRUE;
 }
 
+/* A line of vertices; the count of the first line is that of the second. */
 static gboolean
-parse_obstacle (JsonObject * object, ClothObstacle * obstacle, GError ** error)
+parse_line (JsonNode * node, guint seam, ClothSeamLine * line, guint side,
+    GError ** error)
 {
-  static const gchar *const sphere_keys[] =
-      { "type", "centre", "radius_m", "friction", NULL };
-  static const gchar *const plane_keys[] =
-      { "type", "point", "normal", "friction", NULL };
-  g_autofree gchar *type = NULL;
-  gdouble length;
+  JsonArray *array = node && JSON_NODE_HOLDS_ARRAY (node) ?
+      json_node_get_array (node) : NULL;
+  guint n = array ? json_array_get_length (array) : 0;
+  g_autoptr (GHashTable) seen = g_hash_table_new (NULL, NULL);
 
-  obstacle->friction = NAN;
-  if (!cloth_json_get_string (&take_json, object, "type", &type, error) ||
-      !cloth_json_get_number (&take_json, object, "friction", 0, 100,
-          &obstacle->friction, error))
-    return FALSE;
-  if (g_strcmp0 (type, "sphere") == 0) {
-    obstacle->kind = CLOTH_OBSTACLE_SPHERE;
-    if (!cloth_json_check_keys (&take_json, object, "a sphere", sphere_keys,
-            error)
-        || !cloth_json_get_vector (&take_json, object, "centre", TRUE,
-            obstacle->point, error)
-        || !cloth_json_get_number (&take_json, object, "radius_m", 1e-6, 1e6,
-            &obstacle->radius_m, error))
-      return FALSE;
-    return obstacle->radius_m > 0
-        || cloth_json_invalid (&take_json, error, "a sphere needs radius_m");
+  if (n < 2)
+    return cloth_json_invalid (&take_json, error,
+        "a line of seam %u must be a list of at least two vertices", seam);
+  if (side == 1 && n != line->n_vertices)
+    return cloth_json_invalid (&take_json, error, "the lines of seam %u have "
+        "%u and %u vertices; they are sewn vertex by vertex, so give both as "
+        "many", seam, line->n_vertices, n);
+  line->n_vertices = n;
+  line->lines[side] = g_new (guint, n);
+  for (guint i = 0; i < n; i++) {
+    gdouble number;
+
+    if (!cloth_json_number (json_array_get_element (array, i), &number) ||
+        number != floor (number) || number < 0 || number >= CLOTH_MAX_VERTICES)
+      return cloth_json_invalid (&take_json, error, "the lines of seam %u "
+          "must be lists of vertices, whole numbers from 0 to %u", seam,
+          CLOTH_MAX_VERTICES - 1);
+    line->lines[side][i] = (guint) number;
+    if (!g_hash_table_add (seen, GUINT_TO_POINTER ((guint) number)))
+      return cloth_json_invalid (&take_json, error,
+          "a line of seam %u has vertex %u twice", seam, (guint) number);
   }
-  if (g_strcmp0 (type, "plane") != 0)
-    return cloth_json_invalid (&take_json, error,
-        "the “type” of an obstacle is sphere or plane");
-  obstacle->kind = CLOTH_OBSTACLE_PLANE;
-  if (!cloth_json_check_keys (&take_json, object, "a plane", plane_keys, error)
-      || !cloth_json_get_vector (&take_json, object, "point", TRUE,
-          obstacle->point, error)
-      || !cloth_json_get_vector (&take_json, object, "normal", TRUE,
-          obstacle->normal, error))
-    return FALSE;
-  length = sqrt (obstacle->normal[0] * obstacle->normal[0] +
-      obstacle->normal[1] * obstacle->normal[1] +
-      obstacle->normal[2] * obstacle->normal[2]);
-  if (length < 1e-9)
-    return cloth_json_invalid (&take_json, error,
-        "the “normal” of a plane has no length");
-  for (guint k = 0; k < 3; k++)
-    obstacle->normal[k] /= length;
   return TRUE;
 }
 
 static gboolean
-parse_obstacles (JsonObject * root, ClothTakeInfo * info, GError ** error)
+parse_seams (JsonObject * root, ClothTakeInfo * info, GError ** error)
 {
+  static const gchar *const keys[] = { "lines", NULL };
   gboolean bad;
-  JsonArray *list =
-      cloth_json_get_list (&take_json, root, "obstacles", MAX_OBSTACLES, &bad,
-      error);
+  JsonArray *list = cloth_json_get_list (&take_json, root, "seams", MAX_SEAMS,
+      &bad, error);
 
   if (bad)
     return FALSE;
+  if (list && json_array_get_length (list) > 0 && !info->mesh)
+    return cloth_json_invalid (&take_json, error,
+        "“seams” need a “mesh”; a grid is one piece");
   for (guint i = 0; list && i < json_array_get_length (list); i++) {
     JsonObject *object =
-        cloth_json_item_object (&take_json, list, i, "obstacles", error);
-    ClothObstacle obstacle = { 0 };
+        cloth_json_item_object (&take_json, list, i, "seams", error);
+    JsonArray *lines;
+    ClothSeamLine *line;
 
-    if (!object || !parse_obstacle (object, &obstacle, error))
+    if (!object ||
+        !cloth_json_check_keys (&take_json, object, "“seams”", keys, error))
       return FALSE;
-    g_array_append_val (info->obstacles, obstacle);
+    lines = cloth_json_get_list (&take_json, object, "lines", 2, &bad, error);
+    if (bad)
+      return FALSE;
+    if (!lines || json_array_get_length (lines) != 2)
+      return cloth_json_invalid (&take_json, error,
+          "seam %u needs “lines”, a list of two lists of vertices", i);
+    g_array_set_size (info->seams, i + 1);
+    line = &g_array_index (info->seams, ClothSeamLine, i);
+    for (guint side = 0; side < 2; side++)
+      if (!parse_line (json_array_get_element (lines, side), i, line, side,
+              error))
+        return FALSE;
   }
   return TRUE;
 }
@@ -155,7 +158,8 @@ static gboolean
 parse_root (JsonObject * root, ClothTakeInfo * info, GError ** error)
 {
   static const gchar *const keys[] = { "version", "name", "fps", "grid",
-    "mesh", "held", "noise_sigma_m", "gravity", "obstacles", "notes", NULL
+    "mesh", "held", "noise_sigma_m", "gravity", "obstacles", "seams", "notes",
+    NULL
   };
   JsonNode *grid = cloth_json_find (root, "grid");
   guint version;
@@ -185,7 +189,18 @@ parse_root (JsonObject * root, ClothTakeInfo * info, GError ** error)
         "give either “grid” or “mesh”");
   if (grid && !parse_grid (grid, info, error))
     return FALSE;
-  return parse_held (root, info, error) && parse_obstacles (root, info, error);
+  return parse_held (root, info, error) &&
+      cloth_obstacles_parse (&take_json, root, info->obstacles, error) &&
+      parse_seams (root, info, error);
+}
+
+static void
+seam_clear (gpointer data)
+{
+  ClothSeamLine *line = data;
+
+  g_free (line->lines[0]);
+  g_free (line->lines[1]);
 }
 
 /**
@@ -202,7 +217,9 @@ cloth_take_info_new (const gchar * name)
 
   info->name = g_strdup (name);
   info->held = g_array_new (FALSE, TRUE, sizeof (ClothHeld));
-  info->obstacles = g_array_new (FALSE, TRUE, sizeof (ClothObstacle));
+  info->obstacles = cloth_obstacles_new ();
+  info->seams = g_array_new (FALSE, TRUE, sizeof (ClothSeamLine));
+  g_array_set_clear_func (info->seams, seam_clear);
   info->noise_sigma_m = NAN;
   info->gravity[2] = -9.81;
   return info;
@@ -262,24 +279,23 @@ add_held (JsonBuilder * builder, const GArray * held)
 }
 
 static void
-add_obstacles (JsonBuilder * builder, const GArray * obstacles)
+add_seams (JsonBuilder * builder, const GArray * seams)
 {
-  json_builder_set_member_name (builder, "obstacles");
+  json_builder_set_member_name (builder, "seams");
   json_builder_begin_array (builder);
-  for (guint i = 0; i < obstacles->len; i++) {
-    const ClothObstacle *item = &g_array_index (obstacles, ClothObstacle, i);
+  for (guint i = 0; i < seams->len; i++) {
+    const ClothSeamLine *line = &g_array_index (seams, ClothSeamLine, i);
 
     json_builder_begin_object (builder);
-    if (item->kind == CLOTH_OBSTACLE_SPHERE) {
-      cloth_json_add_string (builder, "type", "sphere");
-      cloth_json_add_vector (builder, "centre", item->point);
-      cloth_json_add_number (builder, "radius_m", item->radius_m);
-    } else {
-      cloth_json_add_string (builder, "type", "plane");
-      cloth_json_add_vector (builder, "point", item->point);
-      cloth_json_add_vector (builder, "normal", item->normal);
+    json_builder_set_member_name (builder, "lines");
+    json_builder_begin_array (builder);
+    for (guint side = 0; side < 2; side++) {
+      json_builder_begin_array (builder);
+      for (guint k = 0; k < line->n_vertices; k++)
+        json_builder_add_int_value (builder, line->lines[side][k]);
+      json_builder_end_array (builder);
     }
-    cloth_json_add_number (builder, "friction", item->friction);
+    json_builder_end_array (builder);
     json_builder_end_object (builder);
   }
   json_builder_end_array (builder);
@@ -317,7 +333,9 @@ cloth_take_info_to_json (const ClothTakeInfo * info)
   add_held (builder, info->held);
   cloth_json_add_number (builder, "noise_sigma_m", info->noise_sigma_m);
   cloth_json_add_vector (builder, "gravity", info->gravity);
-  add_obstacles (builder, info->obstacles);
+  cloth_obstacles_build (info->obstacles, builder);
+  if (info->seams->len > 0)
+    add_seams (builder, info->seams);
   if (info->notes)
     cloth_json_add_string (builder, "notes", info->notes);
   json_builder_end_object (builder);
@@ -341,5 +359,6 @@ cloth_take_info_free (ClothTakeInfo * info)
   g_free (info->notes);
   g_array_unref (info->held);
   g_array_unref (info->obstacles);
+  g_array_unref (info->seams);
   g_free (info);
 }
