@@ -1,0 +1,76 @@
+/* The body of a simulation: what the lanes share of a scene, worked out once.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/sim/scene.h"
+
+G_BEGIN_DECLS
+
+/* A triangle of the membrane: corners 0, 1, 2, where (u, v) = gradient · barycentric:
+ * ∂x/∂u = g[0] e1 + g[2] e2, ∂x/∂v = g[1] e1 + g[3] e2 with e1, e2 from corner 0. Of a
+ * right-angled one corner 0 is the right angle, 1 lies along u and 2 along v, so
+ * g[1] = g[2] = 0. */
+typedef struct
+{
+  guint32 particle[3];
+  gdouble g[4];
+  gdouble area;
+} ClothBodyTriangle;
+
+/* Two triangles about an edge: particles 0 and 1 are the edge, 2 and 3 opposite it.
+ * |Σ c x| is proportional to the curvature, its energy is
+ * ½ (B_warp·warp + B_weft·weft) |Σ c x|². */
+typedef struct
+{
+  guint32 particle[4];
+  gdouble c[4];
+  gdouble warp, weft;
+} ClothBodyHinge;
+
+/* Row sums of the stiffness matrix over one particle, for the bound of the time step. */
+typedef struct
+{
+  gdouble warp, weft;           /* of the stretch moduli, for moves along u and v */
+  gdouble shear_u, shear_v;
+  gdouble bend_warp, bend_weft;
+} ClothBodyBound;
+
+typedef struct
+{
+  guint32 particle;
+  gdouble from_s, until_s;
+  /* frames whose place on the path means something: [first, last] */
+  guint first, last;
+} ClothBodyHeld;
+
+typedef struct
+{
+  guint n_vertices, n_particles;
+  guint32 *particle;            /* of each vertex: sewn vertices share one */
+  guint columns, rows;          /* of a grid, else 0 */
+  gdouble *uv;                  /* of each vertex, m */
+  gdouble *area;                /* of each particle, m² */
+  guint n_right, n_triangles;   /* the right-angled ones come first */
+  ClothBodyTriangle *triangles;
+  guint n_hinges;
+  ClothBodyHinge *hinges;
+  ClothBodyBound *bounds;
+  guint n_held;
+  ClothBodyHeld *held;
+  guint n_frames;
+  gdouble *times;
+  gdouble *clamps;              /* [frame][held][3] */
+  gdouble frame_s;              /* usual distance of frames */
+  gdouble *positions;           /* of each vertex at the start */
+  gdouble *velocities;
+  gdouble gravity[3];
+} ClothBody;
+
+ClothBody *cloth_body_new (const ClothScene * scene, GError ** error);
+void cloth_body_free (ClothBody * body);
+void cloth_body_path (const ClothBody * body, guint held, gdouble time_s,
+    gdouble position[3]);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothBody, cloth_body_free)
+G_END_DECLS

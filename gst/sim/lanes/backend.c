@@ -1,0 +1,428 @@
+/* A group of lanes: its memory, its models and its clock.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/sim/lanes/backend.h"
+
+#include "gst/sim/lanes/state.h"
+
+/* No cloth is as fast as this, m/s. */
+#define MAX_SPEED 1000.
+
+static gpointer
+lanes_new (gsize n, gsize size)
+{
+  return g_aligned_alloc0 (n + 1, size, 64);
+}
+
+static void
+load_rest (ClothLaneState * state, const ClothBody * body)
+{
+  state->triangles = g_new0 (ClothLaneTriangle, body->n_triangles + 1);
+  for (guint i = 0; i < body->n_triangles; i++) {
+    const ClothBodyTriangle *from = &body->triangles[i];
+    const gdouble *g = from->g;
+    const gdouble t[9] = {
+      g[0] * g[0], g[2] * g[2], 2. * g[0] * g[2],
+      g[1] * g[1], g[3] * g[3], 2. * g[1] * g[3],
+      g[0] * g[1], g[2] * g[3], g[0] * g[3] + g[1] * g[2]
+    };
+    ClothLaneTriangle *to = &state->triangles[i];
+
+    memcpy (to->particle, from->particle, sizeof to->particle);
+    to->area = (ClothReal) from->area;
+    for (guint k = 0; k < 9; k++)
+      to->t[k] = (ClothReal) t[k];
+  }
+  state->hinges = g_new0 (ClothLaneHinge, body->n_hinges + 1);
+  for (guint i = 0; i < body->n_hinges; i++) {
+    const ClothBodyHinge *from = &body->hinges[i];
+    ClothLaneHinge *to = &state->hinges[i];
+
+    memcpy (to->particle, from->particle, sizeof to->particle);
+    for (guint k = 0; k < 4; k++)
+      to->c[k] = (ClothReal) from->c[k];
+    to->warp = (ClothReal) from->warp;
+    to->weft = (ClothReal) from->weft;
+  }
+}
+
+static void
+load_models (ClothLaneState * state, const ClothModel * const *models)
+{
+  const struct
+  {
+    ClothLane *lane;
+    gsize offset;
+  } keys[] = {
+    {&state->density, G_STRUCT_OFFSET (ClothModel, areal_density)},
+    {&state->stretch_warp, G_STRUCT_OFFSET (ClothModel, stretch_warp)},
+    {&state->stretch_weft, G_STRUCT_OFFSET (ClothModel, stretch_weft)},
+    {&state->shear, G_STRUCT_OFFSET (ClothModel, shear)},
+    {&state->bending_warp, G_STRUCT_OFFSET (ClothModel, bending_warp)},
+    {&state->bending_weft, G_STRUCT_OFFSET (ClothModel, bending_weft)},
+    {&state->alpha, G_STRUCT_OFFSET (ClothModel, damping_mass)},
+    {&state->beta, G_STRUCT_OFFSET (ClothModel, damping_stiffness)},
+    {&state->compression_ratio, G_STRUCT_OFFSET (ClothModel,
+            compression_ratio)},
+    {&state->air_density, G_STRUCT_OFFSET (ClothModel, air_density)},
+  };
+
+  for (guint l = 0; l < CLOTH_N_LANES; l++)
+    for (guint k = 0; k < G_N_ELEMENTS (keys); k++)
+      CLOTH_LANE_AT (keys[k].lane, l) = (ClothReal)
+          G_STRUCT_MEMBER (gdouble, models[l], keys[k].offset);
+  for (guint k = 0; k < 3; k++)
+    state->gravity[k] = cloth_lane_set (state->body->gravity[k]);
+  state->rest[0] = state->rest[3] = cloth_lane_set (1.);
+  for (guint i = 0; i < state->n; i++)
+    state->mass[i] = state->density * (ClothReal) state->body->area[i];
+}
+
+static const ClothModelEffect *
+find_effect (const ClothModel * model, const gchar * id)
+{
+  for (guint i = 0; i < model->effects->len; i++) {
+    const ClothModelEffect *e =
+        &g_array_index (model->effects, ClothModelEffect, i);
+
+    if (strcmp (e->effect->id, id) == 0)
+      return e;
+  }
+  return NULL;
+}
+
+static void
+load_effects (ClothLaneState * state, const ClothModel * const *models)
+{
+  const ClothLaneHooks *const *all = CLOTH_LANE_NAME (cloth_lane_hooks);
+  guint n = 0;
+
+  while (all[n])
+    n++;
+  state->effects = lanes_new (n, sizeof *state->effects);
+  for (guint i = 0; i < n; i++) {
+    ClothLaneEffect *effect = &state->effects[state->n_effects];
+    const ClothEffect *description = NULL;
+
+    for (guint l = 0; l < CLOTH_N_LANES && !description; l++) {
+      const ClothModelEffect *e = find_effect (models[l], all[i]->id);
+
+      description = e ? e->effect : NULL;
+    }
+    if (!description)
+      continue;
+    effect->hooks = all[i];
+    for (guint l = 0; l < CLOTH_N_LANES; l++) {
+      const ClothModelEffect *e = find_effect (models[l], all[i]->id);
+
+      for (guint k = 0; k < description->n_parameters; k++)
+        CLOTH_LANE_AT (&effect->p[k], l) = (ClothReal) (e ? e->values[k] :
+            description->parameters[k].null_value);
+    }
+    if (all[i]->state_size || all[i]->fixed_size)
+      effect->state = lanes_new (1,
+          all[i]->state_size * state->n + all[i]->fixed_size);
+    state->n_effects++;
+  }
+}
+
+/* What follows from the numbers once every effect has had its say. */
+static void
+prepare (ClothLaneState * state)
+{
+  const ClothLane *r = state->rest;
+  ClothLane one = cloth_lane_set (1.), det;
+  gboolean changed = FALSE;
+
+  for (guint i = 0; i < state->n_effects; i++)
+    if (state->effects[i].hooks->setup)
+      state->effects[i].hooks->setup (state, &state->effects[i]);
+  for (guint i = 0; i < state->n; i++)
+    state->inverse_mass[i] = one / state->mass[i];
+  state->omega2 = CLOTH_LANE_NAME (cloth_lane_stiffness) (state);
+  state->friction = state->alpha + state->beta * state->omega2;
+  for (guint i = 0; i < state->n_effects; i++)
+    if (state->effects[i].hooks->rate)
+      state->effects[i].hooks->rate (state, &state->effects[i],
+          &state->omega2, &state->friction);
+  for (guint k = 0; k < 4; k++)
+    for (guint l = 0; l < CLOTH_N_LANES; l++)
+      changed |= CLOTH_LANE_AT (&r[k], l) != (k == 0 || k == 3 ? 1. : 0.);
+  state->rest_changed = changed;
+  /* (a, b)' = (a r0 + b r2, a r1 + b r3), and the products of a' and b' */
+  state->metric[0] = r[0] * r[0];
+  state->metric[1] = r[2] * r[2];
+  state->metric[2] = r[0] * r[2] + r[0] * r[2];
+  state->metric[3] = r[1] * r[1];
+  state->metric[4] = r[3] * r[3];
+  state->metric[5] = r[1] * r[3] + r[1] * r[3];
+  state->metric[6] = r[0] * r[1];
+  state->metric[7] = r[2] * r[3];
+  state->metric[8] = r[0] * r[3] + r[1] * r[2];
+  det = r[0] * r[3] - r[1] * r[2];
+  state->rest_area = one / det;
+}
+
+static void
+set_lane (ClothLane3 * to, guint lane, guint n, const gdouble * from)
+{
+  for (guint i = 0; i < n; i++)
+    for (guint k = 0; k < 3; k++)
+      CLOTH_LANE_AT (&to[i][k], lane) = (ClothReal) from[3 * i + k];
+}
+
+static void
+keep_sound (ClothLaneState * state)
+{
+  memcpy (state->sound_x, state->x, state->n * sizeof *state->x);
+  memcpy (state->sound_v, state->v, state->n * sizeof *state->v);
+}
+
+static void
+group_free (gpointer group)
+{
+  ClothLaneState *state = group;
+
+  for (guint i = 0; i < state->n_effects; i++)
+    g_aligned_free (state->effects[i].state);
+  g_aligned_free (state->effects);
+  for (guint k = 0; k < 4; k++)
+    g_aligned_free (state->targets.y[k]);
+  g_aligned_free (state->targets.weight);
+  g_aligned_free (state->x);
+  g_aligned_free (state->v);
+  g_aligned_free (state->f);
+  g_aligned_free (state->mass);
+  g_aligned_free (state->inverse_mass);
+  g_aligned_free (state->sound_x);
+  g_aligned_free (state->sound_v);
+  g_aligned_free (state->held_offset);
+  g_aligned_free (state->held_x);
+  g_free (state->held);
+  g_free (state->held_since);
+  g_free (state->triangles);
+  g_free (state->hinges);
+  g_aligned_free (state);
+}
+
+static gpointer
+group_new (const ClothBody * body, const ClothModel * const *models,
+    guint n_models, guint64 seed)
+{
+  ClothLaneState *state = lanes_new (1, sizeof *state);
+  const ClothModel *all[CLOTH_N_LANES];
+  guint n = body->n_particles;
+
+  for (guint l = 0; l < CLOTH_N_LANES; l++)
+    all[l] = models[l < n_models ? l : 0];
+  state->body = body;
+  state->n_models = n_models;
+  state->seed = seed;
+  state->n = n;
+  state->x = lanes_new (n, sizeof *state->x);
+  state->v = lanes_new (n, sizeof *state->v);
+  state->f = lanes_new (n, sizeof *state->f);
+  state->sound_x = lanes_new (n, sizeof *state->x);
+  state->sound_v = lanes_new (n, sizeof *state->v);
+  state->mass = lanes_new (n, sizeof *state->mass);
+  state->inverse_mass = lanes_new (n, sizeof *state->mass);
+  state->held = g_new0 (gboolean, body->n_held + 1);
+  state->held_since = g_new0 (gdouble, body->n_held + 1);
+  state->held_offset = lanes_new (body->n_held, sizeof *state->held_offset);
+  state->held_x = lanes_new (body->n_held, sizeof *state->held_x);
+  load_rest (state, body);
+  load_models (state, all);
+  load_effects (state, all);
+  prepare (state);
+  for (guint i = 0; i < body->n_vertices; i++) {
+    for (guint k = 0; k < 3; k++) {
+      state->x[body->particle[i]][k] =
+          cloth_lane_set (body->positions[3 * i + k]);
+      state->v[body->particle[i]][k] =
+          cloth_lane_set (body->velocities[3 * i + k]);
+    }
+  }
+  state->time = body->times[0];
+  keep_sound (state);
+  return state;
+}
+
+static gdouble
+group_time_step (gpointer group)
+{
+  ClothLaneState *state = group;
+  ClothLane each = CLOTH_LANE_NAME (cloth_lane_explicit_time_step) (state);
+  gdouble least = INFINITY;
+
+  for (guint l = 0; l < CLOTH_N_LANES; l++)
+    least = MIN (least, (gdouble) CLOTH_LANE_AT (&each, l));
+  return least;
+}
+
+/* Lanes with a speed beyond all measure, or NaN, go back to where they were sound and
+ * stay there; the others don't notice. */
+static void
+check_sound (ClothLaneState * state, gdouble since)
+{
+  ClothLane limit = cloth_lane_set (MAX_SPEED * MAX_SPEED);
+  ClothLane zero = cloth_lane_set (0.);
+  ClothMask sound = cloth_lane_equal (zero, zero), newly;
+
+  for (guint i = 0; i < state->n; i++)
+    sound &= cloth_lane_less (cloth_lane_dot (state->v[i], state->v[i]), limit)
+        & cloth_lane_equal (state->x[i][0] - state->x[i][0], zero)
+        & cloth_lane_equal (state->x[i][1] - state->x[i][1], zero)
+        & cloth_lane_equal (state->x[i][2] - state->x[i][2], zero);
+  newly = ~sound & ~state->diverged;
+  state->diverged |= newly;
+  for (guint l = 0; l < CLOTH_N_LANES; l++)
+    if (CLOTH_LANE_AT (&newly, l))
+      state->diverged_since[l] = since;
+  if (cloth_lane_any (state->diverged)) {
+    for (guint i = 0; i < state->n; i++) {
+      for (guint k = 0; k < 3; k++) {
+        state->x[i][k] = cloth_lane_select (state->diverged,
+            state->sound_x[i][k], state->x[i][k]);
+        state->v[i][k] = cloth_lane_select (state->diverged, zero,
+            state->v[i][k]);
+      }
+    }
+  }
+  keep_sound (state);
+}
+
+static void
+group_advance (gpointer group, gdouble until_s, guint n_steps)
+{
+  ClothLaneState *state = group;
+  gdouble start = state->time;
+
+  state->dt = (until_s - start) / n_steps;
+  for (guint step = 1; step <= n_steps; step++) {
+    CLOTH_LANE_NAME (cloth_lane_explicit) (state);
+    state->time = step == n_steps ? until_s :
+        start + (until_s - start) * step / n_steps;
+    CLOTH_LANE_NAME (cloth_lane_clamps) (state);
+    for (guint i = 0; i < state->n_effects; i++)
+      if (state->effects[i].hooks->after_step)
+        state->effects[i].hooks->after_step (state, &state->effects[i]);
+  }
+  check_sound (state, start);
+}
+
+static void
+group_get (gpointer group, guint lane, gdouble * x, gdouble * v)
+{
+  ClothLaneState *state = group;
+
+  for (guint i = 0; i < state->n; i++) {
+    for (guint k = 0; k < 3; k++) {
+      if (x)
+        x[3 * i + k] = CLOTH_LANE_AT (&state->x[i][k], lane);
+      if (v)
+        v[3 * i + k] = CLOTH_LANE_AT (&state->v[i][k], lane);
+    }
+  }
+}
+
+/* Lanes beyond the models follow the first, so that none of them is ever a reason to take
+ * smaller steps. */
+static gboolean
+repeats (const ClothLaneState * state, guint lane, guint of)
+{
+  return lane == of || (of == 0 && lane >= state->n_models);
+}
+
+static void
+group_set (gpointer group, guint lane, const gdouble * x, const gdouble * v)
+{
+  ClothLaneState *state = group;
+  ClothMask lanes = state->diverged ^ state->diverged;
+
+  for (guint l = 0; l < CLOTH_N_LANES; l++) {
+    if (!repeats (state, l, lane))
+      continue;
+    set_lane (state->x, l, state->n, x);
+    set_lane (state->v, l, state->n, v);
+    CLOTH_LANE_AT (&lanes, l) = -1;
+  }
+  state->diverged &= ~lanes;
+  CLOTH_LANE_NAME (cloth_lane_clamps_reset) (state);
+  for (guint i = 0; i < state->n_effects; i++)
+    if (state->effects[i].hooks->reset)
+      state->effects[i].hooks->reset (state, &state->effects[i], lanes);
+  keep_sound (state);
+}
+
+static void
+group_set_time (gpointer group, gdouble time_s)
+{
+  ((ClothLaneState *) group)->time = time_s;
+}
+
+static void
+group_set_targets (gpointer group, guint lane, const gdouble * const y[4],
+    const gdouble * weights, gdouble gain, gdouble damping, gdouble t_now,
+    gdouble t_next)
+{
+  ClothLaneState *state = group;
+  ClothLaneTargets *t = &state->targets;
+
+  if (!t->weight) {
+    for (guint k = 0; k < 4; k++)
+      t->y[k] = lanes_new (state->n, sizeof **t->y);
+    t->weight = lanes_new (state->n, sizeof *t->weight);
+    state->has_targets = TRUE;
+  }
+  for (guint l = 0; l < CLOTH_N_LANES; l++) {
+    if (!repeats (state, l, lane))
+      continue;
+    for (guint k = 0; k < 4; k++)
+      set_lane (t->y[k], l, state->n, y[k]);
+    for (guint i = 0; i < state->n; i++)
+      CLOTH_LANE_AT (&t->weight[i], l) = (ClothReal) weights[i];
+    CLOTH_LANE_AT (&t->gain, l) = (ClothReal) gain;
+    CLOTH_LANE_AT (&t->damping, l) = (ClothReal) damping;
+    CLOTH_LANE_AT (&t->now, l) = (ClothReal) t_now;
+    CLOTH_LANE_AT (&t->next, l) = (ClothReal) t_next;
+  }
+}
+
+static gdouble
+group_diverged (gpointer group, guint lane)
+{
+  ClothLaneState *state = group;
+
+  return CLOTH_LANE_AT (&state->diverged, lane) ?
+      state->diverged_since[lane] : NAN;
+}
+
+static ClothSimEnergy
+group_energy (gpointer group, guint lane)
+{
+  ClothLaneState *state = group;
+  ClothLane elastic = CLOTH_LANE_NAME (cloth_lane_membrane_energy) (state) +
+      CLOTH_LANE_NAME (cloth_lane_bending_energy) (state);
+  ClothSimEnergy energy = { 0., CLOTH_LANE_AT (&elastic, lane), 0. };
+
+  for (guint i = 0; i < state->n; i++) {
+    gdouble mass = CLOTH_LANE_AT (&state->mass[i], lane);
+
+    for (guint k = 0; k < 3; k++) {
+      gdouble v = CLOTH_LANE_AT (&state->v[i][k], lane);
+
+      energy.kinetic += 0.5 * mass * v * v;
+      energy.gravity -= mass * CLOTH_LANE_AT (&state->gravity[k], lane) *
+          CLOTH_LANE_AT (&state->x[i][k], lane);
+    }
+  }
+  return energy;
+}
+
+extern const ClothLaneBackend CLOTH_LANE_NAME (cloth_lane_backend);
+
+const ClothLaneBackend CLOTH_LANE_NAME (cloth_lane_backend) = {
+  CLOTH_N_LANES, group_new, group_free, group_time_step, group_advance,
+  group_get, group_set, group_set_time, group_set_targets, group_diverged,
+  group_energy
+};

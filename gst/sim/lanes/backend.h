@@ -1,0 +1,36 @@
+/* What sim.c calls of each variant of the lanes.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/sim/body.h"
+#include "gst/sim/sim.h"
+
+G_BEGIN_DECLS
+
+/* Arrays are by particle, 3 numbers each. A group is n_lanes models; lanes beyond those
+ * given repeat the first. */
+typedef struct
+{
+  guint n_lanes;
+  gpointer (*group_new) (const ClothBody * body,
+      const ClothModel * const *models, guint n_models, guint64 seed);
+  void (*group_free) (gpointer group);
+  /* the largest stable step of any lane, with its margin */
+  gdouble (*time_step) (gpointer group);
+  /* the whole group to a time in so many equal steps */
+  void (*advance) (gpointer group, gdouble until_s, guint n_steps);
+  void (*get) (gpointer group, guint lane, gdouble * x, gdouble * v);
+  void (*set) (gpointer group, guint lane, const gdouble * x,
+      const gdouble * v);
+  void (*set_time) (gpointer group, gdouble time_s);
+  /* y: now, next, velocity now, velocity next */
+  void (*set_targets) (gpointer group, guint lane, const gdouble * const y[4],
+      const gdouble * weights, gdouble gain, gdouble damping, gdouble t_now,
+      gdouble t_next);
+  /* since when the lane stands still, NaN when it moves */
+  gdouble (*diverged) (gpointer group, guint lane);
+  ClothSimEnergy (*energy) (gpointer group, guint lane);
+} ClothLaneBackend;
+
+G_END_DECLS

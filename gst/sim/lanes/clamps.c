@@ -1,0 +1,91 @@
+/* What holds the cloth: clamps along their paths, and the weak springs of an observer.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/sim/lanes/state.h"
+
+/* Forgets who was held: the next step counts as the moment of gripping. */
+void CLOTH_LANE_NAME (cloth_lane_clamps_reset) (ClothLaneState * state)
+{
+  for (guint i = 0; i < state->body->n_held; i++)
+    state->held[i] = FALSE;
+}
+
+static void
+clamp_place (const ClothLaneState * state, guint held, gdouble time,
+    ClothLane place[3])
+{
+  gdouble path[3];
+
+  cloth_body_path (state->body, held, time, path);
+  for (guint k = 0; k < 3; k++)
+    place[k] = cloth_lane_set (path[k]);
+  for (guint i = 0; i < state->n_effects; i++)
+    if (state->effects[i].hooks->clamp)
+      state->effects[i].hooks->clamp (state, &state->effects[i], held, time,
+          place);
+}
+
+/* Puts held particles where their clamps are at the end of the step, which state->time
+ * already says. One that is off its path when the clamp grips is drawn to it within one
+ * frame, not thrown. */
+void CLOTH_LANE_NAME (cloth_lane_clamps) (ClothLaneState * state)
+{
+  const ClothBody *body = state->body;
+  gdouble start = state->time - state->dt;
+  ClothLane per_dt = cloth_lane_set (1. / state->dt);
+  ClothLane dt = cloth_lane_set (state->dt);
+
+  for (guint i = 0; i < body->n_held; i++) {
+    const ClothBodyHeld *held = &body->held[i];
+    guint p = held->particle;
+    ClothLane place[3], share;
+
+    /* half a step of tolerance: no clamp grips for a rounding error */
+    if (state->time < held->from_s + 0.5 * state->dt
+        || state->time > held->until_s + 0.5 * state->dt) {
+      state->held[i] = FALSE;
+      continue;
+    }
+    if (!state->held[i]) {
+      state->held[i] = TRUE;
+      state->held_since[i] = start;
+      clamp_place (state, i, start, place);
+      for (guint k = 0; k < 3; k++) {
+        /* where it was before this step */
+        state->held_x[i][k] = state->x[p][k] - dt * state->v[p][k];
+        state->held_offset[i][k] = state->held_x[i][k] - place[k];
+      }
+    }
+    clamp_place (state, i, state->time, place);
+    share = cloth_lane_set (MAX (0., 1. - (state->time -
+                state->held_since[i]) / body->frame_s));
+    for (guint k = 0; k < 3; k++) {
+      state->x[p][k] = place[k] + share * state->held_offset[i][k];
+      state->v[p][k] = (state->x[p][k] - state->held_x[i][k]) * per_dt;
+      state->held_x[i][k] = state->x[p][k];
+    }
+  }
+}
+
+/* Adds the observer's springs: m w (gain (y − x) + damping (y' − v)), y between two
+ * observations. */
+void CLOTH_LANE_NAME (cloth_lane_targets) (ClothLaneState * state)
+{
+  const ClothLaneTargets *t = &state->targets;
+  ClothLane span = t->next - t->now, zero = cloth_lane_set (0.);
+  ClothLane share = (cloth_lane_set (state->time) - t->now) / span;
+
+  share = cloth_lane_select (cloth_lane_less (zero, span), share, zero);
+  for (guint i = 0; i < state->n; i++) {
+    ClothLane weight = state->mass[i] * t->weight[i];
+    ClothLane gain = weight * t->gain, damping = weight * t->damping;
+
+    for (guint k = 0; k < 3; k++) {
+      ClothLane y = t->y[0][i][k] + share * (t->y[1][i][k] - t->y[0][i][k]);
+      ClothLane dy = t->y[2][i][k] + share * (t->y[3][i][k] - t->y[2][i][k]);
+
+      state->f[i][k] += gain * (y - state->x[i][k]) +
+          damping * (dy - state->v[i][k]);
+    }
+  }
+}

@@ -1,0 +1,77 @@
+/* Symplectic Euler: velocities by the forces at the old places, places by the new
+ * velocities.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/sim/lanes/state.h"
+
+/* Share of the bound that is used: stretched St. Venant–Kirchhoff cloth is stiffer than
+ * at rest, (3 λ² − 1)/2 times at stretch λ; this is stable up to λ = 1.3. */
+#define MARGIN 0.7
+
+/* Adds all forces at x and v to f: gravity and damping αM are the integrator's, which
+ * knows the accelerations. */
+void CLOTH_LANE_NAME (cloth_lane_forces) (ClothLaneState * state)
+{
+  CLOTH_LANE_NAME (cloth_lane_membrane) (state);
+  CLOTH_LANE_NAME (cloth_lane_bending) (state);
+  for (guint i = 0; i < state->n_effects; i++)
+    if (state->effects[i].hooks->force)
+      state->effects[i].hooks->force (state, &state->effects[i]);
+  if (state->has_targets)
+    CLOTH_LANE_NAME (cloth_lane_targets) (state);
+}
+
+/* One step of state->dt; leaves f zeroed for the next. */
+void CLOTH_LANE_NAME (cloth_lane_explicit) (ClothLaneState * state)
+{
+  ClothLane dt = cloth_lane_set (state->dt), alpha = state->alpha;
+  ClothLane g[3] = { state->gravity[0], state->gravity[1], state->gravity[2] };
+
+  CLOTH_LANE_NAME (cloth_lane_forces) (state);
+  for (guint i = 0; i < state->n; i++) {
+    ClothLane w = state->inverse_mass[i];
+
+    for (guint k = 0; k < 3; k++) {
+      ClothLane v = state->v[i][k];
+
+      v += dt * (state->f[i][k] * w + g[k] - alpha * v);
+      state->v[i][k] = v;
+      state->x[i][k] += dt * v;
+      state->f[i][k] = cloth_lane_set (0.);
+    }
+  }
+}
+
+/* Stiffness over mass, the bound of ω² by Gershgorin's rows. */
+ClothLane CLOTH_LANE_NAME (cloth_lane_stiffness) (const ClothLaneState * state)
+{
+  ClothLane most = cloth_lane_set (0.);
+
+  for (guint i = 0; i < state->n; i++) {
+    const ClothBodyBound *b = &state->body->bounds[i];
+    ClothLane bend = state->bending_warp * (ClothReal) b->bend_warp +
+        state->bending_weft * (ClothReal) b->bend_weft;
+    ClothLane u = state->stretch_warp * (ClothReal) b->warp +
+        state->shear * (ClothReal) b->shear_u;
+    ClothLane v = state->stretch_weft * (ClothReal) b->weft +
+        state->shear * (ClothReal) b->shear_v;
+
+    most = cloth_lane_max (most, (cloth_lane_max (u, v) + bend) *
+        state->inverse_mass[i]);
+  }
+  return most;
+}
+
+/* The largest stable step of each lane. A mode of frequency ω damped by c (1/s) is stable
+ * under symplectic Euler when h²ω² + 2hc < 4 (Jury's criterion on its two-by-two map). */
+ClothLane
+CLOTH_LANE_NAME (cloth_lane_explicit_time_step) (const ClothLaneState * state)
+{
+  ClothLane four = cloth_lane_set (4.), least = cloth_lane_set (1e-6);
+  /* even when nothing is stiff there is a step */
+  ClothLane stiff = cloth_lane_max (state->omega2 + state->targets.gain, least);
+  ClothLane friction = state->friction + state->targets.damping;
+
+  return four * cloth_lane_set (MARGIN) / (friction +
+      cloth_lane_sqrt (friction * friction + four * stiff));
+}

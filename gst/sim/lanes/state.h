@@ -1,0 +1,175 @@
+/* The state of a group of lanes and what effects may do with it.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/sim/body.h"
+#include "gst/sim/lanes/lane.h"
+#include "gst/sim/sim.h"
+
+typedef struct _ClothLaneHooks ClothLaneHooks;
+typedef ClothLane ClothLane3[3];
+
+/* An effect in a group. */
+typedef struct
+{
+  const ClothLaneHooks *hooks;
+  /* its parameters; the null values in lanes whose model has it not */
+  ClothLane p[CLOTH_EFFECT_MAX_PARAMETERS];
+  /* hooks->state_size bytes for each particle and hooks->fixed_size more after them,
+   * zeroed, aligned as a lane is */
+  gpointer state;
+} ClothLaneEffect;
+
+/* Springs that draw the cloth to what was observed: y at two times, and its velocity. */
+typedef struct
+{
+  ClothLane3 *y[4];
+  ClothLane *weight;
+  ClothLane gain, damping;
+  ClothLane now, next;
+} ClothLaneTargets;
+
+/* Rest geometry in the lanes' precision. */
+typedef struct
+{
+  guint32 particle[3];
+  ClothReal area;
+  /* |∂x/∂u|², |∂x/∂v|², ∂x/∂u·∂x/∂v = t · (e1·e1, e2·e2, e1·e2); diagonal when
+   * right-angled */
+  ClothReal t[9];
+} ClothLaneTriangle;
+
+typedef struct
+{
+  guint32 particle[4];
+  ClothReal c[4];
+  ClothReal warp, weft;
+} ClothLaneHinge;
+
+typedef struct
+{
+  const ClothBody *body;
+  guint n_models;
+  guint64 seed;
+  guint n;                      /* particles */
+  ClothLane3 *x, *v, *f;        /* m, m/s, N */
+  ClothLane *mass;              /* kg; setup hooks may change it */
+  ClothLane *inverse_mass;
+  ClothLaneTriangle *triangles;
+  ClothLaneHinge *hinges;
+
+  /* The models. Setup hooks may change these. */
+  ClothLane density;            /* kg/m² */
+  ClothLane stretch_warp, stretch_weft, shear;
+  ClothLane bending_warp, bending_weft;
+  ClothLane alpha, beta;        /* damping αM + βK */
+  ClothLane compression_ratio;
+  ClothLane air_density;
+  ClothLane gravity[3];
+  /* ∂x/∂(u, v) is multiplied by this from the right: [0] [1]; [2] [3]. It turns the grain
+   * and changes the size of the cloth at rest. */
+  ClothLane rest[4];
+
+  /* What setup made of them. */
+  gboolean rest_changed;        /* @rest is not the identity in every lane */
+  ClothLane metric[9];          /* @rest's act on the three products of ∂x */
+  ClothLane rest_area;          /* over the area in uv */
+  ClothLane omega2, friction;   /* bounds: stiffness/mass and damping/mass */
+
+  guint n_effects;
+  ClothLaneEffect *effects;
+  ClothLaneTargets targets;
+  gboolean has_targets;
+
+  /* Clamps: whether each holds, since when, how far off its path its particle was then,
+   * and where the particle is now. */
+  gboolean *held;
+  gdouble *held_since;
+  ClothLane3 *held_offset;
+  ClothLane3 *held_x;
+
+  gdouble time;                 /* s */
+  gdouble dt;                   /* of the running step, s */
+
+  /* Lanes that diverged, and everybody's last sound state. */
+  ClothMask diverged;
+  gdouble diverged_since[CLOTH_N_LANES];
+  ClothLane3 *sound_x, *sound_v;
+} ClothLaneState;
+
+/* What an effect does; any of them may be NULL. At its null each must add exactly 0 or
+ * multiply by exactly 1, lane by lane. */
+struct _ClothLaneHooks
+{
+  const gchar *id;
+  gsize state_size;             /* bytes of state for each particle */
+  gsize fixed_size;             /* bytes of other state */
+  /* once, when the models are known: may change the models' numbers and the masses */
+  void (*setup) (ClothLaneState * state, ClothLaneEffect * effect);
+  /* adds to the bounds of the time step: stiffness/mass in 1/s², damping/mass in 1/s */
+  void (*rate) (const ClothLaneState * state, const ClothLaneEffect * effect,
+      ClothLane * omega2, ClothLane * friction);
+  /* every step, before the particles move: adds to f */
+  void (*force) (ClothLaneState * state, ClothLaneEffect * effect);
+  /* moves where a clamp holds its particle at a time */
+  void (*clamp) (const ClothLaneState * state, const ClothLaneEffect * effect,
+      guint held, gdouble time_s, ClothLane position[3]);
+  /* every step, when the particles have moved */
+  void (*after_step) (ClothLaneState * state, ClothLaneEffect * effect);
+  /* when a lane's state was set from outside: forget what came before there */
+  void (*reset) (ClothLaneState * state, ClothLaneEffect * effect,
+      ClothMask lanes);
+};
+
+extern const ClothLaneHooks
+    * const CLOTH_LANE_NAME (cloth_lane_hooks)[] G_GNUC_INTERNAL;
+
+/* Terms of a step. */
+void CLOTH_LANE_NAME (cloth_lane_membrane) (ClothLaneState * state);
+ClothLane CLOTH_LANE_NAME (cloth_lane_membrane_energy) (const ClothLaneState *
+    state);
+void CLOTH_LANE_NAME (cloth_lane_bending) (ClothLaneState * state);
+ClothLane CLOTH_LANE_NAME (cloth_lane_bending_energy) (const ClothLaneState *
+    state);
+void CLOTH_LANE_NAME (cloth_lane_targets) (ClothLaneState * state);
+void CLOTH_LANE_NAME (cloth_lane_clamps) (ClothLaneState * state);
+void CLOTH_LANE_NAME (cloth_lane_clamps_reset) (ClothLaneState * state);
+/* All forces but inertia at x and v into f. */
+void CLOTH_LANE_NAME (cloth_lane_forces) (ClothLaneState * state);
+void CLOTH_LANE_NAME (cloth_lane_explicit) (ClothLaneState * state);
+ClothLane CLOTH_LANE_NAME (cloth_lane_stiffness) (const ClothLaneState * state);
+ClothLane CLOTH_LANE_NAME (cloth_lane_explicit_time_step) (const
+    ClothLaneState * state);
+
+/* One triangle in the air: its normal times its area, its area, the mean velocity. */
+CLOTH_LANE_INLINE void
+cloth_lane_face (const ClothLaneState * state, const ClothLaneTriangle * t,
+    ClothLane normal[3], ClothLane * area, ClothLane velocity[3])
+{
+  const guint32 *p = t->particle;
+  ClothLane e1[3], e2[3];
+
+  cloth_lane_subtract (state->x[p[1]], state->x[p[0]], e1);
+  cloth_lane_subtract (state->x[p[2]], state->x[p[0]], e2);
+  cloth_lane_cross (e1, e2, normal);
+  for (guint k = 0; k < 3; k++) {
+    normal[k] *= cloth_lane_set (0.5);
+    velocity[k] = (state->v[p[0]][k] + state->v[p[1]][k] + state->v[p[2]][k]) *
+        cloth_lane_set (1. / 3.);
+  }
+  *area = cloth_lane_sqrt (cloth_lane_dot (normal, normal));
+}
+
+/* A third of a force on each corner. */
+CLOTH_LANE_INLINE void
+cloth_lane_push_face (ClothLaneState * state, const ClothLaneTriangle * t,
+    const ClothLane force[3])
+{
+  for (guint k = 0; k < 3; k++) {
+    ClothLane third = force[k] * cloth_lane_set (1. / 3.);
+
+    for (guint corner = 0; corner < 3; corner++)
+      state->f[t->particle[corner]][k] += third;
+  }
+}

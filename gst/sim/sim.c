@@ -1,0 +1,492 @@
+/* The simulator: models into groups of lanes, groups onto threads.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/sim/sim.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/math/pool.h"
+#include "gst/sim/lanes/backend.h"
+
+/* Every variant of the lanes; those of other machines are not built. */
+extern const ClothLaneBackend cloth_lane_backend_one;
+extern const ClothLaneBackend cloth_lane_backend_single_generic;
+extern const ClothLaneBackend cloth_lane_backend_double_generic;
+#if CLOTH_SIM_X86
+extern const ClothLaneBackend cloth_lane_backend_single_avx2;
+extern const ClothLaneBackend cloth_lane_backend_double_avx2;
+extern const ClothLaneBackend cloth_lane_backend_single_avx512;
+extern const ClothLaneBackend cloth_lane_backend_double_avx512;
+#endif
+
+/* Steps an octave that automatic time steps are rounded down to, so that models that are
+ * nearly alike take the same steps and their difference is their own. */
+#define STEPS_AN_OCTAVE 8.
+/* Steps of one cloth_sim_advance (); more means a model far out of range. */
+#define MAX_STEPS 1e8
+
+typedef struct
+{
+  const ClothLaneBackend *backend;
+  gpointer lanes;
+  guint first, n;
+} Group;
+
+struct _ClothSim
+{
+  ClothBody *body;
+  ClothPool *pool;
+  guint n_models;
+  guint n_groups;
+  Group *groups;
+  guint *group_of;              /* of each model */
+  gdouble time;
+  gdouble fixed_step;           /* of the models, 0 = automatic */
+  gdouble time_step;
+  gdouble *scratch[5];          /* by particle */
+  /* of the running advance */
+  gdouble until;
+  guint n_steps;
+};
+
+GQuark
+cloth_sim_error_quark (void)
+{
+  return g_quark_from_static_string ("cloth-sim-error-quark");
+}
+
+static const ClothLaneBackend *
+wide_backend (const ClothSimOptions * options)
+{
+#if CLOTH_SIM_X86
+  switch (cloth_simd_resolve (options->simd)) {
+    case CLOTH_SIMD_AVX512:
+      return options->single ? &cloth_lane_backend_single_avx512 :
+          &cloth_lane_backend_double_avx512;
+    case CLOTH_SIMD_AVX2:
+      return options->single ? &cloth_lane_backend_single_avx2 :
+          &cloth_lane_backend_double_avx2;
+    default:
+      break;
+  }
+#endif
+  return options->single ? &cloth_lane_backend_single_generic :
+      &cloth_lane_backend_double_generic;
+}
+
+static gboolean
+check_models (const ClothModel * const *models, guint n_models, GError ** error)
+{
+  if (n_models == 0) {
+    g_set_error (error, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_MODEL,
+        "no model: give at least one");
+    return FALSE;
+  }
+  for (guint i = 0; i < n_models; i++) {
+    const ClothModel *m = models[i];
+    const gchar *key = NULL;
+
+    if (m->force_model != models[0]->force_model)
+      key = "force_model";
+    else if (m->integrator != models[0]->integrator)
+      key = "integrator";
+    else if (m->time_step != models[0]->time_step)
+      key = "time_step";
+    if (key) {
+      g_set_error (error, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_MODEL,
+          "models 0 and %u differ in %s: models simulated together must agree "
+          "in it", i, key);
+      return FALSE;
+    }
+  }
+  return TRUE;
+}
+
+static gdouble
+round_step (gdouble step)
+{
+  return exp2 (floor (log2 (step) * STEPS_AN_OCTAVE) / STEPS_AN_OCTAVE);
+}
+
+static void
+find_time_step (ClothSim * sim)
+{
+  gdouble least = INFINITY;
+
+  for (guint i = 0; i < sim->n_groups; i++) {
+    const Group *g = &sim->groups[i];
+
+    least = MIN (least, g->backend->time_step (g->lanes));
+  }
+  sim->time_step = sim->fixed_step > 0. ? sim->fixed_step : round_step (least);
+}
+
+static void
+make_groups (ClothSim * sim, const ClothModel * const *models,
+    const ClothSimOptions * options)
+{
+  const ClothLaneBackend *wide = wide_backend (options);
+
+  sim->groups = g_new0 (Group, sim->n_models / wide->n_lanes + 1);
+  sim->group_of = g_new (guint, sim->n_models);
+  for (guint first = 0; first < sim->n_models;) {
+    Group *group = &sim->groups[sim->n_groups];
+
+    group->first = first;
+    group->n = MIN (sim->n_models - first, wide->n_lanes);
+    /* same bits, less work */
+    group->backend = group->n == 1 && !options->single ?
+        &cloth_lane_backend_one : wide;
+    group->lanes = group->backend->group_new (sim->body, models + first,
+        group->n, options->seed);
+    for (guint i = 0; i < group->n; i++)
+      sim->group_of[first + i] = sim->n_groups;
+    first += group->n;
+    sim->n_groups++;
+  }
+}
+
+/**
+ * cloth_sim_new:
+ * @scene: what to simulate; nothing of it is kept
+ * @models: the models to simulate it with; nothing of them is kept
+ * @n_models: how many, at least 1; they must agree in force_model, integrator and
+ *   time_step
+ * @options: (nullable): %NULL for double precision, all processors and seed 0
+ * @error: #ClothSimError
+ *
+ * Models are computed side by side in vector instructions and on several threads. What
+ * becomes of a model does not depend on its neighbours, the threads or the instruction
+ * set, to the last bit, but for the time step: an automatic one is the smallest that any
+ * of the models needs, rounded down to an eighth of an octave.
+ *
+ * Returns: (transfer full) (nullable): the simulation at the time of the first frame
+ * Since: 0.1
+ */
+ClothSim *
+cloth_sim_new (const ClothScene * scene, const ClothModel * const *models,
+    guint n_models, const ClothSimOptions * options, GError ** error)
+{
+  const ClothSimOptions usual = { FALSE, 0, CLOTH_SIMD_BEST, 0 };
+  g_autoptr (ClothSim) sim = g_new0 (ClothSim, 1);
+
+  if (!options)
+    options = &usual;
+  if (!check_models (models, n_models, error))
+    return NULL;
+  sim->body = cloth_body_new (scene, error);
+  if (!sim->body)
+    return NULL;
+  sim->n_models = n_models;
+  sim->fixed_step = models[0]->time_step;
+  sim->time = sim->body->times[0];
+  for (guint i = 0; i < G_N_ELEMENTS (sim->scratch); i++)
+    sim->scratch[i] = g_new0 (gdouble, 3 * (gsize) sim->body->n_particles);
+  make_groups (sim, models, options);
+  sim->pool = cloth_pool_new (options->threads);
+  find_time_step (sim);
+  return g_steal_pointer (&sim);
+}
+
+/**
+ * cloth_sim_free:
+ * @sim: (nullable) (transfer full): a simulation
+ *
+ * Since: 0.1
+ */
+void
+cloth_sim_free (ClothSim * sim)
+{
+  if (!sim)
+    return;
+  for (guint i = 0; i < sim->n_groups; i++)
+    sim->groups[i].backend->group_free (sim->groups[i].lanes);
+  g_free (sim->groups);
+  g_free (sim->group_of);
+  for (guint i = 0; i < G_N_ELEMENTS (sim->scratch); i++)
+    g_free (sim->scratch[i]);
+  g_clear_pointer (&sim->pool, cloth_pool_free);
+  g_clear_pointer (&sim->body, cloth_body_free);
+  g_free (sim);
+}
+
+/**
+ * cloth_sim_get_n_models:
+ * @sim: a simulation
+ *
+ * Returns: how many models it has
+ * Since: 0.1
+ */
+guint
+cloth_sim_get_n_models (const ClothSim * sim)
+{
+  return sim->n_models;
+}
+
+/**
+ * cloth_sim_get_n_vertices:
+ * @sim: a simulation
+ *
+ * Returns: how many vertices its cloth has
+ * Since: 0.1
+ */
+guint
+cloth_sim_get_n_vertices (const ClothSim * sim)
+{
+  return sim->body->n_vertices;
+}
+
+static void
+advance_groups (gpointer data, guint begin, guint end, guint worker)
+{
+  ClothSim *sim = data;
+
+  for (guint i = begin; i < end; i++)
+    sim->groups[i].backend->advance (sim->groups[i].lanes, sim->until,
+        sim->n_steps);
+}
+
+/**
+ * cloth_sim_advance:
+ * @sim: a simulation
+ * @until_s: where to stop, seconds; nothing happens when that is not ahead
+ *
+ * Moves all models on, in equal steps no longer than cloth_sim_get_time_step (). A model
+ * that diverges is put back to where it was at the start of this call and stays there.
+ *
+ * Since: 0.1
+ */
+void
+cloth_sim_advance (ClothSim * sim, gdouble until_s)
+{
+  gdouble span = until_s - sim->time;
+
+  if (!(span > 0.) || !isfinite (span))
+    return;
+  sim->until = until_s;
+  /* a step too many for a rounding error would be a waste */
+  sim->n_steps =
+      (guint) CLAMP (ceil (span / sim->time_step - 1e-9), 1., MAX_STEPS);
+  cloth_pool_run (sim->pool, advance_groups, sim, sim->n_groups);
+  sim->time = until_s;
+}
+
+/**
+ * cloth_sim_get_time:
+ * @sim: a simulation
+ *
+ * Returns: the time that its models have reached, seconds
+ * Since: 0.1
+ */
+gdouble
+cloth_sim_get_time (const ClothSim * sim)
+{
+  return sim->time;
+}
+
+/**
+ * cloth_sim_get_time_step:
+ * @sim: a simulation
+ *
+ * Returns: the longest step that cloth_sim_advance () takes, seconds
+ * Since: 0.1
+ */
+gdouble
+cloth_sim_get_time_step (const ClothSim * sim)
+{
+  return sim->time_step;
+}
+
+static const Group *
+group_of (const ClothSim * sim, guint model, guint * lane)
+{
+  const Group *group = &sim->groups[sim->group_of[model]];
+
+  *lane = model - group->first;
+  return group;
+}
+
+static void
+from_particles (const ClothSim * sim, const gdouble * particles,
+    gdouble * vertices)
+{
+  for (guint i = 0; i < sim->body->n_vertices; i++)
+    memcpy (vertices + 3 * i, particles + 3 * (gsize) sim->body->particle[i],
+        3 * sizeof *vertices);
+}
+
+/* Of sewn vertices the first one counts. */
+static void
+to_particles (const ClothSim * sim, const gdouble * vertices,
+    gdouble * particles)
+{
+  for (guint i = sim->body->n_vertices; i-- > 0;)
+    memcpy (particles + 3 * (gsize) sim->body->particle[i], vertices + 3 * i,
+        3 * sizeof *vertices);
+}
+
+/**
+ * cloth_sim_get_positions:
+ * @sim: a simulation
+ * @model: index of a model
+ * @positions: (out caller-allocates): where its vertices are, n_vertices · 3, metres
+ *
+ * Since: 0.1
+ */
+void
+cloth_sim_get_positions (const ClothSim * sim, guint model, gdouble * positions)
+{
+  guint lane;
+  const Group *group = group_of (sim, model, &lane);
+
+  group->backend->get (group->lanes, lane, sim->scratch[0], NULL);
+  from_particles (sim, sim->scratch[0], positions);
+}
+
+/**
+ * cloth_sim_get_velocities:
+ * @sim: a simulation
+ * @model: index of a model
+ * @velocities: (out caller-allocates): how fast its vertices are, n_vertices · 3, m/s
+ *
+ * Since: 0.1
+ */
+void
+cloth_sim_get_velocities (const ClothSim * sim, guint model,
+    gdouble * velocities)
+{
+  guint lane;
+  const Group *group = group_of (sim, model, &lane);
+
+  group->backend->get (group->lanes, lane, NULL, sim->scratch[0]);
+  from_particles (sim, sim->scratch[0], velocities);
+}
+
+/**
+ * cloth_sim_set_state:
+ * @sim: a simulation
+ * @model: index of a model
+ * @positions: where its vertices are to be, n_vertices · 3, metres
+ * @velocities: (nullable): how fast, m/s; %NULL: at rest
+ * @time_s: the time from which the simulation, all models of it, goes on
+ *
+ * Puts a model somewhere else, for example where it was observed. One that had diverged
+ * moves again. Vertices that a clamp holds are drawn to its path within one frame. Of
+ * vertices that are sewn together the first one's state counts.
+ *
+ * Since: 0.1
+ */
+void
+cloth_sim_set_state (ClothSim * sim, guint model, const gdouble * positions,
+    const gdouble * velocities, gdouble time_s)
+{
+  guint lane;
+  const Group *group = group_of (sim, model, &lane);
+
+  to_particles (sim, positions, sim->scratch[0]);
+  if (velocities)
+    to_particles (sim, velocities, sim->scratch[1]);
+  else
+    memset (sim->scratch[1], 0,
+        3 * (gsize) sim->body->n_particles * sizeof (gdouble));
+  group->backend->set (group->lanes, lane, sim->scratch[0], sim->scratch[1]);
+  if (time_s != sim->time) {
+    for (guint i = 0; i < sim->n_groups; i++)
+      sim->groups[i].backend->set_time (sim->groups[i].lanes, time_s);
+    sim->time = time_s;
+  }
+}
+
+/**
+ * cloth_sim_get_state:
+ * @sim: a simulation
+ * @model: index of a model
+ * @since_s: (out) (optional): when it was sound for the last time, NaN when it is
+ *
+ * Returns: whether the model still moves
+ * Since: 0.1
+ */
+ClothSimState
+cloth_sim_get_state (const ClothSim * sim, guint model, gdouble * since_s)
+{
+  guint lane;
+  const Group *group = group_of (sim, model, &lane);
+  gdouble since = group->backend->diverged (group->lanes, lane);
+
+  if (since_s)
+    *since_s = since;
+  return isnan (since) ? CLOTH_SIM_OK : CLOTH_SIM_DIVERGED;
+}
+
+/**
+ * cloth_sim_get_energy:
+ * @sim: a simulation
+ * @model: index of a model
+ *
+ * Returns: its energies now, without those of effects
+ * Since: 0.1
+ */
+ClothSimEnergy
+cloth_sim_get_energy (const ClothSim * sim, guint model)
+{
+  guint lane;
+  const Group *group = group_of (sim, model, &lane);
+
+  return group->backend->energy (group->lanes, lane);
+}
+
+/**
+ * cloth_sim_set_targets:
+ * @sim: a simulation
+ * @model: index of a model
+ * @now: where the vertices were observed at @t_now, n_vertices · 3, metres
+ * @next: where they were at @t_next
+ * @velocity_now: their velocities at @t_now, m/s
+ * @velocity_next: their velocities at @t_next
+ * @weights: one number of each vertex, 0 for those not observed
+ * @gain: 1/s²
+ * @damping: 1/s
+ * @t_now: seconds
+ * @t_next: seconds, after @t_now
+ *
+ * Draws a model to what was observed (an observer, or nudging): until the next call each
+ * vertex of mass m and weight w feels gain·m·w·(y − x) + damping·m·w·(y′ − v), with y and
+ * y′ on straight lines from now to next. Where a number is not finite the weight counts
+ * as 0. Sewn vertices are drawn to the weighted mean of their targets. The gains take
+ * part in the time step.
+ *
+ * Since: 0.1
+ */
+void
+cloth_sim_set_targets (ClothSim * sim, guint model, const gdouble * now,
+    const gdouble * next, const gdouble * velocity_now,
+    const gdouble * velocity_next, const gdouble * weights, gdouble gain,
+    gdouble damping, gdouble t_now, gdouble t_next)
+{
+  const gdouble *from[4] = { now, next, velocity_now, velocity_next };
+  gdouble *total = sim->scratch[4];
+  guint lane, n = sim->body->n_particles;
+  const Group *group = group_of (sim, model, &lane);
+
+  for (guint k = 0; k < 5; k++)
+    memset (sim->scratch[k], 0, 3 * (gsize) n * sizeof (gdouble));
+  for (guint i = 0; i < sim->body->n_vertices; i++) {
+    guint p = sim->body->particle[i];
+    gdouble weight = weights[i], sum = 0.;
+
+    for (guint k = 0; k < 4; k++)
+      sum += from[k][3 * i] + from[k][3 * i + 1] + from[k][3 * i + 2];
+    if (!isfinite (sum) || !(weight > 0.))
+      continue;
+    total[p] += weight;
+    for (guint k = 0; k < 4; k++)
+      for (guint c = 0; c < 3; c++)
+        sim->scratch[k][3 * p + c] += (from[k][3 * i + c] -
+            sim->scratch[k][3 * p + c]) * (weight / total[p]);
+  }
+  group->backend->set_targets (group->lanes, lane,
+      (const gdouble * const *) sim->scratch, total, gain, damping, t_now,
+      t_next);
+  find_time_step (sim);
+}

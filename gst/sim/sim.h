@@ -1,0 +1,96 @@
+/* The cloth simulator: many models of one scene at a time.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/math/cpu.h"
+#include "gst/sim/model.h"
+#include "gst/sim/scene.h"
+
+G_BEGIN_DECLS
+
+typedef struct _ClothSim ClothSim;
+
+/**
+ * ClothSimError:
+ * @CLOTH_SIM_ERROR_SCENE: the scene can't be simulated
+ * @CLOTH_SIM_ERROR_MODEL: a model is impossible
+ *
+ * Since: 0.1
+ */
+typedef enum {
+  CLOTH_SIM_ERROR_SCENE,
+  CLOTH_SIM_ERROR_MODEL
+} ClothSimError;
+
+#define CLOTH_SIM_ERROR (cloth_sim_error_quark ())
+GQuark cloth_sim_error_quark (void);
+
+/**
+ * ClothSimState:
+ * @CLOTH_SIM_OK: it moves
+ * @CLOTH_SIM_DIVERGED: its numbers went beyond all measure; it stands where it was when
+ *   cloth_sim_advance () last returned with it sound
+ *
+ * Since: 0.1
+ */
+typedef enum {
+  CLOTH_SIM_OK,
+  CLOTH_SIM_DIVERGED
+} ClothSimState;
+
+/**
+ * ClothSimOptions:
+ * @single: numbers of single precision: twice as many models at a time
+ * @threads: threads to use, 0 = one for each processor
+ * @simd: vector instructions to use; the result does not depend on them
+ * @seed: of what is random in effects
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  gboolean single;
+  guint threads;
+  ClothSimd simd;
+  guint64 seed;
+} ClothSimOptions;
+
+/**
+ * ClothSimEnergy:
+ * @kinetic: of motion, J
+ * @elastic: of stretch, shear and bending, J
+ * @gravity: of height above the origin, J
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  gdouble kinetic;
+  gdouble elastic;
+  gdouble gravity;
+} ClothSimEnergy;
+
+ClothSim *cloth_sim_new (const ClothScene * scene,
+    const ClothModel * const *models, guint n_models,
+    const ClothSimOptions * options, GError ** error);
+void cloth_sim_free (ClothSim * sim);
+guint cloth_sim_get_n_models (const ClothSim * sim);
+guint cloth_sim_get_n_vertices (const ClothSim * sim);
+void cloth_sim_advance (ClothSim * sim, gdouble until_s);
+gdouble cloth_sim_get_time (const ClothSim * sim);
+gdouble cloth_sim_get_time_step (const ClothSim * sim);
+void cloth_sim_get_positions (const ClothSim * sim, guint model,
+    gdouble * positions);
+void cloth_sim_get_velocities (const ClothSim * sim, guint model,
+    gdouble * velocities);
+void cloth_sim_set_state (ClothSim * sim, guint model,
+    const gdouble * positions, const gdouble * velocities, gdouble time_s);
+ClothSimState cloth_sim_get_state (const ClothSim * sim, guint model,
+    gdouble * since_s);
+ClothSimEnergy cloth_sim_get_energy (const ClothSim * sim, guint model);
+void cloth_sim_set_targets (ClothSim * sim, guint model, const gdouble * now,
+    const gdouble * next, const gdouble * velocity_now,
+    const gdouble * velocity_next, const gdouble * weights, gdouble gain,
+    gdouble damping, gdouble t_now, gdouble t_next);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothSim, cloth_sim_free)
+G_END_DECLS

@@ -1,0 +1,91 @@
+/* Cloth at rest and bodies in free motion, against closed forms.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "simscene.h"
+
+#include "gst/sim/effects/effects.h"
+
+/* x = ½ g t² but for half a step, which symplectic Euler is ahead: exactly known. */
+static void
+test_free_fall (void)
+{
+  g_autoptr (ClothScene) scene = sheet_new (5, 6, 0.2, 0.25);
+  g_autoptr (ClothModel) model = model_new (0.2, 50.);
+  g_autoptr (ClothSim) sim = NULL;
+  g_autofree gdouble *x = NULL, *v = NULL;
+  gdouble t = 0.5, h;
+
+  sim = run_new (scene, model);
+  run_for (sim, t);
+  h = 0.02 / ceil (0.02 / cloth_sim_get_time_step (sim) - 1e-9);
+  x = positions_of (sim, 0);
+  v = velocities_of (sim, 0);
+  for (guint i = 0; i < 30; i++) {
+    gdouble fallen = x[3 * i + 2] - scene->positions[3 * i + 2];
+
+    assert_within (fallen / (-0.5 * 9.81 * t * (t + h)), 1., 1e-6);
+    assert_within (v[3 * i + 2] / (-9.81 * t), 1., 1e-6);
+    assert_within (x[3 * i], scene->positions[3 * i], 1e-12);
+    assert_within (x[3 * i + 1], 0., 1e-12);
+  }
+}
+
+/* A strip of areal density ρ hung by its upper edge is stretched by ρ g (L − z)/k at
+ * depth z. Of Green's strain E the force in the strip is k E λ, λ = √(1 + 2E). */
+static void
+test_hanging_strain (void)
+{
+  g_autoptr (ClothScene) scene = sheet_new (3, 21, 0.1, 1.);
+  g_autoptr (ClothModel) model = model_new (0.2, 2000.);
+  g_autoptr (ClothSim) sim = NULL;
+  g_autofree gdouble *x = NULL;
+
+  model->damping_mass = 40.;
+  for (guint i = 0; i < 3; i++)
+    cloth_scene_hold (scene, i);
+  sim = run_new (scene, model);
+  run_for (sim, 2.);
+  x = positions_of (sim, 0);
+  for (guint row = 0; row < 20; row++) {
+    gdouble z = (row + 0.5) / 20.;
+    gdouble length = x[3 * (3 * row + 1) + 2] - x[3 * (3 * row + 4) + 2];
+    gdouble strain = length * 20. - 1.;
+
+    assert_within (strain, 0.2 * 9.81 * (1. - z) / 2000., 2e-6);
+  }
+}
+
+/* m g = ½ ρ_air C A v²: a level sheet falls at √(2 ρ g/(ρ_air C)). */
+static void
+test_terminal_speed (void)
+{
+  g_autoptr (ClothScene) scene = sheet_new (5, 5, 0.2, 0.2);
+  g_autoptr (ClothModel) model = model_new (0.1, 50.);
+  const gdouble coefficient = 1.3;
+  g_autoptr (ClothSim) sim = NULL;
+  g_autofree gdouble *v = NULL;
+
+  for (guint i = 0; i < 25; i++) {
+    scene->positions[3 * i + 1] = scene->positions[3 * i + 2];
+    scene->positions[3 * i + 2] = 0.;
+  }
+  model->damping_stiffness = 1e-3;
+  model->bending_warp = model->bending_weft = 1e-3;
+  cloth_model_set_effect (model, &cloth_effect_air_drag, &coefficient);
+  sim = run_new (scene, model);
+  run_for (sim, 2.);
+  v = velocities_of (sim, 0);
+  for (guint i = 0; i < 25; i++)
+    assert_within (v[3 * i + 2] / -sqrt (2. * 0.1 * 9.81 / (1.2 * 1.3)), 1.,
+        2e-3);
+}
+
+int
+main (int argc, char **argv)
+{
+  g_test_init (&argc, &argv, NULL);
+  g_test_add_func ("/sim/free-fall", test_free_fall);
+  g_test_add_func ("/sim/hanging-strain", test_hanging_strain);
+  g_test_add_func ("/sim/terminal-speed", test_terminal_speed);
+  return g_test_run ();
+}
