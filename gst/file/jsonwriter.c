@@ -11,6 +11,7 @@ struct _ClothJsonWriter
   GString *text;
   guint depth;
   gboolean first;               /* nothing yet in this object or list */
+  gboolean exact;
 };
 
 static void
@@ -35,17 +36,24 @@ add_quoted (GString * text, const gchar * value)
   g_string_append_c (text, '"');
 }
 
-/* Seven digits are more than any measured figure carries. */
+/* Seven digits are more than any measured figure carries; what is to be read again
+ * takes as many as it needs. */
 static void
-add_number (GString * text, gdouble value)
+add_number (ClothJsonWriter * writer, gdouble value)
 {
-  gchar digits[G_ASCII_DTOSTR_BUF_SIZE];
+  gchar digits[G_ASCII_DTOSTR_BUF_SIZE], format[8];
 
-  if (isfinite (value))
-    g_string_append (text, g_ascii_formatd (digits, sizeof digits, "%.7g",
-            value == 0 ? 0 : value));
-  else
-    g_string_append (text, "null");
+  if (!isfinite (value)) {
+    g_string_append (writer->text, "null");
+    return;
+  }
+  for (guint n = 7; n <= 17; n++) {
+    g_snprintf (format, sizeof format, "%%.%ug", n);
+    g_ascii_formatd (digits, sizeof digits, format, value == 0 ? 0 : value);
+    if (!writer->exact || g_ascii_strtod (digits, NULL) == value)
+      break;
+  }
+  g_string_append (writer->text, digits);
 }
 
 static void
@@ -100,6 +108,20 @@ cloth_json_writer_new (void)
   writer->text = g_string_new (NULL);
   writer->first = TRUE;
   return writer;
+}
+
+/**
+ * cloth_json_writer_set_exact:
+ * @writer: a writer
+ *
+ * Numbers written from now on are, when read, the very same.
+ *
+ * Since: 0.1
+ */
+void
+cloth_json_writer_set_exact (ClothJsonWriter * writer)
+{
+  writer->exact = TRUE;
 }
 
 /**
@@ -175,7 +197,7 @@ cloth_json_writer_string (ClothJsonWriter * writer, const gchar * key,
  * cloth_json_writer_number:
  * @writer: a writer
  * @key: (nullable): its key; %NULL in a list
- * @value: written with seven digits; null unless finite
+ * @value: written with seven digits, or exactly; null unless finite
  *
  * Since: 0.1
  */
@@ -184,7 +206,7 @@ cloth_json_writer_number (ClothJsonWriter * writer, const gchar * key,
     gdouble value)
 {
   start_item (writer, key);
-  add_number (writer->text, value);
+  add_number (writer, value);
 }
 
 /**
@@ -243,7 +265,7 @@ cloth_json_writer_numbers (ClothJsonWriter * writer, const gchar * key,
   for (gsize i = 0; i < n; i++) {
     if (i > 0)
       g_string_append (writer->text, ", ");
-    add_number (writer->text, values[i]);
+    add_number (writer, values[i]);
   }
   g_string_append_c (writer->text, ']');
 }

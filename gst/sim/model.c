@@ -1,9 +1,45 @@
-/* A model of a cloth: defaults and effects.
+/* A model of a cloth: defaults, effects, values by name, limits.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/sim/model.h"
 
+#include <math.h>
 #include <string.h>
+
+#include "gst/sim/effect-table.h"
+
+/* *INDENT-OFF* */
+G_DEFINE_QUARK (cloth-model-error-quark, cloth_model_error)
+/* *INDENT-ON* */
+
+/* Every number of model.json but those of effects. */
+static const struct
+{
+  const gchar *name;
+  gsize offset;
+  gdouble least, most;
+} keys[] = {
+  {"areal_density", G_STRUCT_OFFSET (ClothModel, areal_density), 1e-4, 1e3},
+  {"stretch.warp", G_STRUCT_OFFSET (ClothModel, stretch_warp), 0, 1e7},
+  {"stretch.weft", G_STRUCT_OFFSET (ClothModel, stretch_weft), 0, 1e7},
+  {"shear", G_STRUCT_OFFSET (ClothModel, shear), 0, 1e7},
+  {"bending.warp", G_STRUCT_OFFSET (ClothModel, bending_warp), 0, 1e3},
+  {"bending.weft", G_STRUCT_OFFSET (ClothModel, bending_weft), 0, 1e3},
+  {"damping.mass", G_STRUCT_OFFSET (ClothModel, damping_mass), 0, 1e4},
+  {"damping.stiffness", G_STRUCT_OFFSET (ClothModel, damping_stiffness), 0, 1},
+  {"compression_ratio", G_STRUCT_OFFSET (ClothModel, compression_ratio), 0, 1},
+  {"air_density", G_STRUCT_OFFSET (ClothModel, air_density), 0, 2e3},
+  {"time_step", G_STRUCT_OFFSET (ClothModel, time_step), 0, 1},
+};
+
+/* What a dotted name stands for: a key, or a parameter of an effect. */
+typedef struct
+{
+  gsize offset;
+  const ClothEffect *effect;    /* NULL: the number at offset */
+  guint parameter;
+  gdouble least, most;
+} Place;
 
 static void
 free_clear (gpointer data)
@@ -37,6 +73,41 @@ cloth_model_new (void)
 }
 
 /**
+ * cloth_model_copy:
+ * @model: a model
+ *
+ * Returns: (transfer full): a deep copy
+ * Since: 0.1
+ */
+ClothModel *
+cloth_model_copy (const ClothModel * model)
+{
+  ClothModel *copy = g_memdup2 (model, sizeof *model);
+
+  copy->effects = g_array_copy (model->effects);
+  copy->free = g_array_copy (model->free);
+  for (guint i = 0; i < copy->free->len; i++) {
+    ClothModelFree *entry = &g_array_index (copy->free, ClothModelFree, i);
+
+    entry->name = g_strdup (entry->name);
+  }
+  return copy;
+}
+
+static ClothModelEffect *
+find_effect (const ClothModel * model, const ClothEffect * effect)
+{
+  for (guint i = 0; i < model->effects->len; i++) {
+    ClothModelEffect *present =
+        &g_array_index (model->effects, ClothModelEffect, i);
+
+    if (strcmp (present->effect->id, effect->id) == 0)
+      return present;
+  }
+  return NULL;
+}
+
+/**
  * cloth_model_set_effect:
  * @model: a model
  * @effect: an effect
@@ -50,20 +121,234 @@ void
 cloth_model_set_effect (ClothModel * model, const ClothEffect * effect,
     const gdouble * values)
 {
+  ClothModelEffect *present = find_effect (model, effect);
   ClothModelEffect entry = { effect };
 
   for (guint i = 0; i < effect->n_parameters; i++)
     entry.values[i] = values ? values[i] : effect->parameters[i].null_value;
+  if (present)
+    *present = entry;
+  else
+    g_array_append_val (model->effects, entry);
+}
+
+static gboolean
+no_name (GError ** error, const gchar * name, const gchar * what)
+{
+  g_set_error (error, CLOTH_MODEL_ERROR, CLOTH_MODEL_ERROR_NAME,
+      "“%s”: %s", name, what);
+  return FALSE;
+}
+
+static gboolean
+find_parameter (const gchar * name, Place * place, GError ** error)
+{
+  const gchar *id = name + strlen ("effects.");
+  const gchar *dot = strchr (id, '.');
+  g_autofree gchar *effect_id = dot ? g_strndup (id, (gsize) (dot - id)) : NULL;
+  g_autoptr (GString) list = NULL;
+  const ClothEffect *effect = cloth_effect_find (dot ? effect_id : id);
+
+  if (!effect)
+    return no_name (error, name, "there is no such effect; "
+        "gst-cloth-gap-1.0 effects lists them");
+  place->effect = effect;
+  list = g_string_new ("its parameters are");
+  for (guint i = 0; i < effect->n_parameters; i++) {
+    const ClothEffectParameter *parameter = &effect->parameters[i];
+
+    g_string_append_printf (list, "%s %s", i ? "," : "", parameter->name);
+    if (!dot || strcmp (dot + 1, parameter->name) != 0)
+      continue;
+    place->parameter = i;
+    place->least = parameter->min;
+    place->most = parameter->max;
+    return TRUE;
+  }
+  return no_name (error, name, list->str);
+}
+
+static gboolean
+find_place (const gchar * name, Place * place, GError ** error)
+{
+  g_autoptr (GString) list = NULL;
+
+  memset (place, 0, sizeof *place);
+  if (g_str_has_prefix (name, "effects."))
+    return find_parameter (name, place, error);
+  list = g_string_new ("there is no such number; there are");
+  for (guint i = 0; i < G_N_ELEMENTS (keys); i++) {
+    g_string_append_printf (list, " %s,", keys[i].name);
+    if (strcmp (name, keys[i].name) != 0)
+      continue;
+    place->offset = keys[i].offset;
+    place->least = keys[i].least;
+    place->most = keys[i].most;
+    return TRUE;
+  }
+  g_string_append (list, " effects.<effect>.<parameter>");
+  return no_name (error, name, list->str);
+}
+
+static gboolean
+check_value (const gchar * name, gdouble value, const Place * place,
+    GError ** error)
+{
+  /* A NaN is not in any range. */
+  if (value >= place->least && value <= place->most)
+    return TRUE;
+  g_set_error (error, CLOTH_MODEL_ERROR, CLOTH_MODEL_ERROR_VALUE,
+      "“%s” is %g; it must be from %g to %g", name, value, place->least,
+      place->most);
+  return FALSE;
+}
+
+/**
+ * cloth_model_get:
+ * @model: a model
+ * @name: key of a number, `stretch.warp`, or of an effect's, `effects.wind.x`
+ * @value: (out): its value; the null of an effect that the model has not
+ * @error: #ClothModelError
+ *
+ * Returns: %TRUE when there is such a number
+ * Since: 0.1
+ */
+gboolean
+cloth_model_get (const ClothModel * model, const gchar * name,
+    gdouble * value, GError ** error)
+{
+  const ClothModelEffect *present;
+  Place place;
+
+  if (!find_place (name, &place, error))
+    return FALSE;
+  if (!place.effect)
+    *value = G_STRUCT_MEMBER (gdouble, model, place.offset);
+  else if ((present = find_effect (model, place.effect)))
+    *value = present->values[place.parameter];
+  else
+    *value = place.effect->parameters[place.parameter].null_value;
+  return TRUE;
+}
+
+/**
+ * cloth_model_set:
+ * @model: a model
+ * @name: as for cloth_model_get ()
+ * @value: its new value
+ * @error: #ClothModelError, naming key and value
+ *
+ * An effect that the model has not is added, its other parameters at their nulls.
+ *
+ * Returns: %TRUE when there is such a number and it may have this value; else nothing
+ *   is changed
+ * Since: 0.1
+ */
+gboolean
+cloth_model_set (ClothModel * model, const gchar * name, gdouble value,
+    GError ** error)
+{
+  Place place;
+
+  if (!find_place (name, &place, error) ||
+      !check_value (name, value, &place, error))
+    return FALSE;
+  if (!place.effect) {
+    G_STRUCT_MEMBER (gdouble, model, place.offset) = value;
+    return TRUE;
+  }
+  if (!find_effect (model, place.effect))
+    cloth_model_set_effect (model, place.effect, NULL);
+  find_effect (model, place.effect)->values[place.parameter] = value;
+  return TRUE;
+}
+
+/**
+ * cloth_model_get_range:
+ * @name: as for cloth_model_get ()
+ * @range: (out): least and greatest value it may have
+ * @error: #ClothModelError
+ *
+ * Returns: %TRUE when there is such a number
+ * Since: 0.1
+ */
+gboolean
+cloth_model_get_range (const gchar * name, gdouble range[2], GError ** error)
+{
+  Place place;
+
+  if (!find_place (name, &place, error))
+    return FALSE;
+  range[0] = place.least;
+  range[1] = place.most;
+  return TRUE;
+}
+
+static gboolean
+check_free (const ClothModel * model, guint i, GError ** error)
+{
+  const ClothModelFree *entry = &g_array_index (model->free, ClothModelFree, i);
+  Place place;
+
+  if (!find_place (entry->name, &place, error) ||
+      !check_value (entry->name, entry->range[0], &place, error) ||
+      !check_value (entry->name, entry->range[1], &place, error)) {
+    g_prefix_error (error, "free: ");
+    return FALSE;
+  }
+  if (entry->range[0] >= entry->range[1]) {
+    g_set_error (error, CLOTH_MODEL_ERROR, CLOTH_MODEL_ERROR_VALUE,
+        "free: the range of “%s”, %g to %g, does not rise", entry->name,
+        entry->range[0], entry->range[1]);
+    return FALSE;
+  }
+  for (guint k = 0; k < i; k++) {
+    if (strcmp (g_array_index (model->free, ClothModelFree, k).name,
+            entry->name) != 0)
+      continue;
+    g_set_error (error, CLOTH_MODEL_ERROR, CLOTH_MODEL_ERROR_VALUE,
+        "free: “%s” is there twice", entry->name);
+    return FALSE;
+  }
+  return TRUE;
+}
+
+/**
+ * cloth_model_check:
+ * @model: a model made by hand
+ * @error: #ClothModelError, naming key and value
+ *
+ * Returns: %TRUE when every number is one that it may have
+ * Since: 0.1
+ */
+gboolean
+cloth_model_check (const ClothModel * model, GError ** error)
+{
+  for (guint i = 0; i < G_N_ELEMENTS (keys); i++) {
+    const Place place = {.least = keys[i].least,.most = keys[i].most };
+
+    if (!check_value (keys[i].name, G_STRUCT_MEMBER (gdouble, model,
+                keys[i].offset), &place, error))
+      return FALSE;
+  }
   for (guint i = 0; i < model->effects->len; i++) {
-    ClothModelEffect *present =
+    const ClothModelEffect *entry =
         &g_array_index (model->effects, ClothModelEffect, i);
 
-    if (strcmp (present->effect->id, effect->id) == 0) {
-      *present = entry;
-      return;
+    for (guint k = 0; k < entry->effect->n_parameters; k++) {
+      const ClothEffectParameter *parameter = &entry->effect->parameters[k];
+      const Place place = {.least = parameter->min,.most = parameter->max };
+      g_autofree gchar *name = g_strdup_printf ("effects.%s.%s",
+          entry->effect->id, parameter->name);
+
+      if (!check_value (name, entry->values[k], &place, error))
+        return FALSE;
     }
   }
-  g_array_append_val (model->effects, entry);
+  for (guint i = 0; i < model->free->len; i++)
+    if (!check_free (model, i, error))
+      return FALSE;
+  return TRUE;
 }
 
 /**

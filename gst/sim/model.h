@@ -8,6 +8,25 @@
 G_BEGIN_DECLS
 
 /**
+ * ClothModelError:
+ * @CLOTH_MODEL_ERROR_FORMAT: a text that is no model.json
+ * @CLOTH_MODEL_ERROR_NAME: a key, parameter or effect that there is not
+ * @CLOTH_MODEL_ERROR_VALUE: a value that cannot be
+ *
+ * What can be wrong with a model. Messages name the key and the value.
+ *
+ * Since: 0.1
+ */
+typedef enum {
+  CLOTH_MODEL_ERROR_FORMAT,
+  CLOTH_MODEL_ERROR_NAME,
+  CLOTH_MODEL_ERROR_VALUE
+} ClothModelError;
+
+#define CLOTH_MODEL_ERROR (cloth_model_error_quark ())
+GQuark cloth_model_error_quark (void);
+
+/**
  * ClothForceModel:
  * @CLOTH_FORCE_MEMBRANE: orthotropic membrane on triangles with hinge bending
  * @CLOTH_FORCE_MASS_SPRING: structural, shear and bend springs
@@ -100,9 +119,22 @@ typedef struct {
 } ClothModel;
 
 ClothModel *cloth_model_new (void);
+ClothModel *cloth_model_copy (const ClothModel * model);
 void cloth_model_set_effect (ClothModel * model, const ClothEffect * effect,
     const gdouble * values);
+gboolean cloth_model_get (const ClothModel * model, const gchar * name,
+    gdouble * value, GError ** error);
+gboolean cloth_model_set (ClothModel * model, const gchar * name,
+    gdouble value, GError ** error);
+gboolean cloth_model_get_range (const gchar * name, gdouble range[2],
+    GError ** error);
+gboolean cloth_model_check (const ClothModel * model, GError ** error);
 void cloth_model_free (ClothModel * model);
+
+ClothModel *cloth_model_parse (const gchar * json, gsize size,
+    GError ** error);
+ClothModel *cloth_model_load (const gchar * path, GError ** error);
+gchar *cloth_model_to_json (const ClothModel * model);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothModel, cloth_model_free)
 G_END_DECLS
