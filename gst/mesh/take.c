@@ -38,6 +38,26 @@ load_info (ClothTake * take, const gchar * folder, GError ** error)
 }
 
 static gboolean
+check_seams (const ClothTake * take, GError ** error)
+{
+  for (guint i = 0; i < take->info->seams->len; i++) {
+    const ClothSeamLine *line =
+        &g_array_index (take->info->seams, ClothSeamLine, i);
+
+    for (guint k = 0; k < 2 * line->n_vertices; k++) {
+      guint vertex = line->lines[k % 2][k / 2];
+
+      if (vertex < take->topology->n_vertices)
+        continue;
+      g_set_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID,
+          "take.json: vertex %u of seam %u is not in the mesh", vertex, i);
+      return FALSE;
+    }
+  }
+  return TRUE;
+}
+
+static gboolean
 load_topology (ClothTake * take, const gchar * folder, GError ** error)
 {
   const ClothTakeInfo *info = take->info;
@@ -67,6 +87,20 @@ load_topology (ClothTake * take, const gchar * folder, GError ** error)
           g_array_index (info->held, ClothHeld, i).vertex);
       return FALSE;
     }
+  }
+  return check_seams (take, error);
+}
+
+static gboolean
+load_obstacles (ClothTake * take, const gchar * folder, GError ** error)
+{
+  for (guint i = 0; i < take->info->obstacles->len; i++) {
+    ClothObstacle *obstacle =
+        &g_array_index (take->info->obstacles, ClothObstacle, i);
+
+    if (obstacle->kind == CLOTH_OBSTACLE_MESH &&
+        !cloth_obstacle_load_mesh (obstacle, folder, error))
+      return FALSE;
   }
   return TRUE;
 }
@@ -224,6 +258,7 @@ cloth_take_open (const gchar * folder, GError ** error)
 
   if (!load_info (take, folder, error) ||
       !load_topology (take, folder, error) ||
+      !load_obstacles (take, folder, error) ||
       !load_arrays (take, folder, error)) {
     g_prefix_error (error, "%s: ", folder);
     return NULL;

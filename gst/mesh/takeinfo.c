@@ -5,163 +5,12 @@
 
 #include <math.h>
 
-#include "gst/file/json.h"
+#include "gst/mesh/obstaclejson.h"
 
-#define MAX_OBSTACLES 1024
+#define MAX_SEAMS 1024
 
-static gboolean
-G_GNUC_PRINTF (2, 3)
-invalid (GError ** error, const gchar * format, ...)
-{
-  g_autofree gchar *text = NULL;
-  va_list arguments;
-
-  va_start (arguments, format);
-  text = g_strdup_vprintf (format, arguments);
-  va_end (arguments);
-  g_set_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID,
-      "take.json: %s", text);
-  return FALSE;
-}
-
-static gboolean
-check_keys (JsonObject * object, const gchar * where,
-    const gchar * const *allowed, GError ** error)
-{
-  g_autoptr (GList) members = json_object_get_members (object);
-
-  for (GList * at = members; at; at = at->next) {
-    if (!g_strv_contains (allowed, at->data)) {
-      g_autofree gchar *list = g_strjoinv (", ", (gchar **) allowed);
-
-      return invalid (error, "unknown key “%s” in %s; the keys are %s",
-          (const gchar *) at->data, where, list);
-    }
-  }
-  return TRUE;
-}
-
-static JsonNode *
-find (JsonObject * object, const gchar * key)
-{
-  JsonNode *node = json_object_get_member (object, key);
-
-  return node && !JSON_NODE_HOLDS_NULL (node) ? node : NULL;
-}
-
-static gboolean
-node_number (JsonNode * node, gdouble * value)
-{
-  GType type = JSON_NODE_HOLDS_VALUE (node) ? json_node_get_value_type (node) :
-      G_TYPE_INVALID;
-
-  if (type == G_TYPE_INT64)
-    *value = (gdouble) json_node_get_int (node);
-  else if (type == G_TYPE_DOUBLE)
-    *value = json_node_get_double (node);
-  else
-    return FALSE;
-  return isfinite (*value);
-}
-
-/* Leaves @value when the key is absent or null. */
-static gboolean
-get_number (JsonObject * object, const gchar * key, gdouble least,
-    gdouble most, gdouble * value, GError ** error)
-{
-  JsonNode *node = find (object, key);
-  gdouble number;
-
-  if (!node)
-    return TRUE;
-  if (!node_number (node, &number) || number < least || number > most)
-    return invalid (error, "“%s” must be a number from %g to %g", key,
-        least, most);
-  *value = number;
-  return TRUE;
-}
-
-static gboolean
-get_count (JsonObject * object, const gchar * key, guint least, guint most,
-    guint * value, GError ** error)
-{
-  JsonNode *node = find (object, key);
-  gdouble number;
-
-  if (!node || !node_number (node, &number) || number != floor (number) ||
-      number < least || number > most)
-    return invalid (error, "“%s” must be a whole number from %u to %u", key,
-        least, most);
-  *value = (guint) number;
-  return TRUE;
-}
-
-static gboolean
-get_string (JsonObject * object, const gchar * key, gchar ** value,
-    GError ** error)
-{
-  JsonNode *node = find (object, key);
-
-  if (!node)
-    return TRUE;
-  if (!JSON_NODE_HOLDS_VALUE (node) ||
-      json_node_get_value_type (node) != G_TYPE_STRING)
-    return invalid (error, "“%s” must be a text", key);
-  *value = g_strdup (json_node_get_string (node));
-  return TRUE;
-}
-
-static gboolean
-get_vector (JsonObject * object, const gchar * key, gboolean needed,
-    gdouble * value, GError ** error)
-{
-  JsonNode *node = find (object, key);
-  JsonArray *array;
-
-  if (!node && !needed)
-    return TRUE;
-  array = node && JSON_NODE_HOLDS_ARRAY (node) ? json_node_get_array (node) :
-      NULL;
-  if (!array || json_array_get_length (array) != 3)
-    return invalid (error, "“%s” must be a list of three numbers", key);
-  for (guint i = 0; i < 3; i++) {
-    if (!node_number (json_array_get_element (array, i), &value[i]) ||
-        fabs (value[i]) > 1e6)
-      return invalid (error, "“%s” must be a list of three numbers", key);
-  }
-  return TRUE;
-}
-
-/* Returns the list, NULL when absent; @bad is set when it is something else. */
-static JsonArray *
-get_list (JsonObject * object, const gchar * key, guint most, gboolean * bad,
-    GError ** error)
-{
-  JsonNode *node = find (object, key);
-  JsonArray *array;
-
-  *bad = FALSE;
-  if (!node)
-    return NULL;
-  array = JSON_NODE_HOLDS_ARRAY (node) ? json_node_get_array (node) : NULL;
-  if (!array || json_array_get_length (array) > most) {
-    *bad = TRUE;
-    invalid (error, "“%s” must be a list of at most %u items", key, most);
-    return NULL;
-  }
-  return array;
-}
-
-static JsonObject *
-item_object (JsonArray * array, guint i, const gchar * key, GError ** error)
-{
-  JsonNode *node = json_array_get_element (array, i);
-
-  if (JSON_NODE_HOLDS_OBJECT (node))
-    return json_node_get_object (node);
-  invalid (error, "item %u of “%s” must be an object", i, key);
-  return NULL;
-}
+static const ClothJsonFile take_json =
+    { "take.json", cloth_mesh_error_quark, CLOTH_MESH_ERROR_INVALID };
 
 static gboolean
 parse_grid (JsonNode * node, ClothTakeInfo * info, GError ** error)
@@ -171,17 +20,22 @@ parse_grid (JsonNode * node, ClothTakeInfo * info, GError ** error)
   JsonObject *grid;
 
   if (!JSON_NODE_HOLDS_OBJECT (node))
-    return invalid (error, "“grid” must be an object");
+    return cloth_json_invalid (&take_json, error,
+        "“grid” must be an object");
   grid = json_node_get_object (node);
-  if (!check_keys (grid, "“grid”", keys, error) ||
-      !get_count (grid, "columns", 2, CLOTH_MAX_VERTICES / 2, &info->columns,
-          error) ||
-      !get_count (grid, "rows", 2, CLOTH_MAX_VERTICES / 2, &info->rows, error)
-      || !get_number (grid, "width_m", 1e-6, 1e6, &info->width_m, error) ||
-      !get_number (grid, "height_m", 1e-6, 1e6, &info->height_m, error))
+  if (!cloth_json_check_keys (&take_json, grid, "“grid”", keys, error) ||
+      !cloth_json_get_count (&take_json, grid, "columns", 2,
+          CLOTH_MAX_VERTICES / 2, &info->columns, error)
+      || !cloth_json_get_count (&take_json, grid, "rows", 2,
+          CLOTH_MAX_VERTICES / 2, &info->rows, error)
+      || !cloth_json_get_number (&take_json, grid, "width_m", 1e-6, 1e6,
+          &info->width_m, error)
+      || !cloth_json_get_number (&take_json, grid, "height_m", 1e-6, 1e6,
+          &info->height_m, error))
     return FALSE;
   if (info->width_m == 0 || info->height_m == 0)
-    return invalid (error, "“grid” needs width_m and height_m");
+    return cloth_json_invalid (&take_json, error,
+        "“grid” needs width_m and height_m");
   if ((guint64) info->columns * info->rows > CLOTH_MAX_VERTICES) {
     g_set_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_LIMIT,
         "take.json: a grid of %u × %u vertices; %u are accepted",
@@ -196,83 +50,106 @@ parse_held (JsonObject * root, ClothTakeInfo * info, GError ** error)
 {
   static const gchar *const keys[] = { "vertex", "from_s", "until_s", NULL };
   gboolean bad;
-  JsonArray *list = get_list (root, "held", CLOTH_MAX_VERTICES, &bad, error);
-  guint n_vertices = info->mesh ? CLOTH_MAX_VERTICES :
-      info->columns * info->rows;
+  JsonArray *list =
+      cloth_json_get_list (&take_json, root, "held", CLOTH_MAX_VERTICES, &bad,
+      error);
+  guint n_vertices =
+      info->mesh ? CLOTH_MAX_VERTICES : info->columns * info->rows;
 
   if (bad)
     return FALSE;
   for (guint i = 0; list && i < json_array_get_length (list); i++) {
-    JsonObject *object = item_object (list, i, "held", error);
+    JsonObject *object =
+        cloth_json_item_object (&take_json, list, i, "held", error);
     ClothHeld held = {.from_s = -INFINITY,.until_s = INFINITY };
 
-    if (!object || !check_keys (object, "“held”", keys, error) ||
-        !get_count (object, "vertex", 0, n_vertices - 1, &held.vertex, error)
-        || !get_number (object, "from_s", -1e9, 1e9, &held.from_s, error) ||
-        !get_number (object, "until_s", -1e9, 1e9, &held.until_s, error))
+    if (!object
+        || !cloth_json_check_keys (&take_json, object, "“held”", keys,
+            error)
+        || !cloth_json_get_count (&take_json, object, "vertex", 0,
+            n_vertices - 1, &held.vertex, error)
+        || !cloth_json_get_number (&take_json, object, "from_s", -1e9, 1e9,
+            &held.from_s, error)
+        || !cloth_json_get_number (&take_json, object, "until_s", -1e9, 1e9,
+            &held.until_s, error))
       return FALSE;
     if (held.from_s >= held.until_s)
-      return invalid (error, "held vertex %u is let go before it is held",
-          held.vertex);
+      return cloth_json_invalid (&take_json, error,
+          "held vertex %u is let go before it is held", held.vertex);
     g_array_append_val (info->held, held);
   }
   return TRUE;
 }
 
+/* A line of vertices; the count of the first line is that of the second. */
 static gboolean
-parse_obstacle (JsonObject * object, ClothObstacle * obstacle, GError ** error)
+parse_line (JsonNode * node, guint seam, ClothSeamLine * line, guint side,
+    GError ** error)
 {
-  static const gchar *const sphere_keys[] =
-      { "type", "centre", "radius_m", "friction", NULL };
-  static const gchar *const plane_keys[] =
-      { "type", "point", "normal", "friction", NULL };
-  g_autofree gchar *type = NULL;
-  gdouble length;
+  JsonArray *array = node && JSON_NODE_HOLDS_ARRAY (node) ?
+      json_node_get_array (node) : NULL;
+  guint n = array ? json_array_get_length (array) : 0;
+  g_autoptr (GHashTable) seen = g_hash_table_new (NULL, NULL);
 
-  obstacle->friction = NAN;
-  if (!get_string (object, "type", &type, error) ||
-      !get_number (object, "friction", 0, 100, &obstacle->friction, error))
-    return FALSE;
-  if (g_strcmp0 (type, "sphere") == 0) {
-    obstacle->kind = CLOTH_OBSTACLE_SPHERE;
-    if (!check_keys (object, "a sphere", sphere_keys, error) ||
-        !get_vector (object, "centre", TRUE, obstacle->point, error) ||
-        !get_number (object, "radius_m", 1e-6, 1e6, &obstacle->radius_m, error))
-      return FALSE;
-    return obstacle->radius_m > 0 || invalid (error, "a sphere needs radius_m");
+  if (n < 2)
+    return cloth_json_invalid (&take_json, error,
+        "a line of seam %u must be a list of at least two vertices", seam);
+  if (side == 1 && n != line->n_vertices)
+    return cloth_json_invalid (&take_json, error, "the lines of seam %u have "
+        "%u and %u vertices; they are sewn vertex by vertex, so give both as "
+        "many", seam, line->n_vertices, n);
+  line->n_vertices = n;
+  line->lines[side] = g_new (guint, n);
+  for (guint i = 0; i < n; i++) {
+    gdouble number;
+
+    if (!cloth_json_number (json_array_get_element (array, i), &number) ||
+        number != floor (number) || number < 0 || number >= CLOTH_MAX_VERTICES)
+      return cloth_json_invalid (&take_json, error, "the lines of seam %u "
+          "must be lists of vertices, whole numbers from 0 to %u", seam,
+          CLOTH_MAX_VERTICES - 1);
+    line->lines[side][i] = (guint) number;
+    if (!g_hash_table_add (seen, GUINT_TO_POINTER ((guint) number)))
+      return cloth_json_invalid (&take_json, error,
+          "a line of seam %u has vertex %u twice", seam, (guint) number);
   }
-  if (g_strcmp0 (type, "plane") != 0)
-    return invalid (error, "the “type” of an obstacle is sphere or plane");
-  obstacle->kind = CLOTH_OBSTACLE_PLANE;
-  if (!check_keys (object, "a plane", plane_keys, error) ||
-      !get_vector (object, "point", TRUE, obstacle->point, error) ||
-      !get_vector (object, "normal", TRUE, obstacle->normal, error))
-    return FALSE;
-  length = sqrt (obstacle->normal[0] * obstacle->normal[0] +
-      obstacle->normal[1] * obstacle->normal[1] +
-      obstacle->normal[2] * obstacle->normal[2]);
-  if (length < 1e-9)
-    return invalid (error, "the “normal” of a plane has no length");
-  for (guint k = 0; k < 3; k++)
-    obstacle->normal[k] /= length;
   return TRUE;
 }
 
 static gboolean
-parse_obstacles (JsonObject * root, ClothTakeInfo * info, GError ** error)
+parse_seams (JsonObject * root, ClothTakeInfo * info, GError ** error)
 {
+  static const gchar *const keys[] = { "lines", NULL };
   gboolean bad;
-  JsonArray *list = get_list (root, "obstacles", MAX_OBSTACLES, &bad, error);
+  JsonArray *list = cloth_json_get_list (&take_json, root, "seams", MAX_SEAMS,
+      &bad, error);
 
   if (bad)
     return FALSE;
+  if (list && json_array_get_length (list) > 0 && !info->mesh)
+    return cloth_json_invalid (&take_json, error,
+        "“seams” need a “mesh”; a grid is one piece");
   for (guint i = 0; list && i < json_array_get_length (list); i++) {
-    JsonObject *object = item_object (list, i, "obstacles", error);
-    ClothObstacle obstacle = { 0 };
+    JsonObject *object =
+        cloth_json_item_object (&take_json, list, i, "seams", error);
+    JsonArray *lines;
+    ClothSeamLine *line;
 
-    if (!object || !parse_obstacle (object, &obstacle, error))
+    if (!object ||
+        !cloth_json_check_keys (&take_json, object, "“seams”", keys, error))
       return FALSE;
-    g_array_append_val (info->obstacles, obstacle);
+    lines = cloth_json_get_list (&take_json, object, "lines", 2, &bad, error);
+    if (bad)
+      return FALSE;
+    if (!lines || json_array_get_length (lines) != 2)
+      return cloth_json_invalid (&take_json, error,
+          "seam %u needs “lines”, a list of two lists of vertices", i);
+    g_array_set_size (info->seams, i + 1);
+    line = &g_array_index (info->seams, ClothSeamLine, i);
+    for (guint side = 0; side < 2; side++)
+      if (!parse_line (json_array_get_element (lines, side), i, line, side,
+              error))
+        return FALSE;
   }
   return TRUE;
 }
@@ -281,31 +158,49 @@ static gboolean
 parse_root (JsonObject * root, ClothTakeInfo * info, GError ** error)
 {
   static const gchar *const keys[] = { "version", "name", "fps", "grid",
-    "mesh", "held", "noise_sigma_m", "gravity", "obstacles", "notes", NULL
+    "mesh", "held", "noise_sigma_m", "gravity", "obstacles", "seams", "notes",
+    NULL
   };
-  JsonNode *grid = find (root, "grid");
+  JsonNode *grid = cloth_json_find (root, "grid");
   guint version;
 
-  if (!get_count (root, "version", 0, G_MAXINT, &version, error))
+  if (!cloth_json_get_count (&take_json, root, "version", 0, G_MAXINT, &version,
+          error))
     return FALSE;
   if (version != 1) {
     g_set_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_UNSUPPORTED,
         "take.json: version %u is not read, only 1", version);
     return FALSE;
   }
-  if (!check_keys (root, "take.json", keys, error) ||
-      !get_string (root, "name", &info->name, error) ||
-      !get_number (root, "fps", 1e-6, 1e6, &info->fps, error) ||
-      !get_string (root, "mesh", &info->mesh, error) ||
-      !get_number (root, "noise_sigma_m", 0, 1e6, &info->noise_sigma_m,
-          error) || !get_vector (root, "gravity", FALSE, info->gravity, error)
-      || !get_string (root, "notes", &info->notes, error))
+  if (!cloth_json_check_keys (&take_json, root, "take.json", keys, error) ||
+      !cloth_json_get_string (&take_json, root, "name", &info->name, error) ||
+      !cloth_json_get_number (&take_json, root, "fps", 1e-6, 1e6, &info->fps,
+          error)
+      || !cloth_json_get_string (&take_json, root, "mesh", &info->mesh, error)
+      || !cloth_json_get_number (&take_json, root, "noise_sigma_m", 0, 1e6,
+          &info->noise_sigma_m, error)
+      || !cloth_json_get_vector (&take_json, root, "gravity", FALSE,
+          info->gravity, error)
+      || !cloth_json_get_string (&take_json, root, "notes", &info->notes,
+          error))
     return FALSE;
   if (!grid == !info->mesh)
-    return invalid (error, "give either “grid” or “mesh”");
+    return cloth_json_invalid (&take_json, error,
+        "give either “grid” or “mesh”");
   if (grid && !parse_grid (grid, info, error))
     return FALSE;
-  return parse_held (root, info, error) && parse_obstacles (root, info, error);
+  return parse_held (root, info, error) &&
+      cloth_obstacles_parse (&take_json, root, info->obstacles, error) &&
+      parse_seams (root, info, error);
+}
+
+static void
+seam_clear (gpointer data)
+{
+  ClothSeamLine *line = data;
+
+  g_free (line->lines[0]);
+  g_free (line->lines[1]);
 }
 
 /**
@@ -322,7 +217,9 @@ cloth_take_info_new (const gchar * name)
 
   info->name = g_strdup (name);
   info->held = g_array_new (FALSE, TRUE, sizeof (ClothHeld));
-  info->obstacles = g_array_new (FALSE, TRUE, sizeof (ClothObstacle));
+  info->obstacles = cloth_obstacles_new ();
+  info->seams = g_array_new (FALSE, TRUE, sizeof (ClothSeamLine));
+  g_array_set_clear_func (info->seams, seam_clear);
   info->noise_sigma_m = NAN;
   info->gravity[2] = -9.81;
   return info;
@@ -350,7 +247,7 @@ cloth_take_info_parse (const gchar * json, gsize size, GError ** error)
 
   parser = cloth_json_parse (json, size, &fault);
   if (!parser) {
-    invalid (error, "%s", fault->message);
+    cloth_json_invalid (&take_json, error, "%s", fault->message);
     return NULL;
   }
   root = json_parser_get_root (parser);
@@ -363,35 +260,6 @@ cloth_take_info_parse (const gchar * json, gsize size, GError ** error)
 }
 
 static void
-add_number (JsonBuilder * builder, const gchar * key, gdouble value)
-{
-  json_builder_set_member_name (builder, key);
-  if (!isfinite (value))
-    json_builder_add_null_value (builder);
-  else if (value == floor (value) && fabs (value) < 1e15)
-    json_builder_add_int_value (builder, (gint64) value);
-  else
-    json_builder_add_double_value (builder, value);
-}
-
-static void
-add_vector (JsonBuilder * builder, const gchar * key, const gdouble * value)
-{
-  json_builder_set_member_name (builder, key);
-  json_builder_begin_array (builder);
-  for (guint i = 0; i < 3; i++)
-    json_builder_add_double_value (builder, value[i]);
-  json_builder_end_array (builder);
-}
-
-static void
-add_string (JsonBuilder * builder, const gchar * key, const gchar * value)
-{
-  json_builder_set_member_name (builder, key);
-  json_builder_add_string_value (builder, value);
-}
-
-static void
 add_held (JsonBuilder * builder, const GArray * held)
 {
   json_builder_set_member_name (builder, "held");
@@ -400,35 +268,34 @@ add_held (JsonBuilder * builder, const GArray * held)
     const ClothHeld *item = &g_array_index (held, ClothHeld, i);
 
     json_builder_begin_object (builder);
-    add_number (builder, "vertex", item->vertex);
+    cloth_json_add_number (builder, "vertex", item->vertex);
     if (isfinite (item->from_s))
-      add_number (builder, "from_s", item->from_s);
+      cloth_json_add_number (builder, "from_s", item->from_s);
     if (isfinite (item->until_s))
-      add_number (builder, "until_s", item->until_s);
+      cloth_json_add_number (builder, "until_s", item->until_s);
     json_builder_end_object (builder);
   }
   json_builder_end_array (builder);
 }
 
 static void
-add_obstacles (JsonBuilder * builder, const GArray * obstacles)
+add_seams (JsonBuilder * builder, const GArray * seams)
 {
-  json_builder_set_member_name (builder, "obstacles");
+  json_builder_set_member_name (builder, "seams");
   json_builder_begin_array (builder);
-  for (guint i = 0; i < obstacles->len; i++) {
-    const ClothObstacle *item = &g_array_index (obstacles, ClothObstacle, i);
+  for (guint i = 0; i < seams->len; i++) {
+    const ClothSeamLine *line = &g_array_index (seams, ClothSeamLine, i);
 
     json_builder_begin_object (builder);
-    if (item->kind == CLOTH_OBSTACLE_SPHERE) {
-      add_string (builder, "type", "sphere");
-      add_vector (builder, "centre", item->point);
-      add_number (builder, "radius_m", item->radius_m);
-    } else {
-      add_string (builder, "type", "plane");
-      add_vector (builder, "point", item->point);
-      add_vector (builder, "normal", item->normal);
+    json_builder_set_member_name (builder, "lines");
+    json_builder_begin_array (builder);
+    for (guint side = 0; side < 2; side++) {
+      json_builder_begin_array (builder);
+      for (guint k = 0; k < line->n_vertices; k++)
+        json_builder_add_int_value (builder, line->lines[side][k]);
+      json_builder_end_array (builder);
     }
-    add_number (builder, "friction", item->friction);
+    json_builder_end_array (builder);
     json_builder_end_object (builder);
   }
   json_builder_end_array (builder);
@@ -448,27 +315,29 @@ cloth_take_info_to_json (const ClothTakeInfo * info)
   g_autoptr (JsonNode) root = NULL;
 
   json_builder_begin_object (builder);
-  add_number (builder, "version", 1);
-  add_string (builder, "name", info->name ? info->name : "");
+  cloth_json_add_number (builder, "version", 1);
+  cloth_json_add_string (builder, "name", info->name ? info->name : "");
   if (info->fps > 0)
-    add_number (builder, "fps", info->fps);
+    cloth_json_add_number (builder, "fps", info->fps);
   if (info->mesh) {
-    add_string (builder, "mesh", info->mesh);
+    cloth_json_add_string (builder, "mesh", info->mesh);
   } else {
     json_builder_set_member_name (builder, "grid");
     json_builder_begin_object (builder);
-    add_number (builder, "columns", info->columns);
-    add_number (builder, "rows", info->rows);
-    add_number (builder, "width_m", info->width_m);
-    add_number (builder, "height_m", info->height_m);
+    cloth_json_add_number (builder, "columns", info->columns);
+    cloth_json_add_number (builder, "rows", info->rows);
+    cloth_json_add_number (builder, "width_m", info->width_m);
+    cloth_json_add_number (builder, "height_m", info->height_m);
     json_builder_end_object (builder);
   }
   add_held (builder, info->held);
-  add_number (builder, "noise_sigma_m", info->noise_sigma_m);
-  add_vector (builder, "gravity", info->gravity);
-  add_obstacles (builder, info->obstacles);
+  cloth_json_add_number (builder, "noise_sigma_m", info->noise_sigma_m);
+  cloth_json_add_vector (builder, "gravity", info->gravity);
+  cloth_obstacles_build (info->obstacles, builder);
+  if (info->seams->len > 0)
+    add_seams (builder, info->seams);
   if (info->notes)
-    add_string (builder, "notes", info->notes);
+    cloth_json_add_string (builder, "notes", info->notes);
   json_builder_end_object (builder);
   root = json_builder_get_root (builder);
   return json_to_string (root, TRUE);
@@ -490,5 +359,6 @@ cloth_take_info_free (ClothTakeInfo * info)
   g_free (info->notes);
   g_array_unref (info->held);
   g_array_unref (info->obstacles);
+  g_array_unref (info->seams);
   g_free (info);
 }

@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
+#include "gst/mesh/obstacle.h"
 #include "gst/mesh/topology.h"
 
 G_BEGIN_DECLS
@@ -22,36 +23,17 @@ typedef struct {
 } ClothHeld;
 
 /**
- * ClothObstacleKind:
- * @CLOTH_OBSTACLE_SPHERE: a ball
- * @CLOTH_OBSTACLE_PLANE: a half-space that the normal points out of
- *
- * Since: 0.1
- */
-typedef enum {
-  CLOTH_OBSTACLE_SPHERE,
-  CLOTH_OBSTACLE_PLANE
-} ClothObstacleKind;
-
-/**
- * ClothObstacle:
- * @kind: its shape
- * @point: centre of the sphere, or a point of the plane, metres
- * @normal: unit normal of the plane
- * @radius_m: radius of the sphere, metres
- * @friction: coefficient of friction, NaN when unknown
- *
- * Something at rest that the cloth may touch.
+ * ClothSeamLine:
+ * @n_vertices: vertices of a line
+ * @lines: two lines of vertices on the edges of the cloth; each vertex of the first is
+ *   sewn to the one at its place in the second
  *
  * Since: 0.1
  */
 typedef struct {
-  ClothObstacleKind kind;
-  gdouble point[3];
-  gdouble normal[3];
-  gdouble radius_m;
-  gdouble friction;
-} ClothObstacle;
+  guint n_vertices;
+  guint *lines[2];
+} ClothSeamLine;
 
 /**
  * ClothTakeInfo:
@@ -66,6 +48,7 @@ typedef struct {
  * @noise_sigma_m: standard deviation of a coordinate, metres; NaN: estimate it
  * @gravity: m/s²
  * @obstacles: (element-type ClothObstacle): what the cloth may touch
+ * @seams: (element-type ClothSeamLine): what is sewn together, for a mesh file
  * @notes: (nullable): for people
  *
  * The contents of take.json.
@@ -84,6 +67,7 @@ typedef struct {
   gdouble noise_sigma_m;
   gdouble gravity[3];
   GArray *obstacles;
+  GArray *seams;
   gchar *notes;
 } ClothTakeInfo;
 

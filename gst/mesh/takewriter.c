@@ -34,7 +34,7 @@ struct _ClothTakeWriter
   guint n_vertices, n_held;
   guint64 n_frames;
   gdouble last_time;
-  ClothOutput *mesh;            /* NULL for a grid */
+  GPtrArray *meshes;            /* ClothOutput: the cloth, obstacles */
   ClothNpyWriter *arrays[N_ARRAYS];
   gfloat *unknown;              /* one frame of NaN covariances */
 };
@@ -67,26 +67,64 @@ make_folder (ClothTakeWriter * writer, GError ** error)
   return FALSE;
 }
 
+static gboolean
+write_obj (ClothTakeWriter * writer, const gchar * file, const gchar * name,
+    const ClothTopology * topology, const gfloat * positions, GError ** error)
+{
+  g_autofree gchar *path = g_build_filename (writer->folder, file, NULL);
+  ClothOutput *output = cloth_output_new (path, error);
+
+  if (!output)
+    return FALSE;
+  g_ptr_array_add (writer->meshes, output);
+  return cloth_obj_write (output, name, topology, positions, 0, 1, error) &&
+      cloth_output_finish (output, error);
+}
+
 /* The mesh lies flat in its file: what a take has of it is faces and uv. */
 static gboolean
 write_mesh (ClothTakeWriter * writer, const ClothTakeInfo * info,
     const ClothTopology * topology, GError ** error)
 {
-  g_autofree gchar *path = g_build_filename (writer->folder, info->mesh, NULL);
   g_autofree gfloat *flat = g_new0 (gfloat, 3 * (gsize) topology->n_vertices);
 
   for (gsize i = 0; i < topology->n_vertices; i++)
     memcpy (flat + 3 * i, topology->uv + 2 * i, 2 * sizeof *flat);
-  writer->mesh = cloth_output_new (path, error);
-  return writer->mesh && cloth_obj_write (writer->mesh, info->name, topology,
-      flat, 0, 1, error) && cloth_output_finish (writer->mesh, error);
+  return write_obj (writer, info->mesh, info->name, topology, flat, error);
+}
+
+static gboolean
+write_obstacles (ClothTakeWriter * writer, const ClothTakeInfo * info,
+    GError ** error)
+{
+  for (guint i = 0; i < info->obstacles->len; i++) {
+    const ClothObstacle *item =
+        &g_array_index (info->obstacles, ClothObstacle, i);
+    g_autoptr (ClothTopology) topology = NULL;
+    g_autofree gfloat *points = NULL;
+
+    if (item->kind != CLOTH_OBSTACLE_MESH)
+      continue;
+    topology = cloth_topology_new (item->n_points, item->n_triangles);
+    points = g_new (gfloat, 3 * (gsize) item->n_points);
+    for (gsize k = 0; k < 3 * (gsize) item->n_points; k++)
+      points[k] = (gfloat) item->points[k];
+    for (gsize k = 0; k < item->n_triangles; k++) {
+      memcpy (topology->faces + 4 * k, item->triangles + 3 * k,
+          3 * sizeof *topology->faces);
+      topology->faces[4 * k + 3] = CLOTH_NO_VERTEX;
+    }
+    if (!write_obj (writer, item->mesh, "obstacle", topology, points, error))
+      return FALSE;
+  }
+  return TRUE;
 }
 
 /**
  * cloth_take_writer_new:
  * @folder: the take; made when it is not there, but not its parents
  * @info: what take.json shall say; when `mesh` is set, the name of the OBJ file that
- *   is written from @topology
+ *   is written from @topology. Meshes of obstacles are written under their names
  * @topology: the mesh
  * @error: #GIOErrorEnum, #ClothMeshError
  *
@@ -104,10 +142,13 @@ cloth_take_writer_new (const gchar * folder, const ClothTakeInfo * info,
 
   writer->folder = g_strdup (folder);
   writer->json = cloth_take_info_to_json (info);
+  writer->meshes =
+      g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_output_free);
   writer->n_vertices = topology->n_vertices;
   writer->n_held = info->held->len;
   if (!make_folder (writer, error) ||
       (info->mesh && !write_mesh (writer, info, topology, error)) ||
+      !write_obstacles (writer, info, error) ||
       !open_array (writer, POSITIONS, CLOTH_NPY_FLOAT32, 3,
           writer->n_vertices, 3, error) ||
       !open_array (writer, TIMES, CLOTH_NPY_FLOAT64, 1, 0, 0, error) ||
@@ -236,8 +277,8 @@ cloth_take_writer_close (ClothTakeWriter * writer, GError ** error)
         "a take needs at least one frame");
     return FALSE;
   }
-  if (writer->mesh)
-    g_ptr_array_add (outputs, g_steal_pointer (&writer->mesh));
+  while (writer->meshes->len > 0)
+    g_ptr_array_add (outputs, g_ptr_array_steal_index (writer->meshes, 0));
   for (guint i = 0; i < N_ARRAYS; i++) {
     if (!writer->arrays[i])
       continue;
@@ -277,7 +318,7 @@ cloth_take_writer_free (ClothTakeWriter * writer)
     return;
   for (guint i = 0; i < N_ARRAYS; i++)
     cloth_npy_writer_free (writer->arrays[i]);
-  cloth_output_free (writer->mesh);
+  g_ptr_array_unref (writer->meshes);
   /* Only an empty folder goes. */
   if (writer->made_folder)
     g_rmdir (writer->folder);

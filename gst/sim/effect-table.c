@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "gst/rig/effects/effects.h"
 #include "gst/sim/effects/effects.h"
 
 /* Documents and results list them in this order. */
@@ -41,6 +42,17 @@ static const ClothEffect *const table[] = {
   &cloth_effect_time_step,
   &cloth_effect_mesh_resolution,
   &cloth_effect_mesh_diagonals,
+  &cloth_capture_lens_distortion.effect,
+  &cloth_capture_focal_length.effect,
+  &cloth_capture_extrinsic_drift.effect,
+  &cloth_capture_sync_offset.effect,
+  &cloth_capture_rolling_shutter.effect,
+  &cloth_capture_frame_drop.effect,
+  &cloth_capture_motion_blur.effect,
+  &cloth_capture_defocus.effect,
+  &cloth_capture_shading_shift.effect,
+  &cloth_capture_colour_crosstalk.effect,
+  &cloth_capture_noise.effect,
 };
 
 /**

@@ -30,7 +30,7 @@ cloth_scene_new (ClothTopology * topology, gdouble fps, guint n_frames)
     scene->positions[3 * i + 2] = -topology->uv[2 * i + 1];
   }
   scene->held = g_array_new (FALSE, TRUE, sizeof (ClothHeld));
-  scene->obstacles = g_array_new (FALSE, TRUE, sizeof (ClothObstacle));
+  scene->obstacles = cloth_obstacles_new ();
   scene->seams = g_array_new (FALSE, TRUE, sizeof (ClothSeam));
   scene->n_frames = n_frames;
   scene->times = g_new0 (gdouble, n_frames);

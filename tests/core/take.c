@@ -182,6 +182,119 @@ test_replaces_whole (void)
   scratch_end ();
 }
 
+/* Two panels of two triangles each, sewn along an edge; a wedge as obstacle. */
+#define PANELS "v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nv 1 1 0\\n" \
+    "v 0 0 1\\nv 1 0 1\\nv 0 1 1\\nv 1 1 1\\n" \
+    "vt 0 0\\nvt .1 0\\nvt 0 .2\\nvt .1 .2\\n" \
+    "vt .5 0\\nvt .6 0\\nvt .5 .2\\nvt .6 .2\\n" \
+    "f 1/1 2/2 3/3\\nf 2/2 4/4 3/3\\nf 5/5 6/6 7/7\\nf 6/6 8/8 7/7\\n"
+#define WEDGE "v 0 0 0\\nv 3 0 0\\nv 3 2 0\\nv 0 2 0\\nv 0 0 1\\n" \
+    "f 1 2 3 4\\nf 1 2 5\\n"
+
+static void
+write_garment (const gchar * seams, const gchar * wedge)
+{
+  g_autofree gchar *script = g_strdup_printf ("os.mkdir('g')\n"
+      "open('g/mesh.obj','w').write('" PANELS "')\n"
+      "open('g/wedge.obj','w').write('%s')\n"
+      "np.save('g/positions.npy',np.zeros((2,8,3),'f4'))\n"
+      "open('g/take.json','w').write('{\"version\":1,\"fps\":25,"
+      "\"mesh\":\"mesh.obj\",\"seams\":%s,\"obstacles\":["
+      "{\"type\":\"capsule\",\"from\":[0,0,1],\"to\":[0,1,1],"
+      "\"radius_m\":0.1,\"friction\":0.3},"
+      "{\"type\":\"mesh\",\"mesh\":\"wedge.obj\"}]}')\n", wedge, seams);
+
+  scratch_begin ();
+  peer_run (script);
+}
+
+static void
+test_garment (void)
+{
+  static const guint32 triangles[] = { 0, 1, 2, 0, 2, 3, 0, 1, 4 };
+
+  write_garment ("[{\"lines\":[[1,3],[4,6]]}]", WEDGE);
+  /* Once as it was written by hand, once as we write it. */
+  for (guint turn = 0; turn < 2; turn++) {
+    g_autofree gchar *path = scratch_path (turn ? "h" : "g");
+    g_autofree gchar *copy = scratch_path ("h");
+    g_autoptr (GError) error = NULL;
+    g_autoptr (ClothTake) take = cloth_take_open (path, &error);
+    g_autoptr (ClothTakeWriter) writer = NULL;
+    const ClothTakeInfo *info;
+    const ClothSeamLine *seam;
+    const ClothObstacle *capsule, *wedge;
+    gfloat positions[24] = { 0 };
+    guint8 states[8] = { 0 };
+
+    g_assert_no_error (error);
+    info = cloth_take_get_info (take);
+    g_assert_cmpuint (info->seams->len, ==, 1);
+    seam = &g_array_index (info->seams, ClothSeamLine, 0);
+    g_assert_cmpuint (seam->n_vertices, ==, 2);
+    g_assert_cmpuint (seam->lines[0][1], ==, 3);
+    g_assert_cmpuint (seam->lines[1][0], ==, 4);
+    g_assert_cmpuint (info->obstacles->len, ==, 2);
+    capsule = &g_array_index (info->obstacles, ClothObstacle, 0);
+    g_assert_cmpint (capsule->kind, ==, CLOTH_OBSTACLE_CAPSULE);
+    g_assert_cmpfloat (capsule->point[1], ==, 0);
+    g_assert_cmpfloat (capsule->end[1], ==, 1);
+    g_assert_cmpfloat (capsule->radius_m, ==, 0.1);
+    wedge = capsule + 1;
+    g_assert_cmpint (wedge->kind, ==, CLOTH_OBSTACLE_MESH);
+    g_assert_true (isnan (wedge->friction));
+    g_assert_cmpuint (wedge->n_points, ==, 5);
+    g_assert_cmpfloat (wedge->points[3 * 2 + 1], ==, 2);
+    g_assert_cmpmem (wedge->triangles, 12 * wedge->n_triangles, triangles,
+        sizeof triangles);
+    writer = cloth_take_writer_new (copy, info, cloth_take_get_topology (take),
+        &error);
+    g_assert_no_error (error);
+    g_assert_true (cloth_take_writer_append (writer, 0, positions, states, NULL,
+            NULL, &error));
+    g_assert_true (cloth_take_writer_close (writer, &error));
+    g_assert_no_error (error);
+  }
+  scratch_end ();
+}
+
+/* What shows only when the mesh or the obstacle's file is read. */
+static void
+test_broken_garments (void)
+{
+  static const gchar *const broken[][2] = {
+    {"[{\"lines\":[[1,3],[4,8]]}]", WEDGE},
+    {"[{\"lines\":[[999999,3],[4,6]]}]", WEDGE},
+    {"[]", "v 0 0 0\\n"},
+    {"[]", "v 0 0 0\\nv 1 nan 0\\nv 0 1 0\\nf 1 2 3\\n"},
+    {"[]", "v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nf 1 2 4\\n"},
+    {"[]", ""},
+  };
+  g_autoptr (GError) fault = NULL;
+  g_autofree gchar *folder = NULL;
+
+  for (guint i = 0; i < G_N_ELEMENTS (broken); i++) {
+    g_autofree gchar *path = NULL;
+    g_autoptr (ClothTake) take = NULL;
+    g_autoptr (GError) error = NULL;
+
+    write_garment (broken[i][0], broken[i][1]);
+    path = scratch_path ("g");
+    take = cloth_take_open (path, &error);
+    g_assert_null (take);
+    g_assert_cmpint (error->domain, ==, CLOTH_MESH_ERROR);
+    g_test_message ("%s", error->message);
+    scratch_end ();
+  }
+  write_garment ("[]", WEDGE);
+  peer_run ("os.remove('g/wedge.obj')");
+  folder = scratch_path ("g");
+  g_assert_null (cloth_take_open (folder, &fault));
+  g_assert_error (fault, G_IO_ERROR, G_IO_ERROR_NOT_FOUND);
+  g_assert_nonnull (strstr (fault->message, "wedge.obj"));
+  scratch_end ();
+}
+
 static void
 test_refused_frames (void)
 {
@@ -207,6 +320,7 @@ test_refused_frames (void)
 }
 
 #define GRID "\"grid\":{\"columns\":3,\"rows\":2,\"width_m\":1,\"height_m\":1}"
+#define MESH "{\"version\":1,\"fps\":25,\"mesh\":\"a.obj\""
 #define OK "{\"version\":1,\"fps\":25," GRID
 
 static const gchar *const bad_json[] = {
@@ -238,6 +352,27 @@ static const gchar *const bad_json[] = {
   OK ",\"name\":\"a\\u0000b\"}", OK ",\"name\":\"\\ud83d\\u0041\"}",
   OK ",\"name\":\"\\ud8", OK ",\"name\":\"\\222\"}", OK ",\"name\":\"\\",
   OK ",\"held\":[{\"vertex\":1,\"vertex\":2}]}",
+  OK ",\"obstacles\":[{\"type\":\"capsule\",\"from\":[0,0,0],"
+      "\"radius_m\":1}]}",
+  OK ",\"obstacles\":[{\"type\":\"capsule\",\"from\":[0,0,0],"
+      "\"to\":[0,0,1]}]}",
+  OK ",\"obstacles\":[{\"type\":\"capsule\",\"from\":[0,0,0],"
+      "\"to\":[0,0,1],\"radius_m\":-1}]}",
+  OK ",\"obstacles\":[{\"type\":\"mesh\"}]}",
+  OK ",\"obstacles\":[{\"type\":\"mesh\",\"mesh\":\"\"}]}",
+  OK ",\"obstacles\":[{\"type\":\"mesh\",\"mesh\":\"a.obj\","
+      "\"radius_m\":1}]}",
+  OK ",\"seams\":[{\"lines\":[[0,1],[2,3]]}]}",
+  MESH ",\"seams\":3}", MESH ",\"seams\":[3]}", MESH ",\"seams\":[{}]}",
+  MESH ",\"seams\":[{\"lines\":[[0,1]]}]}",
+  MESH ",\"seams\":[{\"lines\":[[0,1],[2,3],[4,5]]}]}",
+  MESH ",\"seams\":[{\"lines\":[[0,1],[2,3]],\"ease\":2}]}",
+  MESH ",\"seams\":[{\"lines\":[[0],[2]]}]}",
+  MESH ",\"seams\":[{\"lines\":[[0,1],[2,3,4]]}]}",
+  MESH ",\"seams\":[{\"lines\":[[0,1],[2,-3]]}]}",
+  MESH ",\"seams\":[{\"lines\":[[0,1],[2,2]]}]}",
+  MESH ",\"seams\":[{\"lines\":[[0,1.5],[2,3]]}]}",
+  MESH ",\"seams\":[{\"lines\":[[0,1000000],[2,3]]}]}",
 };
 
 static void
@@ -375,6 +510,8 @@ main (int argc, char **argv)
   g_test_add_func ("/take/refused-frames", test_refused_frames);
   g_test_add_func ("/take/hostile-json", test_hostile_json);
   g_test_add_func ("/take/broken", test_broken_takes);
+  g_test_add_func ("/take/garment", test_garment);
+  g_test_add_func ("/take/broken-garments", test_broken_garments);
   g_test_add_func ("/take/unwritable", test_unwritable);
   return g_test_run ();
 }

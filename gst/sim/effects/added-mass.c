@@ -17,8 +17,8 @@ const ClothEffect cloth_effect_added_mass = {
       "Air that is carried along adds inertia, but no weight, to motion "
       "along the normal.",
   .source =
-      "plate of width b: π ρ b/4 on each unit of area, 0.04 to 0.5 "
-      "kg/m² for folds to whole sheets: Lamb, Hydrodynamics, 1932",
+      "Plate of width b: π ρ b/4 on each unit of area, 0.04 to 0.5 "
+      "kg/m² for folds to whole sheets: Lamb, Hydrodynamics, 1932.",
   .regressor =
       "A force against the normal acceleration, in proportion to it.",
   .confusions = confusions,
@@ -26,7 +26,7 @@ const ClothEffect cloth_effect_added_mass = {
   .parameters = {
     {.name = "mass", .unit = "kg/m²", .null_value = 0, .min = 0, .max = 5,
         .prior = 0.2, .one_sided = TRUE,
-        .blurb = "Mass of the air that moves with each unit of area."},
+        .blurb = "Mass of the air that moves with each unit of area"},
   }
 };
 /* *INDENT-ON* */

@@ -18,8 +18,8 @@ const ClothEffect cloth_effect_air_drag_linear = {
       "proportion to it, whichever way the piece faces: force −c v on "
       "each unit of area.",
   .source =
-      "drag of some simulators, Blender’s among them; prior: the slope "
-      "of ½ρ C_N v² at 0.3 m/s",
+      "Drag of some simulators, Blender’s among them; prior: the slope "
+      "of ½ρ C_N v² at 0.3 m/s.",
   .regressor =
       "A force against the whole velocity, tangential parts included, "
       "in proportion to it; cosine 0.93 with air_drag, and the same as "
@@ -29,7 +29,7 @@ const ClothEffect cloth_effect_air_drag_linear = {
   .parameters = {
     {.name = "coefficient", .unit = "N s/m³", .null_value = 0, .min = 0, .max = 20,
         .prior = 0.3, .one_sided = TRUE,
-        .blurb = "Force on each unit of area over the velocity."},
+        .blurb = "Force on each unit of area over the velocity"},
   }
 };
 /* *INDENT-ON* */

@@ -17,8 +17,8 @@ const ClothEffect cloth_effect_air_drag_tangential = {
       "Air rubs along the cloth: force −c v_t on each unit of area, v_t "
       "the velocity within the plane of the cloth.",
   .source =
-      "skin friction of a plate, 0.01 to 0.1 N s/m³: Schlichting, "
-      "Boundary-Layer Theory",
+      "Skin friction of a plate, 0.01 to 0.1 N s/m³: Schlichting, "
+      "Boundary-Layer Theory.",
   .regressor =
       "A force against the velocity within the plane of the cloth, in "
       "proportion to it, none along the normal.",
@@ -27,7 +27,7 @@ const ClothEffect cloth_effect_air_drag_tangential = {
   .parameters = {
     {.name = "coefficient", .unit = "N s/m³", .null_value = 0, .min = 0, .max = 2,
         .prior = 0.05, .one_sided = TRUE,
-        .blurb = "Force on each unit of area over the tangential velocity."},
+        .blurb = "Force on each unit of area over the tangential velocity"},
   }
 };
 /* *INDENT-ON* */

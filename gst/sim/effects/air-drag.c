@@ -18,8 +18,8 @@ const ClothEffect cloth_effect_air_drag = {
       "square of the speed: force −½ρ C |v_n| v_n n on each unit of "
       "area, ρ the model’s air_density.",
   .source =
-      "normal force of a plate across the flow, C_N 1.1 to 2: Hoerner, "
-      "Fluid-Dynamic Drag, 1965, chapter 3",
+      "Normal force of a plate across the flow, C_N 1.1 to 2: Hoerner, "
+      "Fluid-Dynamic Drag, 1965, chapter 3.",
   .regressor =
       "A force against the normal velocity that grows with its square, "
       "none at rest, most at the free edge; sensitivities of "
@@ -30,7 +30,7 @@ const ClothEffect cloth_effect_air_drag = {
     {.name = "coefficient", .unit = "1", .null_value = 0, .min = 0, .max = 20,
         .prior = 1.5, .one_sided = TRUE,
         .blurb = "C_N of the cloth as a plate; a drag without the factor ½ has "
-            "twice the number."},
+            "twice the number"},
   }
 };
 /* *INDENT-ON* */

@@ -18,7 +18,7 @@ const ClothEffect cloth_effect_areal_mass = {
       "stays. With stiffness, damping and drag free as well it is a "
       "gauge: scaling all of them together changes nothing.",
   .source =
-      "prior: own choice",
+      "Prior: own choice.",
   .regressor =
       "A force in proportion to gravity minus acceleration; cosine "
       "−0.67 with stretch, shear and bending together.",
@@ -27,7 +27,7 @@ const ClothEffect cloth_effect_areal_mass = {
   .parameters = {
     {.name = "log_ratio", .unit = "1", .null_value = 0, .min = -2.3, .max = 2.3,
         .prior = 0.2,
-        .blurb = "Natural logarithm of the ratio to the model’s areal density."},
+        .blurb = "Natural logarithm of the ratio to the model’s areal density"},
   }
 };
 /* *INDENT-ON* */

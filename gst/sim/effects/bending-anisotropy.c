@@ -17,8 +17,8 @@ const ClothEffect cloth_effect_bending_anisotropy = {
       "Bending stiffness along the warp is the model’s times "
       "exp(log_ratio/2), along the weft times exp(−log_ratio/2).",
   .source =
-      "measured fabrics: warp over weft has the median 1.7 and the 95% "
-      "quantile 5.1, either way",
+      "Measured fabrics: warp over weft has the median 1.7 and the 95% "
+      "quantile 5.1, either way.",
   .regressor =
       "Bending forces of one sign in folds across the warp, of the "
       "other in folds across the weft.",
@@ -28,7 +28,7 @@ const ClothEffect cloth_effect_bending_anisotropy = {
     {.name = "log_ratio", .unit = "1", .null_value = 0, .min = -4.6, .max = 4.6,
         .prior = 0.8,
         .blurb = "Natural logarithm of what the ratio warp to weft is multiplied "
-            "with."},
+            "with"},
   }
 };
 /* *INDENT-ON* */

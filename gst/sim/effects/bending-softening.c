@@ -17,7 +17,7 @@ const ClothEffect cloth_effect_bending_softening = {
       "The bending moment of curvature κ is that of the model over 1 + "
       "length·|κ|.",
   .source =
-      "measured fabrics: median −13% at 50 1/m, a length of 0.003 m",
+      "Measured fabrics: median −13% at 50 1/m, a length of 0.003 m.",
   .regressor =
       "A force along the normal at sharp folds, against the bending "
       "force, growing with the square of the curvature.",
@@ -26,7 +26,7 @@ const ClothEffect cloth_effect_bending_softening = {
   .parameters = {
     {.name = "length", .unit = "m", .null_value = 0, .min = 0, .max = 0.1,
         .prior = 0.003, .one_sided = TRUE,
-        .blurb = "Radius of curvature at which half of the stiffness is left."},
+        .blurb = "Radius of curvature at which half of the stiffness is left"},
   }
 };
 /* *INDENT-ON* */

@@ -17,7 +17,7 @@ const ClothEffect cloth_effect_bending = {
       "Both bending stiffnesses are the model’s times exp(log_ratio).",
   .source =
       "618 measured fabrics: median 1.4e-5 N·m, 5 to 95% 1.1e-6 to "
-      "1.1e-4",
+      "1.1e-4.",
   .regressor =
       "A force along the normal in proportion to the change of "
       "curvature from hinge to hinge; cosine 0.63 with stretch along "
@@ -27,7 +27,7 @@ const ClothEffect cloth_effect_bending = {
   .parameters = {
     {.name = "log_ratio", .unit = "1", .null_value = 0, .min = -6.9, .max = 6.9,
         .prior = 1.4,
-        .blurb = "Natural logarithm of the ratio to the model’s stiffness."},
+        .blurb = "Natural logarithm of the ratio to the model’s stiffness"},
   }
 };
 /* *INDENT-ON* */

@@ -16,7 +16,7 @@ const ClothEffect cloth_effect_clamp_compliance = {
   .blurb =
       "Clamps hold the cloth through springs.",
   .source =
-      "clamps of 50 to 500 N/m",
+      "Clamps of 50 to 500 N/m.",
   .regressor =
       "A displacement at the clamps in proportion to their load, gone "
       "when the load is.",
@@ -25,7 +25,7 @@ const ClothEffect cloth_effect_clamp_compliance = {
   .parameters = {
     {.name = "compliance", .unit = "m/N", .null_value = 0, .min = 0, .max = 0.5,
         .prior = 0.005, .one_sided = TRUE,
-        .blurb = "Displacement of a held vertex over its load."},
+        .blurb = "Displacement of a held vertex over its load"},
   }
 };
 /* *INDENT-ON* */

@@ -17,7 +17,7 @@ const ClothEffect cloth_effect_clamp_delay = {
       "Clamps really were at time t where their log has them at t − "
       "delay.",
   .source =
-      "delays of 10 to 350 ms between a robot’s log and pictures",
+      "Delays of 10 to 350 ms between a robot’s log and pictures.",
   .regressor =
       "A displacement of the clamps along their velocity; all of the "
       "cloth follows them later, where sync_offset shifts every point "
@@ -27,7 +27,7 @@ const ClothEffect cloth_effect_clamp_delay = {
   .parameters = {
     {.name = "delay", .unit = "s", .null_value = 0, .min = -1, .max = 1,
         .prior = 0.1,
-        .blurb = "How much later than logged the clamps moved."},
+        .blurb = "How much later than logged the clamps moved"},
   }
 };
 /* *INDENT-ON* */

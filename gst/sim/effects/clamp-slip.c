@@ -17,7 +17,7 @@ const ClothEffect cloth_effect_clamp_slip = {
       "From a time on a clamp holds the cloth off its logged path; it "
       "gets there evenly within 0.05 s.",
   .source =
-      "slips of 1 to 30 mm",
+      "Slips of 1 to 30 mm.",
   .regressor =
       "A jump of the residual next to one clamp that then stays: slip "
       "is irreversible, compliance is not.",
@@ -26,20 +26,20 @@ const ClothEffect cloth_effect_clamp_slip = {
   .parameters = {
     {.name = "x", .unit = "m", .null_value = 0, .min = -0.5, .max = 0.5,
         .prior = 0.01,
-        .blurb = "Displacement along x."},
+        .blurb = "Displacement along x"},
     {.name = "y", .unit = "m", .null_value = 0, .min = -0.5, .max = 0.5,
         .prior = 0.01,
-        .blurb = "Displacement along y."},
+        .blurb = "Displacement along y"},
     {.name = "z", .unit = "m", .null_value = 0, .min = -0.5, .max = 0.5,
         .prior = 0.01,
-        .blurb = "Displacement along z."},
+        .blurb = "Displacement along z"},
     {.name = "time", .unit = "s", .null_value = 0, .min = -1000000.0, .max = 1000000.0,
         .prior = 1,
-        .blurb = "When it began; without displacement it means nothing."},
+        .blurb = "When it began; without displacement it means nothing"},
     {.name = "held", .unit = "1", .null_value = -1, .min = -1, .max = 999999,
         .prior = 1,
         .blurb = "Which clamp, counted from 0 in the list “held” of the take; −1 "
-            "is every one."},
+            "is every one"},
   }
 };
 /* *INDENT-ON* */

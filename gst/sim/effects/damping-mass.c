@@ -17,8 +17,8 @@ const ClothEffect cloth_effect_damping_mass = {
       "Velocity is lost at a rate, on top of the model’s: force −rate m "
       "v.",
   .source =
-      "mass-proportional part of Rayleigh’s damping, 0.5 to 3 1/s in "
-      "cloth",
+      "Mass-proportional part of Rayleigh’s damping, 0.5 to 3 1/s in "
+      "cloth.",
   .regressor =
       "A force against the velocity in proportion to mass; the same as "
       "air_drag_linear where the areal mass is even.",
@@ -27,7 +27,7 @@ const ClothEffect cloth_effect_damping_mass = {
   .parameters = {
     {.name = "rate", .unit = "1/s", .null_value = 0, .min = 0, .max = 50,
         .prior = 1, .one_sided = TRUE,
-        .blurb = "What α of αM + βK is larger by."},
+        .blurb = "What α of αM + βK is larger by"},
   }
 };
 /* *INDENT-ON* */

@@ -16,8 +16,8 @@ const ClothEffect cloth_effect_damping_stiffness = {
   .blurb =
       "Inner forces lag by a time, on top of the model’s.",
   .source =
-      "stiffness-proportional part of Rayleigh’s damping, 1e-4 to 5e-3 "
-      "s in cloth",
+      "Stiffness-proportional part of Rayleigh’s damping, 1e-4 to 5e-3 "
+      "s in cloth.",
   .regressor =
       "A force against the rate of strain and of bending, so in the "
       "high modes; damping of the integrator looks alike but changes "
@@ -27,7 +27,7 @@ const ClothEffect cloth_effect_damping_stiffness = {
   .parameters = {
     {.name = "time", .unit = "s", .null_value = 0, .min = 0, .max = 0.1,
         .prior = 0.001, .one_sided = TRUE,
-        .blurb = "What β of αM + βK is larger by."},
+        .blurb = "What β of αM + βK is larger by"},
   }
 };
 /* *INDENT-ON* */

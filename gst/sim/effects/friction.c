@@ -17,7 +17,7 @@ const ClothEffect cloth_effect_friction = {
       "Obstacles hold on to cloth that slides on them, by Coulomb’s "
       "law.",
   .source =
-      "cloth on wood, plastic or skin: 0.2 to 0.8",
+      "Cloth on wood, plastic or skin: 0.2 to 0.8.",
   .regressor =
       "A tangential force at contacts, against sliding and bounded by "
       "the normal force.",
@@ -27,7 +27,7 @@ const ClothEffect cloth_effect_friction = {
     {.name = "coefficient", .unit = "1", .null_value = 0, .min = 0, .max = 2,
         .prior = 0.4, .one_sided = TRUE,
         .blurb = "What is added to the friction of every obstacle; one whose "
-            "friction is not known has 0."},
+            "friction is not known has 0"},
   }
 };
 /* *INDENT-ON* */

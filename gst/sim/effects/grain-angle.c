@@ -16,7 +16,7 @@ const ClothEffect cloth_effect_grain_angle = {
   .blurb =
       "The threads are turned against u and v by an angle.",
   .source =
-      "prior: own choice, a few degrees of skew",
+      "Prior: own choice, a few degrees of skew.",
   .regressor =
       "Forces within the plane that couple stretch and shear, of "
       "opposite sign left and right of the middle.",
@@ -25,7 +25,7 @@ const ClothEffect cloth_effect_grain_angle = {
   .parameters = {
     {.name = "angle", .unit = "°", .null_value = 0, .min = -90, .max = 90,
         .prior = 3,
-        .blurb = "From u to the warp, positive towards v."},
+        .blurb = "From u to the warp, positive towards v"},
   }
 };
 /* *INDENT-ON* */

@@ -17,7 +17,7 @@ const ClothEffect cloth_effect_gravity_scale = {
       "Gravity is multiplied by a factor. A frame rate that is wrong by "
       "a factor f looks the same as f².",
   .source =
-      "prior: own choice",
+      "Prior: own choice.",
   .regressor =
       "A steady force in proportion to weight.",
   .confusions = confusions,
@@ -25,7 +25,7 @@ const ClothEffect cloth_effect_gravity_scale = {
   .parameters = {
     {.name = "factor", .unit = "1", .null_value = 1, .min = 0.25, .max = 4,
         .prior = 0.02,
-        .blurb = "What gravity is multiplied with."},
+        .blurb = "What gravity is multiplied with"},
   }
 };
 /* *INDENT-ON* */

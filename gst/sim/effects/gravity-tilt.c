@@ -17,7 +17,7 @@ const ClothEffect cloth_effect_gravity_tilt = {
       "Gravity is turned against the world’s axes, as by a rig whose z "
       "is not quite up; its size stays.",
   .source =
-      "levelling of a rig by hand: 0.5 to 5°",
+      "Levelling of a rig by hand: 0.5 to 5°.",
   .regressor =
       "A steady force in proportion to mass in one horizontal "
       "direction; cosine 0.89 with wind, which follows the normal.",
@@ -27,10 +27,10 @@ const ClothEffect cloth_effect_gravity_tilt = {
     {.name = "x", .unit = "°", .null_value = 0, .min = -45, .max = 45,
         .prior = 2.5,
         .blurb = "Angle by which what hangs is turned towards x; gravity is turned "
-            "by the rotation vector (y, −x, 0)."},
+            "by the rotation vector (y, −x, 0)"},
     {.name = "y", .unit = "°", .null_value = 0, .min = -45, .max = 45,
         .prior = 2.5,
-        .blurb = "Angle by which it is turned towards y."},
+        .blurb = "Angle by which it is turned towards y"},
   }
 };
 /* *INDENT-ON* */

@@ -19,7 +19,7 @@ const ClothEffect cloth_effect_hysteresis = {
       "loading, and turns with it.",
   .source =
       "Dahl, A solid friction model, Aerospace Corporation TOR-0158, "
-      "1968; pulls on knits, whose first differs from the later ones",
+      "1968; pulls on knits, whose first differs from the later ones.",
   .regressor =
       "A force within the plane of bounded size that has the sign of "
       "the rate of strain, not its size, unlike damping_stiffness.",
@@ -28,11 +28,11 @@ const ClothEffect cloth_effect_hysteresis = {
   .parameters = {
     {.name = "tension", .unit = "N/m", .null_value = 0, .min = 0, .max = 200,
         .prior = 1, .one_sided = TRUE,
-        .blurb = "Tension at which the threads slide."},
+        .blurb = "Tension at which the threads slide"},
     {.name = "strain", .unit = "1", .null_value = 0.01, .min = 1e-05, .max = 1,
         .prior = 0.01,
         .blurb = "Strain over which the tension builds up; without tension it "
-            "means nothing."},
+            "means nothing"},
   }
 };
 /* *INDENT-ON* */

@@ -17,7 +17,7 @@ const ClothEffect cloth_effect_mesh_diagonals = {
       "Squares of the mesh are cut along other diagonals: 0 leaves "
       "them, 1 takes the other diagonal, 2 alternates.",
   .source =
-      "the diagonals alone moved a swaying sheet by 43 mm",
+      "The diagonals alone moved a swaying sheet by 43 mm.",
   .regressor =
       "Forces within the plane in proportion to shear, of a sign that "
       "the direction of the diagonals sets.",
@@ -26,7 +26,7 @@ const ClothEffect cloth_effect_mesh_diagonals = {
   .parameters = {
     {.name = "pattern", .unit = "1", .null_value = 0, .min = 0, .max = 2,
         .prior = 1, .one_sided = TRUE,
-        .blurb = "0, 1 or 2."},
+        .blurb = "0, 1 or 2"},
   }
 };
 /* *INDENT-ON* */

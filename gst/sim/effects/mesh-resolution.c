@@ -16,7 +16,7 @@ const ClothEffect cloth_effect_mesh_resolution = {
   .blurb =
       "The mesh has other triangles: edges are divided by the factor.",
   .source =
-      "compare h with h/2",
+      "Compare h with h/2.",
   .regressor =
       "Folds finer than the mesh, and a coarse mesh’s false stiffness "
       "in bending and shear.",
@@ -25,7 +25,7 @@ const ClothEffect cloth_effect_mesh_resolution = {
   .parameters = {
     {.name = "factor", .unit = "1", .null_value = 1, .min = 0.25, .max = 4,
         .prior = 1,
-        .blurb = "How many times as many edges lie along a length."},
+        .blurb = "How many times as many edges lie along a length"},
   }
 };
 /* *INDENT-ON* */

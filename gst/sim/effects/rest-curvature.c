@@ -17,7 +17,7 @@ const ClothEffect cloth_effect_rest_curvature = {
       "The cloth at rest is curved, positive towards the side its "
       "normal u × v points to.",
   .source =
-      "creases and curling edges of 10 to 50 1/m",
+      "Creases and curling edges of 10 to 50 1/m.",
   .regressor =
       "A steady bending moment along folds and edges, whatever the "
       "motion.",
@@ -26,10 +26,10 @@ const ClothEffect cloth_effect_rest_curvature = {
   .parameters = {
     {.name = "warp", .unit = "1/m", .null_value = 0, .min = -500, .max = 500,
         .prior = 20,
-        .blurb = "Curvature of threads along u."},
+        .blurb = "Curvature of threads along u"},
     {.name = "weft", .unit = "1/m", .null_value = 0, .min = -500, .max = 500,
         .prior = 20,
-        .blurb = "Curvature of threads along v."},
+        .blurb = "Curvature of threads along v"},
   }
 };
 /* *INDENT-ON* */

@@ -16,8 +16,8 @@ const ClothEffect cloth_effect_self_contact = {
   .blurb =
       "Parts of the cloth that are not neighbours keep a distance.",
   .source =
-      "thickness of cloth, 0.5 to 3 mm; Bridson, Fedkiw and Anderson, "
-      "ACM Transactions on Graphics 21(3), 2002",
+      "Thickness of cloth, 0.5 to 3 mm; Bridson, Fedkiw and Anderson, "
+      "ACM Transactions on Graphics 21(3), 2002.",
   .regressor =
       "Pairs of equal and opposite forces along the normal where two "
       "parts of the cloth are as near as its thickness.",
@@ -26,7 +26,7 @@ const ClothEffect cloth_effect_self_contact = {
   .parameters = {
     {.name = "thickness", .unit = "m", .null_value = 0, .min = 0, .max = 0.01,
         .prior = 0.001, .one_sided = TRUE,
-        .blurb = "Distance that parts keep; 0 lets them pass through each other."},
+        .blurb = "Distance that parts keep; 0 lets them pass through each other"},
   }
 };
 /* *INDENT-ON* */

@@ -16,7 +16,7 @@ const ClothEffect cloth_effect_shear = {
   .blurb =
       "Shear stiffness is the model’s times exp(log_ratio).",
   .source =
-      "knits 29 to 210 N/m",
+      "Knits 29 to 210 N/m.",
   .regressor =
       "Forces within the plane in proportion to the angle between warp "
       "and weft threads; cosine −0.67 with areal_mass.",
@@ -25,7 +25,7 @@ const ClothEffect cloth_effect_shear = {
   .parameters = {
     {.name = "log_ratio", .unit = "1", .null_value = 0, .min = -6.9, .max = 6.9,
         .prior = 0.6,
-        .blurb = "Natural logarithm of the ratio to the model’s stiffness."},
+        .blurb = "Natural logarithm of the ratio to the model’s stiffness"},
   }
 };
 /* *INDENT-ON* */

@@ -17,7 +17,7 @@ const ClothEffect cloth_effect_shrinkage = {
       "Rest lengths are multiplied by 1 − warp and 1 − weft; the mass "
       "of a piece stays.",
   .source =
-      "washing and relaxing: 0.1 to 5%",
+      "Washing and relaxing: 0.1 to 5%.",
   .regressor =
       "A steady tension, even all over the cloth and there without "
       "load; cosine 0.46 with stretch.",
@@ -26,10 +26,10 @@ const ClothEffect cloth_effect_shrinkage = {
   .parameters = {
     {.name = "warp", .unit = "1", .null_value = 0, .min = -0.3, .max = 0.5,
         .prior = 0.02,
-        .blurb = "Share by which lengths along u shrink; negative when they grow."},
+        .blurb = "Share by which lengths along u shrink; negative when they grow"},
     {.name = "weft", .unit = "1", .null_value = 0, .min = -0.3, .max = 0.5,
         .prior = 0.02,
-        .blurb = "Share by which lengths along v shrink."},
+        .blurb = "Share by which lengths along v shrink"},
   }
 };
 /* *INDENT-ON* */

@@ -17,7 +17,7 @@ const ClothEffect cloth_effect_stretch_anisotropy = {
       "Stretch stiffness along the warp is the model’s times "
       "exp(log_ratio/2), along the weft times exp(−log_ratio/2).",
   .source =
-      "prior: own choice",
+      "Prior: own choice.",
   .regressor =
       "Forces within the plane of one sign along the warp, of the other "
       "along the weft.",
@@ -27,7 +27,7 @@ const ClothEffect cloth_effect_stretch_anisotropy = {
     {.name = "log_ratio", .unit = "1", .null_value = 0, .min = -4.6, .max = 4.6,
         .prior = 0.6,
         .blurb = "Natural logarithm of what the ratio warp to weft is multiplied "
-            "with."},
+            "with"},
   }
 };
 /* *INDENT-ON* */

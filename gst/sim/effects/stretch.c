@@ -17,7 +17,7 @@ const ClothEffect cloth_effect_stretch = {
   .blurb =
       "Both stretch stiffnesses are the model’s times exp(log_ratio).",
   .source =
-      "knits 25 to 490 N/m, wovens 4,000 N/m",
+      "Knits 25 to 490 N/m, wovens 4,000 N/m.",
   .regressor =
       "Forces within the plane in proportion to the strains of warp and "
       "weft, most below the clamps; cosine 0.63 with bending, 0.46 with "
@@ -27,7 +27,7 @@ const ClothEffect cloth_effect_stretch = {
   .parameters = {
     {.name = "log_ratio", .unit = "1", .null_value = 0, .min = -6.9, .max = 6.9,
         .prior = 0.9,
-        .blurb = "Natural logarithm of the ratio to the model’s stiffness."},
+        .blurb = "Natural logarithm of the ratio to the model’s stiffness"},
   }
 };
 /* *INDENT-ON* */

@@ -16,8 +16,8 @@ const ClothEffect cloth_effect_time_step = {
   .blurb =
       "The simulator’s time step is multiplied by a factor.",
   .source =
-      "the step alone moved a swaying sheet by 15 mm; compare h with "
-      "h/4",
+      "The step alone moved a swaying sheet by 15 mm; compare h with "
+      "h/4.",
   .regressor =
       "Damping of high modes that changes with the step, unlike "
       "damping_stiffness.",
@@ -27,7 +27,7 @@ const ClothEffect cloth_effect_time_step = {
     {.name = "factor", .unit = "1", .null_value = 1, .min = 1. / 64, .max = 64,
         .prior = 0.5,
         .blurb = "What the time step is multiplied with; an explicit step beyond "
-            "the stable one is cut back to it."},
+            "the stable one is cut back to it"},
   }
 };
 /* *INDENT-ON* */

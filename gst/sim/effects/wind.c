@@ -19,9 +19,9 @@ const ClothEffect cloth_effect_wind = {
       "s(u) = √(u² + turbulence²): what the wind adds to the drag in "
       "still air, so it acts with air_drag or without.",
   .source =
-      "normal force of a plate across the flow, C_N 1.1 to 2: Hoerner, "
+      "Normal force of a plate across the flow, C_N 1.1 to 2: Hoerner, "
       "Fluid-Dynamic Drag, 1965, chapter 3; mean force of a fluctuating "
-      "flow by its linearisation",
+      "flow by its linearisation.",
   .regressor =
       "A force along the normal that is steady where the cloth is, in "
       "proportion to the normal part of one fixed direction; cosine "
@@ -31,22 +31,22 @@ const ClothEffect cloth_effect_wind = {
   .parameters = {
     {.name = "x", .unit = "m/s", .null_value = 0, .min = -30, .max = 30,
         .prior = 1,
-        .blurb = "Velocity of the air along x."},
+        .blurb = "Velocity of the air along x"},
     {.name = "y", .unit = "m/s", .null_value = 0, .min = -30, .max = 30,
         .prior = 1,
-        .blurb = "Velocity of the air along y."},
+        .blurb = "Velocity of the air along y"},
     {.name = "z", .unit = "m/s", .null_value = 0, .min = -30, .max = 30,
         .prior = 0.3,
-        .blurb = "Velocity of the air along z, upwards."},
+        .blurb = "Velocity of the air along z, upwards"},
     {.name = "coefficient", .unit = "1", .null_value = 1.5, .min = 0, .max = 20,
         .prior = 0.5,
         .blurb = "C_N of the cloth in this wind; at any value no wind means no "
-            "force. In a model that has air_drag give both the same."},
+            "force; in a model that has air_drag give both the same"},
     {.name = "turbulence", .unit = "m/s", .null_value = 0.5, .min = 0.01, .max = 10,
         .prior = 0.3,
         .blurb = "Speed below which the force is in proportion to the wind, for "
             "air that is never still; about 1.6 times the standard deviation "
-            "of its fluctuations."},
+            "of its fluctuations"},
   }
 };
 /* *INDENT-ON* */
