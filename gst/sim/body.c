@@ -245,6 +245,37 @@ make_hinge (const ClothBody * body, const guint32 * corners, const Edge * one,
   hinge->weft = area / (square * square) * (form[1] + 0.5 * form[2]);
 }
 
+/* Between two right angles an edge's hinge has only three particles: they go first. */
+static void
+sort_hinges (ClothBody * body)
+{
+  g_autofree ClothBodyHinge *all =
+      g_memdup2 (body->hinges, body->n_hinges * sizeof *all);
+  guint at = 0;
+
+  for (guint i = 0; i < body->n_hinges; i++) {
+    ClothBodyHinge *h = &all[i];
+    gdouble largest = fabs (h->c[2]) + fabs (h->c[3]);
+    guint zero = fabs (h->c[0]) < 1e-6 * largest ? 0 : 1;
+
+    if (fabs (h->c[zero]) < 1e-6 * largest) {
+      const ClothBodyHinge old = *h;
+
+      for (guint k = 0; k < 4; k++) {
+        guint from = k == 3 ? zero : k == 2 ? 1 - zero : k + 2;
+
+        h->particle[k] = old.particle[from];
+        h->c[k] = k == 3 ? 0. : old.c[from];
+      }
+      body->hinges[at++] = *h;
+    }
+  }
+  body->n_straight = at;
+  for (guint i = 0; i < body->n_hinges; i++)
+    if (all[i].c[3] != 0.)
+      body->hinges[at++] = all[i];
+}
+
 static gboolean
 make_hinges (ClothBody * body, const guint32 * corners, GError ** error)
 {
@@ -277,6 +308,7 @@ make_hinges (ClothBody * body, const guint32 * corners, GError ** error)
     make_hinge (body, corners, &edges[i], &edges[i + 1],
         &body->hinges[body->n_hinges++]);
   }
+  sort_hinges (body);
   return TRUE;
 }
 

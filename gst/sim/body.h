@@ -18,9 +18,9 @@ typedef struct
   gdouble area;
 } ClothBodyTriangle;
 
-/* Two triangles about an edge: particles 0 and 1 are the edge, 2 and 3 opposite it.
- * |Σ c x| is proportional to the curvature, its energy is
- * ½ (B_warp·warp + B_weft·weft) |Σ c x|². */
+/* Two triangles about an edge: particles 0 and 1 are the edge, 2 and 3 opposite it, or
+ * the other way round when that leaves the last one with c = 0. |Σ c x| is proportional to
+ * the curvature, its energy is ½ (B_warp·warp + B_weft·weft) |Σ c x|². */
 typedef struct
 {
   guint32 particle[4];
@@ -53,7 +53,7 @@ typedef struct
   gdouble *area;                /* of each particle, m² */
   guint n_right, n_triangles;   /* the right-angled ones come first */
   ClothBodyTriangle *triangles;
-  guint n_hinges;
+  guint n_straight, n_hinges;   /* those whose last c is 0 come first */
   ClothBodyHinge *hinges;
   ClothBodyBound *bounds;
   guint n_held;

@@ -192,6 +192,7 @@ group_free (gpointer group)
   g_aligned_free (state->x);
   g_aligned_free (state->v);
   g_aligned_free (state->f);
+  g_aligned_free (state->z);
   g_aligned_free (state->mass);
   g_aligned_free (state->inverse_mass);
   g_aligned_free (state->sound_x);
@@ -222,6 +223,7 @@ group_new (const ClothBody * body, const ClothModel * const *models,
   state->x = lanes_new (n, sizeof *state->x);
   state->v = lanes_new (n, sizeof *state->v);
   state->f = lanes_new (n, sizeof *state->f);
+  state->z = lanes_new (n, sizeof *state->z);
   state->sound_x = lanes_new (n, sizeof *state->x);
   state->sound_v = lanes_new (n, sizeof *state->v);
   state->mass = lanes_new (n, sizeof *state->mass);

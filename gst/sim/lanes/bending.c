@@ -5,30 +5,40 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/sim/lanes/state.h"
 
-/* Adds the bending forces. */
-void CLOTH_LANE_NAME (cloth_lane_bending) (ClothLaneState * state)
+CLOTH_LANE_INLINE void
+fold (const ClothLaneState * state, guint begin, guint end, guint corners)
 {
-  ClothLane3 *f = state->f;
-  ClothLane beta = state->beta;
+  ClothLane3 *z = state->z, *f = state->f;
+  ClothLane warp = state->bending_warp, weft = state->bending_weft;
 
-  for (guint i = 0; i < state->body->n_hinges; i++) {
+  for (guint i = begin; i < end; i++) {
     const ClothLaneHinge *h = &state->hinges[i];
     const guint32 *p = h->particle;
-    ClothLane stiffness =
-        state->bending_warp * h->warp + state->bending_weft * h->weft;
+    ClothLane stiffness = warp * h->warp + weft * h->weft;
 
     for (guint k = 0; k < 3; k++) {
-      ClothLane fold = cloth_lane_set (0.), rate = cloth_lane_set (0.);
+      ClothLane y = z[p[0]][k] * h->c[0];
 
-      for (guint corner = 0; corner < 4; corner++) {
-        fold += state->x[p[corner]][k] * h->c[corner];
-        rate += state->v[p[corner]][k] * h->c[corner];
-      }
-      fold = (fold + beta * rate) * stiffness;
-      for (guint corner = 0; corner < 4; corner++)
-        f[p[corner]][k] -= fold * h->c[corner];
+      for (guint corner = 1; corner < corners; corner++)
+        y += z[p[corner]][k] * h->c[corner];
+      y *= stiffness;
+      for (guint corner = 0; corner < corners; corner++)
+        f[p[corner]][k] -= y * h->c[corner];
     }
   }
+}
+
+/* Adds the bending forces. */
+void
+CLOTH_LANE_NAME (cloth_lane_bending) (ClothLaneState * state)
+{
+  ClothLane beta = state->beta;
+
+  for (guint i = 0; i < state->n; i++)
+    for (guint k = 0; k < 3; k++)
+      state->z[i][k] = state->x[i][k] + beta * state->v[i][k];
+  fold (state, 0, state->body->n_straight, 3);
+  fold (state, state->body->n_straight, state->body->n_hinges, 4);
 }
 
 ClothLane
@@ -42,11 +52,11 @@ CLOTH_LANE_NAME (cloth_lane_bending_energy) (const ClothLaneState * state)
         state->bending_warp * h->warp + state->bending_weft * h->weft;
 
     for (guint k = 0; k < 3; k++) {
-      ClothLane fold = cloth_lane_set (0.);
+      ClothLane y = cloth_lane_set (0.);
 
       for (guint corner = 0; corner < 4; corner++)
-        fold += state->x[h->particle[corner]][k] * h->c[corner];
-      energy += stiffness * fold * fold * cloth_lane_set (0.5);
+        y += state->x[h->particle[corner]][k] * h->c[corner];
+      energy += stiffness * y * y * cloth_lane_set (0.5);
     }
   }
   return energy;

@@ -54,6 +54,7 @@ typedef struct
   guint64 seed;
   guint n;                      /* particles */
   ClothLane3 *x, *v, *f;        /* m, m/s, N */
+  ClothLane3 *z;                /* for the forces of a step: x + βv */
   ClothLane *mass;              /* kg; setup hooks may change it */
   ClothLane *inverse_mass;
   ClothLaneTriangle *triangles;
