@@ -1,0 +1,242 @@
+// The cloth in 3D: recorded, simulated before and after, one camera for all.
+// SPDX-License-Identifier: LGPL-2.1-or-later
+import {
+  BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, DynamicDrawUsage, GridHelper,
+  HemisphereLight, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial, PerspectiveCamera, Scene,
+  SRGBColorSpace, Vector3, WebGLRenderer,
+} from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { shade } from './colours.js';
+import { colour } from './dom.js';
+
+const linear = new Float32Array(256);
+for (let i = 0; i < 256; i++) {
+  linear[i] = i < 11 ? i / 255 / 12.92 : ((i / 255 + 0.055) / 1.055) ** 2.4;
+}
+
+// One moving sheet: faces in colours, or the lines of the recording.
+class Cloth {
+  constructor(playback, name, wire) {
+    this.playback = playback;
+    this.name = name;
+    this.wire = wire;
+    this.geometry = new BufferGeometry();
+    this.place = new BufferAttribute(playback.room(3), 3).setUsage(DynamicDrawUsage);
+    this.geometry.setAttribute('position', this.place);
+    const most = wire ? playback.edges.length : playback.faces.length / 4 * 6;
+    this.geometry.setIndex(new BufferAttribute(new Uint32Array(most), 1).setUsage(DynamicDrawUsage));
+    if (wire) {
+      this.object = new LineSegments(this.geometry, new LineBasicMaterial({ transparent: true, opacity: 0.55 }));
+    } else {
+      this.tint = new BufferAttribute(playback.room(3), 3).setUsage(DynamicDrawUsage);
+      this.geometry.setAttribute('color', this.tint);
+      this.object = new Mesh(this.geometry, new MeshLambertMaterial({ vertexColors: true, side: DoubleSide }));
+    }
+    this.object.frustumCulled = false;
+  }
+
+  // Takes the frame's positions; a face with an unseen corner is left out.
+  update(frame, residuals, limit) {
+    const { faces, edges } = this.playback;
+    const place = this.playback.positions(this.name, frame, this.place.array);
+    const index = this.geometry.index.array;
+    const seen = (v) => !Number.isNaN(place[3 * v]);
+    let n = 0;
+    if (this.wire) {
+      for (let e = 0; e < edges.length; e += 2) {
+        if (seen(edges[e]) && seen(edges[e + 1])) {
+          index[n++] = edges[e];
+          index[n++] = edges[e + 1];
+        }
+      }
+    } else {
+      for (let f = 0; f < faces.length; f += 4) {
+        const [a, b, c, d] = faces.subarray(f, f + 4);
+        if (!(seen(a) && seen(b) && seen(c))) continue;
+        index.set([a, b, c], n);
+        n += 3;
+        if (d !== 0xffffffff && seen(d)) {
+          index.set([a, c, d], n);
+          n += 3;
+        }
+      }
+      this.paint(residuals, limit);
+    }
+    this.geometry.index.needsUpdate = true;
+    this.geometry.setDrawRange(0, n);
+    this.place.needsUpdate = true;
+    if (!this.wire) this.geometry.computeVertexNormals();
+  }
+
+  paint(residuals, limit) {
+    const rgb = [0, 0, 0];
+    const tint = this.tint.array;
+    for (let i = 0; i < this.playback.vertices; i++) {
+      shade(residuals ? residuals[i] / limit : 0, rgb);
+      for (let c = 0; c < 3; c++) tint[3 * i + c] = linear[rgb[c]];
+    }
+    this.tint.needsUpdate = true;
+  }
+}
+
+export class View {
+  constructor(canvas, playback, names) {
+    this.canvas = canvas;
+    this.playback = playback;
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.renderer.outputColorSpace = SRGBColorSpace;
+    this.renderer.setScissorTest(true);
+    this.renderer.setClearColor(new Color(0), 0);
+    this.cloths = Object.fromEntries(names.map((name) => [name, new Cloth(playback, name, false)]));
+    this.wire = new Cloth(playback, 'recorded', true);
+    this.scene = new Scene();
+    // Overhead and head light together keep folds visible from all sides.
+    this.head = new DirectionalLight(0xffffff, 2.6);
+    this.scene.add(new HemisphereLight(0xffffff, 0x9aa0ac, 1.6), this.head, this.head.target, this.wire.object,
+      ...Object.values(this.cloths).map((cloth) => cloth.object));
+    this.camera = new PerspectiveCamera(32, 1, 0.01, 100);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.addEventListener('change', () => this.redraw());
+    this.#frameCloth();
+    canvas.addEventListener('keydown', (event) => this.#key(event));
+    this.panels = [];
+    this.pending = false;
+  }
+
+  // The camera looks at the flat side of the cloth, a little from above.
+  #frameCloth() {
+    const low = new Vector3(Infinity, Infinity, Infinity), high = low.clone().negate();
+    const { playback } = this;
+    const place = playback.room(3);
+    const point = new Vector3(), side = new Vector3(), normal = new Vector3();
+    for (let frame = 0; frame < playback.frames; frame += Math.max(1, playback.frames >> 4)) {
+      playback.positions('recorded', frame, place);
+      for (let i = 0; i < playback.vertices; i++) {
+        point.fromArray(place, 3 * i);
+        if (Number.isFinite(point.x)) {
+          low.min(point);
+          high.max(point);
+        }
+      }
+      for (let f = 0; f < playback.faces.length; f += 4) {
+        const [a, b, c] = playback.faces.subarray(f, f + 3);
+        point.fromArray(place, 3 * b).sub(side.fromArray(place, 3 * a));
+        side.fromArray(place, 3 * c).sub(new Vector3().fromArray(place, 3 * a));
+        point.cross(side);
+        if (Number.isFinite(point.x)) normal.add(point.dot(normal) < 0 ? point.negate() : point);
+      }
+    }
+    if (!(high.x >= low.x)) {
+      low.set(-0.5, -0.5, -0.5);
+      high.set(0.5, 0.5, 0.5);
+    }
+    this.size = Math.max(high.distanceTo(low), 1e-3);
+    this.centre = low.clone().add(high).multiplyScalar(0.5);
+    normal.z = 0;
+    if (!(normal.length() > 0)) normal.set(0, -1, 0);
+    normal.normalize();
+    if (normal.y > 0) normal.negate();
+    normal.applyAxisAngle(new Vector3(0, 0, 1), 0.5);
+    this.home = normal.multiplyScalar(1.62 * this.size).add(new Vector3(0, 0, 0.36 * this.size)).add(this.centre);
+    this.camera.near = this.size / 100;
+    this.camera.far = this.size * 50;
+    this.controls.minDistance = this.size / 10;
+    this.controls.maxDistance = this.size * 10;
+    this.ground = new GridHelper(1, 8);
+    this.ground.scale.setScalar(1.3 * this.size);
+    this.ground.rotation.x = Math.PI / 2;
+    this.ground.position.set(this.centre.x, this.centre.y, low.z - 0.02 * this.size);
+    this.ground.material.transparent = true;
+    this.ground.material.opacity = 0.35;
+    this.ground.material.vertexColors = false;
+    this.scene.add(this.ground);
+    this.reset();
+  }
+
+  reset() {
+    this.camera.position.copy(this.home);
+    this.controls.target.copy(this.centre);
+    this.controls.update();
+    this.redraw();
+  }
+
+  // Turning and zooming without a mouse.
+  #key(event) {
+    const turns = { ArrowLeft: [-0.12, 0], ArrowRight: [0.12, 0], ArrowUp: [0, -0.12], ArrowDown: [0, 0.12] };
+    const zooms = { '+': 0.85, '=': 0.85, '-': 1 / 0.85 };
+    const arm = this.camera.position.clone().sub(this.controls.target);
+    if (event.key in turns) {
+      const [turn, tilt] = turns[event.key];
+      const polar = Math.min(3.1, Math.max(0.05, Math.acos(arm.z / arm.length()) + tilt));
+      const azimuth = Math.atan2(arm.y, arm.x) + turn;
+      const r = arm.length();
+      arm.set(r * Math.sin(polar) * Math.cos(azimuth), r * Math.sin(polar) * Math.sin(azimuth), r * Math.cos(polar));
+    } else if (event.key in zooms) {
+      arm.multiplyScalar(zooms[event.key]);
+    } else if (event.key === 'Home') {
+      this.reset();
+      event.preventDefault();
+      return;
+    } else {
+      return;
+    }
+    event.preventDefault();
+    this.camera.position.copy(this.controls.target).add(arm);
+    this.controls.update();
+    this.redraw();
+  }
+
+  // `panels`: what stands side by side, each { cloth, wire }.
+  show(panels) {
+    this.panels = panels;
+    this.redraw();
+  }
+
+  update(frame, residuals, limit) {
+    for (const [name, cloth] of Object.entries(this.cloths)) cloth.update(frame, residuals[name], limit);
+    this.wire.update(frame);
+    this.redraw();
+  }
+
+  redraw() {
+    if (this.pending) return;
+    this.pending = true;
+    requestAnimationFrame(() => {
+      this.pending = false;
+      this.#draw();
+    });
+  }
+
+  #draw() {
+    const { renderer, canvas, camera } = this;
+    const width = canvas.clientWidth, height = canvas.clientHeight;
+    if (!width || !height || !this.panels.length) return;
+    const ratio = Math.min(2, devicePixelRatio);
+    if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+      renderer.setPixelRatio(ratio);
+      renderer.setSize(width, height, false);
+    }
+    this.wire.object.material.color.set(colour('ink'));
+    this.ground.material.color.set(colour('soft'));
+    // From the upper left of whoever looks.
+    this.head.position.copy(camera.position).add(new Vector3(0, 0, this.size))
+      .addScaledVector(new Vector3().setFromMatrixColumn(camera.matrixWorld, 0), -1.2 * this.size);
+    this.head.target.position.copy(this.controls.target);
+    const upright = width < 560;
+    const n = this.panels.length;
+    this.panels.forEach((panel, i) => {
+      const w = upright ? width : width / n, h = upright ? height / n : height;
+      const x = upright ? 0 : i * w, y = upright ? height - (i + 1) * h : 0;
+      for (const [name, cloth] of Object.entries(this.cloths)) cloth.object.visible = name === panel.cloth;
+      this.wire.object.visible = panel.wire;
+      camera.aspect = w / h;
+      // The cloth fits into narrow panels too.
+      camera.zoom = Math.min(1, camera.aspect);
+      camera.updateProjectionMatrix();
+      renderer.setViewport(x, y, w, h);
+      renderer.setScissor(x, y, w, h);
+      renderer.render(this.scene, camera);
+    });
+  }
+}

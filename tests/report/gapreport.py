@@ -1,0 +1,254 @@
+#!/usr/bin/python3
+"""gap.json against its schema, and the report in a browser.
+
+  gapreport.py json PROGRAM ROOT              gap.json, by tests/report/gapsheet.c
+  gapreport.py page PROGRAM [PICTURE]         report.html; PICTURE: writes docs' picture
+
+SPDX-License-Identifier: LGPL-2.1-or-later
+"""
+import copy
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+
+import jsonschema
+
+from webdriver import Browser
+
+HOSTILE = '</script><script>window.hacked=1</script><img src=x onerror=window.hacked=1>"\'&\ufffd\n\u2028<!--'
+
+
+def written(program, kind, folder):
+    subprocess.run([program, kind, folder], check=True)
+    with open(os.path.join(folder, 'gap.json'), encoding='utf-8') as file:
+        return json.load(file, parse_constant=lambda name: sys.exit('gap.json has %s' % name))
+
+
+def refused(schema, gap, path, value):
+    """Whether the schema refuses what would be right but for this."""
+    gap = copy.deepcopy(gap)
+    at = gap
+    for key in path[:-1]:
+        at = at[key]
+    if value is KeyError:
+        del at[path[-1]]
+    else:
+        at[path[-1]] = value
+    return not schema.is_valid(gap)
+
+
+def check_json(program, root):
+    with open(os.path.join(root, 'docs/gap.schema.json'), encoding='utf-8') as file:
+        text = json.load(file)
+    jsonschema.Draft202012Validator.check_schema(text)
+    schema = jsonschema.Draft202012Validator(text)
+    with tempfile.TemporaryDirectory() as folder:
+        kinds = {kind: written(program, kind, folder) for kind in ('sheet', 'example', 'empty', 'hostile')}
+        assert sorted(os.listdir(folder)) == ['gap.json', 'report.html'], os.listdir(folder)
+        with open(os.path.join(folder, 'gap.json'), 'rb') as file:
+            assert b'<' not in file.read(), 'gap.json can end a script'
+    for kind, gap in kinds.items():
+        if kind != 'empty':
+            schema.validate(gap)
+    # Without a reason nobody may call it undecidable.
+    assert not schema.is_valid(kinds['empty'])
+    with open(os.path.join(root, 'docs/gap.example.json'), encoding='utf-8') as file:
+        assert json.load(file) == kinds['example'], 'docs/gap.example.json is not what is written today'
+    sheet = kinds['sheet']
+    assert sheet['verdict'] == 'explained'
+    assert re.fullmatch(r'Gap 3\.5 mm, 4\.\d× the floor\. Air drag explains 9\d% \[\d+, \d+\] on an unseen take\.',
+                        sheet['summary']), sheet['summary']
+    assert len(sheet['where']['vertices']) == 33 * 35 and len(sheet['where']['frames']) == 250
+    assert abs(sum(sheet['where']['vertices']) - 1) < 1e-4
+    assert sheet['effects'][0]['parameters'] == [{'name': 'coefficient', 'value': 1.14, 'sigma': 0.06, 'unit': '1'}]
+    assert sheet['groups'][0]['effects'] == ['air_drag_linear', 'damping_mass']
+    assert sheet['where']['stages'][0] == {'name': 'camera', 'share': None}
+    assert kinds['hostile']['reason'] == HOSTILE
+    for path, value in ((['verdict'], 'perhaps'), (['verdict'], KeyError), (['version'], 2), (['extra'], 1),
+                        (['gap_before', 'value'], -1), (['gap_before', 'interval'], [1]),
+                        (['effects', 0, 'probability'], 1.01), (['effects', 0, 'side'], 'moon'),
+                        (['effects', 0, 'parameters', 0, 'unit'], KeyError), (['effects', 0, 'group'], -1),
+                        (['effects'], []), (['where', 'vertices'], 'all'), (['where', 'directions', 'up'], 0.1),
+                        (['seed'], 1.5), (['inputs', 0, 'sha256'], 'abc'), (['inputs', 0, 'role'], 'witness')):
+        assert refused(schema, sheet, path, value), path
+
+
+def check_failures(program):
+    """Nothing half-written where nothing can be written."""
+    with tempfile.TemporaryDirectory() as folder:
+        missing = os.path.join(folder, 'missing')
+        outcome = subprocess.run([program, 'example', missing], capture_output=True, text=True)
+        assert outcome.returncode == 1 and 'missing' in outcome.stderr, outcome
+        os.mkdir(os.path.join(folder, 'report.html'))
+        outcome = subprocess.run([program, 'example', folder], capture_output=True, text=True)
+        assert outcome.returncode == 1 and 'report.html' in outcome.stderr, outcome
+        assert sorted(os.listdir(folder)) == ['gap.json', 'report.html'], os.listdir(folder)
+
+
+def show(browser, program, kind, folder):
+    written(program, kind, folder)
+    path = os.path.join(folder, 'report.html')
+    assert os.path.getsize(path) < 9e6, os.path.getsize(path)
+    started = time.monotonic()
+    browser.open(path)
+    for _ in range(200):
+        if browser.run('return document.documentElement.dataset.ready') == 'yes':
+            break
+        browser.settle()
+    else:
+        raise AssertionError('%s does not get ready: %s' % (kind, browser.log()))
+    browser.settle()
+    log = browser.log()
+    assert not log, log
+    assert browser.run('return performance.getEntriesByType("resource").length') == 0
+    print('%s: %.1f MB, ready in %.1f s' % (kind, os.path.getsize(path) / 1e6, time.monotonic() - started))
+
+
+def differs(browser, selector, change):
+    before = browser.picture(selector)
+    change()
+    browser.settle()
+    return browser.picture(selector) != before
+
+
+def move(browser, frame):
+    browser.run('const slider = document.getElementById("time"); slider.value = arguments[0];'
+                'slider.dispatchEvent(new Event("input"))', frame)
+
+
+def check_table(browser):
+    assert browser.text('#verdict .pill') == 'Explained'
+    assert browser.text('#summary').startswith('Gap 3.5 mm, 4.')
+    rows = browser.run('return [...document.querySelectorAll("#ranking tbody tr")].map(row => '
+                       '[...row.children].map(cell => cell.innerText))')
+    first = ' '.join(' '.join(rows[0]).split())
+    assert re.fullmatch(r'1 Air drag physics accepted Air resists with the square of the speed\. 93% p < 0\.0001 '
+                        r'coefficient 1\.14 \[1\.02, 1\.26\] 9\d% \[\d+, \d+\]', first), first
+    wind = ' '.join(' '.join(rows[3]).split())
+    assert 'y −0.21 m/s [−0.37, −0.05]' in wind and 'changes over time' in wind, wind
+    assert rows[1][5].strip() == 'damping mass', rows[1]
+    assert 're-fitted' in rows[5][5], rows[5]
+    hidden = 'return [...document.querySelectorAll("#ranking tr")].filter(row => row.hidden).length'
+    assert browser.run(hidden) == 2
+    browser.click('#effects > button')
+    assert browser.run(hidden) == 0
+    browser.click('#effects > button')
+    assert 'no rig.json' in browser.run('return document.getElementById("untested").textContent')
+    assert 'Shake the upper edge' in browser.text('#next')
+    assert 'diverged at 1.34 s' in browser.text('#failures')
+    assert '352 simulations in 41.7 s, seed 1' in browser.text('#provenance')
+
+
+def check_playback(browser):
+    assert browser.run('return [...document.querySelectorAll(".labels span")].map(n => n.textContent)') == \
+        ['Recorded', 'Simulated before', 'Simulated after']
+    move(browser, 0)
+    browser.settle()
+    assert browser.text('#readout').startswith('0.00 s'), browser.text('#readout')
+    # Nothing moves by itself: else a changed picture proves nothing.
+    assert not differs(browser, '#cloth', lambda: None)
+    assert differs(browser, '#cloth', lambda: move(browser, 200))
+    assert browser.text('#readout').startswith('4.00 s, RMS distance before'), browser.text('#readout')
+    assert differs(browser, '#cloth', lambda: browser.click('#view-before'))
+    assert differs(browser, '#cloth', lambda: browser.click('#unit-expected'))
+    assert differs(browser, '.map canvas', lambda: move(browser, 100))
+    assert differs(browser, '#over-time', lambda: move(browser, 150))
+    browser.click('#unit-metres')
+    browser.click('#view-all')
+    # A click on the curve goes there.
+    browser.run('const over = document.querySelector("#over-time .u-over"), box = over.getBoundingClientRect();'
+                'for (const type of ["mousemove", "mousedown", "mouseup", "click"]) over.dispatchEvent('
+                'new MouseEvent(type, {bubbles: true, clientX: box.left + box.width / 2, clientY: box.top + 20}))')
+    browser.settle()
+    assert abs(float(browser.text('#readout').split(' ')[0]) - 2.47) < 0.1, browser.text('#readout')
+
+
+def check_keyboard(browser):
+    value = 'return Number(document.getElementById("time").value)'
+    reached = []
+    browser.run('document.activeElement.blur(); document.querySelector("#effects > button").focus()')
+    for _ in range(9):
+        browser.press('Tab')
+        reached.append(browser.run('return document.activeElement.id || document.activeElement.textContent'))
+    for wanted in ('view-all', 'cloth', 'play', 'time', 'speed', 'Reset view'):
+        assert wanted in reached, reached
+    browser.run('document.getElementById("time").focus()')
+    move(browser, 10)
+    browser.press('Right', 'Right')
+    assert browser.run(value) == 12
+    browser.run('document.getElementById("cloth").focus()')
+    assert differs(browser, '#cloth', lambda: browser.press('Left', 'Left'))
+    browser.press('Home')
+    browser.run('document.getElementById("play").focus()')
+    browser.press('Enter')
+    assert browser.text('#play') == 'Pause'
+    for _ in range(100):
+        browser.settle()
+        if browser.run(value) > 12:
+            break
+    assert browser.run(value) > 12, 'it does not play'
+    browser.press('Enter')
+    at = browser.run(value)
+    browser.settle()
+    assert browser.run(value) == at, 'it does not pause'
+
+
+def check_policy(browser):
+    """The page's own guard is up: what it lets through would be seen in the log."""
+    browser.run('const script = document.createElement("script"); script.textContent = "window.hacked = 1";'
+                'document.body.append(script); const picture = new Image(); picture.src = "file:///x.png";'
+                'const style = document.createElement("style"); style.textContent = "body { display: none }";'
+                'document.body.append(style); document.body.append(picture)')
+    browser.settle()
+    log = browser.log()
+    assert browser.run('return window.hacked') is None
+    for directive in ('script-src', 'style-src', 'img-src'):
+        assert any(directive in line for line in log), log
+
+
+def check_hostile(browser):
+    assert browser.run('return window.hacked') is None
+    assert browser.run('return document.querySelectorAll("img, main script").length') == 0
+    assert browser.run('return document.title.includes("<img src=x")')
+    seen = browser.run('return document.querySelector("main").textContent')
+    assert seen.count(HOSTILE) > 12, seen.count(HOSTILE)
+
+
+def check_page(program, picture):
+    with tempfile.TemporaryDirectory() as folder, Browser(1240, 1730) as browser:
+        show(browser, program, 'sheet', folder)
+        light = browser.run('return getComputedStyle(document.body).backgroundColor')
+        shot = browser.picture()
+        if picture:
+            with open(picture, 'wb') as file:
+                file.write(shot)
+        check_table(browser)
+        check_playback(browser)
+        check_keyboard(browser)
+        assert not browser.log()
+        browser.devtools('Emulation.setEmulatedMedia', features=[{'name': 'prefers-color-scheme', 'value': 'dark'}])
+        assert browser.run('return getComputedStyle(document.body).backgroundColor') != light
+        # Narrow windows need no sideways scrolling.
+        browser.devtools('Emulation.setDeviceMetricsOverride', width=400, height=800, deviceScaleFactor=1, mobile=False)
+        browser.settle()
+        assert browser.run('return document.documentElement.scrollWidth') == 400
+        check_policy(browser)
+        browser.devtools('Emulation.clearDeviceMetricsOverride')
+        show(browser, program, 'hostile', folder)
+        check_hostile(browser)
+        show(browser, program, 'empty', folder)
+        assert browser.text('#verdict .pill') == 'Undecidable'
+        assert not browser.run('return document.getElementById("where")')
+        show(browser, program, 'long', folder)
+        assert 'every' in browser.text('#where .note')
+
+
+if sys.argv[1] == 'json':
+    check_json(*sys.argv[2:4])
+    check_failures(sys.argv[2])
+else:
+    check_page(sys.argv[2], sys.argv[3] if len(sys.argv) > 3 else None)
