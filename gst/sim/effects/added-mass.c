@@ -30,4 +30,48 @@ const ClothEffect cloth_effect_added_mass = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+/* The mass (m + M n nᵀ) of a particle leaves of the acceleration along n only the share
+ * m / (m + M): what is missing is the force. Acts last, when the others are known. */
+static void
+force (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  ClothLane3 *normals = effect->state;
+  ClothLane third = cloth_lane_set (1. / 3.), one = cloth_lane_set (1.);
+  ClothLane tiny = cloth_lane_set (1e-30);
+
+  memset (normals, 0, state->n * sizeof *normals);
+  for (guint i = 0; i < state->body->n_triangles; i++) {
+    const ClothLaneTriangle *t = &state->triangles[i];
+    ClothLane normal[3], velocity[3], area;
+
+    cloth_lane_face (state, t, normal, &area, velocity);
+    for (guint corner = 0; corner < 3; corner++)
+      for (guint k = 0; k < 3; k++)
+        normals[t->particle[corner]][k] += normal[k] * third;
+  }
+  for (guint i = 0; i < state->n; i++) {
+    ClothLane area2 = cloth_lane_dot (normals[i], normals[i]);
+    ClothLane ratio = effect->p[0] * cloth_lane_sqrt (area2) *
+        state->inverse_mass[i];
+    ClothLane along = cloth_lane_set (0.);
+
+    for (guint k = 0; k < 3; k++)
+      along += normals[i][k] * (state->f[i][k] * state->inverse_mass[i] +
+          state->gravity[k] - state->alpha * state->v[i][k]);
+    along *= state->mass[i] * ratio / ((one + ratio) * cloth_lane_max (area2,
+            tiny));
+    for (guint k = 0; k < 3; k++)
+      state->f[i][k] -= along * normals[i][k];
+  }
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_added_mass) = {
+  .id = "added_mass",
+  .state_size = sizeof (ClothLane3),
+  .force = force,
+};
 #endif

@@ -33,4 +33,36 @@ const ClothEffect cloth_effect_air_drag_linear = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+static void
+rate (const ClothLaneState * state, const ClothLaneEffect * effect,
+    ClothLane * omega2, ClothLane * friction)
+{
+  ClothLane most = cloth_lane_set (0.);
+
+  for (guint i = 0; i < state->n; i++)
+    most = cloth_lane_max (most,
+        state->inverse_mass[i] * (ClothReal) state->body->area[i]);
+  *friction += effect->p[0] * most;
+}
+
+static void
+force (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  for (guint i = 0; i < state->n; i++) {
+    ClothLane drag = effect->p[0] * (ClothReal) state->body->area[i];
+
+    for (guint k = 0; k < 3; k++)
+      state->f[i][k] -= drag * state->v[i][k];
+  }
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_air_drag_linear) = {
+  .id = "air_drag_linear",
+  .rate = rate,
+  .force = force,
+};
 #endif

@@ -31,4 +31,32 @@ const ClothEffect cloth_effect_air_drag_tangential = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+/* F = −c A (v − (v·n) n). */
+static void
+force (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  ClothLane tiny = cloth_lane_set (1e-30);
+
+  for (guint i = 0; i < state->body->n_triangles; i++) {
+    const ClothLaneTriangle *t = &state->triangles[i];
+    ClothLane normal[3], velocity[3], push[3], area, through, drag;
+
+    cloth_lane_face (state, t, normal, &area, velocity);
+    drag = effect->p[0] * area;
+    through = cloth_lane_dot (velocity, normal) /
+        cloth_lane_max (area * area, tiny);
+    for (guint k = 0; k < 3; k++)
+      push[k] = drag * (through * normal[k] - velocity[k]);
+    cloth_lane_push_face (state, t, push);
+  }
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_air_drag_tangential) = {
+  .id = "air_drag_tangential",
+  .force = force,
+};
 #endif

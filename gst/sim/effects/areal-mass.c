@@ -31,4 +31,22 @@ const ClothEffect cloth_effect_areal_mass = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+static void
+setup (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  ClothLane factor = cloth_lane_exp (effect->p[0]);
+
+  state->density *= factor;
+  for (guint i = 0; i < state->n; i++)
+    state->mass[i] *= factor;
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_areal_mass) = {
+  .id = "areal_mass",
+  .setup = setup,
+};
 #endif

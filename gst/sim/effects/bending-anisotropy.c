@@ -32,4 +32,21 @@ const ClothEffect cloth_effect_bending_anisotropy = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+static void
+setup (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  ClothLane half = effect->p[0] * cloth_lane_set (0.5);
+
+  state->bending_warp *= cloth_lane_exp (half);
+  state->bending_weft *= cloth_lane_exp (-half);
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_bending_anisotropy) = {
+  .id = "bending_anisotropy",
+  .setup = setup,
+};
 #endif

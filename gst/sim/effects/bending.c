@@ -31,4 +31,21 @@ const ClothEffect cloth_effect_bending = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+static void
+setup (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  ClothLane factor = cloth_lane_exp (effect->p[0]);
+
+  state->bending_warp *= factor;
+  state->bending_weft *= factor;
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_bending) = {
+  .id = "bending",
+  .setup = setup,
+};
 #endif

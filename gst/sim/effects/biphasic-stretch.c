@@ -35,4 +35,38 @@ const ClothEffect cloth_effect_biphasic_stretch = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+static void
+rate (const ClothLaneState * state, const ClothLaneEffect * effect,
+    ClothLane * omega2, ClothLane * friction)
+{
+  *omega2 += *omega2 * cloth_lane_max (effect->p[0], cloth_lane_set (0.));
+}
+
+static void
+force (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  ClothLane zero = cloth_lane_set (0.), knee = effect->p[1];
+  ClothLane warp = state->stretch_warp * effect->p[0];
+  ClothLane weft = state->stretch_weft * effect->p[0];
+
+  for (guint i = 0; i < state->body->n_triangles; i++) {
+    const ClothLaneTriangle *t = &state->triangles[i];
+    ClothLaneStrain strain;
+
+    cloth_lane_strain (state, t, &strain);
+    cloth_lane_pull (state, t, &strain,
+        warp * cloth_lane_max (strain.warp - knee, zero),
+        weft * cloth_lane_max (strain.weft - knee, zero));
+  }
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_biphasic_stretch) = {
+  .id = "biphasic_stretch",
+  .rate = rate,
+  .force = force,
+};
 #endif

@@ -29,4 +29,18 @@ const ClothEffect cloth_effect_clamp_compliance = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+static void
+setup (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  state->compliance += effect->p[0];
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_clamp_compliance) = {
+  .id = "clamp_compliance",
+  .setup = setup,
+};
 #endif

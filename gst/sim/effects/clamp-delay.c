@@ -31,4 +31,27 @@ const ClothEffect cloth_effect_clamp_delay = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+static void
+clamp (const ClothLaneState * state, const ClothLaneEffect * effect,
+    guint held, gdouble time_s, ClothLane position[3])
+{
+  gdouble now[3], then[3];
+
+  cloth_body_path (state->body, held, time_s, now);
+  for (guint l = 0; l < CLOTH_N_LANES; l++) {
+    cloth_body_path (state->body, held,
+        time_s - CLOTH_LANE_AT (&effect->p[0], l), then);
+    for (guint k = 0; k < 3; k++)
+      CLOTH_LANE_AT (&position[k], l) += (ClothReal) (then[k] - now[k]);
+  }
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_clamp_delay) = {
+  .id = "clamp_delay",
+  .clamp = clamp,
+};
 #endif

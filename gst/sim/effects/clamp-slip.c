@@ -43,4 +43,31 @@ const ClothEffect cloth_effect_clamp_slip = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+/* Time in which it slips, s. */
+#define SLIP 0.05
+
+static void
+clamp (const ClothLaneState * state, const ClothLaneEffect * effect,
+    guint held, gdouble time_s, ClothLane position[3])
+{
+  ClothLane zero = cloth_lane_set (0.), one = cloth_lane_set (1.);
+  ClothLane share = (cloth_lane_set (time_s) - effect->p[3]) *
+      cloth_lane_set (1. / SLIP);
+  ClothMask which = cloth_lane_equal (effect->p[4], cloth_lane_set (held)) |
+      cloth_lane_less (effect->p[4], zero);
+
+  share = cloth_lane_select (which, cloth_lane_max (zero,
+          cloth_lane_min (one, share)), zero);
+  for (guint k = 0; k < 3; k++)
+    position[k] += share * effect->p[k];
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_clamp_slip) = {
+  .id = "clamp_slip",
+  .clamp = clamp,
+};
 #endif

@@ -31,4 +31,18 @@ const ClothEffect cloth_effect_damping_mass = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+static void
+setup (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  state->alpha += effect->p[0];
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_damping_mass) = {
+  .id = "damping_mass",
+  .setup = setup,
+};
 #endif

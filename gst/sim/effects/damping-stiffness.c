@@ -31,4 +31,18 @@ const ClothEffect cloth_effect_damping_stiffness = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+static void
+setup (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  state->beta += effect->p[0];
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_damping_stiffness) = {
+  .id = "damping_stiffness",
+  .setup = setup,
+};
 #endif

@@ -29,4 +29,32 @@ const ClothEffect cloth_effect_grain_angle = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+/* ∂x/∂warp = cos ∂x/∂u + sin ∂x/∂v, ∂x/∂weft at a right angle to it. */
+static void
+setup (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  ClothLane c, s, *r = state->rest;
+
+  for (guint l = 0; l < CLOTH_N_LANES; l++) {
+    gdouble angle = CLOTH_LANE_AT (&effect->p[0], l) * (G_PI / 180.);
+
+    CLOTH_LANE_AT (&c, l) = (ClothReal) cos (angle);
+    CLOTH_LANE_AT (&s, l) = (ClothReal) sin (angle);
+  }
+  for (guint row = 0; row < 4; row += 2) {
+    ClothLane a = r[row], b = r[row + 1];
+
+    r[row] = a * c + b * s;
+    r[row + 1] = b * c - a * s;
+  }
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_grain_angle) = {
+  .id = "grain_angle",
+  .setup = setup,
+};
 #endif

@@ -29,4 +29,19 @@ const ClothEffect cloth_effect_gravity_scale = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+static void
+setup (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  for (guint k = 0; k < 3; k++)
+    state->gravity[k] *= effect->p[0];
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_gravity_scale) = {
+  .id = "gravity_scale",
+  .setup = setup,
+};
 #endif

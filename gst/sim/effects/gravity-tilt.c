@@ -34,4 +34,37 @@ const ClothEffect cloth_effect_gravity_tilt = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+/* Rodrigues' formula about (y, −x, 0). */
+static void
+setup (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  for (guint l = 0; l < CLOTH_N_LANES; l++) {
+    gdouble x = CLOTH_LANE_AT (&effect->p[0], l) * (G_PI / 180.);
+    gdouble y = CLOTH_LANE_AT (&effect->p[1], l) * (G_PI / 180.);
+    gdouble angle = sqrt (x * x + y * y), g[3], axis[2], along;
+
+    if (angle == 0.)
+      continue;
+    axis[0] = y / angle;
+    axis[1] = -x / angle;
+    for (guint k = 0; k < 3; k++)
+      g[k] = CLOTH_LANE_AT (&state->gravity[k], l);
+    along = (axis[0] * g[0] + axis[1] * g[1]) * (1. - cos (angle));
+    CLOTH_LANE_AT (&state->gravity[0], l) = (ClothReal) (g[0] * cos (angle) +
+        axis[1] * g[2] * sin (angle) + axis[0] * along);
+    CLOTH_LANE_AT (&state->gravity[1], l) = (ClothReal) (g[1] * cos (angle) -
+        axis[0] * g[2] * sin (angle) + axis[1] * along);
+    CLOTH_LANE_AT (&state->gravity[2], l) = (ClothReal) (g[2] * cos (angle) +
+        (axis[0] * g[1] - axis[1] * g[0]) * sin (angle));
+  }
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_gravity_tilt) = {
+  .id = "gravity_tilt",
+  .setup = setup,
+};
 #endif

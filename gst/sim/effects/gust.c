@@ -49,4 +49,73 @@ const ClothEffect cloth_effect_gust = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+/* The process of variance 1 at multiples of this time; even in between. */
+#define KNOT 0.01
+
+typedef struct
+{
+  ClothLane before, after;      /* at knots next − 1 and next */
+  guint64 next;
+  ClothRandom random;
+} Gust;
+
+/* Draws the process up to the knot at or after the state's time, counted from 0 s. */
+static ClothLane
+draw (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  Gust *gust = effect->state;
+  ClothLane keep, kick;
+  gdouble knots = MAX (state->time, 0.) / KNOT;
+
+  if (gust->next && knots + 1. < (gdouble) gust->next)
+    gust->next = 0;
+  if (!gust->next) {
+    cloth_random_init (&gust->random, state->seed);
+    gust->before = gust->after =
+        cloth_lane_set (cloth_random_gaussian (&gust->random));
+  }
+  if (!gust->next || knots > (gdouble) gust->next) {
+    for (guint l = 0; l < CLOTH_N_LANES; l++) {
+      gdouble share = exp (-KNOT / CLOTH_LANE_AT (&effect->p[1], l));
+
+      CLOTH_LANE_AT (&keep, l) = (ClothReal) share;
+      CLOTH_LANE_AT (&kick, l) = (ClothReal) sqrt (1. - share * share);
+    }
+    while (!gust->next || knots > (gdouble) gust->next) {
+      gust->next++;
+      gust->before = gust->after;
+      gust->after = keep * gust->before +
+          kick * cloth_lane_set (cloth_random_gaussian (&gust->random));
+    }
+  }
+  return gust->after + (gust->after - gust->before) *
+      cloth_lane_set (knots - (gdouble) gust->next);
+}
+
+static void
+force (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  ClothLane speed = effect->p[0] * draw (state, effect), wind[3];
+
+  for (guint l = 0; l < CLOTH_N_LANES; l++) {
+    gdouble azimuth = CLOTH_LANE_AT (&effect->p[2], l) * (G_PI / 180.);
+
+    CLOTH_LANE_AT (&wind[0], l) = (ClothReal) cos (azimuth);
+    CLOTH_LANE_AT (&wind[1], l) = (ClothReal) sin (azimuth);
+  }
+  wind[0] *= speed;
+  wind[1] *= speed;
+  wind[2] = cloth_lane_set (0.);
+  CLOTH_LANE_NAME (cloth_lane_wind) (state, wind, effect->p[3], effect->p[4]);
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_gust) = {
+  .id = "gust",
+  .fixed_size = sizeof (Gust),
+  .force = force,
+};
 #endif

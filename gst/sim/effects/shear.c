@@ -29,4 +29,18 @@ const ClothEffect cloth_effect_shear = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+static void
+setup (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  state->shear *= cloth_lane_exp (effect->p[0]);
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_shear) = {
+  .id = "shear",
+  .setup = setup,
+};
 #endif

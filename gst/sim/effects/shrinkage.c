@@ -33,4 +33,25 @@ const ClothEffect cloth_effect_shrinkage = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+/* ∂x/∂(u, v) grows as lengths at rest shrink. */
+static void
+setup (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  ClothLane one = cloth_lane_set (1.);
+  ClothLane u = one / (one - effect->p[0]), v = one / (one - effect->p[1]);
+
+  state->rest[0] *= u;
+  state->rest[1] *= u;
+  state->rest[2] *= v;
+  state->rest[3] *= v;
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_shrinkage) = {
+  .id = "shrinkage",
+  .setup = setup,
+};
 #endif

@@ -31,4 +31,21 @@ const ClothEffect cloth_effect_stretch_anisotropy = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+static void
+setup (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  ClothLane half = effect->p[0] * cloth_lane_set (0.5);
+
+  state->stretch_warp *= cloth_lane_exp (half);
+  state->stretch_weft *= cloth_lane_exp (-half);
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_stretch_anisotropy) = {
+  .id = "stretch_anisotropy",
+  .setup = setup,
+};
 #endif

@@ -31,4 +31,21 @@ const ClothEffect cloth_effect_stretch = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+static void
+setup (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  ClothLane factor = cloth_lane_exp (effect->p[0]);
+
+  state->stretch_warp *= factor;
+  state->stretch_weft *= factor;
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_stretch) = {
+  .id = "stretch",
+  .setup = setup,
+};
 #endif

@@ -50,4 +50,19 @@ const ClothEffect cloth_effect_wind = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+static void
+force (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  CLOTH_LANE_NAME (cloth_lane_wind) (state, effect->p, effect->p[3],
+      effect->p[4]);
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_wind) = {
+  .id = "wind",
+  .force = force,
+};
 #endif

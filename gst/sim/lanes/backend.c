@@ -119,9 +119,8 @@ load_effects (ClothLaneState * state, const ClothModel * const *models)
         CLOTH_LANE_AT (&effect->p[k], l) = (ClothReal) (e ? e->values[k] :
             description->parameters[k].null_value);
     }
-    if (all[i]->state_size || all[i]->fixed_size)
-      effect->state = lanes_new (1,
-          all[i]->state_size * state->n + all[i]->fixed_size);
+    effect->state = lanes_new (1, all[i]->state_size * state->n +
+        all[i]->triangle_size * state->body->n_triangles + all[i]->fixed_size);
     state->n_effects++;
   }
 }
@@ -206,6 +205,14 @@ group_free (gpointer group)
   g_aligned_free (state);
 }
 
+static void
+reset_effects (ClothLaneState * state, ClothMask lanes)
+{
+  for (guint i = 0; i < state->n_effects; i++)
+    if (state->effects[i].hooks->reset)
+      state->effects[i].hooks->reset (state, &state->effects[i], lanes);
+}
+
 static gpointer
 group_new (const ClothBody * body, const ClothModel * const *models,
     guint n_models, guint64 seed)
@@ -245,6 +252,7 @@ group_new (const ClothBody * body, const ClothModel * const *models,
     }
   }
   state->time = body->times[0];
+  reset_effects (state, cloth_lane_equal (state->alpha, state->alpha));
   keep_sound (state);
   return state;
 }
@@ -350,9 +358,7 @@ group_set (gpointer group, guint lane, const gdouble * x, const gdouble * v)
   }
   state->diverged &= ~lanes;
   CLOTH_LANE_NAME (cloth_lane_clamps_reset) (state);
-  for (guint i = 0; i < state->n_effects; i++)
-    if (state->effects[i].hooks->reset)
-      state->effects[i].hooks->reset (state, &state->effects[i], lanes);
+  reset_effects (state, lanes);
   keep_sound (state);
 }
 

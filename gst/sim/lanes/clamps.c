@@ -34,11 +34,12 @@ void CLOTH_LANE_NAME (cloth_lane_clamps) (ClothLaneState * state)
   gdouble start = state->time - state->dt;
   ClothLane per_dt = cloth_lane_set (1. / state->dt);
   ClothLane dt = cloth_lane_set (state->dt);
+  ClothMask hard = cloth_lane_equal (state->compliance, cloth_lane_set (0.));
 
   for (guint i = 0; i < body->n_held; i++) {
     const ClothBodyHeld *held = &body->held[i];
     guint p = held->particle;
-    ClothLane place[3], share;
+    ClothLane mass = state->compliance * state->mass[p], place[3], share;
 
     /* half a step of tolerance: no clamp grips for a rounding error */
     if (state->time < held->from_s + 0.5 * state->dt
@@ -60,8 +61,15 @@ void CLOTH_LANE_NAME (cloth_lane_clamps) (ClothLaneState * state)
     share = cloth_lane_set (MAX (0., 1. - (state->time -
                 state->held_since[i]) / body->frame_s));
     for (guint k = 0; k < 3; k++) {
-      state->x[p][k] = place[k] + share * state->held_offset[i][k];
-      state->v[p][k] = (state->x[p][k] - state->held_x[i][k]) * per_dt;
+      ClothLane free_v = state->v[p][k], x;
+
+      place[k] += share * state->held_offset[i][k];
+      x = state->x[p][k] - dt * free_v;
+      /* the spring's force at the end of the step: stable however stiff it is */
+      free_v = (free_v * mass + dt * (place[k] - x)) / (mass + dt * dt);
+      state->x[p][k] = cloth_lane_select (hard, place[k], x + dt * free_v);
+      state->v[p][k] = cloth_lane_select (hard,
+          (place[k] - state->held_x[i][k]) * per_dt, free_v);
       state->held_x[i][k] = state->x[p][k];
     }
   }

@@ -16,8 +16,8 @@ typedef struct
   const ClothLaneHooks *hooks;
   /* its parameters; the null values in lanes whose model has it not */
   ClothLane p[CLOTH_EFFECT_MAX_PARAMETERS];
-  /* hooks->state_size bytes for each particle and hooks->fixed_size more after them,
-   * zeroed, aligned as a lane is */
+  /* hooks->state_size bytes for each particle, then hooks->triangle_size for each
+   * triangle, then hooks->fixed_size; zeroed, aligned as a lane is */
   gpointer state;
 } ClothLaneEffect;
 
@@ -68,6 +68,7 @@ typedef struct
   ClothLane compression_ratio;
   ClothLane air_density;
   ClothLane gravity[3];
+  ClothLane compliance;         /* of the clamps, m/N */
   /* ∂x/∂(u, v) is multiplied by this from the right: [0] [1]; [2] [3]. It turns the grain
    * and changes the size of the cloth at rest. */
   ClothLane rest[4];
@@ -105,7 +106,8 @@ struct _ClothLaneHooks
 {
   const gchar *id;
   gsize state_size;             /* bytes of state for each particle */
-  gsize fixed_size;             /* bytes of other state */
+  gsize triangle_size;          /* for each triangle */
+  gsize fixed_size;             /* of other state */
   /* once, when the models are known: may change the models' numbers and the masses */
   void (*setup) (ClothLaneState * state, ClothLaneEffect * effect);
   /* adds to the bounds of the time step: stiffness/mass in 1/s², damping/mass in 1/s */
@@ -118,7 +120,8 @@ struct _ClothLaneHooks
       guint held, gdouble time_s, ClothLane position[3]);
   /* every step, when the particles have moved */
   void (*after_step) (ClothLaneState * state, ClothLaneEffect * effect);
-  /* when a lane's state was set from outside: forget what came before there */
+  /* at the start, and when a lane's state was set from outside: forget what came before
+   * there */
   void (*reset) (ClothLaneState * state, ClothLaneEffect * effect,
       ClothMask lanes);
 };
