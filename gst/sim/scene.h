@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/mesh/takeinfo.h"
+#include "gst/mesh/take.h"
 
 G_BEGIN_DECLS
 
@@ -56,7 +56,11 @@ typedef struct {
 
 ClothScene *cloth_scene_new (ClothTopology * topology, gdouble fps,
     guint n_frames);
+ClothScene *cloth_scene_new_from_take (ClothTake * take, GError ** error);
 guint cloth_scene_hold (ClothScene * scene, guint vertex);
+gboolean cloth_scene_sew (ClothScene * scene, const ClothSeamLine * line,
+    GError ** error);
+gboolean cloth_scene_check (const ClothScene * scene, GError ** error);
 void cloth_scene_free (ClothScene * scene);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothScene, cloth_scene_free)

@@ -1,0 +1,309 @@
+/* A scene: what no simulation could make sense of.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/sim/scene.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* An edge as one face runs along it. */
+typedef struct
+{
+  guint32 low, high;
+  guint face;
+  gboolean rises;               /* from low to high */
+} Edge;
+
+typedef struct
+{
+  guint32 corner[4];            /* sorted */
+  guint face;
+} Corners;
+
+static gboolean
+invalid (GError ** error, const gchar * format, ...)
+G_GNUC_PRINTF (2, 3);
+
+     static gboolean invalid (GError ** error, const gchar * format, ...)
+{
+  g_autofree gchar *text = NULL;
+  va_list arguments;
+
+  va_start (arguments, format);
+  text = g_strdup_vprintf (format, arguments);
+  va_end (arguments);
+  g_set_error_literal (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID, text);
+  return FALSE;
+}
+
+static guint
+n_corners (const guint32 * face)
+{
+  return face[3] == CLOTH_NO_VERTEX ? 3 : 4;
+}
+
+/* Twice the signed area on the flat cloth. */
+static gdouble
+flat_area (const ClothTopology * topology, guint face)
+{
+  const guint32 *corner = topology->faces + 4 * (gsize) face;
+  guint n = n_corners (corner);
+  gdouble area = 0;
+
+  for (guint k = 0; k < n; k++) {
+    const gfloat *o = topology->uv + 2 * (gsize) corner[0];
+    const gfloat *a = topology->uv + 2 * (gsize) corner[k];
+    const gfloat *b = topology->uv + 2 * (gsize) corner[(k + 1) % n];
+
+    area += ((gdouble) a[0] - o[0]) * ((gdouble) b[1] - o[1]) -
+        ((gdouble) a[1] - o[1]) * ((gdouble) b[0] - o[0]);
+  }
+  return area;
+}
+
+static gdouble
+flat_size (const ClothTopology * topology, guint face)
+{
+  const guint32 *corner = topology->faces + 4 * (gsize) face;
+  guint n = n_corners (corner);
+  gdouble size = 0;
+
+  for (guint k = 0; k < n; k++) {
+    const gfloat *a = topology->uv + 2 * (gsize) corner[k];
+    const gfloat *b = topology->uv + 2 * (gsize) corner[(k + 1) % n];
+
+    size = MAX (size, hypot ((gdouble) b[0] - a[0], (gdouble) b[1] - a[1]));
+  }
+  return size;
+}
+
+static gint
+compare_edges (gconstpointer a, gconstpointer b)
+{
+  const Edge *x = a, *y = b;
+
+  if (x->low != y->low)
+    return x->low < y->low ? -1 : 1;
+  if (x->high != y->high)
+    return x->high < y->high ? -1 : 1;
+  return (x->face > y->face) - (x->face < y->face);
+}
+
+static gint
+compare_indices (gconstpointer a, gconstpointer b)
+{
+  const guint32 *x = a, *y = b;
+
+  return (*x > *y) - (*x < *y);
+}
+
+static gint
+compare_corners (gconstpointer a, gconstpointer b)
+{
+  const Corners *x = a, *y = b;
+
+  for (guint k = 0; k < 4; k++)
+    if (x->corner[k] != y->corner[k])
+      return x->corner[k] < y->corner[k] ? -1 : 1;
+  return (x->face > y->face) - (x->face < y->face);
+}
+
+static gboolean
+check_faces (const ClothTopology * topology, GError ** error)
+{
+  g_autofree Corners *all = g_new (Corners, topology->n_faces);
+
+  for (guint face = 0; face < topology->n_faces; face++) {
+    const guint32 *corner = topology->faces + 4 * (gsize) face;
+    guint n = n_corners (corner);
+    gdouble size = flat_size (topology, face);
+
+    memcpy (all[face].corner, corner, sizeof all[face].corner);
+    all[face].face = face;
+    qsort (all[face].corner, 4, sizeof *corner, compare_indices);
+    for (guint k = 1; k < n; k++)
+      if (all[face].corner[k] == all[face].corner[k - 1])
+        return invalid (error, "face %u has vertex %u twice", face,
+            all[face].corner[k]);
+    if (!(fabs (flat_area (topology, face)) > 1e-6 * size * size))
+      return invalid (error, "face %u (vertices %u, %u, %u) has no area on the "
+          "flat cloth: its uv lie on a line", face, corner[0], corner[1],
+          corner[2]);
+  }
+  qsort (all, topology->n_faces, sizeof *all, compare_corners);
+  for (guint i = 1; i < topology->n_faces; i++)
+    if (memcmp (all[i].corner, all[i - 1].corner, sizeof all[i].corner) == 0)
+      return invalid (error, "faces %u and %u are the same", all[i - 1].face,
+          all[i].face);
+  return TRUE;
+}
+
+/* Neighbours must run along their common edge in opposite directions and be turned
+ * alike on the flat cloth. */
+static gboolean
+check_edges (const ClothTopology * topology, GError ** error)
+{
+  g_autofree Edge *edges = g_new (Edge, 4 * (gsize) topology->n_faces);
+  gsize n = 0;
+
+  for (guint face = 0; face < topology->n_faces; face++) {
+    const guint32 *corner = topology->faces + 4 * (gsize) face;
+    guint sides = n_corners (corner);
+
+    for (guint k = 0; k < sides; k++) {
+      guint32 a = corner[k], b = corner[(k + 1) % sides];
+
+      edges[n++] = (Edge) {
+      MIN (a, b), MAX (a, b), face, a < b};
+    }
+  }
+  qsort (edges, n, sizeof *edges, compare_edges);
+  for (gsize i = 1; i < n; i++) {
+    const Edge *a = &edges[i - 1], *b = &edges[i];
+
+    if (a->low != b->low || a->high != b->high)
+      continue;
+    if (i + 1 < n && edges[i + 1].low == a->low && edges[i + 1].high == a->high)
+      return invalid (error, "the edge from vertex %u to vertex %u belongs to "
+          "more than two faces, %u, %u and %u among them", a->low, a->high,
+          a->face, b->face, edges[i + 1].face);
+    if (a->rises == b->rises)
+      return invalid (error, "face %u is inverted against face %u: they run "
+          "the same way along the edge from vertex %u to vertex %u", b->face,
+          a->face, a->low, a->high);
+    if ((flat_area (topology, a->face) > 0) !=
+        (flat_area (topology, b->face) > 0))
+      return invalid (error, "face %u is inverted against face %u: on the flat "
+          "cloth it lies folded over the edge from vertex %u to vertex %u",
+          b->face, a->face, a->low, a->high);
+  }
+  return TRUE;
+}
+
+static gboolean
+check_numbers (const ClothScene * scene, GError ** error)
+{
+  static const gchar axes[] = "xyz";
+  const gdouble *arrays[] = { scene->positions, scene->velocities };
+  static const gchar *const names[] = { "position", "velocity" };
+
+  for (guint k = 0; k < 3; k++)
+    if (!isfinite (scene->gravity[k]))
+      return invalid (error, "gravity along %c is %g", axes[k],
+          scene->gravity[k]);
+  for (guint a = 0; a < 2; a++) {
+    for (gsize i = 0; arrays[a] &&
+        i < 3 * (gsize) scene->topology->n_vertices; i++)
+      if (!isfinite (arrays[a][i]))
+        return invalid (error, "the %s of vertex %u along %c is %g at the "
+            "start", names[a], (guint) (i / 3), axes[i % 3], arrays[a][i]);
+  }
+  if (!(scene->fps > 0) || !isfinite (scene->fps))
+    return invalid (error, "a frame rate of %g", scene->fps);
+  if (scene->n_frames == 0)
+    return invalid (error, "a scene needs at least one frame");
+  for (guint i = 0; i < scene->n_frames; i++)
+    if (!isfinite (scene->times[i]) ||
+        (i > 0 && scene->times[i] <= scene->times[i - 1]))
+      return invalid (error, "the time of frame %u, %g s, is not finite or "
+          "does not rise", i, scene->times[i]);
+  return TRUE;
+}
+
+static gboolean
+check_held (const ClothScene * scene, GError ** error)
+{
+  g_autoptr (GHashTable) last = g_hash_table_new (NULL, NULL);
+
+  for (guint i = 0; i < scene->held->len; i++) {
+    const ClothHeld *held = &g_array_index (scene->held, ClothHeld, i);
+    const ClothHeld *other;
+
+    if (held->vertex >= scene->topology->n_vertices)
+      return invalid (error, "held vertex %u is not in the mesh (there are %u)",
+          held->vertex, scene->topology->n_vertices);
+    if (!(held->from_s < held->until_s))
+      return invalid (error, "held vertex %u is let go at %g s, before it is "
+          "held at %g s", held->vertex, held->until_s, held->from_s);
+    other = g_hash_table_lookup (last, GUINT_TO_POINTER (held->vertex));
+    if (other && held->from_s < other->until_s && other->from_s < held->until_s)
+      return invalid (error, "vertex %u is held twice at a time", held->vertex);
+    g_hash_table_insert (last, GUINT_TO_POINTER (held->vertex),
+        (gpointer) held);
+    for (guint frame = 0; frame < scene->n_frames; frame++) {
+      const gdouble *place = scene->clamps +
+          3 * ((gsize) frame * scene->held->len + i);
+
+      if (scene->times[frame] >= held->from_s &&
+          scene->times[frame] < held->until_s &&
+          !isfinite (place[0] + place[1] + place[2]))
+        return invalid (error, "the clamp of vertex %u has no place in frame "
+            "%u", held->vertex, frame);
+    }
+  }
+  return TRUE;
+}
+
+static gboolean
+check_obstacles (const ClothScene * scene, GError ** error)
+{
+  for (guint i = 0; i < scene->obstacles->len; i++) {
+    const ClothObstacle *item =
+        &g_array_index (scene->obstacles, ClothObstacle, i);
+    gboolean round = item->kind == CLOTH_OBSTACLE_SPHERE ||
+        item->kind == CLOTH_OBSTACLE_CAPSULE;
+
+    if (round && !(item->radius_m > 0 && isfinite (item->radius_m)))
+      return invalid (error, "obstacle %u has the radius %g m", i,
+          item->radius_m);
+    for (guint k = 0; k < 3; k++)
+      if (!isfinite (item->point[k] + item->end[k] + item->normal[k]))
+        return invalid (error, "obstacle %u has no finite place", i);
+    if (!(isnan (item->friction) || item->friction >= 0))
+      return invalid (error, "obstacle %u has the friction %g", i,
+          item->friction);
+    if (item->kind == CLOTH_OBSTACLE_MESH && item->n_triangles == 0)
+      return invalid (error, "obstacle %u is a mesh without triangles", i);
+    for (gsize k = 0; k < 3 * (gsize) item->n_triangles; k++)
+      if (item->triangles[k] >= item->n_points)
+        return invalid (error, "triangle %u of obstacle %u names a point that "
+            "is not there", (guint) (k / 3), i);
+  }
+  return TRUE;
+}
+
+/**
+ * cloth_scene_check:
+ * @scene: a scene, perhaps made by hand
+ * @error: #ClothMeshError, naming the element and its value
+ *
+ * Refuses what no simulation could make sense of: faces that are degenerate, there
+ * twice or inverted against a neighbour, edges of more than two faces, numbers that
+ * are not finite, times that do not rise, what names vertices that are not there.
+ *
+ * Returns: %TRUE when there is nothing of the kind
+ * Since: 0.1
+ */
+gboolean
+cloth_scene_check (const ClothScene * scene, GError ** error)
+{
+  if (!cloth_topology_check (scene->topology, error))
+    return FALSE;
+  if (scene->topology->n_faces == 0)
+    return invalid (error, "a mesh without faces");
+  if (!check_faces (scene->topology, error) ||
+      !check_edges (scene->topology, error) ||
+      !check_numbers (scene, error) || !check_held (scene, error) ||
+      !check_obstacles (scene, error))
+    return FALSE;
+  for (guint i = 0; i < scene->seams->len; i++) {
+    const ClothSeam *seam = &g_array_index (scene->seams, ClothSeam, i);
+    guint n = scene->topology->n_vertices;
+
+    if (seam->a >= n || seam->b >= n || seam->a == seam->b)
+      return invalid (error, "vertices %u and %u cannot be sewn together: "
+          "there are %u", seam->a, seam->b, n);
+  }
+  return TRUE;
+}
