@@ -1,0 +1,119 @@
+/* What is on a filmed cloth: patterns and pictures from files.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "elements/gstclothcamera.h"
+
+#include <gio/gio.h>
+#include <gst/video/video.h>
+
+#include "gst/pattern/texture.h"
+
+/* Ink and cloth: shares of the light that they reflect. */
+#define BLACK 0.04f
+#define WHITE 0.75f
+/* Pixels along the longer side of a pattern's picture: edges between are exact. */
+#define PATTERN_PX 3072
+/* A file that gives no picture for so long is broken. */
+#define PATIENCE (30 * GST_SECOND)
+
+ClothPaint *
+gst_cloth_camera_paint_pattern (const gchar * path, GError ** error)
+{
+  g_autoptr (ClothPattern) pattern = cloth_pattern_load (path, error);
+  g_autoptr (ClothTexture) texture = NULL;
+  const gdouble origin[2] = { 0, 0 };
+  gdouble size[2];
+  gfloat light[256];
+
+  if (!pattern)
+    return NULL;
+  texture = cloth_pattern_texture (pattern, PATTERN_PX
+      / MAX (pattern->cloth_m[0], pattern->cloth_m[1]), 0, 255, error);
+  if (!texture)
+    return NULL;
+  for (gint i = 0; i < 256; i++)
+    light[i] = BLACK + (WHITE - BLACK) * (gfloat) i / 255;
+  size[0] = texture->width / texture->px_per_m;
+  size[1] = texture->height / texture->px_per_m;
+  return cloth_paint_new (texture->data, texture->width, texture->height,
+      texture->width, 1, light, origin, size);
+}
+
+ClothPaint *
+gst_cloth_camera_paint_white (void)
+{
+  const gdouble origin[2] = { 0, 0 }, size[2] = { 1, 1 };
+  const guint8 level = 255;
+  gfloat light[256];
+
+  light[255] = WHITE;
+  return cloth_paint_new (&level, 1, 1, 1, 1, light, origin, size);
+}
+
+static ClothPaint *
+paint_from_sample (GstSample * sample, const gchar * path,
+    const gdouble origin_uv_m[2], const gdouble size_m[2], GError ** error)
+{
+  ClothPaint *paint = NULL;
+  GstVideoInfo info;
+  GstVideoFrame frame;
+
+  if (!sample || !gst_video_info_from_caps (&info,
+          gst_sample_get_caps (sample)) || info.width > CLOTH_PAINT_MAX_PX
+      || info.height > CLOTH_PAINT_MAX_PX
+      || !gst_video_frame_map (&frame, &info, gst_sample_get_buffer (sample),
+          GST_MAP_READ)) {
+    g_set_error (error, G_IO_ERROR, G_IO_ERROR_FAILED,
+        "%s: no picture, or one larger than %d pixels a side", path,
+        CLOTH_PAINT_MAX_PX);
+    return NULL;
+  }
+  paint = cloth_paint_new (GST_VIDEO_FRAME_PLANE_DATA (&frame, 0), info.width,
+      info.height, GST_VIDEO_FRAME_PLANE_STRIDE (&frame, 0),
+      GST_VIDEO_INFO_IS_GRAY (&info) ? 1 : 3, NULL, origin_uv_m, size_m);
+  gst_video_frame_unmap (&frame);
+  return paint;
+}
+
+/* The first picture of any file that GStreamer decodes. */
+ClothPaint *
+gst_cloth_camera_paint_picture (const gchar * path,
+    const gdouble origin_uv_m[2], const gdouble size_m[2], GError ** error)
+{
+  g_autoptr (GstElement) pipeline = NULL;
+  g_autoptr (GstElement) source = NULL, sink = NULL;
+  g_autoptr (GstSample) sample = NULL;
+  ClothPaint *paint = NULL;
+
+  if (!g_file_test (path, G_FILE_TEST_IS_REGULAR)) {
+    g_set_error (error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND,
+        "%s: there is no such file", path);
+    return NULL;
+  }
+  pipeline = gst_parse_launch ("filesrc name=in ! decodebin ! videoconvert "
+      "dither=none ! video/x-raw,format={ RGB, GRAY8 } ! fakesink name=out "
+      "sync=false", error);
+  if (!pipeline)
+    return NULL;
+  source = gst_bin_get_by_name (GST_BIN (pipeline), "in");
+  sink = gst_bin_get_by_name (GST_BIN (pipeline), "out");
+  g_object_set (source, "location", path, NULL);
+  gst_element_set_state (pipeline, GST_STATE_PAUSED);
+  if (gst_element_get_state (pipeline, NULL, NULL, PATIENCE)
+      == GST_STATE_CHANGE_SUCCESS) {
+    g_object_get (sink, "last-sample", &sample, NULL);
+    paint = paint_from_sample (sample, path, origin_uv_m, size_m, error);
+  } else {
+    g_autoptr (GstBus) bus = gst_element_get_bus (pipeline);
+    g_autoptr (GstMessage) message =
+        gst_bus_pop_filtered (bus, GST_MESSAGE_ERROR);
+    g_autoptr (GError) cause = NULL;
+
+    if (message)
+      gst_message_parse_error (message, &cause, NULL);
+    g_set_error (error, G_IO_ERROR, G_IO_ERROR_FAILED, "%s: %s", path,
+        cause ? cause->message : "no picture came out of it in time");
+  }
+  gst_element_set_state (pipeline, GST_STATE_NULL);
+  return paint;
+}

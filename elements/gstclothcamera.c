@@ -1,0 +1,785 @@
+/* clothcamera: films a mesh stream.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+
+/**
+ * SECTION:element-clothcamera
+ * @title: clothcamera
+ *
+ * Draws the cloth of a mesh stream as the camera `camera` of `rig` films it: in
+ * perspective, with what hides what, lens, light and, as far as asked for, rolling
+ * shutter, motion blur, defocus, noise and more (`effects`). On its printed side the
+ * cloth carries a `pattern` or any picture as `texture`.
+ *
+ * The pictures are as large as the rig says and have the times of the meshes. Effects
+ * that look at the cloth between two meshes hold pictures back until the meshes around
+ * them are there.
+ *
+ * ## Example
+ * |[
+ * gst-launch-1.0 meshsrc location=take ! clothcamera rig=rig.json camera=cam0 \
+ *     pattern=pattern.json effects="noise,sigma=3; rolling_shutter,seconds=0.01" ! \
+ *     videoconvert ! autovideosink
+ * ]|
+ *
+ * Since: 0.1
+ */
+#ifdef HAVE_CONFIG_H
+#include "config.h"
+#endif
+
+#include "elements/gstclothcamera.h"
+
+#include <gst/cloth/cloth.h>
+#include <gst/video/video.h>
+#include <math.h>
+
+#include "gst/rig/rigfile.h"
+#include "gst/vision/render.h"
+
+GST_DEBUG_CATEGORY_STATIC (cloth_camera_debug);
+#define GST_CAT_DEFAULT cloth_camera_debug
+
+#define DEFAULT_SEED 0
+#define DEFAULT_THREADS 0
+
+enum
+{
+  PROP_0,
+  PROP_RIG,
+  PROP_CAMERA,
+  PROP_PATTERN,
+  PROP_TEXTURE,
+  PROP_EFFECTS,
+  PROP_SEED,
+  PROP_THREADS
+};
+
+/* One mesh of the window around the picture that is drawn. */
+typedef struct
+{
+  GstBuffer *buffer;            /* its times and flags */
+  guint64 sequence;
+  gdouble time_s;
+  gdouble *positions;
+} Frame;
+
+struct _GstClothCamera
+{
+  GstBaseTransform parent;
+
+  /* with the object lock */
+  gchar *rig, *camera, *pattern, *texture, *effects;
+  guint64 seed;
+  guint threads;
+
+  /* from start to stop */
+  ClothCapture capture;
+  gboolean still;               /* a picture shows the mesh of its own time only */
+
+  /* streaming thread */
+  GstVideoInfo info;
+  ClothRenderer *renderer;
+  ClothPaint *paint;
+  ClothRenderStyle style;
+  guint n_vertices;
+  gint fps_n, fps_d;
+  GPtrArray *window;            /* of Frame, as they came */
+  GPtrArray *spare;             /* of Frame, to be used again */
+  guint next;                   /* in window: to be drawn next */
+  guint64 count;                /* of meshes, since the last reset */
+  gboolean draining;
+  GstBuffer *last;              /* picture, to stand in for a lost one */
+  GArray *times;                /* of gdouble, with positions */
+  GPtrArray *positions;
+};
+
+#define FORMATS "{ BGRx, RGBx, xRGB, xBGR, RGB, BGR, GRAY8 }"
+
+static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE ("sink",
+    GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS (GST_CLOTH_MESH_CAPS));
+static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE ("src",
+    GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS ("video/x-raw, format="
+        FORMATS ", width=(int)[ 1, 16384 ], height=(int)[ 1, 16384 ], "
+        "framerate=(fraction)[ 0/1, max ]"));
+
+G_DEFINE_TYPE (GstClothCamera, gst_cloth_camera, GST_TYPE_BASE_TRANSFORM);
+GST_ELEMENT_REGISTER_DEFINE (clothcamera, "clothcamera", GST_RANK_NONE,
+    GST_TYPE_CLOTH_CAMERA);
+
+/* ---- the window of meshes ---- */
+
+static void
+frame_free (gpointer data)
+{
+  Frame *frame = data;
+
+  gst_clear_buffer (&frame->buffer);
+  g_free (frame->positions);
+  g_free (frame);
+}
+
+static void
+drop_head (GstClothCamera * self)
+{
+  Frame *frame = g_ptr_array_steal_index (self->window, 0);
+
+  gst_clear_buffer (&frame->buffer);
+  g_ptr_array_add (self->spare, frame);
+}
+
+static void
+gst_cloth_camera_reset (GstClothCamera * self)
+{
+  while (self->window->len > 0)
+    drop_head (self);
+  self->next = 0;
+  self->count = 0;
+  gst_clear_buffer (&self->last);
+}
+
+static Frame *
+frame_at (GstClothCamera * self, guint index)
+{
+  return g_ptr_array_index (self->window, index);
+}
+
+static gboolean
+is_backwards (GstClothCamera * self)
+{
+  return GST_BASE_TRANSFORM (self)->segment.rate < 0;
+}
+
+/* The span of time that the picture of time @time_s shows. */
+static void
+get_span (GstClothCamera * self, gdouble time_s, gdouble span[2])
+{
+  const ClothCamera *camera = &self->capture.camera;
+
+  span[0] = time_s - camera->offset_s + MIN (camera->rolling_shutter_s, 0);
+  span[1] = time_s - camera->offset_s + MAX (camera->rolling_shutter_s, 0)
+      + self->capture.exposure_s;
+}
+
+/* Are there a mesh behind the span of the next picture and one more, for its slope? */
+static gboolean
+is_ready (GstClothCamera * self)
+{
+  gdouble span[2], reached;
+
+  if (self->next >= self->window->len)
+    return FALSE;
+  if (self->still || self->draining)
+    return TRUE;
+  if (self->window->len < 2)
+    return FALSE;
+  get_span (self, frame_at (self, self->next)->time_s, span);
+  reached = frame_at (self, self->window->len - 2)->time_s;
+  return is_backwards (self) ? reached <= span[0] : reached >= span[1];
+}
+
+/* Two meshes before the span of the next picture are enough. */
+static void
+prune (GstClothCamera * self)
+{
+  while (self->next > 0 && self->window->len > 2) {
+    if (!self->still) {
+      const guint at = MIN (self->next, self->window->len - 1);
+      const gdouble third = frame_at (self, 2)->time_s;
+      gdouble span[2];
+
+      get_span (self, frame_at (self, at)->time_s, span);
+      if (is_backwards (self) ? third < span[1] : third > span[0])
+        break;
+    }
+    drop_head (self);
+    self->next--;
+  }
+}
+
+static GstFlowReturn
+gst_cloth_camera_submit_input_buffer (GstBaseTransform * trans,
+    gboolean is_discont, GstBuffer * input)
+{
+  GstClothCamera *self = GST_CLOTH_CAMERA (trans);
+  g_autoptr (GstBuffer) buffer = input;
+  g_autoptr (GError) error = NULL;
+  g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_from_buffer (buffer, &error);
+  const gfloat *positions;
+  Frame *frame;
+
+  if (!self->renderer)
+    return GST_FLOW_NOT_NEGOTIATED;
+  if (!mesh || gst_cloth_mesh_get_n_vertices (mesh) != self->n_vertices) {
+    GST_ELEMENT_ERROR (self, STREAM, DECODE, ("Bad mesh: %s", error ?
+            error->message : "it has not as many vertices as its caps say"),
+        (NULL));
+    return GST_FLOW_ERROR;
+  }
+  frame = self->spare->len > 0 ?
+      g_ptr_array_steal_index_fast (self->spare, self->spare->len - 1) :
+      g_new0 (Frame, 1);
+  if (!frame->positions)
+    frame->positions = g_new (gdouble, 3 * (gsize) self->n_vertices);
+  positions = gst_cloth_mesh_get_positions (mesh, NULL);
+  for (gsize i = 0; i < 3 * (gsize) self->n_vertices; i++)
+    frame->positions[i] = positions[i];
+  frame->sequence = gst_cloth_mesh_get_sequence (mesh);
+  if (GST_BUFFER_PTS_IS_VALID (buffer))
+    frame->time_s = (gdouble) GST_BUFFER_PTS (buffer) / GST_SECOND;
+  else
+    frame->time_s = self->fps_n > 0 ?
+        (gdouble) self->count * self->fps_d / self->fps_n : 0;
+  frame->buffer = g_steal_pointer (&buffer);
+  g_ptr_array_add (self->window, frame);
+  self->count++;
+  if (!self->still && self->window->len > 1) {
+    const gdouble before = frame_at (self, self->window->len - 2)->time_s;
+
+    if (is_backwards (self) ? frame->time_s >= before : frame->time_s <= before) {
+      GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+          ("A mesh of %g s comes after one of %g s: effects that look between "
+              "meshes need rising times.", frame->time_s, before),
+          ("Mend the times, or leave out of effects: rolling_shutter, "
+              "sync_offset, motion_blur."));
+      return GST_FLOW_ERROR;
+    }
+  }
+  return GST_FLOW_OK;
+}
+
+/* ---- pictures ---- */
+
+static void
+draw (GstClothCamera * self, const Frame * frame, GstVideoFrame * video)
+{
+  const gboolean grey = GST_VIDEO_INFO_IS_GRAY (&self->info);
+  const guint n_planes = grey ? 1 : 3;
+  ClothMotion motion = { self->n_vertices, 0 };
+  guint8 *planes[3];
+  gint strides[3];
+
+  g_array_set_size (self->times, 0);
+  g_ptr_array_set_size (self->positions, 0);
+  if (self->still) {
+    g_array_append_val (self->times, frame->time_s);
+    g_ptr_array_add (self->positions, frame->positions);
+  } else {
+    const guint n = self->window->len;
+
+    for (guint i = 0; i < n; i++) {
+      const Frame *one = frame_at (self, is_backwards (self) ? n - 1 - i : i);
+
+      g_array_append_val (self->times, one->time_s);
+      g_ptr_array_add (self->positions, one->positions);
+    }
+  }
+  motion.n_frames = self->times->len;
+  motion.times = (const gdouble *) self->times->data;
+  motion.positions = (const gdouble * const *) self->positions->pdata;
+  for (guint c = 0; c < n_planes; c++) {
+    planes[c] = GST_VIDEO_FRAME_COMP_DATA (video, c);
+    strides[c] = GST_VIDEO_FRAME_COMP_STRIDE (video, c);
+  }
+  /* the byte that no colour uses */
+  if (GST_VIDEO_FRAME_COMP_PSTRIDE (video, 0) == 4)
+    for (gint y = 0; y < GST_VIDEO_FRAME_HEIGHT (video); y++)
+      memset ((guint8 *) GST_VIDEO_FRAME_PLANE_DATA (video, 0)
+          + (gssize) y * strides[0], 0xff, 4 * (gsize)
+          GST_VIDEO_FRAME_WIDTH (video));
+  cloth_renderer_draw (self->renderer, self->paint, &self->capture,
+      &self->style, &motion, frame->time_s);
+  cloth_renderer_develop (self->renderer, &self->capture, frame->sequence,
+      self->seed, n_planes, planes, strides,
+      GST_VIDEO_FRAME_COMP_PSTRIDE (video, 0));
+}
+
+static GstFlowReturn
+gst_cloth_camera_generate_output (GstBaseTransform * trans, GstBuffer ** output)
+{
+  GstClothCamera *self = GST_CLOTH_CAMERA (trans);
+  GstBuffer *picture = NULL;
+  GstVideoFrame video;
+  GstFlowReturn flow;
+  Frame *frame;
+
+  *output = NULL;
+  if (!is_ready (self))
+    return GST_FLOW_OK;
+  frame = frame_at (self, self->next);
+  if (self->last && cloth_capture_is_dropped (&self->capture,
+          frame->sequence, self->seed)) {
+    picture = gst_buffer_copy (self->last);
+    gst_buffer_copy_into (picture, frame->buffer, GST_BUFFER_COPY_TIMESTAMPS,
+        0, -1);
+  } else {
+    flow = GST_BASE_TRANSFORM_CLASS (gst_cloth_camera_parent_class)
+        ->prepare_output_buffer (trans, frame->buffer, &picture);
+    if (flow != GST_FLOW_OK)
+      return flow;
+    if (!gst_video_frame_map (&video, &self->info, picture, GST_MAP_WRITE)) {
+      GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+          ("The picture does not fit its caps."), (NULL));
+      gst_buffer_unref (picture);
+      return GST_FLOW_ERROR;
+    }
+    draw (self, frame, &video);
+    gst_video_frame_unmap (&video);
+    if (self->capture.drop_rate > 0)
+      gst_buffer_replace (&self->last, picture);
+  }
+  GST_BUFFER_OFFSET (picture) = frame->sequence;
+  GST_BUFFER_OFFSET_END (picture) = frame->sequence + 1;
+  *output = picture;
+  self->next++;
+  prune (self);
+  return GST_FLOW_OK;
+}
+
+/* Never called: the base class takes an element without it for a pass-through. */
+static GstFlowReturn
+gst_cloth_camera_transform (GstBaseTransform * trans, GstBuffer * mesh,
+    GstBuffer * picture)
+{
+  return GST_FLOW_OK;
+}
+
+/* Pushes what still waits for meshes that will not come. */
+static GstFlowReturn
+gst_cloth_camera_drain (GstClothCamera * self)
+{
+  GstFlowReturn flow = GST_FLOW_OK;
+
+  self->draining = TRUE;
+  while (flow == GST_FLOW_OK && self->renderer) {
+    GstBuffer *picture = NULL;
+
+    flow = gst_cloth_camera_generate_output (GST_BASE_TRANSFORM (self),
+        &picture);
+    if (!picture)
+      break;
+    flow = gst_pad_push (GST_BASE_TRANSFORM_SRC_PAD (self), picture);
+  }
+  self->draining = FALSE;
+  return flow;
+}
+
+static gboolean
+gst_cloth_camera_sink_event (GstBaseTransform * trans, GstEvent * event)
+{
+  GstClothCamera *self = GST_CLOTH_CAMERA (trans);
+
+  switch (GST_EVENT_TYPE (event)) {
+    case GST_EVENT_EOS:
+    case GST_EVENT_SEGMENT:
+    case GST_EVENT_CAPS:
+      gst_cloth_camera_drain (self);
+      gst_cloth_camera_reset (self);
+      break;
+    case GST_EVENT_FLUSH_STOP:
+      gst_cloth_camera_reset (self);
+      break;
+    default:
+      break;
+  }
+  return GST_BASE_TRANSFORM_CLASS (gst_cloth_camera_parent_class)->sink_event
+      (trans, event);
+}
+
+static gboolean
+gst_cloth_camera_query (GstBaseTransform * trans, GstPadDirection direction,
+    GstQuery * query)
+{
+  GstClothCamera *self = GST_CLOTH_CAMERA (trans);
+  gboolean done = GST_BASE_TRANSFORM_CLASS (gst_cloth_camera_parent_class)
+      ->query (trans, direction, query);
+
+  if (done && GST_QUERY_TYPE (query) == GST_QUERY_LATENCY && !self->still
+      && self->fps_n > 0) {
+    GstClockTime least, most, wait;
+    gboolean live;
+    gdouble span[2];
+
+    /* The last instant seen, the mesh behind it, and one more. */
+    get_span (self, 0, span);
+    wait = (GstClockTime) (MAX (span[1], 0) * GST_SECOND) + 2 *
+        gst_util_uint64_scale_int (GST_SECOND, self->fps_d, self->fps_n);
+    gst_query_parse_latency (query, &live, &least, &most);
+    gst_query_set_latency (query, live, least + wait,
+        GST_CLOCK_TIME_IS_VALID (most) ? most + wait : most);
+  }
+  return done;
+}
+
+/* ---- settings ---- */
+
+static gboolean
+gst_cloth_camera_load (GstClothCamera * self)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRig) rig = NULL;
+  const ClothCamera *camera = NULL;
+
+  if (!self->rig) {
+    GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS, ("No rig to film with."),
+        ("Set rig= to a rig.json and camera= to the name of the camera there."));
+    return FALSE;
+  }
+  rig = cloth_rig_load (self->rig, &error);
+  if (!rig) {
+    GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ, ("Can't read the rig: %s",
+            error->message), ("rig=%s", self->rig));
+    return FALSE;
+  }
+  if (self->camera)
+    camera = cloth_rig_find (rig, self->camera);
+  else if (rig->n_cameras == 1)
+    camera = &rig->cameras[0];
+  if (!camera) {
+    GString *names = g_string_new (NULL);
+
+    for (guint i = 0; i < rig->n_cameras; i++)
+      g_string_append_printf (names, "%s%s", i ? ", " : "",
+          rig->cameras[i].name ? rig->cameras[i].name : "(unnamed)");
+    GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS, ("%s has no camera “%s”.",
+            self->rig, self->camera ? self->camera : ""),
+        ("Set camera= to one of: %s", names->str));
+    g_string_free (names, TRUE);
+    return FALSE;
+  }
+  cloth_capture_init (&self->capture, camera);
+  if (!cloth_capture_add_effects (&self->capture, self->effects, &error)) {
+    GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS, ("Wrong effects: %s",
+            error->message), ("effects=%s", self->effects));
+    return FALSE;
+  }
+  self->still = self->capture.exposure_s == 0
+      && self->capture.camera.rolling_shutter_s == 0
+      && self->capture.camera.offset_s == 0;
+  return TRUE;
+}
+
+static gboolean
+gst_cloth_camera_start (GstBaseTransform * trans)
+{
+  GstClothCamera *self = GST_CLOTH_CAMERA (trans);
+
+  if (self->pattern && self->texture) {
+    GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
+        ("The cloth can't carry both a pattern and a texture."),
+        ("Leave out pattern= or texture=."));
+    return FALSE;
+  }
+  return gst_cloth_camera_load (self);
+}
+
+static void
+gst_cloth_camera_forget (GstClothCamera * self)
+{
+  gst_cloth_camera_reset (self);
+  g_ptr_array_set_size (self->spare, 0);
+  g_clear_pointer (&self->renderer, cloth_renderer_free);
+  g_clear_pointer (&self->paint, cloth_paint_free);
+}
+
+static gboolean
+gst_cloth_camera_stop (GstBaseTransform * trans)
+{
+  gst_cloth_camera_forget (GST_CLOTH_CAMERA (trans));
+  return TRUE;
+}
+
+/* A texture's picture lies over the whole of the flat cloth. */
+static ClothPaint *
+paint_texture (GstClothCamera * self, const gfloat * uv, GError ** error)
+{
+  gdouble low[2] = { G_MAXDOUBLE, G_MAXDOUBLE };
+  gdouble high[2] = { -G_MAXDOUBLE, -G_MAXDOUBLE }, size[2];
+
+  for (guint i = 0; i < 2 * self->n_vertices; i++) {
+    low[i % 2] = MIN (low[i % 2], uv[i]);
+    high[i % 2] = MAX (high[i % 2], uv[i]);
+  }
+  for (gint k = 0; k < 2; k++)
+    size[k] = high[k] - low[k];
+  if (!(size[0] > 0 && size[1] > 0)) {
+    g_set_error (error, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT,
+        "the mesh has no uv coordinates to lay %s on: give it some, in metres",
+        self->texture);
+    return NULL;
+  }
+  return gst_cloth_camera_paint_picture (self->texture, low, size, error);
+}
+
+static gboolean
+gst_cloth_camera_set_caps (GstBaseTransform * trans, GstCaps * in,
+    GstCaps * out)
+{
+  GstClothCamera *self = GST_CLOTH_CAMERA (trans);
+  g_autoptr (GError) error = NULL;
+  g_autoptr (GstClothTopology) topology = NULL;
+  const gfloat *uv;
+  const guint32 *faces;
+
+  gst_cloth_camera_forget (self);
+  topology = gst_cloth_topology_from_caps (in, &error);
+  if (!topology || !gst_video_info_from_caps (&self->info, out)) {
+    GST_ELEMENT_ERROR (self, STREAM, FORMAT, ("Bad mesh caps: %s",
+            error ? error->message : "no picture can be made of them"), (NULL));
+    return FALSE;
+  }
+  if (gst_cloth_topology_get_n_faces (topology) == 0) {
+    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+        ("The mesh has no faces: nothing of it can be filmed."),
+        ("Give the mesh faces, or a grid."));
+    return FALSE;
+  }
+  self->n_vertices = gst_cloth_topology_get_n_vertices (topology);
+  self->fps_n = GST_VIDEO_INFO_FPS_N (&self->info);
+  self->fps_d = GST_VIDEO_INFO_FPS_D (&self->info);
+  uv = gst_cloth_topology_get_uv (topology, NULL);
+  faces = gst_cloth_topology_get_faces (topology, NULL);
+  if (self->pattern)
+    self->paint = gst_cloth_camera_paint_pattern (self->pattern, &error);
+  else if (self->texture)
+    self->paint = paint_texture (self, uv, &error);
+  else
+    self->paint = gst_cloth_camera_paint_white ();
+  if (!self->paint) {
+    GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ,
+        ("Can't put “%s” on the cloth: %s", self->pattern ? self->pattern :
+            self->texture, error->message), (NULL));
+    return FALSE;
+  }
+  self->renderer = cloth_renderer_new (self->n_vertices, uv, faces,
+      gst_cloth_topology_get_n_faces (topology), self->threads,
+      CLOTH_SIMD_BEST);
+  return TRUE;
+}
+
+static GstCaps *
+gst_cloth_camera_transform_caps (GstBaseTransform * trans,
+    GstPadDirection direction, GstCaps * caps, GstCaps * filter)
+{
+  GstClothCamera *self = GST_CLOTH_CAMERA (trans);
+  const gint width = self->capture.camera.width;
+  const gint height = self->capture.camera.height;
+  g_autoptr (GstCaps) template = gst_static_pad_template_get_caps (direction
+      == GST_PAD_SINK ? &src_template : &sink_template);
+  GstCaps *result = gst_caps_new_empty ();
+
+  for (guint i = 0; i < gst_caps_get_size (caps); i++) {
+    const GstStructure *from = gst_caps_get_structure (caps, i);
+    GstStructure *to = gst_structure_copy (gst_caps_get_structure (template,
+            0));
+
+    if (gst_structure_has_field (from, "framerate"))
+      gst_structure_set_value (to, "framerate",
+          gst_structure_get_value (from, "framerate"));
+    if (direction == GST_PAD_SINK && width > 0)
+      gst_structure_set (to, "width", G_TYPE_INT, width, "height", G_TYPE_INT,
+          height, "pixel-aspect-ratio", GST_TYPE_FRACTION, 1, 1, NULL);
+    gst_caps_append_structure (result, to);
+  }
+  if (filter) {
+    GstCaps *both = gst_caps_intersect_full (filter, result,
+        GST_CAPS_INTERSECT_FIRST);
+
+    gst_caps_unref (result);
+    result = both;
+  }
+  return result;
+}
+
+static gboolean
+gst_cloth_camera_decide_allocation (GstBaseTransform * trans, GstQuery * query)
+{
+  g_autoptr (GstBufferPool) pool = NULL;
+  GstStructure *config;
+  GstCaps *caps;
+  GstVideoInfo info;
+  guint size, least = 0, most = 0;
+  const gboolean offered = gst_query_get_n_allocation_pools (query) > 0;
+
+  gst_query_parse_allocation (query, &caps, NULL);
+  if (!caps || !gst_video_info_from_caps (&info, caps))
+    return FALSE;
+  size = (guint) GST_VIDEO_INFO_SIZE (&info);
+  if (offered) {
+    guint asked;
+
+    gst_query_parse_nth_allocation_pool (query, 0, &pool, &asked, &least,
+        &most);
+    size = MAX (size, asked);
+  }
+  if (!pool)
+    pool = gst_video_buffer_pool_new ();
+  config = gst_buffer_pool_get_config (pool);
+  gst_buffer_pool_config_set_params (config, caps, size, least, most);
+  if (gst_query_find_allocation_meta (query, GST_VIDEO_META_API_TYPE, NULL))
+    gst_buffer_pool_config_add_option (config,
+        GST_BUFFER_POOL_OPTION_VIDEO_META);
+  gst_buffer_pool_set_config (pool, config);
+  if (offered)
+    gst_query_set_nth_allocation_pool (query, 0, pool, size, least, most);
+  else
+    gst_query_add_allocation_pool (query, pool, size, least, most);
+  return GST_BASE_TRANSFORM_CLASS (gst_cloth_camera_parent_class)
+      ->decide_allocation (trans, query);
+}
+
+/* ---- GObject ---- */
+
+static gchar **
+text_of (GstClothCamera * self, guint id)
+{
+  switch (id) {
+    case PROP_RIG:
+      return &self->rig;
+    case PROP_CAMERA:
+      return &self->camera;
+    case PROP_PATTERN:
+      return &self->pattern;
+    case PROP_TEXTURE:
+      return &self->texture;
+    case PROP_EFFECTS:
+      return &self->effects;
+    default:
+      return NULL;
+  }
+}
+
+static void
+gst_cloth_camera_set_property (GObject * object, guint id,
+    const GValue * value, GParamSpec * pspec)
+{
+  GstClothCamera *self = GST_CLOTH_CAMERA (object);
+  gchar **text = text_of (self, id);
+
+  GST_OBJECT_LOCK (self);
+  if (GST_STATE (self) > GST_STATE_READY) {
+    GST_WARNING_OBJECT (self, "“%s” cannot change while running",
+        pspec->name);
+    GST_OBJECT_UNLOCK (self);
+    return;
+  }
+  if (text) {
+    g_free (*text);
+    *text = g_value_dup_string (value);
+  } else if (id == PROP_SEED) {
+    self->seed = g_value_get_uint64 (value);
+  } else if (id == PROP_THREADS) {
+    self->threads = g_value_get_uint (value);
+  } else {
+    G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
+  }
+  GST_OBJECT_UNLOCK (self);
+}
+
+static void
+gst_cloth_camera_get_property (GObject * object, guint id, GValue * value,
+    GParamSpec * pspec)
+{
+  GstClothCamera *self = GST_CLOTH_CAMERA (object);
+  gchar **text = text_of (self, id);
+
+  GST_OBJECT_LOCK (self);
+  if (text)
+    g_value_set_string (value, *text);
+  else if (id == PROP_SEED)
+    g_value_set_uint64 (value, self->seed);
+  else if (id == PROP_THREADS)
+    g_value_set_uint (value, self->threads);
+  else
+    G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
+  GST_OBJECT_UNLOCK (self);
+}
+
+static void
+gst_cloth_camera_finalize (GObject * object)
+{
+  GstClothCamera *self = GST_CLOTH_CAMERA (object);
+
+  for (guint id = PROP_RIG; id <= PROP_EFFECTS; id++)
+    g_free (*text_of (self, id));
+  gst_cloth_camera_forget (self);
+  g_ptr_array_unref (self->window);
+  g_ptr_array_unref (self->spare);
+  g_ptr_array_unref (self->positions);
+  g_array_unref (self->times);
+  G_OBJECT_CLASS (gst_cloth_camera_parent_class)->finalize (object);
+}
+
+static void
+install_string (GObjectClass * klass, guint id, const gchar * name,
+    const gchar * nick, const gchar * blurb)
+{
+  g_object_class_install_property (klass, id, g_param_spec_string (name, nick,
+          blurb, NULL, G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+          GST_PARAM_MUTABLE_READY));
+}
+
+static void
+gst_cloth_camera_class_init (GstClothCameraClass * klass)
+{
+  GObjectClass *object_class = G_OBJECT_CLASS (klass);
+  GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
+  GstBaseTransformClass *trans_class = GST_BASE_TRANSFORM_CLASS (klass);
+
+  GST_DEBUG_CATEGORY_INIT (cloth_camera_debug, "clothcamera", 0,
+      "synthetic film of meshes");
+  object_class->set_property = gst_cloth_camera_set_property;
+  object_class->get_property = gst_cloth_camera_get_property;
+  object_class->finalize = gst_cloth_camera_finalize;
+  install_string (object_class, PROP_RIG, "rig", "Rig",
+      "Calibration file (rig.json) that has the camera");
+  install_string (object_class, PROP_CAMERA, "camera", "Camera",
+      "Name in the rig of the camera that films; may be left out when the rig has "
+      "one camera");
+  install_string (object_class, PROP_PATTERN, "pattern", "Pattern",
+      "Pattern file (pattern.json) that is printed on the cloth");
+  install_string (object_class, PROP_TEXTURE, "texture", "Texture",
+      "Picture file that is printed over the whole cloth, instead of a pattern");
+  install_string (object_class, PROP_EFFECTS, "effects", "Effects",
+      "Camera and image effects, as “noise,sigma=3; "
+      "rolling_shutter,seconds=0.01”");
+  g_object_class_install_property (object_class, PROP_SEED,
+      g_param_spec_uint64 ("seed", "Seed",
+          "Seed of the noise and of which pictures are lost", 0, G_MAXUINT64,
+          DEFAULT_SEED, G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+          GST_PARAM_MUTABLE_READY));
+  g_object_class_install_property (object_class, PROP_THREADS,
+      g_param_spec_uint ("threads", "Threads",
+          "Threads that draw; 0: one a processor", 0, 1024, DEFAULT_THREADS,
+          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+          GST_PARAM_MUTABLE_READY));
+  gst_element_class_add_static_pad_template (element_class, &sink_template);
+  gst_element_class_add_static_pad_template (element_class, &src_template);
+  gst_element_class_set_static_metadata (element_class, "Cloth camera",
+      "Filter/Converter/Video",
+      "Films a mesh stream: a textured cloth as a camera of a rig sees it",
+      PACKAGE_NAME);
+  trans_class->start = gst_cloth_camera_start;
+  trans_class->stop = gst_cloth_camera_stop;
+  trans_class->set_caps = gst_cloth_camera_set_caps;
+  trans_class->transform_caps = gst_cloth_camera_transform_caps;
+  trans_class->decide_allocation = gst_cloth_camera_decide_allocation;
+  trans_class->transform = gst_cloth_camera_transform;
+  trans_class->submit_input_buffer = gst_cloth_camera_submit_input_buffer;
+  trans_class->generate_output = gst_cloth_camera_generate_output;
+  trans_class->sink_event = gst_cloth_camera_sink_event;
+  trans_class->query = gst_cloth_camera_query;
+}
+
+static void
+gst_cloth_camera_init (GstClothCamera * self)
+{
+  self->window = g_ptr_array_new_with_free_func (frame_free);
+  self->spare = g_ptr_array_new_with_free_func (frame_free);
+  self->positions = g_ptr_array_new ();
+  self->times = g_array_new (FALSE, FALSE, sizeof (gdouble));
+  self->threads = DEFAULT_THREADS;
+  self->seed = DEFAULT_SEED;
+  cloth_render_style_init (&self->style);
+  gst_base_transform_set_qos_enabled (GST_BASE_TRANSFORM (self), FALSE);
+}

@@ -1,0 +1,25 @@
+/* clothcamera: films a mesh stream.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include <gst/base/gstbasetransform.h>
+
+#include "gst/vision/paint.h"
+
+G_BEGIN_DECLS
+
+#define GST_TYPE_CLOTH_CAMERA (gst_cloth_camera_get_type ())
+G_DECLARE_FINAL_TYPE (GstClothCamera, gst_cloth_camera, GST, CLOTH_CAMERA,
+    GstBaseTransform)
+
+GST_ELEMENT_REGISTER_DECLARE (clothcamera);
+
+/* What is on the cloth: from a pattern.json, from any picture, or plain white. */
+ClothPaint *gst_cloth_camera_paint_pattern (const gchar * path,
+    GError ** error);
+ClothPaint *gst_cloth_camera_paint_picture (const gchar * path,
+    const gdouble origin_uv_m[2], const gdouble size_m[2], GError ** error);
+ClothPaint *gst_cloth_camera_paint_white (void);
+
+G_END_DECLS
