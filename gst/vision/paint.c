@@ -65,6 +65,33 @@ halve (const ClothPaintLevel * fine, ClothPaintLevel * coarse, guint n)
   }
 }
 
+/* A pixel stays flat when its neighbours are flat and of its value. */
+static void
+narrow (ClothPaintLevel * level, guint n)
+{
+  const gsize size = (gsize) level->width * (gsize) level->height;
+  guint8 *wide = level->flat;
+
+  level->flat = g_malloc (size);
+  for (gint y = 0; y < level->height; y++) {
+    for (gint x = 0; x < level->width; x++) {
+      const gsize at = (gsize) y * (gsize) level->width + (gsize) x;
+      gboolean flat = TRUE;
+
+      for (gint k = 0; k < 9 && flat; k++) {
+        const gint nx = CLAMP (x + k % 3 - 1, 0, level->width - 1);
+        const gint ny = CLAMP (y + k / 3 - 1, 0, level->height - 1);
+        const gsize other = (gsize) ny * (gsize) level->width + (gsize) nx;
+
+        flat = wide[other] && memcmp (level->data + other * n,
+            level->data + at * n, n * sizeof (gfloat)) == 0;
+      }
+      level->flat[at] = flat;
+    }
+  }
+  g_free (wide);
+}
+
 /**
  * cloth_paint_new:
  * @data: the picture
@@ -117,6 +144,8 @@ cloth_paint_new (const guint8 * data, gint width, gint height, gint stride,
     level++;
     paint->n_levels++;
   }
+  for (guint i = 0; i < paint->n_levels; i++)
+    narrow (&paint->levels[i], n_channels);
   return paint;
 }
 

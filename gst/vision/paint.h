@@ -23,7 +23,7 @@ G_BEGIN_DECLS
  * @width: pixels a row
  * @height: rows
  * @data: reflected share of the light, @height·@width·channels
- * @flat: 1 where everything under the pixel is of one value
+ * @flat: 1 where everything under the pixel and its eight neighbours is of one value
  *
  * The picture at one scale: each pixel is the mean over 2×2 of the level before.
  *

@@ -39,6 +39,8 @@ typedef struct {
   gdouble light[3];             /* not over depth */
   gint left, top, right, bottom;        /* pixels that it may touch */
   gboolean front;
+  guint level;                  /* of the paint whose pixels are as the points lie */
+  guint flat_level;             /* whose pixels are no smaller than what a pixel sees */
 } ClothRenderTriangle;
 
 typedef struct {

@@ -17,6 +17,8 @@
 /* 16 at once, whatever the machine's width: every width gives the same bits. */
 typedef gfloat F16 __attribute__((vector_size (64)));
 typedef gint32 I16 __attribute__((vector_size (64)));
+/* two lanes at once */
+typedef gint64 __attribute__((may_alias)) Pair;
 
 #define X(i) (((i) + 0.5f) / SAMPLES - 0.5f)
 #define Y(i) (((5 * (i) + 2) % SAMPLES + 0.5f) / SAMPLES - 0.5f)
@@ -33,17 +35,18 @@ static const gfloat sample_y[SAMPLES] = { Y (0), Y (1), Y (2), Y (3), Y (4),
 #undef X
 #undef Y
 
-/* 1/depth and triangle at every point of every pixel. */
+/* 1/depth and triangle at every point of every pixel that a triangle has touched. */
 typedef struct
 {
   F16 depth[TILE * TILE];
   I16 seen[TILE * TILE];
+  guint8 touched[TILE * TILE];
 } Scratch;
 
 gsize
 cloth_render_tile_scratch (void)
 {
-  return sizeof (Scratch);
+  return (sizeof (Scratch) + 63) & ~(gsize) 63;
 }
 
 #define NAME(f) f ## _plain

@@ -10,13 +10,40 @@ NAME (at) (const ClothRenderTriangle * t, const gdouble plane[3], gint x,
   return (gfloat) (plane[0] + plane[1] * (x - t->x) + plane[2] * (y - t->y));
 }
 
+static inline __attribute__((always_inline))
+     void NAME (fill_pixel) (Scratch * s, const ClothRenderTriangle * t,
+    gint index, gint p, const gfloat e[3], const F16 off[3],
+    const gfloat reach[3], F16 w)
+{
+  const gboolean all = e[0] > reach[0] && e[1] > reach[1] && e[2] > reach[2];
+  I16 mask = { 0 };
+
+  mask = ~mask;
+  for (gint k = 0; k < 3 && !all; k++) {
+    const F16 side = e[k] + off[k];
+
+    mask &= (side > 0) | ((side == 0) & t->tie[k]);
+  }
+  if (s->touched[p]) {
+    mask &= w > s->depth[p];
+    s->depth[p] = (F16) ((mask & (I16) w) | (~mask & (I16) s->depth[p]));
+    s->seen[p] = (mask & index) | (~mask & s->seen[p]);
+  } else {
+    s->touched[p] = 1;
+    s->depth[p] = (F16) (mask & (I16) w);
+    s->seen[p] = (mask & index) | ~mask;
+  }
+}
+
 static void
 NAME (fill_triangle) (Scratch * s, const ClothRenderTriangle * t, gint index,
     gint left, gint top, F16 sx, F16 sy)
 {
-  const gint right = MIN (t->right, left + TILE - 1);
+  const gint first = MAX (t->left - left, 0);
+  const gint last = MIN (t->right - left, TILE - 1);
   const gint bottom = MIN (t->bottom, top + TILE - 1);
   const F16 step = (gfloat) t->w[1] * sx + (gfloat) t->w[2] * sy;
+  const gfloat slope = (gfloat) t->w[1];
   F16 off[3];
   gfloat reach[3];
 
@@ -25,69 +52,41 @@ NAME (fill_triangle) (Scratch * s, const ClothRenderTriangle * t, gint index,
     reach[k] = (fabsf (t->ea[k]) + fabsf (t->eb[k])) * 0.5f;
   }
   for (gint y = MAX (t->top, top); y <= bottom; y++) {
-    for (gint x = MAX (t->left, left); x <= right; x++) {
-      const gint p = (y - top) * TILE + x - left;
-      F16 w;
-      I16 mask = { 0 };
+    const gfloat w = NAME (at) (t, t->w, left, y);
+    gdouble row[3];
+
+    /* From the tile's border on for every triangle: those on both sides of an edge must
+     * get the same numbers. */
+    for (gint k = 0; k < 3; k++)
+      row[k] = t->ea[k] * (left - t->ex[k]) + t->eb[k] * (y - t->ey[k]);
+    for (gint x = first; x <= last; x++) {
       gfloat e[3];
-      gboolean all;
 
       for (gint k = 0; k < 3; k++)
-        e[k] = (gfloat) (t->ea[k] * (x - t->ex[k])
-            + t->eb[k] * (y - t->ey[k]));
+        e[k] = (gfloat) (row[k] + (gdouble) t->ea[k] * x);
       if (e[0] < -reach[0] || e[1] < -reach[1] || e[2] < -reach[2])
         continue;
-      all = e[0] > reach[0] && e[1] > reach[1] && e[2] > reach[2];
-      mask = ~mask;
-      for (gint k = 0; k < 3 && !all; k++) {
-        const F16 side = e[k] + off[k];
-
-        mask &= (side > 0) | ((side == 0) & t->tie[k]);
-      }
-      w = NAME (at) (t, t->w, x, y) + step;
-      mask &= w > s->depth[p];
-      s->depth[p] = (F16) ((mask & (I16) w) | (~mask & (I16) s->depth[p]));
-      s->seen[p] = (mask & index) | (~mask & s->seen[p]);
+      NAME (fill_pixel) (s, t, index, (y - top) * TILE + x, e, off, reach,
+          w + slope * (gfloat) x + step);
     }
   }
 }
 
-/* Is everything of one value within @reach of (u, v), pixels of the finest level? */
+/* The value of the paint about (u, v), pixels of the finest level, when a pixel sees no
+ * other. */
 static inline const gfloat *NAME (plain_paint) (const ClothPaint * paint,
-    gfloat u, gfloat v, gfloat reach_u, gfloat reach_v)
+    guint n, gfloat u, gfloat v)
 {
-  const gfloat span = MAX (reach_u, reach_v) * 2;
-  const gint n = span > 1 ? ilogbf (span) + 1 : 0;
-  const ClothPaintLevel *level;
-  gint x[2], y[2];
-  const gfloat *value;
+  const ClothPaintLevel * level = &paint->levels[n];
+  const gfloat last_u = (gfloat) (paint->levels[0].width - 1);
+  const gfloat last_v = (gfloat) (paint->levels[0].height - 1);
+  gsize at;
 
-  if (n >= (gint) paint->n_levels || !(span < 65536))
+  if (n >= paint->n_levels)
     return NULL;
-  level = &paint->levels[n];
-  /* Two pixels of that level hold the span. */
-  x[0] = (gint) floorf (ldexpf (u - reach_u, -n));
-  x[1] = (gint) floorf (ldexpf (u + reach_u, -n));
-  y[0] = (gint) floorf (ldexpf (v - reach_v, -n));
-  y[1] = (gint) floorf (ldexpf (v + reach_v, -n));
-  for (gint i = 0; i < 2; i++) {
-    x[i] = CLAMP (x[i], 0, level->width - 1);
-    y[i] = CLAMP (y[i], 0, level->height - 1);
-  }
-  value = level->data + ((gsize) y[0] * (gsize) level->width + (gsize) x[0])
-      * paint->n_channels;
-  for (gint i = 0; i < 4; i++) {
-    const gsize at = (gsize) y[i >> 1] * (gsize) level->width
-        + (gsize) x[i & 1];
-    const gfloat *other = level->data + at * paint->n_channels;
-
-    if (!level->flat[at])
-      return NULL;
-    for (guint c = 0; c < paint->n_channels; c++)
-      if (other[c] != value[c])
-        return NULL;
-  }
-  return value;
+  at = (gsize) ((gint) CLAMP (v, 0, last_v) >> n) * (gsize) level->width
+      + (gsize) ((gint) CLAMP (u, 0, last_u) >> n);
+  return level->flat[at] ? level->data + at * paint->n_channels : NULL;
 }
 
 /* Sum of the paint at those points of @mask, bilinear between the pixels of a level. */
@@ -137,17 +136,9 @@ NAME (add_light) (const ClothRenderJob * job, const ClothRenderTriangle * t,
   const gfloat w = NAME (at) (t, t->w, x, y), inverse = 1 / w;
   const gfloat u = NAME (at) (t, t->u, x, y) * inverse;
   const gfloat v = NAME (at) (t, t->v, x, y) * inverse;
-  const gfloat wx = (gfloat) t->w[1], wy = (gfloat) t->w[2];
-  /* slopes of u and v, in pixels of the finest level */
-  const gfloat ux = ((gfloat) t->u[1] - u * wx) * inverse;
-  const gfloat uy = ((gfloat) t->u[2] - u * wy) * inverse;
-  const gfloat vx = ((gfloat) t->v[1] - v * wx) * inverse;
-  const gfloat vy = ((gfloat) t->v[2] - v * wy) * inverse;
   gfloat light = NAME (at) (t, t->light, x, y);
-  gfloat spacing, longest, reach;
-  const gfloat *value;
   gfloat part[3] = { 0, 0, 0 };
-  guint n = 0;
+  const gfloat *value;
 
   light = MAX (light, 0);
   if (!t->front) {
@@ -155,29 +146,20 @@ NAME (add_light) (const ClothRenderJob * job, const ClothRenderTriangle * t,
       sum[c] += (gfloat) count *light * job->back;
     return;
   }
-  /* The points are a quarter of a pixel apart. */
-  spacing = sqrtf (fabsf (ux * vy - uy * vx)) / 4;
-  longest = MAX (hypotf (ux, vx), hypotf (uy, vy)) / 8;
-  spacing = MAX (spacing, longest);
-  if (spacing > 1 && spacing < 65536)
-    n = MIN ((guint) ilogbf (spacing * (gfloat) G_SQRT2), paint->n_levels - 1);
-  reach = ldexpf (1, (gint) n);
-  value = NAME (plain_paint) (paint, u, v,
-      0.55f * (fabsf (ux) + fabsf (uy)) + reach,
-      0.55f * (fabsf (vx) + fabsf (vy)) + reach);
+  value = NAME (plain_paint) (paint, t->flat_level, u, v);
   if (value) {
     for (guint c = 0; c < job->light->n_channels; c++)
       sum[c] += (gfloat) count *light * value[paint->n_channels == 3 ? c : 0];
     return;
   }
   {
-    const F16 over = 1 / (w + wx * sx + wy * sy);
+    const F16 over = 1 / (w + (gfloat) t->w[1] * sx + (gfloat) t->w[2] * sy);
     const F16 us = (NAME (at) (t, t->u, x, y) + (gfloat) t->u[1] * sx
         + (gfloat) t->u[2] * sy) * over;
     const F16 vs = (NAME (at) (t, t->v, x, y) + (gfloat) t->v[1] * sx
         + (gfloat) t->v[2] * sy) * over;
 
-    NAME (sum_paint) (paint, n, us, vs, mask, part);
+    NAME (sum_paint) (paint, t->level, us, vs, mask, part);
   }
   for (guint c = 0; c < job->light->n_channels; c++)
     sum[c] += light * part[paint->n_channels == 3 ? c : 0];
@@ -194,7 +176,17 @@ NAME (shade_pixel) (const ClothRenderJob * job, const I16 * seen, gint x,
       + job->background[1] * (gfloat) y;
   gfloat sum[3] = { 0, 0, 0 };
   guint left = 0xffff;
+  const gint one = (*seen)[0];
+  I16 others = *seen ^ one;
+  gint64 any = 0;
 
+  for (gint i = 0; i < SAMPLES / 2; i++)
+    any |= ((const Pair *) &others)[i];
+  if (any == 0 && one >= 0) {
+    NAME (add_light) (job, &job->triangles[one], x, y, ~others, SAMPLES, sx,
+        sy, sum);
+    left = 0;
+  }
   while (left) {
     const gint first = __builtin_ctz (left);
     const gint index = (*seen)[first];
@@ -230,26 +222,25 @@ NAME (draw_tile) (const ClothRenderJob * job, gint left, gint top,
   memcpy (&sx, sample_x, sizeof sx);
   memcpy (&sy, sample_y, sizeof sy);
   if (n_list > 0) {
-    memset (s->depth, 0, sizeof s->depth);
-    memset (s->seen, 0xff, sizeof s->seen);
+    memset (s->touched, 0, sizeof s->touched);
     for (guint i = 0; i < n_list; i++)
       NAME (fill_triangle) (s, &job->triangles[list[i]], (gint) list[i], left,
           top, sx, sy);
   }
   for (gint y = top; y < bottom; y++) {
+    const gsize plane = (gsize) light->width * (gsize) light->height;
+    const gfloat background = (job->background[0] + job->background[1]
+        * (gfloat) y) * job->weight;
+    gfloat *to = light->data + (gsize) y * (gsize) light->width;
+
     for (gint x = left; x < right; x++) {
-      const I16 *seen = &s->seen[(y - top) * TILE + x - left];
+      const gint p = (y - top) * TILE + x - left;
 
-      if (n_list > 0) {
-        NAME (shade_pixel) (job, seen, x, y, sx, sy);
-      } else {
-        const gsize plane = (gsize) light->width * (gsize) light->height;
-        gfloat *to = light->data + (gsize) y * (gsize) light->width + (gsize) x;
-
+      if (n_list > 0 && s->touched[p])
+        NAME (shade_pixel) (job, &s->seen[p], x, y, sx, sy);
+      else
         for (guint c = 0; c < light->n_channels; c++)
-          to[c * plane] += (job->background[0]
-              + job->background[1] * (gfloat) y) * job->weight;
-      }
+          to[c * plane + (gsize) x] += background;
     }
   }
 }

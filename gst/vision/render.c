@@ -18,6 +18,10 @@
 
 /* What the middle of an edge or face may be off between the points of the mesh. */
 #define STRAIGHT_PX 0.02
+/* The same for the middle of a twisted face, whose true shape nobody knows; and most
+ * triangles that are made for its sake. */
+#define TWIST_PX 0.1
+#define MAX_TWIST_TRIANGLES (1u << 16)
 /* Triangles whose edges are tried for bends by the lens. */
 #define LENS_TRIALS 2000
 /* Each level halves the edges; so many at most, and so many triangles. */
@@ -207,10 +211,10 @@ near_picture (const ClothRenderer * self, const Point * p)
 }
 
 static gboolean
-may_halve (const ClothRenderer * self, guint level)
+may_halve (const ClothRenderer * self, guint level, guint most)
 {
   return level < MAX_LEVELS
-      && (guint64) self->n_faces * 2 << 2 * (level + 1) <= MAX_TRIANGLES;
+      && (guint64) self->n_faces * 2 << 2 * (level + 1) <= most;
 }
 
 /* How far the lens bends edges of the mesh that is looked at, px: some are tried. */
@@ -258,10 +262,11 @@ choose_level (ClothRenderer * self, gdouble time_s)
       most = MAX (most, bend (&self->points[parents[first]],
               &self->points[parents[second]], &self->points[i]));
   }
-  for (; most > STRAIGHT_PX && may_halve (self, level); level++)
+  for (; most > TWIST_PX && may_halve (self, level, MAX_TWIST_TRIANGLES);
+      level++)
     most /= 4;
   while (self->capture->camera.lens != CLOTH_LENS_NONE
-      && may_halve (self, level)) {
+      && may_halve (self, level, MAX_TRIANGLES)) {
     see (self, level, time_s);
     if (measure_lens (self) <= STRAIGHT_PX)
       break;
@@ -330,6 +335,41 @@ set_plane (gdouble plane[3], gdouble area, const Point * a, const Point * b,
   plane[2] = (q * (b->px[0] - a->px[0]) - p * (c->px[0] - a->px[0])) / area;
 }
 
+/* Which levels of the paint fit the triangle: by the longest steps and the area of a pixel
+ * of the picture on the paint, where it is nearest and where it is farthest. */
+static void
+set_levels (const ClothPaint * paint, ClothRenderTriangle * t,
+    const Point * const *p)
+{
+  gdouble spacing = G_MAXDOUBLE, reach = 0;
+  gint level;
+
+  for (gint k = 0; k < 3; k++) {
+    const gdouble dx = p[k]->px[0] - t->x, dy = p[k]->px[1] - t->y;
+    const gdouble depth = p[k]->depth;
+    gdouble J[4], area;
+
+    for (gint j = 0; j < 2; j++) {
+      const gdouble *plane = j ? t->v : t->u;
+      const gdouble at = (plane[0] + plane[1] * dx + plane[2] * dy) * depth;
+
+      J[2 * j] = (plane[1] - at * t->w[1]) * depth;
+      J[2 * j + 1] = (plane[2] - at * t->w[2]) * depth;
+      reach = MAX (reach, fabs (J[2 * j]) + fabs (J[2 * j + 1]));
+    }
+    /* The points are a quarter of a pixel apart; seen edge-on, rather some stripes than
+     * all grey. */
+    area = sqrt (fabs (J[0] * J[3] - J[1] * J[2])) / 4;
+    spacing = MIN (spacing, MAX (area, MAX (hypot (J[0], J[2]),
+                hypot (J[1], J[3])) / 8));
+  }
+  level = spacing > 1 && spacing < 65536 ? ilogb (spacing * G_SQRT2) : 0;
+  t->level = MIN ((guint) level, paint->n_levels - 1);
+  reach = 0.6 * reach + ldexp (1, (gint) t->level);
+  level = reach < 65536 ? ilogb (reach) + 1 : CLOTH_PAINT_MAX_LEVELS;
+  t->flat_level = MIN ((guint) MAX (level, 0), CLOTH_PAINT_MAX_LEVELS);
+}
+
 static gboolean
 set_triangle (const ClothRenderer * self, const guint * corners,
     ClothRenderTriangle * t)
@@ -373,6 +413,7 @@ set_triangle (const ClothRenderer * self, const guint * corners,
   set_plane (t->v, area, p[0], p[1], p[2], uv[1][0], uv[1][1], uv[1][2]);
   set_plane (t->light, area, p[0], p[1], p[2], p[0]->light[!t->front],
       p[1]->light[!t->front], p[2]->light[!t->front]);
+  set_levels (paint, t, p);
   for (gint k = 0; k < 3; k++) {
     /* From the lower to the higher of its ends, whichever triangle asks: both get the
      * same number with opposite signs, and a point on it belongs to one of them. */
