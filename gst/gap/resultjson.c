@@ -76,34 +76,71 @@ say_accepted (GString * text, const ClothGapResult * result)
   return n;
 }
 
+/* With a point, whatever the language. */
+static void
+say_number (GString * text, const gchar * format, gdouble value)
+{
+  gchar digits[G_ASCII_DTOSTR_BUF_SIZE];
+
+  g_string_append (text, g_ascii_formatd (digits, sizeof digits, format,
+          value));
+}
+
 static void
 say_percent (GString * text, const ClothGapEstimate * share)
 {
-  g_string_append_printf (text, "%.0f%%", 100 * share->value);
-  if (isfinite (share->low) && isfinite (share->high))
-    g_string_append_printf (text, " [%.0f, %.0f]", 100 * share->low,
-        100 * share->high);
+  say_number (text, "%.0f", 100 * share->value);
+  g_string_append_c (text, '%');
+  if (isfinite (share->low) && isfinite (share->high)) {
+    g_string_append (text, " [");
+    say_number (text, "%.0f", 100 * share->low);
+    g_string_append (text, ", ");
+    say_number (text, "%.0f", 100 * share->high);
+    g_string_append_c (text, ']');
+  }
+}
+
+static void
+say_length (GString * text, gdouble metres)
+{
+  say_number (text, "%.1f", 1000 * metres);
+  g_string_append (text, " mm");
+}
+
+/* ", 2.1× the floor" */
+static void
+say_floor (GString * text, const ClothGapResult * result)
+{
+  if (!(result->noise_floor.value > 0))
+    return;
+  g_string_append (text, ", ");
+  say_number (text, "%.1f", result->gap_before.value /
+      result->noise_floor.value);
+  g_string_append (text, "× the floor");
 }
 
 static void
 say_gap (GString * text, const ClothGapResult * result)
 {
-  gdouble gap = result->gap_before.value, floor_m = result->noise_floor.value;
-
-  if (!isfinite (gap))
+  if (!isfinite (result->gap_before.value))
     return;
-  g_string_append_printf (text, "Gap %.1f mm", 1000 * gap);
-  if (isfinite (floor_m) && floor_m > 0)
-    g_string_append_printf (text, ", %.1f× the floor", gap / floor_m);
+  g_string_append (text, "Gap ");
+  say_length (text, result->gap_before.value);
+  say_floor (text, result);
   g_string_append (text, ". ");
+}
+
+static const gchar *
+where_judged (const ClothGapResult * result)
+{
+  return result->held_out_takes ? "on an unseen take" :
+      "on held-out time blocks";
 }
 
 /* What the accepted effects bring, on which data. */
 static void
 say_explained (GString * text, const ClothGapResult * result)
 {
-  const gchar *where = result->held_out_takes ? "on an unseen take" :
-      "on held-out time blocks";
   gsize start = text->len;
   guint n = say_accepted (text, result);
 
@@ -114,7 +151,7 @@ say_explained (GString * text, const ClothGapResult * result)
   } else if (isfinite (result->shrink.value)) {
     g_string_append (text, n > 1 ? " explain " : " explains ");
     say_percent (text, &result->shrink);
-    g_string_append_printf (text, " %s", where);
+    g_string_append_printf (text, " %s", where_judged (result));
   } else {
     g_string_append (text, n > 1 ? " were added" : " was added");
   }
@@ -139,14 +176,15 @@ cloth_gap_result_summary (const ClothGapResult * result)
           "no reason was given.");
       break;
     case CLOTH_GAP_NO_GAP:
-      g_string_append (text, "No gap: ");
-      if (isfinite (result->gap_before.value))
-        g_string_append_printf (text, "%.1f mm %s",
-            1000 * result->gap_before.value, result->held_out_takes ?
-            "on an unseen take" : "on held-out time blocks");
-      if (result->noise_floor.value > 0)
-        g_string_append_printf (text, ", %.1f× the floor",
-            result->gap_before.value / result->noise_floor.value);
+      g_string_append (text, "No gap");
+      if (!isfinite (result->gap_before.value)) {
+        g_string_append_c (text, '.');
+        break;
+      }
+      g_string_append (text, ": ");
+      say_length (text, result->gap_before.value);
+      g_string_append_printf (text, " %s", where_judged (result));
+      say_floor (text, result);
       g_string_append_c (text, '.');
       break;
     case CLOTH_GAP_EXPLAINED:
@@ -159,9 +197,12 @@ cloth_gap_result_summary (const ClothGapResult * result)
     case CLOTH_GAP_UNEXPLAINED:
       say_gap (text, result);
       say_explained (text, result);
-      if (isfinite (result->gap_after.value))
-        g_string_append_printf (text, "; %.1f mm remain that no effect of the "
-            "library explains", 1000 * result->gap_after.value);
+      if (isfinite (result->gap_after.value)) {
+        g_string_append (text, "; ");
+        say_length (text, result->gap_after.value);
+        g_string_append (text, " remain that no effect of the library "
+            "explains");
+      }
       g_string_append_c (text, '.');
       break;
   }

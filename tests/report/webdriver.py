@@ -68,7 +68,7 @@ class Browser:
     def settle(self):
         """Waits until what was asked for has been drawn."""
         self._call('POST', '/execute/async', {'args': [], 'script':
-                   'const done = arguments[0]; let n = 4;'
+                   'const done = arguments[0]; let n = 3;'
                    'const step = () => --n ? requestAnimationFrame(step) : done(); step();'})
 
     def find(self, selector):

@@ -29,8 +29,7 @@ fold (const ClothLaneState * state, guint begin, guint end, guint corners)
 }
 
 /* Adds the bending forces. */
-void
-CLOTH_LANE_NAME (cloth_lane_bending) (ClothLaneState * state)
+void CLOTH_LANE_NAME (cloth_lane_bending) (ClothLaneState * state)
 {
   ClothLane beta = state->beta;
 

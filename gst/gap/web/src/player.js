@@ -154,7 +154,7 @@ export class Player {
     const text = `${this.time.toFixed(2)} s` + (words.length ? `, RMS distance ${words.join(', ')}` : '');
     this.output.value = text;
     this.slider.setAttribute('aria-valuetext', text);
-    this.key.set(this.relative ? `${number(limit)}× the floor` : mm(limit, limit < 0.01 ? 1 : 0));
+    this.key.set(this.relative ? `${number(limit, 1)}× the floor` : mm(limit, limit < 0.01 ? 1 : 0));
     this.view?.update(frame, this.residuals, limit);
     for (const { name, map } of this.maps) {
       if (map.scale) map.draw(name ? this.residuals[name] : playback.shares, name ? limit : this.shareLimit);

@@ -223,7 +223,8 @@ export class View {
     this.head.position.copy(camera.position).add(new Vector3(0, 0, this.size))
       .addScaledVector(new Vector3().setFromMatrixColumn(camera.matrixWorld, 0), -1.2 * this.size);
     this.head.target.position.copy(this.controls.target);
-    const upright = width < 560;
+    // As in the style sheet.
+    const upright = matchMedia('(max-width: 640px)').matches;
     const n = this.panels.length;
     this.panels.forEach((panel, i) => {
       const w = upright ? width : width / n, h = upright ? height / n : height;

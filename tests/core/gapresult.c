@@ -1,0 +1,236 @@
+/* What a diagnosis says: its sentence, its JSON, and bytes that nobody vouches for.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/result.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/file/json.h"
+#include "gst/file/jsonwriter.h"
+
+static const ClothEffect air_drag = {.id = "air_drag",.side =
+      CLOTH_EFFECT_PHYSICS,.n_parameters = 1,.parameters =
+      {{.name = "coefficient",.unit = "1"}}
+};
+
+static const ClothEffect clamp_slip = {.id = "clamp_slip",.side =
+      CLOTH_EFFECT_CLAMP
+};
+
+static const ClothEffect wind = {.id = "wind",.side = CLOTH_EFFECT_PHYSICS };
+
+static void
+assert_summary (const ClothGapResult * result, const gchar * expected)
+{
+  g_autofree gchar *summary = cloth_gap_result_summary (result);
+
+  g_assert_cmpstr (summary, ==, expected);
+}
+
+/* The sentence of the specification, word by word. */
+static void
+test_summary (void)
+{
+  g_autoptr (ClothGapResult) result = cloth_gap_result_new ();
+  ClothGapEffect *effect;
+
+  assert_summary (result, "Undecidable: no reason was given.");
+  result->reason = g_strdup ("the cloth hangs still; film a motion.");
+  assert_summary (result, "Undecidable: the cloth hangs still; film a motion.");
+
+  result->verdict = CLOTH_GAP_NO_GAP;
+  result->held_out_takes = TRUE;
+  assert_summary (result, "No gap.");
+  result->gap_before.value = 0.0031;
+  assert_summary (result, "No gap: 3.1 mm on an unseen take.");
+  result->noise_floor.value = 0.0015;
+  assert_summary (result, "No gap: 3.1 mm on an unseen take, 2.1× the floor.");
+
+  result->verdict = CLOTH_GAP_UNEXPLAINED;
+  assert_summary (result,
+      "Gap 3.1 mm, 2.1× the floor. No effect of the library explains it.");
+
+  result->verdict = CLOTH_GAP_EXPLAINED;
+  effect = cloth_gap_result_add_effect (result, &air_drag);
+  effect->accepted = TRUE;
+  assert_summary (result, "Gap 3.1 mm, 2.1× the floor. Air drag was added.");
+  result->shrink = (ClothGapEstimate) {
+  0.84, 0.76, 0.90};
+  assert_summary (result, "Gap 3.1 mm, 2.1× the floor. Air drag explains "
+      "84% [76, 90] on an unseen take.");
+  result->held_out_takes = FALSE;
+  result->shrink.low = NAN;
+  assert_summary (result, "Gap 3.1 mm, 2.1× the floor. Air drag explains "
+      "84% on held-out time blocks.");
+
+  effect = cloth_gap_result_add_effect (result, &wind);
+  effect->group = 0;
+  g_array_index (result->effects, ClothGapEffect, 0).group = 0;
+  result->verdict = CLOTH_GAP_AMBIGUOUS;
+  assert_summary (result, "Gap 3.1 mm, 2.1× the floor. Air drag (or wind) "
+      "explains 84% on held-out time blocks; these data can't tell which.");
+
+  effect = cloth_gap_result_add_effect (result, &clamp_slip);
+  effect->accepted = TRUE;
+  result->verdict = CLOTH_GAP_UNEXPLAINED;
+  result->gap_after.value = 0.002;
+  assert_summary (result, "Gap 3.1 mm, 2.1× the floor. Air drag (or wind) "
+      "and clamp slip explain 84% on held-out time blocks; 2.0 mm remain that "
+      "no effect of the library explains.");
+}
+
+static JsonObject *
+parse (const gchar * json, JsonParser ** parser)
+{
+  g_autoptr (GError) error = NULL;
+
+  *parser = cloth_json_parse (json, strlen (json), &error);
+  g_assert_no_error (error);
+  return json_node_get_object (json_parser_get_root (*parser));
+}
+
+static void
+assert_null (JsonObject * object, const gchar * key)
+{
+  g_assert_true (json_object_has_member (object, key));
+  g_assert_true (json_object_get_null_member (object, key));
+}
+
+/* Nothing known: every key is there, and none claims a number. */
+static void
+test_empty (void)
+{
+  g_autoptr (ClothGapResult) result = cloth_gap_result_new ();
+  g_autofree gchar *json = cloth_gap_result_to_json (result);
+  g_autoptr (JsonParser) parser = NULL;
+  JsonObject *root = parse (json, &parser), *where;
+
+  g_assert_cmpstr (json_object_get_string_member (root, "verdict"), ==,
+      "undecidable");
+  assert_null (root, "reason");
+  assert_null (json_object_get_object_member (root, "gap_before"), "value");
+  assert_null (json_object_get_object_member (root, "gap_before"), "interval");
+  assert_null (root, "rest_p_value");
+  where = json_object_get_object_member (root, "where");
+  assert_null (where, "vertices");
+  assert_null (where, "onset_s");
+  assert_null (json_object_get_object_member (where, "directions"), "warp");
+  g_assert_cmpuint (json_array_get_length (json_object_get_array_member (root,
+              "effects")), ==, 0);
+}
+
+/* Half an interval is none; infinities are not numbers of JSON. */
+static void
+test_numbers (void)
+{
+  g_autoptr (ClothGapResult) result = cloth_gap_result_new ();
+  g_autofree gchar *json = NULL;
+  g_autoptr (JsonParser) parser = NULL;
+  JsonObject *root, *gap;
+  JsonArray *vertices;
+
+  result->gap_before = (ClothGapEstimate) {
+  0.00312345678, 0.003, INFINITY};
+  result->gap_after = (ClothGapEstimate) {
+  -INFINITY, NAN, 1};
+  result->n_vertices = 3;
+  result->vertices = g_new (gdouble, 3);
+  result->vertices[0] = 0.25;
+  result->vertices[1] = NAN;
+  result->vertices[2] = -0.0;
+  result->seed = G_MAXUINT64;
+  json = cloth_gap_result_to_json (result);
+  g_assert_nonnull (strstr (json, "\"seed\": 18446744073709551615,"));
+  g_assert_nonnull (strstr (json, "\"vertices\": [0.25, null, 0],"));
+  /* Readers whose integers end at 2⁶³ would stumble over it. */
+  result->seed = 7;
+  g_free (json);
+  json = cloth_gap_result_to_json (result);
+  root = parse (json, &parser);
+  gap = json_object_get_object_member (root, "gap_before");
+  g_assert_cmpfloat (json_object_get_double_member (gap, "value"), ==,
+      0.003123457);
+  assert_null (gap, "interval");
+  gap = json_object_get_object_member (root, "gap_after");
+  assert_null (gap, "value");
+  assert_null (gap, "interval");
+  vertices = json_object_get_array_member (json_object_get_object_member (root,
+          "where"), "vertices");
+  g_assert_true (json_array_get_null_element (vertices, 1));
+}
+
+/* Any bytes come back as text, and none of them ends a script. */
+static void
+test_strings (void)
+{
+  static const gchar *const texts[][2] = {
+    {"", ""},
+    {"plain", "plain"},
+    {"\"quoted\\\"", "\"quoted\\\""},
+    {"</script><!--&", "</script><!--&"},
+    {"\n\t\x01\x7f", "\n\t\x01\x7f"},
+    {"\xe2\x80\xa8\xe2\x80\xa9", "\xe2\x80\xa8\xe2\x80\xa9"},
+    {"\xf0\x9f\xa7\xb5 Stoff, 布", "\xf0\x9f\xa7\xb5 Stoff, 布"},
+    {"\xff\xc0half \xe2\x82", "\xef\xbf\xbd\xef\xbf\xbdhalf "
+          "\xef\xbf\xbd\xef\xbf\xbd"},
+    {"\xed\xa0\x80", "\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd"},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (texts); i++) {
+    g_autoptr (ClothJsonWriter) writer = cloth_json_writer_new ();
+    g_autofree gchar *json = NULL;
+    g_autoptr (JsonParser) parser = NULL;
+    JsonObject *root;
+
+    cloth_json_writer_begin_object (writer, NULL);
+    cloth_json_writer_string (writer, "text", texts[i][0]);
+    cloth_json_writer_begin_array (writer, "none");
+    cloth_json_writer_end_array (writer);
+    cloth_json_writer_begin_object (writer, "inner");
+    cloth_json_writer_boolean (writer, "yes", TRUE);
+    cloth_json_writer_end_object (writer);
+    cloth_json_writer_end_object (writer);
+    json = cloth_json_writer_finish (writer);
+    g_assert_null (strpbrk (json, "<>&\x01\x7f\t"));
+    g_assert_null (strstr (json, "\xe2\x80\xa8"));
+    root = parse (json, &parser);
+    g_assert_cmpstr (json_object_get_string_member (root, "text"), ==,
+        texts[i][1]);
+    g_assert_true (json_object_get_boolean_member
+        (json_object_get_object_member (root, "inner"), "yes"));
+  }
+}
+
+/* The comma of other languages never gets into the numbers. */
+static void
+test_layout (void)
+{
+  const gdouble numbers[] = { 1, 0.1, 1e-12, 123456789, NAN };
+  g_autoptr (ClothJsonWriter) writer = cloth_json_writer_new ();
+  g_autofree gchar *json = NULL;
+
+  cloth_json_writer_begin_object (writer, NULL);
+  cloth_json_writer_numbers (writer, "list", numbers, 5);
+  cloth_json_writer_begin_array (writer, "rows");
+  cloth_json_writer_numbers (writer, NULL, numbers, 0);
+  cloth_json_writer_string (writer, NULL, NULL);
+  cloth_json_writer_end_array (writer);
+  cloth_json_writer_end_object (writer);
+  json = cloth_json_writer_finish (writer);
+  g_assert_cmpstr (json, ==, "{\n"
+      "  \"list\": [1, 0.1, 1e-12, 1.234568e+08, null],\n"
+      "  \"rows\": [\n    [],\n    null\n  ]\n}\n");
+}
+
+int
+main (int argc, char **argv)
+{
+  g_test_init (&argc, &argv, NULL);
+  g_test_add_func ("/gapresult/summary", test_summary);
+  g_test_add_func ("/gapresult/empty", test_empty);
+  g_test_add_func ("/gapresult/numbers", test_numbers);
+  g_test_add_func ("/gapresult/strings", test_strings);
+  g_test_add_func ("/gapresult/layout", test_layout);
+  return g_test_run ();
+}
