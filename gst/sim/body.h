@@ -18,9 +18,11 @@ typedef struct
   gdouble area;
 } ClothBodyTriangle;
 
-/* Two triangles about an edge: particles 0 and 1 are the edge, 2 and 3 opposite it, or
- * the other way round when that leaves the last one with c = 0. |Σ c x| is proportional to
- * the curvature, its energy is ½ (B_warp·warp + B_weft·weft) |Σ c x|². */
+/* A linear measure y = Σ c x of a fold; its energy is
+ * ½ (B_warp·warp + B_weft·weft) |y|². On a grid: three particles in a row (the middle one
+ * first, the last c is 0), or the four of a cell, which measure its twist. On other
+ * meshes: two triangles about an edge, particles 0 and 1 are the edge, 2 and 3 opposite
+ * it, or the other way round when that leaves the last one with c = 0. */
 typedef struct
 {
   guint32 particle[4];

@@ -1,0 +1,213 @@
+/* Moving cloth against closed forms of mechanics.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "simscene.h"
+
+#define G 9.81
+
+/* A strip down from the origin, 2 vertices wide, its upper edge held; its rows are moved
+ * by amplitude·shape(depth) along y. */
+typedef gdouble (*Shape) (gdouble depth);
+
+static ClothScene *
+strip_new (guint rows, gdouble length, Shape shape, gdouble amplitude)
+{
+  ClothScene *scene = sheet_new (2, rows, length / (rows - 1), length);
+
+  for (guint i = 0; i < 2 * rows; i++)
+    scene->positions[3 * i + 1] =
+        amplitude * shape ((i / 2) / (gdouble) (rows - 1));
+  cloth_scene_hold (scene, 0);
+  cloth_scene_hold (scene, 1);
+  return scene;
+}
+
+/* Of the lowest row, the time between the first and the second passage of the middle:
+ * half a period. */
+static gdouble
+half_period (ClothSim * sim, guint n_vertices, gdouble until)
+{
+  gdouble crossing[2] = { 0., 0. }, before = 0.;
+  guint n = 0;
+
+  for (guint step = 0; n < 2; step++) {
+    g_autofree gdouble *x = positions_of (sim, 0);
+    gdouble y = x[3 * n_vertices - 2];
+
+    if (step && y * before < 0.)
+      crossing[n++] = cloth_sim_get_time (sim) - 2e-3 * y / (y - before);
+    before = y;
+    g_assert_cmpfloat (cloth_sim_get_time (sim), <, until);
+    cloth_sim_advance (sim, 2e-3 * (step + 1));
+  }
+  return crossing[1] - crossing[0];
+}
+
+static gdouble
+straight (gdouble depth)
+{
+  return depth;
+}
+
+/* A stiff strip about its upper edge: ω = √(3g/2L). */
+static void
+test_pendulum (void)
+{
+  const gdouble length = 0.5;
+  g_autoptr (ClothScene) scene = strip_new (17, length, straight, 5e-3);
+  g_autoptr (ClothModel) model = model_new (0.2, 2e4);
+  g_autoptr (ClothSim) sim = NULL;
+
+  model->bending_warp = model->bending_weft = 5.;
+  sim = run_new (scene, model);
+  assert_within (G_PI / half_period (sim, 34, 2.) / sqrt (1.5 * G / length),
+      1., 2e-3);
+}
+
+/* J0(2.4048 √(height/L)): the first mode of a hanging chain (Daniel Bernoulli). */
+static gdouble
+chain_mode (gdouble depth)
+{
+  return j0 (2.404825557695773 * sqrt (1. - depth));
+}
+
+static void
+test_chain (void)
+{
+  const gdouble length = 1.;
+  g_autoptr (ClothScene) scene = strip_new (61, length, chain_mode, 1e-3);
+  g_autoptr (ClothModel) model = model_new (0.2, 4000.);
+  g_autoptr (ClothSim) sim = NULL;
+
+  sim = run_new (scene, model);
+  assert_within (G_PI / half_period (sim, 122, 3.) / (1.2024 * sqrt (G /
+              length)), 1., 5e-3);
+}
+
+/* Mass damping alone: each mode decays with exp(−αt/2). */
+static void
+test_decay (void)
+{
+  const gdouble length = 0.5, alpha = 1.5, t = 1.4;
+  const gdouble omega = 1.2024 * sqrt (G / length);
+  const guint n = 62;
+  g_autoptr (ClothScene) scene = strip_new (31, length, chain_mode, 1e-3);
+  g_autoptr (ClothModel) model = model_new (0.2, 2000.);
+  g_autoptr (ClothSim) sim = NULL;
+  gdouble envelope[2];
+
+  model->damping_mass = alpha;
+  sim = run_new (scene, model);
+  for (guint end = 0; end < 2; end++) {
+    g_autofree gdouble *x = positions_of (sim, 0), *v = velocities_of (sim, 0);
+    gdouble q = 0., dq = 0.;
+
+    for (guint i = 0; i < n; i++) {
+      q += chain_mode ((i / 2) / 30.) * x[3 * i + 1];
+      dq += chain_mode ((i / 2) / 30.) * v[3 * i + 1];
+    }
+    envelope[end] = q * q + (dq + alpha / 2. * q) * (dq + alpha / 2. * q) /
+        (omega * omega - alpha * alpha / 4.);
+    if (!end)
+      run_for (sim, t);
+  }
+  assert_within (sqrt (envelope[1] / envelope[0]) / exp (-alpha * t / 2.), 1.,
+      1e-2);
+}
+
+/* Held by both ends cloth that does not bend hangs as a cosh. */
+static void
+test_catenary (void)
+{
+  const guint cells = 40;
+  const gdouble span = 0.8, length = 1.;
+  g_autoptr (ClothScene) scene =
+      sheet_new (cells + 1, 2, length, length / cells);
+  g_autoptr (ClothModel) model = model_new (0.2, 4000.);
+  g_autoptr (ClothSim) sim = NULL;
+  g_autofree gdouble *x = NULL;
+  gdouble a = 0.3;
+
+  for (guint i = 0; i < 2 * (cells + 1); i++) {
+    gdouble s = (gdouble) (i % (cells + 1)) / cells;
+    gdouble along = 1. - fabs (1. - 2. * s);
+
+    scene->positions[3 * i] = s < 0.5 ? along * span / 2. :
+        span - along * span / 2.;
+    scene->positions[3 * i + 1] = i / (cells + 1) * length / cells;
+    scene->positions[3 * i + 2] =
+        -along * sqrt (length * length - span * span) / 2.;
+  }
+  for (guint i = 0; i < 4; i++)
+    cloth_scene_hold (scene, (i % 2) * cells + i / 2 * (cells + 1));
+  model->damping_mass = 12.;
+  sim = run_new (scene, model);
+  run_for (sim, 2.5);
+  x = positions_of (sim, 0);
+  /* 2 a sinh (span/2a) = length by Newton */
+  for (guint i = 0; i < 50; i++) {
+    gdouble u = span / (2. * a);
+
+    a -= (2. * a * sinh (u) - length) / (2. * sinh (u) - 2. * u * cosh (u));
+  }
+  for (guint i = 0; i <= cells; i++) {
+    gdouble s = ((gdouble) i / cells - 0.5) * length;
+
+    assert_within (x[3 * i], span / 2. + a * asinh (s / a), 1e-3);
+    assert_within (x[3 * i + 2], sqrt (a * a + s * s) - sqrt (a * a +
+            length * length / 4.), 1e-3);
+  }
+}
+
+/* A strip clamped level at one end sinks by H over a reach of W, a function of
+ * Γ = ρgL³/B alone (heavy elastica). */
+static void
+test_cantilever (void)
+{
+  const gdouble gamma[4] = { 0.1, 1., 10., 100. };
+  const gdouble ratio[4] = { 0.0125, 0.1247, 1.067, 5.88 };
+  const guint cells = 30;
+  const gdouble density = 0.2, length = 0.3;
+  /* half of the clamped cell bends with its free neighbour */
+  const gdouble cell = length / (cells - 0.5);
+
+  for (guint i = 0; i < 4; i++) {
+    g_autoptr (ClothScene) scene =
+        sheet_new (cells + 1, 3, cells * cell, 2. * cell);
+    g_autoptr (ClothModel) model = model_new (density, 1000.);
+    g_autoptr (ClothSim) sim = NULL;
+    g_autofree gdouble *x = NULL;
+    guint n = scene->topology->n_vertices;
+    gdouble b = density * G * length * length * length / gamma[i];
+
+    for (guint k = 0; k < n; k++) {
+      scene->positions[3 * k + 1] = scene->positions[3 * k + 2];
+      scene->positions[3 * k + 2] = 0.;
+    }
+    for (guint row = 0; row < 3; row++) {
+      cloth_scene_hold (scene, row * (cells + 1));
+      cloth_scene_hold (scene, row * (cells + 1) + 1);
+    }
+    model->bending_warp = model->bending_weft = b;
+    /* about twice the slowest frequency */
+    model->damping_mass = 2. * MAX (3.516 * sqrt (b / density) / (length *
+            length), 1.2024 * sqrt (G / length));
+    sim = run_new (scene, model);
+    run_for (sim, i < 2 ? 0.6 : 1.6);
+    x = positions_of (sim, 0);
+    assert_within (-x[3 * (2 * cells + 1) + 2] / (x[3 * (2 * cells + 1)] -
+            cell / 2.) / ratio[i], 1., 0.02);
+  }
+}
+
+int
+main (int argc, char **argv)
+{
+  g_test_init (&argc, &argv, NULL);
+  g_test_add_func ("/sim/pendulum", test_pendulum);
+  g_test_add_func ("/sim/chain", test_chain);
+  g_test_add_func ("/sim/decay", test_decay);
+  g_test_add_func ("/sim/catenary", test_catenary);
+  g_test_add_func ("/sim/cantilever", test_cantilever);
+  return g_test_run ();
+}
