@@ -167,7 +167,8 @@ compare_edges (gconstpointer a, gconstpointer b)
   return p->triangle < q->triangle ? -1 : p->triangle > q->triangle;
 }
 
-/* Where the corner opposite an edge lies from the edge's start, along and across it. */
+/* Where the corner opposite an edge lies from the edge's start, along and across it; the
+ * way across is positive from u towards v. */
 static void
 lay_out (const gdouble * uv, const guint32 * corner, guint from, guint to,
     guint opposite, gdouble * along, gdouble * across, gdouble * length,
@@ -181,7 +182,7 @@ lay_out (const gdouble * uv, const guint32 * corner, guint from, guint to,
   direction[0] = du / *length;
   direction[1] = dv / *length;
   *along = (c[0] - a[0]) * direction[0] + (c[1] - a[1]) * direction[1];
-  *across = fabs ((c[0] - a[0]) * -direction[1] + (c[1] - a[1]) * direction[0]);
+  *across = (c[0] - a[0]) * -direction[1] + (c[1] - a[1]) * direction[0];
 }
 
 static guint
@@ -204,7 +205,7 @@ make_hinge (const ClothBody * body, const guint32 * corners, const Edge * one,
     const Edge * two, ClothBodyHinge * hinge)
 {
   gdouble along[2], across[2], length[2], direction[4], area = 0.;
-  gdouble form[3] = { 0., 0., 0. }, square, cot[2][2], x[4][2];
+  gdouble *form = hinge->form, part[3], square, cot[2][2], x[4][2];
   const Edge *side[2] = { one, two };
 
   for (guint s = 0; s < 2; s++) {
@@ -213,6 +214,9 @@ make_hinge (const ClothBody * body, const guint32 * corners, const Edge * one,
     lay_out (body->uv, corners + 3 * side[s]->triangle, corner_of (triangle,
             one->a), corner_of (triangle, one->b), side[s]->opposite,
         &along[s], &across[s], &length[s], direction + 2 * s);
+    if (s == 0)
+      hinge->side = across[s] > 0. ? 1. : -1.;
+    across[s] = fabs (across[s]);
     cot[s][0] = along[s] / across[s];
     cot[s][1] = (length[s] - along[s]) / across[s];
     area += triangle->area;
@@ -224,6 +228,7 @@ make_hinge (const ClothBody * body, const guint32 * corners, const Edge * one,
   hinge->c[1] = cot[0][0] + cot[1][0];
   hinge->c[2] = -cot[0][0] - cot[0][1];
   hinge->c[3] = -cot[1][0] - cot[1][1];
+  form[0] = form[1] = form[2] = 0.;
   x[0][0] = x[0][1] = x[1][1] = 0.;
   x[1][0] = length[0];
   for (guint s = 0; s < 2; s++) {
@@ -240,10 +245,10 @@ make_hinge (const ClothBody * body, const guint32 * corners, const Edge * one,
     form[2] += M_SQRT1_2 * hinge->c[k] * u * v;
   }
   for (guint k = 0; k < 3; k++)
-    form[k] *= form[k];
-  square = form[0] + form[1] + form[2];
-  hinge->warp = area / (square * square) * (form[0] + 0.5 * form[2]);
-  hinge->weft = area / (square * square) * (form[1] + 0.5 * form[2]);
+    part[k] = form[k] * form[k];
+  square = part[0] + part[1] + part[2];
+  hinge->warp = area / (square * square) * (part[0] + 0.5 * part[2]);
+  hinge->weft = area / (square * square) * (part[1] + 0.5 * part[2]);
 }
 
 /* Between two right angles an edge's hinge has only three particles: they go first. */
@@ -268,6 +273,8 @@ sort_hinges (ClothBody * body)
         h->particle[k] = old.particle[from];
         h->c[k] = k == 3 ? 0. : old.c[from];
       }
+      if (zero == 1)
+        h->side = -old.side;
       body->hinges[at++] = *h;
     }
   }

@@ -28,6 +28,10 @@ typedef struct
   guint32 particle[4];
   gdouble c[4];
   gdouble warp, weft;
+  /* Σ c x along the cloth's normal of a sheet of curvature (κ_uu, κ_vv, √2 κ_uv), 1/m */
+  gdouble form[3];
+  /* 1 where (x3 − x2) × (x1 − x0) is along the normal x_u × x_v, −1 where it is against */
+  gdouble side;
 } ClothBodyHinge;
 
 /* Row sums of the stiffness matrix over one particle, for the bound of the time step. */

@@ -12,9 +12,7 @@
 /* What no kernel of the lanes does: these change the scene, or need something to touch,
  * or act on pictures. */
 static const gchar *const elsewhere[] = {
-  "self_contact", "friction", "bending_softening", "rest_curvature",
-  "plasticity",
-  NULL
+  "self_contact", "friction", NULL
 };
 
 static ClothScene *

@@ -30,4 +30,32 @@ const ClothEffect cloth_effect_bending_softening = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+/* The moment is 1/(1 + length κ) of the model's: what is missing is taken back. */
+static void
+force (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  ClothLane one = cloth_lane_set (1.);
+
+  for (guint i = 0; i < state->body->n_hinges; i++) {
+    ClothLaneFold fold;
+    ClothLane part;
+
+    cloth_lane_fold (state, i, &fold);
+    part = effect->p[0] * cloth_lane_sqrt (cloth_lane_dot (fold.y, fold.y)) /
+        fold.form;
+    part = part / (one + part);
+    for (guint k = 0; k < 3; k++)
+      fold.y[k] *= part;
+    cloth_lane_unfold (state, i, &fold, fold.y);
+  }
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_bending_softening) = {
+  .id = "bending_softening",
+  .force = force,
+};
 #endif

@@ -33,4 +33,45 @@ const ClothEffect cloth_effect_plasticity = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+static void
+reset (ClothLaneState * state, ClothLaneEffect * effect, ClothMask lanes)
+{
+  ClothLane *creases = effect->state, zero = cloth_lane_set (0.);
+
+  for (guint i = 0; i < state->body->n_hinges; i++)
+    creases[i] = cloth_lane_select (lanes, zero, creases[i]);
+}
+
+/* The curvature drags the crease along once it is the yield away from it, so what stays
+ * is a matter of the folds, not of how long they last. */
+static void
+force (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  ClothLane *creases = effect->state, share = effect->p[0];
+  ClothLane yield = effect->p[1];
+
+  for (guint i = 0; i < state->body->n_hinges; i++) {
+    ClothLaneFold fold;
+    ClothLane curvature;
+
+    cloth_lane_fold (state, i, &fold);
+    curvature = cloth_lane_dot (fold.y, fold.normal) / fold.form;
+    creases[i] = cloth_lane_max (curvature - yield,
+        cloth_lane_min (curvature + yield, creases[i]));
+    for (guint k = 0; k < 3; k++)
+      fold.y[k] = share * creases[i] * fold.form * fold.normal[k];
+    cloth_lane_unfold (state, i, &fold, fold.y);
+  }
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_plasticity) = {
+  .id = "plasticity",
+  .hinge_size = sizeof (ClothLane),
+  .force = force,
+  .reset = reset,
+};
 #endif

@@ -33,4 +33,28 @@ const ClothEffect cloth_effect_rest_curvature = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+static void
+force (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  for (guint i = 0; i < state->body->n_hinges; i++) {
+    const gdouble *form = state->body->hinges[i].form;
+    ClothLane rest = effect->p[0] * (ClothReal) form[0] +
+        effect->p[1] * (ClothReal) form[1];
+    ClothLaneFold fold;
+
+    cloth_lane_fold (state, i, &fold);
+    for (guint k = 0; k < 3; k++)
+      fold.y[k] = rest * fold.normal[k];
+    cloth_lane_unfold (state, i, &fold, fold.y);
+  }
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_rest_curvature) = {
+  .id = "rest_curvature",
+  .force = force,
+};
 #endif

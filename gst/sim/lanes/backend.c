@@ -120,7 +120,8 @@ load_effects (ClothLaneState * state, const ClothModel * const *models)
             description->parameters[k].null_value);
     }
     effect->state = lanes_new (1, all[i]->state_size * state->n +
-        all[i]->triangle_size * state->body->n_triangles + all[i]->fixed_size);
+        all[i]->triangle_size * state->body->n_triangles +
+        all[i]->hinge_size * state->body->n_hinges + all[i]->fixed_size);
     state->n_effects++;
   }
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "gst/math/random.h"
+#include "gst/sim/lanes/fold.h"
 #include "gst/sim/lanes/strain.h"
 
 extern const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_areal_mass);
@@ -29,6 +30,9 @@ extern const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_hysteresis);
 extern const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_clamp_slip);
 extern const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_clamp_compliance);
 extern const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_clamp_delay);
+extern const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_bending_softening);
+extern const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_rest_curvature);
+extern const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_plasticity);
 extern const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_added_mass);
 
 void CLOTH_LANE_NAME (cloth_lane_wind) (ClothLaneState * state,

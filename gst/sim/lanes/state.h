@@ -16,8 +16,8 @@ typedef struct
   const ClothLaneHooks *hooks;
   /* its parameters; the null values in lanes whose model has it not */
   ClothLane p[CLOTH_EFFECT_MAX_PARAMETERS];
-  /* hooks->state_size bytes for each particle, then hooks->triangle_size for each
-   * triangle, then hooks->fixed_size; zeroed, aligned as a lane is */
+  /* hooks->state_size bytes for each particle, then triangle_size for each triangle,
+   * hinge_size for each hinge and fixed_size; zeroed, aligned as a lane is */
   gpointer state;
 } ClothLaneEffect;
 
@@ -107,6 +107,7 @@ struct _ClothLaneHooks
   const gchar *id;
   gsize state_size;             /* bytes of state for each particle */
   gsize triangle_size;          /* for each triangle */
+  gsize hinge_size;             /* for each hinge */
   gsize fixed_size;             /* of other state */
   /* once, when the models are known: may change the models' numbers and the masses */
   void (*setup) (ClothLaneState * state, ClothLaneEffect * effect);
