@@ -188,8 +188,8 @@ typedef struct {
  * @times: centre of each, seconds, growing
  * @before: gap in it, RMS in metres; NaN: nothing was seen
  * @after: (nullable): with the accepted effects
- * @null_low: lower end of the 95% band of a simulation that lacks nothing
- * @null_high: upper end
+ * @null_low: (nullable): lower end of the 95% band of a simulation that lacks nothing
+ * @null_high: (nullable): upper end
  *
  * The gap over time.
  *
@@ -212,7 +212,7 @@ typedef struct {
  * @waves: wave numbers over the flat cloth, whichever way: cycles per metre, growing
  * @before: mean square of the residual, [n_waves][n_frequencies], m²
  * @after: (nullable): with the accepted effects
- * @null: 95% quantile of a simulation that lacks nothing
+ * @null: (nullable): 95% quantile of a simulation that lacks nothing
  *
  * Where in space and time the residual's energy lies.
  *

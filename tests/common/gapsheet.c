@@ -363,6 +363,44 @@ gap_sheet_new (guint columns, guint rows, guint n_frames)
   return result;
 }
 
+/* As little as a result may have: one frame of triangles without uv, no band, no floor,
+ * no effect that helps, and a simulation that flew off. */
+ClothGapResult *
+gap_sheet_new_spare (void)
+{
+  ClothGapResult *result = gap_sheet_new (3, 2, 1);
+  ClothGapPlayback *play = &result->playback;
+  ClothTopology *triangles = cloth_topology_new (6, 2);
+  static const guint32 faces[] = { 0, 1, 4, CLOTH_NO_VERTEX, 0, 4, 3,
+    CLOTH_NO_VERTEX
+  };
+
+  for (guint i = 0; i < 8; i++)
+    triangles->faces[i] = faces[i];
+  cloth_topology_free (play->topology);
+  play->topology = triangles;
+  play->before[0] = NAN;
+  play->before[4] = 1e30f;
+  g_clear_pointer (&play->take, g_free);
+  g_clear_pointer (&play->after, g_free);
+  g_clear_pointer (&play->sigma, g_free);
+  g_clear_pointer (&result->vertices, g_free);
+  g_clear_pointer (&result->series.after, g_free);
+  g_clear_pointer (&result->series.null_low, g_free);
+  g_clear_pointer (&result->series.null_high, g_free);
+  g_clear_pointer (&result->spectrum.after, g_free);
+  g_clear_pointer (&result->spectrum.null, g_free);
+  g_array_set_size (result->effects, 0);
+  g_array_set_size (result->groups, 0);
+  g_array_set_size (result->stages, 0);
+  g_array_set_size (result->inputs, 0);
+  result->verdict = CLOTH_GAP_UNEXPLAINED;
+  result->gap_after = result->noise_floor = result->shrink = (ClothGapEstimate) {
+  NAN, NAN, NAN};
+  result->onset_s = NAN;
+  return result;
+}
+
 /* Every text that a stranger may choose is @text, which must stay alive. */
 ClothGapResult *
 gap_sheet_new_hostile (const gchar * text)

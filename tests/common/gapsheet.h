@@ -6,4 +6,5 @@
 #include "gst/gap/result.h"
 
 ClothGapResult *gap_sheet_new (guint columns, guint rows, guint n_frames);
+ClothGapResult *gap_sheet_new_spare (void);
 ClothGapResult *gap_sheet_new_hostile (const gchar * text);

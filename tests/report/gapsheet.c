@@ -20,6 +20,8 @@ make (const gchar * kind)
     return gap_sheet_new (4, 3, 5);
   if (strcmp (kind, "long") == 0)
     return gap_sheet_new (65, 69, 400);
+  if (strcmp (kind, "spare") == 0)
+    return gap_sheet_new_spare ();
   if (strcmp (kind, "empty") == 0)
     return cloth_gap_result_new ();
   if (strcmp (kind, "hostile") == 0)
@@ -36,8 +38,8 @@ main (int argc, char **argv)
   g_autofree gchar *json = NULL, *report = NULL;
 
   if (!result) {
-    fprintf (stderr, "usage: %s sheet|example|long|empty|hostile FOLDER\n",
-        argv[0]);
+    fprintf (stderr,
+        "usage: %s sheet|example|long|spare|empty|hostile FOLDER\n", argv[0]);
     return 2;
   }
   json = g_build_filename (argv[2], "gap.json", NULL);

@@ -37,7 +37,9 @@ function chart(id, label, make) {
 
 // The gap over time; a click goes to that moment.
 export function overTime(series, onset, now, seek) {
-  const rows = [series.times, column(series.before, 1000), column(series.null_low, 1000), column(series.null_high, 1000)];
+  const banded = series.null_low && series.null_high;
+  const rows = [series.times, column(series.before, 1000)];
+  if (banded) rows.push(column(series.null_low, 1000), column(series.null_high, 1000));
   if (series.after) rows.push(column(series.after, 1000));
   return chart('over-time', 'The gap over time', () => ({
     data: rows,
@@ -45,9 +47,9 @@ export function overTime(series, onset, now, seek) {
       scales: { x: { time: false }, y: { range: (_, low, high) => [0, Math.max(high, 1e-3) * 1.08] } },
       axes: [{ ...axis('time, s'), size: 34 }, axis('gap, mm')],
       series: [{ label: 'time, s', value: (_, value) => known(value) ? value.toFixed(2) : '–' },
-        line('before, mm', 'before'), edge('band from, mm'), edge('band to, mm'),
+        line('before, mm', 'before'), ...(banded ? [edge('band from, mm'), edge('band to, mm')] : []),
         ...(series.after ? [line('after, mm', 'after')] : [])],
-      bands: [{ series: [3, 2], fill: colour('band') }],
+      bands: banded ? [{ series: [3, 2], fill: colour('band') }] : [],
       cursor: { drag: { x: false, y: false }, points: { size: 6 } },
       hooks: {
         draw: [(plot) => {
@@ -90,7 +92,8 @@ function overFrequency(spectrum) {
     for (let k = 0; k < spectrum.waves.length; k++) total += values[k * spectrum.frequencies.length + f] ?? 0;
     return total > 0 ? 1e6 * total : null;
   });
-  const rows = [spectrum.frequencies, sum(spectrum.before), sum(spectrum.null)];
+  const rows = [spectrum.frequencies, sum(spectrum.before)];
+  if (spectrum.null) rows.push(sum(spectrum.null));
   if (spectrum.after) rows.push(sum(spectrum.after));
   return chart('spectrum', 'Spectrum of the gap', () => ({
     data: rows,
@@ -99,7 +102,7 @@ function overFrequency(spectrum) {
       axes: [{ ...axis('frequency, Hz'), size: 34 }, { ...axis('mean square, mm²'), size: 62,
         values: (_, ticks) => ticks.map((value) => value === null ? '' : number(value, 1)) }],
       series: [{ label: 'frequency, Hz', value: (_, value) => known(value) ? number(value) : '–' },
-        line('before, mm²', 'before'), line('floor (95%), mm²', 'soft', { dash: [5, 4], width: 1.5 }),
+        line('before, mm²', 'before'), ...(spectrum.null ? [line('floor (95%), mm²', 'soft', { dash: [5, 4], width: 1.5 })] : []),
         ...(spectrum.after ? [line('after, mm²', 'after')] : [])],
       cursor: { drag: { x: false, y: false } },
     },
@@ -172,8 +175,10 @@ export function charts(gap, arrays, time) {
   const cells = [];
   if (time) cells.push(element('div', {}, element('h3', {}, 'Over time'), time.box));
   if (arrays.spectrum) {
-    cells.push(element('div', {}, element('h3', {}, 'Per frequency'), overFrequency(arrays.spectrum)),
-      element('div', {}, element('h3', {}, 'Per frequency and wave length'), heat(arrays.spectrum)));
+    cells.push(element('div', {}, element('h3', {}, 'Per frequency'), overFrequency(arrays.spectrum)));
+    if (arrays.spectrum.null) {
+      cells.push(element('div', {}, element('h3', {}, 'Per frequency and wave length'), heat(arrays.spectrum)));
+    }
   }
   const tables = [
     shares('Per stage', where.stages.map((item) => [item.name, item.share])),
@@ -181,8 +186,8 @@ export function charts(gap, arrays, time) {
     shares('Per band', where.bands.map((item) => [`${number(item.from_hz, 2)}–${number(item.to_hz, 2)} Hz`, item.share])),
   ].filter(Boolean);
   if (!cells.length && !tables.length) return null;
-  return section('when', 'When and in which way', time
-    ? 'The band is where 95% of simulations lie that lack nothing. Click to go to a moment.' : null,
+  return section('when', 'When and in which way', time ? (arrays.series.null_low
+    ? 'The band is where 95% of simulations lie that lack nothing. ' : '') + 'Click to go to a moment.' : null,
   cells.length ? element('div', { class: 'charts' }, ...cells) : null,
   tables.length ? element('div', { class: 'columns three' }, ...tables) : null);
 }

@@ -102,8 +102,8 @@ export class Player {
     try {
       this.view = new View(this.canvas, this.playback, this.names);
     } catch (problem) {
-      this.canvas.hidden = true;
-      this.labels.replaceChildren(element('p', {}, 'This browser offers no WebGL, so the cloth can’t be shown in 3D. All else is here.'));
+      this.labels.remove();
+      this.canvas.replaceWith(element('p', { class: 'missing' }, 'This browser offers no WebGL, so the cloth can’t be shown in 3D. All else is here.'));
     }
     this.#arrange('all');
     if (this.view) whenShown(this.canvas, () => this.view.redraw());

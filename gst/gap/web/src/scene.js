@@ -62,6 +62,11 @@ class Cloth {
       }
       this.paint(residuals, limit);
     }
+    // What is left out has neither a place nor a part in the normals.
+    index.fill(0, n);
+    for (let i = 0; i < place.length; i++) {
+      if (Number.isNaN(place[i])) place[i] = 0;
+    }
     this.geometry.index.needsUpdate = true;
     this.geometry.setDrawRange(0, n);
     this.place.needsUpdate = true;

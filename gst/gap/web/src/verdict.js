@@ -77,7 +77,7 @@ function row(gap, effect, index, about) {
 export function effects(gap, about) {
   const rows = gap.effects.map((effect, i) => row(gap, effect, i, about[effect.name]));
   const table = element('table', { id: 'ranking' },
-    element('thead', {}, element('tr', {}, ...['', 'Effect', 'Probability', 'Parameters', 'Shrinks the gap by', 'Confused with'].map(
+    element('thead', {}, element('tr', {}, ...['#', 'Effect', 'Probability', 'Parameters', 'Shrinks the gap by', 'Confused with'].map(
       (title) => element('th', { scope: 'col' }, title)))),
     element('tbody', {}, ...rows));
   const result = section('effects', 'Which effects', gap.effects.length
