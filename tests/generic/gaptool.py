@@ -1,0 +1,136 @@
+#!/usr/bin/python3
+"""Runs gst-cloth-gap-1.0 as a user does: good calls, bad calls, equal bytes.
+
+  gaptool.py TOOL TESTDATA PIPELINES
+
+SPDX-License-Identifier: LGPL-2.1-or-later
+"""
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import numpy
+
+tool, data, pipelines = (os.path.abspath(path) for path in sys.argv[1:])
+knit = os.path.join(pipelines, 'model-knit.json')
+drop = os.path.join(data, 'take_drop')
+faults = []
+
+
+def run(folder, *arguments):
+    return subprocess.run([tool, *arguments], cwd=folder, capture_output=True, text=True,
+                          timeout=120, stdin=subprocess.DEVNULL,
+                          env=dict(os.environ, LC_ALL='C.UTF-8'))
+
+
+def expect(true, what):
+    print('%s: %s' % ('ok' if true else 'FAULT', what))
+    if not true:
+        faults.append(what)
+
+
+def contents(folder):
+    return {name: open(os.path.join(folder, name), 'rb').read() for name in os.listdir(folder)}
+
+
+def effects(folder):
+    done = run(folder, 'effects', '--format', 'json')
+    table = json.loads(done.stdout)['effects']
+    ids = [effect['id'] for effect in table]
+    expect(done.returncode == 0 and len(ids) == len(set(ids)) == 43, '%d effects' % len(ids))
+    drag = table[ids.index('air_drag')]
+    expect(drag['side'] == 'physics' and 'air_drag_linear' in drag['confusions'] and
+           drag['parameters'][0]['name'] == 'coefficient' and
+           drag['parameters'][0]['null'] == 0 and drag['parameters'][0]['one_sided'] is True,
+           'air_drag')
+    text = run(folder, 'effects').stdout
+    expect(all('\n%s (' % name in '\n' + text for name in ids), 'all of them in the text')
+
+
+def simulate(folder):
+    done = run(folder, 'simulate', knit, '--scene', drop, '--output', 'a')
+    expect(done.returncode == 0 and not done.stdout, 'simulate ' + done.stderr[-200:])
+    told = [int(line.rstrip('%')) for line in done.stderr.split()]
+    expect([percent // 10 for percent in told] == list(range(1, 11)), 'progress: %s' % told)
+    done = run(folder, 'simulate', knit, '--scene', drop, '--output', 'b', '--threads', '1')
+    expect(contents(os.path.join(folder, 'a')) == contents(os.path.join(folder, 'b')),
+           'equal bytes with one thread')
+    got = numpy.load(os.path.join(folder, 'a/positions.npy'))
+    seen = numpy.load(os.path.join(drop, 'positions.npy'))
+    clamps = numpy.load(os.path.join(drop, 'clamps.npy'))
+    expect(got.shape == seen.shape and numpy.isfinite(got).all(), 'every vertex of every frame')
+    start = numpy.isfinite(seen[0, :, 0])
+    start[[0, 32]] = False
+    expect((got[0, start] == seen[0, start]).all(), 'starts where the film does')
+    expect(numpy.abs(got[:, 0] - clamps[:, 0]).max() < 1e-6, 'the left clamp holds')
+    expect(numpy.abs(got[:16, 32] - clamps[:16, 1]).max() < 1e-6, 'so does the right one')
+    # Released at 0.32 s, the corner falls for 0.3 s: freely it would be 0.44 m.
+    expect(clamps[15, 1, 2] - got[-1, 32, 2] > 0.1, 'and lets go')
+    with open(os.path.join(folder, 'a/take.json'), encoding='utf-8') as file:
+        take = json.load(file)
+    expect(take['fps'] == 50 and len(take['held']) == 2 and take['noise_sigma_m'] == 0,
+           'take.json')
+    # a simulated take is a scene, too
+    done = run(folder, 'simulate', knit, '--scene', 'a', '--output', 'c')
+    expect(done.returncode == 0, 'a take of our own as scene ' + done.stderr[-200:])
+    # an effect does something
+    done = run(folder, 'simulate', os.path.join(pipelines, 'model-windy.json'), '--scene', drop,
+               '--output', 'w')
+    windy = numpy.load(os.path.join(folder, 'w/positions.npy'))
+    expect(done.returncode == 0 and windy[-1, :, 1].mean() > got[-1, :, 1].mean() + 0.001,
+           'wind along y blows along y: %.1f mm' %
+           (1000 * (windy[-1, :, 1].mean() - got[-1, :, 1].mean())))
+
+
+def usage(folder):
+    for arguments, text in [
+            ((), 'effects or simulate'), (('diagnoze',), 'no command'),
+            (('effects', 'wind'), 'no names'), (('effects', '--format', 'xml'), '--format xml'),
+            (('effects', '--output', 'x'), '--output'),
+            (('simulate',), 'model.json'), (('simulate', knit), '--scene'),
+            (('simulate', knit, knit, '--scene', drop, '--output', 'x'), 'model.json'),
+            (('simulate', knit, '--scene', drop), '--output'),
+            (('simulate', knit, '--scene', drop, '--output', drop), 'the scene itself'),
+            (('simulate', knit, '--scene', drop, '--output', 'x', '--format', 'json'), '--format'),
+            (('simulate', knit, '--scene', drop, '--output', 'x', '--threads', '-1'), '--threads'),
+            (('simulate', knit, '--scene', drop, '--output', 'x', '--threads', 'two'), 'two')]:
+        done = run(folder, *arguments)
+        expect(done.returncode == 2 and text in done.stderr and not os.path.exists(
+            os.path.join(folder, 'x')), '%s: %s' % (' '.join(arguments), done.stderr.split('\n')[0]))
+
+
+def failures(folder):
+    models = {
+        'no.json': None, 'bad.json': '{"version":1,"shear":-4}',
+        'step.json': '{"version":1,"stretch":{"warp":4000,"weft":4000},"time_step":0.02}',
+        'unknown.json': '{"version":1,"effects":{"breeze":{}}}'}
+    for name, text in models.items():
+        if text:
+            with open(os.path.join(folder, name), 'w', encoding='utf-8') as file:
+                file.write(text)
+    shutil.copytree(drop, os.path.join(folder, 'torn'), copy_function=shutil.copyfile)
+    os.remove(os.path.join(folder, 'torn/clamps.npy'))
+    before = contents(os.path.join(folder, 'a'))
+    for model, scene, output, text in [
+            ('no.json', drop, 'y', 'no.json'), ('bad.json', drop, 'y', '“shear” is -4'),
+            ('unknown.json', drop, 'y', '“effects.breeze”'),
+            (knit, 'nowhere', 'y', 'nowhere'), (knit, 'torn', 'y', 'clamps.npy'),
+            (knit, drop, '/proc/y', '/proc/y'), (knit, drop, 'bad.json', 'bad.json'),
+            ('step.json', drop, 'y', '“time_step”'), ('step.json', drop, 'a', 'blew up at')]:
+        done = run(folder, 'simulate', model, '--scene', scene, '--output', output)
+        expect(done.returncode == 1 and text in done.stderr,
+               '%s %s %s: %s' % (os.path.basename(model), os.path.basename(scene), output,
+                                 done.stderr.strip().split('\n')[-1]))
+        expect(not os.path.exists(os.path.join(folder, 'y')), 'nothing is left')
+    expect(contents(os.path.join(folder, 'a')) == before, 'the old take stays as it was')
+
+
+with tempfile.TemporaryDirectory(prefix='cloth-gaptool-') as scratch:
+    effects(scratch)
+    simulate(scratch)
+    usage(scratch)
+    failures(scratch)
+sys.exit(1 if faults else 0)
