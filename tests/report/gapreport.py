@@ -115,10 +115,14 @@ def check_arrays(program):
     with tempfile.TemporaryDirectory() as folder:
         plain = arrays_of(program, 'sheet', folder)
         thin = arrays_of(program, 'long', folder)
+        coarse = arrays_of(program, 'fine', folder)
     assert plain['recorded'].shape == (250, 1155, 3) and plain['frame_step'] == plain['vertex_step'] == 1
     assert plain['faces'].shape == (32 * 34, 4)
-    assert thin['frame_step'] > 1 and thin['before'].shape[0] == (400 - 1) // thin['frame_step'] + 1
-    for play in (plain, thin):
+    assert thin['vertex_step'] == 1 and thin['frame_step'] > 1 and thin['before'].shape[0] == (400 - 1) // thin['frame_step'] + 1
+    assert coarse['vertex_step'] == 2 and coarse['frame_step'] == 1
+    assert coarse['before'].shape == (60, 51 * 52, 3) and coarse['faces'].shape == (50 * 51, 4)
+    assert numpy.allclose(coarse['uv'].max(axis=0), [0.63, 0.67])
+    for play in (plain, thin, coarse):
         assert play['step'] < 1e-4
         seconds = numpy.array(play['times'])[:, None]
         assert numpy.allclose(seconds[:, 0], numpy.arange(len(seconds)) * play['frame_step'] / 50)
@@ -132,7 +136,8 @@ def check_arrays(program):
         assert abs(numpy.nanstd(noise) / 0.0004 - 1) < 0.02, numpy.nanstd(noise)
         hole = numpy.hypot(u - 0.2, play['uv'][None, :, 1] - 0.35) < 0.07
         unseen = hole & (seconds > 1.5) & (seconds < 1.9)
-        assert unseen.any() and (numpy.isnan(play['recorded']).any(axis=2) == unseen).all()
+        assert unseen.any() == (play is not coarse)
+        assert (numpy.isnan(play['recorded']).any(axis=2) == unseen).all()
         expected = 0.0004 * math.sqrt(3) + 0.002 * play['uv'][None, :, 1] / 0.67
         assert numpy.abs(play['sigma'] / expected - 1).max() < 0.031
 

@@ -20,6 +20,8 @@ make (const gchar * kind)
     return gap_sheet_new (4, 3, 5);
   if (strcmp (kind, "long") == 0)
     return gap_sheet_new (65, 69, 400);
+  if (strcmp (kind, "fine") == 0)
+    return gap_sheet_new (101, 103, 60);
   if (strcmp (kind, "spare") == 0)
     return gap_sheet_new_spare ();
   if (strcmp (kind, "empty") == 0)
@@ -39,7 +41,8 @@ main (int argc, char **argv)
 
   if (!result) {
     fprintf (stderr,
-        "usage: %s sheet|example|long|spare|empty|hostile FOLDER\n", argv[0]);
+        "usage: %s sheet|example|long|fine|spare|empty|hostile FOLDER\n",
+        argv[0]);
     return 2;
   }
   json = g_build_filename (argv[2], "gap.json", NULL);
