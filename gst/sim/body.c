@@ -551,6 +551,7 @@ cloth_body_new (const ClothScene * scene, GError ** error)
     }
   }
   make_bounds (body);
+  cloth_body_make_springs (body);
   take_clamps (body, scene);
   body->positions = g_memdup2 (scene->positions, 3 * n * sizeof (gdouble));
   body->velocities = scene->velocities ?
@@ -574,6 +575,7 @@ cloth_body_free (ClothBody * body)
   g_free (body->area);
   g_free (body->triangles);
   g_free (body->hinges);
+  g_free (body->springs);
   g_free (body->bounds);
   g_free (body->held);
   g_free (body->times);

@@ -34,12 +34,22 @@ typedef struct
   gdouble side;
 } ClothBodyHinge;
 
+/* A spring between two particles, its rest (u, v) and its stiffness,
+ * stretch_warp·warp + stretch_weft·weft + shear·shear. */
+typedef struct
+{
+  guint32 particle[2];
+  gdouble u, v;
+  gdouble warp, weft, shear;
+} ClothBodySpring;
+
 /* Row sums of the stiffness matrix over one particle, for the bound of the time step. */
 typedef struct
 {
   gdouble warp, weft;           /* of the stretch moduli, for moves along u and v */
   gdouble shear_u, shear_v;
   gdouble bend_warp, bend_weft;
+  gdouble springs[2][3];        /* along u and v: of warp, weft and shear */
 } ClothBodyBound;
 
 typedef struct
@@ -61,6 +71,8 @@ typedef struct
   ClothBodyTriangle *triangles;
   guint n_straight, n_hinges;   /* those whose last c is 0 come first */
   ClothBodyHinge *hinges;
+  guint n_springs;
+  ClothBodySpring *springs;     /* of the mass–spring model */
   ClothBodyBound *bounds;
   guint n_held;
   ClothBodyHeld *held;
@@ -75,6 +87,7 @@ typedef struct
 
 ClothBody *cloth_body_new (const ClothScene * scene, GError ** error);
 void cloth_body_free (ClothBody * body);
+void cloth_body_make_springs (ClothBody * body);
 void cloth_body_path (const ClothBody * body, guint held, gdouble time_s,
     gdouble position[3]);
 

@@ -73,8 +73,13 @@ test_lanes (void)
   /* one step for all, however they are grouped */
   for (guint i = 0; i < N_MODELS; i++)
     models[i]->time_step = 5e-4;
-  for (guint single = 0; single < 2; single++) {
+  for (guint kind = 0; kind < 4; kind++) {
     g_autofree gdouble *reference = NULL;
+    guint single = kind % 2;
+
+    for (guint i = 0; i < N_MODELS; i++)
+      models[i]->force_model =
+          kind / 2 ? CLOTH_FORCE_MASS_SPRING : CLOTH_FORCE_MEMBRANE;
 
     for (guint s = 0; s < G_N_ELEMENTS (sets); s++) {
       for (guint threads = 1; threads <= 3; threads += 2) {

@@ -55,6 +55,58 @@ test_hanging_strain (void)
   }
 }
 
+/* The same strip of springs, whose force is linear in their stretch. */
+static void
+test_hanging_springs (void)
+{
+  g_autoptr (ClothScene) scene = sheet_new (3, 21, 0.1, 1.);
+  g_autoptr (ClothModel) model = model_new (0.2, 40.);
+  g_autoptr (ClothSim) sim = NULL;
+  g_autofree gdouble *x = NULL;
+  gdouble elastic = 0.;
+
+  model->force_model = CLOTH_FORCE_MASS_SPRING;
+  model->shear = 0.;
+  model->damping_mass = 10.;
+  for (guint i = 0; i < 3; i++)
+    cloth_scene_hold (scene, i);
+  sim = run_new (scene, model);
+  run_for (sim, 6.);
+  x = positions_of (sim, 0);
+  for (guint row = 0; row < 20; row++) {
+    gdouble z = (row + 0.5) / 20.;
+    gdouble length = x[3 * (3 * row + 1) + 2] - x[3 * (3 * row + 4) + 2];
+    gdouble strain = 0.2 * 9.81 * (1. - z) / 40.;
+
+    assert_within (length * 20. - 1., strain, 1e-6);
+    elastic += 0.5 * 40. * strain * strain * 0.1 / 20.;
+  }
+  assert_within (cloth_sim_get_energy (sim, 0).elastic / elastic, 1., 1e-4);
+}
+
+/* A cell of springs sheared by γ has the energy ½ shear γ² area, as the membrane has. */
+static void
+test_shear (void)
+{
+  const gdouble shift = 1e-3, height = 0.15, width = 0.1;
+
+  for (guint springs = 0; springs < 2; springs++) {
+    g_autoptr (ClothScene) scene = sheet_new (2, 2, width, height);
+    g_autoptr (ClothModel) model = model_new (0.2, 0.);
+    g_autoptr (ClothSim) sim = NULL;
+
+    model->force_model =
+        springs ? CLOTH_FORCE_MASS_SPRING : CLOTH_FORCE_MEMBRANE;
+    model->shear = 30.;
+    model->compression_ratio = 1.;
+    scene->positions[6] += shift;
+    scene->positions[9] += shift;
+    sim = run_new (scene, model);
+    assert_within (cloth_sim_get_energy (sim, 0).elastic / (0.5 * 30. *
+            shift * shift / height * width), 1., 1e-3);
+  }
+}
+
 /* m g = ½ ρ_air C A v²: a level sheet falls at √(2 ρ g/(ρ_air C)). */
 static void
 test_terminal_speed (void)
@@ -86,6 +138,8 @@ main (int argc, char **argv)
   g_test_init (&argc, &argv, NULL);
   g_test_add_func ("/sim/free-fall", test_free_fall);
   g_test_add_func ("/sim/hanging-strain", test_hanging_strain);
+  g_test_add_func ("/sim/hanging-springs", test_hanging_springs);
+  g_test_add_func ("/sim/shear", test_shear);
   g_test_add_func ("/sim/terminal-speed", test_terminal_speed);
   return g_test_run ();
 }

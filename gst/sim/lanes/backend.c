@@ -47,6 +47,22 @@ load_rest (ClothLaneState * state, const ClothBody * body)
 }
 
 static void
+load_springs (ClothLaneState * state, const ClothBody * body)
+{
+  state->springs = g_new0 (ClothLaneSpring, body->n_springs + 1);
+  for (guint i = 0; i < body->n_springs; i++) {
+    const ClothBodySpring *from = &body->springs[i];
+
+    state->springs[i] = (ClothLaneSpring) {
+      {
+    from->particle[0], from->particle[1]}, (ClothReal) from->u,
+          (ClothReal) from->v, (ClothReal) hypot (from->u, from->v),
+          (ClothReal) from->warp, (ClothReal) from->weft,
+          (ClothReal) from->shear};
+  }
+}
+
+static void
 load_models (ClothLaneState * state, const ClothModel * const *models)
 {
   const struct
@@ -203,6 +219,7 @@ group_free (gpointer group)
   g_free (state->held_since);
   g_free (state->triangles);
   g_free (state->hinges);
+  g_free (state->springs);
   g_aligned_free (state);
 }
 
@@ -241,6 +258,8 @@ group_new (const ClothBody * body, const ClothModel * const *models,
   state->held_offset = lanes_new (body->n_held, sizeof *state->held_offset);
   state->held_x = lanes_new (body->n_held, sizeof *state->held_x);
   load_rest (state, body);
+  load_springs (state, body);
+  state->force_model = models[0]->force_model;
   load_models (state, all);
   load_effects (state, all);
   prepare (state);
@@ -410,8 +429,10 @@ static ClothSimEnergy
 group_energy (gpointer group, guint lane)
 {
   ClothLaneState *state = group;
-  ClothLane elastic = CLOTH_LANE_NAME (cloth_lane_membrane_energy) (state) +
-      CLOTH_LANE_NAME (cloth_lane_bending_energy) (state);
+  ClothLane elastic = CLOTH_LANE_NAME (cloth_lane_bending_energy) (state) +
+      (state->force_model == CLOTH_FORCE_MASS_SPRING ?
+      CLOTH_LANE_NAME (cloth_lane_springs_energy) (state) :
+      CLOTH_LANE_NAME (cloth_lane_membrane_energy) (state));
   ClothSimEnergy energy = { 0., CLOTH_LANE_AT (&elastic, lane), 0. };
 
   for (guint i = 0; i < state->n; i++) {

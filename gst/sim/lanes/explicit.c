@@ -12,7 +12,10 @@
  * knows the accelerations. */
 void CLOTH_LANE_NAME (cloth_lane_forces) (ClothLaneState * state)
 {
-  CLOTH_LANE_NAME (cloth_lane_membrane) (state);
+  if (state->force_model == CLOTH_FORCE_MASS_SPRING)
+    CLOTH_LANE_NAME (cloth_lane_springs) (state);
+  else
+    CLOTH_LANE_NAME (cloth_lane_membrane) (state);
   CLOTH_LANE_NAME (cloth_lane_bending) (state);
   for (guint i = 0; i < state->n_effects; i++)
     if (state->effects[i].hooks->force)
@@ -56,6 +59,14 @@ ClothLane CLOTH_LANE_NAME (cloth_lane_stiffness) (const ClothLaneState * state)
     ClothLane v = state->stretch_weft * (ClothReal) b->weft +
         state->shear * (ClothReal) b->shear_v;
 
+    if (state->force_model == CLOTH_FORCE_MASS_SPRING) {
+      u = state->stretch_warp * (ClothReal) b->springs[0][0] +
+          state->stretch_weft * (ClothReal) b->springs[0][1] +
+          state->shear * (ClothReal) b->springs[0][2];
+      v = state->stretch_warp * (ClothReal) b->springs[1][0] +
+          state->stretch_weft * (ClothReal) b->springs[1][1] +
+          state->shear * (ClothReal) b->springs[1][2];
+    }
     most = cloth_lane_max (most, (cloth_lane_max (u, v) + bend) *
         state->inverse_mass[i]);
   }

@@ -42,6 +42,13 @@ typedef struct
 
 typedef struct
 {
+  guint32 particle[2];
+  ClothReal u, v, length;
+  ClothReal warp, weft, shear;
+} ClothLaneSpring;
+
+typedef struct
+{
   guint32 particle[4];
   ClothReal c[4];
   ClothReal warp, weft;
@@ -59,6 +66,8 @@ typedef struct
   ClothLane *inverse_mass;
   ClothLaneTriangle *triangles;
   ClothLaneHinge *hinges;
+  ClothLaneSpring *springs;
+  ClothForceModel force_model;
 
   /* The models. Setup hooks may change these. */
   ClothLane density;            /* kg/m² */
@@ -133,6 +142,9 @@ extern const ClothLaneHooks
 /* Terms of a step. */
 void CLOTH_LANE_NAME (cloth_lane_membrane) (ClothLaneState * state);
 ClothLane CLOTH_LANE_NAME (cloth_lane_membrane_energy) (const ClothLaneState *
+    state);
+void CLOTH_LANE_NAME (cloth_lane_springs) (ClothLaneState * state);
+ClothLane CLOTH_LANE_NAME (cloth_lane_springs_energy) (const ClothLaneState *
     state);
 void CLOTH_LANE_NAME (cloth_lane_bending) (ClothLaneState * state);
 ClothLane CLOTH_LANE_NAME (cloth_lane_bending_energy) (const ClothLaneState *

@@ -1,0 +1,97 @@
+/* The mass–spring model: structural and shear springs that push back less than they pull,
+ * each with a damper; its bend springs are those of bending.c.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/sim/lanes/state.h"
+
+/* What the effects' change of the rest shape does to the length of a spring. */
+CLOTH_LANE_INLINE ClothLane
+rest_length (const ClothLaneState * state, const ClothLaneSpring * s)
+{
+  const ClothLane *r = state->rest;
+  ClothLane det = r[0] * r[3] - r[1] * r[2];
+  ClothLane u = (r[3] * s->u - r[1] * s->v) / det;
+  ClothLane v = (r[0] * s->v - r[2] * s->u) / det;
+  ClothReal square = s->u * s->u + s->v * s->v;
+
+  return cloth_lane_sqrt ((u * u + v * v) / square) * s->length;
+}
+
+CLOTH_LANE_INLINE ClothLane
+spring_stiffness (const ClothLaneState * state, const ClothLaneSpring * s)
+{
+  return state->stretch_warp * s->warp + state->stretch_weft * s->weft +
+      state->shear * s->shear;
+}
+
+CLOTH_LANE_INLINE ClothLane
+split (ClothLane stretch, ClothLane ratio)
+{
+  ClothLane zero = cloth_lane_set (0.);
+
+  return cloth_lane_max (stretch, zero) + ratio * cloth_lane_min (stretch,
+      zero);
+}
+
+CLOTH_LANE_INLINE ClothLane
+stretch_of (const ClothLaneState * state, const ClothLaneSpring * s,
+    gboolean rest_changed, ClothLane along[3], ClothLane * inverse)
+{
+  ClothLane length;
+
+  cloth_lane_subtract (state->x[s->particle[1]], state->x[s->particle[0]],
+      along);
+  length = cloth_lane_sqrt (cloth_lane_dot (along, along));
+  *inverse = cloth_lane_set (1.) /
+      cloth_lane_max (length, cloth_lane_set (1e-12));
+  return rest_changed ? length - rest_length (state, s) : length - s->length;
+}
+
+CLOTH_LANE_INLINE void
+springs (ClothLaneState * state, gboolean rest_changed)
+{
+  ClothLane ratio = state->compression_ratio, beta = state->beta;
+
+  for (guint i = 0; i < state->body->n_springs; i++) {
+    const ClothLaneSpring *s = &state->springs[i];
+    guint32 a = s->particle[0], b = s->particle[1];
+    ClothLane along[3], velocity[3], inverse, rate, force;
+    ClothLane stretch = stretch_of (state, s, rest_changed, along, &inverse);
+
+    cloth_lane_subtract (state->v[b], state->v[a], velocity);
+    rate = cloth_lane_dot (along, velocity) * inverse;
+    force = spring_stiffness (state, s) * (split (stretch, ratio) +
+        beta * rate) * inverse;
+    for (guint k = 0; k < 3; k++) {
+      ClothLane pull = force * along[k];
+
+      state->f[a][k] += pull;
+      state->f[b][k] -= pull;
+    }
+  }
+}
+
+/* Adds the springs' forces. */
+void CLOTH_LANE_NAME (cloth_lane_springs) (ClothLaneState * state)
+{
+  if (state->rest_changed)
+    springs (state, TRUE);
+  else
+    springs (state, FALSE);
+}
+
+ClothLane
+CLOTH_LANE_NAME (cloth_lane_springs_energy) (const ClothLaneState * state)
+{
+  ClothLane energy = cloth_lane_set (0.), half = cloth_lane_set (0.5);
+
+  for (guint i = 0; i < state->body->n_springs; i++) {
+    const ClothLaneSpring *s = &state->springs[i];
+    ClothLane along[3], inverse;
+    ClothLane stretch = stretch_of (state, s, TRUE, along, &inverse);
+
+    energy += half * spring_stiffness (state, s) * stretch *
+        split (stretch, state->compression_ratio);
+  }
+  return energy;
+}
