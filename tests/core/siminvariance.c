@@ -335,6 +335,57 @@ test_derivatives (void)
   }
 }
 
+/* A sheet drawn as a whole to a target is a damped oscillator, of its own gain in each
+ * lane; a target that is no number draws nothing. */
+static void
+test_targets (void)
+{
+  g_autoptr (ClothScene) scene = sheet_new (COLUMNS, ROWS, 0.25, 0.3125);
+  g_autoptr (ClothModel) model = fabric ();
+  const ClothModel *models[3] = { model, model, model };
+  const ClothSimOptions options = { FALSE, 1, CLOTH_SIMD_BEST, 0 };
+  const gdouble gain[2] = { 100., 1600. }, speed = 0.1, offset = 0.01, t = 0.3;
+  const gdouble weight[2] = { 1., 0.25 };
+  g_autoptr (ClothSim) sim = NULL;
+  gdouble now[3 * N], next[3 * N], velocity[3 * N], weights[N], nan[3 * N];
+
+  scene->gravity[2] = 0.;
+  model->time_step = 1e-4;
+  sim = cloth_sim_new (scene, models, 3, &options, NULL);
+  for (guint i = 0; i < 3 * N; i++) {
+    now[i] = scene->positions[i] + (i % 3 == 1 ? offset : 0.);
+    next[i] = now[i] + (i % 3 == 1 ? speed * t : 0.);
+    velocity[i] = i % 3 == 1 ? speed : 0.;
+    nan[i] = NAN;
+  }
+  for (guint k = 0; k < 2; k++) {
+    for (guint i = 0; i < N; i++)
+      weights[i] = weight[k];
+    cloth_sim_set_targets (sim, k, now, next, velocity, velocity, weights,
+        gain[k], sqrt (gain[k]), 0., t);
+  }
+  cloth_sim_set_targets (sim, 2, nan, next, velocity, velocity, weights, 100.,
+      10., 0., t);
+  run_for (sim, t);
+  for (guint k = 0; k < 3; k++) {
+    g_autofree gdouble *x = positions_of (sim, k);
+    gdouble y = 0.;
+
+    if (k < 2) {
+      /* e″ + w d e′ + w g e = 0 for e = target − x, e(0) = offset, e′(0) = speed */
+      gdouble c = weight[k] * sqrt (gain[k]) / 2.;
+      gdouble omega = sqrt (weight[k] * gain[k] - c * c);
+
+      y = offset + speed * t - exp (-c * t) * (offset * cos (omega * t) +
+          (speed + c * offset) / omega * sin (omega * t));
+    }
+    for (guint i = 0; i < N; i++) {
+      assert_within (x[3 * i], scene->positions[3 * i], 1e-9);
+      assert_within (x[3 * i + 1], y, 1e-4);
+    }
+  }
+}
+
 int
 main (int argc, char **argv)
 {
@@ -345,6 +396,7 @@ main (int argc, char **argv)
   g_test_add_func ("/sim/rotation", test_rotation);
   g_test_add_func ("/sim/gauge", test_gauge);
   g_test_add_func ("/sim/convergence", test_convergence);
+  g_test_add_func ("/sim/targets", test_targets);
   g_test_add_func ("/sim/derivatives", test_derivatives);
   return g_test_run ();
 }
