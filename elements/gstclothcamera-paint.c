@@ -12,7 +12,7 @@
 #define BLACK 0.04f
 #define WHITE 0.75f
 /* Pixels along the longer side of a pattern's picture: edges between are exact. */
-#define PATTERN_PX 3072
+#define PATTERN_PX 2048
 /* A file that gives no picture for so long is broken. */
 #define PATIENCE (30 * GST_SECOND)
 

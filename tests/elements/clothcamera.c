@@ -1,0 +1,384 @@
+/* clothcamera: caps, formats, times, window of meshes, events, refusals.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <gst/check/check.h>
+#include <gst/cloth/cloth.h>
+#include <gst/video/video.h>
+#include <glib/gstdio.h>
+#include <math.h>
+#include <string.h>
+
+#define PATTERN TEST_DATA "/checker_pair/pattern.json"
+
+static gchar *folder, *rig;
+
+/* Two cameras before a cloth in the plane y = 0; odd sizes; the second is late. */
+static void
+make_rig (void)
+{
+  folder = g_dir_make_tmp ("clothcamera-XXXXXX", NULL);
+  rig = g_build_filename (folder, "rig.json", NULL);
+  g_assert_true (g_file_set_contents (rig,
+          "{\"version\":1,\"cameras\":["
+          "{\"name\":\"a\",\"size\":[97,65],\"K\":[[100,0,48],[0,100,32],"
+          "[0,0,1]],\"distortion\":{\"model\":\"none\",\"coefficients\":[]},"
+          "\"R\":[[1,0,0],[0,0,-1],[0,1,0]],\"t\":[0,0,2]},"
+          "{\"name\":\"late\",\"size\":[64,48],\"K\":[[100,0,32],[0,100,24],"
+          "[0,0,1]],\"distortion\":{\"model\":\"none\",\"coefficients\":[]},"
+          "\"R\":[[1,0,0],[0,0,-1],[0,1,0]],\"t\":[0,0,2],"
+          "\"offset_s\":0.02}]}", -1, NULL));
+}
+
+static void
+remove_rig (void)
+{
+  g_remove (rig);
+  g_rmdir (folder);
+  g_free (rig);
+  g_free (folder);
+}
+
+static GstCaps *
+mesh_caps (guint columns, guint rows)
+{
+  g_autoptr (GstClothTopology) topology =
+      gst_cloth_topology_new_grid (columns, rows, 0.6f, 0.4f, NULL);
+
+  return gst_cloth_topology_to_caps (topology, 25, 1);
+}
+
+/* A flat cloth of 0.6 × 0.4 m that has moved to the right by @right. */
+static GstBuffer *
+mesh_buffer (guint number, guint columns, guint rows, gdouble right)
+{
+  g_autofree gfloat *positions = g_new (gfloat, 3 * columns * rows);
+  g_autofree guint8 *states = g_malloc (columns * rows);
+  g_autoptr (GstClothMesh) mesh = NULL;
+  GstBuffer *buffer;
+
+  for (guint i = 0; i < columns * rows; i++) {
+    positions[3 * i] = (gfloat) (right - 0.3 + 0.6 * (i % columns)
+        / (columns - 1));
+    positions[3 * i + 1] = 0;
+    positions[3 * i + 2] = (gfloat) (0.2 - 0.4 * (i / columns) / (rows - 1));
+    states[i] = GST_CLOTH_VERTEX_PREDICTED;
+  }
+  mesh = gst_cloth_mesh_new (number, columns * rows, positions, states, NULL);
+  buffer = gst_cloth_mesh_to_buffer (mesh);
+  GST_BUFFER_PTS (buffer) = number * 40 * GST_MSECOND;
+  GST_BUFFER_DURATION (buffer) = 40 * GST_MSECOND;
+  return buffer;
+}
+
+static GstHarness *
+harness (const gchar * settings, const gchar * format)
+{
+  g_autofree gchar *caps = g_strdup_printf ("video/x-raw,format=%s", format);
+  g_autofree gchar *launch = g_strdup_printf ("clothcamera rig=%s %s", rig,
+      settings);
+  GstHarness *h = gst_harness_new_parse (launch);
+
+  gst_harness_set_sink_caps_str (h, caps);
+  gst_harness_set_src_caps (h, mesh_caps (4, 3));
+  return h;
+}
+
+static gchar *
+checksum (GstBuffer * buffer)
+{
+  GstMapInfo map;
+  gchar *sum;
+
+  gst_buffer_map (buffer, &map, GST_MAP_READ);
+  sum = g_compute_checksum_for_data (G_CHECKSUM_SHA256, map.data, map.size);
+  gst_buffer_unmap (buffer, &map);
+  return sum;
+}
+
+/* Mean column of the cloth in a GRAY8 picture of 97 × 65, px. */
+static gdouble
+middle_of (GstBuffer * buffer)
+{
+  gdouble sum = 0, first = 0;
+  GstMapInfo map;
+
+  gst_buffer_map (buffer, &map, GST_MAP_READ);
+  for (gint x = 0; x < 97; x++) {
+    /* the background is darker */
+    const gdouble light = MAX (map.data[32 * 100 + x] - 110, 0);
+
+    sum += light;
+    first += light * x;
+  }
+  gst_buffer_unmap (buffer, &map);
+  return first / sum;
+}
+
+GST_START_TEST (test_formats)
+{
+  static const gchar *const formats[] = { "GRAY8", "BGRx", "RGBx", "xRGB",
+    "xBGR", "RGB", "BGR"
+  };
+
+  for (guint f = 0; f < G_N_ELEMENTS (formats); f++) {
+    GstHarness *h = harness ("camera=a pattern=" PATTERN, formats[f]);
+    g_autoptr (GstCaps) got = NULL;
+    GstVideoInfo info;
+    GstVideoFrame frame;
+    GstBuffer *out;
+
+    out = gst_harness_push_and_pull (h, mesh_buffer (7, 4, 3, 0));
+    fail_unless (out != NULL);
+    got = gst_pad_get_current_caps (h->sinkpad);
+    fail_unless (gst_video_info_from_caps (&info, got));
+    fail_unless_equals_string (gst_video_format_to_string
+        (GST_VIDEO_INFO_FORMAT (&info)), formats[f]);
+    fail_unless (info.width == 97 && info.height == 65);
+    fail_unless (info.fps_n == 25 && info.fps_d == 1);
+    fail_unless (GST_BUFFER_PTS (out) == 280 * GST_MSECOND);
+    fail_unless (GST_BUFFER_DURATION (out) == 40 * GST_MSECOND);
+    fail_unless (GST_BUFFER_OFFSET (out) == 7);
+    fail_unless (gst_video_frame_map (&frame, &info, out, GST_MAP_READ));
+    for (guint c = 0; c < GST_VIDEO_FRAME_N_COMPONENTS (&frame) && c < 3; c++) {
+      const guint8 *data = GST_VIDEO_FRAME_COMP_DATA (&frame, c);
+      const gint stride = GST_VIDEO_FRAME_COMP_STRIDE (&frame, c);
+      const gint step = GST_VIDEO_FRAME_COMP_PSTRIDE (&frame, c);
+
+      /* the wall, the cloth's white edge */
+      fail_unless (data[2 * stride + 2 * step] < 110);
+      fail_unless (data[32 * stride + 36 * step] > 180);
+    }
+    gst_video_frame_unmap (&frame);
+    gst_buffer_unref (out);
+    gst_harness_teardown (h);
+  }
+}
+
+GST_END_TEST;
+
+/* Pictures do not depend on threads; with noise they do on the seed. */
+GST_START_TEST (test_same_bytes)
+{
+  static const gchar *const settings[] = {
+    "threads=1 seed=3", "threads=3 seed=3", "threads=1 seed=4"
+  };
+  g_autofree gchar *sums[3] = { NULL, NULL, NULL };
+
+  for (guint i = 0; i < 3; i++) {
+    g_autofree gchar *all =
+        g_strdup_printf ("camera=a effects=noise,sigma=2 %s",
+        settings[i]);
+    GstHarness *h = harness (all, "GRAY8");
+    GstBuffer *out = gst_harness_push_and_pull (h, mesh_buffer (0, 4, 3, 0));
+
+    sums[i] = checksum (out);
+    gst_buffer_unref (out);
+    gst_harness_teardown (h);
+  }
+  fail_unless_equals_string (sums[0], sums[1]);
+  fail_unless (strcmp (sums[0], sums[2]) != 0);
+  g_free (sums[1]);
+  g_free (sums[2]);
+  sums[1] = sums[2] = NULL;
+}
+
+GST_END_TEST;
+
+/* 50 px/m: 0.1 m a mesh are 5 px. Pictures wait for the meshes around them, and come at
+ * the end. */
+GST_START_TEST (test_window)
+{
+  static const struct
+  {
+    const gchar *effects;
+    gdouble lag;                /* meshes */
+  } cases[] = {
+    {"sync_offset,seconds=0.02", 0.5},
+    {"sync_offset,seconds=-0.06", -1.5},
+    {"motion_blur,exposure=0.04", -0.5}
+  };
+
+  for (guint c = 0; c < G_N_ELEMENTS (cases); c++) {
+    g_autofree gchar *settings = g_strdup_printf ("camera=a effects=\"%s\"",
+        cases[c].effects);
+    GstHarness *h = harness (settings, "GRAY8");
+
+    for (guint i = 0; i < 8; i++)
+      fail_unless_equals_int (gst_harness_push (h, mesh_buffer (i, 4, 3,
+                  0.02 * i)), GST_FLOW_OK);
+    fail_unless (gst_harness_buffers_received (h) < 8);
+    fail_unless (gst_harness_buffers_received (h) > 3);
+    gst_harness_push_event (h, gst_event_new_eos ());
+    fail_unless_equals_int (gst_harness_buffers_received (h), 8);
+    for (guint i = 0; i < 8; i++) {
+      GstBuffer *out = gst_harness_pull (h);
+
+      fail_unless (GST_BUFFER_PTS (out) == i * 40 * GST_MSECOND);
+      fail_unless (fabs (middle_of (out) - 48 - (i - cases[c].lag)) < 0.3,
+          "%s: picture %u at %f", cases[c].effects, i, middle_of (out));
+      gst_buffer_unref (out);
+    }
+    gst_harness_teardown (h);
+  }
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_dropped)
+{
+  GstHarness *h =
+      harness ("camera=a effects=frame_drop,rate=0.5 seed=1", "GRAY8");
+  g_autofree gchar *last = NULL;
+  guint same = 0;
+
+  for (guint i = 0; i < 40; i++) {
+    GstBuffer *out = gst_harness_push_and_pull (h, mesh_buffer (i, 4, 3,
+            0.003 * i));
+    gchar *sum = checksum (out);
+
+    fail_unless (GST_BUFFER_PTS (out) == i * 40 * GST_MSECOND);
+    same += last && strcmp (last, sum) == 0;
+    g_free (last);
+    last = sum;
+    gst_buffer_unref (out);
+  }
+  fail_unless (same >= 10 && same <= 30, "%u of 40 are repeats", same);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+/* A flush forgets what waits; new caps make a new mesh; states go up and down. */
+GST_START_TEST (test_events)
+{
+  GstHarness *h =
+      harness ("camera=a effects=rolling_shutter,seconds=0.01", "GRAY8");
+  GstSegment segment;
+
+  for (guint i = 0; i < 2; i++)
+    gst_harness_push (h, mesh_buffer (i, 4, 3, 0));
+  fail_unless_equals_int (gst_harness_buffers_received (h), 0);
+  gst_harness_push_event (h, gst_event_new_flush_start ());
+  gst_harness_push_event (h, gst_event_new_flush_stop (TRUE));
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  gst_harness_push_event (h, gst_event_new_segment (&segment));
+  fail_unless_equals_int (gst_harness_buffers_received (h), 0);
+  /* earlier than before the flush: no fault */
+  gst_harness_push (h, mesh_buffer (0, 4, 3, 0));
+  gst_harness_push (h, mesh_buffer (1, 4, 3, 0));
+  gst_harness_set_src_caps (h, mesh_caps (5, 6));
+  fail_unless_equals_int (gst_harness_buffers_received (h), 2);
+  gst_harness_push (h, mesh_buffer (0, 5, 6, 0));
+  gst_harness_push_event (h, gst_event_new_eos ());
+  fail_unless_equals_int (gst_harness_buffers_received (h), 3);
+  gst_harness_teardown (h);
+
+  for (guint i = 0; i < 3; i++) {
+    g_autofree gchar *launch = g_strdup_printf ("clothcamera rig=%s camera=a",
+        rig);
+    GstElement *element = gst_parse_launch (launch, NULL);
+
+    fail_unless (gst_element_set_state (element, GST_STATE_PAUSED)
+        != GST_STATE_CHANGE_FAILURE);
+    gst_element_set_state (element, GST_STATE_NULL);
+    gst_object_unref (element);
+  }
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_latency)
+{
+  GstHarness *late = harness ("camera=late", "GRAY8");
+  GstHarness *still = harness ("camera=a", "GRAY8");
+
+  gst_harness_push (still, mesh_buffer (0, 4, 3, 0));
+  gst_harness_push (late, mesh_buffer (0, 4, 3, 0));
+  fail_unless (gst_harness_query_latency (still) == 0);
+  fail_unless (gst_harness_query_latency (late) == 80 * GST_MSECOND);
+  gst_harness_teardown (still);
+  gst_harness_teardown (late);
+}
+
+GST_END_TEST;
+
+static void
+assert_refused (const gchar * launch, const gchar * says)
+{
+  g_autoptr (GError) error = NULL;
+  GstElement *element = gst_parse_launch (launch, &error);
+  GstHarness *h;
+  g_autoptr (GstBus) bus = gst_bus_new ();
+  g_autoptr (GstMessage) message = NULL;
+  g_autofree gchar *debug = NULL, *all = NULL;
+  g_autoptr (GError) fault = NULL;
+
+  g_assert_no_error (error);
+  gst_element_set_bus (element, bus);
+  if (gst_element_set_state (element, GST_STATE_PAUSED)
+      != GST_STATE_CHANGE_FAILURE) {
+    h = gst_harness_new_with_element (element, "sink", "src");
+    gst_element_set_bus (element, bus);
+    gst_harness_set_src_caps (h, mesh_caps (4, 3));
+    gst_harness_push (h, mesh_buffer (0, 4, 3, 0));
+    gst_harness_push (h, mesh_buffer (0, 4, 3, 0));
+    gst_harness_teardown (h);
+  }
+  message = gst_bus_pop_filtered (bus, GST_MESSAGE_ERROR);
+  fail_unless (message != NULL, "%s: no error", launch);
+  gst_message_parse_error (message, &fault, &debug);
+  all = g_strdup_printf ("%s %s", fault->message, debug ? debug : "");
+  fail_unless (strstr (all, says) != NULL, "%s: %s", launch, all);
+  gst_element_set_state (element, GST_STATE_NULL);
+  gst_element_set_bus (element, NULL);
+  gst_object_unref (element);
+}
+
+GST_START_TEST (test_refused)
+{
+  static const struct
+  {
+    const gchar *settings, *says;
+  } cases[] = {
+    {"", "Set camera= to one of: a, late"},
+    {"camera=c", "Set camera= to one of: a, late"},
+    {"camera=a effects=snow,much=1", "there are: lens_distortion"},
+    {"camera=a effects=noise,sigma=99", "use 0 to 50"},
+    {"camera=a pattern=" PATTERN " texture=x.png", "Leave out pattern="},
+    {"camera=a pattern=/nowhere/pattern.json", "/nowhere/pattern.json"},
+    {"camera=a texture=/nowhere/a.png", "there is no such file"},
+    {"camera=a texture=" PATTERN, "pattern.json"},
+    {"camera=a effects=motion_blur,exposure=0.01", "rising times"}
+  };
+
+  assert_refused ("clothcamera", "Set rig= to a rig.json");
+  assert_refused ("clothcamera rig=/nowhere/rig.json", "/nowhere/rig.json");
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autofree gchar *launch = g_strdup_printf ("clothcamera rig=%s %s", rig,
+        cases[i].settings);
+
+    assert_refused (launch, cases[i].says);
+  }
+}
+
+GST_END_TEST;
+
+static Suite *
+clothcamera_suite (void)
+{
+  Suite *s = suite_create ("clothcamera");
+  TCase *tc = tcase_create ("general");
+
+  suite_add_tcase (s, tc);
+  tcase_add_unchecked_fixture (tc, make_rig, remove_rig);
+  tcase_add_test (tc, test_formats);
+  tcase_add_test (tc, test_same_bytes);
+  tcase_add_test (tc, test_window);
+  tcase_add_test (tc, test_dropped);
+  tcase_add_test (tc, test_events);
+  tcase_add_test (tc, test_latency);
+  tcase_add_test (tc, test_refused);
+  return s;
+}
+
+GST_CHECK_MAIN (clothcamera);
