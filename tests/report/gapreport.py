@@ -192,7 +192,7 @@ def check_table(browser):
     assert 'no rig.json' in browser.run('return document.getElementById("untested").textContent')
     assert 'Shake the upper edge' in browser.text('#next')
     assert 'diverged at 1.34 s' in browser.text('#failures')
-    assert '352 simulations in 41.7 s, seed 1' in browser.text('#provenance')
+    assert '352 simulations, of which 1 failed, in 41.7 s; seed 1.' in browser.text('#provenance')
 
 
 def check_playback(browser):

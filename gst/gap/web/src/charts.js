@@ -80,6 +80,7 @@ function upright(plot, time, stroke, dash, text) {
   if (text) {
     ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
     ctx.textBaseline = 'top';
+    ctx.textAlign = 'left';
     ctx.fillText(text, x + 5 * devicePixelRatio, top + 3 * devicePixelRatio);
   }
   ctx.restore();

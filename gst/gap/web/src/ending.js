@@ -1,14 +1,14 @@
 // What to film next, and where all of this comes from.
 // SPDX-License-Identifier: LGPL-2.1-or-later
 import { element, section } from './dom.js';
-import { capital, known, number, spoken, unit } from './words.js';
+import { capital, known, number, quantity, spoken } from './words.js';
 
 function advice(gap) {
   const list = gap.groups.filter((group) => group.effects.length > 1).map((group) => element('li', {},
     'To tell ', element('strong', {}, group.effects.map(spoken).join(' from ')), ': ',
     group.experiment ?? 'none of the captures that were tried would.',
-    known(group.evidence) ? element('span', { class: 'interval' },
-      ` Expected evidence: log Bayes factor ${number(group.evidence)}.`) : null));
+    known(group.evidence) ? ' ' : null, known(group.evidence) ? element('span', { class: 'interval' },
+      `Expected evidence: log Bayes factor ${number(group.evidence)}.`) : null));
   if (gap.reason) list.unshift(element('li', {}, gap.reason));
   if (gap.verdict === 'unexplained') {
     list.push(element('li', {}, 'Something acts that the library does not have. Film the same motion with one condition changed at a time; the maps above say where on the cloth and when to look.'));
@@ -37,13 +37,12 @@ export function next(gap) {
 
 export function provenance(gap) {
   return section('provenance', 'Provenance', null,
-    element('p', {}, `${gap.simulations} simulations in ${number(gap.seconds)} s, seed ${gap.seed}. ` +
-      (gap.failures.length ? `${gap.failures.length} failed.` : 'None failed.')),
+    element('p', {}, `${gap.simulations} simulations, of which ${gap.failures.length || 'none'} failed, in ${number(gap.seconds)} s; seed ${gap.seed}.`),
     element('div', { class: 'columns' },
       table('inputs', ['Input', 'Name', 'SHA-256'], gap.inputs.map((item) => [roles[item.role], item.name,
         element('code', { title: item.sha256 }, item.sha256 ?? '–')])),
       table('thresholds', ['Threshold', 'Value'], gap.thresholds.map((item) => [capital(spoken(item.name)),
-        number(item.value) + unit(item.unit)])),
+        quantity(item.value, item.unit)])),
       table('versions', ['Version of', ''], gap.versions.map((item) => [item.name, item.version])),
       table('failures', ['Failed simulation', 'What happened'], gap.failures.map((item) => [item.run, item.what]))));
 }

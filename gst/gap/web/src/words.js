@@ -3,7 +3,9 @@
 
 export const known = (value) => typeof value === 'number' && Number.isFinite(value);
 
-// Three significant digits; plain notation where that is short.
+const short = (digits) => digits.includes('.') ? digits.replace(/\.?0+$/, '') : digits;
+
+// At most three significant digits; plain notation where that is short.
 export function number(value, digits = 3) {
   if (!known(value)) return '–';
   if (value === 0) return '0';
@@ -11,10 +13,10 @@ export function number(value, digits = 3) {
   if (size >= 1e5 || size < 1e-3) {
     const [mantissa, exponent] = value.toExponential(digits - 1).split('e');
     const raised = [...String(Number(exponent))].map((c) => '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'['-0123456789'.indexOf(c)]);
-    return `${mantissa}·10${raised.join('')}`.replace('-', '−');
+    return `${short(mantissa)}·10${raised.join('')}`.replace('-', '−');
   }
   const places = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
-  return value.toFixed(Math.min(places, 6)).replace('-', '−');
+  return short(value.toFixed(Math.min(places, 6))).replace('-', '−');
 }
 
 export const mm = (metres, places = 1) =>
@@ -44,6 +46,10 @@ export function range(interval, scale = 1, digits = null) {
 export const spoken = (name) => String(name).replaceAll('_', ' ');
 
 export const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+
+// A length of less than a decimetre in millimetres.
+export const quantity = (value, symbol) => symbol === 'm' && Math.abs(value) < 0.1
+  ? number(1000 * value) + ' mm' : number(value) + unit(symbol);
 
 export const unit = (symbol) => symbol === '1' || symbol === '' ? '' : ' ' + symbol;
 
