@@ -305,21 +305,63 @@ line_width (const ClothBody * body, guint vertex, guint at, guint n,
   return width;
 }
 
-static void
-add_row_of_three (ClothBody * body, guint vertex, guint stride, gdouble width,
-    gboolean along_u)
+/* Which way x_u × x_v is of (x3 − x2) × (x1 − x0). */
+static gdouble
+side_of (const ClothBody * body, const guint vertex[4])
 {
-  gdouble one = uv_distance (body, vertex, vertex - stride);
-  gdouble two = uv_distance (body, vertex, vertex + stride);
+  const gdouble *uv = body->uv;
+  gdouble along[2], across[2];
+
+  for (guint k = 0; k < 2; k++) {
+    along[k] = uv[2 * vertex[3] + k] - uv[2 * vertex[2] + k];
+    across[k] = uv[2 * vertex[1] + k] - uv[2 * vertex[0] + k];
+  }
+  return along[0] * across[1] > along[1] * across[0] ? 1. : -1.;
+}
+
+static ClothBodyHinge *
+add_grid_hinge (ClothBody * body, const guint vertex[4])
+{
   ClothBodyHinge *h = &body->hinges[body->n_hinges++];
-  const guint32 *particle = body->particle;
 
   *h = (ClothBodyHinge) {
-    {
-    particle[vertex], particle[vertex - stride], particle[vertex + stride],
-          particle[vertex]}, {
-  1. / one + 1. / two, -1. / one, -1. / two, 0.}, 0., 0.};
+  .side = side_of (body, vertex)};
+  for (guint k = 0; k < 4; k++)
+    h->particle[k] = body->particle[vertex[k]];
+  return h;
+}
+
+/* aside: a vertex beside the row, which gives the fold a normal. */
+static void
+add_row_of_three (ClothBody * body, guint vertex, guint stride, guint aside,
+    gdouble width, gboolean along_u)
+{
+  const guint all[4] = { vertex, vertex - stride, vertex + stride, aside };
+  gdouble one = uv_distance (body, vertex, vertex - stride);
+  gdouble two = uv_distance (body, vertex, vertex + stride);
+  ClothBodyHinge *h = add_grid_hinge (body, all);
+
+  h->c[0] = 1. / one + 1. / two;
+  h->c[1] = -1. / one;
+  h->c[2] = -1. / two;
+  h->form[along_u ? 0 : 1] = -(one + two) / 2.;
   *(along_u ? &h->warp : &h->weft) = 2. * width / (one + two);
+}
+
+static void
+add_cell (ClothBody * body, guint vertex)
+{
+  const guint all[4] = { vertex, vertex + body->columns + 1, vertex + 1,
+    vertex + body->columns
+  };
+  gdouble area = uv_distance (body, vertex, vertex + 1) *
+      uv_distance (body, vertex, vertex + body->columns);
+  ClothBodyHinge *h = add_grid_hinge (body, all);
+
+  h->c[0] = h->c[1] = 1.;
+  h->c[2] = h->c[3] = -1.;
+  h->form[2] = M_SQRT1_2 * area;
+  h->warp = h->weft = 1. / area;
 }
 
 /* A plate's energy ½ ∫ B_warp κ_uu² + B_weft κ_vv² + (B_warp + B_weft) κ_uv² by finite
@@ -336,27 +378,17 @@ make_grid_hinges (ClothBody * body)
       guint i = row * columns + column;
 
       if (column > 0 && column + 1 < columns)
-        add_row_of_three (body, i, 1, line_width (body, i, row, rows, columns),
-            TRUE);
+        add_row_of_three (body, i, 1, row ? i - columns : i + columns,
+            line_width (body, i, row, rows, columns), TRUE);
       if (row > 0 && row + 1 < rows)
-        add_row_of_three (body, i, columns, line_width (body, i, column,
-                columns, 1), FALSE);
+        add_row_of_three (body, i, columns, column ? i - 1 : i + 1,
+            line_width (body, i, column, columns, 1), FALSE);
     }
   }
   body->n_straight = body->n_hinges;
-  for (guint row = 0; row + 1 < rows; row++) {
-    for (guint column = 0; column + 1 < columns; column++) {
-      guint i = row * columns + column;
-      const guint32 *p = body->particle + i;
-      gdouble area = uv_distance (body, i, i + 1) * uv_distance (body, i,
-          i + columns);
-
-      body->hinges[body->n_hinges++] = (ClothBodyHinge) {
-        {
-        p[0], p[1], p[columns], p[columns + 1]}, {
-      1., -1., -1., 1.}, 1. / area, 1. / area};
-    }
-  }
+  for (guint row = 0; row + 1 < rows; row++)
+    for (guint column = 0; column + 1 < columns; column++)
+      add_cell (body, row * columns + column);
 }
 
 static gboolean
