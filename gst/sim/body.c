@@ -497,6 +497,20 @@ take_clamps (ClothBody * body, const ClothScene * scene)
   }
 }
 
+static void
+take_obstacles (ClothBody * body, const ClothScene * scene)
+{
+  body->obstacles = cloth_obstacles_copy (scene->obstacles);
+  body->bvhs = g_new0 (ClothBvh *, body->obstacles->len + 1);
+  for (guint i = 0; i < body->obstacles->len; i++) {
+    const ClothObstacle *o = &g_array_index (body->obstacles, ClothObstacle, i);
+
+    if (o->kind == CLOTH_OBSTACLE_MESH)
+      body->bvhs[i] = cloth_bvh_new (o->points, o->n_points, o->triangles,
+          o->n_triangles);
+  }
+}
+
 /*
  * cloth_body_path:
  * @held: index of what is held
@@ -585,6 +599,7 @@ cloth_body_new (const ClothScene * scene, GError ** error)
   make_bounds (body);
   cloth_body_make_springs (body);
   take_clamps (body, scene);
+  take_obstacles (body, scene);
   body->positions = g_memdup2 (scene->positions, 3 * n * sizeof (gdouble));
   body->velocities = scene->velocities ?
       g_memdup2 (scene->velocities, 3 * n * sizeof (gdouble)) :
@@ -602,6 +617,10 @@ cloth_body_free (ClothBody * body)
 {
   if (!body)
     return;
+  for (guint i = 0; body->obstacles && i < body->obstacles->len; i++)
+    cloth_bvh_free (body->bvhs[i]);
+  g_clear_pointer (&body->obstacles, g_array_unref);
+  g_free (body->bvhs);
   g_free (body->particle);
   g_free (body->uv);
   g_free (body->area);

@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
+#include "gst/sim/bvh.h"
 #include "gst/sim/scene.h"
 
 G_BEGIN_DECLS
@@ -83,6 +84,8 @@ typedef struct
   gdouble *positions;           /* of each vertex at the start */
   gdouble *velocities;
   gdouble gravity[3];
+  GArray *obstacles;
+  ClothBvh **bvhs;              /* of each obstacle; NULL but for meshes */
 } ClothBody;
 
 ClothBody *cloth_body_new (const ClothScene * scene, GError ** error);

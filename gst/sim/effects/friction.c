@@ -31,4 +31,18 @@ const ClothEffect cloth_effect_friction = {
   }
 };
 /* *INDENT-ON* */
+#else
+
+#include "gst/sim/lanes/hooks.h"
+
+static void
+setup (ClothLaneState * state, ClothLaneEffect * effect)
+{
+  state->obstacle_friction += effect->p[0];
+}
+
+const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_friction) = {
+  .id = "friction",
+  .setup = setup,
+};
 #endif

@@ -202,6 +202,7 @@ group_free (gpointer group)
   for (guint i = 0; i < state->n_effects; i++)
     g_aligned_free (state->effects[i].state);
   g_aligned_free (state->effects);
+  CLOTH_LANE_NAME (cloth_lane_obstacles_free) (state);
   for (guint k = 0; k < 4; k++)
     g_aligned_free (state->targets.y[k]);
   g_aligned_free (state->targets.weight);
@@ -260,6 +261,7 @@ group_new (const ClothBody * body, const ClothModel * const *models,
   load_rest (state, body);
   load_springs (state, body);
   state->force_model = models[0]->force_model;
+  state->obstacles = CLOTH_LANE_NAME (cloth_lane_obstacles_new) (state);
   load_models (state, all);
   load_effects (state, all);
   prepare (state);
@@ -332,6 +334,7 @@ group_advance (gpointer group, gdouble until_s, guint n_steps)
     CLOTH_LANE_NAME (cloth_lane_explicit) (state);
     state->time = step == n_steps ? until_s :
         start + (until_s - start) * step / n_steps;
+    CLOTH_LANE_NAME (cloth_lane_obstacles) (state);
     CLOTH_LANE_NAME (cloth_lane_clamps) (state);
     for (guint i = 0; i < state->n_effects; i++)
       if (state->effects[i].hooks->after_step)

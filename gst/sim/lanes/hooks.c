@@ -31,6 +31,7 @@ CLOTH_LANE_NAME (cloth_lane_hooks)[] = {
   &CLOTH_LANE_NAME (cloth_hooks_clamp_slip),
   &CLOTH_LANE_NAME (cloth_hooks_clamp_compliance),
   &CLOTH_LANE_NAME (cloth_hooks_clamp_delay),
+  &CLOTH_LANE_NAME (cloth_hooks_friction),
   /* last: it goes by what all the others do */
   &CLOTH_LANE_NAME (cloth_hooks_added_mass),
   NULL

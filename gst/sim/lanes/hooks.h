@@ -34,6 +34,7 @@ extern const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_bending_softening);
 extern const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_rest_curvature);
 extern const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_plasticity);
 extern const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_added_mass);
+extern const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_friction);
 
 void CLOTH_LANE_NAME (cloth_lane_wind) (ClothLaneState * state,
     const ClothLane wind[3], ClothLane coefficient, ClothLane turbulence);

@@ -8,6 +8,7 @@
 #include "gst/sim/sim.h"
 
 typedef struct _ClothLaneHooks ClothLaneHooks;
+typedef struct _ClothLaneObstacles ClothLaneObstacles;
 typedef ClothLane ClothLane3[3];
 
 /* An effect in a group. */
@@ -78,6 +79,7 @@ typedef struct
   ClothLane air_density;
   ClothLane gravity[3];
   ClothLane compliance;         /* of the clamps, m/N */
+  ClothLane obstacle_friction;  /* on top of each obstacle's own */
   /* ∂x/∂(u, v) is multiplied by this from the right: [0] [1]; [2] [3]. It turns the grain
    * and changes the size of the cloth at rest. */
   ClothLane rest[4];
@@ -99,6 +101,8 @@ typedef struct
   gdouble *held_since;
   ClothLane3 *held_offset;
   ClothLane3 *held_x;
+
+  ClothLaneObstacles *obstacles;
 
   gdouble time;                 /* s */
   gdouble dt;                   /* of the running step, s */
@@ -152,6 +156,10 @@ ClothLane CLOTH_LANE_NAME (cloth_lane_bending_energy) (const ClothLaneState *
 void CLOTH_LANE_NAME (cloth_lane_targets) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_clamps) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_clamps_reset) (ClothLaneState * state);
+ClothLaneObstacles *CLOTH_LANE_NAME (cloth_lane_obstacles_new) (const
+    ClothLaneState * state);
+void CLOTH_LANE_NAME (cloth_lane_obstacles_free) (ClothLaneState * state);
+void CLOTH_LANE_NAME (cloth_lane_obstacles) (ClothLaneState * state);
 /* All forces but inertia at x and v into f. */
 void CLOTH_LANE_NAME (cloth_lane_forces) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_explicit) (ClothLaneState * state);
