@@ -11,6 +11,7 @@
 #include "elements/gstclothmetadepay.h"
 #include "elements/gstclothmetapay.h"
 #include "elements/gstclothoverlay.h"
+#include "elements/gstclothsim.h"
 #include "elements/gstmeshsink.h"
 #include "elements/gstmeshsrc.h"
 #include "elements/gstquadtrack.h"
@@ -26,6 +27,7 @@ plugin_init (GstPlugin * plugin)
   registered &= GST_ELEMENT_REGISTER (clothmetadepay, plugin);
   registered &= GST_ELEMENT_REGISTER (clothmetapay, plugin);
   registered &= GST_ELEMENT_REGISTER (clothoverlay, plugin);
+  registered &= GST_ELEMENT_REGISTER (clothsim, plugin);
   registered &= GST_ELEMENT_REGISTER (meshsink, plugin);
   registered &= GST_ELEMENT_REGISTER (meshsrc, plugin);
   registered &= GST_ELEMENT_REGISTER (quadtrack, plugin);
