@@ -22,12 +22,21 @@ root (guint32 * parent, guint32 i)
   return i;
 }
 
-/* Sewn vertices become one particle, numbered in the order of their first vertex. */
-static void
-merge_seams (ClothBody * body, const GArray * seams)
+/*
+ * cloth_body_merge_seams:
+ * @seams: (element-type ClothSeam): what is sewn together
+ * @n: number of vertices
+ * @n_particles: (out): number of particles
+ *
+ * Sewn vertices become one particle, numbered in the order of their first vertex.
+ *
+ * Returns: (transfer full): the particle of each vertex
+ */
+guint32 *
+cloth_body_merge_seams (const GArray * seams, guint n, guint * n_particles)
 {
-  guint n = body->n_vertices;
   g_autofree guint32 *parent = g_new (guint32, n);
+  guint32 *particle = g_new (guint32, n);
 
   for (guint32 i = 0; i < n; i++)
     parent[i] = i;
@@ -37,13 +46,13 @@ merge_seams (ClothBody * body, const GArray * seams)
 
     parent[MAX (a, b)] = MIN (a, b);
   }
-  body->particle = g_new (guint32, n);
+  *n_particles = 0;
   for (guint32 i = 0; i < n; i++) {
     guint32 first = root (parent, i);
 
-    body->particle[i] =
-        first == i ? body->n_particles++ : body->particle[first];
+    particle[i] = first == i ? (*n_particles)++ : particle[first];
   }
+  return particle;
 }
 
 /* The corner opposite the longest side first; along u and v when it is square to them. */
@@ -584,7 +593,7 @@ cloth_body_new (const ClothScene * scene, GError ** error)
   body->uv = g_new (gdouble, 2 * (gsize) n);
   for (guint i = 0; i < 2 * n; i++)
     body->uv[i] = topology->uv[i];
-  merge_seams (body, scene->seams);
+  body->particle = cloth_body_merge_seams (scene->seams, n, &body->n_particles);
   body->area = g_new0 (gdouble, body->n_particles);
   if (!make_triangles (body, topology, corners, error)
       || !make_hinges (body, corners, error))

@@ -90,6 +90,8 @@ typedef struct
 
 ClothBody *cloth_body_new (const ClothScene * scene, GError ** error);
 void cloth_body_free (ClothBody * body);
+guint32 *cloth_body_merge_seams (const GArray * seams, guint n,
+    guint * n_particles);
 void cloth_body_make_springs (ClothBody * body);
 void cloth_body_path (const ClothBody * body, guint held, gdouble time_s,
     gdouble position[3]);

@@ -8,6 +8,7 @@
 
 #include "gst/math/pool.h"
 #include "gst/sim/lanes/backend.h"
+#include "gst/sim/numerics.h"
 
 /* Every variant of the lanes; those of other machines are not built. */
 extern const ClothLaneBackend cloth_lane_backend_one;
@@ -35,8 +36,10 @@ typedef struct
 
 struct _ClothSim
 {
+  ClothNumerics *numerics;
   ClothBody *body;
   ClothPool *pool;
+  guint n_vertices;             /* of the scene; effects may give the body more */
   guint n_models;
   guint n_groups;
   Group *groups;
@@ -45,6 +48,7 @@ struct _ClothSim
   gdouble fixed_step;           /* of the models, 0 = automatic */
   gdouble time_step;
   gdouble *scratch[5];          /* by particle */
+  gdouble *weights;             /* by vertex of the body */
   /* of the running advance */
   gdouble until;
   guint n_steps;
@@ -119,7 +123,10 @@ find_time_step (ClothSim * sim)
 
     least = MIN (least, g->backend->time_step (g->lanes));
   }
-  sim->time_step = sim->fixed_step > 0. ? sim->fixed_step : round_step (least);
+  least = round_step (least);
+  sim->time_step = sim->fixed_step > 0. ? sim->fixed_step : least;
+  if (sim->numerics->step_factor != 1.)
+    sim->time_step = MIN (sim->time_step * sim->numerics->step_factor, least);
 }
 
 static void
@@ -151,8 +158,8 @@ make_groups (ClothSim * sim, const ClothModel * const *models,
  * cloth_sim_new:
  * @scene: what to simulate; nothing of it is kept
  * @models: the models to simulate it with; nothing of them is kept
- * @n_models: how many, at least 1; they must agree in force_model, integrator and
- *   time_step
+ * @n_models: how many, at least 1; they must agree in force_model, integrator,
+ *   time_step and the numerics effects
  * @options: (nullable): %NULL for double precision, all processors and seed 0
  * @error: #ClothSimError
  *
@@ -160,6 +167,10 @@ make_groups (ClothSim * sim, const ClothModel * const *models,
  * becomes of a model does not depend on its neighbours, the threads or the instruction
  * set, to the last bit, but for the time step: an automatic one is the smallest that any
  * of the models needs, rounded down to an eighth of an octave.
+ *
+ * Models with the effects time_step, mesh_resolution or mesh_diagonals are simulated with
+ * other steps or on another mesh; what goes in and comes out is about @scene's own
+ * vertices all the same. They must agree in these effects too.
  *
  * Returns: (transfer full) (nullable): the simulation at the time of the first frame
  * Since: 0.1
@@ -175,7 +186,11 @@ cloth_sim_new (const ClothScene * scene, const ClothModel * const *models,
     options = &usual;
   if (!check_models (models, n_models, error))
     return NULL;
-  sim->body = cloth_body_new (scene, error);
+  sim->numerics = cloth_numerics_new (scene, models, n_models, error);
+  if (!sim->numerics)
+    return NULL;
+  sim->n_vertices = scene->topology->n_vertices;
+  sim->body = cloth_body_new (sim->numerics->scene, error);
   if (!sim->body)
     return NULL;
   sim->n_models = n_models;
@@ -183,6 +198,7 @@ cloth_sim_new (const ClothScene * scene, const ClothModel * const *models,
   sim->time = sim->body->times[0];
   for (guint i = 0; i < G_N_ELEMENTS (sim->scratch); i++)
     sim->scratch[i] = g_new0 (gdouble, 3 * (gsize) sim->body->n_particles);
+  sim->weights = g_new (gdouble, sim->body->n_vertices);
   make_groups (sim, models, options);
   sim->pool = cloth_pool_new (options->threads);
   find_time_step (sim);
@@ -206,8 +222,10 @@ cloth_sim_free (ClothSim * sim)
   g_free (sim->group_of);
   for (guint i = 0; i < G_N_ELEMENTS (sim->scratch); i++)
     g_free (sim->scratch[i]);
+  g_free (sim->weights);
   g_clear_pointer (&sim->pool, cloth_pool_free);
   g_clear_pointer (&sim->body, cloth_body_free);
+  g_clear_pointer (&sim->numerics, cloth_numerics_free);
   g_free (sim);
 }
 
@@ -234,7 +252,7 @@ cloth_sim_get_n_models (const ClothSim * sim)
 guint
 cloth_sim_get_n_vertices (const ClothSim * sim)
 {
-  return sim->body->n_vertices;
+  return sim->n_vertices;
 }
 
 static void
@@ -311,8 +329,11 @@ static void
 from_particles (const ClothSim * sim, const gdouble * particles,
     gdouble * vertices)
 {
-  for (guint i = 0; i < sim->body->n_vertices; i++)
-    memcpy (vertices + 3 * i, particles + 3 * (gsize) sim->body->particle[i],
+  const guint32 *kept = sim->numerics->kept;
+
+  for (guint i = 0; i < sim->n_vertices; i++)
+    memcpy (vertices + 3 * i,
+        particles + 3 * (gsize) sim->body->particle[kept ? kept[i] : i],
         3 * sizeof *vertices);
 }
 
@@ -321,6 +342,7 @@ static void
 to_particles (const ClothSim * sim, const gdouble * vertices,
     gdouble * particles)
 {
+  vertices = cloth_numerics_spread (sim->numerics, 3, vertices);
   for (guint i = sim->body->n_vertices; i-- > 0;)
     memcpy (particles + 3 * (gsize) sim->body->particle[i], vertices + 3 * i,
         3 * sizeof *vertices);
@@ -469,21 +491,32 @@ cloth_sim_set_targets (ClothSim * sim, guint model, const gdouble * now,
   guint lane, n = sim->body->n_particles;
   const Group *group = group_of (sim, model, &lane);
 
-  for (guint k = 0; k < 5; k++)
-    memset (sim->scratch[k], 0, 3 * (gsize) n * sizeof (gdouble));
-  for (guint i = 0; i < sim->body->n_vertices; i++) {
-    guint p = sim->body->particle[i];
-    gdouble weight = weights[i], sum = 0.;
+  /* NaN makes weights of what lies between seen and unseen NaN, which draws nothing */
+  for (guint i = 0; i < sim->n_vertices; i++) {
+    gdouble sum = 0.;
 
     for (guint k = 0; k < 4; k++)
       sum += from[k][3 * i] + from[k][3 * i + 1] + from[k][3 * i + 2];
-    if (!isfinite (sum) || !(weight > 0.))
-      continue;
-    total[p] += weight;
-    for (guint k = 0; k < 4; k++)
+    sim->weights[i] = isfinite (sum) && weights[i] > 0. ? weights[i] : NAN;
+  }
+  memmove (sim->weights, cloth_numerics_spread (sim->numerics, 1,
+          sim->weights), sim->body->n_vertices * sizeof (gdouble));
+  for (guint k = 0; k < 4; k++) {
+    const gdouble *y = cloth_numerics_spread (sim->numerics, 3, from[k]);
+
+    memset (sim->scratch[k], 0, 3 * (gsize) n * sizeof (gdouble));
+    memset (total, 0, n * sizeof (gdouble));
+    for (guint i = 0; i < sim->body->n_vertices; i++) {
+      guint p = sim->body->particle[i];
+      gdouble weight = sim->weights[i];
+
+      if (!(weight > 0.))
+        continue;
+      total[p] += weight;
       for (guint c = 0; c < 3; c++)
-        sim->scratch[k][3 * p + c] += (from[k][3 * i + c] -
+        sim->scratch[k][3 * p + c] += (y[3 * i + c] -
             sim->scratch[k][3 * p + c]) * (weight / total[p]);
+    }
   }
   group->backend->set_targets (group->lanes, lane,
       (const gdouble * const *) sim->scratch, total, gain, damping, t_now,

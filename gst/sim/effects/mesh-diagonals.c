@@ -15,7 +15,8 @@ const ClothEffect cloth_effect_mesh_diagonals = {
   .side = CLOTH_EFFECT_NUMERICS,
   .blurb =
       "Squares of the mesh are cut along other diagonals: 0 leaves "
-      "them, 1 takes the other diagonal, 2 alternates.",
+      "them (in a grid they alternate), 1 takes the other diagonal of each, "
+      "2 lets all of a grid run the same way.",
   .source =
       "The diagonals alone moved a swaying sheet by 43 mm.",
   .regressor =

@@ -14,7 +14,7 @@ const ClothEffect cloth_effect_mesh_resolution = {
   .id = "mesh_resolution",
   .side = CLOTH_EFFECT_NUMERICS,
   .blurb =
-      "The mesh has other triangles: edges are divided by the factor.",
+      "The mesh is finer: its edges are halved once or twice.",
   .source =
       "Compare h with h/2.",
   .regressor =
@@ -23,9 +23,9 @@ const ClothEffect cloth_effect_mesh_resolution = {
   .confusions = confusions,
   .n_parameters = 1,
   .parameters = {
-    {.name = "factor", .unit = "1", .null_value = 1, .min = 0.25, .max = 4,
-        .prior = 1,
-        .blurb = "How many times as many edges lie along a length"},
+    {.name = "factor", .unit = "1", .null_value = 1, .min = 1, .max = 4,
+        .prior = 1, .one_sided = TRUE,
+        .blurb = "How many times as many edges lie along a length: 1, 2 or 4"},
   }
 };
 /* *INDENT-ON* */
