@@ -8,3 +8,4 @@
 #include <gst/cloth/gstclothquads.h>
 #include <gst/cloth/gstclothmesh.h>
 #include <gst/cloth/gstclothobservations.h>
+#include <gst/cloth/gstclothgap.h>

@@ -21,6 +21,16 @@ static const Row rows[] = {
 #include "tests/elements/metasurvival.inc"
 };
 
+typedef struct
+{
+  const gchar *chain;
+  const gchar *gap;             /* kept or lost */
+} GapRow;
+
+static const GapRow gap_rows[] = {
+#include "tests/elements/metasurvival-gap.inc"
+};
+
 static GstBuffer *
 make_picture (guint number)
 {
@@ -164,12 +174,106 @@ GST_START_TEST (test_rows)
 
 GST_END_TEST;
 
+static GstBuffer *
+make_mesh (guint number)
+{
+  const gfloat places[12] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0 };
+  const guint8 states[4] = { 1, 1, 1, 1 };
+  gfloat residuals[12] = { 0.001f * (gfloat) number };
+  g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_new (number, 4, places, states,
+      NULL);
+  GstBuffer *buffer = gst_cloth_mesh_to_buffer (mesh);
+
+  gst_buffer_add_cloth_gap_meta (buffer, gst_cloth_gap_new (number, 4,
+          residuals, NULL));
+  GST_BUFFER_PTS (buffer) = gst_util_uint64_scale (number, GST_SECOND, 25);
+  GST_BUFFER_DURATION (buffer) = GST_SECOND / 25;
+  return buffer;
+}
+
+/* The gap must still be that of the mesh it lies on. */
+static const gchar *
+judge_gap (GstBuffer * buffer)
+{
+  GstClothGap *gap = gst_buffer_get_cloth_gap (buffer);
+  g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_from_buffer (buffer, NULL);
+
+  if (!mesh)
+    return "wrong";
+  if (!gap)
+    return "lost";
+  return gst_cloth_gap_get_sequence (gap) == gst_cloth_mesh_get_sequence (mesh)
+      && gst_cloth_gap_get_residuals (gap, NULL)[0] ==
+      0.001f * (gfloat) gst_cloth_mesh_get_sequence (mesh) ? "kept" : "wrong";
+}
+
+static guint
+run_gap_chain (const gchar * chain, const gchar ** verdict)
+{
+  g_autofree gchar *line = g_strdup_printf ("appsrc name=source format=time "
+      "! %s ! appsink name=sink sync=false", chain);
+  g_autoptr (GstClothTopology) topology =
+      gst_cloth_topology_new_grid (2, 2, 1, 1, NULL);
+  g_autoptr (GstCaps) caps = gst_cloth_topology_to_caps (topology, 25, 1);
+  g_autoptr (GError) error = NULL;
+  g_autoptr (GstElement) pipeline = gst_parse_launch (line, &error);
+  g_autoptr (GstElement) source = NULL;
+  g_autoptr (GstElement) sink = NULL;
+  guint seen = 0;
+  GstFlowReturn flow;
+
+  g_assert_no_error (error);
+  source = gst_bin_get_by_name (GST_BIN (pipeline), "source");
+  sink = gst_bin_get_by_name (GST_BIN (pipeline), "sink");
+  g_object_set (source, "caps", caps, NULL);
+  gst_element_set_state (pipeline, GST_STATE_PLAYING);
+  for (guint i = 0; i < FRAMES; i++) {
+    GstBuffer *mesh = make_mesh (i);
+
+    g_signal_emit_by_name (source, "push-buffer", mesh, &flow);
+    gst_buffer_unref (mesh);
+  }
+  g_signal_emit_by_name (source, "end-of-stream", &flow);
+  *verdict = NULL;
+  while (TRUE) {
+    g_autoptr (GstSample) sample = NULL;
+
+    g_signal_emit_by_name (sink, "try-pull-sample", 30 * GST_SECOND, &sample);
+    if (!sample)
+      break;
+    agree (verdict, judge_gap (gst_sample_get_buffer (sample)));
+    seen++;
+  }
+  gst_element_set_state (pipeline, GST_STATE_NULL);
+  return seen;
+}
+
+GST_START_TEST (test_gap_rows)
+{
+  guint wrong = 0;
+
+  for (guint i = 0; i < G_N_ELEMENTS (gap_rows); i++) {
+    const gchar *verdict;
+    guint seen = run_gap_chain (gap_rows[i].chain, &verdict);
+
+    if (seen != FRAMES || g_strcmp0 (verdict, gap_rows[i].gap) != 0) {
+      g_printerr ("%s: %u meshes, gap %s; the table says %s\n",
+          gap_rows[i].chain, seen, verdict, gap_rows[i].gap);
+      wrong++;
+    }
+  }
+  fail_unless_equals_int (wrong, 0);
+}
+
+GST_END_TEST;
+
 /* The page has exactly these rows, in this order. */
 GST_START_TEST (test_page)
 {
   g_autoptr (GString) table =
       g_string_new ("| chain | saddles, quads | capture "
       "time |\n|---|---|---|\n");
+  g_autoptr (GString) gaps = g_string_new ("| chain | gap |\n|---|---|\n");
   g_autofree gchar *text = NULL;
   g_autoptr (GError) error = NULL;
 
@@ -177,12 +281,19 @@ GST_START_TEST (test_page)
     g_string_append_printf (table, "| `%s` | %s | %s |\n", rows[i].chain,
         rows[i].places, rows[i].time);
   g_string_append (table, "\n");
+  for (guint i = 0; i < G_N_ELEMENTS (gap_rows); i++)
+    g_string_append_printf (gaps, "| `%s` | %s |\n", gap_rows[i].chain,
+        gap_rows[i].gap);
+  g_string_append (gaps, "\n");
   g_file_get_contents (TEST_DATA "/../../docs/metadata.md", &text, NULL,
       &error);
   g_assert_no_error (error);
   if (!strstr (text, table->str))
     g_printerr ("docs/metadata.md should have this table:\n%s", table->str);
   fail_unless (strstr (text, table->str) != NULL);
+  if (!strstr (text, gaps->str))
+    g_printerr ("docs/metadata.md should have this table:\n%s", gaps->str);
+  fail_unless (strstr (text, gaps->str) != NULL);
 }
 
 GST_END_TEST;
@@ -195,6 +306,7 @@ metasurvival_suite (void)
 
   suite_add_tcase (suite, chain);
   tcase_add_test (chain, test_rows);
+  tcase_add_test (chain, test_gap_rows);
   tcase_add_test (chain, test_page);
   return suite;
 }

@@ -170,6 +170,22 @@ class Streams(unittest.TestCase):
         packed = GstCloth.observations_pack(target)
         self.assertEqual(packed.extract_dup(0, packed.get_size()), data)
 
+    def test_gap(self):
+        buffer = Gst.Buffer.new()
+        self.assertIsNone(GstCloth.buffer_get_cloth_gap(buffer))
+        GstCloth.buffer_add_cloth_gap_meta(
+            buffer, GstCloth.Gap.new(9, [0.5, -0.25, 1, math.nan, 0, 0], [0.125, math.nan]))
+        gap = GstCloth.buffer_get_cloth_gap(buffer.copy())
+        self.assertEqual((gap.get_sequence(), gap.get_n_vertices()), (9, 2))
+        self.assertEqual(gap.get_residuals()[:3], [0.5, -0.25, 1])
+        self.assertTrue(all(map(math.isnan, gap.get_residuals()[3:])))
+        self.assertEqual(gap.get_sigmas()[0], 0.125)
+        self.assertTrue(math.isnan(GstCloth.Gap.new(0, [1, 2, 3], None).get_sigmas()[0]))
+        with self.assertRaises(GLib.Error):
+            GstCloth.Gap.new(0, [1, 2], None)
+        with self.assertRaises(GLib.Error):
+            GstCloth.Gap.new(0, [1, 2, 3], [1, 2])
+
     def test_errors(self):
         bad = Gst.Buffer.new_wrapped(b'GCMB\2\0\x20\0')
         with self.assertRaises(GLib.Error) as caught:
