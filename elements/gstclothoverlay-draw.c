@@ -1,4 +1,4 @@
-/* clothoverlay: squares and saddles from their metadata into a video frame.
+/* clothoverlay: squares, saddles and gaps from their metadata into a video frame.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #ifdef HAVE_CONFIG_H
@@ -142,6 +142,115 @@ gst_cloth_overlay_draw_saddles (const ClothCanvas * canvas,
     cloth_draw_line (canvas, candidates[i].x, candidates[i].y, candidates[i].x,
         candidates[i].y, style->line_width, &colour);
   }
+}
+
+/* ---- the gap ---- */
+
+/* The scale's bar in a picture of this height and more, px. */
+#define BAR_HEIGHT 96.0f
+#define BAR_WIDTH 10.0f
+#define BAR_MARGIN 12.0f
+#define DIGIT_HEIGHT 11.0f
+
+/* The report's colours: plain cloth for no distance, to a dark red. */
+const ClothColour *
+gst_cloth_overlay_heat_colours (void)
+{
+  static const struct
+  {
+    gfloat at, rgb[3];
+  } stops[5] = {
+    {0.00f, {240, 234, 222}}, {0.20f, {248, 214, 150}}, {0.45f, {244, 150, 70}},
+    {0.70f, {214, 62, 52}}, {1.00f, {104, 10, 62}}
+  };
+  static const ClothColour unseen = { 0.502f, 0.525f, 0.569f, 1 };
+  static ClothColour colours[GST_CLOTH_OVERLAY_HEATS];
+  static gsize done;
+
+  if (g_once_init_enter (&done)) {
+    guint i, k = 0, n = GST_CLOTH_OVERLAY_HEATS - 1;
+
+    for (i = 0; i < n; i++) {
+      gfloat at = (gfloat) i / (gfloat) (n - 1), f;
+      gfloat *to[3] = { &colours[i].r, &colours[i].g, &colours[i].b };
+      guint c;
+
+      while (k < 3 && stops[k + 1].at < at) {
+        k++;
+      }
+      f = (at - stops[k].at) / (stops[k + 1].at - stops[k].at);
+      for (c = 0; c < 3; c++) {
+        *to[c] = (stops[k].rgb[c] + f * (stops[k + 1].rgb[c] -
+                stops[k].rgb[c])) / 255;
+      }
+      colours[i].a = 1;
+    }
+    colours[n] = unseen;
+    g_once_init_leave (&done, 1);
+  }
+  return colours;
+}
+
+void
+gst_cloth_overlay_heat (GstClothGap * gap, guint scale_mm, guint8 * heats)
+{
+  const guint last = GST_CLOTH_OVERLAY_HEATS - 2;
+  const gfloat *r = gst_cloth_gap_get_residuals (gap, NULL);
+  const gfloat per_metre = 1000 * (gfloat) last / (gfloat) scale_mm;
+  guint i, n = gst_cloth_gap_get_n_vertices (gap);
+
+  for (i = 0; i < n; i++, r += 3) {
+    gfloat heat = per_metre * sqrtf (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+
+    heats[i] = (guint8) (isnan (heat) ? last + 1 :
+        heat < (gfloat) last ? (guint) (heat + 0.5f) : last);
+  }
+}
+
+/* A number with an edge of the other lightness, so that any film leaves it legible. */
+static void
+draw_label (const ClothCanvas * canvas, gint number, gfloat x, gfloat y,
+    gfloat size, gfloat opacity)
+{
+  const gfloat origin[2] = { x, y }, right[2] = { 0.57f * size, 0 };
+  const gfloat down[2] = { 0, size };
+  ClothColour edge = with_opacity (text_on_white, opacity);
+  ClothColour text = with_opacity (text_on_black, opacity);
+
+  cloth_draw_number (canvas, number, origin, right, down, 0.36f * size, &edge);
+  cloth_draw_number (canvas, number, origin, right, down, 0.14f * size, &text);
+}
+
+void
+gst_cloth_overlay_draw_scale (const ClothCanvas * canvas, gint width,
+    gint height, const GstClothOverlayStyle * style)
+{
+  const ClothColour *colours = gst_cloth_overlay_heat_colours ();
+  const guint n = GST_CLOTH_OVERLAY_HEATS - 1;
+  gfloat grow = MAX (1.0f, (gfloat) height / 480);
+  gfloat tall = grow * BAR_HEIGHT, wide = grow * BAR_WIDTH;
+  gfloat left = grow * BAR_MARGIN;
+  gfloat bottom = (gfloat) height - grow * BAR_MARGIN;
+  gfloat size = grow * DIGIT_HEIGHT;
+  guint i;
+
+  /* In a thumbnail there is no place for it. */
+  if ((gfloat) height < 2 * tall || (gfloat) width < 2 * tall) {
+    return;
+  }
+  for (i = 0; i < n; i++) {
+    gfloat y0 = bottom - tall * (gfloat) (i + 1) / (gfloat) n;
+    gfloat y1 = bottom - tall * (gfloat) i / (gfloat) n;
+    const gfloat x[4] = { left, left + wide, left + wide, left };
+    const gfloat y[4] = { y0, y0, y1, y1 };
+    ClothColour colour = with_opacity (colours[i], style->opacity);
+
+    cloth_draw_quad (canvas, x, y, &colour);
+  }
+  draw_label (canvas, 0, left + 1.6f * wide, bottom - size, size,
+      style->opacity);
+  draw_label (canvas, (gint) style->gap_scale, left + 1.6f * wide,
+      bottom - tall, size, style->opacity);
 }
 
 /* ---- the picture ---- */

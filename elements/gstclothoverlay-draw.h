@@ -11,8 +11,9 @@ G_BEGIN_DECLS
 
 /* The properties of the element that say how things look. */
 typedef struct {
-  gboolean draw_saddles, draw_quads, draw_indices, draw_mesh;
+  gboolean draw_saddles, draw_quads, draw_indices, draw_mesh, draw_gap;
   gfloat line_width, opacity, fill_opacity, c_low, ellipse_scale;
+  guint gap_scale;              /* mm */
 } GstClothOverlayStyle;
 
 /* A canvas on the mapped frame, colours by its colorimetry. */
@@ -21,5 +22,16 @@ void gst_cloth_overlay_draw_quads (const ClothCanvas * canvas,
     const GstClothQuad * quads, guint n, const GstClothOverlayStyle * style);
 void gst_cloth_overlay_draw_saddles (const ClothCanvas * canvas,
     GstClothSaddles * saddles, const GstClothOverlayStyle * style);
+
+/* Colours of a heat map: the lowest for no distance, the last but one for the scale's
+ * end and all beyond, the last for a vertex whose distance isn't known. */
+#define GST_CLOTH_OVERLAY_HEATS 65
+const ClothColour *gst_cloth_overlay_heat_colours (void);
+/* Which of them each vertex has, by the length of its residual. */
+void gst_cloth_overlay_heat (GstClothGap * gap, guint scale_mm,
+    guint8 * heats);
+/* The scale, at the lower left, 0 and its end in mm beside it. */
+void gst_cloth_overlay_draw_scale (const ClothCanvas * canvas, gint width,
+    gint height, const GstClothOverlayStyle * style);
 
 G_END_DECLS

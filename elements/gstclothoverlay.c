@@ -8,7 +8,8 @@
  *
  * Draws the saddles and squares that a picture carries as metadata, and, when its
  * `mesh` pad is linked, a mesh as the camera `camera` of `rig` sees it. The picture is
- * drawn on in place; one with nothing to draw passes untouched.
+ * drawn on in place; one with nothing to draw passes untouched. A mesh that `clothgap`
+ * has been over is drawn as a heat map of its distance from the simulation.
  *
  * ## Squares over a film
  * |[
@@ -21,6 +22,13 @@
  * gst-launch-1.0 filesrc location=cam0.mp4 ! decodebin ! clothoverlay name=o \
  *     rig=rig.json camera=cam0 ! videoconvert ! autovideosink \
  *     meshsrc location=take ! o.mesh
+ * ]|
+ *
+ * ## Where a simulation departs from the film
+ * |[
+ * gst-launch-1.0 filesrc location=cam0.mp4 ! decodebin ! clothoverlay name=o \
+ *     rig=rig.json camera=cam0 gap-scale=20 ! videoconvert ! autovideosink \
+ *     meshsrc location=take ! clothgap model=model.json location=take ! o.mesh
  * ]|
  *
  * Since: 0.1
@@ -46,6 +54,8 @@ GST_DEBUG_CATEGORY_STATIC (cloth_overlay_debug);
 #define DEFAULT_DRAW_QUADS TRUE
 #define DEFAULT_DRAW_INDICES FALSE
 #define DEFAULT_DRAW_MESH TRUE
+#define DEFAULT_DRAW_GAP TRUE
+#define DEFAULT_GAP_SCALE 10
 #define DEFAULT_LINE_WIDTH 1.5
 #define DEFAULT_OPACITY 1.0
 #define DEFAULT_FILL_OPACITY 0.3
@@ -58,6 +68,8 @@ GST_DEBUG_CATEGORY_STATIC (cloth_overlay_debug);
 
 /* Of the lines of a mesh that lie behind another part of it. */
 #define HIDDEN_OPACITY 0.25f
+/* Of the heat map: the film shows through. */
+#define HEAT_OPACITY 0.6f
 /* A calibration fits a picture of other size when the shapes agree this well. */
 #define ASPECT_SLACK 0.01
 
@@ -88,6 +100,7 @@ struct _GstClothOverlay
   GstCaps *video_caps;
   ClothWireframe *wire;
   guint n_vertices;
+  guint8 *heats;                /* one a vertex */
   ClothRig *rig;
   const ClothCamera *camera;    /* of @rig */
 };
@@ -105,6 +118,8 @@ enum
   PROP_DRAW_QUADS,
   PROP_DRAW_INDICES,
   PROP_DRAW_MESH,
+  PROP_DRAW_GAP,
+  PROP_GAP_SCALE,
   PROP_LINE_WIDTH,
   PROP_OPACITY,
   PROP_FILL_OPACITY,
@@ -208,10 +223,14 @@ gst_cloth_overlay_draw_mesh (GstClothOverlay * self, const ClothCanvas * canvas,
 {
   g_autoptr (GError) error = NULL;
   g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_from_buffer (buffer, &error);
+  GstClothGap *gap = style->draw_gap ? gst_buffer_get_cloth_gap (buffer) : NULL;
+  gint width = GST_VIDEO_INFO_WIDTH (&self->info);
+  gint height = GST_VIDEO_INFO_HEIGHT (&self->info);
   ClothWireStyle wire_style = {
     G_N_ELEMENTS (vertex_colours), vertex_colours, style->line_width,
-    style->opacity, HIDDEN_OPACITY
+    style->opacity, HIDDEN_OPACITY, 0
   };
+  const guint8 *states;
 
   if (!mesh) {
     GST_ELEMENT_ERROR (self, STREAM, DECODE, ("Bad mesh: %s", error->message),
@@ -224,10 +243,19 @@ gst_cloth_overlay_draw_mesh (GstClothOverlay * self, const ClothCanvas * canvas,
             gst_cloth_mesh_get_n_vertices (mesh), self->n_vertices), (NULL));
     return FALSE;
   }
-  cloth_wireframe_draw (self->wire, canvas, GST_VIDEO_INFO_WIDTH (&self->info),
-      GST_VIDEO_INFO_HEIGHT (&self->info), self->camera,
-      gst_cloth_mesh_get_positions (mesh, NULL),
-      gst_cloth_mesh_get_states (mesh, NULL), &wire_style);
+  states = gst_cloth_mesh_get_states (mesh, NULL);
+  if (gap && gst_cloth_gap_get_n_vertices (gap) == self->n_vertices) {
+    gst_cloth_overlay_heat (gap, style->gap_scale, self->heats);
+    states = self->heats;
+    wire_style.n_colours = GST_CLOTH_OVERLAY_HEATS;
+    wire_style.colours = gst_cloth_overlay_heat_colours ();
+    wire_style.fill_opacity = HEAT_OPACITY * style->opacity;
+  }
+  cloth_wireframe_draw (self->wire, canvas, width, height, self->camera,
+      gst_cloth_mesh_get_positions (mesh, NULL), states, &wire_style);
+  if (states == self->heats) {
+    gst_cloth_overlay_draw_scale (canvas, width, height, style);
+  }
   return TRUE;
 }
 
@@ -254,6 +282,7 @@ gst_cloth_overlay_set_pad_caps (GstClothSync * sync, guint index,
   }
 
   g_clear_pointer (&self->wire, cloth_wireframe_free);
+  g_clear_pointer (&self->heats, g_free);
   if (!caps) {
     return TRUE;
   }
@@ -264,6 +293,7 @@ gst_cloth_overlay_set_pad_caps (GstClothSync * sync, guint index,
     return FALSE;
   }
   self->n_vertices = gst_cloth_topology_get_n_vertices (topology);
+  self->heats = g_malloc (self->n_vertices);
   faces = gst_cloth_topology_get_faces (topology, &n_indices);
   self->wire = cloth_wireframe_new (self->n_vertices,
       gst_cloth_topology_get_columns (topology),
@@ -422,6 +452,7 @@ gst_cloth_overlay_stop (GstAggregator * agg)
 
   gst_caps_replace (&self->video_caps, NULL);
   g_clear_pointer (&self->wire, cloth_wireframe_free);
+  g_clear_pointer (&self->heats, g_free);
   self->camera = NULL;
   g_clear_pointer (&self->rig, cloth_rig_free);
   return GST_AGGREGATOR_CLASS (gst_cloth_overlay_parent_class)->stop (agg);
@@ -448,6 +479,12 @@ gst_cloth_overlay_set_property (GObject * object, guint id,
       break;
     case PROP_DRAW_MESH:
       self->style.draw_mesh = g_value_get_boolean (value);
+      break;
+    case PROP_DRAW_GAP:
+      self->style.draw_gap = g_value_get_boolean (value);
+      break;
+    case PROP_GAP_SCALE:
+      self->style.gap_scale = g_value_get_uint (value);
       break;
     case PROP_LINE_WIDTH:
       self->style.line_width = (gfloat) g_value_get_double (value);
@@ -501,6 +538,12 @@ gst_cloth_overlay_get_property (GObject * object, guint id, GValue * value,
     case PROP_DRAW_MESH:
       g_value_set_boolean (value, self->style.draw_mesh);
       break;
+    case PROP_DRAW_GAP:
+      g_value_set_boolean (value, self->style.draw_gap);
+      break;
+    case PROP_GAP_SCALE:
+      g_value_set_uint (value, self->style.gap_scale);
+      break;
     case PROP_LINE_WIDTH:
       g_value_set_double (value, self->style.line_width);
       break;
@@ -536,6 +579,7 @@ gst_cloth_overlay_finalize (GObject * object)
 
   gst_caps_replace (&self->video_caps, NULL);
   g_clear_pointer (&self->wire, cloth_wireframe_free);
+  g_free (self->heats);
   g_clear_pointer (&self->rig, cloth_rig_free);
   g_free (self->rig_path);
   g_free (self->camera_name);
@@ -601,6 +645,15 @@ gst_cloth_overlay_class_init (GstClothOverlayClass * klass)
       "Draw the mesh of the mesh pad as a wireframe: green measured, amber from two "
       "views, blue filled, violet predicted; faint where hidden",
       DEFAULT_DRAW_MESH);
+  install_boolean (object_class, PROP_DRAW_GAP, "draw-gap",
+      "Where the mesh carries its distance from a simulation, draw it as a heat map, "
+      "pale for none to dark red for gap-scale, grey where not seen",
+      DEFAULT_DRAW_GAP);
+  g_object_class_install_property (object_class, PROP_GAP_SCALE,
+      g_param_spec_uint ("gap-scale", "gap-scale",
+          "Distance from the simulation that has the last colour, mm", 1, 99999,
+          DEFAULT_GAP_SCALE, G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+          GST_PARAM_CONTROLLABLE | GST_PARAM_MUTABLE_PLAYING));
   install_double (object_class, PROP_LINE_WIDTH, "line-width",
       "Width of all lines, px", 0.25, 100, DEFAULT_LINE_WIDTH);
   install_double (object_class, PROP_OPACITY, "opacity",
@@ -628,7 +681,7 @@ gst_cloth_overlay_class_init (GstClothOverlayClass * klass)
       &src_template, GST_TYPE_AGGREGATOR_PAD);
   gst_element_class_set_static_metadata (element_class, "Cloth overlay",
       "Filter/Effect/Video",
-      "Draws saddles, tracked squares and meshes over the picture",
+      "Draws saddles, tracked squares, meshes and their distance from a simulation",
       "The gst-cloth developers");
 }
 
@@ -639,6 +692,8 @@ gst_cloth_overlay_init (GstClothOverlay * self)
   self->style.draw_quads = DEFAULT_DRAW_QUADS;
   self->style.draw_indices = DEFAULT_DRAW_INDICES;
   self->style.draw_mesh = DEFAULT_DRAW_MESH;
+  self->style.draw_gap = DEFAULT_DRAW_GAP;
+  self->style.gap_scale = DEFAULT_GAP_SCALE;
   self->style.line_width = (gfloat) DEFAULT_LINE_WIDTH;
   self->style.opacity = (gfloat) DEFAULT_OPACITY;
   self->style.fill_opacity = (gfloat) DEFAULT_FILL_OPACITY;

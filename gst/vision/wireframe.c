@@ -20,9 +20,10 @@ typedef struct
 struct _ClothWireframe
 {
   guint n_vertices;
-  guint n_edges, n_triangles;
+  guint n_edges, n_triangles, n_faces;
   guint32 *edges;               /* 2 an edge, each edge once */
   guint32 *triangles;           /* 3 a triangle */
+  guint32 *faces;               /* 4 a face */
   Projected *points;
   gfloat *depth;
   gsize depth_allocated;
@@ -83,6 +84,7 @@ cloth_wireframe_new (guint n_vertices, guint columns, guint rows,
 
   keys = g_new (guint64, 4 * (gsize) n_faces + 1);
   wire->triangles = g_new (guint32, 6 * (gsize) n_faces + 1);
+  wire->faces = g_new (guint32, 4 * (gsize) n_faces + 1);
   for (i = 0; i < n_faces; i++) {
     const guint32 *f = &faces[4 * (gsize) i];
     guint k, n = f[3] == G_MAXUINT32 ? 3 : 4;
@@ -94,6 +96,7 @@ cloth_wireframe_new (guint n_vertices, guint columns, guint rows,
     if (!in_range) {
       continue;
     }
+    memcpy (wire->faces + 4 * (gsize) wire->n_faces++, f, 4 * sizeof *f);
     for (k = 0; k < n; k++) {
       keys[n_keys++] = edge_key (f[k], f[(k + 1) % n]);
     }
@@ -132,6 +135,7 @@ cloth_wireframe_free (ClothWireframe * wire)
   }
   g_free (wire->edges);
   g_free (wire->triangles);
+  g_free (wire->faces);
   g_free (wire->points);
   g_free (wire->depth);
   g_free (wire);
@@ -252,6 +256,62 @@ is_hidden (const ClothWireframe * wire, gint columns, gint rows, gfloat x,
   return wire->depth[(gsize) j * (gsize) columns + (gsize) i] < z - slack;
 }
 
+static void
+fill_face (const ClothWireframe * wire, const ClothCanvas * canvas,
+    gint columns, gint rows, const guint32 * face, const gfloat * positions,
+    const guint8 * states, const ClothWireStyle * style)
+{
+  guint k, n = face[3] == G_MAXUINT32 ? 3 : 4;
+  ClothColour colour = { 0, 0, 0, 0 };
+  gfloat x[4], y[4], centre[3] = { 0 }, slack = 0, share = 1 / (gfloat) n;
+
+  for (k = 0; k < n; k++) {
+    const Projected *p = &wire->points[face[k]];
+    const ClothColour *one =
+        &style->colours[MIN (states[face[k]], style->n_colours - 1)];
+
+    if (!p->visible) {
+      return;
+    }
+    x[k] = p->x;
+    y[k] = p->y;
+    centre[0] += share * p->x;
+    centre[1] += share * p->y;
+    centre[2] += share * p->z;
+    colour.r += share * one->r;
+    colour.g += share * one->g;
+    colour.b += share * one->b;
+    colour.a += share * one->a;
+  }
+  for (k = 0; k < 3; k++) {
+    gfloat d = positions[3 * (gsize) face[0] + k] -
+        positions[3 * (gsize) face[2] + k];
+
+    slack += d * d;
+  }
+  if (is_hidden (wire, columns, rows, centre[0], centre[1], centre[2],
+          sqrtf (slack))) {
+    return;
+  }
+  colour.a *= style->fill_opacity;
+  if (n == 4) {
+    cloth_draw_quad (canvas, x, y, &colour);
+    return;
+  }
+  /* three quads about the centre make a triangle */
+  for (k = 0; k < 3; k++) {
+    guint l = (k + 1) % 3, m = (k + 2) % 3;
+    const gfloat qx[4] = { x[k], 0.5f * (x[k] + x[l]), centre[0],
+      0.5f * (x[k] + x[m])
+    };
+    const gfloat qy[4] = { y[k], 0.5f * (y[k] + y[l]), centre[1],
+      0.5f * (y[k] + y[m])
+    };
+
+    cloth_draw_quad (canvas, qx, qy, &colour);
+  }
+}
+
 /**
  * cloth_wireframe_draw:
  * @wire: the wireframe
@@ -266,6 +326,7 @@ is_hidden (const ClothWireframe * wire, gint columns, gint rows, gfloat x,
  * Draws every edge whose two ends are known, each half in the colour of its end's
  * state. Halves that lie behind a face by more than the edge's own length are drawn
  * with the hidden opacity. Long edges stay straight: the lens bends their ends only.
+ * Faces are filled first, when the style has an opacity for them.
  *
  * Since: 0.1
  */
@@ -281,6 +342,10 @@ cloth_wireframe_draw (ClothWireframe * wire, const ClothCanvas * canvas,
 
   project (wire, width, height, camera, positions);
   draw_depth (wire, columns, rows);
+  for (i = 0; style->fill_opacity > 0 && i < wire->n_faces; i++) {
+    fill_face (wire, canvas, columns, rows, wire->faces + 4 * (gsize) i,
+        positions, states, style);
+  }
   for (i = 0; i < wire->n_edges; i++) {
     guint32 v[2] =
         { wire->edges[2 * (gsize) i], wire->edges[2 * (gsize) i + 1] };

@@ -25,6 +25,8 @@ typedef struct _ClothWireframe ClothWireframe;
  * @width: of a line, px
  * @opacity: of the lines, 0 … 1
  * @hidden_opacity: of those behind another part of the mesh; times @opacity
+ * @fill_opacity: of the faces, each in the mean colour of its corners; those behind
+ *   another part of the mesh or with a corner that is not known are not filled
  *
  * Since: 0.1
  */
@@ -34,6 +36,7 @@ typedef struct {
   gfloat width;
   gfloat opacity;
   gfloat hidden_opacity;
+  gfloat fill_opacity;
 } ClothWireStyle;
 
 ClothWireframe *cloth_wireframe_new (guint n_vertices, guint columns,

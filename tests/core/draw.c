@@ -286,6 +286,57 @@ test_hidden (void)
   cloth_wireframe_free (wire);
 }
 
+/* A square of 60 px and a triangle that is half of one, filled at half opacity in the
+ * mean of their corners' colours; a square behind the first one is not filled, nor one
+ * with a corner that isn't known. */
+static void
+test_filled (void)
+{
+  const ClothColour colours[2] = { {0, 0, 0, 1}, {0.8f, 0, 0, 1} };
+  const guint32 faces[3][4] = {
+    {0, 1, 2, 3}, {0, 1, 2, G_MAXUINT32}, {4, 5, 6, 7}
+  };
+  const guint8 states[8] = { 1, 1, 1, 0, 1, 1, 1, 1 };
+  const gdouble areas[2] = { 60 * 60, 60 * 60 / 2 };
+  const gdouble means[2] = { 0.6, 0.8 };
+  ClothCamera camera = pinhole ();
+  ClothWireStyle style = { 2, colours, 1, 0, 0, 0.5f };
+  gint round, i;
+
+  for (round = 0; round < 4; round++) {
+    ClothCanvas canvas = black_canvas (0);
+    ClothWireframe *wire = cloth_wireframe_new (8, 0, 0, faces[round % 2], 1);
+    gfloat positions[24];
+
+    if (round == 2) {
+      const guint32 both[8] = { 0, 1, 2, 3, 4, 5, 6, 7 };
+
+      cloth_wireframe_free (wire);
+      wire = cloth_wireframe_new (8, 0, 0, both, 2);
+    }
+    for (i = 0; i < 8; i++) {
+      gfloat half = i < 4 ? 0.3f : 0.1f, z = i < 4 ? 1 : 3;
+      gint k = i & 3;
+
+      positions[3 * i] = (k == 1 || k == 2 ? half : -half) * z;
+      positions[3 * i + 1] = (k > 1 ? half : -half) * z;
+      positions[3 * i + 2] = z;
+    }
+    if (round == 3) {
+      positions[4] = NAN;
+    }
+    cloth_wireframe_draw (wire, &canvas, SIZE, SIZE, &camera, positions, states,
+        &style);
+    if (round == 3) {
+      g_assert_cmpfloat (area (0), ==, 0);
+    } else {
+      assert_near (area (0), 0.5 * means[round % 2] * areas[round % 2], 0.02,
+          round ? round == 1 ? "triangle" : "two squares" : "square");
+    }
+    cloth_wireframe_free (wire);
+  }
+}
+
 /* Unknown vertices, ones behind the camera and ones at infinity draw nothing. */
 static void
 test_bad_vertices (void)
@@ -332,6 +383,7 @@ main (int argc, char **argv)
   g_test_add_func ("/draw/confidence-colour", test_confidence_colour);
   g_test_add_func ("/wireframe/edges", test_edges);
   g_test_add_func ("/wireframe/hidden", test_hidden);
+  g_test_add_func ("/wireframe/filled", test_filled);
   g_test_add_func ("/wireframe/bad-vertices", test_bad_vertices);
   return g_test_run ();
 }

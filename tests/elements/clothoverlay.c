@@ -645,6 +645,145 @@ GST_START_TEST (test_mesh)
 
 GST_END_TEST;
 
+/* ---- heat map ---- */
+
+/* The flat grid, every vertex @mm millimetres off; one vertex not seen. */
+static GstBuffer *
+gap_buffer (gfloat mm, guint n_gap, gint missing)
+{
+  GstBuffer *buffer = mesh_buffer (COLUMNS * ROWS, missing);
+  g_autofree gfloat *residuals = g_new (gfloat, 3 * n_gap);
+  guint i;
+
+  for (i = 0; i < n_gap; i++) {
+    /* 2² + 3² + 6² = 7² */
+    residuals[3 * i] = -2e-3f * mm / 7;
+    residuals[3 * i + 1] = 3e-3f * mm / 7;
+    residuals[3 * i + 2] = (gint) i == missing ? NAN : 6e-3f * mm / 7;
+  }
+  gst_buffer_add_cloth_gap_meta (buffer, gst_cloth_gap_new (0, n_gap, residuals,
+          NULL));
+  return buffer;
+}
+
+static GstBuffer *
+draw_gap (const gchar * properties, gint width, gint height,
+    GstVideoInfo * info, GstBuffer * mesh)
+{
+  g_autofree gchar *rig = write_rig ("", "");
+  g_autofree gchar *all = g_strdup_printf ("rig=%s %s", rig, properties);
+  GstBuffer *buffer = picture ("RGB", width, height, 3, info), *out;
+  GstHarness *h = overlay (all, info), *m = mesh_pad (h);
+
+  gst_harness_push (h, buffer);
+  gst_harness_push (m, mesh);
+  out = gst_harness_pull (h);
+  fail_unless (out != NULL);
+  gst_harness_teardown (m);
+  gst_harness_teardown (h);
+  g_unlink (rig);
+  return out;
+}
+
+static void
+check_rgb (GstBuffer * buffer, GstVideoInfo * info, gint x, gint y,
+    const gdouble rgb[3], gdouble most, const gchar * what)
+{
+  GstVideoFrame frame;
+  guint c;
+
+  fail_unless (gst_video_frame_map (&frame, info, buffer, GST_MAP_READ));
+  for (c = 0; c < 3; c++) {
+    gint got = *pixel (&frame, c, x, y);
+
+    fail_unless (fabs (got - rgb[c]) <= most, "%s (%d, %d) component %u: %d, "
+        "not %.1f", what, x, y, c, got, rgb[c]);
+  }
+  gst_video_frame_unmap (&frame);
+}
+
+/* The ends of the report's scale, 60% over the film's 128, in the middle of a cell; the
+ * full colour on the line between two cells. */
+GST_START_TEST (test_gap_colours)
+{
+  static const struct
+  {
+    gfloat mm;
+    const gchar *properties;
+    gdouble rgb[3];
+  } cases[] = {
+    {0, "", {240, 234, 222}}, {10, "", {104, 10, 62}},
+    {4000, "", {104, 10, 62}}, {9, "gap-scale=20", {244, 150, 70}},
+    {0.45f, "gap-scale=1", {244, 150, 70}}, {14, "gap-scale=20", {214, 62, 52}}
+  };
+  guint i, c;
+
+  for (i = 0; i < G_N_ELEMENTS (cases); i++) {
+    GstVideoInfo info;
+    GstBuffer *out = draw_gap (cases[i].properties, 80, 60, &info,
+        gap_buffer (cases[i].mm, COLUMNS * ROWS, -1));
+    gdouble face[3];
+
+    for (c = 0; c < 3; c++) {
+      face[c] = FILL + 0.6 * (cases[i].rgb[c] - FILL);
+    }
+    check_rgb (out, &info, 22, 22, face, 4, cases[i].properties);
+    check_rgb (out, &info, 22, 30, cases[i].rgb, 5, "line");
+    gst_buffer_unref (out);
+  }
+}
+
+GST_END_TEST;
+
+/* A face with an unseen corner is not filled, nor is anything when it is switched off
+ * or when the gap is of another mesh. */
+GST_START_TEST (test_gap_not_drawn)
+{
+  const gdouble film[3] = { FILL, FILL, FILL };
+  GstVideoInfo info;
+  GstBuffer *out;
+
+  out = draw_gap ("", 80, 60, &info, gap_buffer (10, COLUMNS * ROWS, 5));
+  check_rgb (out, &info, 22, 22, film, 1, "unseen corner");
+  gst_buffer_unref (out);
+
+  out = draw_gap ("draw-gap=false", 80, 60, &info, gap_buffer (10,
+          COLUMNS * ROWS, -1));
+  check_rgb (out, &info, 22, 22, film, 1, "switched off");
+  gst_buffer_unref (out);
+
+  out = draw_gap ("", 80, 60, &info, gap_buffer (10, COLUMNS * ROWS - 1, -1));
+  check_rgb (out, &info, 22, 22, film, 1, "another mesh");
+  gst_buffer_unref (out);
+
+  out = draw_gap ("draw-mesh=false", 80, 60, &info, gap_buffer (10,
+          COLUMNS * ROWS, -1));
+  check_rgb (out, &info, 22, 22, film, 1, "no mesh");
+  gst_buffer_unref (out);
+}
+
+GST_END_TEST;
+
+/* The scale: its first colour below, its last above, and only in pictures with room. */
+GST_START_TEST (test_gap_scale)
+{
+  const gdouble low[3] = { 240, 234, 222 }, high[3] = { 104, 10, 62 };
+  const gdouble film[3] = { FILL, FILL, FILL };
+  GstVideoInfo info;
+  GstBuffer *out = draw_gap ("", 640, 480, &info, gap_buffer (0, COLUMNS * ROWS,
+          -1));
+
+  check_rgb (out, &info, 17, 467, low, 1, "low end");
+  check_rgb (out, &info, 17, 373, high, 1, "high end");
+  check_rgb (out, &info, 17, 370, film, 1, "above");
+  gst_buffer_unref (out);
+  out = draw_gap ("", 160, 120, &info, gap_buffer (0, COLUMNS * ROWS, -1));
+  check_rgb (out, &info, 4, 115, film, 1, "thumbnail");
+  gst_buffer_unref (out);
+}
+
+GST_END_TEST;
+
 /* Pictures without a mesh pass, meshes without a picture are dropped. */
 GST_START_TEST (test_mesh_pairing)
 {
@@ -1059,6 +1198,9 @@ clothoverlay_suite (void)
   tcase_add_test (tc, test_covariance_ellipse);
   tcase_add_test (tc, test_indices);
   tcase_add_test (tc, test_mesh);
+  tcase_add_test (tc, test_gap_colours);
+  tcase_add_test (tc, test_gap_not_drawn);
+  tcase_add_test (tc, test_gap_scale);
   tcase_add_test (tc, test_mesh_pairing);
   tcase_add_test (tc, test_film_ends);
   tcase_add_test (tc, test_camera_offset);
