@@ -58,6 +58,7 @@ struct _GstQuadTrack
   ClothPattern *pattern;
   ClothQuadTracker *tracker;
   ClothSaddleDetector *detector;
+  GArray *saddles;              /* GstClothSaddle */
   GArray *candidates;           /* ClothSaddleCandidate */
   GArray *quads;                /* GstClothQuad */
   gboolean found;
@@ -227,6 +228,55 @@ gst_quad_track_tell (GstQuadTrack * self, const GstClothFilterFrame * frame,
               "squares", G_TYPE_UINT, tracked, NULL)));
 }
 
+/* Whether a saddle that came as metadata is one of this picture: anybody may have written
+ * it. What compares with NaN is false. */
+static inline gboolean
+is_usable (const GstClothSaddle * saddle, const ClothImage * image)
+{
+  return saddle->x >= 0 && saddle->y >= 0
+      && saddle->x <= (gfloat) (image->width - 1)
+      && saddle->y <= (gfloat) (image->height - 1)
+      && saddle->axis >= 0 && saddle->axis <= (gfloat) G_PI
+      && saddle->cov_xx >= 0 && saddle->cov_yy >= 0
+      && isfinite (saddle->response + saddle->cov_xx + saddle->cov_xy +
+      saddle->cov_yy);
+}
+
+/* Takes over the saddles of @meta. */
+static void
+gst_quad_track_take_saddles (GstQuadTrack * self, GstClothSaddles * meta,
+    const ClothImage * image)
+{
+  guint n;
+  const GstClothSaddle *refined = gst_cloth_saddles_get_refined (meta, &n);
+  const GstClothCandidate *from;
+  guint n_usable = 0;
+
+  g_array_set_size (self->saddles, n);
+  for (guint k = 0; k < n; k++)
+    if (is_usable (&refined[k], image))
+      g_array_index (self->saddles, GstClothSaddle, n_usable++) = refined[k];
+  if (n_usable < n)
+    GST_DEBUG_OBJECT (self, "%u of %u saddles are none of this picture",
+        n - n_usable, n);
+  g_array_set_size (self->saddles, n_usable);
+
+  from = gst_cloth_saddles_get_candidates (meta, &n);
+  g_array_set_size (self->candidates, 0);
+  for (guint k = 0; k < n; k++) {
+    ClothSaddleCandidate candidate;
+
+    if (!(from[k].x >= -0.5f && from[k].y >= -0.5f
+            && from[k].x < (gfloat) image->width - 0.5f
+            && from[k].y < (gfloat) image->height - 0.5f))
+      continue;
+    candidate.x = (guint16) lrintf (from[k].x);
+    candidate.y = (guint16) lrintf (from[k].y);
+    candidate.response = from[k].response;
+    g_array_append_val (self->candidates, candidate);
+  }
+}
+
 static GstFlowReturn
 gst_quad_track_analyse (GstClothFilter * filter,
     const GstClothFilterFrame * frame)
@@ -240,18 +290,10 @@ gst_quad_track_analyse (GstClothFilter * filter,
   guint n_saddles, n_candidates, n, tracked = 0;
 
   if (meta) {
-    const GstClothCandidate *from =
-        gst_cloth_saddles_get_candidates (meta, &n_candidates);
-
-    saddles = (const ClothSaddle *) gst_cloth_saddles_get_refined (meta,
-        &n_saddles);
-    g_array_set_size (self->candidates, n_candidates);
-    for (guint k = 0; k < n_candidates; k++)
-      g_array_index (self->candidates, ClothSaddleCandidate, k) =
-          (ClothSaddleCandidate) {
-      (guint16) CLAMP (lrintf (from[k].x), 0, frame->luma.width - 1),
-          (guint16) CLAMP (lrintf (from[k].y), 0, frame->luma.height - 1),
-          from[k].response};
+    gst_quad_track_take_saddles (self, meta, &frame->luma);
+    saddles = (const ClothSaddle *) self->saddles->data;
+    n_saddles = self->saddles->len;
+    n_candidates = self->candidates->len;
     candidates = (const ClothSaddleCandidate *) self->candidates->data;
   } else {
     ClothSaddleParams saddle_params = cloth_saddle_default_params ();
@@ -476,6 +518,7 @@ gst_quad_track_finalize (GObject * object)
   g_free (self->seed);
   g_array_unref (self->clicks);
   g_array_unref (self->seeds);
+  g_array_unref (self->saddles);
   g_array_unref (self->candidates);
   g_array_unref (self->quads);
   G_OBJECT_CLASS (gst_quad_track_parent_class)->finalize (object);
@@ -579,6 +622,7 @@ gst_quad_track_init (GstQuadTrack * self)
   self->params = cloth_quad_default_params ();
   self->clicks = g_array_new (FALSE, FALSE, sizeof (gfloat));
   self->seeds = g_array_new (FALSE, FALSE, sizeof (gfloat));
+  self->saddles = g_array_new (FALSE, FALSE, sizeof (GstClothSaddle));
   self->candidates = g_array_new (FALSE, FALSE, sizeof (ClothSaddleCandidate));
   self->quads = g_array_new (FALSE, FALSE, sizeof (GstClothQuad));
 }

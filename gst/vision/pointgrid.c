@@ -79,21 +79,29 @@ cloth_point_grid_clear (ClothPointGrid * grid, gint width, gint height,
     g_array_index (grid->cells, gint, k) = -1;
 }
 
+/* What is no number comes into cell 0, so that it does no harm. */
+static inline gint
+cell_along (gfloat at, gint n)
+{
+  return at > 0 ? (gint) MIN (at, (gfloat) (n - 1)) : 0;
+}
+
 static void
 cell_of (const ClothPointGrid * grid, gfloat x, gfloat y, gint * column,
     gint * row)
 {
-  *column = (gint) (CLAMP (x / grid->size, 0, (gfloat) (grid->columns - 1)));
-  *row = (gint) (CLAMP (y / grid->size, 0, (gfloat) (grid->rows - 1)));
+  *column = cell_along (x / grid->size, grid->columns);
+  *row = cell_along (y / grid->size, grid->rows);
 }
 
 /**
  * cloth_point_grid_add:
  * @grid: the grid
- * @x: column, px, finite; may lie outside the picture
+ * @x: column, px; may lie outside the picture
  * @y: row, px
  *
- * Adds a point; points are numbered from 0 in the order they are added.
+ * Adds a point; points are numbered from 0 in the order they are added. One with a NaN
+ * coordinate is counted but never found.
  *
  * Since: 0.1
  */
@@ -113,14 +121,14 @@ cloth_point_grid_add (ClothPointGrid * grid, gfloat x, gfloat y)
 /**
  * cloth_point_grid_nearest:
  * @grid: the grid
- * @x: column, px, finite
+ * @x: column, px
  * @y: row, px
  * @radius: largest distance, px
  * @near: (out caller-allocates) (array length=n_near): the points found, nearest first;
  *   of equally near ones the first added first
  * @n_near: room in @near
  *
- * Returns: number of points found
+ * Returns: number of points found, 0 near a place that is no number
  *
  * Since: 0.1
  */
@@ -134,6 +142,8 @@ cloth_point_grid_nearest (const ClothPointGrid * grid, gfloat x, gfloat y,
   gint column, row, last = MAX (grid->columns, grid->rows);
   guint n = 0;
 
+  if (!n_near)
+    return 0;
   cell_of (grid, x, y, &column, &row);
   /* How far it is to the next cell at least; less a little, for cells are found by
    * rounded division. */
@@ -159,7 +169,8 @@ cloth_point_grid_nearest (const ClothPointGrid * grid, gfloat x, gfloat y,
           gfloat d2 = dx * dx + dy * dy;
           guint at;
 
-          if (d2 > limit || (n == n_near && d2 == near[n - 1].distance2
+          /* Written so that NaN is far. */
+          if (!(d2 <= limit) || (n == n_near && d2 == near[n - 1].distance2
                   && m > near[n - 1].index))
             continue;
           if (n < n_near)

@@ -433,11 +433,11 @@ GST_START_TEST (test_seed_and_seeks)
 
 GST_END_TEST;
 
-/* Saddles may come over a network: finite is all that their reader has made sure of. */
+/* Saddles may come over a network, or from somebody else's element. */
 GST_START_TEST (test_lying_saddles)
 {
   static const gfloat values[] = { -1e30f, 1e30f, -40000, 70000, 1e9f, -1, 0,
-    127.5f, 0.25f, 1e-30f
+    127.5f, 0.25f, 1e-30f, NAN, INFINITY, -INFINITY, 3.2f, 77, -3.4e38f
   };
   enum
   { N = G_N_ELEMENTS (values) };
@@ -462,6 +462,58 @@ GST_START_TEST (test_lying_saddles)
             saddles, N * N, candidates, N * N));
     fail_unless_equals_int ((gint) push (h, at (buffer, shift), LEFT, TOP), 0);
   }
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+/* Each number of a saddle spoiled in turn, in the midst of true ones: the spoiled ones are
+ * left out, the board is tracked by the others. */
+GST_START_TEST (test_spoiled_saddles)
+{
+  static const gfloat values[] = { NAN, INFINITY, -INFINITY, 1e30f, -1e30f,
+    -1e9f, 40000, -2
+  };
+  enum
+  { FIELDS = sizeof (GstClothSaddle) / sizeof (gfloat) };
+  GstHarness *h = start ("quadtrack" BOARD, "GRAY8", WIDTH, HEIGHT);
+  GstHarness *detector = start ("saddledetect", "GRAY8", WIDTH, HEIGHT);
+  GstBuffer *seen = gst_harness_push_and_pull (detector, at (picture ("GRAY8",
+              WIDTH, HEIGHT, 0, LEFT, TOP, TRUE), 0));
+  GstClothSaddles *from = gst_buffer_get_cloth_saddles (seen);
+  guint n, n_candidates;
+  const GstClothSaddle *true_ones = gst_cloth_saddles_get_refined (from, &n);
+  const GstClothCandidate *true_candidates =
+      gst_cloth_saddles_get_candidates (from, &n_candidates);
+  g_autofree GstClothSaddle *saddles = g_new (GstClothSaddle, 2 * n);
+  g_autofree GstClothCandidate *candidates =
+      g_new (GstClothCandidate, 2 * n_candidates);
+  guint frame = 0;
+
+  fail_unless (n >= (COLUMNS - 1) * (ROWS - 1));
+  for (guint v = 0; v < G_N_ELEMENTS (values); v++)
+    for (guint field = 0; field < FIELDS; field++) {
+      GstBuffer *buffer = picture ("GRAY8", WIDTH, HEIGHT, 0, LEFT, TOP, TRUE);
+
+      /* Covariances across may be negative. */
+      if (isfinite (values[v]) && (field == 2 || field >= 4))
+        continue;
+      for (guint k = 0; k < n; k++) {
+        saddles[2 * k] = saddles[2 * k + 1] = true_ones[k];
+        ((gfloat *) & saddles[2 * k])[field] = values[v];
+      }
+      for (guint k = 0; k < n_candidates; k++) {
+        candidates[2 * k] = candidates[2 * k + 1] = true_candidates[k];
+        ((gfloat *) & candidates[2 * k])[field % 3] = values[v];
+      }
+      gst_buffer_add_cloth_saddles_meta (buffer, gst_cloth_saddles_new ("",
+              frame, saddles, 2 * n, candidates, 2 * n_candidates));
+      fail_unless_equals_int ((gint) push (h, at (buffer, frame), LEFT, TOP),
+          N_BLACK);
+      frame++;
+    }
+  gst_buffer_unref (seen);
+  gst_harness_teardown (detector);
   gst_harness_teardown (h);
 }
 
@@ -539,6 +591,7 @@ quadtrack_suite (void)
   tcase_add_test (tc, test_seed_and_seeks);
   tcase_add_test (tc, test_clicks);
   tcase_add_test (tc, test_lying_saddles);
+  tcase_add_test (tc, test_spoiled_saddles);
   tcase_add_test (tc, test_controlled);
   tcase_add_test (tc, test_long_camera_name);
   tcase_add_test (tc, test_changes);
