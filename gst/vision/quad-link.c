@@ -22,8 +22,11 @@
 #define SURE_REACH 0.3f
 /* Guesses are looked for this far away, px. */
 #define MAX_GUESS 200.0f
-/* Lead of a placement that is believed, and of one believed against the memory. */
-#define MIN_LEAD 3.0f
+/* Lead of a placement that is believed: that of one cell that shows cloth where the board
+ * would go on. The edge of something bright looks so now and then, so more is asked where
+ * the memory knows the board but not there, and most of one against the memory. */
+#define MIN_LEAD 2.9f
+#define NEW_LEAD 4.0f
 #define SURE_LEAD 8.0f
 /* Pictures in a row that may speak against the memory before they are believed. */
 #define MAX_DOUBTS 2
@@ -456,8 +459,9 @@ place (ClothQuadTracker * tracker, gboolean first, ClothPlacement * placement,
   for (guint s = 0; s < tracker->seeds->len && n < n_memory + MAX_SEEDS; s++)
     n += vote_by_seed (tracker,
         &g_array_index (tracker->seeds, ClothQuadSeed, s), &votes[n]);
-  if (!cloth_place_patch (&tracker->pattern, &tracker->patch, votes, n,
-          tracker->scratch, placement) || placement->weight < MIN_LEAD)
+  if (!cloth_placer_run (tracker->placer, &tracker->patch,
+          &cloth_place_cloth, votes, n, placement)
+      || placement->weight < MIN_LEAD)
     return FALSE;
   for (guint v = 0; v < n_memory; v++)
     if (votes[v].rotation == placement->rotation
@@ -470,6 +474,10 @@ place (ClothQuadTracker * tracker, gboolean first, ClothPlacement * placement,
    * fit to what is known by then, or show their place beyond doubt. */
   if (!first && (other->weight > agrees || agrees == 0)
       && placement->weight < SURE_LEAD)
+    return FALSE;
+  /* A board that was just seen is hardly anywhere else. */
+  if (first && agrees == 0 && tracker->guess_vertex->len > 0
+      && placement->weight < NEW_LEAD && tracker->doubts++ < MAX_DOUBTS)
     return FALSE;
   if (first && other->weight > agrees && other->weight > STRONG_VOTE) {
     if (placement->weight < SURE_LEAD && tracker->doubts++ < MAX_DOUBTS)

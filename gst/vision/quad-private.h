@@ -61,7 +61,7 @@ struct _ClothQuadTracker
   ClothPointGrid *corners;      /* linked saddles that were placed or rejected */
   GArray *corner_vertex;        /* gint, their board vertex, -1: on no known place */
   guint doubts;                 /* pictures in a row that spoke against the memory */
-  GArray *scratch;
+  ClothPlacer *placer;
   GArray *seeds;                /* ClothQuadSeed */
   GArray *out;                  /* ClothQuad */
 

@@ -76,7 +76,7 @@ cloth_quad_tracker_new (const ClothPattern * pattern)
   tracker->refined = cloth_point_grid_new ();
   tracker->corners = cloth_point_grid_new ();
   tracker->corner_vertex = g_array_new (FALSE, FALSE, sizeof (gint));
-  tracker->scratch = cloth_place_scratch_new ();
+  tracker->placer = cloth_placer_new (pattern);
   tracker->seeds = g_array_new (FALSE, FALSE, sizeof (ClothQuadSeed));
   tracker->out =
       g_array_sized_new (FALSE, FALSE, sizeof (ClothQuad), (guint) n);
@@ -104,7 +104,7 @@ cloth_quad_tracker_free (ClothQuadTracker * tracker)
   cloth_point_grid_free (tracker->refined);
   cloth_point_grid_free (tracker->corners);
   g_array_unref (tracker->corner_vertex);
-  g_array_unref (tracker->scratch);
+  cloth_placer_free (tracker->placer);
   g_array_unref (tracker->seeds);
   g_array_unref (tracker->out);
   g_free (tracker);

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "gst/pattern/code.h"
-#include "gst/vision/place-board.h"
 #include "gst/vision/place.h"
 
 #define M CLOTH_PATCH_MARGIN
@@ -18,22 +17,14 @@
 #define BELIEVED 3
 
 /* Both ways to place a patch: in a film and in a single picture. */
-typedef struct
-{
-  GArray *scratch;
-  ClothBoardScratch *board_scratch;
-} Placer;
-
 static gboolean
-run (const Placer * placer, gboolean single, const ClothPattern * pattern,
-    const ClothPatch * patch, const ClothPlacement * votes, guint n_votes,
-    ClothPlacement * best)
+run (gboolean single, const ClothPattern * pattern, const ClothPatch * patch,
+    const ClothPlacement * votes, guint n_votes, ClothPlacement * best)
 {
-  if (single)
-    return cloth_place_board (pattern, patch, votes, n_votes,
-        placer->board_scratch, best);
-  return cloth_place_patch (pattern, patch, votes, n_votes, placer->scratch,
-      best);
+  g_autoptr (ClothPlacer) placer = cloth_placer_new (pattern);
+
+  return cloth_placer_run (placer, patch,
+      single ? &cloth_place_rigid : &cloth_place_cloth, votes, n_votes, best);
 }
 
 /* A patch with room for what tests need. */
@@ -138,20 +129,6 @@ equal (const ClothPlacement * a, const ClothPlacement * b)
       && a->row == b->row;
 }
 
-static void
-placer_init (Placer * placer)
-{
-  placer->scratch = cloth_place_scratch_new ();
-  placer->board_scratch = cloth_board_scratch_new ();
-}
-
-static void
-placer_clear (Placer * placer)
-{
-  g_array_unref (placer->scratch);
-  cloth_board_scratch_free (placer->board_scratch);
-}
-
 /* Every window of the code's own size in every turn has one place, also with a dot read
  * wrongly; every single square has none. */
 static void
@@ -160,14 +137,12 @@ test_coded (void)
   g_autoptr (ClothPattern) pattern = cloth_pattern_new_checker (11, 9, 0.01, 0,
       TRUE, NULL);
   g_autofree Window *window = g_new (Window, 1);
-  Placer placer;
   gfloat least = G_MAXFLOAT, least_misread = G_MAXFLOAT;
   guint n = 0;
   gint size;
 
   g_assert_true (cloth_code_generate (pattern, CLOTH_CODE_DOT_RATIO, 3, &size,
           NULL));
-  placer_init (&placer);
   for (gint single = 0; single < 2; single++)
     for (gint rotation = 0; rotation < 4; rotation++) {
       for (gint top = 0; top + size <= pattern->rows; top++)
@@ -176,14 +151,12 @@ test_coded (void)
           gint middle;
 
           fill (window, pattern, left, top, size, size, rotation, &truth);
-          g_assert_true (run (&placer, single, pattern, &window->patch, NULL, 0,
-                  &best));
+          g_assert_true (run (single, pattern, &window->patch, NULL, 0, &best));
           g_assert_true (equal (&best, &truth));
           least = MIN (least, best.weight);
           middle = (M + size / 2) * (window->patch.columns + 1);
           window->bit[middle] = -window->bit[middle];
-          g_assert_true (run (&placer, single, pattern, &window->patch, NULL, 0,
-                  &best));
+          g_assert_true (run (single, pattern, &window->patch, NULL, 0, &best));
           g_assert_true (equal (&best, &truth));
           least_misread = MIN (least_misread, best.weight);
           n++;
@@ -194,12 +167,10 @@ test_coded (void)
         fill (window, pattern, k % pattern->columns, k / pattern->columns, 1, 1,
             rotation, &truth);
         memset (window->inside, 0, sizeof window->inside);
-        g_assert_true (run (&placer, single, pattern, &window->patch, NULL, 0,
-                &best));
+        g_assert_true (run (single, pattern, &window->patch, NULL, 0, &best));
         g_assert_cmpfloat (best.weight, <, BELIEVED);
       }
     }
-  placer_clear (&placer);
   g_test_message ("%u windows of %d squares: least lead %g, with one dot "
       "misread %g", n, size, least, least_misread);
   /* A code's distance is that many dots, each worth twice its ratio. */
@@ -214,9 +185,7 @@ test_plain (void)
 {
   static const gint sizes[][2] = { {10, 7}, {7, 10}, {9, 4} };
   g_autofree Window *window = g_new (Window, 1);
-  Placer placer;
 
-  placer_init (&placer);
   for (guint s = 0; s < G_N_ELEMENTS (sizes); s++) {
     g_autoptr (ClothPattern) pattern =
         cloth_pattern_new_checker (sizes[s][0], sizes[s][1], 0.01, 0, s & 1,
@@ -234,28 +203,24 @@ test_plain (void)
               || top + 2 > rows - 1)
             continue;
           fill (window, pattern, left, top, 2, 2, rotation, &truth);
-          g_assert_true (run (&placer, single, pattern, &window->patch, NULL, 0,
-                  &best));
+          g_assert_true (run (single, pattern, &window->patch, NULL, 0, &best));
           g_assert_cmpfloat (best.weight, >=, 0);
           g_assert_cmpfloat (best.weight, <, 0.01f);
         }
         fill (window, pattern, 0, 0, columns, rows, rotation, &truth);
-        g_assert_true (run (&placer, single, pattern, &window->patch, NULL, 0,
-                &best));
+        g_assert_true (run (single, pattern, &window->patch, NULL, 0, &best));
         g_assert_true (equal (&best, &truth));
         g_assert_cmpfloat (best.weight, >, BELIEVED);
         /* Half of the board with three of its sides. */
         for (gint side = 0; side < 2; side++) {
           fill (window, pattern, side * (columns - columns / 2), 0, columns / 2,
               rows, rotation, &truth);
-          g_assert_true (run (&placer, single, pattern, &window->patch, NULL, 0,
-                  &best));
+          g_assert_true (run (single, pattern, &window->patch, NULL, 0, &best));
           g_assert_true (equal (&best, &truth));
           g_assert_cmpfloat (best.weight, >, BELIEVED);
         }
       }
   }
-  placer_clear (&placer);
 }
 
 /* What is remembered decides where the picture doesn't, and not where it does. */
@@ -265,34 +230,28 @@ test_votes (void)
   g_autoptr (ClothPattern) pattern = cloth_pattern_new_checker (10, 7, 0.01, 0,
       TRUE, NULL);
   g_autofree Window *window = g_new (Window, 1);
-  Placer placer;
 
-  placer_init (&placer);
   for (gint single = 0; single < 2; single++) {
     ClothPlacement truth, vote, best;
 
     fill (window, pattern, 3, 2, 3, 3, 1, &truth);
     vote = truth;
     vote.weight = 10;
-    g_assert_true (run (&placer, single, pattern, &window->patch, &vote, 1,
-            &best));
+    g_assert_true (run (single, pattern, &window->patch, &vote, 1, &best));
     g_assert_true (equal (&best, &truth));
     g_assert_cmpfloat (best.weight, >, BELIEVED);
     /* Nothing lies on a square of the other colour. */
     vote.column++;
     vote.weight = 1000;
-    g_assert_true (run (&placer, single, pattern, &window->patch, &vote, 1,
-            &best));
+    g_assert_true (run (single, pattern, &window->patch, &vote, 1, &best));
     g_assert_false (equal (&best, &vote));
     fill (window, pattern, 0, 0, 10, 7, 1, &truth);
     vote = truth;
     vote.column += 2;
     vote.weight = 14;
-    g_assert_true (run (&placer, single, pattern, &window->patch, &vote, 1,
-            &best));
+    g_assert_true (run (single, pattern, &window->patch, &vote, 1, &best));
     g_assert_true (equal (&best, &truth));
   }
-  placer_clear (&placer);
 }
 
 /* Nothing seen, and more squares than the board has. */
@@ -304,21 +263,16 @@ test_refused (void)
   g_autoptr (ClothPattern) small = cloth_pattern_new_checker (5, 4, 0.01, 0,
       TRUE, NULL);
   g_autofree Window *window = g_new (Window, 1);
-  Placer placer;
 
-  placer_init (&placer);
   for (gint single = 0; single < 2; single++) {
     ClothPlacement truth, best;
 
     fill (window, large, 0, 0, 15, 15, 0, &truth);
-    g_assert_false (run (&placer, single, small, &window->patch, NULL, 0,
-            &best));
+    g_assert_false (run (single, small, &window->patch, NULL, 0, &best));
     memset (window->square, 0, sizeof window->square);
     window->patch.n_squares = 0;
-    g_assert_false (run (&placer, single, large, &window->patch, NULL, 0,
-            &best));
+    g_assert_false (run (single, large, &window->patch, NULL, 0, &best));
   }
-  placer_clear (&placer);
 }
 
 /* Cells and vertices under a placement agree: a cell's vertices are its own. */
