@@ -25,7 +25,8 @@ GST_DEBUG_CATEGORY_STATIC (quad_track_debug);
  *
  * The board is found without help. A square can be given all the same: by four clicks
  * into any video sink (navigation events; a right click starts over) or by the property
- * `seed`; with `link=false` the tracker is that of the paper alone and needs one.
+ * `seed`; with `link=false` the tracker is that of the paper alone and needs one: until
+ * there is one it warns and tracks nothing, as with a seed that is not on the board.
  *
  * The bus is told by the element messages `quadtrack/found` and `quadtrack/lost` when the
  * board comes into sight and when all of it is gone; their fields are `camera`,
@@ -58,10 +59,12 @@ struct _GstQuadTrack
   ClothPattern *pattern;
   ClothQuadTracker *tracker;
   ClothSaddleDetector *detector;
+  GArray *taken_seeds;          /* gfloat, of this picture */
   GArray *saddles;              /* GstClothSaddle */
   GArray *candidates;           /* ClothSaddleCandidate */
   GArray *quads;                /* GstClothQuad */
   gboolean found;
+  gboolean warned_of_seed, warned_of_none;
   gfloat first_seed[SEED_NUMBERS];      /* of the property */
   gboolean has_first_seed, knows_first, was_reset;
   guint64 first_sequence;       /* of the picture that the property is about */
@@ -176,6 +179,7 @@ gst_quad_track_start (GstClothFilter * filter)
   }
   self->tracker = cloth_quad_tracker_new (self->pattern);
   self->found = FALSE;
+  self->warned_of_seed = self->warned_of_none = FALSE;
   return TRUE;
 }
 
@@ -277,6 +281,49 @@ gst_quad_track_take_saddles (GstQuadTrack * self, GstClothSaddles * meta,
   }
 }
 
+/* Says once what keeps the tracker from starting at a seed. */
+static void
+gst_quad_track_check_seed (GstQuadTrack * self, const ClothQuadParams * params,
+    gint column, gint row)
+{
+  const ClothPattern *pattern = self->pattern;
+
+  if (self->warned_of_seed || column < 0 || row < 0)
+    return;
+  if (column >= pattern->columns || row >= pattern->rows) {
+    self->warned_of_seed = TRUE;
+    GST_ELEMENT_WARNING (self, RESOURCE, SETTINGS,
+        ("The seed's square %d,%d is not on the board of %d×%d squares, so the "
+            "seed is of no use.", column, row, pattern->columns, pattern->rows),
+        ("End \"seed\" by the square's column,row, counted from 0, or leave "
+            "both out"));
+  } else if (!params->link && params->squares != CLOTH_SQUARES_BOTH
+      && cloth_pattern_is_black (pattern, column, row)
+      != (params->squares == CLOTH_SQUARES_BLACK)) {
+    self->warned_of_seed = TRUE;
+    GST_ELEMENT_WARNING (self, RESOURCE, SETTINGS,
+        ("The seed's square %d,%d is of the colour that is not tracked, so "
+            "nothing starts from it.", column, row),
+        ("Give a square of the other colour, or set \"squares\" to both"));
+  }
+}
+
+/* Without linking nothing begins by itself; who doesn't know waits in vain. */
+static void
+gst_quad_track_check_start (GstQuadTrack * self, const ClothQuadParams * params,
+    guint n_seeds)
+{
+  if (n_seeds > 0 || params->link) {
+    self->warned_of_none = TRUE;
+  } else if (!self->warned_of_none) {
+    self->warned_of_none = TRUE;
+    GST_ELEMENT_WARNING (self, RESOURCE, SETTINGS,
+        ("With link=false nothing is tracked until a square is given."),
+        ("Set \"seed\", click the four corners of a square in the video "
+            "window, or set \"link\" to true"));
+  }
+}
+
 static GstFlowReturn
 gst_quad_track_analyse (GstClothFilter * filter,
     const GstClothFilterFrame * frame)
@@ -287,7 +334,7 @@ gst_quad_track_analyse (GstClothFilter * filter,
   const ClothSaddle *saddles;
   const ClothQuad *quads;
   ClothQuadParams params;
-  guint n_saddles, n_candidates, n, tracked = 0;
+  guint n_saddles, n_candidates, n, tracked = 0, n_seeds;
 
   if (meta) {
     gst_quad_track_take_saddles (self, meta, &frame->luma);
@@ -317,19 +364,26 @@ gst_quad_track_analyse (GstClothFilter * filter,
       && frame->sequence == self->first_sequence)
     g_array_append_vals (self->seeds, self->first_seed, SEED_NUMBERS);
   self->was_reset = FALSE;
-  for (guint k = 0; k + SEED_NUMBERS <= self->seeds->len; k += SEED_NUMBERS) {
-    const gfloat *seed = &g_array_index (self->seeds, gfloat, k);
+  /* a message must not be posted with the lock held */
+  n_seeds = self->seeds->len / SEED_NUMBERS;
+  g_array_set_size (self->taken_seeds, 0);
+  g_array_append_vals (self->taken_seeds, self->seeds->data, self->seeds->len);
+  g_array_set_size (self->seeds, 0);
+  GST_OBJECT_UNLOCK (self);
+  gst_quad_track_check_start (self, &params, n_seeds);
+  for (guint s = 0; s < n_seeds; s++) {
+    const gfloat *seed =
+        &g_array_index (self->taken_seeds, gfloat, s * SEED_NUMBERS);
+    gint column = (gint) seed[8], row = (gint) seed[9];
     gfloat x[4], y[4];
 
     for (gint c = 0; c < 4; c++) {
       x[c] = seed[2 * c];
       y[c] = seed[2 * c + 1];
     }
-    cloth_quad_tracker_seed (self->tracker, x, y, (gint) seed[8],
-        (gint) seed[9]);
+    gst_quad_track_check_seed (self, &params, column, row);
+    cloth_quad_tracker_seed (self->tracker, x, y, column, row);
   }
-  g_array_set_size (self->seeds, 0);
-  GST_OBJECT_UNLOCK (self);
 
   quads = cloth_quad_tracker_run (self->tracker, &params, &frame->luma,
       saddles, n_saddles, candidates, n_candidates, &n);
@@ -518,6 +572,7 @@ gst_quad_track_finalize (GObject * object)
   g_free (self->seed);
   g_array_unref (self->clicks);
   g_array_unref (self->seeds);
+  g_array_unref (self->taken_seeds);
   g_array_unref (self->saddles);
   g_array_unref (self->candidates);
   g_array_unref (self->quads);
@@ -622,6 +677,7 @@ gst_quad_track_init (GstQuadTrack * self)
   self->params = cloth_quad_default_params ();
   self->clicks = g_array_new (FALSE, FALSE, sizeof (gfloat));
   self->seeds = g_array_new (FALSE, FALSE, sizeof (gfloat));
+  self->taken_seeds = g_array_new (FALSE, FALSE, sizeof (gfloat));
   self->saddles = g_array_new (FALSE, FALSE, sizeof (GstClothSaddle));
   self->candidates = g_array_new (FALSE, FALSE, sizeof (ClothSaddleCandidate));
   self->quads = g_array_new (FALSE, FALSE, sizeof (GstClothQuad));

@@ -238,6 +238,57 @@ GST_START_TEST (test_seed)
 
 GST_END_TEST;
 
+/* Seeds that can't start anything: one warning, with a word about the remedy. */
+GST_START_TEST (test_useless_seed)
+{
+  static const struct
+  {
+    const gchar *settings, *word;
+  } cases[] = {
+    {"link=false", "seed"},
+    {"link=false seed=121,77,141,77,141,97,121,97,4,9", "column,row"},
+    {"link=true seed=121,77,141,77,141,97,121,97,10,2", "column,row"},
+    {"link=false seed=141,77,161,77,161,97,141,97,5,2", "squares"},
+    {"link=false squares=white seed=121,77,141,77,141,97,121,97,4,2", "squares"},
+    {"link=false seed=121,77,141,77,141,97,121,97,4,2", NULL},
+    {"link=true seed=141,77,161,77,161,97,141,97,5,2", NULL},
+    {"link=false squares=white seed=141,77,161,77,161,97,141,97,5,2", NULL},
+    {"link=true", NULL}
+  };
+
+  for (guint k = 0; k < G_N_ELEMENTS (cases); k++) {
+    g_autofree gchar *launch = g_strdup_printf ("quadtrack %s" BOARD,
+        cases[k].settings);
+    GstHarness *h = start (launch, "GRAY8", WIDTH, HEIGHT);
+    g_autoptr (GstElement) element = gst_harness_find_element (h, "quadtrack");
+    g_autoptr (GstBus) bus = gst_bus_new ();
+    GstMessage *message;
+    guint n = 0, warnings = 0;
+
+    gst_element_set_bus (element, bus);
+    for (guint frame = 0; frame < 4; frame++)
+      n = push (h, at (picture ("GRAY8", WIDTH, HEIGHT, 0, LEFT, TOP, TRUE),
+              frame), LEFT, TOP);
+    while ((message = gst_bus_pop_filtered (bus, GST_MESSAGE_WARNING))) {
+      g_autofree gchar *debug = NULL;
+
+      gst_message_parse_warning (message, NULL, &debug);
+      fail_unless (cases[k].word && strstr (debug, cases[k].word), "%s: %s",
+          cases[k].settings, debug);
+      gst_message_unref (message);
+      warnings++;
+    }
+    fail_unless_equals_int ((gint) warnings, cases[k].word ? 1 : 0);
+    /* Linking finds the board all the same. */
+    fail_unless ((n == 0) == (cases[k].word && !strstr (cases[k].settings,
+                "true")), "%s: %u squares", cases[k].settings, n);
+    gst_element_set_bus (element, NULL);
+    gst_harness_teardown (h);
+  }
+}
+
+GST_END_TEST;
+
 static void
 click (GstHarness * h, gint button, gdouble x, gdouble y)
 {
@@ -589,6 +640,7 @@ quadtrack_suite (void)
   tcase_add_test (tc, test_board_absent);
   tcase_add_test (tc, test_seed);
   tcase_add_test (tc, test_seed_and_seeks);
+  tcase_add_test (tc, test_useless_seed);
   tcase_add_test (tc, test_clicks);
   tcase_add_test (tc, test_lying_saddles);
   tcase_add_test (tc, test_spoiled_saddles);
