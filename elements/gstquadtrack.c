@@ -308,20 +308,32 @@ gst_quad_track_check_seed (GstQuadTrack * self, const ClothQuadParams * params,
   }
 }
 
-/* Without linking nothing begins by itself; who doesn't know waits in vain. */
+/* Says once why nothing can be found; who doesn't know waits in vain. */
 static void
 gst_quad_track_check_start (GstQuadTrack * self, const ClothQuadParams * params,
     guint n_seeds)
 {
-  if (n_seeds > 0 || params->link) {
+  const ClothPattern *pattern = self->pattern;
+
+  if (self->warned_of_none)
+    return;
+  if (params->link) {
+    if (MIN (pattern->columns, pattern->rows) > 2)
+      return;
     self->warned_of_none = TRUE;
-  } else if (!self->warned_of_none) {
-    self->warned_of_none = TRUE;
+    GST_ELEMENT_WARNING (self, RESOURCE, SETTINGS,
+        ("A board of %d×%d squares is too narrow to be found by itself.",
+            pattern->columns, pattern->rows),
+        ("Set link=false and give a square by \"seed\" or by clicks, or use a "
+            "board of three or more squares each way"));
+    return;
+  }
+  self->warned_of_none = TRUE;
+  if (!n_seeds)
     GST_ELEMENT_WARNING (self, RESOURCE, SETTINGS,
         ("With link=false nothing is tracked until a square is given."),
         ("Set \"seed\", click the four corners of a square in the video "
             "window, or set \"link\" to true"));
-  }
 }
 
 static GstFlowReturn
