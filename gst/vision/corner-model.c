@@ -32,9 +32,9 @@ exp_lanes (ClothLanes * x)
 {
   const ClothLanes zero = { 0 };
   ClothLanes n, f, p, t = *x * 1.44269504f;
-  LanesInt far = t < -100.0f, k;
+  LanesInt far = t < -40.0f, k;
 
-  t = (ClothLanes) (((LanesInt) t & ~far) | ((LanesInt) (zero - 100.0f) & far));
+  t = (ClothLanes) (((LanesInt) t & ~far) | ((LanesInt) (zero - 40.0f) & far));
   n = (t + 12582912.0f) - 12582912.0f;
   f = t - n;
   p = f * 1.8775767e-3f + 8.9893397e-3f;
