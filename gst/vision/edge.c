@@ -25,8 +25,10 @@
 #define MAX_OFF 1.2f
 /* Pixels from step to step. */
 #define STEP 1.0f
-/* The edge is looked for this far to either side of where it is expected, px. */
+/* The edge is looked for at so many places to either side of where it is expected, this
+ * far apart, px. */
 #define ASIDE 2
+#define BESIDE 0.7f
 /* An edge ends where its contrast falls below this share of what it was. */
 #define FADED 0.4f
 /* Steps at the start, within the blur of the corner, in which it may be weak. */
@@ -39,19 +41,30 @@
 /* Largest bend of an edge in all, rad. */
 #define MAX_BEND 1.3f
 
+/* Of a place known to lie between four pixels. */
+static inline gfloat
+bilinear_inside (const ClothImage * image, gfloat x, gfloat y)
+{
+  gint column = (gint) x, row = (gint) y;
+  gfloat fx = x - (gfloat) column, fy = y - (gfloat) row;
+  const guint8 *at = image->data + row * image->stride + column;
+
+  return (1 - fy) * ((1 - fx) * at[0] + fx * at[1])
+      + fy * ((1 - fx) * at[image->stride] + fx * at[image->stride + 1]);
+}
+
+/* Whether a square of this half width lies between the picture's pixels. */
+static inline gboolean
+is_inside (const ClothImage * image, gfloat x, gfloat y, gfloat reach)
+{
+  return x >= reach && y >= reach && x + reach < (gfloat) (image->width - 1)
+      && y + reach < (gfloat) (image->height - 1);
+}
+
 static inline gfloat
 bilinear (const ClothImage * image, gfloat x, gfloat y)
 {
-  gint column = (gint) floorf (x), row = (gint) floorf (y);
-  gfloat fx = x - (gfloat) column, fy = y - (gfloat) row;
-  const guint8 *at;
-
-  if (column < 0 || row < 0 || column + 1 >= image->width
-      || row + 1 >= image->height)
-    return -1;
-  at = image->data + row * image->stride + column;
-  return (1 - fy) * ((1 - fx) * at[0] + fx * at[1])
-      + fy * ((1 - fx) * at[image->stride] + fx * at[image->stride + 1]);
+  return is_inside (image, x, y, 0) ? bilinear_inside (image, x, y) : -1;
 }
 
 static inline gfloat
@@ -123,6 +136,17 @@ cloth_edge_contrast (const ClothImage * image, gfloat ax, gfloat ay,
   return contrast;
 }
 
+/* Sines of the samples' angles; a quarter farther on, their cosines. */
+static const gfloat circle[AROUND + AROUND / 4] = {
+  0, 0.19509032f, 0.38268343f, 0.55557023f, 0.70710678f, 0.83146961f,
+  0.92387953f, 0.98078528f, 1, 0.98078528f, 0.92387953f, 0.83146961f,
+  0.70710678f, 0.55557023f, 0.38268343f, 0.19509032f, 0, -0.19509032f,
+  -0.38268343f, -0.55557023f, -0.70710678f, -0.83146961f, -0.92387953f,
+  -0.98078528f, -1, -0.98078528f, -0.92387953f, -0.83146961f, -0.70710678f,
+  -0.55557023f, -0.38268343f, -0.19509032f, 0, 0.19509032f, 0.38268343f,
+  0.55557023f, 0.70710678f, 0.83146961f, 0.92387953f, 0.98078528f
+};
+
 /* Where a circle's samples cross @level between sample @k and the next, as a share of a
  * turn. */
 static inline gfloat
@@ -160,13 +184,11 @@ cloth_edge_wedge (const ClothImage * image, gfloat x, gfloat y,
   gfloat at[AROUND], least = 255, most = 0, middle, least_off = MAX_OFF;
   gboolean found = FALSE;
 
+  if (!is_inside (image, x, y, radius + 0.01f))
+    return FALSE;
   for (gint k = 0; k < AROUND; k++) {
-    gfloat angle = turn * (gfloat) k / AROUND;
-
-    at[k] = bilinear (image, x + radius * cosf (angle),
-        y + radius * sinf (angle));
-    if (at[k] < 0)
-      return FALSE;
+    at[k] = bilinear_inside (image, x + radius * circle[k + AROUND / 4],
+        y + radius * circle[k]);
     least = MIN (least, at[k]);
     most = MAX (most, at[k]);
   }
@@ -200,18 +222,26 @@ cloth_edge_wedge (const ClothImage * image, gfloat x, gfloat y,
   return found;
 }
 
-/* Grey levels by which the side ahead (turned from x towards y) is darker, averaged over
- * two distances from the edge. G_MINFLOAT outside the picture. */
+/* Grey levels by which the side ahead (turned from x towards y) is darker, 1.5 px from the
+ * edge on both sides, at places beside (@x, @y) along the normal. FALSE outside the
+ * picture. */
 static inline gboolean
-step_across (const ClothImage * image, gfloat x, gfloat y, gfloat nx,
-    gfloat ny, gfloat * step)
+steps_across (const ClothImage * image, gfloat x, gfloat y, gfloat nx,
+    gfloat ny, gfloat steps[2 * ASIDE + 1])
 {
-  gfloat a1 = bilinear (image, x + 1.5f * nx, y + 1.5f * ny);
-  gfloat b1 = bilinear (image, x - 1.5f * nx, y - 1.5f * ny);
+  gboolean inside = is_inside (image, x, y, ASIDE * BESIDE + 1.6f);
 
-  if (a1 < 0 || b1 < 0)
-    return FALSE;
-  *step = b1 - a1;
+  for (gint o = -ASIDE; o <= ASIDE; o++) {
+    gfloat px = x + (gfloat) o * BESIDE * nx, py = y + (gfloat) o * BESIDE * ny;
+    gfloat ax = px + 1.5f * nx, ay = py + 1.5f * ny;
+    gfloat bx = px - 1.5f * nx, by = py - 1.5f * ny;
+
+    if (!inside && !(is_inside (image, ax, ay, 0)
+            && is_inside (image, bx, by, 0)))
+      return FALSE;
+    steps[o + ASIDE] = bilinear_inside (image, bx, by)
+        - bilinear_inside (image, ax, ay);
+  }
   return TRUE;
 }
 
@@ -251,13 +281,10 @@ cloth_edge_walk (const ClothImage * image, gfloat x, gfloat y, gfloat angle,
 
     x += STEP * dx;
     y += STEP * dy;
+    if (!steps_across (image, x, y, -dy, dx, at))
+      return FALSE;
     for (gint o = -ASIDE; o <= ASIDE; o++) {
-      gfloat step;
-
-      if (!step_across (image, x - (gfloat) o * 0.7f * dy,
-              y + (gfloat) o * 0.7f * dx, -dy, dx, &step))
-        return FALSE;
-      at[o + ASIDE] = sign * step;
+      at[o + ASIDE] *= sign;
       if (at[o + ASIDE] > best) {
         best = at[o + ASIDE];
         peak = o;
@@ -285,7 +312,7 @@ cloth_edge_walk (const ClothImage * image, gfloat x, gfloat y, gfloat angle,
       if (bend < 0)
         offset += CLAMP (0.5f * (l - r) / bend, -0.5f, 0.5f);
     }
-    offset *= 0.7f;
+    offset *= BESIDE;
     x -= 0.5f * offset * dy;
     y += 0.5f * offset * dx;
     angle += TURN * 0.5f * offset / STEP;
