@@ -11,17 +11,14 @@
 #define ALONG 12
 #define MAX_ACROSS 12
 
-/* Sums sign (I - mean) over a set of samples. */
-static gint
-signs (const guint8 * level, gint n, gint mean_times_n, gint total)
+/* How many levels are above @high less how many are below @low. */
+static inline gint
+signs (const guint8 * level, gint n, gint high, gint low)
 {
   gint sum = 0;
 
-  for (gint k = 0; k < n; k++) {
-    gint d = level[k] * total - mean_times_n;
-
-    sum += (d > 0) - (d < 0);
-  }
+  for (gint k = 0; k < n; k++)
+    sum += (level[k] > high) - (level[k] < low);
   return sum;
 }
 
@@ -86,7 +83,7 @@ cloth_quad_confidence (const ClothImage * image, const gfloat x[4],
   guint8 inside[ALONG * ALONG], lapels[4 * ALONG * MAX_ACROSS];
   gint across = CLAMP ((gint) lrintf (alpha * ALONG), 1, MAX_ACROSS);
   gfloat wide = alpha / (gfloat) across;
-  gint n_inside = 0, n_lapels = 0, total, sum = 0, score;
+  gint n_inside = 0, n_lapels = 0, total, sum = 0, low, score;
 
   if (!is_inside (image, x, y, alpha))
     return -1;
@@ -116,7 +113,9 @@ cloth_quad_confidence (const ClothImage * image, const gfloat x[4],
   for (gint k = 0; k < n_lapels; k++)
     sum += lapels[k];
   total = n_inside + n_lapels;
-  score = signs (lapels, n_lapels, sum, total)
-      - signs (inside, n_inside, sum, total);
+  /* The mean is no whole number mostly: above it is above its floor. */
+  low = (sum + total - 1) / total;
+  score = signs (lapels, n_lapels, sum / total, low)
+      - signs (inside, n_inside, sum / total, low);
   return (gfloat) (black ? score : -score) / (gfloat) total;
 }
