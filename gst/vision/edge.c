@@ -232,7 +232,8 @@ steps_across (const ClothImage * image, gfloat x, gfloat y, gfloat nx,
   gboolean inside = is_inside (image, x, y, ASIDE * BESIDE + 1.6f);
 
   for (gint o = -ASIDE; o <= ASIDE; o++) {
-    gfloat px = x + (gfloat) o * BESIDE * nx, py = y + (gfloat) o * BESIDE * ny;
+    gfloat px = x + (gfloat) o * BESIDE * nx;
+    gfloat py = y + (gfloat) o * BESIDE * ny;
     gfloat ax = px + 1.5f * nx, ay = py + 1.5f * ny;
     gfloat bx = px - 1.5f * nx, by = py - 1.5f * ny;
 
