@@ -333,9 +333,7 @@ gst_triangulate_negotiate_src (GstClothSync * sync, GstCaps * downstream,
     GstCaps ** caps)
 {
   GstTriangulate *self = GST_TRIANGULATE (sync);
-  gboolean changed, agreed = TRUE;
-  gint fps_n = -1, fps_d = 1;
-  guint i;
+  gboolean changed;
 
   GST_OBJECT_LOCK (self);
   changed = self->pattern_changed;
@@ -343,31 +341,10 @@ gst_triangulate_negotiate_src (GstClothSync * sync, GstCaps * downstream,
   if ((changed || !self->topology) && !gst_triangulate_load_pattern (self)) {
     return GST_FLOW_ERROR;
   }
-  for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
-    const GstTriangulateView *view = &self->view[i];
-
-    if (!view->has_caps) {
-      continue;
-    }
-    if (fps_n < 0) {
-      fps_n = view->fps_n;
-      fps_d = view->fps_d;
-    } else if (fps_n != view->fps_n || fps_d != view->fps_d) {
-      agreed = FALSE;
-    }
-  }
-  if (fps_n < 0) {
+  if (!gst_triangulate_views_rate (self->view, &self->fps_n, &self->fps_d)) {
     return GST_AGGREGATOR_FLOW_NEED_DATA;
   }
-  if (!agreed) {
-    /* Sets come when they come. What was said before stands: a camera that joins with
-     * another rate must not end a recording. */
-    fps_n = MAX (self->fps_n, 0);
-    fps_d = self->fps_n < 0 ? 1 : self->fps_d;
-  }
-  self->fps_n = fps_n;
-  self->fps_d = fps_d;
-  *caps = gst_cloth_topology_to_caps (self->topology, fps_n, fps_d);
+  *caps = gst_cloth_topology_to_caps (self->topology, self->fps_n, self->fps_d);
   return GST_FLOW_OK;
 }
 
