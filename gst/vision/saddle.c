@@ -10,6 +10,9 @@
 #include "gst/vision/saddle-mask.h"
 #include "gst/vision/saddle-refine.h"
 
+/* Saddles whose residual is looked at in a picture. */
+#define MAX_RESIDUALS 12
+
 struct _ClothSaddleDetector
 {
   ClothSaddleKernel kernel;
@@ -349,6 +352,50 @@ spacing (const ClothSaddleDetector * self, guint index, gfloat most)
   return sqrtf (best);
 }
 
+/* What the corner model leaves unexplained around some of the saddles, the median, grey
+ * levels: on pictures of a camera the noise, on films what compression, texture and bends
+ * of the cloth add as well, which flat places don't show. 0 when nothing could be fitted. */
+static gfloat
+measure_residual (const ClothSaddleDetector * self, gfloat sigma,
+    const ClothImage * image, ClothSimd level)
+{
+  ClothCornerParams params = cloth_corner_default_params ();
+  guint n = MIN (self->n_saddles, MAX_RESIDUALS), found = 0;
+  gfloat sorted[MAX_RESIDUALS];
+  /* As far as the Gaussian looks. */
+  gfloat radius = CLAMP (3 * sigma, 3.0f, 7.0f);
+
+  params.max_shift = 1.0f;
+  for (guint i = 0; i < n; i++) {
+    guint index = (guint) ((2 * i + 1) * (guint64) self->n_saddles / (2 * n));
+    const ClothSaddle *saddle = &self->saddles[index];
+    ClothCornerFit fit;
+    guint at;
+
+    params.radius = MIN (radius, 0.5f * spacing (self, index, 2 * radius));
+    if (!cloth_corner_refine (image, saddle->x, saddle->y, &params, level,
+            &fit) || !cloth_corner_is_saddle (&fit))
+      continue;
+    for (at = found++; at > 0 && sorted[at - 1] > fit.rms; at--)
+      sorted[at] = sorted[at - 1];
+    sorted[at] = fit.rms;
+  }
+  return found ? sorted[found / 2] : 0;
+}
+
+/* The refiner takes the noise of flat places. Where there is more around the saddles, that
+ * counts. */
+static void
+widen (ClothSaddleDetector * self, gfloat residual)
+{
+  gfloat factor = residual / self->noise;
+
+  factor *= factor;
+  for (guint i = 0; i < self->n_saddles && factor > 1; i++)
+    for (gint k = 0; k < 3; k++)
+      self->saddles[i].cov[k] *= factor;
+}
+
 /* Where the model doesn't fit, the saddle of the smoothed intensity stays. */
 static void
 fit_models (ClothSaddleDetector * self, gfloat radius,
@@ -407,6 +454,10 @@ in_range (gfloat value, gfloat low, gfloat high)
  * geometry", and one refined saddle for each peak of their response. The results belong
  * to @detector and hold until its next run.
  *
+ * A saddle's covariance is that of white noise of the picture's strength: as flat places
+ * show it or, if that is more, as the corner model leaves unexplained around some of the
+ * saddles. Where the corner model was fitted it is that of its own residual.
+ *
  * Since: 0.1
  */
 void
@@ -458,6 +509,7 @@ cloth_saddle_detector_run (ClothSaddleDetector * detector,
       detector->refiner = cloth_saddle_refiner_new ();
     cloth_saddle_refiner_set (detector->refiner, sigma);
     refine_peaks (detector, params, image, level);
+    widen (detector, measure_residual (detector, sigma, image, level));
     if (params->refine == CLOTH_SADDLE_REFINE_MODEL)
       fit_models (detector, in_range (params->radius, 2.0f, 12.0f), image,
           level);
