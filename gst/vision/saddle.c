@@ -175,7 +175,6 @@ is_peak (const ClothSaddleMask * mask, gint x, gint y, gint reach, gint d)
   /* The nearest rows first: they refuse most. */
   for (gint k = 0; k <= 2 * reach; k++) {
     gint row = y + (k % 2 ? -(k + 1) / 2 : k / 2);
-    const gint16 *det = mask->det + (gsize) row * (gsize) mask->words * 64;
     guint64 window;
 
     if (row < 0 || row >= mask->height)
@@ -183,7 +182,7 @@ is_peak (const ClothSaddleMask * mask, gint x, gint y, gint reach, gint d)
     for (window = mask_window (mask, x, row, reach); window;
         window &= window - 1) {
       gint i = __builtin_ctzll (window) - reach;
-      gint other = det[x + i];
+      gint other = cloth_saddle_mask_det (mask, x + i, row);
       if (other < d || (other == d && (row < y || (row == y && i < 0))))
         return FALSE;
     }
@@ -197,13 +196,15 @@ static gint
 raise_threshold (const ClothSaddleMask * mask, gint threshold, guint limit)
 {
   guint histogram[8192] = { 0 }, above = 0;
-  gsize n = (gsize) mask->words * (gsize) mask->height;
+  const guint64 *word = mask->bits;
   gint bin = 8191;
 
-  for (gsize w = 0; w < n; w++) {
-    for (guint64 bits = mask->bits[w]; bits; bits &= bits - 1)
-      histogram[(guint) (-mask->det[w * 64 +
-                  (gsize) __builtin_ctzll (bits)]) >> 2 & 8191]++;
+  for (gint y = 0; y < mask->height; y++) {
+    for (gint w = 0; w < mask->words; w++, word++) {
+      for (guint64 bits = *word; bits; bits &= bits - 1)
+        histogram[(guint) - cloth_saddle_mask_det (mask,
+                64 * w + __builtin_ctzll (bits), y) >> 2 & 8191]++;
+    }
   }
   for (; bin >= 0; bin--) {
     above += histogram[bin];
@@ -231,17 +232,17 @@ scan_mask (ClothSaddleDetector * self, gint threshold, gint listed, gint reach,
 {
   const ClothSaddleMask *mask = &self->mask;
   gboolean all = TRUE;
-  const gssize row = (gssize) mask->words * 64;
 
   self->n_candidates = 0;
   self->n_peaks = 0;
   for (gint y = 0; y < mask->height; y++) {
     const guint64 *bits = mask->bits + (gsize) y * (gsize) mask->words;
-    const gint16 *det = mask->det + (gsize) y * (gsize) mask->words * 64;
     const guint64 *above = bits - mask->words, *below = bits + mask->words;
 
     for (gint w = 0; w < mask->words; w++) {
+      const gint16 *block = cloth_saddle_mask_block (mask, w, y);
       guint64 word = bits[w];
+
       if (!word)
         continue;
       self->candidates = grow (self->candidates, &self->candidates_allocated,
@@ -250,7 +251,7 @@ scan_mask (ClothSaddleDetector * self, gint threshold, gint listed, gint reach,
           self->n_peaks + 64, sizeof (ClothSaddleCandidate));
       for (; word; word &= word - 1) {
         gint i = __builtin_ctzll (word), x = 64 * w + i;
-        gint d = det[x];
+        gint d = cloth_saddle_block_det (block, i);
         ClothSaddleCandidate pixel;
 
         if (d >= -threshold)
@@ -263,10 +264,14 @@ scan_mask (ClothSaddleDetector * self, gint threshold, gint listed, gint reach,
         else
           self->candidates[self->n_candidates++] = pixel;
         /* The four neighbours refuse most without a closer look. */
-        if (!(i > 0 && bits[w] >> (i - 1) & 1 && det[x - 1] <= d)
-            && !(i < 63 && bits[w] >> (i + 1) & 1 && det[x + 1] < d)
-            && !(y > 0 && above[w] >> i & 1 && det[x - row] <= d)
-            && !(y + 1 < mask->height && below[w] >> i & 1 && det[x + row] < d)
+        if (!(i > 0 && bits[w] >> (i - 1) & 1
+                && cloth_saddle_block_det (block, i - 1) <= d)
+            && !(i < 63 && bits[w] >> (i + 1) & 1
+                && cloth_saddle_block_det (block, i + 1) < d)
+            && !(y > 0 && above[w] >> i & 1
+                && cloth_saddle_mask_det (mask, x, y - 1) <= d)
+            && !(y + 1 < mask->height && below[w] >> i & 1
+                && cloth_saddle_mask_det (mask, x, y + 1) < d)
             && is_peak (mask, x, y, reach, d)) {
           if (self->n_peaks < CLOTH_SADDLE_MAX)
             self->peaks[self->n_peaks++] = pixel;
