@@ -299,7 +299,7 @@ try_patch (ClothBoardFinder * finder, const ClothImage * image,
   n_votes = vote_by_plane (&finder->view, &finder->patch, &vote) ? 1 : 0;
   if (!cloth_placer_run (finder->placer, &finder->patch, &cloth_place_rigid,
           &vote, n_votes, &placement))
-    return OTHER;
+    return UNPLACED;
   if (placement.weight < MIN_LEAD || (finder->view.n_seen && !n_votes))
     return UNPLACED;
   take_over (&finder->view, &finder->patch, &placement);

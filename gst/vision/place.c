@@ -39,6 +39,7 @@ const ClothPlaceWeights cloth_place_cloth = {
   .found_corners = TRUE,
   .upright = 3,
   .least = -G_MAXFLOAT,
+  .rim_refuses = 1,
 };
 
 /* A rigid board ends where its rim is seen. The edge of what covers it looks like a rim
@@ -51,7 +52,8 @@ const ClothPlaceWeights cloth_place_rigid = {
   .cut_corner = -0.5f,
   .upright = 3,
   .twins = TRUE,
-  .least = -G_MAXFLOAT,
+  .least = -26,
+  .rim_refuses = 0.55f,
 };
 
 typedef struct
@@ -433,6 +435,38 @@ are_twins (const ClothPattern * pattern, const ClothPlacement * a,
   return FALSE;
 }
 
+/* Whether a straight rim runs along more than @share of a line of the board that lies
+ * within: the board seen is smaller. A corner there that looks like a saddle counts half:
+ * what is beside the board may give it the look. */
+static gboolean
+ends_early (const ClothPlacer * placer, const ClothPatch * patch,
+    const ClothPlacement * placement, gfloat share)
+{
+  const gint columns = placer->pattern.columns, rows = placer->pattern.rows;
+
+  for (gint along = 0; along < 2; along++)
+    for (gint line = 0; line < (along ? patch->rows : patch->columns); line++) {
+      const gint n = along ? patch->columns : patch->rows;
+      const gint length = ((placement->rotation & 1) == along ? rows
+          : columns) - 1;
+      gint on_rim = 0;
+
+      for (gint k = 0; k < n; k++) {
+        const gint i = along ? k : line, j = along ? line : k;
+        const gint at = j * patch->columns + i;
+        gint column, row;
+
+        cloth_placement_vertex (placement, i, j, &column, &row);
+        if (column > 0 && row > 0 && column < columns && row < rows
+            && !patch->linked[at] && is_rim (patch, i, j))
+          on_rim += patch->kind[at] == CLOTH_VERTEX_SADDLE ? 1 : 2;
+      }
+      if ((gfloat) on_rim > 2 * share * (gfloat) length)
+        return TRUE;
+    }
+  return FALSE;
+}
+
 /* Placements under one rotation that colour and the patch's extent allow, but for some
  * overhang. */
 typedef struct
@@ -625,7 +659,9 @@ cloth_placer_run (ClothPlacer * placer, const ClothPatch * patch,
       first = k;
     }
   }
-  if ((gfloat) list[first].score / STEPS < weights->least)
+  if ((gfloat) list[first].score / STEPS < weights->least
+      || (weights->rim_refuses < 1 && ends_early (placer, patch,
+              &list[first].placement, weights->rim_refuses)))
     return FALSE;
   *best = list[first].placement;
   /* What fits one way only hangs over on both sides. */

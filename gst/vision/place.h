@@ -48,7 +48,9 @@ typedef struct {
  * @upright: of a plain board being upright rather than on its side
  * @twins: whether placements that a turn of the whole board carries into each other are
  *   told apart by @upright alone and are no rivals
- * @least: what was seen refuses a placement whose log-likelihood by it is lower
+ * @least: a placement is refused when what was seen makes it less likely
+ * @rim_refuses: and when a straight rim runs along more than this share of a line within
+ *   the board: the board seen is another, smaller one; 1 for never
  *
  * What the evidence for and against a placement weighs, log-likelihoods.
  *
@@ -62,6 +64,7 @@ typedef struct {
   gfloat upright;
   gboolean twins;
   gfloat least;
+  gfloat rim_refuses;
 } ClothPlaceWeights;
 
 extern const ClothPlaceWeights cloth_place_cloth, cloth_place_rigid;
