@@ -5,8 +5,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/math/random.h"
 #include "gst/pattern/code.h"
-#include "gst/vision/place.h"
+#include "tests/common/bruteplace.h"
 
 #define M CLOTH_PATCH_MARGIN
 #define MOST 24
@@ -275,6 +276,107 @@ test_refused (void)
   }
 }
 
+/* A patch of a board's part, turned, with holes, misread dots, squares that aren't there
+ * and cells that show cloth, all at random. Its corners lie nowhere, so nothing is
+ * upright. */
+static ClothPatch *
+random_patch (const ClothPattern * pattern, ClothRandom * random,
+    ClothPlacement * truth)
+{
+  const gint columns = 2 + (gint) cloth_random_below (random, 24);
+  const gint rows = 2 + (gint) cloth_random_below (random, 24);
+  ClothPatch *patch = test_patch_new (columns + 4, rows + 4);
+  const gint rotation = (gint) cloth_random_below (random, 4);
+  gint column, row;
+
+  *truth = (ClothPlacement) {
+  rotation, 0, 0, 0};
+  cloth_placement_cell (truth, columns / 2, rows / 2, &column, &row);
+  truth->column = (gint) cloth_random_below (random,
+      (guint32) pattern->columns) - column;
+  truth->row = (gint) cloth_random_below (random,
+      (guint32) pattern->rows) - row;
+  cloth_placement_cell (truth, 0, 0, &column, &row);
+  patch->odd_black = !cloth_pattern_is_black (pattern, column & 1, row & 1);
+  for (gint j = 0; j + 1 < patch->rows; j++)
+    for (gint i = 0; i + 1 < patch->columns; i++) {
+      const gint at = j * patch->columns + i;
+      const gdouble chance = cloth_random_uniform (random);
+      gboolean on;
+
+      cloth_placement_cell (truth, i, j, &column, &row);
+      on = column >= 0 && row >= 0 && column < pattern->columns
+          && row < pattern->rows;
+      patch->square[at] = on ? chance > 0.15 : chance > 0.998;
+      patch->kind[at] = (guint8) cloth_random_below (random, 4);
+      patch->linked[at] = patch->kind[at] == CLOTH_VERTEX_SADDLE
+          && chance > 0.4;
+      if (!patch->square[at] && chance < 0.1)
+        patch->inside[at] = -3;
+      /* Whole steps of what is summed. */
+      if (patch->square[at] && pattern->code)
+        patch->bit[at] = (gfloat) (on && cloth_random_uniform (random) > 0.15
+            && !cloth_pattern_has_dot (pattern, column, row) ? -1 : 1)
+            * (gfloat) cloth_random_below (random, 193) / 64;
+    }
+  return patch;
+}
+
+/* The same as by looking at every square under every placement: place and lead. */
+static void
+test_brute (void)
+{
+  static const gint sizes[][2] =
+      { {8, 8}, {11, 6}, {30, 24}, {4, 25}, {26, 26} };
+  ClothPlaceWeights weights[2] = { cloth_place_cloth, cloth_place_rigid };
+  guint n = 0, placed = 0, coded = 0;
+  ClothRandom random;
+
+  weights[1].least = -G_MAXFLOAT;
+  weights[1].rim_refuses = 1;
+  /* Twins are rivals to the brute force. */
+  weights[1].twins = FALSE;
+  cloth_random_init (&random, 11);
+  for (guint s = 0; s < 2 * G_N_ELEMENTS (sizes); s++) {
+    g_autoptr (ClothPattern) pattern =
+        cloth_pattern_new_checker (sizes[s / 2][0], sizes[s / 2][1], 0.01, 0,
+        s & 1, NULL);
+    g_autoptr (ClothPlacer) placer = NULL;
+
+    if (s & 1)
+      g_assert_true (cloth_code_generate (pattern, CLOTH_CODE_DOT_RATIO, s,
+              NULL, NULL));
+    placer = cloth_placer_new (pattern);
+    for (guint k = 0; k < 60; k++) {
+      ClothPlacement best = { 0 }, brute = { 0 }, votes[3];
+      g_autoptr (ClothPatch) patch = random_patch (pattern, &random, &votes[0]);
+      const guint n_votes = cloth_random_below (&random, 4);
+      gboolean fits;
+
+      votes[0].weight = 14;
+      votes[1] = votes[2] = votes[0];
+      votes[1].column++;
+      votes[2].rotation ^= 2;
+      fits = test_brute_place (pattern, patch, &weights[k & 1], votes, n_votes,
+          &brute);
+      g_assert_cmpint (cloth_placer_run (placer, patch, &weights[k & 1], votes,
+              n_votes, &best), ==, fits);
+      if (!fits)
+        continue;
+      n++;
+      /* Of equals either may be first. */
+      if (brute.weight > 0)
+        g_assert_true (equal (&best, &brute));
+      g_assert_cmpfloat_with_epsilon (best.weight, brute.weight, 1e-3);
+      placed += equal (&best, &votes[0]);
+      coded += (s & 1) && equal (&best, &votes[0]);
+    }
+  }
+  g_test_message ("%u patches, of which %u in their true place, %u by dots", n,
+      placed, coded);
+  g_assert_cmpuint (coded, >, 100);
+}
+
 /* Cells and vertices under a placement agree: a cell's vertices are its own. */
 static void
 test_mapping (void)
@@ -305,6 +407,7 @@ main (int argc, char **argv)
   g_test_add_func ("/place/mapping", test_mapping);
   g_test_add_func ("/place/coded", test_coded);
   g_test_add_func ("/place/plain", test_plain);
+  g_test_add_func ("/place/brute", test_brute);
   g_test_add_func ("/place/votes", test_votes);
   g_test_add_func ("/place/refused", test_refused);
   return g_test_run ();
