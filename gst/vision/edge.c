@@ -67,14 +67,20 @@ bilinear (const ClothImage * image, gfloat x, gfloat y)
   return is_inside (image, x, y, 0) ? bilinear_inside (image, x, y) : -1;
 }
 
-static inline gfloat
+static inline gint
 nearest (const ClothImage * image, gfloat x, gfloat y)
 {
-  gint column = (gint) lrintf (x), row = (gint) lrintf (y);
+  return image->data[(gint) lrintf (y) * image->stride + (gint) lrintf (x)];
+}
 
-  if (column < 0 || row < 0 || column >= image->width || row >= image->height)
-    return -1.0f;
-  return image->data[row * image->stride + column];
+/* Whether there are pixels this far from a place to both sides, with room for rounding. */
+static inline gboolean
+has_pixels (const ClothImage * image, gfloat x, gfloat y, gfloat nx, gfloat ny)
+{
+  nx = fabsf (nx) - 0.49f;
+  ny = fabsf (ny) - 0.49f;
+  return x >= nx && y >= ny && x + nx <= (gfloat) (image->width - 1)
+      && y + ny <= (gfloat) (image->height - 1);
 }
 
 /* The contrast of the edge as seen by samples this far from the line. */
@@ -84,25 +90,26 @@ contrast_at (const ClothImage * image, gfloat ax, gfloat ay, gfloat dx,
 {
   gfloat scale = offset / sqrtf (dx * dx + dy * dy);
   gfloat nx = -dy * scale, ny = dx * scale;
-  gfloat sum = 0, least = G_MAXFLOAT, most = -G_MAXFLOAT;
+  gint sum = 0, least = 255, most = -255;
+  gfloat mean;
 
+  /* If the samples at both ends are inside, so are all. */
+  if (!has_pixels (image, ax + FROM * dx, ay + FROM * dy, nx, ny)
+      || !has_pixels (image, ax + TO * dx, ay + TO * dy, nx, ny))
+    return 0;
   for (gint k = 0; k < SAMPLES; k++) {
     gfloat t = FROM + (TO - FROM) * (gfloat) k / (SAMPLES - 1);
     gfloat x = ax + t * dx, y = ay + t * dy;
-    gfloat ahead = nearest (image, x + nx, y + ny);
-    gfloat behind = nearest (image, x - nx, y - ny);
-    gfloat d = ahead - behind;
+    gint d = nearest (image, x + nx, y + ny) - nearest (image, x - nx, y - ny);
 
-    if (ahead < 0 || behind < 0)
-      return 0;
     sum += d;
     least = MIN (least, d);
     most = MAX (most, d);
   }
-  sum /= SAMPLES;
-  if ((sum > CONTRAST && least > EVEN * sum)
-      || (sum < -CONTRAST && most < EVEN * sum))
-    return sum;
+  mean = (gfloat) sum / SAMPLES;
+  if ((mean > CONTRAST && (gfloat) least > EVEN * mean)
+      || (mean < -CONTRAST && (gfloat) most < EVEN * mean))
+    return mean;
   return 0;
 }
 
@@ -126,7 +133,7 @@ gfloat
 cloth_edge_contrast (const ClothImage * image, gfloat ax, gfloat ay,
     gfloat bx, gfloat by)
 {
-  gfloat dx = bx - ax, dy = by - ay, length = hypotf (dx, dy);
+  gfloat dx = bx - ax, dy = by - ay, length = sqrtf (dx * dx + dy * dy);
   /* Near the line, for squares seen obliquely; farther off, for bent edges. */
   gfloat contrast = contrast_at (image, ax, ay, dx, dy,
       CLAMP (0.2f * length, 1.2f, 2.5f));
@@ -331,7 +338,7 @@ cloth_edge_walk (const ClothImage * image, gfloat x, gfloat y, gfloat angle,
     trail[walked % TRAIL][1] = y;
     trail[walked % TRAIL][2] = angle;
     walked++;
-    if (fabsf (remainderf (angle - start, 2 * (gfloat) G_PI)) > MAX_BEND)
+    if (fabsf (angle - start) > MAX_BEND)
       return FALSE;
   }
   return FALSE;

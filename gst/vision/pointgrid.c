@@ -128,16 +128,18 @@ cloth_point_grid_add (ClothPointGrid * grid, gfloat x, gfloat y)
   *cell = (gint) grid->n_points++;
 }
 
+#define INLINE static inline __attribute__((always_inline))
+
 typedef struct
 {
   gfloat x, y, limit;           /* squared */
   ClothNear *near;
-  guint n, n_near;
+  guint n;
 } Search;
 
 /* Puts the points of one cell into their places among the nearest. */
-static inline void
-visit (const Point * points, gint m, Search * search)
+INLINE void
+visit (const Point * points, gint m, Search * search, guint n_near)
 {
   ClothNear *near = search->near;
 
@@ -147,20 +149,58 @@ visit (const Point * points, gint m, Search * search)
     guint at;
 
     /* Written so that NaN is far. */
-    if (!(d2 <= search->limit) || (search->n == search->n_near
-            && d2 == near[search->n - 1].distance2
-            && m > near[search->n - 1].index))
+    if (!(d2 <= search->limit) || (search->n == n_near
+            && d2 == near[n_near - 1].distance2 && m > near[n_near - 1].index))
       continue;
-    if (search->n < search->n_near)
+    if (search->n < n_near)
       search->n++;
     for (at = search->n - 1; at > 0 && (near[at - 1].distance2 > d2
             || (near[at - 1].distance2 == d2 && near[at - 1].index > m)); at--)
       near[at] = near[at - 1];
     near[at].distance2 = d2;
     near[at].index = m;
-    if (search->n == search->n_near)
-      search->limit = MIN (search->limit, near[search->n - 1].distance2);
+    if (search->n == n_near)
+      search->limit = MIN (search->limit, near[n_near - 1].distance2);
   }
+}
+
+INLINE guint
+find (const ClothPointGrid * grid, gfloat x, gfloat y, gfloat radius,
+    ClothNear * near, guint n_near)
+{
+  Search search = { x, y, radius * radius, near, 0 };
+  gint column, row, last = MAX (grid->columns, grid->rows);
+  gfloat inside;
+
+  cell_of (grid, x, y, &column, &row);
+  /* How far it is to the next cell at least; less a little, for cells are found by a
+   * rounded product. */
+  inside = MIN (MIN (x - (gfloat) column * grid->size,
+          (gfloat) (column + 1) * grid->size - x),
+      MIN (y - (gfloat) row * grid->size, (gfloat) (row + 1) * grid->size - y));
+  inside = MAX (inside - 0.01f, 0);
+  for (gint ring = 0; ring <= last; ring++) {
+    gfloat reach = ring ? grid->size * (gfloat) (ring - 1) + inside : 0;
+    gint left = column - ring, right = column + ring;
+
+    if (reach * reach > search.limit)
+      break;
+    for (gint r = MAX (row - ring, 0); r <= MIN (row + ring, grid->rows - 1);
+        r++) {
+      const gint *cells = grid->cells + r * grid->columns;
+
+      if (r == row - ring || r == row + ring) {
+        for (gint c = MAX (left, 0); c <= MIN (right, grid->columns - 1); c++)
+          visit (grid->points, cells[c], &search, n_near);
+        continue;
+      }
+      if (left >= 0)
+        visit (grid->points, cells[left], &search, n_near);
+      if (right < grid->columns)
+        visit (grid->points, cells[right], &search, n_near);
+    }
+  }
+  return search.n;
 }
 
 /**
@@ -181,39 +221,10 @@ guint
 cloth_point_grid_nearest (const ClothPointGrid * grid, gfloat x, gfloat y,
     gfloat radius, ClothNear * near, guint n_near)
 {
-  Search search = { x, y, radius * radius, near, 0, n_near };
-  gint column, row, last = MAX (grid->columns, grid->rows);
-  gfloat inside;
-
   if (!n_near)
     return 0;
-  cell_of (grid, x, y, &column, &row);
-  /* How far it is to the next cell at least; less a little, for cells are found by a
-   * rounded product. */
-  inside = MIN (MIN (x - (gfloat) column * grid->size,
-          (gfloat) (column + 1) * grid->size - x),
-      MIN (y - (gfloat) row * grid->size, (gfloat) (row + 1) * grid->size - y));
-  inside = MAX (inside - 0.01f, 0);
-  for (gint ring = 0; ring <= last; ring++) {
-    gfloat reach = ring ? grid->size * (gfloat) (ring - 1) + inside : 0;
-    gint left = column - ring, right = column + ring;
-
-    if (reach * reach > search.limit)
-      break;
-    for (gint r = MAX (row - ring, 0); r <= MIN (row + ring, grid->rows - 1);
-        r++) {
-      const gint *cells = grid->cells + r * grid->columns;
-
-      if (r == row - ring || r == row + ring) {
-        for (gint c = MAX (left, 0); c <= MIN (right, grid->columns - 1); c++)
-          visit (grid->points, cells[c], &search);
-        continue;
-      }
-      if (left >= 0)
-        visit (grid->points, cells[left], &search);
-      if (right < grid->columns)
-        visit (grid->points, cells[right], &search);
-    }
-  }
-  return search.n;
+  /* Most ask for one: a copy of the code that knows it. */
+  if (n_near == 1)
+    return find (grid, x, y, radius, near, 1);
+  return find (grid, x, y, radius, near, n_near);
 }

@@ -117,9 +117,7 @@ test_brute_place (const ClothPattern * pattern, const ClothPatch * patch,
           second = MAX (second, score);
         }
       }
-  /* The only one leads by a square. */
-  best->weight = second == -G_MAXDOUBLE ? -weights->square_outside
-      : (gfloat) MIN (first - second, CLOTH_PLACE_MOST_LEAD);
+  best->weight = (gfloat) MIN (first - second, CLOTH_PLACE_MOST_LEAD);
   return first > -G_MAXDOUBLE;
 }
 

@@ -20,6 +20,9 @@ typedef struct
   TestRender *render;           /* of the last frame pushed */
   GstHarness *h;
   gchar *path;                  /* of pattern.json */
+  gboolean *shown;              /* squares tracked or predicted in the last frame */
+  guint n_lost;                 /* squares reported lost so far */
+  gboolean half;                /* the right of the picture is covered */
 } Film;
 
 static void
@@ -35,16 +38,19 @@ film_init (Film * film, gint columns, gint rows, gboolean coded)
     fail_unless (cloth_code_generate (film->pattern, CLOTH_CODE_DOT_RATIO, 2,
             NULL, NULL));
   fail_unless (cloth_pattern_save (film->pattern, film->path, NULL));
+  film->shown = g_new0 (gboolean, columns * rows);
 }
 
 static void
 film_start (Film * film, const gchar * settings)
 {
+  gsize n = (gsize) (film->pattern->columns * film->pattern->rows);
   g_autofree gchar *launch = g_strdup_printf ("saddledetect ! quadtrack "
       "name=track pattern=%s %s", film->path, settings);
 
   if (film->h)
     gst_harness_teardown (film->h);
+  memset (film->shown, 0, n * sizeof (gboolean));
   film->h = gst_harness_new_parse (launch);
   gst_harness_set_src_caps_str (film->h, "video/x-raw,format=GRAY8,width=320,"
       "height=272,framerate=30/1");
@@ -59,6 +65,7 @@ film_clear (Film * film)
   cloth_pattern_free (film->pattern);
   g_remove (film->path);
   g_free (film->path);
+  g_free (film->shown);
 }
 
 /* The cloth waves and turns to and fro. */
@@ -134,6 +141,33 @@ lies_on (const Film * film, const GstClothQuad * quad, guint column, guint row)
   return TRUE;
 }
 
+/* No square goes without being reported lost, once. */
+static void
+film_check_lost (Film * film, GstClothQuads * quads)
+{
+  gint n = film->pattern->columns * film->pattern->rows;
+  g_autofree gboolean *told = g_new0 (gboolean, n);
+
+  for (guint k = 0; k < gst_cloth_quads_get_n_quads (quads); k++) {
+    GstClothQuad quad;
+    gint at;
+
+    fail_unless (gst_cloth_quads_get_quad (quads, k, &quad));
+    at = (gint) quad.row * film->pattern->columns + (gint) quad.column;
+    told[at] = TRUE;
+    if (quad.state == GST_CLOTH_QUAD_LOST) {
+      fail_unless (film->shown[at], "square (%d, %d) was not there to lose",
+          (gint) quad.column, (gint) quad.row);
+      fail_unless (isfinite (quad.x[0] + quad.y[0] + quad.cov_xx[0]));
+      film->n_lost++;
+    }
+    film->shown[at] = quad.state != GST_CLOTH_QUAD_LOST;
+  }
+  for (gint at = 0; at < n; at++)
+    fail_unless (told[at] || !film->shown[at], "square (%d, %d) just went",
+        at % film->pattern->columns, at / film->pattern->columns);
+}
+
 static Score
 film_push (Film * film, guint frame)
 {
@@ -142,12 +176,15 @@ film_push (Film * film, guint frame)
   Score score = { 0 };
 
   film_render (film, frame);
+  for (guint row = 0; film->half && row < HEIGHT; row++)
+    memset (film->render->data + row * WIDTH + WIDTH / 2, 90, WIDTH / 2);
   buffer = gst_buffer_new_memdup (film->render->data, WIDTH * HEIGHT);
   GST_BUFFER_PTS (buffer) = gst_util_uint64_scale (frame, GST_SECOND, 30);
   out = gst_harness_push_and_pull (film->h, buffer);
   fail_unless (out != NULL);
   quads = gst_buffer_get_cloth_quads (out);
   fail_unless (quads != NULL);
+  film_check_lost (film, quads);
   for (guint k = 0; k < gst_cloth_quads_get_n_quads (quads); k++) {
     GstClothQuad quad;
 
@@ -206,6 +243,36 @@ GST_START_TEST (test_slip_mended)
     fail_unless (score.black >= N_BLACK * 9 / 10,
         "%u of %d squares in frame %u", score.black, N_BLACK, frame);
   }
+  film_clear (&film);
+}
+
+GST_END_TEST;
+
+/* When the code shows that the grid had slipped while half of it is covered, the squares
+ * that go with the old grid are reported lost. */
+GST_START_TEST (test_slip_lost)
+{
+  g_autofree gchar *settings = NULL;
+  Film film = { NULL };
+  g_autofree gchar *seed = NULL;
+  g_autoptr (GstElement) track = NULL;
+  Score score;
+
+  film_init (&film, COLUMNS, ROWS, TRUE);
+  film_render (&film, 0);
+  seed = film_seed (&film, 4, 4, 5, 5);
+  settings = g_strdup_printf ("link=false %s", seed);
+  film_start (&film, settings);
+  for (guint frame = 0; frame < 8; frame++)
+    film_push (&film, frame);
+  fail_unless_equals_int ((gint) film.n_lost, 0);
+  track = gst_bin_get_by_name (GST_BIN (film.h->element), "track");
+  g_object_set (track, "link", TRUE, NULL);
+  film.half = TRUE;
+  score = film_push (&film, 8);
+  fail_unless_equals_int ((gint) score.wrong, 0);
+  fail_unless (score.black >= N_BLACK / 4, "%u squares", score.black);
+  fail_unless (film.n_lost >= N_BLACK / 4, "%u squares lost", film.n_lost);
   film_clear (&film);
 }
 
@@ -321,6 +388,7 @@ quadtrackboards_suite (void)
 
   suite_add_tcase (suite, tc);
   tcase_add_test (tc, test_slip_mended);
+  tcase_add_test (tc, test_slip_lost);
   tcase_add_test (tc, test_wrong_seed_overruled);
   tcase_add_test (tc, test_colours);
   tcase_add_test (tc, test_narrow);
