@@ -454,13 +454,17 @@ place (ClothQuadTracker * tracker, gboolean first, ClothPlacement * placement,
 {
   ClothPlacement votes[MAX_VOTES + MAX_SEEDS];
   guint n_memory = vote_by_memory (tracker, votes), n = n_memory;
+  ClothPlaceWeights weights = cloth_place_cloth;
   gfloat agrees = 0;
 
   for (guint s = 0; s < tracker->seeds->len && n < n_memory + MAX_SEEDS; s++)
     n += vote_by_seed (tracker,
         &g_array_index (tracker->seeds, ClothQuadSeed, s), &votes[n]);
-  if (!cloth_placer_run (tracker->placer, &tracker->patch,
-          &cloth_place_cloth, votes, n, placement)
+  /* With nothing to go by, a plain board that looks the same after a turn is taken the way
+   * it is most upright; from then on the memory tells which way that was. */
+  weights.twins = first && n == 0 && tracker->guess_vertex->len == 0;
+  if (!cloth_placer_run (tracker->placer, &tracker->patch, &weights, votes, n,
+          placement)
       || placement->weight < MIN_LEAD)
     return FALSE;
   for (guint v = 0; v < n_memory; v++)
