@@ -23,7 +23,8 @@ G_BEGIN_DECLS
  * @column: board vertex of the patch's vertex (0, 0)
  * @row: likewise
  * @weight: as a vote: log-likelihood in favour; as a result: log-likelihood of this
- *   placement less that of the next best, at most %CLOTH_PLACE_MOST_LEAD
+ *   placement less that of the next best, at most %CLOTH_PLACE_MOST_LEAD; that of one
+ *   square when there is no other
  *
  * A way to lay a patch on the board: vertex (i, j) of the patch, turned @rotation times
  * by (i, j) → (-j, i), plus (@column, @row).
@@ -45,9 +46,9 @@ typedef struct {
  *   on a rim as straight as the grid
  * @cut_corner: the same of one that stands alone: something may cover the other squares
  *   there
- * @upright: of a plain board being upright rather than on its side
+ * @upright: of a plain board being upright rather than on its side; adds to the lead
  * @twins: whether placements that a turn of the whole board carries into each other are
- *   told apart by @upright alone and are no rivals
+ *   no rivals: the more upright one is taken, and being upright adds to no lead
  * @least: a placement is refused when what was seen makes it less likely
  * @rim_refuses: and when a straight rim runs along more than this share of a line within
  *   the board: the board seen is another, smaller one; 1 for never

@@ -117,7 +117,9 @@ test_brute_place (const ClothPattern * pattern, const ClothPatch * patch,
           second = MAX (second, score);
         }
       }
-  best->weight = (gfloat) MIN (first - second, CLOTH_PLACE_MOST_LEAD);
+  /* The only one leads by a square. */
+  best->weight = second == -G_MAXDOUBLE ? -weights->square_outside
+      : (gfloat) MIN (first - second, CLOTH_PLACE_MOST_LEAD);
   return first > -G_MAXDOUBLE;
 }
 
