@@ -6,16 +6,15 @@
 #include <gst/cloth/cloth.h>
 #include <gst/video/navigation.h>
 #include <math.h>
+#include <string.h>
 
+#include "elements/gstquadtrackseed.h"
 #include "gst/pattern/pattern.h"
 #include "gst/vision/quad.h"
 #include "gst/vision/saddle.h"
 
 GST_DEBUG_CATEGORY_STATIC (quad_track_debug);
 #define GST_CAT_DEFAULT quad_track_debug
-
-/* Four corners, column, row. */
-#define SEED_NUMBERS 10
 
 /**
  * SECTION:element-quadtrack
@@ -26,7 +25,8 @@ GST_DEBUG_CATEGORY_STATIC (quad_track_debug);
  * The board is found without help. A square can be given all the same: by four clicks
  * into any video sink (navigation events; a right click starts over) or by the property
  * `seed`; with `link=false` the tracker is that of the paper alone and needs one: until
- * there is one it warns and tracks nothing, as with a seed that is not on the board.
+ * there is one it warns and tracks nothing, as with a seed where no square of the board is
+ * seen.
  *
  * The bus is told by the element messages `quadtrack/found` and `quadtrack/lost` when the
  * board comes into sight and when all of it is gone; their fields are `camera`,
@@ -64,8 +64,8 @@ struct _GstQuadTrack
   GArray *candidates;           /* ClothSaddleCandidate */
   GArray *quads;                /* GstClothQuad */
   gboolean found;
-  gboolean warned_of_seed, warned_of_none;
-  gfloat first_seed[SEED_NUMBERS];      /* of the property */
+  GstQuadTrackWarned warned;
+  gfloat first_seed[GST_QUAD_TRACK_SEED_NUMBERS];       /* of the property */
   gboolean has_first_seed, knows_first, was_reset;
   guint64 first_sequence;       /* of the picture that the property is about */
 };
@@ -115,27 +115,6 @@ G_STATIC_ASSERT (sizeof (GstClothSaddle) == sizeof (ClothSaddle));
 G_STATIC_ASSERT ((gint) GST_CLOTH_QUAD_TRACKED == (gint) CLOTH_QUAD_TRACKED);
 G_STATIC_ASSERT ((gint) GST_CLOTH_QUAD_LOST == (gint) CLOTH_QUAD_LOST);
 
-/* Reads "x0,y0,…,y3" or "x0,y0,…,y3,column,row". */
-static gboolean
-parse_seed (const gchar * text, gfloat seed[SEED_NUMBERS])
-{
-  g_auto (GStrv) parts = g_strsplit (text, ",", SEED_NUMBERS + 1);
-  guint n = g_strv_length (parts);
-
-  if (n != SEED_NUMBERS - 2 && n != SEED_NUMBERS)
-    return FALSE;
-  seed[8] = seed[9] = -1;
-  for (guint k = 0; k < n; k++) {
-    gchar *end;
-    gdouble value = g_ascii_strtod (g_strstrip (parts[k]), &end);
-
-    if (end == parts[k] || *end || !isfinite (value) || fabs (value) > 1e6)
-      return FALSE;
-    seed[k] = (gfloat) value;
-  }
-  return TRUE;
-}
-
 static gboolean
 gst_quad_track_start (GstClothFilter * filter)
 {
@@ -156,11 +135,11 @@ gst_quad_track_start (GstClothFilter * filter)
   self->has_first_seed = seed != NULL;
   self->knows_first = FALSE;
   self->was_reset = TRUE;
-  if (seed && !parse_seed (seed, self->first_seed)) {
+  if (seed && !gst_quad_track_seed_parse (seed, self->first_seed)) {
     GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
         ("Can't read the seed \"%s\".", seed),
-        ("\"seed\" takes x0,y0,x1,y1,x2,y2,x3,y3 in pixels, and column,row if "
-            "known"));
+        ("\"seed\" takes x0,y0,x1,y1,x2,y2,x3,y3 in pixels, and the square's "
+            "column,row, counted from 0, if known"));
     return FALSE;
   }
   if (path) {
@@ -179,7 +158,7 @@ gst_quad_track_start (GstClothFilter * filter)
   }
   self->tracker = cloth_quad_tracker_new (self->pattern);
   self->found = FALSE;
-  self->warned_of_seed = self->warned_of_none = FALSE;
+  memset (&self->warned, 0, sizeof (self->warned));
   return TRUE;
 }
 
@@ -281,61 +260,6 @@ gst_quad_track_take_saddles (GstQuadTrack * self, GstClothSaddles * meta,
   }
 }
 
-/* Says once what keeps the tracker from starting at a seed. */
-static void
-gst_quad_track_check_seed (GstQuadTrack * self, const ClothQuadParams * params,
-    gint column, gint row)
-{
-  const ClothPattern *pattern = self->pattern;
-
-  if (self->warned_of_seed || column < 0 || row < 0)
-    return;
-  if (column >= pattern->columns || row >= pattern->rows) {
-    self->warned_of_seed = TRUE;
-    GST_ELEMENT_WARNING (self, RESOURCE, SETTINGS,
-        ("The seed's square %d,%d is not on the board of %d×%d squares, so the "
-            "seed is of no use.", column, row, pattern->columns, pattern->rows),
-        ("End \"seed\" by the square's column,row, counted from 0, or leave "
-            "both out"));
-  } else if (!params->link && params->squares != CLOTH_SQUARES_BOTH
-      && cloth_pattern_is_black (pattern, column, row)
-      != (params->squares == CLOTH_SQUARES_BLACK)) {
-    self->warned_of_seed = TRUE;
-    GST_ELEMENT_WARNING (self, RESOURCE, SETTINGS,
-        ("The seed's square %d,%d is of the colour that is not tracked, so "
-            "nothing starts from it.", column, row),
-        ("Give a square of the other colour, or set \"squares\" to both"));
-  }
-}
-
-/* Says once why nothing can be found; who doesn't know waits in vain. */
-static void
-gst_quad_track_check_start (GstQuadTrack * self, const ClothQuadParams * params,
-    guint n_seeds)
-{
-  const ClothPattern *pattern = self->pattern;
-
-  if (self->warned_of_none)
-    return;
-  if (params->link) {
-    if (MIN (pattern->columns, pattern->rows) > 2)
-      return;
-    self->warned_of_none = TRUE;
-    GST_ELEMENT_WARNING (self, RESOURCE, SETTINGS,
-        ("A board of %d×%d squares is too narrow to be found by itself.",
-            pattern->columns, pattern->rows),
-        ("Set link=false and give a square by \"seed\" or by clicks, or use a "
-            "board of three or more squares each way"));
-    return;
-  }
-  self->warned_of_none = TRUE;
-  if (!n_seeds)
-    GST_ELEMENT_WARNING (self, RESOURCE, SETTINGS,
-        ("With link=false nothing is tracked until a square is given."),
-        ("Set \"seed\", click the four corners of a square in the video "
-            "window, or set \"link\" to true"));
-}
-
 static GstFlowReturn
 gst_quad_track_analyse (GstClothFilter * filter,
     const GstClothFilterFrame * frame)
@@ -374,18 +298,20 @@ gst_quad_track_analyse (GstClothFilter * filter,
   /* again after a seek back to it, not elsewhere: there it would be wrong */
   if (self->has_first_seed && self->was_reset
       && frame->sequence == self->first_sequence)
-    g_array_append_vals (self->seeds, self->first_seed, SEED_NUMBERS);
+    g_array_append_vals (self->seeds, self->first_seed,
+        GST_QUAD_TRACK_SEED_NUMBERS);
   self->was_reset = FALSE;
   /* a message must not be posted with the lock held */
-  n_seeds = self->seeds->len / SEED_NUMBERS;
+  n_seeds = self->seeds->len / GST_QUAD_TRACK_SEED_NUMBERS;
   g_array_set_size (self->taken_seeds, 0);
   g_array_append_vals (self->taken_seeds, self->seeds->data, self->seeds->len);
   g_array_set_size (self->seeds, 0);
   GST_OBJECT_UNLOCK (self);
-  gst_quad_track_check_start (self, &params, n_seeds);
+  gst_quad_track_seed_check_start (GST_ELEMENT (self), &self->warned,
+      self->pattern, &params, n_seeds);
   for (guint s = 0; s < n_seeds; s++) {
-    const gfloat *seed =
-        &g_array_index (self->taken_seeds, gfloat, s * SEED_NUMBERS);
+    const gfloat *seed = &g_array_index (self->taken_seeds, gfloat,
+        s * GST_QUAD_TRACK_SEED_NUMBERS);
     gint column = (gint) seed[8], row = (gint) seed[9];
     gfloat x[4], y[4];
 
@@ -393,7 +319,8 @@ gst_quad_track_analyse (GstClothFilter * filter,
       x[c] = seed[2 * c];
       y[c] = seed[2 * c + 1];
     }
-    gst_quad_track_check_seed (self, &params, column, row);
+    gst_quad_track_seed_check (GST_ELEMENT (self), &self->warned, self->pattern,
+        &params, column, row);
     cloth_quad_tracker_seed (self->tracker, x, y, column, row);
   }
 
@@ -422,6 +349,8 @@ gst_quad_track_analyse (GstClothFilter * filter,
       gst_cloth_quads_new (frame->camera, frame->sequence,
           (guint) self->pattern->columns, (guint) self->pattern->rows,
           (const GstClothQuad *) self->quads->data, n));
+  gst_quad_track_seed_check_tracked (GST_ELEMENT (self), &self->warned, &params,
+      n_seeds, tracked);
   gst_quad_track_tell (self, frame, tracked);
   GST_LOG_OBJECT (self, "%u saddles, %u squares tracked", n_saddles, tracked);
   return GST_FLOW_OK;

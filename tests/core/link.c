@@ -330,8 +330,8 @@ test_no_boards (void)
           NULL), ==, 0);
 }
 
-/* A patch has every square of the board, the rim's too, each corner in its place; beyond the rim nothing is taken for board, and the
- * dots of a code are read. */
+/* A patch has every square of the board, the rim's too, each corner in its place; beyond
+ * the rim nothing is taken for board, and the dots of a code are read. */
 static void
 test_patch (void)
 {

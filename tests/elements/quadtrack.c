@@ -251,6 +251,10 @@ GST_START_TEST (test_useless_seed)
     {"link=false seed=141,77,161,77,161,97,141,97,5,2", "squares"},
     {"link=false squares=white seed=121,77,141,77,141,97,121,97,4,2",
         "squares"},
+    {"link=false seed=61,57,71,57,71,67,61,67", "corners"},
+    {"link=false seed=121,77,121,77,121,77,121,77,4,2", "corners"},
+    {"link=false seed=1121,77,1141,77,1141,97,1121,97,4,2", "corners"},
+    {"link=true seed=121,77,121,77,121,77,121,77,4,2", NULL},
     {"link=false seed=121,77,141,77,141,97,121,97,4,2", NULL},
     {"link=true seed=141,77,161,77,161,97,141,97,5,2", NULL},
     {"link=false squares=white seed=141,77,161,77,161,97,141,97,5,2", NULL},
@@ -425,7 +429,9 @@ GST_START_TEST (test_refused)
     {"seed", "1,2,3,4,5,6,7,8,9,10,11", "x0,y0"},
     {"seed", "1,2,3,4,5,6,7,nan", "x0,y0"},
     {"seed", "1,2,3,4,5,6,7,1e300", "x0,y0"},
-    {"seed", "1,2,3,4,5,6,7,8px", "x0,y0"}
+    {"seed", "1,2,3,4,5,6,7,8px", "x0,y0"},
+    {"seed", "1,2,3,4,5,6,7,8,1.5,2", "x0,y0"},
+    {"seed", "1,2,3,4,5,6,7,8,-1,2", "x0,y0"}
   };
 
   for (guint k = 0; k < G_N_ELEMENTS (bad); k++) {

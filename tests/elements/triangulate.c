@@ -439,6 +439,31 @@ GST_START_TEST (test_no_detector)
 
 GST_END_TEST;
 
+/* One camera linked, or one of two with a detector: said once, with its name. */
+GST_START_TEST (test_one_detector)
+{
+  guint n, frame;
+
+  for (n = 1; n <= 2; n++) {
+    Bench b;
+
+    bench_open (&b, 2);
+    bench_link (&b, n, FALSE, VIDEO);
+    for (frame = 0; frame < 30; frame++) {
+      push_seen (&b, 0, 0, frame, ALL, "cam0");
+      if (n == 2) {
+        push (&b, 1, NULL, frame);
+      }
+      expect_all (&b, frame, GST_CLOTH_VERTEX_UNSEEN);
+    }
+    expect_message (&b, GST_MESSAGE_WARNING, "Only camera \"cam0\"");
+    fail_unless (gst_bus_pop_filtered (b.bus, GST_MESSAGE_WARNING) == NULL);
+    bench_clear (&b);
+  }
+}
+
+GST_END_TEST;
+
 /* The pads are mixed up, or a camera was moved: said once, with its name. */
 GST_START_TEST (test_cameras_do_not_fit)
 {
@@ -1176,6 +1201,7 @@ triangulate_suite (void)
   tcase_add_test (tc, test_unseen);
   tcase_add_test (tc, test_nothing_seen);
   tcase_add_test (tc, test_no_detector);
+  tcase_add_test (tc, test_one_detector);
   tcase_add_test (tc, test_cameras_do_not_fit);
   tcase_add_test (tc, test_missing_camera);
   tcase_add_test (tc, test_offset);
