@@ -268,6 +268,40 @@ test_prediction (void)
   g_assert_cmpuint (scene_run (&scene), ==, 0);
 }
 
+/* Two squares run towards each other, and where both are expected there is but one: the
+ * first has it, the other is refused and goes on as predicted. */
+static void
+test_taken (void)
+{
+  static const gint gone[] = { 0, 12, 36, 72 };
+  g_auto (Scene) scene = { 0 };
+
+  scene_init (&scene, 3, 3);
+  for (guint frame = 0; frame < G_N_ELEMENTS (gone) + 1; frame++) {
+    const gboolean met = frame == G_N_ELEMENTS (gone);
+    const gint left[2] = { met ? 108 : 10 + gone[frame],
+      met ? 108 : 206 - gone[frame]
+    };
+
+    scene_wipe (&scene);
+    for (gint k = 0; k < (met ? 1 : 2); k++) {
+      scene_paint (&scene, left[k], 100);
+      /* The inner corner of each must be a saddle: below, to the right or left. */
+      polygon_paint_box (&scene.image, left[k] + SIDE - 0.5, 129.5,
+          left[k] + SIDE + 8.5, 138.5, BLACK);
+      polygon_paint_box (&scene.image, left[k] - 9.5, 129.5, left[k] - 0.5,
+          138.5, BLACK);
+      if (frame == 0)
+        scene_seed (&scene, left[k], 100, 2 * k, 0);
+    }
+    g_assert_cmpuint (scene_run (&scene), ==, met ? 1 : 2);
+    g_assert_true (scene_tracks (&scene, 0, 0, left[0], 100));
+    if (!met)
+      g_assert_true (scene_tracks (&scene, 2, 0, left[1], 100));
+  }
+  g_assert_nonnull (scene_find (&scene, 2, 0, CLOTH_QUAD_PREDICTED));
+}
+
 /* What vanishes is predicted for five pictures, once said to be lost, then silent. */
 static void
 test_lost (void)
@@ -370,6 +404,7 @@ main (int argc, char **argv)
   g_test_add_func ("/quad/consistency", test_consistency);
   g_test_add_func ("/quad/consistency-bounds", test_consistency_bounds);
   g_test_add_func ("/quad/prediction", test_prediction);
+  g_test_add_func ("/quad/taken", test_taken);
   g_test_add_func ("/quad/lost", test_lost);
   g_test_add_func ("/quad/extension", test_extension);
   g_test_add_func ("/quad/confidence", test_confidence);

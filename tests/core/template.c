@@ -88,6 +88,9 @@ test_exact (void)
   g_assert_cmpfloat (cloth_quad_confidence (&image, x, y, 0.25f, TRUE), ==, 0);
   polygon_paint_box (&image, 39.5, 29.5, 79.5, 69.5, 40);
   g_assert_cmpfloat (cloth_quad_confidence (&image, x, y, 0.25f, TRUE), ==, 1);
+  /* One level less, with the mean in between, is darker. */
+  polygon_paint_box (&image, 39.5, 29.5, 79.5, 69.5, 199);
+  g_assert_cmpfloat (cloth_quad_confidence (&image, x, y, 0.25f, TRUE), ==, 1);
   polygon_picture_clear (&image);
 }
 
