@@ -6,16 +6,15 @@
 #include <gst/cloth/cloth.h>
 #include <gst/video/navigation.h>
 #include <math.h>
+#include <string.h>
 
+#include "elements/gstquadtrackseed.h"
 #include "gst/pattern/pattern.h"
 #include "gst/vision/quad.h"
 #include "gst/vision/saddle.h"
 
 GST_DEBUG_CATEGORY_STATIC (quad_track_debug);
 #define GST_CAT_DEFAULT quad_track_debug
-
-/* Four corners, column, row. */
-#define SEED_NUMBERS 10
 
 /**
  * SECTION:element-quadtrack
@@ -25,7 +24,9 @@ GST_DEBUG_CATEGORY_STATIC (quad_track_debug);
  *
  * The board is found without help. A square can be given all the same: by four clicks
  * into any video sink (navigation events; a right click starts over) or by the property
- * `seed`; with `link=false` the tracker is that of the paper alone and needs one.
+ * `seed`; with `link=false` the tracker is that of the paper alone and needs one: until
+ * there is one it warns and tracks nothing, as with a seed where no square of the board is
+ * seen.
  *
  * The bus is told by the element messages `quadtrack/found` and `quadtrack/lost` when the
  * board comes into sight and when all of it is gone; their fields are `camera`,
@@ -58,10 +59,13 @@ struct _GstQuadTrack
   ClothPattern *pattern;
   ClothQuadTracker *tracker;
   ClothSaddleDetector *detector;
+  GArray *taken_seeds;          /* gfloat, of this picture */
+  GArray *saddles;              /* GstClothSaddle */
   GArray *candidates;           /* ClothSaddleCandidate */
   GArray *quads;                /* GstClothQuad */
   gboolean found;
-  gfloat first_seed[SEED_NUMBERS];      /* of the property */
+  GstQuadTrackWarned warned;
+  gfloat first_seed[GST_QUAD_TRACK_SEED_NUMBERS];       /* of the property */
   gboolean has_first_seed, knows_first, was_reset;
   guint64 first_sequence;       /* of the picture that the property is about */
 };
@@ -111,27 +115,6 @@ G_STATIC_ASSERT (sizeof (GstClothSaddle) == sizeof (ClothSaddle));
 G_STATIC_ASSERT ((gint) GST_CLOTH_QUAD_TRACKED == (gint) CLOTH_QUAD_TRACKED);
 G_STATIC_ASSERT ((gint) GST_CLOTH_QUAD_LOST == (gint) CLOTH_QUAD_LOST);
 
-/* Reads "x0,y0,…,y3" or "x0,y0,…,y3,column,row". */
-static gboolean
-parse_seed (const gchar * text, gfloat seed[SEED_NUMBERS])
-{
-  g_auto (GStrv) parts = g_strsplit (text, ",", SEED_NUMBERS + 1);
-  guint n = g_strv_length (parts);
-
-  if (n != SEED_NUMBERS - 2 && n != SEED_NUMBERS)
-    return FALSE;
-  seed[8] = seed[9] = -1;
-  for (guint k = 0; k < n; k++) {
-    gchar *end;
-    gdouble value = g_ascii_strtod (g_strstrip (parts[k]), &end);
-
-    if (end == parts[k] || *end || !isfinite (value) || fabs (value) > 1e6)
-      return FALSE;
-    seed[k] = (gfloat) value;
-  }
-  return TRUE;
-}
-
 static gboolean
 gst_quad_track_start (GstClothFilter * filter)
 {
@@ -152,11 +135,11 @@ gst_quad_track_start (GstClothFilter * filter)
   self->has_first_seed = seed != NULL;
   self->knows_first = FALSE;
   self->was_reset = TRUE;
-  if (seed && !parse_seed (seed, self->first_seed)) {
+  if (seed && !gst_quad_track_seed_parse (seed, self->first_seed)) {
     GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
         ("Can't read the seed \"%s\".", seed),
-        ("\"seed\" takes x0,y0,x1,y1,x2,y2,x3,y3 in pixels, and column,row if "
-            "known"));
+        ("\"seed\" takes x0,y0,x1,y1,x2,y2,x3,y3 in pixels, and the square's "
+            "column,row, counted from 0, if known"));
     return FALSE;
   }
   if (path) {
@@ -175,6 +158,7 @@ gst_quad_track_start (GstClothFilter * filter)
   }
   self->tracker = cloth_quad_tracker_new (self->pattern);
   self->found = FALSE;
+  memset (&self->warned, 0, sizeof (self->warned));
   return TRUE;
 }
 
@@ -227,6 +211,55 @@ gst_quad_track_tell (GstQuadTrack * self, const GstClothFilterFrame * frame,
               "squares", G_TYPE_UINT, tracked, NULL)));
 }
 
+/* Whether a saddle that came as metadata is one of this picture: anybody may have written
+ * it. What compares with NaN is false. */
+static inline gboolean
+is_usable (const GstClothSaddle * saddle, const ClothImage * image)
+{
+  return saddle->x >= 0 && saddle->y >= 0
+      && saddle->x <= (gfloat) (image->width - 1)
+      && saddle->y <= (gfloat) (image->height - 1)
+      && saddle->axis >= 0 && saddle->axis <= (gfloat) G_PI
+      && saddle->cov_xx >= 0 && saddle->cov_yy >= 0
+      && isfinite (saddle->response + saddle->cov_xx + saddle->cov_xy +
+      saddle->cov_yy);
+}
+
+/* Takes over the saddles of @meta. */
+static void
+gst_quad_track_take_saddles (GstQuadTrack * self, GstClothSaddles * meta,
+    const ClothImage * image)
+{
+  guint n;
+  const GstClothSaddle *refined = gst_cloth_saddles_get_refined (meta, &n);
+  const GstClothCandidate *from;
+  guint n_usable = 0;
+
+  g_array_set_size (self->saddles, n);
+  for (guint k = 0; k < n; k++)
+    if (is_usable (&refined[k], image))
+      g_array_index (self->saddles, GstClothSaddle, n_usable++) = refined[k];
+  if (n_usable < n)
+    GST_DEBUG_OBJECT (self, "%u of %u saddles are none of this picture",
+        n - n_usable, n);
+  g_array_set_size (self->saddles, n_usable);
+
+  from = gst_cloth_saddles_get_candidates (meta, &n);
+  g_array_set_size (self->candidates, 0);
+  for (guint k = 0; k < n; k++) {
+    ClothSaddleCandidate candidate;
+
+    if (!(from[k].x >= -0.5f && from[k].y >= -0.5f
+            && from[k].x < (gfloat) image->width - 0.5f
+            && from[k].y < (gfloat) image->height - 0.5f))
+      continue;
+    candidate.x = (guint16) lrintf (from[k].x);
+    candidate.y = (guint16) lrintf (from[k].y);
+    candidate.response = from[k].response;
+    g_array_append_val (self->candidates, candidate);
+  }
+}
+
 static GstFlowReturn
 gst_quad_track_analyse (GstClothFilter * filter,
     const GstClothFilterFrame * frame)
@@ -237,21 +270,13 @@ gst_quad_track_analyse (GstClothFilter * filter,
   const ClothSaddle *saddles;
   const ClothQuad *quads;
   ClothQuadParams params;
-  guint n_saddles, n_candidates, n, tracked = 0;
+  guint n_saddles, n_candidates, n, tracked = 0, n_seeds;
 
   if (meta) {
-    const GstClothCandidate *from =
-        gst_cloth_saddles_get_candidates (meta, &n_candidates);
-
-    saddles = (const ClothSaddle *) gst_cloth_saddles_get_refined (meta,
-        &n_saddles);
-    g_array_set_size (self->candidates, n_candidates);
-    for (guint k = 0; k < n_candidates; k++)
-      g_array_index (self->candidates, ClothSaddleCandidate, k) =
-          (ClothSaddleCandidate) {
-      (guint16) CLAMP (lrintf (from[k].x), 0, frame->luma.width - 1),
-          (guint16) CLAMP (lrintf (from[k].y), 0, frame->luma.height - 1),
-          from[k].response};
+    gst_quad_track_take_saddles (self, meta, &frame->luma);
+    saddles = (const ClothSaddle *) self->saddles->data;
+    n_saddles = self->saddles->len;
+    n_candidates = self->candidates->len;
     candidates = (const ClothSaddleCandidate *) self->candidates->data;
   } else {
     ClothSaddleParams saddle_params = cloth_saddle_default_params ();
@@ -273,21 +298,31 @@ gst_quad_track_analyse (GstClothFilter * filter,
   /* again after a seek back to it, not elsewhere: there it would be wrong */
   if (self->has_first_seed && self->was_reset
       && frame->sequence == self->first_sequence)
-    g_array_append_vals (self->seeds, self->first_seed, SEED_NUMBERS);
+    g_array_append_vals (self->seeds, self->first_seed,
+        GST_QUAD_TRACK_SEED_NUMBERS);
   self->was_reset = FALSE;
-  for (guint k = 0; k + SEED_NUMBERS <= self->seeds->len; k += SEED_NUMBERS) {
-    const gfloat *seed = &g_array_index (self->seeds, gfloat, k);
+  /* a message must not be posted with the lock held */
+  n_seeds = self->seeds->len / GST_QUAD_TRACK_SEED_NUMBERS;
+  g_array_set_size (self->taken_seeds, 0);
+  g_array_append_vals (self->taken_seeds, self->seeds->data, self->seeds->len);
+  g_array_set_size (self->seeds, 0);
+  GST_OBJECT_UNLOCK (self);
+  gst_quad_track_seed_check_start (GST_ELEMENT (self), &self->warned,
+      self->pattern, &params, n_seeds);
+  for (guint s = 0; s < n_seeds; s++) {
+    const gfloat *seed = &g_array_index (self->taken_seeds, gfloat,
+        s * GST_QUAD_TRACK_SEED_NUMBERS);
+    gint column = (gint) seed[8], row = (gint) seed[9];
     gfloat x[4], y[4];
 
     for (gint c = 0; c < 4; c++) {
       x[c] = seed[2 * c];
       y[c] = seed[2 * c + 1];
     }
-    cloth_quad_tracker_seed (self->tracker, x, y, (gint) seed[8],
-        (gint) seed[9]);
+    gst_quad_track_seed_check (GST_ELEMENT (self), &self->warned, self->pattern,
+        &params, column, row);
+    cloth_quad_tracker_seed (self->tracker, x, y, column, row);
   }
-  g_array_set_size (self->seeds, 0);
-  GST_OBJECT_UNLOCK (self);
 
   quads = cloth_quad_tracker_run (self->tracker, &params, &frame->luma,
       saddles, n_saddles, candidates, n_candidates, &n);
@@ -314,6 +349,8 @@ gst_quad_track_analyse (GstClothFilter * filter,
       gst_cloth_quads_new (frame->camera, frame->sequence,
           (guint) self->pattern->columns, (guint) self->pattern->rows,
           (const GstClothQuad *) self->quads->data, n));
+  gst_quad_track_seed_check_tracked (GST_ELEMENT (self), &self->warned, &params,
+      n_seeds, tracked);
   gst_quad_track_tell (self, frame, tracked);
   GST_LOG_OBJECT (self, "%u saddles, %u squares tracked", n_saddles, tracked);
   return GST_FLOW_OK;
@@ -476,6 +513,8 @@ gst_quad_track_finalize (GObject * object)
   g_free (self->seed);
   g_array_unref (self->clicks);
   g_array_unref (self->seeds);
+  g_array_unref (self->taken_seeds);
+  g_array_unref (self->saddles);
   g_array_unref (self->candidates);
   g_array_unref (self->quads);
   G_OBJECT_CLASS (gst_quad_track_parent_class)->finalize (object);
@@ -579,6 +618,8 @@ gst_quad_track_init (GstQuadTrack * self)
   self->params = cloth_quad_default_params ();
   self->clicks = g_array_new (FALSE, FALSE, sizeof (gfloat));
   self->seeds = g_array_new (FALSE, FALSE, sizeof (gfloat));
+  self->taken_seeds = g_array_new (FALSE, FALSE, sizeof (gfloat));
+  self->saddles = g_array_new (FALSE, FALSE, sizeof (GstClothSaddle));
   self->candidates = g_array_new (FALSE, FALSE, sizeof (ClothSaddleCandidate));
   self->quads = g_array_new (FALSE, FALSE, sizeof (GstClothQuad));
 }

@@ -14,6 +14,10 @@
  * rig knows to differ (`offset_s`) are known from the first pictures on, which make no
  * mesh then.
  *
+ * The mesh's frame rate is the cameras'. While they differ it is the last one that was
+ * sent, so that a camera joining late doesn't change it in mid-stream; 0/1, variable, when
+ * they differ from the start. Frames come with the times of their pictures all the same.
+ *
  * A sink pad is given its camera of `rig` by its own property `camera`, else by the name
  * that the metadata carries, else by the order of the pads.
  *
@@ -77,6 +81,7 @@ struct _GstTriangulate
   ClothRig *rig;
   ClothPattern *pattern;
   GstClothTopology *topology;
+  gint fps_n, fps_d;            /* as sent downstream; fps_n -1: not yet */
   ClothTriangulator *triangulator;
   ClothPool *pool;
   guint n_vertices;
@@ -267,6 +272,7 @@ gst_triangulate_forget (GstTriangulate * self)
   g_clear_pointer (&self->topology, gst_cloth_topology_unref);
   g_clear_pointer (&self->pool, cloth_pool_free);
   gst_triangulate_clear_merges (self);
+  self->fps_n = -1;
   for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
     gst_triangulate_view_forget (&self->view[i]);
   }
@@ -328,8 +334,6 @@ gst_triangulate_negotiate_src (GstClothSync * sync, GstCaps * downstream,
 {
   GstTriangulate *self = GST_TRIANGULATE (sync);
   gboolean changed;
-  gint fps_n = -1, fps_d = 1;
-  guint i;
 
   GST_OBJECT_LOCK (self);
   changed = self->pattern_changed;
@@ -337,25 +341,10 @@ gst_triangulate_negotiate_src (GstClothSync * sync, GstCaps * downstream,
   if ((changed || !self->topology) && !gst_triangulate_load_pattern (self)) {
     return GST_FLOW_ERROR;
   }
-  for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
-    const GstTriangulateView *view = &self->view[i];
-
-    if (!view->has_caps) {
-      continue;
-    }
-    if (fps_n < 0) {
-      fps_n = view->fps_n;
-      fps_d = view->fps_d;
-    } else if (fps_n != view->fps_n || fps_d != view->fps_d) {
-      fps_n = 0;                /* they differ: sets come when they come */
-      fps_d = 1;
-      break;
-    }
-  }
-  if (fps_n < 0) {
+  if (!gst_triangulate_views_rate (self->view, &self->fps_n, &self->fps_d)) {
     return GST_AGGREGATOR_FLOW_NEED_DATA;
   }
-  *caps = gst_cloth_topology_to_caps (self->topology, fps_n, fps_d);
+  *caps = gst_cloth_topology_to_caps (self->topology, self->fps_n, self->fps_d);
   return GST_FLOW_OK;
 }
 
@@ -782,6 +771,7 @@ gst_triangulate_init (GstTriangulate * self)
   self->min_length = DEFAULT_MIN_LENGTH;
   self->max_length = DEFAULT_MAX_LENGTH;
   self->threads = DEFAULT_THREADS;
+  self->fps_n = -1;
   for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
     self->view[i].camera = -1;
   }

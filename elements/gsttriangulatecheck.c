@@ -16,14 +16,15 @@ gst_triangulate_check_add (GstTriangulateCheck * check, GstElement * element,
     const ClothRig * rig, const ClothTriangulateView * views,
     const ClothTriangulation * result)
 {
-  guint c, i, worst = 0;
+  guint c, i, worst = 0, n_seeing = 0;
+  const gchar *seeing = NULL;
   gdouble share = 0.;
 
   if (check->warned) {
     return;
   }
   for (c = 0; c < rig->n_cameras; c++) {
-    check->any_seen |= views[c].x != NULL;
+    check->seen[c] |= views[c].x != NULL;
     for (i = 0; i < result->n_points && views[c].x; i++) {
       if (isfinite (views[c].x[i])
           && result->reason[i] != CLOTH_POINT_FEW_VIEWS) {
@@ -35,7 +36,22 @@ gst_triangulate_check_add (GstTriangulateCheck * check, GstElement * element,
   if (++check->n_sets % WINDOW) {
     return;
   }
-  if (!check->any_seen) {
+  for (c = 0; c < rig->n_cameras; c++) {
+    if (check->seen[c]) {
+      seeing = rig->cameras[c].name;
+      n_seeing++;
+    }
+  }
+  if (n_seeing == 1) {
+    check->warned = TRUE;
+    GST_ELEMENT_WARNING (element, STREAM, FAILED,
+        ("Only camera \"%s\" carries squares so far, so every vertex is unseen.",
+            seeing),
+        ("Link two or more cameras, each with saddledetect ! quadtrack before "
+            "its sink pad."));
+    return;
+  }
+  if (n_seeing == 0) {
     check->warned = TRUE;
     GST_ELEMENT_WARNING (element, STREAM, FAILED,
         ("No picture so far carries squares, so every vertex is unseen."),

@@ -13,13 +13,14 @@ G_BEGIN_DECLS
 /* All 0 at the start. */
 typedef struct {
   guint n_sets;
-  gboolean any_seen, warned;
+  gboolean warned;
+  gboolean seen[CLOTH_RIG_MAX_CAMERAS];
   guint64 n_compared[CLOTH_RIG_MAX_CAMERAS];
   guint64 n_left_out[CLOTH_RIG_MAX_CAMERAS];
 } GstTriangulateCheck;
 
-/* Counts one set; every 25 sets posts, once, a warning if no camera has seen a square
- * yet, or if a camera contradicts the others on more than half of what it sees. */
+/* Counts one set; every 25 sets posts, once, a warning if fewer than two cameras have
+ * carried squares yet, or if a camera contradicts the others on more than half of what it sees. */
 void gst_triangulate_check_add (GstTriangulateCheck * check,
     GstElement * element, const ClothRig * rig,
     const ClothTriangulateView * views, const ClothTriangulation * result);

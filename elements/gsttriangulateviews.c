@@ -125,3 +125,36 @@ gst_triangulate_views_map (GstClothSync * self, GstTriangulateView * views,
   }
   return TRUE;
 }
+
+/* While the cameras differ what was said before stands: one that joins with another rate
+ * must not end a recording. */
+gboolean
+gst_triangulate_views_rate (const GstTriangulateView * views, gint * fps_n,
+    gint * fps_d)
+{
+  gboolean agreed = TRUE;
+  gint n = -1, d = 1;
+  guint i;
+
+  for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
+    if (!views[i].has_caps) {
+      continue;
+    }
+    if (n >= 0 && (n != views[i].fps_n || d != views[i].fps_d)) {
+      agreed = FALSE;
+    }
+    n = views[i].fps_n;
+    d = views[i].fps_d;
+  }
+  if (n < 0) {
+    return FALSE;
+  }
+  if (agreed) {
+    *fps_n = n;
+    *fps_d = d;
+  } else if (*fps_n < 0) {
+    *fps_n = 0;                 /* sets come when they come */
+    *fps_d = 1;
+  }
+  return TRUE;
+}

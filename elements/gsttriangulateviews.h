@@ -27,4 +27,9 @@ void gst_triangulate_view_forget (GstTriangulateView * view);
 gboolean gst_triangulate_views_map (GstClothSync * sync,
     GstTriangulateView * views, const ClothRig * rig, gboolean * moved);
 
+/* The rate of the mesh as far as the cameras' caps tell; *fps_n: the one said before, -1
+ * for none. FALSE when no caps are known yet. */
+gboolean gst_triangulate_views_rate (const GstTriangulateView * views,
+    gint * fps_n, gint * fps_d);
+
 G_END_DECLS

@@ -33,7 +33,7 @@ typedef enum {
  * @row: row of the square on the board, from 0
  * @state: what its place rests on
  * @black: whether the square is black
- * @confidence: 0 (none) to 1 (full)
+ * @confidence: −1 (the opposite of a square) to 1 (full); 0 unless tracked
  * @x: columns of its corners, px, centre of the top-left pixel at 0
  * @y: rows of its corners, px
  * @cov_xx: variance of @x, px²

@@ -20,7 +20,7 @@ cloth_simd_resolve (ClothSimd wanted)
   __builtin_cpu_init ();
   if (__builtin_cpu_supports ("avx2") && __builtin_cpu_supports ("fma")) {
     best = CLOTH_SIMD_AVX2;
-    if (__builtin_cpu_supports ("avx512f")
+    if (__builtin_cpu_supports ("bmi2") && __builtin_cpu_supports ("avx512f")
         && __builtin_cpu_supports ("avx512bw")
         && __builtin_cpu_supports ("avx512dq")
         && __builtin_cpu_supports ("avx512vl"))

@@ -546,13 +546,13 @@ place_world (const Work * w, ClothCalibration * result, const gdouble * C)
       camera->k_sd[i] = sqrt (V[(N + 1) * (4 + i)]);
   }
   for (guint p = 0; p < result->n_poses; p++) {
-    gdouble *P = result->poses + 12 * (gsize) p, M[9], d[3];
+    gdouble *P = result->poses + 12 * (gsize) p, *from = P + 9, M[9], d[3];
 
     for (gint i = 0; i < 3; i++)
-      d[i] = P[9 + i] - t[i];
+      d[i] = from[i] - t[i];
+    cloth_mat3_vec_t (R, d, from);
     cloth_mat3_mul_tn (R, P, M);
     memcpy (P, M, sizeof M);
-    cloth_mat3_vec_t (R, d, P + 9);
   }
 }
 

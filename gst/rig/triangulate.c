@@ -14,7 +14,6 @@ free_scratch (ClothTriangulator * self)
 {
   for (guint i = 0; i < self->n_scratch; i++) {
     g_aligned_free (self->scratch[i]->obs);
-    g_free (self->scratch[i]->lens);
     g_free (self->scratch[i]);
   }
   g_clear_pointer (&self->scratch, g_free);
@@ -88,44 +87,33 @@ cloth_triangulator_set_simd (ClothTriangulator * self, ClothSimd simd)
   self->kernel = cloth_triangulate_kernel (simd);
 }
 
-/* One observation with the lens model's own undistortion: fisheye, or where the kernel's
- * short Newton iteration did not do. */
+/* One observation with the lens model's own undistortion, where the kernel's short Newton
+ * iteration did not do. */
 static void
 load_one (const TriangulateCamera * camera, const gdouble * const *in,
-    guint lane, gdouble error_floor, const gdouble * lens, gsize stride,
-    gdouble * obs)
+    guint lane, gdouble error_floor, gdouble * obs)
 {
   gdouble cxx = in[IN_XX][lane] + error_floor, cxy = in[IN_XY][lane];
   gdouble cyy = in[IN_YY][lane] + error_floor;
-  gdouble own[N_LENS_PLANES], det, sxx, sxy, syy;
-  const gdouble *J;
+  gdouble place[2], J[4], det, sxx, sxy, syy;
 
   for (guint i = 0; i < N_OBS; i++)
     obs[i * BLOCK + lane] = 0.;
-  if (lens == NULL) {
-    cloth_camera_undistort_points (&camera->camera, 1, in[IN_U] + lane,
-        in[IN_V] + lane, own, own + 1, own + 2);
-    lens = own;
-    stride = 1;
-  }
-  J = lens + 2 * stride;
+  cloth_camera_undistort_points (&camera->camera, 1, in[IN_U] + lane,
+      in[IN_V] + lane, place, place + 1, J);
   /* covariance in normalised coordinates: J·C·Jᵀ */
-#define AT(i) J[(i) * stride]
-  sxx = AT (0) * AT (0) * cxx + 2. * AT (0) * AT (1) * cxy +
-      AT (1) * AT (1) * cyy;
-  sxy = AT (0) * AT (2) * cxx + (AT (0) * AT (3) + AT (1) * AT (2)) * cxy +
-      AT (1) * AT (3) * cyy;
-  syy = AT (2) * AT (2) * cxx + 2. * AT (2) * AT (3) * cxy +
-      AT (3) * AT (3) * cyy;
-#undef AT
+  sxx = J[0] * J[0] * cxx + 2. * J[0] * J[1] * cxy + J[1] * J[1] * cyy;
+  sxy = J[0] * J[2] * cxx + (J[0] * J[3] + J[1] * J[2]) * cxy +
+      J[1] * J[3] * cyy;
+  syy = J[2] * J[2] * cxx + 2. * J[2] * J[3] * cxy + J[3] * J[3] * cyy;
   det = sxx * syy - sxy * sxy;
   /* false also when anything is NaN */
   if (!(cxx > 0. && cyy > 0. && cxx * cyy - cxy * cxy > 0.)
-      || !(sxx > 0. && det > 0. && isfinite (det) && isfinite (lens[0])
-          && isfinite (lens[stride])))
+      || !(sxx > 0. && det > 0. && isfinite (det) && isfinite (place[0])
+          && isfinite (place[1])))
     return;
-  obs[OBS_X * BLOCK + lane] = lens[0];
-  obs[OBS_Y * BLOCK + lane] = lens[stride];
+  obs[OBS_X * BLOCK + lane] = place[0];
+  obs[OBS_Y * BLOCK + lane] = place[1];
   obs[OBS_IXX * BLOCK + lane] = syy / det;
   obs[OBS_IXY * BLOCK + lane] = -sxy / det;
   obs[OBS_IYY * BLOCK + lane] = sxx / det;
@@ -134,7 +122,7 @@ load_one (const TriangulateCamera * camera, const gdouble * const *in,
 /* Fills obs of one block; views: those that saw anything. */
 static guint
 load_block (ClothTriangulator * self, Scratch * scratch, guint first,
-    guint chunk_first, guint8 * views)
+    guint8 * views)
 {
   guint n = MIN (self->result.n_points - first, BLOCK), n_views = 0;
 
@@ -162,47 +150,16 @@ load_block (ClothTriangulator * self, Scratch * scratch, guint first,
         in[k] = scratch->pad + k * BLOCK;
       }
     }
-    if (camera->lens == CLOTH_LENS_FISHEYE) {
-      const gdouble *lens = scratch->lens + i * (N_LENS_PLANES * CHUNK) +
-          (first - chunk_first);
-
-      for (guint l = 0; l < BLOCK; l++)
-        load_one (camera, in, l, self->parameters.error_floor, lens + l, CHUNK,
-            obs);
-    } else {
-      again = self->kernel->load (camera, in, self->parameters.error_floor,
-          obs);
-      for (guint l = 0; again != 0; l++, again >>= 1)
-        if (again & 1)
-          load_one (camera, in, l, self->parameters.error_floor, NULL, 0, obs);
-    }
+    again = self->kernel->load (camera, in, self->parameters.error_floor, obs);
+    for (guint l = 0; again != 0; l++, again >>= 1)
+      if (again & 1)
+        load_one (camera, in, l, self->parameters.error_floor, obs);
     for (guint l = 0; l < BLOCK; l++)
       seen |= obs[OBS_IXX * BLOCK + l] > 0.;
     if (seen)
       views[n_views++] = (guint8) i;
   }
   return n_views;
-}
-
-static void
-load_fisheyes (ClothTriangulator * self, Scratch * scratch, guint first,
-    guint n)
-{
-  for (guint i = 0; i < self->n_cameras; i++) {
-    const ClothTriangulateView *view = &self->views[i];
-    gdouble *lens = scratch->lens + i * (N_LENS_PLANES * CHUNK);
-    gdouble *jacobian = lens + 2 * CHUNK;
-
-    if (self->cameras[i].lens != CLOTH_LENS_FISHEYE || view->x == NULL
-        || view->y == NULL)
-      continue;
-    for (guint k = 0; k < CHUNK; k++)
-      lens[k] = lens[CHUNK + k] = NAN;
-    memcpy (lens, view->x + first, n * sizeof (gdouble));
-    memcpy (lens + CHUNK, view->y + first, n * sizeof (gdouble));
-    cloth_camera_undistort_points (&self->cameras[i].camera, CHUNK, lens,
-        lens + CHUNK, lens, lens + CHUNK, jacobian);
-  }
 }
 
 /* What a solution is worth, but for the agreement of its views. */
@@ -249,7 +206,7 @@ worst_by_huber (ClothTriangulator * self, Scratch * scratch,
   for (guint step = 0; step < 20; step++) {
     gdouble greatest = -1.;
 
-    cloth_triangulate_solve_one (self->cameras, weighted, views, n_views, out);
+    self->kernel->solve_one (self->cameras, weighted, views, n_views, out);
     for (guint i = 0; i < n_views; i++) {
       const gdouble *P = self->cameras[views[i]].P;
       const gdouble *o = obs + views[i] * (N_OBS * BLOCK);
@@ -295,7 +252,7 @@ leave_out (ClothTriangulator * self, Scratch * scratch, const gdouble * obs,
     for (guint i = 0; i < n; i++) {
       memcpy (rest, views, i);
       memcpy (rest + i, views + i + 1, n - 1 - i);
-      cloth_triangulate_solve_one (self->cameras, obs, rest, n - 1, trial);
+      self->kernel->solve_one (self->cameras, obs, rest, n - 1, trial);
       if (judge (trial) != CLOTH_POINT_FINE || !agrees (self, trial))
         continue;
       n_agreeing++;
@@ -434,18 +391,12 @@ run_blocks (gpointer data, guint begin, guint end, guint worker)
   ClothTriangulator *self = data;
   Scratch *scratch = self->scratch[worker];
   guint8 views[CLOTH_TRIANGULATE_MAX_CAMERAS];
-  guint chunk = 0;
 
   for (guint b = begin; b < end; b++) {
     guint first = b * BLOCK;
     guint n = MIN (self->result.n_points - first, BLOCK), n_views;
 
-    if (self->has_fisheye && (b == begin || first - chunk == CHUNK)) {
-      chunk = first;
-      load_fisheyes (self, scratch, first,
-          MIN (self->result.n_points - first, CHUNK));
-    }
-    n_views = load_block (self, scratch, first, chunk, views);
+    n_views = load_block (self, scratch, first, views);
     if (n_views > 1)
       self->kernel->solve (self->cameras, scratch->obs, views, n_views,
           scratch->out);
@@ -475,8 +426,6 @@ ensure_memory (ClothTriangulator * self, guint n_points)
       s->obs = g_aligned_alloc0 (2 * self->n_cameras * N_OBS * BLOCK,
           sizeof (gdouble), 64);
       s->weighted = s->obs + self->n_cameras * N_OBS * BLOCK;
-      if (self->has_fisheye)
-        s->lens = g_new (gdouble, self->n_cameras * N_LENS_PLANES * CHUNK);
     }
   }
   if (n_points > self->n_allocated) {

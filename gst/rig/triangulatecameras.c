@@ -66,15 +66,18 @@ static void
 fit_inverse (TriangulateCamera * self)
 {
   enum
-  { SIDE = 16, N = SIDE * SIDE };
+  { SIDE = 16, N = SIDE * SIDE, RADIAL = 6, ALL = 10 };
   const ClothCamera *camera = &self->camera;
+  const gdouble *k = self->k;
+  gboolean fisheye = self->lens == CLOTH_LENS_FISHEYE;
   gdouble width = camera->width > 1 ? camera->width - 1 : 2. * self->cx;
   gdouble height = camera->height > 1 ? camera->height - 1 : 2. * self->cy;
   g_autofree gdouble *u = g_new (gdouble, 4 * N);
-  g_autofree gdouble *a = g_new (gdouble, 2 * N * 6);
+  g_autofree gdouble *a = g_new (gdouble, 2 * N * ALL);
   g_autofree gdouble *b = g_new (gdouble, 2 * N);
   gdouble *v = u + N, *x = v + N, *y = x + N;
-  guint m = 0;
+  /* without a direction there are no terms along it */
+  guint m = 0, n = !fisheye && (k[2] != 0. || k[3] != 0.) ? ALL : RADIAL;
 
   for (guint i = 0; i < N; i++) {
     u[i] = width * (i % SIDE) / (SIDE - 1);
@@ -85,26 +88,42 @@ fit_inverse (TriangulateCamera * self)
     gdouble dy = (v[i] - self->cy) * self->ify;
     gdouble dx = (u[i] - self->cx - self->skew * dy) * self->ifx;
     gdouble q = dx * dx + dy * dy, r2 = x[i] * x[i] + y[i] * y[i];
-    gdouble *row;
+    gdouble t = dx * k[3] + dy * k[2];
 
     if (!isfinite (r2))
       continue;
+    if (fisheye) {
+      gdouble angle = atan (sqrt (r2));
+
+      /* The kernel's series reach a little less than a right angle. */
+      self->max_r2 = fmin (fmax (self->max_r2, 1.05 * angle * angle), 2.3);
+      if (q > 1e-6) {
+        b[m] = angle / sqrt (q) - 1.;
+        a[n * m] = q;
+        for (guint j = 1; j < RADIAL; j++)
+          a[n * m + j] = a[n * m + j - 1] * q;
+        m++;
+      }
+      continue;
+    }
     self->max_r2 = fmax (self->max_r2, 1.05 * r2);
     for (gint axis = 0; axis < 2; axis++, m++) {
-      gdouble d = axis ? dy : dx;
+      gdouble *row = a + n * m, d = axis ? dy : dx;
 
-      row = a + 6 * m;
-      row[0] = d * q;
-      row[1] = row[0] * q;
-      row[2] = row[1] * q;
-      row[3] = row[2] * q;
-      row[4] = axis ? q + 2. * dy * dy : 2. * dx * dy;
-      row[5] = axis ? 2. * dx * dy : q + 2. * dx * dx;
       b[m] = (axis ? y[i] : x[i]) - d;
+      row[0] = d * q;
+      for (guint j = 1; j < RADIAL; j++)
+        row[j] = row[j - 1] * q;
+      if (n > RADIAL) {
+        row[RADIAL] = d * t;
+        row[RADIAL + 1] = d * t * q;
+        row[RADIAL + 2] = (axis ? k[2] : k[3]) * q;
+        row[RADIAL + 3] = row[RADIAL + 2] * q;
+      }
     }
   }
-  if (cloth_least_squares (m, 6, a, b))
-    memcpy (self->inverse, b, sizeof (self->inverse));
+  if (cloth_least_squares (m, n, a, b))
+    memcpy (self->inverse, b, n * sizeof (gdouble));
 }
 
 static gboolean
@@ -201,10 +220,8 @@ cloth_triangulator_new (guint n_cameras, const ClothCamera * cameras,
     c->area = K[0] * K[4];
     c->lens = camera->lens;
     memcpy (c->k, camera->k, sizeof (c->k));
-    if (c->lens == CLOTH_LENS_BROWN5 || c->lens == CLOTH_LENS_BROWN8)
+    if (c->lens != CLOTH_LENS_NONE)
       fit_inverse (c);
-    else if (c->lens == CLOTH_LENS_FISHEYE)
-      self->has_fisheye = TRUE;
   }
   normalise_world (self, (const gdouble (*)[3]) centres);
   return g_steal_pointer (&self);

@@ -20,10 +20,12 @@ typedef struct {
   gdouble area;
   ClothLens lens;
   gdouble k[8];
-  /* first guess of the true place from the distorted one: odd radial and tangential
-   * polynomial */
-  gdouble inverse[6];
-  /* Newton's result is trusted up to this square of the radius */
+  /* First guess of the true place d·r + s·t from the distorted one, d, with
+   * t = (k[3], k[2]) and q = d²: r = 1 + a₀q + … + a₅q⁶ + (b₀ + b₁q)·(d·t),
+   * s = c₀q + c₁q²; of a fisheye the ratio of angle to radius, r without b. */
+  gdouble inverse[10];
+  /* Newton's result is trusted up to this square of the radius, of a fisheye of the
+   * angle */
   gdouble max_r2;
   ClothCamera camera;
 } TriangulateCamera;
@@ -45,18 +47,18 @@ enum {
 
 typedef struct {
   /* Normalises one view of a block: in[N_IN] are BLOCK values each, obs[N_OBS][BLOCK].
-   * Returns a bit for each point that cloth_triangulate_load_one () must do again. */
+   * Returns a bit for each point whose lens must be done again by other means. */
   guint (*load) (const TriangulateCamera * camera, const gdouble * const *in,
       gdouble error_floor, gdouble * obs);
   /* Solves a block: obs[n_cameras][N_OBS][BLOCK], views: the n_views cameras to use,
    * out[N_OUT][BLOCK]. */
   void (*solve) (const TriangulateCamera * cameras, const gdouble * obs,
       const guint8 * views, guint n_views, gdouble * out);
+  /* Solves one point, that of column 0 of every row. */
+  void (*solve_one) (const TriangulateCamera * cameras, const gdouble * obs,
+      const guint8 * views, guint n_views, gdouble * out);
 } TriangulateKernel;
 
 const TriangulateKernel *cloth_triangulate_kernel (ClothSimd simd);
-/* One point, that of column 0 of every row. */
-void cloth_triangulate_solve_one (const TriangulateCamera * cameras,
-    const gdouble * obs, const guint8 * views, guint n_views, gdouble * out);
 
 G_END_DECLS

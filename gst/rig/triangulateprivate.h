@@ -8,16 +8,11 @@
 
 G_BEGIN_DECLS
 
-/* Points whose fisheye undistortion is done in one call. */
-#define CHUNK (32 * BLOCK)
-#define N_LENS_PLANES 6
-
 /* One thread's memory. */
 typedef struct
 {
   gdouble *obs;
   gdouble *weighted;
-  gdouble *lens;
   gdouble out[N_OUT * BLOCK];
   gdouble trial[N_OUT * BLOCK];
   gdouble pad[N_IN * BLOCK];
@@ -29,7 +24,6 @@ struct _ClothTriangulator
   TriangulateCamera *cameras;
   /* The world that the kernels see is (X − origin) / scale. */
   gdouble origin[3], scale;
-  gboolean has_fisheye;
 
   ClothTriangulateParameters parameters;
   ClothPool *pool;

@@ -7,7 +7,7 @@
 
 #include "gst/math/linalg.h"
 #include "gst/vision/link.h"
-#include "gst/vision/place-board.h"
+#include "gst/vision/place.h"
 
 /* Patches looked at, largest first. */
 #define MAX_PATCHES 16
@@ -27,7 +27,7 @@ struct _ClothBoardFinder
   ClothPattern pattern;
   ClothLinker *linker;
   ClothPatch patch;
-  ClothBoardScratch *scratch;
+  ClothPlacer *placer;
   ClothBoardView view;
 };
 
@@ -52,7 +52,7 @@ cloth_board_finder_new (const ClothPattern * pattern)
     finder->pattern.code = g_memdup2 (pattern->code,
         (gsize) pattern->columns * (gsize) pattern->rows);
   finder->linker = cloth_linker_new ();
-  finder->scratch = cloth_board_scratch_new ();
+  finder->placer = cloth_placer_new (pattern);
   view->columns = pattern->columns + 1;
   view->rows = pattern->rows + 1;
   n = (gsize) view->columns * (gsize) view->rows;
@@ -75,7 +75,7 @@ cloth_board_finder_free (ClothBoardFinder * finder)
   g_free (finder->pattern.code);
   cloth_linker_free (finder->linker);
   cloth_patch_clear (&finder->patch);
-  cloth_board_scratch_free (finder->scratch);
+  cloth_placer_free (finder->placer);
   g_free (finder->view.seen);
   g_free (finder->view.x);
   g_free (finder->view.y);
@@ -297,9 +297,9 @@ try_patch (ClothBoardFinder * finder, const ClothImage * image,
   if (!is_board (&finder->patch))
     return OTHER;
   n_votes = vote_by_plane (&finder->view, &finder->patch, &vote) ? 1 : 0;
-  if (!cloth_place_board (&finder->pattern, &finder->patch, &vote, n_votes,
-          finder->scratch, &placement))
-    return OTHER;
+  if (!cloth_placer_run (finder->placer, &finder->patch, &cloth_place_rigid,
+          &vote, n_votes, &placement))
+    return UNPLACED;
   if (placement.weight < MIN_LEAD || (finder->view.n_seen && !n_votes))
     return UNPLACED;
   take_over (&finder->view, &finder->patch, &placement);

@@ -32,9 +32,9 @@ exp_lanes (ClothLanes * x)
 {
   const ClothLanes zero = { 0 };
   ClothLanes n, f, p, t = *x * 1.44269504f;
-  LanesInt far = t < -100.0f, k;
+  LanesInt far = t < -40.0f, k;
 
-  t = (ClothLanes) (((LanesInt) t & ~far) | ((LanesInt) (zero - 100.0f) & far));
+  t = (ClothLanes) (((LanesInt) t & ~far) | ((LanesInt) (zero - 40.0f) & far));
   n = (t + 12582912.0f) - 12582912.0f;
   f = t - n;
   p = f * 1.8775767e-3f + 8.9893397e-3f;
@@ -83,7 +83,7 @@ basis (ClothCornerWindow * win, const ClothCornerState * st, gfloat * sums)
   const gfloat sin2 = k * sinf (st->theta2), cos2 = k * cosf (st->theta2);
   const gfloat r = cosf (st->theta1 - st->theta2), turn = asinf (r);
   const gfloat across = sqrtf (MAX (1.0f - r * r, 1e-4f));
-  const gfloat inv = 1.0f / across, inv2 = inv * inv;
+  const gfloat inv = 1.0f / across;
   gfloat weight[N_NODES], node_sin[N_NODES], node_inv[N_NODES];
   ClothLanes acc[CLOTH_CORNER_N_BASIS] = { {0} };
 
@@ -98,13 +98,12 @@ basis (ClothCornerWindow * win, const ClothCornerState * st, gfloat * sums)
     ClothLanes u1 = dy * cos1 - dx * sin1, u2 = dy * cos2 - dx * sin2;
     ClothLanes q1 = (u2 - u1 * r) * inv, q2 = (u1 - u2 * r) * inv;
     ClothLanes w = win->weight[v], i = win->value[v];
-    ClothLanes e1, e2, e12, w1, w2, w12, wi, unused;
+    ClothLanes e1, e2, e12, w1, w2, w12, wi, along, unused;
     ClothLanes squares = u1 * u1 + u2 * u2, product = u1 * u2;
-    ClothLanes ridge = (product * (2 * r) - squares) * inv2;
 
     erf_lanes (&u1, &e1, &win->g1[v]);
     erf_lanes (&u2, &e2, &win->g2[v]);
-    erf_lanes (&q1, &win->q1[v], &unused);
+    erf_lanes (&q1, &win->q1[v], &along);
     erf_lanes (&q2, &win->q2[v], &unused);
     e12 = e1 * e2;
 #pragma GCC unroll 3
@@ -113,8 +112,8 @@ basis (ClothCornerWindow * win, const ClothCornerState * st, gfloat * sums)
       exp_lanes (&t);
       e12 += t * weight[n];
     }
-    exp_lanes (&ridge);
-    win->ridge[v] = ridge;
+    /* (u1² + u2² − 2 r u1 u2) / (1 − r²) = u1² + q1² */
+    win->ridge[v] = win->g1[v] * along;
     win->e1[v] = e1;
     win->e2[v] = e2;
     win->e12[v] = e12;
@@ -170,22 +169,26 @@ linearise (const ClothCornerWindow * win, gint v, const ClothCornerState * st,
   j[8] = e12;
 }
 
+/* Sums with one of the first five parameters; those of the others alone are the basis's. */
+#define N_CROSS 35
+
 INLINE void
 normal (const ClothCornerWindow * win, const ClothCornerState * st,
-    const gfloat * c, gfloat * out, gfloat * gradient, gfloat * cost)
+    const gfloat * c, const gfloat * sums, gfloat * out, gfloat * gradient,
+    gfloat * cost)
 {
   const gfloat trig[4] = { sinf (st->theta1), cosf (st->theta1),
     sinf (st->theta2), cosf (st->theta2)
   };
-  ClothLanes acc[CLOTH_CORNER_N_SUMS + 6] = { {0} };
+  ClothLanes acc[N_CROSS + 6] = { {0} };
 
   for (gint v = 0; v < win->n_vectors; v++) {
     ClothLanes j[CLOTH_CORNER_N], r, w = win->weight[v];
     gint n = 0;
 
     linearise (win, v, st, trig, c, &r, j);
-#pragma GCC unroll 9
-    for (gint a = 0; a < CLOTH_CORNER_N; a++) {
+#pragma GCC unroll 5
+    for (gint a = 0; a < 5; a++) {
       ClothLanes wa = w * j[a];
 #pragma GCC unroll 9
       for (gint b = a; b < CLOTH_CORNER_N; b++)
@@ -197,11 +200,12 @@ normal (const ClothCornerWindow * win, const ClothCornerState * st,
       acc[n++] += w * j[a];
     acc[n] += w * r;
   }
-  for (gint n = 0; n < CLOTH_CORNER_N_SUMS; n++)
+  for (gint n = 0; n < N_CROSS; n++)
     out[n] = sum_lanes (&acc[n]);
+  memcpy (out + N_CROSS, sums, (CLOTH_CORNER_N_SUMS - N_CROSS) * sizeof (*out));
   for (gint n = 0; n < 5; n++)
-    gradient[n] = sum_lanes (&acc[CLOTH_CORNER_N_SUMS + n]);
-  *cost = sum_lanes (&acc[CLOTH_CORNER_N_SUMS + 5]);
+    gradient[n] = sum_lanes (&acc[N_CROSS + n]);
+  *cost = sum_lanes (&acc[N_CROSS + 5]);
 }
 
 INLINE void
@@ -254,10 +258,10 @@ basis_##suffix (ClothCornerWindow * window, const ClothCornerState * state, \
 } \
 target_attribute static void \
 normal_##suffix (const ClothCornerWindow * window, \
-    const ClothCornerState * state, const gfloat * c, gfloat * out, \
-    gfloat * gradient, gfloat * cost) \
+    const ClothCornerState * state, const gfloat * c, const gfloat * sums, \
+    gfloat * out, gfloat * gradient, gfloat * cost) \
 { \
-  normal (window, state, c, out, gradient, cost); \
+  normal (window, state, c, sums, out, gradient, cost); \
 } \
 target_attribute static void \
 influence_##suffix (const ClothCornerWindow * window, \
@@ -298,10 +302,10 @@ cloth_corner_basis (ClothCornerWindow * window,
 void
 cloth_corner_normal (const ClothCornerWindow * window,
     const ClothCornerState * state, const gfloat c[4],
-    gfloat out[CLOTH_CORNER_N_SUMS], gfloat gradient[5], gfloat * cost,
-    ClothSimd level)
+    const gfloat sums[CLOTH_CORNER_N_BASIS], gfloat out[CLOTH_CORNER_N_SUMS],
+    gfloat gradient[5], gfloat * cost, ClothSimd level)
 {
-  DISPATCH (level, normal, window, state, c, out, gradient, cost);
+  DISPATCH (level, normal, window, state, c, sums, out, gradient, cost);
 }
 
 void

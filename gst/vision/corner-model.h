@@ -47,9 +47,11 @@ typedef struct {
  * blurred product of both steps. */
 void cloth_corner_basis (ClothCornerWindow * window,
     const ClothCornerState * state, gfloat sums[CLOTH_CORNER_N_BASIS], ClothSimd level);
-/* normal: upper triangle by rows of JᵀWJ; gradient: JᵀWr of the first five; cost: rᵀWr. */
+/* normal: upper triangle by rows of JᵀWJ; gradient: JᵀWr of the first five; cost: rᵀWr.
+ * @sums: what cloth_corner_basis() gave. */
 void cloth_corner_normal (const ClothCornerWindow * window,
     const ClothCornerState * state, const gfloat c[4],
+    const gfloat sums[CLOTH_CORNER_N_BASIS],
     gfloat normal[CLOTH_CORNER_N_SUMS], gfloat gradient[5], gfloat * cost,
     ClothSimd level);
 /* What the residuals, taken for independent noise, do to two linear combinations of the

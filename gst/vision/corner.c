@@ -10,6 +10,8 @@
 
 #define SECTORS 24
 #define MAX_EVALUATIONS 16
+/* Sharper edges look the same, px. */
+#define MIN_BLUR 0.25f
 
 /**
  * cloth_corner_default_params:
@@ -261,24 +263,46 @@ evaluate (ClothCornerWindow * win, Evaluation * e, ClothSimd level)
   cloth_corner_basis (win, &e->state, sums, level);
   if (!solve_levels (sums, e->c))
     return FALSE;
-  cloth_corner_normal (win, &e->state, e->c, e->normal, e->gradient,
+  cloth_corner_normal (win, &e->state, e->c, sums, e->normal, e->gradient,
       &e->cost, level);
   return isfinite (e->cost);
+}
+
+/* Levenberg's step; @held: what the blur does, if that is settled. */
+static gboolean
+solve_step (const Evaluation * from, gdouble damping, const gdouble * held,
+    gdouble b[CLOTH_CORNER_N])
+{
+  gdouble a[CLOTH_CORNER_N * CLOTH_CORNER_N];
+
+  unpack (from->normal, damping, a);
+  for (gint i = 0; i < CLOTH_CORNER_N; i++)
+    b[i] = i < 5 ? from->gradient[i] : 0;
+  for (gint i = 0; held && i < CLOTH_CORNER_N; i++) {
+    gdouble *other = i < 4 ? &a[i * CLOTH_CORNER_N + 4]
+        : &a[4 * CLOTH_CORNER_N + i];
+
+    b[i] = i == 4 ? *held : b[i] - *other * *held;
+    *other = i == 4;
+  }
+  if (!factor (a, CLOTH_CORNER_N))
+    return FALSE;
+  solve (a, CLOTH_CORNER_N, b);
+  return TRUE;
 }
 
 static gboolean
 step (const Evaluation * from, gdouble damping, gfloat radius,
     ClothCornerState * to, gdouble * moved)
 {
-  gdouble a[CLOTH_CORNER_N * CLOTH_CORNER_N], b[CLOTH_CORNER_N] = { 0 };
-  gdouble m[4], dx, dy, length;
+  gdouble b[CLOTH_CORNER_N], m[4], dx, dy, length;
+  gdouble sharper = MAX (-0.4 * from->state.blur, MIN_BLUR - from->state.blur);
 
-  unpack (from->normal, damping, a);
-  for (gint i = 0; i < 5; i++)
-    b[i] = from->gradient[i];
-  if (!crossing (&from->state, m) || !factor (a, CLOTH_CORNER_N))
+  if (!crossing (&from->state, m) || !solve_step (from, damping, NULL, b))
     return FALSE;
-  solve (a, CLOTH_CORNER_N, b);
+  /* Where the blur is at its bound the others go the way that is left to them. */
+  if (b[4] < sharper && !solve_step (from, damping, &sharper, b))
+    return FALSE;
   dx = m[0] * b[0] + m[1] * b[1];
   dy = m[2] * b[0] + m[3] * b[1];
   length = sqrt (dx * dx + dy * dy);
@@ -288,14 +312,14 @@ step (const Evaluation * from, gdouble damping, gfloat radius,
   }
   b[2] = CLAMP (b[2], -0.3, 0.3);
   b[3] = CLAMP (b[3], -0.3, 0.3);
-  b[4] = CLAMP (b[4], -0.4 * from->state.blur, 0.6 * from->state.blur);
-  *moved = length + (fabs (b[2]) + fabs (b[3])) * 0.1;
+  b[4] = MIN (b[4], 0.6 * from->state.blur);
+  *moved = length + (fabs (b[2]) + fabs (b[3])) * 0.1 + fabs (b[4]) * 0.2;
   *to = from->state;
   to->x += (gfloat) dx;
   to->y += (gfloat) dy;
   to->theta1 += (gfloat) b[2];
   to->theta2 += (gfloat) b[3];
-  to->blur = CLAMP (to->blur + (gfloat) b[4], 0.25f, 0.5f * radius);
+  to->blur = CLAMP (to->blur + (gfloat) b[4], MIN_BLUR, 0.5f * radius);
   return isfinite (*moved);
 }
 
@@ -380,8 +404,8 @@ cloth_corner_refine (const ClothImage * image, gfloat x, gfloat y,
 
   best.state.x = x - (gfloat) ix;
   best.state.y = y - (gfloat) iy;
-  best.state.blur = params->blur > 0.25f ? MIN (params->blur, 0.5f * radius) :
-      0.25f;
+  best.state.blur = params->blur > MIN_BLUR ?
+      MIN (params->blur, 0.5f * radius) : MIN_BLUR;
   if (params->known_angles) {
     best.state.theta1 = params->theta[0];
     best.state.theta2 = params->theta[1];
@@ -401,7 +425,7 @@ cloth_corner_refine (const ClothImage * image, gfloat x, gfloat y,
     if (!step (&best, damping, radius, &next.state, &moved))
       return FALSE;
     /* The last step is so short that what was learnt before it still holds. */
-    if (moved < 3e-3 && damping < 2e-5) {
+    if (moved < 3e-3 && damping < 2e-4) {
       best.state = next.state;
       settled = TRUE;
       break;

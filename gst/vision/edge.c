@@ -25,8 +25,10 @@
 #define MAX_OFF 1.2f
 /* Pixels from step to step. */
 #define STEP 1.0f
-/* The edge is looked for this far to either side of where it is expected, px. */
+/* The edge is looked for at so many places to either side of where it is expected, this
+ * far apart, px. */
 #define ASIDE 2
+#define BESIDE 0.7f
 /* An edge ends where its contrast falls below this share of what it was. */
 #define FADED 0.4f
 /* Steps at the start, within the blur of the corner, in which it may be weak. */
@@ -39,29 +41,46 @@
 /* Largest bend of an edge in all, rad. */
 #define MAX_BEND 1.3f
 
+/* Of a place known to lie between four pixels. */
 static inline gfloat
-bilinear (const ClothImage * image, gfloat x, gfloat y)
+bilinear_inside (const ClothImage * image, gfloat x, gfloat y)
 {
-  gint column = (gint) floorf (x), row = (gint) floorf (y);
+  gint column = (gint) x, row = (gint) y;
   gfloat fx = x - (gfloat) column, fy = y - (gfloat) row;
-  const guint8 *at;
+  const guint8 *at = image->data + row * image->stride + column;
 
-  if (column < 0 || row < 0 || column + 1 >= image->width
-      || row + 1 >= image->height)
-    return -1;
-  at = image->data + row * image->stride + column;
   return (1 - fy) * ((1 - fx) * at[0] + fx * at[1])
       + fy * ((1 - fx) * at[image->stride] + fx * at[image->stride + 1]);
 }
 
+/* Whether a square of this half width lies between the picture's pixels. */
+static inline gboolean
+is_inside (const ClothImage * image, gfloat x, gfloat y, gfloat reach)
+{
+  return x >= reach && y >= reach && x + reach < (gfloat) (image->width - 1)
+      && y + reach < (gfloat) (image->height - 1);
+}
+
 static inline gfloat
+bilinear (const ClothImage * image, gfloat x, gfloat y)
+{
+  return is_inside (image, x, y, 0) ? bilinear_inside (image, x, y) : -1;
+}
+
+static inline gint
 nearest (const ClothImage * image, gfloat x, gfloat y)
 {
-  gint column = (gint) lrintf (x), row = (gint) lrintf (y);
+  return image->data[(gint) lrintf (y) * image->stride + (gint) lrintf (x)];
+}
 
-  if (column < 0 || row < 0 || column >= image->width || row >= image->height)
-    return -1.0f;
-  return image->data[row * image->stride + column];
+/* Whether there are pixels this far from a place to both sides, with room for rounding. */
+static inline gboolean
+has_pixels (const ClothImage * image, gfloat x, gfloat y, gfloat nx, gfloat ny)
+{
+  nx = fabsf (nx) - 0.49f;
+  ny = fabsf (ny) - 0.49f;
+  return x >= nx && y >= ny && x + nx <= (gfloat) (image->width - 1)
+      && y + ny <= (gfloat) (image->height - 1);
 }
 
 /* The contrast of the edge as seen by samples this far from the line. */
@@ -71,25 +90,26 @@ contrast_at (const ClothImage * image, gfloat ax, gfloat ay, gfloat dx,
 {
   gfloat scale = offset / sqrtf (dx * dx + dy * dy);
   gfloat nx = -dy * scale, ny = dx * scale;
-  gfloat sum = 0, least = G_MAXFLOAT, most = -G_MAXFLOAT;
+  gint sum = 0, least = 255, most = -255;
+  gfloat mean;
 
+  /* If the samples at both ends are inside, so are all. */
+  if (!has_pixels (image, ax + FROM * dx, ay + FROM * dy, nx, ny)
+      || !has_pixels (image, ax + TO * dx, ay + TO * dy, nx, ny))
+    return 0;
   for (gint k = 0; k < SAMPLES; k++) {
     gfloat t = FROM + (TO - FROM) * (gfloat) k / (SAMPLES - 1);
     gfloat x = ax + t * dx, y = ay + t * dy;
-    gfloat ahead = nearest (image, x + nx, y + ny);
-    gfloat behind = nearest (image, x - nx, y - ny);
-    gfloat d = ahead - behind;
+    gint d = nearest (image, x + nx, y + ny) - nearest (image, x - nx, y - ny);
 
-    if (ahead < 0 || behind < 0)
-      return 0;
     sum += d;
     least = MIN (least, d);
     most = MAX (most, d);
   }
-  sum /= SAMPLES;
-  if ((sum > CONTRAST && least > EVEN * sum)
-      || (sum < -CONTRAST && most < EVEN * sum))
-    return sum;
+  mean = (gfloat) sum / SAMPLES;
+  if ((mean > CONTRAST && (gfloat) least > EVEN * mean)
+      || (mean < -CONTRAST && (gfloat) most < EVEN * mean))
+    return mean;
   return 0;
 }
 
@@ -113,7 +133,7 @@ gfloat
 cloth_edge_contrast (const ClothImage * image, gfloat ax, gfloat ay,
     gfloat bx, gfloat by)
 {
-  gfloat dx = bx - ax, dy = by - ay, length = hypotf (dx, dy);
+  gfloat dx = bx - ax, dy = by - ay, length = sqrtf (dx * dx + dy * dy);
   /* Near the line, for squares seen obliquely; farther off, for bent edges. */
   gfloat contrast = contrast_at (image, ax, ay, dx, dy,
       CLAMP (0.2f * length, 1.2f, 2.5f));
@@ -122,6 +142,17 @@ cloth_edge_contrast (const ClothImage * image, gfloat ax, gfloat ay,
     contrast = contrast_at (image, ax, ay, dx, dy, 0.2f * length);
   return contrast;
 }
+
+/* Sines of the samples' angles; a quarter farther on, their cosines. */
+static const gfloat circle[AROUND + AROUND / 4] = {
+  0, 0.19509032f, 0.38268343f, 0.55557023f, 0.70710678f, 0.83146961f,
+  0.92387953f, 0.98078528f, 1, 0.98078528f, 0.92387953f, 0.83146961f,
+  0.70710678f, 0.55557023f, 0.38268343f, 0.19509032f, 0, -0.19509032f,
+  -0.38268343f, -0.55557023f, -0.70710678f, -0.83146961f, -0.92387953f,
+  -0.98078528f, -1, -0.98078528f, -0.92387953f, -0.83146961f, -0.70710678f,
+  -0.55557023f, -0.38268343f, -0.19509032f, 0, 0.19509032f, 0.38268343f,
+  0.55557023f, 0.70710678f, 0.83146961f, 0.92387953f, 0.98078528f
+};
 
 /* Where a circle's samples cross @level between sample @k and the next, as a share of a
  * turn. */
@@ -160,13 +191,11 @@ cloth_edge_wedge (const ClothImage * image, gfloat x, gfloat y,
   gfloat at[AROUND], least = 255, most = 0, middle, least_off = MAX_OFF;
   gboolean found = FALSE;
 
+  if (!is_inside (image, x, y, radius + 0.01f))
+    return FALSE;
   for (gint k = 0; k < AROUND; k++) {
-    gfloat angle = turn * (gfloat) k / AROUND;
-
-    at[k] = bilinear (image, x + radius * cosf (angle),
-        y + radius * sinf (angle));
-    if (at[k] < 0)
-      return FALSE;
+    at[k] = bilinear_inside (image, x + radius * circle[k + AROUND / 4],
+        y + radius * circle[k]);
     least = MIN (least, at[k]);
     most = MAX (most, at[k]);
   }
@@ -200,18 +229,27 @@ cloth_edge_wedge (const ClothImage * image, gfloat x, gfloat y,
   return found;
 }
 
-/* Grey levels by which the side ahead (turned from x towards y) is darker, averaged over
- * two distances from the edge. G_MINFLOAT outside the picture. */
+/* Grey levels by which the side ahead (turned from x towards y) is darker, 1.5 px from the
+ * edge on both sides, at places beside (@x, @y) along the normal. FALSE outside the
+ * picture. */
 static inline gboolean
-step_across (const ClothImage * image, gfloat x, gfloat y, gfloat nx,
-    gfloat ny, gfloat * step)
+steps_across (const ClothImage * image, gfloat x, gfloat y, gfloat nx,
+    gfloat ny, gfloat steps[2 * ASIDE + 1])
 {
-  gfloat a1 = bilinear (image, x + 1.5f * nx, y + 1.5f * ny);
-  gfloat b1 = bilinear (image, x - 1.5f * nx, y - 1.5f * ny);
+  gboolean inside = is_inside (image, x, y, ASIDE * BESIDE + 1.6f);
 
-  if (a1 < 0 || b1 < 0)
-    return FALSE;
-  *step = b1 - a1;
+  for (gint o = -ASIDE; o <= ASIDE; o++) {
+    gfloat px = x + (gfloat) o * BESIDE * nx;
+    gfloat py = y + (gfloat) o * BESIDE * ny;
+    gfloat ax = px + 1.5f * nx, ay = py + 1.5f * ny;
+    gfloat bx = px - 1.5f * nx, by = py - 1.5f * ny;
+
+    if (!inside && !(is_inside (image, ax, ay, 0)
+            && is_inside (image, bx, by, 0)))
+      return FALSE;
+    steps[o + ASIDE] = bilinear_inside (image, bx, by)
+        - bilinear_inside (image, ax, ay);
+  }
   return TRUE;
 }
 
@@ -251,13 +289,10 @@ cloth_edge_walk (const ClothImage * image, gfloat x, gfloat y, gfloat angle,
 
     x += STEP * dx;
     y += STEP * dy;
+    if (!steps_across (image, x, y, -dy, dx, at))
+      return FALSE;
     for (gint o = -ASIDE; o <= ASIDE; o++) {
-      gfloat step;
-
-      if (!step_across (image, x - (gfloat) o * 0.7f * dy,
-              y + (gfloat) o * 0.7f * dx, -dy, dx, &step))
-        return FALSE;
-      at[o + ASIDE] = sign * step;
+      at[o + ASIDE] *= sign;
       if (at[o + ASIDE] > best) {
         best = at[o + ASIDE];
         peak = o;
@@ -285,7 +320,7 @@ cloth_edge_walk (const ClothImage * image, gfloat x, gfloat y, gfloat angle,
       if (bend < 0)
         offset += CLAMP (0.5f * (l - r) / bend, -0.5f, 0.5f);
     }
-    offset *= 0.7f;
+    offset *= BESIDE;
     x -= 0.5f * offset * dy;
     y += 0.5f * offset * dx;
     angle += TURN * 0.5f * offset / STEP;
@@ -303,7 +338,7 @@ cloth_edge_walk (const ClothImage * image, gfloat x, gfloat y, gfloat angle,
     trail[walked % TRAIL][1] = y;
     trail[walked % TRAIL][2] = angle;
     walked++;
-    if (fabsf (remainderf (angle - start, 2 * (gfloat) G_PI)) > MAX_BEND)
+    if (fabsf (angle - start) > MAX_BEND)
       return FALSE;
   }
   return FALSE;

@@ -18,6 +18,8 @@
 /* Saddles looked at around each one: on a board without clutter the eight neighbours of
  * a corner contain its four, the rest is for clutter and oblique views. */
 #define NEAREST 16
+/* So many are looked at first, for they mostly do. */
+#define NEARER 8
 /* Shorter edges can't be told from noise, px. */
 #define MIN_EDGE 3.0f
 /* Contrast of a corner's weakest edge over that of its strongest. */
@@ -86,37 +88,36 @@ cloth_linker_free (ClothLinker * linker)
   g_free (linker);
 }
 
-/* Fills the four neighbours of saddle @k: the nearest in each quarter whose edge is
- * seen. */
-static void
-find_neighbours (const ClothLinker * linker, const ClothImage * image,
-    const ClothSaddle * saddles, gint k, gfloat reach, Corner * corner)
+/* Fills the four neighbours of saddle @k: the nearest in each quarter whose edge is seen,
+ * among the @n_near nearest saddles. Returns how many there are, weak ones included. */
+static guint
+look_around (const ClothLinker * linker, const ClothImage * image,
+    const ClothSaddle * saddles, gint k, gfloat reach, guint n_near,
+    Corner * corner)
 {
   const ClothSaddle *a = &saddles[k];
+  gfloat axis_x = cosf (a->axis), axis_y = sinf (a->axis);
   ClothNear near[NEAREST];
   gfloat contrasts[4], strongest = 0;
   guint n = cloth_point_grid_nearest (linker->grid, a->x, a->y, reach, near,
-      NEAREST);
+      n_near), n_found = 0;
 
   for (gint s = 0; s < 4; s++)
     corner->to[s] = -1;
-  corner->in_square = corner->skips = 0;
-  corner->turn = 0;
-  for (guint m = 0; m < n; m++) {
+  for (guint m = 0; m < n && n_found < 4; m++) {
     const ClothSaddle *b = &saddles[near[m].index];
-    gfloat length = sqrtf (near[m].distance2);
-    gfloat turn, across, contrast;
+    gfloat dx = b->x - a->x, dy = b->y - a->y, across, contrast;
     gint quarter;
 
-    if (length < MIN_EDGE)
+    if (near[m].distance2 < MIN_EDGE * MIN_EDGE)
       continue;
     across = fabsf (a->axis - b->axis);
     if (fabsf (across - (gfloat) G_PI_2) > AXIS_TOLERANCE)
       continue;
-    turn = atan2f (b->y - a->y, b->x - a->x) - a->axis;
-    if (turn < 0)
-      turn += 2 * (gfloat) G_PI;
-    quarter = MIN ((gint) (turn / (gfloat) G_PI_2), 3);
+    if (dy * axis_x - dx * axis_y >= 0)
+      quarter = dx * axis_x + dy * axis_y > 0 ? 0 : 1;
+    else
+      quarter = dx * axis_x + dy * axis_y < 0 ? 2 : 3;
     if (corner->to[quarter] >= 0)
       continue;
     /* In the first quarter the bright bisector lies behind and the dark one ahead. */
@@ -129,10 +130,22 @@ find_neighbours (const ClothLinker * linker, const ClothImage * image,
     corner->to[quarter] = near[m].index;
     contrasts[quarter] = contrast;
     strongest = MAX (strongest, contrast);
+    n_found++;
   }
   for (gint s = 0; s < 4; s++)
     if (corner->to[s] >= 0 && contrasts[s] < MIN_CONTRAST * strongest)
       corner->to[s] = -1;
+  return n_found;
+}
+
+static void
+find_neighbours (const ClothLinker * linker, const ClothImage * image,
+    const ClothSaddle * saddles, gint k, gfloat reach, Corner * corner)
+{
+  corner->in_square = corner->skips = 0;
+  corner->turn = 0;
+  if (look_around (linker, image, saddles, k, reach, NEARER, corner) < 4)
+    look_around (linker, image, saddles, k, reach, NEAREST, corner);
 }
 
 /* The quarter of @corner that leads to @k, -1 for none. */

@@ -418,7 +418,7 @@ cloth_patch_build (ClothPatch * patch, const ClothImage * image,
       if (!patch->square[at])
         patch->inside[at] = judge_cell (patch, image, i, j,
             params->other_colour);
-      else if (patch->square[at] && params->read_bits)
+      else if (params->read_bits)
         patch->bit[at] = read_bit (patch, image, i, j);
     }
 }

@@ -7,6 +7,7 @@
 #include "gst/vision/pointgrid.h"
 
 #include <math.h>
+#include <string.h>
 
 typedef struct
 {
@@ -16,10 +17,13 @@ typedef struct
 
 struct _ClothPointGrid
 {
-  GArray *points;               /* Point */
-  GArray *cells;                /* gint, the last point added to each cell */
+  Point *points;
+  guint n_points, n_room;
+  gint *cells;                  /* the last point added to each cell */
+  guint n_cells;                /* there is room for */
   gint columns, rows;
   gfloat size;
+  gfloat per_px;                /* 1 / size */
 };
 
 /**
@@ -32,11 +36,7 @@ struct _ClothPointGrid
 ClothPointGrid *
 cloth_point_grid_new (void)
 {
-  ClothPointGrid *grid = g_new0 (ClothPointGrid, 1);
-
-  grid->points = g_array_new (FALSE, FALSE, sizeof (Point));
-  grid->cells = g_array_new (FALSE, FALSE, sizeof (gint));
-  return grid;
+  return g_new0 (ClothPointGrid, 1);
 }
 
 /**
@@ -48,8 +48,8 @@ cloth_point_grid_new (void)
 void
 cloth_point_grid_free (ClothPointGrid * grid)
 {
-  g_array_unref (grid->points);
-  g_array_unref (grid->cells);
+  g_free (grid->points);
+  g_free (grid->cells);
   g_free (grid);
 }
 
@@ -69,31 +69,46 @@ cloth_point_grid_clear (ClothPointGrid * grid, gint width, gint height,
     guint n_expected)
 {
   gfloat area = (gfloat) width * (gfloat) height;
+  guint n;
 
   grid->size = MAX (4.0f, sqrtf (2.0f * area / (gfloat) MAX (n_expected, 1)));
+  grid->per_px = 1 / grid->size;
   grid->columns = (gint) ((gfloat) width / grid->size) + 1;
   grid->rows = (gint) ((gfloat) height / grid->size) + 1;
-  g_array_set_size (grid->points, 0);
-  g_array_set_size (grid->cells, (guint) (grid->columns * grid->rows));
-  for (guint k = 0; k < grid->cells->len; k++)
-    g_array_index (grid->cells, gint, k) = -1;
+  n = (guint) grid->columns * (guint) grid->rows;
+  if (n > grid->n_cells) {
+    g_free (grid->cells);
+    grid->cells = g_new (gint, n);
+    grid->n_cells = n;
+  }
+  /* All bytes 0xff make -1. */
+  memset (grid->cells, 0xff, n * sizeof (gint));
+  grid->n_points = 0;
 }
 
-static void
+/* What is no number comes into cell 0, so that it does no harm. */
+static inline gint
+cell_along (gfloat at, gint n)
+{
+  return at > 0 ? (gint) MIN (at, (gfloat) (n - 1)) : 0;
+}
+
+static inline void
 cell_of (const ClothPointGrid * grid, gfloat x, gfloat y, gint * column,
     gint * row)
 {
-  *column = (gint) (CLAMP (x / grid->size, 0, (gfloat) (grid->columns - 1)));
-  *row = (gint) (CLAMP (y / grid->size, 0, (gfloat) (grid->rows - 1)));
+  *column = cell_along (x * grid->per_px, grid->columns);
+  *row = cell_along (y * grid->per_px, grid->rows);
 }
 
 /**
  * cloth_point_grid_add:
  * @grid: the grid
- * @x: column, px, finite; may lie outside the picture
+ * @x: column, px; may lie outside the picture
  * @y: row, px
  *
- * Adds a point; points are numbered from 0 in the order they are added.
+ * Adds a point; points are numbered from 0 in the order they are added. One with a NaN
+ * coordinate is counted but never found.
  *
  * Since: 0.1
  */
@@ -101,26 +116,104 @@ void
 cloth_point_grid_add (ClothPointGrid * grid, gfloat x, gfloat y)
 {
   gint column, row, *cell;
-  Point point = { x, y, -1 };
+
+  if (grid->n_points == grid->n_room) {
+    grid->n_room = MAX (2 * grid->n_room, 256);
+    grid->points = g_renew (Point, grid->points, grid->n_room);
+  }
+  cell_of (grid, x, y, &column, &row);
+  cell = &grid->cells[row * grid->columns + column];
+  grid->points[grid->n_points] = (Point) {
+  x, y, *cell};
+  *cell = (gint) grid->n_points++;
+}
+
+#define INLINE static inline __attribute__((always_inline))
+
+typedef struct
+{
+  gfloat x, y, limit;           /* squared */
+  ClothNear *near;
+  guint n;
+} Search;
+
+/* Puts the points of one cell into their places among the nearest. */
+INLINE void
+visit (const Point * points, gint m, Search * search, guint n_near)
+{
+  ClothNear *near = search->near;
+
+  for (; m >= 0; m = points[m].next) {
+    gfloat dx = points[m].x - search->x, dy = points[m].y - search->y;
+    gfloat d2 = dx * dx + dy * dy;
+    guint at;
+
+    /* Written so that NaN is far. */
+    if (!(d2 <= search->limit) || (search->n == n_near
+            && d2 == near[n_near - 1].distance2 && m > near[n_near - 1].index))
+      continue;
+    if (search->n < n_near)
+      search->n++;
+    for (at = search->n - 1; at > 0 && (near[at - 1].distance2 > d2
+            || (near[at - 1].distance2 == d2 && near[at - 1].index > m)); at--)
+      near[at] = near[at - 1];
+    near[at].distance2 = d2;
+    near[at].index = m;
+    if (search->n == n_near)
+      search->limit = MIN (search->limit, near[n_near - 1].distance2);
+  }
+}
+
+INLINE guint
+find (const ClothPointGrid * grid, gfloat x, gfloat y, gfloat radius,
+    ClothNear * near, guint n_near)
+{
+  Search search = { x, y, radius * radius, near, 0 };
+  gint column, row, last = MAX (grid->columns, grid->rows);
+  gfloat inside;
 
   cell_of (grid, x, y, &column, &row);
-  cell = &g_array_index (grid->cells, gint, row * grid->columns + column);
-  point.next = *cell;
-  *cell = (gint) grid->points->len;
-  g_array_append_val (grid->points, point);
+  /* How far it is to the next cell at least; less a little, for cells are found by a
+   * rounded product. */
+  inside = MIN (MIN (x - (gfloat) column * grid->size,
+          (gfloat) (column + 1) * grid->size - x),
+      MIN (y - (gfloat) row * grid->size, (gfloat) (row + 1) * grid->size - y));
+  inside = MAX (inside - 0.01f, 0);
+  for (gint ring = 0; ring <= last; ring++) {
+    gfloat reach = ring ? grid->size * (gfloat) (ring - 1) + inside : 0;
+    gint left = column - ring, right = column + ring;
+
+    if (reach * reach > search.limit)
+      break;
+    for (gint r = MAX (row - ring, 0); r <= MIN (row + ring, grid->rows - 1);
+        r++) {
+      const gint *cells = grid->cells + r * grid->columns;
+
+      if (r == row - ring || r == row + ring) {
+        for (gint c = MAX (left, 0); c <= MIN (right, grid->columns - 1); c++)
+          visit (grid->points, cells[c], &search, n_near);
+        continue;
+      }
+      if (left >= 0)
+        visit (grid->points, cells[left], &search, n_near);
+      if (right < grid->columns)
+        visit (grid->points, cells[right], &search, n_near);
+    }
+  }
+  return search.n;
 }
 
 /**
  * cloth_point_grid_nearest:
  * @grid: the grid
- * @x: column, px, finite
+ * @x: column, px
  * @y: row, px
  * @radius: largest distance, px
  * @near: (out caller-allocates) (array length=n_near): the points found, nearest first;
  *   of equally near ones the first added first
  * @n_near: room in @near
  *
- * Returns: number of points found
+ * Returns: number of points found, 0 near a place that is no number
  *
  * Since: 0.1
  */
@@ -128,53 +221,10 @@ guint
 cloth_point_grid_nearest (const ClothPointGrid * grid, gfloat x, gfloat y,
     gfloat radius, ClothNear * near, guint n_near)
 {
-  const gint *cells = (const gint *) grid->cells->data;
-  const Point *points = (const Point *) grid->points->data;
-  gfloat limit = radius * radius, inside;
-  gint column, row, last = MAX (grid->columns, grid->rows);
-  guint n = 0;
-
-  cell_of (grid, x, y, &column, &row);
-  /* How far it is to the next cell at least; less a little, for cells are found by
-   * rounded division. */
-  inside = MIN (MIN (x - (gfloat) column * grid->size,
-          (gfloat) (column + 1) * grid->size - x),
-      MIN (y - (gfloat) row * grid->size, (gfloat) (row + 1) * grid->size - y));
-  inside = MAX (inside - 0.01f, 0);
-  for (gint ring = 0; ring <= last; ring++) {
-    gfloat reach = ring ? grid->size * (gfloat) (ring - 1) + inside : 0;
-
-    if (reach * reach > limit)
-      break;
-    for (gint r = MAX (row - ring, 0); r <= MIN (row + ring, grid->rows - 1);
-        r++) {
-      gboolean edge = r == row - ring || r == row + ring;
-      gint step = edge ? 1 : MAX (2 * ring, 1);
-
-      for (gint c = column - ring; c <= column + ring; c += step) {
-        if (c < 0 || c >= grid->columns)
-          continue;
-        for (gint m = cells[r * grid->columns + c]; m >= 0; m = points[m].next) {
-          gfloat dx = points[m].x - x, dy = points[m].y - y;
-          gfloat d2 = dx * dx + dy * dy;
-          guint at;
-
-          if (d2 > limit || (n == n_near && d2 == near[n - 1].distance2
-                  && m > near[n - 1].index))
-            continue;
-          if (n < n_near)
-            n++;
-          for (at = n - 1; at > 0 && (near[at - 1].distance2 > d2
-                  || (near[at - 1].distance2 == d2 && near[at - 1].index > m));
-              at--)
-            near[at] = near[at - 1];
-          near[at].distance2 = d2;
-          near[at].index = m;
-          if (n == n_near)
-            limit = MIN (limit, near[n - 1].distance2);
-        }
-      }
-    }
-  }
-  return n;
+  if (!n_near)
+    return 0;
+  /* Most ask for one: a copy of the code that knows it. */
+  if (n_near == 1)
+    return find (grid, x, y, radius, near, 1);
+  return find (grid, x, y, radius, near, n_near);
 }

@@ -22,8 +22,11 @@
 #define SURE_REACH 0.3f
 /* Guesses are looked for this far away, px. */
 #define MAX_GUESS 200.0f
-/* Lead of a placement that is believed, and of one believed against the memory. */
-#define MIN_LEAD 3.0f
+/* Lead of a placement that is believed: that of one cell that shows cloth where the board
+ * would go on. The edge of something bright looks so now and then, so more is asked where
+ * the memory knows the board but not there, and most of one against the memory. */
+#define MIN_LEAD 2.9f
+#define NEW_LEAD 4.0f
 #define SURE_LEAD 8.0f
 /* Pictures in a row that may speak against the memory before they are believed. */
 #define MAX_DOUBTS 2
@@ -451,13 +454,18 @@ place (ClothQuadTracker * tracker, gboolean first, ClothPlacement * placement,
 {
   ClothPlacement votes[MAX_VOTES + MAX_SEEDS];
   guint n_memory = vote_by_memory (tracker, votes), n = n_memory;
+  ClothPlaceWeights weights = cloth_place_cloth;
   gfloat agrees = 0;
 
   for (guint s = 0; s < tracker->seeds->len && n < n_memory + MAX_SEEDS; s++)
     n += vote_by_seed (tracker,
         &g_array_index (tracker->seeds, ClothQuadSeed, s), &votes[n]);
-  if (!cloth_place_patch (&tracker->pattern, &tracker->patch, votes, n,
-          tracker->scratch, placement) || placement->weight < MIN_LEAD)
+  /* With nothing to go by, a plain board that looks the same after a turn is taken the way
+   * it is most upright; from then on the memory tells which way that was. */
+  weights.twins = first && n == 0 && tracker->guess_vertex->len == 0;
+  if (!cloth_placer_run (tracker->placer, &tracker->patch, &weights, votes, n,
+          placement)
+      || placement->weight < MIN_LEAD)
     return FALSE;
   for (guint v = 0; v < n_memory; v++)
     if (votes[v].rotation == placement->rotation
@@ -470,6 +478,10 @@ place (ClothQuadTracker * tracker, gboolean first, ClothPlacement * placement,
    * fit to what is known by then, or show their place beyond doubt. */
   if (!first && (other->weight > agrees || agrees == 0)
       && placement->weight < SURE_LEAD)
+    return FALSE;
+  /* A board that was just seen is hardly anywhere else. */
+  if (first && agrees == 0 && tracker->guess_vertex->len > 0
+      && placement->weight < NEW_LEAD && tracker->doubts++ < MAX_DOUBTS)
     return FALSE;
   if (first && other->weight > agrees && other->weight > STRONG_VOTE) {
     if (placement->weight < SURE_LEAD && tracker->doubts++ < MAX_DOUBTS)

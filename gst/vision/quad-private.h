@@ -18,6 +18,7 @@ typedef struct {
   gboolean found;               /* in this picture */
   gboolean doubled;             /* another square claims the same place */
   gboolean fresh;               /* added by extension in this picture */
+  gboolean shown;               /* tracked or predicted in the last picture */
   guint age;                    /* pictures since it was last found; G_MAXUINT: never */
   guint run;                    /* pictures in a row it was found in */
   gfloat confidence;
@@ -58,10 +59,13 @@ struct _ClothQuadTracker
   GArray *guess_vertex;         /* gint, vertex of each point of that grid */
   ClothPointGrid *candidates;
   ClothPointGrid *refined;      /* saddles */
+  gboolean sorted;              /* those two grids are of this picture */
+  ClothPointGrid *middles;      /* of the squares found in this picture */
+  GArray *middle_cell;          /* gint, cell of each point of that grid */
   ClothPointGrid *corners;      /* linked saddles that were placed or rejected */
   GArray *corner_vertex;        /* gint, their board vertex, -1: on no known place */
   guint doubts;                 /* pictures in a row that spoke against the memory */
-  GArray *scratch;
+  ClothPlacer *placer;
   GArray *seeds;                /* ClothQuadSeed */
   GArray *out;                  /* ClothQuad */
 
@@ -71,6 +75,7 @@ struct _ClothQuadTracker
   const ClothSaddle *saddles;
   guint n_saddles;
   const ClothSaddleCandidate *raw;
+  guint n_raw;
 };
 
 static inline ClothQuadCell *

@@ -19,14 +19,22 @@
 /* A linked corner this near a found one is the same, px. */
 #define SAME 2.0f
 
+static inline gfloat
+edge2 (const gfloat x[4], const gfloat y[4], gint k)
+{
+  gfloat dx = x[(k + 1) & 3] - x[k], dy = y[(k + 1) & 3] - y[k];
+
+  return dx * dx + dy * dy;
+}
+
 gfloat
 cloth_quad_shortest (const gfloat x[4], const gfloat y[4])
 {
   gfloat least = G_MAXFLOAT;
 
   for (gint k = 0; k < 4; k++)
-    least = MIN (least, hypotf (x[(k + 1) & 3] - x[k], y[(k + 1) & 3] - y[k]));
-  return least;
+    least = MIN (least, edge2 (x, y, k));
+  return sqrtf (least);
 }
 
 gfloat
@@ -35,8 +43,8 @@ cloth_quad_longest (const gfloat x[4], const gfloat y[4])
   gfloat most = 0;
 
   for (gint k = 0; k < 4; k++)
-    most = MAX (most, hypotf (x[(k + 1) & 3] - x[k], y[(k + 1) & 3] - y[k]));
-  return most;
+    most = MAX (most, edge2 (x, y, k));
+  return sqrtf (most);
 }
 
 typedef struct
@@ -45,6 +53,27 @@ typedef struct
   guint n;
   gfloat distance2;             /* of the nearest */
 } Candidates;
+
+/* Sorts the saddles by place, in pictures in which there is something to look for. */
+static void
+sort_candidates (ClothQuadTracker * tracker)
+{
+  const ClothImage *image = tracker->image;
+
+  if (tracker->sorted)
+    return;
+  cloth_point_grid_clear (tracker->candidates, image->width, image->height,
+      tracker->n_raw);
+  for (guint k = 0; k < tracker->n_raw; k++)
+    cloth_point_grid_add (tracker->candidates, tracker->raw[k].x,
+        tracker->raw[k].y);
+  cloth_point_grid_clear (tracker->refined, image->width, image->height,
+      tracker->n_saddles);
+  for (guint k = 0; k < tracker->n_saddles; k++)
+    cloth_point_grid_add (tracker->refined, tracker->saddles[k].x,
+        tracker->saddles[k].y);
+  tracker->sorted = TRUE;
+}
 
 /* Refined saddles first, as a corner far from its guess has only the near rim of its spot
  * of candidates among the nearest. */
@@ -86,6 +115,7 @@ search_candidates (ClothQuadTracker * tracker, gboolean black,
   guint tried = 0, most = 0;
   gint left_out = 0, used[3];
 
+  sort_candidates (tracker);
   for (gint k = 0; k < 4; k++) {
     list_candidates (tracker, guess_x[k], guess_y[k], radius, &list[k]);
     if (list[k].distance2 > farthest) {

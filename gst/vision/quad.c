@@ -26,6 +26,8 @@
 #define PREDICTED_SD 0.1f
 /* Squares this far from one on the board may be taken for it. */
 #define DOUBLED 4
+/* Squares looked at for one that lies in the same place. */
+#define MAX_MIDDLES 16
 /* Weight that each picture of age takes from a remembered corner. */
 #define FADE 0.85f
 
@@ -74,9 +76,11 @@ cloth_quad_tracker_new (const ClothPattern * pattern)
   tracker->guess_vertex = g_array_new (FALSE, FALSE, sizeof (gint));
   tracker->candidates = cloth_point_grid_new ();
   tracker->refined = cloth_point_grid_new ();
+  tracker->middles = cloth_point_grid_new ();
+  tracker->middle_cell = g_array_new (FALSE, FALSE, sizeof (gint));
   tracker->corners = cloth_point_grid_new ();
   tracker->corner_vertex = g_array_new (FALSE, FALSE, sizeof (gint));
-  tracker->scratch = cloth_place_scratch_new ();
+  tracker->placer = cloth_placer_new (pattern);
   tracker->seeds = g_array_new (FALSE, FALSE, sizeof (ClothQuadSeed));
   tracker->out =
       g_array_sized_new (FALSE, FALSE, sizeof (ClothQuad), (guint) n);
@@ -102,9 +106,11 @@ cloth_quad_tracker_free (ClothQuadTracker * tracker)
   g_array_unref (tracker->guess_vertex);
   cloth_point_grid_free (tracker->candidates);
   cloth_point_grid_free (tracker->refined);
+  cloth_point_grid_free (tracker->middles);
+  g_array_unref (tracker->middle_cell);
   cloth_point_grid_free (tracker->corners);
   g_array_unref (tracker->corner_vertex);
-  g_array_unref (tracker->scratch);
+  cloth_placer_free (tracker->placer);
   g_array_unref (tracker->seeds);
   g_array_unref (tracker->out);
   g_free (tracker);
@@ -126,6 +132,7 @@ cloth_quad_tracker_reset (ClothQuadTracker * tracker)
   for (gint k = 0; k < n; k++) {
     tracker->cells[k].age = G_MAXUINT;
     tracker->cells[k].run = 0;
+    tracker->cells[k].shown = FALSE;
   }
   tracker->doubts = 0;
   g_array_set_size (tracker->seeds, 0);
@@ -219,10 +226,40 @@ predict (ClothQuadTracker * tracker)
   }
 }
 
+/* Gives a vertex not seen the mean shift of its neighbours. */
+static void
+spread_to (ClothQuadTracker * tracker, gint column, gint row)
+{
+  static const gint dc[4] = { -1, 1, 0, 0 }, dr[4] = { 0, 0, -1, 1 };
+  ClothQuadVertex *own = cloth_quad_vertex (tracker, column, row);
+  gfloat sum_x = 0, sum_y = 0, weight = 0;
+
+  if (own->seen && own->guessed)
+    return;
+  for (gint k = 0; k < 4; k++) {
+    const ClothQuadVertex *other;
+
+    if (column + dc[k] < 0 || column + dc[k] > tracker->pattern.columns
+        || row + dr[k] < 0 || row + dr[k] > tracker->pattern.rows)
+      continue;
+    other = cloth_quad_vertex (tracker, column + dc[k], row + dr[k]);
+    sum_x += other->spread * other->shift_x;
+    sum_y += other->spread * other->shift_y;
+    weight += other->spread;
+  }
+  if (weight == 0)
+    return;
+  own->shift_x = sum_x / weight;
+  own->shift_y = sum_y / weight;
+  own->spread = MIN (0.5f * weight, 0.9f);
+}
+
+/* Forth and back in turn, so that no direction is preferred. */
 void
 cloth_quad_spread_shift (ClothQuadTracker * tracker)
 {
   gint columns = tracker->pattern.columns + 1, rows = tracker->pattern.rows + 1;
+  gint n_unknown = 0;
 
   for (gint k = 0; k < columns * rows; k++) {
     ClothQuadVertex *vertex = &tracker->vertices[k];
@@ -231,33 +268,14 @@ cloth_quad_spread_shift (ClothQuadTracker * tracker)
     vertex->shift_x = known ? vertex->x - vertex->guess_x : 0;
     vertex->shift_y = known ? vertex->y - vertex->guess_y : 0;
     vertex->spread = known ? 1 : 0;
+    n_unknown += !known;
   }
-  for (gint pass = 0; pass < SPREAD_PASSES; pass++)
-    for (gint row = 0; row < rows; row++)
-      for (gint column = 0; column < columns; column++) {
-        ClothQuadVertex *own = cloth_quad_vertex (tracker, column, row);
-        gfloat sum_x = 0, sum_y = 0, weight = 0;
+  for (gint pass = 0; n_unknown && pass < SPREAD_PASSES; pass++)
+    for (gint k = 0; k < columns * rows; k++) {
+      gint at = pass & 1 ? columns * rows - 1 - k : k;
 
-        if (own->seen && own->guessed)
-          continue;
-        for (gint k = 0; k < 4; k++) {
-          static const gint dc[4] = { -1, 1, 0, 0 }, dr[4] = { 0, 0, -1, 1 };
-          const ClothQuadVertex *other;
-
-          if (column + dc[k] < 0 || column + dc[k] >= columns
-              || row + dr[k] < 0 || row + dr[k] >= rows)
-            continue;
-          other = cloth_quad_vertex (tracker, column + dc[k], row + dr[k]);
-          sum_x += other->spread * other->shift_x;
-          sum_y += other->spread * other->shift_y;
-          weight += other->spread;
-        }
-        if (weight == 0)
-          continue;
-        own->shift_x = sum_x / weight;
-        own->shift_y = sum_y / weight;
-        own->spread = MIN (0.5f * weight, 0.9f);
-      }
+      spread_to (tracker, at % columns, at / columns);
+    }
   for (gint row = 0; row + 1 < rows; row++)
     for (gint column = 0; column + 1 < columns; column++) {
       ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
@@ -297,17 +315,18 @@ is_consistent (ClothQuadTracker * tracker, gint column, gint row)
   for (gint k = 0; k < 4; k++) {
     const ClothQuadCell *other = cloth_quad_cell (tracker,
         column + diagonal_column[k], row + diagonal_row[k]);
-    gfloat size, distance;
+    gfloat size, dx, dy;
 
     if (!other || !other->found || other->confidence <= params->c_high)
       continue;
     /* Corner k of this square is the other one's opposite corner. */
-    size = MAX (cloth_quad_longest (cell->here_x, cell->here_y),
+    dx = cell->here_x[k] - other->here_x[(k + 2) & 3];
+    dy = cell->here_y[k] - other->here_y[(k + 2) & 3];
+    size = params->consistency
+        * MAX (cloth_quad_longest (cell->here_x, cell->here_y),
         cloth_quad_longest (other->here_x, other->here_y));
-    distance = hypotf (cell->here_x[k] - other->here_x[(k + 2) & 3],
-        cell->here_y[k] - other->here_y[(k + 2) & 3]);
     n++;
-    bad += distance > params->consistency * size;
+    bad += dx * dx + dy * dy > size * size;
   }
   return bad < most[n];
 }
@@ -326,27 +345,63 @@ check_consistency (ClothQuadTracker * tracker)
     }
 }
 
-/* Whether (@x, @y) lies well inside a square found already. */
-static gboolean
-is_taken (ClothQuadTracker * tracker, gint column, gint row)
+static void
+middle (const ClothQuadCell * cell, gfloat * x, gfloat * y)
 {
-  const ClothQuadCell *own = cloth_quad_cell (tracker, column, row);
-  gfloat x = 0, y = 0, size;
+  *x = (cell->here_x[0] + cell->here_x[2]) / 2;
+  *y = (cell->here_y[0] + cell->here_y[2]) / 2;
+}
 
-  size = cloth_quad_shortest (own->here_x, own->here_y);
+/* Notes where a square was found, for is_taken (). */
+static void
+note_middle (ClothQuadTracker * tracker, const ClothQuadCell * cell)
+{
+  gint number = (gint) (cell - tracker->cells);
+  gfloat x, y;
+
+  middle (cell, &x, &y);
+  cloth_point_grid_add (tracker->middles, x, y);
+  g_array_append_val (tracker->middle_cell, number);
+}
+
+static void
+note_middles (ClothQuadTracker * tracker)
+{
+  gint n = tracker->pattern.columns * tracker->pattern.rows;
+
+  cloth_point_grid_clear (tracker->middles, tracker->image->width,
+      tracker->image->height, (guint) n);
+  g_array_set_size (tracker->middle_cell, 0);
+  for (gint k = 0; k < n; k++)
+    if (tracker->cells[k].found)
+      note_middle (tracker, &tracker->cells[k]);
+}
+
+/* Whether a square just found lies well inside one found already. */
+static gboolean
+is_taken (ClothQuadTracker * tracker, const ClothQuadCell * own)
+{
+  gfloat x = 0, y = 0, reach;
+  ClothNear near[MAX_MIDDLES];
+  guint n;
+
+  reach = 0.5f * cloth_quad_shortest (own->here_x, own->here_y);
   for (gint k = 0; k < 4; k++) {
     x += own->here_x[k] / 4;
     y += own->here_y[k] / 4;
   }
-  for (gint k = 0; k < tracker->pattern.columns * tracker->pattern.rows; k++) {
-    const ClothQuadCell *cell = &tracker->cells[k];
+  n = cloth_point_grid_nearest (tracker->middles, x, y, 1.5f * reach, near,
+      MAX_MIDDLES);
+  for (guint k = 0; k < n; k++) {
+    const ClothQuadCell *cell = &tracker->cells[g_array_index
+        (tracker->middle_cell, gint, near[k].index)];
     gfloat cx, cy;
 
+    /* It may have been given up since it was noted. */
     if (!cell->found || cell == own)
       continue;
-    cx = (cell->here_x[0] + cell->here_x[2]) / 2;
-    cy = (cell->here_y[0] + cell->here_y[2]) / 2;
-    if (fabsf (cx - x) < 0.5f * size && fabsf (cy - y) < 0.5f * size)
+    middle (cell, &cx, &cy);
+    if (fabsf (cx - x) < reach && fabsf (cy - y) < reach)
       return TRUE;
   }
   return FALSE;
@@ -356,11 +411,12 @@ is_taken (ClothQuadTracker * tracker, gint column, gint row)
 static gboolean
 is_doubled (ClothQuadTracker * tracker, gint column, gint row)
 {
-  const ClothQuadCell *own = cloth_quad_cell (tracker, column, row);
-  gfloat x = (own->here_x[0] + own->here_x[2]) / 2;
-  gfloat y = (own->here_y[0] + own->here_y[2]) / 2;
+  const ClothQuadCell *own = &tracker->cells[row * tracker->pattern.columns
+      + column];
   gfloat reach = 0.5f * cloth_quad_shortest (own->here_x, own->here_y);
+  gfloat x, y;
 
+  middle (own, &x, &y);
   for (gint r = row - DOUBLED; r <= row + DOUBLED; r++)
     for (gint c = column - DOUBLED; c <= column + DOUBLED; c++) {
       const ClothQuadCell *other = cloth_quad_cell (tracker, c, r);
@@ -397,8 +453,10 @@ try_square (ClothQuadTracker * tracker, gint column, gint row,
 
   if (!cloth_quad_search (tracker, column, row, guess_x, guess_y))
     return FALSE;
-  if (!is_consistent (tracker, column, row) || is_taken (tracker, column, row))
+  if (!is_consistent (tracker, column, row) || is_taken (tracker, cell))
     cell->found = FALSE;
+  else
+    note_middle (tracker, cell);
   return cell->found;
 }
 
@@ -489,7 +547,7 @@ put_out (ClothQuadTracker * tracker, gint column, gint row,
   if (state == CLOTH_QUAD_TRACKED) {
     memcpy (quad.cov, cell->cov, sizeof quad.cov);
   } else {
-    gfloat sd = PREDICTED_SD * (gfloat) cell->age
+    gfloat sd = PREDICTED_SD * (gfloat) MIN (cell->age, PREDICTED_FOR + 1)
         * cloth_quad_shortest (quad.x, quad.y);
 
     for (gint k = 0; k < 4; k++) {
@@ -522,16 +580,18 @@ conclude (ClothQuadTracker * tracker)
         memcpy (cell->x, cell->here_x, sizeof cell->x);
         memcpy (cell->y, cell->here_y, sizeof cell->y);
         cell->age = 0;
+        cell->shown = TRUE;
         put_out (tracker, column, row, CLOTH_QUAD_TRACKED);
         continue;
       }
+      if (cell->age != G_MAXUINT && ++cell->age <= PREDICTED_FOR) {
+        put_out (tracker, column, row, CLOTH_QUAD_PREDICTED);
+      } else if (cell->shown) {
+        put_out (tracker, column, row, CLOTH_QUAD_LOST);
+        cell->shown = FALSE;
+      }
       if (cell->age == G_MAXUINT)
         continue;
-      cell->age++;
-      if (cell->age <= PREDICTED_FOR)
-        put_out (tracker, column, row, CLOTH_QUAD_PREDICTED);
-      else if (cell->age == PREDICTED_FOR + 1)
-        put_out (tracker, column, row, CLOTH_QUAD_LOST);
       if (cell->age > CLOTH_QUAD_MEMORY) {
         cell->age = G_MAXUINT;
         cell->run = 0;
@@ -576,15 +636,8 @@ cloth_quad_tracker_run (ClothQuadTracker * tracker,
   tracker->saddles = saddles;
   tracker->n_saddles = n_saddles;
   tracker->raw = candidates;
-  cloth_point_grid_clear (tracker->candidates, image->width, image->height,
-      n_candidates);
-  for (guint k = 0; k < n_candidates; k++)
-    cloth_point_grid_add (tracker->candidates, candidates[k].x,
-        candidates[k].y);
-  cloth_point_grid_clear (tracker->refined, image->width, image->height,
-      n_saddles);
-  for (guint k = 0; k < n_saddles; k++)
-    cloth_point_grid_add (tracker->refined, saddles[k].x, saddles[k].y);
+  tracker->n_raw = n_candidates;
+  tracker->sorted = FALSE;
 
   predict (tracker);
   if (params->link) {
@@ -593,15 +646,19 @@ cloth_quad_tracker_run (ClothQuadTracker * tracker,
   } else {
     start_seeds (tracker);
   }
+  note_middles (tracker);
   for (gint row = 0; row < rows; row++)
     for (gint column = 0; column < columns; column++) {
       ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
 
-      if (!cell->found && cell->wanted && cell->age == 0
-          && cloth_quad_search (tracker, column, row, cell->guess_x,
-              cell->guess_y)
-          && is_taken (tracker, column, row))
+      if (cell->found || !cell->wanted || cell->age != 0
+          || !cloth_quad_search (tracker, column, row, cell->guess_x,
+              cell->guess_y))
+        continue;
+      if (is_taken (tracker, cell))
         cell->found = FALSE;
+      else
+        note_middle (tracker, cell);
     }
   drop_doubles (tracker);
   check_consistency (tracker);

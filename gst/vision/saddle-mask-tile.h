@@ -104,9 +104,10 @@ NAME (determinant) (const guint16 * a, const guint16 * b, const guint16 * c,
   return SUB (MUL_HIGH (TIMES_4 (fxx), TIMES_4 (fyy)), MUL_HIGH (fxy, fxy));
 }
 
-/* Two rows of bits and determinants. */
+/* Two rows of bits and determinants. Determinants are always written, and kept if a bit
+ * is set. */
 INLINE void
-NAME (rows) (ClothSaddleMask * mask, gsize first, gint words, gint n,
+NAME (rows) (ClothSaddleMask * mask, gint row, gint word_0, gint words, gint n,
     gint threshold, const gint h, guint16 * const *smooth)
 {
   const gssize odd = n;
@@ -116,10 +117,10 @@ NAME (rows) (ClothSaddleMask * mask, gsize first, gint words, gint n,
   const gssize odd_before = h % 2 ? -odd - (h - 1) / 2 : -(h / 2);
   const gssize odd_after = h % 2 ? -odd + (h + 1) / 2 : h / 2;
   const VEC bound = SET (-threshold);
+  const gsize first = (gsize) row * (gsize) mask->words + (gsize) word_0;
   guint64 *bits[2] = { mask->bits + first, mask->bits + first + mask->words };
-  gint16 *det[2] = { mask->det + first * 64,
-    mask->det + (first + (gsize) mask->words) * 64
-  };
+  guint32 *block = mask->blocks + (gsize) (row / 2) * (gsize) mask->words + (gsize) word_0;
+  guint32 next = mask->n_blocks;
 
   for (gint w = 0; w < words; w++) {
     guint64 word[2] = { 0, 0 };
@@ -146,15 +147,20 @@ NAME (rows) (ClothSaddleMask * mask, gsize first, gint words, gint n,
         }
       }
       for (gint k = 0; k < 2; k++) {
-        if (ANY_BELOW (e[k], o[k], bound)) {
-          word[k] |= (guint64) BITS_BELOW (e[k], o[k], bound) << (2 * part);
-          STORE_MIXED (det[k] + 64 * w + 2 * part, e[k], o[k]);
-        }
+        gint16 *det = mask->det + 64 * ((gsize) next + (gsize) k) + part;
+
+        word[k] |= (guint64) BITS_BELOW (e[k], o[k], bound) << (2 * part);
+        STORE (det, e[k]);
+        STORE (det + 32, o[k]);
       }
     }
+    /* A branch would often be guessed wrongly. */
+    block[w] = next;
+    next += word[0] | word[1] ? 2 : 0;
     bits[0][w] = word[0];
     bits[1][w] = word[1];
   }
+  mask->n_blocks = next;
 }
 
 /* Straight from the picture where whole vectors lie in it, else by a copy with the border
@@ -230,8 +236,7 @@ NAME (tile_of) (ClothSaddleMask * mask, const ClothSaddleKernel * kernel,
       continue;
 
     /* The mask has room for the row after an odd number. */
-    NAME (rows) (mask, (gsize) row * (gsize) mask->words + (gsize) word,
-        words, n, threshold, h, smooth);
+    NAME (rows) (mask, row, word, words, n, threshold, h, smooth);
   }
 }
 

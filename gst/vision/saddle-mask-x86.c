@@ -27,21 +27,11 @@
 #define MUL_HIGH _mm256_mulhi_epi16
 #define MUL_HIGH_U _mm256_mulhi_epu16
 #define TIMES_4(v) _mm256_slli_epi16 ((v), 2)
-#define ANY_BELOW(a, b, bound) \
-  (!_mm256_testz_si256 (_mm256_cmpgt_epi16 ((bound), \
-          _mm256_min_epi16 ((a), (b))), _mm256_set1_epi8 (-1)))
 #define BITS_BELOW(a, b, bound) \
   ((guint32) _mm256_movemask_epi8 (_mm256_blendv_epi8 ( \
           _mm256_cmpgt_epi16 ((bound), (a)), \
           _mm256_cmpgt_epi16 ((bound), (b)), \
           _mm256_set1_epi16 ((gint16) 0xff00))))
-#define STORE_MIXED(p, a, b) \
-  do { \
-    VEC low_ = _mm256_unpacklo_epi16 ((a), (b)); \
-    VEC high_ = _mm256_unpackhi_epi16 ((a), (b)); \
-    STORE ((p), _mm256_permute2x128_si256 (low_, high_, 0x20)); \
-    STORE ((p) + 16, _mm256_permute2x128_si256 (low_, high_, 0x31)); \
-  } while (0)
 #include "gst/vision/saddle-mask-tile.h"
 #undef SUFFIX
 #undef TARGET
@@ -58,12 +48,10 @@
 #undef MUL_HIGH
 #undef MUL_HIGH_U
 #undef TIMES_4
-#undef ANY_BELOW
 #undef BITS_BELOW
-#undef STORE_MIXED
 
 #define SUFFIX avx512
-#define TARGET __attribute__((target ("avx512f,avx512bw,avx512dq,avx512vl")))
+#define TARGET __attribute__((target ("bmi2,avx512f,avx512bw,avx512dq,avx512vl")))
 #define LANES 32
 #define VEC __m512i
 #define LOAD(p) _mm512_loadu_si512 ((const void *) (p))
@@ -78,21 +66,10 @@
 #define MUL_HIGH _mm512_mulhi_epi16
 #define MUL_HIGH_U _mm512_mulhi_epu16
 #define TIMES_4(v) _mm512_slli_epi16 ((v), 2)
-#define ANY_BELOW(a, b, bound) \
-  (_mm512_cmpgt_epi16_mask ((bound), _mm512_min_epi16 ((a), (b))) != 0)
+/* Spread by the scalar unit, which has nothing else to do. */
 #define BITS_BELOW(a, b, bound) \
-  _mm512_movepi8_mask (_mm512_mask_blend_epi8 (0xaaaaaaaaaaaaaaaaull, \
-          _mm512_movm_epi16 (_mm512_cmpgt_epi16_mask ((bound), (a))), \
-          _mm512_movm_epi16 (_mm512_cmpgt_epi16_mask ((bound), (b)))))
-#define STORE_MIXED(p, a, b) \
-  do { \
-    VEC low_ = _mm512_unpacklo_epi16 ((a), (b)); \
-    VEC high_ = _mm512_unpackhi_epi16 ((a), (b)); \
-    STORE ((p), _mm512_permutex2var_epi64 (low_, \
-            _mm512_setr_epi64 (0, 1, 8, 9, 2, 3, 10, 11), high_)); \
-    STORE ((p) + 32, _mm512_permutex2var_epi64 (low_, \
-            _mm512_setr_epi64 (4, 5, 12, 13, 6, 7, 14, 15), high_)); \
-  } while (0)
+  (_pdep_u64 (_mm512_cmpgt_epi16_mask ((bound), (a)), 0x5555555555555555) | \
+      _pdep_u64 (_mm512_cmpgt_epi16_mask ((bound), (b)), 0xaaaaaaaaaaaaaaaa))
 #include "gst/vision/saddle-mask-tile.h"
 
 #endif

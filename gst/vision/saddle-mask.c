@@ -104,14 +104,17 @@ cloth_saddle_kernel_init (ClothSaddleKernel * kernel, gfloat sigma)
 static void
 mask_resize (ClothSaddleMask * mask)
 {
-  /* Rows come in twos. */
+  /* Rows come in twos; two blocks more are written before it is known whether they are
+   * kept. */
   gsize need = (gsize) mask->words * (gsize) (mask->height + 1);
 
   if (need > mask->bits_allocated) {
     g_free (mask->bits);
+    g_free (mask->blocks);
     g_free (mask->det);
     mask->bits = g_new (guint64, need);
-    mask->det = g_new (gint16, need * 64);
+    mask->blocks = g_new (guint32, (need + 1) / 2);
+    mask->det = g_new (gint16, (need + 2) * 64);
     mask->bits_allocated = need;
   }
 }
@@ -132,6 +135,7 @@ void
 cloth_saddle_mask_clear (ClothSaddleMask * mask)
 {
   g_free (mask->bits);
+  g_free (mask->blocks);
   g_free (mask->det);
   g_free (mask->scratch);
   memset (mask, 0, sizeof (*mask));
@@ -205,10 +209,11 @@ mask_run_scalar (ClothSaddleMask * mask, const ClothSaddleKernel * kernel,
   const gint n = mask->words * 64 + 2 * h;
   const gint n_ring = 2 * r + 1, n_smooth = 2 * h + 1;
   guint8 *bytes = mask_scratch (mask,
-      (gsize) (n_ring + n_smooth) * (gsize) n * 2 + (gsize) (n + 2 * r));
+      (gsize) (n_ring + n_smooth + 1) * (gsize) n * 2 + (gsize) (n + 2 * r));
   guint16 *ring = (guint16 *) bytes;
   guint16 *smooth = ring + (gsize) n_ring * (gsize) n;
-  guint8 *line = (guint8 *) (smooth + (gsize) n_smooth * (gsize) n);
+  gint16 *det = (gint16 *) (smooth + (gsize) n_smooth * (gsize) n);
+  guint8 *line = (guint8 *) (det + n);
 
   for (gint i = 0; i < mask->height + 2 * (h + r); i++) {
     gint row = i - 2 * r, centre = row - 2 * h;
@@ -224,7 +229,8 @@ mask_run_scalar (ClothSaddleMask * mask, const ClothSaddleKernel * kernel,
 
     {
       guint64 *bits = mask->bits + (gsize) centre * (gsize) mask->words;
-      gint16 *det = mask->det + (gsize) centre * (gsize) mask->words * 64;
+      guint32 *block =
+          mask->blocks + (gsize) (centre / 2) * (gsize) mask->words;
 
       determinants (det, 64 * mask->words,
           smooth + (gsize) (centre % n_smooth) * (gsize) n + h,
@@ -232,8 +238,19 @@ mask_run_scalar (ClothSaddleMask * mask, const ClothSaddleKernel * kernel,
           smooth + (gsize) (row % n_smooth) * (gsize) n + h, h);
       for (gint w = 0; w < mask->words; w++) {
         guint64 word = 0;
-        for (gint k = 0; k < 64; k++)
-          word |= (guint64) (det[64 * w + k] < -threshold) << k;
+        gint16 *out;
+
+        if (centre % 2 == 0) {
+          block[w] = mask->n_blocks;
+          mask->n_blocks += 2;
+        }
+        out = mask->det + 64 * ((gsize) block[w] + (gsize) (centre % 2));
+        for (gint k = 0; k < 64; k++) {
+          gint16 d = det[64 * w + k];
+
+          word |= (guint64) (d < -threshold) << k;
+          out[32 * (k % 2) + k / 2] = d;
+        }
         bits[w] = word;
       }
     }
@@ -305,6 +322,7 @@ cloth_saddle_mask_run (ClothSaddleMask * mask,
     gint threshold, ClothSimd level)
 {
   mask->words = (mask->width + 63) / 64;
+  mask->n_blocks = 0;
   mask_resize (mask);
 #if defined (__x86_64__) && defined (__GNUC__)
   if (level == CLOTH_SIMD_AVX2 || level == CLOTH_SIMD_AVX512)

@@ -44,7 +44,10 @@ typedef struct {
  * @height: rows of the region
  * @words: 64-pixel words a row
  * @bits: @height·@words, bit i of word w is column @x + 64w + i
- * @det: @height·@words·64, the 16-bit determinant; valid where a bit is set
+ * @blocks: for each word of two rows, even and odd, where in @det their blocks are,
+ *   unless none of their bits is set; (@height + 1) / 2·@words
+ * @det: blocks of 64 16-bit determinants, the even columns of a word, then the odd; see
+ *   cloth_saddle_mask_det()
  *
  * Buffers grow when they must and are kept from picture to picture.
  */
@@ -52,11 +55,36 @@ typedef struct {
   gint x, y, width, height;
   gint words;
   guint64 *bits;
+  guint32 *blocks;
   gint16 *det;
+  guint32 n_blocks;
   gsize bits_allocated;
   guint8 *scratch;
   gsize scratch_allocated;
 } ClothSaddleMask;
+
+/* The determinants of word w of row y of the region; valid if one of its bits is set. */
+static inline const gint16 *
+cloth_saddle_mask_block (const ClothSaddleMask * mask, gint w, gint y)
+{
+  return mask->det + 64 * ((gsize) mask->blocks[(gsize) (y >> 1) *
+          (gsize) mask->words + (gsize) w] + (gsize) (y & 1));
+}
+
+/* Bit i's determinant in its block. */
+static inline gint
+cloth_saddle_block_det (const gint16 * block, gint i)
+{
+  return block[32 * (i & 1) + (i >> 1)];
+}
+
+/* The determinant at column x, row y of the region, where its bit is set. */
+static inline gint
+cloth_saddle_mask_det (const ClothSaddleMask * mask, gint x, gint y)
+{
+  return cloth_saddle_block_det (cloth_saddle_mask_block (mask, x >> 6, y),
+      x & 63);
+}
 
 void cloth_saddle_kernel_init (ClothSaddleKernel * kernel, gfloat sigma);
 void cloth_saddle_mask_run (ClothSaddleMask * mask,

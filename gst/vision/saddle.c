@@ -10,6 +10,9 @@
 #include "gst/vision/saddle-mask.h"
 #include "gst/vision/saddle-refine.h"
 
+/* Saddles whose residual is looked at in a picture. */
+#define MAX_RESIDUALS 12
+
 struct _ClothSaddleDetector
 {
   ClothSaddleKernel kernel;
@@ -172,7 +175,6 @@ is_peak (const ClothSaddleMask * mask, gint x, gint y, gint reach, gint d)
   /* The nearest rows first: they refuse most. */
   for (gint k = 0; k <= 2 * reach; k++) {
     gint row = y + (k % 2 ? -(k + 1) / 2 : k / 2);
-    const gint16 *det = mask->det + (gsize) row * (gsize) mask->words * 64;
     guint64 window;
 
     if (row < 0 || row >= mask->height)
@@ -180,7 +182,7 @@ is_peak (const ClothSaddleMask * mask, gint x, gint y, gint reach, gint d)
     for (window = mask_window (mask, x, row, reach); window;
         window &= window - 1) {
       gint i = __builtin_ctzll (window) - reach;
-      gint other = det[x + i];
+      gint other = cloth_saddle_mask_det (mask, x + i, row);
       if (other < d || (other == d && (row < y || (row == y && i < 0))))
         return FALSE;
     }
@@ -194,13 +196,15 @@ static gint
 raise_threshold (const ClothSaddleMask * mask, gint threshold, guint limit)
 {
   guint histogram[8192] = { 0 }, above = 0;
-  gsize n = (gsize) mask->words * (gsize) mask->height;
+  const guint64 *word = mask->bits;
   gint bin = 8191;
 
-  for (gsize w = 0; w < n; w++) {
-    for (guint64 bits = mask->bits[w]; bits; bits &= bits - 1)
-      histogram[(guint) (-mask->det[w * 64 +
-                  (gsize) __builtin_ctzll (bits)]) >> 2 & 8191]++;
+  for (gint y = 0; y < mask->height; y++) {
+    for (gint w = 0; w < mask->words; w++, word++) {
+      for (guint64 bits = *word; bits; bits &= bits - 1)
+        histogram[(guint) - cloth_saddle_mask_det (mask,
+                64 * w + __builtin_ctzll (bits), y) >> 2 & 8191]++;
+    }
   }
   for (; bin >= 0; bin--) {
     above += histogram[bin];
@@ -228,17 +232,17 @@ scan_mask (ClothSaddleDetector * self, gint threshold, gint listed, gint reach,
 {
   const ClothSaddleMask *mask = &self->mask;
   gboolean all = TRUE;
-  const gssize row = (gssize) mask->words * 64;
 
   self->n_candidates = 0;
   self->n_peaks = 0;
   for (gint y = 0; y < mask->height; y++) {
     const guint64 *bits = mask->bits + (gsize) y * (gsize) mask->words;
-    const gint16 *det = mask->det + (gsize) y * (gsize) mask->words * 64;
     const guint64 *above = bits - mask->words, *below = bits + mask->words;
 
     for (gint w = 0; w < mask->words; w++) {
+      const gint16 *block = cloth_saddle_mask_block (mask, w, y);
       guint64 word = bits[w];
+
       if (!word)
         continue;
       self->candidates = grow (self->candidates, &self->candidates_allocated,
@@ -247,7 +251,7 @@ scan_mask (ClothSaddleDetector * self, gint threshold, gint listed, gint reach,
           self->n_peaks + 64, sizeof (ClothSaddleCandidate));
       for (; word; word &= word - 1) {
         gint i = __builtin_ctzll (word), x = 64 * w + i;
-        gint d = det[x];
+        gint d = cloth_saddle_block_det (block, i);
         ClothSaddleCandidate pixel;
 
         if (d >= -threshold)
@@ -260,10 +264,14 @@ scan_mask (ClothSaddleDetector * self, gint threshold, gint listed, gint reach,
         else
           self->candidates[self->n_candidates++] = pixel;
         /* The four neighbours refuse most without a closer look. */
-        if (!(i > 0 && bits[w] >> (i - 1) & 1 && det[x - 1] <= d)
-            && !(i < 63 && bits[w] >> (i + 1) & 1 && det[x + 1] < d)
-            && !(y > 0 && above[w] >> i & 1 && det[x - row] <= d)
-            && !(y + 1 < mask->height && below[w] >> i & 1 && det[x + row] < d)
+        if (!(i > 0 && bits[w] >> (i - 1) & 1
+                && cloth_saddle_block_det (block, i - 1) <= d)
+            && !(i < 63 && bits[w] >> (i + 1) & 1
+                && cloth_saddle_block_det (block, i + 1) < d)
+            && !(y > 0 && above[w] >> i & 1
+                && cloth_saddle_mask_det (mask, x, y - 1) <= d)
+            && !(y + 1 < mask->height && below[w] >> i & 1
+                && cloth_saddle_mask_det (mask, x, y + 1) < d)
             && is_peak (mask, x, y, reach, d)) {
           if (self->n_peaks < CLOTH_SADDLE_MAX)
             self->peaks[self->n_peaks++] = pixel;
@@ -349,6 +357,50 @@ spacing (const ClothSaddleDetector * self, guint index, gfloat most)
   return sqrtf (best);
 }
 
+/* What the corner model leaves unexplained around some of the saddles, the median, grey
+ * levels: on pictures of a camera the noise, on films what compression, texture and bends
+ * of the cloth add as well, which flat places don't show. 0 when nothing could be fitted. */
+static gfloat
+measure_residual (const ClothSaddleDetector * self, gfloat sigma,
+    const ClothImage * image, ClothSimd level)
+{
+  ClothCornerParams params = cloth_corner_default_params ();
+  guint n = MIN (self->n_saddles, MAX_RESIDUALS), found = 0;
+  gfloat sorted[MAX_RESIDUALS];
+  /* As far as the Gaussian looks. */
+  gfloat radius = CLAMP (3 * sigma, 3.0f, 7.0f);
+
+  params.max_shift = 1.0f;
+  for (guint i = 0; i < n; i++) {
+    guint index = (guint) ((2 * i + 1) * (guint64) self->n_saddles / (2 * n));
+    const ClothSaddle *saddle = &self->saddles[index];
+    ClothCornerFit fit;
+    guint at;
+
+    params.radius = MIN (radius, 0.5f * spacing (self, index, 2 * radius));
+    if (!cloth_corner_refine (image, saddle->x, saddle->y, &params, level,
+            &fit) || !cloth_corner_is_saddle (&fit))
+      continue;
+    for (at = found++; at > 0 && sorted[at - 1] > fit.rms; at--)
+      sorted[at] = sorted[at - 1];
+    sorted[at] = fit.rms;
+  }
+  return found ? sorted[found / 2] : 0;
+}
+
+/* The refiner takes the noise of flat places. Where there is more around the saddles, that
+ * counts. */
+static void
+widen (ClothSaddleDetector * self, gfloat residual)
+{
+  gfloat factor = residual / self->noise;
+
+  factor *= factor;
+  for (guint i = 0; i < self->n_saddles && factor > 1; i++)
+    for (gint k = 0; k < 3; k++)
+      self->saddles[i].cov[k] *= factor;
+}
+
 /* Where the model doesn't fit, the saddle of the smoothed intensity stays. */
 static void
 fit_models (ClothSaddleDetector * self, gfloat radius,
@@ -407,6 +459,10 @@ in_range (gfloat value, gfloat low, gfloat high)
  * geometry", and one refined saddle for each peak of their response. The results belong
  * to @detector and hold until its next run.
  *
+ * A saddle's covariance is that of white noise of the picture's strength: as flat places
+ * show it or, if that is more, as the corner model leaves unexplained around some of the
+ * saddles. Where the corner model was fitted it is that of its own residual.
+ *
  * Since: 0.1
  */
 void
@@ -458,6 +514,7 @@ cloth_saddle_detector_run (ClothSaddleDetector * detector,
       detector->refiner = cloth_saddle_refiner_new ();
     cloth_saddle_refiner_set (detector->refiner, sigma);
     refine_peaks (detector, params, image, level);
+    widen (detector, measure_residual (detector, sigma, image, level));
     if (params->refine == CLOTH_SADDLE_REFINE_MODEL)
       fit_models (detector, in_range (params->radius, 2.0f, 12.0f), image,
           level);

@@ -11,17 +11,14 @@
 #define ALONG 12
 #define MAX_ACROSS 12
 
-/* Sums sign (I - mean) over a set of samples. */
-static gint
-signs (const guint8 * level, gint n, gint mean_times_n, gint total)
+/* How many levels are above @high less how many are below @low. */
+static inline gint
+signs (const gint16 * level, gint n, gint16 high, gint16 low)
 {
-  gint sum = 0;
+  gint16 sum = 0;
 
-  for (gint k = 0; k < n; k++) {
-    gint d = level[k] * total - mean_times_n;
-
-    sum += (d > 0) - (d < 0);
-  }
+  for (gint k = 0; k < n; k++)
+    sum = (gint16) (sum + (level[k] > high) - (level[k] < low));
   return sum;
 }
 
@@ -47,16 +44,18 @@ is_inside (const ClothImage * image, const gfloat x[4], const gfloat y[4],
 
 /* Takes @n levels along (@x, @y) + s·(@dx, @dy) from s = @first in steps of @step, in
  * fixed point with 16 bits behind the point. */
-static inline gint
+static gint
 take (const ClothImage * image, gfloat x, gfloat y, gfloat dx, gfloat dy,
-    gfloat first, gfloat step, gint n, guint8 * levels)
+    gfloat first, gfloat step, gint n, gint16 * levels)
 {
+  const guint8 *data = image->data;
+  gint stride = image->stride;
   gint px = (gint) ((x + first * dx + 0.5f) * 65536.0f);
   gint py = (gint) ((y + first * dy + 0.5f) * 65536.0f);
   gint sx = (gint) (step * dx * 65536.0f), sy = (gint) (step * dy * 65536.0f);
 
   for (gint k = 0; k < n; k++, px += sx, py += sy)
-    levels[k] = image->data[(py >> 16) * image->stride + (px >> 16)];
+    levels[k] = data[(py >> 16) * stride + (px >> 16)];
   return n;
 }
 
@@ -83,10 +82,10 @@ gfloat
 cloth_quad_confidence (const ClothImage * image, const gfloat x[4],
     const gfloat y[4], gfloat alpha, gboolean black)
 {
-  guint8 inside[ALONG * ALONG], lapels[4 * ALONG * MAX_ACROSS];
+  gint16 inside[ALONG * ALONG], lapels[4 * ALONG * MAX_ACROSS];
   gint across = CLAMP ((gint) lrintf (alpha * ALONG), 1, MAX_ACROSS);
   gfloat wide = alpha / (gfloat) across;
-  gint n_inside = 0, n_lapels = 0, total, sum = 0, score;
+  gint n_inside = 0, n_lapels = 0, total, sum = 0, low, score;
 
   if (!is_inside (image, x, y, alpha))
     return -1;
@@ -116,7 +115,9 @@ cloth_quad_confidence (const ClothImage * image, const gfloat x[4],
   for (gint k = 0; k < n_lapels; k++)
     sum += lapels[k];
   total = n_inside + n_lapels;
-  score = signs (lapels, n_lapels, sum, total)
-      - signs (inside, n_inside, sum, total);
+  /* The mean is no whole number mostly: above it is above its floor. */
+  low = (sum + total - 1) / total;
+  score = signs (lapels, n_lapels, (gint16) (sum / total), (gint16) low)
+      - signs (inside, n_inside, (gint16) (sum / total), (gint16) low);
   return (gfloat) (black ? score : -score) / (gfloat) total;
 }

@@ -94,8 +94,8 @@ test_picture_disc (TestPicture * picture, gdouble x, gdouble y, gdouble radius,
       && row <= y + radius; row++)
     for (gint column = (gint) MAX (0, x - radius); column < width
         && column <= x + radius; column++) {
-      guint32 hash = (guint32) (column / 3 * 73856093) ^ (guint32) (row / 3
-          * 19349663) ^ seed;
+      guint32 hash = (guint32) column / 3 * 73856093u ^ (guint32) row / 3
+          * 19349663u ^ seed;
 
       if (hypot (column - x, row - y) > radius)
         continue;

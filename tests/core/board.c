@@ -390,6 +390,187 @@ test_discs (void)
   bench_clear (&bench);
 }
 
+/* A board of another size is none, nor is a piece of it. */
+static void
+test_other_size (void)
+{
+  static const gint sizes[][2] = { {9, 7}, {10, 6}, {10, 8}, {11, 7}, {8, 7},
+  {12, 7}, {8, 10}
+  };
+  g_autoptr (GPtrArray) reals = load_reals ("opencv_boards", 9, 6, 1,
+      opencv_name);
+  guint found = 0;
+
+  for (guint s = 0; s < G_N_ELEMENTS (sizes); s++)
+    for (gint first_black = 0; first_black < 2; first_black++) {
+      guint here = 0;
+      Bench bench;
+
+      bench_init (&bench, sizes[s][0], sizes[s][1], first_black);
+      for (guint r = 0; r < reals->len; r++) {
+        const Real *real = g_ptr_array_index (reals, r);
+        const ClothBoardView *view = bench_find (&bench,
+            &real->picture->image);
+
+        /* The screen in some of the pictures shows boards too. */
+        if (view->n_seen && !is_other (real, view)) {
+          g_test_message ("%s: %u vertices of a board of %d by %d squares",
+              real->name, view->n_seen, sizes[s][0], sizes[s][1]);
+          here++;
+        }
+      }
+      g_test_message ("%d by %d squares, the first %s: %u boards found",
+          sizes[s][0], sizes[s][1], first_black ? "black" : "white", here);
+      found += here;
+      bench_clear (&bench);
+    }
+  g_assert_cmpuint (found, ==, 0);
+}
+
+/* How many corners of @real were found, each where the board @view is of has it: column
+ * and row counted from the other end when @mirror_x and @mirror_y. */
+static guint
+count_right (const Real * real, const ClothBoardView * view, gboolean mirror_x,
+    gboolean mirror_y)
+{
+  guint n = 0;
+
+  for (gint k = 0; k < real->columns * real->rows; k++) {
+    gint column = k % real->columns + 1, row = k / real->columns + 1, at;
+
+    if (mirror_x)
+      column = real->columns + 1 - column;
+    if (mirror_y)
+      row = real->rows + 1 - row;
+    at = row * view->columns + column;
+    n += view->seen[at] && hypot (view->x[at] - real->x[k],
+        view->y[at] - real->y[k]) < 1;
+  }
+  return n;
+}
+
+/* The pictures turned upside down and mirrored, rows with bytes beyond their end, and the
+ * board declared with its other corner first: the same corners. A mirror changes the
+ * corners' sense, so a mirrored board's columns run the other way. */
+static void
+test_turned (void)
+{
+  g_autoptr (GPtrArray) reals = load_reals ("opencv_boards", 9, 6, 1,
+      opencv_name);
+  guint right[5] = { 0 };
+  Bench bench, white_first;
+
+  bench_init (&bench, 10, 7, TRUE);
+  bench_init (&white_first, 10, 7, FALSE);
+  for (guint r = 0; r < reals->len; r++) {
+    Real *real = g_ptr_array_index (reals, r);
+    const gint width = real->picture->image.width;
+    const gint height = real->picture->image.height, stride = width + 37;
+    const gint n = real->columns * real->rows;
+    g_autofree guint8 *padded = g_malloc (stride * height);
+    g_autoptr (TestPicture) turned = test_picture_copy (real->picture);
+    g_autoptr (TestPicture) mirrored = test_picture_copy (real->picture);
+    g_autofree gdouble *x = g_memdup2 (real->x, sizeof (gdouble) * n);
+    g_autofree gdouble *y = g_memdup2 (real->y, sizeof (gdouble) * n);
+    Real moved = *real;
+    ClothImage image = { padded, width, height, stride };
+
+    memset (padded, 255 * (r & 1), stride * height);
+    for (gint row = 0; row < height; row++)
+      for (gint column = 0; column < width; column++) {
+        guint8 level = real->picture->data[row * width + column];
+
+        padded[row * stride + column] = level;
+        turned->data[(height - 1 - row) * width + width - 1 - column] = level;
+        mirrored->data[row * width + width - 1 - column] = level;
+      }
+    right[0] += count_right (real, bench_find (&bench, &image), FALSE, FALSE);
+    /* Its white corner square is the board's last one. */
+    right[1] += count_right (real, bench_find (&white_first,
+            &real->picture->image), TRUE, TRUE);
+    moved.x = x;
+    moved.y = y;
+    for (gint k = 0; k < n; k++) {
+      x[k] = width - 1 - real->x[k];
+      y[k] = height - 1 - real->y[k];
+    }
+    right[2] += count_right (&moved, bench_find (&bench, &turned->image), FALSE,
+        FALSE);
+    /* A mirrored board is a board whose rows are counted from the other end, and with an
+     * odd number of them its first square is black again. */
+    for (gint k = 0; k < n; k++)
+      y[k] = real->y[k];
+    right[3] += count_right (&moved, bench_find (&bench, &mirrored->image),
+        FALSE, TRUE);
+    right[4] += (guint) n;
+  }
+  g_test_message ("of %u corners: padded rows %u, white first %u, upside down "
+      "%u, mirrored %u", right[4], right[0], right[1], right[2], right[3]);
+  for (guint k = 0; k < 4; k++)
+    g_assert_cmpuint (right[k], ==, right[4]);
+  bench_clear (&bench);
+  bench_clear (&white_first);
+}
+
+/* Nothing is found where no board is: in what surrounds the boards, in noise, in stripes,
+ * and in pictures too small to hold one. */
+static void
+test_none (void)
+{
+  g_autoptr (GPtrArray) reals = load_reals ("opencv_boards", 9, 6, 1,
+      opencv_name);
+  ClothRandom random;
+  guint found = 0;
+  Bench bench;
+
+  bench_init (&bench, 10, 7, TRUE);
+  cloth_random_init (&random, 5);
+  for (gint height = 1; height <= 8; height++)
+    for (gint width = 1; width <= 8; width++) {
+      guint8 pixels[64];
+      ClothImage image = { pixels, width, height, width };
+
+      for (gint k = 0; k < 64; k++)
+        pixels[k] = (guint8) (255 * (((k % width) + k / width) & 1));
+      found += bench_find (&bench, &image)->n_seen > 0;
+    }
+  for (guint n = 0; n < 24; n++) {
+    const gint grain = 1 + (gint) n % 12;
+    g_autoptr (TestPicture) picture = test_picture_new (640, 480, 128);
+
+    for (gint y = 0; y < 480; y++)
+      for (gint x = 0; x < 640; x++) {
+        guint8 *at = &picture->data[y * 640 + x];
+
+        if (n < 12)
+          *at = (guint8) (255 * (x / (2 * grain) & 1));
+        else if (x % grain == 0 && y % grain == 0)
+          *at = (guint8) cloth_random_below (&random, 256);
+        else
+          *at = picture->data[(y - y % grain) * 640 + x - x % grain];
+      }
+    found += bench_find (&bench, &picture->image)->n_seen > 0;
+  }
+  g_assert_cmpuint (found, ==, 0);
+  for (guint r = 0; r < reals->len; r++) {
+    const Real *real = g_ptr_array_index (reals, r);
+    g_autoptr (TestPicture) picture = test_picture_copy (real->picture);
+    const ClothBoardView *view;
+    gdouble x, y;
+
+    /* All of the board covered. */
+    board_place (real, 0.5, 0.5, &x, &y);
+    test_picture_disc (picture, x, y, sqrt (board_area (real)), 128, r);
+    view = bench_find (&bench, &picture->image);
+    if (view->n_seen)
+      g_test_message ("%s: %u vertices beside the board", real->name,
+          view->n_seen);
+    found += view->n_seen > 0;
+  }
+  g_assert_cmpuint (found, ==, 0);
+  bench_clear (&bench);
+}
+
 int
 main (int argc, char *argv[])
 {
@@ -397,6 +578,9 @@ main (int argc, char *argv[])
   test_picture_init (&argc, &argv);
   g_test_add_func ("/board/opencv", test_opencv);
   g_test_add_func ("/board/multidic", test_multidic);
+  g_test_add_func ("/board/other-size", test_other_size);
+  g_test_add_func ("/board/turned", test_turned);
+  g_test_add_func ("/board/none", test_none);
   g_test_add_func ("/board/discs", test_discs);
   return g_test_run ();
 }

@@ -204,6 +204,82 @@ test_exact (void)
   }
 }
 
+/* Short focal lengths and points all around: up to the border of the picture, beyond it,
+ * and beyond the angle up to which vector instructions undistort. */
+static void
+test_wide (void)
+{
+  for (guint lens = 1; lens < 4; lens++) {
+    enum
+    { N = 2003 };
+    ClothCamera cameras[4];
+    ClothRandom random;
+    g_auto (Scene) scene = { 0 };
+    g_autofree gdouble *truth = g_new (gdouble, 3 * N);
+    g_autoptr (ClothTriangulator) triangulator = NULL;
+    const ClothTriangulation *r;
+    guint n_border = 0, n_outside = 0, n_steep = 0;
+    gdouble worst = 0.;
+
+    cloth_random_init (&random, lens);
+    scene_init (&scene, 4, N);
+    for (guint i = 0; i < 4; i++) {
+      make_camera (&cameras[i], i, 4, (ClothLens) lens);
+      cameras[i].K[0] = lens == CLOTH_LENS_FISHEYE ? 500. : 1200.;
+      cameras[i].K[4] = lens == CLOTH_LENS_FISHEYE ? 490. : 1190.;
+    }
+    for (guint k = 0; k < N; k++) {
+      gdouble *X = truth + 3 * k, px[2];
+      gboolean seen = FALSE;
+
+      while (!seen) {
+        seen = TRUE;
+        for (gint j = 0; j < 3; j++)
+          X[j] = (j == 0 ? 10. : j == 1 ? -5. : 1.) +
+              (lens == CLOTH_LENS_FISHEYE ? 3.4 : 2.2) *
+              (cloth_random_uniform (&random) - 0.5);
+        for (guint i = 0; i < 4; i++)
+          seen = seen && cloth_camera_project (&cameras[i], X, px, NULL, NULL)
+              && fabs (px[0] - 960.) < 1160. && fabs (px[1] - 540.) < 740.;
+      }
+      film (&scene, cameras, k, X);
+      for (guint i = 0; i < 4; i++) {
+        const gdouble *R = cameras[i].R + 6;
+        gdouble x = plane (&scene, i, 0)[k], y = plane (&scene, i, 1)[k], d2 =
+            0.;
+        gdouble z = cameras[i].t[2];
+
+        for (gint j = 0; j < 3; j++) {
+          gdouble c = X[j] + cameras[i].R[j] * cameras[i].t[0] +
+              cameras[i].R[3 + j] * cameras[i].t[1] + R[j] * cameras[i].t[2];
+
+          d2 += c * c;
+          z += R[j] * X[j];
+        }
+        n_steep += z < 0.05 * sqrt (d2);
+        if (x < 0. || y < 0. || x > 1919. || y > 1079.)
+          n_outside++;
+        else
+          n_border += x < 50. || y < 50. || x > 1869. || y > 1029.;
+      }
+    }
+    triangulator = make (cameras, 4);
+    r = run (triangulator, &scene);
+    for (guint k = 0; k < N; k++) {
+      g_assert_cmpuint (r->views[k], ==, 15);
+      worst = fmax (worst, distance (r, k, truth + 3 * k));
+    }
+    g_test_message
+        ("lens %u: greatest error %.2g m; %u places near the border, %u "
+        "outside, %u beyond 87 degrees", lens, worst, n_border, n_outside,
+        n_steep);
+    g_assert_cmpuint (n_border, >, 50);
+    g_assert_cmpuint (n_outside, >, 50);
+    g_assert_cmpuint (n_steep, >=, lens == CLOTH_LENS_FISHEYE ? 5 : 0);
+    g_assert_cmpfloat (worst, <, 1e-12);
+  }
+}
+
 /* A draw of a bivariate normal of covariance c. */
 static void
 draw (ClothRandom * random, const gdouble c[3], gdouble e[2])
@@ -809,6 +885,7 @@ main (int argc, char **argv)
 {
   g_test_init (&argc, &argv, NULL);
   g_test_add_func ("/triangulate/exact", test_exact);
+  g_test_add_func ("/triangulate/wide", test_wide);
   g_test_add_func ("/triangulate/covariance", test_covariance);
   g_test_add_func ("/triangulate/outliers", test_outliers);
   g_test_add_func ("/triangulate/max-error", test_max_error);

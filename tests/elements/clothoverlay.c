@@ -1016,6 +1016,36 @@ GST_START_TEST (test_bad_coordinates)
 
 GST_END_TEST;
 
+/* Indices that no board has, states that there are not: drawn or left out, within the
+ * picture. */
+GST_START_TEST (test_wild_squares)
+{
+  static const gint wild[] = { -1, G_MININT, G_MAXINT, 1000000, 65536 };
+  GstVideoInfo info;
+  GstClothQuad q[3 * G_N_ELEMENTS (wild)];
+  GstBuffer *buffer = picture ("NV12", 64, 48, 7, &info), *out;
+  guint i;
+
+  for (i = 0; i < G_N_ELEMENTS (q); i++) {
+    gint value = wild[i / 3];
+
+    q[i] = quad_at (i % 2 ? 40 : 10, 10, 20, i % 3 ? 1e30f : -1e30f);
+    if (i % 3 == 0) {
+      q[i].column = value;
+    } else if (i % 3 == 1) {
+      q[i].row = value;
+    } else {
+      q[i].state = (GstClothQuadState) value;
+    }
+  }
+  add_quads (buffer, q, G_N_ELEMENTS (q));
+  out = draw ("draw-indices=true", &info, buffer);
+  check_padding (out, &info, 7);
+  gst_buffer_unref (out);
+}
+
+GST_END_TEST;
+
 /* A square folded over itself has no inside to fill; degenerate ones are points. */
 GST_START_TEST (test_degenerate_squares)
 {
@@ -1209,6 +1239,7 @@ clothoverlay_suite (void)
   tcase_add_test (tc, test_seek);
   tcase_add_test (tc, test_one_pixel);
   tcase_add_test (tc, test_bad_coordinates);
+  tcase_add_test (tc, test_wild_squares);
   tcase_add_test (tc, test_degenerate_squares);
   tcase_add_test (tc, test_unknown_format);
   tcase_add_test (tc, test_no_rig);

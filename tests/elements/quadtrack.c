@@ -238,6 +238,62 @@ GST_START_TEST (test_seed)
 
 GST_END_TEST;
 
+/* Seeds that can't start anything: one warning, with a word about the remedy. */
+GST_START_TEST (test_useless_seed)
+{
+  static const struct
+  {
+    const gchar *settings, *word;
+  } cases[] = {
+    {"link=false", "seed"},
+    {"link=false seed=121,77,141,77,141,97,121,97,4,9", "column,row"},
+    {"link=true seed=121,77,141,77,141,97,121,97,10,2", "column,row"},
+    {"link=false seed=141,77,161,77,161,97,141,97,5,2", "squares"},
+    {"link=false squares=white seed=121,77,141,77,141,97,121,97,4,2",
+        "squares"},
+    {"link=false seed=61,57,71,57,71,67,61,67", "corners"},
+    {"link=false seed=121,77,121,77,121,77,121,77,4,2", "corners"},
+    {"link=false seed=1121,77,1141,77,1141,97,1121,97,4,2", "corners"},
+    {"link=true seed=121,77,121,77,121,77,121,77,4,2", NULL},
+    {"link=false seed=121,77,141,77,141,97,121,97,4,2", NULL},
+    {"link=true seed=141,77,161,77,161,97,141,97,5,2", NULL},
+    {"link=false squares=white seed=141,77,161,77,161,97,141,97,5,2", NULL},
+    {"link=true", NULL}
+  };
+
+  for (guint k = 0; k < G_N_ELEMENTS (cases); k++) {
+    g_autofree gchar *launch = g_strdup_printf ("quadtrack %s" BOARD,
+        cases[k].settings);
+    GstHarness *h = start (launch, "GRAY8", WIDTH, HEIGHT);
+    g_autoptr (GstElement) element = gst_harness_find_element (h, "quadtrack");
+    g_autoptr (GstBus) bus = gst_bus_new ();
+    GstMessage *message;
+    guint n = 0, warnings = 0;
+
+    gst_element_set_bus (element, bus);
+    for (guint frame = 0; frame < 4; frame++)
+      n = push (h, at (picture ("GRAY8", WIDTH, HEIGHT, 0, LEFT, TOP, TRUE),
+              frame), LEFT, TOP);
+    while ((message = gst_bus_pop_filtered (bus, GST_MESSAGE_WARNING))) {
+      g_autofree gchar *debug = NULL;
+
+      gst_message_parse_warning (message, NULL, &debug);
+      fail_unless (cases[k].word && strstr (debug, cases[k].word), "%s: %s",
+          cases[k].settings, debug);
+      gst_message_unref (message);
+      warnings++;
+    }
+    fail_unless_equals_int ((gint) warnings, cases[k].word ? 1 : 0);
+    /* Linking finds the board all the same. */
+    fail_unless ((n == 0) == (cases[k].word && !strstr (cases[k].settings,
+                "true")), "%s: %u squares", cases[k].settings, n);
+    gst_element_set_bus (element, NULL);
+    gst_harness_teardown (h);
+  }
+}
+
+GST_END_TEST;
+
 static void
 click (GstHarness * h, gint button, gdouble x, gdouble y)
 {
@@ -373,7 +429,9 @@ GST_START_TEST (test_refused)
     {"seed", "1,2,3,4,5,6,7,8,9,10,11", "x0,y0"},
     {"seed", "1,2,3,4,5,6,7,nan", "x0,y0"},
     {"seed", "1,2,3,4,5,6,7,1e300", "x0,y0"},
-    {"seed", "1,2,3,4,5,6,7,8px", "x0,y0"}
+    {"seed", "1,2,3,4,5,6,7,8px", "x0,y0"},
+    {"seed", "1,2,3,4,5,6,7,8,1.5,2", "x0,y0"},
+    {"seed", "1,2,3,4,5,6,7,8,-1,2", "x0,y0"}
   };
 
   for (guint k = 0; k < G_N_ELEMENTS (bad); k++) {
@@ -433,11 +491,11 @@ GST_START_TEST (test_seed_and_seeks)
 
 GST_END_TEST;
 
-/* Saddles may come over a network: finite is all that their reader has made sure of. */
+/* Saddles may come over a network, or from somebody else's element. */
 GST_START_TEST (test_lying_saddles)
 {
   static const gfloat values[] = { -1e30f, 1e30f, -40000, 70000, 1e9f, -1, 0,
-    127.5f, 0.25f, 1e-30f
+    127.5f, 0.25f, 1e-30f, NAN, INFINITY, -INFINITY, 3.2f, 77, -3.4e38f
   };
   enum
   { N = G_N_ELEMENTS (values) };
@@ -462,6 +520,58 @@ GST_START_TEST (test_lying_saddles)
             saddles, N * N, candidates, N * N));
     fail_unless_equals_int ((gint) push (h, at (buffer, shift), LEFT, TOP), 0);
   }
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+/* Each number of a saddle spoiled in turn, in the midst of true ones: the spoiled ones are
+ * left out, the board is tracked by the others. */
+GST_START_TEST (test_spoiled_saddles)
+{
+  static const gfloat values[] = { NAN, INFINITY, -INFINITY, 1e30f, -1e30f,
+    -1e9f, 40000, -2
+  };
+  enum
+  { FIELDS = sizeof (GstClothSaddle) / sizeof (gfloat) };
+  GstHarness *h = start ("quadtrack" BOARD, "GRAY8", WIDTH, HEIGHT);
+  GstHarness *detector = start ("saddledetect", "GRAY8", WIDTH, HEIGHT);
+  GstBuffer *seen = gst_harness_push_and_pull (detector, at (picture ("GRAY8",
+              WIDTH, HEIGHT, 0, LEFT, TOP, TRUE), 0));
+  GstClothSaddles *from = gst_buffer_get_cloth_saddles (seen);
+  guint n, n_candidates;
+  const GstClothSaddle *true_ones = gst_cloth_saddles_get_refined (from, &n);
+  const GstClothCandidate *true_candidates =
+      gst_cloth_saddles_get_candidates (from, &n_candidates);
+  g_autofree GstClothSaddle *saddles = g_new (GstClothSaddle, 2 * n);
+  g_autofree GstClothCandidate *candidates =
+      g_new (GstClothCandidate, 2 * n_candidates);
+  guint frame = 0;
+
+  fail_unless (n >= (COLUMNS - 1) * (ROWS - 1));
+  for (guint v = 0; v < G_N_ELEMENTS (values); v++)
+    for (guint field = 0; field < FIELDS; field++) {
+      GstBuffer *buffer = picture ("GRAY8", WIDTH, HEIGHT, 0, LEFT, TOP, TRUE);
+
+      /* Covariances across may be negative. */
+      if (isfinite (values[v]) && (field == 2 || field >= 4))
+        continue;
+      for (guint k = 0; k < n; k++) {
+        saddles[2 * k] = saddles[2 * k + 1] = true_ones[k];
+        ((gfloat *) & saddles[2 * k])[field] = values[v];
+      }
+      for (guint k = 0; k < n_candidates; k++) {
+        candidates[2 * k] = candidates[2 * k + 1] = true_candidates[k];
+        ((gfloat *) & candidates[2 * k])[field % 3] = values[v];
+      }
+      gst_buffer_add_cloth_saddles_meta (buffer, gst_cloth_saddles_new ("",
+              frame, saddles, 2 * n, candidates, 2 * n_candidates));
+      fail_unless_equals_int ((gint) push (h, at (buffer, frame), LEFT, TOP),
+          N_BLACK);
+      frame++;
+    }
+  gst_buffer_unref (seen);
+  gst_harness_teardown (detector);
   gst_harness_teardown (h);
 }
 
@@ -537,8 +647,10 @@ quadtrack_suite (void)
   tcase_add_test (tc, test_board_absent);
   tcase_add_test (tc, test_seed);
   tcase_add_test (tc, test_seed_and_seeks);
+  tcase_add_test (tc, test_useless_seed);
   tcase_add_test (tc, test_clicks);
   tcase_add_test (tc, test_lying_saddles);
+  tcase_add_test (tc, test_spoiled_saddles);
   tcase_add_test (tc, test_controlled);
   tcase_add_test (tc, test_long_camera_name);
   tcase_add_test (tc, test_changes);

@@ -439,6 +439,31 @@ GST_START_TEST (test_no_detector)
 
 GST_END_TEST;
 
+/* One camera linked, or one of two with a detector: said once, with its name. */
+GST_START_TEST (test_one_detector)
+{
+  guint n, frame;
+
+  for (n = 1; n <= 2; n++) {
+    Bench b;
+
+    bench_open (&b, 2);
+    bench_link (&b, n, FALSE, VIDEO);
+    for (frame = 0; frame < 30; frame++) {
+      push_seen (&b, 0, 0, frame, ALL, "cam0");
+      if (n == 2) {
+        push (&b, 1, NULL, frame);
+      }
+      expect_all (&b, frame, GST_CLOTH_VERTEX_UNSEEN);
+    }
+    expect_message (&b, GST_MESSAGE_WARNING, "Only camera \"cam0\"");
+    fail_unless (gst_bus_pop_filtered (b.bus, GST_MESSAGE_WARNING) == NULL);
+    bench_clear (&b);
+  }
+}
+
+GST_END_TEST;
+
 /* The pads are mixed up, or a camera was moved: said once, with its name. */
 GST_START_TEST (test_cameras_do_not_fit)
 {
@@ -724,6 +749,42 @@ GST_START_TEST (test_bad_quads)
 
 GST_END_TEST;
 
+/* Squares that no board has, of states that there are not, are left alone. */
+GST_START_TEST (test_wild_quads)
+{
+  static const gint wild[] = { -1, G_MININT, G_MAXINT, COLUMNS, 65536 };
+  enum
+  { N_WILD = G_N_ELEMENTS (wild) };
+  Bench b;
+  GstClothQuad quads[N_QUADS + 3 * N_WILD];
+  guint i, k;
+
+  bench_init (&b, 2);
+  for (i = 0; i < 2; i++) {
+    see (&b, i, 0, quads);
+    for (k = 0; k < 3 * N_WILD; k++) {
+      GstClothQuad *q = &quads[N_QUADS + k];
+
+      *q = quads[k];
+      q->x[0] += 50;
+      q->y[2] = 1e30f;
+      if (k < N_WILD) {
+        q->column = wild[k];
+      } else if (k < 2 * N_WILD) {
+        q->row = wild[k - N_WILD];
+      } else {
+        q->state = (GstClothQuadState) (k == 2 * N_WILD ? -1 : 99 + (gint) k);
+      }
+    }
+    push (&b, i, gst_cloth_quads_new (NULL, 0, COLUMNS, ROWS, quads,
+            G_N_ELEMENTS (quads)), 0);
+  }
+  expect_all (&b, 0, GST_CLOTH_VERTEX_TWO_VIEWS);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
 /* Everything that is the user's to mend stops the element, and the error names it. */
 static void
 refuse_to_start (const gchar * property, const gchar * value,
@@ -964,6 +1025,89 @@ GST_START_TEST (test_live)
 
 GST_END_TEST;
 
+static void
+expect_rate (Bench * b, gint n, gint d)
+{
+  g_autoptr (GstCaps) caps = gst_pad_get_current_caps (b->src->sinkpad);
+  gint have_n, have_d;
+
+  fail_unless (gst_structure_get_fraction (gst_caps_get_structure (caps, 0),
+          "framerate", &have_n, &have_d));
+  fail_unless (have_n == n && have_d == d, "%d/%d instead of %d/%d", have_n,
+      have_d, n, d);
+}
+
+/* Cameras of different rates: variable when that is known from the start; one that joins
+ * a running stream late changes nothing, for a recording can't change its rate. */
+GST_START_TEST (test_rates_differ)
+{
+  static const gchar other[] =
+      "video/x-raw,format=GRAY8,width=1280,height=720,framerate=20/1";
+  Bench b;
+
+  bench_open (&b, 2);
+  bench_link (&b, 2, FALSE, VIDEO);
+  gst_harness_set_src_caps_str (b.in[1], other);
+  push_all (&b, 0);
+  expect_all (&b, 0, GST_CLOTH_VERTEX_TWO_VIEWS);
+  expect_rate (&b, 0, 1);
+  /* once they agree there is a rate */
+  gst_harness_set_src_caps_str (b.in[1], VIDEO);
+  push_all (&b, 1);
+  expect_all (&b, 1, GST_CLOTH_VERTEX_TWO_VIEWS);
+  expect_rate (&b, 25, 1);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_late_camera_of_other_rate)
+{
+  static const gchar other[] =
+      "video/x-raw,format=GRAY8,width=1280,height=720,framerate=20/1";
+  g_autoptr (GstTestClock) clock = NULL;
+  GstEvent *event;
+  guint n_caps = 0;
+  Bench b;
+
+  bench_open (&b, 2);
+  b.n_pads = 2;
+  b.src = gst_harness_new_with_element (b.element, NULL, "src");
+  b.in[0] = gst_harness_new_with_element (b.element, "sink_0", NULL);
+  b.in[1] = gst_harness_new_with_element (b.element, "sink_1", NULL);
+  gst_harness_set_live (b.in[0], TRUE);
+  gst_harness_set_live (b.in[1], TRUE);
+  gst_harness_use_testclock (b.src);
+  gst_harness_set_live (b.src, TRUE);
+  clock = gst_harness_get_testclock (b.src);
+  gst_harness_set_src_caps_str (b.in[0], VIDEO);
+  push_seen (&b, 0, 0, 0, ALL, NULL);
+  {
+    GstClockID id;
+
+    gst_test_clock_wait_for_next_pending_id (clock, &id);
+    gst_clock_id_unref (id);
+  }
+  fail_unless (gst_test_clock_crank (clock));
+  expect_all (&b, 0, GST_CLOTH_VERTEX_UNSEEN);
+  expect_rate (&b, 25, 1);
+
+  gst_harness_set_src_caps_str (b.in[1], other);
+  push_all (&b, 1);
+  expect_all (&b, 1, GST_CLOTH_VERTEX_TWO_VIEWS);
+  expect_rate (&b, 25, 1);
+  push_all (&b, 2);
+  expect_all (&b, 2, GST_CLOTH_VERTEX_TWO_VIEWS);
+  while ((event = gst_harness_try_pull_event (b.src))) {
+    n_caps += GST_EVENT_TYPE (event) == GST_EVENT_CAPS;
+    gst_event_unref (event);
+  }
+  fail_unless_equals_int ((gint) n_caps, 1);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
 /* The first camera's capture time and number go on with the mesh. */
 GST_START_TEST (test_capture_time)
 {
@@ -1057,6 +1201,7 @@ triangulate_suite (void)
   tcase_add_test (tc, test_unseen);
   tcase_add_test (tc, test_nothing_seen);
   tcase_add_test (tc, test_no_detector);
+  tcase_add_test (tc, test_one_detector);
   tcase_add_test (tc, test_cameras_do_not_fit);
   tcase_add_test (tc, test_missing_camera);
   tcase_add_test (tc, test_offset);
@@ -1067,6 +1212,7 @@ triangulate_suite (void)
   tcase_add_test (tc, test_contradictory_corners);
   tcase_add_test (tc, test_error_floor);
   tcase_add_test (tc, test_bad_quads);
+  tcase_add_test (tc, test_wild_quads);
   tcase_add_test (tc, test_no_calibration);
   tcase_add_test (tc, test_one_camera);
   tcase_add_test (tc, test_wrong_camera_count);
@@ -1076,6 +1222,8 @@ triangulate_suite (void)
   tcase_add_test (tc, test_changes);
   tcase_add_test (tc, test_other_pattern);
   tcase_add_test (tc, test_live);
+  tcase_add_test (tc, test_rates_differ);
+  tcase_add_test (tc, test_late_camera_of_other_rate);
   tcase_add_test (tc, test_capture_time);
   tcase_add_test (tc, test_flush_and_restart);
   return s;

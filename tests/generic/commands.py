@@ -2,7 +2,9 @@
 """Runs what the documents and the scripts in pipelines/ tell people to type.
 
   commands.py document FILE.md ROOT BUILD    every sh and python block, in order, one shell
-  commands.py reached ROOT                   every file in pipelines/ is run by one of them
+  commands.py reached ROOT FILE.md...        every file in pipelines/ is run by one of them,
+                                             every page is among those run, every link of
+                                             a page leads somewhere
 
 They run in a new folder that holds links to the repository's folders, so that what
 they write goes nowhere else. A command that is shown but stands in no block that is
@@ -21,6 +23,12 @@ FENCE = re.compile(r'^```([^\n]*)\n(.*?)^```\s*$', re.M | re.S)
 SHOWN = ('c', 'json', 'text', 'meson')
 COMMAND = re.compile(r'^\s*\$?\s*(gst-launch-1\.0|gst-inspect-1\.0|gst-cloth-[a-z]+-1\.0|meson|ninja|'
                      r'\./|\. pipelines|CC=)', re.M)
+# The same in the midst of a sentence; a name alone is no command.
+INLINE = re.compile(r'`((?:gst-launch-1\.0|gst-inspect-1\.0|gst-cloth-[a-z]+-1\.0|meson|ninja|\./)'
+                    r'[^`]* [^`]*)`')
+LINK = re.compile(r'\]\(([^)\s]+)\)')
+# For those who work on the source; what they tell to run is tests/run.sh and its parts.
+FOR_DEVELOPERS = ('CONTRIBUTING.md', 'SECURITY.md')
 # The command that runs this very test.
 OURSELVES = './tests/run.sh'
 
@@ -82,6 +90,8 @@ def document(path, root, build):
     rest = FENCE.sub('', text)
     if COMMAND.search(rest):
         faults.append('a command outside any block: ' + COMMAND.search(rest).group(0).strip())
+    for match in INLINE.finditer(rest):
+        faults.append('a command outside any block: ' + match.group(1))
     for fault in faults:
         print('%s: %s' % (path, fault))
     if not script:
@@ -93,8 +103,47 @@ def document(path, root, build):
     return run(script, root, build) or (1 if faults else 0)
 
 
-def reached(root):
+def pages_of(root):
+    """All pages, as paths from the root."""
+    return [os.path.normpath(os.path.join(folder, name))
+            for folder in ('.', 'docs', 'pipelines') for name in os.listdir(os.path.join(root, folder))
+            if name.endswith('.md')]
+
+
+def anchors_of(text):
+    """What headings are called in a link."""
+    return {re.sub(r'[^\w\- ]', '', heading.lower()).replace(' ', '-')
+            for heading in re.findall(r'^#+ (.*?)\s*$', text, re.M)}
+
+
+def dead_links(root):
+    faults = 0
+    for page in pages_of(root):
+        with open(os.path.join(root, page), encoding='utf-8') as file:
+            text = FENCE.sub('', file.read())
+        for link in LINK.findall(text):
+            if re.match(r'[a-z]+:', link):
+                continue
+            name, _, anchor = link.partition('#')
+            target = os.path.join(root, os.path.dirname(page), name) if name \
+                else os.path.join(root, page)
+            good = os.path.exists(target)
+            if good and anchor:
+                with open(target, encoding='utf-8') as file:
+                    good = anchor in anchors_of(file.read())
+            if not good:
+                print('%s: the link to %s leads nowhere' % (page, link))
+                faults += 1
+    return faults
+
+
+def reached(root, run_pages):
     """A script is run by a block of a document, or by a script that is."""
+    faults = dead_links(root)
+    for page in pages_of(root):
+        if page not in run_pages and page not in FOR_DEVELOPERS:
+            print('%s is a page whose commands no test runs' % page)
+            faults += 1
     text = ''
     for folder in ('.', 'docs'):
         for name in os.listdir(os.path.join(root, folder)):
@@ -114,9 +163,9 @@ def reached(root):
                 text += file.read()
     for name in sorted(waiting):
         print('pipelines/%s is run by no document' % name)
-    return 1 if waiting else 0
+    return 1 if waiting or faults else 0
 
 
 if sys.argv[1] == 'reached':
-    sys.exit(reached(sys.argv[2]))
+    sys.exit(reached(sys.argv[2], sys.argv[3:]))
 sys.exit(document(sys.argv[2], os.path.abspath(sys.argv[3]), os.path.abspath(sys.argv[4])))
