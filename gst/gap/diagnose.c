@@ -26,8 +26,9 @@
 /* What two takes of one motion share of the simulator's own error is taken off; this
  * part of its power stays. */
 #define SIGNATURE_LEFT 0.1
-/* A frozen number may still be off by this share of its prior. */
-#define FROZEN 0.3
+/* A frozen number may be off by this many of its standard deviations on the baseline,
+ * which know nothing of the simulator's own error. */
+#define FROZEN 3.
 /* An effect is accepted when its evidence is this and more than that of the best one on a
  * baseline, when it removes this share of the whitened residual's square from blocks it
  * was not estimated on, and this share of the gap's variance. */
@@ -158,18 +159,21 @@ fit_free (Diagnosis * d, const ClothModel * model, GError ** error)
   guint n = d->options->n_baselines ? d->options->n_baselines : d->n_takes;
   guint m = d->candidates->n_free;
   g_autofree gdouble *precisions = g_new (gdouble, m + 1);
+  g_autofree gdouble *sigmas = g_new0 (gdouble, m + 1);
 
   for (guint i = 0; i < m; i++) {
     gdouble prior = g_array_index (d->candidates->directions,
         ClothGapDirection, i).prior;
 
     precisions[i] = 1. / (prior * prior);
-    d->precisions[i] = d->options->n_baselines ? precisions[i] / (FROZEN *
-        FROZEN) : precisions[i];
   }
   d->model = cloth_study_fit ((ClothStudy **) d->studies->pdata + begin, n,
       d->candidates, model, d->all, precisions, m, NULL, N_FIT, &d->study,
-      NULL, error);
+      sigmas, error);
+  for (guint i = 0; i < m; i++)
+    d->precisions[i] = d->options->n_baselines && sigmas[i] > 0. ?
+        MAX (precisions[i], 1. / (FROZEN * FROZEN * sigmas[i] * sigmas[i])) :
+        precisions[i];
   return d->model != NULL;
 }
 

@@ -111,8 +111,12 @@ reduce (const Trial * trial, const ClothGapNormal * normal,
     const gboolean * blocks, ClothGapReduced * reduced)
 {
   const ClothGapTest *t = trial->test;
+  g_autofree gdouble *precisions = g_new (gdouble, t->n_nuisances + 1);
 
-  return cloth_gap_normal_reduce (normal, blocks, t->nuisances, t->precisions,
+  /* the equations are not divided by the noise yet */
+  for (guint i = 0; i < t->n_nuisances; i++)
+    precisions[i] = t->precisions[i] * t->overdispersion;
+  return cloth_gap_normal_reduce (normal, blocks, t->nuisances, precisions,
       t->n_nuisances, trial->directions, trial->candidate->n, reduced);
 }
 
