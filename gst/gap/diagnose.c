@@ -407,6 +407,33 @@ fill_effects (Diagnosis * d, const ClothGapTest * test, const GArray * scores)
   }
 }
 
+/* Every other block of time judges what the others have fitted. */
+static gboolean
+is_held_out (const Diagnosis * d, guint block)
+{
+  return !d->options->n_hold_outs && block % 2 == 1;
+}
+
+/* The windows that judge: those that end in a held-out block, or all. */
+static gboolean *
+judging_windows (const Diagnosis * d, const ClothGapExtent * extent)
+{
+  const ClothGapFeatures *f = study (d, 0)->features;
+  gboolean *windows = g_new0 (gboolean, extent->n_windows);
+  gboolean any = FALSE;
+
+  for (guint frame = 1, block = 0; frame < extent->n_frames; frame++) {
+    while (block + 1 < f->n_blocks && frame >= f->first[block + 1])
+      block++;
+    windows[extent->window[frame]] = is_held_out (d, block);
+  }
+  for (guint w = 0; w < extent->n_windows; w++)
+    any |= windows[w];
+  for (guint w = 0; w < extent->n_windows && !any; w++)
+    windows[w] = TRUE;
+  return windows;
+}
+
 /* Takes the leader into the model, fitted; the free numbers may give a little. */
 static ClothModel *
 refit (Diagnosis * d, const ClothModel * model, const ClothGapScore * score,
@@ -418,8 +445,12 @@ refit (Diagnosis * d, const ClothModel * model, const ClothGapScore * score,
   g_autofree gdouble *precisions = g_new (gdouble, m);
   g_autofree gdouble *all_sigmas = g_new (gdouble, m);
   g_autofree guint *moved = g_new (guint, c->n);
+  g_autofree gboolean *blocks = g_new (gboolean, d->n_blocks);
   g_autoptr (ClothModel) start = NULL;
   ClothModel *fitted;
+
+  for (guint b = 0; b < d->n_blocks; b++)
+    blocks[b] = !is_held_out (d, b);
 
   for (guint i = 0; i < m; i++) {
     directions[i] = i < free ? i : c->first + i - free;
@@ -436,7 +467,7 @@ refit (Diagnosis * d, const ClothModel * model, const ClothGapScore * score,
   start = cloth_gap_candidates_move (d->candidates, model, moved,
       score->changes, c->n);
   fitted = cloth_study_fit ((ClothStudy **) d->studies->pdata, d->n_takes,
-      d->candidates, start, directions, precisions, m, NULL, N_REFIT,
+      d->candidates, start, directions, precisions, m, blocks, N_REFIT,
       &d->study, all_sigmas, error);
   for (guint k = 0; fitted && k < c->n; k++)
     sigmas[k] = all_sigmas[free + k];
@@ -479,6 +510,7 @@ measure (Diagnosis * d, const ClothModel * with, GError ** error)
       : 0;
   g_autofree gdouble *draws = g_new0 (gdouble, N_DRAWS * 2);
   g_autofree gdouble *shrinks = g_new (gdouble, N_DRAWS);
+  g_autofree gboolean *windows = NULL;
   ClothGapExtent **extents, **floor = NULL;
   gdouble v[2] = { NAN, NAN }, v_floor = NAN;
 
@@ -488,9 +520,11 @@ measure (Diagnosis * d, const ClothModel * with, GError ** error)
       WINDOW_GAIN, WINDOW_S, &d->study.rollout, error);
   if (!extents)
     return FALSE;
+  if (!judge)
+    windows = judging_windows (d, extents[0]);
   for (guint i = 0; i < n; i++)
-    v[i] = cloth_gap_extent_square (extents[i], NULL);
-  cloth_gap_extents_interval (extents, n, NULL, d->options->seed, N_DRAWS,
+    v[i] = cloth_gap_extent_square (extents[i], windows);
+  cloth_gap_extents_interval (extents, n, windows, d->options->seed, N_DRAWS,
       draws);
   result->held_out_takes = d->options->n_hold_outs > 0;
   result->gap_before = estimate (v[0], draws, N_DRAWS, n);
