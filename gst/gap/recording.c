@@ -1,0 +1,285 @@
+/* A recording made ready for the diagnosis.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/recording.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/gap/diagnose.h"
+#include "gst/math/linalg.h"
+
+/* Median of |x| of a normal variable over its standard deviation. */
+#define MEDIAN_OF_NORMAL 0.6745
+/* Variance of a fourth difference of white noise of variance 1. */
+#define FOURTH_DIFFERENCE 70.
+
+/**
+ * cloth_gap_error_quark:
+ *
+ * Since: 0.1
+ */
+G_DEFINE_QUARK (cloth - gap - error - quark, cloth_gap_error)
+     static gdouble *place (const ClothRecording * r, gdouble * of, guint frame,
+    guint vertex)
+{
+  return of + 3 * ((gsize) frame * r->n + vertex);
+}
+
+/* Even motion between the frames before and after that saw the vertex; the nearest one at
+ * the ends. FALSE when none did. */
+static gboolean
+bridge (ClothRecording * r, guint vertex)
+{
+  gint last = -1;
+
+  for (guint frame = 0; frame < r->n_frames; frame++) {
+    if (r->seen[(gsize) frame * r->n + vertex] == 0.)
+      continue;
+    for (guint f = (guint) (last + 1); f < frame; f++) {
+      const gdouble *b = place (r, r->y, frame, vertex);
+      const gdouble *a = last < 0 ? b : place (r, r->y, (guint) last, vertex);
+      gdouble share = last < 0 ? 0. : (r->times[f] - r->times[last]) /
+          (r->times[frame] - r->times[last]);
+
+      for (guint k = 0; k < 3; k++)
+        place (r, r->y, f, vertex)[k] = a[k] + share * (b[k] - a[k]);
+    }
+    last = (gint) frame;
+  }
+  for (guint f = (guint) (last + 1); last >= 0 && f < r->n_frames; f++)
+    memcpy (place (r, r->y, f, vertex), place (r, r->y, (guint) last, vertex),
+        3 * sizeof (gdouble));
+  return last >= 0;
+}
+
+/* Weights of the frames begin … begin + WINDOW - 1 whose sum is the derivative at @frame
+ * of the polynomial through them. */
+static void
+derivative_weights (const ClothRecording * r, guint begin, guint frame,
+    gdouble weights[CLOTH_RECORDING_WINDOW])
+{
+  const guint terms = CLOTH_RECORDING_ORDER + 1;
+  gdouble scale = (r->times[begin + CLOTH_RECORDING_WINDOW - 1] -
+      r->times[begin]) / CLOTH_RECORDING_WINDOW;
+  gdouble normal[(CLOTH_RECORDING_ORDER + 1) * (CLOTH_RECORDING_ORDER + 1)];
+  gdouble power[CLOTH_RECORDING_WINDOW][CLOTH_RECORDING_ORDER + 1];
+  gdouble slope[CLOTH_RECORDING_ORDER + 1] = { 0., 1. };
+
+  memset (normal, 0, sizeof normal);
+  for (guint i = 0; i < CLOTH_RECORDING_WINDOW; i++) {
+    gdouble t = (r->times[begin + i] - r->times[frame]) / scale;
+
+    power[i][0] = 1.;
+    for (guint k = 1; k < terms; k++)
+      power[i][k] = power[i][k - 1] * t;
+    for (guint k = 0; k < terms; k++)
+      for (guint l = 0; l < terms; l++)
+        normal[k * terms + l] += power[i][k] * power[i][l];
+  }
+  cloth_cholesky_factor (terms, normal);
+  cloth_cholesky_solve (terms, normal, slope);
+  for (guint i = 0; i < CLOTH_RECORDING_WINDOW; i++) {
+    weights[i] = 0.;
+    for (guint k = 0; k < terms; k++)
+      weights[i] += slope[k] * power[i][k];
+    weights[i] /= scale;
+  }
+}
+
+static void
+differentiate (ClothRecording * r)
+{
+  gsize row = 3 * (gsize) r->n;
+
+  for (guint frame = 0; frame < r->n_frames; frame++) {
+    gint begin = (gint) frame - CLOTH_RECORDING_WINDOW / 2;
+    gdouble weights[CLOTH_RECORDING_WINDOW];
+    gdouble *to = r->velocity + frame * row;
+
+    begin = CLAMP (begin, 0, (gint) r->n_frames - CLOTH_RECORDING_WINDOW);
+    derivative_weights (r, (guint) begin, frame, weights);
+    memset (to, 0, row * sizeof *to);
+    for (guint i = 0; i < CLOTH_RECORDING_WINDOW; i++) {
+      const gdouble *from = r->y + ((guint) begin + i) * row;
+
+      for (gsize k = 0; k < row; k++)
+        to[k] += weights[i] * from[k];
+    }
+  }
+}
+
+static gint
+compare_numbers (gconstpointer a, gconstpointer b)
+{
+  gdouble x = *(const gdouble *) a, y = *(const gdouble *) b;
+
+  return x < y ? -1 : x > y;
+}
+
+/* White noise from the fourth differences in time of what was seen five times running. */
+static gdouble
+estimate_sigma (ClothRecording * r)
+{
+  g_autoptr (GArray) all = g_array_new (FALSE, FALSE, sizeof (gdouble));
+
+  for (guint frame = 0; frame + 5 <= r->n_frames; frame++)
+    for (guint v = 0; v < r->n; v++) {
+      const gdouble *y[5];
+      gdouble seen = 1.;
+
+      for (guint i = 0; i < 5; i++) {
+        y[i] = place (r, r->y, frame + i, v);
+        seen *= r->seen[(gsize) (frame + i) * r->n + v];
+      }
+      for (guint k = 0; k < 3 && seen > 0.; k++) {
+        gdouble d = fabs (y[0][k] - 4. * y[1][k] + 6. * y[2][k] -
+            4. * y[3][k] + y[4][k]);
+
+        g_array_append_val (all, d);
+      }
+    }
+  if (!all->len)
+    return NAN;
+  g_array_sort (all, compare_numbers);
+  return g_array_index (all, gdouble, all->len / 2) / MEDIAN_OF_NORMAL /
+      sqrt (FOURTH_DIFFERENCE);
+}
+
+/* A cloth's edges are about as long as on the flat cloth, in metres. */
+static gboolean
+check_scale (ClothRecording * r, GError ** error)
+{
+  const ClothTopology *t = r->scene->topology;
+  g_autoptr (GArray) ratios = g_array_new (FALSE, FALSE, sizeof (gdouble));
+  gdouble ratio;
+
+  for (guint f = 0; f < t->n_faces; f++) {
+    const guint32 *face = t->faces + 4 * (gsize) f;
+    guint a = face[0], b = face[1], frame = r->n_frames / 2;
+    gdouble flat = hypot (t->uv[2 * a] - t->uv[2 * b],
+        t->uv[2 * a + 1] - t->uv[2 * b + 1]), d2 = 0.;
+
+    for (guint k = 0; k < 3; k++) {
+      gdouble d = place (r, r->y, frame, a)[k] - place (r, r->y, frame, b)[k];
+
+      d2 += d * d;
+    }
+    ratio = sqrt (d2) / flat;
+    if (flat > 0.)
+      g_array_append_val (ratios, ratio);
+  }
+  if (!ratios->len)
+    return TRUE;
+  g_array_sort (ratios, compare_numbers);
+  ratio = g_array_index (ratios, gdouble, ratios->len / 2);
+  if (ratio > 0.5 && ratio < 2.)
+    return TRUE;
+  if (ratio > 500. && ratio < 2000.)
+    g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE, "%s: edges are "
+        "%.0f times as long as on the flat cloth: positions.npy is in "
+        "millimetres; write it in metres", r->name, ratio);
+  else
+    g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE, "%s: edges are "
+        "%.3g times as long as on the flat cloth; positions.npy and the size of "
+        "the cloth must both be in metres, the vertices in the order of the "
+        "mesh", r->name, ratio);
+  return FALSE;
+}
+
+static gboolean
+load (ClothRecording * r, ClothTake * take, GError ** error)
+{
+  gsize row = 3 * (gsize) r->n;
+  g_autofree gfloat *positions = g_new (gfloat, row);
+
+  for (guint frame = 0; frame < r->n_frames; frame++) {
+    if (!cloth_take_read_positions (take, frame, positions, error))
+      return FALSE;
+    r->times[frame] = cloth_take_get_time (take, frame);
+    for (guint v = 0; v < r->n; v++) {
+      const gfloat *p = positions + 3 * (gsize) v;
+      gboolean seen = isfinite (p[0]) && isfinite (p[1]) && isfinite (p[2]);
+
+      r->seen[(gsize) frame * r->n + v] = seen ? 1. : 0.;
+      for (guint k = 0; k < 3; k++)
+        place (r, r->y, frame, v)[k] = seen ? p[k] : 0.;
+    }
+  }
+  return TRUE;
+}
+
+/* A vertex that was never seen stays where the scene starts it; its weight is 0. */
+static void
+bridge_all (ClothRecording * r)
+{
+  for (guint v = 0; v < r->n; v++)
+    if (!bridge (r, v))
+      for (guint frame = 0; frame < r->n_frames; frame++)
+        memcpy (place (r, r->y, frame, v), r->scene->positions + 3 * (gsize) v,
+            3 * sizeof (gdouble));
+}
+
+/**
+ * cloth_recording_new:
+ * @take: a take
+ * @error: #ClothGapError, or what reading it says
+ *
+ * Returns: (transfer full) (nullable): the recording
+ * Since: 0.1
+ */
+ClothRecording *
+cloth_recording_new (ClothTake * take, GError ** error)
+{
+  const ClothTakeInfo *info = cloth_take_get_info (take);
+  g_autoptr (ClothRecording) r = g_new0 (ClothRecording, 1);
+  gsize all;
+
+  r->name = g_strdup (info->name);
+  r->n = cloth_take_get_topology (take)->n_vertices;
+  r->n_frames = cloth_take_get_n_frames (take);
+  if (r->n_frames < CLOTH_RECORDING_WINDOW) {
+    g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE, "%s has %u "
+        "frames; a diagnosis needs motion, at least %u", r->name, r->n_frames,
+        CLOTH_RECORDING_WINDOW);
+    return NULL;
+  }
+  r->scene = cloth_scene_new_from_take (take, error);
+  if (!r->scene)
+    return NULL;
+  all = (gsize) r->n_frames * r->n;
+  r->times = g_new (gdouble, r->n_frames);
+  r->y = g_new (gdouble, 3 * all);
+  r->velocity = g_new (gdouble, 3 * all);
+  r->seen = g_new (gdouble, all);
+  if (!load (r, take, error))
+    return NULL;
+  r->sigma = info->noise_sigma_m;
+  if (!(r->sigma > 0.))
+    r->sigma = estimate_sigma (r);
+  bridge_all (r);
+  if (!check_scale (r, error))
+    return NULL;
+  differentiate (r);
+  return g_steal_pointer (&r);
+}
+
+/**
+ * cloth_recording_free:
+ * @recording: (nullable) (transfer full): a recording
+ *
+ * Since: 0.1
+ */
+void
+cloth_recording_free (ClothRecording * recording)
+{
+  if (!recording)
+    return;
+  g_free (recording->name);
+  cloth_scene_free (recording->scene);
+  g_free (recording->times);
+  g_free (recording->y);
+  g_free (recording->velocity);
+  g_free (recording->seen);
+  g_free (recording);
+}

@@ -1,0 +1,47 @@
+/* Simulations of a recorded scene, drawn to the recording or let go.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/gap/waves.h"
+#include "gst/sim/sim.h"
+
+G_BEGIN_DECLS
+
+/**
+ * ClothRolloutOptions:
+ * @seed: of effects with chance in them
+ * @threads: 0 = one for each processor
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  guint64 seed;
+  guint threads;
+} ClothRolloutOptions;
+
+/**
+ * ClothRolloutFrame:
+ * @data: the caller's
+ * @model: which model
+ * @frame: which frame
+ * @positions: where the model has the vertices, [n][3], m
+ *
+ * Since: 0.1
+ */
+typedef void (*ClothRolloutFrame) (gpointer data, guint model, guint frame,
+    const gdouble * positions);
+
+gboolean cloth_rollout_nudged (const ClothRecording * recording,
+    const ClothModel * const *models, const gdouble * gains, guint n_models,
+    const ClothRolloutOptions * options, ClothRolloutFrame each,
+    gpointer data, gboolean * sound, GError ** error);
+gboolean cloth_rollout_windows (const ClothRecording * recording,
+    const ClothModel * const *models, guint n_models, gdouble gain,
+    gdouble window_s, const ClothRolloutOptions * options,
+    ClothRolloutFrame each, gpointer data, gboolean * sound, GError ** error);
+
+/* Damping of the observer's springs: 2 ζ √gain. */
+#define CLOTH_ROLLOUT_ZETA 0.5
+
+G_END_DECLS

@@ -1,0 +1,307 @@
+/* Which effect: the score test (Rao 1948; Lagrange multipliers, Silvey 1959) of each
+ * candidate at its null.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/score.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/math/linalg.h"
+
+/* Features never count as less noisy than this share of what is expected of them. */
+#define LEAST_DISPERSION 0.1
+
+/* P(χ² > x) with 1, 2 or 3 degrees of freedom; above, Wilson and Hilferty (1931). */
+static gdouble
+chi_square_tail (gdouble x, guint n)
+{
+  gdouble half = 0.5 * MAX (x, 0.), z;
+
+  switch (n) {
+    case 1:
+      return erfc (sqrt (half));
+    case 2:
+      return exp (-half);
+    case 3:
+      return erfc (sqrt (half)) + 2. * sqrt (half / G_PI) * exp (-half);
+    default:
+      z = (cbrt (x / n) - (1. - 2. / (9. * n))) / sqrt (2. / (9. * n));
+      return 0.5 * erfc (z * M_SQRT1_2);
+  }
+}
+
+typedef struct
+{
+  const ClothGapTest *test;
+  const ClothGapCandidate *candidate;
+  guint directions[4];
+  gdouble precisions[4];
+  gboolean one_sided;
+} Trial;
+
+static gboolean
+trial_init (Trial * trial, const ClothGapTest * test, guint candidate)
+{
+  const ClothGapCandidates *c = test->candidates;
+
+  trial->test = test;
+  trial->candidate = &g_array_index (c->list, ClothGapCandidate, candidate);
+  for (guint i = 0; i < trial->candidate->n; i++) {
+    const ClothGapDirection *d = &g_array_index (c->directions,
+        ClothGapDirection, trial->candidate->first + i);
+
+    trial->directions[i] = trial->candidate->first + i;
+    trial->precisions[i] = 1. / (d->prior * d->prior);
+    trial->one_sided = trial->candidate->n == 1 && d->one_sided;
+    if (!test->sound[trial->directions[i]])
+      return FALSE;
+  }
+  return trial->candidate->n > 0;
+}
+
+/* The most probable changes from reduced equations of noise @phi: 0 where only growth is
+ * allowed. @inverse: their covariance. */
+static gboolean
+estimate (const Trial * trial, const ClothGapReduced * reduced, gdouble phi,
+    gdouble * changes, gdouble * inverse, gdouble * log_det)
+{
+  guint n = reduced->n;
+  gdouble a[16];
+
+  *log_det = 0.;
+  for (guint i = 0; i < n; i++) {
+    for (guint j = 0; j < n; j++)
+      a[i * n + j] = reduced->g[i * n + j] / phi;
+    a[i * n + i] += trial->precisions[i];
+    changes[i] = -reduced->s[i] / phi;
+  }
+  if (!cloth_cholesky_factor (n, a))
+    return FALSE;
+  for (guint i = 0; i < n; i++)
+    *log_det += 2. * log (a[i * n + i]) - log (trial->precisions[i]);
+  cloth_cholesky_solve (n, a, changes);
+  if (inverse)
+    cloth_cholesky_inverse (n, a, inverse);
+  if (trial->one_sided && changes[0] < 0.)
+    changes[0] = 0.;
+  return TRUE;
+}
+
+static gdouble
+count_features (const ClothGapTest * test, const ClothGapNormal * normal)
+{
+  gdouble count = 0.;
+
+  for (guint b = 0; b < normal->n_blocks; b++)
+    count += test->blocks[b] ? normal->per_block : 0.;
+  return count;
+}
+
+static gdouble
+dispersion (const ClothGapTest * test, const ClothGapNormal * normal,
+    const ClothGapReduced * reduced)
+{
+  return test->overdispersion * MAX (reduced->r / count_features (test,
+          normal), LEAST_DISPERSION);
+}
+
+static gboolean
+reduce (const Trial * trial, const ClothGapNormal * normal,
+    const gboolean * blocks, ClothGapReduced * reduced)
+{
+  const ClothGapTest *t = trial->test;
+  g_autofree gdouble *precisions = g_new (gdouble, t->n_nuisances + 1);
+
+  /* the equations are not divided by the noise yet */
+  for (guint i = 0; i < t->n_nuisances; i++)
+    precisions[i] = t->precisions[i] * t->overdispersion;
+  return cloth_gap_normal_reduce (normal, blocks, t->nuisances, precisions,
+      t->n_nuisances, trial->directions, trial->candidate->n, reduced);
+}
+
+/* What estimates from the other blocks do to each block. */
+static gdouble
+cross_validate (const Trial * trial, const ClothGapNormal * normal,
+    gdouble phi, gdouble * total)
+{
+  const gboolean *blocks = trial->test->blocks;
+  g_autofree gboolean *others = g_memdup2 (blocks,
+      normal->n_blocks * sizeof *blocks);
+  gdouble gained = 0.;
+
+  for (guint b = 0; b < normal->n_blocks; b++) {
+    ClothGapReduced reduced;
+    gdouble changes[4], log_det;
+
+    if (!blocks[b])
+      continue;
+    others[b] = FALSE;
+    *total += normal->r[b];
+    if (reduce (trial, normal, others, &reduced)
+        && estimate (trial, &reduced, phi, changes, NULL, &log_det))
+      gained -= cloth_gap_normal_change (normal, b, trial->directions,
+          changes, trial->candidate->n);
+    others[b] = TRUE;
+  }
+  return gained;
+}
+
+/* χ² of the blocks' own estimates about the common one, and its degrees of freedom. */
+static gdouble
+heterogeneity (const Trial * trial, const ClothGapNormal * normal, gdouble phi,
+    const gdouble * common, guint * freedom)
+{
+  guint n = trial->candidate->n;
+  g_autofree gboolean *one = g_new0 (gboolean, normal->n_blocks);
+  gdouble sum = 0.;
+
+  for (guint b = 0; b < normal->n_blocks; b++) {
+    ClothGapReduced reduced;
+    gdouble a[16], rest[4] = { 0. }, x[4];
+
+    if (!trial->test->blocks[b])
+      continue;
+    one[b] = TRUE;
+    if (reduce (trial, normal, one, &reduced)) {
+      for (guint i = 0; i < n; i++) {
+        rest[i] = reduced.s[i];
+        for (guint j = 0; j < n; j++)
+          rest[i] += reduced.g[i * n + j] * common[j];
+      }
+      memcpy (a, reduced.g, sizeof a);
+      memcpy (x, rest, sizeof x);
+      if (cloth_cholesky_factor (n, a)) {
+        cloth_cholesky_solve (n, a, x);
+        for (guint i = 0; i < n; i++)
+          sum += rest[i] * x[i] / phi;
+        *freedom += n;
+      }
+    }
+    one[b] = FALSE;
+  }
+  return sum;
+}
+
+static gboolean
+run_trial (const Trial * trial, ClothGapScore * score)
+{
+  guint n = trial->candidate->n, freedom = 0;
+  gdouble gained = 0., total = 0., lm = 0., spread = 0.;
+  gdouble weight[4] = { 0. };
+
+  score->kept = 1.;
+  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
+    const ClothGapNormal *normal = trial->test->normals[g];
+    ClothGapReduced reduced;
+    gdouble phi, changes[4], inverse[16], log_det, fit = 0.;
+
+    if (!reduce (trial, normal, trial->test->blocks, &reduced))
+      return FALSE;
+    phi = dispersion (trial->test, normal, &reduced);
+    if (!estimate (trial, &reduced, phi, changes, inverse, &log_det))
+      return FALSE;
+    for (guint i = 0; i < n; i++) {
+      fit -= 0.5 * reduced.s[i] / phi * changes[i];
+      score->kept = MIN (score->kept, reduced.kept[i]);
+      score->changes[i] += changes[i] / inverse[i * n + i];
+      weight[i] += 1. / inverse[i * n + i];
+    }
+    score->evidence += (fit - 0.5 * log_det) / CLOTH_STUDY_N_GAINS;
+    lm += 2. * fit / CLOTH_STUDY_N_GAINS;
+    gained += cross_validate (trial, normal, phi, &total);
+    spread += heterogeneity (trial, normal, phi, changes, &freedom);
+  }
+  for (guint i = 0; i < n; i++) {
+    score->changes[i] /= weight[i];
+    score->sigmas[i] = sqrt (CLOTH_STUDY_N_GAINS / weight[i]);
+  }
+  score->improvement = total > 0. ? gained / total : 0.;
+  score->p_value = chi_square_tail (lm, n);
+  /* each direction's common value was fitted */
+  freedom /= CLOTH_STUDY_N_GAINS;
+  spread /= CLOTH_STUDY_N_GAINS;
+  score->constancy_p_value = freedom > n ?
+      chi_square_tail (spread, freedom - n) : NAN;
+  return TRUE;
+}
+
+static gint
+compare_scores (gconstpointer a, gconstpointer b)
+{
+  const ClothGapScore *x = a, *y = b;
+
+  if (x->evidence != y->evidence)
+    return x->evidence > y->evidence ? -1 : 1;
+  return x->candidate < y->candidate ? -1 : x->candidate > y->candidate;
+}
+
+/**
+ * cloth_gap_test_run:
+ * @test: what is tested
+ *
+ * Returns: (transfer full) (element-type ClothGapScore): the best candidate of each
+ *   effect, the likeliest first; an effect of several candidates pays for the choice
+ * Since: 0.1
+ */
+GArray *
+cloth_gap_test_run (const ClothGapTest * test)
+{
+  GArray *best = g_array_new (FALSE, FALSE, sizeof (ClothGapScore));
+  const GArray *list = test->candidates->list;
+
+  for (guint i = 0; i < list->len;) {
+    const ClothEffect *effect =
+        g_array_index (list, ClothGapCandidate, i).effect;
+    ClothGapScore most = {.evidence = -INFINITY };
+    guint n = 0;
+
+    for (; i < list->len
+        && g_array_index (list, ClothGapCandidate, i).effect == effect; i++) {
+      ClothGapScore score = {.candidate = i };
+      Trial trial;
+
+      if (!trial_init (&trial, test, i) || !run_trial (&trial, &score))
+        continue;
+      n++;
+      if (score.evidence > most.evidence)
+        most = score;
+    }
+    most.evidence -= n ? log (n) : 0.;
+    if (n)
+      g_array_append_val (best, most);
+  }
+  g_array_sort (best, compare_scores);
+  return best;
+}
+
+/**
+ * cloth_gap_test_cosine:
+ * @test: what is tested
+ * @one: a candidate
+ * @other: another
+ *
+ * Returns: largest cosine between what is left of their first directions' derivatives
+ *   once the nuisances are projected out, of the first gain
+ * Since: 0.1
+ */
+gdouble
+cloth_gap_test_cosine (const ClothGapTest * test, guint one, guint other)
+{
+  const GArray *list = test->candidates->list;
+  const ClothGapCandidate *a = &g_array_index (list, ClothGapCandidate, one);
+  const ClothGapCandidate *b = &g_array_index (list, ClothGapCandidate, other);
+  gdouble most = 0.;
+
+  for (guint i = 0; i < a->n; i++)
+    for (guint j = 0; j < b->n; j++) {
+      const guint directions[2] = { a->first + i, b->first + j };
+      ClothGapReduced r;
+
+      if (cloth_gap_normal_reduce (test->normals[0], test->blocks,
+              test->nuisances, test->precisions, test->n_nuisances,
+              directions, 2, &r) && r.g[0] > 0. && r.g[3] > 0.)
+        most = MAX (most, fabs (r.g[1]) / sqrt (r.g[0] * r.g[3]));
+    }
+  return most;
+}

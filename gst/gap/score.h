@@ -1,0 +1,63 @@
+/* Which effect: the score test of each candidate, nuisances projected out.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/gap/study.h"
+
+G_BEGIN_DECLS
+
+/**
+ * ClothGapScore:
+ * @candidate: index of the candidate
+ * @evidence: mean over the gains of the logarithm of the Bayes factor for it
+ * @improvement: share of the residual's square that it removes from blocks of time that
+ *   it was not estimated on
+ * @changes: expected changes of its directions
+ * @sigmas: their standard deviations
+ * @p_value: of no effect
+ * @constancy_p_value: of the same effect in every block
+ * @kept: share of its derivative that no nuisance can make up for
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  guint candidate;
+  gdouble evidence;
+  gdouble improvement;
+  gdouble changes[4];
+  gdouble sigmas[4];
+  gdouble p_value;
+  gdouble constancy_p_value;
+  gdouble kept;
+} ClothGapScore;
+
+/**
+ * ClothGapTest:
+ * @normals: of each gain, over the blocks of all takes
+ * @candidates: what the columns mean: column i is direction i
+ * @blocks: (array): which blocks count
+ * @nuisances: (array length=n_nuisances): columns that are fitted along
+ * @precisions: (array length=n_nuisances): of their priors
+ * @n_nuisances: how many
+ * @overdispersion: see #ClothStudyOptions
+ * @sound: (array): columns that could be simulated
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  ClothGapNormal *normals[CLOTH_STUDY_N_GAINS];
+  const ClothGapCandidates *candidates;
+  const gboolean *blocks;
+  const guint *nuisances;
+  const gdouble *precisions;
+  guint n_nuisances;
+  gdouble overdispersion;
+  const gboolean *sound;
+} ClothGapTest;
+
+GArray *cloth_gap_test_run (const ClothGapTest * test);
+gdouble cloth_gap_test_cosine (const ClothGapTest * test, guint one,
+    guint other);
+
+G_END_DECLS

@@ -1,0 +1,72 @@
+/* A recording under study: residuals of nudged simulations and their derivatives.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/gap/candidate.h"
+#include "gst/gap/linear.h"
+#include "gst/gap/rollout.h"
+
+G_BEGIN_DECLS
+
+/* Gains of the observer, 1/s²: a weak one that sees slow forces, a strong one. */
+#define CLOTH_STUDY_N_GAINS 2
+
+/**
+ * ClothStudyOptions:
+ * @gains: of the observer, 1/s²
+ * @n_waves: waves along u and v
+ * @block_s: length of blocks of time, s
+ * @highest_hz: of the features
+ * @overdispersion: features are not independent: their squares count this much less
+ * @rollout: how to simulate
+ * @simulations: (inout): counts them
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  gdouble gains[CLOTH_STUDY_N_GAINS];
+  guint n_waves;
+  gdouble block_s;
+  gdouble highest_hz;
+  gdouble overdispersion;
+  ClothRolloutOptions rollout;
+  guint64 simulations;
+} ClothStudyOptions;
+
+/**
+ * ClothStudy:
+ * @recording: the recording
+ * @features: its features
+ * @z: residual of the model at hand, per gain
+ * @columns: its derivatives, [directions][features], per gain
+ * @m: number of directions
+ * @sound: which of them could be simulated
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  const ClothRecording *recording;
+  ClothGapFeatures *features;
+  gdouble *z[CLOTH_STUDY_N_GAINS];
+  gdouble *columns[CLOTH_STUDY_N_GAINS];
+  guint m;
+  gboolean *sound;
+} ClothStudy;
+
+void cloth_study_options_init (ClothStudyOptions * options);
+ClothStudy *cloth_study_new (const ClothRecording * recording,
+    const ClothStudyOptions * options);
+void cloth_study_free (ClothStudy * study);
+gboolean cloth_study_linearise (ClothStudy * study,
+    const ClothGapCandidates * candidates, const ClothModel * model,
+    const guint * directions, guint m, ClothStudyOptions * options,
+    GError ** error);
+ClothModel *cloth_study_fit (ClothStudy ** studies, guint n_studies,
+    const ClothGapCandidates * candidates, const ClothModel * model,
+    const guint * directions, const gdouble * precisions, guint m,
+    const gboolean * blocks, guint n_iterations, ClothStudyOptions * options,
+    gdouble * sigmas, GError ** error);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothStudy, cloth_study_free)
+G_END_DECLS

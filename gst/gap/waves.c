@@ -1,0 +1,199 @@
+/* Residuals as few numbers.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/waves.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A wave that the others make up to this share of its length is left out. */
+#define DEPENDENT 1e-3
+
+static void
+extent (const ClothTopology * t, guint k, gdouble * low, gdouble * high)
+{
+  *low = INFINITY;
+  *high = -INFINITY;
+  for (guint v = 0; v < t->n_vertices; v++) {
+    *low = MIN (*low, t->uv[2 * v + k]);
+    *high = MAX (*high, t->uv[2 * v + k]);
+  }
+}
+
+/* cos π k (i + ½) / n on a grid, and between its lines. */
+static void
+fill_wave (const ClothTopology * t, guint ku, guint kv, gdouble * wave)
+{
+  gdouble low[2], high[2];
+  guint lines[2] = { t->columns, t->rows };
+
+  for (guint k = 0; k < 2; k++) {
+    extent (t, k, &low[k], &high[k]);
+    if (!lines[k])
+      lines[k] = MAX (2, (guint) sqrt (t->n_vertices));
+  }
+  for (guint v = 0; v < t->n_vertices; v++) {
+    gdouble at[2];
+
+    for (guint k = 0; k < 2; k++)
+      at[k] = ((t->uv[2 * v + k] - low[k]) / (high[k] - low[k]) *
+          (lines[k] - 1) + 0.5) / lines[k];
+    wave[v] = cos (G_PI * ku * at[0]) * cos (G_PI * kv * at[1]);
+  }
+}
+
+/* Gram–Schmidt, twice for rounding's sake. */
+static gboolean
+orthonormalise (const ClothGapFeatures * f, gdouble * wave)
+{
+  gdouble before = 0., after = 0.;
+
+  for (guint v = 0; v < f->n; v++)
+    before += wave[v] * wave[v];
+  for (guint pass = 0; pass < 2; pass++)
+    for (guint w = 0; w < f->n_waves; w++) {
+      const gdouble *other = f->waves + (gsize) w * f->n;
+      gdouble share = 0.;
+
+      for (guint v = 0; v < f->n; v++)
+        share += other[v] * wave[v];
+      for (guint v = 0; v < f->n; v++)
+        wave[v] -= share * other[v];
+    }
+  for (guint v = 0; v < f->n; v++)
+    after += wave[v] * wave[v];
+  if (!(after > DEPENDENT * DEPENDENT * before))
+    return FALSE;
+  for (guint v = 0; v < f->n; v++)
+    wave[v] /= sqrt (after);
+  return TRUE;
+}
+
+static void
+make_waves (ClothGapFeatures * f, const ClothTopology * t, guint each)
+{
+  f->waves = g_new (gdouble, (gsize) each * each * f->n);
+  f->bands = g_new (guint, (gsize) each * each);
+  for (guint kv = 0; kv < each; kv++)
+    for (guint ku = 0; ku < each; ku++) {
+      gdouble *wave = f->waves + (gsize) f->n_waves * f->n;
+      guint k = MAX (ku, kv);
+
+      fill_wave (t, ku, kv, wave);
+      if (!orthonormalise (f, wave))
+        continue;
+      /* 0, 1, 2, 3, 4–5, 6–7 … */
+      f->bands[f->n_waves] = k < 4 ? k : 2 + k / 2;
+      f->n_bands = MAX (f->n_bands, f->bands[f->n_waves] + 1);
+      f->n_waves++;
+    }
+}
+
+/**
+ * cloth_gap_features_new:
+ * @recording: what they are of
+ * @n_waves_each: waves along u and along v
+ * @block_s: length of a block of time, s
+ * @highest_hz: highest frequency that is kept
+ *
+ * Returns: (transfer full): the features
+ * Since: 0.1
+ */
+ClothGapFeatures *
+cloth_gap_features_new (const ClothRecording * recording, guint n_waves_each,
+    gdouble block_s, gdouble highest_hz)
+{
+  ClothGapFeatures *f = g_new0 (ClothGapFeatures, 1);
+  gdouble span = recording->times[recording->n_frames - 1] -
+      recording->times[0];
+  gdouble frame_s = span / (recording->n_frames - 1);
+
+  f->n = recording->n;
+  f->sigma = recording->sigma;
+  make_waves (f, recording->scene->topology, n_waves_each);
+  f->block_frames = CLAMP ((guint) round (block_s / frame_s), 4,
+      recording->n_frames);
+  f->n_blocks = recording->n_frames / f->block_frames;
+  f->first = g_new (guint, f->n_blocks + 1);
+  for (guint b = 0; b <= f->n_blocks; b++)
+    f->first[b] = recording->n_frames - (f->n_blocks - b) * f->block_frames;
+  f->n_cosines = CLAMP ((guint) ceil (2. * f->block_frames * frame_s *
+          highest_hz), 1, f->block_frames);
+  f->cosines = g_new (gdouble, (gsize) f->n_cosines * f->block_frames);
+  for (guint k = 0; k < f->n_cosines; k++)
+    for (guint i = 0; i < f->block_frames; i++)
+      f->cosines[(gsize) k * f->block_frames + i] =
+          cos (G_PI * k * (i + 0.5) / f->block_frames) *
+          sqrt ((k ? 2. : 1.) / f->block_frames);
+  f->size = 3 * (gsize) f->n_blocks * f->n_cosines * f->n_waves;
+  return f;
+}
+
+/**
+ * cloth_gap_features_add:
+ * @features: the features
+ * @recording: the recording
+ * @frame: one of its frames
+ * @positions: simulated in this frame, [n][3], m
+ * @z: (inout): features of simulated less recorded; start with zeros
+ *
+ * Adds a frame's part. What was not seen counts as equal.
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_features_add (const ClothGapFeatures * features,
+    const ClothRecording * recording, guint frame, const gdouble * positions,
+    gdouble * z)
+{
+  guint n = features->n, block = 0, at;
+  gsize begin = (gsize) frame * n;
+  g_autofree gdouble *residual = NULL;
+
+  if (frame < features->first[0])
+    return;
+  while (frame >= features->first[block + 1])
+    block++;
+  at = frame - features->first[block];
+  residual = g_new (gdouble, 3 * (gsize) n);
+  for (guint v = 0; v < n; v++)
+    for (guint k = 0; k < 3; k++)
+      residual[k * n + v] = recording->seen[begin + v] *
+          (positions[3 * v + k] - recording->y[3 * (begin + v) + k]) /
+          features->sigma;
+  for (guint w = 0; w < features->n_waves; w++) {
+    const gdouble *wave = features->waves + (gsize) w * n;
+    gdouble sum[3] = { 0., 0., 0. };
+
+    for (guint k = 0; k < 3; k++)
+      for (guint v = 0; v < n; v++)
+        sum[k] += wave[v] * residual[k * n + v];
+    for (guint c = 0; c < features->n_cosines; c++) {
+      gdouble cosine = features->cosines[(gsize) c * features->block_frames +
+          at];
+      gdouble *to = z + 3 * (((gsize) block * features->n_cosines + c) *
+          features->n_waves + w);
+
+      for (guint k = 0; k < 3; k++)
+        to[k] += cosine * sum[k];
+    }
+  }
+}
+
+/**
+ * cloth_gap_features_free:
+ * @features: (nullable) (transfer full): the features
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_features_free (ClothGapFeatures * features)
+{
+  if (!features)
+    return;
+  g_free (features->waves);
+  g_free (features->bands);
+  g_free (features->cosines);
+  g_free (features->first);
+  g_free (features);
+}

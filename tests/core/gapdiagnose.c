@@ -1,0 +1,296 @@
+/* Blind diagnoses of a small cloth: what is recorded comes from the mass–spring model
+ * with an effect that the diagnosing model, a membrane, lacks; the baseline from the same
+ * without.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <glib/gstdio.h>
+#include <math.h>
+#include <string.h>
+
+#include "gst/gap/diagnose.h"
+#include "gst/math/random.h"
+#include "gst/sim/effect-table.h"
+#include "gst/sim/sim.h"
+
+#define COLUMNS 9
+#define ROWS 9
+#define N (COLUMNS * ROWS)
+#define N_FRAMES 75
+#define FPS 50.
+#define NOISE 3e-4
+
+static gchar *parent;
+
+/* Two corners that close and sway; the other motion is slower and across. */
+static void
+clamp_at (guint held, gdouble t, gboolean other, gfloat p[3])
+{
+  gdouble ramp = MIN (1., t / 0.3), close = 0.03 * ramp * ramp *
+      (3. - 2. * ramp);
+
+  p[0] = (gfloat) (held ? 0.16 - close : close);
+  p[1] = (gfloat) (other ? 0.03 * ramp * sin (5. * t + held) :
+      0.05 * ramp * sin (8. * t));
+  p[2] = (gfloat) (other ? 0.02 * ramp * sin (6. * t) : 0.);
+}
+
+static ClothModel *
+model_new (ClothForceModel force_model)
+{
+  ClothModel *model = cloth_model_new ();
+  static const gchar *const names[] = {
+    "stretch.warp", "stretch.weft", "shear", "bending.warp", "bending.weft",
+    "damping.mass", "damping.stiffness"
+  };
+
+  model->force_model = force_model;
+  model->areal_density = 0.15;
+  model->stretch_warp = model->stretch_weft = 40.;
+  model->shear = 12.;
+  model->bending_warp = model->bending_weft = 3e-5;
+  model->damping_mass = 0.3;
+  model->damping_stiffness = 5e-4;
+  for (guint i = 0; i < G_N_ELEMENTS (names); i++) {
+    ClothModelFree f = { g_strdup (names[i]) };
+    gdouble value;
+
+    g_assert_true (cloth_model_get (model, names[i], &value, NULL));
+    f.range[0] = value / 30.;
+    f.range[1] = value * 30.;
+    g_array_append_val (model->free, f);
+  }
+  return model;
+}
+
+/* Records a take of the mass–spring cloth with an effect. */
+static ClothTake *
+record (const gchar * name, const gchar * effect, const gdouble * values,
+    gboolean other, guint64 seed)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothModel) model = model_new (CLOTH_FORCE_MASS_SPRING);
+  g_autoptr (ClothTakeInfo) info = cloth_take_info_new (name);
+  ClothTopology *topology = cloth_topology_new_grid (COLUMNS, ROWS, 0.16f,
+      0.16f);
+  g_autoptr (ClothScene) scene = cloth_scene_new (topology, FPS, N_FRAMES);
+  g_autoptr (ClothSim) sim = NULL;
+  g_autoptr (ClothTakeWriter) writer = NULL;
+  g_autofree gchar *folder = g_build_filename (parent, name, NULL);
+  const ClothSimOptions options = { FALSE, 1, CLOTH_SIMD_BEST, 1 };
+  const ClothModel *models[1] = { model };
+  ClothTake *take;
+  ClothRandom random;
+  guint8 states[N];
+
+  if (effect)
+    cloth_model_set_effect (model, cloth_effect_find (effect), values);
+  for (guint held = 0; held < 2; held++) {
+    ClothHeld h = { held ? COLUMNS - 1 : 0, -INFINITY, INFINITY };
+
+    cloth_scene_hold (scene, h.vertex);
+    g_array_append_val (info->held, h);
+  }
+  for (guint f = 0; f < N_FRAMES; f++)
+    for (guint held = 0; held < 2; held++) {
+      gfloat p[3];
+
+      clamp_at (held, f / FPS, other, p);
+      for (guint k = 0; k < 3; k++)
+        scene->clamps[6 * f + 3 * held + k] = p[k];
+    }
+  sim = cloth_sim_new (scene, models, 1, &options, &error);
+  g_assert_no_error (error);
+  info->fps = FPS;
+  info->columns = COLUMNS;
+  info->rows = ROWS;
+  info->width_m = info->height_m = 0.16;
+  info->noise_sigma_m = NOISE;
+  writer = cloth_take_writer_new (folder, info, topology, &error);
+  g_assert_no_error (error);
+  cloth_random_init (&random, seed);
+  memset (states, CLOTH_VERTEX_MEASURED, sizeof states);
+  for (guint f = 0; f < N_FRAMES; f++) {
+    gdouble x[3 * N];
+    gfloat positions[3 * N], clamps[6];
+
+    if (f)
+      cloth_sim_advance (sim, f / FPS);
+    cloth_sim_get_positions (sim, 0, x);
+    for (guint i = 0; i < 3 * N; i++)
+      positions[i] = (gfloat) (x[i] + NOISE * cloth_random_gaussian (&random));
+    for (guint held = 0; held < 2; held++)
+      clamp_at (held, f / FPS, other, clamps + 3 * held);
+    cloth_take_writer_append (writer, f / FPS, positions, states, NULL, clamps,
+        &error);
+    g_assert_no_error (error);
+  }
+  g_assert_cmpint (cloth_sim_get_state (sim, 0, NULL), ==, CLOTH_SIM_OK);
+  cloth_take_writer_close (writer, &error);
+  g_assert_no_error (error);
+  take = cloth_take_open (folder, &error);
+  g_assert_no_error (error);
+  return take;
+}
+
+static ClothGapResult *
+diagnose (ClothTake * take, ClothTake * baseline, guint threads)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothModel) model = model_new (CLOTH_FORCE_MEMBRANE);
+  const ClothGapOptions options = {
+    .baselines = &baseline,.n_baselines = 1,.seed = 1,.threads = threads
+  };
+  ClothGapResult *result = cloth_gap_diagnose (&take, 1, model, &options,
+      &error);
+  g_autofree gchar *summary = NULL;
+
+  g_assert_no_error (error);
+  summary = cloth_gap_result_summary (result);
+  g_test_message ("%s %s (%.1f s, %" G_GUINT64_FORMAT " simulations)",
+      cloth_take_get_info (take)->name, summary, result->seconds,
+      result->simulations);
+  for (guint i = 0; i < MIN (3, result->effects->len); i++) {
+    const ClothGapEffect *e = &g_array_index (result->effects, ClothGapEffect,
+        i);
+
+    g_test_message ("  %s %.3f: %g ± %g", e->effect->id, e->probability,
+        e->values[0], e->sigmas[0]);
+  }
+  return result;
+}
+
+typedef struct
+{
+  const gchar *effect;
+  gdouble values[CLOTH_EFFECT_MAX_PARAMETERS];
+} Case;
+
+static const Case cases[] = {
+  {"air_drag", {2.}},
+  {"gravity_tilt", {4., 0.}},
+  {"mass_distribution", {3., 0.03}},
+  {"clamp_slip", {-0.015, 0., -0.015, 0.7, 1.}},
+};
+
+/* The effect that acted comes first, the gap shrinks and its size is about right. */
+static void
+test_named (gconstpointer data)
+{
+  const Case *c = data;
+  g_autoptr (ClothTake) baseline = record ("baseline", NULL, NULL, FALSE, 1);
+  g_autoptr (ClothTake) take = record (c->effect, c->effect, c->values, FALSE,
+      2);
+  g_autoptr (ClothGapResult) result = diagnose (take, baseline, 0);
+  const ClothGapEffect *first;
+
+  g_assert_cmpuint (result->effects->len, >, 0);
+  first = &g_array_index (result->effects, ClothGapEffect, 0);
+  g_assert_cmpstr (first->effect->id, ==, c->effect);
+  g_assert_true (first->accepted);
+  g_assert_true (result->verdict == CLOTH_GAP_EXPLAINED
+      || result->verdict == CLOTH_GAP_AMBIGUOUS);
+  g_assert_cmpfloat (result->gap_after.value, <, result->gap_before.value);
+}
+
+static void
+test_no_gap (void)
+{
+  g_autoptr (ClothTake) baseline = record ("baseline", NULL, NULL, FALSE, 1);
+  g_autoptr (ClothTake) again = record ("again", NULL, NULL, FALSE, 3);
+  g_autoptr (ClothTake) other = record ("other", NULL, NULL, TRUE, 4);
+  g_autoptr (ClothGapResult) one = diagnose (again, baseline, 0);
+  g_autoptr (ClothGapResult) two = diagnose (other, baseline, 0);
+
+  g_assert_cmpint (one->verdict, ==, CLOTH_GAP_NO_GAP);
+  g_assert_cmpint (two->verdict, ==, CLOTH_GAP_NO_GAP);
+}
+
+/* The same bytes from one thread and from two. */
+static void
+test_threads (void)
+{
+  g_autoptr (ClothTake) baseline = record ("baseline", NULL, NULL, FALSE, 1);
+  g_autoptr (ClothTake) take = record ("air_drag", "air_drag",
+      cases[0].values, FALSE, 2);
+  g_autoptr (ClothGapResult) one = diagnose (take, baseline, 1);
+  g_autoptr (ClothGapResult) two = diagnose (take, baseline, 2);
+  g_autofree gchar *a = NULL, *b = NULL;
+
+  one->seconds = two->seconds = 0.;
+  a = cloth_gap_result_to_json (one);
+  b = cloth_gap_result_to_json (two);
+  g_assert_cmpstr (a, ==, b);
+}
+
+static void
+test_unknown_effect (void)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothModel) model = model_new (CLOTH_FORCE_MEMBRANE);
+  g_autoptr (ClothTake) take = record ("plain", NULL, NULL, FALSE, 1);
+  const gchar *const effects[] = { "air_drag", "magic", NULL };
+  const ClothGapOptions options = {.effects = effects };
+  ClothTake *takes[1] = { take };
+
+  g_assert_null (cloth_gap_diagnose (takes, 1, model, &options, &error));
+  g_assert_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_EFFECT);
+  g_assert_nonnull (strstr (error->message, "magic"));
+}
+
+static gboolean
+stop (gpointer data, gdouble share, const gchar * what)
+{
+  return FALSE;
+}
+
+static void
+test_cancelled (void)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothModel) model = model_new (CLOTH_FORCE_MEMBRANE);
+  g_autoptr (ClothTake) take = record ("plain", NULL, NULL, FALSE, 1);
+  const ClothGapOptions options = {.progress = stop };
+  ClothTake *takes[1] = { take };
+
+  g_assert_null (cloth_gap_diagnose (takes, 1, model, &options, &error));
+  g_assert_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_CANCELLED);
+}
+
+static void
+remove_all (const gchar * path)
+{
+  GDir *dir = g_dir_open (path, 0, NULL);
+  const gchar *name;
+
+  while (dir && (name = g_dir_read_name (dir))) {
+    g_autofree gchar *item = g_build_filename (path, name, NULL);
+
+    remove_all (item);
+  }
+  if (dir)
+    g_dir_close (dir);
+  g_remove (path);
+}
+
+int
+main (int argc, char **argv)
+{
+  int status;
+
+  g_test_init (&argc, &argv, NULL);
+  parent = g_dir_make_tmp ("cloth-gap-XXXXXX", NULL);
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autofree gchar *path = g_strdup_printf ("/gap/named/%s",
+        cases[i].effect);
+
+    g_test_add_data_func (path, &cases[i], test_named);
+  }
+  g_test_add_func ("/gap/no-gap", test_no_gap);
+  g_test_add_func ("/gap/threads", test_threads);
+  g_test_add_func ("/gap/unknown-effect", test_unknown_effect);
+  g_test_add_func ("/gap/cancelled", test_cancelled);
+  status = g_test_run ();
+  remove_all (parent);
+  g_free (parent);
+  return status;
+}

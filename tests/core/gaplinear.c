@@ -1,0 +1,248 @@
+/* The parts of the diagnosis against closed forms: velocities of polynomials, estimated
+ * noise, orthonormal waves, nuisances projected out against brute least squares.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <glib/gstdio.h>
+#include <math.h>
+#include <string.h>
+
+#include "gst/gap/diagnose.h"
+#include "gst/gap/linear.h"
+#include "gst/math/linalg.h"
+#include "gst/math/random.h"
+
+#define COLUMNS 7
+#define ROWS 6
+#define N (COLUMNS * ROWS)
+#define FPS 50.
+
+typedef void (*Motion) (guint vertex, gdouble t, gfloat p[3]);
+
+static const gdouble spacing = 0.02;
+
+static void
+quartic (guint vertex, gdouble t, gfloat p[3])
+{
+  p[0] = (gfloat) (spacing * (vertex % COLUMNS) + 0.02 * t * t * t * t);
+  p[1] = (gfloat) (0.03 * t * t);
+  p[2] = (gfloat) (-spacing * (vertex / COLUMNS) - 0.05 * t);
+}
+
+static void
+millimetres (guint vertex, gdouble t, gfloat p[3])
+{
+  quartic (vertex, t, p);
+  for (guint k = 0; k < 3; k++)
+    p[k] *= 1000.f;
+}
+
+/* A take of a motion with noise; every seventh vertex is hidden in every ninth frame. */
+static gchar *
+write_take (Motion motion, guint n_frames, gdouble noise, gdouble told)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothTakeInfo) info = cloth_take_info_new ("motion");
+  g_autoptr (ClothTopology) topology = cloth_topology_new_grid (COLUMNS, ROWS,
+      (gfloat) (spacing * (COLUMNS - 1)), (gfloat) (spacing * (ROWS - 1)));
+  g_autoptr (ClothTakeWriter) writer = NULL;
+  gchar *parent = g_dir_make_tmp ("cloth-gap-XXXXXX", &error);
+  gchar *folder = g_build_filename (parent, "take", NULL);
+  ClothRandom random;
+
+  g_free (parent);
+  info->fps = FPS;
+  info->columns = COLUMNS;
+  info->rows = ROWS;
+  info->width_m = spacing * (COLUMNS - 1);
+  info->height_m = spacing * (ROWS - 1);
+  info->noise_sigma_m = told;
+  writer = cloth_take_writer_new (folder, info, topology, &error);
+  g_assert_no_error (error);
+  cloth_random_init (&random, 5);
+  for (guint f = 0; f < n_frames; f++) {
+    gfloat positions[3 * N];
+    guint8 states[N];
+
+    for (guint v = 0; v < N; v++) {
+      states[v] = CLOTH_VERTEX_MEASURED;
+      motion (v, f / FPS, positions + 3 * v);
+      for (guint k = 0; k < 3; k++)
+        positions[3 * v + k] += (gfloat) (noise *
+            cloth_random_gaussian (&random));
+      if (v % 7 != 3 || f % 9 != 4)
+        continue;
+      states[v] = CLOTH_VERTEX_UNSEEN;
+      positions[3 * v] = positions[3 * v + 1] = positions[3 * v + 2] = NAN;
+    }
+    cloth_take_writer_append (writer, f / FPS, positions, states, NULL, NULL,
+        &error);
+    g_assert_no_error (error);
+  }
+  cloth_take_writer_close (writer, &error);
+  g_assert_no_error (error);
+  return folder;
+}
+
+static ClothRecording *
+record (Motion motion, guint n_frames, gdouble noise, gdouble told,
+    GError ** error)
+{
+  g_autofree gchar *folder = write_take (motion, n_frames, noise, told);
+  g_autofree gchar *parent = g_path_get_dirname (folder);
+  g_autoptr (ClothTake) take = cloth_take_open (folder, error);
+  ClothRecording *r = take ? cloth_recording_new (take, error) : NULL;
+  g_autoptr (GDir) dir = g_dir_open (folder, 0, NULL);
+  const gchar *name;
+
+  while ((name = g_dir_read_name (dir))) {
+    g_autofree gchar *path = g_build_filename (folder, name, NULL);
+
+    g_remove (path);
+  }
+  g_rmdir (folder);
+  g_rmdir (parent);
+  return r;
+}
+
+/* A polynomial of order 4 has the derivative it has, at the ends too. */
+static void
+test_velocity (void)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRecording) r = record (quartic, 30, 0., 1e-4, &error);
+
+  g_assert_no_error (error);
+  for (guint f = 0; f < 30; f++)
+    for (guint v = 0; v < N; v++) {
+      const gdouble *got = r->velocity + 3 * ((gsize) f * N + v);
+      gdouble t = f / FPS;
+
+      if (v % 7 == 3)
+        continue;
+      /* positions are floats of a resolution of 1e-8 m */
+      g_assert_cmpfloat (fabs (got[0] - 0.08 * t * t * t), <, 1e-5);
+      g_assert_cmpfloat (fabs (got[1] - 0.06 * t), <, 1e-5);
+      g_assert_cmpfloat (fabs (got[2] + 0.05), <, 1e-5);
+    }
+}
+
+static void
+test_noise (void)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRecording) r = record (quartic, 60, 3e-4, NAN, &error);
+
+  g_assert_no_error (error);
+  g_test_message ("sigma %g m of 3e-4", r->sigma);
+  g_assert_cmpfloat (fabs (r->sigma - 3e-4), <, 0.05 * 3e-4);
+}
+
+static void
+test_refused (void)
+{
+  g_autoptr (GError) error = NULL;
+
+  g_assert_null (record (millimetres, 30, 0., 1e-4, &error));
+  g_assert_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE);
+  g_assert_nonnull (strstr (error->message, "millimetres"));
+  g_clear_error (&error);
+  g_assert_null (record (quartic, 1, 0., 1e-4, &error));
+  g_assert_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE);
+  g_assert_nonnull (strstr (error->message, "1 frames"));
+}
+
+/* Of a residual that all waves and cosines can make, the features have its square; what
+ * is not seen counts as equal. */
+static void
+test_features (void)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRecording) r = record (quartic, 30, 0., 1e-3, &error);
+  g_autoptr (ClothGapFeatures) f = NULL;
+  g_autofree gdouble *z = NULL;
+  gdouble positions[3 * N], square = 0., features = 0.;
+
+  g_assert_no_error (error);
+  f = cloth_gap_features_new (r, 7, 0.2, 1000.);
+  g_assert_cmpuint (f->n_waves, ==, N);
+  g_assert_cmpuint (f->n_blocks, ==, 3);
+  z = g_new0 (gdouble, f->size);
+  for (guint frame = 0; frame < 30; frame++) {
+    for (guint v = 0; v < N; v++)
+      for (guint k = 0; k < 3; k++) {
+        gdouble off = 1e-3 * sin (1. + 3. * v + 5. * k + 7. * frame);
+        gsize at = (gsize) frame * N + v;
+
+        positions[3 * v + k] = r->y[3 * at + k] + off;
+        square += r->seen[at] * off * off * 1e6;
+      }
+    cloth_gap_features_add (f, r, frame, positions, z);
+  }
+  for (gsize i = 0; i < f->size; i++)
+    features += z[i] * z[i];
+  g_assert_cmpfloat (fabs (features - square), <, 1e-9 * square);
+}
+
+/* z = 2 a + 3 b − 5 c with a, b known and c as nuisance: what is left names −a, −b. */
+static void
+test_reduce (void)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRecording) r = record (quartic, 30, 0., 1e-3, &error);
+  g_autoptr (ClothGapFeatures) f = NULL;
+  g_autoptr (ClothGapPower) none = NULL;
+  g_autoptr (ClothGapNormal) normal = NULL;
+  g_autofree gdouble *columns = NULL, *z = NULL;
+  const gdouble made_of[3] = { 2., 3., -5. }, precision = 0.;
+  const guint directions[2] = { 0, 1 }, nuisance = 2;
+  const gboolean blocks[3] = { TRUE, TRUE, FALSE };
+  ClothGapReduced reduced;
+  gdouble changes[2], left = 0.;
+  ClothRandom random;
+
+  g_assert_no_error (error);
+  f = cloth_gap_features_new (r, 4, 0.2, 10.);
+  columns = g_new (gdouble, 3 * f->size);
+  z = g_new0 (gdouble, f->size);
+  cloth_random_init (&random, 3);
+  for (gsize i = 0; i < 3 * f->size; i++)
+    columns[i] = cloth_random_gaussian (&random);
+  for (gsize i = 0; i < f->size; i++)
+    for (guint k = 0; k < 3; k++)
+      z[i] += made_of[k] * columns[k * f->size + i];
+  none = cloth_gap_power_new (f, z);
+  normal = cloth_gap_normal_new (f, none, 0., z, columns, 3);
+  g_assert_true (cloth_gap_normal_reduce (normal, blocks, &nuisance,
+          &precision, 1, directions, 2, &reduced));
+  memcpy (changes, reduced.s, sizeof changes);
+  {
+    gdouble a[4];
+
+    memcpy (a, reduced.g, sizeof a);
+    g_assert_true (cloth_cholesky_factor (2, a));
+    cloth_cholesky_solve (2, a, changes);
+  }
+  g_assert_cmpfloat (fabs (changes[0] - 2.), <, 1e-9);
+  g_assert_cmpfloat (fabs (changes[1] - 3.), <, 1e-9);
+  /* random columns are nearly at right angles: almost nothing is projected away */
+  g_assert_cmpfloat (reduced.kept[0], >, 0.95);
+  g_assert_cmpfloat (reduced.kept[0], <=, 1.);
+  /* taking them off a block they were not estimated on leaves the nuisance's part */
+  changes[0] = -changes[0];
+  changes[1] = -changes[1];
+  left = normal->r[2] + cloth_gap_normal_change (normal, 2, directions,
+      changes, 2);
+  g_assert_cmpfloat (fabs (left - 25. * normal->g[2 * 9 + 8]), <, 1e-6 * left);
+}
+
+int
+main (int argc, char **argv)
+{
+  g_test_init (&argc, &argv, NULL);
+  g_test_add_func ("/gap/velocity", test_velocity);
+  g_test_add_func ("/gap/noise", test_noise);
+  g_test_add_func ("/gap/refused", test_refused);
+  g_test_add_func ("/gap/features", test_features);
+  g_test_add_func ("/gap/reduce", test_reduce);
+  return g_test_run ();
+}
