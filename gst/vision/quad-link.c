@@ -446,6 +446,17 @@ reckon_guesses (ClothQuadTracker * tracker)
   }
 }
 
+/* Whether what speaks against the memory is not believed yet: it has to do so in several
+ * pictures in a row, each of which counts once, however many patches say so. */
+static gboolean
+doubt (ClothQuadTracker * tracker)
+{
+  if (!tracker->doubted)
+    tracker->doubts++;
+  tracker->doubted = TRUE;
+  return tracker->doubts <= MAX_DOUBTS;
+}
+
 /* Places the patch that was just built. Linking may have joined pieces on both sides of a
  * fold: @other is the place that memory knows of the second piece, weight 0 for none. */
 static gboolean
@@ -481,16 +492,14 @@ place (ClothQuadTracker * tracker, gboolean first, ClothPlacement * placement,
     return FALSE;
   /* A board that was just seen is hardly anywhere else. */
   if (first && agrees == 0 && tracker->guess_vertex->len > 0
-      && placement->weight < NEW_LEAD && tracker->doubts++ < MAX_DOUBTS)
+      && placement->weight < NEW_LEAD && doubt (tracker))
     return FALSE;
   if (first && other->weight > agrees && other->weight > STRONG_VOTE) {
-    if (placement->weight < SURE_LEAD && tracker->doubts++ < MAX_DOUBTS)
+    if (placement->weight < SURE_LEAD && doubt (tracker))
       return FALSE;
     forget (tracker);
     other->weight = 0;
   }
-  if (first)
-    tracker->doubts = 0;
   return TRUE;
 }
 
@@ -504,6 +513,7 @@ cloth_quad_link (ClothQuadTracker * tracker)
   guint order[MAX_PATCHES], n_links, n, n_placed = 0;
   gboolean first = TRUE;
 
+  tracker->doubted = FALSE;
   index_guesses (tracker);
   cloth_point_grid_clear (tracker->corners, tracker->image->width,
       tracker->image->height, tracker->n_saddles);
@@ -532,4 +542,6 @@ cloth_quad_link (ClothQuadTracker * tracker)
     index_guesses (tracker);
     first = FALSE;
   }
+  if (!tracker->doubted)
+    tracker->doubts = 0;
 }

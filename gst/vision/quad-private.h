@@ -65,6 +65,7 @@ struct _ClothQuadTracker
   ClothPointGrid *corners;      /* linked saddles that were placed or rejected */
   GArray *corner_vertex;        /* gint, their board vertex, -1: on no known place */
   guint doubts;                 /* pictures in a row that spoke against the memory */
+  gboolean doubted;             /* this one did */
   ClothPlacer *placer;
   GArray *seeds;                /* ClothQuadSeed */
   GArray *out;                  /* ClothQuad */
