@@ -587,6 +587,12 @@ decide (Diagnosis * d, guint n_accepted)
     n_accepted = 0;
     after = r->gap_before.value;
   }
+  for (guint i = 0; i < r->effects->len && n_accepted; i++) {
+    ClothGapEffect *e = &g_array_index (r->effects, ClothGapEffect, i);
+
+    if (e->accepted)
+      e->shrink = r->shrink;
+  }
   if (!n_accepted) {
     r->verdict = after * after < BAND * floor2 ? CLOTH_GAP_NO_GAP :
         d->options->n_baselines ? CLOTH_GAP_UNEXPLAINED : CLOTH_GAP_NO_GAP;

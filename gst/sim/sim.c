@@ -24,6 +24,10 @@ extern const ClothLaneBackend cloth_lane_backend_double_avx512;
 /* Steps an octave that automatic time steps are rounded down to, so that models that are
  * nearly alike take the same steps and their difference is their own. */
 #define STEPS_AN_OCTAVE 8.
+/* Shorter implicit steps than this part of a frame are not tried. */
+#define LEAST_STEP (1. / 4096.)
+/* So many steps in a row that could have been longer, and the next one is. */
+#define GOOD_STEPS 3
 /* Steps of one cloth_sim_advance (); more means a model far out of range. */
 #define MAX_STEPS 1e8
 
@@ -47,11 +51,15 @@ struct _ClothSim
   gdouble time;
   gdouble fixed_step;           /* of the models, 0 = automatic */
   gdouble time_step;
+  gboolean adaptive;            /* implicit with an automatic step */
+  gdouble longest_step;
+  guint good_steps;             /* in a row */
   gdouble *scratch[5];          /* by particle */
   gdouble *weights;             /* by vertex of the body */
   /* of the running advance */
   gdouble until;
   guint n_steps;
+  gdouble *too_long;            /* of each group */
 };
 
 GQuark
@@ -124,9 +132,13 @@ find_time_step (ClothSim * sim)
     least = MIN (least, g->backend->time_step (g->lanes));
   }
   least = round_step (least);
-  sim->time_step = sim->fixed_step > 0. ? sim->fixed_step : least;
+  sim->longest_step = sim->fixed_step > 0. ? sim->fixed_step : least;
   if (sim->numerics->step_factor != 1.)
-    sim->time_step = MIN (sim->time_step * sim->numerics->step_factor, least);
+    sim->longest_step =
+        MIN (sim->longest_step * sim->numerics->step_factor, least);
+  if (!sim->adaptive || sim->time_step == 0.
+      || sim->time_step > sim->longest_step)
+    sim->time_step = sim->longest_step;
 }
 
 static void
@@ -195,11 +207,14 @@ cloth_sim_new (const ClothScene * scene, const ClothModel * const *models,
     return NULL;
   sim->n_models = n_models;
   sim->fixed_step = models[0]->time_step;
+  sim->adaptive = models[0]->integrator == CLOTH_INTEGRATOR_IMPLICIT &&
+      sim->fixed_step == 0.;
   sim->time = sim->body->times[0];
   for (guint i = 0; i < G_N_ELEMENTS (sim->scratch); i++)
     sim->scratch[i] = g_new0 (gdouble, 3 * (gsize) sim->body->n_particles);
   sim->weights = g_new (gdouble, sim->body->n_vertices);
   make_groups (sim, models, options);
+  sim->too_long = g_new0 (gdouble, sim->n_groups);
   sim->pool = cloth_pool_new (options->threads);
   find_time_step (sim);
   return g_steal_pointer (&sim);
@@ -220,6 +235,7 @@ cloth_sim_free (ClothSim * sim)
     sim->groups[i].backend->group_free (sim->groups[i].lanes);
   g_free (sim->groups);
   g_free (sim->group_of);
+  g_free (sim->too_long);
   for (guint i = 0; i < G_N_ELEMENTS (sim->scratch); i++)
     g_free (sim->scratch[i]);
   g_free (sim->weights);
@@ -265,6 +281,56 @@ advance_groups (gpointer data, guint begin, guint end, guint worker)
         sim->n_steps);
 }
 
+static void
+try_groups (gpointer data, guint begin, guint end, guint worker)
+{
+  ClothSim *sim = data;
+
+  for (guint i = begin; i < end; i++)
+    sim->too_long[i] =
+        sim->groups[i].backend->try_step (sim->groups[i].lanes, sim->until);
+}
+
+static void
+take_groups (gpointer data, guint begin, guint end, guint worker)
+{
+  ClothSim *sim = data;
+
+  for (guint i = begin; i < end; i++)
+    sim->groups[i].backend->take_step (sim->groups[i].lanes, sim->until);
+}
+
+/* Implicit steps that all models can take: half as long when one can't, twice as long
+ * when none minds for a while. */
+static void
+advance_adaptive (ClothSim * sim, gdouble until_s)
+{
+  gdouble least = sim->body->frame_s * LEAST_STEP;
+
+  while (sim->time < until_s) {
+    gdouble span = until_s - sim->time, worst = 0.;
+    gdouble n = ceil (span / sim->time_step - 1e-9);
+
+    sim->until = n > 1. ? sim->time + span / n : until_s;
+    cloth_pool_run (sim->pool, try_groups, sim, sim->n_groups);
+    for (guint i = 0; i < sim->n_groups; i++)
+      worst = MAX (worst, sim->too_long[i]);
+    if (worst > 1. && sim->time_step > least) {
+      sim->time_step = MIN (sim->time_step, sim->until - sim->time) / 2.;
+      sim->good_steps = 0;
+      continue;
+    }
+    cloth_pool_run (sim->pool, take_groups, sim, sim->n_groups);
+    sim->time = sim->until;
+    /* twice as long is four times as far off */
+    sim->good_steps = worst < 0.2 ? sim->good_steps + 1 : 0;
+    if (sim->good_steps >= GOOD_STEPS) {
+      sim->time_step = MIN (2. * sim->time_step, sim->longest_step);
+      sim->good_steps = 0;
+    }
+  }
+}
+
 /**
  * cloth_sim_advance:
  * @sim: a simulation
@@ -282,6 +348,10 @@ cloth_sim_advance (ClothSim * sim, gdouble until_s)
 
   if (!(span > 0.) || !isfinite (span))
     return;
+  if (sim->adaptive) {
+    advance_adaptive (sim, until_s);
+    return;
+  }
   sim->until = until_s;
   /* a step too many for a rounding error would be a waste */
   sim->n_steps =

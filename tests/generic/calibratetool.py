@@ -110,13 +110,10 @@ check(all(0.2 < z < 1 for z in centre), 'board as world: cameras at heights %.3f
       % tuple(centre))
 check(cameras[0]['distortion'] == cameras[1]['distortion'], 'one lens for both')
 
-# The same pictures said to be of a board with another column: the corners may be placed
-# alike in all views, which only moves the board; else the report must not look fine.
+# The same pictures said to be of a board with another column: no board is found in them.
 check('contradict' not in report, 'pair: views agree')
-report, cameras = calibrate('--columns', '11', '--rows', '7', '--square', '25mm',
-                            'left=%s/left*.jpg' % boards)
-check('contradict' in report or rms(report)[0] <= 0.165,
-      'wrong board: harmless or says so, RMS %.3f px' % rms(report)[0])
+refused(1, 'found in 0 views', '--output', output, '--columns', '11', '--rows', '7',
+        '--square', '25mm', 'left=%s/left*.jpg' % boards)
 
 # Boards of 14×19 corners that the cameras saw one after the other; two numbers are equal.
 apart = ['--columns', '20', '--rows', '15', '--square', '10mm',

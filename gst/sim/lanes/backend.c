@@ -157,6 +157,8 @@ prepare (ClothLaneState * state)
     state->inverse_mass[i] = one / state->mass[i];
   state->omega2 = CLOTH_LANE_NAME (cloth_lane_stiffness) (state);
   state->friction = state->alpha + state->beta * state->omega2;
+  state->own_omega2 = state->omega2;
+  state->own_friction = state->friction;
   for (guint i = 0; i < state->n_effects; i++)
     if (state->effects[i].hooks->rate)
       state->effects[i].hooks->rate (state, &state->effects[i],
@@ -203,6 +205,7 @@ group_free (gpointer group)
     g_aligned_free (state->effects[i].state);
   g_aligned_free (state->effects);
   CLOTH_LANE_NAME (cloth_lane_obstacles_free) (state);
+  CLOTH_LANE_NAME (cloth_lane_implicit_free) (state->implicit);
   for (guint k = 0; k < 4; k++)
     g_aligned_free (state->targets.y[k]);
   g_aligned_free (state->targets.weight);
@@ -262,6 +265,8 @@ group_new (const ClothBody * body, const ClothModel * const *models,
   load_springs (state, body);
   state->force_model = models[0]->force_model;
   state->obstacles = CLOTH_LANE_NAME (cloth_lane_obstacles_new) (state);
+  if (models[0]->integrator == CLOTH_INTEGRATOR_IMPLICIT)
+    state->implicit = CLOTH_LANE_NAME (cloth_lane_implicit_new) (state);
   load_models (state, all);
   load_effects (state, all);
   prepare (state);
@@ -284,7 +289,7 @@ group_time_step (gpointer group)
 {
   ClothLaneState *state = group;
   ClothLane each = CLOTH_LANE_NAME (cloth_lane_explicit_time_step) (state);
-  gdouble least = INFINITY;
+  gdouble least = state->implicit ? state->body->frame_s : INFINITY;
 
   for (guint l = 0; l < CLOTH_N_LANES; l++)
     least = MIN (least, (gdouble) CLOTH_LANE_AT (&each, l));
@@ -323,6 +328,38 @@ check_sound (ClothLaneState * state, gdouble since)
   keep_sound (state);
 }
 
+/* What comes after the particles moved. */
+static void
+finish_step (ClothLaneState * state, gdouble time_s)
+{
+  state->time = time_s;
+  CLOTH_LANE_NAME (cloth_lane_obstacles) (state);
+  CLOTH_LANE_NAME (cloth_lane_clamps) (state);
+  for (guint i = 0; i < state->n_effects; i++)
+    if (state->effects[i].hooks->after_step)
+      state->effects[i].hooks->after_step (state, &state->effects[i]);
+}
+
+static gdouble
+group_try_step (gpointer group, gdouble until_s)
+{
+  ClothLaneState *state = group;
+
+  state->dt = until_s - state->time;
+  return CLOTH_LANE_NAME (cloth_lane_implicit_solve) (state);
+}
+
+static void
+group_take_step (gpointer group, gdouble until_s)
+{
+  ClothLaneState *state = group;
+  gdouble start = state->time;
+
+  CLOTH_LANE_NAME (cloth_lane_implicit_take) (state);
+  finish_step (state, until_s);
+  check_sound (state, start);
+}
+
 static void
 group_advance (gpointer group, gdouble until_s, guint n_steps)
 {
@@ -331,14 +368,14 @@ group_advance (gpointer group, gdouble until_s, guint n_steps)
 
   state->dt = (until_s - start) / n_steps;
   for (guint step = 1; step <= n_steps; step++) {
-    CLOTH_LANE_NAME (cloth_lane_explicit) (state);
-    state->time = step == n_steps ? until_s :
-        start + (until_s - start) * step / n_steps;
-    CLOTH_LANE_NAME (cloth_lane_obstacles) (state);
-    CLOTH_LANE_NAME (cloth_lane_clamps) (state);
-    for (guint i = 0; i < state->n_effects; i++)
-      if (state->effects[i].hooks->after_step)
-        state->effects[i].hooks->after_step (state, &state->effects[i]);
+    if (state->implicit) {
+      CLOTH_LANE_NAME (cloth_lane_implicit_solve) (state);
+      CLOTH_LANE_NAME (cloth_lane_implicit_take) (state);
+    } else {
+      CLOTH_LANE_NAME (cloth_lane_explicit) (state);
+    }
+    finish_step (state, step == n_steps ? until_s :
+        start + (until_s - start) * step / n_steps);
   }
   check_sound (state, start);
 }
@@ -456,6 +493,7 @@ extern const ClothLaneBackend CLOTH_LANE_NAME (cloth_lane_backend);
 
 const ClothLaneBackend CLOTH_LANE_NAME (cloth_lane_backend) = {
   CLOTH_N_LANES, group_new, group_free, group_time_step, group_advance,
+  group_try_step, group_take_step,
   group_get, group_set, group_set_time, group_set_targets, group_diverged,
   group_energy
 };

@@ -20,6 +20,10 @@ typedef struct
   gdouble (*time_step) (gpointer group);
   /* the whole group to a time in so many equal steps */
   void (*advance) (gpointer group, gdouble until_s, guint n_steps);
+  /* an implicit step to a time: solves it and returns by how much it is too long, at most
+   * 1 when it is not; then takes it */
+  gdouble (*try_step) (gpointer group, gdouble until_s);
+  void (*take_step) (gpointer group, gdouble until_s);
   void (*get) (gpointer group, guint lane, gdouble * x, gdouble * v);
   void (*set) (gpointer group, guint lane, const gdouble * x,
       const gdouble * v);

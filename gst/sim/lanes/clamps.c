@@ -25,46 +25,61 @@ clamp_place (const ClothLaneState * state, guint held, gdouble time,
           place);
 }
 
+/* Where a clamp wants its particle at the end of a step; FALSE when it does not hold it
+ * then. Before the step the particle is at @before. One that is off its path when the
+ * clamp grips is drawn to it within one frame, not thrown. */
+gboolean
+CLOTH_LANE_NAME (cloth_lane_clamp_grips) (ClothLaneState * state, guint i,
+    gdouble time_s, const ClothLane before[3], ClothLane place[3])
+{
+  const ClothBodyHeld * held = &state->body->held[i];
+  gdouble start = time_s - state->dt;
+  ClothLane share;
+
+  /* half a step of tolerance: no clamp grips for a rounding error */
+  if (time_s < held->from_s + 0.5 * state->dt
+      || time_s > held->until_s + 0.5 * state->dt) {
+    state->held[i] = FALSE;
+    return FALSE;
+  }
+  if (!state->held[i]) {
+    state->held[i] = TRUE;
+    state->held_since[i] = start;
+    clamp_place (state, i, start, place);
+    for (guint k = 0; k < 3; k++) {
+      state->held_x[i][k] = before[k];
+      state->held_offset[i][k] = before[k] - place[k];
+    }
+  }
+  clamp_place (state, i, time_s, place);
+  share = cloth_lane_set (MAX (0., 1. - (time_s - state->held_since[i]) /
+          state->body->frame_s));
+  for (guint k = 0; k < 3; k++)
+    place[k] += share * state->held_offset[i][k];
+  return TRUE;
+}
+
 /* Puts held particles where their clamps are at the end of the step, which state->time
- * already says. One that is off its path when the clamp grips is drawn to it within one
- * frame, not thrown. */
+ * already says. */
 void CLOTH_LANE_NAME (cloth_lane_clamps) (ClothLaneState * state)
 {
   const ClothBody *body = state->body;
-  gdouble start = state->time - state->dt;
   ClothLane per_dt = cloth_lane_set (1. / state->dt);
   ClothLane dt = cloth_lane_set (state->dt);
   ClothMask hard = cloth_lane_equal (state->compliance, cloth_lane_set (0.));
 
   for (guint i = 0; i < body->n_held; i++) {
-    const ClothBodyHeld *held = &body->held[i];
-    guint p = held->particle;
-    ClothLane mass = state->compliance * state->mass[p], place[3], share;
+    guint p = body->held[i].particle;
+    ClothLane mass = state->compliance * state->mass[p], before[3], place[3];
 
-    /* half a step of tolerance: no clamp grips for a rounding error */
-    if (state->time < held->from_s + 0.5 * state->dt
-        || state->time > held->until_s + 0.5 * state->dt) {
-      state->held[i] = FALSE;
+    for (guint k = 0; k < 3; k++)
+      before[k] = state->x[p][k] - dt * state->v[p][k];
+    if (!CLOTH_LANE_NAME (cloth_lane_clamp_grips) (state, i, state->time,
+            before, place))
       continue;
-    }
-    if (!state->held[i]) {
-      state->held[i] = TRUE;
-      state->held_since[i] = start;
-      clamp_place (state, i, start, place);
-      for (guint k = 0; k < 3; k++) {
-        /* where it was before this step */
-        state->held_x[i][k] = state->x[p][k] - dt * state->v[p][k];
-        state->held_offset[i][k] = state->held_x[i][k] - place[k];
-      }
-    }
-    clamp_place (state, i, state->time, place);
-    share = cloth_lane_set (MAX (0., 1. - (state->time -
-                state->held_since[i]) / body->frame_s));
     for (guint k = 0; k < 3; k++) {
-      ClothLane free_v = state->v[p][k], x;
+      ClothLane free_v = state->v[p][k], x = before[k];
 
-      place[k] += share * state->held_offset[i][k];
-      x = state->x[p][k] - dt * free_v;
       /* the spring's force at the end of the step: stable however stiff it is */
       free_v = (free_v * mass + dt * (place[k] - x)) / (mass + dt * dt);
       state->x[p][k] = cloth_lane_select (hard, place[k], x + dt * free_v);

@@ -80,8 +80,16 @@ CLOTH_LANE_NAME (cloth_lane_explicit_time_step) (const ClothLaneState * state)
 {
   ClothLane four = cloth_lane_set (4.), least = cloth_lane_set (1e-6);
   /* even when nothing is stiff there is a step */
-  ClothLane stiff = cloth_lane_max (state->omega2 + state->targets.gain, least);
+  ClothLane omega2 = state->omega2 + state->targets.gain;
   ClothLane friction = state->friction + state->targets.damping;
+  ClothLane stiff;
+
+  /* of an implicit step effects alone are explicit */
+  if (state->implicit) {
+    omega2 = state->omega2 - state->own_omega2;
+    friction = state->friction - state->own_friction;
+  }
+  stiff = cloth_lane_max (omega2, least);
 
   return four * cloth_lane_set (MARGIN) / (friction +
       cloth_lane_sqrt (friction * friction + four * stiff));

@@ -2,7 +2,7 @@
  * each with a damper; its bend springs are those of bending.c.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/lanes/state.h"
+#include "gst/sim/lanes/stiffness.h"
 
 /* What the effects' change of the rest shape does to the length of a spring. */
 CLOTH_LANE_INLINE ClothLane
@@ -94,4 +94,25 @@ CLOTH_LANE_NAME (cloth_lane_springs_energy) (const ClothLaneState * state)
         split (stretch, state->compression_ratio);
   }
   return energy;
+}
+
+/* Each spring's part of an implicit step's matrix. */
+void CLOTH_LANE_NAME (cloth_lane_springs_links) (const ClothLaneState * state,
+    ClothLaneLink * links)
+{
+  ClothLane zero = cloth_lane_set (0.), one = cloth_lane_set (1.);
+
+  for (guint i = 0; i < state->body->n_springs; i++) {
+    const ClothLaneSpring *s = &state->springs[i];
+    ClothLaneLink *link = &links[i];
+    ClothLane inverse, stretch;
+
+    stretch = stretch_of (state, s, state->rest_changed, link->along, &inverse);
+    for (guint k = 0; k < 3; k++)
+      link->along[k] *= inverse;
+    link->damped = spring_stiffness (state, s);
+    link->k = link->damped * cloth_lane_select (cloth_lane_less (stretch,
+            zero), state->compression_ratio, one);
+    link->g = link->damped * cloth_lane_max (stretch, zero) * inverse;
+  }
 }

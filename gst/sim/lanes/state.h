@@ -9,6 +9,7 @@
 
 typedef struct _ClothLaneHooks ClothLaneHooks;
 typedef struct _ClothLaneObstacles ClothLaneObstacles;
+typedef struct _ClothLaneImplicit ClothLaneImplicit;
 typedef ClothLane ClothLane3[3];
 
 /* An effect in a group. */
@@ -89,6 +90,7 @@ typedef struct
   ClothLane metric[9];          /* @rest's act on the three products of ∂x */
   ClothLane rest_area;          /* over the area in uv */
   ClothLane omega2, friction;   /* bounds: stiffness/mass and damping/mass */
+  ClothLane own_omega2, own_friction;   /* without effects */
 
   guint n_effects;
   ClothLaneEffect *effects;
@@ -103,6 +105,7 @@ typedef struct
   ClothLane3 *held_x;
 
   ClothLaneObstacles *obstacles;
+  ClothLaneImplicit *implicit;  /* NULL: symplectic Euler */
 
   gdouble time;                 /* s */
   gdouble dt;                   /* of the running step, s */
@@ -156,6 +159,8 @@ ClothLane CLOTH_LANE_NAME (cloth_lane_bending_energy) (const ClothLaneState *
 void CLOTH_LANE_NAME (cloth_lane_targets) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_clamps) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_clamps_reset) (ClothLaneState * state);
+gboolean CLOTH_LANE_NAME (cloth_lane_clamp_grips) (ClothLaneState * state,
+    guint held, gdouble time_s, const ClothLane before[3], ClothLane place[3]);
 ClothLaneObstacles *CLOTH_LANE_NAME (cloth_lane_obstacles_new) (const
     ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_obstacles_free) (ClothLaneState * state);
@@ -163,6 +168,11 @@ void CLOTH_LANE_NAME (cloth_lane_obstacles) (ClothLaneState * state);
 /* All forces but inertia at x and v into f. */
 void CLOTH_LANE_NAME (cloth_lane_forces) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_explicit) (ClothLaneState * state);
+ClothLaneImplicit *CLOTH_LANE_NAME (cloth_lane_implicit_new) (const
+    ClothLaneState * state);
+void CLOTH_LANE_NAME (cloth_lane_implicit_free) (ClothLaneImplicit * implicit);
+gdouble CLOTH_LANE_NAME (cloth_lane_implicit_solve) (ClothLaneState * state);
+void CLOTH_LANE_NAME (cloth_lane_implicit_take) (ClothLaneState * state);
 ClothLane CLOTH_LANE_NAME (cloth_lane_stiffness) (const ClothLaneState * state);
 ClothLane CLOTH_LANE_NAME (cloth_lane_explicit_time_step) (const
     ClothLaneState * state);
