@@ -22,7 +22,7 @@ if [ -z "${CLOTH_BUILD:-}" ]; then
   heading "Build"
   cd "$root"
   cloth_set_up_build --buildtype=release
-  ninja -C build
+  ninja -C build programs
   cd "$here"
 fi
 . "$root/pipelines/environment.sh"
