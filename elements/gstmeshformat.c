@@ -55,3 +55,20 @@ gst_mesh_post_error (GstElement * element, const gchar * doing,
       g_strdup_printf ("Cannot %s “%s”: %s", doing, location,
           error->message), NULL, __FILE__, GST_FUNCTION, __LINE__);
 }
+
+/* What the rooms work with, from what came with the caps. */
+ClothTopology *
+gst_mesh_copy_topology (const GstClothTopology * from)
+{
+  guint n_indices;
+  const guint32 *faces = gst_cloth_topology_get_faces (from, &n_indices);
+  guint n_vertices = gst_cloth_topology_get_n_vertices (from);
+  ClothTopology *to = cloth_topology_new (n_vertices, n_indices / 4);
+
+  to->columns = gst_cloth_topology_get_columns (from);
+  to->rows = gst_cloth_topology_get_rows (from);
+  memcpy (to->uv, gst_cloth_topology_get_uv (from, NULL),
+      2 * sizeof (gfloat) * n_vertices);
+  memcpy (to->faces, faces, sizeof (guint32) * n_indices);
+  return to;
+}

@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include <gst/gst.h>
+#include <gst/cloth/cloth.h>
 
 #include "gst/mesh/sequence.h"
 
@@ -12,6 +12,7 @@ G_BEGIN_DECLS
 #define GST_TYPE_MESH_FORMAT (gst_mesh_format_get_type ())
 GType gst_mesh_format_get_type (void);
 
+ClothTopology *gst_mesh_copy_topology (const GstClothTopology * from);
 void gst_mesh_post_error (GstElement * element, const gchar * doing,
     const gchar * location, gboolean writing, const GError * error);
 

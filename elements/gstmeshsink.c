@@ -73,22 +73,6 @@ fail (GstMeshSink * self, const gchar * doing, const GError * error)
   gst_mesh_post_error (GST_ELEMENT (self), doing, self->location, TRUE, error);
 }
 
-static ClothTopology *
-copy_topology (const GstClothTopology * from)
-{
-  guint n_indices;
-  const guint32 *faces = gst_cloth_topology_get_faces (from, &n_indices);
-  guint n_vertices = gst_cloth_topology_get_n_vertices (from);
-  ClothTopology *to = cloth_topology_new (n_vertices, n_indices / 4);
-
-  to->columns = gst_cloth_topology_get_columns (from);
-  to->rows = gst_cloth_topology_get_rows (from);
-  memcpy (to->uv, gst_cloth_topology_get_uv (from, NULL),
-      2 * sizeof (gfloat) * n_vertices);
-  memcpy (to->faces, faces, sizeof (guint32) * n_indices);
-  return to;
-}
-
 static gboolean
 gst_mesh_sink_set_caps (GstBaseSink * sink, GstCaps * caps)
 {
@@ -104,7 +88,7 @@ gst_mesh_sink_set_caps (GstBaseSink * sink, GstCaps * caps)
             error->message), ("%" GST_PTR_FORMAT, caps));
     return FALSE;
   }
-  topology = copy_topology (parsed);
+  topology = gst_mesh_copy_topology (parsed);
   gst_structure_get_fraction (gst_caps_get_structure (caps, 0), "framerate",
       &fps_n, &fps_d);
   if (self->writer && (!cloth_topology_equal (topology, self->topology) ||

@@ -4,6 +4,7 @@
 #include "gst/mesh/takeinfo.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "gst/mesh/obstaclejson.h"
 
@@ -361,4 +362,37 @@ cloth_take_info_free (ClothTakeInfo * info)
   g_array_unref (info->obstacles);
   g_array_unref (info->seams);
   g_free (info);
+}
+
+/**
+ * cloth_take_info_copy:
+ * @info: a description
+ *
+ * For another take of the same scene. The files that it names have no folders any more,
+ * which the other take need not have.
+ *
+ * Returns: (transfer full): a description
+ * Since: 0.1
+ */
+ClothTakeInfo *
+cloth_take_info_copy (const ClothTakeInfo * info)
+{
+  g_autofree gchar *json = cloth_take_info_to_json (info);
+  ClothTakeInfo *copy = cloth_take_info_parse (json, strlen (json), NULL);
+
+  if (copy->mesh) {
+    g_free (copy->mesh);
+    copy->mesh = g_strdup ("mesh.obj");
+  }
+  g_array_unref (copy->obstacles);
+  copy->obstacles = cloth_obstacles_copy (info->obstacles);
+  for (guint i = 0; i < copy->obstacles->len; i++) {
+    ClothObstacle *item = &g_array_index (copy->obstacles, ClothObstacle, i);
+
+    if (item->kind != CLOTH_OBSTACLE_MESH)
+      continue;
+    g_free (item->mesh);
+    item->mesh = g_strdup_printf ("obstacle-%u.obj", i);
+  }
+  return copy;
 }

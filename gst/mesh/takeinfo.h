@@ -75,6 +75,7 @@ ClothTakeInfo *cloth_take_info_new (const gchar * name);
 ClothTakeInfo *cloth_take_info_parse (const gchar * json, gsize size,
     GError ** error);
 gchar *cloth_take_info_to_json (const ClothTakeInfo * info);
+ClothTakeInfo *cloth_take_info_copy (const ClothTakeInfo * info);
 void cloth_take_info_free (ClothTakeInfo * info);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothTakeInfo, cloth_take_info_free)

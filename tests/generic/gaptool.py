@@ -8,6 +8,7 @@ SPDX-License-Identifier: LGPL-2.1-or-later
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -85,6 +86,74 @@ def simulate(folder):
            (1000 * (windy[-1, :, 1].mean() - got[-1, :, 1].mean())))
 
 
+def diagnose(folder):
+    done = run(folder, 'diagnose', 'a', '--model', knit, '--effects', 'air_drag,wind',
+               '--seed', '5', '--threads', '2', '--output', 'deep/gap')
+    expect(done.returncode == 0, 'diagnose ' + done.stderr[-200:])
+    lines = done.stdout.splitlines()
+    with open(os.path.join(folder, 'deep/gap/gap.json'), encoding='utf-8') as file:
+        gap = json.load(file)
+    expect(len(lines) == 2 and lines[0] == '%s: %s' % (gap['verdict'], gap['summary']) and
+           lines[1] == 'deep/gap/report.html', 'summary and report: %s' % lines)
+    expect(gap['seed'] == 5 and sorted(os.listdir(os.path.join(folder, 'deep/gap'))) ==
+           ['gap.json', 'report.html'], 'gap.json and report.html')
+    told = [int(line.split('%')[0]) for line in done.stderr.splitlines() if '%' in line]
+    expect(told == sorted(told) and 1 <= len(told) <= 11 and '\r' not in done.stderr,
+           'sparse progress: %s' % told)
+    done = run(folder, 'diagnose', 'a', '--model', knit, '--effects', 'wind', '--output',
+               'deep/gap', '--baseline', 'c', '--hold-out', 'w')
+    expect(done.returncode == 0, 'with a baseline and a hold-out ' + done.stderr[-200:])
+
+
+def interrupt(folder):
+    child = subprocess.Popen([tool, 'diagnose', drop, '--model', knit, '--output', 'stopped'],
+                             cwd=folder, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    child.stderr.readline()
+    child.send_signal(signal.SIGINT)
+    _, said = child.communicate(timeout=120)
+    expect(child.returncode == 1 and 'stopped' in said, 'SIGINT: ' + said.strip()[-80:])
+    expect(not os.path.exists(os.path.join(folder, 'stopped')), 'which leaves nothing')
+
+
+def refusals(folder):
+    # a take of another mesh
+    shutil.copytree(drop, os.path.join(folder, 'coarse'), copy_function=shutil.copyfile)
+    positions = numpy.load(os.path.join(drop, 'positions.npy'))
+    numpy.save(os.path.join(folder, 'coarse/positions.npy'), positions[:, :33 * 34])
+    with open(os.path.join(folder, 'coarse/take.json'), encoding='utf-8') as file:
+        take = json.load(file)
+    take['grid']['rows'] = 34
+    with open(os.path.join(folder, 'coarse/take.json'), 'w', encoding='utf-8') as file:
+        json.dump(take, file)
+    os.mkdir(os.path.join(folder, 'empty'))
+    good = ('--model', knit, '--output', 'x')
+    for arguments, code, text in [
+            ((), 2, 'name the takes'), ((drop,), 2, '--model'),
+            ((drop, '--model', knit), 2, '--output'),
+            (('--model', knit, '--output', 'x', '--baseline', drop), 2, 'name the takes'),
+            ((drop, *good, '--scene', drop), 2, '--scene'),
+            ((drop, *good, '--threads', '-1'), 2, '--threads'),
+            ((drop, *good, '--effects', 'air_drg'), 2, 'is it “air_drag”'),
+            ((drop, *good, '--effects', 'Air drag'), 2, '“air_drag”'),
+            ((drop, *good, '--effects', 'wind,zzzzzz'), 2, 'lists them all'),
+            ((drop, *good, '--effects', ','), 2, 'name effects'),
+            ((drop, *good, '--baseline', drop), 2, 'given twice'),
+            ((drop, *good, '--hold-out', 'a', '--baseline', 'a/'), 2, 'given twice'),
+            ((drop, drop, *good), 2, 'given twice'),
+            (('empty', *good), 1, 'no take.json'), (('nowhere', *good), 1, 'no take.json'),
+            ((drop, *good, '--baseline', 'a', 'nowhere'), 1, '“nowhere” is no take'),
+            ((drop, '--model', 'none.json', '--output', 'x'), 1, '--model: '),
+            ((drop, *good, '--baseline', 'coarse'), 1, '33×34'),
+            ((drop, '--model', knit, '--output', '/proc/x'), 1, 'another --output'),
+            ((drop, '--model', knit, '--output', knit), 1, 'another --output')]:
+        done = run(folder, 'diagnose', *arguments)
+        expect(done.returncode == code and text in done.stderr and not os.path.exists(
+            os.path.join(folder, 'x')), 'diagnose %s: %d %s' % (
+                ' '.join(arguments), done.returncode, done.stderr.split('\n')[0]))
+    done = run(folder, 'effects', '--model', knit)
+    expect(done.returncode == 2 and "diagnose's" in done.stderr, 'effects --model')
+
+
 def usage(folder):
     for arguments, text in [
             ((), 'effects or simulate'), (('diagnoze',), 'no command'),
@@ -131,6 +200,9 @@ def failures(folder):
 with tempfile.TemporaryDirectory(prefix='cloth-gaptool-') as scratch:
     effects(scratch)
     simulate(scratch)
+    diagnose(scratch)
+    interrupt(scratch)
+    refusals(scratch)
     usage(scratch)
     failures(scratch)
 sys.exit(1 if faults else 0)

@@ -1,0 +1,767 @@
+/* clothgap: where a mesh stream departs from a simulation of the cloth, and why.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+/**
+ * SECTION:element-clothgap
+ * @title: clothgap
+ * @short_description: holds a mesh stream against a simulation
+ *
+ * Simulates the cloth of `model` in the scene of the take `location` beside the stream,
+ * drawn to the meshes by weak springs, and puts what remains, recorded minus simulated
+ * position of every vertex, on each mesh as #GstClothGap. `clothoverlay` draws it.
+ *
+ * The stream time is the scene's: what comes before its first or after its last frame
+ * passes without a gap. A frame's gap needs the three frames behind it, so the meshes
+ * leave that much later.
+ *
+ * ## Messages
+ * `clothgap/score`, for each window: `time` and `duration` (nanoseconds of stream time),
+ * `rms` (double, metres: the simulation starts where the springs have brought it and runs
+ * free), `coverage` (double: the share of the vertices that were seen).
+ *
+ * `clothgap/verdict`, at the end and before EOS goes on: `verdict`, `summary`, `json` (all
+ * of gap.json; strings) and, with `output`, `report` (string: path of report.html). The
+ * whole recording is diagnosed then, which takes its time.
+ *
+ * After a flush, or when a new segment goes back in time, it starts anew.
+ *
+ * ## Example
+ * |[
+ * gst-launch-1.0 -m meshsrc location=take ! clothgap model=model.json location=take \
+ *     output=gap ! fakesink
+ * ]|
+ *
+ * Since: 0.1
+ */
+#ifdef HAVE_CONFIG_H
+#include "config.h"
+#endif
+
+#include "elements/gstclothgap.h"
+
+#include <math.h>
+
+#include "elements/gstclothgap-record.h"
+#include "elements/gstclothgap-settings.h"
+#include "elements/gstmeshformat.h"
+#include "gst/gap/front.h"
+#include "gst/gap/observer.h"
+
+GST_DEBUG_CATEGORY_STATIC (cloth_gap_debug);
+#define GST_CAT_DEFAULT cloth_gap_debug
+
+/* Of the springs: 1/s², and as a share of critical. */
+#define GAIN 100.0
+#define DAMPING_RATIO 0.5
+
+/* What waits for its turn: a mesh that has a gap to come, or what came between. */
+typedef struct
+{
+  GstMiniObject *object;        /* buffer or event */
+  gboolean is_frame;
+} Waiting;
+
+struct _GstClothGapElement
+{
+  GstElement parent;
+  GstPad *sinkpad, *srcpad;
+
+  /* with the object lock */
+  GstClothGapSettings settings;
+
+  gint cancelled;               /* atomic */
+
+  /* from start to stop */
+  ClothModel *model;
+  ClothTake *take, *baseline;
+  gchar **effects;
+  ClothScene *scene;
+  ClothObserver *observer;
+
+  /* with the stream lock; fps also with the object lock */
+  GstSegment segment;
+  gint fps_n, fps_d;            /* 0/1: not known */
+  guint n_vertices;             /* 0: no caps yet */
+  GQueue waiting;
+  guint64 n_frames;             /* that came in since the beginning */
+  gdouble last_time;
+  gboolean new_segment, warned;
+  GstClothGapRecord *record;
+  gfloat *residuals, *sigmas;
+};
+
+static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE ("sink",
+    GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS (GST_CLOTH_MESH_CAPS));
+static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE ("src",
+    GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS (GST_CLOTH_MESH_CAPS));
+
+G_DEFINE_TYPE (GstClothGapElement, gst_cloth_gap_element, GST_TYPE_ELEMENT);
+GST_ELEMENT_REGISTER_DEFINE_WITH_CODE (clothgap, "clothgap", GST_RANK_NONE,
+    GST_TYPE_CLOTH_GAP_ELEMENT, GST_DEBUG_CATEGORY_INIT (cloth_gap_debug,
+        "clothgap", 0, "recorded against simulated cloth"));
+
+/* ---- what waits ---- */
+
+static GstFlowReturn
+send (GstClothGapElement * self, GstMiniObject * object)
+{
+  if (GST_IS_BUFFER (object))
+    return gst_pad_push (self->srcpad, GST_BUFFER_CAST (object));
+  gst_pad_push_event (self->srcpad, GST_EVENT_CAST (object));
+  return GST_FLOW_OK;
+}
+
+/* Sends what need not wait for a frame. */
+static GstFlowReturn
+send_others (GstClothGapElement * self)
+{
+  GstFlowReturn flow = GST_FLOW_OK;
+  Waiting *first;
+
+  while (flow == GST_FLOW_OK && (first = g_queue_peek_head (&self->waiting)) &&
+      !first->is_frame) {
+    g_queue_pop_head (&self->waiting);
+    flow = send (self, first->object);
+    g_free (first);
+  }
+  return flow;
+}
+
+static GstFlowReturn
+enqueue (GstClothGapElement * self, gpointer object, gboolean is_frame)
+{
+  Waiting *waiting = g_new (Waiting, 1);
+
+  waiting->object = object;
+  waiting->is_frame = is_frame;
+  g_queue_push_tail (&self->waiting, waiting);
+  return is_frame ? GST_FLOW_OK : send_others (self);
+}
+
+static void
+free_waiting (gpointer data)
+{
+  Waiting *waiting = data;
+
+  gst_mini_object_unref (waiting->object);
+  g_free (waiting);
+}
+
+/* A new recording; frames of the old one that still wait lose their turn. */
+static void
+restart (GstClothGapElement * self)
+{
+  if (self->observer)
+    cloth_observer_restart (self->observer);
+  g_clear_pointer (&self->record, gst_cloth_gap_record_free);
+  self->n_frames = 0;
+}
+
+/* ---- frames ---- */
+
+static void
+post_score (GstClothGapElement * self, gboolean last)
+{
+  ClothObserverScore score;
+
+  if (!cloth_observer_take_score (self->observer, last, &score))
+    return;
+  GST_DEBUG_OBJECT (self, "%.3f s … %.3f s: %.2f mm, %.0f%% seen",
+      score.from_s, score.to_s, 1000 * score.rms, 100 * score.coverage);
+  gst_element_post_message (GST_ELEMENT (self),
+      gst_message_new_element (GST_OBJECT (self),
+          gst_structure_new ("clothgap/score",
+              "time", G_TYPE_UINT64, (guint64) (score.from_s * 1e9 + 0.5),
+              "duration", G_TYPE_UINT64,
+              (guint64) ((score.to_s - score.from_s) * 1e9 + 0.5),
+              "rms", G_TYPE_DOUBLE, score.rms,
+              "coverage", G_TYPE_DOUBLE, score.coverage, NULL)));
+}
+
+/* Of a coordinate: from the mesh's covariances, else what the scene's take says. */
+static void
+find_sigmas (GstClothGapElement * self, const GstClothMesh * mesh)
+{
+  const gfloat *c = gst_cloth_mesh_get_covariances (mesh, NULL);
+  gfloat noise = (gfloat) cloth_take_get_info (self->take)->noise_sigma_m;
+
+  for (gsize i = 0; i < self->n_vertices; i++)
+    self->sigmas[i] = c ? sqrtf ((c[6 * i] + c[6 * i + 3] + c[6 * i + 5]) / 3) :
+        noise;
+}
+
+static GstFlowReturn
+send_frame (GstClothGapElement * self)
+{
+  g_autoptr (GError) error = NULL;
+  Waiting *waiting;
+  GstBuffer *buffer;
+  guint64 sequence;
+  GstFlowReturn flow;
+
+  if (!cloth_observer_pop (self->observer, self->residuals, &error)) {
+    GST_ELEMENT_ERROR (self, STREAM, FAILED, ("%s", error->message),
+        ("model=%s", self->settings.model));
+    return GST_FLOW_ERROR;
+  }
+  flow = send_others (self);
+  waiting = g_queue_pop_head (&self->waiting);
+  buffer = GST_BUFFER_CAST (waiting->object);
+  g_free (waiting);
+  {
+    g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_from_buffer (buffer, NULL);
+
+    sequence = gst_cloth_mesh_get_sequence (mesh);
+    find_sigmas (self, mesh);
+  }
+  buffer = gst_buffer_make_writable (buffer);
+  gst_buffer_add_cloth_gap_meta (buffer, gst_cloth_gap_new (sequence,
+          self->n_vertices, self->residuals, self->sigmas));
+  post_score (self, FALSE);
+  if (flow == GST_FLOW_OK)
+    flow = gst_pad_push (self->srcpad, buffer);
+  else
+    gst_buffer_unref (buffer);
+  return flow == GST_FLOW_OK ? send_others (self) : flow;
+}
+
+static GstFlowReturn
+send_ready (GstClothGapElement * self, guint latency)
+{
+  GstFlowReturn flow = GST_FLOW_OK;
+
+  while (flow == GST_FLOW_OK && self->observer &&
+      cloth_observer_get_n_waiting (self->observer) > latency)
+    flow = send_frame (self);
+  return flow;
+}
+
+/* Everything leaves: the last frames make do with those before them. */
+static GstFlowReturn
+drain (GstClothGapElement * self)
+{
+  GstFlowReturn flow = send_ready (self, 0);
+
+  return flow == GST_FLOW_OK ? send_others (self) : flow;
+}
+
+/* Seconds of the scene; NaN when the buffer has no time and the caps no rate. */
+static gdouble
+find_time (GstClothGapElement * self, GstBuffer * buffer)
+{
+  guint64 time = GST_CLOCK_TIME_NONE;
+
+  if (GST_BUFFER_PTS_IS_VALID (buffer) &&
+      self->segment.format == GST_FORMAT_TIME)
+    time = gst_segment_to_stream_time (&self->segment, GST_FORMAT_TIME,
+        GST_BUFFER_PTS (buffer));
+  if (GST_CLOCK_TIME_IS_VALID (time))
+    return (gdouble) time / GST_SECOND;
+  if (self->fps_n <= 0)
+    return NAN;
+  return self->scene->times[0] +
+      (gdouble) self->n_frames * self->fps_d / self->fps_n;
+}
+
+/* Without clamps a scene has no end. */
+static gboolean
+is_in_scene (const GstClothGapElement * self, gdouble time)
+{
+  const ClothScene *scene = self->scene;
+  gdouble slack = 0.5 / scene->fps;
+
+  return scene->held->len == 0 || scene->n_frames < 2 ||
+      (time > scene->times[0] - slack &&
+      time < scene->times[scene->n_frames - 1] + slack);
+}
+
+/* Passes a mesh that can't be scored, and says why, once. */
+static GstFlowReturn
+let_pass (GstClothGapElement * self, GstBuffer * buffer, gdouble time)
+{
+  if (!self->warned) {
+    const ClothScene *scene = self->scene;
+
+    self->warned = TRUE;
+    if (is_in_scene (self, time))
+      GST_ELEMENT_WARNING (self, STREAM, FORMAT,
+          ("The mesh at %.3f s is not later than the one before, and passes "
+              "without a gap; times must rise", time), (NULL));
+    else
+      GST_ELEMENT_WARNING (self, STREAM, FORMAT,
+          ("The mesh at %.3f s lies outside the scene, which knows its clamps "
+              "from %.3f s to %.3f s, and passes without a gap; set location= "
+              "to the take of this recording", time, scene->times[0],
+              scene->times[scene->n_frames - 1]), (NULL));
+  }
+  return enqueue (self, buffer, FALSE);
+}
+
+static gboolean
+record_frame (GstClothGapElement * self, gdouble time,
+    const GstClothMesh * mesh)
+{
+  g_autoptr (GError) error = NULL;
+
+  if (!self->record)
+    self->record = gst_cloth_gap_record_new (cloth_take_get_info (self->take),
+        self->scene, &error);
+  if (self->record && gst_cloth_gap_record_append (self->record, time, mesh,
+          &error))
+    return TRUE;
+  GST_ELEMENT_ERROR (self, RESOURCE, WRITE,
+      ("Can't keep the recording for its diagnosis: %s", error->message),
+      ("Make room in %s, or set TMPDIR to a folder that has.",
+          g_get_tmp_dir ()));
+  return FALSE;
+}
+
+static GstFlowReturn
+gst_cloth_gap_element_chain (GstPad * pad, GstObject * parent,
+    GstBuffer * buffer)
+{
+  GstClothGapElement *self = GST_CLOTH_GAP_ELEMENT (parent);
+  g_autoptr (GError) error = NULL;
+  g_autoptr (GstClothMesh) mesh = NULL;
+  gdouble time;
+
+  if (self->n_vertices == 0) {
+    gst_buffer_unref (buffer);
+    return GST_FLOW_NOT_NEGOTIATED;
+  }
+  mesh = gst_cloth_mesh_from_buffer (buffer, &error);
+  if (!mesh || gst_cloth_mesh_get_n_vertices (mesh) != self->n_vertices) {
+    if (!mesh)
+      GST_ELEMENT_ERROR (self, STREAM, DECODE,
+          ("A buffer holds no valid mesh: %s", error->message), (NULL));
+    else
+      GST_ELEMENT_ERROR (self, STREAM, DECODE,
+          ("A mesh of %u vertices in a stream of %u",
+              gst_cloth_mesh_get_n_vertices (mesh), self->n_vertices), (NULL));
+    gst_buffer_unref (buffer);
+    return GST_FLOW_ERROR;
+  }
+  time = find_time (self, buffer);
+  if (isnan (time)) {
+    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+        ("A mesh has neither a time nor its stream a frame rate"),
+        ("Stamp the buffers, or give the caps a framerate."));
+    gst_buffer_unref (buffer);
+    return GST_FLOW_ERROR;
+  }
+  if (self->n_frames > 0 && time <= self->last_time && self->new_segment) {
+    GST_INFO_OBJECT (self, "back to %.3f s: a new recording", time);
+    restart (self);
+  }
+  self->new_segment = FALSE;
+  if (!is_in_scene (self, time) ||
+      (self->n_frames > 0 && time <= self->last_time))
+    return let_pass (self, buffer, time);
+  if (!record_frame (self, time, mesh)) {
+    gst_buffer_unref (buffer);
+    return GST_FLOW_ERROR;
+  }
+  cloth_observer_push (self->observer, time,
+      gst_cloth_mesh_get_positions (mesh, NULL));
+  g_clear_pointer (&mesh, gst_cloth_mesh_unref);
+  self->last_time = time;
+  self->n_frames++;
+  enqueue (self, buffer, TRUE);
+  return send_ready (self, CLOTH_OBSERVER_LATENCY);
+}
+
+/* ---- the end ---- */
+
+static gboolean
+go_on (gpointer data, gdouble share, const gchar * what)
+{
+  GstClothGapElement *self = data;
+
+  GST_LOG_OBJECT (self, "%.0f%% %s", 100 * share, what);
+  return !g_atomic_int_get (&self->cancelled);
+}
+
+static gboolean
+post_verdict (GstClothGapElement * self, const ClothGapResult * result,
+    GError ** error)
+{
+  const gchar *output = self->settings.output;
+  const gchar *verdict = cloth_gap_verdict_name (result->verdict);
+  g_autofree gchar *summary = cloth_gap_result_summary (result);
+  g_autofree gchar *json = cloth_gap_result_to_json (result);
+  GstStructure *structure = gst_structure_new ("clothgap/verdict",
+      "verdict", G_TYPE_STRING, verdict, "summary", G_TYPE_STRING, summary,
+      "json", G_TYPE_STRING, json, NULL);
+
+  GST_INFO_OBJECT (self, "%s: %s", verdict, summary);
+  if (output) {
+    g_autofree gchar *report = g_build_filename (output, "report.html", NULL);
+
+    if (!cloth_gap_result_write (result, output, error)) {
+      gst_structure_free (structure);
+      return FALSE;
+    }
+    gst_structure_set (structure, "report", G_TYPE_STRING, report, NULL);
+  }
+  gst_element_post_message (GST_ELEMENT (self),
+      gst_message_new_element (GST_OBJECT (self), structure));
+  return TRUE;
+}
+
+static void
+finish (GstClothGapElement * self)
+{
+  const ClothGapOptions options = { &self->baseline, self->baseline ? 1 : 0,
+    NULL, 0, (const gchar * const *) self->effects, self->settings.seed,
+    self->settings.threads,
+    go_on, self
+  };
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothGapResult) result = NULL;
+
+  if (drain (self) != GST_FLOW_OK)
+    return;
+  post_score (self, TRUE);
+  if (!self->record) {
+    GST_ELEMENT_ERROR (self, STREAM, FAILED,
+        ("The stream ended without a mesh to diagnose"),
+        ("No mesh came%s.", self->warned ?
+            " whose time is the scene's; set location= to its own take" : ""));
+    return;
+  }
+  result = gst_cloth_gap_record_diagnose (self->record, self->model, &options,
+      &error);
+  g_clear_pointer (&self->record, gst_cloth_gap_record_free);
+  if (result && post_verdict (self, result, &error))
+    return;
+  if (result)
+    GST_ELEMENT_ERROR (self, RESOURCE, WRITE,
+        ("Can't write the report: %s", error->message),
+        ("Set output= to a folder that can be written."));
+  else if (!g_error_matches (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_CANCELLED))
+    GST_ELEMENT_ERROR (self, STREAM, FAILED,
+        ("Can't diagnose the recording: %s", error->message), (NULL));
+}
+
+/* ---- events and queries ---- */
+
+static gboolean
+set_caps (GstClothGapElement * self, GstCaps * caps)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (GstClothTopology) parsed =
+      gst_cloth_topology_from_caps (caps, &error);
+  g_autoptr (ClothTopology) topology = NULL;
+  gint fps_n = 0, fps_d = 1;
+
+  if (!parsed) {
+    GST_ELEMENT_ERROR (self, STREAM, FORMAT, ("The caps hold no valid mesh: %s",
+            error->message), ("%" GST_PTR_FORMAT, caps));
+    return FALSE;
+  }
+  topology = gst_mesh_copy_topology (parsed);
+  if (!cloth_gap_check_same_cloth ("the stream", topology, "the take",
+          self->scene->topology, &error)) {
+    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+        ("The stream is not of the scene's cloth: %s", error->message),
+        ("location=%s", self->settings.location));
+    return FALSE;
+  }
+  gst_structure_get_fraction (gst_caps_get_structure (caps, 0), "framerate",
+      &fps_n, &fps_d);
+  if (self->n_vertices == 0) {
+    self->n_vertices = topology->n_vertices;
+    self->residuals = g_new (gfloat, 3 * (gsize) self->n_vertices);
+    self->sigmas = g_new (gfloat, self->n_vertices);
+  }
+  GST_OBJECT_LOCK (self);
+  self->fps_n = fps_n;
+  self->fps_d = fps_d;
+  GST_OBJECT_UNLOCK (self);
+  gst_element_post_message (GST_ELEMENT (self),
+      gst_message_new_latency (GST_OBJECT (self)));
+  return TRUE;
+}
+
+static gboolean
+set_segment (GstClothGapElement * self, GstEvent * event)
+{
+  gst_event_copy_segment (event, &self->segment);
+  self->new_segment = TRUE;
+  if (self->segment.rate > 0)
+    return TRUE;
+  GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+      ("A simulation can't run backwards"), ("Seek with a rate over 0."));
+  return FALSE;
+}
+
+static void
+flush (GstClothGapElement * self)
+{
+  g_queue_clear_full (&self->waiting, free_waiting);
+  restart (self);
+  gst_segment_init (&self->segment, GST_FORMAT_TIME);
+  self->warned = FALSE;
+  g_atomic_int_set (&self->cancelled, FALSE);
+}
+
+static gboolean
+gst_cloth_gap_element_sink_event (GstPad * pad, GstObject * parent,
+    GstEvent * event)
+{
+  GstClothGapElement *self = GST_CLOTH_GAP_ELEMENT (parent);
+  gboolean good = TRUE;
+
+  switch (GST_EVENT_TYPE (event)) {
+    case GST_EVENT_FLUSH_START:
+      g_atomic_int_set (&self->cancelled, TRUE);
+      break;
+    case GST_EVENT_FLUSH_STOP:
+      flush (self);
+      break;
+    case GST_EVENT_CAPS:{
+      GstCaps *caps;
+
+      gst_event_parse_caps (event, &caps);
+      drain (self);
+      good = set_caps (self, caps);
+      break;
+    }
+    case GST_EVENT_SEGMENT:
+      drain (self);
+      good = set_segment (self, event);
+      break;
+    case GST_EVENT_STREAM_START:
+    case GST_EVENT_SEGMENT_DONE:
+      drain (self);
+      break;
+    case GST_EVENT_EOS:
+      finish (self);
+      break;
+    default:
+      if (GST_EVENT_IS_SERIALIZED (event))
+        return enqueue (self, event, FALSE) == GST_FLOW_OK;
+      break;
+  }
+  if (good)
+    return gst_pad_push_event (self->srcpad, event);
+  gst_event_unref (event);
+  return FALSE;
+}
+
+static gboolean
+gst_cloth_gap_element_src_query (GstPad * pad, GstObject * parent,
+    GstQuery * query)
+{
+  GstClothGapElement *self = GST_CLOTH_GAP_ELEMENT (parent);
+  GstClockTime low, high, own = 0;
+  gboolean live;
+
+  if (GST_QUERY_TYPE (query) != GST_QUERY_LATENCY)
+    return gst_pad_query_default (pad, parent, query);
+  if (!gst_pad_peer_query (self->sinkpad, query))
+    return FALSE;
+  gst_query_parse_latency (query, &live, &low, &high);
+  GST_OBJECT_LOCK (self);
+  if (self->fps_n > 0)
+    own = gst_util_uint64_scale_int (CLOTH_OBSERVER_LATENCY * GST_SECOND,
+        self->fps_d, self->fps_n);
+  else if (self->scene)
+    own = (GstClockTime) (CLOTH_OBSERVER_LATENCY / self->scene->fps * 1e9);
+  GST_OBJECT_UNLOCK (self);
+  low += own;
+  if (GST_CLOCK_TIME_IS_VALID (high))
+    high += own;
+  gst_query_set_latency (query, live, low, high);
+  return TRUE;
+}
+
+/* ---- start and stop ---- */
+
+static gboolean
+fail_start (GstClothGapElement * self, const gchar * property,
+    const gchar * path, const GError * error)
+{
+  GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ, ("Can't use the %s: %s",
+          property, error->message), ("%s=%s", property, path));
+  return FALSE;
+}
+
+static gboolean
+require (GstClothGapElement * self, const gchar * value, const gchar * name,
+    const gchar * what)
+{
+  if (value)
+    return TRUE;
+  GST_ELEMENT_ERROR (self, RESOURCE, NOT_FOUND,
+      ("No %s given: set the property “%s” to %s", name, name, what),
+      (NULL));
+  return FALSE;
+}
+
+static gboolean
+load_baseline (GstClothGapElement * self, GError ** error)
+{
+  if (!self->settings.baseline)
+    return TRUE;
+  self->baseline = cloth_take_open (self->settings.baseline, error);
+  return self->baseline && cloth_gap_check_same_cloth ("the baseline",
+      cloth_take_get_topology (self->baseline), "the take of location",
+      cloth_take_get_topology (self->take), error);
+}
+
+static gboolean
+start (GstClothGapElement * self)
+{
+  const ClothObserverOptions options =
+      { GAIN, DAMPING_RATIO, self->settings.window,
+    self->settings.seed, self->settings.threads
+  };
+  const GstClothGapSettings *settings = &self->settings;
+  g_autoptr (GError) error = NULL;
+  ClothScene *scene;
+
+  if (!require (self, settings->model, "model", "a model.json") ||
+      !require (self, settings->location, "location",
+          "the folder of a take that gives clamps and obstacles"))
+    return FALSE;
+  self->model = cloth_model_load (settings->model, &error);
+  if (!self->model)
+    return fail_start (self, "model", settings->model, error);
+  self->take = cloth_take_open (settings->location, &error);
+  scene = self->take ? cloth_scene_new_from_take (self->take, &error) : NULL;
+  if (!scene)
+    return fail_start (self, "location", settings->location, error);
+  GST_OBJECT_LOCK (self);
+  self->scene = scene;
+  GST_OBJECT_UNLOCK (self);
+  if (!load_baseline (self, &error))
+    return fail_start (self, "baseline", settings->baseline, error);
+  self->effects = cloth_gap_effects_parse (settings->effects, &error);
+  if (error)
+    return fail_start (self, "effects", settings->effects, error);
+  self->observer = cloth_observer_new (scene, self->model, &options, &error);
+  if (!self->observer)
+    return fail_start (self, "model", settings->model, error);
+  flush (self);
+  return TRUE;
+}
+
+static void
+stop (GstClothGapElement * self)
+{
+  ClothScene *scene;
+
+  flush (self);
+  GST_OBJECT_LOCK (self);
+  scene = g_steal_pointer (&self->scene);
+  self->fps_n = 0;
+  GST_OBJECT_UNLOCK (self);
+  g_clear_pointer (&self->observer, cloth_observer_free);
+  g_clear_pointer (&scene, cloth_scene_free);
+  g_clear_pointer (&self->take, cloth_take_free);
+  g_clear_pointer (&self->baseline, cloth_take_free);
+  g_clear_pointer (&self->model, cloth_model_free);
+  g_clear_pointer (&self->effects, g_strfreev);
+  g_clear_pointer (&self->residuals, g_free);
+  g_clear_pointer (&self->sigmas, g_free);
+  self->n_vertices = 0;
+}
+
+static GstStateChangeReturn
+gst_cloth_gap_element_change_state (GstElement * element,
+    GstStateChange transition)
+{
+  GstClothGapElement *self = GST_CLOTH_GAP_ELEMENT (element);
+  GstStateChangeReturn result;
+
+  if (transition == GST_STATE_CHANGE_READY_TO_PAUSED && !start (self)) {
+    stop (self);
+    return GST_STATE_CHANGE_FAILURE;
+  }
+  /* A diagnosis holds the streaming thread, which has to end. */
+  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY)
+    g_atomic_int_set (&self->cancelled, TRUE);
+  result = GST_ELEMENT_CLASS
+      (gst_cloth_gap_element_parent_class)->change_state (element, transition);
+  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY ||
+      (transition == GST_STATE_CHANGE_READY_TO_PAUSED &&
+          result == GST_STATE_CHANGE_FAILURE))
+    stop (self);
+  return result;
+}
+
+/* ---- GObject ---- */
+
+static void
+gst_cloth_gap_element_set_property (GObject * object, guint id,
+    const GValue * value, GParamSpec * spec)
+{
+  GstClothGapElement *self = GST_CLOTH_GAP_ELEMENT (object);
+
+  GST_OBJECT_LOCK (self);
+  if (GST_STATE (self) > GST_STATE_READY)
+    GST_WARNING_OBJECT (self, "“%s” cannot change while running",
+        spec->name);
+  else
+    gst_cloth_gap_settings_set (&self->settings, id, value);
+  GST_OBJECT_UNLOCK (self);
+}
+
+static void
+gst_cloth_gap_element_get_property (GObject * object, guint id, GValue * value,
+    GParamSpec * spec)
+{
+  GstClothGapElement *self = GST_CLOTH_GAP_ELEMENT (object);
+
+  GST_OBJECT_LOCK (self);
+  gst_cloth_gap_settings_get (&self->settings, id, value);
+  GST_OBJECT_UNLOCK (self);
+}
+
+static void
+gst_cloth_gap_element_finalize (GObject * object)
+{
+  GstClothGapElement *self = GST_CLOTH_GAP_ELEMENT (object);
+
+  stop (self);
+  gst_cloth_gap_settings_clear (&self->settings);
+  G_OBJECT_CLASS (gst_cloth_gap_element_parent_class)->finalize (object);
+}
+
+static void
+gst_cloth_gap_element_class_init (GstClothGapElementClass * klass)
+{
+  GObjectClass *object_class = G_OBJECT_CLASS (klass);
+  GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
+
+  object_class->set_property = gst_cloth_gap_element_set_property;
+  object_class->get_property = gst_cloth_gap_element_get_property;
+  object_class->finalize = gst_cloth_gap_element_finalize;
+  element_class->change_state = gst_cloth_gap_element_change_state;
+  gst_cloth_gap_settings_install (object_class);
+  gst_element_class_add_static_pad_template (element_class, &sink_template);
+  gst_element_class_add_static_pad_template (element_class, &src_template);
+  gst_element_class_set_static_metadata (element_class, "Cloth gap",
+      "Filter/Analyzer",
+      "Says where a mesh stream departs from a simulation, and why",
+      PACKAGE_NAME);
+}
+
+static void
+gst_cloth_gap_element_init (GstClothGapElement * self)
+{
+  self->sinkpad = gst_pad_new_from_static_template (&sink_template, "sink");
+  gst_pad_set_chain_function (self->sinkpad, gst_cloth_gap_element_chain);
+  gst_pad_set_event_function (self->sinkpad, gst_cloth_gap_element_sink_event);
+  GST_PAD_SET_PROXY_CAPS (self->sinkpad);
+  gst_element_add_pad (GST_ELEMENT (self), self->sinkpad);
+  self->srcpad = gst_pad_new_from_static_template (&src_template, "src");
+  gst_pad_set_query_function (self->srcpad, gst_cloth_gap_element_src_query);
+  GST_PAD_SET_PROXY_CAPS (self->srcpad);
+  gst_element_add_pad (GST_ELEMENT (self), self->srcpad);
+  g_queue_init (&self->waiting);
+  gst_segment_init (&self->segment, GST_FORMAT_TIME);
+  gst_cloth_gap_settings_init (&self->settings);
+  self->fps_d = 1;
+}

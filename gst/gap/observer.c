@@ -1,0 +1,407 @@
+/* A simulation that follows a recording by weak springs, frame by frame.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/observer.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/math/linalg.h"
+#include "gst/mesh/hold.h"
+#include "gst/sim/sim.h"
+
+/* Frames of the polynomial that velocities come from, and its order (Savitzky & Golay
+ * 1964). Of fewer frames the order is lower, down to 2, so that noise is smoothed. */
+#define WINDOW (2 * CLOTH_OBSERVER_LATENCY + 1)
+#define ORDER 4
+#define MASKS (1u << WINDOW)
+
+/* The two copies of the model in the simulation. */
+#define NUDGED 0
+#define FREE 1
+
+typedef struct
+{
+  gdouble time;
+  gdouble *positions;           /* 3 a vertex, NaN when not seen */
+} Frame;
+
+struct _ClothObserver
+{
+  ClothObserverOptions options;
+  guint n;
+  ClothSim *sim;
+  ClothHold *hold;
+  guint64 n_pushed, n_popped;
+  Frame ring[WINDOW];           /* frame i at i % WINDOW */
+  /* of the frame that was popped last, and of the one that is */
+  gdouble *velocity[2];
+  gdouble *weights;             /* all 1 */
+  gdouble *state, *free_state, *speeds;
+  gfloat *start;
+  /* which frames of the window saw a vertex → their weights in its derivative */
+  gdouble table[MASKS][WINDOW];
+  gboolean known[MASKS];
+
+  /* the window that is scored */
+  gdouble window_from, window_to, sum;
+  guint64 n_seen, n_all;
+  gboolean has_score;
+  ClothObserverScore score;
+};
+
+/**
+ * cloth_observer_new:
+ * @scene: what is filmed; its clamps' paths are followed by its times
+ * @model: what the simulator knows of the cloth
+ * @options: how
+ * @error: #ClothSimError
+ *
+ * x″ = M⁻¹F(x, x′) + g·m·(y − x) + 2ζ√g·m·(y′ − x′), m whether a vertex is seen. It starts
+ * with the first frame that is pushed. The observer keeps nothing of @scene and @model.
+ *
+ * Returns: (transfer full): an observer, or %NULL
+ * Since: 0.1
+ */
+ClothObserver *
+cloth_observer_new (const ClothScene * scene, const ClothModel * model,
+    const ClothObserverOptions * options, GError ** error)
+{
+  const ClothSimOptions sim_options = { FALSE, options->threads,
+    CLOTH_SIMD_BEST, options->seed
+  };
+  const ClothModel *models[2] = { model, model };
+  ClothSim *sim = cloth_sim_new (scene, models, 2, &sim_options, error);
+  ClothObserver *self;
+  gsize n;
+
+  if (!sim)
+    return NULL;
+  self = g_new0 (ClothObserver, 1);
+  self->options = *options;
+  self->sim = sim;
+  self->n = scene->topology->n_vertices;
+  self->hold = cloth_hold_new (scene->topology);
+  n = 3 * (gsize) self->n;
+  for (guint i = 0; i < WINDOW; i++)
+    self->ring[i].positions = g_new (gdouble, n);
+  for (guint i = 0; i < 2; i++)
+    self->velocity[i] = g_new (gdouble, n);
+  self->state = g_new (gdouble, n);
+  self->free_state = g_new (gdouble, n);
+  self->speeds = g_new (gdouble, n);
+  self->start = g_new (gfloat, n);
+  self->weights = g_new (gdouble, self->n);
+  for (guint i = 0; i < self->n; i++)
+    self->weights[i] = 1.;
+  return self;
+}
+
+/**
+ * cloth_observer_restart:
+ * @observer: an observer
+ *
+ * Forgets all frames; the next one begins a new recording.
+ *
+ * Since: 0.1
+ */
+void
+cloth_observer_restart (ClothObserver * observer)
+{
+  observer->n_pushed = observer->n_popped = 0;
+  observer->n_all = 0;
+  observer->has_score = FALSE;
+}
+
+/**
+ * cloth_observer_push:
+ * @observer: an observer that has not more than %CLOTH_OBSERVER_LATENCY frames waiting
+ * @time_s: of the frame, seconds of the scene, later than the last one's
+ * @positions: 3 numbers a vertex, metres; NaN when not seen
+ *
+ * Gives it a frame.
+ *
+ * Since: 0.1
+ */
+void
+cloth_observer_push (ClothObserver * observer, gdouble time_s,
+    const gfloat * positions)
+{
+  Frame *frame = &observer->ring[observer->n_pushed++ % WINDOW];
+
+  frame->time = time_s;
+  for (gsize i = 0; i < 3 * (gsize) observer->n; i++)
+    frame->positions[i] = positions[i];
+}
+
+/**
+ * cloth_observer_get_n_waiting:
+ * @observer: an observer
+ *
+ * Returns: number of frames that were pushed and not popped. With more than
+ *   %CLOTH_OBSERVER_LATENCY the next one is ready; at the end of a recording all are
+ * Since: 0.1
+ */
+guint
+cloth_observer_get_n_waiting (const ClothObserver * observer)
+{
+  return (guint) (observer->n_pushed - observer->n_popped);
+}
+
+/* Weights of the frames of @mask, by age, whose sum is the derivative at the time @at of
+ * the polynomial that fits them. One frame alone has none. */
+static void
+find_weights (const ClothObserver * self, guint64 oldest, guint mask,
+    gdouble at, gdouble * weights)
+{
+  gdouble t[WINDOW], normal[(ORDER + 1) * (ORDER + 1)] = { 0 };
+  gdouble slope[ORDER + 1] = { 0, 1 };
+  gdouble powers[WINDOW][ORDER + 1], scale = 0;
+  guint n = 0, terms;
+
+  for (guint i = 0; i < WINDOW; i++) {
+    weights[i] = 0;
+    n += mask >> i & 1;
+    t[i] = mask >> i & 1 ? self->ring[(oldest + i) % WINDOW].time - at : 0;
+    scale = MAX (scale, fabs (t[i]));
+  }
+  if (n < 2) {
+    for (guint i = 0; i < WINDOW; i++)
+      weights[i] = NAN;
+    return;
+  }
+  /* A straight line through the first frames of a fall would be far off. */
+  terms = n == 2 ? 2 : MAX (3, n + ORDER + 1 - WINDOW);
+  for (guint i = 0; i < WINDOW; i++) {
+    powers[i][0] = 1;
+    for (guint k = 1; k < terms; k++)
+      powers[i][k] = powers[i][k - 1] * t[i] / scale;
+    for (guint k = 0; mask >> i & 1 && k < terms; k++)
+      for (guint l = 0; l < terms; l++)
+        normal[k * terms + l] += powers[i][k] * powers[i][l];
+  }
+  if (!cloth_cholesky_factor (terms, normal))
+    return;
+  cloth_cholesky_solve (terms, normal, slope);
+  for (guint i = 0; i < WINDOW; i++)
+    for (guint k = 0; mask >> i & 1 && k < terms; k++)
+      weights[i] += slope[k] * powers[i][k] / scale;
+}
+
+/* Velocities at the frame that is popped, from all that the ring holds. */
+static void
+find_velocities (ClothObserver * self, gdouble * velocity)
+{
+  guint64 oldest = self->n_pushed > WINDOW ? self->n_pushed - WINDOW : 0;
+  guint in_ring = (guint) (self->n_pushed - oldest);
+  gdouble at = self->ring[self->n_popped % WINDOW].time;
+  const gdouble *places[WINDOW];
+
+  memset (self->known, 0, sizeof self->known);
+  for (guint i = 0; i < in_ring; i++)
+    places[i] = self->ring[(oldest + i) % WINDOW].positions;
+  for (gsize v = 0; v < self->n; v++) {
+    guint mask = 0;
+    const gdouble *weights;
+
+    for (guint i = 0; i < in_ring; i++) {
+      const gdouble *p = places[i] + 3 * v;
+
+      if (isfinite (p[0] + p[1] + p[2]))
+        mask |= 1u << i;
+    }
+    weights = self->table[mask];
+    if (!self->known[mask]) {
+      find_weights (self, oldest, mask, at, self->table[mask]);
+      self->known[mask] = TRUE;
+    }
+    for (guint k = 0; k < 3; k++) {
+      gdouble sum = mask ? 0 : NAN;
+
+      for (guint i = 0; i < in_ring; i++)
+        if (mask >> i & 1)
+          sum += weights[i] * places[i][3 * v + k];
+      velocity[3 * v + k] = sum;
+    }
+  }
+}
+
+/* Both copies where the first frame saw the cloth. */
+static void
+begin (ClothObserver * self, const Frame * frame, const gdouble * velocity)
+{
+  gsize n = 3 * (gsize) self->n;
+  const gfloat *filled;
+
+  for (gsize i = 0; i < n; i++) {
+    self->start[i] = (gfloat) frame->positions[i];
+    self->speeds[i] = isfinite (velocity[i]) ? velocity[i] : 0;
+  }
+  filled = cloth_hold_apply (self->hold, self->start);
+  for (gsize i = 0; i < n; i++)
+    self->state[i] = filled[i];
+  for (guint model = NUDGED; model <= FREE; model++)
+    cloth_sim_set_state (self->sim, model, self->state, self->speeds,
+        frame->time);
+}
+
+static gboolean
+check_state (ClothObserver * self, GError ** error)
+{
+  for (guint model = NUDGED; model <= FREE; model++) {
+    gdouble since_s;
+
+    if (cloth_sim_get_state (self->sim, model, &since_s) == CLOTH_SIM_OK)
+      continue;
+    g_set_error (error, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_MODEL,
+        "the simulation blew up at %.3f s: set “time_step” of the model below "
+        "%g s or to 0, or lower the stiffnesses and damping.stiffness",
+        since_s, cloth_sim_get_time_step (self->sim));
+    return FALSE;
+  }
+  return TRUE;
+}
+
+/* The free copy goes on from where the springs have brought the other one. */
+static void
+open_window (ClothObserver * self, gdouble time)
+{
+  cloth_sim_get_velocities (self->sim, NUDGED, self->speeds);
+  cloth_sim_set_state (self->sim, FREE, self->state, self->speeds, time);
+  self->window_from = time;
+  self->sum = 0;
+  self->n_seen = self->n_all = 0;
+}
+
+static void
+close_window (ClothObserver * self)
+{
+  self->score.from_s = self->window_from;
+  self->score.to_s = self->window_to;
+  self->score.rms = self->n_seen > 0 ? sqrt (self->sum / self->n_seen) : NAN;
+  self->score.coverage = (gdouble) self->n_seen / self->n_all;
+  self->has_score = TRUE;
+}
+
+static void
+add_to_window (ClothObserver * self, const Frame * frame)
+{
+  cloth_sim_get_positions (self->sim, FREE, self->free_state);
+  for (gsize v = 0; v < self->n; v++) {
+    gdouble square = 0;
+
+    for (gsize k = 3 * v; k < 3 * v + 3; k++)
+      square += (frame->positions[k] - self->free_state[k]) *
+          (frame->positions[k] - self->free_state[k]);
+    if (isfinite (square)) {
+      self->sum += square;
+      self->n_seen++;
+    }
+  }
+  self->n_all += self->n;
+  self->window_to = frame->time;
+}
+
+/**
+ * cloth_observer_pop:
+ * @observer: an observer that has a frame waiting
+ * @residuals: (out caller-allocates): recorded minus simulated, 3 numbers a vertex,
+ *   metres; NaN when not seen
+ * @error: #ClothSimError when the simulation blew up
+ *
+ * Goes on by one frame. The first frame's residual is 0 where it was seen.
+ *
+ * Returns: %TRUE when there is a residual; after an error only
+ *   cloth_observer_restart () helps
+ * Since: 0.1
+ */
+gboolean
+cloth_observer_pop (ClothObserver * observer, gfloat * residuals,
+    GError ** error)
+{
+  ClothObserver *self = observer;
+  const Frame *frame = &self->ring[self->n_popped % WINDOW];
+  gdouble *velocity = self->velocity[self->n_popped % 2];
+  gdouble gain = self->options.gain;
+
+  find_velocities (self, velocity);
+  if (self->n_popped == 0) {
+    begin (self, frame, velocity);
+  } else {
+    const Frame *last = &self->ring[(self->n_popped - 1) % WINDOW];
+
+    cloth_sim_set_targets (self->sim, NUDGED, last->positions,
+        frame->positions, self->velocity[(self->n_popped - 1) % 2], velocity,
+        self->weights, gain, 2 * self->options.damping_ratio * sqrt (gain),
+        last->time, frame->time);
+    cloth_sim_advance (self->sim, frame->time);
+    if (!check_state (self, error))
+      return FALSE;
+    cloth_sim_get_positions (self->sim, NUDGED, self->state);
+    add_to_window (self, frame);
+  }
+  for (gsize i = 0; i < 3 * (gsize) self->n; i++)
+    residuals[i] = (gfloat) (frame->positions[i] - self->state[i]);
+  if (self->n_popped == 0) {
+    open_window (self, frame->time);
+  } else if (frame->time >= self->window_from +
+      self->options.window_s * (1 - 1e-6)) {
+    close_window (self);
+    open_window (self, frame->time);
+  }
+  self->n_popped++;
+  return TRUE;
+}
+
+/**
+ * cloth_observer_take_score:
+ * @observer: an observer
+ * @last: at the end of a recording: also score a window that is half full, or more
+ * @score: (out): the score
+ *
+ * To be asked after each frame that was popped, and at the end.
+ *
+ * Returns: %TRUE when a window was completed since it was asked last
+ * Since: 0.1
+ */
+gboolean
+cloth_observer_take_score (ClothObserver * observer, gboolean last,
+    ClothObserverScore * score)
+{
+  if (last && !observer->has_score && observer->n_all > 0 &&
+      observer->window_to - observer->window_from >=
+      0.5 * observer->options.window_s) {
+    close_window (observer);
+    observer->n_all = 0;
+  }
+  if (!observer->has_score)
+    return FALSE;
+  *score = observer->score;
+  observer->has_score = FALSE;
+  return TRUE;
+}
+
+/**
+ * cloth_observer_free:
+ * @observer: (transfer full) (nullable): an observer
+ *
+ * Since: 0.1
+ */
+void
+cloth_observer_free (ClothObserver * observer)
+{
+  if (!observer)
+    return;
+  for (guint i = 0; i < WINDOW; i++)
+    g_free (observer->ring[i].positions);
+  for (guint i = 0; i < 2; i++)
+    g_free (observer->velocity[i]);
+  g_free (observer->state);
+  g_free (observer->free_state);
+  g_free (observer->speeds);
+  g_free (observer->start);
+  g_free (observer->weights);
+  cloth_hold_free (observer->hold);
+  cloth_sim_free (observer->sim);
+  g_free (observer);
+}

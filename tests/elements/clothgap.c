@@ -1,0 +1,845 @@
+/* clothgap: residuals against the closed form of a damped oscillator, what travels in
+ * which order, refusals.
+ *
+ * A loose sheet falls; the recording falls more slowly by ACCELERATION. No inner force
+ * acts, so the distance e of recording and simulation obeys
+ * e″ = ACCELERATION − g·e − 2ζ√g·e′ and settles at ACCELERATION / g.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <gst/check/gstcheck.h>
+#include <gst/check/gstharness.h>
+#include <gst/cloth/cloth.h>
+#include <glib/gstdio.h>
+#include <json-glib/json-glib.h>
+#include <math.h>
+
+#include "gst/mesh/take.h"
+
+#define COLUMNS 4
+#define ROWS 3
+#define N (COLUMNS * ROWS)
+#define FPS 200
+#define N_FRAMES 240
+#define PER_WINDOW 60
+#define GRAVITY 9.81
+#define ACCELERATION 1.0
+#define GAIN 100.0
+#define LATENCY 3
+
+static gchar *folder;           /* of all files of this test */
+
+static gchar *
+in_folder (const gchar * name)
+{
+  return g_build_filename (folder, name, NULL);
+}
+
+/* ---- files ---- */
+
+static void
+put_model (const gchar * name, const gchar * keys)
+{
+  g_autofree gchar *path = in_folder (name);
+  g_autofree gchar *text = g_strdup_printf ("{\"version\": 1, "
+      "\"damping\": {\"mass\": 0, \"stiffness\": 0.0005}%s}", keys);
+
+  g_assert_true (g_file_set_contents (path, text, -1, NULL));
+}
+
+static void
+find_places (guint frame, gdouble acceleration, gfloat * places)
+{
+  gdouble t = (gdouble) frame / FPS;
+
+  for (guint i = 0; i < N; i++) {
+    places[3 * i] = 0.1f * (gfloat) (i % COLUMNS);
+    places[3 * i + 1] = 0.1f * (gfloat) (i / COLUMNS);
+    places[3 * i + 2] = (gfloat) (5 - 0.5 * (GRAVITY - acceleration) * t * t);
+  }
+}
+
+static void
+put_take (const gchar * name, guint columns, guint rows, gboolean held)
+{
+  g_autofree gchar *path = in_folder (name);
+  g_autoptr (ClothTakeInfo) info = cloth_take_info_new (name);
+  g_autoptr (ClothTopology) topology =
+      cloth_topology_new_grid (columns, rows, 0.1f * (gfloat) (columns - 1),
+      0.1f * (gfloat) (rows - 1));
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothTakeWriter) writer = NULL;
+  g_autofree gfloat *places = g_new0 (gfloat, 3 * columns * rows + 3 * N);
+  g_autofree guint8 *states = g_malloc0 (columns * rows + N);
+  const ClothHeld corner = { 0, -INFINITY, INFINITY };
+
+  info->fps = FPS;
+  info->columns = columns;
+  info->rows = rows;
+  info->width_m = 0.1 * (columns - 1);
+  info->height_m = 0.1 * (rows - 1);
+  info->noise_sigma_m = 0.0004;
+  if (held)
+    g_array_append_val (info->held, corner);
+  memset (states, CLOTH_VERTEX_MEASURED, columns * rows);
+  writer = cloth_take_writer_new (path, info, topology, &error);
+  g_assert_no_error (error);
+  for (guint frame = 0; frame < N_FRAMES; frame++) {
+    find_places (frame, ACCELERATION, places);
+    cloth_take_writer_append (writer, (gdouble) frame / FPS, places, states,
+        NULL, held ? places : NULL, &error);
+    g_assert_no_error (error);
+  }
+  cloth_take_writer_close (writer, &error);
+  g_assert_no_error (error);
+}
+
+static void
+make_files (void)
+{
+  folder = g_dir_make_tmp ("clothgap-test-XXXXXX", NULL);
+  g_assert_nonnull (folder);
+  /* short steps: the closed form has none */
+  put_model ("model.json", ", \"time_step\": 0.0002");
+  put_model ("wild.json", ", \"time_step\": 0.02, \"stretch\": "
+      "{\"warp\": 100000, \"weft\": 100000}");
+  put_model ("bad.json", ", \"shear\": -4");
+  put_take ("take", COLUMNS, ROWS, FALSE);
+  put_take ("held", COLUMNS, ROWS, TRUE);
+  put_take ("other", COLUMNS + 1, ROWS, FALSE);
+}
+
+static void
+remove_all (const gchar * path)
+{
+  GDir *dir = g_dir_open (path, 0, NULL);
+  const gchar *name;
+
+  while (dir && (name = g_dir_read_name (dir))) {
+    g_autofree gchar *inside = g_build_filename (path, name, NULL);
+
+    remove_all (inside);
+  }
+  if (dir)
+    g_dir_close (dir);
+  g_remove (path);
+}
+
+/* ---- harness ---- */
+
+typedef struct
+{
+  GstHarness *h;
+  GstBus *bus;
+} Setup;
+
+static GstElement *
+make_element (const gchar * model, const gchar * take, const gchar * more)
+{
+  g_autofree gchar *text =
+      g_strdup_printf ("clothgap %s%s%s %s%s%s effects=air_drag %s",
+      model ? "model=" : "", model ? folder : "", model ? model : "",
+      take ? "location=" : "", take ? folder : "", take ? take : "", more);
+  g_autoptr (GError) error = NULL;
+  GstElement *element = gst_parse_launch (text, &error);
+
+  g_assert_no_error (error);
+  return gst_object_ref_sink (element);
+}
+
+static GstCaps *
+make_caps (guint columns, guint rows, gfloat step, gint fps)
+{
+  g_autoptr (GstClothTopology) topology = gst_cloth_topology_new_grid (columns,
+      rows, step * (gfloat) (columns - 1), step * (gfloat) (rows - 1), NULL);
+
+  return gst_cloth_topology_to_caps (topology, fps, 1);
+}
+
+static Setup
+set_up (const gchar * model, const gchar * take, const gchar * more)
+{
+  GstElement *element = make_element (model, take, more);
+  Setup setup;
+
+  setup.bus = gst_bus_new ();
+  gst_element_set_bus (element, setup.bus);
+  setup.h = gst_harness_new_with_element (element, "sink", "src");
+  gst_object_unref (element);
+  return setup;
+}
+
+static Setup
+set_up_good (const gchar * more)
+{
+  Setup setup = set_up ("/model.json", "/take", more);
+
+  gst_harness_set_src_caps (setup.h, make_caps (COLUMNS, ROWS, 0.1f, FPS));
+  return setup;
+}
+
+static void
+tear_down (Setup * setup)
+{
+  gst_element_set_bus (setup->h->element, NULL);
+  gst_harness_teardown (setup->h);
+  gst_object_unref (setup->bus);
+}
+
+/* @missing: a vertex that is not seen, or -1 */
+static GstBuffer *
+make_frame (guint frame, gint missing, const gfloat * covariances)
+{
+  gfloat places[3 * N];
+  guint8 states[N];
+  g_autoptr (GstClothMesh) mesh = NULL;
+  GstBuffer *buffer;
+
+  find_places (frame, ACCELERATION, places);
+  memset (states, GST_CLOTH_VERTEX_MEASURED, N);
+  if (missing >= 0)
+    states[missing] = GST_CLOTH_VERTEX_UNSEEN;
+  mesh = gst_cloth_mesh_new (frame, N, places, states, covariances);
+  buffer = gst_cloth_mesh_to_buffer (mesh);
+  GST_BUFFER_PTS (buffer) = gst_util_uint64_scale (frame, GST_SECOND, FPS);
+  GST_BUFFER_DURATION (buffer) = GST_SECOND / FPS;
+  return buffer;
+}
+
+static void
+push (Setup * setup, guint from, guint to)
+{
+  for (guint frame = from; frame < to; frame++)
+    fail_unless_equals_int (gst_harness_push (setup->h, make_frame (frame, -1,
+                NULL)), GST_FLOW_OK);
+}
+
+/* The next message of a type; for ours, of a name. */
+static GstMessage *
+find_message (Setup * setup, GstMessageType type, const gchar * name)
+{
+  GstMessage *message;
+
+  while ((message = gst_bus_pop_filtered (setup->bus, type))) {
+    const GstStructure *structure = gst_message_get_structure (message);
+
+    if (!name || gst_structure_has_name (structure, name))
+      return message;
+    gst_message_unref (message);
+  }
+  return NULL;
+}
+
+static void
+expect (Setup * setup, GstMessageType type, const gchar * text)
+{
+  g_autoptr (GstMessage) message = find_message (setup, type, NULL);
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *debug = NULL, *all = NULL;
+
+  fail_unless (message != NULL, "no message; expected: %s", text);
+  if (type == GST_MESSAGE_ERROR)
+    gst_message_parse_error (message, &error, &debug);
+  else
+    gst_message_parse_warning (message, &error, &debug);
+  all = g_strconcat (error->message, " ", debug, NULL);
+  fail_unless (strstr (all, text) != NULL, "\"%s\" lacks \"%s\"", all, text);
+}
+
+static gdouble
+mean_residual (GstBuffer * buffer, guint axis)
+{
+  GstClothGap *gap = gst_buffer_get_cloth_gap (buffer);
+  const gfloat *r;
+  gdouble sum = 0;
+  guint n = 0;
+
+  fail_unless (gap != NULL);
+  r = gst_cloth_gap_get_residuals (gap, NULL);
+  for (guint i = 0; i < N; i++) {
+    if (isfinite (r[3 * i])) {
+      sum += r[3 * i + axis];
+      n++;
+    }
+  }
+  return sum / n;
+}
+
+/* e(t) from rest for ζ = 0.5 */
+static gdouble
+oscillator (gdouble t)
+{
+  gdouble w = sqrt (GAIN * 0.75), decay = 0.5 * sqrt (GAIN);
+
+  return ACCELERATION / GAIN * (1 - exp (-decay * t) * (cos (w * t) +
+          decay / w * sin (w * t)));
+}
+
+/* ---- positive ---- */
+
+GST_START_TEST (test_closed_form)
+{
+  Setup setup = set_up_good ("");
+  g_autoptr (GstMessage) message = NULL;
+  gdouble worst = 0, want = 0, rms = 0, from = 0;
+  guint n_scores = 0;
+
+  for (guint frame = 0; frame < N_FRAMES; frame++) {
+    push (&setup, frame, frame + 1);
+    fail_unless_equals_int (gst_harness_buffers_received (setup.h),
+        frame < LATENCY ? 0 : frame - LATENCY + 1);
+  }
+  gst_harness_push_event (setup.h, gst_event_new_eos ());
+  fail_unless_equals_int (gst_harness_buffers_received (setup.h), N_FRAMES);
+  for (guint frame = 0; frame < N_FRAMES; frame++) {
+    GstBuffer *buffer = gst_harness_pull (setup.h);
+    gdouble error = mean_residual (buffer, 2) - oscillator ((gdouble) frame /
+        FPS);
+
+    fail_unless_equals_uint64 (GST_BUFFER_PTS (buffer),
+        gst_util_uint64_scale (frame, GST_SECOND, FPS));
+    fail_unless_equals_uint64 (gst_cloth_gap_get_sequence
+        (gst_buffer_get_cloth_gap (buffer)), frame);
+    fail_unless (fabs (mean_residual (buffer, 0)) < 1e-5);
+    worst = MAX (worst, fabs (error));
+    gst_buffer_unref (buffer);
+  }
+  GST_INFO ("worst distance from the closed form: %.4f mm", 1000 * worst);
+  fail_unless (worst < 0.0002, "%.3f mm from the closed form", 1000 * worst);
+
+  /* A window's simulation starts with the oscillator's e, e′ and then e″ = ACCELERATION. */
+  while ((message = find_message (&setup, GST_MESSAGE_ELEMENT,
+              "clothgap/score"))) {
+    const GstStructure *s = gst_message_get_structure (message);
+    guint64 time, duration;
+    gdouble coverage, sum = 0, e, slope;
+
+    fail_unless (gst_structure_get (s, "time", G_TYPE_UINT64, &time,
+            "duration", G_TYPE_UINT64, &duration, "rms", G_TYPE_DOUBLE, &rms,
+            "coverage", G_TYPE_DOUBLE, &coverage, NULL));
+    fail_unless_equals_float (coverage, 1);
+    fail_unless_equals_uint64 (duration, n_scores < 3 ? 300 * GST_MSECOND :
+        295 * GST_MSECOND);
+    fail_unless_equals_uint64 (time, n_scores * 300 * GST_MSECOND);
+    from = (gdouble) time / GST_SECOND;
+    e = oscillator (from);
+    slope = (oscillator (from + 1e-5) - oscillator (from - 1e-5)) / 2e-5;
+    for (guint i = 1; i <= (n_scores < 3 ? PER_WINDOW : PER_WINDOW - 1); i++) {
+      gdouble t = (gdouble) i / FPS;
+
+      sum += pow (e + slope * t + 0.5 * ACCELERATION * t * t, 2);
+    }
+    want = sqrt (sum / (n_scores < 3 ? PER_WINDOW : PER_WINDOW - 1));
+    fail_unless (fabs (rms - want) < 0.03 * want,
+        "window %u: %.2f mm, not %.2f", n_scores, 1000 * rms, 1000 * want);
+    n_scores++;
+    g_clear_pointer (&message, gst_message_unref);
+  }
+  fail_unless_equals_int (n_scores, 4);
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+/* The meshes themselves are as they were. */
+GST_START_TEST (test_same_bytes)
+{
+  Setup setup = set_up_good ("");
+
+  push (&setup, 0, 5);
+  for (guint frame = 0; frame < 2; frame++) {
+    GstBuffer *out = gst_harness_pull (setup.h), *in = make_frame (frame, -1,
+        NULL);
+    GstMapInfo map;
+
+    gst_buffer_map (in, &map, GST_MAP_READ);
+    fail_unless_equals_int (gst_buffer_get_size (out), map.size);
+    fail_unless_equals_int (gst_buffer_memcmp (out, 0, map.data, map.size), 0);
+    gst_buffer_unmap (in, &map);
+    gst_buffer_unref (in);
+    gst_buffer_unref (out);
+  }
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_threads)
+{
+  gfloat all[2][3 * N];
+
+  for (guint run = 0; run < 2; run++) {
+    Setup setup = set_up_good (run ? "threads=1" : "threads=2");
+    GstBuffer *buffer = NULL;
+
+    push (&setup, 0, 20);
+    for (guint i = 0; i < 17; i++) {
+      gst_clear_buffer (&buffer);
+      buffer = gst_harness_pull (setup.h);
+    }
+    memcpy (all[run], gst_cloth_gap_get_residuals (gst_buffer_get_cloth_gap
+            (buffer), NULL), sizeof all[run]);
+    gst_buffer_unref (buffer);
+    tear_down (&setup);
+  }
+  fail_unless_equals_int (memcmp (all[0], all[1], sizeof all[0]), 0);
+}
+
+GST_END_TEST;
+
+/* A vertex that is not seen for a while has no residual then; the others' go on, and so
+ * does the vertex's once it is back. */
+GST_START_TEST (test_missing)
+{
+  Setup setup = set_up_good ("");
+  g_autoptr (GstMessage) message = NULL;
+  gdouble coverage;
+
+  for (guint frame = 0; frame < 70; frame++)
+    gst_harness_push (setup.h, make_frame (frame, frame >= 5 && frame < 20 ? 6 :
+            -1, NULL));
+  for (guint frame = 0; frame < 67; frame++) {
+    GstBuffer *buffer = gst_harness_pull (setup.h);
+    const gfloat *r =
+        gst_cloth_gap_get_residuals (gst_buffer_get_cloth_gap (buffer), NULL);
+
+    fail_unless_equals_int (isnan (r[18]), frame >= 5 && frame < 20);
+    fail_unless (fabs (mean_residual (buffer, 2) - oscillator ((gdouble) frame /
+                FPS)) < 0.002);
+    gst_buffer_unref (buffer);
+  }
+  message = find_message (&setup, GST_MESSAGE_ELEMENT, "clothgap/score");
+  fail_unless (gst_structure_get_double (gst_message_get_structure (message),
+          "coverage", &coverage));
+  /* 15 of the window's 60 frames lack one of 12 vertices */
+  fail_unless (fabs (coverage - (1 - 15. / PER_WINDOW / N)) < 1e-9, "%g",
+      coverage);
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+/* Of the scene's take; of the mesh where it knows better. */
+GST_START_TEST (test_sigmas)
+{
+  Setup setup = set_up_good ("");
+  gfloat covariances[6 * N];
+  GstBuffer *buffer;
+
+  for (guint i = 0; i < N; i++) {
+    const gfloat one[6] = { 1e-6f, 0, 0, 4e-6f, 0, i == 2 ? NAN : 7e-6f };
+
+    memcpy (covariances + 6 * i, one, sizeof one);
+  }
+  gst_harness_push (setup.h, make_frame (0, -1, NULL));
+  gst_harness_push (setup.h, make_frame (1, -1, covariances));
+  push (&setup, 2, 5);
+  for (guint frame = 0; frame < 2; frame++) {
+    const gfloat *s;
+
+    buffer = gst_harness_pull (setup.h);
+    s = gst_cloth_gap_get_sigmas (gst_buffer_get_cloth_gap (buffer), NULL);
+    fail_unless (fabs (s[0] - (frame ? 0.002 : 0.0004)) < 1e-8);
+    fail_unless_equals_int (isnan (s[2]), frame == 1);
+    gst_buffer_unref (buffer);
+  }
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_latency)
+{
+  Setup setup = set_up_good ("");
+
+  gst_harness_set_upstream_latency (setup.h, 7 * GST_MSECOND);
+  fail_unless_equals_uint64 (gst_harness_query_latency (setup.h),
+      22 * GST_MSECOND);
+  /* another rate, the same mesh */
+  gst_harness_set_src_caps (setup.h, make_caps (COLUMNS, ROWS, 0.1f, 100));
+  fail_unless_equals_uint64 (gst_harness_query_latency (setup.h),
+      37 * GST_MSECOND);
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+/* What comes between two meshes stays there. */
+GST_START_TEST (test_event_order)
+{
+  Setup setup = set_up_good ("");
+  GstEvent *event;
+  gboolean seen = FALSE;
+
+  while ((event = gst_harness_try_pull_event (setup.h)))
+    gst_event_unref (event);
+  push (&setup, 0, 2);
+  gst_harness_push_event (setup.h,
+      gst_event_new_custom (GST_EVENT_CUSTOM_DOWNSTREAM,
+          gst_structure_new_empty ("between")));
+  fail_unless_equals_int (gst_harness_events_in_queue (setup.h), 0);
+  push (&setup, 2, 4);
+  fail_unless_equals_int (gst_harness_buffers_received (setup.h), 1);
+  fail_unless_equals_int (gst_harness_events_in_queue (setup.h), 0);
+  push (&setup, 4, 5);
+  fail_unless_equals_int (gst_harness_buffers_received (setup.h), 2);
+  while ((event = gst_harness_try_pull_event (setup.h))) {
+    seen |= gst_event_has_name (event, "between");
+    gst_event_unref (event);
+  }
+  fail_unless (seen);
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+/* The verdict comes before EOS, as the same JSON in message and file. */
+GST_START_TEST (test_verdict)
+{
+  g_autofree gchar *output = in_folder ("made/gap");
+  g_autofree gchar *more = g_strdup_printf ("output=%s", output);
+  g_autofree gchar *report = g_build_filename (output, "report.html", NULL);
+  g_autofree gchar *json = g_build_filename (output, "gap.json", NULL);
+  g_autofree gchar *contents = NULL;
+  Setup setup = set_up_good (more);
+  g_autoptr (GstMessage) message = NULL;
+  g_autoptr (JsonParser) parser = json_parser_new ();
+  const GstStructure *s;
+  JsonObject *root;
+  GstEvent *event;
+  gboolean eos = FALSE;
+
+  push (&setup, 0, N_FRAMES);
+  fail_unless (find_message (&setup, GST_MESSAGE_ELEMENT, "clothgap/verdict")
+      == NULL);
+  gst_harness_push_event (setup.h, gst_event_new_eos ());
+  message = find_message (&setup, GST_MESSAGE_ELEMENT, "clothgap/verdict");
+  fail_unless (message != NULL);
+  s = gst_message_get_structure (message);
+  fail_unless (json_parser_load_from_data (parser, gst_structure_get_string (s,
+              "json"), -1, NULL));
+  root = json_node_get_object (json_parser_get_root (parser));
+  fail_unless_equals_string (json_object_get_string_member (root, "verdict"),
+      gst_structure_get_string (s, "verdict"));
+  fail_unless (strlen (gst_structure_get_string (s, "summary")) > 10);
+  fail_unless_equals_string (gst_structure_get_string (s, "report"), report);
+  fail_unless (g_file_test (report, G_FILE_TEST_IS_REGULAR));
+  fail_unless (g_file_get_contents (json, &contents, NULL, NULL));
+  fail_unless_equals_string (contents, gst_structure_get_string (s, "json"));
+  while ((event = gst_harness_try_pull_event (setup.h))) {
+    eos |= GST_EVENT_TYPE (event) == GST_EVENT_EOS;
+    gst_event_unref (event);
+  }
+  fail_unless (eos);
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+/* After a flush it starts anew; so it does, without one, when a segment goes back. */
+GST_START_TEST (test_again)
+{
+  for (guint way = 0; way < 2; way++) {
+    Setup setup = set_up_good ("");
+    GstSegment segment;
+    guint n = 0;
+    GstBuffer *buffer;
+
+    push (&setup, 0, 12);
+    if (way == 0) {
+      gst_harness_push_event (setup.h, gst_event_new_flush_start ());
+      gst_harness_push_event (setup.h, gst_event_new_flush_stop (TRUE));
+    }
+    gst_segment_init (&segment, GST_FORMAT_TIME);
+    gst_harness_push_event (setup.h, gst_event_new_segment (&segment));
+    push (&setup, 0, 12);
+    while ((buffer = gst_harness_try_pull (setup.h))) {
+      /* 9 of the first run, its last 3 unless they were flushed, 9 of the second */
+      guint first = way ? 12 : 9;
+
+      if (n >= first)
+        fail_unless (fabs (mean_residual (buffer, 2) -
+                oscillator ((gdouble) (n - first) / FPS)) < 0.0005);
+      n++;
+      gst_buffer_unref (buffer);
+    }
+    fail_unless_equals_int (n, way ? 21 : 18);
+    tear_down (&setup);
+  }
+}
+
+GST_END_TEST;
+
+/* ---- what can't be scored passes ---- */
+
+GST_START_TEST (test_times)
+{
+  Setup setup = set_up_good ("");
+  GstBuffer *buffer;
+  guint n = 0, with = 0;
+
+  push (&setup, 0, 5);
+  gst_harness_push (setup.h, make_frame (4, -1, NULL));
+  gst_harness_push (setup.h, make_frame (2, -1, NULL));
+  push (&setup, 5, 8);
+  expect (&setup, GST_MESSAGE_WARNING, "times must rise");
+  fail_unless (find_message (&setup, GST_MESSAGE_WARNING, NULL) == NULL);
+  while ((buffer = gst_harness_try_pull (setup.h))) {
+    with += gst_buffer_get_cloth_gap (buffer) != NULL;
+    n++;
+    gst_buffer_unref (buffer);
+  }
+  fail_unless_equals_int (with, 5);
+  fail_unless_equals_int (n, 7);
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+/* Behind the end of what the clamps' paths say. */
+GST_START_TEST (test_outside_scene)
+{
+  Setup setup = set_up ("/model.json", "/held", "");
+  GstBuffer *buffer;
+  guint n = 0, with = 0;
+
+  gst_harness_set_src_caps (setup.h, make_caps (COLUMNS, ROWS, 0.1f, FPS));
+  push (&setup, N_FRAMES - 4, N_FRAMES + 3);
+  expect (&setup, GST_MESSAGE_WARNING, "outside the scene");
+  gst_harness_push_event (setup.h, gst_event_new_eos ());
+  while ((buffer = gst_harness_try_pull (setup.h))) {
+    with += gst_buffer_get_cloth_gap (buffer) != NULL;
+    n++;
+    gst_buffer_unref (buffer);
+  }
+  fail_unless_equals_int (n, 7);
+  fail_unless_equals_int (with, 4);
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+/* ---- refusals ---- */
+
+GST_START_TEST (test_cannot_start)
+{
+  static const struct
+  {
+    const gchar *model, *take, *more, *text;
+  } cases[] = {
+    {NULL, "/take", "", "“model”"},
+    {"/model.json", NULL, "", "“location”"},
+    {"/none.json", "/take", "", "none.json"},
+    {"/bad.json", "/take", "", "“shear” is -4"},
+    {"/model.json", "/none", "", "none"},
+    {"/model.json", "/model.json", "", "take.json"},
+    {"/model.json", "/take", "effects=air_drg", "“air_drag”"},
+    {"/model.json", "/take", "effects=drag",
+        "“air_drag”, “air_drag_linear”"},
+    {"/model.json", "/take", "effects=qqqq", "lists them all"},
+    {"/model.json", "/take", "baseline=/none", "baseline"},
+  };
+
+  for (guint i = 0; i <= G_N_ELEMENTS (cases); i++) {
+    gboolean last = i == G_N_ELEMENTS (cases);
+    g_autofree gchar *other = g_strdup_printf ("baseline=%s/other", folder);
+    GstElement *element = make_element (last ? "/model.json" : cases[i].model,
+        last ? "/take" : cases[i].take, last ? other : cases[i].more);
+    Setup setup = { NULL, gst_bus_new () };
+
+    gst_element_set_bus (element, setup.bus);
+    fail_unless_equals_int (gst_element_set_state (element, GST_STATE_PAUSED),
+        GST_STATE_CHANGE_FAILURE);
+    expect (&setup, GST_MESSAGE_ERROR, last ? "5×3" : cases[i].text);
+    gst_element_set_bus (element, NULL);
+    gst_element_set_state (element, GST_STATE_NULL);
+    gst_object_unref (element);
+    gst_object_unref (setup.bus);
+  }
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_other_mesh)
+{
+  static const struct
+  {
+    guint columns;
+    gfloat step;
+    const gchar *text;
+  } cases[] = {
+    {COLUMNS + 1, 0.1f, "5×3"}, {COLUMNS, 100, "metres in both"}
+  };
+
+  for (guint i = 0; i < 2 * G_N_ELEMENTS (cases); i++) {
+    Setup setup = set_up ("/model.json", "/take", "");
+
+    /* from the beginning, and in the middle of a stream */
+    if (i >= G_N_ELEMENTS (cases)) {
+      gst_harness_set_src_caps (setup.h, make_caps (COLUMNS, ROWS, 0.1f, FPS));
+      push (&setup, 0, 5);
+    }
+    gst_harness_set_src_caps (setup.h, make_caps (cases[i % 2].columns, ROWS,
+            cases[i % 2].step, FPS));
+    expect (&setup, GST_MESSAGE_ERROR, cases[i % 2].text);
+    tear_down (&setup);
+  }
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_bad_buffers)
+{
+  Setup setup = set_up_good ("");
+  const gfloat places[3] = { 0 };
+  const guint8 states[1] = { 1 };
+  g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_new (0, 1, places, states,
+      NULL);
+  GstBuffer *buffer;
+
+  fail_unless_equals_int (gst_harness_push (setup.h, gst_buffer_new_memdup
+          ("GCMB", 4)), GST_FLOW_ERROR);
+  expect (&setup, GST_MESSAGE_ERROR, "no valid mesh");
+  fail_unless_equals_int (gst_harness_push (setup.h,
+          gst_cloth_mesh_to_buffer (mesh)), GST_FLOW_ERROR);
+  expect (&setup, GST_MESSAGE_ERROR, "1 vertices in a stream of 12");
+  /* neither time nor rate */
+  gst_harness_set_src_caps (setup.h, make_caps (COLUMNS, ROWS, 0.1f, 0));
+  buffer = make_frame (0, -1, NULL);
+  GST_BUFFER_PTS (buffer) = GST_CLOCK_TIME_NONE;
+  fail_unless_equals_int (gst_harness_push (setup.h, buffer), GST_FLOW_ERROR);
+  expect (&setup, GST_MESSAGE_ERROR, "framerate");
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_before_caps)
+{
+  Setup setup = set_up ("/model.json", "/take", "");
+  GstSegment segment;
+
+  gst_harness_play (setup.h);
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  gst_harness_push_event (setup.h, gst_event_new_stream_start ("meshes"));
+  gst_harness_push_event (setup.h, gst_event_new_segment (&segment));
+  fail_unless_equals_int (gst_harness_push (setup.h, make_frame (0, -1, NULL)),
+      GST_FLOW_NOT_NEGOTIATED);
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_blows_up)
+{
+  Setup setup = set_up ("/wild.json", "/take", "");
+  GstFlowReturn flow = GST_FLOW_OK;
+
+  gst_harness_set_src_caps (setup.h, make_caps (COLUMNS, ROWS, 0.1f, FPS));
+  for (guint frame = 0; frame < N_FRAMES && flow == GST_FLOW_OK; frame++) {
+    gfloat places[3 * N];
+    guint8 states[N];
+    g_autoptr (GstClothMesh) mesh = NULL;
+    GstBuffer *buffer;
+
+    find_places (frame, 0, places);
+    memset (states, GST_CLOTH_VERTEX_MEASURED, N);
+    /* strain, which the large step does not survive */
+    places[18] += 0.05f;
+    mesh = gst_cloth_mesh_new (frame, N, places, states, NULL);
+    buffer = gst_cloth_mesh_to_buffer (mesh);
+    GST_BUFFER_PTS (buffer) = gst_util_uint64_scale (frame, GST_SECOND, FPS);
+    flow = gst_harness_push (setup.h, buffer);
+  }
+  fail_unless_equals_int (flow, GST_FLOW_ERROR);
+  expect (&setup, GST_MESSAGE_ERROR, "“time_step”");
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_backwards)
+{
+  Setup setup = set_up_good ("");
+  GstSegment segment;
+
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  segment.rate = -1;
+  segment.stop = GST_SECOND;
+  gst_harness_push_event (setup.h, gst_event_new_segment (&segment));
+  expect (&setup, GST_MESSAGE_ERROR, "backwards");
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_nothing)
+{
+  Setup setup = set_up_good ("");
+  GstEvent *event;
+  gboolean eos = FALSE;
+
+  gst_harness_push_event (setup.h, gst_event_new_eos ());
+  expect (&setup, GST_MESSAGE_ERROR, "without a mesh");
+  while ((event = gst_harness_try_pull_event (setup.h))) {
+    eos |= GST_EVENT_TYPE (event) == GST_EVENT_EOS;
+    gst_event_unref (event);
+  }
+  fail_unless (eos);
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_cannot_write)
+{
+  Setup setup = set_up_good ("output=/proc/gap");
+
+  push (&setup, 0, N_FRAMES);
+  gst_harness_push_event (setup.h, gst_event_new_eos ());
+  expect (&setup, GST_MESSAGE_ERROR, "/proc/gap");
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+static Suite *
+clothgap_suite (void)
+{
+  Suite *s = suite_create ("clothgap");
+  TCase *tc = tcase_create ("general");
+
+  suite_add_tcase (s, tc);
+  tcase_add_test (tc, test_closed_form);
+  tcase_add_test (tc, test_same_bytes);
+  tcase_add_test (tc, test_threads);
+  tcase_add_test (tc, test_missing);
+  tcase_add_test (tc, test_sigmas);
+  tcase_add_test (tc, test_latency);
+  tcase_add_test (tc, test_event_order);
+  tcase_add_test (tc, test_verdict);
+  tcase_add_test (tc, test_again);
+  tcase_add_test (tc, test_times);
+  tcase_add_test (tc, test_outside_scene);
+  tcase_add_test (tc, test_cannot_start);
+  tcase_add_test (tc, test_other_mesh);
+  tcase_add_test (tc, test_bad_buffers);
+  tcase_add_test (tc, test_before_caps);
+  tcase_add_test (tc, test_blows_up);
+  tcase_add_test (tc, test_backwards);
+  tcase_add_test (tc, test_nothing);
+  tcase_add_test (tc, test_cannot_write);
+  return s;
+}
+
+int
+main (int argc, char **argv)
+{
+  int failed;
+
+  gst_check_init (&argc, &argv);
+  make_files ();
+  failed = gst_check_run_suite (clothgap_suite (), "clothgap", __FILE__);
+  remove_all (folder);
+  g_free (folder);
+  return failed;
+}

@@ -1,0 +1,211 @@
+/* gst-cloth-gap-1.0 diagnose: says where a simulation departs from takes, and why.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "tools/gap-tool.h"
+
+#include <glib/gstdio.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "gst/gap/front.h"
+
+static volatile sig_atomic_t interrupted;
+
+static void
+interrupt (int number)
+{
+  interrupted = 1;
+}
+
+/* Once: the next one ends the program at once. */
+static void
+catch_interrupts (void)
+{
+  struct sigaction action;
+
+  memset (&action, 0, sizeof action);
+  action.sa_handler = interrupt;
+  action.sa_flags = (int) (SA_RESETHAND | SA_RESTART);
+  sigemptyset (&action.sa_mask);
+  sigaction (SIGINT, &action, NULL);
+  sigaction (SIGTERM, &action, NULL);
+}
+
+static gboolean
+go_on (gpointer data, gdouble share, const gchar * what)
+{
+  tell_progress (share, what);
+  return !interrupted;
+}
+
+static GPtrArray *
+open_takes (gchar ** folders, GError ** error)
+{
+  g_autoptr (GPtrArray) takes =
+      g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_take_free);
+
+  for (guint i = 0; folders && folders[i]; i++) {
+    g_autofree gchar *json = g_build_filename (folders[i], "take.json", NULL);
+    ClothTake *take;
+
+    if (!g_file_test (json, G_FILE_TEST_EXISTS)) {
+      g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE,
+          "“%s” is no take: there is no take.json in it; give the folder that "
+          "holds take.json and positions.npy", folders[i]);
+      return NULL;
+    }
+    take = cloth_take_open (folders[i], error);
+    if (!take)
+      return NULL;
+    g_ptr_array_add (takes, take);
+  }
+  return g_steal_pointer (&takes);
+}
+
+static gboolean
+check_cloths (gchar ** folders, const GPtrArray * takes, const gchar * first,
+    ClothTake * take, GError ** error)
+{
+  for (guint i = 0; i < takes->len; i++)
+    if (!cloth_gap_check_same_cloth (folders[i],
+            cloth_take_get_topology (g_ptr_array_index (takes, i)), first,
+            cloth_take_get_topology (take), error))
+      return FALSE;
+  return TRUE;
+}
+
+static ClothGapResult *
+run_diagnosis (const Arguments * arguments, gchar ** effects, GError ** error)
+{
+  gchar **folders = arguments->rest + 1;
+  g_autoptr (ClothModel) model = cloth_model_load (arguments->model, error);
+  g_autoptr (GPtrArray) takes = NULL;
+  g_autoptr (GPtrArray) baselines = NULL;
+  g_autoptr (GPtrArray) hold_outs = NULL;
+  ClothGapOptions options = { 0 };
+  ClothTake *first;
+
+  if (!model) {
+    g_prefix_error (error, "--model: ");
+    return NULL;
+  }
+  if (!(takes = open_takes (folders, error)) ||
+      !(baselines = open_takes (arguments->baselines, error)) ||
+      !(hold_outs = open_takes (arguments->hold_outs, error)))
+    return NULL;
+  first = g_ptr_array_index (takes, 0);
+  if (!check_cloths (folders, takes, folders[0], first, error) ||
+      !check_cloths (arguments->baselines, baselines, folders[0], first, error)
+      || !check_cloths (arguments->hold_outs, hold_outs, folders[0], first,
+          error))
+    return NULL;
+  options.baselines = (ClothTake **) baselines->pdata;
+  options.n_baselines = baselines->len;
+  options.hold_outs = (ClothTake **) hold_outs->pdata;
+  options.n_hold_outs = hold_outs->len;
+  options.effects = (const gchar * const *) effects;
+  options.seed = (guint64) arguments->seed;
+  options.threads = (guint) arguments->threads;
+  options.progress = go_on;
+  return cloth_gap_diagnose ((ClothTake **) takes->pdata, takes->len, model,
+      &options, error);
+}
+
+/* The folder that the three lists share, or NULL: what judges must not be judged. */
+static gchar *
+find_shared (const Arguments * arguments)
+{
+  gchar **lists[3] = { arguments->rest + 1, arguments->baselines,
+    arguments->hold_outs
+  };
+  g_autoptr (GHashTable) seen =
+      g_hash_table_new_full (g_str_hash, g_str_equal, free, NULL);
+
+  for (guint k = 0; k < 3; k++) {
+    for (guint i = 0; lists[k] && lists[k][i]; i++) {
+      gchar *path = realpath (lists[k][i], NULL);
+
+      /* One that is not there is told of when it is opened. */
+      if (path && !g_hash_table_add (seen, path))
+        return g_strdup (lists[k][i]);
+    }
+  }
+  return NULL;
+}
+
+static gint
+check_usage (const Arguments * arguments, gchar *** effects)
+{
+  g_autofree gchar *shared = NULL;
+  g_autoptr (GError) error = NULL;
+
+  if (arguments->format || arguments->scene)
+    return complain (BAD_USAGE, "diagnose takes neither --format nor --scene");
+  if (!arguments->rest[1])
+    return complain (BAD_USAGE,
+        "name the takes to diagnose, before the options: "
+        "diagnose TAKE --model MODEL --output DIR");
+  if (!arguments->model)
+    return complain (BAD_USAGE,
+        "name the model that the takes are held against: --model model.json");
+  if (!arguments->output)
+    return complain (BAD_USAGE, "name the folder of the report: --output DIR");
+  if (arguments->threads < 0)
+    return complain (BAD_USAGE, "--threads: give 0 for all, or a number");
+  shared = find_shared (arguments);
+  if (shared)
+    return complain (BAD_USAGE,
+        "“%s” is given twice: a take can't be its own "
+        "baseline or hold-out; leave one out", shared);
+  *effects = cloth_gap_effects_parse (arguments->effects, &error);
+  if (error)
+    return complain (BAD_USAGE, "--effects: %s", error->message);
+  if (arguments->effects && !*effects)
+    return complain (BAD_USAGE, "--effects: name effects with commas between "
+        "them, or leave it out for all");
+  return DONE;
+}
+
+/* Makes the folder early: what can't be written is better known before the work. */
+static gboolean
+make_output (const gchar * folder, gboolean * made)
+{
+  *made = !g_file_test (folder, G_FILE_TEST_EXISTS);
+  return g_mkdir_with_parents (folder, 0777) == 0 &&
+      g_access (folder, W_OK | X_OK) == 0;
+}
+
+gint
+diagnose (const Arguments * arguments)
+{
+  g_auto (GStrv) effects = NULL;
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothGapResult) result = NULL;
+  gboolean made;
+  gint code = check_usage (arguments, &effects);
+
+  if (code != DONE)
+    return code;
+  if (!make_output (arguments->output, &made))
+    return complain (FAILED,
+        "cannot write into the folder “%s”: give another " "--output",
+        arguments->output);
+  catch_interrupts ();
+  result = run_diagnosis (arguments, effects, &error);
+  if (result && cloth_gap_result_write (result, arguments->output, &error)) {
+    g_autofree gchar *summary = cloth_gap_result_summary (result);
+
+    g_print ("%s: %s\n%s%sreport.html\n",
+        cloth_gap_verdict_name (result->verdict), summary, arguments->output,
+        g_str_has_suffix (arguments->output, "/") ? "" : "/");
+    return DONE;
+  }
+  /* Only an empty folder goes. */
+  if (made)
+    g_rmdir (arguments->output);
+  if (g_error_matches (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_CANCELLED))
+    return complain (FAILED, "stopped; nothing was written");
+  return complain (FAILED, "%s", error->message);
+}
