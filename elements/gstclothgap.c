@@ -61,7 +61,7 @@ typedef struct
   gboolean is_frame;
 } Waiting;
 
-struct _GstClothGapElement
+struct _GstClothgap
 {
   GstElement parent;
   GstPad *sinkpad, *srcpad;
@@ -95,15 +95,15 @@ static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE ("sink",
 static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE ("src",
     GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS (GST_CLOTH_MESH_CAPS));
 
-G_DEFINE_TYPE (GstClothGapElement, gst_cloth_gap_element, GST_TYPE_ELEMENT);
+G_DEFINE_TYPE (GstClothgap, gst_clothgap, GST_TYPE_ELEMENT);
 GST_ELEMENT_REGISTER_DEFINE_WITH_CODE (clothgap, "clothgap", GST_RANK_NONE,
-    GST_TYPE_CLOTH_GAP_ELEMENT, GST_DEBUG_CATEGORY_INIT (cloth_gap_debug,
+    GST_TYPE_CLOTHGAP, GST_DEBUG_CATEGORY_INIT (cloth_gap_debug,
         "clothgap", 0, "recorded against simulated cloth"));
 
 /* ---- what waits ---- */
 
 static GstFlowReturn
-send (GstClothGapElement * self, GstMiniObject * object)
+send (GstClothgap * self, GstMiniObject * object)
 {
   if (GST_IS_BUFFER (object))
     return gst_pad_push (self->srcpad, GST_BUFFER_CAST (object));
@@ -113,7 +113,7 @@ send (GstClothGapElement * self, GstMiniObject * object)
 
 /* Sends what need not wait for a frame. */
 static GstFlowReturn
-send_others (GstClothGapElement * self)
+send_others (GstClothgap * self)
 {
   GstFlowReturn flow = GST_FLOW_OK;
   Waiting *first;
@@ -128,7 +128,7 @@ send_others (GstClothGapElement * self)
 }
 
 static GstFlowReturn
-enqueue (GstClothGapElement * self, gpointer object, gboolean is_frame)
+enqueue (GstClothgap * self, gpointer object, gboolean is_frame)
 {
   Waiting *waiting = g_new (Waiting, 1);
 
@@ -149,7 +149,7 @@ free_waiting (gpointer data)
 
 /* A new recording; frames of the old one that still wait lose their turn. */
 static void
-restart (GstClothGapElement * self)
+restart (GstClothgap * self)
 {
   if (self->observer)
     cloth_observer_restart (self->observer);
@@ -160,7 +160,7 @@ restart (GstClothGapElement * self)
 /* ---- frames ---- */
 
 static void
-post_score (GstClothGapElement * self, gboolean last)
+post_score (GstClothgap * self, gboolean last)
 {
   ClothObserverScore score;
 
@@ -180,7 +180,7 @@ post_score (GstClothGapElement * self, gboolean last)
 
 /* Of a coordinate: from the mesh's covariances, else what the scene's take says. */
 static void
-find_sigmas (GstClothGapElement * self, const GstClothMesh * mesh)
+find_sigmas (GstClothgap * self, const GstClothMesh * mesh)
 {
   const gfloat *c = gst_cloth_mesh_get_covariances (mesh, NULL);
   gfloat noise = (gfloat) cloth_take_get_info (self->take)->noise_sigma_m;
@@ -191,7 +191,7 @@ find_sigmas (GstClothGapElement * self, const GstClothMesh * mesh)
 }
 
 static GstFlowReturn
-send_frame (GstClothGapElement * self)
+send_frame (GstClothgap * self)
 {
   g_autoptr (GError) error = NULL;
   Waiting *waiting;
@@ -226,7 +226,7 @@ send_frame (GstClothGapElement * self)
 }
 
 static GstFlowReturn
-send_ready (GstClothGapElement * self, guint latency)
+send_ready (GstClothgap * self, guint latency)
 {
   GstFlowReturn flow = GST_FLOW_OK;
 
@@ -238,7 +238,7 @@ send_ready (GstClothGapElement * self, guint latency)
 
 /* Everything leaves: the last frames make do with those before them. */
 static GstFlowReturn
-drain (GstClothGapElement * self)
+drain (GstClothgap * self)
 {
   GstFlowReturn flow = send_ready (self, 0);
 
@@ -247,7 +247,7 @@ drain (GstClothGapElement * self)
 
 /* Seconds of the scene; NaN when the buffer has no time and the caps no rate. */
 static gdouble
-find_time (GstClothGapElement * self, GstBuffer * buffer)
+find_time (GstClothgap * self, GstBuffer * buffer)
 {
   guint64 time = GST_CLOCK_TIME_NONE;
 
@@ -265,7 +265,7 @@ find_time (GstClothGapElement * self, GstBuffer * buffer)
 
 /* Without clamps a scene has no end. */
 static gboolean
-is_in_scene (const GstClothGapElement * self, gdouble time)
+is_in_scene (const GstClothgap * self, gdouble time)
 {
   const ClothScene *scene = self->scene;
   gdouble slack = 0.5 / scene->fps;
@@ -277,7 +277,7 @@ is_in_scene (const GstClothGapElement * self, gdouble time)
 
 /* Passes a mesh that can't be scored, and says why, once. */
 static GstFlowReturn
-let_pass (GstClothGapElement * self, GstBuffer * buffer, gdouble time)
+let_pass (GstClothgap * self, GstBuffer * buffer, gdouble time)
 {
   if (!self->warned) {
     const ClothScene *scene = self->scene;
@@ -298,8 +298,7 @@ let_pass (GstClothGapElement * self, GstBuffer * buffer, gdouble time)
 }
 
 static gboolean
-record_frame (GstClothGapElement * self, gdouble time,
-    const GstClothMesh * mesh)
+record_frame (GstClothgap * self, gdouble time, const GstClothMesh * mesh)
 {
   g_autoptr (GError) error = NULL;
 
@@ -317,10 +316,9 @@ record_frame (GstClothGapElement * self, gdouble time,
 }
 
 static GstFlowReturn
-gst_cloth_gap_element_chain (GstPad * pad, GstObject * parent,
-    GstBuffer * buffer)
+gst_clothgap_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
 {
-  GstClothGapElement *self = GST_CLOTH_GAP_ELEMENT (parent);
+  GstClothgap *self = GST_CLOTHGAP (parent);
   g_autoptr (GError) error = NULL;
   g_autoptr (GstClothMesh) mesh = NULL;
   gdouble time;
@@ -375,14 +373,14 @@ gst_cloth_gap_element_chain (GstPad * pad, GstObject * parent,
 static gboolean
 go_on (gpointer data, gdouble share, const gchar * what)
 {
-  GstClothGapElement *self = data;
+  GstClothgap *self = data;
 
   GST_LOG_OBJECT (self, "%.0f%% %s", 100 * share, what);
   return !g_atomic_int_get (&self->cancelled);
 }
 
 static gboolean
-post_verdict (GstClothGapElement * self, const ClothGapResult * result,
+post_verdict (GstClothgap * self, const ClothGapResult * result,
     GError ** error)
 {
   const gchar *output = self->settings.output;
@@ -409,7 +407,7 @@ post_verdict (GstClothGapElement * self, const ClothGapResult * result,
 }
 
 static void
-finish (GstClothGapElement * self)
+finish (GstClothgap * self)
 {
   const ClothGapOptions options = { &self->baseline, self->baseline ? 1 : 0,
     NULL, 0, (const gchar * const *) self->effects, self->settings.seed,
@@ -446,7 +444,7 @@ finish (GstClothGapElement * self)
 /* ---- events and queries ---- */
 
 static gboolean
-set_caps (GstClothGapElement * self, GstCaps * caps)
+set_caps (GstClothgap * self, GstCaps * caps)
 {
   g_autoptr (GError) error = NULL;
   g_autoptr (GstClothTopology) parsed =
@@ -484,7 +482,7 @@ set_caps (GstClothGapElement * self, GstCaps * caps)
 }
 
 static gboolean
-set_segment (GstClothGapElement * self, GstEvent * event)
+set_segment (GstClothgap * self, GstEvent * event)
 {
   gst_event_copy_segment (event, &self->segment);
   self->new_segment = TRUE;
@@ -496,7 +494,7 @@ set_segment (GstClothGapElement * self, GstEvent * event)
 }
 
 static void
-flush (GstClothGapElement * self)
+flush (GstClothgap * self)
 {
   g_queue_clear_full (&self->waiting, free_waiting);
   restart (self);
@@ -506,10 +504,9 @@ flush (GstClothGapElement * self)
 }
 
 static gboolean
-gst_cloth_gap_element_sink_event (GstPad * pad, GstObject * parent,
-    GstEvent * event)
+gst_clothgap_sink_event (GstPad * pad, GstObject * parent, GstEvent * event)
 {
-  GstClothGapElement *self = GST_CLOTH_GAP_ELEMENT (parent);
+  GstClothgap *self = GST_CLOTHGAP (parent);
   gboolean good = TRUE;
 
   switch (GST_EVENT_TYPE (event)) {
@@ -550,10 +547,9 @@ gst_cloth_gap_element_sink_event (GstPad * pad, GstObject * parent,
 }
 
 static gboolean
-gst_cloth_gap_element_src_query (GstPad * pad, GstObject * parent,
-    GstQuery * query)
+gst_clothgap_src_query (GstPad * pad, GstObject * parent, GstQuery * query)
 {
-  GstClothGapElement *self = GST_CLOTH_GAP_ELEMENT (parent);
+  GstClothgap *self = GST_CLOTHGAP (parent);
   GstClockTime low, high, own = 0;
   gboolean live;
 
@@ -579,7 +575,7 @@ gst_cloth_gap_element_src_query (GstPad * pad, GstObject * parent,
 /* ---- start and stop ---- */
 
 static gboolean
-fail_start (GstClothGapElement * self, const gchar * property,
+fail_start (GstClothgap * self, const gchar * property,
     const gchar * path, const GError * error)
 {
   GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ, ("Can't use the %s: %s",
@@ -588,7 +584,7 @@ fail_start (GstClothGapElement * self, const gchar * property,
 }
 
 static gboolean
-require (GstClothGapElement * self, const gchar * value, const gchar * name,
+require (GstClothgap * self, const gchar * value, const gchar * name,
     const gchar * what)
 {
   if (value)
@@ -600,7 +596,7 @@ require (GstClothGapElement * self, const gchar * value, const gchar * name,
 }
 
 static gboolean
-load_baseline (GstClothGapElement * self, GError ** error)
+load_baseline (GstClothgap * self, GError ** error)
 {
   if (!self->settings.baseline)
     return TRUE;
@@ -611,7 +607,7 @@ load_baseline (GstClothGapElement * self, GError ** error)
 }
 
 static gboolean
-start (GstClothGapElement * self)
+start (GstClothgap * self)
 {
   const ClothObserverOptions options =
       { GAIN, DAMPING_RATIO, self->settings.window,
@@ -648,7 +644,7 @@ start (GstClothGapElement * self)
 }
 
 static void
-stop (GstClothGapElement * self)
+stop (GstClothgap * self)
 {
   ClothScene *scene;
 
@@ -669,10 +665,9 @@ stop (GstClothGapElement * self)
 }
 
 static GstStateChangeReturn
-gst_cloth_gap_element_change_state (GstElement * element,
-    GstStateChange transition)
+gst_clothgap_change_state (GstElement * element, GstStateChange transition)
 {
-  GstClothGapElement *self = GST_CLOTH_GAP_ELEMENT (element);
+  GstClothgap *self = GST_CLOTHGAP (element);
   GstStateChangeReturn result;
 
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED && !start (self)) {
@@ -683,7 +678,7 @@ gst_cloth_gap_element_change_state (GstElement * element,
   if (transition == GST_STATE_CHANGE_PAUSED_TO_READY)
     g_atomic_int_set (&self->cancelled, TRUE);
   result = GST_ELEMENT_CLASS
-      (gst_cloth_gap_element_parent_class)->change_state (element, transition);
+      (gst_clothgap_parent_class)->change_state (element, transition);
   if (transition == GST_STATE_CHANGE_PAUSED_TO_READY ||
       (transition == GST_STATE_CHANGE_READY_TO_PAUSED &&
           result == GST_STATE_CHANGE_FAILURE))
@@ -694,10 +689,10 @@ gst_cloth_gap_element_change_state (GstElement * element,
 /* ---- GObject ---- */
 
 static void
-gst_cloth_gap_element_set_property (GObject * object, guint id,
+gst_clothgap_set_property (GObject * object, guint id,
     const GValue * value, GParamSpec * spec)
 {
-  GstClothGapElement *self = GST_CLOTH_GAP_ELEMENT (object);
+  GstClothgap *self = GST_CLOTHGAP (object);
 
   GST_OBJECT_LOCK (self);
   if (GST_STATE (self) > GST_STATE_READY)
@@ -709,10 +704,10 @@ gst_cloth_gap_element_set_property (GObject * object, guint id,
 }
 
 static void
-gst_cloth_gap_element_get_property (GObject * object, guint id, GValue * value,
+gst_clothgap_get_property (GObject * object, guint id, GValue * value,
     GParamSpec * spec)
 {
-  GstClothGapElement *self = GST_CLOTH_GAP_ELEMENT (object);
+  GstClothgap *self = GST_CLOTHGAP (object);
 
   GST_OBJECT_LOCK (self);
   gst_cloth_gap_settings_get (&self->settings, id, value);
@@ -720,25 +715,25 @@ gst_cloth_gap_element_get_property (GObject * object, guint id, GValue * value,
 }
 
 static void
-gst_cloth_gap_element_finalize (GObject * object)
+gst_clothgap_finalize (GObject * object)
 {
-  GstClothGapElement *self = GST_CLOTH_GAP_ELEMENT (object);
+  GstClothgap *self = GST_CLOTHGAP (object);
 
   stop (self);
   gst_cloth_gap_settings_clear (&self->settings);
-  G_OBJECT_CLASS (gst_cloth_gap_element_parent_class)->finalize (object);
+  G_OBJECT_CLASS (gst_clothgap_parent_class)->finalize (object);
 }
 
 static void
-gst_cloth_gap_element_class_init (GstClothGapElementClass * klass)
+gst_clothgap_class_init (GstClothgapClass * klass)
 {
   GObjectClass *object_class = G_OBJECT_CLASS (klass);
   GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
 
-  object_class->set_property = gst_cloth_gap_element_set_property;
-  object_class->get_property = gst_cloth_gap_element_get_property;
-  object_class->finalize = gst_cloth_gap_element_finalize;
-  element_class->change_state = gst_cloth_gap_element_change_state;
+  object_class->set_property = gst_clothgap_set_property;
+  object_class->get_property = gst_clothgap_get_property;
+  object_class->finalize = gst_clothgap_finalize;
+  element_class->change_state = gst_clothgap_change_state;
   gst_cloth_gap_settings_install (object_class);
   gst_element_class_add_static_pad_template (element_class, &sink_template);
   gst_element_class_add_static_pad_template (element_class, &src_template);
@@ -749,15 +744,15 @@ gst_cloth_gap_element_class_init (GstClothGapElementClass * klass)
 }
 
 static void
-gst_cloth_gap_element_init (GstClothGapElement * self)
+gst_clothgap_init (GstClothgap * self)
 {
   self->sinkpad = gst_pad_new_from_static_template (&sink_template, "sink");
-  gst_pad_set_chain_function (self->sinkpad, gst_cloth_gap_element_chain);
-  gst_pad_set_event_function (self->sinkpad, gst_cloth_gap_element_sink_event);
+  gst_pad_set_chain_function (self->sinkpad, gst_clothgap_chain);
+  gst_pad_set_event_function (self->sinkpad, gst_clothgap_sink_event);
   GST_PAD_SET_PROXY_CAPS (self->sinkpad);
   gst_element_add_pad (GST_ELEMENT (self), self->sinkpad);
   self->srcpad = gst_pad_new_from_static_template (&src_template, "src");
-  gst_pad_set_query_function (self->srcpad, gst_cloth_gap_element_src_query);
+  gst_pad_set_query_function (self->srcpad, gst_clothgap_src_query);
   GST_PAD_SET_PROXY_CAPS (self->srcpad);
   gst_element_add_pad (GST_ELEMENT (self), self->srcpad);
   g_queue_init (&self->waiting);

@@ -7,10 +7,10 @@
 
 G_BEGIN_DECLS
 
-/* GstClothGap is what it puts on the meshes. */
-#define GST_TYPE_CLOTH_GAP_ELEMENT (gst_cloth_gap_element_get_type ())
-G_DECLARE_FINAL_TYPE (GstClothGapElement, gst_cloth_gap_element, GST,
-    CLOTH_GAP_ELEMENT, GstElement)
+/* Not GstClothGap: that is what it puts on the meshes. */
+#define GST_TYPE_CLOTHGAP (gst_clothgap_get_type ())
+G_DECLARE_FINAL_TYPE (GstClothgap, gst_clothgap, GST,
+    CLOTHGAP, GstElement)
 GST_ELEMENT_REGISTER_DECLARE (clothgap);
 
 G_END_DECLS

@@ -26,11 +26,11 @@ complain (gint code, const gchar * format, ...)
   return code;
 }
 
-/* On a terminal a line that changes, else a line each tenth. */
+/* On a terminal a line that changes, else a line at the beginning and each tenth. */
 void
 tell_progress (gdouble share, const gchar * what)
 {
-  static gint last = -1;
+  static gint last = -1, tenth = -1;
   gint percent = (gint) (100 * CLAMP (share, 0, 1) + 1e-9);
   const gchar *gap = what ? " " : "";
 
@@ -39,9 +39,10 @@ tell_progress (gdouble share, const gchar * what)
   if (isatty (STDERR_FILENO))
     g_printerr ("\r\033[K%3d%%%s%s%s", percent, gap, what,
         percent == 100 && last < 100 ? "\n" : "");
-  else if (percent / 10 > (last < 0 ? 0 : last / 10))
+  else if (percent / 10 > tenth)
     g_printerr ("%d%%%s%s\n", percent, gap, what);
   last = MAX (last, percent);
+  tenth = last / 10;
 }
 
 static gint
