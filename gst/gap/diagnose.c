@@ -498,6 +498,34 @@ estimate (gdouble square, gdouble * draws, guint n, guint stride)
   return e;
 }
 
+/* Without a baseline the floor is what the two force models differ by, and the noise:
+ * NaN on errors. */
+static gdouble
+own_floor (Diagnosis * d, guint judge, const ClothGapExtent * extent,
+    GError ** error)
+{
+  const ClothRecording *r = recording (d, judge);
+  g_autoptr (ClothModel) other = cloth_model_copy (d->model);
+  const ClothModel *models[1] = { other };
+  ClothGapExtent **extents;
+  gdouble sum = 0.;
+  gsize all = (gsize) r->n * r->n_frames;
+
+  other->force_model = other->force_model == CLOTH_FORCE_MEMBRANE ?
+      CLOTH_FORCE_MASS_SPRING : CLOTH_FORCE_MEMBRANE;
+  extents = cloth_gap_extents_new (r, models, 1, WINDOW_GAIN, WINDOW_S,
+      &d->study.rollout, error);
+  if (!extents)
+    return NAN;
+  for (gsize i = 0; i < 3 * all && extents[0]->sound; i++) {
+    gdouble off = extents[0]->positions[i] - extent->positions[i];
+
+    sum += off * off;
+  }
+  cloth_gap_extents_free (extents, 1);
+  return 3. * r->sigma * r->sigma + sum / all;
+}
+
 /* How large the gap is before and after, on the hold-outs if there are any; the floor on
  * the baselines. */
 static gboolean
@@ -543,7 +571,11 @@ measure (Diagnosis * d, const ClothModel * with, GError ** error)
     }
     cloth_gap_extents_free (floor, 1);
   } else {
-    v_floor = 3. * recording (d, judge)->sigma * recording (d, judge)->sigma;
+    v_floor = own_floor (d, judge, extents[0], error);
+    if (isnan (v_floor)) {
+      cloth_gap_extents_free (extents, n);
+      return FALSE;
+    }
     result->noise_floor = (ClothGapEstimate) {
     sqrt (v_floor), NAN, NAN};
   }
@@ -595,10 +627,10 @@ decide (Diagnosis * d, guint n_accepted)
   }
   if (!n_accepted) {
     r->verdict = after * after < BAND * floor2 ? CLOTH_GAP_NO_GAP :
-        d->options->n_baselines ? CLOTH_GAP_UNEXPLAINED : CLOTH_GAP_NO_GAP;
+        CLOTH_GAP_UNEXPLAINED;
     return;
   }
-  if (after * after > BAND * floor2 && d->options->n_baselines)
+  if (after * after > BAND * floor2)
     r->verdict = CLOTH_GAP_UNEXPLAINED;
   else
     r->verdict = r->groups->len ? CLOTH_GAP_AMBIGUOUS : CLOTH_GAP_EXPLAINED;
