@@ -34,6 +34,7 @@
 #include <gst/video/video.h>
 #include <math.h>
 
+#include "elements/gstclothutil.h"
 #include "gst/rig/rigfile.h"
 #include "gst/vision/render.h"
 
@@ -657,9 +658,7 @@ gst_cloth_camera_set_property (GObject * object, guint id,
   gchar **text = text_of (self, id);
 
   GST_OBJECT_LOCK (self);
-  if (GST_STATE (self) > GST_STATE_READY) {
-    GST_WARNING_OBJECT (self, "“%s” cannot change while running",
-        pspec->name);
+  if (!gst_cloth_may_change (GST_ELEMENT (self), pspec)) {
     GST_OBJECT_UNLOCK (self);
     return;
   }

@@ -43,6 +43,7 @@
 
 #include "elements/gstclothgap-record.h"
 #include "elements/gstclothgap-settings.h"
+#include "elements/gstclothutil.h"
 #include "elements/gstmeshformat.h"
 #include "gst/gap/front.h"
 #include "gst/gap/observer.h"
@@ -695,10 +696,7 @@ gst_clothgap_set_property (GObject * object, guint id,
   GstClothgap *self = GST_CLOTHGAP (object);
 
   GST_OBJECT_LOCK (self);
-  if (GST_STATE (self) > GST_STATE_READY)
-    GST_WARNING_OBJECT (self, "“%s” cannot change while running",
-        spec->name);
-  else
+  if (gst_cloth_may_change (GST_ELEMENT (self), spec))
     gst_cloth_gap_settings_set (&self->settings, id, value);
   GST_OBJECT_UNLOCK (self);
 }

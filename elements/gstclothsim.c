@@ -25,16 +25,14 @@
 
 #include "elements/gstclothsim.h"
 
-#include <gst/cloth/cloth.h>
 #include <string.h>
 
+#include "elements/gstclothutil.h"
 #include "elements/gstmeshformat.h"
 #include "gst/sim/sim.h"
 
 GST_DEBUG_CATEGORY_STATIC (cloth_sim_debug);
 #define GST_CAT_DEFAULT cloth_sim_debug
-
-#define MAX_TIME_S 4e6
 
 enum
 {
@@ -48,7 +46,7 @@ enum
 
 struct _GstClothSim
 {
-  GstPushSrc parent;
+  GstClothSource parent;
 
   /* with the object lock */
   gchar *model_location;
@@ -60,38 +58,15 @@ struct _GstClothSim
   ClothScene *scene;
   ClothModel *model;
   ClothSim *sim;
-  GstCaps *caps;
   guint sim_frame;              /* the frame that the simulation stands at */
-  guint next;                   /* the next to send */
   gdouble *positions;
   gfloat *places;
   guint8 *states;
 };
 
-static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE ("src",
-    GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS (GST_CLOTH_MESH_CAPS));
-
-G_DEFINE_TYPE (GstClothSim, gst_cloth_sim, GST_TYPE_PUSH_SRC);
+G_DEFINE_TYPE (GstClothSim, gst_cloth_sim, GST_TYPE_CLOTH_SOURCE);
 GST_ELEMENT_REGISTER_DEFINE (clothsim, "clothsim", GST_RANK_NONE,
     GST_TYPE_CLOTH_SIM);
-
-/* Time of a frame after the first; of n_frames, the end: the last frame lasts as long as
- * the one before. */
-static GstClockTime
-frame_time (GstClothSim * self, guint frame)
-{
-  const ClothScene *scene = self->scene;
-  guint n = scene->n_frames;
-  gdouble last = scene->times[n - 1] - scene->times[0];
-  gdouble seconds;
-
-  if (frame < n)
-    seconds = scene->times[frame] - scene->times[0];
-  else
-    seconds = last + (n > 1 ? scene->times[n - 1] - scene->times[n - 2] :
-        1 / scene->fps);
-  return (GstClockTime) (seconds * GST_SECOND + 0.5);
-}
 
 static gboolean
 make_sim (GstClothSim * self)
@@ -121,19 +96,11 @@ load_scene (GstClothSim * self)
 
   if (take)
     self->scene = cloth_scene_new_from_take (take, &error);
-  if (!self->scene) {
-    gst_mesh_post_error (GST_ELEMENT (self), "read the scene", self->location,
-        FALSE, error);
-    return FALSE;
-  }
-  if (self->scene->times[self->scene->n_frames - 1] -
-      self->scene->times[0] > MAX_TIME_S) {
-    GST_ELEMENT_ERROR (self, STREAM, FORMAT, ("The take “%s” lasts longer "
-            "than the %g s that are played", self->location, MAX_TIME_S),
-        (NULL));
-    return FALSE;
-  }
-  return TRUE;
+  if (self->scene)
+    return TRUE;
+  gst_mesh_post_error (GST_ELEMENT (self), "read the scene", self->location,
+      FALSE, error);
+  return FALSE;
 }
 
 static gboolean
@@ -153,30 +120,10 @@ load_model (GstClothSim * self)
   return FALSE;
 }
 
-static gboolean
-make_caps (GstClothSim * self)
+static void
+gst_cloth_sim_close (GstClothSource * source)
 {
-  const ClothTopology *topology = self->scene->topology;
-  g_autoptr (GError) error = NULL;
-  g_autoptr (GstClothTopology) sent =
-      gst_cloth_topology_new (topology->n_vertices, topology->columns,
-      topology->rows, topology->uv, topology->faces, topology->n_faces, &error);
-  gint fps_n, fps_d;
-
-  if (!sent) {
-    GST_ELEMENT_ERROR (self, STREAM, FORMAT, ("The mesh of “%s” is not "
-            "valid: %s", self->location, error->message), (NULL));
-    return FALSE;
-  }
-  gst_util_double_to_fraction (self->scene->fps, &fps_n, &fps_d);
-  self->caps = gst_cloth_topology_to_caps (sent, fps_n, fps_d);
-  return TRUE;
-}
-
-static gboolean
-gst_cloth_sim_stop (GstBaseSrc * src)
-{
-  GstClothSim *self = GST_CLOTH_SIM (src);
+  GstClothSim *self = GST_CLOTH_SIM (source);
 
   g_clear_pointer (&self->sim, cloth_sim_free);
   g_clear_pointer (&self->model, cloth_model_free);
@@ -184,16 +131,13 @@ gst_cloth_sim_stop (GstBaseSrc * src)
   g_clear_pointer (&self->positions, g_free);
   g_clear_pointer (&self->places, g_free);
   g_clear_pointer (&self->states, g_free);
-  GST_OBJECT_LOCK (self);
-  gst_clear_caps (&self->caps);
-  GST_OBJECT_UNLOCK (self);
-  return TRUE;
 }
 
 static gboolean
-gst_cloth_sim_start (GstBaseSrc * src)
+gst_cloth_sim_open (GstClothSource * source)
 {
-  GstClothSim *self = GST_CLOTH_SIM (src);
+  GstClothSim *self = GST_CLOTH_SIM (source);
+  GstClothSourceStream stream = { self->location, "", NULL, 0, NULL, 0, 0, 1 };
   gsize n;
 
   if (!self->model_location || !*self->model_location ||
@@ -204,113 +148,33 @@ gst_cloth_sim_start (GstBaseSrc * src)
         (NULL));
     return FALSE;
   }
-  if (!load_model (self) || !load_scene (self) || !make_sim (self) ||
-      !make_caps (self)) {
-    gst_cloth_sim_stop (src);
+  if (!load_model (self) || !load_scene (self) || !make_sim (self))
     return FALSE;
-  }
   n = self->scene->topology->n_vertices;
   self->positions = g_new (gdouble, 3 * n);
   self->places = g_new (gfloat, 3 * n);
   self->states = g_malloc (n);
   memset (self->states, GST_CLOTH_VERTEX_PREDICTED, n);
-  self->next = 0;
-  GST_OBJECT_LOCK (self);
-  src->segment.duration = frame_time (self, self->scene->n_frames);
-  GST_OBJECT_UNLOCK (self);
-  return TRUE;
+  stream.topology = self->scene->topology;
+  stream.n_frames = self->scene->n_frames;
+  stream.times = self->scene->times;
+  stream.origin = self->scene->times[0];
+  gst_util_double_to_fraction (self->scene->fps, &stream.fps_n, &stream.fps_d);
+  return gst_cloth_source_publish (source, &stream);
 }
 
-static GstCaps *
-gst_cloth_sim_get_caps (GstBaseSrc * src, GstCaps * filter)
+static GstClothMesh *
+gst_cloth_sim_make_mesh (GstClothSource * source, guint frame)
 {
-  GstClothSim *self = GST_CLOTH_SIM (src);
-  GstCaps *caps, *filtered;
-
-  GST_OBJECT_LOCK (self);
-  caps = self->caps ? gst_caps_ref (self->caps) : NULL;
-  GST_OBJECT_UNLOCK (self);
-  if (!caps)
-    caps = gst_pad_get_pad_template_caps (src->srcpad);
-  if (!filter)
-    return caps;
-  filtered = gst_caps_intersect_full (filter, caps, GST_CAPS_INTERSECT_FIRST);
-  gst_caps_unref (caps);
-  return filtered;
-}
-
-static gboolean
-gst_cloth_sim_is_seekable (GstBaseSrc * src)
-{
-  return GST_CLOTH_SIM (src)->sim && !gst_base_src_is_live (src);
-}
-
-static gboolean
-gst_cloth_sim_do_seek (GstBaseSrc * src, GstSegment * segment)
-{
-  GstClothSim *self = GST_CLOTH_SIM (src);
-
-  if (segment->format != GST_FORMAT_TIME || segment->rate < 0)
-    return FALSE;
-  segment->time = segment->start;
-  /* the frame that is shown then */
-  self->next = 0;
-  while (self->next < self->scene->n_frames &&
-      frame_time (self, self->next + 1) <= segment->position)
-    self->next++;
-  /* What is past is not kept: begin again. */
-  if (self->next < self->sim_frame)
-    return make_sim (self);
-  return TRUE;
-}
-
-static gboolean
-gst_cloth_sim_query (GstBaseSrc * src, GstQuery * query)
-{
-  GstClothSim *self = GST_CLOTH_SIM (src);
-  GstFormat format;
-  GstClockTime duration;
-
-  GST_OBJECT_LOCK (self);
-  duration = self->caps ? src->segment.duration : GST_CLOCK_TIME_NONE;
-  GST_OBJECT_UNLOCK (self);
-  if (GST_QUERY_TYPE (query) == GST_QUERY_DURATION &&
-      GST_CLOCK_TIME_IS_VALID (duration)) {
-    gst_query_parse_duration (query, &format, NULL);
-    if (format != GST_FORMAT_TIME)
-      return FALSE;
-    gst_query_set_duration (query, format, (gint64) duration);
-    return TRUE;
-  }
-  return GST_BASE_SRC_CLASS (gst_cloth_sim_parent_class)->query (src, query);
-}
-
-/* A live frame is sent when its time has come. */
-static void
-gst_cloth_sim_get_times (GstBaseSrc * src, GstBuffer * buffer,
-    GstClockTime * start, GstClockTime * end)
-{
-  if (!gst_base_src_is_live (src))
-    return;
-  *start = GST_BUFFER_PTS (buffer);
-  *end = *start + GST_BUFFER_DURATION (buffer);
-}
-
-static GstFlowReturn
-gst_cloth_sim_create (GstPushSrc * src, GstBuffer ** buffer)
-{
-  GstClothSim *self = GST_CLOTH_SIM (src);
-  const GstSegment *segment = &GST_BASE_SRC (src)->segment;
+  GstClothSim *self = GST_CLOTH_SIM (source);
   const ClothScene *scene = self->scene;
-  g_autoptr (GstClothMesh) mesh = NULL;
   gdouble since_s;
 
-  if (self->next >= scene->n_frames ||
-      (GST_CLOCK_TIME_IS_VALID (segment->stop) &&
-          frame_time (self, self->next) >= segment->stop))
-    return GST_FLOW_EOS;
+  /* What is past is not kept: begin again. */
+  if (frame < self->sim_frame && !make_sim (self))
+    return NULL;
   /* Frame by frame, also those that are not sent, so that a seek changes no bit. */
-  while (self->sim_frame < self->next)
+  while (self->sim_frame < frame)
     cloth_sim_advance (self->sim, scene->times[++self->sim_frame]);
   if (cloth_sim_get_state (self->sim, 0, &since_s) != CLOTH_SIM_OK) {
     GST_ELEMENT_ERROR (self, STREAM, FAILED,
@@ -318,21 +182,13 @@ gst_cloth_sim_create (GstPushSrc * src, GstBuffer ** buffer)
             "at %.3f s: set its “time_step” below %g s or to 0, or lower its "
             "stiffnesses and damping.stiffness", self->model_location, since_s,
             cloth_sim_get_time_step (self->sim)), (NULL));
-    return GST_FLOW_ERROR;
+    return NULL;
   }
   cloth_sim_get_positions (self->sim, 0, self->positions);
   for (gsize i = 0; i < 3 * (gsize) scene->topology->n_vertices; i++)
     self->places[i] = (gfloat) self->positions[i];
-  mesh = gst_cloth_mesh_new (self->next, scene->topology->n_vertices,
-      self->places, self->states, NULL);
-  *buffer = gst_cloth_mesh_to_buffer (mesh);
-  GST_BUFFER_PTS (*buffer) = frame_time (self, self->next);
-  GST_BUFFER_DURATION (*buffer) = frame_time (self, self->next + 1) -
-      GST_BUFFER_PTS (*buffer);
-  GST_BUFFER_OFFSET (*buffer) = self->next;
-  GST_BUFFER_OFFSET_END (*buffer) = self->next + 1;
-  self->next++;
-  return GST_FLOW_OK;
+  return gst_cloth_mesh_new (frame, scene->topology->n_vertices, self->places,
+      self->states, NULL);
 }
 
 static void
@@ -341,18 +197,14 @@ gst_cloth_sim_set_property (GObject * object, guint id, const GValue * value,
 {
   GstClothSim *self = GST_CLOTH_SIM (object);
 
-  if (id == PROP_LIVE) {
-    gst_base_src_set_live (GST_BASE_SRC (self), g_value_get_boolean (value));
-    return;
-  }
   GST_OBJECT_LOCK (self);
-  if (GST_STATE (self) > GST_STATE_READY) {
-    GST_WARNING_OBJECT (self, "“%s” cannot change while running",
-        spec->name);
+  if (!gst_cloth_may_change (GST_ELEMENT (self), spec)) {
     GST_OBJECT_UNLOCK (self);
     return;
   }
   switch (id) {
+    case PROP_LIVE:            /* the base takes the lock itself */
+      break;
     case PROP_MODEL:
       g_free (self->model_location);
       self->model_location = g_value_dup_string (value);
@@ -372,6 +224,8 @@ gst_cloth_sim_set_property (GObject * object, guint id, const GValue * value,
       break;
   }
   GST_OBJECT_UNLOCK (self);
+  if (id == PROP_LIVE)
+    gst_base_src_set_live (GST_BASE_SRC (self), g_value_get_boolean (value));
 }
 
 static void
@@ -410,7 +264,6 @@ gst_cloth_sim_finalize (GObject * object)
 {
   GstClothSim *self = GST_CLOTH_SIM (object);
 
-  gst_cloth_sim_stop (GST_BASE_SRC (self));
   g_free (self->model_location);
   g_free (self->location);
   G_OBJECT_CLASS (gst_cloth_sim_parent_class)->finalize (object);
@@ -423,7 +276,7 @@ gst_cloth_sim_class_init (GstClothSimClass * klass)
       GST_PARAM_MUTABLE_READY;
   GObjectClass *object_class = G_OBJECT_CLASS (klass);
   GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
-  GstBaseSrcClass *src_class = GST_BASE_SRC_CLASS (klass);
+  GstClothSourceClass *source_class = GST_CLOTH_SOURCE_CLASS (klass);
 
   GST_DEBUG_CATEGORY_INIT (cloth_sim_debug, "clothsim", 0, "simulated cloth");
   object_class->set_property = gst_cloth_sim_set_property;
@@ -448,21 +301,14 @@ gst_cloth_sim_class_init (GstClothSimClass * klass)
       g_param_spec_uint ("threads", "Threads",
           "Threads of computation, 0 for one on each processor", 0, 256, 0,
           flags));
-  gst_element_class_add_static_pad_template (element_class, &src_template);
   gst_element_class_set_static_metadata (element_class, "Cloth simulator",
       "Source", "Simulates a cloth as a mesh stream", PACKAGE_NAME);
-  src_class->start = gst_cloth_sim_start;
-  src_class->stop = gst_cloth_sim_stop;
-  src_class->get_caps = gst_cloth_sim_get_caps;
-  src_class->get_times = gst_cloth_sim_get_times;
-  src_class->is_seekable = gst_cloth_sim_is_seekable;
-  src_class->do_seek = gst_cloth_sim_do_seek;
-  src_class->query = gst_cloth_sim_query;
-  GST_PUSH_SRC_CLASS (klass)->create = gst_cloth_sim_create;
+  source_class->open = gst_cloth_sim_open;
+  source_class->close = gst_cloth_sim_close;
+  source_class->make_mesh = gst_cloth_sim_make_mesh;
 }
 
 static void
 gst_cloth_sim_init (GstClothSim * self)
 {
-  gst_base_src_set_format (GST_BASE_SRC (self), GST_FORMAT_TIME);
 }

@@ -3,12 +3,12 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include <gst/base/gstpushsrc.h>
+#include "elements/gstclothsource.h"
 
 G_BEGIN_DECLS
 
 #define GST_TYPE_CLOTH_SIM (gst_cloth_sim_get_type ())
-G_DECLARE_FINAL_TYPE (GstClothSim, gst_cloth_sim, GST, CLOTH_SIM, GstPushSrc)
+G_DECLARE_FINAL_TYPE (GstClothSim, gst_cloth_sim, GST, CLOTH_SIM, GstClothSource)
 
 GST_ELEMENT_REGISTER_DECLARE (clothsim);
 

@@ -29,6 +29,7 @@
 
 #include <gst/cloth/cloth.h>
 
+#include "elements/gstclothutil.h"
 #include "elements/gstmeshformat.h"
 
 GST_DEBUG_CATEGORY_STATIC (mesh_sink_debug);
@@ -264,9 +265,7 @@ gst_mesh_sink_set_property (GObject * object, guint id, const GValue * value,
   GstMeshSink *self = GST_MESH_SINK (object);
 
   GST_OBJECT_LOCK (self);
-  if (GST_STATE (self) > GST_STATE_READY) {
-    GST_WARNING_OBJECT (self, "“%s” cannot change while running",
-        spec->name);
+  if (!gst_cloth_may_change (GST_ELEMENT (self), spec)) {
     GST_OBJECT_UNLOCK (self);
     return;
   }

@@ -3,12 +3,12 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include <gst/base/gstpushsrc.h>
+#include "elements/gstclothsource.h"
 
 G_BEGIN_DECLS
 
 #define GST_TYPE_MESH_SRC (gst_mesh_src_get_type ())
-G_DECLARE_FINAL_TYPE (GstMeshSrc, gst_mesh_src, GST, MESH_SRC, GstPushSrc)
+G_DECLARE_FINAL_TYPE (GstMeshSrc, gst_mesh_src, GST, MESH_SRC, GstClothSource)
 
 GST_ELEMENT_REGISTER_DECLARE (meshsrc);
 

@@ -1,0 +1,13 @@
+/* What several elements do alike: caps, properties that hold from start to stop.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include <gst/gst.h>
+
+G_BEGIN_DECLS
+
+GstCaps *gst_cloth_filter_caps (GstCaps * caps, GstCaps * filter);
+gboolean gst_cloth_may_change (GstElement * element, const GParamSpec * spec);
+
+G_END_DECLS
