@@ -562,34 +562,18 @@ static GstCaps *
 gst_cloth_camera_transform_caps (GstBaseTransform * trans,
     GstPadDirection direction, GstCaps * caps, GstCaps * filter)
 {
-  GstClothCamera *self = GST_CLOTH_CAMERA (trans);
-  const gint width = self->capture.camera.width;
-  const gint height = self->capture.camera.height;
-  g_autoptr (GstCaps) template = gst_static_pad_template_get_caps (direction
-      == GST_PAD_SINK ? &src_template : &sink_template);
-  GstCaps *result = gst_caps_new_empty ();
+  static const gchar *const kept[] = { "framerate", NULL };
+  const ClothCamera *camera = &GST_CLOTH_CAMERA (trans)->capture.camera;
+  GstCaps *other = gst_static_pad_template_get_caps (direction ==
+      GST_PAD_SINK ? &src_template : &sink_template);
 
-  for (guint i = 0; i < gst_caps_get_size (caps); i++) {
-    const GstStructure *from = gst_caps_get_structure (caps, i);
-    GstStructure *to = gst_structure_copy (gst_caps_get_structure (template,
-            0));
-
-    if (gst_structure_has_field (from, "framerate"))
-      gst_structure_set_value (to, "framerate",
-          gst_structure_get_value (from, "framerate"));
-    if (direction == GST_PAD_SINK && width > 0)
-      gst_structure_set (to, "width", G_TYPE_INT, width, "height", G_TYPE_INT,
-          height, "pixel-aspect-ratio", GST_TYPE_FRACTION, 1, 1, NULL);
-    gst_caps_append_structure (result, to);
+  if (direction == GST_PAD_SINK && camera->width > 0) {
+    other = gst_caps_make_writable (other);
+    gst_caps_set_simple (other, "width", G_TYPE_INT, camera->width, "height",
+        G_TYPE_INT, camera->height, "pixel-aspect-ratio", GST_TYPE_FRACTION, 1,
+        1, NULL);
   }
-  if (filter) {
-    GstCaps *both = gst_caps_intersect_full (filter, result,
-        GST_CAPS_INTERSECT_FIRST);
-
-    gst_caps_unref (result);
-    result = both;
-  }
-  return result;
+  return gst_cloth_carry_caps (caps, kept, other, filter);
 }
 
 static gboolean

@@ -5,6 +5,7 @@
 #include <gst/cloth/cloth.h>
 
 #include "elements/gstclothmetapay.h"
+#include "elements/gstclothutil.h"
 
 GST_DEBUG_CATEGORY_STATIC (cloth_meta_pay_debug);
 #define GST_CAT_DEFAULT cloth_meta_pay_debug
@@ -44,32 +45,16 @@ static GstCaps *
 gst_cloth_meta_pay_transform_caps (GstBaseTransform * trans,
     GstPadDirection direction, GstCaps * caps, GstCaps * filter)
 {
-  static const gchar *const kept[] = { "width", "height", "framerate" };
-  GstCaps *result = gst_caps_new_empty ();
+  static const gchar *const kept[] = { "width", "height", "framerate", NULL };
+  GstCaps *other = gst_static_pad_template_get_caps (direction ==
+      GST_PAD_SINK ? &src_template : &sink_template);
 
-  for (guint i = 0; i < gst_caps_get_size (caps); i++) {
-    GstStructure *from = gst_caps_get_structure (caps, i);
-    GstStructure *to = direction == GST_PAD_SINK ?
-        gst_structure_new (GST_CLOTH_OBSERVATIONS_MEDIA_TYPE, "version",
-        G_TYPE_INT, 1, NULL) : gst_structure_new_empty ("video/x-raw");
-
-    for (guint k = 0; k < G_N_ELEMENTS (kept); k++)
-      if (gst_structure_has_field (from, kept[k]))
-        gst_structure_set_value (to, kept[k], gst_structure_get_value (from,
-                kept[k]));
-    if (direction == GST_PAD_SINK && !gst_structure_has_field (to, "framerate"))
-      gst_structure_set (to, "framerate", GST_TYPE_FRACTION, 0, 1, NULL);
-    gst_caps_append_structure_full (result, to, direction == GST_PAD_SINK ?
-        NULL : gst_caps_features_new_any ());
+  if (direction == GST_PAD_SINK) {
+    /* pictures need not say their rate */
+    other = gst_caps_make_writable (other);
+    gst_caps_set_simple (other, "framerate", GST_TYPE_FRACTION, 0, 1, NULL);
   }
-  if (filter) {
-    GstCaps *both = gst_caps_intersect_full (filter, result,
-        GST_CAPS_INTERSECT_FIRST);
-
-    gst_caps_unref (result);
-    result = both;
-  }
-  return result;
+  return gst_cloth_carry_caps (caps, kept, other, filter);
 }
 
 static GstFlowReturn

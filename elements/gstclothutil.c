@@ -20,6 +20,30 @@ gst_cloth_filter_caps (GstCaps * caps, GstCaps * filter)
   return both;
 }
 
+/* Caps of the one pad from those of the other, where the pads are of different media: for
+ * each of @caps the structure of @other (taken) with the @fields of it, as far as it has
+ * them. */
+GstCaps *
+gst_cloth_carry_caps (const GstCaps * caps, const gchar * const *fields,
+    GstCaps * other, GstCaps * filter)
+{
+  GstCaps *result = gst_caps_new_empty ();
+
+  for (guint i = 0; i < gst_caps_get_size (caps); i++) {
+    const GstStructure *from = gst_caps_get_structure (caps, i);
+    GstStructure *to = gst_structure_copy (gst_caps_get_structure (other, 0));
+
+    for (guint k = 0; fields[k]; k++)
+      if (gst_structure_has_field (from, fields[k]))
+        gst_structure_set_value (to, fields[k], gst_structure_get_value (from,
+                fields[k]));
+    gst_caps_append_structure_full (result, to,
+        gst_caps_features_copy (gst_caps_get_features (other, 0)));
+  }
+  gst_caps_unref (other);
+  return gst_cloth_filter_caps (result, filter);
+}
+
 /* Whether a property that is mutable in READY only may be set now; warns when not. With
  * the object lock. */
 gboolean

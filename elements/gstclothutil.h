@@ -8,6 +8,8 @@
 G_BEGIN_DECLS
 
 GstCaps *gst_cloth_filter_caps (GstCaps * caps, GstCaps * filter);
+GstCaps *gst_cloth_carry_caps (const GstCaps * caps,
+    const gchar * const * fields, GstCaps * other, GstCaps * filter);
 gboolean gst_cloth_may_change (GstElement * element, const GParamSpec * spec);
 
 G_END_DECLS
