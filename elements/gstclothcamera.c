@@ -35,7 +35,6 @@
 #include <math.h>
 
 #include "elements/gstclothutil.h"
-#include "gst/rig/rigfile.h"
 #include "gst/vision/render.h"
 
 GST_DEBUG_CATEGORY_STATIC (cloth_camera_debug);
@@ -418,36 +417,12 @@ static gboolean
 gst_cloth_camera_load (GstClothCamera * self)
 {
   g_autoptr (GError) error = NULL;
-  g_autoptr (ClothRig) rig = NULL;
-  const ClothCamera *camera = NULL;
+  const ClothCamera *camera;
+  g_autoptr (ClothRig) rig = gst_cloth_open_rig (GST_ELEMENT (self), self->rig,
+      self->camera, &camera);
 
-  if (!self->rig) {
-    GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS, ("No rig to film with."),
-        ("Set rig= to a rig.json and camera= to the name of the camera there."));
+  if (!rig)
     return FALSE;
-  }
-  rig = cloth_rig_load (self->rig, &error);
-  if (!rig) {
-    GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ, ("Can't read the rig: %s",
-            error->message), ("rig=%s", self->rig));
-    return FALSE;
-  }
-  if (self->camera)
-    camera = cloth_rig_find (rig, self->camera);
-  else if (rig->n_cameras == 1)
-    camera = &rig->cameras[0];
-  if (!camera) {
-    GString *names = g_string_new (NULL);
-
-    for (guint i = 0; i < rig->n_cameras; i++)
-      g_string_append_printf (names, "%s%s", i ? ", " : "",
-          rig->cameras[i].name ? rig->cameras[i].name : "(unnamed)");
-    GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS, ("%s has no camera “%s”.",
-            self->rig, self->camera ? self->camera : ""),
-        ("Set camera= to one of: %s", names->str));
-    g_string_free (names, TRUE);
-    return FALSE;
-  }
   cloth_capture_init (&self->capture, camera);
   if (!cloth_capture_add_effects (&self->capture, self->effects, &error)) {
     GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS, ("Wrong effects: %s",

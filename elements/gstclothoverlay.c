@@ -39,12 +39,12 @@
 
 #include "elements/gstclothoverlay.h"
 #include "elements/gstclothoverlay-draw.h"
+#include "elements/gstclothutil.h"
 
 #include <gst/cloth/cloth.h>
 #include <gst/video/video.h>
 #include <math.h>
 
-#include "gst/rig/rigfile.h"
 #include "gst/vision/wireframe.h"
 
 GST_DEBUG_CATEGORY_STATIC (cloth_overlay_debug);
@@ -144,7 +144,6 @@ static gboolean
 gst_cloth_overlay_load_rig (GstClothOverlay * self)
 {
   g_autofree gchar *path = NULL, *name = NULL;
-  g_autoptr (GError) error = NULL;
 
   GST_OBJECT_LOCK (self);
   if (!self->rig_changed && self->camera) {
@@ -158,37 +157,9 @@ gst_cloth_overlay_load_rig (GstClothOverlay * self)
 
   self->camera = NULL;
   g_clear_pointer (&self->rig, cloth_rig_free);
-  if (!path) {
-    GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
-        ("No calibration to draw the mesh with."),
-        ("Set rig= to a rig.json and camera= to the name of the camera there."));
-    return FALSE;
-  }
-  self->rig = cloth_rig_load (path, &error);
+  self->rig = gst_cloth_open_rig (GST_ELEMENT (self), path, name,
+      &self->camera);
   if (!self->rig) {
-    GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ,
-        ("Can't read the calibration: %s", error->message), ("rig=%s", path));
-    return FALSE;
-  }
-  if (name) {
-    self->camera = cloth_rig_find (self->rig, name);
-  } else if (self->rig->n_cameras == 1) {
-    self->camera = &self->rig->cameras[0];
-  }
-  if (!self->camera) {
-    GString *names = g_string_new (NULL);
-    guint i;
-
-    for (i = 0; i < self->rig->n_cameras; i++) {
-      const gchar *one = self->rig->cameras[i].name;
-
-      g_string_append_printf (names, "%s%s", i ? ", " : "",
-          one ? one : "(unnamed)");
-    }
-    GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
-        ("%s has no camera \"%s\".", path, name ? name : ""),
-        ("Set camera= to one of: %s", names->str));
-    g_string_free (names, TRUE);
     return FALSE;
   }
   /* meshes come in the rig's time, pictures in their camera's */

@@ -1,4 +1,5 @@
-/* What several elements do alike: caps, properties that hold from start to stop.
+/* What several elements do alike: caps, properties that hold from start to stop, the
+ * camera of a rig.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #ifdef HAVE_CONFIG_H
@@ -6,6 +7,8 @@
 #endif
 
 #include "elements/gstclothutil.h"
+
+#include "gst/rig/rigfile.h"
 
 /* What of @caps (taken) the asker of a caps query wants, in the asker's order. */
 GstCaps *
@@ -54,4 +57,42 @@ gst_cloth_may_change (GstElement * element, const GParamSpec * spec)
   GST_WARNING_OBJECT (element, "“%s” cannot change while running",
       spec->name);
   return FALSE;
+}
+
+/* The rig of the file @path (nullable) and in it the camera @name, which may be NULL when
+ * there is one camera. NULL when an error was posted. */
+ClothRig *
+gst_cloth_open_rig (GstElement * element, const gchar * path,
+    const gchar * name, const ClothCamera ** camera)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRig) rig = NULL;
+  g_autoptr (GString) names = NULL;
+
+  if (!path) {
+    GST_ELEMENT_ERROR (element, RESOURCE, SETTINGS,
+        ("No rig to take a camera from."),
+        ("Set rig= to a rig.json and camera= to the name of the camera there."));
+    return NULL;
+  }
+  rig = cloth_rig_load (path, &error);
+  if (!rig) {
+    GST_ELEMENT_ERROR (element, RESOURCE, OPEN_READ,
+        ("Can't read the rig: %s", error->message), ("rig=%s", path));
+    return NULL;
+  }
+  if (name)
+    *camera = cloth_rig_find (rig, name);
+  else
+    *camera = rig->n_cameras == 1 ? &rig->cameras[0] : NULL;
+  if (*camera)
+    return g_steal_pointer (&rig);
+  names = g_string_new (NULL);
+  for (guint i = 0; i < rig->n_cameras; i++)
+    g_string_append_printf (names, "%s%s", i ? ", " : "",
+        rig->cameras[i].name ? rig->cameras[i].name : "(unnamed)");
+  GST_ELEMENT_ERROR (element, RESOURCE, SETTINGS,
+      ("%s has no camera “%s”.", path, name ? name : ""),
+      ("Set camera= to one of: %s", names->str));
+  return NULL;
 }

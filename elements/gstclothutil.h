@@ -1,9 +1,12 @@
-/* What several elements do alike: caps, properties that hold from start to stop.
+/* What several elements do alike: caps, properties that hold from start to stop, the
+ * camera of a rig.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
 #include <gst/gst.h>
+
+#include "gst/rig/rig.h"
 
 G_BEGIN_DECLS
 
@@ -11,5 +14,7 @@ GstCaps *gst_cloth_filter_caps (GstCaps * caps, GstCaps * filter);
 GstCaps *gst_cloth_carry_caps (const GstCaps * caps,
     const gchar * const * fields, GstCaps * other, GstCaps * filter);
 gboolean gst_cloth_may_change (GstElement * element, const GParamSpec * spec);
+ClothRig *gst_cloth_open_rig (GstElement * element, const gchar * path,
+    const gchar * name, const ClothCamera ** camera);
 
 G_END_DECLS
