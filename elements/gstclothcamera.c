@@ -203,19 +203,15 @@ gst_cloth_camera_submit_input_buffer (GstBaseTransform * trans,
 {
   GstClothCamera *self = GST_CLOTH_CAMERA (trans);
   g_autoptr (GstBuffer) buffer = input;
-  g_autoptr (GError) error = NULL;
-  g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_from_buffer (buffer, &error);
+  g_autoptr (GstClothMesh) mesh = NULL;
   const gfloat *positions;
   Frame *frame;
 
   if (!self->renderer)
     return GST_FLOW_NOT_NEGOTIATED;
-  if (!mesh || gst_cloth_mesh_get_n_vertices (mesh) != self->n_vertices) {
-    GST_ELEMENT_ERROR (self, STREAM, DECODE, ("Bad mesh: %s", error ?
-            error->message : "it has not as many vertices as its caps say"),
-        (NULL));
+  mesh = gst_cloth_read_mesh (GST_ELEMENT (self), buffer, self->n_vertices);
+  if (!mesh)
     return GST_FLOW_ERROR;
-  }
   frame = self->spare->len > 0 ?
       g_ptr_array_steal_index_fast (self->spare, self->spare->len - 1) :
       g_new0 (Frame, 1);
@@ -498,10 +494,11 @@ gst_cloth_camera_set_caps (GstBaseTransform * trans, GstCaps * in,
   const guint32 *faces;
 
   gst_cloth_camera_forget (self);
-  topology = gst_cloth_topology_from_caps (in, &error);
-  if (!topology || !gst_video_info_from_caps (&self->info, out)) {
-    GST_ELEMENT_ERROR (self, STREAM, FORMAT, ("Bad mesh caps: %s",
-            error ? error->message : "no picture can be made of them"), (NULL));
+  topology = gst_cloth_read_topology (GST_ELEMENT (self), in);
+  if (!topology)
+    return FALSE;
+  if (!gst_video_info_from_caps (&self->info, out)) {
+    GST_ERROR_OBJECT (self, "can't read caps %" GST_PTR_FORMAT, out);
     return FALSE;
   }
   if (gst_cloth_topology_get_n_faces (topology) == 0) {

@@ -320,7 +320,6 @@ static GstFlowReturn
 gst_clothgap_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
 {
   GstClothgap *self = GST_CLOTHGAP (parent);
-  g_autoptr (GError) error = NULL;
   g_autoptr (GstClothMesh) mesh = NULL;
   gdouble time;
 
@@ -328,15 +327,8 @@ gst_clothgap_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
     gst_buffer_unref (buffer);
     return GST_FLOW_NOT_NEGOTIATED;
   }
-  mesh = gst_cloth_mesh_from_buffer (buffer, &error);
-  if (!mesh || gst_cloth_mesh_get_n_vertices (mesh) != self->n_vertices) {
-    if (!mesh)
-      GST_ELEMENT_ERROR (self, STREAM, DECODE,
-          ("A buffer holds no valid mesh: %s", error->message), (NULL));
-    else
-      GST_ELEMENT_ERROR (self, STREAM, DECODE,
-          ("A mesh of %u vertices in a stream of %u",
-              gst_cloth_mesh_get_n_vertices (mesh), self->n_vertices), (NULL));
+  mesh = gst_cloth_read_mesh (GST_ELEMENT (self), buffer, self->n_vertices);
+  if (!mesh) {
     gst_buffer_unref (buffer);
     return GST_FLOW_ERROR;
   }
@@ -449,15 +441,12 @@ set_caps (GstClothgap * self, GstCaps * caps)
 {
   g_autoptr (GError) error = NULL;
   g_autoptr (GstClothTopology) parsed =
-      gst_cloth_topology_from_caps (caps, &error);
+      gst_cloth_read_topology (GST_ELEMENT (self), caps);
   g_autoptr (ClothTopology) topology = NULL;
   gint fps_n = 0, fps_d = 1;
 
-  if (!parsed) {
-    GST_ELEMENT_ERROR (self, STREAM, FORMAT, ("The caps hold no valid mesh: %s",
-            error->message), ("%" GST_PTR_FORMAT, caps));
+  if (!parsed)
     return FALSE;
-  }
   topology = gst_mesh_copy_topology (parsed);
   if (!cloth_gap_check_same_cloth ("the stream", topology, "the take",
           self->scene->topology, &error)) {

@@ -192,8 +192,8 @@ static gboolean
 gst_cloth_overlay_draw_mesh (GstClothOverlay * self, const ClothCanvas * canvas,
     GstBuffer * buffer, const GstClothOverlayStyle * style)
 {
-  g_autoptr (GError) error = NULL;
-  g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_from_buffer (buffer, &error);
+  g_autoptr (GstClothMesh) mesh = gst_cloth_read_mesh (GST_ELEMENT (self),
+      buffer, self->n_vertices);
   GstClothGap *gap = style->draw_gap ? gst_buffer_get_cloth_gap (buffer) : NULL;
   gint width = GST_VIDEO_INFO_WIDTH (&self->info);
   gint height = GST_VIDEO_INFO_HEIGHT (&self->info);
@@ -204,14 +204,6 @@ gst_cloth_overlay_draw_mesh (GstClothOverlay * self, const ClothCanvas * canvas,
   const guint8 *states;
 
   if (!mesh) {
-    GST_ELEMENT_ERROR (self, STREAM, DECODE, ("Bad mesh: %s", error->message),
-        (NULL));
-    return FALSE;
-  }
-  if (gst_cloth_mesh_get_n_vertices (mesh) != self->n_vertices) {
-    GST_ELEMENT_ERROR (self, STREAM, DECODE,
-        ("A mesh of %u vertices in a stream of %u.",
-            gst_cloth_mesh_get_n_vertices (mesh), self->n_vertices), (NULL));
     return FALSE;
   }
   states = gst_cloth_mesh_get_states (mesh, NULL);
@@ -238,7 +230,6 @@ gst_cloth_overlay_set_pad_caps (GstClothSync * sync, guint index,
 {
   GstClothOverlay *self = GST_CLOTH_OVERLAY (sync);
   g_autoptr (GstClothTopology) topology = NULL;
-  g_autoptr (GError) error = NULL;
   const guint32 *faces;
   guint n_indices;
 
@@ -257,10 +248,8 @@ gst_cloth_overlay_set_pad_caps (GstClothSync * sync, guint index,
   if (!caps) {
     return TRUE;
   }
-  topology = gst_cloth_topology_from_caps (caps, &error);
+  topology = gst_cloth_read_topology (GST_ELEMENT (self), caps);
   if (!topology) {
-    GST_ELEMENT_ERROR (self, STREAM, FORMAT, ("Bad mesh caps: %s",
-            error->message), (NULL));
     return FALSE;
   }
   self->n_vertices = gst_cloth_topology_get_n_vertices (topology);

@@ -1,5 +1,5 @@
 /* What several elements do alike: caps, properties that hold from start to stop, the
- * camera of a rig.
+ * camera of a rig, what comes as a mesh stream.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #ifdef HAVE_CONFIG_H
@@ -95,4 +95,39 @@ gst_cloth_open_rig (GstElement * element, const gchar * path,
       ("%s has no camera “%s”.", path, name ? name : ""),
       ("Set camera= to one of: %s", names->str));
   return NULL;
+}
+
+/* The topology of a mesh stream's caps; NULL when an error was posted. */
+GstClothTopology *
+gst_cloth_read_topology (GstElement * element, const GstCaps * caps)
+{
+  g_autoptr (GError) error = NULL;
+  GstClothTopology *topology = gst_cloth_topology_from_caps (caps, &error);
+
+  if (!topology)
+    GST_ELEMENT_ERROR (element, STREAM, FORMAT,
+        ("The caps hold no valid mesh: %s", error->message),
+        ("%" GST_PTR_FORMAT, caps));
+  return topology;
+}
+
+/* A frame of a mesh stream of @n_vertices; NULL when an error was posted. */
+GstClothMesh *
+gst_cloth_read_mesh (GstElement * element, GstBuffer * buffer, guint n_vertices)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_from_buffer (buffer, &error);
+
+  if (!mesh) {
+    GST_ELEMENT_ERROR (element, STREAM, DECODE,
+        ("A buffer holds no valid mesh: %s", error->message), (NULL));
+    return NULL;
+  }
+  if (gst_cloth_mesh_get_n_vertices (mesh) != n_vertices) {
+    GST_ELEMENT_ERROR (element, STREAM, DECODE,
+        ("A mesh of %u vertices in a stream of %u",
+            gst_cloth_mesh_get_n_vertices (mesh), n_vertices), (NULL));
+    return NULL;
+  }
+  return g_steal_pointer (&mesh);
 }

@@ -1,10 +1,10 @@
 /* What several elements do alike: caps, properties that hold from start to stop, the
- * camera of a rig.
+ * camera of a rig, what comes as a mesh stream.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include <gst/gst.h>
+#include <gst/cloth/cloth.h>
 
 #include "gst/rig/rig.h"
 
@@ -16,5 +16,9 @@ GstCaps *gst_cloth_carry_caps (const GstCaps * caps,
 gboolean gst_cloth_may_change (GstElement * element, const GParamSpec * spec);
 ClothRig *gst_cloth_open_rig (GstElement * element, const gchar * path,
     const gchar * name, const ClothCamera ** camera);
+GstClothTopology *gst_cloth_read_topology (GstElement * element,
+    const GstCaps * caps);
+GstClothMesh *gst_cloth_read_mesh (GstElement * element, GstBuffer * buffer,
+    guint n_vertices);
 
 G_END_DECLS

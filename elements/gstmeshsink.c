@@ -78,17 +78,13 @@ static gboolean
 gst_mesh_sink_set_caps (GstBaseSink * sink, GstCaps * caps)
 {
   GstMeshSink *self = GST_MESH_SINK (sink);
-  g_autoptr (GError) error = NULL;
   g_autoptr (GstClothTopology) parsed = NULL;
   g_autoptr (ClothTopology) topology = NULL;
   gint fps_n = 0, fps_d = 1;
 
-  parsed = gst_cloth_topology_from_caps (caps, &error);
-  if (!parsed) {
-    GST_ELEMENT_ERROR (self, STREAM, FORMAT, ("The caps hold no valid mesh: %s",
-            error->message), ("%" GST_PTR_FORMAT, caps));
+  parsed = gst_cloth_read_topology (GST_ELEMENT (self), caps);
+  if (!parsed)
     return FALSE;
-  }
   topology = gst_mesh_copy_topology (parsed);
   gst_structure_get_fraction (gst_caps_get_structure (caps, 0), "framerate",
       &fps_n, &fps_d);
@@ -153,21 +149,11 @@ gst_mesh_sink_render (GstBaseSink * sink, GstBuffer * buffer)
     return GST_FLOW_ERROR;
   if (!self->topology)
     return GST_FLOW_NOT_NEGOTIATED;
-  mesh = gst_cloth_mesh_from_buffer (buffer, &error);
+  mesh = gst_cloth_read_mesh (GST_ELEMENT (self), buffer,
+      self->topology->n_vertices);
   if (!mesh) {
     g_clear_pointer (&self->writer, cloth_mesh_writer_free);
     self->failed = TRUE;
-    GST_ELEMENT_ERROR (self, STREAM, DECODE,
-        ("A buffer holds no valid mesh: %s", error->message), (NULL));
-    return GST_FLOW_ERROR;
-  }
-  if (gst_cloth_mesh_get_n_vertices (mesh) != self->topology->n_vertices) {
-    g_clear_pointer (&self->writer, cloth_mesh_writer_free);
-    self->failed = TRUE;
-    GST_ELEMENT_ERROR (self, STREAM, DECODE,
-        ("A mesh of %u vertices in a stream of %u",
-            gst_cloth_mesh_get_n_vertices (mesh), self->topology->n_vertices),
-        (NULL));
     return GST_FLOW_ERROR;
   }
   if (!self->writer && !open_writer (self))

@@ -1178,7 +1178,7 @@ GST_START_TEST (test_bad_mesh)
   GstBuffer *garbage = gst_buffer_new_memdup ("garbage", 7);
 
   GST_BUFFER_PTS (garbage) = 0;
-  expect_error (properties, 80, 60, garbage, 0, "Bad mesh");
+  expect_error (properties, 80, 60, garbage, 0, "no valid mesh");
   expect_error (properties, 80, 60, mesh_buffer (COLUMNS * ROWS + 1, -1), 0,
       "stream of 12");
   g_unlink (rig);
