@@ -33,6 +33,7 @@
 #include <gst/cloth/cloth.h>
 #include <gst/video/video.h>
 #include <math.h>
+#include <string.h>
 
 #include "elements/gstclothutil.h"
 #include "gst/vision/render.h"
@@ -72,12 +73,14 @@ struct _GstClothCamera
   gchar *rig, *camera, *pattern, *texture, *effects;
   guint64 seed;
   guint threads;
+  GstClockTime latency;
 
   /* from start to stop */
   ClothCapture capture;
   gboolean still;               /* a picture shows the mesh of its own time only */
 
   /* streaming thread */
+  GstCaps *mesh_caps;           /* that the renderer is made for */
   GstVideoInfo info;
   ClothRenderer *renderer;
   ClothPaint *paint;
@@ -207,6 +210,9 @@ gst_cloth_camera_submit_input_buffer (GstBaseTransform * trans,
   const gfloat *positions;
   Frame *frame;
 
+  if (!gst_base_transform_reconfigure (trans))
+    return GST_PAD_IS_FLUSHING (trans->srcpad) ? GST_FLOW_FLUSHING :
+        GST_FLOW_NOT_NEGOTIATED;
   if (!self->renderer)
     return GST_FLOW_NOT_NEGOTIATED;
   mesh = gst_cloth_read_mesh (GST_ELEMENT (self), buffer, self->n_vertices);
@@ -366,6 +372,11 @@ gst_cloth_camera_sink_event (GstBaseTransform * trans, GstEvent * event)
   GstClothCamera *self = GST_CLOTH_CAMERA (trans);
 
   switch (GST_EVENT_TYPE (event)) {
+    case GST_EVENT_GAP:
+    case GST_EVENT_SEGMENT_DONE:
+    case GST_EVENT_STREAM_START:
+      gst_cloth_camera_drain (self);
+      break;
     case GST_EVENT_EOS:
     case GST_EVENT_SEGMENT:
     case GST_EVENT_CAPS:
@@ -382,6 +393,29 @@ gst_cloth_camera_sink_event (GstBaseTransform * trans, GstEvent * event)
       (trans, event);
 }
 
+/* How long a picture waits: for the last instant that it shows, the mesh behind it, and
+ * one more. */
+static void
+update_latency (GstClothCamera * self)
+{
+  GstClockTime latency = 0;
+  gboolean changed;
+  gdouble span[2];
+
+  if (!self->still && self->fps_n > 0) {
+    get_span (self, 0, span);
+    latency = (GstClockTime) (MAX (span[1], 0) * GST_SECOND) + 2 *
+        gst_util_uint64_scale_int (GST_SECOND, self->fps_d, self->fps_n);
+  }
+  GST_OBJECT_LOCK (self);
+  changed = self->latency != latency;
+  self->latency = latency;
+  GST_OBJECT_UNLOCK (self);
+  if (changed)
+    gst_element_post_message (GST_ELEMENT (self),
+        gst_message_new_latency (GST_OBJECT (self)));
+}
+
 static gboolean
 gst_cloth_camera_query (GstBaseTransform * trans, GstPadDirection direction,
     GstQuery * query)
@@ -390,16 +424,13 @@ gst_cloth_camera_query (GstBaseTransform * trans, GstPadDirection direction,
   gboolean done = GST_BASE_TRANSFORM_CLASS (gst_cloth_camera_parent_class)
       ->query (trans, direction, query);
 
-  if (done && GST_QUERY_TYPE (query) == GST_QUERY_LATENCY && !self->still
-      && self->fps_n > 0) {
+  if (done && GST_QUERY_TYPE (query) == GST_QUERY_LATENCY) {
     GstClockTime least, most, wait;
     gboolean live;
-    gdouble span[2];
 
-    /* The last instant seen, the mesh behind it, and one more. */
-    get_span (self, 0, span);
-    wait = (GstClockTime) (MAX (span[1], 0) * GST_SECOND) + 2 *
-        gst_util_uint64_scale_int (GST_SECOND, self->fps_d, self->fps_n);
+    GST_OBJECT_LOCK (self);
+    wait = self->latency;
+    GST_OBJECT_UNLOCK (self);
     gst_query_parse_latency (query, &live, &least, &most);
     gst_query_set_latency (query, live, least + wait,
         GST_CLOCK_TIME_IS_VALID (most) ? most + wait : most);
@@ -450,6 +481,7 @@ gst_cloth_camera_forget (GstClothCamera * self)
 {
   gst_cloth_camera_reset (self);
   g_ptr_array_set_size (self->spare, 0);
+  gst_clear_caps (&self->mesh_caps);
   g_clear_pointer (&self->renderer, cloth_renderer_free);
   g_clear_pointer (&self->paint, cloth_paint_free);
 }
@@ -457,7 +489,13 @@ gst_cloth_camera_forget (GstClothCamera * self)
 static gboolean
 gst_cloth_camera_stop (GstBaseTransform * trans)
 {
-  gst_cloth_camera_forget (GST_CLOTH_CAMERA (trans));
+  GstClothCamera *self = GST_CLOTH_CAMERA (trans);
+
+  gst_cloth_camera_forget (self);
+  memset (&self->capture, 0, sizeof (self->capture));
+  GST_OBJECT_LOCK (self);
+  self->latency = 0;
+  GST_OBJECT_UNLOCK (self);
   return TRUE;
 }
 
@@ -493,14 +531,19 @@ gst_cloth_camera_set_caps (GstBaseTransform * trans, GstCaps * in,
   const gfloat *uv;
   const guint32 *faces;
 
-  gst_cloth_camera_forget (self);
-  topology = gst_cloth_read_topology (GST_ELEMENT (self), in);
-  if (!topology)
-    return FALSE;
   if (!gst_video_info_from_caps (&self->info, out)) {
     GST_ERROR_OBJECT (self, "can't read caps %" GST_PTR_FORMAT, out);
     return FALSE;
   }
+  if (self->mesh_caps && gst_caps_is_equal (self->mesh_caps, in)) {
+    /* only the pictures are of another format: what waits are meshes */
+    gst_clear_buffer (&self->last);
+    return TRUE;
+  }
+  gst_cloth_camera_forget (self);
+  topology = gst_cloth_read_topology (GST_ELEMENT (self), in);
+  if (!topology)
+    return FALSE;
   if (gst_cloth_topology_get_n_faces (topology) == 0) {
     GST_ELEMENT_ERROR (self, STREAM, FORMAT,
         ("The mesh has no faces: nothing of it can be filmed."),
@@ -527,6 +570,8 @@ gst_cloth_camera_set_caps (GstBaseTransform * trans, GstCaps * in,
   self->renderer = cloth_renderer_new (self->n_vertices, uv, faces,
       gst_cloth_topology_get_n_faces (topology), self->threads,
       CLOTH_SIMD_BEST);
+  gst_caps_replace (&self->mesh_caps, in);
+  update_latency (self);
   return TRUE;
 }
 

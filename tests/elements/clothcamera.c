@@ -302,6 +302,120 @@ GST_START_TEST (test_latency)
 
 GST_END_TEST;
 
+/* A pipeline asks for the latency before caps have come: it is told when it changes. */
+GST_START_TEST (test_latency_message)
+{
+  static const gchar *const cameras[] = { "camera=a", "camera=late" };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cameras); i++) {
+    GstHarness *h = harness (cameras[i], "GRAY8");
+    g_autoptr (GstBus) bus = gst_bus_new ();
+    g_autoptr (GstMessage) message = NULL;
+
+    /* start from nothing */
+    gst_element_set_state (h->element, GST_STATE_READY);
+    gst_element_set_bus (h->element, bus);
+    gst_element_set_state (h->element, GST_STATE_PLAYING);
+    gst_harness_push_event (h, gst_event_new_stream_start ("meshes"));
+    gst_harness_set_src_caps (h, mesh_caps (5, 3));
+    message = gst_bus_pop_filtered (bus, GST_MESSAGE_LATENCY);
+    fail_unless (i == 0 ? message == NULL : message != NULL);
+    gst_element_set_bus (h->element, NULL);
+    gst_harness_teardown (h);
+  }
+}
+
+GST_END_TEST;
+
+/* What says that nothing comes does not overtake the pictures that wait. */
+GST_START_TEST (test_order)
+{
+  for (guint i = 0; i < 3; i++) {
+    GstHarness *h =
+        harness ("camera=a effects=rolling_shutter,seconds=0.01", "GRAY8");
+    GstEvent *event;
+
+    gst_harness_push (h, mesh_buffer (0, 4, 3, 0));
+    gst_harness_push (h, mesh_buffer (1, 4, 3, 0));
+    fail_unless_equals_int (gst_harness_buffers_received (h), 0);
+    if (i == 0)
+      event = gst_event_new_gap (80 * GST_MSECOND, 40 * GST_MSECOND);
+    else if (i == 1)
+      event = gst_event_new_segment_done (GST_FORMAT_TIME, 80 * GST_MSECOND);
+    else
+      event = gst_event_new_stream_start ("another");
+    gst_harness_push_event (h, event);
+    fail_unless_equals_int (gst_harness_buffers_received (h), 2);
+    if (i == 0) {
+      /* and on it goes */
+      for (guint k = 3; k < 7; k++)
+        gst_harness_push (h, mesh_buffer (k, 4, 3, 0));
+      gst_harness_push_event (h, gst_event_new_eos ());
+      fail_unless_equals_int (gst_harness_buffers_received (h), 6);
+    }
+    gst_harness_teardown (h);
+  }
+}
+
+GST_END_TEST;
+
+/* Who comes to stand downstream may want another format; what waits isn't lost. */
+GST_START_TEST (test_reconfigure)
+{
+  GstHarness *h =
+      harness ("camera=a effects=rolling_shutter,seconds=0.01", "GRAY8");
+  g_autoptr (GstCaps) caps = NULL;
+  GstVideoInfo info;
+  guint n;
+
+  for (guint i = 0; i < 4; i++)
+    gst_harness_push (h, mesh_buffer (i, 4, 3, 0));
+  n = gst_harness_buffers_received (h);
+  fail_unless (n > 0 && n < 4);
+  gst_harness_set_sink_caps_str (h, "video/x-raw,format=BGRx");
+  gst_harness_push_upstream_event (h, gst_event_new_reconfigure ());
+  fail_unless_equals_int (gst_harness_push (h, mesh_buffer (4, 4, 3, 0)),
+      GST_FLOW_OK);
+  gst_harness_push_event (h, gst_event_new_eos ());
+  fail_unless_equals_int (gst_harness_buffers_received (h), 5);
+  caps = gst_pad_get_current_caps (h->sinkpad);
+  fail_unless (gst_video_info_from_caps (&info, caps));
+  fail_unless_equals_int (GST_VIDEO_INFO_FORMAT (&info), GST_VIDEO_FORMAT_BGRx);
+  for (guint i = 0; i < 5; i++) {
+    g_autoptr (GstBuffer) out = gst_harness_pull (h);
+
+    fail_unless_equals_uint64 (GST_BUFFER_PTS (out), i * 40 * GST_MSECOND);
+    fail_unless_equals_int (gst_buffer_get_size (out), i < n ? 100 * 65 :
+        4 * 97 * 65);
+  }
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+/* After a stop the camera may be another, also of another size. */
+GST_START_TEST (test_other_camera)
+{
+  g_autofree gchar *launch = g_strdup_printf ("clothcamera rig=%s camera=a",
+      rig);
+  g_autoptr (GstElement) element = gst_parse_launch (launch, NULL);
+  g_autoptr (GstPad) pad = gst_element_get_static_pad (element, "src");
+  g_autoptr (GstCaps) small =
+      gst_caps_from_string ("video/x-raw,format=GRAY8,width=64,height=48");
+  g_autoptr (GstCaps) can = NULL;
+
+  gst_element_set_state (element, GST_STATE_PAUSED);
+  can = gst_pad_query_caps (pad, small);
+  fail_unless (gst_caps_is_empty (can));
+  gst_caps_unref (can);
+  gst_element_set_state (element, GST_STATE_NULL);
+  g_object_set (element, "camera", "late", NULL);
+  can = gst_pad_query_caps (pad, small);
+  fail_if (gst_caps_is_empty (can));
+}
+
+GST_END_TEST;
+
 static void
 assert_refused (const gchar * launch, const gchar * says)
 {
@@ -377,6 +491,10 @@ clothcamera_suite (void)
   tcase_add_test (tc, test_dropped);
   tcase_add_test (tc, test_events);
   tcase_add_test (tc, test_latency);
+  tcase_add_test (tc, test_latency_message);
+  tcase_add_test (tc, test_order);
+  tcase_add_test (tc, test_reconfigure);
+  tcase_add_test (tc, test_other_camera);
   tcase_add_test (tc, test_refused);
   return s;
 }
