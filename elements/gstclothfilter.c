@@ -102,24 +102,30 @@ gst_cloth_filter_sink_event (GstBaseTransform * trans, GstEvent * event)
       (trans, event);
 }
 
+/* NONE when the stream doesn't count in time, as that of an appsrc left at its default. */
+static GstClockTime
+gst_cloth_filter_stream_time (GstClothFilter * self, GstBuffer * buffer)
+{
+  const GstSegment *segment = &GST_BASE_TRANSFORM (self)->segment;
+
+  if (segment->format != GST_FORMAT_TIME || !GST_BUFFER_PTS_IS_VALID (buffer))
+    return GST_CLOCK_TIME_NONE;
+  return gst_segment_to_stream_time (segment, GST_FORMAT_TIME,
+      GST_BUFFER_PTS (buffer));
+}
+
 /* Numbers pictures alike in all cameras: by the buffer's own number, else by its time. */
 static guint64
 gst_cloth_filter_number (GstClothFilter * self, GstBuffer * buffer)
 {
   GstClothFilterPrivate *priv = gst_cloth_filter_get_instance_private (self);
-  const GstSegment *segment = &GST_BASE_TRANSFORM (self)->segment;
   gint fps_n = GST_VIDEO_INFO_FPS_N (&priv->info);
   gint fps_d = GST_VIDEO_INFO_FPS_D (&priv->info);
-  guint64 time;
+  GstClockTime time = gst_cloth_filter_stream_time (self, buffer);
 
   if (GST_BUFFER_OFFSET_IS_VALID (buffer))
     return GST_BUFFER_OFFSET (buffer);
-  if (fps_n <= 0 || fps_d <= 0 || !GST_BUFFER_PTS_IS_VALID (buffer)
-      || segment->format != GST_FORMAT_TIME)
-    return priv->count;
-  time = gst_segment_to_stream_time (segment, GST_FORMAT_TIME,
-      GST_BUFFER_PTS (buffer));
-  if (!GST_CLOCK_TIME_IS_VALID (time))
+  if (fps_n <= 0 || fps_d <= 0 || !GST_CLOCK_TIME_IS_VALID (time))
     return priv->count;
   return gst_util_uint64_scale_round (time, (guint64) fps_n,
       (guint64) fps_d * GST_SECOND);
@@ -147,8 +153,7 @@ gst_cloth_filter_transform_ip (GstBaseTransform * trans, GstBuffer * buffer)
             GST_CLOTH_MAX_CAMERA_NAME));
     return GST_FLOW_ERROR;
   }
-  time = gst_segment_to_stream_time (&trans->segment, GST_FORMAT_TIME,
-      GST_BUFFER_PTS (buffer));
+  time = gst_cloth_filter_stream_time (self, buffer);
   if (GST_CLOCK_TIME_IS_VALID (time))
     gst_object_sync_values (GST_OBJECT (self), time);
 

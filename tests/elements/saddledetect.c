@@ -267,6 +267,31 @@ GST_START_TEST (test_flush_and_eos)
 
 GST_END_TEST;
 
+/* An appsrc counts in bytes when nobody tells it otherwise. */
+GST_START_TEST (test_segment_in_bytes)
+{
+  GstHarness *h = gst_harness_new ("saddledetect");
+  g_autofree gchar *caps = caps_of ("GRAY8", 96, 64);
+  g_autoptr (GstCaps) parsed = gst_caps_from_string (caps);
+  GstSegment segment;
+  GstVideoInfo info;
+
+  gst_video_info_from_caps (&info, parsed);
+  gst_harness_set_src_caps_str (h, caps);
+  gst_segment_init (&segment, GST_FORMAT_BYTES);
+  fail_unless (gst_harness_push_event (h, gst_event_new_segment (&segment)));
+  for (guint i = 0; i < 2; i++) {
+    g_autoptr (GstBuffer) out = gst_harness_push_and_pull (h, board (&info, 0));
+
+    assert_board (out, 96, 64);
+    fail_unless_equals_uint64 (gst_cloth_saddles_get_sequence
+        (gst_buffer_get_cloth_saddles (out)), i);
+  }
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
 /* A second detector's saddles take the place of the first one's. */
 GST_START_TEST (test_chain)
 {
@@ -415,6 +440,7 @@ saddledetect_suite (void)
   tcase_add_test (tc, test_after_tee);
   tcase_add_test (tc, test_renegotiation);
   tcase_add_test (tc, test_flush_and_eos);
+  tcase_add_test (tc, test_segment_in_bytes);
   tcase_add_test (tc, test_chain);
   tcase_add_test (tc, test_properties);
   tcase_add_test (tc, test_refine_none);
