@@ -445,7 +445,8 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
     }
     quads[i] = gst_triangulate_quads_of (self, i, views[i], &unpacked[i]);
     if (!stamp) {
-      stamp = gst_buffer_get_reference_timestamp_meta (views[i], NULL);
+      stamp = gst_buffer_get_reference_timestamp_meta (unpacked[i] ?
+          unpacked[i] : views[i], NULL);
     }
     if (!quads[i]) {
       continue;

@@ -21,6 +21,8 @@
 #define MAX_CAMERAS 4
 #define PERIOD (40 * GST_MSECOND)
 #define VIDEO "video/x-raw,format=GRAY8,width=1280,height=720,framerate=25/1"
+#define OBSERVATIONS GST_CLOTH_OBSERVATIONS_MEDIA_TYPE \
+    ",version=1,width=1280,height=720,framerate=25/1"
 #define ALL G_MAXUINT
 
 typedef struct
@@ -589,8 +591,7 @@ GST_START_TEST (test_observations)
   guint frame, i;
 
   bench_open (&b, 3);
-  bench_link (&b, 3, FALSE, GST_CLOTH_OBSERVATIONS_MEDIA_TYPE
-      ",version=1,width=1280,height=720,framerate=25/1");
+  bench_link (&b, 3, FALSE, OBSERVATIONS);
   gst_harness_set_src_caps_str (b.in[1], VIDEO);
   for (frame = 0; frame < 3; frame++) {
     for (i = 0; i < 3; i++) {
@@ -1108,8 +1109,10 @@ GST_START_TEST (test_late_camera_of_other_rate)
 
 GST_END_TEST;
 
-/* The first camera's capture time and number go on with the mesh. */
-GST_START_TEST (test_capture_time)
+/* The first camera's capture time and number go on with the mesh, also when only its
+ * observations came. */
+static void
+check_capture_time (gboolean observations)
 {
   Bench b;
   g_autoptr (GstCaps) reference =
@@ -1121,7 +1124,8 @@ GST_START_TEST (test_capture_time)
   GstClothQuad quads[N_QUADS];
   guint i;
 
-  bench_init (&b, 2);
+  bench_open (&b, 2);
+  bench_link (&b, 2, FALSE, observations ? OBSERVATIONS : VIDEO);
   for (i = 0; i < 2; i++) {
     GstBuffer *buffer;
 
@@ -1130,6 +1134,12 @@ GST_START_TEST (test_capture_time)
             N_QUADS), 0);
     gst_buffer_add_reference_timestamp_meta (buffer, reference,
         100 * GST_SECOND + i, GST_CLOCK_TIME_NONE);
+    if (observations) {
+      GstBuffer *packed = gst_cloth_observations_pack (buffer);
+
+      gst_buffer_unref (buffer);
+      buffer = packed;
+    }
     fail_unless_equals_int (gst_harness_push (b.in[i], buffer), GST_FLOW_OK);
   }
   out = gst_harness_pull (b.src);
@@ -1140,6 +1150,12 @@ GST_START_TEST (test_capture_time)
   g_assert_no_error (error);
   fail_unless_equals_uint64 (gst_cloth_mesh_get_sequence (mesh), 1234);
   bench_clear (&b);
+}
+
+GST_START_TEST (test_capture_time)
+{
+  check_capture_time (FALSE);
+  check_capture_time (TRUE);
 }
 
 GST_END_TEST;
