@@ -198,14 +198,15 @@ send_frame (GstClothgap * self)
   Waiting *waiting;
   GstBuffer *buffer;
   guint64 sequence;
-  GstFlowReturn flow;
+  GstFlowReturn flow = send_others (self);
 
+  if (flow != GST_FLOW_OK)
+    return flow;
   if (!cloth_observer_pop (self->observer, self->residuals, &error)) {
     GST_ELEMENT_ERROR (self, STREAM, FAILED, ("%s", error->message),
         ("model=%s", self->settings.model));
     return GST_FLOW_ERROR;
   }
-  flow = send_others (self);
   waiting = g_queue_pop_head (&self->waiting);
   buffer = GST_BUFFER_CAST (waiting->object);
   g_free (waiting);
@@ -219,10 +220,7 @@ send_frame (GstClothgap * self)
   gst_buffer_add_cloth_gap_meta (buffer, gst_cloth_gap_new (sequence,
           self->n_vertices, self->residuals, self->sigmas));
   post_score (self, FALSE);
-  if (flow == GST_FLOW_OK)
-    flow = gst_pad_push (self->srcpad, buffer);
-  else
-    gst_buffer_unref (buffer);
+  flow = gst_pad_push (self->srcpad, buffer);
   return flow == GST_FLOW_OK ? send_others (self) : flow;
 }
 
@@ -280,6 +278,8 @@ is_in_scene (const GstClothgap * self, gdouble time)
 static GstFlowReturn
 let_pass (GstClothgap * self, GstBuffer * buffer, gdouble time)
 {
+  GstFlowReturn flow = GST_FLOW_OK;
+
   if (!self->warned) {
     const ClothScene *scene = self->scene;
 
@@ -295,7 +295,13 @@ let_pass (GstClothgap * self, GstBuffer * buffer, gdouble time)
               "to the take of this recording", time, scene->times[0],
               scene->times[scene->n_frames - 1]), (NULL));
   }
-  return enqueue (self, buffer, FALSE);
+  /* Behind the scene's end none comes that those waiting could wait for. */
+  if (!is_in_scene (self, time) && time > self->scene->times[0])
+    flow = send_ready (self, 0);
+  if (flow == GST_FLOW_OK)
+    return enqueue (self, buffer, FALSE);
+  gst_buffer_unref (buffer);
+  return flow;
 }
 
 static gboolean

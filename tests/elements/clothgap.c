@@ -595,7 +595,8 @@ GST_START_TEST (test_times)
 
 GST_END_TEST;
 
-/* Behind the end of what the clamps' paths say. */
+/* Behind the end of what the clamps' paths say. None waits for a mesh to come: what is
+ * behind the end may go on for ever. */
 GST_START_TEST (test_outside_scene)
 {
   Setup setup = set_up ("/model.json", "/held", "");
@@ -605,6 +606,7 @@ GST_START_TEST (test_outside_scene)
   gst_harness_set_src_caps (setup.h, make_caps (COLUMNS, ROWS, 0.1f, FPS));
   push (&setup, N_FRAMES - 4, N_FRAMES + 3);
   expect (&setup, GST_MESSAGE_WARNING, "outside the scene");
+  fail_unless_equals_int (gst_harness_buffers_received (setup.h), 7);
   gst_harness_push_event (setup.h, gst_event_new_eos ());
   while ((buffer = gst_harness_try_pull (setup.h))) {
     with += gst_buffer_get_cloth_gap (buffer) != NULL;
@@ -613,6 +615,37 @@ GST_START_TEST (test_outside_scene)
   }
   fail_unless_equals_int (n, 7);
   fail_unless_equals_int (with, 4);
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+static GstPadProbeReturn
+refuse_buffer (GstPad * pad, GstPadProbeInfo * info, gpointer data)
+{
+  gst_buffer_unref (GST_PAD_PROBE_INFO_BUFFER (info));
+  GST_PAD_PROBE_INFO_FLOW_RETURN (info) = GST_FLOW_EOS;
+  return GST_PAD_PROBE_HANDLED;
+}
+
+/* What waits keeps its order when downstream wants no more, with a mesh without a gap and
+ * an event among it. */
+GST_START_TEST (test_downstream_ends)
+{
+  Setup setup = set_up_good ("");
+
+  push (&setup, 0, 5);
+  gst_harness_push (setup.h, make_frame (4, -1, NULL));
+  gst_harness_push_event (setup.h,
+      gst_event_new_custom (GST_EVENT_CUSTOM_DOWNSTREAM,
+          gst_structure_new_empty ("between")));
+  gst_pad_add_probe (setup.h->sinkpad, GST_PAD_PROBE_TYPE_BUFFER,
+      refuse_buffer, NULL, NULL);
+  for (guint frame = 5; frame < 12; frame++)
+    fail_unless_equals_int (gst_harness_push (setup.h, make_frame (frame, -1,
+                NULL)), GST_FLOW_EOS);
+  gst_harness_push_event (setup.h, gst_event_new_eos ());
+  fail_unless_equals_int (gst_harness_buffers_received (setup.h), 2);
   tear_down (&setup);
 }
 
@@ -820,6 +853,7 @@ clothgap_suite (void)
   tcase_add_test (tc, test_again);
   tcase_add_test (tc, test_times);
   tcase_add_test (tc, test_outside_scene);
+  tcase_add_test (tc, test_downstream_ends);
   tcase_add_test (tc, test_cannot_start);
   tcase_add_test (tc, test_other_mesh);
   tcase_add_test (tc, test_bad_buffers);
