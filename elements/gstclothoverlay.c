@@ -98,6 +98,7 @@ struct _GstClothOverlay
   /* streaming thread */
   GstVideoInfo info;
   GstCaps *video_caps;
+  gboolean knows_strides;       /* downstream, of GstVideoMeta */
   ClothWireframe *wire;
   guint n_vertices;
   guint8 *heats;                /* one a vertex */
@@ -274,6 +275,66 @@ gst_cloth_overlay_negotiate_src (GstClothSync * sync, GstCaps * downstream,
   return GST_FLOW_OK;
 }
 
+/* Whatever layout the pictures come in they go on in: downstream is asked whether it can
+ * read that. */
+static gboolean
+gst_cloth_overlay_decide_allocation (GstAggregator * agg, GstQuery * query)
+{
+  GST_CLOTH_OVERLAY (agg)->knows_strides =
+      gst_query_find_allocation_meta (query, GST_VIDEO_META_API_TYPE, NULL);
+  return TRUE;
+}
+
+static gboolean
+gst_cloth_overlay_map (GstClothOverlay * self, GstBuffer * buffer,
+    GstMapFlags flags, GstVideoFrame * frame)
+{
+  if (gst_video_frame_map (frame, &self->info, buffer, flags)) {
+    return TRUE;
+  }
+  GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+      ("The picture does not fit its caps."),
+      ("%" GST_PTR_FORMAT " in %" GST_PTR_FORMAT, buffer, self->video_caps));
+  return FALSE;
+}
+
+static gboolean
+gst_cloth_overlay_is_plain (GstClothOverlay * self, GstBuffer * buffer)
+{
+  const GstVideoMeta *meta = gst_buffer_get_video_meta (buffer);
+  guint i;
+
+  for (i = 0; meta && i < GST_VIDEO_INFO_N_PLANES (&self->info); i++) {
+    if (meta->stride[i] != GST_VIDEO_INFO_PLANE_STRIDE (&self->info, i)
+        || meta->offset[i] != GST_VIDEO_INFO_PLANE_OFFSET (&self->info, i)) {
+      return FALSE;
+    }
+  }
+  return TRUE;
+}
+
+/* The picture in the layout that the caps mean; NULL when an error was posted. */
+static GstBuffer *
+gst_cloth_overlay_make_plain (GstClothOverlay * self, GstBuffer * buffer)
+{
+  g_autoptr (GstBuffer) plain = gst_buffer_new_allocate (NULL,
+      GST_VIDEO_INFO_SIZE (&self->info), NULL);
+  GstVideoFrame from, to;
+
+  if (!gst_cloth_overlay_map (self, buffer, GST_MAP_READ, &from)) {
+    return NULL;
+  }
+  if (!gst_cloth_overlay_map (self, plain, GST_MAP_WRITE, &to)) {
+    gst_video_frame_unmap (&from);
+    return NULL;
+  }
+  gst_video_frame_copy (&to, &from);
+  gst_video_frame_unmap (&to);
+  gst_video_frame_unmap (&from);
+  gst_buffer_copy_into (plain, buffer, GST_BUFFER_COPY_METADATA, 0, -1);
+  return g_steal_pointer (&plain);
+}
+
 static GstFlowReturn
 gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
     guint64 mask, GstClockTime pts, GstClockTime duration, GstBuffer ** out)
@@ -313,15 +374,20 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
     return GST_FLOW_ERROR;
   }
   *out = g_steal_pointer (&views[VIDEO]);
+  if (!self->knows_strides && !gst_cloth_overlay_is_plain (self, *out)) {
+    g_autoptr (GstBuffer) padded = *out;
+
+    *out = gst_cloth_overlay_make_plain (self, padded);
+    if (!*out) {
+      return GST_FLOW_ERROR;
+    }
+  }
   if (!mesh && !has_quads && !has_saddles) {
     return GST_FLOW_OK;
   }
 
   *out = gst_buffer_make_writable (*out);
-  if (!gst_video_frame_map (&frame, &self->info, *out, GST_MAP_READWRITE)) {
-    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
-        ("The picture does not fit its caps."),
-        ("%" GST_PTR_FORMAT " in %" GST_PTR_FORMAT, *out, self->video_caps));
+  if (!gst_cloth_overlay_map (self, *out, GST_MAP_READWRITE, &frame)) {
     return GST_FLOW_ERROR;
   }
   gst_cloth_overlay_canvas (&frame, &canvas);
@@ -584,6 +650,7 @@ gst_cloth_overlay_class_init (GstClothOverlayClass * klass)
   object_class->set_property = gst_cloth_overlay_set_property;
   object_class->get_property = gst_cloth_overlay_get_property;
   object_class->finalize = gst_cloth_overlay_finalize;
+  agg_class->decide_allocation = gst_cloth_overlay_decide_allocation;
   agg_class->sink_query = gst_cloth_overlay_sink_query;
   agg_class->src_query = gst_cloth_overlay_src_query;
   agg_class->src_event = gst_cloth_overlay_src_event;

@@ -90,6 +90,7 @@ overlay (const gchar * properties, const GstVideoInfo * info)
   gst_object_ref_sink (element);
   h = gst_harness_new_with_element (element, "sink", "src");
   gst_object_unref (element);
+  gst_harness_add_propose_allocation_meta (h, GST_VIDEO_META_API_TYPE, NULL);
   if (info) {
     gst_harness_set_src_caps (h, gst_video_info_to_caps (info));
   }
@@ -240,6 +241,39 @@ GST_START_TEST (test_formats)
   fail_unless (changed > 300, "%u", changed);
   check_padding (out, &info, 13);
   gst_buffer_unref (out);
+}
+
+GST_END_TEST;
+
+/* Who does not know of strides gets pictures as their caps mean them, drawn on or not, with
+ * all that is on them. */
+GST_START_TEST (test_plain_layout)
+{
+  guint k;
+
+  for (k = 0; k < 2; k++) {
+    GstClothQuad q = quad_at (10, 10, 20, 1);
+    const Line lines[4] = { {10, 10, 30, 10}, {30, 10, 30, 30},
+    {30, 30, 10, 30}, {10, 30, 10, 10}
+    };
+    GstHarness *h;
+    GstVideoInfo info;
+    GstBuffer *buffer = picture ("I420", 71, 47, 13, &info), *out;
+
+    add_quads (buffer, &q, 1);
+    h = gst_harness_new_parse (k ? "clothoverlay draw-quads=false" :
+        "clothoverlay fill-opacity=0 line-width=2");
+    gst_harness_set_src_caps (h, gst_video_info_to_caps (&info));
+    out = gst_harness_push_and_pull (h, buffer);
+    fail_unless (gst_buffer_get_video_meta (out) == NULL);
+    fail_unless_equals_int (gst_buffer_get_size (out),
+        GST_VIDEO_INFO_SIZE (&info));
+    fail_unless (gst_buffer_get_cloth_quads (out) != NULL);
+    fail_unless (GST_BUFFER_PTS (out) == 0);
+    fail_unless ((check_lines (out, &info, lines, k ? 0 : 4, 2) > 0) == !k);
+    gst_buffer_unref (out);
+    gst_harness_teardown (h);
+  }
 }
 
 GST_END_TEST;
@@ -1219,6 +1253,7 @@ clothoverlay_suite (void)
 
   suite_add_tcase (s, tc);
   tcase_add_loop_test (tc, test_formats, 0, G_N_ELEMENTS (formats));
+  tcase_add_test (tc, test_plain_layout);
   tcase_add_test (tc, test_nothing_to_draw);
   tcase_add_test (tc, test_shared_buffer);
   tcase_add_test (tc, test_confidence_colours);
