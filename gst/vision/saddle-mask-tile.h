@@ -15,34 +15,43 @@
 /* Along a row: from bytes to even and odd columns of 16 bits. For odd columns the same
  * pairs of bytes serve with the weights moved by one. */
 INLINE void
-NAME (across) (guint16 * out, gint n, gint from, gint to, const guint8 * line,
-    const gint8 * taps, const gint n_pairs)
+NAME (across_of) (guint16 * out, gint n, const guint8 * line,
+    const VEC * weights, const gint n_pairs)
 {
-  VEC even[CLOTH_SADDLE_MAX_RADIUS + 1], odd[CLOTH_SADDLE_MAX_RADIUS + 1];
-
-  for (gint k = 0; k < n_pairs; k++) {
-    even[k] = PAIR (taps[2 * k], taps[2 * k + 1]);
-    odd[k] = PAIR (k > 0 ? taps[2 * k - 1] : 0, taps[2 * k]);
-  }
-  for (gint i = from; i < to; i += LANES) {
+  for (gint i = 0; i < n; i += LANES) {
     VEC in = LOAD (line + 2 * i);
-    VEC a = MUL_BYTES (in, even[0]), b = MUL_BYTES (in, odd[0]);
+    VEC a = MUL_BYTES (in, weights[0]), b = MUL_BYTES (in, weights[1]);
 #pragma GCC unroll 16
     for (gint k = 1; k < n_pairs; k++) {
       in = LOAD (line + 2 * i + 2 * k);
-      a = ADD (a, MUL_BYTES (in, even[k]));
-      b = ADD (b, MUL_BYTES (in, odd[k]));
+      a = ADD (a, MUL_BYTES (in, weights[2 * k]));
+      b = ADD (b, MUL_BYTES (in, weights[2 * k + 1]));
     }
     STORE (out + i, a);
     STORE (out + n + i, b);
   }
 }
 
-/* Across rows, two of them at once: the middle row and those at equal distances,
- * averaged in pairs. */
+/* Here and below: loops of known length for the widths most asked for. */
 INLINE void
-NAME (down) (guint16 * out0, guint16 * out1, gint n, guint16 * const *rows,
-    const guint16 * weights, const gint radius)
+NAME (across) (guint16 * out, gint n, const guint8 * line, const VEC * weights,
+    gint n_pairs)
+{
+  if (n_pairs == 5)
+    NAME (across_of) (out, n, line, weights, 5);
+  else if (n_pairs == 4)
+    NAME (across_of) (out, n, line, weights, 4);
+  else
+    NAME (across_of) (out, n, line, weights, n_pairs);
+}
+
+/* Across rows, two of them at once: the middle row and those at equal distances,
+ * averaged in pairs. Meanwhile the bytes @soon, of the picture's rows that come next, are
+ * called into the cache, one line at a time: all at once they would wait for each other. */
+INLINE void
+NAME (down_of) (guint16 * out0, guint16 * out1, gint n,
+    guint16 * const *rows, const guint16 * weights,
+    const guint8 * const *soon, const gint radius)
 {
   VEC weight[CLOTH_SADDLE_MAX_RADIUS + 1];
   const guint16 *row[2 * CLOTH_SADDLE_MAX_RADIUS + 2];
@@ -52,62 +61,67 @@ NAME (down) (guint16 * out0, guint16 * out1, gint n, guint16 * const *rows,
     weight[k] = SET (weights[k]);
   for (gint k = 0; k <= 2 * radius + 1; k++)
     row[k] = rows[k];
-  for (gint i = 0; i < 2 * n; i += LANES) {
-    VEC sum0 = MUL_HIGH_U (LOAD (row[radius] + i), weight[0]);
-    VEC sum1 = MUL_HIGH_U (LOAD (row[radius + 1] + i), weight[0]);
+  for (gint half = 0; half < 2; half++) {
+    for (gint j = 0; j < n; j += LANES) {
+      const gint i = half * n + j;
+
+      __builtin_prefetch (soon[half] + 2 * j);
+      VEC sum0 = MUL_HIGH_U (LOAD (row[radius] + i), weight[0]);
+      VEC sum1 = MUL_HIGH_U (LOAD (row[radius + 1] + i), weight[0]);
 #pragma GCC unroll 16
-    for (gint k = 1; k <= radius; k++) {
-      VEC pair0 = AVERAGE (LOAD (row[radius - k] + i),
-          LOAD (row[radius + k] + i));
-      VEC pair1 = AVERAGE (LOAD (row[radius + 1 - k] + i),
-          LOAD (row[radius + 1 + k] + i));
-      sum0 = ADD (sum0, MUL_HIGH_U (pair0, weight[k]));
-      sum1 = ADD (sum1, MUL_HIGH_U (pair1, weight[k]));
+      for (gint k = 1; k <= radius; k++) {
+        VEC pair0 = AVERAGE (LOAD (row[radius - k] + i),
+            LOAD (row[radius + k] + i));
+        VEC pair1 = AVERAGE (LOAD (row[radius + 1 - k] + i),
+            LOAD (row[radius + 1 + k] + i));
+        sum0 = ADD (sum0, MUL_HIGH_U (pair0, weight[k]));
+        sum1 = ADD (sum1, MUL_HIGH_U (pair1, weight[k]));
+      }
+      STORE (out0 + i, sum0);
+      STORE (out1 + i, sum1);
     }
-    STORE (out0 + i, sum0);
-    STORE (out1 + i, sum1);
   }
 }
 
-/* Two determinants, one above the other, from four rows that follow each other. */
 INLINE void
-NAME (determinants) (VEC * out, const guint16 * const *at, gssize before,
-    gssize after)
+NAME (down) (guint16 * out0, guint16 * out1, gint n, guint16 * const *rows,
+    const guint16 * weights, const guint8 * const *soon, gint radius)
 {
-  VEC left[4], middle[4], right[4];
-
-  for (gint k = 0; k < 4; k++) {
-    left[k] = LOAD (at[k] + before);
-    middle[k] = LOAD (at[k]);
-    right[k] = LOAD (at[k] + after);
-  }
-  for (gint k = 0; k < 2; k++) {
-    VEC twice = ADD (middle[1 + k], middle[1 + k]);
-    VEC fxx = SUB (ADD (left[1 + k], right[1 + k]), twice);
-    VEC fyy = SUB (ADD (middle[k], middle[2 + k]), twice);
-    VEC fxy = SUB (SUB (right[2 + k], right[k]), SUB (left[2 + k], left[k]));
-    out[k] = SUB (MUL_HIGH (TIMES_4 (fxx), TIMES_4 (fyy)), MUL_HIGH (fxy,
-            fxy));
-  }
+  if (radius == 4)
+    NAME (down_of) (out0, out1, n, rows, weights, soon, 4);
+  else if (radius == 3)
+    NAME (down_of) (out0, out1, n, rows, weights, soon, 3);
+  else
+    NAME (down_of) (out0, out1, n, rows, weights, soon, radius);
 }
 
+/* From the smoothed values of a column and those left and right of it, in three rows. */
 INLINE VEC
-NAME (determinant) (const guint16 * a, const guint16 * b, const guint16 * c,
-    gssize before, gssize after)
+NAME (determinant) (VEC up, VEC here, VEC down, VEC left, VEC right,
+    VEC left_rise, VEC right_rise)
 {
-  VEC twice = ADD (LOAD (b), LOAD (b));
-  VEC fyy = SUB (ADD (LOAD (a), LOAD (c)), twice);
-  VEC fxx = SUB (ADD (LOAD (b + before), LOAD (b + after)), twice);
-  VEC fxy = SUB (SUB (LOAD (c + after), LOAD (a + after)),
-      SUB (LOAD (c + before), LOAD (a + before)));
+  VEC twice = ADD (here, here);
+  VEC fxx = SUB (ADD (left, right), twice);
+  VEC fyy = SUB (ADD (up, down), twice);
+  VEC fxy = SUB (right_rise, left_rise);
 
   return SUB (MUL_HIGH (TIMES_4 (fxx), TIMES_4 (fyy)), MUL_HIGH (fxy, fxy));
+}
+
+/* The same at @b, with the rows @a above and @c below it. */
+INLINE VEC
+NAME (determinant_at) (const guint16 * a, const guint16 * b, const guint16 * c,
+    gssize before, gssize after)
+{
+  return NAME (determinant) (LOAD (a), LOAD (b), LOAD (c), LOAD (b + before),
+      LOAD (b + after), SUB (LOAD (c + before), LOAD (a + before)),
+      SUB (LOAD (c + after), LOAD (a + after)));
 }
 
 /* Two rows of bits and determinants. Determinants are always written, and kept if a bit
  * is set. */
 INLINE void
-NAME (rows) (ClothSaddleMask * mask, gint row, gint word_0, gint words, gint n,
+NAME (rows_of) (ClothSaddleMask * mask, gint y, gint word, gint words, gint n,
     gint threshold, const gint h, guint16 * const *smooth)
 {
   const gssize odd = n;
@@ -117,91 +131,125 @@ NAME (rows) (ClothSaddleMask * mask, gint row, gint word_0, gint words, gint n,
   const gssize odd_before = h % 2 ? -odd - (h - 1) / 2 : -(h / 2);
   const gssize odd_after = h % 2 ? -odd + (h + 1) / 2 : h / 2;
   const VEC bound = SET (-threshold);
-  const gsize first = (gsize) row * (gsize) mask->words + (gsize) word_0;
-  guint64 *bits[2] = { mask->bits + first, mask->bits + first + mask->words };
-  guint32 *block = mask->blocks + (gsize) (row / 2) * (gsize) mask->words + (gsize) word_0;
+  const guint16 *row[2 * CLOTH_SADDLE_MAX_STEP + 2];
+  const gsize first = (gsize) y * (gsize) mask->words + (gsize) word;
+  guint64 *bits = mask->bits + first;
+  gint16 *det = mask->det;
+  guint32 *block = mask->blocks + (gsize) (y / 2) * (gsize) mask->words + (gsize) word;
   guint32 next = mask->n_blocks;
 
+  for (gint k = 0; k < 2 * h + 2; k++)
+    row[k] = smooth[k];
+
   for (gint w = 0; w < words; w++) {
-    guint64 word[2] = { 0, 0 };
+    guint64 word_0 = 0, word_1 = 0;
+
     for (gint part = 0; part < 32; part += LANES) {
-      gint i = MARGIN / 2 + 32 * w + part;
-      VEC e[2], o[2];
+      const gint i = MARGIN / 2 + 32 * w + part;
+      gint16 *out = det + 64 * (gsize) next + part;
+      VEC d0, d1, d2, d3;
 
       if (h == 1) {
-        const guint16 *even_at[4] = { smooth[0] + i, smooth[1] + i,
-          smooth[2] + i, smooth[3] + i
-        };
-        const guint16 *odd_at[4] = { even_at[0] + odd, even_at[1] + odd,
-          even_at[2] + odd, even_at[3] + odd
-        };
-        NAME (determinants) (e, even_at, even_before, even_after);
-        NAME (determinants) (o, odd_at, odd_before, odd_after);
-      } else {
-        for (gint k = 0; k < 2; k++) {
-          const guint16 *a = smooth[k] + i, *b = smooth[h + k] + i;
-          const guint16 *c = smooth[2 * h + k] + i;
-          e[k] = NAME (determinant) (a, b, c, even_before, even_after);
-          o[k] = NAME (determinant) (a + odd, b + odd, c + odd, odd_before,
-              odd_after);
-        }
-      }
-      for (gint k = 0; k < 2; k++) {
-        gint16 *det = mask->det + 64 * ((gsize) next + (gsize) k) + part;
+        /* By name and not in arrays, so that compilers keep them in registers: the even
+         * columns, the odd ones, those left of the even, those right of the odd. */
+        const guint16 *r0 = row[0] + i, *r1 = row[1] + i;
+        const guint16 *r2 = row[2] + i, *r3 = row[3] + i;
+        VEC e0 = LOAD (r0), e1 = LOAD (r1), e2 = LOAD (r2), e3 = LOAD (r3);
+        VEC o0 = LOAD (r0 + odd), o1 = LOAD (r1 + odd);
+        VEC o2 = LOAD (r2 + odd), o3 = LOAD (r3 + odd);
+        VEC left_1 = LOAD (r1 + odd - 1), left_2 = LOAD (r2 + odd - 1);
+        VEC right_1 = LOAD (r1 + 1), right_2 = LOAD (r2 + 1);
 
-        word[k] |= (guint64) BITS_BELOW (e[k], o[k], bound) << (2 * part);
-        STORE (det, e[k]);
-        STORE (det + 32, o[k]);
+        d0 = NAME (determinant) (e0, e1, e2, left_1, o1,
+            SUB (left_2, LOAD (r0 + odd - 1)), SUB (o2, o0));
+        d1 = NAME (determinant) (o0, o1, o2, e1, right_1, SUB (e2, e0),
+            SUB (right_2, LOAD (r0 + 1)));
+        d2 = NAME (determinant) (e1, e2, e3, left_2, o2,
+            SUB (LOAD (r3 + odd - 1), left_1), SUB (o3, o1));
+        d3 = NAME (determinant) (o1, o2, o3, e2, right_2, SUB (e3, e1),
+            SUB (LOAD (r3 + 1), right_1));
+      } else {
+        const guint16 *a = row[0] + i, *b = row[h] + i, *c = row[2 * h] + i;
+
+        d0 = NAME (determinant_at) (a, b, c, even_before, even_after);
+        d1 = NAME (determinant_at) (a + odd, b + odd, c + odd, odd_before,
+            odd_after);
+        a = row[1] + i;
+        b = row[h + 1] + i;
+        c = row[2 * h + 1] + i;
+        d2 = NAME (determinant_at) (a, b, c, even_before, even_after);
+        d3 = NAME (determinant_at) (a + odd, b + odd, c + odd, odd_before,
+            odd_after);
       }
+      word_0 |= (guint64) BITS_BELOW (d0, d1, bound) << (2 * part);
+      word_1 |= (guint64) BITS_BELOW (d2, d3, bound) << (2 * part);
+      STORE (out, d0);
+      STORE (out + 32, d1);
+      STORE (out + 64, d2);
+      STORE (out + 96, d3);
     }
     /* A branch would often be guessed wrongly. */
     block[w] = next;
-    next += word[0] | word[1] ? 2 : 0;
-    bits[0][w] = word[0];
-    bits[1][w] = word[1];
+    next += word_0 | word_1 ? 2 : 0;
+    bits[w] = word_0;
+    bits[mask->words + w] = word_1;
   }
   mask->n_blocks = next;
 }
 
-/* Straight from the picture where whole vectors lie in it, else by a copy with the border
- * repeated. */
 INLINE void
-NAME (image_row) (guint16 * out, gint n, gint x, gint y,
-    const ClothImage * image, guint8 * line, const gint8 * taps, const gint r)
+NAME (rows) (ClothSaddleMask * mask, gint row, gint word, gint words, gint n,
+    gint threshold, gint h, guint16 * const *smooth)
+{
+  if (h == 1)
+    NAME (rows_of) (mask, row, word, words, n, threshold, 1, smooth);
+  else
+    NAME (rows_of) (mask, row, word, words, n, threshold, h, smooth);
+}
+
+/* Pixels [x, x + n) of row y, the picture's border repeated outwards. */
+INLINE void
+NAME (copy_row) (guint8 * out, const ClothImage * image, gint x, gint y, gint n)
 {
   const guint8 *row = image->data + (gsize) CLAMP (y, 0, image->height - 1) *
       (gsize) image->stride;
-  gint inside = image->width - x - 2 * r - 2 * LANES;
-  gint from = MIN (x < 0 ? (-x + 2 * LANES - 1) / (2 * LANES) * LANES : 0, n);
-  gint to = inside < 0 ? from :
-      CLAMP ((inside / (2 * LANES) + 1) * LANES, from, n);
+  const gint size = 2 * LANES;
+  gint from = CLAMP (-x, 0, n), to = CLAMP (image->width - x, from, n);
 
-  if (y >= 0 && y + 4 < image->height) {
-    /* The rows after this one are not in the cache yet. */
-    for (gint i = from; i < to; i += 32)
-      __builtin_prefetch (row + 4 * (gsize) image->stride + x + 2 * i);
+  if (from > 0)
+    memset (out, row[0], (gsize) from);
+  if (to - from >= size) {
+    for (gint i = from; i <= to - size; i += size)
+      STORE (out + i, LOAD (row + x + i));
+    STORE (out + to - size, LOAD (row + x + to - size));
+  } else {
+    memcpy (out + from, row + x + from, (gsize) (to - from));
   }
-  cloth_saddle_copy_row (line, image, x, y, 2 * from + 2 * r);
-  NAME (across) (out, n, 0, from, line, taps, r + 1);
-  NAME (across) (out, n, from, to, row + x, taps, r + 1);
-  cloth_saddle_copy_row (line + 2 * to, image, x + 2 * to, y,
-      2 * (n - to) + 2 * r);
-  NAME (across) (out, n, to, n, line, taps, r + 1);
+  if (to < n)
+    memset (out + to, row[image->width - 1], (gsize) (n - to));
 }
 
-INLINE void
-NAME (tile_of) (ClothSaddleMask * mask, const ClothSaddleKernel * kernel,
+TARGET void
+NAME (cloth_saddle_mask_tile) (ClothSaddleMask * mask, const ClothSaddleKernel * kernel,
     const ClothImage * image, gint threshold, gint word, gint words,
-    guint8 * scratch, const gint r, const gint h)
+    guint8 * scratch)
 {
+  const gint r = kernel->radius, h = kernel->step;
   const gint n = CLOTH_SADDLE_TILE_LANES (words);
   const gsize row_size = CLOTH_SADDLE_TILE_ROW (words);
   const gint x = mask->x + 64 * word - MARGIN;
-  const gint line_size = 2 * n + 2 * r + 2;
+  const gint top = mask->y - h - r;
   guint16 *smooth[2 * CLOTH_SADDLE_MAX_STEP + 2];
   guint16 *ring[2 * CLOTH_SADDLE_MAX_RADIUS + 2];
-  guint8 *line;
+  VEC across[2 * CLOTH_SADDLE_MAX_RADIUS + 2];
+  guint8 *line[4];
 
+  for (gint k = 0; k <= r; k++) {
+    const gint8 *taps = kernel->across + 2 * k;
+
+    across[2 * k] = PAIR (taps[0], taps[1]);
+    across[2 * k + 1] = PAIR (k > 0 ? taps[-1] : 0, taps[0]);
+  }
   /* Of the smoothed rows the columns inside the margin are aligned: they are read far
    * oftener than written. */
   for (gint k = 0; k < 2 * h + 2; k++)
@@ -209,19 +257,28 @@ NAME (tile_of) (ClothSaddleMask * mask, const ClothSaddleKernel * kernel,
   scratch += 2 * (row_size * (gsize) (2 * h + 2) + 32);
   for (gint k = 0; k < 2 * r + 2; k++)
     ring[k] = (guint16 *) scratch + row_size * (gsize) k;
-  line = scratch + 2 * row_size * (gsize) (2 * r + 2);
-  memset (line, 0, (gsize) line_size + 64);
+  scratch += 2 * row_size * (gsize) (2 * r + 2);
+  for (gint k = 0; k < 4; k++)
+    line[k] = scratch + CLOTH_SADDLE_TILE_LINE (words) * (gsize) k;
+  for (gint k = 0; k < 2; k++)
+    NAME (copy_row) (line[k], image, x - r, top + k, 2 * n + 2 * r);
 
   /* Two rows a round; the pass down lags 2r rows behind, the determinant 2h more. */
   for (gint i = 0; i < mask->height + 2 * (h + r); i += 2) {
     guint16 *oldest[2] = { ring[0], ring[1] };
+    const guint8 *soon[2];
     gint row = i - 2 * r - 2 * h;
 
     memmove (ring, ring + 2, sizeof (guint16 *) * (gsize) (2 * r));
     for (gint k = 0; k < 2; k++) {
+      /* Copied a round before it is read: a load can't wait for a store that it meets
+       * half way. */
+      NAME (copy_row) (line[(i + 2) % 4 + k], image, x - r, top + i + 2 + k,
+          2 * n + 2 * r);
       ring[2 * r + k] = oldest[k];
-      NAME (image_row) (oldest[k], n, x - r, mask->y - h - r + i + k, image,
-          line, kernel->across, r);
+      NAME (across) (oldest[k], n, line[i % 4 + k], across, r + 1);
+      soon[k] = image->data + MAX (x - r, 0) + (gsize) CLAMP (top + i + 6 + k,
+          0, image->height - 1) * (gsize) image->stride;
     }
     if (i < 2 * r)
       continue;
@@ -231,30 +288,13 @@ NAME (tile_of) (ClothSaddleMask * mask, const ClothSaddleKernel * kernel,
     memmove (smooth, smooth + 2, sizeof (guint16 *) * (gsize) (2 * h));
     smooth[2 * h] = oldest[0];
     smooth[2 * h + 1] = oldest[1];
-    NAME (down) (oldest[0], oldest[1], n, ring, kernel->down, r);
+    NAME (down) (oldest[0], oldest[1], n, ring, kernel->down, soon, r);
     if (row < 0)
       continue;
 
     /* The mask has room for the row after an odd number. */
     NAME (rows) (mask, row, word, words, n, threshold, h, smooth);
   }
-}
-
-/* Loops of known length for the widths most asked for. */
-TARGET void
-NAME (cloth_saddle_mask_tile) (ClothSaddleMask * mask,
-    const ClothSaddleKernel * kernel, const ClothImage * image,
-    gint threshold, gint word, gint words, guint8 * scratch)
-{
-  if (kernel->radius == 4 && kernel->step == 1)
-    NAME (tile_of) (mask, kernel, image, threshold, word, words, scratch, 4,
-        1);
-  else if (kernel->radius == 3 && kernel->step == 1)
-    NAME (tile_of) (mask, kernel, image, threshold, word, words, scratch, 3,
-        1);
-  else
-    NAME (tile_of) (mask, kernel, image, threshold, word, words, scratch,
-        kernel->radius, kernel->step);
 }
 
 #undef NAME_

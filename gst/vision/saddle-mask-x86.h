@@ -15,10 +15,8 @@ G_BEGIN_DECLS
  * for the same ones. */
 #define CLOTH_SADDLE_TILE_ROW(words) \
   ((gsize) (2 * CLOTH_SADDLE_TILE_LANES (words) + 32))
-
-/* Pixels [x, x + n) of row y, the picture's border repeated outwards. */
-void cloth_saddle_copy_row (guint8 * out, const ClothImage * image, gint x,
-    gint y, gint n);
+/* Bytes of a row of the picture for a tile, with what the widest filter reaches. */
+#define CLOTH_SADDLE_TILE_LINE(words) ((gsize) (64 * (words) + 192))
 
 /* @scratch: aligned to 64 bytes, cloth_saddle_tile_size() of them. Words [word,
  * word + words) of every row of @mask are filled. */

@@ -111,10 +111,10 @@ mask_resize (ClothSaddleMask * mask)
   if (need > mask->bits_allocated) {
     g_free (mask->bits);
     g_free (mask->blocks);
-    g_free (mask->det);
+    g_aligned_free (mask->det);
     mask->bits = g_new (guint64, need);
     mask->blocks = g_new (guint32, (need + 1) / 2);
-    mask->det = g_new (gint16, (need + 2) * 64);
+    mask->det = g_aligned_alloc (need + 2, 128, 64);
     mask->bits_allocated = need;
   }
 }
@@ -136,14 +136,14 @@ cloth_saddle_mask_clear (ClothSaddleMask * mask)
 {
   g_free (mask->bits);
   g_free (mask->blocks);
-  g_free (mask->det);
+  g_aligned_free (mask->det);
   g_free (mask->scratch);
   memset (mask, 0, sizeof (*mask));
 }
 
-void
-cloth_saddle_copy_row (guint8 * out, const ClothImage * image, gint x,
-    gint y, gint n)
+/* Pixels [x, x + n) of row y, the picture's border repeated outwards. */
+static void
+copy_row (guint8 * out, const ClothImage * image, gint x, gint y, gint n)
 {
   const guint8 *row =
       image->data + (gsize) CLAMP (y, 0, image->height - 1) *
@@ -218,8 +218,7 @@ mask_run_scalar (ClothSaddleMask * mask, const ClothSaddleKernel * kernel,
   for (gint i = 0; i < mask->height + 2 * (h + r); i++) {
     gint row = i - 2 * r, centre = row - 2 * h;
 
-    cloth_saddle_copy_row (line, image, mask->x - h - r,
-        mask->y - h - r + i, n + 2 * r);
+    copy_row (line, image, mask->x - h - r, mask->y - h - r + i, n + 2 * r);
     across (ring + (gsize) (i % n_ring) * (gsize) n, n, line, kernel);
     if (row < 0)
       continue;
@@ -268,7 +267,8 @@ mask_run_tiles (ClothSaddleMask * mask, const ClothSaddleKernel * kernel,
   const gint n_tiles = (mask->words + widest - 1) / widest;
   const gint wide = (mask->words + n_tiles - 1) / n_tiles;
   guint8 *scratch = mask_scratch (mask,
-      rows * 2 * CLOTH_SADDLE_TILE_ROW (wide) + 256 * (gsize) wide + 1024);
+      2 * (rows * CLOTH_SADDLE_TILE_ROW (wide) + 32) +
+      4 * CLOTH_SADDLE_TILE_LINE (wide));
 
   for (gint i = 0; i < n_tiles; i++) {
     gint from = (gint) ((gint64) mask->words * i / n_tiles);
