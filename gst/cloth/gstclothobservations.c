@@ -214,7 +214,8 @@ put_times (GByteArray * bytes, GstBuffer * buffer, guint * n_sections)
     g_autofree gchar *reference = gst_caps_to_string (time->reference);
     guint start;
 
-    if (!reference_is_plain (reference, strlen (reference)))
+    if (!gst_caps_is_fixed (time->reference)
+        || !reference_is_plain (reference, strlen (reference)))
       continue;
     start = begin_section (bytes, SECTION_TIME);
     put_u64 (bytes, time->timestamp);
@@ -233,7 +234,7 @@ put_times (GByteArray * bytes, GstBuffer * buffer, guint * n_sections)
  * Writes what was seen in a picture, without the picture: the saddles and the quads on
  * @buffer, with camera and sequence number, and its #GstReferenceTimestampMeta. A
  * feature with a float that isn't finite, a quad outside its board, and a reference
- * clock whose caps need more than plain characters are left out. @buffer without any
+ * clock whose caps aren't fixed or need more than plain characters are left out. @buffer without any
  * such meta gives a buffer without sections.
  *
  * Returns: (transfer full): a new buffer in the layout of the observation stream, with
