@@ -346,7 +346,8 @@ gst_cloth_quads_get_points (GstClothQuads * quads)
  * Since: 0.1
  */
 GstClothQuads *
-gst_cloth_quads_scale (GstClothQuads * quads, gdouble scale_x, gdouble scale_y)
+gst_cloth_quads_scale (const GstClothQuads * quads, gdouble scale_x,
+    gdouble scale_y)
 {
   GstClothQuads *scaled;
 

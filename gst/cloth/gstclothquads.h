@@ -95,7 +95,7 @@ GST_CLOTH_API guint gst_cloth_quads_get_n_quads (const GstClothQuads * quads);
 GST_CLOTH_API const GstClothQuad *gst_cloth_quads_get_quads (const GstClothQuads * quads, guint * n_quads);
 GST_CLOTH_API gboolean gst_cloth_quads_get_quad (const GstClothQuads * quads, guint index, GstClothQuad * quad);
 GST_CLOTH_API GBytes *gst_cloth_quads_get_points (GstClothQuads * quads);
-GST_CLOTH_API GstClothQuads *gst_cloth_quads_scale (GstClothQuads * quads, gdouble scale_x, gdouble scale_y);
+GST_CLOTH_API GstClothQuads *gst_cloth_quads_scale (const GstClothQuads * quads, gdouble scale_x, gdouble scale_y);
 
 GST_CLOTH_API GType gst_cloth_quads_meta_api_get_type (void);
 GST_CLOTH_API const GstMetaInfo *gst_cloth_quads_meta_get_info (void);

@@ -360,7 +360,7 @@ scale_axis (gfloat axis, gdouble sx, gdouble sy)
  * Since: 0.1
  */
 GstClothSaddles *
-gst_cloth_saddles_scale (GstClothSaddles * saddles, gdouble scale_x,
+gst_cloth_saddles_scale (const GstClothSaddles * saddles, gdouble scale_x,
     gdouble scale_y)
 {
   GstClothSaddles *scaled;

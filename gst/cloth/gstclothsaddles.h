@@ -91,7 +91,7 @@ GST_CLOTH_API const GstClothCandidate *gst_cloth_saddles_get_candidates (const G
 GST_CLOTH_API gboolean gst_cloth_saddles_get_saddle (const GstClothSaddles * saddles, guint index, GstClothSaddle * saddle);
 GST_CLOTH_API gboolean gst_cloth_saddles_get_candidate (const GstClothSaddles * saddles, guint index, GstClothCandidate * candidate);
 GST_CLOTH_API GBytes *gst_cloth_saddles_get_points (GstClothSaddles * saddles);
-GST_CLOTH_API GstClothSaddles *gst_cloth_saddles_scale (GstClothSaddles * saddles, gdouble scale_x, gdouble scale_y);
+GST_CLOTH_API GstClothSaddles *gst_cloth_saddles_scale (const GstClothSaddles * saddles, gdouble scale_x, gdouble scale_y);
 
 GST_CLOTH_API GType gst_cloth_saddles_meta_api_get_type (void);
 GST_CLOTH_API const GstMetaInfo *gst_cloth_saddles_meta_get_info (void);
