@@ -214,11 +214,12 @@ gap_meta_transform (GstBuffer * target, GstMeta * meta, GstBuffer * buffer,
     GQuark type, gpointer data)
 {
   const GstMetaTransformCopy *copy = data;
+  GstClothGap *gap = ((GstClothGapMeta *) meta)->gap;
 
-  if (!GST_META_TRANSFORM_IS_COPY (type) || copy->region)
+  if (!gap || !GST_META_TRANSFORM_IS_COPY (type) || copy->region)
     return FALSE;
-  return gst_buffer_add_cloth_gap_meta (target,
-      gst_cloth_gap_ref (((GstClothGapMeta *) meta)->gap)) != NULL;
+  return gst_buffer_add_cloth_gap_meta (target, gst_cloth_gap_ref (gap)) !=
+      NULL;
 }
 
 /**

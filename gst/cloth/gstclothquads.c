@@ -391,6 +391,8 @@ quads_meta_transform (GstBuffer * target, GstMeta * meta, GstBuffer * buffer,
   GstClothQuads *quads = ((GstClothQuadsMeta *) meta)->quads;
   gdouble sx, sy;
 
+  if (!quads)
+    return FALSE;
   if (GST_META_TRANSFORM_IS_COPY (type))
     quads = gst_cloth_quads_ref (quads);
   else if (gst_cloth_meta_get_scale (type, data, &sx, &sy))

@@ -416,6 +416,8 @@ saddles_meta_transform (GstBuffer * target, GstMeta * meta, GstBuffer * buffer,
   GstClothSaddles *saddles = ((GstClothSaddlesMeta *) meta)->saddles;
   gdouble sx, sy;
 
+  if (!saddles)
+    return FALSE;
   if (GST_META_TRANSFORM_IS_COPY (type))
     saddles = gst_cloth_saddles_ref (saddles);
   else if (gst_cloth_meta_get_scale (type, data, &sx, &sy))

@@ -72,6 +72,21 @@ test_copies (void)
   gst_buffer_unref (piece);
 }
 
+/* A meta put on by GStreamer's own function has no payload yet. */
+static void
+test_bare (void)
+{
+  GstBuffer *buffer = gst_buffer_new ();
+  GstBuffer *copy;
+
+  gst_buffer_add_meta (buffer, gst_cloth_gap_meta_get_info (), NULL);
+  g_assert_null (gst_buffer_get_cloth_gap (buffer));
+  copy = gst_buffer_copy (buffer);
+  g_assert_null (gst_buffer_get_cloth_gap (copy));
+  gst_buffer_unref (buffer);
+  gst_buffer_unref (copy);
+}
+
 static void
 test_adding_replaces (void)
 {
@@ -157,6 +172,7 @@ main (int argc, char **argv)
   g_test_add_func ("/gap/payload", test_payload);
   g_test_add_func ("/gap/without-sigmas", test_without_sigmas);
   g_test_add_func ("/gap/copies", test_copies);
+  g_test_add_func ("/gap/bare", test_bare);
   g_test_add_func ("/gap/adding-replaces", test_adding_replaces);
   g_test_add_func ("/gap/no-tags", test_no_tags);
   g_test_add_func ("/gap/arrays", test_arrays);

@@ -128,6 +128,22 @@ test_copy_is_reference (void)
   gst_buffer_unref (copy);
 }
 
+/* Metas put on by GStreamer's own function have no payload yet. */
+static void
+test_bare (void)
+{
+  GstBuffer *buffer = gst_buffer_new ();
+  GstBuffer *copy;
+
+  gst_buffer_add_meta (buffer, gst_cloth_saddles_meta_get_info (), NULL);
+  gst_buffer_add_meta (buffer, gst_cloth_quads_meta_get_info (), NULL);
+  copy = gst_buffer_copy (buffer);
+  g_assert_null (gst_buffer_get_cloth_saddles (copy));
+  g_assert_null (gst_buffer_get_cloth_quads (copy));
+  gst_buffer_unref (buffer);
+  gst_buffer_unref (copy);
+}
+
 static void
 test_adding_replaces (void)
 {
@@ -350,6 +366,7 @@ main (int argc, char **argv)
   g_test_add_func ("/cloth/saddles/empty", test_empty);
   g_test_add_func ("/cloth/saddles/points", test_points);
   g_test_add_func ("/cloth/saddles/copy-is-reference", test_copy_is_reference);
+  g_test_add_func ("/cloth/saddles/bare", test_bare);
   g_test_add_func ("/cloth/saddles/adding-replaces", test_adding_replaces);
   g_test_add_func ("/cloth/saddles/threads", test_references_across_threads);
   g_test_add_func ("/cloth/saddles/scale", test_scale_saddles);
