@@ -758,7 +758,7 @@ gst_cloth_camera_class_init (GstClothCameraClass * klass)
   gst_element_class_set_static_metadata (element_class, "Cloth camera",
       "Filter/Converter/Video",
       "Films a mesh stream: a textured cloth as a camera of a rig sees it",
-      PACKAGE_NAME);
+      "The gst-cloth developers");
   trans_class->start = gst_cloth_camera_start;
   trans_class->stop = gst_cloth_camera_stop;
   trans_class->set_caps = gst_cloth_camera_set_caps;

@@ -733,7 +733,7 @@ gst_clothgap_class_init (GstClothgapClass * klass)
   gst_element_class_set_static_metadata (element_class, "Cloth gap",
       "Filter/Analyzer",
       "Says where a mesh stream departs from a simulation, and why",
-      PACKAGE_NAME);
+      "The gst-cloth developers");
 }
 
 static void

@@ -302,7 +302,8 @@ gst_cloth_sim_class_init (GstClothSimClass * klass)
           "Threads of computation, 0 for one on each processor", 0, 256, 0,
           flags));
   gst_element_class_set_static_metadata (element_class, "Cloth simulator",
-      "Source", "Simulates a cloth as a mesh stream", PACKAGE_NAME);
+      "Source", "Simulates a cloth as a mesh stream",
+      "The gst-cloth developers");
   source_class->open = gst_cloth_sim_open;
   source_class->close = gst_cloth_sim_close;
   source_class->make_mesh = gst_cloth_sim_make_mesh;

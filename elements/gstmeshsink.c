@@ -341,7 +341,7 @@ gst_mesh_sink_class_init (GstMeshSinkClass * klass)
   gst_element_class_add_static_pad_template (element_class, &sink_template);
   gst_element_class_set_static_metadata (element_class, "Mesh file sink",
       "Sink/File", "Writes a mesh stream to OBJ + PC2, PLY or a take",
-      PACKAGE_NAME);
+      "The gst-cloth developers");
   sink_class->set_caps = gst_mesh_sink_set_caps;
   sink_class->render = gst_mesh_sink_render;
   sink_class->event = gst_mesh_sink_event;

@@ -229,7 +229,7 @@ gst_mesh_src_class_init (GstMeshSrcClass * klass)
           GST_PARAM_MUTABLE_READY));
   gst_element_class_set_static_metadata (element_class, "Mesh file source",
       "Source/File", "Reads a mesh stream from OBJ + PC2, PLY or a take",
-      PACKAGE_NAME);
+      "The gst-cloth developers");
   source_class->backwards = TRUE;
   source_class->open = gst_mesh_src_open;
   source_class->close = gst_mesh_src_close;

@@ -26,8 +26,9 @@ if not elements:
     sys.exit('no elements:\n' + plugin)
 for element in elements:
     text = inspect(element)
-    for field in ('Rank', 'Long-name', 'Klass', 'Description', 'Author'):
-        if not re.search(r'^\s*%s\s+\S' % field, text, re.M):
+    for field, wanted in (('Rank', r'\S'), ('Long-name', r'\S'), ('Klass', r'\S'),
+                          ('Description', r'\S'), ('Author', 'The gst-cloth developers$')):
+        if not re.search(r'^\s*%s\s+%s' % (field, wanted), text, re.M):
             sys.exit('%s: no %s' % (element, field))
     if 'Pad Templates:' not in text:
         sys.exit('%s: no pad templates' % element)

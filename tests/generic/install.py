@@ -3,8 +3,8 @@
 
   install.py MESON BUILD C-PROGRAM WITH-INTROSPECTION
 
-What must be there is there, a C program builds with pkg-config alone and runs, every
-installed header compiles by itself, and Python finds the typelib.
+What must be there is there, the plugin loads, a C program builds with pkg-config alone and
+runs, every installed header compiles by itself, and Python finds the typelib.
 
 SPDX-License-Identifier: LGPL-2.1-or-later
 """
@@ -37,7 +37,7 @@ with tempfile.TemporaryDirectory() as dest:
     run(shlex.split(MESON) + ['install', '-C', BUILD, '--no-rebuild', '--destdir', dest])
     pc = only(dest + '/**/pkgconfig/gstreamer-cloth-1.0.pc')
     library = os.path.dirname(only(dest + '/**/libgstcloth-1.0.so'))
-    only(dest + '/**/gstreamer-1.0/libgstcloth.so')
+    plugin = only(dest + '/**/gstreamer-1.0/libgstcloth.so')
     headers = glob.glob(dest + '/**/include/gstreamer-1.0/gst/cloth/*.h', recursive=True)
     if len(headers) < 6 or any('private' in name for name in headers):
         sys.exit('installed headers: %s' % headers)
@@ -57,6 +57,8 @@ with tempfile.TemporaryDirectory() as dest:
     program = os.path.join(dest, 'program')
     compiler = shlex.split(os.environ.get('CC', 'cc'))
     run(compiler + ['-Wall', '-Wextra', '-Werror', PROGRAM, '-o', program] + flags, env=env)
+    if 'meshsrc' not in run(['gst-inspect-1.0', plugin], env=env):
+        sys.exit('the installed plugin has no elements')
     said = run([program], env=env)
     if said != '12.25 7.5 63\n':
         sys.exit('the program said %r' % said)
