@@ -82,9 +82,15 @@ gst_mesh_sink_set_caps (GstBaseSink * sink, GstCaps * caps)
   g_autoptr (ClothTopology) topology = NULL;
   gint fps_n = 0, fps_d = 1;
 
-  parsed = gst_cloth_read_topology (GST_ELEMENT (self), caps);
-  if (!parsed)
+  /* Caps that were refused come again with all that follows: one message is enough. */
+  if (self->failed)
     return FALSE;
+  parsed = gst_cloth_read_topology (GST_ELEMENT (self), caps);
+  if (!parsed) {
+    g_clear_pointer (&self->writer, cloth_mesh_writer_free);
+    self->failed = TRUE;
+    return FALSE;
+  }
   topology = gst_mesh_copy_topology (parsed);
   gst_structure_get_fraction (gst_caps_get_structure (caps, 0), "framerate",
       &fps_n, &fps_d);

@@ -627,6 +627,12 @@ score_all (ClothPlacer * placer, const ClothPatch * patch,
  * @n_votes: how many
  * @best: (out): the best placement; weight = its lead over the next best
  *
+ * The lead is over the placements whose dots were all read. Where a first reading of 256
+ * dots finds less than half of them in agreement, a placement waits, and only the 64 most
+ * hopeful of those that wait are read to the end: a lead over one of the others, which
+ * would have to agree far better in the dots that are left, is not counted and may be
+ * overstated. With no more than 256 dots in the patch all that matter are read.
+ *
  * Returns: whether the patch fits the board anywhere
  *
  * Since: 0.1

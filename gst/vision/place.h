@@ -18,6 +18,16 @@ G_BEGIN_DECLS
 #define CLOTH_PLACE_MOST_LEAD 64.0f
 
 /**
+ * CLOTH_PLACE_MIN_LEAD:
+ *
+ * Lead, log-likelihood, from which on a placement in a film is believed: just less than the
+ * 3 of one cell that clearly shows cloth where the board would go on.
+ *
+ * Since: 0.1
+ */
+#define CLOTH_PLACE_MIN_LEAD 2.9f
+
+/**
  * ClothPlacement:
  * @rotation: quarter turns from the patch's grid to the board's, 0 to 3
  * @column: board vertex of the patch's vertex (0, 0)

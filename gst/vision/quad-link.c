@@ -22,10 +22,9 @@
 #define SURE_REACH 0.3f
 /* Guesses are looked for this far away, px. */
 #define MAX_GUESS 200.0f
-/* Lead of a placement that is believed: that of one cell that shows cloth where the board
- * would go on. The edge of something bright looks so now and then, so more is asked where
- * the memory knows the board but not there, and most of one against the memory. */
-#define MIN_LEAD 2.9f
+/* The edge of something bright looks like cloth where the board would go on now and then,
+ * so a larger lead than CLOTH_PLACE_MIN_LEAD is asked where the memory knows the board but
+ * not there, and most of one against the memory. */
 #define NEW_LEAD 4.0f
 #define SURE_LEAD 8.0f
 /* Pictures in a row that may speak against the memory before they are believed. */
@@ -476,7 +475,7 @@ place (ClothQuadTracker * tracker, gboolean first, ClothPlacement * placement,
   weights.twins = first && n == 0 && tracker->guess_vertex->len == 0;
   if (!cloth_placer_run (tracker->placer, &tracker->patch, &weights, votes, n,
           placement)
-      || placement->weight < MIN_LEAD)
+      || placement->weight < CLOTH_PLACE_MIN_LEAD)
     return FALSE;
   for (guint v = 0; v < n_memory; v++)
     if (votes[v].rotation == placement->rotation

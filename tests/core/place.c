@@ -14,9 +14,6 @@
 /* Log-likelihood ratio of a dot read, and of cloth seen beyond the rim. */
 #define BIT 4
 #define BEYOND -3
-/* A tracker believes leads from here on. */
-#define BELIEVED 3
-
 /* Both ways to place a patch: in a film and in a single picture. */
 static gboolean
 run (gboolean single, const ClothPattern * pattern, const ClothPatch * patch,
@@ -169,7 +166,7 @@ test_coded (void)
             rotation, &truth);
         memset (window->inside, 0, sizeof window->inside);
         g_assert_true (run (single, pattern, &window->patch, NULL, 0, &best));
-        g_assert_cmpfloat (best.weight, <, BELIEVED);
+        g_assert_cmpfloat (best.weight, <, CLOTH_PLACE_MIN_LEAD);
       }
     }
   g_test_message ("%u windows of %d squares: least lead %g, with one dot "
@@ -211,14 +208,14 @@ test_plain (void)
         fill (window, pattern, 0, 0, columns, rows, rotation, &truth);
         g_assert_true (run (single, pattern, &window->patch, NULL, 0, &best));
         g_assert_true (equal (&best, &truth));
-        g_assert_cmpfloat (best.weight, >, BELIEVED);
+        g_assert_cmpfloat (best.weight, >, CLOTH_PLACE_MIN_LEAD);
         /* Half of the board with three of its sides. */
         for (gint side = 0; side < 2; side++) {
           fill (window, pattern, side * (columns - columns / 2), 0, columns / 2,
               rows, rotation, &truth);
           g_assert_true (run (single, pattern, &window->patch, NULL, 0, &best));
           g_assert_true (equal (&best, &truth));
-          g_assert_cmpfloat (best.weight, >, BELIEVED);
+          g_assert_cmpfloat (best.weight, >, CLOTH_PLACE_MIN_LEAD);
         }
       }
   }
@@ -240,7 +237,7 @@ test_votes (void)
     vote.weight = 10;
     g_assert_true (run (single, pattern, &window->patch, &vote, 1, &best));
     g_assert_true (equal (&best, &truth));
-    g_assert_cmpfloat (best.weight, >, BELIEVED);
+    g_assert_cmpfloat (best.weight, >, CLOTH_PLACE_MIN_LEAD);
     /* Nothing lies on a square of the other colour. */
     vote.column++;
     vote.weight = 1000;
