@@ -174,8 +174,12 @@ gst_cloth_sim_make_mesh (GstClothSource * source, guint frame)
   if (frame < self->sim_frame && !make_sim (self))
     return NULL;
   /* Frame by frame, also those that are not sent, so that a seek changes no bit. */
-  while (self->sim_frame < frame)
+  while (self->sim_frame < frame && !gst_cloth_source_is_flushing (source)) {
     cloth_sim_advance (self->sim, scene->times[++self->sim_frame]);
+    GST_LOG_OBJECT (self, "simulated frame %u", self->sim_frame);
+  }
+  if (self->sim_frame < frame)
+    return NULL;
   if (cloth_sim_get_state (self->sim, 0, &since_s) != CLOTH_SIM_OK) {
     GST_ELEMENT_ERROR (self, STREAM, FAILED,
         ("The simulation of “%s” blew up "

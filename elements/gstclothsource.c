@@ -28,6 +28,7 @@ typedef struct
   gint fps_n, fps_d;
   gint64 n_frames;
   gint64 next;                  /* frame; n_frames or -1 behind the last one */
+  gint flushing;                /* atomic */
 } GstClothSourcePrivate;
 
 static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE ("src",
@@ -152,6 +153,42 @@ gst_cloth_source_publish (GstClothSource * source,
   return TRUE;
 }
 
+/**
+ * gst_cloth_source_is_flushing:
+ * @source: the source, in its make_mesh method
+ *
+ * Returns: %TRUE when the mesh isn't wanted any more: a seek or a stop waits
+ *
+ * Since: 0.1
+ */
+gboolean
+gst_cloth_source_is_flushing (GstClothSource * source)
+{
+  GstClothSourcePrivate *priv = gst_cloth_source_get_instance_private (source);
+
+  return g_atomic_int_get (&priv->flushing);
+}
+
+static gboolean
+gst_cloth_source_unlock (GstBaseSrc * src)
+{
+  GstClothSourcePrivate *priv =
+      gst_cloth_source_get_instance_private (GST_CLOTH_SOURCE (src));
+
+  g_atomic_int_set (&priv->flushing, TRUE);
+  return TRUE;
+}
+
+static gboolean
+gst_cloth_source_unlock_stop (GstBaseSrc * src)
+{
+  GstClothSourcePrivate *priv =
+      gst_cloth_source_get_instance_private (GST_CLOTH_SOURCE (src));
+
+  g_atomic_int_set (&priv->flushing, FALSE);
+  return TRUE;
+}
+
 static gboolean
 gst_cloth_source_stop (GstBaseSrc * src)
 {
@@ -259,7 +296,8 @@ gst_cloth_source_create (GstPushSrc * src, GstBuffer ** buffer)
   mesh = GST_CLOTH_SOURCE_GET_CLASS (self)->make_mesh (self,
       (guint) priv->next);
   if (!mesh)
-    return GST_FLOW_ERROR;
+    return gst_cloth_source_is_flushing (self) ? GST_FLOW_FLUSHING :
+        GST_FLOW_ERROR;
   *buffer = gst_cloth_mesh_to_buffer (mesh);
   GST_BUFFER_PTS (*buffer) = frame_time (priv, priv->next);
   GST_BUFFER_DURATION (*buffer) = frame_time (priv, priv->next + 1) -
@@ -281,6 +319,8 @@ gst_cloth_source_class_init (GstClothSourceClass * klass)
       &src_template);
   src_class->start = gst_cloth_source_start;
   src_class->stop = gst_cloth_source_stop;
+  src_class->unlock = gst_cloth_source_unlock;
+  src_class->unlock_stop = gst_cloth_source_unlock_stop;
   src_class->get_caps = gst_cloth_source_get_caps;
   src_class->get_times = gst_cloth_source_get_times;
   src_class->is_seekable = gst_cloth_source_is_seekable;

@@ -21,7 +21,8 @@ G_DECLARE_DERIVABLE_TYPE (GstClothSource, gst_cloth_source, GST, CLOTH_SOURCE,
  * @open: load what the properties name and call gst_cloth_source_publish(), or post an
  *   error and return %FALSE
  * @close: let go of what @open has loaded, or a part of it
- * @make_mesh: the mesh of a frame (transfer full), or %NULL when an error was posted
+ * @make_mesh: the mesh of a frame (transfer full), or %NULL when an error was posted or
+ *   the source is flushing
  *
  * The base asks for frames in the order that seeks make.
  *
@@ -63,5 +64,6 @@ typedef struct {
 
 gboolean gst_cloth_source_publish (GstClothSource * source,
     const GstClothSourceStream * stream);
+gboolean gst_cloth_source_is_flushing (GstClothSource * source);
 
 G_END_DECLS

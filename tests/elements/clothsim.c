@@ -188,6 +188,47 @@ GST_START_TEST (test_live)
 
 GST_END_TEST;
 
+static void
+count_frames (GstDebugCategory * category, GstDebugLevel level,
+    const gchar * file, const gchar * function, gint line, GObject * object,
+    GstDebugMessage * message, gpointer n)
+{
+  if (g_str_equal (gst_debug_category_get_name (category), "clothsim")
+      && g_str_has_prefix (gst_debug_message_get (message), "simulated frame"))
+    g_atomic_int_inc ((gint *) n);
+}
+
+/* A stop does not wait until a simulation has come to where a seek wants it: at 1000
+ * steps a frame that would be long. */
+GST_START_TEST (test_stop_after_seek)
+{
+  g_autofree gchar *path = NULL, *line = NULL;
+  g_autoptr (GstElement) pipeline = NULL;
+  static gint n = 0;
+
+  scratch_begin ();
+  path = scratch_path ("model.json");
+  scratch_write ("model.json", "{\"version\":1,\"areal_density\":0.187,"
+      "\"time_step\":2e-5}", -1);
+  line = g_strdup_printf ("clothsim model=%s location=%s ! fakesink", path,
+      TAKE);
+  pipeline = gst_parse_launch (line, NULL);
+  gst_element_set_state (pipeline, GST_STATE_PAUSED);
+  gst_element_get_state (pipeline, NULL, NULL, GST_CLOCK_TIME_NONE);
+  gst_debug_set_threshold_for_name ("clothsim", GST_LEVEL_LOG);
+  gst_debug_add_log_function (count_frames, &n, NULL);
+  seek (pipeline, FRAMES - 1);
+  while (g_atomic_int_get (&n) < 1)
+    g_usleep (1000);
+  gst_element_set_state (pipeline, GST_STATE_NULL);
+  gst_debug_remove_log_function (count_frames);
+  GST_INFO ("%d frames were simulated", n);
+  fail_unless (n < FRAMES - 1);
+  scratch_end ();
+}
+
+GST_END_TEST;
+
 GST_START_TEST (test_errors)
 {
   static const struct
@@ -246,6 +287,7 @@ clothsim_suite (void)
   tcase_add_test (tests, test_whole_scene);
   tcase_add_test (tests, test_seeks);
   tcase_add_test (tests, test_live);
+  tcase_add_test (tests, test_stop_after_seek);
   tcase_add_test (tests, test_errors);
   return suite;
 }
