@@ -545,3 +545,32 @@ test_film_rms (const TestFilmScore * score)
 {
   return score->n_corners ? sqrt (score->sum2 / (2.0 * score->n_corners)) : 0;
 }
+
+void
+test_film_track (const TestFilm * film, guint camera, guint late,
+    const gchar * what, TestFilmScore * sum)
+{
+  g_auto (TestTracking) tracking = { 0 };
+
+  test_tracking_init (&tracking, film);
+  for (guint frame = late; frame < film->n_frames; frame++) {
+    TestFilmScore score;
+    guint n;
+    const ClothQuad *quads = test_tracking_run (&tracking, film,
+        test_film_picture (film, camera, frame), &n);
+
+    test_film_score (film, camera, frame - late, NULL, quads, n, what, &score);
+    test_film_add (sum, &score);
+  }
+}
+
+void
+test_film_tell (const gchar * what, const TestFilmScore * score)
+{
+  g_test_message ("%s: %u of %u visible squares tracked (%.2f%%), %u wrong, "
+      "%u ghosts, %u with a corner astray of %u; %u corners, %.4f px RMS an axis",
+      what, score->hit, score->visible,
+      100.0 * score->hit / MAX (score->visible, 1), score->wrong,
+      score->ghosts, score->strays, score->tracked, score->n_corners,
+      test_film_rms (score));
+}

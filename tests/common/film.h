@@ -75,6 +75,11 @@ void test_film_score (const TestFilm * film, guint camera, guint frame,
     const gchar * what, TestFilmScore * score);
 void test_film_add (TestFilmScore * sum, const TestFilmScore * score);
 gdouble test_film_rms (const TestFilmScore * score);
+/* Tracks all pictures of a camera and adds up what was right, held against the truth of
+ * the picture @late before. */
+void test_film_track (const TestFilm * film, guint camera, guint late,
+    const gchar * what, TestFilmScore * sum);
+void test_film_tell (const gchar * what, const TestFilmScore * score);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (TestFilm, test_film_free)
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (TestTracking, test_tracking_clear)

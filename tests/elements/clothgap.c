@@ -245,6 +245,37 @@ expect (Setup * setup, GstMessageType type, const gchar * text)
   fail_unless (strstr (all, text) != NULL, "\"%s\" lacks \"%s\"", all, text);
 }
 
+/* Takes the events that came out; whether an EOS or one of that @name is among them. */
+static gboolean
+pull_events (Setup * setup, const gchar * name)
+{
+  gboolean seen = FALSE;
+  GstEvent *event;
+
+  while ((event = gst_harness_try_pull_event (setup->h))) {
+    seen |= name ? gst_event_has_name (event, name) :
+        GST_EVENT_TYPE (event) == GST_EVENT_EOS;
+    gst_event_unref (event);
+  }
+  return seen;
+}
+
+/* Takes the meshes that came out; so many in all, and with a gap. */
+static void
+expect_meshes (Setup * setup, guint n, guint with_gap)
+{
+  guint n_out = 0, n_with_gap = 0;
+  GstBuffer *buffer;
+
+  while ((buffer = gst_harness_try_pull (setup->h))) {
+    n_with_gap += gst_buffer_get_cloth_gap (buffer) != NULL;
+    n_out++;
+    gst_buffer_unref (buffer);
+  }
+  fail_unless_equals_int (n_out, n);
+  fail_unless_equals_int (n_with_gap, with_gap);
+}
+
 static gdouble
 mean_residual (GstBuffer * buffer, guint axis)
 {
@@ -467,11 +498,8 @@ GST_END_TEST;
 GST_START_TEST (test_event_order)
 {
   Setup setup = set_up_good ("");
-  GstEvent *event;
-  gboolean seen = FALSE;
 
-  while ((event = gst_harness_try_pull_event (setup.h)))
-    gst_event_unref (event);
+  pull_events (&setup, NULL);
   push (&setup, 0, 2);
   gst_harness_push_event (setup.h,
       gst_event_new_custom (GST_EVENT_CUSTOM_DOWNSTREAM,
@@ -482,11 +510,7 @@ GST_START_TEST (test_event_order)
   fail_unless_equals_int (gst_harness_events_in_queue (setup.h), 0);
   push (&setup, 4, 5);
   fail_unless_equals_int (gst_harness_buffers_received (setup.h), 2);
-  while ((event = gst_harness_try_pull_event (setup.h))) {
-    seen |= gst_event_has_name (event, "between");
-    gst_event_unref (event);
-  }
-  fail_unless (seen);
+  fail_unless (pull_events (&setup, "between"));
   tear_down (&setup);
 }
 
@@ -505,8 +529,6 @@ GST_START_TEST (test_verdict)
   g_autoptr (JsonParser) parser = json_parser_new ();
   const GstStructure *s;
   JsonObject *root;
-  GstEvent *event;
-  gboolean eos = FALSE;
 
   push (&setup, 0, N_FRAMES);
   fail_unless (find_message (&setup, GST_MESSAGE_ELEMENT, "clothgap/verdict")
@@ -525,11 +547,7 @@ GST_START_TEST (test_verdict)
   fail_unless (g_file_test (report, G_FILE_TEST_IS_REGULAR));
   fail_unless (g_file_get_contents (json, &contents, NULL, NULL));
   fail_unless_equals_string (contents, gst_structure_get_string (s, "json"));
-  while ((event = gst_harness_try_pull_event (setup.h))) {
-    eos |= GST_EVENT_TYPE (event) == GST_EVENT_EOS;
-    gst_event_unref (event);
-  }
-  fail_unless (eos);
+  fail_unless (pull_events (&setup, NULL));
   tear_down (&setup);
 }
 
@@ -574,8 +592,6 @@ GST_END_TEST;
 GST_START_TEST (test_times)
 {
   Setup setup = set_up_good ("");
-  GstBuffer *buffer;
-  guint n = 0, with = 0;
 
   push (&setup, 0, 5);
   gst_harness_push (setup.h, make_frame (4, -1, NULL));
@@ -583,13 +599,7 @@ GST_START_TEST (test_times)
   push (&setup, 5, 8);
   expect (&setup, GST_MESSAGE_WARNING, "times must rise");
   fail_unless (find_message (&setup, GST_MESSAGE_WARNING, NULL) == NULL);
-  while ((buffer = gst_harness_try_pull (setup.h))) {
-    with += gst_buffer_get_cloth_gap (buffer) != NULL;
-    n++;
-    gst_buffer_unref (buffer);
-  }
-  fail_unless_equals_int (with, 5);
-  fail_unless_equals_int (n, 7);
+  expect_meshes (&setup, 7, 5);
   tear_down (&setup);
 }
 
@@ -600,21 +610,13 @@ GST_END_TEST;
 GST_START_TEST (test_outside_scene)
 {
   Setup setup = set_up ("/model.json", "/held", "");
-  GstBuffer *buffer;
-  guint n = 0, with = 0;
 
   gst_harness_set_src_caps (setup.h, make_caps (COLUMNS, ROWS, 0.1f, FPS));
   push (&setup, N_FRAMES - 4, N_FRAMES + 3);
   expect (&setup, GST_MESSAGE_WARNING, "outside the scene");
   fail_unless_equals_int (gst_harness_buffers_received (setup.h), 7);
   gst_harness_push_event (setup.h, gst_event_new_eos ());
-  while ((buffer = gst_harness_try_pull (setup.h))) {
-    with += gst_buffer_get_cloth_gap (buffer) != NULL;
-    n++;
-    gst_buffer_unref (buffer);
-  }
-  fail_unless_equals_int (n, 7);
-  fail_unless_equals_int (with, 4);
+  expect_meshes (&setup, 7, 4);
   tear_down (&setup);
 }
 
@@ -808,16 +810,10 @@ GST_END_TEST;
 GST_START_TEST (test_nothing)
 {
   Setup setup = set_up_good ("");
-  GstEvent *event;
-  gboolean eos = FALSE;
 
   gst_harness_push_event (setup.h, gst_event_new_eos ());
   expect (&setup, GST_MESSAGE_ERROR, "without a mesh");
-  while ((event = gst_harness_try_pull_event (setup.h))) {
-    eos |= GST_EVENT_TYPE (event) == GST_EVENT_EOS;
-    gst_event_unref (event);
-  }
-  fail_unless (eos);
+  fail_unless (pull_events (&setup, NULL));
   tear_down (&setup);
 }
 

@@ -89,24 +89,10 @@ check (const gchar * effects, gdouble most_rms)
   TestFilmScore sum = { 0 };
 
   for (guint camera = 0; camera < TEST_FILM_CAMERAS; camera++) {
-    g_auto (TestTracking) tracking = { 0 };
-
     shoot (camera, effects);
-    test_tracking_init (&tracking, film);
-    for (guint frame = 0; frame < film->n_frames; frame++) {
-      TestFilmScore score;
-      guint n;
-      const ClothQuad *quads = test_tracking_run (&tracking, film,
-          test_film_picture (film, camera, frame), &n);
-
-      test_film_score (film, camera, frame, NULL, quads, n, NULL, &score);
-      test_film_add (&sum, &score);
-    }
+    test_film_track (film, camera, 0, NULL, &sum);
   }
-  g_test_message ("%s: %u of %u visible squares tracked (%.2f%%), %u wrong, "
-      "%u ghosts, %u strays; %u corners, %.4f px RMS an axis", effects, sum.hit,
-      sum.visible, 100.0 * sum.hit / MAX (sum.visible, 1), sum.wrong,
-      sum.ghosts, sum.strays, sum.n_corners, test_film_rms (&sum));
+  test_film_tell (effects, &sum);
   g_assert_cmpuint (sum.visible, >, 3000);
   g_assert_cmpuint (sum.hit, >=, (guint) ceil (LEAST_HIT * sum.visible));
   g_assert_cmpuint (sum.wrong, ==, 0);
@@ -130,22 +116,10 @@ static void
 test_late (void)
 {
   TestFilmScore sum = { 0 };
-  g_auto (TestTracking) tracking = { 0 };
 
   shoot (0, "defocus,sigma=0.6; sync_offset,seconds=0.04");
-  test_tracking_init (&tracking, film);
-  for (guint frame = 0; frame + 1 < film->n_frames; frame++) {
-    TestFilmScore score;
-    guint n;
-    const ClothQuad *quads = test_tracking_run (&tracking, film,
-        test_film_picture (film, 0, frame + 1), &n);
-
-    test_film_score (film, 0, frame, NULL, quads, n, NULL, &score);
-    test_film_add (&sum, &score);
-  }
-  g_test_message ("late by a frame, held against the frame before: %.2f%%, "
-      "%.4f px RMS an axis", 100.0 * sum.hit / MAX (sum.visible, 1),
-      test_film_rms (&sum));
+  test_film_track (film, 0, 1, NULL, &sum);
+  test_film_tell ("late by a frame, held against the frame before", &sum);
   g_assert_cmpfloat (test_film_rms (&sum), <=, MOST_RMS_PX);
 }
 
