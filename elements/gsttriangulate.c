@@ -411,9 +411,14 @@ gst_triangulate_quads_of (GstTriangulate * self, guint index, GstBuffer * view,
   }
   *unpacked = gst_buffer_new ();
   if (!gst_cloth_observations_unpack (view, *unpacked, &error)) {
-    GST_ELEMENT_WARNING (self, STREAM, DECODE,
-        ("A buffer on sink_%u holds no observations: %s", index,
-            error->message), ("It counts as a picture with nothing seen."));
+    GST_DEBUG_OBJECT (self, "sink_%u: %s", index, error->message);
+    if (!self->view[index].warned) {
+      self->view[index].warned = TRUE;
+      GST_ELEMENT_WARNING (self, STREAM, DECODE,
+          ("A buffer on sink_%u holds no observations: %s", index,
+              error->message), ("It counts as a picture with nothing seen; so "
+              "do others like it, of which you are not told."));
+    }
     return NULL;
   }
   return gst_buffer_get_cloth_quads (*unpacked);

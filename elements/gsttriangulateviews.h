@@ -11,6 +11,7 @@ G_BEGIN_DECLS
 /* What is known of a pad; streaming thread. */
 typedef struct {
   gboolean has_caps, observations;
+  gboolean warned;              /* that a buffer is damaged */
   gint width, height;
   gint fps_n, fps_d;
   gchar *property;              /* the pad's property, of this set */

@@ -621,7 +621,18 @@ GST_START_TEST (test_observations)
     fail_unless_equals_int (gst_harness_push (b.in[i], buffer), GST_FLOW_OK);
   }
   expect_all (&b, 3, GST_CLOTH_VERTEX_UNSEEN);
-  expect_message (&b, GST_MESSAGE_WARNING, "no observations");
+  expect_message (&b, GST_MESSAGE_WARNING, "sink_0 holds no observations");
+  expect_message (&b, GST_MESSAGE_WARNING, "sink_2 holds no observations");
+  /* a stream of them is told of once */
+  for (i = 0; i < 3; i++) {
+    GstBuffer *buffer = gst_buffer_new_memdup ("nonsense", 8);
+
+    GST_BUFFER_PTS (buffer) = 4 * PERIOD;
+    GST_BUFFER_DURATION (buffer) = PERIOD;
+    fail_unless_equals_int (gst_harness_push (b.in[i], buffer), GST_FLOW_OK);
+  }
+  expect_all (&b, 4, GST_CLOTH_VERTEX_UNSEEN);
+  fail_unless (gst_bus_pop_filtered (b.bus, GST_MESSAGE_WARNING) == NULL);
   bench_clear (&b);
 }
 
