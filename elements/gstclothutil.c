@@ -47,12 +47,13 @@ gst_cloth_carry_caps (const GstCaps * caps, const gchar * const *fields,
   return gst_cloth_filter_caps (result, filter);
 }
 
-/* Whether a property that is mutable in READY only may be set now; warns when not. With
- * the object lock. */
+/* Whether a property may be set now; warns when it is mutable in READY only and the
+ * element runs. With the object lock. */
 gboolean
 gst_cloth_may_change (GstElement * element, const GParamSpec * spec)
 {
-  if (GST_STATE (element) <= GST_STATE_READY)
+  if (GST_STATE (element) <= GST_STATE_READY ||
+      !(spec->flags & GST_PARAM_MUTABLE_READY))
     return TRUE;
   GST_WARNING_OBJECT (element, "“%s” cannot change while running",
       spec->name);

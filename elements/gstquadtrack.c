@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "elements/gstclothutil.h"
 #include "elements/gstquadtrackseed.h"
 #include "gst/pattern/pattern.h"
 #include "gst/vision/quad.h"
@@ -397,6 +398,10 @@ gst_quad_track_set_property (GObject * object, guint id, const GValue * value,
   GstQuadTrack *self = GST_QUAD_TRACK (object);
 
   GST_OBJECT_LOCK (self);
+  if (!gst_cloth_may_change (GST_ELEMENT (self), pspec)) {
+    GST_OBJECT_UNLOCK (self);
+    return;
+  }
   switch (id) {
     case PROP_PATTERN:
       g_free (self->pattern_path);

@@ -635,6 +635,29 @@ GST_START_TEST (test_long_camera_name)
 
 GST_END_TEST;
 
+/* What is read at the start does not seem to change later. */
+GST_START_TEST (test_change_while_running)
+{
+  GstElement *element = gst_element_factory_make ("quadtrack", NULL);
+  gint columns;
+  gfloat alpha;
+
+  gst_object_ref_sink (element);
+  fail_unless (gst_element_set_state (element, GST_STATE_PAUSED) !=
+      GST_STATE_CHANGE_FAILURE);
+  g_object_set (element, "columns", 5, "alpha", 0.5f, NULL);
+  g_object_get (element, "columns", &columns, "alpha", &alpha, NULL);
+  fail_unless_equals_int (columns, 8);
+  fail_unless_equals_float (alpha, 0.5f);
+  gst_element_set_state (element, GST_STATE_NULL);
+  g_object_set (element, "columns", 5, NULL);
+  g_object_get (element, "columns", &columns, NULL);
+  fail_unless_equals_int (columns, 5);
+  gst_object_unref (element);
+}
+
+GST_END_TEST;
+
 static Suite *
 quadtrack_suite (void)
 {
@@ -654,6 +677,7 @@ quadtrack_suite (void)
   tcase_add_test (tc, test_controlled);
   tcase_add_test (tc, test_long_camera_name);
   tcase_add_test (tc, test_changes);
+  tcase_add_test (tc, test_change_while_running);
   tcase_add_test (tc, test_tiny);
   tcase_add_test (tc, test_deterministic);
   tcase_add_test (tc, test_refused);
