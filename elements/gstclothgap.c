@@ -499,6 +499,19 @@ flush (GstClothgap * self)
   g_atomic_int_set (&self->cancelled, FALSE);
 }
 
+/* What is known of the stream outlives a flush: our peer gets it with the next mesh. */
+static void
+keep_sticky_events (GstClothgap * self)
+{
+  for (GList * l = self->waiting.head; l; l = l->next) {
+    Waiting *waiting = l->data;
+
+    if (GST_IS_EVENT (waiting->object) && GST_EVENT_IS_STICKY (waiting->object))
+      gst_pad_store_sticky_event (self->srcpad,
+          GST_EVENT_CAST (waiting->object));
+  }
+}
+
 static gboolean
 gst_clothgap_sink_event (GstPad * pad, GstObject * parent, GstEvent * event)
 {
@@ -510,6 +523,7 @@ gst_clothgap_sink_event (GstPad * pad, GstObject * parent, GstEvent * event)
       g_atomic_int_set (&self->cancelled, TRUE);
       break;
     case GST_EVENT_FLUSH_STOP:
+      keep_sticky_events (self);
       flush (self);
       break;
     case GST_EVENT_CAPS:{

@@ -516,6 +516,30 @@ GST_START_TEST (test_event_order)
 
 GST_END_TEST;
 
+/* A flush takes the meshes, not what is known of the stream. */
+GST_START_TEST (test_tags_survive_flush)
+{
+  Setup setup = set_up_good ("");
+  GstEvent *tags;
+  GstSegment segment;
+
+  push (&setup, 0, 2);
+  gst_harness_push_event (setup.h,
+      gst_event_new_tag (gst_tag_list_new (GST_TAG_TITLE, "a cloth", NULL)));
+  gst_harness_push_event (setup.h, gst_event_new_flush_start ());
+  gst_harness_push_event (setup.h, gst_event_new_flush_stop (TRUE));
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  gst_harness_push_event (setup.h, gst_event_new_segment (&segment));
+  push (&setup, 0, 5);
+  tags = gst_pad_get_sticky_event (setup.h->sinkpad, GST_EVENT_TAG, 0);
+  fail_unless (tags != NULL);
+  gst_event_unref (tags);
+  expect_meshes (&setup, 2, 2);
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
 /* The verdict comes before EOS, as the same JSON in message and file. */
 GST_START_TEST (test_verdict)
 {
@@ -845,6 +869,7 @@ clothgap_suite (void)
   tcase_add_test (tc, test_sigmas);
   tcase_add_test (tc, test_latency);
   tcase_add_test (tc, test_event_order);
+  tcase_add_test (tc, test_tags_survive_flush);
   tcase_add_test (tc, test_verdict);
   tcase_add_test (tc, test_again);
   tcase_add_test (tc, test_times);
