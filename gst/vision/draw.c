@@ -3,26 +3,17 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 
 /* Every shape is a function from a pixel to a coverage, by the distance to its outline
- * (box filter of one sample); rows are cut into short runs whose coverages are worked
- * out once for all components of equal subsampling and then blended into each. */
+ * (box filter of one sample); draw-rows.c works it out along rows, once for all components
+ * of equal subsampling, and blends it into each. */
 #include "gst/vision/draw.h"
 
 #include <math.h>
 
-#define RUN 64
-
-typedef struct
-{
-  gint first, n;                /* components */
-  gint width, height;           /* samples */
-  gfloat scale_x, scale_y;      /* pixels a sample */
-  gfloat offset_x, offset_y;    /* pixel position of the first sample */
-  gfloat softness;              /* pixels over which an edge fades */
-} Group;
+#include "gst/vision/draw-private.h"
 
 /* The next group of components that share one sampling grid; FALSE after the last. */
 static gboolean
-next_group (const ClothCanvas * canvas, Group * group)
+next_group (const ClothCanvas * canvas, ClothDrawGroup * group)
 {
   const ClothComponent *c;
   gint i = group->first + group->n;
@@ -57,58 +48,40 @@ value_of (const ClothComponent * c, const ClothColour * colour)
   return (guint8) CLAMP (value + 0.5f, 0.0f, 255.0f);
 }
 
-/* Blends a run of coverages (0 … 256) at sample (x, y) of every component. Sixteen bits
- * hold 255 · 256 + 128. */
-static void
-blend (const ClothCanvas * canvas, const Group * group, gint x, gint y,
-    const guint16 * restrict coverage, gint n, const guint8 * values)
+/* The colour in the components of @group. */
+static ClothDrawInk
+ink_of (const ClothCanvas * canvas, const ClothDrawGroup * group,
+    const ClothColour * colour)
 {
+  ClothDrawInk ink = { &canvas->components[group->first], group->n };
+  const ClothComponent *c = ink.components;
+  guint8 *last = c->data;
   gint k, i;
 
-  for (k = 0; k < group->n; k++) {
-    const ClothComponent *c = &canvas->components[group->first + k];
-    gint step = c->step;
-    guint16 value = values[group->first + k];
-    guint8 *restrict p = c->data + (gsize) y * c->stride + (gsize) x * step;
-
-    if (step == 1) {
-      for (i = 0; i < n; i++) {
-        p[i] = (guint8) ((guint16) (p[i] * (guint16) (256 - coverage[i]) +
-                value * coverage[i] + 128) >> 8);
-      }
-    } else {
-      for (i = 0; i < n; i++, p += step) {
-        *p = (guint8) ((*p * (256 - coverage[i]) + value * coverage[i] +
-                128) >> 8);
-      }
+  ink.step = c->step;
+  ink.stride = c->stride;
+  ink.data = c->data;
+  for (k = 0; k < ink.n; k++) {
+    ink.values[k] = value_of (&c[k], colour);
+    ink.data = MIN (ink.data, c[k].data);
+    last = MAX (last, c[k].data);
+    if (c[k].step != ink.step || c[k].stride != ink.stride) {
+      ink.step = 0;
     }
   }
-}
-
-static void
-values_of (const ClothCanvas * canvas, const ClothColour * colour,
-    guint8 values[4])
-{
-  guint k;
-
-  for (k = 0; k < MIN (canvas->n_components, 4); k++) {
-    values[k] = value_of (&canvas->components[k], colour);
+  if (ink.step < 2 || ink.step > 4 || last - ink.data >= ink.step) {
+    ink.step = 0;
+    return ink;
   }
-}
+  for (k = 0; k < ink.n; k++) {
+    gint at = (gint) (c[k].data - ink.data);
 
-/* First and last sample of [low, high] pixels, kept inside the grid; safe for any
- * finite numbers. */
-static void
-clip_range (gfloat low, gfloat high, gfloat offset, gfloat scale, gint size,
-    gint * first, gint * last)
-{
-  gfloat a = (low - offset) / scale, b = (high - offset) / scale;
-
-  a = CLAMP (a, 0.0f, (gfloat) size);
-  b = CLAMP (b, -1.0f, (gfloat) (size - 1));
-  /* ceil and floor, which plain SSE2 lacks; adding 1 keeps floor from below zero */
-  *first = (gint) a + ((gfloat) (gint) a < a);
-  *last = (gint) (b + 1) - 1;
+    ink.own[at] = 1;
+    for (i = at; i < ink.step * CLOTH_DRAW_CHUNK; i += ink.step) {
+      ink.value[i] = ink.values[k];
+    }
+  }
+  return ink;
 }
 
 /**
@@ -129,64 +102,32 @@ void
 cloth_draw_line (const ClothCanvas * canvas, gfloat x0, gfloat y0, gfloat x1,
     gfloat y1, gfloat width, const ClothColour * colour)
 {
-  Group group = { 0 };
-  guint8 values[4];
+  const ClothDrawRows *rows = cloth_draw_rows (CLOTH_SIMD_BEST);
+  ClothDrawGroup group = { 0 };
   gfloat dx = x1 - x0, dy = y1 - y0, length2 = dx * dx + dy * dy;
   gfloat length = sqrtf (length2);
-  gfloat ux = length > 0 ? dx / length : 1, uy = length > 0 ? dy / length : 0;
-  gfloat strip = 0;             /* half width of the line along a row, per radius */
+  ClothDrawLine line = { x0, y0, x1, y1, 1, 0, length };
 
   if (!isfinite (length2) || !isfinite (x0) || !isfinite (y0)
       || !(width > 0) || !(colour->a > 0)) {
     return;
   }
-  if (fabsf (dy) > 1e-3f) {
-    strip = length / fabsf (dy);
+  if (length > 0) {
+    line.ux = dx / length;
+    line.uy = dy / length;
   }
-  values_of (canvas, colour, values);
+  if (fabsf (dy) > 1e-3f) {
+    line.strip = length / fabsf (dy);
+    line.slope = dx / dy;
+  }
+  line.most = 256 * colour->a * MIN (width, 1);
 
   while (next_group (canvas, &group)) {
-    gfloat soft = group.softness;
-    gfloat radius = 0.5f * (width + soft), strength = 256 * colour->a / soft;
-    gfloat most = 256 * colour->a * MIN (width, 1);
-    gint y, row_first, row_last;
+    ClothDrawInk ink = ink_of (canvas, &group, colour);
 
-    clip_range (MIN (y0, y1) - radius, MAX (y0, y1) + radius, group.offset_y,
-        group.scale_y, group.height, &row_first, &row_last);
-    for (y = row_first; y <= row_last; y++) {
-      gfloat py = group.offset_y + (gfloat) y * group.scale_y;
-      gfloat low = MIN (x0, x1) - radius, high = MAX (x0, x1) + radius;
-      gfloat row_along = (py - y0) * uy, row_across = (py - y0) * ux;
-      gint x, first, last;
-
-      if (strip > 0) {
-        gfloat centre = x0 + (py - y0) * dx / dy;
-
-        low = MAX (low, centre - strip * radius);
-        high = MIN (high, centre + strip * radius);
-      }
-      clip_range (low, high, group.offset_x, group.scale_x, group.width, &first,
-          &last);
-      for (x = first; x <= last; x += RUN) {
-        gint i, n = MIN (RUN, last - x + 1);
-        guint16 coverage[RUN];
-
-        for (i = 0; i < n; i++) {
-          gfloat qx = group.offset_x + (gfloat) (x + i) * group.scale_x - x0;
-          gfloat along = qx * ux + row_along, across = qx * uy - row_across;
-          gfloat beyond = along - length, c;
-
-          /* how far past either end */
-          beyond = beyond > -along ? beyond : -along;
-          c = beyond > 0 ? sqrtf (across * across + beyond * beyond) :
-              fabsf (across);
-          c = (radius - c) * strength;
-          c = c < 0 ? 0 : c;
-          coverage[i] = (guint16) (gint) (c > most ? most : c);
-        }
-        blend (canvas, &group, x, y, coverage, n, values);
-      }
-    }
+    line.radius = 0.5f * (width + group.softness);
+    line.strength = 256 * colour->a / group.softness;
+    rows->line (&group, &ink, &line);
   }
 }
 
@@ -240,9 +181,10 @@ void
 cloth_draw_quad (const ClothCanvas * canvas, const gfloat x[4],
     const gfloat y[4], const ClothColour * colour)
 {
-  Group group = { 0 };
-  guint8 values[4];
-  gfloat nx[4], ny[4], d[4], top = y[0], bottom = y[0], turn = 0;
+  const ClothDrawRows *rows = cloth_draw_rows (CLOTH_SIMD_BEST);
+  ClothDrawGroup group = { 0 };
+  ClothDrawQuad quad = {.top = y[0],.bottom = y[0],.full = 256 * colour->a };
+  gfloat turn = 0;
   gint k;
 
   if (!(colour->a > 0)) {
@@ -259,81 +201,21 @@ cloth_draw_quad (const ClothCanvas * canvas, const gfloat x[4],
     }
     turn = cross;
   }
-  /* inward distance of a pixel to edge k: nx·px + ny·py + d */
   for (k = 0; k < 4; k++) {
     gint l = (k + 1) & 3;
     gfloat ex = x[l] - x[k], ey = y[l] - y[k];
     gfloat scale = (turn > 0 ? 1 : -1) / hypotf (ex, ey);
 
-    nx[k] = -ey * scale;
-    ny[k] = ex * scale;
-    d[k] = -(nx[k] * x[k] + ny[k] * y[k]);
-    top = MIN (top, y[k]);
-    bottom = MAX (bottom, y[k]);
+    quad.nx[k] = -ey * scale;
+    quad.ny[k] = ex * scale;
+    quad.d[k] = -(quad.nx[k] * x[k] + quad.ny[k] * y[k]);
+    quad.top = MIN (quad.top, y[k]);
+    quad.bottom = MAX (quad.bottom, y[k]);
   }
-  values_of (canvas, colour, values);
-
   while (next_group (canvas, &group)) {
-    gfloat soft = group.softness, full = 256 * colour->a;
-    gfloat strength = full / soft, margin = 0.5f * soft;
-    guint16 coverage[RUN], inside[RUN];
-    gint row, row_first, row_last;
+    ClothDrawInk ink = ink_of (canvas, &group, colour);
 
-    for (k = 0; k < RUN; k++) {
-      inside[k] = (guint16) (gint) full;
-    }
-
-    clip_range (top - margin, bottom + margin, group.offset_y, group.scale_y,
-        group.height, &row_first, &row_last);
-    for (row = row_first; row <= row_last; row++) {
-      gfloat py = group.offset_y + (gfloat) row * group.scale_y;
-      gfloat low = -1e9f, high = 1e9f, rest[4];
-      gfloat inner_low = -1e9f, inner_high = 1e9f;
-      gint column, first, last, inner_first, inner_last, n;
-
-      for (k = 0; k < 4; k++) {
-        rest[k] = ny[k] * py + d[k] + margin;
-        /* the row's part with any coverage, and within it the part with all */
-        if (nx[k] > 1e-6f) {
-          low = MAX (low, -rest[k] / nx[k]);
-          inner_low = MAX (inner_low, (soft - rest[k]) / nx[k]);
-        } else if (nx[k] < -1e-6f) {
-          high = MIN (high, -rest[k] / nx[k]);
-          inner_high = MIN (inner_high, (soft - rest[k]) / nx[k]);
-        } else if (rest[k] < soft) {
-          inner_high = -1e9f;
-        }
-      }
-      clip_range (low, high, group.offset_x, group.scale_x, group.width, &first,
-          &last);
-      clip_range (inner_low, inner_high, group.offset_x, group.scale_x,
-          group.width, &inner_first, &inner_last);
-      for (column = first; column <= last; column += n) {
-        gint i;
-
-        if (column >= inner_first && column <= inner_last) {
-          n = MIN (RUN, inner_last - column + 1);
-          blend (canvas, &group, column, row, inside, n, values);
-          continue;
-        }
-        n = MIN (RUN, last - column + 1);
-        if (column < inner_first && inner_first <= inner_last) {
-          n = MIN (n, inner_first - column);
-        }
-        for (i = 0; i < n; i++) {
-          gfloat px = group.offset_x + (gfloat) (column + i) * group.scale_x;
-          gfloat a = nx[0] * px + rest[0], b = nx[1] * px + rest[1];
-          gfloat e = nx[2] * px + rest[2], f = nx[3] * px + rest[3];
-
-          a = a < b ? a : b;
-          e = e < f ? e : f;
-          a = (a < e ? a : e) * strength;
-          a = a < 0 ? 0 : a;
-          coverage[i] = (guint16) (gint) (a > full ? full : a);
-        }
-        blend (canvas, &group, column, row, coverage, n, values);
-      }
-    }
+    rows->quad (&group, &ink, &quad);
   }
 }
 

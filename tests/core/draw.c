@@ -149,6 +149,55 @@ test_tiling (void)
   }
 }
 
+/* Samples by themselves, side by side, and in pictures that end earlier: the same values,
+ * and not a byte else. */
+static void
+test_layouts (void)
+{
+  enum
+  { WIDTH = 75, HEIGHT = 40, STRIDE = 4 * WIDTH + 3 };
+  static const ClothColour colour = { 0.9f, 0.2f, 0.5f, 0.37f };
+  static guint8 planes[3][WIDTH * HEIGHT], packed[STRIDE * HEIGHT];
+
+  for (gint width = 1; width <= WIDTH; width += 2)
+    for (gint step = 1; step <= 4; step++) {
+      const gint n = MIN (step, 3), first = step - n;
+      ClothCanvas apart = { (guint) n }, together = { (guint) n };
+
+      memset (packed, 77, sizeof packed);
+      memset (planes, 77, sizeof planes);
+      for (gint k = 0; k < n; k++) {
+        ClothComponent c = { planes[k], WIDTH, 1, WIDTH, HEIGHT, 0, 0,
+          {50 * (gfloat) k, 200, 30, 3}
+        };
+
+        apart.components[k] = c;
+        c.data = packed + first + k;
+        c.stride = STRIDE;
+        c.step = step;
+        c.width = width;
+        together.components[k] = c;
+      }
+      for (gint i = 0; i < 12; i++) {
+        const gfloat x = 6 * (gfloat) i - 4, y = 3 * (gfloat) i, size =
+            7 + x / 2;
+        const gfloat xs[4] = { x, x + size, x + size - 3.5f, x - 2 };
+        const gfloat ys[4] = { y, y + 2, y + size, y + 5 };
+
+        cloth_draw_quad (&apart, xs, ys, &colour);
+        cloth_draw_quad (&together, xs, ys, &colour);
+        cloth_draw_line (&apart, x, y, 30, 20, 2.5f, &colour);
+        cloth_draw_line (&together, x, y, 30, 20, 2.5f, &colour);
+      }
+      for (gint i = 0; i < STRIDE * HEIGHT; i++) {
+        const gint x = i % STRIDE / step, k = i % STRIDE % step - first;
+
+        g_assert_cmpuint (packed[i], ==, x < width && k >= 0 ?
+            planes[k][i / STRIDE * WIDTH + x] : 77);
+      }
+    }
+}
+
 static void
 test_not_drawn (void)
 {
@@ -378,6 +427,7 @@ main (int argc, char **argv)
   g_test_add_func ("/draw/dashes", test_dashes);
   g_test_add_func ("/draw/quad-area", test_quad_area);
   g_test_add_func ("/draw/tiling", test_tiling);
+  g_test_add_func ("/draw/layouts", test_layouts);
   g_test_add_func ("/draw/not-drawn", test_not_drawn);
   g_test_add_func ("/draw/clipping", test_clipping);
   g_test_add_func ("/draw/confidence-colour", test_confidence_colour);
