@@ -1,0 +1,366 @@
+/* GstClothSync: deadlines of live streams, pads that come and go, what no stream should send.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "tests/elements/clothsyncbench.h"
+
+/* ---- live ---- */
+
+static GstTestClock *
+bench_clock (Bench * b)
+{
+  return gst_harness_get_testclock (b->src);
+}
+
+GST_START_TEST (test_live_deadline)
+{
+  Bench b;
+  GstTestClock *clock;
+  g_autoptr (GstMessage) qos = NULL;
+  GstClockTime timestamp;
+  GstFormat format;
+  guint64 dropped;
+
+  bench_init (&b, 2, TRUE);
+  clock = bench_clock (&b);
+  push (&b, 0, 0);
+  push (&b, 1, 0);
+  expect (&b, 0, 3);
+
+  /* one camera is silent: the deadline is the set's time plus the tolerance */
+  push (&b, 0, 33 * MS);
+  {
+    GstClockID id;
+
+    gst_test_clock_wait_for_next_pending_id (clock, &id);
+    fail_unless_equals_uint64 (gst_clock_id_get_time (id),
+        33 * MS + gst_util_uint64_scale (GST_SECOND, 1, 30) / 2);
+    gst_clock_id_unref (id);
+  }
+  fail_unless (gst_harness_try_pull (b.src) == NULL);
+  fail_unless (gst_test_clock_crank (clock));
+  expect (&b, 33 * MS, 1);
+
+  /* its frame comes too late for that set: dropped, said, and the next one is good */
+  push (&b, 1, 40 * MS);
+  push (&b, 0, 66 * MS);
+  push (&b, 1, 66 * MS);
+  expect (&b, 66 * MS, 3);
+  fail_unless_equals_uint64 (stat_of (&b, "dropped"), 1);
+  qos = message_of (&b, GST_MESSAGE_QOS);
+  fail_unless (qos != NULL);
+  gst_message_parse_qos (qos, NULL, NULL, NULL, &timestamp, NULL);
+  fail_unless_equals_uint64 (timestamp, 40 * MS);
+  gst_message_parse_qos_stats (qos, &format, NULL, &dropped);
+  fail_unless_equals_int (format, GST_FORMAT_BUFFERS);
+  fail_unless_equals_uint64 (dropped, 1);
+  gst_object_unref (clock);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* No camera sends: nothing comes out, and nothing spins. */
+GST_START_TEST (test_live_silence)
+{
+  Bench b;
+  GstTestClock *clock;
+
+  bench_init (&b, 2, TRUE);
+  clock = bench_clock (&b);
+  push (&b, 0, 0);
+  push (&b, 1, 0);
+  expect (&b, 0, 3);
+  gst_test_clock_set_time (clock, 10 * GST_SECOND);
+  fail_unless (gst_harness_try_pull (b.src) == NULL);
+  fail_unless_equals_int (gst_test_clock_peek_id_count (clock), 0);
+  push (&b, 0, 10 * GST_SECOND);
+  push (&b, 1, 10 * GST_SECOND);
+  expect (&b, 10 * GST_SECOND, 3);
+  gst_object_unref (clock);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_live_latency)
+{
+  Bench b;
+
+  bench_init (&b, 2, TRUE);
+  push (&b, 0, 0);
+  push (&b, 1, 0);
+  expect (&b, 0, 3);
+  gst_harness_set_upstream_latency (b.in[0], 20 * MS);
+  gst_harness_set_upstream_latency (b.in[1], 10 * MS);
+  g_object_set (b.sync, "latency", (guint64) 7 * MS, "tolerance",
+      (guint64) 5 * MS, NULL);
+  gst_cloth_sync_set_pad_offset (GST_CLOTH_SYNC (b.sync), 0, 2 * MS);
+  fail_unless_equals_uint64 (gst_harness_query_latency (b.src), 34 * MS);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* ---- changes under way ---- */
+
+GST_START_TEST (test_flush)
+{
+  GstSegment segment;
+  Bench b;
+  guint32 seqnum;
+  guint i;
+
+  bench_init (&b, 2, FALSE);
+  push (&b, 0, 0);
+  push (&b, 1, 0);
+  expect (&b, 0, 3);
+  push (&b, 0, 33 * MS);        /* is flushed away */
+  settle (&b, 0);
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  /* one seek, so one sequence number, reaches all pads */
+  seqnum = gst_util_seqnum_next ();
+  for (i = 0; i < 2; i++) {
+    GstEvent *event = gst_event_new_flush_start ();
+
+    gst_event_set_seqnum (event, seqnum);
+    fail_unless (gst_harness_push_event (b.in[i], event));
+  }
+  for (i = 0; i < 2; i++) {
+    GstEvent *event = gst_event_new_flush_stop (TRUE);
+
+    gst_event_set_seqnum (event, seqnum);
+    fail_unless (gst_harness_push_event (b.in[i], event));
+    fail_unless (gst_harness_push_event (b.in[i],
+            gst_event_new_segment (&segment)));
+  }
+  /* running time starts again: nothing is late */
+  for (i = 0; i < 2; i++) {
+    push (&b, i, 0);
+  }
+  expect (&b, 0, 3);
+  fail_unless_equals_uint64 (stat_of (&b, "dropped"), 0);
+  fail_unless (TEST_SYNC (b.sync)->n_resets >= 2);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_caps_change)
+{
+  Bench b;
+
+  bench_init (&b, 2, FALSE);
+  push (&b, 0, 0);
+  push (&b, 1, 0);
+  expect (&b, 0, 3);
+  fail_unless_equals_int (TEST_SYNC (b.sync)->n_caps, 2);
+  caps (&b, 0, "test/x-frames,framerate=25/1");
+  push (&b, 0, 40 * MS);
+  push (&b, 1, 40 * MS);
+  expect (&b, 40 * MS, 3);
+  fail_unless_equals_int (TEST_SYNC (b.sync)->n_caps, 3);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_pads_come_and_go)
+{
+  Bench b;
+
+  bench_init (&b, 2, FALSE);
+  push (&b, 0, 0);
+  push (&b, 1, 0);
+  expect (&b, 0, 3);
+
+  bench_add_pad (&b, 5, "test/x-frames,framerate=30/1");
+  push (&b, 0, 33 * MS);
+  push (&b, 1, 33 * MS);
+  push (&b, 5, 33 * MS);
+  expect (&b, 33 * MS, 0x23);
+
+  /* the set that waited for the pad goes on when it is released */
+  push (&b, 0, 66 * MS);
+  push (&b, 5, 66 * MS);
+  bench_remove_pad (&b, 1);
+  push (&b, 0, 99 * MS);
+  push (&b, 5, 99 * MS);
+  expect (&b, 66 * MS, 0x21);
+  expect (&b, 99 * MS, 0x21);
+  fail_unless_equals_int (TEST_SYNC (b.sync)->n_gone, 1);
+
+  /* its number is free again */
+  bench_add_pad (&b, 1, "test/x-frames,framerate=30/1");
+  push (&b, 0, 132 * MS);
+  push (&b, 1, 132 * MS);
+  push (&b, 5, 132 * MS);
+  expect (&b, 132 * MS, 0x23);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* A pad that comes and goes at any moment takes nothing from the other one. */
+GST_START_TEST (test_pads_come_and_go_quickly)
+{
+  GstBuffer *out;
+  guint i, n = 0;
+  Bench b;
+
+  bench_init (&b, 1, FALSE);
+  for (i = 0; i < 80; i++) {
+    push (&b, 0, i * 33 * MS);
+  }
+  for (i = 0; i < 80; i++) {
+    bench_add_pad (&b, 1, "test/x-frames,framerate=30/1");
+    push (&b, 1, i * 33 * MS);
+    bench_remove_pad (&b, 1);
+  }
+  eos (&b, 0);
+  expect_eos (&b);
+  while ((out = gst_harness_try_pull (b.src)) != NULL) {
+    n += GST_BUFFER_OFFSET (out) & 1;
+    gst_buffer_unref (out);
+  }
+  fail_unless_equals_int (n, 80);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* ---- bad input ---- */
+
+GST_START_TEST (test_no_time_stamp)
+{
+  g_autoptr (GstMessage) error = NULL;
+  Bench b;
+
+  bench_init (&b, 2, FALSE);
+  push (&b, 0, GST_CLOCK_TIME_NONE);
+  push (&b, 1, 0);
+  error = gst_bus_timed_pop_filtered (b.bus, GST_CLOCK_TIME_NONE,
+      GST_MESSAGE_ERROR);
+  fail_unless (error != NULL);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_segment_in_bytes)
+{
+  g_autoptr (GstMessage) error = NULL;
+  GstSegment segment;
+  Bench b;
+
+  bench_init (&b, 2, FALSE);
+  gst_segment_init (&segment, GST_FORMAT_BYTES);
+  give (&b, 0, gst_event_new_segment (&segment));
+  error = gst_bus_timed_pop_filtered (b.bus, GST_CLOCK_TIME_NONE,
+      GST_MESSAGE_ERROR);
+  fail_unless (error != NULL);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_refused_caps)
+{
+  g_autoptr (GstMessage) error = NULL;
+  Bench b;
+
+  bench_init (&b, 2, FALSE);
+  caps (&b, 0, "test/x-frames,refuse=true");
+  error = gst_bus_timed_pop_filtered (b.bus, GST_CLOCK_TIME_NONE,
+      GST_MESSAGE_ERROR);
+  fail_unless (error != NULL);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* Times that step back would give sets that step back: the frame is dropped. */
+GST_START_TEST (test_time_steps_back)
+{
+  Bench b;
+
+  bench_init (&b, 2, FALSE);
+  push (&b, 0, 100 * MS);
+  push (&b, 1, 100 * MS);
+  expect (&b, 100 * MS, 3);
+  push (&b, 0, 50 * MS);
+  push (&b, 0, 100 * MS);
+  push (&b, 0, 133 * MS);
+  push (&b, 1, 133 * MS);
+  expect (&b, 133 * MS, 3);
+  fail_unless_equals_uint64 (stat_of (&b, "dropped"), 2);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_bad_pad_names)
+{
+  GstElement *sync = gst_object_ref_sink (g_object_new (TEST_TYPE_SYNC, NULL));
+  GstPad *pad;
+
+  fail_unless (gst_element_request_pad_simple (sync, "sink_64") == NULL);
+  fail_unless (gst_element_request_pad_simple (sync,
+          "sink_4294967296") == NULL);
+  fail_unless (gst_element_request_pad_simple (sync, "sink_x") == NULL);
+  pad = gst_element_request_pad_simple (sync, "sink_63");
+  fail_unless (pad != NULL);
+  gst_element_release_request_pad (sync, pad);
+  gst_object_unref (pad);
+  gst_object_unref (sync);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_no_frames_at_all)
+{
+  Bench b;
+  g_autoptr (GstMessage) warning = NULL;
+
+  bench_init (&b, 2, FALSE);
+  eos (&b, 0);
+  eos (&b, 1);
+  expect_eos (&b);
+  warning = message_of (&b, GST_MESSAGE_WARNING | GST_MESSAGE_ERROR);
+  fail_unless (warning == NULL);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+static Suite *
+clothsynclive_suite (void)
+{
+  Suite *s = suite_create ("clothsynclive");
+  TCase *tc = tcase_create ("general");
+
+  suite_add_tcase (s, tc);
+  tcase_add_test (tc, test_live_deadline);
+  tcase_add_test (tc, test_live_silence);
+  tcase_add_test (tc, test_live_latency);
+  tcase_add_test (tc, test_flush);
+  tcase_add_test (tc, test_caps_change);
+  tcase_add_test (tc, test_pads_come_and_go);
+  tcase_add_test (tc, test_pads_come_and_go_quickly);
+  tcase_add_test (tc, test_no_time_stamp);
+  tcase_add_test (tc, test_segment_in_bytes);
+  tcase_add_test (tc, test_refused_caps);
+  tcase_add_test (tc, test_time_steps_back);
+  tcase_add_test (tc, test_bad_pad_names);
+  tcase_add_test (tc, test_no_frames_at_all);
+  return s;
+}
+
+int
+main (int argc, char **argv)
+{
+  /* the plugin has a GstClothSync of its own: it must not come in by a scan */
+  g_setenv ("GST_REGISTRY_DISABLE", "yes", TRUE);
+  gst_check_init (&argc, &argv);
+  return gst_check_run_suite (clothsynclive_suite (), "clothsynclive",
+      __FILE__);
+}
