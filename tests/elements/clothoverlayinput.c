@@ -1,0 +1,373 @@
+/* clothoverlay: changes in the middle of a stream, and input that nobody should send.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "tests/elements/clothoverlayscene.h"
+
+static const gchar second_camera[] =
+    ", {\"name\": \"right\", \"size\": [80, 60], "
+    "\"K\": [[100, 0, 39.5], [0, 100, 29.5], [0, 0, 1]], "
+    "\"distortion\": {\"model\": \"none\", \"coefficients\": []}, "
+    "\"R\": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], \"t\": [0.1, 0, 0]}";
+
+GST_START_TEST (test_caps_change)
+{
+  static const gchar *const of[] = { "I420", "RGBA", "GRAY8" };
+  GstHarness *h = overlay ("fill-opacity=0", NULL);
+  guint i;
+
+  for (i = 0; i < 3; i++) {
+    gint width = 50 + 13 * (gint) i;
+    GstClothQuad q = quad_at (5, 6, 25, 1);
+    const Line lines[4] = {
+      {5, 6, 30, 6}, {30, 6, 30, 31}, {30, 31, 5, 31}, {5, 31, 5, 6}
+    };
+    GstVideoInfo info;
+    GstBuffer *buffer = picture (of[i], width, 40, 0, &info), *out;
+    GstCaps *caps;
+
+    GST_BUFFER_PTS (buffer) = i * GST_SECOND;
+    add_quads (buffer, &q, 1);
+    gst_harness_set_src_caps (h, gst_video_info_to_caps (&info));
+    gst_harness_push (h, buffer);
+    out = gst_harness_pull (h);
+    check_lines (out, &info, lines, 4, 1.5);
+    caps = gst_pad_get_current_caps (h->sinkpad);
+    fail_unless_equals_string (gst_structure_get_string (gst_caps_get_structure
+            (caps, 0), "format"), of[i]);
+    gst_caps_unref (caps);
+    gst_buffer_unref (out);
+  }
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+/* Upstream learns what downstream takes. */
+GST_START_TEST (test_caps_query)
+{
+  GstHarness *h = overlay ("", NULL);
+  GstCaps *caps;
+
+  gst_harness_set_sink_caps_str (h, "video/x-raw,format=NV12,width=320");
+  caps = gst_pad_peer_query_caps (h->srcpad, NULL);
+  fail_unless_equals_string (gst_structure_get_string (gst_caps_get_structure
+          (caps, 0), "format"), "NV12");
+  gst_caps_unref (caps);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+/* A flushing seek in a real pipeline: the frame asked for comes next, and the film goes
+ * on to its end. */
+GST_START_TEST (test_seek)
+{
+  GstElement *pipeline =
+      gst_parse_launch ("videotestsrc num-buffers=300 ! "
+      "video/x-raw,format=I420,width=32,height=32,framerate=30/1 ! clothoverlay ! "
+      "fakesink name=sink sync=false", NULL);
+  GstElement *sink = gst_bin_get_by_name (GST_BIN (pipeline), "sink");
+  GstBus *bus = gst_element_get_bus (pipeline);
+  GstSample *sample = NULL;
+  GstMessage *message;
+
+  gst_element_set_state (pipeline, GST_STATE_PAUSED);
+  fail_unless_equals_int (gst_element_get_state (pipeline, NULL, NULL,
+          GST_CLOCK_TIME_NONE), GST_STATE_CHANGE_SUCCESS);
+  fail_unless (gst_element_seek_simple (pipeline, GST_FORMAT_TIME,
+          GST_SEEK_FLAG_FLUSH | GST_SEEK_FLAG_ACCURATE, 5 * GST_SECOND));
+  fail_unless_equals_int (gst_element_get_state (pipeline, NULL, NULL,
+          GST_CLOCK_TIME_NONE), GST_STATE_CHANGE_SUCCESS);
+  g_object_get (sink, "last-sample", &sample, NULL);
+  fail_unless (sample != NULL);
+  fail_unless_equals_uint64 (GST_BUFFER_PTS (gst_sample_get_buffer (sample)),
+      5 * GST_SECOND);
+  gst_sample_unref (sample);
+
+  gst_element_set_state (pipeline, GST_STATE_PLAYING);
+  message = gst_bus_timed_pop_filtered (bus, GST_CLOCK_TIME_NONE,
+      GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
+  fail_unless_equals_int (GST_MESSAGE_TYPE (message), GST_MESSAGE_EOS);
+  gst_message_unref (message);
+  g_object_get (sink, "last-sample", &sample, NULL);
+  fail_unless (GST_BUFFER_PTS (gst_sample_get_buffer (sample)) >
+      9900 * GST_MSECOND);
+  gst_sample_unref (sample);
+  gst_element_set_state (pipeline, GST_STATE_NULL);
+  gst_object_unref (bus);
+  gst_object_unref (sink);
+  gst_object_unref (pipeline);
+}
+
+GST_END_TEST;
+
+/* ---- bad input ---- */
+
+GST_START_TEST (test_one_pixel)
+{
+  guint f;
+
+  for (f = 0; f < G_N_ELEMENTS (formats); f++) {
+    GstClothQuad q = quad_at (-5, -5, 20, 1);
+    GstVideoInfo info;
+    GstBuffer *buffer = picture (formats[f], 1, 1, 0, &info), *out;
+
+    add_quads (buffer, &q, 1);
+    out = draw ("draw-indices=true", &info, buffer);
+    gst_buffer_unref (out);
+  }
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_bad_coordinates)
+{
+  static const gfloat bad[] = {
+    NAN, INFINITY, -INFINITY, 1e30f, -1e30f, 3e9f, -3e9f, 1e6f
+  };
+  GstVideoInfo info;
+  guint i, k;
+
+  for (i = 0; i < G_N_ELEMENTS (bad); i++) {
+    for (k = 0; k < 4; k++) {
+      GstBuffer *buffer = picture ("I420", 64, 48, 7, &info), *out;
+      GstClothQuad q = quad_at (10, 10, 20, NAN);
+      GstClothSaddle s = { 20, 20, 1, 0, 1, 0, 1 };
+
+      q.x[k] = bad[i];
+      q.y[(k + 1) & 3] = bad[i];
+      s.x = k & 1 ? bad[i] : 20;
+      s.y = k & 1 ? 20 : bad[i];
+      s.cov_xx = s.cov_xy = bad[i];
+      add_quads (buffer, &q, 1);
+      add_saddles (buffer, &s, 1, NULL, 0);
+      out = draw ("draw-indices=true ellipse-scale=10", &info, buffer);
+      check_padding (out, &info, 7);
+      gst_buffer_unref (out);
+    }
+  }
+}
+
+GST_END_TEST;
+
+/* Indices that no board has, states that there are not: drawn or left out, within the
+ * picture. */
+GST_START_TEST (test_wild_squares)
+{
+  static const gint wild[] = { -1, G_MININT, G_MAXINT, 1000000, 65536 };
+  GstVideoInfo info;
+  GstClothQuad q[3 * G_N_ELEMENTS (wild)];
+  GstBuffer *buffer = picture ("NV12", 64, 48, 7, &info), *out;
+  guint i;
+
+  for (i = 0; i < G_N_ELEMENTS (q); i++) {
+    gint value = wild[i / 3];
+
+    q[i] = quad_at (i % 2 ? 40 : 10, 10, 20, i % 3 ? 1e30f : -1e30f);
+    if (i % 3 == 0) {
+      q[i].column = value;
+    } else if (i % 3 == 1) {
+      q[i].row = value;
+    } else {
+      q[i].state = (GstClothQuadState) value;
+    }
+  }
+  add_quads (buffer, q, G_N_ELEMENTS (q));
+  out = draw ("draw-indices=true", &info, buffer);
+  check_padding (out, &info, 7);
+  gst_buffer_unref (out);
+}
+
+GST_END_TEST;
+
+/* A square folded over itself has no inside to fill; degenerate ones are points. */
+GST_START_TEST (test_degenerate_squares)
+{
+  GstClothQuad q[2] = { quad_at (10, 10, 20, 1), quad_at (40, 10, 0, 1) };
+  GstVideoInfo info;
+  GstBuffer *buffer = picture ("GRAY8", 64, 48, 0, &info), *out;
+  const Line lines[5] = {
+    {10, 10, 30, 10}, {30, 10, 10, 30}, {10, 30, 30, 30}, {30, 30, 10, 10},
+    {40, 10, 40, 10}
+  };
+
+  q[0].x[2] = 10;
+  q[0].x[3] = 30;
+  add_quads (buffer, q, 2);
+  out = draw ("line-width=2", &info, buffer);
+  check_lines (out, &info, lines, 5, 2);
+  gst_buffer_unref (out);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_unknown_format)
+{
+  GstHarness *h = overlay ("", NULL);
+
+  gst_harness_set_src_caps_str (h,
+      "video/x-raw,format=P010_10LE,width=32,height=32,framerate=30/1");
+  fail_unless_equals_int (gst_harness_push (h, gst_buffer_new_allocate (NULL,
+              4096, NULL)), GST_FLOW_NOT_NEGOTIATED);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+/* Each must end in an element error that names the fix. */
+static void
+expect_error (const gchar * properties, gint width, gint height,
+    GstBuffer * mesh, gsize picture_size, const gchar * in_text)
+{
+  GstVideoInfo info;
+  GstBuffer *buffer = picture ("GRAY8", width, height, 0, &info);
+  GstHarness *h = overlay (properties, NULL), *m = NULL;
+  GstBus *bus = gst_bus_new ();
+  GstMessage *message;
+  GError *error = NULL;
+  gchar *debug = NULL, *all;
+
+  gst_element_set_bus (h->element, bus);
+  if (picture_size) {
+    GstClothQuad q = quad_at (2, 2, 5, 1);
+
+    gst_buffer_unref (buffer);
+    buffer = gst_buffer_new_allocate (NULL, picture_size, NULL);
+    GST_BUFFER_PTS (buffer) = 0;
+    add_quads (buffer, &q, 1);
+  }
+  if (mesh) {
+    m = mesh_pad (h);
+  }
+  gst_harness_set_src_caps (h, gst_video_info_to_caps (&info));
+  gst_harness_push (h, buffer);
+  if (m) {
+    gst_harness_push (m, mesh);
+  }
+  message = gst_bus_timed_pop_filtered (bus, 20 * GST_SECOND,
+      GST_MESSAGE_ERROR);
+  fail_unless (message != NULL, "%s: no error", properties);
+  gst_message_parse_error (message, &error, &debug);
+  all = g_strconcat (error->message, " ", debug, NULL);
+  fail_unless (strstr (all, in_text) != NULL, "%s", all);
+  fail_unless (gst_harness_try_pull (h) == NULL);
+  g_free (all);
+  g_free (debug);
+  g_clear_error (&error);
+  gst_message_unref (message);
+  if (m) {
+    gst_harness_teardown (m);
+  }
+  gst_element_set_bus (h->element, NULL);
+  gst_harness_teardown (h);
+  gst_object_unref (bus);
+}
+
+GST_START_TEST (test_no_rig)
+{
+  expect_error ("", 80, 60, mesh_buffer (COLUMNS * ROWS, -1), 0, "rig=");
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_rig_not_there)
+{
+  expect_error ("rig=/nonexistent/rig.json", 80, 60,
+      mesh_buffer (COLUMNS * ROWS, -1), 0, "/nonexistent/rig.json");
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_which_camera)
+{
+  g_autofree gchar *rig = write_rig ("", second_camera);
+  g_autofree gchar *none = g_strdup_printf ("rig=%s", rig);
+  g_autofree gchar *wrong = g_strdup_printf ("rig=%s camera=middle", rig);
+
+  expect_error (none, 80, 60, mesh_buffer (COLUMNS * ROWS, -1), 0,
+      "left, right");
+  expect_error (wrong, 80, 60, mesh_buffer (COLUMNS * ROWS, -1), 0,
+      "left, right");
+  g_unlink (rig);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_other_shape)
+{
+  g_autofree gchar *rig = write_rig ("", "");
+  g_autofree gchar *properties = g_strdup_printf ("rig=%s", rig);
+
+  expect_error (properties, 60, 80, mesh_buffer (COLUMNS * ROWS, -1), 0,
+      "80×60");
+  g_unlink (rig);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_bad_mesh)
+{
+  g_autofree gchar *rig = write_rig ("", "");
+  g_autofree gchar *properties = g_strdup_printf ("rig=%s", rig);
+  GstBuffer *garbage = gst_buffer_new_memdup ("garbage", 7);
+
+  GST_BUFFER_PTS (garbage) = 0;
+  expect_error (properties, 80, 60, garbage, 0, "no valid mesh");
+  expect_error (properties, 80, 60, mesh_buffer (COLUMNS * ROWS + 1, -1), 0,
+      "stream of 12");
+  g_unlink (rig);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_short_picture)
+{
+  expect_error ("", 80, 60, NULL, 100, "fit");
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_second_mesh_pad)
+{
+  GstHarness *h = overlay ("", NULL);
+  GstPad *pad = gst_element_request_pad_simple (h->element, "mesh");
+
+  fail_unless (pad != NULL);
+  ASSERT_CRITICAL (fail_unless (gst_element_request_pad_simple (h->element,
+              "mesh") == NULL));
+  gst_element_release_request_pad (h->element, pad);
+  gst_object_unref (pad);
+  pad = gst_element_request_pad_simple (h->element, "mesh");
+  fail_unless (pad != NULL);
+  gst_object_unref (pad);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+static Suite *
+clothoverlayinput_suite (void)
+{
+  Suite *s = suite_create ("clothoverlayinput");
+  TCase *tc = tcase_create ("general");
+
+  suite_add_tcase (s, tc);
+  tcase_add_test (tc, test_caps_change);
+  tcase_add_test (tc, test_caps_query);
+  tcase_add_test (tc, test_seek);
+  tcase_add_test (tc, test_one_pixel);
+  tcase_add_test (tc, test_bad_coordinates);
+  tcase_add_test (tc, test_wild_squares);
+  tcase_add_test (tc, test_degenerate_squares);
+  tcase_add_test (tc, test_unknown_format);
+  tcase_add_test (tc, test_no_rig);
+  tcase_add_test (tc, test_rig_not_there);
+  tcase_add_test (tc, test_which_camera);
+  tcase_add_test (tc, test_other_shape);
+  tcase_add_test (tc, test_bad_mesh);
+  tcase_add_test (tc, test_short_picture);
+  tcase_add_test (tc, test_second_mesh_pad);
+  return s;
+}
+
+GST_CHECK_MAIN (clothoverlayinput);
