@@ -30,6 +30,11 @@ extern const ClothLaneBackend cloth_lane_backend_double_avx512;
 #define GOOD_STEPS 3
 /* Steps of one cloth_sim_advance (); more means a model far out of range. */
 #define MAX_STEPS 1e8
+/* Most stages of a step; what else a step costs, in stages; a staged step is at most this
+ * many times as long as a plain one. */
+#define MAX_STAGES 8
+#define OTHER_COSTS 0.6
+#define LONGEST_STAGED 64.
 
 typedef struct
 {
@@ -51,11 +56,15 @@ struct _ClothSim
   gdouble time;
   gdouble fixed_step;           /* of the models, 0 = automatic */
   gdouble time_step;
+  guint stages;                 /* of a step */
+  gboolean stale;               /* the time step is to be found anew */
+  gboolean implicit;
   gboolean adaptive;            /* implicit with an automatic step */
   gdouble longest_step;
   guint good_steps;             /* in a row */
   gdouble *scratch[5];          /* by particle */
   gdouble *weights;             /* by vertex of the body */
+  gdouble *gains;               /* of the observer, and its damping: by model */
   /* of the running advance */
   gdouble until;
   guint n_steps;
@@ -121,17 +130,48 @@ round_step (gdouble step)
   return exp2 (floor (log2 (step) * STEPS_AN_OCTAVE) / STEPS_AN_OCTAVE);
 }
 
-static void
-find_time_step (ClothSim * sim)
+static gdouble
+bound (const ClothSim * sim, guint stages, gdouble longest)
 {
-  gdouble least = INFINITY;
-
   for (guint i = 0; i < sim->n_groups; i++) {
     const Group *g = &sim->groups[i];
 
-    least = MIN (least, g->backend->time_step (g->lanes));
+    longest = MIN (longest, stages > 1 ?
+        g->backend->staged_time_step (g->lanes, stages, longest) :
+        g->backend->time_step (g->lanes));
   }
-  least = round_step (least);
+  return longest;
+}
+
+/* The number of stages that reaches a given step, or the one that costs least; the
+ * longest step that it allows. */
+static gdouble
+find_stages (ClothSim * sim)
+{
+  const gdouble wanted = sim->fixed_step * MAX (sim->numerics->step_factor, 1.);
+  gdouble best = bound (sim, 1, INFINITY), longest;
+
+  sim->stages = 1;
+  if (sim->implicit)
+    return best;
+  longest = LONGEST_STAGED * best;
+  for (guint s = 2; s <= MAX_STAGES && !(wanted > 0. && best >= wanted); s++) {
+    gdouble step = bound (sim, s, longest);
+
+    if (wanted > 0. ? step > best : (s + OTHER_COSTS) / step <
+        (sim->stages + OTHER_COSTS) / best) {
+      sim->stages = s;
+      best = step;
+    }
+  }
+  return best;
+}
+
+static void
+find_time_step (ClothSim * sim)
+{
+  gdouble least = round_step (find_stages (sim));
+
   sim->longest_step = sim->fixed_step > 0. ? sim->fixed_step : least;
   if (sim->numerics->step_factor != 1.)
     sim->longest_step =
@@ -139,6 +179,7 @@ find_time_step (ClothSim * sim)
   if (!sim->adaptive || sim->time_step == 0.
       || sim->time_step > sim->longest_step)
     sim->time_step = sim->longest_step;
+  sim->stale = FALSE;
 }
 
 static void
@@ -207,11 +248,12 @@ cloth_sim_new (const ClothScene * scene, const ClothModel * const *models,
     return NULL;
   sim->n_models = n_models;
   sim->fixed_step = models[0]->time_step;
-  sim->adaptive = models[0]->integrator == CLOTH_INTEGRATOR_IMPLICIT &&
-      sim->fixed_step == 0.;
+  sim->implicit = models[0]->integrator == CLOTH_INTEGRATOR_IMPLICIT;
+  sim->adaptive = sim->implicit && sim->fixed_step == 0.;
   sim->time = sim->body->times[0];
   for (guint i = 0; i < G_N_ELEMENTS (sim->scratch); i++)
     sim->scratch[i] = g_new0 (gdouble, 3 * (gsize) sim->body->n_particles);
+  sim->gains = g_new0 (gdouble, 2 * (gsize) n_models);
   sim->weights = g_new (gdouble, sim->body->n_vertices);
   make_groups (sim, models, options);
   sim->too_long = g_new0 (gdouble, sim->n_groups);
@@ -239,6 +281,7 @@ cloth_sim_free (ClothSim * sim)
   for (guint i = 0; i < G_N_ELEMENTS (sim->scratch); i++)
     g_free (sim->scratch[i]);
   g_free (sim->weights);
+  g_free (sim->gains);
   g_clear_pointer (&sim->pool, cloth_pool_free);
   g_clear_pointer (&sim->body, cloth_body_free);
   g_clear_pointer (&sim->numerics, cloth_numerics_free);
@@ -278,7 +321,7 @@ advance_groups (gpointer data, guint begin, guint end, guint worker)
 
   for (guint i = begin; i < end; i++)
     sim->groups[i].backend->advance (sim->groups[i].lanes, sim->until,
-        sim->n_steps);
+        sim->n_steps, sim->stages);
 }
 
 static void
@@ -348,6 +391,8 @@ cloth_sim_advance (ClothSim * sim, gdouble until_s)
 
   if (!(span > 0.) || !isfinite (span))
     return;
+  if (sim->stale)
+    find_time_step (sim);
   if (sim->adaptive) {
     advance_adaptive (sim, until_s);
     return;
@@ -381,8 +426,10 @@ cloth_sim_get_time (const ClothSim * sim)
  * Since: 0.1
  */
 gdouble
-cloth_sim_get_time_step (const ClothSim * sim)
+cloth_sim_get_time_step (ClothSim * sim)
 {
+  if (sim->stale)
+    find_time_step (sim);
   return sim->time_step;
 }
 
@@ -591,5 +638,8 @@ cloth_sim_set_targets (ClothSim * sim, guint model, const gdouble * now,
   group->backend->set_targets (group->lanes, lane,
       (const gdouble * const *) sim->scratch, total, gain, damping, t_now,
       t_next);
-  find_time_step (sim);
+  sim->stale = sim->stale || gain != sim->gains[2 * model]
+      || damping != sim->gains[2 * model + 1];
+  sim->gains[2 * model] = gain;
+  sim->gains[2 * model + 1] = damping;
 }

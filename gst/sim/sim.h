@@ -77,7 +77,7 @@ guint cloth_sim_get_n_models (const ClothSim * sim);
 guint cloth_sim_get_n_vertices (const ClothSim * sim);
 void cloth_sim_advance (ClothSim * sim, gdouble until_s);
 gdouble cloth_sim_get_time (const ClothSim * sim);
-gdouble cloth_sim_get_time_step (const ClothSim * sim);
+gdouble cloth_sim_get_time_step (ClothSim * sim);
 void cloth_sim_get_positions (const ClothSim * sim, guint model,
     gdouble * positions);
 void cloth_sim_get_velocities (const ClothSim * sim, guint model,

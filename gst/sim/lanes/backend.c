@@ -215,6 +215,8 @@ group_free (gpointer group)
   g_aligned_free (state->z);
   g_aligned_free (state->mass);
   g_aligned_free (state->inverse_mass);
+  g_aligned_free (state->last_v);
+  g_aligned_free (state->others);
   g_aligned_free (state->sound_x);
   g_aligned_free (state->sound_v);
   g_aligned_free (state->held_offset);
@@ -253,6 +255,8 @@ group_new (const ClothBody * body, const ClothModel * const *models,
   state->v = lanes_new (n, sizeof *state->v);
   state->f = lanes_new (n, sizeof *state->f);
   state->z = lanes_new (n, sizeof *state->z);
+  state->last_v = lanes_new (n, sizeof *state->v);
+  state->others = lanes_new (n, sizeof *state->f);
   state->sound_x = lanes_new (n, sizeof *state->x);
   state->sound_v = lanes_new (n, sizeof *state->v);
   state->mass = lanes_new (n, sizeof *state->mass);
@@ -360,17 +364,26 @@ group_take_step (gpointer group, gdouble until_s)
   check_sound (state, start);
 }
 
+static gdouble
+group_staged_time_step (gpointer group, guint stages, gdouble longest)
+{
+  return CLOTH_LANE_NAME (cloth_lane_staged_time_step) (group, stages, longest);
+}
+
 static void
-group_advance (gpointer group, gdouble until_s, guint n_steps)
+group_advance (gpointer group, gdouble until_s, guint n_steps, guint stages)
 {
   ClothLaneState *state = group;
   gdouble start = state->time;
 
   state->dt = (until_s - start) / n_steps;
+  state->stages = stages;
   for (guint step = 1; step <= n_steps; step++) {
     if (state->implicit) {
       CLOTH_LANE_NAME (cloth_lane_implicit_solve) (state);
       CLOTH_LANE_NAME (cloth_lane_implicit_take) (state);
+    } else if (stages > 1) {
+      CLOTH_LANE_NAME (cloth_lane_staged) (state);
     } else {
       CLOTH_LANE_NAME (cloth_lane_explicit) (state);
     }
@@ -492,7 +505,8 @@ group_energy (gpointer group, guint lane)
 extern const ClothLaneBackend CLOTH_LANE_NAME (cloth_lane_backend);
 
 const ClothLaneBackend CLOTH_LANE_NAME (cloth_lane_backend) = {
-  CLOTH_N_LANES, group_new, group_free, group_time_step, group_advance,
+  CLOTH_N_LANES, group_new, group_free, group_time_step,
+  group_staged_time_step, group_advance,
   group_try_step, group_take_step,
   group_get, group_set, group_set_time, group_set_targets, group_diverged,
   group_energy

@@ -18,8 +18,11 @@ typedef struct
   void (*group_free) (gpointer group);
   /* the largest stable step of any lane, with its margin */
   gdouble (*time_step) (gpointer group);
-  /* the whole group to a time in so many equal steps */
-  void (*advance) (gpointer group, gdouble until_s, guint n_steps);
+  /* the same, at most @longest, of explicit steps in several stages */
+  gdouble (*staged_time_step) (gpointer group, guint stages, gdouble longest);
+  /* the whole group to a time in so many equal steps, each of so many stages */
+  void (*advance) (gpointer group, gdouble until_s, guint n_steps,
+      guint stages);
   /* an implicit step to a time: solves it and returns by how much it is too long, at most
    * 1 when it is not; then takes it */
   gdouble (*try_step) (gpointer group, gdouble until_s);

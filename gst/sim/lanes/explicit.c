@@ -8,20 +8,32 @@
  * at rest, (3 λ² − 1)/2 times at stretch λ; this is stable up to λ = 1.3. */
 #define MARGIN 0.7
 
-/* Adds all forces at x and v to f: gravity and damping αM are the integrator's, which
- * knows the accelerations. */
-void CLOTH_LANE_NAME (cloth_lane_forces) (ClothLaneState * state)
+/* Adds the cloth's own forces at x and v to f. */
+void CLOTH_LANE_NAME (cloth_lane_own_forces) (ClothLaneState * state)
 {
   if (state->force_model == CLOTH_FORCE_MASS_SPRING)
     CLOTH_LANE_NAME (cloth_lane_springs) (state);
   else
     CLOTH_LANE_NAME (cloth_lane_membrane) (state);
   CLOTH_LANE_NAME (cloth_lane_bending) (state);
+}
+
+/* Adds those of effects and of the observer. */
+void CLOTH_LANE_NAME (cloth_lane_other_forces) (ClothLaneState * state)
+{
   for (guint i = 0; i < state->n_effects; i++)
     if (state->effects[i].hooks->force)
       state->effects[i].hooks->force (state, &state->effects[i]);
   if (state->has_targets)
     CLOTH_LANE_NAME (cloth_lane_targets) (state);
+}
+
+/* Adds all forces at x and v to f: gravity and damping αM are the integrator's, which
+ * knows the accelerations. */
+void CLOTH_LANE_NAME (cloth_lane_forces) (ClothLaneState * state)
+{
+  CLOTH_LANE_NAME (cloth_lane_own_forces) (state);
+  CLOTH_LANE_NAME (cloth_lane_other_forces) (state);
 }
 
 /* One step of state->dt; leaves f zeroed for the next. */

@@ -104,6 +104,10 @@ typedef struct
   ClothLane3 *held_offset;
   ClothLane3 *held_x;
 
+  /* Of steps in stages: velocities a stage ago, forces that don't change meanwhile. */
+  guint stages;
+  ClothLane3 *last_v, *others;
+
   ClothLaneObstacles *obstacles;
   ClothLaneImplicit *implicit;  /* NULL: symplectic Euler */
 
@@ -165,9 +169,14 @@ ClothLaneObstacles *CLOTH_LANE_NAME (cloth_lane_obstacles_new) (const
     ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_obstacles_free) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_obstacles) (ClothLaneState * state);
-/* All forces but inertia at x and v into f. */
+/* Forces at x and v into f: the cloth's own, the others, and all of them. */
+void CLOTH_LANE_NAME (cloth_lane_own_forces) (ClothLaneState * state);
+void CLOTH_LANE_NAME (cloth_lane_other_forces) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_forces) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_explicit) (ClothLaneState * state);
+void CLOTH_LANE_NAME (cloth_lane_staged) (ClothLaneState * state);
+gdouble CLOTH_LANE_NAME (cloth_lane_staged_time_step) (const
+    ClothLaneState * state, guint stages, gdouble longest);
 ClothLaneImplicit *CLOTH_LANE_NAME (cloth_lane_implicit_new) (const
     ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_implicit_free) (ClothLaneImplicit * implicit);

@@ -1,0 +1,134 @@
+/* Steps whose velocities are found in stages. Damping that grows with stiffness binds an
+ * explicit step far below what the stiffness itself allows. Runge and Kutta's method of
+ * Legendre polynomials (RKL1: Meyer, Balsara and Aslam 2014) stays stable with s stages
+ * for steps (s² + s)/2 times as long. The places wait meanwhile; with one stage it is
+ * symplectic Euler.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/sim/lanes/state.h"
+
+/* Shares of the bounds that are used, as in symplectic Euler: of the frequency, and of
+ * the damping. */
+#define MARGIN 0.7
+/* Modes are looked at in so many steps of stiffness. */
+#define N_MODES 64
+/* At −1 odd polynomials are −1: neither damped nor stable beyond. */
+#define LEAST_ARGUMENT (-0.9)
+/* Each trial of a step is so much shorter: an eighth of an octave. */
+#define SHORTER 0.917004043204671
+/* No model asks for a shorter step, s. */
+#define LEAST_STEP 1e-12
+
+/* Held particles keep their velocity: no forces, against all that pulls. */
+static void
+hold (ClothLaneState * state)
+{
+  const ClothBody *body = state->body;
+  ClothMask hard = cloth_lane_equal (state->compliance, cloth_lane_set (0.));
+
+  for (guint i = 0; i < body->n_held; i++) {
+    guint p = body->held[i].particle;
+
+    for (guint k = 0; k < 3 && state->held[i]; k++)
+      state->f[p][k] = cloth_lane_select (hard, state->mass[p] * (state->alpha *
+              state->v[p][k] - state->gravity[k]), state->f[p][k]);
+  }
+}
+
+/* v_j = μ v_{j−1} + ν v_{j−2} + h a (v_{j−1}). */
+CLOTH_LANE_INLINE void
+stage (ClothLaneState * state, gdouble mu, gdouble nu, gdouble h)
+{
+  ClothLane m = cloth_lane_set (mu), n = cloth_lane_set (nu);
+  ClothLane dt = cloth_lane_set (h);
+
+  for (guint i = 0; i < state->n; i++)
+    for (guint k = 0; k < 3; k++) {
+      ClothLane v = state->v[i][k];
+      ClothLane a = state->f[i][k] * state->inverse_mass[i] +
+          state->gravity[k] - state->alpha * v;
+
+      state->v[i][k] = m * v + n * state->last_v[i][k] + dt * a;
+      state->last_v[i][k] = v;
+    }
+}
+
+/* One step of state->dt in state->stages; leaves f zeroed for the next. Effects and the
+ * observer push alike in all stages. */
+void CLOTH_LANE_NAME (cloth_lane_staged) (ClothLaneState * state)
+{
+  ClothLane dt = cloth_lane_set (state->dt);
+  gdouble s = state->stages;
+
+  CLOTH_LANE_NAME (cloth_lane_other_forces) (state);
+  memcpy (state->others, state->f, state->n * sizeof *state->f);
+  for (guint j = 1; j <= state->stages; j++) {
+    gdouble mu = (2. * j - 1.) / j;
+
+    if (j > 1)
+      memcpy (state->f, state->others, state->n * sizeof *state->f);
+    CLOTH_LANE_NAME (cloth_lane_own_forces) (state);
+    hold (state);
+    stage (state, j > 1 ? mu : 1., j > 1 ? (1. - j) / j : 0.,
+        mu * 2. / (s * s + s) * state->dt);
+  }
+  for (guint i = 0; i < state->n; i++)
+    for (guint k = 0; k < 3; k++) {
+      state->x[i][k] += dt * state->v[i][k];
+      state->f[i][k] = cloth_lane_set (0.);
+    }
+}
+
+/* The Legendre polynomial of degree n at x. */
+static gdouble
+legendre (guint n, gdouble x)
+{
+  gdouble last = 1., now = x;
+
+  for (guint j = 2; j <= n; j++) {
+    gdouble next = ((2. * j - 1.) * x * now - (j - 1.) * last) / j;
+
+    last = now;
+    now = next;
+  }
+  return now;
+}
+
+/* Whether all modes of ω² up to @omega2, damped by @beta ω² in stages and by @c besides,
+ * are stable: Jury's criterion on v ← R v − h φ ω² x, x ← x + h v, where R is what the
+ * stages leave of v and φ what they let through of a force. */
+static gboolean
+is_stable (guint stages, gdouble h, gdouble omega2, gdouble beta, gdouble c)
+{
+  for (guint i = 1; i <= N_MODES; i++) {
+    gdouble square = omega2 * i / N_MODES, z = h * beta * square;
+    gdouble x = 1. - 2. * z / (stages * (stages + 1.));
+    gdouble r = legendre (stages, x), phi = z > 1e-9 ? (1. - r) / z : 1.;
+
+    if (x < LEAST_ARGUMENT
+        || !(phi * (h * h * square + 2. * h * c) < 2. * (1. + r)))
+      return FALSE;
+  }
+  return TRUE;
+}
+
+/* The largest step, at most @longest, that is stable with so many stages in all lanes. */
+gdouble
+CLOTH_LANE_NAME (cloth_lane_staged_time_step) (const ClothLaneState * state,
+    guint stages, gdouble longest)
+{
+  for (guint l = 0; l < CLOTH_N_LANES; l++) {
+    gdouble own = CLOTH_LANE_AT (&state->own_omega2, l);
+    gdouble damped = CLOTH_LANE_AT (&state->beta, l) * own;
+    gdouble omega2 = CLOTH_LANE_AT (&state->omega2, l) +
+        CLOTH_LANE_AT (&state->targets.gain, l);
+    gdouble c = CLOTH_LANE_AT (&state->friction, l) +
+        CLOTH_LANE_AT (&state->targets.damping, l) - damped;
+
+    while (longest > LEAST_STEP
+        && !is_stable (stages, longest, omega2 / (MARGIN * MARGIN),
+            damped / omega2, c / MARGIN))
+      longest *= SHORTER;
+  }
+  return longest;
+}
