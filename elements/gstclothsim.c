@@ -171,7 +171,7 @@ gst_cloth_sim_make_mesh (GstClothSource * source, guint frame)
   gdouble since_s;
 
   /* What is past is not kept: begin again. */
-  if (frame < self->sim_frame && !make_sim (self))
+  if ((!self->sim || frame < self->sim_frame) && !make_sim (self))
     return NULL;
   /* Frame by frame, also those that are not sent, so that a seek changes no bit. */
   while (self->sim_frame < frame && !gst_cloth_source_is_flushing (source)) {

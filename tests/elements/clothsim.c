@@ -224,6 +224,10 @@ GST_START_TEST (test_stop_after_seek)
   gst_debug_remove_log_function (count_frames);
   GST_INFO ("%d frames were simulated", n);
   fail_unless (n < FRAMES - 1);
+  /* and it starts again */
+  scratch_write ("model.json", knit, -1);
+  play (pipeline, GST_MESSAGE_EOS);
+  gst_element_set_state (pipeline, GST_STATE_NULL);
   scratch_end ();
 }
 
