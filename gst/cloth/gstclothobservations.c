@@ -234,8 +234,8 @@ put_times (GByteArray * bytes, GstBuffer * buffer, guint * n_sections)
  * Writes what was seen in a picture, without the picture: the saddles and the quads on
  * @buffer, with camera and sequence number, and its #GstReferenceTimestampMeta. A
  * feature with a float that isn't finite, a quad outside its board, and a reference
- * clock whose caps aren't fixed or need more than plain characters are left out. @buffer without any
- * such meta gives a buffer without sections.
+ * clock whose caps aren't fixed or need more than plain characters are left out. @buffer
+ * without any such meta gives a buffer without sections.
  *
  * Returns: (transfer full): a new buffer in the layout of the observation stream, with
  *   the time stamps and the flags of @buffer
