@@ -95,6 +95,7 @@ make_triangle (ClothBody * body, guint face, guint32 corner[3],
     return FALSE;
   }
   for (guint k = 0; k < 3; k++) {
+    triangle->vertex[k] = corner[k];
     triangle->particle[k] = body->particle[corner[k]];
     if (triangle->particle[k] == body->particle[corner[(k + 1) % 3]]) {
       g_set_error (error, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_SCENE,

@@ -15,6 +15,7 @@ G_BEGIN_DECLS
 typedef struct
 {
   guint32 particle[3];
+  guint32 vertex[3];
   gdouble g[4];
   gdouble area;
 } ClothBodyTriangle;

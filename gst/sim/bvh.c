@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "gst/sim/nearest.h"
+
 #define LEAF 4
 /* halves of 2³² triangles */
 #define MAX_DEPTH 40
@@ -305,57 +307,23 @@ cloth_bvh_is_closed (const ClothBvh * bvh)
   return bvh->closed && bvh->n_triangles > 0;
 }
 
-/* The nearest point of a triangle, by the region of Voronoi that the point is in
- * (Ericson, Real-Time Collision Detection, 2005, section 5.1.5). Returns the feature. */
+/* The nearest point of a triangle. Returns the feature. */
 static guint
 nearest_of_triangle (const Triangle * t, const gdouble p[3], gdouble point[3])
 {
-  const gdouble *a = t->corner[0], *b = t->corner[1], *c = t->corner[2];
-  gdouble ab[3], ac[3], bc[3], ap[3], bp[3], cp[3], va, vb, vc;
-  gdouble d1, d2, d3, d4, d5, d6;
-  guint feature;
+  gdouble weights[3], ap[3];
+  guint feature = cloth_nearest_on_triangle (t->corner[0], t->corner[1],
+      t->corner[2], p, weights);
 
-  subtract (b, a, ab);
-  subtract (c, a, ac);
-  subtract (c, b, bc);
-  subtract (p, a, ap);
-  subtract (p, b, bp);
-  subtract (p, c, cp);
-  d1 = dot (ab, ap);
-  d2 = dot (ac, ap);
-  d3 = dot (ab, bp);
-  d4 = dot (ac, bp);
-  d5 = dot (ab, cp);
-  d6 = dot (ac, cp);
-  vc = d1 * d4 - d3 * d2;
-  vb = d5 * d2 - d1 * d6;
-  va = d3 * d6 - d5 * d4;
-  if (d1 <= 0. && d2 <= 0.)
-    feature = 0;
-  else if (d3 >= 0. && d4 <= d3)
-    feature = 1;
-  else if (d6 >= 0. && d5 <= d6)
-    feature = 2;
-  else if (vc <= 0. && d1 >= 0. && d3 <= 0.)
-    feature = 3;
-  else if (vb <= 0. && d2 >= 0. && d6 <= 0.)
-    feature = 5;
-  else if (va <= 0. && d4 - d3 >= 0. && d5 - d6 >= 0.)
-    feature = 4;
-  else
-    feature = 6;
-  memcpy (point, feature == 1 || feature == 4 ? b : feature == 2 ? c : a,
-      3 * sizeof *point);
-  if (feature == 3)
-    add_scaled (point, d1 / (d1 - d3), ab);
-  else if (feature == 5)
-    add_scaled (point, d2 / (d2 - d6), ac);
-  else if (feature == 4)
-    add_scaled (point, (d4 - d3) / ((d4 - d3) + (d5 - d6)), bc);
-  else if (feature == 6)
+  if (feature == CLOTH_NEAREST_FACE) {
+    subtract (p, t->corner[0], ap);
+    memcpy (point, p, sizeof ap);
     add_scaled (point, -dot (ap, t->normal[6]), t->normal[6]);
-  if (feature == 6)
-    add_scaled (point, 1., ap);
+    return feature;
+  }
+  for (guint k = 0; k < 3; k++)
+    point[k] = weights[0] * t->corner[0][k] + weights[1] * t->corner[1][k] +
+        weights[2] * t->corner[2][k];
   return feature;
 }
 

@@ -36,7 +36,7 @@ static const struct
   const gchar *reason;
 } excused[] = {
   {"self_contact", NULL,
-      "nothing touches in this scene; contact begins at once"},
+      "nothing touches in this scene: simcontact has one where it does"},
   {"friction", NULL, "there is no obstacle in this scene"},
   {"clamp_slip", "held", "a whole number that chooses a clamp"},
 };

@@ -15,7 +15,7 @@ const ClothEffect cloth_effect_friction = {
   .side = CLOTH_EFFECT_PHYSICS,
   .blurb =
       "Obstacles hold on to cloth that slides on them, by Coulomb’s "
-      "law.",
+      "law; with self_contact the cloth does so too.",
   .source =
       "Cloth on wood, plastic or skin: 0.2 to 0.8.",
   .regressor =
@@ -26,8 +26,8 @@ const ClothEffect cloth_effect_friction = {
   .parameters = {
     {.name = "coefficient", .unit = "1", .null_value = 0, .min = 0, .max = 2,
         .prior = 0.4, .one_sided = TRUE,
-        .blurb = "What is added to the friction of every obstacle; one whose "
-            "friction is not known has 0"},
+        .blurb = "What is added to the friction of every obstacle, of which one "
+            "that is not known is 0; and the friction of cloth on itself"},
   }
 };
 /* *INDENT-ON* */

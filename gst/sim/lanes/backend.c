@@ -201,8 +201,11 @@ group_free (gpointer group)
 {
   ClothLaneState *state = group;
 
-  for (guint i = 0; i < state->n_effects; i++)
+  for (guint i = 0; i < state->n_effects; i++) {
+    if (state->effects[i].hooks->clear)
+      state->effects[i].hooks->clear (state, &state->effects[i]);
     g_aligned_free (state->effects[i].state);
+  }
   g_aligned_free (state->effects);
   CLOTH_LANE_NAME (cloth_lane_obstacles_free) (state);
   CLOTH_LANE_NAME (cloth_lane_implicit_free) (state->implicit);
@@ -340,6 +343,9 @@ finish_step (ClothLaneState * state, gdouble time_s)
   CLOTH_LANE_NAME (cloth_lane_obstacles) (state);
   CLOTH_LANE_NAME (cloth_lane_clamps) (state);
   for (guint i = 0; i < state->n_effects; i++)
+    if (state->effects[i].hooks->collide)
+      state->effects[i].hooks->collide (state, &state->effects[i]);
+  for (guint i = 0; i < state->n_effects; i++)
     if (state->effects[i].hooks->after_step)
       state->effects[i].hooks->after_step (state, &state->effects[i]);
 }
@@ -360,6 +366,7 @@ group_take_step (gpointer group, gdouble until_s)
   gdouble start = state->time;
 
   CLOTH_LANE_NAME (cloth_lane_implicit_take) (state);
+  state->steps_left = 0;
   finish_step (state, until_s);
   check_sound (state, start);
 }
@@ -379,6 +386,7 @@ group_advance (gpointer group, gdouble until_s, guint n_steps, guint stages)
   state->dt = (until_s - start) / n_steps;
   state->stages = stages;
   for (guint step = 1; step <= n_steps; step++) {
+    state->steps_left = n_steps - step;
     if (state->implicit) {
       CLOTH_LANE_NAME (cloth_lane_implicit_solve) (state);
       CLOTH_LANE_NAME (cloth_lane_implicit_take) (state);

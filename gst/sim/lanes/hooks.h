@@ -35,6 +35,7 @@ extern const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_rest_curvature);
 extern const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_plasticity);
 extern const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_added_mass);
 extern const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_friction);
+extern const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_self_contact);
 
 void CLOTH_LANE_NAME (cloth_lane_wind) (ClothLaneState * state,
     const ClothLane wind[3], ClothLane coefficient, ClothLane turbulence);

@@ -113,6 +113,7 @@ typedef struct
 
   gdouble time;                 /* s */
   gdouble dt;                   /* of the running step, s */
+  guint steps_left;             /* after it, before anybody asks */
 
   /* Lanes that diverged, and everybody's last sound state. */
   ClothMask diverged;
@@ -139,12 +140,17 @@ struct _ClothLaneHooks
   /* moves where a clamp holds its particle at a time */
   void (*clamp) (const ClothLaneState * state, const ClothLaneEffect * effect,
       guint held, gdouble time_s, ClothLane position[3]);
+  /* every step, when particles are where forces, obstacles and clamps put them: the
+   * only one that may move them */
+  void (*collide) (ClothLaneState * state, ClothLaneEffect * effect);
   /* every step, when the particles have moved */
   void (*after_step) (ClothLaneState * state, ClothLaneEffect * effect);
   /* at the start, and when a lane's state was set from outside: forget what came before
    * there */
   void (*reset) (ClothLaneState * state, ClothLaneEffect * effect,
       ClothMask lanes);
+  /* at the end: frees what setup made */
+  void (*clear) (ClothLaneState * state, ClothLaneEffect * effect);
 };
 
 extern const ClothLaneHooks

@@ -1,0 +1,618 @@
+/* A cloth that touches itself: corners on triangles and edges on edges, kept a thickness
+ * apart by inelastic impulses (Bridson, Fedkiw and Anderson 2002), from one act to the
+ * next, which is some steps later.
+ *
+ * Each pair is looked at where it is now: the nearest points and the direction between
+ * them; where it was after the last act if it may have crossed since. Along that direction
+ * it must not be nearer than the thickness, nor come nearer. Pairs take their turns until
+ * all agree. What a few turns don't settle is made sure of: parts stay apart on their
+ * straight ways if some fixed direction parts them at the start and at the end; a pair for
+ * which none is found moves as one, and so do all pairs that share its particles (their
+ * impact zone).
+ *
+ * Most pairs need no look. The odometer of a particle is the sum of its ways from look to
+ * look, less those of the whole cloth; two parts d apart stay so until their odometers
+ * have gone on by d together. For the same reason the list of pairs lasts until a
+ * particle is half its margin away from where it was found.
+ *
+ * All in double precision and in a fixed order, for one model at a time, so the result
+ * depends on nothing but that model.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/sim/contact.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/sim/contactpairs.h"
+#include "gst/sim/nearest.h"
+
+/* Over the mean length of an edge: how far beyond the thickness pairs are listed. */
+#define MARGIN 0.3
+/* How often pairs take their turns, and looks are taken anew, at most. */
+#define MAX_TURNS 10
+#define MAX_LOOKS 4
+#define MAX_ZONE_LOOKS 30
+/* Over the thickness: how much nearer pairs may get by their turns before another look. */
+#define RESERVE 0.125
+/* Over the thickness: what is left to the next act. */
+#define SETTLED 1e-3
+/* Over the thickness: so much farther away parts that lie on each other still touch. */
+#define BAND 0.02
+/* Over the thickness: what slides by less between two acts rests. */
+#define REST 0.1
+/* Over the thickness: coming nearer by this until the next act is a hit. */
+#define HIT 0.25
+/* Parts that are nearer than the thickness from the start are parted in this time, s. */
+#define PARTING 0.01
+/* Nearer than this there is no direction, m. */
+#define NEAR 1e-9
+/* Farther than this nobody goes in a step, m. */
+#define MAX_WAY 1e3
+
+/* A pair that may come within its thickness. */
+typedef struct
+{
+  const ClothContactPair *pair;
+  gboolean acts;                /* no other pair speaks for it */
+  gboolean flat;                /* within a face, or within two edges */
+  gdouble weight[4];            /* of the nearest points' difference */
+  gdouble normal[3];            /* from the other part to the first */
+  gdouble distance;
+  gdouble least;                /* to be kept, m */
+  gdouble mass;                 /* that an impulse between them moves */
+} Touch;
+
+/* Particles that move as one. */
+typedef struct
+{
+  guint n, n_held;
+  gdouble mass, way[3], velocity[3];
+} Zone;
+
+struct _ClothContact
+{
+  const ClothContactMesh *mesh;
+  gboolean single;
+  ClothContactPairs pairs;
+  gboolean listed;              /* the pairs are */
+  gdouble *before;              /* where the particles were after the last act */
+  gdouble *at_list;             /* when the pairs were listed */
+  gdouble *away;                /* from there, m */
+  gdouble *way;                 /* of each particle since the last act, m */
+  gboolean looked;              /* in this act */
+  gdouble *at_look;             /* where the particles were then */
+  gdouble *odometer, *since;    /* at that look, and since, m */
+  Touch *touches;
+  gsize n_touches, n_allocated;
+  guint32 *zone;                /* of each particle: another one of its zone */
+  Zone *zones;                  /* at their first particles */
+};
+
+/*
+ * cloth_contact_new:
+ * @mesh: must outlive the contact
+ * @single: positions are to be single precision numbers
+ *
+ * Returns: (transfer full): the contact of one model; reset it before its first act
+ */
+ClothContact *
+cloth_contact_new (const ClothContactMesh * mesh, gboolean single)
+{
+  ClothContact *contact = g_new0 (ClothContact, 1);
+  gsize n = mesh->n_particles;
+
+  contact->mesh = mesh;
+  contact->single = single;
+  cloth_contact_pairs_init (&contact->pairs, mesh);
+  contact->before = g_new0 (gdouble, 3 * n);
+  contact->at_list = g_new0 (gdouble, 3 * n);
+  contact->at_look = g_new0 (gdouble, 3 * n);
+  contact->odometer = g_new0 (gdouble, n);
+  contact->since = g_new0 (gdouble, n);
+  contact->away = g_new0 (gdouble, n);
+  contact->way = g_new0 (gdouble, n);
+  contact->zone = g_new0 (guint32, n);
+  contact->zones = g_new0 (Zone, n);
+  return contact;
+}
+
+/*
+ * cloth_contact_free:
+ * @contact: (nullable) (transfer full): a contact
+ */
+void
+cloth_contact_free (ClothContact * contact)
+{
+  if (!contact)
+    return;
+  cloth_contact_pairs_clear (&contact->pairs);
+  g_free (contact->before);
+  g_free (contact->at_list);
+  g_free (contact->at_look);
+  g_free (contact->odometer);
+  g_free (contact->since);
+  g_free (contact->away);
+  g_free (contact->way);
+  g_free (contact->touches);
+  g_free (contact->zone);
+  g_free (contact->zones);
+  g_free (contact);
+}
+
+/*
+ * cloth_contact_reset:
+ * @positions: of the particles, which may cross: what does stays crossed
+ *
+ * Forgets what was.
+ */
+void
+cloth_contact_reset (ClothContact * contact, const gdouble * positions)
+{
+  gsize size = 3 * (gsize) contact->mesh->n_particles * sizeof *positions;
+
+  memcpy (contact->before, positions, size);
+  memcpy (contact->at_look, positions, size);
+  contact->listed = contact->looked = FALSE;
+}
+
+static gdouble
+dot (const gdouble a[3], const gdouble b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Lengths of the particles' ways from @from to @to, less that of the whole cloth, which is
+ * @mean. Returns the longest. */
+static gdouble
+measure (const ClothContact * contact, const gdouble * from, const gdouble * to,
+    gdouble mean[3], gdouble * lengths)
+{
+  gsize n = contact->mesh->n_particles;
+  gdouble longest = 0.;
+
+  mean[0] = mean[1] = mean[2] = 0.;
+  for (gsize i = 0; i < n; i++)
+    for (gsize k = 0; k < 3; k++)
+      mean[k] += to[3 * i + k] - from[3 * i + k];
+  for (guint k = 0; k < 3; k++)
+    mean[k] /= (gdouble) n;
+  for (gsize i = 0; i < n; i++) {
+    gdouble way[3];
+
+    for (gsize k = 0; k < 3; k++)
+      way[k] = to[3 * i + k] - from[3 * i + k] - mean[k];
+    lengths[i] = sqrt (dot (way, way));
+    longest = MAX (longest, lengths[i]);
+  }
+  return longest;
+}
+
+static gdouble
+sum_of_four (const gdouble * values, const guint32 particle[4])
+{
+  return values[particle[0]] + values[particle[1]] + values[particle[2]] +
+      values[particle[3]];
+}
+
+/* The nearest points of a pair: their difference, and whether this pair, and no other
+ * that has them too, is to keep them apart. */
+static void
+nearest (const ClothContactPair * pair, const gdouble * positions,
+    Touch * touch)
+{
+  const gdouble *x[4];
+  gdouble s, t, scale;
+
+  touch->pair = pair;
+  for (guint k = 0; k < 4; k++)
+    x[k] = positions + 3 * (gsize) pair->particle[k];
+  if (pair->n_first == 1) {
+    guint feature = cloth_nearest_on_triangle (x[1], x[2], x[3], x[0],
+        touch->weight + 1);
+
+    /* two corners are nearest to each other from both sides */
+    touch->acts = feature == CLOTH_NEAREST_FACE || (pair->owns >> feature & 1
+        && (feature > 2 || pair->particle[0] < pair->particle[1 + feature]));
+    touch->flat = feature == CLOTH_NEAREST_FACE;
+    touch->weight[0] = 1.;
+    for (guint k = 1; k < 4; k++)
+      touch->weight[k] = -touch->weight[k];
+  } else {
+    touch->acts = cloth_nearest_of_edges (x[0], x[1], x[2], x[3], &s, &t);
+    touch->flat = touch->acts;
+    touch->weight[0] = 1. - s;
+    touch->weight[1] = s;
+    touch->weight[2] = t - 1.;
+    touch->weight[3] = -t;
+  }
+  for (guint c = 0; c < 3; c++)
+    touch->normal[c] = touch->weight[0] * x[0][c] + touch->weight[1] * x[1][c] +
+        touch->weight[2] * x[2][c] + touch->weight[3] * x[3][c];
+  touch->distance = sqrt (dot (touch->normal, touch->normal));
+  scale = 1. / MAX (touch->distance, NEAR);
+  for (guint c = 0; c < 3; c++)
+    touch->normal[c] *= scale;
+}
+
+static void
+add_touch (ClothContact * contact, const Touch * touch)
+{
+  if (contact->n_touches == contact->n_allocated) {
+    contact->n_allocated = MAX (256, 2 * contact->n_allocated);
+    contact->touches = g_renew (Touch, contact->touches, contact->n_allocated);
+  }
+  contact->touches[contact->n_touches++] = *touch;
+}
+
+/* Σ weight · values, a difference between the parts. */
+static void
+between (const Touch * touch, const gdouble * values, gdouble difference[3])
+{
+  const gdouble *a = values + 3 * (gsize) touch->pair->particle[0];
+  const gdouble *b = values + 3 * (gsize) touch->pair->particle[1];
+  const gdouble *c = values + 3 * (gsize) touch->pair->particle[2];
+  const gdouble *d = values + 3 * (gsize) touch->pair->particle[3];
+
+  for (guint k = 0; k < 3; k++)
+    difference[k] = touch->weight[0] * a[k] + touch->weight[1] * b[k] +
+        touch->weight[2] * c[k] + touch->weight[3] * d[k];
+}
+
+/* Whether a plane of this normal is between the parts. */
+static gboolean
+parts_at (const ClothContactPair * pair, const gdouble * x,
+    const gdouble normal[3])
+{
+  gdouble low = INFINITY, high = -INFINITY;
+
+  for (guint k = 0; k < 4; k++) {
+    gdouble along = dot (normal, x + 3 * (gsize) pair->particle[k]);
+
+    if (k < pair->n_first)
+      low = MIN (low, along);
+    else
+      high = MAX (high, along);
+  }
+  return low > high;
+}
+
+/* Whether the parts may have crossed on their straight ways from before to @x. What one
+ * direction parts at both ends it parts in between; tried are the direction between them
+ * @now, that before and their mean. When they may, @now becomes what was before. */
+static gboolean
+crosses (const ClothContact * contact, const ClothContactPair * pair,
+    const gdouble * x, Touch * now)
+{
+  Touch was;
+  gdouble mean[3];
+
+  if (sum_of_four (contact->way, pair->particle) < now->distance
+      || (parts_at (pair, contact->before, now->normal)
+          && parts_at (pair, x, now->normal)))
+    return FALSE;
+  nearest (pair, contact->before, &was);
+  for (guint k = 0; k < 3; k++)
+    mean[k] = was.normal[k] + now->normal[k];
+  if (parts_at (pair, x, was.normal) || (parts_at (pair, contact->before, mean)
+          && parts_at (pair, x, mean)))
+    return FALSE;
+  *now = was;
+  return TRUE;
+}
+
+/* Lists what touches, what may do so before long and what may cross, from where everything
+ * is now. */
+static void
+look (ClothContact * contact, gdouble seconds, gdouble reserve,
+    const gdouble * inverse_mass, const gdouble * x)
+{
+  ClothContactPairs *pairs = &contact->pairs;
+  const gdouble *odometer = contact->odometer, *way = contact->way;
+  gdouble open = MIN (seconds / PARTING, 1.), most = 0.;
+
+  for (gsize i = 0; i < contact->mesh->n_particles; i++) {
+    contact->odometer[i] += contact->since[i];
+    most = MAX (most, odometer[i] + way[i]);
+  }
+  memcpy (contact->at_look, x, 3 * (gsize) contact->mesh->n_particles *
+      sizeof *x);
+  most = 4. * most + reserve;
+  contact->n_touches = 0;
+  for (gsize i = 0; i < pairs->n_pairs; i++) {
+    const ClothContactPair *pair = &pairs->pairs[i];
+    gdouble start, ahead, h = pair->thickness, spare, was[3], mass = 0.;
+    gboolean may_cross;
+    Touch touch;
+
+    if (pairs->limits[i] > most)
+      continue;
+    start = sum_of_four (odometer, pair->particle);
+    /* as far as it went it may go on */
+    ahead = sum_of_four (way, pair->particle) + reserve;
+    if (start + ahead < pairs->limits[i])
+      continue;
+    nearest (pair, x, &touch);
+    spare = touch.distance - h;
+    /* what others speak for is only to be kept from crossing, until it has moved on */
+    may_cross = !(ahead < touch.distance);
+    if (!touch.acts)
+      spare = MAX (spare, MIN (touch.distance, 0.25 * h + reserve));
+    pairs->limits[i] = start + spare;
+    if ((ahead < spare || !touch.acts) && !may_cross)
+      continue;
+    if (may_cross)
+      touch.acts |= crosses (contact, pair, x, &touch);
+    if (touch.distance < NEAR)
+      continue;
+    for (guint k = 0; k < 4; k++)
+      mass += touch.weight[k] * touch.weight[k] *
+          inverse_mass[pair->particle[k]];
+    touch.mass = mass > 0. ? 1. / mass : 0.;
+    between (&touch, contact->before, was);
+    touch.least = h - (1. - open) * MAX (h - MAX (dot (touch.normal, was), 0.),
+        0.);
+    add_touch (contact, &touch);
+  }
+}
+
+/* Equal and opposite pushes on the two parts. */
+static void
+push (const Touch * touch, const gdouble * inverse_mass, const gdouble by[3],
+    gdouble * values)
+{
+  for (guint k = 0; k < 4; k++) {
+    gdouble share = touch->weight[k] * touch->mass *
+        inverse_mass[touch->pair->particle[k]];
+    gdouble *value = values + 3 * (gsize) touch->pair->particle[k];
+
+    for (guint c = 0; c < 3; c++)
+      value[c] += share * by[c];
+  }
+}
+
+/* Takes the parts of one pair apart to what they are to keep, and stops them where they
+ * come nearer. Coulomb's friction takes from their sliding at most the coefficient times
+ * what stops them, and of the way they slid all if they stick, half that share if they
+ * slide on. Returns by how much they were too near, or would have been. */
+static gdouble
+part (const ClothContact * contact, const Touch * touch, gdouble friction,
+    gdouble seconds, const gdouble * inverse_mass, gdouble * x, gdouble * v)
+{
+  const gdouble *n = touch->normal;
+  gdouble h = touch->pair->thickness, apart[3], u[3], was[3], dx[3], dv[3];
+  gdouble depth, along, stop, slide = 0.;
+
+  between (touch, x, apart);
+  depth = touch->least - dot (n, apart);
+  if (!(depth > -BAND * h) || !(touch->mass > 0.))
+    return 0.;
+  between (touch, v, u);
+  along = dot (n, u);
+  /* past a corner or an edge what comes nearer may only slide by */
+  if (depth < 0. && !touch->flat && (dot (u, u) - along * along) * seconds *
+      seconds > REST * REST * h * h)
+    return 0.;
+  depth = MAX (depth, 0.);
+  stop = MAX (-along, 0.);
+  for (guint k = 0; k < 3; k++) {
+    dx[k] = depth * n[k];
+    dv[k] = stop * n[k];
+    u[k] -= along * n[k];
+  }
+  if (friction > 0. && stop > 0.)
+    slide = sqrt (dot (u, u));
+  if (slide > 0.) {
+    gdouble brake = MIN (friction * stop / slide, 1.);
+
+    between (touch, contact->before, was);
+    for (guint k = 0; k < 3; k++)
+      was[k] = apart[k] - was[k];
+    along = dot (n, was);
+    for (guint k = 0; k < 3; k++) {
+      dv[k] -= brake * u[k];
+      dx[k] -= 0.5 * (brake + brake * brake) * (was[k] - along * n[k]);
+    }
+  }
+  push (touch, inverse_mass, dx, x);
+  push (touch, inverse_mass, dv, v);
+  return MAX (depth, stop * seconds);
+}
+
+static void
+take_turns (ClothContact * contact, gdouble friction, gdouble seconds,
+    gdouble settled, const gdouble * inverse_mass, gdouble * x, gdouble * v)
+{
+  for (guint turn = 0; turn < MAX_TURNS; turn++) {
+    gdouble worst = 0.;
+
+    for (gsize i = 0; i < contact->n_touches; i++) {
+      if (contact->touches[i].acts) {
+        gdouble by = part (contact, &contact->touches[i], friction, seconds,
+            inverse_mass, x, v);
+
+        worst = MAX (worst, by);
+      }
+    }
+    if (worst < settled)
+      return;
+  }
+}
+
+static guint32
+zone_of (ClothContact * contact, guint32 particle)
+{
+  guint32 *zone = contact->zone;
+
+  while (zone[particle] != particle)
+    particle = zone[particle] = zone[zone[particle]];
+  return particle;
+}
+
+/* Puts pairs that would cross into zones. FALSE when there are none. */
+static gboolean
+join_zones (ClothContact * contact, const gdouble * x, gboolean first)
+{
+  gboolean any = FALSE;
+
+  for (gsize i = 0; i < contact->n_touches; i++) {
+    const Touch *touch = &contact->touches[i];
+    Touch now;
+
+    nearest (touch->pair, x, &now);
+    if (!crosses (contact, touch->pair, x, &now))
+      continue;
+    for (guint32 p = 0; first && !any && p < contact->mesh->n_particles; p++)
+      contact->zone[p] = p;
+    any = TRUE;
+    for (guint k = 1; k < 4; k++) {
+      guint32 a = zone_of (contact, touch->pair->particle[0]);
+      guint32 b = zone_of (contact, touch->pair->particle[k]);
+
+      contact->zone[MAX (a, b)] = MIN (a, b);
+    }
+  }
+  return any;
+}
+
+/* Each zone moves as its mass does on the mean, or as what is held of it. */
+static void
+move_zones (ClothContact * contact, const gdouble * inverse_mass, gdouble * x,
+    gdouble * v)
+{
+  gsize n = contact->mesh->n_particles;
+
+  memset (contact->zones, 0, n * sizeof *contact->zones);
+  for (guint32 i = 0; i < n; i++) {
+    Zone *zone = &contact->zones[zone_of (contact, i)];
+
+    zone->n++;
+    zone->n_held += inverse_mass[i] == 0.;
+  }
+  for (guint32 i = 0; i < n; i++) {
+    Zone *zone = &contact->zones[zone_of (contact, i)];
+    gboolean held = inverse_mass[i] == 0.;
+    gdouble mass = held ? 1. : 1. / inverse_mass[i];
+
+    if (zone->n_held > 0 && !held)
+      continue;
+    zone->mass += mass;
+    for (gsize k = 0; k < 3; k++) {
+      zone->way[k] += mass * (x[3 * i + k] - contact->before[3 * i + k]);
+      zone->velocity[k] += mass * v[3 * i + k];
+    }
+  }
+  for (guint32 i = 0; i < n; i++) {
+    const Zone *zone = &contact->zones[zone_of (contact, i)];
+
+    if (zone->n == 1 || inverse_mass[i] == 0.)
+      continue;
+    for (gsize k = 0; k < 3; k++) {
+      x[3 * i + k] = contact->before[3 * i + k] + zone->way[k] / zone->mass;
+      v[3 * i + k] = zone->velocity[k] / zone->mass;
+    }
+  }
+}
+
+typedef enum
+{
+  LOST,                         /* beyond all measure */
+  KNOWN,                        /* what may touch was listed before */
+  NEW                           /* it was listed now */
+} Sight;
+
+/* Brings the list of what may touch up to date with where everything is now. */
+static Sight
+update (ClothContact * contact, gdouble thickness, gdouble seconds,
+    const gdouble * inverse_mass, const gdouble * x)
+{
+  gsize n = contact->mesh->n_particles;
+  gdouble margin = MARGIN * contact->mesh->edge, reserve = RESERVE * thickness;
+  gdouble mean[3], since;
+
+  measure (contact, contact->before, x, mean, contact->way);
+  since = measure (contact, contact->at_look, x, mean, contact->since);
+  if (!(since < MAX_WAY))
+    return LOST;
+  if (contact->looked && 4. * since < reserve)
+    return KNOWN;
+  if (contact->listed
+      && !(measure (contact, contact->at_list, x, mean, contact->away) <
+          0.5 * margin))
+    contact->listed = FALSE;
+  if (!contact->listed) {
+    cloth_contact_pairs_find (&contact->pairs, contact->before, x, thickness,
+        margin);
+    memcpy (contact->at_list, x, 3 * n * sizeof *x);
+    memset (contact->odometer, 0, n * sizeof *contact->odometer);
+    contact->listed = TRUE;
+  }
+  look (contact, seconds, reserve, inverse_mass, x);
+  contact->looked = TRUE;
+  return NEW;
+}
+
+/* Whether something would come much nearer than its thickness in the time @ahead: then
+ * contact should act sooner, since what is pushed far stretches what it hangs on. */
+static gboolean
+is_hit (const ClothContact * contact, gdouble ahead, const gdouble * x,
+    const gdouble * v)
+{
+  for (gsize i = 0; i < contact->n_touches; i++) {
+    const Touch *touch = &contact->touches[i];
+    gdouble apart[3], u[3];
+
+    if (!touch->acts || !(touch->mass > 0.))
+      continue;
+    between (touch, x, apart);
+    between (touch, v, u);
+    if (dot (touch->normal, apart) + ahead * dot (touch->normal, u) <
+        (1. - HIT) * touch->pair->thickness && dot (touch->normal, u) < 0.)
+      return TRUE;
+  }
+  return FALSE;
+}
+
+/*
+ * cloth_contact_act:
+ * @thickness: of the cloth, m
+ * @friction: Coulomb's coefficient of cloth on cloth
+ * @seconds: since the last act
+ * @ahead: until the next one
+ * @inverse_mass: of each particle, 1/kg; 0 where it is held
+ * @x: (inout): positions of the particles, m
+ * @v: (inout): their velocities, m/s
+ *
+ * Keeps what the model has done since the last act from going through itself. Nothing
+ * that comes afterwards may move a particle before the next step does.
+ *
+ * Returns: whether it should act again after the next step and not wait
+ */
+gboolean
+cloth_contact_act (ClothContact * contact, gdouble thickness, gdouble friction,
+    gdouble seconds, gdouble ahead, const gdouble * inverse_mass, gdouble * x,
+    gdouble * v)
+{
+  gsize n = contact->mesh->n_particles;
+  Sight sight = NEW;
+
+  contact->looked = FALSE;
+  for (guint i = 0; i < MAX_LOOKS && sight == NEW; i++) {
+    sight = update (contact, thickness, seconds, inverse_mass, x);
+    if (sight == NEW)
+      take_turns (contact, friction, seconds, SETTLED * thickness,
+          inverse_mass, x, v);
+  }
+  for (guint i = 0; i < MAX_ZONE_LOOKS && sight != LOST; i++) {
+    sight = update (contact, thickness, seconds, inverse_mass, x);
+    if (sight == LOST || !join_zones (contact, x, i == 0))
+      break;
+    move_zones (contact, inverse_mass, x, v);
+  }
+  if (sight == LOST)
+    return FALSE;
+  for (gsize i = 0; contact->single && i < 3 * n; i++)
+    x[i] = (gfloat) x[i];
+  memcpy (contact->before, x, 3 * n * sizeof *x);
+  return is_hit (contact, ahead, x, v);
+}
