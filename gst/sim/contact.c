@@ -24,8 +24,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/sim/contactpairs.h"
-#include "gst/sim/nearest.h"
+#include "gst/sim/contacttouch.h"
 
 /* Over the mean length of an edge: how far beyond the thickness pairs are listed. */
 #define MARGIN 0.3
@@ -37,31 +36,12 @@
 #define RESERVE 0.125
 /* Over the thickness: what is left to the next act. */
 #define SETTLED 1e-3
-/* Over the thickness: so much farther away parts that lie on each other still touch. */
-#define BAND 0.02
-/* Over the thickness: what slides by less between two acts rests. */
-#define REST 0.1
 /* Over the thickness: coming nearer by this until the next act is a hit. */
 #define HIT 0.25
 /* Parts that are nearer than the thickness from the start are parted in this time, s. */
 #define PARTING 0.01
-/* Nearer than this there is no direction, m. */
-#define NEAR 1e-9
 /* Farther than this nobody goes in a step, m. */
 #define MAX_WAY 1e3
-
-/* A pair that may come within its thickness. */
-typedef struct
-{
-  const ClothContactPair *pair;
-  gboolean acts;                /* no other pair speaks for it */
-  gboolean flat;                /* within a face, or within two edges */
-  gdouble weight[4];            /* of the nearest points' difference */
-  gdouble normal[3];            /* from the other part to the first */
-  gdouble distance;
-  gdouble least;                /* to be kept, m */
-  gdouble mass;                 /* that an impulse between them moves */
-} Touch;
 
 /* Particles that move as one. */
 typedef struct
@@ -83,7 +63,7 @@ struct _ClothContact
   gboolean looked;              /* in this act */
   gdouble *at_look;             /* where the particles were then */
   gdouble *odometer, *since;    /* at that look, and since, m */
-  Touch *touches;
+  ClothContactTouch *touches;
   gsize n_touches, n_allocated;
   guint32 *zone;                /* of each particle: another one of its zone */
   Zone *zones;                  /* at their first particles */
@@ -156,12 +136,6 @@ cloth_contact_reset (ClothContact * contact, const gdouble * positions)
   contact->listed = contact->looked = FALSE;
 }
 
-static gdouble
-dot (const gdouble a[3], const gdouble b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Lengths of the particles' ways from @from to @to, less that of the whole cloth, which is
  * @mean. Returns the longest. */
 static gdouble
@@ -182,7 +156,7 @@ measure (const ClothContact * contact, const gdouble * from, const gdouble * to,
 
     for (gsize k = 0; k < 3; k++)
       way[k] = to[3 * i + k] - from[3 * i + k] - mean[k];
-    lengths[i] = sqrt (dot (way, way));
+    lengths[i] = sqrt (cloth_contact_dot (way, way));
     longest = MAX (longest, lengths[i]);
   }
   return longest;
@@ -195,86 +169,15 @@ sum_of_four (const gdouble * values, const guint32 particle[4])
       values[particle[3]];
 }
 
-/* The nearest points of a pair: their difference, and whether this pair, and no other
- * that has them too, is to keep them apart. */
 static void
-nearest (const ClothContactPair * pair, const gdouble * positions,
-    Touch * touch)
-{
-  const gdouble *x[4];
-  gdouble s, t, scale;
-
-  touch->pair = pair;
-  for (guint k = 0; k < 4; k++)
-    x[k] = positions + 3 * (gsize) pair->particle[k];
-  if (pair->n_first == 1) {
-    guint feature = cloth_nearest_on_triangle (x[1], x[2], x[3], x[0],
-        touch->weight + 1);
-
-    /* two corners are nearest to each other from both sides */
-    touch->acts = feature == CLOTH_NEAREST_FACE || (pair->owns >> feature & 1
-        && (feature > 2 || pair->particle[0] < pair->particle[1 + feature]));
-    touch->flat = feature == CLOTH_NEAREST_FACE;
-    touch->weight[0] = 1.;
-    for (guint k = 1; k < 4; k++)
-      touch->weight[k] = -touch->weight[k];
-  } else {
-    touch->acts = cloth_nearest_of_edges (x[0], x[1], x[2], x[3], &s, &t);
-    touch->flat = touch->acts;
-    touch->weight[0] = 1. - s;
-    touch->weight[1] = s;
-    touch->weight[2] = t - 1.;
-    touch->weight[3] = -t;
-  }
-  for (guint c = 0; c < 3; c++)
-    touch->normal[c] = touch->weight[0] * x[0][c] + touch->weight[1] * x[1][c] +
-        touch->weight[2] * x[2][c] + touch->weight[3] * x[3][c];
-  touch->distance = sqrt (dot (touch->normal, touch->normal));
-  scale = 1. / MAX (touch->distance, NEAR);
-  for (guint c = 0; c < 3; c++)
-    touch->normal[c] *= scale;
-}
-
-static void
-add_touch (ClothContact * contact, const Touch * touch)
+add_touch (ClothContact * contact, const ClothContactTouch * touch)
 {
   if (contact->n_touches == contact->n_allocated) {
     contact->n_allocated = MAX (256, 2 * contact->n_allocated);
-    contact->touches = g_renew (Touch, contact->touches, contact->n_allocated);
+    contact->touches =
+        g_renew (ClothContactTouch, contact->touches, contact->n_allocated);
   }
   contact->touches[contact->n_touches++] = *touch;
-}
-
-/* Σ weight · values, a difference between the parts. */
-static void
-between (const Touch * touch, const gdouble * values, gdouble difference[3])
-{
-  const gdouble *a = values + 3 * (gsize) touch->pair->particle[0];
-  const gdouble *b = values + 3 * (gsize) touch->pair->particle[1];
-  const gdouble *c = values + 3 * (gsize) touch->pair->particle[2];
-  const gdouble *d = values + 3 * (gsize) touch->pair->particle[3];
-
-  for (guint k = 0; k < 3; k++)
-    difference[k] = touch->weight[0] * a[k] + touch->weight[1] * b[k] +
-        touch->weight[2] * c[k] + touch->weight[3] * d[k];
-}
-
-/* Whether a plane of this normal is between the parts. */
-static gboolean
-parts_at (const ClothContactPair * pair, const gdouble * x,
-    const gdouble normal[3])
-{
-  gdouble low = INFINITY, high = -INFINITY;
-
-  for (guint k = 0; k < 4; k++) {
-    gdouble along = dot (normal, x + 3 * (gsize) pair->particle[k]);
-
-    if (k < pair->n_first)
-      low = MIN (low, along);
-    else
-      high = MAX (high, along);
-  }
-  return low > high;
 }
 
 /* Whether the parts may have crossed on their straight ways from before to @x. What one
@@ -282,20 +185,21 @@ parts_at (const ClothContactPair * pair, const gdouble * x,
  * @now, that before and their mean. When they may, @now becomes what was before. */
 static gboolean
 crosses (const ClothContact * contact, const ClothContactPair * pair,
-    const gdouble * x, Touch * now)
+    const gdouble * x, ClothContactTouch * now)
 {
-  Touch was;
+  ClothContactTouch was;
   gdouble mean[3];
 
   if (sum_of_four (contact->way, pair->particle) < now->distance
-      || (parts_at (pair, contact->before, now->normal)
-          && parts_at (pair, x, now->normal)))
+      || (cloth_contact_pair_is_parted (pair, contact->before, now->normal)
+          && cloth_contact_pair_is_parted (pair, x, now->normal)))
     return FALSE;
-  nearest (pair, contact->before, &was);
+  cloth_contact_touch_look (pair, contact->before, &was);
   for (guint k = 0; k < 3; k++)
     mean[k] = was.normal[k] + now->normal[k];
-  if (parts_at (pair, x, was.normal) || (parts_at (pair, contact->before, mean)
-          && parts_at (pair, x, mean)))
+  if (cloth_contact_pair_is_parted (pair, x, was.normal)
+      || (cloth_contact_pair_is_parted (pair, contact->before, mean)
+          && cloth_contact_pair_is_parted (pair, x, mean)))
     return FALSE;
   *now = was;
   return TRUE;
@@ -323,7 +227,7 @@ look (ClothContact * contact, gdouble seconds, gdouble reserve,
     const ClothContactPair *pair = &pairs->pairs[i];
     gdouble start, ahead, h = pair->thickness, spare, was[3], mass = 0.;
     gboolean may_cross;
-    Touch touch;
+    ClothContactTouch touch;
 
     if (pairs->limits[i] > most)
       continue;
@@ -332,7 +236,7 @@ look (ClothContact * contact, gdouble seconds, gdouble reserve,
     ahead = sum_of_four (way, pair->particle) + reserve;
     if (start + ahead < pairs->limits[i])
       continue;
-    nearest (pair, x, &touch);
+    cloth_contact_touch_look (pair, x, &touch);
     spare = touch.distance - h;
     /* what others speak for is only to be kept from crossing, until it has moved on */
     may_cross = !(ahead < touch.distance);
@@ -343,80 +247,18 @@ look (ClothContact * contact, gdouble seconds, gdouble reserve,
       continue;
     if (may_cross)
       touch.acts |= crosses (contact, pair, x, &touch);
-    if (touch.distance < NEAR)
+    if (touch.distance < CLOTH_CONTACT_NEAR)
       continue;
     for (guint k = 0; k < 4; k++)
       mass += touch.weight[k] * touch.weight[k] *
           inverse_mass[pair->particle[k]];
     touch.mass = mass > 0. ? 1. / mass : 0.;
-    between (&touch, contact->before, was);
-    touch.least = h - (1. - open) * MAX (h - MAX (dot (touch.normal, was), 0.),
-        0.);
+    cloth_contact_touch_between (&touch, contact->before, was);
+    touch.least =
+        h - (1. - open) * MAX (h - MAX (cloth_contact_dot (touch.normal, was),
+            0.), 0.);
     add_touch (contact, &touch);
   }
-}
-
-/* Equal and opposite pushes on the two parts. */
-static void
-push (const Touch * touch, const gdouble * inverse_mass, const gdouble by[3],
-    gdouble * values)
-{
-  for (guint k = 0; k < 4; k++) {
-    gdouble share = touch->weight[k] * touch->mass *
-        inverse_mass[touch->pair->particle[k]];
-    gdouble *value = values + 3 * (gsize) touch->pair->particle[k];
-
-    for (guint c = 0; c < 3; c++)
-      value[c] += share * by[c];
-  }
-}
-
-/* Takes the parts of one pair apart to what they are to keep, and stops them where they
- * come nearer. Coulomb's friction takes from their sliding at most the coefficient times
- * what stops them, and of the way they slid all if they stick, half that share if they
- * slide on. Returns by how much they were too near, or would have been. */
-static gdouble
-part (const ClothContact * contact, const Touch * touch, gdouble friction,
-    gdouble seconds, const gdouble * inverse_mass, gdouble * x, gdouble * v)
-{
-  const gdouble *n = touch->normal;
-  gdouble h = touch->pair->thickness, apart[3], u[3], was[3], dx[3], dv[3];
-  gdouble depth, along, stop, slide = 0.;
-
-  between (touch, x, apart);
-  depth = touch->least - dot (n, apart);
-  if (!(depth > -BAND * h) || !(touch->mass > 0.))
-    return 0.;
-  between (touch, v, u);
-  along = dot (n, u);
-  /* past a corner or an edge what comes nearer may only slide by */
-  if (depth < 0. && !touch->flat && (dot (u, u) - along * along) * seconds *
-      seconds > REST * REST * h * h)
-    return 0.;
-  depth = MAX (depth, 0.);
-  stop = MAX (-along, 0.);
-  for (guint k = 0; k < 3; k++) {
-    dx[k] = depth * n[k];
-    dv[k] = stop * n[k];
-    u[k] -= along * n[k];
-  }
-  if (friction > 0. && stop > 0.)
-    slide = sqrt (dot (u, u));
-  if (slide > 0.) {
-    gdouble brake = MIN (friction * stop / slide, 1.);
-
-    between (touch, contact->before, was);
-    for (guint k = 0; k < 3; k++)
-      was[k] = apart[k] - was[k];
-    along = dot (n, was);
-    for (guint k = 0; k < 3; k++) {
-      dv[k] -= brake * u[k];
-      dx[k] -= 0.5 * (brake + brake * brake) * (was[k] - along * n[k]);
-    }
-  }
-  push (touch, inverse_mass, dx, x);
-  push (touch, inverse_mass, dv, v);
-  return MAX (depth, stop * seconds);
 }
 
 static void
@@ -428,7 +270,9 @@ take_turns (ClothContact * contact, gdouble friction, gdouble seconds,
 
     for (gsize i = 0; i < contact->n_touches; i++) {
       if (contact->touches[i].acts) {
-        gdouble by = part (contact, &contact->touches[i], friction, seconds,
+        gdouble by =
+            cloth_contact_touch_part (&contact->touches[i], contact->before,
+            friction, seconds,
             inverse_mass, x, v);
 
         worst = MAX (worst, by);
@@ -456,10 +300,10 @@ join_zones (ClothContact * contact, const gdouble * x, gboolean first)
   gboolean any = FALSE;
 
   for (gsize i = 0; i < contact->n_touches; i++) {
-    const Touch *touch = &contact->touches[i];
-    Touch now;
+    const ClothContactTouch *touch = &contact->touches[i];
+    ClothContactTouch now;
 
-    nearest (touch->pair, x, &now);
+    cloth_contact_touch_look (touch->pair, x, &now);
     if (!crosses (contact, touch->pair, x, &now))
       continue;
     for (guint32 p = 0; first && !any && p < contact->mesh->n_particles; p++)
@@ -559,15 +403,17 @@ is_hit (const ClothContact * contact, gdouble ahead, const gdouble * x,
     const gdouble * v)
 {
   for (gsize i = 0; i < contact->n_touches; i++) {
-    const Touch *touch = &contact->touches[i];
+    const ClothContactTouch *touch = &contact->touches[i];
     gdouble apart[3], u[3];
 
     if (!touch->acts || !(touch->mass > 0.))
       continue;
-    between (touch, x, apart);
-    between (touch, v, u);
-    if (dot (touch->normal, apart) + ahead * dot (touch->normal, u) <
-        (1. - HIT) * touch->pair->thickness && dot (touch->normal, u) < 0.)
+    cloth_contact_touch_between (touch, x, apart);
+    cloth_contact_touch_between (touch, v, u);
+    if (cloth_contact_dot (touch->normal,
+            apart) + ahead * cloth_contact_dot (touch->normal,
+            u) < (1. - HIT) * touch->pair->thickness
+        && cloth_contact_dot (touch->normal, u) < 0.)
       return TRUE;
   }
   return FALSE;
