@@ -263,6 +263,10 @@ check_obstacles (const ClothScene * scene, GError ** error)
     if (!(isnan (item->friction) || item->friction >= 0))
       return invalid (error, "obstacle %u has the friction %g", i,
           item->friction);
+    for (gsize k = 0; k < 3 * (gsize) item->n_points; k++)
+      if (!isfinite (item->points[k]))
+        return invalid (error, "point %u of obstacle %u is %g along %c",
+            (guint) (k / 3), i, item->points[k], "xyz"[k % 3]);
     if (item->kind == CLOTH_OBSTACLE_MESH && item->n_triangles == 0)
       return invalid (error, "obstacle %u is a mesh without triangles", i);
     for (gsize k = 0; k < 3 * (gsize) item->n_triangles; k++)

@@ -61,6 +61,7 @@ struct _ClothSim
   gboolean implicit;
   gboolean adaptive;            /* implicit with an automatic step */
   gdouble longest_step;
+  gdouble patience;             /* how much more than usual a step may be wrong */
   guint good_steps;             /* in a row */
   gdouble *scratch[5];          /* by particle */
   gdouble *weights;             /* by vertex of the body */
@@ -107,7 +108,13 @@ check_models (const ClothModel * const *models, guint n_models, GError ** error)
   for (guint i = 0; i < n_models; i++) {
     const ClothModel *m = models[i];
     const gchar *key = NULL;
+    g_autoptr (GError) cause = NULL;
 
+    if (!cloth_model_check (m, &cause)) {
+      g_set_error (error, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_MODEL,
+          "model %u: %s", i, cause->message);
+      return FALSE;
+    }
     if (m->force_model != models[0]->force_model)
       key = "force_model";
     else if (m->integrator != models[0]->integrator)
@@ -170,12 +177,16 @@ find_stages (ClothSim * sim)
 static void
 find_time_step (ClothSim * sim)
 {
-  gdouble least = round_step (find_stages (sim));
+  gdouble least = find_stages (sim);
 
-  sim->longest_step = sim->fixed_step > 0. ? sim->fixed_step : least;
-  if (sim->numerics->step_factor != 1.)
-    sim->longest_step =
-        MIN (sim->longest_step * sim->numerics->step_factor, least);
+  /* a frame is one step, not a rounded one and a rest */
+  if (!sim->implicit || least < sim->body->frame_s)
+    least = round_step (least);
+  sim->longest_step = (sim->fixed_step > 0. ? sim->fixed_step : least) *
+      sim->numerics->step_factor;
+  /* the cloth itself bounds no implicit step */
+  if (sim->numerics->step_factor != 1. && (!sim->implicit || sim->adaptive))
+    sim->longest_step = MIN (sim->longest_step, least);
   if (!sim->adaptive || sim->time_step == 0.
       || sim->time_step > sim->longest_step)
     sim->time_step = sim->longest_step;
@@ -214,7 +225,8 @@ make_groups (ClothSim * sim, const ClothModel * const *models,
  * @n_models: how many, at least 1; they must agree in force_model, integrator,
  *   time_step and the numerics effects
  * @options: (nullable): %NULL for double precision, all processors and seed 0
- * @error: #ClothSimError
+ * @error: #ClothSimError, also for what cloth_scene_check () or cloth_model_check ()
+ *   refuse
  *
  * Models are computed side by side in vector instructions and on several threads. What
  * becomes of a model does not depend on its neighbours, the threads or the instruction
@@ -234,9 +246,15 @@ cloth_sim_new (const ClothScene * scene, const ClothModel * const *models,
 {
   const ClothSimOptions usual = { FALSE, 0, CLOTH_SIMD_BEST, 0 };
   g_autoptr (ClothSim) sim = g_new0 (ClothSim, 1);
+  g_autoptr (GError) cause = NULL;
 
   if (!options)
     options = &usual;
+  if (!cloth_scene_check (scene, &cause)) {
+    g_set_error_literal (error, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_SCENE,
+        cause->message);
+    return NULL;
+  }
   if (!check_models (models, n_models, error))
     return NULL;
   sim->numerics = cloth_numerics_new (scene, models, n_models, error);
@@ -250,6 +268,8 @@ cloth_sim_new (const ClothScene * scene, const ClothModel * const *models,
   sim->fixed_step = models[0]->time_step;
   sim->implicit = models[0]->integrator == CLOTH_INTEGRATOR_IMPLICIT;
   sim->adaptive = sim->implicit && sim->fixed_step == 0.;
+  /* twice as long is four times as far off */
+  sim->patience = sim->numerics->step_factor * sim->numerics->step_factor;
   sim->time = sim->body->times[0];
   for (guint i = 0; i < G_N_ELEMENTS (sim->scratch); i++)
     sim->scratch[i] = g_new0 (gdouble, 3 * (gsize) sim->body->n_particles);
@@ -357,7 +377,7 @@ advance_adaptive (ClothSim * sim, gdouble until_s)
     sim->until = n > 1. ? sim->time + span / n : until_s;
     cloth_pool_run (sim->pool, try_groups, sim, sim->n_groups);
     for (guint i = 0; i < sim->n_groups; i++)
-      worst = MAX (worst, sim->too_long[i]);
+      worst = MAX (worst, sim->too_long[i] / sim->patience);
     if (worst > 1. && sim->time_step > least) {
       sim->time_step = MIN (sim->time_step, sim->until - sim->time) / 2.;
       sim->good_steps = 0;
@@ -365,7 +385,6 @@ advance_adaptive (ClothSim * sim, gdouble until_s)
     }
     cloth_pool_run (sim->pool, take_groups, sim, sim->n_groups);
     sim->time = sim->until;
-    /* twice as long is four times as far off */
     sim->good_steps = worst < 0.2 ? sim->good_steps + 1 : 0;
     if (sim->good_steps >= GOOD_STEPS) {
       sim->time_step = MIN (2. * sim->time_step, sim->longest_step);

@@ -326,6 +326,19 @@ break_obstacle_mesh (ClothScene * scene)
 }
 
 static void
+break_obstacle_point (ClothScene * scene)
+{
+  const guint32 triangle[3] = { 0, 1, 2 };
+  const gdouble points[9] = { 0, 0, 0, 1, 0, NAN, 0, 1, 0 };
+  const ClothObstacle mesh = {.kind = CLOTH_OBSTACLE_MESH,.friction = NAN,
+    .points = g_memdup2 (points, sizeof points),.n_points = 3,
+    .triangles = g_memdup2 (triangle, sizeof triangle),.n_triangles = 1
+  };
+
+  g_array_append_val (scene->obstacles, mesh);
+}
+
+static void
 test_refused (void)
 {
   static const struct
@@ -349,6 +362,7 @@ test_refused (void)
     {break_radius, "obstacle 0 has the radius -0.5"},
     {break_friction, "obstacle 0 has the friction -1"},
     {break_obstacle_mesh, "obstacle 0 is a mesh without triangles"},
+    {break_obstacle_point, "point 1 of obstacle 0 is nan along z"},
   };
 
   for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {

@@ -263,6 +263,33 @@ test_disagree (void)
   g_assert_nonnull (strstr (error->message, "force_model"));
 }
 
+/* Numbers that no cloth has, in the scene or in one of the models. */
+static void
+test_numbers (void)
+{
+  for (guint i = 0; i < 3; i++) {
+    g_autoptr (ClothScene) scene = swing ();
+    g_autoptr (ClothModel) one = model_new (0.2, 40.), two =
+        model_new (0.2, 40.);
+    const ClothModel *models[2] = { one, two };
+    g_autoptr (GError) error = NULL;
+
+    if (i == 0)
+      two->stretch_warp = -40.;
+    else if (i == 1)
+      two->areal_density = NAN;
+    else
+      scene->positions[4] = INFINITY;
+    g_assert_null (cloth_sim_new (scene, models, 2, NULL, &error));
+    g_assert_error (error, CLOTH_SIM_ERROR, (i < 2 ? CLOTH_SIM_ERROR_MODEL :
+            CLOTH_SIM_ERROR_SCENE));
+    g_test_message ("%s", error->message);
+    g_assert_nonnull (strstr (error->message,
+            i == 0 ? "model 1: “stretch.warp”" : i ==
+            1 ? "model 1: “areal_density”" : "vertex 1 along y is inf"));
+  }
+}
+
 /* Meshes that are no cloth. */
 static void
 test_scene (void)
@@ -275,10 +302,10 @@ test_scene (void)
     guint32 corners[12];
     const gchar *says;
   } cases[] = {
-    {1, {0, 1, 1, CLOTH_NO_VERTEX}, "no area"},
+    {1, {0, 1, 1, CLOTH_NO_VERTEX}, "face 0 has vertex 1 twice"},
     {1, {0, 1, 2, CLOTH_NO_VERTEX}, "vertex 3"},
     {3, {0, 1, 2, CLOTH_NO_VERTEX, 1, 2, 3, CLOTH_NO_VERTEX, 2, 1, 3,
-            CLOTH_NO_VERTEX}, "more than two triangles"},
+            CLOTH_NO_VERTEX}, "faces 1 and 2 are the same"},
   };
   const gfloat uv[8] = { 0.f, 0.f, 1.f, 0.f, 0.f, 1.f, 1.f, 1.f };
 
@@ -307,6 +334,7 @@ main (int argc, char **argv)
   g_test_add_func ("/sim/clamps", test_clamps);
   g_test_add_func ("/sim/divergence", test_divergence);
   g_test_add_func ("/sim/disagree", test_disagree);
+  g_test_add_func ("/sim/numbers", test_numbers);
   g_test_add_func ("/sim/scene", test_scene);
   return g_test_run ();
 }

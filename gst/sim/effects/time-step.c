@@ -27,7 +27,7 @@ const ClothEffect cloth_effect_time_step = {
     {.name = "factor", .unit = "1", .null_value = 1, .min = 1. / 64, .max = 64,
         .prior = 0.5,
         .blurb = "What the time step is multiplied with; an explicit step beyond "
-            "the stable one is cut back to it"},
+            "the stable one is cut back to it, an automatic one to a frame"},
   }
 };
 /* *INDENT-ON* */

@@ -384,6 +384,7 @@ group_advance (gpointer group, gdouble until_s, guint n_steps, guint stages)
   gdouble start = state->time;
 
   state->dt = (until_s - start) / n_steps;
+  state->reach = cloth_lane_set (state->dt);
   state->stages = stages;
   for (guint step = 1; step <= n_steps; step++) {
     state->steps_left = n_steps - step;
@@ -439,6 +440,8 @@ group_set (gpointer group, guint lane, const gdouble * x, const gdouble * v)
   }
   state->diverged &= ~lanes;
   CLOTH_LANE_NAME (cloth_lane_clamps_reset) (state);
+  if (state->implicit)
+    CLOTH_LANE_NAME (cloth_lane_implicit_reset) (state, lanes);
   reset_effects (state, lanes);
   keep_sound (state);
 }

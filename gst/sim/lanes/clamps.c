@@ -60,7 +60,7 @@ CLOTH_LANE_NAME (cloth_lane_clamp_grips) (ClothLaneState * state, guint i,
 }
 
 /* Puts held particles where their clamps are at the end of the step, which state->time
- * already says. */
+ * already says. Clamps that give have had their part in an implicit step. */
 void CLOTH_LANE_NAME (cloth_lane_clamps) (ClothLaneState * state)
 {
   const ClothBody *body = state->body;
@@ -82,7 +82,12 @@ void CLOTH_LANE_NAME (cloth_lane_clamps) (ClothLaneState * state)
 
       /* the spring's force at the end of the step: stable however stiff it is */
       free_v = (free_v * mass + dt * (place[k] - x)) / (mass + dt * dt);
-      state->x[p][k] = cloth_lane_select (hard, place[k], x + dt * free_v);
+      x += dt * free_v;
+      if (state->implicit) {
+        free_v = state->v[p][k];
+        x = state->x[p][k];
+      }
+      state->x[p][k] = cloth_lane_select (hard, place[k], x);
       state->v[p][k] = cloth_lane_select (hard,
           (place[k] - state->held_x[i][k]) * per_dt, free_v);
       state->held_x[i][k] = state->x[p][k];
@@ -90,13 +95,15 @@ void CLOTH_LANE_NAME (cloth_lane_clamps) (ClothLaneState * state)
   }
 }
 
-/* Adds the observer's springs: m w (gain (y − x) + damping (y' − v)), y between two
- * observations. */
-void CLOTH_LANE_NAME (cloth_lane_targets) (ClothLaneState * state)
+/* Adds the observer's springs to f: m w (gain (y − x) + damping (y' − v)), y of a time
+ * between two observations. */
+void
+CLOTH_LANE_NAME (cloth_lane_targets) (const ClothLaneState * state,
+    gdouble time_s, ClothLane3 * f)
 {
-  const ClothLaneTargets *t = &state->targets;
+  const ClothLaneTargets * t = &state->targets;
   ClothLane span = t->next - t->now, zero = cloth_lane_set (0.);
-  ClothLane share = (cloth_lane_set (state->time) - t->now) / span;
+  ClothLane share = (cloth_lane_set (time_s) - t->now) / span;
 
   share = cloth_lane_select (cloth_lane_less (zero, span), share, zero);
   for (guint i = 0; i < state->n; i++) {
@@ -107,8 +114,7 @@ void CLOTH_LANE_NAME (cloth_lane_targets) (ClothLaneState * state)
       ClothLane y = t->y[0][i][k] + share * (t->y[1][i][k] - t->y[0][i][k]);
       ClothLane dy = t->y[2][i][k] + share * (t->y[3][i][k] - t->y[2][i][k]);
 
-      state->f[i][k] += gain * (y - state->x[i][k]) +
-          damping * (dy - state->v[i][k]);
+      f[i][k] += gain * (y - state->x[i][k]) + damping * (dy - state->v[i][k]);
     }
   }
 }

@@ -24,8 +24,9 @@ void CLOTH_LANE_NAME (cloth_lane_other_forces) (ClothLaneState * state)
   for (guint i = 0; i < state->n_effects; i++)
     if (state->effects[i].hooks->force)
       state->effects[i].hooks->force (state, &state->effects[i]);
-  if (state->has_targets)
-    CLOTH_LANE_NAME (cloth_lane_targets) (state);
+  /* an implicit step takes them where they are at its end */
+  if (state->has_targets && !state->implicit)
+    CLOTH_LANE_NAME (cloth_lane_targets) (state, state->time, state->f);
 }
 
 /* Adds all forces at x and v to f: gravity and damping αM are the integrator's, which

@@ -71,9 +71,10 @@ respond (ClothLaneState * state, guint i, const Touch * touch,
   ClothLane zero = cloth_lane_set (0.), tiny = cloth_lane_set (1e-18);
   ClothLane *x = state->x[i], *v = state->v[i];
   ClothMask in = cloth_lane_less (touch->gap, zero);
-  ClothLane dt = cloth_lane_set (state->dt), depth = -touch->gap;
+  ClothLane depth = -touch->gap;
   ClothLane along = cloth_lane_dot (v, touch->normal), slide[3];
-  ClothLane stop = cloth_lane_min (depth / dt, cloth_lane_max (-along, zero));
+  ClothLane stop = cloth_lane_min (depth / state->reach,
+      cloth_lane_max (-along, zero));
   ClothLane brake;
 
   for (guint k = 0; k < 3; k++)
@@ -85,8 +86,8 @@ respond (ClothLaneState * state, guint i, const Touch * touch,
     ClothLane drag = brake * slide[k];
 
     v[k] = cloth_lane_select (in, v[k] + stop * touch->normal[k] - drag, v[k]);
-    x[k] = cloth_lane_select (in, x[k] + depth * touch->normal[k] - dt * drag,
-        x[k]);
+    x[k] = cloth_lane_select (in, x[k] + depth * touch->normal[k] -
+        state->reach * drag, x[k]);
   }
 }
 

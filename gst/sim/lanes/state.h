@@ -114,6 +114,9 @@ typedef struct
   gdouble time;                 /* s */
   gdouble dt;                   /* of the running step, s */
   guint steps_left;             /* after it, before anybody asks */
+  /* what a change of the step's last velocity changes the places by, over it, s: dt but
+   * in steps of second order */
+  ClothLane reach;
 
   /* Lanes that diverged, and everybody's last sound state. */
   ClothMask diverged;
@@ -166,7 +169,8 @@ ClothLane CLOTH_LANE_NAME (cloth_lane_springs_energy) (const ClothLaneState *
 void CLOTH_LANE_NAME (cloth_lane_bending) (ClothLaneState * state);
 ClothLane CLOTH_LANE_NAME (cloth_lane_bending_energy) (const ClothLaneState *
     state);
-void CLOTH_LANE_NAME (cloth_lane_targets) (ClothLaneState * state);
+void CLOTH_LANE_NAME (cloth_lane_targets) (const ClothLaneState * state,
+    gdouble time_s, ClothLane3 * f);
 void CLOTH_LANE_NAME (cloth_lane_clamps) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_clamps_reset) (ClothLaneState * state);
 gboolean CLOTH_LANE_NAME (cloth_lane_clamp_grips) (ClothLaneState * state,
@@ -175,7 +179,8 @@ ClothLaneObstacles *CLOTH_LANE_NAME (cloth_lane_obstacles_new) (const
     ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_obstacles_free) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_obstacles) (ClothLaneState * state);
-/* Forces at x and v into f: the cloth's own, the others, and all of them. */
+/* Forces at x and v into f: the cloth's own, the others, and all of them; without the
+ * targets' when steps are implicit. */
 void CLOTH_LANE_NAME (cloth_lane_own_forces) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_other_forces) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_forces) (ClothLaneState * state);
@@ -186,6 +191,8 @@ gdouble CLOTH_LANE_NAME (cloth_lane_staged_time_step) (const
 ClothLaneImplicit *CLOTH_LANE_NAME (cloth_lane_implicit_new) (const
     ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_implicit_free) (ClothLaneImplicit * implicit);
+void CLOTH_LANE_NAME (cloth_lane_implicit_reset) (ClothLaneState * state,
+    ClothMask lanes);
 gdouble CLOTH_LANE_NAME (cloth_lane_implicit_solve) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_implicit_take) (ClothLaneState * state);
 ClothLane CLOTH_LANE_NAME (cloth_lane_stiffness) (const ClothLaneState * state);

@@ -18,12 +18,15 @@ CLOTH_LANE_NAME (cloth_lane_stiffness_new) (const ClothLaneState * state,
   else
     matrix->facets = g_aligned_alloc0 (state->body->n_triangles + 1,
         sizeof *matrix->facets, 64);
+  matrix->grip = g_aligned_alloc0 (state->body->n_held + 1,
+      sizeof *matrix->grip, 64);
 }
 
 void CLOTH_LANE_NAME (cloth_lane_stiffness_clear) (ClothLaneStiffness * matrix)
 {
   g_aligned_free (matrix->facets);
   g_aligned_free (matrix->links);
+  g_aligned_free (matrix->grip);
 }
 
 /* The positive part of the symmetric matrix g[0] g[2]; g[2] g[1]. */
@@ -216,6 +219,12 @@ CLOTH_LANE_NAME (cloth_lane_stiffness_apply) (const ClothLaneState * state,
     for (guint k = 0; k < 3; k++)
       q[i][k] = mass * d[i][k];
   }
+  for (guint i = 0; i < state->body->n_held; i++) {
+    guint p = state->body->held[i].particle;
+
+    for (guint k = 0; k < 3; k++)
+      q[p][k] += matrix->h2 * matrix->grip[i] * d[p][k];
+  }
   if (matrix->links) {
     apply_links (state, matrix, d, q);
   } else if (state->rest_changed) {
@@ -333,6 +342,9 @@ CLOTH_LANE_NAME (cloth_lane_stiffness_diagonal) (const ClothLaneState * state,
     memset (inverse[i], 0, sizeof inverse[i]);
     add_unit (inverse[i], own (state, matrix, i));
   }
+  for (guint i = 0; i < state->body->n_held; i++)
+    add_unit (inverse[state->body->held[i].particle],
+        matrix->h2 * matrix->grip[i]);
   if (matrix->links)
     add_links (state, matrix, inverse);
   else

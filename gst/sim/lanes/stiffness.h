@@ -19,12 +19,13 @@ typedef struct
   ClothLane k, damped, g;
 } ClothLaneLink;
 
-/* M (1 + αh) + h βK + h² K, from the places and velocities of the last
+/* M (1 + αh) + h βK + h² K, h the γ of the formula, from the places and velocities of the last
  * cloth_lane_stiffness_update (); mass is the first term's factor. */
 typedef struct
 {
   ClothLaneFacet *facets;       /* of the membrane */
   ClothLaneLink *links;         /* of the mass–spring model */
+  ClothLane *grip;              /* of each clamp: its stiffness where it gives, N/m */
   ClothLane mass, h, h2;
 } ClothLaneStiffness;
 
