@@ -4,6 +4,7 @@
 #include "config.h"
 
 #include "gst/pattern/code.h"
+#include "gst/pattern/marray.h"
 #include "gst/pattern/pattern.h"
 #include "gst/pattern/print.h"
 
@@ -13,14 +14,24 @@
 
 #define TOOL "gst-cloth-pattern-1.0"
 
+/* The paper's cloth and its dots (Scholz et al. 2005, 3.1). */
+#define DOTS_COLUMNS 76
+#define DOTS_ROWS 251
+#define DOTS_COLOURS 5
+#define DOTS_DIAMETER_RATIO (13.0 / 20.0)
+
 enum
 { DONE = 0, FAILED = 1, BAD_USAGE = 2 };
 
+/* A number that was not given: its default depends on the kind of pattern. */
+#define NOT_GIVEN G_MININT
+
 typedef struct
 {
-  gboolean version;
-  gint columns, rows;
+  gboolean version, two_sided;
+  gint columns, rows, colours, distance;
   gchar *square, *margin, *first, *paper, *page_margin, *overlap, *output;
+  gchar *pitch, *diameter;
   gdouble dot_ratio;
   gint64 seed;
   gchar **kinds;
@@ -69,31 +80,164 @@ fail (gint value_code, GError * error)
   return complain (usage ? value_code : FAILED, error->message);
 }
 
+/* Fills @options and checks the layout; %DONE or an exit code. */
 static gint
-print (const Arguments * arguments, ClothPattern * pattern, gboolean coded)
+lay_out (const Arguments * arguments, const ClothArtwork * artwork,
+    ClothPrintOptions * options)
 {
-  ClothPrintOptions options = CLOTH_PRINT_OPTIONS_INIT;
   ClothPrintLayout layout;
   g_autoptr (GError) error = NULL;
-  g_autofree gchar *message = NULL, *notes = NULL, *folder = NULL;
-  g_autofree gchar *json = NULL;
-  g_auto (GStrv) names = NULL;
+  g_autofree gchar *message = NULL;
   gdouble metres;
-  gint window;
 
-  if (!cloth_print_paper (arguments->paper, options.paper_mm)) {
+  if (!cloth_print_paper (arguments->paper, options->paper_mm)) {
     message = g_strdup_printf ("--paper %s: give A0 to A5, letter, legal, "
         "tabloid, cloth or a size as 600x900mm", arguments->paper);
     return complain (BAD_USAGE, message);
   }
   if (!parse_length ("page-margin", arguments->page_margin, &metres, &message))
     return complain (BAD_USAGE, message);
-  options.margin_mm = metres * 1000;
+  options->margin_mm = metres * 1000;
   if (!parse_length ("overlap", arguments->overlap, &metres, &message))
     return complain (BAD_USAGE, message);
-  options.overlap_mm = metres * 1000;
-  if (!cloth_print_layout (pattern, &options, &layout, &error))
+  options->overlap_mm = metres * 1000;
+  if (!cloth_print_layout (artwork, options, &layout, &error))
     return fail (BAD_USAGE, error);
+  return DONE;
+}
+
+static gint
+print (const Arguments * arguments, const ClothArtwork * artwork,
+    const ClothPrintOptions * options)
+{
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *folder = g_path_get_dirname (arguments->output);
+  g_autofree gchar *json = strcmp (folder, ".")
+      ? g_build_filename (folder, "pattern.json", NULL)
+      : g_strdup ("pattern.json");
+  g_auto (GStrv) names =
+      cloth_print_save (artwork, options, arguments->output, &error);
+
+  if (!names)
+    return fail (FAILED, error);
+  if (!(artwork->checker ? cloth_pattern_save (artwork->checker, json, &error)
+          : cloth_m_array_save (artwork->dots, json, &error)))
+    return fail (FAILED, error);
+  for (gchar ** name = names; *name; name++)
+    g_print ("%s\n", *name);
+  g_print ("%s\n", json);
+  return DONE;
+}
+
+/* An option of other kinds of pattern is a mistake, not something to pass over. */
+static gint
+refuse_option (const gchar * option, const gchar * kind)
+{
+  g_autofree gchar *message =
+      g_strdup_printf ("--%s is not for a pattern of kind %s", option, kind);
+
+  return complain (BAD_USAGE, message);
+}
+
+static gint
+given (gint value, gint otherwise)
+{
+  return value == NOT_GIVEN ? otherwise : value;
+}
+
+static gint
+run_m_array (const Arguments * arguments)
+{
+  const gint columns = given (arguments->columns, DOTS_COLUMNS);
+  const gint rows = given (arguments->rows, DOTS_ROWS);
+  const gint colours = given (arguments->colours, DOTS_COLOURS);
+  const ClothMArrayCode code = {
+    arguments->distance, arguments->two_sided, (guint64) arguments->seed
+  };
+  ClothPrintOptions options = CLOTH_PRINT_OPTIONS_INIT;
+  g_autoptr (ClothMArray) array = NULL;
+  ClothArtwork artwork = { NULL };
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *message = NULL, *notes = NULL;
+  gdouble pitch, diameter, margin;
+  gint exit_code;
+
+  if (arguments->square)
+    return refuse_option ("square", "m-array");
+  if (arguments->first)
+    return refuse_option ("first", "m-array");
+  if (arguments->dot_ratio != CLOTH_CODE_DOT_RATIO)
+    return refuse_option ("dot-ratio", "m-array");
+  if (!parse_length ("pitch", arguments->pitch ? arguments->pitch : "20mm",
+          &pitch, &message))
+    return complain (BAD_USAGE, message);
+  /* Whole micrometres, so that 0.65 · 20 mm is the 0.013 that is written in files. */
+  diameter = round (DOTS_DIAMETER_RATIO * pitch * 1e6) / 1e6;
+  if (arguments->diameter
+      && !parse_length ("diameter", arguments->diameter, &diameter, &message))
+    return complain (BAD_USAGE, message);
+  margin = pitch / 2;
+  if (arguments->margin
+      && !parse_length ("margin", arguments->margin, &margin, &message))
+    return complain (BAD_USAGE, message);
+  array = cloth_m_array_new (columns, rows, colours, pitch, diameter, margin,
+      &code, &error);
+  if (!array)
+    return fail (BAD_USAGE, error);
+  artwork.dots = array;
+  exit_code = lay_out (arguments, &artwork, &options);
+  if (exit_code != DONE)
+    return exit_code;
+  options.notes = notes = g_strdup_printf ("seed %" G_GINT64_FORMAT ", any "
+      "3 × 3 tell their place%s", arguments->seed,
+      code.two_sided ? " from both sides" : "");
+  return print (arguments, &artwork, &options);
+}
+
+static gint
+run_checker (const Arguments * arguments, gboolean coded)
+{
+  const gchar *kind = arguments->kinds[0];
+  const gchar *first = arguments->first ? arguments->first : "black";
+  ClothPrintOptions options = CLOTH_PRINT_OPTIONS_INIT;
+  g_autoptr (ClothPattern) pattern = NULL;
+  ClothArtwork artwork = { NULL };
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *message = NULL, *notes = NULL;
+  gdouble square, margin;
+  gint window, exit_code;
+
+  if (arguments->pitch)
+    return refuse_option ("pitch", kind);
+  if (arguments->diameter)
+    return refuse_option ("diameter", kind);
+  if (arguments->colours != NOT_GIVEN)
+    return refuse_option ("colours", kind);
+  if (arguments->distance != 1)
+    return refuse_option ("distance", kind);
+  if (arguments->two_sided)
+    return refuse_option ("two-sided", kind);
+  if (strcmp (first, "black") && strcmp (first, "white")) {
+    message = g_strdup_printf ("--first %s: give black or white", first);
+    return complain (BAD_USAGE, message);
+  }
+  if (!parse_length ("square", arguments->square ? arguments->square : "50mm",
+          &square, &message))
+    return complain (BAD_USAGE, message);
+  /* White around the board, so that its outer corners can be seen. */
+  margin = square / 2;
+  if (arguments->margin
+      && !parse_length ("margin", arguments->margin, &margin, &message))
+    return complain (BAD_USAGE, message);
+  pattern = cloth_pattern_new_checker (given (arguments->columns, 8),
+      given (arguments->rows, 8), square, margin,
+      !strcmp (first, "black"), &error);
+  if (!pattern)
+    return fail (BAD_USAGE, error);
+  artwork.checker = pattern;
+  exit_code = lay_out (arguments, &artwork, &options);
+  if (exit_code != DONE)
+    return exit_code;
   if (coded) {
     if (!cloth_code_generate (pattern, arguments->dot_ratio,
             (guint64) arguments->seed, &window, &error))
@@ -102,28 +246,14 @@ print (const Arguments * arguments, ClothPattern * pattern, gboolean coded)
         g_strdup_printf ("seed %" G_GINT64_FORMAT ", any %d × %d tell their "
         "place", arguments->seed, window, window);
   }
-  names = cloth_print_save (pattern, &options, arguments->output, &error);
-  if (!names)
-    return fail (FAILED, error);
-  folder = g_path_get_dirname (arguments->output);
-  json = strcmp (folder, ".") ? g_build_filename (folder, "pattern.json", NULL)
-      : g_strdup ("pattern.json");
-  if (!cloth_pattern_save (pattern, json, &error))
-    return fail (FAILED, error);
-  for (gchar ** name = names; *name; name++)
-    g_print ("%s\n", *name);
-  g_print ("%s\n", json);
-  return DONE;
+  return print (arguments, &artwork, &options);
 }
 
 static gint
 run (const Arguments * arguments)
 {
-  g_autoptr (ClothPattern) pattern = NULL;
-  g_autoptr (GError) error = NULL;
   g_autofree gchar *message = NULL;
-  gdouble square, margin;
-  gboolean coded;
+  const gchar *kind;
 
   if (arguments->version) {
     g_print (TOOL " (%s) %s\n", PACKAGE, PACKAGE_VERSION);
@@ -131,11 +261,12 @@ run (const Arguments * arguments)
   }
   if (!arguments->kinds || g_strv_length (arguments->kinds) != 1)
     return complain (BAD_USAGE,
-        "name one kind of pattern: checker or coded-checker");
-  coded = !strcmp (arguments->kinds[0], "coded-checker");
-  if (!coded && strcmp (arguments->kinds[0], "checker")) {
-    message = g_strdup_printf ("no pattern \"%s\": there are checker and "
-        "coded-checker", arguments->kinds[0]);
+        "name one kind of pattern: checker, coded-checker or m-array");
+  kind = arguments->kinds[0];
+  if (strcmp (kind, "checker") && strcmp (kind, "coded-checker")
+      && strcmp (kind, "m-array")) {
+    message = g_strdup_printf ("no pattern \"%s\": there are checker, "
+        "coded-checker and m-array", kind);
     return complain (BAD_USAGE, message);
   }
   if (!arguments->output)
@@ -146,46 +277,44 @@ run (const Arguments * arguments)
         ".svg", arguments->output);
     return complain (BAD_USAGE, message);
   }
-  if (strcmp (arguments->first, "black") && strcmp (arguments->first, "white")) {
-    message = g_strdup_printf ("--first %s: give black or white",
-        arguments->first);
-    return complain (BAD_USAGE, message);
-  }
-  if (!parse_length ("square", arguments->square, &square, &message))
-    return complain (BAD_USAGE, message);
-  /* White around the board, so that its outer corners can be seen. */
-  margin = square / 2;
-  if (arguments->margin
-      && !parse_length ("margin", arguments->margin, &margin, &message))
-    return complain (BAD_USAGE, message);
-  pattern = cloth_pattern_new_checker (arguments->columns, arguments->rows,
-      square, margin, !strcmp (arguments->first, "black"), &error);
-  if (!pattern)
-    return fail (BAD_USAGE, error);
-  return print (arguments, pattern, coded);
+  if (!strcmp (kind, "m-array"))
+    return run_m_array (arguments);
+  return run_checker (arguments, !strcmp (kind, "coded-checker"));
 }
 
 int
 main (int argc, char **argv)
 {
-  Arguments arguments = {.columns = 8,.rows = 8,.dot_ratio =
-        CLOTH_CODE_DOT_RATIO,.seed = 1
+  Arguments arguments = {.columns = NOT_GIVEN,.rows = NOT_GIVEN,.colours =
+        NOT_GIVEN,.distance = 1,.dot_ratio = CLOTH_CODE_DOT_RATIO,.seed = 1
   };
   const GOptionEntry entries[] = {
     {"columns", 0, 0, G_OPTION_ARG_INT, &arguments.columns,
-        "Squares in a row (8)", "N"},
+        "Squares in a row (8); dots (76)", "N"},
     {"rows", 0, 0, G_OPTION_ARG_INT, &arguments.rows,
-        "Squares in a column (8)", "N"},
+        "Squares in a column (8); dots (251)", "N"},
     {"square", 0, 0, G_OPTION_ARG_STRING, &arguments.square,
         "Edge of a square (50mm)", "LENGTH"},
     {"margin", 0, 0, G_OPTION_ARG_STRING, &arguments.margin,
-        "Plain cloth around the board (half a square)", "LENGTH"},
+        "Plain cloth around the board (half a square), or from the centres of "
+          "the outer dots to the edge (half the pitch)", "LENGTH"},
     {"first", 0, 0, G_OPTION_ARG_STRING, &arguments.first,
         "Colour of the top-left square (black)", "black|white"},
     {"dot-ratio", 0, 0, G_OPTION_ARG_DOUBLE, &arguments.dot_ratio,
         "Diameter of a code's dot over its square's edge (0.3)", "RATIO"},
+    {"pitch", 0, 0, G_OPTION_ARG_STRING, &arguments.pitch,
+        "From the centre of a dot to that of the next (20mm)", "LENGTH"},
+    {"diameter", 0, 0, G_OPTION_ARG_STRING, &arguments.diameter,
+        "Diameter of a dot (0.65 of the pitch)", "LENGTH"},
+    {"colours", 0, 0, G_OPTION_ARG_INT, &arguments.colours,
+        "Colours of dots, 2 to 8 (5)", "N"},
+    {"distance", 0, 0, G_OPTION_ARG_INT, &arguments.distance,
+        "Dots by which any two windows of 3 by 3 differ at least (1)", "N"},
+    {"two-sided", 0, 0, G_OPTION_ARG_NONE, &arguments.two_sided,
+          "Tell windows from mirror images: the print is seen from both sides",
+        NULL},
     {"seed", 0, 0, G_OPTION_ARG_INT64, &arguments.seed,
-        "Which code: equal seeds give equal boards (1)", "N"},
+        "Which code: equal seeds give equal patterns (1)", "N"},
     {"paper", 0, 0, G_OPTION_ARG_STRING, &arguments.paper,
         "A0 to A5, letter, legal, tabloid, a size as 600x900mm, or one page "
           "as large as it takes (cloth)", "PAPER"},
@@ -198,7 +327,7 @@ main (int argc, char **argv)
     {"version", 0, 0, G_OPTION_ARG_NONE, &arguments.version,
         "Show the version and exit", NULL},
     {G_OPTION_REMAINING, 0, 0, G_OPTION_ARG_STRING_ARRAY, &arguments.kinds,
-        NULL, "checker|coded-checker"},
+        NULL, "checker|coded-checker|m-array"},
     {NULL}
   };
   g_autoptr (GOptionContext) context =
@@ -208,8 +337,6 @@ main (int argc, char **argv)
 
   /* Only the characters: numbers stay with the decimal point. */
   setlocale (LC_CTYPE, "");
-  arguments.square = g_strdup ("50mm");
-  arguments.first = g_strdup ("black");
   arguments.paper = g_strdup ("cloth");
   arguments.page_margin = g_strdup ("10mm");
   arguments.overlap = g_strdup ("10mm");
@@ -219,6 +346,8 @@ main (int argc, char **argv)
   else
     code = complain (BAD_USAGE, error->message);
   g_free (arguments.square);
+  g_free (arguments.pitch);
+  g_free (arguments.diameter);
   g_free (arguments.margin);
   g_free (arguments.first);
   g_free (arguments.paper);

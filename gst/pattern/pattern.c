@@ -364,7 +364,8 @@ cloth_pattern_load_data (const gchar * data, gsize size, GError ** error)
   }
   if (strcmp (kind, "checker")) {
     g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_UNSUPPORTED,
-        "a pattern of kind \"%.40s\": this build knows \"checker\"", kind);
+        "a pattern of kind \"%.40s\": a board is read from one of kind "
+        "\"checker\"", kind);
     return NULL;
   }
   members = json_object_get_members (object);

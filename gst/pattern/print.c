@@ -116,26 +116,29 @@ lay_paper (const ClothPrintOptions * options, ClothPrintLayout * layout,
 
 /**
  * cloth_print_layout:
- * @pattern: a pattern
+ * @artwork: what is printed
  * @options: paper, margin, overlap
  * @layout: (out): where everything goes
  * @error: return location
  *
  * Lays the cloth out on sheets of paper, upright or lying, whichever takes fewer. Below
- * the cloth every sheet has a strip with a ruler, grey patches and a caption.
+ * the cloth every sheet has a strip with a ruler, patches and a caption.
  *
  * Returns: %FALSE with %CLOTH_PATTERN_ERROR_VALUE
  *
  * Since: 0.1
  */
 gboolean
-cloth_print_layout (const ClothPattern * pattern,
+cloth_print_layout (const ClothArtwork * artwork,
     const ClothPrintOptions * options, ClothPrintLayout * layout,
     GError ** error)
 {
+  const gdouble *cloth_m = artwork->checker ? artwork->checker->cloth_m
+      : artwork->dots->cloth_m;
   const gdouble margin = options->margin_mm;
 
-  if (!cloth_pattern_check (pattern, error))
+  if (!(artwork->checker ? cloth_pattern_check (artwork->checker, error)
+          : cloth_m_array_check (artwork->dots, error)))
     return FALSE;
   if (!(margin >= 0 && margin <= 100))
     return refuse (error, "the paper's margin must be 0 to 100 mm");
@@ -144,7 +147,7 @@ cloth_print_layout (const ClothPattern * pattern,
   memset (layout, 0, sizeof *layout);
   /* A nanometre is enough; it rids 0.63 m of its 630.0000000000001 mm. */
   for (gint i = 0; i < 2; i++)
-    layout->cloth_mm[i] = round (pattern->cloth_m[i] * 1e9) / 1e6;
+    layout->cloth_mm[i] = round (cloth_m[i] * 1e9) / 1e6;
   if (options->paper_mm[0] == 0 && options->paper_mm[1] == 0) {
     layout->sheets[0] = layout->sheets[1] = 1;
     layout->page_mm[0] = 2 * margin
@@ -211,11 +214,11 @@ set_pdf_date (cairo_surface_t * surface)
 
 /**
  * cloth_print_pdf:
- * @pattern: a pattern
+ * @artwork: what is printed
  * @options: paper, margin, overlap
  * @error: return location
  *
- * Draws @pattern as a PDF with a page for each sheet, row by row, at true size. Equal
+ * Draws @artwork as a PDF with a page for each sheet, row by row, at true size. Equal
  * input gives equal bytes on a machine; the creation date is that of the environment
  * variable SOURCE_DATE_EPOCH, else 1970.
  *
@@ -224,7 +227,7 @@ set_pdf_date (cairo_surface_t * surface)
  * Since: 0.1
  */
 GBytes *
-cloth_print_pdf (const ClothPattern * pattern,
+cloth_print_pdf (const ClothArtwork * artwork,
     const ClothPrintOptions * options, GError ** error)
 {
   g_autoptr (GByteArray) bytes = g_byte_array_new ();
@@ -232,7 +235,7 @@ cloth_print_pdf (const ClothPattern * pattern,
   cairo_surface_t *surface;
   cairo_t *cr;
 
-  if (!cloth_print_layout (pattern, options, &layout, error))
+  if (!cloth_print_layout (artwork, options, &layout, error))
     return NULL;
   surface = cairo_pdf_surface_create_for_stream (append_bytes, bytes,
       layout.page_mm[0] / MM_PER_POINT, layout.page_mm[1] / MM_PER_POINT);
@@ -241,7 +244,7 @@ cloth_print_pdf (const ClothPattern * pattern,
   cairo_scale (cr, 1 / MM_PER_POINT, 1 / MM_PER_POINT);
   for (gint row = 0; row < layout.sheets[1]; row++) {
     for (gint column = 0; column < layout.sheets[0]; column++) {
-      cloth_sheet_draw (cr, pattern, options, &layout, column, row);
+      cloth_sheet_draw (cr, artwork, options, &layout, column, row);
       cairo_show_page (cr);
     }
   }
@@ -269,7 +272,7 @@ drop_surface_number (GByteArray * bytes)
 
 /**
  * cloth_print_svg:
- * @pattern: a pattern
+ * @artwork: what is printed
  * @options: paper, margin, overlap
  * @column: which sheet across
  * @row: which sheet down
@@ -282,7 +285,7 @@ drop_surface_number (GByteArray * bytes)
  * Since: 0.1
  */
 GBytes *
-cloth_print_svg (const ClothPattern * pattern,
+cloth_print_svg (const ClothArtwork * artwork,
     const ClothPrintOptions * options, gint column, gint row, GError ** error)
 {
   g_autoptr (GByteArray) bytes = g_byte_array_new ();
@@ -290,7 +293,7 @@ cloth_print_svg (const ClothPattern * pattern,
   cairo_surface_t *surface;
   cairo_t *cr;
 
-  if (!cloth_print_layout (pattern, options, &layout, error))
+  if (!cloth_print_layout (artwork, options, &layout, error))
     return NULL;
   if (column < 0 || row < 0 || column >= layout.sheets[0]
       || row >= layout.sheets[1]) {
@@ -301,7 +304,7 @@ cloth_print_svg (const ClothPattern * pattern,
       layout.page_mm[0], layout.page_mm[1]);
   cairo_svg_surface_set_document_unit (surface, CAIRO_SVG_UNIT_MM);
   cr = cairo_create (surface);
-  cloth_sheet_draw (cr, pattern, options, &layout, column, row);
+  cloth_sheet_draw (cr, artwork, options, &layout, column, row);
   if (!finish (cr, surface, error))
     return NULL;
   drop_surface_number (bytes);
@@ -322,7 +325,7 @@ save_bytes (GBytes * bytes, const gchar * path, GError ** error)
 
 /**
  * cloth_print_save:
- * @pattern: a pattern
+ * @artwork: what is printed
  * @options: paper, margin, overlap
  * @path: (type filename): where to; ends with .pdf or .svg
  * @error: return location
@@ -337,17 +340,17 @@ save_bytes (GBytes * bytes, const gchar * path, GError ** error)
  * Since: 0.1
  */
 gchar **
-cloth_print_save (const ClothPattern * pattern,
+cloth_print_save (const ClothArtwork * artwork,
     const ClothPrintOptions * options, const gchar * path, GError ** error)
 {
   g_autoptr (GPtrArray) names = g_ptr_array_new_with_free_func (g_free);
   g_autofree gchar *stem = g_strdup (path);
   ClothPrintLayout layout;
 
-  if (!cloth_print_layout (pattern, options, &layout, error))
+  if (!cloth_print_layout (artwork, options, &layout, error))
     return NULL;
   if (g_str_has_suffix (path, ".pdf")) {
-    g_autoptr (GBytes) bytes = cloth_print_pdf (pattern, options, error);
+    g_autoptr (GBytes) bytes = cloth_print_pdf (artwork, options, error);
 
     if (!save_bytes (bytes, path, error))
       return NULL;
@@ -357,7 +360,7 @@ cloth_print_save (const ClothPattern * pattern,
     for (gint n = 0; n < layout.sheets[0] * layout.sheets[1]; n++) {
       const gint column = n % layout.sheets[0], row = n / layout.sheets[0];
       g_autoptr (GBytes) bytes =
-          cloth_print_svg (pattern, options, column, row, error);
+          cloth_print_svg (artwork, options, column, row, error);
       gchar *name = layout.sheets[0] * layout.sheets[1] == 1 ? g_strdup (path)
           : g_strdup_printf ("%s-%d-%d.svg", stem, row + 1, column + 1);
 

@@ -3,9 +3,24 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
+#include "gst/pattern/marray.h"
 #include "gst/pattern/pattern.h"
 
 G_BEGIN_DECLS
+
+/**
+ * ClothArtwork:
+ * @checker: (nullable): a checkerboard, plain or coded
+ * @dots: (nullable): an M-array
+ *
+ * What is printed: exactly one of them.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  const ClothPattern *checker;
+  const ClothMArray *dots;
+} ClothArtwork;
 
 /**
  * ClothPrintOptions:
@@ -49,15 +64,15 @@ typedef struct {
 } ClothPrintLayout;
 
 gboolean cloth_print_paper (const gchar * name, gdouble paper_mm[2]);
-gboolean cloth_print_layout (const ClothPattern * pattern,
+gboolean cloth_print_layout (const ClothArtwork * artwork,
     const ClothPrintOptions * options, ClothPrintLayout * layout,
     GError ** error);
 
-GBytes *cloth_print_pdf (const ClothPattern * pattern,
+GBytes *cloth_print_pdf (const ClothArtwork * artwork,
     const ClothPrintOptions * options, GError ** error);
-GBytes *cloth_print_svg (const ClothPattern * pattern,
+GBytes *cloth_print_svg (const ClothArtwork * artwork,
     const ClothPrintOptions * options, gint column, gint row, GError ** error);
-gchar **cloth_print_save (const ClothPattern * pattern,
+gchar **cloth_print_save (const ClothArtwork * artwork,
     const ClothPrintOptions * options, const gchar * path, GError ** error);
 
 G_END_DECLS

@@ -12,8 +12,17 @@
 #define MARK_MM 4.0
 #define MARK_GAP_MM 0.7
 #define TEXT_MM 2.6
-#define PATCHES 5
-#define PATCH_MM 5.0
+#define GREYS 5
+#define PATCH_MM 4.0
+#define PATCHES_MM 25.0
+
+static void
+set_colour (cairo_t * cr, const ClothMArray * array, gint colour)
+{
+  const guint8 *rgb = array->colours[colour].rgb;
+
+  cairo_set_source_rgb (cr, rgb[0] / 255.0, rgb[1] / 255.0, rgb[2] / 255.0);
+}
 
 /* Squares and dots within @view (x, y, width, height on the cloth). Only black is drawn:
  * a white dot is a hole, so any colour of cloth will do. */
@@ -50,6 +59,35 @@ draw_board (cairo_t * cr, const ClothPattern * pattern, const gdouble view[4])
       }
     }
     cairo_fill (cr);
+  }
+}
+
+/* The ground and the dots within @view. */
+static void
+draw_dots (cairo_t * cr, const ClothMArray * array, const gdouble view[4])
+{
+  const gdouble pitch = array->pitch_m * 1000;
+  const gdouble radius = array->diameter_m * 1000 / 2;
+  const gint limits[2] = { array->columns, array->rows };
+  gint first[2], last[2];
+
+  for (gint i = 0; i < 2; i++) {
+    const gdouble start = view[i] - array->origin_uv_m[i] * 1000;
+
+    first[i] = (gint) CLAMP (floor ((start - radius) / pitch), 0, limits[i]);
+    last[i] = (gint) CLAMP (ceil ((start + view[2 + i] + radius) / pitch) + 1,
+        0, limits[i]);
+  }
+  cairo_set_source_rgb (cr, 0, 0, 0);
+  cairo_rectangle (cr, view[0], view[1], view[2], view[3]);
+  cairo_fill (cr);
+  for (gint row = first[1]; row < last[1]; row++) {
+    for (gint column = first[0]; column < last[0]; column++) {
+      set_colour (cr, array, array->matrix[row * array->columns + column]);
+      cairo_arc (cr, array->origin_uv_m[0] * 1000 + column * pitch,
+          array->origin_uv_m[1] * 1000 + row * pitch, radius, 0, 2 * G_PI);
+      cairo_fill (cr);
+    }
   }
 }
 
@@ -133,23 +171,40 @@ draw_ruler (cairo_t * cr, gdouble x, gdouble y)
 }
 
 static void
-draw_patches (cairo_t * cr, gdouble x, gdouble y)
+draw_frame (cairo_t * cr, gdouble x, gdouble y)
 {
-  for (gint i = 0; i < PATCHES; i++) {
-    const gdouble grey = (gdouble) i / (PATCHES - 1);
-
-    cairo_set_source_rgb (cr, grey, grey, grey);
-    cairo_rectangle (cr, x + i * PATCH_MM, y, PATCH_MM, PATCH_MM);
-    cairo_fill (cr);
-  }
   cairo_set_source_rgb (cr, 0, 0, 0);
   cairo_set_line_width (cr, LINE_MM);
-  cairo_rectangle (cr, x, y, PATCHES * PATCH_MM, PATCH_MM);
+  cairo_rectangle (cr, x, y, PATCHES_MM, PATCH_MM);
   cairo_stroke (cr);
 }
 
+/* Greys from black to white; below them the colours of the dots. */
+static void
+draw_patches (cairo_t * cr, const ClothMArray * dots, gdouble x, gdouble y)
+{
+  for (gint i = 0; i < GREYS; i++) {
+    const gdouble grey = (gdouble) i / (GREYS - 1);
+
+    cairo_set_source_rgb (cr, grey, grey, grey);
+    cairo_rectangle (cr, x + i * PATCHES_MM / GREYS, y, PATCHES_MM / GREYS,
+        PATCH_MM);
+    cairo_fill (cr);
+  }
+  draw_frame (cr, x, y);
+  for (gint i = 0; dots && i < dots->n_colours; i++) {
+    const gdouble width = PATCHES_MM / dots->n_colours;
+
+    set_colour (cr, dots, i);
+    cairo_rectangle (cr, x + i * width, y + PATCH_MM, width, PATCH_MM);
+    cairo_fill (cr);
+  }
+  if (dots)
+    draw_frame (cr, x, y + PATCH_MM);
+}
+
 static gchar *
-caption (const ClothPattern * pattern, const ClothPrintOptions * options)
+checker_caption (const ClothPattern * pattern)
 {
   gchar edge[G_ASCII_DTOSTR_BUF_SIZE], ratio[G_ASCII_DTOSTR_BUF_SIZE];
   g_autofree gchar *dots = NULL;
@@ -158,28 +213,46 @@ caption (const ClothPattern * pattern, const ClothPrintOptions * options)
   g_ascii_formatd (ratio, sizeof ratio, "%.4g", pattern->dot_ratio);
   if (pattern->code)
     dots = g_strdup_printf (", dots of %s squares", ratio);
-  return
-      g_strdup_printf ("%s %s: %s %d × %d, squares of %s mm, first %s%s%s%s",
-      PACKAGE, PACKAGE_VERSION,
+  return g_strdup_printf ("%s %d × %d, squares of %s mm, first %s%s",
       pattern->code ? "coded-checker" : "checker", pattern->columns,
       pattern->rows, edge, pattern->first_black ? "black" : "white",
-      dots ? dots : "", options->notes ? ", " : "",
-      options->notes ? options->notes : "");
+      dots ? dots : "");
+}
+
+static gchar *
+dots_caption (const ClothMArray * array)
+{
+  gchar pitch[G_ASCII_DTOSTR_BUF_SIZE], diameter[G_ASCII_DTOSTR_BUF_SIZE];
+
+  g_ascii_formatd (pitch, sizeof pitch, "%.6g", array->pitch_m * 1000);
+  g_ascii_formatd (diameter, sizeof diameter, "%.6g", array->diameter_m * 1000);
+  return g_strdup_printf ("m-array %d × %d, %d colours, dots of %s mm every "
+      "%s mm", array->columns, array->rows, array->n_colours, diameter, pitch);
+}
+
+static gchar *
+caption (const ClothArtwork * artwork, const ClothPrintOptions * options)
+{
+  g_autofree gchar *what = artwork->checker
+      ? checker_caption (artwork->checker) : dots_caption (artwork->dots);
+
+  return g_strdup_printf ("%s %s: %s%s%s", PACKAGE, PACKAGE_VERSION, what,
+      options->notes ? ", " : "", options->notes ? options->notes : "");
 }
 
 static void
-draw_strip (cairo_t * cr, const ClothPattern * pattern,
+draw_strip (cairo_t * cr, const ClothArtwork * artwork,
     const ClothPrintOptions * options, const ClothPrintLayout * layout,
     gint column, gint row)
 {
   const gdouble x = options->margin_mm;
   const gdouble y = layout->tile_mm[1] + layout->tile_mm[3];
   const gdouble width = layout->page_mm[0] - 2 * options->margin_mm;
-  g_autofree gchar *line = caption (pattern, options);
+  g_autofree gchar *line = caption (artwork, options);
   g_autofree gchar *place = NULL;
 
   draw_ruler (cr, x + 1, y + CLOTH_SHEET_RULER_MM);
-  draw_patches (cr, x + CLOTH_SHEET_RULER_LENGTH_MM + 2.5,
+  draw_patches (cr, artwork->dots, x + CLOTH_SHEET_RULER_LENGTH_MM + 2.5,
       y + CLOTH_SHEET_RULER_MM);
   draw_text (cr, x, y + 19, width, line);
   if (layout->sheets[0] * layout->sheets[1] > 1) {
@@ -197,7 +270,7 @@ draw_strip (cairo_t * cr, const ClothPattern * pattern,
 
 /* @cr's unit is the mm. */
 void
-cloth_sheet_draw (cairo_t * cr, const ClothPattern * pattern,
+cloth_sheet_draw (cairo_t * cr, const ClothArtwork * artwork,
     const ClothPrintOptions * options, const ClothPrintLayout * layout,
     gint column, gint row)
 {
@@ -228,9 +301,12 @@ cloth_sheet_draw (cairo_t * cr, const ClothPattern * pattern,
   cairo_rectangle (cr, tile[0], tile[1], tile[2], tile[3]);
   cairo_clip (cr);
   cairo_translate (cr, tile[0] - start[0], tile[1] - start[1]);
-  draw_board (cr, pattern, view);
+  if (artwork->checker)
+    draw_board (cr, artwork->checker, view);
+  else
+    draw_dots (cr, artwork->dots, view);
   cairo_restore (cr);
   draw_marks (cr, layout, tile, column, row);
-  draw_strip (cr, pattern, options, layout, column, row);
+  draw_strip (cr, artwork, options, layout, column, row);
   cairo_restore (cr);
 }

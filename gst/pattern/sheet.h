@@ -16,7 +16,7 @@ G_BEGIN_DECLS
 #define CLOTH_SHEET_RULER_MM 7.0
 #define CLOTH_SHEET_RULER_LENGTH_MM 100
 
-void cloth_sheet_draw (cairo_t * cr, const ClothPattern * pattern,
+void cloth_sheet_draw (cairo_t * cr, const ClothArtwork * artwork,
     const ClothPrintOptions * options, const ClothPrintLayout * layout,
     gint column, gint row);
 

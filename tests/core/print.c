@@ -14,16 +14,20 @@
 #define DPI "254"
 #define PX 10
 
+#define BOARD(pattern) (&(const ClothArtwork) { pattern, NULL })
+
 typedef struct
 {
   gint width, height;
-  guint8 *grey;
+  guint8 *grey;                 /* their green */
+  guint8 *rgb;
 } Raster;
 
 static void
 raster_clear (Raster * raster)
 {
   g_free (raster->grey);
+  g_free (raster->rgb);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Raster, raster_clear)
@@ -61,14 +65,20 @@ read_png (const gchar * path)
   raster.width = cairo_image_surface_get_width (surface);
   raster.height = cairo_image_surface_get_height (surface);
   raster.grey = g_malloc ((gsize) raster.width * (gsize) raster.height);
+  raster.rgb = g_malloc (3 * (gsize) raster.width * (gsize) raster.height);
   opaque = cairo_image_surface_get_format (surface) == CAIRO_FORMAT_RGB24;
   for (gint y = 0; y < raster.height; y++) {
     const guint8 *row = cairo_image_surface_get_data (surface)
         + (gsize) y * (gsize) cairo_image_surface_get_stride (surface);
 
-    for (gint x = 0; x < raster.width; x++)
-      raster.grey[(gsize) y * (gsize) raster.width + (gsize) x] =
-          (guint8) (row[4 * x + 1] + (opaque ? 0 : 255 - row[4 * x + 3]));
+    for (gint x = 0; x < raster.width; x++) {
+      const gsize at = (gsize) y * (gsize) raster.width + (gsize) x;
+      const guint8 white = opaque ? 0 : 255 - row[4 * x + 3];
+
+      for (gint i = 0; i < 3; i++)
+        raster.rgb[3 * at + i] = (guint8) (row[4 * x + 2 - i] + white);
+      raster.grey[at] = raster.rgb[3 * at + 1];
+    }
   }
   cairo_surface_destroy (surface);
   return raster;
@@ -196,9 +206,9 @@ test_true_size (void)
 
     if (n == 3)
       g_assert_true (cloth_print_paper ("A4", options.paper_mm));
-    pdf_names = cloth_print_save (pattern, &options, pdf, &error);
+    pdf_names = cloth_print_save (BOARD (pattern), &options, pdf, &error);
     g_assert_no_error (error);
-    svg_names = cloth_print_save (pattern, &options, svg, &error);
+    svg_names = cloth_print_save (BOARD (pattern), &options, svg, &error);
     g_assert_no_error (error);
     g_assert_cmpstr (svg_names[0], ==, svg);
     g_assert_null (svg_names[1]);
@@ -237,12 +247,12 @@ test_tiles_reassemble (void)
   gint sheets, differences[2] = { 0, 0 }, holes = 0;
 
   g_assert_true (cloth_print_paper ("A5", many.paper_mm));
-  g_assert_true (cloth_print_layout (pattern, &many, &layout, &error));
+  g_assert_true (cloth_print_layout (BOARD (pattern), &many, &layout, &error));
   sheets = layout.sheets[0] * layout.sheets[1];
   g_assert_cmpint (sheets, ==, 4);
-  whole = cloth_print_save (pattern, &one, whole_svg, &error);
-  names = cloth_print_save (pattern, &many, svg, &error);
-  pdf_names = cloth_print_save (pattern, &many, pdf, &error);
+  whole = cloth_print_save (BOARD (pattern), &one, whole_svg, &error);
+  names = cloth_print_save (BOARD (pattern), &many, svg, &error);
+  pdf_names = cloth_print_save (BOARD (pattern), &many, pdf, &error);
   g_assert_no_error (error);
   g_assert_cmpuint (g_strv_length (names), ==, 4);
   g_assert_true (g_str_has_suffix (names[1], "board-1-2.svg"));
@@ -292,7 +302,8 @@ test_dots (void)
   g_autoptr (ClothPattern) pattern = board (8, 8, 0.02, TRUE, TRUE);
   ClothPrintOptions options = CLOTH_PRINT_OPTIONS_INIT;
   g_autofree gchar *svg = in_folder ("board.svg");
-  g_auto (GStrv) names = cloth_print_save (pattern, &options, svg, NULL);
+  g_auto (GStrv) names =
+      cloth_print_save (BOARD (pattern), &options, svg, NULL);
   g_auto (Raster) raster = raster_svg (svg);
 
   g_assert_cmpuint (g_strv_length (names), ==, 1);
@@ -313,6 +324,86 @@ test_dots (void)
   g_unlink (svg);
 }
 
+/* Each dot's colour at its centre; its area and its centre of gravity from its green,
+ * against what the pattern says. */
+static void
+check_m_array (const Raster * raster, const ClothMArray * array,
+    const gchar * what)
+{
+  const gint half = (gint) (array->pitch_m * 1000 * PX / 2);
+  const gdouble area = G_PI / 4 * pow (array->diameter_m * 1000 * PX, 2);
+  gdouble most_off = 0, most_area = 0;
+
+  for (gint n = 0; n < array->columns * array->rows; n++) {
+    const gdouble x = (10 + 1000 * (array->origin_uv_m[0]
+            + n % array->columns * array->pitch_m)) * PX - 0.5;
+    const gdouble y = (10 + 1000 * (array->origin_uv_m[1]
+            + n / array->columns * array->pitch_m)) * PX - 0.5;
+    const guint8 *rgb = array->colours[array->matrix[n]].rgb;
+    gdouble sum = 0, sx = 0, sy = 0;
+
+    for (gint j = (gint) y - half + 2; j <= (gint) y + half - 1; j++) {
+      for (gint i = (gint) x - half + 2; i <= (gint) x + half - 1; i++) {
+        const gdouble g = raster->grey[j * raster->width + i];
+
+        sum += g;
+        sx += g * (i - x);
+        sy += g * (j - y);
+      }
+    }
+    most_off = MAX (most_off, hypot (sx, sy) / sum);
+    most_area = MAX (most_area, fabs (sum / rgb[1] / area - 1));
+    for (gint i = 0; i < 3; i++)
+      g_assert_cmpint (ABS (raster->rgb[3 * ((gint) y * raster->width +
+                      (gint) x) + i] - rgb[i]), <=, 1);
+    /* The ground between four dots. */
+    g_assert_cmpint (raster->grey[((gint) y - half + 2) * raster->width +
+            (gint) x - half + 2], ==, 0);
+  }
+  g_test_message ("%s: centres within %.3f px, areas within %.2f%%", what,
+      most_off, 100 * most_area);
+  g_assert_cmpfloat (most_off, <=, 0.05);
+  g_assert_cmpfloat (most_area, <=, 0.01);
+}
+
+static void
+test_m_array (void)
+{
+  const ClothMArrayCode code = CLOTH_M_ARRAY_CODE_INIT;
+  ClothPrintOptions options = CLOTH_PRINT_OPTIONS_INIT;
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothMArray) array =
+      cloth_m_array_new (7, 5, 8, 0.02, 0.013, 0.012, &code, &error);
+  const ClothArtwork artwork = { NULL, array };
+  g_autofree gchar *pdf = in_folder ("dots.pdf");
+  g_autofree gchar *svg = in_folder ("dots.svg");
+  g_auto (GStrv) pdf_names = cloth_print_save (&artwork, &options, pdf, NULL);
+  g_auto (GStrv) svg_names = cloth_print_save (&artwork, &options, svg, NULL);
+  g_auto (Raster) pdf_raster = { 0 };
+  g_auto (Raster) svg_raster = { 0 };
+  gint patches;
+
+  g_assert_no_error (error);
+  g_assert_cmpuint (g_strv_length (pdf_names), ==, 1);
+  g_assert_cmpuint (g_strv_length (svg_names), ==, 1);
+  pdf_raster = raster_pdf (pdf, 1);
+  svg_raster = raster_svg (svg);
+  check_m_array (&pdf_raster, array, "PDF");
+  check_m_array (&svg_raster, array, "SVG");
+  /* The patches of its colours: 25 mm of them, from 112.5 mm on, 11 to 15 mm below the
+   * cloth. */
+  patches = (gint) round ((10 + array->cloth_m[1] * 1000 + 13) * PX);
+  for (gint i = 0; i < array->n_colours; i++) {
+    const gint x = (gint) ((112.5 + (i + 0.5) * 25 / array->n_colours) * PX);
+
+    for (gint k = 0; k < 3; k++)
+      g_assert_cmpint (ABS (svg_raster.rgb[3 * (patches * svg_raster.width +
+                      x) + k] - array->colours[i].rgb[k]), <=, 1);
+  }
+  g_unlink (pdf);
+  g_unlink (svg);
+}
+
 static void
 test_same_bytes (void)
 {
@@ -321,23 +412,24 @@ test_same_bytes (void)
   g_autoptr (GBytes) pdf = NULL;
   g_autoptr (GBytes) pdf_again = NULL;
   g_autoptr (GBytes) pdf_dated = NULL;
-  g_autoptr (GBytes) svg = cloth_print_svg (pattern, &options, 0, 0, NULL);
+  g_autoptr (GBytes) svg =
+      cloth_print_svg (BOARD (pattern), &options, 0, 0, NULL);
   g_autoptr (GBytes) svg_again = NULL;
   gsize size;
   const gchar *text;
 
   g_unsetenv ("SOURCE_DATE_EPOCH");
-  pdf = cloth_print_pdf (pattern, &options, NULL);
+  pdf = cloth_print_pdf (BOARD (pattern), &options, NULL);
   /* A second later the date would differ, if it were the clock's. */
   g_usleep (1100000);
-  pdf_again = cloth_print_pdf (pattern, &options, NULL);
-  svg_again = cloth_print_svg (pattern, &options, 0, 0, NULL);
+  pdf_again = cloth_print_pdf (BOARD (pattern), &options, NULL);
+  svg_again = cloth_print_svg (BOARD (pattern), &options, 0, 0, NULL);
   g_assert_true (g_bytes_equal (pdf, pdf_again));
   g_assert_true (g_bytes_equal (svg, svg_again));
   text = g_bytes_get_data (pdf, &size);
   g_assert_nonnull (memmem (text, size, "19700101000000Z", 15));
   g_setenv ("SOURCE_DATE_EPOCH", "1700000000", TRUE);
-  pdf_dated = cloth_print_pdf (pattern, &options, NULL);
+  pdf_dated = cloth_print_pdf (BOARD (pattern), &options, NULL);
   text = g_bytes_get_data (pdf_dated, &size);
   g_assert_nonnull (memmem (text, size, "20231114221320Z", 15));
   g_unsetenv ("SOURCE_DATE_EPOCH");
@@ -373,7 +465,7 @@ test_layout (void)
   ClothPrintLayout layout;
 
   cloth_print_paper ("A4", options.paper_mm);
-  g_assert_true (cloth_print_layout (pattern, &options, &layout, NULL));
+  g_assert_true (cloth_print_layout (BOARD (pattern), &options, &layout, NULL));
   g_assert_cmpint (layout.sheets[0], ==, 3);
   g_assert_cmpint (layout.sheets[1], ==, 1);
   g_assert_cmpfloat (layout.step_mm[0], ==, 180);
@@ -405,7 +497,7 @@ test_refused (void)
     cases[i].overlap
     };
 
-    g_assert_null (cloth_print_save (pattern, &options, path, &error));
+    g_assert_null (cloth_print_save (BOARD (pattern), &options, path, &error));
     g_assert_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_VALUE);
     g_test_message ("%s", error->message);
     g_assert_false (g_file_test (path, G_FILE_TEST_EXISTS));
@@ -419,14 +511,15 @@ test_save_refused (void)
   g_autoptr (ClothPattern) pattern = board (4, 4, 0.02, TRUE, FALSE);
   const ClothPrintOptions options = CLOTH_PRINT_OPTIONS_INIT;
 
-  g_assert_null (cloth_print_save (pattern, &options, "board.png", &error));
+  g_assert_null (cloth_print_save (BOARD (pattern), &options, "board.png",
+          &error));
   g_assert_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_VALUE);
   g_clear_error (&error);
-  g_assert_null (cloth_print_save (pattern, &options, "/nowhere/board.pdf",
-          &error));
+  g_assert_null (cloth_print_save (BOARD (pattern), &options,
+          "/nowhere/board.pdf", &error));
   g_assert_error (error, G_FILE_ERROR, G_FILE_ERROR_NOENT);
   g_clear_error (&error);
-  g_assert_null (cloth_print_svg (pattern, &options, 1, 0, &error));
+  g_assert_null (cloth_print_svg (BOARD (pattern), &options, 1, 0, &error));
   g_assert_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_VALUE);
 }
 
@@ -440,6 +533,7 @@ main (int argc, char **argv)
   g_test_add_func ("/print/true-size", test_true_size);
   g_test_add_func ("/print/tiles-reassemble", test_tiles_reassemble);
   g_test_add_func ("/print/dots", test_dots);
+  g_test_add_func ("/print/m-array", test_m_array);
   g_test_add_func ("/print/same-bytes", test_same_bytes);
   g_test_add_func ("/print/paper", test_paper);
   g_test_add_func ("/print/layout", test_layout);

@@ -59,6 +59,18 @@ def good_calls(folder):
     left = sorted(os.listdir(os.path.join(folder, 'one')))
     expect(left == sorted(os.path.basename(name) for name in names), 'nothing else is left: %s' % left)
 
+    done = run(folder, 'm-array', '--columns', '14', '--rows', '11', '--pitch', '2cm', '--colours', '4',
+               '--two-sided', '--paper', 'A4', '--output', 'dots.pdf')
+    expect(done.returncode == 0 and done.stdout == 'dots.pdf\npattern.json\n', 'an M-array ' + done.stderr)
+    with open(os.path.join(folder, 'pattern.json'), encoding='utf-8') as file:
+        pattern = json.load(file)
+    matrix = pattern.pop('matrix')
+    expect(pattern == {'version': 1, 'pattern': 'm-array', 'colours': ['cyan', 'magenta', 'yellow', 'orange'],
+                       'rgb': [[40, 165, 215], [205, 40, 120], [235, 215, 40], [235, 120, 25]],
+                       'pitch_m': 0.02, 'diameter_m': 0.013, 'origin_uv_m': [0.01, 0.01],
+                       'cloth_m': [0.28, 0.22], 'columns': 14, 'rows': 11}, 'its pattern.json: %s' % pattern)
+    expect(len(matrix) == 11 and all(len(row) == 14 for row in matrix), 'its matrix')
+
 
 def told(folder):
     done = run(folder, '--version')
@@ -103,6 +115,29 @@ BAD_USAGE = [
     (['coded-checker', '--output', 'x.pdf', '--columns', '3'], 'at least 4 by 4'),
     (['coded-checker', '--output', 'x.pdf', '--dot-ratio', '1'], 'dot'),
     (['coded-checker', '--output', 'x.pdf', '--dot-ratio', 'nan'], 'dot'),
+    (['coded-checker', '--output', 'x.pdf', '--dot-ratio', '0'], 'dot'),
+    (['checker', '--output', 'x.pdf', '--pitch', '20mm'], '--pitch is not for'),
+    (['checker', '--output', 'x.pdf', '--diameter', '20mm'], '--diameter is not for'),
+    (['coded-checker', '--output', 'x.pdf', '--colours', '0'], '--colours is not for'),
+    (['checker', '--output', 'x.pdf', '--distance', '2'], '--distance is not for'),
+    (['checker', '--output', 'x.pdf', '--two-sided'], '--two-sided is not for'),
+    (['m-array', '--output', 'x.pdf', '--square', '20mm'], '--square is not for'),
+    (['m-array', '--output', 'x.pdf', '--first', 'black'], '--first is not for'),
+    (['m-array', '--output', 'x.pdf', '--dot-ratio', '0.5'], '--dot-ratio is not for'),
+    (['m-array', '--output', 'x.pdf', '--pitch', '20'], 'with its unit'),
+    (['m-array', '--output', 'x.pdf', '--pitch', '0mm'], 'pitch_m'),
+    (['m-array', '--output', 'x.pdf', '--diameter', 'wide'], 'with its unit'),
+    (['m-array', '--output', 'x.pdf', '--diameter', '20mm'], 'diameter_m'),
+    (['m-array', '--output', 'x.pdf', '--margin', '1mm'], 'the cloth'),
+    (['m-array', '--output', 'x.pdf', '--columns', '2'], '3 to 500'),
+    (['m-array', '--output', 'x.pdf', '--rows', '501'], '3 to 500'),
+    (['m-array', '--output', 'x.pdf', '--colours', '1'], '2 to 8'),
+    (['m-array', '--output', 'x.pdf', '--colours', '9'], '2 to 8'),
+    (['m-array', '--output', 'x.pdf', '--distance', '0'], 'distance'),
+    (['m-array', '--output', 'x.pdf', '--distance', '6'], 'distance'),
+    (['m-array', '--output', 'x.pdf', '--colours', '3'], 'at most 2460'),
+    (['m-array', '--output', 'x.pdf', '--pitch', '3cm'], 'paper'),
+    (['m-array', '--output', 'x.pdf', '--paper', 'A5'], 'sheets'),
 ]
 
 
@@ -113,6 +148,8 @@ def bad_calls(folder):
                '%s: %d %r' % (' '.join(arguments), done.returncode, done.stderr))
     done = run(folder, 'checker', '--output', 'nowhere/board.pdf')
     expect(done.returncode == 1 and 'nowhere/board.pdf' in done.stderr, 'no such folder: %r' % done.stderr)
+    done = run(folder, 'm-array', '--columns', '40', '--rows', '40', '--distance', '4', '--output', 'x.pdf')
+    expect(done.returncode == 1 and 'less distance' in done.stderr, 'a code that is not found: %r' % done.stderr)
     os.makedirs(os.path.join(folder, 'taken', 'pattern.json'))
     done = run(folder, 'checker', '--output', 'taken/board.svg')
     expect(done.returncode == 1 and 'pattern.json' in done.stderr, 'a folder in the way: %r' % done.stderr)

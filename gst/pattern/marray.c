@@ -1,0 +1,459 @@
+/* Colour-coded dots: limits, reading and writing pattern.json.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/pattern/marray.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/file/jsonvalue.h"
+#include "gst/file/jsonwriter.h"
+
+/* Sizes of cloth beyond this are a mistake of the unit. */
+#define MAX_METRES 1000.0
+/* Rounding of decimal sizes that should add up exactly. */
+#define SLACK 1e-9
+
+static const ClothJsonFile pattern_json =
+    { "pattern.json", cloth_pattern_error_quark, CLOTH_PATTERN_ERROR_FORMAT };
+
+/* The paper's five as they were printed for the project's own films, then those that
+ * lie farthest from them. */
+static const ClothDotColour default_colours[CLOTH_M_ARRAY_MAX_COLOURS] = {
+  {"cyan", {40, 165, 215}}, {"magenta", {205, 40, 120}},
+  {"yellow", {235, 215, 40}}, {"orange", {235, 120, 25}},
+  {"green", {45, 160, 60}}, {"white", {235, 235, 235}},
+  {"blue", {60, 70, 200}}, {"red", {205, 30, 30}}
+};
+
+static gboolean
+refuse (GError ** error, const gchar * format, ...)
+G_GNUC_PRINTF (2, 3);
+
+     static gboolean refuse (GError ** error, const gchar * format, ...)
+{
+  va_list arguments;
+
+  va_start (arguments, format);
+  if (error)
+    *error = g_error_new_valist (CLOTH_PATTERN_ERROR,
+        CLOTH_PATTERN_ERROR_VALUE, format, arguments);
+  va_end (arguments);
+  return FALSE;
+}
+
+static gboolean
+check_sizes (const ClothMArray * array, GError ** error)
+{
+  const gint dots[2] = { array->columns, array->rows };
+
+  if (!(array->pitch_m > 0 && array->pitch_m <= MAX_METRES))
+    return refuse (error, "pitch_m is %g: give the distance of the dots' "
+        "centres in metres, more than 0 and at most %g", array->pitch_m,
+        MAX_METRES);
+  if (!(array->diameter_m > 0 && array->diameter_m < array->pitch_m))
+    return refuse (error, "diameter_m is %g: give the dots' diameter in "
+        "metres, more than 0 and less than the pitch of %g",
+        array->diameter_m, array->pitch_m);
+  for (gint i = 0; i < 2; i++) {
+    const gdouble first = array->origin_uv_m[i] - array->diameter_m / 2;
+    const gdouble last = array->origin_uv_m[i]
+        + (dots[i] - 1) * array->pitch_m + array->diameter_m / 2;
+
+    if (!(array->cloth_m[i] > 0 && array->cloth_m[i] <= MAX_METRES))
+      return refuse (error, "cloth_m has %g: give the width and height of the "
+          "cloth in metres, more than 0 and at most %g", array->cloth_m[i],
+          MAX_METRES);
+    if (!(first >= -SLACK && last <= array->cloth_m[i] + SLACK))
+      return refuse (error, "the dots' %s goes from %g m to %g m but the cloth "
+          "from 0 to %g m: move origin_uv_m, make the pitch smaller or the "
+          "cloth larger", i == 0 ? "width" : "height", first, last,
+          array->cloth_m[i]);
+  }
+  return TRUE;
+}
+
+/**
+ * cloth_m_array_check:
+ * @array: an array
+ * @error: return location
+ *
+ * Checks every limit: %CLOTH_M_ARRAY_MIN to %CLOTH_M_ARRAY_MAX dots each way, 2 to
+ * %CLOTH_M_ARRAY_MAX_COLOURS colours of different names, finite positive sizes, dots
+ * apart from each other and within the cloth, colours of the matrix among those named.
+ * Whether windows are unique is not checked: print that has a few twins is still read.
+ *
+ * Returns: %TRUE when @array is sound, else %FALSE with %CLOTH_PATTERN_ERROR_VALUE
+ *
+ * Since: 0.1
+ */
+gboolean
+cloth_m_array_check (const ClothMArray * array, GError ** error)
+{
+  if (array->columns < CLOTH_M_ARRAY_MIN || array->columns > CLOTH_M_ARRAY_MAX
+      || array->rows < CLOTH_M_ARRAY_MIN || array->rows > CLOTH_M_ARRAY_MAX)
+    return refuse (error, "%d by %d dots: use %d to %d each way",
+        array->columns, array->rows, CLOTH_M_ARRAY_MIN, CLOTH_M_ARRAY_MAX);
+  if (array->n_colours < 2 || array->n_colours > CLOTH_M_ARRAY_MAX_COLOURS)
+    return refuse (error, "%d colours: use 2 to %d", array->n_colours,
+        CLOTH_M_ARRAY_MAX_COLOURS);
+  for (gint i = 0; i < array->n_colours; i++) {
+    for (gint j = 0; j < i; j++) {
+      if (!strcmp (array->colours[i].name, array->colours[j].name))
+        return refuse (error, "two colours are called \"%s\"",
+            array->colours[i].name);
+    }
+  }
+  for (gint i = 0; i < array->columns * array->rows; i++) {
+    if (array->matrix[i] >= array->n_colours)
+      return refuse (error, "the matrix has a colour %d: there are 0 to %d",
+          array->matrix[i], array->n_colours - 1);
+  }
+  return check_sizes (array, error);
+}
+
+/**
+ * cloth_m_array_new:
+ * @columns: dots in a row
+ * @rows: dots in a column
+ * @n_colours: how many colours; their names and shades are cyan, magenta, yellow,
+ *   orange, green (the paper's), white, blue, red
+ * @pitch_m: from the centre of a dot to that of the next, metres
+ * @diameter_m: of a dot, metres
+ * @margin_m: from the centres of the outer dots to the cloth's edge, metres
+ * @code: distance, sides, seed
+ * @error: return location
+ *
+ * A cloth with a new M-array; see cloth_m_array_generate().
+ *
+ * Returns: (transfer full): the array; free with cloth_m_array_free(). %NULL with
+ *   %CLOTH_PATTERN_ERROR_VALUE or %CLOTH_PATTERN_ERROR_CODE
+ *
+ * Since: 0.1
+ */
+ClothMArray *
+cloth_m_array_new (gint columns, gint rows, gint n_colours, gdouble pitch_m,
+    gdouble diameter_m, gdouble margin_m, const ClothMArrayCode * code,
+    GError ** error)
+{
+  g_autoptr (ClothMArray) array = g_new0 (ClothMArray, 1);
+
+  *array = (ClothMArray) {
+    .columns = columns,.rows = rows,.n_colours = n_colours,.pitch_m =
+        pitch_m,.diameter_m = diameter_m,.origin_uv_m = {
+      margin_m, margin_m
+    },.cloth_m = {
+      (columns - 1) * pitch_m + 2 * margin_m,
+      (rows - 1) * pitch_m + 2 * margin_m
+  }};
+  memcpy (array->colours, default_colours, sizeof default_colours);
+  array->matrix = g_malloc0 (CLOTH_M_ARRAY_MAX * CLOTH_M_ARRAY_MAX);
+  /* The sizes first: the search may take a while. */
+  if (!cloth_m_array_check (array, error)
+      || !cloth_m_array_generate (columns, rows, n_colours, code,
+          array->matrix, error))
+    return NULL;
+  return g_steal_pointer (&array);
+}
+
+/**
+ * cloth_m_array_free:
+ * @array: (nullable) (transfer full): an array
+ *
+ * Since: 0.1
+ */
+void
+cloth_m_array_free (ClothMArray * array)
+{
+  if (!array)
+    return;
+  g_free (array->matrix);
+  g_free (array);
+}
+
+/* --- reading ------------------------------------------------------------------ */
+
+/* Whole numbers from 0 to @most, @n of them, from item @i of @list. */
+static gboolean
+read_bytes (JsonArray * list, guint i, const gchar * key, guint n, guint most,
+    guint8 * values, GError ** error)
+{
+  JsonNode *item = json_array_get_element (list, i);
+  JsonArray *row = JSON_NODE_HOLDS_ARRAY (item)
+      ? json_node_get_array (item) : NULL;
+
+  if (!row || json_array_get_length (row) != n)
+    return cloth_json_invalid (&pattern_json, error,
+        "item %u of “%s” must be a list of %u whole numbers from 0 to %u",
+        i, key, n, most);
+  for (guint k = 0; k < n; k++) {
+    gdouble number;
+
+    if (!cloth_json_number (json_array_get_element (row, k), &number)
+        || number != floor (number) || number < 0 || number > most)
+      return cloth_json_invalid (&pattern_json, error,
+          "item %u of “%s” must be a list of %u whole numbers from 0 to %u",
+          i, key, n, most);
+    values[k] = (guint8) number;
+  }
+  return TRUE;
+}
+
+/* A list that must be there with @n items; with @n 0, with 2 to the most colours. */
+static JsonArray *
+read_list (JsonObject * object, const gchar * key, guint n, GError ** error)
+{
+  gboolean bad;
+  JsonArray *list = cloth_json_get_list (&pattern_json, object, key,
+      CLOTH_M_ARRAY_MAX, &bad, error);
+  guint length = list ? json_array_get_length (list) : 0;
+
+  if (bad)
+    return NULL;
+  if (n == 0 && (length < 2 || length > CLOTH_M_ARRAY_MAX_COLOURS)) {
+    cloth_json_invalid (&pattern_json, error,
+        "“%s” must be a list of 2 to %d names", key,
+        CLOTH_M_ARRAY_MAX_COLOURS);
+    return NULL;
+  }
+  if (n > 0 && length != n) {
+    cloth_json_invalid (&pattern_json, error,
+        "“%s” must be a list of %u items, not %u", key, n, length);
+    return NULL;
+  }
+  return list;
+}
+
+static gboolean
+read_colours (JsonObject * object, ClothMArray * array, GError ** error)
+{
+  JsonArray *names = read_list (object, "colours", 0, error), *rgb;
+
+  if (!names)
+    return FALSE;
+  array->n_colours = (gint) json_array_get_length (names);
+  if (!(rgb = read_list (object, "rgb", (guint) array->n_colours, error)))
+    return FALSE;
+  for (guint i = 0; i < (guint) array->n_colours; i++) {
+    JsonNode *item = json_array_get_element (names, i);
+    const gchar *name = NULL;
+
+    if (JSON_NODE_HOLDS_VALUE (item)
+        && json_node_get_value_type (item) == G_TYPE_STRING)
+      name = json_node_get_string (item);
+    if (!name || !*name || strlen (name) >= sizeof array->colours[i].name)
+      return cloth_json_invalid (&pattern_json, error,
+          "item %u of “colours” must be a name of 1 to %u bytes", i,
+          (guint) sizeof array->colours[i].name - 1);
+    g_strlcpy (array->colours[i].name, name, sizeof array->colours[i].name);
+    if (!read_bytes (rgb, i, "rgb", 3, 255, array->colours[i].rgb, error))
+      return FALSE;
+  }
+  return TRUE;
+}
+
+static gboolean
+read_pair (JsonObject * object, const gchar * key, gdouble pair[2],
+    GError ** error)
+{
+  JsonArray *list = read_list (object, key, 2, error);
+
+  if (!list)
+    return FALSE;
+  if (!cloth_json_number (json_array_get_element (list, 0), &pair[0])
+      || !cloth_json_number (json_array_get_element (list, 1), &pair[1]))
+    return cloth_json_invalid (&pattern_json, error,
+        "“%s” must be a list of two numbers, metres", key);
+  return TRUE;
+}
+
+static gboolean
+read_array (JsonObject * object, ClothMArray * array, GError ** error)
+{
+  guint columns, rows;
+  JsonArray *matrix;
+
+  if (!read_colours (object, array, error)
+      || !cloth_json_get_count (&pattern_json, object, "columns",
+          CLOTH_M_ARRAY_MIN, CLOTH_M_ARRAY_MAX, &columns, error)
+      || !cloth_json_get_count (&pattern_json, object, "rows",
+          CLOTH_M_ARRAY_MIN, CLOTH_M_ARRAY_MAX, &rows, error)
+      || !cloth_json_get_number (&pattern_json, object, "pitch_m", 0,
+          MAX_METRES, &array->pitch_m, error)
+      || !cloth_json_get_number (&pattern_json, object, "diameter_m", 0,
+          MAX_METRES, &array->diameter_m, error)
+      || !read_pair (object, "origin_uv_m", array->origin_uv_m, error)
+      || !read_pair (object, "cloth_m", array->cloth_m, error)
+      || !(matrix = read_list (object, "matrix", rows, error)))
+    return FALSE;
+  array->columns = (gint) columns;
+  array->rows = (gint) rows;
+  array->matrix = g_malloc0 ((gsize) columns * rows);
+  for (guint row = 0; row < rows; row++) {
+    if (!read_bytes (matrix, row, "matrix", columns,
+            (guint) array->n_colours - 1, array->matrix + row * columns, error))
+      return FALSE;
+  }
+  return cloth_m_array_check (array, error);
+}
+
+/**
+ * cloth_m_array_load_data:
+ * @data: (array length=size): the text of a pattern.json, not ended by 0
+ * @size: its bytes
+ * @error: return location
+ *
+ * Reads an M-array from memory. Keys: `version` (1; may be missing), `pattern`
+ * ("m-array"), `colours` (names), `rgb` (a list of three for each), `pitch_m`,
+ * `diameter_m`, `origin_uv_m`, `cloth_m`, `columns`, `rows` and `matrix`, a list of
+ * colours for each row. Other keys are an error.
+ *
+ * Returns: (transfer full): the array, or %NULL with a #ClothPatternError
+ *
+ * Since: 0.1
+ */
+ClothMArray *
+cloth_m_array_load_data (const gchar * data, gsize size, GError ** error)
+{
+  static const gchar *const keys[] = { "version", "pattern", "colours", "rgb",
+    "pitch_m", "diameter_m", "origin_uv_m", "cloth_m", "columns", "rows",
+    "matrix", NULL
+  };
+  g_autoptr (GError) fault = NULL;
+  g_autoptr (JsonParser) parser = cloth_json_parse (data, size, &fault);
+  g_autoptr (ClothMArray) array = g_new0 (ClothMArray, 1);
+  g_autofree gchar *kind = NULL;
+  gdouble version = 1;
+  JsonObject *object;
+
+  if (!parser) {
+    g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_FORMAT,
+        "no pattern.json: %s", fault->message);
+    return NULL;
+  }
+  object = json_node_get_object (json_parser_get_root (parser));
+  if (!cloth_json_get_number (&pattern_json, object, "version", 0, 1e9,
+          &version, error)
+      || !cloth_json_get_string (&pattern_json, object, "pattern", &kind,
+          error))
+    return NULL;
+  if (version != 1) {
+    g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_UNSUPPORTED,
+        "version %g of pattern.json: this build reads version 1", version);
+    return NULL;
+  }
+  if (g_strcmp0 (kind, "m-array")) {
+    g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_UNSUPPORTED,
+        "a pattern of kind \"%.40s\": dots are read from one of kind "
+        "\"m-array\"", kind ? kind : "");
+    return NULL;
+  }
+  if (!cloth_json_check_keys (&pattern_json, object, "an M-array", keys, error)
+      || !read_array (object, array, error))
+    return NULL;
+  return g_steal_pointer (&array);
+}
+
+/**
+ * cloth_m_array_load:
+ * @path: (type filename): a pattern.json
+ * @error: return location
+ *
+ * Reads an M-array; see cloth_m_array_load_data() for what the file holds. The error's
+ * message begins with @path.
+ *
+ * Returns: (transfer full): the array, or %NULL with a #ClothPatternError,
+ *   #ClothFileError when the file is too large, or #GFileError
+ *
+ * Since: 0.1
+ */
+ClothMArray *
+cloth_m_array_load (const gchar * path, GError ** error)
+{
+  g_autofree gchar *data = NULL;
+  ClothMArray *array;
+  gsize size;
+
+  if (!(data = cloth_text_file_load (path, &size, error)))
+    return NULL;
+  array = cloth_m_array_load_data (data, size, error);
+  if (!array)
+    g_prefix_error (error, "%s: ", path);
+  return array;
+}
+
+/* --- writing ------------------------------------------------------------------ */
+
+static void
+put_bytes (ClothJsonWriter * writer, const guint8 * values, gint n)
+{
+  gdouble numbers[CLOTH_M_ARRAY_MAX];
+
+  for (gint i = 0; i < n; i++)
+    numbers[i] = values[i];
+  cloth_json_writer_numbers (writer, NULL, numbers, (gsize) n);
+}
+
+/**
+ * cloth_m_array_to_json:
+ * @array: a sound array
+ *
+ * Returns: (transfer full): the text of its pattern.json; equal arrays give equal bytes
+ *   and every number reads back as it was
+ *
+ * Since: 0.1
+ */
+gchar *
+cloth_m_array_to_json (const ClothMArray * array)
+{
+  g_autoptr (ClothJsonWriter) writer = cloth_json_writer_new ();
+
+  cloth_json_writer_set_exact (writer);
+  cloth_json_writer_begin_object (writer, NULL);
+  cloth_json_writer_count (writer, "version", 1);
+  cloth_json_writer_string (writer, "pattern", "m-array");
+  cloth_json_writer_begin_array (writer, "colours");
+  for (gint i = 0; i < array->n_colours; i++)
+    cloth_json_writer_string (writer, NULL, array->colours[i].name);
+  cloth_json_writer_end_array (writer);
+  cloth_json_writer_begin_array (writer, "rgb");
+  for (gint i = 0; i < array->n_colours; i++)
+    put_bytes (writer, array->colours[i].rgb, 3);
+  cloth_json_writer_end_array (writer);
+  cloth_json_writer_number (writer, "pitch_m", array->pitch_m);
+  cloth_json_writer_number (writer, "diameter_m", array->diameter_m);
+  cloth_json_writer_numbers (writer, "origin_uv_m", array->origin_uv_m, 2);
+  cloth_json_writer_numbers (writer, "cloth_m", array->cloth_m, 2);
+  cloth_json_writer_count (writer, "columns", (guint64) array->columns);
+  cloth_json_writer_count (writer, "rows", (guint64) array->rows);
+  cloth_json_writer_begin_array (writer, "matrix");
+  for (gint row = 0; row < array->rows; row++)
+    put_bytes (writer, array->matrix + row * array->columns, array->columns);
+  cloth_json_writer_end_array (writer);
+  cloth_json_writer_end_object (writer);
+  return cloth_json_writer_finish (writer);
+}
+
+/**
+ * cloth_m_array_save:
+ * @array: an array
+ * @path: (type filename): where to
+ * @error: return location
+ *
+ * Writes pattern.json; the file appears whole or not at all.
+ *
+ * Returns: %FALSE with %CLOTH_PATTERN_ERROR_VALUE or a #GFileError
+ *
+ * Since: 0.1
+ */
+gboolean
+cloth_m_array_save (const ClothMArray * array, const gchar * path,
+    GError ** error)
+{
+  g_autofree gchar *text = NULL;
+
+  if (!cloth_m_array_check (array, error))
+    return FALSE;
+  text = cloth_m_array_to_json (array);
+  return g_file_set_contents (path, text, -1, error);
+}

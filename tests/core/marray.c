@@ -1,0 +1,273 @@
+/* M-arrays: what is made, read, written and refused. That windows are unique is checked
+ * by marrayunique.py.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/pattern/marray.h"
+
+#include <glib/gstdio.h>
+#include <math.h>
+#include <string.h>
+
+static ClothMArray *
+made (gint columns, gint rows, guint64 seed)
+{
+  const ClothMArrayCode code = { 1, FALSE, seed };
+  g_autoptr (GError) error = NULL;
+  ClothMArray *array = cloth_m_array_new (columns, rows, 5, 0.02, 0.013, 0.01,
+      &code, &error);
+
+  g_assert_no_error (error);
+  return array;
+}
+
+static void
+test_new (void)
+{
+  g_autoptr (ClothMArray) array = made (9, 7, 1);
+  gboolean seen[5] = { FALSE };
+
+  g_assert_cmpfloat_with_epsilon (array->cloth_m[0], 0.18, 1e-12);
+  g_assert_cmpfloat_with_epsilon (array->cloth_m[1], 0.14, 1e-12);
+  g_assert_cmpfloat (array->origin_uv_m[1], ==, 0.01);
+  g_assert_cmpstr (array->colours[0].name, ==, "cyan");
+  g_assert_cmpstr (array->colours[4].name, ==, "green");
+  for (gint i = 0; i < 63; i++)
+    seen[array->matrix[i]] = TRUE;
+  for (gint i = 0; i < 5; i++)
+    g_assert_true (seen[i]);
+}
+
+static void
+test_deterministic (void)
+{
+  g_autoptr (ClothMArray) a = made (30, 20, 7);
+  g_autoptr (ClothMArray) b = made (30, 20, 7);
+  g_autoptr (ClothMArray) c = made (30, 20, 8);
+
+  g_assert_cmpmem (a->matrix, 600, b->matrix, 600);
+  g_assert_cmpint (memcmp (a->matrix, c->matrix, 600), !=, 0);
+}
+
+/* Limits, and sizes that cannot exist or are not found. */
+static void
+test_generate_refused (void)
+{
+  const struct
+  {
+    gint columns, rows, colours, distance;
+    gboolean two_sided;
+    gint code;
+    const gchar *says;
+  } cases[] = {
+    {2, 9, 5, 1, FALSE, CLOTH_PATTERN_ERROR_VALUE, "columns"},
+    {9, 2, 5, 1, FALSE, CLOTH_PATTERN_ERROR_VALUE, "rows"},
+    {501, 9, 5, 1, FALSE, CLOTH_PATTERN_ERROR_VALUE, "3 to 500"},
+    {G_MININT, 9, 5, 1, FALSE, CLOTH_PATTERN_ERROR_VALUE, "columns"},
+    {9, G_MAXINT, 5, 1, FALSE, CLOTH_PATTERN_ERROR_VALUE, "rows"},
+    {9, 9, 1, 1, FALSE, CLOTH_PATTERN_ERROR_VALUE, "colours"},
+    {9, 9, 9, 1, FALSE, CLOTH_PATTERN_ERROR_VALUE, "2 to 8"},
+    {9, 9, 5, 0, FALSE, CLOTH_PATTERN_ERROR_VALUE, "distance"},
+    {9, 9, 5, 6, FALSE, CLOTH_PATTERN_ERROR_VALUE, "distance"},
+    /* 512 words of two colours are at most 64 windows in 8 turns, 32 on two sides. */
+    {11, 10, 2, 1, FALSE, CLOTH_PATTERN_ERROR_VALUE, "at most 64"},
+    {8, 8, 2, 1, TRUE, CLOTH_PATTERN_ERROR_VALUE, "at most 32 seen from both"},
+    /* The bound leaves room; only 30 necklaces of 8 in two colours have no period, with
+     * either centre 60 windows. */
+    {10, 10, 2, 1, FALSE, CLOTH_PATTERN_ERROR_CODE, "more colours"},
+    {40, 40, 5, 4, FALSE, CLOTH_PATTERN_ERROR_CODE, "less distance"},
+  };
+
+  for (gsize i = 0; i < G_N_ELEMENTS (cases); i++) {
+    const ClothMArrayCode code = { cases[i].distance, cases[i].two_sided, 1 };
+    g_autofree guint8 *matrix = g_malloc (2500);
+    g_autoptr (GError) error = NULL;
+
+    g_assert_false (cloth_m_array_generate (cases[i].columns, cases[i].rows,
+            cases[i].colours, &code, matrix, &error));
+    g_assert_error (error, CLOTH_PATTERN_ERROR, cases[i].code);
+    g_test_message ("%s", error->message);
+    g_assert_nonnull (strstr (error->message, cases[i].says));
+  }
+}
+
+static void
+test_new_refused (void)
+{
+  const gdouble cases[][3] = { {0, 0.013, 0.01}, {-0.02, 0.013, 0.01},
+  {NAN, 0.013, 0.01}, {INFINITY, 0.013, 0.01}, {0.02, 0, 0.01},
+  {0.02, 0.02, 0.01}, {0.02, NAN, 0.01}, {0.02, 0.013, 0.006},
+  {0.02, 0.013, -1}, {0.02, 0.013, NAN}, {200, 0.013, 0.01},
+  {0.02, 0.013, 1e9}
+  };
+  const ClothMArrayCode code = CLOTH_M_ARRAY_CODE_INIT;
+
+  for (gsize i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autoptr (GError) error = NULL;
+
+    g_assert_null (cloth_m_array_new (9, 9, 5, cases[i][0], cases[i][1],
+            cases[i][2], &code, &error));
+    g_assert_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_VALUE);
+  }
+}
+
+static void
+test_round_trip (void)
+{
+  g_autoptr (ClothMArray) array = made (6, 4, 3);
+  g_autoptr (ClothMArray) read = NULL;
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *dir = g_dir_make_tmp ("marray-XXXXXX", NULL);
+  g_autofree gchar *path = g_build_filename (dir, "pattern.json", NULL);
+  g_autofree gchar *text = NULL, *again = NULL;
+
+  array->pitch_m = 1.0 / 60;
+  g_assert_true (cloth_m_array_save (array, path, &error));
+  read = cloth_m_array_load (path, &error);
+  g_assert_no_error (error);
+  g_assert_cmpfloat (read->pitch_m, ==, 1.0 / 60);
+  g_assert_cmpmem (read->matrix, 24, array->matrix, 24);
+  g_assert_cmpint (read->colours[3].rgb[1], ==, 120);
+  text = cloth_m_array_to_json (array);
+  again = cloth_m_array_to_json (read);
+  g_assert_cmpstr (text, ==, again);
+  /* Unsound: nothing is written over what is there. */
+  array->matrix[5] = 5;
+  g_assert_false (cloth_m_array_save (array, path, &error));
+  g_assert_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_VALUE);
+  cloth_m_array_free (g_steal_pointer (&read));
+  read = cloth_m_array_load (path, NULL);
+  g_assert_nonnull (read);
+  g_unlink (path);
+  g_rmdir (dir);
+}
+
+#define HEAD "{\"pattern\":\"m-array\",\"colours\":[\"red\",\"blue\"]," \
+    "\"rgb\":[[255,0,0],[0,0,255]],"
+#define SIZE "\"pitch_m\":0.02,\"diameter_m\":0.01,\"origin_uv_m\":[0.01,0.01]," \
+    "\"cloth_m\":[0.06,0.06],"
+#define COUNT "\"columns\":3,\"rows\":3,"
+#define MATRIX "\"matrix\":[[0,1,1],[0,0,1],[1,0,1]]}"
+
+static void
+test_read (void)
+{
+  static const gchar text[] = HEAD SIZE COUNT MATRIX;
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothMArray) array =
+      cloth_m_array_load_data (text, strlen (text), &error);
+
+  g_assert_no_error (error);
+  g_assert_cmpint (array->n_colours, ==, 2);
+  g_assert_cmpint (array->matrix[5], ==, 1);
+  g_assert_cmpint (array->matrix[7], ==, 0);
+}
+
+static void
+test_read_refused (void)
+{
+  const struct
+  {
+    const gchar *text;
+    gint code;
+    const gchar *says;
+  } cases[] = {
+    {"", CLOTH_PATTERN_ERROR_FORMAT, "pattern.json"},
+    {"[]", CLOTH_PATTERN_ERROR_FORMAT, "pattern.json"},
+    {"{}", CLOTH_PATTERN_ERROR_UNSUPPORTED, "m-array"},
+    {"{\"pattern\":\"checker\"}", CLOTH_PATTERN_ERROR_UNSUPPORTED, "checker"},
+    {"{\"pattern\":7}", CLOTH_PATTERN_ERROR_FORMAT, "pattern"},
+    {"{\"version\":2,\"pattern\":\"m-array\"}",
+        CLOTH_PATTERN_ERROR_UNSUPPORTED, "version 2"},
+    {HEAD SIZE COUNT "\"hue\":1," MATRIX, CLOTH_PATTERN_ERROR_FORMAT, "hue"},
+    {HEAD SIZE COUNT "\"rows\":3," MATRIX, CLOTH_PATTERN_ERROR_FORMAT,
+        "twice"},
+    {HEAD SIZE MATRIX, CLOTH_PATTERN_ERROR_FORMAT, "columns"},
+    {HEAD COUNT MATRIX, CLOTH_PATTERN_ERROR_FORMAT, "origin_uv_m"},
+    {HEAD SIZE "\"columns\":3,\"rows\":4," MATRIX,
+        CLOTH_PATTERN_ERROR_FORMAT, "4 items"},
+    {HEAD SIZE "\"columns\":4,\"rows\":3," MATRIX,
+        CLOTH_PATTERN_ERROR_FORMAT, "list of 4"},
+    {HEAD SIZE "\"columns\":3,\"rows\":501," MATRIX,
+        CLOTH_PATTERN_ERROR_FORMAT, "3 to 500"},
+    {HEAD SIZE COUNT "\"matrix\":[[0,1,2],[0,0,1],[1,0,1]]}",
+        CLOTH_PATTERN_ERROR_FORMAT, "0 to 1"},
+    {HEAD SIZE COUNT "\"matrix\":[[0,1,0.5],[0,0,1],[1,0,1]]}",
+        CLOTH_PATTERN_ERROR_FORMAT, "matrix"},
+    {HEAD SIZE COUNT "\"matrix\":[[0,1,-1],[0,0,1],[1,0,1]]}",
+        CLOTH_PATTERN_ERROR_FORMAT, "matrix"},
+    {HEAD SIZE COUNT "\"matrix\":[[0,1,null],[0,0,1],[1,0,1]]}",
+        CLOTH_PATTERN_ERROR_FORMAT, "matrix"},
+    {HEAD SIZE COUNT "\"matrix\":[7,7,7]}", CLOTH_PATTERN_ERROR_FORMAT,
+        "matrix"},
+    {HEAD SIZE COUNT "\"matrix\":{}}", CLOTH_PATTERN_ERROR_FORMAT, "matrix"},
+    {"{\"pattern\":\"m-array\",\"colours\":[\"red\"],\"rgb\":[[1,2,3]],"
+          SIZE COUNT MATRIX, CLOTH_PATTERN_ERROR_FORMAT, "2 to 8"},
+    {"{\"pattern\":\"m-array\",\"colours\":[\"red\",\"red\"],"
+          "\"rgb\":[[1,2,3],[4,5,6]]," SIZE COUNT MATRIX,
+        CLOTH_PATTERN_ERROR_VALUE, "\"red\""},
+    {"{\"pattern\":\"m-array\",\"colours\":[\"red\",5],"
+          "\"rgb\":[[1,2,3],[4,5,6]]," SIZE COUNT MATRIX,
+        CLOTH_PATTERN_ERROR_FORMAT, "name"},
+    {"{\"pattern\":\"m-array\",\"colours\":[\"red\",\"\"],"
+          "\"rgb\":[[1,2,3],[4,5,6]]," SIZE COUNT MATRIX,
+        CLOTH_PATTERN_ERROR_FORMAT, "name"},
+    {"{\"pattern\":\"m-array\",\"colours\":[\"red\","
+          "\"a colour whose name is longer than it\"],"
+          "\"rgb\":[[1,2,3],[4,5,6]]," SIZE COUNT MATRIX,
+        CLOTH_PATTERN_ERROR_FORMAT, "1 to 31"},
+    {"{\"pattern\":\"m-array\",\"colours\":[\"red\",\"blue\"],"
+          "\"rgb\":[[1,2,3]]," SIZE COUNT MATRIX,
+        CLOTH_PATTERN_ERROR_FORMAT, "2 items"},
+    {"{\"pattern\":\"m-array\",\"colours\":[\"red\",\"blue\"],"
+          "\"rgb\":[[1,2,3],[4,5,256]]," SIZE COUNT MATRIX,
+        CLOTH_PATTERN_ERROR_FORMAT, "rgb"},
+    {HEAD "\"pitch_m\":\"wide\"," COUNT MATRIX, CLOTH_PATTERN_ERROR_FORMAT,
+        "pitch_m"},
+    {HEAD "\"pitch_m\":0.02,\"diameter_m\":0.03,\"origin_uv_m\":[0.01,0.01],"
+          "\"cloth_m\":[0.06,0.06]," COUNT MATRIX, CLOTH_PATTERN_ERROR_VALUE,
+        "diameter_m"},
+    {HEAD "\"pitch_m\":0.02,\"diameter_m\":0.01,\"origin_uv_m\":[0.01,0.01],"
+          "\"cloth_m\":[0.05,0.06]," COUNT MATRIX, CLOTH_PATTERN_ERROR_VALUE,
+        "width"},
+  };
+
+  for (gsize i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autoptr (GError) error = NULL;
+
+    g_test_message ("%s", cases[i].text);
+    g_assert_null (cloth_m_array_load_data (cases[i].text,
+            strlen (cases[i].text), &error));
+    g_test_message ("→ %s", error->message);
+    g_assert_error (error, CLOTH_PATTERN_ERROR, cases[i].code);
+    g_assert_nonnull (strstr (error->message, cases[i].says));
+  }
+}
+
+static void
+test_load_refused (void)
+{
+  g_autoptr (GError) error = NULL;
+
+  g_assert_null (cloth_m_array_load ("/nowhere/pattern.json", &error));
+  g_assert_error (error, G_FILE_ERROR, G_FILE_ERROR_NOENT);
+  g_clear_error (&error);
+  g_assert_null (cloth_m_array_load (TEST_DATA "/checker_pair/pattern.json",
+          &error));
+  g_assert_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_UNSUPPORTED);
+  g_assert_true (g_str_has_prefix (error->message, TEST_DATA));
+}
+
+int
+main (int argc, char **argv)
+{
+  g_test_init (&argc, &argv, NULL);
+  g_test_add_func ("/m-array/new", test_new);
+  g_test_add_func ("/m-array/deterministic", test_deterministic);
+  g_test_add_func ("/m-array/generate-refused", test_generate_refused);
+  g_test_add_func ("/m-array/new-refused", test_new_refused);
+  g_test_add_func ("/m-array/round-trip", test_round_trip);
+  g_test_add_func ("/m-array/read", test_read);
+  g_test_add_func ("/m-array/read-refused", test_read_refused);
+  g_test_add_func ("/m-array/load-refused", test_load_refused);
+  return g_test_run ();
+}
