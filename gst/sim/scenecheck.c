@@ -1,7 +1,7 @@
 /* A scene: what no simulation could make sense of.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/scene.h"
+#include "gst/sim/scenecheck.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -21,11 +21,15 @@ typedef struct
   guint face;
 } Corners;
 
-static gboolean
-invalid (GError ** error, const gchar * format, ...)
-G_GNUC_PRINTF (2, 3);
-
-     static gboolean invalid (GError ** error, const gchar * format, ...)
+/*
+ * cloth_scene_invalid:
+ * @error: #ClothMeshError, set to what follows
+ * @format: what is wrong, as of printf ()
+ *
+ * Returns: %FALSE
+ */
+gboolean
+cloth_scene_invalid (GError ** error, const gchar * format, ...)
 {
   g_autofree gchar *text = NULL;
   va_list arguments;
@@ -124,18 +128,19 @@ check_faces (const ClothTopology * topology, GError ** error)
     qsort (all[face].corner, 4, sizeof *corner, compare_indices);
     for (guint k = 1; k < n; k++)
       if (all[face].corner[k] == all[face].corner[k - 1])
-        return invalid (error, "face %u has vertex %u twice", face,
+        return cloth_scene_invalid (error, "face %u has vertex %u twice", face,
             all[face].corner[k]);
     if (!(fabs (flat_area (topology, face)) > 1e-6 * size * size))
-      return invalid (error, "face %u (vertices %u, %u, %u) has no area on the "
+      return cloth_scene_invalid (error,
+          "face %u (vertices %u, %u, %u) has no area on the "
           "flat cloth: its uv lie on a line", face, corner[0], corner[1],
           corner[2]);
   }
   qsort (all, topology->n_faces, sizeof *all, compare_corners);
   for (guint i = 1; i < topology->n_faces; i++)
     if (memcmp (all[i].corner, all[i - 1].corner, sizeof all[i].corner) == 0)
-      return invalid (error, "faces %u and %u are the same", all[i - 1].face,
-          all[i].face);
+      return cloth_scene_invalid (error, "faces %u and %u are the same",
+          all[i - 1].face, all[i].face);
   return TRUE;
 }
 
@@ -165,16 +170,19 @@ check_edges (const ClothTopology * topology, GError ** error)
     if (a->low != b->low || a->high != b->high)
       continue;
     if (i + 1 < n && edges[i + 1].low == a->low && edges[i + 1].high == a->high)
-      return invalid (error, "the edge from vertex %u to vertex %u belongs to "
+      return cloth_scene_invalid (error,
+          "the edge from vertex %u to vertex %u belongs to "
           "more than two faces, %u, %u and %u among them", a->low, a->high,
           a->face, b->face, edges[i + 1].face);
     if (a->rises == b->rises)
-      return invalid (error, "face %u is inverted against face %u: they run "
+      return cloth_scene_invalid (error,
+          "face %u is inverted against face %u: they run "
           "the same way along the edge from vertex %u to vertex %u", b->face,
           a->face, a->low, a->high);
-    if ((flat_area (topology, a->face) > 0) !=
-        (flat_area (topology, b->face) > 0))
-      return invalid (error, "face %u is inverted against face %u: on the flat "
+    if ((flat_area (topology, a->face) > 0) != (flat_area (topology,
+                b->face) > 0))
+      return cloth_scene_invalid (error,
+          "face %u is inverted against face %u: on the flat "
           "cloth it lies folded over the edge from vertex %u to vertex %u",
           b->face, a->face, a->low, a->high);
   }
@@ -190,24 +198,26 @@ check_numbers (const ClothScene * scene, GError ** error)
 
   for (guint k = 0; k < 3; k++)
     if (!isfinite (scene->gravity[k]))
-      return invalid (error, "gravity along %c is %g", axes[k],
+      return cloth_scene_invalid (error, "gravity along %c is %g", axes[k],
           scene->gravity[k]);
   for (guint a = 0; a < 2; a++) {
     for (gsize i = 0; arrays[a] &&
         i < 3 * (gsize) scene->topology->n_vertices; i++)
       if (!isfinite (arrays[a][i]))
-        return invalid (error, "the %s of vertex %u along %c is %g at the "
-            "start", names[a], (guint) (i / 3), axes[i % 3], arrays[a][i]);
+        return cloth_scene_invalid (error,
+            "the %s of vertex %u along %c is %g at the " "start", names[a],
+            (guint) (i / 3), axes[i % 3], arrays[a][i]);
   }
   if (!(scene->fps > 0) || !isfinite (scene->fps))
-    return invalid (error, "a frame rate of %g", scene->fps);
+    return cloth_scene_invalid (error, "a frame rate of %g", scene->fps);
   if (scene->n_frames == 0)
-    return invalid (error, "a scene needs at least one frame");
+    return cloth_scene_invalid (error, "a scene needs at least one frame");
   for (guint i = 0; i < scene->n_frames; i++)
     if (!isfinite (scene->times[i]) ||
         (i > 0 && scene->times[i] <= scene->times[i - 1]))
-      return invalid (error, "the time of frame %u, %g s, is not finite or "
-          "does not rise", i, scene->times[i]);
+      return cloth_scene_invalid (error,
+          "the time of frame %u, %g s, is not finite or " "does not rise", i,
+          scene->times[i]);
   return TRUE;
 }
 
@@ -221,14 +231,17 @@ check_held (const ClothScene * scene, GError ** error)
     const ClothHeld *other;
 
     if (held->vertex >= scene->topology->n_vertices)
-      return invalid (error, "held vertex %u is not in the mesh (there are %u)",
-          held->vertex, scene->topology->n_vertices);
+      return cloth_scene_invalid (error,
+          "held vertex %u is not in the mesh (there are %u)", held->vertex,
+          scene->topology->n_vertices);
     if (!(held->from_s < held->until_s))
-      return invalid (error, "held vertex %u is let go at %g s, before it is "
-          "held at %g s", held->vertex, held->until_s, held->from_s);
+      return cloth_scene_invalid (error,
+          "held vertex %u is let go at %g s, before it is " "held at %g s",
+          held->vertex, held->until_s, held->from_s);
     other = g_hash_table_lookup (last, GUINT_TO_POINTER (held->vertex));
     if (other && held->from_s < other->until_s && other->from_s < held->until_s)
-      return invalid (error, "vertex %u is held twice at a time", held->vertex);
+      return cloth_scene_invalid (error, "vertex %u is held twice at a time",
+          held->vertex);
     g_hash_table_insert (last, GUINT_TO_POINTER (held->vertex),
         (gpointer) held);
     for (guint frame = 0; frame < scene->n_frames; frame++) {
@@ -238,8 +251,9 @@ check_held (const ClothScene * scene, GError ** error)
       if (scene->times[frame] >= held->from_s &&
           scene->times[frame] < held->until_s &&
           !isfinite (place[0] + place[1] + place[2]))
-        return invalid (error, "the clamp of vertex %u has no place in frame "
-            "%u", held->vertex, frame);
+        return cloth_scene_invalid (error,
+            "the clamp of vertex %u has no place in frame " "%u", held->vertex,
+            frame);
     }
   }
   return TRUE;
@@ -255,24 +269,28 @@ check_obstacles (const ClothScene * scene, GError ** error)
         item->kind == CLOTH_OBSTACLE_CAPSULE;
 
     if (round && !(item->radius_m > 0 && isfinite (item->radius_m)))
-      return invalid (error, "obstacle %u has the radius %g m", i,
+      return cloth_scene_invalid (error, "obstacle %u has the radius %g m", i,
           item->radius_m);
     for (guint k = 0; k < 3; k++)
       if (!isfinite (item->point[k] + item->end[k] + item->normal[k]))
-        return invalid (error, "obstacle %u has no finite place", i);
+        return cloth_scene_invalid (error, "obstacle %u has no finite place",
+            i);
     if (!(isnan (item->friction) || item->friction >= 0))
-      return invalid (error, "obstacle %u has the friction %g", i,
+      return cloth_scene_invalid (error, "obstacle %u has the friction %g", i,
           item->friction);
     for (gsize k = 0; k < 3 * (gsize) item->n_points; k++)
       if (!isfinite (item->points[k]))
-        return invalid (error, "point %u of obstacle %u is %g along %c",
-            (guint) (k / 3), i, item->points[k], "xyz"[k % 3]);
+        return cloth_scene_invalid (error,
+            "point %u of obstacle %u is %g along %c", (guint) (k / 3), i,
+            item->points[k], "xyz"[k % 3]);
     if (item->kind == CLOTH_OBSTACLE_MESH && item->n_triangles == 0)
-      return invalid (error, "obstacle %u is a mesh without triangles", i);
+      return cloth_scene_invalid (error,
+          "obstacle %u is a mesh without triangles", i);
     for (gsize k = 0; k < 3 * (gsize) item->n_triangles; k++)
       if (item->triangles[k] >= item->n_points)
-        return invalid (error, "triangle %u of obstacle %u names a point that "
-            "is not there", (guint) (k / 3), i);
+        return cloth_scene_invalid (error,
+            "triangle %u of obstacle %u names a point that " "is not there",
+            (guint) (k / 3), i);
   }
   return TRUE;
 }
@@ -295,7 +313,7 @@ cloth_scene_check (const ClothScene * scene, GError ** error)
   if (!cloth_topology_check (scene->topology, error))
     return FALSE;
   if (scene->topology->n_faces == 0)
-    return invalid (error, "a mesh without faces");
+    return cloth_scene_invalid (error, "a mesh without faces");
   if (!check_faces (scene->topology, error) ||
       !check_edges (scene->topology, error) ||
       !check_numbers (scene, error) || !check_held (scene, error) ||
@@ -306,8 +324,9 @@ cloth_scene_check (const ClothScene * scene, GError ** error)
     guint n = scene->topology->n_vertices;
 
     if (seam->a >= n || seam->b >= n || seam->a == seam->b)
-      return invalid (error, "vertices %u and %u cannot be sewn together: "
-          "there are %u", seam->a, seam->b, n);
+      return cloth_scene_invalid (error,
+          "vertices %u and %u cannot be sewn together: " "there are %u",
+          seam->a, seam->b, n);
   }
   return TRUE;
 }

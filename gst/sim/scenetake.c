@@ -1,7 +1,7 @@
 /* A scene: what a take says of one.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/scene.h"
+#include "gst/sim/scenecheck.h"
 
 #include <math.h>
 #include <string.h>
@@ -12,22 +12,6 @@
 #define FALLBACK_FPS 30.
 /* Two lines of a seam may differ by this part of the longer one, as cut cloth does. */
 #define SEAM_EASE 0.02
-
-static gboolean
-invalid (GError ** error, const gchar * format, ...)
-G_GNUC_PRINTF (2, 3);
-
-     static gboolean invalid (GError ** error, const gchar * format, ...)
-{
-  g_autofree gchar *text = NULL;
-  va_list arguments;
-
-  va_start (arguments, format);
-  text = g_strdup_vprintf (format, arguments);
-  va_end (arguments);
-  g_set_error_literal (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID, text);
-  return FALSE;
-}
 
 static gdouble
 line_length (const ClothTopology * topology, const guint * line, guint n)
@@ -64,16 +48,18 @@ cloth_scene_sew (ClothScene * scene, const ClothSeamLine * line,
   for (guint side = 0; side < 2; side++) {
     for (guint i = 0; i < line->n_vertices; i++)
       if (line->lines[side][i] >= scene->topology->n_vertices)
-        return invalid (error, "vertex %u of a seam is not in the mesh (there "
-            "are %u)", line->lines[side][i], scene->topology->n_vertices);
-    lengths[side] = line_length (scene->topology, line->lines[side],
-        line->n_vertices);
+        return cloth_scene_invalid (error,
+            "vertex %u of a seam is not in the mesh (there " "are %u)",
+            line->lines[side][i], scene->topology->n_vertices);
+    lengths[side] =
+        line_length (scene->topology, line->lines[side], line->n_vertices);
   }
   if (fabs (lengths[0] - lengths[1]) > SEAM_EASE * MAX (lengths[0], lengths[1]))
-    return invalid (error, "the lines of the seam from vertex %u and from "
+    return cloth_scene_invalid (error,
+        "the lines of the seam from vertex %u and from "
         "vertex %u are %g m and %g m long on the flat cloth; they may differ "
-        "by %g%%", line->lines[0][0], line->lines[1][0], lengths[0],
-        lengths[1], 100 * SEAM_EASE);
+        "by %g%%", line->lines[0][0], line->lines[1][0], lengths[0], lengths[1],
+        100 * SEAM_EASE);
   for (guint i = 0; i < line->n_vertices; i++) {
     const ClothSeam seam = { line->lines[0][i], line->lines[1][i] };
 
@@ -99,10 +85,12 @@ read_clamps (ClothScene * scene, ClothTake * take, GError ** error)
   if (n == 0)
     return TRUE;
   if (!cloth_take_has_clamps (take))
-    return invalid (error, "take.json says that %u vertices are held, but "
+    return cloth_scene_invalid (error,
+        "take.json says that %u vertices are held, but "
         "there is no clamps.npy with their paths", scene->held->len);
   if (n * scene->n_frames > CLOTH_MAX_BUFFER / sizeof (gdouble))
-    return invalid (error, "clamps.npy: %u held vertices in %u frames are "
+    return cloth_scene_invalid (error,
+        "clamps.npy: %u held vertices in %u frames are "
         "more than a simulation takes", scene->held->len, scene->n_frames);
   row = g_new (gfloat, n);
   scene->clamps = g_new (gdouble, n * scene->n_frames);

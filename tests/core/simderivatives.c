@@ -5,6 +5,7 @@
 #include "simscene.h"
 
 #include "gst/sim/effect-table.h"
+#include "gst/sim/effects/effects.h"
 
 #define COLUMNS 17
 #define ROWS 18
@@ -13,8 +14,9 @@
 #define WINDOW 0.4
 #define MAX_RUNS 256
 
-/* Where the derivative is taken, for effects that at their nulls, or at a prior's distance
- * from them when one-sided, do nothing to this cloth in this window. */
+/* Where the derivative is taken when not at the null, or a prior's distance from it when
+ * one-sided: there a parameter of these effects does nothing to this cloth in this window,
+ * as the direction of no wind, or stands at a kink. */
 static const struct
 {
   const gchar *id;
@@ -37,7 +39,7 @@ static const struct
 } excused[] = {
   {"self_contact", NULL,
       "nothing touches in this scene: simcontact has one where it does"},
-  {"friction", NULL, "there is no obstacle in this scene"},
+  {"friction", NULL, "there is no obstacle in this scene: see test_friction"},
   {"clamp_slip", "held", "a whole number that chooses a clamp"},
 };
 
@@ -65,28 +67,6 @@ excuse (const ClothEffect * effect, const gchar * parameter)
             || strcmp (excused[i].parameter, parameter) == 0))
       return excused[i].reason;
   return NULL;
-}
-
-/* The paths of the takes: two corners close and move to and fro. */
-static ClothScene *
-sway (void)
-{
-  ClothScene *scene =
-      cloth_scene_new (cloth_topology_new_grid (COLUMNS, ROWS, 0.63f, 0.67f),
-      50., 101);
-
-  cloth_scene_hold (scene, 0);
-  cloth_scene_hold (scene, COLUMNS - 1);
-  for (guint frame = 0; frame < 101; frame++) {
-    gdouble t = 0.02 * frame, s = MIN (t / 0.6, 1.);
-
-    for (guint h = 0; h < 2; h++) {
-      scene->clamps[6 * frame + 3 * h] += (h ? -1. : 1.) * 0.065 * s;
-      scene->clamps[6 * frame + 3 * h + 1] =
-          0.06 * s * sin (2. * G_PI * 0.6 * t);
-    }
-  }
-  return scene;
 }
 
 static void
@@ -149,7 +129,7 @@ test_derivatives (void)
   g_autofree Plan *plan = g_new0 (Plan, 1);
   guint n_effects, n_bad = 0;
   const ClothEffect *const *effects = cloth_effect_table (&n_effects);
-  g_autoptr (ClothScene) scene = sway ();
+  g_autoptr (ClothScene) scene = sway_scene (COLUMNS, ROWS);
   g_autoptr (ClothModel) usual = cloth_model_new ();
   g_autoptr (ClothSim) start = run_new (scene, usual), sim = NULL;
   g_autofree gdouble *x0 = NULL, *v0 = NULL;
@@ -202,10 +182,51 @@ test_derivatives (void)
     cloth_model_free (plan->models[i]);
 }
 
+/* Down a slope: x = ½ g (sin θ − μ cos θ) t², so ∂x/∂μ = −½ g cos θ t². */
+static void
+test_friction (void)
+{
+  const gdouble angle = G_PI / 6., mu = 0.3, steps[] = { 0., 1e-3, 1e-5 };
+  const ClothObstacle slope = {.kind = CLOTH_OBSTACLE_PLANE,.friction = NAN,
+    .normal = {sin (angle), 0., cos (angle)}
+  };
+  g_autoptr (ClothScene) scene = sheet_new (5, 5, 0.2, 0.2);
+  gdouble derivative[3] = { 0. };
+
+  g_array_append_val (scene->obstacles, slope);
+  for (guint i = 0; i < 25; i++) {
+    gdouble *x = scene->positions + 3 * i, u = x[0];
+
+    x[0] = u * cos (angle);
+    x[1] = x[2];
+    x[2] = -u * sin (angle);
+  }
+  for (guint i = 0; i < 3; i++) {
+    g_autoptr (ClothModel) model = cloth_model_new ();
+    g_autoptr (ClothSim) sim = NULL;
+    g_autofree gdouble *x = NULL;
+    gdouble friction = mu + steps[i];
+
+    model->damping_mass = 0.;
+    model->time_step = 1e-4;
+    cloth_model_set_effect (model, &cloth_effect_friction, &friction);
+    sim = run_new (scene, model);
+    run_for (sim, WINDOW);
+    x = positions_of (sim, 0);
+    for (guint k = 0; k < 25; k++)
+      derivative[i] += (x[3 * k] * cos (angle) - x[3 * k + 2] * sin (angle)) /
+          25.;
+  }
+  for (guint i = 1; i < 3; i++)
+    assert_within ((derivative[i] - derivative[0]) / steps[i] / (-0.5 * 9.81 *
+            cos (angle) * WINDOW * WINDOW), 1., 1e-3);
+}
+
 int
 main (int argc, char **argv)
 {
   g_test_init (&argc, &argv, NULL);
   g_test_add_func ("/sim/derivatives", test_derivatives);
+  g_test_add_func ("/sim/derivative-by-friction", test_friction);
   return g_test_run ();
 }

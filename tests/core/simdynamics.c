@@ -203,7 +203,7 @@ test_catenary (void)
 /* A strip clamped level at one end sinks by H over a reach of W, a function of
  * Γ = ρgL³/B alone (heavy elastica). */
 static void
-test_cantilever (void)
+test_cantilever (gconstpointer data)
 {
   const gdouble gamma[4] = { 0.1, 1., 10., 100. };
   const gdouble ratio[4] = { 0.0125, 0.1247, 1.067, 5.88 };
@@ -230,6 +230,7 @@ test_cantilever (void)
       cloth_scene_hold (scene, row * (cells + 1) + 1);
     }
     model->bending_warp = model->bending_weft = b;
+    model->force_model = GPOINTER_TO_UINT (data);
     /* about twice the slowest frequency */
     model->damping_mass = 2. * MAX (3.516 * sqrt (b / density) / (length *
             length), 1.2024 * sqrt (G / length));
@@ -250,6 +251,9 @@ main (int argc, char **argv)
   g_test_add_func ("/sim/decay", test_decay);
   g_test_add_func ("/sim/damped-stretch", test_damped_stretch);
   g_test_add_func ("/sim/catenary", test_catenary);
-  g_test_add_func ("/sim/cantilever", test_cantilever);
+  g_test_add_data_func ("/sim/cantilever",
+      GUINT_TO_POINTER (CLOTH_FORCE_MEMBRANE), test_cantilever);
+  g_test_add_data_func ("/sim/cantilever-mass-spring",
+      GUINT_TO_POINTER (CLOTH_FORCE_MASS_SPRING), test_cantilever);
   return g_test_run ();
 }

@@ -65,7 +65,7 @@ momenta (const ClothSim * sim, gdouble momentum[6])
 /* Inner forces move no centre and turn nothing. Bending damping alone, which is linear,
  * turns folded cloth a little: here it is without. */
 static void
-test_momentum (void)
+test_momentum (gconstpointer data)
 {
   g_autoptr (ClothScene) scene = crumpled (1);
   g_autoptr (ClothModel) model = fabric ();
@@ -77,6 +77,7 @@ test_momentum (void)
     g_clear_pointer (&sim, cloth_sim_free);
     model->damping_stiffness = damped ? 1e-4 : 0.;
     model->bending_warp = model->bending_weft = damped ? 0. : 2e-5;
+    model->force_model = GPOINTER_TO_UINT (data);
     sim = run_new (scene, model);
     momenta (sim, before);
     run_for (sim, 0.4);
@@ -223,7 +224,7 @@ test_gauge (void)
 
 /* Symplectic Euler is of first order: half the step, half the error. */
 static void
-test_convergence (void)
+test_convergence (gconstpointer data)
 {
   g_autoptr (ClothScene) scene = sheet_new (4, 5, 0.2, 0.3);
   g_autofree gdouble *x[3] = { NULL };
@@ -236,6 +237,7 @@ test_convergence (void)
   for (guint i = 0; i < 3; i++) {
     g_autoptr (ClothModel) model = model_new (0.2, 30.);
 
+    model->force_model = GPOINTER_TO_UINT (data);
     model->compression_ratio = 1.;
     model->damping_stiffness = 2e-3;
     model->time_step = 4e-4 / (1 << i);
@@ -247,28 +249,6 @@ test_convergence (void)
   assert_within (0.5 * log2 (difference[0] / difference[1]), 1., 0.1);
   for (guint i = 0; i < 3; i++)
     g_clear_pointer (&x[i], g_free);
-}
-
-/* The sway of the takes: two corners close and move to and fro. */
-static ClothScene *
-sway (guint columns, guint rows)
-{
-  ClothScene *scene =
-      cloth_scene_new (cloth_topology_new_grid (columns, rows, 0.63f, 0.67f),
-      50., 101);
-
-  cloth_scene_hold (scene, 0);
-  cloth_scene_hold (scene, columns - 1);
-  for (guint frame = 0; frame < 101; frame++) {
-    gdouble t = 0.02 * frame, s = MIN (t / 0.6, 1.);
-
-    for (guint h = 0; h < 2; h++) {
-      scene->clamps[6 * frame + 3 * h] += (h ? -1. : 1.) * 0.065 * s;
-      scene->clamps[6 * frame + 3 * h + 1] =
-          0.06 * s * sin (2. * G_PI * 0.6 * t);
-    }
-  }
-  return scene;
 }
 
 /* Central differences over 0.4 s with steps of 1e-3 and 1e-5 agree within 10%, for the
@@ -287,7 +267,7 @@ test_derivatives (void)
     G_STRUCT_OFFSET (ClothModel, damping_mass),
     G_STRUCT_OFFSET (ClothModel, damping_stiffness),
   };
-  g_autoptr (ClothScene) scene = sway (17, 18);
+  g_autoptr (ClothScene) scene = sway_scene (17, 18);
   const guint n = 3 * 17 * 18;
   g_autofree gdouble *x0 = NULL, *v0 = NULL;
   ClothModel *models[N_RUNS];
@@ -392,12 +372,18 @@ int
 main (int argc, char **argv)
 {
   g_test_init (&argc, &argv, NULL);
-  g_test_add_func ("/sim/momentum", test_momentum);
+  g_test_add_data_func ("/sim/momentum",
+      GUINT_TO_POINTER (CLOTH_FORCE_MEMBRANE), test_momentum);
+  g_test_add_data_func ("/sim/momentum-mass-spring",
+      GUINT_TO_POINTER (CLOTH_FORCE_MASS_SPRING), test_momentum);
   g_test_add_func ("/sim/energy", test_energy);
   g_test_add_func ("/sim/mirror", test_mirror);
   g_test_add_func ("/sim/rotation", test_rotation);
   g_test_add_func ("/sim/gauge", test_gauge);
-  g_test_add_func ("/sim/convergence", test_convergence);
+  g_test_add_data_func ("/sim/convergence",
+      GUINT_TO_POINTER (CLOTH_FORCE_MEMBRANE), test_convergence);
+  g_test_add_data_func ("/sim/convergence-mass-spring",
+      GUINT_TO_POINTER (CLOTH_FORCE_MASS_SPRING), test_convergence);
   g_test_add_data_func ("/sim/targets",
       GUINT_TO_POINTER (CLOTH_INTEGRATOR_EXPLICIT), test_targets);
   g_test_add_data_func ("/sim/targets-implicit",

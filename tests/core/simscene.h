@@ -73,3 +73,52 @@ velocities_of (const ClothSim * sim, guint model)
 
 #define assert_within(value, expected, tolerance) \
   g_assert_cmpfloat_with_epsilon (value, expected, tolerance)
+
+/* The sway of the takes: two corners close and move to and fro. */
+G_GNUC_UNUSED static ClothScene *
+sway_scene (guint columns, guint rows)
+{
+  ClothScene *scene =
+      cloth_scene_new (cloth_topology_new_grid (columns, rows, 0.63f, 0.67f),
+      50., 101);
+
+  cloth_scene_hold (scene, 0);
+  cloth_scene_hold (scene, columns - 1);
+  for (guint frame = 0; frame < 101; frame++) {
+    gdouble t = 0.02 * frame, s = MIN (t / 0.6, 1.);
+
+    for (guint h = 0; h < 2; h++) {
+      scene->clamps[6 * frame + 3 * h] += (h ? -1. : 1.) * 0.065 * s;
+      scene->clamps[6 * frame + 3 * h + 1] =
+          0.06 * s * sin (2. * G_PI * 0.6 * t);
+    }
+  }
+  return scene;
+}
+
+/* A strip 3 × 21 of length 1 m hung by its upper edge is stretched by ρ g (L − z)/k at
+ * depth z. */
+G_GNUC_UNUSED static ClothScene *
+hung_strip (void)
+{
+  ClothScene *scene = sheet_new (3, 21, 0.1, 1.);
+
+  for (guint i = 0; i < 3; i++)
+    cloth_scene_hold (scene, i);
+  return scene;
+}
+
+G_GNUC_UNUSED static void
+assert_hung (const ClothSim * sim, gdouble density, gdouble stretch,
+    gdouble tolerance)
+{
+  g_autofree gdouble *x = positions_of (sim, 0);
+
+  for (guint row = 0; row < 20; row++) {
+    gdouble z = (row + 0.5) / 20.;
+    gdouble length = x[3 * (3 * row + 1) + 2] - x[3 * (3 * row + 4) + 2];
+
+    assert_within (length * 20. - 1., density * 9.81 * (1. - z) / stretch,
+        tolerance);
+  }
+}
