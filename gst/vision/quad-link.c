@@ -20,8 +20,6 @@
 #define VOTE_REACH 0.5f
 /* A vertex this near a guess is that vertex, in squares. */
 #define SURE_REACH 0.3f
-/* Guesses are looked for this far away, px. */
-#define MAX_GUESS 200.0f
 /* The edge of something bright looks like cloth where the board would go on now and then,
  * so a larger lead than CLOTH_PLACE_MIN_LEAD is asked where the memory knows the board but
  * not there, and most of one against the memory. */
@@ -115,6 +113,35 @@ add_vote (ClothPlacement * votes, guint * n, const ClothPlacement * vote)
   votes[k].weight += vote->weight;
 }
 
+/* Finds the remembered vertex nearest to each corner of the patch, once for all who ask. */
+static void
+recall_all (ClothQuadTracker * tracker)
+{
+  const ClothPatch *patch = &tracker->patch;
+  const gint n = patch->rows * patch->columns;
+  gfloat reach = 0;
+
+  for (guint k = 0; k < tracker->guess_vertex->len; k++)
+    reach = MAX (reach, VOTE_REACH * tracker->vertices[g_array_index
+            (tracker->guess_vertex, gint, k)].size);
+  g_array_set_size (tracker->recalls, (guint) n);
+  for (gint at = 0; at < n; at++) {
+    ClothQuadRecall *own = &g_array_index (tracker->recalls, ClothQuadRecall,
+        at);
+    ClothNear near;
+
+    *own = (ClothQuadRecall) {
+    -1, 0};
+    if (!patch->kind[at] || reach == 0
+        || !cloth_point_grid_nearest (tracker->guesses, patch->x[at],
+            patch->y[at], reach, &near, 1))
+      continue;
+    own->vertex = g_array_index (tracker->guess_vertex, gint, near.index);
+    own->distance = sqrtf (near.distance2)
+        / tracker->vertices[own->vertex].size;
+  }
+}
+
 /* What the remembered vertices say of the place of the patch. */
 static guint
 vote_by_memory (ClothQuadTracker * tracker, ClothPlacement votes[MAX_VOTES])
@@ -126,29 +153,27 @@ vote_by_memory (ClothQuadTracker * tracker, ClothPlacement votes[MAX_VOTES])
 
   for (gint j = 0; j < patch->rows; j++)
     for (gint i = 0; i < patch->columns; i++) {
-      gint at = j * patch->columns + i, vertex, column, row;
-      const ClothQuadVertex *guess;
-      gfloat dx, dy, bx, by, distance;
+      const gint at = j * patch->columns + i;
+      const ClothQuadRecall *near = &g_array_index (tracker->recalls,
+          ClothQuadRecall, at);
+      const gint vertex = near->vertex;
+      const ClothQuadVertex *guess = &tracker->vertices[MAX (vertex, 0)];
+      gfloat dx, dy, bx, by;
       ClothPlacement vote;
-      ClothNear near;
+      gint column, row;
 
-      if (patch->kind[at] != CLOTH_VERTEX_SADDLE
+      if (patch->kind[at] != CLOTH_VERTEX_SADDLE || vertex < 0
+          || near->distance > VOTE_REACH
           || !patch_direction (patch, i, j, &dx, &dy)
-          || !cloth_point_grid_nearest (tracker->guesses, patch->x[at],
-              patch->y[at], MAX_GUESS, &near, 1))
-        continue;
-      vertex = g_array_index (tracker->guess_vertex, gint, near.index);
-      guess = &tracker->vertices[vertex];
-      distance = sqrtf (near.distance2) / guess->size;
-      if (distance > VOTE_REACH || !guess_direction (tracker,
-              vertex % columns, vertex / columns, &bx, &by))
+          || !guess_direction (tracker, vertex % columns, vertex / columns,
+              &bx, &by))
         continue;
       vote.rotation = rotation_between (dx, dy, bx, by);
       vote.column = vote.row = 0;
       cloth_placement_vertex (&vote, i, j, &column, &row);
       vote.column = vertex % columns - column;
       vote.row = vertex / columns - row;
-      vote.weight = guess->weight * (1 - distance / VOTE_REACH);
+      vote.weight = guess->weight * (1 - near->distance / VOTE_REACH);
       add_vote (votes, &n, &vote);
       fresh += guess->weight;
       voters++;
@@ -221,19 +246,15 @@ static gint
 recall (ClothQuadTracker * tracker, const ClothPlacement * placement, gint i,
     gint j)
 {
-  const ClothPatch *patch = &tracker->patch;
-  gint at = j * patch->columns + i, column, row, vertex;
-  ClothNear near;
+  const ClothQuadRecall *near = &g_array_index (tracker->recalls,
+      ClothQuadRecall, j * tracker->patch.columns + i);
+  gint column, row;
 
-  if (!cloth_point_grid_nearest (tracker->guesses, patch->x[at], patch->y[at],
-          MAX_GUESS, &near, 1))
-    return 0;
-  vertex = g_array_index (tracker->guess_vertex, gint, near.index);
-  if (sqrtf (near.distance2) > SURE_REACH * tracker->vertices[vertex].size)
+  if (near->vertex < 0 || near->distance > SURE_REACH)
     return 0;
   cloth_placement_vertex (placement, i, j, &column, &row);
   return column >= 0 && column <= tracker->pattern.columns
-      && vertex == row * (tracker->pattern.columns + 1) + column ? 1 : -1;
+      && near->vertex == row * (tracker->pattern.columns + 1) + column ? 1 : -1;
 }
 
 /* The same of the cell (@i, @j): for less against. */
@@ -371,6 +392,8 @@ forget (ClothQuadTracker * tracker)
   cloth_point_grid_clear (tracker->guesses, tracker->image->width,
       tracker->image->height, 1);
   g_array_set_size (tracker->guess_vertex, 0);
+  for (guint k = 0; k < tracker->recalls->len; k++)
+    g_array_index (tracker->recalls, ClothQuadRecall, k).vertex = -1;
 }
 
 static void
@@ -463,10 +486,12 @@ place (ClothQuadTracker * tracker, gboolean first, ClothPlacement * placement,
     ClothPlacement * other)
 {
   ClothPlacement votes[MAX_VOTES + MAX_SEEDS];
-  guint n_memory = vote_by_memory (tracker, votes), n = n_memory;
+  guint n_memory, n;
   ClothPlaceWeights weights = cloth_place_cloth;
   gfloat agrees = 0;
 
+  recall_all (tracker);
+  n = n_memory = vote_by_memory (tracker, votes);
   for (guint s = 0; s < tracker->seeds->len && n < n_memory + MAX_SEEDS; s++)
     n += vote_by_seed (tracker,
         &g_array_index (tracker->seeds, ClothQuadSeed, s), &votes[n]);

@@ -29,6 +29,12 @@ typedef struct {
   gfloat cov[4][3];             /* of those */
 } ClothQuadCell;
 
+/* The remembered vertex nearest to a corner that was seen. */
+typedef struct {
+  gint vertex;                  /* -1: none near */
+  gfloat distance;              /* squares */
+} ClothQuadRecall;
+
 /* One corner of the board. */
 typedef struct {
   gboolean guessed;             /* some remembered square predicts it */
@@ -57,6 +63,7 @@ struct _ClothQuadTracker
   ClothPatch patch;
   ClothPointGrid *guesses;      /* guessed vertices */
   GArray *guess_vertex;         /* gint, vertex of each point of that grid */
+  GArray *recalls;              /* ClothQuadRecall, of each vertex of the patch */
   ClothPointGrid *candidates;
   ClothPointGrid *refined;      /* saddles */
   gboolean sorted;              /* those two grids are of this picture */

@@ -74,6 +74,7 @@ cloth_quad_tracker_new (const ClothPattern * pattern)
   tracker->linker = cloth_linker_new ();
   tracker->guesses = cloth_point_grid_new ();
   tracker->guess_vertex = g_array_new (FALSE, FALSE, sizeof (gint));
+  tracker->recalls = g_array_new (FALSE, FALSE, sizeof (ClothQuadRecall));
   tracker->candidates = cloth_point_grid_new ();
   tracker->refined = cloth_point_grid_new ();
   tracker->middles = cloth_point_grid_new ();
@@ -104,6 +105,7 @@ cloth_quad_tracker_free (ClothQuadTracker * tracker)
   cloth_patch_clear (&tracker->patch);
   cloth_point_grid_free (tracker->guesses);
   g_array_unref (tracker->guess_vertex);
+  g_array_unref (tracker->recalls);
   cloth_point_grid_free (tracker->candidates);
   cloth_point_grid_free (tracker->refined);
   cloth_point_grid_free (tracker->middles);

@@ -480,6 +480,7 @@ score_quad (const TestFilm * film, guint camera, guint frame,
   score->tracked++;
   score->wrong += wrong;
   score->ghosts += ghost;
+  score->faults += wrong || ghost;
   for (gint k = 0; k < 4; k++) {
     const gfloat dx = quad->x[k] - own->x[k], dy = quad->y[k] - own->y[k];
     const gfloat c = (gfloat) corner_column[k], r = (gfloat) corner_row[k];
@@ -534,6 +535,7 @@ test_film_add (TestFilmScore * sum, const TestFilmScore * score)
   sum->tracked += score->tracked;
   sum->wrong += score->wrong;
   sum->ghosts += score->ghosts;
+  sum->faults += score->faults;
   sum->strays += score->strays;
   sum->n_corners += score->n_corners;
   sum->sum2 += score->sum2;

@@ -64,6 +64,7 @@ const ClothQuad *test_tracking_run (TestTracking * tracking,
 typedef struct {
   guint visible, hit;
   guint tracked, wrong, ghosts, strays;
+  guint faults;                 /* wrong, ghosts, or both */
   guint n_corners;
   gdouble sum2;                 /* px², both axes, of the corners that are clear */
 } TestFilmScore;

@@ -6,16 +6,13 @@
 #include <math.h>
 #include <string.h>
 
-#include "tests/common/film.h"
+#include "tests/common/play.h"
 
-/* Pictures within which a square that reappears must be tracked. */
-#define SOON 5
 /* Of the squares that reappear, where the undisturbed film's tracker sees them: of those
  * that were hidden or cut away, and of those in films that have a shadow's edge as well,
  * which may lie on them all the time. */
 #define LEAST_FOUND 0.95
 #define LEAST_FOUND_SHADED 0.8
-#define SQUARES 64
 #define SHADOW 0.35f
 
 typedef enum
@@ -35,48 +32,7 @@ typedef struct
 } Shot;
 
 static TestFilm *film;
-/* What the tracker tracks in the film as it is. */
 static guint8 *plain[TEST_FILM_CAMERAS];
-
-static gboolean
-is_visible (guint camera, guint frame, gint square, const guint8 * cover)
-{
-  const gint columns = film->pattern->columns;
-
-  return cloth_pattern_is_black (film->pattern, square % columns,
-      square / columns) && test_film_is_visible (film, camera, frame,
-      square % columns, square / columns, cover);
-}
-
-static void
-mark (const ClothQuad * quads, guint n, guint8 tracked[SQUARES])
-{
-  memset (tracked, 0, SQUARES);
-  for (guint k = 0; k < n; k++)
-    if (quads[k].state == CLOTH_QUAD_TRACKED)
-      tracked[quads[k].row * film->pattern->columns + quads[k].column] = 1;
-}
-
-/* The smallest upright box around what can be seen of the board. */
-static void
-board_box (guint camera, guint frame, gfloat box[4])
-{
-  box[0] = box[1] = G_MAXFLOAT;
-  box[2] = box[3] = 0;
-  for (gint s = 0; s < SQUARES; s++) {
-    const TestFilmSquare *square = test_film_square (film, camera, frame,
-        s % film->pattern->columns, s / film->pattern->columns);
-
-    if (square->seen == 0)
-      continue;
-    for (gint k = 0; k < 4; k++) {
-      box[0] = MIN (box[0], square->x[k]);
-      box[1] = MIN (box[1], square->y[k]);
-      box[2] = MAX (box[2], square->x[k]);
-      box[3] = MAX (box[3], square->y[k]);
-    }
-  }
-}
 
 /* Draws one picture; @cover gets 1 where the cloth is hidden. */
 static void
@@ -91,7 +47,7 @@ draw (guint camera, const Shot * shot, GRand * rand, guint8 * luma,
       (gsize) width * (gsize) height);
   memset (cover, shot->cover == FULL_GREY || shot->cover == FULL_NOISE,
       (gsize) width * (gsize) height);
-  board_box (camera, shot->frame, box);
+  test_film_box (film, camera, shot->frame, box);
   radius = shot->cover == BAR ? 0.5f * shot->share * (box[2] - box[0])
       : sqrtf (shot->share * (box[2] - box[0]) * (box[3] - box[1])
       / (gfloat) G_PI);
@@ -120,12 +76,11 @@ draw (guint camera, const Shot * shot, GRand * rand, guint8 * luma,
     }
 }
 
-/* A square's story since it was last hidden. */
-typedef struct
+static gboolean
+is_full (const Shot * shot)
 {
-  guint since;                  /* pictures it is visible */
-  gboolean found, plain_found;
-} Story;
+  return shot->cover == FULL_GREY || shot->cover == FULL_NOISE;
+}
 
 /* Plays a film made and holds what is tracked against the truth. */
 static void
@@ -134,76 +89,32 @@ play (const gchar * name, guint camera, const GArray * shots)
   const gsize size = (gsize) film->width * (gsize) film->height;
   g_autofree guint8 *luma = g_malloc (size), *cover = g_malloc (size);
   g_autofree gchar *what = g_strdup_printf ("%s, camera %u", name, camera);
-  g_autofree Story *stories = g_new0 (Story, SQUARES);
   g_autoptr (GRand) rand = g_rand_new_with_seed (camera + 1);
-  g_auto (TestTracking) tracking = { 0 };
-  TestFilmScore sum = { 0 };
-  guint reappeared = 0, found = 0, since_cut = 0, worst_at = 0;
+  g_auto (TestPlay) play = { 0 };
   gboolean shaded = FALSE;
-  gdouble worst = 1;
 
-  test_tracking_init (&tracking, film);
+  test_play_init (&play, film, camera, plain[camera], what);
   for (guint k = 0; k < shots->len; k++) {
     const Shot *shot = &g_array_index (shots, Shot, k);
-    const guint8 *undisturbed = plain[camera] + SQUARES * shot->frame;
-    guint8 tracked[SQUARES];
-    TestFilmScore score;
-    const ClothQuad *quads;
-    guint n, hit = 0, plain_hit = 0;
-    gboolean cut = k == 0 || ABS ((gint) shot->frame
-        - (gint) g_array_index (shots, Shot, k - 1).frame) > 1
-        || (shot->cover != FULL_GREY && shot->cover != FULL_NOISE
-        && (shot[-1].cover == FULL_GREY || shot[-1].cover == FULL_NOISE));
 
     draw (camera, shot, rand, luma, cover);
     shaded |= shot->shadow;
-    quads = test_tracking_run (&tracking, film, luma, &n);
-    test_film_score (film, camera, shot->frame, cover, quads, n, what, &score);
-    test_film_add (&sum, &score);
-    mark (quads, n, tracked);
-    since_cut = cut ? 1 : since_cut + 1;
-    for (gint s = 0; s < SQUARES; s++) {
-      Story *story = &stories[s];
-
-      if (!is_visible (camera, shot->frame, s, cover)) {
-        story->since = 0;
-        continue;
-      }
-      hit += tracked[s] && undisturbed[s];
-      plain_hit += undisturbed[s];
-      if (cut || story->since == 0)
-        *story = (Story) {
-        0};
-      story->found |= tracked[s];
-      story->plain_found |= undisturbed[s];
-      if (++story->since == SOON && story->plain_found) {
-        reappeared++;
-        found += story->found;
-        if (!story->found)
-          g_test_message ("%s: picture %u (frame %u) square (%d, %d) not found "
-              "again", what, k, shot->frame, s % film->pattern->columns,
-              s / film->pattern->columns);
-      }
-    }
-    if (since_cut >= SOON && plain_hit >= 5
-        && (gdouble) hit / plain_hit < worst) {
-      worst = (gdouble) hit / plain_hit;
-      worst_at = k;
-    }
+    test_play_show (&play, shot->frame, k > 0 && !is_full (shot)
+        && is_full (&shot[-1]), luma, cover);
   }
   g_test_message ("%s: %u of %u squares that came into sight tracked within %d "
       "pictures; %u of %u visible tracked in all (%.1f%%), worst picture %u "
       "(frame %u) %.0f%% of what is tracked undisturbed; %u wrong, %u ghosts, %u "
-      "with a corner astray of %u; %.3f px RMS an axis", what, found,
-      reappeared, SOON, sum.hit, sum.visible,
-      100.0 * sum.hit / MAX (sum.visible, 1), worst_at, g_array_index (shots,
-          Shot, worst_at).frame, 100 * worst, sum.wrong, sum.ghosts, sum.strays,
-      sum.tracked, test_film_rms (&sum));
-  g_assert_cmpuint (sum.wrong, ==, 0);
-  g_assert_cmpuint (sum.ghosts, ==, 0);
-  g_assert_cmpuint (reappeared, >, 50);
-  g_assert_cmpuint (found, >=, (guint) ceil ((shaded ? LEAST_FOUND_SHADED
-              : LEAST_FOUND) * reappeared));
+      "with a corner astray of %u; %.3f px RMS an axis", what, play.found,
+      play.reappeared, TEST_PLAY_SOON, play.sum.hit, play.sum.visible,
+      100.0 * play.sum.hit / MAX (play.sum.visible, 1), play.worst_at,
+      play.worst_frame, 100 * play.worst, play.sum.wrong, play.sum.ghosts,
+      play.sum.strays, play.sum.tracked, test_film_rms (&play.sum));
+  g_assert_cmpuint (play.sum.wrong, ==, 0);
+  g_assert_cmpuint (play.sum.ghosts, ==, 0);
+  g_assert_cmpuint (play.reappeared, >, 50);
+  g_assert_cmpuint (play.found, >=, (guint) ceil ((shaded ? LEAST_FOUND_SHADED
+              : LEAST_FOUND) * play.reappeared));
 }
 
 static void
@@ -351,24 +262,6 @@ check_all (void)
   }
 }
 
-static void
-track_plain (void)
-{
-  for (guint camera = 0; camera < TEST_FILM_CAMERAS; camera++) {
-    g_auto (TestTracking) tracking = { 0 };
-
-    plain[camera] = g_malloc (SQUARES * film->n_frames);
-    test_tracking_init (&tracking, film);
-    for (guint frame = 0; frame < film->n_frames; frame++) {
-      guint n;
-      const ClothQuad *quads = test_tracking_run (&tracking, film,
-          test_film_picture (film, camera, frame), &n);
-
-      mark (quads, n, plain[camera] + SQUARES * frame);
-    }
-  }
-}
-
 int
 main (int argc, char **argv)
 {
@@ -377,8 +270,8 @@ main (int argc, char **argv)
   gst_init (&argc, &argv);
   g_test_init (&argc, &argv, NULL);
   film = test_film_load (TEST_DATA "/checker_pair");
-  g_assert_cmpint (film->pattern->columns * film->pattern->rows, ==, SQUARES);
-  track_plain ();
+  for (guint camera = 0; camera < TEST_FILM_CAMERAS; camera++)
+    plain[camera] = test_play_plain (film, camera);
   g_test_add_func ("/film/disturbed/cuts", check_cuts);
   g_test_add_func ("/film/disturbed/full", check_full);
   g_test_add_func ("/film/disturbed/moving", check_moving);
