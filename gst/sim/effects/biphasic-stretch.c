@@ -29,7 +29,7 @@ const ClothEffect cloth_effect_biphasic_stretch = {
     {.name = "ratio", .unit = "1", .null_value = 0, .min = -0.95, .max = 100,
         .prior = 3,
         .blurb = "Stiffness added beyond the knee over the model’s"},
-    {.name = "knee", .unit = "1", .null_value = 0.1, .min = 0, .max = 2,
+    {.name = "knee", .unit = "1", .null_value = 0.1, .min = 0, .max = 10,
         .prior = 0.1,
         .blurb = "Strain from which it acts; without ratio it means nothing"},
   }
