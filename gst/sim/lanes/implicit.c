@@ -23,7 +23,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/sim/lanes/stiffness.h"
 
-/* Residual over that of no change, in the norm of the preconditioner. */
+/* Residual over that of w = 0, in the norm of the preconditioner. */
 #define TOLERANCE 1e-3
 /* Speeds that are nothing, m/s. */
 #define NOTHING 1e-9
@@ -243,7 +243,7 @@ subtract_product (ClothLaneState * state, const ClothLane3 * a)
     cloth_lane_subtract (implicit->r[i], implicit->q[i], implicit->r[i]);
 }
 
-/* The right side of the system without w of what is held. */
+/* The right side of the system; w is that of what is held alone until it is solved. */
 static void
 load (ClothLaneState * state)
 {
