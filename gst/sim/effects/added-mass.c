@@ -37,7 +37,7 @@ const ClothEffect cloth_effect_added_mass = {
 /* The mass (m + M n nᵀ) of a particle leaves of the acceleration along n only the share
  * m / (m + M): what is missing is the force. Acts last, when the others are known. */
 static void
-force (ClothLaneState * state, ClothLaneEffect * effect)
+inertia (ClothLaneState * state, ClothLaneEffect * effect)
 {
   ClothLane3 *normals = effect->state;
   ClothLane third = cloth_lane_set (1. / 3.), one = cloth_lane_set (1.);
@@ -72,6 +72,6 @@ force (ClothLaneState * state, ClothLaneEffect * effect)
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_added_mass) = {
   .id = "added_mass",
   .state_size = sizeof (ClothLane3),
-  .force = force,
+  .inertia = inertia,
 };
 #endif

@@ -128,6 +128,8 @@ load_effects (ClothLaneState * state, const ClothModel * const *models)
     if (!description)
       continue;
     effect->hooks = all[i];
+    state->has_forces |= all[i]->force != NULL;
+    state->has_inertia |= all[i]->inertia != NULL;
     for (guint l = 0; l < CLOTH_N_LANES; l++) {
       const ClothModelEffect *e = find_effect (models[l], all[i]->id);
 
@@ -167,6 +169,7 @@ prepare (ClothLaneState * state)
     for (guint l = 0; l < CLOTH_N_LANES; l++)
       changed |= CLOTH_LANE_AT (&r[k], l) != (k == 0 || k == 3 ? 1. : 0.);
   state->rest_changed = changed;
+  state->grid_alone = state->grid && !changed && !state->has_inertia;
   /* (a, b)' = (a r0 + b r2, a r1 + b r3), and the products of a' and b' */
   state->metric[0] = r[0] * r[0];
   state->metric[1] = r[2] * r[2];
@@ -208,9 +211,10 @@ group_free (gpointer group)
   }
   g_aligned_free (state->effects);
   CLOTH_LANE_NAME (cloth_lane_obstacles_free) (state);
+  CLOTH_LANE_NAME (cloth_lane_grid_free) (state->grid);
   CLOTH_LANE_NAME (cloth_lane_implicit_free) (state->implicit);
-  for (guint k = 0; k < 4; k++)
-    g_aligned_free (state->targets.y[k]);
+  g_aligned_free (state->targets.pull);
+  g_aligned_free (state->targets.change);
   g_aligned_free (state->targets.weight);
   g_aligned_free (state->x);
   g_aligned_free (state->v);
@@ -271,6 +275,8 @@ group_new (const ClothBody * body, const ClothModel * const *models,
   load_rest (state, body);
   load_springs (state, body);
   state->force_model = models[0]->force_model;
+  if (state->force_model == CLOTH_FORCE_MEMBRANE)
+    state->grid = CLOTH_LANE_NAME (cloth_lane_grid_new) (body);
   state->obstacles = CLOTH_LANE_NAME (cloth_lane_obstacles_new) (state);
   if (models[0]->integrator == CLOTH_INTEGRATOR_IMPLICIT)
     state->implicit = CLOTH_LANE_NAME (cloth_lane_implicit_new) (state);
@@ -461,18 +467,26 @@ group_set_targets (gpointer group, guint lane, const gdouble * const y[4],
   ClothLaneTargets *t = &state->targets;
 
   if (!t->weight) {
-    for (guint k = 0; k < 4; k++)
-      t->y[k] = lanes_new (state->n, sizeof **t->y);
+    t->pull = lanes_new (state->n, sizeof *t->pull);
+    t->change = lanes_new (state->n, sizeof *t->change);
     t->weight = lanes_new (state->n, sizeof *t->weight);
     state->has_targets = TRUE;
   }
   for (guint l = 0; l < CLOTH_N_LANES; l++) {
     if (!repeats (state, l, lane))
       continue;
-    for (guint k = 0; k < 4; k++)
-      set_lane (t->y[k], l, state->n, y[k]);
-    for (guint i = 0; i < state->n; i++)
+    for (guint i = 0; i < state->n; i++) {
       CLOTH_LANE_AT (&t->weight[i], l) = (ClothReal) weights[i];
+      for (guint k = 0; k < 3; k++) {
+        guint at = 3 * i + k;
+        gdouble now = gain * y[0][at] + damping * y[2][at];
+        gdouble next = gain * y[1][at] + damping * y[3][at];
+
+        CLOTH_LANE_AT (&t->pull[i][k], l) = (ClothReal) (weights[i] * now);
+        CLOTH_LANE_AT (&t->change[i][k], l) =
+            (ClothReal) (weights[i] * (next - now));
+      }
+    }
     CLOTH_LANE_AT (&t->gain, l) = (ClothReal) gain;
     CLOTH_LANE_AT (&t->damping, l) = (ClothReal) damping;
     CLOTH_LANE_AT (&t->now, l) = (ClothReal) t_now;

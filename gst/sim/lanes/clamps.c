@@ -95,26 +95,18 @@ void CLOTH_LANE_NAME (cloth_lane_clamps) (ClothLaneState * state)
   }
 }
 
-/* Adds the observer's springs to f: m w (gain (y − x) + damping (y' − v)), y of a time
- * between two observations. */
+/* Adds the forces of the observer's springs at a time to f. */
 void
 CLOTH_LANE_NAME (cloth_lane_targets) (const ClothLaneState * state,
     gdouble time_s, ClothLane3 * f)
 {
-  const ClothLaneTargets * t = &state->targets;
-  ClothLane span = t->next - t->now, zero = cloth_lane_set (0.);
-  ClothLane share = (cloth_lane_set (time_s) - t->now) / span;
+  ClothLane share = cloth_lane_targets_share (state, time_s);
 
-  share = cloth_lane_select (cloth_lane_less (zero, span), share, zero);
   for (guint i = 0; i < state->n; i++) {
-    ClothLane weight = state->mass[i] * t->weight[i];
-    ClothLane gain = weight * t->gain, damping = weight * t->damping;
+    ClothLane pull[3];
 
-    for (guint k = 0; k < 3; k++) {
-      ClothLane y = t->y[0][i][k] + share * (t->y[1][i][k] - t->y[0][i][k]);
-      ClothLane dy = t->y[2][i][k] + share * (t->y[3][i][k] - t->y[2][i][k]);
-
-      f[i][k] += gain * (y - state->x[i][k]) + damping * (dy - state->v[i][k]);
-    }
+    cloth_lane_target (state, i, share, pull);
+    for (guint k = 0; k < 3; k++)
+      f[i][k] += state->mass[i] * pull[k];
   }
 }

@@ -2,15 +2,21 @@
  * velocities.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/lanes/state.h"
+#include "gst/sim/lanes/motion.h"
 
 /* Share of the bound that is used: stretched St. Venant–Kirchhoff cloth is stiffer than
  * at rest, (3 λ² − 1)/2 times at stretch λ; this is stable up to λ = 1.3. */
 #define MARGIN 0.7
 
-/* Adds the cloth's own forces at x and v to f. */
+/* The cloth's own forces at x and v, into f. */
 void CLOTH_LANE_NAME (cloth_lane_own_forces) (ClothLaneState * state)
 {
+  if (state->grid) {
+    CLOTH_LANE_NAME (cloth_lane_grid_forces) (state);
+    CLOTH_LANE_NAME (cloth_lane_membrane_rest) (state);
+    return;
+  }
+  memset (state->f, 0, state->n * sizeof *state->f);
   if (state->force_model == CLOTH_FORCE_MASS_SPRING)
     CLOTH_LANE_NAME (cloth_lane_springs) (state);
   else
@@ -18,44 +24,53 @@ void CLOTH_LANE_NAME (cloth_lane_own_forces) (ClothLaneState * state)
   CLOTH_LANE_NAME (cloth_lane_bending) (state);
 }
 
-/* Adds those of effects and of the observer. */
-void CLOTH_LANE_NAME (cloth_lane_other_forces) (ClothLaneState * state)
+/* Adds those of effects to f. */
+void CLOTH_LANE_NAME (cloth_lane_effect_forces) (ClothLaneState * state)
 {
   for (guint i = 0; i < state->n_effects; i++)
     if (state->effects[i].hooks->force)
       state->effects[i].hooks->force (state, &state->effects[i]);
-  /* an implicit step takes them where they are at its end */
-  if (state->has_targets && !state->implicit)
-    CLOTH_LANE_NAME (cloth_lane_targets) (state, state->time, state->f);
 }
 
-/* Adds all forces at x and v to f: gravity and damping αM are the integrator's, which
+/* Changes f, where all forces are, by what effects make of them. */
+void CLOTH_LANE_NAME (cloth_lane_inertia) (ClothLaneState * state)
+{
+  for (guint i = 0; i < state->n_effects; i++)
+    if (state->effects[i].hooks->inertia)
+      state->effects[i].hooks->inertia (state, &state->effects[i]);
+}
+
+/* All of them into f: gravity, damping αM and the observer are the integrator's, which
  * knows the accelerations. */
 void CLOTH_LANE_NAME (cloth_lane_forces) (ClothLaneState * state)
 {
   CLOTH_LANE_NAME (cloth_lane_own_forces) (state);
-  CLOTH_LANE_NAME (cloth_lane_other_forces) (state);
+  CLOTH_LANE_NAME (cloth_lane_effect_forces) (state);
+  CLOTH_LANE_NAME (cloth_lane_inertia) (state);
 }
 
-/* One step of state->dt; leaves f zeroed for the next. */
+CLOTH_LANE_INLINE void
+move (ClothLaneState * state, gboolean nudged)
+{
+  ClothLaneMotion motion;
+
+  cloth_lane_motion_init (state, state->dt, &motion);
+  for (guint i = 0; i < state->n; i++)
+    cloth_lane_move (state, &motion, i, state->f[i], nudged);
+}
+
+/* One step of state->dt. */
 void CLOTH_LANE_NAME (cloth_lane_explicit) (ClothLaneState * state)
 {
-  ClothLane dt = cloth_lane_set (state->dt), alpha = state->alpha;
-  ClothLane g[3] = { state->gravity[0], state->gravity[1], state->gravity[2] };
-
-  CLOTH_LANE_NAME (cloth_lane_forces) (state);
-  for (guint i = 0; i < state->n; i++) {
-    ClothLane w = state->inverse_mass[i];
-
-    for (guint k = 0; k < 3; k++) {
-      ClothLane v = state->v[i][k];
-
-      v += dt * (state->f[i][k] * w + g[k] - alpha * v);
-      state->v[i][k] = v;
-      state->x[i][k] += dt * v;
-      state->f[i][k] = cloth_lane_set (0.);
-    }
+  if (state->grid_alone && !state->has_forces) {
+    CLOTH_LANE_NAME (cloth_lane_grid_step) (state);
+    return;
   }
+  CLOTH_LANE_NAME (cloth_lane_forces) (state);
+  if (state->has_targets)
+    move (state, TRUE);
+  else
+    move (state, FALSE);
 }
 
 /* Stiffness over mass, the bound of ω² by Gershgorin's rows. */

@@ -33,7 +33,6 @@ CLOTH_LANE_NAME (cloth_lane_hooks)[] = {
   &CLOTH_LANE_NAME (cloth_hooks_clamp_delay),
   &CLOTH_LANE_NAME (cloth_hooks_friction),
   &CLOTH_LANE_NAME (cloth_hooks_self_contact),
-  /* last: it goes by what all the others do */
   &CLOTH_LANE_NAME (cloth_hooks_added_mass),
   NULL
 };

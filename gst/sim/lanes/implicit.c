@@ -146,7 +146,6 @@ linearise (ClothLaneState * state)
 
       implicit->x[i][k] = x + ahead * (x - implicit->last_x[i][k]);
       implicit->v[i][k] = v + ahead * (v - implicit->last_v[i][k]);
-      state->f[i][k] = cloth_lane_set (0.);
     }
   }
   swap (state);

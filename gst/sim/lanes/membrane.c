@@ -20,49 +20,82 @@ split (ClothLane strain, ClothLane ratio)
   return cloth_lane_max (strain, zero) + ratio * cloth_lane_min (strain, zero);
 }
 
+/* Which shape at rest. */
+typedef enum
+{
+  SAME,                         /* the uv's own */
+  CHANGED,                      /* what effects made of it */
+  DIFFERENCE                    /* the forces of the latter minus those of the former */
+} Rest;
+
+/* Stresses of the products m of x_u and x_v and half their rates r; @area of the cloth at
+ * rest over that in uv. */
+CLOTH_LANE_INLINE void
+stresses (const ClothLaneState * state, ClothLane area, const ClothLane m[3],
+    const ClothLane r[3], ClothLane s[3])
+{
+  ClothLane half = cloth_lane_set (0.5), two = cloth_lane_set (2.);
+  ClothLane ratio = state->compression_ratio, beta = state->beta;
+
+  s[0] = state->stretch_warp * area * (split (m[0] * half - half, ratio) +
+      beta * r[0]);
+  s[1] = state->stretch_weft * area * (split (m[1] * half - half, ratio) +
+      beta * r[1]);
+  s[2] = state->shear * area * two * (m[2] + two * beta * r[2]);
+}
+
 CLOTH_LANE_INLINE void
 triangles (ClothLaneState * state, guint begin, guint end, gboolean right,
-    gboolean rest_changed)
+    Rest rest)
 {
-  ClothLane half = cloth_lane_set (0.5), ratio = state->compression_ratio;
-  ClothLane warp = state->stretch_warp * state->rest_area;
-  ClothLane weft = state->stretch_weft * state->rest_area;
-  ClothLane shear = state->shear * state->rest_area;
-  ClothLane damp_warp = warp * state->beta, damp_weft = weft * state->beta;
-  ClothLane damp_shear = shear * state->beta * cloth_lane_set (2.);
+  ClothLane one = cloth_lane_set (1.);
 
   for (guint i = begin; i < end; i++) {
     const ClothLaneTriangle *t = &state->triangles[i];
-    ClothLane m[3], r[3], s[3];
+    ClothLane m[3], r[3], s[3], same[3];
     ClothLaneEdges edges;
 
     cloth_lane_measure (state, t, &edges);
     cloth_lane_map (t->t, right, edges.d, m);
     cloth_lane_map (t->t, right, edges.r, r);
-    if (rest_changed) {
+    if (rest != CHANGED)
+      stresses (state, one, m, r, same);
+    if (rest != SAME) {
       cloth_lane_map_rest (state->metric, m);
       cloth_lane_map_rest (state->metric, r);
+      stresses (state, state->rest_area, m, r, s);
+      cloth_lane_map_rest_back (state->metric, s);
     }
-    s[0] = warp * split (m[0] * half - half, ratio) + damp_warp * r[0];
-    s[1] = weft * split (m[1] * half - half, ratio) + damp_weft * r[1];
-    s[2] = (shear * m[2] + damp_shear * r[2]) * cloth_lane_set (2.);
-    cloth_lane_push_edges (state, t, &edges, right, rest_changed, s);
+    for (guint k = 0; k < 3; k++)
+      s[k] = rest == SAME ? same[k] : rest == CHANGED ? s[k] : s[k] - same[k];
+    cloth_lane_push_edges (state, t, &edges, right, FALSE, s);
   }
+}
+
+CLOTH_LANE_INLINE void
+all_triangles (ClothLaneState * state, Rest rest)
+{
+  guint right = state->body->n_right, n = state->body->n_triangles;
+
+  triangles (state, 0, right, TRUE, rest);
+  triangles (state, right, n, FALSE, rest);
 }
 
 /* Adds the membrane's forces. */
 void CLOTH_LANE_NAME (cloth_lane_membrane) (ClothLaneState * state)
 {
-  guint right = state->body->n_right, n = state->body->n_triangles;
-
   /* maps that are the identity change no bit: which loop runs is a matter of speed */
-  if (state->rest_changed) {
-    triangles (state, 0, right, TRUE, TRUE);
-    triangles (state, right, n, FALSE, TRUE);
-  } else {
-    triangles (state, 0, right, TRUE, FALSE);
-    triangles (state, right, n, FALSE, FALSE);
-  }
+  if (state->rest_changed)
+    all_triangles (state, CHANGED);
+  else
+    all_triangles (state, SAME);
+}
+
+/* Adds what another shape at rest changes in the membrane's forces. */
+void CLOTH_LANE_NAME (cloth_lane_membrane_rest) (ClothLaneState * state)
+{
+  if (state->rest_changed)
+    all_triangles (state, DIFFERENCE);
 }
 
 ClothLane

@@ -5,7 +5,7 @@
  * symplectic Euler.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/lanes/state.h"
+#include "gst/sim/lanes/motion.h"
 
 /* Shares of the bounds that are used, as in symplectic Euler: of the frequency, and of
  * the damping. */
@@ -19,7 +19,7 @@
 /* No model asks for a shorter step, s. */
 #define LEAST_STEP 1e-12
 
-/* Held particles keep their velocity: no forces, against all that pulls. */
+/* Held particles keep their velocity, against all that pulls. */
 static void
 hold (ClothLaneState * state)
 {
@@ -30,53 +30,65 @@ hold (ClothLaneState * state)
     guint p = body->held[i].particle;
 
     for (guint k = 0; k < 3 && state->held[i]; k++)
-      state->f[p][k] = cloth_lane_select (hard, state->mass[p] * (state->alpha *
-              state->v[p][k] - state->gravity[k]), state->f[p][k]);
+      state->v[p][k] = cloth_lane_select (hard, state->last_v[p][k],
+          state->v[p][k]);
   }
 }
 
-/* v_j = μ v_{j−1} + ν v_{j−2} + h a (v_{j−1}). */
-CLOTH_LANE_INLINE void
-stage (ClothLaneState * state, gdouble mu, gdouble nu, gdouble h)
+/* Effects and the observer push alike in all stages. */
+static void
+find_others (ClothLaneState * state)
 {
-  ClothLane m = cloth_lane_set (mu), n = cloth_lane_set (nu);
-  ClothLane dt = cloth_lane_set (h);
+  ClothLane3 *f = state->f;
 
-  for (guint i = 0; i < state->n; i++)
-    for (guint k = 0; k < 3; k++) {
-      ClothLane v = state->v[i][k];
-      ClothLane a = state->f[i][k] * state->inverse_mass[i] +
-          state->gravity[k] - state->alpha * v;
-
-      state->v[i][k] = m * v + n * state->last_v[i][k] + dt * a;
-      state->last_v[i][k] = v;
-    }
+  state->has_others = state->has_forces || state->has_targets;
+  if (!state->has_others)
+    return;
+  memset (f, 0, state->n * sizeof *f);
+  CLOTH_LANE_NAME (cloth_lane_effect_forces) (state);
+  if (state->has_targets)
+    CLOTH_LANE_NAME (cloth_lane_targets) (state, state->time, f);
+  state->f = state->others;
+  state->others = f;
 }
 
-/* One step of state->dt in state->stages; leaves f zeroed for the next. Effects and the
- * observer push alike in all stages. */
+static void
+stage (ClothLaneState * state, gdouble h, gdouble mu, gdouble nu)
+{
+  ClothLaneStage stage;
+
+  CLOTH_LANE_NAME (cloth_lane_own_forces) (state);
+  if (state->has_others)
+    for (guint i = 0; i < state->n; i++)
+      for (guint k = 0; k < 3; k++)
+        state->f[i][k] += state->others[i][k];
+  CLOTH_LANE_NAME (cloth_lane_inertia) (state);
+  cloth_lane_stage_init (state, h, mu, nu, &stage);
+  for (guint i = 0; i < state->n; i++)
+    cloth_lane_stage (state, &stage, i, state->f[i]);
+}
+
+/* One step of state->dt in state->stages. */
 void CLOTH_LANE_NAME (cloth_lane_staged) (ClothLaneState * state)
 {
   ClothLane dt = cloth_lane_set (state->dt);
   gdouble s = state->stages;
 
-  CLOTH_LANE_NAME (cloth_lane_other_forces) (state);
-  memcpy (state->others, state->f, state->n * sizeof *state->f);
+  find_others (state);
   for (guint j = 1; j <= state->stages; j++) {
-    gdouble mu = (2. * j - 1.) / j;
+    gdouble weight = (2. * j - 1.) / j, h = weight * 2. / (s * s + s) *
+        state->dt;
+    gdouble mu = j > 1 ? weight : 1., nu = j > 1 ? (1. - j) / j : 0.;
 
-    if (j > 1)
-      memcpy (state->f, state->others, state->n * sizeof *state->f);
-    CLOTH_LANE_NAME (cloth_lane_own_forces) (state);
+    if (state->grid_alone)
+      CLOTH_LANE_NAME (cloth_lane_grid_stage) (state, h, mu, nu);
+    else
+      stage (state, h, mu, nu);
     hold (state);
-    stage (state, j > 1 ? mu : 1., j > 1 ? (1. - j) / j : 0.,
-        mu * 2. / (s * s + s) * state->dt);
   }
   for (guint i = 0; i < state->n; i++)
-    for (guint k = 0; k < 3; k++) {
+    for (guint k = 0; k < 3; k++)
       state->x[i][k] += dt * state->v[i][k];
-      state->f[i][k] = cloth_lane_set (0.);
-    }
 }
 
 /* The Legendre polynomial of degree n at x. */

@@ -10,6 +10,7 @@
 typedef struct _ClothLaneHooks ClothLaneHooks;
 typedef struct _ClothLaneObstacles ClothLaneObstacles;
 typedef struct _ClothLaneImplicit ClothLaneImplicit;
+typedef struct _ClothLaneGrid ClothLaneGrid;
 typedef ClothLane ClothLane3[3];
 
 /* An effect in a group. */
@@ -23,10 +24,11 @@ typedef struct
   gpointer state;
 } ClothLaneEffect;
 
-/* Springs that draw the cloth to what was observed: y at two times, and its velocity. */
+/* Springs that draw the cloth to what was observed: an acceleration of
+ * pull + share·change − weight (gain x + damping v), @share of the way from now to next. */
 typedef struct
 {
-  ClothLane3 *y[4];
+  ClothLane3 *pull, *change;
   ClothLane *weight;
   ClothLane gain, damping;
   ClothLane now, next;
@@ -94,6 +96,8 @@ typedef struct
 
   guint n_effects;
   ClothLaneEffect *effects;
+  gboolean has_forces, has_inertia;     /* some effect has that hook */
+  gboolean grid_alone;          /* the grid's pass has all that changes with velocities */
   ClothLaneTargets targets;
   gboolean has_targets;
 
@@ -106,9 +110,11 @@ typedef struct
 
   /* Of steps in stages: velocities a stage ago, forces that don't change meanwhile. */
   guint stages;
+  gboolean has_others;
   ClothLane3 *last_v, *others;
 
   ClothLaneObstacles *obstacles;
+  ClothLaneGrid *grid;          /* NULL: another mesh, or the mass–spring model */
   ClothLaneImplicit *implicit;  /* NULL: symplectic Euler */
 
   gdouble time;                 /* s */
@@ -140,6 +146,8 @@ struct _ClothLaneHooks
       ClothLane * omega2, ClothLane * friction);
   /* every step, before the particles move: adds to f */
   void (*force) (ClothLaneState * state, ClothLaneEffect * effect);
+  /* the same, when all forces are in f: changes them by what they do together */
+  void (*inertia) (ClothLaneState * state, ClothLaneEffect * effect);
   /* moves where a clamp holds its particle at a time */
   void (*clamp) (const ClothLaneState * state, const ClothLaneEffect * effect,
       guint held, gdouble time_s, ClothLane position[3]);
@@ -161,6 +169,7 @@ extern const ClothLaneHooks
 
 /* Terms of a step. */
 void CLOTH_LANE_NAME (cloth_lane_membrane) (ClothLaneState * state);
+void CLOTH_LANE_NAME (cloth_lane_membrane_rest) (ClothLaneState * state);
 ClothLane CLOTH_LANE_NAME (cloth_lane_membrane_energy) (const ClothLaneState *
     state);
 void CLOTH_LANE_NAME (cloth_lane_springs) (ClothLaneState * state);
@@ -179,10 +188,15 @@ ClothLaneObstacles *CLOTH_LANE_NAME (cloth_lane_obstacles_new) (const
     ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_obstacles_free) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_obstacles) (ClothLaneState * state);
-/* Forces at x and v into f: the cloth's own, the others, and all of them; without the
- * targets' when steps are implicit. */
+ClothLaneGrid *CLOTH_LANE_NAME (cloth_lane_grid_new) (const ClothBody * body);
+void CLOTH_LANE_NAME (cloth_lane_grid_free) (ClothLaneGrid * grid);
+void CLOTH_LANE_NAME (cloth_lane_grid_forces) (ClothLaneState * state);
+void CLOTH_LANE_NAME (cloth_lane_grid_step) (ClothLaneState * state);
+void CLOTH_LANE_NAME (cloth_lane_grid_stage) (ClothLaneState * state,
+    gdouble h, gdouble mu, gdouble nu);
 void CLOTH_LANE_NAME (cloth_lane_own_forces) (ClothLaneState * state);
-void CLOTH_LANE_NAME (cloth_lane_other_forces) (ClothLaneState * state);
+void CLOTH_LANE_NAME (cloth_lane_effect_forces) (ClothLaneState * state);
+void CLOTH_LANE_NAME (cloth_lane_inertia) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_forces) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_explicit) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_staged) (ClothLaneState * state);
@@ -229,4 +243,29 @@ cloth_lane_push_face (ClothLaneState * state, const ClothLaneTriangle * t,
     for (guint corner = 0; corner < 3; corner++)
       state->f[t->particle[corner]][k] += third;
   }
+}
+
+/* Where a time is on the observer's way from now to next. */
+CLOTH_LANE_INLINE ClothLane
+cloth_lane_targets_share (const ClothLaneState * state, gdouble time_s)
+{
+  const ClothLaneTargets *t = &state->targets;
+  ClothLane span = t->next - t->now, zero = cloth_lane_set (0.);
+
+  return cloth_lane_select (cloth_lane_less (zero, span),
+      (cloth_lane_set (time_s) - t->now) / span, zero);
+}
+
+/* The observer's acceleration of a particle. */
+CLOTH_LANE_INLINE void
+cloth_lane_target (const ClothLaneState * state, guint particle,
+    ClothLane share, ClothLane acceleration[3])
+{
+  const ClothLaneTargets *t = &state->targets;
+  ClothLane gain = t->weight[particle] * t->gain;
+  ClothLane damping = t->weight[particle] * t->damping;
+
+  for (guint k = 0; k < 3; k++)
+    acceleration[k] = t->pull[particle][k] + share * t->change[particle][k] -
+        gain * state->x[particle][k] - damping * state->v[particle][k];
 }
