@@ -9,8 +9,10 @@
 #include "gst/gap/diagnose.h"
 #include "gst/sim/effect-table.h"
 
-/* Finite differences are this share of a prior. */
-#define STEP 0.1
+/* Finite differences are this share of a prior: chaos adds the same to every step, so a
+ * short one would drown in it. */
+#define STEP 0.4
+#define FREE_STEP 0.2
 /* Prior of the logarithm of a stiffness or damping, half of an order of magnitude. */
 #define LOG_PRIOR 1.2
 /* A clamp that is off its path by this many standard deviations of a mean of frames. */
@@ -86,7 +88,7 @@ add_free (ClothGapCandidates * c, const ClothModel * model, GError ** error)
     } else {
       d.prior = (d.high - d.low) / 4.;
     }
-    d.step = STEP * d.prior;
+    d.step = FREE_STEP * d.prior;
     g_array_append_val (c->directions, d);
   }
   c->n_free = c->directions->len;
@@ -367,6 +369,29 @@ cloth_gap_candidates_move (const ClothGapCandidates * candidates,
         NULL);
   }
   return moved;
+}
+
+/**
+ * cloth_gap_candidates_has_room:
+ * @candidates: the candidates
+ * @model: where it starts
+ * @direction: along which
+ * @step: how far
+ *
+ * Returns: whether the number stays in its range @step above and below
+ * Since: 0.1
+ */
+gboolean
+cloth_gap_candidates_has_room (const ClothGapCandidates * candidates,
+    const ClothModel * model, guint direction, gdouble step)
+{
+  const ClothGapDirection *d = &g_array_index (candidates->directions,
+      ClothGapDirection, direction);
+  gdouble value = d->centre;
+
+  if (cloth_model_get (model, d->name, &value, NULL) && d->logarithmic)
+    value = log (value);
+  return value - step >= d->low && value + step <= d->high;
 }
 
 /**

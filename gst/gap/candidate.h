@@ -85,6 +85,8 @@ ClothGapCandidates *cloth_gap_candidates_new (const ClothModel * model,
 ClothModel *cloth_gap_candidates_move (const ClothGapCandidates * candidates,
     const ClothModel * model, const guint * directions,
     const gdouble * changes, guint n);
+gboolean cloth_gap_candidates_has_room (const ClothGapCandidates *
+    candidates, const ClothModel * model, guint direction, gdouble step);
 void cloth_gap_candidates_free (ClothGapCandidates * candidates);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothGapCandidates, cloth_gap_candidates_free)

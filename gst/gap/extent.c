@@ -15,8 +15,6 @@ typedef struct
 {
   const ClothRecording *recording;
   ClothGapExtent **extents;
-  guint last;
-  guint64 seen[3];
 } Gather;
 
 /* Unit vectors along warp, weft and normal at a vertex of a grid, from what was seen. */
@@ -93,28 +91,17 @@ extent_new (const ClothRecording * r, gdouble window_s)
 {
   ClothGapExtent *e = g_new0 (ClothGapExtent, 1);
   gsize all = (gsize) r->n * r->n_frames;
-  guint begin = 0;
 
   e->n = r->n;
   e->n_frames = r->n_frames;
   e->squares = g_new (gdouble, all);
   e->positions = g_new (gfloat, 3 * all);
-  e->window = g_new (guint, r->n_frames);
   for (gsize i = 0; i < all; i++)
     e->squares[i] = NAN;
   for (gsize i = 0; i < 3 * all; i++)
     e->positions[i] = (gfloat) r->y[i];
-  e->window[0] = G_MAXUINT;
-  for (guint frame = 1; frame < r->n_frames; frame++) {
-    /* the same rule as that of the rollout */
-    if (frame > begin + 1
-        && !(r->times[frame] - r->times[begin] < window_s + 1e-9)) {
-      begin = frame - 1;
-      e->n_windows++;
-    }
-    e->window[frame] = e->n_windows;
-  }
-  e->n_windows++;
+  e->window = cloth_rollout_list_windows (r, window_s);
+  e->n_windows = e->window[r->n_frames - 1] + 1;
   return e;
 }
 

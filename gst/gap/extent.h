@@ -13,7 +13,7 @@ G_BEGIN_DECLS
  * @n: number of vertices
  * @n_frames: number of frames
  * @n_windows: number of windows
- * @window: which window each frame is in, [n_frames]; G_MAXUINT for the first frame
+ * @window: which window leads to each frame, [n_frames]
  * @squares: squared distance, [n_frames][n], m²; NaN where nothing was seen
  * @positions: simulated, [n_frames][n][3], m
  * @directions: mean square along warp, weft and normal, m²

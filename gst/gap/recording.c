@@ -109,8 +109,16 @@ differentiate (ClothRecording * r)
   }
 }
 
-static gint
-compare_numbers (gconstpointer a, gconstpointer b)
+/**
+ * cloth_recording_compare_numbers:
+ * @a: a #gdouble
+ * @b: another
+ *
+ * Returns: which is larger, for g_array_sort ()
+ * Since: 0.1
+ */
+gint
+cloth_recording_compare_numbers (gconstpointer a, gconstpointer b)
 {
   gdouble x = *(const gdouble *) a, y = *(const gdouble *) b;
 
@@ -141,7 +149,7 @@ estimate_sigma (ClothRecording * r)
     }
   if (!all->len)
     return NAN;
-  g_array_sort (all, compare_numbers);
+  g_array_sort (all, cloth_recording_compare_numbers);
   return g_array_index (all, gdouble, all->len / 2) / MEDIAN_OF_NORMAL /
       sqrt (FOURTH_DIFFERENCE);
 }
@@ -171,7 +179,7 @@ check_scale (ClothRecording * r, GError ** error)
   }
   if (!ratios->len)
     return TRUE;
-  g_array_sort (ratios, compare_numbers);
+  g_array_sort (ratios, cloth_recording_compare_numbers);
   ratio = g_array_index (ratios, gdouble, ratios->len / 2);
   if (ratio > 0.5 && ratio < 2.)
     return TRUE;

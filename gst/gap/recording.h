@@ -35,6 +35,7 @@ typedef struct {
 } ClothRecording;
 
 ClothRecording *cloth_recording_new (ClothTake * take, GError ** error);
+gint cloth_recording_compare_numbers (gconstpointer a, gconstpointer b);
 void cloth_recording_free (ClothRecording * recording);
 
 /* Frames of the polynomial that the velocity comes from, and its order (Savitzky and

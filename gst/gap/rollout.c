@@ -10,19 +10,31 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/gap/diagnose.h"
+#include "gst/math/pool.h"
+
 typedef struct
 {
   const ClothRecording *recording;
+  const ClothRolloutOptions *options;
   ClothSim *sim;
   guint n_models;
   gdouble *weights;             /* of the running frame */
-  gdouble *x, *v;
+  ClothPool *pool;
+  gsize row;                    /* numbers of a model */
+  gdouble *x;                   /* of each model */
+  gdouble *v;
+  /* of the running call of tell () */
+  ClothRolloutFrame each;
+  gpointer data;
+  guint frame;
 } Run;
 
 static void
 run_clear (Run * run)
 {
   cloth_sim_free (run->sim);
+  g_clear_pointer (&run->pool, cloth_pool_free);
   g_free (run->weights);
   g_free (run->x);
   g_free (run->v);
@@ -40,14 +52,15 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Run, run_clear)
   };
 
   *run = (Run) {
-  recording, NULL, n_models};
+  recording, options, NULL, n_models,.row = 3 * (gsize) recording->n};
   run->sim = cloth_sim_new (recording->scene, models, n_models, &sim_options,
       error);
   if (!run->sim)
     return FALSE;
+  run->pool = cloth_pool_new (options->threads);
   run->weights = g_new (gdouble, recording->n);
-  run->x = g_new (gdouble, 3 * (gsize) recording->n);
-  run->v = g_new (gdouble, 3 * (gsize) recording->n);
+  run->x = g_new (gdouble, run->row * n_models);
+  run->v = g_new (gdouble, run->row);
   /* it moves from the first frame as it was seen to move */
   for (guint m = 0; m < n_models; m++)
     cloth_sim_set_state (run->sim, m, recording->y, recording->velocity,
@@ -73,19 +86,39 @@ nudge (Run * run, guint frame, const gdouble * gains)
 }
 
 static void
-tell (Run * run, guint frame, ClothRolloutFrame each, gpointer data)
+tell_models (gpointer data, guint begin, guint end, guint worker)
 {
-  for (guint m = 0; m < run->n_models; m++) {
-    cloth_sim_get_positions (run->sim, m, run->x);
-    each (data, m, frame, run->x);
-  }
+  Run *run = data;
+
+  for (guint m = begin; m < end; m++)
+    run->each (run->data, m, run->frame, run->x + m * run->row);
+}
+
+/* Tells of the first @n models. */
+static gboolean
+tell (Run * run, guint n, guint frame, ClothRolloutFrame each, gpointer data,
+    GError ** error)
+{
+  run->each = each;
+  run->data = data;
+  run->frame = frame;
+  for (guint m = 0; m < n; m++)
+    cloth_sim_get_positions (run->sim, m, run->x + m * run->row);
+  cloth_pool_run (run->pool, tell_models, run, n);
+  if (!run->options->progress
+      || run->options->progress (run->options->data,
+          (frame + 1.) / run->recording->n_frames))
+    return TRUE;
+  g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_CANCELLED,
+      "the diagnosis was stopped");
+  return FALSE;
 }
 
 static void
-judge (Run * run, gboolean * sound)
+judge (Run * run, guint n, gboolean * sound)
 {
   for (guint m = 0; m < run->n_models; m++)
-    sound[m] = sound[m]
+    sound[m % n] = sound[m % n]
         && cloth_sim_get_state (run->sim, m, NULL) == CLOTH_SIM_OK;
 }
 
@@ -96,10 +129,10 @@ judge (Run * run, gboolean * sound)
  * @gains: (array length=n_models): of each model's observer, 1/s²
  * @n_models: how many
  * @options: how to simulate
- * @each: called for each model in each frame, from one thread
+ * @each: called for each model in each frame
  * @data: for @each
  * @sound: (out) (array length=n_models): which models did not diverge
- * @error: #ClothSimError
+ * @error: #ClothSimError, or #ClothGapError when it was stopped
  *
  * Since: 0.1
  */
@@ -115,13 +148,15 @@ cloth_rollout_nudged (const ClothRecording * recording,
     return FALSE;
   for (guint m = 0; m < n_models; m++)
     sound[m] = TRUE;
-  tell (&run, 0, each, data);
+  if (!tell (&run, n_models, 0, each, data, error))
+    return FALSE;
   for (guint frame = 0; frame + 1 < recording->n_frames; frame++) {
     nudge (&run, frame, gains);
     cloth_sim_advance (run.sim, recording->times[frame + 1]);
-    tell (&run, frame + 1, each, data);
+    if (!tell (&run, n_models, frame + 1, each, data, error))
+      return FALSE;
   }
-  judge (&run, sound);
+  judge (&run, n_models, sound);
   return TRUE;
 }
 
@@ -136,7 +171,7 @@ cloth_rollout_nudged (const ClothRecording * recording,
  * @each: called for each model in each frame of each window but its first
  * @data: for @each
  * @sound: (out) (array length=n_models): which models did not diverge
- * @error: #ClothSimError
+ * @error: #ClothSimError, or #ClothGapError when it was stopped
  *
  * The take in windows, each simulated freely from the state that nudging has reached at
  * its start.
@@ -149,38 +184,61 @@ cloth_rollout_windows (const ClothRecording * recording,
     gdouble window_s, const ClothRolloutOptions * options,
     ClothRolloutFrame each, gpointer data, gboolean * sound, GError ** error)
 {
-  g_auto (Run) led = { 0 }, let_go = { 0 };
-  g_autofree gdouble *gains = g_new (gdouble, n_models);
-  g_autofree gdouble *none = g_new0 (gdouble, n_models);
-  guint frame = 0;
+  g_auto (Run) run = { 0 };
+  /* side by side: those let go, those led */
+  g_autofree const ClothModel **both = g_new (const ClothModel *, 2 * n_models);
+  g_autofree gdouble *gains = g_new0 (gdouble, 2 * n_models);
+  g_autofree guint *windows = cloth_rollout_list_windows (recording, window_s);
 
-  if (!run_init (&led, recording, models, n_models, options, error)
-      || !run_init (&let_go, recording, models, n_models, options, error))
-    return FALSE;
   for (guint m = 0; m < n_models; m++) {
-    gains[m] = gain;
+    both[m] = both[n_models + m] = models[m];
+    gains[n_models + m] = gain;
     sound[m] = TRUE;
   }
-  while (frame + 1 < recording->n_frames) {
-    guint begin = frame;
-
-    for (guint m = 0; m < n_models; m++) {
-      cloth_sim_get_positions (led.sim, m, let_go.x);
-      cloth_sim_get_velocities (led.sim, m, let_go.v);
-      cloth_sim_set_state (let_go.sim, m, let_go.x, let_go.v,
-          recording->times[begin]);
+  if (!run_init (&run, recording, both, 2 * n_models, options, error))
+    return FALSE;
+  for (guint frame = 0; frame + 1 < recording->n_frames; frame++) {
+    if (frame && windows[frame + 1] != windows[frame]) {
+      judge (&run, n_models, sound);
+      for (guint m = 0; m < n_models; m++) {
+        cloth_sim_get_positions (run.sim, n_models + m, run.x);
+        cloth_sim_get_velocities (run.sim, n_models + m, run.v);
+        cloth_sim_set_state (run.sim, m, run.x, run.v, recording->times[frame]);
+      }
     }
-    while (frame + 1 < recording->n_frames && (frame == begin
-            || recording->times[frame + 1] - recording->times[begin] <
-            window_s + 1e-9)) {
-      nudge (&led, frame, gains);
-      cloth_sim_advance (led.sim, recording->times[frame + 1]);
-      nudge (&let_go, frame, none);
-      cloth_sim_advance (let_go.sim, recording->times[frame + 1]);
-      tell (&let_go, ++frame, each, data);
-    }
-    judge (&led, sound);
-    judge (&let_go, sound);
+    nudge (&run, frame, gains);
+    cloth_sim_advance (run.sim, recording->times[frame + 1]);
+    if (!tell (&run, n_models, frame + 1, each, data, error))
+      return FALSE;
   }
+  judge (&run, n_models, sound);
   return TRUE;
+}
+
+/**
+ * cloth_rollout_list_windows:
+ * @recording: a recording
+ * @window_s: length of the windows, s
+ *
+ * A window begins at the frame where the one before ends.
+ *
+ * Returns: (transfer full) (array): the window that leads to each frame; of the first
+ *   frame that of the second
+ * Since: 0.1
+ */
+guint *
+cloth_rollout_list_windows (const ClothRecording * recording, gdouble window_s)
+{
+  guint *windows = g_new0 (guint, recording->n_frames);
+  guint begin = 0;
+
+  for (guint frame = 1; frame < recording->n_frames; frame++) {
+    gboolean over = frame > begin + 1 && !(recording->times[frame] -
+        recording->times[begin] < window_s + 1e-9);
+
+    windows[frame] = windows[frame - 1] + over;
+    if (over)
+      begin = frame - 1;
+  }
+  return windows;
 }

@@ -9,15 +9,29 @@
 G_BEGIN_DECLS
 
 /**
+ * ClothRolloutProgress:
+ * @data: the caller's
+ * @share: of the frames that are done
+ *
+ * Returns: whether to go on
+ * Since: 0.1
+ */
+typedef gboolean (*ClothRolloutProgress) (gpointer data, gdouble share);
+
+/**
  * ClothRolloutOptions:
  * @seed: of effects with chance in them
  * @threads: 0 = one for each processor
+ * @progress: (nullable): told of each frame
+ * @data: for @progress
  *
  * Since: 0.1
  */
 typedef struct {
   guint64 seed;
   guint threads;
+  ClothRolloutProgress progress;
+  gpointer data;
 } ClothRolloutOptions;
 
 /**
@@ -26,6 +40,8 @@ typedef struct {
  * @model: which model
  * @frame: which frame
  * @positions: where the model has the vertices, [n][3], m
+ *
+ * Called from several threads at a time, of different models.
  *
  * Since: 0.1
  */
@@ -40,6 +56,8 @@ gboolean cloth_rollout_windows (const ClothRecording * recording,
     const ClothModel * const *models, guint n_models, gdouble gain,
     gdouble window_s, const ClothRolloutOptions * options,
     ClothRolloutFrame each, gpointer data, gboolean * sound, GError ** error);
+guint *cloth_rollout_list_windows (const ClothRecording * recording,
+    gdouble window_s);
 
 /* Damping of the observer's springs: 2 ζ √gain. */
 #define CLOTH_ROLLOUT_ZETA 0.5

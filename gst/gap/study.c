@@ -12,13 +12,21 @@
 /* No step of a fit is longer than this many priors. */
 #define LONGEST 1.5
 /* A fit ends when it gains less than this share. */
-#define ENOUGH 2e-3
+#define ENOUGH 4e-3
+/* A step that made things worse is cut to this share. */
+#define CUT 0.4
 
+/**
+ * cloth_study_options_init:
+ * @options: (out caller-allocates): how recordings are studied unless told otherwise
+ *
+ * Since: 0.1
+ */
 void
 cloth_study_options_init (ClothStudyOptions * options)
 {
   *options = (ClothStudyOptions) {
-  .gains = { 100., 1600. },.n_waves = 8,.block_s = 0.5,.highest_hz =
+  .gains = { 1600. },.n_waves = 8,.block_s = 0.5,.highest_hz =
         10.,.overdispersion = 5.};
 }
 
@@ -70,7 +78,7 @@ cloth_study_free (ClothStudy * study)
 typedef struct
 {
   const ClothStudy *study;
-  gdouble **z;                  /* of each model */
+  gdouble **z;                  /* of each model and gain */
 } Collect;
 
 static void
@@ -82,7 +90,8 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
       positions, c->z[model]);
 }
 
-/* Features of the models' residuals: z[gain * n + model], each of features->size. */
+/* Features of the models' residuals: z[model * N_GAINS + gain], each of features->size.
+ * Both gains of a model run side by side, so that effects are computed in few groups. */
 static gboolean
 run (const ClothStudy * study, ClothModel ** models, guint n,
     ClothStudyOptions * options, gdouble ** z, gboolean * sound,
@@ -95,19 +104,110 @@ run (const ClothStudy * study, ClothModel ** models, guint n,
   Collect c = { study, z };
 
   for (guint i = 0; i < all; i++) {
-    lanes[i] = models[i % n];
-    gains[i] = options->gains[i / n];
+    lanes[i] = models[i / CLOTH_STUDY_N_GAINS];
+    gains[i] = options->gains[i % CLOTH_STUDY_N_GAINS];
   }
   options->simulations += all;
   if (!cloth_rollout_nudged (study->recording, lanes, gains, all,
           &options->rollout, collect, &c, ok, error))
     return FALSE;
-  for (guint i = 0; i < n; i++) {
+  for (guint i = 0; i < n; i++)
     sound[i] = TRUE;
-    for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++)
-      sound[i] = sound[i] && ok[g * n + i];
-  }
+  for (guint i = 0; i < all; i++)
+    sound[i / CLOTH_STUDY_N_GAINS] &= ok[i];
   return TRUE;
+}
+
+/* Features of one linearisation: of the model, of it moved along each direction, and of
+ * it moved back along those that are looked at from both sides. */
+typedef struct
+{
+  GPtrArray *models;
+  gdouble **z;                  /* by model and gain */
+  gboolean *sound;              /* by model */
+  guint *back;                  /* of each direction: a model, 0 for none */
+  gdouble *memory;              /* of the models moved back */
+  gdouble *reference;           /* what columns are differences from, by gain */
+} Moved;
+
+static void
+moved_clear (Moved * moved)
+{
+  g_clear_pointer (&moved->models, g_ptr_array_unref);
+  g_free (moved->z);
+  g_free (moved->sound);
+  g_free (moved->back);
+  g_free (moved->memory);
+  g_free (moved->reference);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Moved, moved_clear)
+     static void
+         move (Moved * moved, ClothStudy * study,
+    const ClothGapCandidates * candidates, const ClothModel * model,
+    const guint * directions, guint m)
+{
+  gsize size = study->features->size;
+  guint n;
+
+  moved->models =
+      g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_model_free);
+  moved->back = g_new0 (guint, m + 1);
+  g_ptr_array_add (moved->models, cloth_model_copy (model));
+  for (guint side = 0; side < 2; side++)
+    for (guint i = 0; i < m; i++) {
+      gdouble step = g_array_index (candidates->directions, ClothGapDirection,
+          directions[i]).step;
+
+      if (side && (directions[i] >= candidates->n_free
+              || !cloth_gap_candidates_has_room (candidates, model,
+                  directions[i], step)))
+        continue;
+      if (side) {
+        moved->back[i] = moved->models->len;
+        step = -step;
+      }
+      g_ptr_array_add (moved->models, cloth_gap_candidates_move (candidates,
+              model, &directions[i], &step, 1));
+    }
+  n = moved->models->len;
+  moved->sound = g_new (gboolean, n);
+  moved->z = g_new (gdouble *, n * CLOTH_STUDY_N_GAINS);
+  moved->memory = g_new0 (gdouble, (n - m) * CLOTH_STUDY_N_GAINS * size);
+  for (guint i = 0; i < n; i++)
+    for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++)
+      moved->z[i * CLOTH_STUDY_N_GAINS + g] = i == 0 ? study->z[g] :
+          i <= m ? study->columns[g] + (i - 1) * size :
+          moved->memory + ((i - m - 1) * CLOTH_STUDY_N_GAINS + g) * size;
+}
+
+/* Where the model is, seen from both sides: what chaos did to the model's own run is in
+ * its residual and must not be in the columns too, or each of them would seem to explain
+ * some of it. */
+static void
+find_reference (Moved * moved, const ClothStudy * study)
+{
+  gsize size = study->features->size;
+  guint n = 0;
+
+  moved->reference = g_new0 (gdouble, CLOTH_STUDY_N_GAINS * size);
+  for (guint i = 0; i < study->m; i++) {
+    guint back = moved->back[i];
+
+    if (!back || !moved->sound[back] || !moved->sound[i + 1])
+      continue;
+    n++;
+    for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
+      const gdouble *before = moved->z[back * CLOTH_STUDY_N_GAINS + g];
+      const gdouble *behind = moved->z[(i + 1) * CLOTH_STUDY_N_GAINS + g];
+      gdouble *to = moved->reference + g * size;
+
+      for (gsize k = 0; k < size; k++)
+        to[k] += (0.5 * (before[k] + behind[k]) - to[k]) / n;
+    }
+  }
+  for (guint g = 0; g < CLOTH_STUDY_N_GAINS && !n; g++)
+    memcpy (moved->reference + g * size, study->z[g], size * sizeof (gdouble));
 }
 
 /**
@@ -121,7 +221,8 @@ run (const ClothStudy * study, ClothModel ** models, guint n,
  * @error: #ClothSimError, or #ClothGapError when the model itself can't be simulated
  *
  * Fills @study's z, columns and sound. Directions along which the simulation fails have
- * columns of zeros.
+ * columns of zeros. Free numbers are moved to both sides; the others' columns are
+ * differences from the mean of these.
  *
  * Since: 0.1
  */
@@ -131,204 +232,150 @@ cloth_study_linearise (ClothStudy * study,
     const guint * directions, guint m, ClothStudyOptions * options,
     GError ** error)
 {
+  g_auto (Moved) moved = { NULL };
   gsize size = study->features->size;
-  guint n = m + 1;
-  g_autoptr (GPtrArray) models = g_ptr_array_new_with_free_func (
-      (GDestroyNotify) cloth_model_free);
-  g_autofree gdouble **z = g_new (gdouble *, n * CLOTH_STUDY_N_GAINS);
-  g_autofree gboolean *sound = g_new (gboolean, n);
 
   forget (study);
   study->m = m;
-  g_ptr_array_add (models, cloth_model_copy (model));
-  for (guint i = 0; i < m; i++) {
-    const ClothGapDirection *d = &g_array_index (candidates->directions,
-        ClothGapDirection, directions[i]);
-
-    g_ptr_array_add (models, cloth_gap_candidates_move (candidates, model,
-            &directions[i], &d->step, 1));
-  }
   for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
     study->z[g] = g_new0 (gdouble, size);
     study->columns[g] = g_new0 (gdouble, m * size + 1);
-    for (guint i = 0; i < n; i++)
-      z[g * n + i] = i ? study->columns[g] + (i - 1) * size : study->z[g];
   }
   study->sound = g_new0 (gboolean, m + 1);
-  if (!run (study, (ClothModel **) models->pdata, n, options, z, sound, error))
+  move (&moved, study, candidates, model, directions, m);
+  if (!run (study, (ClothModel **) moved.models->pdata, moved.models->len,
+          options, moved.z, moved.sound, error))
     return FALSE;
-  if (!sound[0]) {
+  if (!moved.sound[0]) {
     g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_MODEL, "%s: the "
         "simulation diverges; give the model softer cloth, more damping or a "
         "smaller time_step", study->recording->name);
     return FALSE;
   }
+  find_reference (&moved, study);
   for (guint i = 0; i < m; i++) {
-    const ClothGapDirection *d = &g_array_index (candidates->directions,
-        ClothGapDirection, directions[i]);
+    gdouble step = g_array_index (candidates->directions, ClothGapDirection,
+        directions[i]).step;
+    guint back = moved.back[i];
 
-    study->sound[i] = sound[i + 1];
+    study->sound[i] = moved.sound[i + 1];
+    if (back && moved.sound[back])
+      step *= 2.;
+    else
+      back = 0;
     for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
       gdouble *column = study->columns[g] + i * size;
+      const gdouble *from = back ? moved.z[back * CLOTH_STUDY_N_GAINS + g] :
+          moved.reference + g * size;
 
       for (gsize k = 0; k < size; k++)
-        column[k] = sound[i + 1] ? (column[k] - study->z[g][k]) / d->step : 0.;
+        column[k] = study->sound[i] ? (column[k] - from[k]) / step : 0.;
     }
   }
   return TRUE;
 }
 
-static gdouble
-cost_of (const ClothGapNormal * normal, const gboolean * blocks)
+/* A fit under way: its studies are linearised at the model at hand. */
+typedef struct
 {
-  gdouble cost = 0.;
+  ClothStudy **studies;
+  guint n_studies;
+  const ClothGapCandidates *candidates;
+  const guint *directions;
+  const gdouble *precisions;
+  guint m;
+  const gboolean *blocks;
+  ClothStudyOptions *options;
+  ClothModel *model;
+  gdouble *moved;               /* from where the fit began */
+  GPtrArray *powers;            /* what weighs, by study and gain */
+} Fit;
 
-  for (guint b = 0; b < normal->n_blocks; b++)
-    if (!blocks || blocks[b])
-      cost += normal->r[b];
-  return cost;
+static void
+free_power (gpointer data)
+{
+  cloth_gap_power_free (data);
 }
 
-/* Of models along a step; the power that weighs is that of where they come from. */
-static gboolean
-try_models (ClothStudy * study, ClothGapPower ** powers, ClothModel ** models,
-    guint n, const gboolean * blocks, ClothStudyOptions * options,
-    gdouble * costs, GError ** error)
+static void
+fit_clear (Fit * fit)
 {
-  gsize size = study->features->size;
-  guint all = n * CLOTH_STUDY_N_GAINS;
-  g_autofree gdouble *memory = g_new0 (gdouble, all * size);
-  g_autofree gdouble **z = g_new (gdouble *, all);
-  g_autofree gboolean *sound = g_new (gboolean, n);
+  cloth_model_free (fit->model);
+  g_free (fit->moved);
+  g_clear_pointer (&fit->powers, g_ptr_array_unref);
+}
 
-  for (guint i = 0; i < all; i++)
-    z[i] = memory + i * size;
-  if (!run (study, models, n, options, z, sound, error))
-    return FALSE;
-  for (guint i = 0; i < all; i++) {
-    g_autoptr (ClothGapNormal) normal = cloth_gap_normal_new (study->features,
-        powers[i / n], 1., z[i], NULL, 0);
-
-    costs[i % n] += sound[i % n] ? cost_of (normal, blocks) : INFINITY;
-  }
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Fit, fit_clear)
+     static gboolean linearise (Fit * fit, GError ** error)
+{
+  for (guint s = 0; s < fit->n_studies; s++)
+    if (!cloth_study_linearise (fit->studies[s], fit->candidates, fit->model,
+            fit->directions, fit->m, fit->options, error))
+      return FALSE;
   return TRUE;
 }
 
-/* Adds a study's normal equations to a, b; returns its cost. */
-static gdouble
-add_study (const ClothStudy * study, ClothGapPower ** powers,
-    const gboolean * blocks, gdouble * a, gdouble * b)
+/* Each feature weighs by the power that the model at hand leaves in its class. */
+static void
+weigh (Fit * fit)
 {
-  guint m = study->m;
-  gdouble cost = 0.;
+  g_clear_pointer (&fit->powers, g_ptr_array_unref);
+  fit->powers = g_ptr_array_new_with_free_func (free_power);
+  for (guint s = 0; s < fit->n_studies; s++)
+    for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++)
+      g_ptr_array_add (fit->powers,
+          cloth_gap_power_new (fit->studies[s]->features,
+              fit->studies[s]->z[g]));
+}
 
-  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
-    g_autoptr (ClothGapNormal) normal = NULL;
+/* Cost of the model at hand, and its normal equations when @a and @b are given. */
+static gdouble
+equations (const Fit * fit, gdouble * a, gdouble * b)
+{
+  gdouble over = fit->options->overdispersion, cost = 0.;
+  guint m = fit->m;
 
-    powers[g] = cloth_gap_power_new (study->features, study->z[g]);
-    normal = cloth_gap_normal_new (study->features, powers[g], 1.,
-        study->z[g], study->columns[g], m);
-    cost += cost_of (normal, blocks);
-    for (guint block = 0; block < normal->n_blocks; block++) {
-      if (blocks && !blocks[block])
+  for (guint i = 0; i < fit->powers->len; i++) {
+    const ClothStudy *study = fit->studies[i / CLOTH_STUDY_N_GAINS];
+    guint g = i % CLOTH_STUDY_N_GAINS;
+    g_autoptr (ClothGapNormal) n = cloth_gap_normal_new (study->features,
+        g_ptr_array_index (fit->powers, i), 1., study->z[g],
+        study->columns[g], a ? m : 0);
+
+    for (guint block = 0; block < n->n_blocks; block++) {
+      if (fit->blocks && !fit->blocks[block])
         continue;
-      for (guint i = 0; i < m * m; i++)
-        a[i] += normal->g[(gsize) block * m * m + i];
-      for (guint i = 0; i < m; i++)
-        b[i] += normal->s[(gsize) block * m + i];
+      cost += n->r[block];
+      for (guint k = 0; a && k < m * m; k++)
+        a[k] += n->g[(gsize) block * m * m + k] / over;
+      for (guint k = 0; a && k < m; k++)
+        b[k] -= n->s[(gsize) block * m + k] / over;
     }
+  }
+  for (guint k = 0; k < m; k++) {
+    cost += over * fit->precisions[k] * fit->moved[k] * fit->moved[k];
+    if (!a)
+      continue;
+    a[k * m + k] += fit->precisions[k];
+    b[k] -= fit->precisions[k] * fit->moved[k];
   }
   return cost;
 }
 
 static void
-free_powers (gpointer data)
+go (Fit * fit, const gdouble * step, gdouble share)
 {
-  cloth_gap_power_free (data);
-}
+  g_autofree gdouble *part = g_new (gdouble, fit->m);
+  ClothModel *there;
 
-/* One step of Gauss and Newton; 0 when none makes it better, else the share gained. */
-static gboolean
-improve (ClothStudy ** studies, guint n_studies,
-    const ClothGapCandidates * candidates, ClothModel ** model,
-    const guint * directions, const gdouble * precisions, guint m,
-    gdouble * moved, const gboolean * blocks, ClothStudyOptions * options,
-    gdouble * sigmas, gdouble * gained, GError ** error)
-{
-  static const gdouble shares[] = { 1., 0.5, 0.2 };
-  const guint n_shares = G_N_ELEMENTS (shares);
-  g_autofree gdouble *a = g_new0 (gdouble, m * m), *b = g_new0 (gdouble, m);
-  g_autofree gdouble *step = g_new (gdouble, m * n_shares);
-  g_autoptr (GPtrArray) powers = g_ptr_array_new_with_free_func (free_powers);
-  ClothModel *tried[G_N_ELEMENTS (shares)];
-  gdouble costs[G_N_ELEMENTS (shares)] = { 0. }, now = 0.;
-  guint best = 0;
-
-  *gained = 0.;
-  g_ptr_array_set_size (powers, (gint) (n_studies * CLOTH_STUDY_N_GAINS));
-  for (guint s = 0; s < n_studies; s++) {
-    if (!cloth_study_linearise (studies[s], candidates, *model, directions, m,
-            options, error))
-      return FALSE;
-    now += add_study (studies[s],
-        (ClothGapPower **) powers->pdata + s * CLOTH_STUDY_N_GAINS, blocks, a,
-        b);
+  for (guint i = 0; i < fit->m; i++) {
+    part[i] = share * step[i];
+    fit->moved[i] += part[i];
   }
-  for (guint i = 0; i < m; i++) {
-    for (guint j = 0; j < m; j++)
-      a[i * m + j] /= options->overdispersion;
-    a[i * m + i] += precisions[i];
-    b[i] = -b[i] / options->overdispersion - precisions[i] * moved[i];
-    now += options->overdispersion * precisions[i] * moved[i] * moved[i];
-  }
-  if (!cloth_cholesky_factor (m, a))
-    return TRUE;
-  cloth_cholesky_solve (m, a, b);
-  if (sigmas) {
-    g_autofree gdouble *inverse = g_new (gdouble, m * m);
-
-    cloth_cholesky_inverse (m, a, inverse);
-    for (guint i = 0; i < m; i++)
-      sigmas[i] = sqrt (inverse[i * m + i]);
-  }
-  for (guint t = 0; t < n_shares; t++) {
-    for (guint i = 0; i < m; i++) {
-      const ClothGapDirection *d = &g_array_index (candidates->directions,
-          ClothGapDirection, directions[i]);
-
-      step[t * m + i] = shares[t] * CLAMP (b[i], -LONGEST * d->prior,
-          LONGEST * d->prior);
-    }
-    tried[t] = cloth_gap_candidates_move (candidates, *model, directions,
-        step + t * m, m);
-  }
-  for (guint s = 0; s < n_studies; s++)
-    if (!try_models (studies[s],
-            (ClothGapPower **) powers->pdata + s * CLOTH_STUDY_N_GAINS, tried,
-            n_shares, blocks, options, costs, error)) {
-      for (guint t = 0; t < n_shares; t++)
-        cloth_model_free (tried[t]);
-      return FALSE;
-    }
-  for (guint t = 0; t < n_shares; t++) {
-    for (guint i = 0; i < m; i++) {
-      gdouble at = moved[i] + step[t * m + i];
-
-      costs[t] += options->overdispersion * precisions[i] * at * at;
-    }
-    if (costs[t] < costs[best])
-      best = t;
-  }
-  if (costs[best] < now) {
-    *gained = (now - costs[best]) / now;
-    cloth_model_free (*model);
-    *model = cloth_model_copy (tried[best]);
-    for (guint i = 0; i < m; i++)
-      moved[i] += step[best * m + i];
-  }
-  for (guint t = 0; t < n_shares; t++)
-    cloth_model_free (tried[t]);
-  return TRUE;
+  there = cloth_gap_candidates_move (fit->candidates, fit->model,
+      fit->directions, part, fit->m);
+  cloth_model_free (fit->model);
+  fit->model = there;
 }
 
 /**
@@ -341,13 +388,13 @@ improve (ClothStudy ** studies, guint n_studies,
  * @precisions: (array length=m): of their priors, centred at @model
  * @m: how many
  * @blocks: (nullable): which blocks of time count
- * @n_iterations: at most
+ * @n_passes: at most so many simulations of all
  * @options: how
  * @sigmas: (out) (nullable) (array length=m): standard deviations
  * @error: #ClothSimError or #ClothGapError
  *
  * Gauss and Newton on the features of both gains, each weighed by the power that is left
- * in its class.
+ * in its class; a step that makes things worse is cut.
  *
  * Returns: (transfer full) (nullable): the fitted model
  * Since: 0.1
@@ -356,20 +403,56 @@ ClothModel *
 cloth_study_fit (ClothStudy ** studies, guint n_studies,
     const ClothGapCandidates * candidates, const ClothModel * model,
     const guint * directions, const gdouble * precisions, guint m,
-    const gboolean * blocks, guint n_iterations, ClothStudyOptions * options,
+    const gboolean * blocks, guint n_passes, ClothStudyOptions * options,
     gdouble * sigmas, GError ** error)
 {
-  g_autoptr (ClothModel) fitted = cloth_model_copy (model);
-  g_autofree gdouble *moved = g_new0 (gdouble, m + 1);
+  g_auto (Fit) fit = { studies, n_studies, candidates, directions, precisions,
+    m, blocks, options, cloth_model_copy (model), g_new0 (gdouble, m + 1)
+  };
+  g_autofree gdouble *a = g_new (gdouble, m * m + 1);
+  g_autofree gdouble *b = g_new (gdouble, m + 1), *step = NULL;
+  gdouble before = INFINITY;
 
-  for (guint i = 0; i < n_iterations && m; i++) {
-    gdouble gained;
+  step = g_new0 (gdouble, m + 1);
+  for (guint pass = 0; pass < n_passes && m; pass++) {
+    gdouble cost;
 
-    if (!improve (studies, n_studies, candidates, &fitted, directions,
-            precisions, m, moved, blocks, options, sigmas, &gained, error))
+    if (!linearise (&fit, error))
       return NULL;
-    if (gained < ENOUGH)
+    if (pass) {
+      cost = equations (&fit, NULL, NULL);
+      if (!(cost < before)) {
+        /* back, most of the way */
+        go (&fit, step, CUT - 1.);
+        for (guint i = 0; i < m; i++)
+          step[i] *= CUT;
+        continue;
+      }
+      if (before - cost < ENOUGH * before)
+        break;
+    }
+    weigh (&fit);
+    memset (a, 0, m * m * sizeof *a);
+    memset (b, 0, m * sizeof *b);
+    before = equations (&fit, a, b);
+    if (!cloth_cholesky_factor (m, a))
       break;
+    cloth_cholesky_solve (m, a, b);
+    for (guint i = 0; i < m; i++) {
+      const ClothGapDirection *d = &g_array_index (candidates->directions,
+          ClothGapDirection, directions[i]);
+
+      step[i] = CLAMP (b[i], -LONGEST * d->prior, LONGEST * d->prior);
+    }
+    if (pass + 1 < n_passes)
+      go (&fit, step, 1.);
+    if (sigmas) {
+      g_autofree gdouble *inverse = g_new (gdouble, m * m);
+
+      cloth_cholesky_inverse (m, a, inverse);
+      for (guint i = 0; i < m; i++)
+        sigmas[i] = sqrt (inverse[i * m + i]);
+    }
   }
-  return g_steal_pointer (&fitted);
+  return g_steal_pointer (&fit.model);
 }

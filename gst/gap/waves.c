@@ -42,9 +42,10 @@ fill_wave (const ClothTopology * t, guint ku, guint kv, gdouble * wave)
   }
 }
 
-/* Gram–Schmidt, twice for rounding's sake. */
+/* Gram–Schmidt against the waves before, twice for rounding's sake. */
 static gboolean
-orthonormalise (const ClothGapFeatures * f, gdouble * wave)
+orthonormalise (const ClothGapFeatures * f, const gdouble * waves,
+    gdouble * wave)
 {
   gdouble before = 0., after = 0.;
 
@@ -52,7 +53,7 @@ orthonormalise (const ClothGapFeatures * f, gdouble * wave)
     before += wave[v] * wave[v];
   for (guint pass = 0; pass < 2; pass++)
     for (guint w = 0; w < f->n_waves; w++) {
-      const gdouble *other = f->waves + (gsize) w * f->n;
+      const gdouble *other = waves + (gsize) w * f->n;
       gdouble share = 0.;
 
       for (guint v = 0; v < f->n; v++)
@@ -72,27 +73,32 @@ orthonormalise (const ClothGapFeatures * f, gdouble * wave)
 static void
 make_waves (ClothGapFeatures * f, const ClothTopology * t, guint each)
 {
-  f->waves = g_new (gdouble, (gsize) each * each * f->n);
+  g_autofree gdouble *waves = g_new (gdouble, (gsize) each * each * f->n);
+
   f->bands = g_new (guint, (gsize) each * each);
   for (guint kv = 0; kv < each; kv++)
     for (guint ku = 0; ku < each; ku++) {
-      gdouble *wave = f->waves + (gsize) f->n_waves * f->n;
+      gdouble *wave = waves + (gsize) f->n_waves * f->n;
       guint k = MAX (ku, kv);
 
       fill_wave (t, ku, kv, wave);
-      if (!orthonormalise (f, wave))
+      if (!orthonormalise (f, waves, wave))
         continue;
       /* 0, 1, 2, 3, 4–5, 6–7 … */
       f->bands[f->n_waves] = k < 4 ? k : 2 + k / 2;
       f->n_bands = MAX (f->n_bands, f->bands[f->n_waves] + 1);
       f->n_waves++;
     }
+  f->waves = g_new (gdouble, (gsize) f->n * f->n_waves);
+  for (guint v = 0; v < f->n; v++)
+    for (guint w = 0; w < f->n_waves; w++)
+      f->waves[(gsize) v * f->n_waves + w] = waves[(gsize) w * f->n + v];
 }
 
 /**
  * cloth_gap_features_new:
  * @recording: what they are of
- * @n_waves_each: waves along u and along v
+ * @n_waves_each: waves along u and along v, at most %CLOTH_GAP_MAX_WAVES_EACH
  * @block_s: length of a block of time, s
  * @highest_hz: highest frequency that is kept
  *
@@ -110,7 +116,8 @@ cloth_gap_features_new (const ClothRecording * recording, guint n_waves_each,
 
   f->n = recording->n;
   f->sigma = recording->sigma;
-  make_waves (f, recording->scene->topology, n_waves_each);
+  make_waves (f, recording->scene->topology, MIN (n_waves_each,
+          CLOTH_GAP_MAX_WAVES_EACH));
   f->block_frames = CLAMP ((guint) round (block_s / frame_s), 4,
       recording->n_frames);
   f->n_blocks = recording->n_frames / f->block_frames;
@@ -146,37 +153,37 @@ cloth_gap_features_add (const ClothGapFeatures * features,
     const ClothRecording * recording, guint frame, const gdouble * positions,
     gdouble * z)
 {
-  guint n = features->n, block = 0, at;
+  guint n = features->n, n_waves = features->n_waves, block = 0, at;
   gsize begin = (gsize) frame * n;
-  g_autofree gdouble *residual = NULL;
+  gdouble sums[3][CLOTH_GAP_MAX_WAVES_EACH * CLOTH_GAP_MAX_WAVES_EACH];
 
   if (frame < features->first[0])
     return;
   while (frame >= features->first[block + 1])
     block++;
   at = frame - features->first[block];
-  residual = g_new (gdouble, 3 * (gsize) n);
-  for (guint v = 0; v < n; v++)
+  memset (sums, 0, sizeof sums);
+  for (guint v = 0; v < n; v++) {
+    const gdouble *wave = features->waves + (gsize) v * n_waves;
+    gdouble off[3];
+
+    if (recording->seen[begin + v] == 0.)
+      continue;
     for (guint k = 0; k < 3; k++)
-      residual[k * n + v] = recording->seen[begin + v] *
-          (positions[3 * v + k] - recording->y[3 * (begin + v) + k]) /
+      off[k] = (positions[3 * v + k] - recording->y[3 * (begin + v) + k]) /
           features->sigma;
-  for (guint w = 0; w < features->n_waves; w++) {
-    const gdouble *wave = features->waves + (gsize) w * n;
-    gdouble sum[3] = { 0., 0., 0. };
-
+    /* waves inside: sums over vertices stay in their order, side by side */
     for (guint k = 0; k < 3; k++)
-      for (guint v = 0; v < n; v++)
-        sum[k] += wave[v] * residual[k * n + v];
-    for (guint c = 0; c < features->n_cosines; c++) {
-      gdouble cosine = features->cosines[(gsize) c * features->block_frames +
-          at];
-      gdouble *to = z + 3 * (((gsize) block * features->n_cosines + c) *
-          features->n_waves + w);
+      for (guint w = 0; w < n_waves; w++)
+        sums[k][w] += wave[w] * off[k];
+  }
+  for (guint c = 0; c < features->n_cosines; c++) {
+    gdouble cosine = features->cosines[(gsize) c * features->block_frames + at];
+    gdouble *to = z + 3 * ((gsize) block * features->n_cosines + c) * n_waves;
 
+    for (guint w = 0; w < n_waves; w++)
       for (guint k = 0; k < 3; k++)
-        to[k] += cosine * sum[k];
-    }
+        to[3 * w + k] += cosine * sums[k][w];
   }
 }
 

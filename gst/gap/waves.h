@@ -7,15 +7,19 @@
 
 G_BEGIN_DECLS
 
+/* Most waves along u and along v. */
+#define CLOTH_GAP_MAX_WAVES_EACH 16
+
 /**
  * ClothGapFeatures:
  * @n: number of vertices
  * @n_waves: waves over the flat cloth, orthonormal
- * @waves: their values, [n_waves][n]
+ * @waves: their values, [n][n_waves]
  * @bands: 0 for the longest waves, growing, [n_waves]
  * @n_bands: number of bands of waves
  * @n_blocks: blocks of time
  * @n_cosines: cosines kept of each block
+ * @block_frames: length of a block
  * @cosines: [n_cosines][length of a block], orthonormal
  * @first: first frame of each block and one past the last, [n_blocks + 1]
  * @size: number of features: [n_blocks][n_cosines][n_waves][3]

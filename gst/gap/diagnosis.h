@@ -1,0 +1,102 @@
+/* A diagnosis under way; private to diagnose.c, name.c and judge.c.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/gap/diagnose.h"
+#include "gst/gap/score.h"
+
+G_BEGIN_DECLS
+
+/* An effect is accepted when its evidence is this, when it removes this share of the
+ * whitened residual's square from blocks it was not estimated on, and this share of the
+ * gap's variance. */
+#define CLOTH_DIAGNOSIS_LEAST_EVIDENCE 10.
+#define CLOTH_DIAGNOSIS_LEAST_IMPROVEMENT 0.005
+#define CLOTH_DIAGNOSIS_LEAST_SHRINK 0.1
+/* What remains is no more than noise when it is below this many floors (variance). */
+#define CLOTH_DIAGNOSIS_BAND 2.25
+/* Most effects that are accepted. */
+#define CLOTH_DIAGNOSIS_MAX_ACCEPTED 3
+
+typedef struct
+{
+  ClothTake **takes;
+  guint n_takes;
+  const ClothGapOptions *options;
+  ClothStudyOptions study;
+  ClothGapResult *result;
+  GPtrArray *recordings;        /* of the takes, the baselines, the hold-outs */
+  GPtrArray *studies;           /* of the takes and the baselines */
+  ClothModel *model;            /* with its free numbers fitted */
+  ClothGapCandidates *candidates;
+  gdouble *precisions;          /* of the free numbers */
+  guint *all;                   /* every direction */
+  ClothGapNormal *normals[CLOTH_STUDY_N_GAINS];
+  gboolean *sound;
+  gboolean *blocks;             /* that estimates come from */
+  guint n_blocks;
+  /* Effects taken in, one by one: candidates, the models with them, deviations of the
+   * directions in them */
+  guint chosen[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
+  ClothModel *with[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
+  gdouble sigmas[CLOTH_DIAGNOSIS_MAX_ACCEPTED][CLOTH_DIAGNOSIS_MAX_ACCEPTED][CLOTH_EFFECT_MAX_PARAMETERS];
+  guint n_chosen;
+  GPtrArray *left;              /* power left in a take, by take and gain; NULL: unknown */
+  gdouble *null_evidence;       /* of each candidate, on the baselines */
+  /* of the running part of the work: its share of all, what of it each simulation gets */
+  gdouble from, to, each;
+  gchar *what;
+} ClothDiagnosis;
+
+static inline ClothRecording *
+cloth_diagnosis_recording (const ClothDiagnosis * d, guint i)
+{
+  return g_ptr_array_index (d->recordings, i);
+}
+
+static inline ClothStudy *
+cloth_diagnosis_study (const ClothDiagnosis * d, guint i)
+{
+  return g_ptr_array_index (d->studies, i);
+}
+
+static inline const ClothGapCandidate *
+cloth_diagnosis_candidate (const ClothDiagnosis * d, const ClothGapScore * score)
+{
+  return &g_array_index (d->candidates->list, ClothGapCandidate,
+      score->candidate);
+}
+
+static inline const ClothGapCandidate *
+cloth_diagnosis_chosen (const ClothDiagnosis * d, guint i)
+{
+  return &g_array_index (d->candidates->list, ClothGapCandidate, d->chosen[i]);
+}
+
+/* Every other block of time judges what the others have fitted. */
+static inline gboolean
+cloth_diagnosis_is_held_out (const ClothDiagnosis * d, guint block)
+{
+  return !d->options->n_hold_outs && block % 2 == 1;
+}
+
+/* What comes now: from where to where it gets, and of the rest of it each simulation. */
+void cloth_diagnosis_begin_part (ClothDiagnosis * d, gdouble from, gdouble to,
+    gdouble each, const gchar * what);
+
+/* Which effects. */
+const ClothStudy *cloth_diagnosis_signature (const ClothDiagnosis * d,
+    guint take);
+gboolean cloth_diagnosis_has_signatures (const ClothDiagnosis * d);
+gboolean cloth_diagnosis_linearise (ClothDiagnosis * d, guint first, guint end,
+    const ClothModel * model, gdouble from, gdouble to, GError ** error);
+void cloth_diagnosis_make_test (ClothDiagnosis * d, guint begin, guint end,
+    ClothGapTest * test);
+gboolean cloth_diagnosis_name (ClothDiagnosis * d, GError ** error);
+
+/* How much, and the verdict. */
+gboolean cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error);
+void cloth_diagnosis_decide (ClothDiagnosis * d);
+
+G_END_DECLS

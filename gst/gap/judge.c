@@ -1,0 +1,248 @@
+/* Judging: how large the gap is without and with the effects, and what to say of it.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <math.h>
+#include <string.h>
+
+#include "gst/gap/diagnosis.h"
+#include "gst/gap/extent.h"
+
+/* Length of the windows that the gap is measured in, s. */
+#define WINDOW_S 0.3
+/* Gain of the observer that leads up to them, 1/s². */
+#define WINDOW_GAIN 1600.
+/* Of the bootstrap. */
+#define N_DRAWS 1000
+
+/* The windows that judge: those that end in a held-out block, or all. */
+static gboolean *
+judging_windows (const ClothDiagnosis * d, const ClothGapExtent * extent)
+{
+  const ClothGapFeatures *f = cloth_diagnosis_study (d, 0)->features;
+  gboolean *windows = g_new0 (gboolean, extent->n_windows);
+  gboolean any = FALSE;
+
+  for (guint frame = 1, block = 0; frame < extent->n_frames; frame++) {
+    while (block + 1 < f->n_blocks && frame >= f->first[block + 1])
+      block++;
+    windows[extent->window[frame]] = cloth_diagnosis_is_held_out (d, block);
+  }
+  for (guint w = 0; w < extent->n_windows; w++)
+    any |= windows[w];
+  for (guint w = 0; w < extent->n_windows && !any; w++)
+    windows[w] = TRUE;
+  return windows;
+}
+
+static ClothGapEstimate
+estimate (gdouble square, gdouble * draws, guint n, guint stride)
+{
+  ClothGapEstimate e = { sqrt (square), NAN, NAN };
+  g_autoptr (GArray) sorted = g_array_new (FALSE, FALSE, sizeof (gdouble));
+
+  for (guint i = 0; i < n; i++)
+    g_array_append_val (sorted, draws[(gsize) i * stride]);
+  g_array_sort (sorted, cloth_recording_compare_numbers);
+  if (n) {
+    e.low = sqrt (MAX (0., g_array_index (sorted, gdouble, n / 40)));
+    e.high = sqrt (MAX (0., g_array_index (sorted, gdouble, n - 1 - n / 40)));
+  }
+  return e;
+}
+
+/* Without a baseline the floor is what the two force models differ by, and the noise:
+ * NaN on errors. */
+static gdouble
+own_floor (ClothDiagnosis * d, guint judge, const ClothGapExtent * extent,
+    GError ** error)
+{
+  const ClothRecording *r = cloth_diagnosis_recording (d, judge);
+  g_autoptr (ClothModel) other = cloth_model_copy (d->model);
+  const ClothModel *models[1] = { other };
+  ClothGapExtent **extents;
+  gdouble sum = 0.;
+  gsize all = (gsize) r->n * r->n_frames;
+
+  other->force_model = other->force_model == CLOTH_FORCE_MEMBRANE ?
+      CLOTH_FORCE_MASS_SPRING : CLOTH_FORCE_MEMBRANE;
+  extents = cloth_gap_extents_new (r, models, 1, WINDOW_GAIN, WINDOW_S,
+      &d->study.rollout, error);
+  if (!extents)
+    return NAN;
+  for (gsize i = 0; i < 3 * all && extents[0]->sound; i++) {
+    gdouble off = extents[0]->positions[i] - extent->positions[i];
+
+    sum += off * off;
+  }
+  cloth_gap_extents_free (extents, 1);
+  return 3. * r->sigma * r->sigma + sum / all;
+}
+
+/* The floor of the simulator's own error: what the baseline shows, and on takes that move
+ * otherwise what the two force models differ by there, if that is more. */
+static gboolean
+measure_floor (ClothDiagnosis * d, guint judge, const ClothGapExtent * extent,
+    GError ** error)
+{
+  const ClothModel *models[1] = { d->model };
+  ClothGapEstimate *result = &d->result->noise_floor;
+  g_autofree gdouble *draws = g_new (gdouble, N_DRAWS);
+  ClothGapExtent **floor;
+  gdouble square;
+
+  *result = (ClothGapEstimate) {
+  0., NAN, NAN};
+  if (d->options->n_baselines) {
+    floor = cloth_gap_extents_new (cloth_diagnosis_recording (d, d->n_takes),
+        models, 1, WINDOW_GAIN, WINDOW_S, &d->study.rollout, error);
+    if (!floor)
+      return FALSE;
+    square = cloth_gap_extent_square (floor[0], NULL);
+    cloth_gap_extents_interval (floor, 1, NULL, d->options->seed, N_DRAWS,
+        draws);
+    *result = estimate (square, draws, N_DRAWS, 1);
+    cloth_gap_extents_free (floor, 1);
+    if (cloth_diagnosis_has_signatures (d))
+      return TRUE;
+  }
+  square = own_floor (d, judge, extent, error);
+  if (sqrt (square) > result->value)
+    *result = (ClothGapEstimate) {
+    sqrt (square), NAN, NAN};
+  return !isnan (square);
+}
+
+/* Of what is above the floor, the share that went; draws are @stride apart. */
+static void
+fill_shrink (ClothGapResult * result, gdouble before, gdouble after,
+    const gdouble * draws_before, const gdouble * draws_after, guint stride)
+{
+  g_autofree gdouble *shrinks = g_new (gdouble, N_DRAWS);
+  gdouble floor = result->noise_floor.value * result->noise_floor.value;
+
+  if (!(before > floor))
+    return;
+  for (guint i = 0; i < N_DRAWS; i++) {
+    gdouble b = draws_before[i * stride], a = draws_after[i * stride];
+    gdouble s = b > floor ? (b - a) / (b - floor) : 0.;
+
+    shrinks[i] = s * s;
+  }
+  result->shrink = estimate (0., shrinks, N_DRAWS, 1);
+  result->shrink.value = (before - after) / (before - floor);
+}
+
+/* How large the gap is before and after, on the hold-outs if there are any; the floor on
+ * the baselines. Of the effects taken in those stay that shrink it enough, one after the
+ * other. */
+gboolean
+cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
+{
+  ClothGapResult *result = d->result;
+  const ClothModel *models[1 + CLOTH_DIAGNOSIS_MAX_ACCEPTED] = { d->model };
+  guint n = 1 + d->n_chosen, best = 0;
+  guint judge = d->options->n_hold_outs ? d->n_takes + d->options->n_baselines
+      : 0;
+  g_autofree gdouble *draws = g_new0 (gdouble, N_DRAWS * n);
+  g_autofree gboolean *windows = NULL;
+  ClothGapExtent **extents;
+  gdouble v[1 + CLOTH_DIAGNOSIS_MAX_ACCEPTED], floor2;
+
+  for (guint i = 1; i < n; i++)
+    models[i] = d->with[i - 1];
+  cloth_diagnosis_begin_part (d, 0.85, 1., 0.4, "the gap in windows");
+  extents =
+      cloth_gap_extents_new (cloth_diagnosis_recording (d, judge), models, n,
+      WINDOW_GAIN, WINDOW_S, &d->study.rollout, error);
+  if (!extents)
+    return FALSE;
+  if (!judge)
+    windows = judging_windows (d, extents[0]);
+  for (guint i = 0; i < n; i++)
+    v[i] = cloth_gap_extent_square (extents[i], windows);
+  if (!measure_floor (d, judge, extents[0], error)) {
+    cloth_gap_extents_free (extents, n);
+    return FALSE;
+  }
+  floor2 = result->noise_floor.value * result->noise_floor.value;
+  /* where no signature was taken off, what is no more than the floor proves nothing */
+  while (best + 1 < n && (cloth_diagnosis_has_signatures (d)
+          || v[0] > CLOTH_DIAGNOSIS_BAND * floor2)
+      && v[best + 1] < (1. - CLOTH_DIAGNOSIS_LEAST_SHRINK) * v[best])
+    best++;
+  while (d->n_chosen > best)
+    cloth_model_free (d->with[--d->n_chosen]);
+  cloth_gap_extents_interval (extents, n, windows, d->options->seed, N_DRAWS,
+      draws);
+  result->held_out_takes = d->options->n_hold_outs > 0;
+  result->gap_before = estimate (v[0], draws, N_DRAWS, n);
+  if (best)
+    result->gap_after = estimate (v[best], draws + best, N_DRAWS, n);
+  if (best)
+    fill_shrink (result, v[0], v[best], draws, draws + best, n);
+  if (!judge)
+    cloth_gap_extent_fill (extents[0], best ? extents[best] : NULL,
+        cloth_diagnosis_recording (d, 0), d->takes[0], result);
+  cloth_gap_extents_free (extents, n);
+  if (!judge)
+    return TRUE;
+  models[1] = models[best];
+  n = best ? 2 : 1;
+  extents =
+      cloth_gap_extents_new (cloth_diagnosis_recording (d, 0), models, n,
+      WINDOW_GAIN, WINDOW_S, &d->study.rollout, error);
+  if (!extents)
+    return FALSE;
+  cloth_gap_extent_fill (extents[0], best ? extents[1] : NULL,
+      cloth_diagnosis_recording (d, 0), d->takes[0], result);
+  cloth_gap_extents_free (extents, n);
+  return TRUE;
+}
+
+static void
+accept_effects (ClothDiagnosis * d)
+{
+  const guint last = d->n_chosen - 1;
+
+  for (guint i = 0; i < d->result->effects->len; i++) {
+    ClothGapEffect *e = &g_array_index (d->result->effects, ClothGapEffect, i);
+
+    for (guint c = 0; c < d->n_chosen; c++) {
+      const ClothGapCandidate *candidate = cloth_diagnosis_chosen (d, c);
+
+      if (e->effect != candidate->effect)
+        continue;
+      e->accepted = TRUE;
+      e->shrink = d->result->shrink;
+      for (guint k = 0; k < candidate->effect->n_parameters; k++)
+        e->values[k] = candidate->values[k];
+      for (guint k = 0; k < candidate->n; k++) {
+        const ClothGapDirection *direction =
+            &g_array_index (d->candidates->directions, ClothGapDirection,
+            candidate->first + k);
+        guint p = candidate->parameters[k];
+
+        cloth_model_get (d->with[last], direction->name, &e->values[p], NULL);
+        e->sigmas[p] = d->sigmas[last][c][k];
+      }
+    }
+  }
+}
+
+void
+cloth_diagnosis_decide (ClothDiagnosis * d)
+{
+  ClothGapResult *r = d->result;
+  gdouble floor2 = r->noise_floor.value * r->noise_floor.value;
+  gdouble rest = d->n_chosen ? r->gap_after.value : r->gap_before.value;
+  gboolean above = rest * rest > CLOTH_DIAGNOSIS_BAND * floor2;
+
+  if (d->n_chosen)
+    accept_effects (d);
+  if (above)
+    r->verdict = CLOTH_GAP_UNEXPLAINED;
+  else if (!d->n_chosen)
+    r->verdict = CLOTH_GAP_NO_GAP;
+  else
+    r->verdict = r->groups->len ? CLOTH_GAP_AMBIGUOUS : CLOTH_GAP_EXPLAINED;
+}

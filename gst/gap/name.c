@@ -1,0 +1,442 @@
+/* Naming: which effects the residual asks for.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <math.h>
+#include <string.h>
+
+#include "gst/gap/diagnosis.h"
+
+/* Simulations of a fit with effects. */
+#define N_REFIT 3
+/* Clamps that are never further apart than this move alike, m. */
+#define SAME_PATH 1e-3
+/* What two takes of one motion share of the simulator's own error is taken off; this
+ * part of its power stays. */
+#define SIGNATURE_LEFT 0.1
+/* So often what a leading effect leaves in a take is what weighs, and all are tested
+ * anew. */
+#define N_SHARPEN 2
+/* Evidence is divided by this before it becomes a probability. */
+#define TEMPERATURE 4.
+/* Effects this close in probability to the best, or with derivatives this alike, are
+ * reported together. */
+#define AMBIGUOUS_PROBABILITY 0.1
+#define AMBIGUOUS_COSINE 0.9
+/* Below this share left by the nuisances an effect can't be told from them. */
+#define IDENTIFIABLE 0.05
+
+static gboolean
+moves_alike (const ClothRecording * a, const ClothRecording * b)
+{
+  const ClothScene *s = a->scene, *t = b->scene;
+
+  if (a->n_frames != b->n_frames || s->held->len != t->held->len
+      || a->times[a->n_frames - 1] != b->times[b->n_frames - 1])
+    return FALSE;
+  for (guint i = 0; i < s->held->len; i++) {
+    const ClothHeld *p = &g_array_index (s->held, ClothHeld, i);
+    const ClothHeld *q = &g_array_index (t->held, ClothHeld, i);
+
+    if (p->vertex != q->vertex || p->from_s != q->from_s
+        || p->until_s != q->until_s)
+      return FALSE;
+  }
+  for (gsize i = 0; i < 3 * (gsize) a->n_frames * s->held->len; i++)
+    if (!(fabs (s->clamps[i] - t->clamps[i]) < SAME_PATH))
+      return FALSE;
+  return TRUE;
+}
+
+/* The baseline that moves as a take does, if there is one. */
+const ClothStudy *
+cloth_diagnosis_signature (const ClothDiagnosis * d, guint take)
+{
+  for (guint i = d->n_takes; i < d->studies->len; i++)
+    if (i != take
+        && moves_alike (cloth_diagnosis_recording (d, take),
+            cloth_diagnosis_study (d, i)->recording))
+      return cloth_diagnosis_study (d, i);
+  return NULL;
+}
+
+gboolean
+cloth_diagnosis_has_signatures (const ClothDiagnosis * d)
+{
+  for (guint i = 0; i < d->n_takes; i++)
+    if (!cloth_diagnosis_signature (d, i))
+      return FALSE;
+  return TRUE;
+}
+
+static ClothGapNormal *
+append (ClothGapNormal * to, ClothGapNormal * from)
+{
+  gsize square = (gsize) from->m * from->m;
+
+  if (!to)
+    return from;
+  to->g = g_renew (gdouble, to->g, (to->n_blocks + from->n_blocks) * square);
+  to->s = g_renew (gdouble, to->s, (to->n_blocks + from->n_blocks) * from->m);
+  to->r = g_renew (gdouble, to->r, to->n_blocks + from->n_blocks);
+  memcpy (to->g + to->n_blocks * square, from->g,
+      from->n_blocks * square * sizeof (gdouble));
+  memcpy (to->s + (gsize) to->n_blocks * from->m, from->s,
+      (gsize) from->n_blocks * from->m * sizeof (gdouble));
+  memcpy (to->r + to->n_blocks, from->r, from->n_blocks * sizeof (gdouble));
+  to->n_blocks += from->n_blocks;
+  cloth_gap_normal_free (from);
+  return to;
+}
+
+/* Mean square that the simulator itself is off by: of the baselines, else of the take
+ * with the model fitted to it. */
+static ClothGapPower *
+mismatch_of (const ClothDiagnosis * d, guint gain)
+{
+  guint begin = d->options->n_baselines ? d->n_takes : 0;
+  guint n = d->options->n_baselines ? d->options->n_baselines : d->n_takes;
+  ClothGapPower *mean = NULL;
+
+  for (guint i = begin; i < begin + n; i++) {
+    ClothGapPower *power =
+        cloth_gap_power_new (cloth_diagnosis_study (d, i)->features,
+        cloth_diagnosis_study (d, i)->z[gain]);
+
+    if (!mean) {
+      mean = power;
+      continue;
+    }
+    for (guint k = 0; k < mean->n; k++)
+      mean->values[k] += (power->values[k] - mean->values[k]) / (i - begin + 1);
+    cloth_gap_power_free (power);
+  }
+  return mean;
+}
+
+/* The signature of the simulator's own error in a take is that of a baseline that moves
+ * alike: taken off, a tenth of its power is left to doubt. */
+static ClothGapNormal *
+normal_of (const ClothDiagnosis * d, guint take, guint gain,
+    const ClothGapPower * mismatch)
+{
+  const ClothStudy *baseline = cloth_diagnosis_signature (d, take);
+  const ClothStudy *s = cloth_diagnosis_study (d, take);
+  g_autofree gdouble *z = g_memdup2 (s->z[gain],
+      s->features->size * sizeof (gdouble));
+  ClothGapPower *left = g_ptr_array_index (d->left, take *
+      CLOTH_STUDY_N_GAINS + gain);
+
+  for (gsize k = 0; baseline && k < s->features->size; k++)
+    z[k] -= baseline->z[gain][k];
+  return cloth_gap_normal_new (s->features, left ? left : mismatch, 1., z,
+      s->columns[gain], s->m);
+}
+
+/* The power left in the takes that a baseline's signature is taken off, once @score's
+ * changes (NULL: none) are made: a tenth of the mismatch at least is left to doubt. */
+static void
+find_left (ClothDiagnosis * d, const ClothGapScore * score)
+{
+  for (guint i = 0; i < d->n_takes; i++) {
+    const ClothStudy *s = cloth_diagnosis_study (d, i), *baseline =
+        cloth_diagnosis_signature (d, i);
+    gsize size = s->features->size;
+
+    for (guint g = 0; g < CLOTH_STUDY_N_GAINS && baseline; g++) {
+      g_autoptr (ClothGapPower) mismatch = mismatch_of (d, g);
+      g_autofree gdouble *z = g_memdup2 (s->z[g], size * sizeof (gdouble));
+      ClothGapPower **left = (ClothGapPower **) & g_ptr_array_index (d->left,
+          i * CLOTH_STUDY_N_GAINS + g);
+      ClothGapPower *now;
+
+      for (gsize k = 0; k < size; k++)
+        z[k] -= baseline->z[g][k];
+      for (guint c = 0; score && c < cloth_diagnosis_candidate (d, score)->n;
+          c++) {
+        const gdouble *column = s->columns[g] + (cloth_diagnosis_candidate (d,
+                score)->first + c) * size;
+
+        for (gsize k = 0; k < size; k++)
+          z[k] += score->changes[c] * column[k];
+      }
+      now = cloth_gap_power_new (s->features, z);
+      for (guint k = 0; k < now->n; k++)
+        now->values[k] = MIN (score ? (*left)->values[k] : mismatch->values[k],
+            MAX (now->values[k], SIGNATURE_LEFT * mismatch->values[k]));
+      cloth_gap_power_free (*left);
+      *left = now;
+    }
+  }
+}
+
+gboolean
+cloth_diagnosis_linearise (ClothDiagnosis * d, guint first, guint end,
+    const ClothModel * model, gdouble from, gdouble to, GError ** error)
+{
+  for (guint i = first; i < end; i++) {
+    g_autofree gchar *what = g_strdup_printf ("effects on %s",
+        cloth_diagnosis_recording (d, i)->name);
+    gdouble part = (to - from) / (end - first);
+
+    cloth_diagnosis_begin_part (d, from + part * (i - first),
+        from + part * (i - first + 1), 1., what);
+    if (!cloth_study_linearise (cloth_diagnosis_study (d, i), d->candidates,
+            model, d->all, d->candidates->directions->len, &d->study, error))
+      return FALSE;
+  }
+  return TRUE;
+}
+
+/* Test of the takes' blocks from begin to end, as studies. */
+void
+cloth_diagnosis_make_test (ClothDiagnosis * d, guint begin, guint end,
+    ClothGapTest * test)
+{
+  guint m = d->candidates->directions->len;
+
+  for (guint i = 0; i < m; i++)
+    d->sound[i] = TRUE;
+  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
+    g_autoptr (ClothGapPower) mismatch = mismatch_of (d, g);
+
+    g_clear_pointer (&d->normals[g], cloth_gap_normal_free);
+    for (guint i = begin; i < end; i++)
+      d->normals[g] = append (d->normals[g], normal_of (d, i, g, mismatch));
+    test->normals[g] = d->normals[g];
+  }
+  for (guint i = begin; i < end; i++)
+    for (guint k = 0; k < m; k++)
+      d->sound[k] = d->sound[k] && cloth_diagnosis_study (d, i)->sound[k];
+  d->n_blocks = d->normals[0]->n_blocks;
+  g_free (d->blocks);
+  d->blocks = g_new (gboolean, d->n_blocks);
+  for (guint b = 0; b < d->n_blocks; b++)
+    d->blocks[b] = TRUE;
+  test->candidates = d->candidates;
+  test->blocks = d->blocks;
+  test->nuisances = d->all;
+  test->precisions = d->precisions;
+  test->n_nuisances = d->candidates->n_free;
+  test->overdispersion = d->study.overdispersion;
+  test->sound = d->sound;
+}
+
+static void
+fill_effects (ClothDiagnosis * d, const ClothGapTest * test,
+    const GArray * scores)
+{
+  gdouble total, top = 0.;
+  gboolean grouped = FALSE;
+
+  for (guint i = 0; i < scores->len; i++) {
+    const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
+
+    top = MAX (top, s->evidence / TEMPERATURE);
+  }
+  total = exp (-top);
+  for (guint i = 0; i < scores->len; i++)
+    total += exp (g_array_index (scores, ClothGapScore, i).evidence /
+        TEMPERATURE - top);
+  for (guint i = 0; i < scores->len; i++) {
+    const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
+    const ClothGapCandidate *c = cloth_diagnosis_candidate (d, s);
+    ClothGapEffect *e;
+
+    if (s->kept < IDENTIFIABLE) {
+      cloth_gap_result_add_untested (d->result, c->effect, "In this motion it "
+          "can't be told from the model's free numbers.");
+      continue;
+    }
+    e = cloth_gap_result_add_effect (d->result, c->effect);
+    e->probability = exp (s->evidence / TEMPERATURE - top) / total;
+    e->p_value = s->p_value;
+    e->constancy_p_value = s->constancy_p_value;
+    e->group = -1;
+    for (guint k = 0; k < c->effect->n_parameters; k++) {
+      e->values[k] = c->values[k];
+      e->sigmas[k] = NAN;
+    }
+    for (guint k = 0; k < c->n; k++) {
+      e->values[c->parameters[k]] += s->changes[k];
+      e->sigmas[c->parameters[k]] = s->sigmas[k];
+    }
+  }
+  /* the best, and those that can't be told from it */
+  for (guint i = 1; i < d->result->effects->len && i < scores->len; i++) {
+    ClothGapEffect *best = &g_array_index (d->result->effects, ClothGapEffect,
+        0);
+    ClothGapEffect *e = &g_array_index (d->result->effects, ClothGapEffect, i);
+    gboolean near = best->probability - e->probability < AMBIGUOUS_PROBABILITY;
+
+    for (guint k = 1; k < scores->len && !near; k++) {
+      const ClothGapScore *s = &g_array_index (scores, ClothGapScore, k);
+      const ClothGapScore *first = &g_array_index (scores, ClothGapScore, 0);
+
+      if (cloth_diagnosis_candidate (d, s)->effect == e->effect
+          && cloth_diagnosis_candidate (d, first)->effect == best->effect)
+        near = e->probability > 0.05 * best->probability
+            && cloth_gap_test_cosine (test, first->candidate, s->candidate) >
+            AMBIGUOUS_COSINE;
+    }
+    if (!near)
+      continue;
+    if (!grouped)
+      cloth_gap_result_add_group (d->result, NULL, NAN);
+    grouped = TRUE;
+    best->group = e->group = 0;
+  }
+}
+
+static gboolean
+is_chosen (const ClothDiagnosis * d, const ClothEffect * effect)
+{
+  for (guint i = 0; i < d->n_chosen; i++)
+    if (cloth_diagnosis_chosen (d, i)->effect == effect)
+      return TRUE;
+  return FALSE;
+}
+
+/* Takes the leader into the model, fitted along with what was taken in before; the free
+ * numbers may give a little. */
+static gboolean
+refit (ClothDiagnosis * d, const ClothGapScore * score, GError ** error)
+{
+  const ClothModel *before = d->n_chosen ? d->with[d->n_chosen - 1] : d->model;
+  const guint free = d->candidates->n_free;
+  const guint most =
+      free + CLOTH_DIAGNOSIS_MAX_ACCEPTED * CLOTH_EFFECT_MAX_PARAMETERS;
+  g_autofree guint *directions = g_new (guint, most);
+  g_autofree gdouble *precisions = g_new (gdouble, most);
+  g_autofree gdouble *sigmas = g_new0 (gdouble, most);
+  g_autofree gboolean *blocks = g_new (gboolean, d->n_blocks);
+  g_autoptr (ClothModel) start = NULL;
+  ClothModel *fitted;
+  guint m = free, now = d->n_chosen;
+
+  d->chosen[now] = score->candidate;
+  for (guint b = 0; b < d->n_blocks; b++)
+    blocks[b] = !cloth_diagnosis_is_held_out (d, b);
+  for (guint i = 0; i < free; i++) {
+    directions[i] = i;
+    precisions[i] = d->precisions[i];
+  }
+  for (guint c = 0; c <= now; c++)
+    for (guint k = 0; k < cloth_diagnosis_chosen (d, c)->n; k++, m++) {
+      gdouble prior;
+
+      directions[m] = cloth_diagnosis_chosen (d, c)->first + k;
+      prior = g_array_index (d->candidates->directions, ClothGapDirection,
+          directions[m]).prior;
+      precisions[m] = 1. / (4. * prior * prior);
+    }
+  start = cloth_gap_candidates_move (d->candidates, before,
+      directions + m - cloth_diagnosis_chosen (d, now)->n, score->changes,
+      cloth_diagnosis_chosen (d, now)->n);
+  fitted =
+      cloth_study_fit ((ClothStudy **) d->studies->pdata, d->n_takes,
+      d->candidates, start, directions, precisions, m, blocks, N_REFIT,
+      &d->study, sigmas, error);
+  if (!fitted)
+    return FALSE;
+  m = free;
+  for (guint c = 0; c <= now; c++)
+    for (guint k = 0; k < cloth_diagnosis_chosen (d, c)->n; k++)
+      d->sigmas[now][c][k] = sigmas[m++];
+  d->with[d->n_chosen++] = fitted;
+  return TRUE;
+}
+
+static gint
+compare_scores (gconstpointer a, gconstpointer b)
+{
+  gdouble x = ((const ClothGapScore *) a)->evidence;
+  gdouble y = ((const ClothGapScore *) b)->evidence;
+
+  return x > y ? -1 : x < y;
+}
+
+/* The effects, the likeliest first. What the leading one leaves shows better than what
+ * was there before how much the simulator is off by in this take. */
+static GArray *
+rank (ClothDiagnosis * d, ClothGapTest * test)
+{
+  GArray *scores = cloth_gap_test_run (test);
+
+  for (guint k = 0; k < N_SHARPEN && scores->len; k++) {
+    const ClothGapTest before = *test;
+
+    find_left (d, &g_array_index (scores, ClothGapScore, 0));
+    cloth_diagnosis_make_test (d, 0, d->n_takes, test);
+    test->nuisances = before.nuisances;
+    test->precisions = before.precisions;
+    test->n_nuisances = before.n_nuisances;
+    g_array_unref (scores);
+    scores = cloth_gap_test_run (test);
+  }
+  for (guint i = 0; i < scores->len; i++) {
+    ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
+
+    s->evidence -= d->null_evidence[s->candidate];
+  }
+  g_array_sort (scores, compare_scores);
+  return scores;
+}
+
+/* Takes in effects one by one, as long as one is asked for. */
+gboolean
+cloth_diagnosis_name (ClothDiagnosis * d, GError ** error)
+{
+  ClothGapTest test = { {NULL}
+  };
+  g_autofree guint *nuisances = g_new (guint, d->candidates->directions->len);
+  g_autofree gdouble *precisions = g_new (gdouble,
+      d->candidates->directions->len + 1);
+  const guint free = d->candidates->n_free;
+
+  find_left (d, NULL);
+  cloth_diagnosis_make_test (d, 0, d->n_takes, &test);
+  for (guint round = 0; round < CLOTH_DIAGNOSIS_MAX_ACCEPTED; round++) {
+    g_autoptr (GArray) scores = NULL;
+    const ClothGapScore *first = NULL;
+    gdouble from = 0.45 + 0.13 * round;
+    guint m = free;
+
+    if (round) {
+      if (!cloth_diagnosis_linearise (d, 0, d->n_takes, d->with[round - 1],
+              from - 0.08, from, error))
+        return FALSE;
+      cloth_diagnosis_make_test (d, 0, d->n_takes, &test);
+      memcpy (nuisances, d->all, free * sizeof *nuisances);
+      memcpy (precisions, d->precisions, free * sizeof *precisions);
+      for (guint c = 0; c < round; c++)
+        for (guint k = 0; k < cloth_diagnosis_chosen (d, c)->n; k++, m++) {
+          gdouble prior;
+
+          nuisances[m] = cloth_diagnosis_chosen (d, c)->first + k;
+          prior = g_array_index (d->candidates->directions, ClothGapDirection,
+              nuisances[m]).prior;
+          precisions[m] = 1. / (prior * prior);
+        }
+      test.nuisances = nuisances;
+      test.precisions = precisions;
+      test.n_nuisances = m;
+    }
+    scores = rank (d, &test);
+    if (!round)
+      fill_effects (d, &test, scores);
+    for (guint i = 0; i < scores->len && !first; i++) {
+      const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
+
+      if (!is_chosen (d, cloth_diagnosis_candidate (d, s)->effect))
+        first = s;
+    }
+    if (!first || first->evidence < CLOTH_DIAGNOSIS_LEAST_EVIDENCE
+        || first->improvement < CLOTH_DIAGNOSIS_LEAST_IMPROVEMENT)
+      return TRUE;
+    cloth_diagnosis_begin_part (d, from, from + 0.05, 0.4,
+        cloth_diagnosis_candidate (d, first)->effect->id);
+    if (!refit (d, first, error))
+      return FALSE;
+  }
+  return TRUE;
+}
