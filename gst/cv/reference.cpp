@@ -6,6 +6,8 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include <vector>
+
 struct _ClothCvSaddle {
   cv::Mat smooth, xx, yy, xy, det, mask;
 };
@@ -88,6 +90,53 @@ cloth_cv_corner_sub_pix (const guint8 * data, gint width, gint height,
     cv::cornerSubPix (image, corners, cv::Size (half_window, half_window),
         cv::Size (-1, -1), cv::TermCriteria (cv::TermCriteria::COUNT +
             cv::TermCriteria::EPS, 40, 1e-3));
+    return TRUE;
+  } catch (...) {
+    return FALSE;
+  }
+}
+
+/**
+ * cloth_cv_dots:
+ * @bgr: colour picture, three bytes a pixel
+ * @width: columns
+ * @height: rows
+ * @stride: bytes from row to row
+ * @min_area: least area of a contour, px
+ * @max_area: greatest area
+ * @n_dots: (out): contours between both
+ *
+ * Dots as Scholz et al. 2005, 4.1, find them: hue, Canny's edges of the luminance, outer
+ * contours, the centre of gravity of each.
+ *
+ * Returns: %FALSE when OpenCV failed
+ *
+ * Since: 0.1
+ */
+gboolean
+cloth_cv_dots (const guint8 * bgr, gint width, gint height, gint stride,
+    gdouble min_area, gdouble max_area, guint * n_dots)
+{
+  try {
+    const cv::Mat image (height, width, CV_8UC3,
+        const_cast < guint8 * >(bgr), (size_t) stride);
+    std::vector < std::vector < cv::Point > >contours;
+    std::vector < cv::Vec4i > levels;
+    cv::Mat hsv, grey, edges;
+
+    cv::cvtColor (image, hsv, cv::COLOR_BGR2HSV);
+    cv::cvtColor (image, grey, cv::COLOR_BGR2GRAY);
+    cv::Canny (grey, edges, 40, 100);
+    /* Outer contours wherever they lie: the cloth's own encloses the dots. */
+    cv::findContours (edges, contours, levels, cv::RETR_CCOMP,
+        cv::CHAIN_APPROX_NONE);
+    *n_dots = 0;
+    for (size_t i = 0; i < contours.size (); i++) {
+      const cv::Moments moments = cv::moments (contours[i]);
+
+      *n_dots += levels[i][3] < 0 && moments.m00 >= min_area
+          && moments.m00 <= max_area;
+    }
     return TRUE;
   } catch (...) {
     return FALSE;

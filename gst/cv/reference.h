@@ -18,4 +18,7 @@ gboolean cloth_cv_saddle_mask (ClothCvSaddle * self, const guint8 * data,
 gboolean cloth_cv_corner_sub_pix (const guint8 * data, gint width,
     gint height, gint stride, gint half_window, gfloat * xy, guint n);
 
+gboolean cloth_cv_dots (const guint8 * bgr, gint width, gint height,
+    gint stride, gdouble min_area, gdouble max_area, guint * n_dots);
+
 G_END_DECLS

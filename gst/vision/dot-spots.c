@@ -1,0 +1,194 @@
+/* Runs of bright pixels and the connected spots they form: union–find over the runs of
+ * neighbouring rows (four-connected).
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/vision/dot-spots.h"
+
+#include <math.h>
+
+#include "gst/vision/dot-rows.h"
+
+static void
+add_run (GArray * runs, gint y, gint start, gint end)
+{
+  const gint32 self = (gint32) runs->len;
+  const ClothDotRun run =
+      { self, -1, (gint16) y, (gint16) start, (gint16) end };
+
+  if (runs->len < CLOTH_DOT_MAX_RUNS)
+    g_array_append_val (runs, run);
+}
+
+/* The runs of row @y by its tiles' @bits. */
+void
+cloth_dot_runs_of_bits (GArray * runs, const guint16 * bits, gint n_tiles,
+    gint y)
+{
+  gint start = -1;
+
+  for (gint t = 0; t < n_tiles; t++) {
+    guint left = bits[t];
+    gint x = 0;
+
+    if (left == (start < 0 ? 0u : 0xffffu))
+      continue;
+    while (x < CLOTH_DOT_TILE) {
+      /* How far the pixels stay as they are now. */
+      const guint change = start < 0 ? left >> x : (~left & 0xffffu) >> x;
+
+      if (!change)
+        break;
+      x += __builtin_ctz (change);
+      if (start < 0) {
+        start = t * CLOTH_DOT_TILE + x;
+      } else {
+        add_run (runs, y, start, t * CLOTH_DOT_TILE + x);
+        start = -1;
+      }
+    }
+  }
+  if (start >= 0)
+    add_run (runs, y, start, n_tiles * CLOTH_DOT_TILE);
+}
+
+/* The parts of @spot's runs above a higher @threshold. */
+void
+cloth_dot_runs_of_spot (GArray * runs, const ClothDotSpot * spot,
+    const ClothImage * image, guint8 threshold)
+{
+  for (gint32 k = spot->first; k >= 0;) {
+    const ClothDotRun run = g_array_index (runs, ClothDotRun, k);
+    const guint8 *row = image->data + (gsize) run.y * (gsize) image->stride;
+    gint start = -1;
+
+    for (gint x = run.start; x < run.end; x++) {
+      if (row[x] > threshold) {
+        if (start < 0)
+          start = x;
+      } else if (start >= 0) {
+        add_run (runs, run.y, start, x);
+        start = -1;
+      }
+    }
+    if (start >= 0)
+      add_run (runs, run.y, start, run.end);
+    k = run.next;
+  }
+}
+
+static gint32
+find_root (ClothDotRun * runs, gint32 k)
+{
+  while (runs[k].parent != k) {
+    runs[k].parent = runs[runs[k].parent].parent;
+    k = runs[k].parent;
+  }
+  return k;
+}
+
+static void
+join_runs (ClothDotRun * runs, gint32 a, gint32 b)
+{
+  a = find_root (runs, a);
+  b = find_root (runs, b);
+  if (a < b)
+    runs[b].parent = a;
+  else
+    runs[a].parent = b;
+}
+
+/* Sums of x and x² over a run, x from @x0. */
+static void
+add_moments (ClothDotSpot * spot, const ClothDotRun * run, gint x0, gint y0)
+{
+  const gint64 n = run->end - run->start, dy = run->y - y0;
+  const gint64 a = run->start - x0, b = a + n - 1;
+  const gint64 sx = n * (a + b) / 2;
+  const gint64 sxx = (b * (b + 1) * (2 * b + 1) - (a - 1) * a * (2 * a - 1))
+      / 6;
+
+  spot->n += n;
+  spot->sx += sx;
+  spot->sy += n * dy;
+  spot->sxx += sxx;
+  spot->sxy += sx * dy;
+  spot->syy += n * dy * dy;
+  spot->left = MIN (spot->left, run->start);
+  spot->right = (gint16) MAX (spot->right, run->end - 1);
+  spot->bottom = MAX (spot->bottom, run->y);
+}
+
+/* Joins the runs from @first_run on, which are in reading order, and appends a spot for
+ * each connected piece, in the order of their first pixels. */
+void
+cloth_dot_spots (GArray * runs, guint first_run, GArray * spots)
+{
+  ClothDotRun *r = &g_array_index (runs, ClothDotRun, 0);
+  const gint32 end = (gint32) runs->len;
+  gint32 above = (gint32) first_run;
+  const guint first_spot = spots->len;
+
+  for (gint32 k = (gint32) first_run; k < end; k++) {
+    while (above < k && (r[above].y < r[k].y - 1
+            || (r[above].y == r[k].y - 1 && r[above].end <= r[k].start)))
+      above++;
+    for (gint32 j = above; j < k && r[j].y == r[k].y - 1
+        && r[j].start < r[k].end; j++)
+      join_runs (r, j, k);
+  }
+  for (gint32 k = (gint32) first_run; k < end; k++) {
+    const gint32 root = find_root (r, k);
+    ClothDotSpot *spot;
+
+    if (root == k) {
+      const ClothDotSpot fresh = { k, k, r[k].start, r[k].y, r[k].start,
+        r[k].y
+      };
+
+      g_array_append_val (spots, fresh);
+      spot = &g_array_index (spots, ClothDotSpot, spots->len - 1);
+      /* Its spot, for the runs that follow; what points to it is only looked at here. */
+      r[k].next = (gint32) spots->len - 1;
+    } else {
+      spot = &g_array_index (spots, ClothDotSpot, r[root].next);
+      /* From last to first for now: the root's link is taken. */
+      r[k].next = spot->last;
+      spot->last = k;
+    }
+    add_moments (spot, &r[k], r[spot->first].start, r[spot->first].y);
+  }
+  /* Turn the links round. */
+  for (guint n = first_spot; n < spots->len; n++) {
+    ClothDotSpot *spot = &g_array_index (spots, ClothDotSpot, n);
+    gint32 k = spot->last, after = -1;
+
+    while (k != spot->first) {
+      const gint32 before = r[k].next;
+
+      r[k].next = after;
+      after = k;
+      k = before;
+    }
+    r[k].next = after;
+  }
+}
+
+/* Centre and second moments of the spot's area; returns its area over that of the
+ * ellipse with these moments: 1 for an ellipse, less for anything else. */
+gdouble
+cloth_dot_spot_shape (const ClothDotSpot * spot, const ClothDotRun * runs,
+    gdouble * x, gdouble * y, gdouble shape[3])
+{
+  const gdouble n = (gdouble) spot->n;
+  const gdouble mx = (gdouble) spot->sx / n, my = (gdouble) spot->sy / n;
+  gdouble det;
+
+  *x = runs[spot->first].start + mx;
+  *y = runs[spot->first].y + my;
+  /* A pixel is a square: 1/12. */
+  shape[0] = (gdouble) spot->sxx / n - mx * mx + 1.0 / 12;
+  shape[1] = (gdouble) spot->sxy / n - mx * my;
+  shape[2] = (gdouble) spot->syy / n - my * my + 1.0 / 12;
+  det = shape[0] * shape[2] - shape[1] * shape[1];
+  return n / (4 * G_PI * sqrt (det));
+}
