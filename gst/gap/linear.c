@@ -59,6 +59,22 @@ cloth_gap_power_new (const ClothGapFeatures * features, const gdouble * z)
 }
 
 /**
+ * cloth_gap_power_copy:
+ * @power: mean squares
+ *
+ * Returns: (transfer full): the same
+ * Since: 0.1
+ */
+ClothGapPower *
+cloth_gap_power_copy (const ClothGapPower * power)
+{
+  ClothGapPower *copy = g_memdup2 (power, sizeof *power);
+
+  copy->values = g_memdup2 (power->values, power->n * sizeof (gdouble));
+  return copy;
+}
+
+/**
  * cloth_gap_power_free:
  * @power: (nullable) (transfer full): mean squares
  *

@@ -60,6 +60,7 @@ typedef struct {
 
 ClothGapPower *cloth_gap_power_new (const ClothGapFeatures * features,
     const gdouble * z);
+ClothGapPower *cloth_gap_power_copy (const ClothGapPower * power);
 void cloth_gap_power_free (ClothGapPower * power);
 ClothGapNormal *cloth_gap_normal_new (const ClothGapFeatures * features,
     const ClothGapPower * mismatch, gdouble share, const gdouble * z,

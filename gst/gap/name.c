@@ -314,6 +314,14 @@ refit (ClothDiagnosis * d, const ClothGapScore * score, GError ** error)
   guint m = free, now = d->n_chosen;
 
   d->chosen[now] = score->candidate;
+  for (guint i = 0; i < d->n_takes; i++)
+    for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
+      const ClothStudy *baseline = cloth_diagnosis_signature (d, i);
+      ClothStudy *s = cloth_diagnosis_study (d, i);
+
+      s->signature[g] = baseline ? baseline->z[g] : NULL;
+      s->left[g] = g_ptr_array_index (d->left, i * CLOTH_STUDY_N_GAINS + g);
+    }
   for (guint b = 0; b < d->n_blocks; b++)
     blocks[b] = !cloth_diagnosis_is_held_out (d, b);
   for (guint i = 0; i < free; i++) {

@@ -315,6 +315,18 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Fit, fit_clear)
   return TRUE;
 }
 
+/* What is to be explained in a study: new, features->size numbers. */
+static gdouble *
+residual_of (const ClothStudy * study, guint gain)
+{
+  gdouble *z = g_memdup2 (study->z[gain],
+      study->features->size * sizeof (gdouble));
+
+  for (gsize k = 0; study->signature[gain] && k < study->features->size; k++)
+    z[k] -= study->signature[gain][k];
+  return z;
+}
+
 /* Each feature weighs by the power that the model at hand leaves in its class. */
 static void
 weigh (Fit * fit)
@@ -322,10 +334,14 @@ weigh (Fit * fit)
   g_clear_pointer (&fit->powers, g_ptr_array_unref);
   fit->powers = g_ptr_array_new_with_free_func (free_power);
   for (guint s = 0; s < fit->n_studies; s++)
-    for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++)
-      g_ptr_array_add (fit->powers,
-          cloth_gap_power_new (fit->studies[s]->features,
-              fit->studies[s]->z[g]));
+    for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
+      const ClothStudy *study = fit->studies[s];
+      g_autofree gdouble *z = residual_of (study, g);
+
+      g_ptr_array_add (fit->powers, study->left[g] ?
+          cloth_gap_power_copy (study->left[g]) :
+          cloth_gap_power_new (study->features, z));
+    }
 }
 
 /* Cost of the model at hand, and its normal equations when @a and @b are given. */
@@ -338,9 +354,10 @@ equations (const Fit * fit, gdouble * a, gdouble * b)
   for (guint i = 0; i < fit->powers->len; i++) {
     const ClothStudy *study = fit->studies[i / CLOTH_STUDY_N_GAINS];
     guint g = i % CLOTH_STUDY_N_GAINS;
+    g_autofree gdouble *z = residual_of (study, g);
     g_autoptr (ClothGapNormal) n = cloth_gap_normal_new (study->features,
-        g_ptr_array_index (fit->powers, i), 1., study->z[g],
-        study->columns[g], a ? m : 0);
+        g_ptr_array_index (fit->powers, i), 1., z, study->columns[g],
+        a ? m : 0);
 
     for (guint block = 0; block < n->n_blocks; block++) {
       if (fit->blocks && !fit->blocks[block])

@@ -43,6 +43,10 @@ typedef struct {
  * @columns: its derivatives, [directions][features], per gain
  * @m: number of directions
  * @sound: which of them could be simulated
+ * @signature: (nullable): what a fit takes off @z: what the simulator itself is off by,
+ *   per gain; the caller's
+ * @left: (nullable): what a fit weighs by instead of the power of what it leaves itself,
+ *   per gain; the caller's
  *
  * Since: 0.1
  */
@@ -53,6 +57,8 @@ typedef struct {
   gdouble *columns[CLOTH_STUDY_N_GAINS];
   guint m;
   gboolean *sound;
+  const gdouble *signature[CLOTH_STUDY_N_GAINS];
+  const ClothGapPower *left[CLOTH_STUDY_N_GAINS];
 } ClothStudy;
 
 void cloth_study_options_init (ClothStudyOptions * options);
