@@ -1,7 +1,8 @@
 #!/bin/bash
 # From a fresh Debian 12 to films, meshes and a table of errors, with the data that is
 # shipped: installs packages, builds, calibrates a real stereo pair from pictures of a
-# board, then tracks a cloth filmed by two cameras and puts it into space.
+# board, tracks a cloth filmed by two cameras and puts it into space, then says what a
+# simulation lacks of the cloth of another simulator.
 #
 #   pipelines/quickstart.sh [OUTPUT-FOLDER]      (default: cloth-quickstart)
 #
@@ -71,6 +72,12 @@ status=0
     --truth "$pair/vertices.npy" --grid 33x35 --pattern "$pair/pattern.json" \
     --max-rms-mm 0.9 | tee "$out/errors.txt" || status=$?
 
+heading "What a simulation lacks: another simulator's cloth, gravity tilted unbeknown to ours"
+gst-cloth-gap-1.0 diagnose "$root/tests/data/arcsim/tilted" \
+    --baseline "$root/tests/data/arcsim/base" --model "$root/tests/data/arcsim/model.json" \
+    --effects gravity_tilt,wind,air_drag,bending,mass_distribution,clamp_slip \
+    --output "$out/gap" | tee "$out/gap.txt"
+
 heading "Done in $((SECONDS - started)) s"
 cat <<END
   calibrated rig           $out/boards-rig.json
@@ -78,6 +85,7 @@ cat <<END
   films with the overlay   $out/cam0-overlay.webm, $out/cam1-overlay.webm
   mesh (Blender: OBJ+PC2)  $out/cloth.obj, $out/cloth.pc2
   mesh (NumPy)             $out/cloth-take
+  the diagnosis' report    $out/gap/report.html
 
 To use the elements in this shell:  . $root/pipelines/environment.sh
 END

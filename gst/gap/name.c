@@ -301,7 +301,8 @@ is_chosen (const ClothDiagnosis * d, const ClothEffect * effect)
 static gboolean
 refit (ClothDiagnosis * d, const ClothGapScore * score, GError ** error)
 {
-  const ClothModel *before = d->n_chosen ? d->with[d->n_chosen - 1] : d->model;
+  const guint now = d->n_chosen - 1;
+  const ClothModel *before = now ? d->with[now - 1] : d->model;
   const guint free = d->candidates->n_free;
   const guint most =
       free + CLOTH_DIAGNOSIS_MAX_ACCEPTED * CLOTH_EFFECT_MAX_PARAMETERS;
@@ -311,9 +312,8 @@ refit (ClothDiagnosis * d, const ClothGapScore * score, GError ** error)
   g_autofree gboolean *blocks = g_new (gboolean, d->n_blocks);
   g_autoptr (ClothModel) start = NULL;
   ClothModel *fitted;
-  guint m = free, now = d->n_chosen;
+  guint m = free;
 
-  d->chosen[now] = score->candidate;
   for (guint i = 0; i < d->n_takes; i++)
     for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
       const ClothStudy *baseline = cloth_diagnosis_signature (d, i);
@@ -350,7 +350,7 @@ refit (ClothDiagnosis * d, const ClothGapScore * score, GError ** error)
   for (guint c = 0; c <= now; c++)
     for (guint k = 0; k < cloth_diagnosis_chosen (d, c)->n; k++)
       d->sigmas[now][c][k] = sigmas[m++];
-  d->with[d->n_chosen++] = fitted;
+  d->with[now] = fitted;
   return TRUE;
 }
 
@@ -390,61 +390,81 @@ rank (ClothDiagnosis * d, ClothGapTest * test)
   return scores;
 }
 
-/* Takes in effects one by one, as long as one is asked for. */
+/* The likeliest effect that is not taken in yet, if it is asked for. */
+static const ClothGapScore *
+find_asked (const ClothDiagnosis * d, const GArray * scores)
+{
+  for (guint i = 0; i < scores->len; i++) {
+    const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
+
+    if (!is_chosen (d, cloth_diagnosis_candidate (d, s)->effect))
+      return s->evidence < CLOTH_DIAGNOSIS_LEAST_EVIDENCE
+          || s->improvement < CLOTH_DIAGNOSIS_LEAST_IMPROVEMENT ? NULL : s;
+  }
+  return NULL;
+}
+
+/* What is taken in is fitted along when the others are tested. */
+static void
+free_chosen (const ClothDiagnosis * d, ClothGapTest * test, guint * nuisances,
+    gdouble * precisions)
+{
+  guint m = d->candidates->n_free;
+
+  memcpy (nuisances, d->all, m * sizeof *nuisances);
+  memcpy (precisions, d->precisions, m * sizeof *precisions);
+  for (guint c = 0; c < d->n_chosen; c++)
+    for (guint k = 0; k < cloth_diagnosis_chosen (d, c)->n; k++, m++) {
+      gdouble prior;
+
+      nuisances[m] = cloth_diagnosis_chosen (d, c)->first + k;
+      prior = g_array_index (d->candidates->directions, ClothGapDirection,
+          nuisances[m]).prior;
+      precisions[m] = 1. / (prior * prior);
+    }
+  test->nuisances = nuisances;
+  test->precisions = precisions;
+  test->n_nuisances = m;
+}
+
+/* Takes in effects one by one, as long as one is asked for: the next one by the same
+ * derivatives first, and only then by new ones. */
 gboolean
 cloth_diagnosis_name (ClothDiagnosis * d, GError ** error)
 {
-  ClothGapTest test = { {NULL}
-  };
-  g_autofree guint *nuisances = g_new (guint, d->candidates->directions->len);
-  g_autofree gdouble *precisions = g_new (gdouble,
-      d->candidates->directions->len + 1);
-  const guint free = d->candidates->n_free;
+  const guint n = d->candidates->directions->len + 1;
+  g_autofree guint *nuisances = g_new (guint, n);
+  g_autofree gdouble *precisions = g_new (gdouble, n);
+  g_autoptr (GArray) scores = NULL;
+  const ClothGapScore *asked;
+  ClothGapTest test = { {NULL} };
 
   find_left (d, NULL);
   cloth_diagnosis_make_test (d, 0, d->n_takes, &test);
-  for (guint round = 0; round < CLOTH_DIAGNOSIS_MAX_ACCEPTED; round++) {
-    g_autoptr (GArray) scores = NULL;
-    const ClothGapScore *first = NULL;
-    gdouble from = 0.45 + 0.13 * round;
-    guint m = free;
+  scores = rank (d, &test);
+  fill_effects (d, &test, scores);
+  while ((asked = find_asked (d, scores))) {
+    const ClothGapScore next = *asked;
+    gdouble from = 0.45 + 0.13 * d->n_chosen;
 
-    if (round) {
-      if (!cloth_diagnosis_linearise (d, 0, d->n_takes, d->with[round - 1],
-              from - 0.08, from, error))
-        return FALSE;
-      cloth_diagnosis_make_test (d, 0, d->n_takes, &test);
-      memcpy (nuisances, d->all, free * sizeof *nuisances);
-      memcpy (precisions, d->precisions, free * sizeof *precisions);
-      for (guint c = 0; c < round; c++)
-        for (guint k = 0; k < cloth_diagnosis_chosen (d, c)->n; k++, m++) {
-          gdouble prior;
-
-          nuisances[m] = cloth_diagnosis_chosen (d, c)->first + k;
-          prior = g_array_index (d->candidates->directions, ClothGapDirection,
-              nuisances[m]).prior;
-          precisions[m] = 1. / (prior * prior);
-        }
-      test.nuisances = nuisances;
-      test.precisions = precisions;
-      test.n_nuisances = m;
-    }
+    d->chosen[d->n_chosen++] = next.candidate;
+    free_chosen (d, &test, nuisances, precisions);
+    g_array_unref (scores);
     scores = rank (d, &test);
-    if (!round)
-      fill_effects (d, &test, scores);
-    for (guint i = 0; i < scores->len && !first; i++) {
-      const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
-
-      if (!is_chosen (d, cloth_diagnosis_candidate (d, s)->effect))
-        first = s;
-    }
-    if (!first || first->evidence < CLOTH_DIAGNOSIS_LEAST_EVIDENCE
-        || first->improvement < CLOTH_DIAGNOSIS_LEAST_IMPROVEMENT)
-      return TRUE;
+    asked = find_asked (d, scores);
     cloth_diagnosis_begin_part (d, from, from + 0.05, 0.4,
-        cloth_diagnosis_candidate (d, first)->effect->id);
-    if (!refit (d, first, error))
+        cloth_diagnosis_candidate (d, &next)->effect->id);
+    if (!refit (d, &next, error))
       return FALSE;
+    if (!asked || d->n_chosen == CLOTH_DIAGNOSIS_MAX_ACCEPTED)
+      break;
+    if (!cloth_diagnosis_linearise (d, 0, d->n_takes,
+            d->with[d->n_chosen - 1], from + 0.05, from + 0.13, error))
+      return FALSE;
+    cloth_diagnosis_make_test (d, 0, d->n_takes, &test);
+    free_chosen (d, &test, nuisances, precisions);
+    g_array_unref (scores);
+    scores = rank (d, &test);
   }
   return TRUE;
 }
