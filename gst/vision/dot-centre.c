@@ -27,11 +27,12 @@
 /* Fewest pixels that give the ground. */
 #define MIN_GROUND 8
 
-/* An ellipse about a centre: A·dx² + 2·B·dx·dy + C·dy² ≤ 1. */
+/* An ellipse about a centre, A·dx² + 2·B·dx·dy + C·dy² ≤ 1, as its rows need it: dx is
+ * within √(widest − narrowing·dy²) of slope·dy. */
 typedef struct
 {
-  gdouble A, B, C;
-  gdouble height;               /* greatest dy */
+  gdouble slope, widest, narrowing;
+  gdouble width, height;        /* greatest dx and dy */
 } Ellipse;
 
 /* The ellipse of second moments @shape with half-axes @scale times as long and @margin
@@ -48,10 +49,26 @@ grow_ellipse (const gdouble shape[3], gdouble scale, gdouble margin)
   const gdouble s = root > 0 ? shape[1] / root : 0;
   const gdouble p = (1 / (a * a) + 1 / (b * b)) / 2;
   const gdouble q = (1 / (a * a) - 1 / (b * b)) / 2;
-  Ellipse ellipse = { p + q * c, q * s, p - q * c };
+  const gdouble A = p + q * c, B = q * s, C = p - q * c;
 
-  ellipse.height = sqrt (ellipse.A) * a * b;
-  return ellipse;
+  return (Ellipse) {
+  -B / A, 1 / A, 1 / (a * a * b * b * A * A), sqrt (C) * a * b,
+        sqrt (A) * a * b};
+}
+
+/* The whole number not above (not below) @v, for what may be a place in a picture. */
+#define FAR_AWAY 1048576
+
+static inline gint
+floor_place (gdouble v)
+{
+  return (gint) (v + FAR_AWAY) - FAR_AWAY;
+}
+
+static inline gint
+ceil_place (gdouble v)
+{
+  return FAR_AWAY - (gint) (FAR_AWAY - v);
 }
 
 /* The pixels of row @y within the ellipse about (@cx, @cy) and the picture. */
@@ -60,16 +77,15 @@ ellipse_row (const Ellipse * ellipse, gdouble cx, gdouble cy, gint y,
     gint width, gint * first, gint * last)
 {
   const gdouble dy = y - cy;
-  const gdouble middle = -ellipse->B * dy / ellipse->A;
-  const gdouble square = middle * middle
-      - (ellipse->C * dy * dy - 1) / ellipse->A;
+  const gdouble middle = cx + ellipse->slope * dy;
+  const gdouble square = ellipse->widest - ellipse->narrowing * dy * dy;
   gdouble half;
 
   if (square < 0)
     return FALSE;
   half = sqrt (square);
-  *first = MAX (0, (gint) ceil (cx + middle - half));
-  *last = MIN (width - 1, (gint) floor (cx + middle + half));
+  *first = MAX (0, ceil_place (middle - half));
+  *last = MIN (width - 1, floor_place (middle + half));
   return *first <= *last;
 }
 
@@ -160,6 +176,19 @@ clip_row (const Side * side, const ClothDotCandidate * spot, gint y,
   }
 }
 
+/* Pixels from @start to before @end that are not above @most. */
+static inline void
+add_ground (const guint8 * row, gint start, gint end, gint most,
+    gint64 * sum, gint * n)
+{
+  for (gint x = start; x < end; x++) {
+    const gint is_ground = row[x] <= most;
+
+    *sum += is_ground * row[x];
+    *n += is_ground;
+  }
+}
+
 static void
 add_bends (const ClothImage * luma, gint y, gint first, gint last,
     Bends * bends)
@@ -202,15 +231,11 @@ look_around (const ClothDotDetector * detector, const ClothDotCandidate * spot,
     if (!ellipse_row (&ring, spot->x, spot->y, y, luma->width, &first, &last))
       continue;
     if (!ellipse_row (&window, spot->x, spot->y, y, luma->width, &from, &to))
-      from = to = last + 1;
-    for (gint x = first; x <= last; x++) {
-      if (x == from)
-        x = to + 1;
-      if (x <= last && row[x] <= spot->threshold) {
-        ground += row[x];
-        n_ground++;
-      }
-    }
+      from = last + 1, to = last;
+    add_ground (row, first, MIN (from, last + 1), spot->threshold, &ground,
+        &n_ground);
+    add_ground (row, MAX (to + 1, first), last + 1, spot->threshold, &ground,
+        &n_ground);
     if (!ellipse_row (&inside, spot->x, spot->y, y, luma->width, &from, &to))
       continue;
     n += to - from + 1;
@@ -379,11 +404,11 @@ weigh_window (const ClothDotDetector * detector,
     .gain = 1 / ((gfloat) (TOP - FOOT) * contrast)
   };
   const Ellipse *window = &weighing.window;
-  const gdouble width = window->height * sqrt (window->C / window->A);
   Moments shares = { 0 }, edges = { 0 };
   gdouble w[6], e[6], c[2], scale;
 
-  if (spot->x - width < 0 || spot->x + width > luma->width - 1
+  if (spot->x - window->width < 0
+      || spot->x + window->width > luma->width - 1
       || spot->y - window->height < 0
       || spot->y + window->height > luma->height - 1)
     return FALSE;
