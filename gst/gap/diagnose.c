@@ -16,7 +16,8 @@
  * which know nothing of the simulator's own error. */
 #define FROZEN 8.
 /* On takes that move otherwise than a baseline, what the baseline asks for of an effect
- * itself is taken off the effect's evidence so many times. */
+ * itself is taken off the effect's evidence so many times; without a baseline, what the
+ * difference of the two force models asks for. */
 #define NULL_SHARE 1.5
 
 static void
@@ -141,6 +142,19 @@ fit_free (ClothDiagnosis * d, const ClothModel * model, GError ** error)
   return d->model != NULL;
 }
 
+static void
+note_nulls (ClothDiagnosis * d, const GArray * scores)
+{
+  for (guint i = 0; i < scores->len; i++) {
+    const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
+
+    for (guint c = 0; c < d->candidates->list->len; c++)
+      if (g_array_index (d->candidates->list, ClothGapCandidate, c).effect ==
+          cloth_diagnosis_candidate (d, s)->effect)
+        d->null_evidence[c] = NULL_SHARE * MAX (s->evidence, 0.);
+  }
+}
+
 /* What baselines ask for, where it can't be taken off the takes themselves. */
 static gboolean
 study_baselines (ClothDiagnosis * d, ClothGapTest * test, GError ** error)
@@ -159,14 +173,43 @@ study_baselines (ClothDiagnosis * d, ClothGapTest * test, GError ** error)
     return FALSE;
   cloth_diagnosis_make_test (d, d->n_takes, d->studies->len, test);
   scores = cloth_gap_test_run (test);
-  for (guint i = 0; i < scores->len; i++) {
-    const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
+  note_nulls (d, scores);
+  return TRUE;
+}
 
-    for (guint c = 0; c < d->candidates->list->len; c++)
-      if (g_array_index (d->candidates->list, ClothGapCandidate, c).effect ==
-          cloth_diagnosis_candidate (d, s)->effect)
-        d->null_evidence[c] = NULL_SHARE * MAX (s->evidence, 0.);
+/* Without a baseline: what the difference of the two force models asks for. */
+static gboolean
+study_other_model (ClothDiagnosis * d, GError ** error)
+{
+  g_autoptr (ClothModel) other = cloth_model_copy (d->model);
+  g_autoptr (GPtrArray) studies = g_ptr_array_new_with_free_func (
+      (GDestroyNotify) cloth_study_free);
+  g_autoptr (GArray) scores = NULL;
+  ClothGapTest test = { {NULL} };
+
+  other->force_model = other->force_model == CLOTH_FORCE_MEMBRANE ?
+      CLOTH_FORCE_MASS_SPRING : CLOTH_FORCE_MEMBRANE;
+  cloth_diagnosis_begin_part (d, 0.43, 0.45, 1., "the other force model");
+  for (guint i = 0; i < d->n_takes; i++) {
+    g_autoptr (GError) diverged = NULL;
+    ClothStudy *s = cloth_study_new (cloth_diagnosis_recording (d, i),
+        &d->study);
+
+    g_ptr_array_add (studies, s);
+    if (cloth_study_linearise (s, d->candidates, other, NULL, 0, &d->study,
+            &diverged))
+      continue;
+    /* one that these numbers make no cloth of tells nothing */
+    if (g_error_matches (diverged, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_MODEL))
+      return TRUE;
+    g_propagate_error (error, g_steal_pointer (&diverged));
+    return FALSE;
   }
+  d->others = (ClothStudy **) studies->pdata;
+  cloth_diagnosis_make_test (d, 0, d->n_takes, &test);
+  d->others = NULL;
+  scores = cloth_gap_test_run (&test);
+  note_nulls (d, scores);
   return TRUE;
 }
 
@@ -198,7 +241,9 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
     return FALSE;
   if (d->options->n_baselines && !study_baselines (d, &test, error))
     return FALSE;
-  if (!cloth_diagnosis_linearise (d, 0, d->n_takes, d->model, 0.3, 0.45, error))
+  if (!cloth_diagnosis_linearise (d, 0, d->n_takes, d->model, 0.3, 0.43, error))
+    return FALSE;
+  if (!d->options->n_baselines && !study_other_model (d, error))
     return FALSE;
   if (!cloth_diagnosis_name (d, error) || !cloth_diagnosis_measure (d, error))
     return FALSE;

@@ -43,6 +43,7 @@ typedef struct
   gdouble sigmas[CLOTH_DIAGNOSIS_MAX_ACCEPTED][CLOTH_DIAGNOSIS_MAX_ACCEPTED][CLOTH_EFFECT_MAX_PARAMETERS];
   guint n_chosen;
   GPtrArray *left;              /* power left in a take, by take and gain; NULL: unknown */
+  ClothStudy **others;          /* of each take, during its null test: another force model */
   gdouble *null_evidence;       /* of each candidate, on the baselines */
   /* of the running part of the work: its share of all, what of it each simulation gets */
   gdouble from, to, each;

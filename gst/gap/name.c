@@ -47,10 +47,12 @@ moves_alike (const ClothRecording * a, const ClothRecording * b)
   return TRUE;
 }
 
-/* The baseline that moves as a take does, if there is one. */
+/* What a take is held against: the baseline that moves as it does, if there is one. */
 const ClothStudy *
 cloth_diagnosis_signature (const ClothDiagnosis * d, guint take)
 {
+  if (d->others && take < d->n_takes)
+    return d->others[take];
   for (guint i = d->n_takes; i < d->studies->len; i++)
     if (i != take
         && moves_alike (cloth_diagnosis_recording (d, take),

@@ -138,7 +138,8 @@ diagnose (ClothTake * take, ClothTake * baseline, guint threads)
   g_autoptr (GError) error = NULL;
   g_autoptr (ClothModel) model = model_new (CLOTH_FORCE_MEMBRANE);
   const ClothGapOptions options = {
-    .baselines = &baseline,.n_baselines = 1,.seed = 1,.threads = threads
+    .baselines = &baseline,.n_baselines = baseline ? 1 : 0,.seed = 1,.threads =
+        threads
   };
   ClothGapResult *result = cloth_gap_diagnose (&take, 1, model, &options,
       &error);
@@ -203,6 +204,24 @@ test_no_gap (void)
 
   g_assert_cmpint (one->verdict, ==, CLOTH_GAP_NO_GAP);
   g_assert_cmpint (two->verdict, ==, CLOTH_GAP_NO_GAP);
+}
+
+/* Without a baseline no effect is made responsible for what two simulators differ by; a
+ * strong one is named all the same. */
+static void
+test_no_baseline (void)
+{
+  g_autoptr (ClothTake) plain = record ("plain", NULL, NULL, FALSE, 5);
+  g_autoptr (ClothTake) drag = record ("heavy", cases[2].effect,
+      cases[2].values, FALSE, 6);
+  g_autoptr (ClothGapResult) one = diagnose (plain, NULL, 0);
+  g_autoptr (ClothGapResult) two = diagnose (drag, NULL, 0);
+
+  for (guint i = 0; i < one->effects->len; i++)
+    g_assert_false (g_array_index (one->effects, ClothGapEffect, i).accepted);
+  g_assert_cmpuint (two->effects->len, >, 0);
+  g_assert_cmpstr (g_array_index (two->effects, ClothGapEffect, 0).effect->id,
+      ==, cases[2].effect);
 }
 
 /* The same bytes from one thread and from two. */
@@ -286,6 +305,7 @@ main (int argc, char **argv)
     g_test_add_data_func (path, &cases[i], test_named);
   }
   g_test_add_func ("/gap/no-gap", test_no_gap);
+  g_test_add_func ("/gap/no-baseline", test_no_baseline);
   g_test_add_func ("/gap/threads", test_threads);
   g_test_add_func ("/gap/unknown-effect", test_unknown_effect);
   g_test_add_func ("/gap/cancelled", test_cancelled);
