@@ -19,11 +19,11 @@ G_BEGIN_DECLS
 /**
  * CLOTH_M_ARRAY_MAX:
  *
- * Most dots each way.
+ * Most dots each way; more values than theirs no JSON file may have.
  *
  * Since: 0.1
  */
-#define CLOTH_M_ARRAY_MAX 500
+#define CLOTH_M_ARRAY_MAX 400
 
 /**
  * CLOTH_M_ARRAY_MAX_COLOURS:

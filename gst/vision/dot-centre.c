@@ -35,6 +35,19 @@ typedef struct
   gdouble width, height;        /* greatest dx and dy */
 } Ellipse;
 
+/* Own side of the line between two dots: nx·dx + ny·dy ≤ reach. */
+typedef struct
+{
+  gdouble nx, ny, reach;
+} Side;
+
+/* Squares of what Immerkær's mask (1 −2 1) × (1 −2 1) gives (1996, “Fast noise variance
+ * estimation”): shading that bends along one axis only does not show in it. */
+typedef struct
+{
+  gint64 sum, count;
+} Bends;
+
 /* The ellipse of second moments @shape with half-axes @scale times as long and @margin
  * longer. */
 static Ellipse
@@ -377,12 +390,15 @@ weigh_rows_plain (const Weighing * weighing, Moments * shares, Moments * edges)
 }
 
 #if defined (__x86_64__) && defined (__GNUC__)
-__attribute__((target ("avx2")))
-     static void weigh_rows_avx2 (const Weighing * weighing, Moments * shares,
-    Moments * edges)
+#pragma GCC push_options
+#pragma GCC target ("avx2")
+static void
+weigh_rows_avx2 (const Weighing * weighing, Moments * shares, Moments * edges)
 {
   weigh_rows (weighing, shares, edges);
 }
+
+#pragma GCC pop_options
 #else
 #define weigh_rows_avx2 weigh_rows_plain
 #endif

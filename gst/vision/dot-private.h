@@ -35,19 +35,6 @@ struct _ClothDotDetector
   gfloat noise;
 };
 
-/* Own side of the line between two dots: nx·dx + ny·dy ≤ reach. */
-typedef struct
-{
-  gdouble nx, ny, reach;
-} Side;
-
-/* Squares of what Immerkær's mask (1 −2 1) × (1 −2 1) gives (1996, “Fast noise variance
- * estimation”): shading that bends along one axis only does not show in it. */
-typedef struct
-{
-  gint64 sum, count;
-} Bends;
-
 void cloth_dot_measure (ClothDotDetector * detector);
 
 G_END_DECLS

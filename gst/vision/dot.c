@@ -4,9 +4,6 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/vision/dot.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "gst/vision/dot-private.h"
 #include "gst/vision/dot-rows.h"
 #include "gst/vision/dot-spots.h"

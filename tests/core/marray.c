@@ -61,7 +61,7 @@ test_generate_refused (void)
   } cases[] = {
     {2, 9, 5, 1, FALSE, CLOTH_PATTERN_ERROR_VALUE, "columns"},
     {9, 2, 5, 1, FALSE, CLOTH_PATTERN_ERROR_VALUE, "rows"},
-    {501, 9, 5, 1, FALSE, CLOTH_PATTERN_ERROR_VALUE, "3 to 500"},
+    {401, 9, 5, 1, FALSE, CLOTH_PATTERN_ERROR_VALUE, "3 to 400"},
     {G_MININT, 9, 5, 1, FALSE, CLOTH_PATTERN_ERROR_VALUE, "columns"},
     {9, G_MAXINT, 5, 1, FALSE, CLOTH_PATTERN_ERROR_VALUE, "rows"},
     {9, 9, 1, 1, FALSE, CLOTH_PATTERN_ERROR_VALUE, "colours"},
@@ -141,6 +141,25 @@ test_round_trip (void)
   g_rmdir (dir);
 }
 
+/* What can be made can be read. */
+static void
+test_largest (void)
+{
+  const ClothMArrayCode code = CLOTH_M_ARRAY_CODE_INIT;
+  const gint n = CLOTH_M_ARRAY_MAX;
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothMArray) array =
+      cloth_m_array_new (n, n, 8, 0.02, 0.013, 0.01, &code, &error);
+  g_autoptr (ClothMArray) read = NULL;
+  g_autofree gchar *text = NULL;
+
+  g_assert_no_error (error);
+  text = cloth_m_array_to_json (array);
+  read = cloth_m_array_load_data (text, strlen (text), &error);
+  g_assert_no_error (error);
+  g_assert_cmpmem (read->matrix, n * n, array->matrix, n * n);
+}
+
 #define HEAD "{\"pattern\":\"m-array\",\"colours\":[\"red\",\"blue\"]," \
     "\"rgb\":[[255,0,0],[0,0,255]],"
 #define SIZE "\"pitch_m\":0.02,\"diameter_m\":0.01,\"origin_uv_m\":[0.01,0.01]," \
@@ -187,8 +206,8 @@ test_read_refused (void)
         CLOTH_PATTERN_ERROR_FORMAT, "4 items"},
     {HEAD SIZE "\"columns\":4,\"rows\":3," MATRIX,
         CLOTH_PATTERN_ERROR_FORMAT, "list of 4"},
-    {HEAD SIZE "\"columns\":3,\"rows\":501," MATRIX,
-        CLOTH_PATTERN_ERROR_FORMAT, "3 to 500"},
+    {HEAD SIZE "\"columns\":3,\"rows\":401," MATRIX,
+        CLOTH_PATTERN_ERROR_FORMAT, "3 to 400"},
     {HEAD SIZE COUNT "\"matrix\":[[0,1,2],[0,0,1],[1,0,1]]}",
         CLOTH_PATTERN_ERROR_FORMAT, "0 to 1"},
     {HEAD SIZE COUNT "\"matrix\":[[0,1,0.5],[0,0,1],[1,0,1]]}",
@@ -266,6 +285,7 @@ main (int argc, char **argv)
   g_test_add_func ("/m-array/generate-refused", test_generate_refused);
   g_test_add_func ("/m-array/new-refused", test_new_refused);
   g_test_add_func ("/m-array/round-trip", test_round_trip);
+  g_test_add_func ("/m-array/largest", test_largest);
   g_test_add_func ("/m-array/read", test_read);
   g_test_add_func ("/m-array/read-refused", test_read_refused);
   g_test_add_func ("/m-array/load-refused", test_load_refused);
