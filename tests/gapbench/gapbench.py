@@ -1,0 +1,157 @@
+#!/usr/bin/python3
+"""The blind benchmark of the diagnosis.
+
+  gapbench.py generate DIR   writes DIR/takes, and what was done to them to DIR/sealed
+  gapbench.py diagnose DIR   diagnoses DIR/takes, which is all it reads, to DIR/gaps
+  gapbench.py score DIR      opens the labels, writes DIR/score.md and DIR/cases.txt
+  gapbench.py all DIR        all three
+
+What is there already is not made again, so that a run that was stopped goes on.
+--few takes a handful of easy cases, --cases N that many drawn by chance instead of all;
+--seed N makes other cases (1), --tool PATH names another gst-cloth-gap-1.0 than the
+shell's.
+
+SPDX-License-Identifier: LGPL-2.1-or-later
+"""
+import argparse
+import concurrent.futures
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy
+
+import cases
+import reality
+import score
+import seal
+
+
+def read_json(path):
+    with open(path, encoding='utf-8') as file:
+        return json.load(file)
+
+
+def effect_table(tool):
+    done = subprocess.run([tool, 'effects', '--format', 'json'], capture_output=True, check=True)
+    return {effect['id']: effect for effect in json.loads(done.stdout)['effects']}
+
+
+def in_parallel(function, arguments):
+    """What a function returns for each tuple of arguments, one run a core."""
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        yield from pool.map(lambda given: function(*given), arguments)
+
+
+def generate(tool, folder, few, count, seed):
+    """Takes and commitments to folder/takes, labels to folder/sealed; all or nothing."""
+    if os.path.exists(os.path.join(folder, 'sealed')):
+        return
+    random = numpy.random.default_rng(seed)
+    listed = (cases.list_few if few else cases.list_all)(effect_table(tool), random)
+    # The number of a case says nothing about it.
+    numbers = random.permutation(len(listed)) + 1
+    takes = os.path.join(folder, 'takes')
+    shutil.rmtree(takes, ignore_errors=True)
+    os.makedirs(takes)
+
+    def make(number, case):
+        name = 'case%03d' % number
+        path = os.path.join(takes, name)
+        with tempfile.TemporaryDirectory(prefix='cloth-gapbench-') as scratch:
+            try:
+                extra = reality.record(tool, case, path, name, scratch,
+                                       numpy.random.default_rng([seed, int(number)]))
+            except RuntimeError as error:
+                print('%s left out, it can\'t be recorded: %s' % (name, error))
+                shutil.rmtree(path, ignore_errors=True)
+                return None
+        return seal.seal(dict(case, case=name, **extra), path)
+
+    chosen = ((number, case) for number, case in zip(numbers, listed) if number <= count)
+    labels = {label['case']: label for label in in_parallel(make, chosen) if label}
+    with open(os.path.join(takes, 'model.json'), 'w', encoding='utf-8') as file:
+        json.dump(reality.diagnosed_model(), file, indent=1)
+    seal.write_labels(os.path.join(folder, 'sealed'), labels)
+    print('%d cases in %s, their labels in %s' % (len(labels), takes,
+                                                  os.path.join(folder, 'sealed')))
+
+
+def diagnose(tool, takes, gaps):
+    """Diagnoses every case in @takes that has no gap.json in @gaps; returns how many failed."""
+    names = sorted(name for name in os.listdir(takes) if os.path.isdir(os.path.join(takes, name)))
+    left = [name for name in names if not os.path.exists(os.path.join(gaps, name, 'gap.json'))]
+
+    def run(name):
+        output = os.path.join(gaps, name)
+        done = subprocess.run(
+            [tool, 'diagnose', os.path.join(takes, name, 'take'), '--model',
+             os.path.join(takes, 'model.json'), '--baseline',
+             os.path.join(takes, name, 'baseline'), '--seed', '1', '--threads', '1',
+             '--output', output],
+            capture_output=True, text=True, stdin=subprocess.DEVNULL, check=False)
+        if done.returncode:
+            return '%s: %s' % (name, done.stderr.strip().split('\n')[-1])
+        # Hundreds of pages of the same kind; gap.json says the same.
+        os.remove(os.path.join(output, 'report.html'))
+        return None
+
+    failed = 0
+    begin = time.monotonic()
+    for count, fault in enumerate(in_parallel(run, ((name,) for name in left)), 1):
+        if fault:
+            print(fault)
+            failed += 1
+        if count in (3, 10) or count % 25 == 0:
+            print('%d of %d diagnosed, about %.0f s to go' % (
+                count, len(left), (time.monotonic() - begin) / count * (len(left) - count)),
+                flush=True)
+    return failed
+
+
+def open_and_score(tool, folder):
+    labels = seal.open_labels(os.path.join(folder, 'sealed'), os.path.join(folder, 'takes'))
+    gaps, left = {}, []
+    for name in sorted(labels):
+        path = os.path.join(folder, 'gaps', name, 'gap.json')
+        if os.path.exists(path):
+            gaps[name] = read_json(path)
+        else:
+            left.append(name)
+    text = score.report(labels, gaps, left, effect_table(tool))
+    with open(os.path.join(folder, 'score.md'), 'w', encoding='utf-8') as file:
+        file.write(text)
+    score.write_cases(os.path.join(folder, 'cases.txt'), labels, gaps)
+    print(text, end='')
+
+
+def main():
+    parser = argparse.ArgumentParser(description='The blind benchmark of the diagnosis.')
+    parser.add_argument('step', choices=('generate', 'diagnose', 'score', 'all'))
+    parser.add_argument('folder')
+    parser.add_argument('--few', action='store_true')
+    parser.add_argument('--cases', type=int, default=1000)
+    parser.add_argument('--seed', type=int, default=1)
+    parser.add_argument('--tool', default='gst-cloth-gap-1.0')
+    given = parser.parse_args()
+    os.makedirs(given.folder, exist_ok=True)
+    failed = 0
+    try:
+        if given.step in ('generate', 'all'):
+            generate(given.tool, given.folder, given.few, given.cases, given.seed)
+        if given.step in ('diagnose', 'all'):
+            failed = diagnose(given.tool, os.path.join(given.folder, 'takes'),
+                              os.path.join(given.folder, 'gaps'))
+        if given.step in ('score', 'all'):
+            open_and_score(given.tool, given.folder)
+    except (OSError, RuntimeError, seal.BrokenSeal) as error:
+        sys.exit('gapbench: %s' % error)
+    sys.exit(1 if failed else 0)
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,225 @@
+"""Holds diagnoses against opened labels; writes the table and the confusion matrix.
+
+SPDX-License-Identifier: LGPL-2.1-or-later
+"""
+import math
+import statistics
+
+from cases import SEVERITIES
+
+SILENT = ('no_gap', 'undecidable')
+
+
+def binomial_interval(hits, count):
+    """The exact 95% interval of a share (Clopper and Pearson 1934), by bisection."""
+    def at_most(k, share):
+        return sum(math.comb(count, i) * share ** i * (1. - share) ** (count - i)
+                   for i in range(k + 1))
+
+    def solve(k, tail):
+        low, high = 0., 1.
+        for _ in range(60):
+            middle = (low + high) / 2.
+            low, high = (middle, high) if at_most(k, middle) > tail else (low, middle)
+        return low
+
+    if not count:
+        return 0., 1.
+    return (0. if hits == 0 else solve(hits - 1, 0.975),
+            1. if hits == count else solve(hits, 0.025))
+
+
+def share(hits):
+    hits = list(hits)
+    if not hits:
+        return 'no case'
+    low, high = binomial_interval(sum(hits), len(hits))
+    return '%.0f%% (%d of %d) [%.0f, %.0f]' % (100. * sum(hits) / len(hits), sum(hits), len(hits),
+                                              100. * low, 100. * high)
+
+
+def ranking(gap):
+    return [effect['name'] for effect in gap['effects']]
+
+
+def ambiguity_set(gap):
+    """What is reported together with the first."""
+    if not gap['effects']:
+        return []
+    first = gap['effects'][0]
+    named = [first['name']]
+    if first['group'] is not None:
+        named += [name for name in gap['groups'][first['group']]['effects'] if name not in named]
+    return named
+
+
+def named_first(gap, label):
+    return ranking(gap)[:1] == list(label['effects'])
+
+
+def accepted(gap):
+    return {effect['name'] for effect in gap['effects'] if effect['accepted']}
+
+
+def parameters_of(gap, label, table):
+    """(estimate, sigma, truth, null) of what was scaled in the effect that was found."""
+    for effect in gap['effects']:
+        if effect['name'] in label['effects'] and effect['accepted']:
+            nulls = {p['name']: p['null'] for p in table[effect['name']]['parameters']}
+            for p in effect['parameters']:
+                if p['name'] in label['scaled'][effect['name']] and p['value'] is not None:
+                    yield (p['value'], p['sigma'], label['effects'][effect['name']][p['name']],
+                           nulls[p['name']])
+
+
+def calibration_error(pairs):
+    """Expected calibration error in ten bins of probability."""
+    total = 0.
+    for step in range(10):
+        held = [(p, hit) for p, hit in pairs if min(int(10 * p), 9) == step]
+        if held:
+            total += abs(sum(p for p, _ in held) - sum(hit for _, hit in held))
+    return total / len(pairs) if pairs else math.nan
+
+
+def median(values, form):
+    values = list(values)
+    return form % statistics.median(values) + ' (n = %d)' % len(values) if values else 'no case'
+
+
+def table_of(cases, table):
+    """The rows of the table: (figure, measured, to reach)."""
+    single = [c for c in cases if c[0]['kind'] == 'single']
+    strong = [c for c in single if c[0]['severity'] >= 2.]
+    pairs = [c for c in cases if c[0]['kind'] == 'pair']
+    none = [c for c in cases if c[0]['kind'] == 'none']
+    outside = [c for c in cases if c[0]['kind'] == 'outside']
+    rows = [('top-1, one effect at 2× and 5×', share(named_first(g, l) for l, g in strong), '≥ 90%')]
+    for severity in SEVERITIES:
+        rows.append(('top-1 at %g×' % severity,
+                     share(named_first(g, l) for l, g in single if l['severity'] == severity),
+                     '≥ 70%' if severity < 2. else ''))
+    for low, high, text in ((0., 1., 'below the noise'), (1., 5., '1 to 5 times the noise'),
+                            (5., math.inf, 'above 5 times the noise')):
+        rows.append(('top-1, the effect moves the cloth by %s' % text,
+                     share(named_first(g, l) for l, g in single
+                           if low <= l['size_m'] / l['noise_m'] < high), ''))
+    for family in sorted({l['family'] for l, _ in strong}):
+        rows.append(('top-1 at 2× and 5×, reality %s' % family,
+                     share(named_first(g, l) for l, g in strong if l['family'] == family), ''))
+    for baseline in ('same', 'other'):
+        rows.append(('top-1 at 2× and 5×, baseline of %s motion' % (
+            'the same' if baseline == 'same' else 'another'),
+            share(named_first(g, l) for l, g in strong if l['baseline'] == baseline), ''))
+    rows += [
+        ('top-1 and accepted, at 2× and 5×',
+         share(named_first(g, l) and set(l['effects']) <= accepted(g) for l, g in strong), ''),
+        ('top-3, at 2× and 5×',
+         share(bool(set(ranking(g)[:3]) & set(l['effects'])) for l, g in strong), '≥ 98%'),
+        ('ambiguity set holds the truth, at 2× and 5×',
+         share(bool(set(ambiguity_set(g)) & set(l['effects'])) for l, g in strong), '≥ 95%'),
+        ('mean size of the ambiguity set',
+         '%.2f' % statistics.mean(len(ambiguity_set(g)) for _, g in strong) if strong else
+         'no case', '≤ 1.5'),
+        ('pairs: both in the first two',
+         share(set(ranking(g)[:2]) == set(l['effects']) for l, g in pairs), '≥ 85%'),
+        ('pairs: exactly both accepted',
+         share(accepted(g) == set(l['effects']) for l, g in pairs), '≥ 60%'),
+        ('false alarm on no gap', share(g['verdict'] not in SILENT for _, g in none), '≤ 5%')]
+    for baseline in ('same', 'other'):
+        rows.append(('false alarm, baseline of %s motion' % (
+            'the same' if baseline == 'same' else 'another'),
+            share(g['verdict'] not in SILENT for l, g in none if l['baseline'] == baseline), ''))
+    for family in sorted({l['family'] for l, _ in none}):
+        rows.append(('false alarm, reality %s' % family,
+                     share(g['verdict'] not in SILENT for l, g in none if l['family'] == family),
+                     ''))
+    found = [p for l, g in single for p in parameters_of(g, l, table)]
+    rows += [
+        ('no gap called undecidable', share(g['verdict'] == 'undecidable' for _, g in none), ''),
+        ('out of the library: flagged `unexplained`',
+         share(g['verdict'] == 'unexplained' for _, g in outside), '≥ 80%'),
+        ('out of the library: wrongly explained by an effect',
+         share(g['verdict'] in ('explained', 'ambiguous') for _, g in outside), ''),
+        ('parameter error, median, of the right effect when accepted',
+         median((abs(value - truth) / abs(truth - null) for value, _, truth, null in found
+                 if truth != null), '%.2f'), '≤ 0.15'),
+        ('coverage of its 95% intervals',
+         share(abs(value - truth) <= 1.96 * sigma for value, sigma, truth, _ in found
+               if sigma is not None), '90–98%'),
+        ('held-out shrink, median, right effect first and accepted, at 2× and 5×',
+         median((g['shrink']['value'] for l, g in strong if named_first(g, l) and
+                 accepted(g) and g['shrink']['value'] is not None), '%.2f'), ''),
+        ('calibration error of the first one’s probability (ECE), 2× and 5×',
+         '%.2f' % calibration_error([(g['effects'][0]['probability'], named_first(g, l))
+                                     for l, g in strong if g['effects'] and
+                                     g['effects'][0]['probability'] is not None]), '≤ 0.05')]
+    return rows
+
+
+def confusion(cases):
+    """Lines of a matrix: what acted, against what stood first or that all was silent."""
+    counts = {}
+    for label, gap in cases:
+        truth = '+'.join(sorted(label['effects'])) or label['outside'] or '(nothing)'
+        found = '(%s)' % gap['verdict'] if gap['verdict'] in SILENT else ranking(gap)[0] \
+            if gap['effects'] else '(none tested)'
+        row = counts.setdefault((label['kind'], truth), {})
+        row[found] = row.get(found, 0) + 1
+    order = ('single', 'none', 'outside', 'pair')
+    rows = sorted(counts, key=lambda key: (order.index(key[0]), key[1]))
+    columns = sorted({name for row in counts.values() for name in row})
+    lines = ['columns:']
+    lines += ['%5d %s' % (i + 1, name) for i, name in enumerate(columns)]
+    lines += ['', '%-34s' % 'acted' + ''.join('%3d' % (i + 1) for i in range(len(columns)))]
+    for key in rows:
+        lines.append('%-34s' % key[1] + ''.join(
+            '%3s' % (counts[key].get(name) or '·') for name in columns))
+    return lines
+
+
+def verdicts(cases):
+    names = ('no_gap', 'explained', 'ambiguous', 'unexplained', 'undecidable')
+    yield '| cases | ' + ' | '.join('`%s`' % name for name in names) + ' |'
+    yield '|---' * 6 + '|'
+    groups = [('one effect at %g×' % s, lambda l, s=s: l['kind'] == 'single' and
+               l['severity'] == s) for s in SEVERITIES]
+    groups += [(text, lambda l, kind=kind: l['kind'] == kind) for kind, text in (
+        ('pair', 'pairs'), ('none', 'no gap'), ('outside', 'out of the library'))]
+    for text, belongs in groups:
+        here = [gap['verdict'] for label, gap in cases if belongs(label)]
+        yield '| %s | ' % text + ' | '.join(str(here.count(name)) for name in names) + ' |'
+
+
+def each(cases):
+    """Every case in a line, for who wants to look at one."""
+    for label, gap in sorted(cases, key=lambda c: c[0]['case']):
+        what = ', '.join('%s %s' % (name, ' '.join('%s=%.3g' % item
+                                                   for item in sorted(values.items())))
+                         for name, values in label['effects'].items())
+        first = ['%s %.2f%s' % (e['name'], e['probability'] if e['probability'] is not None
+                                else math.nan, '*' if e['accepted'] else '')
+                 for e in gap['effects'][:3]]
+        yield '%s %s %s %g× %s, baseline %s, %.2f mm: %s; %s' % (
+            label['case'], label['kind'], what or label['outside'] or '-', label['severity'],
+            label['family'], label['baseline'], 1000. * label['size_m'], gap['verdict'],
+            ', '.join(first))
+
+
+def report(labels, gaps, left, table):
+    """The whole as markdown; @gaps by case, @left those that have none."""
+    cases = [(labels[case], gaps[case]) for case in sorted(gaps)]
+    seconds = [gap['seconds'] for _, gap in cases]
+    lines = ['%d cases diagnosed, %d not; %.1f s each in the median.' % (
+        len(cases), len(left), statistics.median(seconds) if seconds else math.nan), '',
+        '| figure | measured [95% interval] | to reach |', '|---|---|---|']
+    lines += ['| %s | %s | %s |' % row for row in table_of(cases, table)]
+    lines += ['', *verdicts(cases), '', '```text', *confusion(cases), '```']
+    lines += ['', 'Not diagnosed: ' + ', '.join(left)] if left else []
+    return '\n'.join(lines) + '\n'
+
+
+def write_cases(path, labels, gaps):
+    with open(path, 'w', encoding='utf-8') as file:
+        for line in each([(labels[case], gap) for case, gap in gaps.items()]):
+            file.write(line + '\n')
