@@ -8,11 +8,10 @@
 
 G_BEGIN_DECLS
 
-/* An effect is accepted when its evidence is this, when it removes this share of the
- * whitened residual's square from blocks it was not estimated on, and this share of the
- * gap's variance. */
+/* An effect is accepted when its evidence is this at least, when it makes blocks better
+ * that it was not estimated on, and when it removes this share of the gap's variance, or
+ * of the residual's in those blocks without making the gap larger. */
 #define CLOTH_DIAGNOSIS_LEAST_EVIDENCE 10.
-#define CLOTH_DIAGNOSIS_LEAST_IMPROVEMENT 0.005
 #define CLOTH_DIAGNOSIS_LEAST_SHRINK 0.1
 /* What remains is no more than noise when it is below this many floors (variance). */
 #define CLOTH_DIAGNOSIS_BAND 2.25
@@ -36,14 +35,17 @@ typedef struct
   gboolean *sound;
   gboolean *blocks;             /* that estimates come from */
   guint n_blocks;
-  /* Effects taken in, one by one: candidates, the models with them, deviations of the
+  /* Effects taken in, one by one: candidates, by how much they make the residual better
+   * in blocks they were not estimated on, the models with them, deviations of the
    * directions in them */
   guint chosen[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
+  gdouble improvements[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
   ClothModel *with[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
   gdouble sigmas[CLOTH_DIAGNOSIS_MAX_ACCEPTED][CLOTH_DIAGNOSIS_MAX_ACCEPTED][CLOTH_EFFECT_MAX_PARAMETERS];
   guint n_chosen;
   GPtrArray *left;              /* power left in a take, by take and gain; NULL: unknown */
   ClothStudy **others;          /* of each take, during its null test: another force model */
+  gdouble least_evidence;
   gdouble *null_evidence;       /* of each candidate, on the baselines */
   /* of the running part of the work: its share of all, what of it each simulation gets */
   gdouble from, to, each;

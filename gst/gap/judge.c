@@ -132,6 +132,16 @@ fill_shrink (ClothGapResult * result, gdouble before, gdouble after,
   result->shrink.value = (before - after) / (before - floor);
 }
 
+/* Whether the effect that was taken in as the i-th is large enough to speak of. */
+static gboolean
+matters (const ClothDiagnosis * d, guint i, gdouble before, gdouble after)
+{
+  const gdouble share = CLOTH_DIAGNOSIS_LEAST_SHRINK;
+
+  return after < (1. - share) * before
+      || (d->improvements[i] > share && after < before);
+}
+
 /* How large the gap is before and after, on the hold-outs if there are any; the floor on
  * the baselines. Of the effects taken in those stay that shrink it enough, one after the
  * other. */
@@ -146,7 +156,7 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
   g_autofree gdouble *draws = g_new0 (gdouble, N_DRAWS * n);
   g_autofree gboolean *windows = NULL;
   ClothGapExtent **extents;
-  gdouble v[1 + CLOTH_DIAGNOSIS_MAX_ACCEPTED], floor2;
+  gdouble v[1 + CLOTH_DIAGNOSIS_MAX_ACCEPTED];
 
   for (guint i = 1; i < n; i++)
     models[i] = d->with[i - 1];
@@ -164,11 +174,7 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
     cloth_gap_extents_free (extents, n);
     return FALSE;
   }
-  floor2 = result->noise_floor.value * result->noise_floor.value;
-  /* where no signature was taken off, what is no more than the floor proves nothing */
-  while (best + 1 < n && (cloth_diagnosis_has_signatures (d)
-          || v[0] > CLOTH_DIAGNOSIS_BAND * floor2)
-      && v[best + 1] < (1. - CLOTH_DIAGNOSIS_LEAST_SHRINK) * v[best])
+  while (best + 1 < n && matters (d, best, v[best], v[best + 1]))
     best++;
   while (d->n_chosen > best)
     cloth_model_free (d->with[--d->n_chosen]);

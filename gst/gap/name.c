@@ -400,8 +400,8 @@ find_asked (const ClothDiagnosis * d, const GArray * scores)
     const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
 
     if (!is_chosen (d, cloth_diagnosis_candidate (d, s)->effect))
-      return s->evidence < CLOTH_DIAGNOSIS_LEAST_EVIDENCE
-          || s->improvement < CLOTH_DIAGNOSIS_LEAST_IMPROVEMENT ? NULL : s;
+      return s->evidence < d->least_evidence
+          || !(s->improvement > 0.) ? NULL : s;
   }
   return NULL;
 }
@@ -449,6 +449,7 @@ cloth_diagnosis_name (ClothDiagnosis * d, GError ** error)
     const ClothGapScore next = *asked;
     gdouble from = 0.45 + 0.13 * d->n_chosen;
 
+    d->improvements[d->n_chosen] = next.improvement;
     d->chosen[d->n_chosen++] = next.candidate;
     free_chosen (d, &test, nuisances, precisions);
     g_array_unref (scores);

@@ -120,28 +120,63 @@ reduce (const Trial * trial, const ClothGapNormal * normal,
       t->n_nuisances, trial->directions, trial->candidate->n, reduced);
 }
 
-/* What estimates from the other blocks do to each block. */
+/* The nuisances, and with them the effect's @n directions, estimated from @blocks: changes
+ * of @columns, which lists them. */
+static gboolean
+estimate_all (const Trial * trial, const ClothGapNormal * normal,
+    const gboolean * blocks, gdouble phi, guint n, const guint * columns,
+    gdouble * changes)
+{
+  const ClothGapTest *t = trial->test;
+  guint q = t->n_nuisances + n, m = normal->m;
+  g_autofree gdouble *a = g_new0 (gdouble, (gsize) q * q + 1);
+
+  memset (changes, 0, q * sizeof *changes);
+  for (guint b = 0; b < normal->n_blocks; b++) {
+    const gdouble *g = normal->g + (gsize) b * m * m;
+
+    for (guint i = 0; i < q && blocks[b]; i++) {
+      for (guint j = 0; j < q; j++)
+        a[(gsize) i * q + j] += g[(gsize) columns[i] * m + columns[j]];
+      changes[i] -= normal->s[(gsize) b * m + columns[i]];
+    }
+  }
+  for (guint i = 0; i < q; i++)
+    a[(gsize) i * q + i] += i < t->n_nuisances ?
+        t->precisions[i] * t->overdispersion :
+        trial->precisions[i - t->n_nuisances] * phi;
+  if (!cloth_cholesky_factor (q, a))
+    return FALSE;
+  cloth_cholesky_solve (q, a, changes);
+  return !(n && trial->one_sided && changes[t->n_nuisances] < 0.);
+}
+
+/* What the effect makes better in each block when it and the nuisances are estimated from
+ * the others, beyond what the nuisances alone do. */
 static gdouble
 cross_validate (const Trial * trial, const ClothGapNormal * normal,
     gdouble phi, gdouble * total)
 {
-  const gboolean *blocks = trial->test->blocks;
-  g_autofree gboolean *others = g_memdup2 (blocks,
-      normal->n_blocks * sizeof *blocks);
+  const ClothGapTest *t = trial->test;
+  guint n = trial->candidate->n, q = t->n_nuisances;
+  g_autofree gboolean *others = g_memdup2 (t->blocks,
+      normal->n_blocks * sizeof *others);
+  g_autofree guint *columns = g_new (guint, q + n);
+  g_autofree gdouble *without = g_new (gdouble, q + n);
+  g_autofree gdouble *with = g_new (gdouble, q + n);
   gdouble gained = 0.;
 
+  for (guint i = 0; i < q + n; i++)
+    columns[i] = i < q ? t->nuisances[i] : trial->directions[i - q];
   for (guint b = 0; b < normal->n_blocks; b++) {
-    ClothGapReduced reduced;
-    gdouble changes[4], log_det;
-
-    if (!blocks[b])
+    if (!t->blocks[b])
       continue;
     others[b] = FALSE;
     *total += normal->r[b];
-    if (reduce (trial, normal, others, &reduced)
-        && estimate (trial, &reduced, phi, changes, NULL, &log_det))
-      gained -= cloth_gap_normal_change (normal, b, trial->directions,
-          changes, trial->candidate->n);
+    if (estimate_all (trial, normal, others, phi, 0, columns, without)
+        && estimate_all (trial, normal, others, phi, n, columns, with))
+      gained += cloth_gap_normal_change (normal, b, columns, without, q) -
+          cloth_gap_normal_change (normal, b, columns, with, q + n);
     others[b] = TRUE;
   }
   return gained;
