@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/sim/effect-table.h"
+#include "gst/gap/front.h"
 
 /* Version of the priors and thresholds: a change of either changes probabilities. */
 #define PRIORS "1"
@@ -77,18 +77,15 @@ static gboolean
 load_one (ClothDiagnosis * d, ClothTake * take, ClothGapRole role,
     GError ** error)
 {
-  ClothRecording *r = cloth_recording_new (take, error);
+  ClothRecording *r = cloth_recording_new (take, error), *first;
 
   if (!r)
     return FALSE;
   g_ptr_array_add (d->recordings, r);
-  if (r->n != cloth_diagnosis_recording (d, 0)->n) {
-    g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE, "%s has %u "
-        "vertices and %s has %u: takes, baselines and hold-outs are of one "
-        "mesh", cloth_diagnosis_recording (d, 0)->name,
-        cloth_diagnosis_recording (d, 0)->n, r->name, r->n);
+  first = cloth_diagnosis_recording (d, 0);
+  if (!cloth_gap_check_same_cloth (r->name, r->scene->topology, first->name,
+          first->scene->topology, error))
     return FALSE;
-  }
   cloth_gap_result_add_input (d->result, role, r->name, NULL);
   if (role != CLOTH_GAP_HOLD_OUT)
     g_ptr_array_add (d->studies, cloth_study_new (r, &d->study));

@@ -6,14 +6,14 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/math/linalg.h"
+#include "gst/gap/recording.h"
 #include "gst/mesh/hold.h"
 #include "gst/sim/sim.h"
 
 /* Frames of the polynomial that velocities come from, and its order (Savitzky & Golay
  * 1964). Of fewer frames the order is lower, down to 2, so that noise is smoothed. */
-#define WINDOW (2 * CLOTH_OBSERVER_LATENCY + 1)
-#define ORDER 4
+#define WINDOW CLOTH_RECORDING_WINDOW
+G_STATIC_ASSERT (WINDOW == 2 * CLOTH_OBSERVER_LATENCY + 1);
 #define MASKS (1u << WINDOW)
 
 /* The two copies of the model in the simulation. */
@@ -148,46 +148,6 @@ cloth_observer_get_n_waiting (const ClothObserver * observer)
   return (guint) (observer->n_pushed - observer->n_popped);
 }
 
-/* Weights of the frames of @mask, by age, whose sum is the derivative at the time @at of
- * the polynomial that fits them. One frame alone has none. */
-static void
-find_weights (const ClothObserver * self, guint64 oldest, guint mask,
-    gdouble at, gdouble * weights)
-{
-  gdouble t[WINDOW], normal[(ORDER + 1) * (ORDER + 1)] = { 0 };
-  gdouble slope[ORDER + 1] = { 0, 1 };
-  gdouble powers[WINDOW][ORDER + 1], scale = 0;
-  guint n = 0, terms;
-
-  for (guint i = 0; i < WINDOW; i++) {
-    weights[i] = 0;
-    n += mask >> i & 1;
-    t[i] = mask >> i & 1 ? self->ring[(oldest + i) % WINDOW].time - at : 0;
-    scale = MAX (scale, fabs (t[i]));
-  }
-  if (n < 2) {
-    for (guint i = 0; i < WINDOW; i++)
-      weights[i] = NAN;
-    return;
-  }
-  /* A straight line through the first frames of a fall would be far off. */
-  terms = n == 2 ? 2 : MAX (3, n + ORDER + 1 - WINDOW);
-  for (guint i = 0; i < WINDOW; i++) {
-    powers[i][0] = 1;
-    for (guint k = 1; k < terms; k++)
-      powers[i][k] = powers[i][k - 1] * t[i] / scale;
-    for (guint k = 0; mask >> i & 1 && k < terms; k++)
-      for (guint l = 0; l < terms; l++)
-        normal[k * terms + l] += powers[i][k] * powers[i][l];
-  }
-  if (!cloth_cholesky_factor (terms, normal))
-    return;
-  cloth_cholesky_solve (terms, normal, slope);
-  for (guint i = 0; i < WINDOW; i++)
-    for (guint k = 0; mask >> i & 1 && k < terms; k++)
-      weights[i] += slope[k] * powers[i][k] / scale;
-}
-
 /* Velocities at the frame that is popped, from all that the ring holds. */
 static void
 find_velocities (ClothObserver * self, gdouble * velocity)
@@ -196,6 +156,7 @@ find_velocities (ClothObserver * self, gdouble * velocity)
   guint in_ring = (guint) (self->n_pushed - oldest);
   gdouble at = self->ring[self->n_popped % WINDOW].time;
   const gdouble *places[WINDOW];
+  gdouble times[WINDOW];
 
   memset (self->known, 0, sizeof self->known);
   for (guint i = 0; i < in_ring; i++)
@@ -212,7 +173,9 @@ find_velocities (ClothObserver * self, gdouble * velocity)
     }
     weights = self->table[mask];
     if (!self->known[mask]) {
-      find_weights (self, oldest, mask, at, self->table[mask]);
+      for (guint i = 0; i < WINDOW; i++)
+        times[i] = self->ring[(oldest + i) % WINDOW].time;
+      cloth_recording_find_weights (times, mask, at, self->table[mask]);
       self->known[mask] = TRUE;
     }
     for (guint k = 0; k < 3; k++) {

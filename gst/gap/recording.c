@@ -53,38 +53,57 @@ bridge (ClothRecording * r, guint vertex)
   return last >= 0;
 }
 
-/* Weights of the frames begin … begin + WINDOW - 1 whose sum is the derivative at @frame
- * of the polynomial through them. */
-static void
-derivative_weights (const ClothRecording * r, guint begin, guint frame,
-    gdouble weights[CLOTH_RECORDING_WINDOW])
+/**
+ * cloth_recording_find_weights:
+ * @times: (array): of %CLOTH_RECORDING_WINDOW frames, s
+ * @mask: which of them count, the first in the lowest bit
+ * @at: a time, s
+ * @weights: (out) (array): of each frame, 1/s; 0 of those that don't count
+ *
+ * Weights whose sum with the frames' values is the derivative at @at of the polynomial
+ * that fits them (Savitzky and Golay 1964, for any times). One frame alone has none: NaN.
+ *
+ * Since: 0.1
+ */
+void
+cloth_recording_find_weights (const gdouble * times, guint mask, gdouble at,
+    gdouble * weights)
 {
-  const guint terms = CLOTH_RECORDING_ORDER + 1;
-  gdouble scale = (r->times[begin + CLOTH_RECORDING_WINDOW - 1] -
-      r->times[begin]) / CLOTH_RECORDING_WINDOW;
+  const guint all = CLOTH_RECORDING_WINDOW, order = CLOTH_RECORDING_ORDER;
   gdouble normal[(CLOTH_RECORDING_ORDER + 1) * (CLOTH_RECORDING_ORDER + 1)];
-  gdouble power[CLOTH_RECORDING_WINDOW][CLOTH_RECORDING_ORDER + 1];
-  gdouble slope[CLOTH_RECORDING_ORDER + 1] = { 0., 1. };
+  gdouble powers[CLOTH_RECORDING_WINDOW][CLOTH_RECORDING_ORDER + 1];
+  gdouble slope[CLOTH_RECORDING_ORDER + 1] = { 0., 1. }, scale = 0.;
+  guint n = 0, terms;
 
-  memset (normal, 0, sizeof normal);
-  for (guint i = 0; i < CLOTH_RECORDING_WINDOW; i++) {
-    gdouble t = (r->times[begin + i] - r->times[frame]) / scale;
-
-    power[i][0] = 1.;
-    for (guint k = 1; k < terms; k++)
-      power[i][k] = power[i][k - 1] * t;
-    for (guint k = 0; k < terms; k++)
-      for (guint l = 0; l < terms; l++)
-        normal[k * terms + l] += power[i][k] * power[i][l];
-  }
-  cloth_cholesky_factor (terms, normal);
-  cloth_cholesky_solve (terms, normal, slope);
-  for (guint i = 0; i < CLOTH_RECORDING_WINDOW; i++) {
+  for (guint i = 0; i < all; i++) {
     weights[i] = 0.;
-    for (guint k = 0; k < terms; k++)
-      weights[i] += slope[k] * power[i][k];
-    weights[i] /= scale;
+    if (!(mask >> i & 1))
+      continue;
+    n++;
+    scale = MAX (scale, fabs (times[i] - at));
   }
+  if (n < 2) {
+    for (guint i = 0; i < all; i++)
+      weights[i] = NAN;
+    return;
+  }
+  /* a straight line through the first frames of a fall would be far off */
+  terms = n == 2 ? 2 : MAX (3, n + order + 1 - all);
+  memset (normal, 0, sizeof normal);
+  for (guint i = 0; i < all; i++) {
+    powers[i][0] = 1.;
+    for (guint k = 1; k < terms; k++)
+      powers[i][k] = powers[i][k - 1] * (times[i] - at) / scale;
+    for (guint k = 0; mask >> i & 1 && k < terms; k++)
+      for (guint l = 0; l < terms; l++)
+        normal[k * terms + l] += powers[i][k] * powers[i][l];
+  }
+  if (!cloth_cholesky_factor (terms, normal))
+    return;
+  cloth_cholesky_solve (terms, normal, slope);
+  for (guint i = 0; i < all; i++)
+    for (guint k = 0; mask >> i & 1 && k < terms; k++)
+      weights[i] += slope[k] * powers[i][k] / scale;
 }
 
 static void
@@ -98,7 +117,8 @@ differentiate (ClothRecording * r)
     gdouble *to = r->velocity + frame * row;
 
     begin = CLAMP (begin, 0, (gint) r->n_frames - CLOTH_RECORDING_WINDOW);
-    derivative_weights (r, (guint) begin, frame, weights);
+    cloth_recording_find_weights (r->times + begin,
+        (1u << CLOTH_RECORDING_WINDOW) - 1, r->times[frame], weights);
     memset (to, 0, row * sizeof *to);
     for (guint i = 0; i < CLOTH_RECORDING_WINDOW; i++) {
       const gdouble *from = r->y + ((guint) begin + i) * row;

@@ -35,6 +35,8 @@ typedef struct {
 } ClothRecording;
 
 ClothRecording *cloth_recording_new (ClothTake * take, GError ** error);
+void cloth_recording_find_weights (const gdouble * times, guint mask,
+    gdouble at, gdouble * weights);
 gint cloth_recording_compare_numbers (gconstpointer a, gconstpointer b);
 void cloth_recording_free (ClothRecording * recording);
 
