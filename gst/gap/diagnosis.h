@@ -9,8 +9,9 @@
 G_BEGIN_DECLS
 
 /* An effect is accepted when its evidence is this at least, when it makes blocks better
- * that it was not estimated on, and when it removes this share of the gap's variance, or
- * of the residual's in those blocks without making the gap larger. */
+ * that it was not estimated on, and when it removes this share of the gap's variance, or,
+ * where a signature is taken off, of the residual's in those blocks without making the
+ * gap larger. */
 #define CLOTH_DIAGNOSIS_LEAST_EVIDENCE 10.
 #define CLOTH_DIAGNOSIS_LEAST_SHRINK 0.1
 /* What remains is no more than noise when it is below this many floors (variance). */

@@ -139,7 +139,8 @@ matters (const ClothDiagnosis * d, guint i, gdouble before, gdouble after)
   const gdouble share = CLOTH_DIAGNOSIS_LEAST_SHRINK;
 
   return after < (1. - share) * before
-      || (d->improvements[i] > share && after < before);
+      || (cloth_diagnosis_has_signatures (d) && d->improvements[i] > share
+      && after < before);
 }
 
 /* How large the gap is before and after, on the hold-outs if there are any; the floor on
