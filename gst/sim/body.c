@@ -8,12 +8,6 @@
 
 #include "gst/sim/sim.h"
 
-typedef struct
-{
-  guint32 a, b;                 /* a < b */
-  guint32 triangle, opposite;
-} Edge;
-
 static guint32
 root (guint32 * parent, guint32 i)
 {
@@ -165,283 +159,6 @@ make_triangles (ClothBody * body, const ClothTopology * topology,
   return TRUE;
 }
 
-static gint
-compare_edges (gconstpointer a, gconstpointer b)
-{
-  const Edge *p = a, *q = b;
-
-  if (p->a != q->a)
-    return p->a < q->a ? -1 : 1;
-  if (p->b != q->b)
-    return p->b < q->b ? -1 : 1;
-  return p->triangle < q->triangle ? -1 : p->triangle > q->triangle;
-}
-
-/* Where the corner opposite an edge lies from the edge's start, along and across it; the
- * way across is positive from u towards v. */
-static void
-lay_out (const gdouble * uv, const guint32 * corner, guint from, guint to,
-    guint opposite, gdouble * along, gdouble * across, gdouble * length,
-    gdouble direction[2])
-{
-  const gdouble *a = uv + 2 * corner[from], *b = uv + 2 * corner[to];
-  const gdouble *c = uv + 2 * corner[opposite];
-  gdouble du = b[0] - a[0], dv = b[1] - a[1];
-
-  *length = hypot (du, dv);
-  direction[0] = du / *length;
-  direction[1] = dv / *length;
-  *along = (c[0] - a[0]) * direction[0] + (c[1] - a[1]) * direction[1];
-  *across = (c[0] - a[0]) * -direction[1] + (c[1] - a[1]) * direction[0];
-}
-
-static guint
-corner_of (const ClothBodyTriangle * triangle, guint32 particle)
-{
-  for (guint k = 0; k < 2; k++)
-    if (triangle->particle[k] == particle)
-      return k;
-  return 2;
-}
-
-/* The isometric bending of Bergou, Wardetzky, Harmon, Zorin and Grinspun (2006): the
- * sum y = Σ c x with cotangents c is a linear measure of the fold. Of a sheet of
- * curvature κ it is a linear form in (κ_uu, κ_vv, √2 κ_uv); a hinge's energy is scaled by
- * the area of its triangles over the square of that form, so that over all hinges and
- * ways to bend ½ Σ k y² gives ½ B ∫ |κ|² on the mean; by a third more or less for one way
- * on meshes of one kind of triangles. */
-static void
-make_hinge (const ClothBody * body, const guint32 * corners, const Edge * one,
-    const Edge * two, ClothBodyHinge * hinge)
-{
-  gdouble along[2], across[2], length[2], direction[4], area = 0.;
-  gdouble *form = hinge->form, part[3], square, cot[2][2], x[4][2];
-  const Edge *side[2] = { one, two };
-
-  for (guint s = 0; s < 2; s++) {
-    const ClothBodyTriangle *triangle = &body->triangles[side[s]->triangle];
-
-    lay_out (body->uv, corners + 3 * side[s]->triangle, corner_of (triangle,
-            one->a), corner_of (triangle, one->b), side[s]->opposite,
-        &along[s], &across[s], &length[s], direction + 2 * s);
-    if (s == 0)
-      hinge->side = across[s] > 0. ? 1. : -1.;
-    across[s] = fabs (across[s]);
-    cot[s][0] = along[s] / across[s];
-    cot[s][1] = (length[s] - along[s]) / across[s];
-    area += triangle->area;
-    hinge->particle[2 + s] = triangle->particle[side[s]->opposite];
-  }
-  hinge->particle[0] = one->a;
-  hinge->particle[1] = one->b;
-  hinge->c[0] = cot[0][1] + cot[1][1];
-  hinge->c[1] = cot[0][0] + cot[1][0];
-  hinge->c[2] = -cot[0][0] - cot[0][1];
-  hinge->c[3] = -cot[1][0] - cot[1][1];
-  form[0] = form[1] = form[2] = 0.;
-  x[0][0] = x[0][1] = x[1][1] = 0.;
-  x[1][0] = length[0];
-  for (guint s = 0; s < 2; s++) {
-    x[2 + s][0] = along[s];
-    x[2 + s][1] = s ? -across[s] : across[s];
-  }
-  for (guint k = 0; k < 4; k++) {
-    /* in the frame of the first triangle */
-    gdouble u = x[k][0] * direction[0] - x[k][1] * direction[1];
-    gdouble v = x[k][0] * direction[1] + x[k][1] * direction[0];
-
-    form[0] += 0.5 * hinge->c[k] * u * u;
-    form[1] += 0.5 * hinge->c[k] * v * v;
-    form[2] += M_SQRT1_2 * hinge->c[k] * u * v;
-  }
-  for (guint k = 0; k < 3; k++)
-    part[k] = form[k] * form[k];
-  square = part[0] + part[1] + part[2];
-  hinge->warp = area / (square * square) * (part[0] + 0.5 * part[2]);
-  hinge->weft = area / (square * square) * (part[1] + 0.5 * part[2]);
-}
-
-/* Between two right angles an edge's hinge has only three particles: they go first. */
-static void
-sort_hinges (ClothBody * body)
-{
-  g_autofree ClothBodyHinge *all =
-      g_memdup2 (body->hinges, body->n_hinges * sizeof *all);
-  guint at = 0;
-
-  for (guint i = 0; i < body->n_hinges; i++) {
-    ClothBodyHinge *h = &all[i];
-    gdouble largest = fabs (h->c[2]) + fabs (h->c[3]);
-    guint zero = fabs (h->c[0]) < 1e-6 * largest ? 0 : 1;
-
-    if (fabs (h->c[zero]) < 1e-6 * largest) {
-      const ClothBodyHinge old = *h;
-
-      for (guint k = 0; k < 4; k++) {
-        guint from = k == 3 ? zero : k == 2 ? 1 - zero : k + 2;
-
-        h->particle[k] = old.particle[from];
-        h->c[k] = k == 3 ? 0. : old.c[from];
-      }
-      if (zero == 1)
-        h->side = -old.side;
-      body->hinges[at++] = *h;
-    }
-  }
-  body->n_straight = at;
-  for (guint i = 0; i < body->n_hinges; i++)
-    if (all[i].c[3] != 0.)
-      body->hinges[at++] = all[i];
-}
-
-static gdouble
-uv_distance (const ClothBody * body, guint a, guint b)
-{
-  return hypot (body->uv[2 * a] - body->uv[2 * b],
-      body->uv[2 * a + 1] - body->uv[2 * b + 1]);
-}
-
-/* The share of a line of the grid in the direction across it. */
-static gdouble
-line_width (const ClothBody * body, guint vertex, guint at, guint n,
-    guint stride)
-{
-  gdouble width = 0.;
-
-  if (at > 0)
-    width += uv_distance (body, vertex, vertex - stride) / 2.;
-  if (at + 1 < n)
-    width += uv_distance (body, vertex, vertex + stride) / 2.;
-  return width;
-}
-
-/* Which way x_u × x_v is of (x3 − x2) × (x1 − x0). */
-static gdouble
-side_of (const ClothBody * body, const guint vertex[4])
-{
-  const gdouble *uv = body->uv;
-  gdouble along[2], across[2];
-
-  for (guint k = 0; k < 2; k++) {
-    along[k] = uv[2 * vertex[3] + k] - uv[2 * vertex[2] + k];
-    across[k] = uv[2 * vertex[1] + k] - uv[2 * vertex[0] + k];
-  }
-  return along[0] * across[1] > along[1] * across[0] ? 1. : -1.;
-}
-
-static ClothBodyHinge *
-add_grid_hinge (ClothBody * body, const guint vertex[4])
-{
-  ClothBodyHinge *h = &body->hinges[body->n_hinges++];
-
-  *h = (ClothBodyHinge) {
-  .side = side_of (body, vertex)};
-  for (guint k = 0; k < 4; k++)
-    h->particle[k] = body->particle[vertex[k]];
-  return h;
-}
-
-/* aside: a vertex beside the row, which gives the fold a normal. */
-static void
-add_row_of_three (ClothBody * body, guint vertex, guint stride, guint aside,
-    gdouble width, gboolean along_u)
-{
-  const guint all[4] = { vertex, vertex - stride, vertex + stride, aside };
-  gdouble one = uv_distance (body, vertex, vertex - stride);
-  gdouble two = uv_distance (body, vertex, vertex + stride);
-  ClothBodyHinge *h = add_grid_hinge (body, all);
-
-  h->c[0] = 1. / one + 1. / two;
-  h->c[1] = -1. / one;
-  h->c[2] = -1. / two;
-  h->form[along_u ? 0 : 1] = -(one + two) / 2.;
-  *(along_u ? &h->warp : &h->weft) = 2. * width / (one + two);
-}
-
-static void
-add_cell (ClothBody * body, guint vertex)
-{
-  const guint all[4] = { vertex, vertex + body->columns + 1, vertex + 1,
-    vertex + body->columns
-  };
-  gdouble area = uv_distance (body, vertex, vertex + 1) *
-      uv_distance (body, vertex, vertex + body->columns);
-  ClothBodyHinge *h = add_grid_hinge (body, all);
-
-  h->c[0] = h->c[1] = 1.;
-  h->c[2] = h->c[3] = -1.;
-  h->form[2] = M_SQRT1_2 * area;
-  h->warp = h->weft = 1. / area;
-}
-
-/* A plate's energy ½ ∫ B_warp κ_uu² + B_weft κ_vv² + (B_warp + B_weft) κ_uv² by finite
- * differences on the grid: independent of the diagonals, and free of forces inside a
- * sheet of constant curvature. */
-static void
-make_grid_hinges (ClothBody * body)
-{
-  guint columns = body->columns, rows = body->rows;
-
-  body->hinges = g_new (ClothBodyHinge, 3 * (gsize) body->n_vertices);
-  for (guint row = 0; row < rows; row++) {
-    for (guint column = 0; column < columns; column++) {
-      guint i = row * columns + column;
-
-      if (column > 0 && column + 1 < columns)
-        add_row_of_three (body, i, 1, row ? i - columns : i + columns,
-            line_width (body, i, row, rows, columns), TRUE);
-      if (row > 0 && row + 1 < rows)
-        add_row_of_three (body, i, columns, column ? i - 1 : i + 1,
-            line_width (body, i, column, columns, 1), FALSE);
-    }
-  }
-  body->n_straight = body->n_hinges;
-  for (guint row = 0; row + 1 < rows; row++)
-    for (guint column = 0; column + 1 < columns; column++)
-      add_cell (body, row * columns + column);
-}
-
-static gboolean
-make_hinges (ClothBody * body, const guint32 * corners, GError ** error)
-{
-  guint n = 3 * body->n_triangles;
-  g_autofree Edge *edges = NULL;
-
-  if (body->columns > 1 && body->n_particles == body->n_vertices) {
-    make_grid_hinges (body);
-    return TRUE;
-  }
-  edges = g_new (Edge, n + 1);
-  for (guint i = 0; i < body->n_triangles; i++) {
-    const guint32 *p = body->triangles[i].particle;
-
-    for (guint k = 0; k < 3; k++) {
-      guint32 a = p[(k + 1) % 3], b = p[(k + 2) % 3];
-
-      edges[3 * i + k] = (Edge) {
-      MIN (a, b), MAX (a, b), i, k};
-    }
-  }
-  qsort (edges, n, sizeof *edges, compare_edges);
-  body->hinges = g_new (ClothBodyHinge, n / 2 + 1);
-  for (guint i = 0; i + 1 < n; i++) {
-    if (edges[i].a != edges[i + 1].a || edges[i].b != edges[i + 1].b)
-      continue;
-    if (i + 2 < n && edges[i].a == edges[i + 2].a
-        && edges[i].b == edges[i + 2].b) {
-      g_set_error (error, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_SCENE,
-          "more than two triangles meet at the edge of vertices %u and %u",
-          corners[3 * edges[i].triangle + (edges[i].opposite + 1) % 3],
-          corners[3 * edges[i].triangle + (edges[i].opposite + 2) % 3]);
-      return FALSE;
-    }
-    make_hinge (body, corners, &edges[i], &edges[i + 1],
-        &body->hinges[body->n_hinges++]);
-  }
-  sort_hinges (body);
-  return TRUE;
-}
-
 /* Gershgorin's rows: Σ_j |K_ij| bounds the eigenvalues of K. */
 static void
 make_bounds (ClothBody * body)
@@ -461,19 +178,6 @@ make_bounds (ClothBody * body)
       bound->weft += t->area * fabs (v[k]) * sum_v;
       bound->shear_u += t->area * fabs (v[k]) * (sum_u + sum_v);
       bound->shear_v += t->area * fabs (u[k]) * (sum_u + sum_v);
-    }
-  }
-  for (guint i = 0; i < body->n_hinges; i++) {
-    const ClothBodyHinge *h = &body->hinges[i];
-    gdouble sum = 0.;
-
-    for (guint k = 0; k < 4; k++)
-      sum += fabs (h->c[k]);
-    for (guint k = 0; k < 4; k++) {
-      ClothBodyBound *bound = &body->bounds[h->particle[k]];
-
-      bound->bend_warp += h->warp * fabs (h->c[k]) * sum;
-      bound->bend_weft += h->weft * fabs (h->c[k]) * sum;
     }
   }
 }
@@ -596,8 +300,7 @@ cloth_body_new (const ClothScene * scene, GError ** error)
     body->uv[i] = topology->uv[i];
   body->particle = cloth_body_merge_seams (scene->seams, n, &body->n_particles);
   body->area = g_new0 (gdouble, body->n_particles);
-  if (!make_triangles (body, topology, corners, error)
-      || !make_hinges (body, corners, error))
+  if (!make_triangles (body, topology, corners, error))
     return NULL;
   for (guint i = 0; i < n; i++) {
     if (!(body->area[body->particle[i]] > 0.)) {
@@ -607,6 +310,8 @@ cloth_body_new (const ClothScene * scene, GError ** error)
     }
   }
   make_bounds (body);
+  if (!cloth_body_make_hinges (body, corners, error))
+    return NULL;
   cloth_body_make_springs (body);
   take_clamps (body, scene);
   take_obstacles (body, scene);
@@ -636,6 +341,8 @@ cloth_body_free (ClothBody * body)
   g_free (body->area);
   g_free (body->triangles);
   g_free (body->hinges);
+  g_free (body->first_bend);
+  g_free (body->bends);
   g_free (body->springs);
   g_free (body->bounds);
   g_free (body->held);

@@ -20,21 +20,32 @@ typedef struct
   gdouble area;
 } ClothBodyTriangle;
 
+#define CLOTH_HINGE_CORNERS 13
+
 /* A linear measure y = Σ c x of a fold; its energy is
  * ½ (B_warp·warp + B_weft·weft) |y|². On a grid: three particles in a row (the middle one
  * first, the last c is 0), or the four of a cell, which measure its twist. On other
- * meshes: two triangles about an edge, particles 0 and 1 are the edge, 2 and 3 opposite
- * it, or the other way round when that leaves the last one with c = 0. */
+ * meshes: a curvature of a triangle; its corners are particles 0, 1, 2 and once more
+ * 0 (with c = 0), then come those of the triangles about. */
 typedef struct
 {
-  guint32 particle[4];
-  gdouble c[4];
+  guint n;
+  guint32 particle[CLOTH_HINGE_CORNERS];
+  gdouble c[CLOTH_HINGE_CORNERS];
   gdouble warp, weft;
   /* Σ c x along the cloth's normal of a sheet of curvature (κ_uu, κ_vv, √2 κ_uv), 1/m */
   gdouble form[3];
   /* 1 where (x3 − x2) × (x1 − x0) is along the normal x_u × x_v, −1 where it is against */
   gdouble side;
 } ClothBodyHinge;
+
+/* What bending does to one particle when another one moves from it: an element of the
+ * stiffness matrix, B_warp·warp + B_weft·weft. The rows' sums are 0. */
+typedef struct
+{
+  guint32 particle;
+  gdouble warp, weft;
+} ClothBodyBend;
 
 /* A spring between two particles, its rest (u, v) and its stiffness,
  * stretch_warp·warp + stretch_weft·weft + shear·shear. */
@@ -71,8 +82,11 @@ typedef struct
   gdouble *area;                /* of each particle, m² */
   guint n_right, n_triangles;   /* the right-angled ones come first */
   ClothBodyTriangle *triangles;
-  guint n_straight, n_hinges;   /* those whose last c is 0 come first */
+  guint n_straight, n_hinges;   /* of a grid those whose last c is 0 come first */
   ClothBodyHinge *hinges;
+  guint n_bends;
+  guint32 *first_bend;          /* of each particle and behind the last one */
+  ClothBodyBend *bends;         /* the hinges' matrix; NULL on a grid */
   guint n_springs;
   ClothBodySpring *springs;     /* of the mass–spring model */
   ClothBodyBound *bounds;
@@ -93,6 +107,8 @@ ClothBody *cloth_body_new (const ClothScene * scene, GError ** error);
 void cloth_body_free (ClothBody * body);
 guint32 *cloth_body_merge_seams (const GArray * seams, guint n,
     guint * n_particles);
+gboolean cloth_body_make_hinges (ClothBody * body, const guint32 * corners,
+    GError ** error);
 void cloth_body_make_springs (ClothBody * body);
 void cloth_body_path (const ClothBody * body, guint held, gdouble time_s,
     gdouble position[3]);

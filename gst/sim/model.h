@@ -28,7 +28,7 @@ GQuark cloth_model_error_quark (void);
 
 /**
  * ClothForceModel:
- * @CLOTH_FORCE_MEMBRANE: orthotropic membrane on triangles with hinge bending
+ * @CLOTH_FORCE_MEMBRANE: orthotropic membrane on triangles with a plate's bending
  * @CLOTH_FORCE_MASS_SPRING: structural, shear and bend springs
  *
  * How the inner forces of the cloth are computed.

@@ -33,6 +33,14 @@ load_rest (ClothLaneState * state, const ClothBody * body)
     for (guint k = 0; k < 9; k++)
       to->t[k] = (ClothReal) t[k];
   }
+  if (body->bends) {
+    state->bends = g_new (ClothLaneBend, body->n_bends + 1);
+    for (guint i = 0; i < body->n_bends; i++)
+      state->bends[i] = (ClothLaneBend) {
+      body->bends[i].particle, (ClothReal) body->bends[i].warp,
+          (ClothReal) body->bends[i].weft};
+    return;
+  }
   state->hinges = g_new0 (ClothLaneHinge, body->n_hinges + 1);
   for (guint i = 0; i < body->n_hinges; i++) {
     const ClothBodyHinge *from = &body->hinges[i];
@@ -232,6 +240,7 @@ group_free (gpointer group)
   g_free (state->held_since);
   g_free (state->triangles);
   g_free (state->hinges);
+  g_free (state->bends);
   g_free (state->springs);
   g_aligned_free (state);
 }

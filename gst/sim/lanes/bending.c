@@ -1,6 +1,7 @@
-/* Bending of hinges. The energy of a fold is quadratic in the positions (Bergou et al.
- * 2006: right as long as the cloth hardly stretches), so its forces are a constant matrix
- * times the positions; damping takes the velocities along: K (x + βv).
+/* Bending. The energy of a fold is quadratic in the positions (Bergou et al. 2006: right
+ * as long as the cloth hardly stretches), so its forces are a constant matrix times the
+ * positions; damping takes the velocities along: K (x + βv). Grids go fold by fold, other
+ * meshes by the rows of the matrix.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/sim/lanes/state.h"
@@ -28,6 +29,28 @@ fold (const ClothLaneState * state, guint begin, guint end, guint corners)
   }
 }
 
+/* Adds the hinges' matrix times z to f, by @warp and @weft. Differences: so places far
+ * from the origin don't cost digits. */
+void CLOTH_LANE_NAME (cloth_lane_bends) (const ClothLaneState * state,
+    ClothLane warp, ClothLane weft, const ClothLane3 * z, ClothLane3 * f)
+{
+  const guint32 * first = state->body->first_bend;
+
+  for (guint i = 0; i < state->n; i++) {
+    ClothLane sum[3] = { f[i][0], f[i][1], f[i][2] };
+
+    for (guint m = first[i]; m < first[i + 1]; m++) {
+      const ClothLaneBend *bend = &state->bends[m];
+      ClothLane stiffness = warp * bend->warp + weft * bend->weft;
+
+      for (guint k = 0; k < 3; k++)
+        sum[k] += stiffness * (z[bend->particle][k] - z[i][k]);
+    }
+    for (guint k = 0; k < 3; k++)
+      f[i][k] = sum[k];
+  }
+}
+
 /* Adds the bending forces. */
 void CLOTH_LANE_NAME (cloth_lane_bending) (ClothLaneState * state)
 {
@@ -36,6 +59,11 @@ void CLOTH_LANE_NAME (cloth_lane_bending) (ClothLaneState * state)
   for (guint i = 0; i < state->n; i++)
     for (guint k = 0; k < 3; k++)
       state->z[i][k] = state->x[i][k] + beta * state->v[i][k];
+  if (state->bends) {
+    CLOTH_LANE_NAME (cloth_lane_bends) (state, -state->bending_warp,
+        -state->bending_weft, state->z, state->f);
+    return;
+  }
   fold (state, 0, state->body->n_straight, 3);
   fold (state, state->body->n_straight, state->body->n_hinges, 4);
 }
@@ -46,15 +74,15 @@ CLOTH_LANE_NAME (cloth_lane_bending_energy) (const ClothLaneState * state)
   ClothLane energy = cloth_lane_set (0.);
 
   for (guint i = 0; i < state->body->n_hinges; i++) {
-    const ClothLaneHinge *h = &state->hinges[i];
-    ClothLane stiffness =
-        state->bending_warp * h->warp + state->bending_weft * h->weft;
+    const ClothBodyHinge *h = &state->body->hinges[i];
+    ClothLane stiffness = state->bending_warp * (ClothReal) h->warp +
+        state->bending_weft * (ClothReal) h->weft;
 
     for (guint k = 0; k < 3; k++) {
       ClothLane y = cloth_lane_set (0.);
 
-      for (guint corner = 0; corner < 4; corner++)
-        y += state->x[h->particle[corner]][k] * h->c[corner];
+      for (guint corner = 0; corner < h->n; corner++)
+        y += state->x[h->particle[corner]][k] * (ClothReal) h->c[corner];
       energy += stiffness * y * y * cloth_lane_set (0.5);
     }
   }

@@ -18,12 +18,11 @@ cloth_lane_fold (const ClothLaneState * state, guint hinge,
     ClothLaneFold * fold)
 {
   const ClothBodyHinge *h = &state->body->hinges[hinge];
-  const ClothLaneHinge *c = &state->hinges[hinge];
   const guint32 *p = h->particle;
   ClothLane along[3], across[3], length;
 
-  fold->stiffness = state->bending_warp * c->warp + state->bending_weft *
-      c->weft;
+  fold->stiffness = state->bending_warp * (ClothReal) h->warp +
+      state->bending_weft * (ClothReal) h->weft;
   fold->form = (ClothReal) sqrt (h->form[0] * h->form[0] +
       h->form[1] * h->form[1] + h->form[2] * h->form[2]);
   cloth_lane_subtract (state->x[p[3]], state->x[p[2]], along);
@@ -33,9 +32,9 @@ cloth_lane_fold (const ClothLaneState * state, guint hinge,
               fold->normal), cloth_lane_set (1e-30)));
   for (guint k = 0; k < 3; k++) {
     fold->normal[k] = fold->normal[k] * (ClothReal) h->side / length;
-    fold->y[k] = state->x[p[0]][k] * c->c[0];
-    for (guint corner = 1; corner < 4; corner++)
-      fold->y[k] += state->x[p[corner]][k] * c->c[corner];
+    fold->y[k] = state->x[p[0]][k] * (ClothReal) h->c[0];
+    for (guint corner = 1; corner < h->n; corner++)
+      fold->y[k] += state->x[p[corner]][k] * (ClothReal) h->c[corner];
   }
 }
 
@@ -44,10 +43,10 @@ CLOTH_LANE_INLINE void
 cloth_lane_unfold (ClothLaneState * state, guint hinge,
     const ClothLaneFold * fold, const ClothLane y[3])
 {
-  const ClothLaneHinge *h = &state->hinges[hinge];
+  const ClothBodyHinge *h = &state->body->hinges[hinge];
 
-  for (guint corner = 0; corner < 4; corner++) {
-    ClothLane factor = fold->stiffness * h->c[corner];
+  for (guint corner = 0; corner < h->n; corner++) {
+    ClothLane factor = fold->stiffness * (ClothReal) h->c[corner];
 
     for (guint k = 0; k < 3; k++)
       state->f[h->particle[corner]][k] += factor * y[k];

@@ -60,6 +60,12 @@ typedef struct
 
 typedef struct
 {
+  guint32 particle;
+  ClothReal warp, weft;
+} ClothLaneBend;
+
+typedef struct
+{
   const ClothBody *body;
   guint n_models;
   guint64 seed;
@@ -69,7 +75,8 @@ typedef struct
   ClothLane *mass;              /* kg; setup hooks may change it */
   ClothLane *inverse_mass;
   ClothLaneTriangle *triangles;
-  ClothLaneHinge *hinges;
+  ClothLaneHinge *hinges;       /* of a grid */
+  ClothLaneBend *bends;         /* of another mesh, else NULL */
   ClothLaneSpring *springs;
   ClothForceModel force_model;
 
@@ -176,6 +183,8 @@ void CLOTH_LANE_NAME (cloth_lane_springs) (ClothLaneState * state);
 ClothLane CLOTH_LANE_NAME (cloth_lane_springs_energy) (const ClothLaneState *
     state);
 void CLOTH_LANE_NAME (cloth_lane_bending) (ClothLaneState * state);
+void CLOTH_LANE_NAME (cloth_lane_bends) (const ClothLaneState * state,
+    ClothLane warp, ClothLane weft, const ClothLane3 * z, ClothLane3 * f);
 ClothLane CLOTH_LANE_NAME (cloth_lane_bending_energy) (const ClothLaneState *
     state);
 void CLOTH_LANE_NAME (cloth_lane_targets) (const ClothLaneState * state,

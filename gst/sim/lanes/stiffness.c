@@ -233,6 +233,13 @@ CLOTH_LANE_NAME (cloth_lane_stiffness_apply) (const ClothLaneState * state,
     apply_facets (state, matrix, 0, right, TRUE, FALSE, d, q);
     apply_facets (state, matrix, right, n, FALSE, FALSE, d, q);
   }
+  if (state->bends) {
+    ClothLane scale = matrix->h2 + matrix->h * state->beta;
+
+    CLOTH_LANE_NAME (cloth_lane_bends) (state, scale * state->bending_warp,
+        scale * state->bending_weft, d, q);
+    return;
+  }
   apply_hinges (state, matrix, 0, state->body->n_straight, 3, d, q);
   apply_hinges (state, matrix, state->body->n_straight, state->body->n_hinges,
       4, d, q);
@@ -349,7 +356,18 @@ CLOTH_LANE_NAME (cloth_lane_stiffness_diagonal) (const ClothLaneState * state,
     add_links (state, matrix, inverse);
   else
     add_facets (state, matrix, inverse);
-  for (guint i = 0; i < state->body->n_hinges; i++) {
+  for (guint i = 0; state->bends && i < state->n; i++) {
+    const guint32 *first = state->body->first_bend;
+    ClothReal warp = 0, weft = 0;
+
+    for (guint m = first[i]; m < first[i + 1]; m++) {
+      warp -= state->bends[m].warp;
+      weft -= state->bends[m].weft;
+    }
+    add_unit (inverse[i], scale * (state->bending_warp * warp +
+            state->bending_weft * weft));
+  }
+  for (guint i = 0; state->hinges && i < state->body->n_hinges; i++) {
     const ClothLaneHinge *hinge = &state->hinges[i];
     ClothLane stiffness = scale * (state->bending_warp * hinge->warp +
         state->bending_weft * hinge->weft);
