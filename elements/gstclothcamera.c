@@ -81,7 +81,7 @@ struct _GstClothCamera
 
   /* streaming thread */
   GstCaps *mesh_caps;           /* that the renderer is made for */
-  GstVideoInfo info;
+  GstClothCameraOutput output;
   ClothRenderer *renderer;
   ClothPaint *paint;
   ClothRenderStyle style;
@@ -97,7 +97,7 @@ struct _GstClothCamera
   GPtrArray *positions;
 };
 
-#define FORMATS "{ BGRx, RGBx, xRGB, xBGR, RGB, BGR, GRAY8 }"
+#define FORMATS "{ BGRx, RGBx, xRGB, xBGR, RGB, BGR, GRAY8, I420, NV12 }"
 
 static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE ("sink",
     GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS (GST_CLOTH_MESH_CAPS));
@@ -255,7 +255,7 @@ gst_cloth_camera_submit_input_buffer (GstBaseTransform * trans,
 static void
 draw (GstClothCamera * self, const Frame * frame, GstVideoFrame * video)
 {
-  const gboolean grey = GST_VIDEO_INFO_IS_GRAY (&self->info);
+  const gboolean grey = GST_VIDEO_INFO_IS_GRAY (&video->info);
   const guint n_planes = grey ? 1 : 3;
   ClothMotion motion = { self->n_vertices, 0 };
   guint8 *planes[3];
@@ -301,7 +301,7 @@ gst_cloth_camera_generate_output (GstBaseTransform * trans, GstBuffer ** output)
 {
   GstClothCamera *self = GST_CLOTH_CAMERA (trans);
   GstBuffer *picture = NULL;
-  GstVideoFrame video;
+  GstVideoFrame video, drawn;
   GstFlowReturn flow;
   Frame *frame;
 
@@ -319,14 +319,14 @@ gst_cloth_camera_generate_output (GstBaseTransform * trans, GstBuffer ** output)
         ->prepare_output_buffer (trans, frame->buffer, &picture);
     if (flow != GST_FLOW_OK)
       return flow;
-    if (!gst_video_frame_map (&video, &self->info, picture, GST_MAP_WRITE)) {
+    if (!gst_cloth_camera_output_map (&self->output, picture, &video, &drawn)) {
       GST_ELEMENT_ERROR (self, STREAM, FORMAT,
           ("The picture does not fit its caps."), (NULL));
       gst_buffer_unref (picture);
       return GST_FLOW_ERROR;
     }
-    draw (self, frame, &video);
-    gst_video_frame_unmap (&video);
+    draw (self, frame, &drawn);
+    gst_cloth_camera_output_unmap (&self->output, &video, &drawn);
     if (self->capture.drop_rate > 0)
       gst_buffer_replace (&self->last, picture);
   }
@@ -492,6 +492,7 @@ gst_cloth_camera_stop (GstBaseTransform * trans)
   GstClothCamera *self = GST_CLOTH_CAMERA (trans);
 
   gst_cloth_camera_forget (self);
+  gst_cloth_camera_output_clear (&self->output);
   memset (&self->capture, 0, sizeof (self->capture));
   GST_OBJECT_LOCK (self);
   self->latency = 0;
@@ -531,8 +532,8 @@ gst_cloth_camera_set_caps (GstBaseTransform * trans, GstCaps * in,
   const gfloat *uv;
   const guint32 *faces;
 
-  if (!gst_video_info_from_caps (&self->info, out)) {
-    GST_ERROR_OBJECT (self, "can't read caps %" GST_PTR_FORMAT, out);
+  if (!gst_cloth_camera_output_set (&self->output, out)) {
+    GST_ERROR_OBJECT (self, "can't make pictures of %" GST_PTR_FORMAT, out);
     return FALSE;
   }
   if (self->mesh_caps && gst_caps_is_equal (self->mesh_caps, in)) {
@@ -551,8 +552,8 @@ gst_cloth_camera_set_caps (GstBaseTransform * trans, GstCaps * in,
     return FALSE;
   }
   self->n_vertices = gst_cloth_topology_get_n_vertices (topology);
-  self->fps_n = GST_VIDEO_INFO_FPS_N (&self->info);
-  self->fps_d = GST_VIDEO_INFO_FPS_D (&self->info);
+  self->fps_n = GST_VIDEO_INFO_FPS_N (&self->output.info);
+  self->fps_d = GST_VIDEO_INFO_FPS_D (&self->output.info);
   uv = gst_cloth_topology_get_uv (topology, NULL);
   faces = gst_cloth_topology_get_faces (topology, NULL);
   if (self->pattern)
@@ -596,37 +597,8 @@ gst_cloth_camera_transform_caps (GstBaseTransform * trans,
 static gboolean
 gst_cloth_camera_decide_allocation (GstBaseTransform * trans, GstQuery * query)
 {
-  g_autoptr (GstBufferPool) pool = NULL;
-  GstStructure *config;
-  GstCaps *caps;
-  GstVideoInfo info;
-  guint size, least = 0, most = 0;
-  const gboolean offered = gst_query_get_n_allocation_pools (query) > 0;
-
-  gst_query_parse_allocation (query, &caps, NULL);
-  if (!caps || !gst_video_info_from_caps (&info, caps))
-    return FALSE;
-  size = (guint) GST_VIDEO_INFO_SIZE (&info);
-  if (offered) {
-    guint asked;
-
-    gst_query_parse_nth_allocation_pool (query, 0, &pool, &asked, &least,
-        &most);
-    size = MAX (size, asked);
-  }
-  if (!pool)
-    pool = gst_video_buffer_pool_new ();
-  config = gst_buffer_pool_get_config (pool);
-  gst_buffer_pool_config_set_params (config, caps, size, least, most);
-  if (gst_query_find_allocation_meta (query, GST_VIDEO_META_API_TYPE, NULL))
-    gst_buffer_pool_config_add_option (config,
-        GST_BUFFER_POOL_OPTION_VIDEO_META);
-  gst_buffer_pool_set_config (pool, config);
-  if (offered)
-    gst_query_set_nth_allocation_pool (query, 0, pool, size, least, most);
-  else
-    gst_query_add_allocation_pool (query, pool, size, least, most);
-  return GST_BASE_TRANSFORM_CLASS (gst_cloth_camera_parent_class)
+  return gst_cloth_camera_output_allocate (query) &&
+      GST_BASE_TRANSFORM_CLASS (gst_cloth_camera_parent_class)
       ->decide_allocation (trans, query);
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <gst/base/gstbasetransform.h>
+#include <gst/video/video.h>
 
 #include "gst/vision/paint.h"
 
@@ -21,5 +22,22 @@ ClothPaint *gst_cloth_camera_paint_pattern (const gchar * path,
 ClothPaint *gst_cloth_camera_paint_picture (const gchar * path,
     const gdouble origin_uv_m[2], const gdouble size_m[2], GError ** error);
 ClothPaint *gst_cloth_camera_paint_white (void);
+
+/* The format of the pictures, and the RGB that those of luma and chroma come from. */
+typedef struct
+{
+  GstVideoInfo info, drawn;
+  GstVideoConverter *converter; /* NULL: drawn as it leaves */
+  GstBuffer *rgb;
+} GstClothCameraOutput;
+
+gboolean gst_cloth_camera_output_set (GstClothCameraOutput * output,
+    GstCaps * caps);
+void gst_cloth_camera_output_clear (GstClothCameraOutput * output);
+gboolean gst_cloth_camera_output_map (GstClothCameraOutput * output,
+    GstBuffer * picture, GstVideoFrame * frame, GstVideoFrame * drawn);
+void gst_cloth_camera_output_unmap (GstClothCameraOutput * output,
+    GstVideoFrame * frame, GstVideoFrame * drawn);
+gboolean gst_cloth_camera_output_allocate (GstQuery * query);
 
 G_END_DECLS

@@ -156,6 +156,90 @@ GST_START_TEST (test_formats)
 
 GST_END_TEST;
 
+/* Pictures of luma and chroma are those of RGB by the matrix of their caps (Rec. BT.601
+ * and 709), 16 … 235 and 16 … 240; chroma lies between four pixels (jpeg) or in even
+ * columns (mpeg2). Strong noise is all colours. Odd sizes. */
+#define assert_near(value, expected, tolerance) \
+  g_assert_cmpfloat_with_epsilon (value, expected, tolerance)
+
+GST_START_TEST (test_luma_and_chroma)
+{
+  static const struct
+  {
+    const gchar *format, *colorimetry, *site;
+    gdouble kr, kb;
+    guint before, at, after;    /* a chroma's weights of columns 2 i − 1 to 2 i + 1 */
+  } cases[] = {
+    {"I420", "bt601", "jpeg", 0.299, 0.114, 0, 2, 2},
+    {"I420", "bt709", "mpeg2", 0.2126, 0.0722, 1, 2, 1},
+    {"NV12", "bt601", "mpeg2", 0.299, 0.114, 1, 2, 1},
+    {"NV12", "bt709", "jpeg", 0.2126, 0.0722, 0, 2, 2},
+  };
+  const gchar *settings = "camera=a pattern=" PATTERN " effects=noise,sigma=30";
+  GstHarness *rgb = harness (settings, "RGB");
+  g_autoptr (GstBuffer) truth = gst_harness_push_and_pull (rgb,
+      mesh_buffer (0, 4, 3, 0));
+  GstMapInfo map;
+
+  fail_unless (gst_buffer_map (truth, &map, GST_MAP_READ));
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autofree gchar *caps = g_strdup_printf ("%s,colorimetry=%s,"
+        "chroma-site=%s", cases[i].format, cases[i].colorimetry, cases[i].site);
+    GstHarness *h = harness (settings, caps);
+    g_autoptr (GstBuffer) out = gst_harness_push_and_pull (h,
+        mesh_buffer (0, 4, 3, 0));
+    g_autoptr (GstCaps) got = gst_pad_get_current_caps (h->sinkpad);
+    const gdouble kr = cases[i].kr, kb = cases[i].kb;
+    GstVideoInfo info;
+    GstVideoFrame frame;
+
+    fail_unless (gst_video_info_from_caps (&info, got));
+    fail_unless_equals_string (gst_video_format_to_string
+        (GST_VIDEO_INFO_FORMAT (&info)), cases[i].format);
+    fail_unless (gst_video_frame_map (&frame, &info, out, GST_MAP_READ));
+    for (gint y = 0; y < 65; y++) {
+      for (gint x = 0; x < 97; x++) {
+        const guint8 *p = map.data + 292 * y + 3 * x;
+        const gdouble luma = kr * p[0] + (1 - kr - kb) * p[1] + kb * p[2];
+        const guint8 *data = GST_VIDEO_FRAME_COMP_DATA (&frame, 0);
+
+        assert_near (data[y * GST_VIDEO_FRAME_COMP_STRIDE (&frame, 0) + x],
+            16 + 219. / 255 * luma, 1.2);
+      }
+    }
+    for (gint y = 0; y < 32; y++) {
+      for (gint x = 1; x < 48; x++) {
+        const guint weights[3] = { cases[i].before, cases[i].at,
+          cases[i].after
+        };
+        gdouble mean[3] = { 0, 0, 0 }, luma;
+
+        for (gint k = 0; k < 6; k++)
+          for (gint c = 0; c < 3; c++)
+            mean[c] += weights[k % 3] / 8. * map.data[292 * (2 * y + k / 3) +
+                3 * (2 * x + k % 3 - 1) + c];
+        luma = kr * mean[0] + (1 - kr - kb) * mean[1] + kb * mean[2];
+        for (gint c = 1; c < 3; c++) {
+          const guint8 *data = GST_VIDEO_FRAME_COMP_DATA (&frame, c);
+          const gint stride = GST_VIDEO_FRAME_COMP_STRIDE (&frame, c);
+          const gint step = GST_VIDEO_FRAME_COMP_PSTRIDE (&frame, c);
+          const gdouble expected = c == 1 ? (mean[2] - luma) / (2 - 2 * kb) :
+              (mean[0] - luma) / (2 - 2 * kr);
+
+          assert_near (data[y * stride + x * step], 128 + 224. / 255 * expected,
+              2.2);
+        }
+      }
+    }
+    gst_video_frame_unmap (&frame);
+    gst_harness_teardown (h);
+  }
+  gst_buffer_unmap (truth, &map);
+  gst_harness_teardown (rgb);
+}
+
+GST_END_TEST;
+
 /* Pictures do not depend on threads; with noise they do on the seed. */
 GST_START_TEST (test_same_bytes)
 {
@@ -486,6 +570,7 @@ clothcamera_suite (void)
   suite_add_tcase (s, tc);
   tcase_add_unchecked_fixture (tc, make_rig, remove_rig);
   tcase_add_test (tc, test_formats);
+  tcase_add_test (tc, test_luma_and_chroma);
   tcase_add_test (tc, test_same_bytes);
   tcase_add_test (tc, test_window);
   tcase_add_test (tc, test_dropped);
