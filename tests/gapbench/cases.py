@@ -23,12 +23,14 @@ FAMILIES = {
 SHAPES = {
     'mass_distribution': {'height': 0.04}, 'biphasic_stretch': {'knee': 0.03},
     'plasticity': {'yield': 15.}, 'gust': {'time': 0.3, 'azimuth': 70.},
-    'clamp_slip': {'time': 1.3, 'held': 1}, 'hysteresis': {'strain': 0.01}, 'wind': {},
+    'clamp_slip': {'time': 1.3, 'held': 1}, 'hysteresis': {'strain': 0.01},
 }
 SHAPING = ('height', 'knee', 'yield', 'strain', 'time', 'azimuth', 'coefficient',
            'turbulence', 'held')
 # Nothing here that cloth could touch: neither can show.
 ABSENT = ('friction', 'self_contact')
+# Springs know no grain.
+MEMBRANE_ONLY = ('grain_angle',)
 PAIRS = (('air_drag', 'gravity_tilt'), ('wind', 'mass_distribution'), ('shrinkage', 'air_drag'),
          ('clamp_slip', 'air_drag'), ('gravity_tilt', 'bending'), ('stretch', 'damping_mass'),
          ('clamp_delay', 'mass_distribution'), ('areal_mass', 'wind'),
@@ -79,8 +81,10 @@ def list_all(table, random):
 
     def add(kind, effects, severity, outside=None):
         count = len(made)
-        made.append(make_case(kind, effects, severity, table,
-                              families[(count + count // 3) % 3],
+        family = families[(count + count // 3) % 3]
+        if any(name in MEMBRANE_ONLY for name in effects):
+            family = 'membrane-implicit-fine'
+        made.append(make_case(kind, effects, severity, table, family,
                               'other' if count % 4 == 3 else 'same', random, outside))
 
     for name in names:

@@ -61,6 +61,12 @@ def accepted(gap):
     return {effect['name'] for effect in gap['effects'] if effect['accepted']}
 
 
+def floors_of(gap, label):
+    """How far an effect moved the cloth, as a multiple of the diagnosis's noise floor."""
+    floor = gap['noise_floor']['value']
+    return label['size_m'] / floor if floor else math.inf
+
+
 def parameters_of(gap, label, table):
     """(estimate, sigma, truth, null) of what was scaled in the effect that was found."""
     for effect in gap['effects']:
@@ -99,11 +105,12 @@ def table_of(cases, table):
         rows.append(('top-1 at %g×' % severity,
                      share(named_first(g, l) for l, g in single if l['severity'] == severity),
                      '≥ 70%' if severity < 2. else ''))
-    for low, high, text in ((0., 1., 'below the noise'), (1., 5., '1 to 5 times the noise'),
-                            (5., math.inf, 'above 5 times the noise')):
-        rows.append(('top-1, the effect moves the cloth by %s' % text,
+    for low, high, text, aim in ((2., math.inf, 'by 2 floors or more', '≥ 90%'),
+                                 (0.5, 2., 'by 0.5 to 2 floors', '≥ 70%'),
+                                 (0., 0.5, 'by less', '')):
+        rows.append(('top-1, the effect moves the cloth %s' % text,
                      share(named_first(g, l) for l, g in single
-                           if low <= l['size_m'] / l['noise_m'] < high), ''))
+                           if low <= floors_of(g, l) < high), aim))
     for family in sorted({l['family'] for l, _ in strong}):
         rows.append(('top-1 at 2× and 5×, reality %s' % family,
                      share(named_first(g, l) for l, g in strong if l['family'] == family), ''))
@@ -208,14 +215,24 @@ def each(cases):
 
 def report(labels, gaps, left, table):
     """The whole as markdown; @gaps by case, @left those that have none."""
-    cases = [(labels[case], gaps[case]) for case in sorted(gaps)]
+    # In some realities an effect does nothing at all.
+    idle = [case for case in sorted(gaps) if labels[case]['effects'] and
+            labels[case]['size_m'] == 0.]
+    cases = [(labels[case], gaps[case]) for case in sorted(gaps) if case not in idle]
     seconds = [gap['seconds'] for _, gap in cases]
-    lines = ['%d cases diagnosed, %d not; %.1f s each in the median.' % (
-        len(cases), len(left), statistics.median(seconds) if seconds else math.nan), '',
+    lines = ['%d cases diagnosed, %d not; %.1f s each in the median;'
+        ' noise floor in the median %s.' % (
+        len(cases), len(left), statistics.median(seconds) if seconds else math.nan,
+        median((1000. * gap['noise_floor']['value'] for _, gap in cases
+                if gap['noise_floor']['value'] is not None), '%.1f mm')), '',
         '| figure | measured [95% interval] | to reach |', '|---|---|---|']
     lines += ['| %s | %s | %s |' % row for row in table_of(cases, table)]
     lines += ['', *verdicts(cases), '', '```text', *confusion(cases), '```']
-    lines += ['', 'Not diagnosed: ' + ', '.join(left)] if left else []
+    lines += ['', 'Not counted, the effect did nothing there: ' + ', '.join(
+        '%s (%s)' % (case, ' '.join(labels[case]['effects'])) for case in idle)] if idle else []
+    lines += ['', 'Not diagnosed: ' + ', '.join(
+        '%s (%s)' % (case, '+'.join(labels[case]['effects']) or labels[case]['outside'] or
+                     'nothing') for case in left)] if left else []
     return '\n'.join(lines) + '\n'
 
 
