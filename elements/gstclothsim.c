@@ -8,7 +8,9 @@
  *
  * Simulates the cloth of a model in the scene of a take: its mesh, seams, clamps,
  * obstacles, gravity and times. One buffer a frame; frame i has the time of the take's
- * frame i after its first one. As fast as it goes, or live at the pace of the clock.
+ * frame i after its first one. As fast as it goes, or live at the pace of the clock: no
+ * frame before its time. A computer that can't keep pace sends frames late, none left out
+ * and each with its own time; what becomes of late ones the sink decides (max-lateness).
  * Seekable forwards and backwards by time; a seek back starts again. A simulation that
  * blows up is an error.
  *

@@ -188,6 +188,48 @@ GST_START_TEST (test_live)
 
 GST_END_TEST;
 
+/* A computer that can't keep pace: while frame 1 is computed the clock goes on to 5.5
+ * periods. Frames 1 to 5 come without waiting, all of them, each with the time that it is
+ * of, so a sink sees that they are late; then the source waits again. */
+GST_START_TEST (test_live_late)
+{
+  GstHarness *h;
+  GstTestClock *clock;
+  GstClockID id;
+  gfloat place[3];
+
+  scratch_begin ();
+  h = harness (knit, "live=true");
+  gst_harness_use_testclock (h);
+  clock = gst_harness_get_testclock (h);
+  gst_harness_play (h);
+  gst_harness_crank_single_clock_wait (h);
+  pull_place (h, 0, 0, place);
+  gst_test_clock_wait_for_next_pending_id (clock, &id);
+  fail_unless_equals_uint64 (gst_clock_id_get_time (id), PERIOD);
+  gst_clock_id_unref (id);
+  gst_test_clock_set_time (clock, 5 * PERIOD + PERIOD / 2);
+  for (guint frame = 1; frame < 6; frame++) {
+    /* a test clock holds back waits for the past too; time stands still */
+    gst_test_clock_wait_for_next_pending_id (clock, &id);
+    fail_unless_equals_uint64 (gst_clock_id_get_time (id), frame * PERIOD);
+    gst_clock_id_unref (id);
+    id = gst_test_clock_process_next_clock_id (clock);
+    fail_unless (id != NULL);
+    gst_clock_id_unref (id);
+    pull_place (h, frame, 0, place);
+  }
+  gst_test_clock_wait_for_next_pending_id (clock, &id);
+  fail_unless_equals_uint64 (gst_clock_id_get_time (id), 6 * PERIOD);
+  gst_clock_id_unref (id);
+  fail_unless_equals_int (gst_harness_buffers_in_queue (h), 0);
+  gst_object_unref (clock);
+  gst_harness_teardown (h);
+  scratch_end ();
+}
+
+GST_END_TEST;
+
 static void
 count_frames (GstDebugCategory * category, GstDebugLevel level,
     const gchar * file, const gchar * function, gint line, GObject * object,
@@ -291,6 +333,7 @@ clothsim_suite (void)
   tcase_add_test (tests, test_whole_scene);
   tcase_add_test (tests, test_seeks);
   tcase_add_test (tests, test_live);
+  tcase_add_test (tests, test_live_late);
   tcase_add_test (tests, test_stop_after_seek);
   tcase_add_test (tests, test_errors);
   return suite;
