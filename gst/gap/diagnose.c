@@ -147,6 +147,8 @@ note_nulls (ClothDiagnosis * d, const GArray * scores)
   for (guint i = 0; i < scores->len; i++) {
     const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
 
+    if (s->kept < CLOTH_DIAGNOSIS_IDENTIFIABLE)
+      continue;
     for (guint c = 0; c < d->candidates->list->len; c++)
       if (g_array_index (d->candidates->list, ClothGapCandidate, c).effect ==
           cloth_diagnosis_candidate (d, s)->effect)

@@ -10,12 +10,14 @@ G_BEGIN_DECLS
 
 /* An effect is accepted when its evidence is this at least, when it makes blocks better
  * that it was not estimated on, and when it removes this share of the gap's variance, or,
- * where a signature is taken off, of the residual's in those blocks without making the
- * gap larger. */
+ * where a signature is taken off, of the residual's in those blocks while the gap, in
+ * which the simulator's own error is too, is hardly larger. */
 #define CLOTH_DIAGNOSIS_LEAST_EVIDENCE 10.
 #define CLOTH_DIAGNOSIS_LEAST_SHRINK 0.1
 /* What remains is no more than noise when it is below this many floors (variance). */
 #define CLOTH_DIAGNOSIS_BAND 2.25
+/* Below this share left by the nuisances an effect can't be told from them. */
+#define CLOTH_DIAGNOSIS_IDENTIFIABLE 0.05
 /* Most effects that are accepted. */
 #define CLOTH_DIAGNOSIS_MAX_ACCEPTED 3
 

@@ -11,6 +11,8 @@
 #define WINDOW_S 0.3
 /* Gain of the observer that leads up to them, 1/s². */
 #define WINDOW_GAIN 1600.
+/* Variance of a gap that is hardly larger, over that before. */
+#define HARDLY_LARGER 1.05
 /* Of the bootstrap. */
 #define N_DRAWS 1000
 
@@ -140,7 +142,7 @@ matters (const ClothDiagnosis * d, guint i, gdouble before, gdouble after)
 
   return after < (1. - share) * before
       || (cloth_diagnosis_has_signatures (d) && d->improvements[i] > share
-      && after < before);
+      && after < HARDLY_LARGER * before);
 }
 
 /* How large the gap is before and after, on the hold-outs if there are any; the floor on

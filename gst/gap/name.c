@@ -22,8 +22,6 @@
  * reported together. */
 #define AMBIGUOUS_PROBABILITY 0.1
 #define AMBIGUOUS_COSINE 0.9
-/* Below this share left by the nuisances an effect can't be told from them. */
-#define IDENTIFIABLE 0.05
 
 static gboolean
 moves_alike (const ClothRecording * a, const ClothRecording * b)
@@ -244,7 +242,7 @@ fill_effects (ClothDiagnosis * d, const ClothGapTest * test,
     const ClothGapCandidate *c = cloth_diagnosis_candidate (d, s);
     ClothGapEffect *e;
 
-    if (s->kept < IDENTIFIABLE) {
+    if (s->kept < CLOTH_DIAGNOSIS_IDENTIFIABLE) {
       cloth_gap_result_add_untested (d->result, c->effect, "In this motion it "
           "can't be told from the model's free numbers.");
       continue;
@@ -365,12 +363,28 @@ compare_scores (gconstpointer a, gconstpointer b)
   return x > y ? -1 : x < y;
 }
 
+/* Effects that the free numbers can stand in for are not asked for. */
+static GArray *
+test_effects (const ClothGapTest * test)
+{
+  GArray *scores = cloth_gap_test_run (test);
+
+  for (guint i = 0; i < scores->len; i++) {
+    ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
+
+    if (s->kept < CLOTH_DIAGNOSIS_IDENTIFIABLE)
+      s->evidence = -INFINITY;
+  }
+  g_array_sort (scores, compare_scores);
+  return scores;
+}
+
 /* The effects, the likeliest first. What the leading one leaves shows better than what
  * was there before how much the simulator is off by in this take. */
 static GArray *
 rank (ClothDiagnosis * d, ClothGapTest * test)
 {
-  GArray *scores = cloth_gap_test_run (test);
+  GArray *scores = test_effects (test);
 
   for (guint k = 0; k < N_SHARPEN && scores->len; k++) {
     const ClothGapTest before = *test;
@@ -381,7 +395,7 @@ rank (ClothDiagnosis * d, ClothGapTest * test)
     test->precisions = before.precisions;
     test->n_nuisances = before.n_nuisances;
     g_array_unref (scores);
-    scores = cloth_gap_test_run (test);
+    scores = test_effects (test);
   }
   for (guint i = 0; i < scores->len; i++) {
     ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
