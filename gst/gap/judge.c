@@ -208,33 +208,37 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
   return TRUE;
 }
 
+/* The effects that are accepted, first in the order in which they were taken in. */
 static void
 accept_effects (ClothDiagnosis * d)
 {
   const guint last = d->n_chosen - 1;
+  GArray *effects = d->result->effects;
 
-  for (guint i = 0; i < d->result->effects->len; i++) {
-    ClothGapEffect *e = &g_array_index (d->result->effects, ClothGapEffect, i);
+  for (guint c = d->n_chosen; c-- > 0;) {
+    const ClothGapCandidate *candidate = cloth_diagnosis_chosen (d, c);
+    ClothGapEffect e;
+    guint i = 0;
 
-    for (guint c = 0; c < d->n_chosen; c++) {
-      const ClothGapCandidate *candidate = cloth_diagnosis_chosen (d, c);
+    while (g_array_index (effects, ClothGapEffect, i).effect !=
+        candidate->effect)
+      i++;
+    e = g_array_index (effects, ClothGapEffect, i);
+    e.accepted = TRUE;
+    e.shrink = d->result->shrink;
+    for (guint k = 0; k < candidate->effect->n_parameters; k++)
+      e.values[k] = candidate->values[k];
+    for (guint k = 0; k < candidate->n; k++) {
+      const ClothGapDirection *direction =
+          &g_array_index (d->candidates->directions, ClothGapDirection,
+          candidate->first + k);
+      guint p = candidate->parameters[k];
 
-      if (e->effect != candidate->effect)
-        continue;
-      e->accepted = TRUE;
-      e->shrink = d->result->shrink;
-      for (guint k = 0; k < candidate->effect->n_parameters; k++)
-        e->values[k] = candidate->values[k];
-      for (guint k = 0; k < candidate->n; k++) {
-        const ClothGapDirection *direction =
-            &g_array_index (d->candidates->directions, ClothGapDirection,
-            candidate->first + k);
-        guint p = candidate->parameters[k];
-
-        cloth_model_get (d->with[last], direction->name, &e->values[p], NULL);
-        e->sigmas[p] = d->sigmas[last][c][k];
-      }
+      cloth_model_get (d->with[last], direction->name, &e.values[p], NULL);
+      e.sigmas[p] = d->sigmas[last][c][k];
     }
+    g_array_remove_index (effects, i);
+    g_array_prepend_val (effects, e);
   }
 }
 
