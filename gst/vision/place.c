@@ -423,7 +423,7 @@ are_twins (const ClothPattern * pattern, const ClothPlacement * a,
     /* The board turned about its middle: (c, r) becomes (rows - r, c). */
     turned = (ClothPlacement) {
     (turned.rotation + 1) & 3, (quarter & 1 ? pattern->rows
-          : pattern->columns) - turned.row, turned.column};
+          : pattern->columns) - turned.row, turned.column, 0};
     if ((quarter & 1) && !(square && (pattern->columns & 1)))
       continue;
     if (quarter == 2 && ((pattern->columns + pattern->rows) & 1))
@@ -480,7 +480,7 @@ static Range
 range_of (const ClothPlacer * placer, const ClothPatch * patch, gint rotation)
 {
   const ClothPattern *pattern = &placer->pattern;
-  const ClothPlacement turned = { rotation };
+  const ClothPlacement turned = { rotation, 0, 0, 0 };
   const gint *box = placer->box;
   gint c0, r0, c1, r1;
 
@@ -548,7 +548,7 @@ score_all (ClothPlacer * placer, const ClothPatch * patch,
     ranges[rotation] = range_of (placer, patch, rotation);
   /* What is voted for first: if it is right, most others are ruled out at once. */
   for (guint k = 0; k < n_votes; k++) {
-    Rival rival = { votes[k] };
+    Rival rival = { votes[k], 0, 0, 0 };
     guint same = 0;
 
     if (!is_in (&ranges[votes[k].rotation & 3], &votes[k]))
@@ -575,7 +575,7 @@ score_all (ClothPlacer * placer, const ClothPatch * patch,
       for (gint column = range->column[0] + ((range->column[0] + row
                   + range->odd) & 1); column <= range->column[1]; column += 2) {
         const gint64 least = (gint64) ((most - margin) * STEPS);
-        Rival rival = { {rotation, column, row} };
+        Rival rival = { {rotation, column, row, 0}, 0, 0, 0 };
         guint voted = 0;
         gint32 extent;
 
@@ -671,26 +671,18 @@ cloth_placer_run (ClothPlacer * placer, const ClothPatch * patch,
     return FALSE;
   *best = list[first].placement;
   /* What fits one way only hangs over on both sides. */
-  best->weight = best->evidence =
-      n > 1 ? CLOTH_PLACE_MOST_LEAD : -weights->square_outside;
+  best->weight = n > 1 ? CLOTH_PLACE_MOST_LEAD : -weights->square_outside;
   for (guint k = 0; k < placer->rivals->len; k++) {
     const ClothPlacement *own = &list[k].placement;
-    const gboolean twin = !placer->coded
-        && are_twins (&placer->pattern, best, own);
     gfloat lead = list[first].placement.weight - own->weight;
 
-    if (k == first)
-      continue;
     if (!weights->twins)
       lead = most - own->weight - prior[own->rotation];
     /* Of two that look the same either is right: the more upright one was taken. */
-    if (!weights->twins || !twin)
+    if (k != first && !(weights->twins && !placer->coded
+            && are_twins (&placer->pattern, best, own)))
       best->weight = MIN (best->weight, lead);
-    if (!twin)
-      best->evidence = MIN (best->evidence, (gfloat) (list[first].score
-              - list[k].score) / STEPS);
   }
-  best->evidence += MIN ((gfloat) list[first].score / STEPS, 0.0f);
   return TRUE;
 }
 
