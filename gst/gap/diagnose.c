@@ -12,9 +12,6 @@
 #define PRIORS "1"
 
 #define N_FIT 6
-/* A frozen number may be off by this many of its standard deviations on the baseline,
- * which know nothing of the simulator's own error. */
-#define FROZEN 8.
 /* On takes that move otherwise than a baseline, what the baseline asks for of an effect
  * itself is taken off the effect's evidence so many times; without a baseline, what the
  * difference of the two force models asks for. */
@@ -136,8 +133,7 @@ fit_free (ClothDiagnosis * d, const ClothModel * model, GError ** error)
       sigmas, error);
   for (guint i = 0; i < m; i++)
     d->precisions[i] = d->options->n_baselines && sigmas[i] > 0. ?
-        MAX (precisions[i], 1. / (FROZEN * FROZEN * sigmas[i] * sigmas[i])) :
-        precisions[i];
+        MAX (precisions[i], 1. / (sigmas[i] * sigmas[i])) : precisions[i];
   return d->model != NULL;
 }
 
