@@ -356,8 +356,8 @@ cloth_gap_candidates_move (const ClothGapCandidates * candidates,
   ClothModel *moved = cloth_model_copy (model);
 
   for (guint i = 0; i < n; i++) {
-    const ClothGapDirection *d = &g_array_index (candidates->directions,
-        ClothGapDirection, directions[i]);
+    const ClothGapDirection *d = cloth_gap_candidates_direction (candidates,
+        directions[i]);
     gdouble value = d->centre;
 
     set_effect (candidates, moved, directions[i]);
@@ -385,8 +385,8 @@ gboolean
 cloth_gap_candidates_has_room (const ClothGapCandidates * candidates,
     const ClothModel * model, guint direction, gdouble step)
 {
-  const ClothGapDirection *d = &g_array_index (candidates->directions,
-      ClothGapDirection, direction);
+  const ClothGapDirection *d = cloth_gap_candidates_direction (candidates,
+      direction);
   gdouble value = d->centre;
 
   if (cloth_model_get (model, d->name, &value, NULL) && d->logarithmic)

@@ -68,6 +68,13 @@ typedef struct {
   GArray *list;
 } ClothGapCandidates;
 
+/* The i-th direction. */
+static inline const ClothGapDirection *
+cloth_gap_candidates_direction (const ClothGapCandidates * candidates, guint i)
+{
+  return &g_array_index (candidates->directions, ClothGapDirection, i);
+}
+
 /**
  * ClothGapSkip:
  * @data: the caller's

@@ -11,6 +11,7 @@
 /* Version of the priors and thresholds: a change of either changes probabilities. */
 #define PRIORS "1"
 
+/* Simulations of the fit of the free numbers. */
 #define N_FIT 6
 /* On takes that move otherwise than a baseline, what the baseline asks for of an effect
  * itself is taken off the effect's evidence so many times; without a baseline, what the
@@ -36,7 +37,6 @@ diagnosis_clear (ClothDiagnosis * d)
     cloth_model_free (d->with[i]);
   cloth_gap_result_free (d->result);
   g_free (d->what);
-  g_clear_pointer (&d->left, g_ptr_array_unref);
   g_free (d->null_evidence);
 }
 
@@ -50,12 +50,6 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (ClothDiagnosis, diagnosis_clear)
     d->from = at;
   return !d->options->progress
       || d->options->progress (d->options->progress_data, at, d->what);
-}
-
-static void
-free_power (gpointer data)
-{
-  cloth_gap_power_free (data);
 }
 
 /* What comes now: from where to where it gets, and of the rest of it each simulation. */
@@ -123,8 +117,7 @@ fit_free (ClothDiagnosis * d, const ClothModel * model, GError ** error)
   g_autofree gdouble *sigmas = g_new0 (gdouble, m + 1);
 
   for (guint i = 0; i < m; i++) {
-    gdouble prior = g_array_index (d->candidates->directions,
-        ClothGapDirection, i).prior;
+    gdouble prior = cloth_gap_candidates_direction (d->candidates, i)->prior;
 
     precisions[i] = 1. / (prior * prior);
   }
@@ -137,14 +130,22 @@ fit_free (ClothDiagnosis * d, const ClothModel * model, GError ** error)
   return d->model != NULL;
 }
 
+ClothModel *
+cloth_diagnosis_other_model (const ClothDiagnosis * d)
+{
+  ClothModel *other = cloth_model_copy (d->model);
+
+  other->force_model = other->force_model == CLOTH_FORCE_MEMBRANE ?
+      CLOTH_FORCE_MASS_SPRING : CLOTH_FORCE_MEMBRANE;
+  return other;
+}
+
 static void
 note_nulls (ClothDiagnosis * d, const GArray * scores)
 {
   for (guint i = 0; i < scores->len; i++) {
     const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
 
-    if (s->kept < CLOTH_DIAGNOSIS_IDENTIFIABLE)
-      continue;
     for (guint c = 0; c < d->candidates->list->len; c++)
       if (g_array_index (d->candidates->list, ClothGapCandidate, c).effect ==
           cloth_diagnosis_candidate (d, s)->effect)
@@ -156,9 +157,10 @@ note_nulls (ClothDiagnosis * d, const GArray * scores)
 
 /* What baselines ask for, where it can't be taken off the takes themselves. */
 static gboolean
-study_baselines (ClothDiagnosis * d, ClothGapTest * test, GError ** error)
+study_baselines (ClothDiagnosis * d, GError ** error)
 {
   g_autoptr (GArray) scores = NULL;
+  ClothGapTest test = { {NULL} };
 
   if (cloth_diagnosis_has_signatures (d)) {
     for (guint i = d->n_takes; i < d->studies->len; i++)
@@ -170,8 +172,8 @@ study_baselines (ClothDiagnosis * d, ClothGapTest * test, GError ** error)
   if (!cloth_diagnosis_linearise (d, d->n_takes, d->studies->len, d->model, 0.2,
           0.3, error))
     return FALSE;
-  cloth_diagnosis_make_test (d, d->n_takes, d->studies->len, test);
-  scores = cloth_gap_test_run (test);
+  cloth_diagnosis_make_test (d, d->n_takes, d->studies->len, &test);
+  scores = cloth_gap_test_run (&test);
   note_nulls (d, scores);
   return TRUE;
 }
@@ -180,14 +182,12 @@ study_baselines (ClothDiagnosis * d, ClothGapTest * test, GError ** error)
 static gboolean
 study_other_model (ClothDiagnosis * d, GError ** error)
 {
-  g_autoptr (ClothModel) other = cloth_model_copy (d->model);
+  g_autoptr (ClothModel) other = cloth_diagnosis_other_model (d);
   g_autoptr (GPtrArray) studies = g_ptr_array_new_with_free_func (
       (GDestroyNotify) cloth_study_free);
   g_autoptr (GArray) scores = NULL;
   ClothGapTest test = { {NULL} };
 
-  other->force_model = other->force_model == CLOTH_FORCE_MEMBRANE ?
-      CLOTH_FORCE_MASS_SPRING : CLOTH_FORCE_MEMBRANE;
   cloth_diagnosis_begin_part (d, 0.43, 0.45, 1., "the other force model");
   for (guint i = 0; i < d->n_takes; i++) {
     g_autoptr (GError) diverged = NULL;
@@ -204,9 +204,11 @@ study_other_model (ClothDiagnosis * d, GError ** error)
     g_propagate_error (error, g_steal_pointer (&diverged));
     return FALSE;
   }
-  d->others = (ClothStudy **) studies->pdata;
+  for (guint i = 0; i < d->n_takes; i++)
+    cloth_diagnosis_study (d, i)->signature = g_ptr_array_index (studies, i);
   cloth_diagnosis_make_test (d, 0, d->n_takes, &test);
-  d->others = NULL;
+  for (guint i = 0; i < d->n_takes; i++)
+    cloth_diagnosis_study (d, i)->signature = NULL;
   scores = cloth_gap_test_run (&test);
   note_nulls (d, scores);
   return TRUE;
@@ -215,7 +217,6 @@ study_other_model (ClothDiagnosis * d, GError ** error)
 static gboolean
 diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
 {
-  ClothGapTest test = { {NULL} };
   guint n_all;
 
   if (!load (d, error))
@@ -232,13 +233,11 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
   d->precisions = g_new (gdouble, d->candidates->n_free + 1);
   d->sound = g_new (gboolean, n_all + 1);
   d->null_evidence = g_new0 (gdouble, d->candidates->list->len + 1);
-  d->left = g_ptr_array_new_with_free_func (free_power);
-  g_ptr_array_set_size (d->left, (gint) (d->studies->len *
-          CLOTH_STUDY_N_GAINS));
   cloth_diagnosis_begin_part (d, 0., 0.2, 0.2, "the model's free numbers");
   if (!fit_free (d, model, error))
     return FALSE;
-  if (d->options->n_baselines && !study_baselines (d, &test, error))
+  cloth_diagnosis_find_signatures (d);
+  if (d->options->n_baselines && !study_baselines (d, error))
     return FALSE;
   if (!cloth_diagnosis_linearise (d, 0, d->n_takes, d->model, 0.3, 0.43, error))
     return FALSE;
@@ -260,7 +259,8 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
  *
  * Runs the simulation with weak springs to what was recorded, tests by its score which
  * effect the residual asks for once the model's free numbers and the simulator's own
- * error are taken off, adds the best one, and measures the gap without and with it.
+ * error are taken off, adds those that are asked for one by one, and measures the gap
+ * without and with them.
  *
  * Returns: (transfer full) (nullable): what was found
  * Since: 0.1
@@ -294,6 +294,6 @@ cloth_gap_diagnose (ClothTake ** takes, guint n_takes,
   cloth_gap_result_add_threshold (d.result, "least share of the gap's variance",
       CLOTH_DIAGNOSIS_LEAST_SHRINK, "1");
   cloth_gap_result_add_threshold (d.result,
-      "largest rest over the floor, of " "variance", CLOTH_DIAGNOSIS_BAND, "1");
+      "largest rest over the floor, of variance", CLOTH_DIAGNOSIS_BAND, "1");
   return g_steal_pointer (&d.result);
 }

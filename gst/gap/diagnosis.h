@@ -16,8 +16,6 @@ G_BEGIN_DECLS
 #define CLOTH_DIAGNOSIS_LEAST_SHRINK 0.1
 /* What remains is no more than noise when it is below this many floors (variance). */
 #define CLOTH_DIAGNOSIS_BAND 2.25
-/* Below this share left by the nuisances an effect can't be told from them. */
-#define CLOTH_DIAGNOSIS_IDENTIFIABLE 0.05
 /* Most effects that are accepted. */
 #define CLOTH_DIAGNOSIS_MAX_ACCEPTED 3
 
@@ -46,8 +44,6 @@ typedef struct
   ClothModel *with[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
   gdouble sigmas[CLOTH_DIAGNOSIS_MAX_ACCEPTED][CLOTH_DIAGNOSIS_MAX_ACCEPTED][CLOTH_EFFECT_MAX_PARAMETERS];
   guint n_chosen;
-  GPtrArray *left;              /* power left in a take, by take and gain; NULL: unknown */
-  ClothStudy **others;          /* of each take, during its null test: another force model */
   gdouble least_evidence;
   gdouble *null_evidence;       /* of each candidate, on the baselines */
   /* of the running part of the work: its share of all, what of it each simulation gets */
@@ -91,9 +87,11 @@ cloth_diagnosis_is_held_out (const ClothDiagnosis * d, guint block)
 void cloth_diagnosis_begin_part (ClothDiagnosis * d, gdouble from, gdouble to,
     gdouble each, const gchar * what);
 
+/* The model with the other force model. */
+ClothModel *cloth_diagnosis_other_model (const ClothDiagnosis * d);
+
 /* Which effects. */
-const ClothStudy *cloth_diagnosis_signature (const ClothDiagnosis * d,
-    guint take);
+void cloth_diagnosis_find_signatures (ClothDiagnosis * d);
 gboolean cloth_diagnosis_has_signatures (const ClothDiagnosis * d);
 gboolean cloth_diagnosis_linearise (ClothDiagnosis * d, guint first, guint end,
     const ClothModel * model, gdouble from, gdouble to, GError ** error);

@@ -59,14 +59,12 @@ own_floor (ClothDiagnosis * d, guint judge, const ClothGapExtent * extent,
     GError ** error)
 {
   const ClothRecording *r = cloth_diagnosis_recording (d, judge);
-  g_autoptr (ClothModel) other = cloth_model_copy (d->model);
+  g_autoptr (ClothModel) other = cloth_diagnosis_other_model (d);
   const ClothModel *models[1] = { other };
   ClothGapExtent **extents;
   gdouble sum = 0.;
   gsize all = (gsize) r->n * r->n_frames;
 
-  other->force_model = other->force_model == CLOTH_FORCE_MEMBRANE ?
-      CLOTH_FORCE_MASS_SPRING : CLOTH_FORCE_MEMBRANE;
   extents = cloth_gap_extents_new (r, models, 1, WINDOW_GAIN, WINDOW_S,
       &d->study.rollout, error);
   if (!extents)
@@ -185,10 +183,10 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
       draws);
   result->held_out_takes = d->options->n_hold_outs > 0;
   result->gap_before = estimate (v[0], draws, N_DRAWS, n);
-  if (best)
+  if (best) {
     result->gap_after = estimate (v[best], draws + best, N_DRAWS, n);
-  if (best)
     fill_shrink (result, v[0], v[best], draws, draws + best, n);
+  }
   if (!judge)
     cloth_gap_extent_fill (extents[0], best ? extents[best] : NULL,
         cloth_diagnosis_recording (d, 0), d->takes[0], result);
@@ -230,8 +228,7 @@ accept_effects (ClothDiagnosis * d)
       e.values[k] = candidate->values[k];
     for (guint k = 0; k < candidate->n; k++) {
       const ClothGapDirection *direction =
-          &g_array_index (d->candidates->directions, ClothGapDirection,
-          candidate->first + k);
+          cloth_gap_candidates_direction (d->candidates, candidate->first + k);
       guint p = candidate->parameters[k];
 
       cloth_model_get (d->with[last], direction->name, &e.values[p], NULL);

@@ -8,6 +8,8 @@
 
 /* Simulations of a fit with effects. */
 #define N_REFIT 3
+/* Priors of effects in it are so many times as wide. */
+#define REFIT_WIDTH 2.
 /* Clamps that are never further apart than this move alike, m. */
 #define SAME_PATH 1e-3
 /* What two takes of one motion share of the simulator's own error is taken off; this
@@ -45,25 +47,25 @@ moves_alike (const ClothRecording * a, const ClothRecording * b)
   return TRUE;
 }
 
-/* What a take is held against: the baseline that moves as it does, if there is one. */
-const ClothStudy *
-cloth_diagnosis_signature (const ClothDiagnosis * d, guint take)
+/* Each study's signature: that of the baseline that moves alike, if there is one. */
+void
+cloth_diagnosis_find_signatures (ClothDiagnosis * d)
 {
-  if (d->others && take < d->n_takes)
-    return d->others[take];
-  for (guint i = d->n_takes; i < d->studies->len; i++)
-    if (i != take
-        && moves_alike (cloth_diagnosis_recording (d, take),
-            cloth_diagnosis_study (d, i)->recording))
-      return cloth_diagnosis_study (d, i);
-  return NULL;
+  for (guint i = 0; i < d->studies->len; i++) {
+    ClothStudy *study = cloth_diagnosis_study (d, i);
+
+    for (guint k = d->n_takes; k < d->studies->len && !study->signature; k++)
+      if (i != k && moves_alike (study->recording,
+              cloth_diagnosis_study (d, k)->recording))
+        study->signature = cloth_diagnosis_study (d, k);
+  }
 }
 
 gboolean
 cloth_diagnosis_has_signatures (const ClothDiagnosis * d)
 {
   for (guint i = 0; i < d->n_takes; i++)
-    if (!cloth_diagnosis_signature (d, i))
+    if (!cloth_diagnosis_study (d, i)->signature)
       return FALSE;
   return TRUE;
 }
@@ -119,17 +121,11 @@ static ClothGapNormal *
 normal_of (const ClothDiagnosis * d, guint take, guint gain,
     const ClothGapPower * mismatch)
 {
-  const ClothStudy *baseline = cloth_diagnosis_signature (d, take);
   const ClothStudy *s = cloth_diagnosis_study (d, take);
-  g_autofree gdouble *z = g_memdup2 (s->z[gain],
-      s->features->size * sizeof (gdouble));
-  ClothGapPower *left = g_ptr_array_index (d->left, take *
-      CLOTH_STUDY_N_GAINS + gain);
+  g_autofree gdouble *z = cloth_study_residual (s, gain);
 
-  for (gsize k = 0; baseline && k < s->features->size; k++)
-    z[k] -= baseline->z[gain][k];
-  return cloth_gap_normal_new (s->features, left ? left : mismatch, 1., z,
-      s->columns[gain], s->m);
+  return cloth_gap_normal_new (s->features, s->left[gain] ? s->left[gain] :
+      mismatch, 1., z, s->columns[gain], s->m);
 }
 
 /* The power left in the takes that a baseline's signature is taken off, once @score's
@@ -137,20 +133,17 @@ normal_of (const ClothDiagnosis * d, guint take, guint gain,
 static void
 find_left (ClothDiagnosis * d, const ClothGapScore * score)
 {
-  for (guint i = 0; i < d->n_takes; i++) {
-    const ClothStudy *s = cloth_diagnosis_study (d, i), *baseline =
-        cloth_diagnosis_signature (d, i);
-    gsize size = s->features->size;
+  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
+    g_autoptr (ClothGapPower) mismatch = mismatch_of (d, g);
 
-    for (guint g = 0; g < CLOTH_STUDY_N_GAINS && baseline; g++) {
-      g_autoptr (ClothGapPower) mismatch = mismatch_of (d, g);
-      g_autofree gdouble *z = g_memdup2 (s->z[g], size * sizeof (gdouble));
-      ClothGapPower **left = (ClothGapPower **) & g_ptr_array_index (d->left,
-          i * CLOTH_STUDY_N_GAINS + g);
-      ClothGapPower *now;
+    for (guint i = 0; i < d->n_takes; i++) {
+      ClothStudy *s = cloth_diagnosis_study (d, i);
+      g_autofree gdouble *z = cloth_study_residual (s, g);
+      gsize size = s->features->size;
+      ClothGapPower *left;
 
-      for (gsize k = 0; k < size; k++)
-        z[k] -= baseline->z[g][k];
+      if (!s->signature)
+        continue;
       for (guint c = 0; score && c < cloth_diagnosis_candidate (d, score)->n;
           c++) {
         const gdouble *column = s->columns[g] + (cloth_diagnosis_candidate (d,
@@ -159,12 +152,13 @@ find_left (ClothDiagnosis * d, const ClothGapScore * score)
         for (gsize k = 0; k < size; k++)
           z[k] += score->changes[c] * column[k];
       }
-      now = cloth_gap_power_new (s->features, z);
-      for (guint k = 0; k < now->n; k++)
-        now->values[k] = MIN (score ? (*left)->values[k] : mismatch->values[k],
-            MAX (now->values[k], SIGNATURE_LEFT * mismatch->values[k]));
-      cloth_gap_power_free (*left);
-      *left = now;
+      left = cloth_gap_power_new (s->features, z);
+      for (guint k = 0; k < left->n; k++)
+        left->values[k] = MIN (score ? s->left[g]->values[k] :
+            mismatch->values[k], MAX (left->values[k],
+                SIGNATURE_LEFT * mismatch->values[k]));
+      cloth_gap_power_free (s->left[g]);
+      s->left[g] = left;
     }
   }
 }
@@ -187,15 +181,10 @@ cloth_diagnosis_linearise (ClothDiagnosis * d, guint first, guint end,
   return TRUE;
 }
 
-/* Test of the takes' blocks from begin to end, as studies. */
-void
-cloth_diagnosis_make_test (ClothDiagnosis * d, guint begin, guint end,
-    ClothGapTest * test)
+/* The normal equations of the studies from begin to end, as they weigh now. */
+static void
+make_normals (ClothDiagnosis * d, guint begin, guint end, ClothGapTest * test)
 {
-  guint m = d->candidates->directions->len;
-
-  for (guint i = 0; i < m; i++)
-    d->sound[i] = TRUE;
   for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
     g_autoptr (ClothGapPower) mismatch = mismatch_of (d, g);
 
@@ -204,9 +193,21 @@ cloth_diagnosis_make_test (ClothDiagnosis * d, guint begin, guint end,
       d->normals[g] = append (d->normals[g], normal_of (d, i, g, mismatch));
     test->normals[g] = d->normals[g];
   }
-  for (guint i = begin; i < end; i++)
-    for (guint k = 0; k < m; k++)
+}
+
+/* Test of the blocks of the studies from begin to end. */
+void
+cloth_diagnosis_make_test (ClothDiagnosis * d, guint begin, guint end,
+    ClothGapTest * test)
+{
+  guint m = d->candidates->directions->len;
+
+  make_normals (d, begin, end, test);
+  for (guint k = 0; k < m; k++) {
+    d->sound[k] = TRUE;
+    for (guint i = begin; i < end; i++)
       d->sound[k] = d->sound[k] && cloth_diagnosis_study (d, i)->sound[k];
+  }
   d->n_blocks = d->normals[0]->n_blocks;
   g_free (d->blocks);
   d->blocks = g_new (gboolean, d->n_blocks);
@@ -225,14 +226,14 @@ static void
 fill_effects (ClothDiagnosis * d, const ClothGapTest * test,
     const GArray * scores)
 {
+  g_autofree const ClothGapScore **of = g_new (const ClothGapScore *,
+      scores->len + 1);
+  GArray *effects = d->result->effects;
   gdouble total, top = 0.;
-  gboolean grouped = FALSE;
 
-  for (guint i = 0; i < scores->len; i++) {
-    const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
-
-    top = MAX (top, s->evidence / TEMPERATURE);
-  }
+  for (guint i = 0; i < scores->len; i++)
+    top = MAX (top, g_array_index (scores, ClothGapScore, i).evidence /
+        TEMPERATURE);
   total = exp (-top);
   for (guint i = 0; i < scores->len; i++)
     total += exp (g_array_index (scores, ClothGapScore, i).evidence /
@@ -242,11 +243,12 @@ fill_effects (ClothDiagnosis * d, const ClothGapTest * test,
     const ClothGapCandidate *c = cloth_diagnosis_candidate (d, s);
     ClothGapEffect *e;
 
-    if (s->kept < CLOTH_DIAGNOSIS_IDENTIFIABLE) {
+    if (s->kept < CLOTH_GAP_IDENTIFIABLE) {
       cloth_gap_result_add_untested (d->result, c->effect, "In this motion it "
           "can't be told from the model's free numbers.");
       continue;
     }
+    of[effects->len] = s;
     e = cloth_gap_result_add_effect (d->result, c->effect);
     e->probability = exp (s->evidence / TEMPERATURE - top) / total;
     e->p_value = s->p_value;
@@ -262,27 +264,17 @@ fill_effects (ClothDiagnosis * d, const ClothGapTest * test,
     }
   }
   /* the best, and those that can't be told from it */
-  for (guint i = 1; i < d->result->effects->len && i < scores->len; i++) {
-    ClothGapEffect *best = &g_array_index (d->result->effects, ClothGapEffect,
-        0);
-    ClothGapEffect *e = &g_array_index (d->result->effects, ClothGapEffect, i);
-    gboolean near = best->probability - e->probability < AMBIGUOUS_PROBABILITY;
+  for (guint i = 1; i < effects->len; i++) {
+    ClothGapEffect *best = &g_array_index (effects, ClothGapEffect, 0);
+    ClothGapEffect *e = &g_array_index (effects, ClothGapEffect, i);
 
-    for (guint k = 1; k < scores->len && !near; k++) {
-      const ClothGapScore *s = &g_array_index (scores, ClothGapScore, k);
-      const ClothGapScore *first = &g_array_index (scores, ClothGapScore, 0);
-
-      if (cloth_diagnosis_candidate (d, s)->effect == e->effect
-          && cloth_diagnosis_candidate (d, first)->effect == best->effect)
-        near = e->probability > 0.05 * best->probability
-            && cloth_gap_test_cosine (test, first->candidate, s->candidate) >
-            AMBIGUOUS_COSINE;
-    }
-    if (!near)
+    if (best->probability - e->probability >= AMBIGUOUS_PROBABILITY
+        && !(e->probability > 0.05 * best->probability
+            && cloth_gap_test_cosine (test, of[0]->candidate,
+                of[i]->candidate) > AMBIGUOUS_COSINE))
       continue;
-    if (!grouped)
+    if (best->group < 0)
       cloth_gap_result_add_group (d->result, NULL, NAN);
-    grouped = TRUE;
     best->group = e->group = 0;
   }
 }
@@ -296,87 +288,55 @@ is_chosen (const ClothDiagnosis * d, const ClothEffect * effect)
   return FALSE;
 }
 
-/* Takes the leader into the model, fitted along with what was taken in before; the free
- * numbers may give a little. */
+/* The free numbers and the directions of what is taken in, with the precisions of their
+ * priors; those of effects count @width times as wide. Returns how many. */
+static guint
+list_taken_in (const ClothDiagnosis * d, gdouble width, guint * directions,
+    gdouble * precisions)
+{
+  guint m = d->candidates->n_free;
+
+  memcpy (directions, d->all, m * sizeof *directions);
+  memcpy (precisions, d->precisions, m * sizeof *precisions);
+  for (guint c = 0; c < d->n_chosen; c++)
+    for (guint k = 0; k < cloth_diagnosis_chosen (d, c)->n; k++, m++) {
+      gdouble prior;
+
+      directions[m] = cloth_diagnosis_chosen (d, c)->first + k;
+      prior = cloth_gap_candidates_direction (d->candidates,
+          directions[m])->prior;
+      precisions[m] = 1. / (width * width * prior * prior);
+    }
+  return m;
+}
+
+/* Fits what is taken in; @score says where the last one begins. The free numbers may give
+ * a little. */
 static gboolean
 refit (ClothDiagnosis * d, const ClothGapScore * score, GError ** error)
 {
-  const guint now = d->n_chosen - 1;
+  const guint now = d->n_chosen - 1, n = cloth_diagnosis_chosen (d, now)->n;
   const ClothModel *before = now ? d->with[now - 1] : d->model;
-  const guint free = d->candidates->n_free;
-  const guint most =
-      free + CLOTH_DIAGNOSIS_MAX_ACCEPTED * CLOTH_EFFECT_MAX_PARAMETERS;
+  const guint most = d->candidates->directions->len;
   g_autofree guint *directions = g_new (guint, most);
   g_autofree gdouble *precisions = g_new (gdouble, most);
   g_autofree gdouble *sigmas = g_new0 (gdouble, most);
   g_autofree gboolean *blocks = g_new (gboolean, d->n_blocks);
   g_autoptr (ClothModel) start = NULL;
-  ClothModel *fitted;
-  guint m = free;
+  guint m = list_taken_in (d, REFIT_WIDTH, directions, precisions);
 
-  for (guint i = 0; i < d->n_takes; i++)
-    for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
-      const ClothStudy *baseline = cloth_diagnosis_signature (d, i);
-      ClothStudy *s = cloth_diagnosis_study (d, i);
-
-      s->signature[g] = baseline ? baseline->z[g] : NULL;
-      s->left[g] = g_ptr_array_index (d->left, i * CLOTH_STUDY_N_GAINS + g);
-    }
   for (guint b = 0; b < d->n_blocks; b++)
     blocks[b] = !cloth_diagnosis_is_held_out (d, b);
-  for (guint i = 0; i < free; i++) {
-    directions[i] = i;
-    precisions[i] = d->precisions[i];
-  }
-  for (guint c = 0; c <= now; c++)
-    for (guint k = 0; k < cloth_diagnosis_chosen (d, c)->n; k++, m++) {
-      gdouble prior;
-
-      directions[m] = cloth_diagnosis_chosen (d, c)->first + k;
-      prior = g_array_index (d->candidates->directions, ClothGapDirection,
-          directions[m]).prior;
-      precisions[m] = 1. / (4. * prior * prior);
-    }
   start = cloth_gap_candidates_move (d->candidates, before,
-      directions + m - cloth_diagnosis_chosen (d, now)->n, score->changes,
-      cloth_diagnosis_chosen (d, now)->n);
-  fitted =
-      cloth_study_fit ((ClothStudy **) d->studies->pdata, d->n_takes,
-      d->candidates, start, directions, precisions, m, blocks, N_REFIT,
-      &d->study, sigmas, error);
-  if (!fitted)
-    return FALSE;
-  m = free;
+      directions + m - n, score->changes, n);
+  d->with[now] = cloth_study_fit ((ClothStudy **) d->studies->pdata,
+      d->n_takes, d->candidates, start, directions, precisions, m, blocks,
+      N_REFIT, &d->study, sigmas, error);
+  m = d->candidates->n_free;
   for (guint c = 0; c <= now; c++)
     for (guint k = 0; k < cloth_diagnosis_chosen (d, c)->n; k++)
       d->sigmas[now][c][k] = sigmas[m++];
-  d->with[now] = fitted;
-  return TRUE;
-}
-
-static gint
-compare_scores (gconstpointer a, gconstpointer b)
-{
-  gdouble x = ((const ClothGapScore *) a)->evidence;
-  gdouble y = ((const ClothGapScore *) b)->evidence;
-
-  return x > y ? -1 : x < y;
-}
-
-/* Effects that the free numbers can stand in for are not asked for. */
-static GArray *
-test_effects (const ClothGapTest * test)
-{
-  GArray *scores = cloth_gap_test_run (test);
-
-  for (guint i = 0; i < scores->len; i++) {
-    ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
-
-    if (s->kept < CLOTH_DIAGNOSIS_IDENTIFIABLE)
-      s->evidence = -INFINITY;
-  }
-  g_array_sort (scores, compare_scores);
-  return scores;
+  return d->with[now] != NULL;
 }
 
 /* The effects, the likeliest first. What the leading one leaves shows better than what
@@ -384,25 +344,20 @@ test_effects (const ClothGapTest * test)
 static GArray *
 rank (ClothDiagnosis * d, ClothGapTest * test)
 {
-  GArray *scores = test_effects (test);
+  GArray *scores = cloth_gap_test_run (test);
 
   for (guint k = 0; k < N_SHARPEN && scores->len; k++) {
-    const ClothGapTest before = *test;
-
     find_left (d, &g_array_index (scores, ClothGapScore, 0));
-    cloth_diagnosis_make_test (d, 0, d->n_takes, test);
-    test->nuisances = before.nuisances;
-    test->precisions = before.precisions;
-    test->n_nuisances = before.n_nuisances;
+    make_normals (d, 0, d->n_takes, test);
     g_array_unref (scores);
-    scores = test_effects (test);
+    scores = cloth_gap_test_run (test);
   }
   for (guint i = 0; i < scores->len; i++) {
     ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
 
     s->evidence -= d->null_evidence[s->candidate];
   }
-  g_array_sort (scores, compare_scores);
+  g_array_sort (scores, cloth_gap_score_compare);
   return scores;
 }
 
@@ -425,22 +380,9 @@ static void
 free_chosen (const ClothDiagnosis * d, ClothGapTest * test, guint * nuisances,
     gdouble * precisions)
 {
-  guint m = d->candidates->n_free;
-
-  memcpy (nuisances, d->all, m * sizeof *nuisances);
-  memcpy (precisions, d->precisions, m * sizeof *precisions);
-  for (guint c = 0; c < d->n_chosen; c++)
-    for (guint k = 0; k < cloth_diagnosis_chosen (d, c)->n; k++, m++) {
-      gdouble prior;
-
-      nuisances[m] = cloth_diagnosis_chosen (d, c)->first + k;
-      prior = g_array_index (d->candidates->directions, ClothGapDirection,
-          nuisances[m]).prior;
-      precisions[m] = 1. / (prior * prior);
-    }
+  test->n_nuisances = list_taken_in (d, 1., nuisances, precisions);
   test->nuisances = nuisances;
   test->precisions = precisions;
-  test->n_nuisances = m;
 }
 
 /* Takes in effects one by one, as long as one is asked for: the next one by the same

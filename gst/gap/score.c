@@ -48,8 +48,8 @@ trial_init (Trial * trial, const ClothGapTest * test, guint candidate)
   trial->test = test;
   trial->candidate = &g_array_index (c->list, ClothGapCandidate, candidate);
   for (guint i = 0; i < trial->candidate->n; i++) {
-    const ClothGapDirection *d = &g_array_index (c->directions,
-        ClothGapDirection, trial->candidate->first + i);
+    const ClothGapDirection *d = cloth_gap_candidates_direction (c,
+        trial->candidate->first + i);
 
     trial->directions[i] = trial->candidate->first + i;
     trial->precisions[i] = 1. / (d->prior * d->prior);
@@ -261,8 +261,16 @@ run_trial (const Trial * trial, ClothGapScore * score)
   return TRUE;
 }
 
-static gint
-compare_scores (gconstpointer a, gconstpointer b)
+/**
+ * cloth_gap_score_compare:
+ * @a: a #ClothGapScore
+ * @b: another
+ *
+ * Returns: which is likelier, for g_array_sort (): the likeliest first
+ * Since: 0.1
+ */
+gint
+cloth_gap_score_compare (gconstpointer a, gconstpointer b)
 {
   const ClothGapScore *x = a, *y = b;
 
@@ -276,7 +284,8 @@ compare_scores (gconstpointer a, gconstpointer b)
  * @test: what is tested
  *
  * Returns: (transfer full) (element-type ClothGapScore): the best candidate of each
- *   effect, the likeliest first; an effect of several candidates pays for the choice
+ *   effect, the likeliest first; an effect of several candidates pays for the choice, one
+ *   that the nuisances can stand in for has no evidence: −∞
  * Since: 0.1
  */
 GArray *
@@ -302,11 +311,13 @@ cloth_gap_test_run (const ClothGapTest * test)
       if (score.evidence > most.evidence)
         most = score;
     }
-    most.evidence -= n ? log (n) : 0.;
-    if (n)
-      g_array_append_val (best, most);
+    if (!n)
+      continue;
+    most.evidence = most.kept < CLOTH_GAP_IDENTIFIABLE ? -INFINITY :
+        most.evidence - log (n);
+    g_array_append_val (best, most);
   }
-  g_array_sort (best, compare_scores);
+  g_array_sort (best, cloth_gap_score_compare);
   return best;
 }
 

@@ -56,6 +56,10 @@ typedef struct {
   const gboolean *sound;
 } ClothGapTest;
 
+/* Below this share left by the nuisances an effect can't be told from them. */
+#define CLOTH_GAP_IDENTIFIABLE 0.05
+
+gint cloth_gap_score_compare (gconstpointer a, gconstpointer b);
 GArray *cloth_gap_test_run (const ClothGapTest * test);
 gdouble cloth_gap_test_cosine (const ClothGapTest * test, guint one,
     guint other);

@@ -71,8 +71,29 @@ cloth_study_free (ClothStudy * study)
   if (!study)
     return;
   forget (study);
+  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++)
+    cloth_gap_power_free (study->left[g]);
   cloth_gap_features_free (study->features);
   g_free (study);
+}
+
+/**
+ * cloth_study_residual:
+ * @study: a study
+ * @gain: which of the gains
+ *
+ * Returns: (transfer full) (array): what is to be explained: z less that of the signature
+ * Since: 0.1
+ */
+gdouble *
+cloth_study_residual (const ClothStudy * study, guint gain)
+{
+  gsize size = study->features->size;
+  gdouble *z = g_memdup2 (study->z[gain], size * sizeof (gdouble));
+
+  for (gsize k = 0; study->signature && k < size; k++)
+    z[k] -= study->signature->z[gain][k];
+  return z;
 }
 
 typedef struct
@@ -91,7 +112,7 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
 }
 
 /* Features of the models' residuals: z[model * N_GAINS + gain], each of features->size.
- * Both gains of a model run side by side, so that effects are computed in few groups. */
+ * The gains of a model run side by side, so that effects are computed in few groups. */
 static gboolean
 run (const ClothStudy * study, ClothModel ** models, guint n,
     ClothStudyOptions * options, gdouble ** z, gboolean * sound,
@@ -156,8 +177,8 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Moved, moved_clear)
   g_ptr_array_add (moved->models, cloth_model_copy (model));
   for (guint side = 0; side < 2; side++)
     for (guint i = 0; i < m; i++) {
-      gdouble step = g_array_index (candidates->directions, ClothGapDirection,
-          directions[i]).step;
+      gdouble step = cloth_gap_candidates_direction (candidates,
+          directions[i])->step;
 
       if (side && (directions[i] >= candidates->n_free
               || !cloth_gap_candidates_has_room (candidates, model,
@@ -254,8 +275,8 @@ cloth_study_linearise (ClothStudy * study,
   }
   find_reference (&moved, study);
   for (guint i = 0; i < m; i++) {
-    gdouble step = g_array_index (candidates->directions, ClothGapDirection,
-        directions[i]).step;
+    gdouble step = cloth_gap_candidates_direction (candidates,
+        directions[i])->step;
     guint back = moved.back[i];
 
     study->sound[i] = moved.sound[i + 1];
@@ -292,12 +313,6 @@ typedef struct
 } Fit;
 
 static void
-free_power (gpointer data)
-{
-  cloth_gap_power_free (data);
-}
-
-static void
 fit_clear (Fit * fit)
 {
   cloth_model_free (fit->model);
@@ -315,28 +330,17 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Fit, fit_clear)
   return TRUE;
 }
 
-/* What is to be explained in a study: new, features->size numbers. */
-static gdouble *
-residual_of (const ClothStudy * study, guint gain)
-{
-  gdouble *z = g_memdup2 (study->z[gain],
-      study->features->size * sizeof (gdouble));
-
-  for (gsize k = 0; study->signature[gain] && k < study->features->size; k++)
-    z[k] -= study->signature[gain][k];
-  return z;
-}
-
 /* Each feature weighs by the power that the model at hand leaves in its class. */
 static void
 weigh (Fit * fit)
 {
   g_clear_pointer (&fit->powers, g_ptr_array_unref);
-  fit->powers = g_ptr_array_new_with_free_func (free_power);
+  fit->powers = g_ptr_array_new_with_free_func (
+      (GDestroyNotify) cloth_gap_power_free);
   for (guint s = 0; s < fit->n_studies; s++)
     for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
       const ClothStudy *study = fit->studies[s];
-      g_autofree gdouble *z = residual_of (study, g);
+      g_autofree gdouble *z = cloth_study_residual (study, g);
 
       g_ptr_array_add (fit->powers, study->left[g] ?
           cloth_gap_power_copy (study->left[g]) :
@@ -354,7 +358,7 @@ equations (const Fit * fit, gdouble * a, gdouble * b)
   for (guint i = 0; i < fit->powers->len; i++) {
     const ClothStudy *study = fit->studies[i / CLOTH_STUDY_N_GAINS];
     guint g = i % CLOTH_STUDY_N_GAINS;
-    g_autofree gdouble *z = residual_of (study, g);
+    g_autofree gdouble *z = cloth_study_residual (study, g);
     g_autoptr (ClothGapNormal) n = cloth_gap_normal_new (study->features,
         g_ptr_array_index (fit->powers, i), 1., z, study->columns[g],
         a ? m : 0);
@@ -410,7 +414,7 @@ go (Fit * fit, const gdouble * step, gdouble share)
  * @sigmas: (out) (nullable) (array length=m): standard deviations
  * @error: #ClothSimError or #ClothGapError
  *
- * Gauss and Newton on the features of both gains, each weighed by the power that is left
+ * Gauss and Newton on the features of all gains, each weighed by the power that is left
  * in its class; a step that makes things worse is cut.
  *
  * Returns: (transfer full) (nullable): the fitted model
@@ -427,10 +431,10 @@ cloth_study_fit (ClothStudy ** studies, guint n_studies,
     m, blocks, options, cloth_model_copy (model), g_new0 (gdouble, m + 1)
   };
   g_autofree gdouble *a = g_new (gdouble, m * m + 1);
-  g_autofree gdouble *b = g_new (gdouble, m + 1), *step = NULL;
+  g_autofree gdouble *b = g_new (gdouble, m + 1);
+  g_autofree gdouble *step = g_new0 (gdouble, m + 1);
   gdouble before = INFINITY;
 
-  step = g_new0 (gdouble, m + 1);
   for (guint pass = 0; pass < n_passes && m; pass++) {
     gdouble cost;
 
@@ -456,8 +460,8 @@ cloth_study_fit (ClothStudy ** studies, guint n_studies,
       break;
     cloth_cholesky_solve (m, a, b);
     for (guint i = 0; i < m; i++) {
-      const ClothGapDirection *d = &g_array_index (candidates->directions,
-          ClothGapDirection, directions[i]);
+      const ClothGapDirection *d = cloth_gap_candidates_direction (candidates,
+          directions[i]);
 
       step[i] = CLAMP (b[i], -LONGEST * d->prior, LONGEST * d->prior);
     }

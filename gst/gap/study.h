@@ -43,28 +43,29 @@ typedef struct {
  * @columns: its derivatives, [directions][features], per gain
  * @m: number of directions
  * @sound: which of them could be simulated
- * @signature: (nullable): what a fit takes off @z: what the simulator itself is off by,
- *   per gain; the caller's
- * @left: (nullable): what a fit weighs by instead of the power of what it leaves itself,
- *   per gain; the caller's
+ * @signature: (nullable): the study whose residual is what the simulator itself is off
+ *   by here too; the caller's
+ * @left: (nullable): the power that is left to doubt, per gain; a fit weighs by it instead
+ *   of by what it leaves itself
  *
  * Since: 0.1
  */
-typedef struct {
+typedef struct _ClothStudy {
   const ClothRecording *recording;
   ClothGapFeatures *features;
   gdouble *z[CLOTH_STUDY_N_GAINS];
   gdouble *columns[CLOTH_STUDY_N_GAINS];
   guint m;
   gboolean *sound;
-  const gdouble *signature[CLOTH_STUDY_N_GAINS];
-  const ClothGapPower *left[CLOTH_STUDY_N_GAINS];
+  const struct _ClothStudy *signature;
+  ClothGapPower *left[CLOTH_STUDY_N_GAINS];
 } ClothStudy;
 
 void cloth_study_options_init (ClothStudyOptions * options);
 ClothStudy *cloth_study_new (const ClothRecording * recording,
     const ClothStudyOptions * options);
 void cloth_study_free (ClothStudy * study);
+gdouble *cloth_study_residual (const ClothStudy * study, guint gain);
 gboolean cloth_study_linearise (ClothStudy * study,
     const ClothGapCandidates * candidates, const ClothModel * model,
     const guint * directions, guint m, ClothStudyOptions * options,
