@@ -3,45 +3,52 @@
  * without.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include <glib/gstdio.h>
 #include <math.h>
 #include <string.h>
 
 #include "gst/gap/diagnose.h"
-#include "gst/math/random.h"
 #include "gst/sim/effect-table.h"
-#include "gst/sim/sim.h"
+#include "tests/common/gaprecord.h"
 
-#define COLUMNS 9
-#define ROWS 9
-#define N (COLUMNS * ROWS)
-#define N_FRAMES 75
-#define FPS 50.
-#define NOISE 3e-4
+static const TestGapSheet sheet = { 9, 9, 75, 0.16, 0.16, 50., 3e-4 };
 
 static gchar *parent;
 
-/* Two corners that close and sway; the other motion is slower and across. */
-static void
-clamp_at (guint held, gdouble t, gboolean other, gfloat p[3])
+/* The corners come closer; how far along they are is returned. */
+static gdouble
+close_at (guint held, gdouble t, gfloat p[3])
 {
   gdouble ramp = MIN (1., t / 0.3), close = 0.03 * ramp * ramp *
       (3. - 2. * ramp);
 
   p[0] = (gfloat) (held ? 0.16 - close : close);
-  p[1] = (gfloat) (other ? 0.03 * ramp * sin (5. * t + held) :
-      0.05 * ramp * sin (8. * t));
-  p[2] = (gfloat) (other ? 0.02 * ramp * sin (6. * t) : 0.);
+  return ramp;
+}
+
+/* Two corners that close and sway. */
+static void
+sway_at (guint held, gdouble t, gfloat p[3])
+{
+  gdouble ramp = close_at (held, t, p);
+
+  p[1] = (gfloat) (0.05 * ramp * sin (8. * t));
+  p[2] = 0.f;
+}
+
+/* The other motion is slower and across. */
+static void
+other_at (guint held, gdouble t, gfloat p[3])
+{
+  gdouble ramp = close_at (held, t, p);
+
+  p[1] = (gfloat) (0.03 * ramp * sin (5. * t + held));
+  p[2] = (gfloat) (0.02 * ramp * sin (6. * t));
 }
 
 static ClothModel *
 model_new (ClothForceModel force_model)
 {
   ClothModel *model = cloth_model_new ();
-  static const gchar *const names[] = {
-    "stretch.warp", "stretch.weft", "shear", "bending.warp", "bending.weft",
-    "damping.mass", "damping.stiffness"
-  };
 
   model->force_model = force_model;
   model->areal_density = 0.15;
@@ -50,15 +57,7 @@ model_new (ClothForceModel force_model)
   model->bending_warp = model->bending_weft = 3e-5;
   model->damping_mass = 0.3;
   model->damping_stiffness = 5e-4;
-  for (guint i = 0; i < G_N_ELEMENTS (names); i++) {
-    ClothModelFree f = { g_strdup (names[i]) };
-    gdouble value;
-
-    g_assert_true (cloth_model_get (model, names[i], &value, NULL));
-    f.range[0] = value / 30.;
-    f.range[1] = value * 30.;
-    g_array_append_val (model->free, f);
-  }
+  test_gap_free_parameters (model);
   return model;
 }
 
@@ -67,69 +66,12 @@ static ClothTake *
 record (const gchar * name, const gchar * effect, const gdouble * values,
     gboolean other, guint64 seed)
 {
-  g_autoptr (GError) error = NULL;
   g_autoptr (ClothModel) model = model_new (CLOTH_FORCE_MASS_SPRING);
-  g_autoptr (ClothTakeInfo) info = cloth_take_info_new (name);
-  ClothTopology *topology = cloth_topology_new_grid (COLUMNS, ROWS, 0.16f,
-      0.16f);
-  g_autoptr (ClothScene) scene = cloth_scene_new (topology, FPS, N_FRAMES);
-  g_autoptr (ClothSim) sim = NULL;
-  g_autoptr (ClothTakeWriter) writer = NULL;
-  g_autofree gchar *folder = g_build_filename (parent, name, NULL);
-  const ClothSimOptions options = { FALSE, 1, CLOTH_SIMD_BEST, 1 };
-  const ClothModel *models[1] = { model };
-  ClothTake *take;
-  ClothRandom random;
-  guint8 states[N];
 
   if (effect)
     cloth_model_set_effect (model, cloth_effect_find (effect), values);
-  for (guint held = 0; held < 2; held++) {
-    ClothHeld h = { held ? COLUMNS - 1 : 0, -INFINITY, INFINITY };
-
-    cloth_scene_hold (scene, h.vertex);
-    g_array_append_val (info->held, h);
-  }
-  for (guint f = 0; f < N_FRAMES; f++)
-    for (guint held = 0; held < 2; held++) {
-      gfloat p[3];
-
-      clamp_at (held, f / FPS, other, p);
-      for (guint k = 0; k < 3; k++)
-        scene->clamps[6 * f + 3 * held + k] = p[k];
-    }
-  sim = cloth_sim_new (scene, models, 1, &options, &error);
-  g_assert_no_error (error);
-  info->fps = FPS;
-  info->columns = COLUMNS;
-  info->rows = ROWS;
-  info->width_m = info->height_m = 0.16;
-  info->noise_sigma_m = NOISE;
-  writer = cloth_take_writer_new (folder, info, topology, &error);
-  g_assert_no_error (error);
-  cloth_random_init (&random, seed);
-  memset (states, CLOTH_VERTEX_MEASURED, sizeof states);
-  for (guint f = 0; f < N_FRAMES; f++) {
-    gdouble x[3 * N];
-    gfloat positions[3 * N], clamps[6];
-
-    if (f)
-      cloth_sim_advance (sim, f / FPS);
-    cloth_sim_get_positions (sim, 0, x);
-    for (guint i = 0; i < 3 * N; i++)
-      positions[i] = (gfloat) (x[i] + NOISE * cloth_random_gaussian (&random));
-    for (guint held = 0; held < 2; held++)
-      clamp_at (held, f / FPS, other, clamps + 3 * held);
-    cloth_take_writer_append (writer, f / FPS, positions, states, NULL, clamps,
-        &error);
-    g_assert_no_error (error);
-  }
-  g_assert_cmpint (cloth_sim_get_state (sim, 0, NULL), ==, CLOTH_SIM_OK);
-  cloth_take_writer_close (writer, &error);
-  g_assert_no_error (error);
-  take = cloth_take_open (folder, &error);
-  g_assert_no_error (error);
-  return take;
+  return test_gap_record (&sheet, model, other ? other_at : sway_at, parent,
+      name, seed);
 }
 
 static ClothGapResult *
@@ -275,22 +217,6 @@ test_cancelled (void)
   g_assert_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_CANCELLED);
 }
 
-static void
-remove_all (const gchar * path)
-{
-  GDir *dir = g_dir_open (path, 0, NULL);
-  const gchar *name;
-
-  while (dir && (name = g_dir_read_name (dir))) {
-    g_autofree gchar *item = g_build_filename (path, name, NULL);
-
-    remove_all (item);
-  }
-  if (dir)
-    g_dir_close (dir);
-  g_remove (path);
-}
-
 int
 main (int argc, char **argv)
 {
@@ -310,7 +236,7 @@ main (int argc, char **argv)
   g_test_add_func ("/gap/unknown-effect", test_unknown_effect);
   g_test_add_func ("/gap/cancelled", test_cancelled);
   status = g_test_run ();
-  remove_all (parent);
+  test_gap_remove (parent);
   g_free (parent);
   return status;
 }
