@@ -135,8 +135,8 @@ gst_cloth_meta_depay_class_init (GstClothMetaDepayClass * klass)
   gst_element_class_add_static_pad_template (element_class, &src_template);
   gst_element_class_set_static_metadata (element_class,
       "Cloth metadata depayloader", "Codec/Depayloader",
-      "Turns an observation stream into black pictures with the saddles and "
-      "quads on them", "The gst-cloth developers");
+      "Turns an observation stream into black pictures with the saddles, "
+      "quads and dots on them", "The gst-cloth developers");
   GST_DEBUG_CATEGORY_INIT (cloth_meta_depay_debug, "clothmetadepay", 0,
       "metadata without pixels, back on pictures");
 }

@@ -16,13 +16,16 @@
 #define SECTION_HEADER 8
 #define SECTION_SADDLES "SADL"
 #define SECTION_QUADS "QUAD"
+#define SECTION_DOTS "DOTS"
 #define SECTION_TIME "TIME"
 #define SADDLES_HEADER 20
 #define QUADS_HEADER 24
+#define DOTS_HEADER 24
 #define TIME_HEADER 20
 #define SADDLE_BYTES 28
 #define CANDIDATE_BYTES 12
 #define QUAD_BYTES 96
+#define DOT_BYTES(n_colours) (36 + 4 * (n_colours))
 
 static gsize
 padded (gsize size)
@@ -47,6 +50,21 @@ quad_is_valid (const GstClothQuad * quad, guint columns, guint rows)
       && isfinite (quad->confidence) && all_finite (quad->x, 4)
       && all_finite (quad->y, 4) && all_finite (quad->cov_xx, 4)
       && all_finite (quad->cov_xy, 4) && all_finite (quad->cov_yy, 4);
+}
+
+/* A dot has both numbers of its label or neither. */
+static gboolean
+dot_is_valid (const GstClothDot * dot, guint columns, guint rows,
+    guint n_colours)
+{
+  const gboolean inside = dot->column >= 0 && (guint) dot->column < columns
+      && dot->row >= 0 && (guint) dot->row < rows;
+  const gfloat floats[6] = { dot->confidence, dot->x, dot->y, dot->cov_xx,
+    dot->cov_xy, dot->cov_yy
+  };
+
+  return (inside || (dot->column == -1 && dot->row == -1))
+      && all_finite (floats, 6) && all_finite (dot->log_likelihood, n_colours);
 }
 
 /* Writing */
@@ -186,6 +204,44 @@ put_quads (GByteArray * bytes, const GstClothQuads * quads, guint * n_sections)
   end_section (bytes, start, n_sections);
 }
 
+static void
+put_dots (GByteArray * bytes, const GstClothDots * dots, guint * n_sections)
+{
+  const gchar *camera = gst_cloth_dots_get_camera (dots);
+  guint columns = gst_cloth_dots_get_columns (dots);
+  guint rows = gst_cloth_dots_get_rows (dots);
+  guint n_colours = gst_cloth_dots_get_n_colours (dots);
+  guint n_dots, start, n = 0;
+  const GstClothDot *dot = gst_cloth_dots_get_dots (dots, &n_dots);
+
+  start = begin_section (bytes, SECTION_DOTS);
+  put_u64 (bytes, gst_cloth_dots_get_sequence (dots));
+  put_u32 (bytes, columns);
+  put_u32 (bytes, rows);
+  put_u32 (bytes, 0);
+  put_u16 (bytes, (guint) strlen (camera));
+  put_u16 (bytes, n_colours);
+  put_string (bytes, camera);
+  for (guint i = 0; i < n_dots; i++, dot++) {
+    const guint8 flags[4] =
+        { dot->mirrored ? 1 : 0, dot->touches ? 1 : 0, 0, 0 };
+    const gfloat floats[6] = { dot->confidence, dot->x, dot->y, dot->cov_xx,
+      dot->cov_xy, dot->cov_yy
+    };
+
+    if (!dot_is_valid (dot, columns, rows, n_colours))
+      continue;
+    put_u32 (bytes, (guint32) dot->column);
+    put_u32 (bytes, (guint32) dot->row);
+    g_byte_array_append (bytes, flags, 4);
+    put_floats (bytes, floats, 6);
+    put_floats (bytes, dot->log_likelihood, n_colours);
+    n++;
+  }
+  GST_WRITE_UINT32_LE (bytes->data + start + 16, n);
+  end_section (bytes, start, n_sections);
+}
+
 /* A reference is written as the text of its caps: these are the characters that such
  * caps need (timestamp/x-ntp; timestamp/x-ptp, version=IEEE1588-2008, domain=1). The
  * reader hands nothing else to GStreamer's parser. */
@@ -231,9 +287,9 @@ put_times (GByteArray * bytes, GstBuffer * buffer, guint * n_sections)
  * gst_cloth_observations_pack:
  * @buffer: a buffer with cloth metas
  *
- * Writes what was seen in a picture, without the picture: the saddles and the quads on
- * @buffer, with camera and sequence number, and its #GstReferenceTimestampMeta. A
- * feature with a float that isn't finite, a quad outside its board, and a reference
+ * Writes what was seen in a picture, without the picture: the saddles, the quads and the dots
+ * on @buffer, with camera and sequence number, and its #GstReferenceTimestampMeta. A
+ * feature with a float that isn't finite, a quad or dot outside its pattern, and a reference
  * clock whose caps aren't fixed or need more than plain characters are left out. @buffer
  * without any such meta gives a buffer without sections.
  *
@@ -247,6 +303,7 @@ gst_cloth_observations_pack (GstBuffer * buffer)
 {
   GstClothSaddles *saddles;
   GstClothQuads *quads;
+  GstClothDots *dots;
   GByteArray *bytes;
   GstBuffer *observation;
   guint n_sections = 0, size = OBSERVATIONS_HEADER + 512;
@@ -255,11 +312,15 @@ gst_cloth_observations_pack (GstBuffer * buffer)
 
   saddles = gst_buffer_get_cloth_saddles (buffer);
   quads = gst_buffer_get_cloth_quads (buffer);
+  dots = gst_buffer_get_cloth_dots (buffer);
   if (saddles)
     size += SADDLE_BYTES * gst_cloth_saddles_get_n_refined (saddles)
         + CANDIDATE_BYTES * gst_cloth_saddles_get_n_candidates (saddles);
   if (quads)
     size += QUAD_BYTES * gst_cloth_quads_get_n_quads (quads);
+  if (dots)
+    size += DOT_BYTES (gst_cloth_dots_get_n_colours (dots))
+        * gst_cloth_dots_get_n_dots (dots);
 
   bytes = g_byte_array_sized_new (size);
   g_byte_array_append (bytes, (const guint8 *) OBSERVATIONS_MAGIC, 4);
@@ -274,6 +335,8 @@ gst_cloth_observations_pack (GstBuffer * buffer)
     put_saddles (bytes, saddles, &n_sections);
   if (quads)
     put_quads (bytes, quads, &n_sections);
+  if (dots)
+    put_dots (bytes, dots, &n_sections);
   GST_WRITE_UINT32_LE (bytes->data + 8, bytes->len);
   GST_WRITE_UINT32_LE (bytes->data + 12, n_sections);
 
@@ -296,6 +359,7 @@ typedef struct
 {
   GstClothSaddles *saddles;
   GstClothQuads *quads;
+  GstClothDots *dots;
   GstCaps *references[MAX_TIMES];
   guint64 timestamps[MAX_TIMES];
   guint64 durations[MAX_TIMES];
@@ -307,6 +371,7 @@ observed_clear (Observed * observed)
 {
   g_clear_pointer (&observed->saddles, gst_cloth_saddles_unref);
   g_clear_pointer (&observed->quads, gst_cloth_quads_unref);
+  g_clear_pointer (&observed->dots, gst_cloth_dots_unref);
   while (observed->n_times)
     gst_caps_unref (observed->references[--observed->n_times]);
 }
@@ -465,6 +530,73 @@ read_quads (const Section * section, Observed * observed, GError ** error)
 }
 
 static gboolean
+read_dots (const Section * section, Observed * observed, GError ** error)
+{
+  g_autofree gchar *camera = NULL;
+  g_autofree GstClothDot *dots = NULL;
+  const guint8 *at = section->data;
+  guint64 sequence;
+  guint columns, rows, n_colours, n_dots, length;
+  gsize need;
+
+  if (observed->dots)
+    return fail (error, GST_CLOTH_ERROR_VALUE, SECTION_DOTS,
+        "there are two of them");
+  if (section->size < DOTS_HEADER)
+    return fail (error, GST_CLOTH_ERROR_TRUNCATED, SECTION_DOTS,
+        "it ends inside its header");
+  sequence = gst_cloth_read_u64 (at);
+  columns = gst_cloth_read_u32 (at + 8);
+  rows = gst_cloth_read_u32 (at + 12);
+  n_dots = gst_cloth_read_u32 (at + 16);
+  length = gst_cloth_read_u16 (at + 20);
+  n_colours = gst_cloth_read_u16 (at + 22);
+  if (columns > GST_CLOTH_MAX_FEATURES || rows > GST_CLOTH_MAX_FEATURES
+      || n_dots > GST_CLOTH_MAX_FEATURES)
+    return fail (error, GST_CLOTH_ERROR_LIMIT, SECTION_DOTS,
+        "there are more than 65536 dots, columns or rows");
+  if (n_colours > GST_CLOTH_DOT_MAX_COLOURS)
+    return fail (error, GST_CLOTH_ERROR_LIMIT, SECTION_DOTS,
+        "there are more than 8 colours");
+  if (!(camera = get_camera (section, DOTS_HEADER, length, SECTION_DOTS,
+              error)))
+    return FALSE;
+  need = DOTS_HEADER + padded (length)
+  + (gsize) n_dots *DOT_BYTES (n_colours);
+  if (section->size != need)
+    return fail (error, section->size < need ? GST_CLOTH_ERROR_TRUNCATED :
+        GST_CLOTH_ERROR_VALUE, SECTION_DOTS,
+        "its size is not that of what it announces");
+
+  at += DOTS_HEADER + padded (length);
+  dots = g_new0 (GstClothDot, n_dots);
+  for (guint i = 0; i < n_dots; i++, at += DOT_BYTES (n_colours)) {
+    GstClothDot *dot = &dots[i];
+    gfloat floats[6];
+
+    dot->column = (gint) gst_cloth_read_u32 (at);
+    dot->row = (gint) gst_cloth_read_u32 (at + 4);
+    dot->mirrored = at[8];
+    dot->touches = at[9];
+    gst_cloth_copy_le32 (floats, at + 12, 6);
+    dot->confidence = floats[0];
+    dot->x = floats[1];
+    dot->y = floats[2];
+    dot->cov_xx = floats[3];
+    dot->cov_xy = floats[4];
+    dot->cov_yy = floats[5];
+    gst_cloth_copy_le32 (dot->log_likelihood, at + 36, n_colours);
+    if (!dot_is_valid (dot, columns, rows, n_colours) || at[8] > 1 || at[9] > 1)
+      return fail (error, GST_CLOTH_ERROR_VALUE, SECTION_DOTS,
+          "a dot lies outside the pattern, has an unknown flag or a float that "
+          "is not finite");
+  }
+  observed->dots = gst_cloth_dots_new (camera, sequence, columns, rows,
+      n_colours, dots, n_dots);
+  return TRUE;
+}
+
+static gboolean
 read_time (const Section * section, Observed * observed, GError ** error)
 {
   g_autofree gchar *text = NULL;
@@ -509,6 +641,8 @@ read_section (const guint8 * tag, const Section * section,
     return read_saddles (section, observed, error);
   if (memcmp (tag, SECTION_QUADS, 4) == 0)
     return read_quads (section, observed, error);
+  if (memcmp (tag, SECTION_DOTS, 4) == 0)
+    return read_dots (section, observed, error);
   if (memcmp (tag, SECTION_TIME, 4) == 0)
     return read_time (section, observed, error);
   return TRUE;                  /* of a later library */
@@ -560,8 +694,8 @@ read_observation (const guint8 * bytes, gsize size, Observed * observed,
  * @target: a writable buffer, which may be @observation itself
  * @error: return location for a #GST_CLOTH_ERROR
  *
- * Puts on @target the metas that @observation holds: saddles, quads and reference time
- * stamps. Sections of a kind that this library doesn't know are passed over. Time stamps
+ * Puts on @target the metas that @observation holds: saddles, quads, dots and reference
+ * time stamps. Sections of a kind that this library doesn't know are passed over. Time stamps
  * and flags of @target stay.
  *
  * Returns: %FALSE with @error set, and @target as it was, when the bytes are no valid
@@ -596,5 +730,7 @@ gst_cloth_observations_unpack (GstBuffer * observation, GstBuffer * target,
         g_steal_pointer (&observed.saddles));
   if (observed.quads)
     gst_buffer_add_cloth_quads_meta (target, g_steal_pointer (&observed.quads));
+  if (observed.dots)
+    gst_buffer_add_cloth_dots_meta (target, g_steal_pointer (&observed.dots));
   return TRUE;
 }

@@ -14,6 +14,7 @@ make_picture (guint number, gsize size)
 {
   GstClothSaddle saddle = {.x = 1.5f + number,.y = 2.25f,.cov_xx = 0.01f };
   GstClothQuad quad = {.column = 7,.row = 3,.black = TRUE,.confidence = 0.5f };
+  GstClothDot dot = {.column = 6,.row = 2,.x = 8.5f + number };
   GstBuffer *picture = gst_buffer_new_allocate (NULL, size, NULL);
 
   gst_buffer_memset (picture, 0, 77, size);
@@ -21,6 +22,8 @@ make_picture (guint number, gsize size)
           number, &saddle, 1, NULL, 0));
   gst_buffer_add_cloth_quads_meta (picture, gst_cloth_quads_new ("cam0", number,
           8, 8, &quad, 1));
+  gst_buffer_add_cloth_dots_meta (picture, gst_cloth_dots_new ("cam0", number,
+          8, 8, 5, &dot, 1));
   GST_BUFFER_PTS (picture) = number * 40 * GST_MSECOND;
   GST_BUFFER_DURATION (picture) = 40 * GST_MSECOND;
   return picture;
@@ -31,16 +34,20 @@ check_metas (GstBuffer * buffer, guint number)
 {
   GstClothSaddles *saddles = gst_buffer_get_cloth_saddles (buffer);
   GstClothQuads *quads = gst_buffer_get_cloth_quads (buffer);
+  GstClothDots *dots = gst_buffer_get_cloth_dots (buffer);
   GstClothSaddle saddle;
   GstClothQuad quad;
+  GstClothDot dot;
 
-  fail_unless (saddles && quads);
+  fail_unless (saddles && quads && dots);
   fail_unless_equals_uint64 (gst_cloth_saddles_get_sequence (saddles), number);
   fail_unless_equals_string (gst_cloth_quads_get_camera (quads), "cam0");
   fail_unless (gst_cloth_saddles_get_saddle (saddles, 0, &saddle));
   fail_unless (saddle.x == 1.5f + number && saddle.cov_xx == 0.01f);
   fail_unless (gst_cloth_quads_get_quad (quads, 0, &quad));
   fail_unless (quad.column == 7 && quad.black && quad.confidence == 0.5f);
+  fail_unless (gst_cloth_dots_get_dot (dots, 0, &dot));
+  fail_unless (dot.column == 6 && dot.row == 2 && dot.x == 8.5f + number);
   fail_unless_equals_uint64 (GST_BUFFER_PTS (buffer),
       number * 40 * GST_MSECOND);
 }

@@ -41,6 +41,7 @@ make_picture (guint number)
   GstClothQuad quad = {.column = 1,.row = 1,.x = {place, 30, 30, place},.y =
       {20.5f, 20.5f, 40, 40}
   };
+  GstClothDot dot = {.column = -1,.row = -1,.x = place,.y = 20.5f };
   GstBuffer *picture = gst_buffer_new_allocate (NULL, WIDTH * HEIGHT * 3 / 2,
       NULL);
   g_autoptr (GstCaps) clock = gst_caps_from_string ("timestamp/x-unix");
@@ -50,6 +51,8 @@ make_picture (guint number)
           number, &saddle, 1, NULL, 0));
   gst_buffer_add_cloth_quads_meta (picture, gst_cloth_quads_new ("cam0", number,
           8, 8, &quad, 1));
+  gst_buffer_add_cloth_dots_meta (picture, gst_cloth_dots_new ("cam0", number,
+          8, 8, 5, &dot, 1));
   gst_buffer_add_reference_timestamp_meta (picture, clock,
       GST_SECOND + number, GST_CLOCK_TIME_NONE);
   GST_BUFFER_PTS (picture) = gst_util_uint64_scale (number, GST_SECOND, 25);
@@ -63,15 +66,18 @@ judge_places (GstBuffer * picture, const GstVideoInfo * info)
 {
   GstClothSaddles *saddles = gst_buffer_get_cloth_saddles (picture);
   GstClothQuads *quads = gst_buffer_get_cloth_quads (picture);
+  GstClothDots *dots = gst_buffer_get_cloth_dots (picture);
   gfloat sx = (gfloat) GST_VIDEO_INFO_WIDTH (info) / WIDTH;
   gfloat sy = (gfloat) GST_VIDEO_INFO_HEIGHT (info) / HEIGHT;
   GstClothSaddle saddle;
   GstClothQuad quad;
+  GstClothDot dot;
   gfloat x, most = sx == 1 && sy == 1 ? G_MINFLOAT : 1e-4f;
 
-  if (!saddles && !quads)
+  if (!saddles && !quads && !dots)
     return "lost";
-  if (!saddles || !quads || !gst_cloth_saddles_get_saddle (saddles, 0, &saddle)
+  if (!saddles || !quads || !dots || !gst_cloth_dots_get_dot (dots, 0, &dot)
+      || !gst_cloth_saddles_get_saddle (saddles, 0, &saddle)
       || !gst_cloth_quads_get_quad (quads, 0, &quad)
       || g_strcmp0 (gst_cloth_saddles_get_camera (saddles), "cam0") != 0
       || gst_cloth_saddles_get_sequence (saddles) >= FRAMES
@@ -83,6 +89,8 @@ judge_places (GstBuffer * picture, const GstVideoInfo * info)
       || !G_APPROX_VALUE (saddle.y, 21 * sy - 0.5f, most)
       || !G_APPROX_VALUE (saddle.cov_xx, 0.01f * sx * sx, most)
       || !G_APPROX_VALUE (saddle.cov_yy, 0.04f * sy * sy, most)
+      || !G_APPROX_VALUE (dot.x, saddle.x, most)
+      || !G_APPROX_VALUE (dot.y, saddle.y, most)
       || !G_APPROX_VALUE (quad.x[3], (x + 0.5f) * sx - 0.5f, most)
       || !G_APPROX_VALUE (quad.y[2], 40.5f * sy - 0.5f, most))
     return "wrong";
@@ -259,7 +267,7 @@ GST_END_TEST;
 GST_START_TEST (test_page)
 {
   g_autoptr (GString) table =
-      g_string_new ("| chain | saddles, quads | capture "
+      g_string_new ("| chain | saddles, quads, dots | capture "
       "time |\n|---|---|---|\n");
   g_autoptr (GString) gaps = g_string_new ("| chain | gap |\n|---|---|\n");
   g_autofree gchar *text = NULL;

@@ -26,6 +26,7 @@ LLVMFuzzerTestOneInput (const guint8 * data, gsize size)
   } else {
     g_assert_nonnull (error);
     g_assert_null (gst_buffer_get_cloth_saddles (target));
+    g_assert_null (gst_buffer_get_cloth_dots (target));
   }
   return 0;
 }

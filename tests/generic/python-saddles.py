@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Sub-pixel corners, quads, meshes and observations, read and written from Python.
+"""Sub-pixel corners, quads, dots, meshes and observations, read and written from Python.
 
 Needs GI_TYPELIB_PATH and LD_LIBRARY_PATH to find libgstcloth-1.0 and its typelib.
 
@@ -116,6 +116,32 @@ class Quads(unittest.TestCase):
         points = numpy.frombuffer(quads.get_points().get_data(), numpy.float32)
         self.assertEqual(points.reshape(-1, 4, 2).tolist(),
                          [[[0.5, 0], [1.5, 2], [2.5, 4], [3.5, 6]]])
+
+
+class Dots(unittest.TestCase):
+    def test_labels_and_colours(self):
+        dot = GstCloth.Dot()
+        dot.column, dot.row, dot.mirrored, dot.confidence = 3, 2, True, 0.5
+        dot.x, dot.y, dot.cov_xx, dot.cov_xy, dot.cov_yy = 1.5, 2.5, 1, 0.25, 2
+        for colour in range(GstCloth.DOT_MAX_COLOURS):
+            self.assertTrue(dot.set_log_likelihood(colour, -colour))
+        self.assertFalse(dot.set_log_likelihood(GstCloth.DOT_MAX_COLOURS, 0))
+        bare = GstCloth.Dot()
+        bare.column = bare.row = -1
+        picture = Gst.Buffer.new()
+        self.assertIsNone(GstCloth.buffer_get_cloth_dots(picture))
+        GstCloth.buffer_add_cloth_dots_meta(picture, GstCloth.Dots.new(
+            'cam1', 9, 31, 33, 5, [dot, bare]))
+        dots = GstCloth.buffer_get_cloth_dots(picture)
+        self.assertEqual((dots.get_columns(), dots.get_rows(), dots.get_n_colours()),
+                         (31, 33, 5))
+        found, got = dots.get_dot(0)
+        self.assertTrue(found and got.mirrored and not got.touches)
+        self.assertEqual(got.get_log_likelihood(4), (True, -4))
+        points = numpy.frombuffer(dots.get_points().get_data(), numpy.float32)
+        self.assertEqual(points.reshape(-1, 8).tolist(),
+                         [[3, 2, 1.5, 2.5, 1, 0.25, 2, 0.5], [-1, -1, 0, 0, 0, 0, 0, 0]])
+        self.assertEqual(len(dots.get_dots()), 2)
 
 
 class Streams(unittest.TestCase):
