@@ -1,0 +1,393 @@
+/* Lattice of dots: each dot's four neighbours, and the connected pieces.
+ *
+ * A dot's ellipse says how the cloth is foreshortened there, but for a turn: measured by
+ * it, neighbours lie one pitch away and square to each other however oblique the view.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/vision/lattice-private.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "gst/vision/pointgrid.h"
+
+/* Pitch at most, in standard deviations of a dot's area along its longer axis: dots of
+ * 0.4 of the pitch across. */
+#define REACH 10.0f
+/* A neighbour's least distance in pitches, and how far from its place it may be. */
+#define NEAREST 0.5f
+#define PLACE_RADIUS 0.42f
+
+static gboolean
+is_sound (const ClothDot * dot)
+{
+  const gfloat *s = dot->shape;
+
+  return fabsf (dot->x) < 1e6f && fabsf (dot->y) < 1e6f && s[0] > 0.01f
+      && s[2] > 0.01f && s[0] < 1e6f && s[2] < 1e6f
+      && s[0] * s[2] - s[1] * s[1] > 1e-3f * s[0] * s[2];
+}
+
+/* Inverse square root of a symmetric 2×2 matrix: of A, √A is (A + √det A)/√(tr A + 2√det
+ * A), by Cayley and Hamilton. */
+static void
+inverse_root (const gfloat a[3], gfloat w[3])
+{
+  const gfloat root = sqrtf (a[0] * a[2] - a[1] * a[1]);
+  const gfloat t = root * sqrtf (a[0] + a[2] + 2 * root);
+
+  w[0] = (a[2] + root) / t;
+  w[1] = -a[1] / t;
+  w[2] = (a[0] + root) / t;
+}
+
+static void
+look_around (ClothDotLabeller * labeller, const ClothDot * dots)
+{
+  gfloat right = 1, bottom = 1;
+
+  for (guint i = 0; i < labeller->n; i++) {
+    if (labeller->nodes[i].sound) {
+      right = MAX (right, dots[i].x);
+      bottom = MAX (bottom, dots[i].y);
+    }
+  }
+  cloth_point_grid_clear (labeller->grid, (gint) MIN (right, 32767) + 1,
+      (gint) MIN (bottom, 32767) + 1, labeller->n);
+  for (guint i = 0; i < labeller->n; i++)
+    cloth_point_grid_add (labeller->grid,
+        labeller->nodes[i].sound ? dots[i].x : NAN, dots[i].y);
+  for (guint i = 0; i < labeller->n; i++) {
+    const gfloat *s = dots[i].shape;
+    ClothLatticeAround *around = &labeller->around[i];
+    ClothNear near[CLOTH_LATTICE_NEAR + 1];
+    gfloat longer;
+    guint n;
+
+    around->n = 0;
+    if (!labeller->nodes[i].sound)
+      continue;
+    longer = (s[0] + s[2]) / 2 + hypotf ((s[0] - s[2]) / 2, s[1]);
+    n = cloth_point_grid_nearest (labeller->grid, dots[i].x, dots[i].y,
+        REACH * sqrtf (longer), near, CLOTH_LATTICE_NEAR + 1);
+    for (guint k = 0; k < n; k++)
+      if (near[k].index != (gint) i && around->n < CLOTH_LATTICE_NEAR)
+        around->near[around->n++] = near[k].index;
+  }
+}
+
+static int
+compare_floats (gconstpointer a, gconstpointer b)
+{
+  const gfloat x = *(const gfloat *) a, y = *(const gfloat *) b;
+
+  return (x > y) - (x < y);
+}
+
+/* Distances in units of the dots' own size, then of the pitch: that is what the second
+ * nearest neighbour has in the middle of all dots. FALSE without neighbours. */
+static gboolean
+whiten (ClothDotLabeller * labeller, const ClothDot * dots)
+{
+  guint n = 0;
+  gfloat per_pitch;
+
+  for (guint i = 0; i < labeller->n; i++) {
+    ClothLatticeAround *around = &labeller->around[i];
+    gfloat least[2] = { G_MAXFLOAT, G_MAXFLOAT }, w[3];
+
+    if (around->n < 2)
+      continue;
+    inverse_root (dots[i].shape, w);
+    for (guint k = 0; k < around->n; k++) {
+      const ClothDot *other = &dots[around->near[k]];
+      const gfloat x = other->x - dots[i].x, y = other->y - dots[i].y;
+      gfloat d2;
+
+      around->whitened[k][0] = w[0] * x + w[1] * y;
+      around->whitened[k][1] = w[1] * x + w[2] * y;
+      d2 = around->whitened[k][0] * around->whitened[k][0]
+          + around->whitened[k][1] * around->whitened[k][1];
+      if (d2 < least[0]) {
+        least[1] = least[0];
+        least[0] = d2;
+      } else {
+        least[1] = MIN (least[1], d2);
+      }
+    }
+    labeller->scratch[n++] = least[1];
+  }
+  if (n == 0)
+    return FALSE;
+  qsort (labeller->scratch, n, sizeof *labeller->scratch, compare_floats);
+  per_pitch = 1 / sqrtf (labeller->scratch[n / 2]);
+  for (guint i = 0; i < labeller->n; i++)
+    for (guint k = 0; k < labeller->around[i].n; k++)
+      for (gint c = 0; c < 2; c++)
+        labeller->around[i].whitened[k][c] *= per_pitch;
+  return TRUE;
+}
+
+/* The turn of the lattice about a dot: neighbours point four ways, diagonals between. */
+static void
+choose_slots (ClothDotLabeller * labeller, guint i)
+{
+  const ClothLatticeAround *around = &labeller->around[i];
+  ClothLatticeNode *node = &labeller->nodes[i];
+  gfloat sum[2] = { 0 }, least[4], angle, axis[2];
+
+  for (guint k = 0; k < around->n; k++) {
+    const gfloat *w = around->whitened[k];
+    const gfloat d2 = w[0] * w[0] + w[1] * w[1];
+    gfloat a, b, weight;
+
+    if (!(d2 > NEAREST * NEAREST && d2 < 2.6f))
+      continue;
+    /* (w/‖w‖)⁴; diagonals have it the other way round. */
+    a = (w[0] * w[0] - w[1] * w[1]) / d2;
+    b = 2 * w[0] * w[1] / d2;
+    weight = 1.45f - d2;
+    sum[0] += weight * (a * a - b * b);
+    sum[1] += weight * 2 * a * b;
+  }
+  angle = atan2f (sum[1], sum[0]) / 4;
+  axis[0] = cosf (angle);
+  axis[1] = sinf (angle);
+  for (gint slot = 0; slot < 4; slot++)
+    least[slot] = PLACE_RADIUS * PLACE_RADIUS;
+  for (guint k = 0; k < around->n; k++) {
+    const gfloat *w = around->whitened[k];
+    const gfloat x = w[0] * axis[0] + w[1] * axis[1];
+    const gfloat y = w[1] * axis[0] - w[0] * axis[1];
+    const gint slot = fabsf (x) > fabsf (y) ? (x > 0 ? 0 : 2) : y > 0 ? 1 : 3;
+    const gfloat along = MAX (fabsf (x), fabsf (y)) - 1;
+    const gfloat across = MIN (fabsf (x), fabsf (y));
+    const gfloat miss = along * along + across * across;
+
+    if (miss < least[slot]) {
+      least[slot] = miss;
+      node->next[slot] = around->near[k];
+    }
+  }
+}
+
+static void
+cut (ClothLatticeNode * nodes, guint i, gint slot)
+{
+  ClothLatticeNode *other = &nodes[nodes[i].next[slot]];
+
+  other->next[nodes[i].back[slot]] = -1;
+  nodes[i].next[slot] = -1;
+}
+
+/* Only what both ends hold for a neighbour is one. */
+static void
+keep_mutual (ClothDotLabeller * labeller)
+{
+  ClothLatticeNode *nodes = labeller->nodes;
+
+  for (guint i = 0; i < labeller->n; i++) {
+    for (gint slot = 0; slot < 4; slot++) {
+      const gint other = nodes[i].next[slot];
+
+      if (other < 0)
+        continue;
+      nodes[i].back[slot] = 4;
+      for (guint8 k = 0; k < 4; k++)
+        if (nodes[other].next[k] == (gint) i)
+          nodes[i].back[slot] = k;
+    }
+  }
+  for (guint i = 0; i < labeller->n; i++)
+    for (gint slot = 0; slot < 4; slot++)
+      if (nodes[i].next[slot] >= 0 && nodes[i].back[slot] > 3)
+        nodes[i].next[slot] = -1;
+}
+
+static gboolean
+differ (const gfloat a[2], const gfloat b[2], gfloat c)
+{
+  const gfloat x = a[0] - b[0], y = a[1] - b[1];
+  const gfloat longer = MAX (a[0] * a[0] + a[1] * a[1],
+      b[0] * b[0] + b[1] * b[1]);
+
+  return x * x + y * y >= c * c * longer;
+}
+
+/* Vectors to neighbours; those without one are foretold from the opposite. */
+static void
+measure_steps (ClothDotLabeller * labeller)
+{
+  ClothLatticeNode *nodes = labeller->nodes;
+
+  for (guint i = 0; i < labeller->n; i++) {
+    ClothLatticeNode *node = &nodes[i];
+
+    for (gint slot = 0; slot < 4; slot++) {
+      if (node->next[slot] >= 0) {
+        node->step[slot][0] = nodes[node->next[slot]].x - node->x;
+        node->step[slot][1] = nodes[node->next[slot]].y - node->y;
+      }
+    }
+    for (gint slot = 0; slot < 4; slot++)
+      if (node->next[slot] < 0)
+        for (gint c = 0; c < 2; c++)
+          node->step[slot][c] = node->next[slot ^ 2] >= 0
+              ? -node->step[slot ^ 2][c] : 0;
+  }
+}
+
+/* Lattice vectors may change by the share c only from dot to dot: along the line, and
+ * from a dot to its neighbour across. */
+static void
+cut_bends (ClothDotLabeller * labeller)
+{
+  ClothLatticeNode *nodes = labeller->nodes;
+  const gfloat c = labeller->params.c;
+
+  for (guint i = 0; i < labeller->n; i++) {
+    ClothLatticeNode *node = &nodes[i];
+
+    for (gint slot = 0; slot < 4; slot++) {
+      const gint other = node->next[slot];
+      const gint on = (node->back[slot] + 2) & 3;
+      const gint side = (node->back[slot] + 3) & 3;
+
+      if (other < 0 || other < (gint) i)
+        continue;
+      if ((nodes[other].next[on] >= 0
+              && differ (node->step[slot], nodes[other].step[on], c)
+              && (node->next[slot ^ 2] < 0
+                  || differ (node->step[slot], nodes[i].step[slot ^ 2], c)))
+          || (node->next[(slot + 1) & 3] >= 0 && nodes[other].next[side] >= 0
+              && differ (node->step[(slot + 1) & 3], nodes[other].step[side],
+                  c) && node->next[(slot + 3) & 3] >= 0
+              && nodes[other].next[side ^ 2] >= 0
+              && differ (node->step[(slot + 3) & 3],
+                  nodes[other].step[side ^ 2], c)))
+        cut (nodes, i, slot);
+    }
+  }
+}
+
+/* Four links that lead back to where they began, the same way round. */
+static void
+count_squares (ClothDotLabeller * labeller)
+{
+  ClothLatticeNode *nodes = labeller->nodes;
+
+  for (guint i = 0; i < labeller->n; i++) {
+    for (gint first = 0; first < 4; first++) {
+      gint at = (gint) i, slot = first, corner[4], slots[4], k;
+
+      for (k = 0; k < 4; k++) {
+        const gint next = nodes[at].next[slot];
+
+        if (next < 0)
+          break;
+        corner[k] = at;
+        slots[k] = slot;
+        slot = (nodes[at].back[slot] + 3) & 3;
+        at = next;
+        /* Each square from its first corner only. */
+        if (at < (gint) i)
+          break;
+      }
+      if (k < 4 || at != (gint) i || slot != first)
+        continue;
+      for (k = 0; k < 4; k++) {
+        ClothLatticeNode *node = &nodes[corner[k]];
+
+        node->squares[slots[k]]++;
+        nodes[node->next[slots[k]]].squares[node->back[slots[k]]]++;
+      }
+    }
+  }
+}
+
+/* Finds each dot's neighbours: nodes[].next, back, step and squares. */
+void
+cloth_lattice_link (ClothDotLabeller * labeller, const ClothDot * dots)
+{
+  for (guint i = 0; i < labeller->n; i++)
+    labeller->nodes[i] = (ClothLatticeNode) {
+    .x = dots[i].x,.y = dots[i].y,.next = { -1, -1, -1, -1 },.patch =
+        -1,.sound = is_sound (&dots[i])};
+  look_around (labeller, dots);
+  if (!whiten (labeller, dots))
+    return;
+  for (guint i = 0; i < labeller->n; i++)
+    choose_slots (labeller, i);
+  keep_mutual (labeller);
+  measure_steps (labeller);
+  cut_bends (labeller);
+  measure_steps (labeller);
+  count_squares (labeller);
+}
+
+/* --- connected pieces ------------------------------------------------------------- */
+
+/* Where the neighbour of @slot lies in the patch, and how it is turned there. */
+static void
+step_to (const ClothLatticeNode * node, gint slot, gint32 cell[2],
+    guint8 * turn)
+{
+  static const gint8 ways[4][2] = { {1, 0}, {0, 1}, {-1, 0}, {0, -1} };
+  const gint way = (slot - node->turn) & 3;
+
+  cell[0] = node->cell[0] + ways[way][0];
+  cell[1] = node->cell[1] + ways[way][1];
+  /* Its slot back is the way back. */
+  *turn = (guint8) ((node->back[slot] - (way ^ 2)) & 3);
+}
+
+/* Gathers what hangs together with dot @seed by links that are sides of squares. */
+static void
+grow_patch (ClothDotLabeller * labeller, guint seed)
+{
+  ClothLatticeNode *nodes = labeller->nodes;
+  ClothLatticePatch patch = { labeller->n_members, 1 };
+  const gint32 number = (gint32) labeller->patches->len;
+
+  nodes[seed].patch = number;
+  nodes[seed].cell[0] = nodes[seed].cell[1] = 0;
+  nodes[seed].turn = 0;
+  labeller->members[labeller->n_members++] = seed;
+  for (guint k = patch.first; k < labeller->n_members; k++) {
+    const guint at = labeller->members[k];
+
+    for (gint slot = 0; slot < 4; slot++) {
+      const gint next = nodes[at].next[slot];
+      gint32 cell[2];
+      guint8 turn;
+
+      if (next < 0 || !nodes[at].squares[slot] || nodes[next].patch >= 0)
+        continue;
+      step_to (&nodes[at], slot, cell, &turn);
+      nodes[next].patch = number;
+      nodes[next].cell[0] = cell[0];
+      nodes[next].cell[1] = cell[1];
+      nodes[next].turn = turn;
+      labeller->members[labeller->n_members++] = (guint) next;
+    }
+  }
+  patch.n = labeller->n_members - patch.first;
+  g_array_append_val (labeller->patches, patch);
+}
+
+/* Finds the patches of the lattice, the best knit dots first. */
+void
+cloth_lattice_grow (ClothDotLabeller * labeller)
+{
+  labeller->n_members = 0;
+  g_array_set_size (labeller->patches, 0);
+  for (gint least = 8; least >= 1; least--) {
+    for (guint i = 0; i < labeller->n; i++) {
+      const ClothLatticeNode *node = &labeller->nodes[i];
+
+      if (node->patch < 0 && node->squares[0] + node->squares[1]
+          + node->squares[2] + node->squares[3] >= least)
+        grow_patch (labeller, i);
+    }
+  }
+}

@@ -1,0 +1,484 @@
+/* Patches of the lattice in the array: the likelihood of all their dots decides.
+ *
+ * Each dot says how much likelier each colour is than any: log ((1 − ε) n p + ε), where p
+ * is its share among the n colours and ε the share of dots that have any colour at all. A
+ * placing of a patch turns, mirrors and shifts it over the array and adds up what its
+ * dots say to the colours there. Dots of random colours give a sum that is below zero but
+ * for one in exp (sum).
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/vision/lattice-private.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Dots about the middle of a patch that choose the placings that all its dots judge. */
+#define N_PROBES 25
+/* Of those, the first that are asked of all placings. */
+#define N_FIRST 4
+/* A placing so far behind the best is given up, nats. */
+#define BEHIND 16.0f
+/* Most placings that all dots judge. */
+#define N_JUDGED 32
+#define TURNS 8
+
+typedef ClothLatticeCandidate Candidate;
+
+static void
+along_of_turn (guint8 turn, gint8 along[2][2])
+{
+  static const gint8 ways[4][2] = { {1, 0}, {0, 1}, {-1, 0}, {0, -1} };
+  const gint8 sign = turn & 4 ? -1 : 1;
+
+  along[0][0] = ways[turn & 3][0];
+  along[0][1] = ways[turn & 3][1];
+  along[1][0] = (gint8) (-sign * along[0][1]);
+  along[1][1] = (gint8) (sign * along[0][0]);
+}
+
+/* Colour of the array; n_colours where it has no dot. */
+static inline guint
+colour_at (const ClothDotLabeller * labeller, gint column, gint row)
+{
+  return (guint) column < (guint) labeller->columns
+      && (guint) row < (guint) labeller->rows
+      ? labeller->matrix[row * labeller->columns + column]
+      : (guint) labeller->n_colours;
+}
+
+static inline void
+cell_in_array (const ClothLatticePlace * place, const gint32 cell[2],
+    gint at[2])
+{
+  for (gint c = 0; c < 2; c++)
+    at[c] = place->origin[c] + cell[0] * place->along[0][c]
+        + cell[1] * place->along[1][c];
+}
+
+/* What dot @i says to lying in @cell of a patch at @place. */
+static inline gfloat
+gain_at (const ClothDotLabeller * labeller, const ClothLatticePlace * place,
+    guint i)
+{
+  gint at[2];
+
+  cell_in_array (place, labeller->nodes[i].cell, at);
+  return labeller->gains[i * (guint) (labeller->n_colours + 1)
+      + colour_at (labeller, at[0], at[1])];
+}
+
+static void
+set_gains (ClothDotLabeller * labeller, const gfloat * log_likelihoods)
+{
+  const guint m = (guint) labeller->n_colours;
+  const gfloat any = labeller->params.colour_error;
+
+  for (guint i = 0; i < labeller->n; i++) {
+    const gfloat *from = log_likelihoods + i * m;
+    gfloat *to = labeller->gains + i * (m + 1);
+    gfloat most = -G_MAXFLOAT, sum = 0;
+
+    for (guint k = 0; k < m; k++)
+      most = MAX (most, from[k]);
+    for (guint k = 0; k < m; k++)
+      sum += to[k] = expf (from[k] - most);
+    for (guint k = 0; k < m; k++)
+      to[k] = sum >= 1 && sum <= (gfloat) m
+          ? logf ((1 - any) * (gfloat) m * to[k] / sum + any) : 0;
+    to[m] = logf (any);
+  }
+}
+
+/* --- searching the whole array ------------------------------------------------------ */
+
+static guint
+knit (const ClothLatticeNode * node)
+{
+  return (guint) node->squares[0] + node->squares[1] + node->squares[2]
+      + node->squares[3];
+}
+
+/* The dot that is best knit, and whose neighbours are. */
+static guint
+find_anchor (const ClothDotLabeller * labeller, const ClothLatticePatch * patch)
+{
+  guint anchor = labeller->members[patch->first], most = 0;
+
+  for (guint k = 0; k < patch->n; k++) {
+    const guint i = labeller->members[patch->first + k];
+    const ClothLatticeNode *node = &labeller->nodes[i];
+    guint sum = 2 * knit (node);
+
+    for (gint slot = 0; slot < 4; slot++)
+      if (node->next[slot] >= 0)
+        sum += knit (&labeller->nodes[node->next[slot]]);
+    if (sum > most) {
+      most = sum;
+      anchor = i;
+    }
+  }
+  return anchor;
+}
+
+/* The dots of the patch nearest to @anchor, it first. */
+static guint
+choose_probes (const ClothDotLabeller * labeller,
+    const ClothLatticePatch * patch, guint anchor, guint probes[N_PROBES])
+{
+  const gint32 *middle = labeller->nodes[anchor].cell;
+  const guint all = MIN (N_PROBES, patch->n);
+  guint n = 0;
+
+  for (gint reach = 0; n < all; reach++) {
+    for (guint k = 0; k < patch->n && n < all; k++) {
+      const guint i = labeller->members[patch->first + k];
+      const gint32 *cell = labeller->nodes[i].cell;
+
+      if (abs (cell[0] - middle[0]) + abs (cell[1] - middle[1]) == reach)
+        probes[n++] = i;
+    }
+  }
+  return n;
+}
+
+/* Asks the first probes of every placing that has the anchor in the array. */
+static void
+ask_all (ClothDotLabeller * labeller, const guint * probes, guint n)
+{
+  const guint m = (guint) labeller->n_colours + 1;
+  const gint32 *middle = labeller->nodes[probes[0]].cell;
+
+  g_array_set_size (labeller->candidates, 0);
+  for (guint8 turn = 0; turn < (labeller->params.mirrored ? 8 : 4); turn++) {
+    gint8 along[2][2];
+    gint by[N_FIRST][2];
+
+    along_of_turn (turn, along);
+    for (guint k = 0; k < n; k++) {
+      const gint32 *cell = labeller->nodes[probes[k]].cell;
+
+      for (gint c = 0; c < 2; c++)
+        by[k][c] = (cell[0] - middle[0]) * along[0][c]
+            + (cell[1] - middle[1]) * along[1][c];
+    }
+    for (gint row = 0; row < labeller->rows; row++) {
+      for (gint column = 0; column < labeller->columns; column++) {
+        Candidate candidate = { 0, (gint16) column, (gint16) row, turn };
+
+        for (guint k = 0; k < n; k++)
+          candidate.score += labeller->gains[probes[k] * m
+              + colour_at (labeller, column + by[k][0], row + by[k][1])];
+        g_array_append_val (labeller->candidates, candidate);
+      }
+    }
+  }
+}
+
+/* Keeps the candidates that are not far behind. */
+static void
+thin_out (ClothDotLabeller * labeller)
+{
+  Candidate *candidates = (Candidate *) (gpointer) labeller->candidates->data;
+  gfloat best = -G_MAXFLOAT;
+  guint n = 0;
+
+  for (guint k = 0; k < labeller->candidates->len; k++)
+    best = MAX (best, candidates[k].score);
+  for (guint k = 0; k < labeller->candidates->len; k++)
+    if (candidates[k].score > best - BEHIND)
+      candidates[n++] = candidates[k];
+  g_array_set_size (labeller->candidates, n);
+}
+
+static int
+compare_candidates (gconstpointer a, gconstpointer b)
+{
+  const Candidate *x = a, *y = b;
+
+  if (x->score != y->score)
+    return x->score > y->score ? -1 : 1;
+  if (x->turn != y->turn)
+    return x->turn - y->turn;
+  return x->row != y->row ? x->row - y->row : x->column - y->column;
+}
+
+static ClothLatticePlace
+place_of_candidate (const Candidate * candidate, const gint32 middle[2])
+{
+  ClothLatticePlace place = {.origin = {candidate->column, candidate->row},
+  .mirrored = (candidate->turn & 4) != 0
+  };
+
+  along_of_turn (candidate->turn, place.along);
+  for (gint c = 0; c < 2; c++)
+    place.origin[c] -= middle[0] * place.along[0][c]
+        + middle[1] * place.along[1][c];
+  return place;
+}
+
+static gfloat
+score_of_place (const ClothDotLabeller * labeller,
+    const ClothLatticePatch * patch, const ClothLatticePlace * place)
+{
+  gfloat score = 0;
+
+  for (guint k = 0; k < patch->n; k++)
+    score += gain_at (labeller, place, labeller->members[patch->first + k]);
+  return score;
+}
+
+/* The best of all placings; its confidence, below zero when it cannot be any. */
+static gfloat
+search (ClothDotLabeller * labeller, const ClothLatticePatch * patch,
+    ClothLatticePlace * place)
+{
+  const guint m = (guint) labeller->n_colours + 1;
+  const gfloat n_places = (gfloat) (TURNS * labeller->columns * labeller->rows);
+  const guint anchor = find_anchor (labeller, patch);
+  const gint32 *middle = labeller->nodes[anchor].cell;
+  guint probes[N_PROBES], n;
+  gfloat best = -G_MAXFLOAT, second = -G_MAXFLOAT;
+  const Candidate *candidates;
+
+  n = choose_probes (labeller, patch, anchor, probes);
+  ask_all (labeller, probes, MIN (n, N_FIRST));
+  for (guint k = N_FIRST; k < n; k++) {
+    const gint32 *cell = labeller->nodes[probes[k]].cell;
+    gint8 along[2][2];
+    gint by[TURNS][2];
+
+    for (guint8 turn = 0; turn < TURNS; turn++) {
+      along_of_turn (turn, along);
+      for (gint c = 0; c < 2; c++)
+        by[turn][c] = (cell[0] - middle[0]) * along[0][c]
+            + (cell[1] - middle[1]) * along[1][c];
+    }
+    for (guint i = 0; i < labeller->candidates->len; i++) {
+      Candidate *candidate =
+          &g_array_index (labeller->candidates, Candidate, i);
+
+      candidate->score += labeller->gains[probes[k] * m
+          + colour_at (labeller, candidate->column + by[candidate->turn][0],
+              candidate->row + by[candidate->turn][1])];
+    }
+    thin_out (labeller);
+  }
+  candidates = (const Candidate *) (gpointer) labeller->candidates->data;
+  qsort (labeller->candidates->data, labeller->candidates->len,
+      sizeof (Candidate), compare_candidates);
+  for (guint k = 0; k < MIN (labeller->candidates->len, N_JUDGED); k++) {
+    const ClothLatticePlace here = place_of_candidate (&candidates[k], middle);
+    const gfloat score = score_of_place (labeller, patch, &here);
+
+    if (score > best) {
+      second = best;
+      best = score;
+      *place = here;
+    } else {
+      second = MAX (second, score);
+    }
+  }
+  return MIN (best - second, best - logf (n_places));
+}
+
+/* The most that the dots of a patch could say to any placing. */
+static gfloat
+most_of_patch (const ClothDotLabeller * labeller,
+    const ClothLatticePatch * patch)
+{
+  const guint m = (guint) labeller->n_colours;
+  gfloat sum = 0;
+
+  for (guint k = 0; k < patch->n; k++) {
+    const gfloat *gains = labeller->gains
+        + labeller->members[patch->first + k] * (m + 1);
+    gfloat most = gains[0];
+
+    for (guint c = 1; c < m; c++)
+      most = MAX (most, gains[c]);
+    sum += most;
+  }
+  return sum;
+}
+
+/* --- what doesn't fit ------------------------------------------------------------------ */
+
+/* Mean of @from over a dot and its neighbours in its patch. */
+static gfloat
+blur (const ClothDotLabeller * labeller, const gfloat * from, guint i)
+{
+  const ClothLatticeNode *node = &labeller->nodes[i];
+  gfloat sum = from[i];
+  gint n = 1;
+
+  for (gint slot = 0; slot < 4; slot++) {
+    if (node->next[slot] >= 0
+        && labeller->nodes[node->next[slot]].patch == node->patch) {
+      sum += from[node->next[slot]];
+      n++;
+    }
+  }
+  return sum / (gfloat) n;
+}
+
+/* Cuts off connected dots whose colours speak against the placing of patch @number: they
+ * become patches of their own. */
+static void
+cut_misfits (ClothDotLabeller * labeller, guint number,
+    const ClothLatticePlace * place)
+{
+  ClothLatticeNode *nodes = labeller->nodes;
+  ClothLatticePatch *patch =
+      &g_array_index (labeller->patches, ClothLatticePatch, number);
+  gfloat *gain = labeller->scratch, *once = gain + labeller->n;
+  gfloat *twice = once + labeller->n;
+  guint *members = labeller->members + patch->first, kept = 0;
+  const guint n = patch->n, n_patches = labeller->patches->len;
+  guint n_queue = 0;
+
+  for (guint k = 0; k < n; k++)
+    gain[members[k]] = gain_at (labeller, place, members[k]);
+  for (guint k = 0; k < n; k++)
+    once[members[k]] = blur (labeller, gain, members[k]);
+  for (guint k = 0; k < n; k++)
+    twice[members[k]] = blur (labeller, once, members[k]);
+  /* Those that go are gathered in the queue, piece by piece. */
+  for (guint k = 0; k < n; k++) {
+    const guint start = n_queue;
+    const gint32 piece = (gint32) labeller->patches->len;
+    gfloat sum = 0;
+
+    if (twice[members[k]] >= 0 || nodes[members[k]].patch != (gint32) number)
+      continue;
+    nodes[members[k]].patch = piece;
+    labeller->queue[n_queue++] = members[k];
+    for (guint q = start; q < n_queue; q++) {
+      const ClothLatticeNode *node = &nodes[labeller->queue[q]];
+
+      sum += gain[labeller->queue[q]];
+      for (gint slot = 0; slot < 4; slot++) {
+        const gint next = node->next[slot];
+
+        if (next >= 0 && nodes[next].patch == (gint32) number
+            && twice[next] < 0) {
+          nodes[next].patch = piece;
+          labeller->queue[n_queue++] = (guint) next;
+        }
+      }
+    }
+    if (sum > -labeller->params.lead) {
+      /* Not enough against them: marked so that they are not looked at again. */
+      for (guint q = start; q < n_queue; q++) {
+        nodes[labeller->queue[q]].patch = (gint32) number;
+        twice[labeller->queue[q]] = 0;
+      }
+      n_queue = start;
+    } else {
+      ClothLatticePatch cut = { start, n_queue - start };
+
+      g_array_append_val (labeller->patches, cut);
+      patch = &g_array_index (labeller->patches, ClothLatticePatch, number);
+    }
+  }
+  if (n_queue == 0)
+    return;
+  for (guint k = 0; k < n; k++)
+    if (nodes[members[k]].patch == (gint32) number)
+      members[kept++] = members[k];
+  for (guint q = 0; q < n_queue; q++)
+    members[kept + q] = labeller->queue[q];
+  /* Their places in the queue become places among the members. */
+  for (guint k = n_patches; k < labeller->patches->len; k++)
+    g_array_index (labeller->patches, ClothLatticePatch, k).first +=
+        patch->first + kept;
+  patch->n = kept;
+}
+
+/* --- labels --------------------------------------------------------------------------- */
+
+static void
+label_patch (ClothDotLabeller * labeller, guint number,
+    const ClothLatticePlace * place, gfloat confidence)
+{
+  const ClothLatticePatch *patch =
+      &g_array_index (labeller->patches, ClothLatticePatch, number);
+
+  for (guint k = 0; k < patch->n; k++) {
+    const guint i = labeller->members[patch->first + k];
+    gint at[2];
+
+    cell_in_array (place, labeller->nodes[i].cell, at);
+    if (colour_at (labeller, at[0], at[1]) == (guint) labeller->n_colours)
+      continue;
+    labeller->labels[i] = (ClothDotLabel) {
+    at[0], at[1], confidence, place->mirrored, number};
+  }
+}
+
+static void
+take_label (ClothDotLabel * label)
+{
+  *label = (ClothDotLabel) {
+  -1, -1, 0, FALSE, G_MAXUINT};
+}
+
+/* Each label at most once: of two dots the surer patch's keeps it, of equals none. */
+static void
+keep_unique (ClothDotLabeller * labeller)
+{
+  for (gint k = 0; k < labeller->columns * labeller->rows; k++)
+    labeller->holders[k] = -1;
+  for (guint i = 0; i < labeller->n; i++) {
+    ClothDotLabel *label = &labeller->labels[i], *other;
+    gint32 *holder;
+
+    if (label->column < 0)
+      continue;
+    holder = &labeller->holders[label->row * labeller->columns + label->column];
+    if (*holder < 0) {
+      *holder = (gint32) i;
+      continue;
+    }
+    other = &labeller->labels[*holder];
+    if (other->column < 0)
+      take_label (label);
+    else if (other->confidence > label->confidence)
+      take_label (label);
+    else if (other->confidence < label->confidence) {
+      take_label (other);
+      *holder = (gint32) i;
+    } else {
+      take_label (label);
+      take_label (other);
+    }
+  }
+}
+
+/* Places the patches and labels their dots. */
+void
+cloth_lattice_place (ClothDotLabeller * labeller,
+    const gfloat * log_likelihoods)
+{
+  const gfloat n_places = (gfloat) (TURNS * labeller->columns * labeller->rows);
+  const gfloat needed = labeller->params.lead + logf (n_places);
+
+  set_gains (labeller, log_likelihoods);
+  for (guint i = 0; i < labeller->n; i++)
+    take_label (&labeller->labels[i]);
+  /* There may come more. */
+  for (guint k = 0; k < labeller->patches->len; k++) {
+    const ClothLatticePatch patch =
+        g_array_index (labeller->patches, ClothLatticePatch, k);
+    ClothLatticePlace place = { 0 };
+    gfloat confidence;
+
+    if (most_of_patch (labeller, &patch) < needed)
+      continue;
+    confidence = search (labeller, &patch, &place);
+    if (confidence < labeller->params.lead)
+      continue;
+    cut_misfits (labeller, k, &place);
+    label_patch (labeller, k, &place, confidence);
+  }
+  keep_unique (labeller);
+}

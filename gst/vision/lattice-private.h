@@ -1,0 +1,89 @@
+/* What the parts of dot labelling share.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/vision/lattice.h"
+#include "gst/vision/pointgrid.h"
+
+G_BEGIN_DECLS
+
+/* A dot's place in the lattice. Its four slots follow each other by quarter turns in the
+ * picture, the sense the same for all; slot k of one dot may be slot m of another. */
+typedef struct
+{
+  gfloat x, y;
+  gfloat step[4][2];            /* to the neighbour of each slot, px; foretold if none */
+  gint32 next[4];               /* neighbour of each slot, -1: none */
+  guint8 back[4];               /* the slot of the neighbour that leads back */
+  guint8 squares[4];            /* closed squares that the link is a side of */
+  gboolean sound;               /* numbers that can be used */
+  gint32 patch;                 /* -1: none */
+  gint32 cell[2];               /* in the patch */
+  guint8 turn;                  /* slot of the patch's direction 0 */
+} ClothLatticeNode;
+
+/* Nearest dots of the picture that are looked at for neighbours. */
+#define CLOTH_LATTICE_NEAR 16
+
+/* The dots around a dot, nearest first, and how far they lie in pitches along axes of the
+ * cloth that are turned by some angle. */
+typedef struct
+{
+  gint32 near[CLOTH_LATTICE_NEAR];
+  gfloat whitened[CLOTH_LATTICE_NEAR][2];
+  guint n;
+} ClothLatticeAround;
+
+/* A connected piece of the lattice: members[first … first + n − 1]. */
+typedef struct
+{
+  guint first, n;
+} ClothLatticePatch;
+
+/* A placing: the anchor dot in the array, and how the patch is turned about it. */
+typedef struct
+{
+  gfloat score;
+  gint16 column, row;
+  guint8 turn;                  /* quarter turns, plus 4 when mirrored */
+} ClothLatticeCandidate;
+
+/* Cells (column, row) of a patch lie in the array at @origin + column·@along[0] +
+ * row·@along[1]. */
+typedef struct
+{
+  gint32 origin[2];
+  gint8 along[2][2];
+  gboolean mirrored;
+} ClothLatticePlace;
+
+struct _ClothDotLabeller
+{
+  gint columns, rows, n_colours;
+  guint8 *matrix;
+  gint32 *holders;              /* of each label: its dot, -1: none */
+  ClothDotLabelParams params;
+
+  /* Of the picture at hand; room for @n_room dots. */
+  guint n, n_room;
+  ClothPointGrid *grid;
+  ClothLatticeNode *nodes;
+  ClothLatticeAround *around;
+  gfloat *gains;                /* n·(n_colours + 1): log-odds of each colour against any, the
+                                 * last where the array has no dot */
+  ClothDotLabel *labels;
+  guint *members;               /* dots, patch by patch */
+  guint *queue;
+  guint n_members;
+  GArray *patches;
+  GArray *candidates;
+  gfloat *scratch;
+};
+
+void cloth_lattice_link (ClothDotLabeller * labeller, const ClothDot * dots);
+void cloth_lattice_grow (ClothDotLabeller * labeller);
+void cloth_lattice_place (ClothDotLabeller * labeller,
+    const gfloat * log_likelihoods);
+
+G_END_DECLS
