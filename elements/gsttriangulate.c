@@ -7,10 +7,10 @@
  * @title: triangulate
  *
  * Joins the pictures of a rig's cameras by time and triangulates the corners of the
- * squares that they carry as #GstClothQuads. Each frame of the mesh has a vertex for
- * every corner of the board: its place, its 3×3 covariance, and whether three or more
- * views agree on it, only two saw it, or it is unseen. A corner seen by one camera, or
- * contradicted, is unseen; nothing is carried over from earlier frames. Clocks that the
+ * squares that they carry as #GstClothQuads, or the dots of #GstClothDots. Each frame of
+ * the mesh has a vertex for every corner of the board, or every dot of the array: its
+ * place, its 3×3 covariance, and whether three or more views agree on it, only two saw
+ * it, or it is unseen. A vertex seen by one camera, or contradicted, is unseen; nothing is carried over from earlier frames. Clocks that the
  * rig knows to differ (`offset_s`) are known from the first pictures on, which make no
  * mesh then.
  *
@@ -44,7 +44,6 @@
 #include <gst/cloth/cloth.h>
 #include <math.h>
 
-#include "gst/pattern/pattern.h"
 #include "gst/mesh/isometry.h"
 #include "gst/rig/merge.h"
 #include "gst/rig/rigfile.h"
@@ -79,8 +78,7 @@ struct _GstTriangulate
 
   /* streaming thread */
   ClothRig *rig;
-  ClothPattern *pattern;
-  GstClothTopology *topology;
+  GstTriangulateBoard *board;
   gint fps_n, fps_d;            /* as sent downstream; fps_n -1: not yet */
   ClothTriangulator *triangulator;
   ClothPool *pool;
@@ -180,8 +178,7 @@ gst_triangulate_load_pattern (GstTriangulate * self)
 {
   g_autofree gchar *location = NULL;
   g_autoptr (GError) error = NULL;
-  g_autoptr (ClothPattern) pattern = NULL;
-  GstClothTopology *topology;
+  GstTriangulateBoard *board;
 
   GST_OBJECT_LOCK (self);
   location = g_strdup (self->pattern_location);
@@ -190,30 +187,21 @@ gst_triangulate_load_pattern (GstTriangulate * self)
 
   if (!location) {
     GST_ELEMENT_ERROR (self, RESOURCE, NOT_FOUND,
-        ("The board is not known: the property pattern is not set."),
+        ("What is filmed is not known: the property pattern is not set."),
         ("Set pattern to the pattern.json that gst-cloth-pattern-1.0 has "
             "written beside the print."));
     return FALSE;
   }
-  pattern = cloth_pattern_load (location, &error);
-  if (!pattern) {
+  board = gst_triangulate_board_load (location, &error);
+  if (!board) {
     GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ,
-        ("The board could not be read: %s", error->message),
+        ("The pattern could not be read: %s", error->message),
         ("Set pattern to a pattern.json; it is now \"%s\".", location));
     return FALSE;
   }
-  topology = gst_triangulate_board_to_topology (pattern, &error);
-  if (!topology) {
-    GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
-        ("The board of %s makes no mesh: %s", location, error->message),
-        ("Use a board of fewer squares."));
-    return FALSE;
-  }
-  g_clear_pointer (&self->topology, gst_cloth_topology_unref);
-  self->topology = topology;
-  cloth_pattern_free (self->pattern);
-  self->pattern = g_steal_pointer (&pattern);
-  self->n_vertices = gst_cloth_topology_get_n_vertices (topology);
+  gst_triangulate_board_free (self->board);
+  self->board = board;
+  self->n_vertices = gst_cloth_topology_get_n_vertices (board->topology);
   gst_triangulate_clear_merges (self);
   self->positions = g_renew (gfloat, self->positions,
       3 * (gsize) self->n_vertices);
@@ -268,8 +256,7 @@ gst_triangulate_forget (GstTriangulate * self)
 
   g_clear_pointer (&self->triangulator, cloth_triangulator_free);
   g_clear_pointer (&self->rig, cloth_rig_free);
-  g_clear_pointer (&self->pattern, cloth_pattern_free);
-  g_clear_pointer (&self->topology, gst_cloth_topology_unref);
+  g_clear_pointer (&self->board, gst_triangulate_board_free);
   g_clear_pointer (&self->pool, cloth_pool_free);
   gst_triangulate_clear_merges (self);
   self->fps_n = -1;
@@ -338,13 +325,15 @@ gst_triangulate_negotiate_src (GstClothSync * sync, GstCaps * downstream,
   GST_OBJECT_LOCK (self);
   changed = self->pattern_changed;
   GST_OBJECT_UNLOCK (self);
-  if ((changed || !self->topology) && !gst_triangulate_load_pattern (self)) {
+  if ((changed || !self->board) && !gst_triangulate_load_pattern (self)) {
     return GST_FLOW_ERROR;
   }
   if (!gst_triangulate_views_rate (self->view, &self->fps_n, &self->fps_d)) {
     return GST_AGGREGATOR_FLOW_NEED_DATA;
   }
-  *caps = gst_cloth_topology_to_caps (self->topology, self->fps_n, self->fps_d);
+  *caps =
+      gst_cloth_topology_to_caps (self->board->topology, self->fps_n,
+      self->fps_d);
   return GST_FLOW_OK;
 }
 
@@ -377,11 +366,11 @@ gst_triangulate_make_mesh (GstTriangulate * self,
     r->state[i] = (guint8) states[r->state[i]];
     n_known += r->state[i] != GST_CLOTH_VERTEX_UNSEEN;
   }
-  gst_triangulate_check_add (&self->check, GST_ELEMENT (self), self->rig,
-      views, r);
-  self->isometry.columns = (guint) self->pattern->columns + 1;
-  self->isometry.rows = (guint) self->pattern->rows + 1;
-  self->isometry.edge_m = self->pattern->square_m;
+  gst_triangulate_check_add (&self->check, GST_ELEMENT (self), self->board,
+      self->rig, views, r);
+  self->isometry.columns = self->board->columns;
+  self->isometry.rows = self->board->rows;
+  self->isometry.edge_m = self->board->edge_m;
   if (cloth_isometry_check (&self->isometry, self->positions,
           self->covariances, self->wrong)) {
     for (i = 0; i < self->n_vertices; i++) {
@@ -399,15 +388,15 @@ gst_triangulate_make_mesh (GstTriangulate * self,
   return GST_FLOW_OK;
 }
 
-/* The quads of a view, from its own or from unpacked metadata. */
-static GstClothQuads *
-gst_triangulate_quads_of (GstTriangulate * self, guint index, GstBuffer * view,
-    GstBuffer ** unpacked)
+/* What a view carries, in its own or in unpacked metadata. */
+static gboolean
+gst_triangulate_look (GstTriangulate * self, guint index, GstBuffer * view,
+    GstBuffer ** unpacked, GstTriangulateSeen * seen)
 {
   g_autoptr (GError) error = NULL;
 
   if (!self->view[index].observations) {
-    return gst_buffer_get_cloth_quads (view);
+    return gst_triangulate_board_see (self->board, view, seen);
   }
   *unpacked = gst_buffer_new ();
   if (!gst_cloth_observations_unpack (view, *unpacked, &error)) {
@@ -419,9 +408,9 @@ gst_triangulate_quads_of (GstTriangulate * self, guint index, GstBuffer * view,
               error->message), ("It counts as a picture with nothing seen; so "
               "do others like it, of which you are not told."));
     }
-    return NULL;
+    return FALSE;
   }
-  return gst_buffer_get_cloth_quads (*unpacked);
+  return gst_triangulate_board_see (self->board, *unpacked, seen);
 }
 
 static GstFlowReturn
@@ -431,11 +420,11 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   GstTriangulate *self = GST_TRIANGULATE (sync);
   ClothTriangulateView seen[CLOTH_RIG_MAX_CAMERAS] = { {NULL} };
   GstBuffer *unpacked[GST_CLOTH_SYNC_MAX_PADS] = { NULL };
-  GstClothQuads *quads[GST_CLOTH_SYNC_MAX_PADS] = { NULL };
+  GstTriangulateSeen carried[GST_CLOTH_SYNC_MAX_PADS];
   GstReferenceTimestampMeta *stamp = NULL;
   GstFlowReturn ret = GST_FLOW_ERROR;
   gboolean moved;
-  guint i, n_quads = 0;
+  guint i, n_carried = 0;
 
   if (!gst_triangulate_apply_parameters (self)) {
     return GST_FLOW_ERROR;
@@ -444,23 +433,23 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   for (i = 0; i < n; i++) {
     const gchar *name;
 
-    self->view[i].has_quads = FALSE;
+    self->view[i].carries = FALSE;
     if (!views[i]) {
       continue;
     }
-    quads[i] = gst_triangulate_quads_of (self, i, views[i], &unpacked[i]);
+    self->view[i].carries = gst_triangulate_look (self, i, views[i],
+        &unpacked[i], &carried[i]);
     if (!stamp) {
       stamp = gst_buffer_get_reference_timestamp_meta (unpacked[i] ?
           unpacked[i] : views[i], NULL);
     }
-    if (!quads[i]) {
+    if (!self->view[i].carries) {
       continue;
     }
-    self->view[i].has_quads = TRUE;
-    if (n_quads++ == 0) {
-      self->sequence = gst_cloth_quads_get_sequence (quads[i]);
+    if (n_carried++ == 0) {
+      self->sequence = gst_triangulate_seen_sequence (&carried[i]);
     }
-    name = gst_cloth_quads_get_camera (quads[i]);
+    name = gst_triangulate_seen_camera (&carried[i]);
     if (name[0] != '\0' && g_strcmp0 (name, self->view[i].meta) != 0) {
       g_free (self->view[i].meta);
       self->view[i].meta = g_strdup (name);
@@ -478,15 +467,15 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   for (i = 0; i < n; i++) {
     gint camera = self->view[i].camera;
 
-    if (!quads[i] || camera < 0) {
+    if (!self->view[i].carries || camera < 0) {
       continue;
     }
     if (!self->merge[camera]) {
       self->merge[camera] = cloth_merge_new (self->n_vertices);
     }
     cloth_merge_clear (self->merge[camera]);
-    if (!gst_triangulate_board_take (GST_ELEMENT (self), i, self->pattern,
-            quads[i], self->merge[camera])) {
+    if (!gst_triangulate_board_take (self->board, GST_ELEMENT (self), i,
+            &carried[i], self->merge[camera])) {
       goto done;
     }
     cloth_merge_finish (self->merge[camera], self->threshold,
@@ -681,8 +670,9 @@ gst_triangulate_class_init (GstTriangulateClass * klass)
    */
   g_object_class_install_property (object_class, PROP_PATTERN,
       g_param_spec_string ("pattern", "Pattern",
-          "File pattern.json of the printed board: the mesh has a vertex for each "
-          "corner of its squares", NULL, flags));
+          "File pattern.json of what is filmed: the mesh has a vertex for each corner "
+          "of a checkerboard's squares, or for each dot of an M-array", NULL,
+          flags));
   /**
    * GstTriangulate:threshold:
    *
@@ -710,7 +700,7 @@ gst_triangulate_class_init (GstTriangulateClass * klass)
    */
   g_object_class_install_property (object_class, PROP_ERROR_FLOOR,
       g_param_spec_double ("error-floor", "Error floor",
-          "Variance in px² added to every corner's own, which knows of the "
+          "Variance in px² added to every observation's own, which knows of the "
           "picture's noise only: what calibration, lens model and compression "
           "leave", 0.0, 1e6, DEFAULT_ERROR_FLOOR, flags));
   /**
@@ -730,7 +720,7 @@ gst_triangulate_class_init (GstTriangulateClass * klass)
    */
   g_object_class_install_property (object_class, PROP_MIN_LENGTH,
       g_param_spec_double ("min-length", "Least length",
-          "Corners are dropped that are nearer to their neighbours in space than "
+          "Vertices are dropped that are nearer to their neighbours in space than "
           "this share of their distance on the flat cloth; 0: no such limit",
           0.0, 1.0, DEFAULT_MIN_LENGTH, flags));
   /**
@@ -740,7 +730,7 @@ gst_triangulate_class_init (GstTriangulateClass * klass)
    */
   g_object_class_install_property (object_class, PROP_MAX_LENGTH,
       g_param_spec_double ("max-length", "Largest length",
-          "Corners are dropped that are farther from their neighbours in space "
+          "Vertices are dropped that are farther from their neighbours in space "
           "than this share of their distance on the flat cloth, more for cloth "
           "that stretches; 0: no such limit", 0.0, 10.0, DEFAULT_MAX_LENGTH,
           flags));
@@ -760,7 +750,7 @@ gst_triangulate_class_init (GstTriangulateClass * klass)
       &src_template, GST_TYPE_AGGREGATOR_PAD);
   gst_element_class_set_static_metadata (element_class, "Triangulate",
       "Filter/Analyzer/Video",
-      "Makes a mesh with covariances from what several cameras see of a board",
+      "Makes a mesh with covariances from what several cameras see of a pattern",
       "The gst-cloth developers");
   gst_type_mark_as_plugin_api (GST_TYPE_TRIANGULATE_PAD, 0);
 }

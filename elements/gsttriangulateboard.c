@@ -1,4 +1,4 @@
-/* The printed board as triangulate sees it: squares in, a grid of vertices out.
+/* The printed pattern as triangulate sees it: squares or dots in, a grid of vertices out.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #ifdef HAVE_CONFIG_H
@@ -7,22 +7,19 @@
 
 #include "elements/gsttriangulateboard.h"
 
-GstClothTopology *
-gst_triangulate_board_to_topology (const ClothPattern * pattern,
+static GstClothTopology *
+make_topology (const GstTriangulateBoard * board, const gdouble origin_m[2],
     GError ** error)
 {
-  guint columns = (guint) pattern->columns + 1;
-  guint rows = (guint) pattern->rows + 1;
+  guint columns = board->columns, rows = board->rows;
   g_autofree gfloat *uv = g_new (gfloat, 2 * (gsize) columns * rows);
   g_autoptr (GstClothTopology) grid = NULL;
   const guint32 *faces;
   guint n_indices, i;
 
   for (i = 0; i < columns * rows; i++) {
-    uv[2 * i] = (gfloat) (pattern->origin_uv_m[0] +
-        (i % columns) * pattern->square_m);
-    uv[2 * i + 1] = (gfloat) (pattern->origin_uv_m[1] +
-        (i / columns) * pattern->square_m);
+    uv[2 * i] = (gfloat) (origin_m[0] + (i % columns) * board->edge_m);
+    uv[2 * i + 1] = (gfloat) (origin_m[1] + (i / columns) * board->edge_m);
   }
   /* its faces, at another place */
   grid = gst_cloth_topology_new_grid (columns, rows, 1.0f, 1.0f, error);
@@ -34,29 +31,96 @@ gst_triangulate_board_to_topology (const ClothPattern * pattern,
       n_indices / 4, error);
 }
 
-gboolean
-gst_triangulate_board_take (GstElement * self, guint index,
-    const ClothPattern * pattern, GstClothQuads * quads, ClothMerge * merge)
+GstTriangulateBoard *
+gst_triangulate_board_load (const gchar * path, GError ** error)
 {
-  guint columns = (guint) pattern->columns;
-  guint rows = (guint) pattern->rows;
+  GstTriangulateBoard *board = g_new0 (GstTriangulateBoard, 1);
+  g_autoptr (GError) other = NULL;
+  const gdouble *origin_m = NULL;
+
+  board->dots = cloth_m_array_load (path, &other);
+  if (board->dots) {
+    board->columns = (guint) board->dots->columns;
+    board->rows = (guint) board->dots->rows;
+    board->edge_m = board->dots->pitch_m;
+    board->features = "dots";
+    board->detector = "dotlabel";
+    origin_m = board->dots->origin_uv_m;
+  } else if (g_error_matches (other, CLOTH_PATTERN_ERROR,
+          CLOTH_PATTERN_ERROR_UNSUPPORTED)) {
+    board->checker = cloth_pattern_load (path, error);
+    if (board->checker) {
+      board->columns = (guint) board->checker->columns + 1;
+      board->rows = (guint) board->checker->rows + 1;
+      board->edge_m = board->checker->square_m;
+      board->features = "squares";
+      board->detector = "saddledetect ! quadtrack";
+      origin_m = board->checker->origin_uv_m;
+    }
+  } else {
+    g_propagate_error (error, g_steal_pointer (&other));
+  }
+  if (origin_m) {
+    board->topology = make_topology (board, origin_m, error);
+  }
+  if (!board->topology) {
+    g_clear_pointer (&board, gst_triangulate_board_free);
+  }
+  return board;
+}
+
+void
+gst_triangulate_board_free (GstTriangulateBoard * board)
+{
+  if (!board) {
+    return;
+  }
+  g_clear_pointer (&board->checker, cloth_pattern_free);
+  g_clear_pointer (&board->dots, cloth_m_array_free);
+  g_clear_pointer (&board->topology, gst_cloth_topology_unref);
+  g_free (board);
+}
+
+gboolean
+gst_triangulate_board_see (const GstTriangulateBoard * board,
+    GstBuffer * buffer, GstTriangulateSeen * seen)
+{
+  seen->quads = gst_buffer_get_cloth_quads (buffer);
+  seen->dots = gst_buffer_get_cloth_dots (buffer);
+  if (board->dots && seen->dots) {
+    seen->quads = NULL;
+  } else if (board->checker && seen->quads) {
+    seen->dots = NULL;
+  }
+  return seen->quads || seen->dots;
+}
+
+const gchar *
+gst_triangulate_seen_camera (const GstTriangulateSeen * seen)
+{
+  return seen->dots ? gst_cloth_dots_get_camera (seen->dots) :
+      gst_cloth_quads_get_camera (seen->quads);
+}
+
+guint64
+gst_triangulate_seen_sequence (const GstTriangulateSeen * seen)
+{
+  return seen->dots ? gst_cloth_dots_get_sequence (seen->dots) :
+      gst_cloth_quads_get_sequence (seen->quads);
+}
+
+static void
+take_quads (const GstTriangulateBoard * board, const GstClothQuads * quads,
+    ClothMerge * merge)
+{
   const GstClothQuad *quad;
   guint n, i, c;
 
-  if (gst_cloth_quads_get_columns (quads) != columns
-      || gst_cloth_quads_get_rows (quads) != rows) {
-    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
-        ("The squares on sink_%u are of a board of %u×%u, but pattern has "
-            "%u×%u.", index, gst_cloth_quads_get_columns (quads),
-            gst_cloth_quads_get_rows (quads), columns, rows),
-        ("Give the detector and this element the same pattern."));
-    return FALSE;
-  }
   quad = gst_cloth_quads_get_quads (quads, &n);
   for (i = 0; i < n; i++, quad++) {
     if (quad->state != GST_CLOTH_QUAD_TRACKED || quad->column < 0
-        || quad->row < 0 || (guint) quad->column >= columns
-        || (guint) quad->row >= rows) {
+        || quad->row < 0 || (guint) quad->column >= board->columns - 1
+        || (guint) quad->row >= board->rows - 1) {
       continue;
     }
     for (c = 0; c < 4; c++) {
@@ -64,9 +128,65 @@ gst_triangulate_board_take (GstElement * self, guint index,
       guint row = (guint) quad->row + (c >= 2);
       gdouble cov[3] = { quad->cov_xx[c], quad->cov_xy[c], quad->cov_yy[c] };
 
-      cloth_merge_add (merge, row * (columns + 1) + column, quad->x[c],
+      cloth_merge_add (merge, row * board->columns + column, quad->x[c],
           quad->y[c], cov);
     }
+  }
+}
+
+/* A dot seen from behind is the same vertex: cloth is thin. */
+static void
+take_dots (const GstTriangulateBoard * board, const GstClothDots * dots,
+    ClothMerge * merge)
+{
+  const GstClothDot *dot;
+  guint n, i;
+
+  dot = gst_cloth_dots_get_dots (dots, &n);
+  for (i = 0; i < n; i++, dot++) {
+    gdouble cov[3] = { dot->cov_xx, dot->cov_xy, dot->cov_yy };
+
+    if (!dot->touches && dot->column >= 0 && dot->row >= 0
+        && (guint) dot->column < board->columns
+        && (guint) dot->row < board->rows) {
+      cloth_merge_add (merge, (guint) dot->row * board->columns
+          + (guint) dot->column, dot->x, dot->y, cov);
+    }
+  }
+}
+
+gboolean
+gst_triangulate_board_take (const GstTriangulateBoard * board,
+    GstElement * self, guint index, const GstTriangulateSeen * seen,
+    ClothMerge * merge)
+{
+  guint squares = board->checker ? 1 : 0;       /* corners are one more */
+  guint columns = board->columns - squares, rows = board->rows - squares;
+  guint seen_columns, seen_rows;
+
+  if (seen->dots ? !board->dots : !board->checker) {
+    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+        ("The pictures on sink_%u carry %s, but pattern has %s.", index,
+            seen->dots ? "dots" : "squares", board->features),
+        ("Set pattern to the pattern.json of what is filmed, or put %s before "
+            "the pad.", board->detector));
+    return FALSE;
+  }
+  seen_columns = seen->dots ? gst_cloth_dots_get_columns (seen->dots) :
+      gst_cloth_quads_get_columns (seen->quads);
+  seen_rows = seen->dots ? gst_cloth_dots_get_rows (seen->dots) :
+      gst_cloth_quads_get_rows (seen->quads);
+  if (seen_columns != columns || seen_rows != rows) {
+    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+        ("The %s on sink_%u are of a pattern of %u×%u, but pattern has %u×%u.",
+            board->features, index, seen_columns, seen_rows, columns, rows),
+        ("Give the detector and this element the same pattern."));
+    return FALSE;
+  }
+  if (seen->dots) {
+    take_dots (board, seen->dots, merge);
+  } else {
+    take_quads (board, seen->quads, merge);
   }
   return TRUE;
 }

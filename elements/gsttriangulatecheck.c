@@ -13,8 +13,8 @@
 
 void
 gst_triangulate_check_add (GstTriangulateCheck * check, GstElement * element,
-    const ClothRig * rig, const ClothTriangulateView * views,
-    const ClothTriangulation * result)
+    const GstTriangulateBoard * board, const ClothRig * rig,
+    const ClothTriangulateView * views, const ClothTriangulation * result)
 {
   guint c, i, worst = 0, n_seeing = 0;
   const gchar *seeing = NULL;
@@ -45,18 +45,19 @@ gst_triangulate_check_add (GstTriangulateCheck * check, GstElement * element,
   if (n_seeing == 1) {
     check->warned = TRUE;
     GST_ELEMENT_WARNING (element, STREAM, FAILED,
-        ("Only camera \"%s\" carries squares so far, so every vertex is unseen.",
-            seeing),
-        ("Link two or more cameras, each with saddledetect ! quadtrack before "
-            "its sink pad."));
+        ("Only camera \"%s\" carries %s so far, so every vertex is unseen.",
+            seeing, board->features),
+        ("Link two or more cameras, each with %s before its sink pad.",
+            board->detector));
     return;
   }
   if (n_seeing == 0) {
     check->warned = TRUE;
     GST_ELEMENT_WARNING (element, STREAM, FAILED,
-        ("No picture so far carries squares, so every vertex is unseen."),
-        ("Put saddledetect ! quadtrack before each sink pad, and nothing that "
-            "drops metadata between them and it."));
+        ("No picture so far carries %s, so every vertex is unseen.",
+            board->features),
+        ("Put %s before each sink pad, and nothing that drops metadata between "
+            "them and it.", board->detector));
     return;
   }
   for (c = 0; c < rig->n_cameras; c++) {
@@ -71,10 +72,11 @@ gst_triangulate_check_add (GstTriangulateCheck * check, GstElement * element,
   }
   if (share > 0.5) {
     check->warned = TRUE;
-    GST_ELEMENT_WARNING (element, STREAM, FAILED,
-        ("Camera \"%s\" contradicts the others on %.0f%% of the corners it sees.",
-            rig->cameras[worst].name, 100. * share),
+    GST_ELEMENT_WARNING_WITH_DETAILS (element, STREAM, FAILED,
+        ("Camera \"%s\" contradicts the others on %.0f%% of the %s it sees.",
+            rig->cameras[worst].name, 100. * share, board->features),
         ("See that each pad has its own camera and that the cameras stand as when "
-            "rig was made; else calibrate again, or raise error-floor."));
+            "rig was made; else calibrate again, or raise error-floor."),
+        ("camera", G_TYPE_STRING, rig->cameras[worst].name, NULL));
   }
 }

@@ -5,6 +5,7 @@
 
 #include <gst/gst.h>
 
+#include "elements/gsttriangulateboard.h"
 #include "gst/rig/rig.h"
 #include "gst/rig/triangulate.h"
 
@@ -20,9 +21,11 @@ typedef struct {
 } GstTriangulateCheck;
 
 /* Counts one set; every 25 sets posts, once, a warning if fewer than two cameras have
- * carried squares yet, or if a camera contradicts the others on more than half of what it sees. */
+ * carried squares or dots yet, or if a camera contradicts the others on more than half of
+ * what it sees; the message's details name it as "camera". */
 void gst_triangulate_check_add (GstTriangulateCheck * check,
-    GstElement * element, const ClothRig * rig,
+    GstElement * element, const GstTriangulateBoard * board,
+    const ClothRig * rig,
     const ClothTriangulateView * views, const ClothTriangulation * result);
 
 G_END_DECLS

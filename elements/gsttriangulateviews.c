@@ -84,7 +84,7 @@ gst_triangulate_views_map (GstClothSync * self, GstTriangulateView * views,
         return FALSE;
       }
     } else if (n_pads != rig->n_cameras) {
-      if (!view->has_quads) {
+      if (!view->carries) {
         continue;               /* nothing to place; its metadata may still say */
       }
       GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,

@@ -16,7 +16,7 @@ typedef struct {
   gint fps_n, fps_d;
   gchar *property;              /* the pad's property, of this set */
   gchar *meta;                  /* the name that the metadata carries */
-  gboolean present, has_quads;
+  gboolean present, carries;
   gint camera;                  /* in rig; -1 when not known */
   GstClockTimeDiff offset;
 } GstTriangulateView;

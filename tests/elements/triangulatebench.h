@@ -20,7 +20,7 @@
 #define N_QUADS (COLUMNS * ROWS)
 #define N_VERTICES ((COLUMNS + 1) * (ROWS + 1))
 #define SQUARE 0.04
-#define MAX_CAMERAS 4
+#define MAX_CAMERAS 16
 #define PERIOD (40 * GST_MSECOND)
 #define VIDEO "video/x-raw,format=GRAY8,width=1280,height=720,framerate=25/1"
 #define OBSERVATIONS GST_CLOTH_OBSERVATIONS_MEDIA_TYPE \

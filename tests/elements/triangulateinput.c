@@ -185,7 +185,8 @@ GST_START_TEST (test_no_calibration)
   refuse_to_start ("pattern", "/nonexistent/pattern.json", "pattern.json");
   /* a file of another kind */
   refuse_to_start ("rig", TEST_DATA "/checker_pair/pattern.json", "cameras");
-  refuse_to_start ("pattern", TEST_DATA "/checker_pair/rig.json", "board");
+  refuse_to_start ("pattern", TEST_DATA "/checker_pair/rig.json",
+      "pattern could not be read");
 }
 
 GST_END_TEST;
