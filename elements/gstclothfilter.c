@@ -172,6 +172,7 @@ gst_cloth_filter_transform_ip (GstBaseTransform * trans, GstBuffer * buffer)
   frame.luma.width = GST_VIDEO_FRAME_WIDTH (&video);
   frame.luma.height = GST_VIDEO_FRAME_HEIGHT (&video);
   frame.luma.stride = GST_VIDEO_FRAME_COMP_STRIDE (&video, 0);
+  frame.video = &video;
   frame.sequence = gst_cloth_filter_number (self, buffer);
   frame.camera = camera;
   frame.buffer = buffer;

@@ -21,6 +21,7 @@ G_DECLARE_DERIVABLE_TYPE (GstClothFilter, gst_cloth_filter, GST, CLOTH_FILTER,
 /**
  * GstClothFilterFrame:
  * @luma: the picture's luma, mapped for reading
+ * @video: the whole picture, mapped for reading
  * @sequence: number of the picture: the buffer's offset where it has one, else its stream
  *   time in pictures, else counted from the start of the stream
  * @camera: name of the camera, "" when none was set
@@ -30,6 +31,7 @@ G_DECLARE_DERIVABLE_TYPE (GstClothFilter, gst_cloth_filter, GST, CLOTH_FILTER,
  */
 typedef struct {
   ClothImage luma;
+  const GstVideoFrame *video;
   guint64 sequence;
   const gchar *camera;
   GstBuffer *buffer;

@@ -13,6 +13,7 @@
 #include "elements/gstclothmetapay.h"
 #include "elements/gstclothoverlay.h"
 #include "elements/gstclothsim.h"
+#include "elements/gstdotlabel.h"
 #include "elements/gstmeshsink.h"
 #include "elements/gstmeshsrc.h"
 #include "elements/gstquadtrack.h"
@@ -30,6 +31,7 @@ plugin_init (GstPlugin * plugin)
   registered &= GST_ELEMENT_REGISTER (clothmetapay, plugin);
   registered &= GST_ELEMENT_REGISTER (clothoverlay, plugin);
   registered &= GST_ELEMENT_REGISTER (clothsim, plugin);
+  registered &= GST_ELEMENT_REGISTER (dotlabel, plugin);
   registered &= GST_ELEMENT_REGISTER (meshsink, plugin);
   registered &= GST_ELEMENT_REGISTER (meshsrc, plugin);
   registered &= GST_ELEMENT_REGISTER (quadtrack, plugin);

@@ -1,0 +1,489 @@
+/* dotlabel: coloured dots, found, classified and labelled.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+
+/**
+ * SECTION:element-dotlabel
+ * @title: dotlabel
+ *
+ * Finds the dots of a colour-coded pattern on dark cloth, asks for each how likely its
+ * colour is under each colour of the pattern, and finds which dot of the pattern it is.
+ * All of it goes along with the picture as #GstClothDots; the picture itself stays as it
+ * is and where it is. Pictures need colour: grey ones are refused.
+ *
+ * The bus is told by the element messages `dotlabel/found` and `dotlabel/lost` when
+ * labelled dots come into sight and when all of them are gone; their fields are `camera`,
+ * `sequence`, `timestamp` (PTS, ns), `dots`, the number of dots seen, and `labelled`.
+ * When dots have been seen for a while and no place of the pattern fits, a warning says
+ * so.
+ *
+ * ## Labelled dots over a film
+ * |[
+ * gst-launch-1.0 filesrc location=cam0.mp4 ! decodebin ! dotlabel pattern=pattern.json ! \
+ *     clothoverlay ! videoconvert ! autovideosink
+ * ]|
+ *
+ * Since: 0.1
+ */
+#ifdef HAVE_CONFIG_H
+#include "config.h"
+#endif
+
+#include "elements/gstdotlabel.h"
+
+#include <gst/cloth/cloth.h>
+
+#include "elements/gstclothutil.h"
+#include "gst/pattern/marray.h"
+#include "gst/vision/dotcolour.h"
+#include "gst/vision/lattice.h"
+
+GST_DEBUG_CATEGORY_STATIC (dot_label_debug);
+#define GST_CAT_DEFAULT dot_label_debug
+
+G_STATIC_ASSERT (GST_CLOTH_DOT_MAX_COLOURS >= CLOTH_M_ARRAY_MAX_COLOURS);
+G_STATIC_ASSERT (GST_CLOTH_MAX_FEATURES >= CLOTH_DOT_MAX);
+
+/* Pictures with dots but without a label before the user is told, and how many dots
+ * make such a picture: those of one window. */
+#define PATIENCE 25
+#define WINDOW 9
+
+/* A warning about a pattern that doesn't fit is better than no link at all: grey pictures
+ * are let in, to be refused with a word on what to do. */
+#define COLOUR_FORMATS "{ I420, YV12, NV12, NV21, Y42B, NV16, NV61, Y444, " \
+    "NV24, Y41B, YUV9, YVU9, A420 }"
+#define DOT_LABEL_CAPS GST_VIDEO_CAPS_MAKE (COLOUR_FORMATS) \
+    ", width=(int)[ 1, 16384 ], height=(int)[ 1, 16384 ]; " \
+    GST_VIDEO_CAPS_MAKE ("GRAY8") \
+    ", width=(int)[ 1, 16384 ], height=(int)[ 1, 16384 ]"
+
+struct _GstDotLabel
+{
+  GstClothFilter parent;
+
+  /* Properties, protected by the object lock. */
+  gchar *pattern_path;
+  ClothDotParams dot_params;
+  ClothDotLabelParams label_params;
+
+  /* Streaming thread. */
+  ClothMArray *array;
+  ClothDotDetector *detector;
+  ClothDotLabeller *labeller;
+  ClothDotColourModel colours;
+  gboolean knows_colours;
+  GstVideoColorMatrix matrix;   /* that @colours are made for */
+  GArray *likelihoods;          /* gfloat, the array's n_colours for each dot */
+  GArray *dots;                 /* GstClothDot */
+  gboolean found;
+  guint n_in_vain;              /* pictures with dots and no label; none any more: 0 */
+  gboolean warned;
+};
+
+enum
+{
+  PROP_0,
+  PROP_PATTERN,
+  PROP_CONTRAST,
+  PROP_SHARE,
+  PROP_MIN_AREA,
+  PROP_MAX_DIAMETER,
+  PROP_ROUNDNESS,
+  PROP_C,
+  PROP_COLOUR_ERROR,
+  PROP_LEAD,
+  PROP_MIRRORED
+};
+
+static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE ("sink",
+    GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS (DOT_LABEL_CAPS));
+static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE ("src",
+    GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS (DOT_LABEL_CAPS));
+
+G_DEFINE_TYPE (GstDotLabel, gst_dot_label, GST_TYPE_CLOTH_FILTER);
+GST_ELEMENT_REGISTER_DEFINE (dotlabel, "dotlabel", GST_RANK_NONE,
+    GST_TYPE_DOT_LABEL);
+
+static gboolean
+gst_dot_label_start (GstClothFilter * filter)
+{
+  GstDotLabel *self = GST_DOT_LABEL (filter);
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *path = NULL;
+
+  GST_OBJECT_LOCK (self);
+  path = g_strdup (self->pattern_path);
+  GST_OBJECT_UNLOCK (self);
+  if (!path) {
+    GST_ELEMENT_ERROR (self, RESOURCE, NOT_FOUND,
+        ("The dots are not known: the property pattern is not set."),
+        ("Set pattern to the pattern.json that gst-cloth-pattern-1.0 m-array has "
+            "written beside the print."));
+    return FALSE;
+  }
+  self->array = cloth_m_array_load (path, &error);
+  if (!self->array) {
+    GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ,
+        ("Can't read the pattern: %s", error->message),
+        ("Set pattern to the pattern.json of an M-array; it is now \"%s\".",
+            path));
+    return FALSE;
+  }
+  self->labeller = cloth_dot_labeller_new (self->array->columns,
+      self->array->rows, self->array->n_colours, self->array->matrix, &error);
+  if (!self->labeller) {
+    GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
+        ("Dots can't be labelled by this pattern: %s", error->message),
+        ("pattern=%s", path));
+    g_clear_pointer (&self->array, cloth_m_array_free);
+    return FALSE;
+  }
+  self->detector = cloth_dot_detector_new ();
+  self->knows_colours = self->found = self->warned = FALSE;
+  self->n_in_vain = 0;
+  return TRUE;
+}
+
+static void
+gst_dot_label_stop (GstClothFilter * filter)
+{
+  GstDotLabel *self = GST_DOT_LABEL (filter);
+
+  g_clear_pointer (&self->detector, cloth_dot_detector_free);
+  g_clear_pointer (&self->labeller, cloth_dot_labeller_free);
+  g_clear_pointer (&self->array, cloth_m_array_free);
+}
+
+/* What was learnt of the colours stays: it is of the camera, not of the film. */
+static void
+gst_dot_label_reset (GstClothFilter * filter)
+{
+  GstDotLabel *self = GST_DOT_LABEL (filter);
+
+  if (self->labeller)
+    cloth_dot_labeller_reset (self->labeller);
+}
+
+/* Starts the colours from those of the print, in the luma and chroma of this film. */
+static void
+gst_dot_label_prepare_colours (GstDotLabel * self, const GstVideoInfo * info)
+{
+  guint8 rgb[CLOTH_M_ARRAY_MAX_COLOURS][3];
+  gdouble kr = 0.299, kb = 0.114;
+
+  if (self->knows_colours && self->matrix == info->colorimetry.matrix)
+    return;
+  self->matrix = info->colorimetry.matrix;
+  self->knows_colours = TRUE;
+  gst_video_color_matrix_get_Kr_Kb (self->matrix, &kr, &kb);
+  for (gint i = 0; i < self->array->n_colours; i++)
+    memcpy (rgb[i], self->array->colours[i].rgb, 3);
+  cloth_dot_colour_model_init (&self->colours, self->array->n_colours,
+      (const guint8 (*)[3]) rgb, (gfloat) kr, (gfloat) kb);
+}
+
+/* FALSE: the picture has no colours, and an error was posted. */
+static gboolean
+gst_dot_label_view (GstDotLabel * self, const GstClothFilterFrame * frame,
+    ClothDotImage * image)
+{
+  const GstVideoFrame *video = frame->video;
+
+  if (GST_VIDEO_FRAME_N_COMPONENTS (video) < 3) {
+    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+        ("Dots are told apart by their colours, and these pictures are grey."),
+        ("Film in colour, and leave out what turns the pictures to %s before %s.",
+            GST_VIDEO_INFO_NAME (&video->info), GST_OBJECT_NAME (self)));
+    return FALSE;
+  }
+  image->luma = frame->luma;
+  for (guint k = 0; k < 2; k++)
+    image->chroma[k] = GST_VIDEO_FRAME_COMP_DATA (video, k + 1);
+  image->chroma_stride = GST_VIDEO_FRAME_COMP_STRIDE (video, 1);
+  image->chroma_step = GST_VIDEO_FRAME_COMP_PSTRIDE (video, 1);
+  image->chroma_shift[0] =
+      (gint) GST_VIDEO_FORMAT_INFO_W_SUB (video->info.finfo, 1);
+  image->chroma_shift[1] =
+      (gint) GST_VIDEO_FORMAT_INFO_H_SUB (video->info.finfo, 1);
+  return TRUE;
+}
+
+/* Tells the bus when the pattern comes into sight and when it is gone, and the user when
+ * it is another one. */
+static void
+gst_dot_label_tell (GstDotLabel * self, const GstClothFilterFrame * frame,
+    guint n_dots, guint n_labelled)
+{
+  gboolean found = n_labelled > 0;
+
+  if (found != self->found) {
+    self->found = found;
+    gst_element_post_message (GST_ELEMENT (self),
+        gst_message_new_element (GST_OBJECT (self),
+            gst_structure_new (found ? "dotlabel/found" : "dotlabel/lost",
+                "camera", G_TYPE_STRING, frame->camera,
+                "sequence", G_TYPE_UINT64, frame->sequence,
+                "timestamp", G_TYPE_UINT64, GST_BUFFER_PTS (frame->buffer),
+                "dots", G_TYPE_UINT, n_dots,
+                "labelled", G_TYPE_UINT, n_labelled, NULL)));
+  }
+  if (found)
+    self->n_in_vain = 0;
+  else if (n_dots >= WINDOW)
+    self->n_in_vain++;
+  if (self->n_in_vain == PATIENCE && !self->warned) {
+    self->warned = TRUE;
+    GST_ELEMENT_WARNING (self, STREAM, FAILED,
+        ("%u dots are seen, but they fit nowhere into the pattern.", n_dots),
+        ("Set pattern to the file of the very print that is filmed. Colours "
+            "that the printer has swapped, or a camera that sees them alike, "
+            "look like another pattern too."));
+  }
+}
+
+static GstFlowReturn
+gst_dot_label_analyse (GstClothFilter * filter,
+    const GstClothFilterFrame * frame)
+{
+  GstDotLabel *self = GST_DOT_LABEL (filter);
+  const guint n_colours = (guint) self->array->n_colours;
+  ClothDotParams dot_params;
+  ClothDotLabelParams label_params;
+  ClothDotImage image;
+  const ClothDot *dots;
+  const ClothDotLabel *labels;
+  gfloat *likelihoods;
+  guint n, n_labels, n_labelled = 0;
+
+  if (!gst_dot_label_view (self, frame, &image))
+    return GST_FLOW_ERROR;
+  GST_OBJECT_LOCK (self);
+  dot_params = self->dot_params;
+  label_params = self->label_params;
+  GST_OBJECT_UNLOCK (self);
+  gst_dot_label_prepare_colours (self, &frame->video->info);
+
+  cloth_dot_detector_run (self->detector, &dot_params, &image, CLOTH_SIMD_BEST);
+  dots = cloth_dot_detector_get_dots (self->detector, &n);
+  g_array_set_size (self->likelihoods, n * n_colours);
+  likelihoods = (gfloat *) self->likelihoods->data;
+  cloth_dot_colour_model_classify (&self->colours, dots, n, likelihoods);
+  cloth_dot_labeller_run (self->labeller, &label_params, dots, n, likelihoods);
+  labels = cloth_dot_labeller_get_labels (self->labeller, &n_labels);
+
+  g_array_set_size (self->dots, n);
+  for (guint k = 0; k < n; k++) {
+    GstClothDot *dot = &g_array_index (self->dots, GstClothDot, k);
+
+    memset (dot, 0, sizeof *dot);
+    dot->column = labels[k].column;
+    dot->row = labels[k].row;
+    dot->mirrored = labels[k].mirrored;
+    dot->confidence = labels[k].confidence;
+    dot->touches = dots[k].touches;
+    dot->x = dots[k].x;
+    dot->y = dots[k].y;
+    dot->cov_xx = dots[k].cov[0];
+    dot->cov_xy = dots[k].cov[1];
+    dot->cov_yy = dots[k].cov[2];
+    memcpy (dot->log_likelihood, likelihoods + k * n_colours,
+        n_colours * sizeof (gfloat));
+    n_labelled += dot->column >= 0;
+  }
+  gst_buffer_add_cloth_dots_meta (frame->buffer,
+      gst_cloth_dots_new (frame->camera, frame->sequence,
+          (guint) self->array->columns, (guint) self->array->rows, n_colours,
+          (const GstClothDot *) self->dots->data, n));
+  gst_dot_label_tell (self, frame, n, n_labelled);
+  GST_LOG_OBJECT (self, "%u dots, %u labelled", n, n_labelled);
+  return GST_FLOW_OK;
+}
+
+static void
+gst_dot_label_set_property (GObject * object, guint id, const GValue * value,
+    GParamSpec * pspec)
+{
+  GstDotLabel *self = GST_DOT_LABEL (object);
+
+  GST_OBJECT_LOCK (self);
+  if (!gst_cloth_may_change (GST_ELEMENT (self), pspec)) {
+    GST_OBJECT_UNLOCK (self);
+    return;
+  }
+  switch (id) {
+    case PROP_PATTERN:
+      g_free (self->pattern_path);
+      self->pattern_path = g_value_dup_string (value);
+      break;
+    case PROP_CONTRAST:
+      self->dot_params.contrast = g_value_get_float (value);
+      break;
+    case PROP_SHARE:
+      self->dot_params.share = g_value_get_float (value);
+      break;
+    case PROP_MIN_AREA:
+      self->dot_params.min_area = g_value_get_float (value);
+      break;
+    case PROP_MAX_DIAMETER:
+      self->dot_params.max_diameter = g_value_get_int (value);
+      break;
+    case PROP_ROUNDNESS:
+      self->dot_params.roundness = g_value_get_float (value);
+      break;
+    case PROP_C:
+      self->label_params.c = g_value_get_float (value);
+      break;
+    case PROP_COLOUR_ERROR:
+      self->label_params.colour_error = g_value_get_float (value);
+      break;
+    case PROP_LEAD:
+      self->label_params.lead = g_value_get_float (value);
+      break;
+    case PROP_MIRRORED:
+      self->label_params.mirrored = g_value_get_boolean (value);
+      break;
+    default:
+      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
+  }
+  GST_OBJECT_UNLOCK (self);
+}
+
+static void
+gst_dot_label_get_property (GObject * object, guint id, GValue * value,
+    GParamSpec * pspec)
+{
+  GstDotLabel *self = GST_DOT_LABEL (object);
+
+  GST_OBJECT_LOCK (self);
+  switch (id) {
+    case PROP_PATTERN:
+      g_value_set_string (value, self->pattern_path);
+      break;
+    case PROP_CONTRAST:
+      g_value_set_float (value, self->dot_params.contrast);
+      break;
+    case PROP_SHARE:
+      g_value_set_float (value, self->dot_params.share);
+      break;
+    case PROP_MIN_AREA:
+      g_value_set_float (value, self->dot_params.min_area);
+      break;
+    case PROP_MAX_DIAMETER:
+      g_value_set_int (value, self->dot_params.max_diameter);
+      break;
+    case PROP_ROUNDNESS:
+      g_value_set_float (value, self->dot_params.roundness);
+      break;
+    case PROP_C:
+      g_value_set_float (value, self->label_params.c);
+      break;
+    case PROP_COLOUR_ERROR:
+      g_value_set_float (value, self->label_params.colour_error);
+      break;
+    case PROP_LEAD:
+      g_value_set_float (value, self->label_params.lead);
+      break;
+    case PROP_MIRRORED:
+      g_value_set_boolean (value, self->label_params.mirrored);
+      break;
+    default:
+      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
+  }
+  GST_OBJECT_UNLOCK (self);
+}
+
+static void
+gst_dot_label_finalize (GObject * object)
+{
+  GstDotLabel *self = GST_DOT_LABEL (object);
+
+  g_free (self->pattern_path);
+  g_array_unref (self->likelihoods);
+  g_array_unref (self->dots);
+  G_OBJECT_CLASS (gst_dot_label_parent_class)->finalize (object);
+}
+
+static void
+install_float (GObjectClass * klass, guint id, const gchar * name,
+    const gchar * nick, const gchar * blurb, gfloat low, gfloat high,
+    gfloat value)
+{
+  g_object_class_install_property (klass, id, g_param_spec_float (name, nick,
+          blurb, low, high, value, G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+          GST_PARAM_MUTABLE_PLAYING | GST_PARAM_CONTROLLABLE));
+}
+
+static void
+gst_dot_label_class_init (GstDotLabelClass * klass)
+{
+  GObjectClass *object_class = G_OBJECT_CLASS (klass);
+  GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
+  GstClothFilterClass *filter_class = GST_CLOTH_FILTER_CLASS (klass);
+  const ClothDotParams dots = cloth_dot_default_params ();
+  const ClothDotLabelParams labels = cloth_dot_label_default_params ();
+  const GParamFlags any_time = G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS
+      | GST_PARAM_MUTABLE_PLAYING | GST_PARAM_CONTROLLABLE;
+
+  GST_DEBUG_CATEGORY_INIT (dot_label_debug, "dotlabel", 0,
+      "labelling of coloured dots");
+  object_class->set_property = gst_dot_label_set_property;
+  object_class->get_property = gst_dot_label_get_property;
+  object_class->finalize = gst_dot_label_finalize;
+
+  g_object_class_install_property (object_class, PROP_PATTERN,
+      g_param_spec_string ("pattern", "Pattern",
+          "File pattern.json of the M-array that is filmed.", NULL,
+          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+          GST_PARAM_MUTABLE_READY));
+  install_float (object_class, PROP_CONTRAST, "contrast", "Contrast",
+      "Least luma of a dot above the ground around it, grey levels.", 1, 254,
+      dots.contrast);
+  install_float (object_class, PROP_SHARE, "share", "Share",
+      "Least luma of a dot above the ground as a share of the brightest around.",
+      0, 0.9f, dots.share);
+  install_float (object_class, PROP_MIN_AREA, "min-area", "Least area",
+      "Area from which on a spot is a dot, px.", 4, 40000, dots.min_area);
+  g_object_class_install_property (object_class, PROP_MAX_DIAMETER,
+      g_param_spec_int ("max-diameter", "Greatest diameter",
+          "Extent up to which a spot is a dot, px.", 4, CLOTH_DOT_MAX_DIAMETER,
+          dots.max_diameter, any_time));
+  install_float (object_class, PROP_ROUNDNESS, "roundness", "Roundness",
+      "Area from which on a spot is a dot, as a share of that of the ellipse with "
+      "the same second moments.", 0, 1, dots.roundness);
+  install_float (object_class, PROP_C, "c", "c",
+      "Greatest change of the vector from dot to neighbouring dot from one dot to "
+      "the next, as a share of its length; folds change it more and end the "
+      "growing.", 0, 1, labels.c);
+  install_float (object_class, PROP_COLOUR_ERROR, "colour-error",
+      "Colour error",
+      "Share of the dots that are taken for having any colour at all.", 0.001f,
+      0.9f, labels.colour_error);
+  install_float (object_class, PROP_LEAD, "lead", "Lead",
+      "Least log-odds of a patch's place in the pattern, nats: against the next "
+      "best place and against dots of random colours.", 0, 1000, labels.lead);
+  g_object_class_install_property (object_class, PROP_MIRRORED,
+      g_param_spec_boolean ("mirrored", "Mirrored",
+          "Whether the print may be seen from behind, as in a mirror.",
+          labels.mirrored, any_time));
+
+  gst_element_class_add_static_pad_template (element_class, &sink_template);
+  gst_element_class_add_static_pad_template (element_class, &src_template);
+  gst_element_class_set_static_metadata (element_class, "Dot labeller",
+      "Filter/Analyzer/Video",
+      "Finds and labels the dots of a colour-coded pattern on cloth",
+      "The gst-cloth developers");
+  filter_class->start = gst_dot_label_start;
+  filter_class->stop = gst_dot_label_stop;
+  filter_class->reset = gst_dot_label_reset;
+  filter_class->analyse = gst_dot_label_analyse;
+}
+
+static void
+gst_dot_label_init (GstDotLabel * self)
+{
+  self->dot_params = cloth_dot_default_params ();
+  self->label_params = cloth_dot_label_default_params ();
+  self->likelihoods = g_array_new (FALSE, FALSE, sizeof (gfloat));
+  self->dots = g_array_new (FALSE, FALSE, sizeof (GstClothDot));
+}

@@ -1,0 +1,365 @@
+/* dotlabel: labels against the mesh that the pictures were rendered from, all formats
+ * alike, and what it refuses.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "tests/elements/dotringscene.h"
+
+#include <glib/gstdio.h>
+#include <gst/check/gstharness.h>
+#include <gst/cloth/cloth.h>
+
+static Ring ring;
+static GstSample *film;         /* the first picture of cam0 */
+
+static void
+setup (void)
+{
+  ring_open (&ring);
+  film = ring_picture ("cam0");
+}
+
+static void
+teardown (void)
+{
+  ring_close (&ring);
+  gst_sample_unref (film);
+}
+
+static GstHarness *
+open_label (const gchar * pattern)
+{
+  GstElement *element = gst_element_factory_make ("dotlabel", NULL);
+  GstHarness *h;
+
+  fail_unless (element != NULL);
+  gst_object_ref_sink (element);
+  g_object_set (element, "pattern", pattern, "camera", "cam0", NULL);
+  h = gst_harness_new_with_element (element, "sink", "src");
+  gst_object_unref (element);
+  return h;
+}
+
+/* The film's picture, or its top-left @width × @height, converted and with @padding bytes
+ * after each row. */
+static GstBuffer *
+picture (GstVideoFormat format, gint width, gint height, guint padding,
+    GstCaps ** caps)
+{
+  GstVideoInfo from, cut, to;
+  GstVideoFrame in, out;
+  GstVideoConverter *converter;
+  GstVideoAlignment align;
+  GstBuffer *buffer;
+
+  fail_unless (gst_video_info_from_caps (&from, gst_sample_get_caps (film)));
+  gst_video_info_set_format (&to, format, (guint) width, (guint) height);
+  to.colorimetry = from.colorimetry;
+  to.chroma_site = from.chroma_site;
+  to.fps_n = 25;
+  to.fps_d = 1;
+  *caps = gst_video_info_to_caps (&to);
+  cut = from;
+  converter = gst_video_converter_new (&cut, &to,
+      gst_structure_new ("options", GST_VIDEO_CONVERTER_OPT_SRC_WIDTH,
+          G_TYPE_INT, width, GST_VIDEO_CONVERTER_OPT_SRC_HEIGHT, G_TYPE_INT,
+          height, GST_VIDEO_CONVERTER_OPT_DITHER_METHOD,
+          GST_TYPE_VIDEO_DITHER_METHOD, GST_VIDEO_DITHER_NONE, NULL));
+  fail_unless (converter != NULL);
+  gst_video_alignment_reset (&align);
+  align.padding_right = padding;
+  fail_unless (gst_video_info_align (&to, &align));
+  buffer = gst_buffer_new_allocate (NULL, GST_VIDEO_INFO_SIZE (&to), NULL);
+  gst_buffer_memset (buffer, 0, 0xaa, -1);
+  gst_buffer_add_video_meta_full (buffer, 0, format, (guint) width,
+      (guint) height, GST_VIDEO_INFO_N_PLANES (&to), to.offset, to.stride);
+  fail_unless (gst_video_frame_map (&in, &from, gst_sample_get_buffer (film),
+          GST_MAP_READ));
+  fail_unless (gst_video_frame_map (&out, &to, buffer, GST_MAP_WRITE));
+  gst_video_converter_frame (converter, &in, &out);
+  gst_video_frame_unmap (&in);
+  gst_video_frame_unmap (&out);
+  gst_video_converter_free (converter);
+  GST_BUFFER_PTS (buffer) = 0;
+  GST_BUFFER_DURATION (buffer) = 40 * GST_MSECOND;
+  return buffer;
+}
+
+static GstBuffer *
+label (GstHarness * h, GstVideoFormat format, gint width, gint height,
+    guint padding)
+{
+  GstCaps *caps;
+  GstBuffer *buffer = picture (format, width, height, padding, &caps);
+  GstBuffer *out;
+
+  gst_harness_set_src_caps (h, caps);
+  out = gst_harness_push_and_pull (h, buffer);
+  fail_unless (out != NULL);
+  return out;
+}
+
+/* How many dots of a picture have a label, and how many of those the right one. */
+static void
+count (GstClothDots * dots, guint frame, guint * n_labelled, guint * n_right)
+{
+  guint n;
+  const GstClothDot *dot = gst_cloth_dots_get_dots (dots, &n);
+
+  *n_labelled = *n_right = 0;
+  for (guint i = 0; i < n; i++, dot++) {
+    if (dot->column >= 0) {
+      (*n_labelled)++;
+      *n_right += ring_distance (&ring, "cam0", frame, dot->column, dot->row,
+          dot->x, dot->y) < 3;
+    }
+  }
+}
+
+GST_START_TEST (test_labels)
+{
+  GstHarness *h = open_label (RING "pattern.json");
+  g_autoptr (GstBuffer) out = label (h, GST_VIDEO_FORMAT_I420, 1004, 1004, 0);
+  GstClothDots *dots = gst_buffer_get_cloth_dots (out);
+  guint n_labelled, n_right;
+
+  fail_unless (dots != NULL);
+  fail_unless_equals_string (gst_cloth_dots_get_camera (dots), "cam0");
+  fail_unless_equals_int (gst_cloth_dots_get_columns (dots), 31);
+  fail_unless_equals_int (gst_cloth_dots_get_rows (dots), 33);
+  fail_unless_equals_int (gst_cloth_dots_get_n_colours (dots), 5);
+  count (dots, 0, &n_labelled, &n_right);
+  g_test_message ("%u dots, %u labelled, %u of them right",
+      gst_cloth_dots_get_n_dots (dots), n_labelled, n_right);
+  fail_unless (n_labelled > 850, "%u", n_labelled);
+  fail_unless (1000 * n_right >= 995 * n_labelled, "%u of %u", n_right,
+      n_labelled);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+/* Planes and pairs, strides of their own: the same places and labels. Other samplings of
+ * chroma change colours a little, not labels. */
+GST_START_TEST (test_formats)
+{
+  static const GstVideoFormat formats[] = { GST_VIDEO_FORMAT_YV12,
+    GST_VIDEO_FORMAT_NV12, GST_VIDEO_FORMAT_NV21, GST_VIDEO_FORMAT_Y42B,
+    GST_VIDEO_FORMAT_NV16, GST_VIDEO_FORMAT_Y444, GST_VIDEO_FORMAT_NV24,
+    GST_VIDEO_FORMAT_A420
+  };
+  const gint width = 701, height = 603;
+  GstHarness *h = open_label (RING "pattern.json");
+  g_autoptr (GstBuffer) first =
+      label (h, GST_VIDEO_FORMAT_I420, width, height, 0);
+  guint n, n_labelled, n_right;
+  const GstClothDot *dots =
+      gst_cloth_dots_get_dots (gst_buffer_get_cloth_dots (first), &n);
+
+  count (gst_buffer_get_cloth_dots (first), 0, &n_labelled, &n_right);
+  fail_unless (n_labelled > 250 && n_right == n_labelled, "%u of %u", n_right,
+      n_labelled);
+  for (guint i = 0; i < G_N_ELEMENTS (formats); i++) {
+    g_autoptr (GstBuffer) out = label (h, formats[i], width, height, 40);
+    guint n_other, n_same = 0;
+    const GstClothDot *other =
+        gst_cloth_dots_get_dots (gst_buffer_get_cloth_dots (out), &n_other);
+
+    fail_unless_equals_int (n_other, n);
+    for (guint k = 0; k < n; k++) {
+      fail_unless (other[k].x == dots[k].x && other[k].y == dots[k].y);
+      n_same += other[k].column == dots[k].column
+          && other[k].row == dots[k].row;
+    }
+    fail_unless (100 * n_same >= 99 * n, "%s: %u of %u",
+        gst_video_format_to_string (formats[i]), n_same, n);
+  }
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+/* Sizes and films one after the other, a flush between: what comes after it is what a new
+ * element makes. */
+GST_START_TEST (test_renegotiation_and_flush)
+{
+  GstHarness *h = open_label (RING "pattern.json");
+  g_autoptr (GstBuffer) whole = label (h, GST_VIDEO_FORMAT_I420, 1004, 1004, 0);
+  g_autoptr (GstBuffer) part = label (h, GST_VIDEO_FORMAT_NV12, 503, 401, 3);
+  g_autoptr (GstBuffer) tiny = label (h, GST_VIDEO_FORMAT_I420, 1, 1, 0);
+  g_autoptr (GstBuffer) again = NULL;
+  guint n, m;
+  const GstClothDot *a, *b;
+
+  fail_unless (gst_cloth_dots_get_n_dots (gst_buffer_get_cloth_dots (part)) >
+      50);
+  fail_unless_equals_int (gst_cloth_dots_get_n_dots (gst_buffer_get_cloth_dots
+          (tiny)), 0);
+  fail_unless (gst_harness_push_event (h, gst_event_new_flush_start ()));
+  fail_unless (gst_harness_push_event (h, gst_event_new_flush_stop (TRUE)));
+  {
+    GstSegment segment;
+
+    gst_segment_init (&segment, GST_FORMAT_TIME);
+    fail_unless (gst_harness_push_event (h, gst_event_new_segment (&segment)));
+  }
+  again = label (h, GST_VIDEO_FORMAT_I420, 1004, 1004, 0);
+  a = gst_cloth_dots_get_dots (gst_buffer_get_cloth_dots (whole), &n);
+  b = gst_cloth_dots_get_dots (gst_buffer_get_cloth_dots (again), &m);
+  fail_unless_equals_int (n, m);
+  for (guint i = 0; i < n; i++)
+    fail_unless (a[i].column == b[i].column && a[i].x == b[i].x);
+  fail_unless (gst_harness_push_event (h, gst_event_new_eos ()));
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_grey)
+{
+  GstHarness *h = open_label (RING "pattern.json");
+  g_autoptr (GstBus) bus = gst_bus_new ();
+  g_autoptr (GstMessage) message = NULL;
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *debug = NULL;
+  GstCaps *caps;
+  GstBuffer *buffer = picture (GST_VIDEO_FORMAT_GRAY8, 321, 241, 0, &caps);
+
+  gst_element_set_bus (h->element, bus);
+  gst_harness_set_src_caps (h, caps);
+  fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_ERROR);
+  message = gst_bus_pop_filtered (bus, GST_MESSAGE_ERROR);
+  fail_unless (message != NULL);
+  gst_message_parse_error (message, &error, &debug);
+  fail_unless (strstr (error->message, "grey") && strstr (debug, "colour"));
+  gst_element_set_bus (h->element, NULL);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+/* Plays cam0's picture n times; returns the warning, NULL when there was none, and the
+ * number of "found" and "lost" messages. */
+static gchar *
+play (const gchar * pattern, guint n, guint * n_found, guint * n_lost)
+{
+  GstHarness *h = open_label (pattern);
+  g_autoptr (GstBus) bus = gst_bus_new ();
+  GstMessage *message;
+  gchar *warning = NULL;
+  GstCaps *caps;
+  g_autoptr (GstBuffer) buffer =
+      picture (GST_VIDEO_FORMAT_I420, 1004, 1004, 0, &caps);
+
+  gst_element_set_bus (h->element, bus);
+  gst_harness_set_src_caps (h, caps);
+  for (guint i = 0; i < n; i++) {
+    GstBuffer *copy = gst_buffer_copy (buffer);
+
+    GST_BUFFER_PTS (copy) = i * 40 * GST_MSECOND;
+    fail_unless_equals_int (gst_harness_push (h, copy), GST_FLOW_OK);
+    gst_buffer_unref (gst_harness_pull (h));
+  }
+  *n_found = *n_lost = 0;
+  while ((message = gst_bus_pop_filtered (bus, GST_MESSAGE_ELEMENT
+              | GST_MESSAGE_WARNING))) {
+    if (GST_MESSAGE_TYPE (message) == GST_MESSAGE_WARNING) {
+      g_autoptr (GError) error = NULL;
+
+      fail_unless (warning == NULL);
+      gst_message_parse_warning (message, &error, NULL);
+      warning = g_strdup (error->message);
+    } else {
+      *n_found += gst_message_has_name (message, "dotlabel/found");
+      *n_lost += gst_message_has_name (message, "dotlabel/lost");
+    }
+    gst_message_unref (message);
+  }
+  gst_element_set_bus (h->element, NULL);
+  gst_harness_teardown (h);
+  return warning;
+}
+
+/* Another print, and the film's own with two colours swapped: labels there are next to
+ * none, and the user is told once. */
+GST_START_TEST (test_wrong_pattern)
+{
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *folder = g_dir_make_tmp ("dotlabel-XXXXXX", &error);
+  g_autofree gchar *path = g_build_filename (folder, "pattern.json", NULL);
+  ClothMArrayCode code = CLOTH_M_ARRAY_CODE_INIT;
+  g_autoptr (ClothMArray) array = NULL;
+  g_autofree gchar *none = NULL, *warning = NULL;
+  guint n_found, n_lost;
+
+  none = play (RING "pattern.json", 30, &n_found, &n_lost);
+  fail_unless (none == NULL, "%s", none);
+  fail_unless_equals_int (n_found, 1);
+  fail_unless_equals_int (n_lost, 0);
+
+  g_assert_no_error (error);
+  code.seed = 77;
+  code.two_sided = TRUE;
+  array = cloth_m_array_new (31, 33, 5, 0.02, 0.013, 0.015, &code, &error);
+  g_assert_no_error (error);
+  fail_unless (cloth_m_array_save (array, path, &error));
+  warning = play (path, 30, &n_found, &n_lost);
+  fail_unless (warning != NULL);
+  fail_unless (strstr (warning, "fit nowhere into the pattern"));
+  fail_unless_equals_int (n_found, 0);
+  g_remove (path);
+  g_rmdir (folder);
+}
+
+GST_END_TEST;
+
+static void
+refuse_to_start (const gchar * pattern, const gchar * text)
+{
+  GstElement *element = gst_element_factory_make ("dotlabel", NULL);
+  g_autoptr (GstBus) bus = gst_bus_new ();
+  g_autoptr (GstMessage) message = NULL;
+  g_autoptr (GError) error = NULL;
+
+  gst_object_ref_sink (element);
+  gst_element_set_bus (element, bus);
+  g_object_set (element, "pattern", pattern, NULL);
+  fail_unless_equals_int (gst_element_set_state (element, GST_STATE_PAUSED),
+      GST_STATE_CHANGE_FAILURE);
+  message = gst_bus_pop_filtered (bus, GST_MESSAGE_ERROR);
+  fail_unless (message != NULL);
+  gst_message_parse_error (message, &error, NULL);
+  fail_unless (strstr (error->message, text) != NULL, "%s", error->message);
+  gst_element_set_state (element, GST_STATE_NULL);
+  gst_element_set_bus (element, NULL);
+  gst_object_unref (element);
+}
+
+GST_START_TEST (test_no_pattern)
+{
+  refuse_to_start (NULL, "pattern is not set");
+  refuse_to_start ("/nonexistent/pattern.json", "pattern.json");
+  refuse_to_start (TEST_DATA "/checker_pair/pattern.json", "m-array");
+  refuse_to_start (RING "rig.json", "pattern");
+  refuse_to_start (RING "vertices.npy", "pattern");
+}
+
+GST_END_TEST;
+
+static Suite *
+dotlabel_suite (void)
+{
+  Suite *s = suite_create ("dotlabel");
+  TCase *tc = tcase_create ("general");
+
+  suite_add_tcase (s, tc);
+  tcase_add_checked_fixture (tc, setup, teardown);
+  tcase_add_test (tc, test_labels);
+  tcase_add_test (tc, test_formats);
+  tcase_add_test (tc, test_renegotiation_and_flush);
+  tcase_add_test (tc, test_grey);
+  tcase_add_test (tc, test_wrong_pattern);
+  tcase_add_test (tc, test_no_pattern);
+  return s;
+}
+
+GST_CHECK_MAIN (dotlabel);
