@@ -14,8 +14,11 @@
 /* Pitch at most, in standard deviations of a dot's area along its longer axis: dots of
  * 0.4 of the pitch across. */
 #define REACH 10.0f
-/* A neighbour's least distance in pitches, and how far from its place it may be. */
-#define NEAREST 0.5f
+/* What the blur of a sharp picture adds to a dot's second moments, px². */
+#define BLUR 0.4f
+/* How far distances in pitches may be from those of neighbours and diagonals, and a
+ * neighbour from its place. */
+#define SPREAD 0.2f
 #define PLACE_RADIUS 0.42f
 
 static gboolean
@@ -84,35 +87,65 @@ compare_floats (gconstpointer a, gconstpointer b)
   return (x > y) - (x < y);
 }
 
-/* Distances in units of the dots' own size, then of the pitch: that is what the second
- * nearest neighbour has in the middle of all dots. FALSE without neighbours. */
+/* Second moments without what the picture's blur adds, as far as they go. */
+static void
+sharpen (const gfloat from[3], gfloat to[3])
+{
+  const gfloat mean = (from[0] + from[2]) / 2;
+  const gfloat shorter = mean - hypotf ((from[0] - from[2]) / 2, from[1]);
+  const gfloat blur = MIN (BLUR, shorter / 2);
+
+  to[0] = from[0] - blur;
+  to[1] = from[1];
+  to[2] = from[2] - blur;
+}
+
+/* Neighbours in the measure of the ellipses: how far by that of both ends, for the cloth
+ * bends between them, and which way by the dot's own. */
+static void
+measure_around (ClothDotLabeller * labeller, guint i)
+{
+  ClothLatticeAround *around = &labeller->around[i];
+  const ClothLatticeNode *node = &labeller->nodes[i];
+  gfloat w[3];
+
+  inverse_root (node->shape, w);
+  for (guint k = 0; k < around->n; k++) {
+    const ClothLatticeNode *other = &labeller->nodes[around->near[k]];
+    const gfloat x = other->x - node->x, y = other->y - node->y;
+    const gfloat a = node->shape[0] + other->shape[0];
+    const gfloat b = node->shape[1] + other->shape[1];
+    const gfloat c = node->shape[2] + other->shape[2];
+    const gfloat to_x = w[0] * x + w[1] * y, to_y = w[1] * x + w[2] * y;
+    const gfloat length = sqrtf (to_x * to_x + to_y * to_y);
+
+    around->distance[k] =
+        sqrtf (2 * (c * x * x - 2 * b * x * y + a * y * y) / (a * c - b * b));
+    around->way[k][0] = length > 0 ? to_x / length : 1;
+    around->way[k][1] = length > 0 ? to_y / length : 0;
+  }
+}
+
+/* The pitch in units of the dots' size: in the middle of all dots, their second nearest
+ * neighbour lies that far. FALSE without neighbours. */
 static gboolean
-whiten (ClothDotLabeller * labeller, const ClothDot * dots)
+scale_distances (ClothDotLabeller * labeller)
 {
   guint n = 0;
   gfloat per_pitch;
 
   for (guint i = 0; i < labeller->n; i++) {
-    ClothLatticeAround *around = &labeller->around[i];
-    gfloat least[2] = { G_MAXFLOAT, G_MAXFLOAT }, w[3];
+    const ClothLatticeAround *around = &labeller->around[i];
+    gfloat least[2] = { G_MAXFLOAT, G_MAXFLOAT };
 
     if (around->n < 2)
       continue;
-    inverse_root (dots[i].shape, w);
     for (guint k = 0; k < around->n; k++) {
-      const ClothDot *other = &dots[around->near[k]];
-      const gfloat x = other->x - dots[i].x, y = other->y - dots[i].y;
-      gfloat d2;
-
-      around->whitened[k][0] = w[0] * x + w[1] * y;
-      around->whitened[k][1] = w[1] * x + w[2] * y;
-      d2 = around->whitened[k][0] * around->whitened[k][0]
-          + around->whitened[k][1] * around->whitened[k][1];
-      if (d2 < least[0]) {
+      if (around->distance[k] < least[0]) {
         least[1] = least[0];
-        least[0] = d2;
+        least[0] = around->distance[k];
       } else {
-        least[1] = MIN (least[1], d2);
+        least[1] = MIN (least[1], around->distance[k]);
       }
     }
     labeller->scratch[n++] = least[1];
@@ -120,15 +153,26 @@ whiten (ClothDotLabeller * labeller, const ClothDot * dots)
   if (n == 0)
     return FALSE;
   qsort (labeller->scratch, n, sizeof *labeller->scratch, compare_floats);
-  per_pitch = 1 / sqrtf (labeller->scratch[n / 2]);
+  if (!(labeller->scratch[n / 2] > 0))
+    return FALSE;
+  per_pitch = 1 / labeller->scratch[n / 2];
   for (guint i = 0; i < labeller->n; i++)
     for (guint k = 0; k < labeller->around[i].n; k++)
-      for (gint c = 0; c < 2; c++)
-        labeller->around[i].whitened[k][c] *= per_pitch;
+      labeller->around[i].distance[k] *= per_pitch;
   return TRUE;
 }
 
-/* The turn of the lattice about a dot: neighbours point four ways, diagonals between. */
+/* How much a distance looks like @at. */
+static inline gfloat
+likeness (gfloat distance, gfloat at)
+{
+  const gfloat off = (distance - at) / SPREAD;
+
+  return MAX (0, 1 - off * off);
+}
+
+/* The turn of the lattice about a dot: neighbours point four ways, diagonals between.
+ * Then the dot nearest to each place one pitch away. */
 static void
 choose_slots (ClothDotLabeller * labeller, guint i)
 {
@@ -137,16 +181,12 @@ choose_slots (ClothDotLabeller * labeller, guint i)
   gfloat sum[2] = { 0 }, least[4], angle, axis[2];
 
   for (guint k = 0; k < around->n; k++) {
-    const gfloat *w = around->whitened[k];
-    const gfloat d2 = w[0] * w[0] + w[1] * w[1];
-    gfloat a, b, weight;
+    const gfloat *way = around->way[k];
+    const gfloat weight = likeness (around->distance[k], 1)
+        - likeness (around->distance[k], (gfloat) G_SQRT2);
+    const gfloat a = way[0] * way[0] - way[1] * way[1];
+    const gfloat b = 2 * way[0] * way[1];
 
-    if (!(d2 > NEAREST * NEAREST && d2 < 2.6f))
-      continue;
-    /* (w/‖w‖)⁴; diagonals have it the other way round. */
-    a = (w[0] * w[0] - w[1] * w[1]) / d2;
-    b = 2 * w[0] * w[1] / d2;
-    weight = 1.45f - d2;
     sum[0] += weight * (a * a - b * b);
     sum[1] += weight * 2 * a * b;
   }
@@ -156,9 +196,9 @@ choose_slots (ClothDotLabeller * labeller, guint i)
   for (gint slot = 0; slot < 4; slot++)
     least[slot] = PLACE_RADIUS * PLACE_RADIUS;
   for (guint k = 0; k < around->n; k++) {
-    const gfloat *w = around->whitened[k];
-    const gfloat x = w[0] * axis[0] + w[1] * axis[1];
-    const gfloat y = w[1] * axis[0] - w[0] * axis[1];
+    const gfloat *way = around->way[k], distance = around->distance[k];
+    const gfloat x = distance * (way[0] * axis[0] + way[1] * axis[1]);
+    const gfloat y = distance * (way[1] * axis[0] - way[0] * axis[1]);
     const gint slot = fabsf (x) > fabsf (y) ? (x > 0 ? 0 : 2) : y > 0 ? 1 : 3;
     const gfloat along = MAX (fabsf (x), fabsf (y)) - 1;
     const gfloat across = MIN (fabsf (x), fabsf (y));
@@ -309,12 +349,19 @@ count_squares (ClothDotLabeller * labeller)
 void
 cloth_lattice_link (ClothDotLabeller * labeller, const ClothDot * dots)
 {
-  for (guint i = 0; i < labeller->n; i++)
-    labeller->nodes[i] = (ClothLatticeNode) {
+  for (guint i = 0; i < labeller->n; i++) {
+    ClothLatticeNode *node = &labeller->nodes[i];
+
+    *node = (ClothLatticeNode) {
     .x = dots[i].x,.y = dots[i].y,.next = { -1, -1, -1, -1 },.patch =
-        -1,.sound = is_sound (&dots[i])};
+          -1,.sound = is_sound (&dots[i])};
+    if (node->sound)
+      sharpen (dots[i].shape, node->shape);
+  }
   look_around (labeller, dots);
-  if (!whiten (labeller, dots))
+  for (guint i = 0; i < labeller->n; i++)
+    measure_around (labeller, i);
+  if (!scale_distances (labeller))
     return;
   for (guint i = 0; i < labeller->n; i++)
     choose_slots (labeller, i);
@@ -326,20 +373,6 @@ cloth_lattice_link (ClothDotLabeller * labeller, const ClothDot * dots)
 }
 
 /* --- connected pieces ------------------------------------------------------------- */
-
-/* Where the neighbour of @slot lies in the patch, and how it is turned there. */
-static void
-step_to (const ClothLatticeNode * node, gint slot, gint32 cell[2],
-    guint8 * turn)
-{
-  static const gint8 ways[4][2] = { {1, 0}, {0, 1}, {-1, 0}, {0, -1} };
-  const gint way = (slot - node->turn) & 3;
-
-  cell[0] = node->cell[0] + ways[way][0];
-  cell[1] = node->cell[1] + ways[way][1];
-  /* Its slot back is the way back. */
-  *turn = (guint8) ((node->back[slot] - (way ^ 2)) & 3);
-}
 
 /* Gathers what hangs together with dot @seed by links that are sides of squares. */
 static void
@@ -363,7 +396,7 @@ grow_patch (ClothDotLabeller * labeller, guint seed)
 
       if (next < 0 || !nodes[at].squares[slot] || nodes[next].patch >= 0)
         continue;
-      step_to (&nodes[at], slot, cell, &turn);
+      cloth_lattice_step (&nodes[at], slot, cell, &turn);
       nodes[next].patch = number;
       nodes[next].cell[0] = cell[0];
       nodes[next].cell[1] = cell[1];

@@ -11,6 +11,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Dots about the middle of a patch that choose the placings that all its dots judge. */
 #define N_PROBES 25
@@ -21,6 +22,12 @@
 /* Most placings that all dots judge. */
 #define N_JUDGED 32
 #define TURNS 8
+/* What each neighbour adds to the log-odds that a dot fits or not, and how often all are
+ * asked. */
+#define COUPLING 1.0f
+#define ROUNDS 6
+/* Dots of a patch about which its placing is looked for, one after another. */
+#define TRIES 4
 
 typedef ClothLatticeCandidate Candidate;
 
@@ -98,17 +105,20 @@ knit (const ClothLatticeNode * node)
       + node->squares[3];
 }
 
-/* The dot that is best knit, and whose neighbours are. */
+/* The dot that is best knit, and whose neighbours are, among those that were no probes
+ * yet; G_MAXUINT without any. */
 static guint
 find_anchor (const ClothDotLabeller * labeller, const ClothLatticePatch * patch)
 {
-  guint anchor = labeller->members[patch->first], most = 0;
+  guint anchor = G_MAXUINT, most = 0;
 
   for (guint k = 0; k < patch->n; k++) {
     const guint i = labeller->members[patch->first + k];
     const ClothLatticeNode *node = &labeller->nodes[i];
-    guint sum = 2 * knit (node);
+    guint sum = 1 + 2 * knit (node);
 
+    if (node->probed)
+      continue;
     for (gint slot = 0; slot < 4; slot++)
       if (node->next[slot] >= 0)
         sum += knit (&labeller->nodes[node->next[slot]]);
@@ -227,20 +237,22 @@ score_of_place (const ClothDotLabeller * labeller,
   return score;
 }
 
-/* The best of all placings; its confidence, below zero when it cannot be any. */
+/* Candidates for the placing of a patch by the dots about @anchor, the best first; by
+ * how much it leads before the next best and before random colours. */
 static gfloat
 search (ClothDotLabeller * labeller, const ClothLatticePatch * patch,
-    ClothLatticePlace * place)
+    guint anchor)
 {
   const guint m = (guint) labeller->n_colours + 1;
   const gfloat n_places = (gfloat) (TURNS * labeller->columns * labeller->rows);
-  const guint anchor = find_anchor (labeller, patch);
   const gint32 *middle = labeller->nodes[anchor].cell;
-  guint probes[N_PROBES], n;
-  gfloat best = -G_MAXFLOAT, second = -G_MAXFLOAT;
   const Candidate *candidates;
+  guint probes[N_PROBES], n;
+  gfloat lead = BEHIND;
 
   n = choose_probes (labeller, patch, anchor, probes);
+  for (guint k = 0; k < n; k++)
+    labeller->nodes[probes[k]].probed = TRUE;
   ask_all (labeller, probes, MIN (n, N_FIRST));
   for (guint k = N_FIRST; k < n; k++) {
     const gint32 *cell = labeller->nodes[probes[k]].cell;
@@ -263,22 +275,35 @@ search (ClothDotLabeller * labeller, const ClothLatticePatch * patch,
     }
     thin_out (labeller);
   }
-  candidates = (const Candidate *) (gpointer) labeller->candidates->data;
   qsort (labeller->candidates->data, labeller->candidates->len,
       sizeof (Candidate), compare_candidates);
-  for (guint k = 0; k < MIN (labeller->candidates->len, N_JUDGED); k++) {
-    const ClothLatticePlace here = place_of_candidate (&candidates[k], middle);
-    const gfloat score = score_of_place (labeller, patch, &here);
+  candidates = (const Candidate *) (gpointer) labeller->candidates->data;
+  if (labeller->candidates->len > 1)
+    lead = candidates[0].score - candidates[1].score;
+  return MIN (lead, candidates[0].score - logf (n_places));
+}
 
-    if (score > best) {
-      second = best;
-      best = score;
-      *place = here;
-    } else {
-      second = MAX (second, score);
-    }
+/* How sure it is that the patch lies at the first of the candidates and not at another
+ * of them, or nowhere. */
+static gfloat
+judge (const ClothDotLabeller * labeller, const ClothLatticePatch * patch,
+    const gint32 middle[2])
+{
+  const gfloat n_places = (gfloat) (TURNS * labeller->columns * labeller->rows);
+  const Candidate *candidates =
+      (const Candidate *) (gpointer) labeller->candidates->data;
+  gfloat first = 0, rival = logf (n_places);
+
+  for (guint k = 0; k < MIN (labeller->candidates->len, N_JUDGED); k++) {
+    const ClothLatticePlace place = place_of_candidate (&candidates[k], middle);
+    const gfloat score = score_of_place (labeller, patch, &place);
+
+    if (k == 0)
+      first = score;
+    else
+      rival = MAX (rival, score);
   }
-  return MIN (best - second, best - logf (n_places));
+  return first - rival;
 }
 
 /* The most that the dots of a patch could say to any placing. */
@@ -303,6 +328,25 @@ most_of_patch (const ClothDotLabeller * labeller,
 
 /* --- what doesn't fit ------------------------------------------------------------------ */
 
+/* Whether a link leads to where the patch has its neighbour. */
+static gboolean
+is_true_link (const ClothDotLabeller * labeller, const ClothLatticeNode * node,
+    gint slot)
+{
+  const ClothLatticeNode *next;
+  gint32 cell[2];
+  guint8 turn;
+
+  if (node->next[slot] < 0)
+    return FALSE;
+  next = &labeller->nodes[node->next[slot]];
+  if (next->patch != node->patch)
+    return FALSE;
+  cloth_lattice_step (node, slot, cell, &turn);
+  return cell[0] == next->cell[0] && cell[1] == next->cell[1]
+      && turn == next->turn;
+}
+
 /* Mean of @from over a dot and its neighbours in its patch. */
 static gfloat
 blur (const ClothDotLabeller * labeller, const gfloat * from, guint i)
@@ -312,8 +356,7 @@ blur (const ClothDotLabeller * labeller, const gfloat * from, guint i)
   gint n = 1;
 
   for (gint slot = 0; slot < 4; slot++) {
-    if (node->next[slot] >= 0
-        && labeller->nodes[node->next[slot]].patch == node->patch) {
+    if (is_true_link (labeller, node, slot)) {
       sum += from[node->next[slot]];
       n++;
     }
@@ -321,77 +364,90 @@ blur (const ClothDotLabeller * labeller, const gfloat * from, guint i)
   return sum / (gfloat) n;
 }
 
-/* Cuts off connected dots whose colours speak against the placing of patch @number: they
- * become patches of their own. */
+/* What speaks for a dot's fitting: its own colour, and its neighbours by @fit. */
+static gfloat
+speak_for (const ClothDotLabeller * labeller, const gfloat * gain,
+    const gfloat * fit, guint i)
+{
+  const ClothLatticeNode *node = &labeller->nodes[i];
+  gfloat sum = gain[i];
+
+  for (gint slot = 0; slot < 4; slot++)
+    if (is_true_link (labeller, node, slot))
+      sum += fit[node->next[slot]] >= 0 ? COUPLING : -COUPLING;
+  return sum;
+}
+
+/* Makes a new patch of what hangs together with dot @i of patch @number by true links
+ * among dots whose @fit has the same sign. */
+static void
+split (ClothDotLabeller * labeller, guint i, const gfloat * fit,
+    guint * n_queue)
+{
+  ClothLatticeNode *nodes = labeller->nodes;
+  ClothLatticePatch piece = { *n_queue, 0 };
+  const gint32 to = (gint32) labeller->patches->len;
+
+  labeller->queue[(*n_queue)++] = i;
+  nodes[i].probed = TRUE;
+  for (guint q = piece.first; q < *n_queue; q++) {
+    const ClothLatticeNode *node = &nodes[labeller->queue[q]];
+
+    for (gint slot = 0; slot < 4; slot++) {
+      const gint next = node->next[slot];
+
+      if (is_true_link (labeller, node, slot) && !nodes[next].probed
+          && (fit[next] < 0) == (fit[i] < 0)) {
+        nodes[next].probed = TRUE;
+        labeller->queue[(*n_queue)++] = (guint) next;
+      }
+    }
+  }
+  piece.n = *n_queue - piece.first;
+  for (guint q = piece.first; q < *n_queue; q++)
+    nodes[labeller->queue[q]].patch = to;
+  g_array_append_val (labeller->patches, piece);
+}
+
+/* Parts patch @number into pieces that fit its placing and pieces that don't: each
+ * becomes a patch of its own. Whether a dot fits depends on its colour and on whether its
+ * neighbours do (iterated conditional modes, Besag 1986). */
 static void
 cut_misfits (ClothDotLabeller * labeller, guint number,
     const ClothLatticePlace * place)
 {
   ClothLatticeNode *nodes = labeller->nodes;
-  ClothLatticePatch *patch =
-      &g_array_index (labeller->patches, ClothLatticePatch, number);
+  const ClothLatticePatch whole =
+      g_array_index (labeller->patches, ClothLatticePatch, number);
+  guint *members = labeller->members + whole.first;
+  const guint n_patches = labeller->patches->len;
   gfloat *gain = labeller->scratch, *once = gain + labeller->n;
-  gfloat *twice = once + labeller->n;
-  guint *members = labeller->members + patch->first, kept = 0;
-  const guint n = patch->n, n_patches = labeller->patches->len;
+  gfloat *twice = once + labeller->n, *swap;
   guint n_queue = 0;
 
-  for (guint k = 0; k < n; k++)
+  for (guint k = 0; k < whole.n; k++) {
     gain[members[k]] = gain_at (labeller, place, members[k]);
-  for (guint k = 0; k < n; k++)
-    once[members[k]] = blur (labeller, gain, members[k]);
-  for (guint k = 0; k < n; k++)
-    twice[members[k]] = blur (labeller, once, members[k]);
-  /* Those that go are gathered in the queue, piece by piece. */
-  for (guint k = 0; k < n; k++) {
-    const guint start = n_queue;
-    const gint32 piece = (gint32) labeller->patches->len;
-    gfloat sum = 0;
-
-    if (twice[members[k]] >= 0 || nodes[members[k]].patch != (gint32) number)
-      continue;
-    nodes[members[k]].patch = piece;
-    labeller->queue[n_queue++] = members[k];
-    for (guint q = start; q < n_queue; q++) {
-      const ClothLatticeNode *node = &nodes[labeller->queue[q]];
-
-      sum += gain[labeller->queue[q]];
-      for (gint slot = 0; slot < 4; slot++) {
-        const gint next = node->next[slot];
-
-        if (next >= 0 && nodes[next].patch == (gint32) number
-            && twice[next] < 0) {
-          nodes[next].patch = piece;
-          labeller->queue[n_queue++] = (guint) next;
-        }
-      }
-    }
-    if (sum > -labeller->params.lead) {
-      /* Not enough against them: marked so that they are not looked at again. */
-      for (guint q = start; q < n_queue; q++) {
-        nodes[labeller->queue[q]].patch = (gint32) number;
-        twice[labeller->queue[q]] = 0;
-      }
-      n_queue = start;
-    } else {
-      ClothLatticePatch cut = { start, n_queue - start };
-
-      g_array_append_val (labeller->patches, cut);
-      patch = &g_array_index (labeller->patches, ClothLatticePatch, number);
-    }
+    nodes[members[k]].probed = FALSE;
   }
-  if (n_queue == 0)
-    return;
-  for (guint k = 0; k < n; k++)
-    if (nodes[members[k]].patch == (gint32) number)
-      members[kept++] = members[k];
-  for (guint q = 0; q < n_queue; q++)
-    members[kept + q] = labeller->queue[q];
-  /* Their places in the queue become places among the members. */
+  for (guint k = 0; k < whole.n; k++)
+    once[members[k]] = blur (labeller, gain, members[k]);
+  for (guint k = 0; k < whole.n; k++)
+    twice[members[k]] = blur (labeller, once, members[k]);
+  for (guint round = 0; round < ROUNDS; round++) {
+    for (guint k = 0; k < whole.n; k++)
+      once[members[k]] = speak_for (labeller, gain, twice, members[k]);
+    swap = once;
+    once = twice;
+    twice = swap;
+  }
+  for (guint k = 0; k < whole.n; k++)
+    if (!nodes[members[k]].probed)
+      split (labeller, members[k], twice, &n_queue);
+  memcpy (members, labeller->queue, whole.n * sizeof *members);
   for (guint k = n_patches; k < labeller->patches->len; k++)
     g_array_index (labeller->patches, ClothLatticePatch, k).first +=
-        patch->first + kept;
-  patch->n = kept;
+        whole.first;
+  g_array_index (labeller->patches, ClothLatticePatch, number).n = 0;
 }
 
 /* --- labels --------------------------------------------------------------------------- */
@@ -454,6 +510,33 @@ keep_unique (ClothDotLabeller * labeller)
   }
 }
 
+/* Places patch @number by the colours about one of its dots, cuts off what contradicts
+ * them, and labels the rest if it is sure enough. */
+static gboolean
+place_patch (ClothDotLabeller * labeller, guint number, guint anchor)
+{
+  const ClothLatticePatch *patch =
+      &g_array_index (labeller->patches, ClothLatticePatch, number);
+  gint32 middle[2];
+  ClothLatticePlace place;
+  gfloat confidence;
+
+  if (search (labeller, patch, anchor) < labeller->params.lead)
+    return FALSE;
+  for (gint c = 0; c < 2; c++)
+    middle[c] = labeller->nodes[anchor].cell[c];
+  place = place_of_candidate (&g_array_index (labeller->candidates, Candidate,
+          0), middle);
+  cut_misfits (labeller, number, &place);
+  number = (guint) labeller->nodes[anchor].patch;
+  patch = &g_array_index (labeller->patches, ClothLatticePatch, number);
+  confidence = judge (labeller, patch, middle);
+  if (confidence >= labeller->params.lead)
+    label_patch (labeller, number, &place, confidence);
+  g_array_index (labeller->patches, ClothLatticePatch, number).done = TRUE;
+  return TRUE;
+}
+
 /* Places the patches and labels their dots. */
 void
 cloth_lattice_place (ClothDotLabeller * labeller,
@@ -469,16 +552,17 @@ cloth_lattice_place (ClothDotLabeller * labeller,
   for (guint k = 0; k < labeller->patches->len; k++) {
     const ClothLatticePatch patch =
         g_array_index (labeller->patches, ClothLatticePatch, k);
-    ClothLatticePlace place = { 0 };
-    gfloat confidence;
 
-    if (most_of_patch (labeller, &patch) < needed)
+    if (patch.done || most_of_patch (labeller, &patch) < needed)
       continue;
-    confidence = search (labeller, &patch, &place);
-    if (confidence < labeller->params.lead)
-      continue;
-    cut_misfits (labeller, k, &place);
-    label_patch (labeller, k, &place, confidence);
+    for (guint i = 0; i < patch.n; i++)
+      labeller->nodes[labeller->members[patch.first + i]].probed = FALSE;
+    for (guint try = 0; try < TRIES; try++) {
+      const guint anchor = find_anchor (labeller, &patch);
+
+      if (anchor == G_MAXUINT || place_patch (labeller, k, anchor))
+        break;
+    }
   }
   keep_unique (labeller);
 }

@@ -13,11 +13,13 @@ G_BEGIN_DECLS
 typedef struct
 {
   gfloat x, y;
+  gfloat shape[3];              /* second moments of its area, px², without blur */
   gfloat step[4][2];            /* to the neighbour of each slot, px; foretold if none */
   gint32 next[4];               /* neighbour of each slot, -1: none */
   guint8 back[4];               /* the slot of the neighbour that leads back */
   guint8 squares[4];            /* closed squares that the link is a side of */
   gboolean sound;               /* numbers that can be used */
+  gboolean probed;              /* it helped to look for the placing */
   gint32 patch;                 /* -1: none */
   gint32 cell[2];               /* in the patch */
   guint8 turn;                  /* slot of the patch's direction 0 */
@@ -26,12 +28,13 @@ typedef struct
 /* Nearest dots of the picture that are looked at for neighbours. */
 #define CLOTH_LATTICE_NEAR 16
 
-/* The dots around a dot, nearest first, and how far they lie in pitches along axes of the
- * cloth that are turned by some angle. */
+/* The dots around a dot, nearest first, which way they lie on the cloth but for some angle
+ * (unit vectors) and how far, in pitches. */
 typedef struct
 {
   gint32 near[CLOTH_LATTICE_NEAR];
-  gfloat whitened[CLOTH_LATTICE_NEAR][2];
+  gfloat way[CLOTH_LATTICE_NEAR][2];
+  gfloat distance[CLOTH_LATTICE_NEAR];
   guint n;
 } ClothLatticeAround;
 
@@ -39,6 +42,7 @@ typedef struct
 typedef struct
 {
   guint first, n;
+  gboolean done;                /* it is placed, or can't be */
 } ClothLatticePatch;
 
 /* A placing: the anchor dot in the array, and how the patch is turned about it. */
@@ -80,6 +84,20 @@ struct _ClothDotLabeller
   GArray *candidates;
   gfloat *scratch;
 };
+
+/* Where the neighbour of @slot lies in the patch, and how it is turned there. */
+static inline void
+cloth_lattice_step (const ClothLatticeNode * node, gint slot, gint32 cell[2],
+    guint8 * turn)
+{
+  static const gint8 ways[4][2] = { {1, 0}, {0, 1}, {-1, 0}, {0, -1} };
+  const gint way = (slot - node->turn) & 3;
+
+  cell[0] = node->cell[0] + ways[way][0];
+  cell[1] = node->cell[1] + ways[way][1];
+  /* Its slot back is the way back. */
+  *turn = (guint8) ((node->back[slot] - (way ^ 2)) & 3);
+}
 
 void cloth_lattice_link (ClothDotLabeller * labeller, const ClothDot * dots);
 void cloth_lattice_grow (ClothDotLabeller * labeller);
