@@ -24,6 +24,13 @@ gst_mesh_format_get_type (void)
     {CLOTH_MESH_FORMAT_OBJ_PC2, "OBJ mesh with a PC2 point cache", "obj-pc2"},
     {CLOTH_MESH_FORMAT_PLY, "One PLY file a frame", "ply"},
     {CLOTH_MESH_FORMAT_TAKE, "Folder of a take", "take"},
+    {CLOTH_MESH_FORMAT_GLTF, "glTF 2.0 (.glb), for short clips; written only",
+        "gltf"},
+    {CLOTH_MESH_FORMAT_USD, "USD as text (.usda); written only", "usd"},
+    {CLOTH_MESH_FORMAT_VTP, "VTK PolyData (.pvd and .vtp); written only",
+        "vtp"},
+    {CLOTH_MESH_FORMAT_C3D, "C3D, vertices as markers; written only", "c3d"},
+    {CLOTH_MESH_FORMAT_CSV, "Table as text (.csv); written only", "csv"},
     {0, NULL, NULL}
   };
 

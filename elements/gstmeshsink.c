@@ -6,13 +6,15 @@
  * @title: meshsink
  * @short_description: writes a mesh stream to files
  *
- * Writes OBJ + PC2 (what Blender and most others read), one PLY file a frame, or the
- * folder of a take. Frames go to temporary names as they come; at EOS, or when the
- * element is stopped, the files get their names. After an error nothing is left. A
+ * Writes OBJ + PC2 (what Blender and most others read), one PLY file a frame or the
+ * folder of a take, which `meshsrc` reads again, and glTF, USD, VTP (ParaView), C3D and
+ * CSV for other programs. Frames go to temporary names as they come; at EOS, or when
+ * the element is stopped, the files get their names. After an error nothing is left. A
  * flush starts the recording anew, as in filesink.
  *
- * OBJ, PC2 and PLY have no NaN: a vertex that is not seen holds its last place, one
- * never seen so far the mean of its neighbours; `state` tells them apart.
+ * Takes, C3D and CSV say which vertices are not seen. In the others such a vertex holds
+ * its last place, one never seen so far the mean of its neighbours; `state`, where the
+ * format has it, tells them apart.
  *
  * ## Example
  * |[
@@ -331,7 +333,9 @@ gst_mesh_sink_class_init (GstMeshSinkClass * klass)
   g_object_class_install_property (object_class, PROP_LOCATION,
       g_param_spec_string ("location", "Location",
           "File or folder to write: name.obj (with name.pc2 beside it), name.ply "
-          "(name_00000.ply and so on) or the folder of a take", NULL,
+          "(name_00000.ply and so on), name.glb, name.usda, name.pvd (with "
+          "name_00000.vtp and so on), name.c3d, name.csv or the folder of a take",
+          NULL,
           G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
           GST_PARAM_MUTABLE_READY));
   g_object_class_install_property (object_class, PROP_FORMAT,
@@ -346,7 +350,8 @@ gst_mesh_sink_class_init (GstMeshSinkClass * klass)
           GST_PARAM_MUTABLE_READY));
   gst_element_class_add_static_pad_template (element_class, &sink_template);
   gst_element_class_set_static_metadata (element_class, "Mesh file sink",
-      "Sink/File", "Writes a mesh stream to OBJ + PC2, PLY or a take",
+      "Sink/File",
+      "Writes a mesh stream to OBJ + PC2, PLY, glTF, USD, VTP, C3D, CSV or a take",
       "The gst-cloth developers");
   sink_class->set_caps = gst_mesh_sink_set_caps;
   sink_class->render = gst_mesh_sink_render;

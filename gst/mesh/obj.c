@@ -3,6 +3,8 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/mesh/obj.h"
 
+#include "gst/mesh/export.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -360,17 +362,6 @@ cloth_obj_free (ClothObj * obj)
   g_free (obj);
 }
 
-/* Nine digits bring every float32 back exactly, in any locale. */
-static void
-append_float (GString * text, gfloat value)
-{
-  gchar digits[G_ASCII_DTOSTR_BUF_SIZE];
-
-  g_string_append_c (text, ' ');
-  g_string_append (text, g_ascii_formatd (digits, sizeof digits, "%.9g",
-          value));
-}
-
 /**
  * cloth_obj_write:
  * @output: where to
@@ -400,14 +391,18 @@ cloth_obj_write (ClothOutput * output, const gchar * name,
       note, object);
   for (guint i = 0; i < topology->n_vertices; i++) {
     g_string_append_c (text, 'v');
-    for (guint k = 0; k < 3; k++)
-      append_float (text, positions[3 * i + k]);
+    for (guint k = 0; k < 3; k++) {
+      g_string_append_c (text, ' ');
+      cloth_text_append_float (text, positions[3 * (gsize) i + k]);
+    }
     g_string_append_c (text, '\n');
   }
   for (guint i = 0; i < topology->n_vertices; i++) {
     g_string_append (text, "vt");
-    for (guint k = 0; k < 2; k++)
-      append_float (text, topology->uv[2 * i + k]);
+    for (guint k = 0; k < 2; k++) {
+      g_string_append_c (text, ' ');
+      cloth_text_append_float (text, topology->uv[2 * (gsize) i + k]);
+    }
     g_string_append_c (text, '\n');
   }
   for (guint i = 0; i < topology->n_faces; i++) {

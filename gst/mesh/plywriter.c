@@ -1,6 +1,7 @@
 /* PLY: writing one frame of a mesh with what is known of each vertex.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/mesh/export.h"
 #include "gst/mesh/ply.h"
 
 #include <math.h>
@@ -20,15 +21,6 @@ put_index (guint8 * to, guint32 value)
   cloth_swap_little_endian (&value, sizeof value, 1);
   memcpy (to, &value, sizeof value);
   return to + sizeof value;
-}
-
-/* RMS over the three axes. */
-static gfloat
-sigma (const gfloat * covariance)
-{
-  gdouble trace = (gdouble) covariance[0] + covariance[3] + covariance[5];
-
-  return trace >= 0 ? (gfloat) sqrt (trace / 3) : 0.0f;
 }
 
 /**
@@ -85,7 +77,9 @@ cloth_ply_write (ClothOutput * output, const ClothTopology * topology,
       to = put_float (to, topology->uv[2 * i + k]);
     *to++ = states[i];
     if (covariances) {
-      to = put_float (to, sigma (covariances + 6 * i));
+      gfloat sigma = cloth_export_sigma (covariances + 6 * i);
+
+      to = put_float (to, isnan (sigma) ? 0 : sigma);
       for (guint k = 0; k < 6; k++)
         to = put_float (to, covariances[6 * i + k]);
     }

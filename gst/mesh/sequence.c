@@ -44,12 +44,25 @@ has_ending (const gchar * location, const gchar * ending)
   return n >= m && g_ascii_strcasecmp (location + n - m, ending) == 0;
 }
 
+/* Formats told by one ending, which the location may lack when the format is set. */
+static const struct
+{
+  const gchar *ending;
+  ClothMeshFormat format;
+} endings[] = {
+  {".ply", CLOTH_MESH_FORMAT_PLY}, {".glb", CLOTH_MESH_FORMAT_GLTF},
+  {".usda", CLOTH_MESH_FORMAT_USD}, {".pvd", CLOTH_MESH_FORMAT_VTP},
+  {".vtp", CLOTH_MESH_FORMAT_VTP}, {".c3d", CLOTH_MESH_FORMAT_C3D},
+  {".csv", CLOTH_MESH_FORMAT_CSV}
+};
+
 /**
  * cloth_mesh_format_guess:
  * @location: file or folder, there or not yet
  *
- * `.ply` is PLY; `.take`, `take.json`, a closing slash or a folder that is there is a
- * take; anything else is OBJ + PC2.
+ * `.ply`, `.glb`, `.usda`, `.pvd` or `.vtp`, `.c3d` and `.csv` say their formats;
+ * `.take`, `take.json`, a closing slash or a folder that is there is a take; anything
+ * else is OBJ + PC2.
  *
  * Returns: the format
  * Since: 0.1
@@ -59,8 +72,9 @@ cloth_mesh_format_guess (const gchar * location)
 {
   g_autofree gchar *base = g_path_get_basename (location);
 
-  if (has_ending (location, ".ply"))
-    return CLOTH_MESH_FORMAT_PLY;
+  for (guint i = 0; i < G_N_ELEMENTS (endings); i++)
+    if (has_ending (location, endings[i].ending))
+      return endings[i].format;
   if (has_ending (location, ".take") || has_ending (location, "/") ||
       g_str_equal (base, "take.json") ||
       g_file_test (location, G_FILE_TEST_IS_DIR))
@@ -86,8 +100,6 @@ cloth_mesh_format_stem (const gchar * location, ClothMeshFormat format)
     case CLOTH_MESH_FORMAT_PLY:
       if (has_ending (location, "_%05d.ply"))
         return g_strndup (location, n - strlen ("_%05d.ply"));
-      if (has_ending (location, ".ply"))
-        return g_strndup (location, n - strlen (".ply"));
       break;
     case CLOTH_MESH_FORMAT_TAKE:
       if (g_str_equal (location, "take.json"))
@@ -97,11 +109,16 @@ cloth_mesh_format_stem (const gchar * location, ClothMeshFormat format)
       while (n > 1 && location[n - 1] == '/')
         n--;
       return g_strndup (location, n);
-    default:
+    case CLOTH_MESH_FORMAT_OBJ_PC2:
       if (has_ending (location, ".obj") || has_ending (location, ".pc2"))
         return g_strndup (location, n - strlen (".obj"));
       break;
+    default:
+      break;
   }
+  for (guint i = 0; i < G_N_ELEMENTS (endings); i++)
+    if (format == endings[i].format && has_ending (location, endings[i].ending))
+      return g_strndup (location, n - strlen (endings[i].ending));
   return g_strdup (location);
 }
 
@@ -268,8 +285,13 @@ cloth_mesh_reader_open (const gchar * location, ClothMeshFormat format,
     case CLOTH_MESH_FORMAT_TAKE:
       opened = open_take (reader, stem, error);
       break;
-    default:
+    case CLOTH_MESH_FORMAT_OBJ_PC2:
       opened = open_obj_pc2 (reader, stem, error);
+      break;
+    default:
+      g_set_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_UNSUPPORTED,
+          "%s: this format is written, not read: keep a take, OBJ + PC2 or PLY to "
+          "read the sequence again", location);
       break;
   }
   if (!opened)

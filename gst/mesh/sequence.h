@@ -13,8 +13,13 @@ G_BEGIN_DECLS
  * @CLOTH_MESH_FORMAT_OBJ_PC2: `name.obj`, `name.pc2` and `name.states.npy`
  * @CLOTH_MESH_FORMAT_PLY: `name_00000.ply`, `name_00001.ply` and so on
  * @CLOTH_MESH_FORMAT_TAKE: the folder of a take
+ * @CLOTH_MESH_FORMAT_GLTF: `name.glb`
+ * @CLOTH_MESH_FORMAT_USD: `name.usda`
+ * @CLOTH_MESH_FORMAT_VTP: `name.pvd` with `name_00000.vtp` and so on
+ * @CLOTH_MESH_FORMAT_C3D: `name.c3d`
+ * @CLOTH_MESH_FORMAT_CSV: `name.csv`
  *
- * Formats of mesh sequences.
+ * Formats of mesh sequences. The last five are written only.
  *
  * Since: 0.1
  */
@@ -22,7 +27,12 @@ typedef enum {
   CLOTH_MESH_FORMAT_AUTO,
   CLOTH_MESH_FORMAT_OBJ_PC2,
   CLOTH_MESH_FORMAT_PLY,
-  CLOTH_MESH_FORMAT_TAKE
+  CLOTH_MESH_FORMAT_TAKE,
+  CLOTH_MESH_FORMAT_GLTF,
+  CLOTH_MESH_FORMAT_USD,
+  CLOTH_MESH_FORMAT_VTP,
+  CLOTH_MESH_FORMAT_C3D,
+  CLOTH_MESH_FORMAT_CSV
 } ClothMeshFormat;
 
 /**
