@@ -374,35 +374,42 @@ cloth_lattice_link (ClothDotLabeller * labeller, const ClothDot * dots)
 
 /* --- connected pieces ------------------------------------------------------------- */
 
-/* Gathers what hangs together with dot @seed by links that are sides of squares. */
+/* Takes the free neighbours of dot @at into its patch, by links that are sides of squares
+ * or also by others. */
+static void
+take_neighbours (ClothDotLabeller * labeller, guint at, gboolean others)
+{
+  ClothLatticeNode *nodes = labeller->nodes;
+
+  for (gint slot = 0; slot < 4; slot++) {
+    const gint next = nodes[at].next[slot];
+
+    if (next < 0 || nodes[next].patch >= 0
+        || !(nodes[at].squares[slot] || others))
+      continue;
+    nodes[next].patch = nodes[at].patch;
+    cloth_lattice_step (&nodes[at], slot, nodes[next].cell, &nodes[next].turn);
+    labeller->members[labeller->n_members++] = (guint) next;
+  }
+}
+
+/* Gathers what hangs together with dot @seed: by sides of squares as far as they go, then
+ * by a link without. */
 static void
 grow_patch (ClothDotLabeller * labeller, guint seed)
 {
-  ClothLatticeNode *nodes = labeller->nodes;
-  ClothLatticePatch patch = { labeller->n_members, 1 };
-  const gint32 number = (gint32) labeller->patches->len;
+  ClothLatticePatch patch = { labeller->n_members, 1, FALSE };
+  guint with = patch.first, without = patch.first;
 
-  nodes[seed].patch = number;
-  nodes[seed].cell[0] = nodes[seed].cell[1] = 0;
-  nodes[seed].turn = 0;
+  labeller->nodes[seed].patch = (gint32) labeller->patches->len;
+  labeller->nodes[seed].cell[0] = labeller->nodes[seed].cell[1] = 0;
+  labeller->nodes[seed].turn = 0;
   labeller->members[labeller->n_members++] = seed;
-  for (guint k = patch.first; k < labeller->n_members; k++) {
-    const guint at = labeller->members[k];
-
-    for (gint slot = 0; slot < 4; slot++) {
-      const gint next = nodes[at].next[slot];
-      gint32 cell[2];
-      guint8 turn;
-
-      if (next < 0 || !nodes[at].squares[slot] || nodes[next].patch >= 0)
-        continue;
-      cloth_lattice_step (&nodes[at], slot, cell, &turn);
-      nodes[next].patch = number;
-      nodes[next].cell[0] = cell[0];
-      nodes[next].cell[1] = cell[1];
-      nodes[next].turn = turn;
-      labeller->members[labeller->n_members++] = (guint) next;
-    }
+  while (without < labeller->n_members) {
+    if (with < labeller->n_members)
+      take_neighbours (labeller, labeller->members[with++], FALSE);
+    else
+      take_neighbours (labeller, labeller->members[without++], TRUE);
   }
   patch.n = labeller->n_members - patch.first;
   g_array_append_val (labeller->patches, patch);
@@ -414,7 +421,7 @@ cloth_lattice_grow (ClothDotLabeller * labeller)
 {
   labeller->n_members = 0;
   g_array_set_size (labeller->patches, 0);
-  for (gint least = 8; least >= 1; least--) {
+  for (gint least = 8; least >= 0; least--) {
     for (guint i = 0; i < labeller->n; i++) {
       const ClothLatticeNode *node = &labeller->nodes[i];
 

@@ -16,12 +16,15 @@
 /* Dots about the middle of a patch that choose the placings that all its dots judge. */
 #define N_PROBES 25
 /* Of those, the first that are asked of all placings. */
-#define N_FIRST 4
+#define N_FIRST 6
 /* A placing so far behind the best is given up, nats. */
-#define BEHIND 16.0f
+#define BEHIND 12.0f
 /* Most placings that all dots judge. */
 #define N_JUDGED 32
 #define TURNS 8
+/* What a place that the former picture foretells must have before random colours: as if
+ * it were one of ten. */
+#define FORETOLD 2.3f
 /* What each neighbour adds to the log-odds that a dot fits or not, and how often all are
  * asked. */
 #define COUPLING 1.0f
@@ -96,6 +99,25 @@ set_gains (ClothDotLabeller * labeller, const gfloat * log_likelihoods)
   }
 }
 
+/* Whether a link leads to where the patch has its neighbour. */
+static gboolean
+is_true_link (const ClothDotLabeller * labeller, const ClothLatticeNode * node,
+    gint slot)
+{
+  const ClothLatticeNode *next;
+  gint32 cell[2];
+  guint8 turn;
+
+  if (node->next[slot] < 0)
+    return FALSE;
+  next = &labeller->nodes[node->next[slot]];
+  if (next->patch != node->patch)
+    return FALSE;
+  cloth_lattice_step (node, slot, cell, &turn);
+  return cell[0] == next->cell[0] && cell[1] == next->cell[1]
+      && turn == next->turn;
+}
+
 /* --- searching the whole array ------------------------------------------------------ */
 
 static guint
@@ -151,14 +173,20 @@ choose_probes (const ClothDotLabeller * labeller,
   return n;
 }
 
-/* Asks the first probes of every placing that has the anchor in the array. */
+/* Asks the first probes of every placing that has the anchor in the array; keeps those
+ * that may come near the best. */
 static void
 ask_all (ClothDotLabeller * labeller, const guint * probes, guint n)
 {
   const guint m = (guint) labeller->n_colours + 1;
   const gint32 *middle = labeller->nodes[probes[0]].cell;
+  Candidate *candidates;
+  gfloat best = -G_MAXFLOAT;
+  guint n_kept = 0;
 
-  g_array_set_size (labeller->candidates, 0);
+  g_array_set_size (labeller->candidates,
+      (guint) (TURNS * labeller->columns * labeller->rows));
+  candidates = (Candidate *) (gpointer) labeller->candidates->data;
   for (guint8 turn = 0; turn < (labeller->params.mirrored ? 8 : 4); turn++) {
     gint8 along[2][2];
     gint by[N_FIRST][2];
@@ -173,15 +201,19 @@ ask_all (ClothDotLabeller * labeller, const guint * probes, guint n)
     }
     for (gint row = 0; row < labeller->rows; row++) {
       for (gint column = 0; column < labeller->columns; column++) {
-        Candidate candidate = { 0, (gint16) column, (gint16) row, turn };
+        gfloat score = 0;
 
         for (guint k = 0; k < n; k++)
-          candidate.score += labeller->gains[probes[k] * m
+          score += labeller->gains[probes[k] * m
               + colour_at (labeller, column + by[k][0], row + by[k][1])];
-        g_array_append_val (labeller->candidates, candidate);
+        best = MAX (best, score);
+        candidates[n_kept] = (Candidate) {
+        score, (gint16) column, (gint16) row, turn};
+        n_kept += score > best - BEHIND;
       }
     }
   }
+  g_array_set_size (labeller->candidates, n_kept);
 }
 
 /* Keeps the candidates that are not far behind. */
@@ -283,6 +315,49 @@ search (ClothDotLabeller * labeller, const ClothLatticePatch * patch,
   return MIN (lead, candidates[0].score - logf (n_places));
 }
 
+/* Where the former picture's labels put a patch, by those of @anchor and two of its
+ * neighbours. FALSE if they don't say. */
+static gboolean
+foretell (const ClothDotLabeller * labeller, guint anchor,
+    ClothLatticePlace * place)
+{
+  const ClothLatticeNode *node = &labeller->nodes[anchor];
+  const gint32 here = labeller->foretold[anchor];
+  gboolean known[2] = { FALSE, FALSE };
+
+  if (here < 0)
+    return FALSE;
+  for (gint slot = 0; slot < 4; slot++) {
+    const gint way = (slot - node->turn) & 3;
+    gint by[2];
+    gint32 there;
+
+    if (!is_true_link (labeller, node, slot))
+      continue;
+    there = labeller->foretold[node->next[slot]];
+    if (there < 0)
+      continue;
+    by[0] = there % labeller->columns - here % labeller->columns;
+    by[1] = there / labeller->columns - here / labeller->columns;
+    if (abs (by[0]) + abs (by[1]) != 1)
+      return FALSE;
+    for (gint c = 0; c < 2; c++)
+      place->along[way & 1][c] = (gint8) (way & 2 ? -by[c] : by[c]);
+    known[way & 1] = TRUE;
+  }
+  if (!known[0] || !known[1] || place->along[0][0] * place->along[1][0]
+      + place->along[0][1] * place->along[1][1] != 0)
+    return FALSE;
+  place->mirrored = place->along[0][0] * place->along[1][1]
+      - place->along[0][1] * place->along[1][0] < 0;
+  place->origin[0] = here % labeller->columns;
+  place->origin[1] = here / labeller->columns;
+  for (gint c = 0; c < 2; c++)
+    place->origin[c] -= node->cell[0] * place->along[0][c]
+        + node->cell[1] * place->along[1][c];
+  return !place->mirrored || labeller->params.mirrored;
+}
+
 /* How sure it is that the patch lies at the first of the candidates and not at another
  * of them, or nowhere. */
 static gfloat
@@ -327,25 +402,6 @@ most_of_patch (const ClothDotLabeller * labeller,
 }
 
 /* --- what doesn't fit ------------------------------------------------------------------ */
-
-/* Whether a link leads to where the patch has its neighbour. */
-static gboolean
-is_true_link (const ClothDotLabeller * labeller, const ClothLatticeNode * node,
-    gint slot)
-{
-  const ClothLatticeNode *next;
-  gint32 cell[2];
-  guint8 turn;
-
-  if (node->next[slot] < 0)
-    return FALSE;
-  next = &labeller->nodes[node->next[slot]];
-  if (next->patch != node->patch)
-    return FALSE;
-  cloth_lattice_step (node, slot, cell, &turn);
-  return cell[0] == next->cell[0] && cell[1] == next->cell[1]
-      && turn == next->turn;
-}
 
 /* Mean of @from over a dot and its neighbours in its patch. */
 static gfloat
@@ -471,18 +527,13 @@ label_patch (ClothDotLabeller * labeller, guint number,
   }
 }
 
-static void
-take_label (ClothDotLabel * label)
-{
-  *label = (ClothDotLabel) {
-  -1, -1, 0, FALSE, G_MAXUINT};
-}
-
-/* Each label at most once: of two dots the surer patch's keeps it, of equals none. */
+/* Each label at most once: of two dots the surer patch's keeps it. */
 static void
 keep_unique (ClothDotLabeller * labeller)
 {
-  for (gint k = 0; k < labeller->columns * labeller->rows; k++)
+  const gint n_labels = labeller->columns * labeller->rows;
+
+  for (gint k = 0; k < n_labels; k++)
     labeller->holders[k] = -1;
   for (guint i = 0; i < labeller->n; i++) {
     ClothDotLabel *label = &labeller->labels[i], *other;
@@ -491,50 +542,91 @@ keep_unique (ClothDotLabeller * labeller)
     if (label->column < 0)
       continue;
     holder = &labeller->holders[label->row * labeller->columns + label->column];
-    if (*holder < 0) {
+    other = *holder < 0 ? NULL : &labeller->labels[*holder];
+    if (!other || other->confidence < label->confidence) {
+      if (other)
+        cloth_lattice_take_label (other);
       *holder = (gint32) i;
       continue;
     }
-    other = &labeller->labels[*holder];
-    if (other->column < 0)
-      take_label (label);
-    else if (other->confidence > label->confidence)
-      take_label (label);
-    else if (other->confidence < label->confidence) {
-      take_label (other);
-      *holder = (gint32) i;
-    } else {
-      take_label (label);
-      take_label (other);
-    }
+    cloth_lattice_take_label (label);
   }
 }
 
-/* Places patch @number by the colours about one of its dots, cuts off what contradicts
- * them, and labels the rest if it is sure enough. */
+/* Parts patch @number by what fits @place, and labels the piece that @anchor is in if it
+ * is sure enough. The place is the first of the candidates, or the one that was foretold,
+ * which then needs @expected more than random colours give. */
+static void
+settle (ClothDotLabeller * labeller, guint number, guint anchor,
+    const ClothLatticePlace * place, gfloat expected)
+{
+  const gint32 middle[2] = { labeller->nodes[anchor].cell[0],
+    labeller->nodes[anchor].cell[1]
+  };
+  ClothLatticePatch *piece;
+  gfloat confidence;
+
+  cut_misfits (labeller, number, place);
+  number = (guint) labeller->nodes[anchor].patch;
+  piece = &g_array_index (labeller->patches, ClothLatticePatch, number);
+  piece->done = TRUE;
+  confidence = expected > 0
+      ? score_of_place (labeller, piece, place) - expected
+      : judge (labeller, piece, middle);
+  if (confidence >= labeller->params.lead)
+    label_patch (labeller, number, place, confidence);
+}
+
+/* Places a patch where the former picture had it, if its colours say so too. */
 static gboolean
-place_patch (ClothDotLabeller * labeller, guint number, guint anchor)
+place_as_foretold (ClothDotLabeller * labeller, guint number)
 {
   const ClothLatticePatch *patch =
       &g_array_index (labeller->patches, ClothLatticePatch, number);
-  gint32 middle[2];
-  ClothLatticePlace place;
-  gfloat confidence;
+  guint tries = 0;
 
-  if (search (labeller, patch, anchor) < labeller->params.lead)
-    return FALSE;
-  for (gint c = 0; c < 2; c++)
-    middle[c] = labeller->nodes[anchor].cell[c];
-  place = place_of_candidate (&g_array_index (labeller->candidates, Candidate,
-          0), middle);
-  cut_misfits (labeller, number, &place);
-  number = (guint) labeller->nodes[anchor].patch;
-  patch = &g_array_index (labeller->patches, ClothLatticePatch, number);
-  confidence = judge (labeller, patch, middle);
-  if (confidence >= labeller->params.lead)
-    label_patch (labeller, number, &place, confidence);
-  g_array_index (labeller->patches, ClothLatticePatch, number).done = TRUE;
-  return TRUE;
+  for (guint k = 0; k < patch->n && tries < TRIES; k++) {
+    const guint anchor = labeller->members[patch->first + k];
+    guint probes[N_PROBES], n;
+    ClothLatticePlace place = { 0 };
+    gfloat score = 0;
+
+    if (!foretell (labeller, anchor, &place))
+      continue;
+    tries++;
+    n = choose_probes (labeller, patch, anchor, probes);
+    for (guint i = 0; i < n; i++)
+      score += gain_at (labeller, &place, probes[i]);
+    if (score < labeller->params.lead + FORETOLD)
+      continue;
+    settle (labeller, number, anchor, &place, FORETOLD);
+    return TRUE;
+  }
+  return FALSE;
+}
+
+/* Places a patch by a search of the whole array. */
+static void
+place_by_search (ClothDotLabeller * labeller, guint number)
+{
+  const ClothLatticePatch patch =
+      g_array_index (labeller->patches, ClothLatticePatch, number);
+
+  for (guint i = 0; i < patch.n; i++)
+    labeller->nodes[labeller->members[patch.first + i]].probed = FALSE;
+  for (guint try = 0; try < TRIES; try++) {
+    const guint anchor = find_anchor (labeller, &patch);
+    ClothLatticePlace place;
+
+    if (anchor == G_MAXUINT)
+      return;
+    if (search (labeller, &patch, anchor) < labeller->params.lead)
+      continue;
+    place = place_of_candidate (&g_array_index (labeller->candidates,
+            Candidate, 0), labeller->nodes[anchor].cell);
+    settle (labeller, number, anchor, &place, 0);
+    return;
+  }
 }
 
 /* Places the patches and labels their dots. */
@@ -547,22 +639,17 @@ cloth_lattice_place (ClothDotLabeller * labeller,
 
   set_gains (labeller, log_likelihoods);
   for (guint i = 0; i < labeller->n; i++)
-    take_label (&labeller->labels[i]);
+    cloth_lattice_take_label (&labeller->labels[i]);
   /* There may come more. */
   for (guint k = 0; k < labeller->patches->len; k++) {
-    const ClothLatticePatch patch =
-        g_array_index (labeller->patches, ClothLatticePatch, k);
+    const ClothLatticePatch *patch =
+        &g_array_index (labeller->patches, ClothLatticePatch, k);
+    const gfloat most = most_of_patch (labeller, patch);
 
-    if (patch.done || most_of_patch (labeller, &patch) < needed)
+    if (patch->done || most < labeller->params.lead + FORETOLD)
       continue;
-    for (guint i = 0; i < patch.n; i++)
-      labeller->nodes[labeller->members[patch.first + i]].probed = FALSE;
-    for (guint try = 0; try < TRIES; try++) {
-      const guint anchor = find_anchor (labeller, &patch);
-
-      if (anchor == G_MAXUINT || place_patch (labeller, k, anchor))
-        break;
-    }
+    if (!place_as_foretold (labeller, k) && most >= needed)
+      place_by_search (labeller, k);
   }
   keep_unique (labeller);
 }

@@ -62,12 +62,23 @@ typedef struct
   gboolean mirrored;
 } ClothLatticePlace;
 
+/* Where a label was in the former picture. */
+typedef struct
+{
+  gboolean known;
+  gfloat x, y;
+  gfloat motion[2];             /* since the picture before, px */
+  gfloat pitch;                 /* distance of its nearest neighbour, px */
+} ClothLatticeFormer;
+
 struct _ClothDotLabeller
 {
   gint columns, rows, n_colours;
   guint8 *matrix;
+  guint8 *doubtful;             /* of each label */
   gint32 *holders;              /* of each label: its dot, -1: none */
   ClothDotLabelParams params;
+  ClothLatticeFormer *former;   /* of each label */
 
   /* Of the picture at hand; room for @n_room dots. */
   guint n, n_room;
@@ -77,6 +88,7 @@ struct _ClothDotLabeller
   gfloat *gains;                /* n·(n_colours + 1): log-odds of each colour against any, the
                                  * last where the array has no dot */
   ClothDotLabel *labels;
+  gint32 *foretold;             /* label of each dot by the former picture, -1: none */
   guint *members;               /* dots, patch by patch */
   guint *queue;
   guint n_members;
@@ -99,9 +111,20 @@ cloth_lattice_step (const ClothLatticeNode * node, gint slot, gint32 cell[2],
   *turn = (guint8) ((node->back[slot] - (way ^ 2)) & 3);
 }
 
+static inline void
+cloth_lattice_take_label (ClothDotLabel * label)
+{
+  *label = (ClothDotLabel) {
+  -1, -1, 0, FALSE, G_MAXUINT};
+}
+
 void cloth_lattice_link (ClothDotLabeller * labeller, const ClothDot * dots);
 void cloth_lattice_grow (ClothDotLabeller * labeller);
 void cloth_lattice_place (ClothDotLabeller * labeller,
     const gfloat * log_likelihoods);
+void cloth_lattice_foretell (ClothDotLabeller * labeller);
+void cloth_lattice_prune (ClothDotLabeller * labeller);
+void cloth_lattice_extend (ClothDotLabeller * labeller);
+void cloth_lattice_remember (ClothDotLabeller * labeller);
 
 G_END_DECLS

@@ -75,6 +75,8 @@ cloth_dot_labeller_new (gint columns, gint rows, gint n_colours,
   labeller->n_colours = n_colours;
   labeller->matrix = g_memdup2 (matrix, n);
   labeller->holders = g_new (gint32, n);
+  labeller->doubtful = g_new (guint8, n);
+  labeller->former = g_new0 (ClothLatticeFormer, n);
   labeller->grid = cloth_point_grid_new ();
   labeller->patches = g_array_new (FALSE, FALSE, sizeof (ClothLatticePatch));
   labeller->candidates = g_array_new (FALSE, FALSE,
@@ -98,6 +100,9 @@ cloth_dot_labeller_free (ClothDotLabeller * labeller)
   g_array_unref (labeller->candidates);
   g_free (labeller->matrix);
   g_free (labeller->holders);
+  g_free (labeller->doubtful);
+  g_free (labeller->former);
+  g_free (labeller->foretold);
   g_free (labeller->nodes);
   g_free (labeller->around);
   g_free (labeller->gains);
@@ -121,6 +126,7 @@ make_room (ClothDotLabeller * labeller, guint n)
   labeller->gains = g_renew (gfloat, labeller->gains,
       (gsize) n * (gsize) (labeller->n_colours + 1));
   labeller->labels = g_renew (ClothDotLabel, labeller->labels, n);
+  labeller->foretold = g_renew (gint32, labeller->foretold, n);
   labeller->members = g_renew (guint, labeller->members, n);
   labeller->queue = g_renew (guint, labeller->queue, n);
   labeller->scratch = g_renew (gfloat, labeller->scratch, 3 * (gsize) n);
@@ -142,11 +148,13 @@ within (gfloat value, gfloat least, gfloat most)
  *   cloth_dot_colour_model_classify() for one
  *
  * Labels dots. Neighbours are found by where they lie in the measure of the dots' own
- * ellipses; links that close squares join dots to patches; the placing of a patch in the
- * array, over all turns and shifts and mirrored, is the one that the colours of all its
- * dots together make likeliest. It counts when it leads by @params->lead before the next
- * best and before random colours. Dots that together contradict it are cut off and placed
- * anew.
+ * ellipses; links join dots to patches; the placing of a patch in the array, over all
+ * turns and shifts and mirrored, is the one that the colours of all its dots together
+ * make likeliest. It counts when it leads by @params->lead before the next best and
+ * before random colours. Dots that together contradict it are cut off and placed anew.
+ * Where the former picture's labels foretell a placing, that one is tried first; the
+ * colours of its dots must say so too. Then dots next to labelled ones are labelled where
+ * both place and colour agree, and labels taken away from dots that lie elsewhere.
  *
  * Each label is given at most once. Dots that are in no patch, and patches that no
  * placing explains well enough, get none.
@@ -165,7 +173,11 @@ cloth_dot_labeller_run (ClothDotLabeller * labeller,
   make_room (labeller, MIN (n_dots, CLOTH_DOT_MAX));
   cloth_lattice_link (labeller, dots);
   cloth_lattice_grow (labeller);
+  cloth_lattice_foretell (labeller);
   cloth_lattice_place (labeller, log_likelihoods);
+  cloth_lattice_prune (labeller);
+  cloth_lattice_extend (labeller);
+  cloth_lattice_remember (labeller);
 }
 
 /**
@@ -198,4 +210,6 @@ void
 cloth_dot_labeller_reset (ClothDotLabeller * labeller)
 {
   labeller->n = 0;
+  memset (labeller->former, 0, (gsize) labeller->columns
+      * (gsize) labeller->rows * sizeof *labeller->former);
 }
