@@ -30,6 +30,7 @@ typedef struct {
  * @ground: Cb and Cr of the ground, grey levels from 128
  * @noise: standard deviation of a dot's mean Cb and Cr, grey levels
  * @outliers: share of dots that look like none of the colours
+ * @seen: how many dots each class was learnt from, as far as it remembers
  * @kr: share of red in the pictures' luma
  * @kb: share of blue in the pictures' luma
  *
@@ -43,6 +44,7 @@ typedef struct {
   gfloat ground[2];
   gfloat noise;
   gfloat outliers;
+  gfloat seen[CLOTH_DOT_COLOURS_MAX];
   gfloat kr, kb;
 } ClothDotColourModel;
 
@@ -52,5 +54,13 @@ void cloth_dot_colour_model_init_patches (ClothDotColourModel * model, gint n,
     const gfloat (*ycbcr)[3], const gfloat ground[3], gfloat kr, gfloat kb);
 void cloth_dot_colour_model_classify (const ClothDotColourModel * model,
     const ClothDot * dots, guint n_dots, gfloat * log_likelihoods);
+
+gboolean cloth_dot_colour_model_adapt (ClothDotColourModel * model,
+    const ClothDot * dots, guint n_dots);
+void cloth_dot_colour_model_learn (ClothDotColourModel * model,
+    const ClothDot * dots, guint n_dots, const gint8 * colours);
+void cloth_dot_colour_model_vote (const ClothDotColourModel * model,
+    const ClothDotImage * image, const ClothDot * dots, guint n_dots,
+    gfloat * log_likelihoods);
 
 G_END_DECLS

@@ -47,19 +47,6 @@ inverse_root (const gfloat a[3], gfloat w[3])
 static void
 look_around (ClothDotLabeller * labeller, const ClothDot * dots)
 {
-  gfloat right = 1, bottom = 1;
-
-  for (guint i = 0; i < labeller->n; i++) {
-    if (labeller->nodes[i].sound) {
-      right = MAX (right, dots[i].x);
-      bottom = MAX (bottom, dots[i].y);
-    }
-  }
-  cloth_point_grid_clear (labeller->grid, (gint) MIN (right, 32767) + 1,
-      (gint) MIN (bottom, 32767) + 1, labeller->n);
-  for (guint i = 0; i < labeller->n; i++)
-    cloth_point_grid_add (labeller->grid,
-        labeller->nodes[i].sound ? dots[i].x : NAN, dots[i].y);
   for (guint i = 0; i < labeller->n; i++) {
     const gfloat *s = dots[i].shape;
     ClothLatticeAround *around = &labeller->around[i];
@@ -345,19 +332,35 @@ count_squares (ClothDotLabeller * labeller)
   }
 }
 
-/* Finds each dot's neighbours: nodes[].next, back, step and squares. */
+/* Makes nodes of the dots, and a grid to find them by. */
 void
-cloth_lattice_link (ClothDotLabeller * labeller, const ClothDot * dots)
+cloth_lattice_start (ClothDotLabeller * labeller, const ClothDot * dots)
 {
+  gfloat right = 1, bottom = 1;
+
   for (guint i = 0; i < labeller->n; i++) {
     ClothLatticeNode *node = &labeller->nodes[i];
 
     *node = (ClothLatticeNode) {
     .x = dots[i].x,.y = dots[i].y,.next = { -1, -1, -1, -1 },.patch =
           -1,.sound = is_sound (&dots[i])};
-    if (node->sound)
+    if (node->sound) {
       sharpen (dots[i].shape, node->shape);
+      right = MAX (right, dots[i].x);
+      bottom = MAX (bottom, dots[i].y);
+    }
   }
+  cloth_point_grid_clear (labeller->grid, (gint) MIN (right, 32767) + 1,
+      (gint) MIN (bottom, 32767) + 1, labeller->n);
+  for (guint i = 0; i < labeller->n; i++)
+    cloth_point_grid_add (labeller->grid,
+        labeller->nodes[i].sound ? dots[i].x : NAN, dots[i].y);
+}
+
+/* Finds each dot's neighbours: nodes[].next, back, step and squares. */
+void
+cloth_lattice_link (ClothDotLabeller * labeller, const ClothDot * dots)
+{
   look_around (labeller, dots);
   for (guint i = 0; i < labeller->n; i++)
     measure_around (labeller, i);

@@ -77,8 +77,10 @@ gain_at (const ClothDotLabeller * labeller, const ClothLatticePlace * place,
       + colour_at (labeller, at[0], at[1])];
 }
 
-static void
-set_gains (ClothDotLabeller * labeller, const gfloat * log_likelihoods)
+/* Turns likelihoods into log-odds; takes all labels away. */
+void
+cloth_lattice_weigh (ClothDotLabeller * labeller,
+    const gfloat * log_likelihoods)
 {
   const guint m = (guint) labeller->n_colours;
   const gfloat any = labeller->params.colour_error;
@@ -88,6 +90,7 @@ set_gains (ClothDotLabeller * labeller, const gfloat * log_likelihoods)
     gfloat *to = labeller->gains + i * (m + 1);
     gfloat most = -G_MAXFLOAT, sum = 0;
 
+    cloth_lattice_take_label (&labeller->labels[i]);
     for (guint k = 0; k < m; k++)
       most = MAX (most, from[k]);
     for (guint k = 0; k < m; k++)
@@ -631,15 +634,11 @@ place_by_search (ClothDotLabeller * labeller, guint number)
 
 /* Places the patches and labels their dots. */
 void
-cloth_lattice_place (ClothDotLabeller * labeller,
-    const gfloat * log_likelihoods)
+cloth_lattice_place (ClothDotLabeller * labeller)
 {
   const gfloat n_places = (gfloat) (TURNS * labeller->columns * labeller->rows);
   const gfloat needed = labeller->params.lead + logf (n_places);
 
-  set_gains (labeller, log_likelihoods);
-  for (guint i = 0; i < labeller->n; i++)
-    cloth_lattice_take_label (&labeller->labels[i]);
   /* There may come more. */
   for (guint k = 0; k < labeller->patches->len; k++) {
     const ClothLatticePatch *patch =

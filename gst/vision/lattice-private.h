@@ -71,6 +71,12 @@ typedef struct
   gfloat pitch;                 /* distance of its nearest neighbour, px */
 } ClothLatticeFormer;
 
+/* Two lattice vectors at a dot, px: along a row of the array and along a column. */
+typedef struct
+{
+  gfloat u[2], v[2];
+} ClothLatticeFrame;
+
 struct _ClothDotLabeller
 {
   gint columns, rows, n_colours;
@@ -79,6 +85,8 @@ struct _ClothDotLabeller
   gint32 *holders;              /* of each label: its dot, -1: none */
   ClothDotLabelParams params;
   ClothLatticeFormer *former;   /* of each label */
+
+  GHashTable *windows;          /* by their colours; for the paper's way only */
 
   /* Of the picture at hand; room for @n_room dots. */
   guint n, n_room;
@@ -91,6 +99,7 @@ struct _ClothDotLabeller
   gint32 *foretold;             /* label of each dot by the former picture, -1: none */
   guint *members;               /* dots, patch by patch */
   guint *queue;
+  ClothLatticeFrame *frames;
   guint n_members;
   GArray *patches;
   GArray *candidates;
@@ -118,13 +127,16 @@ cloth_lattice_take_label (ClothDotLabel * label)
   -1, -1, 0, FALSE, G_MAXUINT};
 }
 
+void cloth_lattice_start (ClothDotLabeller * labeller, const ClothDot * dots);
 void cloth_lattice_link (ClothDotLabeller * labeller, const ClothDot * dots);
 void cloth_lattice_grow (ClothDotLabeller * labeller);
-void cloth_lattice_place (ClothDotLabeller * labeller,
+void cloth_lattice_weigh (ClothDotLabeller * labeller,
     const gfloat * log_likelihoods);
+void cloth_lattice_place (ClothDotLabeller * labeller);
 void cloth_lattice_foretell (ClothDotLabeller * labeller);
 void cloth_lattice_prune (ClothDotLabeller * labeller);
 void cloth_lattice_extend (ClothDotLabeller * labeller);
 void cloth_lattice_remember (ClothDotLabeller * labeller);
+void cloth_lattice_label_as_paper (ClothDotLabeller * labeller);
 
 G_END_DECLS

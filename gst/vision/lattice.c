@@ -17,7 +17,7 @@
  * cloth_dot_label_default_params:
  *
  * Returns: parameters: change of lattice vectors 0.4, colour errors 0.1, lead 6, seen
- *   from both sides
+ *   from both sides, not the paper's way; its regions of 20 dots
  *
  * Since: 0.1
  */
@@ -25,7 +25,7 @@ ClothDotLabelParams
 cloth_dot_label_default_params (void)
 {
   return (ClothDotLabelParams) {
-  .c = 0.4f,.colour_error = 0.1f,.lead = 6,.mirrored = TRUE};
+  .c = 0.4f,.colour_error = 0.1f,.lead = 6,.mirrored = TRUE,.least_region = 20};
 }
 
 /**
@@ -101,6 +101,7 @@ cloth_dot_labeller_free (ClothDotLabeller * labeller)
   g_free (labeller->matrix);
   g_free (labeller->holders);
   g_free (labeller->doubtful);
+  g_clear_pointer (&labeller->windows, g_hash_table_unref);
   g_free (labeller->former);
   g_free (labeller->foretold);
   g_free (labeller->nodes);
@@ -109,6 +110,7 @@ cloth_dot_labeller_free (ClothDotLabeller * labeller)
   g_free (labeller->labels);
   g_free (labeller->members);
   g_free (labeller->queue);
+  g_free (labeller->frames);
   g_free (labeller->scratch);
   g_free (labeller);
 }
@@ -129,6 +131,7 @@ make_room (ClothDotLabeller * labeller, guint n)
   labeller->foretold = g_renew (gint32, labeller->foretold, n);
   labeller->members = g_renew (guint, labeller->members, n);
   labeller->queue = g_renew (guint, labeller->queue, n);
+  labeller->frames = g_renew (ClothLatticeFrame, labeller->frames, n);
   labeller->scratch = g_renew (gfloat, labeller->scratch, 3 * (gsize) n);
 }
 
@@ -169,12 +172,19 @@ cloth_dot_labeller_run (ClothDotLabeller * labeller,
   labeller->params = *params;
   labeller->params.c = within (params->c, 0, 1);
   labeller->params.colour_error = within (params->colour_error, 0.001f, 0.9f);
+  labeller->params.least_region = MAX (3, params->least_region);
   labeller->params.lead = within (params->lead, 0, G_MAXFLOAT);
   make_room (labeller, MIN (n_dots, CLOTH_DOT_MAX));
+  cloth_lattice_start (labeller, dots);
+  cloth_lattice_weigh (labeller, log_likelihoods);
+  if (params->paper) {
+    cloth_lattice_label_as_paper (labeller);
+    return;
+  }
   cloth_lattice_link (labeller, dots);
   cloth_lattice_grow (labeller);
   cloth_lattice_foretell (labeller);
-  cloth_lattice_place (labeller, log_likelihoods);
+  cloth_lattice_place (labeller);
   cloth_lattice_prune (labeller);
   cloth_lattice_extend (labeller);
   cloth_lattice_remember (labeller);

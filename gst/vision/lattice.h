@@ -43,6 +43,10 @@ typedef struct {
  *   0.9; 0.1, the worst of the paper's 5 to 10 percent
  * @lead: least log-odds of a placing, nats, at least 0; 6
  * @mirrored: whether the print may be seen from behind; it may
+ * @paper: label by seeds of three hypotheses, windows that occur in the array and growing
+ *   of regions (Scholz et al. 2005, 4.2), picture by picture, rather than by the
+ *   likelihood of whole patches
+ * @least_region: fewest dots of a region that the paper's way keeps, at least 3; 20
  *
  * Values out of range are brought into it.
  *
@@ -53,6 +57,8 @@ typedef struct {
   gfloat colour_error;
   gfloat lead;
   gboolean mirrored;
+  gboolean paper;
+  guint least_region;
 } ClothDotLabelParams;
 
 typedef struct _ClothDotLabeller ClothDotLabeller;
