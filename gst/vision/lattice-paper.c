@@ -14,18 +14,6 @@ static const gint ring[8][2] = { {1, 0}, {1, 1}, {0, 1}, {-1, 1},
 
 typedef ClothLatticeFrame Frame;
 
-static guint
-colour_of (const ClothDotLabeller * labeller, guint i)
-{
-  const gfloat *gains = labeller->gains + i * (guint) (labeller->n_colours + 1);
-  guint best = 0;
-
-  for (guint k = 1; k < (guint) labeller->n_colours; k++)
-    if (gains[k] > gains[best])
-      best = k;
-  return best;
-}
-
 /* All windows of the array, by their nine colours. */
 static void
 index_windows (ClothDotLabeller * labeller)
@@ -174,7 +162,7 @@ take_next (ClothDotLabeller * labeller, guint i, gint way, const Frame * frame)
     return FALSE;
   dot = find_dot (labeller, node->x, node->y, step);
   if (dot < 0 || labeller->labels[dot].column >= 0
-      || colour_of (labeller, (guint) dot)
+      || cloth_lattice_look (labeller, (guint) dot)
       != labeller->matrix[row * labeller->columns + column])
     return FALSE;
   give_label (labeller, (guint) dot, column, row, labeller->labels[i].mirrored,
@@ -246,7 +234,7 @@ try_window (ClothDotLabeller * labeller, guint seed, const gfloat e1[2],
     dot = find_dot (labeller, node->x, node->y, step);
     if (dot < 0 || dot == (gint) seed)
       return FALSE;
-    colours[k] = colour_of (labeller, (guint) dot);
+    colours[k] = cloth_lattice_look (labeller, (guint) dot);
   }
   /* Turned by quarters, either way round. */
   for (gint turn = 0; turn < (labeller->params.mirrored ? 8 : 4); turn++) {
@@ -256,7 +244,7 @@ try_window (ClothDotLabeller * labeller, guint seed, const gfloat e1[2],
     gpointer found;
     Frame frame;
 
-    key = colour_of (labeller, seed);
+    key = cloth_lattice_look (labeller, seed);
     for (gint k = 0; k < 8; k++)
       key = key * n + colours[(start + sense * k + 8) & 7];
     if (!g_hash_table_lookup_extended (labeller->windows,

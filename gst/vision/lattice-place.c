@@ -31,6 +31,14 @@
 #define ROUNDS 6
 /* Dots of a patch about which its placing is looked for, one after another. */
 #define TRIES 4
+/* Labelled dots that tell how often colours are wrong, how fast that is learnt, and
+ * within what bounds. */
+#define ENOUGH 50
+#define LEARNING 0.3f
+/* Dots of wrong colours are labelled more rarely. */
+#define MISSED 1.5f
+#define LEAST_ERROR 0.03f
+#define MOST_ERROR 0.45f
 
 typedef ClothLatticeCandidate Candidate;
 
@@ -83,7 +91,7 @@ cloth_lattice_weigh (ClothDotLabeller * labeller,
     const gfloat * log_likelihoods)
 {
   const guint m = (guint) labeller->n_colours;
-  const gfloat any = labeller->params.colour_error;
+  const gfloat any = labeller->error;
 
   for (guint i = 0; i < labeller->n; i++) {
     const gfloat *from = log_likelihoods + i * m;
@@ -554,6 +562,31 @@ keep_unique (ClothDotLabeller * labeller)
     }
     cloth_lattice_take_label (label);
   }
+}
+
+/* Counts how dots look whose labels say what colour they have, and learns how often the
+ * two differ. */
+void
+cloth_lattice_compare (ClothDotLabeller * labeller)
+{
+  guint n = 0, n_wrong = 0;
+
+  memset (labeller->looks, 0, sizeof labeller->looks);
+  for (gint k = 0; k < labeller->columns * labeller->rows; k++) {
+    const guint8 colour = labeller->matrix[k];
+    guint look;
+
+    if (labeller->holders[k] < 0)
+      continue;
+    look = cloth_lattice_look (labeller, (guint) labeller->holders[k]);
+    labeller->looks[colour][look]++;
+    n++;
+    n_wrong += look != colour;
+  }
+  if (n >= ENOUGH)
+    labeller->error +=
+        LEARNING * (CLAMP (MISSED * (gfloat) n_wrong / (gfloat) n, LEAST_ERROR,
+            MOST_ERROR) - labeller->error);
 }
 
 /* Parts patch @number by what fits @place, and labels the piece that @anchor is in if it

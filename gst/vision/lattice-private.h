@@ -85,6 +85,9 @@ struct _ClothDotLabeller
   gint32 *holders;              /* of each label: its dot, -1: none */
   ClothDotLabelParams params;
   ClothLatticeFormer *former;   /* of each label */
+  gfloat error;                 /* share of dots of another colour than their label's;
+                                 * 0: not known yet */
+  guint looks[CLOTH_DOT_COLOURS_MAX][CLOTH_DOT_COLOURS_MAX];
 
   GHashTable *windows;          /* by their colours; for the paper's way only */
 
@@ -120,6 +123,20 @@ cloth_lattice_step (const ClothLatticeNode * node, gint slot, gint32 cell[2],
   *turn = (guint8) ((node->back[slot] - (way ^ 2)) & 3);
 }
 
+/* The colour that dot @i looks most like. */
+static inline guint
+cloth_lattice_look (const ClothDotLabeller * labeller, guint i)
+{
+  const gfloat *gains = labeller->gains
+      + i * (guint) (labeller->n_colours + 1);
+  guint best = 0;
+
+  for (guint k = 1; k < (guint) labeller->n_colours; k++)
+    if (gains[k] > gains[best])
+      best = k;
+  return best;
+}
+
 static inline void
 cloth_lattice_take_label (ClothDotLabel * label)
 {
@@ -134,6 +151,7 @@ void cloth_lattice_weigh (ClothDotLabeller * labeller,
     const gfloat * log_likelihoods);
 void cloth_lattice_place (ClothDotLabeller * labeller);
 void cloth_lattice_foretell (ClothDotLabeller * labeller);
+void cloth_lattice_compare (ClothDotLabeller * labeller);
 void cloth_lattice_prune (ClothDotLabeller * labeller);
 void cloth_lattice_extend (ClothDotLabeller * labeller);
 void cloth_lattice_remember (ClothDotLabeller * labeller);

@@ -12,6 +12,9 @@
 
 #define LEAST_EDGE 3
 #define GREATEST_EDGE 400
+/* Dots of each of two colours that must look like the other to say that they are
+ * swapped. */
+#define SWAPPED 5
 
 /**
  * cloth_dot_label_default_params:
@@ -174,6 +177,8 @@ cloth_dot_labeller_run (ClothDotLabeller * labeller,
   labeller->params.colour_error = within (params->colour_error, 0.001f, 0.9f);
   labeller->params.least_region = MAX (3, params->least_region);
   labeller->params.lead = within (params->lead, 0, G_MAXFLOAT);
+  if (labeller->error <= 0)
+    labeller->error = labeller->params.colour_error;
   make_room (labeller, MIN (n_dots, CLOTH_DOT_MAX));
   cloth_lattice_start (labeller, dots);
   cloth_lattice_weigh (labeller, log_likelihoods);
@@ -185,6 +190,7 @@ cloth_dot_labeller_run (ClothDotLabeller * labeller,
   cloth_lattice_grow (labeller);
   cloth_lattice_foretell (labeller);
   cloth_lattice_place (labeller);
+  cloth_lattice_compare (labeller);
   cloth_lattice_prune (labeller);
   cloth_lattice_extend (labeller);
   cloth_lattice_remember (labeller);
@@ -209,6 +215,44 @@ cloth_dot_labeller_get_labels (const ClothDotLabeller * labeller,
 }
 
 /**
+ * cloth_dot_labeller_find_swap:
+ * @labeller: a labeller
+ * @a: (out): a colour
+ * @b: (out): another
+ *
+ * Looks for two colours of which most dots of the last picture look like the other one,
+ * going by their labels: the pattern's description has them in the wrong order. A label
+ * does not hang on the colour of its own dot alone, so that some are found all the same.
+ *
+ * Returns: whether two colours are swapped
+ *
+ * Since: 0.1
+ */
+gboolean
+cloth_dot_labeller_find_swap (const ClothDotLabeller * labeller, gint * a,
+    gint * b)
+{
+  const gint n = labeller->n_colours;
+
+  for (*a = 0; *a < n; (*a)++) {
+    for (*b = *a + 1; *b < n; (*b)++) {
+      guint all[2] = { 0 };
+
+      for (gint k = 0; k < n; k++) {
+        all[0] += labeller->looks[*a][k];
+        all[1] += labeller->looks[*b][k];
+      }
+      if (labeller->looks[*a][*b] >= SWAPPED
+          && labeller->looks[*b][*a] >= SWAPPED
+          && 2 * labeller->looks[*a][*b] > all[0]
+          && 2 * labeller->looks[*b][*a] > all[1])
+        return TRUE;
+    }
+  }
+  return FALSE;
+}
+
+/**
  * cloth_dot_labeller_reset:
  * @labeller: a labeller
  *
@@ -220,6 +264,8 @@ void
 cloth_dot_labeller_reset (ClothDotLabeller * labeller)
 {
   labeller->n = 0;
+  labeller->error = 0;
+  memset (labeller->looks, 0, sizeof labeller->looks);
   memset (labeller->former, 0, (gsize) labeller->columns
       * (gsize) labeller->rows * sizeof *labeller->former);
 }

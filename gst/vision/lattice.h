@@ -40,7 +40,8 @@ typedef struct {
  * @c: greatest change of a lattice vector from dot to dot, as a share of its length:
  *   ‖u′−u‖ < c‖u‖, 0 to 1; 0.4
  * @colour_error: share of the dots that are taken for having any colour at all, 0.001 to
- *   0.9; 0.1, the worst of the paper's 5 to 10 percent
+ *   0.9, until labels have shown how many look like another colour; 0.1, the worst of the
+ *   paper's 5 to 10 percent
  * @lead: least log-odds of a placing, nats, at least 0; 6
  * @mirrored: whether the print may be seen from behind; it may
  * @paper: label by seeds of three hypotheses, windows that occur in the array and growing
@@ -74,6 +75,8 @@ void cloth_dot_labeller_run (ClothDotLabeller * labeller,
     const gfloat * log_likelihoods);
 const ClothDotLabel *cloth_dot_labeller_get_labels (const ClothDotLabeller *
     labeller, guint * n_labels);
+gboolean cloth_dot_labeller_find_swap (const ClothDotLabeller * labeller,
+    gint * a, gint * b);
 void cloth_dot_labeller_reset (ClothDotLabeller * labeller);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothDotLabeller, cloth_dot_labeller_free)
