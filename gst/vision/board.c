@@ -289,7 +289,7 @@ try_patch (ClothBoardFinder * finder, const ClothImage * image,
     const ClothSaddle * saddles, const ClothLinkPatch * link)
 {
   ClothPatchParams params =
-      { 0.25f, 0.62f, -1.0f, TRUE, finder->pattern.code != NULL };
+      { 0.25f, 0.62f, -1.0f, 0.4f, TRUE, finder->pattern.code != NULL };
   ClothPlacement vote, placement;
   guint n_votes;
 

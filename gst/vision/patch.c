@@ -17,9 +17,10 @@
 #define SURE 0.85f
 /* Rounds of taking in squares beside those taken in before. */
 #define ROUNDS 4
-/* What is brighter than the cloth around by more than this share of the print's contrast,
- * or darker, is something else before the board. */
-#define BEYOND 0.3f
+/* Near a cell's edge, in cells. */
+#define NEAR_EDGE 0.1f
+/* The shorter of two strides of the grid that follow each other over the longer. */
+#define EVEN 0.7f
 
 /**
  * cloth_patch_clear:
@@ -316,23 +317,82 @@ check_square (ClothPatch * patch, const ClothImage * image, gint i, gint j,
     patch->square[at] = 0;
 }
 
+/* Widens a cell's range by samples close to those of its edges that are known: what
+ * covers the board may leave a rim of the square in sight. */
+static void
+widen_range (const ClothPatch * patch, const ClothImage * image, gint i,
+    gint j, const gfloat x[4], const gfloat y[4], gfloat range[2])
+{
+  static const gfloat at[4][2] = {
+    {0.5f, NEAR_EDGE}, {1 - NEAR_EDGE, 0.5f}, {0.5f, 1 - NEAR_EDGE},
+    {NEAR_EDGE, 0.5f}
+  };
+
+  for (gint k = 0; k < 4; k++) {
+    const gint to = (k + 1) & 3;
+    gint level;
+
+    if (!known (patch, i + corner_i[k], j + corner_j[k])
+        || !known (patch, i + corner_i[to], j + corner_j[to])
+        || (level = cell_sample (image, x, y, at[k][0], at[k][1])) < 0)
+      continue;
+    range[0] = MIN (range[0], (gfloat) level);
+    range[1] = MAX (range[1], (gfloat) level);
+  }
+}
+
+/* Whether the corners of cell (@i, @j) that lie on a rim are about as far from those
+ * before them as these are from those before: squares that something cuts off end anywhere,
+ * and what is beyond is no cell. */
+static gboolean
+is_even (const ClothPatch * patch, gint i, gint j)
+{
+  const gint n = patch->columns;
+
+  for (gint k = 0; k < 4; k++) {
+    const gint ci = i + corner_i[k], cj = j + corner_j[k], at = cj * n + ci;
+
+    if (patch->kind[at] != CLOTH_VERTEX_RIM)
+      continue;
+    for (gint way = 0; way < 2; way++) {
+      const gint di = way ? 0 : (corner_i[k] ? 1 : -1);
+      const gint dj = way ? (corner_j[k] ? 1 : -1) : 0;
+      const gint one = (cj + dj) * n + ci + di;
+      const gint two = (cj + 2 * dj) * n + ci + 2 * di;
+      gfloat outer, inner;
+
+      if (!known (patch, ci + di, cj + dj)
+          || !known (patch, ci + 2 * di, cj + 2 * dj))
+        continue;
+      outer = hypotf (patch->x[at] - patch->x[one],
+          patch->y[at] - patch->y[one]);
+      inner = hypotf (patch->x[one] - patch->x[two],
+          patch->y[one] - patch->y[two]);
+      if (MIN (outer, inner) < EVEN * MAX (outer, inner))
+        return FALSE;
+    }
+  }
+  return TRUE;
+}
+
 /* Whether the board goes on at cell (@i, @j), which was not seen as a square: hardly, if
- * it shows the other colour. Its own colour says nothing, for the cloth has it too. */
+ * it shows the other colour. Its own colour says nothing, for the cloth has it too, and
+ * neither does what differs from the print around. */
 static gfloat
 judge_cell (const ClothPatch * patch, const ClothImage * image, gint i, gint j,
-    gfloat other_colour)
+    const ClothPatchParams * params)
 {
-  gfloat x[4], y[4], range[2], black, white, lower, upper, beyond;
+  gfloat x[4], y[4], range[2], black, white, other, reach;
 
   if (cell_corners (patch, i, j, x, y) < 1 || !cell_range (image, x, y, range)
+      || !is_even (patch, i, j)
       || !local_levels (patch, image, i, j, &black, &white))
     return 0;
-  lower = black + 0.4f * (white - black);
-  upper = black + 0.6f * (white - black);
-  beyond = BEYOND * (white - black);
-  if (cloth_patch_is_black (patch, i, j))
-    return range[0] > upper && range[1] < white + beyond ? other_colour : 0;
-  return range[1] < lower && range[0] > black - beyond ? other_colour : 0;
+  widen_range (patch, image, i, j, x, y, range);
+  other = cloth_patch_is_black (patch, i, j) ? white : black;
+  reach = params->alike * (white - black);
+  return range[0] > other - reach && range[1] < other + reach
+      ? params->other_colour : 0;
 }
 
 /* Log-likelihood ratio that the square carries a dot of the other colour. */
@@ -416,8 +476,7 @@ cloth_patch_build (ClothPatch * patch, const ClothImage * image,
       gint at = j * n + i;
 
       if (!patch->square[at])
-        patch->inside[at] = judge_cell (patch, image, i, j,
-            params->other_colour);
+        patch->inside[at] = judge_cell (patch, image, i, j, params);
       else if (params->read_bits)
         patch->bit[at] = read_bit (patch, image, i, j);
     }

@@ -71,6 +71,7 @@ typedef struct {
  * @c_low: confidence from which a black cell is taken for a square
  * @other_colour: log-likelihood ratio of the board going on at a cell that shows the other
  *   colour
+ * @alike: share of the contrast within which a cell shows the other colour
  * @thorough: whether to try harder to find corners, at the cost of exactness
  * @read_bits: whether to look for the dots of a coded board
  *
@@ -80,6 +81,7 @@ typedef struct {
   gfloat alpha;
   gfloat c_low;
   gfloat other_colour;
+  gfloat alike;
   gboolean thorough;
   gboolean read_bits;
 } ClothPatchParams;

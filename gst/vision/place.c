@@ -26,6 +26,8 @@
 #define PROBE 256
 /* Share by which these agree from which all are read at once. */
 #define PROMISING 0.5f
+/* Share of the board's squares from which on a patch is the whole board. */
+#define WHOLE 0.75f
 /* Of the placements that these dots leave, all of them are read for so many at most. */
 #define MOST_READ 64
 /* Vertices of a patch each way: sums stay within 32 bits. */
@@ -423,7 +425,7 @@ are_twins (const ClothPattern * pattern, const ClothPlacement * a,
     /* The board turned about its middle: (c, r) becomes (rows - r, c). */
     turned = (ClothPlacement) {
     (turned.rotation + 1) & 3, (quarter & 1 ? pattern->rows
-          : pattern->columns) - turned.row, turned.column, 0};
+          : pattern->columns) - turned.row, turned.column};
     if ((quarter & 1) && !(square && (pattern->columns & 1)))
       continue;
     if (quarter == 2 && ((pattern->columns + pattern->rows) & 1))
@@ -433,6 +435,30 @@ are_twins (const ClothPattern * pattern, const ClothPlacement * a,
       return TRUE;
   }
   return FALSE;
+}
+
+/* What corners that linking did not join, and that lie on the board's rim, add: what is
+ * beside the board, like a plate that it is glued on, may give them the look of inner ones. */
+static gfloat
+found_on_rim (const ClothPlacer * placer, const ClothPatch * patch,
+    const ClothPlaceWeights * weights, const ClothPlacement * placement)
+{
+  const gint columns = placer->pattern.columns, rows = placer->pattern.rows;
+  gfloat sum = 0;
+
+  for (gint j = 0; j + 1 < patch->rows && weights->found_corners; j++)
+    for (gint i = 0; i + 1 < patch->columns; i++) {
+      const gint at = j * patch->columns + i;
+      gint column, row;
+
+      if (patch->linked[at] || patch->kind[at] != CLOTH_VERTEX_SADDLE)
+        continue;
+      cloth_placement_vertex (placement, i, j, &column, &row);
+      if (column >= 0 && row >= 0 && column <= columns && row <= rows
+          && (column % columns == 0 || row % rows == 0))
+        sum += weights->corner_outside;
+    }
+  return sum;
 }
 
 /* Whether a straight rim runs along more than @share of a line of the board that lies
@@ -480,7 +506,7 @@ static Range
 range_of (const ClothPlacer * placer, const ClothPatch * patch, gint rotation)
 {
   const ClothPattern *pattern = &placer->pattern;
-  const ClothPlacement turned = { rotation, 0, 0, 0 };
+  const ClothPlacement turned = { rotation };
   const gint *box = placer->box;
   gint c0, r0, c1, r1;
 
@@ -548,7 +574,7 @@ score_all (ClothPlacer * placer, const ClothPatch * patch,
     ranges[rotation] = range_of (placer, patch, rotation);
   /* What is voted for first: if it is right, most others are ruled out at once. */
   for (guint k = 0; k < n_votes; k++) {
-    Rival rival = { votes[k], 0, 0, 0 };
+    Rival rival = { votes[k] };
     guint same = 0;
 
     if (!is_in (&ranges[votes[k].rotation & 3], &votes[k]))
@@ -575,7 +601,7 @@ score_all (ClothPlacer * placer, const ClothPatch * patch,
       for (gint column = range->column[0] + ((range->column[0] + row
                   + range->odd) & 1); column <= range->column[1]; column += 2) {
         const gint64 least = (gint64) ((most - margin) * STEPS);
-        Rival rival = { {rotation, column, row, 0}, 0, 0, 0 };
+        Rival rival = { {rotation, column, row} };
         guint voted = 0;
         gint32 extent;
 
@@ -642,7 +668,7 @@ cloth_placer_run (ClothPlacer * placer, const ClothPatch * patch,
     const ClothPlaceWeights * weights, const ClothPlacement * votes,
     guint n_votes, ClothPlacement * best)
 {
-  gfloat prior[4] = { 0 }, most = -G_MAXFLOAT;
+  gfloat prior[4] = { 0 }, most = -G_MAXFLOAT, score;
   const Rival *list;
   guint first = 0, n;
 
@@ -671,18 +697,31 @@ cloth_placer_run (ClothPlacer * placer, const ClothPatch * patch,
     return FALSE;
   *best = list[first].placement;
   /* What fits one way only hangs over on both sides. */
-  best->weight = n > 1 ? CLOTH_PLACE_MOST_LEAD : -weights->square_outside;
+  best->weight = best->evidence =
+      n > 1 ? CLOTH_PLACE_MOST_LEAD : -weights->square_outside;
   for (guint k = 0; k < placer->rivals->len; k++) {
     const ClothPlacement *own = &list[k].placement;
+    const gboolean twin = !placer->coded
+        && are_twins (&placer->pattern, best, own);
     gfloat lead = list[first].placement.weight - own->weight;
 
+    if (k == first)
+      continue;
     if (!weights->twins)
       lead = most - own->weight - prior[own->rotation];
     /* Of two that look the same either is right: the more upright one was taken. */
-    if (k != first && !(weights->twins && !placer->coded
-            && are_twins (&placer->pattern, best, own)))
+    if (!weights->twins || !twin)
       best->weight = MIN (best->weight, lead);
+    if (!twin)
+      best->evidence = MIN (best->evidence, (gfloat) (list[first].score
+              - list[k].score) / STEPS);
   }
+  score = (gfloat) list[first].score / STEPS;
+  best->whole = (gfloat) patch->n_squares
+      >= WHOLE * (gfloat) (placer->pattern.columns * placer->pattern.rows);
+  if (best->whole)
+    score -= found_on_rim (placer, patch, weights, best);
+  best->evidence += MIN (score, 0.0f);
   return TRUE;
 }
 

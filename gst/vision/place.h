@@ -35,6 +35,10 @@ G_BEGIN_DECLS
  * @weight: as a vote: log-likelihood in favour; as a result: log-likelihood of this
  *   placement less that of the next best, at most %CLOTH_PLACE_MOST_LEAD; that of one
  *   square when there is no other
+ * @evidence: as a result: the same lead by what was seen alone, over those that are no
+ *   twins, less what was seen that speaks against the placement
+ * @whole: as a result: whether most of the board is in sight; then corners on its rim that
+ *   linking did not join don't speak against the placement
  *
  * A way to lay a patch on the board: vertex (i, j) of the patch, turned @rotation times
  * by (i, j) → (-j, i), plus (@column, @row).
@@ -45,6 +49,8 @@ typedef struct {
   gint rotation;
   gint column, row;
   gfloat weight;
+  gfloat evidence;
+  gboolean whole;
 } ClothPlacement;
 
 /**

@@ -18,6 +18,10 @@
 #define STRONG_VOTE 3.0f
 /* A vertex votes for a guess this near, in squares. */
 #define VOTE_REACH 0.5f
+/* Corners are looked for this far from where they were in the last picture, px, and so many
+ * must be where they are expected. */
+#define MAX_STEP 40.0f
+#define LEAST_AGREE 4
 /* A vertex this near a guess is that vertex, in squares. */
 #define SURE_REACH 0.3f
 /* The edge of something bright looks like cloth where the board would go on now and then,
@@ -25,6 +29,22 @@
  * not there, and most of one against the memory. */
 #define NEW_LEAD 4.0f
 #define SURE_LEAD 8.0f
+/* Where neither memory nor a seed says so much for a placement, what is seen must. */
+#define KNOWN 1.0f
+/* Evidence like that of four, three and one cells that show the board's end. */
+#define EVIDENT 11.9f
+#define FAIR 8.9f
+#define HINT 2.9f
+/* Evidence that is enough where the board has a code. */
+#define READ 5.9f
+/* The least cells that show the board's end, for a hint. */
+#define LEAST_RIM 2
+/* Cells around a patch of which nothing is known, for each that shows the board's end: with
+ * no memory, and when the board was just seen. */
+#define HIDDEN 2
+#define HIDDEN_LATER 3
+/* A patch with less evidence than that is joined from the board and something else. */
+#define MIXED -15.0f
 /* Pictures in a row that may speak against the memory before they are believed. */
 #define MAX_DOUBTS 2
 /* Squares over which vertices are reckoned from those known, what each square takes from
@@ -352,9 +372,11 @@ take_patch (ClothQuadTracker * tracker, const ClothPlacement * placement,
 }
 
 /* Remembers which board vertex each corner of the patch is, -1: its patch could not be
- * placed. */
+ * placed. @from: where its corners were noted already, the number of those noted if they
+ * were not. */
 static void
-note_corners (ClothQuadTracker * tracker, const ClothPlacement * placement)
+note_corners (ClothQuadTracker * tracker, const ClothPlacement * placement,
+    guint from)
 {
   const ClothPatch *patch = &tracker->patch;
 
@@ -370,8 +392,13 @@ note_corners (ClothQuadTracker * tracker, const ClothPlacement * placement)
             && row <= tracker->pattern.rows)
           vertex = row * (tracker->pattern.columns + 1) + column;
       }
+      if (from < tracker->corner_vertex->len) {
+        g_array_index (tracker->corner_vertex, gint, from++) = vertex;
+        continue;
+      }
       cloth_point_grid_add (tracker->corners, patch->x[at], patch->y[at]);
       g_array_append_val (tracker->corner_vertex, vertex);
+      from++;
     }
 }
 
@@ -434,7 +461,7 @@ reckon_guesses (ClothQuadTracker * tracker)
       gfloat x = 0, y = 0, size = 0;
       gint n = 0;
 
-      if (own->seen || own->guessed || (own->reckoned && own->reckoned < step))
+      if (is_known (own, step))
         continue;
       for (gint way = 0; way < 4; way++) {
         gint column = k % columns + 2 * dc[way], row =
@@ -479,6 +506,137 @@ doubt (ClothQuadTracker * tracker)
   return tracker->doubts <= MAX_DOUBTS;
 }
 
+/* Counts the cells around the patch that show the board's end, and those of which nothing
+ * is known though the board goes on there; of the colour that the cloth has not. */
+static void
+count_rim (ClothQuadTracker * tracker, const ClothPlacement * placement,
+    gint * n_rim, gint * n_hidden)
+{
+  const ClothPatch *patch = &tracker->patch;
+  gint rim[2] = { 0 }, hidden[2] = { 0 };
+  gboolean black;
+
+  for (gint j = 0; j + 1 < patch->rows; j++)
+    for (gint i = 0; i + 1 < patch->columns; i++) {
+      const gint n = patch->columns, at = j * n + i;
+      gint column, row;
+
+      if (patch->square[at] || !((i > 0 && patch->square[at - 1])
+              || (j > 0 && patch->square[at - n]) || patch->square[at + 1]
+              || patch->square[at + n]))
+        continue;
+      black = cloth_patch_is_black (patch, i, j);
+      cloth_placement_cell (placement, i, j, &column, &row);
+      if (cloth_quad_cell (tracker, column, row))
+        hidden[black]++;
+      else
+        rim[black] += patch->inside[at] < 0;
+    }
+  black = rim[1] == rim[0] ? hidden[1] > hidden[0] : rim[1] > rim[0];
+  *n_rim = rim[black];
+  *n_hidden = hidden[black];
+}
+
+/* Where the refused patches of the last picture put what this one does, the evidence for
+ * that; else 0. */
+static gfloat
+evidence_before (ClothQuadTracker * tracker, const ClothPlacement * placement)
+{
+  const ClothPatch *patch = &tracker->patch;
+  gfloat evidence = G_MAXFLOAT;
+  gint agree = 0, against = 0;
+
+  if (!tracker->pending_corner->len)
+    return 0;
+  for (gint j = 0; j < patch->rows; j++)
+    for (gint i = 0; i < patch->columns; i++) {
+      const gint at = j * patch->columns + i;
+      const ClothQuadPending *before;
+      gint column, row;
+      ClothNear near;
+
+      if (patch->kind[at] != CLOTH_VERTEX_SADDLE
+          || !cloth_point_grid_nearest (tracker->pending, patch->x[at],
+              patch->y[at], MAX_STEP, &near, 1))
+        continue;
+      before = &g_array_index (tracker->pending_corner, ClothQuadPending,
+          near.index);
+      if (sqrtf (near.distance2) > VOTE_REACH * before->size)
+        continue;
+      cloth_placement_vertex (placement, i, j, &column, &row);
+      if (before->vertex != row * (tracker->pattern.columns + 1) + column) {
+        against++;
+        continue;
+      }
+      agree++;
+      evidence = MIN (evidence, before->evidence);
+    }
+  return agree >= LEAST_AGREE && agree > 2 * against ? evidence : 0;
+}
+
+/* Keeps a patch refused for want of @evidence, which pictures have added up, in mind. */
+static void
+note_pending (ClothQuadTracker * tracker, const ClothPlacement * placement,
+    gfloat evidence)
+{
+  const ClothPatch *patch = &tracker->patch;
+
+  for (gint j = 0; j + 1 < patch->rows; j++)
+    for (gint i = 0; i + 1 < patch->columns; i++) {
+      const gint at = j * patch->columns + i;
+      ClothQuadPending own = {.evidence = evidence };
+      gint column, row;
+
+      if (patch->kind[at] != CLOTH_VERTEX_SADDLE || !patch->kind[at + 1])
+        continue;
+      cloth_placement_vertex (placement, i, j, &column, &row);
+      own.vertex = row * (tracker->pattern.columns + 1) + column;
+      own.size = hypotf (patch->x[at + 1] - patch->x[at],
+          patch->y[at + 1] - patch->y[at]);
+      cloth_point_grid_add (tracker->pending_now, patch->x[at], patch->y[at]);
+      g_array_append_val (tracker->pending_corner_now, own);
+    }
+}
+
+/* Whether what was seen alone tells where the patch lies. Something else has any size, and
+ * goes on where the board would end: so of a plain board the rim must be seen, and not too
+ * much of what is around the patch be hidden. Other checkerboards are taken for the board
+ * mostly when nothing is remembered: then more is asked, or less a picture but in several
+ * that follow each other. */
+static gboolean
+is_evident (ClothQuadTracker * tracker, const ClothPlacement * placement)
+{
+  const gfloat evidence = placement->evidence;
+  gint rim, hidden;
+  gfloat before;
+
+  if (tracker->pattern.code)
+    return evidence >= READ;
+  if (evidence < HINT)
+    return FALSE;
+  if (placement->whole)
+    return TRUE;
+  count_rim (tracker, placement, &rim, &hidden);
+  if (evidence >= EVIDENT && hidden <= HIDDEN * rim + 1)
+    return TRUE;
+  if (tracker->guess_vertex->len > 0) {
+    if (evidence >= FAIR && rim > 0)
+      return evidence >= EVIDENT || hidden <= HIDDEN_LATER * rim + 2;
+    if (rim >= LEAST_RIM && hidden <= HIDDEN_LATER * rim)
+      return TRUE;
+  } else {
+    if (hidden <= HIDDEN * (rim - LEAST_RIM))
+      return rim > LEAST_RIM;
+    if (rim < LEAST_RIM || hidden > HIDDEN * rim)
+      return FALSE;
+  }
+  before = evidence_before (tracker, placement);
+  if (before > 0 && before + evidence >= FAIR)
+    return TRUE;
+  note_pending (tracker, placement, before + evidence);
+  return FALSE;
+}
+
 /* Places the patch that was just built. Linking may have joined pieces on both sides of a
  * fold: @other is the place that memory knows of the second piece, weight 0 for none. */
 static gboolean
@@ -488,7 +646,8 @@ place (ClothQuadTracker * tracker, gboolean first, ClothPlacement * placement,
   ClothPlacement votes[MAX_VOTES + MAX_SEEDS];
   guint n_memory, n;
   ClothPlaceWeights weights = cloth_place_cloth;
-  gfloat agrees = 0;
+  gfloat agrees = 0, known = 0;
+  gboolean evident;
 
   recall_all (tracker);
   n = n_memory = vote_by_memory (tracker, votes);
@@ -502,6 +661,14 @@ place (ClothQuadTracker * tracker, gboolean first, ClothPlacement * placement,
           placement)
       || placement->weight < CLOTH_PLACE_MIN_LEAD)
     return FALSE;
+  for (guint v = 0; v < n; v++)
+    if (votes[v].rotation == placement->rotation
+        && votes[v].column == placement->column
+        && votes[v].row == placement->row)
+      known += votes[v].weight;
+  evident = known < KNOWN && is_evident (tracker, placement);
+  if (known < KNOWN && !evident)
+    return FALSE;
   for (guint v = 0; v < n_memory; v++)
     if (votes[v].rotation == placement->rotation
         && votes[v].column == placement->column
@@ -511,8 +678,8 @@ place (ClothQuadTracker * tracker, gboolean first, ClothPlacement * placement,
       *other = votes[v];
   /* What the largest patch shows overrules the memory: it had slipped. The others must
    * fit to what is known by then, or show their place beyond doubt. */
-  if (!first && (other->weight > agrees || agrees == 0)
-      && placement->weight < SURE_LEAD)
+  if (!first && placement->weight < SURE_LEAD && (agrees == 0 ? !evident
+          || other->weight > KNOWN : other->weight > agrees))
     return FALSE;
   /* A board that was just seen is hardly anywhere else. */
   if (first && agrees == 0 && tracker->guess_vertex->len > 0
@@ -527,17 +694,58 @@ place (ClothQuadTracker * tracker, gboolean first, ClothPlacement * placement,
   return TRUE;
 }
 
+static void
+swap_pending (ClothQuadTracker * tracker)
+{
+  ClothPointGrid *grid = tracker->pending;
+  GArray *corners = tracker->pending_corner;
+
+  tracker->pending = tracker->pending_now;
+  tracker->pending_corner = tracker->pending_corner_now;
+  tracker->pending_now = grid;
+  tracker->pending_corner_now = corners;
+}
+
+/* Places one patch and takes its squares, if it can be told where it lies. */
+static gboolean
+try_patch (ClothQuadTracker * tracker, const ClothLinkPatch * link,
+    guint n_placed, guint from)
+{
+  const ClothPatchParams params = { tracker->params->alpha,
+    tracker->params->c_low, -3.0f, 0.25f, FALSE, tracker->pattern.code != NULL
+  };
+  ClothPlacement placement, other = { 0 };
+
+  cloth_patch_build (&tracker->patch, tracker->image, tracker->saddles, link,
+      &params);
+  if (!place (tracker, n_placed == 0, &placement, &other)) {
+    note_corners (tracker, NULL, from);
+    return FALSE;
+  }
+  note_corners (tracker, &placement, from);
+  take_patch (tracker, &placement, placement.evidence < MIXED ? 3 : 0);
+  if (other.weight > STRONG_VOTE)
+    take_patch (tracker, &other, 3);
+  /* The others are looked for where the first one's motion has brought them. */
+  if (n_placed == 0)
+    cloth_quad_spread_shift (tracker);
+  if (n_placed < RECKON_PATCHES)
+    reckon_guesses (tracker);
+  index_guesses (tracker);
+  return TRUE;
+}
+
 void
 cloth_quad_link (ClothQuadTracker * tracker)
 {
-  ClothPatchParams params = { tracker->params->alpha, tracker->params->c_low,
-    -3.0f, FALSE, tracker->pattern.code != NULL
-  };
   const ClothLinkPatch *links;
-  guint order[MAX_PATCHES], n_links, n, n_placed = 0;
-  gboolean first = TRUE;
+  guint order[MAX_PATCHES], refused[MAX_PATCHES], from[MAX_PATCHES];
+  guint n_links, n, n_placed = 0, n_refused = 0, n_again = 0;
 
   tracker->doubted = FALSE;
+  cloth_point_grid_clear (tracker->pending_now, tracker->image->width,
+      tracker->image->height, 1);
+  g_array_set_size (tracker->pending_corner_now, 0);
   index_guesses (tracker);
   cloth_point_grid_clear (tracker->corners, tracker->image->width,
       tracker->image->height, tracker->n_saddles);
@@ -546,26 +754,18 @@ cloth_quad_link (ClothQuadTracker * tracker)
       tracker->saddles, tracker->n_saddles, &links, NULL);
   n = cloth_link_largest (links, n_links, order, MAX_PATCHES);
   for (guint k = 0; k < n; k++) {
-    ClothPlacement placement, other = { 0 };
-
-    cloth_patch_build (&tracker->patch, tracker->image, tracker->saddles,
-        &links[order[k]], &params);
-    if (!place (tracker, first, &placement, &other)) {
-      note_corners (tracker, NULL);
-      continue;
+    from[n_refused] = tracker->corner_vertex->len;
+    if (try_patch (tracker, &links[order[k]], n_placed, from[n_refused])) {
+      n_again = n_refused;
+      n_placed++;
+    } else {
+      refused[n_refused++] = order[k];
     }
-    note_corners (tracker, &placement);
-    take_patch (tracker, &placement, 0);
-    if (other.weight > STRONG_VOTE)
-      take_patch (tracker, &other, 3);
-    /* The others are looked for where the first one's motion has brought them. */
-    if (first)
-      cloth_quad_spread_shift (tracker);
-    if (n_placed++ < RECKON_PATCHES)
-      reckon_guesses (tracker);
-    index_guesses (tracker);
-    first = FALSE;
   }
+  /* Those placed after one that was refused may tell more of its place. */
+  for (guint k = 0; k < n_again; k++)
+    n_placed += try_patch (tracker, &links[refused[k]], n_placed, from[k]);
   if (!tracker->doubted)
     tracker->doubts = 0;
+  swap_pending (tracker);
 }

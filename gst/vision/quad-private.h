@@ -35,6 +35,13 @@ typedef struct {
   gfloat distance;              /* squares */
 } ClothQuadRecall;
 
+/* A corner whose place on the board is thought of, but not believed yet. */
+typedef struct {
+  gint vertex;
+  gfloat size;                  /* of the squares around it, px */
+  gfloat evidence;              /* of its patch */
+} ClothQuadPending;
+
 /* One corner of the board. */
 typedef struct {
   gboolean guessed;             /* some remembered square predicts it */
@@ -71,6 +78,10 @@ struct _ClothQuadTracker
   GArray *middle_cell;          /* gint, cell of each point of that grid */
   ClothPointGrid *corners;      /* linked saddles that were placed or rejected */
   GArray *corner_vertex;        /* gint, their board vertex, -1: on no known place */
+  /* Corners of patches that were refused only for want of evidence, in the last picture
+   * and in this one. */
+  ClothPointGrid *pending, *pending_now;
+  GArray *pending_corner, *pending_corner_now;  /* ClothQuadPending, of each point */
   guint doubts;                 /* pictures in a row that spoke against the memory */
   gboolean doubted;             /* this one did */
   ClothPlacer *placer;

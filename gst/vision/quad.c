@@ -81,6 +81,12 @@ cloth_quad_tracker_new (const ClothPattern * pattern)
   tracker->middle_cell = g_array_new (FALSE, FALSE, sizeof (gint));
   tracker->corners = cloth_point_grid_new ();
   tracker->corner_vertex = g_array_new (FALSE, FALSE, sizeof (gint));
+  tracker->pending = cloth_point_grid_new ();
+  tracker->pending_now = cloth_point_grid_new ();
+  tracker->pending_corner = g_array_new (FALSE, FALSE,
+      sizeof (ClothQuadPending));
+  tracker->pending_corner_now = g_array_new (FALSE, FALSE,
+      sizeof (ClothQuadPending));
   tracker->placer = cloth_placer_new (pattern);
   tracker->seeds = g_array_new (FALSE, FALSE, sizeof (ClothQuadSeed));
   tracker->out =
@@ -112,6 +118,10 @@ cloth_quad_tracker_free (ClothQuadTracker * tracker)
   g_array_unref (tracker->middle_cell);
   cloth_point_grid_free (tracker->corners);
   g_array_unref (tracker->corner_vertex);
+  cloth_point_grid_free (tracker->pending);
+  cloth_point_grid_free (tracker->pending_now);
+  g_array_unref (tracker->pending_corner);
+  g_array_unref (tracker->pending_corner_now);
   cloth_placer_free (tracker->placer);
   g_array_unref (tracker->seeds);
   g_array_unref (tracker->out);
@@ -137,6 +147,7 @@ cloth_quad_tracker_reset (ClothQuadTracker * tracker)
     tracker->cells[k].shown = FALSE;
   }
   tracker->doubts = 0;
+  g_array_set_size (tracker->pending_corner, 0);
   g_array_set_size (tracker->seeds, 0);
 }
 

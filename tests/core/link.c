@@ -346,7 +346,7 @@ test_no_boards (void)
 static void
 test_patch (void)
 {
-  const ClothPatchParams params = { 0.25f, 0.62f, -3, FALSE, TRUE };
+  const ClothPatchParams params = { 0.25f, 0.62f, -3, 0.25f, FALSE, TRUE };
   g_autoptr (ClothLinker) linker = cloth_linker_new ();
   ClothPatch patch = { 0 };
   gdouble sum2[2] = { 0 }, worst = 0;

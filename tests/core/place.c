@@ -397,6 +397,67 @@ test_mapping (void)
   }
 }
 
+/* Marks the corners along the board's row @rim as found, or as linked; how many. */
+static gint
+mark (Window * window, const ClothPlacement * truth, gint rim, gboolean linked)
+{
+  const ClothPatch *patch = &window->patch;
+  gint n = 0;
+
+  for (gint j = 0; j < patch->rows; j++)
+    for (gint i = 0; i < patch->columns; i++) {
+      gint at = j * patch->columns + i, column, row;
+
+      cloth_placement_vertex (truth, i, j, &column, &row);
+      if (row != rim || !window->kind[at])
+        continue;
+      window->kind[at] = CLOTH_VERTEX_SADDLE;
+      window->linked[at] = linked;
+      n++;
+    }
+  return n;
+}
+
+/* A corner on the rim that looks like an inner one speaks against a place, unless only it
+ * says so and most of the board is in sight; one that linking joined always does. */
+static void
+test_evidence (void)
+{
+  g_autoptr (ClothPattern) pattern = cloth_pattern_new_checker (10, 7, 0.01, 0,
+      TRUE, NULL);
+  g_autofree Window *window = g_new (Window, 1);
+  ClothPlacement truth, best;
+
+  for (gint rotation = 0; rotation < 4; rotation++)
+    for (gint width = 7; width <= 10; width++) {
+      const gboolean whole = width >= 8;
+      gfloat clean;
+
+      fill (window, pattern, 0, 0, width, 7, rotation, &truth);
+      g_assert_true (run (FALSE, pattern, &window->patch, NULL, 0, &best));
+      g_assert_true (equal (&best, &truth));
+      g_assert_true (best.whole == whole);
+      clean = best.evidence;
+      /* Anywhere else squares stick out, or cells that show its end lie on the board. */
+      g_assert_cmpfloat (clean, >=, 5 * -BEYOND);
+      g_assert_cmpint (mark (window, &truth, 0, FALSE), ==, width + 1);
+      g_assert_true (run (FALSE, pattern, &window->patch, NULL, 0, &best));
+      g_assert_true (equal (&best, &truth));
+      if (whole)
+        g_assert_cmpfloat (best.evidence, ==, clean);
+      else
+        g_assert_cmpfloat (best.evidence, <, 0);
+      mark (window, &truth, 0, TRUE);
+      g_assert_true (run (FALSE, pattern, &window->patch, NULL, 0, &best));
+      g_assert_true (equal (&best, &truth));
+      g_assert_cmpfloat (best.evidence, <, 0);
+    }
+  /* Of a piece without a rim nothing tells the place. */
+  fill (window, pattern, 2, 2, 4, 3, 0, &truth);
+  g_assert_true (run (FALSE, pattern, &window->patch, NULL, 0, &best));
+  g_assert_cmpfloat (best.evidence, ==, 0);
+}
+
 int
 main (int argc, char **argv)
 {
@@ -407,5 +468,6 @@ main (int argc, char **argv)
   g_test_add_func ("/place/brute", test_brute);
   g_test_add_func ("/place/votes", test_votes);
   g_test_add_func ("/place/refused", test_refused);
+  g_test_add_func ("/place/evidence", test_evidence);
   return g_test_run ();
 }

@@ -210,8 +210,8 @@ def case_boards(data):
             play('filesrc location=%s/%s ! jpegdec ! video/x-raw,format=GRAY8 ! saddledetect'
                  ' ! quadtrack pattern=%s/pattern.json ! appsink name=sink'
                  % (boards, name, boards), keep)
-            # 10 × 7 squares, those of the margin are often cut: 8 × 5 lie inside.
-            check(found and found[0] >= 20, '%s: %s squares' % (name, found))
+            # 10 × 7 squares, half of them black; the paper's edge cuts those at the sides.
+            check(found and found[0] >= 33, '%s: %s squares' % (name, found))
 
 
 def case_live(data):

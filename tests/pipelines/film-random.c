@@ -415,5 +415,5 @@ main (int argc, char **argv)
   for (guint camera = 0; camera < TEST_FILM_CAMERAS; camera++)
     g_free (plain[camera]);
   test_film_free (film);
-  return 0;
+  return sum.wrong > 0;
 }
