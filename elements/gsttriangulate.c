@@ -39,12 +39,10 @@
 #include "elements/gsttriangulateboard.h"
 #include "elements/gsttriangulatecheck.h"
 #include "elements/gsttriangulatepad.h"
+#include "elements/gsttriangulatesolve.h"
 #include "elements/gsttriangulateviews.h"
 
 #include <gst/cloth/cloth.h>
-#include <math.h>
-
-#include "gst/mesh/isometry.h"
 #include "gst/rig/merge.h"
 #include "gst/rig/rigfile.h"
 #include "gst/rig/triangulate.h"
@@ -54,8 +52,7 @@ GST_DEBUG_CATEGORY_STATIC (triangulate_debug);
 
 #define DEFAULT_THRESHOLD 4.0
 #define DEFAULT_MAX_ERROR 0.0
-/* (0.1 px)²: what a good calibration and a film's compression leave. */
-#define DEFAULT_ERROR_FLOOR 0.01
+#define DEFAULT_ERROR_FLOOR -1.0
 #define DEFAULT_HUBER 2.0
 /* Bent into a fold a square's edge is a chord; woven cloth stretches a little. */
 #define DEFAULT_MIN_LENGTH 0.8
@@ -80,15 +77,10 @@ struct _GstTriangulate
   ClothRig *rig;
   GstTriangulateBoard *board;
   gint fps_n, fps_d;            /* as sent downstream; fps_n -1: not yet */
-  ClothTriangulator *triangulator;
   ClothPool *pool;
-  guint n_vertices;
   ClothMerge *merge[CLOTH_RIG_MAX_CAMERAS];
-  gdouble threshold, error_floor;
+  GstTriangulateSolve solve;
   GstTriangulateView view[GST_CLOTH_SYNC_MAX_PADS];
-  ClothIsometry isometry;
-  gfloat *positions, *covariances;
-  gboolean *wrong;
   guint64 sequence;
   GstTriangulateCheck check;
 };
@@ -166,8 +158,9 @@ gst_triangulate_load_rig (GstTriangulate * self)
         ("Calibrate two or more cameras together into one rig.json."));
     return FALSE;
   }
-  cloth_triangulator_free (self->triangulator);
-  self->triangulator = triangulator;
+  cloth_triangulator_free (self->solve.triangulator);
+  self->solve.triangulator = triangulator;
+  self->solve.floor.weight = 0;
   cloth_rig_free (self->rig);
   self->rig = g_steal_pointer (&rig);
   return TRUE;
@@ -201,13 +194,8 @@ gst_triangulate_load_pattern (GstTriangulate * self)
   }
   gst_triangulate_board_free (self->board);
   self->board = board;
-  self->n_vertices = gst_cloth_topology_get_n_vertices (board->topology);
   gst_triangulate_clear_merges (self);
-  self->positions = g_renew (gfloat, self->positions,
-      3 * (gsize) self->n_vertices);
-  self->covariances = g_renew (gfloat, self->covariances,
-      6 * (gsize) self->n_vertices);
-  self->wrong = g_renew (gboolean, self->wrong, self->n_vertices);
+  gst_triangulate_solve_set_board (&self->solve, board);
   return TRUE;
 }
 
@@ -226,8 +214,8 @@ gst_triangulate_apply_parameters (GstTriangulate * self)
   }
   GST_OBJECT_LOCK (self);
   parameters = self->parameters;
-  self->isometry.shortest = self->min_length;
-  self->isometry.longest = self->max_length;
+  self->solve.min_length = self->min_length;
+  self->solve.max_length = self->max_length;
   threads = self->threads;
   changed = self->parameters_changed;
   self->parameters_changed = FALSE;
@@ -235,9 +223,7 @@ gst_triangulate_apply_parameters (GstTriangulate * self)
   if (!changed) {
     return TRUE;
   }
-  self->threshold = parameters.threshold;
-  self->error_floor = parameters.error_floor;
-  cloth_triangulator_set_parameters (self->triangulator, &parameters);
+  self->solve.parameters = parameters;
   if (threads == 0) {
     threads = MIN (g_get_num_processors (), MAX_THREADS);
   }
@@ -245,7 +231,7 @@ gst_triangulate_apply_parameters (GstTriangulate * self)
     cloth_pool_free (self->pool);
     self->pool = cloth_pool_new (threads);
   }
-  cloth_triangulator_set_pool (self->triangulator, self->pool);
+  cloth_triangulator_set_pool (self->solve.triangulator, self->pool);
   return TRUE;
 }
 
@@ -254,7 +240,7 @@ gst_triangulate_forget (GstTriangulate * self)
 {
   guint i;
 
-  g_clear_pointer (&self->triangulator, cloth_triangulator_free);
+  gst_triangulate_solve_clear (&self->solve);
   g_clear_pointer (&self->rig, cloth_rig_free);
   g_clear_pointer (&self->board, gst_triangulate_board_free);
   g_clear_pointer (&self->pool, cloth_pool_free);
@@ -341,50 +327,21 @@ static GstFlowReturn
 gst_triangulate_make_mesh (GstTriangulate * self,
     const ClothTriangulateView * views, GstBuffer ** out)
 {
-  static const GstClothVertexState states[] = {
-    [CLOTH_POINT_UNSEEN] = GST_CLOTH_VERTEX_UNSEEN,
-    [CLOTH_POINT_MEASURED] = GST_CLOTH_VERTEX_MEASURED,
-    [CLOTH_POINT_TWO_VIEWS] = GST_CLOTH_VERTEX_TWO_VIEWS
-  };
+  GstTriangulateSolve *solve = &self->solve;
   g_autoptr (GError) error = NULL;
   g_autoptr (GstClothMesh) mesh = NULL;
-  const ClothTriangulation *r;
-  guint i, k, n_known = 0;
 
-  if (!cloth_triangulator_run (self->triangulator, self->rig->n_cameras, views,
-          self->n_vertices, &r, &error)) {
+  if (!gst_triangulate_solve_run (solve, self->rig, self->board, views, &error)) {
     GST_ELEMENT_ERROR (self, STREAM, FAILED, ("%s", error->message), (NULL));
     return GST_FLOW_ERROR;
   }
-  for (i = 0; i < self->n_vertices; i++) {
-    for (k = 0; k < 3; k++) {
-      self->positions[3 * i + k] = (gfloat) r->position[k][i];
-    }
-    for (k = 0; k < 6; k++) {
-      self->covariances[6 * i + k] = (gfloat) r->covariance[k][i];
-    }
-    r->state[i] = (guint8) states[r->state[i]];
-    n_known += r->state[i] != GST_CLOTH_VERTEX_UNSEEN;
-  }
   gst_triangulate_check_add (&self->check, GST_ELEMENT (self), self->board,
-      self->rig, views, r);
-  self->isometry.columns = self->board->columns;
-  self->isometry.rows = self->board->rows;
-  self->isometry.edge_m = self->board->edge_m;
-  if (cloth_isometry_check (&self->isometry, self->positions,
-          self->covariances, self->wrong)) {
-    for (i = 0; i < self->n_vertices; i++) {
-      if (self->wrong[i]) {
-        r->state[i] = GST_CLOTH_VERTEX_UNSEEN;
-        n_known--;
-      }
-    }
-  }
-  mesh = gst_cloth_mesh_new (self->sequence, self->n_vertices, self->positions,
-      r->state, self->covariances);
+      self->rig, views, solve->result);
+  mesh = gst_cloth_mesh_new (self->sequence, solve->n_vertices,
+      solve->positions, solve->result->state, solve->covariances);
   *out = gst_cloth_mesh_to_buffer (mesh);
-  GST_LOG_OBJECT (self, "frame %" G_GUINT64_FORMAT ": %u of %u vertices",
-      self->sequence, n_known, self->n_vertices);
+  GST_LOG_OBJECT (self, "frame %" G_GUINT64_FORMAT ": error floor %g px²",
+      self->sequence, solve->floor.floor);
   return GST_FLOW_OK;
 }
 
@@ -471,15 +428,16 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
       continue;
     }
     if (!self->merge[camera]) {
-      self->merge[camera] = cloth_merge_new (self->n_vertices);
+      self->merge[camera] = cloth_merge_new (self->solve.n_vertices);
     }
     cloth_merge_clear (self->merge[camera]);
     if (!gst_triangulate_board_take (self->board, GST_ELEMENT (self), i,
             &carried[i], self->merge[camera])) {
       goto done;
     }
-    cloth_merge_finish (self->merge[camera], self->threshold,
-        self->error_floor, &seen[camera]);
+    cloth_merge_finish (self->merge[camera],
+        self->solve.parameters.threshold, gst_triangulate_solve_get_floor
+        (&self->solve), &seen[camera]);
   }
   ret = gst_triangulate_make_mesh (self, seen, out);
   if (ret == GST_FLOW_OK && stamp) {
@@ -603,9 +561,6 @@ gst_triangulate_finalize (GObject * object)
 
   g_free (self->rig_location);
   g_free (self->pattern_location);
-  g_free (self->positions);
-  g_free (self->covariances);
-  g_free (self->wrong);
   G_OBJECT_CLASS (gst_triangulate_parent_class)->finalize (object);
 }
 
@@ -702,7 +657,8 @@ gst_triangulate_class_init (GstTriangulateClass * klass)
       g_param_spec_double ("error-floor", "Error floor",
           "Variance in px² added to every observation's own, which knows of the "
           "picture's noise only: what calibration, lens model and compression "
-          "leave", 0.0, 1e6, DEFAULT_ERROR_FLOOR, flags));
+          "leave; -1: what the film's own residuals tell where three cameras see a "
+          "point, 0.01 until they do", -1.0, 1e6, DEFAULT_ERROR_FLOOR, flags));
   /**
    * GstTriangulate:huber:
    *

@@ -7,6 +7,8 @@
 
 #include "elements/gsttriangulateboard.h"
 
+#include <string.h>
+
 static GstClothTopology *
 make_topology (const GstTriangulateBoard * board, const gdouble origin_m[2],
     GError ** error)
@@ -45,6 +47,7 @@ gst_triangulate_board_load (const gchar * path, GError ** error)
     board->edge_m = board->dots->pitch_m;
     board->features = "dots";
     board->detector = "dotlabel";
+    board->seen = g_malloc (board->columns * board->rows);
     origin_m = board->dots->origin_uv_m;
   } else if (g_error_matches (other, CLOTH_PATTERN_ERROR,
           CLOTH_PATTERN_ERROR_UNSUPPORTED)) {
@@ -78,6 +81,7 @@ gst_triangulate_board_free (GstTriangulateBoard * board)
   g_clear_pointer (&board->checker, cloth_pattern_free);
   g_clear_pointer (&board->dots, cloth_m_array_free);
   g_clear_pointer (&board->topology, gst_cloth_topology_unref);
+  g_free (board->seen);
   g_free (board);
 }
 
@@ -134,21 +138,51 @@ take_quads (const GstTriangulateBoard * board, const GstClothQuads * quads,
   }
 }
 
+static gboolean
+is_usable (const GstTriangulateBoard * board, const GstClothDot * dot)
+{
+  return !dot->touches && dot->column >= 0 && dot->row >= 0
+      && (guint) dot->column < board->columns && (guint) dot->row < board->rows;
+}
+
+/* Where two of a dot's neighbours are not seen a fold's edge hides them, and it may hide a
+ * part of the dot too: its centre of gravity is then another. */
+static gboolean
+is_at_fold (const GstTriangulateBoard * board, const GstClothDot * dot)
+{
+  const guint columns = board->columns, rows = board->rows;
+  const guint column = (guint) dot->column, row = (guint) dot->row;
+  const guint8 *at = board->seen + row * columns + column;
+  guint missing = 0;
+
+  missing += column > 0 && !at[-1];
+  missing += column + 1 < columns && !at[1];
+  missing += row > 0 && !*(at - columns);
+  missing += row + 1 < rows && !at[columns];
+  return missing > 1;
+}
+
 /* A dot seen from behind is the same vertex: cloth is thin. */
 static void
-take_dots (const GstTriangulateBoard * board, const GstClothDots * dots,
+take_dots (GstTriangulateBoard * board, const GstClothDots * seen,
     ClothMerge * merge)
 {
-  const GstClothDot *dot;
+  const GstClothDot *dots;
   guint n, i;
 
-  dot = gst_cloth_dots_get_dots (dots, &n);
-  for (i = 0; i < n; i++, dot++) {
+  dots = gst_cloth_dots_get_dots (seen, &n);
+  memset (board->seen, 0, board->columns * board->rows);
+  for (i = 0; i < n; i++) {
+    if (is_usable (board, &dots[i])) {
+      board->seen[(guint) dots[i].row * board->columns
+          + (guint) dots[i].column] = 1;
+    }
+  }
+  for (i = 0; i < n; i++) {
+    const GstClothDot *dot = &dots[i];
     gdouble cov[3] = { dot->cov_xx, dot->cov_xy, dot->cov_yy };
 
-    if (!dot->touches && dot->column >= 0 && dot->row >= 0
-        && (guint) dot->column < board->columns
-        && (guint) dot->row < board->rows) {
+    if (is_usable (board, dot) && !is_at_fold (board, dot)) {
       cloth_merge_add (merge, (guint) dot->row * board->columns
           + (guint) dot->column, dot->x, dot->y, cov);
     }
@@ -156,7 +190,7 @@ take_dots (const GstTriangulateBoard * board, const GstClothDots * dots,
 }
 
 gboolean
-gst_triangulate_board_take (const GstTriangulateBoard * board,
+gst_triangulate_board_take (GstTriangulateBoard * board,
     GstElement * self, guint index, const GstTriangulateSeen * seen,
     ClothMerge * merge)
 {

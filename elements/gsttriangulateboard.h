@@ -16,6 +16,7 @@ typedef struct {
   GstClothTopology *topology;
   guint columns, rows;          /* of vertices */
   gdouble edge_m;               /* between neighbours on the flat cloth */
+  guint8 *seen;                 /* whether a picture shows a dot */
   const gchar *features;        /* what is seen of it: squares or dots */
   const gchar *detector;        /* elements that find them */
 } GstTriangulateBoard;
@@ -38,7 +39,7 @@ const gchar *gst_triangulate_seen_camera (const GstTriangulateSeen * seen);
 guint64 gst_triangulate_seen_sequence (const GstTriangulateSeen * seen);
 /* Adds the places that pad @index measures to @merge; %FALSE, after an element error,
  * when they are of another pattern. */
-gboolean gst_triangulate_board_take (const GstTriangulateBoard * board,
+gboolean gst_triangulate_board_take (GstTriangulateBoard * board,
     GstElement * self, guint index, const GstTriangulateSeen * seen,
     ClothMerge * merge);
 
