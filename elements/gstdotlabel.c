@@ -44,10 +44,13 @@ GST_DEBUG_CATEGORY_STATIC (dot_label_debug);
 G_STATIC_ASSERT (GST_CLOTH_DOT_MAX_COLOURS >= CLOTH_M_ARRAY_MAX_COLOURS);
 G_STATIC_ASSERT (GST_CLOTH_MAX_FEATURES >= CLOTH_DOT_MAX);
 
+#define DEFAULT_LEARN TRUE
 /* Pictures with dots but without a label before the user is told, and how many dots
  * make such a picture: those of one window. */
 #define PATIENCE 25
 #define WINDOW 9
+/* Nobody needs to know by how much more a colour is ruled out, nats. */
+#define LEAST_LIKELIHOOD -100.0f
 
 /* A warning about a pattern that doesn't fit is better than no link at all: grey pictures
  * are let in, to be refused with a word on what to do. */
@@ -58,12 +61,20 @@ G_STATIC_ASSERT (GST_CLOTH_MAX_FEATURES >= CLOTH_DOT_MAX);
     GST_VIDEO_CAPS_MAKE ("GRAY8") \
     ", width=(int)[ 1, 16384 ], height=(int)[ 1, 16384 ]"
 
+typedef enum
+{
+  GST_DOT_LABEL_COLOURS_LIKELIHOOD,
+  GST_DOT_LABEL_COLOURS_HUE
+} GstDotLabelColours;
+
 struct _GstDotLabel
 {
   GstClothFilter parent;
 
   /* Properties, protected by the object lock. */
   gchar *pattern_path;
+  GstDotLabelColours colours_by;
+  gboolean learn;
   ClothDotParams dot_params;
   ClothDotLabelParams label_params;
 
@@ -72,10 +83,12 @@ struct _GstDotLabel
   ClothDotDetector *detector;
   ClothDotLabeller *labeller;
   ClothDotColourModel colours;
-  gboolean knows_colours;
+  gboolean knows_colours;       /* those of the print */
+  gboolean adapted;             /* to this camera */
   GstVideoColorMatrix matrix;   /* that @colours are made for */
   GArray *likelihoods;          /* gfloat, the array's n_colours for each dot */
   GArray *dots;                 /* GstClothDot */
+  GByteArray *said;             /* which colour a label says that a dot has; 255: none */
   gboolean found;
   guint n_in_vain;              /* pictures with dots and no label; none any more: 0 */
   gboolean warned;
@@ -85,6 +98,8 @@ enum
 {
   PROP_0,
   PROP_PATTERN,
+  PROP_COLOURS,
+  PROP_LEARN,
   PROP_CONTRAST,
   PROP_SHARE,
   PROP_MIN_AREA,
@@ -93,8 +108,56 @@ enum
   PROP_C,
   PROP_COLOUR_ERROR,
   PROP_LEAD,
-  PROP_MIRRORED
+  PROP_MIRRORED,
+  PROP_LABELS,
+  PROP_LEAST_REGION
 };
+
+#define GST_TYPE_DOT_LABEL_COLOURS (gst_dot_label_colours_get_type ())
+static GType
+gst_dot_label_colours_get_type (void)
+{
+  static const GEnumValue values[] = {
+    {GST_DOT_LABEL_COLOURS_LIKELIHOOD,
+        "Likelihood of a dot's mean chroma over its luma", "likelihood"},
+    {GST_DOT_LABEL_COLOURS_HUE,
+        "Every pixel votes for the nearest hue, the paper's way", "hue"},
+    {0, NULL, NULL}
+  };
+  static gsize type = 0;
+
+  if (g_once_init_enter (&type))
+    g_once_init_leave (&type, g_enum_register_static ("GstDotLabelColours",
+            values));
+  return type;
+}
+
+typedef enum
+{
+  GST_DOT_LABEL_LABELS_PATCHES,
+  GST_DOT_LABEL_LABELS_WINDOWS
+} GstDotLabelLabels;
+
+#define GST_TYPE_DOT_LABEL_LABELS (gst_dot_label_labels_get_type ())
+static GType
+gst_dot_label_labels_get_type (void)
+{
+  static const GEnumValue values[] = {
+    {GST_DOT_LABEL_LABELS_PATCHES,
+          "Likelihood of whole patches of the lattice, kept through time",
+        "patches"},
+    {GST_DOT_LABEL_LABELS_WINDOWS,
+          "Single windows as seeds of growing regions, the paper's way",
+        "windows"},
+    {0, NULL, NULL}
+  };
+  static gsize type = 0;
+
+  if (g_once_init_enter (&type))
+    g_once_init_leave (&type, g_enum_register_static ("GstDotLabelLabels",
+            values));
+  return type;
+}
 
 static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE ("sink",
     GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS (DOT_LABEL_CAPS));
@@ -140,7 +203,8 @@ gst_dot_label_start (GstClothFilter * filter)
     return FALSE;
   }
   self->detector = cloth_dot_detector_new ();
-  self->knows_colours = self->found = self->warned = FALSE;
+  self->knows_colours = self->adapted = FALSE;
+  self->found = self->warned = FALSE;
   self->n_in_vain = 0;
   return TRUE;
 }
@@ -176,11 +240,48 @@ gst_dot_label_prepare_colours (GstDotLabel * self, const GstVideoInfo * info)
     return;
   self->matrix = info->colorimetry.matrix;
   self->knows_colours = TRUE;
+  self->adapted = FALSE;
   gst_video_color_matrix_get_Kr_Kb (self->matrix, &kr, &kb);
   for (gint i = 0; i < self->array->n_colours; i++)
     memcpy (rgb[i], self->array->colours[i].rgb, 3);
   cloth_dot_colour_model_init (&self->colours, self->array->n_colours,
       (const guint8 (*)[3]) rgb, (gfloat) kr, (gfloat) kb);
+}
+
+/* How likely each dot's colour is under each of the pattern's. */
+static const gfloat *
+gst_dot_label_classify (GstDotLabel * self, const ClothDotImage * image,
+    const ClothDot * dots, guint n, GstDotLabelColours by, gboolean learn)
+{
+  const guint n_colours = (guint) self->array->n_colours;
+  gfloat *likelihoods;
+
+  /* a few dots may be of any colour */
+  if (learn && !self->adapted && n >= WINDOW * n_colours)
+    self->adapted = cloth_dot_colour_model_adapt (&self->colours, dots, n);
+  g_array_set_size (self->likelihoods, n * n_colours);
+  likelihoods = (gfloat *) self->likelihoods->data;
+  if (by == GST_DOT_LABEL_COLOURS_HUE)
+    cloth_dot_colour_model_vote (&self->colours, image, dots, n, likelihoods);
+  else
+    cloth_dot_colour_model_classify (&self->colours, dots, n, likelihoods);
+  return likelihoods;
+}
+
+/* What the labels tell of the camera's colours is for the next picture. */
+static void
+gst_dot_label_learn (GstDotLabel * self, const ClothDot * dots,
+    const ClothDotLabel * labels, guint n)
+{
+  gint8 *said;
+
+  g_byte_array_set_size (self->said, n);
+  said = (gint8 *) self->said->data;
+  for (guint k = 0; k < n; k++)
+    said[k] = labels[k].column < 0 ? -1 :
+        (gint8) self->array->matrix[labels[k].row * self->array->columns
+        + labels[k].column];
+  cloth_dot_colour_model_learn (&self->colours, dots, n, said);
 }
 
 /* FALSE: the picture has no colours, and an error was posted. */
@@ -250,10 +351,12 @@ gst_dot_label_analyse (GstClothFilter * filter,
   const guint n_colours = (guint) self->array->n_colours;
   ClothDotParams dot_params;
   ClothDotLabelParams label_params;
+  GstDotLabelColours colours_by;
   ClothDotImage image;
   const ClothDot *dots;
   const ClothDotLabel *labels;
-  gfloat *likelihoods;
+  const gfloat *likelihoods;
+  gboolean learn;
   guint n, n_labels, n_labelled = 0;
 
   if (!gst_dot_label_view (self, frame, &image))
@@ -261,16 +364,19 @@ gst_dot_label_analyse (GstClothFilter * filter,
   GST_OBJECT_LOCK (self);
   dot_params = self->dot_params;
   label_params = self->label_params;
+  colours_by = self->colours_by;
+  learn = self->learn;
   GST_OBJECT_UNLOCK (self);
   gst_dot_label_prepare_colours (self, &frame->video->info);
 
   cloth_dot_detector_run (self->detector, &dot_params, &image, CLOTH_SIMD_BEST);
   dots = cloth_dot_detector_get_dots (self->detector, &n);
-  g_array_set_size (self->likelihoods, n * n_colours);
-  likelihoods = (gfloat *) self->likelihoods->data;
-  cloth_dot_colour_model_classify (&self->colours, dots, n, likelihoods);
+  likelihoods = gst_dot_label_classify (self, &image, dots, n, colours_by,
+      learn);
   cloth_dot_labeller_run (self->labeller, &label_params, dots, n, likelihoods);
   labels = cloth_dot_labeller_get_labels (self->labeller, &n_labels);
+  if (learn)
+    gst_dot_label_learn (self, dots, labels, n);
 
   g_array_set_size (self->dots, n);
   for (guint k = 0; k < n; k++) {
@@ -287,8 +393,9 @@ gst_dot_label_analyse (GstClothFilter * filter,
     dot->cov_xx = dots[k].cov[0];
     dot->cov_xy = dots[k].cov[1];
     dot->cov_yy = dots[k].cov[2];
-    memcpy (dot->log_likelihood, likelihoods + k * n_colours,
-        n_colours * sizeof (gfloat));
+    for (guint c = 0; c < n_colours; c++)
+      dot->log_likelihood[c] = MAX (likelihoods[k * n_colours + c],
+          LEAST_LIKELIHOOD);
     n_labelled += dot->column >= 0;
   }
   gst_buffer_add_cloth_dots_meta (frame->buffer,
@@ -315,6 +422,12 @@ gst_dot_label_set_property (GObject * object, guint id, const GValue * value,
     case PROP_PATTERN:
       g_free (self->pattern_path);
       self->pattern_path = g_value_dup_string (value);
+      break;
+    case PROP_COLOURS:
+      self->colours_by = (GstDotLabelColours) g_value_get_enum (value);
+      break;
+    case PROP_LEARN:
+      self->learn = g_value_get_boolean (value);
       break;
     case PROP_CONTRAST:
       self->dot_params.contrast = g_value_get_float (value);
@@ -343,6 +456,13 @@ gst_dot_label_set_property (GObject * object, guint id, const GValue * value,
     case PROP_MIRRORED:
       self->label_params.mirrored = g_value_get_boolean (value);
       break;
+    case PROP_LABELS:
+      self->label_params.paper =
+          g_value_get_enum (value) == GST_DOT_LABEL_LABELS_WINDOWS;
+      break;
+    case PROP_LEAST_REGION:
+      self->label_params.least_region = g_value_get_uint (value);
+      break;
     default:
       G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
   }
@@ -359,6 +479,12 @@ gst_dot_label_get_property (GObject * object, guint id, GValue * value,
   switch (id) {
     case PROP_PATTERN:
       g_value_set_string (value, self->pattern_path);
+      break;
+    case PROP_COLOURS:
+      g_value_set_enum (value, (gint) self->colours_by);
+      break;
+    case PROP_LEARN:
+      g_value_set_boolean (value, self->learn);
       break;
     case PROP_CONTRAST:
       g_value_set_float (value, self->dot_params.contrast);
@@ -387,6 +513,13 @@ gst_dot_label_get_property (GObject * object, guint id, GValue * value,
     case PROP_MIRRORED:
       g_value_set_boolean (value, self->label_params.mirrored);
       break;
+    case PROP_LABELS:
+      g_value_set_enum (value, self->label_params.paper ?
+          GST_DOT_LABEL_LABELS_WINDOWS : GST_DOT_LABEL_LABELS_PATCHES);
+      break;
+    case PROP_LEAST_REGION:
+      g_value_set_uint (value, self->label_params.least_region);
+      break;
     default:
       G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
   }
@@ -401,6 +534,7 @@ gst_dot_label_finalize (GObject * object)
   g_free (self->pattern_path);
   g_array_unref (self->likelihoods);
   g_array_unref (self->dots);
+  g_byte_array_unref (self->said);
   G_OBJECT_CLASS (gst_dot_label_parent_class)->finalize (object);
 }
 
@@ -436,6 +570,15 @@ gst_dot_label_class_init (GstDotLabelClass * klass)
           "File pattern.json of the M-array that is filmed.", NULL,
           G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
           GST_PARAM_MUTABLE_READY));
+  g_object_class_install_property (object_class, PROP_COLOURS,
+      g_param_spec_enum ("colours", "Colours",
+          "How dots are told apart by colour.", GST_TYPE_DOT_LABEL_COLOURS,
+          GST_DOT_LABEL_COLOURS_LIKELIHOOD, any_time));
+  g_object_class_install_property (object_class, PROP_LEARN,
+      g_param_spec_boolean ("learn", "Learn",
+          "Whether the colours as the camera sees them are learnt from the film, "
+          "blindly at first, then from labelled dots; else they are as printed.",
+          DEFAULT_LEARN, any_time));
   install_float (object_class, PROP_CONTRAST, "contrast", "Contrast",
       "Least luma of a dot above the ground around it, grey levels.", 1, 254,
       dots.contrast);
@@ -466,6 +609,16 @@ gst_dot_label_class_init (GstDotLabelClass * klass)
       g_param_spec_boolean ("mirrored", "Mirrored",
           "Whether the print may be seen from behind, as in a mirror.",
           labels.mirrored, any_time));
+  g_object_class_install_property (object_class, PROP_LABELS,
+      g_param_spec_enum ("labels", "Labels",
+          "How dots are given their place in the pattern.",
+          GST_TYPE_DOT_LABEL_LABELS, labels.paper ?
+          GST_DOT_LABEL_LABELS_WINDOWS : GST_DOT_LABEL_LABELS_PATCHES,
+          any_time));
+  g_object_class_install_property (object_class, PROP_LEAST_REGION,
+      g_param_spec_uint ("least-region", "Least region",
+          "Fewest dots of a region that labels=windows keeps.", 3, 65536,
+          labels.least_region, any_time));
 
   gst_element_class_add_static_pad_template (element_class, &sink_template);
   gst_element_class_add_static_pad_template (element_class, &src_template);
@@ -477,6 +630,8 @@ gst_dot_label_class_init (GstDotLabelClass * klass)
   filter_class->stop = gst_dot_label_stop;
   filter_class->reset = gst_dot_label_reset;
   filter_class->analyse = gst_dot_label_analyse;
+  gst_type_mark_as_plugin_api (GST_TYPE_DOT_LABEL_COLOURS, 0);
+  gst_type_mark_as_plugin_api (GST_TYPE_DOT_LABEL_LABELS, 0);
 }
 
 static void
@@ -486,4 +641,6 @@ gst_dot_label_init (GstDotLabel * self)
   self->label_params = cloth_dot_label_default_params ();
   self->likelihoods = g_array_new (FALSE, FALSE, sizeof (gfloat));
   self->dots = g_array_new (FALSE, FALSE, sizeof (GstClothDot));
+  self->said = g_byte_array_new ();
+  self->learn = DEFAULT_LEARN;
 }
