@@ -14,6 +14,10 @@
 /* Pitch at most, in standard deviations of a dot's area along its longer axis: dots of
  * 0.4 of the pitch across. */
 #define REACH 10.0f
+/* The usual pitch in these units: dots of 0.65 of it. */
+#define PITCH 6.2f
+/* Pictures are no larger, px. */
+#define MAX_EDGE 32767.0f
 /* What the blur of a sharp picture adds to a dot's second moments, px². */
 #define BLUR 0.4f
 /* How far distances in pitches may be from those of neighbours and diagonals, and a
@@ -29,6 +33,15 @@ is_sound (const ClothDot * dot)
   return fabsf (dot->x) < 1e6f && fabsf (dot->y) < 1e6f && s[0] > 0.01f
       && s[2] > 0.01f && s[0] < 1e6f && s[2] < 1e6f
       && s[0] * s[2] - s[1] * s[1] > 1e-3f * s[0] * s[2];
+}
+
+/* Second moment along the longer axis. */
+static gfloat
+longer_variance (const gfloat a[3])
+{
+  const gfloat off = (a[0] - a[2]) / 2;
+
+  return (a[0] + a[2]) / 2 + sqrtf (off * off + a[1] * a[1]);
 }
 
 /* Inverse square root of a symmetric 2×2 matrix: of A, √A is (A + √det A)/√(tr A + 2√det
@@ -48,18 +61,16 @@ static void
 look_around (ClothDotLabeller * labeller, const ClothDot * dots)
 {
   for (guint i = 0; i < labeller->n; i++) {
-    const gfloat *s = dots[i].shape;
     ClothLatticeAround *around = &labeller->around[i];
     ClothNear near[CLOTH_LATTICE_NEAR + 1];
-    gfloat longer;
     guint n;
 
     around->n = 0;
     if (!labeller->nodes[i].sound)
       continue;
-    longer = (s[0] + s[2]) / 2 + hypotf ((s[0] - s[2]) / 2, s[1]);
     n = cloth_point_grid_nearest (labeller->grid, dots[i].x, dots[i].y,
-        REACH * sqrtf (longer), near, CLOTH_LATTICE_NEAR + 1);
+        REACH * sqrtf (longer_variance (dots[i].shape)), near,
+        CLOTH_LATTICE_NEAR + 1);
     for (guint k = 0; k < n; k++)
       if (near[k].index != (gint) i && around->n < CLOTH_LATTICE_NEAR)
         around->near[around->n++] = near[k].index;
@@ -336,7 +347,8 @@ count_squares (ClothDotLabeller * labeller)
 void
 cloth_lattice_start (ClothDotLabeller * labeller, const ClothDot * dots)
 {
-  gfloat right = 1, bottom = 1;
+  gfloat right = 1, bottom = 1, size = 0, cells;
+  guint n = 0;
 
   for (guint i = 0; i < labeller->n; i++) {
     ClothLatticeNode *node = &labeller->nodes[i];
@@ -348,10 +360,16 @@ cloth_lattice_start (ClothDotLabeller * labeller, const ClothDot * dots)
       sharpen (dots[i].shape, node->shape);
       right = MAX (right, dots[i].x);
       bottom = MAX (bottom, dots[i].y);
+      size += longer_variance (node->shape);
+      n++;
     }
   }
-  cloth_point_grid_clear (labeller->grid, (gint) MIN (right, 32767) + 1,
-      (gint) MIN (bottom, 32767) + 1, labeller->n);
+  right = MIN (right, MAX_EDGE);
+  bottom = MIN (bottom, MAX_EDGE);
+  /* Dots fill a part of the picture only: cells of two dots where they are. */
+  cells = n ? right * bottom * (gfloat) n / (PITCH * PITCH * size) : 1;
+  cloth_point_grid_clear (labeller->grid, (gint) right + 1, (gint) bottom + 1,
+      (guint) MIN (cells, 8 * (gfloat) n));
   for (guint i = 0; i < labeller->n; i++)
     cloth_point_grid_add (labeller->grid,
         labeller->nodes[i].sound ? dots[i].x : NAN, dots[i].y);

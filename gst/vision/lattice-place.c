@@ -28,7 +28,7 @@
 /* What each neighbour adds to the log-odds that a dot fits or not, and how often all are
  * asked. */
 #define COUPLING 1.0f
-#define ROUNDS 6
+#define ROUNDS 4
 /* Dots of a patch about which its placing is looked for, one after another. */
 #define TRIES 4
 /* Labelled dots that tell how often colours are wrong, how fast that is learnt, and
@@ -191,6 +191,8 @@ ask_all (ClothDotLabeller * labeller, const guint * probes, guint n)
 {
   const guint m = (guint) labeller->n_colours + 1;
   const gint32 *middle = labeller->nodes[probes[0]].cell;
+  const gint pad = CLOTH_LATTICE_PAD, stride = labeller->columns + 2 * pad;
+  const gfloat *gains[N_FIRST];
   Candidate *candidates;
   gfloat best = -G_MAXFLOAT;
   guint n_kept = 0;
@@ -198,25 +200,29 @@ ask_all (ClothDotLabeller * labeller, const guint * probes, guint n)
   g_array_set_size (labeller->candidates,
       (guint) (TURNS * labeller->columns * labeller->rows));
   candidates = (Candidate *) (gpointer) labeller->candidates->data;
+  for (guint k = 0; k < n; k++)
+    gains[k] = labeller->gains + probes[k] * m;
   for (guint8 turn = 0; turn < (labeller->params.mirrored ? 8 : 4); turn++) {
     gint8 along[2][2];
-    gint by[N_FIRST][2];
+    gint by[N_FIRST];
 
     along_of_turn (turn, along);
     for (guint k = 0; k < n; k++) {
       const gint32 *cell = labeller->nodes[probes[k]].cell;
+      const gint x = CLAMP (cell[0] - middle[0], -pad, pad);
+      const gint y = CLAMP (cell[1] - middle[1], -pad, pad);
 
-      for (gint c = 0; c < 2; c++)
-        by[k][c] = (cell[0] - middle[0]) * along[0][c]
-            + (cell[1] - middle[1]) * along[1][c];
+      by[k] = x * along[0][0] + y * along[1][0]
+          + stride * (x * along[0][1] + y * along[1][1]);
     }
     for (gint row = 0; row < labeller->rows; row++) {
+      const guint8 *colours = labeller->padded + (row + pad) * stride + pad;
+
       for (gint column = 0; column < labeller->columns; column++) {
         gfloat score = 0;
 
         for (guint k = 0; k < n; k++)
-          score += labeller->gains[probes[k] * m
-              + colour_at (labeller, column + by[k][0], row + by[k][1])];
+          score += gains[k][colours[column + by[k]]];
         best = MAX (best, score);
         candidates[n_kept] = (Candidate) {
         score, (gint16) column, (gint16) row, turn};
@@ -423,7 +429,7 @@ blur (const ClothDotLabeller * labeller, const gfloat * from, guint i)
   gint n = 1;
 
   for (gint slot = 0; slot < 4; slot++) {
-    if (is_true_link (labeller, node, slot)) {
+    if (node->linked & 1 << slot) {
       sum += from[node->next[slot]];
       n++;
     }
@@ -440,7 +446,7 @@ speak_for (const ClothDotLabeller * labeller, const gfloat * gain,
   gfloat sum = gain[i];
 
   for (gint slot = 0; slot < 4; slot++)
-    if (is_true_link (labeller, node, slot))
+    if (node->linked & 1 << slot)
       sum += fit[node->next[slot]] >= 0 ? COUPLING : -COUPLING;
   return sum;
 }
@@ -463,7 +469,7 @@ split (ClothDotLabeller * labeller, guint i, const gfloat * fit,
     for (gint slot = 0; slot < 4; slot++) {
       const gint next = node->next[slot];
 
-      if (is_true_link (labeller, node, slot) && !nodes[next].probed
+      if (node->linked & 1 << slot && !nodes[next].probed
           && (fit[next] < 0) == (fit[i] < 0)) {
         nodes[next].probed = TRUE;
         labeller->queue[(*n_queue)++] = (guint) next;
@@ -493,8 +499,13 @@ cut_misfits (ClothDotLabeller * labeller, guint number,
   guint n_queue = 0;
 
   for (guint k = 0; k < whole.n; k++) {
+    ClothLatticeNode *node = &nodes[members[k]];
+
     gain[members[k]] = gain_at (labeller, place, members[k]);
-    nodes[members[k]].probed = FALSE;
+    node->probed = FALSE;
+    node->linked = 0;
+    for (guint8 slot = 0; slot < 4; slot++)
+      node->linked |= (guint8) (is_true_link (labeller, node, slot) << slot);
   }
   for (guint k = 0; k < whole.n; k++)
     once[members[k]] = blur (labeller, gain, members[k]);

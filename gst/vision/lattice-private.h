@@ -22,11 +22,15 @@ typedef struct
   gboolean probed;              /* it helped to look for the placing */
   gint32 patch;                 /* -1: none */
   gint32 cell[2];               /* in the patch */
+  guint8 linked;                /* bit k: slot k leads to where the patch has it */
   guint8 turn;                  /* slot of the patch's direction 0 */
 } ClothLatticeNode;
 
 /* Nearest dots of the picture that are looked at for neighbours. */
-#define CLOTH_LATTICE_NEAR 16
+#define CLOTH_LATTICE_NEAR 12
+
+/* Dots about a patch's anchor that are asked of all placings lie no farther from it. */
+#define CLOTH_LATTICE_PAD 8
 
 /* The dots around a dot, nearest first, which way they lie on the cloth but for some angle
  * (unit vectors) and how far, in pitches. */
@@ -81,6 +85,7 @@ struct _ClothDotLabeller
 {
   gint columns, rows, n_colours;
   guint8 *matrix;
+  guint8 *padded;               /* with n_colours on a rim CLOTH_LATTICE_PAD wide */
   guint8 *doubtful;             /* of each label */
   gint32 *holders;              /* of each label: its dot, -1: none */
   ClothDotLabelParams params;

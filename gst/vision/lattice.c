@@ -31,6 +31,20 @@ cloth_dot_label_default_params (void)
   .c = 0.4f,.colour_error = 0.1f,.lead = 6,.mirrored = TRUE,.least_region = 20};
 }
 
+static guint8 *
+pad_matrix (const ClothDotLabeller * labeller)
+{
+  const gsize pad = CLOTH_LATTICE_PAD, columns = (gsize) labeller->columns;
+  const gsize rows = (gsize) labeller->rows, stride = columns + 2 * pad;
+  guint8 *padded = g_malloc (stride * (rows + 2 * pad));
+
+  memset (padded, labeller->n_colours, stride * (rows + 2 * pad));
+  for (gsize row = 0; row < rows; row++)
+    memcpy (padded + (row + pad) * stride + pad,
+        labeller->matrix + row * columns, columns);
+  return padded;
+}
+
 /**
  * cloth_dot_labeller_new:
  * @columns: dots in a row of the array, 3 to 400
@@ -77,6 +91,7 @@ cloth_dot_labeller_new (gint columns, gint rows, gint n_colours,
   labeller->rows = rows;
   labeller->n_colours = n_colours;
   labeller->matrix = g_memdup2 (matrix, n);
+  labeller->padded = pad_matrix (labeller);
   labeller->holders = g_new (gint32, n);
   labeller->doubtful = g_new (guint8, n);
   labeller->former = g_new0 (ClothLatticeFormer, n);
@@ -102,6 +117,7 @@ cloth_dot_labeller_free (ClothDotLabeller * labeller)
   g_array_unref (labeller->patches);
   g_array_unref (labeller->candidates);
   g_free (labeller->matrix);
+  g_free (labeller->padded);
   g_free (labeller->holders);
   g_free (labeller->doubtful);
   g_clear_pointer (&labeller->windows, g_hash_table_unref);
