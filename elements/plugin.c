@@ -14,6 +14,7 @@
 #include "elements/gstclothoverlay.h"
 #include "elements/gstclothsim.h"
 #include "elements/gstdotlabel.h"
+#include "elements/gstmeshfill.h"
 #include "elements/gstmeshsink.h"
 #include "elements/gstmeshsrc.h"
 #include "elements/gstquadtrack.h"
@@ -32,6 +33,7 @@ plugin_init (GstPlugin * plugin)
   registered &= GST_ELEMENT_REGISTER (clothoverlay, plugin);
   registered &= GST_ELEMENT_REGISTER (clothsim, plugin);
   registered &= GST_ELEMENT_REGISTER (dotlabel, plugin);
+  registered &= GST_ELEMENT_REGISTER (meshfill, plugin);
   registered &= GST_ELEMENT_REGISTER (meshsink, plugin);
   registered &= GST_ELEMENT_REGISTER (meshsrc, plugin);
   registered &= GST_ELEMENT_REGISTER (quadtrack, plugin);

@@ -20,6 +20,8 @@
  * small hole, most of it for one whose variance is beyond WIDE. */
 #define CORRELATION 8.0
 #define WIDE 0.4
+/* Frame periods after which, when the prediction has ended too, the cloth is met anew. */
+#define MOST_STEPS 2
 
 /**
  * cloth_fill_new:
@@ -84,6 +86,20 @@ cloth_fill_set_parameters (ClothFill * fill,
     const ClothFillParameters * parameters)
 {
   fill->parameters = *parameters;
+}
+
+/**
+ * cloth_fill_get_stencils:
+ * @fill: what fills
+ *
+ * Returns: (transfer none): the mesh's neighbours and second differences
+ *
+ * Since: 0.1
+ */
+const ClothStencils *
+cloth_fill_get_stencils (const ClothFill * fill)
+{
+  return fill->stencils;
 }
 
 /**
@@ -336,12 +352,11 @@ keep_time (ClothFill * self, gdouble time_s)
 {
   gdouble step = time_s - self->last_s;
 
-  if (!(step > 0)) {
-    if (self->frames > 0)
-      cloth_fill_reset (self);
-  } else {
+  if (self->frames > 0 && (!(step > 0) || (step > self->parameters.prediction_s
+              && step > MOST_STEPS * self->period_s)))
+    cloth_fill_reset (self);
+  else if (self->frames > 0)
     self->period_s = step;
-  }
   self->last_s = time_s;
 }
 
@@ -366,8 +381,8 @@ remember (ClothFill * self)
 /**
  * cloth_fill_run:
  * @fill: what fills
- * @time_s: the frame's time, seconds; a frame that isn't later than the last one starts a
- *   new sequence
+ * @time_s: the frame's time, seconds; a frame that isn't later than the last one, or comes
+ *   after a gap longer than a prediction, starts a new sequence
  * @frame: the frame as measured; what its states call filled or predicted counts as unseen
  * @filled: (out): the frame with its holes filled, with covariances; valid until the next
  *   call

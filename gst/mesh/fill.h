@@ -4,6 +4,7 @@
 #pragma once
 
 #include "gst/mesh/sequence.h"
+#include "gst/mesh/stencil.h"
 
 G_BEGIN_DECLS
 
@@ -73,6 +74,7 @@ ClothFill *cloth_fill_new (const ClothTopology * topology,
     const ClothFillParameters * parameters);
 void cloth_fill_set_parameters (ClothFill * fill,
     const ClothFillParameters * parameters);
+const ClothStencils *cloth_fill_get_stencils (const ClothFill * fill);
 void cloth_fill_reset (ClothFill * fill);
 void cloth_fill_run (ClothFill * fill, gdouble time_s,
     const ClothMeshFrame * frame, ClothMeshFrame * filled,

@@ -1,0 +1,562 @@
+/* meshfill: a mesh stream with holes becomes a whole one.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+/**
+ * SECTION:element-meshfill
+ * @title: meshfill
+ * @short_description: fills the holes of meshes
+ *
+ * Vertices that no two cameras saw are filled by a thin plate through those around them.
+ * The plate has the measures of the flat cloth and is free at the cloth's border; what
+ * was seen of a place before is kept in the measure in which the cloth around it keeps
+ * its shape. Vertices that disagree with their neighbours and their past are removed and
+ * filled. Each vertex says whether it was measured, filled or predicted, and how sure
+ * that is; one that is less sure than `max-sigma` stays unseen.
+ *
+ * Where nothing around holds a vertex, as when no camera sees anything, its motion is
+ * carried on for `prediction` seconds; then it is unseen.
+ *
+ * `smooth-space` and `smooth-time` are the paper's smoothing. At the noise of good cameras it
+ * takes more of the shape than of the noise, so it is off. `smooth-time` waits for the next
+ * frame, which the element reports as latency.
+ *
+ * ## A take without holes
+ * |[
+ * gst-launch-1.0 meshsrc location=take ! meshfill ! meshsink location=cloth.obj
+ * ]|
+ *
+ * Since: 0.1
+ */
+#ifdef HAVE_CONFIG_H
+#include "config.h"
+#endif
+
+#include "elements/gstmeshfill.h"
+
+#include <gst/cloth/cloth.h>
+#include <math.h>
+
+#include "elements/gstclothutil.h"
+#include "elements/gstmeshformat.h"
+#include "gst/mesh/fill.h"
+#include "gst/mesh/smooth.h"
+
+GST_DEBUG_CATEGORY_STATIC (mesh_fill_debug);
+#define GST_CAT_DEFAULT mesh_fill_debug
+
+/* Two frame periods that differ by less than this part of them are the same. */
+#define PERIOD_TOLERANCE 0.1
+
+/* A frame that was filled. */
+typedef struct
+{
+  GstBuffer *buffer;            /* as it came; NULL: no frame */
+  guint64 sequence;
+  gdouble time;
+  gfloat *positions, *covariances;
+  guint8 *states;
+} Frame;
+
+struct _GstMeshFill
+{
+  GstElement parent;
+  GstPad *sinkpad, *srcpad;
+
+  /* object lock */
+  ClothFillParameters parameters;
+  gboolean parameters_changed;
+  gdouble smooth_space, smooth_time;
+  gint fps_n, fps_d;
+
+  /* streaming thread */
+  GstSegment segment;
+  ClothTopology *topology;
+  ClothFill *fill;
+  guint64 n_frames;
+  /* Smoothing in time: the last frame sent, as filled, the one that waits, and room. */
+  Frame frame[3];
+  gfloat *smoothed;
+};
+
+enum
+{
+  PROP_0,
+  PROP_METHOD,
+  PROP_NOISE,
+  PROP_MAX_SIGMA,
+  PROP_PREDICTION,
+  PROP_OUTLIER_THRESHOLD,
+  PROP_SMOOTH_SPACE,
+  PROP_SMOOTH_TIME
+};
+
+static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE ("sink",
+    GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS (GST_CLOTH_MESH_CAPS));
+static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE ("src",
+    GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS (GST_CLOTH_MESH_CAPS));
+
+G_DEFINE_TYPE (GstMeshFill, gst_mesh_fill, GST_TYPE_ELEMENT);
+GST_ELEMENT_REGISTER_DEFINE (meshfill, "meshfill", GST_RANK_NONE,
+    GST_TYPE_MESH_FILL);
+
+#define GST_TYPE_MESH_FILL_METHOD (gst_mesh_fill_method_get_type ())
+static GType
+gst_mesh_fill_method_get_type (void)
+{
+  static gsize type = 0;
+  static const GEnumValue values[] = {
+    {CLOTH_FILL_PLATE,
+          "A thin plate with the flat cloth's measures and the shape seen before",
+        "plate"},
+    {CLOTH_FILL_BILAPLACIAN,
+        "The paper's uniform bi-Laplacian, each frame alone", "bilaplacian"},
+    {0, NULL, NULL}
+  };
+
+  if (g_once_init_enter (&type))
+    g_once_init_leave (&type, g_enum_register_static ("GstMeshFillMethod",
+            values));
+  return type;
+}
+
+/* ---- frames ---- */
+
+/* Forgets the frames, not the topology. */
+static void
+clear_frames (GstMeshFill * self)
+{
+  for (guint i = 0; i < G_N_ELEMENTS (self->frame); i++)
+    gst_clear_buffer (&self->frame[i].buffer);
+  if (self->fill)
+    cloth_fill_reset (self->fill);
+  self->n_frames = 0;
+}
+
+static void
+clear_topology (GstMeshFill * self)
+{
+  clear_frames (self);
+  g_clear_pointer (&self->fill, cloth_fill_free);
+  g_clear_pointer (&self->topology, cloth_topology_free);
+  for (guint i = 0; i < G_N_ELEMENTS (self->frame); i++) {
+    g_clear_pointer (&self->frame[i].positions, g_free);
+    g_clear_pointer (&self->frame[i].covariances, g_free);
+    g_clear_pointer (&self->frame[i].states, g_free);
+  }
+  g_clear_pointer (&self->smoothed, g_free);
+}
+
+/* Sends a frame with other @positions. */
+static GstFlowReturn
+send (GstMeshFill * self, const Frame * frame, const gfloat * positions)
+{
+  g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_new (frame->sequence,
+      self->topology->n_vertices, positions, frame->states, frame->covariances);
+  GstBuffer *buffer = gst_cloth_mesh_to_buffer (mesh);
+
+  gst_buffer_copy_into (buffer, frame->buffer, GST_BUFFER_COPY_METADATA, 0, -1);
+  return gst_pad_push (self->srcpad, buffer);
+}
+
+/* Sends the frame that waits, smoothed in time when both its neighbours are there. */
+static GstFlowReturn
+send_waiting (GstMeshFill * self, const Frame * next, gdouble weight)
+{
+  Frame *before = &self->frame[0], *frame = &self->frame[1], swap;
+  gsize size = 3 * (gsize) self->topology->n_vertices * sizeof (gfloat);
+  GstFlowReturn flow;
+
+  memcpy (self->smoothed, frame->positions, size);
+  if (before->buffer && next) {
+    gdouble step[2] = { frame->time - before->time, next->time - frame->time };
+
+    if (fabs (step[1] - step[0]) <= PERIOD_TOLERANCE * step[0])
+      cloth_smooth_time (self->topology->n_vertices, weight, before->positions,
+          next->positions, self->smoothed);
+  }
+  flow = send (self, frame, self->smoothed);
+  gst_clear_buffer (&before->buffer);
+  swap = *before;
+  *before = *frame;
+  *frame = swap;
+  return flow;
+}
+
+static GstFlowReturn
+drain (GstMeshFill * self)
+{
+  GstFlowReturn flow = GST_FLOW_OK;
+
+  if (self->frame[1].buffer)
+    flow = send_waiting (self, NULL, 0);
+  gst_clear_buffer (&self->frame[0].buffer);
+  return flow;
+}
+
+/* Seconds of the stream; frames without a time follow the frame rate, or each other. */
+static gdouble
+find_time (GstMeshFill * self, GstBuffer * buffer)
+{
+  guint64 time = GST_CLOCK_TIME_NONE;
+
+  if (GST_BUFFER_PTS_IS_VALID (buffer)
+      && self->segment.format == GST_FORMAT_TIME)
+    time = gst_segment_to_stream_time (&self->segment, GST_FORMAT_TIME,
+        GST_BUFFER_PTS (buffer));
+  if (GST_CLOCK_TIME_IS_VALID (time))
+    return (gdouble) time / GST_SECOND;
+  return self->fps_n > 0 ? (gdouble) self->n_frames * self->fps_d / self->fps_n
+      : (gdouble) self->n_frames;
+}
+
+/* Fills a frame into the room for one; its buffer is given. */
+static void
+fill_frame (GstMeshFill * self, Frame * frame, GstClothMesh * mesh,
+    gdouble smooth_space)
+{
+  ClothMeshFrame in = { gst_cloth_mesh_get_positions (mesh, NULL),
+    gst_cloth_mesh_get_states (mesh, NULL),
+    gst_cloth_mesh_get_covariances (mesh, NULL)
+  }, out;
+  gsize n = self->topology->n_vertices;
+  ClothFillCounts counts;
+
+  cloth_fill_run (self->fill, frame->time, &in, &out, &counts);
+  GST_LOG_OBJECT (self, "frame %" G_GUINT64_FORMAT ": %u outliers, %u holes "
+      "(%u new), %u filled, %u predicted, %u unseen", frame->sequence,
+      counts.outliers, counts.holes, counts.factored, counts.filled,
+      counts.predicted, counts.unseen);
+  if (smooth_space > 0)
+    cloth_smooth_space (cloth_fill_get_stencils (self->fill), smooth_space,
+        out.positions, frame->positions);
+  else
+    memcpy (frame->positions, out.positions, 3 * n * sizeof (gfloat));
+  memcpy (frame->covariances, out.covariances, 6 * n * sizeof (gfloat));
+  memcpy (frame->states, out.states, n);
+}
+
+static GstFlowReturn
+gst_mesh_fill_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
+{
+  GstMeshFill *self = GST_MESH_FILL (parent);
+  g_autoptr (GstClothMesh) mesh = NULL;
+  ClothFillParameters parameters;
+  gdouble smooth_space, smooth_time;
+  gboolean changed;
+  GstFlowReturn flow = GST_FLOW_OK;
+  Frame *frame = &self->frame[2], *waiting = &self->frame[1], swap;
+
+  if (!self->topology) {
+    gst_buffer_unref (buffer);
+    return GST_FLOW_NOT_NEGOTIATED;
+  }
+  mesh = gst_cloth_read_mesh (GST_ELEMENT (self), buffer,
+      self->topology->n_vertices);
+  if (!mesh) {
+    gst_buffer_unref (buffer);
+    return GST_FLOW_ERROR;
+  }
+  GST_OBJECT_LOCK (self);
+  parameters = self->parameters;
+  changed = self->parameters_changed;
+  self->parameters_changed = FALSE;
+  smooth_space = self->smooth_space;
+  smooth_time = self->smooth_time;
+  GST_OBJECT_UNLOCK (self);
+  if (changed)
+    cloth_fill_set_parameters (self->fill, &parameters);
+
+  frame->buffer = buffer;
+  frame->sequence = gst_cloth_mesh_get_sequence (mesh);
+  frame->time = find_time (self, buffer);
+  self->n_frames++;
+  fill_frame (self, frame, mesh, smooth_space);
+  if (smooth_time > 0) {
+    if (waiting->buffer)
+      flow = send_waiting (self, frame, smooth_time);
+    swap = *waiting;
+    *waiting = *frame;
+    *frame = swap;
+    return flow;
+  }
+  flow = send (self, frame, frame->positions);
+  gst_clear_buffer (&frame->buffer);
+  return flow;
+}
+
+/* ---- events and queries ---- */
+
+static gboolean
+set_caps (GstMeshFill * self, const GstCaps * caps)
+{
+  g_autoptr (GstClothTopology) parsed =
+      gst_cloth_read_topology (GST_ELEMENT (self), caps);
+  g_autoptr (ClothTopology) topology = NULL;
+  gint fps_n = 0, fps_d = 1;
+  gsize n;
+
+  if (!parsed)
+    return FALSE;
+  gst_structure_get_fraction (gst_caps_get_structure (caps, 0), "framerate",
+      &fps_n, &fps_d);
+  GST_OBJECT_LOCK (self);
+  self->fps_n = fps_n;
+  self->fps_d = fps_d;
+  GST_OBJECT_UNLOCK (self);
+  gst_element_post_message (GST_ELEMENT (self),
+      gst_message_new_latency (GST_OBJECT (self)));
+  topology = gst_mesh_copy_topology (parsed);
+  if (self->topology && cloth_topology_equal (self->topology, topology))
+    return TRUE;
+  clear_topology (self);
+  GST_OBJECT_LOCK (self);
+  self->fill = cloth_fill_new (topology, &self->parameters);
+  self->parameters_changed = FALSE;
+  GST_OBJECT_UNLOCK (self);
+  n = topology->n_vertices;
+  for (guint i = 0; i < G_N_ELEMENTS (self->frame); i++) {
+    self->frame[i].positions = g_new (gfloat, 3 * n);
+    self->frame[i].covariances = g_new (gfloat, 6 * n);
+    self->frame[i].states = g_new (guint8, n);
+  }
+  self->smoothed = g_new (gfloat, 3 * n);
+  self->topology = g_steal_pointer (&topology);
+  return TRUE;
+}
+
+static gboolean
+gst_mesh_fill_sink_event (GstPad * pad, GstObject * parent, GstEvent * event)
+{
+  GstMeshFill *self = GST_MESH_FILL (parent);
+  gboolean good = TRUE;
+  GstCaps *caps;
+
+  /* What comes after a frame leaves after it. */
+  if (GST_EVENT_IS_SERIALIZED (event)
+      && GST_EVENT_TYPE (event) != GST_EVENT_FLUSH_STOP)
+    drain (self);
+  switch (GST_EVENT_TYPE (event)) {
+    case GST_EVENT_FLUSH_STOP:
+      clear_frames (self);
+      gst_segment_init (&self->segment, GST_FORMAT_TIME);
+      break;
+    case GST_EVENT_CAPS:
+      gst_event_parse_caps (event, &caps);
+      good = set_caps (self, caps);
+      break;
+    case GST_EVENT_SEGMENT:
+      gst_event_copy_segment (event, &self->segment);
+      clear_frames (self);
+      break;
+    default:
+      break;
+  }
+  if (good)
+    return gst_pad_push_event (self->srcpad, event);
+  gst_event_unref (event);
+  return FALSE;
+}
+
+static gboolean
+gst_mesh_fill_src_query (GstPad * pad, GstObject * parent, GstQuery * query)
+{
+  GstMeshFill *self = GST_MESH_FILL (parent);
+  GstClockTime low, high, own = 0;
+  gboolean live;
+
+  if (GST_QUERY_TYPE (query) != GST_QUERY_LATENCY)
+    return gst_pad_query_default (pad, parent, query);
+  if (!gst_pad_peer_query (self->sinkpad, query))
+    return FALSE;
+  gst_query_parse_latency (query, &live, &low, &high);
+  GST_OBJECT_LOCK (self);
+  if (self->smooth_time > 0 && self->fps_n > 0)
+    own = gst_util_uint64_scale_int (GST_SECOND, self->fps_d, self->fps_n);
+  GST_OBJECT_UNLOCK (self);
+  low += own;
+  if (GST_CLOCK_TIME_IS_VALID (high))
+    high += own;
+  gst_query_set_latency (query, live, low, high);
+  return TRUE;
+}
+
+static GstStateChangeReturn
+gst_mesh_fill_change_state (GstElement * element, GstStateChange transition)
+{
+  GstMeshFill *self = GST_MESH_FILL (element);
+  GstStateChangeReturn result;
+
+  if (transition == GST_STATE_CHANGE_READY_TO_PAUSED)
+    gst_segment_init (&self->segment, GST_FORMAT_TIME);
+  result = GST_ELEMENT_CLASS (gst_mesh_fill_parent_class)->change_state
+      (element, transition);
+  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY)
+    clear_topology (self);
+  return result;
+}
+
+/* ---- properties ---- */
+
+static void
+gst_mesh_fill_set_property (GObject * object, guint id, const GValue * value,
+    GParamSpec * spec)
+{
+  GstMeshFill *self = GST_MESH_FILL (object);
+
+  GST_OBJECT_LOCK (self);
+  if (!gst_cloth_may_change (GST_ELEMENT (self), spec)) {
+    GST_OBJECT_UNLOCK (self);
+    return;
+  }
+  self->parameters_changed = TRUE;
+  switch (id) {
+    case PROP_METHOD:
+      self->parameters.method = g_value_get_enum (value);
+      break;
+    case PROP_NOISE:
+      self->parameters.noise_m = g_value_get_double (value);
+      break;
+    case PROP_MAX_SIGMA:
+      self->parameters.max_sigma_m = g_value_get_double (value);
+      break;
+    case PROP_PREDICTION:
+      self->parameters.prediction_s = g_value_get_double (value);
+      break;
+    case PROP_OUTLIER_THRESHOLD:
+      self->parameters.outlier = g_value_get_double (value);
+      break;
+    case PROP_SMOOTH_SPACE:
+      self->smooth_space = g_value_get_double (value);
+      break;
+    case PROP_SMOOTH_TIME:
+      self->smooth_time = g_value_get_double (value);
+      break;
+    default:
+      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, spec);
+      break;
+  }
+  GST_OBJECT_UNLOCK (self);
+}
+
+static void
+gst_mesh_fill_get_property (GObject * object, guint id, GValue * value,
+    GParamSpec * spec)
+{
+  GstMeshFill *self = GST_MESH_FILL (object);
+
+  GST_OBJECT_LOCK (self);
+  switch (id) {
+    case PROP_METHOD:
+      g_value_set_enum (value, self->parameters.method);
+      break;
+    case PROP_NOISE:
+      g_value_set_double (value, self->parameters.noise_m);
+      break;
+    case PROP_MAX_SIGMA:
+      g_value_set_double (value, self->parameters.max_sigma_m);
+      break;
+    case PROP_PREDICTION:
+      g_value_set_double (value, self->parameters.prediction_s);
+      break;
+    case PROP_OUTLIER_THRESHOLD:
+      g_value_set_double (value, self->parameters.outlier);
+      break;
+    case PROP_SMOOTH_SPACE:
+      g_value_set_double (value, self->smooth_space);
+      break;
+    case PROP_SMOOTH_TIME:
+      g_value_set_double (value, self->smooth_time);
+      break;
+    default:
+      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, spec);
+      break;
+  }
+  GST_OBJECT_UNLOCK (self);
+}
+
+static void
+gst_mesh_fill_finalize (GObject * object)
+{
+  clear_topology (GST_MESH_FILL (object));
+  G_OBJECT_CLASS (gst_mesh_fill_parent_class)->finalize (object);
+}
+
+static void
+install_double (GObjectClass * klass, guint id, const gchar * name,
+    const gchar * nick, const gchar * blurb, gdouble most, gdouble standard,
+    GParamFlags mutable)
+{
+  g_object_class_install_property (klass, id, g_param_spec_double (name, nick,
+          blurb, 0, most, standard,
+          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | mutable));
+}
+
+static void
+gst_mesh_fill_class_init (GstMeshFillClass * klass)
+{
+  GObjectClass *object_class = G_OBJECT_CLASS (klass);
+  GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
+
+  GST_DEBUG_CATEGORY_INIT (mesh_fill_debug, "meshfill", 0, "holes of meshes");
+  object_class->set_property = gst_mesh_fill_set_property;
+  object_class->get_property = gst_mesh_fill_get_property;
+  object_class->finalize = gst_mesh_fill_finalize;
+  g_object_class_install_property (object_class, PROP_METHOD,
+      g_param_spec_enum ("method", "Method", "What fills a hole",
+          GST_TYPE_MESH_FILL_METHOD, CLOTH_FILL_PLATE,
+          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+          GST_PARAM_MUTABLE_PLAYING));
+  install_double (object_class, PROP_NOISE, "noise", "Noise",
+      "Standard deviation of a coordinate that comes without covariance, metres",
+      1, CLOTH_FILL_NOISE, GST_PARAM_MUTABLE_PLAYING);
+  install_double (object_class, PROP_MAX_SIGMA, "max-sigma", "Largest sigma",
+      "A vertex with a standard deviation above this (RMS of its axes) stays "
+      "unseen, metres", 1000, CLOTH_FILL_MAX_SIGMA, GST_PARAM_MUTABLE_PLAYING);
+  install_double (object_class, PROP_PREDICTION, "prediction", "Prediction",
+      "How long a vertex is carried on that nothing around it holds, seconds",
+      3600, CLOTH_FILL_PREDICTION, GST_PARAM_MUTABLE_PLAYING);
+  install_double (object_class, PROP_OUTLIER_THRESHOLD, "outlier-threshold",
+      "Outlier threshold",
+      "A vertex is removed that differs from its neighbours and its past by more "
+      "than this many times what is usual around it; 0: none", 1000,
+      CLOTH_FILL_OUTLIER, GST_PARAM_MUTABLE_PLAYING);
+  install_double (object_class, PROP_SMOOTH_SPACE, "smooth-space",
+      "Smoothing in space",
+      "Part of the way to the mean of its neighbours that a vertex goes", 1, 0,
+      GST_PARAM_MUTABLE_PLAYING);
+  install_double (object_class, PROP_SMOOTH_TIME, "smooth-time",
+      "Smoothing in time",
+      "Part of the way to the mean of the frames before and after that a vertex "
+      "goes; above 0 the element is a frame late", 1, 0,
+      GST_PARAM_MUTABLE_READY);
+  gst_element_class_add_static_pad_template (element_class, &sink_template);
+  gst_element_class_add_static_pad_template (element_class, &src_template);
+  gst_element_class_set_static_metadata (element_class, "Mesh filler",
+      "Filter/Analyzer",
+      "Fills holes in a mesh stream, removes outliers, smooths",
+      "The gst-cloth developers");
+  element_class->change_state = gst_mesh_fill_change_state;
+  gst_type_mark_as_plugin_api (GST_TYPE_MESH_FILL_METHOD, 0);
+}
+
+static void
+gst_mesh_fill_init (GstMeshFill * self)
+{
+  self->parameters.method = CLOTH_FILL_PLATE;
+  self->parameters.noise_m = CLOTH_FILL_NOISE;
+  self->parameters.max_sigma_m = CLOTH_FILL_MAX_SIGMA;
+  self->parameters.prediction_s = CLOTH_FILL_PREDICTION;
+  self->parameters.outlier = CLOTH_FILL_OUTLIER;
+  self->fps_d = 1;
+  gst_segment_init (&self->segment, GST_FORMAT_TIME);
+  self->sinkpad = gst_pad_new_from_static_template (&sink_template, "sink");
+  gst_pad_set_chain_function (self->sinkpad, gst_mesh_fill_chain);
+  gst_pad_set_event_function (self->sinkpad, gst_mesh_fill_sink_event);
+  GST_PAD_SET_PROXY_CAPS (self->sinkpad);
+  GST_PAD_SET_PROXY_ALLOCATION (self->sinkpad);
+  gst_element_add_pad (GST_ELEMENT (self), self->sinkpad);
+  self->srcpad = gst_pad_new_from_static_template (&src_template, "src");
+  gst_pad_set_query_function (self->srcpad, gst_mesh_fill_src_query);
+  GST_PAD_SET_PROXY_CAPS (self->srcpad);
+  gst_element_add_pad (GST_ELEMENT (self), self->srcpad);
+}
