@@ -11,7 +11,7 @@ G_BEGIN_DECLS
 
 /* The properties of the element that say how things look. */
 typedef struct {
-  gboolean draw_saddles, draw_quads, draw_indices, draw_mesh, draw_gap;
+  gboolean draw_saddles, draw_quads, draw_dots, draw_indices, draw_mesh, draw_gap;
   gfloat line_width, opacity, fill_opacity, c_low, ellipse_scale;
   guint gap_scale;              /* mm */
 } GstClothOverlayStyle;
@@ -22,6 +22,10 @@ void gst_cloth_overlay_draw_quads (const ClothCanvas * canvas,
     const GstClothQuad * quads, guint n, const GstClothOverlayStyle * style);
 void gst_cloth_overlay_draw_saddles (const ClothCanvas * canvas,
     GstClothSaddles * saddles, const GstClothOverlayStyle * style);
+
+/* Labelled dots and the links between neighbours of the pattern; crosses on the others. */
+void gst_cloth_overlay_draw_dots (const ClothCanvas * canvas,
+    GstClothDots * dots, const GstClothOverlayStyle * style);
 
 /* Colours of a heat map: the lowest for no distance, the last but one for the scale's
  * end and all beyond, the last for a vertex whose distance isn't known. */

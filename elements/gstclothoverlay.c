@@ -6,7 +6,7 @@
  * SECTION:element-clothoverlay
  * @title: clothoverlay
  *
- * Draws the saddles and squares that a picture carries as metadata, and, when its
+ * Draws the saddles, squares and dots that a picture carries as metadata, and, when its
  * `mesh` pad is linked, a mesh as the camera `camera` of `rig` sees it. The picture is
  * drawn on in place; one with nothing to draw passes untouched. A mesh that `clothgap`
  * has been over is drawn as a heat map of its distance from the simulation.
@@ -52,6 +52,7 @@ GST_DEBUG_CATEGORY_STATIC (cloth_overlay_debug);
 
 #define DEFAULT_DRAW_SADDLES TRUE
 #define DEFAULT_DRAW_QUADS TRUE
+#define DEFAULT_DRAW_DOTS TRUE
 #define DEFAULT_DRAW_INDICES FALSE
 #define DEFAULT_DRAW_MESH TRUE
 #define DEFAULT_DRAW_GAP TRUE
@@ -117,6 +118,7 @@ enum
   PROP_0,
   PROP_DRAW_SADDLES,
   PROP_DRAW_QUADS,
+  PROP_DRAW_DOTS,
   PROP_DRAW_INDICES,
   PROP_DRAW_MESH,
   PROP_DRAW_GAP,
@@ -342,7 +344,7 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   GstClothOverlay *self = GST_CLOTH_OVERLAY (sync);
   GstFlowReturn ret = GST_FLOW_OK;
   GstBuffer *mesh = n > MESH ? views[MESH] : NULL;
-  gboolean has_quads, has_saddles;
+  gboolean has_quads, has_dots, has_saddles;
   GstVideoFrame frame;
   ClothCanvas canvas;
   GstClothOverlayStyle style;
@@ -366,6 +368,8 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   }
   has_quads = (style.draw_quads || style.draw_indices)
       && gst_buffer_get_cloth_quads (views[VIDEO]);
+  has_dots = (style.draw_dots || style.draw_indices)
+      && gst_buffer_get_cloth_dots (views[VIDEO]);
   has_saddles = style.draw_saddles
       && gst_buffer_get_cloth_saddles (views[VIDEO]);
 
@@ -382,7 +386,7 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
       return GST_FLOW_ERROR;
     }
   }
-  if (!mesh && !has_quads && !has_saddles) {
+  if (!mesh && !has_quads && !has_dots && !has_saddles) {
     return GST_FLOW_OK;
   }
 
@@ -397,6 +401,10 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
         gst_cloth_quads_get_quads (gst_buffer_get_cloth_quads (*out), &n_quads);
 
     gst_cloth_overlay_draw_quads (&canvas, quads, n_quads, &style);
+  }
+  if (has_dots) {
+    gst_cloth_overlay_draw_dots (&canvas, gst_buffer_get_cloth_dots (*out),
+        &style);
   }
   if (mesh && !gst_cloth_overlay_draw_mesh (self, &canvas, mesh, &style)) {
     ret = GST_FLOW_ERROR;
@@ -500,6 +508,9 @@ gst_cloth_overlay_set_property (GObject * object, guint id,
     case PROP_DRAW_QUADS:
       self->style.draw_quads = g_value_get_boolean (value);
       break;
+    case PROP_DRAW_DOTS:
+      self->style.draw_dots = g_value_get_boolean (value);
+      break;
     case PROP_DRAW_INDICES:
       self->style.draw_indices = g_value_get_boolean (value);
       break;
@@ -557,6 +568,9 @@ gst_cloth_overlay_get_property (GObject * object, guint id, GValue * value,
       break;
     case PROP_DRAW_QUADS:
       g_value_set_boolean (value, self->style.draw_quads);
+      break;
+    case PROP_DRAW_DOTS:
+      g_value_set_boolean (value, self->style.draw_dots);
       break;
     case PROP_DRAW_INDICES:
       g_value_set_boolean (value, self->style.draw_indices);
@@ -665,8 +679,12 @@ gst_cloth_overlay_class_init (GstClothOverlayClass * klass)
   install_boolean (object_class, PROP_DRAW_QUADS, "draw-quads",
       "Draw the squares, coloured by confidence: yellow for 1, purple for c-low; "
       "dashed when only predicted", DEFAULT_DRAW_QUADS);
+  install_boolean (object_class, PROP_DRAW_DOTS, "draw-dots",
+      "Draw the labelled dots and the links between neighbours of the pattern, yellow "
+      "for sure labels to purple, blue where seen from behind; a red cross on dots "
+      "without a label", DEFAULT_DRAW_DOTS);
   install_boolean (object_class, PROP_DRAW_INDICES, "draw-indices",
-      "Write column (above) and row (below) into the squares",
+      "Write column (above) and row (below) into the squares and onto the dots",
       DEFAULT_DRAW_INDICES);
   install_boolean (object_class, PROP_DRAW_MESH, "draw-mesh",
       "Draw the mesh of the mesh pad as a wireframe: green measured, amber from two "
@@ -708,7 +726,7 @@ gst_cloth_overlay_class_init (GstClothOverlayClass * klass)
       &src_template, GST_TYPE_AGGREGATOR_PAD);
   gst_element_class_set_static_metadata (element_class, "Cloth overlay",
       "Filter/Effect/Video",
-      "Draws saddles, tracked squares, meshes and their distance from a simulation",
+      "Draws saddles, squares, labelled dots, meshes and their distance from a simulation",
       "The gst-cloth developers");
 }
 
@@ -717,6 +735,7 @@ gst_cloth_overlay_init (GstClothOverlay * self)
 {
   self->style.draw_saddles = DEFAULT_DRAW_SADDLES;
   self->style.draw_quads = DEFAULT_DRAW_QUADS;
+  self->style.draw_dots = DEFAULT_DRAW_DOTS;
   self->style.draw_indices = DEFAULT_DRAW_INDICES;
   self->style.draw_mesh = DEFAULT_DRAW_MESH;
   self->style.draw_gap = DEFAULT_DRAW_GAP;
