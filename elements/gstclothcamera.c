@@ -35,6 +35,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "elements/gstclothpaint.h"
 #include "elements/gstclothutil.h"
 #include "gst/vision/render.h"
 
@@ -500,28 +501,6 @@ gst_cloth_camera_stop (GstBaseTransform * trans)
   return TRUE;
 }
 
-/* A texture's picture lies over the whole of the flat cloth. */
-static ClothPaint *
-paint_texture (GstClothCamera * self, const gfloat * uv, GError ** error)
-{
-  gdouble low[2] = { G_MAXDOUBLE, G_MAXDOUBLE };
-  gdouble high[2] = { -G_MAXDOUBLE, -G_MAXDOUBLE }, size[2];
-
-  for (guint i = 0; i < 2 * self->n_vertices; i++) {
-    low[i % 2] = MIN (low[i % 2], uv[i]);
-    high[i % 2] = MAX (high[i % 2], uv[i]);
-  }
-  for (gint k = 0; k < 2; k++)
-    size[k] = high[k] - low[k];
-  if (!(size[0] > 0 && size[1] > 0)) {
-    g_set_error (error, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT,
-        "the mesh has no uv coordinates to lay %s on: give it some, in metres",
-        self->texture);
-    return NULL;
-  }
-  return gst_cloth_camera_paint_picture (self->texture, low, size, error);
-}
-
 static gboolean
 gst_cloth_camera_set_caps (GstBaseTransform * trans, GstCaps * in,
     GstCaps * out)
@@ -557,11 +536,12 @@ gst_cloth_camera_set_caps (GstBaseTransform * trans, GstCaps * in,
   uv = gst_cloth_topology_get_uv (topology, NULL);
   faces = gst_cloth_topology_get_faces (topology, NULL);
   if (self->pattern)
-    self->paint = gst_cloth_camera_paint_pattern (self->pattern, &error);
+    self->paint = gst_cloth_paint_pattern (self->pattern, &error);
   else if (self->texture)
-    self->paint = paint_texture (self, uv, &error);
+    self->paint = gst_cloth_paint_texture (self->texture, uv, self->n_vertices,
+        &error);
   else
-    self->paint = gst_cloth_camera_paint_white ();
+    self->paint = gst_cloth_paint_white ();
   if (!self->paint) {
     GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ,
         ("Can't put “%s” on the cloth: %s", self->pattern ? self->pattern :

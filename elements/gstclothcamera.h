@@ -6,8 +6,6 @@
 #include <gst/base/gstbasetransform.h>
 #include <gst/video/video.h>
 
-#include "gst/vision/paint.h"
-
 G_BEGIN_DECLS
 
 #define GST_TYPE_CLOTH_CAMERA (gst_cloth_camera_get_type ())
@@ -15,13 +13,6 @@ G_DECLARE_FINAL_TYPE (GstClothCamera, gst_cloth_camera, GST, CLOTH_CAMERA,
     GstBaseTransform)
 
 GST_ELEMENT_REGISTER_DECLARE (clothcamera);
-
-/* What is on the cloth: from a pattern.json, from any picture, or plain white. */
-ClothPaint *gst_cloth_camera_paint_pattern (const gchar * path,
-    GError ** error);
-ClothPaint *gst_cloth_camera_paint_picture (const gchar * path,
-    const gdouble origin_uv_m[2], const gdouble size_m[2], GError ** error);
-ClothPaint *gst_cloth_camera_paint_white (void);
 
 /* The format of the pictures, and the RGB that those of luma and chroma come from. */
 typedef struct

@@ -5,15 +5,24 @@
 
 #include <gst/cloth/cloth.h>
 #include <gst/video/video.h>
+#include "gst/rig/camera.h"
 #include "gst/vision/draw.h"
 
 G_BEGIN_DECLS
+
+typedef enum {
+  GST_CLOTH_OVERLAY_MESH_WIREFRAME,
+  GST_CLOTH_OVERLAY_MESH_SHADED
+} GstClothOverlayMeshStyle;
+
+GType gst_cloth_overlay_mesh_style_get_type (void);
 
 /* The properties of the element that say how things look. */
 typedef struct {
   gboolean draw_saddles, draw_quads, draw_dots, draw_indices, draw_mesh, draw_gap;
   gfloat line_width, opacity, fill_opacity, c_low, ellipse_scale;
   guint gap_scale;              /* mm */
+  GstClothOverlayMeshStyle mesh_style;
 } GstClothOverlayStyle;
 
 /* A canvas on the mapped frame, colours by its colorimetry. */
@@ -37,5 +46,19 @@ void gst_cloth_overlay_heat (GstClothGap * gap, guint scale_mm,
 /* The scale, at the lower left, 0 and its end in mm beside it. */
 void gst_cloth_overlay_draw_scale (const ClothCanvas * canvas, gint width,
     gint height, const GstClothOverlayStyle * style);
+
+/* The mesh of one topology. It must be printed before it is drawn shaded. */
+typedef struct _GstClothOverlayMesh GstClothOverlayMesh;
+
+GstClothOverlayMesh *gst_cloth_overlay_mesh_new (GstClothTopology * topology);
+void gst_cloth_overlay_mesh_free (GstClothOverlayMesh * self);
+guint gst_cloth_overlay_mesh_get_n_vertices (const GstClothOverlayMesh * self);
+gboolean gst_cloth_overlay_mesh_print (GstClothOverlayMesh * self,
+    const gchar * texture, GError ** error);
+gboolean gst_cloth_overlay_mesh_is_printed (const GstClothOverlayMesh * self);
+void gst_cloth_overlay_mesh_draw (GstClothOverlayMesh * self,
+    const ClothCanvas * canvas, gint width, gint height,
+    const ClothCamera * camera, GstClothMesh * mesh, GstClothGap * gap,
+    const GstClothOverlayStyle * style);
 
 G_END_DECLS

@@ -8,7 +8,8 @@
  *
  * Draws the saddles, squares and dots that a picture carries as metadata, and, when its
  * `mesh` pad is linked, a mesh as the camera `camera` of `rig` sees it. The picture is
- * drawn on in place; one with nothing to draw passes untouched. A mesh that `clothgap`
+ * drawn on in place; one with nothing to draw passes untouched. The mesh is drawn as lines or
+ * as a surface with any picture on it (`mesh-style`, `texture`). A mesh that `clothgap`
  * has been over is drawn as a heat map of its distance from the simulation.
  *
  * ## Squares over a film
@@ -22,6 +23,13 @@
  * gst-launch-1.0 filesrc location=cam0.mp4 ! decodebin ! clothoverlay name=o \
  *     rig=rig.json camera=cam0 ! videoconvert ! autovideosink \
  *     meshsrc location=take ! o.mesh
+ * ]|
+ *
+ * ## The cloth in another fabric
+ * |[
+ * gst-launch-1.0 filesrc location=cam0.mp4 ! decodebin ! clothoverlay name=o \
+ *     rig=rig.json camera=cam0 mesh-style=shaded texture=fabric.jpg ! videoconvert ! \
+ *     autovideosink  meshsrc location=take ! o.mesh
  * ]|
  *
  * ## Where a simulation departs from the film
@@ -45,8 +53,6 @@
 #include <gst/video/video.h>
 #include <math.h>
 
-#include "gst/vision/wireframe.h"
-
 GST_DEBUG_CATEGORY_STATIC (cloth_overlay_debug);
 #define GST_CAT_DEFAULT cloth_overlay_debug
 
@@ -67,10 +73,6 @@ GST_DEBUG_CATEGORY_STATIC (cloth_overlay_debug);
 #define VIDEO 0
 #define MESH 1
 
-/* Of the lines of a mesh that lie behind another part of it. */
-#define HIDDEN_OPACITY 0.25f
-/* Of the heat map: the film shows through. */
-#define HEAT_OPACITY 0.6f
 /* A calibration fits a picture of other size when the shapes agree this well. */
 #define ASPECT_SLACK 0.01
 
@@ -78,31 +80,20 @@ GST_DEBUG_CATEGORY_STATIC (cloth_overlay_debug);
     "Y41B, YUV9, YVU9, A420, YUY2, UYVY, YVYU, AYUV, BGRx, RGBx, xBGR, xRGB, " \
     "BGRA, RGBA, ABGR, ARGB, RGB, BGR }"
 
-/* by GstClothVertexState */
-static const ClothColour vertex_colours[] = {
-  {0.55f, 0.55f, 0.55f, 1},     /* unseen */
-  {0.20f, 0.85f, 0.45f, 1},     /* measured: green */
-  {1.00f, 0.72f, 0.15f, 1},     /* two views: amber */
-  {0.25f, 0.60f, 1.00f, 1},     /* filled: blue */
-  {0.75f, 0.45f, 1.00f, 1}      /* predicted: violet */
-};
-
 struct _GstClothOverlay
 {
   GstClothSync parent;
 
   /* with the object lock */
   GstClothOverlayStyle style;
-  gchar *rig_path, *camera_name;
-  gboolean rig_changed;
+  gchar *rig_path, *camera_name, *texture;
+  gboolean rig_changed, texture_changed;
 
   /* streaming thread */
   GstVideoInfo info;
   GstCaps *video_caps;
   gboolean knows_strides;       /* downstream, of GstVideoMeta */
-  ClothWireframe *wire;
-  guint n_vertices;
-  guint8 *heats;                /* one a vertex */
+  GstClothOverlayMesh *mesh;
   ClothRig *rig;
   const ClothCamera *camera;    /* of @rig */
 };
@@ -121,6 +112,8 @@ enum
   PROP_DRAW_DOTS,
   PROP_DRAW_INDICES,
   PROP_DRAW_MESH,
+  PROP_MESH_STYLE,
+  PROP_TEXTURE,
   PROP_DRAW_GAP,
   PROP_GAP_SCALE,
   PROP_LINE_WIDTH,
@@ -191,37 +184,44 @@ gst_cloth_overlay_check_size (GstClothOverlay * self)
   return FALSE;
 }
 
+/* What is printed on the mesh, when it is to be shaded. */
+static gboolean
+gst_cloth_overlay_print (GstClothOverlay * self)
+{
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *texture = NULL;
+
+  GST_OBJECT_LOCK (self);
+  if (!self->texture_changed && gst_cloth_overlay_mesh_is_printed (self->mesh)) {
+    GST_OBJECT_UNLOCK (self);
+    return TRUE;
+  }
+  self->texture_changed = FALSE;
+  texture = g_strdup (self->texture);
+  GST_OBJECT_UNLOCK (self);
+  if (gst_cloth_overlay_mesh_print (self->mesh, texture, &error)) {
+    return TRUE;
+  }
+  GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ,
+      ("Can't put “%s” on the cloth: %s", texture, error->message), (NULL));
+  return FALSE;
+}
+
 static gboolean
 gst_cloth_overlay_draw_mesh (GstClothOverlay * self, const ClothCanvas * canvas,
     GstBuffer * buffer, const GstClothOverlayStyle * style)
 {
   g_autoptr (GstClothMesh) mesh = gst_cloth_read_mesh (GST_ELEMENT (self),
-      buffer, self->n_vertices);
+      buffer, gst_cloth_overlay_mesh_get_n_vertices (self->mesh));
   GstClothGap *gap = style->draw_gap ? gst_buffer_get_cloth_gap (buffer) : NULL;
-  gint width = GST_VIDEO_INFO_WIDTH (&self->info);
-  gint height = GST_VIDEO_INFO_HEIGHT (&self->info);
-  ClothWireStyle wire_style = {
-    G_N_ELEMENTS (vertex_colours), vertex_colours, style->line_width,
-    style->opacity, HIDDEN_OPACITY, 0
-  };
-  const guint8 *states;
 
-  if (!mesh) {
+  if (!mesh || (style->mesh_style == GST_CLOTH_OVERLAY_MESH_SHADED
+          && !gst_cloth_overlay_print (self))) {
     return FALSE;
   }
-  states = gst_cloth_mesh_get_states (mesh, NULL);
-  if (gap && gst_cloth_gap_get_n_vertices (gap) == self->n_vertices) {
-    gst_cloth_overlay_heat (gap, style->gap_scale, self->heats);
-    states = self->heats;
-    wire_style.n_colours = GST_CLOTH_OVERLAY_HEATS;
-    wire_style.colours = gst_cloth_overlay_heat_colours ();
-    wire_style.fill_opacity = HEAT_OPACITY * style->opacity;
-  }
-  cloth_wireframe_draw (self->wire, canvas, width, height, self->camera,
-      gst_cloth_mesh_get_positions (mesh, NULL), states, &wire_style);
-  if (states == self->heats) {
-    gst_cloth_overlay_draw_scale (canvas, width, height, style);
-  }
+  gst_cloth_overlay_mesh_draw (self->mesh, canvas,
+      GST_VIDEO_INFO_WIDTH (&self->info), GST_VIDEO_INFO_HEIGHT (&self->info),
+      self->camera, mesh, gap, style);
   return TRUE;
 }
 
@@ -233,8 +233,6 @@ gst_cloth_overlay_set_pad_caps (GstClothSync * sync, guint index,
 {
   GstClothOverlay *self = GST_CLOTH_OVERLAY (sync);
   g_autoptr (GstClothTopology) topology = NULL;
-  const guint32 *faces;
-  guint n_indices;
 
   if (index == VIDEO) {
     gst_caps_replace (&self->video_caps, caps);
@@ -246,8 +244,7 @@ gst_cloth_overlay_set_pad_caps (GstClothSync * sync, guint index,
     return TRUE;
   }
 
-  g_clear_pointer (&self->wire, cloth_wireframe_free);
-  g_clear_pointer (&self->heats, g_free);
+  g_clear_pointer (&self->mesh, gst_cloth_overlay_mesh_free);
   if (!caps) {
     return TRUE;
   }
@@ -255,12 +252,7 @@ gst_cloth_overlay_set_pad_caps (GstClothSync * sync, guint index,
   if (!topology) {
     return FALSE;
   }
-  self->n_vertices = gst_cloth_topology_get_n_vertices (topology);
-  self->heats = g_malloc (self->n_vertices);
-  faces = gst_cloth_topology_get_faces (topology, &n_indices);
-  self->wire = cloth_wireframe_new (self->n_vertices,
-      gst_cloth_topology_get_columns (topology),
-      gst_cloth_topology_get_rows (topology), faces, n_indices / 4);
+  self->mesh = gst_cloth_overlay_mesh_new (topology);
   return gst_cloth_overlay_load_rig (self);
 }
 
@@ -363,7 +355,7 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   GST_OBJECT_LOCK (self);
   style = self->style;
   GST_OBJECT_UNLOCK (self);
-  if (!style.draw_mesh || !self->wire) {
+  if (!style.draw_mesh || !self->mesh) {
     mesh = NULL;
   }
   has_quads = (style.draw_quads || style.draw_indices)
@@ -485,8 +477,7 @@ gst_cloth_overlay_stop (GstAggregator * agg)
   GstClothOverlay *self = GST_CLOTH_OVERLAY (agg);
 
   gst_caps_replace (&self->video_caps, NULL);
-  g_clear_pointer (&self->wire, cloth_wireframe_free);
-  g_clear_pointer (&self->heats, g_free);
+  g_clear_pointer (&self->mesh, gst_cloth_overlay_mesh_free);
   self->camera = NULL;
   g_clear_pointer (&self->rig, cloth_rig_free);
   return GST_AGGREGATOR_CLASS (gst_cloth_overlay_parent_class)->stop (agg);
@@ -516,6 +507,14 @@ gst_cloth_overlay_set_property (GObject * object, guint id,
       break;
     case PROP_DRAW_MESH:
       self->style.draw_mesh = g_value_get_boolean (value);
+      break;
+    case PROP_MESH_STYLE:
+      self->style.mesh_style = g_value_get_enum (value);
+      break;
+    case PROP_TEXTURE:
+      g_free (self->texture);
+      self->texture = g_value_dup_string (value);
+      self->texture_changed = TRUE;
       break;
     case PROP_DRAW_GAP:
       self->style.draw_gap = g_value_get_boolean (value);
@@ -578,6 +577,12 @@ gst_cloth_overlay_get_property (GObject * object, guint id, GValue * value,
     case PROP_DRAW_MESH:
       g_value_set_boolean (value, self->style.draw_mesh);
       break;
+    case PROP_MESH_STYLE:
+      g_value_set_enum (value, self->style.mesh_style);
+      break;
+    case PROP_TEXTURE:
+      g_value_set_string (value, self->texture);
+      break;
     case PROP_DRAW_GAP:
       g_value_set_boolean (value, self->style.draw_gap);
       break;
@@ -618,11 +623,11 @@ gst_cloth_overlay_finalize (GObject * object)
   GstClothOverlay *self = GST_CLOTH_OVERLAY (object);
 
   gst_caps_replace (&self->video_caps, NULL);
-  g_clear_pointer (&self->wire, cloth_wireframe_free);
-  g_free (self->heats);
+  g_clear_pointer (&self->mesh, gst_cloth_overlay_mesh_free);
   g_clear_pointer (&self->rig, cloth_rig_free);
   g_free (self->rig_path);
   g_free (self->camera_name);
+  g_free (self->texture);
   G_OBJECT_CLASS (gst_cloth_overlay_parent_class)->finalize (object);
 }
 
@@ -687,9 +692,19 @@ gst_cloth_overlay_class_init (GstClothOverlayClass * klass)
       "Write column (above) and row (below) into the squares and onto the dots",
       DEFAULT_DRAW_INDICES);
   install_boolean (object_class, PROP_DRAW_MESH, "draw-mesh",
-      "Draw the mesh of the mesh pad as a wireframe: green measured, amber from two "
-      "views, blue filled, violet predicted; faint where hidden",
-      DEFAULT_DRAW_MESH);
+      "Draw the mesh of the mesh pad", DEFAULT_DRAW_MESH);
+  g_object_class_install_property (object_class, PROP_MESH_STYLE,
+      g_param_spec_enum ("mesh-style", "mesh-style",
+          "How the mesh is drawn: wireframe (green measured, amber from two views, "
+          "blue filled, violet predicted; faint where hidden) or shaded (a surface, "
+          "its hidden parts hidden)",
+          gst_cloth_overlay_mesh_style_get_type (),
+          GST_CLOTH_OVERLAY_MESH_WIREFRAME,
+          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+          GST_PARAM_CONTROLLABLE | GST_PARAM_MUTABLE_PLAYING));
+  install_string (object_class, PROP_TEXTURE, "texture",
+      "Picture file that is printed over the whole cloth, on both its sides, when it "
+      "is drawn shaded; without one it is white");
   install_boolean (object_class, PROP_DRAW_GAP, "draw-gap",
       "Where the mesh carries its distance from a simulation, draw it as a heat map, "
       "pale for none to dark red for gap-scale, grey where not seen",
@@ -728,6 +743,7 @@ gst_cloth_overlay_class_init (GstClothOverlayClass * klass)
       "Filter/Effect/Video",
       "Draws saddles, squares, labelled dots, meshes and their distance from a simulation",
       "The gst-cloth developers");
+  gst_type_mark_as_plugin_api (gst_cloth_overlay_mesh_style_get_type (), 0);
 }
 
 static void

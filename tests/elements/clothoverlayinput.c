@@ -293,6 +293,22 @@ GST_START_TEST (test_which_camera)
 
 GST_END_TEST;
 
+GST_START_TEST (test_texture_not_there)
+{
+  g_autofree gchar *rig = write_rig ("", "");
+  g_autofree gchar *absent = g_strdup_printf ("rig=%s mesh-style=shaded "
+      "texture=/nonexistent/fabric.png", rig);
+  g_autofree gchar *none = g_strdup_printf ("rig=%s mesh-style=shaded "
+      "texture=%s", rig, rig);
+
+  expect_error (absent, 80, 60, mesh_buffer (COLUMNS * ROWS, -1), 0,
+      "/nonexistent/fabric.png");
+  expect_error (none, 80, 60, mesh_buffer (COLUMNS * ROWS, -1), 0, "Can't put");
+  g_unlink (rig);
+}
+
+GST_END_TEST;
+
 GST_START_TEST (test_other_shape)
 {
   g_autofree gchar *rig = write_rig ("", "");
@@ -363,6 +379,7 @@ clothoverlayinput_suite (void)
   tcase_add_test (tc, test_no_rig);
   tcase_add_test (tc, test_rig_not_there);
   tcase_add_test (tc, test_which_camera);
+  tcase_add_test (tc, test_texture_not_there);
   tcase_add_test (tc, test_other_shape);
   tcase_add_test (tc, test_bad_mesh);
   tcase_add_test (tc, test_short_picture);

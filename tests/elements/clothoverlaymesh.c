@@ -293,6 +293,97 @@ GST_START_TEST (test_camera_offset)
 
 GST_END_TEST;
 
+/* ---- surface ---- */
+
+/* A picture that is red all over, by stock elements. */
+static gchar *
+write_red_picture (void)
+{
+  gchar *path = NULL;
+  gint fd = g_file_open_tmp ("cloth-overlay-XXXXXX.png", &path, NULL);
+  g_autofree gchar *launch =
+      g_strdup_printf ("videotestsrc num-buffers=1 pattern=red ! "
+      "video/x-raw,format=RGB,width=8,height=8 ! pngenc ! filesink location=%s",
+      path);
+  g_autoptr (GstElement) pipeline = gst_parse_launch (launch, NULL);
+  g_autoptr (GstBus) bus = gst_element_get_bus (pipeline);
+  g_autoptr (GstMessage) message = NULL;
+
+  fail_unless (fd >= 0);
+  g_close (fd, NULL);
+  gst_element_set_state (pipeline, GST_STATE_PLAYING);
+  message = gst_bus_timed_pop_filtered (bus, 20 * GST_SECOND,
+      GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
+  fail_unless (message && GST_MESSAGE_TYPE (message) == GST_MESSAGE_EOS);
+  gst_element_set_state (pipeline, GST_STATE_NULL);
+  return path;
+}
+
+/* The cloth faces the camera; the lamp stands at acos (0.5 / |(-0.4, -0.8, 0.5)|) to it:
+ * 0.35 + 0.6 · 0.488 of the light is 0.818 of the encoded value. */
+GST_START_TEST (test_surface)
+{
+  static const gdouble film[3] = { FILL, FILL, FILL };
+  static const gdouble red[3] = { 209, 0, 0 }, half[3] = { 168, 64, 64 };
+  g_autofree gchar *texture = write_red_picture ();
+  g_autofree gchar *textured =
+      g_strdup_printf ("mesh-style=shaded texture=%s", texture);
+  g_autofree gchar *faint = g_strconcat (textured, " opacity=0.5", NULL);
+  GstVideoInfo info;
+  GstBuffer *out = draw_gap (textured, 80, 60, &info,
+      mesh_buffer (COLUMNS * ROWS, -1));
+
+  check_rgb (out, &info, 37, 30, red, 2, "red");
+  check_rgb (out, &info, 16, 16, red, 2, "red");
+  check_rgb (out, &info, 59, 44, red, 2, "red");
+  check_rgb (out, &info, 10, 30, film, 0, "film");
+  check_rgb (out, &info, 37, 48, film, 0, "film");
+  check_padding (out, &info, 3);
+  gst_buffer_unref (out);
+  out = draw_gap (faint, 80, 60, &info, mesh_buffer (COLUMNS * ROWS, -1));
+  check_rgb (out, &info, 37, 30, half, 3, "half red");
+  gst_buffer_unref (out);
+  /* a place that nobody has seen shows the film */
+  out = draw_gap (textured, 80, 60, &info, mesh_buffer (COLUMNS * ROWS, 5));
+  check_rgb (out, &info, 31, 31, film, 0, "film");
+  check_rgb (out, &info, 55, 25, red, 2, "red");
+  gst_buffer_unref (out);
+  g_unlink (texture);
+}
+
+GST_END_TEST;
+
+/* Without a picture it is white, in every format; nothing between the rows changes. */
+GST_START_TEST (test_surface_formats)
+{
+  g_autofree gchar *rig = write_rig ("", "");
+  g_autofree gchar *properties =
+      g_strdup_printf ("rig=%s mesh-style=shaded", rig);
+  guint i;
+
+  for (i = 0; i < G_N_ELEMENTS (formats); i++) {
+    GstVideoInfo info;
+    GstBuffer *buffer = picture (formats[i], 81, 61, 5, &info), *out;
+    GstHarness *h = overlay (properties, &info), *m = mesh_pad (h);
+    GstVideoFrame frame;
+
+    gst_harness_push (h, buffer);
+    gst_harness_push (m, mesh_buffer (COLUMNS * ROWS, -1));
+    out = gst_harness_pull (h);
+    check_padding (out, &info, 5);
+    fail_unless (gst_video_frame_map (&frame, &info, out, GST_MAP_READ));
+    fail_unless (*pixel (&frame, 0, 37, 30) > FILL + 20, "%s", formats[i]);
+    fail_unless_equals_int (*pixel (&frame, 0, 5, 5), FILL);
+    gst_video_frame_unmap (&frame);
+    gst_buffer_unref (out);
+    gst_harness_teardown (m);
+    gst_harness_teardown (h);
+  }
+  g_unlink (rig);
+}
+
+GST_END_TEST;
+
 static Suite *
 clothoverlaymesh_suite (void)
 {
@@ -304,6 +395,8 @@ clothoverlaymesh_suite (void)
   tcase_add_test (tc, test_gap_colours);
   tcase_add_test (tc, test_gap_not_drawn);
   tcase_add_test (tc, test_gap_scale);
+  tcase_add_test (tc, test_surface);
+  tcase_add_test (tc, test_surface_formats);
   tcase_add_test (tc, test_mesh_pairing);
   tcase_add_test (tc, test_film_ends);
   tcase_add_test (tc, test_camera_offset);

@@ -1,7 +1,7 @@
-/* What is on a filmed cloth: patterns and pictures from files.
+/* What is on a cloth: patterns and pictures from files.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "elements/gstclothcamera.h"
+#include "elements/gstclothpaint.h"
 
 #include <gio/gio.h>
 #include <gst/video/video.h>
@@ -17,7 +17,7 @@
 #define PATIENCE (30 * GST_SECOND)
 
 ClothPaint *
-gst_cloth_camera_paint_pattern (const gchar * path, GError ** error)
+gst_cloth_paint_pattern (const gchar * path, GError ** error)
 {
   g_autoptr (ClothPattern) pattern = cloth_pattern_load (path, error);
   g_autoptr (ClothTexture) texture = NULL;
@@ -40,7 +40,7 @@ gst_cloth_camera_paint_pattern (const gchar * path, GError ** error)
 }
 
 ClothPaint *
-gst_cloth_camera_paint_white (void)
+gst_cloth_paint_white (void)
 {
   const gdouble origin[2] = { 0, 0 }, size[2] = { 1, 1 };
   const guint8 level = 255;
@@ -76,8 +76,8 @@ paint_from_sample (GstSample * sample, const gchar * path,
 }
 
 /* The first picture of any file that GStreamer decodes. */
-ClothPaint *
-gst_cloth_camera_paint_picture (const gchar * path,
+static ClothPaint *
+paint_picture (const gchar * path,
     const gdouble origin_uv_m[2], const gdouble size_m[2], GError ** error)
 {
   g_autoptr (GstElement) pipeline = NULL;
@@ -116,4 +116,26 @@ gst_cloth_camera_paint_picture (const gchar * path,
   }
   gst_element_set_state (pipeline, GST_STATE_NULL);
   return paint;
+}
+
+ClothPaint *
+gst_cloth_paint_texture (const gchar * path, const gfloat * uv,
+    guint n_vertices, GError ** error)
+{
+  gdouble low[2] = { G_MAXDOUBLE, G_MAXDOUBLE };
+  gdouble high[2] = { -G_MAXDOUBLE, -G_MAXDOUBLE }, size[2];
+
+  for (gsize i = 0; i < 2 * (gsize) n_vertices; i++) {
+    low[i % 2] = MIN (low[i % 2], uv[i]);
+    high[i % 2] = MAX (high[i % 2], uv[i]);
+  }
+  for (gint k = 0; k < 2; k++)
+    size[k] = high[k] - low[k];
+  if (!(size[0] > 0 && size[1] > 0)) {
+    g_set_error (error, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT,
+        "the mesh has no uv coordinates to lay %s on: give it some, in metres",
+        path);
+    return NULL;
+  }
+  return paint_picture (path, low, size, error);
 }
