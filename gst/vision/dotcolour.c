@@ -259,6 +259,9 @@ expect (ClothDotColourModel * model, const ClothDotColourModel * prior,
 
     for (gint c = 0; c < 3; c++)
       class->cov[c] = (s[3 + c] + PRINT_COUNTS * from->cov[c]) / all;
+    /* Colours that are wide enough take in anything. */
+    for (gint c = 0; c < 3; c += 2)
+      class->cov[c] = MIN (class->cov[c], from->cov[c]);
     keep_sound (class->cov);
     for (gint c = 0; c < 2; c++)
       class->mean[c] += (s[1 + c]

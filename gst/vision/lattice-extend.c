@@ -250,7 +250,7 @@ extend_to (ClothDotLabeller * labeller, gint column, gint row,
   if (n == 0)
     return FALSE;
   guess_by_former (labeller, column, row, from->mirrored, guesses, &n);
-  for (guint k = 0; k < n; k++) {
+  for (guint k = 0; k < MIN (n, 3); k++) {
     ClothNear near[4];
     const guint n_near = cloth_point_grid_nearest (labeller->grid, guesses[k].x,
         guesses[k].y, labeller->params.c * guesses[k].pitch, near, 4);

@@ -14,6 +14,8 @@
 /* Pitch at most, in standard deviations of a dot's area along its longer axis: dots of
  * 0.4 of the pitch across. */
 #define REACH 10.0f
+/* What lies farther is no diagonal either, standard deviations of the areas of both. */
+#define FARTHEST 15.0f
 /* The usual pitch in these units: dots of 0.65 of it. */
 #define PITCH 6.2f
 /* Pictures are no larger, px. */
@@ -31,7 +33,7 @@ is_sound (const ClothDot * dot)
   const gfloat *s = dot->shape;
 
   return fabsf (dot->x) < 1e6f && fabsf (dot->y) < 1e6f && s[0] > 0.01f
-      && s[2] > 0.01f && s[0] < 1e6f && s[2] < 1e6f
+      && s[2] > 0.01f && s[0] < 1e4f && s[2] < 1e4f
       && s[0] * s[2] - s[1] * s[1] > 1e-3f * s[0] * s[2];
 }
 
@@ -62,18 +64,11 @@ look_around (ClothDotLabeller * labeller, const ClothDot * dots)
 {
   for (guint i = 0; i < labeller->n; i++) {
     ClothLatticeAround *around = &labeller->around[i];
-    ClothNear near[CLOTH_LATTICE_NEAR + 1];
-    guint n;
 
-    around->n = 0;
-    if (!labeller->nodes[i].sound)
-      continue;
-    n = cloth_point_grid_nearest (labeller->grid, dots[i].x, dots[i].y,
-        REACH * sqrtf (longer_variance (dots[i].shape)), near,
-        CLOTH_LATTICE_NEAR + 1);
-    for (guint k = 0; k < n; k++)
-      if (near[k].index != (gint) i && around->n < CLOTH_LATTICE_NEAR)
-        around->near[around->n++] = near[k].index;
+    around->n = labeller->nodes[i].sound
+        ? cloth_point_grid_within (labeller->grid, dots[i].x, dots[i].y,
+        REACH * sqrtf (longer_variance (dots[i].shape)), around->near,
+        CLOTH_LATTICE_NEAR) : 0;
   }
 }
 
@@ -105,23 +100,31 @@ measure_around (ClothDotLabeller * labeller, guint i)
 {
   ClothLatticeAround *around = &labeller->around[i];
   const ClothLatticeNode *node = &labeller->nodes[i];
+  guint n = 0;
   gfloat w[3];
 
   inverse_root (node->shape, w);
   for (guint k = 0; k < around->n; k++) {
-    const ClothLatticeNode *other = &labeller->nodes[around->near[k]];
+    const gint32 near = around->near[k];
+    const ClothLatticeNode *other = &labeller->nodes[near];
     const gfloat x = other->x - node->x, y = other->y - node->y;
     const gfloat a = node->shape[0] + other->shape[0];
     const gfloat b = node->shape[1] + other->shape[1];
     const gfloat c = node->shape[2] + other->shape[2];
+    const gfloat d2 = 2 * (c * x * x - 2 * b * x * y + a * y * y)
+        / (a * c - b * b);
     const gfloat to_x = w[0] * x + w[1] * y, to_y = w[1] * x + w[2] * y;
-    const gfloat length = sqrtf (to_x * to_x + to_y * to_y);
+    const gfloat size2 = to_x * to_x + to_y * to_y;
 
-    around->distance[k] =
-        sqrtf (2 * (c * x * x - 2 * b * x * y + a * y * y) / (a * c - b * b));
-    around->way[k][0] = length > 0 ? to_x / length : 1;
-    around->way[k][1] = length > 0 ? to_y / length : 0;
+    if (!(size2 > 0 && d2 < FARTHEST * FARTHEST))
+      continue;
+    around->near[n] = near;
+    around->distance[n] = sqrtf (d2);
+    around->way[n][0] = to_x / sqrtf (size2);
+    around->way[n][1] = to_y / sqrtf (size2);
+    n++;
   }
+  around->n = n;
 }
 
 /* The pitch in units of the dots' size: in the middle of all dots, their second nearest

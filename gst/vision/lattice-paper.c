@@ -237,10 +237,11 @@ try_window (ClothDotLabeller * labeller, guint seed, const gfloat e1[2],
     colours[k] = cloth_lattice_look (labeller, (guint) dot);
   }
   /* Turned by quarters, either way round. */
-  for (gint turn = 0; turn < (labeller->params.mirrored ? 8 : 4); turn++) {
+  for (gint turn = 0; turn < 8; turn++) {
     const gint start = 2 * (turn & 3), sense = turn & 4 ? -1 : 1;
     const gint *to_u = ring[start];
     const gint *to_v = ring[(start + 2 * sense + 8) & 7];
+    gboolean mirrored;
     gpointer found;
     Frame frame;
 
@@ -254,9 +255,11 @@ try_window (ClothDotLabeller * labeller, guint seed, const gfloat e1[2],
       frame.u[c] = (gfloat) to_u[0] * e1[c] + (gfloat) to_u[1] * e2[c];
       frame.v[c] = (gfloat) to_v[0] * e1[c] + (gfloat) to_v[1] * e2[c];
     }
-    if (grow_from (labeller, seed,
+    mirrored = frame.u[0] * frame.v[1] < frame.u[1] * frame.v[0];
+    if ((labeller->params.mirrored || !mirrored)
+        && grow_from (labeller, seed,
             GPOINTER_TO_INT (found) % labeller->columns,
-            GPOINTER_TO_INT (found) / labeller->columns, &frame, turn >= 4,
+            GPOINTER_TO_INT (found) / labeller->columns, &frame, mirrored,
             patch))
       return TRUE;
   }

@@ -26,13 +26,13 @@ typedef struct
   guint8 turn;                  /* slot of the patch's direction 0 */
 } ClothLatticeNode;
 
-/* Nearest dots of the picture that are looked at for neighbours. */
-#define CLOTH_LATTICE_NEAR 12
+/* Most dots around one that are looked at for neighbours. */
+#define CLOTH_LATTICE_NEAR 32
 
 /* Dots about a patch's anchor that are asked of all placings lie no farther from it. */
 #define CLOTH_LATTICE_PAD 8
 
-/* The dots around a dot, nearest first, which way they lie on the cloth but for some angle
+/* The dots around a dot, which way they lie on the cloth but for some angle
  * (unit vectors) and how far, in pitches. */
 typedef struct
 {

@@ -228,3 +228,45 @@ cloth_point_grid_nearest (const ClothPointGrid * grid, gfloat x, gfloat y,
     return find (grid, x, y, radius, near, 1);
   return find (grid, x, y, radius, near, n_near);
 }
+
+/**
+ * cloth_point_grid_within:
+ * @grid: the grid
+ * @x: column, px
+ * @y: row, px
+ * @radius: largest distance, px
+ * @indices: (out caller-allocates) (array length=n_indices): the points found, in no
+ *   order that means anything, the same each time
+ * @n_indices: room in @indices; points beyond it are left out
+ *
+ * Finds points for less than it takes to sort them.
+ *
+ * Returns: number of points found, 0 near a place that is no number
+ *
+ * Since: 0.1
+ */
+guint
+cloth_point_grid_within (const ClothPointGrid * grid, gfloat x, gfloat y,
+    gfloat radius, gint * indices, guint n_indices)
+{
+  const gfloat limit = radius * radius;
+  gint left, right, top, bottom;
+  guint n = 0;
+
+  cell_of (grid, x - radius, y - radius, &left, &top);
+  cell_of (grid, x + radius, y + radius, &right, &bottom);
+  for (gint row = top; row <= bottom; row++) {
+    for (gint column = left; column <= right; column++) {
+      for (gint m = grid->cells[row * grid->columns + column]; m >= 0;
+          m = grid->points[m].next) {
+        const gfloat dx = grid->points[m].x - x, dy = grid->points[m].y - y;
+
+        if (n == n_indices)
+          return n;
+        indices[n] = m;
+        n += dx * dx + dy * dy <= limit;
+      }
+    }
+  }
+  return n;
+}

@@ -28,6 +28,8 @@ void cloth_point_grid_clear (ClothPointGrid * grid, gint width, gint height,
 void cloth_point_grid_add (ClothPointGrid * grid, gfloat x, gfloat y);
 guint cloth_point_grid_nearest (const ClothPointGrid * grid, gfloat x,
     gfloat y, gfloat radius, ClothNear * near, guint n_near);
+guint cloth_point_grid_within (const ClothPointGrid * grid, gfloat x, gfloat y,
+    gfloat radius, gint * indices, guint n_indices);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothPointGrid, cloth_point_grid_free)
 G_END_DECLS

@@ -9,6 +9,8 @@
 #include "gst/pattern/marray.h"
 #include "gst/rig/rigfile.h"
 #include "gst/vision/dot.h"
+#include "gst/vision/dotcolour.h"
+#include "gst/vision/lattice.h"
 #include "tests/common/picture.h"
 
 #define FOLDER TEST_DATA "/dots_ring8/"
@@ -198,6 +200,65 @@ keep (const gchar * name, const ClothImage * luma, const ClothDot * dots,
   test_picture_keep (name, &picture->image);
 }
 
+/* Labels of all cameras. */
+static guint total_right, total_wrong;
+
+/* Labels of the dots: a label is right where the dot lies where it says. */
+static void
+check_labels (const ClothDot * dots, guint n, const Truth * truth)
+{
+  const gint n_all = array->columns * array->rows;
+  const ClothDotLabelParams params = cloth_dot_label_default_params ();
+  g_autofree gfloat *likelihoods = g_new (gfloat, n * (guint) array->n_colours);
+  g_autofree gboolean *labelled = g_new0 (gboolean, n_all);
+  g_autoptr (ClothDotLabeller) labeller = NULL;
+  g_autoptr (GError) error = NULL;
+  guint8 rgb[CLOTH_M_ARRAY_MAX_COLOURS][3];
+  guint n_labels, right = 0, wrong = 0, seen = 0, found = 0, behind = 0;
+  const ClothDotLabel *labels;
+  ClothDotColourModel model;
+
+  labeller = cloth_dot_labeller_new (array->columns, array->rows,
+      array->n_colours, array->matrix, &error);
+  g_assert_no_error (error);
+  for (gint k = 0; k < array->n_colours; k++)
+    memcpy (rgb[k], array->colours[k].rgb, sizeof rgb[k]);
+  cloth_dot_colour_model_init (&model, array->n_colours,
+      (const guint8 (*)[3]) rgb, 0.2126f, 0.0722f);
+  cloth_dot_colour_model_classify (&model, dots, n, likelihoods);
+  cloth_dot_labeller_run (labeller, &params, dots, n, likelihoods);
+  labels = cloth_dot_labeller_get_labels (labeller, &n_labels);
+  g_assert_cmpuint (n_labels, ==, n);
+  for (guint i = 0; i < n; i++) {
+    const gint k = labels[i].row * array->columns + labels[i].column;
+
+    if (labels[i].column < 0)
+      continue;
+    g_assert_false (labelled[k]);
+    labelled[k] = hypot (dots[i].x - truth[k].x, dots[i].y - truth[k].y) < 1.5;
+    if (labelled[k])
+      right++;
+    else
+      /* What hides a part of it moves a dot's centre. */
+      wrong += truth[k].clear || hypot (dots[i].x - truth[k].x,
+          dots[i].y - truth[k].y) > 4;
+    behind += labelled[k] && labels[i].mirrored
+        != (truth[k].slope[0][0] * truth[k].slope[1][1]
+        < truth[k].slope[0][1] * truth[k].slope[1][0]);
+  }
+  for (gint k = 0; k < n_all; k++) {
+    seen += truth[k].clear && truth[k].angle <= STEEPEST;
+    found += truth[k].clear && truth[k].angle <= STEEPEST && labelled[k];
+  }
+  g_test_message ("labels: %u right, %u wrong; of %u in clear view below 70 "
+      "degrees %.2f%%", right, wrong, seen, 100.0 * found / seen);
+  g_assert_cmpuint (100 * wrong, <=, right + wrong);
+  g_assert_cmpuint (100 * found, >=, 95 * seen);
+  g_assert_cmpuint (behind, ==, 0);
+  total_right += right;
+  total_wrong += wrong;
+}
+
 static void
 test_camera (gconstpointer data)
 {
@@ -295,8 +356,16 @@ test_camera (gconstpointer data)
   g_assert_cmpfloat_with_epsilon (shift[1], 0.000125, 0.00001);
   g_assert_cmpfloat (sqrt (rest / (2 * good)), <, 0.07);
   g_assert_cmpuint (ghosts, ==, 0);
+  check_labels (dots, n, truth);
   gst_video_frame_unmap (&frame);
   gst_sample_unref (sample);
+}
+
+static void
+test_all_labels (void)
+{
+  g_assert_cmpuint (total_right, >, 2000);
+  g_assert_cmpuint (1000 * total_wrong, <=, 5 * (total_right + total_wrong));
 }
 
 int
@@ -321,6 +390,7 @@ main (int argc, char **argv)
 
     g_test_add_data_func (name, GUINT_TO_POINTER (i), test_camera);
   }
+  g_test_add_func ("/dot-ring/labels-of-all", test_all_labels);
   failed = g_test_run ();
   g_free (mesh);
   cloth_rig_free (rig);
