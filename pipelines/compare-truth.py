@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Prints how far a captured checkerboard lies from the true surface of the cloth.
+"""Prints how far a captured pattern lies from the true surface of the cloth.
 
   compare-truth.py TAKE --truth vertices.npy --grid COLUMNSxROWS --pattern pattern.json
 
@@ -17,14 +17,20 @@ import sys
 import numpy
 
 
+def pitch_of(pattern):
+    return pattern['pitch_m' if pattern['pattern'] == 'm-array' else 'square_m']
+
+
 def true_corners(truth, columns, rows, pattern):
-    """[frames][vertices][3]: where each corner of the board truly is."""
+    """[frames][vertices][3]: where each corner of a board, each dot of an M-array, truly is."""
+    dots = pattern['pattern'] == 'm-array'
+    pitch = pitch_of(pattern)
     frames = truth.shape[0]
     grid = truth.reshape(frames, rows, columns, 3).astype(float)
-    across, down = numpy.meshgrid(numpy.arange(pattern['columns'] + 1),
-                                  numpy.arange(pattern['rows'] + 1))
-    u = pattern['origin_uv_m'][0] + across.ravel() * pattern['square_m']
-    v = pattern['origin_uv_m'][1] + down.ravel() * pattern['square_m']
+    across, down = numpy.meshgrid(numpy.arange(pattern['columns'] + (not dots)),
+                                  numpy.arange(pattern['rows'] + (not dots)))
+    u = pattern['origin_uv_m'][0] + across.ravel() * pitch
+    v = pattern['origin_uv_m'][1] + down.ravel() * pitch
     x = u / pattern['cloth_m'][0] * (columns - 1)
     y = v / pattern['cloth_m'][1] * (rows - 1)
     left = numpy.clip(x.astype(int), 0, columns - 2)
@@ -65,7 +71,7 @@ def main():
 
     table = [
         ('frames', '%d of %d' % (len(found), len(corners))),
-        ('corners located', '%d of %d (%.1f%%)'
+        ('vertices located', '%d of %d (%.1f%%)'
          % (seen.sum(), len(corners) * corners.shape[1], 100 * share)),
         ('error, RMS', '%.3f mm' % rms),
         ('error, RMS along x, y, z', '%.3f, %.3f, %.3f mm' % tuple(axes)),
@@ -80,7 +86,7 @@ def main():
         table.append(('error, RMS predicted', '%.3f mm (true / predicted = %.2f)'
                       % (predicted, rms / predicted)))
     # Half a square off is no noise: a corner was taken for another one.
-    wrong = (distance > 500 * pattern['square_m']).sum()
+    wrong = (distance > 500 * pitch_of(pattern)).sum()
     table.append(('corners mistaken for others', '%d' % wrong))
     width = max(len(name) for name, _ in table)
     for name, value in table:

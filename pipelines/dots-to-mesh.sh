@@ -1,0 +1,61 @@
+#!/bin/bash
+# From films of a cloth with coloured dots to its animated mesh, in the formats of other
+# programs: finds and names the dots of every film, puts them into space, fills the holes.
+#
+#   pipelines/dots-to-mesh.sh RIG PATTERN OUTPUT CAMERA=FILM CAMERA=FILM...
+#
+# RIG is the rig.json, PATTERN the pattern.json, OUTPUT the folder that is filled, each
+# CAMERA a name in the rig. Films of one rig start together.
+# SPDX-License-Identifier: LGPL-2.1-or-later
+set -euo pipefail
+if [ $# -lt 5 ]; then
+  sed -n 's/^#   //p' "$0" >&2
+  exit 2
+fi
+. "$(dirname "$0")/environment.sh"
+rig=$1 pattern=$2 out=$3
+shift 3
+
+heading () { printf '\n== %s\n' "$*"; }
+
+# The first film tells how far all are.
+films=()
+progress=(! progressreport name=filmed update-freq=2)
+for film in "$@"; do
+  camera=${film%%=*} file=${film#*=}
+  if [ "$camera" = "$film" ] || [ ! -f "$file" ]; then
+    echo "$film: no film; write CAMERA=FILE" >&2
+    exit 2
+  fi
+  films+=(filesrc "location=$file" ! decodebin "${progress[@]}" ! videoconvert
+      ! video/x-raw,format=I420 ! dotlabel "pattern=$pattern" "camera=$camera"
+      ! queue ! join.)
+  progress=()
+done
+
+mkdir -p "$out"
+heading "Films to a mesh"
+gst-launch-1.0 -q triangulate name=join "rig=$rig" "pattern=$pattern" ! meshfill \
+    ! meshsink "location=$out/cloth.take" "${films[@]}"
+
+heading "The mesh in other formats"
+written=()
+for ending in obj ply usda pvd c3d csv; do
+  written+=(t. ! queue ! meshsink "location=$out/cloth.$ending")
+done
+gst-launch-1.0 -q meshsrc "location=$out/cloth.take" ! progressreport name=written \
+    update-freq=2 ! tee name=t "${written[@]}"
+# of short clips only
+gst-launch-1.0 -q meshsrc "location=$out/cloth.take" ! meshsink "location=$out/cloth.glb" ||
+    echo "cloth.glb was not written, the rest was"
+
+heading "Done"
+cat <<END
+  take (NumPy, meshsrc)    $out/cloth.take
+  Blender and most others  $out/cloth.obj with cloth.pc2; $out/cloth_00000.ply and so on
+  players on the web       $out/cloth.glb
+  USD                      $out/cloth.usda
+  ParaView                 $out/cloth.pvd
+  motion capture           $out/cloth.c3d
+  spreadsheets             $out/cloth.csv
+END
