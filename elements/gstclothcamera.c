@@ -689,7 +689,7 @@ gst_cloth_camera_class_init (GstClothCameraClass * klass)
       "Name in the rig of the camera that films; may be left out when the rig has "
       "one camera");
   install_string (object_class, PROP_PATTERN, "pattern", "Pattern",
-      "Pattern file (pattern.json) that is printed on the cloth");
+      "Pattern file (pattern.json) that is printed on the cloth: squares or coloured dots");
   install_string (object_class, PROP_TEXTURE, "texture", "Texture",
       "Picture file that is printed over the whole cloth, instead of a pattern");
   install_string (object_class, PROP_EFFECTS, "effects", "Effects",

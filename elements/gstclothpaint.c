@@ -16,27 +16,62 @@
 /* A file that gives no picture for so long is broken. */
 #define PATIENCE (30 * GST_SECOND)
 
+static gdouble
+pattern_scale (const gdouble cloth_m[2])
+{
+  return PATTERN_PX / MAX (cloth_m[0], cloth_m[1]);
+}
+
+/* Dots on black cloth, in levels proportional to the light that they reflect. */
+static ClothTexture *
+draw_dots (const ClothMArray * array, gfloat light[256], GError ** error)
+{
+  guint8 inks[CLOTH_M_ARRAY_MAX_COLOURS][3];
+
+  for (gint i = 0; i < array->n_colours; i++)
+    for (gint c = 0; c < 3; c++)
+      inks[i][c] = (guint8) (255 * cloth_light_from_level
+          (array->colours[i].rgb[c]) + 0.5f);
+  for (gint i = 0; i < 256; i++)
+    light[i] = (gfloat) i / 255;
+  return cloth_m_array_texture (array, pattern_scale (array->cloth_m),
+      (guint8) (255 * BLACK + 0.5f), (const guint8 (*)[3]) inks, error);
+}
+
+static ClothTexture *
+draw_squares (const ClothPattern * pattern, gfloat light[256], GError ** error)
+{
+  for (gint i = 0; i < 256; i++)
+    light[i] = BLACK + (WHITE - BLACK) * (gfloat) i / 255;
+  return cloth_pattern_texture (pattern, pattern_scale (pattern->cloth_m), 0,
+      255, error);
+}
+
 ClothPaint *
 gst_cloth_paint_pattern (const gchar * path, GError ** error)
 {
-  g_autoptr (ClothPattern) pattern = cloth_pattern_load (path, error);
+  g_autoptr (GError) fault = NULL;
+  g_autoptr (ClothMArray) array = cloth_m_array_load (path, &fault);
+  g_autoptr (ClothPattern) pattern = NULL;
   g_autoptr (ClothTexture) texture = NULL;
   const gdouble origin[2] = { 0, 0 };
   gdouble size[2];
   gfloat light[256];
 
-  if (!pattern)
-    return NULL;
-  texture = cloth_pattern_texture (pattern, PATTERN_PX
-      / MAX (pattern->cloth_m[0], pattern->cloth_m[1]), 0, 255, error);
+  if (array)
+    texture = draw_dots (array, light, error);
+  else if (!g_error_matches (fault, CLOTH_PATTERN_ERROR,
+          CLOTH_PATTERN_ERROR_UNSUPPORTED))
+    g_propagate_error (error, g_steal_pointer (&fault));
+  else if ((pattern = cloth_pattern_load (path, error)))
+    texture = draw_squares (pattern, light, error);
   if (!texture)
     return NULL;
-  for (gint i = 0; i < 256; i++)
-    light[i] = BLACK + (WHITE - BLACK) * (gfloat) i / 255;
   size[0] = texture->width / texture->px_per_m;
   size[1] = texture->height / texture->px_per_m;
   return cloth_paint_new (texture->data, texture->width, texture->height,
-      texture->width, 1, light, origin, size);
+      texture->n_channels * texture->width, (guint) texture->n_channels, light,
+      origin, size);
 }
 
 ClothPaint *

@@ -84,7 +84,7 @@ struct _GstDotLabel
   ClothDotLabeller *labeller;
   ClothDotColourModel colours;
   gboolean knows_colours;       /* those of the print */
-  gboolean adapted;             /* to this camera */
+  gboolean adapted;             /* the colours, to this camera: they gave labels */
   GstVideoColorMatrix matrix;   /* that @colours are made for */
   GArray *likelihoods;          /* gfloat, the array's n_colours for each dot */
   GArray *dots;                 /* GstClothDot */
@@ -248,24 +248,47 @@ gst_dot_label_prepare_colours (GstDotLabel * self, const GstVideoInfo * info)
       (const guint8 (*)[3]) rgb, (gfloat) kr, (gfloat) kb);
 }
 
-/* How likely each dot's colour is under each of the pattern's. */
-static const gfloat *
-gst_dot_label_classify (GstDotLabel * self, const ClothDotImage * image,
-    const ClothDot * dots, guint n, GstDotLabelColours by, gboolean learn)
+/* Classifies and labels; returns how many dots have a label. */
+static guint
+gst_dot_label_try (GstDotLabel * self, const ClothDotImage * image,
+    const ClothDot * dots, guint n, GstDotLabelColours by,
+    const ClothDotLabelParams * params)
 {
-  const guint n_colours = (guint) self->array->n_colours;
   gfloat *likelihoods;
+  const ClothDotLabel *labels;
+  guint n_labels, n_labelled = 0;
 
-  /* a few dots may be of any colour */
-  if (learn && !self->adapted && n >= WINDOW * n_colours)
-    self->adapted = cloth_dot_colour_model_adapt (&self->colours, dots, n);
-  g_array_set_size (self->likelihoods, n * n_colours);
+  g_array_set_size (self->likelihoods, n * (guint) self->array->n_colours);
   likelihoods = (gfloat *) self->likelihoods->data;
   if (by == GST_DOT_LABEL_COLOURS_HUE)
     cloth_dot_colour_model_vote (&self->colours, image, dots, n, likelihoods);
   else
     cloth_dot_colour_model_classify (&self->colours, dots, n, likelihoods);
-  return likelihoods;
+  cloth_dot_labeller_run (self->labeller, params, dots, n, likelihoods);
+  labels = cloth_dot_labeller_get_labels (self->labeller, &n_labels);
+  for (guint k = 0; k < n_labels; k++)
+    n_labelled += labels[k].column >= 0;
+  return n_labelled;
+}
+
+/* Until anything has been labelled, a picture that the print's own colours say nothing of
+ * is looked at once more, in the light that makes its dots likeliest. */
+static guint
+gst_dot_label_adapt (GstDotLabel * self, const ClothDotImage * image,
+    const ClothDot * dots, guint n, GstDotLabelColours by,
+    const ClothDotLabelParams * params)
+{
+  const ClothDotColourModel before = self->colours;
+  guint n_labelled = 0;
+
+  /* a few dots may be of any colour */
+  if (n < WINDOW * (guint) self->array->n_colours
+      || !cloth_dot_colour_model_adapt (&self->colours, dots, n))
+    return 0;
+  n_labelled = gst_dot_label_try (self, image, dots, n, by, params);
+  if (n_labelled == 0)
+    self->colours = before;
+  return n_labelled;
 }
 
 /* What the labels tell of the camera's colours is for the next picture. */
@@ -371,9 +394,13 @@ gst_dot_label_analyse (GstClothFilter * filter,
 
   cloth_dot_detector_run (self->detector, &dot_params, &image, CLOTH_SIMD_BEST);
   dots = cloth_dot_detector_get_dots (self->detector, &n);
-  likelihoods = gst_dot_label_classify (self, &image, dots, n, colours_by,
-      learn);
-  cloth_dot_labeller_run (self->labeller, &label_params, dots, n, likelihoods);
+  n_labelled = gst_dot_label_try (self, &image, dots, n, colours_by,
+      &label_params);
+  if (n_labelled == 0 && learn && !self->adapted)
+    n_labelled = gst_dot_label_adapt (self, &image, dots, n, colours_by,
+        &label_params);
+  self->adapted |= n_labelled > 0;
+  likelihoods = (const gfloat *) self->likelihoods->data;
   labels = cloth_dot_labeller_get_labels (self->labeller, &n_labels);
   if (learn)
     gst_dot_label_learn (self, dots, labels, n);
@@ -396,7 +423,6 @@ gst_dot_label_analyse (GstClothFilter * filter,
     for (guint c = 0; c < n_colours; c++)
       dot->log_likelihood[c] = MAX (likelihoods[k * n_colours + c],
           LEAST_LIKELIHOOD);
-    n_labelled += dot->column >= 0;
   }
   gst_buffer_add_cloth_dots_meta (frame->buffer,
       gst_cloth_dots_new (frame->camera, frame->sequence,

@@ -4,6 +4,7 @@
 #include "gst/pattern/texture.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Points a side that a pixel under the edge of a dot is sampled with. */
 #define DOT_SAMPLES 16
@@ -107,6 +108,33 @@ dots_white (const ClothPattern * pattern, gdouble x, gdouble y, gdouble w)
   return white;
 }
 
+static ClothTexture *
+texture_new (const gdouble cloth_m[2], gdouble px_per_m, gint n_channels,
+    GError ** error)
+{
+  ClothTexture *texture;
+  gdouble size[2];
+
+  for (gint i = 0; i < 2; i++) {
+    size[i] = MAX (1, floor (cloth_m[i] * px_per_m + 0.5));
+    if (!(px_per_m > 0 && size[i] <= CLOTH_TEXTURE_MAX_PX)) {
+      g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_VALUE,
+          "a texture of %g pixels per metre for %g m of cloth: use more than 0, "
+          "and at most %d pixels a side", px_per_m, cloth_m[i],
+          CLOTH_TEXTURE_MAX_PX);
+      return NULL;
+    }
+  }
+  texture = g_new0 (ClothTexture, 1);
+  texture->width = (gint) size[0];
+  texture->height = (gint) size[1];
+  texture->n_channels = n_channels;
+  texture->px_per_m = px_per_m;
+  texture->data = g_malloc ((gsize) n_channels * (gsize) texture->width
+      * (gsize) texture->height);
+  return texture;
+}
+
 /**
  * cloth_pattern_texture:
  * @pattern: a pattern
@@ -130,25 +158,13 @@ cloth_pattern_texture (const ClothPattern * pattern, gdouble px_per_m,
     guint8 black, guint8 white, GError ** error)
 {
   ClothTexture *texture;
-  gdouble size[2], w;
+  gdouble w;
 
   if (!cloth_pattern_check (pattern, error))
     return NULL;
-  for (gint i = 0; i < 2; i++) {
-    size[i] = MAX (1, floor (pattern->cloth_m[i] * px_per_m + 0.5));
-    if (!(px_per_m > 0 && size[i] <= CLOTH_TEXTURE_MAX_PX)) {
-      g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_VALUE,
-          "a texture of %g pixels per metre for %g m of cloth: use more than 0, "
-          "and at most %d pixels a side", px_per_m, pattern->cloth_m[i],
-          CLOTH_TEXTURE_MAX_PX);
-      return NULL;
-    }
-  }
-  texture = g_new0 (ClothTexture, 1);
-  texture->width = (gint) size[0];
-  texture->height = (gint) size[1];
-  texture->px_per_m = px_per_m;
-  texture->data = g_malloc ((gsize) texture->width * (gsize) texture->height);
+  texture = texture_new (pattern->cloth_m, px_per_m, 1, error);
+  if (!texture)
+    return NULL;
   w = 1 / (px_per_m * pattern->square_m);
   for (gint j = 0; j < texture->height; j++) {
     gdouble y = j * w - pattern->origin_uv_m[1] / pattern->square_m;
@@ -164,6 +180,60 @@ cloth_pattern_texture (const ClothPattern * pattern, gdouble px_per_m,
 
       texture->data[(gsize) j * (gsize) texture->width + (gsize) i] =
           (guint8) (black + part * (white - black) + 0.5);
+    }
+  }
+  return texture;
+}
+
+/**
+ * cloth_m_array_texture:
+ * @array: an array of dots
+ * @px_per_m: scale, pixels per metre
+ * @ground: value of the cloth between the dots, in all three channels
+ * @inks: red, green and blue of each of the array's colours
+ * @error: return location
+ *
+ * Draws the flat cloth in colour. Each pixel is the mean over its area, within 1/256: give
+ * and take values that are proportional to light.
+ *
+ * Returns: (transfer full): a texture of three channels and round(cloth_m·px_per_m)
+ *   pixels, at least 1 each way; free with cloth_texture_free(). %NULL with
+ *   %CLOTH_PATTERN_ERROR_VALUE when a side would exceed %CLOTH_TEXTURE_MAX_PX
+ *
+ * Since: 0.1
+ */
+ClothTexture *
+cloth_m_array_texture (const ClothMArray * array, gdouble px_per_m,
+    guint8 ground, const guint8 (*inks)[3], GError ** error)
+{
+  const gdouble radius = array->diameter_m / 2 * px_per_m;
+  ClothTexture *texture;
+
+  if (!cloth_m_array_check (array, error))
+    return NULL;
+  texture = texture_new (array->cloth_m, px_per_m, 3, error);
+  if (!texture)
+    return NULL;
+  memset (texture->data, ground, 3 * (gsize) texture->width
+      * (gsize) texture->height);
+  for (gint dot = 0; dot < array->rows * array->columns; dot++) {
+    const guint8 *ink = inks[array->matrix[dot]];
+    const gdouble x = (array->origin_uv_m[0]
+        + dot % array->columns * array->pitch_m) * px_per_m;
+    const gdouble y = (array->origin_uv_m[1]
+        + dot / array->columns * array->pitch_m) * px_per_m;
+    const gint left = MAX (0, (gint) floor (x - radius));
+    const gint top = MAX (0, (gint) floor (y - radius));
+
+    for (gint j = top; j < texture->height && j < y + radius; j++) {
+      for (gint i = left; i < texture->width && i < x + radius; i++) {
+        guint8 *to = texture->data + 3 * ((gsize) j * (gsize) texture->width
+            + (gsize) i);
+        const gdouble share = dot_share (i, j, 1, x, y, radius);
+
+        for (gint c = 0; c < 3; c++)
+          to[c] = (guint8) (to[c] + share * (ink[c] - to[c]) + 0.5);
+      }
     }
   }
   return texture;

@@ -2,7 +2,7 @@
  * by marrayunique.py.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/pattern/marray.h"
+#include "gst/pattern/texture.h"
 
 #include <glib/gstdio.h>
 #include <math.h>
@@ -276,6 +276,70 @@ test_load_refused (void)
   g_assert_true (g_str_has_prefix (error->message, TEST_DATA));
 }
 
+/* Each dot has its ink, the area of a disc, and its centre of gravity at its place. */
+static void
+test_texture (void)
+{
+  static const guint8 inks[5][3] = { {250, 20, 40}, {90, 250, 30}, {30, 60,
+      250}, {200, 220, 40}, {120, 30, 230}
+  };
+  const gdouble scale = 1713;   /* dots lie anywhere in their pixels */
+  g_autoptr (ClothMArray) array = made (6, 5, 4);
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothTexture) texture =
+      cloth_m_array_texture (array, scale, 10, inks, &error);
+
+  g_assert_no_error (error);
+  g_assert_cmpint (texture->n_channels, ==, 3);
+  g_assert_cmpint (texture->width, ==, (gint) (0.12 * scale + 0.5));
+  g_assert_cmpint (texture->height, ==, (gint) (0.10 * scale + 0.5));
+  for (gint dot = 0; dot < 30; dot++) {
+    const gdouble u = (0.01 + 0.02 * (dot % 6)) * scale;
+    const gdouble v = (0.01 + 0.02 * (dot / 6)) * scale;
+    const gdouble area = G_PI * pow (0.0065 * scale, 2);
+    const guint8 *ink = inks[array->matrix[dot]];
+
+    for (gint c = 0; c < 3; c++) {
+      gdouble sum = 0, x = 0, y = 0;
+
+      for (gint j = (gint) (v - 16); j < MIN (v + 16, texture->height); j++)
+        for (gint i = (gint) (u - 16); i < MIN (u + 16, texture->width); i++) {
+          const gint at = 3 * (j * texture->width + i) + c;
+          const gdouble value = texture->data[at] - 10;
+
+          sum += value;
+          x += value * (i + 0.5);
+          y += value * (j + 0.5);
+        }
+      g_assert_cmpfloat_with_epsilon (sum / (ink[c] - 10), area, 0.01 * area);
+      g_assert_cmpfloat_with_epsilon (x / sum, u, 0.02);
+      g_assert_cmpfloat_with_epsilon (y / sum, v, 0.02);
+    }
+  }
+}
+
+static void
+test_texture_refused (void)
+{
+  static const gdouble scales[] = { 0, -1, NAN, INFINITY, 1e6 };
+  static const guint8 inks[5][3];
+  g_autoptr (ClothMArray) array = made (6, 5, 4);
+
+  for (guint i = 0; i < G_N_ELEMENTS (scales); i++) {
+    g_autoptr (GError) error = NULL;
+
+    g_assert_null (cloth_m_array_texture (array, scales[i], 0, inks, &error));
+    g_assert_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_VALUE);
+  }
+  array->matrix[3] = 5;
+  {
+    g_autoptr (GError) error = NULL;
+
+    g_assert_null (cloth_m_array_texture (array, 1000, 0, inks, &error));
+    g_assert_nonnull (error);
+  }
+}
+
 int
 main (int argc, char **argv)
 {
@@ -289,5 +353,7 @@ main (int argc, char **argv)
   g_test_add_func ("/m-array/read", test_read);
   g_test_add_func ("/m-array/read-refused", test_read_refused);
   g_test_add_func ("/m-array/load-refused", test_load_refused);
+  g_test_add_func ("/m-array/texture", test_texture);
+  g_test_add_func ("/m-array/texture-refused", test_texture_refused);
   return g_test_run ();
 }
