@@ -17,6 +17,9 @@ static guint8 matrix[N], other[N];
 
 #define PITCH 20.0
 
+/* Of the dots, in pitches. */
+static gdouble diameter = 0.65;
+
 /* A picture of the array. */
 typedef struct
 {
@@ -37,9 +40,10 @@ static void
 add_part (Scene * scene, gint first, gint last, const gdouble map[4], gdouble x,
     gdouble y, gdouble noise, ClothRandom * random)
 {
+  const gdouble r = diameter / 4;
+
   for (gint k = 0; k < N; k++) {
     const gint column = k % COLUMNS, row = k / COLUMNS;
-    const gdouble r = 0.325 / 2;
     ClothDot *dot = &scene->dots[scene->n];
 
     if (column < first || column >= last)
@@ -189,6 +193,26 @@ test_views (void)
         g_assert_cmpint (labels[i].mirrored, ==,
             map[0] * map[3] - map[1] * map[2] < 0);
   }
+}
+
+/* Other prints have smaller or larger dots. */
+static void
+test_diameters (void)
+{
+  static const gdouble diameters[] = { 0.45, 0.55, 0.75, 0.9 };
+
+  for (guint k = 0; k < G_N_ELEMENTS (diameters); k++) {
+    static const gdouble oblique[4] = { 9, 3, -1, 24 };
+    g_autoptr (ClothDotLabeller) labeller = new_labeller (matrix);
+    g_autofree Scene *scene = NULL;
+    ClothRandom random;
+
+    diameter = diameters[k];
+    cloth_random_init (&random, k);
+    scene = make_scene (oblique, 0.2, 0, &random);
+    g_assert_cmpint (count_labels (labeller, scene).right, ==, N);
+  }
+  diameter = 0.65;
 }
 
 /* Places that are off by a twentieth of the pitch, of colours that are often wrong, of
@@ -519,6 +543,7 @@ main (int argc, char **argv)
   if (!cloth_m_array_generate (COLUMNS, ROWS, COLOURS, &code, other, NULL))
     return 1;
   g_test_add_func ("/lattice/views", test_views);
+  g_test_add_func ("/lattice/diameters", test_diameters);
   g_test_add_func ("/lattice/hard-pictures", test_hard_pictures);
   g_test_add_func ("/lattice/fold", test_fold);
   g_test_add_func ("/lattice/twice", test_twice);
