@@ -35,6 +35,8 @@
  * within what bounds. */
 #define ENOUGH 50
 #define LEARNING 0.3f
+/* What is left of how dots looked, picture by picture. */
+#define FADING 0.9f
 /* Dots of wrong colours are labelled more rarely. */
 #define MISSED 1.5f
 #define LEAST_ERROR 0.03f
@@ -582,7 +584,9 @@ cloth_lattice_compare (ClothDotLabeller * labeller)
 {
   guint n = 0, n_wrong = 0;
 
-  memset (labeller->looks, 0, sizeof labeller->looks);
+  for (gint a = 0; a < labeller->n_colours; a++)
+    for (gint b = 0; b < labeller->n_colours; b++)
+      labeller->looks[a][b] *= FADING;
   for (gint k = 0; k < labeller->columns * labeller->rows; k++) {
     const guint8 colour = labeller->matrix[k];
     guint look;
@@ -590,7 +594,7 @@ cloth_lattice_compare (ClothDotLabeller * labeller)
     if (labeller->holders[k] < 0)
       continue;
     look = cloth_lattice_look (labeller, (guint) labeller->holders[k]);
-    labeller->looks[colour][look]++;
+    labeller->looks[colour][look] += 1;
     n++;
     n_wrong += look != colour;
   }

@@ -92,7 +92,7 @@ struct _ClothDotLabeller
   ClothLatticeFormer *former;   /* of each label */
   gfloat error;                 /* share of dots of another colour than their label's;
                                  * 0: not known yet */
-  guint looks[CLOTH_DOT_COLOURS_MAX][CLOTH_DOT_COLOURS_MAX];
+  gfloat looks[CLOTH_DOT_COLOURS_MAX][CLOTH_DOT_COLOURS_MAX];
 
   GHashTable *windows;          /* by their colours; for the paper's way only */
 

@@ -14,7 +14,7 @@
 #define GREATEST_EDGE 400
 /* Dots of each of two colours that must look like the other to say that they are
  * swapped. */
-#define SWAPPED 5
+#define SWAPPED 5.0f
 
 /**
  * cloth_dot_label_default_params:
@@ -236,7 +236,7 @@ cloth_dot_labeller_get_labels (const ClothDotLabeller * labeller,
  * @a: (out): a colour
  * @b: (out): another
  *
- * Looks for two colours of which most dots of the last picture look like the other one,
+ * Looks for two colours of which most dots of the last pictures look like the other one,
  * going by their labels: the pattern's description has them in the wrong order. A label
  * does not hang on the colour of its own dot alone, so that some are found all the same.
  *
@@ -252,7 +252,7 @@ cloth_dot_labeller_find_swap (const ClothDotLabeller * labeller, gint * a,
 
   for (*a = 0; *a < n; (*a)++) {
     for (*b = *a + 1; *b < n; (*b)++) {
-      guint all[2] = { 0 };
+      gfloat all[2] = { 0 };
 
       for (gint k = 0; k < n; k++) {
         all[0] += labeller->looks[*a][k];
