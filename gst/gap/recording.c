@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/gap/bridge.h"
 #include "gst/gap/diagnose.h"
 #include "gst/math/linalg.h"
 
@@ -24,33 +25,6 @@ G_DEFINE_QUARK (cloth - gap - error - quark, cloth_gap_error)
     guint vertex)
 {
   return of + 3 * ((gsize) frame * r->n + vertex);
-}
-
-/* Even motion between the frames before and after that saw the vertex; the nearest one at
- * the ends. FALSE when none did. */
-static gboolean
-bridge (ClothRecording * r, guint vertex)
-{
-  gint last = -1;
-
-  for (guint frame = 0; frame < r->n_frames; frame++) {
-    if (r->seen[(gsize) frame * r->n + vertex] == 0.)
-      continue;
-    for (guint f = (guint) (last + 1); f < frame; f++) {
-      const gdouble *b = place (r, r->y, frame, vertex);
-      const gdouble *a = last < 0 ? b : place (r, r->y, (guint) last, vertex);
-      gdouble share = last < 0 ? 0. : (r->times[f] - r->times[last]) /
-          (r->times[frame] - r->times[last]);
-
-      for (guint k = 0; k < 3; k++)
-        place (r, r->y, f, vertex)[k] = a[k] + share * (b[k] - a[k]);
-    }
-    last = (gint) frame;
-  }
-  for (guint f = (guint) (last + 1); last >= 0 && f < r->n_frames; f++)
-    memcpy (place (r, r->y, f, vertex), place (r, r->y, (guint) last, vertex),
-        3 * sizeof (gdouble));
-  return last >= 0;
 }
 
 /**
@@ -237,17 +211,6 @@ load (ClothRecording * r, ClothTake * take, GError ** error)
   return TRUE;
 }
 
-/* A vertex that was never seen stays where the scene starts it; its weight is 0. */
-static void
-bridge_all (ClothRecording * r)
-{
-  for (guint v = 0; v < r->n; v++)
-    if (!bridge (r, v))
-      for (guint frame = 0; frame < r->n_frames; frame++)
-        memcpy (place (r, r->y, frame, v), r->scene->positions + 3 * (gsize) v,
-            3 * sizeof (gdouble));
-}
-
 /**
  * cloth_recording_new:
  * @take: a take
@@ -285,7 +248,7 @@ cloth_recording_new (ClothTake * take, GError ** error)
   r->sigma = info->noise_sigma_m;
   if (!(r->sigma > 0.))
     r->sigma = estimate_sigma (r);
-  bridge_all (r);
+  cloth_recording_bridge (r);
   if (!check_scale (r, error))
     return NULL;
   differentiate (r);

@@ -16,7 +16,7 @@ G_BEGIN_DECLS
  * @n_frames: number of frames
  * @times: their times, s
  * @sigma: standard deviation of a coordinate, m
- * @y: positions, [n_frames][n][3], m; bridged in time where nothing was seen
+ * @y: positions, [n_frames][n][3], m; bridged where nothing was seen
  * @velocity: their derivative, m/s
  * @seen: 1 where a vertex was seen, else 0, [n_frames][n]
  *
