@@ -31,6 +31,9 @@ diagnosis_clear (ClothDiagnosis * d)
   g_free (d->all);
   for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++)
     cloth_gap_normal_free (d->normals[g]);
+  g_free (d->chaos_precisions);
+  g_free (d->nuisances);
+  g_free (d->nuisance_precisions);
   g_free (d->sound);
   g_free (d->blocks);
   for (guint i = 0; i < d->n_chosen; i++)
@@ -165,7 +168,7 @@ study_baselines (ClothDiagnosis * d, GError ** error)
   if (cloth_diagnosis_has_signatures (d)) {
     for (guint i = d->n_takes; i < d->studies->len; i++)
       if (!cloth_study_linearise (cloth_diagnosis_study (d, i), d->candidates,
-              d->model, NULL, 0, &d->study, error))
+              d->model, d->all, d->candidates->n_free, &d->study, error))
         return FALSE;
     return TRUE;
   }
@@ -195,8 +198,8 @@ study_other_model (ClothDiagnosis * d, GError ** error)
         &d->study);
 
     g_ptr_array_add (studies, s);
-    if (cloth_study_linearise (s, d->candidates, other, NULL, 0, &d->study,
-            &diverged))
+    if (cloth_study_linearise (s, d->candidates, other, d->all,
+            d->candidates->n_free, &d->study, &diverged))
       continue;
     /* one that these numbers make no cloth of tells nothing */
     if (g_error_matches (diverged, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_MODEL))

@@ -1,4 +1,4 @@
-/* A diagnosis under way; private to diagnose.c, name.c and judge.c.
+/* A diagnosis under way; private to diagnose.c, name.c, rest.c and judge.c.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -10,8 +10,8 @@ G_BEGIN_DECLS
 
 /* An effect is accepted when its evidence is this at least, when it makes blocks better
  * that it was not estimated on, and when it removes this share of the gap's variance, or,
- * where a signature is taken off, of the residual's in those blocks while the gap, in
- * which the simulator's own error is too, is hardly larger. */
+ * where a signature is taken off, when the gap, in which the simulator's own error is too,
+ * is hardly larger. */
 #define CLOTH_DIAGNOSIS_LEAST_EVIDENCE 10.
 #define CLOTH_DIAGNOSIS_LEAST_SHRINK 0.1
 /* What remains is no more than noise when it is below this many floors (variance). */
@@ -33,17 +33,20 @@ typedef struct
   gdouble *precisions;          /* of the free numbers */
   guint *all;                   /* every direction */
   ClothGapNormal *normals[CLOTH_STUDY_N_GAINS];
+  guint n_chaos;                /* of its columns, behind those of the directions */
+  gdouble *chaos_precisions;
+  guint *nuisances;             /* of the test: what is fitted along, and its precisions */
+  gdouble *nuisance_precisions;
   gboolean *sound;
   gboolean *blocks;             /* that estimates come from */
   guint n_blocks;
-  /* Effects taken in, one by one: candidates, by how much they make the residual better
-   * in blocks they were not estimated on, the models with them, deviations of the
+  /* Effects taken in, one by one: candidates, the models with them, deviations of the
    * directions in them */
   guint chosen[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
-  gdouble improvements[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
   ClothModel *with[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
   gdouble sigmas[CLOTH_DIAGNOSIS_MAX_ACCEPTED][CLOTH_DIAGNOSIS_MAX_ACCEPTED][CLOTH_EFFECT_MAX_PARAMETERS];
   guint n_chosen;
+  gboolean unknown;             /* whether something is there, whatever it is */
   gdouble least_evidence;
   gdouble *null_evidence;       /* of each candidate, on the baselines */
   /* of the running part of the work: its share of all, what of it each simulation gets */
@@ -98,6 +101,9 @@ gboolean cloth_diagnosis_linearise (ClothDiagnosis * d, guint first, guint end,
 void cloth_diagnosis_make_test (ClothDiagnosis * d, guint begin, guint end,
     ClothGapTest * test);
 gboolean cloth_diagnosis_name (ClothDiagnosis * d, GError ** error);
+
+/* What remains. */
+gboolean cloth_diagnosis_is_unknown (const ClothDiagnosis * d);
 
 /* How much, and the verdict. */
 gboolean cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error);

@@ -132,15 +132,13 @@ fill_shrink (ClothGapResult * result, gdouble before, gdouble after,
   result->shrink.value = (before - after) / (before - floor);
 }
 
-/* Whether the effect that was taken in as the i-th is large enough to speak of. */
+/* Whether an effect is large enough to speak of. Where a signature is taken off, the
+ * evidence has said so: the gap holds the simulator's own error too. */
 static gboolean
-matters (const ClothDiagnosis * d, guint i, gdouble before, gdouble after)
+matters (const ClothDiagnosis * d, gdouble before, gdouble after)
 {
-  const gdouble share = CLOTH_DIAGNOSIS_LEAST_SHRINK;
-
-  return after < (1. - share) * before
-      || (cloth_diagnosis_has_signatures (d) && d->improvements[i] > share
-      && after < HARDLY_LARGER * before);
+  return after < (1. - CLOTH_DIAGNOSIS_LEAST_SHRINK) * before
+      || (cloth_diagnosis_has_signatures (d) && after < HARDLY_LARGER * before);
 }
 
 /* How large the gap is before and after, on the hold-outs if there are any; the floor on
@@ -175,7 +173,7 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
     cloth_gap_extents_free (extents, n);
     return FALSE;
   }
-  while (best + 1 < n && matters (d, best, v[best], v[best + 1]))
+  while (best + 1 < n && matters (d, v[best], v[best + 1]))
     best++;
   while (d->n_chosen > best)
     cloth_model_free (d->with[--d->n_chosen]);
@@ -249,7 +247,7 @@ cloth_diagnosis_decide (ClothDiagnosis * d)
 
   if (d->n_chosen)
     accept_effects (d);
-  if (above)
+  if (above || (!d->n_chosen && d->unknown))
     r->verdict = CLOTH_GAP_UNEXPLAINED;
   else if (!d->n_chosen)
     r->verdict = CLOTH_GAP_NO_GAP;

@@ -15,11 +15,13 @@
 /* What two takes of one motion share of the simulator's own error is taken off; this
  * part of its power stays. */
 #define SIGNATURE_LEFT 0.1
+/* What chaos does counts as so many times the variance of its samples, which are few. */
+#define CHAOS_WIDTH 10.
 /* So often what a leading effect leaves in a take is what weighs, and all are tested
  * anew. */
 #define N_SHARPEN 2
 /* Evidence is divided by this before it becomes a probability. */
-#define TEMPERATURE 4.
+#define TEMPERATURE 1.5
 /* Effects this close in probability to the best, or with derivatives this alike, are
  * reported together. */
 #define AMBIGUOUS_PROBABILITY 0.1
@@ -47,6 +49,16 @@ moves_alike (const ClothRecording * a, const ClothRecording * b)
   return TRUE;
 }
 
+/* What one of them did not see counts in neither: what is taken off must be what is there. */
+static void
+see_alike (ClothRecording * a, ClothRecording * b)
+{
+  gsize all = (gsize) a->n_frames * a->n;
+
+  for (gsize i = 0; i < all; i++)
+    a->seen[i] = b->seen[i] = a->seen[i] * b->seen[i];
+}
+
 /* Each study's signature: that of the baseline that moves alike, if there is one. */
 void
 cloth_diagnosis_find_signatures (ClothDiagnosis * d)
@@ -58,6 +70,15 @@ cloth_diagnosis_find_signatures (ClothDiagnosis * d)
       if (i != k && moves_alike (study->recording,
               cloth_diagnosis_study (d, k)->recording))
         study->signature = cloth_diagnosis_study (d, k);
+  }
+  /* twice, for those that share a baseline */
+  for (guint i = 0; i < 2 * d->studies->len; i++) {
+    const ClothStudy *study = cloth_diagnosis_study (d, i % d->studies->len);
+
+    for (guint k = d->n_takes; study->signature && k < d->studies->len; k++)
+      if (cloth_diagnosis_study (d, k) == study->signature)
+        see_alike (cloth_diagnosis_recording (d, i % d->studies->len),
+            cloth_diagnosis_recording (d, k));
   }
 }
 
@@ -90,20 +111,24 @@ append (ClothGapNormal * to, ClothGapNormal * from)
   return to;
 }
 
-/* Mean square that the simulator itself is off by: of the baselines, else of the take
- * with the model fitted to it. */
+/* Mean square that the simulator itself is off by, in the noise of a take: of the
+ * baselines, else of the takes with the model fitted to them. */
 static ClothGapPower *
-mismatch_of (const ClothDiagnosis * d, guint gain)
+mismatch_of (const ClothDiagnosis * d, guint take, guint gain)
 {
+  gdouble unit = cloth_diagnosis_study (d, take)->features->sigma;
   guint begin = d->options->n_baselines ? d->n_takes : 0;
   guint n = d->options->n_baselines ? d->options->n_baselines : d->n_takes;
   ClothGapPower *mean = NULL;
 
   for (guint i = begin; i < begin + n; i++) {
-    ClothGapPower *power =
-        cloth_gap_power_new (cloth_diagnosis_study (d, i)->features,
-        cloth_diagnosis_study (d, i)->z[gain]);
+    const ClothStudy *study = cloth_diagnosis_study (d, i);
+    gdouble scale = study->features->sigma / unit;
+    ClothGapPower *power = cloth_gap_power_new (study->features,
+        study->z[gain]);
 
+    for (guint k = 0; k < power->n; k++)
+      power->values[k] *= scale * scale;
     if (!mean) {
       mean = power;
       continue;
@@ -115,17 +140,37 @@ mismatch_of (const ClothDiagnosis * d, guint gain)
   return mean;
 }
 
+/* The columns of the directions and behind them, where no other take has any, those of the
+ * chaos in a take and in its signature. */
+static gdouble *
+columns_of (const ClothDiagnosis * d, guint take, guint gain, guint before)
+{
+  const ClothStudy *s = cloth_diagnosis_study (d, take), *signature =
+      s->signature;
+  gsize size = s->features->size, own = s->n_chaos * size;
+  gdouble *columns = g_new0 (gdouble, (s->m + d->n_chaos) * size + 1);
+  gdouble *chaos = columns + (s->m + before) * size;
+
+  memcpy (columns, s->columns[gain], s->m * size * sizeof (gdouble));
+  memcpy (chaos, s->chaos[gain], own * sizeof (gdouble));
+  for (gsize k = 0; signature && k < signature->n_chaos * size; k++)
+    chaos[own + k] = cloth_study_signature_scale (s) *
+        signature->chaos[gain][k];
+  return columns;
+}
+
 /* The signature of the simulator's own error in a take is that of a baseline that moves
  * alike: taken off, a tenth of its power is left to doubt. */
 static ClothGapNormal *
-normal_of (const ClothDiagnosis * d, guint take, guint gain,
-    const ClothGapPower * mismatch)
+normal_of (const ClothDiagnosis * d, guint take, guint gain, guint before)
 {
   const ClothStudy *s = cloth_diagnosis_study (d, take);
   g_autofree gdouble *z = cloth_study_residual (s, gain);
+  g_autofree gdouble *columns = columns_of (d, take, gain, before);
+  g_autoptr (ClothGapPower) mismatch = mismatch_of (d, take, gain);
 
   return cloth_gap_normal_new (s->features, s->left[gain] ? s->left[gain] :
-      mismatch, 1., z, s->columns[gain], s->m);
+      mismatch, 1., z, columns, s->m + d->n_chaos);
 }
 
 /* The power left in the takes that a baseline's signature is taken off, once @score's
@@ -133,10 +178,9 @@ normal_of (const ClothDiagnosis * d, guint take, guint gain,
 static void
 find_left (ClothDiagnosis * d, const ClothGapScore * score)
 {
-  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
-    g_autoptr (ClothGapPower) mismatch = mismatch_of (d, g);
-
+  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++)
     for (guint i = 0; i < d->n_takes; i++) {
+      g_autoptr (ClothGapPower) mismatch = mismatch_of (d, i, g);
       ClothStudy *s = cloth_diagnosis_study (d, i);
       g_autofree gdouble *z = cloth_study_residual (s, g);
       gsize size = s->features->size;
@@ -160,7 +204,6 @@ find_left (ClothDiagnosis * d, const ClothGapScore * score)
       cloth_gap_power_free (s->left[g]);
       s->left[g] = left;
     }
-  }
 }
 
 gboolean
@@ -181,17 +224,88 @@ cloth_diagnosis_linearise (ClothDiagnosis * d, guint first, guint end,
   return TRUE;
 }
 
+/* How many columns of chaos a study has, and those of its signature. */
+static guint
+count_chaos (const ClothStudy * study)
+{
+  return study->n_chaos + (study->signature ? study->signature->n_chaos : 0);
+}
+
+/* The precisions of the chaos in the studies from begin to end. */
+static void
+list_chaos (ClothDiagnosis * d, guint begin, guint end)
+{
+  gdouble width = CHAOS_WIDTH * d->study.overdispersion;
+
+  d->n_chaos = 0;
+  for (guint i = begin; i < end; i++)
+    d->n_chaos += count_chaos (cloth_diagnosis_study (d, i));
+  g_free (d->chaos_precisions);
+  d->chaos_precisions = g_new (gdouble, d->n_chaos + 1);
+  for (guint i = begin, k = 0; i < end; i++) {
+    const ClothStudy *s = cloth_diagnosis_study (d, i);
+
+    for (guint c = 0; c < count_chaos (s); c++)
+      d->chaos_precisions[k++] = (c < s->n_chaos ? s->n_chaos :
+          s->signature->n_chaos) / width;
+  }
+}
+
 /* The normal equations of the studies from begin to end, as they weigh now. */
 static void
 make_normals (ClothDiagnosis * d, guint begin, guint end, ClothGapTest * test)
 {
   for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
-    g_autoptr (ClothGapPower) mismatch = mismatch_of (d, g);
+    guint before = 0;
 
     g_clear_pointer (&d->normals[g], cloth_gap_normal_free);
-    for (guint i = begin; i < end; i++)
-      d->normals[g] = append (d->normals[g], normal_of (d, i, g, mismatch));
+    for (guint i = begin; i < end; i++) {
+      d->normals[g] = append (d->normals[g], normal_of (d, i, g, before));
+      before += count_chaos (cloth_diagnosis_study (d, i));
+    }
     test->normals[g] = d->normals[g];
+  }
+}
+
+/* The free numbers and the directions of what is taken in, with the precisions of their
+ * priors; those of effects count @width times as wide. Returns how many. */
+static guint
+list_taken_in (const ClothDiagnosis * d, gdouble width,
+    guint * directions, gdouble * precisions)
+{
+  guint m = d->candidates->n_free;
+
+  memcpy (directions, d->all, m * sizeof *directions);
+  memcpy (precisions, d->precisions, m * sizeof *precisions);
+  for (guint c = 0; c < d->n_chosen; c++)
+    for (guint k = 0; k < cloth_diagnosis_chosen (d, c)->n; k++, m++) {
+      gdouble prior;
+
+      directions[m] = cloth_diagnosis_chosen (d, c)->first + k;
+      prior = cloth_gap_candidates_direction (d->candidates,
+          directions[m])->prior;
+      precisions[m] = 1. / (width * width * prior * prior);
+    }
+  return m;
+}
+
+/* The free numbers, what is taken in, and chaos are fitted along when effects are tested. */
+static void
+list_nuisances (ClothDiagnosis * d, ClothGapTest * test)
+{
+  guint n = d->candidates->directions->len;
+
+  g_free (d->nuisances);
+  g_free (d->nuisance_precisions);
+  d->nuisances = g_new (guint, n + d->n_chaos + 1);
+  d->nuisance_precisions = g_new (gdouble, n + d->n_chaos + 1);
+  test->nuisances = d->nuisances;
+  test->precisions = d->nuisance_precisions;
+  test->n_nuisances = list_taken_in (d, 1., d->nuisances,
+      d->nuisance_precisions);
+  for (guint k = 0; k < d->n_chaos; k++) {
+    d->nuisances[test->n_nuisances] = n + k;
+    d->nuisance_precisions[test->n_nuisances++] = d->chaos_precisions[k];
   }
 }
 
@@ -202,6 +316,7 @@ cloth_diagnosis_make_test (ClothDiagnosis * d, guint begin, guint end,
 {
   guint m = d->candidates->directions->len;
 
+  list_chaos (d, begin, end);
   make_normals (d, begin, end, test);
   for (guint k = 0; k < m; k++) {
     d->sound[k] = TRUE;
@@ -215,11 +330,9 @@ cloth_diagnosis_make_test (ClothDiagnosis * d, guint begin, guint end,
     d->blocks[b] = TRUE;
   test->candidates = d->candidates;
   test->blocks = d->blocks;
-  test->nuisances = d->all;
-  test->precisions = d->precisions;
-  test->n_nuisances = d->candidates->n_free;
   test->overdispersion = d->study.overdispersion;
   test->sound = d->sound;
+  list_nuisances (d, test);
 }
 
 static void
@@ -288,28 +401,6 @@ is_chosen (const ClothDiagnosis * d, const ClothEffect * effect)
   return FALSE;
 }
 
-/* The free numbers and the directions of what is taken in, with the precisions of their
- * priors; those of effects count @width times as wide. Returns how many. */
-static guint
-list_taken_in (const ClothDiagnosis * d, gdouble width, guint * directions,
-    gdouble * precisions)
-{
-  guint m = d->candidates->n_free;
-
-  memcpy (directions, d->all, m * sizeof *directions);
-  memcpy (precisions, d->precisions, m * sizeof *precisions);
-  for (guint c = 0; c < d->n_chosen; c++)
-    for (guint k = 0; k < cloth_diagnosis_chosen (d, c)->n; k++, m++) {
-      gdouble prior;
-
-      directions[m] = cloth_diagnosis_chosen (d, c)->first + k;
-      prior = cloth_gap_candidates_direction (d->candidates,
-          directions[m])->prior;
-      precisions[m] = 1. / (width * width * prior * prior);
-    }
-  return m;
-}
-
 /* Fits what is taken in; @score says where the last one begins. The free numbers may give
  * a little. */
 static gboolean
@@ -375,39 +466,26 @@ find_asked (const ClothDiagnosis * d, const GArray * scores)
   return NULL;
 }
 
-/* What is taken in is fitted along when the others are tested. */
-static void
-free_chosen (const ClothDiagnosis * d, ClothGapTest * test, guint * nuisances,
-    gdouble * precisions)
-{
-  test->n_nuisances = list_taken_in (d, 1., nuisances, precisions);
-  test->nuisances = nuisances;
-  test->precisions = precisions;
-}
-
 /* Takes in effects one by one, as long as one is asked for: the next one by the same
  * derivatives first, and only then by new ones. */
 gboolean
 cloth_diagnosis_name (ClothDiagnosis * d, GError ** error)
 {
-  const guint n = d->candidates->directions->len + 1;
-  g_autofree guint *nuisances = g_new (guint, n);
-  g_autofree gdouble *precisions = g_new (gdouble, n);
   g_autoptr (GArray) scores = NULL;
   const ClothGapScore *asked;
   ClothGapTest test = { {NULL} };
 
   find_left (d, NULL);
   cloth_diagnosis_make_test (d, 0, d->n_takes, &test);
+  d->unknown = cloth_diagnosis_is_unknown (d);
   scores = rank (d, &test);
   fill_effects (d, &test, scores);
   while ((asked = find_asked (d, scores))) {
     const ClothGapScore next = *asked;
     gdouble from = 0.45 + 0.13 * d->n_chosen;
 
-    d->improvements[d->n_chosen] = next.improvement;
     d->chosen[d->n_chosen++] = next.candidate;
-    free_chosen (d, &test, nuisances, precisions);
+    list_nuisances (d, &test);
     g_array_unref (scores);
     scores = rank (d, &test);
     asked = find_asked (d, scores);
@@ -421,7 +499,6 @@ cloth_diagnosis_name (ClothDiagnosis * d, GError ** error)
             d->with[d->n_chosen - 1], from + 0.05, from + 0.13, error))
       return FALSE;
     cloth_diagnosis_make_test (d, 0, d->n_takes, &test);
-    free_chosen (d, &test, nuisances, precisions);
     g_array_unref (scores);
     scores = rank (d, &test);
   }

@@ -55,6 +55,7 @@ forget (ClothStudy * study)
   for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
     g_clear_pointer (&study->z[g], g_free);
     g_clear_pointer (&study->columns[g], g_free);
+    g_clear_pointer (&study->chaos[g], g_free);
   }
   g_clear_pointer (&study->sound, g_free);
 }
@@ -78,6 +79,20 @@ cloth_study_free (ClothStudy * study)
 }
 
 /**
+ * cloth_study_signature_scale:
+ * @study: a study with a signature
+ *
+ * Returns: what the signature's features are to be multiplied by: each recording's are in
+ *   multiples of its own noise
+ * Since: 0.1
+ */
+gdouble
+cloth_study_signature_scale (const ClothStudy * study)
+{
+  return study->signature->features->sigma / study->features->sigma;
+}
+
+/**
  * cloth_study_residual:
  * @study: a study
  * @gain: which of the gains
@@ -90,9 +105,10 @@ cloth_study_residual (const ClothStudy * study, guint gain)
 {
   gsize size = study->features->size;
   gdouble *z = g_memdup2 (study->z[gain], size * sizeof (gdouble));
+  gdouble scale = study->signature ? cloth_study_signature_scale (study) : 0.;
 
   for (gsize k = 0; study->signature && k < size; k++)
-    z[k] -= study->signature->z[gain][k];
+    z[k] -= scale * study->signature->z[gain][k];
   return z;
 }
 
@@ -202,33 +218,49 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Moved, moved_clear)
           moved->memory + ((i - m - 1) * CLOTH_STUDY_N_GAINS + g) * size;
 }
 
-/* Where the model is, seen from both sides: what chaos did to the model's own run is in
- * its residual and must not be in the columns too, or each of them would seem to explain
- * some of it. */
+/* Where the model is, seen from both sides: the mean of such pairs of runs. What chaos did
+ * to the model's own run is in its residual and must not be in the columns too, or each of
+ * them would seem to explain some of it. How the pairs differ shows what chaos does. */
 static void
-find_reference (Moved * moved, const ClothStudy * study)
+find_reference (Moved * moved, ClothStudy * study)
 {
   gsize size = study->features->size;
+  g_autofree guint *pairs = g_new (guint, study->m + 1);
   guint n = 0;
 
+  for (guint i = 0; i < study->m; i++)
+    if (moved->back[i] && moved->sound[moved->back[i]] && moved->sound[i + 1])
+      pairs[n++] = i;
+  study->n_chaos = n ? n + 1 : 0;
   moved->reference = g_new0 (gdouble, CLOTH_STUDY_N_GAINS * size);
-  for (guint i = 0; i < study->m; i++) {
-    guint back = moved->back[i];
+  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
+    gdouble *reference = moved->reference + g * size;
+    gdouble *chaos = g_new0 (gdouble, study->n_chaos * size + 1);
 
-    if (!back || !moved->sound[back] || !moved->sound[i + 1])
+    study->chaos[g] = chaos;
+    for (guint p = 0; p < n; p++, chaos += size) {
+      const gdouble *before = moved->z[moved->back[pairs[p]] *
+          CLOTH_STUDY_N_GAINS + g];
+      const gdouble *behind = moved->z[(pairs[p] + 1) * CLOTH_STUDY_N_GAINS +
+          g];
+
+      for (gsize k = 0; k < size; k++) {
+        chaos[k] = 0.5 * (before[k] + behind[k]);
+        reference[k] += (chaos[k] - reference[k]) / (p + 1);
+      }
+    }
+    if (!n) {
+      memcpy (reference, study->z[g], size * sizeof (gdouble));
       continue;
-    n++;
-    for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
-      const gdouble *before = moved->z[back * CLOTH_STUDY_N_GAINS + g];
-      const gdouble *behind = moved->z[(i + 1) * CLOTH_STUDY_N_GAINS + g];
-      gdouble *to = moved->reference + g * size;
+    }
+    memcpy (chaos, study->z[g], size * sizeof (gdouble));
+    for (gsize k = 0; k < size; k++) {
+      gdouble mean = (n * reference[k] + chaos[k]) / (n + 1);
 
-      for (gsize k = 0; k < size; k++)
-        to[k] += (0.5 * (before[k] + behind[k]) - to[k]) / n;
+      for (guint p = 0; p <= n; p++)
+        study->chaos[g][p * size + k] -= mean;
     }
   }
-  for (guint g = 0; g < CLOTH_STUDY_N_GAINS && !n; g++)
-    memcpy (moved->reference + g * size, study->z[g], size * sizeof (gdouble));
 }
 
 /**
@@ -241,8 +273,8 @@ find_reference (Moved * moved, const ClothStudy * study)
  * @options: how
  * @error: #ClothSimError, or #ClothGapError when the model itself can't be simulated
  *
- * Fills @study's z, columns and sound. Directions along which the simulation fails have
- * columns of zeros. Free numbers are moved to both sides; the others' columns are
+ * Fills @study's z, columns, sound and chaos. Directions along which the simulation fails
+ * have columns of zeros. Free numbers are moved to both sides; the others' columns are
  * differences from the mean of these.
  *
  * Since: 0.1

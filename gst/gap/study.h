@@ -43,6 +43,9 @@ typedef struct {
  * @columns: its derivatives, [directions][features], per gain
  * @m: number of directions
  * @sound: which of them could be simulated
+ * @chaos: what chaos does to the residual: runs that should be equal to first order less
+ *   their mean, [n_chaos][features], per gain
+ * @n_chaos: how many
  * @signature: (nullable): the study whose residual is what the simulator itself is off
  *   by here too; the caller's
  * @left: (nullable): the power that is left to doubt, per gain; a fit weighs by it instead
@@ -57,6 +60,8 @@ typedef struct _ClothStudy {
   gdouble *columns[CLOTH_STUDY_N_GAINS];
   guint m;
   gboolean *sound;
+  gdouble *chaos[CLOTH_STUDY_N_GAINS];
+  guint n_chaos;
   const struct _ClothStudy *signature;
   ClothGapPower *left[CLOTH_STUDY_N_GAINS];
 } ClothStudy;
@@ -65,6 +70,7 @@ void cloth_study_options_init (ClothStudyOptions * options);
 ClothStudy *cloth_study_new (const ClothRecording * recording,
     const ClothStudyOptions * options);
 void cloth_study_free (ClothStudy * study);
+gdouble cloth_study_signature_scale (const ClothStudy * study);
 gdouble *cloth_study_residual (const ClothStudy * study, guint gain);
 gboolean cloth_study_linearise (ClothStudy * study,
     const ClothGapCandidates * candidates, const ClothModel * model,
