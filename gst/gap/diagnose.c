@@ -246,7 +246,7 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
     return FALSE;
   if (!d->options->n_baselines && !study_other_model (d, error))
     return FALSE;
-  if (!cloth_diagnosis_name (d, error) || !cloth_diagnosis_measure (d, error))
+  if (!cloth_diagnosis_select (d, error) || !cloth_diagnosis_measure (d, error))
     return FALSE;
   cloth_diagnosis_decide (d);
   return TRUE;

@@ -1,4 +1,4 @@
-/* A diagnosis under way; private to diagnose.c, name.c, rest.c and judge.c.
+/* A diagnosis under way; private to diagnose.c, name.c, select.c, rest.c and judge.c.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -16,6 +16,10 @@ G_BEGIN_DECLS
 #define CLOTH_DIAGNOSIS_LEAST_SHRINK 0.1
 /* What remains is no more than noise when it is below this many floors (variance). */
 #define CLOTH_DIAGNOSIS_BAND 2.25
+/* Deviations of parameters are told so many times as wide as the fit takes them for, which
+ * knows nothing of the simulator's own error: then about nine of ten of the blind benchmark's
+ * intervals of 95% hold the truth. */
+#define CLOTH_DIAGNOSIS_SIGMA_WIDTH 3.
 /* Most effects that are accepted. */
 #define CLOTH_DIAGNOSIS_MAX_ACCEPTED 3
 
@@ -46,6 +50,9 @@ typedef struct
   ClothModel *with[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
   gdouble sigmas[CLOTH_DIAGNOSIS_MAX_ACCEPTED][CLOTH_DIAGNOSIS_MAX_ACCEPTED][CLOTH_EFFECT_MAX_PARAMETERS];
   guint n_chosen;
+  /* those that others made needless */
+  guint dropped[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
+  guint n_dropped;
   gboolean unknown;             /* whether something is there, whatever it is */
   gdouble least_evidence;
   gdouble *null_evidence;       /* of each candidate, on the baselines */
@@ -100,7 +107,16 @@ gboolean cloth_diagnosis_linearise (ClothDiagnosis * d, guint first, guint end,
     const ClothModel * model, gdouble from, gdouble to, GError ** error);
 void cloth_diagnosis_make_test (ClothDiagnosis * d, guint begin, guint end,
     ClothGapTest * test);
-gboolean cloth_diagnosis_name (ClothDiagnosis * d, GError ** error);
+void cloth_diagnosis_make_normals (ClothDiagnosis * d, guint begin, guint end,
+    ClothGapTest * test);
+void cloth_diagnosis_list_nuisances (ClothDiagnosis * d, ClothGapTest * test);
+guint cloth_diagnosis_list_taken_in (const ClothDiagnosis * d, gdouble width,
+    guint * directions, gdouble * precisions);
+void cloth_diagnosis_find_left (ClothDiagnosis * d, const ClothGapScore * score);
+GArray *cloth_diagnosis_rank (ClothDiagnosis * d, ClothGapTest * test);
+void cloth_diagnosis_fill_effects (ClothDiagnosis * d,
+    const ClothGapTest * test, const GArray * scores);
+gboolean cloth_diagnosis_select (ClothDiagnosis * d, GError ** error);
 
 /* What remains. */
 gboolean cloth_diagnosis_is_unknown (const ClothDiagnosis * d);

@@ -230,7 +230,7 @@ accept_effects (ClothDiagnosis * d)
       guint p = candidate->parameters[k];
 
       cloth_model_get (d->with[last], direction->name, &e.values[p], NULL);
-      e.sigmas[p] = d->sigmas[last][c][k];
+      e.sigmas[p] = CLOTH_DIAGNOSIS_SIGMA_WIDTH * d->sigmas[last][c][k];
     }
     g_array_remove_index (effects, i);
     g_array_prepend_val (effects, e);

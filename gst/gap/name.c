@@ -1,4 +1,4 @@
-/* Naming: which effects the residual asks for.
+/* Naming: how much the residual asks for each effect.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <math.h>
@@ -6,10 +6,6 @@
 
 #include "gst/gap/diagnosis.h"
 
-/* Simulations of a fit with effects. */
-#define N_REFIT 3
-/* Priors of effects in it are so many times as wide. */
-#define REFIT_WIDTH 2.
 /* Clamps that are never further apart than this move alike, m. */
 #define SAME_PATH 1e-3
 /* What two takes of one motion share of the simulator's own error is taken off; this
@@ -175,8 +171,8 @@ normal_of (const ClothDiagnosis * d, guint take, guint gain, guint before)
 
 /* The power left in the takes that a baseline's signature is taken off, once @score's
  * changes (NULL: none) are made: a tenth of the mismatch at least is left to doubt. */
-static void
-find_left (ClothDiagnosis * d, const ClothGapScore * score)
+void
+cloth_diagnosis_find_left (ClothDiagnosis * d, const ClothGapScore * score)
 {
   for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++)
     for (guint i = 0; i < d->n_takes; i++) {
@@ -252,9 +248,11 @@ list_chaos (ClothDiagnosis * d, guint begin, guint end)
 }
 
 /* The normal equations of the studies from begin to end, as they weigh now. */
-static void
-make_normals (ClothDiagnosis * d, guint begin, guint end, ClothGapTest * test)
+void
+cloth_diagnosis_make_normals (ClothDiagnosis * d, guint begin, guint end,
+    ClothGapTest * test)
 {
+  list_chaos (d, begin, end);
   for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
     guint before = 0;
 
@@ -269,8 +267,8 @@ make_normals (ClothDiagnosis * d, guint begin, guint end, ClothGapTest * test)
 
 /* The free numbers and the directions of what is taken in, with the precisions of their
  * priors; those of effects count @width times as wide. Returns how many. */
-static guint
-list_taken_in (const ClothDiagnosis * d, gdouble width,
+guint
+cloth_diagnosis_list_taken_in (const ClothDiagnosis * d, gdouble width,
     guint * directions, gdouble * precisions)
 {
   guint m = d->candidates->n_free;
@@ -290,8 +288,8 @@ list_taken_in (const ClothDiagnosis * d, gdouble width,
 }
 
 /* The free numbers, what is taken in, and chaos are fitted along when effects are tested. */
-static void
-list_nuisances (ClothDiagnosis * d, ClothGapTest * test)
+void
+cloth_diagnosis_list_nuisances (ClothDiagnosis * d, ClothGapTest * test)
 {
   guint n = d->candidates->directions->len;
 
@@ -301,8 +299,8 @@ list_nuisances (ClothDiagnosis * d, ClothGapTest * test)
   d->nuisance_precisions = g_new (gdouble, n + d->n_chaos + 1);
   test->nuisances = d->nuisances;
   test->precisions = d->nuisance_precisions;
-  test->n_nuisances = list_taken_in (d, 1., d->nuisances,
-      d->nuisance_precisions);
+  test->n_nuisances = cloth_diagnosis_list_taken_in (d, 1.,
+      d->nuisances, d->nuisance_precisions);
   for (guint k = 0; k < d->n_chaos; k++) {
     d->nuisances[test->n_nuisances] = n + k;
     d->nuisance_precisions[test->n_nuisances++] = d->chaos_precisions[k];
@@ -316,8 +314,7 @@ cloth_diagnosis_make_test (ClothDiagnosis * d, guint begin, guint end,
 {
   guint m = d->candidates->directions->len;
 
-  list_chaos (d, begin, end);
-  make_normals (d, begin, end, test);
+  cloth_diagnosis_make_normals (d, begin, end, test);
   for (guint k = 0; k < m; k++) {
     d->sound[k] = TRUE;
     for (guint i = begin; i < end; i++)
@@ -332,11 +329,11 @@ cloth_diagnosis_make_test (ClothDiagnosis * d, guint begin, guint end,
   test->blocks = d->blocks;
   test->overdispersion = d->study.overdispersion;
   test->sound = d->sound;
-  list_nuisances (d, test);
+  cloth_diagnosis_list_nuisances (d, test);
 }
 
-static void
-fill_effects (ClothDiagnosis * d, const ClothGapTest * test,
+void
+cloth_diagnosis_fill_effects (ClothDiagnosis * d, const ClothGapTest * test,
     const GArray * scores)
 {
   g_autofree const ClothGapScore **of = g_new (const ClothGapScore *,
@@ -373,7 +370,7 @@ fill_effects (ClothDiagnosis * d, const ClothGapTest * test,
     }
     for (guint k = 0; k < c->n; k++) {
       e->values[c->parameters[k]] += s->changes[k];
-      e->sigmas[c->parameters[k]] = s->sigmas[k];
+      e->sigmas[c->parameters[k]] = CLOTH_DIAGNOSIS_SIGMA_WIDTH * s->sigmas[k];
     }
   }
   /* the best, and those that can't be told from it */
@@ -392,54 +389,16 @@ fill_effects (ClothDiagnosis * d, const ClothGapTest * test,
   }
 }
 
-static gboolean
-is_chosen (const ClothDiagnosis * d, const ClothEffect * effect)
-{
-  for (guint i = 0; i < d->n_chosen; i++)
-    if (cloth_diagnosis_chosen (d, i)->effect == effect)
-      return TRUE;
-  return FALSE;
-}
-
-/* Fits what is taken in; @score says where the last one begins. The free numbers may give
- * a little. */
-static gboolean
-refit (ClothDiagnosis * d, const ClothGapScore * score, GError ** error)
-{
-  const guint now = d->n_chosen - 1, n = cloth_diagnosis_chosen (d, now)->n;
-  const ClothModel *before = now ? d->with[now - 1] : d->model;
-  const guint most = d->candidates->directions->len;
-  g_autofree guint *directions = g_new (guint, most);
-  g_autofree gdouble *precisions = g_new (gdouble, most);
-  g_autofree gdouble *sigmas = g_new0 (gdouble, most);
-  g_autofree gboolean *blocks = g_new (gboolean, d->n_blocks);
-  g_autoptr (ClothModel) start = NULL;
-  guint m = list_taken_in (d, REFIT_WIDTH, directions, precisions);
-
-  for (guint b = 0; b < d->n_blocks; b++)
-    blocks[b] = !cloth_diagnosis_is_held_out (d, b);
-  start = cloth_gap_candidates_move (d->candidates, before,
-      directions + m - n, score->changes, n);
-  d->with[now] = cloth_study_fit ((ClothStudy **) d->studies->pdata,
-      d->n_takes, d->candidates, start, directions, precisions, m, blocks,
-      N_REFIT, &d->study, sigmas, error);
-  m = d->candidates->n_free;
-  for (guint c = 0; c <= now; c++)
-    for (guint k = 0; k < cloth_diagnosis_chosen (d, c)->n; k++)
-      d->sigmas[now][c][k] = sigmas[m++];
-  return d->with[now] != NULL;
-}
-
 /* The effects, the likeliest first. What the leading one leaves shows better than what
  * was there before how much the simulator is off by in this take. */
-static GArray *
-rank (ClothDiagnosis * d, ClothGapTest * test)
+GArray *
+cloth_diagnosis_rank (ClothDiagnosis * d, ClothGapTest * test)
 {
   GArray *scores = cloth_gap_test_run (test);
 
   for (guint k = 0; k < N_SHARPEN && scores->len; k++) {
-    find_left (d, &g_array_index (scores, ClothGapScore, 0));
-    make_normals (d, 0, d->n_takes, test);
+    cloth_diagnosis_find_left (d, &g_array_index (scores, ClothGapScore, 0));
+    cloth_diagnosis_make_normals (d, 0, d->n_takes, test);
     g_array_unref (scores);
     scores = cloth_gap_test_run (test);
   }
@@ -450,57 +409,4 @@ rank (ClothDiagnosis * d, ClothGapTest * test)
   }
   g_array_sort (scores, cloth_gap_score_compare);
   return scores;
-}
-
-/* The likeliest effect that is not taken in yet, if it is asked for. */
-static const ClothGapScore *
-find_asked (const ClothDiagnosis * d, const GArray * scores)
-{
-  for (guint i = 0; i < scores->len; i++) {
-    const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
-
-    if (!is_chosen (d, cloth_diagnosis_candidate (d, s)->effect))
-      return s->evidence < d->least_evidence
-          || !(s->improvement > 0.) ? NULL : s;
-  }
-  return NULL;
-}
-
-/* Takes in effects one by one, as long as one is asked for: the next one by the same
- * derivatives first, and only then by new ones. */
-gboolean
-cloth_diagnosis_name (ClothDiagnosis * d, GError ** error)
-{
-  g_autoptr (GArray) scores = NULL;
-  const ClothGapScore *asked;
-  ClothGapTest test = { {NULL} };
-
-  find_left (d, NULL);
-  cloth_diagnosis_make_test (d, 0, d->n_takes, &test);
-  d->unknown = cloth_diagnosis_is_unknown (d);
-  scores = rank (d, &test);
-  fill_effects (d, &test, scores);
-  while ((asked = find_asked (d, scores))) {
-    const ClothGapScore next = *asked;
-    gdouble from = 0.45 + 0.13 * d->n_chosen;
-
-    d->chosen[d->n_chosen++] = next.candidate;
-    list_nuisances (d, &test);
-    g_array_unref (scores);
-    scores = rank (d, &test);
-    asked = find_asked (d, scores);
-    cloth_diagnosis_begin_part (d, from, from + 0.05, 0.4,
-        cloth_diagnosis_candidate (d, &next)->effect->id);
-    if (!refit (d, &next, error))
-      return FALSE;
-    if (!asked || d->n_chosen == CLOTH_DIAGNOSIS_MAX_ACCEPTED)
-      break;
-    if (!cloth_diagnosis_linearise (d, 0, d->n_takes,
-            d->with[d->n_chosen - 1], from + 0.05, from + 0.13, error))
-      return FALSE;
-    cloth_diagnosis_make_test (d, 0, d->n_takes, &test);
-    g_array_unref (scores);
-    scores = rank (d, &test);
-  }
-  return TRUE;
 }

@@ -98,9 +98,18 @@ count_features (const ClothGapTest * test, const ClothGapNormal * normal)
   return count;
 }
 
-static gdouble
-dispersion (const ClothGapTest * test, const ClothGapNormal * normal,
-    const ClothGapReduced * reduced)
+/**
+ * cloth_gap_test_dispersion:
+ * @test: what is tested
+ * @normal: normal equations of one gain
+ * @reduced: what is left of them
+ *
+ * Returns: how much more than the noise a square of the residual counts
+ * Since: 0.1
+ */
+gdouble
+cloth_gap_test_dispersion (const ClothGapTest * test,
+    const ClothGapNormal * normal, const ClothGapReduced * reduced)
 {
   return test->overdispersion * MAX (reduced->r / count_features (test,
           normal), LEAST_DISPERSION);
@@ -233,7 +242,7 @@ run_trial (const Trial * trial, ClothGapScore * score)
 
     if (!reduce (trial, normal, trial->test->blocks, &reduced))
       return FALSE;
-    phi = dispersion (trial->test, normal, &reduced);
+    phi = cloth_gap_test_dispersion (trial->test, normal, &reduced);
     if (!estimate (trial, &reduced, phi, changes, inverse, &log_det))
       return FALSE;
     for (guint i = 0; i < n; i++) {

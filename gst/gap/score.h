@@ -60,6 +60,8 @@ typedef struct {
 #define CLOTH_GAP_IDENTIFIABLE 0.05
 
 gint cloth_gap_score_compare (gconstpointer a, gconstpointer b);
+gdouble cloth_gap_test_dispersion (const ClothGapTest * test,
+    const ClothGapNormal * normal, const ClothGapReduced * reduced);
 GArray *cloth_gap_test_run (const ClothGapTest * test);
 gdouble cloth_gap_test_cosine (const ClothGapTest * test, guint one,
     guint other);

@@ -1,0 +1,257 @@
+/* Selection: effects are taken in one by one, and those go again that others make needless.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <math.h>
+#include <string.h>
+
+#include "gst/gap/diagnosis.h"
+#include "gst/math/linalg.h"
+
+/* Simulations of a fit with effects. */
+#define N_REFIT 3
+/* Priors of effects in it are so many times as wide. */
+#define REFIT_WIDTH 2.
+
+/* Whether an effect is taken in, or was and went again. */
+static gboolean
+is_settled (const ClothDiagnosis * d, const ClothEffect * effect)
+{
+  for (guint i = 0; i < d->n_chosen; i++)
+    if (cloth_diagnosis_chosen (d, i)->effect == effect)
+      return TRUE;
+  for (guint i = 0; i < d->n_dropped; i++)
+    if (g_array_index (d->candidates->list, ClothGapCandidate,
+            d->dropped[i]).effect == effect)
+      return TRUE;
+  return FALSE;
+}
+
+/* Fits what is taken in, from @start on. The free numbers may give a little. */
+static gboolean
+refit (ClothDiagnosis * d, const ClothModel * start, GError ** error)
+{
+  const guint now = d->n_chosen - 1, most = d->candidates->directions->len;
+  g_autofree guint *directions = g_new (guint, most);
+  g_autofree gdouble *precisions = g_new (gdouble, most);
+  g_autofree gdouble *sigmas = g_new0 (gdouble, most);
+  g_autofree gboolean *blocks = g_new (gboolean, d->n_blocks);
+  guint m = cloth_diagnosis_list_taken_in (d, REFIT_WIDTH, directions,
+      precisions);
+
+  for (guint b = 0; b < d->n_blocks; b++)
+    blocks[b] = !cloth_diagnosis_is_held_out (d, b);
+  d->with[now] = cloth_study_fit ((ClothStudy **) d->studies->pdata,
+      d->n_takes, d->candidates, start, directions, precisions, m, blocks,
+      N_REFIT, &d->study, sigmas, error);
+  m = d->candidates->n_free;
+  for (guint c = 0; c <= now; c++)
+    for (guint k = 0; k < cloth_diagnosis_chosen (d, c)->n; k++)
+      d->sigmas[now][c][k] = sigmas[m++];
+  return d->with[now] != NULL;
+}
+
+/* The model before the last effect with that effect so far from its null. */
+static ClothModel *
+move_to (const ClothDiagnosis * d, const gdouble * values)
+{
+  const ClothGapCandidate *c = cloth_diagnosis_chosen (d, d->n_chosen - 1);
+  guint directions[CLOTH_EFFECT_MAX_PARAMETERS];
+
+  for (guint k = 0; k < c->n; k++)
+    directions[k] = c->first + k;
+  return cloth_gap_candidates_move (d->candidates,
+      d->n_chosen > 1 ? d->with[d->n_chosen - 2] : d->model, directions,
+      values, c->n);
+}
+
+/* How far each direction of an effect that is taken in is from its null. */
+static void
+find_values (const ClothDiagnosis * d, guint chosen, gdouble * values)
+{
+  const ClothGapCandidate *c = cloth_diagnosis_chosen (d, chosen);
+
+  for (guint k = 0; k < c->n; k++) {
+    const ClothGapDirection *direction =
+        cloth_gap_candidates_direction (d->candidates, c->first + k);
+
+    cloth_model_get (d->with[d->n_chosen - 1], direction->name, &values[k],
+        NULL);
+    values[k] -= direction->centre;
+  }
+}
+
+/* How much the residual would ask for an effect that is taken in if it were not: the
+ * logarithm of its Bayes factor where the fit left the studies, all else fitted along.
+ * @first: of its columns there. */
+static gdouble
+find_need (const ClothDiagnosis * d, const ClothGapTest * test, guint chosen,
+    guint first)
+{
+  const ClothGapCandidate *c = cloth_diagnosis_chosen (d, chosen);
+  const ClothStudy *study = cloth_diagnosis_study (d, 0);
+  guint n = c->n, m = study->m + d->n_chaos, q = 0, others = 0;
+  g_autofree guint *nuisances = g_new (guint, m);
+  g_autofree gdouble *precisions = g_new (gdouble, m);
+  g_autofree guint *taken = g_new (guint, m);
+  g_autofree gdouble *of_taken = g_new (gdouble, m);
+  ClothGapReduced r;
+  guint directions[CLOTH_EFFECT_MAX_PARAMETERS];
+  gdouble values[CLOTH_EFFECT_MAX_PARAMETERS];
+  gdouble a[16], away[4], phi, need = -d->null_evidence[d->chosen[chosen]];
+
+  cloth_diagnosis_list_taken_in (d, 1., taken, of_taken);
+  for (guint k = 0; k < m; k++) {
+    if (k >= first && k < first + n) {
+      directions[k - first] = k;
+      continue;
+    }
+    precisions[q] = test->overdispersion * (k < study->m ? of_taken[k] :
+        d->chaos_precisions[others++]);
+    nuisances[q++] = k;
+  }
+  if (!cloth_gap_normal_reduce (test->normals[0], test->blocks, nuisances,
+          precisions, q, directions, n, &r))
+    return INFINITY;
+  phi = cloth_gap_test_dispersion (test, test->normals[0], &r);
+  find_values (d, chosen, values);
+  /* away: from the best place to the null */
+  for (guint i = 0; i < n; i++) {
+    const gdouble precision = of_taken[first + i];
+
+    away[i] = r.s[i] / phi + precision * values[i];
+    for (guint k = 0; k < n; k++)
+      a[i * n + k] = r.g[i * n + k] / phi + (i == k ? precision : 0.);
+    need += 0.5 * log (precision);
+  }
+  if (!cloth_cholesky_factor (n, a))
+    return INFINITY;
+  cloth_cholesky_solve (n, a, away);
+  for (guint i = 0; i < n; i++) {
+    need -= log (a[i * n + i]);
+    away[i] -= values[i];
+  }
+  for (guint i = 0; i < n; i++)
+    for (guint k = 0; k < n; k++)
+      need += 0.5 * away[i] * away[k] * (r.g[i * n + k] / phi + (i == k ?
+              of_taken[first + i] : 0.));
+  return need;
+}
+
+/* The effect that is needed least where the last fit left the studies. */
+static gdouble
+find_least_needed (ClothDiagnosis * d, guint * least)
+{
+  guint first = d->candidates->n_free;
+  gdouble lowest = INFINITY;
+  ClothGapTest test = {.blocks = d->blocks,.overdispersion =
+        d->study.overdispersion
+  };
+
+  cloth_diagnosis_make_normals (d, 0, d->n_takes, &test);
+  for (guint c = 0; c < d->n_chosen; c++) {
+    gdouble need = find_need (d, &test, c, first);
+
+    if (need < lowest) {
+      lowest = need;
+      *least = c;
+    }
+    first += cloth_diagnosis_chosen (d, c)->n;
+  }
+  return lowest;
+}
+
+/* Takes an effect out again and fits those after it without it. */
+static gboolean
+drop (ClothDiagnosis * d, guint which, GError ** error)
+{
+  const guint left = d->n_chosen - 1;
+  gdouble values[CLOTH_DIAGNOSIS_MAX_ACCEPTED][CLOTH_EFFECT_MAX_PARAMETERS];
+
+  d->dropped[d->n_dropped++] = d->chosen[which];
+  for (guint c = which; c < left; c++)
+    find_values (d, c + 1, values[c]);
+  for (guint c = which; c <= left; c++)
+    g_clear_pointer (&d->with[c], cloth_model_free);
+  memmove (d->chosen + which, d->chosen + which + 1,
+      (left - which) * sizeof *d->chosen);
+  for (d->n_chosen = which; d->n_chosen < left;) {
+    g_autoptr (ClothModel) start = NULL;
+
+    d->n_chosen++;
+    start = move_to (d, values[d->n_chosen - 1]);
+    if (!refit (d, start, error))
+      return FALSE;
+  }
+  return TRUE;
+}
+
+/* Effects that those after them make needless go. */
+static gboolean
+drop_needless (ClothDiagnosis * d, GError ** error)
+{
+  guint least = 0;
+
+  while (d->n_chosen > 1 && d->n_dropped < G_N_ELEMENTS (d->dropped)
+      && find_least_needed (d, &least) < d->least_evidence)
+    if (!drop (d, least, error))
+      return FALSE;
+  return TRUE;
+}
+
+/* The likeliest effect that is not settled yet, if it is asked for. */
+static const ClothGapScore *
+find_asked (const ClothDiagnosis * d, const GArray * scores)
+{
+  for (guint i = 0; i < scores->len; i++) {
+    const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
+
+    if (!is_settled (d, cloth_diagnosis_candidate (d, s)->effect))
+      return s->evidence < d->least_evidence
+          || !(s->improvement > 0.) ? NULL : s;
+  }
+  return NULL;
+}
+
+/* Takes in effects one by one, as long as one is asked for: the next one by the same
+ * derivatives first, and only then by new ones. */
+gboolean
+cloth_diagnosis_select (ClothDiagnosis * d, GError ** error)
+{
+  g_autoptr (GArray) scores = NULL;
+  const ClothGapScore *asked;
+  ClothGapTest test = { {NULL} };
+
+  cloth_diagnosis_find_left (d, NULL);
+  cloth_diagnosis_make_test (d, 0, d->n_takes, &test);
+  d->unknown = cloth_diagnosis_is_unknown (d);
+  scores = cloth_diagnosis_rank (d, &test);
+  cloth_diagnosis_fill_effects (d, &test, scores);
+  while ((asked = find_asked (d, scores))) {
+    g_autoptr (ClothModel) start = NULL;
+    const ClothGapScore next = *asked;
+    guint done = d->n_chosen + d->n_dropped, dropped = d->n_dropped;
+    gdouble from = 0.45 + 0.13 * MIN (done, CLOTH_DIAGNOSIS_MAX_ACCEPTED - 1);
+
+    d->chosen[d->n_chosen++] = next.candidate;
+    cloth_diagnosis_list_nuisances (d, &test);
+    g_array_unref (scores);
+    scores = cloth_diagnosis_rank (d, &test);
+    asked = find_asked (d, scores);
+    cloth_diagnosis_begin_part (d, from, from + 0.05, 0.4,
+        cloth_diagnosis_candidate (d, &next)->effect->id);
+    start = move_to (d, next.changes);
+    if (!refit (d, start, error) || !drop_needless (d, error))
+      return FALSE;
+    /* one that went may leave room for what was not asked for beside it */
+    if (d->n_chosen == CLOTH_DIAGNOSIS_MAX_ACCEPTED
+        || (!asked && d->n_dropped == dropped))
+      break;
+    if (!cloth_diagnosis_linearise (d, 0, d->n_takes,
+            d->with[d->n_chosen - 1], from + 0.05, from + 0.13, error))
+      return FALSE;
+    cloth_diagnosis_make_test (d, 0, d->n_takes, &test);
+    g_array_unref (scores);
+    scores = cloth_diagnosis_rank (d, &test);
+  }
+  return TRUE;
+}
