@@ -30,7 +30,7 @@
 #define COUPLING 1.0f
 #define ROUNDS 4
 /* Dots of a patch about which its placing is looked for, one after another. */
-#define TRIES 4
+#define TRIES 6
 /* Labelled dots that tell how often colours are wrong, how fast that is learnt, and
  * within what bounds. */
 #define ENOUGH 50
@@ -186,8 +186,8 @@ choose_probes (const ClothDotLabeller * labeller,
   return n;
 }
 
-/* Asks the first probes of every placing that has the anchor in the array; keeps those
- * that may come near the best. */
+/* Asks the first probes of every placing that gives the anchor a colour that it looks
+ * like; keeps those that may come near the best. */
 static void
 ask_all (ClothDotLabeller * labeller, const guint * probes, guint n)
 {
@@ -217,17 +217,21 @@ ask_all (ClothDotLabeller * labeller, const guint * probes, guint n)
       by[k] = x * along[0][0] + y * along[1][0]
           + stride * (x * along[0][1] + y * along[1][1]);
     }
-    for (gint row = 0; row < labeller->rows; row++) {
-      const guint8 *colours = labeller->padded + (row + pad) * stride + pad;
+    for (gint colour = 0; colour < labeller->n_colours; colour++) {
+      if (gains[0][colour] < 0)
+        continue;
+      for (guint i = labeller->of_colour[colour];
+          i < labeller->of_colour[colour + 1]; i++) {
+        const ClothLatticeCell cell = labeller->cells[i];
+        const guint8 *colours = labeller->padded
+            + (cell.row + pad) * stride + pad + cell.column;
+        gfloat score = gains[0][colour];
 
-      for (gint column = 0; column < labeller->columns; column++) {
-        gfloat score = 0;
-
-        for (guint k = 0; k < n; k++)
-          score += gains[k][colours[column + by[k]]];
+        for (guint k = 1; k < n; k++)
+          score += gains[k][colours[by[k]]];
         best = MAX (best, score);
         candidates[n_kept] = (Candidate) {
-        score, (gint16) column, (gint16) row, turn};
+        score, cell.column, cell.row, turn};
         n_kept += score > best - BEHIND;
       }
     }
@@ -302,7 +306,9 @@ search (ClothDotLabeller * labeller, const ClothLatticePatch * patch,
   gfloat lead = BEHIND;
 
   n = choose_probes (labeller, patch, anchor, probes);
-  for (guint k = 0; k < n; k++)
+  /* Where others have been asked as well, only a wrong colour of the anchor can hide the
+   * placing. */
+  for (guint k = 0; k < (patch->n > N_PROBES ? n : 1); k++)
     labeller->nodes[probes[k]].probed = TRUE;
   ask_all (labeller, probes, MIN (n, N_FIRST));
   for (guint k = N_FIRST; k < n; k++) {
@@ -329,6 +335,8 @@ search (ClothDotLabeller * labeller, const ClothLatticePatch * patch,
   qsort (labeller->candidates->data, labeller->candidates->len,
       sizeof (Candidate), compare_candidates);
   candidates = (const Candidate *) (gpointer) labeller->candidates->data;
+  if (labeller->candidates->len == 0)
+    return -G_MAXFLOAT;
   if (labeller->candidates->len > 1)
     lead = candidates[0].score - candidates[1].score;
   return MIN (lead, candidates[0].score - logf (n_places));
@@ -665,7 +673,7 @@ place_by_search (ClothDotLabeller * labeller, guint number)
 
   for (guint i = 0; i < patch.n; i++)
     labeller->nodes[labeller->members[patch.first + i]].probed = FALSE;
-  for (guint try = 0; try < TRIES; try++) {
+  for (guint try = 0; try < (patch.n > N_PROBES ? TRIES : TRIES / 2); try++) {
     const guint anchor = find_anchor (labeller, &patch);
     ClothLatticePlace place;
 

@@ -57,6 +57,12 @@ typedef struct
   guint8 turn;                  /* quarter turns, plus 4 when mirrored */
 } ClothLatticeCandidate;
 
+/* A place in the array. */
+typedef struct
+{
+  gint16 column, row;
+} ClothLatticeCell;
+
 /* Cells (column, row) of a patch lie in the array at @origin + column·@along[0] +
  * row·@along[1]. */
 typedef struct
@@ -87,6 +93,8 @@ struct _ClothDotLabeller
   guint8 *matrix;
   guint8 *padded;               /* with n_colours on a rim CLOTH_LATTICE_PAD wide */
   guint8 *doubtful;             /* of each label */
+  ClothLatticeCell *cells;      /* the array's, colour by colour */
+  guint of_colour[CLOTH_DOT_COLOURS_MAX + 1];   /* where each colour's begin */
   gint32 *holders;              /* of each label: its dot, -1: none */
   ClothDotLabelParams params;
   ClothLatticeFormer *former;   /* of each label */

@@ -45,6 +45,23 @@ pad_matrix (const ClothDotLabeller * labeller)
   return padded;
 }
 
+static void
+sort_cells (ClothDotLabeller * labeller)
+{
+  const gint n = labeller->columns * labeller->rows;
+  guint k = 0;
+
+  labeller->cells = g_new (ClothLatticeCell, n);
+  for (gint colour = 0; colour < labeller->n_colours; colour++) {
+    labeller->of_colour[colour] = k;
+    for (gint i = 0; i < n; i++)
+      if (labeller->matrix[i] == colour)
+        labeller->cells[k++] = (ClothLatticeCell) {
+        (gint16) (i % labeller->columns), (gint16) (i / labeller->columns)};
+  }
+  labeller->of_colour[labeller->n_colours] = k;
+}
+
 /**
  * cloth_dot_labeller_new:
  * @columns: dots in a row of the array, 3 to 400
@@ -92,6 +109,7 @@ cloth_dot_labeller_new (gint columns, gint rows, gint n_colours,
   labeller->n_colours = n_colours;
   labeller->matrix = g_memdup2 (matrix, n);
   labeller->padded = pad_matrix (labeller);
+  sort_cells (labeller);
   labeller->holders = g_new (gint32, n);
   labeller->doubtful = g_new (guint8, n);
   labeller->former = g_new0 (ClothLatticeFormer, n);
@@ -118,6 +136,7 @@ cloth_dot_labeller_free (ClothDotLabeller * labeller)
   g_array_unref (labeller->candidates);
   g_free (labeller->matrix);
   g_free (labeller->padded);
+  g_free (labeller->cells);
   g_free (labeller->holders);
   g_free (labeller->doubtful);
   g_clear_pointer (&labeller->windows, g_hash_table_unref);
