@@ -3,11 +3,14 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "config.h"
 
+#include "gst/file/textfile.h"
+#include "gst/mesh/garment.h"
 #include "gst/pattern/code.h"
 #include "gst/pattern/marray.h"
 #include "gst/pattern/pattern.h"
 #include "gst/pattern/print.h"
 
+#include <glib/gstdio.h>
 #include <locale.h>
 #include <math.h>
 #include <string.h>
@@ -31,7 +34,7 @@ typedef struct
   gboolean version, two_sided;
   gint columns, rows, colours, distance;
   gchar *square, *margin, *first, *paper, *page_margin, *overlap, *output;
-  gchar *pitch, *diameter;
+  gchar *pitch, *diameter, *pattern;
   gdouble dot_ratio;
   gint64 seed;
   gchar **kinds;
@@ -249,6 +252,56 @@ run_checker (const Arguments * arguments, gboolean coded)
   return print (arguments, &artwork, &options);
 }
 
+/* The panels of a drawing, cut from a print of dots. */
+static gint
+run_garment (const Arguments * arguments)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothMArray) array = NULL;
+  g_autoptr (ClothGarment) garment = NULL;
+  g_autofree gchar *svg = NULL, *message = NULL;
+  ClothDotGrid grid;
+  gsize size;
+  guint dots = 0;
+
+  if (!arguments->pattern)
+    return complain (BAD_USAGE, "name the print that the panels are cut from: "
+        "--pattern pattern.json");
+  if (!arguments->output)
+    return complain (BAD_USAGE, "name the folder to write: --output garment");
+  array = cloth_m_array_load (arguments->pattern, &error);
+  if (!array)
+    return complain (FAILED, error->message);
+  grid = (ClothDotGrid) {
+    (guint) array->columns, (guint) array->rows, array->pitch_m, {
+    array->origin_uv_m[0], array->origin_uv_m[1]}
+    , {
+    array->cloth_m[0], array->cloth_m[1]}
+  };
+  svg = cloth_text_file_load (arguments->kinds[1], &size, &error);
+  if (!svg)
+    return complain (FAILED, error->message);
+  garment = cloth_garment_new_from_svg (svg, size, &grid, &error);
+  if (!garment) {
+    message = g_strdup_printf ("%s: %s", arguments->kinds[1], error->message);
+    return complain (FAILED, message);
+  }
+  if (g_mkdir_with_parents (arguments->output, 0777) != 0) {
+    message = g_strdup_printf ("%s: can't make the folder", arguments->output);
+    return complain (FAILED, message);
+  }
+  if (!cloth_garment_save (garment, arguments->output, &error))
+    return complain (FAILED, error->message);
+  for (guint v = 0; v < garment->topology->n_vertices; v++)
+    dots += garment->dots[v] != CLOTH_NO_DOT;
+  g_print ("%s/garment.json\n%s/garment.obj\n", arguments->output,
+      arguments->output);
+  g_printerr ("%u panels, %u seams, %u vertices, %u of them dots\n",
+      garment->panels->len, garment->seams->len,
+      garment->topology->n_vertices, dots);
+  return DONE;
+}
+
 static gint
 run (const Arguments * arguments)
 {
@@ -259,14 +312,22 @@ run (const Arguments * arguments)
     g_print (TOOL " (%s) %s\n", PACKAGE, PACKAGE_VERSION);
     return DONE;
   }
+  if (arguments->kinds && !strcmp (arguments->kinds[0], "garment")) {
+    if (g_strv_length (arguments->kinds) != 2)
+      return complain (BAD_USAGE, "name the drawing: garment panels.svg");
+    return run_garment (arguments);
+  }
   if (!arguments->kinds || g_strv_length (arguments->kinds) != 1)
     return complain (BAD_USAGE,
-        "name one kind of pattern: checker, coded-checker or m-array");
+        "name one kind of pattern: checker, coded-checker or m-array; or "
+        "garment and a drawing");
   kind = arguments->kinds[0];
+  if (arguments->pattern)
+    return refuse_option ("pattern", kind);
   if (strcmp (kind, "checker") && strcmp (kind, "coded-checker")
       && strcmp (kind, "m-array")) {
     message = g_strdup_printf ("no pattern \"%s\": there are checker, "
-        "coded-checker and m-array", kind);
+        "coded-checker, m-array and garment", kind);
     return complain (BAD_USAGE, message);
   }
   if (!arguments->output)
@@ -322,12 +383,15 @@ main (int argc, char **argv)
         "Edge of the paper that stays blank (10mm)", "LENGTH"},
     {"overlap", 0, 0, G_OPTION_ARG_STRING, &arguments.overlap,
         "What neighbouring sheets share (10mm)", "LENGTH"},
+    {"pattern", 0, 0, G_OPTION_ARG_FILENAME, &arguments.pattern,
+        "pattern.json of the dots that a garment is cut from", "FILE"},
     {"output", 'o', 0, G_OPTION_ARG_FILENAME, &arguments.output,
-        "File to write, .pdf or .svg; pattern.json is put beside it", "FILE"},
+        "File to write, .pdf or .svg; pattern.json is put beside it. Of a "
+          "garment the folder", "FILE"},
     {"version", 0, 0, G_OPTION_ARG_NONE, &arguments.version,
         "Show the version and exit", NULL},
     {G_OPTION_REMAINING, 0, 0, G_OPTION_ARG_STRING_ARRAY, &arguments.kinds,
-        NULL, "checker|coded-checker|m-array"},
+        NULL, "checker|coded-checker|m-array|garment DRAWING"},
     {NULL}
   };
   g_autoptr (GOptionContext) context =
@@ -346,6 +410,7 @@ main (int argc, char **argv)
   else
     code = complain (BAD_USAGE, error->message);
   g_free (arguments.square);
+  g_free (arguments.pattern);
   g_free (arguments.pitch);
   g_free (arguments.diameter);
   g_free (arguments.margin);

@@ -141,6 +141,45 @@ BAD_USAGE = [
 ]
 
 
+def garments(folder):
+    drawing = os.path.join(os.path.dirname(os.path.abspath(__file__)), '../../pipelines/skirt.svg')
+    done = run(folder, 'm-array', '--rows', '40', '--output', 'dots.svg')
+    expect(done.returncode == 0, 'dots: %r' % done.stderr)
+    done = run(folder, 'garment', drawing, '--pattern', 'pattern.json', '--output', 'skirt')
+    expect(done.returncode == 0 and done.stdout == 'skirt/garment.json\nskirt/garment.obj\n',
+           'a skirt: %r %r' % (done.stdout, done.stderr))
+    with open(os.path.join(folder, 'skirt/garment.json'), encoding='utf-8') as file:
+        garment = json.load(file)
+    with open(os.path.join(folder, 'skirt/garment.obj'), encoding='utf-8') as file:
+        lines = [line.split() for line in file]
+    places = [line[1:] for line in lines if line and line[0] == 'v']
+    expect(len(garment['dots']) == len(places) and len(garment['panels']) == 2, 'as many dots as vertices')
+    for place, dot in zip(places, garment['dots']):
+        if dot >= 0 and (abs(float(place[0]) - 0.01 - 0.02 * (dot % 76)) > 1e-5 or
+                         abs(-float(place[2]) - 0.01 - 0.02 * (dot // 76)) > 1e-5):
+            expect(False, 'dot %d is not at %s' % (dot, place))
+            break
+    for seam in garment['seams']:
+        expect(len(seam['lines'][0]) == len(seam['lines'][1]), 'both sides of ' + seam['name'])
+    # from a print that is too small nothing comes
+    os.mkdir(os.path.join(folder, 'small'))
+    run(folder, 'm-array', '--rows', '20', '--columns', '20', '--output', 'small/dots.svg')
+    done = run(folder, 'garment', drawing, '--pattern', 'small/pattern.json', '--output', 'none')
+    expect(done.returncode == 1 and 'leaves the printed cloth' in done.stderr, 'too small: %r' % done.stderr)
+    expect(not os.path.exists(os.path.join(folder, 'none')), 'nothing is left of a refused garment')
+    for arguments, code, says in (
+            (['garment'], 2, 'name the drawing'),
+            (['garment', drawing, '--output', 'x'], 2, '--pattern'),
+            (['garment', drawing, '--pattern', 'pattern.json'], 2, '--output'),
+            (['garment', 'no.svg', '--pattern', 'pattern.json', '--output', 'x'], 1, 'no.svg'),
+            (['garment', drawing, '--pattern', 'no.json', '--output', 'x'], 1, 'no.json'),
+            (['garment', 'pattern.json', '--pattern', 'pattern.json', '--output', 'x'], 1, 'pattern.json'),
+            (['m-array', '--pattern', 'pattern.json', '--output', 'x.svg'], 2, '--pattern is not for')):
+        done = run(folder, *arguments)
+        expect(done.returncode == code and says in done.stderr and not done.stdout,
+               '%s: %d %r' % (' '.join(arguments), done.returncode, done.stderr))
+
+
 def bad_calls(folder):
     for arguments, says in BAD_USAGE:
         done = run(folder, *arguments)
@@ -157,7 +196,7 @@ def bad_calls(folder):
     expect(left == ['board.svg'], 'nothing half-written is left: %s' % left)
 
 
-for calls in (good_calls, told, bad_calls):
+for calls in (good_calls, told, garments, bad_calls):
     with tempfile.TemporaryDirectory(prefix='cloth-pattern-') as place:
         calls(place)
 print('%d faults' % len(faults))
