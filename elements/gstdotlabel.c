@@ -333,6 +333,23 @@ gst_dot_label_view (GstDotLabel * self, const GstClothFilterFrame * frame,
   return TRUE;
 }
 
+/* Some labels are found all the same where the print's colours are in another order. */
+static void
+gst_dot_label_check_swap (GstDotLabel * self)
+{
+  gint a, b;
+
+  if (self->warned || !cloth_dot_labeller_find_swap (self->labeller, &a, &b))
+    return;
+  self->warned = TRUE;
+  GST_ELEMENT_WARNING (self, STREAM, FAILED,
+      ("Dots that should be %s look %s and the other way round: the two are "
+          "swapped.", self->array->colours[a].name,
+          self->array->colours[b].name),
+      ("Give them in the order of the print in the list of colours in "
+          "pattern.json."));
+}
+
 /* Tells the bus when the pattern comes into sight and when it is gone, and the user when
  * it is another one. */
 static void
@@ -364,6 +381,7 @@ gst_dot_label_tell (GstDotLabel * self, const GstClothFilterFrame * frame,
             "that the printer has swapped, or a camera that sees them alike, "
             "look like another pattern too."));
   }
+  gst_dot_label_check_swap (self);
 }
 
 static GstFlowReturn

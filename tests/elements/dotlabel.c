@@ -348,10 +348,11 @@ play (const gchar * pattern, guint n, guint * n_found, guint * n_lost)
               | GST_MESSAGE_WARNING))) {
     if (GST_MESSAGE_TYPE (message) == GST_MESSAGE_WARNING) {
       g_autoptr (GError) error = NULL;
+      g_autofree gchar *debug = NULL;
 
       fail_unless (warning == NULL);
-      gst_message_parse_warning (message, &error, NULL);
-      warning = g_strdup (error->message);
+      gst_message_parse_warning (message, &error, &debug);
+      warning = g_strconcat (error->message, debug, NULL);
     } else {
       *n_found += gst_message_has_name (message, "dotlabel/found");
       *n_lost += gst_message_has_name (message, "dotlabel/lost");
@@ -372,7 +373,7 @@ GST_START_TEST (test_wrong_pattern)
   g_autofree gchar *path = g_build_filename (folder, "pattern.json", NULL);
   ClothMArrayCode code = CLOTH_M_ARRAY_CODE_INIT;
   g_autoptr (ClothMArray) array = NULL;
-  g_autofree gchar *none = NULL, *warning = NULL;
+  g_autofree gchar *none = NULL, *warning = NULL, *swapped = NULL;
   guint n_found, n_lost;
 
   none = play (RING "pattern.json", 30, &n_found, &n_lost);
@@ -390,6 +391,16 @@ GST_START_TEST (test_wrong_pattern)
   fail_unless (warning != NULL);
   fail_unless (strstr (warning, "fit nowhere into the pattern"));
   fail_unless_equals_int (n_found, 0);
+
+  /* cyan and magenta */
+  for (gint i = 0; i < 31 * 33; i++)
+    array->matrix[i] = ring.array->matrix[i] < 2 ? 1 - ring.array->matrix[i] :
+        ring.array->matrix[i];
+  fail_unless (cloth_m_array_save (array, path, &error));
+  swapped = play (path, 30, &n_found, &n_lost);
+  fail_unless (swapped != NULL);
+  fail_unless (strstr (swapped, "swapped") != NULL, "%s", swapped);
+  g_test_message ("%s", swapped);
   g_remove (path);
   g_rmdir (folder);
 }
