@@ -212,6 +212,34 @@ GST_START_TEST (test_unusable)
 
 GST_END_TEST;
 
+/* Two of a dot's neighbours are not seen by one camera, as at a fold's edge: neither is the
+ * dot itself, which a fold may partly hide. One missing neighbour is no fold. */
+GST_START_TEST (test_fold)
+{
+  const guint dot = 2 * DOT_COLUMNS + 3;
+  Bench b;
+
+  for (guint n_missing = 1; n_missing <= 2; n_missing++) {
+    g_autoptr (GstClothMesh) mesh = NULL;
+    GstClothDot dots[N_VERTICES];
+
+    dots_init (&b, 2);
+    see_dots (&b, 0, 0, dots);
+    dots[dot + 1].column = dots[dot + 1].row = -1;
+    if (n_missing == 2)
+      dots[dot - DOT_COLUMNS].touches = TRUE;
+    push_dots (&b, 0, dots, N_VERTICES, 0);
+    see_dots (&b, 1, 0, dots);
+    push_dots (&b, 1, dots, N_VERTICES, 0);
+    mesh = pull (&b, 0);
+    fail_unless_equals_int (gst_cloth_mesh_get_states (mesh, NULL)[dot],
+        n_missing == 2 ? GST_CLOTH_VERTEX_UNSEEN : GST_CLOTH_VERTEX_TWO_VIEWS);
+    bench_clear (&b);
+  }
+}
+
+GST_END_TEST;
+
 /* A tripod was kicked by 5 cm: said once, with the camera's name, also for programs. The
  * mesh stays where it was. */
 GST_START_TEST (test_camera_off)
@@ -357,6 +385,7 @@ triangulatedots_suite (void)
   tcase_add_test (tc, test_observation_streams);
   tcase_add_test (tc, test_wrong_labels);
   tcase_add_test (tc, test_unusable);
+  tcase_add_test (tc, test_fold);
   tcase_add_test (tc, test_camera_off);
   tcase_add_test (tc, test_missing_camera);
   tcase_add_test (tc, test_wrong_pattern);
