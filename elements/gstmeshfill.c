@@ -20,6 +20,9 @@
  * takes more of the shape than of the noise, so it is off. `smooth-time` waits for the next
  * frame, which the element reports as latency.
  *
+ * With `garment` the grid of an M-array's dots becomes the mesh of the garment that was cut
+ * from the print. Its outlines have no dots and are filled, over seams from both sides.
+ *
  * ## A take without holes
  * |[
  * gst-launch-1.0 meshsrc location=take ! meshfill ! meshsink location=cloth.obj
@@ -39,6 +42,7 @@
 #include "elements/gstclothutil.h"
 #include "elements/gstmeshformat.h"
 #include "gst/mesh/fill.h"
+#include "gst/mesh/garment.h"
 #include "gst/mesh/smooth.h"
 
 GST_DEBUG_CATEGORY_STATIC (mesh_fill_debug);
@@ -67,6 +71,10 @@ struct _GstMeshFill
   gboolean parameters_changed;
   gdouble smooth_space, smooth_time;
   gint fps_n, fps_d;
+  gchar *garment_location;
+
+  /* from READY to PAUSED on */
+  ClothGarment *garment;
 
   /* streaming thread */
   GstSegment segment;
@@ -76,12 +84,17 @@ struct _GstMeshFill
   /* Smoothing in time: the last frame sent, as filled, the one that waits, and room. */
   Frame frame[3];
   gfloat *smoothed;
+  guint n_input;                /* vertices that come */
+  /* with a garment, what comes in the order of its vertices */
+  gfloat *chosen, *chosen_covariances;
+  guint8 *chosen_states;
 };
 
 enum
 {
   PROP_0,
   PROP_METHOD,
+  PROP_GARMENT,
   PROP_NOISE,
   PROP_MAX_SIGMA,
   PROP_PREDICTION,
@@ -144,6 +157,9 @@ clear_topology (GstMeshFill * self)
     g_clear_pointer (&self->frame[i].states, g_free);
   }
   g_clear_pointer (&self->smoothed, g_free);
+  g_clear_pointer (&self->chosen, g_free);
+  g_clear_pointer (&self->chosen_covariances, g_free);
+  g_clear_pointer (&self->chosen_states, g_free);
 }
 
 /* Sends a frame with other @positions. */
@@ -209,6 +225,27 @@ find_time (GstMeshFill * self, GstBuffer * buffer)
       : (gdouble) self->n_frames;
 }
 
+/* What of the print's dots is in the garment; its outlines have none. */
+static void
+choose (GstMeshFill * self, ClothMeshFrame * frame)
+{
+  for (guint v = 0; v < self->topology->n_vertices; v++) {
+    gint dot = self->garment->dots[v];
+
+    self->chosen_states[v] = dot == CLOTH_NO_DOT ? CLOTH_VERTEX_UNSEEN
+        : frame->states[dot];
+    for (guint c = 0; c < 3; c++)
+      self->chosen[3 * v + c] = dot == CLOTH_NO_DOT ? NAN
+          : frame->positions[3 * dot + c];
+    for (guint c = 0; c < 6; c++)
+      self->chosen_covariances[6 * v + c] = dot == CLOTH_NO_DOT
+          || !frame->covariances ? NAN : frame->covariances[6 * dot + c];
+  }
+  frame->positions = self->chosen;
+  frame->states = self->chosen_states;
+  frame->covariances = self->chosen_covariances;
+}
+
 /* Fills a frame into the room for one; its buffer is given. */
 static void
 fill_frame (GstMeshFill * self, Frame * frame, GstClothMesh * mesh,
@@ -221,6 +258,8 @@ fill_frame (GstMeshFill * self, Frame * frame, GstClothMesh * mesh,
   gsize n = self->topology->n_vertices;
   ClothFillCounts counts;
 
+  if (self->garment)
+    choose (self, &in);
   cloth_fill_run (self->fill, frame->time, &in, &out, &counts);
   GST_LOG_OBJECT (self, "frame %" G_GUINT64_FORMAT ": %u outliers, %u holes "
       "(%u new), %u filled, %u predicted, %u unseen", frame->sequence,
@@ -250,8 +289,7 @@ gst_mesh_fill_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
     gst_buffer_unref (buffer);
     return GST_FLOW_NOT_NEGOTIATED;
   }
-  mesh = gst_cloth_read_mesh (GST_ELEMENT (self), buffer,
-      self->topology->n_vertices);
+  mesh = gst_cloth_read_mesh (GST_ELEMENT (self), buffer, self->n_input);
   if (!mesh) {
     gst_buffer_unref (buffer);
     return GST_FLOW_ERROR;
@@ -305,12 +343,28 @@ set_caps (GstMeshFill * self, const GstCaps * caps)
   GST_OBJECT_UNLOCK (self);
   gst_element_post_message (GST_ELEMENT (self),
       gst_message_new_latency (GST_OBJECT (self)));
-  topology = gst_mesh_copy_topology (parsed);
+  self->n_input = gst_cloth_topology_get_n_vertices (parsed);
+  if (self->garment) {
+    if (gst_cloth_topology_get_columns (parsed) != self->garment->columns
+        || gst_cloth_topology_get_rows (parsed) != self->garment->rows) {
+      GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+          ("The garment is cut from %u × %u dots, but the mesh is a grid of "
+              "%u × %u; set garment= to the one that was filmed",
+              self->garment->columns, self->garment->rows,
+              gst_cloth_topology_get_columns (parsed),
+              gst_cloth_topology_get_rows (parsed)), (NULL));
+      return FALSE;
+    }
+    topology = cloth_topology_copy (self->garment->topology);
+  } else {
+    topology = gst_mesh_copy_topology (parsed);
+  }
   if (self->topology && cloth_topology_equal (self->topology, topology))
     return TRUE;
   clear_topology (self);
   GST_OBJECT_LOCK (self);
-  self->fill = cloth_fill_new (topology, &self->parameters);
+  self->fill = cloth_fill_new (topology,
+      self->garment ? self->garment->seams : NULL, &self->parameters);
   self->parameters_changed = FALSE;
   GST_OBJECT_UNLOCK (self);
   n = topology->n_vertices;
@@ -320,8 +374,38 @@ set_caps (GstMeshFill * self, const GstCaps * caps)
     self->frame[i].states = g_new (guint8, n);
   }
   self->smoothed = g_new (gfloat, 3 * n);
+  if (self->garment) {
+    self->chosen = g_new (gfloat, 3 * n);
+    self->chosen_covariances = g_new (gfloat, 6 * n);
+    self->chosen_states = g_new (guint8, n);
+  }
   self->topology = g_steal_pointer (&topology);
   return TRUE;
+}
+
+/* The caps that go on: of a garment its own. */
+static GstEvent *
+outgoing_caps (GstMeshFill * self, GstEvent * event)
+{
+  g_autoptr (GstClothTopology) topology = NULL;
+  g_autoptr (GstCaps) caps = NULL;
+  g_autoptr (GError) error = NULL;
+  GstEvent *other;
+
+  if (!self->garment)
+    return event;
+  topology = gst_cloth_topology_new (self->topology->n_vertices, 0, 0,
+      self->topology->uv, self->topology->faces, self->topology->n_faces,
+      &error);
+  if (!topology) {
+    GST_ELEMENT_ERROR (self, STREAM, FORMAT, ("%s", error->message), (NULL));
+    return event;
+  }
+  caps = gst_cloth_topology_to_caps (topology, self->fps_n, self->fps_d);
+  other = gst_event_new_caps (caps);
+  gst_event_set_seqnum (other, gst_event_get_seqnum (event));
+  gst_event_unref (event);
+  return other;
 }
 
 static gboolean
@@ -343,6 +427,8 @@ gst_mesh_fill_sink_event (GstPad * pad, GstObject * parent, GstEvent * event)
     case GST_EVENT_CAPS:
       gst_event_parse_caps (event, &caps);
       good = set_caps (self, caps);
+      if (good)
+        event = outgoing_caps (self, event);
       break;
     case GST_EVENT_SEGMENT:
       gst_event_copy_segment (event, &self->segment);
@@ -357,6 +443,32 @@ gst_mesh_fill_sink_event (GstPad * pad, GstObject * parent, GstEvent * event)
   return FALSE;
 }
 
+/* A garment has another mesh than what comes; else both sides have the same caps. */
+static gboolean
+answer_caps (GstMeshFill * self, GstPad * pad, GstQuery * query)
+{
+  GstCaps *filter;
+
+  if (!self->garment)
+    return gst_pad_proxy_query_caps (pad, query);
+  gst_query_parse_caps (query, &filter);
+  {
+    g_autoptr (GstCaps) caps =
+        gst_cloth_filter_caps (gst_pad_get_pad_template_caps (pad), filter);
+
+    gst_query_set_caps_result (query, caps);
+  }
+  return TRUE;
+}
+
+static gboolean
+gst_mesh_fill_sink_query (GstPad * pad, GstObject * parent, GstQuery * query)
+{
+  if (GST_QUERY_TYPE (query) == GST_QUERY_CAPS)
+    return answer_caps (GST_MESH_FILL (parent), pad, query);
+  return gst_pad_query_default (pad, parent, query);
+}
+
 static gboolean
 gst_mesh_fill_src_query (GstPad * pad, GstObject * parent, GstQuery * query)
 {
@@ -364,6 +476,8 @@ gst_mesh_fill_src_query (GstPad * pad, GstObject * parent, GstQuery * query)
   GstClockTime low, high, own = 0;
   gboolean live;
 
+  if (GST_QUERY_TYPE (query) == GST_QUERY_CAPS)
+    return answer_caps (self, pad, query);
   if (GST_QUERY_TYPE (query) != GST_QUERY_LATENCY)
     return gst_pad_query_default (pad, parent, query);
   if (!gst_pad_peer_query (self->sinkpad, query))
@@ -380,18 +494,43 @@ gst_mesh_fill_src_query (GstPad * pad, GstObject * parent, GstQuery * query)
   return TRUE;
 }
 
+static gboolean
+open_garment (GstMeshFill * self)
+{
+  g_autofree gchar *location = NULL;
+  g_autoptr (GError) error = NULL;
+
+  GST_OBJECT_LOCK (self);
+  location = g_strdup (self->garment_location);
+  GST_OBJECT_UNLOCK (self);
+  g_clear_pointer (&self->garment, cloth_garment_free);
+  if (!location)
+    return TRUE;
+  self->garment = cloth_garment_load (location, &error);
+  if (!self->garment)
+    GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ,
+        ("Can't read the garment: %s", error->message),
+        ("garment=%s", location));
+  return self->garment != NULL;
+}
+
 static GstStateChangeReturn
 gst_mesh_fill_change_state (GstElement * element, GstStateChange transition)
 {
   GstMeshFill *self = GST_MESH_FILL (element);
   GstStateChangeReturn result;
 
-  if (transition == GST_STATE_CHANGE_READY_TO_PAUSED)
+  if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
     gst_segment_init (&self->segment, GST_FORMAT_TIME);
+    if (!open_garment (self))
+      return GST_STATE_CHANGE_FAILURE;
+  }
   result = GST_ELEMENT_CLASS (gst_mesh_fill_parent_class)->change_state
       (element, transition);
-  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY)
+  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
     clear_topology (self);
+    g_clear_pointer (&self->garment, cloth_garment_free);
+  }
   return result;
 }
 
@@ -412,6 +551,10 @@ gst_mesh_fill_set_property (GObject * object, guint id, const GValue * value,
   switch (id) {
     case PROP_METHOD:
       self->parameters.method = g_value_get_enum (value);
+      break;
+    case PROP_GARMENT:
+      g_free (self->garment_location);
+      self->garment_location = g_value_dup_string (value);
       break;
     case PROP_NOISE:
       self->parameters.noise_m = g_value_get_double (value);
@@ -449,6 +592,9 @@ gst_mesh_fill_get_property (GObject * object, guint id, GValue * value,
     case PROP_METHOD:
       g_value_set_enum (value, self->parameters.method);
       break;
+    case PROP_GARMENT:
+      g_value_set_string (value, self->garment_location);
+      break;
     case PROP_NOISE:
       g_value_set_double (value, self->parameters.noise_m);
       break;
@@ -477,7 +623,11 @@ gst_mesh_fill_get_property (GObject * object, guint id, GValue * value,
 static void
 gst_mesh_fill_finalize (GObject * object)
 {
-  clear_topology (GST_MESH_FILL (object));
+  GstMeshFill *self = GST_MESH_FILL (object);
+
+  clear_topology (self);
+  cloth_garment_free (self->garment);
+  g_free (self->garment_location);
   G_OBJECT_CLASS (gst_mesh_fill_parent_class)->finalize (object);
 }
 
@@ -506,6 +656,12 @@ gst_mesh_fill_class_init (GstMeshFillClass * klass)
           GST_TYPE_MESH_FILL_METHOD, CLOTH_FILL_PLATE,
           G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
           GST_PARAM_MUTABLE_PLAYING));
+  g_object_class_install_property (object_class, PROP_GARMENT,
+      g_param_spec_string ("garment", "Garment",
+          "File garment.json of the garment that the dots are on: a grid of "
+          "dots comes in, the garment's mesh goes out, sewn at its seams", NULL,
+          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+          GST_PARAM_MUTABLE_READY));
   install_double (object_class, PROP_NOISE, "noise", "Noise",
       "Standard deviation of a coordinate that comes without covariance, metres",
       1, CLOTH_FILL_NOISE, GST_PARAM_MUTABLE_PLAYING);
@@ -552,11 +708,9 @@ gst_mesh_fill_init (GstMeshFill * self)
   self->sinkpad = gst_pad_new_from_static_template (&sink_template, "sink");
   gst_pad_set_chain_function (self->sinkpad, gst_mesh_fill_chain);
   gst_pad_set_event_function (self->sinkpad, gst_mesh_fill_sink_event);
-  GST_PAD_SET_PROXY_CAPS (self->sinkpad);
-  GST_PAD_SET_PROXY_ALLOCATION (self->sinkpad);
+  gst_pad_set_query_function (self->sinkpad, gst_mesh_fill_sink_query);
   gst_element_add_pad (GST_ELEMENT (self), self->sinkpad);
   self->srcpad = gst_pad_new_from_static_template (&src_template, "src");
   gst_pad_set_query_function (self->srcpad, gst_mesh_fill_src_query);
-  GST_PAD_SET_PROXY_CAPS (self->srcpad);
   gst_element_add_pad (GST_ELEMENT (self), self->srcpad);
 }

@@ -26,6 +26,8 @@
 /**
  * cloth_fill_new:
  * @topology: the mesh, checked
+ * @seams: (nullable) (element-type ClothSeamLine): vertices that are one: the same place
+ *   is found for them
  * @parameters: (nullable): how to fill; %NULL: the defaults
  *
  * Returns: (transfer full): what fills the frames of a sequence
@@ -33,7 +35,7 @@
  * Since: 0.1
  */
 ClothFill *
-cloth_fill_new (const ClothTopology * topology,
+cloth_fill_new (const ClothTopology * topology, const GArray * seams,
     const ClothFillParameters * parameters)
 {
   static const ClothFillParameters standard = {
@@ -44,7 +46,7 @@ cloth_fill_new (const ClothTopology * topology,
   gsize n = topology->n_vertices;
 
   self->n = topology->n_vertices;
-  self->stencils = cloth_stencils_new (topology);
+  self->stencils = cloth_stencils_new (topology, seams);
   self->measured = g_new (gfloat, 3 * n);
   self->noise = g_new (gfloat, 6 * n);
   self->positions = g_new (gfloat, 3 * n);
@@ -122,6 +124,15 @@ cloth_fill_reset (ClothFill * fill)
   fill->last_s = fill->period_s = NAN;
 }
 
+static void
+copy_vertex (ClothFill * self, guint from, guint to, gfloat * positions,
+    gfloat * covariances)
+{
+  memcpy (positions + 3 * to, positions + 3 * from, 3 * sizeof (gfloat));
+  memcpy (covariances + 6 * to, covariances + 6 * from, 6 * sizeof (gfloat));
+  self->states[to] = self->states[from];
+}
+
 /* Takes the frame in: what is measured and how well. */
 static void
 take (ClothFill * self, const ClothMeshFrame * frame)
@@ -148,6 +159,13 @@ take (ClothFill * self, const ClothMeshFrame * frame)
     for (guint c = 0; c < 6; c++)
       known = known && isfinite (given[c]);
     memcpy (self->noise + 6 * i, known ? given : none, 6 * sizeof (gfloat));
+  }
+  /* of vertices that are one, the first carries what any of them knows */
+  for (guint i = 0; i < self->n; i++) {
+    guint first = self->stencils->same[i];
+
+    if (first != i && isnan (self->measured[3 * first]))
+      copy_vertex (self, i, first, self->measured, self->noise);
   }
 }
 
@@ -192,7 +210,8 @@ find_holes (ClothFill * self)
     ClothHole *hole = self->hole_at[i];
     guint n;
 
-    if (!isnan (self->measured[3 * i]) || self->queued[i]) {
+    if (!isnan (self->measured[3 * i]) || self->queued[i]
+        || self->stencils->same[i] != i) {
       /* no hole begins here */
       cloth_hole_free (hole);
       self->hole_at[i] = NULL;
@@ -425,6 +444,9 @@ cloth_fill_run (ClothFill * fill, gdouble time_s, const ClothMeshFrame * frame,
   }
   remember (fill);
   for (guint i = 0; i < fill->n; i++) {
+    if (fill->stencils->same[i] != i)
+      copy_vertex (fill, fill->stencils->same[i], i, fill->positions,
+          fill->covariances);
     done.filled += fill->states[i] == CLOTH_VERTEX_FILLED;
     done.predicted += fill->states[i] == CLOTH_VERTEX_PREDICTED;
     done.unseen += fill->states[i] == CLOTH_VERTEX_UNSEEN;

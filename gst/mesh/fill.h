@@ -71,7 +71,7 @@ typedef struct {
 typedef struct _ClothFill ClothFill;
 
 ClothFill *cloth_fill_new (const ClothTopology * topology,
-    const ClothFillParameters * parameters);
+    const GArray * seams, const ClothFillParameters * parameters);
 void cloth_fill_set_parameters (ClothFill * fill,
     const ClothFillParameters * parameters);
 const ClothStencils *cloth_fill_get_stencils (const ClothFill * fill);

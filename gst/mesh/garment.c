@@ -555,6 +555,26 @@ finish (Builder * self)
 }
 
 /**
+ * cloth_garment_new:
+ *
+ * Returns: (transfer full): a garment without mesh and panels, to be filled
+ *
+ * Since: 0.1
+ */
+ClothGarment *
+cloth_garment_new (void)
+{
+  ClothGarment *garment = g_new0 (ClothGarment, 1);
+
+  garment->panels = g_array_new (FALSE, TRUE, sizeof (ClothPanel));
+  g_array_set_clear_func (garment->panels, panel_clear);
+  garment->seam_names = g_ptr_array_new_with_free_func (g_free);
+  garment->seams = g_array_new (FALSE, TRUE, sizeof (ClothSeamLine));
+  g_array_set_clear_func (garment->seams, seam_clear);
+  return garment;
+}
+
+/**
  * cloth_garment_new_from_svg:
  * @svg: a drawing of the panels; see cloth_panels_parse ()
  * @size: its bytes
@@ -571,18 +591,13 @@ ClothGarment *
 cloth_garment_new_from_svg (const gchar * svg, gsize size,
     const ClothDotGrid * grid, GError ** error)
 {
-  g_autoptr (ClothGarment) garment = g_new0 (ClothGarment, 1);
+  g_autoptr (ClothGarment) garment = cloth_garment_new ();
   g_autoptr (GArray) seam_edges = g_array_new (FALSE, FALSE, sizeof (EdgeRef));
   Builder builder = { grid, cloth_panels_parse (svg, size, error), };
   gboolean good = builder.drawn != NULL;
 
   garment->columns = grid->columns;
   garment->rows = grid->rows;
-  garment->panels = g_array_new (FALSE, TRUE, sizeof (ClothPanel));
-  g_array_set_clear_func (garment->panels, panel_clear);
-  garment->seam_names = g_ptr_array_new_with_free_func (g_free);
-  garment->seams = g_array_new (FALSE, TRUE, sizeof (ClothSeamLine));
-  g_array_set_clear_func (garment->seams, seam_clear);
   if (!good)
     return NULL;
   builder.garment = garment;

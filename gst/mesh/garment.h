@@ -76,6 +76,10 @@ typedef struct {
 
 ClothGarment *cloth_garment_new_from_svg (const gchar * svg, gsize size,
     const ClothDotGrid * grid, GError ** error);
+ClothGarment *cloth_garment_new (void);
+ClothGarment *cloth_garment_parse (const gchar * json, gsize size,
+    ClothTopology * topology, GError ** error);
+ClothGarment *cloth_garment_load (const gchar * path, GError ** error);
 gchar *cloth_garment_to_json (const ClothGarment * garment);
 gboolean cloth_garment_save (const ClothGarment * garment,
     const gchar * folder, GError ** error);

@@ -13,7 +13,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A side of a face: from a to b, which the face has in this order. */
+/* A side of a face: from a to b, which the face has in this order; which vertices they are
+ * once all is sewn. */
 typedef struct
 {
   guint a, b, face, side;
@@ -22,6 +23,7 @@ typedef struct
 typedef struct
 {
   const ClothTopology *topology;
+  const guint *same;
   gboolean has_uv;
   gdouble edge;
   GArray *sides, *stencils;
@@ -88,27 +90,30 @@ add (Builder * self, const guint vertex[4], const gdouble weight[4],
   for (guint i = 0; i < CLOTH_STENCIL_SIZE; i++) {
     if (!isfinite (weight[i]))
       return;
+    stencil.vertex[i] = vertex[i] == CLOTH_NO_VERTEX ? vertex[i]
+        : self->same[vertex[i]];
     /* a face that has a vertex twice */
     for (guint k = 0; k < i; k++)
-      if (vertex[k] == vertex[i])
+      if (stencil.vertex[k] == stencil.vertex[i])
         return;
-    stencil.vertex[i] = vertex[i];
     stencil.weight[i] = (gfloat) (sqrt (energy) * weight[i]);
   }
   g_array_append_val (self->stencils, stencil);
 }
 
-/* One side's half of the line a, @middle, b; @across is the width of a strip beside it. */
+/* One side's half of the line a, @middle, b, whose pieces are @near and @far long; @across
+ * is the width of a strip beside it. */
 static void
-add_line (Builder * self, guint a, guint middle, guint b, gdouble across)
+add_line (Builder * self, guint a, guint middle, guint b, gdouble near,
+    gdouble far, gdouble across)
 {
-  gdouble near = flat_length (self, a, middle);
-  gdouble far = flat_length (self, b, middle);
   gdouble step = 2 * near * far / (near + far);
   gdouble weight[4] = { step / near, -step / near - step / far, step / far, 0 };
-  guint vertex[4] = { MIN (a, b), middle, MAX (a, b), CLOTH_NO_VERTEX };
+  guint vertex[4] = { a, middle, b, CLOTH_NO_VERTEX };
 
-  if (a > b) {
+  if (self->same[a] > self->same[b]) {
+    vertex[0] = b;
+    vertex[2] = a;
     weight[0] = step / far;
     weight[2] = step / near;
   }
@@ -148,15 +153,19 @@ flat_area (const Builder * self, guint a, guint b, guint c)
   return fabs (p[0] * q[1] - p[1] * q[0]) / 2;
 }
 
-/* The jump across the edge a, b from the side of @c to that of @d. */
+/* The jump across an edge: from the face of x, with its corners a, b and c, to that of y,
+ * where a and b may be other vertices sewn to them. */
 static void
-add_hinge (Builder * self, guint a, guint b, guint c, guint d)
+add_hinge (Builder * self, const guint x[3], const guint y[3])
 {
-  guint vertex[4] = { a, b, c, d };
-  gdouble ca = cotangent (self, a, b, c), cb = cotangent (self, b, a, c);
-  gdouble da = cotangent (self, a, b, d), db = cotangent (self, b, a, d);
-  gdouble weight[4] = { cb + db, ca + da, -ca - cb, -da - db };
-  gdouble area = flat_area (self, a, b, c) + flat_area (self, a, b, d);
+  guint vertex[4] = { x[0], x[1], x[2], y[2] };
+  gdouble xa = cotangent (self, x[1], x[0], x[2]);
+  gdouble xb = cotangent (self, x[0], x[1], x[2]);
+  gdouble ya = cotangent (self, y[1], y[0], y[2]);
+  gdouble yb = cotangent (self, y[0], y[1], y[2]);
+  gdouble weight[4] = { xa + ya, xb + yb, -xa - xb, -ya - yb };
+  gdouble area = flat_area (self, x[0], x[1], x[2])
+      + flat_area (self, y[0], y[1], y[2]);
 
   add (self, vertex, weight, 3 * self->edge * self->edge / area);
 }
@@ -167,26 +176,37 @@ add_pair (Builder * self, const Side * x, const Side * y)
 {
   const ClothTopology *topology = self->topology;
   guint nx = corners (topology, x->face), ny = corners (topology, y->face);
-  guint before[2], after[2];
+  /* the ends of the edge, as each face has them, and the corners beyond them; of a triangle
+   * these are one */
+  guint ax = corner (topology, x->face, x->side);
+  guint bx = corner (topology, x->face, x->side + 1);
+  guint ay = corner (topology, y->face, y->side);
+  guint by = corner (topology, y->face, y->side + 1);
+  guint beyond_ax = corner (topology, x->face, x->side + nx - 1);
+  guint beyond_bx = corner (topology, x->face, x->side + 2);
+  guint beyond_ay = corner (topology, y->face, y->side + ny - 1);
+  guint beyond_by = corner (topology, y->face, y->side + 2);
 
-  /* the corners beyond a and b in either face; of a triangle they are one */
-  before[0] = corner (topology, x->face, x->side + nx - 1);
-  after[0] = corner (topology, x->face, x->side + 2);
-  before[1] = corner (topology, y->face, y->side + ny - 1);
-  after[1] = corner (topology, y->face, y->side + 2);
   if (x->a != y->a) {
-    guint swap = before[1];
+    guint swap[2] = { ay, beyond_ay };
 
-    before[1] = after[1];
-    after[1] = swap;
+    ay = by;
+    by = swap[0];
+    beyond_ay = beyond_by;
+    beyond_by = swap[1];
   }
   if (nx == 4 && ny == 4) {
-    gdouble across = flat_length (self, x->a, x->b);
+    gdouble across = flat_length (self, ax, bx);
 
-    add_line (self, before[0], x->a, before[1], across);
-    add_line (self, after[0], x->b, after[1], across);
+    add_line (self, beyond_ax, ax, beyond_ay, flat_length (self, beyond_ax, ax),
+        flat_length (self, beyond_ay, ay), across);
+    add_line (self, beyond_bx, bx, beyond_by, flat_length (self, beyond_bx, bx),
+        flat_length (self, beyond_by, by), across);
   } else {
-    add_hinge (self, x->a, x->b, after[0], after[1]);
+    const guint three_x[3] = { ax, bx, beyond_bx };
+    const guint three_y[3] = { ay, by, beyond_by };
+
+    add_hinge (self, three_x, three_y);
   }
 }
 
@@ -197,8 +217,8 @@ find_sides (Builder * self)
 
   for (guint face = 0; face < topology->n_faces; face++)
     for (guint side = 0; side < corners (topology, face); side++) {
-      Side found = { corner (topology, face, side),
-        corner (topology, face, side + 1), face, side
+      Side found = { self->same[corner (topology, face, side)],
+        self->same[corner (topology, face, side + 1)], face, side
       };
 
       if (found.a != found.b)
@@ -214,6 +234,13 @@ same_edge (const Side * x, const Side * y)
       && MAX (x->a, x->b) == MAX (y->a, y->b);
 }
 
+static gdouble
+side_length (const Builder * self, const Side * side)
+{
+  return flat_length (self, corner (self->topology, side->face, side->side),
+      corner (self->topology, side->face, side->side + 1));
+}
+
 /* The mean length of an edge: the unit of the stencils. */
 static void
 measure (Builder * self)
@@ -227,7 +254,7 @@ measure (Builder * self)
 
     if (i > 0 && same_edge (side, side - 1))
       continue;
-    sum += flat_length (self, side->a, side->b);
+    sum += side_length (self, side);
     n++;
   }
   self->has_uv = sum > 0;
@@ -327,7 +354,7 @@ index_neighbours (ClothStencils * self, const Builder * builder)
         self->near_start[side->a + 1]++;
         self->near_start[side->b + 1]++;
       } else {
-        gfloat length = (gfloat) flat_length (builder, side->a, side->b);
+        gfloat length = (gfloat) side_length (builder, side);
 
         self->length[at[side->a]] = self->length[at[side->b]] = length;
         self->near[at[side->a]++] = side->b;
@@ -365,20 +392,51 @@ index_lines (ClothStencils * self)
   self->line = (guint *) (gpointer) g_array_free (line, FALSE);
 }
 
+/* Which vertices are one: the lowest of each. */
+static guint *
+sew (const ClothTopology * topology, const GArray * seams)
+{
+  guint *same = g_new (guint, topology->n_vertices);
+
+  for (guint v = 0; v < topology->n_vertices; v++)
+    same[v] = v;
+  for (guint s = 0; seams && s < seams->len; s++) {
+    const ClothSeamLine *line = &g_array_index (seams, ClothSeamLine, s);
+
+    for (guint i = 0; i < line->n_vertices; i++) {
+      guint a = line->lines[0][i], b = line->lines[1][i];
+
+      while (same[a] != a)
+        a = same[a];
+      while (same[b] != b)
+        b = same[b];
+      same[MAX (a, b)] = MIN (a, b);
+    }
+  }
+  /* lower ones are settled before */
+  for (guint v = 0; v < topology->n_vertices; v++)
+    same[v] = same[same[v]];
+  return same;
+}
+
 /**
  * cloth_stencils_new:
  * @topology: a mesh of quads, triangles or both, checked; without uv (all zeros) every
  *   edge is taken to be as long as any other
+ * @seams: (nullable) (element-type ClothSeamLine): which vertices are sewn to which;
+ *   across a seam each face keeps its own measures
  *
  * Returns: (transfer full): its neighbours and second differences
  *
  * Since: 0.1
  */
 ClothStencils *
-cloth_stencils_new (const ClothTopology * topology)
+cloth_stencils_new (const ClothTopology * topology, const GArray * seams)
 {
   ClothStencils *self = g_new0 (ClothStencils, 1);
   Builder builder = { topology, };
+
+  builder.same = self->same = sew (topology, seams);
 
   builder.sides = g_array_new (FALSE, FALSE, sizeof (Side));
   builder.stencils = g_array_new (FALSE, FALSE, sizeof (ClothStencil));
@@ -410,6 +468,7 @@ cloth_stencils_free (ClothStencils * stencils)
 {
   if (!stencils)
     return;
+  g_free (stencils->same);
   g_free (stencils->stencils);
   g_free (stencils->of_start);
   g_free (stencils->of);

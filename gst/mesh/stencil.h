@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/mesh/topology.h"
+#include "gst/mesh/takeinfo.h"
 
 G_BEGIN_DECLS
 
@@ -30,6 +30,8 @@ typedef struct {
 /**
  * ClothStencils:
  * @n_vertices: vertices of the mesh
+ * @same: for each vertex the lowest one that it is sewn to, or itself; all else knows only
+ *   those
  * @edge_m: mean length of an edge on the flat cloth, metres; 1 when uv is not known
  * @n: number of stencils
  * @stencils: the stencils, by their first vertices
@@ -46,6 +48,7 @@ typedef struct {
  */
 typedef struct {
   guint n_vertices;
+  guint *same;
   gdouble edge_m;
   guint n;
   ClothStencil *stencils;
@@ -58,7 +61,8 @@ typedef struct {
   gfloat *length;
 } ClothStencils;
 
-ClothStencils *cloth_stencils_new (const ClothTopology * topology);
+ClothStencils *cloth_stencils_new (const ClothTopology * topology,
+    const GArray * seams);
 void cloth_stencils_free (ClothStencils * stencils);
 void cloth_stencil_apply (const ClothStencil * stencil,
     const gfloat * positions, gdouble value[3]);

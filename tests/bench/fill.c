@@ -164,7 +164,7 @@ fill (const Recording * recording, ClothFillMethod method, guint start,
   g_autoptr (ClothTopology) topology =
       cloth_topology_new_grid (COLUMNS, ROWS, WIDTH, HEIGHT);
   ClothFillParameters parameters = { method, NOISE, 1, 0, 0 };
-  g_autoptr (ClothFill) filler = cloth_fill_new (topology, &parameters);
+  g_autoptr (ClothFill) filler = cloth_fill_new (topology, NULL, &parameters);
   g_autofree gfloat *positions = g_new (gfloat, 3 * N);
   g_autofree guint8 *states = g_new (guint8, N);
 
@@ -331,7 +331,7 @@ time_frames (const Recording * recording)
       mode == 3 ? CLOTH_FILL_BILAPLACIAN : CLOTH_FILL_PLATE, NOISE, 1,
       CLOTH_FILL_PREDICTION, mode == 0 ? 0 : CLOTH_FILL_OUTLIER
     };
-    g_autoptr (ClothFill) filler = cloth_fill_new (topology, &parameters);
+    g_autoptr (ClothFill) filler = cloth_fill_new (topology, NULL, &parameters);
     ClothRandom random;
     ClothFillCounts counts;
     gdouble best = G_MAXDOUBLE, sum = 0;
@@ -395,7 +395,7 @@ find_wrong (const Recording * recording)
 
   printf ("  outliers found, first frame and later (others removed):");
   for (guint s = 0; s < G_N_ELEMENTS (shifts); s++) {
-    g_autoptr (ClothFill) filler = cloth_fill_new (topology, &parameters);
+    g_autoptr (ClothFill) filler = cloth_fill_new (topology, NULL, &parameters);
     guint found[2] = { 0, }, all[2] = { 0, }, others = 0, seen = 0;
     gfloat offset[N][3] = { {0,}, };
     guint8 left[N] = { 0, };

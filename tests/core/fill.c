@@ -85,7 +85,7 @@ sheet_init (Sheet * sheet, ClothTopology * topology,
   guint n = topology->n_vertices;
 
   sheet->topology = topology;
-  sheet->fill = cloth_fill_new (topology, parameters);
+  sheet->fill = cloth_fill_new (topology, NULL, parameters);
   sheet->positions = g_new (gfloat, 3 * n);
   sheet->truth = g_new (gfloat, 3 * n);
   sheet->states = g_new (guint8, n);
@@ -452,7 +452,7 @@ score_hole (const Take * take, ClothFillMethod method, gboolean past,
   g_autoptr (ClothTopology) topology =
       cloth_topology_new_grid (TAKE_COLUMNS, TAKE_ROWS, 0.63f, 0.67f);
   ClothFillParameters parameters = { method, 0.0004, 1, 0, 0 };
-  g_autoptr (ClothFill) fill = cloth_fill_new (topology, &parameters);
+  g_autoptr (ClothFill) fill = cloth_fill_new (topology, NULL, &parameters);
   g_autofree gfloat *positions = g_new (gfloat, 3 * TAKE_N);
   guint8 states[TAKE_N];
   ClothRandom random;
@@ -595,7 +595,7 @@ static void
 test_smooth (void)
 {
   g_autoptr (ClothTopology) topology = cloth_topology_new_grid (3, 3, 2, 2);
-  g_autoptr (ClothStencils) stencils = cloth_stencils_new (topology);
+  g_autoptr (ClothStencils) stencils = cloth_stencils_new (topology, NULL);
   gfloat p[27], q[27], before[3] = { 0, 1, NAN }, after[3] = { 2, 1, 1 };
   gfloat now[3] = { 0, 3, 1 };
 

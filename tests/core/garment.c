@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "gst/mesh/delaunay.h"
+#include "gst/mesh/fill.h"
 #include "gst/mesh/obj.h"
 #include "gst/mesh/svgpath.h"
 #include "tests/core/meshpeer.h"
@@ -385,6 +386,147 @@ test_save (void)
   scratch_end ();
 }
 
+/* Two panels sewn at both sides to a tube around which they go once, @radius wide; or one
+ * after the other in a plane, sewn once. Outlines have no dots: they must be found. */
+static gdouble
+wear (const ClothGarment * garment, gboolean tube, gboolean sewn)
+{
+  const ClothTopology *topology = garment->topology;
+  guint n = topology->n_vertices;
+  ClothFillParameters parameters = { CLOTH_FILL_PLATE, 1e-6, 1, 0, 0 };
+  g_autoptr (ClothFill) fill = cloth_fill_new (topology,
+      sewn ? garment->seams : NULL, &parameters);
+  g_autofree gfloat *truth = g_new (gfloat, 3 * n);
+  g_autofree gfloat *seen = g_new (gfloat, 3 * n);
+  g_autofree guint8 *states = g_new (guint8, n);
+  ClothMeshFrame in = { seen, states, NULL }, out;
+  gdouble radius = 0.2 / G_PI, most = 0;
+
+  for (guint v = 0; v < n; v++) {
+    /* u along the cloth without the gap between the panels */
+    gdouble u = topology->uv[2 * v], height = topology->uv[2 * v + 1];
+
+    u -= v >= g_array_index (garment->panels, ClothPanel, 1).first ? 0.16
+        : 0.02;
+    truth[3 * v] =
+        (gfloat) (tube ? radius * cos (u / radius) : u + 0.1 * height);
+    truth[3 * v + 1] = (gfloat) (tube ? radius * sin (u / radius) : 0.3 * u);
+    truth[3 * v + 2] = (gfloat) - height;
+    for (guint c = 0; c < 3; c++)
+      seen[3 * v + c] = garment->dots[v] == CLOTH_NO_DOT ? NAN
+          : truth[3 * v + c];
+    states[v] = garment->dots[v] == CLOTH_NO_DOT ? CLOTH_VERTEX_UNSEEN
+        : CLOTH_VERTEX_MEASURED;
+  }
+  cloth_fill_run (fill, 0, &in, &out, NULL);
+  for (guint s = 0; s < garment->seams->len; s++) {
+    const ClothSeamLine *line = &g_array_index (garment->seams, ClothSeamLine,
+        s);
+
+    for (guint i = 0; i < line->n_vertices; i++)
+      for (guint side = 0; side < 2; side++)
+        for (guint c = 0; c < 3; c++) {
+          guint v = line->lines[side][i];
+
+          g_assert_cmpuint (out.states[v], ==, CLOTH_VERTEX_FILLED);
+          if (sewn)
+            g_assert_cmpfloat (out.positions[3 * v + c], ==,
+                out.positions[3 * line->lines[0][i] + c]);
+          most = fmax (most, fabs ((gdouble) out.positions[3 * v + c]
+                  - truth[3 * v + c]));
+        }
+  }
+  return most;
+}
+
+static void
+test_worn (void)
+{
+  /* 200 mm each, so that the tube is 400 mm around */
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothGarment) tube = build (HEAD PANEL ("a",
+          EDGE ("a1", "M20,20 H220") SEWN ("a2", "one", "M220,20 V180")
+          EDGE ("a3", "M220,180 H20") SEWN ("a4", "two", "M20,180 V20"))
+      PANEL ("b", EDGE ("b1", "M360,200 H560")
+          SEWN ("b2", "two", "M560,200 V360") EDGE ("b3", "M560,360 H360")
+          SEWN ("b4", "one", "M360,360 V200")) "</svg>", &paper, &error);
+  g_autoptr (ClothGarment) plane = NULL;
+  gdouble loose, sewn;
+
+  /* the second lies 180 mm lower on the cloth; it is worn at the first one's height */
+  g_assert_no_error (error);
+  for (guint v = g_array_index (tube->panels, ClothPanel, 1).first;
+      v < tube->topology->n_vertices; v++)
+    tube->topology->uv[2 * v + 1] -= 0.18f;
+  sewn = wear (tube, TRUE, TRUE);
+  loose = wear (tube, TRUE, FALSE);
+  g_test_message
+      ("seams of a tube of 127 mm: %.2f mm off when sewn, %.2f loose",
+      1000 * sewn, 1000 * loose);
+  g_assert_cmpfloat (sewn, <, 0.0015);
+  g_assert_cmpfloat (sewn, <, loose / 2);
+  plane = build (HEAD PANEL ("a",
+          EDGE ("a1", "M20,20 H220") SEWN ("a2", "one", "M220,20 V180")
+          EDGE ("a3", "M220,180 H20") EDGE ("a4", "M20,180 V20"))
+      PANEL ("b", EDGE ("b1", "M360,20 H560") EDGE ("b2", "M560,20 V180")
+          EDGE ("b3", "M560,180 H360") SEWN ("b4", "one", "M360,180 V20"))
+      "</svg>", &paper, &error);
+  g_assert_no_error (error);
+  g_assert_cmpfloat (wear (plane, FALSE, TRUE), <, 1e-5);
+}
+
+static void
+test_load (void)
+{
+  static const gchar *const bad[][2] = {
+    {"{}", "version"}, {"[]", ""}, {"{\"version\": 2, \"columns\": 1, "
+          "\"rows\": 1}", "version 2"},
+    {"{\"version\": 1, \"columns\": 2, \"rows\": 2}", "dots"},
+    {"{\"version\": 1, \"columns\": 2, \"rows\": 2, \"dots\": [0, 1, 2]}",
+        "each of the 4"},
+    {"{\"version\": 1, \"columns\": 2, \"rows\": 2, \"dots\": [0, 1, 2, 4]}",
+        "vertex 3"},
+    {"{\"version\": 1, \"columns\": 2, \"rows\": 2, \"dots\": [0, 1, 2, 2]}",
+        "dot 2"},
+    {"{\"version\": 1, \"columns\": 2, \"rows\": 2, \"dots\": [0, 1, 2, 3], "
+          "\"seams\": [{\"lines\": [[0, 1], [2]]}]}", "seam 0"},
+    {"{\"version\": 1, \"columns\": 2, \"rows\": 2, \"dots\": [0, 1, 2, 3], "
+          "\"seams\": [{\"lines\": [[0, 1], [2, 4]]}]}", "seam 0"},
+    {"{\"version\": 1, \"columns\": 2, \"rows\": 2, \"dots\": [0, 1, 2, 3], "
+          "\"panels\": [{\"first\": 2, \"vertices\": 3}]}", "vertices"},
+    {"{\"version\": 1, \"columns\": 2, \"rows\": 2, \"dots\": [0, 1, 2, 3], "
+          "\"seam\": []}", "seam"},
+  };
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothGarment) garment = build (HEAD LEFT RIGHT ("200") "</svg>",
+      &grid, &error);
+  g_autoptr (ClothGarment) again = NULL;
+  g_autofree gchar *path = NULL, *json = NULL, *other = NULL;
+
+  scratch_begin ();
+  path = scratch_path ("garment.json");
+  g_assert_true (cloth_garment_save (garment, scratch, &error));
+  again = cloth_garment_load (path, &error);
+  g_assert_no_error (error);
+  json = cloth_garment_to_json (garment);
+  other = cloth_garment_to_json (again);
+  g_assert_cmpstr (json, ==, other);
+  g_assert_true (cloth_topology_equal (garment->topology, again->topology));
+  scratch_end ();
+  for (guint i = 0; i < G_N_ELEMENTS (bad); i++) {
+    g_clear_error (&error);
+    g_assert_null (cloth_garment_parse (bad[i][0], strlen (bad[i][0]),
+            cloth_topology_new_grid (2, 2, 1, 1), &error));
+    g_assert_nonnull (error);
+    if (!strstr (error->message, bad[i][1]))
+      g_error ("case %u: “%s” doesn't say “%s”", i, error->message,
+          bad[i][1]);
+  }
+  g_clear_error (&error);
+  g_assert_null (cloth_garment_load ("/no/such/garment.json", &error));
+  g_assert_nonnull (error);
+}
+
 /* ---- what is wrong, and what is said of it ---- */
 
 static void
@@ -495,6 +637,8 @@ main (int argc, char **argv)
   g_test_add_func ("/garment/seam", test_seam);
   g_test_add_func ("/garment/examples", test_examples);
   g_test_add_func ("/garment/save", test_save);
+  g_test_add_func ("/garment/worn", test_worn);
+  g_test_add_func ("/garment/load", test_load);
   g_test_add_func ("/garment/errors", test_errors);
   g_test_add_func ("/garment/limits", test_limits);
   return g_test_run ();

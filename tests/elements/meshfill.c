@@ -6,6 +6,9 @@
 #include <gst/cloth/cloth.h>
 #include <math.h>
 
+#include "gst/mesh/garment.h"
+#include "tests/core/meshpeer.h"
+
 #define COLUMNS 9
 #define ROWS 8
 #define N (COLUMNS * ROWS)
@@ -336,6 +339,80 @@ GST_START_TEST (test_take)
 
 GST_END_TEST;
 
+/* Panels cut from the print of 9 × 8 dots: the grid comes in, the garment goes out. */
+GST_START_TEST (test_garment)
+{
+  static const gchar drawing[] = "<svg width=\"180mm\" height=\"160mm\" "
+      "viewBox=\"0 0 180 160\"><g id=\"a\" class=\"panel\">"
+      "<path data-seam=\"s\" d=\"M80,10 V150\"/><path d=\"M80,150 H20 V10 H80\"/>"
+      "</g><g id=\"b\" class=\"panel\"><path data-seam=\"s\" d=\"M100,10 V150\"/>"
+      "<path d=\"M100,150 H160 V10 H100\"/></g></svg>";
+  const ClothDotGrid grid = { COLUMNS, ROWS, 0.02, {0.01, 0.01}, {0.18, 0.16} };
+  g_autoptr (ClothGarment) garment = cloth_garment_new_from_svg (drawing,
+      sizeof drawing - 1, &grid, NULL);
+  g_autofree gchar *path = NULL, *line = NULL;
+  guint n;
+
+  fail_unless (garment != NULL);
+  n = garment->topology->n_vertices;
+  scratch_begin ();
+  fail_unless (cloth_garment_save (garment, scratch, NULL));
+  path = scratch_path ("garment.json");
+  line = g_strdup_printf ("meshfill garment=%s max-sigma=1", path);
+  {
+    GstHarness *h = harness (line, 25);
+
+    for (guint k = 0; k < 3; k++) {
+      g_autoptr (GstClothMesh) mesh = NULL;
+      g_autoptr (GstCaps) caps = NULL;
+      g_autoptr (GstClothTopology) topology = NULL;
+      const gfloat *positions;
+      const guint8 *states;
+
+      fail_unless_equals_int (gst_harness_push (h, make_frame (k, 1)),
+          GST_FLOW_OK);
+      mesh = pull (h, k);
+      caps = gst_pad_get_current_caps (h->sinkpad);
+      topology = gst_cloth_topology_from_caps (caps, NULL);
+      fail_unless_equals_int (gst_cloth_topology_get_n_vertices (topology), n);
+      fail_unless_equals_int (gst_cloth_mesh_get_n_vertices (mesh), n);
+      positions = gst_cloth_mesh_get_positions (mesh, NULL);
+      states = gst_cloth_mesh_get_states (mesh, NULL);
+      for (guint v = 0; v < n; v++) {
+        gint dot = garment->dots[v];
+
+        fail_unless_equals_int (states[v], dot == CLOTH_NO_DOT || dot == HOLE
+            ? GST_CLOTH_VERTEX_FILLED : GST_CLOTH_VERTEX_MEASURED);
+        if (dot != CLOTH_NO_DOT && dot != HOLE)
+          fail_unless (fabs (positions[3 * v] - 0.02 * (dot % COLUMNS)) < 1e-6);
+      }
+    }
+    gst_harness_teardown (h);
+  }
+  /* a print of another size */
+  {
+    GstHarness *h = gst_harness_new_parse (line);
+
+    gst_harness_set_src_caps (h, make_caps (4, 3, 25));
+    fail_if (gst_harness_push (h, make_frame (0, 1)) == GST_FLOW_OK);
+    gst_harness_teardown (h);
+  }
+  scratch_end ();
+  /* no garment there */
+  {
+    g_autoptr (GstElement) element =
+        gst_element_factory_make ("meshfill", NULL);
+
+    gst_object_ref_sink (element);
+    g_object_set (element, "garment", "/no/such/garment.json", NULL);
+    fail_unless_equals_int (gst_element_set_state (element, GST_STATE_PAUSED),
+        GST_STATE_CHANGE_FAILURE);
+    gst_element_set_state (element, GST_STATE_NULL);
+  }
+}
+
+GST_END_TEST;
+
 static Suite *
 meshfill_suite (void)
 {
@@ -352,6 +429,7 @@ meshfill_suite (void)
   tcase_add_test (test, test_caps);
   tcase_add_test (test, test_bad_frames);
   tcase_add_test (test, test_take);
+  tcase_add_test (test, test_garment);
   return suite;
 }
 
