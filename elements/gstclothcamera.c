@@ -11,7 +11,10 @@
  * shutter, motion blur, defocus, noise and more (`effects`). On its printed side the
  * cloth carries a `pattern` or any picture as `texture`.
  *
- * The pictures are as large as the rig says and have the times of the meshes. Effects
+ * Without a `rig` the view is free: from `azimuth` and `elevation`, all of the first mesh
+ * in the picture, which may be of any size.
+ *
+ * Otherwise pictures are as large as the rig says. They have the times of the meshes. Effects
  * that look at the cloth between two meshes hold pictures back until the meshes around
  * them are there.
  *
@@ -54,7 +57,9 @@ enum
   PROP_TEXTURE,
   PROP_EFFECTS,
   PROP_SEED,
-  PROP_THREADS
+  PROP_THREADS,
+  PROP_VIEW,
+  PROP_VIEW_LAST = PROP_VIEW + GST_CLOTH_CAMERA_VIEW_SETTINGS - 1
 };
 
 /* One mesh of the window around the picture that is drawn. */
@@ -72,12 +77,14 @@ struct _GstClothCamera
 
   /* with the object lock */
   gchar *rig, *camera, *pattern, *texture, *effects;
+  GstClothCameraView view;
   guint64 seed;
   guint threads;
   GstClockTime latency;
 
   /* from start to stop */
   ClothCapture capture;
+  gboolean free_view;           /* without a rig */
   gboolean still;               /* a picture shows the mesh of its own time only */
 
   /* streaming thread */
@@ -297,6 +304,25 @@ draw (GstClothCamera * self, const Frame * frame, GstVideoFrame * video)
       GST_VIDEO_FRAME_COMP_PSTRIDE (video, 0));
 }
 
+static void
+aim (GstClothCamera * self, const Frame * frame)
+{
+  GstClockTime time = gst_segment_to_stream_time (&GST_BASE_TRANSFORM
+      (self)->segment, GST_FORMAT_TIME, GST_BUFFER_PTS (frame->buffer));
+  ClothCamera camera;
+
+  if (GST_CLOCK_TIME_IS_VALID (time))
+    gst_object_sync_values (GST_OBJECT (self), time);
+  GST_OBJECT_LOCK (self);
+  gst_cloth_camera_view_aim (&self->view, self->n_vertices, frame->positions,
+      GST_VIDEO_INFO_WIDTH (&self->output.info),
+      GST_VIDEO_INFO_HEIGHT (&self->output.info), &camera);
+  GST_OBJECT_UNLOCK (self);
+  cloth_capture_init (&self->capture, &camera);
+  /* they were good at the start */
+  cloth_capture_add_effects (&self->capture, self->effects, NULL);
+}
+
 static GstFlowReturn
 gst_cloth_camera_generate_output (GstBaseTransform * trans, GstBuffer ** output)
 {
@@ -310,6 +336,8 @@ gst_cloth_camera_generate_output (GstBaseTransform * trans, GstBuffer ** output)
   if (!is_ready (self))
     return GST_FLOW_OK;
   frame = frame_at (self, self->next);
+  if (self->free_view)
+    aim (self, frame);
   if (self->last && cloth_capture_is_dropped (&self->capture,
           frame->sequence, self->seed)) {
     picture = gst_buffer_copy (self->last);
@@ -445,12 +473,20 @@ static gboolean
 gst_cloth_camera_load (GstClothCamera * self)
 {
   g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRig) rig = NULL;
   const ClothCamera *camera;
-  g_autoptr (ClothRig) rig = gst_cloth_open_rig (GST_ELEMENT (self), self->rig,
-      self->camera, &camera);
+  ClothCamera any;
 
-  if (!rig)
-    return FALSE;
+  self->free_view = !self->rig && !self->camera;
+  if (self->free_view) {
+    cloth_orbit_camera (&self->view.orbit, 1, 1, &any);
+    camera = &any;
+  } else {
+    rig = gst_cloth_open_rig (GST_ELEMENT (self), self->rig, self->camera,
+        &camera);
+    if (!rig)
+      return FALSE;
+  }
   cloth_capture_init (&self->capture, camera);
   if (!cloth_capture_add_effects (&self->capture, self->effects, &error)) {
     GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS, ("Wrong effects: %s",
@@ -483,6 +519,7 @@ gst_cloth_camera_forget (GstClothCamera * self)
   gst_cloth_camera_reset (self);
   g_ptr_array_set_size (self->spare, 0);
   gst_clear_caps (&self->mesh_caps);
+  self->view.framed = FALSE;
   g_clear_pointer (&self->renderer, cloth_renderer_free);
   g_clear_pointer (&self->paint, cloth_paint_free);
 }
@@ -567,11 +604,22 @@ gst_cloth_camera_transform_caps (GstBaseTransform * trans,
 
   if (direction == GST_PAD_SINK && camera->width > 0) {
     other = gst_caps_make_writable (other);
-    gst_caps_set_simple (other, "width", G_TYPE_INT, camera->width, "height",
-        G_TYPE_INT, camera->height, "pixel-aspect-ratio", GST_TYPE_FRACTION, 1,
-        1, NULL);
+    gst_caps_set_simple (other, "pixel-aspect-ratio", GST_TYPE_FRACTION, 1, 1,
+        NULL);
+    if (!GST_CLOTH_CAMERA (trans)->free_view)
+      gst_caps_set_simple (other, "width", G_TYPE_INT, camera->width, "height",
+          G_TYPE_INT, camera->height, NULL);
   }
   return gst_cloth_carry_caps (caps, kept, other, filter);
+}
+
+static GstCaps *
+gst_cloth_camera_fixate_caps (GstBaseTransform * trans,
+    GstPadDirection direction, GstCaps * caps, GstCaps * other)
+{
+  if (direction == GST_PAD_SINK)
+    other = gst_cloth_camera_view_fixate (other);
+  return gst_caps_fixate (other);
 }
 
 static gboolean
@@ -603,6 +651,13 @@ text_of (GstClothCamera * self, guint id)
   }
 }
 
+static gdouble *
+view_of (GstClothCamera * self, guint id)
+{
+  return id >= PROP_VIEW && id <= PROP_VIEW_LAST ?
+      &self->view.settings[id - PROP_VIEW] : NULL;
+}
+
 static void
 gst_cloth_camera_set_property (GObject * object, guint id,
     const GValue * value, GParamSpec * pspec)
@@ -618,6 +673,8 @@ gst_cloth_camera_set_property (GObject * object, guint id,
   if (text) {
     g_free (*text);
     *text = g_value_dup_string (value);
+  } else if (view_of (self, id)) {
+    *view_of (self, id) = g_value_get_double (value);
   } else if (id == PROP_SEED) {
     self->seed = g_value_get_uint64 (value);
   } else if (id == PROP_THREADS) {
@@ -638,6 +695,8 @@ gst_cloth_camera_get_property (GObject * object, guint id, GValue * value,
   GST_OBJECT_LOCK (self);
   if (text)
     g_value_set_string (value, *text);
+  else if (view_of (self, id))
+    g_value_set_double (value, *view_of (self, id));
   else if (id == PROP_SEED)
     g_value_set_uint64 (value, self->seed);
   else if (id == PROP_THREADS)
@@ -684,10 +743,11 @@ gst_cloth_camera_class_init (GstClothCameraClass * klass)
   object_class->get_property = gst_cloth_camera_get_property;
   object_class->finalize = gst_cloth_camera_finalize;
   install_string (object_class, PROP_RIG, "rig", "Rig",
-      "Calibration file (rig.json) that has the camera");
+      "Calibration file (rig.json) that has the camera; without one the view is free");
   install_string (object_class, PROP_CAMERA, "camera", "Camera",
       "Name in the rig of the camera that films; may be left out when the rig has "
       "one camera");
+  gst_cloth_camera_view_install (object_class, PROP_VIEW);
   install_string (object_class, PROP_PATTERN, "pattern", "Pattern",
       "Pattern file (pattern.json) that is printed on the cloth: squares or coloured dots");
   install_string (object_class, PROP_TEXTURE, "texture", "Texture",
@@ -715,6 +775,7 @@ gst_cloth_camera_class_init (GstClothCameraClass * klass)
   trans_class->stop = gst_cloth_camera_stop;
   trans_class->set_caps = gst_cloth_camera_set_caps;
   trans_class->transform_caps = gst_cloth_camera_transform_caps;
+  trans_class->fixate_caps = gst_cloth_camera_fixate_caps;
   trans_class->decide_allocation = gst_cloth_camera_decide_allocation;
   trans_class->transform = gst_cloth_camera_transform;
   trans_class->submit_input_buffer = gst_cloth_camera_submit_input_buffer;
@@ -730,6 +791,7 @@ gst_cloth_camera_init (GstClothCamera * self)
   self->spare = g_ptr_array_new_with_free_func (frame_free);
   self->positions = g_ptr_array_new ();
   self->times = g_array_new (FALSE, FALSE, sizeof (gdouble));
+  gst_cloth_camera_view_init (&self->view);
   self->threads = DEFAULT_THREADS;
   self->seed = DEFAULT_SEED;
   cloth_render_style_init (&self->style);

@@ -500,6 +500,46 @@ GST_START_TEST (test_other_camera)
 
 GST_END_TEST;
 
+/* Without a rig: of any size, all of the cloth in the picture and about its middle; turned
+ * while it plays. */
+GST_START_TEST (test_free_view)
+{
+  GstHarness *h = gst_harness_new_parse ("clothcamera elevation=0");
+  g_autoptr (GstElement) element = NULL;
+  GstCaps *caps;
+  GstBuffer *out;
+  gdouble level, edge_on;
+
+  gst_harness_set_sink_caps_str (h,
+      "video/x-raw,format=GRAY8,height=65,width=[1,97]");
+  gst_harness_set_src_caps (h, mesh_caps (4, 3));
+  gst_harness_push (h, mesh_buffer (0, 4, 3, 0.5));
+  out = gst_harness_pull (h);
+  caps = gst_pad_get_current_caps (h->sinkpad);
+  fail_unless (gst_caps_is_subset (caps, gst_static_caps_get (&(GstStaticCaps)
+              GST_STATIC_CAPS ("video/x-raw,width=97,height=65"))));
+  gst_caps_unref (caps);
+  level = middle_of (out);
+  fail_unless (fabs (level - 48) < 1, "%g", level);
+  gst_buffer_unref (out);
+  /* the view stays where the cloth was first seen */
+  gst_harness_push (h, mesh_buffer (1, 4, 3, 0.6));
+  out = gst_harness_pull (h);
+  fail_unless (middle_of (out) > level + 4);
+  gst_buffer_unref (out);
+  /* from above a cloth that hangs is a line */
+  element = gst_harness_find_element (h, "clothcamera");
+  g_object_set (element, "elevation", 90.0, NULL);
+  gst_harness_push (h, mesh_buffer (2, 4, 3, 0.5));
+  out = gst_harness_pull (h);
+  edge_on = middle_of (out);
+  fail_unless (isnan (edge_on) || fabs (edge_on - 48) < 2, "%g", edge_on);
+  gst_buffer_unref (out);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
 static void
 assert_refused (const gchar * launch, const gchar * says)
 {
@@ -549,7 +589,7 @@ GST_START_TEST (test_refused)
     {"camera=a effects=motion_blur,exposure=0.01", "rising times"}
   };
 
-  assert_refused ("clothcamera", "Set rig= to a rig.json");
+  assert_refused ("clothcamera camera=a", "Set rig= to a rig.json");
   assert_refused ("clothcamera rig=/nowhere/rig.json", "/nowhere/rig.json");
   for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
     g_autofree gchar *launch = g_strdup_printf ("clothcamera rig=%s %s", rig,
@@ -580,6 +620,7 @@ clothcamera_suite (void)
   tcase_add_test (tc, test_order);
   tcase_add_test (tc, test_reconfigure);
   tcase_add_test (tc, test_other_camera);
+  tcase_add_test (tc, test_free_view);
   tcase_add_test (tc, test_refused);
   return s;
 }
