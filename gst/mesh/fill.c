@@ -18,8 +18,12 @@
 /* Second differences of cloth are not independent: a fold is wider than an edge. By how
  * much the variance grows for it, measured on takes (docs/filling.md): little for a
  * small hole, most of it for one whose variance is beyond WIDE. */
-#define CORRELATION 8.0
+#define CORRELATION 4.0
 #define WIDE 0.4
+/* Holes are where cloth hides, in folds deeper than around. What the filled cloth lacks of
+ * its length, beyond what its surroundings lack, tells: the variance that it adds, for a
+ * part of the edges' squares lacking, times the plate's. */
+#define HIDDEN 1.0
 /* Frame periods after which, when the prediction has ended too, the cloth is met anew. */
 #define MOST_STEPS 2
 
@@ -297,21 +301,44 @@ predict (ClothFill * self, const ClothHole * hole)
   }
 }
 
+/* Which part of their squared length the edges at @v lack. */
+static gdouble
+find_lack (const ClothFill * self, guint v)
+{
+  const ClothStencils *s = self->stencils;
+  gdouble sum = 0;
+  guint n = 0;
+
+  for (guint i = s->near_start[v]; i < s->near_start[v + 1]; i++) {
+    const gfloat *p = self->positions + 3 * v;
+    const gfloat *q = self->positions + 3 * s->near[i];
+    gdouble x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
+    gdouble part = (x * x + y * y + z * z) / (s->length[i] * s->length[i]);
+
+    if (!isfinite (part))
+      continue;
+    sum += fmax (1 - part, 0);
+    n++;
+  }
+  return n > 0 ? sum / n : 0;
+}
+
 /* What the plate through @ring (3·n_ring) gives for the hole's vertices. */
 static void
 fill_hole (ClothFill * self, const ClothHole * hole)
 {
   ClothFillShape shape;
-  gdouble *ring, *offset, *flat, *moved, rotation[9], shift[3];
-  gdouble persistence = 0;
+  gdouble *ring, *offset, *flat, *moved, *kept, rotation[9], shift[3];
+  gdouble persistence = 0, usual = 0;
   guint of_age = CLOTH_FILL_NEVER;
 
   cloth_fill_shape (self, hole, &shape);
-  g_array_set_size (self->numbers, 6 * (hole->n_ring + hole->n));
+  g_array_set_size (self->numbers, 6 * (hole->n_ring + hole->n) + hole->n);
   ring = (gdouble *) (gpointer) self->numbers->data;
   offset = ring + 3 * hole->n_ring;
   flat = offset + 3 * hole->n_ring;
   moved = flat + 3 * hole->n;
+  kept = moved + 3 * hole->n;
 
   cloth_fill_align (self->carried, self->measured, hole->n_region, hole->region,
       rotation, shift);
@@ -335,7 +362,7 @@ fill_hole (ClothFill * self, const ClothHole * hole)
   cloth_hole_solve (hole, offset, moved);
   for (guint i = 0; i < hole->n; i++) {
     guint v = hole->vertices[i];
-    gdouble before[3], after[3], place[3], covariance[6], apart, far;
+    gdouble before[3], after[3];
 
     for (guint c = 0; c < 3; c++)
       before[c] = self->carried[3 * v + c];
@@ -344,24 +371,39 @@ fill_hole (ClothFill * self, const ClothHole * hole)
       of_age = self->age[v];
       persistence = cloth_fill_persistence (self, hole, &shape, of_age);
     }
+    kept[i] = persistence;
     for (guint c = 0; c < 3; c++) {
       moved[3 * i + c] += after[c] + shift[c];
       if (isnan (moved[3 * i + c]))
         moved[3 * i + c] = flat[3 * i + c];
-      place[c] = flat[3 * i + c]
-          + persistence * (moved[3 * i + c] - flat[3 * i + c]);
+      flat[3 * i + c] += persistence * (moved[3 * i + c] - flat[3 * i + c]);
+      self->positions[3 * v + c] = (gfloat) flat[3 * i + c];
       /* the shape kept, for the next frame */
       self->carried[3 * v + c] = (gfloat) moved[3 * i + c];
     }
-    apart = hole->variance[i] * (1 - persistence * persistence)
-        * (1 + CORRELATION * hole->variance[i] / (hole->variance[i] + WIDE));
-    far = hole->leverage[i]
-        + persistence * persistence * (1 + hole->leverage[i]);
+  }
+  for (guint k = 0; k < hole->n_ring; k++)
+    usual += find_lack (self, hole->ring[k]) / hole->n_ring;
+  for (guint i = 0; i < hole->n; i++)
+    moved[i] = fmax (find_lack (self, hole->vertices[i]) - usual, 0);
+  for (guint i = 0; i < hole->n; i++) {
+    gdouble variance = hole->variance[i], covariance[6];
+    gdouble apart = variance * (1 - kept[i] * kept[i])
+        * (1 + CORRELATION * variance / (variance + WIDE));
+    gdouble far = hole->leverage[i]
+        + kept[i] * kept[i] * (1 + hole->leverage[i]);
+    gdouble hidden = HIDDEN * moved[i] * variance
+        * self->stencils->edge_m * self->stencils->edge_m;
+
     for (guint c = 0; c < 6; c++)
       covariance[c] = apart * shape.covariance[c] + far * shape.noise[c];
+    covariance[0] += hidden;
+    covariance[3] += hidden;
+    covariance[5] += hidden;
     if (shape.n == 0)
-      place[0] = NAN;
-    set_place (self, v, place, covariance, CLOTH_VERTEX_FILLED);
+      flat[3 * i] = NAN;
+    set_place (self, hole->vertices[i], flat + 3 * i, covariance,
+        CLOTH_VERTEX_FILLED);
   }
 }
 
@@ -413,7 +455,8 @@ remember (ClothFill * self)
  *
  * The covariance of a filled vertex is the plate's: second differences around the hole are
  * taken as a sample of those inside. Part of it, what the persistence of the surroundings
- * explains, is known from the past; the noise of the ring is added.
+ * explains, is known from the past; the noise of the ring is added, and what the filled
+ * cloth lacks of its length.
  *
  * Since: 0.1
  */

@@ -354,7 +354,8 @@ index_neighbours (ClothStencils * self, const Builder * builder)
         self->near_start[side->a + 1]++;
         self->near_start[side->b + 1]++;
       } else {
-        gfloat length = (gfloat) side_length (builder, side);
+        gfloat length = builder->has_uv ? (gfloat) side_length (builder, side)
+            : 0;
 
         self->length[at[side->a]] = self->length[at[side->b]] = length;
         self->near[at[side->a]++] = side->b;

@@ -42,7 +42,8 @@ typedef struct {
  * @line_start: (array): n_vertices + 1: where a vertex's entries in @line begin
  * @line: pairs of neighbours that the vertex lies between on a line of quads; none at a
  *   corner or among triangles
- * @length: the edge's length on the flat cloth, metres, one for each of @near
+ * @length: the edge's length on the flat cloth, metres, one for each of @near; 0 when uv
+ *   is not known
  *
  * Since: 0.1
  */

@@ -66,6 +66,18 @@ flying_shape (gdouble u, gdouble v, gdouble t, gfloat place[3])
   place[2] -= (gfloat) (0.5 * t);
 }
 
+/* A flat sheet whose middle is a fold that takes up length: 25 mm high. */
+static void
+folded_shape (gdouble u, gdouble v, gdouble t, gfloat place[3])
+{
+  gdouble s = (u - 0.16) / 0.05, inside = fabs (s) < 1 ? s : s < 0 ? -1 : 1;
+
+  /* the cloth goes up and down by as much as it is drawn together */
+  place[0] = (gfloat) (u - 0.02 * inside);
+  place[1] = (gfloat) (0.0125 * (1 + cos (G_PI * inside)));
+  place[2] = (gfloat) - v;
+}
+
 typedef struct
 {
   ClothTopology *topology;
@@ -370,6 +382,35 @@ test_uncertain (void)
   }
 }
 
+/* A fold in the hole: nothing around is bent, but length is lacking. */
+static void
+test_hidden_fold (void)
+{
+  Sheet sheet;
+  ClothMeshFrame out;
+  guint middle = 6 * COLUMNS + 8;
+  gdouble error, sigma[2];
+
+  for (guint fold = 0; fold < 2; fold++) {
+    sheet_init (&sheet, cloth_topology_new_grid (COLUMNS, ROWS, 0.32f, 0.24f),
+        &exact);
+    hide (&sheet, 5, 3, 7, 7);
+    sheet_run (&sheet, fold ? folded_shape : flat_shape, &out, NULL);
+    sigma[fold] = sqrt ((out.covariances[6 * middle]
+            + out.covariances[6 * middle + 3]
+            + out.covariances[6 * middle + 5]) / 3);
+    error = fabs ((gdouble) out.positions[3 * middle + 1]
+        - sheet.truth[3 * middle + 1]);
+    sheet_clear (&sheet);
+  }
+  g_test_message ("error %.1f mm, sigma %.1f mm; flat %.3f mm", 1000 * error,
+      1000 * sigma[1], 1000 * sigma[0]);
+  g_assert_cmpfloat (error, >, 0.005);
+  g_assert_cmpfloat (sigma[1], >, error / 3);
+  g_assert_cmpfloat (sigma[1], <, 3 * error);
+  g_assert_cmpfloat (sigma[0], <, 1e-4);
+}
+
 /* What came as filled or predicted was not measured, whatever its position. */
 static void
 test_states (void)
@@ -638,6 +679,7 @@ main (int argc, char **argv)
   g_test_add_func ("/fill/nothing-seen", test_nothing_seen);
   g_test_add_func ("/fill/not-held", test_not_held);
   g_test_add_func ("/fill/uncertain", test_uncertain);
+  g_test_add_func ("/fill/hidden-fold", test_hidden_fold);
   g_test_add_func ("/fill/states", test_states);
   g_test_add_func ("/fill/outliers", test_outliers);
   g_test_add_func ("/fill/same-bytes", test_same_bytes);
