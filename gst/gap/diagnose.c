@@ -144,7 +144,8 @@ cloth_diagnosis_other_model (const ClothDiagnosis * d)
 }
 
 static void
-note_nulls (ClothDiagnosis * d, const GArray * scores)
+note_nulls (ClothDiagnosis * d, const GArray * scores, gdouble share,
+    gdouble margin)
 {
   for (guint i = 0; i < scores->len; i++) {
     const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
@@ -152,32 +153,30 @@ note_nulls (ClothDiagnosis * d, const GArray * scores)
     for (guint c = 0; c < d->candidates->list->len; c++)
       if (g_array_index (d->candidates->list, ClothGapCandidate, c).effect ==
           cloth_diagnosis_candidate (d, s)->effect)
-        d->null_evidence[c] = NULL_SHARE * MAX (s->evidence, 0.);
+        d->null_evidence[c] = share * MAX (s->evidence, 0.);
     d->least_evidence = MAX (d->least_evidence, CLOTH_DIAGNOSIS_LEAST_EVIDENCE +
-        NULL_MARGIN * s->evidence);
+        margin * MAX (s->evidence, 0.));
   }
 }
 
-/* What baselines ask for, where it can't be taken off the takes themselves. */
+/* What baselines ask for. Where it is taken off the takes themselves, an effect must ask
+ * for more than that once more: another motion has more or less of the simulator's own
+ * error. */
 static gboolean
 study_baselines (ClothDiagnosis * d, GError ** error)
 {
   g_autoptr (GArray) scores = NULL;
   ClothGapTest test = { {NULL} };
 
-  if (cloth_diagnosis_has_signatures (d)) {
-    for (guint i = d->n_takes; i < d->studies->len; i++)
-      if (!cloth_study_linearise (cloth_diagnosis_study (d, i), d->candidates,
-              d->model, d->all, d->candidates->n_free, &d->study, error))
-        return FALSE;
-    return TRUE;
-  }
   if (!cloth_diagnosis_linearise (d, d->n_takes, d->studies->len, d->model, 0.2,
           0.3, error))
     return FALSE;
   cloth_diagnosis_make_test (d, d->n_takes, d->studies->len, &test);
   scores = cloth_gap_test_run (&test);
-  note_nulls (d, scores);
+  if (cloth_diagnosis_has_signatures (d))
+    note_nulls (d, scores, 1., 0.);
+  else
+    note_nulls (d, scores, NULL_SHARE, NULL_MARGIN);
   return TRUE;
 }
 
@@ -213,7 +212,7 @@ study_other_model (ClothDiagnosis * d, GError ** error)
   for (guint i = 0; i < d->n_takes; i++)
     cloth_diagnosis_study (d, i)->signature = NULL;
   scores = cloth_gap_test_run (&test);
-  note_nulls (d, scores);
+  note_nulls (d, scores, NULL_SHARE, NULL_MARGIN);
   return TRUE;
 }
 
