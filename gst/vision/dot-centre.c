@@ -6,6 +6,10 @@
 #include <math.h>
 #include <string.h>
 
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
 #include "gst/vision/dot-rows.h"
 
 #define TILE CLOTH_DOT_TILE
@@ -24,16 +28,12 @@
 #define TOP 0.9
 /* The most neighbours that a window may be kept from. */
 #define MAX_SIDES 8
+/* Of a distance, px. */
+#define ROUNDING 1e-6
+/* The most rows that a window and the ring about it may have. */
+#define MAX_ROWS 512
 /* Fewest pixels that give the ground. */
 #define MIN_GROUND 8
-
-/* An ellipse about a centre, A·dx² + 2·B·dx·dy + C·dy² ≤ 1, as its rows need it: dx is
- * within √(widest − narrowing·dy²) of slope·dy. */
-typedef struct
-{
-  gdouble slope, widest, narrowing;
-  gdouble width, height;        /* greatest dx and dy */
-} Ellipse;
 
 /* Own side of the line between two dots: nx·dx + ny·dy ≤ reach. */
 typedef struct
@@ -47,60 +47,6 @@ typedef struct
 {
   gint64 sum, count;
 } Bends;
-
-/* The ellipse of second moments @shape with half-axes @scale times as long and @margin
- * longer. */
-static Ellipse
-grow_ellipse (const gdouble shape[3], gdouble scale, gdouble margin)
-{
-  const gdouble mean = (shape[0] + shape[2]) / 2;
-  const gdouble half = (shape[0] - shape[2]) / 2;
-  const gdouble root = sqrt (half * half + shape[1] * shape[1]);
-  const gdouble a = 2 * sqrt (mean + root) * scale + margin;
-  const gdouble b = 2 * sqrt (MAX (mean - root, 1.0 / 12)) * scale + margin;
-  const gdouble c = root > 0 ? half / root : 1;
-  const gdouble s = root > 0 ? shape[1] / root : 0;
-  const gdouble p = (1 / (a * a) + 1 / (b * b)) / 2;
-  const gdouble q = (1 / (a * a) - 1 / (b * b)) / 2;
-  const gdouble A = p + q * c, B = q * s, C = p - q * c;
-
-  return (Ellipse) {
-  -B / A, 1 / A, 1 / (a * a * b * b * A * A), sqrt (C) * a * b,
-        sqrt (A) * a * b};
-}
-
-/* The whole number not above (not below) @v, for what may be a place in a picture. */
-#define FAR_AWAY 1048576
-
-static inline gint
-floor_place (gdouble v)
-{
-  return (gint) (v + FAR_AWAY) - FAR_AWAY;
-}
-
-static inline gint
-ceil_place (gdouble v)
-{
-  return FAR_AWAY - (gint) (FAR_AWAY - v);
-}
-
-/* The pixels of row @y within the ellipse about (@cx, @cy) and the picture. */
-static inline gboolean
-ellipse_row (const Ellipse * ellipse, gdouble cx, gdouble cy, gint y,
-    gint width, gint * first, gint * last)
-{
-  const gdouble dy = y - cy;
-  const gdouble middle = cx + ellipse->slope * dy;
-  const gdouble square = ellipse->widest - ellipse->narrowing * dy * dy;
-  gdouble half;
-
-  if (square < 0)
-    return FALSE;
-  half = sqrt (square);
-  *first = MAX (0, ceil_place (middle - half));
-  *last = MIN (width - 1, floor_place (middle + half));
-  return *first <= *last;
-}
 
 /* Half the extent of the ellipse of second moments @shape towards (@ux, @uy). */
 static gdouble
@@ -125,10 +71,10 @@ sort_candidates (ClothDotDetector * detector)
         &detector->heads[(gint) spot->y / TILE * detector->columns +
         (gint) spot->x / TILE];
 
+    spot->axes = cloth_dot_axes (spot->shape);
     spot->next = *head;
     *head = (gint32) i;
-    detector->widest = MAX (detector->widest,
-        2 * sqrt (spot->shape[0] + spot->shape[2]));
+    detector->widest = MAX (detector->widest, spot->axes.a);
   }
 }
 
@@ -138,8 +84,8 @@ static guint
 find_sides (const ClothDotDetector * detector, const ClothDotCandidate * spot,
     Side sides[MAX_SIDES])
 {
-  const gdouble own = 2 * sqrt (spot->shape[0] + spot->shape[2]);
-  const gdouble reach = own + detector->widest + 2 * MARGIN;
+  const gdouble own = spot->axes.a + 2 * MARGIN + ROUNDING;
+  const gdouble reach = own + detector->widest;
   const gint left = MAX (0, (gint) floor ((spot->x - reach) / TILE));
   const gint right = MIN (detector->columns - 1,
       (gint) floor ((spot->x + reach) / TILE));
@@ -154,12 +100,14 @@ find_sides (const ClothDotDetector * detector, const ClothDotCandidate * spot,
         const ClothDotCandidate *other =
             &g_array_index (detector->candidates, ClothDotCandidate, k);
         const gdouble dx = other->x - spot->x, dy = other->y - spot->y;
-        const gdouble distance = sqrt (dx * dx + dy * dy);
-        gdouble near, gap;
+        const gdouble square = dx * dx + dy * dy;
+        const gdouble most = own + other->axes.a;
+        gdouble distance, near, gap;
 
         k = other->next;
-        if (distance == 0 || distance > reach || n == MAX_SIDES)
+        if (square == 0 || square > most * most || n == MAX_SIDES)
           continue;
+        distance = sqrt (square);
         near = extent_towards (spot->shape, dx / distance, dy / distance);
         gap = distance - near
             - extent_towards (other->shape, dx / distance, dy / distance);
@@ -189,17 +137,88 @@ clip_row (const Side * side, const ClothDotCandidate * spot, gint y,
   }
 }
 
-/* Pixels from @start to before @end that are not above @most. */
-static inline void
-add_ground (const guint8 * row, gint start, gint end, gint most,
-    gint64 * sum, gint * n)
+/* Where the ellipses about a dot are, row by row. */
+typedef struct
 {
-  for (gint x = start; x < end; x++) {
-    const gint is_ground = row[x] <= most;
+  ClothDotEllipse window;
+  gint y0, n;
+  struct
+  {
+    gint first[MAX_ROWS], last[MAX_ROWS];
+  } inside, weighed, ring;
+} Rows;
 
-    *sum += is_ground * row[x];
-    *n += is_ground;
+static void
+find_rows (const ClothDotDetector * detector, const ClothDotCandidate * spot,
+    Rows * rows)
+{
+  const ClothImage *luma = &detector->image->luma;
+  const ClothDotEllipse inside = cloth_dot_ellipse (&spot->axes, INSIDE, 0);
+  const ClothDotEllipse ring =
+      cloth_dot_ellipse (&spot->axes, 1, MARGIN + RING);
+  gint y1;
+
+  rows->window = cloth_dot_ellipse (&spot->axes, 1, MARGIN);
+  rows->y0 = MAX (0, (gint) ceil (spot->y - ring.height));
+  y1 = MIN (luma->height - 1, (gint) floor (spot->y + ring.height));
+  rows->n = CLAMP (y1 - rows->y0 + 1, 0, MAX_ROWS);
+  cloth_dot_ellipse_rows (&inside, spot->x, spot->y, rows->y0, rows->n,
+      luma->width, rows->inside.first, rows->inside.last, detector->level);
+  cloth_dot_ellipse_rows (&rows->window, spot->x, spot->y, rows->y0, rows->n,
+      luma->width, rows->weighed.first, rows->weighed.last, detector->level);
+  cloth_dot_ellipse_rows (&ring, spot->x, spot->y, rows->y0, rows->n,
+      luma->width, rows->ring.first, rows->ring.last, detector->level);
+}
+
+/* Sum and number of pixels; those that vectors have summed wait in halves. */
+typedef struct
+{
+  gint64 sum, n;
+#ifdef __SSE2__
+  __m128i sums, counts;
+#endif
+} Tally;
+
+/* Counts the pixels from @start to before @end of a row that are not above @most. */
+static inline void
+add_dark (const guint8 * row, gint start, gint end, gint width, guint8 most,
+    gboolean vectors, Tally * tally)
+{
+#ifdef __SSE2__
+  const __m128i lane = _mm_set_epi8 (15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4,
+      3, 2, 1, 0);
+  const __m128i zero = _mm_setzero_si128 (), one = _mm_set1_epi8 (1);
+
+  for (; vectors && start < end && start + 16 <= width; start += 16) {
+    const __m128i v = _mm_loadu_si128 ((const __m128i *) (row + start));
+    const __m128i left = _mm_set1_epi8 ((gchar) MIN (end - start, 16));
+    const __m128i above = _mm_subs_epu8 (v, _mm_set1_epi8 ((gchar) most));
+    const __m128i is_dark = _mm_and_si128 (_mm_cmpeq_epi8 (above, zero),
+        _mm_cmpgt_epi8 (left, lane));
+
+    tally->sums = _mm_add_epi64 (tally->sums,
+        _mm_sad_epu8 (_mm_and_si128 (v, is_dark), zero));
+    tally->counts = _mm_add_epi64 (tally->counts,
+        _mm_sad_epu8 (_mm_and_si128 (one, is_dark), zero));
   }
+#endif
+  for (gint x = start; x < end; x++) {
+    const gint is_dark = row[x] <= most;
+
+    tally->sum += is_dark * row[x];
+    tally->n += is_dark;
+  }
+}
+
+static void
+finish_tally (Tally * tally)
+{
+#ifdef __SSE2__
+  tally->sum += _mm_cvtsi128_si32 (_mm_add_epi64 (tally->sums,
+          _mm_srli_si128 (tally->sums, 8)));
+  tally->n += _mm_cvtsi128_si32 (_mm_add_epi64 (tally->counts,
+          _mm_srli_si128 (tally->counts, 8)));
+#endif
 }
 
 static void
@@ -225,35 +244,32 @@ add_bends (const ClothImage * luma, gint y, gint first, gint last,
  * too little contrast. */
 static gboolean
 look_around (const ClothDotDetector * detector, const ClothDotCandidate * spot,
-    ClothDot * dot, Bends * bends)
+    const Rows * rows, ClothDot * dot, Bends * bends)
 {
   const ClothDotImage *image = detector->image;
   const ClothImage *luma = &image->luma;
-  const Ellipse inside = grow_ellipse (spot->shape, INSIDE, 0);
-  const Ellipse window = grow_ellipse (spot->shape, 1, MARGIN);
-  const Ellipse ring = grow_ellipse (spot->shape, 1, MARGIN + RING);
-  const gint y0 = MAX (0, (gint) ceil (spot->y - ring.height));
-  const gint y1 = MIN (luma->height - 1, (gint) floor (spot->y + ring.height));
-  gint64 ground = 0, sum[3] = { 0 };
-  gint n_ground = 0, n = 0;
+  const gboolean vectors = detector->level != CLOTH_SIMD_SCALAR;
+  Tally ground = { 0 }, bright = { 0 };
+  gint64 sum[3] = { 0 };
 
-  for (gint y = y0; y <= y1; y++) {
+  for (gint i = 0; i < rows->n; i++) {
+    const gint y = rows->y0 + i;
     const guint8 *row = luma->data + (gsize) y * (gsize) luma->stride;
-    gint first, last, from, to;
+    const gint first = rows->ring.first[i], end = rows->ring.last[i] + 1;
+    gint from = rows->weighed.first[i], to = rows->weighed.last[i];
 
-    if (!ellipse_row (&ring, spot->x, spot->y, y, luma->width, &first, &last))
+    if (first >= end)
       continue;
-    if (!ellipse_row (&window, spot->x, spot->y, y, luma->width, &from, &to))
-      from = last + 1, to = last;
-    add_ground (row, first, MIN (from, last + 1), spot->threshold, &ground,
-        &n_ground);
-    add_ground (row, MAX (to + 1, first), last + 1, spot->threshold, &ground,
-        &n_ground);
-    if (!ellipse_row (&inside, spot->x, spot->y, y, luma->width, &from, &to))
+    if (from > to)
+      from = end, to = end - 1;
+    add_dark (row, first, MIN (from, end), luma->width, spot->threshold,
+        vectors, &ground);
+    add_dark (row, MAX (to + 1, first), end, luma->width, spot->threshold,
+        vectors, &ground);
+    from = rows->inside.first[i], to = rows->inside.last[i];
+    if (from > to)
       continue;
-    n += to - from + 1;
-    for (gint x = from; x <= to; x++)
-      sum[0] += row[x];
+    add_dark (row, from, to + 1, luma->width, 255, vectors, &bright);
     add_bends (luma, y, from, to, bends);
     for (gint k = 0; k < 2 && image->chroma[k]; k++) {
       const guint8 *chroma = image->chroma[k]
@@ -265,15 +281,18 @@ look_around (const ClothDotDetector * detector, const ClothDotCandidate * spot,
             chroma[(x >> image->chroma_shift[0]) * image->chroma_step];
     }
   }
-  if (n == 0)
+  finish_tally (&ground);
+  finish_tally (&bright);
+  if (bright.n == 0)
     return FALSE;
-  dot->background = n_ground >= MIN_GROUND
-      ? (gfloat) ground / (gfloat) n_ground
+  sum[0] = bright.sum;
+  dot->background = ground.n >= MIN_GROUND
+      ? (gfloat) ground.sum / (gfloat) ground.n
       : (gfloat) detector->low[(gint) spot->y / TILE * detector->columns
       + (gint) spot->x / TILE];
   for (gint k = 0; k < 3; k++)
     dot->colour[k] = k == 0 || image->chroma[k - 1]
-        ? (gfloat) sum[k] / (gfloat) n : 128;
+        ? (gfloat) sum[k] / (gfloat) bright.n : 128;
   return dot->colour[0] - dot->background >= detector->params.contrast;
 }
 
@@ -355,7 +374,7 @@ typedef struct
 {
   const ClothImage *luma;
   const ClothDotCandidate *spot;
-  Ellipse window;
+  const Rows *rows;
   Side sides[MAX_SIDES];
   guint n_sides;
   gint x0, y0;
@@ -367,13 +386,14 @@ weigh_rows (const Weighing * weighing, Moments * shares, Moments * edges)
 {
   const ClothImage *luma = weighing->luma;
   const ClothDotCandidate *spot = weighing->spot;
-  const Ellipse *window = &weighing->window;
-  const gint last_row = (gint) floor (spot->y + window->height);
+  const Rows *rows = weighing->rows;
+  const gint last_row = (gint) floor (spot->y + rows->window.height);
 
-  for (gint y = (gint) ceil (spot->y - window->height); y <= last_row; y++) {
-    gint first, last;
+  for (gint y = (gint) ceil (spot->y - rows->window.height); y <= last_row; y++) {
+    gint first = rows->weighed.first[y - rows->y0];
+    gint last = rows->weighed.last[y - rows->y0];
 
-    if (!ellipse_row (window, spot->x, spot->y, y, luma->width, &first, &last))
+    if (first > last)
       continue;
     for (guint k = 0; k < weighing->n_sides; k++)
       clip_row (&weighing->sides[k], spot, y, &first, &last);
@@ -408,18 +428,17 @@ weigh_rows_avx2 (const Weighing * weighing, Moments * shares, Moments * edges)
  * here without σ². FALSE where the picture's border cuts the window. */
 static gboolean
 weigh_window (const ClothDotDetector * detector,
-    const ClothDotCandidate * spot, ClothDot * dot)
+    const ClothDotCandidate * spot, const Rows * rows, ClothDot * dot)
 {
   const ClothImage *luma = &detector->image->luma;
+  const ClothDotEllipse *window = &rows->window;
   const gfloat contrast = dot->colour[0] - dot->background;
   Weighing weighing = {
-    .luma = luma,.spot = spot,
-    .window = grow_ellipse (spot->shape, 1, MARGIN),
+    .luma = luma,.spot = spot,.rows = rows,
     .x0 = (gint) floor (spot->x),.y0 = (gint) floor (spot->y),
     .foot = dot->background + (gfloat) FOOT * contrast,
     .gain = 1 / ((gfloat) (TOP - FOOT) * contrast)
   };
-  const Ellipse *window = &weighing.window;
   Moments shares = { 0 }, edges = { 0 };
   gdouble w[6], e[6], c[2], scale;
 
@@ -429,7 +448,7 @@ weigh_window (const ClothDotDetector * detector,
       || spot->y + window->height > luma->height - 1)
     return FALSE;
   weighing.n_sides = find_sides (detector, spot, weighing.sides);
-  if (detector->wide)
+  if (detector->level >= CLOTH_SIMD_AVX2)
     weigh_rows_avx2 (&weighing, &shares, &edges);
   else
     weigh_rows_plain (&weighing, &shares, &edges);
@@ -467,9 +486,11 @@ cloth_dot_measure (ClothDotDetector * detector)
         &g_array_index (detector->candidates, ClothDotCandidate, i);
     Bends bends = { 0 };
     ClothDot dot;
+    Rows rows;
 
-    if (look_around (detector, spot, &dot, &bends)
-        && weigh_window (detector, spot, &dot)
+    find_rows (detector, spot, &rows);
+    if (look_around (detector, spot, &rows, &dot, &bends)
+        && weigh_window (detector, spot, &rows, &dot)
         && dot.area >= detector->params.min_area) {
       g_array_append_val (detector->dots, dot);
       all.sum += bends.sum;

@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
+#include "gst/vision/dot-ellipse.h"
 #include "gst/vision/dot.h"
 
 G_BEGIN_DECLS
@@ -12,6 +13,7 @@ typedef struct
 {
   gdouble x, y;
   gdouble shape[3];
+  ClothDotAxes axes;            /* of @shape */
   guint8 threshold;
   gboolean touches;
   gint32 next;                  /* in its tile, -1: the last */
@@ -30,7 +32,7 @@ struct _ClothDotDetector
   ClothDotParams params;
   gint columns, rows;           /* of tiles */
   guint8 *least, *most, *low, *threshold;
-  gboolean wide;                /* AVX2 may be used */
+  ClothSimd level;              /* that may be used */
   gboolean cut;
   gfloat noise;
 };

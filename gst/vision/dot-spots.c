@@ -8,15 +8,32 @@
 
 #include "gst/vision/dot-rows.h"
 
+/* Room for @n more runs, as far as there may be that many; the first of them. */
+static ClothDotRun *
+reserve_runs (GArray * runs, guint n, guint * most)
+{
+  const guint len = runs->len;
+
+  *most = MIN (n, CLOTH_DOT_MAX_RUNS - MIN (len, CLOTH_DOT_MAX_RUNS));
+  g_array_set_size (runs, len + *most);
+  return &g_array_index (runs, ClothDotRun, len);
+}
+
+static inline void
+put_run (ClothDotRun * run, gint32 self, gint y, gint start, gint end)
+{
+  *run = (ClothDotRun) {
+  self, -1, (gint16) y, (gint16) start, (gint16) end};
+}
+
 static void
 add_run (GArray * runs, gint y, gint start, gint end)
 {
-  const gint32 self = (gint32) runs->len;
-  const ClothDotRun run =
-      { self, -1, (gint16) y, (gint16) start, (gint16) end };
+  guint room;
+  ClothDotRun *run = reserve_runs (runs, 1, &room);
 
-  if (runs->len < CLOTH_DOT_MAX_RUNS)
-    g_array_append_val (runs, run);
+  if (room)
+    put_run (run, (gint32) runs->len - 1, y, start, end);
 }
 
 /* The runs of row @y by its tiles' @bits. */
@@ -24,6 +41,10 @@ void
 cloth_dot_runs_of_bits (GArray * runs, const guint16 * bits, gint n_tiles,
     gint y)
 {
+  const guint len = runs->len;
+  guint room, n = 0;
+  ClothDotRun *run = reserve_runs (runs,
+      (guint) n_tiles * CLOTH_DOT_TILE / 2 + 1, &room);
   gint start = -1;
 
   for (gint t = 0; t < n_tiles; t++) {
@@ -42,13 +63,18 @@ cloth_dot_runs_of_bits (GArray * runs, const guint16 * bits, gint n_tiles,
       if (start < 0) {
         start = t * CLOTH_DOT_TILE + x;
       } else {
-        add_run (runs, y, start, t * CLOTH_DOT_TILE + x);
+        if (n < room)
+          put_run (&run[n], (gint32) (len + n), y, start,
+              t * CLOTH_DOT_TILE + x);
+        n++;
         start = -1;
       }
     }
   }
-  if (start >= 0)
-    add_run (runs, y, start, n_tiles * CLOTH_DOT_TILE);
+  if (start >= 0 && n++ < room)
+    put_run (&run[n - 1], (gint32) (len + n - 1), y, start,
+        n_tiles * CLOTH_DOT_TILE);
+  g_array_set_size (runs, len + MIN (n, room));
 }
 
 /* The parts of @spot's runs above a higher @threshold. */
@@ -133,8 +159,12 @@ cloth_dot_spots (GArray * runs, guint first_run, GArray * spots)
             || (r[above].y == r[k].y - 1 && r[above].end <= r[k].start)))
       above++;
     for (gint32 j = above; j < k && r[j].y == r[k].y - 1
-        && r[j].start < r[k].end; j++)
-      join_runs (r, j, k);
+        && r[j].start < r[k].end; j++) {
+      if (r[k].parent == k)
+        r[k].parent = find_root (r, j);
+      else
+        join_runs (r, j, k);
+    }
   }
   for (gint32 k = (gint32) first_run; k < end; k++) {
     const gint32 root = find_root (r, k);

@@ -307,7 +307,7 @@ cloth_dot_detector_run (ClothDotDetector * detector,
   within_reach.luma.height = MIN (image->luma.height, MAX_EDGE);
   level = cloth_simd_resolve (level);
   start (detector, params, &within_reach);
-  detector->wide = level >= CLOTH_SIMD_AVX2;
+  detector->level = level;
   find_runs (detector, level);
   find_candidates (detector);
   cloth_dot_measure (detector);
