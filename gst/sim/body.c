@@ -182,6 +182,31 @@ make_bounds (ClothBody * body)
   }
 }
 
+/* Whether a grid's rows and columns are evenly apart, as near as files and single
+ * precision say. */
+static gboolean
+is_even (const ClothBody * body)
+{
+  const gdouble tolerance = 1e-4;       /* of a cell */
+  guint columns = body->columns, rows = body->rows;
+  const gdouble *uv = body->uv;
+  gdouble step[2];
+
+  if (columns < 2 || rows < 2)
+    return FALSE;
+  step[0] = (uv[2 * (columns - 1)] - uv[0]) / (columns - 1);
+  step[1] = (uv[2 * columns * (gsize) (rows - 1) + 1] - uv[1]) / (rows - 1);
+  for (guint i = 0; i < body->n_vertices; i++) {
+    const guint at[2] = { i % columns, i / columns };
+
+    for (guint k = 0; k < 2; k++)
+      if (!(fabs (uv[2 * i + k] - uv[k] - at[k] * step[k]) <=
+              tolerance * step[k]))
+        return FALSE;
+  }
+  return TRUE;
+}
+
 static void
 take_clamps (ClothBody * body, const ClothScene * scene)
 {
@@ -298,6 +323,7 @@ cloth_body_new (const ClothScene * scene, GError ** error)
   body->uv = g_new (gdouble, 2 * (gsize) n);
   for (guint i = 0; i < 2 * n; i++)
     body->uv[i] = topology->uv[i];
+  body->even = is_even (body);
   body->particle = cloth_body_merge_seams (scene->seams, n, &body->n_particles);
   body->area = g_new0 (gdouble, body->n_particles);
   if (!make_triangles (body, topology, corners, error))

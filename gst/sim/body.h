@@ -78,6 +78,7 @@ typedef struct
   guint n_vertices, n_particles;
   guint32 *particle;            /* of each vertex: sewn vertices share one */
   guint columns, rows;          /* of a grid, else 0 */
+  gboolean even;                /* a grid whose cells are nearly alike */
   gdouble *uv;                  /* of each vertex, m */
   gdouble *area;                /* of each particle, m² */
   guint n_right, n_triangles;   /* the right-angled ones come first */

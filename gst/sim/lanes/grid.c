@@ -1,12 +1,13 @@
-/* The sheet of rows and columns, where most time is spent: its membrane and its bending
- * in one pass, and the step of its particles with them.
+/* The sheet of even rows and columns, where most time is spent: its membrane and its
+ * bending in one pass, and the step of its particles with them.
  *
  * On such a grid a triangle's x_u is that of its edge along u and its x_v that of its
  * edge along v, so stretch belongs to edges, each for its two triangles, and only shear
- * to triangles. Folds are differences of neighbouring edges' x_u or x_v. So all forces
- * are forces along edges: a particle's is the sum over its four edges, put together where
- * the pass leaves it behind; nothing is scattered. The law is that of membrane.c and
- * bending.c to the rounding.
+ * to triangles. Folds are differences of neighbouring edges. So all forces are forces
+ * along edges: a particle's is the sum over its four edges, put together where the pass
+ * leaves it behind; nothing is scattered. Edges are not divided by their lengths at rest:
+ * stiffnesses are, once a row. The law is that of membrane.c and bending.c to the
+ * rounding.
  *
  * The pass goes row by row and keeps one row of edges at hand, which fits into the
  * nearest cache. When row r + 1 is at work, row r − 1 is complete and can move.
@@ -14,20 +15,32 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/sim/lanes/motion.h"
 
+/* Of an edge the difference x of its ends' places, and z that of these and β times their
+ * velocities. Its square is |x|² and twice β times its rate, x·(2z − x). Its force is
+ * tension times x, and what is not along it. */
+typedef struct
+{
+  ClothLane x[3], z[3], square, tension, force[3];
+} Edge;
+
+/* What a row leaves for the next of a column: its edge to the left, of that above z and
+ * the whole force, and what is known of the force on the particle above. */
+typedef struct
+{
+  ClothLane x[3], square, tension, along_u[3];
+  ClothLane down_z[3], along_v[3], force[3];
+} Column;
+
 struct _ClothLaneGrid
 {
   guint columns, rows;
-  /* Edges from a column to the next, from a row to the next (m); what lies half way to
-   * the neighbours on both sides of a column, of a row. */
-  ClothReal *du, *inverse_u, *width;
-  ClothReal *dv, *inverse_v, *height;
-  /* of a fold across a column, per edge on its left and on its right: 1/(width du) */
-  ClothReal *fold_left, *fold_right;
+  gdouble du, dv;               /* edges on the average, m */
+  /* squares of a row's and of a column's, m²: what is not quite even, or rounded, is
+   * at rest where it should be */
+  ClothReal *square_u, *square_v;
   /* of each cell: its right angles are top right and bottom left */
   guint8 *turned;
-  /* Of a row, by column: forces along the edges to the right and down, z of the latter,
-   * and what is known of the forces on the particles above. */
-  ClothLane3 *along_u, *along_v, *down, *force;
+  Column *line;                 /* of the row at work, by column */
 };
 
 /* What is to be done with a particle whose force is known. */
@@ -40,21 +53,13 @@ typedef enum
   STAGE_OTHERS                  /* with other forces */
 } Mode;
 
-/* ∂x/∂u or ∂x/∂v of an edge, β times that of the velocity, and both together. */
-typedef struct
-{
-  ClothLane x[3], w[3], z[3];
-} Edge;
-
+/* Which cells are turned; FALSE when these are no cells cut in two. */
 static gboolean
 find_cells (ClothLaneGrid * grid, const ClothBody * body)
 {
   guint columns = grid->columns, cells = (columns - 1) * (grid->rows - 1);
-  const gdouble *uv = body->uv;
   g_autofree guint8 *corners = g_new0 (guint8, cells);
 
-  if (body->n_right != body->n_triangles || body->n_triangles != 2 * cells)
-    return FALSE;
   for (guint i = 0; i < body->n_triangles; i++) {
     const guint32 *p = body->triangles[i].particle;
     guint column = p[0] % columns, row = p[0] / columns;
@@ -62,10 +67,7 @@ find_cells (ClothLaneGrid * grid, const ClothBody * body)
 
     if (p[1] / columns != row || p[2] % columns != column
         || MAX (column, p[1] % columns) != left + 1
-        || MAX (row, p[2] / columns) != top + 1
-        || !(uv[2 * (left + 1)] > uv[2 * left])
-        || !(uv[2 * (gsize) columns * (top + 1) + 1] >
-            uv[2 * (gsize) columns * top + 1]))
+        || MAX (row, p[2] / columns) != top + 1)
       return FALSE;
     corners[top * (columns - 1) + left] |=
         1 << (2 * (row - top) + column - left);
@@ -78,19 +80,16 @@ find_cells (ClothLaneGrid * grid, const ClothBody * body)
   return TRUE;
 }
 
-/* Lengths of the edges of a line, their inverses, and half of both neighbours'. */
-static void
-measure_line (const gdouble * uv, gsize stride, guint n, ClothReal * length,
-    ClothReal * inverse, ClothReal * width)
+/* The squares of the edges of a line; returns their mean length. */
+static gdouble
+measure_line (const gdouble * uv, gsize stride, guint n, ClothReal * square)
 {
   for (guint i = 0; i + 1 < n; i++) {
     gdouble d = uv[(i + 1) * stride] - uv[i * stride];
 
-    length[i] = (ClothReal) d;
-    inverse[i] = (ClothReal) (1. / d);
-    width[i] += (ClothReal) (0.5 * d);
-    width[i + 1] += (ClothReal) (0.5 * d);
+    square[i] = (ClothReal) (d * d);
   }
+  return (uv[(n - 1) * stride] - uv[0]) / (n - 1);
 }
 
 /* The grid of a body; NULL when it is another mesh. */
@@ -98,40 +97,22 @@ ClothLaneGrid *CLOTH_LANE_NAME (cloth_lane_grid_new) (const ClothBody * body)
 {
   ClothLaneGrid * grid;
   guint columns = body->columns, rows = body->rows;
-  ClothLane3 **lines[4];
 
-  if (columns < 2 || rows < 2 || body->n_particles != body->n_vertices)
+  if (!body->even || body->n_particles != body->n_vertices)
     return NULL;
   grid = g_new0 (ClothLaneGrid, 1);
   grid->columns = columns;
   grid->rows = rows;
+  grid->square_u = g_new0 (ClothReal, columns);
+  grid->square_v = g_new0 (ClothReal, rows);
+  grid->du = measure_line (body->uv, 2, columns, grid->square_u);
+  grid->dv = measure_line (body->uv + 1, 2 * columns, rows, grid->square_v);
   grid->turned = g_new (guint8, (columns - 1) * (rows - 1));
+  grid->line = g_aligned_alloc0 (columns, sizeof *grid->line, 64);
   if (!find_cells (grid, body)) {
-    g_free (grid->turned);
-    g_free (grid);
+    CLOTH_LANE_NAME (cloth_lane_grid_free) (grid);
     return NULL;
   }
-  grid->du = g_new0 (ClothReal, 5 * columns + 3 * rows);
-  grid->inverse_u = grid->du + columns;
-  grid->width = grid->inverse_u + columns;
-  grid->fold_left = grid->width + columns;
-  grid->fold_right = grid->fold_left + columns;
-  grid->dv = grid->fold_right + columns;
-  grid->inverse_v = grid->dv + rows;
-  grid->height = grid->inverse_v + rows;
-  measure_line (body->uv, 2, columns, grid->du, grid->inverse_u, grid->width);
-  measure_line (body->uv + 1, 2 * columns, rows, grid->dv, grid->inverse_v,
-      grid->height);
-  for (guint i = 1; i + 1 < columns; i++) {
-    grid->fold_left[i] = grid->inverse_u[i - 1] / grid->width[i];
-    grid->fold_right[i] = grid->inverse_u[i] / grid->width[i];
-  }
-  lines[0] = &grid->along_u;
-  lines[1] = &grid->along_v;
-  lines[2] = &grid->down;
-  lines[3] = &grid->force;
-  for (guint i = 0; i < G_N_ELEMENTS (lines); i++)
-    *lines[i] = g_aligned_alloc0 (columns, sizeof (ClothLane3), 64);
   return grid;
 }
 
@@ -139,98 +120,124 @@ void CLOTH_LANE_NAME (cloth_lane_grid_free) (ClothLaneGrid * grid)
 {
   if (!grid)
     return;
-  g_free (grid->du);
+  g_free (grid->square_u);
+  g_free (grid->square_v);
   g_free (grid->turned);
-  g_aligned_free (grid->along_u);
-  g_aligned_free (grid->along_v);
-  g_aligned_free (grid->down);
-  g_aligned_free (grid->force);
+  g_aligned_free (grid->line);
   g_free (grid);
 }
 
-/* One by one: a copy of the whole would go through memory, slowly. */
-CLOTH_LANE_INLINE void
-copy (const Edge * from, Edge * to)
+/* Of edges along u, or along v: their stiffness against stretch and against folds across
+ * them, at the sheet's sides and within. */
+typedef struct
 {
-  for (guint k = 0; k < 3; k++) {
-    to->x[k] = from->x[k];
-    to->w[k] = from->w[k];
-    to->z[k] = from->z[k];
-  }
+  ClothLane stretch[2], fold[2];
+} Kind;
+
+static void
+kind_init (Kind * kind, ClothLane stretch, ClothLane bend, gdouble length,
+    gdouble width)
+{
+  ClothReal cube = (ClothReal) (width / (length * length * length));
+
+  kind->stretch[1] = stretch * cloth_lane_set (0.5) * cube;
+  kind->fold[1] = bend * cube;
+  kind->stretch[0] = kind->stretch[1] * cloth_lane_set (0.5);
+  kind->fold[0] = kind->fold[1] * cloth_lane_set (0.5);
 }
 
-CLOTH_LANE_INLINE void
-measure (const ClothLaneState * state, guint from, guint to, ClothLane inverse,
-    ClothLane inverse_beta, Edge * edge)
+/* What all rows share. */
+typedef struct
 {
-  for (guint k = 0; k < 3; k++) {
-    edge->x[k] = (state->x[to][k] - state->x[from][k]) * inverse;
-    edge->w[k] = (state->v[to][k] - state->v[from][k]) * inverse_beta;
-    edge->z[k] = edge->x[k] + edge->w[k];
-  }
+  Kind u, v;
+  ClothLane shear, twist;
+} Stiffness;
+
+static void
+stiffness_init (const ClothLaneState * state, Stiffness * stiffness)
+{
+  gdouble du = state->grid->du, dv = state->grid->dv;
+  ClothReal cell = (ClothReal) (1. / (du * dv));
+
+  kind_init (&stiffness->u, state->stretch_warp, state->bending_warp, du, dv);
+  kind_init (&stiffness->v, state->stretch_weft, state->bending_weft, dv, du);
+  stiffness->shear = state->shear * cloth_lane_set (0.25) * cell;
+  stiffness->twist = (state->bending_warp + state->bending_weft) * cell;
 }
 
-/* Tensions of n edges by their stretch, of a stiffness each: side by side, so that their
- * chains of operations overlap. A compression_ratio is at most 1. */
+/* Of @n edges their differences and tensions by their stretch from @rest, squares: side
+ * by side, so that their chains of operations overlap. A compression_ratio is at most 1. */
 CLOTH_LANE_INLINE void
-stretch (guint n, const Edge * const *edges, const ClothLane * stiffness,
-    ClothLane ratio, ClothLane * tension)
+measure (const ClothLaneState * state, guint n, const gsize * from, gsize to,
+    const ClothReal * rest, const ClothLane * const *stiffness,
+    Edge * const *edges)
 {
-  ClothLane half = cloth_lane_set (0.5), square[2], rate[2];
+  ClothLane square[2], product[2];
 
   for (guint k = 0; k < 3; k++) {
     for (guint i = 0; i < n; i++) {
-      const Edge *e = edges[i];
+      ClothLane x = state->x[to][k] - state->x[from[i]][k];
+      ClothLane z = x + (state->v[to][k] - state->v[from[i]][k]) * state->beta;
 
-      square[i] = k ? square[i] + e->x[k] * e->x[k] : e->x[0] * e->x[0];
-      rate[i] = k ? rate[i] + e->x[k] * e->w[k] : e->x[0] * e->w[0];
+      square[i] = k ? square[i] + x * x : x * x;
+      product[i] = k ? product[i] + x * z : x * z;
+      edges[i]->x[k] = x;
+      edges[i]->z[k] = z;
     }
   }
   for (guint i = 0; i < n; i++)
-    square[i] = square[i] * half - half;
-  for (guint i = 0; i < n; i++)
-    rate[i] += cloth_lane_max (square[i], ratio * square[i]);
-  for (guint i = 0; i < n; i++)
-    tension[i] = stiffness[i] * rate[i];
+    edges[i]->square = product[i] + product[i] - square[i];
+  for (guint i = 0; i < n; i++) {
+    ClothLane longer = square[i] - cloth_lane_set (rest[i]);
+    ClothLane rate = edges[i]->square - square[i];
+
+    edges[i]->tension = *stiffness[i] *
+        (cloth_lane_max (longer, state->compression_ratio * longer) + rate);
+  }
 }
 
-/* Adds the forces of two triangles' shear along their edges u[i] and v[i], which meet at
- * right angles. */
-CLOTH_LANE_INLINE void
-shear (const Edge * const u[2], const Edge * const v[2], ClothLane stiffness_u,
-    ClothLane stiffness_v, ClothLane * const force_u[2],
-    ClothLane * const force_v[2])
+/* The shear of the two triangles of a cell: of one whose right angle is between a and b
+ * x_u·x_v, which with its third side h is ± ½ (|a|² + |b|² − |h|²). So it changes the
+ * tensions of the sides. The third one, which both share, is the sum of @lies and @lower
+ * when the cell is @turned, else their difference; its force goes along these. Returns
+ * the tension of the upper side, whose square is @top_square. */
+CLOTH_LANE_INLINE ClothLane
+shear (gboolean turned, ClothLane top_square, Edge * lies, Edge * upper,
+    Edge * lower, ClothLane stiffness)
 {
-  ClothLane strain[2];
+  ClothLane x[3], square, product, z, tension[2];
 
   for (guint k = 0; k < 3; k++) {
-    for (guint i = 0; i < 2; i++) {
-      ClothLane part = u[i]->x[k] * v[i]->z[k] + u[i]->w[k] * v[i]->x[k];
-
-      strain[i] = k ? strain[i] + part : part;
-    }
+    x[k] = turned ? lies->x[k] + lower->x[k] : lies->x[k] - lower->x[k];
+    z = turned ? lies->z[k] + lower->z[k] : lies->z[k] - lower->z[k];
+    square = k ? square + x[k] * x[k] : x[k] * x[k];
+    product = k ? product + x[k] * z : x[k] * z;
   }
-  for (guint i = 0; i < 2; i++) {
-    ClothLane s_u = stiffness_u * strain[i], s_v = stiffness_v * strain[i];
+  square = product + product - square;
+  tension[0] = stiffness * (top_square + upper->square - square);
+  tension[1] = stiffness * (lies->square + lower->square - square);
+  upper->tension += tension[0];
+  lower->tension += tension[1];
+  lies->tension += tension[1];
+  for (guint k = 0; k < 3; k++) {
+    ClothLane push = (tension[0] + tension[1]) * x[k];
 
-    for (guint k = 0; k < 3; k++) {
-      force_u[i][k] += s_u * v[i]->x[k];
-      force_v[i][k] += s_v * u[i]->x[k];
-    }
+    lies->force[k] -= push;
+    lower->force[k] = turned ? lower->force[k] - push : lower->force[k] + push;
   }
+  return tension[0];
 }
 
-/* The forces along two edges in a line by the fold between them. */
+/* Adds the forces along two edges in a line by the fold between them. */
 CLOTH_LANE_INLINE void
-fold (const ClothLane before[3], const ClothLane after[3],
-    ClothLane stiffness_before, ClothLane stiffness_after,
+fold (const ClothLane before[3], const ClothLane after[3], ClothLane stiffness,
     ClothLane force_before[3], ClothLane force_after[3])
 {
   for (guint k = 0; k < 3; k++) {
-    ClothLane y = before[k] - after[k];
+    ClothLane pull = stiffness * (before[k] - after[k]);
 
-    force_before[k] += stiffness_before * y;
-    force_after[k] -= stiffness_after * y;
+    force_before[k] += pull;
+    force_after[k] -= pull;
   }
 }
 
@@ -253,161 +260,130 @@ finish (ClothLaneState * state, const ClothLaneStage * stage, guint particle,
   }
 }
 
-/* Forces along the edges of the first row, without what is below it. */
 CLOTH_LANE_INLINE void
-first_row (ClothLaneState * state)
+copy (const ClothLane from[3], ClothLane to[3])
+{
+  for (guint k = 0; k < 3; k++)
+    to[k] = from[k];
+}
+
+/* Edges of the first row and the forces along them, without what is below it. */
+CLOTH_LANE_INLINE void
+first_row (ClothLaneState * state, const Stiffness * stiffness)
 {
   ClothLaneGrid *grid = state->grid;
-  ClothLane warp = state->stretch_warp * grid->height[0];
-  ClothLane bend = state->bending_warp * grid->height[0];
-  Edge before, edge;
-  const Edge *const edges[] = { &edge };
+  const ClothLane *const stretch = &stiffness->u.stretch[0];
+  ClothLane zero[3] = { 0 };
+  Edge edge[2];
 
-  for (guint c = 0; c + 1 < grid->columns; c++) {
-    ClothLane *force = grid->along_u[c], tension;
+  for (gsize c = 1; c < grid->columns; c++) {
+    Column *column = &grid->line[c];
+    Edge *const at = &edge[c % 2];
+    const gsize left = c - 1;
 
-    measure (state, c, c + 1, cloth_lane_set (grid->inverse_u[c]),
-        state->beta * grid->inverse_u[c], &edge);
-    stretch (1, edges, &warp, state->compression_ratio, &tension);
-    for (guint k = 0; k < 3; k++)
-      force[k] = tension * edge.x[k];
-    if (c > 0)
-      fold (before.z, edge.z, bend * grid->fold_left[c],
-          bend * grid->fold_right[c], grid->along_u[c - 1], force);
-    copy (&edge, &before);
+    measure (state, 1, &left, c, &grid->square_u[left], &stretch, &at);
+    copy (at->x, column->x);
+    column->square = at->square;
+    column->tension = at->tension;
+    copy (zero, column->along_u);
+    if (c > 1)
+      fold (edge[(c - 1) % 2].z, at->z, stiffness->u.fold[0],
+          column[-1].along_u, column->along_u);
   }
 }
 
-/* What all columns share in a row. */
-typedef struct
-{
-  guint r;
-  ClothLane inverse_v, beta_v;
-  ClothLane warp, shear_u, shear_v, bend, bend_up, bend_down, twist;
-} Row;
-
-/* What a column leaves for the next: the vertical edge, the lower edge on its left, the
- * forces along them so far, and what is still to be taken from its upper particle's. */
-typedef struct
-{
-  Edge down, across;
-  ClothLane down_force[3], across_force[3], taken[3];
-} Column;
-
-/* The cell on the left of column @c, its lower and right edges, and the particle above
- * the cell's upper right corner. */
+/* The cell on the left of column @c in row @r, its lower and right edges, and the
+ * particle above the cell's upper right corner. @down and @across, which were those of
+ * the column on the left, become this one's. */
 CLOTH_LANE_INLINE void
-cell (ClothLaneState * state, const ClothLaneStage * stage, const Row * row,
-    guint c, gboolean first, Mode mode, Column * column)
+cell (ClothLaneState * state, const ClothLaneStage * stage,
+    const Stiffness * stiffness, gsize r, gsize c, gboolean first, Mode mode,
+    Edge * down, Edge * across)
 {
   ClothLaneGrid *grid = state->grid;
-  guint i = row->r * grid->columns + c;
-  ClothLane width = cloth_lane_set (grid->width[c]), stiffness[2], tension[2];
-  ClothLane inverse_u, beta_u, shear_v;
-  ClothLane down_force[3], across_force[3], top_force[3], up[3];
-  Edge down, across, top;
-  const Edge *const stretched[2] = { &down, &across };
+  const guint inner[2] = { !first && c + 1 < grid->columns,
+    r + 2 < grid->rows
+  };
+  const ClothLane *const stretch[2] = { &stiffness->v.stretch[inner[0]],
+    &stiffness->u.stretch[inner[1]]
+  };
+  const ClothReal rest[2] = { grid->square_v[r],
+    first ? 0 : grid->square_u[c - 1]
+  };
+  gsize columns = grid->columns, i = r * columns + c;
+  const gsize from[2] = { i, i + columns - 1 };
+  Column *right = &grid->line[c], *left = right - 1;
+  ClothLane up[3], top_force[3];
+  Edge falls, lies;
+  Edge *const edges[2] = { &falls, &lies };
 
-  measure (state, i, i + grid->columns, row->inverse_v, row->beta_v, &down);
-  stiffness[0] = state->stretch_weft * width;
-  if (!first) {
-    inverse_u = cloth_lane_set (grid->inverse_u[c - 1]);
-    beta_u = state->beta * inverse_u;
-    shear_v = row->shear_v * grid->du[c - 1];
-    measure (state, i + grid->columns - 1, i + grid->columns, inverse_u, beta_u,
-        &across);
-    measure (state, i - 1, i, inverse_u, beta_u, &top);
-    stiffness[1] = row->warp;
-  }
-  stretch (first ? 1 : 2, stretched, stiffness, state->compression_ratio,
-      tension);
-  for (guint k = 0; k < 3; k++) {
-    down_force[k] = tension[0] * down.x[k];
-    up[k] = cloth_lane_set (0.);
-  }
-  if (row->r > 0) {
+  measure (state, first ? 1 : 2, from, i + columns, rest, stretch, edges);
+  for (guint k = 0; k < 3; k++)
+    up[k] = falls.force[k] = lies.force[k] = cloth_lane_set (0.);
+  if (r > 0) {
     ClothLane above[3];
 
+    copy (right->along_v, up);
+    fold (right->down_z, falls.z, stiffness->v.fold[inner[0]], up, falls.force);
     for (guint k = 0; k < 3; k++)
-      up[k] = grid->along_v[c][k];
-    fold (grid->down[c], down.z, row->bend_up * width, row->bend_down * width,
-        up, down_force);
-    for (guint k = 0; k < 3; k++)
-      above[k] = grid->force[c][k] + up[k];
-    finish (state, stage, i - grid->columns, above, mode);
+      above[k] = right->force[k] + up[k];
+    finish (state, stage, i - columns, above, mode);
   }
-  for (guint k = 0; k < 3; k++)
-    grid->down[c][k] = down.z[k];
+  copy (falls.z, right->down_z);
   if (!first) {
-    const Edge *const u[2] = { &top, &across };
-    ClothLane *const force_u[2] = { top_force, across_force };
-    const Edge *const falling[2] = { &column->down, &down };
-    ClothLane *const falling_force[2] = { column->down_force, down_force };
-    const Edge *const rising[2] = { &down, &column->down };
-    ClothLane *const rising_force[2] = { down_force, column->down_force };
+    ClothLane upper;
 
-    for (guint k = 0; k < 3; k++)
-      across_force[k] = tension[1] * across.x[k];
-    if (c > 1) {
-      fold (column->across.z, across.z, row->bend * grid->fold_left[c - 1],
-          row->bend * grid->fold_right[c - 1], column->across_force,
-          across_force);
-      for (guint k = 0; k < 3; k++)
-        grid->along_u[c - 2][k] = column->across_force[k];
-    }
+    if (c > 1)
+      fold (across->z, lies.z, stiffness->u.fold[inner[1]], left->along_u,
+          lies.force);
     for (guint k = 0; k < 3; k++) {
-      ClothLane pull = row->twist * (across.z[k] - top.z[k]);
+      ClothLane pull = stiffness->twist * (falls.z[k] - down->z[k]);
 
-      across_force[k] += pull;
-      top_force[k] = grid->along_u[c - 1][k] - pull;
+      lies.force[k] += pull;
+      top_force[k] = right->along_u[k] - pull;
     }
-    if (grid->turned[(gsize) row->r * (grid->columns - 1) + c - 1])
-      shear (u, rising, row->shear_u, shear_v, force_u, rising_force);
+    if (grid->turned[r * (columns - 1) + c - 1])
+      upper = shear (TRUE, right->square, &lies, &falls, down,
+          stiffness->shear);
     else
-      shear (u, falling, row->shear_u, shear_v, force_u, falling_force);
+      upper = shear (FALSE, right->square, &lies, down, &falls,
+          stiffness->shear);
     for (guint k = 0; k < 3; k++) {
-      grid->along_v[c - 1][k] = column->down_force[k];
-      grid->force[c - 1][k] = top_force[k] - column->taken[k];
+      top_force[k] += (right->tension + upper) * right->x[k];
+      left->along_v[k] = down->force[k] + down->tension * down->x[k];
+      left->force[k] = top_force[k] - left->force[k];
       up[k] += top_force[k];
-      column->across_force[k] = across_force[k];
     }
-    copy (&across, &column->across);
+    copy (lies.x, right->x);
+    right->square = lies.square;
+    right->tension = lies.tension;
+    copy (lies.force, right->along_u);
+    copy (lies.z, across->z);
   }
-  copy (&down, &column->down);
-  for (guint k = 0; k < 3; k++) {
-    column->down_force[k] = down_force[k];
-    column->taken[k] = up[k];
-  }
+  copy (up, right->force);
+  copy (falls.x, down->x);
+  copy (falls.z, down->z);
+  copy (falls.force, down->force);
+  down->square = falls.square;
+  down->tension = falls.tension;
 }
 
 /* The cells between rows @r and @r + 1, their lower and vertical edges, and the particles
  * of row @r − 1. */
 CLOTH_LANE_INLINE void
-cells (ClothLaneState * state, const ClothLaneStage * stage, guint r, Mode mode)
+cells (ClothLaneState * state, const ClothLaneStage * stage,
+    const Stiffness * stiffness, guint r, Mode mode)
 {
   ClothLaneGrid *grid = state->grid;
-  guint last = grid->columns - 1;
-  Column column;
-  Row row;
+  Column *last = &grid->line[grid->columns - 1];
+  Edge down = { 0 }, across = { 0 };
 
-  row.r = r;
-  row.inverse_v = cloth_lane_set (grid->inverse_v[r]);
-  row.beta_v = state->beta * row.inverse_v;
-  row.warp = state->stretch_warp * grid->height[r + 1];
-  row.shear_v = state->shear * cloth_lane_set (0.5);
-  row.shear_u = row.shear_v * grid->dv[r];
-  row.bend = state->bending_warp * grid->height[r + 1];
-  row.bend_down = state->bending_weft * grid->inverse_v[r] / grid->height[r];
-  row.bend_up = r > 0 ? state->bending_weft * grid->inverse_v[r - 1] /
-      grid->height[r] : cloth_lane_set (0.);
-  row.twist = (state->bending_warp + state->bending_weft) * grid->inverse_v[r];
-  cell (state, stage, &row, 0, TRUE, mode, &column);
-  for (guint c = 1; c <= last; c++)
-    cell (state, stage, &row, c, FALSE, mode, &column);
+  cell (state, stage, stiffness, r, 0, TRUE, mode, &down, &across);
+  for (gsize c = 1; c < grid->columns; c++)
+    cell (state, stage, stiffness, r, c, FALSE, mode, &down, &across);
   for (guint k = 0; k < 3; k++) {
-    grid->along_u[last - 1][k] = column.across_force[k];
-    grid->along_v[last][k] = column.down_force[k];
-    grid->force[last][k] = -column.taken[k];
+    last->along_v[k] = down.force[k] + down.tension * down.x[k];
+    last->force[k] = -last->force[k];
   }
 }
 
@@ -419,15 +395,16 @@ last_rows (ClothLaneState * state, const ClothLaneStage * stage, Mode mode)
   guint columns = grid->columns, last = (grid->rows - 1) * columns;
 
   for (guint c = 0; c < columns; c++) {
+    const Column *column = &grid->line[c];
     ClothLane above[3], force[3];
 
     for (guint k = 0; k < 3; k++) {
-      above[k] = grid->force[c][k] + grid->along_v[c][k];
-      force[k] = -grid->along_v[c][k];
+      above[k] = column->force[k] + column->along_v[k];
+      force[k] = -column->along_v[k];
       if (c + 1 < columns)
-        force[k] += grid->along_u[c][k];
+        force[k] += column[1].along_u[k] + column[1].tension * column[1].x[k];
       if (c > 0)
-        force[k] -= grid->along_u[c - 1][k];
+        force[k] -= column->along_u[k] + column->tension * column->x[k];
     }
     finish (state, stage, last + c - columns, above, mode);
     finish (state, stage, last + c, force, mode);
@@ -437,9 +414,12 @@ last_rows (ClothLaneState * state, const ClothLaneStage * stage, Mode mode)
 CLOTH_LANE_INLINE void
 sweep (ClothLaneState * state, const ClothLaneStage * stage, Mode mode)
 {
-  first_row (state);
+  Stiffness stiffness;
+
+  stiffness_init (state, &stiffness);
+  first_row (state, &stiffness);
   for (guint r = 0; r + 1 < state->grid->rows; r++)
-    cells (state, stage, r, mode);
+    cells (state, stage, &stiffness, r, mode);
   last_rows (state, stage, mode);
 }
 
