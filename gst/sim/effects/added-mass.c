@@ -40,12 +40,16 @@ static void
 inertia (ClothLaneState * state, ClothLaneEffect * effect)
 {
   ClothLane3 *normals = effect->state;
-  ClothLane third = cloth_lane_set (1. / 3.), one = cloth_lane_set (1.);
+  ClothLane one = cloth_lane_set (1.);
   ClothLane tiny = cloth_lane_set (1e-30);
 
   memset (normals, 0, state->n * sizeof *normals);
   for (guint i = 0; i < state->body->n_triangles; i++) {
     const ClothLaneTriangle *t = &state->triangles[i];
+    const gdouble *g = state->body->triangles[i].g;
+    /* corners go round either way: all normals are along x_u × x_v */
+    ClothLane third =
+        cloth_lane_set ((g[0] * g[3] > g[1] * g[2] ? 1. : -1.) / 3.);
     ClothLane normal[3], velocity[3], area;
 
     cloth_lane_face (state, t, normal, &area, velocity);
@@ -55,7 +59,7 @@ inertia (ClothLaneState * state, ClothLaneEffect * effect)
   }
   for (guint i = 0; i < state->n; i++) {
     ClothLane area2 = cloth_lane_dot (normals[i], normals[i]);
-    ClothLane ratio = effect->p[0] * cloth_lane_sqrt (area2) *
+    ClothLane ratio = effect->p[0] * (ClothReal) state->body->area[i] *
         state->inverse_mass[i];
     ClothLane along = cloth_lane_set (0.);
 
