@@ -7,11 +7,9 @@
 #include "gst/sim/lanes/state.h"
 
 CLOTH_LANE_INLINE void
-fold (const ClothLaneState * state, guint begin, guint end, guint corners)
+folds (const ClothLaneState * state, guint begin, guint end, guint corners,
+    ClothLane warp, ClothLane weft, const ClothLane3 * z, ClothLane3 * f)
 {
-  ClothLane3 *z = state->z, *f = state->f;
-  ClothLane warp = state->bending_warp, weft = state->bending_weft;
-
   for (guint i = begin; i < end; i++) {
     const ClothLaneHinge *h = &state->hinges[i];
     const guint32 *p = h->particle;
@@ -24,17 +22,17 @@ fold (const ClothLaneState * state, guint begin, guint end, guint corners)
         y += z[p[corner]][k] * h->c[corner];
       y *= stiffness;
       for (guint corner = 0; corner < corners; corner++)
-        f[p[corner]][k] -= y * h->c[corner];
+        f[p[corner]][k] += y * h->c[corner];
     }
   }
 }
 
-/* Adds the hinges' matrix times z to f, by @warp and @weft. Differences: so places far
- * from the origin don't cost digits. */
-void CLOTH_LANE_NAME (cloth_lane_bends) (const ClothLaneState * state,
-    ClothLane warp, ClothLane weft, const ClothLane3 * z, ClothLane3 * f)
+/* Differences: so places far from the origin don't cost digits. */
+static void
+rows (const ClothLaneState * state, ClothLane warp, ClothLane weft,
+    const ClothLane3 * z, ClothLane3 * f)
 {
-  const guint32 * first = state->body->first_bend;
+  const guint32 *first = state->body->first_bend;
 
   for (guint i = 0; i < state->n; i++) {
     ClothLane sum[3] = { f[i][0], f[i][1], f[i][2] };
@@ -51,6 +49,20 @@ void CLOTH_LANE_NAME (cloth_lane_bends) (const ClothLaneState * state,
   }
 }
 
+/* Adds the hinges' matrix times z to f, by @warp and @weft. */
+void CLOTH_LANE_NAME (cloth_lane_bends) (const ClothLaneState * state,
+    ClothLane warp, ClothLane weft, const ClothLane3 * z, ClothLane3 * f)
+{
+  const ClothBody * body = state->body;
+
+  if (state->bends) {
+    rows (state, warp, weft, z, f);
+    return;
+  }
+  folds (state, 0, body->n_straight, 3, warp, weft, z, f);
+  folds (state, body->n_straight, body->n_hinges, 4, warp, weft, z, f);
+}
+
 /* Adds the bending forces. */
 void CLOTH_LANE_NAME (cloth_lane_bending) (ClothLaneState * state)
 {
@@ -59,13 +71,8 @@ void CLOTH_LANE_NAME (cloth_lane_bending) (ClothLaneState * state)
   for (guint i = 0; i < state->n; i++)
     for (guint k = 0; k < 3; k++)
       state->z[i][k] = state->x[i][k] + beta * state->v[i][k];
-  if (state->bends) {
-    CLOTH_LANE_NAME (cloth_lane_bends) (state, -state->bending_warp,
-        -state->bending_weft, state->z, state->f);
-    return;
-  }
-  fold (state, 0, state->body->n_straight, 3);
-  fold (state, state->body->n_straight, state->body->n_hinges, 4);
+  CLOTH_LANE_NAME (cloth_lane_bends) (state, -state->bending_warp,
+      -state->bending_weft, state->z, state->f);
 }
 
 ClothLane

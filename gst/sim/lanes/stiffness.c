@@ -145,31 +145,6 @@ apply_facets (const ClothLaneState * state, const ClothLaneStiffness * matrix,
   }
 }
 
-CLOTH_LANE_INLINE void
-apply_hinges (const ClothLaneState * state, const ClothLaneStiffness * matrix,
-    guint begin, guint end, guint corners, const ClothLane3 * d, ClothLane3 * q)
-{
-  ClothLane scale = matrix->h2 + matrix->h * state->beta;
-  ClothLane warp = state->bending_warp * scale;
-  ClothLane weft = state->bending_weft * scale;
-
-  for (guint i = begin; i < end; i++) {
-    const ClothLaneHinge *hinge = &state->hinges[i];
-    const guint32 *p = hinge->particle;
-    ClothLane stiffness = warp * hinge->warp + weft * hinge->weft;
-
-    for (guint k = 0; k < 3; k++) {
-      ClothLane y = d[p[0]][k] * hinge->c[0];
-
-      for (guint corner = 1; corner < corners; corner++)
-        y += d[p[corner]][k] * hinge->c[corner];
-      y *= stiffness;
-      for (guint corner = 0; corner < corners; corner++)
-        q[p[corner]][k] += y * hinge->c[corner];
-    }
-  }
-}
-
 static void
 apply_links (const ClothLaneState * state, const ClothLaneStiffness * matrix,
     const ClothLane3 * d, ClothLane3 * q)
@@ -212,6 +187,7 @@ CLOTH_LANE_NAME (cloth_lane_stiffness_apply) (const ClothLaneState * state,
     const ClothLaneStiffness * matrix, const ClothLane3 * d, ClothLane3 * q)
 {
   guint right = state->body->n_right, n = state->body->n_triangles;
+  ClothLane scale = matrix->h2 + matrix->h * state->beta;
 
   for (guint i = 0; i < state->n; i++) {
     ClothLane mass = own (state, matrix, i);
@@ -233,16 +209,8 @@ CLOTH_LANE_NAME (cloth_lane_stiffness_apply) (const ClothLaneState * state,
     apply_facets (state, matrix, 0, right, TRUE, FALSE, d, q);
     apply_facets (state, matrix, right, n, FALSE, FALSE, d, q);
   }
-  if (state->bends) {
-    ClothLane scale = matrix->h2 + matrix->h * state->beta;
-
-    CLOTH_LANE_NAME (cloth_lane_bends) (state, scale * state->bending_warp,
-        scale * state->bending_weft, d, q);
-    return;
-  }
-  apply_hinges (state, matrix, 0, state->body->n_straight, 3, d, q);
-  apply_hinges (state, matrix, state->body->n_straight, state->body->n_hinges,
-      4, d, q);
+  CLOTH_LANE_NAME (cloth_lane_bends) (state, scale * state->bending_warp,
+      scale * state->bending_weft, d, q);
 }
 
 /* Adds s w wᵀ to a symmetric block: xx, yy, zz, yz, xz, xy. */
