@@ -81,6 +81,9 @@ test_chain (void)
   g_autoptr (ClothModel) model = model_new (0.2, 4000.);
   g_autoptr (ClothSim) sim = NULL;
 
+  /* Undamped, what the first jerk shakes along the chain throws it sideways from the last
+   * digit of a place. */
+  model->damping_stiffness = 1e-4;
   sim = run_new (scene, model);
   assert_within (G_PI / half_period (sim, 122, 3.) / (1.2024 * sqrt (G /
               length)), 1., 5e-3);
