@@ -243,6 +243,74 @@ cloth_gap_normal_reduce (const ClothGapNormal * normal,
 }
 
 /**
+ * cloth_gap_normal_project:
+ * @normal: normal equations
+ * @blocks: (nullable): which blocks count
+ * @m: how many of the columns are kept: the first ones
+ * @precisions: (array): of the priors of the others
+ * @g: (out) (array): what is left of the kept ones' normal matrix, m·m
+ * @s: (out) (array length=m): and of their score
+ *
+ * Projects the last columns out.
+ *
+ * Returns: what is left of the residual's square; all of it, and @g and @s as they are,
+ *   when the others can't be solved for
+ * Since: 0.1
+ */
+gdouble
+cloth_gap_normal_project (const ClothGapNormal * normal,
+    const gboolean * blocks, guint m, const gdouble * precisions, gdouble * g,
+    gdouble * s)
+{
+  guint all = normal->m, q = all - m;
+  g_autofree gdouble *a = g_new0 (gdouble, (gsize) q * q + 1);
+  g_autofree gdouble *b = g_new0 (gdouble, (gsize) (m + 1) * q + 1);
+  g_autofree gdouble *x = NULL;
+  gdouble r = 0.;
+
+  memset (g, 0, (gsize) m * m * sizeof *g);
+  memset (s, 0, m * sizeof *s);
+  for (guint i = 0; i < q; i++)
+    a[(gsize) i * q + i] = precisions[i];
+  for (guint block = 0; block < normal->n_blocks; block++) {
+    const gdouble *from = normal->g + (gsize) block * all * all;
+    const gdouble *score = normal->s + (gsize) block * all;
+
+    if (blocks && !blocks[block])
+      continue;
+    r += normal->r[block];
+    for (guint i = 0; i < m; i++) {
+      s[i] += score[i];
+      for (guint k = 0; k < m; k++)
+        g[(gsize) i * m + k] += from[(gsize) i * all + k];
+    }
+    for (guint i = 0; i < q; i++) {
+      b[(gsize) m * q + i] += score[m + i];
+      for (guint k = 0; k < m; k++)
+        b[(gsize) k * q + i] += from[(gsize) k * all + m + i];
+      for (guint k = 0; k < q; k++)
+        a[(gsize) i * q + k] += from[(gsize) (m + i) * all + m + k];
+    }
+  }
+  if (!q || !cloth_cholesky_factor (q, a))
+    return r;
+  x = g_memdup2 (b, sizeof (gdouble) * q * (m + 1));
+  for (guint k = 0; k <= m; k++)
+    cloth_cholesky_solve (q, a, x + (gsize) k * q);
+  for (guint i = 0; i < q; i++) {
+    const gdouble last = x[(gsize) m * q + i];
+
+    r -= b[(gsize) m * q + i] * last;
+    for (guint k = 0; k < m; k++) {
+      s[k] -= b[(gsize) k * q + i] * last;
+      for (guint l = 0; l < m; l++)
+        g[(gsize) k * m + l] -= b[(gsize) k * q + i] * x[(gsize) l * q + i];
+    }
+  }
+  return r;
+}
+
+/**
  * cloth_gap_normal_change:
  * @normal: normal equations
  * @block: a block

@@ -70,6 +70,9 @@ gboolean cloth_gap_normal_reduce (const ClothGapNormal * normal,
     const gboolean * blocks, const guint * nuisances,
     const gdouble * precisions, guint n_nuisances, const guint * directions,
     guint n, ClothGapReduced * reduced);
+gdouble cloth_gap_normal_project (const ClothGapNormal * normal,
+    const gboolean * blocks, guint m, const gdouble * precisions, gdouble * g,
+    gdouble * s);
 gdouble cloth_gap_normal_change (const ClothGapNormal * normal, guint block,
     const guint * directions, const gdouble * changes, guint n);
 

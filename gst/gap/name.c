@@ -11,8 +11,6 @@
 /* What two takes of one motion share of the simulator's own error is taken off; this
  * part of its power stays. */
 #define SIGNATURE_LEFT 0.1
-/* What chaos does counts as so many times the variance of its samples, which are few. */
-#define CHAOS_WIDTH 10.
 /* So often what a leading effect leaves in a take is what weighs, and all are tested
  * anew. */
 #define N_SHARPEN 2
@@ -137,21 +135,16 @@ mismatch_of (const ClothDiagnosis * d, guint take, guint gain)
 }
 
 /* The columns of the directions and behind them, where no other take has any, those of the
- * chaos in a take and in its signature. */
+ * chaos. */
 static gdouble *
 columns_of (const ClothDiagnosis * d, guint take, guint gain, guint before)
 {
-  const ClothStudy *s = cloth_diagnosis_study (d, take), *signature =
-      s->signature;
-  gsize size = s->features->size, own = s->n_chaos * size;
+  const ClothStudy *s = cloth_diagnosis_study (d, take);
+  gsize size = s->features->size;
   gdouble *columns = g_new0 (gdouble, (s->m + d->n_chaos) * size + 1);
-  gdouble *chaos = columns + (s->m + before) * size;
 
   memcpy (columns, s->columns[gain], s->m * size * sizeof (gdouble));
-  memcpy (chaos, s->chaos[gain], own * sizeof (gdouble));
-  for (gsize k = 0; signature && k < signature->n_chaos * size; k++)
-    chaos[own + k] = cloth_study_signature_scale (s) *
-        signature->chaos[gain][k];
+  cloth_study_get_chaos (s, gain, columns + (s->m + before) * size);
   return columns;
 }
 
@@ -220,30 +213,23 @@ cloth_diagnosis_linearise (ClothDiagnosis * d, guint first, guint end,
   return TRUE;
 }
 
-/* How many columns of chaos a study has, and those of its signature. */
-static guint
-count_chaos (const ClothStudy * study)
-{
-  return study->n_chaos + (study->signature ? study->signature->n_chaos : 0);
-}
-
 /* The precisions of the chaos in the studies from begin to end. */
 static void
 list_chaos (ClothDiagnosis * d, guint begin, guint end)
 {
-  gdouble width = CHAOS_WIDTH * d->study.overdispersion;
+  guint k = 0;
 
   d->n_chaos = 0;
   for (guint i = begin; i < end; i++)
-    d->n_chaos += count_chaos (cloth_diagnosis_study (d, i));
+    d->n_chaos += cloth_study_count_chaos (cloth_diagnosis_study (d, i));
   g_free (d->chaos_precisions);
   d->chaos_precisions = g_new (gdouble, d->n_chaos + 1);
-  for (guint i = begin, k = 0; i < end; i++) {
+  for (guint i = begin; i < end; i++) {
     const ClothStudy *s = cloth_diagnosis_study (d, i);
 
-    for (guint c = 0; c < count_chaos (s); c++)
-      d->chaos_precisions[k++] = (c < s->n_chaos ? s->n_chaos :
-          s->signature->n_chaos) / width;
+    for (guint c = 0; c < cloth_study_count_chaos (s); c++)
+      d->chaos_precisions[k++] = cloth_study_get_chaos_precision (s, c) /
+          d->study.overdispersion;
   }
 }
 
@@ -259,7 +245,7 @@ cloth_diagnosis_make_normals (ClothDiagnosis * d, guint begin, guint end,
     g_clear_pointer (&d->normals[g], cloth_gap_normal_free);
     for (guint i = begin; i < end; i++) {
       d->normals[g] = append (d->normals[g], normal_of (d, i, g, before));
-      before += count_chaos (cloth_diagnosis_study (d, i));
+      before += cloth_study_count_chaos (cloth_diagnosis_study (d, i));
     }
     test->normals[g] = d->normals[g];
   }

@@ -9,6 +9,8 @@
 #include "gst/gap/diagnose.h"
 #include "gst/math/linalg.h"
 
+/* What chaos does counts as so many times the variance of its samples, which are few. */
+#define CHAOS_WIDTH 10.
 /* No step of a fit is longer than this many priors. */
 #define LONGEST 1.5
 /* A fit ends when it gains less than this share. */
@@ -80,16 +82,67 @@ cloth_study_free (ClothStudy * study)
 
 /**
  * cloth_study_signature_scale:
- * @study: a study with a signature
+ * @study: a study
  *
  * Returns: what the signature's features are to be multiplied by: each recording's are in
- *   multiples of its own noise
+ *   multiples of its own noise; 0 without a signature
  * Since: 0.1
  */
 gdouble
 cloth_study_signature_scale (const ClothStudy * study)
 {
-  return study->signature->features->sigma / study->features->sigma;
+  return study->signature ? study->signature->features->sigma /
+      study->features->sigma : 0.;
+}
+
+/**
+ * cloth_study_count_chaos:
+ * @study: a study
+ *
+ * Returns: how many directions are known in which chaos moves the residual, that of the
+ *   signature included
+ * Since: 0.1
+ */
+guint
+cloth_study_count_chaos (const ClothStudy * study)
+{
+  return study->n_chaos + (study->signature ? study->signature->n_chaos : 0);
+}
+
+/**
+ * cloth_study_get_chaos:
+ * @study: a study
+ * @gain: which of the gains
+ * @columns: (out) (array): cloth_study_count_chaos () directions, each of features->size
+ *
+ * Since: 0.1
+ */
+void
+cloth_study_get_chaos (const ClothStudy * study, guint gain, gdouble * columns)
+{
+  gsize size = study->features->size, own = study->n_chaos * size;
+  gdouble scale = cloth_study_signature_scale (study);
+
+  if (own)
+    memcpy (columns, study->chaos[gain], own * sizeof (gdouble));
+  for (gsize k = 0; study->signature && k < study->signature->n_chaos * size;
+      k++)
+    columns[own + k] = scale * study->signature->chaos[gain][k];
+}
+
+/**
+ * cloth_study_get_chaos_precision:
+ * @study: a study
+ * @i: one of the directions of cloth_study_get_chaos ()
+ *
+ * Returns: of how far chaos goes along it, over the noise's variance
+ * Since: 0.1
+ */
+gdouble
+cloth_study_get_chaos_precision (const ClothStudy * study, guint i)
+{
+  return (i < study->n_chaos ? study->n_chaos : study->signature->n_chaos) /
+      CHAOS_WIDTH;
 }
 
 /**
@@ -105,7 +158,7 @@ cloth_study_residual (const ClothStudy * study, guint gain)
 {
   gsize size = study->features->size;
   gdouble *z = g_memdup2 (study->z[gain], size * sizeof (gdouble));
-  gdouble scale = study->signature ? cloth_study_signature_scale (study) : 0.;
+  gdouble scale = cloth_study_signature_scale (study);
 
   for (gsize k = 0; study->signature && k < size; k++)
     z[k] -= scale * study->signature->z[gain][k];
@@ -380,30 +433,47 @@ weigh (Fit * fit)
     }
 }
 
+/* Normal equations of a study with what chaos does projected out; returns what is left of
+ * its square. Only the square is needed when @m is 0. */
+static gdouble
+equations_of (const Fit * fit, guint i, guint m, gdouble * g, gdouble * s)
+{
+  const ClothStudy *study = fit->studies[i / CLOTH_STUDY_N_GAINS];
+  guint gain = i % CLOTH_STUDY_N_GAINS;
+  guint n = fit->m > fit->candidates->n_free ?
+      cloth_study_count_chaos (study) : 0;
+  gsize size = study->features->size;
+  g_autofree gdouble *z = cloth_study_residual (study, gain);
+  g_autofree gdouble *columns = g_new (gdouble, (m + n) * size + 1);
+  g_autofree gdouble *precisions = g_new0 (gdouble, m + n + 1);
+  g_autoptr (ClothGapNormal) normal = NULL;
+
+  if (m)
+    memcpy (columns, study->columns[gain], m * size * sizeof (gdouble));
+  if (n)
+    cloth_study_get_chaos (study, gain, columns + m * size);
+  for (guint k = 0; k < n; k++)
+    precisions[k] = cloth_study_get_chaos_precision (study, k);
+  normal = cloth_gap_normal_new (study->features,
+      g_ptr_array_index (fit->powers, i), 1., z, columns, m + n);
+  return cloth_gap_normal_project (normal, fit->blocks, m, precisions, g, s);
+}
+
 /* Cost of the model at hand, and its normal equations when @a and @b are given. */
 static gdouble
 equations (const Fit * fit, gdouble * a, gdouble * b)
 {
   gdouble over = fit->options->overdispersion, cost = 0.;
-  guint m = fit->m;
+  guint m = fit->m, n = a ? m : 0;
+  g_autofree gdouble *g = g_new (gdouble, (gsize) m * m + 1);
+  g_autofree gdouble *s = g_new (gdouble, m + 1);
 
   for (guint i = 0; i < fit->powers->len; i++) {
-    const ClothStudy *study = fit->studies[i / CLOTH_STUDY_N_GAINS];
-    guint g = i % CLOTH_STUDY_N_GAINS;
-    g_autofree gdouble *z = cloth_study_residual (study, g);
-    g_autoptr (ClothGapNormal) n = cloth_gap_normal_new (study->features,
-        g_ptr_array_index (fit->powers, i), 1., z, study->columns[g],
-        a ? m : 0);
-
-    for (guint block = 0; block < n->n_blocks; block++) {
-      if (fit->blocks && !fit->blocks[block])
-        continue;
-      cost += n->r[block];
-      for (guint k = 0; a && k < m * m; k++)
-        a[k] += n->g[(gsize) block * m * m + k] / over;
-      for (guint k = 0; a && k < m; k++)
-        b[k] -= n->s[(gsize) block * m + k] / over;
-    }
+    cost += equations_of (fit, i, n, g, s);
+    for (guint k = 0; k < n * n; k++)
+      a[k] += g[k] / over;
+    for (guint k = 0; k < n; k++)
+      b[k] -= s[k] / over;
   }
   for (guint k = 0; k < m; k++) {
     cost += over * fit->precisions[k] * fit->moved[k] * fit->moved[k];
@@ -447,7 +517,7 @@ go (Fit * fit, const gdouble * step, gdouble share)
  * @error: #ClothSimError or #ClothGapError
  *
  * Gauss and Newton on the features of all gains, each weighed by the power that is left
- * in its class; a step that makes things worse is cut.
+ * in its class, less what chaos does; a step that makes things worse is cut.
  *
  * Returns: (transfer full) (nullable): the fitted model
  * Since: 0.1

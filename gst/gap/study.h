@@ -71,6 +71,10 @@ ClothStudy *cloth_study_new (const ClothRecording * recording,
     const ClothStudyOptions * options);
 void cloth_study_free (ClothStudy * study);
 gdouble cloth_study_signature_scale (const ClothStudy * study);
+guint cloth_study_count_chaos (const ClothStudy * study);
+void cloth_study_get_chaos (const ClothStudy * study, guint gain,
+    gdouble * columns);
+gdouble cloth_study_get_chaos_precision (const ClothStudy * study, guint i);
 gdouble *cloth_study_residual (const ClothStudy * study, guint gain);
 gboolean cloth_study_linearise (ClothStudy * study,
     const ClothGapCandidates * candidates, const ClothModel * model,
