@@ -6,6 +6,7 @@
 #include <gio/gio.h>
 #include <gst/video/video.h>
 
+#include "elements/gstclothpicture.h"
 #include "gst/pattern/texture.h"
 
 /* Ink and cloth: shares of the light that they reflect. */
@@ -13,8 +14,6 @@
 #define WHITE 0.75f
 /* Pixels along the longer side of a pattern's picture: edges between are exact. */
 #define PATTERN_PX 2048
-/* A file that gives no picture for so long is broken. */
-#define PATIENCE (30 * GST_SECOND)
 
 static gdouble
 pattern_scale (const gdouble cloth_m[2])
@@ -85,71 +84,30 @@ gst_cloth_paint_white (void)
   return cloth_paint_new (&level, 1, 1, 1, 1, light, origin, size);
 }
 
+/* The first picture of any file that GStreamer decodes. */
 static ClothPaint *
-paint_from_sample (GstSample * sample, const gchar * path,
+paint_picture (const gchar * path,
     const gdouble origin_uv_m[2], const gdouble size_m[2], GError ** error)
 {
+  g_autoptr (GstSample) sample = gst_cloth_load_picture (path,
+      "{ RGB, GRAY8 }", CLOTH_PAINT_MAX_PX, error);
   ClothPaint *paint = NULL;
   GstVideoInfo info;
   GstVideoFrame frame;
 
-  if (!sample || !gst_video_info_from_caps (&info,
-          gst_sample_get_caps (sample)) || info.width > CLOTH_PAINT_MAX_PX
-      || info.height > CLOTH_PAINT_MAX_PX
+  if (!sample)
+    return NULL;
+  if (!gst_video_info_from_caps (&info, gst_sample_get_caps (sample))
       || !gst_video_frame_map (&frame, &info, gst_sample_get_buffer (sample),
           GST_MAP_READ)) {
     g_set_error (error, G_IO_ERROR, G_IO_ERROR_FAILED,
-        "%s: no picture, or one larger than %d pixels a side", path,
-        CLOTH_PAINT_MAX_PX);
+        "%s: the picture can't be read", path);
     return NULL;
   }
   paint = cloth_paint_new (GST_VIDEO_FRAME_PLANE_DATA (&frame, 0), info.width,
       info.height, GST_VIDEO_FRAME_PLANE_STRIDE (&frame, 0),
       GST_VIDEO_INFO_IS_GRAY (&info) ? 1 : 3, NULL, origin_uv_m, size_m);
   gst_video_frame_unmap (&frame);
-  return paint;
-}
-
-/* The first picture of any file that GStreamer decodes. */
-static ClothPaint *
-paint_picture (const gchar * path,
-    const gdouble origin_uv_m[2], const gdouble size_m[2], GError ** error)
-{
-  g_autoptr (GstElement) pipeline = NULL;
-  g_autoptr (GstElement) source = NULL, sink = NULL;
-  g_autoptr (GstSample) sample = NULL;
-  ClothPaint *paint = NULL;
-
-  if (!g_file_test (path, G_FILE_TEST_IS_REGULAR)) {
-    g_set_error (error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND,
-        "%s: there is no such file", path);
-    return NULL;
-  }
-  pipeline = gst_parse_launch ("filesrc name=in ! decodebin ! videoconvert "
-      "dither=none ! video/x-raw,format={ RGB, GRAY8 } ! fakesink name=out "
-      "sync=false", error);
-  if (!pipeline)
-    return NULL;
-  source = gst_bin_get_by_name (GST_BIN (pipeline), "in");
-  sink = gst_bin_get_by_name (GST_BIN (pipeline), "out");
-  g_object_set (source, "location", path, NULL);
-  gst_element_set_state (pipeline, GST_STATE_PAUSED);
-  if (gst_element_get_state (pipeline, NULL, NULL, PATIENCE)
-      == GST_STATE_CHANGE_SUCCESS) {
-    g_object_get (sink, "last-sample", &sample, NULL);
-    paint = paint_from_sample (sample, path, origin_uv_m, size_m, error);
-  } else {
-    g_autoptr (GstBus) bus = gst_element_get_bus (pipeline);
-    g_autoptr (GstMessage) message =
-        gst_bus_pop_filtered (bus, GST_MESSAGE_ERROR);
-    g_autoptr (GError) cause = NULL;
-
-    if (message)
-      gst_message_parse_error (message, &cause, NULL);
-    g_set_error (error, G_IO_ERROR, G_IO_ERROR_FAILED, "%s: %s", path,
-        cause ? cause->message : "no picture came out of it in time");
-  }
-  gst_element_set_state (pipeline, GST_STATE_NULL);
   return paint;
 }
 

@@ -34,6 +34,7 @@
 #include <gst/cloth/cloth.h>
 
 #include "elements/gstclothutil.h"
+#include "elements/gstdotlabelchart.h"
 #include "gst/pattern/marray.h"
 #include "gst/vision/dotcolour.h"
 #include "gst/vision/lattice.h"
@@ -72,7 +73,7 @@ struct _GstDotLabel
   GstClothFilter parent;
 
   /* Properties, protected by the object lock. */
-  gchar *pattern_path;
+  gchar *pattern_path, *chart_path;
   GstDotLabelColours colours_by;
   gboolean learn;
   ClothDotParams dot_params;
@@ -80,10 +81,11 @@ struct _GstDotLabel
 
   /* Streaming thread. */
   ClothMArray *array;
+  GstSample *chart;             /* NULL: the colours start from those of the print */
   ClothDotDetector *detector;
   ClothDotLabeller *labeller;
   ClothDotColourModel colours;
-  gboolean knows_colours;       /* those of the print */
+  gboolean knows_colours;       /* those of the print or of the chart */
   gboolean adapted;             /* the colours, to this camera: they gave labels */
   GstVideoColorMatrix matrix;   /* that @colours are made for */
   GArray *likelihoods;          /* gfloat, the array's n_colours for each dot */
@@ -98,6 +100,7 @@ enum
 {
   PROP_0,
   PROP_PATTERN,
+  PROP_CHART,
   PROP_COLOURS,
   PROP_LEARN,
   PROP_CONTRAST,
@@ -168,6 +171,26 @@ G_DEFINE_TYPE (GstDotLabel, gst_dot_label, GST_TYPE_CLOTH_FILTER);
 GST_ELEMENT_REGISTER_DEFINE (dotlabel, "dotlabel", GST_RANK_NONE,
     GST_TYPE_DOT_LABEL);
 
+/* FALSE: there is a chart, it can't be read, and an error was posted. */
+static gboolean
+gst_dot_label_load_chart (GstDotLabel * self)
+{
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *path = NULL;
+
+  GST_OBJECT_LOCK (self);
+  path = g_strdup (self->chart_path);
+  GST_OBJECT_UNLOCK (self);
+  if (!path)
+    return TRUE;
+  self->chart = gst_dot_label_chart_load (path, &error);
+  if (!self->chart)
+    GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ,
+        ("Can't read the chart: %s", error->message),
+        ("Set chart to a picture of the print by this camera, or leave it out."));
+  return self->chart != NULL;
+}
+
 static gboolean
 gst_dot_label_start (GstClothFilter * filter)
 {
@@ -202,6 +225,11 @@ gst_dot_label_start (GstClothFilter * filter)
     g_clear_pointer (&self->array, cloth_m_array_free);
     return FALSE;
   }
+  if (!gst_dot_label_load_chart (self)) {
+    g_clear_pointer (&self->labeller, cloth_dot_labeller_free);
+    g_clear_pointer (&self->array, cloth_m_array_free);
+    return FALSE;
+  }
   self->detector = cloth_dot_detector_new ();
   self->knows_colours = self->adapted = FALSE;
   self->found = self->warned = FALSE;
@@ -217,6 +245,7 @@ gst_dot_label_stop (GstClothFilter * filter)
   g_clear_pointer (&self->detector, cloth_dot_detector_free);
   g_clear_pointer (&self->labeller, cloth_dot_labeller_free);
   g_clear_pointer (&self->array, cloth_m_array_free);
+  g_clear_pointer (&self->chart, gst_sample_unref);
 }
 
 /* What was learnt of the colours stays: it is of the camera, not of the film. */
@@ -229,23 +258,35 @@ gst_dot_label_reset (GstClothFilter * filter)
     cloth_dot_labeller_reset (self->labeller);
 }
 
-/* Starts the colours from those of the print, in the luma and chroma of this film. */
-static void
-gst_dot_label_prepare_colours (GstDotLabel * self, const GstVideoInfo * info)
+/* Starts the colours from those of the print, or as the chart shows them, in the luma and
+ * chroma of this film. FALSE: the chart shows none, and an error was posted. */
+static gboolean
+gst_dot_label_prepare_colours (GstDotLabel * self, const GstVideoInfo * info,
+    const ClothDotParams * dot_params, const ClothDotLabelParams * label_params)
 {
   guint8 rgb[CLOTH_M_ARRAY_MAX_COLOURS][3];
   gdouble kr = 0.299, kb = 0.114;
+  g_autoptr (GError) error = NULL;
 
   if (self->knows_colours && self->matrix == info->colorimetry.matrix)
-    return;
+    return TRUE;
   self->matrix = info->colorimetry.matrix;
-  self->knows_colours = TRUE;
   self->adapted = FALSE;
   gst_video_color_matrix_get_Kr_Kb (self->matrix, &kr, &kb);
   for (gint i = 0; i < self->array->n_colours; i++)
     memcpy (rgb[i], self->array->colours[i].rgb, 3);
   cloth_dot_colour_model_init (&self->colours, self->array->n_colours,
       (const guint8 (*)[3]) rgb, (gfloat) kr, (gfloat) kb);
+  if (self->chart && !gst_dot_label_chart_learn (self->chart, self->array, info,
+          dot_params, label_params, &self->colours, &error)) {
+    GST_ELEMENT_ERROR (self, STREAM, FAILED,
+        ("The chart teaches no colours: %s.", error->message),
+        ("Set chart to a sharp picture in colour, by this camera, of the very "
+            "print that is filmed, or leave it out."));
+    return FALSE;
+  }
+  self->knows_colours = TRUE;
+  return TRUE;
 }
 
 /* Classifies and labels; returns how many dots have a label. */
@@ -408,7 +449,9 @@ gst_dot_label_analyse (GstClothFilter * filter,
   colours_by = self->colours_by;
   learn = self->learn;
   GST_OBJECT_UNLOCK (self);
-  gst_dot_label_prepare_colours (self, &frame->video->info);
+  if (!gst_dot_label_prepare_colours (self, &frame->video->info, &dot_params,
+          &label_params))
+    return GST_FLOW_ERROR;
 
   cloth_dot_detector_run (self->detector, &dot_params, &image, CLOTH_SIMD_BEST);
   dots = cloth_dot_detector_get_dots (self->detector, &n);
@@ -467,6 +510,10 @@ gst_dot_label_set_property (GObject * object, guint id, const GValue * value,
       g_free (self->pattern_path);
       self->pattern_path = g_value_dup_string (value);
       break;
+    case PROP_CHART:
+      g_free (self->chart_path);
+      self->chart_path = g_value_dup_string (value);
+      break;
     case PROP_COLOURS:
       self->colours_by = (GstDotLabelColours) g_value_get_enum (value);
       break;
@@ -524,6 +571,9 @@ gst_dot_label_get_property (GObject * object, guint id, GValue * value,
     case PROP_PATTERN:
       g_value_set_string (value, self->pattern_path);
       break;
+    case PROP_CHART:
+      g_value_set_string (value, self->chart_path);
+      break;
     case PROP_COLOURS:
       g_value_set_enum (value, (gint) self->colours_by);
       break;
@@ -576,6 +626,7 @@ gst_dot_label_finalize (GObject * object)
   GstDotLabel *self = GST_DOT_LABEL (object);
 
   g_free (self->pattern_path);
+  g_free (self->chart_path);
   g_array_unref (self->likelihoods);
   g_array_unref (self->dots);
   g_byte_array_unref (self->said);
@@ -614,6 +665,12 @@ gst_dot_label_class_init (GstDotLabelClass * klass)
           "File pattern.json of the M-array that is filmed.", NULL,
           G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
           GST_PARAM_MUTABLE_READY));
+  g_object_class_install_property (object_class, PROP_CHART,
+      g_param_spec_string ("chart", "Chart",
+          "Picture of the print by this camera, from which the colours of the dots "
+          "are learnt before the film.", NULL,
+          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+          GST_PARAM_MUTABLE_READY));
   g_object_class_install_property (object_class, PROP_COLOURS,
       g_param_spec_enum ("colours", "Colours",
           "How dots are told apart by colour.", GST_TYPE_DOT_LABEL_COLOURS,
@@ -621,8 +678,8 @@ gst_dot_label_class_init (GstDotLabelClass * klass)
   g_object_class_install_property (object_class, PROP_LEARN,
       g_param_spec_boolean ("learn", "Learn",
           "Whether the colours as the camera sees them are learnt from the film, "
-          "blindly at first, then from labelled dots; else they are as printed.",
-          DEFAULT_LEARN, any_time));
+          "blindly at first, then from labelled dots; else they are as printed or as on "
+          "the chart.", DEFAULT_LEARN, any_time));
   install_float (object_class, PROP_CONTRAST, "contrast", "Contrast",
       "Least luma of a dot above the ground around it, grey levels.", 1, 254,
       dots.contrast);

@@ -408,7 +408,7 @@ GST_START_TEST (test_wrong_pattern)
 GST_END_TEST;
 
 static void
-refuse_to_start (const gchar * pattern, const gchar * text)
+refuse_to_start (const gchar * pattern, const gchar * chart, const gchar * text)
 {
   GstElement *element = gst_element_factory_make ("dotlabel", NULL);
   g_autoptr (GstBus) bus = gst_bus_new ();
@@ -417,7 +417,7 @@ refuse_to_start (const gchar * pattern, const gchar * text)
 
   gst_object_ref_sink (element);
   gst_element_set_bus (element, bus);
-  g_object_set (element, "pattern", pattern, NULL);
+  g_object_set (element, "pattern", pattern, "chart", chart, NULL);
   fail_unless_equals_int (gst_element_set_state (element, GST_STATE_PAUSED),
       GST_STATE_CHANGE_FAILURE);
   message = gst_bus_pop_filtered (bus, GST_MESSAGE_ERROR);
@@ -429,13 +429,163 @@ refuse_to_start (const gchar * pattern, const gchar * text)
   gst_object_unref (element);
 }
 
+/* A picture in a light that lacks green and blue, as of a lamp with a filament. */
+static GstBuffer *
+in_other_light (GstSample * sample, GstCaps ** caps)
+{
+  g_autoptr (GstCaps) rgb = gst_caps_from_string ("video/x-raw,format=RGB");
+  g_autoptr (GstSample) picture =
+      gst_video_convert_sample (sample, rgb, 10 * GST_SECOND, NULL);
+  GstBuffer *buffer;
+  GstVideoInfo info;
+  GstVideoFrame frame;
+
+  fail_unless (picture != NULL);
+  fail_unless (gst_video_info_from_caps (&info, gst_sample_get_caps (picture)));
+  *caps = gst_caps_ref (gst_sample_get_caps (picture));
+  buffer = gst_buffer_copy_deep (gst_sample_get_buffer (picture));
+  fail_unless (gst_video_frame_map (&frame, &info, buffer, GST_MAP_READWRITE));
+  for (gint y = 0; y < info.height; y++) {
+    guint8 *row = GST_VIDEO_FRAME_PLANE_DATA (&frame, 0);
+
+    row += y * GST_VIDEO_FRAME_PLANE_STRIDE (&frame, 0);
+    for (gint x = 0; x < info.width; x++) {
+      row[3 * x + 1] = (guint8) (0.6 * row[3 * x + 1]);
+      row[3 * x + 2] = (guint8) (0.4 * row[3 * x + 2]);
+    }
+  }
+  gst_video_frame_unmap (&frame);
+  return buffer;
+}
+
+static void
+write_png (GstBuffer * picture, GstCaps * caps, const gchar * path)
+{
+  g_autoptr (GstSample) sample = gst_sample_new (picture, caps, NULL, NULL);
+  g_autoptr (GstCaps) png = gst_caps_from_string ("image/png");
+  g_autoptr (GstSample) written =
+      gst_video_convert_sample (sample, png, 10 * GST_SECOND, NULL);
+  GstMapInfo map;
+
+  fail_unless (written != NULL);
+  fail_unless (gst_buffer_map (gst_sample_get_buffer (written), &map,
+          GST_MAP_READ));
+  fail_unless (g_file_set_contents (path, (const gchar *) map.data,
+          (gssize) map.size, NULL));
+  gst_buffer_unmap (gst_sample_get_buffer (written), &map);
+}
+
+/* Labels of cam0's picture in another light, the colours as on @chart and not learnt. */
+static void
+label_in_other_light (const gchar * chart, guint * n_labelled, guint * n_right)
+{
+  GstHarness *h = open_label (RING "pattern.json");
+  g_autoptr (GstCaps) i420 = gst_caps_from_string ("video/x-raw,format=I420");
+  GstCaps *rgb;
+  g_autoptr (GstBuffer) light = in_other_light (film, &rgb);
+  g_autoptr (GstSample) sample = gst_sample_new (light, rgb, NULL, NULL);
+  g_autoptr (GstSample) picture =
+      gst_video_convert_sample (sample, i420, 10 * GST_SECOND, NULL);
+  g_autoptr (GstBuffer) out = NULL;
+
+  fail_unless (picture != NULL);
+  /* properties of files hold from the start */
+  gst_element_set_state (h->element, GST_STATE_NULL);
+  g_object_set (h->element, "chart", chart, "learn", FALSE, NULL);
+  gst_element_set_state (h->element, GST_STATE_PLAYING);
+  gst_harness_set_src_caps (h, gst_caps_copy (gst_sample_get_caps (picture)));
+  out = gst_harness_push_and_pull (h,
+      gst_buffer_copy (gst_sample_get_buffer (picture)));
+  fail_unless (out != NULL);
+  count (gst_buffer_get_cloth_dots (out), 0, n_labelled, n_right);
+  gst_caps_unref (rgb);
+  gst_harness_teardown (h);
+}
+
+/* The chart is a picture from elsewhere in the same light. */
+GST_START_TEST (test_chart)
+{
+  g_autofree gchar *folder = g_dir_make_tmp ("dotlabel-XXXXXX", NULL);
+  g_autofree gchar *path = g_build_filename (folder, "chart.png", NULL);
+  g_autoptr (GstSample) other = ring_picture ("cam4");
+  GstCaps *caps;
+  g_autoptr (GstBuffer) chart = in_other_light (other, &caps);
+  guint n_without, n_labelled, n_right;
+
+  write_png (chart, caps, path);
+  label_in_other_light (NULL, &n_without, &n_right);
+  label_in_other_light (path, &n_labelled, &n_right);
+  g_test_message ("%u labelled by the colours of the print, %u by those of the "
+      "chart, %u of them right", n_without, n_labelled, n_right);
+  fail_unless (n_labelled > 850, "%u", n_labelled);
+  fail_unless (n_labelled > 2 * n_without, "%u", n_without);
+  fail_unless (1000 * n_right >= 995 * n_labelled, "%u of %u", n_right,
+      n_labelled);
+  gst_caps_unref (caps);
+  g_remove (path);
+  g_rmdir (folder);
+}
+
+GST_END_TEST;
+
+/* Charts that can be read and teach nothing: another print, and no colours. */
+GST_START_TEST (test_useless_chart)
+{
+  g_autofree gchar *folder = g_dir_make_tmp ("dotlabel-XXXXXX", NULL);
+  g_autofree gchar *grey = g_build_filename (folder, "grey.png", NULL);
+  const gchar *charts[] = { TEST_DATA "/checker_pair/cam0.mp4", grey };
+  GstCaps *caps;
+  g_autoptr (GstBuffer) picture_of_greys =
+      picture (GST_VIDEO_FORMAT_GRAY8, 1004, 1004, 0, &caps);
+
+  write_png (picture_of_greys, caps, grey);
+  gst_caps_unref (caps);
+  for (guint i = 0; i < G_N_ELEMENTS (charts); i++) {
+    GstHarness *h = open_label (RING "pattern.json");
+    g_autoptr (GstBus) bus = gst_bus_new ();
+    g_autoptr (GstMessage) message = NULL;
+    g_autoptr (GError) error = NULL;
+    g_autofree gchar *debug = NULL;
+    GstBuffer *buffer = picture (GST_VIDEO_FORMAT_I420, 321, 241, 0, &caps);
+
+    gst_element_set_state (h->element, GST_STATE_NULL);
+    g_object_set (h->element, "chart", charts[i], NULL);
+    gst_element_set_bus (h->element, bus);
+    gst_element_set_state (h->element, GST_STATE_PLAYING);
+    gst_harness_set_src_caps (h, caps);
+    fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_ERROR);
+    message = gst_bus_pop_filtered (bus, GST_MESSAGE_ERROR);
+    fail_unless (message != NULL);
+    gst_message_parse_error (message, &error, &debug);
+    fail_unless (strstr (error->message, "chart teaches no colours") != NULL
+        && strstr (debug, "very print") != NULL, "%s", error->message);
+    gst_element_set_bus (h->element, NULL);
+    gst_harness_teardown (h);
+  }
+  g_remove (grey);
+  g_rmdir (folder);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_no_chart)
+{
+  refuse_to_start (RING "pattern.json", "/nonexistent/chart.png",
+      "Can't read the chart: /nonexistent/chart.png: there is no such file");
+  refuse_to_start (RING "pattern.json", RING "rig.json",
+      "Can't read the chart");
+  refuse_to_start (RING "pattern.json", TEST_DATA, "Can't read the chart");
+}
+
+GST_END_TEST;
+
 GST_START_TEST (test_no_pattern)
 {
-  refuse_to_start (NULL, "pattern is not set");
-  refuse_to_start ("/nonexistent/pattern.json", "pattern.json");
-  refuse_to_start (TEST_DATA "/checker_pair/pattern.json", "m-array");
-  refuse_to_start (RING "rig.json", "pattern");
-  refuse_to_start (RING "vertices.npy", "pattern");
+  refuse_to_start (NULL, NULL, "pattern is not set");
+  refuse_to_start ("/nonexistent/pattern.json", NULL, "pattern.json");
+  refuse_to_start (TEST_DATA "/checker_pair/pattern.json", NULL, "m-array");
+  refuse_to_start (RING "rig.json", NULL, "pattern");
+  refuse_to_start (RING "vertices.npy", NULL, "pattern");
 }
 
 GST_END_TEST;
@@ -455,6 +605,9 @@ dotlabel_suite (void)
   tcase_add_test (tc, test_renegotiation_and_flush);
   tcase_add_test (tc, test_grey);
   tcase_add_test (tc, test_wrong_pattern);
+  tcase_add_test (tc, test_chart);
+  tcase_add_test (tc, test_useless_chart);
+  tcase_add_test (tc, test_no_chart);
   tcase_add_test (tc, test_no_pattern);
   return s;
 }

@@ -1,0 +1,22 @@
+/* The colours of dots as one camera sees them, from a picture of the print.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include <gst/video/video.h>
+
+#include "gst/pattern/marray.h"
+#include "gst/vision/dotcolour.h"
+#include "gst/vision/lattice.h"
+
+G_BEGIN_DECLS
+
+GstSample *gst_dot_label_chart_load (const gchar * path, GError ** error);
+/* Learns from the dots of @chart that can be labelled. @colours holds those of the print
+ * and is changed when that succeeds alone; @film is what it is meant for. */
+gboolean gst_dot_label_chart_learn (GstSample * chart,
+    const ClothMArray * array, const GstVideoInfo * film,
+    const ClothDotParams * dot_params, const ClothDotLabelParams * label_params,
+    ClothDotColourModel * colours, GError ** error);
+
+G_END_DECLS
