@@ -30,6 +30,8 @@ extern const ClothLaneBackend cloth_lane_backend_double_avx512;
 #define GOOD_STEPS 3
 /* Steps of one cloth_sim_advance (); more means a model far out of range. */
 #define MAX_STEPS 1e8
+/* s; shorter steps would not come to an end while anybody waits. */
+#define SHORTEST_STEP 1e-8
 /* Most stages of a step; what else a step costs, in stages; a staged step is at most this
  * many times as long as a plain one. */
 #define MAX_STAGES 8
@@ -193,6 +195,35 @@ find_time_step (ClothSim * sim)
   sim->stale = FALSE;
 }
 
+static gboolean
+check_time_step (const ClothSim * sim, const ClothModel * const *models,
+    GError ** error)
+{
+  const ClothModel *stiff = models[0];
+
+  if (sim->longest_step >= SHORTEST_STEP)
+    return TRUE;
+  if (sim->fixed_step > 0.) {
+    g_set_error (error, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_MODEL,
+        "“time_step” is %g s, %g s with the effects; steps must not be "
+        "shorter than %g s: give 0 for an automatic one", sim->fixed_step,
+        sim->longest_step, SHORTEST_STEP);
+    return FALSE;
+  }
+  for (guint i = 1; i < sim->n_models; i++)
+    if (models[i]->stretch_warp + models[i]->stretch_weft
+        > stiff->stretch_warp + stiff->stretch_weft)
+      stiff = models[i];
+  g_set_error (error, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_MODEL,
+      "steps of %g s would be needed, and %g s are the shortest: lower the "
+      "stiffnesses or damping.stiffness (“stretch” is %g and %g, “shear” %g, "
+      "“bending” %g and %g, “damping.stiffness” %g), or set “integrator” to "
+      "implicit", sim->longest_step, SHORTEST_STEP, stiff->stretch_warp,
+      stiff->stretch_weft, stiff->shear, stiff->bending_warp,
+      stiff->bending_weft, stiff->damping_stiffness);
+  return FALSE;
+}
+
 static void
 make_groups (ClothSim * sim, const ClothModel * const *models,
     const ClothSimOptions * options)
@@ -226,7 +257,7 @@ make_groups (ClothSim * sim, const ClothModel * const *models,
  *   time_step and the numerics effects
  * @options: (nullable): %NULL for double precision, all processors and seed 0
  * @error: #ClothSimError, also for what cloth_scene_check () or cloth_model_check ()
- *   refuse
+ *   refuse, and for models that would need steps shorter than 1e-8 s
  *
  * Models are computed side by side in vector instructions and on several threads. What
  * becomes of a model does not depend on its neighbours, the threads or the instruction
@@ -279,6 +310,8 @@ cloth_sim_new (const ClothScene * scene, const ClothModel * const *models,
   sim->too_long = g_new0 (gdouble, sim->n_groups);
   sim->pool = cloth_pool_new (options->threads);
   find_time_step (sim);
+  if (!check_time_step (sim, models, error))
+    return NULL;
   return g_steal_pointer (&sim);
 }
 

@@ -263,6 +263,40 @@ test_disagree (void)
   g_assert_nonnull (strstr (error->message, "force_model"));
 }
 
+/* Steps so short that a simulation would never end are refused, by what asks for them. */
+static void
+test_short_steps (void)
+{
+  static const struct
+  {
+    gdouble time_step, stretch, damping_stiffness;
+    const gchar *said;
+  } cases[] = {
+    {1e-12, 40., 0., "“time_step” is 1e-12"}, {1e-8, 40., 0., NULL},
+    {0., 1e7, 1., "“stretch” is 1e+07"}, {0., 40., 0., NULL}
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autoptr (ClothScene) scene = swing ();
+    g_autoptr (ClothModel) calm = model_new (0.2, 40.);
+    g_autoptr (ClothModel) model = model_new (0.2, cases[i].stretch);
+    const ClothModel *models[2] = { calm, model };
+    g_autoptr (GError) error = NULL;
+    g_autoptr (ClothSim) sim = NULL;
+
+    calm->time_step = model->time_step = cases[i].time_step;
+    model->damping_stiffness = cases[i].damping_stiffness;
+    sim = cloth_sim_new (scene, models, 2, NULL, &error);
+    if (!cases[i].said) {
+      g_assert_no_error (error);
+      continue;
+    }
+    g_assert_null (sim);
+    g_assert_error (error, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_MODEL);
+    g_assert_nonnull (strstr (error->message, cases[i].said));
+  }
+}
+
 /* Numbers that no cloth has, in the scene or in one of the models. */
 static void
 test_numbers (void)
@@ -334,6 +368,7 @@ main (int argc, char **argv)
   g_test_add_func ("/sim/clamps", test_clamps);
   g_test_add_func ("/sim/divergence", test_divergence);
   g_test_add_func ("/sim/disagree", test_disagree);
+  g_test_add_func ("/sim/short-steps", test_short_steps);
   g_test_add_func ("/sim/numbers", test_numbers);
   g_test_add_func ("/sim/scene", test_scene);
   return g_test_run ();
