@@ -277,43 +277,127 @@ GST_START_TEST (test_camera_off)
 
 GST_END_TEST;
 
-/* A camera without pictures for two seconds: the others go on. */
-GST_START_TEST (test_missing_camera)
+static void
+push_dots_of (Bench * b, guint camera, guint frame)
 {
-  Bench b;
   GstClothDot dots[N_VERTICES];
 
-  dots_init (&b, 4);
-  push_all_dots (&b, 0);
-  expect_dots (&b, 0);
-  see_dots (&b, 1, 51 % 3, dots);
-  push_dots (&b, 1, dots, N_VERTICES, 51);      /* its next picture */
-  for (guint frame = 1; frame <= 50; frame++) {
-    for (guint i = 0; i < 4; i++) {
-      see_dots (&b, i, frame % 3, dots);
-      if (i != 1)
-        push_dots (&b, i, dots, N_VERTICES, frame);
+  see_dots (b, camera, frame % 3, dots);
+  push_dots (b, camera, dots, N_VERTICES, frame);
+}
+
+/* All vertices where they were; @n_views cameras saw each. */
+static void
+expect_views (Bench * b, guint frame, guint n_views)
+{
+  g_autoptr (GstClothMesh) mesh = pull (b, frame);
+  const guint8 *states = gst_cloth_mesh_get_states (mesh, NULL);
+
+  for (guint i = 0; i < N_VERTICES; i++) {
+    fail_unless_equals_int (states[i], n_views < 2 ? GST_CLOTH_VERTEX_UNSEEN :
+        n_views == 2 ? GST_CLOTH_VERTEX_TWO_VIEWS : GST_CLOTH_VERTEX_MEASURED);
+    fail_unless (n_views < 2 || error_of (mesh, i, frame % 3) < 2e-6,
+        "frame %u, %u views: %g", frame, n_views, error_of (mesh, i,
+            frame % 3));
+  }
+}
+
+/* A camera without pictures for two seconds: the others go on, and one that is left alone
+ * sees nothing in space; when it is back all is as before. */
+GST_START_TEST (test_missing_camera)
+{
+  static const guint n_cameras[] = { 2, 4, 8 };
+
+  for (guint k = 0; k < G_N_ELEMENTS (n_cameras); k++) {
+    const guint n = n_cameras[k];
+    Bench b;
+
+    dots_init (&b, n);
+    push_all_dots (&b, 0);
+    expect_views (&b, 0, n);
+    push_dots_of (&b, 1, 51);   /* its next picture */
+    for (guint frame = 1; frame <= 51; frame++) {
+      for (guint i = 0; i < n; i++)
+        if (i != 1)
+          push_dots_of (&b, i, frame);
+      expect_views (&b, frame, frame == 51 ? n : n - 1);
     }
+    fail_unless (gst_bus_pop_filtered (b.bus, GST_MESSAGE_ERROR) == NULL);
+    bench_clear (&b);
+  }
+}
+
+GST_END_TEST;
+
+/* Films of unequal length: the mesh goes on for as long as any film does. */
+GST_START_TEST (test_unequal_length)
+{
+  static const guint n_cameras[] = { 2, 8 };
+
+  for (guint k = 0; k < G_N_ELEMENTS (n_cameras); k++) {
+    const guint n = n_cameras[k];
+    Bench b;
+    guint n_ended = 0;
+
+    dots_init (&b, n);
+    /* camera i has 3 + 2 i pictures */
+    for (guint frame = 0; n_ended < n; frame++) {
+      for (guint i = n_ended; i < n; i++)
+        push_dots_of (&b, i, frame);
+      expect_views (&b, frame, n - n_ended);
+      if (frame == 2 + 2 * n_ended)
+        fail_unless (gst_harness_push_event (b.in[n_ended++],
+                gst_event_new_eos ()));
+    }
+    fail_unless (gst_harness_try_pull (b.src) == NULL);
     {
-      g_autoptr (GstClothMesh) mesh = pull (&b, frame);
+      gboolean ended = FALSE;
+      GstEvent *event;
 
-      for (guint i = 0; i < N_VERTICES; i++)
-        fail_unless (error_of (mesh, i, frame % 3) < 1e-6);
+      while ((event = gst_harness_try_pull_event (b.src))) {
+        ended |= GST_EVENT_TYPE (event) == GST_EVENT_EOS;
+        gst_event_unref (event);
+      }
+      for (guint i = 0; i < 200 && !ended; i++) {
+        g_usleep (10000);
+        event = gst_harness_try_pull_event (b.src);
+        ended = event && GST_EVENT_TYPE (event) == GST_EVENT_EOS;
+        g_clear_pointer (&event, gst_event_unref);
+      }
+      fail_unless (ended);
     }
+    fail_unless (gst_bus_pop_filtered (b.bus, GST_MESSAGE_ERROR) == NULL);
+    bench_clear (&b);
   }
-  for (guint i = 0; i < 4; i++) {
-    see_dots (&b, i, 51 % 3, dots);
-    if (i != 1)
-      push_dots (&b, i, dots, N_VERTICES, 51);
-  }
-  {
-    g_autoptr (GstClothMesh) mesh = pull (&b, 51);
+}
 
-    for (guint i = 0; i < N_VERTICES; i++) {
-      fail_unless (error_of (mesh, i, 51 % 3) < 1e-6);
+GST_END_TEST;
+
+/* One of eight cameras films at half the rate: it takes part in every second mesh. */
+GST_START_TEST (test_unequal_rate)
+{
+  static const gchar slow[] =
+      "video/x-raw,format=GRAY8,width=1280,height=720,framerate=25/2";
+  static const guint n_cameras[] = { 2, 3, 8 };
+
+  for (guint k = 0; k < G_N_ELEMENTS (n_cameras); k++) {
+    const guint n = n_cameras[k];
+    Bench b;
+
+    dots_init (&b, n);
+    gst_harness_set_src_caps_str (b.in[1], slow);
+    push_dots_of (&b, 1, 0);
+    for (guint frame = 0; frame < 12; frame++) {
+      for (guint i = 0; i < n; i++)
+        if (i != 1)
+          push_dots_of (&b, i, frame);
+      expect_views (&b, frame, frame % 2 == 0 ? n : n - 1);
+      if (frame % 2 == 0)
+        push_dots_of (&b, 1, frame + 2);        /* the next one */
     }
+    fail_unless (gst_bus_pop_filtered (b.bus, GST_MESSAGE_ERROR) == NULL);
+    bench_clear (&b);
   }
-  bench_clear (&b);
 }
 
 GST_END_TEST;
@@ -388,6 +472,8 @@ triangulatedots_suite (void)
   tcase_add_test (tc, test_fold);
   tcase_add_test (tc, test_camera_off);
   tcase_add_test (tc, test_missing_camera);
+  tcase_add_test (tc, test_unequal_length);
+  tcase_add_test (tc, test_unequal_rate);
   tcase_add_test (tc, test_wrong_pattern);
   tcase_add_test (tc, test_no_detector);
   return s;
