@@ -171,6 +171,52 @@ test_each_acts (void)
   }
 }
 
+/* Where all points are, and their scatter, with an effect at its prior and @more of it. */
+static void
+at_work (const ClothEffect * effect, guint which, gdouble more, Scene * scene,
+    gdouble all[5 * POINTS])
+{
+  GString *text = g_string_new (effect->id);
+
+  for (guint k = 0; k < effect->n_parameters; k++) {
+    const ClothEffectParameter *p = &effect->parameters[k];
+    gdouble value = p->null_value + p->prior * (1 + (k == which ? more : 0));
+
+    g_string_append_printf (text, ",%s=%.17g", p->name, value);
+  }
+  observe (text->str, scene, 0.04, all, all + 2 * POINTS);
+  g_string_free (text, TRUE);
+}
+
+/* Finite differences of 1e-3 and 1e-5 of the prior agree. */
+static void
+test_derivatives (void)
+{
+  const ClothEffect *effect;
+  Scene scene;
+
+  scene_init (&scene, 1.1, -0.7);
+  for (guint i = 0; (effect = cloth_capture_effect (i)); i++)
+    for (guint k = 0; k < effect->n_parameters; k++) {
+      gdouble at[3][5 * POINTS], apart = 0, size = 0;
+
+      at_work (effect, k, 0, &scene, at[0]);
+      at_work (effect, k, 1e-3, &scene, at[1]);
+      at_work (effect, k, 1e-5, &scene, at[2]);
+      for (gint j = 0; j < 5 * POINTS; j++) {
+        gdouble coarse = (at[1][j] - at[0][j]) / 1e-3;
+        gdouble fine = (at[2][j] - at[0][j]) / 1e-5;
+
+        apart += (coarse - fine) * (coarse - fine);
+        size += fine * fine;
+      }
+      g_test_message ("%s %s: steps disagree by %.5f", effect->id,
+          effect->parameters[k].name, sqrt (apart / size));
+      g_assert_cmpfloat (size, >, 0);
+      g_assert_cmpfloat (sqrt (apart / size), <, 0.1);
+    }
+}
+
 static void
 test_time (void)
 {
@@ -447,6 +493,7 @@ int
 main (int argc, char **argv)
 {
   g_test_init (&argc, &argv, NULL);
+  g_test_add_func ("/capture/derivatives", test_derivatives);
   g_test_add_func ("/capture/null", test_null);
   g_test_add_func ("/capture/nothing", test_nothing);
   g_test_add_func ("/capture/each-acts", test_each_acts);
