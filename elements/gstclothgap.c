@@ -409,7 +409,8 @@ static void
 finish (GstClothgap * self)
 {
   const ClothGapOptions options = { &self->baseline, self->baseline ? 1 : 0,
-    NULL, 0, (const gchar * const *) self->effects, self->settings.seed,
+    NULL, 0, self->settings.model, (const gchar * const *) self->effects,
+    self->settings.seed,
     self->settings.threads,
     go_on, self
   };

@@ -105,6 +105,7 @@ run_diagnosis (const Arguments * arguments, gchar ** effects, GError ** error)
   options.n_baselines = baselines->len;
   options.hold_outs = (ClothTake **) hold_outs->pdata;
   options.n_hold_outs = hold_outs->len;
+  options.model_file = arguments->model;
   options.effects = (const gchar * const *) effects;
   options.seed = (guint64) arguments->seed;
   options.threads = (guint) arguments->threads;

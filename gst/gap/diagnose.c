@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "gst/gap/front.h"
+#include "gst/mesh/hash.h"
 
 /* Version of the priors and thresholds: a change of either changes probabilities. */
 #define PRIORS "1"
@@ -72,18 +73,32 @@ load_one (ClothDiagnosis * d, ClothTake * take, ClothGapRole role,
     GError ** error)
 {
   ClothRecording *r = cloth_recording_new (take, error), *first;
+  g_autofree gchar *sha256 = NULL;
 
   if (!r)
     return FALSE;
   g_ptr_array_add (d->recordings, r);
   first = cloth_diagnosis_recording (d, 0);
   if (!cloth_gap_check_same_cloth (r->name, r->scene->topology, first->name,
-          first->scene->topology, error))
+          first->scene->topology, error) ||
+      !(sha256 = cloth_take_sha256 (take, error)))
     return FALSE;
-  cloth_gap_result_add_input (d->result, role, r->name, NULL);
+  cloth_gap_result_add_input (d->result, role, r->name, sha256);
   if (role != CLOTH_GAP_HOLD_OUT)
     g_ptr_array_add (d->studies, cloth_study_new (r, &d->study));
   return TRUE;
+}
+
+/* A stream may outlive its model's file: then there is no hash. */
+static void
+note_model (ClothDiagnosis * d)
+{
+  const gchar *path = d->options->model_file;
+  g_autofree gchar *name = path ? g_path_get_basename (path) : NULL;
+  g_autofree gchar *sha256 = path ? cloth_file_sha256 (path, NULL) : NULL;
+
+  if (path)
+    cloth_gap_result_add_input (d->result, CLOTH_GAP_MODEL, name, sha256);
 }
 
 static gboolean
@@ -100,6 +115,7 @@ load (ClothDiagnosis * d, GError ** error)
   for (guint i = 0; i < o->n_hold_outs; i++)
     if (!load_one (d, o->hold_outs[i], CLOTH_GAP_HOLD_OUT, error))
       return FALSE;
+  note_model (d);
   return TRUE;
 }
 
@@ -245,7 +261,8 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
     return FALSE;
   if (!d->options->n_baselines && !study_other_model (d, error))
     return FALSE;
-  if (!cloth_diagnosis_select (d, error) || !cloth_diagnosis_measure (d, error))
+  if (!cloth_diagnosis_select (d, error) || !cloth_diagnosis_measure (d, error)
+      || !cloth_diagnosis_locate (d, error))
     return FALSE;
   cloth_diagnosis_decide (d);
   return TRUE;

@@ -50,6 +50,7 @@ typedef gboolean (*ClothGapProgress) (gpointer data, gdouble share,
  * @hold_outs: (array length=n_hold_outs) (nullable): takes that judge, and on which
  *   nothing is fitted
  * @n_hold_outs: how many
+ * @model_file: (nullable): the file the model comes from, for its name and hash
  * @effects: (array zero-terminated=1) (nullable): ids of the effects to consider; %NULL:
  *   all
  * @seed: of its random numbers
@@ -64,6 +65,7 @@ typedef struct {
   guint n_baselines;
   ClothTake **hold_outs;
   guint n_hold_outs;
+  const gchar *model_file;
   const gchar *const *effects;
   guint64 seed;
   guint threads;

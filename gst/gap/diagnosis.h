@@ -1,4 +1,5 @@
-/* A diagnosis under way; private to diagnose.c, name.c, select.c, rest.c and judge.c.
+/* A diagnosis under way; private to diagnose.c, name.c, select.c, rest.c, judge.c
+ * and where.c.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -124,5 +125,8 @@ gboolean cloth_diagnosis_is_unknown (const ClothDiagnosis * d);
 /* How much, and the verdict. */
 gboolean cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error);
 void cloth_diagnosis_decide (ClothDiagnosis * d);
+
+/* Where. */
+gboolean cloth_diagnosis_locate (ClothDiagnosis * d, GError ** error);
 
 G_END_DECLS

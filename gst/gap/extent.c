@@ -300,8 +300,8 @@ fill_series (const ClothGapExtent * before, const ClothGapExtent * after,
  * @after: (nullable): with them
  * @recording: what they are of
  * @take: its take
- * @result: (inout): gets the shares of vertices, frames and directions, the series and
- *   the playback
+ * @result: (inout): gets the shares of vertices, frames and directions, what @after
+ *   gains, the series and the playback
  *
  * Since: 0.1
  */
@@ -312,6 +312,7 @@ cloth_gap_extent_fill (const ClothGapExtent * before,
 {
   gdouble sum = 0., along = 0.;
   g_autofree gboolean *seen = g_new0 (gboolean, before->n);
+  g_autofree gdouble *left = g_new0 (gdouble, before->n);
 
   result->n_vertices = before->n;
   result->n_frames = before->n_frames;
@@ -319,17 +320,22 @@ cloth_gap_extent_fill (const ClothGapExtent * before,
   result->frames = g_new0 (gdouble, before->n_frames);
   for (guint frame = 1; frame < before->n_frames; frame++)
     for (guint v = 0; v < before->n; v++) {
-      gdouble square = before->squares[(gsize) frame * before->n + v];
+      gsize at = (gsize) frame * before->n + v;
+      gdouble square = before->squares[at];
 
       if (!isfinite (square))
         continue;
       seen[v] = TRUE;
       result->vertices[v] += square;
+      left[v] += after ? after->squares[at] : 0.;
       result->frames[frame] += square;
       sum += square;
     }
   for (guint v = 0; v < before->n; v++)
     result->vertices[v] = seen[v] ? result->vertices[v] / sum : NAN;
+  result->gained = after ? g_new (gdouble, before->n) : NULL;
+  for (guint v = 0; v < before->n && after; v++)
+    result->gained[v] = result->vertices[v] - left[v] / sum;
   for (guint frame = 0; frame < before->n_frames; frame++)
     result->frames[frame] /= sum;
   for (guint a = 0; a < 3; a++)

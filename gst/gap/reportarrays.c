@@ -199,23 +199,23 @@ put_sigma (ClothJsonWriter * writer, const Thinned * thinned)
 }
 
 static void
-put_shares (ClothJsonWriter * writer, const Thinned * thinned,
-    const ClothGapResult * result)
+put_shares (ClothJsonWriter * writer, const gchar * key,
+    const Thinned * thinned, const ClothGapResult * result,
+    const gdouble * shares)
 {
   g_autofree guint32 *packed = NULL;
 
-  if (!result->vertices ||
-      result->n_vertices != thinned->from->topology->n_vertices)
+  if (!shares || result->n_vertices != thinned->from->topology->n_vertices)
     return;
   packed = g_new (guint32, thinned->n_vertices);
   for (guint i = 0; i < thinned->n_vertices; i++) {
-    gfloat share = (gfloat) result->vertices[thinned->vertices[i]];
+    gfloat share = (gfloat) shares[thinned->vertices[i]];
     guint32 bits;
 
     memcpy (&bits, &share, sizeof bits);
     packed[i] = GUINT32_TO_LE (bits);
   }
-  put_bytes (writer, "shares", packed, thinned->n_vertices * sizeof *packed);
+  put_bytes (writer, key, packed, thinned->n_vertices * sizeof *packed);
 }
 
 static void
@@ -262,7 +262,8 @@ put_playback (ClothJsonWriter * writer, const ClothGapResult * result)
   put_positions (writer, "before", &thinned, play->before);
   put_positions (writer, "after", &thinned, play->after);
   put_sigma (writer, &thinned);
-  put_shares (writer, &thinned, result);
+  put_shares (writer, "shares", &thinned, result, result->vertices);
+  put_shares (writer, "gained", &thinned, result, result->gained);
   cloth_json_writer_end_object (writer);
   g_free (thinned.vertices);
   cloth_topology_free (thinned.topology);

@@ -24,9 +24,10 @@ clear_untested (gpointer item)
 }
 
 static void
-clear_share (gpointer item)
+clear_stage (gpointer item)
 {
-  g_free (((ClothGapShare *) item)->name);
+  g_free (((ClothGapStage *) item)->name);
+  g_free (((ClothGapStage *) item)->reason);
 }
 
 static void
@@ -73,14 +74,15 @@ cloth_gap_result_new (void)
 
   result->gap_before = result->gap_after = result->noise_floor = unknown;
   result->shrink = unknown;
-  result->rest_p_value = result->onset_s = NAN;
+  result->rest_p_value = result->onset_s = result->still = NAN;
   for (guint i = 0; i < 3; i++)
     result->directions[i] = NAN;
   result->effects = new_list (sizeof (ClothGapEffect), NULL);
   result->groups = new_list (sizeof (ClothGapGroup), clear_group);
   result->untested = new_list (sizeof (ClothGapUntested), clear_untested);
   result->bands = new_list (sizeof (ClothGapBand), NULL);
-  result->stages = new_list (sizeof (ClothGapShare), clear_share);
+  result->waves = new_list (sizeof (ClothGapBand), NULL);
+  result->stages = new_list (sizeof (ClothGapStage), clear_stage);
   result->versions = new_list (sizeof (ClothGapNote), clear_note);
   result->inputs = new_list (sizeof (ClothGapInput), clear_input);
   result->thresholds = new_list (sizeof (ClothGapThreshold), clear_threshold);
@@ -151,36 +153,19 @@ cloth_gap_result_add_untested (ClothGapResult * result,
 }
 
 /**
- * cloth_gap_result_add_band:
- * @result: a result
- * @from_hz: lowest frequency
- * @to_hz: highest frequency
- * @share: of the gap's variance
- *
- * Since: 0.1
- */
-void
-cloth_gap_result_add_band (ClothGapResult * result, gdouble from_hz,
-    gdouble to_hz, gdouble share)
-{
-  ClothGapBand item = { from_hz, to_hz, share };
-
-  g_array_append_val (result->bands, item);
-}
-
-/**
  * cloth_gap_result_add_stage:
  * @result: a result
  * @name: of the stage
  * @share: of the gap's variance; NaN: it could not be measured
+ * @reason: (nullable): why it could not, a sentence
  *
  * Since: 0.1
  */
 void
 cloth_gap_result_add_stage (ClothGapResult * result, const gchar * name,
-    gdouble share)
+    gdouble share, const gchar * reason)
 {
-  ClothGapShare item = { g_strdup (name), share };
+  ClothGapStage item = { g_strdup (name), share, g_strdup (reason) };
 
   g_array_append_val (result->stages, item);
 }
@@ -285,8 +270,10 @@ cloth_gap_result_free (ClothGapResult * result)
   g_array_unref (result->groups);
   g_array_unref (result->untested);
   g_free (result->vertices);
+  g_free (result->gained);
   g_free (result->frames);
   g_array_unref (result->bands);
+  g_array_unref (result->waves);
   g_array_unref (result->stages);
   g_array_unref (result->versions);
   g_array_unref (result->inputs);

@@ -101,29 +101,38 @@ typedef struct {
 } ClothGapUntested;
 
 /**
- * ClothGapShare:
- * @name: what it is the share of
- * @share: of the gap's variance, 0 to 1; NaN: could not be measured
+ * ClothGapStage:
+ * @name: of the stage: what happens between the cloth and the comparison
+ * @share: of the gap's variance that arises there, 0 to 1; NaN: could not be measured
+ * @reason: (nullable): why it could not, a sentence
  *
  * Since: 0.1
  */
 typedef struct {
   gchar *name;
   gdouble share;
-} ClothGapShare;
+  gchar *reason;
+} ClothGapStage;
 
 /**
  * ClothGapBand:
- * @from_hz: lowest frequency
- * @to_hz: highest frequency
- * @share: of the gap's variance, 0 to 1
+ * @from: where it begins: Hz, or cycles per metre over the flat cloth
+ * @to: where it ends; infinite: nowhere
+ * @share: of the residual's mean square, 0 to 1
+ * @after: what the accepted effects leave of it, in the same unit: 1 is all of the
+ *   residual before; NaN: without any
+ * @over_floor: @share over that of a simulation that lacks nothing; NaN: not known
+ *
+ * Of the residual of a simulation that is drawn to the recording.
  *
  * Since: 0.1
  */
 typedef struct {
-  gdouble from_hz;
-  gdouble to_hz;
+  gdouble from;
+  gdouble to;
   gdouble share;
+  gdouble after;
+  gdouble over_floor;
 } ClothGapBand;
 
 /**
@@ -131,7 +140,7 @@ typedef struct {
  * @CLOTH_GAP_TAKE: it is diagnosed
  * @CLOTH_GAP_BASELINE: the model is accepted on it
  * @CLOTH_GAP_HOLD_OUT: it judges, and nothing was fitted on it
- * @CLOTH_GAP_MODEL: model.json
+ * @CLOTH_GAP_MODEL: the model's file
  *
  * Since: 0.1
  */
@@ -146,7 +155,8 @@ typedef enum {
  * ClothGapInput:
  * @role: what it was used for
  * @name: its name
- * @sha256: (nullable): hash of its contents, in hexadecimal digits
+ * @sha256: (nullable): of a take what cloth_take_sha256 () says, of the model that of
+ *   its file
  *
  * Since: 0.1
  */
@@ -208,13 +218,15 @@ typedef struct {
  * ClothGapSpectrum:
  * @n_frequencies: number of frequencies
  * @n_waves: number of wave numbers
- * @frequencies: Hz, growing
+ * @frequencies: Hz, growing; 0: what stands still
  * @waves: wave numbers over the flat cloth, whichever way: cycles per metre, growing
- * @before: mean square of the residual, [n_waves][n_frequencies], m²
+ * @before: mean square of the residual, [n_waves][n_frequencies], m²; NaN: there is
+ *   no such wave or frequency
  * @after: (nullable): with the accepted effects
- * @null: (nullable): 95% quantile of a simulation that lacks nothing
+ * @null: (nullable): of a simulation that lacks nothing
  *
- * Where in space and time the residual's energy lies.
+ * Where in space and time the energy lies of the residual of a simulation that is drawn
+ * to the recording.
  *
  * Since: 0.1
  */
@@ -270,13 +282,17 @@ typedef struct {
  * @untested: (element-type ClothGapUntested): what could not be tested
  * @n_vertices: number of vertices of the cloth
  * @vertices: (nullable): share of the gap per vertex; NaN: never seen
+ * @gained: (nullable): what of the gap the accepted effects take off at each vertex;
+ *   below 0 where it grows; NaN: never seen
  * @n_frames: number of frames of the playback's take
  * @frames: (nullable): share of the gap per frame
  * @onset_s: when the gap begins, seconds; NaN: it is there from the beginning, or
  *   there is none
  * @directions: share along warp, weft and normal
- * @bands: (element-type ClothGapBand): share per band of frequencies
- * @stages: (element-type ClothGapShare): share per stage, from camera to physics
+ * @still: share of the residual that does not move; NaN: not known
+ * @bands: (element-type ClothGapBand): per band of frequencies
+ * @waves: (element-type ClothGapBand): per band of waves over the flat cloth
+ * @stages: (element-type ClothGapStage): share per stage, from camera to physics
  * @seconds: wall time of the diagnosis
  * @simulations: number of simulations that it ran
  * @seed: of its random numbers
@@ -309,11 +325,14 @@ typedef struct {
   GArray *untested;
   guint n_vertices;
   gdouble *vertices;
+  gdouble *gained;
   guint n_frames;
   gdouble *frames;
   gdouble onset_s;
   gdouble directions[3];
+  gdouble still;
   GArray *bands;
+  GArray *waves;
   GArray *stages;
   gdouble seconds;
   guint64 simulations;
@@ -334,10 +353,8 @@ void cloth_gap_result_add_group (ClothGapResult * result,
     const gchar * experiment, gdouble evidence);
 void cloth_gap_result_add_untested (ClothGapResult * result,
     const ClothEffect * effect, const gchar * reason);
-void cloth_gap_result_add_band (ClothGapResult * result, gdouble from_hz,
-    gdouble to_hz, gdouble share);
 void cloth_gap_result_add_stage (ClothGapResult * result, const gchar * name,
-    gdouble share);
+    gdouble share, const gchar * reason);
 void cloth_gap_result_add_version (ClothGapResult * result,
     const gchar * name, const gchar * version);
 void cloth_gap_result_add_input (ClothGapResult * result, ClothGapRole role,

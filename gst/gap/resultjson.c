@@ -297,6 +297,25 @@ put_untested (ClothJsonWriter * writer, const ClothGapResult * result)
 }
 
 static void
+put_bands (ClothJsonWriter * writer, const gchar * key, const gchar * from,
+    const gchar * to, const GArray * bands)
+{
+  cloth_json_writer_begin_array (writer, key);
+  for (guint i = 0; i < bands->len; i++) {
+    const ClothGapBand *band = &g_array_index (bands, ClothGapBand, i);
+
+    cloth_json_writer_begin_object (writer, NULL);
+    cloth_json_writer_number (writer, from, band->from);
+    cloth_json_writer_number (writer, to, band->to);
+    cloth_json_writer_number (writer, "share", band->share);
+    cloth_json_writer_number (writer, "after", band->after);
+    cloth_json_writer_number (writer, "over_floor", band->over_floor);
+    cloth_json_writer_end_object (writer);
+  }
+  cloth_json_writer_end_array (writer);
+}
+
+static void
 put_where (ClothJsonWriter * writer, const ClothGapResult * result)
 {
   static const gchar *const directions[] = { "warp", "weft", "normal" };
@@ -308,29 +327,24 @@ put_where (ClothJsonWriter * writer, const ClothGapResult * result)
   for (guint i = 0; i < 3; i++)
     cloth_json_writer_number (writer, directions[i], result->directions[i]);
   cloth_json_writer_end_object (writer);
-  cloth_json_writer_begin_array (writer, "bands");
-  for (guint i = 0; i < result->bands->len; i++) {
-    const ClothGapBand *band = &g_array_index (result->bands, ClothGapBand, i);
-
-    cloth_json_writer_begin_object (writer, NULL);
-    cloth_json_writer_number (writer, "from_hz", band->from_hz);
-    cloth_json_writer_number (writer, "to_hz", band->to_hz);
-    cloth_json_writer_number (writer, "share", band->share);
-    cloth_json_writer_end_object (writer);
-  }
-  cloth_json_writer_end_array (writer);
+  cloth_json_writer_number (writer, "static", result->still);
+  put_bands (writer, "bands", "from_hz", "to_hz", result->bands);
+  put_bands (writer, "waves", "from_per_m", "to_per_m", result->waves);
   cloth_json_writer_begin_array (writer, "stages");
   for (guint i = 0; i < result->stages->len; i++) {
-    const ClothGapShare *stage = &g_array_index (result->stages,
-        ClothGapShare, i);
+    const ClothGapStage *stage = &g_array_index (result->stages,
+        ClothGapStage, i);
 
     cloth_json_writer_begin_object (writer, NULL);
     cloth_json_writer_string (writer, "name", stage->name);
     cloth_json_writer_number (writer, "share", stage->share);
+    cloth_json_writer_string (writer, "reason", stage->reason);
     cloth_json_writer_end_object (writer);
   }
   cloth_json_writer_end_array (writer);
   cloth_json_writer_numbers (writer, "vertices", result->vertices,
+      result->n_vertices);
+  cloth_json_writer_numbers (writer, "gained", result->gained,
       result->n_vertices);
   cloth_json_writer_numbers (writer, "frames", result->frames,
       result->n_frames);

@@ -20,17 +20,22 @@ extent (const ClothTopology * t, guint k, gdouble * low, gdouble * high)
   }
 }
 
-/* cos π k (i + ½) / n on a grid, and between its lines. */
-static void
+/* cos π k (i + ½) / n on a grid, and between its lines. Returns its cycles per metre. */
+static gdouble
 fill_wave (const ClothTopology * t, guint ku, guint kv, gdouble * wave)
 {
   gdouble low[2], high[2];
   guint lines[2] = { t->columns, t->rows };
+  guint waves[2] = { ku, kv };
+  gdouble per_metre = 0.;
 
   for (guint k = 0; k < 2; k++) {
     extent (t, k, &low[k], &high[k]);
     if (!lines[k])
       lines[k] = MAX (2, (guint) sqrt (t->n_vertices));
+    if (waves[k])
+      per_metre = hypot (per_metre, waves[k] * (1. - 1. / lines[k]) / 2. /
+          (high[k] - low[k]));
   }
   for (guint v = 0; v < t->n_vertices; v++) {
     gdouble at[2];
@@ -40,6 +45,7 @@ fill_wave (const ClothTopology * t, guint ku, guint kv, gdouble * wave)
           (lines[k] - 1) + 0.5) / lines[k];
     wave[v] = cos (G_PI * ku * at[0]) * cos (G_PI * kv * at[1]);
   }
+  return per_metre;
 }
 
 /* Gram–Schmidt against the waves before, twice for rounding's sake. */
@@ -76,16 +82,18 @@ make_waves (ClothGapFeatures * f, const ClothTopology * t, guint each)
   g_autofree gdouble *waves = g_new (gdouble, (gsize) each * each * f->n);
 
   f->bands = g_new (guint, (gsize) each * each);
+  f->wave_numbers = g_new (gdouble, (gsize) each * each);
   for (guint kv = 0; kv < each; kv++)
     for (guint ku = 0; ku < each; ku++) {
       gdouble *wave = waves + (gsize) f->n_waves * f->n;
       guint k = MAX (ku, kv);
+      gdouble per_metre = fill_wave (t, ku, kv, wave);
 
-      fill_wave (t, ku, kv, wave);
       if (!orthonormalise (f, waves, wave))
         continue;
       /* 0, 1, 2, 3, 4–5, 6–7 … */
       f->bands[f->n_waves] = k < 4 ? k : 2 + k / 2;
+      f->wave_numbers[f->n_waves] = per_metre;
       f->n_bands = MAX (f->n_bands, f->bands[f->n_waves] + 1);
       f->n_waves++;
     }
@@ -199,6 +207,7 @@ cloth_gap_features_free (ClothGapFeatures * features)
   if (!features)
     return;
   g_free (features->waves);
+  g_free (features->wave_numbers);
   g_free (features->bands);
   g_free (features->cosines);
   g_free (features->first);

@@ -15,6 +15,7 @@ G_BEGIN_DECLS
  * @n: number of vertices
  * @n_waves: waves over the flat cloth, orthonormal
  * @waves: their values, [n][n_waves]
+ * @wave_numbers: cycles per metre, whichever way, [n_waves]
  * @bands: 0 for the longest waves, growing, [n_waves]
  * @n_bands: number of bands of waves
  * @n_blocks: blocks of time
@@ -34,6 +35,7 @@ typedef struct {
   guint n;
   guint n_waves;
   gdouble *waves;
+  gdouble *wave_numbers;
   guint *bands;
   guint n_bands;
   guint n_blocks;

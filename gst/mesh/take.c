@@ -6,6 +6,7 @@
 #include <gio/gio.h>
 #include <math.h>
 
+#include "gst/mesh/hash.h"
 #include "gst/mesh/npy.h"
 #include "gst/mesh/obj.h"
 
@@ -13,6 +14,8 @@
 
 struct _ClothTake
 {
+  gchar *folder;
+  GPtrArray *files;             /* names of those that are read, below the folder */
   ClothTakeInfo *info;
   ClothTopology *topology;
   guint n_frames;
@@ -23,15 +26,22 @@ struct _ClothTake
   ClothNpyReader *states;
 };
 
-static gboolean
-load_info (ClothTake * take, const gchar * folder, GError ** error)
+static void
+note_file (ClothTake * take, const gchar * name)
 {
-  g_autofree gchar *path = cloth_path_inside (folder, "take.json", error);
+  g_ptr_array_add (take->files, g_strdup (name));
+}
+
+static gboolean
+load_info (ClothTake * take, GError ** error)
+{
+  g_autofree gchar *path = cloth_path_inside (take->folder, "take.json", error);
   g_autoptr (ClothInput) input = path ? cloth_input_open (path, error) : NULL;
   g_autoptr (GByteArray) bytes = g_byte_array_new ();
 
   if (!input || !cloth_input_load (input, CLOTH_MAX_BUFFER, bytes, error))
     return FALSE;
+  note_file (take, "take.json");
   take->info = cloth_take_info_parse ((const gchar *) bytes->data,
       bytes->len - 1, error);
   return take->info != NULL;
@@ -58,7 +68,7 @@ check_seams (const ClothTake * take, GError ** error)
 }
 
 static gboolean
-load_topology (ClothTake * take, const gchar * folder, GError ** error)
+load_topology (ClothTake * take, GError ** error)
 {
   const ClothTakeInfo *info = take->info;
   g_autofree gchar *path = NULL;
@@ -69,10 +79,11 @@ load_topology (ClothTake * take, const gchar * folder, GError ** error)
         (gfloat) info->width_m, (gfloat) info->height_m);
     return TRUE;
   }
-  path = cloth_path_inside (folder, info->mesh, error);
+  path = cloth_path_inside (take->folder, info->mesh, error);
   obj = path ? cloth_obj_read (path, error) : NULL;
   if (!obj)
     return FALSE;
+  note_file (take, info->mesh);
   if (!obj->has_uv) {
     g_set_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID,
         "%s: the mesh of a take needs uv (vt), in metres", info->mesh);
@@ -92,27 +103,29 @@ load_topology (ClothTake * take, const gchar * folder, GError ** error)
 }
 
 static gboolean
-load_obstacles (ClothTake * take, const gchar * folder, GError ** error)
+load_obstacles (ClothTake * take, GError ** error)
 {
   for (guint i = 0; i < take->info->obstacles->len; i++) {
     ClothObstacle *obstacle =
         &g_array_index (take->info->obstacles, ClothObstacle, i);
 
-    if (obstacle->kind == CLOTH_OBSTACLE_MESH &&
-        !cloth_obstacle_load_mesh (obstacle, folder, error))
+    if (obstacle->kind != CLOTH_OBSTACLE_MESH)
+      continue;
+    if (!cloth_obstacle_load_mesh (obstacle, take->folder, error))
       return FALSE;
+    note_file (take, obstacle->mesh);
   }
   return TRUE;
 }
 
 /* Opens an array and compares its shape; an absent @optional one is NULL. */
 static gboolean
-open_array (const gchar * folder, const gchar * name, gboolean optional,
+open_array (ClothTake * take, const gchar * name, gboolean optional,
     guint rank, const guint64 * shape, ClothNpyReader ** reader,
     GError ** error)
 {
   g_autoptr (GError) fault = NULL;
-  g_autofree gchar *path = cloth_path_inside (folder, name, &fault);
+  g_autofree gchar *path = cloth_path_inside (take->folder, name, &fault);
   const ClothNpyInfo *info;
   gboolean match;
 
@@ -125,6 +138,7 @@ open_array (const gchar * folder, const gchar * name, gboolean optional,
   *reader = cloth_npy_reader_open (path, error);
   if (!*reader)
     return FALSE;
+  note_file (take, name);
   info = cloth_npy_reader_get_info (*reader);
   match = info->rank == rank;
   /* A length of 0 stands for any. */
@@ -168,12 +182,12 @@ check_type (ClothNpyReader * reader, const gchar * name, gboolean bytes,
 }
 
 static gboolean
-load_times (ClothTake * take, const gchar * folder, GError ** error)
+load_times (ClothTake * take, GError ** error)
 {
   const guint64 shape[] = { take->n_frames };
   g_autoptr (ClothNpyReader) reader = NULL;
 
-  if (!open_array (folder, "times.npy", TRUE, 1, shape, &reader, error) ||
+  if (!open_array (take, "times.npy", TRUE, 1, shape, &reader, error) ||
       !check_type (reader, "times.npy", FALSE, error))
     return FALSE;
   if (!reader) {
@@ -199,14 +213,14 @@ load_times (ClothTake * take, const gchar * folder, GError ** error)
 }
 
 static gboolean
-load_arrays (ClothTake * take, const gchar * folder, GError ** error)
+load_arrays (ClothTake * take, GError ** error)
 {
   guint64 n_vertices = take->topology->n_vertices;
   guint64 n_held = take->info->held->len;
   const guint64 positions[] = { 0, n_vertices, 3 };
   guint64 n_frames;
 
-  if (!open_array (folder, "positions.npy", FALSE, 3, positions,
+  if (!open_array (take, "positions.npy", FALSE, 3, positions,
           &take->positions, error) ||
       !check_type (take->positions, "positions.npy", FALSE, error))
     return FALSE;
@@ -223,12 +237,12 @@ load_arrays (ClothTake * take, const gchar * folder, GError ** error)
     const guint64 clamps[] = { n_frames, n_held, 3 };
     const guint64 states[] = { n_frames, n_vertices };
 
-    if (!open_array (folder, "covariance.npy", TRUE, 3, covariances,
+    if (!open_array (take, "covariance.npy", TRUE, 3, covariances,
             &take->covariances, error) ||
         !check_type (take->covariances, "covariance.npy", FALSE, error) ||
-        !open_array (folder, "clamps.npy", TRUE, 3, clamps, &take->clamps,
+        !open_array (take, "clamps.npy", TRUE, 3, clamps, &take->clamps,
             error) || !check_type (take->clamps, "clamps.npy", FALSE, error) ||
-        !open_array (folder, "states.npy", TRUE, 2, states, &take->states,
+        !open_array (take, "states.npy", TRUE, 2, states, &take->states,
             error) || !check_type (take->states, "states.npy", TRUE, error))
       return FALSE;
   }
@@ -237,7 +251,7 @@ load_arrays (ClothTake * take, const gchar * folder, GError ** error)
         "clamps.npy is there but take.json says of no vertex that it is held");
     return FALSE;
   }
-  return load_times (take, folder, error);
+  return load_times (take, error);
 }
 
 /**
@@ -256,14 +270,32 @@ cloth_take_open (const gchar * folder, GError ** error)
 {
   g_autoptr (ClothTake) take = g_new0 (ClothTake, 1);
 
-  if (!load_info (take, folder, error) ||
-      !load_topology (take, folder, error) ||
-      !load_obstacles (take, folder, error) ||
-      !load_arrays (take, folder, error)) {
+  take->folder = g_strdup (folder);
+  take->files = g_ptr_array_new_with_free_func (g_free);
+  if (!load_info (take, error) ||
+      !load_topology (take, error) ||
+      !load_obstacles (take, error) || !load_arrays (take, error)) {
     g_prefix_error (error, "%s: ", folder);
     return NULL;
   }
   return g_steal_pointer (&take);
+}
+
+/**
+ * cloth_take_sha256:
+ * @take: a take
+ * @error: #ClothMeshError, #GIOErrorEnum
+ *
+ * Reads all files that reading the take reads: take.json, its arrays, its meshes.
+ *
+ * Returns: (transfer full) (nullable): the hash of what `sha256sum` prints of them, sorted
+ *   by their names, 64 hexadecimal digits
+ * Since: 0.1
+ */
+gchar *
+cloth_take_sha256 (const ClothTake * take, GError ** error)
+{
+  return cloth_files_sha256 (take->folder, take->files, error);
 }
 
 /**
@@ -514,6 +546,8 @@ cloth_take_free (ClothTake * take)
 {
   if (!take)
     return;
+  g_free (take->folder);
+  g_ptr_array_unref (take->files);
   cloth_take_info_free (take->info);
   cloth_topology_free (take->topology);
   cloth_npy_reader_free (take->positions);

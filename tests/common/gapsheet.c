@@ -72,6 +72,16 @@ static const Row rows_of_table[] = {
   {6, 0.0002, 0.61, 0.00, -0.01, 0.01, -1, {0.0011}, {0.0009}},
 };
 
+static const ClothGapBand bands[] = {
+  {0, 0.5, 0.09, 0.03, 2.1}, {0.5, 2, 0.78, 0.05, 31}, {2, 8, 0.1, 0.03, 3.4},
+  {8, 25, 0.03, 0.03, 1.1}
+};
+
+static const ClothGapBand waves[] = {
+  {0, 0.4, 0.12, 0.02, 4.2}, {0.4, 1.1, 0.3, 0.03, 18}, {1.1, 2.3, 0.5, 0.05,
+      24}, {2.3, INFINITY, 0.08, 0.04, 1.3}
+};
+
 typedef enum
 { RECORDED, BEFORE, AFTER } Sheet;
 
@@ -183,6 +193,7 @@ fill_shares (ClothGapResult * result)
 
   result->n_vertices = n;
   result->vertices = g_new0 (gdouble, n);
+  result->gained = g_new0 (gdouble, n);
   result->n_frames = play->n_frames;
   result->frames = g_new0 (gdouble, play->n_frames);
   for (guint f = 0; f < play->n_frames; f++) {
@@ -192,12 +203,15 @@ fill_shares (ClothGapResult * result)
       if (!isfinite (d))
         continue;
       result->vertices[i] += d;
+      result->gained[i] += d - squared (play, play->after, (gsize) f * n + i);
       result->frames[f] += d;
       sum += d;
     }
   }
-  for (guint i = 0; i < n; i++)
+  for (guint i = 0; i < n; i++) {
     result->vertices[i] /= sum;
+    result->gained[i] /= sum;
+  }
   for (guint f = 0; f < play->n_frames; f++)
     result->frames[f] /= sum;
 }
@@ -344,15 +358,17 @@ gap_sheet_new (guint columns, guint rows, guint n_frames)
   result->directions[0] = 0.06;
   result->directions[1] = 0.11;
   result->directions[2] = 0.83;
-  cloth_gap_result_add_band (result, 0, 0.5, 0.09);
-  cloth_gap_result_add_band (result, 0.5, 2, 0.78);
-  cloth_gap_result_add_band (result, 2, 8, 0.1);
-  cloth_gap_result_add_band (result, 8, 25, 0.03);
-  cloth_gap_result_add_stage (result, "camera", NAN);
-  cloth_gap_result_add_stage (result, "detection", 0.01);
-  cloth_gap_result_add_stage (result, "labels", 0);
-  cloth_gap_result_add_stage (result, "triangulation", 0.03);
-  cloth_gap_result_add_stage (result, "physics", 0.96);
+  result->still = 0.04;
+  for (guint i = 0; i < G_N_ELEMENTS (bands); i++)
+    g_array_append_val (result->bands, bands[i]);
+  for (guint i = 0; i < G_N_ELEMENTS (waves); i++)
+    g_array_append_val (result->waves, waves[i]);
+  cloth_gap_result_add_stage (result, "camera", NAN,
+      "The take has no rig.json.");
+  cloth_gap_result_add_stage (result, "detection", 0.01, NULL);
+  cloth_gap_result_add_stage (result, "labels", 0, NULL);
+  cloth_gap_result_add_stage (result, "triangulation", 0.03, NULL);
+  cloth_gap_result_add_stage (result, "physics", 0.96, NULL);
   fill_table (result);
   fill_provenance (result);
   fill_playback (result, columns, rows, n_frames);
@@ -385,6 +401,7 @@ gap_sheet_new_spare (void)
   g_clear_pointer (&play->after, g_free);
   g_clear_pointer (&play->sigma, g_free);
   g_clear_pointer (&result->vertices, g_free);
+  g_clear_pointer (&result->gained, g_free);
   g_clear_pointer (&result->series.after, g_free);
   g_clear_pointer (&result->series.null_low, g_free);
   g_clear_pointer (&result->series.null_high, g_free);
@@ -420,7 +437,7 @@ gap_sheet_new_hostile (const gchar * text)
   cloth_gap_result_add_group (result, text, NAN);
   g_array_index (result->effects, ClothGapEffect, 0).group = 1;
   g_array_index (result->effects, ClothGapEffect, 1).group = 1;
-  cloth_gap_result_add_stage (result, text, 0.5);
+  cloth_gap_result_add_stage (result, text, 0.5, text);
   cloth_gap_result_add_version (result, text, text);
   cloth_gap_result_add_input (result, CLOTH_GAP_TAKE, text, NULL);
   cloth_gap_result_add_threshold (result, text, 1, text);

@@ -115,6 +115,33 @@ static const Case cases[] = {
   {"clamp_slip", {-0.015, 0., -0.015, 0.7, 1.}},
 };
 
+/* Shares of a whole are a whole; what could not be measured has a reason. */
+static void
+check_where (const ClothGapResult * result)
+{
+  gdouble sums[3] = { 0. };
+
+  g_assert_cmpuint (result->bands->len, >, 3);
+  g_assert_cmpuint (result->waves->len, >, 3);
+  for (guint i = 0; i < result->bands->len; i++)
+    sums[0] += g_array_index (result->bands, ClothGapBand, i).share;
+  for (guint i = 0; i < result->waves->len; i++)
+    sums[1] += g_array_index (result->waves, ClothGapBand, i).share;
+  for (guint i = 0; i < result->stages->len; i++) {
+    const ClothGapStage *stage = &g_array_index (result->stages, ClothGapStage,
+        i);
+
+    g_assert_true (isnan (stage->share) == (stage->reason != NULL));
+    sums[2] += isnan (stage->share) ? 0. : stage->share;
+  }
+  for (guint i = 0; i < 3; i++)
+    g_assert_cmpfloat_with_epsilon (sums[i], 1., 1e-9);
+  g_assert_cmpfloat (result->still, >, 0.);
+  g_assert_cmpfloat (result->still, <, 1.);
+  g_assert_cmpuint (result->spectrum.n_frequencies, >, 3);
+  g_assert_nonnull (result->spectrum.null);
+}
+
 /* The effect that acted comes first, the gap shrinks and its size is about right. */
 static void
 test_named (gconstpointer data)
@@ -133,6 +160,7 @@ test_named (gconstpointer data)
   g_assert_true (result->verdict == CLOTH_GAP_EXPLAINED
       || result->verdict == CLOTH_GAP_AMBIGUOUS);
   g_assert_cmpfloat (result->gap_after.value, <, result->gap_before.value);
+  check_where (result);
 }
 
 static void

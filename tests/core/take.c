@@ -1,6 +1,7 @@
 /* Takes: a real one, one we write read by NumPy, and hostile ones.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/mesh/hash.h"
 #include "gst/mesh/take.h"
 #include "tests/core/meshpeer.h"
 
@@ -482,6 +483,83 @@ test_broken_takes (void)
   }
 }
 
+/* coreutils says the same: LC_ALL=C sha256sum * | sha256sum. */
+static void
+test_hash (void)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothTake) real = cloth_take_open (TEST_DATA "/take_drop", &error);
+  g_autoptr (ClothTake) take = NULL;
+  g_autofree gchar *sha256 = cloth_take_sha256 (real, &error);
+  g_autofree gchar *path = NULL, *spare = NULL, *before = NULL, *after = NULL;
+
+  g_assert_no_error (error);
+  g_assert_cmpstr (sha256, ==,
+      "86b74633fbf508f2894f5d0772c9047f14f1dd27073faa6cdb5c0830ced28e20");
+
+  scratch_begin ();
+  write_take ("t", 5, TRUE);
+  path = scratch_path ("t");
+  /* what reading a take does not read is not in it; its mesh is */
+  spare = g_build_filename (path, "notes.txt", NULL);
+  g_assert_true (g_file_set_contents (spare, "x", -1, &error));
+  take = cloth_take_open (path, &error);
+  before = cloth_take_sha256 (take, &error);
+  g_assert_no_error (error);
+  peer_run ("import hashlib\nos.chdir('t')\n"
+      "h=lambda b:hashlib.sha256(b).hexdigest()\n"
+      "n=sorted(x for x in os.listdir() if x!='notes.txt')\n"
+      "assert 'mesh.obj' in n and 'times.npy' in n\n"
+      "a=''.join(h(open(x,'rb').read())+'  '+x+'\\n' for x in n)\n"
+      "open('../sum','w').write(h(a.encode()))");
+  {
+    g_autofree gchar *said = scratch_path ("sum"), *expected = NULL;
+
+    g_assert_true (g_file_get_contents (said, &expected, NULL, &error));
+    g_assert_cmpstr (before, ==, expected);
+  }
+  peer_run ("open('t/mesh.obj','ab').write(b'#')");
+  after = cloth_take_sha256 (take, &error);
+  g_assert_no_error (error);
+  g_assert_cmpstr (after, !=, before);
+  peer_run ("os.remove('t/times.npy')");
+  g_assert_null (cloth_take_sha256 (take, &error));
+  g_assert_error (error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND);
+  g_clear_error (&error);
+  g_assert_null (cloth_file_sha256 (path, &error));
+  g_assert_error (error, G_IO_ERROR, G_IO_ERROR_NOT_REGULAR_FILE);
+  scratch_end ();
+}
+
+/* Longer than what is read at a time, and the figures of FIPS 180-2. */
+static void
+test_file_hash (void)
+{
+  static const gchar *const known[][2] = {
+    {"", "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"},
+    {"abc", "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"},
+  };
+  static const gchar million[] =
+      "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0";
+  g_autofree gchar *path = NULL, *as = g_strnfill (1000000, 'a'), *got = NULL;
+  g_autoptr (GError) error = NULL;
+
+  scratch_begin ();
+  path = scratch_path ("f");
+  for (guint i = 0; i < G_N_ELEMENTS (known); i++) {
+    g_autofree gchar *said = NULL;
+
+    scratch_write ("f", known[i][0], -1);
+    said = cloth_file_sha256 (path, &error);
+    g_assert_cmpstr (said, ==, known[i][1]);
+  }
+  scratch_write ("f", as, 1000000);
+  got = cloth_file_sha256 (path, &error);
+  g_assert_no_error (error);
+  g_assert_cmpstr (got, ==, million);
+  scratch_end ();
+}
+
 static void
 test_unwritable (void)
 {
@@ -512,6 +590,8 @@ main (int argc, char **argv)
   g_test_add_func ("/take/broken", test_broken_takes);
   g_test_add_func ("/take/garment", test_garment);
   g_test_add_func ("/take/broken-garments", test_broken_garments);
+  g_test_add_func ("/take/hash", test_hash);
+  g_test_add_func ("/take/file-hash", test_file_hash);
   g_test_add_func ("/take/unwritable", test_unwritable);
   return g_test_run ();
 }

@@ -5,6 +5,7 @@
 
 SPDX-License-Identifier: LGPL-2.1-or-later
 """
+import hashlib
 import json
 import os
 import shutil
@@ -36,6 +37,15 @@ def expect(true, what):
 
 def contents(folder):
     return {name: open(os.path.join(folder, name), 'rb').read() for name in os.listdir(folder)}
+
+
+def sha256(path):
+    """Of a take the hash of what sha256sum prints of its files."""
+    if os.path.isdir(path):
+        lines = ['%s  %s\n' % (sha256(os.path.join(path, name)), name) for name in sorted(os.listdir(path))]
+        return hashlib.sha256(''.join(lines).encode()).hexdigest()
+    with open(path, 'rb') as file:
+        return hashlib.sha256(file.read()).hexdigest()
 
 
 def effects(folder):
@@ -100,6 +110,9 @@ def diagnose(folder):
            lines[1] == 'deep/gap/report.html', 'summary and report: %s' % lines)
     expect(gap['seed'] == 5 and sorted(os.listdir(os.path.join(folder, 'deep/gap'))) ==
            ['gap.json', 'report.html'], 'gap.json and report.html')
+    expect(gap['inputs'] == [
+        {'role': 'take', 'name': 'take_drag', 'sha256': sha256(drag)},
+        {'role': 'model', 'name': 'model-knit.json', 'sha256': sha256(knit)}], str(gap['inputs']))
     told = [int(line.split('%')[0]) for line in done.stderr.splitlines() if '%' in line]
     expect(told == sorted(told) and told[0] == 0 and len(told) <= 11 and '\r' not in done.stderr,
            'sparse progress: %s' % told)

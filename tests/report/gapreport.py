@@ -70,13 +70,19 @@ def check_json(program, root):
     assert abs(sum(sheet['where']['vertices']) - 1) < 1e-4
     assert sheet['effects'][0]['parameters'] == [{'name': 'coefficient', 'value': 1.14, 'sigma': 0.06, 'unit': '1'}]
     assert sheet['groups'][0]['effects'] == ['air_drag_linear', 'damping_mass']
-    assert sheet['where']['stages'][0] == {'name': 'camera', 'share': None}
+    assert sheet['where']['stages'][0] == {'name': 'camera', 'share': None, 'reason': 'The take has no rig.json.'}
+    assert sheet['where']['waves'][3] == {'from_per_m': 2.3, 'to_per_m': None, 'share': 0.08, 'after': 0.04, 'over_floor': 1.3}
+    gained = (sheet['gap_before']['value'] ** 2 - sheet['gap_after']['value'] ** 2) / sheet['gap_before']['value'] ** 2
+    assert abs(sum(sheet['where']['gained']) - gained) < 0.01, (sum(sheet['where']['gained']), gained)
     assert kinds['hostile']['reason'] == HOSTILE
     for path, value in ((['verdict'], 'perhaps'), (['verdict'], KeyError), (['version'], 2), (['extra'], 1),
                         (['gap_before', 'value'], -1), (['gap_before', 'interval'], [1]),
                         (['effects', 0, 'probability'], 1.01), (['effects', 0, 'side'], 'moon'),
                         (['effects', 0, 'parameters', 0, 'unit'], KeyError), (['effects', 0, 'group'], -1),
                         (['effects'], []), (['where', 'vertices'], 'all'), (['where', 'directions', 'up'], 0.1),
+                        (['where', 'static'], 1.5), (['where', 'waves'], KeyError), (['where', 'gained', 0], 1.5),
+                        (['where', 'bands', 0, 'over_floor'], -1), (['where', 'bands', 0, 'to_hz'], None),
+                        (['where', 'stages', 0, 'reason'], KeyError), (['where', 'waves', 0, 'after'], KeyError),
                         (['seed'], 1.5), (['inputs', 0, 'sha256'], 'abc'), (['inputs', 0, 'role'], 'witness')):
         assert refused(schema, sheet, path, value), path
 
@@ -190,6 +196,13 @@ def check_table(browser):
     assert browser.run(hidden) == 0
     browser.click('#effects > button')
     assert 'no rig.json' in browser.run('return document.getElementById("untested").textContent')
+    assert 'Camera: The take has no rig.json.' in browser.run('return document.querySelector(".shares details").textContent')
+    shares = browser.run('return [...document.querySelectorAll(".shares")].map(table => table.textContent)')
+    assert 'Stands still4%' in shares[2] and '0.5–2 Hz78%31× the floor, 5% left' in shares[2], shares[2]
+    assert 'As a whole12%' in shares[3] and 'Below 43 cm8%1.3× the floor, 4% left' in shares[3], shares[3]
+    assert browser.run('return [...document.querySelectorAll(".map figcaption")].map(node => node.textContent)')[2:] == \
+        ['Share of the gap, whole take', 'What the effects take off it']
+    assert browser.run('return [...document.querySelectorAll("#inputs code")].map(node => node.title)')[0].startswith('9f86d0')
     assert 'Shake the upper edge' in browser.text('#next')
     assert 'diverged at 1.34 s' in browser.text('#failures')
     assert '352 simulations, of which 1 failed, in 41.7 s; seed 1.' in browser.text('#provenance')

@@ -86,24 +86,26 @@ function upright(plot, time, stroke, dash, text) {
   ctx.restore();
 }
 
-// Energy per frequency, all waves together.
+// Energy per frequency, all waves together. What stands still has no place on the axis.
 function overFrequency(spectrum) {
-  const sum = (values) => values && spectrum.frequencies.map((_, f) => {
+  const moving = spectrum.frequencies.flatMap((value, f) => value > 0 ? [f] : []);
+  const sum = (values) => values && moving.map((f) => {
     let total = 0;
     for (let k = 0; k < spectrum.waves.length; k++) total += values[k * spectrum.frequencies.length + f] ?? 0;
     return total > 0 ? 1e6 * total : null;
   });
-  const rows = [spectrum.frequencies, sum(spectrum.before)];
+  const rows = [moving.map((f) => spectrum.frequencies[f]), sum(spectrum.before)];
   if (spectrum.null) rows.push(sum(spectrum.null));
   if (spectrum.after) rows.push(sum(spectrum.after));
   return chart('spectrum', 'Spectrum of the gap', () => ({
     data: rows,
     options: {
-      scales: { x: { time: false }, y: { distr: 3 } },
-      axes: [{ ...axis('frequency, Hz'), size: 34 }, { ...axis('mean square, mm²'), size: 62,
+      scales: { x: { time: false, distr: 3 }, y: { distr: 3 } },
+      axes: [{ ...axis('frequency, Hz'), size: 34,
+        values: (_, ticks) => ticks.map((value) => value === null ? '' : number(value, 2)) }, { ...axis('mean square, mm²'), size: 62,
         values: (_, ticks) => ticks.map((value) => value === null ? '' : number(value, 1)) }],
       series: [{ label: 'frequency, Hz', value: (_, value) => known(value) ? number(value) : '–' },
-        line('before, mm²', 'before'), ...(spectrum.null ? [line('floor (95%), mm²', 'soft', { dash: [5, 4], width: 1.5 })] : []),
+        line('before, mm²', 'before'), ...(spectrum.null ? [line('floor, mm²', 'soft', { dash: [5, 4], width: 1.5 })] : []),
         ...(spectrum.after ? [line('after, mm²', 'after')] : [])],
       cursor: { drag: { x: false, y: false } },
     },
@@ -115,7 +117,7 @@ function heat(spectrum) {
   const canvas = element('canvas', { id: 'heat', role: 'img',
     'aria-label': 'Energy over the floor per wave number and frequency' });
   const { frequencies, waves } = spectrum;
-  const ratios = spectrum.before.map((value, i) => value / spectrum.null[i]);
+  const ratios = spectrum.before.map((value, i) => spectrum.null[i] > 0 && known(value) ? value / spectrum.null[i] : NaN);
   const top = Math.max(2, ...ratios.filter(Number.isFinite));
   const box = element('div', { class: 'chart' }, canvas, element('div', { class: 'legend' }, element('span', {}, '1× the floor'),
     (() => {
@@ -135,7 +137,7 @@ function heat(spectrum) {
     const w = (width - left - right) / frequencies.length, h = (HEIGHT - bottom - 6) / waves.length;
     ratios.forEach((value, i) => {
       const f = i % frequencies.length, k = Math.floor(i / frequencies.length);
-      context.fillStyle = css(value > 0 ? Math.log(Math.max(1, value)) / Math.log(top) : NaN);
+      context.fillStyle = css(value >= 0 ? Math.log(Math.max(1, value)) / Math.log(top) : NaN);
       context.fillRect(left + f * w, 6 + (waves.length - 1 - k) * h, w + 0.5, h + 0.5);
     });
     context.fillStyle = colour('soft');
@@ -164,11 +166,28 @@ function heat(spectrum) {
   return box;
 }
 
-function shares(title, rows) {
+// Rows of [name, share, more]; what could not be measured has a reason instead.
+function shares(title, rows, reasons = []) {
   if (!rows.some(([, share]) => known(share))) return null;
   return element('div', { class: 'shares' }, element('h3', {}, title), element('table', {}, element('tbody', {},
-    ...rows.map(([name, share]) => element('tr', {}, element('th', { scope: 'row' }, capital(spoken(name))),
-      element('td', {}, known(share) ? bar(share) : null), element('td', { class: 'number' }, known(share) ? percent(share) : 'not measured'))))));
+    ...rows.map(([name, share, more]) => element('tr', {}, element('th', { scope: 'row' }, capital(spoken(name))),
+      element('td', {}, known(share) ? bar(share) : null), element('td', { class: 'number' },
+        known(share) ? percent(share) : 'not measured', more ? element('small', {}, more) : null))))),
+  reasons.length ? element('details', {}, element('summary', {}, 'Why not measured'),
+    element('ul', {}, ...reasons.map(([name, reason]) => element('li', {}, `${capital(spoken(name))}: ${reason}`)))) : null);
+}
+
+// "1.2× the floor, 3% left"
+function details({ over_floor, after }) {
+  return [known(over_floor) ? `${number(over_floor, 2)}× the floor` : null,
+    known(after) ? `${percent(after)} left` : null].filter(Boolean).join(', ');
+}
+
+// Cycles per metre as wave lengths.
+function lengths({ from_per_m, to_per_m }) {
+  const cm = (value) => number(100 / value, 2);
+  if (!(from_per_m > 0)) return 'As a whole';
+  return known(to_per_m) ? `${cm(to_per_m)}–${cm(from_per_m)} cm` : `Below ${cm(from_per_m)} cm`;
 }
 
 export function charts(gap, arrays, time) {
@@ -181,10 +200,14 @@ export function charts(gap, arrays, time) {
       cells.push(element('div', {}, element('h3', {}, 'Per frequency and wave length'), heat(arrays.spectrum)));
     }
   }
+  const still = known(where.static) ? [['Stands still', where.static]] : [];
   const tables = [
-    shares('Per stage', where.stages.map((item) => [item.name, item.share])),
+    shares('Per stage', where.stages.map((item) => [item.name, item.share]),
+      where.stages.filter((item) => item.reason).map((item) => [item.name, item.reason])),
     shares('Per direction', Object.entries(where.directions)),
-    shares('Per band', where.bands.map((item) => [`${number(item.from_hz, 2)}–${number(item.to_hz, 2)} Hz`, item.share])),
+    shares('Per frequency', [...still, ...where.bands.map((item) => [
+      `${number(item.from_hz, 2)}–${number(item.to_hz, 2)} Hz`, item.share, details(item)])]),
+    shares('Per wave length', where.waves.map((item) => [lengths(item), item.share, details(item)])),
   ].filter(Boolean);
   if (!cells.length && !tables.length) return null;
   return section('when', 'When and in which way', time ? (arrays.series.null_low

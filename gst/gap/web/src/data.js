@@ -33,6 +33,7 @@ export class Playback {
     this.sigmaScale = data.sigma_scale;
     this.edges = this.#edges();
     this.shares = data.shares ? new Float32Array(bytes(data.shares)) : null;
+    this.gained = data.gained ? new Float32Array(bytes(data.gained)) : null;
     this.now = { recorded: this.room(3), before: this.room(3), after: this.room(3) };
   }
 

@@ -91,7 +91,8 @@ export class Player {
   #makeMaps() {
     const { playback } = this;
     this.maps = this.simulated.map((name) => ({ name, map: new FlatMap(playback, `${TITLES[name]}, this frame`) }));
-    if (playback.shares) this.maps.push({ name: null, map: new FlatMap(playback, 'Share of the gap, whole take') });
+    if (playback.shares) this.maps.push({ values: playback.shares, map: new FlatMap(playback, 'Share of the gap, whole take') });
+    if (playback.gained) this.maps.push({ values: playback.gained, map: new FlatMap(playback, 'What the effects take off it') });
     if (this.maps.length && !this.maps[0].map.flat()) this.maps = [];
     this.mapBox = element('div', { class: 'maps' }, ...this.maps.map((item) => item.map.node));
     this.shareLimit = playback.shares ? niceLimit(playback.shares) : 1;
@@ -156,8 +157,8 @@ export class Player {
     this.slider.setAttribute('aria-valuetext', text);
     this.key.set(this.relative ? `${number(limit, 1)}× the floor` : mm(limit, limit < 0.01 ? 1 : 0));
     this.view?.update(frame, this.residuals, limit);
-    for (const { name, map } of this.maps) {
-      if (map.scale) map.draw(name ? this.residuals[name] : playback.shares, name ? limit : this.shareLimit);
+    for (const { name, values, map } of this.maps) {
+      if (map.scale) map.draw(values ?? this.residuals[name], values ? this.shareLimit : limit);
     }
     this.frameChanged(this.time);
   }

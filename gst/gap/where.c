@@ -1,0 +1,297 @@
+/* Where the gap lies: in which frequencies and wave lengths, in which stage, since when.
+ *
+ * Frequencies need a residual without seams: that of the simulation which is drawn to the
+ * recording all along. The windows of the gap itself would show their own rate.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <math.h>
+
+#include "gst/gap/diagnosis.h"
+#include "gst/gap/energy.h"
+
+/* Bands of frequencies are octaves from here on, Hz, those of the report half ones. */
+#define FIRST_HZ 0.5
+#define FIRST_DRAWN_HZ 0.25
+/* A last band must reach this much above its beginning. */
+#define LEAST_BAND 1.2
+/* Where bands of waves begin, half waves along the cloth's longer side. */
+static const gdouble wave_edges[] = { 0., 0.5, 1.5, 2.5, 5.5, 11.5 };
+
+#define N_WAVE_BANDS G_N_ELEMENTS (wave_edges)
+/* Rows of the report's spectrum: 0, 1, 2 … half waves. */
+#define N_DRAWN_WAVES 13
+
+/* Runs of the same recording, side by side. */
+typedef struct
+{
+  ClothGapEnergy *energies[2];
+  gboolean sound[2];
+  guint n;
+} Runs;
+
+static void
+runs_clear (Runs * runs)
+{
+  for (guint m = 0; m < runs->n; m++)
+    cloth_gap_energy_free (runs->energies[m]);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Runs, runs_clear)
+     static void gather (gpointer data, guint model, guint frame,
+    const gdouble * positions)
+{
+  cloth_gap_energy_add (((Runs *) data)->energies[model], frame, positions);
+}
+
+static gboolean
+run (ClothDiagnosis * d, const ClothRecording * recording,
+    const ClothModel * const *models, guint n, Runs * runs, GError ** error)
+{
+  gdouble gains[2] = { d->study.gains[0], d->study.gains[0] };
+
+  runs->n = n;
+  for (guint m = 0; m < n; m++)
+    runs->energies[m] = cloth_gap_energy_new (recording);
+  return cloth_rollout_nudged (recording, models, gains, n, &d->study.rollout,
+      gather, runs, runs->sound, error);
+}
+
+/* Octaves, or parts of them, from @first on, or from where each holds a frequency. */
+static GArray *
+list_bands (const ClothGapEnergy * e, gdouble first, gdouble factor)
+{
+  GArray *edges = g_array_new (FALSE, FALSE, sizeof (gdouble));
+  gdouble at = 0.;
+
+  g_array_append_val (edges, at);
+  for (at = first; at * (factor - 1.) < e->resolution_hz;)
+    at *= factor;
+  for (; at * LEAST_BAND < e->highest_hz; at *= factor)
+    g_array_append_val (edges, at);
+  return edges;
+}
+
+/* What is compared: before, after (or NULL), the floor (or NULL: white noise). */
+typedef struct
+{
+  const ClothGapEnergy *before, *after, *floor;
+  gdouble longest;              /* m */
+} Compared;
+
+static gdouble
+longest_side (const ClothTopology * t)
+{
+  gdouble longest = 0.;
+
+  for (guint k = 0; k < 2; k++) {
+    gdouble low = INFINITY, high = -INFINITY;
+
+    for (gsize i = 0; i < t->n_vertices; i++) {
+      low = MIN (low, t->uv[2 * i + k]);
+      high = MAX (high, t->uv[2 * i + k]);
+    }
+    longest = MAX (longest, high - low);
+  }
+  return longest;
+}
+
+/* Mean squares of the three, [cells] each; of what there is not NaN. */
+static void
+bin (const Compared * c, const gdouble * hz, guint n_hz, const gdouble * waves,
+    guint n_waves, gdouble * before, gdouble * after, gdouble * floor)
+{
+  cloth_gap_energy_bin (c->before, hz, n_hz, waves, n_waves, before,
+      c->floor ? NULL : floor);
+  for (guint i = 0; i < n_hz * n_waves; i++)
+    after[i] = NAN;
+  if (c->after)
+    cloth_gap_energy_bin (c->after, hz, n_hz, waves, n_waves, after, NULL);
+  if (c->floor)
+    cloth_gap_energy_bin (c->floor, hz, n_hz, waves, n_waves, floor, NULL);
+}
+
+static gdouble
+sum (const gdouble * values, guint n)
+{
+  gdouble all = 0.;
+
+  for (guint i = 0; i < n; i++)
+    all += isnan (values[i]) ? 0. : values[i];
+  return all;
+}
+
+static void
+add_band (GArray * bands, gdouble from, gdouble to, gdouble share,
+    gdouble after, gdouble over_floor)
+{
+  const ClothGapBand band = { from, to, share, after, over_floor };
+
+  g_array_append_val (bands, band);
+}
+
+static void
+fill_frequencies (const Compared * c, ClothGapResult * result)
+{
+  g_autoptr (GArray) edges = list_bands (c->before, FIRST_HZ, 2.);
+  const gdouble *hz = (const gdouble *) edges->data, all_waves = 0.;
+  guint n = edges->len;
+  g_autofree gdouble *cells = g_new (gdouble, 3 * n);
+  gdouble *before = cells, *after = cells + n, *floor = cells + 2 * n, all;
+
+  bin (c, hz, n, &all_waves, 1, before, after, floor);
+  all = sum (before, n);
+  result->still = cloth_gap_energy_static (c->before) / all;
+  for (guint i = 0; i < n; i++)
+    add_band (result->bands, hz[i], i + 1 < n ? hz[i + 1] :
+        c->before->highest_hz, before[i] / all, after[i] / all,
+        before[i] / floor[i]);
+}
+
+/* What the waves don't hold is finer than they are. */
+static void
+add_rest (gdouble total, gdouble * cells)
+{
+  gdouble rest = total - sum (cells, N_WAVE_BANDS);
+  gdouble *last = &cells[N_WAVE_BANDS - 1];
+
+  if (rest > 1e-9 * total)
+    *last = (isnan (*last) ? 0. : *last) + rest;
+}
+
+static void
+fill_waves (const Compared * c, ClothGapResult * result)
+{
+  const guint n = N_WAVE_BANDS;
+  gdouble edges[N_WAVE_BANDS], before[N_WAVE_BANDS], after[N_WAVE_BANDS];
+  gdouble floor[N_WAVE_BANDS], all_hz = 0., all;
+  gdouble sigma = c->before->recording->sigma;
+
+  for (guint i = 0; i < n; i++)
+    edges[i] = wave_edges[i] / (2. * c->longest);
+  bin (c, &all_hz, 1, edges, n, before, after, floor);
+  add_rest (cloth_gap_energy_total (c->before), before);
+  if (c->after)
+    add_rest (cloth_gap_energy_total (c->after), after);
+  add_rest (c->floor ? cloth_gap_energy_total (c->floor) :
+      3. * sigma * sigma, floor);
+  all = sum (before, n);
+  for (guint i = 0; i < n && !isnan (before[i]); i++)
+    add_band (result->waves, edges[i], i + 1 < n ? edges[i + 1] : INFINITY,
+        before[i] / all, after[i] / all, before[i] / floor[i]);
+}
+
+static void
+fill_spectrum (const Compared * c, ClothGapSpectrum * s)
+{
+  g_autoptr (GArray) edges = list_bands (c->before, FIRST_DRAWN_HZ, G_SQRT2);
+  gdouble waves[N_DRAWN_WAVES], still = c->before->resolution_hz / 2.;
+  const gdouble *hz;
+  gsize cells;
+
+  g_array_insert_val (edges, 1, still);
+  hz = (const gdouble *) edges->data;
+  s->n_frequencies = edges->len;
+  s->n_waves = N_DRAWN_WAVES;
+  s->frequencies = g_new (gdouble, s->n_frequencies);
+  s->waves = g_new (gdouble, s->n_waves);
+  for (guint i = 0; i < s->n_frequencies; i++)
+    s->frequencies[i] = sqrt (hz[i] * (i + 1 < edges->len ? hz[i + 1] :
+            c->before->highest_hz));
+  for (guint k = 0; k < N_DRAWN_WAVES; k++) {
+    waves[k] = MAX (k - 0.5, 0.) / (2. * c->longest);
+    s->waves[k] = k / (2. * c->longest);
+  }
+  cells = (gsize) s->n_frequencies * s->n_waves;
+  s->before = g_new (gdouble, cells);
+  s->after = g_new (gdouble, cells);
+  s->null = g_new (gdouble, cells);
+  bin (c, hz, s->n_frequencies, waves, s->n_waves, s->before, s->after,
+      s->null);
+  if (!c->after)
+    g_clear_pointer (&s->after, g_free);
+}
+
+/* The gap's own mean square, m². */
+static gdouble
+windowed_square (const ClothGapPlayback * p)
+{
+  gsize n = (gsize) p->topology->n_vertices;
+  gdouble squares = 0.;
+  gsize seen = 0;
+
+  for (gsize i = n; i < n * p->n_frames; i++) {
+    gdouble square = 0.;
+
+    for (guint k = 0; k < 3; k++)
+      square += pow (p->before[3 * i + k] - p->recorded[3 * i + k], 2.);
+    if (isfinite (square)) {
+      squares += square;
+      seen++;
+    }
+  }
+  return squares / seen;
+}
+
+/* A take holds positions: of what happened before them only its noise is known. */
+static void
+fill_stages (const ClothRecording * r, ClothGapResult * result)
+{
+  static const struct
+  {
+    const gchar *name, *reason;
+  } unread[] = {
+    {"camera",
+        "Whether a camera's calibration, clock or shutter is off shows in "
+          "what each camera saw, and a take is read as positions."},
+    {"detection",
+        "How far what was found lies from what is there shows in the "
+          "pictures, and a take is read as positions."},
+    {"labels",
+        "Whether points were taken for each other shows in their codes, and "
+          "a take is read as positions."},
+    {"triangulation",
+        "How far the cameras disagree shows with each left out in "
+          "turn, and a take is read as positions."},
+  };
+  gdouble noise =
+      3. * r->sigma * r->sigma / windowed_square (&result->playback);
+
+  noise = MIN (noise, 1.);
+  for (guint i = 0; i < G_N_ELEMENTS (unread); i++)
+    cloth_gap_result_add_stage (result, unread[i].name, NAN, unread[i].reason);
+  cloth_gap_result_add_stage (result, "noise", noise, NULL);
+  cloth_gap_result_add_stage (result, "physics", 1. - noise, NULL);
+}
+
+/* Fills where the gap of the first take lies, once it is known what is accepted. */
+gboolean
+cloth_diagnosis_locate (ClothDiagnosis * d, GError ** error)
+{
+  const ClothRecording *r = cloth_diagnosis_recording (d, 0);
+  const ClothModel *models[2] = { d->model, NULL };
+  guint n = d->n_chosen ? 2 : 1;
+  g_auto (Runs) runs = { {NULL} };
+  g_auto (Runs) base = { {NULL} };
+  Compared c = { NULL };
+
+  if (d->n_chosen)
+    models[1] = d->with[d->n_chosen - 1];
+  cloth_diagnosis_begin_part (d, d->from, 1., 0.5, "where the gap lies");
+  if (!run (d, r, models, n, &runs, error))
+    return FALSE;
+  if (d->options->n_baselines
+      && !run (d, cloth_diagnosis_recording (d, d->n_takes), models, 1, &base,
+          error))
+    return FALSE;
+  fill_stages (r, d->result);
+  if (!runs.sound[0])
+    return TRUE;
+  c.before = runs.energies[0];
+  c.after = n > 1 && runs.sound[1] ? runs.energies[1] : NULL;
+  c.floor = base.n && base.sound[0] ? base.energies[0] : NULL;
+  c.longest = longest_side (r->scene->topology);
+  fill_frequencies (&c, d->result);
+  fill_waves (&c, d->result);
+  fill_spectrum (&c, &d->result->spectrum);
+  return TRUE;
+}
