@@ -373,6 +373,7 @@ test_discs (void)
           names[g], 100.0 * tally.found / tally.visible, tally.wrong,
           tally.stray, tally.none, tally.pictures, tally.other);
       g_assert_cmpuint (tally.wrong, ==, 0);
+      g_assert_cmpuint (100 * tally.found, >=, 70 * tally.visible);
       g_assert_cmpuint (tally.none, <, tally.pictures / 5);
       all.found += tally.found;
       all.visible += tally.visible;
@@ -387,6 +388,7 @@ test_discs (void)
       "%u of %u pictures without, %u with another board",
       100.0 * all.found / all.visible, all.wrong, all.stray, all.none,
       all.pictures, all.other);
+  g_assert_cmpuint (100 * all.found, >=, 90 * all.visible);
   bench_clear (&bench);
 }
 
