@@ -16,6 +16,9 @@ import sys
 
 import numpy
 
+# States of vertices that three or more cameras saw, and two.
+MEASURED = (1, 2)
+
 
 def pitch_of(pattern):
     return pattern['pitch_m' if pattern['pattern'] == 'm-array' else 'square_m']
@@ -85,8 +88,18 @@ def main():
         predicted = 1000 * numpy.sqrt(sigma[numpy.isfinite(sigma)].mean())
         table.append(('error, RMS predicted', '%.3f mm (true / predicted = %.2f)'
                       % (predicted, rms / predicted)))
+    # What was filled in was seen by nobody, so it is mistaken for nothing.
+    measured = numpy.ones(len(distance), bool)
+    states = os.path.join(options.take, 'states.npy')
+    if os.path.exists(states):
+        measured = numpy.isin(numpy.load(states)[seen], MEASURED)
+    for name, which in (('measured', measured), ('filled, predicted', ~measured)):
+        if which.any() and not measured.all():
+            table.append(('error of %d %s' % (which.sum(), name),
+                          '%.3f mm RMS, largest %.3f mm'
+                          % (numpy.sqrt((distance[which] ** 2).mean()), distance[which].max())))
     # Half a square off is no noise: a corner was taken for another one.
-    wrong = (distance > 500 * pitch_of(pattern)).sum()
+    wrong = (distance[measured] > 500 * pitch_of(pattern)).sum()
     table.append(('corners mistaken for others', '%d' % wrong))
     width = max(len(name) for name, _ in table)
     for name, value in table:
