@@ -265,7 +265,7 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
       || !cloth_diagnosis_locate (d, error))
     return FALSE;
   cloth_diagnosis_decide (d);
-  return TRUE;
+  return cloth_diagnosis_propose (d, error);
 }
 
 /**

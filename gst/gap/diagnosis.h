@@ -1,5 +1,5 @@
-/* A diagnosis under way; private to diagnose.c, name.c, select.c, rest.c, judge.c
- * and where.c.
+/* A diagnosis under way; private to diagnose.c, name.c, select.c, rest.c, judge.c,
+ * where.c and propose.c.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -102,6 +102,8 @@ void cloth_diagnosis_begin_part (ClothDiagnosis * d, gdouble from, gdouble to,
 ClothModel *cloth_diagnosis_other_model (const ClothDiagnosis * d);
 
 /* Which effects. */
+ClothGapPower *cloth_diagnosis_find_mismatch (const ClothDiagnosis * d,
+    guint take, guint gain);
 void cloth_diagnosis_find_signatures (ClothDiagnosis * d);
 gboolean cloth_diagnosis_has_signatures (const ClothDiagnosis * d);
 gboolean cloth_diagnosis_linearise (ClothDiagnosis * d, guint first, guint end,
@@ -128,5 +130,8 @@ void cloth_diagnosis_decide (ClothDiagnosis * d);
 
 /* Where. */
 gboolean cloth_diagnosis_locate (ClothDiagnosis * d, GError ** error);
+
+/* What to film next. */
+gboolean cloth_diagnosis_propose (ClothDiagnosis * d, GError ** error);
 
 G_END_DECLS

@@ -107,8 +107,8 @@ append (ClothGapNormal * to, ClothGapNormal * from)
 
 /* Mean square that the simulator itself is off by, in the noise of a take: of the
  * baselines, else of the takes with the model fitted to them. */
-static ClothGapPower *
-mismatch_of (const ClothDiagnosis * d, guint take, guint gain)
+ClothGapPower *
+cloth_diagnosis_find_mismatch (const ClothDiagnosis * d, guint take, guint gain)
 {
   gdouble unit = cloth_diagnosis_study (d, take)->features->sigma;
   guint begin = d->options->n_baselines ? d->n_takes : 0;
@@ -156,7 +156,8 @@ normal_of (const ClothDiagnosis * d, guint take, guint gain, guint before)
   const ClothStudy *s = cloth_diagnosis_study (d, take);
   g_autofree gdouble *z = cloth_study_residual (s, gain);
   g_autofree gdouble *columns = columns_of (d, take, gain, before);
-  g_autoptr (ClothGapPower) mismatch = mismatch_of (d, take, gain);
+  g_autoptr (ClothGapPower) mismatch =
+      cloth_diagnosis_find_mismatch (d, take, gain);
 
   return cloth_gap_normal_new (s->features, s->left[gain] ? s->left[gain] :
       mismatch, 1., z, columns, s->m + d->n_chaos);
@@ -169,7 +170,8 @@ cloth_diagnosis_find_left (ClothDiagnosis * d, const ClothGapScore * score)
 {
   for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++)
     for (guint i = 0; i < d->n_takes; i++) {
-      g_autoptr (ClothGapPower) mismatch = mismatch_of (d, i, g);
+      g_autoptr (ClothGapPower) mismatch =
+          cloth_diagnosis_find_mismatch (d, i, g);
       ClothStudy *s = cloth_diagnosis_study (d, i);
       g_autofree gdouble *z = cloth_study_residual (s, g);
       gsize size = s->features->size;

@@ -80,9 +80,18 @@ cloth_recording_find_weights (const gdouble * times, guint mask, gdouble at,
       weights[i] += slope[k] * powers[i][k] / scale;
 }
 
-static void
-differentiate (ClothRecording * r)
+/**
+ * cloth_recording_differentiate:
+ * @recording: a recording with positions
+ *
+ * Fills its velocities.
+ *
+ * Since: 0.1
+ */
+void
+cloth_recording_differentiate (ClothRecording * recording)
 {
+  ClothRecording *r = recording;
   gsize row = 3 * (gsize) r->n;
 
   for (guint frame = 0; frame < r->n_frames; frame++) {
@@ -251,7 +260,7 @@ cloth_recording_new (ClothTake * take, GError ** error)
   cloth_recording_bridge (r);
   if (!check_scale (r, error))
     return NULL;
-  differentiate (r);
+  cloth_recording_differentiate (r);
   return g_steal_pointer (&r);
 }
 

@@ -37,6 +37,9 @@ typedef struct {
 ClothRecording *cloth_recording_new (ClothTake * take, GError ** error);
 void cloth_recording_find_weights (const gdouble * times, guint mask,
     gdouble at, gdouble * weights);
+ClothRecording *cloth_recording_thin (const ClothRecording * recording,
+    guint most);
+void cloth_recording_differentiate (ClothRecording * recording);
 gint cloth_recording_compare_numbers (gconstpointer a, gconstpointer b);
 void cloth_recording_free (ClothRecording * recording);
 

@@ -4,7 +4,7 @@ import { element, section } from './dom.js';
 import { capital, known, number, quantity, spoken } from './words.js';
 
 function advice(gap) {
-  const list = gap.groups.filter((group) => group.effects.length > 1).map((group) => element('li', {},
+  const list = gap.groups.filter((group) => group.effects.length > 1 && gap.verdict !== 'no_gap').map((group) => element('li', {},
     'To tell ', element('strong', {}, group.effects.map(spoken).join(' from ')), ': ',
     group.experiment ?? 'none of the captures that were tried would.',
     known(group.evidence) ? ' ' : null, known(group.evidence) ? element('span', { class: 'interval' },
