@@ -13,12 +13,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A side of a face: from a to b, which the face has in this order; which vertices they are
- * once all is sewn. */
-typedef struct
-{
-  guint a, b, face, side;
-} Side;
+#include "gst/mesh/side.h"
 
 typedef struct
 {
@@ -26,7 +21,8 @@ typedef struct
   const guint *same;
   gboolean has_uv;
   gdouble edge;
-  GArray *sides, *stencils;
+  GArray *sides;                /* ClothSide, between vertices as they are sewn */
+  GArray *stencils;             /* ClothStencil */
 } Builder;
 
 static guint
@@ -50,21 +46,6 @@ flat_length (const Builder * self, guint a, guint b)
     return 1;
   return hypot ((gdouble) uv[2 * a] - uv[2 * b],
       (gdouble) uv[2 * a + 1] - uv[2 * b + 1]);
-}
-
-static gint
-compare_sides (gconstpointer pa, gconstpointer pb)
-{
-  const Side *x = pa, *y = pb;
-  guint keys[2][4] = {
-    {MIN (x->a, x->b), MAX (x->a, x->b), x->face, x->side},
-    {MIN (y->a, y->b), MAX (y->a, y->b), y->face, y->side}
-  };
-
-  for (guint i = 0; i < 4; i++)
-    if (keys[0][i] != keys[1][i])
-      return keys[0][i] < keys[1][i] ? -1 : 1;
-  return 0;
 }
 
 /* Stencils of the same vertices in the same order become neighbours. */
@@ -172,22 +153,22 @@ add_hinge (Builder * self, const guint x[3], const guint y[3])
 
 /* What two faces that share an edge have of the plate's energy. */
 static void
-add_pair (Builder * self, const Side * x, const Side * y)
+add_pair (Builder * self, const ClothSide * x, const ClothSide * y)
 {
   const ClothTopology *topology = self->topology;
   guint nx = corners (topology, x->face), ny = corners (topology, y->face);
   /* the ends of the edge, as each face has them, and the corners beyond them; of a triangle
    * these are one */
-  guint ax = corner (topology, x->face, x->side);
-  guint bx = corner (topology, x->face, x->side + 1);
-  guint ay = corner (topology, y->face, y->side);
-  guint by = corner (topology, y->face, y->side + 1);
-  guint beyond_ax = corner (topology, x->face, x->side + nx - 1);
-  guint beyond_bx = corner (topology, x->face, x->side + 2);
-  guint beyond_ay = corner (topology, y->face, y->side + ny - 1);
-  guint beyond_by = corner (topology, y->face, y->side + 2);
+  guint ax = corner (topology, x->face, x->number);
+  guint bx = corner (topology, x->face, x->number + 1);
+  guint ay = corner (topology, y->face, y->number);
+  guint by = corner (topology, y->face, y->number + 1);
+  guint beyond_ax = corner (topology, x->face, x->number + nx - 1);
+  guint beyond_bx = corner (topology, x->face, x->number + 2);
+  guint beyond_ay = corner (topology, y->face, y->number + ny - 1);
+  guint beyond_by = corner (topology, y->face, y->number + 2);
 
-  if (x->a != y->a) {
+  if (self->same[ax] != self->same[ay]) {
     guint swap[2] = { ay, beyond_ay };
 
     ay = by;
@@ -217,28 +198,20 @@ find_sides (Builder * self)
 
   for (guint face = 0; face < topology->n_faces; face++)
     for (guint side = 0; side < corners (topology, face); side++) {
-      Side found = { self->same[corner (topology, face, side)],
-        self->same[corner (topology, face, side + 1)], face, side
-      };
+      ClothSide found = cloth_side (self->same[corner (topology, face, side)],
+          self->same[corner (topology, face, side + 1)], face, side);
 
       if (found.a != found.b)
         g_array_append_val (self->sides, found);
     }
-  g_array_sort (self->sides, compare_sides);
-}
-
-static gboolean
-same_edge (const Side * x, const Side * y)
-{
-  return MIN (x->a, x->b) == MIN (y->a, y->b)
-      && MAX (x->a, x->b) == MAX (y->a, y->b);
+  g_array_sort (self->sides, cloth_side_compare);
 }
 
 static gdouble
-side_length (const Builder * self, const Side * side)
+side_length (const Builder * self, const ClothSide * side)
 {
-  return flat_length (self, corner (self->topology, side->face, side->side),
-      corner (self->topology, side->face, side->side + 1));
+  return flat_length (self, corner (self->topology, side->face, side->number),
+      corner (self->topology, side->face, side->number + 1));
 }
 
 /* The mean length of an edge: the unit of the stencils. */
@@ -250,9 +223,9 @@ measure (Builder * self)
 
   self->has_uv = TRUE;
   for (guint i = 0; i < self->sides->len; i++) {
-    const Side *side = &g_array_index (self->sides, Side, i);
+    const ClothSide *side = &g_array_index (self->sides, ClothSide, i);
 
-    if (i > 0 && same_edge (side, side - 1))
+    if (i > 0 && cloth_side_same_edge (side, side - 1))
       continue;
     sum += side_length (self, side);
     n++;
@@ -283,12 +256,12 @@ static void
 add_pairs (Builder * self)
 {
   for (guint i = 0; i + 1 < self->sides->len; i++) {
-    const Side *x = &g_array_index (self->sides, Side, i);
+    const ClothSide *x = &g_array_index (self->sides, ClothSide, i);
 
-    if (same_edge (x, x + 1) && x->face != x[1].face) {
+    if (cloth_side_same_edge (x, x + 1) && x->face != x[1].face) {
       add_pair (self, x, x + 1);
       /* a third face at this edge bends nothing further */
-      while (i + 1 < self->sides->len && same_edge (x, x + 1)) {
+      while (i + 1 < self->sides->len && cloth_side_same_edge (x, x + 1)) {
         i++;
         x++;
       }
@@ -346,9 +319,9 @@ index_neighbours (ClothStencils * self, const Builder * builder)
   self->near_start = g_new0 (guint, self->n_vertices + 1);
   for (guint pass = 0; pass < 2; pass++) {
     for (guint i = 0; i < builder->sides->len; i++) {
-      const Side *side = &g_array_index (builder->sides, Side, i);
+      const ClothSide *side = &g_array_index (builder->sides, ClothSide, i);
 
-      if (i > 0 && same_edge (side, side - 1))
+      if (i > 0 && cloth_side_same_edge (side, side - 1))
         continue;
       if (pass == 0) {
         self->near_start[side->a + 1]++;
@@ -439,7 +412,7 @@ cloth_stencils_new (const ClothTopology * topology, const GArray * seams)
 
   builder.same = self->same = sew (topology, seams);
 
-  builder.sides = g_array_new (FALSE, FALSE, sizeof (Side));
+  builder.sides = g_array_new (FALSE, FALSE, sizeof (ClothSide));
   builder.stencils = g_array_new (FALSE, FALSE, sizeof (ClothStencil));
   find_sides (&builder);
   measure (&builder);

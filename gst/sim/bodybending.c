@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "gst/math/linalg.h"
+#include "gst/mesh/side.h"
 #include "gst/sim/body.h"
 #include "gst/sim/sim.h"
 
@@ -120,12 +121,6 @@ make_grid_hinges (ClothBody * body)
 /* ---- other meshes ---- */
 
 /* A triangle's corner stands for its edge opposite. */
-typedef struct
-{
-  guint32 a, b;                 /* a < b */
-  guint32 triangle, opposite;
-} Edge;
-
 #define NONE G_MAXUINT32
 
 /* The slope across an edge in its middle, Σ weight x; seen from its first triangle it is
@@ -157,49 +152,36 @@ typedef struct
   Slope *slopes;
 } Mesh;
 
-static gint
-compare_edges (gconstpointer a, gconstpointer b)
-{
-  const Edge *p = a, *q = b;
-
-  if (p->a != q->a)
-    return p->a < q->a ? -1 : 1;
-  if (p->b != q->b)
-    return p->b < q->b ? -1 : 1;
-  return p->triangle < q->triangle ? -1 : p->triangle > q->triangle;
-}
-
 static gboolean
 make_twins (Mesh * mesh, guint * n_slopes, GError ** error)
 {
   const ClothBody *body = mesh->body;
   const guint32 *corners = mesh->corners;
   guint n = 3 * body->n_triangles;
-  g_autofree Edge *edges = g_new (Edge, n + 1);
+  g_autofree ClothSide *sides = g_new (ClothSide, n + 1);
 
   for (guint i = 0; i < n; i++) {
     const guint32 *p = body->triangles[i / 3].particle;
     guint32 a = p[(i + 1) % 3], b = p[(i + 2) % 3];
 
-    edges[i] = (Edge) {
-    MIN (a, b), MAX (a, b), i / 3, i % 3};
+    sides[i] = cloth_side (a, b, i / 3, i % 3);
     mesh->twin[i] = mesh->slope[i] = NONE;
   }
-  qsort (edges, n, sizeof *edges, compare_edges);
+  qsort (sides, n, sizeof *sides, cloth_side_compare);
   *n_slopes = 0;
   for (guint i = 0; i + 1 < n; i++) {
-    const Edge *one = &edges[i], *two = &edges[i + 1];
-    guint32 half[2] = { 3 * one->triangle + one->opposite,
-      3 * two->triangle + two->opposite
+    const ClothSide *one = &sides[i], *two = &sides[i + 1];
+    guint32 half[2] = { 3 * one->face + one->number,
+      3 * two->face + two->number
     };
 
-    if (one->a != two->a || one->b != two->b)
+    if (!cloth_side_same_edge (one, two))
       continue;
-    if (i + 2 < n && one->a == two[1].a && one->b == two[1].b) {
+    if (i + 2 < n && cloth_side_same_edge (one, two + 1)) {
       g_set_error (error, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_SCENE,
           "more than two triangles meet at the edge of vertices %u and %u",
-          corners[3 * one->triangle + (one->opposite + 1) % 3],
-          corners[3 * one->triangle + (one->opposite + 2) % 3]);
+          corners[3 * one->face + (one->number + 1) % 3],
+          corners[3 * one->face + (one->number + 2) % 3]);
       return FALSE;
     }
     mesh->twin[half[0]] = half[1];

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "gst/mesh/side.h"
 #include "gst/sim/nearest.h"
 
 #define LEAF 4
@@ -37,12 +38,6 @@ struct _ClothBvh
   Node *nodes;
   gboolean closed;
 };
-
-typedef struct
-{
-  guint32 a, b;
-  guint triangle, edge;
-} Side;
 
 static gdouble
 dot (const gdouble a[3], const gdouble b[3])
@@ -113,25 +108,13 @@ weld (const gdouble * points, guint n_points)
   return same;
 }
 
-static gint
-compare_sides (gconstpointer a, gconstpointer b)
-{
-  const Side *p = a, *q = b;
-
-  if (p->a != q->a)
-    return p->a < q->a ? -1 : 1;
-  if (p->b != q->b)
-    return p->b < q->b ? -1 : 1;
-  return p->triangle < q->triangle ? -1 : p->triangle > q->triangle;
-}
-
 /* Normals of edges and corners as in Bærentzen and Aanæs (2005), whose sign tells inside
  * from outside wherever the nearest point is. */
 static void
 make_normals (ClothBvh * bvh, const guint32 * corners, guint n_points)
 {
   guint n = 3 * bvh->n_triangles, end;
-  g_autofree Side *sides = g_new (Side, n + 1);
+  g_autofree ClothSide *sides = g_new (ClothSide, n + 1);
   g_autofree gdouble *of_corner = g_new0 (gdouble, 3 * (gsize) n_points + 1);
   g_autofree gboolean *on_border = g_new0 (gboolean, n_points + 1);
 
@@ -143,8 +126,7 @@ make_normals (ClothBvh * bvh, const guint32 * corners, guint n_points)
       guint32 a = corners[3 * i + k], b = corners[3 * i + (k + 1) % 3];
       gdouble e[3], f[3];
 
-      sides[3 * i + k] = (Side) {
-      MIN (a, b), MAX (a, b), i, k};
+      sides[3 * i + k] = cloth_side (a, b, i, k);
       subtract (t->corner[(k + 1) % 3], t->corner[k], e);
       subtract (t->corner[(k + 2) % 3], t->corner[k], f);
       add_scaled (of_corner + 3 * (gsize) a,
@@ -152,23 +134,23 @@ make_normals (ClothBvh * bvh, const guint32 * corners, guint n_points)
           t->normal[6]);
     }
   }
-  qsort (sides, n, sizeof *sides, compare_sides);
+  qsort (sides, n, sizeof *sides, cloth_side_compare);
   for (guint i = 0; i < n; i = end) {
     gdouble sum[3] = { 0., 0., 0. };
 
-    for (end = i; end < n && sides[end].a == sides[i].a
-        && sides[end].b == sides[i].b; end++)
-      add_scaled (sum, 1., bvh->triangles[sides[end].triangle].normal[6]);
+    for (end = i; end < n && cloth_side_same_edge (&sides[end], &sides[i]);
+        end++)
+      add_scaled (sum, 1., bvh->triangles[sides[end].face].normal[6]);
     normalize (sum);
     if (end - i < 2) {
       on_border[sides[i].a] = on_border[sides[i].b] = TRUE;
       bvh->closed = FALSE;
     }
     for (guint k = i; k < end; k++) {
-      Triangle *t = &bvh->triangles[sides[k].triangle];
+      Triangle *t = &bvh->triangles[sides[k].face];
 
-      memcpy (t->normal[3 + sides[k].edge], sum, sizeof sum);
-      t->border[3 + sides[k].edge] = end - i < 2;
+      memcpy (t->normal[3 + sides[k].number], sum, sizeof sum);
+      t->border[3 + sides[k].number] = end - i < 2;
     }
   }
   for (guint i = 0; i < bvh->n_triangles; i++) {

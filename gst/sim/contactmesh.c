@@ -6,12 +6,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "gst/mesh/side.h"
 #include "gst/sim/nearest.h"
-
-typedef struct
-{
-  guint32 a, b, face, edge;
-} Side;
 
 typedef struct
 {
@@ -19,23 +15,11 @@ typedef struct
   guint axis;                   /* 0: u, 1: v, 2: panel */
 } Order;
 
-static gint
-compare_sides (gconstpointer a, gconstpointer b)
-{
-  const Side *p = a, *q = b;
-
-  if (p->a != q->a)
-    return p->a < q->a ? -1 : 1;
-  if (p->b != q->b)
-    return p->b < q->b ? -1 : 1;
-  return p->face < q->face ? -1 : p->face > q->face;
-}
-
 static void
 find_owners (ClothContactMesh * mesh)
 {
   guint n = 3 * mesh->n_faces;
-  g_autofree Side *sides = g_new (Side, n + 1);
+  g_autofree ClothSide *sides = g_new (ClothSide, n + 1);
   g_autofree gboolean *owned = g_new0 (gboolean, mesh->n_particles + 1);
 
   for (guint i = 0; i < mesh->n_faces; i++) {
@@ -44,17 +28,16 @@ find_owners (ClothContactMesh * mesh)
     for (guint k = 0; k < 3; k++) {
       guint32 a = face->corner[k], b = face->corner[(k + 1) % 3];
 
-      sides[3 * i + k] = (Side) {
-      MIN (a, b), MAX (a, b), i, k};
+      sides[3 * i + k] = cloth_side (a, b, i, k);
       if (!owned[a])
         face->owns |= 1u << k;
       owned[a] = TRUE;
     }
   }
-  qsort (sides, n, sizeof *sides, compare_sides);
+  qsort (sides, n, sizeof *sides, cloth_side_compare);
   for (guint i = 0; i < n; i++)
-    if (i == 0 || sides[i].a != sides[i - 1].a || sides[i].b != sides[i - 1].b)
-      mesh->faces[sides[i].face].owns |= 8u << sides[i].edge;
+    if (i == 0 || !cloth_side_same_edge (&sides[i], &sides[i - 1]))
+      mesh->faces[sides[i].face].owns |= 8u << sides[i].number;
 }
 
 static guint32

@@ -7,13 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* An edge as one face runs along it. */
-typedef struct
-{
-  guint32 low, high;
-  guint face;
-  gboolean rises;               /* from low to high */
-} Edge;
+#include "gst/mesh/side.h"
 
 typedef struct
 {
@@ -83,18 +77,6 @@ flat_size (const ClothTopology * topology, guint face)
 }
 
 static gint
-compare_edges (gconstpointer a, gconstpointer b)
-{
-  const Edge *x = a, *y = b;
-
-  if (x->low != y->low)
-    return x->low < y->low ? -1 : 1;
-  if (x->high != y->high)
-    return x->high < y->high ? -1 : 1;
-  return (x->face > y->face) - (x->face < y->face);
-}
-
-static gint
 compare_indices (gconstpointer a, gconstpointer b)
 {
   const guint32 *x = a, *y = b;
@@ -144,47 +126,50 @@ check_faces (const ClothTopology * topology, GError ** error)
   return TRUE;
 }
 
+/* The vertex that the face comes from along its side. */
+static guint32
+starts_at (const ClothTopology * topology, const ClothSide * side)
+{
+  return topology->faces[4 * (gsize) side->face + side->number];
+}
+
 /* Neighbours must run along their common edge in opposite directions and be turned
  * alike on the flat cloth. */
 static gboolean
 check_edges (const ClothTopology * topology, GError ** error)
 {
-  g_autofree Edge *edges = g_new (Edge, 4 * (gsize) topology->n_faces);
+  g_autofree ClothSide *all = g_new (ClothSide, 4 * (gsize) topology->n_faces);
   gsize n = 0;
 
   for (guint face = 0; face < topology->n_faces; face++) {
     const guint32 *corner = topology->faces + 4 * (gsize) face;
     guint sides = n_corners (corner);
 
-    for (guint k = 0; k < sides; k++) {
-      guint32 a = corner[k], b = corner[(k + 1) % sides];
-
-      edges[n++] = (Edge) {
-      MIN (a, b), MAX (a, b), face, a < b};
-    }
+    for (guint k = 0; k < sides; k++)
+      all[n++] = cloth_side (corner[k], corner[(k + 1) % sides], face, k);
   }
-  qsort (edges, n, sizeof *edges, compare_edges);
+  qsort (all, n, sizeof *all, cloth_side_compare);
   for (gsize i = 1; i < n; i++) {
-    const Edge *a = &edges[i - 1], *b = &edges[i];
+    const ClothSide *a = &all[i - 1], *b = &all[i];
 
-    if (a->low != b->low || a->high != b->high)
+    if (!cloth_side_same_edge (a, b))
       continue;
-    if (i + 1 < n && edges[i + 1].low == a->low && edges[i + 1].high == a->high)
+    if (i + 1 < n && cloth_side_same_edge (a, b + 1))
       return cloth_scene_invalid (error,
           "the edge from vertex %u to vertex %u belongs to "
-          "more than two faces, %u, %u and %u among them", a->low, a->high,
-          a->face, b->face, edges[i + 1].face);
-    if (a->rises == b->rises)
+          "more than two faces, %u, %u and %u among them", a->a, a->b,
+          a->face, b->face, b[1].face);
+    if (starts_at (topology, a) == starts_at (topology, b))
       return cloth_scene_invalid (error,
           "face %u is inverted against face %u: they run "
           "the same way along the edge from vertex %u to vertex %u", b->face,
-          a->face, a->low, a->high);
+          a->face, a->a, a->b);
     if ((flat_area (topology, a->face) > 0) != (flat_area (topology,
                 b->face) > 0))
       return cloth_scene_invalid (error,
           "face %u is inverted against face %u: on the flat "
           "cloth it lies folded over the edge from vertex %u to vertex %u",
-          b->face, a->face, a->low, a->high);
+          b->face, a->face, a->a, a->b);
   }
   return TRUE;
 }
