@@ -307,8 +307,8 @@ draw (GstClothCamera * self, const Frame * frame, GstVideoFrame * video)
 static void
 aim (GstClothCamera * self, const Frame * frame)
 {
-  GstClockTime time = gst_segment_to_stream_time (&GST_BASE_TRANSFORM
-      (self)->segment, GST_FORMAT_TIME, GST_BUFFER_PTS (frame->buffer));
+  GstClockTime time = gst_cloth_stream_time (&GST_BASE_TRANSFORM
+      (self)->segment, frame->buffer);
   ClothCamera camera;
 
   if (GST_CLOCK_TIME_IS_VALID (time))
@@ -454,15 +454,12 @@ gst_cloth_camera_query (GstBaseTransform * trans, GstPadDirection direction,
       ->query (trans, direction, query);
 
   if (done && GST_QUERY_TYPE (query) == GST_QUERY_LATENCY) {
-    GstClockTime least, most, wait;
-    gboolean live;
+    GstClockTime own;
 
     GST_OBJECT_LOCK (self);
-    wait = self->latency;
+    own = self->latency;
     GST_OBJECT_UNLOCK (self);
-    gst_query_parse_latency (query, &live, &least, &most);
-    gst_query_set_latency (query, live, least + wait,
-        GST_CLOCK_TIME_IS_VALID (most) ? most + wait : most);
+    gst_cloth_add_latency (query, own);
   }
   return done;
 }

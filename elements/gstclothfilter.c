@@ -8,6 +8,8 @@
 
 #include <gst/cloth/cloth.h>
 
+#include "elements/gstclothutil.h"
+
 GST_DEBUG_CATEGORY_STATIC (cloth_filter_debug);
 #define GST_CAT_DEFAULT cloth_filter_debug
 
@@ -102,18 +104,6 @@ gst_cloth_filter_sink_event (GstBaseTransform * trans, GstEvent * event)
       (trans, event);
 }
 
-/* NONE when the stream doesn't count in time, as that of an appsrc left at its default. */
-static GstClockTime
-gst_cloth_filter_stream_time (GstClothFilter * self, GstBuffer * buffer)
-{
-  const GstSegment *segment = &GST_BASE_TRANSFORM (self)->segment;
-
-  if (segment->format != GST_FORMAT_TIME || !GST_BUFFER_PTS_IS_VALID (buffer))
-    return GST_CLOCK_TIME_NONE;
-  return gst_segment_to_stream_time (segment, GST_FORMAT_TIME,
-      GST_BUFFER_PTS (buffer));
-}
-
 /* Numbers pictures alike in all cameras: by the buffer's own number, else by its time. */
 static guint64
 gst_cloth_filter_number (GstClothFilter * self, GstBuffer * buffer)
@@ -121,7 +111,8 @@ gst_cloth_filter_number (GstClothFilter * self, GstBuffer * buffer)
   GstClothFilterPrivate *priv = gst_cloth_filter_get_instance_private (self);
   gint fps_n = GST_VIDEO_INFO_FPS_N (&priv->info);
   gint fps_d = GST_VIDEO_INFO_FPS_D (&priv->info);
-  GstClockTime time = gst_cloth_filter_stream_time (self, buffer);
+  GstClockTime time =
+      gst_cloth_stream_time (&GST_BASE_TRANSFORM (self)->segment, buffer);
 
   if (GST_BUFFER_OFFSET_IS_VALID (buffer))
     return GST_BUFFER_OFFSET (buffer);
@@ -153,7 +144,7 @@ gst_cloth_filter_transform_ip (GstBaseTransform * trans, GstBuffer * buffer)
             GST_CLOTH_MAX_CAMERA_NAME));
     return GST_FLOW_ERROR;
   }
-  time = gst_cloth_filter_stream_time (self, buffer);
+  time = gst_cloth_stream_time (&trans->segment, buffer);
   if (GST_CLOCK_TIME_IS_VALID (time))
     gst_object_sync_values (GST_OBJECT (self), time);
 

@@ -248,12 +248,8 @@ drain (GstClothgap * self)
 static gdouble
 find_time (GstClothgap * self, GstBuffer * buffer)
 {
-  guint64 time = GST_CLOCK_TIME_NONE;
+  GstClockTime time = gst_cloth_stream_time (&self->segment, buffer);
 
-  if (GST_BUFFER_PTS_IS_VALID (buffer) &&
-      self->segment.format == GST_FORMAT_TIME)
-    time = gst_segment_to_stream_time (&self->segment, GST_FORMAT_TIME,
-        GST_BUFFER_PTS (buffer));
   if (GST_CLOCK_TIME_IS_VALID (time))
     return (gdouble) time / GST_SECOND;
   if (self->fps_n <= 0)
@@ -561,14 +557,12 @@ static gboolean
 gst_clothgap_src_query (GstPad * pad, GstObject * parent, GstQuery * query)
 {
   GstClothgap *self = GST_CLOTHGAP (parent);
-  GstClockTime low, high, own = 0;
-  gboolean live;
+  GstClockTime own = 0;
 
   if (GST_QUERY_TYPE (query) != GST_QUERY_LATENCY)
     return gst_pad_query_default (pad, parent, query);
   if (!gst_pad_peer_query (self->sinkpad, query))
     return FALSE;
-  gst_query_parse_latency (query, &live, &low, &high);
   GST_OBJECT_LOCK (self);
   if (self->fps_n > 0)
     own = gst_util_uint64_scale_int (CLOTH_OBSERVER_LATENCY * GST_SECOND,
@@ -576,10 +570,7 @@ gst_clothgap_src_query (GstPad * pad, GstObject * parent, GstQuery * query)
   else if (self->scene)
     own = (GstClockTime) (CLOTH_OBSERVER_LATENCY / self->scene->fps * 1e9);
   GST_OBJECT_UNLOCK (self);
-  low += own;
-  if (GST_CLOCK_TIME_IS_VALID (high))
-    high += own;
-  gst_query_set_latency (query, live, low, high);
+  gst_cloth_add_latency (query, own);
   return TRUE;
 }
 

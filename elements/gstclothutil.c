@@ -1,4 +1,4 @@
-/* What several elements do alike: caps, properties that hold from start to stop, the
+/* What several elements do alike: caps, times, properties that hold from start to stop, the
  * camera of a rig, what comes as a mesh stream.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
@@ -45,6 +45,29 @@ gst_cloth_carry_caps (const GstCaps * caps, const gchar * const *fields,
   }
   gst_caps_unref (other);
   return gst_cloth_filter_caps (result, filter);
+}
+
+/* NONE when the buffer has no time, or the stream doesn't count in time, as that of an appsrc
+ * left at its default. */
+GstClockTime
+gst_cloth_stream_time (const GstSegment * segment, GstBuffer * buffer)
+{
+  if (segment->format != GST_FORMAT_TIME || !GST_BUFFER_PTS_IS_VALID (buffer))
+    return GST_CLOCK_TIME_NONE;
+  return gst_segment_to_stream_time (segment, GST_FORMAT_TIME,
+      GST_BUFFER_PTS (buffer));
+}
+
+/* To what upstream has answered to a latency query. */
+void
+gst_cloth_add_latency (GstQuery * query, GstClockTime own)
+{
+  GstClockTime least, most;
+  gboolean live;
+
+  gst_query_parse_latency (query, &live, &least, &most);
+  gst_query_set_latency (query, live, least + own,
+      GST_CLOCK_TIME_IS_VALID (most) ? most + own : most);
 }
 
 /* Whether a property may be set now; warns when it is mutable in READY only and the

@@ -1,4 +1,4 @@
-/* What several elements do alike: caps, properties that hold from start to stop, the
+/* What several elements do alike: caps, times, properties that hold from start to stop, the
  * camera of a rig, what comes as a mesh stream.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
@@ -13,6 +13,9 @@ G_BEGIN_DECLS
 GstCaps *gst_cloth_filter_caps (GstCaps * caps, GstCaps * filter);
 GstCaps *gst_cloth_carry_caps (const GstCaps * caps,
     const gchar * const * fields, GstCaps * other, GstCaps * filter);
+GstClockTime gst_cloth_stream_time (const GstSegment * segment,
+    GstBuffer * buffer);
+void gst_cloth_add_latency (GstQuery * query, GstClockTime own);
 gboolean gst_cloth_may_change (GstElement * element, const GParamSpec * spec);
 ClothRig *gst_cloth_open_rig (GstElement * element, const gchar * path,
     const gchar * name, const ClothCamera ** camera);

@@ -213,12 +213,8 @@ drain (GstMeshFill * self)
 static gdouble
 find_time (GstMeshFill * self, GstBuffer * buffer)
 {
-  guint64 time = GST_CLOCK_TIME_NONE;
+  GstClockTime time = gst_cloth_stream_time (&self->segment, buffer);
 
-  if (GST_BUFFER_PTS_IS_VALID (buffer)
-      && self->segment.format == GST_FORMAT_TIME)
-    time = gst_segment_to_stream_time (&self->segment, GST_FORMAT_TIME,
-        GST_BUFFER_PTS (buffer));
   if (GST_CLOCK_TIME_IS_VALID (time))
     return (gdouble) time / GST_SECOND;
   return self->fps_n > 0 ? (gdouble) self->n_frames * self->fps_d / self->fps_n
@@ -473,8 +469,7 @@ static gboolean
 gst_mesh_fill_src_query (GstPad * pad, GstObject * parent, GstQuery * query)
 {
   GstMeshFill *self = GST_MESH_FILL (parent);
-  GstClockTime low, high, own = 0;
-  gboolean live;
+  GstClockTime own = 0;
 
   if (GST_QUERY_TYPE (query) == GST_QUERY_CAPS)
     return answer_caps (self, pad, query);
@@ -482,15 +477,11 @@ gst_mesh_fill_src_query (GstPad * pad, GstObject * parent, GstQuery * query)
     return gst_pad_query_default (pad, parent, query);
   if (!gst_pad_peer_query (self->sinkpad, query))
     return FALSE;
-  gst_query_parse_latency (query, &live, &low, &high);
   GST_OBJECT_LOCK (self);
   if (self->smooth_time > 0 && self->fps_n > 0)
     own = gst_util_uint64_scale_int (GST_SECOND, self->fps_d, self->fps_n);
   GST_OBJECT_UNLOCK (self);
-  low += own;
-  if (GST_CLOCK_TIME_IS_VALID (high))
-    high += own;
-  gst_query_set_latency (query, live, low, high);
+  gst_cloth_add_latency (query, own);
   return TRUE;
 }
 

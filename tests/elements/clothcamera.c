@@ -508,6 +508,7 @@ GST_START_TEST (test_free_view)
   g_autoptr (GstElement) element = NULL;
   GstCaps *caps;
   GstBuffer *out;
+  GstSegment segment;
   gdouble level, edge_on;
 
   gst_harness_set_sink_caps_str (h,
@@ -535,6 +536,11 @@ GST_START_TEST (test_free_view)
   edge_on = middle_of (out);
   fail_unless (isnan (edge_on) || fabs (edge_on - 48) < 2, "%g", edge_on);
   gst_buffer_unref (out);
+  /* a stream that doesn't count in time, as that of an appsrc left at its default */
+  gst_segment_init (&segment, GST_FORMAT_BYTES);
+  gst_harness_push_event (h, gst_event_new_segment (&segment));
+  fail_unless_equals_int (gst_harness_push (h, mesh_buffer (3, 4, 3, 0.5)),
+      GST_FLOW_OK);
   gst_harness_teardown (h);
 }
 
