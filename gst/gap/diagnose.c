@@ -39,6 +39,9 @@ diagnosis_clear (ClothDiagnosis * d)
   g_free (d->blocks);
   for (guint i = 0; i < d->n_chosen; i++)
     cloth_model_free (d->with[i]);
+  cloth_gap_energy_free (d->before);
+  cloth_gap_energy_free (d->after);
+  cloth_gap_energy_free (d->floor);
   cloth_gap_result_free (d->result);
   g_free (d->what);
   g_free (d->null_evidence);
@@ -261,9 +264,9 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
     return FALSE;
   if (!d->options->n_baselines && !study_other_model (d, error))
     return FALSE;
-  if (!cloth_diagnosis_select (d, error) || !cloth_diagnosis_measure (d, error)
-      || !cloth_diagnosis_locate (d, error))
+  if (!cloth_diagnosis_select (d, error) || !cloth_diagnosis_measure (d, error))
     return FALSE;
+  cloth_diagnosis_locate (d);
   cloth_diagnosis_decide (d);
   return cloth_diagnosis_propose (d, error);
 }

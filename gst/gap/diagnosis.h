@@ -5,6 +5,7 @@
 #pragma once
 
 #include "gst/gap/diagnose.h"
+#include "gst/gap/energy.h"
 #include "gst/gap/score.h"
 
 G_BEGIN_DECLS
@@ -55,6 +56,8 @@ typedef struct
   guint dropped[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
   guint n_dropped;
   gboolean unknown;             /* whether something is there, whatever it is */
+  /* of the first take before and after, of the first baseline; NULL where there is none */
+  ClothGapEnergy *before, *after, *floor;
   gdouble least_evidence;
   gdouble *null_evidence;       /* of each candidate, on the baselines */
   /* of the running part of the work: its share of all, what of it each simulation gets */
@@ -129,7 +132,7 @@ gboolean cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error);
 void cloth_diagnosis_decide (ClothDiagnosis * d);
 
 /* Where. */
-gboolean cloth_diagnosis_locate (ClothDiagnosis * d, GError ** error);
+void cloth_diagnosis_locate (ClothDiagnosis * d);
 
 /* What to film next. */
 gboolean cloth_diagnosis_propose (ClothDiagnosis * d, GError ** error);

@@ -15,6 +15,7 @@ typedef struct
 {
   const ClothRecording *recording;
   ClothGapExtent **extents;
+  guint n;
 } Gather;
 
 /* Unit vectors along warp, weft and normal at a vertex of a grid, from what was seen. */
@@ -62,8 +63,12 @@ gather (gpointer data, guint model, guint frame, const gdouble * positions)
 {
   Gather *g = data;
   const ClothRecording *r = g->recording;
-  ClothGapExtent *e = g->extents[model];
+  ClothGapExtent *e = g->extents[model % g->n];
 
+  if (model >= g->n) {
+    cloth_gap_energy_add (e->energy, frame, positions);
+    return;
+  }
   for (guint v = 0; v < r->n; v++) {
     gsize at = (gsize) frame * r->n + v;
     gdouble axes[3][3], d[3], square = 0.;
@@ -102,6 +107,7 @@ extent_new (const ClothRecording * r, gdouble window_s)
     e->positions[i] = (gfloat) r->y[i];
   e->window = cloth_rollout_list_windows (r, window_s);
   e->n_windows = e->window[r->n_frames - 1] + 1;
+  e->energy = cloth_gap_energy_new (r);
   return e;
 }
 
@@ -125,7 +131,7 @@ cloth_gap_extents_new (const ClothRecording * recording,
 {
   ClothGapExtent **extents = g_new (ClothGapExtent *, n_models);
   g_autofree gboolean *sound = g_new (gboolean, n_models);
-  Gather g = { recording, extents };
+  Gather g = { recording, extents, n_models };
 
   for (guint m = 0; m < n_models; m++)
     extents[m] = extent_new (recording, window_s);
@@ -153,6 +159,7 @@ cloth_gap_extents_free (ClothGapExtent ** extents, guint n)
     g_free (extents[m]->window);
     g_free (extents[m]->squares);
     g_free (extents[m]->positions);
+    cloth_gap_energy_free (extents[m]->energy);
     g_free (extents[m]);
   }
   g_free (extents);

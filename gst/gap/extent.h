@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
+#include "gst/gap/energy.h"
 #include "gst/gap/result.h"
 #include "gst/gap/rollout.h"
 
@@ -17,6 +18,7 @@ G_BEGIN_DECLS
  * @squares: squared distance, [n_frames][n], m²; NaN where nothing was seen
  * @positions: simulated, [n_frames][n][3], m
  * @directions: mean square along warp, weft and normal, m²
+ * @energy: of its distances while it was led to the recording all along
  * @sound: whether the simulation held
  *
  * One model's distances from a recording.
@@ -31,6 +33,7 @@ typedef struct {
   gdouble *squares;
   gfloat *positions;
   gdouble directions[3];
+  ClothGapEnergy *energy;
   gboolean sound;
 } ClothGapExtent;
 

@@ -101,6 +101,8 @@ measure_floor (ClothDiagnosis * d, guint judge, const ClothGapExtent * extent,
     cloth_gap_extents_interval (floor, 1, NULL, d->options->seed, N_DRAWS,
         draws);
     *result = estimate (square, draws, N_DRAWS, 1);
+    if (floor[0]->sound)
+      d->floor = g_steal_pointer (&floor[0]->energy);
     cloth_gap_extents_free (floor, 1);
     if (cloth_diagnosis_has_signatures (d))
       return TRUE;
@@ -139,6 +141,18 @@ matters (const ClothDiagnosis * d, gdouble before, gdouble after)
 {
   return after < (1. - CLOTH_DIAGNOSIS_LEAST_SHRINK) * before
       || (cloth_diagnosis_has_signatures (d) && after < HARDLY_LARGER * before);
+}
+
+/* Where the gap of the first take lies, and what is needed to say more of it. */
+static void
+keep_first (ClothDiagnosis * d, ClothGapExtent * before, ClothGapExtent * after)
+{
+  cloth_gap_extent_fill (before, after, cloth_diagnosis_recording (d, 0),
+      d->takes[0], d->result);
+  if (before->sound)
+    d->before = g_steal_pointer (&before->energy);
+  if (after && after->sound)
+    d->after = g_steal_pointer (&after->energy);
 }
 
 /* How large the gap is before and after, on the hold-outs if there are any; the floor on
@@ -186,8 +200,7 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
     fill_shrink (result, v[0], v[best], draws, draws + best, n);
   }
   if (!judge)
-    cloth_gap_extent_fill (extents[0], best ? extents[best] : NULL,
-        cloth_diagnosis_recording (d, 0), d->takes[0], result);
+    keep_first (d, extents[0], best ? extents[best] : NULL);
   cloth_gap_extents_free (extents, n);
   if (!judge)
     return TRUE;
@@ -198,8 +211,7 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
       WINDOW_GAIN, WINDOW_S, &d->study.rollout, error);
   if (!extents)
     return FALSE;
-  cloth_gap_extent_fill (extents[0], best ? extents[1] : NULL,
-      cloth_diagnosis_recording (d, 0), d->takes[0], result);
+  keep_first (d, extents[0], best ? extents[1] : NULL);
   cloth_gap_extents_free (extents, n);
   return TRUE;
 }

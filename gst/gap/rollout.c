@@ -94,17 +94,16 @@ tell_models (gpointer data, guint begin, guint end, guint worker)
     run->each (run->data, m, run->frame, run->x + m * run->row);
 }
 
-/* Tells of the first @n models. */
 static gboolean
-tell (Run * run, guint n, guint frame, ClothRolloutFrame each, gpointer data,
+tell (Run * run, guint frame, ClothRolloutFrame each, gpointer data,
     GError ** error)
 {
   run->each = each;
   run->data = data;
   run->frame = frame;
-  for (guint m = 0; m < n; m++)
+  for (guint m = 0; m < run->n_models; m++)
     cloth_sim_get_positions (run->sim, m, run->x + m * run->row);
-  cloth_pool_run (run->pool, tell_models, run, n);
+  cloth_pool_run (run->pool, tell_models, run, run->n_models);
   if (!run->options->progress
       || run->options->progress (run->options->data,
           (frame + 1.) / run->recording->n_frames))
@@ -148,12 +147,12 @@ cloth_rollout_nudged (const ClothRecording * recording,
     return FALSE;
   for (guint m = 0; m < n_models; m++)
     sound[m] = TRUE;
-  if (!tell (&run, n_models, 0, each, data, error))
+  if (!tell (&run, 0, each, data, error))
     return FALSE;
   for (guint frame = 0; frame + 1 < recording->n_frames; frame++) {
     nudge (&run, frame, gains);
     cloth_sim_advance (run.sim, recording->times[frame + 1]);
-    if (!tell (&run, n_models, frame + 1, each, data, error))
+    if (!tell (&run, frame + 1, each, data, error))
       return FALSE;
   }
   judge (&run, n_models, sound);
@@ -168,7 +167,8 @@ cloth_rollout_nudged (const ClothRecording * recording,
  * @gain: of the observer that leads up to each window, 1/s²
  * @window_s: length of the windows, s
  * @options: how to simulate
- * @each: called for each model in each frame of each window but its first
+ * @each: called for each model in each frame of each window but its first; and in all
+ *   frames but the first for the model led all along, as @n_models + its index
  * @data: for @each
  * @sound: (out) (array length=n_models): which models did not diverge
  * @error: #ClothSimError, or #ClothGapError when it was stopped
@@ -208,7 +208,7 @@ cloth_rollout_windows (const ClothRecording * recording,
     }
     nudge (&run, frame, gains);
     cloth_sim_advance (run.sim, recording->times[frame + 1]);
-    if (!tell (&run, n_models, frame + 1, each, data, error))
+    if (!tell (&run, frame + 1, each, data, error))
       return FALSE;
   }
   judge (&run, n_models, sound);

@@ -7,7 +7,6 @@
 #include <math.h>
 
 #include "gst/gap/diagnosis.h"
-#include "gst/gap/energy.h"
 
 /* Bands of frequencies are octaves from here on, Hz, those of the report half ones. */
 #define FIRST_HZ 0.5
@@ -20,41 +19,6 @@ static const gdouble wave_edges[] = { 0., 0.5, 1.5, 2.5, 5.5, 11.5 };
 #define N_WAVE_BANDS G_N_ELEMENTS (wave_edges)
 /* Rows of the report's spectrum: 0, 1, 2 … half waves. */
 #define N_DRAWN_WAVES 13
-
-/* Runs of the same recording, side by side. */
-typedef struct
-{
-  ClothGapEnergy *energies[2];
-  gboolean sound[2];
-  guint n;
-} Runs;
-
-static void
-runs_clear (Runs * runs)
-{
-  for (guint m = 0; m < runs->n; m++)
-    cloth_gap_energy_free (runs->energies[m]);
-}
-
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Runs, runs_clear)
-     static void gather (gpointer data, guint model, guint frame,
-    const gdouble * positions)
-{
-  cloth_gap_energy_add (((Runs *) data)->energies[model], frame, positions);
-}
-
-static gboolean
-run (ClothDiagnosis * d, const ClothRecording * recording,
-    const ClothModel * const *models, guint n, Runs * runs, GError ** error)
-{
-  gdouble gains[2] = { d->study.gains[0], d->study.gains[0] };
-
-  runs->n = n;
-  for (guint m = 0; m < n; m++)
-    runs->energies[m] = cloth_gap_energy_new (recording);
-  return cloth_rollout_nudged (recording, models, gains, n, &d->study.rollout,
-      gather, runs, runs->sound, error);
-}
 
 /* Octaves, or parts of them, from @first on, or from where each holds a frequency. */
 static GArray *
@@ -263,35 +227,19 @@ fill_stages (const ClothRecording * r, ClothGapResult * result)
   cloth_gap_result_add_stage (result, "physics", 1. - noise, NULL);
 }
 
-/* Fills where the gap of the first take lies, once it is known what is accepted. */
-gboolean
-cloth_diagnosis_locate (ClothDiagnosis * d, GError ** error)
+/* Fills where the gap of the first take lies, once it is measured. */
+void
+cloth_diagnosis_locate (ClothDiagnosis * d)
 {
   const ClothRecording *r = cloth_diagnosis_recording (d, 0);
-  const ClothModel *models[2] = { d->model, NULL };
-  guint n = d->n_chosen ? 2 : 1;
-  g_auto (Runs) runs = { {NULL} };
-  g_auto (Runs) base = { {NULL} };
-  Compared c = { NULL };
+  const Compared c = { d->before, d->after, d->floor,
+    longest_side (r->scene->topology)
+  };
 
-  if (d->n_chosen)
-    models[1] = d->with[d->n_chosen - 1];
-  cloth_diagnosis_begin_part (d, d->from, 1., 0.5, "where the gap lies");
-  if (!run (d, r, models, n, &runs, error))
-    return FALSE;
-  if (d->options->n_baselines
-      && !run (d, cloth_diagnosis_recording (d, d->n_takes), models, 1, &base,
-          error))
-    return FALSE;
   fill_stages (r, d->result);
-  if (!runs.sound[0])
-    return TRUE;
-  c.before = runs.energies[0];
-  c.after = n > 1 && runs.sound[1] ? runs.energies[1] : NULL;
-  c.floor = base.n && base.sound[0] ? base.energies[0] : NULL;
-  c.longest = longest_side (r->scene->topology);
+  if (!c.before)
+    return;
   fill_frequencies (&c, d->result);
   fill_waves (&c, d->result);
   fill_spectrum (&c, &d->result->spectrum);
-  return TRUE;
 }
