@@ -404,11 +404,15 @@ post_verdict (GstClothgap * self, const ClothGapResult * result,
 static void
 finish (GstClothgap * self)
 {
-  const ClothGapOptions options = { &self->baseline, self->baseline ? 1 : 0,
-    NULL, 0, self->settings.model, (const gchar * const *) self->effects,
-    self->settings.seed,
-    self->settings.threads,
-    go_on, self
+  const ClothGapOptions options = {
+    .baselines = &self->baseline,
+    .n_baselines = self->baseline ? 1 : 0,
+    .model_file = self->settings.model,
+    .effects = (const gchar * const *) self->effects,
+    .seed = self->settings.seed,
+    .threads = self->settings.threads,
+    .progress = go_on,
+    .progress_data = self
   };
   g_autoptr (GError) error = NULL;
   g_autoptr (ClothGapResult) result = NULL;

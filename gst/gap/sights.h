@@ -1,0 +1,55 @@
+/* What cameras saw of a recorded cloth.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/rig/rig.h"
+
+G_BEGIN_DECLS
+
+/**
+ * ClothSight:
+ * @camera: its index in the rig
+ * @time_s: when, by the camera's clock
+ * @n: number of points
+ * @vertices: (array length=n): which vertex of the cloth each of them is, growing
+ * @px: (array length=n): x, y of each, px as filmed
+ * @covariances: (array length=n): xx, xy, yy of each, px²
+ *
+ * One picture.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  guint camera;
+  gdouble time_s;
+  guint n;
+  guint32 *vertices;
+  gdouble *px;
+  gdouble *covariances;
+} ClothSight;
+
+/**
+ * ClothSights:
+ * @rig: the cameras as calibrated
+ * @n_vertices: number of the cloth's vertices
+ * @list: (element-type ClothSight): the pictures, of each camera in the order of time
+ *
+ * All pictures of one take.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  ClothRig *rig;
+  guint n_vertices;
+  GArray *list;
+} ClothSights;
+
+ClothSights *cloth_sights_new (ClothRig * rig, guint n_vertices);
+gboolean cloth_sights_add (ClothSights * sights, guint camera, gdouble time_s,
+    guint n, const guint32 * vertices, const gdouble * px,
+    const gdouble * covariances, GError ** error);
+void cloth_sights_free (ClothSights * sights);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothSights, cloth_sights_free)
+G_END_DECLS
