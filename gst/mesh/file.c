@@ -19,6 +19,28 @@
 G_DEFINE_QUARK (cloth-mesh-error-quark, cloth_mesh_error)
 /* *INDENT-ON* */
 
+/**
+ * cloth_mesh_invalid:
+ * @error: (out): set to %CLOTH_MESH_ERROR_INVALID
+ * @format: what is wrong and how to mend it
+ *
+ * Returns: %FALSE, so that a check may end with it
+ *
+ * Since: 0.1
+ */
+gboolean
+cloth_mesh_invalid (GError ** error, const gchar * format, ...)
+{
+  g_autofree gchar *text = NULL;
+  va_list arguments;
+
+  va_start (arguments, format);
+  text = g_strdup_vprintf (format, arguments);
+  va_end (arguments);
+  g_set_error_literal (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID, text);
+  return FALSE;
+}
+
 struct _ClothInput
 {
   gint fd;                      /* -1: memory */

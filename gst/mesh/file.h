@@ -33,6 +33,8 @@ typedef enum {
 
 #define CLOTH_MESH_ERROR (cloth_mesh_error_quark ())
 GQuark cloth_mesh_error_quark (void);
+gboolean cloth_mesh_invalid (GError ** error, const gchar * format, ...)
+    G_GNUC_PRINTF (2, 3);
 
 /* Bytes that can be read at any offset: a regular file or memory. */
 typedef struct _ClothInput ClothInput;

@@ -37,22 +37,6 @@ typedef struct
   GArray *firsts;               /* guint a drawn edge: its first vertex */
 } Builder;
 
-static gboolean
-invalid (GError ** error, const gchar * format, ...)
-G_GNUC_PRINTF (2, 3);
-
-     static gboolean invalid (GError ** error, const gchar * format, ...)
-{
-  g_autofree gchar *text = NULL;
-  va_list arguments;
-
-  va_start (arguments, format);
-  text = g_strdup_vprintf (format, arguments);
-  va_end (arguments);
-  g_set_error_literal (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID, text);
-  return FALSE;
-}
-
 static void
 panel_clear (gpointer data)
 {
@@ -128,7 +112,7 @@ count_pieces (Builder * self, GArray * seam_edges, GError ** error)
             2 * GPOINTER_TO_UINT (at));
 
         if (pair[1].panel != G_MAXUINT)
-          return invalid (error,
+          return cloth_mesh_invalid (error,
               "seam “%s” is named by three edges: “%s” of "
               "panel “%s”, “%s” of “%s” and “%s” of “%s”; a seam joins two",
               edge->seam, get_edge (self, pair[0].panel, pair[0].edge)->name,
@@ -145,7 +129,7 @@ count_pieces (Builder * self, GArray * seam_edges, GError ** error)
     guint *na, *nb;
 
     if (pair[1].panel == G_MAXUINT)
-      return invalid (error,
+      return cloth_mesh_invalid (error,
           "seam “%s” is named by edge “%s” of panel “%s” "
           "alone; give the edge that it is sewn to the same data-seam", name,
           a->name, get_panel (self, pair[0].panel)->name);
@@ -156,7 +140,8 @@ count_pieces (Builder * self, GArray * seam_edges, GError ** error)
             pair[1].edge));
     if (fabs (a->length_m - b->length_m)
         > SEAM_EASE * fmax (a->length_m, b->length_m))
-      return invalid (error, "the two sides of seam “%s” don't match: edge "
+      return cloth_mesh_invalid (error,
+          "the two sides of seam “%s” don't match: edge "
           "“%s” of panel “%s” is %.1f mm long and has %u vertices, edge “%s” "
           "of panel “%s” %.1f mm and %u vertices; they may differ by %g%%",
           name, a->name, get_panel (self, pair[0].panel)->name,
@@ -315,7 +300,7 @@ check_outline (const Builder * self, const ClothPanel * panel, GError ** error)
     if (!(a[0] >= -CLOTH_TOLERANCE && a[1] >= -CLOTH_TOLERANCE
             && a[0] <= grid->cloth_m[0] + CLOTH_TOLERANCE
             && a[1] <= grid->cloth_m[1] + CLOTH_TOLERANCE))
-      return invalid (error,
+      return cloth_mesh_invalid (error,
           "panel “%s” leaves the printed cloth of %.0f × "
           "%.0f mm at (%.1f, %.1f) mm", panel->name, 1000 * grid->cloth_m[0],
           1000 * grid->cloth_m[1], 1000 * a[0], 1000 * a[1]);
@@ -323,7 +308,7 @@ check_outline (const Builder * self, const ClothPanel * panel, GError ** error)
       if (!(i == 0 && j == n - 1)
           && meet (a, b, place (self, panel->first + j),
               place (self, panel->first + (j + 1) % n)))
-        return invalid (error,
+        return cloth_mesh_invalid (error,
             "the outline of panel “%s” crosses or touches "
             "itself near (%.1f, %.1f) mm", panel->name, 1000 * a[0],
             1000 * a[1]);
@@ -352,7 +337,7 @@ check_overlap (const Builder * self, GError ** error)
               place (self, b->first + (j + 1) % b->n_border));
         }
       if (overlap)
-        return invalid (error,
+        return cloth_mesh_invalid (error,
             "panels “%s” and “%s” overlap near (%.1f, "
             "%.1f) mm; each dot can be in one panel only", b->name, a->name,
             1000 * at[0], 1000 * at[1]);
@@ -473,10 +458,11 @@ add_faces (Builder * self, const ClothPanel * panel, GError ** error)
     guint64 side = MIN (i, j) << 32 | MAX (i, j);
 
     if (!g_array_binary_search (sides, &side, compare_numbers, NULL))
-      return invalid (error, "panel “%s” is too narrow or too sharp near "
+      return cloth_mesh_invalid (error,
+          "panel “%s” is too narrow or too sharp near "
           "(%.1f, %.1f) mm for dots %.1f mm apart", panel->name,
-          1000 * place (self, panel->first + i)[0],
-          1000 * place (self, panel->first + i)[1], 1000 * pitch);
+          1000 * place (self, panel->first + i)[0], 1000 * place (self,
+              panel->first + i)[1], 1000 * pitch);
   }
   for (guint k = 0; k < kept; k += 3) {
     const guint *t = &g_array_index (found, guint, k);
@@ -521,21 +507,22 @@ add_panel (Builder * self, guint p, GError ** error)
   panel.n_border = self->dots->len - panel.first;
   g_array_append_val (self->garment->panels, panel);
   if (panel.n_border < 3)
-    return invalid (error, "panel “%s” is smaller than a dot's cell",
-        panel.name);
+    return cloth_mesh_invalid (error,
+        "panel “%s” is smaller than a dot's cell", panel.name);
   if (self->dots->len > MOST_VERTICES)
-    return invalid (error, "the outlines have more than %d vertices",
+    return cloth_mesh_invalid (error, "the outlines have more than %d vertices",
         MOST_VERTICES);
   if (!check_outline (self, &panel, error))
     return FALSE;
   add_dots (self, &panel);
   if (self->dots->len > MOST_VERTICES)
-    return invalid (error, "the garment has more than %d vertices",
+    return cloth_mesh_invalid (error, "the garment has more than %d vertices",
         MOST_VERTICES);
   panel.n_vertices = self->dots->len - panel.first;
   g_array_index (self->garment->panels, ClothPanel, p) = panel;
   if (panel.n_vertices == panel.n_border)
-    return invalid (error, "panel “%s” has no dot within", panel.name);
+    return cloth_mesh_invalid (error, "panel “%s” has no dot within",
+        panel.name);
   return add_faces (self, &panel, error);
 }
 

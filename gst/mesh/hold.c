@@ -26,7 +26,7 @@ visit_edges (const ClothTopology * topology, ClothHold * hold, gboolean store)
 {
   for (gsize f = 0; f < topology->n_faces; f++) {
     const guint32 *face = topology->faces + 4 * f;
-    guint n = face[3] == CLOTH_NO_VERTEX ? 3 : 4;
+    guint n = cloth_face_corners (face);
 
     for (guint k = 0; k < n; k++) {
       guint32 a = face[k], b = face[(k + 1) % n];

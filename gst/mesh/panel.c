@@ -30,22 +30,6 @@ typedef struct
   guint transform_depth;        /* 0: nothing around is transformed */
 } Reader;
 
-static gboolean
-invalid (GError ** error, const gchar * format, ...)
-G_GNUC_PRINTF (2, 3);
-
-     static gboolean invalid (GError ** error, const gchar * format, ...)
-{
-  g_autofree gchar *text = NULL;
-  va_list arguments;
-
-  va_start (arguments, format);
-  text = g_strdup_vprintf (format, arguments);
-  va_end (arguments);
-  g_set_error_literal (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID, text);
-  return FALSE;
-}
-
 static void
 edge_clear (gpointer data)
 {
@@ -104,14 +88,16 @@ read_root (Reader * reader, const gchar ** names, const gchar ** values,
 
   if (!read_length (find (names, values, "width"), &size[0])
       || !read_length (find (names, values, "height"), &size[1]))
-    return invalid (error, "the drawing has no true size: give <svg> a width "
+    return cloth_mesh_invalid (error,
+        "the drawing has no true size: give <svg> a width "
         "and a height in mm, cm or in");
   for (guint i = 0; i < 4; i++) {
     gchar *end = NULL;
 
     numbers[i] = box ? g_ascii_strtod (box, &end) : 0;
     if (!box || end == box || !isfinite (numbers[i]))
-      return invalid (error, "give <svg> a viewBox of four numbers, for "
+      return cloth_mesh_invalid (error,
+          "give <svg> a viewBox of four numbers, for "
           "instance \"0 0 760 2510\" with a width of 760mm");
     box = end;
     while (*box == ',' || *box == ' ')
@@ -119,12 +105,13 @@ read_root (Reader * reader, const gchar ** names, const gchar ** values,
   }
   for (guint i = 0; i < 2; i++) {
     if (!(numbers[2 + i] > 0))
-      return invalid (error, "the viewBox of <svg> is empty");
+      return cloth_mesh_invalid (error, "the viewBox of <svg> is empty");
     reader->unit_m[i] = size[i] / numbers[2 + i];
     reader->corner[i] = numbers[i];
   }
   if (fabs (reader->unit_m[0] / reader->unit_m[1] - 1) > 1e-3)
-    return invalid (error, "the viewBox of <svg> has another shape than its "
+    return cloth_mesh_invalid (error,
+        "the viewBox of <svg> has another shape than its "
         "width and height, which would stretch the panels: a unit is %g mm "
         "wide and %g mm high", 1000 * reader->unit_m[0],
         1000 * reader->unit_m[1]);
@@ -137,15 +124,16 @@ begin_panel (Reader * reader, const gchar * id, GError ** error)
   ClothDrawnPanel panel = { NULL, NULL };
 
   if (!id || !*id)
-    return invalid (error, "a panel has no id; it is the panel's name");
+    return cloth_mesh_invalid (error,
+        "a panel has no id; it is the panel's name");
   if (strlen (id) > 255 || !g_utf8_validate (id, -1, NULL))
-    return invalid (error, "the id of a panel is too long");
+    return cloth_mesh_invalid (error, "the id of a panel is too long");
   for (guint i = 0; i < reader->panels->len; i++)
     if (strcmp (g_array_index (reader->panels, ClothDrawnPanel, i).name,
             id) == 0)
-      return invalid (error, "two panels are called “%s”", id);
+      return cloth_mesh_invalid (error, "two panels are called “%s”", id);
   if (reader->panels->len == MOST_PANELS)
-    return invalid (error, "more than %d panels", MOST_PANELS);
+    return cloth_mesh_invalid (error, "more than %d panels", MOST_PANELS);
   panel.name = g_strdup (id);
   panel.edges = g_array_new (FALSE, TRUE, sizeof (ClothDrawnEdge));
   g_array_set_clear_func (panel.edges, edge_clear);
@@ -166,8 +154,8 @@ read_path (Reader * reader, const gchar ** names, const gchar ** values,
   ClothDrawnEdge *edge;
 
   if (panel->edges->len == MOST_EDGES)
-    return invalid (error, "panel “%s” has more than %d edges", panel->name,
-        MOST_EDGES);
+    return cloth_mesh_invalid (error, "panel “%s” has more than %d edges",
+        panel->name, MOST_EDGES);
   g_array_set_size (panel->edges, panel->edges->len + 1);
   edge = &g_array_index (panel->edges, ClothDrawnEdge, panel->edges->len - 1);
   edge->name = id ? g_strndup (id, 255)
@@ -175,8 +163,9 @@ read_path (Reader * reader, const gchar ** names, const gchar ** values,
   edge->seam = seam && *seam ? g_strndup (seam, 255) : NULL;
   edge->points = g_array_new (FALSE, FALSE, sizeof (gdouble));
   if (!d)
-    return invalid (error, "panel “%s”: edge “%s” has no path data (d)",
-        panel->name, edge->name);
+    return cloth_mesh_invalid (error,
+        "panel “%s”: edge “%s” has no path data (d)", panel->name,
+        edge->name);
   if (!cloth_svg_path_parse (d, CURVE_TOLERANCE / reader->unit_m[0],
           MOST_POINTS, edge->points, error)) {
     g_prefix_error (error, "panel “%s”, edge “%s”: ", panel->name,
@@ -191,8 +180,8 @@ read_path (Reader * reader, const gchar ** names, const gchar ** values,
       edge->length_m += hypot (p[0] - p[-2], p[-1] - p[-3]);
   }
   if (!(edge->length_m > 2 * END_TOLERANCE))
-    return invalid (error, "panel “%s”: edge “%s” has no length",
-        panel->name, edge->name);
+    return cloth_mesh_invalid (error,
+        "panel “%s”: edge “%s” has no length", panel->name, edge->name);
   return TRUE;
 }
 
@@ -207,12 +196,14 @@ start_element (GMarkupParseContext * context, const gchar * element,
 
   reader->depth++;
   if (reader->depth > MOST_DEPTH) {
-    invalid (error, "groups are nested more than %d deep", MOST_DEPTH);
+    cloth_mesh_invalid (error, "groups are nested more than %d deep",
+        MOST_DEPTH);
     return;
   }
   if (reader->depth == 1) {
     if (strcmp (name, "svg"))
-      invalid (error, "the file is no SVG drawing but has a <%s>", name);
+      cloth_mesh_invalid (error, "the file is no SVG drawing but has a <%s>",
+          name);
     else
       read_root (reader, names, values, error);
     return;
@@ -226,7 +217,8 @@ start_element (GMarkupParseContext * context, const gchar * element,
   if (!reader->panel_depth || strcmp (name, "path"))
     return;
   if (reader->transform_depth)
-    invalid (error, "panel “%s” is moved by a transform; apply it to the "
+    cloth_mesh_invalid (error,
+        "panel “%s” is moved by a transform; apply it to the "
         "paths (in Inkscape: ungroup, or move with objects' coordinates set to "
         "optimised)", g_array_index (reader->panels, ClothDrawnPanel,
             reader->panels->len - 1).name);
@@ -283,7 +275,8 @@ join_edges (ClothDrawnPanel * panel, GError ** error)
   gdouble area = 0;
 
   if (n == 0)
-    return invalid (error, "panel “%s” has no path", panel->name);
+    return cloth_mesh_invalid (error, "panel “%s” has no path",
+        panel->name);
   if (n > 1) {
     /* the first edge ends where the second has an end */
     gdouble away[2];
@@ -306,7 +299,8 @@ join_edges (ClothDrawnPanel * panel, GError ** error)
       turn_edge (next);
     begin = (gdouble *) edge_end (next, FALSE);
     if (distance (end, begin) > END_TOLERANCE)
-      return invalid (error, "the outline of panel “%s” is open: its edge "
+      return cloth_mesh_invalid (error,
+          "the outline of panel “%s” is open: its edge "
           "“%s” ends at (%.1f, %.1f) mm and “%s” begins %.1f mm away at "
           "(%.1f, %.1f); draw the edges one after the other, end to end",
           panel->name, edge->name, 1000 * end[0], 1000 * end[1], next->name,
@@ -374,7 +368,8 @@ cloth_panels_parse (const gchar * svg, gsize size, GError ** error)
       || !g_markup_parse_context_end_parse (context, error))
     return NULL;
   if (panels->len == 0) {
-    invalid (error, "the drawing has no panel: put the paths of each into a "
+    cloth_mesh_invalid (error,
+        "the drawing has no panel: put the paths of each into a "
         "group with an id and class=\"panel\"");
     return NULL;
   }

@@ -86,7 +86,7 @@ cloth_ply_write (ClothOutput * output, const ClothTopology * topology,
   }
   for (gsize i = 0; i < n_faces; i++) {
     const guint32 *face = topology->faces + 4 * i;
-    guint n = face[3] == CLOTH_NO_VERTEX ? 3 : 4;
+    guint n = cloth_face_corners (face);
 
     *to++ = (guint8) n;
     for (guint k = 0; k < n; k++)

@@ -33,6 +33,20 @@ typedef struct {
 } ClothTopology;
 
 /**
+ * cloth_face_corners:
+ * @face: 4 indices of a face
+ *
+ * Returns: how many corners it has, 3 or 4
+ *
+ * Since: 0.1
+ */
+static inline guint
+cloth_face_corners (const guint32 * face)
+{
+  return face[3] == CLOTH_NO_VERTEX ? 3 : 4;
+}
+
+/**
  * ClothVertexState:
  * @CLOTH_VERTEX_UNSEEN: not seen: the position is NaN
  * @CLOTH_VERTEX_MEASURED: measured by three or more views

@@ -80,7 +80,7 @@ cut_faces (Maker * maker, ClothTopology * topology)
 
   for (guint i = 0; i < old->n_faces; i++) {
     const guint32 *f = old->faces + 4 * (gsize) i;
-    guint sides = f[3] == CLOTH_NO_VERTEX ? 3 : 4;
+    guint sides = cloth_face_corners (f);
     guint32 m[4] = { 0 };
 
     for (guint k = 0; k < sides; k++) {
@@ -228,7 +228,7 @@ halve_seams (const ClothScene * old, Maker * maker)
       &n_particles);
   for (guint i = 0; i < old->topology->n_faces; i++) {
     const guint32 *f = old->topology->faces + 4 * (gsize) i;
-    guint sides = f[3] == CLOTH_NO_VERTEX ? 3 : 4;
+    guint sides = cloth_face_corners (f);
 
     for (guint k = 0; k < sides; k++) {
       guint32 a = f[k], b = f[(k + 1) % sides];

@@ -1,7 +1,7 @@
 /* A scene: what a take says of one.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/scenecheck.h"
+#include "gst/sim/scene.h"
 
 #include <math.h>
 #include <string.h>
@@ -48,14 +48,14 @@ cloth_scene_sew (ClothScene * scene, const ClothSeamLine * line,
   for (guint side = 0; side < 2; side++) {
     for (guint i = 0; i < line->n_vertices; i++)
       if (line->lines[side][i] >= scene->topology->n_vertices)
-        return cloth_scene_invalid (error,
+        return cloth_mesh_invalid (error,
             "vertex %u of a seam is not in the mesh (there " "are %u)",
             line->lines[side][i], scene->topology->n_vertices);
     lengths[side] =
         line_length (scene->topology, line->lines[side], line->n_vertices);
   }
   if (fabs (lengths[0] - lengths[1]) > SEAM_EASE * MAX (lengths[0], lengths[1]))
-    return cloth_scene_invalid (error,
+    return cloth_mesh_invalid (error,
         "the lines of the seam from vertex %u and from "
         "vertex %u are %g m and %g m long on the flat cloth; they may differ "
         "by %g%%", line->lines[0][0], line->lines[1][0], lengths[0], lengths[1],
@@ -85,11 +85,11 @@ read_clamps (ClothScene * scene, ClothTake * take, GError ** error)
   if (n == 0)
     return TRUE;
   if (!cloth_take_has_clamps (take))
-    return cloth_scene_invalid (error,
+    return cloth_mesh_invalid (error,
         "take.json says that %u vertices are held, but "
         "there is no clamps.npy with their paths", scene->held->len);
   if (n * scene->n_frames > CLOTH_MAX_BUFFER / sizeof (gdouble))
-    return cloth_scene_invalid (error,
+    return cloth_mesh_invalid (error,
         "clamps.npy: %u held vertices in %u frames are "
         "more than a simulation takes", scene->held->len, scene->n_frames);
   row = g_new (gfloat, n);

@@ -169,7 +169,7 @@ measure (const ClothGarment * garment)
   g_assert_true (cloth_topology_check (topology, NULL));
   for (guint f = 0; f < topology->n_faces; f++) {
     const guint32 *v = &topology->faces[4 * f];
-    guint n = v[3] == CLOTH_NO_VERTEX ? 3 : 4;
+    guint n = cloth_face_corners (v);
     gdouble area = 0;
 
     for (guint i = 0; i < n; i++) {
