@@ -90,7 +90,7 @@ struct _GstDotLabel
   GstVideoColorMatrix matrix;   /* that @colours are made for */
   GArray *likelihoods;          /* gfloat, the array's n_colours for each dot */
   GArray *dots;                 /* GstClothDot */
-  GByteArray *said;             /* which colour a label says that a dot has; 255: none */
+  GByteArray *said;             /* gint8, which colour a dot's label says that it has */
   gboolean found;
   guint n_in_vain;              /* pictures with dots and no label; none any more: 0 */
   gboolean warned;
@@ -191,6 +191,17 @@ gst_dot_label_load_chart (GstDotLabel * self)
   return self->chart != NULL;
 }
 
+static void
+gst_dot_label_stop (GstClothFilter * filter)
+{
+  GstDotLabel *self = GST_DOT_LABEL (filter);
+
+  g_clear_pointer (&self->detector, cloth_dot_detector_free);
+  g_clear_pointer (&self->labeller, cloth_dot_labeller_free);
+  g_clear_pointer (&self->array, cloth_m_array_free);
+  g_clear_pointer (&self->chart, gst_sample_unref);
+}
+
 static gboolean
 gst_dot_label_start (GstClothFilter * filter)
 {
@@ -222,12 +233,11 @@ gst_dot_label_start (GstClothFilter * filter)
     GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
         ("Dots can't be labelled by this pattern: %s", error->message),
         ("pattern=%s", path));
-    g_clear_pointer (&self->array, cloth_m_array_free);
+    gst_dot_label_stop (filter);
     return FALSE;
   }
   if (!gst_dot_label_load_chart (self)) {
-    g_clear_pointer (&self->labeller, cloth_dot_labeller_free);
-    g_clear_pointer (&self->array, cloth_m_array_free);
+    gst_dot_label_stop (filter);
     return FALSE;
   }
   self->detector = cloth_dot_detector_new ();
@@ -235,17 +245,6 @@ gst_dot_label_start (GstClothFilter * filter)
   self->found = self->warned = FALSE;
   self->n_in_vain = 0;
   return TRUE;
-}
-
-static void
-gst_dot_label_stop (GstClothFilter * filter)
-{
-  GstDotLabel *self = GST_DOT_LABEL (filter);
-
-  g_clear_pointer (&self->detector, cloth_dot_detector_free);
-  g_clear_pointer (&self->labeller, cloth_dot_labeller_free);
-  g_clear_pointer (&self->array, cloth_m_array_free);
-  g_clear_pointer (&self->chart, gst_sample_unref);
 }
 
 /* What was learnt of the colours stays: it is of the camera, not of the film. */
@@ -296,9 +295,8 @@ gst_dot_label_try (GstDotLabel * self, const ClothDotImage * image,
     const ClothDotLabelParams * params)
 {
   gfloat *likelihoods;
-  const ClothDotLabel *labels;
-  guint n_labels, n_labelled = 0;
 
+  g_byte_array_set_size (self->said, n);
   g_array_set_size (self->likelihoods, n * (guint) self->array->n_colours);
   likelihoods = (gfloat *) self->likelihoods->data;
   if (by == GST_DOT_LABEL_COLOURS_HUE)
@@ -306,10 +304,8 @@ gst_dot_label_try (GstDotLabel * self, const ClothDotImage * image,
   else
     cloth_dot_colour_model_classify (&self->colours, dots, n, likelihoods);
   cloth_dot_labeller_run (self->labeller, params, dots, n, likelihoods);
-  labels = cloth_dot_labeller_get_labels (self->labeller, &n_labels);
-  for (guint k = 0; k < n_labels; k++)
-    n_labelled += labels[k].column >= 0;
-  return n_labelled;
+  return gst_dot_label_say (self->labeller, self->array,
+      (gint8 *) self->said->data);
 }
 
 /* Until anything has been labelled, a picture that the print's own colours say nothing of
@@ -332,46 +328,13 @@ gst_dot_label_adapt (GstDotLabel * self, const ClothDotImage * image,
   return n_labelled;
 }
 
-/* What the labels tell of the camera's colours is for the next picture. */
 static void
-gst_dot_label_learn (GstDotLabel * self, const ClothDot * dots,
-    const ClothDotLabel * labels, guint n)
+gst_dot_label_refuse_grey (GstDotLabel * self, const GstVideoFrame * video)
 {
-  gint8 *said;
-
-  g_byte_array_set_size (self->said, n);
-  said = (gint8 *) self->said->data;
-  for (guint k = 0; k < n; k++)
-    said[k] = labels[k].column < 0 ? -1 :
-        (gint8) self->array->matrix[labels[k].row * self->array->columns
-        + labels[k].column];
-  cloth_dot_colour_model_learn (&self->colours, dots, n, said);
-}
-
-/* FALSE: the picture has no colours, and an error was posted. */
-static gboolean
-gst_dot_label_view (GstDotLabel * self, const GstClothFilterFrame * frame,
-    ClothDotImage * image)
-{
-  const GstVideoFrame *video = frame->video;
-
-  if (GST_VIDEO_FRAME_N_COMPONENTS (video) < 3) {
-    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
-        ("Dots are told apart by their colours, and these pictures are grey."),
-        ("Film in colour, and leave out what turns the pictures to %s before %s.",
-            GST_VIDEO_INFO_NAME (&video->info), GST_OBJECT_NAME (self)));
-    return FALSE;
-  }
-  image->luma = frame->luma;
-  for (guint k = 0; k < 2; k++)
-    image->chroma[k] = GST_VIDEO_FRAME_COMP_DATA (video, k + 1);
-  image->chroma_stride = GST_VIDEO_FRAME_COMP_STRIDE (video, 1);
-  image->chroma_step = GST_VIDEO_FRAME_COMP_PSTRIDE (video, 1);
-  image->chroma_shift[0] =
-      (gint) GST_VIDEO_FORMAT_INFO_W_SUB (video->info.finfo, 1);
-  image->chroma_shift[1] =
-      (gint) GST_VIDEO_FORMAT_INFO_H_SUB (video->info.finfo, 1);
-  return TRUE;
+  GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+      ("Dots are told apart by their colours, and these pictures are grey."),
+      ("Film in colour, and leave out what turns the pictures to %s before %s.",
+          GST_VIDEO_INFO_NAME (&video->info), GST_OBJECT_NAME (self)));
 }
 
 /* Some labels are found all the same where the print's colours are in another order. */
@@ -441,8 +404,11 @@ gst_dot_label_analyse (GstClothFilter * filter,
   gboolean learn;
   guint n, n_labels, n_labelled = 0;
 
-  if (!gst_dot_label_view (self, frame, &image))
+  if (GST_VIDEO_FRAME_N_COMPONENTS (frame->video) < 3) {
+    gst_dot_label_refuse_grey (self, frame->video);
     return GST_FLOW_ERROR;
+  }
+  gst_dot_label_view (frame->video, &image);
   GST_OBJECT_LOCK (self);
   dot_params = self->dot_params;
   label_params = self->label_params;
@@ -463,8 +429,10 @@ gst_dot_label_analyse (GstClothFilter * filter,
   self->adapted |= n_labelled > 0;
   likelihoods = (const gfloat *) self->likelihoods->data;
   labels = cloth_dot_labeller_get_labels (self->labeller, &n_labels);
+  /* what the labels tell of the camera's colours is for the next picture */
   if (learn)
-    gst_dot_label_learn (self, dots, labels, n);
+    cloth_dot_colour_model_learn (&self->colours, dots, n,
+        (const gint8 *) self->said->data);
 
   g_array_set_size (self->dots, n);
   for (guint k = 0; k < n; k++) {

@@ -1,4 +1,5 @@
-/* The colours of dots as one camera sees them, from a picture of the print.
+/* The colours of dots as one camera sees them, from a picture of the print; and what that
+ * picture and those of the film have in common.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "elements/gstdotlabelchart.h"
@@ -11,6 +12,40 @@
 #define MAX_PX 16384
 /* The first look may know the colours badly; what it teaches finds more dots. */
 #define LOOKS 2
+
+void
+gst_dot_label_view (const GstVideoFrame * frame, ClothDotImage * image)
+{
+  image->luma.data = GST_VIDEO_FRAME_COMP_DATA (frame, 0);
+  image->luma.stride = GST_VIDEO_FRAME_COMP_STRIDE (frame, 0);
+  image->luma.width = GST_VIDEO_FRAME_WIDTH (frame);
+  image->luma.height = GST_VIDEO_FRAME_HEIGHT (frame);
+  for (guint k = 0; k < 2; k++)
+    image->chroma[k] = GST_VIDEO_FRAME_COMP_DATA (frame, k + 1);
+  image->chroma_stride = GST_VIDEO_FRAME_COMP_STRIDE (frame, 1);
+  image->chroma_step = GST_VIDEO_FRAME_COMP_PSTRIDE (frame, 1);
+  image->chroma_shift[0] =
+      (gint) GST_VIDEO_FORMAT_INFO_W_SUB (frame->info.finfo, 1);
+  image->chroma_shift[1] =
+      (gint) GST_VIDEO_FORMAT_INFO_H_SUB (frame->info.finfo, 1);
+}
+
+guint
+gst_dot_label_say (const ClothDotLabeller * labeller, const ClothMArray * array,
+    gint8 * said)
+{
+  guint n, n_labelled = 0;
+  const ClothDotLabel *labels = cloth_dot_labeller_get_labels (labeller, &n);
+
+  for (guint k = 0; k < n; k++) {
+    const gboolean known = labels[k].column >= 0;
+
+    n_labelled += known;
+    said[k] = known ? (gint8) array->matrix[labels[k].row * array->columns
+        + labels[k].column] : -1;
+  }
+  return n_labelled;
+}
 
 GstSample *
 gst_dot_label_chart_load (const gchar * path, GError ** error)
@@ -52,28 +87,16 @@ convert (GstSample * chart, const GstVideoInfo * film, GstVideoInfo * info)
   return buffer;
 }
 
-/* Labels the dots by @colours, as sure as these make it; then they say in @said which
- * colour each has. Returns how many have a label. */
+/* Labels the dots by @colours, as sure as these make it. */
 static guint
 label (ClothDotLabeller * labeller, const ClothMArray * array,
     const ClothDotLabelParams * params, const ClothDotColourModel * colours,
     const ClothDot * dots, guint n, gfloat * likelihoods, gint8 * said)
 {
-  const ClothDotLabel *labels;
-  guint n_labels, n_labelled = 0;
-
   cloth_dot_colour_model_classify (colours, dots, n, likelihoods);
   cloth_dot_labeller_reset (labeller);
   cloth_dot_labeller_run (labeller, params, dots, n, likelihoods);
-  labels = cloth_dot_labeller_get_labels (labeller, &n_labels);
-  for (guint k = 0; k < n; k++) {
-    const gboolean known = k < n_labels && labels[k].column >= 0;
-
-    n_labelled += known;
-    said[k] = known ? (gint8) array->matrix[labels[k].row * array->columns
-        + labels[k].column] : -1;
-  }
-  return n_labelled;
+  return gst_dot_label_say (labeller, array, said);
 }
 
 static guint
@@ -121,7 +144,7 @@ gst_dot_label_chart_learn (GstSample * chart, const ClothMArray * array,
   g_autoptr (GstBuffer) buffer = convert (chart, film, &info);
   GstVideoFrame frame;
   ClothDotDetector *detector;
-  ClothDotImage image = { 0 };
+  ClothDotImage image;
   const ClothDot *dots;
   guint n, n_labelled;
 
@@ -130,14 +153,7 @@ gst_dot_label_chart_learn (GstSample * chart, const ClothMArray * array,
         "the picture can't be converted to the film's colours");
     return FALSE;
   }
-  image.luma.data = GST_VIDEO_FRAME_COMP_DATA (&frame, 0);
-  image.luma.stride = GST_VIDEO_FRAME_COMP_STRIDE (&frame, 0);
-  image.luma.width = info.width;
-  image.luma.height = info.height;
-  for (guint k = 0; k < 2; k++)
-    image.chroma[k] = GST_VIDEO_FRAME_COMP_DATA (&frame, k + 1);
-  image.chroma_stride = GST_VIDEO_FRAME_COMP_STRIDE (&frame, 1);
-  image.chroma_step = 1;
+  gst_dot_label_view (&frame, &image);
   detector = cloth_dot_detector_new ();
   cloth_dot_detector_run (detector, dot_params, &image, CLOTH_SIMD_BEST);
   dots = cloth_dot_detector_get_dots (detector, &n);

@@ -1,4 +1,5 @@
-/* The colours of dots as one camera sees them, from a picture of the print.
+/* The colours of dots as one camera sees them, from a picture of the print; and what that
+ * picture and those of the film have in common.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -10,6 +11,13 @@
 #include "gst/vision/lattice.h"
 
 G_BEGIN_DECLS
+
+/* A picture in colour, luma and chroma in planes. */
+void gst_dot_label_view (const GstVideoFrame * frame, ClothDotImage * image);
+/* Which colour the label of each dot says that it has, -1 without a label. Returns how many
+ * have one. */
+guint gst_dot_label_say (const ClothDotLabeller * labeller,
+    const ClothMArray * array, gint8 * said);
 
 GstSample *gst_dot_label_chart_load (const gchar * path, GError ** error);
 /* Learns from the dots of @chart that can be labelled. @colours holds those of the print
