@@ -54,6 +54,9 @@ cloth_triangulator_set_parameters (ClothTriangulator * self,
 {
   self->parameters = *parameters;
   self->parameters.min_views = MAX (parameters->min_views, 2);
+  self->limits.error = parameters->threshold * parameters->threshold;
+  self->limits.error_px = parameters->max_error > 0. ?
+      parameters->max_error * parameters->max_error : INFINITY;
 }
 
 /**
@@ -88,8 +91,8 @@ cloth_triangulator_set_simd (ClothTriangulator * self, ClothSimd simd)
 }
 
 /* One observation with the lens model's own undistortion, where the kernel's short Newton
- * iteration did not do. */
-static void
+ * iteration did not do. Returns whether it counts as seen. */
+static gboolean
 load_one (const TriangulateCamera * camera, const gdouble * const *in,
     guint lane, gdouble error_floor, gdouble * obs)
 {
@@ -111,12 +114,13 @@ load_one (const TriangulateCamera * camera, const gdouble * const *in,
   if (!(cxx > 0. && cyy > 0. && cxx * cyy - cxy * cxy > 0.)
       || !(sxx > 0. && det > 0. && isfinite (det) && isfinite (place[0])
           && isfinite (place[1])))
-    return;
+    return FALSE;
   obs[OBS_X * BLOCK + lane] = place[0];
   obs[OBS_Y * BLOCK + lane] = place[1];
   obs[OBS_IXX * BLOCK + lane] = syy / det;
   obs[OBS_IXY * BLOCK + lane] = -sxy / det;
   obs[OBS_IYY * BLOCK + lane] = sxx / det;
+  return TRUE;
 }
 
 /* Fills obs of one block; views: those that saw anything. */
@@ -131,7 +135,7 @@ load_block (ClothTriangulator * self, Scratch * scratch, guint first,
     const TriangulateCamera *camera = &self->cameras[i];
     gdouble *obs = scratch->obs + i * (N_OBS * BLOCK);
     const gdouble *in[N_IN] = { NULL, NULL, ones, zeros, ones };
-    guint again, seen = 0;
+    guint again, seen;
 
     if (view->x == NULL || view->y == NULL)
       continue;
@@ -150,42 +154,16 @@ load_block (ClothTriangulator * self, Scratch * scratch, guint first,
         in[k] = scratch->pad + k * BLOCK;
       }
     }
-    again = self->kernel->load (camera, in, self->parameters.error_floor, obs);
+    seen = self->kernel->load (camera, in, self->parameters.error_floor, obs,
+        &again);
     for (guint l = 0; again != 0; l++, again >>= 1)
-      if (again & 1)
-        load_one (camera, in, l, self->parameters.error_floor, obs);
-    for (guint l = 0; l < BLOCK; l++)
-      seen |= obs[OBS_IXX * BLOCK + l] > 0.;
+      if (again & 1 && !load_one (camera, in, l,
+              self->parameters.error_floor, obs))
+        seen &= ~(1u << l);
     if (seen)
       views[n_views++] = (guint8) i;
   }
   return n_views;
-}
-
-/* What a solution is worth, but for the agreement of its views. */
-static ClothPointReason
-judge (const gdouble * out)
-{
-  gdouble depth = out[OUT_DEPTH * BLOCK];
-  gdouble trace = out[OUT_XX * BLOCK] + out[OUT_YY * BLOCK] +
-      out[OUT_ZZ * BLOCK];
-
-  /* a standard deviation of half the distance is no measurement */
-  if (out[OUT_SINGULAR * BLOCK] != 0. || !(trace < 0.25 * depth * depth))
-    return CLOTH_POINT_PARALLEL;
-  if (!(depth > 0.))
-    return CLOTH_POINT_BEHIND;
-  return CLOTH_POINT_FINE;
-}
-
-static gboolean
-agrees (const ClothTriangulator * self, const gdouble * out)
-{
-  gdouble threshold = self->parameters.threshold;
-  gdouble max_error = self->parameters.max_error;
-
-  return out[OUT_WORST * BLOCK] <= threshold * threshold && (max_error <= 0.
-      || out[OUT_WORST_PX * BLOCK] <= max_error * max_error);
 }
 
 /* The view with the greatest normalised error from Huber's estimate, which several
@@ -197,16 +175,21 @@ worst_by_huber (ClothTriangulator * self, Scratch * scratch,
   gdouble *weighted = scratch->weighted, *out = scratch->trial;
   guint worst = 0;
 
+  /* in the first column; the others saw nothing */
   for (guint i = 0; i < n_views; i++)
-    for (guint j = 0; j < N_OBS; j++)
-      weighted[(views[i] * N_OBS + j) * BLOCK] =
-          obs[(views[i] * N_OBS + j) * BLOCK];
+    for (guint j = 0; j < N_OBS; j++) {
+      gdouble *row = weighted + (views[i] * N_OBS + j) * BLOCK;
+
+      memset (row, 0, BLOCK * sizeof (gdouble));
+      row[0] = obs[(views[i] * N_OBS + j) * BLOCK];
+    }
 
   /* iteratively re-weighted least squares (Huber, Robust Statistics, 7.8) */
   for (guint step = 0; step < 20; step++) {
     gdouble greatest = -1.;
 
-    self->kernel->solve_one (self->cameras, weighted, views, n_views, out);
+    self->kernel->solve (self->cameras, weighted, views, n_views,
+        &self->limits, out);
     for (guint i = 0; i < n_views; i++) {
       const gdouble *P = self->cameras[views[i]].P;
       const gdouble *o = obs + views[i] * (N_OBS * BLOCK);
@@ -236,24 +219,42 @@ worst_by_huber (ClothTriangulator * self, Scratch * scratch,
   return worst;
 }
 
+/* Solves a point without view first, without view first + 1 and so on, each in a column
+ * of scratch->trial. */
+static void
+try_without (ClothTriangulator * self, Scratch * scratch, const gdouble * obs,
+    const guint8 * views, guint n_views, guint first)
+{
+  for (guint i = 0; i < n_views; i++) {
+    for (guint j = 0; j < N_OBS; j++) {
+      guint row = (views[i] * N_OBS + j) * BLOCK;
+
+      for (guint l = 0; l < BLOCK; l++)
+        scratch->weighted[row + l] = first + l == i || first + l >= n_views ?
+            0. : obs[row];
+    }
+  }
+  self->kernel->solve (self->cameras, scratch->weighted, views, n_views,
+      &self->limits, scratch->trial);
+}
+
 /* Looks for the views that disagree. On success out holds the solution of the rest, and
  * views those that are left. */
 static ClothPointReason
 leave_out (ClothTriangulator * self, Scratch * scratch, const gdouble * obs,
     guint8 * views, guint * n_views, gdouble * out)
 {
-  gdouble *trial = scratch->trial;
   guint n_seen = *n_views;
-  guint8 rest[CLOTH_TRIANGULATE_MAX_CAMERAS];
 
   while (*n_views > 2) {
     guint n = *n_views, best = n, n_agreeing = 0, worst;
 
     for (guint i = 0; i < n; i++) {
-      memcpy (rest, views, i);
-      memcpy (rest + i, views + i + 1, n - 1 - i);
-      self->kernel->solve_one (self->cameras, obs, rest, n - 1, trial);
-      if (judge (trial) != CLOTH_POINT_FINE || !agrees (self, trial))
+      const gdouble *trial = scratch->trial + i % BLOCK;
+
+      if (i % BLOCK == 0)
+        try_without (self, scratch, obs, views, n, i);
+      if (trial[OUT_REASON * BLOCK] != CLOTH_POINT_FINE)
         continue;
       n_agreeing++;
       if (best == n || trial[OUT_CHI2 * BLOCK] < out[OUT_CHI2 * BLOCK]) {
@@ -332,9 +333,7 @@ finish_point (ClothTriangulator * self, Scratch * scratch, guint point,
   if (n < self->parameters.min_views) {
     reason = CLOTH_POINT_FEW_VIEWS;
   } else {
-    reason = judge (out);
-    if (reason == CLOTH_POINT_FINE && !agrees (self, out))
-      reason = CLOTH_POINT_DISAGREE;
+    reason = (ClothPointReason) out[OUT_REASON * BLOCK];
     if (reason != CLOTH_POINT_FINE && n > 2) {
       if (leave_out (self, scratch, obs, seen, &n, out) == CLOTH_POINT_FINE)
         reason = n < self->parameters.min_views ? CLOTH_POINT_FEW_VIEWS :
@@ -342,20 +341,6 @@ finish_point (ClothTriangulator * self, Scratch * scratch, guint point,
     }
   }
   store_point (self, point, reason, out, seen, n, n_seen);
-}
-
-/* Whether all points of a block were seen by all of its views and agree. */
-static gboolean
-block_is_clean (const ClothTriangulator * self, const gdouble * out,
-    guint n_views)
-{
-  guint bad = n_views < self->parameters.min_views;
-
-  for (guint l = 0; l < BLOCK; l++)
-    bad |= (guint) (out[OUT_COUNT * BLOCK + l] != n_views)
-        | (guint) (judge (out + l) != CLOTH_POINT_FINE)
-        | (guint) ! agrees (self, out + l);
-  return !bad;
 }
 
 static void
@@ -394,14 +379,14 @@ run_blocks (gpointer data, guint begin, guint end, guint worker)
 
   for (guint b = begin; b < end; b++) {
     guint first = b * BLOCK;
-    guint n = MIN (self->result.n_points - first, BLOCK), n_views;
+    guint n = MIN (self->result.n_points - first, BLOCK), n_views, good = 0;
 
     n_views = load_block (self, scratch, first, views);
     if (n_views > 1)
-      self->kernel->solve (self->cameras, scratch->obs, views, n_views,
-          scratch->out);
-    if (n == BLOCK && n_views > 1
-        && block_is_clean (self, scratch->out, n_views)) {
+      good = self->kernel->solve (self->cameras, scratch->obs, views, n_views,
+          &self->limits, scratch->out);
+    if (n == BLOCK && good == (1u << BLOCK) - 1
+        && n_views >= self->parameters.min_views) {
       store_block (self, first, scratch->out, views, n_views);
       continue;
     }

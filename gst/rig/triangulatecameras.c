@@ -66,7 +66,7 @@ static void
 fit_inverse (TriangulateCamera * self)
 {
   enum
-  { SIDE = 16, N = SIDE * SIDE, RADIAL = 6, ALL = 10 };
+  { SIDE = 16, N = SIDE * SIDE, RADIAL = 7, TANGENTIAL = 4, ALL = 15 };
   const ClothCamera *camera = &self->camera;
   const gdouble *k = self->k;
   gboolean fisheye = self->lens == CLOTH_LENS_FISHEYE;
@@ -116,9 +116,11 @@ fit_inverse (TriangulateCamera * self)
         row[j] = row[j - 1] * q;
       if (n > RADIAL) {
         row[RADIAL] = d * t;
-        row[RADIAL + 1] = d * t * q;
-        row[RADIAL + 2] = (axis ? k[2] : k[3]) * q;
-        row[RADIAL + 3] = row[RADIAL + 2] * q;
+        row[RADIAL + TANGENTIAL] = (axis ? k[2] : k[3]) * q;
+        for (guint j = RADIAL + 1; j < RADIAL + TANGENTIAL; j++) {
+          row[j] = row[j - 1] * q;
+          row[j + TANGENTIAL] = row[j + TANGENTIAL - 1] * q;
+        }
       }
     }
   }
@@ -152,7 +154,7 @@ new_empty (guint n_cameras, GError ** error)
   self = g_new0 (ClothTriangulator, 1);
   self->n_cameras = n_cameras;
   self->cameras = g_new0 (TriangulateCamera, n_cameras);
-  self->parameters = parameters;
+  cloth_triangulator_set_parameters (self, &parameters);
   self->kernel = cloth_triangulate_kernel (CLOTH_SIMD_BEST);
   return self;
 }

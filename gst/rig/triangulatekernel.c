@@ -15,9 +15,10 @@
 /* A pivot this small against the trace: the distance is not determined. */
 #define SINGULAR 1e-13
 /* Newton steps that undistort, and the error before the last of them: it leaves its
- * square, and the chord step after it the cube. */
+ * square; of a Brown lens the chord step after it leaves the cube. */
 #define MAX_NEWTON 6
 #define LAST_NEWTON 1e-5
+#define LAST_NEWTON_FISHEYE 1e-7
 
 /* Every width is the same source, so every width gives the same bits: there are no sums
  * over lanes, and products are fused with sums where the source says so and nowhere
@@ -47,7 +48,7 @@
 #undef NAME
 #undef TARGET
 
-static const TriangulateKernel scalar = { load_1, solve_1, solve_one_1 };
+static const TriangulateKernel scalar = { load_1, solve_1 };
 
 #if defined (__x86_64__) && defined (__GNUC__)
 #include <immintrin.h>
@@ -128,11 +129,9 @@ same_8 (__m512d a)
 #include "gst/rig/triangulatekernel.inc.c"
 #undef TARGET
 
-static const TriangulateKernel fused = {
-  load_1_fma, solve_1_fma, solve_one_1_fma
-};
-static const TriangulateKernel avx2 = { load_4, solve_4, solve_one_1_fma };
-static const TriangulateKernel avx512 = { load_8, solve_8, solve_one_1_fma };
+static const TriangulateKernel fused = { load_1_fma, solve_1_fma };
+static const TriangulateKernel avx2 = { load_4, solve_4 };
+static const TriangulateKernel avx512 = { load_8, solve_8 };
 #endif
 
 const TriangulateKernel *

@@ -21,9 +21,9 @@ typedef struct {
   ClothLens lens;
   gdouble k[8];
   /* First guess of the true place d·r + s·t from the distorted one, d, with
-   * t = (k[3], k[2]) and q = d²: r = 1 + a₀q + … + a₅q⁶ + (b₀ + b₁q)·(d·t),
-   * s = c₀q + c₁q²; of a fisheye the ratio of angle to radius, r without b. */
-  gdouble inverse[10];
+   * t = (k[3], k[2]) and q = d²: r = 1 + a₀q + … + a₆q⁷ + (b₀ + … + b₃q³)·(d·t),
+   * s = c₀q + … + c₃q⁴; of a fisheye the ratio of angle to radius, r without b. */
+  gdouble inverse[15];
   /* Newton's result is trusted up to this square of the radius, of a fisheye of the
    * angle */
   gdouble max_r2;
@@ -37,26 +37,31 @@ enum { OBS_X, OBS_Y, OBS_IXX, OBS_IXY, OBS_IYY, N_OBS };
 /* Planes of a view's input in px. */
 enum { IN_U, IN_V, IN_XX, IN_XY, IN_YY, N_IN };
 
-/* Results of a block in the moved and scaled world; WORST: the greatest normalised error
- * of a view against the others, squared, in σ²; WORST_PX: the greatest reprojection
- * error, squared, px²; DEPTH: the least depth; COUNT: views; FLAG: below. */
+/* Results of a block in the moved and scaled world; REASON: a #ClothPointReason, of a
+ * point that two or more views saw. */
 enum {
   OUT_X, OUT_Y, OUT_Z, OUT_XX, OUT_XY, OUT_XZ, OUT_YY, OUT_YZ, OUT_ZZ,
-  OUT_CHI2, OUT_WORST, OUT_WORST_PX, OUT_DEPTH, OUT_COUNT, OUT_SINGULAR, N_OUT
+  OUT_CHI2, OUT_REASON, N_OUT
 };
+
+/* Squares of the normalised error of a view against the others, σ², and of a view's
+ * reprojection error, px², above which the views disagree. */
+typedef struct {
+  gdouble error, error_px;
+} TriangulateLimits;
 
 typedef struct {
   /* Normalises one view of a block: in[N_IN] are BLOCK values each, obs[N_OBS][BLOCK].
-   * Returns a bit for each point whose lens must be done again by other means. */
+   * Returns a bit for each point that the view saw; again: one for each whose lens must
+   * be done again by other means. */
   guint (*load) (const TriangulateCamera * camera, const gdouble * const *in,
-      gdouble error_floor, gdouble * obs);
+      gdouble error_floor, gdouble * obs, guint * again);
   /* Solves a block: obs[n_cameras][N_OBS][BLOCK], views: the n_views cameras to use,
-   * out[N_OUT][BLOCK]. */
-  void (*solve) (const TriangulateCamera * cameras, const gdouble * obs,
-      const guint8 * views, guint n_views, gdouble * out);
-  /* Solves one point, that of column 0 of every row. */
-  void (*solve_one) (const TriangulateCamera * cameras, const gdouble * obs,
-      const guint8 * views, guint n_views, gdouble * out);
+   * out[N_OUT][BLOCK]. Returns a bit for each point that all of the views saw and on
+   * which they agree. */
+  guint (*solve) (const TriangulateCamera * cameras, const gdouble * obs,
+      const guint8 * views, guint n_views, const TriangulateLimits * limits,
+      gdouble * out);
 } TriangulateKernel;
 
 const TriangulateKernel *cloth_triangulate_kernel (ClothSimd simd);

@@ -3,36 +3,39 @@
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 
-/* Distorts (x, y) by a Brown lens into (*dx, *dy); J, if asked for: its derivative,
- * symmetric: xx, xy, yy. */
-TARGET INLINE void
-NAME (brown) (const TriangulateCamera * camera, V x, V y, V * dx, V * dy,
-    V J[3])
+/* One step of Newton's method towards the place (x, y) that a Brown lens brings to
+ * (dx, dy). J: the derivative of distortion where it starts, symmetric: xx, xy, yy;
+ * inverse: 1 over J's determinant; iden: 1 over the denominator of the radial term.
+ * Returns the square of the error where it starts. */
+TARGET INLINE V
+NAME (newton_brown) (const TriangulateCamera * camera, V dx, V dy, V * x_io,
+    V * y_io, V J[3], V * inverse, V * iden)
 {
   const gdouble * k = camera->k;
-  V xx = x * x, q = FMA (y, y, xx);
+  V x = *x_io, y = *y_io, xx = x * x, q = FMA (y, y, xx), ex, ey, d;
   /* twice the product with the direction of the tangential distortion */
   V t = FMA (2. * k[3], x, VECTOR (2. * k[2]) * y);
-  V c = FMA (q, FMA (q, FMA (q, k[4], k[1]), k[0]), 1.), iden, both;
+  V c = FMA (q, FMA (q, FMA (q, k[4], k[1]), k[0]), 1.), both;
+  /* twice the derivative of c by q */
+  V dc = FMA (q, FMA (q, 6. * k[4], 4. * k[1]), 2. * k[0]);
 
+  *iden = VECTOR (1.);
   if (camera->lens == CLOTH_LENS_BROWN8) {
-    iden = 1. / FMA (q, FMA (q, FMA (q, k[7], k[6]), k[5]), 1.);
-    c = c * iden;
+    *iden = 1. / FMA (q, FMA (q, FMA (q, k[7], k[6]), k[5]), 1.);
+    c = c * *iden;
+    dc = FNMA (c, FMA (q, FMA (q, 6. * k[7], 4. * k[6]), 2. * k[5]),
+        dc) * *iden;
   }
   both = c + t;
-  *dx = FMA (x, both, q * k[3]);
-  *dy = FMA (y, both, q * k[2]);
-  if (J != NULL) {
-    /* twice the derivative by q */
-    V dc = FMA (q, FMA (q, 6. * k[4], 4. * k[1]), 2. * k[0]);
-
-    if (camera->lens == CLOTH_LENS_BROWN8)
-      dc = FNMA (c, FMA (q, FMA (q, 6. * k[7], 4. * k[6]), 2. * k[5]),
-          dc) * iden;
-    J[0] = FMA (4. * k[3], x, FMA (xx, dc, both));
-    J[1] = FMA (FMA (y, dc, 2. * k[2]), x, VECTOR (2. * k[3]) * y);
-    J[2] = FMA (FMA (y, dc, 4. * k[2]), y, both);
-  }
+  ex = FNMA (x, both, FNMA (k[3], q, dx));
+  ey = FNMA (y, both, FNMA (k[2], q, dy));
+  J[0] = FMA (4. * k[3], x, FMA (xx, dc, both));
+  J[1] = FMA (FMA (y, dc, 2. * k[2]), x, VECTOR (2. * k[3]) * y);
+  J[2] = FMA (FMA (y, dc, 4. * k[2]), y, both);
+  *inverse = d = 1. / FNMA (J[1], J[1], J[0] * J[2]);
+  *x_io = FMA (FNMA (J[1], ey, J[2] * ex), d, x);
+  *y_io = FMA (FNMA (J[1], ex, J[0] * ey), d, y);
+  return FMA (ex, ex, ey * ey);
 }
 
 /* Undistorts the places (dx, dy) by a Brown lens; J: the derivative of distortion there.
@@ -43,32 +46,45 @@ NAME (undistort_brown) (const TriangulateCamera * camera, M seen, V dx, V dy,
 {
   const gdouble * p = camera->inverse, *k = camera->k;
   V q = FMA (dx, dx, dy * dy), t = FMA (k[3], dx, k[2] * dy);
-  V radial = FMA (q, FMA (q, FMA (q, FMA (q, FMA (q, FMA (q, p[5], p[4]), p[3]),
-                  p[2]), p[1]), p[0]), FMA (t, FMA (q, p[7], p[6]), 1.));
-  V shift = FMA (q, p[9], p[8]) * q;
+  V radial = FMA (q, FMA (q, FMA (q, FMA (q, FMA (q, FMA (q, FMA (q, p[6],
+                              p[5]), p[4]), p[3]), p[2]), p[1]), p[0]),
+      FMA (t, FMA (q, FMA (q, FMA (q, p[10], p[9]), p[8]), p[7]), 1.));
+  V shift = FMA (q, FMA (q, FMA (q, p[14], p[13]), p[12]), p[11]) * q;
   V x = FMA (dx, radial, k[3] * shift), y = FMA (dy, radial, k[2] * shift);
-  V scale = VECTOR (0.), ex, ey;
-  M open = seen;
+  V scale, iden, c, den, both, ex, ey;
+  /* also open when it is NaN */
+  M open = seen & ~GREATER (LAST_NEWTON * LAST_NEWTON,
+      NAME (newton_brown) (camera, dx, dy, &x, &y, J, &scale, &iden));
 
-  J[0] = J[1] = J[2] = VECTOR (0.);
-  for (gint step = 0; step < MAX_NEWTON && BITS (open); step++) {
-    V F[3], d;
+  for (gint step = 1; step < MAX_NEWTON && BITS (open); step++) {
+    V nx = x, ny = y, nJ[3], nscale, niden;
+    V error = NAME (newton_brown) (camera, dx, dy, &nx, &ny, nJ, &nscale,
+        &niden);
 
-    NAME (brown) (camera, x, y, &ex, &ey, F);
-    ex = dx - ex;
-    ey = dy - ey;
-    d = 1. / FNMA (F[1], F[1], F[0] * F[2]);
-    x = CHOOSE (open, FMA (FNMA (F[1], ey, F[2] * ex), d, x), x);
-    y = CHOOSE (open, FMA (FNMA (F[1], ex, F[0] * ey), d, y), y);
-    scale = CHOOSE (open, d, scale);
+    x = CHOOSE (open, nx, x);
+    y = CHOOSE (open, ny, y);
+    scale = CHOOSE (open, nscale, scale);
+    iden = CHOOSE (open, niden, iden);
     for (gint i = 0; i < 3; i++)
-      J[i] = CHOOSE (open, F[i], J[i]);
-    /* also open when it is NaN */
-    open &= ~GREATER (LAST_NEWTON * LAST_NEWTON, FMA (ex, ex, ey * ey));
+      J[i] = CHOOSE (open, nJ[i], J[i]);
+    open &= ~GREATER (LAST_NEWTON * LAST_NEWTON, error);
   }
-  NAME (brown) (camera, x, y, &ex, &ey, NULL);
-  ex = dx - ex;
-  ey = dy - ey;
+  /* The error here, times the denominator, goes through the last step's matrix. */
+  q = FMA (x, x, y * y);
+  t = FMA (2. * k[3], x, VECTOR (2. * k[2]) * y);
+  c = FMA (q, FMA (q, FMA (q, k[4], k[1]), k[0]), 1.);
+  ex = FNMA (k[3], q, dx);
+  ey = FNMA (k[2], q, dy);
+  if (camera->lens == CLOTH_LENS_BROWN8) {
+    den = FMA (q, FMA (q, FMA (q, k[7], k[6]), k[5]), 1.);
+    both = FMA (t, den, c);
+    ex = FNMA (x, both, ex * den) * iden;
+    ey = FNMA (y, both, ey * den) * iden;
+  } else {
+    both = c + t;
+    ex = FNMA (x, both, ex);
+    ey = FNMA (y, both, ey);
+  }
   *x_out = x = FMA (FNMA (J[1], ey, J[2] * ex), scale, x);
   *y_out = y = FMA (FNMA (J[1], ex, J[0] * ey), scale, y);
   return seen & (open | ~(GREATER (scale, 0.) & GREATER (camera->max_r2,
@@ -83,30 +99,24 @@ NAME (undistort_fisheye) (const TriangulateCamera * camera, M seen, V dx, V dy,
     V * x, V * y, V J[3])
 {
   const gdouble * p = camera->inverse, *k = camera->k;
-  V q = FMA (dx, dx, dy * dy), one = VECTOR (1.), w, e, u, s, c, m, along;
-  V ratio = FMA (q, FMA (q, FMA (q, FMA (q, FMA (q, FMA (q, p[5], p[4]), p[3]),
-                  p[2]), p[1]), p[0]), 1.);
-  V scale = VECTOR (0.), slope = VECTOR (0.);
+  V q = FMA (dx, dx, dy * dy), w, e, u, s, c, m, d, along;
+  V ratio = FMA (q, FMA (q, FMA (q, FMA (q, FMA (q, FMA (q, FMA (q, p[6],
+                              p[5]), p[4]), p[3]), p[2]), p[1]), p[0]), 1.);
+  V slope = VECTOR (0.);
   M open = seen;
 
   for (gint step = 0; step < MAX_NEWTON && BITS (open); step++) {
-    V f, d;
+    V f;
 
     w = q * ratio * ratio;
     e = FNMA (ratio, FMA (w, FMA (w, FMA (w, FMA (w, k[3], k[2]), k[1]), k[0]),
             1.), 1.);
     f = FMA (w, FMA (w, FMA (w, FMA (w, 9. * k[3], 7. * k[2]), 5. * k[1]),
             3. * k[0]), 1.);
-    d = 1. / f;
-    ratio = CHOOSE (open, FMA (e, d, ratio), ratio);
-    scale = CHOOSE (open, d, scale);
+    ratio = CHOOSE (open, ratio + e / f, ratio);
     slope = CHOOSE (open, f, slope);
-    open &= ~GREATER (LAST_NEWTON * LAST_NEWTON, e * e);
+    open &= ~GREATER (LAST_NEWTON_FISHEYE * LAST_NEWTON_FISHEYE, e * e);
   }
-  w = q * ratio * ratio;
-  e = FNMA (ratio, FMA (w, FMA (w, FMA (w, FMA (w, k[3], k[2]), k[1]), k[0]),
-          1.), 1.);
-  ratio = FMA (e, scale, ratio);
   /* sine over angle and cosine of half the angle by their series; it is below π/4 */
   w = q * ratio * ratio;
   u = 0.25 * w;
@@ -121,23 +131,27 @@ NAME (undistort_fisheye) (const TriangulateCamera * camera, M seen, V dx, V dy,
   /* cosine of the whole, then tangent over distorted radius */
   m = FNMA (u * s, s, c * c);
   e = ratio * s * c;
-  scale = e / m;
-  *x = dx * scale;
-  *y = dy * scale;
+  /* one division for three; in the very middle the last term is 0 */
+  q = CHOOSE (GREATER (q, 1e-30), q, 1.);
+  d = 1. / (m * e * q);
+  s = d * q;
+  u = e * e * s;
+  *x = dx * u;
+  *y = dy * u;
   /* across the radius and along it */
-  s = m / e;
+  s = m * m * s;
   along = slope * m * m;
-  along = (along - s) / CHOOSE (GREATER (q, 0.), q, one);
+  along = (along - s) * (d * m * e);
   J[0] = FMA (along * dx, dx, s);
   J[1] = along * dx * dy;
   J[2] = FMA (along * dy, dy, s);
   return seen & (open | ~(GREATER (slope, 0.) & GREATER (camera->max_r2, w)));
 }
 
-/* From px to normalised coordinates. Returns where the lens has to be done again. */
+/* From px to normalised coordinates. Returns what was seen. */
 TARGET INLINE M
 NAME (load_group) (const TriangulateCamera * camera, const gdouble * const *in,
-    gdouble error_floor, gdouble * obs)
+    gdouble error_floor, gdouble * obs, M * again)
 {
   V u = LOAD (in[IN_U]), v = LOAD (in[IN_V]), zero = VECTOR (0.);
   V cxx = LOAD (in[IN_XX]) + error_floor, cxy = LOAD (in[IN_XY]);
@@ -149,7 +163,6 @@ NAME (load_group) (const TriangulateCamera * camera, const gdouble * const *in,
   /* a − a is 0 unless a is infinite or NaN */
   M seen = GREATER ((u - u) + (v - v) + (det - det), -1.) & GREATER (cxx, 0.)
       & GREATER (cyy, 0.) & GREATER (det, 0.);
-  M again = seen & ~seen;
   V ixx, ixy, iyy, idet = 1. / CHOOSE (seen, det, 1.);
 
   /* information in px, then of coordinates in which K is the identity */
@@ -161,15 +174,16 @@ NAME (load_group) (const TriangulateCamera * camera, const gdouble * const *in,
   ixy = camera->fx * FMA (camera->skew, ixx, camera->fy * ixy);
   ixx = camera->fx * camera->fx * ixx;
 
+  *again = seen & ~seen;
   if (camera->lens != CLOTH_LENS_NONE) {
     V J[3], a, b, c;
 
     x = CHOOSE (seen, x, zero);
     y = CHOOSE (seen, y, zero);
     if (camera->lens == CLOTH_LENS_FISHEYE)
-      again = NAME (undistort_fisheye) (camera, seen, x, y, &x, &y, J);
+      *again = NAME (undistort_fisheye) (camera, seen, x, y, &x, &y, J);
     else
-      again = NAME (undistort_brown) (camera, seen, x, y, &x, &y, J);
+      *again = NAME (undistort_brown) (camera, seen, x, y, &x, &y, J);
     /* Jᵀ·I·J */
     a = FMA (ixx, J[0], ixy * J[1]);
     b = FMA (ixx, J[1], ixy * J[2]);
@@ -184,24 +198,27 @@ NAME (load_group) (const TriangulateCamera * camera, const gdouble * const *in,
   STORE (obs + OBS_IXX * BLOCK, CHOOSE (seen, ixx, zero));
   STORE (obs + OBS_IXY * BLOCK, CHOOSE (seen, ixy, zero));
   STORE (obs + OBS_IYY * BLOCK, CHOOSE (seen, iyy, zero));
-  return again;
+  return seen;
 }
 
 TARGET static guint
 NAME (load) (const TriangulateCamera * camera, const gdouble * const *in,
-    gdouble error_floor, gdouble * obs)
+    gdouble error_floor, gdouble * obs, guint * again)
 {
-  guint again = 0;
+  guint seen = 0;
 
+  *again = 0;
   for (guint offset = 0; offset < BLOCK; offset += LANES) {
     const gdouble *group[N_IN];
+    M open;
 
     for (guint i = 0; i < N_IN; i++)
       group[i] = in[i] + offset;
-    again |= BITS (NAME (load_group) (camera, group, error_floor,
-            obs + offset)) << offset;
+    seen |= BITS (NAME (load_group) (camera, group, error_floor,
+            obs + offset, &open)) << offset;
+    *again |= BITS (open) << offset;
   }
-  return again;
+  return seen;
 }
 
 /* The linear estimate: the null vector of AᵀA, A's rows x·p₃ − p₁ and y·p₃ − p₂ of every
@@ -311,16 +328,18 @@ TARGET INLINE V NAME (dot) (const V a[3], const V b[3])
   return FMA (a[0], b[0], FMA (a[1], b[1], a[2] * b[2]));
 }
 
-/* Linear estimate, Gauss–Newton, covariance, error of each view against the others. */
-TARGET INLINE void
+/* Linear estimate, Gauss–Newton, covariance, error of each view against the others.
+ * Returns where all is well and all views saw the point. */
+TARGET INLINE M
 NAME (solve_group) (const TriangulateCamera * cameras, const gdouble * obs,
-    const guint8 * views, guint n_views, gdouble * out)
+    const guint8 * views, guint n_views, const TriangulateLimits * limits,
+    gdouble * out)
 {
   V zero = VECTOR (0.), one = VECTOR (1.), X[3], C[6], g[3], D[3];
   V i0 = zero, i1 = zero, i2 = zero, l10 = zero, l20 = zero, l21 = zero;
   V chi2 = zero, worst = zero, per = one, worst_px = zero;
-  V depth = VECTOR (G_MAXDOUBLE), count = zero;
-  M open, singular;
+  V depth = VECTOR (G_MAXDOUBLE), count = zero, reason;
+  M open, singular, good;
 
   g[0] = g[1] = g[2] = zero;
   for (guint i = 0; i < n_views; i++) {
@@ -330,6 +349,8 @@ NAME (solve_group) (const TriangulateCamera * cameras, const gdouble * obs,
   }
   open = GREATER (count, 1.);
   singular = open & ~open;
+  if (!BITS (open))
+    return open;
 
   NAME (linear) (cameras, obs, views, n_views, X);
 
@@ -462,26 +483,29 @@ NAME (solve_group) (const TriangulateCamera * cameras, const gdouble * obs,
   for (gint j = 0; j < 6; j++)
     STORE (out + (OUT_XX + j) * BLOCK, C[j]);
   STORE (out + OUT_CHI2 * BLOCK, chi2);
-  STORE (out + OUT_WORST * BLOCK, worst);
-  STORE (out + OUT_WORST_PX * BLOCK, worst_px);
-  STORE (out + OUT_DEPTH * BLOCK, depth);
-  STORE (out + OUT_COUNT * BLOCK, count);
-  STORE (out + OUT_SINGULAR * BLOCK, CHOOSE (singular | open, one, zero));
+
+  /* false when it is NaN */
+  good = GREATER (worst, -1.) & ~(GREATER (worst, limits->error)
+      | GREATER (worst_px, limits->error_px));
+  reason = CHOOSE (good, zero, CLOTH_POINT_DISAGREE);
+  good &= GREATER (depth, 0.);
+  reason = CHOOSE (GREATER (depth, 0.), reason, CLOTH_POINT_BEHIND);
+  /* a standard deviation of half the distance is no measurement */
+  singular |= open | ~GREATER (depth * depth * 0.25, C[0] + C[3] + C[5]);
+  STORE (out + OUT_REASON * BLOCK, CHOOSE (singular, CLOTH_POINT_PARALLEL,
+          reason));
+  return good & ~singular & GREATER (count, n_views - 0.5);
 }
 
-TARGET static void
+TARGET static guint
 NAME (solve) (const TriangulateCamera * cameras, const gdouble * obs,
-    const guint8 * views, guint n_views, gdouble * out)
+    const guint8 * views, guint n_views, const TriangulateLimits * limits,
+    gdouble * out)
 {
-  for (guint offset = 0; offset < BLOCK; offset += LANES)
-    NAME (solve_group) (cameras, obs + offset, views, n_views, out + offset);
-}
+  guint good = 0;
 
-#if LANES == 1
-TARGET static void
-NAME (solve_one) (const TriangulateCamera * cameras, const gdouble * obs,
-    const guint8 * views, guint n_views, gdouble * out)
-{
-  NAME (solve_group) (cameras, obs, views, n_views, out);
+  for (guint offset = 0; offset < BLOCK; offset += LANES)
+    good |= BITS (NAME (solve_group) (cameras, obs + offset, views, n_views,
+            limits, out + offset)) << offset;
+  return good;
 }
-#endif

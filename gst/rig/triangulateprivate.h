@@ -26,6 +26,7 @@ struct _ClothTriangulator
   gdouble origin[3], scale;
 
   ClothTriangulateParameters parameters;
+  TriangulateLimits limits;
   ClothPool *pool;
   const TriangulateKernel *kernel;
 

@@ -238,11 +238,13 @@ test_outliers (void)
   static const struct
   {
     guint n_views, n_wrong;
-  } cases[] = { {3, 1}, {4, 1}, {5, 2}, {8, 1}, {8, 2}, {8, 3} };
+  } cases[] = { {3, 1}, {4, 1}, {5, 2}, {8, 1}, {8, 2}, {8, 3}, {12, 1},
+  {12, 4}
+  };
 
   for (guint c = 0; c < G_N_ELEMENTS (cases); c++) {
     guint n = cases[c].n_views, n_points = 500;
-    guint found = 0, false_point = 0, given_up = 0;
+    guint found = 0, false_point = 0, given_up = 0, exact = 0;
     ClothCamera cameras[MAX_VIEWS];
     ClothRandom random;
     g_auto (Scene) scene = { 0 };
@@ -288,15 +290,19 @@ test_outliers (void)
         /* 0.1 px is 0.13 mm at 2 m; two views see depth three times worse */
         g_assert_cmpfloat (distance (r, k, truth + 3 * k), <, 4e-3);
         g_assert_cmpuint (r->n_views[k] + r->n_rejected[k], ==, n);
+        /* of the others one in some hundred points is beyond 4 σ by chance */
+        if (r->views[k] == (((1u << n) - 1) & ~wrong[k]))
+          exact++;
       }
     }
     g_test_message
-        ("%u views, %u of them wrong: %u of %u points right, %u given "
-        "up, %u with a wrong view", n, cases[c].n_wrong, found, n_points,
-        given_up, false_point);
+        ("%u views, %u of them wrong: %u of %u points right, %u from all "
+        "good views, %u given up, %u with a wrong view", n, cases[c].n_wrong,
+        found, n_points, exact, given_up, false_point);
     g_assert_cmpuint (false_point, <=, n_points / 100);
     g_assert_cmpuint (found, >=, n_points * (n == 3 ? 80 : n == 5 ? 80 : 97)
         / 100);
+    g_assert_cmpuint (exact, >=, found * 97 / 100);
   }
 }
 

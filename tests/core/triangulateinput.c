@@ -21,12 +21,18 @@ test_same_bytes (void)
 
     cloth_random_init (&random, 3);
     scene_init (&scene, MAX_VIEWS, N);
-    for (guint i = 0; i < MAX_VIEWS; i++)
+    for (guint i = 0; i < MAX_VIEWS; i++) {
       make_camera (&cameras[i], i, MAX_VIEWS, (ClothLens) lens);
+      if (lens == CLOTH_LENS_FISHEYE)
+        cameras[i].K[0] = cameras[i].K[4] = 500.;
+    }
     for (guint k = 0; k < N; k++) {
       gdouble X[3];
 
+      /* up to where the lens takes more steps, and farther */
       random_point (&random, X);
+      X[0] += 1.5 * (X[0] - 10.);
+      X[1] += 1.5 * (X[1] + 5.);
       film (&scene, cameras, k, X);
       for (guint i = 0; i < MAX_VIEWS; i++) {
         plane (&scene, i, 0)[k] += 0.1 * cloth_random_gaussian (&random);
