@@ -112,19 +112,29 @@ cloth_rig_find (const ClothRig * rig, const gchar * name)
   return NULL;
 }
 
-G_GNUC_PRINTF (4, 5)
-     static gboolean
-         bad (GError ** error, const gchar * where, const gchar * key,
+/**
+ * cloth_rig_invalid:
+ * @error: (out): set to %CLOTH_RIG_ERROR_VALUE
+ * @where: what @key belongs to, "cameras[0]" for instance; "" for the whole file
+ * @key: the key that is wrong; "" for all of @where
+ * @format: what is wrong and how to mend it
+ *
+ * Returns: %FALSE, so that a check may end with it
+ *
+ * Since: 0.1
+ */
+gboolean
+cloth_rig_invalid (GError ** error, const gchar * where, const gchar * key,
     const gchar * format, ...)
 {
-  va_list args;
-  g_autofree gchar *what = NULL;
+  g_autofree gchar *text = NULL;
+  va_list arguments;
 
-  va_start (args, format);
-  what = g_strdup_vprintf (format, args);
-  va_end (args);
+  va_start (arguments, format);
+  text = g_strdup_vprintf (format, arguments);
+  va_end (arguments);
   g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_VALUE, "%s%s%s: %s",
-      where, *where && *key ? "." : "", key, what);
+      where, *where && *key ? "." : "", key, text);
   return FALSE;
 }
 
@@ -143,20 +153,20 @@ static gboolean
 check_name (const gchar * name, const gchar * where, GError ** error)
 {
   if (!name || !*name)
-    return bad (error, where, "name", "is empty");
+    return cloth_rig_invalid (error, where, "name", "is empty");
   if (!g_utf8_validate (name, -1, NULL))
-    return bad (error, where, "name", "is not valid UTF-8");
+    return cloth_rig_invalid (error, where, "name", "is not valid UTF-8");
   if (strlen (name) > 200)
-    return bad (error, where, "name", "is longer than 200 bytes");
+    return cloth_rig_invalid (error, where, "name", "is longer than 200 bytes");
   for (const gchar * p = name; *p; p++) {
     if (*p == '/' || *p == '\\' || (guchar) * p < 32 || *p == 127)
-      return bad (error, where, "name",
+      return cloth_rig_invalid (error, where, "name",
           "\"%s\" holds a slash or a control character; it must do as the "
           "name of a file", name);
   }
   if (g_str_equal (name, ".") || g_str_equal (name, ".."))
-    return bad (error, where, "name", "\"%s\" can't be the name of a file",
-        name);
+    return cloth_rig_invalid (error, where, "name",
+        "\"%s\" can't be the name of a file", name);
   return TRUE;
 }
 
@@ -185,7 +195,7 @@ check_camera (const ClothCamera * c, const gchar * where, GError ** error)
     return FALSE;
   if (c->width < 1 || c->height < 1 || c->width > CLOTH_RIG_MAX_SIZE
       || c->height > CLOTH_RIG_MAX_SIZE)
-    return bad (error, where, "size",
+    return cloth_rig_invalid (error, where, "size",
         "%d×%d; each must be between 1 and %d", c->width, c->height,
         CLOTH_RIG_MAX_SIZE);
   if (!all_finite (c->K, 9) || !all_finite (c->k, 8) || !all_finite (c->R, 9)
@@ -193,25 +203,27 @@ check_camera (const ClothCamera * c, const gchar * where, GError ** error)
       || !all_finite (c->k_sd, 8) || !all_finite (c->r_sd, 3)
       || !all_finite (c->t_sd, 3) || !isfinite (c->rolling_shutter_s)
       || !isfinite (c->offset_s))
-    return bad (error, where, "", "holds a number that is not finite");
+    return cloth_rig_invalid (error, where, "",
+        "holds a number that is not finite");
   if (!(c->K[0] > 0) || !(c->K[4] > 0))
-    return bad (error, where, "K", "focal lengths %g and %g px; both must be "
-        "positive", c->K[0], c->K[4]);
+    return cloth_rig_invalid (error, where, "K",
+        "focal lengths %g and %g px; both must be positive", c->K[0], c->K[4]);
   if (c->K[3] != 0 || c->K[6] != 0 || c->K[7] != 0 || c->K[8] != 1)
-    return bad (error, where, "K", "must be [[fx, skew, cx], [0, fy, cy], "
-        "[0, 0, 1]]");
+    return cloth_rig_invalid (error, where, "K",
+        "must be [[fx, skew, cx], [0, fy, cy], [0, 0, 1]]");
   for (guint i = n; i < 8; i++) {
     if (c->k[i] != 0)
-      return bad (error, where, "distortion",
+      return cloth_rig_invalid (error, where, "distortion",
           "%s has %u coefficients, but number %u is %g",
           cloth_lens_to_string (c->lens), n, i + 1, c->k[i]);
   }
   off = rotation_error (c->R);
   if (off > ROTATION_TOLERANCE)
-    return bad (error, where, "R",
+    return cloth_rig_invalid (error, where, "R",
         "is not a rotation: R R' differs from the identity by %g", off);
   if (cloth_mat3_det (c->R) < 0)
-    return bad (error, where, "R", "is a reflection, its determinant is -1");
+    return cloth_rig_invalid (error, where, "R",
+        "is a reflection, its determinant is -1");
   return TRUE;
 }
 
@@ -251,8 +263,9 @@ gboolean
 cloth_rig_check (const ClothRig * rig, GError ** error)
 {
   if (rig->n_cameras < 1 || rig->n_cameras > CLOTH_RIG_MAX_CAMERAS)
-    return bad (error, "", "cameras", "%u of them; 1 to %d are allowed",
-        rig->n_cameras, CLOTH_RIG_MAX_CAMERAS);
+    return cloth_rig_invalid (error, "", "cameras",
+        "%u of them; 1 to %d are allowed", rig->n_cameras,
+        CLOTH_RIG_MAX_CAMERAS);
   for (guint i = 0; i < rig->n_cameras; i++) {
     g_autofree gchar *where = g_strdup_printf ("cameras[%u]", i);
 
@@ -260,8 +273,8 @@ cloth_rig_check (const ClothRig * rig, GError ** error)
       return FALSE;
     for (guint j = 0; j < i; j++) {
       if (g_str_equal (rig->cameras[i].name, rig->cameras[j].name))
-        return bad (error, where, "name", "\"%s\" is also the name of "
-            "cameras[%u]", rig->cameras[i].name, j);
+        return cloth_rig_invalid (error, where, "name",
+            "\"%s\" is also the name of cameras[%u]", rig->cameras[i].name, j);
     }
   }
   return TRUE;

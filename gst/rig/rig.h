@@ -41,6 +41,8 @@ typedef enum {
 
 #define CLOTH_RIG_ERROR (cloth_rig_error_quark ())
 GQuark cloth_rig_error_quark (void);
+gboolean cloth_rig_invalid (GError ** error, const gchar * where,
+    const gchar * key, const gchar * format, ...) G_GNUC_PRINTF (4, 5);
 
 /**
  * ClothRig:

@@ -7,22 +7,6 @@
 
 #include "gst/file/json.h"
 
-G_GNUC_PRINTF (4, 5)
-     static gboolean
-         bad (GError ** error, const gchar * where, const gchar * key,
-    const gchar * format, ...)
-{
-  va_list args;
-  g_autofree gchar *what = NULL;
-
-  va_start (args, format);
-  what = g_strdup_vprintf (format, args);
-  va_end (args);
-  g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_VALUE, "%s%s%s: %s",
-      where, *where && *key ? "." : "", key, what);
-  return FALSE;
-}
-
 static gboolean
 check_keys (JsonObject * object, const gchar * where,
     const gchar * const *known, GError ** error)
@@ -33,7 +17,8 @@ check_keys (JsonObject * object, const gchar * where,
     if (!g_strv_contains (known, l->data)) {
       g_autofree gchar *all = g_strjoinv (", ", (gchar **) known);
 
-      return bad (error, where, l->data, "unknown key; known are %s", all);
+      return cloth_rig_invalid (error, where, l->data,
+          "unknown key; known are %s", all);
     }
   }
   return TRUE;
@@ -47,10 +32,11 @@ read_number (JsonNode * node, const gchar * where, const gchar * key,
       : G_TYPE_INVALID;
 
   if (type != G_TYPE_INT64 && type != G_TYPE_DOUBLE)
-    return bad (error, where, key, "must hold numbers only");
+    return cloth_rig_invalid (error, where, key, "must hold numbers only");
   *value = json_node_get_double (node);
   if (!isfinite (*value))
-    return bad (error, where, key, "holds a number that is not finite");
+    return cloth_rig_invalid (error, where, key,
+        "holds a number that is not finite");
   return TRUE;
 }
 
@@ -62,12 +48,13 @@ read_list (JsonNode * node, const gchar * where, const gchar * key, guint n,
   JsonArray *array;
 
   if (!node)
-    return bad (error, where, key, "is missing");
+    return cloth_rig_invalid (error, where, key, "is missing");
   if (!JSON_NODE_HOLDS_ARRAY (node))
-    return bad (error, where, key, "must be a list of %u numbers", n);
+    return cloth_rig_invalid (error, where, key, "must be a list of %u numbers",
+        n);
   array = json_node_get_array (node);
   if (json_array_get_length (array) != n)
-    return bad (error, where, key, "holds %u numbers, not %u",
+    return cloth_rig_invalid (error, where, key, "holds %u numbers, not %u",
         json_array_get_length (array), n);
   for (guint i = 0; i < n; i++) {
     if (!read_number (json_array_get_element (array, i), where, key,
@@ -84,10 +71,10 @@ read_matrix (JsonNode * node, const gchar * where, const gchar * key,
   JsonArray *array;
 
   if (!node)
-    return bad (error, where, key, "is missing");
+    return cloth_rig_invalid (error, where, key, "is missing");
   if (!JSON_NODE_HOLDS_ARRAY (node)
       || json_array_get_length (json_node_get_array (node)) != 3)
-    return bad (error, where, key, "must be 3 rows of 3 numbers");
+    return cloth_rig_invalid (error, where, key, "must be 3 rows of 3 numbers");
   array = json_node_get_array (node);
   for (guint i = 0; i < 3; i++) {
     g_autofree gchar *row = g_strdup_printf ("%s[%u]", key, i);
@@ -104,10 +91,10 @@ read_string (JsonNode * node, const gchar * where, const gchar * key,
     gchar ** string, GError ** error)
 {
   if (!node)
-    return bad (error, where, key, "is missing");
+    return cloth_rig_invalid (error, where, key, "is missing");
   if (!JSON_NODE_HOLDS_VALUE (node)
       || json_node_get_value_type (node) != G_TYPE_STRING)
-    return bad (error, where, key, "must be a string");
+    return cloth_rig_invalid (error, where, key, "must be a string");
   *string = json_node_dup_string (node);
   return TRUE;
 }
@@ -123,17 +110,17 @@ read_distortion (JsonNode * node, const gchar * camera, ClothCamera * c,
   guint n;
 
   if (!node)
-    return bad (error, where, "", "is missing; without any write "
+    return cloth_rig_invalid (error, where, "", "is missing; without any write "
         "{\"model\": \"none\", \"coefficients\": []}");
   if (!JSON_NODE_HOLDS_OBJECT (node))
-    return bad (error, where, "", "must be an object");
+    return cloth_rig_invalid (error, where, "", "must be an object");
   object = json_node_get_object (node);
   if (!check_keys (object, where, known, error)
       || !read_string (json_object_get_member (object, "model"), where,
           "model", &model, error))
     return FALSE;
   if (!cloth_lens_from_string (model, &c->lens))
-    return bad (error, where, "model",
+    return cloth_rig_invalid (error, where, "model",
         "\"%s\" is unknown; known are none, brown5, brown8, fisheye", model);
   n = cloth_lens_n_coefficients (c->lens);
   if (n == 0 && !json_object_has_member (object, "coefficients"))
@@ -165,7 +152,7 @@ read_deviations (JsonNode * node, const gchar * camera, ClothCamera * c,
   if (!node)
     return TRUE;
   if (!JSON_NODE_HOLDS_OBJECT (node))
-    return bad (error, where, "", "must be an object");
+    return cloth_rig_invalid (error, where, "", "must be an object");
   object = json_node_get_object (node);
   if (!check_keys (object, where, known, error))
     return FALSE;
@@ -176,8 +163,8 @@ read_deviations (JsonNode * node, const gchar * camera, ClothCamera * c,
         return FALSE;
       for (guint j = 0; j < lists[i].n; j++) {
         if (lists[i].values[j] < 0)
-          return bad (error, where, lists[i].key, "is negative: %g",
-              lists[i].values[j]);
+          return cloth_rig_invalid (error, where, lists[i].key,
+              "is negative: %g", lists[i].values[j]);
       }
     }
   }
@@ -196,7 +183,7 @@ read_camera (JsonNode * node, const gchar * where, ClothCamera * c,
   gdouble size[2];
 
   if (!JSON_NODE_HOLDS_OBJECT (node))
-    return bad (error, where, "", "must be an object");
+    return cloth_rig_invalid (error, where, "", "must be an object");
   object = json_node_get_object (node);
   if (!check_keys (object, where, known, error)
       || !read_string (json_object_get_member (object, "name"), where,
@@ -207,8 +194,9 @@ read_camera (JsonNode * node, const gchar * where, ClothCamera * c,
   for (gint i = 0; i < 2; i++) {
     if (size[i] != floor (size[i]) || size[i] < 1
         || size[i] > CLOTH_RIG_MAX_SIZE)
-      return bad (error, where, "size", "%g; each must be a whole number "
-          "between 1 and %d", size[i], CLOTH_RIG_MAX_SIZE);
+      return cloth_rig_invalid (error, where, "size",
+          "%g; each must be a whole number between 1 and %d", size[i],
+          CLOTH_RIG_MAX_SIZE);
   }
   c->width = (gint) size[0];
   c->height = (gint) size[1];
@@ -264,27 +252,28 @@ cloth_rig_load_data (const gchar * data, gsize length, GError ** error)
     return NULL;
   object = json_node_get_object (json_parser_get_root (parser));
   if (!(node = json_object_get_member (object, "version"))) {
-    bad (error, "", "version", "is missing; it must be 1");
+    cloth_rig_invalid (error, "", "version", "is missing; it must be 1");
     return NULL;
   }
   if (!read_number (node, "", "version", &version, error))
     return NULL;
   if (version != 1) {
-    bad (error, "", "version", "%g; this program reads version 1", version);
+    cloth_rig_invalid (error, "", "version", "%g; this program reads version 1",
+        version);
     return NULL;
   }
   if (!check_keys (object, "", known, error))
     return NULL;
   node = json_object_get_member (object, "cameras");
   if (!node || !JSON_NODE_HOLDS_ARRAY (node)) {
-    bad (error, "", "cameras", "must be a list of cameras");
+    cloth_rig_invalid (error, "", "cameras", "must be a list of cameras");
     return NULL;
   }
   cameras = json_node_get_array (node);
   n = json_array_get_length (cameras);
   if (n < 1 || n > CLOTH_RIG_MAX_CAMERAS) {
-    bad (error, "", "cameras", "%u of them; 1 to %d are allowed", n,
-        CLOTH_RIG_MAX_CAMERAS);
+    cloth_rig_invalid (error, "", "cameras", "%u of them; 1 to %d are allowed",
+        n, CLOTH_RIG_MAX_CAMERAS);
     return NULL;
   }
   rig = cloth_rig_new (n);

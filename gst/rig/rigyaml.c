@@ -14,28 +14,13 @@
 /* OpenCV's longest: 8 rational, 4 thin prism, 2 tilt. */
 #define MAX_COEFFICIENTS 14
 
-G_GNUC_PRINTF (3, 4)
-     static gboolean
-         bad (GError ** error, const gchar * key, const gchar * format, ...)
-{
-  va_list args;
-  g_autofree gchar *what = NULL;
-
-  va_start (args, format);
-  what = g_strdup_vprintf (format, args);
-  va_end (args);
-  g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_VALUE, "%s: %s", key,
-      what);
-  return FALSE;
-}
-
 /* A list of at most max numbers; nested lists are read row after row. */
 static gboolean
 read_numbers (const ClothYamlNode * node, const gchar * key, guint max,
     gdouble * values, guint * n, GError ** error)
 {
   if (node->kind != CLOTH_YAML_SEQUENCE)
-    return bad (error, key, "must be a list of numbers");
+    return cloth_rig_invalid (error, "", key, "must be a list of numbers");
   for (guint i = 0; i < node->items->len; i++) {
     const ClothYamlNode *item = g_ptr_array_index (node->items, i);
 
@@ -45,9 +30,10 @@ read_numbers (const ClothYamlNode * node, const gchar * key, guint max,
       continue;
     }
     if (*n == max)
-      return bad (error, key, "holds more than %u numbers", max);
+      return cloth_rig_invalid (error, "", key, "holds more than %u numbers",
+          max);
     if (!cloth_yaml_number (item, &values[*n]))
-      return bad (error, key, "\"%s\" is not a finite number",
+      return cloth_rig_invalid (error, "", key, "\"%s\" is not a finite number",
           item->kind == CLOTH_YAML_SCALAR ? item->text : "{…}");
     ++*n;
   }
@@ -67,11 +53,13 @@ read_matrix (const ClothYamlNode * node, const gchar * key, guint max,
   data = cloth_yaml_get (node, "data");
   if (!data || !cloth_yaml_number (cloth_yaml_get (node, "rows"), &rows)
       || !cloth_yaml_number (cloth_yaml_get (node, "cols"), &cols))
-    return bad (error, key, "must be a matrix with rows, cols and data");
+    return cloth_rig_invalid (error, "", key,
+        "must be a matrix with rows, cols and data");
   if (!read_numbers (data, key, max, values, n, error))
     return FALSE;
   if (rows * cols != *n)
-    return bad (error, key, "says %g×%g but holds %u numbers", rows, cols, *n);
+    return cloth_rig_invalid (error, "", key,
+        "says %g×%g but holds %u numbers", rows, cols, *n);
   return TRUE;
 }
 
@@ -82,11 +70,12 @@ read_exactly (const ClothYamlNode * node, const gchar * key, guint n,
   guint found = 0;
 
   if (!node)
-    return bad (error, key, "is missing");
+    return cloth_rig_invalid (error, "", key, "is missing");
   if (!read_matrix (node, key, n, values, &found, error))
     return FALSE;
   if (found != n)
-    return bad (error, key, "holds %u numbers, not %u", found, n);
+    return cloth_rig_invalid (error, "", key, "holds %u numbers, not %u", found,
+        n);
   return TRUE;
 }
 
@@ -114,19 +103,20 @@ read_opencv_distortion (const ClothYamlNode * node, const gchar * key,
   guint n = 0;
 
   if (!node)
-    return bad (error, key, "is missing");
+    return cloth_rig_invalid (error, "", key, "is missing");
   if (!read_matrix (node, key, MAX_COEFFICIENTS, k, &n, error))
     return FALSE;
   for (guint i = fisheye ? 4 : 8; i < n; i++) {
     if (k[i] != 0)
-      return bad (error, key, "coefficient %u is %g; a %s lens of at most %d "
+      return cloth_rig_invalid (error, "", key,
+          "coefficient %u is %g; a %s lens of at most %d "
           "coefficients is known, without thin prism and tilt", i + 1, k[i],
           fisheye ? "fisheye" : "Brown", fisheye ? 4 : 8);
   }
   if (fisheye ? n != 4 : n != 0 && n != 4 && n != 5 && n != 8 && n != 12
       && n != 14)
-    return bad (error, key, "holds %u coefficients; %s", n, fisheye ?
-        "a fisheye has 4" : "OpenCV knows 4, 5, 8, 12 and 14");
+    return cloth_rig_invalid (error, "", key, "holds %u coefficients; %s", n,
+        fisheye ? "a fisheye has 4" : "OpenCV knows 4, 5, 8, 12 and 14");
   c->lens = fisheye ? CLOTH_LENS_FISHEYE : n == 0 ? CLOTH_LENS_NONE
       : n <= 5 ? CLOTH_LENS_BROWN5 : CLOTH_LENS_BROWN8;
   memcpy (c->k, k, sizeof c->k);
@@ -141,18 +131,19 @@ read_size (const ClothYamlNode * w, const ClothYamlNode * h, gint width,
 
   if (w && h) {
     if (!cloth_yaml_number (w, &size[0]) || !cloth_yaml_number (h, &size[1]))
-      return bad (error, "image_width, image_height", "must be numbers");
+      return cloth_rig_invalid (error, "", "image_width, image_height",
+          "must be numbers");
     if (width > 0 && (size[0] != width || size[1] != height))
-      return bad (error, "image_width, image_height",
+      return cloth_rig_invalid (error, "", "image_width, image_height",
           "the file says %g×%g, not %d×%d", size[0], size[1], width, height);
   } else if (width <= 0 || height <= 0) {
-    return bad (error, "image_width, image_height",
+    return cloth_rig_invalid (error, "", "image_width, image_height",
         "missing, and no picture size was given");
   }
   for (gint i = 0; i < 2; i++) {
     if (!(size[i] >= 1) || size[i] > CLOTH_RIG_MAX_SIZE
         || size[i] != floor (size[i]))
-      return bad (error, "image_width, image_height",
+      return cloth_rig_invalid (error, "", "image_width, image_height",
           "%g must be a whole number between 1 and %d", size[i],
           CLOTH_RIG_MAX_SIZE);
   }
@@ -217,8 +208,8 @@ import_stereo (GPtrArray * documents, gint width, gint height, GError ** error)
       return NULL;
   }
   if (!R || !T) {
-    bad (error, R ? "T" : "R", "is missing; give the file with the "
-        "extrinsics (R, T) too");
+    cloth_rig_invalid (error, "", R ? "T" : "R",
+        "is missing; give the file with the extrinsics (R, T) too");
     return NULL;
   }
   /* R may be written as a rotation vector. */
@@ -232,7 +223,7 @@ import_stereo (GPtrArray * documents, gint width, gint height, GError ** error)
 
       cloth_rotation_from_vector (r, second->R);
     } else if (n != 9) {
-      bad (error, "R", "holds %u numbers, not 9 or 3", n);
+      cloth_rig_invalid (error, "", "R", "holds %u numbers, not 9 or 3", n);
       return NULL;
     }
   }
@@ -366,11 +357,8 @@ text_of (const ClothYamlNode * camera, const gchar * key, const gchar * where,
 {
   const ClothYamlNode *node = cloth_yaml_get (camera, key);
 
-  if (!node || node->kind != CLOTH_YAML_SCALAR) {
-    g_autofree gchar *path = g_strdup_printf ("%s.%s", where, key);
-
-    return bad (error, path, "is missing or no text");
-  }
+  if (!node || node->kind != CLOTH_YAML_SCALAR)
+    return cloth_rig_invalid (error, where, key, "is missing or no text");
   *text = node->text;
   return TRUE;
 }
@@ -390,14 +378,14 @@ read_kalibr_camera (const ClothYamlNode * node, const gchar * where,
 {
   const gchar *model = "", *distortion = "";
   gdouble f[4], size[2], T[16];
-  g_autofree gchar *path = g_strdup_printf ("%s.camera_model", where);
 
   c->name = g_strdup (where);
   if (!text_of (node, "camera_model", where, &model, error)
       || !text_of (node, "distortion_model", where, &distortion, error))
     return FALSE;
   if (!g_str_equal (model, "pinhole"))
-    return bad (error, path, "\"%s\"; only pinhole is known", model);
+    return cloth_rig_invalid (error, where, "camera_model",
+        "\"%s\"; only pinhole is known", model);
   if (g_str_equal (distortion, "radtan")) {
     c->lens = CLOTH_LENS_BROWN5;
   } else if (g_str_equal (distortion, "equidistant")) {
@@ -405,10 +393,8 @@ read_kalibr_camera (const ClothYamlNode * node, const gchar * where,
   } else if (g_str_equal (distortion, "none")) {
     c->lens = CLOTH_LENS_NONE;
   } else {
-    g_free (path);
-    path = g_strdup_printf ("%s.distortion_model", where);
-    return bad (error, path, "\"%s\"; known are radtan, equidistant, none",
-        distortion);
+    return cloth_rig_invalid (error, where, "distortion_model",
+        "\"%s\"; known are radtan, equidistant, none", distortion);
   }
   if (!list_of (node, "intrinsics", where, 4, f, error)
       || (c->lens != CLOTH_LENS_NONE
@@ -418,10 +404,9 @@ read_kalibr_camera (const ClothYamlNode * node, const gchar * where,
   for (gint i = 0; i < 2; i++) {
     if (!(size[i] >= 1) || size[i] > CLOTH_RIG_MAX_SIZE
         || size[i] != floor (size[i])) {
-      g_free (path);
-      path = g_strdup_printf ("%s.resolution", where);
-      return bad (error, path, "%g must be a whole number between 1 and %d",
-          size[i], CLOTH_RIG_MAX_SIZE);
+      return cloth_rig_invalid (error, where, "resolution",
+          "%g must be a whole number between 1 and %d", size[i],
+          CLOTH_RIG_MAX_SIZE);
     }
   }
   c->width = (gint) size[0];
@@ -434,11 +419,9 @@ read_kalibr_camera (const ClothYamlNode * node, const gchar * where,
     return TRUE;
   if (!list_of (node, "T_cn_cnm1", where, 16, T, error))
     return FALSE;
-  if (T[12] != 0 || T[13] != 0 || T[14] != 0 || T[15] != 1) {
-    g_free (path);
-    path = g_strdup_printf ("%s.T_cn_cnm1", where);
-    return bad (error, path, "its last row must be 0 0 0 1");
-  }
+  if (T[12] != 0 || T[13] != 0 || T[14] != 0 || T[15] != 1)
+    return cloth_rig_invalid (error, where, "T_cn_cnm1",
+        "its last row must be 0 0 0 1");
   /* From the previous camera's frame to the world's. */
   for (gint i = 0; i < 3; i++) {
     for (gint j = 0; j < 3; j++)
@@ -480,12 +463,14 @@ cloth_rig_import_kalibr_data (const gchar * data, gsize length, GError ** error)
     if (!cloth_yaml_get (root, key))
       break;
     if (n == CLOTH_RIG_MAX_CAMERAS) {
-      bad (error, key, "more than %d cameras", CLOTH_RIG_MAX_CAMERAS);
+      cloth_rig_invalid (error, "", key, "more than %d cameras",
+          CLOTH_RIG_MAX_CAMERAS);
       return NULL;
     }
   }
   if (n == 0) {
-    bad (error, "cam0", "is missing; this is no Kalibr camera chain");
+    cloth_rig_invalid (error, "", "cam0",
+        "is missing; this is no Kalibr camera chain");
     return NULL;
   }
   rig = cloth_rig_new (n);

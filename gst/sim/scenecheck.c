@@ -164,7 +164,7 @@ check_numbers (const ClothScene * scene, GError ** error)
         i < 3 * (gsize) scene->topology->n_vertices; i++)
       if (!isfinite (arrays[a][i]))
         return cloth_mesh_invalid (error,
-            "the %s of vertex %u along %c is %g at the " "start", names[a],
+            "the %s of vertex %u along %c is %g at the start", names[a],
             (guint) (i / 3), axes[i % 3], arrays[a][i]);
   }
   if (!(scene->fps > 0) || !isfinite (scene->fps))
@@ -175,7 +175,7 @@ check_numbers (const ClothScene * scene, GError ** error)
     if (!isfinite (scene->times[i]) ||
         (i > 0 && scene->times[i] <= scene->times[i - 1]))
       return cloth_mesh_invalid (error,
-          "the time of frame %u, %g s, is not finite or " "does not rise", i,
+          "the time of frame %u, %g s, is not finite or does not rise", i,
           scene->times[i]);
   return TRUE;
 }
@@ -195,7 +195,7 @@ check_held (const ClothScene * scene, GError ** error)
           scene->topology->n_vertices);
     if (!(held->from_s < held->until_s))
       return cloth_mesh_invalid (error,
-          "held vertex %u is let go at %g s, before it is " "held at %g s",
+          "held vertex %u is let go at %g s, before it is held at %g s",
           held->vertex, held->until_s, held->from_s);
     other = g_hash_table_lookup (last, GUINT_TO_POINTER (held->vertex));
     if (other && held->from_s < other->until_s && other->from_s < held->until_s)
@@ -247,7 +247,7 @@ check_obstacles (const ClothScene * scene, GError ** error)
     for (gsize k = 0; k < 3 * (gsize) item->n_triangles; k++)
       if (item->triangles[k] >= item->n_points)
         return cloth_mesh_invalid (error,
-            "triangle %u of obstacle %u names a point that " "is not there",
+            "triangle %u of obstacle %u names a point that is not there",
             (guint) (k / 3), i);
   }
   return TRUE;

@@ -49,7 +49,7 @@ cloth_scene_sew (ClothScene * scene, const ClothSeamLine * line,
     for (guint i = 0; i < line->n_vertices; i++)
       if (line->lines[side][i] >= scene->topology->n_vertices)
         return cloth_mesh_invalid (error,
-            "vertex %u of a seam is not in the mesh (there " "are %u)",
+            "vertex %u of a seam is not in the mesh (there are %u)",
             line->lines[side][i], scene->topology->n_vertices);
     lengths[side] =
         line_length (scene->topology, line->lines[side], line->n_vertices);
