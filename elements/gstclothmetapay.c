@@ -10,12 +10,17 @@
 GST_DEBUG_CATEGORY_STATIC (cloth_meta_pay_debug);
 #define GST_CAT_DEFAULT cloth_meta_pay_debug
 
+/* Of the time in an observation's header: docs/streams.md. */
+#define TIME_AT 16
+
 /**
  * SECTION:element-clothmetapay
  *
  * Takes pictures with the metas of saddledetect and quadtrack and gives the metas
  * without the pictures, one buffer a picture. `gdppay` and `rtpgstpay` carry them to
- * another process or host, where clothmetadepay undoes this.
+ * another process or host, where clothmetadepay undoes this. Straight into a `filesink` the
+ * observations are what a take keeps of a camera; the times in such a file are running
+ * times.
  *
  * ## Example
  * ```
@@ -57,11 +62,26 @@ gst_cloth_meta_pay_transform_caps (GstBaseTransform * trans,
   return gst_cloth_carry_caps (caps, kept, other, filter);
 }
 
+/* A file has no segment: its times are running times, as those of a recorded mesh are. */
+static void
+write_running_time (const GstSegment * segment, GstBuffer * observation)
+{
+  GstClockTime time = GST_BUFFER_PTS (observation);
+  guint8 bytes[8];
+
+  if (segment->format != GST_FORMAT_TIME || !GST_CLOCK_TIME_IS_VALID (time))
+    return;
+  time = gst_segment_to_running_time (segment, GST_FORMAT_TIME, time);
+  GST_WRITE_UINT64_LE (bytes, time);
+  gst_buffer_fill (observation, TIME_AT, bytes, sizeof bytes);
+}
+
 static GstFlowReturn
 gst_cloth_meta_pay_prepare_output_buffer (GstBaseTransform * trans,
     GstBuffer * picture, GstBuffer ** observation)
 {
   *observation = gst_cloth_observations_pack (picture);
+  write_running_time (&trans->segment, *observation);
   GST_LOG_OBJECT (trans, "%" GST_PTR_FORMAT, *observation);
   return GST_FLOW_OK;
 }

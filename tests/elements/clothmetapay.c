@@ -113,6 +113,34 @@ GST_START_TEST (test_pay_without_metas)
 
 GST_END_TEST;
 
+/* In a file the header's time is all there is: it must not depend on the segment, as it
+ * would for films whose first picture is not at 0. */
+GST_START_TEST (test_running_time)
+{
+  GstHarness *h = gst_harness_new ("clothmetapay");
+  g_autoptr (GstBuffer) observation = NULL;
+  GstSegment segment;
+  GstMapInfo map;
+
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  segment.start = 80 * GST_MSECOND;
+  segment.base = 7 * GST_MSECOND;
+  gst_harness_set_src_caps_str (h, "video/x-raw, format=(string)GRAY8, "
+      "width=(int)321, height=(int)239, framerate=(fraction)25/1");
+  gst_harness_push_event (h, gst_event_new_segment (&segment));
+  fail_unless_equals_int (gst_harness_push (h, make_picture (3, 324 * 239)),
+      GST_FLOW_OK);
+  observation = gst_harness_pull (h);
+  fail_unless_equals_uint64 (GST_BUFFER_PTS (observation), 120 * GST_MSECOND);
+  fail_unless (gst_buffer_map (observation, &map, GST_MAP_READ));
+  fail_unless_equals_uint64 (GST_READ_UINT64_LE (map.data + 16),
+      47 * GST_MSECOND);
+  gst_buffer_unmap (observation, &map);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
 GST_START_TEST (test_there_and_back)
 {
   static const gchar *const carriers[] = { "", "gdppay ! gdpdepay ! ",
@@ -243,6 +271,7 @@ clothmetapay_suite (void)
   suite_add_tcase (suite, chain);
   tcase_add_test (chain, test_pay);
   tcase_add_test (chain, test_pay_without_metas);
+  tcase_add_test (chain, test_running_time);
   tcase_add_test (chain, test_there_and_back);
   tcase_add_test (chain, test_depay_shares_black);
   tcase_add_test (chain, test_renegotiation);
