@@ -43,6 +43,7 @@
 
 #include "elements/gstclothgap-record.h"
 #include "elements/gstclothgap-settings.h"
+#include "elements/gstclothsights.h"
 #include "elements/gstclothutil.h"
 #include "elements/gstmeshformat.h"
 #include "gst/gap/front.h"
@@ -75,6 +76,7 @@ struct _GstClothgap
   /* from start to stop */
   ClothModel *model;
   ClothTake *take, *baseline;
+  ClothSights *sights, *baseline_sights;        /* NULL: the take doesn't say */
   gchar **effects;
   ClothScene *scene;
   ClothObserver *observer;
@@ -407,6 +409,8 @@ finish (GstClothgap * self)
   const ClothGapOptions options = {
     .baselines = &self->baseline,
     .n_baselines = self->baseline ? 1 : 0,
+    .sights = &self->sights,
+    .baseline_sights = &self->baseline_sights,
     .model_file = self->settings.model,
     .effects = (const gchar * const *) self->effects,
     .seed = self->settings.seed,
@@ -609,7 +613,9 @@ load_baseline (GstClothgap * self, GError ** error)
   self->baseline = cloth_take_open (self->settings.baseline, error);
   return self->baseline && cloth_gap_check_same_cloth ("the baseline",
       cloth_take_get_topology (self->baseline), "the take of location",
-      cloth_take_get_topology (self->take), error);
+      cloth_take_get_topology (self->take), error)
+      && gst_cloth_sights_load (self->settings.baseline,
+      cloth_take_get_topology (self->baseline), &self->baseline_sights, error);
 }
 
 static gboolean
@@ -637,6 +643,9 @@ start (GstClothgap * self)
   GST_OBJECT_LOCK (self);
   self->scene = scene;
   GST_OBJECT_UNLOCK (self);
+  if (!gst_cloth_sights_load (settings->location,
+          cloth_take_get_topology (self->take), &self->sights, &error))
+    return fail_start (self, "location", settings->location, error);
   if (!load_baseline (self, &error))
     return fail_start (self, "baseline", settings->baseline, error);
   self->effects = cloth_gap_effects_parse (settings->effects, &error);
@@ -663,6 +672,8 @@ stop (GstClothgap * self)
   g_clear_pointer (&scene, cloth_scene_free);
   g_clear_pointer (&self->take, cloth_take_free);
   g_clear_pointer (&self->baseline, cloth_take_free);
+  g_clear_pointer (&self->sights, cloth_sights_free);
+  g_clear_pointer (&self->baseline_sights, cloth_sights_free);
   g_clear_pointer (&self->model, cloth_model_free);
   g_clear_pointer (&self->effects, g_strfreev);
   g_clear_pointer (&self->residuals, g_free);

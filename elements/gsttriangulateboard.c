@@ -7,7 +7,7 @@
 
 #include "elements/gsttriangulateboard.h"
 
-#include <string.h>
+#include "elements/gstclothpoints.h"
 
 static GstClothTopology *
 make_topology (const GstTriangulateBoard * board, const gdouble origin_m[2],
@@ -113,82 +113,6 @@ gst_triangulate_seen_sequence (const GstTriangulateSeen * seen)
       gst_cloth_quads_get_sequence (seen->quads);
 }
 
-static void
-take_quads (const GstTriangulateBoard * board, const GstClothQuads * quads,
-    ClothMerge * merge)
-{
-  const GstClothQuad *quad;
-  guint n, i, c;
-
-  quad = gst_cloth_quads_get_quads (quads, &n);
-  for (i = 0; i < n; i++, quad++) {
-    if (quad->state != GST_CLOTH_QUAD_TRACKED || quad->column < 0
-        || quad->row < 0 || (guint) quad->column >= board->columns - 1
-        || (guint) quad->row >= board->rows - 1) {
-      continue;
-    }
-    for (c = 0; c < 4; c++) {
-      guint column = (guint) quad->column + (c == 1 || c == 2);
-      guint row = (guint) quad->row + (c >= 2);
-      gdouble cov[3] = { quad->cov_xx[c], quad->cov_xy[c], quad->cov_yy[c] };
-
-      cloth_merge_add (merge, row * board->columns + column, quad->x[c],
-          quad->y[c], cov);
-    }
-  }
-}
-
-static gboolean
-is_usable (const GstTriangulateBoard * board, const GstClothDot * dot)
-{
-  return !dot->touches && dot->column >= 0 && dot->row >= 0
-      && (guint) dot->column < board->columns && (guint) dot->row < board->rows;
-}
-
-/* Where two of a dot's neighbours are not seen a fold's edge hides them, and it may hide a
- * part of the dot too: its centre of gravity is then another. */
-static gboolean
-is_at_fold (const GstTriangulateBoard * board, const GstClothDot * dot)
-{
-  const guint columns = board->columns, rows = board->rows;
-  const guint column = (guint) dot->column, row = (guint) dot->row;
-  const guint8 *at = board->seen + row * columns + column;
-  guint missing = 0;
-
-  missing += column > 0 && !at[-1];
-  missing += column + 1 < columns && !at[1];
-  missing += row > 0 && !*(at - columns);
-  missing += row + 1 < rows && !at[columns];
-  return missing > 1;
-}
-
-/* A dot seen from behind is the same vertex: cloth is thin. */
-static void
-take_dots (GstTriangulateBoard * board, const GstClothDots * seen,
-    ClothMerge * merge)
-{
-  const GstClothDot *dots;
-  guint n, i;
-
-  dots = gst_cloth_dots_get_dots (seen, &n);
-  memset (board->seen, 0, board->columns * board->rows);
-  for (i = 0; i < n; i++) {
-    if (is_usable (board, &dots[i])) {
-      board->seen[(guint) dots[i].row * board->columns
-          + (guint) dots[i].column] = 1;
-    }
-  }
-  for (i = 0; i < n; i++) {
-    const GstClothDot *dot = &dots[i];
-    gdouble cov[3] = { dot->cov_xx, dot->cov_xy, dot->cov_yy };
-
-    if (is_usable (board, dot) && !is_at_fold (board, dot)) {
-      cloth_merge_add (merge, (guint) dot->row * board->columns
-          + (guint) dot->column, dot->x, dot->y, cov);
-    }
-  }
-}
-
 gboolean
 gst_triangulate_board_take (GstTriangulateBoard * board,
     GstElement * self, guint index, const GstTriangulateSeen * seen,
@@ -218,9 +142,11 @@ gst_triangulate_board_take (GstTriangulateBoard * board,
     return FALSE;
   }
   if (seen->dots) {
-    take_dots (board, seen->dots, merge);
+    gst_cloth_points_add_dots (seen->dots, board->columns, board->rows,
+        board->seen, merge);
   } else {
-    take_quads (board, seen->quads, merge);
+    gst_cloth_points_add_quads (seen->quads, board->columns, board->rows,
+        merge);
   }
   return TRUE;
 }

@@ -9,6 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "elements/gstclothsights.h"
 #include "gst/gap/front.h"
 
 static volatile sig_atomic_t interrupted;
@@ -76,6 +77,27 @@ check_cloths (gchar ** folders, const GPtrArray * takes, const gchar * first,
   return TRUE;
 }
 
+/* What the cameras saw of each take, NULL where it doesn't say. */
+static GPtrArray *
+load_sights (gchar ** folders, const GPtrArray * takes, GError ** error)
+{
+  g_autoptr (GPtrArray) list =
+      g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_sights_free);
+
+  for (guint i = 0; i < takes->len; i++) {
+    ClothTake *take = g_ptr_array_index (takes, i);
+    ClothSights *sights;
+
+    if (!gst_cloth_sights_load (folders[i], cloth_take_get_topology (take),
+            &sights, error)) {
+      g_prefix_error (error, "“%s”: ", folders[i]);
+      return NULL;
+    }
+    g_ptr_array_add (list, sights);
+  }
+  return g_steal_pointer (&list);
+}
+
 static ClothGapResult *
 run_diagnosis (const Arguments * arguments, gchar ** effects, GError ** error)
 {
@@ -84,6 +106,9 @@ run_diagnosis (const Arguments * arguments, gchar ** effects, GError ** error)
   g_autoptr (GPtrArray) takes = NULL;
   g_autoptr (GPtrArray) baselines = NULL;
   g_autoptr (GPtrArray) hold_outs = NULL;
+  g_autoptr (GPtrArray) sights = NULL;
+  g_autoptr (GPtrArray) baseline_sights = NULL;
+  g_autoptr (GPtrArray) hold_out_sights = NULL;
   ClothGapOptions options = { 0 };
   ClothTake *first;
 
@@ -101,6 +126,14 @@ run_diagnosis (const Arguments * arguments, gchar ** effects, GError ** error)
       || !check_cloths (arguments->hold_outs, hold_outs, folders[0], first,
           error))
     return NULL;
+  if (!(sights = load_sights (folders, takes, error)) ||
+      !(baseline_sights = load_sights (arguments->baselines, baselines, error))
+      || !(hold_out_sights = load_sights (arguments->hold_outs, hold_outs,
+              error)))
+    return NULL;
+  options.sights = (ClothSights **) sights->pdata;
+  options.baseline_sights = (ClothSights **) baseline_sights->pdata;
+  options.hold_out_sights = (ClothSights **) hold_out_sights->pdata;
   options.baselines = (ClothTake **) baselines->pdata;
   options.n_baselines = baselines->len;
   options.hold_outs = (ClothTake **) hold_outs->pdata;

@@ -237,8 +237,10 @@ why_not (const ClothEffect * effect, const ClothModel * model,
     const ClothRecording * r, gboolean frozen)
 {
   if (effect->side == CLOTH_EFFECT_CAMERA || effect->side == CLOTH_EFFECT_IMAGE)
-    return "The take has positions only: record what the cameras saw (rig.json "
-        "and observations) to test it.";
+    return
+        "The take has positions only: record what the cameras saw to test it "
+        "(rig.json, and observations/NAME.obs of each camera by detector ! "
+        "clothmetapay ! filesink; docs/formats.md).";
   if (effect->side == CLOTH_EFFECT_NUMERICS)
     return "It is part of the simulator's own error, which is projected out.";
   if (effect->side == CLOTH_EFFECT_CLAMP && !r->scene->held->len)

@@ -1,0 +1,417 @@
+/* What the cameras saw of a take: its rig and its files of observations.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#ifdef HAVE_CONFIG_H
+#include "config.h"
+#endif
+
+#include "elements/gstclothsights.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "elements/gstclothpoints.h"
+#include "gst/gap/diagnose.h"
+#include "gst/rig/rigfile.h"
+
+#define FOLDER "observations"
+#define ENDING ".obs"
+/* Of a record; docs/streams.md has its fields. */
+#define HEADER 32
+#define SIZE_AT 8
+#define TIME_AT 16
+/* More than 65,536 features of each kind need. */
+#define MAX_RECORD (16u << 20)
+#define MAX_PICTURES 100000u
+/* Of all pictures together: 3 GB of memory. */
+#define MAX_POINTS (1u << 26)
+/* As triangulate has them by default: when the estimates of one corner contradict each
+ * other, and the variance that its first set starts with, px². */
+#define THRESHOLD 4.0
+#define ERROR_FLOOR 0.01
+/* How far outside the picture a point may be, as a share of the picture: a square at the
+ * edge has corners that are a little outside. */
+#define MARGIN 0.1
+
+typedef struct
+{
+  ClothSights *sights;
+  guint camera;
+  guint columns, rows;          /* of vertices */
+  gboolean labelled;            /* whether any picture had squares or dots */
+  ClothMerge *merge;
+  guint8 *seen;
+  guint32 *vertices;
+  gdouble *px, *covariances;
+} Reader;
+
+static void
+reader_init (Reader * self, ClothSights * sights, guint camera, guint columns,
+    guint rows)
+{
+  gsize n = (gsize) columns * rows;
+
+  self->sights = sights;
+  self->camera = camera;
+  self->columns = columns;
+  self->rows = rows;
+  self->labelled = FALSE;
+  self->merge = cloth_merge_new ((guint) n);
+  self->seen = g_malloc (n);
+  self->vertices = g_new (guint32, n);
+  self->px = g_new (gdouble, 2 * n);
+  self->covariances = g_new (gdouble, 3 * n);
+}
+
+static void
+reader_clear (Reader * self)
+{
+  cloth_merge_free (self->merge);
+  g_free (self->seen);
+  g_free (self->vertices);
+  g_free (self->px);
+  g_free (self->covariances);
+}
+
+G_GNUC_PRINTF (2, 3)
+     static gboolean fail (GError ** error, const gchar * format, ...)
+{
+  va_list args;
+  g_autofree gchar *text = NULL;
+
+  va_start (args, format);
+  text = g_strdup_vprintf (format, args);
+  va_end (args);
+  g_set_error_literal (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE, text);
+  return FALSE;
+}
+
+static gboolean
+check_name (const Reader * self, const gchar * name, GError ** error)
+{
+  const gchar *own = self->sights->rig->cameras[self->camera].name;
+
+  if (!*name || g_str_equal (name, own))
+    return TRUE;
+  return fail (error,
+      "it is of camera “%s”, not of “%s”: name each file "
+      "as the property camera of its detector", name, own);
+}
+
+/* Takes what is of the take's grid; a picture may carry both kinds. */
+static gboolean
+merge_metas (Reader * self, GstBuffer * buffer, GError ** error)
+{
+  const GstClothQuads *quads = gst_buffer_get_cloth_quads (buffer);
+  const GstClothDots *dots = gst_buffer_get_cloth_dots (buffer);
+  guint columns = 0, rows = 0;
+
+  if (quads) {
+    columns = gst_cloth_quads_get_columns (quads) + 1;
+    rows = gst_cloth_quads_get_rows (quads) + 1;
+    if (columns == self->columns && rows == self->rows) {
+      gst_cloth_points_add_quads (quads, columns, rows, self->merge);
+      return check_name (self, gst_cloth_quads_get_camera (quads), error);
+    }
+  }
+  if (dots) {
+    columns = gst_cloth_dots_get_columns (dots);
+    rows = gst_cloth_dots_get_rows (dots);
+    if (columns == self->columns && rows == self->rows) {
+      gst_cloth_points_add_dots (dots, columns, rows, self->seen, self->merge);
+      return check_name (self, gst_cloth_dots_get_camera (dots), error);
+    }
+  }
+  return fail (error, "it is of a pattern with %u×%u vertices, but the take's "
+      "grid has %u×%u: both must come from one pattern.json", columns, rows,
+      self->columns, self->rows);
+}
+
+static gboolean
+check_place (const Reader * self, guint vertex, gdouble x, gdouble y,
+    GError ** error)
+{
+  const ClothCamera *camera = &self->sights->rig->cameras[self->camera];
+  gdouble w = camera->width, h = camera->height;
+
+  if (x >= -MARGIN * w && x <= (1 + MARGIN) * w && y >= -MARGIN * h
+      && y <= (1 + MARGIN) * h)
+    return TRUE;
+  return fail (error, "vertex %u is at (%.1f, %.1f) px, but the camera was "
+      "calibrated with pictures of %d×%d: calibrate at the size that is filmed",
+      vertex, x, y, camera->width, camera->height);
+}
+
+/* Puts the points into the reader's arrays; returns how many, or -1. */
+static gint
+find_points (Reader * self, GstBuffer * buffer, GError ** error)
+{
+  ClothTriangulateView view;
+  gint n = 0;
+
+  if (!gst_buffer_get_cloth_quads (buffer)
+      && !gst_buffer_get_cloth_dots (buffer))
+    return 0;                   /* of a picture that shows nothing */
+  self->labelled = TRUE;
+  cloth_merge_clear (self->merge);
+  if (!merge_metas (self, buffer, error))
+    return -1;
+  cloth_merge_finish (self->merge, THRESHOLD, ERROR_FLOOR, &view);
+  for (guint i = 0; i < self->columns * self->rows; i++) {
+    if (isnan (view.x[i]))
+      continue;
+    if (!check_place (self, i, view.x[i], view.y[i], error))
+      return -1;
+    self->vertices[n] = i;
+    self->px[2 * n] = view.x[i];
+    self->px[2 * n + 1] = view.y[i];
+    self->covariances[3 * n] = view.xx[i];
+    self->covariances[3 * n + 1] = view.xy[i];
+    self->covariances[3 * n + 2] = view.yy[i];
+    n++;
+  }
+  return n;
+}
+
+static gboolean
+read_picture (Reader * self, const GByteArray * record, GError ** error)
+{
+  g_autoptr (GstBuffer) buffer = gst_buffer_new_memdup (record->data,
+      record->len);
+  g_autoptr (GstBuffer) target = gst_buffer_new ();
+  guint64 time = GST_READ_UINT64_LE (record->data + TIME_AT);
+  gint n;
+
+  if (!gst_cloth_observations_unpack (buffer, target, error))
+    return FALSE;
+  if (!GST_CLOCK_TIME_IS_VALID (time))
+    return fail (error, "it has no time: film with time stamps, as a source "
+        "with do-timestamp=true or a file has them");
+  n = find_points (self, target, error);
+  return n >= 0 && cloth_sights_add (self->sights, self->camera,
+      (gdouble) time / GST_SECOND, (guint) n, self->vertices, self->px,
+      self->covariances, error);
+}
+
+/* Reads the record at @at: its header tells its size. */
+static gboolean
+read_record (ClothInput * input, guint64 at, GByteArray * record,
+    GError ** error)
+{
+  guint64 left = cloth_input_get_size (input) - at;
+  guint32 size;
+
+  if (left < HEADER)
+    return fail (error, "the file ends inside a header: it was cut off; stop "
+        "a recording with EOS (gst-launch-1.0 -e)");
+  g_byte_array_set_size (record, HEADER);
+  if (!cloth_input_read_at (input, at, record->data, HEADER, error))
+    return FALSE;
+  if (memcmp (record->data, "GCOB", 4) != 0)
+    return fail (error, "no observation begins here: write the file by "
+        "clothmetapay ! filesink, with nothing between them");
+  size = GST_READ_UINT32_LE (record->data + SIZE_AT);
+  if (size < HEADER || size > MAX_RECORD)
+    return fail (error, "its size of %u bytes is impossible: %u to %u are "
+        "allowed", size, HEADER, MAX_RECORD);
+  if (size > left)
+    return fail (error, "the file ends inside it: it was cut off; stop a "
+        "recording with EOS (gst-launch-1.0 -e)");
+  g_byte_array_set_size (record, size);
+  return cloth_input_read_at (input, at, record->data, size, error);
+}
+
+static guint64
+count_points (const ClothSights * sights)
+{
+  guint64 n = 0;
+
+  for (guint i = 0; i < sights->list->len; i++)
+    n += g_array_index (sights->list, ClothSight, i).n;
+  return n;
+}
+
+static gboolean
+read_all (Reader * self, ClothInput * input, GError ** error)
+{
+  g_autoptr (GByteArray) record = g_byte_array_new ();
+  guint64 at = 0, n_points = count_points (self->sights);
+  const GArray *list = self->sights->list;
+
+  for (guint n = 0; at < cloth_input_get_size (input); n++) {
+    if (n == MAX_PICTURES || n_points > MAX_POINTS)
+      return fail (error, "picture %u: too many; at most %u pictures a camera "
+          "and %u points in all are read: cut the take into shorter ones", n,
+          MAX_PICTURES, MAX_POINTS);
+    if (!read_record (input, at, record, error)
+        || !read_picture (self, record, error)) {
+      g_prefix_error (error, "picture %u, at byte %" G_GUINT64_FORMAT ": ", n,
+          at);
+      return FALSE;
+    }
+    n_points += g_array_index (list, ClothSight, list->len - 1).n;
+    at += record->len;
+  }
+  if (at == 0)
+    return fail (error, "it is empty: nothing was recorded");
+  if (!self->labelled)
+    return fail (error, "no picture has squares or dots: put “saddledetect ! "
+        "quadtrack” or “dotlabel” before clothmetapay, or leave the file out");
+  return TRUE;
+}
+
+/**
+ * gst_cloth_sights_read:
+ * @sights: where the pictures go
+ * @camera: whose they are: its index in the rig
+ * @columns: vertices in a row of the cloth's grid, at least 2
+ * @rows: vertices in a column of it, at least 2
+ * @input: a row of observations, as docs/streams.md has them
+ * @error: #ClothGapError, #GST_CLOTH_ERROR; it says which picture is wrong, and why
+ *
+ * Reads the pictures of one camera. The squares or dots of each become one point a vertex
+ * just as triangulate makes them. GStreamer must have been initialised.
+ *
+ * Returns: %FALSE when a picture can't be one of this take; those before it are in @sights
+ * Since: 0.1
+ */
+gboolean
+gst_cloth_sights_read (ClothSights * sights, guint camera, guint columns,
+    guint rows, ClothInput * input, GError ** error)
+{
+  Reader reader;
+  gboolean good;
+
+  reader_init (&reader, sights, camera, columns, rows);
+  good = read_all (&reader, input, error);
+  reader_clear (&reader);
+  return good;
+}
+
+/* The names that files may have. */
+static gchar *
+list_names (const ClothRig * rig)
+{
+  GString *text = g_string_new (NULL);
+
+  for (guint i = 0; i < rig->n_cameras; i++)
+    g_string_append_printf (text, "%s%s" ENDING, i ? ", " : "",
+        rig->cameras[i].name);
+  return g_string_free (text, FALSE);
+}
+
+static gboolean
+is_of_camera (const gchar * name, const ClothRig * rig)
+{
+  for (guint i = 0; i < rig->n_cameras; i++) {
+    g_autofree gchar *own = g_strconcat (rig->cameras[i].name, ENDING, NULL);
+
+    if (g_str_equal (name, own))
+      return TRUE;
+  }
+  return FALSE;
+}
+
+/* Hidden files are of the system; all others must be a camera's. */
+static gboolean
+check_files (const gchar * path, const ClothRig * rig, GError ** error)
+{
+  g_autoptr (GDir) dir = g_dir_open (path, 0, error);
+  g_autofree gchar *names = list_names (rig);
+  const gchar *name;
+  guint n = 0;
+
+  if (!dir)
+    return FALSE;
+  while ((name = g_dir_read_name (dir))) {
+    g_autofree gchar *shown = g_filename_display_name (name);
+
+    if (*name == '.')
+      continue;
+    if (!is_of_camera (name, rig))
+      return fail (error,
+          "“" FOLDER "/%s” is of no camera of rig.json, whose "
+          "files would be %s: rename it, or take it away", shown, names);
+    n++;
+  }
+  return n > 0 || fail (error, "the folder " FOLDER " is empty: record %s into "
+      "it by clothmetapay ! filesink, or take it away", names);
+}
+
+static gboolean
+load_files (ClothSights * sights, const gchar * folder,
+    const ClothTopology * topology, GError ** error)
+{
+  const ClothRig *rig = sights->rig;
+
+  for (guint i = 0; i < rig->n_cameras; i++) {
+    g_autofree gchar *name = g_strconcat (FOLDER "/", rig->cameras[i].name,
+        ENDING, NULL);
+    g_autofree gchar *whole = g_build_filename (folder, name, NULL);
+    g_autofree gchar *path = NULL;
+    g_autoptr (ClothInput) input = NULL;
+
+    if (!g_file_test (whole, G_FILE_TEST_EXISTS))
+      continue;
+    if (!(path = cloth_path_inside (folder, name, error))
+        || !(input = cloth_input_open (path, error)))
+      return FALSE;
+    if (!gst_cloth_sights_read (sights, i, topology->columns, topology->rows,
+            input, error)) {
+      g_prefix_error (error, "%s: ", name);
+      return FALSE;
+    }
+  }
+  return TRUE;
+}
+
+/**
+ * gst_cloth_sights_load:
+ * @folder: (type filename): of a take
+ * @topology: the take's mesh
+ * @sights: (out) (transfer full) (nullable): what the cameras saw; %NULL when the take
+ *   doesn't say
+ * @error: #ClothGapError, #ClothRigError, #ClothMeshError, #GST_CLOTH_ERROR, #GIOErrorEnum;
+ *   it names the file, the picture and what to do
+ *
+ * Reads observations/<camera>.obs of the cameras of rig.json, one picture after the other.
+ * Not each camera must have a file. A rig without the folder observations says nothing; the
+ * folder without a rig, without files or with files of other names is an error, and so is
+ * the folder when the mesh is no grid, whose vertices are numbered row by row.
+ *
+ * Returns: %FALSE when something is there that can't be used
+ * Since: 0.1
+ */
+gboolean
+gst_cloth_sights_load (const gchar * folder, const ClothTopology * topology,
+    ClothSights ** sights, GError ** error)
+{
+  g_autofree gchar *path = g_build_filename (folder, FOLDER, NULL);
+  g_autofree gchar *rig_file = g_build_filename (folder, "rig.json", NULL);
+  g_autofree gchar *rig_path = NULL;
+  g_autoptr (ClothSights) made = NULL;
+  ClothRig *rig;
+
+  *sights = NULL;
+  if (!g_file_test (path, G_FILE_TEST_EXISTS))
+    return TRUE;
+  if (!g_file_test (rig_file, G_FILE_TEST_EXISTS))
+    return fail (error,
+        "there are " FOLDER " but no rig.json in “%s”: add the "
+        "one that triangulate was given, or take them away", folder);
+  if (topology->columns < 2 || topology->rows < 2)
+    return fail (error,
+        "observations name the vertices of a grid, but the mesh "
+        "of “%s” is none: take the folder " FOLDER " away", folder);
+  if (!(rig_path = cloth_path_inside (folder, "rig.json", error)))
+    return FALSE;
+  rig = cloth_rig_load (rig_path, error);
+  if (!rig)
+    return FALSE;
+  made = cloth_sights_new (rig, topology->n_vertices);
+  if (!check_files (path, rig, error) || !gst_init_check (NULL, NULL, error)
+      || !load_files (made, folder, topology, error))
+    return FALSE;
+  *sights = g_steal_pointer (&made);
+  return TRUE;
+}
