@@ -16,19 +16,10 @@
 #define MARK 2.0f
 /* Share of a link that its dot's half leaves free at the ends: the dots stay visible. */
 #define GAP 0.2f
-/* Indices closer than this could not be read, px. */
-#define LEAST_SIZE_FOR_INDEX 14.0f
 
 static const ClothColour unlabelled_colour = { 1, 0.15f, 0.15f, 1 };
 static const ClothColour behind_colour = { 0.30f, 0.65f, 1, 1 };
 static const ClothColour text_colour = { 1, 1, 1, 0.95f };
-
-static ClothColour
-with_opacity (ClothColour colour, gfloat opacity)
-{
-  colour.a *= opacity;
-  return colour;
-}
 
 static ClothColour
 colour_of (const GstClothDot * dot, const GstClothOverlayStyle * style)
@@ -70,30 +61,50 @@ draw_index (const ClothCanvas * canvas, const GstClothDot * dot, gfloat size,
   }
 }
 
+static gboolean
+has_label (const GstClothDot * dot, guint columns, guint rows)
+{
+  return dot->column >= 0 && dot->row >= 0 && (guint) dot->column < columns
+      && (guint) dot->row < rows;
+}
+
+/* Pictures share the table, so that it needs no memory anew: what is found may be of
+ * another picture, and a dot has the label when it says so itself. */
+static const GstClothDot *
+find_dot (GHashTable * by_label, guint columns, guint rows,
+    const GstClothDot * dots, guint n, gint column, gint row)
+{
+  const guint key = (guint) row * columns + (guint) column;
+  const guint i = GPOINTER_TO_UINT (g_hash_table_lookup (by_label,
+          GUINT_TO_POINTER (key)));
+
+  return i < n && dots[i].column == column && dots[i].row == row
+      && has_label (&dots[i], columns, rows) ? &dots[i] : NULL;
+}
+
 void
 gst_cloth_overlay_draw_dots (const ClothCanvas * canvas, GstClothDots * dots,
-    const GstClothOverlayStyle * style)
+    GHashTable * by_label, const GstClothOverlayStyle * style)
 {
   guint n, columns = gst_cloth_dots_get_columns (dots);
   guint rows = gst_cloth_dots_get_rows (dots);
   const GstClothDot *dot = gst_cloth_dots_get_dots (dots, &n);
   ClothColour cross = with_opacity (unlabelled_colour, style->opacity);
-  g_autoptr (GHashTable) by_label = g_hash_table_new (NULL, NULL);
 
+  if (g_hash_table_size (by_label) > GST_CLOTH_MAX_FEATURES) {
+    g_hash_table_remove_all (by_label);
+  }
   for (guint i = 0; i < n; i++) {
-    if (dot[i].column >= 0 && dot[i].row >= 0
-        && (guint) dot[i].column < columns && (guint) dot[i].row < rows) {
+    if (has_label (&dot[i], columns, rows)) {
       g_hash_table_insert (by_label, GUINT_TO_POINTER ((guint) dot[i].row
-              * columns + (guint) dot[i].column + 1), (gpointer) & dot[i]);
+              * columns + (guint) dot[i].column), GUINT_TO_POINTER (i));
     }
   }
   for (guint i = 0; i < n; i++) {
     const GstClothDot *d = &dot[i];
-    const guint key = (guint) d->row * columns + (guint) d->column + 1;
-    const GstClothDot *right = NULL, *below = NULL;
+    const GstClothDot *right, *below;
 
-    if (d->column < 0 || d->row < 0 || (guint) d->column >= columns
-        || (guint) d->row >= rows) {
+    if (!has_label (d, columns, rows)) {
       if (style->draw_dots) {
         cloth_draw_line (canvas, d->x - CROSS_ARM, d->y - CROSS_ARM,
             d->x + CROSS_ARM, d->y + CROSS_ARM, style->line_width, &cross);
@@ -102,12 +113,8 @@ gst_cloth_overlay_draw_dots (const ClothCanvas * canvas, GstClothDots * dots,
       }
       continue;
     }
-    if ((guint) d->column + 1 < columns) {
-      right = g_hash_table_lookup (by_label, GUINT_TO_POINTER (key + 1));
-    }
-    if ((guint) d->row + 1 < rows) {
-      below = g_hash_table_lookup (by_label, GUINT_TO_POINTER (key + columns));
-    }
+    right = find_dot (by_label, columns, rows, dot, n, d->column + 1, d->row);
+    below = find_dot (by_label, columns, rows, dot, n, d->column, d->row + 1);
     if (style->draw_dots) {
       ClothColour colour = colour_of (d, style);
 

@@ -12,19 +12,10 @@
 /* px: the arms of a saddle's cross, the dashes of a predicted square */
 #define CROSS_ARM 4.0f
 #define DASH 4.0f
-/* Indices on squares smaller than this could not be read, px. */
-#define LEAST_SIZE_FOR_INDEX 14.0f
 
 static const ClothColour saddle_colour = { 0.10f, 0.90f, 0.95f, 1 };
 static const ClothColour text_on_black = { 1, 1, 1, 0.95f };
 static const ClothColour text_on_white = { 0.05f, 0.05f, 0.15f, 0.95f };
-
-static ClothColour
-with_opacity (ClothColour colour, gfloat opacity)
-{
-  colour.a *= opacity;
-  return colour;
-}
 
 static void
 draw_index (const ClothCanvas * canvas, const GstClothQuad * quad,

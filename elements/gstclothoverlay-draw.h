@@ -25,6 +25,16 @@ typedef struct {
   GstClothOverlayMeshStyle mesh_style;
 } GstClothOverlayStyle;
 
+/* Indices on squares smaller or dots closer than this could not be read, px. */
+#define LEAST_SIZE_FOR_INDEX 14.0f
+
+static inline ClothColour
+with_opacity (ClothColour colour, gfloat opacity)
+{
+  colour.a *= opacity;
+  return colour;
+}
+
 /* A canvas on the mapped frame, colours by its colorimetry. */
 void gst_cloth_overlay_canvas (GstVideoFrame * frame, ClothCanvas * canvas);
 void gst_cloth_overlay_draw_quads (const ClothCanvas * canvas,
@@ -32,9 +42,11 @@ void gst_cloth_overlay_draw_quads (const ClothCanvas * canvas,
 void gst_cloth_overlay_draw_saddles (const ClothCanvas * canvas,
     GstClothSaddles * saddles, const GstClothOverlayStyle * style);
 
-/* Labelled dots and the links between neighbours of the pattern; crosses on the others. */
+/* Labelled dots and the links between neighbours of the pattern; crosses on the others.
+ * @by_label is room for finding neighbours, kept over the pictures of a film. */
 void gst_cloth_overlay_draw_dots (const ClothCanvas * canvas,
-    GstClothDots * dots, const GstClothOverlayStyle * style);
+    GstClothDots * dots, GHashTable * by_label,
+    const GstClothOverlayStyle * style);
 
 /* Colours of a heat map: the lowest for no distance, the last but one for the scale's
  * end and all beyond, the last for a vertex whose distance isn't known. */

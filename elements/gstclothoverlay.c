@@ -93,6 +93,7 @@ struct _GstClothOverlay
   GstVideoInfo info;
   GstCaps *video_caps;
   gboolean knows_strides;       /* downstream, of GstVideoMeta */
+  GHashTable *dots_by_label;
   GstClothOverlayMesh *mesh;
   ClothRig *rig;
   const ClothCamera *camera;    /* of @rig */
@@ -396,7 +397,7 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   }
   if (has_dots) {
     gst_cloth_overlay_draw_dots (&canvas, gst_buffer_get_cloth_dots (*out),
-        &style);
+        self->dots_by_label, &style);
   }
   if (mesh && !gst_cloth_overlay_draw_mesh (self, &canvas, mesh, &style)) {
     ret = GST_FLOW_ERROR;
@@ -623,6 +624,7 @@ gst_cloth_overlay_finalize (GObject * object)
   GstClothOverlay *self = GST_CLOTH_OVERLAY (object);
 
   gst_caps_replace (&self->video_caps, NULL);
+  g_hash_table_unref (self->dots_by_label);
   g_clear_pointer (&self->mesh, gst_cloth_overlay_mesh_free);
   g_clear_pointer (&self->rig, cloth_rig_free);
   g_free (self->rig_path);
@@ -761,5 +763,6 @@ gst_cloth_overlay_init (GstClothOverlay * self)
   self->style.fill_opacity = (gfloat) DEFAULT_FILL_OPACITY;
   self->style.c_low = (gfloat) DEFAULT_C_LOW;
   self->style.ellipse_scale = (gfloat) DEFAULT_ELLIPSE_SCALE;
+  self->dots_by_label = g_hash_table_new (NULL, NULL);
   gst_cloth_sync_add_always_pad (GST_CLOTH_SYNC (self), "sink");
 }

@@ -76,6 +76,47 @@ GST_START_TEST (test_links)
 
 GST_END_TEST;
 
+/* Every picture is drawn as if it were the only one: nothing is linked to where a dot was,
+ * nor to what has its place in the list now, with another label or one there is not. */
+GST_START_TEST (test_next_picture)
+{
+  const GstClothDot before[3] = { dot_at (5, 5, 20, 20), dot_at (30, 5, 50, 20),
+    dot_at (0, 6, 20, 50)
+  };
+  const GstClothDot after[3] = { dot_at (30, 5, 20, 20), dot_at (9, 9, 50, 24),
+    dot_at (31, 5, 60, 60)
+  };
+  GstVideoInfo info;
+  GstBuffer *early = picture ("GRAY8", WIDTH, HEIGHT, 5, &info);
+  GstBuffer *late = gst_buffer_copy_deep (early), *out;
+  GstHarness *h = overlay ("", &info);
+
+  gst_buffer_add_cloth_dots_meta (early, gst_cloth_dots_new ("cam0", 0, 31, 33,
+          5, before, 3));
+  gst_buffer_add_cloth_dots_meta (late, gst_cloth_dots_new ("cam0", 1, 31, 33,
+          5, after, 3));
+  GST_BUFFER_PTS (late) = GST_SECOND / 30;
+  fail_unless_equals_int (gst_harness_push (h, early), GST_FLOW_OK);
+  fail_unless_equals_int (gst_harness_push (h, late), GST_FLOW_OK);
+  gst_buffer_unref (gst_harness_pull (h));
+  out = gst_harness_pull (h);
+  {
+    GstBuffer *alone = draw_dots ("", after, 3, &info);
+    GstMapInfo a, b;
+
+    gst_buffer_map (out, &a, GST_MAP_READ);
+    gst_buffer_map (alone, &b, GST_MAP_READ);
+    fail_unless (a.size == b.size && memcmp (a.data, b.data, a.size) == 0);
+    gst_buffer_unmap (out, &a);
+    gst_buffer_unmap (alone, &b);
+    gst_buffer_unref (alone);
+  }
+  gst_buffer_unref (out);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
 static guint8
 grey_at (GstBuffer * buffer, const GstVideoInfo * info, gint x, gint y)
 {
@@ -173,6 +214,7 @@ clothoverlaydots_suite (void)
 
   suite_add_tcase (s, tc);
   tcase_add_test (tc, test_links);
+  tcase_add_test (tc, test_next_picture);
   tcase_add_test (tc, test_colours);
   tcase_add_test (tc, test_switches);
   tcase_add_test (tc, test_wild_dots);
