@@ -38,8 +38,9 @@ NAME (newton_brown) (const TriangulateCamera * camera, V dx, V dy, V * x_io,
   return FMA (ex, ex, ey * ey);
 }
 
-/* Undistorts the places (dx, dy) by a Brown lens; J: the derivative of distortion there.
- * Returns where Newton's method could not be trusted. */
+/* Undistorts the places (dx, dy) by a Brown lens; J: the derivative of distortion where
+ * the last step starts, LAST_NEWTON away at most. Returns where Newton's method could
+ * not be trusted. */
 TARGET INLINE M
 NAME (undistort_brown) (const TriangulateCamera * camera, M seen, V dx, V dy,
     V * x_out, V * y_out, V J[3])
@@ -160,9 +161,9 @@ NAME (load_group) (const TriangulateCamera * camera, const gdouble * const *in,
   V det = cxx * cyy - cxy * cxy;
   V y = (v - camera->cy) * camera->ify;
   V x = FNMA (camera->skew, y, u - camera->cx) * camera->ifx;
-  /* a − a is 0 unless a is infinite or NaN */
-  M seen = GREATER ((u - u) + (v - v) + (det - det), -1.) & GREATER (cxx, 0.)
-      & GREATER (cyy, 0.) & GREATER (det, 0.);
+  V sum = u + v + det;
+  /* sum − sum is 0 unless anything is infinite or NaN; cyy is above 0 with the others */
+  M seen = GREATER (cxx, 0.) & GREATER (sum - sum + det, 0.);
   V ixx, ixy, iyy, idet = 1. / CHOOSE (seen, det, 1.);
 
   /* information in px, then of coordinates in which K is the identity */
@@ -221,7 +222,7 @@ NAME (load) (const TriangulateCamera * camera, const gdouble * const *in,
   return seen;
 }
 
-/* The linear estimate: the null vector of AᵀA, A's rows x·p₃ − p₁ and y·p₃ − p₂ of every
+/* The linear estimate: the null vector of AᵀA, A's rows p₁ − x·p₃ and p₂ − y·p₃ of every
  * view over its σ (Hartley & Zisserman, Multiple View Geometry, 12.2). By two steps of
  * inverse iteration: the first one alone is the solution with the last coordinate at
  * 1. */
@@ -242,8 +243,8 @@ NAME (linear) (const TriangulateCamera * cameras, const gdouble * obs,
     V r[4], s[4], wr[4], ws[4];
 
     for (gint j = 0; j < 4; j++) {
-      r[j] = FMA (x, P[8 + j], -P[j]);
-      s[j] = FMA (y, P[8 + j], -P[4 + j]);
+      r[j] = FNMA (x, P[8 + j], P[j]);
+      s[j] = FNMA (y, P[8 + j], P[4 + j]);
       wr[j] = w * r[j];
       ws[j] = w * s[j];
     }
@@ -315,19 +316,6 @@ NAME (reproject) (const gdouble * P, const gdouble * o, const V X[3], V e[2],
   return i;
 }
 
-/* Symmetric matrix C (xx, xy, xz, yy, yz, zz) times a. */
-TARGET INLINE void NAME (times) (const V C[6], const V a[3], V b[3])
-{
-  b[0] = FMA (C[0], a[0], FMA (C[1], a[1], C[2] * a[2]));
-  b[1] = FMA (C[1], a[0], FMA (C[3], a[1], C[4] * a[2]));
-  b[2] = FMA (C[2], a[0], FMA (C[4], a[1], C[5] * a[2]));
-}
-
-TARGET INLINE V NAME (dot) (const V a[3], const V b[3])
-{
-  return FMA (a[0], b[0], FMA (a[1], b[1], a[2] * b[2]));
-}
-
 /* Linear estimate, Gauss–Newton, covariance, error of each view against the others.
  * Returns where all is well and all views saw the point. */
 TARGET INLINE M
@@ -336,7 +324,7 @@ NAME (solve_group) (const TriangulateCamera * cameras, const gdouble * obs,
     gdouble * out)
 {
   V zero = VECTOR (0.), one = VECTOR (1.), X[3], C[6], g[3], D[3];
-  V i0 = zero, i1 = zero, i2 = zero, l10 = zero, l20 = zero, l21 = zero;
+  V i0 = zero, i1 = zero, i2 = zero, l10 = zero, l20 = zero, l21 = zero, u20;
   V chi2 = zero, worst = zero, per = one, worst_px = zero;
   V depth = VECTOR (G_MAXDOUBLE), count = zero, reason;
   M open, singular, good;
@@ -416,21 +404,18 @@ NAME (solve_group) (const TriangulateCamera * cameras, const gdouble * obs,
   }
 
   /* inverse of L·D·Lᵀ */
-  {
-    V u20 = FMA (l10, l21, -l20);
-
-    C[5] = i2;
-    C[4] = -l21 * i2;
-    C[3] = FNMA (l21, C[4], i1);
-    C[2] = u20 * i2;
-    C[1] = FMA (u20, C[4], -(l10 * i1));
-    C[0] = FMA (u20, C[2], FMA (l10 * l10, i1, i0));
-  }
+  u20 = FMA (l10, l21, -l20);
+  C[5] = i2;
+  C[4] = -l21 * i2;
+  C[3] = FNMA (l21, C[4], i1);
+  C[2] = u20 * i2;
+  C[1] = FMA (u20, C[4], -(l10 * i1));
+  C[0] = FMA (u20, C[2], FMA (l10 * l10, i1, i0));
   for (guint i = 0; i < n_views; i++) {
     const TriangulateCamera *camera = &cameras[views[i]];
     const gdouble *o = obs + views[i] * (N_OBS * BLOCK);
     V e[2], J0[3], J1[3], z, iz, ixx, ixy, iyy;
-    V f0, f1, m00, m01, m11, a00, a01, a10, a11, det, w;
+    V f0, f1, m00, m01, m11, a00, a01, a10, a11, det, w, s1, s2, t1, t2;
     M seen, above;
 
     iz = NAME (reproject) (camera->P, o, X, e, J0, J1, &z);
@@ -445,16 +430,21 @@ NAME (solve_group) (const TriangulateCamera * cameras, const gdouble * obs,
     a11 = f1 * iz;
     for (gint j = 0; j < 3; j++)
       g[j] = FMA (J0[j], a00, FMA (J1[j], a11, g[j]));
-    /* J·C·Jᵀ, the point's own covariance in this view */
-    NAME (times) (C, J0, D);
-    m00 = NAME (dot) (D, J0);
-    m01 = NAME (dot) (D, J1);
-    NAME (times) (C, J1, D);
-    m11 = NAME (dot) (D, J1);
+    /* J·C·Jᵀ, the point's own covariance in this view, by way of J·L⁻ᵀ */
+    s1 = FNMA (l10, J0[0], J0[1]);
+    s2 = FMA (u20, J0[0], FNMA (l21, J0[1], J0[2]));
+    t1 = FNMA (l10, J1[0], J1[1]);
+    t2 = FMA (u20, J1[0], FNMA (l21, J1[1], J1[2]));
     w = iz * iz;
-    m00 = m00 * w;
-    m01 = m01 * w;
-    m11 = m11 * w;
+    a00 = i0 * w;
+    a11 = i1 * w;
+    w = i2 * w;
+    m00 = FMA (a00 * J0[0], J0[0], FMA (a11 * s1, s1, w * s2 * s2));
+    a00 = a00 * J1[0];
+    a11 = a11 * t1;
+    w = w * t2;
+    m01 = FMA (a00, J0[0], FMA (a11, s1, w * s2));
+    m11 = FMA (a00, J1[0], FMA (a11, t1, w * t2));
     /* With A = 1 − I·J·C·Jᵀ eᵀ·A⁻¹·I·e is by how much χ² falls when this view is left
      * out: its normalised error against the others, 2 degrees of freedom. */
     a00 = FNMA (ixx, m00, FNMA (ixy, m01, 1.));
@@ -474,7 +464,9 @@ NAME (solve_group) (const TriangulateCamera * cameras, const gdouble * obs,
     depth = CHOOSE (seen & ~GREATER (z, depth), z, depth);
   }
   /* One more step with the matrix at hand. */
-  NAME (times) (C, g, D);
+  D[0] = FMA (C[0], g[0], FMA (C[1], g[1], C[2] * g[2]));
+  D[1] = FMA (C[1], g[0], FMA (C[3], g[1], C[4] * g[2]));
+  D[2] = FMA (C[2], g[0], FMA (C[4], g[1], C[5] * g[2]));
   /* Two views have one degree of freedom together, none apart. */
   worst = CHOOSE (GREATER (count, 2.), worst / per, chi2);
 
