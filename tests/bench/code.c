@@ -2,23 +2,13 @@
  * every square under every placement.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include <time.h>
 
 #include "gst/math/random.h"
 #include "gst/pattern/code.h"
+#include "tests/bench/clock.h"
 #include "tests/common/bruteplace.h"
 
 #define M CLOTH_PATCH_MARGIN
-
-/* Of this thread alone, in ms: others may be at work on the machine. */
-static gdouble
-now (void)
-{
-  struct timespec time;
-
-  clock_gettime (CLOCK_THREAD_CPUTIME_ID, &time);
-  return 1e3 * (gdouble) time.tv_sec + 1e-6 * (gdouble) time.tv_nsec;
-}
 
 /* The board's part at (@left, @top), turned by half a turn; one dot in ten is misread. */
 static ClothPatch *
@@ -73,18 +63,18 @@ measure (const ClothPattern * pattern, gint columns, gint rows, gboolean brute)
   truth.weight = 14;
   for (guint voted = 0; voted < 2; voted++)
     for (gint run = 0; run < 10; run++) {
-      const gdouble start = now ();
+      const gdouble start = cpu_ms ();
 
       cloth_placer_run (placer, patch, &cloth_place_cloth, &truth, voted,
           &best);
-      least[voted] = MIN (least[voted], now () - start);
+      least[voted] = MIN (least[voted], cpu_ms () - start);
       right &= best.rotation == truth.rotation && best.column == truth.column
           && best.row == truth.row;
     }
   if (brute) {
-    slow = now ();
+    slow = cpu_ms ();
     test_brute_place (pattern, patch, &cloth_place_cloth, NULL, 0, &best);
-    slow = now () - slow;
+    slow = cpu_ms () - slow;
   }
   g_print ("%s board of %d by %d, patch of %d by %d placed %s in %.3f ms, with "
       "the memory's vote in %.3f ms", pattern->code ? "coded" : "plain",
@@ -108,7 +98,7 @@ main (void)
     g_autoptr (ClothPattern) plain =
         cloth_pattern_new_checker (size, size, 0.01, 0, TRUE, NULL);
     g_autoptr (ClothPattern) pattern = cloth_pattern_copy (plain);
-    const gdouble start = now ();
+    const gdouble start = cpu_ms ();
     gint least;
 
     if (!cloth_code_generate (pattern, CLOTH_CODE_DOT_RATIO, 1, &least, &error)) {
@@ -116,7 +106,7 @@ main (void)
       return 1;
     }
     g_print ("%d by %d squares: window %d, code made in %.1f ms\n", size, size,
-        least, now () - start);
+        least, cpu_ms () - start);
     measure (pattern, size, size, size <= 100);
     measure (pattern, size / 2, size / 2, size <= 100);
     measure (pattern, 20, 20, size <= 100);

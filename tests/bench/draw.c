@@ -4,7 +4,8 @@
 #include "gst/vision/draw.h"
 
 #include <cairo.h>
-#include <time.h>
+
+#include "tests/bench/clock.h"
 
 #define WIDTH 1920
 #define HEIGHT 1080
@@ -13,16 +14,6 @@
 #define ROUNDS 20
 
 static gfloat quads[COLUMNS * ROWS][2][4];
-
-/* Processor time, ms: other programs running meanwhile count less. */
-static gdouble
-now (void)
-{
-  struct timespec t;
-
-  clock_gettime (CLOCK_THREAD_CPUTIME_ID, &t);
-  return (gdouble) t.tv_sec * 1e3 + (gdouble) t.tv_nsec * 1e-6;
-}
 
 /* A grid that fills the picture, bent so that no line runs along the pixels. */
 static void
@@ -64,7 +55,7 @@ time_own (const ClothCanvas * canvas, gboolean fill, gboolean outline,
   gint round, i, k;
 
   for (round = 0; round < ROUNDS; round++) {
-    gdouble start = now ();
+    gdouble start = cpu_ms ();
 
     for (i = 0; i < COLUMNS * ROWS; i++) {
       const gfloat *x = quads[i][0], *y = quads[i][1];
@@ -88,7 +79,7 @@ time_own (const ClothCanvas * canvas, gboolean fill, gboolean outline,
         cloth_draw_number (canvas, i % COLUMNS, at, right, down, 1.5f, &colour);
       }
     }
-    best = MIN (best, now () - start);
+    best = MIN (best, cpu_ms () - start);
   }
   return best;
 }
@@ -104,7 +95,7 @@ time_cairo (gboolean fill)
 
   cairo_set_line_width (cr, 1.5);
   for (round = 0; round < ROUNDS; round++) {
-    gdouble start = now ();
+    gdouble start = cpu_ms ();
 
     for (i = 0; i < COLUMNS * ROWS; i++) {
       const gfloat *x = quads[i][0], *y = quads[i][1];
@@ -121,7 +112,7 @@ time_cairo (gboolean fill)
       cairo_stroke (cr);
     }
     cairo_surface_flush (surface);
-    best = MIN (best, now () - start);
+    best = MIN (best, cpu_ms () - start);
   }
   cairo_destroy (cr);
   cairo_surface_destroy (surface);

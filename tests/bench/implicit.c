@@ -3,20 +3,11 @@
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <stdio.h>
-#include <time.h>
 
 #include "gst/sim/sim.h"
+#include "tests/bench/clock.h"
 
 #define FRAMES 25
-
-static gdouble
-cpu_seconds (void)
-{
-  struct timespec t;
-
-  clock_gettime (CLOCK_THREAD_CPUTIME_ID, &t);
-  return (gdouble) t.tv_sec + 1e-9 * (gdouble) t.tv_nsec;
-}
 
 static gdouble
 measure (ClothIntegrator integrator, gdouble stretch, gdouble damping,
@@ -46,10 +37,10 @@ measure (ClothIntegrator integrator, gdouble stretch, gdouble damping,
   }
   sim = cloth_sim_new (scene, (const ClothModel * const *) models, n_models,
       &options, NULL);
-  start = cpu_seconds ();
+  start = cpu_ms ();
   for (guint frame = 1; frame <= FRAMES; frame++)
     cloth_sim_advance (sim, 0.02 * frame);
-  factor = 0.02 * FRAMES * n_models / (cpu_seconds () - start);
+  factor = 20. * FRAMES * n_models / (cpu_ms () - start);
   printf ("%s, %4.0f N/m, β %.0e s, %2u models, step %.3f ms%s: "
       "%6.2f × real time%s\n",
       integrator == CLOTH_INTEGRATOR_IMPLICIT ? "implicit" : "explicit",

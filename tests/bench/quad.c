@@ -3,10 +3,10 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <math.h>
 #include <stdlib.h>
-#include <time.h>
 
 #include "gst/vision/quad.h"
 #include "gst/vision/saddle.h"
+#include "tests/bench/clock.h"
 
 #define FRAMES 24
 #define ROUNDS 5
@@ -18,20 +18,10 @@ typedef struct
   gdouble side;                 /* px */
 } Scene;
 
-/* Of this thread alone, in µs: others may be at work on the machine. */
-static gint64
-now (void)
-{
-  struct timespec time;
-
-  clock_gettime (CLOCK_THREAD_CPUTIME_ID, &time);
-  return (gint64) time.tv_sec * 1000000 + time.tv_nsec / 1000;
-}
-
 static gint
 compare (gconstpointer a, gconstpointer b)
 {
-  gint64 d = *(const gint64 *) a - *(const gint64 *) b;
+  gdouble d = *(const gdouble *) a - *(const gdouble *) b;
 
   return d < 0 ? -1 : d > 0;
 }
@@ -76,7 +66,7 @@ measure (const Scene * scene)
   g_autoptr (GRand) rand = g_rand_new_with_seed (1);
   const ClothSaddleParams saddle_params = cloth_saddle_default_params ();
   const ClothQuadParams params = cloth_quad_default_params ();
-  gint64 find[FRAMES * ROUNDS], track[FRAMES * ROUNDS];
+  gdouble find[FRAMES * ROUNDS], track[FRAMES * ROUNDS];
   guint8 *pictures[FRAMES];
   guint tracked = 0, least = G_MAXUINT;
 
@@ -90,32 +80,30 @@ measure (const Scene * scene)
     const ClothSaddle *saddles;
     const ClothQuad *quads;
     guint n_candidates, n_saddles, n;
-    gint64 start = now (), middle;
+    gdouble start = cpu_ms (), middle;
 
     cloth_saddle_detector_run (detector, &saddle_params, &image,
         CLOTH_SIMD_BEST);
     saddles = cloth_saddle_detector_get_saddles (detector, &n_saddles);
     candidates = cloth_saddle_detector_get_candidates (detector, &n_candidates);
-    middle = now ();
+    middle = cpu_ms ();
     quads = cloth_quad_tracker_run (tracker, &params, &image, saddles,
         n_saddles, candidates, n_candidates, &n);
-    track[i] = now () - middle;
+    track[i] = cpu_ms () - middle;
     find[i] = middle - start;
     tracked = 0;
     for (guint k = 0; k < n; k++)
       tracked += quads[k].state == CLOTH_QUAD_TRACKED;
     least = MIN (least, tracked);
   }
-  g_print ("%s: first picture %.3f ms, ", scene->what,
-      1e-3 * (gdouble) track[0]);
-  qsort (find, FRAMES * ROUNDS, sizeof (gint64), compare);
-  qsort (track, FRAMES * ROUNDS, sizeof (gint64), compare);
+  g_print ("%s: first picture %.3f ms, ", scene->what, track[0]);
+  qsort (find, FRAMES * ROUNDS, sizeof (gdouble), compare);
+  qsort (track, FRAMES * ROUNDS, sizeof (gdouble), compare);
   g_print
       ("middle %.3f ms, slowest %.3f ms a picture (saddles before: %.3f ms); "
       "%u squares or more tracked; the paper: 5 to 10 s\n",
-      1e-3 * (gdouble) track[FRAMES * ROUNDS / 2],
-      1e-3 * (gdouble) track[FRAMES * ROUNDS - 1],
-      1e-3 * (gdouble) find[FRAMES * ROUNDS / 2], least);
+      track[FRAMES * ROUNDS / 2],
+      track[FRAMES * ROUNDS - 1], find[FRAMES * ROUNDS / 2], least);
   for (guint f = 0; f < FRAMES; f++)
     g_free (pictures[f]);
 }

@@ -3,12 +3,12 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <math.h>
 #include <stdlib.h>
-#include <time.h>
 
 #include "gst/cv/reference.h"
 #include "gst/vision/corner.h"
 #include "gst/vision/saddle-mask.h"
 #include "gst/vision/saddle.h"
+#include "tests/bench/clock.h"
 
 #define WIDTH 1920
 #define HEIGHT 1080
@@ -34,30 +34,15 @@ board (void)
   return image;
 }
 
-/* Of this thread alone, in µs: others may be at work on the machine. */
-static gint64
-now (void)
-{
-  struct timespec time;
-
-  clock_gettime (CLOCK_THREAD_CPUTIME_ID, &time);
-  return (gint64) time.tv_sec * 1000000 + time.tv_nsec / 1000;
-}
-
-static gint
-compare (gconstpointer a, gconstpointer b)
-{
-  gint64 d = *(const gint64 *) a - *(const gint64 *) b;
-
-  return d < 0 ? -1 : d > 0;
-}
-
 /* Fastest of ROUNDS times, in ms: whatever else runs only adds to it. */
 static gdouble
-fastest (gint64 * times)
+fastest (const gdouble * times)
 {
-  qsort (times, ROUNDS, sizeof (gint64), compare);
-  return (gdouble) times[0] * 1e-3;
+  gdouble least = times[0];
+
+  for (gint i = 1; i < ROUNDS; i++)
+    least = MIN (least, times[i]);
+  return least;
 }
 
 int
@@ -72,15 +57,15 @@ main (void)
   ClothSimd best = cloth_simd_resolve (CLOTH_SIMD_BEST);
   ClothSaddleKernel kernel;
   ClothSaddleMask mask = {.width = WIDTH,.height = HEIGHT };
-  gint64 times[ROUNDS];
+  gdouble times[ROUNDS];
   gdouble peer, own = 0;
   guint n = 0;
 
   for (gint i = 0; i < ROUNDS; i++) {
-    gint64 start = now ();
+    gdouble start = cpu_ms ();
     cloth_cv_saddle_mask (reference, data, WIDTH, HEIGHT, WIDTH, params.sigma,
         params.epsilon, &n);
-    times[i] = now () - start;
+    times[i] = cpu_ms () - start;
   }
   peer = fastest (times);
   g_print ("saddle mask 1920x1080, one core, sigma %.1f:\n"
@@ -90,10 +75,10 @@ main (void)
   cloth_saddle_kernel_init (&kernel, params.sigma);
   for (ClothSimd level = CLOTH_SIMD_SCALAR; level <= best; level++) {
     for (gint i = 0; i < ROUNDS; i++) {
-      gint64 start = now ();
+      gdouble start = cpu_ms ();
       cloth_saddle_mask_run (&mask, &kernel, &image,
           (gint) (params.epsilon / kernel.scale), level);
-      times[i] = now () - start;
+      times[i] = cpu_ms () - start;
     }
     own = fastest (times);
     g_print ("  %s: %.3f ms, %.1f times as fast\n", names[level], own,
@@ -109,9 +94,9 @@ main (void)
 
     params.refine = mode;
     for (gint i = 0; i < ROUNDS; i++) {
-      gint64 start = now ();
+      gdouble start = cpu_ms ();
       cloth_saddle_detector_run (detector, &params, &image, CLOTH_SIMD_BEST);
-      times[i] = now () - start;
+      times[i] = cpu_ms () - start;
     }
     cloth_saddle_detector_get_candidates (detector, &n_candidates);
     cloth_saddle_detector_get_saddles (detector, &n_saddles);
@@ -129,24 +114,24 @@ main (void)
     saddles = cloth_saddle_detector_get_saddles (detector, &n_saddles);
     xy = g_new (gfloat, 2 * n_saddles);
     for (gint i = 0; i < ROUNDS; i++) {
-      gint64 start;
+      gdouble start;
       for (guint k = 0; k < n_saddles; k++) {
         xy[2 * k] = saddles[k].x;
         xy[2 * k + 1] = saddles[k].y;
       }
-      start = now ();
+      start = cpu_ms ();
       cloth_cv_corner_sub_pix (data, WIDTH, HEIGHT, WIDTH, 5, xy, n_saddles);
-      times[i] = now () - start;
+      times[i] = cpu_ms () - start;
     }
     peer = fastest (times);
     for (gint i = 0; i < ROUNDS; i++) {
-      gint64 start = now ();
+      gdouble start = cpu_ms ();
       for (guint k = 0; k < n_saddles; k++) {
         ClothCornerFit fit;
         cloth_corner_refine (&image, saddles[k].x, saddles[k].y, &corner,
             CLOTH_SIMD_BEST, &fit);
       }
-      times[i] = now () - start;
+      times[i] = cpu_ms () - start;
     }
     own = fastest (times);
     g_print ("corner model, radius 5: %.2f us a corner; OpenCV cornerSubPix "
