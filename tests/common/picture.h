@@ -20,7 +20,8 @@ TestPicture *test_picture_load (const gchar * path);
 TestPicture *test_picture_copy (const TestPicture * picture);
 void test_picture_disc (TestPicture * picture, gdouble x, gdouble y,
     gdouble radius, gint grey, guint32 seed);
-void test_picture_keep (const gchar * name, const ClothImage * image);
+void test_picture_keep (const gchar * name, const guint8 * data, gint width,
+    gint height);
 void test_picture_free (TestPicture * picture);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (TestPicture, test_picture_free)

@@ -361,7 +361,8 @@ test_discs (void)
             g_autofree gchar *name = g_strdup_printf ("disc-%s-%.0f-%s-%u.pgm",
                 real->name, 100 * shares[s], names[g], p);
 
-            test_picture_keep (name, &picture->image);
+            test_picture_keep (name, picture->data, picture->image.width,
+                picture->image.height);
             g_test_message ("%s: %u wrong, %u seen", name,
                 tally.wrong - before.wrong, view->n_seen);
           }

@@ -197,7 +197,8 @@ keep (const gchar * name, const ClothImage * luma, const ClothDot * dots,
             picture->data[(y + k) * picture->image.stride + x] =
             dots[i].touches ? 255 : 0;
     }
-  test_picture_keep (name, &picture->image);
+  test_picture_keep (name, picture->data, picture->image.width,
+      picture->image.height);
 }
 
 /* Labels of all cameras. */

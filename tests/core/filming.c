@@ -5,11 +5,11 @@
 #include "gst/vision/render.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "gst/pattern/texture.h"
 #include "gst/vision/saddle.h"
+#include "tests/common/picture.h"
 #ifdef HAVE_CLOTH_CV
 #include "gst/cv/reference.h"
 #endif
@@ -188,24 +188,6 @@ board_paint (const ClothPattern * pattern, gdouble px_per_m)
       texture->width, 1, light, origin, size);
 }
 
-/* For the eye: run with CLOTH_TEST_PICTURES=folder. */
-static void
-keep (const gchar * name, const guint8 * data, gint width, gint height)
-{
-  const gchar *folder = g_getenv ("CLOTH_TEST_PICTURES");
-  g_autofree gchar *path = NULL;
-  FILE *file;
-
-  if (!folder)
-    return;
-  path = g_build_filename (folder, name, NULL);
-  file = fopen (path, "wb");
-  g_assert_nonnull (file);
-  fprintf (file, "P5 %d %d 255\n", width, height);
-  fwrite (data, 1, (gsize) width * (gsize) height, file);
-  fclose (file);
-}
-
 /* ---- corners ---- */
 
 typedef void (*Truth) (const gdouble X[3], gdouble px[2]);
@@ -323,7 +305,7 @@ test_corners (void)
     g_autofree guint8 *data = film (mesh, paint, &options);
     g_autofree gchar *name = g_strdup_printf ("corners%u.pgm", i);
 
-    keep (name, data, WIDTH, HEIGHT);
+    test_picture_keep (name, data, WIDTH, HEIGHT);
     check_corners (cases[i].name, data, cases[i].plane, pattern, pinhole,
         CLOTH_SADDLE_REFINE_MODEL);
     check_corners ("by Newton's method", data, cases[i].plane, pattern,
@@ -409,7 +391,7 @@ test_lens (void)
   };
   g_autofree guint8 *data = film (mesh, paint, &options);
 
-  keep ("lens.pgm", data, WIDTH, HEIGHT);
+  test_picture_keep ("lens.pgm", data, WIDTH, HEIGHT);
   check_corners ("barrel", data, &tilted, pattern, barrel,
       CLOTH_SADDLE_REFINE_STREAM);
 }
@@ -493,7 +475,7 @@ test_no_gaps (void)
     mesh->positions[3 * i + 1] += 0.004 * sin (i * 12.9898);
   }
   data = film (mesh, white, &options);
-  keep ("gaps.pgm", data, WIDTH, HEIGHT);
+  test_picture_keep ("gaps.pgm", data, WIDTH, HEIGHT);
   for (gint y = 0; y < HEIGHT - 5; y++)
     for (gint x = 0; x < 540; x++)
       dark += data[y * WIDTH + x] != 255;
@@ -530,7 +512,7 @@ test_occlusion (void)
     const Options options = { NULL };
     g_autofree guint8 *data = film (&mesh, paint, &options);
 
-    keep ("crossing.pgm", data, WIDTH, HEIGHT);
+    test_picture_keep ("crossing.pgm", data, WIDTH, HEIGHT);
     for (gint y = 130; y < 350; y++) {
       for (gint x = 170; x < 470; x++) {
         if (x < 319)
@@ -564,7 +546,7 @@ test_back_and_unknown (void)
   holed->positions[3 * 44] = NAN;
   holed->positions[3 * 77 + 1] = -2.5;
   hole = film (holed, paint, &options);
-  keep ("hole.pgm", hole, WIDTH, HEIGHT);
+  test_picture_keep ("hole.pgm", hole, WIDTH, HEIGHT);
   /* vertex 44 is at column 4, row 4; 20 px a cell */
   g_assert_cmpint (hole[229 * WIDTH + 309], ==, 0);
   g_assert_cmpint (hole[169 * WIDTH + 249], >, 0);
@@ -643,7 +625,7 @@ test_shutter (void)
   /* The middle moves on for half the exposure; a streak's variance is e²v²/12.
    * The square at rest ends on borders of pixels: its sum over their centres lacks 1/12,
    * where the streak's has 1/12 too much. */
-  keep ("streak.pgm", b, WIDTH, HEIGHT);
+  test_picture_keep ("streak.pgm", b, WIDTH, HEIGHT);
   middle_of (b, n, t);
   g_test_message ("streak: middle %+.4f %+.4f, variance %+.4f %+.4f",
       n[0] - m[0], n[1] - m[1], t[0] - s[0], t[1] - s[1]);
@@ -654,7 +636,7 @@ test_shutter (void)
 
   /* Row y is read 0.02·y/479 s later: the square leans, its rows move on. A row that was
    * y0 is seen at y = y0/(1 − 200·0.02/479). */
-  keep ("leaning.pgm", c, WIDTH, HEIGHT);
+  test_picture_keep ("leaning.pgm", c, WIDTH, HEIGHT);
   middle_of (c, n, t);
   {
     const gdouble stretch = 1 / (1 - 200 * 0.02 / 479);
@@ -735,7 +717,7 @@ test_shading_shift (void)
   g_free (disc);
   a = film (mesh, paint, &plain);
   b = film (mesh, paint, &shaded);
-  keep ("disc.pgm", b, WIDTH, HEIGHT);
+  test_picture_keep ("disc.pgm", b, WIDTH, HEIGHT);
   middle_of (a, m, s);
   middle_of (b, n, t);
   g_test_message ("shift %+.4f %+.4f", n[0] - m[0], n[1] - m[1]);
@@ -875,7 +857,7 @@ test_same_bytes (void)
   g_autofree guint8 *plain = film (mesh, paint, &without);
   const ClothEffect *effect;
 
-  keep ("everything.pgm", a, WIDTH, HEIGHT);
+  test_picture_keep ("everything.pgm", a, WIDTH, HEIGHT);
   for (guint threads = 1; threads <= 5; threads += 2)
     for (gint simd = CLOTH_SIMD_SCALAR; simd <= CLOTH_SIMD_AVX512; simd++) {
       const Options options = { NULL, all, velocity, threads,

@@ -2,13 +2,13 @@
  * forms; and what the dots of a coded board do to the paper's confidence and saddles.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "tests/common/picture.h"
 #include "tests/common/render.h"
 
 #include "gst/pattern/code.h"
 #include "gst/pattern/texture.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 static ClothPattern *
@@ -21,24 +21,6 @@ board (gint columns, gint rows, gboolean first_black, gboolean with_code)
     g_assert_true (cloth_code_generate (pattern, CLOTH_CODE_DOT_RATIO, 1, NULL,
             NULL));
   return pattern;
-}
-
-/* For the eye: run with CLOTH_TEST_PICTURES=folder. */
-static void
-keep_picture (const gchar * name, const guint8 * data, gint width, gint height)
-{
-  const gchar *folder = g_getenv ("CLOTH_TEST_PICTURES");
-  g_autofree gchar *path = NULL;
-  FILE *file;
-
-  if (!folder)
-    return;
-  path = g_build_filename (folder, name, NULL);
-  file = fopen (path, "wb");
-  g_assert_nonnull (file);
-  fprintf (file, "P5 %d %d 255\n", width, height);
-  fwrite (data, 1, (gsize) width * (gsize) height, file);
-  fclose (file);
 }
 
 /* One pixel a millimetre, half a pixel off the texture's own grid: the first pixel's
@@ -58,7 +40,7 @@ test_flat_is_texture (void)
         cloth_pattern_texture (pattern, 1000, 20, 220, NULL);
     gint most = 0;
 
-    keep_picture ("flat.pgm", render->data, 450, 350);
+    test_picture_keep ("flat.pgm", render->data, 450, 350);
     g_assert_cmpint (texture->width, ==, 450);
     g_assert_cmpint (texture->height, ==, 350);
     for (gint i = 0; i < 450 * 350; i++)
@@ -121,7 +103,7 @@ test_bent_edges (void)
   gdouble most = 0;
   gint edges = 0;
 
-  keep_picture ("bent.pgm", render->data, 640, 480);
+  test_picture_keep ("bent.pgm", render->data, 640, 480);
   for (gint row = 0; row < 8; row++) {
     for (gint column = 1; column < 8; column++) {
       /* Rows of pixels across the vertical edge at half the square's height. */
@@ -169,7 +151,7 @@ test_occlusion (void)
   gdouble sum = 0, squares = 0;
   gint n = 0, seen = 0;
 
-  keep_picture ("occluded.pgm", render->data, 376, 240);
+  test_picture_keep ("occluded.pgm", render->data, 376, 240);
   g_assert_cmpmem (render->data, 376 * 240, again->data, 376 * 240);
   scene.seed = 6;
   other = test_render (&scene);
@@ -214,7 +196,7 @@ test_self_occlusion (void)
   TestScene scene = { pattern, &camera, pipe_surface, NULL, 30, 200, 90 };
   g_autoptr (TestRender) render = test_render (&scene);
 
-  keep_picture ("pipe.pgm", render->data, 320, 240);
+  test_picture_keep ("pipe.pgm", render->data, 320, 240);
   for (gint column = 0; column <= 8; column++) {
     const gdouble angle = (column * 0.05 - 0.2) / 0.05;
     /* Tangent from the camera, 1 m off the axis: cos(angle) = 0.05. */
@@ -239,7 +221,7 @@ test_dots_are_harmless (void)
   g_autoptr (TestRender) render = test_render (&scene);
   gdouble least_corner = G_MAXDOUBLE, most_dot = 0, least_confidence = 1;
 
-  keep_picture ("coded.pgm", render->data, 224, 224);
+  test_picture_keep ("coded.pgm", render->data, 224, 224);
   for (gint y = 20; y < 204; y++) {
     for (gint x = 20; x < 204; x++) {
       const guint8 *p = render->data + y * 224 + x;
