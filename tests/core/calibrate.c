@@ -282,7 +282,7 @@ test_outliers (void)
   g_autoptr (GError) error = NULL;
   g_autoptr (ClothCalibration) result = NULL, again = NULL;
   ClothCalibrateParams params;
-  gdouble worst = 0;
+  gdouble worst;
 
   cloth_random_init (&random, 3);
   problem_init (&p, 2, 9, 7, 0.03, 15);
@@ -306,16 +306,7 @@ test_outliers (void)
   cloth_calibrate_params_init (&params);
   result = cloth_calibrate (&p.input, &params, NULL, NULL, NULL, &error);
   g_assert_no_error (error);
-  for (guint c = 0; c < 2; c++) {
-    for (guint i = 0; i < 12; i++) {
-      gdouble sd, zero;
-      gdouble value = parameter (&result->rig->cameras[c], i, &sd);
-
-      if (sd > 0)
-        worst = fmax (worst, fabs (value - parameter (&truth[c], i, &zero))
-            / sd);
-    }
-  }
+  worst = worst_deviation (result->rig, truth, 12);
   g_test_message ("RMS with outliers %.2f px, scatter without %.3f px, "
       "parameters within %.1f σ", result->rms, result->cameras[0].excess,
       worst);

@@ -120,12 +120,7 @@ test_rational (void)
     params.leave_out = 0;
     result = cloth_calibrate (&p.input, &params, NULL, NULL, NULL, &error);
     g_assert_no_error (error);
-    for (guint i = 0; i < 4; i++) {
-      gdouble sd, zero;
-      gdouble value = parameter (&result->rig->cameras[0], i, &sd);
-
-      worst = fmax (worst, fabs (value - parameter (&truth, i, &zero)) / sd);
-    }
+    worst = fmax (worst, worst_deviation (result->rig, &truth, 4));
   }
   g_test_message ("focal lengths and centres within %.1f σ", worst);
   g_assert_cmpfloat (worst, <, 4);
@@ -141,7 +136,7 @@ test_shreds (void)
   g_autoptr (GError) error = NULL;
   g_autoptr (ClothCalibration) result = NULL;
   ClothCalibrateParams params;
-  gdouble worst = 0;
+  gdouble worst;
   guint least = 99;
 
   cloth_random_init (&random, 3);
@@ -162,16 +157,7 @@ test_shreds (void)
   cloth_calibrate_params_init (&params);
   result = cloth_calibrate (&p.input, &params, NULL, NULL, NULL, &error);
   g_assert_no_error (error);
-  for (guint c = 0; c < 2; c++) {
-    for (guint i = 0; i < 12; i++) {
-      gdouble sd, zero;
-      gdouble value = parameter (&result->rig->cameras[c], i, &sd);
-
-      if (sd > 0)
-        worst = fmax (worst, fabs (value - parameter (&truth[c], i, &zero))
-            / sd);
-    }
-  }
+  worst = worst_deviation (result->rig, truth, 12);
   g_test_message ("least view %u corners, %u and %u views used, RMS %.3f px, "
       "parameters within %.1f σ", least, result->cameras[0].n_views,
       result->cameras[1].n_views, result->rms, worst);

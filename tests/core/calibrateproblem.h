@@ -203,3 +203,24 @@ parameter (const ClothCamera * c, guint i, gdouble * sd)
     return c->k[i - 4];
   return i < 15 ? 0 : c->t[i - 15];
 }
+
+/* How many standard deviations the first @n parameters of cameras are from the truth, at the
+ * most. Those that a lens has not got are as in the truth. */
+static inline gdouble
+worst_deviation (const ClothRig * rig, const ClothCamera * truth, guint n)
+{
+  gdouble worst = 0;
+
+  for (guint c = 0; c < rig->n_cameras; c++) {
+    for (guint i = 0; i < n; i++) {
+      gdouble sd, none, value = parameter (&rig->cameras[c], i, &sd);
+      gdouble error = fabs (value - parameter (&truth[c], i, &none));
+
+      if (sd > 0)
+        worst = fmax (worst, error / sd);
+      else
+        g_assert_cmpfloat (error, ==, 0);
+    }
+  }
+  return worst;
+}
