@@ -24,7 +24,6 @@
 static void
 diagnosis_clear (ClothDiagnosis * d)
 {
-  g_clear_pointer (&d->recordings, g_ptr_array_unref);
   g_clear_pointer (&d->studies, g_ptr_array_unref);
   cloth_model_free (d->model);
   cloth_gap_candidates_free (d->candidates);
@@ -45,6 +44,11 @@ diagnosis_clear (ClothDiagnosis * d)
   cloth_gap_result_free (d->result);
   g_free (d->what);
   g_free (d->null_evidence);
+  for (guint i = 0; d->filmed && i < d->recordings->len; i++)
+    g_free (d->filmed[i]);
+  g_free (d->filmed);
+  g_clear_pointer (&d->camera_effects, g_array_unref);
+  g_clear_pointer (&d->recordings, g_ptr_array_unref);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (ClothDiagnosis, diagnosis_clear)
@@ -125,7 +129,17 @@ load (ClothDiagnosis * d, GError ** error)
 static void
 skip (gpointer data, const ClothEffect * effect, const gchar * reason)
 {
-  cloth_gap_result_add_untested (data, effect, reason);
+  ClothDiagnosis *d = data;
+
+  if (effect->side == CLOTH_EFFECT_CAMERA || effect->side == CLOTH_EFFECT_IMAGE) {
+    const gchar *blind = cloth_camera_why_not (effect);
+
+    if (d->has_camera_errors && !blind)
+      return;
+    if (cloth_diagnosis_has_sights (d))
+      reason = blind ? blind : "No point was seen by two cameras at a time.";
+  }
+  cloth_gap_result_add_untested (d->result, effect, reason);
 }
 
 /* The model's free numbers: fitted on the baselines, else on the takes. */
@@ -242,9 +256,10 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
 
   if (!load (d, error))
     return FALSE;
+  cloth_diagnosis_find_faults (d);
   d->candidates =
       cloth_gap_candidates_new (model, cloth_diagnosis_recording (d, 0),
-      d->options->effects, d->options->n_baselines > 0, skip, d->result, error);
+      d->options->effects, d->options->n_baselines > 0, skip, d, error);
   if (!d->candidates)
     return FALSE;
   n_all = d->candidates->directions->len;

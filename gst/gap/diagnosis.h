@@ -1,9 +1,10 @@
 /* A diagnosis under way; private to diagnose.c, name.c, select.c, rest.c, judge.c,
- * where.c and propose.c.
+ * where.c, fault.c and propose.c.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
+#include "gst/gap/camera.h"
 #include "gst/gap/diagnose.h"
 #include "gst/gap/energy.h"
 #include "gst/gap/score.h"
@@ -25,6 +26,17 @@ G_BEGIN_DECLS
 /* Most effects that are accepted. */
 #define CLOTH_DIAGNOSIS_MAX_ACCEPTED 3
 
+/* What was wrong with a camera, or, one past the last, with all alike. */
+typedef struct
+{
+  guint candidate, camera;
+  const ClothEffect *effect;
+  gdouble values[CLOTH_EFFECT_MAX_PARAMETERS];
+  gdouble sigmas[CLOTH_EFFECT_MAX_PARAMETERS];
+  gdouble probability, p_value, constancy_p_value;
+  gboolean small;               /* it hardly moves points, but it is there */
+} ClothCameraFault;
+
 typedef struct
 {
   ClothTake **takes;
@@ -34,6 +46,15 @@ typedef struct
   ClothGapResult *result;
   GPtrArray *recordings;        /* of the takes, the baselines, the hold-outs */
   GPtrArray *studies;           /* of the takes and the baselines */
+  /* what was wrong with the cameras; the recordings are without it, their positions with
+   * it stand in @filmed, where there is any; mean square of what it moved the points by, m² */
+  ClothCameraFault faults[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
+  guint n_faults;
+  gdouble **filmed;
+  gdouble camera_square, shrink_of_faults;
+  gboolean has_camera_errors;
+  ClothCameraErrors camera_errors;
+  GArray *camera_effects;       /* ClothGapEffect: those found first */
   ClothModel *model;            /* with its free numbers fitted */
   ClothGapCandidates *candidates;
   gdouble *precisions;          /* of the free numbers */
@@ -100,6 +121,11 @@ cloth_diagnosis_is_held_out (const ClothDiagnosis * d, guint block)
 /* What comes now: from where to where it gets, and of the rest of it each simulation. */
 void cloth_diagnosis_begin_part (ClothDiagnosis * d, gdouble from, gdouble to,
     gdouble each, const gchar * what);
+
+/* Cameras. */
+gboolean cloth_diagnosis_has_sights (const ClothDiagnosis * d);
+guint cloth_diagnosis_count_faults (const ClothDiagnosis * d);
+void cloth_diagnosis_find_faults (ClothDiagnosis * d);
 
 /* The model with the other force model. */
 ClothModel *cloth_diagnosis_other_model (const ClothDiagnosis * d);

@@ -86,7 +86,7 @@ record (Search * s, ClothScene * scene, const ClothModel * model,
 
 /* Where the cloth hangs still, before any motion that begins so. */
 static gboolean
-settle (Search * s, ClothMotion motion, gdouble ** rest, GError ** error)
+settle (Search * s, ClothStageMotion motion, gdouble ** rest, GError ** error)
 {
   g_autoptr (ClothModel) model = cloth_model_copy (s->e->model);
   g_autoptr (ClothRecording) r = NULL;
@@ -145,8 +145,8 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
 /* Features of the residuals with one member each; FALSE without an error when one
  * diverges. */
 static gboolean
-follow (Search * s, const ClothStudy * study, ClothMotion motion, gdouble * z,
-    GError ** error)
+follow (Search * s, const ClothStudy * study, ClothStageMotion motion,
+    gdouble * z, GError ** error)
 {
   g_autoptr (GPtrArray) models = g_ptr_array_new_with_free_func (
       (GDestroyNotify) cloth_model_free);
@@ -241,7 +241,7 @@ weigh (const Search * s, const ClothStudy * study, const gdouble * z,
 
 /* What a capture would bring: NaN without an error when something diverges. */
 static gdouble
-try_motion (Search * s, ClothMotion motion, gdouble fps, GError ** error)
+try_motion (Search * s, ClothStageMotion motion, gdouble fps, GError ** error)
 {
   gboolean edge = motion == CLOTH_MOTION_EDGE;
   const ClothRecording *take = s->e->recording;
@@ -276,7 +276,7 @@ try_motion (Search * s, ClothMotion motion, gdouble fps, GError ** error)
 /* Adds a trial: FALSE only when the search was stopped. A capture that can't be simulated
  * is one that is not proposed. */
 static gboolean
-add_trial (Search * s, ClothMotion motion, gdouble fps, GArray * trials,
+add_trial (Search * s, ClothStageMotion motion, gdouble fps, GArray * trials,
     GError ** error)
 {
   g_autoptr (GError) failed = NULL;

@@ -54,7 +54,7 @@ typedef struct {
  * Since: 0.1
  */
 typedef struct {
-  ClothMotion motion;
+  ClothStageMotion motion;
   gdouble fps;
   gdouble evidence;
 } ClothTrial;

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/gap/bridge.h"
 #include "gst/gap/diagnosis.h"
 #include "gst/gap/extent.h"
 
@@ -13,6 +14,11 @@
 #define WINDOW_GAIN 1600.
 /* Variance of a gap that is hardly larger, over that before. */
 #define HARDLY_LARGER 1.05
+/* What parts faults of cameras that look alike. */
+static const gchar *const capture_sentence =
+    "Film a board that moves with all cameras, once more with half the "
+    "exposure time, and at rest: clocks, shutters and exposures show in motion "
+    "only, lenses and places at rest too.";
 /* Of the bootstrap. */
 #define N_DRAWS 1000
 
@@ -114,6 +120,14 @@ measure_floor (ClothDiagnosis * d, guint judge, const ClothGapExtent * extent,
   return !isnan (square);
 }
 
+static gdouble
+share_gone (const ClothGapResult * result, gdouble before, gdouble after)
+{
+  gdouble floor = result->noise_floor.value * result->noise_floor.value;
+
+  return before > floor ? (before - after) / (before - floor) : NAN;
+}
+
 /* Of what is above the floor, the share that went; draws are @stride apart. */
 static void
 fill_shrink (ClothGapResult * result, gdouble before, gdouble after,
@@ -131,7 +145,7 @@ fill_shrink (ClothGapResult * result, gdouble before, gdouble after,
     shrinks[i] = s * s;
   }
   result->shrink = estimate (0., shrinks, N_DRAWS, 1);
-  result->shrink.value = (before - after) / (before - floor);
+  result->shrink.value = share_gone (result, before, after);
 }
 
 /* Whether an effect is large enough to speak of. Where a signature is taken off, the
@@ -155,28 +169,73 @@ keep_first (ClothDiagnosis * d, ClothGapExtent * before, ClothGapExtent * after)
     d->after = g_steal_pointer (&after->energy);
 }
 
+/* Puts the positions that the cameras gave with their faults into a recording, or takes
+ * them out again. */
+static void
+swap_filmed (ClothDiagnosis * d, guint i)
+{
+  ClothRecording *r = cloth_diagnosis_recording (d, i);
+  gdouble *y = r->y;
+
+  r->y = d->filmed[i];
+  d->filmed[i] = y;
+  cloth_recording_bridge (r);
+  cloth_recording_differentiate (r);
+}
+
+/* The models' distances from a recording: the first one's from what the cameras gave, and
+ * where they had faults once more and all others' from what they would have given. */
+static ClothGapExtent **
+measure_models (ClothDiagnosis * d, guint i, const ClothModel * const *models,
+    guint n, GError ** error)
+{
+  const ClothRecording *r = cloth_diagnosis_recording (d, i);
+  ClothGapExtent **all = NULL, **others;
+
+  if (!d->filmed[i])
+    return cloth_gap_extents_new (r, models, n, WINDOW_GAIN, WINDOW_S,
+        &d->study.rollout, error);
+  swap_filmed (d, i);
+  all = cloth_gap_extents_new (r, models, 1, WINDOW_GAIN, WINDOW_S,
+      &d->study.rollout, error);
+  swap_filmed (d, i);
+  if (!all)
+    return NULL;
+  others = cloth_gap_extents_new (r, models + 1, n - 1, WINDOW_GAIN, WINDOW_S,
+      &d->study.rollout, error);
+  if (!others) {
+    cloth_gap_extents_free (all, 1);
+    return NULL;
+  }
+  all = g_renew (ClothGapExtent *, all, n);
+  memcpy (all + 1, others, (n - 1) * sizeof *all);
+  g_free (others);
+  return all;
+}
+
 /* How large the gap is before and after, on the hold-outs if there are any; the floor on
  * the baselines. Of the effects taken in those stay that shrink it enough, one after the
- * other. */
+ * other; faults of cameras stay. */
 gboolean
 cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
 {
   ClothGapResult *result = d->result;
-  const ClothModel *models[1 + CLOTH_DIAGNOSIS_MAX_ACCEPTED] = { d->model };
-  guint n = 1 + d->n_chosen, best = 0;
+  const ClothModel *models[2 + CLOTH_DIAGNOSIS_MAX_ACCEPTED] = {
+    d->model, d->model
+  };
+  const guint faults = cloth_diagnosis_count_faults (d) > 0;
+  guint n = 1 + faults + d->n_chosen, best = faults;
   guint judge = d->options->n_hold_outs ? d->n_takes + d->options->n_baselines
       : 0;
   g_autofree gdouble *draws = g_new0 (gdouble, N_DRAWS * n);
   g_autofree gboolean *windows = NULL;
   ClothGapExtent **extents;
-  gdouble v[1 + CLOTH_DIAGNOSIS_MAX_ACCEPTED];
+  gdouble v[G_N_ELEMENTS (models)];
 
-  for (guint i = 1; i < n; i++)
-    models[i] = d->with[i - 1];
+  for (guint i = 0; i < d->n_chosen; i++)
+    models[1 + faults + i] = d->with[i];
   cloth_diagnosis_begin_part (d, 0.85, 1., 0.4, "the gap in windows");
-  extents =
-      cloth_gap_extents_new (cloth_diagnosis_recording (d, judge), models, n,
-      WINDOW_GAIN, WINDOW_S, &d->study.rollout, error);
+  extents = measure_models (d, judge, models, n, error);
   if (!extents)
     return FALSE;
   if (!judge)
@@ -189,7 +248,7 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
   }
   while (best + 1 < n && matters (d, v[best], v[best + 1]))
     best++;
-  while (d->n_chosen > best)
+  while (d->n_chosen > best - faults)
     cloth_model_free (d->with[--d->n_chosen]);
   cloth_gap_extents_interval (extents, n, windows, d->options->seed, N_DRAWS,
       draws);
@@ -199,6 +258,8 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
     result->gap_after = estimate (v[best], draws + best, N_DRAWS, n);
     fill_shrink (result, v[0], v[best], draws, draws + best, n);
   }
+  if (faults)
+    d->shrink_of_faults = share_gone (result, v[0], v[1]);
   if (!judge)
     keep_first (d, extents[0], best ? extents[best] : NULL);
   cloth_gap_extents_free (extents, n);
@@ -206,9 +267,7 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
     return TRUE;
   models[1] = models[best];
   n = best ? 2 : 1;
-  extents =
-      cloth_gap_extents_new (cloth_diagnosis_recording (d, 0), models, n,
-      WINDOW_GAIN, WINDOW_S, &d->study.rollout, error);
+  extents = measure_models (d, 0, models, n, error);
   if (!extents)
     return FALSE;
   keep_first (d, extents[0], best ? extents[1] : NULL);
@@ -249,20 +308,68 @@ accept_effects (ClothDiagnosis * d)
   }
 }
 
+/* The cameras' effects among the others: what was wrong with them first, the rest behind
+ * what is likelier. */
+static void
+add_camera_effects (ClothDiagnosis * d)
+{
+  GArray *effects = d->result->effects;
+  gboolean alike = FALSE;
+
+  for (guint i = 0; i < d->camera_effects->len; i++) {
+    ClothGapEffect e = g_array_index (d->camera_effects, ClothGapEffect, i);
+    guint at = i;
+
+    /* a small fault is there, and yet not what the gap is about */
+    if (!e.accepted && i >= d->camera_effects->len - d->n_faults +
+        cloth_diagnosis_count_faults (d))
+      at = effects->len;
+    if (e.accepted)
+      e.shrink.value = d->shrink_of_faults;
+    for (; !e.accepted && at < effects->len; at++) {
+      const ClothGapEffect *other = &g_array_index (effects, ClothGapEffect,
+          at);
+
+      if (!other->accepted && other->probability < e.probability)
+        break;
+    }
+    if (e.group >= 0) {
+      e.group = (gint) d->result->groups->len;
+      alike = TRUE;
+    }
+    g_array_insert_val (effects, at, e);
+  }
+  if (alike)
+    cloth_gap_result_add_group (d->result, capture_sentence, NAN);
+}
+
+/* Whether another effect would do as well as one that is accepted. */
+static gboolean
+is_ambiguous (const ClothGapResult * r)
+{
+  for (guint i = 0; i < r->effects->len; i++)
+    if (g_array_index (r->effects, ClothGapEffect, i).accepted
+        && g_array_index (r->effects, ClothGapEffect, i).group >= 0)
+      return TRUE;
+  return FALSE;
+}
+
 void
 cloth_diagnosis_decide (ClothDiagnosis * d)
 {
   ClothGapResult *r = d->result;
   gdouble floor2 = r->noise_floor.value * r->noise_floor.value;
-  gdouble rest = d->n_chosen ? r->gap_after.value : r->gap_before.value;
+  guint accepted = d->n_chosen + cloth_diagnosis_count_faults (d);
+  gdouble rest = accepted ? r->gap_after.value : r->gap_before.value;
   gboolean above = rest * rest > CLOTH_DIAGNOSIS_BAND * floor2;
 
   if (d->n_chosen)
     accept_effects (d);
-  if (above || (!d->n_chosen && d->unknown))
+  add_camera_effects (d);
+  if (above || (!accepted && d->unknown))
     r->verdict = CLOTH_GAP_UNEXPLAINED;
-  else if (!d->n_chosen)
+  else if (!accepted)
     r->verdict = CLOTH_GAP_NO_GAP;
   else
-    r->verdict = r->groups->len ? CLOTH_GAP_AMBIGUOUS : CLOTH_GAP_EXPLAINED;
+    r->verdict = is_ambiguous (r) ? CLOTH_GAP_AMBIGUOUS : CLOTH_GAP_EXPLAINED;
 }

@@ -169,6 +169,34 @@ cloth_gap_normal_free (ClothGapNormal * normal)
 }
 
 /**
+ * cloth_gap_normal_append:
+ * @to: (nullable) (transfer full): normal equations
+ * @from: (transfer full): others with the same columns
+ *
+ * Returns: (transfer full): the blocks of both, those of @to first
+ * Since: 0.1
+ */
+ClothGapNormal *
+cloth_gap_normal_append (ClothGapNormal * to, ClothGapNormal * from)
+{
+  gsize square = (gsize) from->m * from->m;
+
+  if (!to)
+    return from;
+  to->g = g_renew (gdouble, to->g, (to->n_blocks + from->n_blocks) * square);
+  to->s = g_renew (gdouble, to->s, (to->n_blocks + from->n_blocks) * from->m);
+  to->r = g_renew (gdouble, to->r, to->n_blocks + from->n_blocks);
+  memcpy (to->g + to->n_blocks * square, from->g,
+      from->n_blocks * square * sizeof (gdouble));
+  memcpy (to->s + (gsize) to->n_blocks * from->m, from->s,
+      (gsize) from->n_blocks * from->m * sizeof (gdouble));
+  memcpy (to->r + to->n_blocks, from->r, from->n_blocks * sizeof (gdouble));
+  to->n_blocks += from->n_blocks;
+  cloth_gap_normal_free (from);
+  return to;
+}
+
+/**
  * cloth_gap_normal_reduce:
  * @normal: normal equations
  * @blocks: (array): which blocks count

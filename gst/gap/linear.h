@@ -65,6 +65,8 @@ void cloth_gap_power_free (ClothGapPower * power);
 ClothGapNormal *cloth_gap_normal_new (const ClothGapFeatures * features,
     const ClothGapPower * mismatch, gdouble share, const gdouble * z,
     const gdouble * columns, guint m);
+ClothGapNormal *cloth_gap_normal_append (ClothGapNormal * to,
+    ClothGapNormal * from);
 void cloth_gap_normal_free (ClothGapNormal * normal);
 gboolean cloth_gap_normal_reduce (const ClothGapNormal * normal,
     const gboolean * blocks, const guint * nuisances,

@@ -204,7 +204,7 @@ find_left (const ClothStage * stage)
  * Since: 0.1
  */
 gboolean
-cloth_stage_allows (const ClothStage * stage, ClothMotion motion)
+cloth_stage_allows (const ClothStage * stage, ClothStageMotion motion)
 {
   gboolean clear = stage->recording->scene->obstacles->len == 0;
 
@@ -223,7 +223,7 @@ cloth_stage_allows (const ClothStage * stage, ClothMotion motion)
 }
 
 static gdouble
-amplitude (const ClothStage * stage, ClothMotion motion)
+amplitude (const ClothStage * stage, ClothStageMotion motion)
 {
   gdouble a = MIN (moves[motion].share * stage->size_m, moves[motion].most_m);
 
@@ -232,7 +232,7 @@ amplitude (const ClothStage * stage, ClothMotion motion)
 
 /* How far the clamps are from where they began, @time_s after that. */
 static void
-displace (const ClothStage * stage, ClothMotion motion, gdouble time_s,
+displace (const ClothStage * stage, ClothStageMotion motion, gdouble time_s,
     gdouble * offset)
 {
   const gdouble *axis = motion == CLOTH_MOTION_LIFT ? stage->up :
@@ -311,7 +311,7 @@ hang_by_edge (const ClothStage * stage, ClothScene * scene, gdouble * clamps,
  * Since: 0.1
  */
 ClothScene *
-cloth_stage_make_scene (const ClothStage * stage, ClothMotion motion,
+cloth_stage_make_scene (const ClothStage * stage, ClothStageMotion motion,
     gdouble fps, gdouble seconds, const gdouble * start)
 {
   const ClothRecording *r = stage->recording;
@@ -364,7 +364,7 @@ cloth_stage_make_scene (const ClothStage * stage, ClothMotion motion,
  * Since: 0.1
  */
 gchar *
-cloth_stage_describe (const ClothStage * stage, ClothMotion motion)
+cloth_stage_describe (const ClothStage * stage, ClothStageMotion motion)
 {
   static const gchar *const still[CLOTH_N_MOTIONS] = {
     [CLOTH_MOTION_HANG] = "Let the sheet hang still and film it for %g s",

@@ -8,7 +8,7 @@
 G_BEGIN_DECLS
 
 /**
- * ClothMotion:
+ * ClothStageMotion:
  * @CLOTH_MOTION_HANG: it hangs still
  * @CLOTH_MOTION_SWAY: the clamps sway slowly, out of the sheet's plane
  * @CLOTH_MOTION_SWING: they swing from side to side, in the sheet's plane
@@ -37,7 +37,7 @@ typedef enum {
   CLOTH_MOTION_FAN_OFF,
   CLOTH_MOTION_FAN_ON,
   CLOTH_N_MOTIONS
-} ClothMotion;
+} ClothStageMotion;
 
 /* How long each is filmed, s. */
 #define CLOTH_MOTION_SECONDS 2.
@@ -74,10 +74,10 @@ typedef struct {
 
 ClothStage *cloth_stage_new (const ClothRecording * recording);
 void cloth_stage_free (ClothStage * stage);
-gboolean cloth_stage_allows (const ClothStage * stage, ClothMotion motion);
+gboolean cloth_stage_allows (const ClothStage * stage, ClothStageMotion motion);
 ClothScene *cloth_stage_make_scene (const ClothStage * stage,
-    ClothMotion motion, gdouble fps, gdouble seconds, const gdouble * start);
-gchar *cloth_stage_describe (const ClothStage * stage, ClothMotion motion);
+    ClothStageMotion motion, gdouble fps, gdouble seconds, const gdouble * start);
+gchar *cloth_stage_describe (const ClothStage * stage, ClothStageMotion motion);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothStage, cloth_stage_free)
 G_END_DECLS

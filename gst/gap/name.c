@@ -85,26 +85,6 @@ cloth_diagnosis_has_signatures (const ClothDiagnosis * d)
   return TRUE;
 }
 
-static ClothGapNormal *
-append (ClothGapNormal * to, ClothGapNormal * from)
-{
-  gsize square = (gsize) from->m * from->m;
-
-  if (!to)
-    return from;
-  to->g = g_renew (gdouble, to->g, (to->n_blocks + from->n_blocks) * square);
-  to->s = g_renew (gdouble, to->s, (to->n_blocks + from->n_blocks) * from->m);
-  to->r = g_renew (gdouble, to->r, to->n_blocks + from->n_blocks);
-  memcpy (to->g + to->n_blocks * square, from->g,
-      from->n_blocks * square * sizeof (gdouble));
-  memcpy (to->s + (gsize) to->n_blocks * from->m, from->s,
-      (gsize) from->n_blocks * from->m * sizeof (gdouble));
-  memcpy (to->r + to->n_blocks, from->r, from->n_blocks * sizeof (gdouble));
-  to->n_blocks += from->n_blocks;
-  cloth_gap_normal_free (from);
-  return to;
-}
-
 /* Mean square that the simulator itself is off by, in the noise of a take: of the
  * baselines, else of the takes with the model fitted to them. */
 ClothGapPower *
@@ -246,7 +226,8 @@ cloth_diagnosis_make_normals (ClothDiagnosis * d, guint begin, guint end,
 
     g_clear_pointer (&d->normals[g], cloth_gap_normal_free);
     for (guint i = begin; i < end; i++) {
-      d->normals[g] = append (d->normals[g], normal_of (d, i, g, before));
+      d->normals[g] =
+          cloth_gap_normal_append (d->normals[g], normal_of (d, i, g, before));
       before += cloth_study_count_chaos (cloth_diagnosis_study (d, i));
     }
     test->normals[g] = d->normals[g];

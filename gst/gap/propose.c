@@ -117,6 +117,9 @@ cloth_diagnosis_propose (ClothDiagnosis * d, GError ** error)
   if (d->result->verdict == CLOTH_GAP_NO_GAP)
     return TRUE;
   for (guint i = 0; i < d->result->groups->len; i++) {
+    /* cameras have theirs already */
+    if (g_array_index (d->result->groups, ClothGapGroup, i).experiment)
+      continue;
     cloth_diagnosis_begin_part (d, d->from, 1., EACH, "what to film next");
     if (!propose_one (d, i, error))
       return FALSE;

@@ -45,6 +45,8 @@ typedef struct {
 /**
  * ClothGapEffect:
  * @effect: which one: its names, units and side are taken from here
+ * @camera: (nullable): name of the camera it is of, interned; %NULL: of no camera, or
+ *   of all alike
  * @probability: that it acts, calibrated, 0 to 1
  * @values: its fitted parameters, in the order of @effect; NaN: not fitted
  * @sigmas: their standard deviations
@@ -62,6 +64,7 @@ typedef struct {
  */
 typedef struct {
   const ClothEffect *effect;
+  const gchar *camera;
   gdouble probability;
   gdouble values[CLOTH_EFFECT_MAX_PARAMETERS];
   gdouble sigmas[CLOTH_EFFECT_MAX_PARAMETERS];

@@ -22,7 +22,7 @@ effect_at (const ClothGapResult * result, guint i)
   return &g_array_index (result->effects, ClothGapEffect, i);
 }
 
-/* The same with spaces: "air_drag" is said "air drag". */
+/* The same with spaces: "air_drag" is said "air drag", and of which camera. */
 static void
 say_effect (GString * text, const ClothGapEffect * effect)
 {
@@ -33,6 +33,8 @@ say_effect (GString * text, const ClothGapEffect * effect)
     if (text->str[i] == '_')
       text->str[i] = ' ';
   }
+  if (effect->camera)
+    g_string_append_printf (text, " of %s", effect->camera);
 }
 
 /* "(or this, or that)": what is confused with an accepted effect. */
@@ -232,6 +234,7 @@ put_effect (ClothJsonWriter * writer, const ClothGapEffect * item)
   cloth_json_writer_begin_object (writer, NULL);
   cloth_json_writer_string (writer, "name", effect->id);
   cloth_json_writer_string (writer, "side", side_names[effect->side]);
+  cloth_json_writer_string (writer, "camera", item->camera);
   cloth_json_writer_number (writer, "probability", item->probability);
   cloth_json_writer_boolean (writer, "accepted", item->accepted);
   cloth_json_writer_begin_array (writer, "parameters");

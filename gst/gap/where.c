@@ -196,35 +196,44 @@ windowed_square (const ClothGapPlayback * p)
   return squares / seen;
 }
 
-/* A take holds positions: of what happened before them only its noise is known. */
-static void
-fill_stages (const ClothRecording * r, ClothGapResult * result)
-{
-  static const struct
-  {
-    const gchar *name, *reason;
-  } unread[] = {
-    {"camera",
-        "Whether a camera's calibration, clock or shutter is off shows in "
-          "what each camera saw, and a take is read as positions."},
-    {"detection",
-        "How far what was found lies from what is there shows in the "
-          "pictures, and a take is read as positions."},
-    {"labels",
-        "Whether points were taken for each other shows in their codes, and "
-          "a take is read as positions."},
-    {"triangulation",
-        "How far the cameras disagree shows with each left out in "
-          "turn, and a take is read as positions."},
-  };
-  gdouble noise =
-      3. * r->sigma * r->sigma / windowed_square (&result->playback);
+static const gchar *const unread[] = {
+  "Whether a camera's calibration, clock or shutter is off shows in what each "
+      "camera saw, and this take has positions only.",
+  "How far what was found lies from what is there shows in the pictures, and "
+      "this take has positions only.",
+  "Whether points were taken for each other shows where cameras contradict "
+      "each other, and this take has positions only.",
+  "How far points lie from where the cameras have them shows in what each "
+      "saw, and this take has positions only.",
+};
 
-  noise = MIN (noise, 1.);
-  for (guint i = 0; i < G_N_ELEMENTS (unread); i++)
-    cloth_gap_result_add_stage (result, unread[i].name, NAN, unread[i].reason);
-  cloth_gap_result_add_stage (result, "noise", noise, NULL);
-  cloth_gap_result_add_stage (result, "physics", 1. - noise, NULL);
+/* What each step from the cloth to the comparison adds to the gap. Of noise that is left
+ * which is not the detection's. */
+static void
+fill_stages (const ClothDiagnosis * d, const ClothRecording * r)
+{
+  static const gchar *const names[] = {
+    "camera", "detection", "labels", "triangulation", "noise", "physics"
+  };
+  const ClothCameraErrors *e = &d->camera_errors;
+  gdouble shares[] = { d->camera_square, e->detection, e->labels,
+    e->triangulation, 3. * r->sigma * r->sigma, 0.
+  };
+  const guint physics = G_N_ELEMENTS (names) - 1, noise = physics - 1;
+  gdouble all = windowed_square (&d->result->playback), sum = 0.;
+
+  if (d->has_camera_errors)
+    shares[noise] = MAX (shares[noise] - e->detection, 0.);
+  for (guint i = d->has_camera_errors ? 0 : noise; i < physics; i++)
+    sum += shares[i];
+  all = MAX (all, sum);
+  shares[physics] = all - sum;
+  for (guint i = 0; i <= physics; i++) {
+    const gboolean known = d->has_camera_errors || i >= noise;
+
+    cloth_gap_result_add_stage (d->result, names[i],
+        known ? shares[i] / all : NAN, known ? NULL : unread[i]);
+  }
 }
 
 /* Fills where the gap of the first take lies, once it is measured. */
@@ -236,7 +245,7 @@ cloth_diagnosis_locate (ClothDiagnosis * d)
     longest_side (r->scene->topology)
   };
 
-  fill_stages (r, d->result);
+  fill_stages (d, r);
   if (!c.before)
     return;
   fill_frequencies (&c, d->result);

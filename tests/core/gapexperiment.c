@@ -123,7 +123,7 @@ try_members (const ClothModelEffect * members, guint n, How * how)
 }
 
 static gdouble
-find (const GArray * trials, ClothMotion motion)
+find (const GArray * trials, ClothStageMotion motion)
 {
   for (guint i = 0; i < trials->len; i++)
     if (g_array_index (trials, ClothTrial, i).motion == motion)

@@ -61,7 +61,7 @@ function row(gap, effect, index, about) {
   return element('tr', { class: effect.accepted ? 'accepted' : null, hidden: index >= ROWS },
     element('td', { class: 'rank' }, String(index + 1)),
     element('th', { scope: 'row' }, capital(spoken(effect.name)), ' ',
-      element('span', { class: 'side ' + effect.side }, effect.side), ' ',
+      element('span', { class: 'side ' + effect.side }, effect.camera ?? effect.side), ' ',
       effect.accepted ? element('span', { class: 'tick' }, 'accepted') : null, ' ',
       about ? element('small', {}, about) : null),
     element('td', { class: 'measure' }, bar(effect.probability, 'probability'),
