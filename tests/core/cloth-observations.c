@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "tests/core/refused.h"
+
 /* The layout as docs/streams.md has it, written out by hand: an unknown section, a
  * reference time, one saddle and one candidate, one quad. */
 static const guint8 golden[] = {
@@ -264,22 +266,6 @@ test_invalid_left_out (void)
   g_assert_cmpfloat (candidate.x, ==, 5);
   g_assert_cmpuint (gst_cloth_quads_get_n_quads (gst_buffer_get_cloth_quads
           (target)), ==, 1);
-  g_assert_null (gst_buffer_get_reference_timestamp_meta (target, NULL));
-}
-
-static void
-assert_refused (const guint8 * bytes, gsize size, gint code, const gchar * name)
-{
-  g_autoptr (GstBuffer) buffer = size ? gst_buffer_new_memdup (bytes, size) :
-      gst_buffer_new ();
-  g_autoptr (GstBuffer) target = gst_buffer_new ();
-  g_autoptr (GError) error = NULL;
-
-  g_assert_false (gst_cloth_observations_unpack (buffer, target, &error));
-  g_test_message ("%s: %s", name, error->message);
-  g_assert_error (error, GST_CLOTH_ERROR, code);
-  g_assert_null (gst_buffer_get_cloth_saddles (target));
-  g_assert_null (gst_buffer_get_cloth_quads (target));
   g_assert_null (gst_buffer_get_reference_timestamp_meta (target, NULL));
 }
 
