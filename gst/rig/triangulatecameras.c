@@ -128,6 +128,29 @@ fit_inverse (TriangulateCamera * self)
     memcpy (self->inverse, b, n * sizeof (gdouble));
 }
 
+/* What the kernels need of K and the lens beyond the numbers themselves. */
+static void
+prepare (TriangulateCamera * self)
+{
+  const gdouble *k = self->k, fx = self->fx, fy = self->fy, skew = self->skew;
+  const gdouble unit[6] = { fx * fx, fx * skew, fx * fy, skew * skew,
+    2. * skew * fy, fy * fy
+  };
+  const gdouble brown[10] = { 2. * k[0], 4. * k[1], 6. * k[4], 2. * k[5],
+    4. * k[6], 6. * k[7], 2. * k[2], 2. * k[3], 4. * k[2], 4. * k[3]
+  };
+  const gdouble fisheye[4] = { 3. * k[0], 5. * k[1], 7. * k[2], 9. * k[3] };
+
+  self->ifx = 1. / fx;
+  self->ify = 1. / fy;
+  self->area = fx * fy;
+  memcpy (self->unit, unit, sizeof (unit));
+  if (self->lens == CLOTH_LENS_FISHEYE)
+    memcpy (self->slope, fisheye, sizeof (fisheye));
+  else
+    memcpy (self->slope, brown, sizeof (brown));
+}
+
 static gboolean
 all_finite (const gdouble * x, guint n)
 {
@@ -217,11 +240,9 @@ cloth_triangulator_new (guint n_cameras, const ClothCamera * cameras,
     c->cx = K[2];
     c->fy = K[4];
     c->cy = K[5];
-    c->ifx = 1. / K[0];
-    c->ify = 1. / K[4];
-    c->area = K[0] * K[4];
     c->lens = camera->lens;
     memcpy (c->k, camera->k, sizeof (c->k));
+    prepare (c);
     if (c->lens != CLOTH_LENS_NONE)
       fit_inverse (c);
   }
@@ -292,10 +313,8 @@ cloth_triangulator_new_projections (guint n_cameras,
       return NULL;
     }
     memcpy (c->P, P, sizeof (P));
-    c->ifx = 1. / c->fx;
-    c->ify = 1. / c->fy;
-    c->area = c->fx * c->fy;
     c->lens = CLOTH_LENS_NONE;
+    prepare (c);
     for (gint j = 0; j < 3; j++)
       column[j] = -p[4 * j + 3];
     cloth_mat3_vec (inverse, column, centres[i]);

@@ -18,8 +18,14 @@ typedef struct {
   gdouble fx, skew, cx, fy, cy, ifx, ify;
   /* px² per unit² of normalised coordinates at the centre */
   gdouble area;
+  /* KᵀIK of information I in px, as xx of I's xx; xy of its xx and xy; yy of its xx,
+   * xy and yy */
+  gdouble unit[6];
   ClothLens lens;
   gdouble k[8];
+  /* k as the derivative has it; Brown: 2k₀ 4k₁ 6k₄ of the radial term's numerator, 2k₅
+   * 4k₆ 6k₇ of its denominator, then 2k₂ 2k₃ 4k₂ 4k₃; fisheye: 3k₀ 5k₁ 7k₂ 9k₃ */
+  gdouble slope[10];
   /* First guess of the true place d·r + s·t from the distorted one, d, with
    * t = (k[3], k[2]) and q = d²: r = 1 + a₀q + … + a₆q⁷ + (b₀ + … + b₃q³)·(d·t),
    * s = c₀q + … + c₃q⁴; of a fisheye the ratio of angle to radius, r without b. */

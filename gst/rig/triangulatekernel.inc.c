@@ -3,6 +3,9 @@
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 
+/* Polynomials below are summed in pairs: it is how long each of their operations waits
+ * for the one before, not their number, that undistortion takes its time from. */
+
 /* One step of Newton's method towards the place (x, y) that a Brown lens brings to
  * (dx, dy). J: the derivative of distortion where it starts, symmetric: xx, xy, yy;
  * inverse: 1 over J's determinant; iden: 1 over the denominator of the radial term.
@@ -11,27 +14,26 @@ TARGET INLINE V
 NAME (newton_brown) (const TriangulateCamera * camera, V dx, V dy, V * x_io,
     V * y_io, V J[3], V * inverse, V * iden)
 {
-  const gdouble * k = camera->k;
-  V x = *x_io, y = *y_io, xx = x * x, q = FMA (y, y, xx), ex, ey, d;
+  const gdouble * k = camera->k, *slope = camera->slope;
+  V x = *x_io, y = *y_io, xx = x * x, q = FMA (y, y, xx), qq = q * q, ex, ey, d;
   /* twice the product with the direction of the tangential distortion */
-  V t = FMA (2. * k[3], x, VECTOR (2. * k[2]) * y);
-  V c = FMA (q, FMA (q, FMA (q, k[4], k[1]), k[0]), 1.), both;
+  V t = FMA (slope[7], x, slope[6] * y);
+  V c = FMA (qq, FMA (q, k[4], k[1]), FMA (q, k[0], 1.)), both;
   /* twice the derivative of c by q */
-  V dc = FMA (q, FMA (q, 6. * k[4], 4. * k[1]), 2. * k[0]);
+  V dc = FMA (q, FMA (q, slope[2], slope[1]), slope[0]);
 
   *iden = VECTOR (1.);
   if (camera->lens == CLOTH_LENS_BROWN8) {
-    *iden = 1. / FMA (q, FMA (q, FMA (q, k[7], k[6]), k[5]), 1.);
+    *iden = 1. / FMA (qq, FMA (q, k[7], k[6]), FMA (q, k[5], 1.));
     c = c * *iden;
-    dc = FNMA (c, FMA (q, FMA (q, 6. * k[7], 4. * k[6]), 2. * k[5]),
-        dc) * *iden;
+    dc = FNMA (c, FMA (q, FMA (q, slope[5], slope[4]), slope[3]), dc) * *iden;
   }
   both = c + t;
   ex = FNMA (x, both, FNMA (k[3], q, dx));
   ey = FNMA (y, both, FNMA (k[2], q, dy));
-  J[0] = FMA (4. * k[3], x, FMA (xx, dc, both));
-  J[1] = FMA (FMA (y, dc, 2. * k[2]), x, VECTOR (2. * k[3]) * y);
-  J[2] = FMA (FMA (y, dc, 4. * k[2]), y, both);
+  J[0] = FMA (slope[9], x, FMA (xx, dc, both));
+  J[1] = FMA (FMA (y, dc, slope[6]), x, slope[7] * y);
+  J[2] = FMA (FMA (y, dc, slope[8]), y, both);
   *inverse = d = 1. / FNMA (J[1], J[1], J[0] * J[2]);
   *x_io = FMA (FNMA (J[1], ey, J[2] * ex), d, x);
   *y_io = FMA (FNMA (J[1], ex, J[0] * ey), d, y);
@@ -45,12 +47,12 @@ TARGET INLINE M
 NAME (undistort_brown) (const TriangulateCamera * camera, M seen, V dx, V dy,
     V * x_out, V * y_out, V J[3])
 {
-  const gdouble * p = camera->inverse, *k = camera->k;
-  V q = FMA (dx, dx, dy * dy), t = FMA (k[3], dx, k[2] * dy);
-  V radial = FMA (q, FMA (q, FMA (q, FMA (q, FMA (q, FMA (q, FMA (q, p[6],
-                              p[5]), p[4]), p[3]), p[2]), p[1]), p[0]),
-      FMA (t, FMA (q, FMA (q, FMA (q, p[10], p[9]), p[8]), p[7]), 1.));
-  V shift = FMA (q, FMA (q, FMA (q, p[14], p[13]), p[12]), p[11]) * q;
+  const gdouble * p = camera->inverse, *k = camera->k, *slope = camera->slope;
+  V q = FMA (dx, dx, dy * dy), qq = q * q, t = FMA (k[3], dx, k[2] * dy);
+  V radial = FMA (q, FMA (qq, FMA (qq, FMA (qq, p[6], FMA (q, p[5], p[4])),
+              FMA (q, p[3], p[2])), FMA (q, p[1], p[0])),
+      FMA (t, FMA (qq, FMA (q, p[10], p[9]), FMA (q, p[8], p[7])), 1.));
+  V shift = FMA (qq, FMA (q, p[14], p[13]), FMA (q, p[12], p[11])) * q;
   V x = FMA (dx, radial, k[3] * shift), y = FMA (dy, radial, k[2] * shift);
   V scale, iden, c, den, both, ex, ey;
   /* also open when it is NaN */
@@ -72,12 +74,13 @@ NAME (undistort_brown) (const TriangulateCamera * camera, M seen, V dx, V dy,
   }
   /* The error here, times the denominator, goes through the last step's matrix. */
   q = FMA (x, x, y * y);
-  t = FMA (2. * k[3], x, VECTOR (2. * k[2]) * y);
-  c = FMA (q, FMA (q, FMA (q, k[4], k[1]), k[0]), 1.);
+  qq = q * q;
+  t = FMA (slope[7], x, slope[6] * y);
+  c = FMA (qq, FMA (q, k[4], k[1]), FMA (q, k[0], 1.));
   ex = FNMA (k[3], q, dx);
   ey = FNMA (k[2], q, dy);
   if (camera->lens == CLOTH_LENS_BROWN8) {
-    den = FMA (q, FMA (q, FMA (q, k[7], k[6]), k[5]), 1.);
+    den = FMA (qq, FMA (q, k[7], k[6]), FMA (q, k[5], 1.));
     both = FMA (t, den, c);
     ex = FNMA (x, both, ex * den) * iden;
     ey = FNMA (y, both, ey * den) * iden;
@@ -99,10 +102,10 @@ TARGET INLINE M
 NAME (undistort_fisheye) (const TriangulateCamera * camera, M seen, V dx, V dy,
     V * x, V * y, V J[3])
 {
-  const gdouble * p = camera->inverse, *k = camera->k;
-  V q = FMA (dx, dx, dy * dy), w, e, u, s, c, m, d, along;
-  V ratio = FMA (q, FMA (q, FMA (q, FMA (q, FMA (q, FMA (q, FMA (q, p[6],
-                              p[5]), p[4]), p[3]), p[2]), p[1]), p[0]), 1.);
+  const gdouble * p = camera->inverse, *k = camera->k, *of = camera->slope;
+  V q = FMA (dx, dx, dy * dy), qq = q * q, w, ww, e, u, uu, s, c, m, d, along;
+  V ratio = FMA (q, FMA (qq, FMA (qq, FMA (qq, p[6], FMA (q, p[5], p[4])),
+              FMA (q, p[3], p[2])), FMA (q, p[1], p[0])), 1.);
   V slope = VECTOR (0.);
   M open = seen;
 
@@ -110,10 +113,10 @@ NAME (undistort_fisheye) (const TriangulateCamera * camera, M seen, V dx, V dy,
     V f;
 
     w = q * ratio * ratio;
-    e = FNMA (ratio, FMA (w, FMA (w, FMA (w, FMA (w, k[3], k[2]), k[1]), k[0]),
-            1.), 1.);
-    f = FMA (w, FMA (w, FMA (w, FMA (w, 9. * k[3], 7. * k[2]), 5. * k[1]),
-            3. * k[0]), 1.);
+    ww = w * w;
+    e = FNMA (ratio, FMA (ww, FMA (ww, k[3], FMA (w, k[2], k[1])),
+            FMA (w, k[0], 1.)), 1.);
+    f = FMA (ww, FMA (ww, of[3], FMA (w, of[2], of[1])), FMA (w, of[0], 1.));
     ratio = CHOOSE (open, ratio + e / f, ratio);
     slope = CHOOSE (open, f, slope);
     open &= ~GREATER (LAST_NEWTON_FISHEYE * LAST_NEWTON_FISHEYE, e * e);
@@ -121,14 +124,14 @@ NAME (undistort_fisheye) (const TriangulateCamera * camera, M seen, V dx, V dy,
   /* sine over angle and cosine of half the angle by their series; it is below π/4 */
   w = q * ratio * ratio;
   u = 0.25 * w;
-  s = FMA (u, FMA (u, FMA (u, FMA (u, FMA (u, FMA (u, FMA (u, -1. /
-                              1307674368000., 1. / 6227020800.),
-                          -1. / 39916800.), 1. / 362880.), -1. / 5040.),
-              1. / 120.), -1. / 6.), 1.);
-  c = FMA (u, FMA (u, FMA (u, FMA (u, FMA (u, FMA (u, FMA (u, FMA (u, 1. /
-                                  20922789888000., -1. / 87178291200.),
-                              1. / 479001600.), -1. / 3628800.), 1. / 40320.),
-                  -1. / 720.), 1. / 24.), -0.5), 1.);
+  uu = u * u;
+  s = FMA (uu, FMA (uu, FMA (uu, FMA (u, -1. / 1307674368000.,
+                  1. / 6227020800.), FMA (u, -1. / 39916800., 1. / 362880.)),
+          FMA (u, -1. / 5040., 1. / 120.)), FMA (u, -1. / 6., 1.));
+  c = FMA (uu, FMA (uu, FMA (uu, FMA (uu, 1. / 20922789888000.,
+                  FMA (u, -1. / 87178291200., 1. / 479001600.)),
+              FMA (u, -1. / 3628800., 1. / 40320.)),
+          FMA (u, -1. / 720., 1. / 24.)), FMA (u, -0.5, 1.));
   /* cosine of the whole, then tangent over distorted radius */
   m = FNMA (u * s, s, c * c);
   e = ratio * s * c;
@@ -154,6 +157,7 @@ TARGET INLINE M
 NAME (load_group) (const TriangulateCamera * camera, const gdouble * const *in,
     gdouble error_floor, gdouble * obs, M * again)
 {
+  const gdouble * unit = camera->unit;
   V u = LOAD (in[IN_U]), v = LOAD (in[IN_V]), zero = VECTOR (0.);
   V cxx = LOAD (in[IN_XX]) + error_floor, cxy = LOAD (in[IN_XY]);
   V cyy = LOAD (in[IN_YY]) + error_floor;
@@ -170,17 +174,14 @@ NAME (load_group) (const TriangulateCamera * camera, const gdouble * const *in,
   ixx = cyy * idet;
   ixy = -cxy * idet;
   iyy = cxx * idet;
-  iyy = FMA (camera->skew * camera->skew, ixx, FMA (2. * camera->skew *
-          camera->fy, ixy, camera->fy * camera->fy * iyy));
-  ixy = camera->fx * FMA (camera->skew, ixx, camera->fy * ixy);
-  ixx = camera->fx * camera->fx * ixx;
+  iyy = FMA (unit[3], ixx, FMA (unit[4], ixy, unit[5] * iyy));
+  ixy = FMA (unit[1], ixx, unit[2] * ixy);
+  ixx = unit[0] * ixx;
 
   *again = seen & ~seen;
   if (camera->lens != CLOTH_LENS_NONE) {
     V J[3], a, b, c;
 
-    x = CHOOSE (seen, x, zero);
-    y = CHOOSE (seen, y, zero);
     if (camera->lens == CLOTH_LENS_FISHEYE)
       *again = NAME (undistort_fisheye) (camera, seen, x, y, &x, &y, J);
     else
