@@ -6,7 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-static const gdouble ones[BLOCK] = { 1., 1., 1., 1., 1., 1., 1., 1. };
+static const gdouble ones[BLOCK] =
+    { 1., 1., 1., 1., 1., 1., 1., 1., 1., 1., 1., 1., 1., 1., 1., 1. };
 static const gdouble zeros[BLOCK] = { 0. };
 
 static void

@@ -8,7 +8,7 @@
 G_BEGIN_DECLS
 
 /* Points of a block: what one row of scratch memory holds. */
-#define BLOCK 8
+#define BLOCK 16
 
 /* A camera prepared for the kernels. */
 typedef struct {

@@ -317,31 +317,46 @@ NAME (reproject) (const gdouble * P, const gdouble * o, const V X[3], V e[2],
   return i;
 }
 
-/* Linear estimate, Gauss–Newton, covariance, error of each view against the others.
- * Returns where all is well and all views saw the point. */
-TARGET INLINE M
-NAME (solve_group) (const TriangulateCamera * cameras, const gdouble * obs,
-    const guint8 * views, guint n_views, const TriangulateLimits * limits,
-    gdouble * out)
+/* What one group's steps of solution hand on. */
+typedef struct
 {
-  V zero = VECTOR (0.), one = VECTOR (1.), X[3], C[6], g[3], D[3];
-  V i0 = zero, i1 = zero, i2 = zero, l10 = zero, l20 = zero, l21 = zero, u20;
-  V chi2 = zero, worst = zero, per = one, worst_px = zero;
-  V depth = VECTOR (G_MAXDOUBLE), count = zero, reason;
-  M open, singular, good;
+  V X[3];
+  /* the normal matrix as L·D·Lᵀ, D inverted */
+  V i0, i1, i2, l10, l20, l21;
+  /* views that saw the point */
+  V count;
+  /* not converged; without a solution */
+  M open, singular;
+} NAME (Solution);
 
-  g[0] = g[1] = g[2] = zero;
+TARGET INLINE void
+NAME (start) (const TriangulateCamera * cameras, const gdouble * obs,
+    const guint8 * views, guint n_views, NAME (Solution) * s)
+{
+  V zero = VECTOR (0.), one = VECTOR (1.);
+
+  s->count = zero;
   for (guint i = 0; i < n_views; i++) {
     V w = LOAD (obs + views[i] * (N_OBS * BLOCK) + OBS_IXX * BLOCK);
 
-    count += CHOOSE (GREATER (w, 0.), one, zero);
+    s->count += CHOOSE (GREATER (w, 0.), one, zero);
   }
-  open = GREATER (count, 1.);
-  singular = open & ~open;
-  if (!BITS (open))
-    return open;
+  s->i0 = s->i1 = s->i2 = s->l10 = s->l20 = s->l21 = zero;
+  s->open = GREATER (s->count, 1.);
+  s->singular = s->open & ~s->open;
+  if (BITS (s->open))
+    NAME (linear) (cameras, obs, views, n_views, s->X);
+}
 
-  NAME (linear) (cameras, obs, views, n_views, X);
+/* Gauss–Newton. */
+TARGET INLINE void
+NAME (refine) (const TriangulateCamera * cameras, const gdouble * obs,
+    const guint8 * views, guint n_views, NAME (Solution) * s)
+{
+  V zero = VECTOR (0.), X[3] = {s->X[0], s->X[1], s->X[2]};
+  V i0 = s->i0, i1 = s->i1, i2 = s->i2;
+  V l10 = s->l10, l20 = s->l20, l21 = s->l21;
+  M open = s->open, singular = s->singular;
 
   for (gint step = 0; step < MAX_STEPS && BITS (open); step++) {
     V h00 = zero, h01 = zero, h02 = zero, h11 = zero, h12 = zero, h22 = zero;
@@ -403,7 +418,35 @@ NAME (solve_group) (const TriangulateCamera * cameras, const gdouble * obs,
     open &= GREATER (size, LAST_SIGMA) | GREATER (FMA (d0, d0, FMA (d1, d1,
                 d2 * d2)), LAST_RELATIVE);
   }
+  for (gint j = 0; j < 3; j++)
+    s->X[j] = X[j];
+  s->i0 = i0;
+  s->i1 = i1;
+  s->i2 = i2;
+  s->l10 = l10;
+  s->l20 = l20;
+  s->l21 = l21;
+  s->open = open;
+  s->singular = singular;
+}
 
+/* Covariance and the error of each view against the others. Returns where all is well
+ * and all views saw the point. */
+TARGET INLINE M
+NAME (finish) (const TriangulateCamera * cameras, const gdouble * obs,
+    const guint8 * views, guint n_views, const TriangulateLimits * limits,
+    const NAME (Solution) * s, gdouble * out)
+{
+  V zero = VECTOR (0.), one = VECTOR (1.), C[6], g[3] = {zero, zero, zero};
+  V X[3] = { s->X[0], s->X[1], s->X[2] }, D[3], u20;
+  V i0 = s->i0, i1 = s->i1, i2 = s->i2;
+  V l10 = s->l10, l20 = s->l20, l21 = s->l21;
+  V chi2 = zero, worst = zero, per = one, worst_px = zero;
+  V depth = VECTOR (G_MAXDOUBLE), reason;
+  M singular = s->singular, good = GREATER (s->count, 1.);
+
+  if (!BITS (good))
+    return good;
   /* inverse of L·D·Lᵀ */
   u20 = FMA (l10, l21, -l20);
   C[5] = i2;
@@ -469,7 +512,7 @@ NAME (solve_group) (const TriangulateCamera * cameras, const gdouble * obs,
   D[1] = FMA (C[1], g[0], FMA (C[3], g[1], C[4] * g[2]));
   D[2] = FMA (C[2], g[0], FMA (C[4], g[1], C[5] * g[2]));
   /* Two views have one degree of freedom together, none apart. */
-  worst = CHOOSE (GREATER (count, 2.), worst / per, chi2);
+  worst = CHOOSE (GREATER (s->count, 2.), worst / per, chi2);
 
   for (gint j = 0; j < 3; j++)
     STORE (out + (OUT_X + j) * BLOCK, X[j] - D[j]);
@@ -484,10 +527,10 @@ NAME (solve_group) (const TriangulateCamera * cameras, const gdouble * obs,
   good &= GREATER (depth, 0.);
   reason = CHOOSE (GREATER (depth, 0.), reason, CLOTH_POINT_BEHIND);
   /* a standard deviation of half the distance is no measurement */
-  singular |= open | ~GREATER (depth * depth * 0.25, C[0] + C[3] + C[5]);
+  singular |= s->open | ~GREATER (depth * depth * 0.25, C[0] + C[3] + C[5]);
   STORE (out + OUT_REASON * BLOCK, CHOOSE (singular, CLOTH_POINT_PARALLEL,
           reason));
-  return good & ~singular & GREATER (count, n_views - 0.5);
+  return good & ~singular & GREATER (s->count, n_views - 0.5);
 }
 
 TARGET static guint
@@ -495,10 +538,19 @@ NAME (solve) (const TriangulateCamera * cameras, const gdouble * obs,
     const guint8 * views, guint n_views, const TriangulateLimits * limits,
     gdouble * out)
 {
+  enum
+  { N = BLOCK / LANES };
+  NAME (Solution) s[N];
   guint good = 0;
 
-  for (guint offset = 0; offset < BLOCK; offset += LANES)
-    good |= BITS (NAME (solve_group) (cameras, obs + offset, views, n_views,
-            limits, out + offset)) << offset;
+  /* Step by step, not group by group: while one group waits for its matrix to be
+   * factored, the next one's views are at work. */
+  for (guint i = 0; i < N; i++)
+    NAME (start) (cameras, obs + i * LANES, views, n_views, &s[i]);
+  for (guint i = 0; i < N; i++)
+    NAME (refine) (cameras, obs + i * LANES, views, n_views, &s[i]);
+  for (guint i = 0; i < N; i++)
+    good |= BITS (NAME (finish) (cameras, obs + i * LANES, views, n_views,
+            limits, &s[i], out + i * LANES)) << i * LANES;
   return good;
 }

@@ -11,7 +11,7 @@
 #include "gst/math/random.h"
 #include "gst/rig/triangulate.h"
 
-#define MAX_VIEWS 12
+#define MAX_VIEWS 20
 
 typedef struct
 {
