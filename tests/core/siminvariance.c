@@ -214,15 +214,6 @@ test_energy (void)
   assert_within ((sum[1] - sum[0]) / swing, 0., 1e-3);
 }
 
-static gdouble *
-state_at (const ClothScene * scene, const ClothModel * model, gdouble seconds)
-{
-  g_autoptr (ClothSim) sim = run_new (scene, model);
-
-  run_for (sim, seconds);
-  return positions_of (sim, 0);
-}
-
 /* The mirror image moves as the image. */
 static void
 test_mirror (void)

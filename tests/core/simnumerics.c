@@ -80,15 +80,6 @@ assert_same_bits (const gdouble * x, const gdouble * y, gsize n)
   g_assert_cmpmem (x, n * sizeof *x, y, n * sizeof *y);
 }
 
-static gdouble *
-state_at (const ClothScene * scene, const ClothModel * model, gdouble seconds)
-{
-  g_autoptr (ClothSim) sim = run_new (scene, model);
-
-  run_for (sim, seconds);
-  return positions_of (sim, 0);
-}
-
 /* At null nothing changes, to the last bit. */
 static void
 test_null (void)

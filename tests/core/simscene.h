@@ -71,6 +71,15 @@ velocities_of (const ClothSim * sim, guint model)
   return v;
 }
 
+G_GNUC_UNUSED static gdouble *
+state_at (const ClothScene * scene, const ClothModel * model, gdouble seconds)
+{
+  g_autoptr (ClothSim) sim = run_new (scene, model);
+
+  run_for (sim, seconds);
+  return positions_of (sim, 0);
+}
+
 #define assert_within(value, expected, tolerance) \
   g_assert_cmpfloat_with_epsilon (value, expected, tolerance)
 
