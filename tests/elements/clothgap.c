@@ -96,6 +96,8 @@ put_take (const gchar * name, guint columns, guint rows, gboolean held)
 static void
 make_files (void)
 {
+  g_autofree gchar *observations = NULL;
+
   folder = g_dir_make_tmp ("clothgap-test-XXXXXX", NULL);
   g_assert_nonnull (folder);
   /* short steps: the closed form has none */
@@ -106,6 +108,9 @@ make_files (void)
   put_take ("take", COLUMNS, ROWS, FALSE);
   put_take ("held", COLUMNS, ROWS, TRUE);
   put_take ("other", COLUMNS + 1, ROWS, FALSE);
+  put_take ("blind", COLUMNS, ROWS, FALSE);
+  observations = in_folder ("/blind/observations");
+  g_assert_cmpint (g_mkdir (observations, 0777), ==, 0);
 }
 
 static void
@@ -691,6 +696,7 @@ GST_START_TEST (test_cannot_start)
     {"/bad.json", "/take", "", "“shear” is -4"},
     {"/model.json", "/none", "", "none"},
     {"/model.json", "/model.json", "", "take.json"},
+    {"/model.json", "/blind", "", "no rig.json"},
     {"/model.json", "/take", "effects=air_drg", "“air_drag”"},
     {"/model.json", "/take", "effects=drag",
         "“air_drag”, “air_drag_linear”"},
@@ -698,9 +704,19 @@ GST_START_TEST (test_cannot_start)
     {"/model.json", "/take", "baseline=/none", "baseline"},
   };
 
-  for (guint i = 0; i <= G_N_ELEMENTS (cases); i++) {
-    gboolean last = i == G_N_ELEMENTS (cases);
-    g_autofree gchar *other = g_strdup_printf ("baseline=%s/other", folder);
+  /* takes that do as location, but not as baseline */
+  static const struct
+  {
+    const gchar *baseline, *text;
+  } baselines[] = {
+    {"other", "5×3"}, {"blind", "no rig.json"}
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases) + G_N_ELEMENTS (baselines); i++) {
+    gboolean last = i >= G_N_ELEMENTS (cases);
+    guint k = last ? i - (guint) G_N_ELEMENTS (cases) : 0;
+    g_autofree gchar *other = g_strdup_printf ("baseline=%s/%s", folder,
+        baselines[k].baseline);
     GstElement *element = make_element (last ? "/model.json" : cases[i].model,
         last ? "/take" : cases[i].take, last ? other : cases[i].more);
     Setup setup = { NULL, gst_bus_new () };
@@ -708,7 +724,8 @@ GST_START_TEST (test_cannot_start)
     gst_element_set_bus (element, setup.bus);
     fail_unless_equals_int (gst_element_set_state (element, GST_STATE_PAUSED),
         GST_STATE_CHANGE_FAILURE);
-    expect (&setup, GST_MESSAGE_ERROR, last ? "5×3" : cases[i].text);
+    expect (&setup, GST_MESSAGE_ERROR, last ? baselines[k].text :
+        cases[i].text);
     gst_element_set_bus (element, NULL);
     gst_element_set_state (element, GST_STATE_NULL);
     gst_object_unref (element);

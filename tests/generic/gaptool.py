@@ -143,6 +143,9 @@ def refusals(folder):
     with open(os.path.join(folder, 'coarse/take.json'), 'w', encoding='utf-8') as file:
         json.dump(take, file)
     os.mkdir(os.path.join(folder, 'empty'))
+    # one that says what cameras saw, but not where they were
+    shutil.copytree(drag, os.path.join(folder, 'blind'), copy_function=shutil.copyfile)
+    os.mkdir(os.path.join(folder, 'blind/observations'))
     good = ('--model', knit, '--output', 'x')
     for arguments, code, text in [
             ((), 2, 'name the takes'), ((drop,), 2, '--model'),
@@ -159,6 +162,9 @@ def refusals(folder):
             ((drop, drop, *good), 2, 'given twice'),
             (('empty', *good), 1, 'no take.json'), (('nowhere', *good), 1, 'no take.json'),
             ((drop, *good, '--baseline', 'a', 'nowhere'), 1, '“nowhere” is no take'),
+            (('blind', *good), 1, '“blind”: there are observations but no rig.json'),
+            ((drag, *good, '--baseline', 'blind'), 1, 'no rig.json'),
+            ((drag, *good, '--hold-out', 'blind'), 1, 'no rig.json'),
             ((drop, '--model', 'none.json', '--output', 'x'), 1, '--model: '),
             ((drop, *good, '--baseline', 'coarse'), 1, '33×34'),
             ((drop, '--model', knit, '--output', '/proc/x'), 1, 'another --output'),
