@@ -6,7 +6,6 @@
 #include <gio/gio.h>
 #include <gst/gst.h>
 #include <locale.h>
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -17,6 +16,7 @@
 #include "gst/rig/calibrate.h"
 #include "gst/rig/rigfile.h"
 #include "gst/rig/rigyaml.h"
+#include "tools/length.h"
 
 #define TOOL "gst-cloth-calibrate-1.0"
 
@@ -41,27 +41,6 @@ complain (gint code, const gchar * message)
   return code;
 }
 
-/* "25mm" in metres. */
-static gboolean
-parse_length (const gchar * text, gdouble * metres)
-{
-  static const struct
-  {
-    const gchar *name;
-    gdouble per_metre;
-  } units[] = { {"mm", 1000}, {"cm", 100}, {"m", 1}, {"in", 1000 / 25.4} };
-  gchar *end;
-  gdouble value = g_ascii_strtod (text, &end);
-
-  for (gsize i = 0; i < G_N_ELEMENTS (units) && end != text; i++) {
-    if (!strcmp (end, units[i].name) && isfinite (value) && value > 0) {
-      *metres = value / units[i].per_metre;
-      return TRUE;
-    }
-  }
-  return FALSE;
-}
-
 static ClothPattern *
 make_pattern (const Arguments * a, gint * code, GError ** error)
 {
@@ -84,12 +63,8 @@ make_pattern (const Arguments * a, gint * code, GError ** error)
         "--square");
     return NULL;
   }
-  if (!parse_length (a->square, &square)) {
-    g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
-        "--square %s: give a length with its unit, mm, cm, m or in, for "
-        "instance 25mm", a->square);
+  if (!parse_length ("square", a->square, &square, error))
     return NULL;
-  }
   if (strcmp (a->first, "black") && strcmp (a->first, "white")) {
     g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
         "--first %s: give black or white", a->first);

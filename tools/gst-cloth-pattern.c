@@ -9,6 +9,7 @@
 #include "gst/pattern/marray.h"
 #include "gst/pattern/pattern.h"
 #include "gst/pattern/print.h"
+#include "tools/length.h"
 
 #include <glib/gstdio.h>
 #include <locale.h>
@@ -49,31 +50,6 @@ complain (gint code, const gchar * message)
   return code;
 }
 
-/* "50mm", "5cm", "0.05m", "2in" in metres. */
-static gboolean
-parse_length (const gchar * name, const gchar * text, gdouble * metres,
-    gchar ** message)
-{
-  static const struct
-  {
-    const gchar *name;
-    gdouble metres;
-  } units[] = { {"mm", 1000}, {"cm", 100}, {"m", 1}, {"in", 1000 / 25.4} };
-  gchar *end;
-  gdouble value = g_ascii_strtod (text, &end);
-
-  for (gsize i = 0; i < G_N_ELEMENTS (units) && end != text; i++) {
-    /* Divided, so that 50mm is the 0.05 that is written in files. */
-    if (!strcmp (end, units[i].name) && isfinite (value) && value >= 0) {
-      *metres = value / units[i].metres;
-      return TRUE;
-    }
-  }
-  *message = g_strdup_printf ("--%s %s: give a length with its unit, mm, cm, m "
-      "or in, for instance 50mm", name, text);
-  return FALSE;
-}
-
 static gint
 fail (gint value_code, GError * error)
 {
@@ -98,11 +74,11 @@ lay_out (const Arguments * arguments, const ClothArtwork * artwork,
         "tabloid, cloth or a size as 600x900mm", arguments->paper);
     return complain (BAD_USAGE, message);
   }
-  if (!parse_length ("page-margin", arguments->page_margin, &metres, &message))
-    return complain (BAD_USAGE, message);
+  if (!parse_length ("page-margin", arguments->page_margin, &metres, &error))
+    return complain (BAD_USAGE, error->message);
   options->margin_mm = metres * 1000;
-  if (!parse_length ("overlap", arguments->overlap, &metres, &message))
-    return complain (BAD_USAGE, message);
+  if (!parse_length ("overlap", arguments->overlap, &metres, &error))
+    return complain (BAD_USAGE, error->message);
   options->overlap_mm = metres * 1000;
   if (!cloth_print_layout (artwork, options, &layout, &error))
     return fail (BAD_USAGE, error);
@@ -161,7 +137,7 @@ run_m_array (const Arguments * arguments)
   g_autoptr (ClothMArray) array = NULL;
   ClothArtwork artwork = { NULL };
   g_autoptr (GError) error = NULL;
-  g_autofree gchar *message = NULL, *notes = NULL;
+  g_autofree gchar *notes = NULL;
   gdouble pitch, diameter, margin;
   gint exit_code;
 
@@ -172,17 +148,17 @@ run_m_array (const Arguments * arguments)
   if (arguments->dot_ratio != CLOTH_CODE_DOT_RATIO)
     return refuse_option ("dot-ratio", "m-array");
   if (!parse_length ("pitch", arguments->pitch ? arguments->pitch : "20mm",
-          &pitch, &message))
-    return complain (BAD_USAGE, message);
+          &pitch, &error))
+    return complain (BAD_USAGE, error->message);
   /* Whole micrometres, so that 0.65 · 20 mm is the 0.013 that is written in files. */
   diameter = round (DOTS_DIAMETER_RATIO * pitch * 1e6) / 1e6;
   if (arguments->diameter
-      && !parse_length ("diameter", arguments->diameter, &diameter, &message))
-    return complain (BAD_USAGE, message);
+      && !parse_length ("diameter", arguments->diameter, &diameter, &error))
+    return complain (BAD_USAGE, error->message);
   margin = pitch / 2;
   if (arguments->margin
-      && !parse_length ("margin", arguments->margin, &margin, &message))
-    return complain (BAD_USAGE, message);
+      && !parse_length ("margin", arguments->margin, &margin, &error))
+    return complain (BAD_USAGE, error->message);
   array = cloth_m_array_new (columns, rows, colours, pitch, diameter, margin,
       &code, &error);
   if (!array)
@@ -225,13 +201,13 @@ run_checker (const Arguments * arguments, gboolean coded)
     return complain (BAD_USAGE, message);
   }
   if (!parse_length ("square", arguments->square ? arguments->square : "50mm",
-          &square, &message))
-    return complain (BAD_USAGE, message);
+          &square, &error))
+    return complain (BAD_USAGE, error->message);
   /* White around the board, so that its outer corners can be seen. */
   margin = square / 2;
   if (arguments->margin
-      && !parse_length ("margin", arguments->margin, &margin, &message))
-    return complain (BAD_USAGE, message);
+      && !parse_length ("margin", arguments->margin, &margin, &error))
+    return complain (BAD_USAGE, error->message);
   pattern = cloth_pattern_new_checker (given (arguments->columns, 8),
       given (arguments->rows, 8), square, margin,
       !strcmp (first, "black"), &error);
