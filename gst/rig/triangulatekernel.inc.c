@@ -3,8 +3,21 @@
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 
-/* Polynomials below are summed in pairs: it is how long each of their operations waits
- * for the one before, not their number, that undistortion takes its time from. */
+/* Undistortion sums its polynomials in pairs: its time goes in operations that wait for
+ * the one before rather than in their number. */
+
+/* What one group's steps of undistortion hand on. */
+typedef struct
+{
+  /* distorted and true place; of a fisheye x is the ratio of angle to radius */
+  V dx, dy, x, y;
+  /* newton_brown's; of a fisheye inverse is the slope of radius over angle */
+  V J[3], inverse, iden;
+  /* information of the distorted place */
+  V ixx, ixy, iyy;
+  /* seen at all; not converged */
+  M seen, open;
+} NAME (Place);
 
 /* One step of Newton's method towards the place (x, y) that a Brown lens brings to
  * (dx, dy). J: the derivative of distortion where it starts, symmetric: xx, xy, yy;
@@ -40,74 +53,80 @@ NAME (newton_brown) (const TriangulateCamera * camera, V dx, V dy, V * x_io,
   return FMA (ex, ex, ey * ey);
 }
 
-/* Undistorts the places (dx, dy) by a Brown lens; J: the derivative of distortion where
- * the last step starts, LAST_NEWTON away at most. Returns where Newton's method could
- * not be trusted. */
-TARGET INLINE M
-NAME (undistort_brown) (const TriangulateCamera * camera, M seen, V dx, V dy,
-    V * x_out, V * y_out, V J[3])
+/* Undistorts by a Brown lens, but for one last step. */
+TARGET INLINE void
+NAME (start_brown) (const TriangulateCamera * camera, NAME (Place) * o)
 {
-  const gdouble * p = camera->inverse, *k = camera->k, *slope = camera->slope;
+  const gdouble * p = camera->inverse, *k = camera->k;
+  V dx = o->dx, dy = o->dy;
   V q = FMA (dx, dx, dy * dy), qq = q * q, t = FMA (k[3], dx, k[2] * dy);
   V radial = FMA (q, FMA (qq, FMA (qq, FMA (qq, p[6], FMA (q, p[5], p[4])),
               FMA (q, p[3], p[2])), FMA (q, p[1], p[0])),
       FMA (t, FMA (qq, FMA (q, p[10], p[9]), FMA (q, p[8], p[7])), 1.));
   V shift = FMA (qq, FMA (q, p[14], p[13]), FMA (q, p[12], p[11])) * q;
   V x = FMA (dx, radial, k[3] * shift), y = FMA (dy, radial, k[2] * shift);
-  V scale, iden, c, den, both, ex, ey;
+  V error = NAME (newton_brown) (camera, dx, dy, &x, &y, o->J, &o->inverse,
+      &o->iden);
   /* also open when it is NaN */
-  M open = seen & ~GREATER (LAST_NEWTON * LAST_NEWTON,
-      NAME (newton_brown) (camera, dx, dy, &x, &y, J, &scale, &iden));
+  M open = o->seen & ~GREATER (LAST_NEWTON * LAST_NEWTON, error);
 
   for (gint step = 1; step < MAX_NEWTON && BITS (open); step++) {
-    V nx = x, ny = y, nJ[3], nscale, niden;
-    V error = NAME (newton_brown) (camera, dx, dy, &nx, &ny, nJ, &nscale,
-        &niden);
+    V nx = x, ny = y, J[3], inverse, iden;
 
+    error = NAME (newton_brown) (camera, dx, dy, &nx, &ny, J, &inverse, &iden);
     x = CHOOSE (open, nx, x);
     y = CHOOSE (open, ny, y);
-    scale = CHOOSE (open, nscale, scale);
-    iden = CHOOSE (open, niden, iden);
+    o->inverse = CHOOSE (open, inverse, o->inverse);
+    o->iden = CHOOSE (open, iden, o->iden);
     for (gint i = 0; i < 3; i++)
-      J[i] = CHOOSE (open, nJ[i], J[i]);
+      o->J[i] = CHOOSE (open, J[i], o->J[i]);
     open &= ~GREATER (LAST_NEWTON * LAST_NEWTON, error);
   }
-  /* The error here, times the denominator, goes through the last step's matrix. */
-  q = FMA (x, x, y * y);
-  qq = q * q;
-  t = FMA (slope[7], x, slope[6] * y);
-  c = FMA (qq, FMA (q, k[4], k[1]), FMA (q, k[0], 1.));
-  ex = FNMA (k[3], q, dx);
-  ey = FNMA (k[2], q, dy);
+  o->x = x;
+  o->y = y;
+  o->open = open;
+}
+
+/* The last step, with the matrix of the one before: J is the derivative of distortion
+ * where that started, LAST_NEWTON away at most. Returns where Newton's method could not
+ * be trusted. */
+TARGET INLINE M
+NAME (finish_brown) (const TriangulateCamera * camera, NAME (Place) * o)
+{
+  const gdouble * k = camera->k, *slope = camera->slope;
+  V x = o->x, y = o->y, q = FMA (x, x, y * y), qq = q * q;
+  V t = FMA (slope[7], x, slope[6] * y);
+  V c = FMA (qq, FMA (q, k[4], k[1]), FMA (q, k[0], 1.)), den, both;
+  V ex = FNMA (k[3], q, o->dx), ey = FNMA (k[2], q, o->dy);
+
   if (camera->lens == CLOTH_LENS_BROWN8) {
     den = FMA (qq, FMA (q, k[7], k[6]), FMA (q, k[5], 1.));
     both = FMA (t, den, c);
-    ex = FNMA (x, both, ex * den) * iden;
-    ey = FNMA (y, both, ey * den) * iden;
+    ex = FNMA (x, both, ex * den) * o->iden;
+    ey = FNMA (y, both, ey * den) * o->iden;
   } else {
     both = c + t;
     ex = FNMA (x, both, ex);
     ey = FNMA (y, both, ey);
   }
-  *x_out = x = FMA (FNMA (J[1], ey, J[2] * ex), scale, x);
-  *y_out = y = FMA (FNMA (J[1], ex, J[0] * ey), scale, y);
-  return seen & (open | ~(GREATER (scale, 0.) & GREATER (camera->max_r2,
-              FMA (x, x, y * y))));
+  o->x = x = FMA (FNMA (o->J[1], ey, o->J[2] * ex), o->inverse, x);
+  o->y = y = FMA (FNMA (o->J[1], ex, o->J[0] * ey), o->inverse, y);
+  return o->seen & (o->open | ~(GREATER (o->inverse, 0.)
+          & GREATER (camera->max_r2, FMA (x, x, y * y))));
 }
 
 /* The same for a fisheye, in which an angle θ from the axis becomes a radius of
  * θ·(1 + k₀θ² + … + k₃θ⁸). Newton's method finds the ratio of angle to radius, which has
  * no singular point in the middle. */
-TARGET INLINE M
-NAME (undistort_fisheye) (const TriangulateCamera * camera, M seen, V dx, V dy,
-    V * x, V * y, V J[3])
+TARGET INLINE void
+NAME (start_fisheye) (const TriangulateCamera * camera, NAME (Place) * o)
 {
   const gdouble * p = camera->inverse, *k = camera->k, *of = camera->slope;
-  V q = FMA (dx, dx, dy * dy), qq = q * q, w, ww, e, u, uu, s, c, m, d, along;
+  V q = FMA (o->dx, o->dx, o->dy * o->dy), qq = q * q, w, ww, e;
   V ratio = FMA (q, FMA (qq, FMA (qq, FMA (qq, p[6], FMA (q, p[5], p[4])),
               FMA (q, p[3], p[2])), FMA (q, p[1], p[0])), 1.);
   V slope = VECTOR (0.);
-  M open = seen;
+  M open = o->seen;
 
   for (gint step = 0; step < MAX_NEWTON && BITS (open); step++) {
     V f;
@@ -121,6 +140,18 @@ NAME (undistort_fisheye) (const TriangulateCamera * camera, M seen, V dx, V dy,
     slope = CHOOSE (open, f, slope);
     open &= ~GREATER (LAST_NEWTON_FISHEYE * LAST_NEWTON_FISHEYE, e * e);
   }
+  o->x = ratio;
+  o->inverse = slope;
+  o->open = open;
+}
+
+/* True place and derivative. Returns where Newton's method could not be trusted. */
+TARGET INLINE M
+NAME (finish_fisheye) (const TriangulateCamera * camera, NAME (Place) * o)
+{
+  V dx = o->dx, dy = o->dy, q = FMA (dx, dx, dy * dy), ratio = o->x;
+  V w, u, uu, s, c, m, e, d, along;
+
   /* sine over angle and cosine of half the angle by their series; it is below π/4 */
   w = q * ratio * ratio;
   u = 0.25 * w;
@@ -140,31 +171,32 @@ NAME (undistort_fisheye) (const TriangulateCamera * camera, M seen, V dx, V dy,
   d = 1. / (m * e * q);
   s = d * q;
   u = e * e * s;
-  *x = dx * u;
-  *y = dy * u;
+  o->x = dx * u;
+  o->y = dy * u;
   /* across the radius and along it */
   s = m * m * s;
-  along = slope * m * m;
+  along = o->inverse * m * m;
   along = (along - s) * (d * m * e);
-  J[0] = FMA (along * dx, dx, s);
-  J[1] = along * dx * dy;
-  J[2] = FMA (along * dy, dy, s);
-  return seen & (open | ~(GREATER (slope, 0.) & GREATER (camera->max_r2, w)));
+  o->J[0] = FMA (along * dx, dx, s);
+  o->J[1] = along * dx * dy;
+  o->J[2] = FMA (along * dy, dy, s);
+  return o->seen & (o->open | ~(GREATER (o->inverse, 0.)
+          & GREATER (camera->max_r2, w)));
 }
 
-/* From px to normalised coordinates. Returns what was seen. */
-TARGET INLINE M
+/* From px to normalised coordinates, still distorted. */
+TARGET INLINE void
 NAME (load_group) (const TriangulateCamera * camera, const gdouble * const *in,
-    gdouble error_floor, gdouble * obs, M * again)
+    guint offset, gdouble error_floor, NAME (Place) * o)
 {
   const gdouble * unit = camera->unit;
-  V u = LOAD (in[IN_U]), v = LOAD (in[IN_V]), zero = VECTOR (0.);
-  V cxx = LOAD (in[IN_XX]) + error_floor, cxy = LOAD (in[IN_XY]);
-  V cyy = LOAD (in[IN_YY]) + error_floor;
+  V u = LOAD (in[IN_U] + offset), v = LOAD (in[IN_V] + offset);
+  V cxx = LOAD (in[IN_XX] + offset) + error_floor;
+  V cxy = LOAD (in[IN_XY] + offset);
+  V cyy = LOAD (in[IN_YY] + offset) + error_floor;
   /* not fused: 0 when the two are perfectly correlated */
   V det = cxx * cyy - cxy * cxy;
   V y = (v - camera->cy) * camera->ify;
-  V x = FNMA (camera->skew, y, u - camera->cx) * camera->ifx;
   V sum = u + v + det;
   /* sum − sum is 0 unless anything is infinite or NaN; cyy is above 0 with the others */
   M seen = GREATER (cxx, 0.) & GREATER (sum - sum + det, 0.);
@@ -174,51 +206,70 @@ NAME (load_group) (const TriangulateCamera * camera, const gdouble * const *in,
   ixx = cyy * idet;
   ixy = -cxy * idet;
   iyy = cxx * idet;
-  iyy = FMA (unit[3], ixx, FMA (unit[4], ixy, unit[5] * iyy));
-  ixy = FMA (unit[1], ixx, unit[2] * ixy);
-  ixx = unit[0] * ixx;
+  o->iyy = FMA (unit[3], ixx, FMA (unit[4], ixy, unit[5] * iyy));
+  o->ixy = FMA (unit[1], ixx, unit[2] * ixy);
+  o->ixx = unit[0] * ixx;
+  o->dx = o->x = FNMA (camera->skew, y, u - camera->cx) * camera->ifx;
+  o->dy = o->y = y;
+  o->seen = seen;
+}
 
-  *again = seen & ~seen;
-  if (camera->lens != CLOTH_LENS_NONE) {
-    V J[3], a, b, c;
+/* 0 where not seen. */
+TARGET INLINE void NAME (store_group) (const NAME (Place) * o, gdouble * obs)
+{
+  V zero = VECTOR (0.);
 
-    if (camera->lens == CLOTH_LENS_FISHEYE)
-      *again = NAME (undistort_fisheye) (camera, seen, x, y, &x, &y, J);
-    else
-      *again = NAME (undistort_brown) (camera, seen, x, y, &x, &y, J);
-    /* Jᵀ·I·J */
-    a = FMA (ixx, J[0], ixy * J[1]);
-    b = FMA (ixx, J[1], ixy * J[2]);
-    c = FMA (ixy, J[1], iyy * J[2]);
-    ixy = FMA (ixy, J[0], iyy * J[1]);
-    ixx = FMA (J[0], a, J[1] * ixy);
-    ixy = FMA (J[0], b, J[1] * c);
-    iyy = FMA (J[1], b, J[2] * c);
-  }
-  STORE (obs + OBS_X * BLOCK, CHOOSE (seen, x, zero));
-  STORE (obs + OBS_Y * BLOCK, CHOOSE (seen, y, zero));
-  STORE (obs + OBS_IXX * BLOCK, CHOOSE (seen, ixx, zero));
-  STORE (obs + OBS_IXY * BLOCK, CHOOSE (seen, ixy, zero));
-  STORE (obs + OBS_IYY * BLOCK, CHOOSE (seen, iyy, zero));
-  return seen;
+  STORE (obs + OBS_X * BLOCK, CHOOSE (o->seen, o->x, zero));
+  STORE (obs + OBS_Y * BLOCK, CHOOSE (o->seen, o->y, zero));
+  STORE (obs + OBS_IXX * BLOCK, CHOOSE (o->seen, o->ixx, zero));
+  STORE (obs + OBS_IXY * BLOCK, CHOOSE (o->seen, o->ixy, zero));
+  STORE (obs + OBS_IYY * BLOCK, CHOOSE (o->seen, o->iyy, zero));
+}
+
+/* Information of the true place: Jᵀ·I·J. */
+TARGET INLINE void NAME (carry) (NAME (Place) * o)
+{
+  const V *J = o->J;
+  V a = FMA (o->ixx, J[0], o->ixy * J[1]);
+  V b = FMA (o->ixx, J[1], o->ixy * J[2]);
+  V c = FMA (o->ixy, J[1], o->iyy * J[2]);
+  V d = FMA (o->ixy, J[0], o->iyy * J[1]);
+
+  o->ixx = FMA (J[0], a, J[1] * d);
+  o->ixy = FMA (J[0], b, J[1] * c);
+  o->iyy = FMA (J[1], b, J[2] * c);
 }
 
 TARGET static guint
 NAME (load) (const TriangulateCamera * camera, const gdouble * const *in,
     gdouble error_floor, gdouble * obs, guint * again)
 {
+  enum
+  { N = BLOCK / LANES };
+  NAME (Place) o[N];
   guint seen = 0;
 
+  /* step by step, as solve () below */
   *again = 0;
-  for (guint offset = 0; offset < BLOCK; offset += LANES) {
-    const gdouble *group[N_IN];
-    M open;
-
-    for (guint i = 0; i < N_IN; i++)
-      group[i] = in[i] + offset;
-    seen |= BITS (NAME (load_group) (camera, group, error_floor,
-            obs + offset, &open)) << offset;
-    *again |= BITS (open) << offset;
+  for (guint i = 0; i < N; i++) {
+    NAME (load_group) (camera, in, i * LANES, error_floor, &o[i]);
+    seen |= BITS (o[i].seen) << i * LANES;
+  }
+  if (camera->lens == CLOTH_LENS_FISHEYE) {
+    for (guint i = 0; i < N; i++)
+      NAME (start_fisheye) (camera, &o[i]);
+    for (guint i = 0; i < N; i++)
+      *again |= BITS (NAME (finish_fisheye) (camera, &o[i])) << i * LANES;
+  } else if (camera->lens != CLOTH_LENS_NONE) {
+    for (guint i = 0; i < N; i++)
+      NAME (start_brown) (camera, &o[i]);
+    for (guint i = 0; i < N; i++)
+      *again |= BITS (NAME (finish_brown) (camera, &o[i])) << i * LANES;
+  }
+  for (guint i = 0; i < N; i++) {
+    if (camera->lens != CLOTH_LENS_NONE)
+      NAME (carry) (&o[i]);
+    NAME (store_group) (&o[i], obs + i * LANES);
   }
   return seen;
 }
