@@ -76,6 +76,9 @@ cloth_camera_view_new (const ClothRecording * recording,
   v->stale = g_new0 (gboolean, n);
   cloth_camera_view_reset (v);
   place_pictures (v);
+  v->y = g_memdup2 (recording->y, 3 * (gsize) recording->n *
+      recording->n_frames * sizeof *v->y);
+  cloth_camera_view_solve_unseen (v, threads);
   cloth_camera_find_stale (v, threads);
   return v;
 }
@@ -134,6 +137,7 @@ cloth_camera_view_free (ClothCameraView * view)
 {
   if (!view)
     return;
+  g_free (view->y);
   g_free (view->captures);
   g_free (view->lost);
   g_free (view->pictures);

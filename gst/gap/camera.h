@@ -15,6 +15,8 @@ G_BEGIN_DECLS
  * ClothCameraView:
  * @recording: where the points are said to be; its positions may be moved
  * @sights: what was seen of it
+ * @y: the positions: the recording's, or where the pictures have a point that is missing
+ *   there; NaN where neither tells, [n_frames][n][3], m
  * @captures: how each camera is taken to be, the rig's at first
  * @pictures: the picture of each frame by each camera, or %NULL, [n_frames][n_cameras]
  * @stale: whether it shows the picture before once more, [n_frames][n_cameras]
@@ -27,6 +29,7 @@ G_BEGIN_DECLS
 typedef struct {
   const ClothRecording *recording;
   const ClothSights *sights;
+  gdouble *y;
   ClothCapture *captures;
   const ClothSight **pictures;
   gboolean *stale;
@@ -59,6 +62,7 @@ ClothCameraView *cloth_camera_view_new (const ClothRecording * recording,
 void cloth_camera_view_apply (ClothCameraView * view, guint camera,
     const ClothEffect * effect, const gdouble * values);
 void cloth_camera_view_reset (ClothCameraView * view);
+void cloth_camera_view_solve_unseen (ClothCameraView * view, guint threads);
 ClothGapNormal *cloth_camera_view_linearise (ClothCameraView * view,
     guint threads, ClothCameraErrors * errors);
 gdouble cloth_camera_view_stale_share (const ClothCameraView * view,

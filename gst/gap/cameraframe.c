@@ -17,9 +17,11 @@
 #define GROSS_DEVIATIONS 6.
 
 void
-cloth_camera_points_init (ClothCameraPoints * p, const ClothRecording * r,
+cloth_camera_points_init (ClothCameraPoints * p, const ClothCameraView * v,
     guint stride)
 {
+  const ClothRecording *r = v->recording;
+
   p->stride = stride;
   p->n = (r->n + stride - 1) / stride;
   p->positions = g_new (gdouble, 3 * (gsize) p->n * r->n_frames);
@@ -31,8 +33,7 @@ cloth_camera_points_init (ClothCameraPoints * p, const ClothRecording * r,
     for (guint i = 0; i < p->n; i++, to += 3) {
       gsize from = (gsize) f * r->n + (gsize) i * stride;
 
-      for (guint k = 0; k < 3; k++)
-        to[k] = r->seen[from] > 0. ? r->y[3 * from + k] : NAN;
+      memcpy (to, v->y + 3 * from, 3 * sizeof *to);
     }
   }
   p->motion = (ClothMotion) {
@@ -107,12 +108,11 @@ static gdouble
 time_before (const ClothCameraView * v, const ClothSight * sight)
 {
   const ClothSight *first = (const ClothSight *) v->sights->list->data;
+  const guint camera = sight->camera;
 
   while (sight-- > first)
-    if (sight->camera == sight[1].camera)
+    if (sight->camera == camera)
       return sight->time_s;
-    else if (sight == first)
-      break;
   return NAN;
 }
 
@@ -165,6 +165,9 @@ look (const ClothCameraView * v, const ClothCameraPoints * points,
   const gsize row = 2 * N_COLUMNS;
 
   match (p, points);
+  /* it says nothing of where points are now */
+  for (guint i = 0; i < points->n && held && aim != CLOTH_CAMERA_WAY; i++)
+    p->at[i] = -1;
   cloth_capture_observe (capture, motion, time_s, p->px, NULL);
   memset (p->b, 0, row * points->n * sizeof *p->b);
   if (aim == CLOTH_CAMERA_FAULTS)

@@ -37,7 +37,7 @@ typedef struct
   ClothMotion motion;
 } ClothCameraPoints;
 
-void cloth_camera_points_init (ClothCameraPoints * p, const ClothRecording * r,
+void cloth_camera_points_init (ClothCameraPoints * p, const ClothCameraView * v,
     guint stride);
 void cloth_camera_points_clear (ClothCameraPoints * p);
 

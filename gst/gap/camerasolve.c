@@ -16,6 +16,8 @@
 /* Blocks of time, s, and most of them. */
 #define BLOCK_S 0.5
 #define MOST_BLOCKS 64
+/* Steps from where the recording bridges a point to where pictures have it. */
+#define N_UNSEEN 4
 /* A picture is the one before when that explains this share of the way between the two,
  * and the square that it explains is so many times what it leaves to each. */
 #define STALE_SHARE 0.6
@@ -245,7 +247,7 @@ work_init (Work * work, ClothCameraView * v, ClothCameraAim aim, gsize most)
 
   *work = (Work) {
   .view = v,.aim = aim,.n_cameras = v->sights->rig->n_cameras};
-  cloth_camera_points_init (&work->points, r,
+  cloth_camera_points_init (&work->points, v,
       (guint) (1 + (gsize) r->n * r->n_frames / most));
   divide_time (work);
 }
@@ -434,6 +436,55 @@ shift_blocks (gpointer data, guint begin, guint end, guint worker)
           work->along + 3 * (gsize) frame * r->n);
 }
 
+static gdouble *
+solve (ClothCameraView * v, guint threads)
+{
+  const ClothRecording *r = v->recording;
+  Work work;
+  gdouble *shifts;
+
+  work_init (&work, v, CLOTH_CAMERA_SHIFT, G_MAXSIZE);
+  work.along = g_new (gdouble, 3 * (gsize) r->n * r->n_frames);
+  run (&work, threads, shift_blocks);
+  shifts = g_steal_pointer (&work.along);
+  work_clear (&work);
+  return shifts;
+}
+
+/**
+ * cloth_camera_view_solve_unseen:
+ * @view: a recording beside its pictures
+ * @threads: threads to use, 0 = one for each processor; the result is the same for any
+ *
+ * Puts points that the recording has not to where two or more pictures have them, the
+ * cameras being as they are taken to be.
+ *
+ * Since: 0.1
+ */
+void
+cloth_camera_view_solve_unseen (ClothCameraView * view, guint threads)
+{
+  ClothCameraView *v = view;
+  const ClothRecording *r = v->recording;
+  gsize all = (gsize) r->n * r->n_frames, unseen = 0;
+
+  for (gsize i = 0; i < all; i++)
+    if (!(r->seen[i] > 0.)) {
+      memcpy (v->y + 3 * i, r->y + 3 * i, 3 * sizeof *v->y);
+      unseen++;
+    }
+  if (!unseen)
+    return;
+  /* from where the recording bridges them, which may be far off */
+  for (guint step = 0; step < N_UNSEEN; step++) {
+    g_autofree gdouble *shifts = solve (v, threads);
+
+    for (gsize i = 0; i < all; i++)
+      for (guint k = 0; k < 3 && !(r->seen[i] > 0.); k++)
+        v->y[3 * i + k] += shifts[3 * i + k];
+  }
+}
+
 /* A point that too few cameras see goes with the others of its frame, a frame without any
  * with the one before. */
 static void
@@ -480,23 +531,19 @@ cloth_camera_view_correct (ClothCameraView * view, guint threads,
     ClothRecording * corrected)
 {
   const ClothRecording *r = view->recording;
-  Work work;
+  g_autofree gdouble *shifts = solve (view, threads);
   gdouble sum = 0.;
   gsize n = 0;
 
-  work_init (&work, view, CLOTH_CAMERA_SHIFT, G_MAXSIZE);
-  work.along = g_new (gdouble, 3 * (gsize) r->n * r->n_frames);
-  run (&work, threads, shift_blocks);
   for (gsize i = 0; i < (gsize) r->n * r->n_frames; i++) {
-    const gdouble *shift = work.along + 3 * i;
+    const gdouble *shift = shifts + 3 * i;
 
-    if (isnan (shift[0]))
+    if (isnan (shift[0]) || !(r->seen[i] > 0.))
       continue;
     sum += shift[0] * shift[0] + shift[1] * shift[1] + shift[2] * shift[2];
     n++;
   }
-  move_points (r, work.along, corrected);
-  work_clear (&work);
+  move_points (r, shifts, corrected);
   return n ? sum / n : NAN;
 }
 

@@ -292,13 +292,23 @@ look_again (Search * s)
 {
   ClothCameraErrors errors;
 
-  for (guint i = 0; i < s->views->len; i++)
-    apply_faults (s->d, g_ptr_array_index (s->views, i));
+  for (guint i = 0; i < s->views->len; i++) {
+    ClothCameraView *view = g_ptr_array_index (s->views, i);
+
+    apply_faults (s->d, view);
+    cloth_camera_view_solve_unseen (view, s->d->options->threads);
+  }
   cloth_gap_normal_free (s->normal);
   s->normal = linearise (s, s->views, &errors);
   if (s->normal)
     s->d->camera_errors = errors;
   return s->normal != NULL;
+}
+
+static gboolean
+is_drop (const ClothCameraFault * fault)
+{
+  return strcmp (fault->effect->id, "frame_drop") == 0;
 }
 
 /* Estimates the faults together. */
@@ -311,7 +321,7 @@ fit_faults (Search * s)
     if (!step_faults (s) || !look_again (s))
       return FALSE;
   for (guint i = 0; i < d->n_faults; i++)
-    if (strcmp (d->faults[i].effect->id, "frame_drop") == 0)
+    if (is_drop (&d->faults[i]))
       d->faults[i].values[0] =
           cloth_camera_view_stale_share (g_ptr_array_index (s->views, 0),
           d->faults[i].camera, &d->faults[i].sigmas[0]);
@@ -501,14 +511,16 @@ take_in (Search * s, const GArray * scores)
   return TRUE;
 }
 
-/* Faults that hardly move points count as small. */
+/* Faults that hardly move points count as small. Pictures that are the one before were found
+ * because they are far off. */
 static void
 find_small (Search * s)
 {
   ClothDiagnosis *d = s->d;
 
   for (guint i = 0; i < d->n_faults; i++)
-    d->faults[i].small = !(way_of (s, &d->faults[i]) > LEAST_WAY *
+    d->faults[i].small = !is_drop (&d->faults[i])
+        && !(way_of (s, &d->faults[i]) > LEAST_WAY *
         d->camera_errors.detection);
 }
 

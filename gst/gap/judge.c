@@ -19,6 +19,8 @@ static const gchar *const capture_sentence =
     "Film a board that moves with all cameras, once more with half the "
     "exposure time, and at rest: clocks, shutters and exposures show in motion "
     "only, lenses and places at rest too.";
+/* A share of what is above the floor is told if the variance is this many times as large. */
+#define LEAST_ABOVE 1.05
 /* Of the bootstrap. */
 #define N_DRAWS 1000
 
@@ -125,7 +127,8 @@ share_gone (const ClothGapResult * result, gdouble before, gdouble after)
 {
   gdouble floor = result->noise_floor.value * result->noise_floor.value;
 
-  return before > floor ? (before - after) / (before - floor) : NAN;
+  return before > LEAST_ABOVE * floor ? (before - after) / (before - floor) :
+      NAN;
 }
 
 /* Of what is above the floor, the share that went; draws are @stride apart. */
@@ -136,7 +139,7 @@ fill_shrink (ClothGapResult * result, gdouble before, gdouble after,
   g_autofree gdouble *shrinks = g_new (gdouble, N_DRAWS);
   gdouble floor = result->noise_floor.value * result->noise_floor.value;
 
-  if (!(before > floor))
+  if (!(before > LEAST_ABOVE * floor))
     return;
   for (guint i = 0; i < N_DRAWS; i++) {
     gdouble b = draws_before[i * stride], a = draws_after[i * stride];

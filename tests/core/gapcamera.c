@@ -180,9 +180,10 @@ sights_new (const Fault * faults, guint n_faults, guint n_seeing)
   return sights;
 }
 
-/* The sheet as it was, @off metres away along y; it has the noise of the pictures. */
+/* The sheet as it was, @off metres away along y; it has the noise of the pictures. Columns
+ * from @n_columns on are hidden but in every tenth frame. */
 static ClothTake *
-take_new (gdouble off, gchar ** folder)
+take_new (gdouble off, guint n_columns, gchar ** folder)
 {
   g_autoptr (GError) error = NULL;
   g_autoptr (ClothTakeInfo) info = cloth_take_info_new ("waves");
@@ -212,9 +213,11 @@ take_new (gdouble off, gchar ** folder)
 
       wave (v, f / FPS, X);
       X[1] += off;
+      states[v] = v % COLUMNS < n_columns || f % 10 == 0;
       for (guint k = 0; k < 3; k++)
         positions[3 * v + k] =
-            (gfloat) (X[k] + 5e-5 * cloth_random_gaussian (&random));
+            states[v] ? (gfloat) (X[k] +
+            5e-5 * cloth_random_gaussian (&random)) : NAN;
     }
     cloth_take_writer_append (writer, f / FPS, positions, states, NULL, NULL,
         &error);
@@ -252,11 +255,12 @@ static const gchar *const all_effects[] = {
 };
 
 static ClothGapResult *
-diagnose (ClothSights * sights, ClothSights * baseline_sights, guint threads)
+diagnose_seen (ClothSights * sights, ClothSights * baseline_sights,
+    guint n_columns, guint threads)
 {
   g_autofree gchar *folder = NULL;
   g_autoptr (GError) error = NULL;
-  g_autoptr (ClothTake) take = take_new (0., &folder);
+  g_autoptr (ClothTake) take = take_new (0., n_columns, &folder);
   g_autoptr (ClothTake) baseline = baseline_sights ?
       cloth_take_open (folder, &error) : NULL;
   g_autoptr (ClothModel) model = cloth_model_new ();
@@ -278,6 +282,12 @@ diagnose (ClothSights * sights, ClothSights * baseline_sights, guint threads)
   }
   remove_take (folder);
   return result;
+}
+
+static ClothGapResult *
+diagnose (ClothSights * sights, ClothSights * baseline_sights, guint threads)
+{
+  return diagnose_seen (sights, baseline_sights, COLUMNS, threads);
 }
 
 static guint
@@ -397,6 +407,24 @@ test_nothing (void)
   g_assert_cmpfloat (stage->share, ==, 0.);
 }
 
+/* Two cameras that contradict each other leave holes in the recording: where they would have
+ * points is found from the pictures. */
+static void
+test_holes (void)
+{
+  const Fault fault = { 1, 0.03 };
+  g_autoptr (ClothSights) sights = sights_new (&fault, 1, 2);
+  g_autoptr (ClothGapResult) result = diagnose_seen (sights, NULL, 1, 2);
+  const ClothGapEffect *first = &g_array_index (result->effects,
+      ClothGapEffect, 0);
+
+  g_assert_cmpstr (first->effect->id, ==, "sync_offset");
+  g_assert_true (first->accepted);
+  /* either clock may be off: it is the difference that shows */
+  g_assert_cmpfloat_with_epsilon (first->values[0],
+      strcmp (first->camera, "cam1") ? -0.03 : 0.03, 1.5e-3);
+}
+
 /* What is wrong on the baseline, too, is no news. */
 static void
 test_baseline (void)
@@ -451,7 +479,7 @@ test_solved_again (void)
   g_autoptr (ClothSights) sights = sights_new (NULL, 0, N_CAMERAS);
   g_autofree gchar *folder = NULL;
   g_autoptr (GError) error = NULL;
-  g_autoptr (ClothTake) take = take_new (0.003, &folder);
+  g_autoptr (ClothTake) take = take_new (0.003, COLUMNS, &folder);
   ClothRecording *r = cloth_recording_new (take, &error);
   g_autoptr (ClothCameraView) view = cloth_camera_view_new (r, sights, 2);
   gdouble square, off = 0.;
@@ -526,6 +554,7 @@ main (int argc, char **argv)
   g_test_add_func ("/gap/camera/blur", test_blur);
   g_test_add_func ("/gap/camera/two", test_two);
   g_test_add_func ("/gap/camera/nothing", test_nothing);
+  g_test_add_func ("/gap/camera/holes", test_holes);
   g_test_add_func ("/gap/camera/baseline", test_baseline);
   g_test_add_func ("/gap/camera/threads", test_threads);
   g_test_add_func ("/gap/camera/one-camera", test_one_camera);
