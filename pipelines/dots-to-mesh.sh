@@ -18,6 +18,15 @@ shift 3
 
 heading () { printf '\n== %s\n' "$*"; }
 
+# With -q gst-launch would keep warnings to itself, and they say which camera is off or that
+# the print is another one.
+launch () {
+  gst-launch-1.0 "$@" | sed -u -e '/^Setting pipeline/d' -e '/^Pipeline is/d' \
+      -e '/^New clock/d' -e '/^Redistribute latency/d' -e '/^Got EOS/d' \
+      -e '/^Execution ended/d' -e '/^Freeing pipeline/d' -e '/^Use Windows/d' \
+      -e '/^Additional debug info/d' -e '/^\.\..*\.c([0-9]*):/d'
+}
+
 # The first film tells how far all are.
 films=()
 progress=(! progressreport name=filmed update-freq=2)
@@ -35,18 +44,24 @@ done
 
 mkdir -p "$out"
 heading "Films to a mesh"
-gst-launch-1.0 -q triangulate name=join "rig=$rig" "pattern=$pattern" ! meshfill \
+launch triangulate name=join "rig=$rig" "pattern=$pattern" ! meshfill \
     ! meshsink "location=$out/cloth.take" "${films[@]}"
+# Of each vertex in each frame one byte, 0 for unseen, after a header of 128.
+if [ "$(tail -c +129 "$out/cloth.take/states.npy" | tr -d '\0' | wc -c)" = 0 ]; then
+  echo "no dot was located: see the warnings above, and that $pattern is the print" \
+      "that was filmed and $rig the cameras as they stood" >&2
+  exit 1
+fi
 
 heading "The mesh in other formats"
 written=()
 for ending in obj ply usda pvd c3d csv; do
   written+=(t. ! queue ! meshsink "location=$out/cloth.$ending")
 done
-gst-launch-1.0 -q meshsrc "location=$out/cloth.take" ! progressreport name=written \
+launch meshsrc "location=$out/cloth.take" ! progressreport name=written \
     update-freq=2 ! tee name=t "${written[@]}"
 # of short clips only
-gst-launch-1.0 -q meshsrc "location=$out/cloth.take" ! meshsink "location=$out/cloth.glb" ||
+launch meshsrc "location=$out/cloth.take" ! meshsink "location=$out/cloth.glb" ||
     echo "cloth.glb was not written, the rest was"
 
 heading "Done"

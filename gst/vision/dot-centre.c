@@ -34,6 +34,9 @@
 #define MAX_ROWS 512
 /* Fewest pixels that give the ground. */
 #define MIN_GROUND 8
+/* Least luma of a dot above its ground over the ground: the noise of a bright wall gives
+ * spots as well. */
+#define LEAST_WEBER 0.25f
 
 /* Own side of the line between two dots: nx·dx + ny·dy ≤ reach. */
 typedef struct
@@ -293,7 +296,8 @@ look_around (const ClothDotDetector * detector, const ClothDotCandidate * spot,
   for (gint k = 0; k < 3; k++)
     dot->colour[k] = k == 0 || image->chroma[k - 1]
         ? (gfloat) sum[k] / (gfloat) bright.n : 128;
-  return dot->colour[0] - dot->background >= detector->params.contrast;
+  return dot->colour[0] - dot->background >= MAX (detector->params.contrast,
+      LEAST_WEBER * dot->background);
 }
 
 /* Lanes that are summed apart; the order of the sums is the same on every machine. */

@@ -16,10 +16,8 @@
 #define SURELY_ROUND 0.95
 /* How often the threshold of a spot is raised to cut it apart, by which share of what is
  * left up to its peak. */
-#define STEPS 4
-#define STEP_SHARE 0.25
-/* What is cut apart may be this much larger than a dot each way. */
-#define MAX_CLUSTER 4
+#define STEPS 5
+#define STEP_SHARE 0.2
 
 /**
  * cloth_dot_default_params:
@@ -131,8 +129,69 @@ spread_least (const guint8 * from, guint8 * to, gint n, gint stride, gint reach)
   }
 }
 
-/* The ground is the darkest within reach of a dot; the brightest is looked for next to
- * a tile only, so that a bright wall behind the cloth does little. */
+/* The threshold of a tile, by its ground; the brightest is looked for next to it only, so
+ * that a bright wall behind the cloth does little. */
+static void
+set_threshold (ClothDotDetector * detector, gint column, gint row)
+{
+  const ClothDotParams *params = &detector->params;
+  const gint columns = detector->columns, rows = detector->rows;
+  const gint tile = row * columns + column;
+  const gint low = detector->low[tile];
+  gint high = 0;
+  gfloat above;
+
+  for (gint j = MAX (0, row - 1); j <= MIN (rows - 1, row + 1); j++)
+    for (gint i = MAX (0, column - 1); i <= MIN (columns - 1, column + 1); i++)
+      high = MAX (high, detector->most[j * columns + i]);
+  above = MAX (params->contrast, params->share * (gfloat) (high - low));
+  detector->threshold[tile] = (gfloat) (high - low) < params->contrast ? 255
+      : (guint8) MIN (255, low + (gint) above);
+}
+
+#define BRIGHT 1
+#define NO_DOT 2
+
+/* Marks the bright tiles of a row or a column of them that follow each other for longer
+ * than a dot is wide. */
+static void
+mark_lines (guint16 * marks, gint n, gint stride, gint longer)
+{
+  for (gint i = 0, line = 0; i < n; i++) {
+    line = marks[i * stride] & BRIGHT ? line + 1 : 0;
+    for (gint k = 0; line >= longer && k < (line == longer ? line : 1); k++)
+      marks[(i - k) * stride] |= NO_DOT;
+  }
+}
+
+/* Where more than a dot is bright all over, the ground that was found is of something
+ * else: of the cloth before a wall, of a shadow. There it is the tile's own. */
+static void
+take_near_ground (ClothDotDetector * detector)
+{
+  const gint columns = detector->columns, rows = detector->rows;
+  const gint longer = detector->params.max_diameter / TILE + 1;
+  guint16 *marks = detector->bits;
+
+  for (gint k = 0; k < columns * rows; k++)
+    marks[k] = detector->least[k] > detector->threshold[k] ? BRIGHT : 0;
+  for (gint row = 0; row < rows; row++)
+    mark_lines (marks + row * columns, columns, 1, longer);
+  for (gint column = 0; column < columns; column++)
+    mark_lines (marks + column, rows, columns, longer);
+  for (gint row = 0; row < rows; row++) {
+    for (gint column = 0; column < columns; column++) {
+      const gint tile = row * columns + column;
+
+      if (!(marks[tile] & NO_DOT))
+        continue;
+      detector->low[tile] = detector->least[tile];
+      set_threshold (detector, column, row);
+    }
+  }
+}
+
+/* The ground is the darkest within reach of a dot. */
 static void
 set_thresholds (ClothDotDetector * detector)
 {
@@ -146,22 +205,10 @@ set_thresholds (ClothDotDetector * detector)
   for (gint column = 0; column < columns; column++)
     spread_least (detector->threshold + column, detector->low + column, rows,
         columns, reach);
-  for (gint row = 0; row < rows; row++) {
-    for (gint column = 0; column < columns; column++) {
-      const gint low = detector->low[row * columns + column];
-      gint high = 0;
-      gfloat above;
-
-      for (gint j = MAX (0, row - 1); j <= MIN (rows - 1, row + 1); j++)
-        for (gint i = MAX (0, column - 1); i <= MIN (columns - 1, column + 1);
-            i++)
-          high = MAX (high, detector->most[j * columns + i]);
-      above = MAX (params->contrast, params->share * (gfloat) (high - low));
-      detector->threshold[row * columns + column] =
-          (gfloat) (high - low) < params->contrast ? 255
-          : (guint8) MIN (255, low + (gint) above);
-    }
-  }
+  for (gint row = 0; row < rows; row++)
+    for (gint column = 0; column < columns; column++)
+      set_threshold (detector, column, row);
+  take_near_ground (detector);
 }
 
 static void
@@ -185,21 +232,24 @@ find_runs (ClothDotDetector * detector, ClothSimd level)
 
 /* --- from spots to candidates ----------------------------------------------------- */
 
-static guint8
-peak_of_spot (const ClothDotDetector * detector, const ClothDotSpot * spot)
+static void
+bounds_of_spot (const ClothDotDetector * detector, const ClothDotSpot * spot,
+    guint8 * least, guint8 * most)
 {
   const ClothImage *luma = &detector->image->luma;
-  guint8 peak = 0;
 
+  *least = 255;
+  *most = 0;
   for (gint32 k = spot->first; k >= 0;) {
     const ClothDotRun *run = &g_array_index (detector->runs, ClothDotRun, k);
     const guint8 *row = luma->data + (gsize) run->y * (gsize) luma->stride;
 
-    for (gint x = run->start; x < run->end; x++)
-      peak = MAX (peak, row[x]);
+    for (gint x = run->start; x < run->end; x++) {
+      *least = MIN (*least, row[x]);
+      *most = MAX (*most, row[x]);
+    }
     k = run->next;
   }
-  return peak;
 }
 
 static void judge_spot (ClothDotDetector * detector, ClothDotSpot spot,
@@ -212,16 +262,21 @@ cut_spot (ClothDotDetector * detector, const ClothDotSpot * spot,
 {
   const guint n_runs = detector->runs->len, n_spots = detector->spots->len;
   const guint n_candidates = detector->candidates->len;
-  const guint8 peak = peak_of_spot (detector, spot);
-  const guint8 raised =
-      (guint8) (threshold + MAX (1, (gint) (STEP_SHARE * (peak - threshold))));
+  guint8 step = spot->step, raised = threshold, least, most;
 
+  bounds_of_spot (detector, spot, &least, &most);
+  /* A wall stays whole for long. */
+  do
+    raised += (guint8) MAX (1, (gint) (STEP_SHARE * (most - raised)));
+  while (++step < STEPS && raised < least);
+  if (raised < least)
+    return FALSE;
   cloth_dot_runs_of_spot (detector->runs, spot, &detector->image->luma, raised);
   cloth_dot_spots (detector->runs, n_runs, detector->spots);
   for (guint i = n_spots; i < detector->spots->len; i++) {
     ClothDotSpot part = g_array_index (detector->spots, ClothDotSpot, i);
 
-    part.step = (guint8) (spot->step + 1);
+    part.step = step;
     judge_spot (detector, part, raised);
   }
   g_array_set_size (detector->spots, n_spots);
@@ -240,8 +295,7 @@ judge_spot (ClothDotDetector * detector, ClothDotSpot spot, guint8 threshold)
   gdouble roundness;
   gboolean is_dot;
 
-  if ((gfloat) spot.n < params->min_area
-      || extent > MAX_CLUSTER * params->max_diameter)
+  if ((gfloat) spot.n < params->min_area)
     return;
   roundness = cloth_dot_spot_shape (&spot,
       &g_array_index (detector->runs, ClothDotRun, 0), &whole.x, &whole.y,

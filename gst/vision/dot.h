@@ -76,7 +76,8 @@ typedef struct {
 
 /**
  * ClothDotParams:
- * @contrast: least luma of a dot above the ground around it, grey levels, 1 to 254
+ * @contrast: least luma of a dot above the ground around it, grey levels, 1 to 254; never
+ *   less than a quarter of the ground's
  * @share: least luma above the ground as a share of the brightest around, 0 to 0.9
  * @min_area: lower threshold of the area, px, at least 4
  * @max_diameter: greatest extent of a dot each way, px, 4 to %CLOTH_DOT_MAX_DIAMETER

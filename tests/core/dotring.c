@@ -1,5 +1,10 @@
 /* Dots of path-traced pictures of moving cloth, against the mesh they were rendered from.
  *
+ *   core-dotring [FILMS]
+ *
+ * The first picture of each camera; with FILMS, a folder with the whole films and their
+ * vertices.npy, all pictures.
+ *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <gst/app/gstappsink.h>
 #include <gst/video/video.h>
@@ -21,6 +26,10 @@
 #define STEEPEST (70 * G_PI / 180)
 /* Nearer to the camera than this much and it hides what is behind, metres. */
 #define HIDES 0.003
+/* Fewest dots in clear view, of 1,023. */
+#define LEAST_SEEN 100
+/* A camera that sees fewer looks at the cloth from the side. */
+#define FACING 500
 
 typedef struct
 {
@@ -32,7 +41,10 @@ typedef struct
 
 static ClothMArray *array;
 static ClothRig *rig;
-static gfloat *mesh;
+static gfloat *mesh;            /* of the picture at hand */
+static const gchar *films = FOLDER;
+static gfloat *meshes;
+static guint n_pictures = 1;
 
 static void
 surface (gdouble u, gdouble v, gdouble X[3])
@@ -155,26 +167,20 @@ look (const ClothCamera * camera, gint dot)
   return truth;
 }
 
-/* The first picture of a camera. */
-static GstSample *
-decode (const gchar * name)
+/* Plays the film of a camera. */
+static GstElement *
+play (const gchar * name, GstAppSink ** sink)
 {
-  g_autofree gchar *launch = g_strdup_printf ("filesrc location=\"" FOLDER
-      "%s.mp4\" ! qtdemux ! h264parse ! avdec_h264 ! "
-      "video/x-raw,format=I420 ! appsink name=sink sync=false", name);
+  g_autofree gchar *launch = g_strdup_printf ("filesrc location=\"%s/%s.mp4\" "
+      "! qtdemux ! h264parse ! avdec_h264 ! video/x-raw,format=I420 ! "
+      "appsink name=sink sync=false max-buffers=2", films, name);
   g_autoptr (GError) error = NULL;
   GstElement *pipeline = gst_parse_launch (launch, &error);
-  g_autoptr (GstElement) sink = NULL;
-  GstSample *sample;
 
   g_assert_no_error (error);
-  sink = gst_bin_get_by_name (GST_BIN (pipeline), "sink");
+  *sink = GST_APP_SINK (gst_bin_get_by_name (GST_BIN (pipeline), "sink"));
   gst_element_set_state (pipeline, GST_STATE_PLAYING);
-  sample = gst_app_sink_try_pull_sample (GST_APP_SINK (sink), 60 * GST_SECOND);
-  g_assert_nonnull (sample);
-  gst_element_set_state (pipeline, GST_STATE_NULL);
-  gst_object_unref (pipeline);
-  return sample;
+  return pipeline;
 }
 
 static void
@@ -201,100 +207,116 @@ keep (const gchar * name, const ClothImage * luma, const ClothDot * dots,
       picture->image.height);
 }
 
-/* Labels of all cameras. */
-static guint total_right, total_wrong;
-
-/* Labels of the dots: a label is right where the dot lies where it says. */
-static void
-check_labels (const ClothDot * dots, guint n, const Truth * truth)
+/* What labels a camera's pictures, and how often it was right. */
+typedef struct
 {
-  const gint n_all = array->columns * array->rows;
-  const ClothDotLabelParams params = cloth_dot_label_default_params ();
-  g_autofree gfloat *likelihoods = g_new (gfloat, n * (guint) array->n_colours);
-  g_autofree gboolean *labelled = g_new0 (gboolean, n_all);
-  g_autoptr (ClothDotLabeller) labeller = NULL;
+  ClothDotLabeller *labeller;
+  ClothDotColourModel model;
+  guint right, wrong, behind;
+  guint seen, found, labelled;  /* of the dots in clear view */
+} Labels;
+
+static Labels total;
+
+static Labels
+start_labels (void)
+{
+  Labels labels = { 0 };
   g_autoptr (GError) error = NULL;
   guint8 rgb[CLOTH_M_ARRAY_MAX_COLOURS][3];
-  guint n_labels, right = 0, wrong = 0, seen = 0, found = 0, behind = 0;
-  const ClothDotLabel *labels;
-  ClothDotColourModel model;
 
-  labeller = cloth_dot_labeller_new (array->columns, array->rows,
+  labels.labeller = cloth_dot_labeller_new (array->columns, array->rows,
       array->n_colours, array->matrix, &error);
   g_assert_no_error (error);
   for (gint k = 0; k < array->n_colours; k++)
     memcpy (rgb[k], array->colours[k].rgb, sizeof rgb[k]);
-  cloth_dot_colour_model_init (&model, array->n_colours,
+  cloth_dot_colour_model_init (&labels.model, array->n_colours,
       (const guint8 (*)[3]) rgb, 0.2126f, 0.0722f);
-  cloth_dot_colour_model_classify (&model, dots, n, likelihoods);
-  cloth_dot_labeller_run (labeller, &params, dots, n, likelihoods);
-  labels = cloth_dot_labeller_get_labels (labeller, &n_labels);
+  return labels;
+}
+
+/* Is it where no dot is, seen or hidden? */
+static gboolean
+is_ghost (const ClothDot * dot, const Truth * truth)
+{
+  for (gint k = 0; k < array->columns * array->rows; k++)
+    if (hypot (dot->x - truth[k].x, dot->y - truth[k].y) <= 4)
+      return FALSE;
+  return TRUE;
+}
+
+/* Labels the dots of a picture, and learns their colours as dotlabel does. A label is
+ * right where the dot lies where it says. */
+static void
+check_labels (Labels * all, const ClothDot * dots, guint n, const Truth * truth)
+{
+  const gint n_all = array->columns * array->rows;
+  const ClothDotLabelParams params = cloth_dot_label_default_params ();
+  g_autofree gfloat *likelihoods = g_new (gfloat, n * (guint) array->n_colours);
+  g_autofree gboolean *given = g_new0 (gboolean, n_all);
+  g_autofree gboolean *labelled = g_new0 (gboolean, n_all);
+  g_autofree gint8 *said = g_new (gint8, n);
+  const ClothDotLabel *labels;
+  guint n_labels;
+
+  cloth_dot_colour_model_classify (&all->model, dots, n, likelihoods);
+  cloth_dot_labeller_run (all->labeller, &params, dots, n, likelihoods);
+  labels = cloth_dot_labeller_get_labels (all->labeller, &n_labels);
   g_assert_cmpuint (n_labels, ==, n);
   for (guint i = 0; i < n; i++) {
     const gint k = labels[i].row * array->columns + labels[i].column;
 
+    said[i] = labels[i].column < 0 ? -1 : (gint8) array->matrix[k];
     if (labels[i].column < 0)
       continue;
-    g_assert_false (labelled[k]);
+    g_assert_false (given[k]);
+    given[k] = TRUE;
     labelled[k] = hypot (dots[i].x - truth[k].x, dots[i].y - truth[k].y) < 1.5;
     if (labelled[k])
-      right++;
+      all->right++;
     else
       /* What hides a part of it moves a dot's centre. */
-      wrong += truth[k].clear || hypot (dots[i].x - truth[k].x,
+      all->wrong += truth[k].clear || hypot (dots[i].x - truth[k].x,
           dots[i].y - truth[k].y) > 4;
-    behind += labelled[k] && labels[i].mirrored
+    all->behind += labelled[k] && labels[i].mirrored
         != (truth[k].slope[0][0] * truth[k].slope[1][1]
         < truth[k].slope[0][1] * truth[k].slope[1][0]);
   }
-  for (gint k = 0; k < n_all; k++) {
-    seen += truth[k].clear && truth[k].angle <= STEEPEST;
-    found += truth[k].clear && truth[k].angle <= STEEPEST && labelled[k];
-  }
-  g_test_message ("labels: %u right, %u wrong; of %u in clear view below 70 "
-      "degrees %.2f%%", right, wrong, seen, 100.0 * found / seen);
-  g_assert_cmpuint (100 * wrong, <=, right + wrong);
-  g_assert_cmpuint (100 * found, >=, 95 * seen);
-  g_assert_cmpuint (behind, ==, 0);
-  total_right += right;
-  total_wrong += wrong;
+  for (gint k = 0; k < n_all; k++)
+    all->labelled += truth[k].clear && truth[k].angle <= STEEPEST
+        && labelled[k];
+  cloth_dot_colour_model_learn (&all->model, dots, n, said);
 }
 
 static void
-test_camera (gconstpointer data)
+tell (const gchar * who, const Labels * labels)
 {
-  const ClothCamera *camera = &rig->cameras[GPOINTER_TO_UINT (data)];
+  g_test_message
+      ("%s: labels: %u right, %u wrong (%.2f%% right); of %u dots in "
+      "clear view below 70 degrees %.2f%% found, %.2f%% labelled", who,
+      labels->right, labels->wrong,
+      100.0 * labels->right / (labels->right + labels->wrong), labels->seen,
+      100.0 * labels->found / labels->seen,
+      100.0 * labels->labelled / labels->seen);
+}
+
+/* Where the dots of a picture lie, and their labels. */
+static void
+check_picture (const ClothCamera * camera, const ClothDotImage * image,
+    ClothDotDetector * detector, gboolean last, Labels * labels)
+{
   const ClothDotParams params = cloth_dot_default_params ();
   const gint n_all = array->columns * array->rows;
-  g_autoptr (ClothDotDetector) detector = cloth_dot_detector_new ();
   g_autofree Truth *truth = g_new (Truth, n_all);
-  GstSample *sample = decode (camera->name);
-  GstVideoFrame frame;
-  GstVideoInfo info;
-  ClothDotImage image;
   const ClothDot *dots;
   guint n, seen = 0, found = 0, ghosts = 0, good = 0;
+  gboolean edge_on;
   gdouble sum = 0, A[3] = { 0 }, b[2] = { 0 }, shift[2], rest, det;
 
-  g_assert_true (gst_video_info_from_caps (&info,
-          gst_sample_get_caps (sample)));
-  g_assert_true (gst_video_frame_map (&frame, &info,
-          gst_sample_get_buffer (sample), GST_MAP_READ));
-  image = (ClothDotImage) {
-    .luma = {
-      GST_VIDEO_FRAME_PLANE_DATA (&frame, 0), info.width, info.height,
-      GST_VIDEO_FRAME_PLANE_STRIDE (&frame, 0)
-    },.chroma = {
-      GST_VIDEO_FRAME_PLANE_DATA (&frame, 1),
-      GST_VIDEO_FRAME_PLANE_DATA (&frame, 2)
-    },.chroma_stride = GST_VIDEO_FRAME_PLANE_STRIDE (&frame, 1),.chroma_step =
-        1,.chroma_shift = {
-      1, 1
-    }
-  };
-  cloth_dot_detector_run (detector, &params, &image, CLOTH_SIMD_BEST);
+  cloth_dot_detector_run (detector, &params, image, CLOTH_SIMD_BEST);
   dots = cloth_dot_detector_get_dots (detector, &n);
-  keep (camera->name, &image.luma, dots, n);
+  if (last)
+    keep (camera->name, &image->luma, dots, n);
   for (gint k = 0; k < n_all; k++)
     truth[k] = look (camera, k);
   for (gint k = 0; k < n_all; k++) {
@@ -311,11 +333,8 @@ test_camera (gconstpointer data)
     g_assert_nonnull (best);
     dx = best->x - truth[k].x;
     dy = best->y - truth[k].y;
-    if (hypot (dx, dy) > 1.5) {
-      g_test_message ("missed: dot %d at %.1f, %.1f, %.0f degrees", k,
-          truth[k].x, truth[k].y, truth[k].angle * 180 / G_PI);
+    if (hypot (dx, dy) > 1.5)
       continue;
-    }
     found++;
     if (!best->touches) {
       const gdouble *du = truth[k].slope[0], *dv = truth[k].slope[1];
@@ -335,44 +354,99 @@ test_camera (gconstpointer data)
   shift[0] = (A[2] * b[0] - A[1] * b[1]) / det;
   shift[1] = (A[0] * b[1] - A[1] * b[0]) / det;
   rest = sum - shift[0] * b[0] - shift[1] * b[1];
-  for (guint i = 0; i < n; i++) {
-    gdouble least = G_MAXDOUBLE;
-
-    for (gint k = 0; k < n_all; k++)
-      least = MIN (least,
-          hypot (dots[i].x - truth[k].x, dots[i].y - truth[k].y));
-    ghosts += least > 4;
-  }
+  for (guint i = 0; i < n; i++)
+    ghosts += is_ghost (&dots[i], truth);
   g_test_message ("%s: %u dots found; of %u in clear view below 70 degrees %u "
       "(%.2f%%), %.3f px RMS each way; the print lies %+.3f, %+.3f mm off, "
       "without that %.3f px; %u where there is none; noise %.2f", camera->name,
       n, seen, found, 100.0 * found / seen, sqrt (sum / (2 * good)),
       1000 * shift[0], 1000 * shift[1], sqrt (rest / (2 * good)), ghosts,
       cloth_dot_detector_get_noise (detector));
-  g_assert_cmpuint (seen, >, 300);
-  g_assert_cmpuint (100 * found, >=, 98 * seen);
-  g_assert_cmpfloat (sqrt (sum / (2 * good)), <, 0.15);
+  edge_on = seen < FACING;
+  labels->seen += seen;
+  labels->found += found;
+  check_labels (labels, dots, n, truth);
+  if (n_pictures > 1)
+    return;
+  /* Specks of the wall at the cloth's edge. */
+  g_assert_cmpuint (ghosts, <=, 2);
+  g_assert_cmpuint (100 * found, >=, edge_on ? 88 * seen : 97 * seen);
+  g_assert_cmpfloat (sqrt (sum / (2 * good)), <, edge_on ? 0.18 : 0.15);
   /* Half a texel of 0.25 mm, as every camera sees it. */
-  g_assert_cmpfloat_with_epsilon (shift[0], 0.000125, 0.00001);
-  g_assert_cmpfloat_with_epsilon (shift[1], 0.000125, 0.00001);
-  g_assert_cmpfloat (sqrt (rest / (2 * good)), <, 0.07);
-  g_assert_cmpuint (ghosts, ==, 0);
-  check_labels (dots, n, truth);
-  gst_video_frame_unmap (&frame);
-  gst_sample_unref (sample);
+  g_assert_cmpfloat_with_epsilon (shift[0], 0.000125,
+      edge_on ? 0.000025 : 0.00001);
+  g_assert_cmpfloat_with_epsilon (shift[1], 0.000125,
+      edge_on ? 0.000025 : 0.00001);
+  g_assert_cmpfloat (sqrt (rest / (2 * good)), <, edge_on ? 0.11 : 0.07);
+}
+
+static void
+test_camera (gconstpointer data)
+{
+  const ClothCamera *camera = &rig->cameras[GPOINTER_TO_UINT (data)];
+  g_autoptr (ClothDotDetector) detector = cloth_dot_detector_new ();
+  GstAppSink *sink;
+  GstElement *pipeline = play (camera->name, &sink);
+  Labels labels = start_labels ();
+
+  for (guint i = 0; i < n_pictures; i++) {
+    g_autoptr (GstSample) sample =
+        gst_app_sink_try_pull_sample (sink, 60 * GST_SECOND);
+    GstVideoFrame frame;
+    GstVideoInfo info;
+    ClothDotImage image;
+
+    g_assert_nonnull (sample);
+    g_assert_true (gst_video_info_from_caps (&info,
+            gst_sample_get_caps (sample)));
+    g_assert_true (gst_video_frame_map (&frame, &info,
+            gst_sample_get_buffer (sample), GST_MAP_READ));
+    image = (ClothDotImage) {
+      .luma = {
+        GST_VIDEO_FRAME_PLANE_DATA (&frame, 0), info.width, info.height,
+        GST_VIDEO_FRAME_PLANE_STRIDE (&frame, 0)
+      },.chroma = {
+        GST_VIDEO_FRAME_PLANE_DATA (&frame, 1),
+        GST_VIDEO_FRAME_PLANE_DATA (&frame, 2)
+      },.chroma_stride = GST_VIDEO_FRAME_PLANE_STRIDE (&frame, 1),.chroma_step =
+          1,.chroma_shift = {
+        1, 1
+      }
+    };
+    mesh = meshes + (gsize) i *3 * ROWS * COLUMNS;
+    check_picture (camera, &image, detector, i + 1 == n_pictures, &labels);
+    gst_video_frame_unmap (&frame);
+  }
+  gst_element_set_state (pipeline, GST_STATE_NULL);
+  gst_object_unref (sink);
+  gst_object_unref (pipeline);
+  tell (camera->name, &labels);
+  cloth_dot_labeller_free (labels.labeller);
+  g_assert_cmpuint (labels.seen, >, LEAST_SEEN * n_pictures);
+  g_assert_cmpuint (1000 * labels.behind, <=,
+      n_pictures > 1 ? labels.right : 0);
+  g_assert_cmpuint (100 * labels.wrong, <=, labels.right + labels.wrong);
+  total.right += labels.right;
+  total.wrong += labels.wrong;
+  total.seen += labels.seen;
+  total.found += labels.found;
+  total.labelled += labels.labelled;
 }
 
 static void
 test_all_labels (void)
 {
-  g_assert_cmpuint (total_right, >, 2000);
-  g_assert_cmpuint (1000 * total_wrong, <=, 5 * (total_right + total_wrong));
+  tell ("all", &total);
+  g_assert_cmpuint (total.right, >, 5000);
+  g_assert_cmpuint (1000 * total.wrong, <=, 5 * (total.right + total.wrong));
+  g_assert_cmpuint (100 * total.labelled, >=, 95 * total.seen);
 }
 
 int
 main (int argc, char **argv)
 {
   g_autoptr (GError) error = NULL;
+  g_autofree gchar *truth = NULL;
   ClothNpyInfo info;
   gint failed;
 
@@ -380,11 +454,16 @@ main (int argc, char **argv)
   test_picture_init (&argc, &argv);
   array = cloth_m_array_load (FOLDER "pattern.json", &error);
   g_assert_no_error (error);
-  rig = cloth_rig_load (FOLDER "rig.json", &error);
+  rig = cloth_rig_load (FOLDER "rig8.json", &error);
   g_assert_no_error (error);
-  mesh = cloth_npy_load_float (FOLDER "vertices.npy", &info, &error);
+  if (argc > 1)
+    films = argv[1];
+  truth = g_build_filename (films, "vertices.npy", NULL);
+  meshes = cloth_npy_load_float (truth, &info, &error);
   g_assert_no_error (error);
   g_assert_cmpuint (info.row_items, ==, 3 * ROWS * COLUMNS);
+  if (argc > 1)
+    n_pictures = (guint) info.n_rows;
   for (guint i = 0; i < rig->n_cameras; i++) {
     g_autofree gchar *name = g_strdup_printf ("/dot-ring/%s",
         rig->cameras[i].name);
@@ -393,7 +472,7 @@ main (int argc, char **argv)
   }
   g_test_add_func ("/dot-ring/labels-of-all", test_all_labels);
   failed = g_test_run ();
-  g_free (mesh);
+  g_free (meshes);
   cloth_rig_free (rig);
   cloth_m_array_free (array);
   return failed;

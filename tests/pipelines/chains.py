@@ -12,6 +12,7 @@ SPDX-License-Identifier: LGPL-2.1-or-later
 import importlib.util
 import json
 import os
+import subprocess
 import sys
 import tempfile
 
@@ -311,6 +312,40 @@ def case_bad(data):
              'camera')):
         _, error = run(description)
         check(error is not None and word in error.lower(), 'error: %s' % error)
+
+
+def dots_to_mesh(data, folder, pattern):
+    """The script's exit code and all that it says."""
+    ring = os.path.join(data, 'dots_ring8')
+    films = ['cam%d=%s/cam%d.mp4' % (n, ring, n) for n in range(8)]
+    done = subprocess.run([os.path.join(ROOT, 'pipelines/dots-to-mesh.sh'),
+                           ring + '/rig8.json', pattern, os.path.join(folder, 'garment'),
+                           *films], timeout=TIMEOUT_S,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+    print(done.stdout.decode())
+    return done.returncode, done.stdout.decode()
+
+
+def case_dots_script(data):
+    """dots-to-mesh.sh passes warnings on, and calls no empty mesh done."""
+    ring = os.path.join(data, 'dots_ring8')
+    with open(os.path.join(ring, 'pattern.json'), encoding='utf-8') as file:
+        pattern = json.load(file)
+    swapped, other = dict(pattern), dict(pattern)
+    for key in ('colours', 'rgb'):
+        swapped[key] = [pattern[key][k] for k in (0, 3, 2, 1, 4)]
+    other['matrix'] = [[(k + 1) % 5 for k in row] for row in pattern['matrix'][::-1]]
+    for what, code, words in (
+            (swapped, None, 'orange look magenta and the other way round'),
+            (other, 1, 'no dot was located')):
+        with tempfile.TemporaryDirectory() as folder:
+            with open(folder + '/pattern.json', 'w', encoding='utf-8') as file:
+                json.dump(what, file)
+            found, text = dots_to_mesh(data, folder, folder + '/pattern.json')
+            check(words in text, 'it says: ' + words)
+            check(code is None or found == code, 'exit code %d' % found)
+            check(code is None or not os.path.exists(folder + '/garment/cloth.obj'),
+                  'no files to import of an empty mesh')
 
 
 def main():
