@@ -318,8 +318,10 @@ gst_dot_label_adapt (GstDotLabel * self, const ClothDotImage * image,
   const ClothDotColourModel before = self->colours;
   guint n_labelled = 0;
 
-  /* a few dots may be of any colour */
-  if (n < WINDOW * (guint) self->array->n_colours
+  /* Dots of another print are looked at so closely now and then only; a few dots may be of
+   * any colour. */
+  if ((self->n_in_vain > PATIENCE && self->n_in_vain % PATIENCE)
+      || n < WINDOW * (guint) self->array->n_colours
       || !cloth_dot_colour_model_adapt (&self->colours, dots, n))
     return 0;
   n_labelled = gst_dot_label_try (self, image, dots, n, by, params);

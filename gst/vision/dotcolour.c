@@ -65,36 +65,6 @@ cloth_dot_colour_model_init (ClothDotColourModel * model, gint n,
   set_means (model, n);
 }
 
-/**
- * cloth_dot_colour_model_init_patches:
- * @model: (out caller-allocates): the model
- * @n: number of colours, 2 to %CLOTH_DOT_COLOURS_MAX
- * @ycbcr: (array length=n): mean luma, Cb and Cr of each colour on a test chart, grey
- *   levels
- * @ground: mean luma, Cb and Cr of the black next to them
- * @kr: as for cloth_dot_colour_model_init()
- * @kb: as for cloth_dot_colour_model_init()
- *
- * Expects the colours as the camera sees them on a chart.
- *
- * Since: 0.1
- */
-void
-cloth_dot_colour_model_init_patches (ClothDotColourModel * model, gint n,
-    const gfloat (*ycbcr)[3], const gfloat ground[3], gfloat kr, gfloat kb)
-{
-  memset (model, 0, sizeof *model);
-  model->kr = kr;
-  model->kb = kb;
-  for (gint i = 0; i < 2; i++)
-    model->ground[i] = ground[1 + i] - 128;
-  for (gint k = 0; k < CLAMP (n, 2, CLOTH_DOT_COLOURS_MAX); k++)
-    for (gint i = 0; i < 2; i++)
-      model->classes[k].mean[i] = (ycbcr[k][1 + i] - ground[1 + i])
-          / MAX (LEAST_LUMA, ycbcr[k][0] - ground[0]);
-  set_means (model, n);
-}
-
 /* Chroma over brightness, and what the picture's noise adds to its variance. */
 static gfloat
 chroma_of (const ClothDotColourModel * model, const ClothDot * dot,
@@ -280,16 +250,44 @@ expect (ClothDotColourModel * model, const ClothDotColourModel * prior,
 #define MOST_OUTLIERS 0.4f
 #define N_SAMPLES 256
 
+/* @model in the light that makes the dots likeliest, for one saturation. */
+static ClothDotColourModel
+find_light (const ClothDotColourModel * model, gfloat saturation,
+    const ClothDot * dots, guint n_dots, guint step)
+{
+  ClothDotColourModel best = *model;
+  gfloat most = -G_MAXFLOAT;
+
+  for (gint i = -GAIN_STEPS; i <= GAIN_STEPS; i++) {
+    for (gint j = -GAIN_STEPS; j <= GAIN_STEPS; j++) {
+      const gfloat red = GAIN_STEP * (gfloat) i;
+      const gfloat blue = GAIN_STEP * (gfloat) j;
+      ClothDotColourModel fit;
+      gfloat likely;
+
+      change_light (model, expf (red), expf (blue), saturation, &fit);
+      likely = mean_likelihood (&fit, dots, n_dots, step)
+          - (red * red + blue * blue) / (2 * GAIN_SPREAD * GAIN_SPREAD)
+          / (gfloat) LEAST_DOTS;
+      if (likely > most) {
+        most = likely;
+        best = fit;
+      }
+    }
+  }
+  return best;
+}
+
 /**
  * cloth_dot_colour_model_adapt:
  * @model: (inout): the model, as printed or from a chart
  * @dots: (array length=n_dots): dots of a picture or more
  * @n_dots: how many
  *
- * Fits the colours to dots that nobody has labelled: first one change of light for all of
- * them, the gains of red and blue and the saturation that make the dots likeliest, then a
- * mixture of Gaussians by expectation maximisation from there (Dempster, Laird & Rubin
- * 1977), with the print as prior.
+ * Fits the colours to dots that nobody has labelled: for each of several saturations first
+ * one change of light for all of them, the gains of red and blue that make the dots
+ * likeliest, then a mixture of Gaussians by expectation maximisation from there (Dempster,
+ * Laird & Rubin 1977), with the print as prior. The likeliest of these is taken.
  *
  * Returns: whether the dots show such colours; if not, @model stays as it was
  *
@@ -299,37 +297,32 @@ gboolean
 cloth_dot_colour_model_adapt (ClothDotColourModel * model,
     const ClothDot * dots, guint n_dots)
 {
-  static const gfloat saturations[] = { 0.5f, 0.7f, 0.85f, 1, 1.2f };
+  static const gfloat saturations[] =
+      { 0.35f, 0.5f, 0.7f, 0.85f, 1, 1.2f, 1.6f, 2.2f, 3 };
   const guint step = n_dots / N_SAMPLES + 1;
-  ClothDotColourModel best = *model, fit;
+  ClothDotColourModel best = *model;
   gfloat most = -G_MAXFLOAT, outliers = 1;
 
   if (n_dots < (guint) model->n * LEAST_DOTS)
     return FALSE;
-  for (gint i = -GAIN_STEPS; i <= GAIN_STEPS; i++) {
-    for (gint j = -GAIN_STEPS; j <= GAIN_STEPS; j++) {
-      for (guint k = 0; k < G_N_ELEMENTS (saturations); k++) {
-        const gfloat red = GAIN_STEP * (gfloat) i;
-        const gfloat blue = GAIN_STEP * (gfloat) j;
-        gfloat likely;
+  for (guint k = 0; k < G_N_ELEMENTS (saturations); k++) {
+    const ClothDotColourModel light =
+        find_light (model, saturations[k], dots, n_dots, step);
+    ClothDotColourModel fit = light;
+    gfloat left = 1, likely;
 
-        change_light (model, expf (red), expf (blue), saturations[k], &fit);
-        likely = mean_likelihood (&fit, dots, n_dots, step)
-            - (red * red + blue * blue) / (2 * GAIN_SPREAD * GAIN_SPREAD)
-            / (gfloat) LEAST_DOTS;
-        if (likely > most) {
-          most = likely;
-          best = fit;
-        }
-      }
+    for (guint round = 0; round < EM_ROUNDS; round++)
+      left = expect (&fit, &light, dots, n_dots);
+    likely = mean_likelihood (&fit, dots, n_dots, step);
+    if (likely > most) {
+      most = likely;
+      best = fit;
+      outliers = left;
     }
   }
-  fit = best;
-  for (gint round = 0; round < EM_ROUNDS; round++)
-    outliers = expect (&fit, &best, dots, n_dots);
   if (!(outliers < MOST_OUTLIERS))
     return FALSE;
-  *model = fit;
+  *model = best;
   return TRUE;
 }
 

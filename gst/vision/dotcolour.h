@@ -50,8 +50,6 @@ typedef struct {
 
 void cloth_dot_colour_model_init (ClothDotColourModel * model, gint n,
     const guint8 (*rgb)[3], gfloat kr, gfloat kb);
-void cloth_dot_colour_model_init_patches (ClothDotColourModel * model, gint n,
-    const gfloat (*ycbcr)[3], const gfloat ground[3], gfloat kr, gfloat kb);
 void cloth_dot_colour_model_classify (const ClothDotColourModel * model,
     const ClothDot * dots, guint n_dots, gfloat * log_likelihoods);
 
