@@ -614,8 +614,8 @@ load_baseline (GstClothgap * self, GError ** error)
   return self->baseline && cloth_gap_check_same_cloth ("the baseline",
       cloth_take_get_topology (self->baseline), "the take of location",
       cloth_take_get_topology (self->take), error)
-      && gst_cloth_sights_load (self->settings.baseline,
-      cloth_take_get_topology (self->baseline), &self->baseline_sights, error);
+      && gst_cloth_sights_load_take (self->baseline, &self->baseline_sights,
+      error);
 }
 
 static gboolean
@@ -643,8 +643,7 @@ start (GstClothgap * self)
   GST_OBJECT_LOCK (self);
   self->scene = scene;
   GST_OBJECT_UNLOCK (self);
-  if (!gst_cloth_sights_load (settings->location,
-          cloth_take_get_topology (self->take), &self->sights, &error))
+  if (!gst_cloth_sights_load_take (self->take, &self->sights, &error))
     return fail_start (self, "location", settings->location, error);
   if (!load_baseline (self, &error))
     return fail_start (self, "baseline", settings->baseline, error);

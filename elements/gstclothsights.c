@@ -338,6 +338,13 @@ check_files (const gchar * path, const ClothRig * rig, GError ** error)
       "it by clothmetapay ! filesink, or take it away", names);
 }
 
+/* Below the take's folder. */
+static gchar *
+name_file (const ClothRig * rig, guint camera)
+{
+  return g_strconcat (FOLDER "/", rig->cameras[camera].name, ENDING, NULL);
+}
+
 static gboolean
 load_files (ClothSights * sights, const gchar * folder,
     const ClothTopology * topology, GError ** error)
@@ -345,8 +352,7 @@ load_files (ClothSights * sights, const gchar * folder,
   const ClothRig *rig = sights->rig;
 
   for (guint i = 0; i < rig->n_cameras; i++) {
-    g_autofree gchar *name = g_strconcat (FOLDER "/", rig->cameras[i].name,
-        ENDING, NULL);
+    g_autofree gchar *name = name_file (rig, i);
     g_autofree gchar *whole = g_build_filename (folder, name, NULL);
     g_autofree gchar *path = NULL;
     g_autoptr (ClothInput) input = NULL;
@@ -413,5 +419,38 @@ gst_cloth_sights_load (const gchar * folder, const ClothTopology * topology,
       || !load_files (made, folder, topology, error))
     return FALSE;
   *sights = g_steal_pointer (&made);
+  return TRUE;
+}
+
+/**
+ * gst_cloth_sights_load_take:
+ * @take: a take
+ * @sights: (out) (transfer full) (nullable): what the cameras saw
+ * @error: as of gst_cloth_sights_load ()
+ *
+ * As gst_cloth_sights_load (); what was read counts as files of the take.
+ *
+ * Returns: %FALSE when something is there that can't be used
+ * Since: 0.1
+ */
+gboolean
+gst_cloth_sights_load_take (ClothTake * take, ClothSights ** sights,
+    GError ** error)
+{
+  const gchar *folder = cloth_take_get_folder (take);
+
+  if (!gst_cloth_sights_load (folder, cloth_take_get_topology (take), sights,
+          error))
+    return FALSE;
+  if (!*sights)
+    return TRUE;
+  cloth_take_add_file (take, "rig.json");
+  for (guint i = 0; i < (*sights)->rig->n_cameras; i++) {
+    g_autofree gchar *name = name_file ((*sights)->rig, i);
+    g_autofree gchar *path = g_build_filename (folder, name, NULL);
+
+    if (g_file_test (path, G_FILE_TEST_EXISTS))
+      cloth_take_add_file (take, name);
+  }
   return TRUE;
 }

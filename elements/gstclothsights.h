@@ -4,13 +4,14 @@
 #pragma once
 
 #include "gst/gap/sights.h"
-#include "gst/mesh/file.h"
-#include "gst/mesh/topology.h"
+#include "gst/mesh/take.h"
 
 G_BEGIN_DECLS
 
 gboolean gst_cloth_sights_load (const gchar * folder,
     const ClothTopology * topology, ClothSights ** sights, GError ** error);
+gboolean gst_cloth_sights_load_take (ClothTake * take, ClothSights ** sights,
+    GError ** error);
 gboolean gst_cloth_sights_read (ClothSights * sights, guint camera,
     guint columns, guint rows, ClothInput * input, GError ** error);
 

@@ -85,11 +85,10 @@ load_sights (gchar ** folders, const GPtrArray * takes, GError ** error)
       g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_sights_free);
 
   for (guint i = 0; i < takes->len; i++) {
-    ClothTake *take = g_ptr_array_index (takes, i);
     ClothSights *sights;
 
-    if (!gst_cloth_sights_load (folders[i], cloth_take_get_topology (take),
-            &sights, error)) {
+    if (!gst_cloth_sights_load_take (g_ptr_array_index (takes, i), &sights,
+            error)) {
       g_prefix_error (error, "“%s”: ", folders[i]);
       return NULL;
     }

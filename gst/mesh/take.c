@@ -299,6 +299,34 @@ cloth_take_sha256 (const ClothTake * take, GError ** error)
 }
 
 /**
+ * cloth_take_add_file:
+ * @take: a take
+ * @name: a file below its folder that is read beside it
+ *
+ * From now on cloth_take_sha256 () reads it, too.
+ *
+ * Since: 0.1
+ */
+void
+cloth_take_add_file (ClothTake * take, const gchar * name)
+{
+  note_file (take, name);
+}
+
+/**
+ * cloth_take_get_folder:
+ * @take: a take
+ *
+ * Returns: (transfer none) (type filename): where it lies
+ * Since: 0.1
+ */
+const gchar *
+cloth_take_get_folder (const ClothTake * take)
+{
+  return take->folder;
+}
+
+/**
  * cloth_take_get_info:
  * @take: a take
  *

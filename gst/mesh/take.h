@@ -11,6 +11,8 @@ typedef struct _ClothTake ClothTake;
 typedef struct _ClothTakeWriter ClothTakeWriter;
 
 ClothTake *cloth_take_open (const gchar * folder, GError ** error);
+void cloth_take_add_file (ClothTake * take, const gchar * name);
+const gchar *cloth_take_get_folder (const ClothTake * take);
 const ClothTakeInfo *cloth_take_get_info (const ClothTake * take);
 const ClothTopology *cloth_take_get_topology (const ClothTake * take);
 guint cloth_take_get_n_frames (const ClothTake * take);

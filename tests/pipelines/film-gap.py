@@ -6,6 +6,7 @@ makes takes with observations of the films, in one pipeline each, and has them d
 
 SPDX-License-Identifier: LGPL-2.1-or-later
 """
+import hashlib
 import json
 import os
 import shutil
@@ -124,6 +125,8 @@ def film(cloth, take, clamps, seed, case):
                     'clothmetapay', '!', 'filesink',
                     'location=%s/observations/%s.obs' % (take, camera)]
     subprocess.run(command, check=True, stdin=subprocess.DEVNULL, timeout=200)
+    if os.path.exists(take + '/mesh.obj'):
+        os.remove(take + '/mesh.obj')
     save(take + '/take.json', {
         'version': 1, 'name': take, 'fps': reality.FPS,
         'grid': {'columns': COLUMNS, 'rows': ROWS, 'width_m': reality.WIDTH,
@@ -140,6 +143,17 @@ def read_gap(folder):
     return gap, effects
 
 
+def sha256(take):
+    """The hash of what sha256sum prints of all files of a take."""
+    names = sorted(os.path.relpath(os.path.join(at, name), take)
+                   for at, _, files in os.walk(take) for name in files)
+    lines = ''
+    for name in names:
+        with open(os.path.join(take, name), 'rb') as file:
+            lines += '%s  %s\n' % (hashlib.sha256(file.read()).hexdigest(), name)
+    return hashlib.sha256(lines.encode()).hexdigest()
+
+
 def check(take, case):
     effects = ('--effects', CONSIDERED) if case else ()
     done = subprocess.run([tool, 'diagnose', take, '--model', 'model.json', '--baseline',
@@ -153,6 +167,7 @@ def check(take, case):
     if not effects:
         expect(False, 'no effect of a camera was looked at')
         return
+    expect(gap['inputs'][0]['sha256'] == sha256(take), 'its hash is of rig and observations, too')
     if not case:
         accepted = [effect['name'] for effect in gap['effects'] if effect['accepted']]
         expect(not accepted and gap['verdict'] == 'no_gap',
