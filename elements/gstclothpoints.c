@@ -9,6 +9,13 @@
 
 #include <string.h>
 
+#include "gst/gap/diagnose.h"
+
+/* As triangulate has them by default: when the estimates of one corner contradict each
+ * other, and the variance that its first set starts with, px². */
+#define THRESHOLD 4.0
+#define ERROR_FLOOR 0.01
+
 void
 gst_cloth_points_add_quads (const GstClothQuads * quads, guint columns,
     guint rows, ClothMerge * merge)
@@ -83,4 +90,72 @@ gst_cloth_points_add_dots (const GstClothDots * dots, guint columns,
           + (guint) dot->column, dot->x, dot->y, cov);
     }
   }
+}
+
+GstClothPoints *
+gst_cloth_points_new (guint columns, guint rows)
+{
+  GstClothPoints *points = g_new0 (GstClothPoints, 1);
+
+  points->columns = columns;
+  points->rows = rows;
+  points->merge = cloth_merge_new (columns * rows);
+  points->seen = g_malloc ((gsize) columns * rows);
+  return points;
+}
+
+/* Takes what is of the grid; a picture may carry both kinds. */
+static gboolean
+merge_metas (GstClothPoints * self, GstBuffer * picture, GError ** error)
+{
+  const GstClothQuads *quads = gst_buffer_get_cloth_quads (picture);
+  const GstClothDots *dots = gst_buffer_get_cloth_dots (picture);
+  guint columns = 0, rows = 0;
+
+  if (quads) {
+    columns = gst_cloth_quads_get_columns (quads) + 1;
+    rows = gst_cloth_quads_get_rows (quads) + 1;
+    if (columns == self->columns && rows == self->rows) {
+      gst_cloth_points_add_quads (quads, columns, rows, self->merge);
+      self->camera = gst_cloth_quads_get_camera (quads);
+      self->sequence = gst_cloth_quads_get_sequence (quads);
+      return TRUE;
+    }
+  }
+  if (dots) {
+    columns = gst_cloth_dots_get_columns (dots);
+    rows = gst_cloth_dots_get_rows (dots);
+    if (columns == self->columns && rows == self->rows) {
+      gst_cloth_points_add_dots (dots, columns, rows, self->seen, self->merge);
+      self->camera = gst_cloth_dots_get_camera (dots);
+      self->sequence = gst_cloth_dots_get_sequence (dots);
+      return TRUE;
+    }
+  }
+  g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE,
+      "it is of a pattern with %u×%u vertices, but the take's "
+      "grid has %u×%u: both must come from one pattern.json", columns, rows,
+      self->columns, self->rows);
+  return FALSE;
+}
+
+gboolean
+gst_cloth_points_find (GstClothPoints * points, GstBuffer * picture,
+    GError ** error)
+{
+  cloth_merge_clear (points->merge);
+  if (!merge_metas (points, picture, error))
+    return FALSE;
+  cloth_merge_finish (points->merge, THRESHOLD, ERROR_FLOOR, &points->view);
+  return TRUE;
+}
+
+void
+gst_cloth_points_free (GstClothPoints * points)
+{
+  if (!points)
+    return;
+  cloth_merge_free (points->merge);
+  g_free (points->seen);
+  g_free (points);
 }

@@ -25,10 +25,6 @@
 #define MAX_PICTURES 100000u
 /* Of all pictures together: 3 GB of memory. */
 #define MAX_POINTS (1u << 26)
-/* As triangulate has them by default: when the estimates of one corner contradict each
- * other, and the variance that its first set starts with, px². */
-#define THRESHOLD 4.0
-#define ERROR_FLOOR 0.01
 /* How far outside the picture a point may be, as a share of the picture: a square at the
  * edge has corners that are a little outside. */
 #define MARGIN 0.1
@@ -37,10 +33,8 @@ typedef struct
 {
   ClothSights *sights;
   guint camera;
-  guint columns, rows;          /* of vertices */
   gboolean labelled;            /* whether any picture had squares or dots */
-  ClothMerge *merge;
-  guint8 *seen;
+  GstClothPoints *points;
   guint32 *vertices;
   gdouble *px, *covariances;
 } Reader;
@@ -53,11 +47,8 @@ reader_init (Reader * self, ClothSights * sights, guint camera, guint columns,
 
   self->sights = sights;
   self->camera = camera;
-  self->columns = columns;
-  self->rows = rows;
   self->labelled = FALSE;
-  self->merge = cloth_merge_new ((guint) n);
-  self->seen = g_malloc (n);
+  self->points = gst_cloth_points_new (columns, rows);
   self->vertices = g_new (guint32, n);
   self->px = g_new (gdouble, 2 * n);
   self->covariances = g_new (gdouble, 3 * n);
@@ -66,8 +57,7 @@ reader_init (Reader * self, ClothSights * sights, guint camera, guint columns,
 static void
 reader_clear (Reader * self)
 {
-  cloth_merge_free (self->merge);
-  g_free (self->seen);
+  gst_cloth_points_free (self->points);
   g_free (self->vertices);
   g_free (self->px);
   g_free (self->covariances);
@@ -98,35 +88,6 @@ check_name (const Reader * self, const gchar * name, GError ** error)
       "as the property camera of its detector", name, own);
 }
 
-/* Takes what is of the take's grid; a picture may carry both kinds. */
-static gboolean
-merge_metas (Reader * self, GstBuffer * buffer, GError ** error)
-{
-  const GstClothQuads *quads = gst_buffer_get_cloth_quads (buffer);
-  const GstClothDots *dots = gst_buffer_get_cloth_dots (buffer);
-  guint columns = 0, rows = 0;
-
-  if (quads) {
-    columns = gst_cloth_quads_get_columns (quads) + 1;
-    rows = gst_cloth_quads_get_rows (quads) + 1;
-    if (columns == self->columns && rows == self->rows) {
-      gst_cloth_points_add_quads (quads, columns, rows, self->merge);
-      return check_name (self, gst_cloth_quads_get_camera (quads), error);
-    }
-  }
-  if (dots) {
-    columns = gst_cloth_dots_get_columns (dots);
-    rows = gst_cloth_dots_get_rows (dots);
-    if (columns == self->columns && rows == self->rows) {
-      gst_cloth_points_add_dots (dots, columns, rows, self->seen, self->merge);
-      return check_name (self, gst_cloth_dots_get_camera (dots), error);
-    }
-  }
-  return fail (error, "it is of a pattern with %u×%u vertices, but the take's "
-      "grid has %u×%u: both must come from one pattern.json", columns, rows,
-      self->columns, self->rows);
-}
-
 static gboolean
 check_place (const Reader * self, guint vertex, gdouble x, gdouble y,
     GError ** error)
@@ -146,28 +107,28 @@ check_place (const Reader * self, guint vertex, gdouble x, gdouble y,
 static gint
 find_points (Reader * self, GstBuffer * buffer, GError ** error)
 {
-  ClothTriangulateView view;
+  const ClothTriangulateView *view = &self->points->view;
+  guint n_vertices = self->points->columns * self->points->rows;
   gint n = 0;
 
   if (!gst_buffer_get_cloth_quads (buffer)
       && !gst_buffer_get_cloth_dots (buffer))
     return 0;                   /* of a picture that shows nothing */
   self->labelled = TRUE;
-  cloth_merge_clear (self->merge);
-  if (!merge_metas (self, buffer, error))
+  if (!gst_cloth_points_find (self->points, buffer, error)
+      || !check_name (self, self->points->camera, error))
     return -1;
-  cloth_merge_finish (self->merge, THRESHOLD, ERROR_FLOOR, &view);
-  for (guint i = 0; i < self->columns * self->rows; i++) {
-    if (isnan (view.x[i]))
+  for (guint i = 0; i < n_vertices; i++) {
+    if (isnan (view->x[i]))
       continue;
-    if (!check_place (self, i, view.x[i], view.y[i], error))
+    if (!check_place (self, i, view->x[i], view->y[i], error))
       return -1;
     self->vertices[n] = i;
-    self->px[2 * n] = view.x[i];
-    self->px[2 * n + 1] = view.y[i];
-    self->covariances[3 * n] = view.xx[i];
-    self->covariances[3 * n + 1] = view.xy[i];
-    self->covariances[3 * n + 2] = view.yy[i];
+    self->px[2 * n] = view->x[i];
+    self->px[2 * n + 1] = view->y[i];
+    self->covariances[3 * n] = view->xx[i];
+    self->covariances[3 * n + 1] = view->xy[i];
+    self->covariances[3 * n + 2] = view->yy[i];
     n++;
   }
   return n;
