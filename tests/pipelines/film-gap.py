@@ -124,7 +124,7 @@ def film(cloth, take, clamps, seed, case):
                     camera + '.', '!', *wide, '!', 'join.', camera + '.', '!', 'queue', '!',
                     'clothmetapay', '!', 'filesink',
                     'location=%s/observations/%s.obs' % (take, camera)]
-    subprocess.run(command, check=True, stdin=subprocess.DEVNULL, timeout=200)
+    subprocess.run(command, check=True, stdin=subprocess.DEVNULL, timeout=600)
     if os.path.exists(take + '/mesh.obj'):
         os.remove(take + '/mesh.obj')
     save(take + '/take.json', {
@@ -158,7 +158,7 @@ def check(take, case):
     effects = ('--effects', CONSIDERED) if case else ()
     done = subprocess.run([tool, 'diagnose', take, '--model', 'model.json', '--baseline',
                            'baseline', '--output', take + '-gap', *effects],
-                          capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=200,
+                          capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=600,
                           check=False)
     expect(done.returncode == 0, '%s: %s' % (take, done.stdout.split('\n')[0] or done.stderr))
     if done.returncode:
@@ -186,7 +186,7 @@ def check_element(take):
     subprocess.run(['gst-launch-1.0', '-q', 'meshsrc', 'location=' + take, '!', 'clothgap',
                     'model=model.json', 'location=' + take, 'baseline=baseline',
                     'output=live', 'effects=' + CONSIDERED, '!', 'fakesink'], check=True, stdin=subprocess.DEVNULL,
-                   timeout=200)
+                   timeout=600)
     live, told = read_gap('live')[1][0], read_gap(take + '-gap')[1][0]
     expect((live['name'], live['camera']) == (told['name'], told['camera']),
            'clothgap: %s of %s' % (live['name'], live['camera']))
