@@ -162,6 +162,18 @@ recall_all (ClothQuadTracker * tracker)
   }
 }
 
+/* Whether black squares of the patch come onto black ones of the board. */
+static gboolean
+is_same_colour (const ClothQuadTracker * tracker,
+    const ClothPlacement * placement)
+{
+  gint column, row;
+
+  cloth_placement_cell (placement, 0, 0, &column, &row);
+  return cloth_pattern_is_black (&tracker->pattern, column & 1, row & 1)
+      == cloth_patch_is_black (&tracker->patch, 0, 0);
+}
+
 /* What the remembered vertices say of the place of the patch. */
 static guint
 vote_by_memory (ClothQuadTracker * tracker, ClothPlacement votes[MAX_VOTES])
@@ -193,6 +205,8 @@ vote_by_memory (ClothQuadTracker * tracker, ClothPlacement votes[MAX_VOTES])
       cloth_placement_vertex (&vote, i, j, &column, &row);
       vote.column = vertex % columns - column;
       vote.row = vertex / columns - row;
+      if (!is_same_colour (tracker, &vote))
+        continue;
       vote.weight = guess->weight * (1 - near->distance / VOTE_REACH);
       add_vote (votes, &n, &vote);
       fresh += guess->weight;
@@ -330,11 +344,7 @@ take_square (ClothQuadTracker * tracker, const ClothPlacement * placement,
   if (confidence < params->c_high && tracker->guess_vertex->len > 0
       && recall_square (tracker, placement, i, j) < (cell->age == 0 ? 3 : 1))
     return;
-  memcpy (cell->here_x, x, sizeof x);
-  memcpy (cell->here_y, y, sizeof y);
-  memcpy (cell->cov, cov, sizeof cov);
-  cell->confidence = confidence;
-  cell->found = TRUE;
+  cloth_quad_take (tracker, cell, black, x, y, cov, confidence);
 }
 
 /* Takes the squares of the patch that the memory puts where the placement does, by at
@@ -685,7 +695,9 @@ place (ClothQuadTracker * tracker, gboolean first, ClothPlacement * placement,
   if (first && agrees == 0 && tracker->guess_vertex->len > 0
       && placement->weight < NEW_LEAD && doubt (tracker))
     return FALSE;
-  if (first && other->weight > agrees && other->weight > STRONG_VOTE) {
+  /* Where it knows both places well, the patch is joined over a fold. */
+  if (first && other->weight > agrees && other->weight > STRONG_VOTE
+      && agrees <= STRONG_VOTE) {
     if (placement->weight < SURE_LEAD && doubt (tracker))
       return FALSE;
     forget (tracker);

@@ -16,17 +16,19 @@ G_BEGIN_DECLS
 typedef struct {
   gboolean wanted;              /* of a colour that is tracked */
   gboolean found;               /* in this picture */
-  gboolean doubled;             /* another square claims the same place */
   gboolean fresh;               /* added by extension in this picture */
+  gboolean refused;             /* what was seen in its place has not the print's shade */
   gboolean shown;               /* tracked or predicted in the last picture */
   guint age;                    /* pictures since it was last found; G_MAXUINT: never */
   guint run;                    /* pictures in a row it was found in */
   gfloat confidence;
+  gfloat shade;                 /* dark level over bright, if found; -1: not known */
   gfloat x[4], y[4];            /* in the last picture, guessed if not found there */
   gfloat before_x[4], before_y[4];      /* one picture before those */
   gfloat guess_x[4], guess_y[4];        /* predicted for this picture */
   gfloat here_x[4], here_y[4];  /* in this picture, if found */
   gfloat cov[4][3];             /* of those */
+  gint claim[4];                /* of its corners, if found: number of a ClothQuadClaim */
 } ClothQuadCell;
 
 /* The remembered vertex nearest to a corner that was seen. */
@@ -41,6 +43,13 @@ typedef struct {
   gfloat size;                  /* of the squares around it, px */
   gfloat evidence;              /* of its patch */
 } ClothQuadPending;
+
+/* A place in the picture that squares say is a vertex of the board. */
+typedef struct {
+  gint vertex;
+  gboolean agreed;              /* several say it is that one */
+  gboolean contested;           /* others say it is another one */
+} ClothQuadClaim;
 
 /* One corner of the board. */
 typedef struct {
@@ -74,8 +83,8 @@ struct _ClothQuadTracker
   ClothPointGrid *candidates;
   ClothPointGrid *refined;      /* saddles */
   gboolean sorted;              /* those two grids are of this picture */
-  ClothPointGrid *middles;      /* of the squares found in this picture */
-  GArray *middle_cell;          /* gint, cell of each point of that grid */
+  ClothPointGrid *claimed;      /* corners of the squares found, once where they agree */
+  GArray *claims;               /* ClothQuadClaim, of each point of that grid */
   ClothPointGrid *corners;      /* linked saddles that were placed or rejected */
   GArray *corner_vertex;        /* gint, their board vertex, -1: on no known place */
   /* Corners of patches that were refused only for want of evidence, in the last picture
@@ -84,6 +93,9 @@ struct _ClothQuadTracker
   GArray *pending_corner, *pending_corner_now;  /* ClothQuadPending, of each point */
   guint doubts;                 /* pictures in a row that spoke against the memory */
   gboolean doubted;             /* this one did */
+  gfloat shade;                 /* of the print, dark level over bright */
+  guint n_shades;               /* squares that it is the mean of, 0: not known */
+  guint contrary;               /* pictures in a row that spoke against it */
   ClothPlacer *placer;
   GArray *seeds;                /* ClothQuadSeed */
   GArray *out;                  /* ClothQuad */
@@ -135,5 +147,20 @@ void cloth_quad_link (ClothQuadTracker * tracker);
 /* quad-search.c: looks for one square around a guess. */
 gboolean cloth_quad_search (ClothQuadTracker * tracker, gint column, gint row,
     const gfloat guess_x[4], const gfloat guess_y[4]);
+/* quad-shade.c: takes a square for that of a cell, unless it has not the print's shade. */
+gboolean cloth_quad_take (ClothQuadTracker * tracker, ClothQuadCell * cell,
+    gboolean black, const gfloat x[4], const gfloat y[4], gfloat cov[4][3],
+    gfloat confidence);
+/* Learns that shade from what was found in the picture. */
+void cloth_quad_learn_shade (ClothQuadTracker * tracker);
+/* quad-check.c: notes where the squares found have their corners. */
+void cloth_quad_claim_all (ClothQuadTracker * tracker);
+/* The same of one found after these; FALSE if it is refused, as most of its corners are
+ * other vertices. */
+gboolean cloth_quad_claim (ClothQuadTracker * tracker, gint column, gint row);
+gboolean cloth_quad_is_consistent (ClothQuadTracker * tracker, gint column,
+    gint row);
+/* Gives up the squares that others speak against. */
+void cloth_quad_check (ClothQuadTracker * tracker);
 
 G_END_DECLS

@@ -222,8 +222,8 @@ cloth_quad_search (ClothQuadTracker * tracker, gint column, gint row,
   ClothOutline outline = { {0} };
   gfloat confidence;
 
-  if (search_candidates (tracker, black, guess_x, guess_y, outline.x,
-          outline.y) < params->c_low
+  if (cell->refused || search_candidates (tracker, black, guess_x, guess_y,
+          outline.x, outline.y) < params->c_low
       || !has_edges (tracker->image, outline.x, outline.y, black)
       || !fit_outline (tracker, column, row, &outline))
     return FALSE;
@@ -236,10 +236,6 @@ cloth_quad_search (ClothQuadTracker * tracker, gint column, gint row,
             column + cloth_quad_corner_column[k],
             row + cloth_quad_corner_row[k]))
       return FALSE;
-  memcpy (cell->here_x, outline.x, sizeof outline.x);
-  memcpy (cell->here_y, outline.y, sizeof outline.y);
-  memcpy (cell->cov, outline.cov, sizeof outline.cov);
-  cell->confidence = confidence;
-  cell->found = TRUE;
-  return TRUE;
+  return cloth_quad_take (tracker, cell, black, outline.x, outline.y,
+      outline.cov, confidence);
 }

@@ -24,10 +24,6 @@
 #define SLOWING 0.7f
 /* Standard deviation of a predicted corner, in shortest edges for each picture of age. */
 #define PREDICTED_SD 0.1f
-/* Squares this far from one on the board may be taken for it. */
-#define DOUBLED 4
-/* Squares looked at for one that lies in the same place. */
-#define MAX_MIDDLES 16
 /* Weight that each picture of age takes from a remembered corner. */
 #define FADE 0.85f
 
@@ -77,8 +73,8 @@ cloth_quad_tracker_new (const ClothPattern * pattern)
   tracker->recalls = g_array_new (FALSE, FALSE, sizeof (ClothQuadRecall));
   tracker->candidates = cloth_point_grid_new ();
   tracker->refined = cloth_point_grid_new ();
-  tracker->middles = cloth_point_grid_new ();
-  tracker->middle_cell = g_array_new (FALSE, FALSE, sizeof (gint));
+  tracker->claimed = cloth_point_grid_new ();
+  tracker->claims = g_array_new (FALSE, FALSE, sizeof (ClothQuadClaim));
   tracker->corners = cloth_point_grid_new ();
   tracker->corner_vertex = g_array_new (FALSE, FALSE, sizeof (gint));
   tracker->pending = cloth_point_grid_new ();
@@ -114,8 +110,8 @@ cloth_quad_tracker_free (ClothQuadTracker * tracker)
   g_array_unref (tracker->recalls);
   cloth_point_grid_free (tracker->candidates);
   cloth_point_grid_free (tracker->refined);
-  cloth_point_grid_free (tracker->middles);
-  g_array_unref (tracker->middle_cell);
+  cloth_point_grid_free (tracker->claimed);
+  g_array_unref (tracker->claims);
   cloth_point_grid_free (tracker->corners);
   g_array_unref (tracker->corner_vertex);
   cloth_point_grid_free (tracker->pending);
@@ -146,7 +142,8 @@ cloth_quad_tracker_reset (ClothQuadTracker * tracker)
     tracker->cells[k].run = 0;
     tracker->cells[k].shown = FALSE;
   }
-  tracker->doubts = 0;
+  tracker->doubts = tracker->n_shades = tracker->contrary = 0;
+  tracker->shade = 0;
   g_array_set_size (tracker->pending_corner, 0);
   g_array_set_size (tracker->seeds, 0);
 }
@@ -184,6 +181,7 @@ cloth_quad_tracker_seed (ClothQuadTracker * tracker, const gfloat x[4],
   seed.column = row < 0 ? -1 : column;
   seed.row = column < 0 ? -1 : row;
   g_array_append_val (tracker->seeds, seed);
+  tracker->n_shades = 0;
 }
 
 /* Section 3.6, and what it means for the corners. */
@@ -203,7 +201,7 @@ predict (ClothQuadTracker * tracker)
       cell->wanted = tracker->params->squares == CLOTH_SQUARES_BOTH
           || cloth_pattern_is_black (&tracker->pattern, column, row)
           == (tracker->params->squares == CLOTH_SQUARES_BLACK);
-      cell->found = cell->fresh = FALSE;
+      cell->found = cell->fresh = cell->refused = FALSE;
       if (cell->age > CLOTH_QUAD_MEMORY)
         continue;
       for (guint a = 0; a < cell->age; a++)
@@ -314,149 +312,6 @@ cloth_quad_spread_shift (ClothQuadTracker * tracker)
   }
 }
 
-/* Section 3.8: the most inconsistent neighbours over the number of confident ones. The
- * paper's table has 0 for no neighbour, which would drop a lone square, the one that
- * starts it all included: read here as "no test". */
-static gboolean
-is_consistent (ClothQuadTracker * tracker, gint column, gint row)
-{
-  static const gint most[5] = { G_MAXINT, 1, 1, 2, 2 };
-  const ClothQuadParams *params = tracker->params;
-  const ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
-  gint n = 0, bad = 0;
-
-  for (gint k = 0; k < 4; k++) {
-    const ClothQuadCell *other = cloth_quad_cell (tracker,
-        column + diagonal_column[k], row + diagonal_row[k]);
-    gfloat size, dx, dy;
-
-    if (!other || !other->found || other->confidence <= params->c_high)
-      continue;
-    /* Corner k of this square is the other one's opposite corner. */
-    dx = cell->here_x[k] - other->here_x[(k + 2) & 3];
-    dy = cell->here_y[k] - other->here_y[(k + 2) & 3];
-    size = params->consistency
-        * MAX (cloth_quad_longest (cell->here_x, cell->here_y),
-        cloth_quad_longest (other->here_x, other->here_y));
-    n++;
-    bad += dx * dx + dy * dy > size * size;
-  }
-  return bad < most[n];
-}
-
-static void
-check_consistency (ClothQuadTracker * tracker)
-{
-  gint columns = tracker->pattern.columns, rows = tracker->pattern.rows;
-
-  for (gint row = 0; row < rows; row++)
-    for (gint column = 0; column < columns; column++) {
-      ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
-
-      if (cell->found && !is_consistent (tracker, column, row))
-        cell->found = FALSE;
-    }
-}
-
-static void
-middle (const ClothQuadCell * cell, gfloat * x, gfloat * y)
-{
-  *x = (cell->here_x[0] + cell->here_x[2]) / 2;
-  *y = (cell->here_y[0] + cell->here_y[2]) / 2;
-}
-
-/* Notes where a square was found, for is_taken (). */
-static void
-note_middle (ClothQuadTracker * tracker, const ClothQuadCell * cell)
-{
-  gint number = (gint) (cell - tracker->cells);
-  gfloat x, y;
-
-  middle (cell, &x, &y);
-  cloth_point_grid_add (tracker->middles, x, y);
-  g_array_append_val (tracker->middle_cell, number);
-}
-
-static void
-note_middles (ClothQuadTracker * tracker)
-{
-  gint n = tracker->pattern.columns * tracker->pattern.rows;
-
-  cloth_point_grid_clear (tracker->middles, tracker->image->width,
-      tracker->image->height, (guint) n);
-  g_array_set_size (tracker->middle_cell, 0);
-  for (gint k = 0; k < n; k++)
-    if (tracker->cells[k].found)
-      note_middle (tracker, &tracker->cells[k]);
-}
-
-/* Whether a square just found lies well inside one found already. */
-static gboolean
-is_taken (ClothQuadTracker * tracker, const ClothQuadCell * own)
-{
-  gfloat x = 0, y = 0, reach;
-  ClothNear near[MAX_MIDDLES];
-  guint n;
-
-  reach = 0.5f * cloth_quad_shortest (own->here_x, own->here_y);
-  for (gint k = 0; k < 4; k++) {
-    x += own->here_x[k] / 4;
-    y += own->here_y[k] / 4;
-  }
-  n = cloth_point_grid_nearest (tracker->middles, x, y, 1.5f * reach, near,
-      MAX_MIDDLES);
-  for (guint k = 0; k < n; k++) {
-    const ClothQuadCell *cell = &tracker->cells[g_array_index
-        (tracker->middle_cell, gint, near[k].index)];
-    gfloat cx, cy;
-
-    /* It may have been given up since it was noted. */
-    if (!cell->found || cell == own)
-      continue;
-    middle (cell, &cx, &cy);
-    if (fabsf (cx - x) < reach && fabsf (cy - y) < reach)
-      return TRUE;
-  }
-  return FALSE;
-}
-
-/* Whether a square near by on the board is found in the same place. */
-static gboolean
-is_doubled (ClothQuadTracker * tracker, gint column, gint row)
-{
-  const ClothQuadCell *own = &tracker->cells[row * tracker->pattern.columns
-      + column];
-  gfloat reach = 0.5f * cloth_quad_shortest (own->here_x, own->here_y);
-  gfloat x, y;
-
-  middle (own, &x, &y);
-  for (gint r = row - DOUBLED; r <= row + DOUBLED; r++)
-    for (gint c = column - DOUBLED; c <= column + DOUBLED; c++) {
-      const ClothQuadCell *other = cloth_quad_cell (tracker, c, r);
-
-      if (other && other != own && other->found
-          && fabsf ((other->here_x[0] + other->here_x[2]) / 2 - x) < reach
-          && fabsf ((other->here_y[0] + other->here_y[2]) / 2 - y) < reach)
-        return TRUE;
-    }
-  return FALSE;
-}
-
-/* Where a fold joins the pieces of two squares into what looks like one, both may claim it:
- * neither is what it seems. */
-static void
-drop_doubles (ClothQuadTracker * tracker)
-{
-  gint columns = tracker->pattern.columns, n = columns * tracker->pattern.rows;
-
-  for (gint k = 0; k < n; k++)
-    tracker->cells[k].doubled = tracker->cells[k].found
-        && is_doubled (tracker, k % columns, k / columns);
-  for (gint k = 0; k < n; k++)
-    if (tracker->cells[k].doubled)
-      tracker->cells[k].found = FALSE;
-}
-
 /* Looks for a square at a guess and keeps it if the grid allows. */
 static gboolean
 try_square (ClothQuadTracker * tracker, gint column, gint row,
@@ -466,10 +321,8 @@ try_square (ClothQuadTracker * tracker, gint column, gint row,
 
   if (!cloth_quad_search (tracker, column, row, guess_x, guess_y))
     return FALSE;
-  if (!is_consistent (tracker, column, row) || is_taken (tracker, cell))
-    cell->found = FALSE;
-  else
-    note_middle (tracker, cell);
+  cell->found = cloth_quad_is_consistent (tracker, column, row)
+      && cloth_quad_claim (tracker, column, row);
   return cell->found;
 }
 
@@ -659,24 +512,20 @@ cloth_quad_tracker_run (ClothQuadTracker * tracker,
   } else {
     start_seeds (tracker);
   }
-  note_middles (tracker);
+  cloth_quad_claim_all (tracker);
   for (gint row = 0; row < rows; row++)
     for (gint column = 0; column < columns; column++) {
       ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
 
-      if (cell->found || !cell->wanted || cell->age != 0
-          || !cloth_quad_search (tracker, column, row, cell->guess_x,
+      if (!cell->found && cell->wanted && cell->age == 0
+          && cloth_quad_search (tracker, column, row, cell->guess_x,
               cell->guess_y))
-        continue;
-      if (is_taken (tracker, cell))
-        cell->found = FALSE;
-      else
-        note_middle (tracker, cell);
+        cell->found = cloth_quad_claim (tracker, column, row);
     }
-  drop_doubles (tracker);
-  check_consistency (tracker);
+  cloth_quad_check (tracker);
   extend (tracker);
   g_array_set_size (tracker->seeds, 0);
+  cloth_quad_learn_shade (tracker);
   conclude (tracker);
   *n_quads = tracker->out->len;
   return (const ClothQuad *) tracker->out->data;

@@ -10,6 +10,9 @@
  * of equal cost for small and large squares. */
 #define ALONG 12
 #define MAX_ACROSS 12
+/* Levels compared along an edge, and how far on either side of it, in squares. */
+#define BESIDE 5
+#define DEPTH 0.25f
 
 /* How many levels are above @high less how many are below @low. */
 static inline gint
@@ -120,4 +123,66 @@ cloth_quad_confidence (const ClothImage * image, const gfloat x[4],
   score = signs (lapels, n_lapels, (gint16) (sum / total), (gint16) low)
       - signs (inside, n_inside, (gint16) (sum / total), (gint16) low);
   return (gfloat) (black ? score : -score) / (gfloat) total;
+}
+
+static inline gint
+level_at (const ClothImage * image, gfloat x, gfloat y)
+{
+  return image->data[(gint) (y + 0.5f) * image->stride + (gint) (x + 0.5f)];
+}
+
+static gfloat
+middle_two (const gfloat v[4])
+{
+  gfloat least = v[0], most = v[0], sum = 0;
+
+  for (gint k = 0; k < 4; k++) {
+    least = MIN (least, v[k]);
+    most = MAX (most, v[k]);
+    sum += v[k];
+  }
+  return 0.5f * (sum - least - most);
+}
+
+/**
+ * cloth_quad_shade:
+ * @image: the picture
+ * @x: columns of the four corners in ring order, px
+ * @y: rows of the four corners, px
+ * @black: whether the square is black on white, else white on black
+ *
+ * Level of the print's dark colour over that of its bright one, as the square shows it on
+ * either side of its edges. What light falls on the one side falls on the other too, so
+ * light and shadow leave it as it is. Two of the sides may show something else, one lighter
+ * and one darker: it is the mean of the middle two.
+ *
+ * Returns: ratio, > 0; -1 where the square lies at the picture's edge
+ *
+ * Since: 0.1
+ */
+gfloat
+cloth_quad_shade (const ClothImage * image, const gfloat x[4],
+    const gfloat y[4], gboolean black)
+{
+  gfloat shade[4];
+
+  if (!is_inside (image, x, y, DEPTH))
+    return -1;
+  for (gint k = 0; k < 4; k++) {
+    const gint to = (k + 1) & 3, far = (k + 2) & 3, back = (k + 3) & 3;
+    gint in = 0, out = 0;
+
+    for (gint n = 0; n < BESIDE; n++) {
+      const gfloat s = 0.3f + 0.4f * (gfloat) n / (BESIDE - 1);
+      const gfloat ex = x[k] + s * (x[to] - x[k]);
+      const gfloat ey = y[k] + s * (y[to] - y[k]);
+      const gfloat dx = DEPTH * (x[back] + s * (x[far] - x[back]) - ex);
+      const gfloat dy = DEPTH * (y[back] + s * (y[far] - y[back]) - ey);
+
+      in += level_at (image, ex + dx, ey + dy);
+      out += level_at (image, ex - dx, ey - dy);
+    }
+    shade[k] = (gfloat) (black ? in : out) / (gfloat) MAX (black ? out : in, 1);
+  }
+  return middle_two (shade);
 }

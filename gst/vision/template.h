@@ -9,5 +9,7 @@ G_BEGIN_DECLS
 
 gfloat cloth_quad_confidence (const ClothImage * image, const gfloat x[4],
     const gfloat y[4], gfloat alpha, gboolean black);
+gfloat cloth_quad_shade (const ClothImage * image, const gfloat x[4],
+    const gfloat y[4], gboolean black);
 
 G_END_DECLS

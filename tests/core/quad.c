@@ -4,6 +4,7 @@
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/vision/quad.h"
+#include "gst/vision/saddle.h"
 
 #include "tests/core/polygon.h"
 
@@ -355,6 +356,165 @@ test_extension (void)
   }
 }
 
+/* A grid of squares like a chessboard's, those in the first @grey rows of another colour, and
+ * all in light that is @light of the full. */
+static void
+scene_board (Scene * scene, gint grey, gdouble light)
+{
+  scene_wipe (scene);
+  for (gint row = 0; row < 7; row++)
+    for (gint column = row & 1; column < 7; column += 2) {
+      const gint left = 20 + SIDE * column, top = 20 + SIDE * row;
+
+      scene_paint (scene, left, top);
+      if (row < grey)
+        polygon_paint_box (&scene->image, left - 0.5, top - 0.5,
+            left + SIDE - 0.5, top + SIDE - 0.5, WHITE / 2);
+    }
+  for (gint k = 0; k < SIZE * SIZE; k++)
+    ((guint8 *) scene->image.data)[k] = (guint8) (light * scene->image.data[k]);
+}
+
+/* Squares of another print are refused, whatever the light, but with linking only. */
+static void
+test_shade (void)
+{
+  static const guint rows[] = { 4, 3, 4, 3 };
+
+  for (gint grey = 0; grey <= 3; grey++)
+    for (gint light = 2; light >= 1; light--) {
+      g_auto (Scene) scene = { 0 };
+
+      scene_init (&scene, 7, 7);
+      scene_board (&scene, 0, 1);
+      scene_seed (&scene, 20 + 3 * SIDE, 20 + 3 * SIDE, 3, 3);
+      for (gint k = 0; k < 4; k++)
+        scene_run (&scene);
+      scene_board (&scene, grey, 0.5 * light);
+      g_assert_cmpuint (scene_run (&scene), ==, 25);
+    }
+  for (gint grey = 0; grey <= 4; grey++)
+    for (gint light = 2; light >= 1; light--) {
+      g_auto (Scene) scene = { 0 };
+      guint left = 25;
+
+      scene_init (&scene, 7, 7);
+      scene_board (&scene, 0, 1);
+      scene_seed (&scene, 20 + 3 * SIDE, 20 + 3 * SIDE, 3, 3);
+      for (gint k = 0; k < 4; k++)
+        scene_run (&scene);
+      scene.params.link = TRUE;
+      scene_board (&scene, grey, 0.5 * light);
+      for (gint row = 0; row < grey; row++)
+        left -= rows[row];
+      for (gint k = 0; k < 3; k++)
+        g_assert_cmpuint (scene_run (&scene), ==, left);
+    }
+}
+
+/* Runs the tracker on the saddles that are in the picture, with linking. */
+static guint
+scene_see (Scene * scene, ClothSaddleDetector * detector)
+{
+  const ClothSaddleParams params = cloth_saddle_default_params ();
+  const ClothSaddleCandidate *candidates;
+  const ClothSaddle *saddles;
+  guint n_saddles, n_candidates, tracked = 0;
+
+  cloth_saddle_detector_run (detector, &params, &scene->image, CLOTH_SIMD_BEST);
+  saddles = cloth_saddle_detector_get_saddles (detector, &n_saddles);
+  candidates = cloth_saddle_detector_get_candidates (detector, &n_candidates);
+  scene->params.link = TRUE;
+  scene->quads = cloth_quad_tracker_run (scene->tracker, &scene->params,
+      &scene->image, saddles, n_saddles, candidates, n_candidates,
+      &scene->n_quads);
+  for (guint k = 0; k < scene->n_quads; k++)
+    if (scene->quads[k].state == CLOTH_QUAD_TRACKED) {
+      const ClothQuad *quad = &scene->quads[k];
+
+      /* Edges this sharp have no sub-pixel saddles. */
+      g_assert_cmpfloat_with_epsilon (quad->x[0], 19.5 + SIDE * quad->column,
+          1);
+      g_assert_cmpfloat_with_epsilon (quad->y[0], 19.5 + SIDE * quad->row, 1);
+      tracked++;
+    }
+  return tracked;
+}
+
+/* The board with so many rows of squares of level @dark, the others black. */
+static void
+scene_fade (Scene * scene, gint n_rows, gint dark)
+{
+  scene_board (scene, 0, 1);
+  for (gint row = 0; row < n_rows; row++)
+    for (gint column = row & 1; column < 7; column += 2)
+      polygon_paint_box (&scene->image, 19.5 + SIDE * column,
+          19.5 + SIDE * row, 19.5 + SIDE * (column + 1),
+          19.5 + SIDE * (row + 1), (guint8) dark);
+}
+
+/* The print is learnt again when most of what is seen of it changes: after three pictures
+ * when at once, and losing none when slowly. A part that has changed never is. */
+static void
+test_shade_again (void)
+{
+  g_autoptr (ClothSaddleDetector) detector = cloth_saddle_detector_new ();
+  g_auto (Scene) scene = { 0 };
+
+  scene_init (&scene, 7, 7);
+  for (gint turn = 0; turn < 4; turn++)
+    for (gint k = 0; k < 12; k++) {
+      scene_fade (&scene, 7, turn & 1 ? 120 : BLACK);
+      g_assert_cmpuint (scene_see (&scene, detector), ==,
+          turn > 0 && k < 3 ? 0 : 25);
+    }
+  for (gint dark = 120; dark >= BLACK; dark--) {
+    scene_fade (&scene, 7, dark);
+    g_assert_cmpuint (scene_see (&scene, detector), ==, 25);
+  }
+  for (gint k = 0; k < 12; k++) {
+    scene_fade (&scene, 3, 120);
+    g_assert_cmpuint (scene_see (&scene, detector), ==, 14);
+  }
+}
+
+/* A square all of whose corners are others' vertices is none; its neighbours stay, and all
+ * squares are found where they are. */
+static void
+test_contested (void)
+{
+  g_auto (Scene) scene = { 0 };
+
+  scene_init (&scene, 7, 7);
+  scene_board (&scene, 0, 1);
+  for (gint k = 0; k < 4; k++)
+    scene_seed (&scene, 20 + (3 + way_x[k]) * SIDE, 20 + (3 + way_y[k]) * SIDE,
+        3 + way_x[k], 3 + way_y[k]);
+  scene_seed (&scene, 20 + 3 * SIDE, 20 + 3 * SIDE, 1, 1);
+  g_assert_cmpuint (scene_run (&scene), ==, 13);
+  for (guint k = 0; k < scene.n_quads; k++)
+    g_assert_true (scene_tracks (&scene, scene.quads[k].column,
+            scene.quads[k].row, 20 + SIDE * scene.quads[k].column,
+            20 + SIDE * scene.quads[k].row));
+}
+
+/* Of two squares that contradict each other in one corner, with no other to say which is
+ * right, neither is believed. */
+static void
+test_contested_pair (void)
+{
+  for (gint row = 0; row <= 1; row++) {
+    g_auto (Scene) scene = { 0 };
+
+    scene_init (&scene, 7, 7);
+    scene_board (&scene, 0, 1);
+    scene.params.c_pred = 1;
+    scene_seed (&scene, 20 + 2 * SIDE, 20 + 2 * SIDE, 2, 2);
+    scene_seed (&scene, 20 + 3 * SIDE, 20 + 3 * SIDE, 3, 3 - 2 * row);
+    g_assert_cmpuint (scene_run (&scene), ==, row ? 0 : 2);
+  }
+}
+
 /* Nothing extends from a square below c_pred, and nothing below c_low is tracked. */
 static void
 test_confidence (void)
@@ -408,6 +568,10 @@ main (int argc, char **argv)
   g_test_add_func ("/quad/lost", test_lost);
   g_test_add_func ("/quad/extension", test_extension);
   g_test_add_func ("/quad/confidence", test_confidence);
+  g_test_add_func ("/quad/shade", test_shade);
+  g_test_add_func ("/quad/shade-again", test_shade_again);
+  g_test_add_func ("/quad/contested", test_contested);
+  g_test_add_func ("/quad/contested-pair", test_contested_pair);
   g_test_add_func ("/quad/no-start", test_no_start);
   return g_test_run ();
 }

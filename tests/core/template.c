@@ -176,6 +176,41 @@ test_invariant (void)
   polygon_picture_clear (&bright);
 }
 
+/* The two levels' ratio in full light, in shadow and half in it, for either colour; one side
+ * lighter and one darker make no difference, and the picture's edge is too near. */
+static void
+test_shade (void)
+{
+  const gfloat x[4] = { 39.5f, 79.5f, 79.5f, 39.5f };
+  const gfloat y[4] = { 29.5f, 29.5f, 69.5f, 69.5f };
+  gfloat tx[4];
+
+  for (gint dark = 20; dark <= 180; dark += 40)
+    for (gint black = 0; black <= 1; black++)
+      for (gint shadow = 0; shadow <= SIZE; shadow += SIZE / 4) {
+        ClothImage image = polygon_picture (SIZE, SIZE, black ? 200
+            : (guint8) dark);
+
+        polygon_paint_box (&image, 39.5, 29.5, 79.5, 69.5, black
+            ? (guint8) dark : 200);
+        for (gint k = 0; k < SIZE * SIZE; k++)
+          if (k % SIZE < shadow)
+            ((guint8 *) image.data)[k] = (guint8) (image.data[k] / 2);
+        g_assert_cmpfloat_with_epsilon (cloth_quad_shade (&image, x, y, black),
+            dark / 200.0, 1e-5);
+        polygon_paint_box (&image, 0, 0, 38, 127, 255);
+        polygon_paint_box (&image, 81, 0, 127, 127, 1);
+        g_assert_cmpfloat_with_epsilon (cloth_quad_shade (&image, x, y, black),
+            dark / 200.0, 1e-5);
+        for (gint c = 0; c < 4; c++)
+          tx[c] = x[c] - 30.5f;
+        g_assert_cmpfloat (cloth_quad_shade (&image, tx, y, black), ==, -1);
+        tx[0] = NAN;
+        g_assert_cmpfloat (cloth_quad_shade (&image, tx, y, black), ==, -1);
+        polygon_picture_clear (&image);
+      }
+}
+
 static void
 test_refused (void)
 {
@@ -222,6 +257,7 @@ main (int argc, char **argv)
   g_test_add_func ("/template/exact", test_exact);
   g_test_add_func ("/template/paper", test_paper);
   g_test_add_func ("/template/invariant", test_invariant);
+  g_test_add_func ("/template/shade", test_shade);
   g_test_add_func ("/template/refused", test_refused);
   return g_test_run ();
 }
