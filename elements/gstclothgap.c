@@ -21,7 +21,8 @@
  *
  * `clothgap/verdict`, at the end and before EOS goes on: `verdict`, `summary`, `json` (all
  * of gap.json; strings) and, with `output`, `report` (string: path of report.html). The
- * whole recording is diagnosed then, which takes its time.
+ * whole recording is diagnosed then, which takes its time. Where the folders of `location`
+ * and `baseline` say what the cameras saw (rig.json, observations), it is read at the start.
  *
  * After a flush, or when a new segment goes back in time, it starts anew.
  *
