@@ -14,8 +14,8 @@
  * The bus is told by the element messages `dotlabel/found` and `dotlabel/lost` when
  * labelled dots come into sight and when all of them are gone; their fields are `camera`,
  * `sequence`, `timestamp` (PTS, ns), `dots`, the number of dots seen, and `labelled`.
- * When dots have been seen for a while and no place of the pattern fits, a warning says
- * so.
+ * When dots have been seen for a while, or in all of a short film, and no place of the
+ * pattern fits, a warning says so.
  *
  * ## Labelled dots over a film
  * |[
@@ -356,6 +356,33 @@ gst_dot_label_check_swap (GstDotLabel * self)
           "pattern.json."));
 }
 
+static void
+gst_dot_label_warn_of_pattern (GstDotLabel * self)
+{
+  if (self->warned)
+    return;
+  self->warned = TRUE;
+  GST_ELEMENT_WARNING (self, STREAM, FAILED,
+      ("%u dots are seen, but they fit nowhere into the pattern.",
+          self->dots->len),
+      ("Set pattern to the file of the very print that is filmed. Colours "
+          "that the printer has swapped, or a camera that sees them alike, "
+          "look like another pattern too."));
+}
+
+/* A film may end before patience does. */
+static gboolean
+gst_dot_label_sink_event (GstBaseTransform * trans, GstEvent * event)
+{
+  GstDotLabel *self = GST_DOT_LABEL (trans);
+
+  if (GST_EVENT_TYPE (event) == GST_EVENT_EOS && self->n_in_vain > 0
+      && !self->adapted)
+    gst_dot_label_warn_of_pattern (self);
+  return GST_BASE_TRANSFORM_CLASS (gst_dot_label_parent_class)->sink_event
+      (trans, event);
+}
+
 /* Tells the bus when the pattern comes into sight and when it is gone, and the user when
  * it is another one. */
 static void
@@ -379,14 +406,8 @@ gst_dot_label_tell (GstDotLabel * self, const GstClothFilterFrame * frame,
     self->n_in_vain = 0;
   else if (n_dots >= WINDOW)
     self->n_in_vain++;
-  if (self->n_in_vain == PATIENCE && !self->warned) {
-    self->warned = TRUE;
-    GST_ELEMENT_WARNING (self, STREAM, FAILED,
-        ("%u dots are seen, but they fit nowhere into the pattern.", n_dots),
-        ("Set pattern to the file of the very print that is filmed. Colours "
-            "that the printer has swapped, or a camera that sees them alike, "
-            "look like another pattern too."));
-  }
+  if (self->n_in_vain == PATIENCE)
+    gst_dot_label_warn_of_pattern (self);
   gst_dot_label_check_swap (self);
 }
 
@@ -697,6 +718,7 @@ gst_dot_label_class_init (GstDotLabelClass * klass)
       "Filter/Analyzer/Video",
       "Finds and labels the dots of a colour-coded pattern on cloth",
       "The gst-cloth developers");
+  GST_BASE_TRANSFORM_CLASS (klass)->sink_event = gst_dot_label_sink_event;
   filter_class->start = gst_dot_label_start;
   filter_class->stop = gst_dot_label_stop;
   filter_class->reset = gst_dot_label_reset;

@@ -343,6 +343,7 @@ play (const gchar * pattern, guint n, guint * n_found, guint * n_lost)
     fail_unless_equals_int (gst_harness_push (h, copy), GST_FLOW_OK);
     gst_buffer_unref (gst_harness_pull (h));
   }
+  fail_unless (gst_harness_push_event (h, gst_event_new_eos ()));
   *n_found = *n_lost = 0;
   while ((message = gst_bus_pop_filtered (bus, GST_MESSAGE_ELEMENT
               | GST_MESSAGE_WARNING))) {
@@ -374,6 +375,7 @@ GST_START_TEST (test_wrong_pattern)
   ClothMArrayCode code = CLOTH_M_ARRAY_CODE_INIT;
   g_autoptr (ClothMArray) array = NULL;
   g_autofree gchar *none = NULL, *warning = NULL, *swapped = NULL;
+  g_autofree gchar *at_end = NULL;
   guint n_found, n_lost;
 
   none = play (RING "pattern.json", 30, &n_found, &n_lost);
@@ -391,6 +393,10 @@ GST_START_TEST (test_wrong_pattern)
   fail_unless (warning != NULL);
   fail_unless (strstr (warning, "fit nowhere into the pattern"));
   fail_unless_equals_int (n_found, 0);
+
+  at_end = play (path, 3, &n_found, &n_lost);
+  fail_unless (at_end != NULL);
+  fail_unless (strstr (at_end, "fit nowhere into the pattern"));
 
   /* cyan and magenta */
   for (gint i = 0; i < 31 * 33; i++)
