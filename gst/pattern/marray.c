@@ -79,8 +79,8 @@ check_sizes (const ClothMArray * array, GError ** error)
  * @error: return location
  *
  * Checks every limit: %CLOTH_M_ARRAY_MIN to %CLOTH_M_ARRAY_MAX dots each way, 2 to
- * %CLOTH_M_ARRAY_MAX_COLOURS colours of different names, finite positive sizes, dots
- * apart from each other and within the cloth, colours of the matrix among those named.
+ * %CLOTH_M_ARRAY_MAX_COLOURS different colours of different names, finite positive sizes,
+ * dots apart from each other and within the cloth, colours of the matrix among those named.
  * Whether windows are unique is not checked: print that has a few twins is still read.
  *
  * Returns: %TRUE when @array is sound, else %FALSE with %CLOTH_PATTERN_ERROR_VALUE
@@ -102,6 +102,9 @@ cloth_m_array_check (const ClothMArray * array, GError ** error)
       if (!strcmp (array->colours[i].name, array->colours[j].name))
         return refuse (error, "two colours are called \"%s\"",
             array->colours[i].name);
+      if (!memcmp (array->colours[i].rgb, array->colours[j].rgb, 3))
+        return refuse (error, "%s and %s are the same rgb: give the colours as "
+            "they are printed", array->colours[j].name, array->colours[i].name);
     }
   }
   for (gint i = 0; i < array->columns * array->rows; i++) {

@@ -224,6 +224,9 @@ test_read_refused (void)
     {"{\"pattern\":\"m-array\",\"colours\":[\"red\",\"red\"],"
           "\"rgb\":[[1,2,3],[4,5,6]]," SIZE COUNT MATRIX,
         CLOTH_PATTERN_ERROR_VALUE, "\"red\""},
+    {"{\"pattern\":\"m-array\",\"colours\":[\"red\",\"blue\"],"
+          "\"rgb\":[[1,2,3],[1,2,3]]," SIZE COUNT MATRIX,
+        CLOTH_PATTERN_ERROR_VALUE, "red and blue"},
     {"{\"pattern\":\"m-array\",\"colours\":[\"red\",5],"
           "\"rgb\":[[1,2,3],[4,5,6]]," SIZE COUNT MATRIX,
         CLOTH_PATTERN_ERROR_FORMAT, "name"},
