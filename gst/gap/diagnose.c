@@ -10,7 +10,7 @@
 #include "gst/mesh/hash.h"
 
 /* Version of the priors and thresholds: a change of either changes probabilities. */
-#define PRIORS "1"
+#define PRIORS "2"
 
 /* Simulations of the fit of the free numbers. */
 #define N_FIT 6

@@ -78,6 +78,13 @@ def parameters_of(gap, label, table):
                            nulls[p['name']])
 
 
+def first_ones(cases):
+    """(probability of what stands first, whether it acted)."""
+    for label, gap in cases:
+        if gap['effects'] and gap['effects'][0]['probability'] is not None:
+            yield gap['effects'][0]['probability'], ranking(gap)[0] in label['effects']
+
+
 def calibration_error(pairs):
     """Expected calibration error in ten bins of probability."""
     total = 0.
@@ -157,10 +164,10 @@ def table_of(cases, table):
         ('held-out shrink, median, right effect first and accepted, at 2× and 5×',
          median((g['shrink']['value'] for l, g in strong if named_first(g, l) and
                  accepted(g) and g['shrink']['value'] is not None), '%.2f'), ''),
-        ('calibration error of the first one’s probability (ECE), 2× and 5×',
-         '%.2f' % calibration_error([(g['effects'][0]['probability'], named_first(g, l))
-                                     for l, g in strong if g['effects'] and
-                                     g['effects'][0]['probability'] is not None]), '≤ 0.05')]
+        ('calibration error of the first one’s probability (ECE), all cases',
+         '%.2f' % calibration_error(list(first_ones(cases))), '≤ 0.05'),
+        ('the same, only of one effect at 2× and 5×',
+         '%.2f' % calibration_error(list(first_ones(strong))), '')]
     return rows
 
 
