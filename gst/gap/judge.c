@@ -7,6 +7,7 @@
 #include "gst/gap/bridge.h"
 #include "gst/gap/diagnosis.h"
 #include "gst/gap/extent.h"
+#include "gst/sim/effect-table.h"
 
 /* Length of the windows that the gap is measured in, s. */
 #define WINDOW_S 0.3
@@ -14,6 +15,9 @@
 #define WINDOW_GAIN 1600.
 /* Variance of a gap that is hardly larger, over that before. */
 #define HARDLY_LARGER 1.05
+/* What parts a steady wind from one that is not. */
+static const gchar *const wind_sentence =
+    "Film it with all wind kept off, and measure the wind's speed while it blows.";
 /* What parts faults of cameras that look alike. */
 static const gchar *const capture_sentence =
     "Film a board that moves with all cameras, once more with half the "
@@ -346,6 +350,58 @@ add_camera_effects (ClothDiagnosis * d)
     cloth_gap_result_add_group (d->result, capture_sentence, NAN);
 }
 
+static ClothGapEffect *
+find_effect (const ClothGapResult * r, const gchar * id)
+{
+  for (guint i = 0; i < r->effects->len; i++) {
+    ClothGapEffect *e = &g_array_index (r->effects, ClothGapEffect, i);
+
+    if (strcmp (e->effect->id, id) == 0)
+      return e;
+  }
+  return NULL;
+}
+
+static gboolean
+forget_untested (ClothGapResult * r, const gchar * id)
+{
+  for (guint i = 0; i < r->untested->len; i++)
+    if (strcmp (g_array_index (r->untested, ClothGapUntested, i).effect->id,
+            id) == 0) {
+      g_array_remove_index (r->untested, i);
+      return TRUE;
+    }
+  return FALSE;
+}
+
+/* No two gusts are alike, so they have no derivative. But where a wind is accepted and much
+ * remains that it does not explain, it may not have been steady. */
+static void
+suspect_gusts (ClothGapResult * r)
+{
+  ClothGapEffect *wind = find_effect (r, "wind"), gust = {.camera = NULL };
+
+  if (!wind || !wind->accepted || !forget_untested (r, "gust"))
+    return;
+  if (wind->group < 0) {
+    wind->group = (gint) r->groups->len;
+    cloth_gap_result_add_group (r, wind_sentence, NAN);
+  }
+  gust = *wind;
+  gust.effect = cloth_effect_find ("gust");
+  gust.accepted = FALSE;
+  gust.shrink = (ClothGapEstimate) {
+  NAN, NAN, NAN};
+  for (guint k = 0; k < gust.effect->n_parameters; k++)
+    gust.values[k] = gust.sigmas[k] = NAN;
+  for (guint i = 0; i < r->effects->len; i++)
+    if (!g_array_index (r->effects, ClothGapEffect, i).accepted) {
+      g_array_insert_val (r->effects, i, gust);
+      return;
+    }
+  g_array_append_val (r->effects, gust);
+}
+
 /* Whether another effect would do as well as one that is accepted. */
 static gboolean
 is_ambiguous (const ClothGapResult * r)
@@ -369,6 +425,8 @@ cloth_diagnosis_decide (ClothDiagnosis * d)
   if (d->n_chosen)
     accept_effects (d);
   add_camera_effects (d);
+  if (above)
+    suspect_gusts (r);
   if (above || (!accepted && d->unknown))
     r->verdict = CLOTH_GAP_UNEXPLAINED;
   else if (!accepted)

@@ -22,10 +22,13 @@
 #define ODDS_SLOPE_AGAINST 0.4
 #define ODDS_SLOPE_FOR 0.18
 #define LARGEST_LOG_ODDS 16.
-/* Effects this close in probability to the best, or with derivatives this alike, are
- * reported together. */
-#define AMBIGUOUS_PROBABILITY 0.1
-#define AMBIGUOUS_COSINE 0.9
+/* Effects this likely beside the best are reported together with it, and much less likely
+ * ones with derivatives this alike: then priors alone part them. */
+#define AMBIGUOUS_SHARE 0.3
+#define ALIKE_SHARE 0.005
+#define ALIKE_COSINE 0.9
+/* Most effects that are reported together. */
+#define MOST_AMBIGUOUS 4
 
 static gboolean
 moves_alike (const ClothRecording * a, const ClothRecording * b)
@@ -359,15 +362,16 @@ cloth_diagnosis_fill_effects (ClothDiagnosis * d, const ClothGapTest * test,
     }
   }
   /* the best, and those that can't be told from it */
-  for (guint i = 1; i < effects->len; i++) {
+  for (guint i = 1, n = 1; i < effects->len && n < MOST_AMBIGUOUS; i++) {
     ClothGapEffect *best = &g_array_index (effects, ClothGapEffect, 0);
     ClothGapEffect *e = &g_array_index (effects, ClothGapEffect, i);
 
-    if (best->probability - e->probability >= AMBIGUOUS_PROBABILITY
-        && !(e->probability > 0.05 * best->probability
+    if (e->probability < AMBIGUOUS_SHARE * best->probability
+        && !(e->probability > ALIKE_SHARE * best->probability
             && cloth_gap_test_cosine (test, of[0]->candidate,
-                of[i]->candidate) > AMBIGUOUS_COSINE))
+                of[i]->candidate) > ALIKE_COSINE))
       continue;
+    n++;
     if (best->group < 0)
       cloth_gap_result_add_group (d->result, NULL, NAN);
     best->group = e->group = 0;

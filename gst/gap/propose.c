@@ -12,13 +12,18 @@
 /* Share of what is left to do that each simulation is taken for. */
 #define EACH 0.05
 
+/* One of unknown size can't be simulated. */
 static gboolean
 acts (const ClothGapEffect * e)
 {
-  for (guint k = 0; k < e->effect->n_parameters; k++)
-    if (e->values[k] != e->effect->parameters[k].null_value)
-      return TRUE;
-  return FALSE;
+  gboolean any = FALSE;
+
+  for (guint k = 0; k < e->effect->n_parameters; k++) {
+    if (isnan (e->values[k]))
+      return FALSE;
+    any |= e->values[k] != e->effect->parameters[k].null_value;
+  }
+  return any;
 }
 
 static void
