@@ -339,14 +339,9 @@ gst_dot_label_refuse_grey (GstDotLabel * self, const GstVideoFrame * video)
           GST_VIDEO_INFO_NAME (&video->info), GST_OBJECT_NAME (self)));
 }
 
-/* Some labels are found all the same where the print's colours are in another order. */
 static void
-gst_dot_label_check_swap (GstDotLabel * self)
+gst_dot_label_warn_of_swap (GstDotLabel * self, gint a, gint b)
 {
-  gint a, b;
-
-  if (self->warned || !cloth_dot_labeller_find_swap (self->labeller, &a, &b))
-    return;
   self->warned = TRUE;
   GST_ELEMENT_WARNING (self, STREAM, FAILED,
       ("Dots that should be %s look %s and the other way round: the two are "
@@ -356,11 +351,64 @@ gst_dot_label_check_swap (GstDotLabel * self)
           "pattern.json."));
 }
 
+/* Some labels are found all the same where the print's colours are in another order. */
+static void
+gst_dot_label_check_swap (GstDotLabel * self)
+{
+  gint a, b;
+
+  if (!self->warned && cloth_dot_labeller_find_swap (self->labeller, &a, &b))
+    gst_dot_label_warn_of_swap (self, a, b);
+}
+
+/* Where none are: which two colours, taken for each other, give the last picture the most
+ * labels, at least those of a few windows. */
+static gboolean
+gst_dot_label_try_swaps (GstDotLabel * self, gint * a, gint * b)
+{
+  const ClothDotColourModel colours = self->colours;
+  ClothDotLabelParams params;
+  const ClothDot *dots;
+  guint n, most = 4 * WINDOW;
+  gboolean found = FALSE;
+
+  GST_OBJECT_LOCK (self);
+  params = self->label_params;
+  GST_OBJECT_UNLOCK (self);
+  dots = cloth_dot_detector_get_dots (self->detector, &n);
+  for (gint i = 0; i < colours.n; i++) {
+    for (gint j = 0; j < i; j++) {
+      guint n_labelled;
+
+      self->colours.classes[i] = colours.classes[j];
+      self->colours.classes[j] = colours.classes[i];
+      cloth_dot_labeller_reset (self->labeller);
+      n_labelled = gst_dot_label_try (self, NULL, dots, n,
+          GST_DOT_LABEL_COLOURS_LIKELIHOOD, &params);
+      self->colours = colours;
+      if (n_labelled < most)
+        continue;
+      most = n_labelled;
+      *a = j;
+      *b = i;
+      found = TRUE;
+    }
+  }
+  cloth_dot_labeller_reset (self->labeller);
+  return found;
+}
+
 static void
 gst_dot_label_warn_of_pattern (GstDotLabel * self)
 {
+  gint a, b;
+
   if (self->warned)
     return;
+  if (gst_dot_label_try_swaps (self, &a, &b)) {
+    gst_dot_label_warn_of_swap (self, a, b);
+    return;
+  }
   self->warned = TRUE;
   GST_ELEMENT_WARNING (self, STREAM, FAILED,
       ("%u dots are seen, but they fit nowhere into the pattern.",
