@@ -42,6 +42,9 @@ diagnosis_clear (ClothDiagnosis * d)
   cloth_gap_energy_free (d->after);
   cloth_gap_energy_free (d->floor);
   cloth_gap_result_free (d->result);
+  g_free (d->led);
+  for (guint i = 0; i < d->n_nulls; i++)
+    cloth_gap_extent_free (d->nulls[i]);
   g_free (d->what);
   g_free (d->null_evidence);
   for (guint i = 0; d->filmed && i < d->recordings->len; i++)
@@ -283,6 +286,7 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
     return FALSE;
   cloth_diagnosis_locate (d);
   cloth_diagnosis_decide (d);
+  cloth_diagnosis_fill_null (d);
   return cloth_diagnosis_propose (d, error);
 }
 

@@ -1,12 +1,12 @@
 /* A diagnosis under way; private to diagnose.c, name.c, select.c, rest.c, judge.c,
- * where.c, fault.c and propose.c.
+ * where.c, null.c, fault.c and propose.c.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
 #include "gst/gap/camera.h"
 #include "gst/gap/diagnose.h"
-#include "gst/gap/energy.h"
+#include "gst/gap/extent.h"
 #include "gst/gap/score.h"
 
 G_BEGIN_DECLS
@@ -23,6 +23,8 @@ G_BEGIN_DECLS
  * knows nothing of the simulator's own error: then about nine of ten of the blind benchmark's
  * intervals of 95% hold the truth. */
 #define CLOTH_DIAGNOSIS_SIGMA_WIDTH 3.
+/* Length of the windows that the gap is measured in, s. */
+#define CLOTH_DIAGNOSIS_WINDOW_S 0.3
 /* Most effects that are accepted. */
 #define CLOTH_DIAGNOSIS_MAX_ACCEPTED 3
 
@@ -79,6 +81,15 @@ typedef struct
   gboolean unknown;             /* whether something is there, whatever it is */
   /* of the first take before and after, of the first baseline; NULL where there is none */
   ClothGapEnergy *before, *after, *floor;
+  gfloat *led;                  /* residual of the first take, as an extent has it, or NULL */
+  /* of simulations that lack nothing, and what they are of: of a baseline, of the other
+   * force model */
+  ClothGapExtent *nulls[2];
+  guint null_recordings[2];
+  guint n_nulls;
+  guint floor_null;             /* which of them is the floor */
+  gboolean null_alike;          /* whether the first is of a baseline that moves as the
+                                   first take does */
   gdouble least_evidence;
   gdouble *null_evidence;       /* of each candidate, on the baselines */
   /* of the running part of the work: its share of all, what of it each simulation gets */
@@ -159,6 +170,7 @@ void cloth_diagnosis_decide (ClothDiagnosis * d);
 
 /* Where. */
 void cloth_diagnosis_locate (ClothDiagnosis * d);
+void cloth_diagnosis_fill_null (ClothDiagnosis * d);
 
 /* What to film next. */
 gboolean cloth_diagnosis_propose (ClothDiagnosis * d, GError ** error);

@@ -58,6 +58,18 @@ frame_at (const ClothRecording * r, guint frame, guint vertex,
   return length > 0.;
 }
 
+/* Single numbers are enough: it is a difference. */
+static void
+keep_led (const ClothRecording * r, guint frame, const gdouble * positions,
+    gfloat * led)
+{
+  gsize begin = (gsize) frame * r->n;
+
+  for (gsize i = 0; i < 3 * (gsize) r->n; i++)
+    if (r->seen[begin + i / 3] > 0.)
+      led[3 * begin + i] = (gfloat) (positions[i] - r->y[3 * begin + i]);
+}
+
 static void
 gather (gpointer data, guint model, guint frame, const gdouble * positions)
 {
@@ -67,6 +79,7 @@ gather (gpointer data, guint model, guint frame, const gdouble * positions)
 
   if (model >= g->n) {
     cloth_gap_energy_add (e->energy, frame, positions);
+    keep_led (r, frame, positions, e->led);
     return;
   }
   for (guint v = 0; v < r->n; v++) {
@@ -101,6 +114,7 @@ extent_new (const ClothRecording * r, gdouble window_s)
   e->n_frames = r->n_frames;
   e->squares = g_new (gdouble, all);
   e->positions = g_new (gfloat, 3 * all);
+  e->led = g_new0 (gfloat, 3 * all);
   for (gsize i = 0; i < all; i++)
     e->squares[i] = NAN;
   for (gsize i = 0; i < 3 * all; i++)
@@ -146,6 +160,25 @@ cloth_gap_extents_new (const ClothRecording * recording,
 }
 
 /**
+ * cloth_gap_extent_free:
+ * @extent: (nullable) (transfer full): distances
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_extent_free (ClothGapExtent * extent)
+{
+  if (!extent)
+    return;
+  g_free (extent->window);
+  g_free (extent->squares);
+  g_free (extent->positions);
+  g_free (extent->led);
+  cloth_gap_energy_free (extent->energy);
+  g_free (extent);
+}
+
+/**
  * cloth_gap_extents_free:
  * @extents: (nullable) (transfer full) (array length=n): distances
  * @n: how many
@@ -155,14 +188,37 @@ cloth_gap_extents_new (const ClothRecording * recording,
 void
 cloth_gap_extents_free (ClothGapExtent ** extents, guint n)
 {
-  for (guint m = 0; extents && m < n; m++) {
-    g_free (extents[m]->window);
-    g_free (extents[m]->squares);
-    g_free (extents[m]->positions);
-    cloth_gap_energy_free (extents[m]->energy);
-    g_free (extents[m]);
-  }
+  for (guint m = 0; extents && m < n; m++)
+    cloth_gap_extent_free (extents[m]);
   g_free (extents);
+}
+
+/**
+ * cloth_gap_extent_subtract:
+ * @extent: (inout): one model's distances from a recording
+ * @other: another's
+ * @recording: the recording
+ *
+ * Makes them the distances of the two models, with the recording's noise: what the gap
+ * would be if the other were reality.
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_extent_subtract (ClothGapExtent * extent,
+    const ClothGapExtent * other, const ClothRecording * recording)
+{
+  gsize all = (gsize) extent->n * extent->n_frames;
+
+  for (gsize i = 0; i < all; i++) {
+    extent->squares[i] = 3. * recording->sigma * recording->sigma;
+    for (guint k = 0; k < 3; k++) {
+      gdouble off = extent->positions[3 * i + k] - other->positions[3 * i + k];
+
+      extent->squares[i] += off * off;
+      extent->led[3 * i + k] -= other->led[3 * i + k];
+    }
+  }
 }
 
 /**

@@ -18,6 +18,8 @@ G_BEGIN_DECLS
  * @squares: squared distance, [n_frames][n], m²; NaN where nothing was seen
  * @positions: simulated, [n_frames][n][3], m
  * @directions: mean square along warp, weft and normal, m²
+ * @led: off the recording while it was led to it all along, [n_frames][n][3], m; 0
+ *   where nothing was seen and in the first frame
  * @energy: of its distances while it was led to the recording all along
  * @sound: whether the simulation held
  *
@@ -33,6 +35,7 @@ typedef struct {
   gdouble *squares;
   gfloat *positions;
   gdouble directions[3];
+  gfloat *led;
   ClothGapEnergy *energy;
   gboolean sound;
 } ClothGapExtent;
@@ -41,6 +44,9 @@ ClothGapExtent **cloth_gap_extents_new (const ClothRecording * recording,
     const ClothModel * const *models, guint n_models, gdouble gain,
     gdouble window_s, const ClothRolloutOptions * options, GError ** error);
 void cloth_gap_extents_free (ClothGapExtent ** extents, guint n);
+void cloth_gap_extent_free (ClothGapExtent * extent);
+void cloth_gap_extent_subtract (ClothGapExtent * extent,
+    const ClothGapExtent * other, const ClothRecording * recording);
 gdouble cloth_gap_extent_square (const ClothGapExtent * extent,
     const gboolean * windows);
 void cloth_gap_extents_interval (ClothGapExtent ** extents, guint n,

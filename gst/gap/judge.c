@@ -6,11 +6,8 @@
 
 #include "gst/gap/bridge.h"
 #include "gst/gap/diagnosis.h"
-#include "gst/gap/extent.h"
 #include "gst/sim/effect-table.h"
 
-/* Length of the windows that the gap is measured in, s. */
-#define WINDOW_S 0.3
 /* Gain of the observer that leads up to them, 1/s². */
 #define WINDOW_GAIN 1600.
 /* Variance of a gap that is hardly larger, over that before. */
@@ -68,7 +65,7 @@ estimate (gdouble square, gdouble * draws, guint n, guint stride)
  * NaN on errors. */
 static gdouble
 own_floor (ClothDiagnosis * d, guint judge, const ClothGapExtent * extent,
-    GError ** error)
+    ClothGapExtent ** null, GError ** error)
 {
   const ClothRecording *r = cloth_diagnosis_recording (d, judge);
   g_autoptr (ClothModel) other = cloth_diagnosis_other_model (d);
@@ -77,8 +74,9 @@ own_floor (ClothDiagnosis * d, guint judge, const ClothGapExtent * extent,
   gdouble sum = 0.;
   gsize all = (gsize) r->n * r->n_frames;
 
-  extents = cloth_gap_extents_new (r, models, 1, WINDOW_GAIN, WINDOW_S,
-      &d->study.rollout, error);
+  extents =
+      cloth_gap_extents_new (r, models, 1, WINDOW_GAIN,
+      CLOTH_DIAGNOSIS_WINDOW_S, &d->study.rollout, error);
   if (!extents)
     return NAN;
   for (gsize i = 0; i < 3 * all && extents[0]->sound; i++) {
@@ -86,8 +84,21 @@ own_floor (ClothDiagnosis * d, guint judge, const ClothGapExtent * extent,
 
     sum += off * off;
   }
-  cloth_gap_extents_free (extents, 1);
+  if (extents[0]->sound) {
+    *null = extents[0];
+    cloth_gap_extent_subtract (*null, extent, r);
+    g_free (extents);
+  } else
+    cloth_gap_extents_free (extents, 1);
   return 3. * r->sigma * r->sigma + sum / all;
+}
+
+/* What stands for a simulation that lacks nothing. */
+static void
+keep_null (ClothDiagnosis * d, ClothGapExtent * null, guint recording)
+{
+  d->nulls[d->n_nulls] = null;
+  d->null_recordings[d->n_nulls++] = recording;
 }
 
 /* The floor of the simulator's own error: what the baseline shows, and on takes that move
@@ -99,14 +110,21 @@ measure_floor (ClothDiagnosis * d, guint judge, const ClothGapExtent * extent,
   const ClothModel *models[1] = { d->model };
   ClothGapEstimate *result = &d->result->noise_floor;
   g_autofree gdouble *draws = g_new (gdouble, N_DRAWS);
-  ClothGapExtent **floor;
+  ClothGapExtent **floor, *other = NULL;
+  guint baseline = d->n_takes;
+  const ClothStudy *signature = cloth_diagnosis_study (d, 0)->signature;
   gdouble square;
 
+  /* of the first take's motion, if there is one */
+  for (guint i = d->n_takes; signature && i < d->studies->len; i++)
+    if (cloth_diagnosis_study (d, i) == signature)
+      baseline = i;
   *result = (ClothGapEstimate) {
   0., NAN, NAN};
   if (d->options->n_baselines) {
-    floor = cloth_gap_extents_new (cloth_diagnosis_recording (d, d->n_takes),
-        models, 1, WINDOW_GAIN, WINDOW_S, &d->study.rollout, error);
+    floor = cloth_gap_extents_new (cloth_diagnosis_recording (d, baseline),
+        models, 1, WINDOW_GAIN, CLOTH_DIAGNOSIS_WINDOW_S, &d->study.rollout,
+        error);
     if (!floor)
       return FALSE;
     square = cloth_gap_extent_square (floor[0], NULL);
@@ -115,14 +133,21 @@ measure_floor (ClothDiagnosis * d, guint judge, const ClothGapExtent * extent,
     *result = estimate (square, draws, N_DRAWS, 1);
     if (floor[0]->sound)
       d->floor = g_steal_pointer (&floor[0]->energy);
+    if (floor[0]->sound)
+      keep_null (d, g_steal_pointer (&floor[0]), baseline);
+    d->null_alike = signature && d->n_nulls;
     cloth_gap_extents_free (floor, 1);
     if (cloth_diagnosis_has_signatures (d))
       return TRUE;
   }
-  square = own_floor (d, judge, extent, error);
-  if (sqrt (square) > result->value)
+  square = own_floor (d, judge, extent, &other, error);
+  if (sqrt (square) > result->value) {
     *result = (ClothGapEstimate) {
     sqrt (square), NAN, NAN};
+    d->floor_null = d->n_nulls;
+  }
+  if (other)
+    keep_null (d, other, judge);
   return !isnan (square);
 }
 
@@ -170,8 +195,10 @@ keep_first (ClothDiagnosis * d, ClothGapExtent * before, ClothGapExtent * after)
 {
   cloth_gap_extent_fill (before, after, cloth_diagnosis_recording (d, 0),
       d->takes[0], d->result);
-  if (before->sound)
+  if (before->sound) {
     d->before = g_steal_pointer (&before->energy);
+    d->led = g_steal_pointer (&before->led);
+  }
   if (after && after->sound)
     d->after = g_steal_pointer (&after->energy);
 }
@@ -200,16 +227,18 @@ measure_models (ClothDiagnosis * d, guint i, const ClothModel * const *models,
   ClothGapExtent **all = NULL, **others;
 
   if (!d->filmed[i])
-    return cloth_gap_extents_new (r, models, n, WINDOW_GAIN, WINDOW_S,
-        &d->study.rollout, error);
+    return cloth_gap_extents_new (r, models, n, WINDOW_GAIN,
+        CLOTH_DIAGNOSIS_WINDOW_S, &d->study.rollout, error);
   swap_filmed (d, i);
-  all = cloth_gap_extents_new (r, models, 1, WINDOW_GAIN, WINDOW_S,
-      &d->study.rollout, error);
+  all =
+      cloth_gap_extents_new (r, models, 1, WINDOW_GAIN,
+      CLOTH_DIAGNOSIS_WINDOW_S, &d->study.rollout, error);
   swap_filmed (d, i);
   if (!all)
     return NULL;
-  others = cloth_gap_extents_new (r, models + 1, n - 1, WINDOW_GAIN, WINDOW_S,
-      &d->study.rollout, error);
+  others =
+      cloth_gap_extents_new (r, models + 1, n - 1, WINDOW_GAIN,
+      CLOTH_DIAGNOSIS_WINDOW_S, &d->study.rollout, error);
   if (!others) {
     cloth_gap_extents_free (all, 1);
     return NULL;

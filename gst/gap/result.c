@@ -272,6 +272,7 @@ cloth_gap_result_free (ClothGapResult * result)
   g_free (result->vertices);
   g_free (result->gained);
   g_free (result->frames);
+  g_clear_pointer (&result->region, g_array_unref);
   g_array_unref (result->bands);
   g_array_unref (result->waves);
   g_array_unref (result->stages);

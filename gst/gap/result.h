@@ -291,6 +291,8 @@ typedef struct {
  * @frames: (nullable): share of the gap per frame
  * @onset_s: when the gap begins, seconds; NaN: it is there from the beginning, or
  *   there is none
+ * @region: (nullable) (element-type guint): vertices that the gap is at, growing; empty:
+ *   nowhere more than chance; %NULL: not known
  * @directions: share along warp, weft and normal
  * @still: share of the residual that does not move; NaN: not known
  * @bands: (element-type ClothGapBand): per band of frequencies
@@ -332,6 +334,7 @@ typedef struct {
   guint n_frames;
   gdouble *frames;
   gdouble onset_s;
+  GArray *region;
   gdouble directions[3];
   gdouble still;
   GArray *bands;

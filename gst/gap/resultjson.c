@@ -319,6 +319,19 @@ put_bands (ClothJsonWriter * writer, const gchar * key, const gchar * from,
 }
 
 static void
+put_region (ClothJsonWriter * writer, const GArray * region)
+{
+  if (!region) {
+    cloth_json_writer_string (writer, "region", NULL);
+    return;
+  }
+  cloth_json_writer_begin_array (writer, "region");
+  for (guint i = 0; i < region->len; i++)
+    cloth_json_writer_count (writer, NULL, g_array_index (region, guint, i));
+  cloth_json_writer_end_array (writer);
+}
+
+static void
 put_where (ClothJsonWriter * writer, const ClothGapResult * result)
 {
   static const gchar *const directions[] = { "warp", "weft", "normal" };
@@ -326,6 +339,7 @@ put_where (ClothJsonWriter * writer, const ClothGapResult * result)
   cloth_json_writer_begin_object (writer, "where");
   cloth_json_writer_string (writer, "take", result->playback.take);
   cloth_json_writer_number (writer, "onset_s", result->onset_s);
+  put_region (writer, result->region);
   cloth_json_writer_begin_object (writer, "directions");
   for (guint i = 0; i < 3; i++)
     cloth_json_writer_number (writer, directions[i], result->directions[i]);

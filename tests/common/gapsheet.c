@@ -355,6 +355,9 @@ gap_sheet_new (guint columns, guint rows, guint n_frames)
   result->rest_p_value = 0.31;
   result->held_out_takes = TRUE;
   result->onset_s = ONSET;
+  result->region = g_array_new (FALSE, FALSE, sizeof (guint));
+  for (guint v = columns * (rows - 1); v < columns * rows; v++)
+    g_array_append_val (result->region, v);
   result->directions[0] = 0.06;
   result->directions[1] = 0.11;
   result->directions[2] = 0.83;

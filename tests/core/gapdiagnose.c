@@ -142,6 +142,21 @@ check_where (const ClothGapResult * result)
   g_assert_nonnull (result->spectrum.null);
 }
 
+/* What a faultless simulation would have is known of all that is shown. */
+static void
+check_null (const ClothGapResult * result)
+{
+  g_assert_nonnull (result->region);
+  for (gsize i = 0; i < (gsize) result->n_frames * result->n_vertices; i++)
+    g_assert_true (isfinite (result->playback.sigma[i])
+        && result->playback.sigma[i] > 0.f);
+  for (guint w = 0; w < result->series.n; w++) {
+    g_assert_cmpfloat (result->series.null_low[w], >, 0.);
+    g_assert_cmpfloat (result->series.null_low[w], <,
+        result->series.null_high[w]);
+  }
+}
+
 /* The effect that acted comes first, the gap shrinks and its size is about right. */
 static void
 test_named (gconstpointer data)
@@ -161,6 +176,13 @@ test_named (gconstpointer data)
       || result->verdict == CLOTH_GAP_AMBIGUOUS);
   g_assert_cmpfloat (result->gap_after.value, <, result->gap_before.value);
   check_where (result);
+  check_null (result);
+  if (strcmp (c->effect, "clamp_slip") == 0) {
+    g_test_message ("it slips at 0.7 s: from %g s on, at %u vertices",
+        result->onset_s, result->region->len);
+    g_assert_cmpfloat_with_epsilon (result->onset_s, 0.7, 0.061);
+    g_assert_cmpuint (result->region->len, >, 0);
+  }
 }
 
 static void
@@ -171,9 +193,22 @@ test_no_gap (void)
   g_autoptr (ClothTake) other = record ("other", NULL, NULL, TRUE, 4);
   g_autoptr (ClothGapResult) one = diagnose (again, baseline, 0);
   g_autoptr (ClothGapResult) two = diagnose (other, baseline, 0);
+  guint outside = 0;
 
   g_assert_cmpint (one->verdict, ==, CLOTH_GAP_NO_GAP);
   g_assert_cmpint (two->verdict, ==, CLOTH_GAP_NO_GAP);
+  check_null (one);
+  check_null (two);
+  g_assert_cmpuint (one->region->len, ==, 0);
+  g_assert_cmpuint (two->region->len, ==, 0);
+  g_assert_true (isnan (one->onset_s) && isnan (two->onset_s));
+  /* a faultless simulation is in its band most of the time */
+  for (guint w = 0; w < one->series.n; w++)
+    outside += one->series.before[w] < one->series.null_low[w]
+        || one->series.before[w] > one->series.null_high[w];
+  g_test_message ("%u of %u windows outside their band", outside,
+      one->series.n);
+  g_assert_cmpuint (4 * outside, <=, one->series.n);
 }
 
 /* Without a baseline no effect is made responsible for what two simulators differ by; a

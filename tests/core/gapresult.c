@@ -115,6 +115,7 @@ test_empty (void)
   where = json_object_get_object_member (root, "where");
   assert_null (where, "vertices");
   assert_null (where, "onset_s");
+  assert_null (where, "region");
   assert_null (json_object_get_object_member (where, "directions"), "warp");
   g_assert_cmpuint (json_array_get_length (json_object_get_array_member (root,
               "effects")), ==, 0);

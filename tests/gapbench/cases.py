@@ -1,9 +1,9 @@
 """Which cases the benchmark has: what acts in each, how strongly, in whose reality.
 
-A case is a dict: kind (single, pair, none, outside), effects {name: {parameter: value}},
+A case is a dict: kind (single, pair, none, outside, local), effects {name: {parameter: value}},
 scaled {name: [parameter]} (those whose size is a measure), severity, family, baseline
 (same: the same motion, other: another one), outside (name and size of what no effect of
-the library is).
+the library is). Of those of the kind local, place and time are known.
 
 SPDX-License-Identifier: LGPL-2.1-or-later
 """
@@ -35,6 +35,9 @@ PAIRS = (('air_drag', 'gravity_tilt'), ('wind', 'mass_distribution'), ('shrinkag
          ('clamp_slip', 'air_drag'), ('gravity_tilt', 'bending'), ('stretch', 'damping_mass'),
          ('clamp_delay', 'mass_distribution'), ('areal_mass', 'wind'),
          ('rest_curvature', 'air_drag_linear'), ('shear', 'clamp_slip'))
+# What acts in a known place or from a known time on; so often each.
+LOCAL = ('hem', 'slip', 'finger', 'ball')
+N_LOCAL = 8
 OUTSIDE = ('drift', 'wobble', 'clamp-shake', 'shaken-frame', 'obstacle', 'caught')
 
 
@@ -101,4 +104,26 @@ def list_all(table, random):
     for name in OUTSIDE:
         for severity in (2., 5.):
             add('outside', [], severity, name)
+    return made
+
+
+def list_local(random):
+    """Where and when is known: a heavy hem, a clamp that slips, a finger that takes hold of
+    a patch and leads it, a ball that the cloth comes to touch."""
+    made = []
+    for count in range(N_LOCAL * len(LOCAL)):
+        what, severity = LOCAL[count % len(LOCAL)], (2., 5.)[count // len(LOCAL) % 2]
+        case = {'kind': 'local', 'effects': {}, 'scaled': {}, 'severity': severity,
+                'family': list(FAMILIES)[(count + count // 3) % 3],
+                'baseline': 'other' if count // len(LOCAL) % 4 == 3 else 'same', 'outside': what}
+        way = random.normal(size=3)
+        way /= (way ** 2).sum() ** 0.5
+        if what == 'hem':
+            case['effects'] = {'mass_distribution': {'factor': 1. + severity / 2.,
+                                                     'height': random.uniform(0.03, 0.08)}}
+        elif what == 'slip':
+            case['effects'] = {'clamp_slip': dict(
+                zip('xyz', (0.005 * severity * way).tolist()), held=int(random.integers(2)),
+                time=random.uniform(0.9, 1.6))}
+        made.append(case)
     return made

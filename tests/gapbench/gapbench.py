@@ -7,7 +7,8 @@
   gapbench.py all DIR        all three
 
 What is there already is not made again, so that a run that was stopped goes on.
---few takes a handful of easy cases, --cases N that many drawn by chance instead of all;
+--few takes a handful of easy cases, --local those whose place or time is known, --cases N
+that many drawn by chance instead of all, none of the local ones;
 --seed N makes other cases (1), --tool PATH names another gst-cloth-gap-1.0 than the
 shell's.
 
@@ -47,14 +48,19 @@ def in_parallel(function, arguments):
         yield from pool.map(lambda given: function(*given), arguments)
 
 
-def generate(tool, folder, few, count, seed):
+def generate(tool, folder, few, count, seed, only_local=False):
     """Takes and commitments to folder/takes, labels to folder/sealed; all or nothing."""
     if os.path.exists(os.path.join(folder, 'sealed')):
         return
     random = numpy.random.default_rng(seed)
     listed = (cases.list_few if few else cases.list_all)(effect_table(tool), random)
-    # The number of a case says nothing about it.
-    numbers = random.permutation(len(listed)) + 1
+    # The number of a case says nothing about it, but that the last are local ones.
+    numbers = [int(number) for number in random.permutation(len(listed)) + 1]
+    if not few:
+        local = cases.list_local(numpy.random.default_rng([seed, len(listed)]))
+        numbers += range(len(listed) + 1, len(listed) + len(local) + 1)
+        listed = local if only_local else listed + local
+        numbers = numbers[-len(listed):]
     takes = os.path.join(folder, 'takes')
     shutil.rmtree(takes, ignore_errors=True)
     os.makedirs(takes)
@@ -65,7 +71,7 @@ def generate(tool, folder, few, count, seed):
         with tempfile.TemporaryDirectory(prefix='cloth-gapbench-') as scratch:
             try:
                 extra = reality.record(tool, case, path, name, scratch,
-                                       numpy.random.default_rng([seed, int(number)]))
+                                       numpy.random.default_rng([seed, number]))
             except RuntimeError as error:
                 print('%s left out, it can\'t be recorded: %s' % (name, error))
                 shutil.rmtree(path, ignore_errors=True)
@@ -134,6 +140,7 @@ def main():
     parser.add_argument('step', choices=('generate', 'diagnose', 'score', 'all'))
     parser.add_argument('folder')
     parser.add_argument('--few', action='store_true')
+    parser.add_argument('--local', action='store_true')
     parser.add_argument('--cases', type=int, default=1000)
     parser.add_argument('--seed', type=int, default=1)
     parser.add_argument('--tool', default='gst-cloth-gap-1.0')
@@ -142,7 +149,8 @@ def main():
     failed = 0
     try:
         if given.step in ('generate', 'all'):
-            generate(given.tool, given.folder, given.few, given.cases, given.seed)
+            generate(given.tool, given.folder, given.few, given.cases, given.seed,
+                     given.local)
         if given.step in ('diagnose', 'all'):
             failed = diagnose(given.tool, os.path.join(given.folder, 'takes'),
                               os.path.join(given.folder, 'gaps'))

@@ -79,11 +79,13 @@ def clamps_of(motion, random):
     return paths
 
 
-def write_take(folder, name, positions, clamps, noise=None, held=HELD, obstacles=()):
+def write_take(folder, name, positions, clamps, noise=None, held=HELD, obstacles=(), from_s=None):
     os.makedirs(folder)
     take = {'version': 1, 'name': name, 'fps': FPS,
             'grid': {'columns': COLUMNS, 'rows': ROWS, 'width_m': WIDTH, 'height_m': HEIGHT},
-            'held': [{'vertex': vertex} for vertex in held], 'obstacles': list(obstacles)}
+            'held': [dict({'vertex': vertex}, **({} if from_s is None or vertex in HELD else
+                                                 {'from_s': from_s})) for vertex in held],
+            'obstacles': list(obstacles)}
     if noise is not None:
         take['noise_sigma_m'] = noise
     with open(os.path.join(folder, 'take.json'), 'w', encoding='utf-8') as file:
@@ -92,14 +94,16 @@ def write_take(folder, name, positions, clamps, noise=None, held=HELD, obstacles
     numpy.save(os.path.join(folder, 'clamps.npy'), clamps.astype('float32'))
 
 
-def simulate(tool, model, clamps, scratch, held=HELD, obstacles=()):
-    """What the cloth does, from half a second before the recording on."""
+def simulate(tool, model, clamps, scratch, held=HELD, obstacles=(), from_s=None):
+    """What the cloth does, from half a second before the recording on; what is held besides
+    the corners is so from a time on."""
     start = numpy.full((len(clamps), ROWS * COLUMNS, 3), numpy.nan)
     v, u = numpy.divmod(numpy.arange(ROWS * COLUMNS), COLUMNS)
     start[0, :, 0] = u * WIDTH / (COLUMNS - 1)
     start[0, :, 1] = 0.
     start[0, :, 2] = -v * HEIGHT / (ROWS - 1)
-    write_take(os.path.join(scratch, 'scene'), 'scene', start, clamps, None, held, obstacles)
+    write_take(os.path.join(scratch, 'scene'), 'scene', start, clamps, None, held, obstacles,
+               from_s)
     with open(os.path.join(scratch, 'model.json'), 'w', encoding='utf-8') as file:
         json.dump(model, file)
     done = subprocess.run([tool, 'simulate', os.path.join(scratch, 'model.json'), '--scene',
@@ -168,6 +172,55 @@ def simulate_outside(tool, model, clamps, outside, size, scratch):
     return shape_outside(outside, size, simulate(tool, model, clamps, scratch), clamps)
 
 
+def touch_with_ball(tool, model, clamps, free, size, scratch, random):
+    """A ball in the way of a vertex, where it comes first at a time by chance."""
+    radius = 0.04 + 0.002 * size
+    for _ in range(200):
+        first = N_BEFORE + int(random.integers(20, 50))
+        vertex = int(random.integers(3 * COLUMNS, ROWS * COLUMNS))
+        way = free[first + 1, vertex] - free[first - 1, vertex]
+        speed = numpy.linalg.norm(way) * FPS / 2.
+        centre = free[first, vertex] + way / max(numpy.linalg.norm(way), 1e-9) * radius
+        apart = numpy.linalg.norm(free - centre, axis=2)
+        if speed > 0.1 and apart[:first].min() > radius + 1e-3:
+            ball = {'type': 'sphere', 'centre': centre.tolist(), 'radius_m': radius}
+            real = simulate(tool, model, clamps, scratch, obstacles=[ball])
+            apart = numpy.linalg.norm(real[N_BEFORE:] - centre, axis=2).min(axis=0)
+            return real, numpy.flatnonzero(apart < radius + 2e-3)
+    raise RuntimeError('the cloth is too slow to touch a ball')
+
+
+def lead_with_finger(tool, model, clamps, free, size, scratch, random):
+    """A patch that is taken hold of, and led off the way it would go."""
+    first = N_BEFORE + int(random.integers(20, 50))
+    rows, columns = random.integers(2, 5, 2)
+    row, column = random.integers(2, ROWS - rows + 1), random.integers(0, COLUMNS - columns + 1)
+    patch = ((row + numpy.arange(rows))[:, None] * COLUMNS + column +
+             numpy.arange(columns)).ravel()
+    way = random.normal(size=3) * (0.3, 1., 0.3)
+    on = numpy.clip((numpy.arange(len(clamps)) - first) / (0.2 * FPS), 0., 1.)
+    on = on ** 2 * (3. - 2. * on)
+    path = free[:, patch] + 0.003 * size * on[:, None, None] * way / numpy.linalg.norm(way)
+    real = simulate(tool, model, numpy.concatenate([clamps, path], axis=1), scratch,
+                    held=HELD + tuple(int(vertex) for vertex in patch), from_s=first / FPS)
+    return real, patch
+
+
+def act_locally(tool, model, clamps, case, free, scratch, random):
+    """The cloth with a local case, and where its force acts (None: no place of its own)."""
+    if case['outside'] == 'ball':
+        return touch_with_ball(tool, model, clamps, free, case['severity'], scratch, random)
+    if case['outside'] == 'finger':
+        return lead_with_finger(tool, model, clamps, free, case['severity'], scratch, random)
+    real = simulate(tool, model, clamps, scratch)
+    if case['outside'] == 'slip':
+        return real, None
+    # Vertices that stand for more of the hem than of what is above it.
+    height = case['effects']['mass_distribution']['height']
+    row = numpy.arange(ROWS * COLUMNS) // COLUMNS
+    return real, numpy.flatnonzero((ROWS - 1.5 - row) * HEIGHT / (ROWS - 1) < height)
+
+
 def film(folder, name, positions, clamps, random):
     """Noise and what is hidden; the stated noise is what a rig would state."""
     noise = random.uniform(3e-4, 5e-4)
@@ -196,7 +249,10 @@ def record(tool, case, folder, name, scratch, random):
     motion = choose_motion(random)
     clamps = clamps_of(motion, random)
     quiet = simulate(tool, plain, clamps, scratch)
-    if case['outside']:
+    region = None
+    if case['kind'] == 'local':
+        real, region = act_locally(tool, model, clamps, case, quiet, scratch, random)
+    elif case['outside']:
         real = simulate_outside(tool, model, clamps, case['outside'], case['severity'], scratch)
     elif case['effects']:
         real = simulate(tool, model, clamps, scratch)
@@ -208,4 +264,8 @@ def record(tool, case, folder, name, scratch, random):
     film(os.path.join(folder, 'baseline'), name + '-baseline',
          simulate(tool, plain, clamps, scratch), clamps, random)
     change = (real - quiet)[N_BEFORE:]
-    return {'size_m': float(numpy.sqrt((change ** 2).sum(axis=2).mean())), 'noise_m': noise}
+    # What begins later leaves the cloth as it was until then, to the last bit but one.
+    moved = numpy.flatnonzero(numpy.abs(change).max(axis=(1, 2)) > 1e-5)
+    return {'size_m': float(numpy.sqrt((change ** 2).sum(axis=2).mean())), 'noise_m': noise,
+            'region': None if region is None else [int(vertex) for vertex in region],
+            'onset_s': float(moved[0] / FPS) if len(moved) and moved[0] else None}

@@ -6,6 +6,7 @@ import math
 import statistics
 
 from cases import SEVERITIES
+from reality import FPS
 
 SILENT = ('no_gap', 'undecidable')
 
@@ -100,8 +101,40 @@ def median(values, form):
     return form % statistics.median(values) + ' (n = %d)' % len(values) if values else 'no case'
 
 
+def overlap(gap, label):
+    """Intersection over union of where a gap was found and where its force acts."""
+    found, truth = set(gap['where']['region'] or []), set(label['region'])
+    return len(found & truth) / len(found | truth)
+
+
+def onset_error(gap, label):
+    """In frames; endless when it was not found."""
+    onset = gap['where']['onset_s']
+    return math.inf if onset is None else abs(onset - label['onset_s']) * FPS
+
+
+def places_of(cases):
+    """Rows of where and when."""
+    local = [c for c in cases if c[0]['kind'] == 'local']
+    placed = [(g, l) for l, g in local if l['region']]
+    begun = [(g, l) for l, g in local if l['onset_s'] is not None]
+    none = [g for l, g in cases if l['kind'] == 'none']
+    rows = [('localisation IoU, median', median((overlap(*c) for c in placed), '%.2f'), '≥ 0.5'),
+            ('localisation IoU of 0.5 or more', share(overlap(*c) >= 0.5 for c in placed), '')]
+    for what in sorted({l['outside'] for _, l in placed}):
+        rows.append(('localisation IoU, median, %s' % what, median(
+            (overlap(g, l) for g, l in placed if l['outside'] == what), '%.2f'), ''))
+    return rows + [
+        ('onset error, median, frames', median((onset_error(*c) for c in begun), '%.0f'), '≤ 3'),
+        ('onset within 3 frames', share(onset_error(*c) <= 3.01 for c in begun), ''),
+        ('there from the beginning: no onset told', share(
+            g['where']['onset_s'] is None for l, g in local if l['onset_s'] is None), ''),
+        ('no gap: a place is told', share(bool(g['where']['region']) for g in none), '≤ 5%')]
+
+
 def table_of(cases, table):
     """The rows of the table: (figure, measured, to reach)."""
+    known = [c for c in cases if c[0]['kind'] != 'local']
     single = [c for c in cases if c[0]['kind'] == 'single']
     strong = [c for c in single if c[0]['severity'] >= 2.]
     pairs = [c for c in cases if c[0]['kind'] == 'pair']
@@ -165,10 +198,10 @@ def table_of(cases, table):
          median((g['shrink']['value'] for l, g in strong if named_first(g, l) and
                  accepted(g) and g['shrink']['value'] is not None), '%.2f'), ''),
         ('calibration error of the first one’s probability (ECE), all cases',
-         '%.2f' % calibration_error(list(first_ones(cases))), '≤ 0.05'),
+         '%.2f' % calibration_error(list(first_ones(known))), '≤ 0.05'),
         ('the same, only of one effect at 2× and 5×',
          '%.2f' % calibration_error(list(first_ones(strong))), '')]
-    return rows
+    return rows + places_of(cases)
 
 
 def confusion(cases):
@@ -180,7 +213,7 @@ def confusion(cases):
             if gap['effects'] else '(none tested)'
         row = counts.setdefault((label['kind'], truth), {})
         row[found] = row.get(found, 0) + 1
-    order = ('single', 'none', 'outside', 'pair')
+    order = ('single', 'none', 'outside', 'pair', 'local')
     rows = sorted(counts, key=lambda key: (order.index(key[0]), key[1]))
     columns = sorted({name for row in counts.values() for name in row})
     lines = ['columns:']
@@ -199,7 +232,8 @@ def verdicts(cases):
     groups = [('one effect at %g×' % s, lambda l, s=s: l['kind'] == 'single' and
                l['severity'] == s) for s in SEVERITIES]
     groups += [(text, lambda l, kind=kind: l['kind'] == kind) for kind, text in (
-        ('pair', 'pairs'), ('none', 'no gap'), ('outside', 'out of the library'))]
+        ('pair', 'pairs'), ('none', 'no gap'), ('outside', 'out of the library'),
+        ('local', 'in one place'))]
     for text, belongs in groups:
         here = [gap['verdict'] for label, gap in cases if belongs(label)]
         yield '| %s | ' % text + ' | '.join(str(here.count(name)) for name in names) + ' |'
@@ -214,16 +248,22 @@ def each(cases):
         first = ['%s %.2f%s' % (e['name'], e['probability'] if e['probability'] is not None
                                 else math.nan, '*' if e['accepted'] else '')
                  for e in gap['effects'][:3]]
-        yield '%s %s %s %g× %s, baseline %s, %.2f mm: %s; %s' % (
+        where = ''
+        if label['kind'] == 'local':
+            where = '; at %d of %s, %.2f; from %s of %s s' % (
+                len(gap['where']['region'] or []), len(label['region'] or []) or '-',
+                overlap(gap, label) if label['region'] else math.nan, gap['where']['onset_s'],
+                label['onset_s'])
+        yield '%s %s %s %g× %s, baseline %s, %.2f mm: %s; %s%s' % (
             label['case'], label['kind'], what or label['outside'] or '-', label['severity'],
             label['family'], label['baseline'], 1000. * label['size_m'], gap['verdict'],
-            ', '.join(first))
+            ', '.join(first), where)
 
 
 def report(labels, gaps, left, table):
     """The whole as markdown; @gaps by case, @left those that have none."""
     # In some realities an effect does nothing at all.
-    idle = [case for case in sorted(gaps) if labels[case]['effects'] and
+    idle = [case for case in sorted(gaps) if labels[case]['kind'] not in ('none', 'outside') and
             labels[case]['size_m'] == 0.]
     cases = [(labels[case], gaps[case]) for case in sorted(gaps) if case not in idle]
     seconds = [gap['seconds'] for _, gap in cases]
