@@ -71,14 +71,13 @@ find_clamps (GstClothGapRecord * record, gdouble time)
 
 gboolean
 gst_cloth_gap_record_append (GstClothGapRecord * record, gdouble time_s,
-    const GstClothMesh * mesh, GError ** error)
+    const gfloat * positions, const guint8 * states, const gfloat * covariances,
+    GError ** error)
 {
   if (record->n_held > 0)
     find_clamps (record, time_s);
   return cloth_take_writer_append (record->writer, time_s,
-      gst_cloth_mesh_get_positions (mesh, NULL),
-      gst_cloth_mesh_get_states (mesh, NULL),
-      gst_cloth_mesh_get_covariances (mesh, NULL), record->row, error);
+      positions, states, covariances, record->row, error);
 }
 
 /* Ends the take; the record can then only be freed. */

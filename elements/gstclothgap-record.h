@@ -3,8 +3,6 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include <gst/cloth/cloth.h>
-
 #include "gst/gap/diagnose.h"
 #include "gst/sim/scene.h"
 
@@ -15,7 +13,8 @@ typedef struct _GstClothGapRecord GstClothGapRecord;
 GstClothGapRecord *gst_cloth_gap_record_new (const ClothTakeInfo * info,
     const ClothScene * scene, GError ** error);
 gboolean gst_cloth_gap_record_append (GstClothGapRecord * record,
-    gdouble time_s, const GstClothMesh * mesh, GError ** error);
+    gdouble time_s, const gfloat * positions, const guint8 * states,
+    const gfloat * covariances, GError ** error);
 ClothGapResult *gst_cloth_gap_record_diagnose (GstClothGapRecord * record,
     const ClothModel * model, const ClothGapOptions * options,
     GError ** error);

@@ -16,6 +16,8 @@ enum
   PROP_0,
   PROP_MODEL,
   PROP_LOCATION,
+  PROP_RIG,
+  PROP_CAMERA,
   PROP_BASELINE,
   PROP_EFFECTS,
   PROP_OUTPUT,
@@ -36,6 +38,13 @@ static const struct
         "Location",
       "Folder of the take that gives the scene: mesh, paths of the "
         "clamps, obstacles, gravity; for a stream from a take, that take"},
+  {PROP_RIG, G_STRUCT_OFFSET (GstClothGapSettings, rig), "rig", "Rig",
+      "Calibration file (rig.json) that has the camera of the observations; by "
+        "default the one in the folder of location"},
+  {PROP_CAMERA, G_STRUCT_OFFSET (GstClothGapSettings, camera), "camera",
+        "Camera",
+      "Name in the rig of the camera of the observations; by default the one that "
+        "the metadata names, else the only one of the rig"},
   {PROP_BASELINE, G_STRUCT_OFFSET (GstClothGapSettings, baseline), "baseline",
       "Baseline", "Folder of a take the model is accepted on: its free "
         "parameters are fitted there"},

@@ -8,7 +8,8 @@
 G_BEGIN_DECLS
 
 typedef struct {
-  gchar *model, *location, *baseline, *effects, *output;        /* NULL: not given */
+  /* NULL: not given */
+  gchar *model, *location, *rig, *camera, *baseline, *effects, *output;
   guint64 seed;
   guint threads;
   gdouble window;               /* seconds */

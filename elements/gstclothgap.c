@@ -1,18 +1,27 @@
-/* clothgap: where a mesh stream departs from a simulation of the cloth, and why.
+/* clothgap: where a stream of meshes or observations departs from a simulation of the
+ * cloth, and why.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 /**
  * SECTION:element-clothgap
  * @title: clothgap
- * @short_description: holds a mesh stream against a simulation
+ * @short_description: holds a stream of meshes or observations against a simulation
  *
  * Simulates the cloth of `model` in the scene of the take `location` beside the stream,
  * drawn to the meshes by weak springs, and puts what remains, recorded minus simulated
  * position of every vertex, on each mesh as #GstClothGap. `clothoverlay` draws it.
  *
  * The stream time is the scene's: what comes before its first or after its last frame
- * passes without a gap. A frame's gap needs the three frames behind it, so the meshes
- * leave that much later.
+ * passes without a gap. A frame's gap needs the three frames behind it, so buffers leave
+ * that much later.
+ *
+ * ## Observations
+ * What one `camera` of `rig` saw lies on rays. All that is measured is across them: so
+ * are the springs, the residuals and the scores. Along them the simulation is believed,
+ * from the scene's start on, and the recording that is diagnosed at the end has the
+ * simulation's distances from the camera. What moves the cloth along the sight stays
+ * unseen; join two or more cameras by `triangulate` to see it. A recording from one camera
+ * says nothing about the camera itself.
  *
  * ## Messages
  * `clothgap/score`, for each window: `time` and `duration` (nanoseconds of stream time),
@@ -42,12 +51,11 @@
 
 #include <math.h>
 
+#include "elements/gstclothgap-inputs.h"
+#include "elements/gstclothgap-post.h"
 #include "elements/gstclothgap-record.h"
-#include "elements/gstclothgap-settings.h"
-#include "elements/gstclothsights.h"
+#include "elements/gstclothgap-view.h"
 #include "elements/gstclothutil.h"
-#include "elements/gstmeshformat.h"
-#include "gst/gap/front.h"
 #include "gst/gap/observer.h"
 
 GST_DEBUG_CATEGORY_STATIC (cloth_gap_debug);
@@ -57,11 +65,14 @@ GST_DEBUG_CATEGORY_STATIC (cloth_gap_debug);
 #define GAIN 100.0
 #define DAMPING_RATIO 0.5
 
-/* What waits for its turn: a mesh that has a gap to come, or what came between. */
+/* What waits for its turn: a frame that has a gap to come, or what came between. */
 typedef struct
 {
   GstMiniObject *object;        /* buffer or event */
   gboolean is_frame;
+  /* of a frame */
+  gdouble time;
+  guint64 sequence;
 } Waiting;
 
 struct _GstClothgap
@@ -75,29 +86,30 @@ struct _GstClothgap
   gint cancelled;               /* atomic */
 
   /* from start to stop */
-  ClothModel *model;
-  ClothTake *take, *baseline;
-  ClothSights *sights, *baseline_sights;        /* NULL: the take doesn't say */
-  gchar **effects;
-  ClothScene *scene;
+  GstClothGapInputs inputs;     /* setting them also with the object lock */
   ClothObserver *observer;
 
   /* with the stream lock; fps also with the object lock */
   GstSegment segment;
   gint fps_n, fps_d;            /* 0/1: not known */
   guint n_vertices;             /* 0: no caps yet */
+  GstClothGapView *view;        /* of observations; NULL: meshes */
   GQueue waiting;
   guint64 n_frames;             /* that came in since the beginning */
   gdouble last_time;
   gboolean new_segment, warned;
   GstClothGapRecord *record;
   gfloat *residuals, *sigmas;
+  gfloat *positions;            /* as recorded by one camera */
+  guint8 *states;
 };
 
+#define CAPS GST_CLOTH_MESH_CAPS "; " GST_CLOTH_OBSERVATIONS_CAPS
+
 static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE ("sink",
-    GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS (GST_CLOTH_MESH_CAPS));
+    GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS (CAPS));
 static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE ("src",
-    GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS (GST_CLOTH_MESH_CAPS));
+    GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS (CAPS));
 
 G_DEFINE_TYPE (GstClothgap, gst_clothgap, GST_TYPE_ELEMENT);
 GST_ELEMENT_REGISTER_DEFINE_WITH_CODE (clothgap, "clothgap", GST_RANK_NONE,
@@ -131,15 +143,23 @@ send_others (GstClothgap * self)
   return flow;
 }
 
-static GstFlowReturn
-enqueue (GstClothgap * self, gpointer object, gboolean is_frame)
+static void
+enqueue_frame (GstClothgap * self, GstBuffer * buffer, gdouble time,
+    guint64 sequence)
 {
-  Waiting *waiting = g_new (Waiting, 1);
+  const Waiting waiting =
+      { GST_MINI_OBJECT_CAST (buffer), TRUE, time, sequence };
 
-  waiting->object = object;
-  waiting->is_frame = is_frame;
-  g_queue_push_tail (&self->waiting, waiting);
-  return is_frame ? GST_FLOW_OK : send_others (self);
+  g_queue_push_tail (&self->waiting, g_memdup2 (&waiting, sizeof waiting));
+}
+
+static GstFlowReturn
+enqueue_other (GstClothgap * self, gpointer object)
+{
+  const Waiting waiting = { object };
+
+  g_queue_push_tail (&self->waiting, g_memdup2 (&waiting, sizeof waiting));
+  return send_others (self);
 }
 
 static void
@@ -168,39 +188,71 @@ post_score (GstClothgap * self, gboolean last)
 {
   ClothObserverScore score;
 
-  if (!cloth_observer_take_score (self->observer, last, &score))
-    return;
-  GST_DEBUG_OBJECT (self, "%.3f s … %.3f s: %.2f mm, %.0f%% seen",
-      score.from_s, score.to_s, 1000 * score.rms, 100 * score.coverage);
-  gst_element_post_message (GST_ELEMENT (self),
-      gst_message_new_element (GST_OBJECT (self),
-          gst_structure_new ("clothgap/score",
-              "time", G_TYPE_UINT64, (guint64) (score.from_s * 1e9 + 0.5),
-              "duration", G_TYPE_UINT64,
-              (guint64) ((score.to_s - score.from_s) * 1e9 + 0.5),
-              "rms", G_TYPE_DOUBLE, score.rms,
-              "coverage", G_TYPE_DOUBLE, score.coverage, NULL)));
+  if (cloth_observer_take_score (self->observer, last, &score))
+    gst_cloth_gap_post_score (GST_ELEMENT (self), &score);
 }
 
-/* Of a coordinate: from the mesh's covariances, else what the scene's take says. */
+/* Of a mesh's coordinates: its covariances, else what the scene's take says. */
 static void
-find_sigmas (GstClothgap * self, const GstClothMesh * mesh)
+find_sigmas (GstClothgap * self, const gfloat * c)
 {
-  const gfloat *c = gst_cloth_mesh_get_covariances (mesh, NULL);
-  gfloat noise = (gfloat) cloth_take_get_info (self->take)->noise_sigma_m;
+  gfloat noise =
+      (gfloat) cloth_take_get_info (self->inputs.take)->noise_sigma_m;
 
   for (gsize i = 0; i < self->n_vertices; i++)
     self->sigmas[i] = c ? sqrtf ((c[6 * i] + c[6 * i + 3] + c[6 * i + 5]) / 3) :
         noise;
 }
 
+static gboolean
+record_frame (GstClothgap * self, gdouble time, const gfloat * positions,
+    const guint8 * states, const gfloat * covariances)
+{
+  g_autoptr (GError) error = NULL;
+
+  if (!self->record)
+    self->record =
+        gst_cloth_gap_record_new (cloth_take_get_info (self->inputs.take),
+        self->inputs.scene, &error);
+  if (self->record
+      && gst_cloth_gap_record_append (self->record, time, positions, states,
+          covariances, &error))
+    return TRUE;
+  GST_ELEMENT_ERROR (self, RESOURCE, WRITE,
+      ("Can't keep the recording for its diagnosis: %s", error->message),
+      ("Make room in %s, or set TMPDIR to a folder that has.",
+          g_get_tmp_dir ()));
+  return FALSE;
+}
+
+static gboolean
+record_mesh (GstClothgap * self, gdouble time, GstBuffer * buffer)
+{
+  g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_from_buffer (buffer, NULL);
+  const gfloat *covariances = gst_cloth_mesh_get_covariances (mesh, NULL);
+
+  find_sigmas (self, covariances);
+  return record_frame (self, time, gst_cloth_mesh_get_positions (mesh, NULL),
+      gst_cloth_mesh_get_states (mesh, NULL), covariances);
+}
+
+/* As far away as the simulation is. */
+static gboolean
+record_rays (GstClothgap * self, gdouble time)
+{
+  cloth_observer_get_lifted (self->observer, self->positions, self->sigmas);
+  for (gsize i = 0; i < self->n_vertices; i++)
+    self->states[i] = isnan (self->positions[3 * i]) ? CLOTH_VERTEX_UNSEEN :
+        CLOTH_VERTEX_MEASURED;
+  return record_frame (self, time, self->positions, self->states, NULL);
+}
+
 static GstFlowReturn
 send_frame (GstClothgap * self)
 {
   g_autoptr (GError) error = NULL;
-  Waiting *waiting;
-  GstBuffer *buffer;
-  guint64 sequence;
+  g_autofree Waiting *waiting = NULL;
+  g_autoptr (GstBuffer) buffer = NULL;
   GstFlowReturn flow = send_others (self);
 
   if (flow != GST_FLOW_OK)
@@ -212,18 +264,15 @@ send_frame (GstClothgap * self)
   }
   waiting = g_queue_pop_head (&self->waiting);
   buffer = GST_BUFFER_CAST (waiting->object);
-  g_free (waiting);
-  {
-    g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_from_buffer (buffer, NULL);
-
-    sequence = gst_cloth_mesh_get_sequence (mesh);
-    find_sigmas (self, mesh);
-  }
+  if (!(self->view ? record_rays (self, waiting->time) :
+          record_mesh (self, waiting->time, buffer)))
+    return GST_FLOW_ERROR;
   buffer = gst_buffer_make_writable (buffer);
-  gst_buffer_add_cloth_gap_meta (buffer, gst_cloth_gap_new (sequence,
-          self->n_vertices, self->residuals, self->sigmas));
+  gst_buffer_add_cloth_gap_meta (buffer,
+      gst_cloth_gap_new (waiting->sequence, self->n_vertices, self->residuals,
+          self->sigmas));
   post_score (self, FALSE);
-  flow = gst_pad_push (self->srcpad, buffer);
+  flow = gst_pad_push (self->srcpad, g_steal_pointer (&buffer));
   return flow == GST_FLOW_OK ? send_others (self) : flow;
 }
 
@@ -257,7 +306,7 @@ find_time (GstClothgap * self, GstBuffer * buffer)
     return (gdouble) time / GST_SECOND;
   if (self->fps_n <= 0)
     return NAN;
-  return self->scene->times[0] +
+  return self->inputs.scene->times[0] +
       (gdouble) self->n_frames * self->fps_d / self->fps_n;
 }
 
@@ -265,7 +314,7 @@ find_time (GstClothgap * self, GstBuffer * buffer)
 static gboolean
 is_in_scene (const GstClothgap * self, gdouble time)
 {
-  const ClothScene *scene = self->scene;
+  const ClothScene *scene = self->inputs.scene;
   gdouble slack = 0.5 / scene->fps;
 
   return scene->held->len == 0 || scene->n_frames < 2 ||
@@ -273,51 +322,65 @@ is_in_scene (const GstClothgap * self, gdouble time)
       time < scene->times[scene->n_frames - 1] + slack);
 }
 
-/* Passes a mesh that can't be scored, and says why, once. */
+static const gchar *
+get_noun (const GstClothgap * self)
+{
+  return self->view ? "picture" : "mesh";
+}
+
+/* Passes a frame that can't be scored, and says why, once. */
 static GstFlowReturn
 let_pass (GstClothgap * self, GstBuffer * buffer, gdouble time)
 {
   GstFlowReturn flow = GST_FLOW_OK;
 
   if (!self->warned) {
-    const ClothScene *scene = self->scene;
+    const ClothScene *scene = self->inputs.scene;
 
     self->warned = TRUE;
     if (is_in_scene (self, time))
       GST_ELEMENT_WARNING (self, STREAM, FORMAT,
-          ("The mesh at %.3f s is not later than the one before, and passes "
-              "without a gap; times must rise", time), (NULL));
+          ("The %s at %.3f s is not later than the one before, and passes "
+              "without a gap; times must rise", get_noun (self), time), (NULL));
     else
       GST_ELEMENT_WARNING (self, STREAM, FORMAT,
-          ("The mesh at %.3f s lies outside the scene, which knows its clamps "
+          ("The %s at %.3f s lies outside the scene, which knows its clamps "
               "from %.3f s to %.3f s, and passes without a gap; set location= "
-              "to the take of this recording", time, scene->times[0],
-              scene->times[scene->n_frames - 1]), (NULL));
+              "to the take of this recording", get_noun (self), time,
+              scene->times[0], scene->times[scene->n_frames - 1]), (NULL));
   }
   /* Behind the scene's end none comes that those waiting could wait for. */
-  if (!is_in_scene (self, time) && time > self->scene->times[0])
+  if (!is_in_scene (self, time) && time > self->inputs.scene->times[0])
     flow = send_ready (self, 0);
   if (flow == GST_FLOW_OK)
-    return enqueue (self, buffer, FALSE);
+    return enqueue_other (self, buffer);
   gst_buffer_unref (buffer);
   return flow;
 }
 
+/* TRUE when it may be scored; else @flow says what became of the buffer. */
 static gboolean
-record_frame (GstClothgap * self, gdouble time, const GstClothMesh * mesh)
+is_next (GstClothgap * self, GstBuffer * buffer, gdouble time,
+    GstFlowReturn * flow)
 {
-  g_autoptr (GError) error = NULL;
-
-  if (!self->record)
-    self->record = gst_cloth_gap_record_new (cloth_take_get_info (self->take),
-        self->scene, &error);
-  if (self->record && gst_cloth_gap_record_append (self->record, time, mesh,
-          &error))
+  if (isnan (time)) {
+    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+        ("A %s has neither a time nor its stream a frame rate",
+            get_noun (self)),
+        ("Stamp the buffers, or give the caps a framerate."));
+    gst_buffer_unref (buffer);
+    *flow = GST_FLOW_ERROR;
+    return FALSE;
+  }
+  if (self->n_frames > 0 && time <= self->last_time && self->new_segment) {
+    GST_INFO_OBJECT (self, "back to %.3f s: a new recording", time);
+    restart (self);
+  }
+  self->new_segment = FALSE;
+  if (is_in_scene (self, time) &&
+      (self->n_frames == 0 || time > self->last_time))
     return TRUE;
-  GST_ELEMENT_ERROR (self, RESOURCE, WRITE,
-      ("Can't keep the recording for its diagnosis: %s", error->message),
-      ("Make room in %s, or set TMPDIR to a folder that has.",
-          g_get_tmp_dir ()));
+  *flow = let_pass (self, buffer, time);
   return FALSE;
 }
 
@@ -326,43 +389,38 @@ gst_clothgap_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
 {
   GstClothgap *self = GST_CLOTHGAP (parent);
   g_autoptr (GstClothMesh) mesh = NULL;
-  gdouble time;
+  const ClothRays *rays = NULL;
+  gdouble time, offset_s = 0;
+  guint64 sequence = 0;
+  GstFlowReturn flow;
 
   if (self->n_vertices == 0) {
     gst_buffer_unref (buffer);
     return GST_FLOW_NOT_NEGOTIATED;
   }
-  mesh = gst_cloth_read_mesh (GST_ELEMENT (self), buffer, self->n_vertices);
-  if (!mesh) {
+  if (self->view) {
+    rays = gst_cloth_gap_view_read (self->view, GST_ELEMENT (self), buffer,
+        &sequence, &offset_s);
+  } else {
+    mesh = gst_cloth_read_mesh (GST_ELEMENT (self), buffer, self->n_vertices);
+    sequence = mesh ? gst_cloth_mesh_get_sequence (mesh) : 0;
+  }
+  if (!mesh && !rays) {
     gst_buffer_unref (buffer);
     return GST_FLOW_ERROR;
   }
-  time = find_time (self, buffer);
-  if (isnan (time)) {
-    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
-        ("A mesh has neither a time nor its stream a frame rate"),
-        ("Stamp the buffers, or give the caps a framerate."));
-    gst_buffer_unref (buffer);
-    return GST_FLOW_ERROR;
-  }
-  if (self->n_frames > 0 && time <= self->last_time && self->new_segment) {
-    GST_INFO_OBJECT (self, "back to %.3f s: a new recording", time);
-    restart (self);
-  }
-  self->new_segment = FALSE;
-  if (!is_in_scene (self, time) ||
-      (self->n_frames > 0 && time <= self->last_time))
-    return let_pass (self, buffer, time);
-  if (!record_frame (self, time, mesh)) {
-    gst_buffer_unref (buffer);
-    return GST_FLOW_ERROR;
-  }
-  cloth_observer_push (self->observer, time,
-      gst_cloth_mesh_get_positions (mesh, NULL));
+  time = find_time (self, buffer) - offset_s;
+  if (!is_next (self, buffer, time, &flow))
+    return flow;
+  if (rays)
+    cloth_observer_push_rays (self->observer, time, rays);
+  else
+    cloth_observer_push (self->observer, time,
+        gst_cloth_mesh_get_positions (mesh, NULL));
   g_clear_pointer (&mesh, gst_cloth_mesh_unref);
   self->last_time = time;
   self->n_frames++;
-  enqueue (self, buffer, TRUE);
+  enqueue_frame (self, buffer, time, sequence);
   return send_ready (self, CLOTH_OBSERVER_LATENCY);
 }
 
@@ -377,43 +435,18 @@ go_on (gpointer data, gdouble share, const gchar * what)
   return !g_atomic_int_get (&self->cancelled);
 }
 
-static gboolean
-post_verdict (GstClothgap * self, const ClothGapResult * result,
-    GError ** error)
-{
-  const gchar *output = self->settings.output;
-  const gchar *verdict = cloth_gap_verdict_name (result->verdict);
-  g_autofree gchar *summary = cloth_gap_result_summary (result);
-  g_autofree gchar *json = cloth_gap_result_to_json (result);
-  GstStructure *structure = gst_structure_new ("clothgap/verdict",
-      "verdict", G_TYPE_STRING, verdict, "summary", G_TYPE_STRING, summary,
-      "json", G_TYPE_STRING, json, NULL);
-
-  GST_INFO_OBJECT (self, "%s: %s", verdict, summary);
-  if (output) {
-    g_autofree gchar *report = g_build_filename (output, "report.html", NULL);
-
-    if (!cloth_gap_result_write (result, output, error)) {
-      gst_structure_free (structure);
-      return FALSE;
-    }
-    gst_structure_set (structure, "report", G_TYPE_STRING, report, NULL);
-  }
-  gst_element_post_message (GST_ELEMENT (self),
-      gst_message_new_element (GST_OBJECT (self), structure));
-  return TRUE;
-}
-
+/* Of a recording by one camera the other cameras' pictures say nothing: its distances
+ * are not measured. */
 static void
 finish (GstClothgap * self)
 {
   const ClothGapOptions options = {
-    .baselines = &self->baseline,
-    .n_baselines = self->baseline ? 1 : 0,
-    .sights = &self->sights,
-    .baseline_sights = &self->baseline_sights,
+    .baselines = &self->inputs.baseline,
+    .n_baselines = self->inputs.baseline ? 1 : 0,
+    .sights = self->view ? NULL : &self->inputs.sights,
+    .baseline_sights = self->view ? NULL : &self->inputs.baseline_sights,
     .model_file = self->settings.model,
-    .effects = (const gchar * const *) self->effects,
+    .effects = (const gchar * const *) self->inputs.effects,
     .seed = self->settings.seed,
     .threads = self->settings.threads,
     .progress = go_on,
@@ -427,15 +460,20 @@ finish (GstClothgap * self)
   post_score (self, TRUE);
   if (!self->record) {
     GST_ELEMENT_ERROR (self, STREAM, FAILED,
-        ("The stream ended without a mesh to diagnose"),
-        ("No mesh came%s.", self->warned ?
+        ("The stream ended without a %s to diagnose", get_noun (self)),
+        ("No %s came%s.", get_noun (self), self->warned ?
             " whose time is the scene's; set location= to its own take" : ""));
     return;
   }
-  result = gst_cloth_gap_record_diagnose (self->record, self->model, &options,
+  if (self->view && !gst_cloth_gap_view_check_seen (self->view,
+          GST_ELEMENT (self)))
+    return;
+  result =
+      gst_cloth_gap_record_diagnose (self->record, self->inputs.model, &options,
       &error);
   g_clear_pointer (&self->record, gst_cloth_gap_record_free);
-  if (result && post_verdict (self, result, &error))
+  if (result && gst_cloth_gap_post_verdict (GST_ELEMENT (self), result,
+          self->settings.output, &error))
     return;
   if (result)
     GST_ELEMENT_ERROR (self, RESOURCE, WRITE,
@@ -448,31 +486,46 @@ finish (GstClothgap * self)
 
 /* ---- events and queries ---- */
 
+/* One recording is of meshes or of observations: their distances mean different things. */
+static gboolean
+set_kind (GstClothgap * self, gboolean observations)
+{
+  if (observations != (self->view != NULL) && self->n_frames > 0) {
+    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+        ("The stream changes from %s to %s within a recording.",
+            observations ? "meshes" : "observations",
+            observations ? "observations" : "meshes"),
+        ("Flush before the change, or give each a clothgap of its own."));
+    return FALSE;
+  }
+  if (!observations)
+    g_clear_pointer (&self->view, gst_cloth_gap_view_free);
+  else if (!self->view)
+    self->view = gst_cloth_gap_view_new (GST_ELEMENT (self), &self->settings,
+        self->inputs.scene->topology);
+  return observations == (self->view != NULL);
+}
+
 static gboolean
 set_caps (GstClothgap * self, GstCaps * caps)
 {
-  g_autoptr (GError) error = NULL;
-  g_autoptr (GstClothTopology) parsed =
-      gst_cloth_read_topology (GST_ELEMENT (self), caps);
-  g_autoptr (ClothTopology) topology = NULL;
+  GstStructure *s = gst_caps_get_structure (caps, 0);
+  gboolean observations = gst_structure_has_name (s,
+      GST_CLOTH_OBSERVATIONS_MEDIA_TYPE);
   gint fps_n = 0, fps_d = 1;
 
-  if (!parsed)
+  if (!set_kind (self, observations) || !(observations ?
+          gst_cloth_gap_view_set_caps (self->view, GST_ELEMENT (self), caps) :
+          gst_cloth_gap_inputs_check_mesh (&self->inputs, GST_ELEMENT (self),
+              caps)))
     return FALSE;
-  topology = gst_mesh_copy_topology (parsed);
-  if (!cloth_gap_check_same_cloth ("the stream", topology, "the take",
-          self->scene->topology, &error)) {
-    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
-        ("The stream is not of the scene's cloth: %s", error->message),
-        ("location=%s", self->settings.location));
-    return FALSE;
-  }
-  gst_structure_get_fraction (gst_caps_get_structure (caps, 0), "framerate",
-      &fps_n, &fps_d);
+  gst_structure_get_fraction (s, "framerate", &fps_n, &fps_d);
   if (self->n_vertices == 0) {
-    self->n_vertices = topology->n_vertices;
+    self->n_vertices = self->inputs.scene->topology->n_vertices;
     self->residuals = g_new (gfloat, 3 * (gsize) self->n_vertices);
     self->sigmas = g_new (gfloat, self->n_vertices);
+    self->positions = g_new (gfloat, 3 * (gsize) self->n_vertices);
+    self->states = g_malloc (self->n_vertices);
   }
   GST_OBJECT_LOCK (self);
   self->fps_n = fps_n;
@@ -505,7 +558,7 @@ flush (GstClothgap * self)
   g_atomic_int_set (&self->cancelled, FALSE);
 }
 
-/* What is known of the stream outlives a flush: our peer gets it with the next mesh. */
+/* What is known of the stream outlives a flush: our peer gets it with the next frame. */
 static void
 keep_sticky_events (GstClothgap * self)
 {
@@ -553,7 +606,7 @@ gst_clothgap_sink_event (GstPad * pad, GstObject * parent, GstEvent * event)
       break;
     default:
       if (GST_EVENT_IS_SERIALIZED (event))
-        return enqueue (self, event, FALSE) == GST_FLOW_OK;
+        return enqueue_other (self, event) == GST_FLOW_OK;
       break;
   }
   if (good)
@@ -576,8 +629,9 @@ gst_clothgap_src_query (GstPad * pad, GstObject * parent, GstQuery * query)
   if (self->fps_n > 0)
     own = gst_util_uint64_scale_int (CLOTH_OBSERVER_LATENCY * GST_SECOND,
         self->fps_d, self->fps_n);
-  else if (self->scene)
-    own = (GstClockTime) (CLOTH_OBSERVER_LATENCY / self->scene->fps * 1e9);
+  else if (self->inputs.scene)
+    own =
+        (GstClockTime) (CLOTH_OBSERVER_LATENCY / self->inputs.scene->fps * 1e9);
   GST_OBJECT_UNLOCK (self);
   gst_cloth_add_latency (query, own);
   return TRUE;
@@ -586,74 +640,31 @@ gst_clothgap_src_query (GstPad * pad, GstObject * parent, GstQuery * query)
 /* ---- start and stop ---- */
 
 static gboolean
-fail_start (GstClothgap * self, const gchar * property,
-    const gchar * path, const GError * error)
-{
-  GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ, ("Can't use the %s: %s",
-          property, error->message), ("%s=%s", property, path));
-  return FALSE;
-}
-
-static gboolean
-require (GstClothgap * self, const gchar * value, const gchar * name,
-    const gchar * what)
-{
-  if (value)
-    return TRUE;
-  GST_ELEMENT_ERROR (self, RESOURCE, NOT_FOUND,
-      ("No %s given: set the property “%s” to %s", name, name, what),
-      (NULL));
-  return FALSE;
-}
-
-static gboolean
-load_baseline (GstClothgap * self, GError ** error)
-{
-  if (!self->settings.baseline)
-    return TRUE;
-  self->baseline = cloth_take_open (self->settings.baseline, error);
-  return self->baseline && cloth_gap_check_same_cloth ("the baseline",
-      cloth_take_get_topology (self->baseline), "the take of location",
-      cloth_take_get_topology (self->take), error)
-      && gst_cloth_sights_load_take (self->baseline, &self->baseline_sights,
-      error);
-}
-
-static gboolean
 start (GstClothgap * self)
 {
-  const ClothObserverOptions options =
-      { GAIN, DAMPING_RATIO, self->settings.window,
-    self->settings.seed, self->settings.threads
-  };
   const GstClothGapSettings *settings = &self->settings;
+  const ClothObserverOptions options =
+      { GAIN, DAMPING_RATIO, settings->window, settings->seed,
+    settings->threads
+  };
   g_autoptr (GError) error = NULL;
-  ClothScene *scene;
+  GstClothGapInputs inputs = { NULL };
+  gboolean good = gst_cloth_gap_inputs_load (&inputs, GST_ELEMENT (self),
+      settings);
 
-  if (!require (self, settings->model, "model", "a model.json") ||
-      !require (self, settings->location, "location",
-          "the folder of a take that gives clamps and obstacles"))
-    return FALSE;
-  self->model = cloth_model_load (settings->model, &error);
-  if (!self->model)
-    return fail_start (self, "model", settings->model, error);
-  self->take = cloth_take_open (settings->location, &error);
-  scene = self->take ? cloth_scene_new_from_take (self->take, &error) : NULL;
-  if (!scene)
-    return fail_start (self, "location", settings->location, error);
   GST_OBJECT_LOCK (self);
-  self->scene = scene;
+  self->inputs = inputs;
   GST_OBJECT_UNLOCK (self);
-  if (!gst_cloth_sights_load_take (self->take, &self->sights, &error))
-    return fail_start (self, "location", settings->location, error);
-  if (!load_baseline (self, &error))
-    return fail_start (self, "baseline", settings->baseline, error);
-  self->effects = cloth_gap_effects_parse (settings->effects, &error);
-  if (error)
-    return fail_start (self, "effects", settings->effects, error);
-  self->observer = cloth_observer_new (scene, self->model, &options, &error);
-  if (!self->observer)
-    return fail_start (self, "model", settings->model, error);
+  if (!good)
+    return FALSE;
+  self->observer = cloth_observer_new (inputs.scene, inputs.model, &options,
+      &error);
+  if (!self->observer) {
+    GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ,
+        ("Can't use the model: %s", error->message),
+        ("model=%s", settings->model));
+    return FALSE;
+  }
   flush (self);
   return TRUE;
 }
@@ -661,23 +672,21 @@ start (GstClothgap * self)
 static void
 stop (GstClothgap * self)
 {
-  ClothScene *scene;
+  GstClothGapInputs inputs, none = { NULL };
 
   flush (self);
   GST_OBJECT_LOCK (self);
-  scene = g_steal_pointer (&self->scene);
+  inputs = self->inputs;
+  self->inputs = none;
   self->fps_n = 0;
   GST_OBJECT_UNLOCK (self);
+  gst_cloth_gap_inputs_clear (&inputs);
   g_clear_pointer (&self->observer, cloth_observer_free);
-  g_clear_pointer (&scene, cloth_scene_free);
-  g_clear_pointer (&self->take, cloth_take_free);
-  g_clear_pointer (&self->baseline, cloth_take_free);
-  g_clear_pointer (&self->sights, cloth_sights_free);
-  g_clear_pointer (&self->baseline_sights, cloth_sights_free);
-  g_clear_pointer (&self->model, cloth_model_free);
-  g_clear_pointer (&self->effects, g_strfreev);
+  g_clear_pointer (&self->view, gst_cloth_gap_view_free);
   g_clear_pointer (&self->residuals, g_free);
   g_clear_pointer (&self->sigmas, g_free);
+  g_clear_pointer (&self->positions, g_free);
+  g_clear_pointer (&self->states, g_free);
   self->n_vertices = 0;
 }
 
@@ -753,7 +762,7 @@ gst_clothgap_class_init (GstClothgapClass * klass)
   gst_element_class_add_static_pad_template (element_class, &src_template);
   gst_element_class_set_static_metadata (element_class, "Cloth gap",
       "Filter/Analyzer",
-      "Says where a mesh stream departs from a simulation, and why",
+      "Says where meshes or observations depart from a simulation, and why",
       "The gst-cloth developers");
 }
 

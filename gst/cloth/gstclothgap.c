@@ -20,14 +20,15 @@ G_DEFINE_BOXED_TYPE (GstClothGap, gst_cloth_gap, gst_cloth_gap_ref,
 
 /**
  * gst_cloth_gap_new: (skip)
- * @sequence: number of the frame, that of its mesh
+ * @sequence: number of the frame, that of its mesh, or of the picture of one camera
  * @n_vertices: vertices, 1 to #GST_CLOTH_MAX_VERTICES
  * @residuals: 3·@n_vertices floats: recorded minus simulated position of each vertex,
  *   metres, world frame; NaN where it was not seen; copied
  * @sigmas: (nullable): @n_vertices floats: standard deviation of a coordinate of the
  *   recorded position, metres; NaN where not known; copied
  *
- * How far a mesh is from what a simulation makes of it. A vertex is known in full or not
+ * How far a mesh is from what a simulation makes of it; of a picture of one camera, what
+ * of that lies across the sight, where its deviation counts, too. A vertex is known in full or not
  * at all: where a coordinate isn't finite, the copy's three are NaN. A standard
  * deviation that isn't finite or is below 0 becomes NaN.
  *

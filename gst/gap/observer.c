@@ -24,6 +24,8 @@ typedef struct
 {
   gdouble time;
   gdouble *positions;           /* 3 a vertex, NaN when not seen */
+  ClothRays *rays;              /* they lie on; unless has_rays, of an older frame */
+  gboolean has_rays;
 } Frame;
 
 struct _ClothObserver
@@ -31,6 +33,8 @@ struct _ClothObserver
   ClothObserverOptions options;
   guint n;
   ClothSim *sim;
+  ClothSim *forecast;           /* without springs: only for frames of rays */
+  gdouble *scene_start;
   ClothHold *hold;
   guint64 n_pushed, n_popped;
   Frame ring[WINDOW];           /* frame i at i % WINDOW */
@@ -38,6 +42,7 @@ struct _ClothObserver
   gdouble *velocity[2];
   gdouble *weights;             /* all 1 */
   gdouble *state, *free_state, *speeds;
+  gdouble *ahead, *ahead_speeds, *reference;    /* where rays' vertices may be */
   gfloat *start;
   /* which frames of the window saw a vertex → their weights in its derivative */
   gdouble table[MASKS][WINDOW];
@@ -60,6 +65,9 @@ struct _ClothObserver
  * x″ = M⁻¹F(x, x′) + g·m·(y − x) + 2ζ√g·m·(y′ − x′), m whether a vertex is seen. It starts
  * with the first frame that is pushed. The observer keeps nothing of @scene and @model.
  *
+ * Frames of rays draw it across them only. Along them y is where the simulation would be
+ * without springs, and y′ how fast; in the first frame, where the scene starts, at rest.
+ *
  * Returns: (transfer full): an observer, or %NULL
  * Since: 0.1
  */
@@ -71,20 +79,30 @@ cloth_observer_new (const ClothScene * scene, const ClothModel * model,
     CLOTH_SIMD_BEST, options->seed
   };
   const ClothModel *models[2] = { model, model };
-  ClothSim *sim = cloth_sim_new (scene, models, 2, &sim_options, error);
+  g_autoptr (ClothSim) sim = cloth_sim_new (scene, models, 2, &sim_options,
+      error);
+  ClothSim *forecast = sim ? cloth_sim_new (scene, models, 1, &sim_options,
+      error) : NULL;
   ClothObserver *self;
   gsize n;
 
-  if (!sim)
+  if (!forecast)
     return NULL;
   self = g_new0 (ClothObserver, 1);
   self->options = *options;
-  self->sim = sim;
+  self->sim = g_steal_pointer (&sim);
+  self->forecast = forecast;
   self->n = scene->topology->n_vertices;
   self->hold = cloth_hold_new (scene->topology);
   n = 3 * (gsize) self->n;
-  for (guint i = 0; i < WINDOW; i++)
+  for (guint i = 0; i < WINDOW; i++) {
     self->ring[i].positions = g_new (gdouble, n);
+    self->ring[i].rays = cloth_rays_new (self->n);
+  }
+  self->scene_start = g_memdup2 (scene->positions, n * sizeof (gdouble));
+  self->ahead = g_new (gdouble, n);
+  self->ahead_speeds = g_new (gdouble, n);
+  self->reference = g_new (gdouble, n);
   for (guint i = 0; i < 2; i++)
     self->velocity[i] = g_new (gdouble, n);
   self->state = g_new (gdouble, n);
@@ -130,8 +148,31 @@ cloth_observer_push (ClothObserver * observer, gdouble time_s,
   Frame *frame = &observer->ring[observer->n_pushed++ % WINDOW];
 
   frame->time = time_s;
+  frame->has_rays = FALSE;
   for (gsize i = 0; i < 3 * (gsize) observer->n; i++)
     frame->positions[i] = positions[i];
+}
+
+/**
+ * cloth_observer_push_rays:
+ * @observer: an observer that has not more than %CLOTH_OBSERVER_LATENCY frames waiting,
+ *   all of rays
+ * @time_s: of the frame, seconds of the scene, later than the last one's
+ * @rays: what one camera saw
+ *
+ * Gives it a frame of which only the places across the rays are known.
+ *
+ * Since: 0.1
+ */
+void
+cloth_observer_push_rays (ClothObserver * observer, gdouble time_s,
+    const ClothRays * rays)
+{
+  Frame *frame = &observer->ring[observer->n_pushed++ % WINDOW];
+
+  frame->time = time_s;
+  frame->has_rays = TRUE;
+  cloth_rays_copy (frame->rays, rays);
 }
 
 /**
@@ -189,6 +230,59 @@ find_velocities (ClothObserver * self, gdouble * velocity)
   }
 }
 
+/* Where the cloth would be at the frame that is popped if nothing drew it. */
+static void
+look_ahead (ClothObserver * self, gdouble time)
+{
+  const gsize n = 3 * (gsize) self->n;
+  gdouble last, dt;
+
+  if (self->n_popped == 0) {
+    memcpy (self->ahead, self->scene_start, n * sizeof *self->ahead);
+    memset (self->ahead_speeds, 0, n * sizeof *self->ahead_speeds);
+    return;
+  }
+  last = self->ring[(self->n_popped - 1) % WINDOW].time;
+  dt = time - last;
+  cloth_sim_get_velocities (self->sim, NUDGED, self->speeds);
+  cloth_sim_set_state (self->forecast, 0, self->state, self->speeds, last);
+  cloth_sim_advance (self->forecast, time);
+  cloth_sim_get_positions (self->forecast, 0, self->ahead);
+  cloth_sim_get_velocities (self->forecast, 0, self->ahead_speeds);
+  /* Targets move on straight lines. Here such a line has the mean of a parabola. */
+  for (gsize i = 0; i < n; i++)
+    self->ahead[i] -= (self->ahead_speeds[i] - self->speeds[i]) * dt / 6;
+}
+
+/* Lifts this frame and those behind it to where the simulation goes. */
+static void
+lift_waiting (ClothObserver * self, gdouble at)
+{
+  for (guint64 i = self->n_popped; i < self->n_pushed; i++) {
+    Frame *frame = &self->ring[i % WINDOW];
+    gdouble dt = frame->time - at;
+
+    for (gsize k = 0; k < 3 * (gsize) self->n; k++)
+      self->reference[k] = self->ahead[k] + dt * self->ahead_speeds[k];
+    cloth_rays_lift (frame->rays, self->reference, frame->positions);
+  }
+}
+
+/* Along the rays nothing was seen to move: there the speeds are the simulation's. */
+static void
+take_speeds_along (const ClothObserver * self, const ClothRays * rays,
+    const gdouble * speeds, gdouble * velocity)
+{
+  for (guint v = 0; v < self->n; v++) {
+    gdouble *at = velocity + 3 * (gsize) v, across[3];
+    gdouble along = cloth_rays_split (rays, v, speeds + 3 * (gsize) v, across);
+
+    cloth_rays_split (rays, v, at, at);
+    for (guint k = 0; k < 3; k++)
+      at[k] += along * rays->directions[3 * (gsize) v + k];
+  }
+}
+
 /* Both copies where the first frame saw the cloth. */
 static void
 begin (ClothObserver * self, const Frame * frame, const gdouble * velocity)
@@ -197,7 +291,8 @@ begin (ClothObserver * self, const Frame * frame, const gdouble * velocity)
   const gfloat *filled;
 
   for (gsize i = 0; i < n; i++) {
-    self->start[i] = (gfloat) frame->positions[i];
+    self->start[i] = (gfloat) (frame->has_rays && isnan (frame->positions[i]) ?
+        self->scene_start[i] : frame->positions[i]);
     self->speeds[i] = isfinite (velocity[i]) ? velocity[i] : 0;
   }
   filled = cloth_hold_apply (self->hold, self->start);
@@ -251,11 +346,13 @@ add_to_window (ClothObserver * self, const Frame * frame)
 {
   cloth_sim_get_positions (self->sim, FREE, self->free_state);
   for (gsize v = 0; v < self->n; v++) {
-    gdouble square = 0;
+    gdouble away[3], square;
 
-    for (gsize k = 3 * v; k < 3 * v + 3; k++)
-      square += (frame->positions[k] - self->free_state[k]) *
-          (frame->positions[k] - self->free_state[k]);
+    for (guint k = 0; k < 3; k++)
+      away[k] = frame->positions[3 * v + k] - self->free_state[3 * v + k];
+    if (frame->has_rays)
+      cloth_rays_split (frame->rays, (guint) v, away, away);
+    square = away[0] * away[0] + away[1] * away[1] + away[2] * away[2];
     if (isfinite (square)) {
       self->sum += square;
       self->n_seen++;
@@ -269,7 +366,7 @@ add_to_window (ClothObserver * self, const Frame * frame)
  * cloth_observer_pop:
  * @observer: an observer that has a frame waiting
  * @residuals: (out caller-allocates): recorded minus simulated, 3 numbers a vertex,
- *   metres; NaN when not seen
+ *   metres; NaN when not seen. Of rays: what is across them
  * @error: #ClothSimError when the simulation blew up
  *
  * Goes on by one frame. The first frame's residual is 0 where it was seen.
@@ -283,11 +380,17 @@ cloth_observer_pop (ClothObserver * observer, gfloat * residuals,
     GError ** error)
 {
   ClothObserver *self = observer;
-  const Frame *frame = &self->ring[self->n_popped % WINDOW];
+  Frame *frame = &self->ring[self->n_popped % WINDOW];
   gdouble *velocity = self->velocity[self->n_popped % 2];
   gdouble gain = self->options.gain;
 
+  if (frame->has_rays) {
+    look_ahead (self, frame->time);
+    lift_waiting (self, frame->time);
+  }
   find_velocities (self, velocity);
+  if (frame->has_rays)
+    take_speeds_along (self, frame->rays, self->ahead_speeds, velocity);
   if (self->n_popped == 0) {
     begin (self, frame, velocity);
   } else {
@@ -301,6 +404,8 @@ cloth_observer_pop (ClothObserver * observer, gfloat * residuals,
     if (!check_state (self, error))
       return FALSE;
     cloth_sim_get_positions (self->sim, NUDGED, self->state);
+    if (frame->has_rays)
+      cloth_rays_lift (frame->rays, self->state, frame->positions);
     add_to_window (self, frame);
   }
   for (gsize i = 0; i < 3 * (gsize) self->n; i++)
@@ -314,6 +419,31 @@ cloth_observer_pop (ClothObserver * observer, gfloat * residuals,
   }
   self->n_popped++;
   return TRUE;
+}
+
+/**
+ * cloth_observer_get_lifted:
+ * @observer: an observer that has popped a frame of rays, and got none since
+ * @positions: (out caller-allocates): where that frame has its vertices: on their rays,
+ *   as far away as the simulation is; 3 numbers a vertex, metres, NaN when not seen
+ * @sigmas: (out caller-allocates): standard deviation of each across its ray, metres
+ *
+ * Since: 0.1
+ */
+void
+cloth_observer_get_lifted (const ClothObserver * observer, gfloat * positions,
+    gfloat * sigmas)
+{
+  const Frame *frame = &observer->ring[(observer->n_popped - 1) % WINDOW];
+  const gdouble *p = frame->positions, *c = frame->rays->centre;
+
+  for (guint i = 0; i < observer->n; i++, p += 3) {
+    for (guint k = 0; k < 3; k++)
+      positions[3 * (gsize) i + k] = (gfloat) p[k];
+    sigmas[i] = (gfloat) (frame->rays->spreads[i] *
+        sqrt ((p[0] - c[0]) * (p[0] - c[0]) + (p[1] - c[1]) * (p[1] - c[1]) +
+            (p[2] - c[2]) * (p[2] - c[2])));
+  }
 }
 
 /**
@@ -355,8 +485,10 @@ cloth_observer_free (ClothObserver * observer)
 {
   if (!observer)
     return;
-  for (guint i = 0; i < WINDOW; i++)
+  for (guint i = 0; i < WINDOW; i++) {
     g_free (observer->ring[i].positions);
+    cloth_rays_free (observer->ring[i].rays);
+  }
   for (guint i = 0; i < 2; i++)
     g_free (observer->velocity[i]);
   g_free (observer->state);
@@ -364,7 +496,12 @@ cloth_observer_free (ClothObserver * observer)
   g_free (observer->speeds);
   g_free (observer->start);
   g_free (observer->weights);
+  g_free (observer->scene_start);
+  g_free (observer->ahead);
+  g_free (observer->ahead_speeds);
+  g_free (observer->reference);
   cloth_hold_free (observer->hold);
   cloth_sim_free (observer->sim);
+  cloth_sim_free (observer->forecast);
   g_free (observer);
 }

@@ -4,6 +4,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
+#include "gst/gap/rays.h"
 #include "gst/sim/model.h"
 #include "gst/sim/scene.h"
 
@@ -37,7 +38,7 @@ typedef struct {
  * @from_s: when the window begins, seconds
  * @to_s: time of its last frame
  * @rms: distance of recorded and simulated, RMS over what was seen, metres; NaN when
- *   nothing was
+ *   nothing was. Of rays it is that across them
  * @coverage: share of the vertices that were seen
  *
  * The gap of one window: the simulation starts where the springs have brought it and
@@ -58,9 +59,13 @@ ClothObserver *cloth_observer_new (const ClothScene * scene,
 void cloth_observer_restart (ClothObserver * observer);
 void cloth_observer_push (ClothObserver * observer, gdouble time_s,
     const gfloat * positions);
+void cloth_observer_push_rays (ClothObserver * observer, gdouble time_s,
+    const ClothRays * rays);
 guint cloth_observer_get_n_waiting (const ClothObserver * observer);
 gboolean cloth_observer_pop (ClothObserver * observer, gfloat * residuals,
     GError ** error);
+void cloth_observer_get_lifted (const ClothObserver * observer,
+    gfloat * positions, gfloat * sigmas);
 gboolean cloth_observer_take_score (ClothObserver * observer, gboolean last,
     ClothObserverScore * score);
 void cloth_observer_free (ClothObserver * observer);

@@ -1,0 +1,715 @@
+/* clothgap on what one camera saw: residuals across the sight against closed forms, what
+ * stays unseen along it, which camera it is, refusals.
+ *
+ * Both cameras are 100 m away from where the sheet starts, so that sights are nearly
+ * parallel and 1 px is 1 cm: "front" looks along y, "above" along −z.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "clothgapbench.h"
+#include "gst/math/random.h"
+
+#define FOCAL 10000.
+#define DISTANCE 100.
+#define SIZE 1000
+#define CENTRE 500.
+#define X0 0.15
+#define Y0 0.1
+#define Z0 4.4
+#define SIGMA_PX 0.04
+
+#define CAMERA(name, R, t, more) "{\"name\": \"" name "\", \"size\": [1000, 1000], " \
+    "\"K\": [[10000, 0, 500], [0, 10000, 500], [0, 0, 1]], \"distortion\": " \
+    "{\"model\": \"none\", \"coefficients\": []}, \"R\": " R ", \"t\": " t more "}"
+#define FRONT(name, more) CAMERA (name, "[[1, 0, 0], [0, 0, -1], [0, 1, 0]]", \
+    "[-0.15, 4.4, 100]", more)
+#define ABOVE CAMERA ("above", "[[1, 0, 0], [0, -1, 0], [0, 0, -1]]", \
+    "[-0.15, 0.1, 105]", "")
+#define RIG(cameras) "{\"version\": 1, \"cameras\": [" cameras "]}"
+
+static void
+put_file (const gchar * name, const gchar * text)
+{
+  g_autofree gchar *path = in_folder (name);
+
+  g_assert_true (g_file_set_contents (path, text, -1, NULL));
+}
+
+static void
+make_rigs (void)
+{
+  put_take ("seen", COLUMNS, ROWS, FALSE);
+  put_file ("seen/rig.json", RIG (FRONT ("front", "") ", " ABOVE));
+  put_file ("one.json", RIG (FRONT ("only", "")));
+  put_file ("late.json", RIG (FRONT ("front", ", \"offset_s\": 0.01")));
+  put_file ("broken.json", "{");
+}
+
+/* The pinhole's own formula. */
+static void
+project (const gfloat place[3], gboolean above, gfloat px[2])
+{
+  gdouble x = place[0] - X0, y = place[1] - Y0, z = place[2];
+
+  px[0] = (gfloat) (CENTRE + FOCAL * x / (above ? DISTANCE + 5 - z :
+          DISTANCE + place[1]));
+  px[1] = (gfloat) (CENTRE - FOCAL * (above ? y / (DISTANCE + 5 - z) :
+          (z - Z0) / (DISTANCE + place[1])));
+}
+
+typedef struct
+{
+  gboolean above, dots;
+  const gchar *name;            /* in the metas */
+  gdouble acceleration;
+  gdouble shift;                /* across, m, from frame 60 on */
+  ClothRandom *noise;
+  gint missing;
+  guint columns;                /* of the pattern's vertices; 0: as the cloth */
+} Look;
+
+static const Look front = {.dots = TRUE,.name = "front",.acceleration =
+      ACCELERATION,.missing = -1
+};
+
+static void
+add_dots (GstBuffer * picture, const Look * look, guint frame,
+    gfloat (*px)[2], guint columns)
+{
+  GstClothDot dots[N] = { {0} };
+  const gfloat variance = (gfloat) (SIGMA_PX * SIGMA_PX);
+
+  for (guint i = 0; i < N; i++) {
+    dots[i].column = (gint) (i % COLUMNS);
+    dots[i].row = (gint) (i / COLUMNS);
+    dots[i].x = px[i][0];
+    dots[i].y = px[i][1];
+    dots[i].cov_xx = dots[i].cov_yy = variance;
+    dots[i].touches = (gint) i == look->missing;
+  }
+  gst_buffer_add_cloth_dots_meta (picture, gst_cloth_dots_new (look->name,
+          frame, columns, ROWS, 4, dots, N));
+}
+
+static void
+add_quads (GstBuffer * picture, const Look * look, guint frame,
+    gfloat (*px)[2], guint columns)
+{
+  GstClothQuad quads[(COLUMNS - 1) * (ROWS - 1)] = { {0} };
+  guint n = 0;
+
+  for (guint row = 0; row + 1 < ROWS; row++)
+    for (guint column = 0; column + 1 < COLUMNS; column++, n++) {
+      const guint first = row * COLUMNS + column;
+      const guint corners[4] = { first, first + 1, first + COLUMNS + 1,
+        first + COLUMNS
+      };
+
+      quads[n].column = (gint) column;
+      quads[n].row = (gint) row;
+      quads[n].confidence = 1;
+      for (guint c = 0; c < 4; c++) {
+        quads[n].x[c] = px[corners[c]][0];
+        quads[n].y[c] = px[corners[c]][1];
+        quads[n].cov_xx[c] = quads[n].cov_yy[c] =
+            (gfloat) (SIGMA_PX * SIGMA_PX);
+      }
+    }
+  gst_buffer_add_cloth_quads_meta (picture, gst_cloth_quads_new (look->name,
+          frame, columns - 1, ROWS - 1, quads, n));
+}
+
+static GstBuffer *
+see (const Look * look, guint frame)
+{
+  g_autoptr (GstBuffer) picture = gst_buffer_new ();
+  GstBuffer *observation;
+  gfloat places[3 * N], px[N][2];
+  guint columns = look->columns ? look->columns : COLUMNS;
+
+  find_places (frame, look->acceleration, places);
+  for (guint i = 0; i < N; i++) {
+    places[3 * i] += frame >= 60 ? (gfloat) look->shift : 0;
+    project (places + 3 * i, look->above, px[i]);
+    for (guint k = 0; k < 2 && look->noise; k++)
+      px[i][k] += (gfloat) (SIGMA_PX * cloth_random_gaussian (look->noise));
+  }
+  if (look->dots)
+    add_dots (picture, look, frame, px, columns);
+  else
+    add_quads (picture, look, frame, px, columns);
+  observation = gst_cloth_observations_pack (picture);
+  GST_BUFFER_PTS (observation) = gst_util_uint64_scale (frame, GST_SECOND, FPS);
+  GST_BUFFER_DURATION (observation) = GST_SECOND / FPS;
+  return observation;
+}
+
+static GstCaps *
+make_camera_caps (gint size, gint fps)
+{
+  return gst_caps_new_simple (GST_CLOTH_OBSERVATIONS_MEDIA_TYPE, "version",
+      G_TYPE_INT, 1, "width", G_TYPE_INT, size, "height", G_TYPE_INT, size,
+      "framerate", GST_TYPE_FRACTION, fps, 1, NULL);
+}
+
+/* @rig: a file of this test, or NULL: the one in the take's folder */
+static Setup
+set_up_camera (const gchar * take, const gchar * rig, const gchar * more)
+{
+  g_autofree gchar *text = g_strdup_printf ("%s%s%s %s", rig ? "rig=" : "",
+      rig ? folder : "", rig ? rig : "", more);
+  Setup setup = set_up ("/model.json", take, text);
+
+  gst_harness_set_src_caps (setup.h, make_camera_caps (SIZE, FPS));
+  return setup;
+}
+
+static void
+push_seen (Setup * setup, const Look * look, guint from, guint to)
+{
+  for (guint frame = from; frame < to; frame++)
+    fail_unless_equals_int (gst_harness_push (setup->h, see (look, frame)),
+        GST_FLOW_OK);
+}
+
+static void
+end (Setup * setup)
+{
+  gst_harness_push_event (setup->h, gst_event_new_eos ());
+}
+
+/* RMS of the next window's score, and how much of the cloth was seen; NaN: there is none */
+static gdouble
+next_score (Setup * setup, gdouble * coverage)
+{
+  g_autoptr (GstMessage) message = find_message (setup, GST_MESSAGE_ELEMENT,
+      "clothgap/score");
+  gdouble rms = NAN;
+
+  if (message)
+    fail_unless (gst_structure_get (gst_message_get_structure (message), "rms",
+            G_TYPE_DOUBLE, &rms, "coverage", G_TYPE_DOUBLE, coverage, NULL));
+  return rms;
+}
+
+/* ---- positive ---- */
+
+/* The closed form of clothgapbench.h, by dots or by squares: from the front the fall is
+ * across the sight. In the first window the distance of what falls freely is a·t²/2. */
+GST_START_TEST (test_across)
+{
+  const Look looks[] = { front, {.name = "",.acceleration = ACCELERATION,
+      .missing = -1}
+  };
+  Look look = looks[__i__];
+  Setup setup = set_up_camera ("/seen", NULL, __i__ ? "camera=front" : "");
+  gdouble worst = 0, want = 0, coverage, rms;
+
+  for (guint frame = 0; frame < N_FRAMES; frame++) {
+    push_seen (&setup, &look, frame, frame + 1);
+    fail_unless_equals_int (gst_harness_buffers_received (setup.h),
+        frame < LATENCY ? 0 : frame - LATENCY + 1);
+  }
+  end (&setup);
+  fail_unless_equals_int (gst_harness_buffers_received (setup.h), N_FRAMES);
+  for (guint frame = 0; frame < N_FRAMES; frame++) {
+    GstBuffer *buffer = gst_harness_pull (setup.h);
+    GstClothGap *gap = gst_buffer_get_cloth_gap (buffer);
+    gdouble e = oscillator ((gdouble) frame / FPS);
+
+    fail_unless_equals_uint64 (gst_cloth_gap_get_sequence (gap), frame);
+    worst = MAX (worst, fabs (mean_residual (buffer, 2) - e));
+    fail_unless (fabs (mean_residual (buffer, 0)) < 1e-5);
+    /* sights are tilted by up to 6% */
+    fail_unless (fabs (mean_residual (buffer, 1)) < 0.06 * 0.02);
+    /* a pixel is 1 cm */
+    fail_unless (fabs (gst_cloth_gap_get_sigmas (gap, NULL)[5] -
+            SIGMA_PX * 0.01) < 1e-6 + 0.005 * SIGMA_PX * 0.01);
+    gst_buffer_unref (buffer);
+  }
+  fail_unless (worst < 0.0003, "%.3f mm from the closed form", 1000 * worst);
+  for (guint i = 1; i <= PER_WINDOW; i++)
+    want += pow (0.5 * ACCELERATION * i * i / FPS / FPS, 4. / 2) / PER_WINDOW;
+  want = sqrt (want);
+  rms = next_score (&setup, &coverage);
+  fail_unless (fabs (rms - want) < 0.03 * want, "%.2f mm, not %.2f",
+      1000 * rms, 1000 * want);
+  fail_unless_equals_float (coverage, 1);
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+/* From above the same fall is along the sight: it shows only in perspective, by 0.18 m of
+ * 100 m on 0.15 m after 0.6 s. */
+GST_START_TEST (test_along)
+{
+  const Look look = {.above = TRUE,.name = "above",.acceleration = ACCELERATION,
+    .missing = -1
+  };
+  Setup setup = set_up_camera ("/seen", NULL, "");
+  gdouble coverage, rms;
+  guint n = 0;
+
+  push_seen (&setup, &look, 0, 124);
+  for (guint frame = 0; frame < 121; frame++) {
+    GstBuffer *buffer = gst_harness_pull (setup.h);
+    const gfloat *r =
+        gst_cloth_gap_get_residuals (gst_buffer_get_cloth_gap (buffer), NULL);
+
+    for (guint i = 0; i < 3 * N; i++)
+      fail_unless (fabsf (r[i]) < 0.0004f, "%.3f mm", 1000. * r[i]);
+    gst_buffer_unref (buffer);
+  }
+  while (!isnan (rms = next_score (&setup, &coverage))) {
+    fail_unless (rms < 0.0005, "%.3f mm", 1000 * rms);
+    n++;
+  }
+  fail_unless_equals_int (n, 2);
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+/* Without gap residuals are the pixels' noise, in two directions, and the verdict is that.
+ * The first frames' speeds are as noisy, which takes half a second to settle. */
+GST_START_TEST (test_noise)
+{
+  ClothRandom random;
+  Look look = front;
+  Setup setup = set_up_camera ("/seen", NULL, "");
+  g_autoptr (GstMessage) message = NULL;
+  gdouble sum = 0;
+
+  cloth_random_init (&random, 1);
+  look.noise = &random;
+  look.acceleration = 0;
+  push_seen (&setup, &look, 0, N_FRAMES);
+  end (&setup);
+  for (guint frame = 0; frame < N_FRAMES; frame++) {
+    GstBuffer *buffer = gst_harness_pull (setup.h);
+    const gfloat *r =
+        gst_cloth_gap_get_residuals (gst_buffer_get_cloth_gap (buffer), NULL);
+
+    for (guint i = 0; frame >= N_FRAMES / 2 && i < 3 * N; i++)
+      sum += r[i] * r[i] / (N_FRAMES / 2) / N;
+    gst_buffer_unref (buffer);
+  }
+  sum = sqrt (sum / 2) / 0.01 / SIGMA_PX;
+  GST_INFO ("residuals are %.3f times the noise", sum);
+  fail_unless (sum > 0.9 && sum < 1.1, "residuals are %.3f times the noise",
+      sum);
+  message = find_message (&setup, GST_MESSAGE_ELEMENT, "clothgap/verdict");
+  fail_unless (message != NULL);
+  fail_unless_equals_string (gst_structure_get_string
+      (gst_message_get_structure (message), "verdict"), "no_gap");
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+/* A jump aside is as large as it is in the frame in which it comes, but for what the
+ * springs do in that frame. */
+GST_START_TEST (test_jump)
+{
+  Look look = front;
+  Setup setup = set_up_camera ("/seen", NULL, "");
+
+  look.acceleration = 0;
+  look.shift = 0.03;
+  push_seen (&setup, &look, 0, 64);
+  for (guint frame = 0; frame < 61; frame++) {
+    GstBuffer *buffer = gst_harness_pull (setup.h);
+    gdouble want = frame < 57 ? 0 : 0.03;
+
+    /* three frames before it the velocities know of it already */
+    if (frame < 57 || frame == 60)
+      fail_unless (fabs (mean_residual (buffer, 0) - want) < 0.1 * 0.03,
+          "frame %u: %.2f mm", frame, 1000 * mean_residual (buffer, 0));
+    gst_buffer_unref (buffer);
+  }
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+/* The observations leave as they came. */
+GST_START_TEST (test_same_bytes)
+{
+  Setup setup = set_up_camera ("/seen", NULL, "");
+
+  push_seen (&setup, &front, 0, 5);
+  for (guint frame = 0; frame < 2; frame++) {
+    GstBuffer *out = gst_harness_pull (setup.h), *in = see (&front, frame);
+    GstMapInfo map;
+
+    gst_buffer_map (in, &map, GST_MAP_READ);
+    fail_unless_equals_int (gst_buffer_get_size (out), map.size);
+    fail_unless_equals_int (gst_buffer_memcmp (out, 0, map.data, map.size), 0);
+    fail_unless_equals_uint64 (GST_BUFFER_PTS (out), GST_BUFFER_PTS (in));
+    gst_buffer_unmap (in, &map);
+    gst_buffer_unref (in);
+    gst_buffer_unref (out);
+  }
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+/* A dot that is not seen, and pictures that show nothing, from the first on. */
+GST_START_TEST (test_missing)
+{
+  Setup setup = set_up_camera ("/seen", NULL, "");
+  Look look = front;
+  gdouble coverage;
+
+  look.missing = 6;
+  for (guint frame = 0; frame < 65; frame++) {
+    if (frame == 0 || frame == 30) {
+      g_autoptr (GstBuffer) nothing = gst_buffer_new ();
+      GstBuffer *observation = gst_cloth_observations_pack (nothing);
+
+      GST_BUFFER_PTS (observation) = frame * GST_SECOND / FPS;
+      fail_unless_equals_int (gst_harness_push (setup.h, observation),
+          GST_FLOW_OK);
+    } else {
+      push_seen (&setup, frame < 20 ? &look : &front, frame, frame + 1);
+    }
+  }
+  for (guint frame = 0; frame < 62; frame++) {
+    GstBuffer *buffer = gst_harness_pull (setup.h);
+    const gfloat *r =
+        gst_cloth_gap_get_residuals (gst_buffer_get_cloth_gap (buffer), NULL);
+    gboolean dark = frame == 0 || frame == 30;
+
+    fail_unless_equals_int (isnan (r[18]), dark || frame < 20);
+    fail_unless_equals_int (isnan (r[0]), dark);
+    fail_unless_equals_uint64 (gst_cloth_gap_get_sequence
+        (gst_buffer_get_cloth_gap (buffer)), frame);
+    gst_buffer_unref (buffer);
+  }
+  next_score (&setup, &coverage);
+  /* of the window's 60 frames one was dark, and 19 lacked one of 12 vertices */
+  fail_unless (fabs (coverage - (1 - (1 + 19. / N) / PER_WINDOW)) < 1e-9, "%g",
+      coverage);
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+/* The property counts, then the metas' name, then that there is only one camera; the rig
+ * is the property's, then that of the folder. */
+GST_START_TEST (test_which_camera)
+{
+  static const struct
+  {
+    const gchar *take, *rig, *more, *name;
+  } cases[] = {
+    {"/seen", NULL, "", "front"},
+    {"/seen", NULL, "camera=front", ""},
+    {"/seen", NULL, "camera=front", "above"},
+    {"/take", "/one.json", "", ""},
+    {"/take", "/one.json", "", "only"},
+    {"/seen", "/one.json", "", ""},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    Setup setup = set_up_camera (cases[i].take, cases[i].rig, cases[i].more);
+    Look look = front;
+
+    look.name = cases[i].name;
+    push_seen (&setup, &look, 0, 5);
+    expect_meshes (&setup, 2, 2);
+    fail_unless (find_message (&setup, GST_MESSAGE_ERROR, NULL) == NULL);
+    tear_down (&setup);
+  }
+}
+
+GST_END_TEST;
+
+/* A camera that is 2 frames late shows what was 2 frames before. */
+GST_START_TEST (test_offset)
+{
+  Setup setup = set_up_camera ("/seen", "/late.json", "");
+  g_autoptr (GstMessage) message = NULL;
+  guint64 time;
+
+  push_seen (&setup, &front, 2, 70);
+  message = find_message (&setup, GST_MESSAGE_ELEMENT, "clothgap/score");
+  fail_unless (gst_structure_get_uint64 (gst_message_get_structure (message),
+          "time", &time));
+  fail_unless_equals_uint64 (time, 0);
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_latency)
+{
+  Setup setup = set_up_camera ("/seen", NULL, "");
+
+  gst_harness_set_upstream_latency (setup.h, 7 * GST_MSECOND);
+  fail_unless_equals_uint64 (gst_harness_query_latency (setup.h),
+      22 * GST_MSECOND);
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+/* After a flush it starts anew, with meshes if they come; so it does when a segment goes
+ * back. */
+GST_START_TEST (test_again)
+{
+  for (guint way = 0; way < 3; way++) {
+    Setup setup = set_up_camera ("/seen", NULL, "");
+    GstSegment segment;
+    guint n = 0;
+    GstBuffer *buffer;
+
+    push_seen (&setup, &front, 0, 12);
+    if (way > 0) {
+      gst_harness_push_event (setup.h, gst_event_new_flush_start ());
+      gst_harness_push_event (setup.h, gst_event_new_flush_stop (TRUE));
+    }
+    if (way == 2)
+      gst_harness_set_src_caps (setup.h, make_caps (COLUMNS, ROWS, 0.1f, FPS));
+    gst_segment_init (&segment, GST_FORMAT_TIME);
+    gst_harness_push_event (setup.h, gst_event_new_segment (&segment));
+    if (way == 2)
+      push (&setup, 0, 12);
+    else
+      push_seen (&setup, &front, 0, 12);
+    while ((buffer = gst_harness_try_pull (setup.h))) {
+      guint first = way ? 9 : 12;
+
+      if (n >= first)
+        fail_unless (fabs (mean_residual (buffer, 2) -
+                oscillator ((gdouble) (n - first) / FPS)) < 0.0005);
+      n++;
+      gst_buffer_unref (buffer);
+    }
+    fail_unless_equals_int (n, way ? 18 : 21);
+    tear_down (&setup);
+  }
+}
+
+GST_END_TEST;
+
+/* ---- refusals ---- */
+
+GST_START_TEST (test_no_camera)
+{
+  static const struct
+  {
+    const gchar *take, *rig, *more, *name, *text;
+  } cases[] = {
+    {"/take", NULL, "", "front", "Set rig="},
+    {"/take", NULL, "camera=front", "", "Set rig="},
+    {"/take", "/none.json", "", "front", "none.json"},
+    {"/take", "/broken.json", "camera=front", "front", "Can't read the rig"},
+    {"/seen", NULL, "camera=left", "front", "front, above"},
+    {"/seen", NULL, "", "left", "no camera “left”"},
+    {"/seen", NULL, "", "", "front, above"},
+    {"/seen", NULL, "", NULL, "front, above"},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    Setup setup = set_up_camera (cases[i].take, cases[i].rig, cases[i].more);
+    Look look = front;
+
+    look.name = cases[i].name;
+    fail_unless (gst_harness_push (setup.h, see (&look, 0)) != GST_FLOW_OK);
+    expect (&setup, GST_MESSAGE_ERROR, cases[i].text);
+    tear_down (&setup);
+  }
+}
+
+GST_END_TEST;
+
+/* Another size of picture, from the beginning and in mid-stream. */
+GST_START_TEST (test_other_size)
+{
+  Setup setup = set_up_camera ("/seen", NULL, "");
+
+  push_seen (&setup, &front, 0, 5);
+  gst_harness_set_src_caps (setup.h, make_camera_caps (640, FPS));
+  expect (&setup, GST_MESSAGE_ERROR, "calibrated at 1000×1000");
+  tear_down (&setup);
+
+  setup = set_up ("/model.json", "/seen", "");
+  gst_harness_set_src_caps (setup.h, make_camera_caps (640, FPS));
+  fail_unless_equals_int (gst_harness_push (setup.h, see (&front, 0)),
+      GST_FLOW_ERROR);
+  expect (&setup, GST_MESSAGE_ERROR, "Pictures are 640×640");
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_other_grid)
+{
+  for (guint dots = 0; dots < 2; dots++) {
+    Setup setup = set_up_camera ("/seen", NULL, "");
+    Look look = front;
+
+    look.dots = dots;
+    look.columns = COLUMNS + 1;
+    fail_unless_equals_int (gst_harness_push (setup.h, see (&look, 0)),
+        GST_FLOW_ERROR);
+    expect (&setup, GST_MESSAGE_ERROR, "5×3 vertices, but the take's grid has "
+        "4×3");
+    tear_down (&setup);
+  }
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_other_camera)
+{
+  Setup setup = set_up_camera ("/seen", NULL, "");
+  Look look = front;
+
+  push_seen (&setup, &front, 0, 5);
+  look.name = "above";
+  fail_unless_equals_int (gst_harness_push (setup.h, see (&look, 5)),
+      GST_FLOW_ERROR);
+  expect (&setup, GST_MESSAGE_ERROR, "a clothgap of its own");
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+/* Bytes that are none, that end too soon, and a place that is NaN. */
+GST_START_TEST (test_bad_buffers)
+{
+  for (guint i = 0; i < 4; i++) {
+    Setup setup = set_up_camera ("/seen", NULL, "");
+    GstBuffer *buffer = see (&front, 0);
+    const gfloat nan = NAN;
+    /* of the first dot, behind the header, the section's head and the name */
+    const gsize at = 32 + 8 + 24 + 8 + 16;
+
+    if (i == 0)
+      gst_buffer_memset (buffer, 0, 0, gst_buffer_get_size (buffer));
+    else if (i == 1)
+      gst_buffer_resize (buffer, 0, 50);
+    else if (i == 2)
+      gst_buffer_fill (buffer, at, &nan, sizeof nan);
+    else
+      gst_buffer_resize (buffer, 0, 0);
+    fail_unless_equals_int (gst_harness_push (setup.h, buffer), GST_FLOW_ERROR);
+    expect (&setup, GST_MESSAGE_ERROR, "observation stream is damaged");
+    tear_down (&setup);
+  }
+}
+
+GST_END_TEST;
+
+/* Neither a time nor a rate; times that fall. */
+GST_START_TEST (test_times)
+{
+  Setup setup = set_up_camera ("/seen", NULL, "");
+  GstBuffer *buffer = see (&front, 0);
+
+  push_seen (&setup, &front, 0, 5);
+  push_seen (&setup, &front, 4, 5);
+  expect (&setup, GST_MESSAGE_WARNING, "The picture at 0.020 s");
+  tear_down (&setup);
+
+  setup = set_up ("/model.json", "/seen", "");
+  gst_harness_set_src_caps (setup.h, make_camera_caps (SIZE, 0));
+  GST_BUFFER_PTS (buffer) = GST_CLOCK_TIME_NONE;
+  fail_unless_equals_int (gst_harness_push (setup.h, buffer), GST_FLOW_ERROR);
+  expect (&setup, GST_MESSAGE_ERROR, "picture has neither");
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_other_kind)
+{
+  Setup setup = set_up_camera ("/seen", NULL, "");
+
+  push_seen (&setup, &front, 0, 5);
+  gst_harness_set_src_caps (setup.h, make_caps (COLUMNS, ROWS, 0.1f, FPS));
+  expect (&setup, GST_MESSAGE_ERROR, "from observations to meshes");
+  tear_down (&setup);
+
+  setup = set_up ("/model.json", "/seen", "");
+  gst_harness_set_src_caps (setup.h, make_caps (COLUMNS, ROWS, 0.1f, FPS));
+  push (&setup, 0, 5);
+  gst_harness_set_src_caps (setup.h, make_camera_caps (SIZE, FPS));
+  expect (&setup, GST_MESSAGE_ERROR, "from meshes to observations");
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+/* Nothing came; or only pictures that show nothing. */
+GST_START_TEST (test_nothing)
+{
+  Setup setup = set_up_camera ("/seen", NULL, "");
+
+  end (&setup);
+  expect (&setup, GST_MESSAGE_ERROR, "without a picture");
+  fail_unless (pull_events (&setup, NULL));
+  tear_down (&setup);
+
+  setup = set_up_camera ("/seen", NULL, "");
+  for (guint frame = 0; frame < 20; frame++) {
+    g_autoptr (GstBuffer) nothing = gst_buffer_new ();
+    GstBuffer *observation = gst_cloth_observations_pack (nothing);
+
+    GST_BUFFER_PTS (observation) = frame * GST_SECOND / FPS;
+    fail_unless_equals_int (gst_harness_push (setup.h, observation),
+        GST_FLOW_OK);
+  }
+  end (&setup);
+  expect (&setup, GST_MESSAGE_ERROR, "No picture showed squares or dots");
+  fail_unless (pull_events (&setup, NULL));
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+static Suite *
+clothgapcamera_suite (void)
+{
+  Suite *s = suite_create ("clothgapcamera");
+  TCase *tc = tcase_create ("general");
+
+  suite_add_tcase (s, tc);
+  tcase_add_loop_test (tc, test_across, 0, 2);
+  tcase_add_test (tc, test_along);
+  tcase_add_test (tc, test_noise);
+  tcase_add_test (tc, test_jump);
+  tcase_add_test (tc, test_same_bytes);
+  tcase_add_test (tc, test_missing);
+  tcase_add_test (tc, test_which_camera);
+  tcase_add_test (tc, test_offset);
+  tcase_add_test (tc, test_latency);
+  tcase_add_test (tc, test_again);
+  tcase_add_test (tc, test_no_camera);
+  tcase_add_test (tc, test_other_size);
+  tcase_add_test (tc, test_other_grid);
+  tcase_add_test (tc, test_other_camera);
+  tcase_add_test (tc, test_bad_buffers);
+  tcase_add_test (tc, test_times);
+  tcase_add_test (tc, test_other_kind);
+  tcase_add_test (tc, test_nothing);
+  return s;
+}
+
+int
+main (int argc, char **argv)
+{
+  int failed;
+
+  gst_check_init (&argc, &argv);
+  make_files ();
+  make_rigs ();
+  failed = gst_check_run_suite (clothgapcamera_suite (), "clothgapcamera",
+      __FILE__);
+  remove_all (folder);
+  g_free (folder);
+  return failed;
+}
