@@ -135,6 +135,12 @@ gst_cloth_gap_view_read (GstClothGapView * view, GstElement * element,
         points->camera && *points->camera ? points->camera : NULL;
     if (!open_camera (view, element, name))
       return NULL;
+    if (!gst_cloth_points_check_places (points, view->camera, &error)) {
+      GST_ELEMENT_ERROR (element, STREAM, FORMAT,
+          ("A picture is not of the camera “%s”: %s", view->camera->name,
+              error->message), (NULL));
+      return NULL;
+    }
     cloth_rays_cast (view->rays, view->camera, &points->view);
     view->sequence = points->sequence;
     view->seen = TRUE;

@@ -7,6 +7,7 @@
 
 #include "elements/gstclothpoints.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "gst/gap/diagnose.h"
@@ -15,6 +16,9 @@
  * other, and the variance that its first set starts with, px². */
 #define THRESHOLD 4.0
 #define ERROR_FLOOR 0.01
+/* How far outside the picture a point may be, as a share of the picture: a square at the
+ * edge has corners that are a little outside. */
+#define MARGIN 0.1
 
 void
 gst_cloth_points_add_quads (const GstClothQuads * quads, guint columns,
@@ -147,6 +151,27 @@ gst_cloth_points_find (GstClothPoints * points, GstBuffer * picture,
   if (!merge_metas (points, picture, error))
     return FALSE;
   cloth_merge_finish (points->merge, THRESHOLD, ERROR_FLOOR, &points->view);
+  return TRUE;
+}
+
+gboolean
+gst_cloth_points_check_places (const GstClothPoints * points,
+    const ClothCamera * camera, GError ** error)
+{
+  gdouble w = camera->width, h = camera->height;
+
+  for (guint i = 0; i < points->columns * points->rows; i++) {
+    gdouble x = points->view.x[i], y = points->view.y[i];
+
+    if (isnan (x) || (x >= -MARGIN * w && x <= (1 + MARGIN) * w
+            && y >= -MARGIN * h && y <= (1 + MARGIN) * h))
+      continue;
+    g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE,
+        "vertex %u is at (%.1f, %.1f) px, but the camera was calibrated with "
+        "pictures of %d×%d: calibrate at the size that is filmed", i, x, y,
+        camera->width, camera->height);
+    return FALSE;
+  }
   return TRUE;
 }
 

@@ -26,6 +26,9 @@ GstClothPoints *gst_cloth_points_new (guint columns, guint rows);
  * another grid (CLOTH_GAP_ERROR). What is found belongs to the picture and to @points. */
 gboolean gst_cloth_points_find (GstClothPoints * points, GstBuffer * picture,
     GError ** error);
+/* FALSE when a point of the last picture lies where @camera sees nothing. */
+gboolean gst_cloth_points_check_places (const GstClothPoints * points,
+    const ClothCamera * camera, GError ** error);
 void gst_cloth_points_free (GstClothPoints * points);
 
 /* @columns, @rows: of the grid's vertices, row * columns + column. Squares have a vertex at

@@ -25,9 +25,6 @@
 #define MAX_PICTURES 100000u
 /* Of all pictures together: 3 GB of memory. */
 #define MAX_POINTS (1u << 26)
-/* How far outside the picture a point may be, as a share of the picture: a square at the
- * edge has corners that are a little outside. */
-#define MARGIN 0.1
 
 typedef struct
 {
@@ -88,21 +85,6 @@ check_name (const Reader * self, const gchar * name, GError ** error)
       "as the property camera of its detector", name, own);
 }
 
-static gboolean
-check_place (const Reader * self, guint vertex, gdouble x, gdouble y,
-    GError ** error)
-{
-  const ClothCamera *camera = &self->sights->rig->cameras[self->camera];
-  gdouble w = camera->width, h = camera->height;
-
-  if (x >= -MARGIN * w && x <= (1 + MARGIN) * w && y >= -MARGIN * h
-      && y <= (1 + MARGIN) * h)
-    return TRUE;
-  return fail (error, "vertex %u is at (%.1f, %.1f) px, but the camera was "
-      "calibrated with pictures of %d×%d: calibrate at the size that is filmed",
-      vertex, x, y, camera->width, camera->height);
-}
-
 /* Puts the points into the reader's arrays; returns how many, or -1. */
 static gint
 find_points (Reader * self, GstBuffer * buffer, GError ** error)
@@ -116,13 +98,13 @@ find_points (Reader * self, GstBuffer * buffer, GError ** error)
     return 0;                   /* of a picture that shows nothing */
   self->labelled = TRUE;
   if (!gst_cloth_points_find (self->points, buffer, error)
-      || !check_name (self, self->points->camera, error))
+      || !check_name (self, self->points->camera, error)
+      || !gst_cloth_points_check_places (self->points,
+          &self->sights->rig->cameras[self->camera], error))
     return -1;
   for (guint i = 0; i < n_vertices; i++) {
     if (isnan (view->x[i]))
       continue;
-    if (!check_place (self, i, view->x[i], view->y[i], error))
-      return -1;
     self->vertices[n] = i;
     self->px[2 * n] = view->x[i];
     self->px[2 * n + 1] = view->y[i];
