@@ -499,28 +499,24 @@ GST_START_TEST (test_again)
 
 GST_END_TEST;
 
-/* A sheet that swings along y in air, held against a model that knows none, so that there
- * is a gap; the more of the motion is across the sight, the larger it is.
- * @sine: of the angle that the sight has turned from y to −x */
+/* The meshes of a source, filmed from 1.2 m. @sine: of the angle that the sight has turned
+ * from y to −x */
 static void
-film_take (Setup * setup, gdouble sine)
+film (Setup * setup, GstHarness * source, gdouble sine)
 {
   const gdouble cosine = sqrt (1 - sine * sine), focal = 900, away = 1.2;
-  g_autoptr (GError) error = NULL;
-  g_autoptr (ClothTake) take = cloth_take_open (TEST_DATA "/take_drag", &error);
-  gfloat places[3 * 81];
+  GstBuffer *buffer;
   ClothRandom random;
 
-  g_assert_no_error (error);
   cloth_random_init (&random, 3);
-  for (guint frame = 0; frame < cloth_take_get_n_frames (take); frame++) {
-    GstClothDot dots[81] = { {0}
-    };
+  for (guint frame = 0; frame < 60 && (buffer = gst_harness_pull (source));
+      frame++) {
+    g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_from_buffer (buffer, NULL);
+    const gfloat *places = gst_cloth_mesh_get_positions (mesh, NULL);
     g_autoptr (GstBuffer) picture = gst_buffer_new ();
+    GstClothDot dots[81] = { {0} };
     GstBuffer *observation;
 
-    cloth_take_read_positions (take, frame, places, &error);
-    g_assert_no_error (error);
     for (guint i = 0; i < 81; i++) {
       gdouble x = places[3 * i] - 0.19, y = places[3 * i + 1];
       gdouble depth = away - sine * x + cosine * y;
@@ -539,27 +535,42 @@ film_take (Setup * setup, gdouble sine)
     GST_BUFFER_PTS (observation) = frame * GST_SECOND / 50;
     fail_unless_equals_int (gst_harness_push (setup->h, observation),
         GST_FLOW_OK);
+    gst_buffer_unref (buffer);
   }
 }
 
+#define KNIT "model=" TEST_DATA "/../../pipelines/model-knit.json"
+#define DRAG "location=" TEST_DATA "/take_drag"
+
+/* A sheet that swings along y, held against a model that knows no air drag. When the sheet
+ * doesn't either there is no gap. When it does there is one, the larger the more of the
+ * motion is across the sight. The scores that remain without it come from the speeds of
+ * the first frame, of which a camera sees two directions, and from the springs. */
 GST_START_TEST (test_drag)
 {
-  static const gdouble sines[] = { 0.8, 0 };
-  gdouble sums[2] = { 0 };
+  static const struct
+  {
+    const gchar *source;
+    gdouble sine;
+  } cases[] = {
+    {"meshsrc " DRAG, 0.8}, {"meshsrc " DRAG, 0}, {"clothsim " KNIT " " DRAG,
+        0.8}
+  };
+  gdouble sums[G_N_ELEMENTS (cases)] = { 0 };
 
-  for (guint i = 0; i < 2; i++) {
-    gdouble s = sines[i], c = sqrt (1 - s * s), coverage, rms;
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    gdouble s = cases[i].sine, c = sqrt (1 - s * s), coverage, rms;
     g_autofree gchar *rig = g_strdup_printf ("{\"version\": 1, \"cameras\": "
         "[{\"name\": \"it\", \"size\": [640, 480], \"K\": [[900, 0, 320], "
         "[0, 900, 240], [0, 0, 1]], \"distortion\": {\"model\": \"none\", "
         "\"coefficients\": []}, \"R\": [[%g, %g, 0], [0, 0, -1], [%g, %g, 0]], "
         "\"t\": [%g, 1.3, %g]}]}", c, s, -s, c, -0.19 * c, 1.2 + 0.19 * s);
-    g_autofree gchar *text = g_strdup_printf ("clothgap model=" TEST_DATA
-        "/../../pipelines/model-knit.json location=" TEST_DATA "/take_drag "
-        "rig=%s/turned.json effects=air_drag,wind,gravity_tilt", folder);
+    g_autofree gchar *text = g_strdup_printf ("clothgap " KNIT " " DRAG
+        " rig=%s/turned.json effects=air_drag,wind,gravity_tilt", folder);
     g_autoptr (GstMessage) message = NULL;
     const gchar *verdict;
     GstElement *element;
+    GstHarness *source = gst_harness_new_parse (cases[i].source);
     Setup setup = { NULL, gst_bus_new () };
 
     put_file ("turned.json", rig);
@@ -570,7 +581,9 @@ GST_START_TEST (test_drag)
     gst_harness_set_src_caps (setup.h,
         gst_caps_from_string (GST_CLOTH_OBSERVATIONS_MEDIA_TYPE ", version=1, "
             "width=640, height=480, framerate=50/1"));
-    film_take (&setup, s);
+    gst_harness_play (source);
+    film (&setup, source, s);
+    gst_harness_teardown (source);
     while (!isnan (rms = next_score (&setup, &coverage))) {
       fail_unless (coverage > 0.9);
       sums[i] += rms;
@@ -580,12 +593,15 @@ GST_START_TEST (test_drag)
     fail_unless (message != NULL);
     verdict = gst_structure_get_string (gst_message_get_structure (message),
         "verdict");
-    fail_if (g_str_equal (verdict, "no_gap"));
+    GST_INFO ("%.1f mm, %s", 1000 * sums[i], verdict);
+    fail_unless_equals_int (g_str_equal (verdict, "no_gap"), i == 2);
     fail_if (g_str_equal (verdict, "undecidable"));
     tear_down (&setup);
   }
   fail_unless (sums[0] > 1.5 * sums[1], "%.1f mm and %.1f mm", 1000 * sums[0],
       1000 * sums[1]);
+  fail_unless (sums[0] > 2 * sums[2], "%.1f mm and %.1f mm", 1000 * sums[0],
+      1000 * sums[2]);
 }
 
 GST_END_TEST;
