@@ -20,8 +20,8 @@ static const gchar *const capture_sentence =
     "Film a board that moves with all cameras, once more with half the "
     "exposure time, and at rest: clocks, shutters and exposures show in motion "
     "only, lenses and places at rest too.";
-/* A share of what is above the floor is told if the variance is this many times as large. */
-#define LEAST_ABOVE 1.05
+/* A share of what is above the floor is told if that is this share of all. */
+#define LEAST_ABOVE_SHARE 0.1
 /* Of the bootstrap. */
 #define N_DRAWS 1000
 
@@ -45,19 +45,29 @@ judging_windows (const ClothDiagnosis * d, const ClothGapExtent * extent)
   return windows;
 }
 
+/* The middle 95% of @n draws that are @stride apart. */
 static ClothGapEstimate
-estimate (gdouble square, gdouble * draws, guint n, guint stride)
+middle (gdouble value, const gdouble * draws, guint n, guint stride)
 {
-  ClothGapEstimate e = { sqrt (square), NAN, NAN };
+  ClothGapEstimate e = { value };
   g_autoptr (GArray) sorted = g_array_new (FALSE, FALSE, sizeof (gdouble));
 
   for (guint i = 0; i < n; i++)
     g_array_append_val (sorted, draws[(gsize) i * stride]);
   g_array_sort (sorted, cloth_recording_compare_numbers);
-  if (n) {
-    e.low = sqrt (MAX (0., g_array_index (sorted, gdouble, n / 40)));
-    e.high = sqrt (MAX (0., g_array_index (sorted, gdouble, n - 1 - n / 40)));
-  }
+  e.low = g_array_index (sorted, gdouble, n / 40);
+  e.high = g_array_index (sorted, gdouble, n - 1 - n / 40);
+  return e;
+}
+
+/* A length from the draws of its square. */
+static ClothGapEstimate
+estimate (gdouble square, const gdouble * draws, guint n, guint stride)
+{
+  ClothGapEstimate e = middle (sqrt (square), draws, n, stride);
+
+  e.low = sqrt (MAX (0., e.low));
+  e.high = sqrt (MAX (0., e.high));
   return e;
 }
 
@@ -156,8 +166,8 @@ share_gone (const ClothGapResult * result, gdouble before, gdouble after)
 {
   gdouble floor = result->noise_floor.value * result->noise_floor.value;
 
-  return before > LEAST_ABOVE * floor ? (before - after) / (before - floor) :
-      NAN;
+  return before - floor > LEAST_ABOVE_SHARE * before ?
+      (before - after) / (before - floor) : NAN;
 }
 
 /* Of what is above the floor, the share that went; draws are @stride apart. */
@@ -168,16 +178,17 @@ fill_shrink (ClothGapResult * result, gdouble before, gdouble after,
   g_autofree gdouble *shrinks = g_new (gdouble, N_DRAWS);
   gdouble floor = result->noise_floor.value * result->noise_floor.value;
 
-  if (!(before > LEAST_ABOVE * floor))
+  if (!(before - floor > LEAST_ABOVE_SHARE * before))
     return;
+  /* of draws that are all floor no share can be told either: they count as if they were as
+   * little above it as one that can */
   for (guint i = 0; i < N_DRAWS; i++) {
     gdouble b = draws_before[i * stride], a = draws_after[i * stride];
-    gdouble s = b > floor ? (b - a) / (b - floor) : 0.;
 
-    shrinks[i] = s * s;
+    shrinks[i] = (b - a) / MAX (b - floor, LEAST_ABOVE_SHARE * before);
   }
-  result->shrink = estimate (0., shrinks, N_DRAWS, 1);
-  result->shrink.value = share_gone (result, before, after);
+  result->shrink = middle (share_gone (result, before, after), shrinks,
+      N_DRAWS, 1);
 }
 
 /* Whether an effect is large enough to speak of. Where a signature is taken off, the
