@@ -38,6 +38,9 @@
  * spots as well. */
 #define LEAST_WEBER 0.25f
 
+/* Least share of the ring about a spot that was cut from another that is ground. */
+#define LEAST_GROUND 0.5f
+
 /* Own side of the line between two dots: nx·dx + ny·dy ≤ reach. */
 typedef struct
 {
@@ -243,6 +246,36 @@ add_bends (const ClothImage * luma, gint y, gint first, gint last,
   }
 }
 
+/* Does a spot that was cut from another stand out? Where a wall's noise was cut there is
+ * hardly any ground about it. */
+static gboolean
+is_apart (const ClothDotDetector * detector, const ClothDotCandidate * spot,
+    const Rows * rows, const ClothDot * dot)
+{
+  const ClothImage *luma = &detector->image->luma;
+  const gboolean vectors = detector->level != CLOTH_SIMD_SCALAR;
+  const guint8 middle = (guint8) ((dot->colour[0] + dot->background) / 2);
+  Tally dark = { 0 };
+  gint64 n = 0;
+
+  for (gint i = 0; i < rows->n; i++) {
+    const guint8 *row = luma->data
+        + (gsize) (rows->y0 + i) * (gsize) luma->stride;
+    const gint first = rows->ring.first[i], end = rows->ring.last[i] + 1;
+    gint from = rows->weighed.first[i], to = rows->weighed.last[i] + 1;
+
+    if (first >= end)
+      continue;
+    if (from >= to)
+      from = to = end;
+    add_dark (row, first, MIN (from, end), luma->width, middle, vectors, &dark);
+    add_dark (row, MAX (to, first), end, luma->width, middle, vectors, &dark);
+    n += MAX (0, MIN (from, end) - first) + MAX (0, end - MAX (to, first));
+  }
+  finish_tally (&dark);
+  return (gfloat) dark.n >= LEAST_GROUND * (gfloat) n;
+}
+
 /* Luma of the ground, mean colour of the inside, noise. FALSE when there is no inside or
  * too little contrast. */
 static gboolean
@@ -296,8 +329,10 @@ look_around (const ClothDotDetector * detector, const ClothDotCandidate * spot,
   for (gint k = 0; k < 3; k++)
     dot->colour[k] = k == 0 || image->chroma[k - 1]
         ? (gfloat) sum[k] / (gfloat) bright.n : 128;
-  return dot->colour[0] - dot->background >= MAX (detector->params.contrast,
-      LEAST_WEBER * dot->background);
+  if (dot->colour[0] - dot->background < MAX (detector->params.contrast,
+          LEAST_WEBER * dot->background))
+    return FALSE;
+  return !spot->touches || is_apart (detector, spot, rows, dot);
 }
 
 /* Lanes that are summed apart; the order of the sums is the same on every machine. */

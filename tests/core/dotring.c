@@ -26,14 +26,37 @@
 #define STEEPEST (70 * G_PI / 180)
 /* Nearer to the camera than this much and it hides what is behind, metres. */
 #define HIDES 0.003
+/* A dot is where it is found this near, px. */
+#define NEAR 1.5
 /* Fewest dots in clear view, of 1,023. */
 #define LEAST_SEEN 100
-/* A camera that sees fewer looks at the cloth from the side. */
-#define FACING 500
+
+/* What is to be reached in the first picture: percent of the dots in clear view found and
+ * labelled, percent of the labels right; centres, px RMS, with and without the shift of the
+ * print; that shift's distance from half a texel, metres. */
+typedef struct
+{
+  gdouble found, labelled, right, rms, rest, shift;
+} Limits;
+
+static const Limits facing = { 98, 95, 99.5, 0.15, 0.07, 0.00001 };
+
+/* Three cameras see the cloth from the side and its dots narrow: what they reach. One
+ * label of camera 1's 190 is wrong. */
+static const struct
+{
+  const gchar *name;
+  Limits limits;
+} sideways[] = {
+  {"cam1", {91, 86, 99.4, 0.17, 0.11, 0.000012}},
+  {"cam2", {98, 93, 99.5, 0.15, 0.09, 0.00002}},
+  {"cam6", {98, 94, 99.5, 0.15, 0.09, 0.00001}},
+};
 
 typedef struct
 {
   gdouble x, y;                 /* centre of gravity of the outline, px */
+  gdouble rim[RIM][2];          /* the outline, px */
   gdouble slope[2][2];          /* of both over u and v, px/m */
   gdouble angle;                /* between the view and the normal */
   gboolean clear;               /* nothing hides any of it */
@@ -112,9 +135,10 @@ look (const ClothCamera * camera, gint dot)
   const gdouble v = array->origin_uv_m[1]
       + dot / array->columns * array->pitch_m;
   const gdouble h = array->diameter_m / 2;
-  gdouble rim[RIM][2], eye[3], X[3], a[3], b[3], n[3];
+  gdouble eye[3], X[3], a[3], b[3], n[3];
   gdouble area = 0, along = 0, far = 0, size = 0;
   Truth truth = {.clear = TRUE };
+  gdouble (*rim)[2] = truth.rim;
 
   for (gint k = 0; k < 3; k++)
     eye[k] = -(camera->R[k] * camera->t[0] + camera->R[3 + k] * camera->t[1]
@@ -214,6 +238,7 @@ typedef struct
   ClothDotColourModel model;
   guint right, wrong, behind;
   guint seen, found, labelled;  /* of the dots in clear view */
+  guint ghosts;                 /* dots where there is none */
 } Labels;
 
 static Labels total;
@@ -235,12 +260,30 @@ start_labels (void)
   return labels;
 }
 
-/* Is it where no dot is, seen or hidden? */
+/* Does it lie within an outline, or at it? Crossings of a line from it are counted. */
+static gboolean
+is_within (const ClothDot * dot, const gdouble rim[RIM][2])
+{
+  gboolean within = FALSE;
+
+  for (gint i = 0; i < RIM; i++) {
+    const gdouble *p = rim[i], *q = rim[(i + 1) % RIM];
+
+    if (hypot (dot->x - p[0], dot->y - p[1]) < NEAR)
+      return TRUE;
+    if ((p[1] > dot->y) != (q[1] > dot->y))
+      within ^= dot->x < p[0] + (q[0] - p[0]) * (dot->y - p[1]) / (q[1] - p[1]);
+  }
+  return within;
+}
+
+/* Is it where no dot is? What is left of a dot that a fold hides lies within its
+ * outline. */
 static gboolean
 is_ghost (const ClothDot * dot, const Truth * truth)
 {
   for (gint k = 0; k < array->columns * array->rows; k++)
-    if (hypot (dot->x - truth[k].x, dot->y - truth[k].y) <= 4)
+    if (is_within (dot, truth[k].rim))
       return FALSE;
   return TRUE;
 }
@@ -271,7 +314,7 @@ check_labels (Labels * all, const ClothDot * dots, guint n, const Truth * truth)
       continue;
     g_assert_false (given[k]);
     given[k] = TRUE;
-    labelled[k] = hypot (dots[i].x - truth[k].x, dots[i].y - truth[k].y) < 1.5;
+    labelled[k] = hypot (dots[i].x - truth[k].x, dots[i].y - truth[k].y) < NEAR;
     if (labelled[k])
       all->right++;
     else
@@ -288,16 +331,32 @@ check_labels (Labels * all, const ClothDot * dots, guint n, const Truth * truth)
   cloth_dot_colour_model_learn (&all->model, dots, n, said);
 }
 
+static gdouble
+percent (guint n, guint of)
+{
+  return 100.0 * n / of;
+}
+
 static void
 tell (const gchar * who, const Labels * labels)
 {
   g_test_message
       ("%s: labels: %u right, %u wrong (%.2f%% right); of %u dots in "
-      "clear view below 70 degrees %.2f%% found, %.2f%% labelled", who,
+      "clear view below 70 degrees %.2f%% found, %.2f%% labelled; %u dots where "
+      "there is none", who,
       labels->right, labels->wrong,
-      100.0 * labels->right / (labels->right + labels->wrong), labels->seen,
-      100.0 * labels->found / labels->seen,
-      100.0 * labels->labelled / labels->seen);
+      percent (labels->right, labels->right + labels->wrong), labels->seen,
+      percent (labels->found, labels->seen),
+      percent (labels->labelled, labels->seen), labels->ghosts);
+}
+
+static const Limits *
+limits_of (const ClothCamera * camera)
+{
+  for (guint i = 0; i < G_N_ELEMENTS (sideways); i++)
+    if (g_str_equal (camera->name, sideways[i].name))
+      return &sideways[i].limits;
+  return &facing;
 }
 
 /* Where the dots of a picture lie, and their labels. */
@@ -308,9 +367,9 @@ check_picture (const ClothCamera * camera, const ClothDotImage * image,
   const ClothDotParams params = cloth_dot_default_params ();
   const gint n_all = array->columns * array->rows;
   g_autofree Truth *truth = g_new (Truth, n_all);
+  const Limits *limits = limits_of (camera);
   const ClothDot *dots;
   guint n, seen = 0, found = 0, ghosts = 0, good = 0;
-  gboolean edge_on;
   gdouble sum = 0, A[3] = { 0 }, b[2] = { 0 }, shift[2], rest, det;
 
   cloth_dot_detector_run (detector, &params, image, CLOTH_SIMD_BEST);
@@ -333,7 +392,7 @@ check_picture (const ClothCamera * camera, const ClothDotImage * image,
     g_assert_nonnull (best);
     dx = best->x - truth[k].x;
     dy = best->y - truth[k].y;
-    if (hypot (dx, dy) > 1.5)
+    if (hypot (dx, dy) > NEAR)
       continue;
     found++;
     if (!best->touches) {
@@ -362,22 +421,18 @@ check_picture (const ClothCamera * camera, const ClothDotImage * image,
       n, seen, found, 100.0 * found / seen, sqrt (sum / (2 * good)),
       1000 * shift[0], 1000 * shift[1], sqrt (rest / (2 * good)), ghosts,
       cloth_dot_detector_get_noise (detector));
-  edge_on = seen < FACING;
   labels->seen += seen;
   labels->found += found;
+  labels->ghosts += ghosts;
   check_labels (labels, dots, n, truth);
   if (n_pictures > 1)
     return;
-  /* Specks of the wall at the cloth's edge. */
-  g_assert_cmpuint (ghosts, <=, 2);
-  g_assert_cmpuint (100 * found, >=, edge_on ? 88 * seen : 97 * seen);
-  g_assert_cmpfloat (sqrt (sum / (2 * good)), <, edge_on ? 0.18 : 0.15);
+  g_assert_cmpuint (ghosts, ==, 0);
+  g_assert_cmpfloat (sqrt (sum / (2 * good)), <, limits->rms);
+  g_assert_cmpfloat (sqrt (rest / (2 * good)), <, limits->rest);
   /* Half a texel of 0.25 mm, as every camera sees it. */
-  g_assert_cmpfloat_with_epsilon (shift[0], 0.000125,
-      edge_on ? 0.000025 : 0.00001);
-  g_assert_cmpfloat_with_epsilon (shift[1], 0.000125,
-      edge_on ? 0.000025 : 0.00001);
-  g_assert_cmpfloat (sqrt (rest / (2 * good)), <, edge_on ? 0.11 : 0.07);
+  for (gint k = 0; k < 2; k++)
+    g_assert_cmpfloat_with_epsilon (shift[k], 0.000125, limits->shift);
 }
 
 static void
@@ -425,11 +480,21 @@ test_camera (gconstpointer data)
   g_assert_cmpuint (labels.seen, >, LEAST_SEEN * n_pictures);
   g_assert_cmpuint (1000 * labels.behind, <=,
       n_pictures > 1 ? labels.right : 0);
+  if (n_pictures == 1) {
+    const Limits *limits = limits_of (camera);
+
+    g_assert_cmpfloat (percent (labels.found, labels.seen), >=, limits->found);
+    g_assert_cmpfloat (percent (labels.labelled, labels.seen), >=,
+        limits->labelled);
+    g_assert_cmpfloat (percent (labels.right, labels.right + labels.wrong), >=,
+        limits->right);
+  }
   g_assert_cmpuint (100 * labels.wrong, <=, labels.right + labels.wrong);
   total.right += labels.right;
   total.wrong += labels.wrong;
   total.seen += labels.seen;
   total.found += labels.found;
+  total.ghosts += labels.ghosts;
   total.labelled += labels.labelled;
 }
 
@@ -439,7 +504,9 @@ test_all_labels (void)
   tell ("all", &total);
   g_assert_cmpuint (total.right, >, 5000);
   g_assert_cmpuint (1000 * total.wrong, <=, 5 * (total.right + total.wrong));
+  g_assert_cmpuint (100 * total.found, >=, 98 * total.seen);
   g_assert_cmpuint (100 * total.labelled, >=, 95 * total.seen);
+  g_assert_cmpuint (1000 * total.ghosts, <=, total.right);
 }
 
 int
