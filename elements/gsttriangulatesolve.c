@@ -25,6 +25,8 @@ gst_triangulate_solve_set_board (GstTriangulateSolve * self,
   self->positions = g_renew (gfloat, self->positions, 3 * n);
   self->covariances = g_renew (gfloat, self->covariances, 6 * n);
   self->wrong = g_renew (gboolean, self->wrong, n);
+  /* a number for each row as well */
+  self->denials = g_renew (gdouble, self->denials, 2 * n);
   g_clear_pointer (&self->bend, cloth_dot_bend_free);
   if (board->dots) {
     self->bend = cloth_dot_bend_new (board->columns, board->rows,
@@ -40,6 +42,7 @@ gst_triangulate_solve_clear (GstTriangulateSolve * self)
   g_clear_pointer (&self->positions, g_free);
   g_clear_pointer (&self->covariances, g_free);
   g_clear_pointer (&self->wrong, g_free);
+  g_clear_pointer (&self->denials, g_free);
 }
 
 gdouble
@@ -83,7 +86,7 @@ read_result (GstTriangulateSolve * self, const GstTriangulateBoard * board)
     }
   }
   cloth_isometry_check (&isometry, self->positions, self->covariances,
-      self->wrong);
+      self->wrong, self->denials);
 }
 
 /* What was seen, as if the cloth were flat. */

@@ -21,6 +21,7 @@ typedef struct {
   ClothDotBend *bend;           /* of dots */
   ClothErrorFloor floor;
   gboolean *wrong;
+  gdouble *denials;
   /* of the last set */
   gfloat *positions, *covariances;
   const ClothTriangulation *result;     /* states are those of GstClothVertexState */

@@ -74,12 +74,47 @@ size (const gfloat * covariances, guint k)
       + covariances[6 * k + 3] + covariances[6 * k + 5] : 0;
 }
 
+/* The denials of a grid are followed by the greatest of each row. */
+static void
+find_most_of_row (const ClothIsometry * isometry, guint row, gdouble * denials)
+{
+  const gdouble *of_row = denials + row * isometry->columns;
+  gdouble most = 0;
+
+  for (guint i = 0; i < isometry->columns; i++)
+    most = MAX (most, of_row[i]);
+  denials[isometry->columns * isometry->rows + row] = most;
+}
+
+/* The first of the least certain of those that are most out of place; the number of all
+ * when none is. */
+static guint
+find_worst (const ClothIsometry * isometry, const gfloat * covariances,
+    const gdouble * denials)
+{
+  const guint columns = isometry->columns, rows = isometry->rows;
+  const gdouble *most_of_row = denials + columns * rows;
+  guint worst = columns * rows;
+  gdouble most = 0;
+
+  for (guint row = 0; row < rows; row++)
+    most = MAX (most, most_of_row[row]);
+  for (guint row = 0; most > 0 && row < rows; row++)
+    for (guint k = row * columns;
+        most_of_row[row] == most && k < (row + 1) * columns; k++)
+      if (denials[k] == most && (worst == columns * rows
+              || size (covariances, k) > size (covariances, worst)))
+        worst = k;
+  return worst;
+}
+
 /**
  * cloth_isometry_check:
  * @isometry: the grid and its limits
  * @positions: (array): 3·columns·rows, metres; NaN: not seen
  * @covariances: (array) (nullable): 6·columns·rows: xx, xy, xz, yy, yz, zz, m²
  * @wrong: (out) (array): columns·rows: whether the vertex can't be where it is
+ * @denials: (out) (array): (columns + 1)·rows, room to work in
  *
  * Finds the vertices whose distances from their neighbours no cloth allows. The one that
  * is most out of place goes first, and with it what it made of its neighbours' distances;
@@ -91,28 +126,36 @@ size (const gfloat * covariances, guint k)
  */
 guint
 cloth_isometry_check (const ClothIsometry * isometry,
-    const gfloat * positions, const gfloat * covariances, gboolean * wrong)
+    const gfloat * positions, const gfloat * covariances, gboolean * wrong,
+    gdouble * denials)
 {
-  guint n = isometry->columns * isometry->rows, found = 0;
+  const guint columns = isometry->columns, rows = isometry->rows;
+  const guint n = columns * rows;
+  guint found = 0;
 
   for (guint k = 0; k < n; k++)
     wrong[k] = FALSE;
+  for (guint k = 0; k < n; k++)
+    denials[k] = denial (isometry, positions, covariances, wrong, k);
+  for (guint row = 0; row < rows; row++)
+    find_most_of_row (isometry, row, denials);
   for (;;) {
-    guint worst = 0;
-    gdouble most = 0;
+    const guint worst = find_worst (isometry, covariances, denials);
+    const guint row = worst / columns, column = worst % columns;
 
-    for (guint k = 0; k < n; k++) {
-      gdouble sum = denial (isometry, positions, covariances, wrong, k);
-
-      if (sum > most || (sum > 0 && sum == most
-              && size (covariances, k) > size (covariances, worst))) {
-        most = sum;
-        worst = k;
-      }
-    }
-    if (most == 0)
+    if (worst == n)
       return found;
     wrong[worst] = TRUE;
     found++;
+    /* It no longer says anything of its neighbours. */
+    for (guint j = row > 0 ? row - 1 : 0; j < MIN (row + 2, rows); j++) {
+      for (guint i = column > 0 ? column - 1 : 0; i < MIN (column + 2, columns);
+          i++) {
+        if (i == column || j == row)
+          denials[j * columns + i] = denial (isometry, positions, covariances,
+              wrong, j * columns + i);
+      }
+      find_most_of_row (isometry, j, denials);
+    }
   }
 }

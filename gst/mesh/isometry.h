@@ -26,6 +26,7 @@ typedef struct {
 } ClothIsometry;
 
 guint cloth_isometry_check (const ClothIsometry * isometry,
-    const gfloat * positions, const gfloat * covariances, gboolean * wrong);
+    const gfloat * positions, const gfloat * covariances, gboolean * wrong,
+    gdouble * denials);
 
 G_END_DECLS

@@ -11,6 +11,8 @@
 #define N (COLUMNS * ROWS)
 #define EDGE 0.05
 
+static gdouble denials[(COLUMNS + 1) * ROWS];
+
 static const ClothIsometry standard = { COLUMNS, ROWS, EDGE, 0.8, 1.05 };
 
 /* A sheet rolled around a cylinder of radius r: distances along it stay, chords are
@@ -34,16 +36,16 @@ test_bent (void)
   gboolean wrong[N];
 
   roll (positions, 100);
-  g_assert_cmpuint (cloth_isometry_check (&standard, positions, NULL, wrong),
-      ==, 0);
+  g_assert_cmpuint (cloth_isometry_check (&standard, positions, NULL, wrong,
+          denials), ==, 0);
   /* The chord of an edge on a cylinder of 25 mm: sin (1) / 1 = 0.84. */
   roll (positions, 0.025);
-  g_assert_cmpuint (cloth_isometry_check (&standard, positions, NULL, wrong),
-      ==, 0);
+  g_assert_cmpuint (cloth_isometry_check (&standard, positions, NULL, wrong,
+          denials), ==, 0);
   /* Of 20 mm: sin (1.25) / 1.25 = 0.76, sharper than the limit. */
   roll (positions, 0.02);
-  g_assert_cmpuint (cloth_isometry_check (&standard, positions, NULL, wrong),
-      >, 0);
+  g_assert_cmpuint (cloth_isometry_check (&standard, positions, NULL, wrong,
+          denials), >, 0);
 }
 
 static void
@@ -62,15 +64,15 @@ test_wrong (void)
       positions[3 * k] *= 1 + (gfloat) sign *0.025f / 0.3f;
       positions[3 * k + 2] *= 1 + (gfloat) sign *0.025f / 0.3f;
       g_assert_cmpuint (cloth_isometry_check (&standard, positions, NULL,
-              wrong), ==, 1);
+              wrong, denials), ==, 1);
       g_assert_true (wrong[k]);
     }
   /* Two far apart. */
   roll (positions, 0.3);
   positions[3 * 10] += 0.03f;
   positions[3 * 50 + 1] -= 0.03f;
-  g_assert_cmpuint (cloth_isometry_check (&standard, positions, NULL, wrong),
-      ==, 2);
+  g_assert_cmpuint (cloth_isometry_check (&standard, positions, NULL, wrong,
+          denials), ==, 2);
   g_assert_true (wrong[10] && wrong[50]);
 }
 
@@ -86,17 +88,17 @@ test_covariance (void)
   positions[3 * 8] += 0.01f;
   covariances[6 * 8] = 9e-6f;
   g_assert_cmpuint (cloth_isometry_check (&standard, positions, covariances,
-          wrong), ==, 0);
+          wrong, denials), ==, 0);
   /* By 2 mm: 7.5 > 6. The corner's other edge is right: the two deny each other alone,
    * and the less certain one goes. */
   covariances[6 * 8] = 4e-6f;
   g_assert_cmpuint (cloth_isometry_check (&standard, positions, covariances,
-          wrong), ==, 1);
+          wrong, denials), ==, 1);
   g_assert_true (wrong[8]);
   memset (covariances, 0, sizeof covariances);
   covariances[6 * 7] = 4e-6f;
   g_assert_cmpuint (cloth_isometry_check (&standard, positions, covariances,
-          wrong), ==, 1);
+          wrong, denials), ==, 1);
   g_assert_true (wrong[7]);
 }
 
@@ -110,22 +112,23 @@ test_limits (void)
 
   roll (positions, 0.3);
   positions[3 * 10] += 5;
-  g_assert_cmpuint (cloth_isometry_check (&none, positions, NULL, wrong), ==,
-      0);
-  g_assert_cmpuint (cloth_isometry_check (&one, positions, NULL, wrong), ==, 0);
+  g_assert_cmpuint (cloth_isometry_check (&none, positions, NULL, wrong,
+          denials), ==, 0);
+  g_assert_cmpuint (cloth_isometry_check (&one, positions, NULL, wrong,
+          denials), ==, 0);
   /* Not seen: neither wrong nor a witness. */
   for (gint i = 0; i < 3; i++)
     positions[3 * 10 + i] = NAN;
-  g_assert_cmpuint (cloth_isometry_check (&standard, positions, NULL, wrong),
-      ==, 0);
+  g_assert_cmpuint (cloth_isometry_check (&standard, positions, NULL, wrong,
+          denials), ==, 0);
   for (gint i = 0; i < 3 * N; i++)
     positions[i] = NAN;
-  g_assert_cmpuint (cloth_isometry_check (&standard, positions, NULL, wrong),
-      ==, 0);
+  g_assert_cmpuint (cloth_isometry_check (&standard, positions, NULL, wrong,
+          denials), ==, 0);
   /* All in one place: all but one deny it. */
   memset (positions, 0, sizeof positions);
-  g_assert_cmpuint (cloth_isometry_check (&standard, positions, NULL, wrong),
-      >=, N / 2);
+  g_assert_cmpuint (cloth_isometry_check (&standard, positions, NULL, wrong,
+          denials), >=, N / 2);
 }
 
 int
