@@ -259,6 +259,9 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
 
   if (!load (d, error))
     return FALSE;
+  d->result->reason = cloth_diagnosis_find_doubt (d, model);
+  if (d->result->reason)
+    return TRUE;
   cloth_diagnosis_find_faults (d);
   d->candidates =
       cloth_gap_candidates_new (model, cloth_diagnosis_recording (d, 0),
@@ -286,6 +289,9 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
     return FALSE;
   cloth_diagnosis_locate (d);
   cloth_diagnosis_decide (d);
+  d->result->reason = cloth_diagnosis_doubt_result (d, model);
+  if (d->result->reason)
+    d->result->verdict = CLOTH_GAP_UNDECIDABLE;
   cloth_diagnosis_fill_null (d);
   return cloth_diagnosis_propose (d, error);
 }

@@ -1,4 +1,4 @@
-/* A diagnosis under way; private to diagnose.c, name.c, select.c, rest.c, judge.c,
+/* A diagnosis under way; private to diagnose.c, doubt.c, name.c, select.c, rest.c, judge.c,
  * where.c, null.c, fault.c and propose.c.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
@@ -132,6 +132,12 @@ cloth_diagnosis_is_held_out (const ClothDiagnosis * d, guint block)
 /* What comes now: from where to where it gets, and of the rest of it each simulation. */
 void cloth_diagnosis_begin_part (ClothDiagnosis * d, gdouble from, gdouble to,
     gdouble each, const gchar * what);
+
+/* Why nothing can be said: of the recordings, of what was found. NULL: it can. */
+gchar *cloth_diagnosis_find_doubt (ClothDiagnosis * d,
+    const ClothModel * model);
+gchar *cloth_diagnosis_doubt_result (ClothDiagnosis * d,
+    const ClothModel * model);
 
 /* Cameras. */
 gboolean cloth_diagnosis_has_sights (const ClothDiagnosis * d);

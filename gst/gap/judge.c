@@ -71,6 +71,16 @@ estimate (gdouble square, const gdouble * draws, guint n, guint stride)
   return e;
 }
 
+/* Each model is let go in windows, and led to the start of each. */
+static ClothGapExtent **
+measure (ClothDiagnosis * d, const ClothRecording * r,
+    const ClothModel * const *models, guint n, GError ** error)
+{
+  d->study.simulations += 2 * n;
+  return cloth_gap_extents_new (r, models, n, WINDOW_GAIN,
+      CLOTH_DIAGNOSIS_WINDOW_S, &d->study.rollout, error);
+}
+
 /* Without a baseline the floor is what the two force models differ by, and the noise:
  * NaN on errors. */
 static gdouble
@@ -82,17 +92,18 @@ own_floor (ClothDiagnosis * d, guint judge, const ClothGapExtent * extent,
   const ClothModel *models[1] = { other };
   ClothGapExtent **extents;
   gdouble sum = 0.;
-  gsize all = (gsize) r->n * r->n_frames;
+  gsize all = (gsize) r->n * r->n_frames, seen = 0;
 
-  extents =
-      cloth_gap_extents_new (r, models, 1, WINDOW_GAIN,
-      CLOTH_DIAGNOSIS_WINDOW_S, &d->study.rollout, error);
+  extents = measure (d, r, models, 1, error);
   if (!extents)
     return NAN;
   for (gsize i = 0; i < 3 * all && extents[0]->sound; i++) {
     gdouble off = extents[0]->positions[i] - extent->positions[i];
 
+    if (isnan (extent->squares[i / 3]))
+      continue;
     sum += off * off;
+    seen += i % 3 == 0;
   }
   if (extents[0]->sound) {
     *null = extents[0];
@@ -100,7 +111,7 @@ own_floor (ClothDiagnosis * d, guint judge, const ClothGapExtent * extent,
     g_free (extents);
   } else
     cloth_gap_extents_free (extents, 1);
-  return 3. * r->sigma * r->sigma + sum / all;
+  return 3. * r->sigma * r->sigma + sum / MAX (seen, 1);
 }
 
 /* What stands for a simulation that lacks nothing. */
@@ -132,8 +143,7 @@ measure_floor (ClothDiagnosis * d, guint judge, const ClothGapExtent * extent,
   *result = (ClothGapEstimate) {
   0., NAN, NAN};
   if (d->options->n_baselines) {
-    floor = cloth_gap_extents_new (cloth_diagnosis_recording (d, baseline),
-        models, 1, WINDOW_GAIN, CLOTH_DIAGNOSIS_WINDOW_S, &d->study.rollout,
+    floor = measure (d, cloth_diagnosis_recording (d, baseline), models, 1,
         error);
     if (!floor)
       return FALSE;
@@ -238,18 +248,13 @@ measure_models (ClothDiagnosis * d, guint i, const ClothModel * const *models,
   ClothGapExtent **all = NULL, **others;
 
   if (!d->filmed[i])
-    return cloth_gap_extents_new (r, models, n, WINDOW_GAIN,
-        CLOTH_DIAGNOSIS_WINDOW_S, &d->study.rollout, error);
+    return measure (d, r, models, n, error);
   swap_filmed (d, i);
-  all =
-      cloth_gap_extents_new (r, models, 1, WINDOW_GAIN,
-      CLOTH_DIAGNOSIS_WINDOW_S, &d->study.rollout, error);
+  all = measure (d, r, models, 1, error);
   swap_filmed (d, i);
   if (!all)
     return NULL;
-  others =
-      cloth_gap_extents_new (r, models + 1, n - 1, WINDOW_GAIN,
-      CLOTH_DIAGNOSIS_WINDOW_S, &d->study.rollout, error);
+  others = measure (d, r, models + 1, n - 1, error);
   if (!others) {
     cloth_gap_extents_free (all, 1);
     return NULL;

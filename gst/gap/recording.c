@@ -157,47 +157,6 @@ estimate_sigma (ClothRecording * r)
       sqrt (FOURTH_DIFFERENCE);
 }
 
-/* A cloth's edges are about as long as on the flat cloth, in metres. */
-static gboolean
-check_scale (ClothRecording * r, GError ** error)
-{
-  const ClothTopology *t = r->scene->topology;
-  g_autoptr (GArray) ratios = g_array_new (FALSE, FALSE, sizeof (gdouble));
-  gdouble ratio;
-
-  for (guint f = 0; f < t->n_faces; f++) {
-    const guint32 *face = t->faces + 4 * (gsize) f;
-    guint a = face[0], b = face[1], frame = r->n_frames / 2;
-    gdouble flat = hypot (t->uv[2 * a] - t->uv[2 * b],
-        t->uv[2 * a + 1] - t->uv[2 * b + 1]), d2 = 0.;
-
-    for (guint k = 0; k < 3; k++) {
-      gdouble d = place (r, r->y, frame, a)[k] - place (r, r->y, frame, b)[k];
-
-      d2 += d * d;
-    }
-    ratio = sqrt (d2) / flat;
-    if (flat > 0.)
-      g_array_append_val (ratios, ratio);
-  }
-  if (!ratios->len)
-    return TRUE;
-  g_array_sort (ratios, cloth_recording_compare_numbers);
-  ratio = g_array_index (ratios, gdouble, ratios->len / 2);
-  if (ratio > 0.5 && ratio < 2.)
-    return TRUE;
-  if (ratio > 500. && ratio < 2000.)
-    g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE, "%s: edges are "
-        "%.0f times as long as on the flat cloth: positions.npy is in "
-        "millimetres; write it in metres", r->name, ratio);
-  else
-    g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE, "%s: edges are "
-        "%.3g times as long as on the flat cloth; positions.npy and the size of "
-        "the cloth must both be in metres, the vertices in the order of the "
-        "mesh", r->name, ratio);
-  return FALSE;
-}
-
 static gboolean
 load (ClothRecording * r, ClothTake * take, GError ** error)
 {
@@ -218,6 +177,31 @@ load (ClothRecording * r, ClothTake * take, GError ** error)
     }
   }
   return TRUE;
+}
+
+/**
+ * cloth_recording_longest_side:
+ * @recording: a recording
+ *
+ * Returns: the longer side of its flat cloth, m
+ * Since: 0.1
+ */
+gdouble
+cloth_recording_longest_side (const ClothRecording * recording)
+{
+  const ClothTopology *t = recording->scene->topology;
+  gdouble longest = 0.;
+
+  for (guint k = 0; k < 2; k++) {
+    gdouble low = INFINITY, high = -INFINITY;
+
+    for (gsize i = 0; i < t->n_vertices; i++) {
+      low = MIN (low, t->uv[2 * i + k]);
+      high = MAX (high, t->uv[2 * i + k]);
+    }
+    longest = MAX (longest, high - low);
+  }
+  return longest;
 }
 
 /**
@@ -255,11 +239,11 @@ cloth_recording_new (ClothTake * take, GError ** error)
   if (!load (r, take, error))
     return NULL;
   r->sigma = info->noise_sigma_m;
+  if (!cloth_recording_check (r, error))
+    return NULL;
   if (!(r->sigma > 0.))
     r->sigma = estimate_sigma (r);
   cloth_recording_bridge (r);
-  if (!check_scale (r, error))
-    return NULL;
   cloth_recording_differentiate (r);
   return g_steal_pointer (&r);
 }

@@ -35,6 +35,9 @@ typedef struct {
 } ClothRecording;
 
 ClothRecording *cloth_recording_new (ClothTake * take, GError ** error);
+gdouble cloth_recording_longest_side (const ClothRecording * recording);
+gboolean cloth_recording_check (const ClothRecording * recording,
+    GError ** error);
 void cloth_recording_find_weights (const gdouble * times, guint mask,
     gdouble at, gdouble * weights);
 ClothRecording *cloth_recording_thin (const ClothRecording * recording,

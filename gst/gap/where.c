@@ -42,23 +42,6 @@ typedef struct
   gdouble longest;              /* m */
 } Compared;
 
-static gdouble
-longest_side (const ClothTopology * t)
-{
-  gdouble longest = 0.;
-
-  for (guint k = 0; k < 2; k++) {
-    gdouble low = INFINITY, high = -INFINITY;
-
-    for (gsize i = 0; i < t->n_vertices; i++) {
-      low = MIN (low, t->uv[2 * i + k]);
-      high = MAX (high, t->uv[2 * i + k]);
-    }
-    longest = MAX (longest, high - low);
-  }
-  return longest;
-}
-
 /* Mean squares of the three, [cells] each; of what there is not NaN. */
 static void
 bin (const Compared * c, const gdouble * hz, guint n_hz, const gdouble * waves,
@@ -242,7 +225,7 @@ cloth_diagnosis_locate (ClothDiagnosis * d)
 {
   const ClothRecording *r = cloth_diagnosis_recording (d, 0);
   const Compared c = { d->before, d->after, d->floor,
-    longest_side (r->scene->topology)
+    cloth_recording_longest_side (r)
   };
 
   fill_stages (d, r);

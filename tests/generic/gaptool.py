@@ -177,6 +177,82 @@ def refusals(folder):
     expect(done.returncode == 2 and "diagnose's" in done.stderr, 'effects --model')
 
 
+def variant(folder, name, positions=None, clamps=None, times=None, **keys):
+    """take_drag with other contents; a key that is None goes."""
+    path = os.path.join(folder, name)
+    os.mkdir(path)
+    with open(os.path.join(drag, 'take.json'), encoding='utf-8') as file:
+        take = json.load(file)
+    take.update(keys, name=name)
+    with open(os.path.join(path, 'take.json'), 'w', encoding='utf-8') as file:
+        json.dump({key: value for key, value in take.items() if value is not None}, file)
+    for key, array in ('positions', positions), ('clamps', clamps):
+        if array is None:
+            array = numpy.load(os.path.join(drag, key + '.npy'))
+        if key == 'positions' or keys.get('held') != []:
+            numpy.save(os.path.join(path, key + '.npy'), numpy.asarray(array, numpy.float32))
+    if times is not None:
+        numpy.save(os.path.join(path, 'times.npy'), times)
+    return path
+
+
+def contradictions(folder):
+    """Takes that are not what they say: each is refused, or undecidable with the reason."""
+    p = numpy.load(os.path.join(drag, 'positions.npy'))
+    c = numpy.load(os.path.join(drag, 'clamps.npy'))
+    t = numpy.arange(len(p)) / 50
+    grid = p.reshape(len(p), 9, 9, 3)
+    far, first, last, early = (p.copy() for _ in range(4))
+    far[30, 40] = 1e30
+    first[0], last[45:], early[:] = numpy.nan, numpy.nan, numpy.nan
+    early[:8] = p[:8]
+    up = [0, 2, 1]
+    for name, keys, text in [
+            ('mm', dict(positions=1000 * p, clamps=1000 * c), 'positions.npy is in millimetres'),
+            ('mmclamps', dict(clamps=1000 * c), 'clamps.npy is in millimetres'),
+            ('mmnoise', dict(noise_sigma_m=0.5), '“noise_sigma_m”'),
+            ('mmgravity', dict(gravity=[0, 0, -9810]), '“gravity”'),
+            ('far', dict(positions=far), 'write NaN where a vertex was not seen'),
+            ('swapped', dict(clamps=c[:, ::-1]), 'the clamp of vertex 0 begins'),
+            ('mirrored', dict(positions=grid[:, :, ::-1].reshape(p.shape)), 'not mirrored'),
+            ('upended', dict(positions=grid[:, ::-1].reshape(p.shape)), 'not mirrored'),
+            ('halfturned', dict(positions=p[..., up]), 'same axes'),
+            ('three', dict(positions=p[:3], clamps=c[:3]), 'at least 7')]:
+        done = run(folder, 'diagnose', variant(folder, name, **keys), '--model', knit,
+                   '--effects', 'wind', '--output', 'x')
+        expect(done.returncode == 1 and text in done.stderr and not os.path.exists(
+            os.path.join(folder, 'x')), '%s: %d %s' % (name, done.returncode, done.stderr.strip()))
+    for name, keys, text in [
+            ('unseen', dict(positions=numpy.nan * p), '0% of unseen was seen'),
+            ('glimpse', dict(positions=early), 'at least 20% must be'),
+            ('short', dict(positions=p[:20], clamps=c[:20]), 'lasts 0.38 s'),
+            ('slow', dict(fps=5), 'at least 10 frames a second'),
+            ('ms', dict(times=1000 * t), 'give times in seconds'),
+            ('aeons', dict(times=t + 1e9 * (t > 0.5)), 'no frame for 1e+09 s after frame 25'),
+            ('free', dict(held=[]), 'nothing holds the cloth'),
+            ('tipped', dict(positions=p[..., up], clamps=c[..., up]), 'gravity were along −y'
+             if p[..., 2].mean() < c[..., 2].mean() else 'gravity were along +y'),
+            ('upright', dict(gravity=[0, 0, 9.81]), 'gravity were along −z')]:
+        done = run(folder, 'diagnose', variant(folder, name, **keys), '--model', knit,
+                   '--effects', 'wind', '--output', name + '-gap')
+        expect(done.returncode == 0, '%s: %s' % (name, done.stderr[-200:]))
+        with open(os.path.join(folder, name + '-gap/gap.json'), encoding='utf-8') as file:
+            gap = json.load(file)
+        expect(gap['verdict'] == 'undecidable' and text in gap['reason'] and
+               gap['reason'] in gap['summary'] and not gap['effects'],
+               '%s: %s' % (name, gap['summary']))
+    # what is amiss with a take is so with a baseline and a hold-out
+    for option in '--baseline', '--hold-out':
+        done = run(folder, 'diagnose', drag, '--model', knit, '--effects', 'wind', option,
+                   'tipped', '--output', 'x' + option)
+        expect('undecidable' in done.stdout and 'tipped' in done.stdout, option + done.stdout)
+    # holes that can be lived with
+    for name, positions in ('late', first), ('gone', last):
+        done = run(folder, 'diagnose', variant(folder, name, positions), '--model', knit,
+                   '--effects', 'air_drag,wind', '--output', name + '-gap')
+        expect(done.returncode == 0 and 'undecidable' not in done.stdout, done.stdout)
+
+
 def usage(folder):
     for arguments, text in [
             ((), 'effects or simulate'), (('diagnoze',), 'no command'),
@@ -226,6 +302,7 @@ with tempfile.TemporaryDirectory(prefix='cloth-gaptool-') as scratch:
     diagnose(scratch)
     interrupt(scratch)
     refusals(scratch)
+    contradictions(scratch)
     usage(scratch)
     failures(scratch)
 sys.exit(1 if faults else 0)

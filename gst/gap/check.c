@@ -1,0 +1,226 @@
+/* Recordings that can't be what they say they are: other units, other axes, other vertices.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <math.h>
+
+#include "gst/gap/diagnose.h"
+#include "gst/gap/recording.h"
+
+/* Frames that lengths of edges are looked at in. */
+#define N_LOOKS 8
+/* Neighbours are never this many times the cloth's longest side apart. */
+#define FAR 10.
+/* A clamp begins no further from the vertex that it holds than this share of that side;
+ * in so many frames that saw the vertex. */
+#define NEAR 0.25
+#define N_FIRST 5
+/* Noise beyond this share of an edge hides the cloth. */
+#define MOST_NOISE 0.5
+/* No laboratory has more gravity, m/s². */
+#define MOST_GRAVITY 100.
+
+static gboolean
+is_seen (const ClothRecording * r, guint frame, guint v)
+{
+  return r->seen[(gsize) frame * r->n + v] > 0.;
+}
+
+static gdouble
+distance (const gdouble * a, const gdouble * b)
+{
+  return sqrt (pow (a[0] - b[0], 2.) + pow (a[1] - b[1], 2.) +
+      pow (a[2] - b[2], 2.));
+}
+
+static const gdouble *
+place (const ClothRecording * r, guint frame, guint v)
+{
+  return r->y + 3 * ((gsize) frame * r->n + v);
+}
+
+static gdouble
+flat_length (const ClothTopology * t, guint a, guint b)
+{
+  return hypot (t->uv[2 * (gsize) a] - t->uv[2 * (gsize) b],
+      t->uv[2 * (gsize) a + 1] - t->uv[2 * (gsize) b + 1]);
+}
+
+static gdouble
+median (GArray * numbers)
+{
+  if (!numbers->len)
+    return NAN;
+  g_array_sort (numbers, cloth_recording_compare_numbers);
+  return g_array_index (numbers, gdouble, numbers->len / 2);
+}
+
+static gdouble
+typical_edge (const ClothTopology * t)
+{
+  g_autoptr (GArray) lengths = g_array_new (FALSE, FALSE, sizeof (gdouble));
+
+  for (guint f = 0; f < t->n_faces; f++) {
+    const guint32 *face = t->faces + 4 * (gsize) f;
+    gdouble flat = flat_length (t, face[0], face[1]);
+
+    if (flat > 0.)
+      g_array_append_val (lengths, flat);
+  }
+  return median (lengths);
+}
+
+/* A cloth's edges are about as long as on the flat cloth, in metres. */
+static gboolean
+check_scale (const ClothRecording * r, GError ** error)
+{
+  const ClothTopology *t = r->scene->topology;
+  g_autoptr (GArray) ratios = g_array_new (FALSE, FALSE, sizeof (gdouble));
+  gdouble ratio;
+
+  for (guint look = 0; look < N_LOOKS; look++)
+    for (guint f = 0; f < t->n_faces; f++) {
+      const guint32 *face = t->faces + 4 * (gsize) f;
+      guint a = face[0], b = face[1];
+      guint frame = (guint) ((guint64) look * (r->n_frames - 1) /
+          (N_LOOKS - 1));
+      gdouble flat = flat_length (t, a, b);
+
+      if (!(flat > 0.) || !is_seen (r, frame, a) || !is_seen (r, frame, b))
+        continue;
+      ratio = distance (place (r, frame, a), place (r, frame, b)) / flat;
+      g_array_append_val (ratios, ratio);
+    }
+  ratio = median (ratios);
+  if (isnan (ratio) || (ratio > 0.5 && ratio < 2.))
+    return TRUE;
+  if (ratio > 500. && ratio < 2000.)
+    g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE, "%s: edges are "
+        "%.0f times as long as on the flat cloth: positions.npy is in "
+        "millimetres; write it in metres", r->name, ratio);
+  else
+    g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE, "%s: edges are "
+        "%.3g times as long as on the flat cloth; positions.npy and the size of "
+        "the cloth must both be in metres, the vertices in the order of the "
+        "mesh", r->name, ratio);
+  return FALSE;
+}
+
+/* One place far off the cloth would tear every simulation that is drawn to it. */
+static gboolean
+check_places (const ClothRecording * r, gdouble side, GError ** error)
+{
+  const ClothTopology *t = r->scene->topology;
+
+  for (guint frame = 0; frame < r->n_frames; frame++)
+    for (guint f = 0; f < t->n_faces; f++) {
+      const guint32 *face = t->faces + 4 * (gsize) f;
+      guint corners = face[3] == CLOTH_NO_VERTEX ? 3 : 4;
+
+      for (guint i = 0; i < corners; i++) {
+        guint a = face[i], b = face[(i + 1) % corners];
+        gdouble apart = distance (place (r, frame, a), place (r, frame, b));
+
+        if (is_seen (r, frame, a) && is_seen (r, frame, b)
+            && !(apart < FAR * side)) {
+          g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE,
+              "%s: in frame %u the vertices %u and %u, neighbours on a cloth of "
+              "%.3g m, are %.3g m apart; write NaN where a vertex was not seen",
+              r->name, frame, a, b, side, apart);
+          return FALSE;
+        }
+      }
+    }
+  return TRUE;
+}
+
+/* How far a clamp's path, times @scale, begins from the vertex that it holds; NaN: that
+ * was not seen. */
+static gdouble
+find_start (const ClothRecording * r, guint held, gdouble scale)
+{
+  const ClothHeld *h = &g_array_index (r->scene->held, ClothHeld, held);
+  gdouble nearest = NAN;
+  guint seen = 0;
+
+  for (guint frame = 0; frame < r->n_frames && seen < N_FIRST; frame++) {
+    const gdouble *clamp = r->scene->clamps +
+        3 * ((gsize) frame * r->scene->held->len + held);
+    const gdouble at[3] = { scale * clamp[0], scale * clamp[1],
+      scale * clamp[2]
+    };
+
+    if (r->times[frame] < h->from_s || r->times[frame] >= h->until_s
+        || !is_seen (r, frame, h->vertex))
+      continue;
+    nearest = fmin (nearest, distance (at, place (r, frame, h->vertex)));
+    seen++;
+  }
+  return nearest;
+}
+
+static gboolean
+check_clamps (const ClothRecording * r, gdouble side, GError ** error)
+{
+  for (guint i = 0; i < r->scene->held->len; i++) {
+    guint vertex = g_array_index (r->scene->held, ClothHeld, i).vertex;
+    gdouble off = find_start (r, i, 1.);
+
+    if (isnan (off) || off < NEAR * side)
+      continue;
+    if (find_start (r, i, 1e-3) < NEAR * side)
+      g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE,
+          "%s: the clamp "
+          "of vertex %u begins %.3g m from where the vertex is seen: clamps.npy "
+          "is in millimetres; write it in metres", r->name, vertex, off);
+    else
+      g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE,
+          "%s: the clamp "
+          "of vertex %u begins %.3g m from where the vertex is seen; "
+          "positions.npy and clamps.npy must have the same axes and units, the "
+          "vertices the order of the mesh (not mirrored), and the clamps that "
+          "of “held”", r->name, vertex, off);
+    return FALSE;
+  }
+  return TRUE;
+}
+
+static gboolean
+check_numbers (const ClothRecording * r, GError ** error)
+{
+  const gdouble *g = r->scene->gravity;
+  const gdouble none[3] = { 0. };
+  gdouble edge = typical_edge (r->scene->topology);
+
+  if (r->sigma > MOST_NOISE * edge) {
+    g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE, "%s: noise of "
+        "%.3g m hides a cloth whose edges are %.3g m long; “noise_sigma_m” is "
+        "in metres, null estimates it", r->name, r->sigma, edge);
+    return FALSE;
+  }
+  if (distance (g, none) > MOST_GRAVITY) {
+    g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE,
+        "%s: “gravity” " "is %.3g m/s²; give it in m/s², on earth 9.81",
+        r->name, distance (g, none));
+    return FALSE;
+  }
+  return TRUE;
+}
+
+/**
+ * cloth_recording_check:
+ * @recording: a recording as it was read: what was not seen is not bridged yet
+ * @error: #ClothGapError
+ *
+ * Returns: %FALSE when it contradicts itself or its cloth: units, places that no cloth can
+ *   be in, clamps that are not where they hold
+ * Since: 0.1
+ */
+gboolean
+cloth_recording_check (const ClothRecording * recording, GError ** error)
+{
+  gdouble side = cloth_recording_longest_side (recording);
+
+  return check_numbers (recording, error) && check_scale (recording, error)
+      && check_places (recording, side, error)
+      && check_clamps (recording, side, error);
+}
