@@ -115,7 +115,7 @@ doubt_gravity (ClothDiagnosis * d, const ClothRecording * recording,
   }
   if (!(least < MUCH_LESS * told))
     return NULL;
-  return g_strdup_printf ("the cloth of %s moves as if gravity were along %s "
+  return g_strdup_printf ("The cloth of %s moves as if gravity were along %s "
       "and not as “gravity” of take.json says; mind the axes of positions.npy: "
       "world z is up.", recording->name, names[best]);
 }
@@ -137,18 +137,21 @@ doubt_times (const ClothRecording * r)
   /* one hole may be as long as all the rest */
   if (duration - most > LONGEST_INTERVAL * window * (r->n_frames - 2))
     return
-        g_strdup_printf ("%s has one frame in %.3g s, and the gap is measured "
+        g_strdup_printf
+        ("The take %s has one frame in %.3g s, and the gap is measured "
         "in windows of %g s; film at least %g frames a second, and give times "
         "in seconds.", r->name, interval, window,
         ceil (1. / (LONGEST_INTERVAL * window)));
   if (most > window)
     return
-        g_strdup_printf ("%s has no frame for %.3g s after frame %u, and what "
+        g_strdup_printf
+        ("The take %s has no frame for %.3g s after frame %u, and what "
         "its cloth and clamps did meanwhile is not known; give what is before "
         "and what is after as two takes.", r->name, most, after);
   if (duration < LEAST_WINDOWS * window - 1e-6)
     return
-        g_strdup_printf ("%s lasts %.3g s, and the gap is measured in windows "
+        g_strdup_printf
+        ("The take %s lasts %.3g s, and the gap is measured in windows "
         "of %g s; film at least %g s.", r->name, duration, window,
         LEAST_WINDOWS * window);
   return NULL;
@@ -164,7 +167,8 @@ doubt_seen (const ClothRecording * r)
     seen += r->seen[i];
   if (seen >= LEAST_SEEN * all)
     return NULL;
-  return g_strdup_printf ("%.3g%% of %s was seen, and at least %g%% must be; "
+  return
+      g_strdup_printf ("Only %.3g%% of %s was seen, and at least %g%% must be; "
       "add cameras, or begin and end the take where the cloth is in sight.",
       100. * seen / all, r->name, 100. * LEAST_SEEN);
 }
@@ -195,12 +199,12 @@ doubt_held (const ClothRecording * r)
       || height_of (r, 0, g) - height_of (r, r->n_frames - 1, g) >
       HARDLY_FALLEN * side)
     return NULL;
-  return g_strdup_printf ("nothing holds the cloth of %s, and yet it does not "
+  return g_strdup_printf ("Nothing holds the cloth of %s, and yet it does not "
       "fall; name what holds it in “held” or “obstacles” of take.json.",
       r->name);
 }
 
-/* Why the recordings can't be diagnosed, a sentence that begins small, or NULL. What is
+/* Why the recordings can't be diagnosed, a sentence, or NULL. What is
  * cheap to find out comes first: of hours between two frames nothing is simulated. */
 gchar *
 cloth_diagnosis_find_doubt (ClothDiagnosis * d, const ClothModel * model)
@@ -229,7 +233,7 @@ cloth_diagnosis_doubt_result (ClothDiagnosis * d, const ClothModel * model)
   gdouble told, least = INFINITY, best = 1.;
 
   if (!isfinite (d->result->gap_before.value))
-    return g_strdup ("nothing was seen in the parts that judge; give a take of "
+    return g_strdup ("Nothing was seen in the parts that judge; give a take of "
         "its own as --hold-out.");
   if (d->result->verdict != CLOTH_GAP_UNEXPLAINED)
     return NULL;
@@ -249,7 +253,7 @@ cloth_diagnosis_doubt_result (ClothDiagnosis * d, const ClothModel * model)
   }
   if (!(least < MUCH_LESS * told) || best == faster[0] || best == faster[n - 1])
     return NULL;
-  return g_strdup_printf ("the cloth of %s moves as if it were filmed at about "
+  return g_strdup_printf ("The cloth of %s moves as if it were filmed at about "
       "%.3g frames a second; mind “fps” of take.json or times.npy.",
       r->name,
       best * (r->n_frames - 1) / (r->times[r->n_frames - 1] - r->times[0]));

@@ -154,6 +154,9 @@ say_explained (GString * text, const ClothGapResult * result)
     g_string_append (text, n > 1 ? " explain " : " explains ");
     say_percent (text, &result->shrink);
     g_string_append_printf (text, " %s", where_judged (result));
+  } else if (isfinite (result->gap_after.value)) {
+    g_string_append (text, n > 1 ? " take it to " : " takes it to ");
+    say_length (text, result->gap_after.value);
   } else {
     g_string_append (text, n > 1 ? " were added" : " was added");
   }

@@ -55,6 +55,9 @@ test_summary (void)
   effect = cloth_gap_result_add_effect (result, &air_drag);
   effect->accepted = TRUE;
   assert_summary (result, "Gap 3.1 mm, 2.1× the floor. Air drag was added.");
+  result->gap_after.value = 0.0016;
+  assert_summary (result,
+      "Gap 3.1 mm, 2.1× the floor. Air drag takes it to 1.6 mm.");
   result->shrink = (ClothGapEstimate) {
   0.84, 0.76, 0.90};
   assert_summary (result, "Gap 3.1 mm, 2.1× the floor. Air drag explains "

@@ -229,7 +229,7 @@ def contradictions(folder):
             ('slow', dict(fps=5), 'at least 10 frames a second'),
             ('ms', dict(times=1000 * t), 'give times in seconds'),
             ('aeons', dict(times=t + 1e9 * (t > 0.5)), 'no frame for 1e+09 s after frame 25'),
-            ('free', dict(held=[]), 'nothing holds the cloth'),
+            ('free', dict(held=[]), 'Nothing holds the cloth'),
             ('tipped', dict(positions=p[..., up], clamps=c[..., up]), 'gravity were along −y'
              if p[..., 2].mean() < c[..., 2].mean() else 'gravity were along +y'),
             ('upright', dict(gravity=[0, 0, 9.81]), 'gravity were along −z')]:
