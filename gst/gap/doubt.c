@@ -204,8 +204,22 @@ doubt_held (const ClothRecording * r)
       r->name);
 }
 
-/* Why the recordings can't be diagnosed, a sentence, or NULL. What is
- * cheap to find out comes first: of hours between two frames nothing is simulated. */
+/* Whether the world that the takes tell of is not the recordings'. */
+static gchar *
+doubt_world (ClothDiagnosis * d, const ClothModel * model)
+{
+  gchar *doubt = NULL;
+
+  for (guint i = 0; i < d->recordings->len && !doubt; i++)
+    doubt = doubt_held (cloth_diagnosis_recording (d, i));
+  for (guint i = 0; i < d->recordings->len && !doubt; i++)
+    doubt = doubt_gravity (d, cloth_diagnosis_recording (d, i), model);
+  return doubt;
+}
+
+/* Why the recordings can't be diagnosed, a sentence, or NULL. What is cheap to find out comes
+ * first: of hours between two frames nothing is simulated. What cameras saw can be diagnosed
+ * in any world. */
 gchar *
 cloth_diagnosis_find_doubt (ClothDiagnosis * d, const ClothModel * model)
 {
@@ -214,12 +228,11 @@ cloth_diagnosis_find_doubt (ClothDiagnosis * d, const ClothModel * model)
   for (guint i = 0; i < d->recordings->len && !doubt; i++) {
     const ClothRecording *r = cloth_diagnosis_recording (d, i);
 
-    if (!(doubt = doubt_times (r)) && !(doubt = doubt_seen (r)))
-      doubt = doubt_held (r);
+    if (!(doubt = doubt_times (r)))
+      doubt = doubt_seen (r);
   }
-  for (guint i = 0; i < d->recordings->len && !doubt; i++)
-    doubt = doubt_gravity (d, cloth_diagnosis_recording (d, i), model);
-  return doubt;
+  return doubt || cloth_diagnosis_has_sights (d) ? doubt :
+      doubt_world (d, model);
 }
 
 /* The same of what was found: nothing to judge by, or what no effect explains looks like
@@ -231,12 +244,16 @@ cloth_diagnosis_doubt_result (ClothDiagnosis * d, const ClothModel * model)
   const ClothRecording *r = cloth_diagnosis_recording (d, 0);
   g_auto (Trial) t = { NULL };
   gdouble told, least = INFINITY, best = 1.;
+  gchar *doubt;
 
   if (!isfinite (d->result->gap_before.value))
     return g_strdup ("Nothing was seen in the parts that judge; give a take of "
         "its own as --hold-out.");
-  if (d->result->verdict != CLOTH_GAP_UNEXPLAINED)
+  if (d->result->verdict != CLOTH_GAP_UNEXPLAINED
+      || cloth_diagnosis_count_faults (d))
     return NULL;
+  if (cloth_diagnosis_has_sights (d) && (doubt = doubt_world (d, model)))
+    return doubt;
   trial_init (&t, r);
   told = try_world (d, &t, model, 1.);
   for (guint i = 0; i < n; i++) {
