@@ -202,6 +202,9 @@ def check_table(browser):
     assert 'As a whole12%' in shares[3] and 'Below 43 cm8%1.3× the floor, 4% left' in shares[3], shares[3]
     assert browser.run('return [...document.querySelectorAll(".map figcaption")].map(node => node.textContent)')[2:] == \
         ['Share of the gap, whole take', 'What the effects take off it']
+    place = browser.text('#place')
+    assert place.startswith('More than chance makes it, the gap is at 33 of 1155 vertices (3%'), place
+    assert place.endswith('from 0.8 s on.'), place
     assert browser.run('return [...document.querySelectorAll("#inputs code")].map(node => node.title)')[0].startswith('9f86d0')
     assert 'Shake the upper edge' in browser.text('#next')
     assert 'diverged at 1.34 s' in browser.text('#failures')

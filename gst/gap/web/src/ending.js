@@ -16,7 +16,7 @@ function advice(gap) {
   if (gap.held_out !== 'takes' && gap.verdict !== 'undecidable') {
     list.push(element('li', {}, 'The shrink was judged on time blocks of the same take. A second take of another motion, given as --hold-out, judges it harder.'));
   }
-  if (!gap.inputs.some((input) => input.role === 'baseline')) {
+  if (gap.verdict !== 'undecidable' && !gap.inputs.some((input) => input.role === 'baseline')) {
     list.push(element('li', {}, 'There was no baseline. A take on which the model is right, given as --baseline, tells the simulator’s own error from an effect.'));
   }
   return list.length ? element('ul', {}, ...list)

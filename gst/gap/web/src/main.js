@@ -14,7 +14,7 @@ const page = document.getElementById('report');
 
 let player = null;
 let time = null;
-if (arrays.playback) player = new Player(new Playback(arrays.playback), () => time?.redraw());
+if (arrays.playback) player = new Player(new Playback(arrays.playback), gap.where, () => time?.redraw());
 if (arrays.series) {
   time = overTime(arrays.series, gap.where.onset_s, () => player?.time ?? NaN, (at) => player?.seekTime(at));
 }

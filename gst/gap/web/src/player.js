@@ -4,13 +4,29 @@ import { niceLimit, rms } from './data.js';
 import { element, radios, section, whenShown } from './dom.js';
 import { FlatMap, legend } from './maps.js';
 import { View } from './scene.js';
-import { mm, number } from './words.js';
+import { known, mm, number, percent } from './words.js';
+
+// Which vertices the gap is at, and since when; in metres where every vertex is shown.
+function place(where, playback) {
+  const { region, onset_s: onset, vertices } = where ?? {};
+  if (!region) return null;
+  if (!region.length) return element('p', { id: 'place' }, 'Nowhere on the cloth is the gap more than chance makes it.');
+  const span = (k) => {
+    const at = region.map((vertex) => playback.uv[2 * vertex + k]);
+    return `${'uv'[k]} ${[Math.min, Math.max].map((end) => number(at.reduce((a, b) => end(a, b)))).join(' to ')} m`;
+  };
+  const share = vertices ? ` of ${vertices.length} vertices (${percent(region.length / vertices.length)})` : ' vertices';
+  return element('p', { id: 'place' }, `More than chance makes it, the gap is at ${region.length}${share}, `,
+    playback.vertexStep === 1 ? `${span(0)}, ${span(1)}, ` : null,
+    known(onset) ? `from ${number(onset)} s on.` : 'from the beginning on.');
+}
 
 const TITLES = { recorded: 'Recorded', before: 'Simulated before', after: 'Simulated after' };
 
 export class Player {
-  constructor(playback, frameChanged) {
+  constructor(playback, where, frameChanged) {
     this.playback = playback;
+    this.where = where;
     this.frameChanged = frameChanged;
     this.names = ['recorded', 'before', 'after'].filter((name) => playback.has(name));
     this.simulated = this.names.slice(1);
@@ -85,7 +101,7 @@ export class Player {
     element('div', { class: 'controls' }, this.button, this.slider, speed, home),
     element('div', { class: 'under' }, this.output, this.key.node),
     this.maps.length ? element('h3', {}, 'On the flat cloth') : null,
-    this.maps.length ? this.mapBox : null);
+    this.maps.length ? this.mapBox : null, place(this.where, playback));
   }
 
   #makeMaps() {
