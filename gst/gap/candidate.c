@@ -88,6 +88,8 @@ add_free (ClothGapCandidates * c, const ClothModel * model, GError ** error)
     } else {
       d.prior = (d.high - d.low) / 4.;
     }
+    d.fit_low = d.low;
+    d.fit_high = d.high;
     d.step = FREE_STEP * d.prior;
     g_array_append_val (c->directions, d);
   }
@@ -117,8 +119,8 @@ add_direction (ClothGapCandidates * c, ClothGapCandidate * candidate, guint k)
   d.prior = p->prior;
   d.step = STEP * p->prior;
   d.one_sided = p->one_sided;
-  d.low = p->min;
-  d.high = p->max;
+  d.low = d.fit_low = p->min;
+  d.high = d.fit_high = p->max;
   g_array_append_val (c->directions, d);
   candidate->parameters[candidate->n++] = k;
 }
@@ -231,6 +233,25 @@ add_slips (ClothGapCandidates * c, const ClothEffect * effect,
   }
 }
 
+/* Gusts have no directions of their own, but those of wind. */
+static gboolean
+add_gust (ClothGapCandidates * c, const ClothEffect * effect)
+{
+  ClothGapCandidate candidate = start (c, effect);
+
+  for (guint i = 0; i < c->list->len; i++) {
+    const ClothGapCandidate *wind =
+        &g_array_index (c->list, ClothGapCandidate, i);
+
+    if (strcmp (wind->effect->id, "wind") != 0)
+      continue;
+    candidate.first = wind->first;
+    g_array_append_val (c->list, candidate);
+    return TRUE;
+  }
+  return FALSE;
+}
+
 /* NULL when the effect can be a candidate, else why not. */
 static const gchar *
 why_not (const ClothEffect * effect, const ClothModel * model,
@@ -249,8 +270,6 @@ why_not (const ClothEffect * effect, const ClothModel * model,
     return "There is no obstacle in this take.";
   if (strcmp (effect->id, "self_contact") == 0)
     return "Contact switches on and off: it has no derivative to test by.";
-  if (strcmp (effect->id, "gust") == 0)
-    return "No two gusts are alike: it shows as wind that is not steady.";
   for (guint i = 0; i < G_N_ELEMENTS (same) && !frozen; i++)
     if (strcmp (same[i].effect, effect->id) == 0
         && is_free (model, same[i].names[0]))
@@ -313,6 +332,10 @@ cloth_gap_candidates_new (const ClothModel * model,
         skip (data, table[i], reason);
     } else if (strcmp (table[i]->id, "clamp_slip") == 0) {
       add_slips (c, table[i], recording);
+    } else if (strcmp (table[i]->id, "gust") == 0) {
+      if (!add_gust (c, table[i]) && skip)
+        skip (data, table[i],
+            "Gusts are winds that change: they are tested where wind is.");
     } else {
       add_plain (c, table[i]);
     }
@@ -374,6 +397,53 @@ cloth_gap_candidates_move (const ClothGapCandidates * candidates,
 }
 
 /**
+ * cloth_gap_candidates_place:
+ * @candidates: the candidates
+ * @model: a model
+ * @direction: a direction
+ *
+ * Returns: where the model is along it: the number, or its logarithm
+ * Since: 0.1
+ */
+gdouble
+cloth_gap_candidates_place (const ClothGapCandidates * candidates,
+    const ClothModel * model, guint direction)
+{
+  const ClothGapDirection *d = cloth_gap_candidates_direction (candidates,
+      direction);
+  gdouble value = d->centre;
+
+  if (cloth_model_get (model, d->name, &value, NULL) && d->logarithmic)
+    value = log (value);
+  return value;
+}
+
+/**
+ * cloth_gap_candidates_bound:
+ * @candidates: the candidates
+ * @model: a model
+ * @direction: one of the free numbers
+ * @reach: how far it may be from where it is in @model, or the logarithm of it
+ *
+ * Bounds the number in fits to come. Logarithms reach less far up: by no more than makes
+ * as much of a difference.
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_candidates_bound (ClothGapCandidates * candidates,
+    const ClothModel * model, guint direction, gdouble reach)
+{
+  ClothGapDirection *d = &g_array_index (candidates->directions,
+      ClothGapDirection, direction);
+  gdouble value = cloth_gap_candidates_place (candidates, model, direction);
+
+  d->fit_low = MAX (d->low, value - reach);
+  d->fit_high = MIN (d->high, value + (d->logarithmic ? log1p (reach) :
+          reach));
+}
+
+/**
  * cloth_gap_candidates_has_room:
  * @candidates: the candidates
  * @model: where it starts
@@ -389,10 +459,8 @@ cloth_gap_candidates_has_room (const ClothGapCandidates * candidates,
 {
   const ClothGapDirection *d = cloth_gap_candidates_direction (candidates,
       direction);
-  gdouble value = d->centre;
+  gdouble value = cloth_gap_candidates_place (candidates, model, direction);
 
-  if (cloth_model_get (model, d->name, &value, NULL) && d->logarithmic)
-    value = log (value);
   return value - step >= d->low && value + step <= d->high;
 }
 

@@ -3,6 +3,8 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
+#include <string.h>
+
 #include "gst/gap/recording.h"
 #include "gst/sim/model.h"
 
@@ -18,6 +20,8 @@ G_BEGIN_DECLS
  * @one_sided: it can only grow
  * @low: least value
  * @high: largest value
+ * @fit_low: least value that a fit may come to
+ * @fit_high: largest value that a fit may come to
  *
  * Since: 0.1
  */
@@ -30,6 +34,8 @@ typedef struct {
   gboolean one_sided;
   gdouble low;
   gdouble high;
+  gdouble fit_low;
+  gdouble fit_high;
 } ClothGapDirection;
 
 /**
@@ -41,7 +47,8 @@ typedef struct {
  * @parameters: which parameter each of them is
  *
  * One way in which an effect may act: some of its parameters are directions, the others
- * are fixed. An effect may have several candidates.
+ * are fixed. An effect may have several candidates. Gusts have none of their own: @n is 0
+ * and @first that of wind.
  *
  * Since: 0.1
  */
@@ -68,6 +75,13 @@ typedef struct {
   GArray *list;
 } ClothGapCandidates;
 
+/* Whether it is gusts, which no single direction stands for. */
+static inline gboolean
+cloth_gap_candidate_is_gust (const ClothGapCandidate * candidate)
+{
+  return strcmp (candidate->effect->id, "gust") == 0;
+}
+
 /* The i-th direction. */
 static inline const ClothGapDirection *
 cloth_gap_candidates_direction (const ClothGapCandidates * candidates, guint i)
@@ -92,6 +106,10 @@ ClothGapCandidates *cloth_gap_candidates_new (const ClothModel * model,
 ClothModel *cloth_gap_candidates_move (const ClothGapCandidates * candidates,
     const ClothModel * model, const guint * directions,
     const gdouble * changes, guint n);
+gdouble cloth_gap_candidates_place (const ClothGapCandidates * candidates,
+    const ClothModel * model, guint direction);
+void cloth_gap_candidates_bound (ClothGapCandidates * candidates,
+    const ClothModel * model, guint direction, gdouble reach);
 gboolean cloth_gap_candidates_has_room (const ClothGapCandidates *
     candidates, const ClothModel * model, guint direction, gdouble step);
 void cloth_gap_candidates_free (ClothGapCandidates * candidates);

@@ -14,6 +14,11 @@
 
 /* Simulations of the fit of the free numbers. */
 #define N_FIT 6
+/* Free numbers that were fitted on baselines give way by this share of their standard
+ * deviations, and by no more than so many such shares: else they would take the place of
+ * what is missing. */
+#define FROZEN_SHARE 0.5
+#define FROZEN_REACH 2.
 /* On takes that move otherwise than a baseline, what the baseline asks for of an effect
  * itself is taken off the effect's evidence so many times; without a baseline, what the
  * difference of the two force models asks for. */
@@ -163,10 +168,20 @@ fit_free (ClothDiagnosis * d, const ClothModel * model, GError ** error)
   d->model = cloth_study_fit ((ClothStudy **) d->studies->pdata + begin, n,
       d->candidates, model, d->all, precisions, m, NULL, N_FIT, &d->study,
       sigmas, error);
-  for (guint i = 0; i < m; i++)
-    d->precisions[i] = d->options->n_baselines && sigmas[i] > 0. ?
-        MAX (precisions[i], 1. / (sigmas[i] * sigmas[i])) : precisions[i];
-  return d->model != NULL;
+  if (!d->model)
+    return FALSE;
+  for (guint i = 0; i < m; i++) {
+    gdouble sigma = FROZEN_SHARE * sigmas[i];
+
+    d->precisions[i] = precisions[i];
+    if (!d->options->n_baselines)
+      continue;
+    if (sigma > 0.)
+      d->precisions[i] = MAX (precisions[i], 1. / (sigma * sigma));
+    cloth_gap_candidates_bound (d->candidates, d->model, i,
+        FROZEN_REACH / sqrt (d->precisions[i]));
+  }
+  return TRUE;
 }
 
 ClothModel *
@@ -226,7 +241,7 @@ study_other_model (ClothDiagnosis * d, GError ** error)
   g_autoptr (GArray) scores = NULL;
   ClothGapTest test = { {NULL} };
 
-  cloth_diagnosis_begin_part (d, 0.43, 0.45, 1., "the other force model");
+  cloth_diagnosis_begin_part (d, 0.4, 0.42, 1., "the other force model");
   for (guint i = 0; i < d->n_takes; i++) {
     g_autoptr (GError) diverged = NULL;
     ClothStudy *s = cloth_study_new (cloth_diagnosis_recording (d, i),
@@ -281,7 +296,7 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
   cloth_diagnosis_find_signatures (d);
   if (d->options->n_baselines && !study_baselines (d, error))
     return FALSE;
-  if (!cloth_diagnosis_linearise (d, 0, d->n_takes, d->model, 0.3, 0.43, error))
+  if (!cloth_diagnosis_linearise (d, 0, d->n_takes, d->model, 0.3, 0.4, error))
     return FALSE;
   if (!d->options->n_baselines && !study_other_model (d, error))
     return FALSE;

@@ -163,6 +163,9 @@ guint cloth_diagnosis_list_taken_in (const ClothDiagnosis * d, gdouble width,
     guint * directions, gdouble * precisions);
 void cloth_diagnosis_find_left (ClothDiagnosis * d, const ClothGapScore * score);
 GArray *cloth_diagnosis_rank (ClothDiagnosis * d, ClothGapTest * test);
+gboolean cloth_diagnosis_try_rivals (ClothDiagnosis * d,
+    const ClothGapTest * test,
+    GArray * scores, const ClothModel * base, GError ** error);
 void cloth_diagnosis_fill_effects (ClothDiagnosis * d,
     const ClothGapTest * test, const GArray * scores);
 gboolean cloth_diagnosis_select (ClothDiagnosis * d, GError ** error);

@@ -12,9 +12,6 @@
 #define WINDOW_GAIN 1600.
 /* Variance of a gap that is hardly larger, over that before. */
 #define HARDLY_LARGER 1.05
-/* What parts a steady wind from one that is not. */
-static const gchar *const wind_sentence =
-    "Film it with all wind kept off, and measure the wind's speed while it blows.";
 /* What parts faults of cameras that look alike. */
 static const gchar *const capture_sentence =
     "Film a board that moves with all cameras, once more with half the "
@@ -298,8 +295,9 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
     cloth_gap_extents_free (extents, n);
     return FALSE;
   }
-  while (best + 1 < n && matters (d, v[best], v[best + 1]))
-    best++;
+  for (guint i = best + 1; i < n; i++)
+    if (matters (d, v[best], v[i]))
+      best = i;
   while (d->n_chosen > best - faults)
     cloth_model_free (d->with[--d->n_chosen]);
   cloth_gap_extents_interval (extents, n, windows, d->options->seed, N_DRAWS,
@@ -395,58 +393,6 @@ add_camera_effects (ClothDiagnosis * d)
     cloth_gap_result_add_group (d->result, capture_sentence, NAN);
 }
 
-static ClothGapEffect *
-find_effect (const ClothGapResult * r, const gchar * id)
-{
-  for (guint i = 0; i < r->effects->len; i++) {
-    ClothGapEffect *e = &g_array_index (r->effects, ClothGapEffect, i);
-
-    if (strcmp (e->effect->id, id) == 0)
-      return e;
-  }
-  return NULL;
-}
-
-static gboolean
-forget_untested (ClothGapResult * r, const gchar * id)
-{
-  for (guint i = 0; i < r->untested->len; i++)
-    if (strcmp (g_array_index (r->untested, ClothGapUntested, i).effect->id,
-            id) == 0) {
-      g_array_remove_index (r->untested, i);
-      return TRUE;
-    }
-  return FALSE;
-}
-
-/* No two gusts are alike, so they have no derivative. But where a wind is accepted and much
- * remains that it does not explain, it may not have been steady. */
-static void
-suspect_gusts (ClothGapResult * r)
-{
-  ClothGapEffect *wind = find_effect (r, "wind"), gust = {.camera = NULL };
-
-  if (!wind || !wind->accepted || !forget_untested (r, "gust"))
-    return;
-  if (wind->group < 0) {
-    wind->group = (gint) r->groups->len;
-    cloth_gap_result_add_group (r, wind_sentence, NAN);
-  }
-  gust = *wind;
-  gust.effect = cloth_effect_find ("gust");
-  gust.accepted = FALSE;
-  gust.shrink = (ClothGapEstimate) {
-  NAN, NAN, NAN};
-  for (guint k = 0; k < gust.effect->n_parameters; k++)
-    gust.values[k] = gust.sigmas[k] = NAN;
-  for (guint i = 0; i < r->effects->len; i++)
-    if (!g_array_index (r->effects, ClothGapEffect, i).accepted) {
-      g_array_insert_val (r->effects, i, gust);
-      return;
-    }
-  g_array_append_val (r->effects, gust);
-}
-
 /* Whether another effect would do as well as one that is accepted. */
 static gboolean
 is_ambiguous (const ClothGapResult * r)
@@ -470,8 +416,6 @@ cloth_diagnosis_decide (ClothDiagnosis * d)
   if (d->n_chosen)
     accept_effects (d);
   add_camera_effects (d);
-  if (above)
-    suspect_gusts (r);
   if (above || (!accepted && d->unknown))
     r->verdict = CLOTH_GAP_UNEXPLAINED;
   else if (!accepted)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "gst/gap/diagnosis.h"
+#include "gst/gap/gust.h"
 
 /* Clamps that are never further apart than this move alike, m. */
 #define SAME_PATH 1e-3
@@ -123,17 +124,42 @@ cloth_diagnosis_find_mismatch (const ClothDiagnosis * d, guint take, guint gain)
   return mean;
 }
 
+/* The first direction of wind if gusts are looked for in a study, else 0. */
+static guint
+find_wind (const ClothDiagnosis * d, const ClothStudy * study)
+{
+  const GArray *list = d->candidates->list;
+
+  /* fits have derivatives of their own only */
+  for (guint i = 0; study->m == d->candidates->directions->len && i < list->len;
+      i++) {
+    const ClothGapCandidate *c = &g_array_index (list, ClothGapCandidate, i);
+
+    if (cloth_gap_candidate_is_gust (c) && d->sound[c->first]
+        && d->sound[c->first + 1])
+      return c->first;
+  }
+  return 0;
+}
+
 /* The columns of the directions and behind them, where no other take has any, those of the
- * chaos. */
+ * chaos; last those of @wind in the parts of the blocks, unless it is 0. */
 static gdouble *
-columns_of (const ClothDiagnosis * d, guint take, guint gain, guint before)
+columns_of (const ClothDiagnosis * d, guint take, guint gain, guint before,
+    guint wind)
 {
   const ClothStudy *s = cloth_diagnosis_study (d, take);
   gsize size = s->features->size;
-  gdouble *columns = g_new0 (gdouble, (s->m + d->n_chaos) * size + 1);
+  const guint n = s->m + d->n_chaos;
+  gdouble *columns = g_new0 (gdouble, (n + (wind ? CLOTH_GAP_GUST_COLUMNS : 0))
+      * size + 1);
 
   memcpy (columns, s->columns[gain], s->m * size * sizeof (gdouble));
   cloth_study_get_chaos (s, gain, columns + (s->m + before) * size);
+  for (guint i = 0; wind && i < CLOTH_GAP_GUST_COLUMNS; i++)
+    cloth_gap_features_window (s->features, columns + (wind +
+            i % CLOTH_GAP_GUST_WAYS) * size, i / CLOTH_GAP_GUST_WAYS,
+        CLOTH_GAP_GUST_PARTS, columns + (n + i) * size);
   return columns;
 }
 
@@ -144,12 +170,14 @@ normal_of (const ClothDiagnosis * d, guint take, guint gain, guint before)
 {
   const ClothStudy *s = cloth_diagnosis_study (d, take);
   g_autofree gdouble *z = cloth_study_residual (s, gain);
-  g_autofree gdouble *columns = columns_of (d, take, gain, before);
+  const guint wind = find_wind (d, s);
+  g_autofree gdouble *columns = columns_of (d, take, gain, before, wind);
   g_autoptr (ClothGapPower) mismatch =
       cloth_diagnosis_find_mismatch (d, take, gain);
 
   return cloth_gap_normal_new (s->features, s->left[gain] ? s->left[gain] :
-      mismatch, 1., z, columns, s->m + d->n_chaos);
+      mismatch, 1., z, columns, s->m + d->n_chaos + (wind ?
+          CLOTH_GAP_GUST_COLUMNS : 0));
 }
 
 /* The power left in the takes that a baseline's signature is taken off, once @score's
@@ -241,6 +269,8 @@ cloth_diagnosis_make_normals (ClothDiagnosis * d, guint begin, guint end,
     }
     test->normals[g] = d->normals[g];
   }
+  test->gusts = find_wind (d, cloth_diagnosis_study (d, begin)) ?
+      d->candidates->directions->len + d->n_chaos : 0;
 }
 
 /* The free numbers and the directions of what is taken in, with the precisions of their
@@ -292,12 +322,12 @@ cloth_diagnosis_make_test (ClothDiagnosis * d, guint begin, guint end,
 {
   guint m = d->candidates->directions->len;
 
-  cloth_diagnosis_make_normals (d, begin, end, test);
   for (guint k = 0; k < m; k++) {
     d->sound[k] = TRUE;
     for (guint i = begin; i < end; i++)
       d->sound[k] = d->sound[k] && cloth_diagnosis_study (d, i)->sound[k];
   }
+  cloth_diagnosis_make_normals (d, begin, end, test);
   d->n_blocks = d->normals[0]->n_blocks;
   g_free (d->blocks);
   d->blocks = g_new (gboolean, d->n_blocks);
@@ -306,6 +336,7 @@ cloth_diagnosis_make_test (ClothDiagnosis * d, guint begin, guint end,
   test->candidates = d->candidates;
   test->blocks = d->blocks;
   test->overdispersion = d->study.overdispersion;
+  test->block_s = d->study.block_s;
   test->sound = d->sound;
   cloth_diagnosis_list_nuisances (d, test);
 }
@@ -359,6 +390,10 @@ cloth_diagnosis_fill_effects (ClothDiagnosis * d, const ClothGapTest * test,
     for (guint k = 0; k < c->n; k++) {
       e->values[c->parameters[k]] += s->changes[k];
       e->sigmas[c->parameters[k]] = CLOTH_DIAGNOSIS_SIGMA_WIDTH * s->sigmas[k];
+    }
+    if (cloth_gap_candidate_is_gust (c)) {
+      e->values[0] = s->changes[0];
+      e->values[2] = s->changes[1];
     }
   }
   /* the best, and those that can't be told from it */

@@ -139,6 +139,21 @@ where_judged (const ClothGapResult * result)
       "on held-out time blocks";
 }
 
+/* Gusts are never accepted: what they do follows from nothing. */
+static void
+say_none (GString * text, const ClothGapResult * result)
+{
+  const ClothGapEffect *first = result->effects->len ?
+      &g_array_index (result->effects, ClothGapEffect, 0) : NULL;
+
+  if (first && strcmp (first->effect->id, "gust") == 0
+      && first->probability > 0.5)
+    g_string_append_printf (text, "Gusts are the likeliest cause (%.0f%%), "
+        "which no simulation can foretell", 100. * first->probability);
+  else
+    g_string_append (text, "No effect of the library explains it");
+}
+
 /* What the accepted effects bring, on which data. */
 static void
 say_explained (GString * text, const ClothGapResult * result)
@@ -149,7 +164,7 @@ say_explained (GString * text, const ClothGapResult * result)
   if (n > 0)
     text->str[start] = g_ascii_toupper (text->str[start]);
   if (n == 0) {
-    g_string_append (text, "No effect of the library explains it");
+    say_none (text, result);
   } else if (isfinite (result->shrink.value)) {
     g_string_append (text, n > 1 ? " explain " : " explains ");
     say_percent (text, &result->shrink);

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/gap/gust.h"
 #include "gst/math/linalg.h"
 
 /* Features never count as less noisy than this share of what is expected of them. */
@@ -270,6 +271,37 @@ run_trial (const Trial * trial, ClothGapScore * score)
   return TRUE;
 }
 
+static gboolean
+run_gusts (const ClothGapTest * test, const ClothGapCandidate * candidate,
+    ClothGapScore * score)
+{
+  const ClothEffectParameter *p = candidate->effect->parameters;
+  ClothGapGusts gusts;
+
+  /* the prior is that of the first parameter, the correlation time the second */
+  if (!cloth_gap_test_gusts (test, p[0].prior, exp (-test->block_s /
+              CLOTH_GAP_GUST_PARTS / p[1].null_value), &gusts))
+    return FALSE;
+  score->evidence = gusts.evidence;
+  score->kept = 1.;
+  score->changes[0] = gusts.intensity;
+  score->changes[1] = gusts.azimuth;
+  score->p_value = score->constancy_p_value = NAN;
+  return TRUE;
+}
+
+static gboolean
+run_candidate (const ClothGapTest * test, guint i, ClothGapScore * score)
+{
+  const ClothGapCandidate *candidate =
+      &g_array_index (test->candidates->list, ClothGapCandidate, i);
+  Trial trial;
+
+  if (cloth_gap_candidate_is_gust (candidate))
+    return run_gusts (test, candidate, score);
+  return trial_init (&trial, test, i) && run_trial (&trial, score);
+}
+
 /**
  * cloth_gap_score_compare:
  * @a: a #ClothGapScore
@@ -312,9 +344,8 @@ cloth_gap_test_run (const ClothGapTest * test)
     for (; i < list->len
         && g_array_index (list, ClothGapCandidate, i).effect == effect; i++) {
       ClothGapScore score = {.candidate = i };
-      Trial trial;
 
-      if (!trial_init (&trial, test, i) || !run_trial (&trial, &score))
+      if (!run_candidate (test, i, &score))
         continue;
       n++;
       if (score.evidence > most.evidence)

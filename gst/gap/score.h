@@ -13,7 +13,7 @@ G_BEGIN_DECLS
  * @evidence: mean over the gains of the logarithm of the Bayes factor for it
  * @improvement: share of the residual's square that it removes from blocks of time that
  *   it was not estimated on
- * @changes: expected changes of its directions
+ * @changes: expected changes of its directions; of gusts their intensity and azimuth
  * @sigmas: their standard deviations
  * @p_value: of no effect
  * @constancy_p_value: of the same effect in every block
@@ -41,6 +41,9 @@ typedef struct {
  * @precisions: (array length=n_nuisances): of their priors
  * @n_nuisances: how many
  * @overdispersion: see #ClothStudyOptions
+ * @block_s: length of a block, s
+ * @gusts: first column of the wind in the parts of a block, x and y of each; 0: there are
+ *   none
  * @sound: (array): columns that could be simulated
  *
  * Since: 0.1
@@ -53,6 +56,8 @@ typedef struct {
   const gdouble *precisions;
   guint n_nuisances;
   gdouble overdispersion;
+  gdouble block_s;
+  guint gusts;
   const gboolean *sound;
 } ClothGapTest;
 

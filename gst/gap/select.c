@@ -198,16 +198,22 @@ drop_needless (ClothDiagnosis * d, GError ** error)
   return TRUE;
 }
 
-/* The likeliest effect that is not settled yet, if it is asked for. */
+/* The likeliest effect that is not settled yet, if it is asked for. Gusts can't be taken in,
+ * as what they did follows from nothing; nor is what is much less likely, if @gusts. */
 static const ClothGapScore *
-find_asked (const ClothDiagnosis * d, const GArray * scores)
+find_asked (const ClothDiagnosis * d, const GArray * scores, gboolean gusts)
 {
+  gdouble least = d->least_evidence;
+
   for (guint i = 0; i < scores->len; i++) {
     const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
+    const ClothGapCandidate *c = cloth_diagnosis_candidate (d, s);
 
-    if (!is_settled (d, cloth_diagnosis_candidate (d, s)->effect))
-      return s->evidence < d->least_evidence
-          || !(s->improvement > 0.) ? NULL : s;
+    if (cloth_gap_candidate_is_gust (c))
+      least = gusts ?
+          MAX (least, s->evidence - CLOTH_DIAGNOSIS_LEAST_EVIDENCE) : least;
+    else if (!is_settled (d, c->effect))
+      return s->evidence < least || !(s->improvement > 0.) ? NULL : s;
   }
   return NULL;
 }
@@ -225,19 +231,23 @@ cloth_diagnosis_select (ClothDiagnosis * d, GError ** error)
   cloth_diagnosis_make_test (d, 0, d->n_takes, &test);
   d->unknown = cloth_diagnosis_is_unknown (d);
   scores = cloth_diagnosis_rank (d, &test);
+  cloth_diagnosis_begin_part (d, 0.42, 0.48, 0.5, "the likeliest effects");
+  if (!cloth_diagnosis_try_rivals (d, &test, scores, d->model, error))
+    return FALSE;
   cloth_diagnosis_fill_effects (d, &test, scores);
-  while ((asked = find_asked (d, scores))) {
+  while ((asked = find_asked (d, scores, TRUE))) {
     g_autoptr (ClothModel) start = NULL;
     const ClothGapScore next = *asked;
     guint done = d->n_chosen + d->n_dropped, dropped = d->n_dropped;
-    gdouble from = 0.45 + 0.13 * MIN (done, CLOTH_DIAGNOSIS_MAX_ACCEPTED - 1);
+    gdouble from = 0.48 + 0.12 * MIN (done, CLOTH_DIAGNOSIS_MAX_ACCEPTED - 1);
 
     d->chosen[d->n_chosen++] = next.candidate;
     cloth_diagnosis_list_nuisances (d, &test);
     g_array_unref (scores);
     scores = cloth_diagnosis_rank (d, &test);
-    asked = find_asked (d, scores);
-    cloth_diagnosis_begin_part (d, from, from + 0.05, 0.4,
+    /* what derivatives elsewhere leave is not steady either */
+    asked = find_asked (d, scores, FALSE);
+    cloth_diagnosis_begin_part (d, from, from + 0.04, 0.4,
         cloth_diagnosis_candidate (d, &next)->effect->id);
     start = move_to (d, next.changes);
     if (!refit (d, start, error) || !drop_needless (d, error))
@@ -247,11 +257,16 @@ cloth_diagnosis_select (ClothDiagnosis * d, GError ** error)
         || (!asked && d->n_dropped == dropped))
       break;
     if (!cloth_diagnosis_linearise (d, 0, d->n_takes,
-            d->with[d->n_chosen - 1], from + 0.05, from + 0.13, error))
+            d->with[d->n_chosen - 1], from + 0.04, from + 0.09, error))
       return FALSE;
     cloth_diagnosis_make_test (d, 0, d->n_takes, &test);
     g_array_unref (scores);
     scores = cloth_diagnosis_rank (d, &test);
+    cloth_diagnosis_begin_part (d, from + 0.09, from + 0.12, 0.5,
+        "the likeliest effects");
+    if (!cloth_diagnosis_try_rivals (d, &test, scores,
+            d->with[d->n_chosen - 1], error))
+      return FALSE;
   }
   return TRUE;
 }

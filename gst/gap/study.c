@@ -182,8 +182,8 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
 
 /* Features of the models' residuals: z[model * N_GAINS + gain], each of features->size.
  * The gains of a model run side by side, so that effects are computed in few groups. */
-static gboolean
-run (const ClothStudy * study, ClothModel ** models, guint n,
+gboolean
+cloth_study_run (const ClothStudy * study, ClothModel ** models, guint n,
     ClothStudyOptions * options, gdouble ** z, gboolean * sound,
     GError ** error)
 {
@@ -349,8 +349,8 @@ cloth_study_linearise (ClothStudy * study,
   }
   study->sound = g_new0 (gboolean, m + 1);
   move (&moved, study, candidates, model, directions, m);
-  if (!run (study, (ClothModel **) moved.models->pdata, moved.models->len,
-          options, moved.z, moved.sound, error))
+  if (!cloth_study_run (study, (ClothModel **) moved.models->pdata,
+          moved.models->len, options, moved.z, moved.sound, error))
     return FALSE;
   if (!moved.sound[0]) {
     g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_MODEL, "%s: the "
@@ -492,7 +492,12 @@ go (Fit * fit, const gdouble * step, gdouble share)
   ClothModel *there;
 
   for (guint i = 0; i < fit->m; i++) {
-    part[i] = share * step[i];
+    const ClothGapDirection *d = cloth_gap_candidates_direction
+        (fit->candidates, fit->directions[i]);
+    gdouble from = cloth_gap_candidates_place (fit->candidates, fit->model,
+        fit->directions[i]);
+
+    part[i] = CLAMP (from + share * step[i], d->fit_low, d->fit_high) - from;
     fit->moved[i] += part[i];
   }
   there = cloth_gap_candidates_move (fit->candidates, fit->model,

@@ -76,6 +76,9 @@ void cloth_study_get_chaos (const ClothStudy * study, guint gain,
     gdouble * columns);
 gdouble cloth_study_get_chaos_precision (const ClothStudy * study, guint i);
 gdouble *cloth_study_residual (const ClothStudy * study, guint gain);
+gboolean cloth_study_run (const ClothStudy * study, ClothModel ** models, guint n,
+    ClothStudyOptions * options, gdouble ** z, gboolean * sound,
+    GError ** error);
 gboolean cloth_study_linearise (ClothStudy * study,
     const ClothGapCandidates * candidates, const ClothModel * model,
     const guint * directions, guint m, ClothStudyOptions * options,

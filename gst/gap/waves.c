@@ -196,6 +196,43 @@ cloth_gap_features_add (const ClothGapFeatures * features,
 }
 
 /**
+ * cloth_gap_features_window:
+ * @features: the features
+ * @z: features
+ * @part: which part of every block of time
+ * @n_parts: of how many, at most as many as a block has frames
+ * @windowed: (out) (array): what is left of @z when all that is outside this part of the
+ *   blocks is 0; of all parts the sum is @z
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_features_window (const ClothGapFeatures * features, const gdouble * z,
+    guint part, guint n_parts, gdouble * windowed)
+{
+  const guint n = features->n_cosines, frames = features->block_frames;
+  const gsize size = 3 * (gsize) features->n_waves;
+  g_autofree gdouble *shares = g_new0 (gdouble, (gsize) n * n);
+
+  for (guint c = 0; c < n; c++)
+    for (guint k = 0; k < n; k++)
+      for (guint i = part * frames / n_parts;
+          i < (part + 1) * frames / n_parts; i++)
+        shares[(gsize) c * n + k] += features->cosines[(gsize) c * frames +
+            i] * features->cosines[(gsize) k * frames + i];
+  memset (windowed, 0, features->size * sizeof *windowed);
+  for (guint b = 0; b < features->n_blocks; b++)
+    for (guint c = 0; c < n; c++)
+      for (guint k = 0; k < n; k++) {
+        const gdouble *from = z + ((gsize) b * n + k) * size;
+        gdouble *to = windowed + ((gsize) b * n + c) * size;
+
+        for (gsize i = 0; i < size; i++)
+          to[i] += shares[(gsize) c * n + k] * from[i];
+      }
+}
+
+/**
  * cloth_gap_features_free:
  * @features: (nullable) (transfer full): the features
  *

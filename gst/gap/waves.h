@@ -52,6 +52,8 @@ ClothGapFeatures *cloth_gap_features_new (const ClothRecording * recording,
 void cloth_gap_features_add (const ClothGapFeatures * features,
     const ClothRecording * recording, guint frame, const gdouble * positions,
     gdouble * z);
+void cloth_gap_features_window (const ClothGapFeatures * features,
+    const gdouble * z, guint part, guint n_parts, gdouble * windowed);
 void cloth_gap_features_free (ClothGapFeatures * features);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothGapFeatures, cloth_gap_features_free)

@@ -113,6 +113,13 @@ static const Case cases[] = {
   {"gravity_tilt", {4., 0.}},
   {"mass_distribution", {3., 0.03}},
   {"clamp_slip", {-0.015, 0., -0.015, 0.7, 1.}},
+  /* far from where its derivative at the null holds */
+  {"clamp_delay", {0.2}},
+};
+
+static const Case pairs[][2] = {
+  {{"clamp_slip", {-0.015, 0., -0.015, 0.7, 1.}}, {"shear", {0.9}}},
+  {{"rest_curvature", {16., 25.}}, {"air_drag", {2.}}},
 };
 
 /* Shares of a whole are a whole; what could not be measured has a reason. */
@@ -183,6 +190,71 @@ test_named (gconstpointer data)
     g_assert_cmpfloat_with_epsilon (result->onset_s, 0.7, 0.061);
     g_assert_cmpuint (result->region->len, >, 0);
   }
+}
+
+static void
+record_pair (const Case * pair, ClothTake ** take, ClothTake ** baseline)
+{
+  g_autoptr (ClothModel) model = model_new (CLOTH_FORCE_MASS_SPRING);
+
+  for (guint i = 0; i < 2; i++)
+    cloth_model_set_effect (model, cloth_effect_find (pair[i].effect),
+        pair[i].values);
+  *take = test_gap_record (&sheet, model, sway_at, parent, "pair", 7);
+  *baseline = record ("baseline", NULL, NULL, FALSE, 1);
+}
+
+static gboolean
+is_accepted (const ClothGapResult * result, const gchar * effect)
+{
+  for (guint i = 0; i < result->effects->len; i++) {
+    const ClothGapEffect *e = &g_array_index (result->effects, ClothGapEffect,
+        i);
+
+    if (strcmp (e->effect->id, effect) == 0)
+      return e->accepted;
+  }
+  return FALSE;
+}
+
+/* The second one is not made up for by numbers that the baseline has fixed, nor lost as
+ * neither alone makes the gap much smaller. */
+static void
+test_pair (gconstpointer data)
+{
+  const Case *pair = data;
+  g_autoptr (ClothTake) take = NULL, baseline = NULL;
+  g_autoptr (ClothGapResult) result = NULL;
+
+  record_pair (pair, &take, &baseline);
+  result = diagnose (take, baseline, 0);
+  g_assert_true (is_accepted (result, pair[0].effect));
+  g_assert_true (is_accepted (result, pair[1].effect));
+}
+
+/* A wind that changes is told from one that does not, and never taken in. */
+static void
+test_gust (void)
+{
+  const gdouble gust[] = { 1., 0.3, 70., 1.5, 0.5 };
+  const gdouble wind[] = { 0.3, 0.8, 0., 1.5, 0.5 };
+  g_autoptr (ClothTake) baseline = record ("baseline", NULL, NULL, FALSE, 1);
+  g_autoptr (ClothTake) gusty = record ("gust", "gust", gust, FALSE, 8);
+  g_autoptr (ClothTake) steady = record ("wind", "wind", wind, FALSE, 9);
+  g_autoptr (ClothGapResult) one = diagnose (gusty, baseline, 0);
+  g_autoptr (ClothGapResult) two = diagnose (steady, baseline, 0);
+  const ClothGapEffect *first =
+      &g_array_index (one->effects, ClothGapEffect, 0);
+
+  g_assert_cmpstr (first->effect->id, ==, "gust");
+  g_assert_false (first->accepted);
+  g_assert_cmpint (one->verdict, ==, CLOTH_GAP_UNEXPLAINED);
+  /* the root of the mean square of what blew in these 1.5 s, and the axis it blew along */
+  g_test_message ("gusts of %g m/s along %g°", first->values[0],
+      first->values[2]);
+  g_assert_cmpstr (g_array_index (two->effects, ClothGapEffect, 0).effect->id,
+      ==, "wind");
+  g_assert_true (is_accepted (two, "wind"));
 }
 
 static void
@@ -293,6 +365,13 @@ main (int argc, char **argv)
 
     g_test_add_data_func (path, &cases[i], test_named);
   }
+  for (guint i = 0; i < G_N_ELEMENTS (pairs); i++) {
+    g_autofree gchar *path =
+        g_strdup_printf ("/gap/pair/%s", pairs[i][1].effect);
+
+    g_test_add_data_func (path, pairs[i], test_pair);
+  }
+  g_test_add_func ("/gap/gust", test_gust);
   g_test_add_func ("/gap/no-gap", test_no_gap);
   g_test_add_func ("/gap/no-baseline", test_no_baseline);
   g_test_add_func ("/gap/threads", test_threads);

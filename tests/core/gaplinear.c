@@ -223,6 +223,45 @@ test_features (void)
   g_assert_cmpfloat (fabs (features - square), <, 1e-9 * square);
 }
 
+/* With all cosines, what is outside a part of a block is 0 exactly. */
+static void
+test_window (void)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRecording) r = record (quartic, 30, 0., 1e-3, &error);
+  g_autoptr (ClothGapFeatures) f = NULL;
+  g_autofree gdouble *z = NULL, *part = NULL, *windowed = NULL, *sum = NULL;
+
+  g_assert_no_error (error);
+  f = cloth_gap_features_new (r, 4, 0.2, 1000.);
+  z = g_new0 (gdouble, f->size);
+  windowed = g_new0 (gdouble, f->size);
+  sum = g_new0 (gdouble, f->size);
+  for (guint p = 0; p < 3; p++) {
+    g_free (part);
+    part = g_new0 (gdouble, f->size);
+    for (guint frame = 0; frame < 30; frame++) {
+      gdouble positions[3 * N];
+
+      for (gsize i = 0; i < 3 * N; i++)
+        positions[i] = r->y[(gsize) frame * 3 * N + i] +
+            1e-3 * sin (1. + 3. * i + 7. * frame);
+      /* blocks of ten frames, in parts of three, three and four */
+      if (MIN (frame % 10 / 3, 2) == p)
+        cloth_gap_features_add (f, r, frame, positions, part);
+      if (p == 0)
+        cloth_gap_features_add (f, r, frame, positions, z);
+    }
+    cloth_gap_features_window (f, z, p, 3, windowed);
+    for (gsize i = 0; i < f->size; i++) {
+      sum[i] += windowed[i];
+      g_assert_cmpfloat_with_epsilon (windowed[i], part[i], 1e-9);
+    }
+  }
+  for (gsize i = 0; i < f->size; i++)
+    g_assert_cmpfloat_with_epsilon (sum[i], z[i], 1e-9);
+}
+
 /* z = 2 a + 3 b − 5 c with a, b known and c as nuisance: what is left names −a, −b. */
 static void
 test_reduce (void)
@@ -284,6 +323,7 @@ main (int argc, char **argv)
   g_test_add_func ("/gap/noise", test_noise);
   g_test_add_func ("/gap/refused", test_refused);
   g_test_add_func ("/gap/features", test_features);
+  g_test_add_func ("/gap/window", test_window);
   g_test_add_func ("/gap/reduce", test_reduce);
   return g_test_run ();
 }

@@ -1,0 +1,345 @@
+/* The likeliest effects on trial: each is fitted by simulations of its own, where it is asked
+ * to be. There its derivative may be another than at its null.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <math.h>
+#include <string.h>
+
+#include "gst/gap/diagnosis.h"
+#include "gst/math/linalg.h"
+
+/* So many effects at most, each for so many steps of Gauss and Newton at most, as long as it
+ * moves by this share of a prior. */
+#define MOST_RIVALS 12
+#define N_STEPS 6
+#define FAR 0.1
+/* No effect goes further than so many priors. */
+#define LONGEST 3.
+
+/* An effect on trial. */
+typedef struct
+{
+  ClothGapScore *score;
+  const ClothGapCandidate *candidate;
+  gdouble at[CLOTH_EFFECT_MAX_PARAMETERS];      /* changes from the null */
+  guint first;                  /* of its models */
+  gdouble evidence;
+  gdouble moved;                /* by the last step, in priors */
+} Rival;
+
+/* Of all rivals: what is the same for each. */
+typedef struct
+{
+  ClothDiagnosis *d;
+  const ClothGapTest *test;
+  const ClothModel *base;       /* the model without them */
+  ClothGapPower **powers;       /* what weighs, of each take */
+  gdouble **z;                  /* of each take: features by model */
+  gdouble phi;                  /* how much more than noise a square counts */
+  gdouble without;              /* logarithm of the probability without any of them */
+} Court;
+
+static void
+court_clear (Court * court)
+{
+  for (guint t = 0; t < court->d->n_takes; t++) {
+    cloth_gap_power_free (court->powers[t]);
+    g_free (court->z[t]);
+  }
+  g_free (court->powers);
+  g_free (court->z);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Court, court_clear)
+/* Changes of its directions within their ranges. */
+     static void keep_in_range (const ClothDiagnosis * d, Rival * r)
+{
+  for (guint k = 0; k < r->candidate->n; k++) {
+    const ClothGapDirection *direction =
+        cloth_gap_candidates_direction (d->candidates, r->candidate->first + k);
+    const gdouble most = LONGEST * direction->prior;
+
+    r->at[k] = CLAMP (r->at[k], MAX (-most, direction->low - direction->centre),
+        MIN (most, direction->high - direction->centre));
+    if (direction->one_sided && r->candidate->n == 1)
+      r->at[k] = MAX (r->at[k], 0.);
+  }
+}
+
+/* Half of a direction's step, as at the null the way to both sides is a whole one. */
+static gdouble
+step_of (const ClothDiagnosis * d, const Rival * r, guint k)
+{
+  return 0.5 * cloth_gap_candidates_direction (d->candidates,
+      r->candidate->first + k)->step;
+}
+
+/* Its model where it is, and there moved along each of its directions to both sides. */
+static void
+add_models (const Court * court, Rival * r, GPtrArray * models)
+{
+  const guint n = r->candidate->n;
+  guint directions[CLOTH_EFFECT_MAX_PARAMETERS];
+
+  r->first = models->len;
+  for (guint k = 0; k < n; k++)
+    directions[k] = r->candidate->first + k;
+  for (guint i = 0; i <= 2 * n; i++) {
+    gdouble at[CLOTH_EFFECT_MAX_PARAMETERS];
+
+    memcpy (at, r->at, sizeof at);
+    if (i)
+      at[(i - 1) / 2] += (i % 2 ? 1. : -1.) * step_of (court->d, r,
+          (i - 1) / 2);
+    g_ptr_array_add (models,
+        cloth_gap_candidates_move (court->d->candidates, court->base,
+            directions, at, n));
+  }
+}
+
+/* Features of the residual of each model in each take. */
+static gboolean
+simulate (Court * court, GPtrArray * models, gboolean * sound, GError ** error)
+{
+  ClothDiagnosis *d = court->d;
+  g_autofree gdouble **z = g_new (gdouble *, models->len);
+  g_autofree gboolean *here = g_new (gboolean, models->len);
+
+  for (guint i = 0; i < models->len; i++)
+    sound[i] = TRUE;
+  for (guint t = 0; t < d->n_takes; t++) {
+    const ClothStudy *study = cloth_diagnosis_study (d, t);
+    const gsize size = study->features->size;
+
+    g_free (court->z[t]);
+    court->z[t] = g_new0 (gdouble, models->len * size);
+    for (guint i = 0; i < models->len; i++)
+      z[i] = court->z[t] + i * size;
+    if (!cloth_study_run (study, (ClothModel **) models->pdata, models->len,
+            &d->study, z, here, error))
+      return FALSE;
+    for (guint i = 0; i < models->len; i++)
+      sound[i] = sound[i] && here[i];
+  }
+  return TRUE;
+}
+
+/* The normal equations of a take where a rival is: all directions at the model without it,
+ * then its own, then chaos. Its residual is the mean of its simulations, with less chaos. */
+static ClothGapNormal *
+normal_of (const Court * court, const Rival * r, guint take, guint before)
+{
+  const ClothDiagnosis *d = court->d;
+  const ClothStudy *s = cloth_diagnosis_study (d, take);
+  const gsize size = s->features->size;
+  const guint n = r->candidate->n, q = s->m;
+  const gdouble *own = court->z[take] + r->first * size;
+  const gdouble scale = cloth_study_signature_scale (s);
+  g_autofree gdouble *columns =
+      g_new0 (gdouble, (q + n + d->n_chaos) * size + 1);
+  g_autofree gdouble *z = g_new0 (gdouble, size);
+
+  for (guint i = 0; i <= 2 * n; i++)
+    for (gsize k = 0; k < size; k++)
+      z[k] += own[i * size + k] / (2 * n + 1);
+  for (gsize k = 0; s->signature && k < size; k++)
+    z[k] -= scale * s->signature->z[0][k];
+  memcpy (columns, s->columns[0], q * size * sizeof (gdouble));
+  for (guint i = 0; i < n; i++)
+    for (gsize k = 0; k < size; k++)
+      columns[(q + i) * size + k] = (own[(1 + 2 * i) * size + k] -
+          own[(2 + 2 * i) * size + k]) / (2. * step_of (d, r, i));
+  cloth_study_get_chaos (s, 0, columns + (q + n + before) * size);
+  return cloth_gap_normal_new (s->features, court->powers[take], 1., z,
+      columns, q + n + d->n_chaos);
+}
+
+/* What is left of them for a rival's directions, of all takes. */
+static gboolean
+reduce (const Court * court, const Rival * r, ClothGapReduced * reduced)
+{
+  const ClothGapTest *test = court->test;
+  const guint m = court->d->candidates->directions->len, n = r->candidate->n;
+  g_autofree guint *nuisances = g_new (guint, test->n_nuisances + 1);
+  g_autofree gdouble *precisions = g_new (gdouble, test->n_nuisances + 1);
+  g_autoptr (ClothGapNormal) normal = NULL;
+  guint directions[CLOTH_EFFECT_MAX_PARAMETERS], before = 0;
+
+  for (guint t = 0; t < court->d->n_takes; t++) {
+    normal = cloth_gap_normal_append (g_steal_pointer (&normal),
+        normal_of (court, r, t, before));
+    before += cloth_study_count_chaos (cloth_diagnosis_study (court->d, t));
+  }
+  for (guint i = 0; i < test->n_nuisances; i++) {
+    nuisances[i] = test->nuisances[i] + (test->nuisances[i] >= m ? n : 0);
+    precisions[i] = test->precisions[i] * test->overdispersion;
+  }
+  for (guint i = 0; i < n; i++)
+    directions[i] = m + i;
+  return cloth_gap_normal_reduce (normal, test->blocks, nuisances, precisions,
+      test->n_nuisances, directions, n, reduced);
+}
+
+/* Takes a step from where a rival is; its evidence is that of where it comes to, by the
+ * derivatives here. */
+static gboolean
+step (const Court * court, Rival * r)
+{
+  const guint n = r->candidate->n;
+  ClothGapReduced reduced;
+  gdouble a[16], inverse[16], by[4], log_det = 0., square;
+
+  if (!reduce (court, r, &reduced))
+    return FALSE;
+  for (guint i = 0; i < n; i++) {
+    gdouble prior = cloth_gap_candidates_direction (court->d->candidates,
+        r->candidate->first + i)->prior;
+
+    for (guint k = 0; k < n; k++)
+      a[i * n + k] = reduced.g[i * n + k] / court->phi;
+    a[i * n + i] += 1. / (prior * prior);
+    log_det += 2. * log (prior);
+    by[i] = -reduced.s[i] / court->phi - r->at[i] / (prior * prior);
+  }
+  if (!cloth_cholesky_factor (n, a))
+    return FALSE;
+  for (guint i = 0; i < n; i++)
+    log_det += 2. * log (a[i * n + i]);
+  cloth_cholesky_solve (n, a, by);
+  cloth_cholesky_inverse (n, a, inverse);
+  for (guint i = 0; i < n; i++) {
+    gdouble from = r->at[i];
+
+    r->at[i] += by[i];
+    by[i] = from;
+    r->score->sigmas[i] = sqrt (inverse[i * n + i]);
+  }
+  keep_in_range (court->d, r);
+  square = reduced.r / court->phi;
+  for (guint i = 0; i < n; i++) {
+    gdouble prior = cloth_gap_candidates_direction (court->d->candidates,
+        r->candidate->first + i)->prior;
+
+    by[i] = r->at[i] - by[i];
+    r->moved = MAX (r->moved, fabs (by[i]) / prior);
+    square += r->at[i] * r->at[i] / (prior * prior) +
+        2. * reduced.s[i] / court->phi * by[i];
+    for (guint k = 0; k <= i; k++)
+      square += (k < i ? 2. : 1.) * by[i] * by[k] * reduced.g[i * n + k] /
+          court->phi;
+  }
+  r->evidence = -0.5 * (square + log_det) - court->without;
+  return TRUE;
+}
+
+/* The residual without any rival, as that of the rivals freed of chaos. */
+static gboolean
+open_court (Court * court)
+{
+  ClothDiagnosis *d = court->d;
+  const ClothGapCandidate none = { NULL };
+  const Rival nobody = { NULL, &none };
+  ClothGapReduced reduced;
+
+  court->powers = g_new0 (ClothGapPower *, d->n_takes);
+  court->z = g_new0 (gdouble *, d->n_takes);
+  for (guint t = 0; t < d->n_takes; t++) {
+    const ClothStudy *s = cloth_diagnosis_study (d, t);
+    const gsize size = s->features->size;
+
+    court->powers[t] = s->left[0] ? cloth_gap_power_copy (s->left[0]) :
+        cloth_diagnosis_find_mismatch (d, t, 0);
+    court->z[t] = g_memdup2 (s->z[0], size * sizeof (gdouble));
+    for (gsize k = 0; s->n_chaos && k < size; k++)
+      court->z[t][k] -= s->chaos[0][(s->n_chaos - 1) * size + k];
+  }
+  if (!reduce (court, &nobody, &reduced))
+    return FALSE;
+  court->phi = cloth_gap_test_dispersion (court->test, court->test->normals[0],
+      &reduced);
+  court->without = -0.5 * reduced.r / court->phi;
+  return TRUE;
+}
+
+static void
+list_rivals (const Court * court, GArray * scores, gdouble least,
+    GArray * rivals)
+{
+  const ClothDiagnosis *d = court->d;
+
+  for (guint i = 0; i < scores->len && rivals->len < MOST_RIVALS; i++) {
+    ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
+    Rival r = { s, cloth_diagnosis_candidate (d, s), {0.}, 0, s->evidence };
+
+    if (!(s->evidence > least) || cloth_gap_candidate_is_gust (r.candidate))
+      continue;
+    memcpy (r.at, s->changes, sizeof s->changes);
+    keep_in_range (d, &r);
+    g_array_append_val (rivals, r);
+  }
+}
+
+/* One step of each. */
+static gboolean
+go (Court * court, GArray * rivals, GError ** error)
+{
+  g_autoptr (GPtrArray) models =
+      g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_model_free);
+  g_autofree gboolean *sound = NULL;
+
+  for (guint i = 0; i < rivals->len; i++)
+    add_models (court, &g_array_index (rivals, Rival, i), models);
+  sound = g_new (gboolean, models->len);
+  if (!simulate (court, models, sound, error))
+    return FALSE;
+  for (guint i = 0; i < rivals->len; i++) {
+    Rival *r = &g_array_index (rivals, Rival, i);
+    gboolean ok = TRUE;
+
+    for (guint k = 0; k <= 2 * r->candidate->n; k++)
+      ok = ok && sound[r->first + k];
+    r->moved = 0.;
+    if (!ok || !step (court, r))
+      continue;
+    r->evidence -= court->d->null_evidence[r->score->candidate];
+    r->score->evidence = r->evidence;
+    memcpy (r->score->changes, r->at, sizeof r->score->changes);
+  }
+  return TRUE;
+}
+
+/**
+ * cloth_diagnosis_try_rivals:
+ * @d: a diagnosis whose takes are linearised at @base
+ * @test: the test that @scores are of
+ * @scores: (element-type ClothGapScore): the effects, the likeliest first
+ * @base: the model without them
+ * @error: #ClothSimError
+ *
+ * Derivatives at the null may not hold where the residual asks an effect to be. The
+ * likeliest of those that are asked for get simulations of their own, and with them new
+ * changes and a new evidence, against the same residual without any of them.
+ *
+ * Returns: whether that could be simulated
+ */
+gboolean
+cloth_diagnosis_try_rivals (ClothDiagnosis * d, const ClothGapTest * test,
+    GArray * scores, const ClothModel * base, GError ** error)
+{
+  g_auto (Court) court = { d, test, base };
+  g_autoptr (GArray) rivals = g_array_new (FALSE, FALSE, sizeof (Rival));
+
+  if (!open_court (&court))
+    return TRUE;
+  /* the first ones are named, later ones only taken in */
+  list_rivals (&court, scores, d->n_chosen ? d->least_evidence : 0., rivals);
+  for (guint i = 0; i < N_STEPS && rivals->len; i++) {
+    if (!go (&court, rivals, error))
+      return FALSE;
+    for (guint k = rivals->len; k-- > 0;)
+      if (g_array_index (rivals, Rival, k).moved < FAR)
+        g_array_remove_index (rivals, k);
+  }
+  g_array_sort (scores, cloth_gap_score_compare);
+  return TRUE;
+}
