@@ -439,8 +439,7 @@ cloth_gap_candidates_bound (ClothGapCandidates * candidates,
   gdouble value = cloth_gap_candidates_place (candidates, model, direction);
 
   d->fit_low = MAX (d->low, value - reach);
-  d->fit_high = MIN (d->high, value + (d->logarithmic ? log1p (reach) :
-          reach));
+  d->fit_high = MIN (d->high, value + (d->logarithmic ? log1p (reach) : reach));
 }
 
 /**

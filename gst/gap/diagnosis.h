@@ -1,5 +1,5 @@
-/* A diagnosis under way; private to diagnose.c, doubt.c, name.c, select.c, rest.c, judge.c,
- * where.c, null.c, fault.c and propose.c.
+/* A diagnosis under way; private to diagnose.c, doubt.c, name.c, trial.c, select.c, rest.c,
+ * judge.c, where.c, null.c, fault.c and propose.c.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
