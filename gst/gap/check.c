@@ -12,7 +12,7 @@
 #define FAR 10.
 /* A clamp begins no further from the vertex that it holds than this share of that side;
  * in so many frames that saw the vertex. */
-#define NEAR 0.25
+#define NEAR 0.5
 #define N_FIRST 5
 /* Noise beyond this share of an edge hides the cloth. */
 #define MOST_NOISE 0.5
