@@ -32,22 +32,7 @@ cloth_dot_ellipse (const ClothDotAxes * axes, gdouble scale, gdouble margin)
         sqrt (A) * a * b};
 }
 
-/* The whole number not above (not below) @v, for what may be a place in a picture. */
-#define FAR_AWAY 1048576
-
 #define INLINE static inline __attribute__((always_inline))
-
-INLINE gint
-floor_place (gdouble v)
-{
-  return (gint) (v + FAR_AWAY) - FAR_AWAY;
-}
-
-INLINE gint
-ceil_place (gdouble v)
-{
-  return FAR_AWAY - (gint) (FAR_AWAY - v);
-}
 
 /* Without branches, so that the compiler makes vectors of it; √, +, · and / are rounded
  * alike in all of them. */
@@ -62,8 +47,8 @@ rows (const ClothDotEllipse * ellipse, gdouble cx, gdouble cy, gint y0, gint n,
     const gdouble half = sqrt (square > 0 ? square : 0);
     /* beyond the ellipse from behind the picture's end, so that nothing is left */
     const gint none = square < 0 ? width : 0;
-    const gint from = ceil_place (middle - half);
-    const gint to = floor_place (middle + half);
+    const gint from = cloth_dot_ceil_place (middle - half);
+    const gint to = cloth_dot_floor_place (middle + half);
 
     first[i] = MAX (none, from);
     last[i] = MIN (width - 1, to);

@@ -21,6 +21,21 @@ typedef struct
   gdouble width, height;        /* greatest dx and dy */
 } ClothDotEllipse;
 
+/* The whole number not above (not below) @v, for what may be a place in a picture. */
+#define CLOTH_DOT_FAR_AWAY 1048576
+
+static inline gint
+cloth_dot_floor_place (gdouble v)
+{
+  return (gint) (v + CLOTH_DOT_FAR_AWAY) - CLOTH_DOT_FAR_AWAY;
+}
+
+static inline gint
+cloth_dot_ceil_place (gdouble v)
+{
+  return CLOTH_DOT_FAR_AWAY - (gint) (CLOTH_DOT_FAR_AWAY - v);
+}
+
 ClothDotAxes cloth_dot_axes (const gdouble shape[3]);
 ClothDotEllipse cloth_dot_ellipse (const ClothDotAxes * axes, gdouble scale,
     gdouble margin);

@@ -8,6 +8,10 @@
 
 G_BEGIN_DECLS
 
+/* Half-axes of the window that is weighed are longer than the spot's by this, px: the
+ * blur of the edge. */
+#define CLOTH_DOT_MARGIN 1.5
+
 /* A spot that is taken for a dot. */
 typedef struct
 {
@@ -16,15 +20,23 @@ typedef struct
   ClothDotAxes axes;            /* of @shape */
   guint8 threshold;
   gboolean touches;
-  gint32 next;                  /* in its tile, -1: the last */
+  gint32 tile;
 } ClothDotCandidate;
+
+/* Where a candidate is and how wide, for those that look for neighbours. */
+typedef struct
+{
+  gdouble x, y, a;
+  guint index;
+} ClothDotPlace;
 
 struct _ClothDotDetector
 {
   GArray *runs, *spots, *candidates, *dots;
   guint8 *bounds;               /* four planes of tiles */
   guint16 *bits;
-  gint32 *heads;                /* first candidate of each tile, -1: none */
+  GArray *sorted;               /* the candidates' places, tile by tile */
+  gint32 *heads;                /* the first of each tile; one more for the end */
   gdouble widest;               /* half-axis of all candidates, px */
   gsize n_tiles;
   /* Of the picture at hand. */

@@ -152,7 +152,6 @@ cloth_dot_spots (GArray * runs, guint first_run, GArray * spots)
   ClothDotRun *r = &g_array_index (runs, ClothDotRun, 0);
   const gint32 end = (gint32) runs->len;
   gint32 above = (gint32) first_run;
-  const guint first_spot = spots->len;
 
   for (gint32 k = (gint32) first_run; k < end; k++) {
     while (above < k && (r[above].y < r[k].y - 1
@@ -166,40 +165,27 @@ cloth_dot_spots (GArray * runs, guint first_run, GArray * spots)
         join_runs (r, j, k);
     }
   }
+  /* From here on a run's parent is its spot, all bits turned: what it points to, if not to
+   * itself, comes before it. */
   for (gint32 k = (gint32) first_run; k < end; k++) {
-    const gint32 root = find_root (r, k);
+    const gint32 parent = r[k].parent;
     ClothDotSpot *spot;
 
-    if (root == k) {
+    if (parent == k) {
       const ClothDotSpot fresh = { k, k, r[k].start, r[k].y, r[k].start,
         r[k].y
       };
 
+      r[k].parent = ~(gint32) spots->len;
       g_array_append_val (spots, fresh);
       spot = &g_array_index (spots, ClothDotSpot, spots->len - 1);
-      /* Its spot, for the runs that follow; what points to it is only looked at here. */
-      r[k].next = (gint32) spots->len - 1;
     } else {
-      spot = &g_array_index (spots, ClothDotSpot, r[root].next);
-      /* From last to first for now: the root's link is taken. */
-      r[k].next = spot->last;
+      r[k].parent = r[parent].parent;
+      spot = &g_array_index (spots, ClothDotSpot, ~r[k].parent);
+      r[spot->last].next = k;
       spot->last = k;
     }
     add_moments (spot, &r[k], r[spot->first].start, r[spot->first].y);
-  }
-  /* Turn the links round. */
-  for (guint n = first_spot; n < spots->len; n++) {
-    ClothDotSpot *spot = &g_array_index (spots, ClothDotSpot, n);
-    gint32 k = spot->last, after = -1;
-
-    while (k != spot->first) {
-      const gint32 before = r[k].next;
-
-      r[k].next = after;
-      after = k;
-      k = before;
-    }
-    r[k].next = after;
   }
 }
 

@@ -49,6 +49,7 @@ cloth_dot_detector_new (void)
   detector->runs = g_array_new (FALSE, FALSE, sizeof (ClothDotRun));
   detector->spots = g_array_new (FALSE, FALSE, sizeof (ClothDotSpot));
   detector->candidates = g_array_new (FALSE, FALSE, sizeof (ClothDotCandidate));
+  detector->sorted = g_array_new (FALSE, FALSE, sizeof (ClothDotPlace));
   detector->dots = g_array_new (FALSE, FALSE, sizeof (ClothDot));
   return detector;
 }
@@ -67,6 +68,7 @@ cloth_dot_detector_free (ClothDotDetector * detector)
   g_array_unref (detector->runs);
   g_array_unref (detector->spots);
   g_array_unref (detector->candidates);
+  g_array_unref (detector->sorted);
   g_array_unref (detector->dots);
   g_free (detector->bounds);
   g_free (detector->bits);
@@ -99,7 +101,7 @@ start (ClothDotDetector * detector, const ClothDotParams * params,
   if (n > detector->n_tiles) {
     detector->bounds = g_realloc (detector->bounds, 4 * n);
     detector->bits = g_renew (guint16, detector->bits, n);
-    detector->heads = g_renew (gint32, detector->heads, n);
+    detector->heads = g_renew (gint32, detector->heads, n + 1);
     detector->n_tiles = n;
   }
   detector->least = detector->bounds;
