@@ -7,7 +7,6 @@
 #include "gst/vision/lattice-private.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "gst/vision/pointgrid.h"
 
@@ -72,12 +71,36 @@ look_around (ClothDotLabeller * labeller, const ClothDot * dots)
   }
 }
 
-static int
-compare_floats (gconstpointer a, gconstpointer b)
+/* The value that would be at @k if the @n were in order: Hoare's find (1961). */
+static gfloat
+select_float (gfloat * values, guint n, guint k)
 {
-  const gfloat x = *(const gfloat *) a, y = *(const gfloat *) b;
+  gint left = 0, right = (gint) n - 1;
 
-  return (x > y) - (x < y);
+  while (left < right) {
+    const gfloat pivot = values[(left + right) / 2];
+    gint i = left, j = right;
+
+    while (i <= j) {
+      while (values[i] < pivot)
+        i++;
+      while (values[j] > pivot)
+        j--;
+      if (i <= j) {
+        const gfloat swap = values[i];
+
+        values[i++] = values[j];
+        values[j--] = swap;
+      }
+    }
+    if ((gint) k <= j)
+      right = j;
+    else if ((gint) k >= i)
+      left = i;
+    else
+      break;
+  }
+  return values[k];
 }
 
 /* Second moments without what the picture's blur adds, as far as they go. */
@@ -133,7 +156,7 @@ static gboolean
 scale_distances (ClothDotLabeller * labeller)
 {
   guint n = 0;
-  gfloat per_pitch;
+  gfloat middle, per_pitch;
 
   for (guint i = 0; i < labeller->n; i++) {
     const ClothLatticeAround *around = &labeller->around[i];
@@ -153,10 +176,10 @@ scale_distances (ClothDotLabeller * labeller)
   }
   if (n == 0)
     return FALSE;
-  qsort (labeller->scratch, n, sizeof *labeller->scratch, compare_floats);
-  if (!(labeller->scratch[n / 2] > 0))
+  middle = select_float (labeller->scratch, n, n / 2);
+  if (!(middle > 0))
     return FALSE;
-  per_pitch = 1 / labeller->scratch[n / 2];
+  per_pitch = 1 / middle;
   for (guint i = 0; i < labeller->n; i++)
     for (guint k = 0; k < labeller->around[i].n; k++)
       labeller->around[i].distance[k] *= per_pitch;
