@@ -3,6 +3,8 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/diagnosis.h"
 
+#include "config.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -300,7 +302,10 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
     return FALSE;
   if (!d->options->n_baselines && !study_other_model (d, error))
     return FALSE;
-  if (!cloth_diagnosis_select (d, error) || !cloth_diagnosis_measure (d, error))
+  if (!cloth_diagnosis_select (d, error))
+    return FALSE;
+  cloth_diagnosis_note_untested (d);
+  if (!cloth_diagnosis_measure (d, error))
     return FALSE;
   cloth_diagnosis_locate (d);
   cloth_diagnosis_decide (d);
@@ -339,6 +344,7 @@ cloth_gap_diagnose (ClothTake ** takes, guint n_takes,
   d.study.rollout.seed = options->seed;
   d.study.rollout.threads = options->threads;
   d.study.rollout.progress = frame_done;
+  d.study.rollout.failed = cloth_diagnosis_note_failure;
   d.study.rollout.data = &d;
   d.result = cloth_gap_result_new ();
   d.recordings = g_ptr_array_new_with_free_func (
@@ -350,6 +356,7 @@ cloth_gap_diagnose (ClothTake ** takes, guint n_takes,
   d.result->seed = options->seed;
   d.result->simulations = d.study.simulations;
   d.result->seconds = (g_get_monotonic_time () - start) * 1e-6;
+  cloth_gap_result_add_version (d.result, PACKAGE, PACKAGE_VERSION);
   cloth_gap_result_add_version (d.result, "priors", PRIORS);
   cloth_gap_result_add_threshold (d.result, "least evidence (logarithm of the "
       "Bayes factor)", d.least_evidence, "1");

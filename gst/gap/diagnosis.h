@@ -1,5 +1,5 @@
 /* A diagnosis under way; private to diagnose.c, doubt.c, name.c, trial.c, select.c, rest.c,
- * judge.c, where.c, null.c, fault.c and propose.c.
+ * judge.c, where.c, null.c, fault.c, failure.c and propose.c.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -132,6 +132,12 @@ cloth_diagnosis_is_held_out (const ClothDiagnosis * d, guint block)
 /* What comes now: from where to where it gets, and of the rest of it each simulation. */
 void cloth_diagnosis_begin_part (ClothDiagnosis * d, gdouble from, gdouble to,
     gdouble each, const gchar * what);
+
+/* What went wrong on the way. */
+void cloth_diagnosis_note_failure (gpointer data,
+    const ClothRecording * recording, const ClothModel * model,
+    gdouble sound_s);
+void cloth_diagnosis_note_untested (ClothDiagnosis * d);
 
 /* Why nothing can be said: of the recordings, of what was found. NULL: it can. */
 gchar *cloth_diagnosis_find_doubt (ClothDiagnosis * d,

@@ -74,6 +74,7 @@ try_world (ClothDiagnosis * d, const Trial * t, const ClothModel * model,
   gdouble square = NAN;
 
   options.progress = NULL;
+  cloth_diagnosis_begin_part (d, d->from, d->to, d->each, "another world");
   extents = cloth_gap_extents_new (&t->r, &model, 1,
       TRIAL_GAIN * faster * faster, CLOTH_DIAGNOSIS_WINDOW_S / faster, &options,
       NULL);

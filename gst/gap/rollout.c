@@ -113,12 +113,21 @@ tell (Run * run, guint frame, ClothRolloutFrame each, gpointer data,
   return FALSE;
 }
 
+/* Each model is judged by all its simulations. */
 static void
-judge (Run * run, guint n, gboolean * sound)
+judge (Run * run, const ClothModel * const *models, guint n, gboolean * sound)
 {
-  for (guint m = 0; m < run->n_models; m++)
-    sound[m % n] = sound[m % n]
-        && cloth_sim_get_state (run->sim, m, NULL) == CLOTH_SIM_OK;
+  for (guint m = 0; m < run->n_models; m++) {
+    gdouble since_s;
+
+    if (!sound[m % n]
+        || cloth_sim_get_state (run->sim, m, &since_s) == CLOTH_SIM_OK)
+      continue;
+    sound[m % n] = FALSE;
+    if (run->options->failed)
+      run->options->failed (run->options->data, run->recording, models[m % n],
+          since_s);
+  }
 }
 
 /**
@@ -155,7 +164,7 @@ cloth_rollout_nudged (const ClothRecording * recording,
     if (!tell (&run, frame + 1, each, data, error))
       return FALSE;
   }
-  judge (&run, n_models, sound);
+  judge (&run, models, n_models, sound);
   return TRUE;
 }
 
@@ -199,7 +208,7 @@ cloth_rollout_windows (const ClothRecording * recording,
     return FALSE;
   for (guint frame = 0; frame + 1 < recording->n_frames; frame++) {
     if (frame && windows[frame + 1] != windows[frame]) {
-      judge (&run, n_models, sound);
+      judge (&run, models, n_models, sound);
       for (guint m = 0; m < n_models; m++) {
         cloth_sim_get_positions (run.sim, n_models + m, run.x);
         cloth_sim_get_velocities (run.sim, n_models + m, run.v);
@@ -211,7 +220,7 @@ cloth_rollout_windows (const ClothRecording * recording,
     if (!tell (&run, frame + 1, each, data, error))
       return FALSE;
   }
-  judge (&run, n_models, sound);
+  judge (&run, models, n_models, sound);
   return TRUE;
 }
 

@@ -19,11 +19,25 @@ G_BEGIN_DECLS
 typedef gboolean (*ClothRolloutProgress) (gpointer data, gdouble share);
 
 /**
+ * ClothRolloutFailed:
+ * @data: the caller's
+ * @recording: whose scene was simulated
+ * @model: a model whose simulation diverged
+ * @sound_s: when it was sound for the last time, in the recording's time
+ *
+ * Since: 0.1
+ */
+typedef void (*ClothRolloutFailed) (gpointer data,
+    const ClothRecording * recording, const ClothModel * model,
+    gdouble sound_s);
+
+/**
  * ClothRolloutOptions:
  * @seed: of effects with chance in them
  * @threads: 0 = one for each processor
  * @progress: (nullable): told of each frame
- * @data: for @progress
+ * @failed: (nullable): told of each model that diverged, once, in their order
+ * @data: for @progress and @failed
  *
  * Since: 0.1
  */
@@ -31,6 +45,7 @@ typedef struct {
   guint64 seed;
   guint threads;
   ClothRolloutProgress progress;
+  ClothRolloutFailed failed;
   gpointer data;
 } ClothRolloutOptions;
 

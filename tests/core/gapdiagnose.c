@@ -12,6 +12,10 @@
 
 static const TestGapSheet sheet = { 9, 9, 75, 0.16, 0.16, 50., 3e-4 };
 
+/* Time step, s, that the sheet's simulation is stable with, but not if it is stiffer by the
+ * step of a derivative. */
+#define SHORT_STEP 1e-3
+
 static gchar *parent;
 
 /* The corners come closer; how far along they are is returned. */
@@ -333,6 +337,44 @@ test_unknown_effect (void)
   g_assert_nonnull (strstr (error->message, "magic"));
 }
 
+/* A step that is just short enough for the model is too long for stiffer cloth: what diverged
+ * is listed, and what could not be tested for it has a reason. */
+static void
+test_diverging (void)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothModel) model = model_new (CLOTH_FORCE_MEMBRANE);
+  g_autoptr (ClothTake) take = record ("plain", NULL, NULL, FALSE, 1);
+  const gchar *const effects[] = { "stretch", "air_drag", NULL };
+  const ClothGapOptions options = {.effects = effects };
+  ClothTake *takes[1] = { take };
+  g_autoptr (ClothGapResult) result = NULL;
+  const ClothGapUntested *untested;
+  guint stiff = 0;
+
+  g_array_set_size (model->free, 0);
+  model->time_step = SHORT_STEP;
+  result = cloth_gap_diagnose (takes, 1, model, &options, &error);
+  g_assert_no_error (error);
+  for (guint i = 0; i < result->failures->len; i++) {
+    const ClothGapNote *failure = &g_array_index (result->failures,
+        ClothGapNote, i);
+
+    g_test_message ("%s: %s", failure->name, failure->text);
+    g_assert_true (g_str_has_prefix (failure->text, "It diverged at "));
+    stiff += strstr (failure->name, "effects on plain, with "
+        "effects.stretch.log_ratio 0.36") != NULL;
+  }
+  g_assert_cmpuint (stiff, ==, 1);
+  g_assert_cmpuint (result->untested->len, ==, 1);
+  untested = &g_array_index (result->untested, ClothGapUntested, 0);
+  g_assert_cmpstr (untested->effect->id, ==, "stretch");
+  g_assert_nonnull (strstr (untested->reason, "diverges"));
+  g_assert_cmpuint (result->effects->len, ==, 1);
+  g_assert_cmpstr (g_array_index (result->effects, ClothGapEffect,
+          0).effect->id, ==, "air_drag");
+}
+
 static gboolean
 stop (gpointer data, gdouble share, const gchar * what)
 {
@@ -376,6 +418,7 @@ main (int argc, char **argv)
   g_test_add_func ("/gap/no-baseline", test_no_baseline);
   g_test_add_func ("/gap/threads", test_threads);
   g_test_add_func ("/gap/unknown-effect", test_unknown_effect);
+  g_test_add_func ("/gap/diverging", test_diverging);
   g_test_add_func ("/gap/cancelled", test_cancelled);
   status = g_test_run ();
   test_gap_remove (parent);

@@ -8,6 +8,7 @@ import os
 import re
 import signal
 import subprocess
+import sys
 import tempfile
 import urllib.request
 
@@ -24,6 +25,8 @@ class Browser:
         self.driver = subprocess.Popen(['chromedriver', '--port=0'], stdout=subprocess.PIPE, text=True,
                                        start_new_session=True, env={**os.environ, 'HOME': self.home.name})
         self.session = None
+        # A test that takes too long is ended by this signal: its browser must not stay.
+        signal.signal(signal.SIGTERM, self._end)
         try:
             self.base = 'http://127.0.0.1:%s' % self._port()
             self.session = self._call('POST', '/session', {'capabilities': {'alwaysMatch': {
@@ -38,6 +41,10 @@ class Browser:
         except BaseException:
             self.close()
             raise
+
+    def _end(self, *_):
+        os.killpg(self.driver.pid, signal.SIGKILL)
+        sys.exit(1)
 
     def _port(self):
         for line in self.driver.stdout:
@@ -106,7 +113,8 @@ class Browser:
             if self.session:
                 self._call('DELETE', '')
         finally:
-            os.killpg(self.driver.pid, signal.SIGKILL)
+            if self.driver.poll() is None:
+                os.killpg(self.driver.pid, signal.SIGKILL)
             self.driver.wait()
             self.driver.stdout.close()
             self.home.cleanup()
