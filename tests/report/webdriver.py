@@ -60,7 +60,8 @@ class Browser:
                                          data=None if body is None else json.dumps(body).encode(),
                                          headers={'Content-Type': 'application/json'})
         try:
-            with urllib.request.urlopen(request, timeout=60) as answer:
+            # Long, for a busy machine: the processor draws every pixel.
+            with urllib.request.urlopen(request, timeout=240) as answer:
                 return json.load(answer)['value']
         except urllib.error.HTTPError as error:
             raise RuntimeError(json.load(error)['value']['message']) from None
