@@ -147,7 +147,7 @@ say_none (GString * text, const ClothGapResult * result)
       &g_array_index (result->effects, ClothGapEffect, 0) : NULL;
 
   if (first && strcmp (first->effect->id, "gust") == 0
-      && first->probability > 0.5)
+      && first->probability > 0.3)
     g_string_append_printf (text, "Gusts are the likeliest cause (%.0f%%), "
         "which no simulation can foretell", 100. * first->probability);
   else

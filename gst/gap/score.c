@@ -13,6 +13,10 @@
 /* Features never count as less noisy than this share of what is expected of them. */
 #define LEAST_DISPERSION 0.1
 
+/* Gusts must be likelier by so much: a steady wind whose law is another than the model's
+ * seems to change, too. */
+#define GUST_MARGIN 10.
+
 /* P(χ² > x) with 1, 2 or 3 degrees of freedom; above, Wilson and Hilferty (1931). */
 static gdouble
 chi_square_tail (gdouble x, guint n)
@@ -282,7 +286,7 @@ run_gusts (const ClothGapTest * test, const ClothGapCandidate * candidate,
   if (!cloth_gap_test_gusts (test, p[0].prior, exp (-test->block_s /
               CLOTH_GAP_GUST_PARTS / p[1].null_value), &gusts))
     return FALSE;
-  score->evidence = gusts.evidence;
+  score->evidence = gusts.evidence - GUST_MARGIN;
   score->kept = 1.;
   score->changes[0] = gusts.intensity;
   score->changes[1] = gusts.azimuth;

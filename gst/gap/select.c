@@ -199,7 +199,7 @@ drop_needless (ClothDiagnosis * d, GError ** error)
 }
 
 /* The likeliest effect that is not settled yet, if it is asked for. Gusts can't be taken in,
- * as what they did follows from nothing; nor is what is much less likely, if @gusts. */
+ * as what they did follows from nothing; nor is what is less likely than they, if @gusts. */
 static const ClothGapScore *
 find_asked (const ClothDiagnosis * d, const GArray * scores, gboolean gusts)
 {
@@ -210,8 +210,7 @@ find_asked (const ClothDiagnosis * d, const GArray * scores, gboolean gusts)
     const ClothGapCandidate *c = cloth_diagnosis_candidate (d, s);
 
     if (cloth_gap_candidate_is_gust (c))
-      least = gusts ?
-          MAX (least, s->evidence - CLOTH_DIAGNOSIS_LEAST_EVIDENCE) : least;
+      least = gusts ? MAX (least, s->evidence) : least;
     else if (!is_settled (d, c->effect))
       return s->evidence < least || !(s->improvement > 0.) ? NULL : s;
   }
