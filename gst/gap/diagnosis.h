@@ -12,9 +12,9 @@
 G_BEGIN_DECLS
 
 /* An effect is accepted when its evidence is this at least, when it makes blocks better
- * that it was not estimated on, and when it removes this share of the gap's variance, or,
- * where a signature is taken off, when the gap, in which the simulator's own error is too,
- * is hardly larger. */
+ * that it was not estimated on, and when it removes this share of the gap's variance. Of the
+ * first where a signature is taken off it is enough that the gap, in which the simulator's
+ * own error is too, is hardly larger. */
 #define CLOTH_DIAGNOSIS_LEAST_EVIDENCE 10.
 #define CLOTH_DIAGNOSIS_LEAST_SHRINK 0.1
 /* What remains is no more than noise when it is below this many floors (variance). */

@@ -199,12 +199,14 @@ fill_shrink (ClothGapResult * result, gdouble before, gdouble after,
 }
 
 /* Whether an effect is large enough to speak of. Where a signature is taken off, the
- * evidence has said so: the gap holds the simulator's own error too. */
+ * evidence has said so of the first: the gap holds the simulator's own error too. */
 static gboolean
-matters (const ClothDiagnosis * d, gdouble before, gdouble after)
+matters (const ClothDiagnosis * d, gboolean first, gdouble before,
+    gdouble after)
 {
   return after < (1. - CLOTH_DIAGNOSIS_LEAST_SHRINK) * before
-      || (cloth_diagnosis_has_signatures (d) && after < HARDLY_LARGER * before);
+      || (first && cloth_diagnosis_has_signatures (d)
+      && after < HARDLY_LARGER * before);
 }
 
 /* Where the gap of the first take lies, and what is needed to say more of it. */
@@ -296,7 +298,7 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
     return FALSE;
   }
   for (guint i = best + 1; i < n; i++)
-    if (matters (d, v[best], v[i]))
+    if (matters (d, best == faults, v[best], v[i]))
       best = i;
   while (d->n_chosen > best - faults)
     cloth_model_free (d->with[--d->n_chosen]);

@@ -9,10 +9,11 @@
 #include "gst/math/linalg.h"
 
 /* So many effects at most, each for so many steps of Gauss and Newton at most, as long as it
- * moves by this share of a prior. */
+ * moves by this share of a prior and gains so much evidence. */
 #define MOST_RIVALS 12
 #define N_STEPS 6
 #define FAR 0.1
+#define MUCH CLOTH_DIAGNOSIS_LEAST_EVIDENCE
 /* No effect goes further than so many priors. */
 #define LONGEST 3.
 
@@ -24,7 +25,7 @@ typedef struct
   gdouble at[CLOTH_EFFECT_MAX_PARAMETERS];      /* changes from the null */
   guint first;                  /* of its models */
   gdouble evidence;
-  gdouble moved;                /* by the last step, in priors */
+  gdouble moved, gained;        /* by the last step, in priors and in evidence */
 } Rival;
 
 /* Of all rivals: what is the same for each. */
@@ -298,10 +299,11 @@ go (Court * court, GArray * rivals, GError ** error)
 
     for (guint k = 0; k <= 2 * r->candidate->n; k++)
       ok = ok && sound[r->first + k];
-    r->moved = 0.;
+    r->moved = r->gained = 0.;
     if (!ok || !step (court, r))
       continue;
     r->evidence -= court->d->null_evidence[r->score->candidate];
+    r->gained = r->evidence - r->score->evidence;
     r->score->evidence = r->evidence;
     memcpy (r->score->changes, r->at, sizeof r->score->changes);
   }
@@ -336,9 +338,12 @@ cloth_diagnosis_try_rivals (ClothDiagnosis * d, const ClothGapTest * test,
   for (guint i = 0; i < N_STEPS && rivals->len; i++) {
     if (!go (&court, rivals, error))
       return FALSE;
-    for (guint k = rivals->len; k-- > 0;)
-      if (g_array_index (rivals, Rival, k).moved < FAR)
+    for (guint k = rivals->len; k-- > 0;) {
+      const Rival *r = &g_array_index (rivals, Rival, k);
+
+      if (r->moved < FAR || r->gained < MUCH)
         g_array_remove_index (rivals, k);
+    }
   }
   g_array_sort (scores, cloth_gap_score_compare);
   return TRUE;
