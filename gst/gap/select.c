@@ -217,6 +217,37 @@ find_asked (const ClothDiagnosis * d, const GArray * scores, gboolean gusts)
   return NULL;
 }
 
+/* Fits with the last effect, from where it is asked to be, else from its null. */
+static gboolean
+take_in (ClothDiagnosis * d, const gdouble * changes, GError ** error)
+{
+  const gdouble nothing[CLOTH_EFFECT_MAX_PARAMETERS] = { 0. };
+  g_autoptr (GError) diverged = NULL;
+  g_autoptr (ClothModel) there = move_to (d, changes);
+  g_autoptr (ClothModel) null = move_to (d, nothing);
+
+  if (refit (d, there, &diverged))
+    return TRUE;
+  if (g_error_matches (diverged, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_MODEL))
+    return refit (d, null, error);
+  g_propagate_error (error, g_steal_pointer (&diverged));
+  return FALSE;
+}
+
+/* Effects that no simulation is possible with go; those before them stay. */
+static gboolean
+end_with_sound (ClothDiagnosis * d, GError * failed, GError ** error)
+{
+  if (!g_error_matches (failed, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_MODEL)) {
+    g_propagate_error (error, failed);
+    return FALSE;
+  }
+  g_error_free (failed);
+  while (d->n_chosen && !d->with[d->n_chosen - 1])
+    d->n_chosen--;
+  return TRUE;
+}
+
 /* Takes in effects one by one, as long as one is asked for: the next one by the same
  * derivatives first, and only then by new ones. */
 gboolean
@@ -235,7 +266,7 @@ cloth_diagnosis_select (ClothDiagnosis * d, GError ** error)
     return FALSE;
   cloth_diagnosis_fill_effects (d, &test, scores);
   while ((asked = find_asked (d, scores, TRUE))) {
-    g_autoptr (ClothModel) start = NULL;
+    GError *failed = NULL;
     const ClothGapScore next = *asked;
     guint done = d->n_chosen + d->n_dropped, dropped = d->n_dropped;
     gdouble from = 0.48 + 0.12 * MIN (done, CLOTH_DIAGNOSIS_MAX_ACCEPTED - 1);
@@ -248,16 +279,15 @@ cloth_diagnosis_select (ClothDiagnosis * d, GError ** error)
     asked = find_asked (d, scores, FALSE);
     cloth_diagnosis_begin_part (d, from, from + 0.04, 0.4,
         cloth_diagnosis_candidate (d, &next)->effect->id);
-    start = move_to (d, next.changes);
-    if (!refit (d, start, error) || !drop_needless (d, error))
-      return FALSE;
+    if (!take_in (d, next.changes, &failed) || !drop_needless (d, &failed))
+      return end_with_sound (d, failed, error);
     /* one that went may leave room for what was not asked for beside it */
     if (d->n_chosen == CLOTH_DIAGNOSIS_MAX_ACCEPTED
         || (!asked && d->n_dropped == dropped))
       break;
     if (!cloth_diagnosis_linearise (d, 0, d->n_takes,
-            d->with[d->n_chosen - 1], from + 0.04, from + 0.09, error))
-      return FALSE;
+            d->with[d->n_chosen - 1], from + 0.04, from + 0.09, &failed))
+      return end_with_sound (d, failed, error);
     cloth_diagnosis_make_test (d, 0, d->n_takes, &test);
     g_array_unref (scores);
     scores = cloth_diagnosis_rank (d, &test);

@@ -522,7 +522,8 @@ go (Fit * fit, const gdouble * step, gdouble share)
  * @error: #ClothSimError or #ClothGapError
  *
  * Gauss and Newton on the features of all gains, each weighed by the power that is left
- * in its class, less what chaos does; a step that makes things worse is cut.
+ * in its class, less what chaos does; a step that makes things worse, or the simulation
+ * diverge, is cut.
  *
  * Returns: (transfer full) (nullable): the fitted model
  * Since: 0.1
@@ -540,16 +541,24 @@ cloth_study_fit (ClothStudy ** studies, guint n_studies,
   g_autofree gdouble *a = g_new (gdouble, m * m + 1);
   g_autofree gdouble *b = g_new (gdouble, m + 1);
   g_autofree gdouble *step = g_new0 (gdouble, m + 1);
+  g_autoptr (ClothModel) sound = NULL;
   gdouble before = INFINITY;
 
   for (guint pass = 0; pass < n_passes && m; pass++) {
+    g_autoptr (GError) failed = NULL;
     gdouble cost;
 
-    if (!linearise (&fit, error))
+    if (!linearise (&fit, &failed) && (!sound
+            || !g_error_matches (failed, CLOTH_GAP_ERROR,
+                CLOTH_GAP_ERROR_MODEL))) {
+      g_propagate_error (error, g_steal_pointer (&failed));
       return NULL;
+    }
     if (pass) {
-      cost = equations (&fit, NULL, NULL);
+      cost = failed ? INFINITY : equations (&fit, NULL, NULL);
       if (!(cost < before)) {
+        if (failed && pass + 1 == n_passes)
+          return g_steal_pointer (&sound);
         /* back, most of the way */
         go (&fit, step, CUT - 1.);
         for (guint i = 0; i < m; i++)
@@ -559,6 +568,8 @@ cloth_study_fit (ClothStudy ** studies, guint n_studies,
       if (before - cost < ENOUGH * before)
         break;
     }
+    cloth_model_free (sound);
+    sound = cloth_model_copy (fit.model);
     weigh (&fit);
     memset (a, 0, m * m * sizeof *a);
     memset (b, 0, m * sizeof *b);

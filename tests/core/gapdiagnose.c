@@ -123,7 +123,7 @@ static const Case cases[] = {
 
 static const Case pairs[][2] = {
   {{"clamp_slip", {-0.015, 0., -0.015, 0.7, 1.}}, {"shear", {0.9}}},
-  {{"rest_curvature", {16., 25.}}, {"air_drag", {2.}}},
+  {{"shrinkage", {0.02, 0.02}}, {"air_drag", {2.}}},
 };
 
 /* Shares of a whole are a whole; what could not be measured has a reason. */
