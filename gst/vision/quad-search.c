@@ -61,13 +61,6 @@ cloth_quad_longest (const gfloat x[4], const gfloat y[4])
   return sqrtf (most);
 }
 
-/* What is searched: the picture, or a piece of what was made of it. */
-typedef struct
-{
-  ClothImage image;
-  gfloat x, y;                  /* where it begins in the picture */
-} View;
-
 typedef struct
 {
   gfloat x[MAX_CANDIDATES], y[MAX_CANDIDATES];
@@ -99,8 +92,8 @@ sort_candidates (ClothQuadTracker * tracker)
 /* Refined saddles first, as a corner far from its guess has only the near rim of its spot
  * of candidates among the nearest. */
 static void
-list_candidates (ClothQuadTracker * tracker, const View * view, gfloat x,
-    gfloat y, gfloat radius, Candidates * list)
+list_candidates (ClothQuadTracker * tracker, gfloat x, gfloat y,
+    gfloat radius, Candidates * list)
 {
   ClothNear near[MAX_CANDIDATES];
   guint n_refined = cloth_point_grid_nearest (tracker->refined, x, y, radius,
@@ -108,16 +101,16 @@ list_candidates (ClothQuadTracker * tracker, const View * view, gfloat x,
 
   list->distance2 = n_refined ? near[0].distance2 : G_MAXFLOAT;
   for (guint k = 0; k < n_refined; k++) {
-    list->x[k] = tracker->saddles[near[k].index].x - view->x;
-    list->y[k] = tracker->saddles[near[k].index].y - view->y;
+    list->x[k] = tracker->saddles[near[k].index].x;
+    list->y[k] = tracker->saddles[near[k].index].y;
   }
   n = cloth_point_grid_nearest (tracker->candidates, x, y, radius, near,
       MAX_CANDIDATES - n_refined);
   if (n)
     list->distance2 = MIN (list->distance2, near[0].distance2);
   for (guint k = 0; k < n; k++) {
-    list->x[n_refined + k] = tracker->raw[near[k].index].x - view->x;
-    list->y[n_refined + k] = tracker->raw[near[k].index].y - view->y;
+    list->x[n_refined + k] = tracker->raw[near[k].index].x;
+    list->y[n_refined + k] = tracker->raw[near[k].index].y;
   }
   list->n = n_refined + n;
 }
@@ -126,7 +119,7 @@ list_candidates (ClothQuadTracker * tracker, const View * view, gfloat x,
  * their places in the lists; the fourth closes the parallelogram. The corner left out is
  * the one whose nearest candidate is farthest. */
 static gfloat
-search_candidates (ClothQuadTracker * tracker, const View * view,
+search_candidates (ClothQuadTracker * tracker, const ClothImage * image,
     gboolean black, const gfloat guess_x[4], const gfloat guess_y[4],
     gfloat x[4], gfloat y[4])
 {
@@ -139,7 +132,7 @@ search_candidates (ClothQuadTracker * tracker, const View * view,
 
   sort_candidates (tracker);
   for (gint k = 0; k < 4; k++) {
-    list_candidates (tracker, view, guess_x[k], guess_y[k], radius, &list[k]);
+    list_candidates (tracker, guess_x[k], guess_y[k], radius, &list[k]);
     if (list[k].distance2 > farthest) {
       farthest = list[k].distance2;
       left_out = k;
@@ -167,7 +160,7 @@ search_candidates (ClothQuadTracker * tracker, const View * view,
         }
         tx[left_out] = tx[used[0]] + tx[used[2]] - tx[used[1]];
         ty[left_out] = ty[used[0]] + ty[used[2]] - ty[used[1]];
-        confidence = cloth_quad_confidence (&view->image, tx, ty, params->alpha,
+        confidence = cloth_quad_confidence (image, tx, ty, params->alpha,
             black);
         if (confidence > best) {
           best = confidence;
@@ -234,72 +227,60 @@ fit_outline (ClothQuadTracker * tracker, const ClothImage * image, gint column,
   return TRUE;
 }
 
-/* The search in one view of the picture. @confidence: of the square found, else of the best
- * that was tried, -1 if there was none. */
-static gboolean
-search (ClothQuadTracker * tracker, const View * view, gint column, gint row,
-    const gfloat guess_x[4], const gfloat guess_y[4], gfloat least,
-    ClothOutline * outline, gfloat * confidence)
+/* The search in @image, which shows what the picture does; confidence of the square found,
+ * less than @least if there is none. */
+static gfloat
+search (ClothQuadTracker * tracker, const ClothImage * image, gint column,
+    gint row, const gfloat guess_x[4], const gfloat guess_y[4], gfloat least,
+    ClothOutline * outline)
 {
+  const gfloat alpha = tracker->params->alpha;
   gboolean black = cloth_pattern_is_black (&tracker->pattern, column, row);
-  const ClothImage *image = &view->image;
 
   *outline = (ClothOutline) { {
   0}};
-  *confidence = search_candidates (tracker, view, black, guess_x, guess_y,
-      outline->x, outline->y);
-  if (*confidence < least || !has_edges (image, outline->x, outline->y, black)
+  if (search_candidates (tracker, image, black, guess_x, guess_y, outline->x,
+          outline->y) < least
+      || !has_edges (image, outline->x, outline->y, black)
       || !fit_outline (tracker, image, column, row, outline))
-    return FALSE;
-  *confidence = cloth_quad_confidence (image, outline->x, outline->y,
-      tracker->params->alpha, black);
-  for (gint k = 0; k < 4; k++) {
-    outline->x[k] += view->x;
-    outline->y[k] += view->y;
-  }
-  return *confidence >= least;
+    return -1;
+  return cloth_quad_confidence (image, outline->x, outline->y, alpha, black);
 }
 
-/* The logarithms of the picture's levels around a guess. Nothing else can be read, so what is
- * found does not hang on what was looked for before. */
-static View
+/* The logarithms of the picture's levels, around a guess only. */
+static ClothImage
 take_logarithms (ClothQuadTracker * tracker, const gfloat guess_x[4],
     const gfloat guess_y[4])
 {
   const ClothImage *image = tracker->image;
+  const gint width = image->width, height = image->height;
+  const gsize size = (gsize) width * (gsize) height;
   const gfloat around = LOG_MARGIN + LOG_AROUND * cloth_quad_longest (guess_x,
       guess_y);
   gfloat box[4] = { G_MAXFLOAT, G_MAXFLOAT, 0, 0 };
-  gint left, top, width, height;
-  gsize size;
 
+  if (tracker->logarithms_size < size) {
+    g_free (tracker->logarithms);
+    tracker->logarithms = g_malloc0 (size);
+    tracker->logarithms_size = size;
+  }
   for (gint k = 0; k < 4; k++) {
     box[0] = MIN (box[0], guess_x[k] - around);
     box[1] = MIN (box[1], guess_y[k] - around);
     box[2] = MAX (box[2], guess_x[k] + around);
     box[3] = MAX (box[3], guess_y[k] + around);
   }
-  left = (gint) CLAMP (box[0], 0.0f, (gfloat) image->width);
-  top = (gint) CLAMP (box[1], 0.0f, (gfloat) image->height);
-  width = (gint) CLAMP (box[2], 0.0f, (gfloat) image->width) - left;
-  height = (gint) CLAMP (box[3], 0.0f, (gfloat) image->height) - top;
-  size = (gsize) width *(gsize) height;
-  if (tracker->logarithms_size < size) {
-    g_free (tracker->logarithms);
-    tracker->logarithms = g_malloc (size);
-    tracker->logarithms_size = size;
-  }
-  for (gint y = 0; y < height; y++) {
-    const guint8 *from = image->data + (gsize) (top + y)
-        * (gsize) image->stride + left;
+  for (gint k = 0; k < 4; k++)
+    box[k] = CLAMP (box[k], 0.0f, (gfloat) ((k & 1) ? height : width));
+  for (gint y = (gint) box[1]; y < (gint) box[3]; y++) {
+    const guint8 *from = image->data + (gsize) y * (gsize) image->stride;
     guint8 *to = tracker->logarithms + (gsize) y * (gsize) width;
 
-    for (gint x = 0; x < width; x++)
+    for (gint x = (gint) box[0]; x < (gint) box[2]; x++)
       to[x] = tracker->logarithm[from[x]];
   }
-  return (View) { {
-  tracker->logarithms, width, height, width}
-  , (gfloat) left, (gfloat) top};
+  return (ClothImage) {
+  tracker->logarithms, width, height, width};
 }
 
 void
@@ -312,25 +293,10 @@ cloth_quad_set_logarithms (guint8 logarithm[256])
                     + LOG_OFFSET)) - least) / (most - least));
 }
 
-/* The same where light may fall on a square unevenly. */
-static gboolean
-search_shaded (ClothQuadTracker * tracker, gint column, gint row,
-    const gfloat guess_x[4], const gfloat guess_y[4], ClothOutline * outline,
-    gfloat * confidence)
-{
-  const View view = take_logarithms (tracker, guess_x, guess_y);
-
-  return search (tracker, &view, column, row, guess_x, guess_y, LEAST_SHADED,
-      outline, confidence)
-      && cloth_quad_light (tracker->image, outline->x, outline->y,
-      cloth_pattern_is_black (&tracker->pattern, column, row)) <= SHADED;
-}
-
 gboolean
 cloth_quad_search (ClothQuadTracker * tracker, gint column, gint row,
     const gfloat guess_x[4], const gfloat guess_y[4])
 {
-  const View filmed = { *tracker->image, 0, 0 };
   const ClothQuadParams *params = tracker->params;
   ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
   gboolean black = cloth_pattern_is_black (&tracker->pattern, column, row);
@@ -339,11 +305,18 @@ cloth_quad_search (ClothQuadTracker * tracker, gint column, gint row,
 
   if (cell->refused)
     return FALSE;
-  /* Where nothing could be tried as filmed, nothing can be in logarithms. */
-  if (!search (tracker, &filmed, column, row, guess_x, guess_y, params->c_low,
-          &outline, &confidence) && (!params->link || confidence <= -1
-          || !search_shaded (tracker, column, row, guess_x, guess_y, &outline,
-              &confidence)))
+  confidence = search (tracker, tracker->image, column, row, guess_x, guess_y,
+      params->c_low, &outline);
+  if (confidence < params->c_low && params->link) {
+    const ClothImage logarithms = take_logarithms (tracker, guess_x, guess_y);
+
+    confidence = search (tracker, &logarithms, column, row, guess_x, guess_y,
+        LEAST_SHADED, &outline);
+    if (confidence < LEAST_SHADED || cloth_quad_light (tracker->image,
+            outline.x, outline.y, black) > SHADED)
+      return FALSE;
+  }
+  if (confidence < params->c_low)
     return FALSE;
   for (gint k = 0; k < 4; k++)
     if (is_elsewhere (tracker, outline.x[k], outline.y[k],
