@@ -1,9 +1,5 @@
 /* Quad tracker: the paper's local search for one square around its guess.
  *
- * A square that a shadow's edge crosses has two bright levels, and bright in the shadow may be
- * hardly brighter than dark beside it. In logarithms print and shadow are steps that add up,
- * and the print's is the same on both sides: what is not found as filmed is looked for there.
- *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <math.h>
 #include <string.h>
@@ -22,16 +18,6 @@
 #define MAX_FIT 0.3f
 /* A linked corner this near a found one is the same, px. */
 #define SAME 2.0f
-/* What is added to grey levels before the logarithm, so that the noise of black stays small,
- * and how far around a guess they are taken, in its longest edges and px. */
-#define LOG_OFFSET 8
-/* There a square is believed when the dimmest of its bright levels is no more than this share
- * of the brightest: in even light what was not found as filmed is hardly exact. */
-#define SHADED 0.45f
-/* And its confidence there is at least this. */
-#define LEAST_SHADED 0.8f
-#define LOG_AROUND 2.0f
-#define LOG_MARGIN 12.0f
 
 static inline gfloat
 edge2 (const gfloat x[4], const gfloat y[4], gint k)
@@ -119,9 +105,8 @@ list_candidates (ClothQuadTracker * tracker, gfloat x, gfloat y,
  * their places in the lists; the fourth closes the parallelogram. The corner left out is
  * the one whose nearest candidate is farthest. */
 static gfloat
-search_candidates (ClothQuadTracker * tracker, const ClothImage * image,
-    gboolean black, const gfloat guess_x[4], const gfloat guess_y[4],
-    gfloat x[4], gfloat y[4])
+search_candidates (ClothQuadTracker * tracker, gboolean black,
+    const gfloat guess_x[4], const gfloat guess_y[4], gfloat x[4], gfloat y[4])
 {
   const ClothQuadParams *params = tracker->params;
   gfloat radius = REACH * cloth_quad_shortest (guess_x, guess_y);
@@ -160,8 +145,8 @@ search_candidates (ClothQuadTracker * tracker, const ClothImage * image,
         }
         tx[left_out] = tx[used[0]] + tx[used[2]] - tx[used[1]];
         ty[left_out] = ty[used[0]] + ty[used[2]] - ty[used[1]];
-        confidence = cloth_quad_confidence (image, tx, ty, params->alpha,
-            black);
+        confidence = cloth_quad_confidence (tracker->image, tx, ty,
+            params->alpha, black);
         if (confidence > best) {
           best = confidence;
           for (gint k = 0; k < 4; k++) {
@@ -207,17 +192,17 @@ has_edges (const ClothImage * image, const gfloat x[4], const gfloat y[4],
 
 /* Fits all corners to sub-pixel places, whose square need not be a parallelogram. */
 static gboolean
-fit_outline (ClothQuadTracker * tracker, const ClothImage * image, gint column,
-    gint row, ClothOutline * outline)
+fit_outline (ClothQuadTracker * tracker, gint column, gint row,
+    ClothOutline * outline)
 {
   gboolean black = cloth_pattern_is_black (&tracker->pattern, column, row);
   gfloat reach = MAX (MAX_FIT * cloth_quad_shortest (outline->x, outline->y),
       1.5f);
 
   for (gint k = 0; k < 4; k++)
-    cloth_outline_fit (outline, image, k, outline->x[k], outline->y[k], reach,
-        black);
-  if (!cloth_outline_complete (outline, image, black))
+    cloth_outline_fit (outline, tracker->image, k, outline->x[k],
+        outline->y[k], reach, black);
+  if (!cloth_outline_complete (outline, tracker->image, black))
     return FALSE;
   /* An inner corner that is no saddle is where a fold cuts the square. */
   for (gint k = 0; k < 4; k++)
@@ -227,72 +212,6 @@ fit_outline (ClothQuadTracker * tracker, const ClothImage * image, gint column,
   return TRUE;
 }
 
-/* The search in @image, which shows what the picture does; confidence of the square found,
- * less than @least if there is none. */
-static gfloat
-search (ClothQuadTracker * tracker, const ClothImage * image, gint column,
-    gint row, const gfloat guess_x[4], const gfloat guess_y[4], gfloat least,
-    ClothOutline * outline)
-{
-  const gfloat alpha = tracker->params->alpha;
-  gboolean black = cloth_pattern_is_black (&tracker->pattern, column, row);
-
-  *outline = (ClothOutline) { {
-  0}};
-  if (search_candidates (tracker, image, black, guess_x, guess_y, outline->x,
-          outline->y) < least
-      || !has_edges (image, outline->x, outline->y, black)
-      || !fit_outline (tracker, image, column, row, outline))
-    return -1;
-  return cloth_quad_confidence (image, outline->x, outline->y, alpha, black);
-}
-
-/* The logarithms of the picture's levels, around a guess only. */
-static ClothImage
-take_logarithms (ClothQuadTracker * tracker, const gfloat guess_x[4],
-    const gfloat guess_y[4])
-{
-  const ClothImage *image = tracker->image;
-  const gint width = image->width, height = image->height;
-  const gsize size = (gsize) width * (gsize) height;
-  const gfloat around = LOG_MARGIN + LOG_AROUND * cloth_quad_longest (guess_x,
-      guess_y);
-  gfloat box[4] = { G_MAXFLOAT, G_MAXFLOAT, 0, 0 };
-
-  if (tracker->logarithms_size < size) {
-    g_free (tracker->logarithms);
-    tracker->logarithms = g_malloc0 (size);
-    tracker->logarithms_size = size;
-  }
-  for (gint k = 0; k < 4; k++) {
-    box[0] = MIN (box[0], guess_x[k] - around);
-    box[1] = MIN (box[1], guess_y[k] - around);
-    box[2] = MAX (box[2], guess_x[k] + around);
-    box[3] = MAX (box[3], guess_y[k] + around);
-  }
-  for (gint k = 0; k < 4; k++)
-    box[k] = CLAMP (box[k], 0.0f, (gfloat) ((k & 1) ? height : width));
-  for (gint y = (gint) box[1]; y < (gint) box[3]; y++) {
-    const guint8 *from = image->data + (gsize) y * (gsize) image->stride;
-    guint8 *to = tracker->logarithms + (gsize) y * (gsize) width;
-
-    for (gint x = (gint) box[0]; x < (gint) box[2]; x++)
-      to[x] = tracker->logarithm[from[x]];
-  }
-  return (ClothImage) {
-  tracker->logarithms, width, height, width};
-}
-
-void
-cloth_quad_set_logarithms (guint8 logarithm[256])
-{
-  const gfloat least = logf (LOG_OFFSET), most = logf (255 + LOG_OFFSET);
-
-  for (gint level = 0; level < 256; level++)
-    logarithm[level] = (guint8) lrintf (255 * (logf ((gfloat) (level
-                    + LOG_OFFSET)) - least) / (most - least));
-}
-
 gboolean
 cloth_quad_search (ClothQuadTracker * tracker, gint column, gint row,
     const gfloat guess_x[4], const gfloat guess_y[4])
@@ -300,22 +219,16 @@ cloth_quad_search (ClothQuadTracker * tracker, gint column, gint row,
   const ClothQuadParams *params = tracker->params;
   ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
   gboolean black = cloth_pattern_is_black (&tracker->pattern, column, row);
-  ClothOutline outline;
+  ClothOutline outline = { {0} };
   gfloat confidence;
 
-  if (cell->refused)
+  if (cell->refused || search_candidates (tracker, black, guess_x, guess_y,
+          outline.x, outline.y) < params->c_low
+      || !has_edges (tracker->image, outline.x, outline.y, black)
+      || !fit_outline (tracker, column, row, &outline))
     return FALSE;
-  confidence = search (tracker, tracker->image, column, row, guess_x, guess_y,
-      params->c_low, &outline);
-  if (confidence < params->c_low && params->link) {
-    const ClothImage logarithms = take_logarithms (tracker, guess_x, guess_y);
-
-    confidence = search (tracker, &logarithms, column, row, guess_x, guess_y,
-        LEAST_SHADED, &outline);
-    if (confidence < LEAST_SHADED || cloth_quad_light (tracker->image,
-            outline.x, outline.y, black) > SHADED)
-      return FALSE;
-  }
+  confidence = cloth_quad_confidence (tracker->image, outline.x, outline.y,
+      params->alpha, black);
   if (confidence < params->c_low)
     return FALSE;
   for (gint k = 0; k < 4; k++)
