@@ -363,6 +363,28 @@ set_effect (const ClothGapCandidates * c, ClothModel * model, guint direction)
 }
 
 /**
+ * cloth_gap_candidates_place:
+ * @candidates: the candidates
+ * @model: a model
+ * @direction: a direction
+ *
+ * Returns: where the model is along it: the number, or its logarithm
+ * Since: 0.1
+ */
+gdouble
+cloth_gap_candidates_place (const ClothGapCandidates * candidates,
+    const ClothModel * model, guint direction)
+{
+  const ClothGapDirection *d = cloth_gap_candidates_direction (candidates,
+      direction);
+  gdouble value = d->centre;
+
+  if (cloth_model_get (model, d->name, &value, NULL) && d->logarithmic)
+    value = log (value);
+  return value;
+}
+
+/**
  * cloth_gap_candidates_move:
  * @candidates: the candidates
  * @model: where they start
@@ -383,39 +405,15 @@ cloth_gap_candidates_move (const ClothGapCandidates * candidates,
   for (guint i = 0; i < n; i++) {
     const ClothGapDirection *d = cloth_gap_candidates_direction (candidates,
         directions[i]);
-    gdouble value = d->centre;
+    gdouble value;
 
     set_effect (candidates, moved, directions[i]);
-    cloth_model_get (moved, d->name, &value, NULL);
-    if (d->logarithmic)
-      value = log (value);
+    value = cloth_gap_candidates_place (candidates, moved, directions[i]);
     value = CLAMP (value + changes[i], d->low, d->high);
     cloth_model_set (moved, d->name, d->logarithmic ? exp (value) : value,
         NULL);
   }
   return moved;
-}
-
-/**
- * cloth_gap_candidates_place:
- * @candidates: the candidates
- * @model: a model
- * @direction: a direction
- *
- * Returns: where the model is along it: the number, or its logarithm
- * Since: 0.1
- */
-gdouble
-cloth_gap_candidates_place (const ClothGapCandidates * candidates,
-    const ClothModel * model, guint direction)
-{
-  const ClothGapDirection *d = cloth_gap_candidates_direction (candidates,
-      direction);
-  gdouble value = d->centre;
-
-  if (cloth_model_get (model, d->name, &value, NULL) && d->logarithmic)
-    value = log (value);
-  return value;
 }
 
 /**

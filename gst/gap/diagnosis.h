@@ -156,6 +156,10 @@ ClothModel *cloth_diagnosis_other_model (const ClothDiagnosis * d);
 /* Which effects. */
 ClothGapPower *cloth_diagnosis_find_mismatch (const ClothDiagnosis * d,
     guint take, guint gain);
+ClothGapPower *cloth_diagnosis_find_weight (const ClothDiagnosis * d, guint take,
+    guint gain);
+gdouble *cloth_diagnosis_list_columns (const ClothDiagnosis * d, guint take,
+    guint gain, guint before, guint more);
 void cloth_diagnosis_find_signatures (ClothDiagnosis * d);
 gboolean cloth_diagnosis_has_signatures (const ClothDiagnosis * d);
 gboolean cloth_diagnosis_linearise (ClothDiagnosis * d, guint first, guint end,

@@ -131,17 +131,14 @@ cloth_gap_test_gusts (const ClothGapTest * test, gdouble intensity,
 {
   g_auto (System) system = { 0 };
   ClothGapReduced reduced;
-  g_autofree gdouble *precisions = g_new (gdouble, test->n_nuisances + 1);
   g_autofree gdouble *x = NULL;
   gdouble phi, none, sum = 0., best = -INFINITY;
   gdouble xx = 0., xy = 0., yy = 0.;
 
   *gusts = (ClothGapGusts) {
   0};
-  for (guint i = 0; i < test->n_nuisances; i++)
-    precisions[i] = test->precisions[i] * test->overdispersion;
-  if (!test->gusts || !cloth_gap_normal_reduce (test->normals[0], test->blocks,
-          test->nuisances, precisions, test->n_nuisances, NULL, 0, &reduced))
+  if (!test->gusts || !cloth_gap_test_reduce (test, test->normals[0],
+          test->blocks, NULL, 0, &reduced))
     return FALSE;
   phi = cloth_gap_test_dispersion (test, test->normals[0], &reduced);
   assemble (test, &system);

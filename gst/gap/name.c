@@ -124,9 +124,19 @@ cloth_diagnosis_find_mismatch (const ClothDiagnosis * d, guint take, guint gain)
   return mean;
 }
 
-/* The first direction of wind if gusts are looked for in a study, else 0. */
-static guint
-find_wind (const ClothDiagnosis * d, const ClothStudy * study)
+/* What weighs in a take: the power that is left to doubt, else the mismatch. */
+ClothGapPower *
+cloth_diagnosis_find_weight (const ClothDiagnosis * d, guint take, guint gain)
+{
+  const ClothStudy *s = cloth_diagnosis_study (d, take);
+
+  return s->left[gain] ? cloth_gap_power_copy (s->left[gain]) :
+      cloth_diagnosis_find_mismatch (d, take, gain);
+}
+
+/* Gusts, if they are looked for in a study, else NULL. */
+static const ClothGapCandidate *
+find_gusts (const ClothDiagnosis * d, const ClothStudy * study)
 {
   const GArray *list = d->candidates->list;
 
@@ -137,47 +147,48 @@ find_wind (const ClothDiagnosis * d, const ClothStudy * study)
 
     if (cloth_gap_candidate_is_gust (c) && d->sound[c->first]
         && d->sound[c->first + 1])
-      return c->first;
+      return c;
   }
-  return 0;
+  return NULL;
 }
 
 /* The columns of the directions and behind them, where no other take has any, those of the
- * chaos; last those of @wind in the parts of the blocks, unless it is 0. */
-static gdouble *
-columns_of (const ClothDiagnosis * d, guint take, guint gain, guint before,
-    guint wind)
+ * chaos: as many are @before it; last room for @more. */
+gdouble *
+cloth_diagnosis_list_columns (const ClothDiagnosis * d, guint take, guint gain,
+    guint before, guint more)
 {
   const ClothStudy *s = cloth_diagnosis_study (d, take);
   gsize size = s->features->size;
-  const guint n = s->m + d->n_chaos;
-  gdouble *columns = g_new0 (gdouble, (n + (wind ? CLOTH_GAP_GUST_COLUMNS : 0))
-      * size + 1);
+  gdouble *columns = g_new0 (gdouble, (s->m + d->n_chaos + more) * size + 1);
 
   memcpy (columns, s->columns[gain], s->m * size * sizeof (gdouble));
   cloth_study_get_chaos (s, gain, columns + (s->m + before) * size);
-  for (guint i = 0; wind && i < CLOTH_GAP_GUST_COLUMNS; i++)
-    cloth_gap_features_window (s->features, columns + (wind +
-            i % CLOTH_GAP_GUST_WAYS) * size, i / CLOTH_GAP_GUST_WAYS,
-        CLOTH_GAP_GUST_PARTS, columns + (n + i) * size);
   return columns;
 }
 
 /* The signature of the simulator's own error in a take is that of a baseline that moves
- * alike: taken off, a tenth of its power is left to doubt. */
+ * alike: taken off, a tenth of its power is left to doubt. The wind in the parts of the
+ * blocks comes last, if gusts are looked for. */
 static ClothGapNormal *
 normal_of (const ClothDiagnosis * d, guint take, guint gain, guint before)
 {
   const ClothStudy *s = cloth_diagnosis_study (d, take);
+  const ClothGapCandidate *gusts = find_gusts (d, s);
+  const guint more = gusts ? CLOTH_GAP_GUST_COLUMNS : 0;
+  const guint n = s->m + d->n_chaos;
+  const gsize size = s->features->size;
   g_autofree gdouble *z = cloth_study_residual (s, gain);
-  const guint wind = find_wind (d, s);
-  g_autofree gdouble *columns = columns_of (d, take, gain, before, wind);
-  g_autoptr (ClothGapPower) mismatch =
-      cloth_diagnosis_find_mismatch (d, take, gain);
+  g_autofree gdouble *columns =
+      cloth_diagnosis_list_columns (d, take, gain, before, more);
+  g_autoptr (ClothGapPower) weight =
+      cloth_diagnosis_find_weight (d, take, gain);
 
-  return cloth_gap_normal_new (s->features, s->left[gain] ? s->left[gain] :
-      mismatch, 1., z, columns, s->m + d->n_chaos + (wind ?
-          CLOTH_GAP_GUST_COLUMNS : 0));
+  for (guint i = 0; i < more; i++)
+    cloth_gap_features_window (s->features, columns + (gusts->first +
+            i % CLOTH_GAP_GUST_WAYS) * size, i / CLOTH_GAP_GUST_WAYS,
+        CLOTH_GAP_GUST_PARTS, columns + (n + i) * size);
+  return cloth_gap_normal_new (s->features, weight, 1., z, columns, n + more);
 }
 
 /* The power left in the takes that a baseline's signature is taken off, once @score's
@@ -269,7 +280,7 @@ cloth_diagnosis_make_normals (ClothDiagnosis * d, guint begin, guint end,
     }
     test->normals[g] = d->normals[g];
   }
-  test->gusts = find_wind (d, cloth_diagnosis_study (d, begin)) ?
+  test->gusts = find_gusts (d, cloth_diagnosis_study (d, begin)) ?
       d->candidates->directions->len + d->n_chaos : 0;
 }
 

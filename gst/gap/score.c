@@ -120,18 +120,38 @@ cloth_gap_test_dispersion (const ClothGapTest * test,
           normal), LEAST_DISPERSION);
 }
 
+/**
+ * cloth_gap_test_reduce:
+ * @test: what is tested
+ * @normal: normal equations whose nuisances are those of the test
+ * @blocks: (array): which blocks count
+ * @directions: (array length=n): columns that are looked at, at most 4
+ * @n: how many
+ * @reduced: (out): what is left of them once the nuisances are projected out
+ *
+ * Returns: whether the nuisances could be solved for
+ * Since: 0.1
+ */
+gboolean
+cloth_gap_test_reduce (const ClothGapTest * test, const ClothGapNormal * normal,
+    const gboolean * blocks, const guint * directions, guint n,
+    ClothGapReduced * reduced)
+{
+  g_autofree gdouble *precisions = g_new (gdouble, test->n_nuisances + 1);
+
+  /* the equations are not divided by the noise yet */
+  for (guint i = 0; i < test->n_nuisances; i++)
+    precisions[i] = test->precisions[i] * test->overdispersion;
+  return cloth_gap_normal_reduce (normal, blocks, test->nuisances, precisions,
+      test->n_nuisances, directions, n, reduced);
+}
+
 static gboolean
 reduce (const Trial * trial, const ClothGapNormal * normal,
     const gboolean * blocks, ClothGapReduced * reduced)
 {
-  const ClothGapTest *t = trial->test;
-  g_autofree gdouble *precisions = g_new (gdouble, t->n_nuisances + 1);
-
-  /* the equations are not divided by the noise yet */
-  for (guint i = 0; i < t->n_nuisances; i++)
-    precisions[i] = t->precisions[i] * t->overdispersion;
-  return cloth_gap_normal_reduce (normal, blocks, t->nuisances, precisions,
-      t->n_nuisances, trial->directions, trial->candidate->n, reduced);
+  return cloth_gap_test_reduce (trial->test, normal, blocks, trial->directions,
+      trial->candidate->n, reduced);
 }
 
 /* The nuisances, and with them the effect's @n directions, estimated from @blocks: changes

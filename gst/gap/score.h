@@ -65,6 +65,9 @@ typedef struct {
 #define CLOTH_GAP_IDENTIFIABLE 0.05
 
 gint cloth_gap_score_compare (gconstpointer a, gconstpointer b);
+gboolean cloth_gap_test_reduce (const ClothGapTest * test,
+    const ClothGapNormal * normal, const gboolean * blocks,
+    const guint * directions, guint n, ClothGapReduced * reduced);
 gdouble cloth_gap_test_dispersion (const ClothGapTest * test,
     const ClothGapNormal * normal, const ClothGapReduced * reduced);
 GArray *cloth_gap_test_run (const ClothGapTest * test);

@@ -70,14 +70,10 @@ find_values (const ClothDiagnosis * d, guint chosen, gdouble * values)
 {
   const ClothGapCandidate *c = cloth_diagnosis_chosen (d, chosen);
 
-  for (guint k = 0; k < c->n; k++) {
-    const ClothGapDirection *direction =
-        cloth_gap_candidates_direction (d->candidates, c->first + k);
-
-    cloth_model_get (d->with[d->n_chosen - 1], direction->name, &values[k],
-        NULL);
-    values[k] -= direction->centre;
-  }
+  for (guint k = 0; k < c->n; k++)
+    values[k] = cloth_gap_candidates_place (d->candidates,
+        d->with[d->n_chosen - 1], c->first + k) -
+        cloth_gap_candidates_direction (d->candidates, c->first + k)->centre;
 }
 
 /* How much the residual would ask for an effect that is taken in if it were not: the

@@ -146,6 +146,26 @@ cloth_study_get_chaos_precision (const ClothStudy * study, guint i)
 }
 
 /**
+ * cloth_study_take_off_signature:
+ * @study: a study
+ * @gain: which of the gains
+ * @z: (inout) (array): features of a residual
+ *
+ * Takes off what the simulator itself is off by, if there is a signature.
+ *
+ * Since: 0.1
+ */
+void
+cloth_study_take_off_signature (const ClothStudy * study, guint gain,
+    gdouble * z)
+{
+  gdouble scale = cloth_study_signature_scale (study);
+
+  for (gsize k = 0; study->signature && k < study->features->size; k++)
+    z[k] -= scale * study->signature->z[gain][k];
+}
+
+/**
  * cloth_study_residual:
  * @study: a study
  * @gain: which of the gains
@@ -156,12 +176,10 @@ cloth_study_get_chaos_precision (const ClothStudy * study, guint i)
 gdouble *
 cloth_study_residual (const ClothStudy * study, guint gain)
 {
-  gsize size = study->features->size;
-  gdouble *z = g_memdup2 (study->z[gain], size * sizeof (gdouble));
-  gdouble scale = cloth_study_signature_scale (study);
+  gdouble *z = g_memdup2 (study->z[gain],
+      study->features->size * sizeof (gdouble));
 
-  for (gsize k = 0; study->signature && k < size; k++)
-    z[k] -= scale * study->signature->z[gain][k];
+  cloth_study_take_off_signature (study, gain, z);
   return z;
 }
 
@@ -180,8 +198,23 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
       positions, c->z[model]);
 }
 
-/* Features of the models' residuals: z[model * N_GAINS + gain], each of features->size.
- * The gains of a model run side by side, so that effects are computed in few groups. */
+/**
+ * cloth_study_run:
+ * @study: a study
+ * @models: (array length=n): models
+ * @n: how many
+ * @options: how to simulate
+ * @z: (inout) (array): of each model and gain, z[model · gains + gain], the features of the
+ *   residual, each features->size; start with zeros
+ * @sound: (out) (array length=n): which models did not diverge
+ * @error: #ClothSimError, or #ClothGapError when it was stopped
+ *
+ * Simulates models drawn to the recording. The gains of a model run side by side, so that
+ * effects are computed in few groups.
+ *
+ * Returns: whether that could be done
+ * Since: 0.1
+ */
 gboolean
 cloth_study_run (const ClothStudy * study, ClothModel ** models, guint n,
     ClothStudyOptions * options, gdouble ** z, gboolean * sound,

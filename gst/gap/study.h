@@ -75,6 +75,8 @@ guint cloth_study_count_chaos (const ClothStudy * study);
 void cloth_study_get_chaos (const ClothStudy * study, guint gain,
     gdouble * columns);
 gdouble cloth_study_get_chaos_precision (const ClothStudy * study, guint i);
+void cloth_study_take_off_signature (const ClothStudy * study, guint gain,
+    gdouble * z);
 gdouble *cloth_study_residual (const ClothStudy * study, guint gain);
 gboolean cloth_study_run (const ClothStudy * study, ClothModel ** models, guint n,
     ClothStudyOptions * options, gdouble ** z, gboolean * sound,

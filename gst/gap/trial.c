@@ -24,7 +24,6 @@ typedef struct
   const ClothGapCandidate *candidate;
   gdouble at[CLOTH_EFFECT_MAX_PARAMETERS];      /* changes from the null */
   guint first;                  /* of its models */
-  gdouble evidence;
   gdouble moved, gained;        /* by the last step, in priors and in evidence */
 } Rival;
 
@@ -34,7 +33,6 @@ typedef struct
   ClothDiagnosis *d;
   const ClothGapTest *test;
   const ClothModel *base;       /* the model without them */
-  ClothGapPower **powers;       /* what weighs, of each take */
   gdouble **z;                  /* of each take: features by model */
   gdouble phi;                  /* how much more than noise a square counts */
   gdouble without;              /* logarithm of the probability without any of them */
@@ -43,11 +41,8 @@ typedef struct
 static void
 court_clear (Court * court)
 {
-  for (guint t = 0; t < court->d->n_takes; t++) {
-    cloth_gap_power_free (court->powers[t]);
+  for (guint t = 0; t < court->d->n_takes; t++)
     g_free (court->z[t]);
-  }
-  g_free (court->powers);
   g_free (court->z);
 }
 
@@ -125,73 +120,63 @@ simulate (Court * court, GPtrArray * models, gboolean * sound, GError ** error)
   return TRUE;
 }
 
-/* The normal equations of a take where a rival is: all directions at the model without it,
- * then its own, then chaos. Its residual is the mean of its simulations, with less chaos. */
+/* The normal equations of a take where a rival is: as those of the test at the model without
+ * it, and behind them its own directions. Its residual is the mean of its simulations, with
+ * less chaos. */
 static ClothGapNormal *
 normal_of (const Court * court, const Rival * r, guint take, guint before)
 {
   const ClothDiagnosis *d = court->d;
   const ClothStudy *s = cloth_diagnosis_study (d, take);
   const gsize size = s->features->size;
-  const guint n = r->candidate->n, q = s->m;
+  const guint n = r->candidate->n, others = s->m + d->n_chaos;
   const gdouble *own = court->z[take] + r->first * size;
-  const gdouble scale = cloth_study_signature_scale (s);
   g_autofree gdouble *columns =
-      g_new0 (gdouble, (q + n + d->n_chaos) * size + 1);
+      cloth_diagnosis_list_columns (d, take, 0, before, n);
   g_autofree gdouble *z = g_new0 (gdouble, size);
+  g_autoptr (ClothGapPower) weight = cloth_diagnosis_find_weight (d, take, 0);
 
   for (guint i = 0; i <= 2 * n; i++)
     for (gsize k = 0; k < size; k++)
       z[k] += own[i * size + k] / (2 * n + 1);
-  for (gsize k = 0; s->signature && k < size; k++)
-    z[k] -= scale * s->signature->z[0][k];
-  memcpy (columns, s->columns[0], q * size * sizeof (gdouble));
+  cloth_study_take_off_signature (s, 0, z);
   for (guint i = 0; i < n; i++)
     for (gsize k = 0; k < size; k++)
-      columns[(q + i) * size + k] = (own[(1 + 2 * i) * size + k] -
+      columns[(others + i) * size + k] = (own[(1 + 2 * i) * size + k] -
           own[(2 + 2 * i) * size + k]) / (2. * step_of (d, r, i));
-  cloth_study_get_chaos (s, 0, columns + (q + n + before) * size);
-  return cloth_gap_normal_new (s->features, court->powers[take], 1., z,
-      columns, q + n + d->n_chaos);
+  return cloth_gap_normal_new (s->features, weight, 1., z, columns, others + n);
 }
 
 /* What is left of them for a rival's directions, of all takes. */
 static gboolean
 reduce (const Court * court, const Rival * r, ClothGapReduced * reduced)
 {
-  const ClothGapTest *test = court->test;
-  const guint m = court->d->candidates->directions->len, n = r->candidate->n;
-  g_autofree guint *nuisances = g_new (guint, test->n_nuisances + 1);
-  g_autofree gdouble *precisions = g_new (gdouble, test->n_nuisances + 1);
+  const guint n = r->candidate->n;
   g_autoptr (ClothGapNormal) normal = NULL;
-  guint directions[CLOTH_EFFECT_MAX_PARAMETERS], before = 0;
+  guint directions[CLOTH_EFFECT_MAX_PARAMETERS] = { 0 }, before = 0;
 
   for (guint t = 0; t < court->d->n_takes; t++) {
     normal = cloth_gap_normal_append (g_steal_pointer (&normal),
         normal_of (court, r, t, before));
     before += cloth_study_count_chaos (cloth_diagnosis_study (court->d, t));
   }
-  for (guint i = 0; i < test->n_nuisances; i++) {
-    nuisances[i] = test->nuisances[i] + (test->nuisances[i] >= m ? n : 0);
-    precisions[i] = test->precisions[i] * test->overdispersion;
-  }
   for (guint i = 0; i < n; i++)
-    directions[i] = m + i;
-  return cloth_gap_normal_reduce (normal, test->blocks, nuisances, precisions,
-      test->n_nuisances, directions, n, reduced);
+    directions[i] = normal->m - n + i;
+  return cloth_gap_test_reduce (court->test, normal, court->test->blocks,
+      directions, n, reduced);
 }
 
-/* Takes a step from where a rival is; its evidence is that of where it comes to, by the
+/* Takes a step from where a rival is; the evidence is that of where it comes to, by the
  * derivatives here. */
-static gboolean
+static void
 step (const Court * court, Rival * r)
 {
   const guint n = r->candidate->n;
   ClothGapReduced reduced;
-  gdouble a[16], inverse[16], by[4], log_det = 0., square;
+  gdouble a[16], inverse[16], by[4], log_det = 0., square, evidence;
 
   if (!reduce (court, r, &reduced))
-    return FALSE;
+    return;
   for (guint i = 0; i < n; i++) {
     gdouble prior = cloth_gap_candidates_direction (court->d->candidates,
         r->candidate->first + i)->prior;
@@ -203,7 +188,7 @@ step (const Court * court, Rival * r)
     by[i] = -reduced.s[i] / court->phi - r->at[i] / (prior * prior);
   }
   if (!cloth_cholesky_factor (n, a))
-    return FALSE;
+    return;
   for (guint i = 0; i < n; i++)
     log_det += 2. * log (a[i * n + i]);
   cloth_cholesky_solve (n, a, by);
@@ -229,8 +214,11 @@ step (const Court * court, Rival * r)
       square += (k < i ? 2. : 1.) * by[i] * by[k] * reduced.g[i * n + k] /
           court->phi;
   }
-  r->evidence = -0.5 * (square + log_det) - court->without;
-  return TRUE;
+  evidence = -0.5 * (square + log_det) - court->without -
+      court->d->null_evidence[r->score->candidate];
+  r->gained = evidence - r->score->evidence;
+  r->score->evidence = evidence;
+  memcpy (r->score->changes, r->at, sizeof r->score->changes);
 }
 
 /* The residual without any rival, as that of the rivals freed of chaos. */
@@ -242,14 +230,11 @@ open_court (Court * court)
   const Rival nobody = { NULL, &none };
   ClothGapReduced reduced;
 
-  court->powers = g_new0 (ClothGapPower *, d->n_takes);
   court->z = g_new0 (gdouble *, d->n_takes);
   for (guint t = 0; t < d->n_takes; t++) {
     const ClothStudy *s = cloth_diagnosis_study (d, t);
     const gsize size = s->features->size;
 
-    court->powers[t] = s->left[0] ? cloth_gap_power_copy (s->left[0]) :
-        cloth_diagnosis_find_mismatch (d, t, 0);
     court->z[t] = g_memdup2 (s->z[0], size * sizeof (gdouble));
     for (gsize k = 0; s->n_chaos && k < size; k++)
       court->z[t][k] -= s->chaos[0][(s->n_chaos - 1) * size + k];
@@ -270,7 +255,7 @@ list_rivals (const Court * court, GArray * scores, gdouble least,
 
   for (guint i = 0; i < scores->len && rivals->len < MOST_RIVALS; i++) {
     ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
-    Rival r = { s, cloth_diagnosis_candidate (d, s), {0.}, 0, s->evidence };
+    Rival r = { s, cloth_diagnosis_candidate (d, s) };
 
     if (!(s->evidence > least) || cloth_gap_candidate_is_gust (r.candidate))
       continue;
@@ -300,12 +285,8 @@ go (Court * court, GArray * rivals, GError ** error)
     for (guint k = 0; k <= 2 * r->candidate->n; k++)
       ok = ok && sound[r->first + k];
     r->moved = r->gained = 0.;
-    if (!ok || !step (court, r))
-      continue;
-    r->evidence -= court->d->null_evidence[r->score->candidate];
-    r->gained = r->evidence - r->score->evidence;
-    r->score->evidence = r->evidence;
-    memcpy (r->score->changes, r->at, sizeof r->score->changes);
+    if (ok)
+      step (court, r);
   }
   return TRUE;
 }
