@@ -12,7 +12,7 @@
 #include "gst/mesh/hash.h"
 
 /* Version of the priors and thresholds: a change of either changes probabilities. */
-#define PRIORS "2"
+#define PRIORS "3"
 
 /* Simulations of the fit of the free numbers. */
 #define N_FIT 6

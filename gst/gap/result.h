@@ -52,7 +52,7 @@ typedef struct {
  * @sigmas: their standard deviations
  * @p_value: of its score test
  * @constancy_p_value: that it is the same all the time and everywhere; NaN: not tested
- * @shrink: by how much the held-out gap shrinks when it alone is added, of variance
+ * @shrink: by how much the held-out gap shrinks when all accepted effects are added, of variance
  * @group: index into `groups`, or -1 when nothing is confused with it
  * @accepted: whether it is part of the model that `gap_after` is measured with
  * @refitted: whether it equals a free parameter that was re-fitted on the take, so

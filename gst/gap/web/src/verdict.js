@@ -81,7 +81,7 @@ export function effects(gap, about) {
       (title) => element('th', { scope: 'col' }, title)))),
     element('tbody', {}, ...rows));
   const result = section('effects', 'Which effects', gap.effects.length
-    ? 'Ranked by the evidence for each. The shrink is measured with that effect alone, in per cent of the variance above the noise floor; a high shrink alone does not name an effect.'
+    ? 'Ranked by the evidence for each. The shrink is what the accepted effects take off the gap together, in per cent of the variance above the noise floor; a high shrink alone does not name an effect.'
     : 'No effect was tested.', gap.effects.length ? element('div', { class: 'wide' }, table) : null);
   if (rows.length > ROWS) {
     const more = element('button', { type: 'button', 'aria-expanded': 'false' }, `Show all ${rows.length}`);
