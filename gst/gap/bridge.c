@@ -17,7 +17,7 @@ typedef struct
   ClothRecording *recording;
   gint *first, *last;           /* frames that saw a vertex; none: all later, -1 */
   guint *begin, *neighbours;    /* of a vertex, in the mesh */
-  gboolean *hidden;
+  gboolean *hidden;             /* how far a vertex moved is not known */
   gdouble *moved;               /* [n][3], m */
 } Bridge;
 
@@ -122,17 +122,28 @@ bridge_between (Bridge * b, guint vertex)
   b->last[vertex] = last;
 }
 
-/* Vertices that @frame does not know move to it from @from as their neighbours do. */
+/* Whether going from @from to @frame is what gives the vertex its place there. */
+static gboolean
+is_filled (const Bridge * b, guint vertex, guint from, guint frame)
+{
+  return frame < from ? b->first[vertex] > (gint) frame :
+      b->last[vertex] < (gint) frame;
+}
+
+/* Vertices that @frame does not know move to it from @from as their neighbours do. On the
+ * way back those that nobody saw any more at @from have no place there yet to have moved
+ * from: they are as hidden as the others, and stay where they are at @frame. */
 static void
 carry (Bridge * b, guint from, guint frame)
 {
   const ClothRecording *r = b->recording;
+  const gboolean back = frame < from;
   gboolean any = FALSE;
 
   for (guint v = 0; v < r->n; v++) {
-    b->hidden[v] = frame < from ? b->first[v] > (gint) frame :
-        b->last[v] < (gint) frame;
-    any |= b->hidden[v];
+    b->hidden[v] = is_filled (b, v, from, frame) || (back
+        && b->last[v] < (gint) from);
+    any |= is_filled (b, v, from, frame);
     for (guint k = 0; k < 3; k++)
       b->moved[3 * v + k] = place (b, frame, v)[k] - place (b, from, v)[k];
   }
@@ -140,7 +151,7 @@ carry (Bridge * b, guint from, guint frame)
     return;
   spread (b);
   for (guint v = 0; v < r->n; v++)
-    for (guint k = 0; b->hidden[v] && k < 3; k++)
+    for (guint k = 0; is_filled (b, v, from, frame) && k < 3; k++)
       place (b, frame, v)[k] = place (b, from, v)[k] + b->moved[3 * v + k];
 }
 
