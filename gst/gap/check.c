@@ -1,7 +1,9 @@
 /* Recordings that can't be what they say they are: other units, other axes, other vertices.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "gst/gap/diagnose.h"
 #include "gst/gap/recording.h"
@@ -18,6 +20,10 @@
 #define MOST_NOISE 0.5
 /* No laboratory has more gravity, m/s². */
 #define MOST_GRAVITY 100.
+/* No cloth that is filmed is longer, m. */
+#define MOST_SIDE 100.
+/* Numbers of a file may be this share of an edge, or of the time between frames, apart. */
+#define MOST_ROUNDING 0.01
 
 static gboolean
 is_seen (const ClothRecording * r, guint frame, guint v)
@@ -69,40 +75,60 @@ typical_edge (const ClothTopology * t)
   return median (lengths);
 }
 
-/* A cloth's edges are about as long as on the flat cloth, in metres. */
-static gboolean
-check_scale (const ClothRecording * r, GError ** error)
+/**
+ * cloth_recording_find_scale:
+ * @recording: a recording; what was not seen is left out
+ * @corner: 0: edges from each face's first corner to the second, along one way of a grid; 1:
+ *   from the second to the third, along the other
+ *
+ * Returns: how many times as long as on the flat cloth such edges are, the median; NaN: none
+ *   was seen
+ * Since: 0.1
+ */
+gdouble
+cloth_recording_find_scale (const ClothRecording * recording, guint corner)
 {
+  const ClothRecording *r = recording;
   const ClothTopology *t = r->scene->topology;
   g_autoptr (GArray) ratios = g_array_new (FALSE, FALSE, sizeof (gdouble));
-  gdouble ratio;
 
   for (guint look = 0; look < N_LOOKS; look++)
     for (guint f = 0; f < t->n_faces; f++) {
       const guint32 *face = t->faces + 4 * (gsize) f;
-      guint a = face[0], b = face[1];
+      guint a = face[corner], b = face[corner + 1];
       guint frame = (guint) ((guint64) look * (r->n_frames - 1) /
           (N_LOOKS - 1));
-      gdouble flat = flat_length (t, a, b);
+      gdouble flat = flat_length (t, a, b), ratio;
 
       if (!(flat > 0.) || !is_seen (r, frame, a) || !is_seen (r, frame, b))
         continue;
       ratio = distance (place (r, frame, a), place (r, frame, b)) / flat;
       g_array_append_val (ratios, ratio);
     }
-  ratio = median (ratios);
-  if (isnan (ratio) || (ratio > 0.5 && ratio < 2.))
-    return TRUE;
-  if (ratio > 500. && ratio < 2000.)
-    g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE, "%s: edges are "
-        "%.0f times as long as on the flat cloth: positions.npy is in "
-        "millimetres; write it in metres", r->name, ratio);
-  else
-    g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE, "%s: edges are "
-        "%.3g times as long as on the flat cloth; positions.npy and the size of "
-        "the cloth must both be in metres, the vertices in the order of the "
-        "mesh", r->name, ratio);
-  return FALSE;
+  return median (ratios);
+}
+
+/* A cloth's edges are about as long as on the flat cloth, in metres: both ways of a grid. */
+static gboolean
+check_scale (const ClothRecording * r, GError ** error)
+{
+  for (guint corner = 0; corner < 2; corner++) {
+    gdouble ratio = cloth_recording_find_scale (r, corner);
+
+    if (isnan (ratio) || (ratio > 0.5 && ratio < 2.))
+      continue;
+    if (ratio > 500. && ratio < 2000.)
+      g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE, "%s: edges "
+          "are %.0f times as long as on the flat cloth: positions.npy is in "
+          "millimetres; write it in metres", r->name, ratio);
+    else
+      g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE, "%s: edges "
+          "are %.3g times as long as on the flat cloth; positions.npy and the "
+          "size of the cloth must both be in metres, the vertices in the order "
+          "of the mesh", r->name, ratio);
+    return FALSE;
+  }
+  return TRUE;
 }
 
 /* One place far off the cloth would tear every simulation that is drawn to it. */
@@ -184,43 +210,114 @@ check_clamps (const ClothRecording * r, gdouble side, GError ** error)
   return TRUE;
 }
 
+/* float32 can't tell places apart that are far from the origin, nor float64 times. */
 static gboolean
-check_numbers (const ClothRecording * r, GError ** error)
+check_rounding (const ClothRecording * r, gdouble edge, GError ** error)
+{
+  gdouble interval = (r->times[r->n_frames - 1] - r->times[0]) /
+      (r->n_frames - 1);
+  gdouble late = fmax (fabs (r->times[0]), fabs (r->times[r->n_frames - 1]));
+  gdouble far = 0.;
+
+  for (gsize i = 0; i < 3 * (gsize) r->n * r->n_frames; i++)
+    far = fmax (far, fabs (r->y[i]));
+  if (far * FLT_EPSILON > MOST_ROUNDING * edge) {
+    g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE, "%s: places "
+        "lie up to %.3g m from the origin, where positions.npy holds them to "
+        "%.2g m only; move the origin near to the cloth, and write NaN where a "
+        "vertex was not seen", r->name, far, far * FLT_EPSILON);
+    return FALSE;
+  }
+  if (late * DBL_EPSILON > MOST_ROUNDING * interval) {
+    g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE, "%s: times "
+        "reach %.3g s, where numbers are %.2g s apart; begin them near 0 in "
+        "times.npy and “held”", r->name, late, late * DBL_EPSILON);
+    return FALSE;
+  }
+  return TRUE;
+}
+
+static gboolean
+check_numbers (const ClothRecording * r, gdouble side, GError ** error)
 {
   const gdouble *g = r->scene->gravity;
   const gdouble none[3] = { 0. };
-  gdouble edge = typical_edge (r->scene->topology);
 
-  if (r->sigma > MOST_NOISE * edge) {
-    g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE, "%s: noise of "
-        "%.3g m hides a cloth whose edges are %.3g m long; “noise_sigma_m” is "
-        "in metres, null estimates it", r->name, r->sigma, edge);
+  if (side > MOST_SIDE) {
+    g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE, "%s: the cloth "
+        "is %.3g m long; give its size in metres, and so positions.npy and "
+        "clamps.npy", r->name, side);
     return FALSE;
   }
   if (distance (g, none) > MOST_GRAVITY) {
     g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE,
-        "%s: “gravity” " "is %.3g m/s²; give it in m/s², on earth 9.81",
+        "%s: “gravity” is %.3g m/s²; give it in m/s², on earth 9.81",
         r->name, distance (g, none));
     return FALSE;
   }
   return TRUE;
 }
 
+static gboolean
+check_noise (const ClothRecording * r, gboolean told, gdouble edge,
+    GError ** error)
+{
+  if (!(r->sigma > MOST_NOISE * edge))
+    return TRUE;
+  g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE, "%s: noise of "
+      "%.3g m hides a cloth whose edges are %.3g m long; %s", r->name, r->sigma,
+      edge, told ? "“noise_sigma_m” is in metres, null estimates it" :
+      "it was estimated from jumps between frames: mind the order of frames and "
+      "vertices, film more frames a second, or give “noise_sigma_m” in metres");
+  return FALSE;
+}
+
 /**
  * cloth_recording_check:
  * @recording: a recording as it was read: what was not seen is not bridged yet
+ * @told: whether its noise is what take.json says; else it was estimated
  * @error: #ClothGapError
  *
  * Returns: %FALSE when it contradicts itself or its cloth: units, places that no cloth can
- *   be in, clamps that are not where they hold
+ *   be in, clamps that are not where they hold, noise that hides the cloth
  * Since: 0.1
  */
 gboolean
-cloth_recording_check (const ClothRecording * recording, GError ** error)
+cloth_recording_check (const ClothRecording * recording, gboolean told,
+    GError ** error)
 {
   gdouble side = cloth_recording_longest_side (recording);
+  gdouble edge = typical_edge (recording->scene->topology);
 
-  return check_numbers (recording, error) && check_scale (recording, error)
+  return check_numbers (recording, side, error)
+      && check_rounding (recording, edge, error)
+      && check_scale (recording, error)
       && check_places (recording, side, error)
-      && check_clamps (recording, side, error);
+      && check_clamps (recording, side, error)
+      && check_noise (recording, told, edge, error);
+}
+
+/**
+ * cloth_recording_check_other:
+ * @recording: a recording
+ * @other: another of the same cloth
+ * @error: #ClothGapError
+ *
+ * Returns: %FALSE when both hold the same positions: what judges must not be judged
+ * Since: 0.1
+ */
+gboolean
+cloth_recording_check_other (const ClothRecording * recording,
+    const ClothRecording * other, GError ** error)
+{
+  const ClothRecording *r = recording;
+
+  if (r->n != other->n || r->n_frames != other->n_frames
+      || memcmp (r->y, other->y, 3 * (gsize) r->n * r->n_frames *
+          sizeof *r->y) != 0)
+    return TRUE;
+  g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE, "%s and %s hold "
+      "the same positions; a take, a --baseline and a --hold-out must be "
+      "recordings of their own", other->name, r->name);
+  return FALSE;
 }

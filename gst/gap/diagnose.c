@@ -100,6 +100,10 @@ load_one (ClothDiagnosis * d, ClothTake * take, ClothGapRole role,
           first->scene->topology, error) ||
       !(sha256 = cloth_take_sha256 (take, error)))
     return FALSE;
+  for (guint i = 0; i + 1 < d->recordings->len; i++)
+    if (!cloth_recording_check_other (r, cloth_diagnosis_recording (d, i),
+            error))
+      return FALSE;
   cloth_gap_result_add_input (d->result, role, r->name, sha256);
   if (role != CLOTH_GAP_HOLD_OUT)
     g_ptr_array_add (d->studies, cloth_study_new (r, &d->study));

@@ -19,6 +19,17 @@
 /* Another world must make the gap's square this much less, on a cloth of so many lines. */
 #define MUCH_LESS 0.25
 #define TRIAL_LINES 9
+/* Positions that jump by so many times the noise that is told, and this share of the longest
+ * side, are not what they are told to be. */
+#define MOST_JUMPS 10.
+#define LEAST_JUMP 0.02
+/* A floor beyond this share of the cloth's longest side hides whether there is a gap. */
+#define MOST_FLOOR 0.2
+/* Edges that are so many times as long as on the flat cloth, all over it: its size is amiss. */
+#define MOST_STRETCH 1.2
+/* Gravity on earth, m/s², and by how much one that is told may differ from it anywhere there. */
+#define EARTH 9.81
+#define EARTH_SHARE 0.05
 /* Gain of the observer that leads up to its windows, 1/s². */
 #define TRIAL_GAIN 1600.
 /* Frame rates are mistaken by factors like these. Where the first or the last does best,
@@ -85,40 +96,43 @@ try_world (ClothDiagnosis * d, const Trial * t, const ClothModel * model,
   return square;
 }
 
-/* Whether gravity along another axis makes much less of a gap. */
+/* Whether other gravity makes much less of a gap: along another axis, or the earth's. */
 static gchar *
 doubt_gravity (ClothDiagnosis * d, const ClothRecording * recording,
     const ClothModel * model)
 {
   static const gchar *const names[] =
       { "+x", "−x", "+y", "−y", "+z", "−z" };
+  const gdouble *gravity = recording->scene->gravity;
+  const gdouble g = sqrt (gravity[0] * gravity[0] + gravity[1] * gravity[1] +
+      gravity[2] * gravity[2]);
+  const gdouble strengths[] = { g > 0. ? g : EARTH, EARTH };
+  const guint n = g > 0. && fabs (g - EARTH) > EARTH_SHARE * EARTH ? 2 : 1;
   g_auto (Trial) t = { NULL };
-  gdouble g, told, least = INFINITY;
+  gdouble told, least = INFINITY, strength = 0.;
   guint best = 0;
 
   trial_init (&t, recording);
-  g = sqrt (t.scene.gravity[0] * t.scene.gravity[0] +
-      t.scene.gravity[1] * t.scene.gravity[1] +
-      t.scene.gravity[2] * t.scene.gravity[2]);
-  if (!(g > 0.))
-    return NULL;
   told = try_world (d, &t, model, 1.);
-  for (guint i = 0; i < G_N_ELEMENTS (names); i++) {
-    gdouble square;
+  for (guint s = 0; s < n; s++)
+    for (guint i = 0; i < G_N_ELEMENTS (names); i++) {
+      gdouble square;
 
-    for (guint k = 0; k < 3; k++)
-      t.scene.gravity[k] = k == i / 2 ? (i % 2 ? -g : g) : 0.;
-    square = try_world (d, &t, model, 1.);
-    if (square < least) {
-      least = square;
-      best = i;
+      for (guint k = 0; k < 3; k++)
+        t.scene.gravity[k] =
+            k == i / 2 ? (i % 2 ? -strengths[s] : strengths[s]) : 0.;
+      square = try_world (d, &t, model, 1.);
+      if (square < least) {
+        least = square;
+        strength = strengths[s];
+        best = i;
+      }
     }
-  }
   if (!(least < MUCH_LESS * told))
     return NULL;
   return g_strdup_printf ("The cloth of %s moves as if gravity were along %s "
-      "and not as “gravity” of take.json says; mind the axes of positions.npy: "
-      "world z is up.", recording->name, names[best]);
+      "with %.3g m/s² and not as “gravity” of take.json says; mind the axes of "
+      "positions.npy: world z is up.", recording->name, names[best], strength);
 }
 
 static gchar *
@@ -236,25 +250,56 @@ cloth_diagnosis_find_doubt (ClothDiagnosis * d, const ClothModel * model)
       doubt_world (d, model);
 }
 
-/* The same of what was found: nothing to judge by, or what no effect explains looks like
- * another frame rate. */
-gchar *
-cloth_diagnosis_doubt_result (ClothDiagnosis * d, const ClothModel * model)
+static gchar *
+doubt_noise (const ClothRecording * r)
+{
+  gdouble jumps = cloth_recording_estimate_sigma (r);
+
+  if (!(jumps > MOST_JUMPS * r->sigma
+          && jumps > LEAST_JUMP * cloth_recording_longest_side (r)))
+    return NULL;
+  return g_strdup_printf ("Positions of %s jump by %.2g m from frame to frame, "
+      "and “noise_sigma_m” says %.2g m; mind the order of frames, film more "
+      "frames a second, or let null estimate the noise.", r->name, jumps,
+      r->sigma);
+}
+
+/* Agreement says nothing where all agrees. */
+static gchar *
+doubt_floor (ClothDiagnosis * d, const ClothRecording * r)
+{
+  gdouble floor = d->result->noise_floor.value;
+
+  if (!(floor > MOST_FLOOR * cloth_recording_longest_side (r)))
+    return NULL;
+  return g_strdup_printf ("A simulation that lacks nothing would be %.3g m off "
+      "%s, too, so nothing can be told; film with less noise, mind the order of "
+      "frames, or give a --baseline.", floor, r->name);
+}
+
+static gchar *
+doubt_size (const ClothRecording * r)
+{
+  for (guint corner = 0; corner < 2; corner++) {
+    gdouble scale = cloth_recording_find_scale (r, corner);
+
+    if (scale > MOST_STRETCH)
+      return
+          g_strdup_printf ("Edges of %s are %.3g times as long as on the flat "
+          "cloth; mind the size of the cloth in take.json.", r->name, scale);
+  }
+  return NULL;
+}
+
+/* Whether another frame rate makes much less of a gap. */
+static gchar *
+doubt_rate (ClothDiagnosis * d, const ClothRecording * r,
+    const ClothModel * model)
 {
   const guint n = G_N_ELEMENTS (faster);
-  const ClothRecording *r = cloth_diagnosis_recording (d, 0);
   g_auto (Trial) t = { NULL };
   gdouble told, least = INFINITY, best = 1.;
-  gchar *doubt;
 
-  if (!isfinite (d->result->gap_before.value))
-    return g_strdup ("Nothing was seen in the parts that judge; give a take of "
-        "its own as --hold-out.");
-  if (d->result->verdict != CLOTH_GAP_UNEXPLAINED
-      || cloth_diagnosis_count_faults (d))
-    return NULL;
-  if (cloth_diagnosis_has_sights (d) && (doubt = doubt_world (d, model)))
-    return doubt;
   trial_init (&t, r);
   told = try_world (d, &t, model, 1.);
   for (guint i = 0; i < n; i++) {
@@ -275,4 +320,30 @@ cloth_diagnosis_doubt_result (ClothDiagnosis * d, const ClothModel * model)
       "%.3g frames a second; mind “fps” of take.json or times.npy.",
       r->name,
       best * (r->n_frames - 1) / (r->times[r->n_frames - 1] - r->times[0]));
+}
+
+/* The same of what was found: nothing to judge by, agreement in noise, or what no effect
+ * explains looks like noise, another size or another frame rate. */
+gchar *
+cloth_diagnosis_doubt_result (ClothDiagnosis * d, const ClothModel * model)
+{
+  const ClothRecording *r = cloth_diagnosis_recording (d, 0);
+  const ClothGapVerdict verdict = d->result->verdict;
+  gchar *doubt;
+
+  if (!isfinite (d->result->gap_before.value))
+    return g_strdup ("Nothing was seen in the parts that judge; give a take of "
+        "its own as --hold-out.");
+  if (verdict != CLOTH_GAP_NO_GAP && (verdict != CLOTH_GAP_UNEXPLAINED
+          || cloth_diagnosis_count_faults (d)))
+    return NULL;
+  if ((doubt = doubt_noise (r)))
+    return doubt;
+  if (verdict == CLOTH_GAP_NO_GAP)
+    return doubt_floor (d, r);
+  if ((doubt = doubt_size (r)))
+    return doubt;
+  if (cloth_diagnosis_has_sights (d) && (doubt = doubt_world (d, model)))
+    return doubt;
+  return doubt_rate (d, r, model);
 }

@@ -128,10 +128,20 @@ cloth_recording_compare_numbers (gconstpointer a, gconstpointer b)
   return x < y ? -1 : x > y;
 }
 
-/* White noise from the fourth differences in time of what was seen five times running. */
-static gdouble
-estimate_sigma (ClothRecording * r)
+/**
+ * cloth_recording_estimate_sigma:
+ * @recording: a recording; what was not seen is left out
+ *
+ * Estimates white noise from the fourth differences in time of what was seen five times
+ * running, by their median.
+ *
+ * Returns: standard deviation of a coordinate, m; NaN: nothing was seen so often
+ * Since: 0.1
+ */
+gdouble
+cloth_recording_estimate_sigma (const ClothRecording * recording)
 {
+  const ClothRecording *r = recording;
   g_autoptr (GArray) all = g_array_new (FALSE, FALSE, sizeof (gdouble));
 
   for (guint frame = 0; frame + 5 <= r->n_frames; frame++)
@@ -217,6 +227,7 @@ cloth_recording_new (ClothTake * take, GError ** error)
 {
   const ClothTakeInfo *info = cloth_take_get_info (take);
   g_autoptr (ClothRecording) r = g_new0 (ClothRecording, 1);
+  gboolean told;
   gsize all;
 
   r->name = g_strdup (info->name);
@@ -239,10 +250,11 @@ cloth_recording_new (ClothTake * take, GError ** error)
   if (!load (r, take, error))
     return NULL;
   r->sigma = info->noise_sigma_m;
-  if (!cloth_recording_check (r, error))
+  told = r->sigma > 0.;
+  if (!told)
+    r->sigma = cloth_recording_estimate_sigma (r);
+  if (!cloth_recording_check (r, told, error))
     return NULL;
-  if (!(r->sigma > 0.))
-    r->sigma = estimate_sigma (r);
   cloth_recording_bridge (r);
   cloth_recording_differentiate (r);
   return g_steal_pointer (&r);

@@ -35,9 +35,14 @@ typedef struct {
 } ClothRecording;
 
 ClothRecording *cloth_recording_new (ClothTake * take, GError ** error);
+gdouble cloth_recording_estimate_sigma (const ClothRecording * recording);
 gdouble cloth_recording_longest_side (const ClothRecording * recording);
+gdouble cloth_recording_find_scale (const ClothRecording * recording,
+    guint corner);
 gboolean cloth_recording_check (const ClothRecording * recording,
-    GError ** error);
+    gboolean told, GError ** error);
+gboolean cloth_recording_check_other (const ClothRecording * recording,
+    const ClothRecording * other, GError ** error);
 void cloth_recording_find_weights (const gdouble * times, guint mask,
     gdouble at, gdouble * weights);
 ClothRecording *cloth_recording_thin (const ClothRecording * recording,
