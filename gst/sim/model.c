@@ -86,6 +86,8 @@ cloth_model_copy (const ClothModel * model)
 
   copy->effects = g_array_copy (model->effects);
   copy->free = g_array_copy (model->free);
+  /* which the array's copy does not take over */
+  g_array_set_clear_func (copy->free, free_clear);
   for (guint i = 0; i < copy->free->len; i++) {
     ClothModelFree *entry = &g_array_index (copy->free, ClothModelFree, i);
 
