@@ -55,6 +55,7 @@ cloth_camera_picture_init (ClothCameraPicture * p, guint n)
   p->other = g_new (gdouble, 2 * n);
   p->z = g_new (gdouble, 2 * n);
   p->e = g_new (gdouble, n);
+  p->sorted = g_new (gdouble, n);
   p->j = g_new (gdouble, 6 * n);
   p->b = g_new (gdouble, 2 * N_COLUMNS * n);
 }
@@ -67,6 +68,7 @@ cloth_camera_picture_clear (ClothCameraPicture * p)
   g_free (p->other);
   g_free (p->z);
   g_free (p->e);
+  g_free (p->sorted);
   g_free (p->j);
   g_free (p->b);
 }
@@ -142,14 +144,6 @@ foretell_faults (const ClothMotion * motion, ClothCameraPicture * p,
   }
 }
 
-static int
-compare (gconstpointer a, gconstpointer b)
-{
-  const gdouble x = *(const gdouble *) a, y = *(const gdouble *) b;
-
-  return x < y ? -1 : x > y;
-}
-
 /* All of one picture. */
 static void
 look (const ClothCameraView * v, const ClothCameraPoints * points,
@@ -218,6 +212,14 @@ cloth_camera_forward (const gdouble * l, gdouble * x)
   x[2] = (x[2] - l[6] * x[0] - l[7] * x[1]) / l[8];
 }
 
+void
+cloth_camera_backward (const gdouble * l, gdouble * x)
+{
+  x[2] /= l[8];
+  x[1] = (x[1] - l[7] * x[2]) / l[4];
+  x[0] = (x[0] - l[3] * x[1] - l[6] * x[2]) / l[0];
+}
+
 gboolean
 cloth_camera_gather (const ClothCameraPicture * pictures, guint n_cameras,
     guint i, gboolean all, ClothCameraPoint * point)
@@ -247,25 +249,17 @@ cloth_camera_gather (const ClothCameraPicture * pictures, guint n_cameras,
   return TRUE;
 }
 
-void
-cloth_camera_backward (const gdouble * l, gdouble * x)
-{
-  x[2] /= l[8];
-  x[1] = (x[1] - l[7] * x[2]) / l[4];
-  x[0] = (x[0] - l[3] * x[1] - l[6] * x[2]) / l[0];
-}
-
 /* From where on a place contradicts those in the other pictures. */
 static void
 find_gross (ClothCameraPicture * p, guint n)
 {
-  g_autofree gdouble *all = g_new (gdouble, n + 1);
+  gdouble *all = p->sorted;
   guint count = 0;
 
   for (guint i = 0; i < n; i++)
     if (p->at[i] >= 0 && !isnan (p->e[i]))
       all[count++] = p->e[i];
-  qsort (all, count, sizeof *all, compare);
+  qsort (all, count, sizeof *all, cloth_recording_compare_numbers);
   p->gross =
       count ? MAX (GROSS * all[9 * count / 10], GROSS_DEVIATIONS) : INFINITY;
 }

@@ -59,6 +59,7 @@ typedef struct
   gdouble *px, *other;          /* [n][2]: foretold */
   gdouble *z;                   /* [n][2]: found less foretold */
   gdouble *e;                   /* [n]: the length of it that no place accounts for */
+  gdouble *sorted;              /* [n]: those of e that are known */
   gdouble *j;                   /* [n][2][3]: by the point's place */
   gdouble *b;                   /* [n][2][N_COLUMNS]: by the camera's faults */
   gdouble gross;                /* of e, from here on */

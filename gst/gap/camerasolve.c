@@ -308,9 +308,8 @@ complete (ClothGapNormal * normal, guint n_cameras)
     for (guint i = 0; i < own; i++) {
       const guint to = own + i % N_COLUMNS;
 
-      for (guint k = 0; k < N_COLUMNS; k++) {
+      for (guint k = 0; k < N_COLUMNS; k++)
         g[(gsize) to * m + own + k] += g[(gsize) i * m + own + k];
-      }
       s[to] += s[i];
     }
     for (guint i = 0; i < own; i++)

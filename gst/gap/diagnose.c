@@ -100,7 +100,9 @@ load_one (ClothDiagnosis * d, ClothTake * take, ClothGapRole role,
           first->scene->topology, error) ||
       !(sha256 = cloth_take_sha256 (take, error)))
     return FALSE;
-  for (guint i = 0; i + 1 < d->recordings->len; i++)
+  /* the same cloth may be filmed twice */
+  for (guint i = 0; i + 1 < d->recordings->len
+      && !cloth_diagnosis_has_sights (d); i++)
     if (!cloth_recording_check_other (r, cloth_diagnosis_recording (d, i),
             error))
       return FALSE;
