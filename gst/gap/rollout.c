@@ -20,6 +20,7 @@ typedef struct
   ClothSim *sim;
   guint n_models;
   gdouble *weights;             /* of the running frame */
+  gdouble *dampings;            /* of each model's observer */
   ClothPool *pool;
   gsize row;                    /* numbers of a model */
   gdouble *x;                   /* of each model */
@@ -36,6 +37,7 @@ run_clear (Run * run)
   cloth_sim_free (run->sim);
   g_clear_pointer (&run->pool, cloth_pool_free);
   g_free (run->weights);
+  g_free (run->dampings);
   g_free (run->x);
   g_free (run->v);
 }
@@ -59,6 +61,7 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Run, run_clear)
     return FALSE;
   run->pool = cloth_pool_new (options->threads);
   run->weights = g_new (gdouble, recording->n);
+  run->dampings = g_new (gdouble, n_models);
   run->x = g_new (gdouble, run->row * n_models);
   run->v = g_new (gdouble, run->row);
   /* it moves from the first frame as it was seen to move */
@@ -79,10 +82,10 @@ nudge (Run * run, guint frame, const gdouble * gains)
     run->weights[v] = r->seen[(gsize) frame * r->n + v] *
         r->seen[(gsize) next * r->n + v];
   for (guint m = 0; m < run->n_models; m++)
-    cloth_sim_set_targets (run->sim, m, r->y + frame * row, r->y + next * row,
-        r->velocity + frame * row, r->velocity + next * row, run->weights,
-        gains[m], 2. * CLOTH_ROLLOUT_ZETA * sqrt (gains[m]), r->times[frame],
-        r->times[next]);
+    run->dampings[m] = 2. * CLOTH_ROLLOUT_ZETA * sqrt (gains[m]);
+  cloth_sim_set_all_targets (run->sim, r->y + frame * row, r->y + next * row,
+      r->velocity + frame * row, r->velocity + next * row, run->weights, gains,
+      run->dampings, r->times[frame], r->times[next]);
 }
 
 static void

@@ -23,21 +23,32 @@ struct _ClothPool
   ClothPoolFunc func;
   gpointer data;
   guint n_items;
+  gboolean one_by_one;
+  gint next;                    /* item that nobody has taken */
 
   guint n_threads;
   Worker workers[];
 };
 
-/* Worker i does items [n·i/w, n·(i+1)/w): contiguous, and a function of n and w only. */
+/* Worker i does items [n·i/w, n·(i+1)/w): contiguous, and a function of n and w only; or
+ * one item after the other, as long as there are any. */
 static void
-do_part (ClothPoolFunc func, gpointer data, guint n_items, guint n_workers,
-    guint index)
+do_part (ClothPool * pool, guint index)
 {
-  guint begin = (guint) ((guint64) n_items * index / n_workers);
-  guint end = (guint) ((guint64) n_items * (index + 1) / n_workers);
+  guint n = pool->n_items;
 
-  if (begin < end)
-    func (data, begin, end, index);
+  if (pool->one_by_one) {
+    guint item;
+
+    while ((item = (guint) g_atomic_int_add (&pool->next, 1)) < n)
+      pool->func (pool->data, item, item + 1, index);
+  } else {
+    guint begin = (guint) ((guint64) n * index / pool->n_threads);
+    guint end = (guint) ((guint64) n * (index + 1) / pool->n_threads);
+
+    if (begin < end)
+      pool->func (pool->data, begin, end, index);
+  }
 }
 
 static gpointer
@@ -49,21 +60,15 @@ worker_main (gpointer user_data)
 
   g_mutex_lock (&pool->lock);
   while (TRUE) {
-    ClothPoolFunc func;
-    gpointer data;
-    guint n_items;
-
     while (pool->generation == generation && !pool->quit)
       g_cond_wait (&pool->start, &pool->lock);
     if (pool->quit)
       break;
     generation = pool->generation;
-    func = pool->func;
-    data = pool->data;
-    n_items = pool->n_items;
+    /* the run does not end, nor the next begin, before this worker is done */
     g_mutex_unlock (&pool->lock);
 
-    do_part (func, data, n_items, pool->n_threads, self->index);
+    do_part (pool, self->index);
 
     g_mutex_lock (&pool->lock);
     if (--pool->pending == 0)
@@ -143,6 +148,37 @@ cloth_pool_get_n_threads (const ClothPool * pool)
   return pool != NULL ? pool->n_threads : 1;
 }
 
+static void
+run (ClothPool * pool, ClothPoolFunc func, gpointer data, guint n_items,
+    gboolean one_by_one)
+{
+  if (n_items == 0)
+    return;
+  if (pool == NULL || pool->n_threads == 1 || n_items == 1) {
+    func (data, 0, n_items, 0);
+    return;
+  }
+  g_mutex_lock (&pool->run_lock);
+  g_mutex_lock (&pool->lock);
+  pool->func = func;
+  pool->data = data;
+  pool->n_items = n_items;
+  pool->one_by_one = one_by_one;
+  pool->next = 0;
+  pool->pending = pool->n_threads - 1;
+  pool->generation++;
+  g_cond_broadcast (&pool->start);
+  g_mutex_unlock (&pool->lock);
+
+  do_part (pool, 0);
+
+  g_mutex_lock (&pool->lock);
+  while (pool->pending > 0)
+    g_cond_wait (&pool->done, &pool->lock);
+  g_mutex_unlock (&pool->lock);
+  g_mutex_unlock (&pool->run_lock);
+}
+
 /**
  * cloth_pool_run:
  * @pool: (nullable): pool; %NULL does everything in the calling thread
@@ -162,27 +198,25 @@ void
 cloth_pool_run (ClothPool * pool, ClothPoolFunc func, gpointer data,
     guint n_items)
 {
-  if (n_items == 0)
-    return;
-  if (pool == NULL || pool->n_threads == 1 || n_items == 1) {
-    func (data, 0, n_items, 0);
-    return;
-  }
-  g_mutex_lock (&pool->run_lock);
-  g_mutex_lock (&pool->lock);
-  pool->func = func;
-  pool->data = data;
-  pool->n_items = n_items;
-  pool->pending = pool->n_threads - 1;
-  pool->generation++;
-  g_cond_broadcast (&pool->start);
-  g_mutex_unlock (&pool->lock);
+  run (pool, func, data, n_items, FALSE);
+}
 
-  do_part (func, data, n_items, pool->n_threads, 0);
-
-  g_mutex_lock (&pool->lock);
-  while (pool->pending > 0)
-    g_cond_wait (&pool->done, &pool->lock);
-  g_mutex_unlock (&pool->lock);
-  g_mutex_unlock (&pool->run_lock);
+/**
+ * cloth_pool_run_one_by_one:
+ * @pool: (nullable): pool; %NULL does everything in the calling thread
+ * @func: does a range of items
+ * @data: for @func
+ * @n_items: items 0 … @n_items − 1 are begun in this order, each by the next thread that
+ *   has nothing to do
+ *
+ * As cloth_pool_run (), for items that take unlike times: no thread waits while there is
+ * an item left. The longest ones should come first.
+ *
+ * Since: 0.1
+ */
+void
+cloth_pool_run_one_by_one (ClothPool * pool, ClothPoolFunc func, gpointer data,
+    guint n_items)
+{
+  run (pool, func, data, n_items, TRUE);
 }

@@ -29,6 +29,8 @@ void cloth_pool_free (ClothPool * pool);
 guint cloth_pool_get_n_threads (const ClothPool * pool);
 void cloth_pool_run (ClothPool * pool, ClothPoolFunc func, gpointer data,
     guint n_items);
+void cloth_pool_run_one_by_one (ClothPool * pool, ClothPoolFunc func,
+    gpointer data, guint n_items);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothPool, cloth_pool_free)
 G_END_DECLS

@@ -7,19 +7,8 @@
 #include <string.h>
 
 #include "gst/math/pool.h"
-#include "gst/sim/lanes/backend.h"
+#include "gst/sim/group.h"
 #include "gst/sim/numerics.h"
-
-/* Every variant of the lanes; those of other machines are not built. */
-extern const ClothLaneBackend cloth_lane_backend_one;
-extern const ClothLaneBackend cloth_lane_backend_single_generic;
-extern const ClothLaneBackend cloth_lane_backend_double_generic;
-#if CLOTH_SIM_X86
-extern const ClothLaneBackend cloth_lane_backend_single_avx2;
-extern const ClothLaneBackend cloth_lane_backend_double_avx2;
-extern const ClothLaneBackend cloth_lane_backend_single_avx512;
-extern const ClothLaneBackend cloth_lane_backend_double_avx512;
-#endif
 
 /* Steps an octave that automatic time steps are rounded down to, so that models that are
  * nearly alike take the same steps and their difference is their own. */
@@ -38,13 +27,6 @@ extern const ClothLaneBackend cloth_lane_backend_double_avx512;
 #define OTHER_COSTS 0.6
 #define LONGEST_STAGED 64.
 
-typedef struct
-{
-  const ClothLaneBackend *backend;
-  gpointer lanes;
-  guint first, n;
-} Group;
-
 struct _ClothSim
 {
   ClothNumerics *numerics;
@@ -53,8 +35,9 @@ struct _ClothSim
   guint n_vertices;             /* of the scene; effects may give the body more */
   guint n_models;
   guint n_groups;
-  Group *groups;
+  ClothSimGroup *groups;        /* those with the most to do first */
   guint *group_of;              /* of each model */
+  guint *rank_of;               /* of each model: where it is in the groups' order */
   gdouble time;
   gdouble fixed_step;           /* of the models, 0 = automatic */
   gdouble time_step;
@@ -67,7 +50,7 @@ struct _ClothSim
   guint good_steps;             /* in a row */
   gdouble *scratch[5];          /* by particle */
   gdouble *weights;             /* by vertex of the body */
-  gdouble *gains;               /* of the observer, and its damping: by model */
+  gdouble *gains, *dampings;    /* of the observer, by rank */
   /* of the running advance */
   gdouble until;
   guint n_steps;
@@ -78,25 +61,6 @@ GQuark
 cloth_sim_error_quark (void)
 {
   return g_quark_from_static_string ("cloth-sim-error-quark");
-}
-
-static const ClothLaneBackend *
-wide_backend (const ClothSimOptions * options)
-{
-#if CLOTH_SIM_X86
-  switch (cloth_simd_resolve (options->simd)) {
-    case CLOTH_SIMD_AVX512:
-      return options->single ? &cloth_lane_backend_single_avx512 :
-          &cloth_lane_backend_double_avx512;
-    case CLOTH_SIMD_AVX2:
-      return options->single ? &cloth_lane_backend_single_avx2 :
-          &cloth_lane_backend_double_avx2;
-    default:
-      break;
-  }
-#endif
-  return options->single ? &cloth_lane_backend_single_generic :
-      &cloth_lane_backend_double_generic;
 }
 
 static gboolean
@@ -143,7 +107,7 @@ static gdouble
 bound (const ClothSim * sim, guint stages, gdouble longest)
 {
   for (guint i = 0; i < sim->n_groups; i++) {
-    const Group *g = &sim->groups[i];
+    const ClothSimGroup *g = &sim->groups[i];
 
     longest = MIN (longest, stages > 1 ?
         g->backend->staged_time_step (g->lanes, stages, longest) :
@@ -224,31 +188,6 @@ check_time_step (const ClothSim * sim, const ClothModel * const *models,
   return FALSE;
 }
 
-static void
-make_groups (ClothSim * sim, const ClothModel * const *models,
-    const ClothSimOptions * options)
-{
-  const ClothLaneBackend *wide = wide_backend (options);
-
-  sim->groups = g_new0 (Group, sim->n_models / wide->n_lanes + 1);
-  sim->group_of = g_new (guint, sim->n_models);
-  for (guint first = 0; first < sim->n_models;) {
-    Group *group = &sim->groups[sim->n_groups];
-
-    group->first = first;
-    group->n = MIN (sim->n_models - first, wide->n_lanes);
-    /* same bits, less work */
-    group->backend = group->n == 1 && !options->single ?
-        &cloth_lane_backend_one : wide;
-    group->lanes = group->backend->group_new (sim->body, models + first,
-        group->n, options->seed);
-    for (guint i = 0; i < group->n; i++)
-      sim->group_of[first + i] = sim->n_groups;
-    first += group->n;
-    sim->n_groups++;
-  }
-}
-
 /**
  * cloth_sim_new:
  * @scene: what to simulate; nothing of it is kept
@@ -304,11 +243,16 @@ cloth_sim_new (const ClothScene * scene, const ClothModel * const *models,
   sim->time = sim->body->times[0];
   for (guint i = 0; i < G_N_ELEMENTS (sim->scratch); i++)
     sim->scratch[i] = g_new0 (gdouble, 3 * (gsize) sim->body->n_particles);
-  sim->gains = g_new0 (gdouble, 2 * (gsize) n_models);
+  sim->gains = g_new0 (gdouble, n_models);
+  sim->dampings = g_new0 (gdouble, n_models);
   sim->weights = g_new (gdouble, sim->body->n_vertices);
-  make_groups (sim, models, options);
-  sim->too_long = g_new0 (gdouble, sim->n_groups);
   sim->pool = cloth_pool_new (options->threads);
+  sim->group_of = g_new (guint, n_models);
+  sim->rank_of = g_new (guint, n_models);
+  sim->groups = cloth_sim_groups_new (sim->body, models, n_models, options,
+      cloth_pool_get_n_threads (sim->pool), sim->group_of, sim->rank_of,
+      &sim->n_groups);
+  sim->too_long = g_new0 (gdouble, sim->n_groups);
   find_time_step (sim);
   if (!check_time_step (sim, models, error))
     return NULL;
@@ -326,15 +270,15 @@ cloth_sim_free (ClothSim * sim)
 {
   if (!sim)
     return;
-  for (guint i = 0; i < sim->n_groups; i++)
-    sim->groups[i].backend->group_free (sim->groups[i].lanes);
-  g_free (sim->groups);
+  cloth_sim_groups_free (sim->groups, sim->n_groups);
   g_free (sim->group_of);
+  g_free (sim->rank_of);
   g_free (sim->too_long);
   for (guint i = 0; i < G_N_ELEMENTS (sim->scratch); i++)
     g_free (sim->scratch[i]);
   g_free (sim->weights);
   g_free (sim->gains);
+  g_free (sim->dampings);
   g_clear_pointer (&sim->pool, cloth_pool_free);
   g_clear_pointer (&sim->body, cloth_body_free);
   g_clear_pointer (&sim->numerics, cloth_numerics_free);
@@ -408,7 +352,7 @@ advance_adaptive (ClothSim * sim, gdouble until_s)
     gdouble n = ceil (span / sim->time_step - 1e-9);
 
     sim->until = n > 1. ? sim->time + span / n : until_s;
-    cloth_pool_run (sim->pool, try_groups, sim, sim->n_groups);
+    cloth_pool_run_one_by_one (sim->pool, try_groups, sim, sim->n_groups);
     for (guint i = 0; i < sim->n_groups; i++)
       worst = MAX (worst, sim->too_long[i] / sim->patience);
     if (worst > 1. && sim->time_step > least) {
@@ -416,7 +360,7 @@ advance_adaptive (ClothSim * sim, gdouble until_s)
       sim->good_steps = 0;
       continue;
     }
-    cloth_pool_run (sim->pool, take_groups, sim, sim->n_groups);
+    cloth_pool_run_one_by_one (sim->pool, take_groups, sim, sim->n_groups);
     sim->time = sim->until;
     sim->good_steps = worst < 0.2 ? sim->good_steps + 1 : 0;
     if (sim->good_steps >= GOOD_STEPS) {
@@ -453,7 +397,7 @@ cloth_sim_advance (ClothSim * sim, gdouble until_s)
   /* a step too many for a rounding error would be a waste */
   sim->n_steps =
       (guint) CLAMP (ceil (span / sim->time_step - 1e-9), 1., MAX_STEPS);
-  cloth_pool_run (sim->pool, advance_groups, sim, sim->n_groups);
+  cloth_pool_run_one_by_one (sim->pool, advance_groups, sim, sim->n_groups);
   sim->time = until_s;
 }
 
@@ -485,12 +429,12 @@ cloth_sim_get_time_step (ClothSim * sim)
   return sim->time_step;
 }
 
-static const Group *
+static const ClothSimGroup *
 group_of (const ClothSim * sim, guint model, guint * lane)
 {
-  const Group *group = &sim->groups[sim->group_of[model]];
+  const ClothSimGroup *group = &sim->groups[sim->group_of[model]];
 
-  *lane = model - group->first;
+  *lane = sim->rank_of[model] - group->first;
   return group;
 }
 
@@ -529,7 +473,7 @@ void
 cloth_sim_get_positions (const ClothSim * sim, guint model, gdouble * positions)
 {
   guint lane;
-  const Group *group = group_of (sim, model, &lane);
+  const ClothSimGroup *group = group_of (sim, model, &lane);
 
   group->backend->get (group->lanes, lane, sim->scratch[0], NULL);
   from_particles (sim, sim->scratch[0], positions);
@@ -548,7 +492,7 @@ cloth_sim_get_velocities (const ClothSim * sim, guint model,
     gdouble * velocities)
 {
   guint lane;
-  const Group *group = group_of (sim, model, &lane);
+  const ClothSimGroup *group = group_of (sim, model, &lane);
 
   group->backend->get (group->lanes, lane, NULL, sim->scratch[0]);
   from_particles (sim, sim->scratch[0], velocities);
@@ -573,7 +517,7 @@ cloth_sim_set_state (ClothSim * sim, guint model, const gdouble * positions,
     const gdouble * velocities, gdouble time_s)
 {
   guint lane;
-  const Group *group = group_of (sim, model, &lane);
+  const ClothSimGroup *group = group_of (sim, model, &lane);
 
   to_particles (sim, positions, sim->scratch[0]);
   if (velocities)
@@ -602,7 +546,7 @@ ClothSimState
 cloth_sim_get_state (const ClothSim * sim, guint model, gdouble * since_s)
 {
   guint lane;
-  const Group *group = group_of (sim, model, &lane);
+  const ClothSimGroup *group = group_of (sim, model, &lane);
   gdouble since = group->backend->diverged (group->lanes, lane);
 
   if (since_s)
@@ -622,9 +566,70 @@ ClothSimEnergy
 cloth_sim_get_energy (const ClothSim * sim, guint model)
 {
   guint lane;
-  const Group *group = group_of (sim, model, &lane);
+  const ClothSimGroup *group = group_of (sim, model, &lane);
 
   return group->backend->energy (group->lanes, lane);
+}
+
+/* What is to draw the particles, into the scratch: of sewn vertices the mean. */
+static void
+spread_targets (ClothSim * sim, const gdouble * now, const gdouble * next,
+    const gdouble * velocity_now, const gdouble * velocity_next,
+    const gdouble * weights)
+{
+  const gdouble *from[4] = { now, next, velocity_now, velocity_next };
+  gdouble *total = sim->scratch[4];
+  guint n = sim->body->n_particles;
+
+  /* NaN makes weights of what lies between seen and unseen NaN, which draws nothing */
+  for (guint i = 0; i < sim->n_vertices; i++) {
+    gdouble sum = 0.;
+
+    for (guint k = 0; k < 4; k++)
+      sum += from[k][3 * i] + from[k][3 * i + 1] + from[k][3 * i + 2];
+    sim->weights[i] = isfinite (sum) && weights[i] > 0. ? weights[i] : NAN;
+  }
+  memmove (sim->weights, cloth_numerics_spread (sim->numerics, 1,
+          sim->weights), sim->body->n_vertices * sizeof (gdouble));
+  for (guint k = 0; k < 4; k++) {
+    const gdouble *y = cloth_numerics_spread (sim->numerics, 3, from[k]);
+
+    memset (sim->scratch[k], 0, 3 * (gsize) n * sizeof (gdouble));
+    memset (total, 0, n * sizeof (gdouble));
+    for (guint i = 0; i < sim->body->n_vertices; i++) {
+      guint p = sim->body->particle[i];
+      gdouble weight = sim->weights[i];
+
+      if (!(weight > 0.))
+        continue;
+      total[p] += weight;
+      for (guint c = 0; c < 3; c++)
+        sim->scratch[k][3 * p + c] += (y[3 * i + c] -
+            sim->scratch[k][3 * p + c]) * (weight / total[p]);
+    }
+  }
+}
+
+static void
+set_gain (ClothSim * sim, guint model, gdouble gain, gdouble damping)
+{
+  guint rank = sim->rank_of[model];
+
+  sim->stale = sim->stale || gain != sim->gains[rank]
+      || damping != sim->dampings[rank];
+  sim->gains[rank] = gain;
+  sim->dampings[rank] = damping;
+}
+
+/* Draws @n lanes of a group to what is in the scratch. */
+static void
+draw (ClothSim * sim, const ClothSimGroup * group, guint lane, guint n,
+    gdouble t_now, gdouble t_next)
+{
+  group->backend->set_targets (group->lanes, lane, n,
+      (const gdouble * const *) sim->scratch, sim->scratch[4],
+      sim->gains + group->first + lane, sim->dampings + group->first + lane,
+      t_now, t_next);
 }
 
 /**
@@ -655,43 +660,41 @@ cloth_sim_set_targets (ClothSim * sim, guint model, const gdouble * now,
     const gdouble * velocity_next, const gdouble * weights, gdouble gain,
     gdouble damping, gdouble t_now, gdouble t_next)
 {
-  const gdouble *from[4] = { now, next, velocity_now, velocity_next };
-  gdouble *total = sim->scratch[4];
-  guint lane, n = sim->body->n_particles;
-  const Group *group = group_of (sim, model, &lane);
+  guint lane;
+  const ClothSimGroup *group = group_of (sim, model, &lane);
 
-  /* NaN makes weights of what lies between seen and unseen NaN, which draws nothing */
-  for (guint i = 0; i < sim->n_vertices; i++) {
-    gdouble sum = 0.;
+  spread_targets (sim, now, next, velocity_now, velocity_next, weights);
+  set_gain (sim, model, gain, damping);
+  draw (sim, group, lane, 1, t_now, t_next);
+}
 
-    for (guint k = 0; k < 4; k++)
-      sum += from[k][3 * i] + from[k][3 * i + 1] + from[k][3 * i + 2];
-    sim->weights[i] = isfinite (sum) && weights[i] > 0. ? weights[i] : NAN;
-  }
-  memmove (sim->weights, cloth_numerics_spread (sim->numerics, 1,
-          sim->weights), sim->body->n_vertices * sizeof (gdouble));
-  for (guint k = 0; k < 4; k++) {
-    const gdouble *y = cloth_numerics_spread (sim->numerics, 3, from[k]);
-
-    memset (sim->scratch[k], 0, 3 * (gsize) n * sizeof (gdouble));
-    memset (total, 0, n * sizeof (gdouble));
-    for (guint i = 0; i < sim->body->n_vertices; i++) {
-      guint p = sim->body->particle[i];
-      gdouble weight = sim->weights[i];
-
-      if (!(weight > 0.))
-        continue;
-      total[p] += weight;
-      for (guint c = 0; c < 3; c++)
-        sim->scratch[k][3 * p + c] += (y[3 * i + c] -
-            sim->scratch[k][3 * p + c]) * (weight / total[p]);
-    }
-  }
-  group->backend->set_targets (group->lanes, lane,
-      (const gdouble * const *) sim->scratch, total, gain, damping, t_now,
-      t_next);
-  sim->stale = sim->stale || gain != sim->gains[2 * model]
-      || damping != sim->gains[2 * model + 1];
-  sim->gains[2 * model] = gain;
-  sim->gains[2 * model + 1] = damping;
+/**
+ * cloth_sim_set_all_targets:
+ * @sim: a simulation
+ * @now: where the vertices were observed at @t_now, n_vertices · 3, metres
+ * @next: where they were at @t_next
+ * @velocity_now: their velocities at @t_now, m/s
+ * @velocity_next: their velocities at @t_next
+ * @weights: one number of each vertex, 0 for those not observed
+ * @gains: (array): of each model, 1/s²
+ * @dampings: (array): of each model, 1/s
+ * @t_now: seconds
+ * @t_next: seconds, after @t_now
+ *
+ * As cloth_sim_set_targets () for every model, in less time.
+ *
+ * Since: 0.1
+ */
+void
+cloth_sim_set_all_targets (ClothSim * sim, const gdouble * now,
+    const gdouble * next, const gdouble * velocity_now,
+    const gdouble * velocity_next, const gdouble * weights,
+    const gdouble * gains, const gdouble * dampings, gdouble t_now,
+    gdouble t_next)
+{
+  spread_targets (sim, now, next, velocity_now, velocity_next, weights);
+  for (guint model = 0; model < sim->n_models; model++)
+    set_gain (sim, model, gains[model], dampings[model]);
+  for (guint i = 0; i < sim->n_groups; i++)
+    draw (sim, &sim->groups[i], 0, sim->groups[i].n, t_now, t_next);
 }

@@ -91,6 +91,11 @@ void cloth_sim_set_targets (ClothSim * sim, guint model, const gdouble * now,
     const gdouble * next, const gdouble * velocity_now,
     const gdouble * velocity_next, const gdouble * weights, gdouble gain,
     gdouble damping, gdouble t_now, gdouble t_next);
+void cloth_sim_set_all_targets (ClothSim * sim, const gdouble * now,
+    const gdouble * next, const gdouble * velocity_now,
+    const gdouble * velocity_next, const gdouble * weights,
+    const gdouble * gains, const gdouble * dampings, gdouble t_now,
+    gdouble t_next);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothSim, cloth_sim_free)
 G_END_DECLS

@@ -44,6 +44,49 @@ test_each_once (void)
   }
 }
 
+typedef struct
+{
+  gint order[100], n;
+  GMutex lock;
+} Order;
+
+static void
+take (gpointer data, guint begin, guint end, guint worker)
+{
+  Order *self = data;
+
+  for (guint i = begin; i < end; i++) {
+    /* of the first, all others' time */
+    while (i == 0 && g_atomic_int_get (&self->n) < 99)
+      g_thread_yield ();
+    g_mutex_lock (&self->lock);
+    self->order[self->n] = (gint) i;
+    g_atomic_int_inc (&self->n);
+    g_mutex_unlock (&self->lock);
+  }
+}
+
+/* Nobody waits for the one that takes long, and each is done once. */
+static void
+test_one_by_one (void)
+{
+  g_autoptr (ClothPool) pool = cloth_pool_new (2);
+  Count self = { 2 };
+  Order order = { 0 };
+
+  for (guint repeat = 0; repeat < 50; repeat++)
+    cloth_pool_run_one_by_one (pool, count, &self, 1000);
+  for (guint i = 0; i < 1000; i++)
+    g_assert_cmpuint (self.items[i], ==, 50 * (i + 1));
+  cloth_pool_run_one_by_one (NULL, count, &self, 10);
+  g_assert_cmpuint (self.items[9], ==, 510);
+  cloth_pool_run_one_by_one (pool, take, &order, 100);
+  for (gint i = 0; i < 99; i++)
+    g_assert_cmpint (order.order[i], ==, i + 1);
+  g_assert_cmpint (order.order[99], ==, 0);
+  cloth_pool_run_one_by_one (pool, count, &self, 0);
+}
+
 static void
 test_without (void)
 {
@@ -93,6 +136,7 @@ main (int argc, char **argv)
 {
   g_test_init (&argc, &argv, NULL);
   g_test_add_func ("/pool/each-once", test_each_once);
+  g_test_add_func ("/pool/one-by-one", test_one_by_one);
   g_test_add_func ("/pool/without", test_without);
   g_test_add_func ("/pool/two-callers", test_two_callers);
   return g_test_run ();

@@ -7,22 +7,28 @@
 #include "gst/sim/effects/effects.h"
 
 #define N_MODELS 19
+/* As many as fill the widest lanes. */
+#define N_WIDE 16
 
-/* Nineteen models of a small sheet held by two corners; 3, 8 and 17 are equal. */
+/* Nineteen models of a small sheet held by two corners; 3, 8 and 17 are equal. Some have
+ * drag, two are shrunk; the others have neither, or both at their null. */
 static void
-make_models (ClothModel * models[N_MODELS])
+make_models (ClothModel * models[N_MODELS], gboolean null)
 {
   for (guint i = 0; i < N_MODELS; i++) {
     guint kind = i == 8 || i == 17 ? 3 : i;
-    gdouble drag = 0.3 * (kind % 4);
+    gdouble drag = 0.3 * (kind % 4), shrink = kind % 7 == 5 ? 0.01 : 0.;
+    const gdouble shrinkage[CLOTH_EFFECT_MAX_PARAMETERS] = { shrink, shrink };
 
     models[i] = model_new (0.2, 30. + kind);
     models[i]->bending_warp = 1e-5 * (1 + kind % 3);
     models[i]->bending_weft = 2e-5;
     models[i]->damping_mass = 0.1 * (kind % 5);
     models[i]->damping_stiffness = 1e-4;
-    if (kind % 4)
+    if (null || kind % 4)
       cloth_model_set_effect (models[i], &cloth_effect_air_drag, &drag);
+    if (null || shrink > 0.)
+      cloth_model_set_effect (models[i], &cloth_effect_shrinkage, shrinkage);
   }
 }
 
@@ -59,7 +65,7 @@ run_all (const ClothScene * scene, ClothModel * const *models, guint n_models,
   return result;
 }
 
-/* Every instruction set, thread count and place in the groups. */
+/* Every instruction set, thread count, place in the groups and neighbour there. */
 static void
 test_lanes (void)
 {
@@ -67,26 +73,33 @@ test_lanes (void)
       { CLOTH_SIMD_SCALAR, CLOTH_SIMD_AVX2, CLOTH_SIMD_AVX512 };
   g_autoptr (ClothScene) scene = swing ();
   gsize n = 6 * scene->topology->n_vertices;
-  ClothModel *models[N_MODELS];
+  ClothModel *models[N_MODELS], *alike[N_MODELS];
 
-  make_models (models);
-  /* one step for all, however they are grouped */
-  for (guint i = 0; i < N_MODELS; i++)
-    models[i]->time_step = 5e-4;
+  make_models (models, FALSE);
+  make_models (alike, TRUE);
   for (guint kind = 0; kind < 4; kind++) {
     g_autofree gdouble *reference = NULL;
     guint single = kind % 2;
 
-    for (guint i = 0; i < N_MODELS; i++)
-      models[i]->force_model =
+    for (guint i = 0; i < N_MODELS; i++) {
+      models[i]->force_model = alike[i]->force_model =
           kind / 2 ? CLOTH_FORCE_MASS_SPRING : CLOTH_FORCE_MEMBRANE;
-
+      /* one step for all, however they are grouped */
+      models[i]->time_step = alike[i]->time_step = 5e-4;
+    }
     for (guint s = 0; s < G_N_ELEMENTS (sets); s++) {
       for (guint threads = 1; threads <= 3; threads += 2) {
         g_autofree gdouble *got = run_all (scene, models, N_MODELS,
             (ClothSimOptions) { single != 0, threads, sets[s], 0 }
         );
 
+        /* these need not be parted, so that their lanes are as wide as they can be */
+        g_autofree gdouble *wide = run_all (scene, alike, N_WIDE,
+            (ClothSimOptions) { single != 0, threads, sets[s], 0 }
+        );
+
+        g_assert_cmpmem (got, N_WIDE * n * sizeof (gdouble), wide,
+            N_WIDE * n * sizeof (gdouble));
         if (!reference)
           reference = g_steal_pointer (&got);
         else
@@ -109,8 +122,10 @@ test_lanes (void)
           n * sizeof (gdouble));
     }
   }
-  for (guint i = 0; i < N_MODELS; i++)
+  for (guint i = 0; i < N_MODELS; i++) {
     cloth_model_free (models[i]);
+    cloth_model_free (alike[i]);
+  }
 }
 
 /* Single precision follows double precision. */
@@ -122,7 +137,7 @@ test_single (void)
   g_autofree gdouble *one = NULL, *two = NULL;
   ClothModel *models[N_MODELS];
 
-  make_models (models);
+  make_models (models, FALSE);
   one = run_all (scene, models, N_MODELS, (ClothSimOptions) {
       FALSE, 1, CLOTH_SIMD_BEST, 0});
   two = run_all (scene, models, N_MODELS, (ClothSimOptions) {

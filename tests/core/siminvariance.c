@@ -453,6 +453,50 @@ test_targets (gconstpointer data)
   }
 }
 
+/* Models of unlike effects, each with gains of its own, drawn one by one and all at once. */
+static void
+test_all_targets (void)
+{
+  g_autoptr (ClothScene) scene = crumpled (5);
+  const ClothSimOptions options = { TRUE, 2, CLOTH_SIMD_BEST, 0 };
+  const gdouble gains[5] = { 0., 100., 400., 1600., 900. };
+  const gdouble dampings[5] = { 0., 10., 20., 30., 40. };
+  const gdouble drag = 1.;
+  ClothModel *models[5];
+  g_autoptr (ClothSim) one = NULL, all = NULL;
+  gdouble now[3 * N], next[3 * N], velocity[3 * N], weights[N];
+
+  for (guint m = 0; m < 5; m++) {
+    models[m] = fabric ();
+    models[m]->stretch_warp += m;
+    if (m % 2)
+      cloth_model_set_effect (models[m], &cloth_effect_air_drag, &drag);
+  }
+  one = cloth_sim_new (scene, (const ClothModel * const *) models, 5, &options,
+      NULL);
+  all = cloth_sim_new (scene, (const ClothModel * const *) models, 5, &options,
+      NULL);
+  for (guint i = 0; i < 3 * N; i++) {
+    now[i] = i % 50 ? scene->positions[i] : NAN;
+    next[i] = scene->positions[i] + 0.01 * (i % 3);
+    velocity[i] = 0.1;
+    weights[i / 3] = i / 3 % 7 ? 1. : 0.;
+  }
+  for (guint m = 0; m < 5; m++)
+    cloth_sim_set_targets (one, m, now, next, velocity, velocity, weights,
+        gains[m], dampings[m], 0., 0.1);
+  cloth_sim_set_all_targets (all, now, next, velocity, velocity, weights, gains,
+      dampings, 0., 0.1);
+  run_for (one, 0.1);
+  run_for (all, 0.1);
+  for (guint m = 0; m < 5; m++) {
+    g_autofree gdouble *x = positions_of (one, m), *y = positions_of (all, m);
+
+    g_assert_cmpmem (x, 3 * N * sizeof *x, y, 3 * N * sizeof *y);
+    cloth_model_free (models[m]);
+  }
+}
+
 int
 main (int argc, char **argv)
 {
@@ -475,6 +519,7 @@ main (int argc, char **argv)
       GUINT_TO_POINTER (CLOTH_INTEGRATOR_EXPLICIT), test_targets);
   g_test_add_data_func ("/sim/targets-implicit",
       GUINT_TO_POINTER (CLOTH_INTEGRATOR_IMPLICIT), test_targets);
+  g_test_add_func ("/sim/targets-all", test_all_targets);
   g_test_add_func ("/sim/derivatives", test_derivatives);
   return g_test_run ();
 }

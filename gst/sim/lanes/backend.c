@@ -468,12 +468,14 @@ group_set_time (gpointer group, gdouble time_s)
 }
 
 static void
-group_set_targets (gpointer group, guint lane, const gdouble * const y[4],
-    const gdouble * weights, gdouble gain, gdouble damping, gdouble t_now,
+group_set_targets (gpointer group, guint lane, guint n,
+    const gdouble * const y[4], const gdouble * weights,
+    const gdouble * gains, const gdouble * dampings, gdouble t_now,
     gdouble t_next)
 {
   ClothLaneState *state = group;
   ClothLaneTargets *t = &state->targets;
+  gint of[CLOTH_N_LANES];       /* whose targets each lane gets; -1: none */
 
   if (!t->weight) {
     t->pull = lanes_new (state->n, sizeof *t->pull);
@@ -482,9 +484,19 @@ group_set_targets (gpointer group, guint lane, const gdouble * const y[4],
     state->has_targets = TRUE;
   }
   for (guint l = 0; l < CLOTH_N_LANES; l++) {
-    if (!repeats (state, l, lane))
-      continue;
-    for (guint i = 0; i < state->n; i++) {
+    of[l] = -1;
+    for (guint i = 0; i < n; i++)
+      if (repeats (state, l, lane + i))
+        of[l] = (gint) i;
+  }
+  for (guint i = 0; i < state->n; i++)
+    for (guint l = 0; l < CLOTH_N_LANES; l++) {
+      gdouble gain, damping;
+
+      if (of[l] < 0)
+        continue;
+      gain = gains[of[l]];
+      damping = dampings[of[l]];
       CLOTH_LANE_AT (&t->weight[i], l) = (ClothReal) weights[i];
       for (guint k = 0; k < 3; k++) {
         guint at = 3 * i + k;
@@ -496,8 +508,11 @@ group_set_targets (gpointer group, guint lane, const gdouble * const y[4],
             (ClothReal) (weights[i] * (next - now));
       }
     }
-    CLOTH_LANE_AT (&t->gain, l) = (ClothReal) gain;
-    CLOTH_LANE_AT (&t->damping, l) = (ClothReal) damping;
+  for (guint l = 0; l < CLOTH_N_LANES; l++) {
+    if (of[l] < 0)
+      continue;
+    CLOTH_LANE_AT (&t->gain, l) = (ClothReal) gains[of[l]];
+    CLOTH_LANE_AT (&t->damping, l) = (ClothReal) dampings[of[l]];
     CLOTH_LANE_AT (&t->now, l) = (ClothReal) t_now;
     CLOTH_LANE_AT (&t->next, l) = (ClothReal) t_next;
   }

@@ -31,9 +31,10 @@ typedef struct
   void (*set) (gpointer group, guint lane, const gdouble * x,
       const gdouble * v);
   void (*set_time) (gpointer group, gdouble time_s);
-  /* y: now, next, velocity now, velocity next */
-  void (*set_targets) (gpointer group, guint lane, const gdouble * const y[4],
-      const gdouble * weights, gdouble gain, gdouble damping, gdouble t_now,
+  /* of @n lanes from @lane on; y: now, next, velocity now, velocity next */
+  void (*set_targets) (gpointer group, guint lane, guint n,
+      const gdouble * const y[4], const gdouble * weights,
+      const gdouble * gains, const gdouble * dampings, gdouble t_now,
       gdouble t_next);
   /* since when the lane stands still, NaN when it moves */
   gdouble (*diverged) (gpointer group, guint lane);

@@ -1,0 +1,183 @@
+/* Models into groups of lanes.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/sim/group.h"
+
+#include <stdlib.h>
+
+#include "gst/sim/effect-table.h"
+#include "gst/sim/effects/effects.h"
+
+/* Every variant of the lanes; those of other machines are not built. */
+extern const ClothLaneBackend cloth_lane_backend_one;
+extern const ClothLaneBackend cloth_lane_backend_single_generic;
+extern const ClothLaneBackend cloth_lane_backend_double_generic;
+#if CLOTH_SIM_X86
+extern const ClothLaneBackend cloth_lane_backend_single_avx2;
+extern const ClothLaneBackend cloth_lane_backend_double_avx2;
+extern const ClothLaneBackend cloth_lane_backend_single_avx512;
+extern const ClothLaneBackend cloth_lane_backend_single_avx512_narrow;
+extern const ClothLaneBackend cloth_lane_backend_double_avx512;
+#endif
+
+/* What a step of half as many lanes costs: vectors half as wide, but not twice as fast. */
+#define NARROW_COSTS 0.6
+
+/* A model and which effects it has, as bits: those that cost most are the highest. */
+typedef struct
+{
+  guint64 effects;
+  guint model;
+} Place;
+
+static const ClothLaneBackend *
+wide_backend (const ClothSimOptions * options)
+{
+#if CLOTH_SIM_X86
+  switch (cloth_simd_resolve (options->simd)) {
+    case CLOTH_SIMD_AVX512:
+      return options->single ? &cloth_lane_backend_single_avx512 :
+          &cloth_lane_backend_double_avx512;
+    case CLOTH_SIMD_AVX2:
+      return options->single ? &cloth_lane_backend_single_avx2 :
+          &cloth_lane_backend_double_avx2;
+    default:
+      break;
+  }
+#endif
+  return options->single ? &cloth_lane_backend_single_generic :
+      &cloth_lane_backend_double_generic;
+}
+
+/* Of grids all of the cloth's forces are found in one pass, unless one of these is there;
+ * and contact is looked for lane by lane. */
+static gboolean
+is_slow (const ClothEffect * effect)
+{
+  return effect == &cloth_effect_self_contact
+      || effect == &cloth_effect_shrinkage
+      || effect == &cloth_effect_grain_angle
+      || effect == &cloth_effect_added_mass;
+}
+
+static guint64
+list_effects (const ClothModel * model)
+{
+  guint n;
+  const ClothEffect *const *table = cloth_effect_table (&n);
+  guint64 effects = 0;
+
+  for (guint i = 0; i < model->effects->len; i++)
+    for (guint k = 0; k < n; k++)
+      if (g_array_index (model->effects, ClothModelEffect, i).effect ==
+          table[k])
+        effects |= (guint64) 1 << MIN (k, 31) << (is_slow (table[k]) ? 32 : 0);
+  return effects;
+}
+
+static gint
+compare_places (gconstpointer a, gconstpointer b)
+{
+  const Place *p = a, *q = b;
+
+  if (p->effects != q->effects)
+    return p->effects < q->effects ? 1 : -1;
+  return p->model < q->model ? -1 : 1;
+}
+
+/* How many groups the busiest thread steps. */
+static guint
+count_rounds (guint n_models, guint n_lanes, guint threads)
+{
+  guint n = (n_models + n_lanes - 1) / n_lanes;
+
+  return (n + threads - 1) / threads;
+}
+
+/* Narrow lanes where wide ones would leave threads without work, or have to compute many
+ * effects that most of them don't have. */
+static const ClothLaneBackend *
+choose_backend (const Place * places, guint n_models,
+    const ClothSimOptions * options, guint threads)
+{
+  const ClothLaneBackend *wide = wide_backend (options), *narrow = wide;
+
+#if CLOTH_SIM_X86
+  if (wide == &cloth_lane_backend_single_avx512)
+    narrow = &cloth_lane_backend_single_avx512_narrow;
+#endif
+  if (places[0].effects != places[n_models - 1].effects
+      || NARROW_COSTS * count_rounds (n_models, narrow->n_lanes, threads) <
+      count_rounds (n_models, wide->n_lanes, threads))
+    return narrow;
+  return wide;
+}
+
+/**
+ * cloth_sim_groups_new:
+ * @body: what is simulated; must outlive the groups
+ * @models: (array length=n_models): with which models
+ * @n_models: how many, at least 1
+ * @options: how
+ * @threads: how many threads share the groups
+ * @group_of: (out) (array length=n_models): which group each model is in
+ * @rank_of: (out) (array length=n_models): where it is among all models as the groups
+ *   have them
+ * @n_groups: (out): how many groups there are
+ *
+ * Models with the same effects share groups: a group has to compute all effects that any
+ * of its models has. How models are grouped is a matter of speed alone.
+ *
+ * Returns: (transfer full) (array length=n_groups): the groups, those with the most to do
+ *   first
+ */
+ClothSimGroup *
+cloth_sim_groups_new (const ClothBody * body, const ClothModel * const *models,
+    guint n_models, const ClothSimOptions * options, guint threads,
+    guint * group_of, guint * rank_of, guint * n_groups)
+{
+  g_autofree Place *places = g_new (Place, n_models);
+  g_autofree const ClothModel **sorted = g_new (const ClothModel *, n_models);
+  const ClothLaneBackend *backend;
+  ClothSimGroup *groups;
+
+  for (guint i = 0; i < n_models; i++)
+    places[i] = (Place) {
+    list_effects (models[i]), i};
+  qsort (places, n_models, sizeof *places, compare_places);
+  backend = choose_backend (places, n_models, options, threads);
+  groups = g_new0 (ClothSimGroup, n_models / backend->n_lanes + 1);
+  *n_groups = 0;
+  for (guint first = 0; first < n_models;) {
+    ClothSimGroup *group = &groups[*n_groups];
+
+    group->first = first;
+    group->n = MIN (n_models - first, backend->n_lanes);
+    for (guint i = first; i < first + group->n; i++) {
+      sorted[i] = models[places[i].model];
+      group_of[places[i].model] = *n_groups;
+      rank_of[places[i].model] = i;
+    }
+    /* same bits, less work */
+    group->backend = group->n == 1 && !options->single ?
+        &cloth_lane_backend_one : backend;
+    group->lanes = group->backend->group_new (body, sorted + first, group->n,
+        options->seed);
+    first += group->n;
+    (*n_groups)++;
+  }
+  return groups;
+}
+
+/**
+ * cloth_sim_groups_free:
+ * @groups: (nullable) (transfer full) (array length=n_groups): groups
+ * @n_groups: how many
+ */
+void
+cloth_sim_groups_free (ClothSimGroup * groups, guint n_groups)
+{
+  for (guint i = 0; i < n_groups; i++)
+    groups[i].backend->group_free (groups[i].lanes);
+  g_free (groups);
+}
