@@ -78,18 +78,8 @@ GST_START_TEST (test_same_bytes)
   Setup setup = set_up_good ("");
 
   push (&setup, 0, 5);
-  for (guint frame = 0; frame < 2; frame++) {
-    GstBuffer *out = gst_harness_pull (setup.h), *in = make_frame (frame, -1,
-        NULL);
-    GstMapInfo map;
-
-    gst_buffer_map (in, &map, GST_MAP_READ);
-    fail_unless_equals_int (gst_buffer_get_size (out), map.size);
-    fail_unless_equals_int (gst_buffer_memcmp (out, 0, map.data, map.size), 0);
-    gst_buffer_unmap (in, &map);
-    gst_buffer_unref (in);
-    gst_buffer_unref (out);
-  }
+  for (guint frame = 0; frame < 2; frame++)
+    expect_same (&setup, make_frame (frame, -1, NULL));
   tear_down (&setup);
 }
 
@@ -222,15 +212,12 @@ GST_START_TEST (test_tags_survive_flush)
 {
   Setup setup = set_up_good ("");
   GstEvent *tags;
-  GstSegment segment;
 
   push (&setup, 0, 2);
   gst_harness_push_event (setup.h,
       gst_event_new_tag (gst_tag_list_new (GST_TAG_TITLE, "a cloth", NULL)));
-  gst_harness_push_event (setup.h, gst_event_new_flush_start ());
-  gst_harness_push_event (setup.h, gst_event_new_flush_stop (TRUE));
-  gst_segment_init (&segment, GST_FORMAT_TIME);
-  gst_harness_push_event (setup.h, gst_event_new_segment (&segment));
+  flush (&setup);
+  begin_segment (&setup);
   push (&setup, 0, 5);
   tags = gst_pad_get_sticky_event (setup.h->sinkpad, GST_EVENT_TAG, 0);
   fail_unless (tags != NULL);
@@ -283,29 +270,14 @@ GST_START_TEST (test_again)
 {
   for (guint way = 0; way < 2; way++) {
     Setup setup = set_up_good ("");
-    GstSegment segment;
-    guint n = 0;
-    GstBuffer *buffer;
 
     push (&setup, 0, 12);
-    if (way == 0) {
-      gst_harness_push_event (setup.h, gst_event_new_flush_start ());
-      gst_harness_push_event (setup.h, gst_event_new_flush_stop (TRUE));
-    }
-    gst_segment_init (&segment, GST_FORMAT_TIME);
-    gst_harness_push_event (setup.h, gst_event_new_segment (&segment));
+    if (way == 0)
+      flush (&setup);
+    begin_segment (&setup);
     push (&setup, 0, 12);
-    while ((buffer = gst_harness_try_pull (setup.h))) {
-      /* 9 of the first run, its last 3 unless they were flushed, 9 of the second */
-      guint first = way ? 12 : 9;
-
-      if (n >= first)
-        fail_unless (fabs (mean_residual (buffer, 2) -
-                oscillator ((gdouble) (n - first) / FPS)) < 0.0005);
-      n++;
-      gst_buffer_unref (buffer);
-    }
-    fail_unless_equals_int (n, way ? 21 : 18);
+    /* 9 of the first run, its last 3 unless they were flushed, 9 of the second */
+    expect_oscillator (&setup, way ? 12 : 9, way ? 21 : 18);
     tear_down (&setup);
   }
 }
@@ -488,12 +460,10 @@ GST_END_TEST;
 GST_START_TEST (test_before_caps)
 {
   Setup setup = set_up ("/model.json", "/take", "");
-  GstSegment segment;
 
   gst_harness_play (setup.h);
-  gst_segment_init (&segment, GST_FORMAT_TIME);
   gst_harness_push_event (setup.h, gst_event_new_stream_start ("meshes"));
-  gst_harness_push_event (setup.h, gst_event_new_segment (&segment));
+  begin_segment (&setup);
   fail_unless_equals_int (gst_harness_push (setup.h, make_frame (0, -1, NULL)),
       GST_FLOW_NOT_NEGOTIATED);
   tear_down (&setup);

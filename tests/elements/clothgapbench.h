@@ -216,6 +216,22 @@ push (Setup * setup, guint from, guint to)
                 NULL)), GST_FLOW_OK);
 }
 
+static inline void
+flush (Setup * setup)
+{
+  gst_harness_push_event (setup->h, gst_event_new_flush_start ());
+  gst_harness_push_event (setup->h, gst_event_new_flush_stop (TRUE));
+}
+
+static inline void
+begin_segment (Setup * setup)
+{
+  GstSegment segment;
+
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  gst_harness_push_event (setup->h, gst_event_new_segment (&segment));
+}
+
 /* The next message of a type; for ours, of a name. */
 static inline GstMessage *
 find_message (Setup * setup, GstMessageType type, const gchar * name)
@@ -279,6 +295,22 @@ expect_meshes (Setup * setup, guint n, guint with_gap)
   fail_unless_equals_int (n_with_gap, with_gap);
 }
 
+/* The next buffer is as @in was, which it takes. */
+static inline void
+expect_same (Setup * setup, GstBuffer * in)
+{
+  GstBuffer *out = gst_harness_pull (setup->h);
+  GstMapInfo map;
+
+  gst_buffer_map (in, &map, GST_MAP_READ);
+  fail_unless_equals_int (gst_buffer_get_size (out), map.size);
+  fail_unless_equals_int (gst_buffer_memcmp (out, 0, map.data, map.size), 0);
+  fail_unless_equals_uint64 (GST_BUFFER_PTS (out), GST_BUFFER_PTS (in));
+  gst_buffer_unmap (in, &map);
+  gst_buffer_unref (in);
+  gst_buffer_unref (out);
+}
+
 static inline gdouble
 mean_residual (GstBuffer * buffer, guint axis)
 {
@@ -306,4 +338,21 @@ oscillator (gdouble t)
 
   return ACCELERATION / GAIN * (1 - exp (-decay * t) * (cos (w * t) +
           decay / w * sin (w * t)));
+}
+
+/* Takes what came out, so many in all; from the @first on it is the oscillator from rest. */
+static inline void
+expect_oscillator (Setup * setup, guint first, guint n)
+{
+  guint n_out = 0;
+  GstBuffer *buffer;
+
+  while ((buffer = gst_harness_try_pull (setup->h))) {
+    if (n_out >= first)
+      fail_unless (fabs (mean_residual (buffer, 2) -
+              oscillator ((gdouble) (n_out - first) / FPS)) < 0.0005);
+    n_out++;
+    gst_buffer_unref (buffer);
+  }
+  fail_unless_equals_int (n_out, n);
 }
