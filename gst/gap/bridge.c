@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/gap/tears.h"
 #include "gst/math/linalg.h"
 
 /* Sweeps over the hidden vertices until none moves further than this, m. */
@@ -15,7 +16,9 @@
 typedef struct
 {
   ClothRecording *recording;
-  gint *first, *last;           /* frames that saw a vertex; none: all later, -1 */
+  gint *first, *last;           /* frames that know a vertex; none: all later, -1 */
+  gint *clamp;                  /* of a vertex, -1: none */
+  gboolean *adrift;             /* it begins where those around it say */
   guint *begin, *neighbours;    /* of a vertex, in the mesh */
   gboolean *hidden;             /* how far a vertex moved is not known */
   gdouble *moved;               /* [n][3], m */
@@ -26,6 +29,8 @@ bridge_clear (Bridge * b)
 {
   g_free (b->first);
   g_free (b->last);
+  g_free (b->clamp);
+  g_free (b->adrift);
   g_free (b->begin);
   g_free (b->neighbours);
   g_free (b->hidden);
@@ -95,7 +100,27 @@ spread (Bridge * b)
   }
 }
 
-/* Even motion between the frames before and after that saw the vertex. */
+/* Vertices that were not seen while they were held are where their clamps were. */
+static gboolean
+find_known (Bridge * b, guint frame, guint vertex)
+{
+  const ClothRecording *r = b->recording;
+  const ClothScene *scene = r->scene;
+  const gint clamp = b->clamp[vertex];
+
+  if (r->seen[(gsize) frame * r->n + vertex] > 0.)
+    return TRUE;
+  if (clamp < 0 || r->times[frame] < g_array_index (scene->held, ClothHeld,
+          clamp).from_s || r->times[frame] >= g_array_index (scene->held,
+          ClothHeld, clamp).until_s)
+    return FALSE;
+  memcpy (place (b, frame, vertex), scene->clamps +
+      3 * ((gsize) frame * scene->held->len + (guint) clamp),
+      3 * sizeof (gdouble));
+  return TRUE;
+}
+
+/* Even motion between the frames before and after that know the vertex. */
 static void
 bridge_between (Bridge * b, guint vertex)
 {
@@ -104,7 +129,7 @@ bridge_between (Bridge * b, guint vertex)
 
   b->first[vertex] = (gint) r->n_frames;
   for (guint frame = 0; frame < r->n_frames; frame++) {
-    if (r->seen[(gsize) frame * r->n + vertex] == 0.)
+    if (!find_known (b, frame, vertex))
       continue;
     if (last < 0)
       b->first[vertex] = (gint) frame;
@@ -126,8 +151,10 @@ bridge_between (Bridge * b, guint vertex)
 static gboolean
 is_filled (const Bridge * b, guint vertex, guint from, guint frame)
 {
-  return frame < from ? b->first[vertex] > (gint) frame :
-      b->last[vertex] < (gint) frame;
+  const gboolean later = b->first[vertex] > (gint) frame;
+
+  return frame < from ? later : b->last[vertex] < (gint) frame ||
+      (later && b->adrift[vertex]);
 }
 
 /* Vertices that @frame does not know move to it from @from as their neighbours do. On the
@@ -181,10 +208,10 @@ fit_plane (const Bridge * b, gdouble plane[3][3])
   return TRUE;
 }
 
-/* Vertices that no frame saw begin as far off the plane as those around them that the
- * first frame saw; where the scene starts them when it saw next to nothing. */
+/* Vertices adrift begin as far off the plane as those around them that the first frame
+ * saw; where the scene starts them when it saw next to nothing. */
 static void
-start_unseen (Bridge * b)
+start_adrift (Bridge * b)
 {
   const ClothRecording *r = b->recording;
   const gfloat *uv = r->scene->topology->uv;
@@ -192,31 +219,49 @@ start_unseen (Bridge * b)
   gboolean any = FALSE, flat;
 
   for (guint v = 0; v < r->n; v++)
-    any |= b->last[v] < 0;
+    any |= b->adrift[v];
   if (!any)
     return;
   flat = fit_plane (b, plane);
   for (guint v = 0; v < r->n; v++) {
-    b->hidden[v] = b->first[v] > 0;
+    b->hidden[v] = b->adrift[v] || b->first[v] > 0;
     for (guint k = 0; k < 3; k++)
       b->moved[3 * v + k] = place (b, 0, v)[k] - plane[k][0] -
           plane[k][1] * uv[2 * v] - plane[k][2] * uv[2 * v + 1];
   }
   spread (b);
   for (guint v = 0; v < r->n; v++)
-    for (guint k = 0; b->last[v] < 0 && k < 3; k++)
+    for (guint k = 0; b->adrift[v] && k < 3; k++)
       place (b, 0, v)[k] = flat ? plane[k][0] + plane[k][1] * uv[2 * v] +
           plane[k][2] * uv[2 * v + 1] + b->moved[3 * v + k] :
           r->scene->positions[3 * v + k];
+}
+
+/* What was seen later, and elsewhere, is no place to have begun at when that tears the
+ * cloth. */
+static void
+cut_loose (Bridge * b)
+{
+  const ClothRecording *r = b->recording;
+  g_autoptr (ClothTears) tears = cloth_tears_new (r->scene->topology);
+  gdouble *start = b->moved;
+
+  memcpy (start, place (b, 0, 0), 3 * (gsize) r->n * sizeof *start);
+  if (!cloth_tears_remove (tears, 0., start))
+    return;
+  for (guint v = 0; v < r->n; v++)
+    if (isnan (start[3 * v]) && b->first[v] > 0)
+      b->adrift[v] = TRUE;
 }
 
 /**
  * cloth_recording_bridge:
  * @recording: a recording whose @y is known where @seen is 1
  *
- * Fills the rest of @y. Between two frames that saw it a vertex moves evenly; before the
- * first and after the last one it moves as its neighbours in the mesh do, which keeps the
- * cloth whole: a simulation that starts from a crumpled patch would burst.
+ * Fills the rest of @y. A held vertex is where its clamp was. Between two frames that know
+ * it a vertex moves evenly; before the first and after the last one it moves as its
+ * neighbours in the mesh do, which keeps the cloth whole: a simulation that starts from a
+ * crumpled patch would burst. One that would begin torn off begins between its neighbours.
  *
  * Since: 0.1
  */
@@ -226,14 +271,25 @@ cloth_recording_bridge (ClothRecording * recording)
   guint n = recording->n;
   g_auto (Bridge) b = { recording, g_new (gint, n), g_new (gint, n) };
 
+  b.clamp = g_new (gint, n);
+  for (guint v = 0; v < n; v++)
+    b.clamp[v] = -1;
+  for (guint i = 0; i < recording->scene->held->len; i++)
+    b.clamp[g_array_index (recording->scene->held, ClothHeld, i).vertex] =
+        (gint) i;
+  b.adrift = g_new0 (gboolean, n);
   b.hidden = g_new (gboolean, n);
   b.moved = g_new (gdouble, 3 * n);
   link_vertices (&b);
   for (guint v = 0; v < n; v++)
     bridge_between (&b, v);
+  for (guint v = 0; v < n; v++)
+    b.adrift[v] = b.last[v] < 0;
   for (guint frame = recording->n_frames - 1; frame-- > 0;)
     carry (&b, frame + 1, frame);
-  start_unseen (&b);
+  start_adrift (&b);
+  cut_loose (&b);
+  start_adrift (&b);
   for (guint frame = 1; frame < recording->n_frames; frame++)
     carry (&b, frame - 1, frame);
 }

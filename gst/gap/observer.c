@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "gst/gap/recording.h"
+#include "gst/gap/tears.h"
 #include "gst/mesh/hold.h"
 #include "gst/sim/sim.h"
 
@@ -36,6 +37,7 @@ struct _ClothObserver
   ClothSim *forecast;           /* without springs: only for frames of rays */
   gdouble *scene_start;
   ClothHold *hold;
+  ClothTears *tears;
   guint64 n_pushed, n_popped;
   Frame ring[WINDOW];           /* frame i at i % WINDOW */
   /* of the frame that was popped last, and of the one that is */
@@ -94,6 +96,7 @@ cloth_observer_new (const ClothScene * scene, const ClothModel * model,
   self->forecast = forecast;
   self->n = scene->topology->n_vertices;
   self->hold = cloth_hold_new (scene->topology);
+  self->tears = cloth_tears_new (scene->topology);
   n = 3 * (gsize) self->n;
   for (guint i = 0; i < WINDOW; i++) {
     self->ring[i].positions = g_new (gdouble, n);
@@ -137,7 +140,8 @@ cloth_observer_restart (ClothObserver * observer)
  * @time_s: of the frame, seconds of the scene, later than the last one's
  * @positions: 3 numbers a vertex, metres; NaN when not seen
  *
- * Gives it a frame.
+ * Gives it a frame. Vertices that would have to be torn off the cloth to be there count as
+ * not seen.
  *
  * Since: 0.1
  */
@@ -151,6 +155,7 @@ cloth_observer_push (ClothObserver * observer, gdouble time_s,
   frame->has_rays = FALSE;
   for (gsize i = 0; i < 3 * (gsize) observer->n; i++)
     frame->positions[i] = positions[i];
+  cloth_tears_remove (observer->tears, 0., frame->positions);
 }
 
 /**
@@ -254,6 +259,13 @@ look_ahead (ClothObserver * self, gdouble time)
     self->ahead[i] -= (self->ahead_speeds[i] - self->speeds[i]) * dt / 6;
 }
 
+static void
+lift (ClothObserver * self, Frame * frame, const gdouble * reference)
+{
+  cloth_rays_lift (frame->rays, reference, frame->positions);
+  cloth_tears_remove (self->tears, 0., frame->positions);
+}
+
 /* Lifts this frame and those behind it to where the simulation goes. */
 static void
 lift_waiting (ClothObserver * self, gdouble at)
@@ -264,7 +276,7 @@ lift_waiting (ClothObserver * self, gdouble at)
 
     for (gsize k = 0; k < 3 * (gsize) self->n; k++)
       self->reference[k] = self->ahead[k] + dt * self->ahead_speeds[k];
-    cloth_rays_lift (frame->rays, self->reference, frame->positions);
+    lift (self, frame, self->reference);
   }
 }
 
@@ -405,7 +417,7 @@ cloth_observer_pop (ClothObserver * observer, gfloat * residuals,
       return FALSE;
     cloth_sim_get_positions (self->sim, NUDGED, self->state);
     if (frame->has_rays)
-      cloth_rays_lift (frame->rays, self->state, frame->positions);
+      lift (self, frame, self->state);
     add_to_window (self, frame);
   }
   for (gsize i = 0; i < 3 * (gsize) self->n; i++)
@@ -501,6 +513,7 @@ cloth_observer_free (ClothObserver * observer)
   g_free (observer->ahead_speeds);
   g_free (observer->reference);
   cloth_hold_free (observer->hold);
+  cloth_tears_free (observer->tears);
   cloth_sim_free (observer->sim);
   cloth_sim_free (observer->forecast);
   g_free (observer);

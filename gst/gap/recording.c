@@ -8,12 +8,16 @@
 
 #include "gst/gap/bridge.h"
 #include "gst/gap/diagnose.h"
+#include "gst/gap/tears.h"
 #include "gst/math/linalg.h"
 
 /* Median of |x| of a normal variable over its standard deviation. */
 #define MEDIAN_OF_NORMAL 0.6745
 /* Variance of a fourth difference of white noise of variance 1. */
 #define FOURTH_DIFFERENCE 70.
+/* Noise puts two vertices no further apart than this many standard deviations of one
+ * coordinate. */
+#define FAR_APART 6.
 
 /**
  * cloth_gap_error_quark:
@@ -189,6 +193,42 @@ load (ClothRecording * r, ClothTake * take, GError ** error)
   return TRUE;
 }
 
+/* Into @row the places of a frame, and NaN where nothing was seen. */
+static void
+read_seen (ClothRecording * r, guint frame, gdouble * row)
+{
+  const gdouble *seen = r->seen + (gsize) frame * r->n;
+  const gdouble *y = place (r, r->y, frame, 0);
+
+  for (gsize i = 0; i < 3 * (gsize) r->n; i++)
+    row[i] = seen[i / 3] > 0. ? y[i] : NAN;
+}
+
+/* What no cloth can be at was not seen there. Where there is more noise than was told, noise
+ * is no tear: it is estimated when there seem to be any. */
+static void
+remove_torn (ClothRecording * r)
+{
+  g_autoptr (ClothTears) tears = cloth_tears_new (r->scene->topology);
+  g_autofree gdouble *row = g_new (gdouble, 3 * (gsize) r->n);
+  gdouble sigma = r->sigma > 0. ? r->sigma : 0.;
+  gboolean estimated = FALSE;
+
+  for (guint frame = 0; frame < r->n_frames; frame++) {
+    read_seen (r, frame, row);
+    if (!cloth_tears_remove (tears, FAR_APART * sigma, row))
+      continue;
+    if (!estimated) {
+      sigma = fmax (sigma, cloth_recording_estimate_sigma (r));
+      estimated = TRUE;
+      read_seen (r, frame, row);
+      cloth_tears_remove (tears, FAR_APART * sigma, row);
+    }
+    for (guint v = 0; v < r->n; v++)
+      r->seen[(gsize) frame * r->n + v] = isnan (row[3 * (gsize) v]) ? 0. : 1.;
+  }
+}
+
 /**
  * cloth_recording_longest_side:
  * @recording: a recording
@@ -255,6 +295,7 @@ cloth_recording_new (ClothTake * take, GError ** error)
     r->sigma = cloth_recording_estimate_sigma (r);
   if (!cloth_recording_check (r, told, error))
     return NULL;
+  remove_torn (r);
   cloth_recording_bridge (r);
   cloth_recording_differentiate (r);
   return g_steal_pointer (&r);

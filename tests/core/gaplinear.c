@@ -75,10 +75,51 @@ relay (guint vertex, gdouble t, gfloat p[3])
     p[0] = p[1] = p[2] = NAN;
 }
 
-/* A take of a motion with noise; every seventh vertex is hidden in every ninth frame. */
-static gchar *
-write_take (Motion motion, guint n_frames, gdouble noise, gdouble told)
+#define LATE (3 * COLUMNS + 4)
+#define SEEN_LATE 21
+/* One vertex alone is seen late, where it can't have come from, one in a frame in which
+ * others deny it, and a square is four squares aside. */
+static gboolean
+is_in_hole (guint vertex)
 {
+  guint column = vertex % COLUMNS, row = vertex / COLUMNS;
+
+  return column >= 3 && column <= 5 && row >= 2 && row <= 4;
+}
+
+static void
+torn (guint vertex, gdouble t, gfloat p[3])
+{
+  guint column = vertex % COLUMNS, row = vertex / COLUMNS;
+  guint frame = (guint) round (t * FPS);
+
+  turn_over (vertex, t, p);
+  if (vertex == LATE && frame >= SEEN_LATE)
+    p[2] += 0.2f;
+  else if (is_in_hole (vertex))
+    p[0] = p[1] = p[2] = NAN;
+  else if (vertex == 4 * COLUMNS + 1 && frame % 10 == 0)
+    p[1] -= 0.5f;
+  else if (column >= 1 && column <= 2 && row <= 1 && frame % 10 == 5)
+    p[0] -= (gfloat) (4. * spacing);
+}
+
+/* A corner is held, and never seen. */
+static void
+hung (guint vertex, gdouble t, gfloat p[3])
+{
+  turn_over (vertex, t, p);
+  if (vertex == 0)
+    p[0] = p[1] = p[2] = NAN;
+}
+
+/* A take of a motion with noise; every seventh vertex is hidden in every ninth frame. Where
+ * @clamp says vertex 0 is held there. */
+static gchar *
+write_take (Motion motion, Motion clamp, guint n_frames, gdouble noise,
+    gdouble told)
+{
+  const ClothHeld held = { 0, 0., INFINITY };
   g_autoptr (GError) error = NULL;
   g_autoptr (ClothTakeInfo) info = cloth_take_info_new ("motion");
   g_autoptr (ClothTopology) topology = cloth_topology_new_grid (COLUMNS, ROWS,
@@ -95,13 +136,17 @@ write_take (Motion motion, guint n_frames, gdouble noise, gdouble told)
   info->width_m = spacing * (COLUMNS - 1);
   info->height_m = spacing * (ROWS - 1);
   info->noise_sigma_m = told;
+  if (clamp)
+    g_array_append_val (info->held, held);
   writer = cloth_take_writer_new (folder, info, topology, &error);
   g_assert_no_error (error);
   cloth_random_init (&random, 5);
   for (guint f = 0; f < n_frames; f++) {
-    gfloat positions[3 * N];
+    gfloat positions[3 * N], held_at[3];
     guint8 states[N];
 
+    if (clamp)
+      clamp (0, f / FPS, held_at);
     for (guint v = 0; v < N; v++) {
       states[v] = CLOTH_VERTEX_MEASURED;
       motion (v, f / FPS, positions + 3 * v);
@@ -113,8 +158,8 @@ write_take (Motion motion, guint n_frames, gdouble noise, gdouble told)
       states[v] = CLOTH_VERTEX_UNSEEN;
       positions[3 * v] = positions[3 * v + 1] = positions[3 * v + 2] = NAN;
     }
-    cloth_take_writer_append (writer, f / FPS, positions, states, NULL, NULL,
-        &error);
+    cloth_take_writer_append (writer, f / FPS, positions, states, NULL,
+        clamp ? held_at : NULL, &error);
     g_assert_no_error (error);
   }
   cloth_take_writer_close (writer, &error);
@@ -123,10 +168,10 @@ write_take (Motion motion, guint n_frames, gdouble noise, gdouble told)
 }
 
 static ClothRecording *
-record (Motion motion, guint n_frames, gdouble noise, gdouble told,
-    GError ** error)
+record_held (Motion motion, Motion clamp, guint n_frames, gdouble noise,
+    gdouble told, GError ** error)
 {
-  g_autofree gchar *folder = write_take (motion, n_frames, noise, told);
+  g_autofree gchar *folder = write_take (motion, clamp, n_frames, noise, told);
   g_autofree gchar *parent = g_path_get_dirname (folder);
   g_autoptr (ClothTake) take = cloth_take_open (folder, error);
   ClothRecording *r = take ? cloth_recording_new (take, error) : NULL;
@@ -141,6 +186,13 @@ record (Motion motion, guint n_frames, gdouble noise, gdouble told,
   g_rmdir (folder);
   g_rmdir (parent);
   return r;
+}
+
+static ClothRecording *
+record (Motion motion, guint n_frames, gdouble noise, gdouble told,
+    GError ** error)
+{
+  return record_held (motion, NULL, n_frames, noise, told, error);
 }
 
 /* A polynomial of order 4 has the derivative it has, at the ends too. */
@@ -184,6 +236,47 @@ test_bridge (gconstpointer data)
       for (guint k = 0; k < 3; k++)
         g_assert_cmpfloat (fabs (got[k] - want[k]), <, 2e-4);
     }
+}
+
+/* A vertex that was not seen is where it was held. */
+static void
+test_held (void)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRecording) r = record_held (hung, turn_over, N_TURNING, 0.,
+      1e-4, &error);
+
+  g_assert_no_error (error);
+  for (guint f = 0; f < N_TURNING; f++) {
+    gfloat want[3];
+
+    turn_over (0, f / FPS, want);
+    g_assert_cmpfloat (r->seen[(gsize) f * N], ==, 0.);
+    for (guint k = 0; k < 3; k++)
+      g_assert_cmpfloat (fabs (r->y[3 * (gsize) f * N + k] - want[k]), <, 1e-6);
+  }
+}
+
+/* A vertex that would have to be torn off to be where it was seen is nowhere. */
+static void
+test_torn (void)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRecording) r = record (torn, N_TURNING, 0., 1e-4, &error);
+
+  g_assert_no_error (error);
+  for (guint f = 0; f < N_TURNING; f++)
+    for (guint v = 0; v < N; v++) {
+      const gdouble *got = r->y + 3 * ((gsize) f * N + v);
+      gfloat want[3];
+
+      turn_over (v, f / FPS, want);
+      /* those around it are drawn along from the frame before */
+      for (guint k = 0; k < 3 && (f < SEEN_LATE || !is_in_hole (v)); k++)
+        g_assert_cmpfloat (fabs (got[k] - want[k]), <, 2e-4);
+    }
+  g_assert_cmpfloat (r->seen[4 * COLUMNS + 1], ==, 0.);
+  g_assert_cmpfloat (r->seen[4 * COLUMNS + 2], ==, 1.);
 }
 
 static void
@@ -343,6 +436,8 @@ main (int argc, char **argv)
   g_test_add_func ("/gap/velocity", test_velocity);
   g_test_add_data_func ("/gap/bridge/turning", &motions[0], test_bridge);
   g_test_add_data_func ("/gap/bridge/relay", &motions[1], test_bridge);
+  g_test_add_func ("/gap/held", test_held);
+  g_test_add_func ("/gap/torn", test_torn);
   g_test_add_func ("/gap/noise", test_noise);
   g_test_add_func ("/gap/refused", test_refused);
   g_test_add_func ("/gap/features", test_features);

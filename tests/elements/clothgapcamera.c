@@ -64,6 +64,7 @@ typedef struct
   gdouble shift;                /* across, m, from frame 60 on */
   ClothRandom *noise;
   gint missing;
+  gint wrong;                   /* taken for one far away; 0: none */
   guint columns;                /* of the pattern's vertices; 0: as the cloth */
 } Look;
 
@@ -133,6 +134,8 @@ see (const Look * look, guint frame)
     for (guint k = 0; k < 2 && look->noise; k++)
       px[i][k] += (gfloat) (SIGMA_PX * cloth_random_gaussian (look->noise));
   }
+  if (look->wrong)
+    px[look->wrong][0] += 60;
   if (look->dots)
     add_dots (picture, look, frame, px, columns);
   else
@@ -392,6 +395,39 @@ GST_START_TEST (test_missing)
   /* of the window's 60 frames one was dark, and 19 lacked one of 12 vertices */
   fail_unless (fabs (coverage - (1 - (1 + 19. / N) / PER_WINDOW)) < 1e-9, "%g",
       coverage);
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
+/* A dot that is taken for one that is six squares away, from the first frame on, counts as
+ * not seen; where it was believed the simulation would burst. */
+GST_START_TEST (test_wrong)
+{
+  Setup setup = set_up_camera ("/seen", NULL, "");
+  g_autoptr (GstMessage) message = NULL;
+  ClothRandom random;
+  Look look = front;
+
+  cloth_random_init (&random, 2);
+  look.acceleration = 0;
+  look.noise = &random;
+  look.wrong = 5;
+  push_seen (&setup, &look, 0, N_SEEN);
+  end (&setup);
+  for (guint frame = 0; frame < N_SEEN; frame++) {
+    GstBuffer *buffer = gst_harness_pull (setup.h);
+    const gfloat *r =
+        gst_cloth_gap_get_residuals (gst_buffer_get_cloth_gap (buffer), NULL);
+
+    for (guint i = 0; i < N; i++)
+      fail_unless_equals_int (isnan (r[3 * i]), i == 5);
+    gst_buffer_unref (buffer);
+  }
+  message = find_message (&setup, GST_MESSAGE_ELEMENT, "clothgap/verdict");
+  fail_unless (message != NULL);
+  fail_unless_equals_string (gst_structure_get_string
+      (gst_message_get_structure (message), "verdict"), "no_gap");
   tear_down (&setup);
 }
 
@@ -789,6 +825,7 @@ clothgapcamera_suite (void)
   tcase_add_test (tc, test_drag);
   tcase_add_test (tc, test_same_bytes);
   tcase_add_test (tc, test_missing);
+  tcase_add_test (tc, test_wrong);
   tcase_add_test (tc, test_which_camera);
   tcase_add_test (tc, test_offset);
   tcase_add_test (tc, test_latency);
