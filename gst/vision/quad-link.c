@@ -291,17 +291,23 @@ recall (ClothQuadTracker * tracker, const ClothPlacement * placement, gint i,
       && near->vertex == row * (tracker->pattern.columns + 1) + column ? 1 : -1;
 }
 
-/* The same of the cell (@i, @j): for less against. */
+/* The same of the cell (@i, @j): for less against. Even is against: a square has all of its
+ * corners right. */
 static gint
 recall_square (ClothQuadTracker * tracker, const ClothPlacement * placement,
     gint i, gint j)
 {
   gint sum = 0;
+  gboolean against = FALSE;
 
-  for (gint k = 0; k < 4; k++)
-    sum += recall (tracker, placement, i + cloth_quad_corner_column[k],
-        j + cloth_quad_corner_row[k]);
-  return sum;
+  for (gint k = 0; k < 4; k++) {
+    const gint says = recall (tracker, placement,
+        i + cloth_quad_corner_column[k], j + cloth_quad_corner_row[k]);
+
+    sum += says;
+    against |= says < 0;
+  }
+  return sum == 0 && against ? -1 : sum;
 }
 
 /* Takes one square of a placed patch. */

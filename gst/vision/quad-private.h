@@ -96,6 +96,9 @@ struct _ClothQuadTracker
   gfloat shade;                 /* of the print, dark level over bright */
   guint n_shades;               /* squares that it is the mean of, 0: not known */
   guint contrary;               /* pictures in a row that spoke against it */
+  guint8 logarithm[256];        /* of a grey level */
+  guint8 *logarithms;           /* of the picture's levels, where they were asked for */
+  gsize logarithms_size;
   ClothPlacer *placer;
   GArray *seeds;                /* ClothQuadSeed */
   GArray *out;                  /* ClothQuad */
@@ -147,6 +150,7 @@ void cloth_quad_link (ClothQuadTracker * tracker);
 /* quad-search.c: looks for one square around a guess. */
 gboolean cloth_quad_search (ClothQuadTracker * tracker, gint column, gint row,
     const gfloat guess_x[4], const gfloat guess_y[4]);
+void cloth_quad_set_logarithms (guint8 logarithm[256]);
 /* quad-shade.c: takes a square for that of a cell, unless it has not the print's shade. */
 gboolean cloth_quad_take (ClothQuadTracker * tracker, ClothQuadCell * cell,
     gboolean black, const gfloat x[4], const gfloat y[4], gfloat cov[4][3],

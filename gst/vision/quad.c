@@ -87,6 +87,7 @@ cloth_quad_tracker_new (const ClothPattern * pattern)
   tracker->seeds = g_array_new (FALSE, FALSE, sizeof (ClothQuadSeed));
   tracker->out =
       g_array_sized_new (FALSE, FALSE, sizeof (ClothQuad), (guint) n);
+  cloth_quad_set_logarithms (tracker->logarithm);
   cloth_quad_tracker_reset (tracker);
   return tracker;
 }
@@ -103,6 +104,7 @@ cloth_quad_tracker_free (ClothQuadTracker * tracker)
   g_free (tracker->pattern.code);
   g_free (tracker->cells);
   g_free (tracker->vertices);
+  g_free (tracker->logarithms);
   cloth_linker_free (tracker->linker);
   cloth_patch_clear (&tracker->patch);
   cloth_point_grid_free (tracker->guesses);

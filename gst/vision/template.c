@@ -186,3 +186,44 @@ cloth_quad_shade (const ClothImage * image, const gfloat x[4],
   }
   return middle_two (shade);
 }
+
+/**
+ * cloth_quad_light:
+ * @image: the picture
+ * @x: columns of the four corners in ring order, px
+ * @y: rows of the four corners, px
+ * @black: whether the square is black on white, else white on black
+ *
+ * How evenly light falls on a square: the dimmest level of the print's bright colour along
+ * its edges over the brightest.
+ *
+ * Returns: ratio, no more than 1; 1 where the square lies at the picture's edge
+ *
+ * Since: 0.1
+ */
+gfloat
+cloth_quad_light (const ClothImage * image, const gfloat x[4],
+    const gfloat y[4], gboolean black)
+{
+  const gfloat depth = black ? -DEPTH : DEPTH;
+  gint least = 255, most = 1;
+
+  if (!is_inside (image, x, y, DEPTH))
+    return 1;
+  for (gint k = 0; k < 4; k++) {
+    const gint to = (k + 1) & 3, far = (k + 2) & 3, back = (k + 3) & 3;
+
+    for (gint n = 0; n < BESIDE; n++) {
+      const gfloat s = 0.1f + 0.8f * (gfloat) n / (BESIDE - 1);
+      const gfloat ex = x[k] + s * (x[to] - x[k]);
+      const gfloat ey = y[k] + s * (y[to] - y[k]);
+      const gint level = level_at (image,
+          ex + depth * (x[back] + s * (x[far] - x[back]) - ex),
+          ey + depth * (y[back] + s * (y[far] - y[back]) - ey));
+
+      least = MIN (least, level);
+      most = MAX (most, level);
+    }
+  }
+  return (gfloat) MIN (least, most) / (gfloat) most;
+}

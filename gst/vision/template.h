@@ -11,5 +11,7 @@ gfloat cloth_quad_confidence (const ClothImage * image, const gfloat x[4],
     const gfloat y[4], gfloat alpha, gboolean black);
 gfloat cloth_quad_shade (const ClothImage * image, const gfloat x[4],
     const gfloat y[4], gboolean black);
+gfloat cloth_quad_light (const ClothImage * image, const gfloat x[4],
+    const gfloat y[4], gboolean black);
 
 G_END_DECLS
