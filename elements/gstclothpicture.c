@@ -35,7 +35,9 @@ gst_cloth_load_picture (const gchar * path, const gchar * formats,
         "%s: there is no such file", path);
     return NULL;
   }
-  pipeline = gst_parse_launch (line, error);
+  /* else a missing element would leave both a pipeline and an error */
+  pipeline = gst_parse_launch_full (line, NULL, GST_PARSE_FLAG_FATAL_ERRORS,
+      error);
   if (!pipeline)
     return NULL;
   source = gst_bin_get_by_name (GST_BIN (pipeline), "in");

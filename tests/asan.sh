@@ -24,7 +24,7 @@ rm -rf "$plugins" "$build/asan-registry.bin"
 mkdir -p "$plugins"
 for name in alpha app audiofx audiotestsrc autodetect compositor coreelements coretracers \
     debugutilsbad deinterlace gdp geometrictransform imagefreeze isomp4 jpeg jpegformat \
-    libav matroska multifile openh264 openjpeg png rawparse rtp rtpmanager staticelements \
+    libav matroska multifile openh264 openjpeg playback png rawparse rtp rtpmanager staticelements \
     theora timecode typefindfunctions udp videobox videoconvertscale videocrop \
     videofilter videoparsersbad videorate videotestsrc vpx; do
   [ -e "$stock/libgst$name.so" ] && ln -s "$stock/libgst$name.so" "$plugins/"

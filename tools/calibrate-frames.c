@@ -124,9 +124,10 @@ cloth_frames_read (const gchar * path, guint every, ClothFrameFunc function,
         "%s: there is no such file", path);
     return FALSE;
   }
-  pipeline = gst_parse_launch ("filesrc name=in ! decodebin ! videoconvert "
-      "dither=none ! video/x-raw,format=GRAY8 ! appsink name=out sync=false "
-      "max-buffers=4", error);
+  /* else a missing element would leave both a pipeline and an error */
+  pipeline = gst_parse_launch_full ("filesrc name=in ! decodebin ! "
+      "videoconvert dither=none ! video/x-raw,format=GRAY8 ! appsink name=out "
+      "sync=false max-buffers=4", NULL, GST_PARSE_FLAG_FATAL_ERRORS, error);
   if (!pipeline)
     return FALSE;
   source = gst_bin_get_by_name (GST_BIN (pipeline), "in");

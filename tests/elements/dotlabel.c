@@ -597,6 +597,22 @@ GST_START_TEST (test_no_chart)
 
 GST_END_TEST;
 
+/* A GStreamer without the plugin that decodes. */
+GST_START_TEST (test_no_decoder)
+{
+  GstRegistry *registry = gst_registry_get ();
+  GstPluginFeature *decoder = gst_registry_lookup_feature (registry,
+      "decodebin");
+
+  if (decoder)
+    gst_registry_remove_feature (registry, decoder);
+  refuse_to_start (RING "pattern.json", RING "rig.json", "decodebin");
+  if (decoder)
+    gst_registry_add_feature (registry, decoder);
+}
+
+GST_END_TEST;
+
 GST_START_TEST (test_no_pattern)
 {
   refuse_to_start (NULL, NULL, "pattern is not set");
@@ -626,6 +642,7 @@ dotlabel_suite (void)
   tcase_add_test (tc, test_chart);
   tcase_add_test (tc, test_useless_chart);
   tcase_add_test (tc, test_no_chart);
+  tcase_add_test (tc, test_no_decoder);
   tcase_add_test (tc, test_no_pattern);
   return s;
 }
