@@ -21,6 +21,8 @@
  * what is missing. */
 #define FROZEN_SHARE 0.5
 #define FROZEN_REACH 2.
+/* Of a simulation, for each frame. */
+#define MOST_STEPS 2e4
 /* On takes that move otherwise than a baseline, what the baseline asks for of an effect
  * itself is taken off the effect's evidence so many times; without a baseline, what the
  * difference of the two force models asks for. */
@@ -140,6 +142,30 @@ load (ClothDiagnosis * d, GError ** error)
       return FALSE;
   note_model (d);
   return TRUE;
+}
+
+/* A model that needs too many steps would seem to hang: nothing may be said within a frame. */
+static gboolean
+check_steps (ClothDiagnosis * d, const ClothModel * model, GError ** error)
+{
+  const ClothSimOptions options = { FALSE, 1, CLOTH_SIMD_BEST, 0 };
+  const ClothRecording *r = cloth_diagnosis_recording (d, 0);
+  g_autoptr (ClothSim) sim = cloth_sim_new (r->scene, &model, 1, &options,
+      error);
+  gdouble steps;
+
+  if (!sim)
+    return FALSE;
+  /* frames further apart are doubted anyway */
+  steps = fmin ((r->times[r->n_frames - 1] - r->times[0]) / (r->n_frames - 1),
+      CLOTH_DIAGNOSIS_WINDOW_S) / cloth_sim_get_time_step (sim);
+  if (steps <= MOST_STEPS)
+    return TRUE;
+  g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_MODEL, "the model needs "
+      "%.2g steps a frame of %s, and a diagnosis simulates it hundreds of "
+      "times; lower “damping.stiffness” or the stiffnesses", steps,
+      r->name);
+  return FALSE;
 }
 
 static void
@@ -280,7 +306,7 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
 {
   guint n_all;
 
-  if (!load (d, error))
+  if (!load (d, error) || !check_steps (d, model, error))
     return FALSE;
   d->result->reason = cloth_diagnosis_find_doubt (d, model);
   if (d->result->reason)

@@ -74,8 +74,18 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Trial, trial_clear)
   cloth_recording_differentiate (&t->r);
 }
 
+/* A trial tells nothing of how far it is, but may be stopped. */
+static gboolean
+may_go_on (gpointer data, gdouble share)
+{
+  const ClothDiagnosis *d = data;
+
+  return !d->options->progress
+      || d->options->progress (d->options->progress_data, d->from, d->what);
+}
+
 /* The simulator's mean squared gap to a recording whose time runs so many times as fast:
- * NaN when it diverges. */
+ * NaN when it diverges or is stopped. */
 static gdouble
 try_world (ClothDiagnosis * d, const Trial * t, const ClothModel * model,
     gdouble faster)
@@ -84,7 +94,7 @@ try_world (ClothDiagnosis * d, const Trial * t, const ClothModel * model,
   ClothGapExtent **extents;
   gdouble square = NAN;
 
-  options.progress = NULL;
+  options.progress = may_go_on;
   cloth_diagnosis_begin_part (d, d->from, d->to, d->each, "another world");
   extents = cloth_gap_extents_new (&t->r, &model, 1,
       TRIAL_GAIN * faster * faster, CLOTH_DIAGNOSIS_WINDOW_S / faster, &options,

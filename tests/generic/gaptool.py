@@ -259,6 +259,16 @@ def contradictions(folder):
                gap['reason'] in gap['summary'] and bool(gap['effects']) == (
                    name in ('wide', 'noisy', 'veiled')),
                '%s: %s' % (name, gap['summary']))
+    # a model within its ranges that would take hours
+    with open(knit, encoding='utf-8') as file:
+        model = json.load(file)
+    model['stretch'] = dict(warp=1e7, weft=1e7)
+    with open(os.path.join(folder, 'stiff.json'), 'w', encoding='utf-8') as file:
+        json.dump(model, file)
+    done = run(folder, 'diagnose', drag, '--model', 'stiff.json', '--effects', 'wind',
+               '--output', 'x')
+    expect(done.returncode == 1 and 'steps a frame of take_drag' in done.stderr and
+           not os.path.exists(os.path.join(folder, 'x')), 'stiff: ' + done.stderr.strip())
     # copies of one recording
     variant(folder, 'copy')
     for arguments in ((drag, '--baseline', 'copy'), (drag, '--hold-out', 'copy'), (drag, 'copy')):
