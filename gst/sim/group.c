@@ -21,7 +21,7 @@ extern const ClothLaneBackend cloth_lane_backend_double_avx512;
 #endif
 
 /* What a step of half as many lanes costs: vectors half as wide, but not twice as fast. */
-#define NARROW_COSTS 0.6
+#define NARROW_COSTS 0.66
 
 /* A model and which effects it has, as bits: those that cost most are the highest. */
 typedef struct
