@@ -15,8 +15,8 @@
 #define LEAST_FOUND_SHADED 0.8
 /* The same of all films of one test together. */
 #define LEAST_OF_ALL 0.98
-#define LEAST_OF_SHADED 0.98
-#define LEAST_OF_MIXED 0.915
+#define LEAST_OF_SHADED 0.985
+#define LEAST_OF_MIXED 0.93
 #define SHADOW 0.35f
 
 typedef enum
