@@ -337,7 +337,7 @@ cloth_board_finder_find (ClothBoardFinder * finder, const ClothImage * image,
     out->seen[k] = CLOTH_VERTEX_UNKNOWN;
   out->n_seen = 0;
   *view = out;
-  n_links = cloth_linker_run (finder->linker, image, saddles, n_saddles,
+  n_links = cloth_linker_run (finder->linker, image, NULL, saddles, n_saddles,
       &links, NULL);
   n = anchor = cloth_link_largest (links, n_links, order, MAX_PATCHES);
   for (guint k = 0; k < n; k++) {

@@ -67,10 +67,14 @@ bilinear (const ClothImage * image, gfloat x, gfloat y)
   return is_inside (image, x, y, 0) ? bilinear_inside (image, x, y) : -1;
 }
 
+/* @levels: what each grey level counts as, NULL: as itself */
 static inline gint
-nearest (const ClothImage * image, gfloat x, gfloat y)
+nearest (const ClothImage * image, const guint8 * levels, gfloat x, gfloat y)
 {
-  return image->data[(gint) lrintf (y) * image->stride + (gint) lrintf (x)];
+  const guint8 level = image->data[(gint) lrintf (y) * image->stride
+      + (gint) lrintf (x)];
+
+  return levels ? levels[level] : level;
 }
 
 /* Whether there are pixels this far from a place to both sides, with room for rounding. */
@@ -84,9 +88,9 @@ has_pixels (const ClothImage * image, gfloat x, gfloat y, gfloat nx, gfloat ny)
 }
 
 /* The contrast of the edge as seen by samples this far from the line. */
-static gfloat
-contrast_at (const ClothImage * image, gfloat ax, gfloat ay, gfloat dx,
-    gfloat dy, gfloat offset)
+static inline gfloat
+contrast_at (const ClothImage * image, const guint8 * levels, gfloat ax,
+    gfloat ay, gfloat dx, gfloat dy, gfloat offset)
 {
   gfloat scale = offset / sqrtf (dx * dx + dy * dy);
   gfloat nx = -dy * scale, ny = dx * scale;
@@ -100,7 +104,8 @@ contrast_at (const ClothImage * image, gfloat ax, gfloat ay, gfloat dx,
   for (gint k = 0; k < SAMPLES; k++) {
     gfloat t = FROM + (TO - FROM) * (gfloat) k / (SAMPLES - 1);
     gfloat x = ax + t * dx, y = ay + t * dy;
-    gint d = nearest (image, x + nx, y + ny) - nearest (image, x - nx, y - ny);
+    gint d = nearest (image, levels, x + nx, y + ny)
+        - nearest (image, levels, x - nx, y - ny);
 
     sum += d;
     least = MIN (least, d);
@@ -111,6 +116,20 @@ contrast_at (const ClothImage * image, gfloat ax, gfloat ay, gfloat dx,
       || (mean < -CONTRAST && (gfloat) most < EVEN * mean))
     return mean;
   return 0;
+}
+
+static inline gfloat
+contrast_between (const ClothImage * image, const guint8 * levels, gfloat ax,
+    gfloat ay, gfloat bx, gfloat by)
+{
+  gfloat dx = bx - ax, dy = by - ay, length = sqrtf (dx * dx + dy * dy);
+  /* Near the line, for squares seen obliquely; farther off, for bent edges. */
+  gfloat contrast = contrast_at (image, levels, ax, ay, dx, dy,
+      CLAMP (0.2f * length, 1.2f, 2.5f));
+
+  if (contrast == 0 && length > 14)
+    contrast = contrast_at (image, levels, ax, ay, dx, dy, 0.2f * length);
+  return contrast;
 }
 
 /**
@@ -133,14 +152,29 @@ gfloat
 cloth_edge_contrast (const ClothImage * image, gfloat ax, gfloat ay,
     gfloat bx, gfloat by)
 {
-  gfloat dx = bx - ax, dy = by - ay, length = sqrtf (dx * dx + dy * dy);
-  /* Near the line, for squares seen obliquely; farther off, for bent edges. */
-  gfloat contrast = contrast_at (image, ax, ay, dx, dy,
-      CLAMP (0.2f * length, 1.2f, 2.5f));
+  return contrast_between (image, NULL, ax, ay, bx, by);
+}
 
-  if (contrast == 0 && length > 14)
-    contrast = contrast_at (image, ax, ay, dx, dy, 0.2f * length);
-  return contrast;
+/**
+ * cloth_edge_contrast_in_levels:
+ * @image: the picture
+ * @levels: (array fixed-size=256): what each grey level counts as
+ * @ax: column of one end, px
+ * @ay: row of it
+ * @bx: column of the other end
+ * @by: row of it
+ *
+ * As cloth_edge_contrast() of the picture in these levels, which need not be made.
+ *
+ * Returns: as cloth_edge_contrast()
+ *
+ * Since: 0.1
+ */
+gfloat
+cloth_edge_contrast_in_levels (const ClothImage * image,
+    const guint8 levels[256], gfloat ax, gfloat ay, gfloat bx, gfloat by)
+{
+  return contrast_between (image, levels, ax, ay, bx, by);
 }
 
 /* Sines of the samples' angles; a quarter farther on, their cosines. */

@@ -9,6 +9,8 @@ G_BEGIN_DECLS
 
 gfloat cloth_edge_contrast (const ClothImage * image, gfloat ax, gfloat ay,
     gfloat bx, gfloat by);
+gfloat cloth_edge_contrast_in_levels (const ClothImage * image,
+    const guint8 levels[256], gfloat ax, gfloat ay, gfloat bx, gfloat by);
 gboolean cloth_edge_wedge (const ClothImage * image, gfloat x, gfloat y,
     gfloat radius, gboolean black, gfloat towards, gfloat rays[2],
     gfloat * contrast);

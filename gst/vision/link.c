@@ -92,8 +92,8 @@ cloth_linker_free (ClothLinker * linker)
  * among the @n_near nearest saddles. Returns how many there are, weak ones included. */
 static guint
 look_around (const ClothLinker * linker, const ClothImage * image,
-    const ClothSaddle * saddles, gint k, gfloat reach, guint n_near,
-    Corner * corner)
+    const guint8 * levels, const ClothSaddle * saddles, gint k, gfloat reach,
+    guint n_near, Corner * corner)
 {
   const ClothSaddle *a = &saddles[k];
   gfloat axis_x = cosf (a->axis), axis_y = sinf (a->axis);
@@ -121,7 +121,8 @@ look_around (const ClothLinker * linker, const ClothImage * image,
     if (corner->to[quarter] >= 0)
       continue;
     /* In the first quarter the bright bisector lies behind and the dark one ahead. */
-    contrast = cloth_edge_contrast (image, a->x, a->y, b->x, b->y);
+    contrast = levels ? cloth_edge_contrast_in_levels (image, levels, a->x,
+        a->y, b->x, b->y) : cloth_edge_contrast (image, a->x, a->y, b->x, b->y);
     if (!(quarter & 1))
       contrast = -contrast;
     /* Weak edges beside strong ones are shading, not print. */
@@ -140,12 +141,14 @@ look_around (const ClothLinker * linker, const ClothImage * image,
 
 static void
 find_neighbours (const ClothLinker * linker, const ClothImage * image,
-    const ClothSaddle * saddles, gint k, gfloat reach, Corner * corner)
+    const guint8 * levels, const ClothSaddle * saddles, gint k, gfloat reach,
+    Corner * corner)
 {
   corner->in_square = corner->skips = 0;
   corner->turn = 0;
-  if (look_around (linker, image, saddles, k, reach, NEARER, corner) < 4)
-    look_around (linker, image, saddles, k, reach, NEAREST, corner);
+  if (look_around (linker, image, levels, saddles, k, reach, NEARER,
+          corner) < 4)
+    look_around (linker, image, levels, saddles, k, reach, NEAREST, corner);
 }
 
 /* The quarter of @corner that leads to @k, -1 for none. */
@@ -362,6 +365,8 @@ lay_out_patch (ClothLinker * linker, const ClothSaddle * saddles)
  * cloth_linker_run:
  * @linker: the linker
  * @image: the picture the saddles were found in
+ * @levels: (nullable) (array fixed-size=256): what each grey level counts as, %NULL: as
+ *   itself. In logarithms an edge in the shadow is as strong as beside it.
  * @saddles: (array length=n_saddles): refined saddles, px
  * @n_saddles: how many
  * @patches: (out) (transfer none): the patches found, valid until the next call
@@ -376,7 +381,7 @@ lay_out_patch (ClothLinker * linker, const ClothSaddle * saddles)
  */
 guint
 cloth_linker_run (ClothLinker * linker, const ClothImage * image,
-    const ClothSaddle * saddles, guint n_saddles,
+    const guint8 * levels, const ClothSaddle * saddles, guint n_saddles,
     const ClothLinkPatch ** patches, const ClothLinkNode ** nodes)
 {
   Corner *corners;
@@ -396,7 +401,8 @@ cloth_linker_run (ClothLinker * linker, const ClothImage * image,
   for (guint k = 0; k < n_saddles; k++)
     cloth_point_grid_add (linker->grid, saddles[k].x, saddles[k].y);
   for (guint k = 0; k < n_saddles; k++) {
-    find_neighbours (linker, image, saddles, (gint) k, reach, &corners[k]);
+    find_neighbours (linker, image, levels, saddles, (gint) k, reach,
+        &corners[k]);
     node[k].patch = UNSEEN;
     node[k].i = node[k].j = 0;
   }

@@ -55,7 +55,7 @@ typedef struct _ClothLinker ClothLinker;
 ClothLinker *cloth_linker_new (void);
 void cloth_linker_free (ClothLinker * linker);
 guint cloth_linker_run (ClothLinker * linker, const ClothImage * image,
-    const ClothSaddle * saddles, guint n_saddles,
+    const guint8 * levels, const ClothSaddle * saddles, guint n_saddles,
     const ClothLinkPatch ** patches, const ClothLinkNode ** nodes);
 guint cloth_link_largest (const ClothLinkPatch * patches, guint n_patches,
     guint * order, guint n_order);

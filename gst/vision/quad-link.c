@@ -759,9 +759,6 @@ cloth_quad_link (ClothQuadTracker * tracker)
   const ClothLinkPatch *links;
   guint order[MAX_PATCHES], refused[MAX_PATCHES], from[MAX_PATCHES];
   guint n_links, n, n_placed = 0, n_refused = 0, n_again = 0;
-  /* in a shadow edges are as strong as beside it */
-  const ClothImage logarithms = cloth_quad_take_logarithms (tracker, 0, 0,
-      tracker->image->width, tracker->image->height);
 
   tracker->doubted = FALSE;
   cloth_point_grid_clear (tracker->pending_now, tracker->image->width,
@@ -771,8 +768,8 @@ cloth_quad_link (ClothQuadTracker * tracker)
   cloth_point_grid_clear (tracker->corners, tracker->image->width,
       tracker->image->height, tracker->n_saddles);
   g_array_set_size (tracker->corner_vertex, 0);
-  n_links = cloth_linker_run (tracker->linker, &logarithms, tracker->saddles,
-      tracker->n_saddles, &links, NULL);
+  n_links = cloth_linker_run (tracker->linker, tracker->image,
+      tracker->logarithm, tracker->saddles, tracker->n_saddles, &links, NULL);
   n = cloth_link_largest (links, n_links, order, MAX_PATCHES);
   for (guint k = 0; k < n; k++) {
     from[n_refused] = tracker->corner_vertex->len;

@@ -151,8 +151,6 @@ void cloth_quad_link (ClothQuadTracker * tracker);
 gboolean cloth_quad_search (ClothQuadTracker * tracker, gint column, gint row,
     const gfloat guess_x[4], const gfloat guess_y[4]);
 void cloth_quad_set_logarithms (guint8 logarithm[256]);
-ClothImage cloth_quad_take_logarithms (ClothQuadTracker * tracker, gint left,
-    gint top, gint width, gint height);
 /* quad-shade.c: takes a square for that of a cell, unless it has not the print's shade. */
 gboolean cloth_quad_take (ClothQuadTracker * tracker, ClothQuadCell * cell,
     gboolean black, const gfloat x[4], const gfloat y[4], gfloat cov[4][3],

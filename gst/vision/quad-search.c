@@ -260,14 +260,30 @@ search (ClothQuadTracker * tracker, const View * view, gint column, gint row,
   return *confidence >= least;
 }
 
-/* A piece of the picture in logarithms; it lasts until the next one is taken. */
-ClothImage
-cloth_quad_take_logarithms (ClothQuadTracker * tracker, gint left, gint top,
-    gint width, gint height)
+/* The logarithms of the picture's levels around a guess. Nothing else can be read, so what is
+ * found does not hang on what was looked for before. */
+static View
+take_logarithms (ClothQuadTracker * tracker, const gfloat guess_x[4],
+    const gfloat guess_y[4])
 {
   const ClothImage *image = tracker->image;
-  const gsize size = (gsize) width * (gsize) height;
+  const gfloat around = LOG_MARGIN + LOG_AROUND * cloth_quad_longest (guess_x,
+      guess_y);
+  gfloat box[4] = { G_MAXFLOAT, G_MAXFLOAT, 0, 0 };
+  gint left, top, width, height;
+  gsize size;
 
+  for (gint k = 0; k < 4; k++) {
+    box[0] = MIN (box[0], guess_x[k] - around);
+    box[1] = MIN (box[1], guess_y[k] - around);
+    box[2] = MAX (box[2], guess_x[k] + around);
+    box[3] = MAX (box[3], guess_y[k] + around);
+  }
+  left = (gint) CLAMP (box[0], 0.0f, (gfloat) image->width);
+  top = (gint) CLAMP (box[1], 0.0f, (gfloat) image->height);
+  width = (gint) CLAMP (box[2], 0.0f, (gfloat) image->width) - left;
+  height = (gint) CLAMP (box[3], 0.0f, (gfloat) image->height) - top;
+  size = (gsize) width *(gsize) height;
   if (tracker->logarithms_size < size) {
     g_free (tracker->logarithms);
     tracker->logarithms = g_malloc (size);
@@ -281,35 +297,9 @@ cloth_quad_take_logarithms (ClothQuadTracker * tracker, gint left, gint top,
     for (gint x = 0; x < width; x++)
       to[x] = tracker->logarithm[from[x]];
   }
-  return (ClothImage) {
-  tracker->logarithms, width, height, width};
-}
-
-/* The logarithms of the picture's levels around a guess. Nothing else can be read, so what is
- * found does not hang on what was looked for before. */
-static View
-take_view (ClothQuadTracker * tracker, const gfloat guess_x[4],
-    const gfloat guess_y[4])
-{
-  const ClothImage *image = tracker->image;
-  const gfloat around = LOG_MARGIN + LOG_AROUND * cloth_quad_longest (guess_x,
-      guess_y);
-  gfloat box[4] = { G_MAXFLOAT, G_MAXFLOAT, 0, 0 };
-  gint left, top;
-
-  for (gint k = 0; k < 4; k++) {
-    box[0] = MIN (box[0], guess_x[k] - around);
-    box[1] = MIN (box[1], guess_y[k] - around);
-    box[2] = MAX (box[2], guess_x[k] + around);
-    box[3] = MAX (box[3], guess_y[k] + around);
-  }
-  left = (gint) CLAMP (box[0], 0.0f, (gfloat) image->width);
-  top = (gint) CLAMP (box[1], 0.0f, (gfloat) image->height);
-  return (View) {
-  cloth_quad_take_logarithms (tracker, left, top,
-        (gint) CLAMP (box[2], 0.0f, (gfloat) image->width) - left,
-        (gint) CLAMP (box[3], 0.0f, (gfloat) image->height) - top),
-        (gfloat) left, (gfloat) top};
+  return (View) { {
+  tracker->logarithms, width, height, width}
+  , (gfloat) left, (gfloat) top};
 }
 
 void
@@ -328,7 +318,7 @@ search_shaded (ClothQuadTracker * tracker, gint column, gint row,
     const gfloat guess_x[4], const gfloat guess_y[4], ClothOutline * outline,
     gfloat * confidence)
 {
-  const View view = take_view (tracker, guess_x, guess_y);
+  const View view = take_logarithms (tracker, guess_x, guess_y);
 
   return search (tracker, &view, column, row, guess_x, guess_y, LEAST_SHADED,
       outline, confidence)

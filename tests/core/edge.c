@@ -4,6 +4,8 @@
 #include "gst/vision/edge.h"
 #include "gst/vision/outline.h"
 
+#include <string.h>
+
 #include "tests/core/polygon.h"
 
 #define SIZE 160
@@ -55,6 +57,7 @@ test_no_contrast (void)
   static const gfloat odd[] = { NAN, INFINITY, 1e30f, -1e30f, -5 };
   ClothImage image = polygon_picture (SIZE, SIZE, WHITE);
   ClothImage dot = { image.data, 1, 1, SIZE };
+  guint8 levels[256];
 
   g_assert_cmpfloat (cloth_edge_contrast (&image, 60, 80, 100, 80), ==, 0);
   polygon_paint_box (&image, 40, 80, 80, 120, BLACK);
@@ -69,6 +72,16 @@ test_no_contrast (void)
   polygon_paint_box (&image, -1, -1, SIZE, SIZE, 100);
   polygon_paint_box (&image, 40, 80, 120, 120, 97);
   g_assert_cmpfloat (cloth_edge_contrast (&image, 45, 80, 75, 80), ==, 0);
+  /* In levels that part the two it is one, as strong as they say. */
+  for (guint level = 0; level < G_N_ELEMENTS (levels); level++)
+    levels[level] = level < 99 ? 20 : 220;
+  g_assert_cmpfloat (cloth_edge_contrast_in_levels (&image, levels, 45, 80, 75,
+          80), ==, -200);
+  polygon_paint_box (&image, 40, 80, 120, 120, 20);
+  g_assert_cmpfloat (cloth_edge_contrast (&image, 45, 80, 75, 80), ==, -80);
+  memset (levels, 7, sizeof levels);
+  g_assert_cmpfloat (cloth_edge_contrast_in_levels (&image, levels, 45, 80, 75,
+          80), ==, 0);
   polygon_picture_clear (&image);
 }
 

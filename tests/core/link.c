@@ -257,7 +257,7 @@ test_boards (void)
 
       view_init (&view, pose, FALSE);
       disturb (&view, cases[c].one_in, cases[c].clutter, pose);
-      n = cloth_linker_run (linker, &view.image,
+      n = cloth_linker_run (linker, &view.image, NULL,
           (const ClothSaddle *) view.saddles->data, view.saddles->len, &patches,
           &nodes);
       n_order = cloth_link_largest (patches, n, order, G_N_ELEMENTS (order));
@@ -321,24 +321,24 @@ test_no_boards (void)
         (k % 20 + k / 20) % 2 ? 0.1f : 1.6f, {
     0.01f, 0, 0.01f}
     };
-  g_assert_cmpuint (cloth_linker_run (linker, &image, saddles, 400, &patches,
-          &nodes), ==, 0);
+  g_assert_cmpuint (cloth_linker_run (linker, &image, NULL, saddles, 400,
+          &patches, &nodes), ==, 0);
   for (guint k = 0; k < 400; k++)
     g_assert_cmpint (nodes[k].patch, <, 0);
   /* Noise: no square of four edges, or few. */
   for (gint k = 0; k < WIDTH * HEIGHT; k++)
     data[k] = (guint8) random_in (&random, 0, 255);
   g_assert_cmpuint (cloth_link_largest (patches, cloth_linker_run (linker,
-              &image, saddles, 400, &patches, NULL), order, 3), ==, 0);
-  g_assert_cmpuint (cloth_linker_run (linker, &image, NULL, 0, &patches, NULL),
-      ==, 0);
+              &image, NULL, saddles, 400, &patches, NULL), order, 3), ==, 0);
+  g_assert_cmpuint (cloth_linker_run (linker, &image, NULL, NULL, 0, &patches,
+          NULL), ==, 0);
   g_assert_cmpuint (cloth_link_largest (NULL, 0, order, 3), ==, 0);
   for (guint k = 0; k < G_N_ELEMENTS (saddles); k++)
     saddles[k].x = saddles[k].y = 0;
-  g_assert_cmpuint (cloth_linker_run (linker, &dot, saddles, 400, &patches,
-          NULL), ==, 0);
-  g_assert_cmpuint (cloth_linker_run (linker, &image, saddles, 400, &patches,
-          NULL), ==, 0);
+  g_assert_cmpuint (cloth_linker_run (linker, &dot, NULL, saddles, 400,
+          &patches, NULL), ==, 0);
+  g_assert_cmpuint (cloth_linker_run (linker, &image, NULL, saddles, 400,
+          &patches, NULL), ==, 0);
 }
 
 /* A patch has every square of the board, the rim's too, each corner in its place; beyond
@@ -360,7 +360,7 @@ test_patch (void)
       Lie lie = { 0 };
 
       view_init (&view, pose, coded);
-      n = cloth_linker_run (linker, &view.image,
+      n = cloth_linker_run (linker, &view.image, NULL,
           (const ClothSaddle *) view.saddles->data, view.saddles->len, &links,
           NULL);
       g_assert_cmpuint (cloth_link_largest (links, n, &order, 1), ==, 1);
