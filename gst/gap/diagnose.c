@@ -14,6 +14,8 @@
 /* Version of the priors and thresholds: a change of either changes probabilities. */
 #define PRIORS "3"
 
+/* Squared gap of the nearest over that of the likeliest from which on it is taken. */
+#define NEARER 0.8
 /* Simulations of the fit of the free numbers. */
 #define N_FIT 6
 /* Free numbers that were fitted on baselines give way by this share of their standard
@@ -185,6 +187,9 @@ skip (gpointer data, const ClothEffect * effect, const gchar * reason)
 }
 
 /* The model's free numbers: fitted on the baselines, else on the takes. */
+/* The free numbers, fitted to what stands for the model as it is. The likeliest may leave
+ * a cloth that is stretched for the sake of its wrinkles, where the simulator can't make
+ * these; then what is nearest is taken. */
 static gboolean
 fit_free (ClothDiagnosis * d, const ClothModel * model, GError ** error)
 {
@@ -192,20 +197,35 @@ fit_free (ClothDiagnosis * d, const ClothModel * model, GError ** error)
   guint n = d->options->n_baselines ? d->options->n_baselines : d->n_takes;
   guint m = d->candidates->n_free;
   g_autofree gdouble *precisions = g_new (gdouble, m + 1);
-  g_autofree gdouble *sigmas = g_new0 (gdouble, m + 1);
+  g_autofree gdouble *sigmas = g_new0 (gdouble, 2 * m + 1);
+  g_autoptr (ClothModel) likeliest = NULL;
+  g_autoptr (ClothModel) nearest = NULL;
+  gdouble squares[2];
+  gboolean even;
 
+  if (!m) {
+    d->model = cloth_model_copy (model);
+    return TRUE;
+  }
   for (guint i = 0; i < m; i++) {
     gdouble prior = cloth_gap_candidates_direction (d->candidates, i)->prior;
 
     precisions[i] = 1. / (prior * prior);
   }
-  d->model = cloth_study_fit ((ClothStudy **) d->studies->pdata + begin, n,
-      d->candidates, model, d->all, precisions, m, NULL, N_FIT, &d->study,
-      sigmas, error);
-  if (!d->model)
+  likeliest = cloth_study_fit ((ClothStudy **) d->studies->pdata + begin, n,
+      d->candidates, model, d->all, precisions, m, NULL, FALSE, N_FIT,
+      &d->study, sigmas, error);
+  nearest = likeliest ? cloth_study_fit (
+      (ClothStudy **) d->studies->pdata + begin, n, d->candidates, model,
+      d->all, precisions, m, NULL, TRUE, N_FIT, &d->study, sigmas + m, error) :
+      NULL;
+  if (!nearest || !cloth_diagnosis_find_gaps (d, begin, begin + n,
+          (const ClothModel *[]) { likeliest, nearest }, 2, squares, error))
     return FALSE;
+  even = squares[1] < NEARER * squares[0];
+  d->model = even ? g_steal_pointer (&nearest) : g_steal_pointer (&likeliest);
   for (guint i = 0; i < m; i++) {
-    gdouble sigma = FROZEN_SHARE * sigmas[i];
+    gdouble sigma = FROZEN_SHARE * sigmas[even * m + i];
 
     d->precisions[i] = precisions[i];
     if (!d->options->n_baselines)

@@ -184,6 +184,9 @@ gboolean cloth_diagnosis_select (ClothDiagnosis * d, GError ** error);
 gboolean cloth_diagnosis_is_unknown (const ClothDiagnosis * d);
 
 /* How much, and the verdict. */
+gboolean cloth_diagnosis_find_gaps (ClothDiagnosis * d, guint begin, guint end,
+    const ClothModel * const *models, guint n, gdouble * squares,
+    GError ** error);
 gboolean cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error);
 void cloth_diagnosis_decide (ClothDiagnosis * d);
 

@@ -78,6 +78,39 @@ measure (ClothDiagnosis * d, const ClothRecording * r,
       CLOTH_DIAGNOSIS_WINDOW_S, &d->study.rollout, error);
 }
 
+/**
+ * cloth_diagnosis_find_gaps:
+ * @d: a diagnosis
+ * @begin: first recording
+ * @end: one behind the last
+ * @models: (array length=n): models
+ * @n: how many
+ * @squares: (out) (array length=n): sums over the recordings of their squared gaps, m²;
+ *   not finite where a simulation diverges
+ * @error: #ClothSimError
+ *
+ * Returns: whether it worked
+ */
+gboolean
+cloth_diagnosis_find_gaps (ClothDiagnosis * d, guint begin, guint end,
+    const ClothModel * const *models, guint n, gdouble * squares,
+    GError ** error)
+{
+  memset (squares, 0, n * sizeof *squares);
+  for (guint i = begin; i < end; i++) {
+    ClothGapExtent **extents = measure (d, cloth_diagnosis_recording (d, i),
+        models, n, error);
+
+    if (!extents)
+      return FALSE;
+    for (guint k = 0; k < n; k++)
+      squares[k] += extents[k]->sound ?
+          cloth_gap_extent_square (extents[k], NULL) : INFINITY;
+    cloth_gap_extents_free (extents, n);
+  }
+  return TRUE;
+}
+
 /* Without a baseline the floor is what the two force models differ by, and the noise:
  * NaN on errors. */
 static gdouble
@@ -120,14 +153,14 @@ keep_null (ClothDiagnosis * d, ClothGapExtent * null, guint recording)
 }
 
 /* The floor of the simulator's own error: what the baseline shows, and on takes that move
- * otherwise what the two force models differ by there, if that is more. */
+ * otherwise what the two force models differ by there, if that is more. Its square goes
+ * into @draws, too. */
 static gboolean
 measure_floor (ClothDiagnosis * d, guint judge, const ClothGapExtent * extent,
-    GError ** error)
+    gdouble * draws, GError ** error)
 {
   const ClothModel *models[1] = { d->model };
   ClothGapEstimate *result = &d->result->noise_floor;
-  g_autofree gdouble *draws = g_new (gdouble, N_DRAWS);
   ClothGapExtent **floor, *other = NULL;
   guint baseline = d->n_takes;
   const ClothStudy *signature = cloth_diagnosis_study (d, 0)->signature;
@@ -161,6 +194,8 @@ measure_floor (ClothDiagnosis * d, guint judge, const ClothGapExtent * extent,
   if (sqrt (square) > result->value) {
     *result = (ClothGapEstimate) {
     sqrt (square), NAN, NAN};
+    for (guint i = 0; i < N_DRAWS; i++)
+      draws[i] = square;
     d->floor_null = d->n_nulls;
   }
   if (other)
@@ -196,6 +231,19 @@ fill_shrink (ClothGapResult * result, gdouble before, gdouble after,
   }
   result->shrink = middle (share_gone (result, before, after), shrinks,
       N_DRAWS, 1);
+}
+
+/* How often a rest is no more than the floor, each drawn anew; draws of the rest are
+ * @stride apart. The observed ones count as one draw more (Davison and Hinkley 1997, 4.2). */
+static gdouble
+find_rest_p_value (const gdouble * rest, guint stride, const gdouble * floor)
+{
+  guint count = 0;
+
+  for (guint i = 0; i < N_DRAWS; i++)
+    for (guint j = 0; j < N_DRAWS; j++)
+      count += rest[i * stride] <= floor[j];
+  return (1. + count) / (1. + (gdouble) N_DRAWS * N_DRAWS);
 }
 
 /* Whether an effect is large enough to speak of. Where a signature is taken off, the
@@ -279,6 +327,7 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
   guint judge = d->options->n_hold_outs ? d->n_takes + d->options->n_baselines
       : 0;
   g_autofree gdouble *draws = g_new0 (gdouble, N_DRAWS * n);
+  g_autofree gdouble *floor = g_new0 (gdouble, N_DRAWS);
   g_autofree gboolean *windows = NULL;
   ClothGapExtent **extents;
   gdouble v[G_N_ELEMENTS (models)];
@@ -293,7 +342,7 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
     windows = judging_windows (d, extents[0]);
   for (guint i = 0; i < n; i++)
     v[i] = cloth_gap_extent_square (extents[i], windows);
-  if (!measure_floor (d, judge, extents[0], error)) {
+  if (!measure_floor (d, judge, extents[0], floor, error)) {
     cloth_gap_extents_free (extents, n);
     return FALSE;
   }
@@ -310,6 +359,7 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
     result->gap_after = estimate (v[best], draws + best, N_DRAWS, n);
     fill_shrink (result, v[0], v[best], draws, draws + best, n);
   }
+  result->rest_p_value = find_rest_p_value (draws + best, n, floor);
   if (faults)
     d->shrink_of_faults = share_gone (result, v[0], v[1]);
   if (!judge)

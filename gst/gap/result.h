@@ -278,7 +278,7 @@ typedef struct {
  * @gap_after: the same with the accepted effects; NaN without any
  * @noise_floor: what it would be if the simulation lacked nothing
  * @shrink: (V_before − V_after) ÷ (V_before − V_floor), V = squared gap
- * @rest_p_value: that what remains is no more than noise
+ * @rest_p_value: that what remains is no more than the noise floor
  * @held_out_takes: whether "held-out" means takes of their own, else blocks of time
  * @effects: (element-type ClothGapEffect): the tested effects, the likeliest first
  * @groups: (element-type ClothGapGroup): what can't be told apart

@@ -424,6 +424,7 @@ typedef struct
   const gdouble *precisions;
   guint m;
   const gboolean *blocks;
+  gboolean even;
   ClothStudyOptions *options;
   ClothModel *model;
   gdouble *moved;               /* from where the fit began */
@@ -448,7 +449,19 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Fit, fit_clear)
   return TRUE;
 }
 
-/* Each feature weighs by the power that the model at hand leaves in its class. */
+/* All classes get what is in the mean of them. */
+static void
+make_even (ClothGapPower * power)
+{
+  gdouble mean = 0.;
+
+  for (guint i = 0; i < power->n; i++)
+    mean += power->values[i] / power->n;
+  for (guint i = 0; i < power->n; i++)
+    power->values[i] = mean;
+}
+
+/* Each feature weighs by the power that the model at hand leaves in its class, or in all. */
 static void
 weigh (Fit * fit)
 {
@@ -463,6 +476,8 @@ weigh (Fit * fit)
       g_ptr_array_add (fit->powers, study->left[g] ?
           cloth_gap_power_copy (study->left[g]) :
           cloth_gap_power_new (study->features, z));
+      if (fit->even)
+        make_even (g_ptr_array_index (fit->powers, fit->powers->len - 1));
     }
 }
 
@@ -549,13 +564,15 @@ go (Fit * fit, const gdouble * step, gdouble share)
  * @precisions: (array length=m): of their priors, centred at @model
  * @m: how many
  * @blocks: (nullable): which blocks of time count
+ * @even: whether all features weigh alike
  * @n_passes: at most so many simulations of all
  * @options: how
  * @sigmas: (out) (nullable) (array length=m): standard deviations
  * @error: #ClothSimError or #ClothGapError
  *
  * Gauss and Newton on the features of all gains, each weighed by the power that is left
- * in its class, less what chaos does; a step that makes things worse, or the simulation
+ * in its class, less what chaos does. That is the likeliest if what is left is noise; of a
+ * model that can't follow the cloth, @even finds what brings the cloth nearest. A step that makes things worse, or the simulation
  * diverge, is cut.
  *
  * Returns: (transfer full) (nullable): the fitted model
@@ -565,11 +582,11 @@ ClothModel *
 cloth_study_fit (ClothStudy ** studies, guint n_studies,
     const ClothGapCandidates * candidates, const ClothModel * model,
     const guint * directions, const gdouble * precisions, guint m,
-    const gboolean * blocks, guint n_passes, ClothStudyOptions * options,
-    gdouble * sigmas, GError ** error)
+    const gboolean * blocks, gboolean even, guint n_passes,
+    ClothStudyOptions * options, gdouble * sigmas, GError ** error)
 {
   g_auto (Fit) fit = { studies, n_studies, candidates, directions, precisions,
-    m, blocks, options, cloth_model_copy (model), g_new0 (gdouble, m + 1)
+    m, blocks, even, options, cloth_model_copy (model), g_new0 (gdouble, m + 1)
   };
   g_autofree gdouble *a = g_new (gdouble, m * m + 1);
   g_autofree gdouble *b = g_new (gdouble, m + 1);

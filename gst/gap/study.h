@@ -88,8 +88,8 @@ gboolean cloth_study_linearise (ClothStudy * study,
 ClothModel *cloth_study_fit (ClothStudy ** studies, guint n_studies,
     const ClothGapCandidates * candidates, const ClothModel * model,
     const guint * directions, const gdouble * precisions, guint m,
-    const gboolean * blocks, guint n_passes, ClothStudyOptions * options,
-    gdouble * sigmas, GError ** error);
+    const gboolean * blocks, gboolean even, guint n_passes,
+    ClothStudyOptions * options, gdouble * sigmas, GError ** error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothStudy, cloth_study_free)
 G_END_DECLS
