@@ -320,6 +320,7 @@ cloth_diagnosis_list_nuisances (ClothDiagnosis * d, ClothGapTest * test)
   test->precisions = d->nuisance_precisions;
   test->n_nuisances = cloth_diagnosis_list_taken_in (d, 1.,
       d->nuisances, d->nuisance_precisions);
+  test->n_numbers = test->n_nuisances;
   for (guint k = 0; k < d->n_chaos; k++) {
     d->nuisances[test->n_nuisances] = n + k;
     d->nuisance_precisions[test->n_nuisances++] = d->chaos_precisions[k];

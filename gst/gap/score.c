@@ -264,15 +264,20 @@ run_trial (const Trial * trial, ClothGapScore * score)
     const ClothGapNormal *normal = trial->test->normals[g];
     ClothGapReduced reduced;
     gdouble phi, changes[4], inverse[16], log_det, fit = 0.;
+    ClothGapTest numbers = *trial->test;        /* without chaos */
+    ClothGapReduced told;
 
-    if (!reduce (trial, normal, trial->test->blocks, &reduced))
+    numbers.n_nuisances = trial->test->n_numbers;
+    if (!reduce (trial, normal, trial->test->blocks, &reduced)
+        || !cloth_gap_test_reduce (&numbers, normal, numbers.blocks,
+            trial->directions, n, &told))
       return FALSE;
     phi = cloth_gap_test_dispersion (trial->test, normal, &reduced);
     if (!estimate (trial, &reduced, phi, changes, inverse, &log_det))
       return FALSE;
     for (guint i = 0; i < n; i++) {
       fit -= 0.5 * reduced.s[i] / phi * changes[i];
-      score->kept = MIN (score->kept, reduced.kept[i]);
+      score->kept = MIN (score->kept, told.kept[i]);
       score->changes[i] += changes[i] / inverse[i * n + i];
       weight[i] += 1. / inverse[i * n + i];
     }

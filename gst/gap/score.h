@@ -17,7 +17,7 @@ G_BEGIN_DECLS
  * @sigmas: their standard deviations
  * @p_value: of no effect
  * @constancy_p_value: of the same effect in every block
- * @kept: share of its derivative that no nuisance can make up for
+ * @kept: share of its derivative that no number of the model can make up for
  *
  * Since: 0.1
  */
@@ -40,6 +40,8 @@ typedef struct {
  * @nuisances: (array length=n_nuisances): columns that are fitted along
  * @precisions: (array length=n_nuisances): of their priors
  * @n_nuisances: how many
+ * @n_numbers: the first so many of them are numbers of the model; the others stand for
+ *   chaos
  * @overdispersion: see #ClothStudyOptions
  * @block_s: length of a block, s
  * @gusts: first column of the wind in the parts of a block, x and y of each; 0: there are
@@ -55,6 +57,7 @@ typedef struct {
   const guint *nuisances;
   const gdouble *precisions;
   guint n_nuisances;
+  guint n_numbers;
   gdouble overdispersion;
   gdouble block_s;
   guint gusts;

@@ -104,6 +104,26 @@ def calibration_error(pairs):
     return total / len(pairs) if pairs else math.nan
 
 
+def area_under_curve(flagged, others):
+    """How often one of `flagged` is above one of `others`: the area under the curve of hits
+    against false alarms (Hanley and McNeil 1982)."""
+    pairs = [(a > b) + 0.5 * (a == b) for a in flagged for b in others]
+    return '%.2f (n = %d and %d)' % (statistics.mean(pairs), len(flagged),
+                                     len(others)) if pairs else 'no case'
+
+
+def rest_of(gap):
+    """What remains, as a multiple of the noise floor."""
+    rest = gap['gap_after']['value'] or gap['gap_before']['value']
+    floor = gap['noise_floor']['value']
+    return rest / floor if rest and floor else 0.
+
+
+def low_decile(values, form):
+    values = sorted(values)
+    return form % values[int(0.1 * len(values))] if values else 'no case'
+
+
 def median(values, form):
     values = list(values)
     return form % statistics.median(values) + ' (n = %d)' % len(values) if values else 'no case'
@@ -192,6 +212,8 @@ def table_of(cases, table):
                      share(g['verdict'] not in SILENT for l, g in none if l['family'] == family),
                      ''))
     found = [p for l, g in single for p in parameters_of(g, l, table)]
+    shrinks = [g['shrink']['value'] for l, g in strong if named_first(g, l) and
+               accepted(g) and g['shrink']['value'] is not None]
     rows += [
         ('no gap called undecidable', share(g['verdict'] == 'undecidable' for _, g in none), ''),
         ('out of the library: flagged `unexplained`',
@@ -200,6 +222,9 @@ def table_of(cases, table):
          share(g['verdict'] == 'unexplained' for l, g in outside if floors_of(g, l) >= 0.5), ''),
         ('out of the library: wrongly explained by an effect',
          share(g['verdict'] in ('explained', 'ambiguous') for _, g in outside), ''),
+        ('the rest over the floor, out of the library against all else (AUROC)',
+         area_under_curve([rest_of(g) for _, g in outside],
+                          [rest_of(g) for l, g in known if l['kind'] != 'outside']), '≥ 0.95'),
         ('parameter error, median, of the right effect when accepted',
          median((abs(value - truth) / abs(truth - null) for value, _, truth, null in found
                  if truth != null), '%.2f'), '≤ 0.15'),
@@ -207,8 +232,8 @@ def table_of(cases, table):
          share(abs(value - truth) <= 1.96 * sigma for value, sigma, truth, _ in found
                if sigma is not None), '90–98%'),
         ('held-out shrink, median, right effect first and accepted, at 2× and 5×',
-         median((g['shrink']['value'] for l, g in strong if named_first(g, l) and
-                 accepted(g) and g['shrink']['value'] is not None), '%.2f'), ''),
+         median(shrinks, '%.2f'), ''),
+        ('its 10% quantile', low_decile(shrinks, '%.2f'), ''),
         ('calibration error of the first one’s probability (ECE), all cases',
          '%.2f' % calibration_error(list(first_ones(known))), '≤ 0.05'),
         ('the same, only of one effect at 2× and 5×',
