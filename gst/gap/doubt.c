@@ -24,7 +24,7 @@
 #define MOST_JUMPS 10.
 #define LEAST_JUMP 0.02
 /* A floor beyond this share of the cloth's longest side hides whether there is a gap. */
-#define MOST_FLOOR 0.2
+#define MOST_FLOOR 0.1
 /* Edges that are so many times as long as on the flat cloth, all over it: its size is amiss. */
 #define MOST_STRETCH 1.2
 /* Gravity on earth, m/s², and by how much one that is told may differ from it anywhere there. */

@@ -179,6 +179,7 @@ rank (const Search * s, ClothGapNormal * normal)
       precisions[test.n_nuisances++] = 1. / (prior * prior);
     }
   }
+  test.n_numbers = test.n_nuisances;
   scores = cloth_gap_test_run (&test);
   for (guint i = 0; i < scores->len; i++) {
     ClothGapScore *score = &g_array_index (scores, ClothGapScore, i);
