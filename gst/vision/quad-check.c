@@ -1,10 +1,17 @@
 /* Quad tracker: whether the squares found can all be what they are said to be.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <math.h>
+
 #include "gst/vision/quad-private.h"
 
 /* Corners this near to each other are one place, in shortest edges. */
 #define CLAIM_REACH 0.25f
+/* Length of an edge that ends on the board's rim over that of the edge before it, and over
+ * its own in the last picture; cloth that bends away shortens it, but slowly and not so far. */
+#define LEAST_RIM 0.6f
+#define STEADY 0.85f
+#define LEAST_STEADY 0.45f
 
 static const gint diagonal_column[4] = { -1, 1, 1, -1 };
 static const gint diagonal_row[4] = { -1, -1, 1, 1 };
@@ -183,4 +190,93 @@ cloth_quad_check (ClothQuadTracker * tracker)
   drop (tracker, 2);
   drop (tracker, 1);
   drop (tracker, 0);
+}
+
+/* Where the squares found have a vertex of the board. */
+static gboolean
+find_vertex (ClothQuadTracker * tracker, gint column, gint row, gfloat * x,
+    gfloat * y)
+{
+  for (gint k = 0; k < 4; k++) {
+    const ClothQuadCell *cell = cloth_quad_cell (tracker,
+        column - cloth_quad_corner_column[k], row - cloth_quad_corner_row[k]);
+
+    if (!cell || !cell->found)
+      continue;
+    *x = cell->here_x[k];
+    *y = cell->here_y[k];
+    return TRUE;
+  }
+  return FALSE;
+}
+
+/* Length of the board's edge from one vertex to another, 0: not known. */
+static gfloat
+length_between (ClothQuadTracker * tracker, gint c0, gint r0, gint c1, gint r1)
+{
+  gfloat x[2], y[2];
+
+  return find_vertex (tracker, c0, r0, &x[0], &y[0])
+      && find_vertex (tracker, c1, r1, &x[1], &y[1])
+      ? hypotf (x[1] - x[0], y[1] - y[0]) : 0;
+}
+
+/* Whether an edge of a square that leads to the board's rim ends short of it: the one from
+ * corner @from to @to, which is as long as what comes before it there or, where that is not
+ * seen, before the square's other edge of that direction. */
+static gboolean
+is_short (ClothQuadTracker * tracker, gint column, gint row, gint from, gint to)
+{
+  const ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
+  const gint dc = cloth_quad_corner_column[to] - cloth_quad_corner_column[from];
+  const gint dr = cloth_quad_corner_row[to] - cloth_quad_corner_row[from];
+  /* The corner beside @from that is not @to. */
+  const gint beside = (2 * from - to) & 3;
+  const gfloat length = hypotf (cell->here_x[to] - cell->here_x[from],
+      cell->here_y[to] - cell->here_y[from]);
+  const gboolean steady = cell->age == 0
+      && length >= STEADY * hypotf (cell->x[to] - cell->x[from],
+      cell->y[to] - cell->y[from]);
+  gfloat before = 0;
+
+  for (gint way = 0; way < 2 && before == 0; way++) {
+    const gint k = way ? beside : from;
+    const gint c = column + cloth_quad_corner_column[k];
+    const gint r = row + cloth_quad_corner_row[k];
+
+    before = length_between (tracker, c, r, c - dc, r - dr);
+  }
+  return length < (steady ? LEAST_STEADY : LEAST_RIM) * before;
+}
+
+/* What lies before the board may cut off the squares of its rim: what is left of them looks
+ * whole, for the corners there are no saddles. */
+void
+cloth_quad_drop_short (ClothQuadTracker * tracker)
+{
+  const gint columns = tracker->pattern.columns, rows = tracker->pattern.rows;
+  gint n_short = 0;
+
+  for (gint row = 0; row < rows; row++)
+    for (gint column = 0; column < columns; column++) {
+      ClothQuadCell *cell = cloth_quad_cell (tracker, column, row);
+      /* whether the edge from corner k to the next lies on the rim */
+      const gboolean on_rim[4] = { row == 0, column + 1 == columns,
+        row + 1 == rows, column == 0
+      };
+
+      if (!cell->found)
+        continue;
+      cell->is_short = FALSE;
+      for (gint k = 0; k < 4; k++) {
+        const gint next = (k + 1) & 3;
+
+        if (on_rim[k])
+          cell->is_short |= is_short (tracker, column, row, (k + 3) & 3, k)
+              || is_short (tracker, column, row, (k + 2) & 3, next);
+      }
+      n_short += cell->is_short;
+    }
+  for (gint k = 0; n_short && k < columns * rows; k++)
+    tracker->cells[k].found &= !tracker->cells[k].is_short;
 }

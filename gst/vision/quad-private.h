@@ -18,6 +18,7 @@ typedef struct {
   gboolean found;               /* in this picture */
   gboolean fresh;               /* added by extension in this picture */
   gboolean refused;             /* what was seen in its place has not the print's shade */
+  gboolean is_short;            /* if found: something cuts it off at the board's rim */
   gboolean shown;               /* tracked or predicted in the last picture */
   guint age;                    /* pictures since it was last found; G_MAXUINT: never */
   guint run;                    /* pictures in a row it was found in */
@@ -166,5 +167,7 @@ gboolean cloth_quad_is_consistent (ClothQuadTracker * tracker, gint column,
     gint row);
 /* Gives up the squares that others speak against. */
 void cloth_quad_check (ClothQuadTracker * tracker);
+/* And those that something cuts off at the board's rim. */
+void cloth_quad_drop_short (ClothQuadTracker * tracker);
 
 G_END_DECLS

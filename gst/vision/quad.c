@@ -526,6 +526,8 @@ cloth_quad_tracker_run (ClothQuadTracker * tracker,
     }
   cloth_quad_check (tracker);
   extend (tracker);
+  if (params->link)
+    cloth_quad_drop_short (tracker);
   g_array_set_size (tracker->seeds, 0);
   cloth_quad_learn_shade (tracker);
   conclude (tracker);

@@ -492,6 +492,7 @@ score_quad (const TestFilm * film, guint camera, guint frame,
     score->n_corners++;
     score->sum2 += dx * dx + dy * dy;
   }
+  score->farthest = MAX (score->farthest, worst / own->size);
   score->strays += worst > STRAY * own->size;
   if (what && (wrong || ghost || worst > STRAY * own->size))
     g_test_message
@@ -537,6 +538,7 @@ test_film_add (TestFilmScore * sum, const TestFilmScore * score)
   sum->ghosts += score->ghosts;
   sum->faults += score->faults;
   sum->strays += score->strays;
+  sum->farthest = MAX (sum->farthest, score->farthest);
   sum->n_corners += score->n_corners;
   sum->sum2 += score->sum2;
 }

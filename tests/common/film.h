@@ -65,6 +65,7 @@ typedef struct {
   guint visible, hit;
   guint tracked, wrong, ghosts, strays;
   guint faults;                 /* wrong, ghosts, or both */
+  gfloat farthest;              /* corner from its place, squares */
   guint n_corners;
   gdouble sum2;                 /* px², both axes, of the corners that are clear */
 } TestFilmScore;
