@@ -79,6 +79,7 @@ typedef struct
   guint dropped[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
   guint n_dropped;
   gboolean unknown;             /* whether something is there, whatever it is */
+  gboolean asked;               /* whether an effect was asked for */
   /* of the first take before and after, of the first baseline; NULL where there is none */
   ClothGapEnergy *before, *after, *floor;
   gfloat *led;                  /* residual of the first take, as an extent has it, or NULL */

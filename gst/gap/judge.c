@@ -464,11 +464,13 @@ cloth_diagnosis_decide (ClothDiagnosis * d)
   guint accepted = d->n_chosen + cloth_diagnosis_count_faults (d);
   gdouble rest = accepted ? r->gap_after.value : r->gap_before.value;
   gboolean above = rest * rest > CLOTH_DIAGNOSIS_BAND * floor2;
+  /* an effect that was asked for and did not help stands for another */
+  gboolean other = d->asked && rest * rest > floor2;
 
   if (d->n_chosen)
     accept_effects (d);
   add_camera_effects (d);
-  if (above || (!accepted && d->unknown))
+  if (above || (!accepted && (d->unknown || other)))
     r->verdict = CLOTH_GAP_UNEXPLAINED;
   else if (!accepted)
     r->verdict = CLOTH_GAP_NO_GAP;

@@ -267,6 +267,7 @@ cloth_diagnosis_select (ClothDiagnosis * d, GError ** error)
     guint done = d->n_chosen + d->n_dropped, dropped = d->n_dropped;
     gdouble from = 0.48 + 0.12 * MIN (done, CLOTH_DIAGNOSIS_MAX_ACCEPTED - 1);
 
+    d->asked = TRUE;
     d->chosen[d->n_chosen++] = next.candidate;
     cloth_diagnosis_list_nuisances (d, &test);
     g_array_unref (scores);

@@ -253,6 +253,7 @@ test_gust (void)
   g_assert_cmpstr (first->effect->id, ==, "gust");
   g_assert_false (first->accepted);
   g_assert_cmpint (one->verdict, ==, CLOTH_GAP_UNEXPLAINED);
+  g_assert_cmpfloat (one->rest_p_value, <, 0.05);
   /* the root of the mean square of what blew in these 1.5 s, and the axis it blew along */
   g_test_message ("gusts of %g m/s along %g°", first->values[0],
       first->values[2]);
@@ -273,6 +274,8 @@ test_no_gap (void)
 
   g_assert_cmpint (one->verdict, ==, CLOTH_GAP_NO_GAP);
   g_assert_cmpint (two->verdict, ==, CLOTH_GAP_NO_GAP);
+  g_assert_cmpfloat (one->rest_p_value, >, 0.05);
+  g_assert_cmpfloat (two->rest_p_value, >, 0.05);
   check_null (one);
   check_null (two);
   g_assert_cmpuint (one->region->len, ==, 0);
