@@ -250,12 +250,13 @@ is_short (ClothQuadTracker * tracker, gint column, gint row, gint from, gint to)
 }
 
 /* What lies before the board may cut off the squares of its rim: what is left of them looks
- * whole, for the corners there are no saddles. */
+ * whole, for the corners there are no saddles. Those that were never seen longer may end
+ * there: at the edge of a sheet of paper. */
 void
 cloth_quad_drop_short (ClothQuadTracker * tracker)
 {
   const gint columns = tracker->pattern.columns, rows = tracker->pattern.rows;
-  gint n_short = 0;
+  gint n_cut = 0;
 
   for (gint row = 0; row < rows; row++)
     for (gint column = 0; column < columns; column++) {
@@ -267,16 +268,18 @@ cloth_quad_drop_short (ClothQuadTracker * tracker)
 
       if (!cell->found)
         continue;
-      cell->is_short = FALSE;
+      cell->cut = FALSE;
       for (gint k = 0; k < 4; k++) {
-        const gint next = (k + 1) & 3;
-
-        if (on_rim[k])
-          cell->is_short |= is_short (tracker, column, row, (k + 3) & 3, k)
-              || is_short (tracker, column, row, (k + 2) & 3, next);
+        if (!on_rim[k])
+          continue;
+        if (is_short (tracker, column, row, (k + 3) & 3, k)
+            || is_short (tracker, column, row, (k + 2) & 3, (k + 1) & 3))
+          cell->cut |= cell->whole >> k & 1;
+        else
+          cell->whole |= 1 << k;
       }
-      n_short += cell->is_short;
+      n_cut += cell->cut;
     }
-  for (gint k = 0; n_short && k < columns * rows; k++)
-    tracker->cells[k].found &= !tracker->cells[k].is_short;
+  for (gint k = 0; n_cut && k < columns * rows; k++)
+    tracker->cells[k].found &= !tracker->cells[k].cut;
 }

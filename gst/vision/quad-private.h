@@ -18,7 +18,8 @@ typedef struct {
   gboolean found;               /* in this picture */
   gboolean fresh;               /* added by extension in this picture */
   gboolean refused;             /* what was seen in its place has not the print's shade */
-  gboolean is_short;            /* if found: something cuts it off at the board's rim */
+  guint8 whole;                 /* sides of the board that it was once seen to reach, bits */
+  gboolean cut;                 /* if found: something cuts it off there */
   gboolean shown;               /* tracked or predicted in the last picture */
   guint age;                    /* pictures since it was last found; G_MAXUINT: never */
   guint run;                    /* pictures in a row it was found in */

@@ -142,6 +142,7 @@ cloth_quad_tracker_reset (ClothQuadTracker * tracker)
   for (gint k = 0; k < n; k++) {
     tracker->cells[k].age = G_MAXUINT;
     tracker->cells[k].run = 0;
+    tracker->cells[k].whole = 0;
     tracker->cells[k].shown = FALSE;
   }
   tracker->doubts = tracker->n_shades = tracker->contrary = 0;
