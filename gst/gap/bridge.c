@@ -238,20 +238,22 @@ start_adrift (Bridge * b)
 }
 
 /* What was seen later, and elsewhere, is no place to have begun at when that tears the
- * cloth. */
-static void
+ * cloth. Returns whether there is more adrift than before. */
+static gboolean
 cut_loose (Bridge * b)
 {
   const ClothRecording *r = b->recording;
   g_autoptr (ClothTears) tears = cloth_tears_new (r->scene->topology);
   gdouble *start = b->moved;
+  gboolean any = FALSE;
 
   memcpy (start, place (b, 0, 0), 3 * (gsize) r->n * sizeof *start);
   if (!cloth_tears_remove (tears, 0., start))
-    return;
+    return FALSE;
   for (guint v = 0; v < r->n; v++)
     if (isnan (start[3 * v]) && b->first[v] > 0)
-      b->adrift[v] = TRUE;
+      b->adrift[v] = any = TRUE;
+  return any;
 }
 
 /**
@@ -288,8 +290,8 @@ cloth_recording_bridge (ClothRecording * recording)
   for (guint frame = recording->n_frames - 1; frame-- > 0;)
     carry (&b, frame + 1, frame);
   start_adrift (&b);
-  cut_loose (&b);
-  start_adrift (&b);
+  if (cut_loose (&b))
+    start_adrift (&b);
   for (guint frame = 1; frame < recording->n_frames; frame++)
     carry (&b, frame - 1, frame);
 }

@@ -186,10 +186,9 @@ skip (gpointer data, const ClothEffect * effect, const gchar * reason)
   cloth_gap_result_add_untested (d->result, effect, reason);
 }
 
-/* The model's free numbers: fitted on the baselines, else on the takes. */
-/* The free numbers, fitted to what stands for the model as it is. The likeliest may leave
- * a cloth that is stretched for the sake of its wrinkles, where the simulator can't make
- * these; then what is nearest is taken. */
+/* The model's free numbers: fitted on the baselines, else on the takes. The likeliest may
+ * leave a cloth that is stretched for the sake of its wrinkles, where the simulator can't
+ * make these; then what is nearest is taken. */
 static gboolean
 fit_free (ClothDiagnosis * d, const ClothModel * model, GError ** error)
 {

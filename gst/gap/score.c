@@ -258,16 +258,15 @@ run_trial (const Trial * trial, ClothGapScore * score)
   guint n = trial->candidate->n, freedom = 0;
   gdouble gained = 0., total = 0., lm = 0., spread = 0.;
   gdouble weight[4] = { 0. };
+  ClothGapTest numbers = *trial->test;  /* without chaos */
 
+  numbers.n_nuisances = numbers.n_numbers;
   score->kept = 1.;
   for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
     const ClothGapNormal *normal = trial->test->normals[g];
-    ClothGapReduced reduced;
+    ClothGapReduced reduced, told;
     gdouble phi, changes[4], inverse[16], log_det, fit = 0.;
-    ClothGapTest numbers = *trial->test;        /* without chaos */
-    ClothGapReduced told;
 
-    numbers.n_nuisances = trial->test->n_numbers;
     if (!reduce (trial, normal, trial->test->blocks, &reduced)
         || !cloth_gap_test_reduce (&numbers, normal, numbers.blocks,
             trial->directions, n, &told))

@@ -572,8 +572,8 @@ go (Fit * fit, const gdouble * step, gdouble share)
  *
  * Gauss and Newton on the features of all gains, each weighed by the power that is left
  * in its class, less what chaos does. That is the likeliest if what is left is noise; of a
- * model that can't follow the cloth, @even finds what brings the cloth nearest. A step that makes things worse, or the simulation
- * diverge, is cut.
+ * model that can't follow the cloth, @even finds what brings the cloth nearest. A step that
+ * makes things worse, or the simulation diverge, is cut.
  *
  * Returns: (transfer full) (nullable): the fitted model
  * Since: 0.1
