@@ -197,6 +197,9 @@ fit_free (ClothDiagnosis * d, const ClothModel * model, GError ** error)
   guint m = d->candidates->n_free;
   g_autofree gdouble *precisions = g_new (gdouble, m + 1);
   g_autofree gdouble *sigmas = g_new0 (gdouble, 2 * m + 1);
+  ClothStudy **studies = (ClothStudy **) d->studies->pdata + begin;
+  g_autoptr (GPtrArray) copies = g_ptr_array_new_with_free_func (
+      (GDestroyNotify) cloth_study_free);
   g_autoptr (ClothModel) likeliest = NULL;
   g_autoptr (ClothModel) nearest = NULL;
   gdouble squares[2];
@@ -211,13 +214,18 @@ fit_free (ClothDiagnosis * d, const ClothModel * model, GError ** error)
 
     precisions[i] = 1. / (prior * prior);
   }
-  likeliest = cloth_study_fit ((ClothStudy **) d->studies->pdata + begin, n,
-      d->candidates, model, d->all, precisions, m, NULL, FALSE, N_FIT,
-      &d->study, sigmas, error);
-  nearest = likeliest ? cloth_study_fit (
-      (ClothStudy **) d->studies->pdata + begin, n, d->candidates, model,
-      d->all, precisions, m, NULL, TRUE, N_FIT, &d->study, sigmas + m, error) :
-      NULL;
+  /* both begin at the same model: its derivatives are found once */
+  for (guint i = 0; i < n; i++) {
+    if (!cloth_study_linearise (studies[i], d->candidates, model, d->all, m,
+            &d->study, error))
+      return FALSE;
+    g_ptr_array_add (copies, cloth_study_copy (studies[i], &d->study));
+  }
+  likeliest = cloth_study_fit (studies, n, d->candidates, model, d->all,
+      precisions, m, NULL, FALSE, TRUE, N_FIT, &d->study, sigmas, error);
+  nearest = likeliest ? cloth_study_fit ((ClothStudy **) copies->pdata, n,
+      d->candidates, model, d->all, precisions, m, NULL, TRUE, TRUE, N_FIT,
+      &d->study, sigmas + m, error) : NULL;
   if (!nearest || !cloth_diagnosis_find_gaps (d, begin, begin + n,
           (const ClothModel *[]) { likeliest, nearest }, 2, squares, error))
     return FALSE;

@@ -42,7 +42,7 @@ refit (ClothDiagnosis * d, const ClothModel * start, GError ** error)
     blocks[b] = !cloth_diagnosis_is_held_out (d, b);
   d->with[now] = cloth_study_fit ((ClothStudy **) d->studies->pdata,
       d->n_takes, d->candidates, start, directions, precisions, m, blocks,
-      FALSE, N_REFIT, &d->study, sigmas, error);
+      FALSE, FALSE, N_REFIT, &d->study, sigmas, error);
   m = d->candidates->n_free;
   for (guint c = 0; c <= now; c++)
     for (guint k = 0; k < cloth_diagnosis_chosen (d, c)->n; k++)

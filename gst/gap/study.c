@@ -63,6 +63,35 @@ forget (ClothStudy * study)
 }
 
 /**
+ * cloth_study_copy:
+ * @study: a study that is linearised
+ * @options: how it is studied
+ *
+ * Returns: (transfer full): another one of the same recording, linearised at the same
+ *   model
+ * Since: 0.1
+ */
+ClothStudy *
+cloth_study_copy (const ClothStudy * study, const ClothStudyOptions * options)
+{
+  ClothStudy *copy = cloth_study_new (study->recording, options);
+  gsize row = study->features->size * sizeof (gdouble);
+
+  copy->signature = study->signature;
+  copy->m = study->m;
+  copy->n_chaos = study->n_chaos;
+  copy->sound = g_memdup2 (study->sound, study->m * sizeof (gboolean));
+  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
+    copy->z[g] = g_memdup2 (study->z[g], row);
+    copy->columns[g] = g_memdup2 (study->columns[g], study->m * row);
+    copy->chaos[g] = g_memdup2 (study->chaos[g], study->n_chaos * row);
+    if (study->left[g])
+      copy->left[g] = cloth_gap_power_copy (study->left[g]);
+  }
+  return copy;
+}
+
+/**
  * cloth_study_free:
  * @study: (nullable) (transfer full): a study
  *
@@ -565,6 +594,7 @@ go (Fit * fit, const gdouble * step, gdouble share)
  * @m: how many
  * @blocks: (nullable): which blocks of time count
  * @even: whether all features weigh alike
+ * @begun: whether the studies are linearised at @model along @directions
  * @n_passes: at most so many simulations of all
  * @options: how
  * @sigmas: (out) (nullable) (array length=m): standard deviations
@@ -582,7 +612,7 @@ ClothModel *
 cloth_study_fit (ClothStudy ** studies, guint n_studies,
     const ClothGapCandidates * candidates, const ClothModel * model,
     const guint * directions, const gdouble * precisions, guint m,
-    const gboolean * blocks, gboolean even, guint n_passes,
+    const gboolean * blocks, gboolean even, gboolean begun, guint n_passes,
     ClothStudyOptions * options, gdouble * sigmas, GError ** error)
 {
   g_auto (Fit) fit = { studies, n_studies, candidates, directions, precisions,
@@ -598,7 +628,7 @@ cloth_study_fit (ClothStudy ** studies, guint n_studies,
     g_autoptr (GError) failed = NULL;
     gdouble cost;
 
-    if (!linearise (&fit, &failed) && (!sound
+    if (!(begun && !pass) && !linearise (&fit, &failed) && (!sound
             || !g_error_matches (failed, CLOTH_GAP_ERROR,
                 CLOTH_GAP_ERROR_MODEL))) {
       g_propagate_error (error, g_steal_pointer (&failed));

@@ -69,6 +69,8 @@ typedef struct _ClothStudy {
 void cloth_study_options_init (ClothStudyOptions * options);
 ClothStudy *cloth_study_new (const ClothRecording * recording,
     const ClothStudyOptions * options);
+ClothStudy *cloth_study_copy (const ClothStudy * study,
+    const ClothStudyOptions * options);
 void cloth_study_free (ClothStudy * study);
 gdouble cloth_study_signature_scale (const ClothStudy * study);
 guint cloth_study_count_chaos (const ClothStudy * study);
@@ -88,7 +90,7 @@ gboolean cloth_study_linearise (ClothStudy * study,
 ClothModel *cloth_study_fit (ClothStudy ** studies, guint n_studies,
     const ClothGapCandidates * candidates, const ClothModel * model,
     const guint * directions, const gdouble * precisions, guint m,
-    const gboolean * blocks, gboolean even, guint n_passes,
+    const gboolean * blocks, gboolean even, gboolean begun, guint n_passes,
     ClothStudyOptions * options, gdouble * sigmas, GError ** error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothStudy, cloth_study_free)
