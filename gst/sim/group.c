@@ -60,6 +60,22 @@ is_slow (const ClothEffect * effect)
       || effect == &cloth_effect_added_mass;
 }
 
+/* Those that find forces of their own; all others change numbers or the clamps. */
+static gboolean
+has_forces (const ClothEffect * effect)
+{
+  return effect == &cloth_effect_air_drag
+      || effect == &cloth_effect_air_drag_linear
+      || effect == &cloth_effect_air_drag_tangential
+      || effect == &cloth_effect_wind || effect == &cloth_effect_gust
+      || effect == &cloth_effect_biphasic_stretch
+      || effect == &cloth_effect_hysteresis
+      || effect == &cloth_effect_bending_softening
+      || effect == &cloth_effect_rest_curvature
+      || effect == &cloth_effect_plasticity;
+}
+
+/* The effects that cost time. */
 static guint64
 list_effects (const ClothModel * model)
 {
@@ -68,10 +84,13 @@ list_effects (const ClothModel * model)
   guint64 effects = 0;
 
   for (guint i = 0; i < model->effects->len; i++)
-    for (guint k = 0; k < n; k++)
-      if (g_array_index (model->effects, ClothModelEffect, i).effect ==
-          table[k])
-        effects |= (guint64) 1 << MIN (k, 31) << (is_slow (table[k]) ? 32 : 0);
+    for (guint k = 0; k < n; k++) {
+      const ClothEffect *effect = table[k];
+
+      if (g_array_index (model->effects, ClothModelEffect, i).effect == effect
+          && (is_slow (effect) || has_forces (effect)))
+        effects |= (guint64) 1 << MIN (k, 31) << (is_slow (effect) ? 32 : 0);
+    }
   return effects;
 }
 
@@ -94,23 +113,53 @@ count_rounds (guint n_models, guint n_lanes, guint threads)
   return (n + threads - 1) / threads;
 }
 
-/* Narrow lanes where wide ones would leave threads without work, or have to compute many
- * effects that most of them don't have. */
 static const ClothLaneBackend *
-choose_backend (const Place * places, guint n_models,
-    const ClothSimOptions * options, guint threads)
+narrow_backend (const ClothLaneBackend * wide)
 {
-  const ClothLaneBackend *wide = wide_backend (options), *narrow = wide;
-
 #if CLOTH_SIM_X86
   if (wide == &cloth_lane_backend_single_avx512)
-    narrow = &cloth_lane_backend_single_avx512_narrow;
+    return &cloth_lane_backend_single_avx512_narrow;
 #endif
-  if (places[0].effects != places[n_models - 1].effects
-      || NARROW_COSTS * count_rounds (n_models, narrow->n_lanes, threads) <
-      count_rounds (n_models, wide->n_lanes, threads))
-    return narrow;
   return wide;
+}
+
+/* Models with effects of their own are computed in narrow lanes: most of the others in
+ * wide ones would not have them. Each kind of them has groups of its own as long as there
+ * are models without to fill these up. Returns how many models those groups have, which
+ * are then first in @places. */
+static guint
+fill_up (Place * places, guint n_models, guint n_lanes)
+{
+  g_autofree Place *sorted = g_memdup2 (places, n_models * sizeof *places);
+  guint64 least = places[n_models - 1].effects;
+  guint n = 0, filled = 0, n_own = 0, n_slow = 0, fill;
+
+  while (places[n_own].effects != least)
+    n_slow += sorted[n_own++].effects >> 32 != least >> 32;
+  fill = n_own;
+  for (guint i = 0; i < n_own; filled += n_lanes) {
+    guint end = i < n_slow && n_slow - i < n_lanes
+        && n_lanes - (n_slow - i) <= n_models - fill ? n_slow : n_own;
+
+    while (i < end && n < filled + n_lanes)
+      places[n++] = sorted[i++];
+    while (fill < n_models && n < filled + n_lanes)
+      places[n++] = sorted[fill++];
+  }
+  return n;
+}
+
+/* Narrow lanes also where wide ones would leave threads without work. */
+static const ClothLaneBackend *
+choose_backend (guint n_models, gboolean others,
+    const ClothLaneBackend * wide, guint threads)
+{
+  const ClothLaneBackend *narrow = narrow_backend (wide);
+
+  if (others)
+    return n_models > narrow->n_lanes ? wide : narrow;
+  return NARROW_COSTS * count_rounds (n_models, narrow->n_lanes, threads) <
+      count_rounds (n_models, wide->n_lanes, threads) ? narrow : wide;
 }
 
 /**
@@ -138,18 +187,22 @@ cloth_sim_groups_new (const ClothBody * body, const ClothModel * const *models,
 {
   g_autofree Place *places = g_new (Place, n_models);
   g_autofree const ClothModel **sorted = g_new (const ClothModel *, n_models);
-  const ClothLaneBackend *backend;
+  const ClothLaneBackend *wide = wide_backend (options);
   ClothSimGroup *groups;
+  guint n_own;
 
   for (guint i = 0; i < n_models; i++)
     places[i] = (Place) {
     list_effects (models[i]), i};
   qsort (places, n_models, sizeof *places, compare_places);
-  backend = choose_backend (places, n_models, options, threads);
-  groups = g_new0 (ClothSimGroup, n_models / backend->n_lanes + 1);
+  n_own = fill_up (places, n_models, narrow_backend (wide)->n_lanes);
+  groups = g_new0 (ClothSimGroup,
+      n_models / narrow_backend (wide)->n_lanes + 1);
   *n_groups = 0;
   for (guint first = 0; first < n_models;) {
     ClothSimGroup *group = &groups[*n_groups];
+    const ClothLaneBackend *backend = first < n_own ? narrow_backend (wide) :
+        choose_backend (n_models - first, n_own > 0, wide, threads);
 
     group->first = first;
     group->n = MIN (n_models - first, backend->n_lanes);
