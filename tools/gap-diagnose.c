@@ -223,7 +223,7 @@ diagnose (const Arguments * arguments)
     return code;
   if (!make_output (arguments->output, &made))
     return complain (FAILED,
-        "cannot write into the folder “%s”: give another " "--output",
+        "cannot write into the folder “%s”: give another --output",
         arguments->output);
   catch_interrupts ();
   result = run_diagnosis (arguments, effects, &error);

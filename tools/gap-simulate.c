@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "tools/gap-tool.h"
 
-#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "gst/sim/sim.h"
@@ -76,6 +76,18 @@ run_simulation (const Arguments * arguments, GError ** error)
       cloth_take_writer_close (writer, error);
 }
 
+/* However they are spelt. */
+static gboolean
+is_same_folder (const gchar * a, const gchar * b)
+{
+  gchar *path = realpath (a, NULL), *other = realpath (b, NULL);
+  gboolean same = path && other && !strcmp (path, other);
+
+  free (path);
+  free (other);
+  return same;
+}
+
 gint
 simulate (const Arguments * arguments)
 {
@@ -92,7 +104,7 @@ simulate (const Arguments * arguments)
     return complain (BAD_USAGE, "name the take to write: --output TAKE");
   if (arguments->threads < 0)
     return complain (BAD_USAGE, "--threads: give 0 for all, or a number");
-  if (!strcmp (arguments->scene, arguments->output))
+  if (is_same_folder (arguments->scene, arguments->output))
     return complain (BAD_USAGE, "--output is the scene itself; name another");
   if (run_simulation (arguments, &error))
     return DONE;

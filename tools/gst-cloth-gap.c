@@ -11,6 +11,9 @@
 #include <string.h>
 #include <unistd.h>
 
+/* Whether a line of progress waits for its end. */
+static gboolean in_line;
+
 gint
 complain (gint code, const gchar * format, ...)
 {
@@ -20,7 +23,7 @@ complain (gint code, const gchar * format, ...)
   va_start (arguments, format);
   message = g_strdup_vprintf (format, arguments);
   va_end (arguments);
-  g_printerr (TOOL ": %s\n", message);
+  g_printerr ("%s" TOOL ": %s\n", in_line ? "\n" : "", message);
   if (code == BAD_USAGE)
     g_printerr ("Try \"" TOOL " --help\".\n");
   return code;
@@ -36,11 +39,12 @@ tell_progress (gdouble share, const gchar * what)
 
   if (!what)
     what = "";
-  if (isatty (STDERR_FILENO))
-    g_printerr ("\r\033[K%3d%%%s%s%s", percent, gap, what,
-        percent == 100 && last < 100 ? "\n" : "");
-  else if (percent / 10 > tenth)
+  if (isatty (STDERR_FILENO) && last < 100) {
+    in_line = percent < 100;
+    g_printerr ("\r\033[K%3d%%%s%s%s", percent, gap, what, in_line ? "" : "\n");
+  } else if (percent / 10 > tenth) {
     g_printerr ("%d%%%s%s\n", percent, gap, what);
+  }
   last = MAX (last, percent);
   tenth = last / 10;
 }
@@ -72,8 +76,7 @@ run (const Arguments * arguments)
   if (!strcmp (command, "simulate"))
     return simulate (arguments);
   return complain (BAD_USAGE,
-      "no command \"%s\": there are diagnose, effects and " "simulate",
-      command);
+      "no command \"%s\": there are diagnose, effects and simulate", command);
 }
 
 /* "--baseline a b" becomes "--baseline a --baseline b": these lists end where the next

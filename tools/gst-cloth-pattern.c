@@ -23,9 +23,15 @@
 #define DOTS_ROWS 251
 #define DOTS_COLOURS 5
 #define DOTS_DIAMETER_RATIO (13.0 / 20.0)
+#define DOTS_DISTANCE 1
+#define SEED 1
 
 enum
 { DONE = 0, FAILED = 1, BAD_USAGE = 2 };
+
+/* Kinds of pattern. */
+enum
+{ CHECKER = 1, CODED = 2, DOTS = 4, GARMENT = 8 };
 
 /* A number that was not given: its default depends on the kind of pattern. */
 #define NOT_GIVEN G_MININT
@@ -64,20 +70,24 @@ static gint
 lay_out (const Arguments * arguments, const ClothArtwork * artwork,
     ClothPrintOptions * options)
 {
+  const gchar *paper = arguments->paper ? arguments->paper : "cloth";
+  const gchar *margin =
+      arguments->page_margin ? arguments->page_margin : "10mm";
+  const gchar *overlap = arguments->overlap ? arguments->overlap : "10mm";
   ClothPrintLayout layout;
   g_autoptr (GError) error = NULL;
   g_autofree gchar *message = NULL;
   gdouble metres;
 
-  if (!cloth_print_paper (arguments->paper, options->paper_mm)) {
+  if (!cloth_print_paper (paper, options->paper_mm)) {
     message = g_strdup_printf ("--paper %s: give A0 to A5, letter, legal, "
-        "tabloid, cloth or a size as 600x900mm", arguments->paper);
+        "tabloid, cloth or a size as 600x900mm", paper);
     return complain (BAD_USAGE, message);
   }
-  if (!parse_length ("page-margin", arguments->page_margin, &metres, &error))
+  if (!parse_length ("page-margin", margin, &metres, &error))
     return complain (BAD_USAGE, error->message);
   options->margin_mm = metres * 1000;
-  if (!parse_length ("overlap", arguments->overlap, &metres, &error))
+  if (!parse_length ("overlap", overlap, &metres, &error))
     return complain (BAD_USAGE, error->message);
   options->overlap_mm = metres * 1000;
   if (!cloth_print_layout (artwork, options, &layout, &error))
@@ -110,12 +120,42 @@ print (const Arguments * arguments, const ClothArtwork * artwork,
 
 /* An option of other kinds of pattern is a mistake, not something to pass over. */
 static gint
-refuse_option (const gchar * option, const gchar * kind)
+check_options (const Arguments * a, guint kind)
 {
-  g_autofree gchar *message =
-      g_strdup_printf ("--%s is not for a pattern of kind %s", option, kind);
+  const struct
+  {
+    const gchar *name;
+    gboolean given;
+    guint kinds;
+  } options[] = {
+    {"columns", a->columns != NOT_GIVEN, CHECKER | CODED | DOTS},
+    {"rows", a->rows != NOT_GIVEN, CHECKER | CODED | DOTS},
+    {"square", a->square != NULL, CHECKER | CODED},
+    {"margin", a->margin != NULL, CHECKER | CODED | DOTS},
+    {"first", a->first != NULL, CHECKER | CODED},
+    {"dot-ratio", a->dot_ratio != CLOTH_CODE_DOT_RATIO, CODED},
+    {"pitch", a->pitch != NULL, DOTS},
+    {"diameter", a->diameter != NULL, DOTS},
+    {"colours", a->colours != NOT_GIVEN, DOTS},
+    {"distance", a->distance != DOTS_DISTANCE, DOTS},
+    {"two-sided", a->two_sided, DOTS},
+    {"seed", a->seed != SEED, CODED | DOTS},
+    {"paper", a->paper != NULL, CHECKER | CODED | DOTS},
+    {"page-margin", a->page_margin != NULL, CHECKER | CODED | DOTS},
+    {"overlap", a->overlap != NULL, CHECKER | CODED | DOTS},
+    {"pattern", a->pattern != NULL, GARMENT},
+  };
 
-  return complain (BAD_USAGE, message);
+  for (gsize i = 0; i < G_N_ELEMENTS (options); i++) {
+    g_autofree gchar *message = NULL;
+
+    if (!options[i].given || options[i].kinds & kind)
+      continue;
+    message = g_strdup_printf ("--%s is not for a pattern of kind %s",
+        options[i].name, a->kinds[0]);
+    return complain (BAD_USAGE, message);
+  }
+  return DONE;
 }
 
 static gint
@@ -141,12 +181,6 @@ run_m_array (const Arguments * arguments)
   gdouble pitch, diameter, margin;
   gint exit_code;
 
-  if (arguments->square)
-    return refuse_option ("square", "m-array");
-  if (arguments->first)
-    return refuse_option ("first", "m-array");
-  if (arguments->dot_ratio != CLOTH_CODE_DOT_RATIO)
-    return refuse_option ("dot-ratio", "m-array");
   if (!parse_length ("pitch", arguments->pitch ? arguments->pitch : "20mm",
           &pitch, &error))
     return complain (BAD_USAGE, error->message);
@@ -176,7 +210,6 @@ run_m_array (const Arguments * arguments)
 static gint
 run_checker (const Arguments * arguments, gboolean coded)
 {
-  const gchar *kind = arguments->kinds[0];
   const gchar *first = arguments->first ? arguments->first : "black";
   ClothPrintOptions options = CLOTH_PRINT_OPTIONS_INIT;
   g_autoptr (ClothPattern) pattern = NULL;
@@ -186,16 +219,6 @@ run_checker (const Arguments * arguments, gboolean coded)
   gdouble square, margin;
   gint window, exit_code;
 
-  if (arguments->pitch)
-    return refuse_option ("pitch", kind);
-  if (arguments->diameter)
-    return refuse_option ("diameter", kind);
-  if (arguments->colours != NOT_GIVEN)
-    return refuse_option ("colours", kind);
-  if (arguments->distance != 1)
-    return refuse_option ("distance", kind);
-  if (arguments->two_sided)
-    return refuse_option ("two-sided", kind);
   if (strcmp (first, "black") && strcmp (first, "white")) {
     message = g_strdup_printf ("--first %s: give black or white", first);
     return complain (BAD_USAGE, message);
@@ -281,31 +304,38 @@ run_garment (const Arguments * arguments)
 static gint
 run (const Arguments * arguments)
 {
+  static const gchar *const names[] = {
+    "checker", "coded-checker", "m-array", "garment"
+  };
   g_autofree gchar *message = NULL;
-  const gchar *kind;
+  guint kind = 0;
+  gint exit_code;
 
   if (arguments->version) {
     g_print (TOOL " (%s) %s\n", PACKAGE, PACKAGE_VERSION);
     return DONE;
   }
-  if (arguments->kinds && !strcmp (arguments->kinds[0], "garment")) {
-    if (g_strv_length (arguments->kinds) != 2)
-      return complain (BAD_USAGE, "name the drawing: garment panels.svg");
-    return run_garment (arguments);
-  }
-  if (!arguments->kinds || g_strv_length (arguments->kinds) != 1)
+  if (!arguments->kinds)
     return complain (BAD_USAGE,
         "name one kind of pattern: checker, coded-checker or m-array; or "
         "garment and a drawing");
-  kind = arguments->kinds[0];
-  if (arguments->pattern)
-    return refuse_option ("pattern", kind);
-  if (strcmp (kind, "checker") && strcmp (kind, "coded-checker")
-      && strcmp (kind, "m-array")) {
+  for (guint i = 0; i < G_N_ELEMENTS (names) && !kind; i++)
+    if (!strcmp (arguments->kinds[0], names[i]))
+      kind = 1u << i;
+  if (!kind) {
     message = g_strdup_printf ("no pattern \"%s\": there are checker, "
-        "coded-checker, m-array and garment", kind);
+        "coded-checker, m-array and garment", arguments->kinds[0]);
     return complain (BAD_USAGE, message);
   }
+  if (g_strv_length (arguments->kinds) != (kind == GARMENT ? 2 : 1))
+    return complain (BAD_USAGE, kind == GARMENT ?
+        "name the drawing: garment panels.svg" :
+        "name one kind of pattern at a time");
+  exit_code = check_options (arguments, kind);
+  if (exit_code != DONE)
+    return exit_code;
+  if (kind == GARMENT)
+    return run_garment (arguments);
   if (!arguments->output)
     return complain (BAD_USAGE, "name the file to write: --output board.pdf");
   if (!g_str_has_suffix (arguments->output, ".pdf")
@@ -314,16 +344,16 @@ run (const Arguments * arguments)
         ".svg", arguments->output);
     return complain (BAD_USAGE, message);
   }
-  if (!strcmp (kind, "m-array"))
-    return run_m_array (arguments);
-  return run_checker (arguments, !strcmp (kind, "coded-checker"));
+  return kind == DOTS ? run_m_array (arguments)
+      : run_checker (arguments, kind == CODED);
 }
 
 int
 main (int argc, char **argv)
 {
   Arguments arguments = {.columns = NOT_GIVEN,.rows = NOT_GIVEN,.colours =
-        NOT_GIVEN,.distance = 1,.dot_ratio = CLOTH_CODE_DOT_RATIO,.seed = 1
+        NOT_GIVEN,.distance = DOTS_DISTANCE,.dot_ratio =
+        CLOTH_CODE_DOT_RATIO,.seed = SEED
   };
   const GOptionEntry entries[] = {
     {"columns", 0, 0, G_OPTION_ARG_INT, &arguments.columns,
@@ -366,7 +396,7 @@ main (int argc, char **argv)
           "garment the folder", "FILE"},
     {"version", 0, 0, G_OPTION_ARG_NONE, &arguments.version,
         "Show the version and exit", NULL},
-    {G_OPTION_REMAINING, 0, 0, G_OPTION_ARG_STRING_ARRAY, &arguments.kinds,
+    {G_OPTION_REMAINING, 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &arguments.kinds,
         NULL, "checker|coded-checker|m-array|garment DRAWING"},
     {NULL}
   };
@@ -377,9 +407,6 @@ main (int argc, char **argv)
 
   /* Only the characters: numbers stay with the decimal point. */
   setlocale (LC_CTYPE, "");
-  arguments.paper = g_strdup ("cloth");
-  arguments.page_margin = g_strdup ("10mm");
-  arguments.overlap = g_strdup ("10mm");
   g_option_context_add_main_entries (context, entries, NULL);
   if (g_option_context_parse (context, &argc, &argv, &error))
     code = run (&arguments);

@@ -297,6 +297,7 @@ def usage(folder):
             (('simulate', knit, knit, '--scene', drop, '--output', 'x'), 'model.json'),
             (('simulate', knit, '--scene', drop), '--output'),
             (('simulate', knit, '--scene', drop, '--output', drop), 'the scene itself'),
+            (('simulate', knit, '--scene', drop, '--output', drop + '/'), 'the scene itself'),
             (('simulate', knit, '--scene', drop, '--output', 'x', '--format', 'json'), '--format'),
             (('simulate', knit, '--scene', drop, '--output', 'x', '--threads', '-1'), '--threads'),
             (('simulate', knit, '--scene', drop, '--output', 'x', '--threads', 'two'), 'two')]:
@@ -329,6 +330,14 @@ def failures(folder):
                                  done.stderr.strip().split('\n')[-1]))
         expect(not os.path.exists(os.path.join(folder, 'y')), 'nothing is left')
     expect(contents(os.path.join(folder, 'a')) == before, 'the old take stays as it was')
+    # on a terminal the message has a line of its own, below that of the progress
+    terminal, end = os.openpty()
+    subprocess.run([tool, 'simulate', 'step.json', '--scene', drop, '--output', 'y'], cwd=folder,
+                   stderr=end, timeout=120)
+    os.close(end)
+    said = os.read(terminal, 4096).decode()
+    os.close(terminal)
+    expect('%\r\ngst-cloth-gap-1.0: the simulation blew up' in said, 'a terminal: %r' % said)
 
 
 with tempfile.TemporaryDirectory(prefix='cloth-gaptool-') as scratch:

@@ -121,6 +121,8 @@ BAD_USAGE = [
     (['coded-checker', '--output', 'x.pdf', '--colours', '0'], '--colours is not for'),
     (['checker', '--output', 'x.pdf', '--distance', '2'], '--distance is not for'),
     (['checker', '--output', 'x.pdf', '--two-sided'], '--two-sided is not for'),
+    (['checker', '--output', 'x.pdf', '--dot-ratio', '0.2'], '--dot-ratio is not for'),
+    (['checker', '--output', 'x.pdf', '--seed', '5'], '--seed is not for'),
     (['m-array', '--output', 'x.pdf', '--square', '20mm'], '--square is not for'),
     (['m-array', '--output', 'x.pdf', '--first', 'black'], '--first is not for'),
     (['m-array', '--output', 'x.pdf', '--dot-ratio', '0.5'], '--dot-ratio is not for'),
@@ -174,6 +176,10 @@ def garments(folder):
             (['garment', 'no.svg', '--pattern', 'pattern.json', '--output', 'x'], 1, 'no.svg'),
             (['garment', drawing, '--pattern', 'no.json', '--output', 'x'], 1, 'no.json'),
             (['garment', 'pattern.json', '--pattern', 'pattern.json', '--output', 'x'], 1, 'pattern.json'),
+            (['garment', drawing, '--pattern', 'pattern.json', '--output', 'x', '--rows', '9'], 2,
+             '--rows is not for'),
+            (['garment', drawing, '--pattern', 'pattern.json', '--output', 'x', '--paper', 'A4'], 2,
+             '--paper is not for'),
             (['m-array', '--pattern', 'pattern.json', '--output', 'x.svg'], 2, '--pattern is not for')):
         done = run(folder, *arguments)
         expect(done.returncode == code and says in done.stderr and not done.stdout,
