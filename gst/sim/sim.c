@@ -100,7 +100,8 @@ check_models (const ClothModel * const *models, guint n_models, GError ** error)
 static gdouble
 round_step (gdouble step)
 {
-  return exp2 (floor (log2 (step) * STEPS_AN_OCTAVE) / STEPS_AN_OCTAVE);
+  /* one that is rounded already stays */
+  return exp2 (floor (log2 (step) * STEPS_AN_OCTAVE + 1e-6) / STEPS_AN_OCTAVE);
 }
 
 static gdouble
@@ -127,7 +128,8 @@ find_stages (ClothSim * sim)
   sim->stages = 1;
   if (sim->implicit)
     return best;
-  longest = LONGEST_STAGED * best;
+  /* what is tried from there on is rounded already */
+  longest = round_step (LONGEST_STAGED * best);
   for (guint s = 2; s <= MAX_STAGES && !(wanted > 0. && best >= wanted); s++) {
     gdouble step = bound (sim, s, longest);
 
