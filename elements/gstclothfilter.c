@@ -234,7 +234,7 @@ gst_cloth_filter_class_init (GstClothFilterClass * klass)
   object_class->finalize = gst_cloth_filter_finalize;
   g_object_class_install_property (object_class, PROP_CAMERA,
       g_param_spec_string ("camera", "Camera",
-          "Name of the camera in the rig, which is written into the metadata.",
+          "Name of the camera in the rig, which is written into the metadata",
           NULL, G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
           GST_PARAM_MUTABLE_PLAYING));
   gst_element_class_add_static_pad_template (element_class, &sink_template);

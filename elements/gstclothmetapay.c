@@ -16,8 +16,8 @@ GST_DEBUG_CATEGORY_STATIC (cloth_meta_pay_debug);
 /**
  * SECTION:element-clothmetapay
  *
- * Takes pictures with the metas of saddledetect and quadtrack and gives the metas
- * without the pictures, one buffer a picture. `gdppay` and `rtpgstpay` carry them to
+ * Takes pictures with the metas of saddledetect, quadtrack and dotlabel and gives the
+ * metas without the pictures, one buffer a picture. `gdppay` and `rtpgstpay` carry them to
  * another process or host, where clothmetadepay undoes this. Straight into a `filesink` the
  * observations are what a take keeps of a camera; the times in such a file are running
  * times.

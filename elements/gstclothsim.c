@@ -301,12 +301,12 @@ gst_cloth_sim_class_init (GstClothSimClass * klass)
           FALSE, flags));
   g_object_class_install_property (object_class, PROP_SEED,
       g_param_spec_uint64 ("seed", "Seed",
-          "Of what is random in effects, such as gusts", 0, G_MAXUINT64, 0,
+          "Seed of what is random in effects, such as gusts", 0, G_MAXUINT64, 0,
           flags));
   g_object_class_install_property (object_class, PROP_THREADS,
       g_param_spec_uint ("threads", "Threads",
-          "Threads of computation, 0 for one on each processor", 0, 256, 0,
-          flags));
+          "Threads that simulate; 0: one a processor. The result is the same",
+          0, 1024, 0, flags));
   gst_element_class_set_static_metadata (element_class, "Cloth simulator",
       "Source", "Simulates a cloth as a mesh stream",
       "The gst-cloth developers");

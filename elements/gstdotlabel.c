@@ -701,63 +701,63 @@ gst_dot_label_class_init (GstDotLabelClass * klass)
 
   g_object_class_install_property (object_class, PROP_PATTERN,
       g_param_spec_string ("pattern", "Pattern",
-          "File pattern.json of the M-array that is filmed.", NULL,
+          "File pattern.json of the M-array that is filmed", NULL,
           G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
           GST_PARAM_MUTABLE_READY));
   g_object_class_install_property (object_class, PROP_CHART,
       g_param_spec_string ("chart", "Chart",
           "Picture of the print by this camera, from which the colours of the dots "
-          "are learnt before the film.", NULL,
+          "are learnt before the film", NULL,
           G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
           GST_PARAM_MUTABLE_READY));
   g_object_class_install_property (object_class, PROP_COLOURS,
       g_param_spec_enum ("colours", "Colours",
-          "How dots are told apart by colour.", GST_TYPE_DOT_LABEL_COLOURS,
+          "How dots are told apart by colour", GST_TYPE_DOT_LABEL_COLOURS,
           GST_DOT_LABEL_COLOURS_LIKELIHOOD, any_time));
   g_object_class_install_property (object_class, PROP_LEARN,
       g_param_spec_boolean ("learn", "Learn",
           "Whether the colours as the camera sees them are learnt from the film, "
           "blindly at first, then from labelled dots; else they are as printed or as on "
-          "the chart.", DEFAULT_LEARN, any_time));
+          "the chart", DEFAULT_LEARN, any_time));
   install_float (object_class, PROP_CONTRAST, "contrast", "Contrast",
-      "Least luma of a dot above the ground around it, grey levels.", 1, 254,
+      "Least luma of a dot above the ground around it, grey levels", 1, 254,
       dots.contrast);
   install_float (object_class, PROP_SHARE, "share", "Share",
-      "Least luma of a dot above the ground as a share of the brightest around.",
+      "Least luma of a dot above the ground as a share of the brightest around",
       0, 0.9f, dots.share);
   install_float (object_class, PROP_MIN_AREA, "min-area", "Least area",
-      "Area from which on a spot is a dot, px.", 4, 40000, dots.min_area);
+      "Area from which on a spot is a dot, px", 4, 40000, dots.min_area);
   g_object_class_install_property (object_class, PROP_MAX_DIAMETER,
       g_param_spec_int ("max-diameter", "Greatest diameter",
-          "Extent up to which a spot is a dot, px.", 4, CLOTH_DOT_MAX_DIAMETER,
+          "Extent up to which a spot is a dot, px", 4, CLOTH_DOT_MAX_DIAMETER,
           dots.max_diameter, any_time));
   install_float (object_class, PROP_ROUNDNESS, "roundness", "Roundness",
       "Area from which on a spot is a dot, as a share of that of the ellipse with "
-      "the same second moments.", 0, 1, dots.roundness);
+      "the same second moments", 0, 1, dots.roundness);
   install_float (object_class, PROP_C, "c", "c",
       "Greatest change of the vector from dot to neighbouring dot from one dot to "
       "the next, as a share of its length; folds change it more and end the "
-      "growing.", 0, 1, labels.c);
+      "growing", 0, 1, labels.c);
   install_float (object_class, PROP_COLOUR_ERROR, "colour-error",
       "Colour error",
-      "Share of the dots that are taken for having any colour at all.", 0.001f,
+      "Share of the dots that are taken for having any colour at all", 0.001f,
       0.9f, labels.colour_error);
   install_float (object_class, PROP_LEAD, "lead", "Lead",
       "Least log-odds of a patch's place in the pattern, nats: against the next "
-      "best place and against dots of random colours.", 0, 1000, labels.lead);
+      "best place and against dots of random colours", 0, 1000, labels.lead);
   g_object_class_install_property (object_class, PROP_MIRRORED,
       g_param_spec_boolean ("mirrored", "Mirrored",
-          "Whether the print may be seen from behind, as in a mirror.",
+          "Whether the print may be seen from behind, as in a mirror",
           labels.mirrored, any_time));
   g_object_class_install_property (object_class, PROP_LABELS,
       g_param_spec_enum ("labels", "Labels",
-          "How dots are given their place in the pattern.",
+          "How dots are given their place in the pattern",
           GST_TYPE_DOT_LABEL_LABELS, labels.paper ?
           GST_DOT_LABEL_LABELS_WINDOWS : GST_DOT_LABEL_LABELS_PATCHES,
           any_time));
   g_object_class_install_property (object_class, PROP_LEAST_REGION,
       g_param_spec_uint ("least-region", "Least region",
-          "Fewest dots of a region that labels=windows keeps.", 3, 65536,
+          "Fewest dots of a region that labels=windows keeps", 3, 65536,
           labels.least_region, any_time));
 
   gst_element_class_add_static_pad_template (element_class, &sink_template);

@@ -547,60 +547,60 @@ gst_quad_track_class_init (GstQuadTrackClass * klass)
   g_object_class_install_property (object_class, PROP_PATTERN,
       g_param_spec_string ("pattern", "Pattern",
           "File pattern.json of the board; without it columns, rows and "
-          "first-black tell what the board is.", NULL, at_start));
+          "first-black tell what the board is", NULL, at_start));
   g_object_class_install_property (object_class, PROP_COLUMNS,
       g_param_spec_int ("columns", "Columns",
-          "Number of squares in a row of the board.", 2, 500, 8, at_start));
+          "Number of squares in a row of the board", 2, 500, 8, at_start));
   g_object_class_install_property (object_class, PROP_ROWS,
       g_param_spec_int ("rows", "Rows",
-          "Number of squares in a column of the board.", 2, 500, 8, at_start));
+          "Number of squares in a column of the board", 2, 500, 8, at_start));
   g_object_class_install_property (object_class, PROP_FIRST_BLACK,
       g_param_spec_boolean ("first-black", "First square black",
-          "Whether the square at the top left of the board is black.", TRUE,
+          "Whether the square at the top left of the board is black", TRUE,
           at_start));
   g_object_class_install_property (object_class, PROP_SEED,
       g_param_spec_string ("seed", "Seed",
           "Corners of one square in the first picture, x0,y0,x1,y1,x2,y2,x3,y3 "
-          "in pixels, and its column,row on the board if known.", NULL,
+          "in pixels, and its column,row on the board if known", NULL,
           at_start));
   g_object_class_install_property (object_class, PROP_LINK,
       g_param_spec_boolean ("link", "Link",
           "Whether saddles are joined into pieces of the board in each picture, "
-          "which needs no seed and recovers from total loss.", standard.link,
+          "which needs no seed and recovers from total loss", standard.link,
           any_time));
   g_object_class_install_property (object_class, PROP_SQUARES,
       g_param_spec_enum ("squares", "Squares",
-          "Colour of the squares that are tracked.",
+          "Colour of the squares that are tracked",
           GST_TYPE_QUAD_TRACK_SQUARES, (gint) standard.squares, any_time));
   g_object_class_install_property (object_class, PROP_ALPHA,
       g_param_spec_float ("alpha", "Alpha",
           "Width of the lapels that the template adds around a square, over the "
-          "square's edge.", 0.05f, 1.0f, standard.alpha, any_time));
+          "square's edge", 0.05f, 1.0f, standard.alpha, any_time));
   g_object_class_install_property (object_class, PROP_C_LOW,
       g_param_spec_float ("c-low", "Low confidence",
-          "Confidence below which a square is given up.", -1.0f, 1.0f,
+          "Confidence below which a square is given up", -1.0f, 1.0f,
           standard.c_low, any_time));
   g_object_class_install_property (object_class, PROP_C_HIGH,
       g_param_spec_float ("c-high", "High confidence",
           "Confidence at which the search for a better match stops and above "
-          "which a neighbour counts for consistency.", -1.0f, 1.0f,
+          "which a neighbour counts for consistency", -1.0f, 1.0f,
           standard.c_high, any_time));
   g_object_class_install_property (object_class, PROP_C_PRED,
       g_param_spec_float ("c-pred", "Predicting confidence",
-          "Confidence above which a square predicts its neighbours.", -1.0f,
+          "Confidence above which a square predicts its neighbours", -1.0f,
           1.0f, standard.c_pred, any_time));
   g_object_class_install_property (object_class, PROP_DAMPING,
       g_param_spec_float ("damping", "Damping",
-          "Factor on the confidence of a square that extension has just added.",
+          "Factor on the confidence of a square that extension has just added",
           0.0f, 1.0f, standard.damping, any_time));
   g_object_class_install_property (object_class, PROP_CONSISTENCY,
       g_param_spec_float ("consistency", "Consistency",
           "Distance up to which two squares agree on their common corner, over "
-          "the larger square's size.", 0.0f, 2.0f, standard.consistency,
+          "the larger square's size", 0.0f, 2.0f, standard.consistency,
           any_time));
   g_object_class_install_property (object_class, PROP_MAX_VARIANTS,
       g_param_spec_uint ("max-variants", "Most variants",
-          "Number of corner triples tried at most for one square.", 1, 512,
+          "Number of corner triples tried at most for one square", 1, 512,
           standard.max_variants, any_time));
 
   gst_element_class_set_static_metadata (element_class, "Quad tracker",

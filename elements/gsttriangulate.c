@@ -58,7 +58,7 @@ GST_DEBUG_CATEGORY_STATIC (triangulate_debug);
 #define DEFAULT_MIN_LENGTH 0.8
 #define DEFAULT_MAX_LENGTH 1.05
 #define DEFAULT_THREADS 0
-#define MAX_THREADS 64
+#define MAX_THREADS 1024
 #define SINK_CAPS "video/x-raw(ANY), width=(int)[ 1, 16384 ], " \
     "height=(int)[ 1, 16384 ]; " GST_CLOTH_OBSERVATIONS_CAPS
 

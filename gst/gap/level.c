@@ -320,7 +320,7 @@ add (ClothGapLevel * level, const Split * split, guint part,
 }
 
 static ClothGapLevel *
-level_new (Split * split)
+level_new (const Split * split)
 {
   const ClothRecording *r = split->recording;
   ClothGapLevel *level = g_new0 (ClothGapLevel, 1);
@@ -328,7 +328,7 @@ level_new (Split * split)
   level->n = r->n;
   level->n_frames = r->n_frames;
   level->values = g_new0 (gfloat, (gsize) r->n * r->n_frames);
-  level->known = g_steal_pointer (&split->known);
+  level->known = g_memdup2 (split->known, (gsize) r->n * r->n_frames);
   return level;
 }
 
@@ -372,7 +372,6 @@ cloth_gap_level_new (const ClothGapLed * take, const ClothGapLed * nulls,
   if (alike && isfinite (nulls->recording->sigma))
     noise += nulls->recording->sigma * nulls->recording->sigma;
   level = level_new (&split);
-  split.known = g_memdup2 (level->known, (gsize) r->n * r->n_frames);
   for (guint part = 0; part < 2; part++) {
     gdouble *null = means + part * r->n;
     gdouble b = smooth ? options->sharpen : 0.;
@@ -405,7 +404,6 @@ cloth_gap_level_new_null (const ClothGapLed * null,
   split_init (&split, null, NULL);
   prepare (&split, TRUE, options, neighbours, &width);
   level = level_new (&split);
-  split.known = g_memdup2 (level->known, (gsize) r->n * r->n_frames);
   for (guint part = 0; part < 2; part++) {
     g_autofree gdouble *nulls = find_means (&split, part);
 
