@@ -9,6 +9,7 @@
 
 #include <gio/gio.h>
 #include <gst/cloth/cloth.h>
+#include <string.h>
 
 G_STATIC_ASSERT ((int) CLOTH_VERTEX_PREDICTED ==
     (int) GST_CLOTH_VERTEX_PREDICTED);
@@ -39,6 +40,18 @@ gst_mesh_format_get_type (void)
   return type;
 }
 
+/* Whether @message names the file, or one in the folder, itself. */
+static gboolean
+says_where (const gchar * message, const gchar * location)
+{
+  g_autofree gchar *file = g_strdup_printf ("“%s”", location);
+  g_autofree gchar *inside = g_strdup_printf ("“%s/", location);
+  g_autofree gchar *first = g_strdup_printf ("%s:", location);
+
+  return strstr (message, file) || strstr (message, inside)
+      || g_str_has_prefix (message, first);
+}
+
 /* The system's failures are of the resource, wrong contents of the stream. */
 void
 gst_mesh_post_error (GstElement * element, const gchar * doing,
@@ -59,6 +72,7 @@ gst_mesh_post_error (GstElement * element, const gchar * doing,
     code = GST_RESOURCE_ERROR_NOT_AUTHORIZED;
   }
   gst_element_message_full (element, GST_MESSAGE_ERROR, domain, code,
+      says_where (error->message, location) ? g_strdup (error->message) :
       g_strdup_printf ("Cannot %s “%s”: %s", doing, location,
           error->message), NULL, __FILE__, GST_FUNCTION, __LINE__);
 }

@@ -62,33 +62,45 @@ cloth_shot_camera_free (ClothShotCamera * camera)
   g_free (camera);
 }
 
+static gboolean
+add_file (ClothShotCamera * camera, const gchar * path, GError ** error)
+{
+  if (g_ptr_array_find_with_equal_func (camera->files, path, g_str_equal, NULL)) {
+    g_set_error (error, G_FILE_ERROR, G_FILE_ERROR_EXIST,
+        "%s: it is given twice for camera %s; leave one out", path,
+        camera->name);
+    return FALSE;
+  }
+  g_ptr_array_add (camera->files, g_strdup (path));
+  return TRUE;
+}
+
 /**
  * cloth_shot_camera_add:
  * @camera: a camera
  * @pattern: a file, or a pattern as of a shell
- * @error: #GFileError when there is no such file
+ * @error: #GFileError when there is no such file, or one that the camera has already
  *
- * Returns: whether there was any.
+ * Returns: whether all was well
  */
 gboolean
 cloth_shot_camera_add (ClothShotCamera * camera, const gchar * pattern,
     GError ** error)
 {
+  gboolean good = TRUE;
   glob_t found;
 
-  if (g_file_test (pattern, G_FILE_TEST_EXISTS)) {
-    g_ptr_array_add (camera->files, g_strdup (pattern));
-    return TRUE;
-  }
+  if (g_file_test (pattern, G_FILE_TEST_EXISTS))
+    return add_file (camera, pattern, error);
   if (glob (pattern, 0, NULL, &found) != 0) {
     g_set_error (error, G_FILE_ERROR, G_FILE_ERROR_NOENT,
         "%s: there is no such file", pattern);
     return FALSE;
   }
-  for (gsize i = 0; i < found.gl_pathc; i++)
-    g_ptr_array_add (camera->files, g_strdup (found.gl_pathv[i]));
+  for (gsize i = 0; i < found.gl_pathc && good; i++)
+    good = add_file (camera, found.gl_pathv[i], error);
   globfree (&found);
-  return TRUE;
+  return good;
 }
 
 /* The last number in a file's name, or -1. */

@@ -101,6 +101,9 @@ expect_error (Sink * sink, GQuark domain, gint code, const gchar * text)
   GST_INFO ("%s", error->message);
   fail_unless (g_error_matches (error, domain, code), "%s", error->message);
   fail_unless (strstr (error->message, text) != NULL, "%s", error->message);
+  /* a file is named once */
+  fail_unless (*text != '/' || !strstr (strstr (error->message, text) + 1,
+          text), "%s", error->message);
 }
 
 static void

@@ -176,6 +176,8 @@ refused(2, 'CAMERA=FILE', *given, left)
 refused(2, 'CAMERA=FILE', *given, '=' + left)
 refused(2, 'stand alone', *given, '--import-opencv', hang, 'a=' + left)
 refused(1, 'no such file', *given, 'a=' + os.path.join(folder, 'missing*.jpg'))
+refused(1, 'left02.jpg: it is given twice for camera a', *given, 'a=' + left,
+        'a=' + os.path.join(boards, 'left02.jpg'))
 refused(1, 'nowhere.json', '--output', output, '--pattern', 'nowhere.json', 'a=' + left)
 refused(1, 'does not exist', '--output', os.path.join(folder, 'no', 'rig.json'), '--pattern', pattern,
         'a=' + left)
