@@ -53,7 +53,7 @@ static const struct
       "Effects to consider, with commas between them; by default all"},
   {PROP_OUTPUT, G_STRUCT_OFFSET (GstClothGapSettings, output), "output",
         "Output",
-      "Folder for gap.json and report.html; by default none is written"}
+      "Folder for gap.json, report.html and fitted.json; by default none is written"}
 };
 
 void

@@ -57,6 +57,7 @@ diagnosis_clear (ClothDiagnosis * d)
   for (guint i = 0; i < d->n_nulls; i++)
     cloth_gap_extent_free (d->nulls[i]);
   g_free (d->what);
+  g_free (d->unknown);
   g_free (d->null_evidence);
   for (guint i = 0; d->filmed && i < d->recordings->len; i++)
     g_free (d->filmed[i]);
@@ -331,6 +332,7 @@ study_other_model (ClothDiagnosis * d, GError ** error)
 static gboolean
 diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
 {
+  gchar *doubt;
   guint n_all;
 
   if (!load (d, error) || !check_steps (d, model, error))
@@ -368,9 +370,12 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
     return FALSE;
   cloth_diagnosis_locate (d);
   cloth_diagnosis_decide (d);
-  d->result->reason = cloth_diagnosis_doubt_result (d, model);
-  if (d->result->reason)
+  doubt = cloth_diagnosis_doubt_result (d, model);
+  if (doubt) {
+    g_free (d->result->reason);
+    d->result->reason = doubt;
     d->result->verdict = CLOTH_GAP_UNDECIDABLE;
+  }
   cloth_diagnosis_fill_null (d);
   return cloth_diagnosis_propose (d, error);
 }
@@ -412,6 +417,9 @@ cloth_gap_diagnose (ClothTake ** takes, guint n_takes,
       (GDestroyNotify) cloth_study_free);
   if (!diagnose (&d, model, error))
     return NULL;
+  if (d.model)
+    d.result->model = d.n_chosen ? g_steal_pointer (&d.with[d.n_chosen - 1]) :
+        g_steal_pointer (&d.model);
   d.result->seed = options->seed;
   d.result->simulations = d.study.simulations;
   d.result->seconds = (g_get_monotonic_time () - start) * 1e-6;

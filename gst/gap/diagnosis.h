@@ -78,7 +78,7 @@ typedef struct
   /* those that others made needless */
   guint dropped[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
   guint n_dropped;
-  gboolean unknown;             /* whether something is there, whatever it is */
+  gchar *unknown;               /* what speaks of something, whatever it is, or NULL */
   gboolean asked;               /* whether an effect was asked for */
   /* of the first take before and after, of the first baseline; NULL where there is none */
   ClothGapEnergy *before, *after, *floor;
@@ -182,7 +182,7 @@ void cloth_diagnosis_fill_effects (ClothDiagnosis * d,
 gboolean cloth_diagnosis_select (ClothDiagnosis * d, GError ** error);
 
 /* What remains. */
-gboolean cloth_diagnosis_is_unknown (const ClothDiagnosis * d);
+gchar *cloth_diagnosis_find_unknown (const ClothDiagnosis * d);
 
 /* How much, and the verdict. */
 gboolean cloth_diagnosis_find_gaps (ClothDiagnosis * d, guint begin, guint end,

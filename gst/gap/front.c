@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/mesh/file.h"
 #include "gst/gap/report.h"
 #include "gst/sim/effect-table.h"
 
@@ -185,15 +186,28 @@ cloth_gap_check_same_cloth (const gchar * name, const ClothTopology * cloth,
   return TRUE;
 }
 
+static gboolean
+write_model (const ClothModel * model, const gchar * folder, GError ** error)
+{
+  g_autofree gchar *path = g_build_filename (folder, "fitted.json", NULL);
+  g_autofree gchar *text = cloth_model_to_json (model);
+  g_autoptr (ClothOutput) output = cloth_output_new (path, error);
+
+  return output && cloth_output_write (output, text, strlen (text), error) &&
+      cloth_output_finish (output, error) &&
+      cloth_output_commit (&output, 1, error);
+}
+
 /**
  * cloth_gap_result_write:
  * @result: what was found
  * @folder: where to; made with its parents when it is not there
  * @error: #GIOErrorEnum
  *
- * Writes gap.json and report.html, each whole or not at all.
+ * Writes gap.json and report.html, and, where something was fitted, fitted.json: the model
+ * with it. Each is written whole or not at all.
  *
- * Returns: %TRUE when both are there
+ * Returns: %TRUE when all are there
  * Since: 0.1
  */
 gboolean
@@ -211,5 +225,6 @@ cloth_gap_result_write (const ClothGapResult * result, const gchar * folder,
     return FALSE;
   }
   return cloth_gap_report_write (result, report, error) &&
-      cloth_gap_result_write_json (result, json, error);
+      cloth_gap_result_write_json (result, json, error) &&
+      (!result->model || write_model (result->model, folder, error));
 }

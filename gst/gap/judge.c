@@ -476,4 +476,6 @@ cloth_diagnosis_decide (ClothDiagnosis * d)
     r->verdict = CLOTH_GAP_NO_GAP;
   else
     r->verdict = is_ambiguous (r) ? CLOTH_GAP_AMBIGUOUS : CLOTH_GAP_EXPLAINED;
+  if (!accepted)
+    r->reason = g_steal_pointer (&d->unknown);
 }

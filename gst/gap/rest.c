@@ -10,6 +10,18 @@
 /* … if it is also this share of the simulator's own error: where that is large, chaos of
  * the real cloth is too. */
 #define UNKNOWN_SHARE 0.45
+/* Cloth is led away when waves of at most half a length over the sheet, that change in at
+ * most half a wave a block, have so many times the power of noise, and so many times that of
+ * waves of one to one and a half lengths. */
+#define LONG_BAND 1
+#define SLOW_COSINES 2
+#define WRINKLE_BAND 3
+#define SLOW 5.
+#define LED 4.
+/* Clamps are off their paths with so many times the square that the baseline has there, or
+ * noise; of so many places at least. */
+#define CLAMPS_OFF 2.
+#define LEAST_HELD 30
 
 /* Sums over takes of squares: of what is left, over the noise of the take and of its
  * signature; of the signature itself; the number of features. */
@@ -49,25 +61,125 @@ add_rest (const ClothDiagnosis * d, const ClothStudy * study, Rest * rest)
         study->signature->z[0][k] * study->signature->z[0][k];
 }
 
-/**
- * cloth_diagnosis_is_unknown:
- * @d: a diagnosis whose takes are linearised at the model
- *
- * Where baselines move alike, the residual without their signature would be noise if the
- * model lacked nothing. With an effect it is not, even the right one: another motion has
- * other wrinkles.
- *
- * Returns: whether much more than noise is in the takes that is not in the baselines
- */
-gboolean
-cloth_diagnosis_is_unknown (const ClothDiagnosis * d)
+/* Whether much more than noise is in the takes that is not in the baselines. With an effect
+ * there is, even with the right one: another motion has other wrinkles. */
+static gboolean
+is_much (const ClothDiagnosis * d)
 {
   Rest rest = { 0. };
 
-  if (!cloth_diagnosis_has_signatures (d))
-    return FALSE;
   for (guint i = 0; i < d->n_takes; i++)
     add_rest (d, cloth_diagnosis_study (d, i), &rest);
   return rest.rest > UNKNOWN * UNKNOWN * rest.n
       && rest.rest > UNKNOWN_SHARE * UNKNOWN_SHARE * rest.signature;
+}
+
+/* Whether the cloth is slowly led elsewhere as a whole. Chaos has shorter waves, too. */
+static gboolean
+is_led_away (const ClothDiagnosis * d)
+{
+  gdouble slow = 0., wrinkles = 0.;
+  gsize n_slow = 0, n_wrinkles = 0;
+
+  for (guint i = 0; i < d->n_takes; i++) {
+    const ClothStudy *study = cloth_diagnosis_study (d, i);
+    const ClothGapFeatures *f = study->features;
+    const gdouble scale = cloth_study_signature_scale (study);
+    const gdouble noise = 1. + scale * scale;
+    g_autofree gdouble *z = cloth_study_residual (study, 0);
+
+    for (gsize k = 0; k < f->size; k++) {
+      const guint band = f->bands[k / 3 % f->n_waves];
+      const guint cosine = k / (3 * (gsize) f->n_waves) % f->n_cosines;
+
+      if (band <= LONG_BAND && cosine < SLOW_COSINES) {
+        slow += z[k] * z[k] / noise;
+        n_slow++;
+      } else if (band > LONG_BAND && band <= WRINKLE_BAND) {
+        wrinkles += z[k] * z[k] / noise;
+        n_wrinkles++;
+      }
+    }
+  }
+  return slow > SLOW * n_slow && slow * n_wrinkles > LED * wrinkles * n_slow;
+}
+
+/* Mean square of what held vertices are seen off their clamps' paths in units of the noise,
+ * over the recordings from @begin to before @end; NaN: they were hardly seen. */
+static gdouble
+find_off (const ClothDiagnosis * d, guint begin, guint end, gdouble * metres)
+{
+  gdouble sum = 0., square = 0.;
+  gsize n = 0;
+
+  for (guint i = begin; i < end; i++) {
+    const ClothRecording *r = cloth_diagnosis_recording (d, i);
+    const guint n_held = r->scene->held->len;
+    /* simulators and people let go a little earlier or later than the log has it */
+    const gdouble margin = 1.5 * (r->times[r->n_frames - 1] - r->times[0]) /
+        (r->n_frames - 1);
+
+    for (gsize k = 0; k < (gsize) r->n_frames * n_held; k++) {
+      const ClothHeld *held = &g_array_index (r->scene->held, ClothHeld,
+          k % n_held);
+      const gsize at = k / n_held * r->n + held->vertex;
+      const gdouble time_s = r->times[k / n_held];
+
+      if (r->seen[at] == 0. || time_s < held->from_s + margin
+          || time_s > held->until_s - margin)
+        continue;
+      for (guint c = 0; c < 3; c++) {
+        const gdouble off = r->y[3 * at + c] - r->scene->clamps[3 * k + c];
+
+        sum += off * off / (3. * r->sigma * r->sigma);
+        square += off * off;
+      }
+      n++;
+    }
+  }
+  *metres = sqrt (square / MAX (n, 1));
+  return n < LEAST_HELD ? NAN : sum / n;
+}
+
+/* A clamp that is seen is an observation: off its logged path it leads the cloth elsewhere
+ * than the simulation's. */
+static gchar *
+find_clamps_off (const ClothDiagnosis * d)
+{
+  gdouble off_m, usual_m;
+  const gdouble off = find_off (d, 0, d->n_takes, &off_m);
+  const gdouble usual = find_off (d, d->n_takes,
+      d->n_takes + d->options->n_baselines, &usual_m);
+
+  if (!(off > CLAMPS_OFF * fmax (usual, 1.)))
+    return NULL;
+  return g_strdup_printf ("The clamps are seen %.1f mm off their logged paths, "
+      "on the baseline %.1f mm.", 1e3 * off_m, 1e3 * usual_m);
+}
+
+/**
+ * cloth_diagnosis_find_unknown:
+ * @d: a diagnosis whose takes are linearised at the model
+ *
+ * Looks for signs that something is there, whatever it is, which the size of the gap need
+ * not show: the floor holds the simulator's own error, too. Where baselines move alike, the
+ * residual without their signature would be noise if the model lacked nothing.
+ *
+ * Returns: (transfer full) (nullable): what speaks of something that is not in the
+ *   baselines, a sentence; %NULL: nothing does
+ */
+gchar *
+cloth_diagnosis_find_unknown (const ClothDiagnosis * d)
+{
+  gchar *clamps = d->options->n_baselines ? find_clamps_off (d) : NULL;
+
+  if (clamps)
+    return clamps;
+  if (cloth_diagnosis_has_signatures (d) && is_led_away (d))
+    return g_strdup ("Against the baseline the cloth as a whole is slowly led "
+        "elsewhere, which its wrinkles don't account for.");
+  if (cloth_diagnosis_has_signatures (d) && is_much (d))
+    return g_strdup ("What is left differs from what is left of the baseline "
+        "by far more than noise.");
+  return NULL;
 }

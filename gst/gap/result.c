@@ -297,5 +297,6 @@ cloth_gap_result_free (ClothGapResult * result)
   g_free (result->playback.before);
   g_free (result->playback.after);
   g_free (result->playback.sigma);
+  cloth_model_free (result->model);
   g_free (result);
 }

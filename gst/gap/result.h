@@ -5,6 +5,7 @@
 
 #include "gst/mesh/topology.h"
 #include "gst/rig/effect.h"
+#include "gst/sim/model.h"
 
 G_BEGIN_DECLS
 
@@ -273,7 +274,8 @@ typedef struct {
 /**
  * ClothGapResult:
  * @verdict: the outcome
- * @reason: (nullable): why it is undecidable, and what would help, a sentence
+ * @reason: (nullable): why it is undecidable, and what would help, or what speaks of
+ *   something unknown: a sentence
  * @gap_before: recorded minus simulated on held-out data, RMS in metres
  * @gap_after: the same with the accepted effects; NaN without any
  * @noise_floor: what it would be if the simulation lacked nothing
@@ -309,6 +311,8 @@ typedef struct {
  * @series: the gap over time of the playback's take, for the report
  * @spectrum: its spectrum, for the report
  * @playback: the cloth, for the report
+ * @model: (nullable): the model with its free numbers as they were fitted and the accepted
+ *   effects; %NULL: nothing was fitted
  *
  * All that a diagnosis has to say. Everything is owned by the result, but the effects'
  * constant descriptions. A number that is not known is NaN, a list without entries is
@@ -350,6 +354,7 @@ typedef struct {
   ClothGapSeries series;
   ClothGapSpectrum spectrum;
   ClothGapPlayback playback;
+  ClothModel *model;
 } ClothGapResult;
 
 ClothGapResult *cloth_gap_result_new (void);

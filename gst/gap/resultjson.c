@@ -224,6 +224,8 @@ cloth_gap_result_summary (const ClothGapResult * result)
             "explains");
       }
       g_string_append_c (text, '.');
+      if (result->reason)
+        g_string_append_printf (text, " %s", result->reason);
       break;
   }
   return g_string_free (text, FALSE);

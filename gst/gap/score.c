@@ -155,11 +155,11 @@ reduce (const Trial * trial, const ClothGapNormal * normal,
 }
 
 /* The nuisances, and with them the effect's @n directions, estimated from @blocks: changes
- * of @columns, which lists them. */
+ * of @columns, which lists them, from where the effect is @at. */
 static gboolean
 estimate_all (const Trial * trial, const ClothGapNormal * normal,
-    const gboolean * blocks, gdouble phi, guint n, const guint * columns,
-    gdouble * changes)
+    const gdouble * at, const gboolean * blocks, gdouble phi, guint n,
+    const guint * columns, gdouble * changes)
 {
   const ClothGapTest *t = trial->test;
   guint q = t->n_nuisances + n, m = normal->m;
@@ -175,45 +175,81 @@ estimate_all (const Trial * trial, const ClothGapNormal * normal,
       changes[i] -= normal->s[(gsize) b * m + columns[i]];
     }
   }
-  for (guint i = 0; i < q; i++)
-    a[(gsize) i * q + i] += i < t->n_nuisances ?
-        t->precisions[i] * t->overdispersion :
-        trial->precisions[i - t->n_nuisances] * phi;
+  for (guint i = 0; i < t->n_nuisances; i++)
+    a[(gsize) i * q + i] += t->precisions[i] * t->overdispersion;
+  for (guint k = 0; k < n; k++) {
+    const guint i = t->n_nuisances + k;
+
+    a[(gsize) i * q + i] += trial->precisions[k] * phi;
+    changes[i] -= trial->precisions[k] * phi * at[k];
+  }
   if (!cloth_cholesky_factor (q, a))
     return FALSE;
   cloth_cholesky_solve (q, a, changes);
-  return !(n && trial->one_sided && changes[t->n_nuisances] < 0.);
+  return !(n && trial->one_sided && at[0] + changes[t->n_nuisances] < 0.);
 }
 
-/* What the effect makes better in each block when it and the nuisances are estimated from
- * the others, beyond what the nuisances alone do. */
+/* What the effect, which was simulated @at some place, makes better there in each block
+ * when it and the nuisances are estimated from the others, beyond what the nuisances do
+ * @without it. */
 static gdouble
-cross_validate (const Trial * trial, const ClothGapNormal * normal,
-    gdouble phi, gdouble * total)
+cross_validate (const Trial * trial, const ClothGapNormal * without,
+    const ClothGapNormal * with, const gdouble * at, gdouble phi,
+    gdouble * total)
 {
   const ClothGapTest *t = trial->test;
   guint n = trial->candidate->n, q = t->n_nuisances;
   g_autofree gboolean *others = g_memdup2 (t->blocks,
-      normal->n_blocks * sizeof *others);
+      with->n_blocks * sizeof *others);
   g_autofree guint *columns = g_new (guint, q + n);
-  g_autofree gdouble *without = g_new (gdouble, q + n);
-  g_autofree gdouble *with = g_new (gdouble, q + n);
+  g_autofree gdouble *alone = g_new (gdouble, q + n);
+  g_autofree gdouble *both = g_new (gdouble, q + n);
   gdouble gained = 0.;
 
   for (guint i = 0; i < q + n; i++)
     columns[i] = i < q ? t->nuisances[i] : trial->directions[i - q];
-  for (guint b = 0; b < normal->n_blocks; b++) {
+  for (guint b = 0; b < with->n_blocks; b++) {
     if (!t->blocks[b])
       continue;
     others[b] = FALSE;
-    *total += normal->r[b];
-    if (estimate_all (trial, normal, others, phi, 0, columns, without)
-        && estimate_all (trial, normal, others, phi, n, columns, with))
-      gained += cloth_gap_normal_change (normal, b, columns, without, q) -
-          cloth_gap_normal_change (normal, b, columns, with, q + n);
+    *total += without->r[b];
+    if (estimate_all (trial, without, at, others, phi, 0, columns, alone)
+        && estimate_all (trial, with, at, others, phi, n, columns, both))
+      gained += without->r[b] - with->r[b] +
+          cloth_gap_normal_change (without, b, columns, alone, q) -
+          cloth_gap_normal_change (with, b, columns, both, q + n);
     others[b] = TRUE;
   }
   return gained;
+}
+
+/**
+ * cloth_gap_test_improvement:
+ * @test: what is tested
+ * @candidate: a candidate
+ * @without: normal equations without it
+ * @with: normal equations where it was simulated
+ * @directions: (array): columns of its directions in them
+ * @at: (array): how far each is from its null there
+ * @phi: how much more than the noise a square counts
+ *
+ * Returns: as #ClothGapScore.improvement, by the derivatives there
+ * Since: 0.1
+ */
+gdouble
+cloth_gap_test_improvement (const ClothGapTest * test, guint candidate,
+    const ClothGapNormal * without, const ClothGapNormal * with,
+    const guint * directions, const gdouble * at, gdouble phi)
+{
+  Trial trial;
+  gdouble total = 0., gained;
+
+  if (!trial_init (&trial, test, candidate))
+    return 0.;
+  memcpy (trial.directions, directions,
+      trial.candidate->n * sizeof *directions);
+  gained = cross_validate (&trial, without, with, at, phi, &total);
+  return total > 0. ? gained / total : 0.;
 }
 
 /* χ² of the blocks' own estimates about the common one, and its degrees of freedom. */
@@ -258,6 +294,7 @@ run_trial (const Trial * trial, ClothGapScore * score)
   guint n = trial->candidate->n, freedom = 0;
   gdouble gained = 0., total = 0., lm = 0., spread = 0.;
   gdouble weight[4] = { 0. };
+  const gdouble null[4] = { 0. };
   ClothGapTest numbers = *trial->test;  /* without chaos */
 
   numbers.n_nuisances = numbers.n_numbers;
@@ -282,7 +319,7 @@ run_trial (const Trial * trial, ClothGapScore * score)
     }
     score->evidence += (fit - 0.5 * log_det) / CLOTH_STUDY_N_GAINS;
     lm += 2. * fit / CLOTH_STUDY_N_GAINS;
-    gained += cross_validate (trial, normal, phi, &total);
+    gained += cross_validate (trial, normal, normal, null, phi, &total);
     spread += heterogeneity (trial, normal, phi, changes, &freedom);
   }
   for (guint i = 0; i < n; i++) {

@@ -73,6 +73,10 @@ gboolean cloth_gap_test_reduce (const ClothGapTest * test,
     const guint * directions, guint n, ClothGapReduced * reduced);
 gdouble cloth_gap_test_dispersion (const ClothGapTest * test,
     const ClothGapNormal * normal, const ClothGapReduced * reduced);
+gdouble cloth_gap_test_improvement (const ClothGapTest * test,
+    guint candidate, const ClothGapNormal * without,
+    const ClothGapNormal * with, const guint * directions, const gdouble * at,
+    gdouble phi);
 GArray *cloth_gap_test_run (const ClothGapTest * test);
 gdouble cloth_gap_test_cosine (const ClothGapTest * test, guint one,
     guint other);

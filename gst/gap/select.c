@@ -255,7 +255,7 @@ cloth_diagnosis_select (ClothDiagnosis * d, GError ** error)
 
   cloth_diagnosis_find_left (d, NULL);
   cloth_diagnosis_make_test (d, 0, d->n_takes, &test);
-  d->unknown = cloth_diagnosis_is_unknown (d);
+  d->unknown = cloth_diagnosis_find_unknown (d);
   scores = cloth_diagnosis_rank (d, &test);
   cloth_diagnosis_begin_part (d, 0.42, 0.48, 0.5, "the likeliest effects");
   if (!cloth_diagnosis_try_rivals (d, &test, scores, d->model, error))

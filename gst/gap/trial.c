@@ -34,6 +34,7 @@ typedef struct
   const ClothGapTest *test;
   const ClothModel *base;       /* the model without them */
   gdouble **z;                  /* of each take: features by model */
+  ClothGapNormal *null;         /* the equations without any of them */
   gdouble phi;                  /* how much more than noise a square counts */
   gdouble without;              /* logarithm of the probability without any of them */
 } Court;
@@ -44,6 +45,7 @@ court_clear (Court * court)
   for (guint t = 0; t < court->d->n_takes; t++)
     g_free (court->z[t]);
   g_free (court->z);
+  cloth_gap_normal_free (court->null);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Court, court_clear)
@@ -147,23 +149,18 @@ normal_of (const Court * court, const Rival * r, guint take, guint before)
   return cloth_gap_normal_new (s->features, weight, 1., z, columns, others + n);
 }
 
-/* What is left of them for a rival's directions, of all takes. */
-static gboolean
-reduce (const Court * court, const Rival * r, ClothGapReduced * reduced)
+/* Those of all takes. */
+static ClothGapNormal *
+all_normals (const Court * court, const Rival * r)
 {
-  const guint n = r->candidate->n;
-  g_autoptr (ClothGapNormal) normal = NULL;
-  guint directions[CLOTH_EFFECT_MAX_PARAMETERS] = { 0 }, before = 0;
+  ClothGapNormal *normal = NULL;
+  guint before = 0;
 
   for (guint t = 0; t < court->d->n_takes; t++) {
-    normal = cloth_gap_normal_append (g_steal_pointer (&normal),
-        normal_of (court, r, t, before));
+    normal = cloth_gap_normal_append (normal, normal_of (court, r, t, before));
     before += cloth_study_count_chaos (cloth_diagnosis_study (court->d, t));
   }
-  for (guint i = 0; i < n; i++)
-    directions[i] = normal->m - n + i;
-  return cloth_gap_test_reduce (court->test, normal, court->test->blocks,
-      directions, n, reduced);
+  return normal;
 }
 
 /* Takes a step from where a rival is; the evidence is that of where it comes to, by the
@@ -172,11 +169,18 @@ static void
 step (const Court * court, Rival * r)
 {
   const guint n = r->candidate->n;
+  g_autoptr (ClothGapNormal) here = all_normals (court, r);
   ClothGapReduced reduced;
+  guint directions[CLOTH_EFFECT_MAX_PARAMETERS] = { 0 };
   gdouble a[16], inverse[16], by[4], log_det = 0., square, evidence;
 
-  if (!reduce (court, r, &reduced))
+  for (guint i = 0; i < n; i++)
+    directions[i] = here->m - n + i;
+  if (!cloth_gap_test_reduce (court->test, here, court->test->blocks,
+          directions, n, &reduced))
     return;
+  r->score->improvement = cloth_gap_test_improvement (court->test,
+      r->score->candidate, court->null, here, directions, r->at, court->phi);
   for (guint i = 0; i < n; i++) {
     gdouble prior = cloth_gap_candidates_direction (court->d->candidates,
         r->candidate->first + i)->prior;
@@ -239,7 +243,9 @@ open_court (Court * court)
     for (gsize k = 0; s->n_chaos && k < size; k++)
       court->z[t][k] -= s->chaos[0][(s->n_chaos - 1) * size + k];
   }
-  if (!reduce (court, &nobody, &reduced))
+  court->null = all_normals (court, &nobody);
+  if (!cloth_gap_test_reduce (court->test, court->null, court->test->blocks,
+          NULL, 0, &reduced))
     return FALSE;
   court->phi = cloth_gap_test_dispersion (court->test, court->test->normals[0],
       &reduced);

@@ -91,7 +91,9 @@ test_gap_record (const TestGapSheet * sheet, const ClothModel * model,
     for (guint i = 0; i < 3 * n; i++)
       positions[i] = (gfloat) (x[i] +
           sheet->noise_m * cloth_random_gaussian (&random));
-    clamps_at (clamp, f / sheet->fps, clamps);
+    for (guint v = 0; v < n && sheet->film; v++)
+      sheet->film (f / sheet->fps, positions + 3 * v);
+    clamps_at (sheet->logged ? sheet->logged : clamp, f / sheet->fps, clamps);
     cloth_take_writer_append (writer, f / sheet->fps, positions, states, NULL,
         clamps, &error);
     g_assert_no_error (error);

@@ -11,9 +11,15 @@ G_BEGIN_DECLS
 /* Where corner @held (0 the first column's, 1 the last one's) is at @t seconds. */
 typedef void (*TestGapClamp) (guint held, gdouble t, gfloat p[3]);
 
+/* Where what is at @p is filmed at @t seconds. */
+typedef void (*TestGapFilm) (gdouble t, gfloat p[3]);
+
+/* @logged: where the log has the corners, %NULL: where they are; @film: %NULL: where it is. */
 typedef struct {
   guint columns, rows, n_frames;
   gdouble width_m, height_m, fps, noise_m;
+  TestGapClamp logged;
+  TestGapFilm film;
 } TestGapSheet;
 
 /* Frees stretch, shear, bending and damping of @model, each within a factor of 30. */

@@ -97,6 +97,13 @@ def simulate(folder):
            (1000 * (windy[-1, :, 1].mean() - got[-1, :, 1].mean())))
 
 
+def distance(folder, name):
+    """Of a simulation from what was recorded, RMS in metres."""
+    off = (numpy.load(os.path.join(folder, name, 'positions.npy')) -
+           numpy.load(os.path.join(drag, 'positions.npy')))
+    return numpy.sqrt(numpy.nanmean(numpy.square(off).sum(axis=2)))
+
+
 def diagnose(folder):
     for name, model in ('base', 'model-knit.json'), ('judge', 'model-windy.json'):
         run(folder, 'simulate', os.path.join(pipelines, model), '--scene', drag, '--output', name)
@@ -109,13 +116,21 @@ def diagnose(folder):
     expect(len(lines) == 2 and lines[0] == '%s: %s' % (gap['verdict'], gap['summary']) and
            lines[1] == 'deep/gap/report.html', 'summary and report: %s' % lines)
     expect(gap['seed'] == 5 and sorted(os.listdir(os.path.join(folder, 'deep/gap'))) ==
-           ['gap.json', 'report.html'], 'gap.json and report.html')
+           ['fitted.json', 'gap.json', 'report.html'], 'three files')
+    # what was fitted is a model like any other
+    with open(os.path.join(folder, 'deep/gap/fitted.json'), encoding='utf-8') as file:
+        fitted = json.load(file)
+    expect(sorted(fitted['effects']) ==
+           sorted(e['name'] for e in gap['effects'] if e['accepted']), str(fitted['effects']))
     expect(gap['inputs'] == [
         {'role': 'take', 'name': 'take_drag', 'sha256': sha256(drag)},
         {'role': 'model', 'name': 'model-knit.json', 'sha256': sha256(knit)}], str(gap['inputs']))
     told = [int(line.split('%')[0]) for line in done.stderr.splitlines() if '%' in line]
     expect(told == sorted(told) and told[0] == 0 and len(told) <= 11 and '\r' not in done.stderr,
            'sparse progress: %s' % told)
+    done = run(folder, 'simulate', 'deep/gap/fitted.json', '--scene', drag, '--output', 'better')
+    expect(done.returncode == 0, 'fitted.json is simulated ' + done.stderr[-200:])
+    expect(distance(folder, 'better') < distance(folder, 'base'), 'fitted.json is nearer')
     done = run(folder, 'diagnose', drag, '--model', knit, '--effects', 'wind', '--output',
                'deep/gap', '--baseline', 'base', '--hold-out', 'judge')
     expect(done.returncode == 0, 'with a baseline and a hold-out ' + done.stderr[-200:])
