@@ -38,6 +38,7 @@ test_summary (void)
   assert_summary (result, "Undecidable: no reason was given.");
   result->reason = g_strdup ("the cloth hangs still; film a motion.");
   assert_summary (result, "Undecidable: the cloth hangs still; film a motion.");
+  g_clear_pointer (&result->reason, g_free);
 
   result->verdict = CLOTH_GAP_NO_GAP;
   result->held_out_takes = TRUE;
@@ -50,6 +51,11 @@ test_summary (void)
   result->verdict = CLOTH_GAP_UNEXPLAINED;
   assert_summary (result,
       "Gap 3.1 mm, 2.1× the floor. No effect of the library explains it.");
+  result->reason = g_strdup ("The clamps are elsewhere.");
+  assert_summary (result,
+      "Gap 3.1 mm, 2.1× the floor. No effect of the library "
+      "explains it. The clamps are elsewhere.");
+  g_clear_pointer (&result->reason, g_free);
 
   result->verdict = CLOTH_GAP_EXPLAINED;
   effect = cloth_gap_result_add_effect (result, &air_drag);

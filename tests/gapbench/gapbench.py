@@ -3,7 +3,8 @@
 
   gapbench.py generate DIR   writes DIR/takes, and what was done to them to DIR/sealed
   gapbench.py diagnose DIR   diagnoses DIR/takes, which is all it reads, to DIR/gaps
-  gapbench.py score DIR      opens the labels, writes DIR/score.md and DIR/cases.txt
+  gapbench.py score DIR      opens the labels, measures the gaps with what was really done,
+                             writes DIR/score.md and DIR/cases.txt
   gapbench.py all DIR        all three
 
 What is there already is not made again, so that a run that was stopped goes on.
@@ -119,6 +120,28 @@ def diagnose(tool, takes, gaps):
     return failed
 
 
+def measure_oracle(tool, folder, name, label):
+    """The gap with the effect that acted, as large as it was, in the model as it was fitted:
+    its mean square in metres squared; None when it can't be simulated."""
+    path = os.path.join(folder, 'oracle', name, 'gap.json')
+    if not os.path.exists(path):
+        model = read_json(os.path.join(folder, 'gaps', name, 'fitted.json'))
+        model['effects'], model['free'] = reality.effects_in_take(label['effects']), []
+        with tempfile.TemporaryDirectory(prefix='cloth-gapbench-') as scratch:
+            file_name = os.path.join(scratch, 'model.json')
+            with open(file_name, 'w', encoding='utf-8') as file:
+                json.dump(model, file)
+            # one effect, as one must be tested
+            subprocess.run([tool, 'diagnose', os.path.join(folder, 'takes', name, 'take'),
+                            '--model', file_name, '--effects', 'gravity_scale', '--threads', '1',
+                            '--seed', '1', '--output', os.path.dirname(path)],
+                           capture_output=True, stdin=subprocess.DEVNULL, check=False)
+    if not os.path.exists(path):
+        return None
+    gap = read_json(path)['gap_before']['value']
+    return None if gap is None else gap ** 2
+
+
 def open_and_score(tool, folder):
     labels = seal.open_labels(os.path.join(folder, 'sealed'), os.path.join(folder, 'takes'))
     gaps, left = {}, []
@@ -128,7 +151,10 @@ def open_and_score(tool, folder):
             gaps[name] = read_json(path)
         else:
             left.append(name)
-    text = score.report(labels, gaps, left, effect_table(tool))
+    named = [name for name in gaps if score.is_right(gaps[name], labels[name])]
+    oracles = dict(zip(named, in_parallel(
+        measure_oracle, ((tool, folder, name, labels[name]) for name in named))))
+    text = score.report(labels, gaps, left, effect_table(tool), oracles)
     with open(os.path.join(folder, 'score.md'), 'w', encoding='utf-8') as file:
         file.write(text)
     score.write_cases(os.path.join(folder, 'cases.txt'), labels, gaps)

@@ -136,7 +136,7 @@ def scores(folder, labels):
     alarm = next(name for name, label in labels.items() if label['kind'] == 'none')
     gaps[wrong]['effects'].reverse()
     gaps[alarm]['verdict'] = 'unexplained'
-    other = score.report(labels, gaps, [], gapbench.effect_table(tool))
+    other = score.report(labels, gaps, [], gapbench.effect_table(tool), {})
     for row, now, then in (
             ('| top-1, one effect at 2× and 5× |', '(3 of 3)', '(2 of 3)'),
             ('| top-3, at 2× and 5× |', '(3 of 3)', '(2 of 3)'),

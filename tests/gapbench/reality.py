@@ -79,6 +79,14 @@ def clamps_of(motion, random):
     return paths
 
 
+def effects_in_take(effects):
+    """Effects as a model has them that starts when the recording does, not before."""
+    effects = copy.deepcopy(effects)
+    if 'clamp_slip' in effects:
+        effects['clamp_slip']['time'] -= N_BEFORE / FPS
+    return effects
+
+
 def write_take(folder, name, positions, clamps, noise=None, held=HELD, obstacles=(), from_s=None):
     os.makedirs(folder)
     take = {'version': 1, 'name': name, 'fps': FPS,
