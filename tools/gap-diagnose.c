@@ -230,8 +230,10 @@ diagnose (const Arguments * arguments)
   if (result && cloth_gap_result_write (result, arguments->output, &error)) {
     g_autofree gchar *summary = cloth_gap_result_summary (result);
 
-    g_print ("%s: %s\n%s%sreport.html\n",
-        cloth_gap_verdict_name (result->verdict), summary, arguments->output,
+    g_print ("%s: %s\n", cloth_gap_verdict_name (result->verdict), summary);
+    for (guint i = 0; i < result->notes->len; i++)
+      g_print ("%s\n", (const gchar *) result->notes->pdata[i]);
+    g_print ("%s%sreport.html\n", arguments->output,
         g_str_has_suffix (arguments->output, "/") ? "" : "/");
     return DONE;
   }

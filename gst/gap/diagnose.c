@@ -23,6 +23,8 @@
  * what is missing. */
 #define FROZEN_SHARE 0.5
 #define FROZEN_REACH 2.
+/* A number is at the end of its range when it is this share of it away. */
+#define AT_END 1e-3
 /* Of a simulation, for each frame. */
 #define MOST_STEPS 2e4
 /* On takes that move otherwise than a baseline, what the baseline asks for of an effect
@@ -187,6 +189,35 @@ skip (gpointer data, const ClothEffect * effect, const gchar * reason)
   cloth_gap_result_add_untested (d->result, effect, reason);
 }
 
+/* Where a fit ends at the end of a number's range in the model the cloth may be beyond it,
+ * and the floor higher than it need be. */
+static void
+note_ends (ClothDiagnosis * d)
+{
+  g_autoptr (GString) names = g_string_new (NULL);
+
+  for (guint i = 0; i < d->candidates->n_free; i++) {
+    const ClothGapDirection *direction =
+        cloth_gap_candidates_direction (d->candidates, i);
+    const gdouble place = cloth_gap_candidates_place (d->candidates, d->model,
+        i), slack = AT_END * (direction->high - direction->low);
+    gdouble value = 0., possible[2] = { 0. };
+
+    cloth_model_get (d->model, direction->name, &value, NULL);
+    cloth_model_get_range (direction->name, possible, NULL);
+    if (place - direction->low < slack ? value > possible[0] + slack :
+        direction->high - place < slack)
+      g_string_append_printf (names, "%s%s (%.3g)", names->len ? ", " : "",
+          direction->name, value);
+  }
+  if (names->len) {
+    g_string_prepend (names, "These numbers of the model were fitted to the "
+        "end of their ranges, which may be too narrow for this cloth: ");
+    g_string_append_c (names, '.');
+    cloth_gap_result_add_note (d->result, names->str);
+  }
+}
+
 /* The model's free numbers: fitted on the baselines, else on the takes. The likeliest may
  * leave a cloth that is stretched for the sake of its wrinkles, where the simulator can't
  * make these; then what is nearest is taken. */
@@ -232,6 +263,7 @@ fit_free (ClothDiagnosis * d, const ClothModel * model, GError ** error)
     return FALSE;
   even = squares[1] < NEARER * squares[0];
   d->model = even ? g_steal_pointer (&nearest) : g_steal_pointer (&likeliest);
+  note_ends (d);
   for (guint i = 0; i < m; i++) {
     gdouble sigma = FROZEN_SHARE * sigmas[even * m + i];
 

@@ -72,6 +72,7 @@ typedef struct
   /* Effects taken in, one by one: candidates, the models with them, deviations of the
    * directions in them */
   guint chosen[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
+  gdouble probabilities[CLOTH_DIAGNOSIS_MAX_ACCEPTED];  /* when they were taken in */
   ClothModel *with[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
   gdouble sigmas[CLOTH_DIAGNOSIS_MAX_ACCEPTED][CLOTH_DIAGNOSIS_MAX_ACCEPTED][CLOTH_EFFECT_MAX_PARAMETERS];
   guint n_chosen;
@@ -177,6 +178,10 @@ GArray *cloth_diagnosis_rank (ClothDiagnosis * d, ClothGapTest * test);
 gboolean cloth_diagnosis_try_rivals (ClothDiagnosis * d,
     const ClothGapTest * test,
     GArray * scores, const ClothModel * base, GError ** error);
+gdouble cloth_diagnosis_find_probability (const ClothDiagnosis * d,
+    const GArray * scores, const ClothGapScore * which);
+gboolean cloth_diagnosis_is_settled (const ClothDiagnosis * d,
+    const ClothEffect * effect);
 void cloth_diagnosis_fill_effects (ClothDiagnosis * d,
     const ClothGapTest * test, const GArray * scores);
 gboolean cloth_diagnosis_select (ClothDiagnosis * d, GError ** error);

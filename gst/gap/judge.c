@@ -247,14 +247,18 @@ find_rest_p_value (const gdouble * rest, guint stride, const gdouble * floor)
 }
 
 /* Whether an effect is large enough to speak of. Where a signature is taken off, the
- * evidence has said so of the first: the gap holds the simulator's own error too. */
+ * evidence has said so of the first: the gap holds the simulator's own error too, which
+ * hides it where it is no larger. */
 static gboolean
 matters (const ClothDiagnosis * d, gboolean first, gdouble before,
     gdouble after)
 {
+  const gdouble floor = d->result->noise_floor.value;
+
   return after < (1. - CLOTH_DIAGNOSIS_LEAST_SHRINK) * before
       || (first && cloth_diagnosis_has_signatures (d)
-      && after < HARDLY_LARGER * before);
+      && after < HARDLY_LARGER * before
+      && after < CLOTH_DIAGNOSIS_BAND * floor * floor);
 }
 
 /* Where the gap of the first take lies, and what is needed to say more of it. */
@@ -394,6 +398,7 @@ accept_effects (ClothDiagnosis * d)
       i++;
     e = g_array_index (effects, ClothGapEffect, i);
     e.accepted = TRUE;
+    e.probability = d->probabilities[c];
     e.shrink = d->result->shrink;
     for (guint k = 0; k < candidate->effect->n_parameters; k++)
       e.values[k] = candidate->values[k];

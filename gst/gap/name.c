@@ -363,6 +363,23 @@ calibrate (gdouble probability)
                   ODDS_SLOPE_FOR * LARGEST_LOG_ODDS))));
 }
 
+/* That it is this effect, of those that are not settled yet, rather than another or none. */
+gdouble
+cloth_diagnosis_find_probability (const ClothDiagnosis * d,
+    const GArray * scores, const ClothGapScore * which)
+{
+  gdouble total = exp (-which->evidence / TEMPERATURE);
+
+  for (guint i = 0; i < scores->len; i++) {
+    const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
+
+    if (!cloth_diagnosis_is_settled (d, cloth_diagnosis_candidate (d,
+                s)->effect))
+      total += exp ((s->evidence - which->evidence) / TEMPERATURE);
+  }
+  return calibrate (1. / total);
+}
+
 void
 cloth_diagnosis_fill_effects (ClothDiagnosis * d, const ClothGapTest * test,
     const GArray * scores)

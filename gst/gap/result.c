@@ -86,8 +86,22 @@ cloth_gap_result_new (void)
   result->versions = new_list (sizeof (ClothGapNote), clear_note);
   result->inputs = new_list (sizeof (ClothGapInput), clear_input);
   result->thresholds = new_list (sizeof (ClothGapThreshold), clear_threshold);
+  result->notes = g_ptr_array_new_with_free_func (g_free);
   result->failures = new_list (sizeof (ClothGapNote), clear_note);
   return result;
+}
+
+/**
+ * cloth_gap_result_add_note:
+ * @result: a result
+ * @note: a sentence
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_result_add_note (ClothGapResult * result, const gchar * note)
+{
+  g_ptr_array_add (result->notes, g_strdup (note));
 }
 
 /**
@@ -266,6 +280,7 @@ cloth_gap_result_free (ClothGapResult * result)
   if (!result)
     return;
   g_free (result->reason);
+  g_ptr_array_unref (result->notes);
   g_array_unref (result->effects);
   g_array_unref (result->groups);
   g_array_unref (result->untested);

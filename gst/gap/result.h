@@ -276,6 +276,7 @@ typedef struct {
  * @verdict: the outcome
  * @reason: (nullable): why it is undecidable, and what would help, or what speaks of
  *   something unknown: a sentence
+ * @notes: (element-type utf8): what else one should know of it, sentences
  * @gap_before: recorded minus simulated on held-out data, RMS in metres
  * @gap_after: the same with the accepted effects; NaN without any
  * @noise_floor: what it would be if the simulation lacked nothing
@@ -323,6 +324,7 @@ typedef struct {
 typedef struct {
   ClothGapVerdict verdict;
   gchar *reason;
+  GPtrArray *notes;
   ClothGapEstimate gap_before;
   ClothGapEstimate gap_after;
   ClothGapEstimate noise_floor;
@@ -358,6 +360,7 @@ typedef struct {
 } ClothGapResult;
 
 ClothGapResult *cloth_gap_result_new (void);
+void cloth_gap_result_add_note (ClothGapResult * result, const gchar * note);
 ClothGapEffect *cloth_gap_result_add_effect (ClothGapResult * result,
     const ClothEffect * effect);
 void cloth_gap_result_add_group (ClothGapResult * result,

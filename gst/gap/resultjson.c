@@ -463,6 +463,10 @@ cloth_gap_result_to_json (const ClothGapResult * result)
       cloth_gap_verdict_name (result->verdict));
   cloth_json_writer_string (writer, "summary", summary);
   cloth_json_writer_string (writer, "reason", result->reason);
+  cloth_json_writer_begin_array (writer, "notes");
+  for (guint i = 0; i < result->notes->len; i++)
+    cloth_json_writer_string (writer, NULL, result->notes->pdata[i]);
+  cloth_json_writer_end_array (writer);
   put_estimate (writer, "gap_before", &result->gap_before);
   put_estimate (writer, "gap_after", &result->gap_after);
   put_estimate (writer, "noise_floor", &result->noise_floor);

@@ -13,8 +13,9 @@
 #define REFIT_WIDTH 2.
 
 /* Whether an effect is taken in, or was and went again. */
-static gboolean
-is_settled (const ClothDiagnosis * d, const ClothEffect * effect)
+gboolean
+cloth_diagnosis_is_settled (const ClothDiagnosis * d,
+    const ClothEffect * effect)
 {
   for (guint i = 0; i < d->n_chosen; i++)
     if (cloth_diagnosis_chosen (d, i)->effect == effect)
@@ -170,6 +171,8 @@ drop (ClothDiagnosis * d, guint which, GError ** error)
     g_clear_pointer (&d->with[c], cloth_model_free);
   memmove (d->chosen + which, d->chosen + which + 1,
       (left - which) * sizeof *d->chosen);
+  memmove (d->probabilities + which, d->probabilities + which + 1,
+      (left - which) * sizeof *d->probabilities);
   for (d->n_chosen = which; d->n_chosen < left;) {
     g_autoptr (ClothModel) start = NULL;
 
@@ -207,7 +210,7 @@ find_asked (const ClothDiagnosis * d, const GArray * scores, gboolean gusts)
 
     if (cloth_gap_candidate_is_gust (c))
       least = gusts ? MAX (least, s->evidence) : least;
-    else if (!is_settled (d, c->effect))
+    else if (!cloth_diagnosis_is_settled (d, c->effect))
       return s->evidence < least || !(s->improvement > 0.) ? NULL : s;
   }
   return NULL;
@@ -268,6 +271,8 @@ cloth_diagnosis_select (ClothDiagnosis * d, GError ** error)
     gdouble from = 0.48 + 0.12 * MIN (done, CLOTH_DIAGNOSIS_MAX_ACCEPTED - 1);
 
     d->asked = TRUE;
+    d->probabilities[d->n_chosen] =
+        cloth_diagnosis_find_probability (d, scores, &next);
     d->chosen[d->n_chosen++] = next.candidate;
     cloth_diagnosis_list_nuisances (d, &test);
     g_array_unref (scores);

@@ -235,6 +235,10 @@ test_pair (gconstpointer data)
   result = diagnose (take, baseline, 0);
   g_assert_true (is_accepted (result, pair[0].effect));
   g_assert_true (is_accepted (result, pair[1].effect));
+  /* likely once the first one is known, whatever it was before */
+  for (guint i = 0; i < 2; i++)
+    g_assert_cmpfloat (g_array_index (result->effects, ClothGapEffect,
+            i).probability, >, 0.2);
 }
 
 /* A wind that changes is told from one that does not, and never taken in. */
@@ -393,6 +397,35 @@ test_unknown_effect (void)
   g_assert_nonnull (strstr (error->message, "magic"));
 }
 
+/* Shear may not be fitted to what the cloth has, and the diagnosis says so. */
+static void
+test_narrow (void)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothModel) model = model_new (CLOTH_FORCE_MEMBRANE);
+  g_autoptr (ClothTake) take = record ("plain", NULL, NULL, FALSE, 1);
+  const gchar *const effects[] = { "air_drag", NULL };
+  const ClothGapOptions options = {.effects = effects };
+  ClothModelFree *shear = &g_array_index (model->free, ClothModelFree, 2);
+  ClothTake *takes[1] = { take };
+  g_autoptr (ClothGapResult) wide = NULL;
+  g_autoptr (ClothGapResult) narrow = NULL;
+
+  wide = cloth_gap_diagnose (takes, 1, model, &options, &error);
+  g_assert_no_error (error);
+  g_assert_cmpuint (wide->notes->len, ==, 0);
+  g_assert_cmpstr (shear->name, ==, "shear");
+  shear->range[0] = 8. * model->shear;
+  model->shear = 12. * model->shear;
+  narrow = cloth_gap_diagnose (takes, 1, model, &options, &error);
+  g_assert_no_error (error);
+  g_assert_cmpuint (narrow->notes->len, ==, 1);
+  g_test_message ("%s", (const gchar *) narrow->notes->pdata[0]);
+  g_assert_nonnull (strstr (narrow->notes->pdata[0], "shear (96)"));
+  g_assert_nonnull (narrow->model);
+  g_assert_cmpfloat_with_epsilon (narrow->model->shear, 96., 0.1);
+}
+
 /* A step that is just short enough for the model is too long for stiffer cloth: what diverged
  * is listed, and what could not be tested for it has a reason. */
 static void
@@ -475,6 +508,7 @@ main (int argc, char **argv)
   g_test_add_func ("/gap/no-baseline", test_no_baseline);
   g_test_add_func ("/gap/threads", test_threads);
   g_test_add_func ("/gap/unknown-effect", test_unknown_effect);
+  g_test_add_func ("/gap/narrow", test_narrow);
   g_test_add_func ("/gap/diverging", test_diverging);
   g_test_add_func ("/gap/cancelled", test_cancelled);
   status = g_test_run ();

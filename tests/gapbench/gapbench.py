@@ -3,8 +3,9 @@
 
   gapbench.py generate DIR   writes DIR/takes, and what was done to them to DIR/sealed
   gapbench.py diagnose DIR   diagnoses DIR/takes, which is all it reads, to DIR/gaps
-  gapbench.py score DIR      opens the labels, measures the gaps with what was really done,
-                             writes DIR/score.md and DIR/cases.txt
+  gapbench.py score DIR...   opens the labels, measures the gaps with what was really done,
+                             writes DIR/score.md and DIR/cases.txt; of several only prints
+                             the figures of all cases together
   gapbench.py all DIR        all three
 
 What is there already is not made again, so that a run that was stopped goes on.
@@ -142,44 +143,53 @@ def measure_oracle(tool, folder, name, label):
     return None if gap is None else gap ** 2
 
 
-def open_and_score(tool, folder):
-    labels = seal.open_labels(os.path.join(folder, 'sealed'), os.path.join(folder, 'takes'))
-    gaps, left = {}, []
-    for name in sorted(labels):
-        path = os.path.join(folder, 'gaps', name, 'gap.json')
-        if os.path.exists(path):
-            gaps[name] = read_json(path)
-        else:
-            left.append(name)
-    named = [name for name in gaps if score.is_right(gaps[name], labels[name])]
-    oracles = dict(zip(named, in_parallel(
-        measure_oracle, ((tool, folder, name, labels[name]) for name in named))))
-    text = score.report(labels, gaps, left, effect_table(tool), oracles)
-    with open(os.path.join(folder, 'score.md'), 'w', encoding='utf-8') as file:
-        file.write(text)
-    score.write_cases(os.path.join(folder, 'cases.txt'), labels, gaps)
+def open_and_score(tool, folders):
+    every, gaps, oracles, left = {}, {}, {}, []
+    for folder in folders:
+        labels = seal.open_labels(os.path.join(folder, 'sealed'), os.path.join(folder, 'takes'))
+        before = os.path.basename(os.path.normpath(folder)) + '/' if len(folders) > 1 else ''
+        here = {}
+        for name in sorted(labels):
+            path = os.path.join(folder, 'gaps', name, 'gap.json')
+            every[before + name] = dict(labels[name], case=before + name)
+            if os.path.exists(path):
+                here[name] = read_json(path)
+            else:
+                left.append(before + name)
+        named = [name for name in here if score.is_right(here[name], labels[name])]
+        measured = in_parallel(measure_oracle,
+                               ((tool, folder, name, labels[name]) for name in named))
+        oracles.update({before + name: square for name, square in zip(named, measured)})
+        gaps.update({before + name: gap for name, gap in here.items()})
+    text = score.report(every, gaps, left, effect_table(tool), oracles)
+    if len(folders) == 1:
+        with open(os.path.join(folders[0], 'score.md'), 'w', encoding='utf-8') as file:
+            file.write(text)
+        score.write_cases(os.path.join(folders[0], 'cases.txt'), every, gaps)
     print(text, end='')
 
 
 def main():
     parser = argparse.ArgumentParser(description='The blind benchmark of the diagnosis.')
     parser.add_argument('step', choices=('generate', 'diagnose', 'score', 'all'))
-    parser.add_argument('folder')
+    parser.add_argument('folder', nargs='+')
     parser.add_argument('--few', action='store_true')
     parser.add_argument('--local', action='store_true')
     parser.add_argument('--cases', type=int, default=1000)
     parser.add_argument('--seed', type=int, default=1)
     parser.add_argument('--tool', default='gst-cloth-gap-1.0')
     given = parser.parse_args()
-    os.makedirs(given.folder, exist_ok=True)
-    failed = 0
+    folder, failed = given.folder[0], 0
+    if len(given.folder) > 1 and given.step != 'score':
+        parser.error('only score takes several folders')
+    os.makedirs(folder, exist_ok=True)
     try:
         if given.step in ('generate', 'all'):
-            generate(given.tool, given.folder, given.few, given.cases, given.seed,
+            generate(given.tool, folder, given.few, given.cases, given.seed,
                      given.local)
         if given.step in ('diagnose', 'all'):
-            failed = diagnose(given.tool, os.path.join(given.folder, 'takes'),
-                              os.path.join(given.folder, 'gaps'))
+            failed = diagnose(given.tool, os.path.join(folder, 'takes'),
+                              os.path.join(folder, 'gaps'))
         if given.step in ('score', 'all'):
             open_and_score(given.tool, given.folder)
     except (OSError, RuntimeError, seal.BrokenSeal) as error:

@@ -66,7 +66,7 @@ def refused(folder, what, change):
     write_json(os.path.join(copy, 'sealed/labels.json'), sealed)
     try:
         with contextlib.redirect_stdout(io.StringIO()):
-            gapbench.open_and_score(tool, copy)
+            gapbench.open_and_score(tool, [copy])
         expect(False, what + ' is refused')
     except seal.BrokenSeal as error:
         expect(not os.path.exists(os.path.join(copy, 'score.md')), '%s: %s' % (what, error))
@@ -119,7 +119,7 @@ def diagnoses(folder):
 
 
 def scores(folder, labels):
-    gapbench.open_and_score(tool, folder)
+    gapbench.open_and_score(tool, [folder])
     with open(os.path.join(folder, 'score.md'), encoding='utf-8') as file:
         text = file.read()
     gaps = {name: gapbench.read_json(os.path.join(folder, 'gaps', name, 'gap.json'))
@@ -143,6 +143,9 @@ def scores(folder, labels):
             ('| false alarm on no gap |', '(0 of 2)', '(1 of 2)')):
         expect(now in text.split(row)[1].split('\n')[0] and
                then in other.split(row)[1].split('\n')[0], '%s %s, then %s' % (row, now, then))
+    # the true effect takes off about what the found one does
+    row = text.split('| held-out shrink ÷ that of the true effect, median |')[1].split('|')[0]
+    expect('(n = 3)' in row and abs(float(row.split()[0]) - 1.) < 0.1, 'share of the oracle' + row)
     named = gaps[wrong]['effects'][0]['name']
     column = [line.split() for line in other.split('\n') if line.endswith(' ' + named)][0][0]
     row = [line.split() for line in other.split('\n') if line.startswith('air_drag ')][0]

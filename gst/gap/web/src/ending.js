@@ -9,7 +9,7 @@ function advice(gap) {
     group.experiment ?? 'none of the captures that were tried would.',
     known(group.evidence) ? ' ' : null, known(group.evidence) ? element('span', { class: 'interval' },
       `Expected evidence: log Bayes factor ${number(group.evidence)}.`) : null));
-  if (gap.reason) list.unshift(element('li', {}, gap.reason));
+  if (gap.verdict === 'undecidable' && gap.reason) list.unshift(element('li', {}, gap.reason));
   if (gap.verdict === 'unexplained') {
     list.push(element('li', {}, 'Something acts that the library does not have. Film the same motion with one condition changed at a time; the maps above say where on the cloth and when to look.'));
   }

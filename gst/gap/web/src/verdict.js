@@ -23,6 +23,7 @@ export function verdict(gap) {
       takes.length ? element('span', { class: 'takes' }, takes.join(', ')) : null),
     element('h1', {}, element('span', { class: 'pill' }, verdicts[gap.verdict]), ' ',
       element('span', { id: 'summary' }, gap.summary)),
+    ...gap.notes.map((note) => element('p', { class: 'warning' }, note)),
     element('dl', { class: 'figures' },
       figure('Gap before', mm(gap.gap_before.value), range(gap.gap_before.interval, 1000, 1), times),
       figure('Gap after', mm(gap.gap_after.value), range(gap.gap_after.interval, 1000, 1),
