@@ -9,6 +9,8 @@
 
 /* Simulations of a fit with effects. */
 #define N_REFIT 3
+/* An effect that is less likely by this evidence never goes before another. */
+#define MUCH 10.
 /* Priors of effects in it are so many times as wide. */
 #define REFIT_WIDTH 2.
 
@@ -216,6 +218,64 @@ find_asked (const ClothDiagnosis * d, const GArray * scores, gboolean gusts)
   return NULL;
 }
 
+/* What the likeliest effect beside one more would bring by the derivatives at hand, beyond
+ * what it must. */
+static gdouble
+find_next (ClothDiagnosis * d, ClothGapTest * test, const ClothGapScore * one)
+{
+  g_autoptr (GArray) scores = NULL;
+  gdouble next = d->least_evidence;
+
+  d->chosen[d->n_chosen++] = one->candidate;
+  cloth_diagnosis_list_nuisances (d, test);
+  scores = cloth_gap_test_run (test);
+  for (guint i = 0; i < scores->len; i++) {
+    const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
+    const ClothGapCandidate *c = cloth_diagnosis_candidate (d, s);
+    const gdouble evidence = s->evidence - d->null_evidence[s->candidate];
+
+    if (!cloth_gap_candidate_is_gust (c) && evidence > next
+        && s->improvement > 0. && !cloth_diagnosis_is_settled (d, c->effect))
+      next = evidence;
+  }
+  d->n_chosen--;
+  cloth_diagnosis_list_nuisances (d, test);
+  return next - d->least_evidence;
+}
+
+/* An effect may stand for two others, as wind does for drag and tilted gravity: of those
+ * hardly less likely than the first one, that beside which the next one brings most. It
+ * gets the evidence that it has with the next one. */
+static const ClothGapScore *
+look_ahead (ClothDiagnosis * d, ClothGapTest * test, GArray * scores,
+    const ClothGapScore * first)
+{
+  ClothGapScore *best = NULL;
+  gdouble most = 0., of_first = 0.;
+
+  if (d->n_chosen)
+    return first;
+  for (guint i = 0; i < scores->len; i++) {
+    ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
+    const ClothGapCandidate *c = cloth_diagnosis_candidate (d, s);
+    gdouble all;
+
+    if (cloth_gap_candidate_is_gust (c) || !(s->improvement > 0.)
+        || s->evidence < MAX (d->least_evidence, first->evidence - MUCH)
+        || cloth_diagnosis_is_settled (d, c->effect))
+      continue;
+    all = s->evidence + find_next (d, test, s);
+    if (s == first)
+      of_first = all;
+    if (!best || all > most) {
+      most = all;
+      best = s;
+    }
+  }
+  best->evidence = first->evidence + most - of_first;
+  return best;
+}
+
 /* Fits with the last effect, from where it is asked to be, else from its null. */
 static gboolean
 take_in (ClothDiagnosis * d, const gdouble * changes, GError ** error)
@@ -266,7 +326,7 @@ cloth_diagnosis_select (ClothDiagnosis * d, GError ** error)
   cloth_diagnosis_fill_effects (d, &test, scores);
   while ((asked = find_asked (d, scores, TRUE))) {
     GError *failed = NULL;
-    const ClothGapScore next = *asked;
+    const ClothGapScore next = *look_ahead (d, &test, scores, asked);
     guint done = d->n_chosen + d->n_dropped, dropped = d->n_dropped;
     gdouble from = 0.48 + 0.12 * MIN (done, CLOTH_DIAGNOSIS_MAX_ACCEPTED - 1);
 
