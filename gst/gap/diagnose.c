@@ -12,7 +12,7 @@
 #include "gst/mesh/hash.h"
 
 /* Version of the priors and thresholds: a change of either changes probabilities. */
-#define PRIORS "3"
+#define PRIORS "4"
 
 /* Squared gap of the nearest over that of the likeliest from which on it is taken. */
 #define NEARER 0.8

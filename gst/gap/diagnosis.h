@@ -22,7 +22,7 @@ G_BEGIN_DECLS
 /* Deviations of parameters are told so many times as wide as the fit takes them for, which
  * knows nothing of the simulator's own error: then about nine of ten of the blind benchmark's
  * intervals of 95% hold the truth. */
-#define CLOTH_DIAGNOSIS_SIGMA_WIDTH 3.
+#define CLOTH_DIAGNOSIS_SIGMA_WIDTH 3.6
 /* Length of the windows that the gap is measured in, s. */
 #define CLOTH_DIAGNOSIS_WINDOW_S 0.3
 /* Most effects that are accepted. */

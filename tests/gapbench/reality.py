@@ -102,13 +102,13 @@ def write_take(folder, name, positions, clamps, noise=None, held=HELD, obstacles
     numpy.save(os.path.join(folder, 'clamps.npy'), clamps.astype('float32'))
 
 
-def simulate(tool, model, clamps, scratch, held=HELD, obstacles=(), from_s=None):
+def simulate(tool, model, clamps, scratch, held=HELD, obstacles=(), from_s=None, bulge_m=0.):
     """What the cloth does, from half a second before the recording on; what is held besides
-    the corners is so from a time on."""
+    the corners is so from a time on; its lower edge may bulge at first."""
     start = numpy.full((len(clamps), ROWS * COLUMNS, 3), numpy.nan)
     v, u = numpy.divmod(numpy.arange(ROWS * COLUMNS), COLUMNS)
     start[0, :, 0] = u * WIDTH / (COLUMNS - 1)
-    start[0, :, 1] = 0.
+    start[0, :, 1] = bulge_m * numpy.sin(numpy.pi * u / (COLUMNS - 1)) * v / (ROWS - 1)
     start[0, :, 2] = -v * HEIGHT / (ROWS - 1)
     write_take(os.path.join(scratch, 'scene'), 'scene', start, clamps, None, held, obstacles,
                from_s)
@@ -264,6 +264,8 @@ def record(tool, case, folder, name, scratch, random):
         real = simulate_outside(tool, model, clamps, case['outside'], case['severity'], scratch)
     elif case['effects']:
         real = simulate(tool, model, clamps, scratch)
+    elif case.get('bulge_m'):
+        real = simulate(tool, plain, clamps, scratch, bulge_m=case['bulge_m'])
     else:
         real = quiet
     noise = film(os.path.join(folder, 'take'), name, real, clamps, random)
