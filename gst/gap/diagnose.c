@@ -190,25 +190,27 @@ skip (gpointer data, const ClothEffect * effect, const gchar * reason)
 }
 
 /* Where a fit ends at the end of a number's range in the model the cloth may be beyond it,
- * and the floor higher than it need be. */
+ * and the floor higher than it need be. What can't be is not beyond it. */
 static void
 note_ends (ClothDiagnosis * d)
 {
   g_autoptr (GString) names = g_string_new (NULL);
 
   for (guint i = 0; i < d->candidates->n_free; i++) {
+    const ClothModelFree *f = &g_array_index (d->model->free, ClothModelFree,
+        i);
     const ClothGapDirection *direction =
         cloth_gap_candidates_direction (d->candidates, i);
     const gdouble place = cloth_gap_candidates_place (d->candidates, d->model,
         i), slack = AT_END * (direction->high - direction->low);
-    gdouble value = 0., possible[2] = { 0. };
+    gdouble value = 0., possible[2] = { -INFINITY, INFINITY };
 
-    cloth_model_get (d->model, direction->name, &value, NULL);
-    cloth_model_get_range (direction->name, possible, NULL);
-    if (place - direction->low < slack ? value > possible[0] + slack :
-        direction->high - place < slack)
+    cloth_model_get (d->model, f->name, &value, NULL);
+    cloth_model_get_range (f->name, possible, NULL);
+    if ((place - direction->low < slack && f->range[0] > possible[0])
+        || (direction->high - place < slack && f->range[1] < possible[1]))
       g_string_append_printf (names, "%s%s (%.3g)", names->len ? ", " : "",
-          direction->name, value);
+          f->name, value);
   }
   if (names->len) {
     g_string_prepend (names, "These numbers of the model were fitted to the "

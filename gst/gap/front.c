@@ -186,13 +186,19 @@ cloth_gap_check_same_cloth (const gchar * name, const ClothTopology * cloth,
   return TRUE;
 }
 
+/* Without a model none of an earlier diagnosis stays. */
 static gboolean
 write_model (const ClothModel * model, const gchar * folder, GError ** error)
 {
   g_autofree gchar *path = g_build_filename (folder, "fitted.json", NULL);
-  g_autofree gchar *text = cloth_model_to_json (model);
-  g_autoptr (ClothOutput) output = cloth_output_new (path, error);
+  g_autofree gchar *text = model ? cloth_model_to_json (model) : NULL;
+  g_autoptr (ClothOutput) output = NULL;
 
+  if (!model) {
+    g_unlink (path);
+    return TRUE;
+  }
+  output = cloth_output_new (path, error);
   return output && cloth_output_write (output, text, strlen (text), error) &&
       cloth_output_finish (output, error) &&
       cloth_output_commit (&output, 1, error);
@@ -224,7 +230,7 @@ cloth_gap_result_write (const ClothGapResult * result, const gchar * folder,
         "cannot make the folder “%s”: %s", folder, g_strerror (code));
     return FALSE;
   }
-  return cloth_gap_report_write (result, report, error) &&
-      cloth_gap_result_write_json (result, json, error) &&
-      (!result->model || write_model (result->model, folder, error));
+  return write_model (result->model, folder, error) &&
+      cloth_gap_report_write (result, report, error) &&
+      cloth_gap_result_write_json (result, json, error);
 }

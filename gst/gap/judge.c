@@ -393,9 +393,12 @@ accept_effects (ClothDiagnosis * d)
     ClothGapEffect e;
     guint i = 0;
 
-    while (g_array_index (effects, ClothGapEffect, i).effect !=
-        candidate->effect)
+    while (i < effects->len && g_array_index (effects, ClothGapEffect,
+            i).effect != candidate->effect)
       i++;
+    /* the first test may not have been able to tell it from others */
+    if (i == effects->len)
+      cloth_gap_result_add_effect (d->result, candidate->effect);
     e = g_array_index (effects, ClothGapEffect, i);
     e.accepted = TRUE;
     e.probability = d->probabilities[c];
@@ -481,6 +484,9 @@ cloth_diagnosis_decide (ClothDiagnosis * d)
     r->verdict = CLOTH_GAP_NO_GAP;
   else
     r->verdict = is_ambiguous (r) ? CLOTH_GAP_AMBIGUOUS : CLOTH_GAP_EXPLAINED;
-  if (!accepted)
+  if (!accepted && d->unknown)
     r->reason = g_steal_pointer (&d->unknown);
+  else if (!accepted && other && !above)
+    r->reason = g_strdup ("An effect was asked for, but with it unseen data "
+        "came no nearer.");
 }

@@ -313,7 +313,7 @@ typedef struct {
  * @spectrum: its spectrum, for the report
  * @playback: the cloth, for the report
  * @model: (nullable): the model with its free numbers as they were fitted and the accepted
- *   effects; %NULL: nothing was fitted
+ *   effects but those of cameras; %NULL: nothing was fitted
  *
  * All that a diagnosis has to say. Everything is owned by the result, but the effects'
  * constant descriptions. A number that is not known is NaN, a list without entries is

@@ -9,8 +9,8 @@
 
 /* Simulations of a fit with effects. */
 #define N_REFIT 3
-/* An effect that is less likely by this evidence never goes before another. */
-#define MUCH 10.
+/* An effect that is less likely by more evidence never goes before another. */
+#define HARDLY_LESS 10.
 /* Priors of effects in it are so many times as wide. */
 #define REFIT_WIDTH 2.
 
@@ -199,21 +199,44 @@ drop_needless (ClothDiagnosis * d, GError ** error)
   return TRUE;
 }
 
-/* The likeliest effect that is not settled yet, if it is asked for. Gusts can't be taken in,
- * as what they did follows from nothing; nor is what is less likely than they, if @gusts. */
+/* How likely gusts are; −∞: they were not tested. */
+static gdouble
+find_gusts (const ClothDiagnosis * d, const GArray * scores)
+{
+  for (guint i = 0; i < scores->len; i++) {
+    const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
+
+    if (cloth_gap_candidate_is_gust (cloth_diagnosis_candidate (d, s)))
+      return s->evidence;
+  }
+  return -INFINITY;
+}
+
+/* Whether an effect may be taken in: gusts can't, as what they did follows from nothing. */
+static gboolean
+may_come (const ClothDiagnosis * d, const ClothGapScore * s, gdouble least)
+{
+  const ClothGapCandidate *c = cloth_diagnosis_candidate (d, s);
+
+  return !cloth_gap_candidate_is_gust (c) && s->evidence >= least
+      && s->improvement > 0. && !cloth_diagnosis_is_settled (d, c->effect);
+}
+
+/* The likeliest effect that is not settled yet, if it is asked for; nothing that is less
+ * likely than gusts, if @gusts. */
 static const ClothGapScore *
 find_asked (const ClothDiagnosis * d, const GArray * scores, gboolean gusts)
 {
-  gdouble least = d->least_evidence;
+  const gdouble least = MAX (d->least_evidence, gusts ?
+      find_gusts (d, scores) : -INFINITY);
 
   for (guint i = 0; i < scores->len; i++) {
     const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
     const ClothGapCandidate *c = cloth_diagnosis_candidate (d, s);
 
-    if (cloth_gap_candidate_is_gust (c))
-      least = gusts ? MAX (least, s->evidence) : least;
-    else if (!cloth_diagnosis_is_settled (d, c->effect))
-      return s->evidence < least || !(s->improvement > 0.) ? NULL : s;
+    if (!cloth_gap_candidate_is_gust (c)
+        && !cloth_diagnosis_is_settled (d, c->effect))
+      return may_come (d, s, least) ? s : NULL;
   }
   return NULL;
 }
@@ -231,12 +254,9 @@ find_next (ClothDiagnosis * d, ClothGapTest * test, const ClothGapScore * one)
   scores = cloth_gap_test_run (test);
   for (guint i = 0; i < scores->len; i++) {
     const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
-    const ClothGapCandidate *c = cloth_diagnosis_candidate (d, s);
-    const gdouble evidence = s->evidence - d->null_evidence[s->candidate];
 
-    if (!cloth_gap_candidate_is_gust (c) && evidence > next
-        && s->improvement > 0. && !cloth_diagnosis_is_settled (d, c->effect))
-      next = evidence;
+    if (may_come (d, s, next + d->null_evidence[s->candidate]))
+      next = s->evidence - d->null_evidence[s->candidate];
   }
   d->n_chosen--;
   cloth_diagnosis_list_nuisances (d, test);
@@ -244,25 +264,24 @@ find_next (ClothDiagnosis * d, ClothGapTest * test, const ClothGapScore * one)
 }
 
 /* An effect may stand for two others, as wind does for drag and tilted gravity: of those
- * hardly less likely than the first one, that beside which the next one brings most. It
- * gets the evidence that it has with the next one. */
-static const ClothGapScore *
-look_ahead (ClothDiagnosis * d, ClothGapTest * test, GArray * scores,
-    const ClothGapScore * first)
+ * hardly less likely than the first one, that beside which the next one brings most goes
+ * first. It gets the evidence that it has with the next one. */
+static void
+look_ahead (ClothDiagnosis * d, ClothGapTest * test, GArray * scores)
 {
+  const ClothGapScore *first = find_asked (d, scores, TRUE);
   ClothGapScore *best = NULL;
-  gdouble most = 0., of_first = 0.;
+  gdouble least, most = 0., of_first = 0.;
 
-  if (d->n_chosen)
-    return first;
+  if (!first)
+    return;
+  least = MAX (first->evidence - HARDLY_LESS, MAX (d->least_evidence,
+          find_gusts (d, scores)));
   for (guint i = 0; i < scores->len; i++) {
     ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
-    const ClothGapCandidate *c = cloth_diagnosis_candidate (d, s);
     gdouble all;
 
-    if (cloth_gap_candidate_is_gust (c) || !(s->improvement > 0.)
-        || s->evidence < MAX (d->least_evidence, first->evidence - MUCH)
-        || cloth_diagnosis_is_settled (d, c->effect))
+    if (!may_come (d, s, least))
       continue;
     all = s->evidence + find_next (d, test, s);
     if (s == first)
@@ -273,7 +292,7 @@ look_ahead (ClothDiagnosis * d, ClothGapTest * test, GArray * scores,
     }
   }
   best->evidence = first->evidence + most - of_first;
-  return best;
+  g_array_sort (scores, cloth_gap_score_compare);
 }
 
 /* Fits with the last effect, from where it is asked to be, else from its null. */
@@ -323,10 +342,11 @@ cloth_diagnosis_select (ClothDiagnosis * d, GError ** error)
   cloth_diagnosis_begin_part (d, 0.42, 0.48, 0.5, "the likeliest effects");
   if (!cloth_diagnosis_try_rivals (d, &test, scores, d->model, error))
     return FALSE;
+  look_ahead (d, &test, scores);
   cloth_diagnosis_fill_effects (d, &test, scores);
   while ((asked = find_asked (d, scores, TRUE))) {
     GError *failed = NULL;
-    const ClothGapScore next = *look_ahead (d, &test, scores, asked);
+    const ClothGapScore next = *asked;
     guint done = d->n_chosen + d->n_dropped, dropped = d->n_dropped;
     gdouble from = 0.48 + 0.12 * MIN (done, CLOTH_DIAGNOSIS_MAX_ACCEPTED - 1);
 

@@ -345,6 +345,7 @@ test_hidden (void)
   g_assert_nonnull (strstr (one->reason, "0.9 mm off"));
   g_assert_nonnull (strstr (one->reason, "baseline 0.5 mm"));
   g_assert_nonnull (strstr (two->reason, "slowly led"));
+  g_assert_nonnull (strstr (three->reason, "0.9 mm off"));
   summary = cloth_gap_result_summary (one);
   g_assert_nonnull (strstr (summary, one->reason));
 }

@@ -125,20 +125,25 @@ def measure_oracle(tool, folder, name, label):
     """The gap with the effect that acted, as large as it was, in the model as it was fitted:
     its mean square in metres squared; None when it can't be simulated."""
     path = os.path.join(folder, 'oracle', name, 'gap.json')
-    if not os.path.exists(path):
-        model = read_json(os.path.join(folder, 'gaps', name, 'fitted.json'))
+    fitted = os.path.join(folder, 'gaps', name, 'fitted.json')
+    if not os.path.exists(fitted):
+        return None
+    if not os.path.exists(path) or os.path.getmtime(path) < os.path.getmtime(fitted):
+        model = read_json(fitted)
         model['effects'], model['free'] = reality.effects_in_take(label['effects']), []
         with tempfile.TemporaryDirectory(prefix='cloth-gapbench-') as scratch:
             file_name = os.path.join(scratch, 'model.json')
             with open(file_name, 'w', encoding='utf-8') as file:
                 json.dump(model, file)
             # one effect, as one must be tested
-            subprocess.run([tool, 'diagnose', os.path.join(folder, 'takes', name, 'take'),
-                            '--model', file_name, '--effects', 'gravity_scale', '--threads', '1',
-                            '--seed', '1', '--output', os.path.dirname(path)],
-                           capture_output=True, stdin=subprocess.DEVNULL, check=False)
-    if not os.path.exists(path):
-        return None
+            done = subprocess.run(
+                [tool, 'diagnose', os.path.join(folder, 'takes', name, 'take'), '--model',
+                 file_name, '--effects', 'gravity_scale', '--threads', '1', '--seed', '1',
+                 '--output', os.path.dirname(path)],
+                capture_output=True, text=True, stdin=subprocess.DEVNULL, check=False)
+            if done.returncode:
+                print('%s with the true effect: %s' % (name, done.stderr.strip().split('\n')[-1]))
+                return None
     gap = read_json(path)['gap_before']['value']
     return None if gap is None else gap ** 2
 
@@ -147,7 +152,7 @@ def open_and_score(tool, folders):
     every, gaps, oracles, left = {}, {}, {}, []
     for folder in folders:
         labels = seal.open_labels(os.path.join(folder, 'sealed'), os.path.join(folder, 'takes'))
-        before = os.path.basename(os.path.normpath(folder)) + '/' if len(folders) > 1 else ''
+        before = os.path.normpath(folder) + '/' if len(folders) > 1 else ''
         here = {}
         for name in sorted(labels):
             path = os.path.join(folder, 'gaps', name, 'gap.json')
