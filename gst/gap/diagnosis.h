@@ -80,6 +80,8 @@ typedef struct
   guint dropped[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
   guint n_dropped;
   gchar *unknown;               /* what speaks of something, whatever it is, or NULL */
+  gdouble clamps_off;           /* square that clamps are further off their paths than usual,
+                                   m²; 0: they are not */
   gboolean asked;               /* whether an effect was asked for */
   /* of the first take before and after, of the first baseline; NULL where there is none */
   ClothGapEnergy *before, *after, *floor;
@@ -187,7 +189,7 @@ void cloth_diagnosis_fill_effects (ClothDiagnosis * d,
 gboolean cloth_diagnosis_select (ClothDiagnosis * d, GError ** error);
 
 /* What remains. */
-gchar *cloth_diagnosis_find_unknown (const ClothDiagnosis * d);
+gchar *cloth_diagnosis_find_unknown (ClothDiagnosis * d);
 
 /* How much, and the verdict. */
 gboolean cloth_diagnosis_find_gaps (ClothDiagnosis * d, guint begin, guint end,

@@ -464,6 +464,17 @@ is_ambiguous (const ClothGapResult * r)
   return FALSE;
 }
 
+/* Whether clamps are off their paths by enough to speak of, and no accepted effect moves
+ * clamps. */
+static gboolean
+are_clamps_off (const ClothDiagnosis * d, gdouble floor2)
+{
+  for (guint i = 0; i < d->n_chosen; i++)
+    if (cloth_diagnosis_chosen (d, i)->effect->side == CLOTH_EFFECT_CLAMP)
+      return FALSE;
+  return d->clamps_off > CLOTH_DIAGNOSIS_LEAST_SHRINK * floor2;
+}
+
 void
 cloth_diagnosis_decide (ClothDiagnosis * d)
 {
@@ -474,17 +485,18 @@ cloth_diagnosis_decide (ClothDiagnosis * d)
   gboolean above = rest * rest > CLOTH_DIAGNOSIS_BAND * floor2;
   /* an effect that was asked for and did not help stands for another */
   gboolean other = d->asked && rest * rest > floor2;
+  gboolean clamps = are_clamps_off (d, floor2);
 
   if (d->n_chosen)
     accept_effects (d);
   add_camera_effects (d);
-  if (above || (!accepted && (d->unknown || other)))
+  if (above || clamps || (!accepted && (d->unknown || other)))
     r->verdict = CLOTH_GAP_UNEXPLAINED;
   else if (!accepted)
     r->verdict = CLOTH_GAP_NO_GAP;
   else
     r->verdict = is_ambiguous (r) ? CLOTH_GAP_AMBIGUOUS : CLOTH_GAP_EXPLAINED;
-  if (!accepted && d->unknown)
+  if (clamps || (!accepted && d->unknown))
     r->reason = g_steal_pointer (&d->unknown);
   else if (!accepted && other && !above)
     r->reason = g_strdup ("An effect was asked for, but with it unseen data "

@@ -171,7 +171,7 @@ find_off (const ClothRecording * r)
 /* A clamp that is seen is an observation: off its logged path it leads the cloth elsewhere
  * than the simulation's. The baseline that is furthest off says what is usual. */
 static gchar *
-find_clamps_off (const ClothDiagnosis * d)
+find_clamps_off (ClothDiagnosis * d)
 {
   gdouble usual = 0.;
 
@@ -182,10 +182,12 @@ find_clamps_off (const ClothDiagnosis * d)
     const gdouble off = find_off (r), noise = 3. * r->sigma * r->sigma;
 
     if (off > CLAMPS_OFF * MAX (usual, noise)
-        && off > LEAST_OFF_M * LEAST_OFF_M)
+        && off > LEAST_OFF_M * LEAST_OFF_M) {
+      d->clamps_off = off - MAX (usual, noise);
       return g_strdup_printf ("The clamps of %s are seen %.1f mm off their "
           "logged paths, on the baseline %.1f mm.", r->name, 1e3 * sqrt (off),
           1e3 * sqrt (usual));
+    }
   }
   return NULL;
 }
@@ -202,7 +204,7 @@ find_clamps_off (const ClothDiagnosis * d)
  *   baselines, a sentence; %NULL: nothing does
  */
 gchar *
-cloth_diagnosis_find_unknown (const ClothDiagnosis * d)
+cloth_diagnosis_find_unknown (ClothDiagnosis * d)
 {
   gchar *clamps = d->options->n_baselines ? find_clamps_off (d) : NULL;
 
