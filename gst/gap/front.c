@@ -10,8 +10,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/mesh/file.h"
 #include "gst/gap/report.h"
+#include "gst/mesh/file.h"
 #include "gst/sim/effect-table.h"
 
 /* Longest text that is compared with names. */
@@ -192,16 +192,11 @@ write_model (const ClothModel * model, const gchar * folder, GError ** error)
 {
   g_autofree gchar *path = g_build_filename (folder, "fitted.json", NULL);
   g_autofree gchar *text = model ? cloth_model_to_json (model) : NULL;
-  g_autoptr (ClothOutput) output = NULL;
 
-  if (!model) {
-    g_unlink (path);
-    return TRUE;
-  }
-  output = cloth_output_new (path, error);
-  return output && cloth_output_write (output, text, strlen (text), error) &&
-      cloth_output_finish (output, error) &&
-      cloth_output_commit (&output, 1, error);
+  if (text)
+    return cloth_file_write_text (path, text, error);
+  g_unlink (path);
+  return TRUE;
 }
 
 /**

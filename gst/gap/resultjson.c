@@ -502,9 +502,6 @@ cloth_gap_result_write_json (const ClothGapResult * result,
     const gchar * path, GError ** error)
 {
   g_autofree gchar *text = cloth_gap_result_to_json (result);
-  g_autoptr (ClothOutput) output = cloth_output_new (path, error);
 
-  return output && cloth_output_write (output, text, strlen (text), error) &&
-      cloth_output_finish (output, error) &&
-      cloth_output_commit (&output, 1, error);
+  return cloth_file_write_text (path, text, error);
 }

@@ -201,7 +201,7 @@ drop_needless (ClothDiagnosis * d, GError ** error)
 
 /* How likely gusts are; −∞: they were not tested. */
 static gdouble
-find_gusts (const ClothDiagnosis * d, const GArray * scores)
+gust_evidence (const ClothDiagnosis * d, const GArray * scores)
 {
   for (guint i = 0; i < scores->len; i++) {
     const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
@@ -228,7 +228,7 @@ static const ClothGapScore *
 find_asked (const ClothDiagnosis * d, const GArray * scores, gboolean gusts)
 {
   const gdouble least = MAX (d->least_evidence, gusts ?
-      find_gusts (d, scores) : -INFINITY);
+      gust_evidence (d, scores) : -INFINITY);
 
   for (guint i = 0; i < scores->len; i++) {
     const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
@@ -276,7 +276,7 @@ look_ahead (ClothDiagnosis * d, ClothGapTest * test, GArray * scores)
   if (!first)
     return;
   least = MAX (first->evidence - HARDLY_LESS, MAX (d->least_evidence,
-          find_gusts (d, scores)));
+          gust_evidence (d, scores)));
   for (guint i = 0; i < scores->len; i++) {
     ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
     gdouble all;

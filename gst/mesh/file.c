@@ -417,6 +417,26 @@ cloth_output_commit (ClothOutput * const *outputs, guint n_outputs,
 }
 
 /**
+ * cloth_file_write_text:
+ * @path: where the file shall be
+ * @text: what is in it
+ * @error: #GIOErrorEnum
+ *
+ * The file appears whole or not at all.
+ *
+ * Returns: %TRUE when it is there
+ * Since: 0.1
+ */
+gboolean
+cloth_file_write_text (const gchar * path, const gchar * text, GError ** error)
+{
+  g_autoptr (ClothOutput) output = cloth_output_new (path, error);
+
+  return output && cloth_output_write (output, text, strlen (text), error) &&
+      cloth_output_commit (&output, 1, error);
+}
+
+/**
  * cloth_output_free:
  * @output: (transfer full) (nullable): an output
  *

@@ -63,6 +63,8 @@ gboolean cloth_output_finish (ClothOutput * output, GError ** error);
 gboolean cloth_output_commit (ClothOutput * const *outputs, guint n_outputs,
     GError ** error);
 void cloth_output_free (ClothOutput * output);
+gboolean cloth_file_write_text (const gchar * path, const gchar * text,
+    GError ** error);
 
 gchar *cloth_path_inside (const gchar * folder, const gchar * name,
     GError ** error);
