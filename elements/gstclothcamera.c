@@ -40,7 +40,7 @@
 
 #include "elements/gstclothpaint.h"
 #include "elements/gstclothutil.h"
-#include "gst/vision/render.h"
+#include "gst/render/render.h"
 
 GST_DEBUG_CATEGORY_STATIC (cloth_camera_debug);
 #define GST_CAT_DEFAULT cloth_camera_debug

@@ -7,10 +7,10 @@
 
 #include "elements/gstclothgap-inputs.h"
 
-#include "elements/gstclothsights.h"
+#include "gst/cloth-io/observations.h"
 #include "elements/gstclothutil.h"
 #include "elements/gstmeshformat.h"
-#include "gst/gap/front.h"
+#include "gst/gap/inputs.h"
 
 static gboolean
 fail (GstElement * element, const gchar * property, const gchar * path,

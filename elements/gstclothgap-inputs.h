@@ -6,8 +6,8 @@
 #include <gst/gst.h>
 
 #include "elements/gstclothgap-settings.h"
-#include "gst/gap/sights.h"
-#include "gst/mesh/take.h"
+#include "gst/fit/recording/observations.h"
+#include "gst/take/take.h"
 #include "gst/sim/model.h"
 #include "gst/sim/scene.h"
 

@@ -9,7 +9,7 @@
 
 #include <math.h>
 
-#include "elements/gstclothpoints.h"
+#include "gst/cloth-io/points.h"
 #include "elements/gstclothutil.h"
 
 struct _GstClothGapView

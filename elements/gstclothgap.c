@@ -56,7 +56,7 @@
 #include "elements/gstclothgap-record.h"
 #include "elements/gstclothgap-view.h"
 #include "elements/gstclothutil.h"
-#include "gst/gap/observer.h"
+#include "gst/fit/nudge/observer.h"
 
 GST_DEBUG_CATEGORY_STATIC (cloth_gap_debug);
 #define GST_CAT_DEFAULT cloth_gap_debug
@@ -479,7 +479,7 @@ finish (GstClothgap * self)
     GST_ELEMENT_ERROR (self, RESOURCE, WRITE,
         ("Can't write the report: %s", error->message),
         ("Set output= to a folder that can be written."));
-  else if (!g_error_matches (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_CANCELLED))
+  else if (!g_error_matches (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_CANCELLED))
     GST_ELEMENT_ERROR (self, STREAM, FAILED,
         ("Can't diagnose the recording: %s", error->message), (NULL));
 }

@@ -6,7 +6,7 @@
 #include <gst/cloth/cloth.h>
 #include <gst/video/video.h>
 #include "gst/rig/camera.h"
-#include "gst/vision/draw.h"
+#include "gst/render/draw.h"
 
 G_BEGIN_DECLS
 

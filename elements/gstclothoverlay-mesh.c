@@ -8,8 +8,8 @@
 #include "elements/gstclothoverlay-draw.h"
 #include "elements/gstclothpaint.h"
 
-#include "gst/vision/surface.h"
-#include "gst/vision/wireframe.h"
+#include "gst/render/surface.h"
+#include "gst/render/wireframe.h"
 
 /* Of the lines of a mesh that lie behind another part of it. */
 #define HIDDEN_OPACITY 0.25f

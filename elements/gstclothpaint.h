@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/vision/paint.h"
+#include "gst/render/paint.h"
 
 G_BEGIN_DECLS
 

@@ -36,8 +36,8 @@
 #include "elements/gstclothutil.h"
 #include "elements/gstdotlabelchart.h"
 #include "gst/pattern/marray.h"
-#include "gst/vision/dotcolour.h"
-#include "gst/vision/lattice.h"
+#include "gst/vision/label/dot-colour.h"
+#include "gst/vision/label/dot-label.h"
 
 GST_DEBUG_CATEGORY_STATIC (dot_label_debug);
 #define GST_CAT_DEFAULT dot_label_debug

@@ -7,8 +7,8 @@
 #include <gst/video/video.h>
 
 #include "gst/pattern/marray.h"
-#include "gst/vision/dotcolour.h"
-#include "gst/vision/lattice.h"
+#include "gst/vision/label/dot-colour.h"
+#include "gst/vision/label/dot-label.h"
 
 G_BEGIN_DECLS
 

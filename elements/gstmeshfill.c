@@ -41,9 +41,9 @@
 
 #include "elements/gstclothutil.h"
 #include "elements/gstmeshformat.h"
-#include "gst/mesh/fill.h"
-#include "gst/mesh/garment.h"
-#include "gst/mesh/smooth.h"
+#include "gst/mesh/fill/fill.h"
+#include "gst/mesh/garment/garment.h"
+#include "gst/mesh/fill/smooth.h"
 
 GST_DEBUG_CATEGORY_STATIC (mesh_fill_debug);
 #define GST_CAT_DEFAULT mesh_fill_debug

@@ -60,7 +60,7 @@ gst_mesh_post_error (GstElement * element, const gchar * doing,
   GQuark domain = GST_RESOURCE_ERROR;
   gint code = writing ? GST_RESOURCE_ERROR_WRITE : GST_RESOURCE_ERROR_READ;
 
-  if (error->domain == CLOTH_MESH_ERROR) {
+  if (error->domain == CLOTH_FILE_ERROR) {
     domain = GST_STREAM_ERROR;
     code = GST_STREAM_ERROR_FORMAT;
   } else if (g_error_matches (error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND)) {

@@ -5,7 +5,7 @@
 
 #include <gst/cloth/cloth.h>
 
-#include "gst/mesh/sequence.h"
+#include "gst/take/sequence.h"
 
 G_BEGIN_DECLS
 

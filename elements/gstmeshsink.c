@@ -167,7 +167,7 @@ gst_mesh_sink_render (GstBaseSink * sink, GstBuffer * buffer)
   if (!self->writer && !open_writer (self))
     return GST_FLOW_ERROR;
   if (!frame_time (self, buffer, &time_s)) {
-    g_set_error (&error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID,
+    g_set_error (&error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
         "a frame has neither a time stamp nor a frame rate");
     fail (self, "write", error);
     return GST_FLOW_ERROR;

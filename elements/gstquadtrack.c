@@ -11,8 +11,8 @@
 #include "elements/gstclothutil.h"
 #include "elements/gstquadtrackseed.h"
 #include "gst/pattern/pattern.h"
-#include "gst/vision/quad.h"
-#include "gst/vision/saddle.h"
+#include "gst/vision/quad/quad.h"
+#include "gst/vision/corner/saddle.h"
 
 GST_DEBUG_CATEGORY_STATIC (quad_track_debug);
 #define GST_CAT_DEFAULT quad_track_debug

@@ -6,7 +6,7 @@
 #include <gst/gst.h>
 
 #include "gst/pattern/pattern.h"
-#include "gst/vision/quad.h"
+#include "gst/vision/quad/quad.h"
 
 G_BEGIN_DECLS
 

@@ -28,7 +28,7 @@
 
 #include <gst/cloth/cloth.h>
 
-#include "gst/vision/saddle.h"
+#include "gst/vision/corner/saddle.h"
 
 GST_DEBUG_CATEGORY_STATIC (saddle_detect_debug);
 #define GST_CAT_DEFAULT saddle_detect_debug

@@ -7,7 +7,7 @@
 
 #include "elements/gsttriangulateboard.h"
 
-#include "elements/gstclothpoints.h"
+#include "gst/cloth-io/points.h"
 
 static GstClothTopology *
 make_topology (const GstTriangulateBoard * board, const gdouble origin_m[2],

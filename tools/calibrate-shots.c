@@ -10,8 +10,8 @@
 
 #include "calibrate-frames.h"
 #include "gst/rig/planar.h"
-#include "gst/vision/board.h"
-#include "gst/vision/saddle.h"
+#include "gst/vision/checker/board.h"
+#include "gst/vision/corner/saddle.h"
 
 /* Fewer corners than this are not worth a pose. */
 #define MIN_CORNERS 6

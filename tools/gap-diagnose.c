@@ -9,8 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "elements/gstclothsights.h"
-#include "gst/gap/front.h"
+#include "gst/cloth-io/observations.h"
+#include "gst/gap/inputs.h"
 
 static volatile sig_atomic_t interrupted;
 
@@ -52,7 +52,7 @@ open_takes (gchar ** folders, GError ** error)
     ClothTake *take;
 
     if (!g_file_test (json, G_FILE_TEST_EXISTS)) {
-      g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE,
+      g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING,
           "“%s” is no take: there is no take.json in it; give the folder that "
           "holds take.json and positions.npy", folders[i]);
       return NULL;
@@ -240,7 +240,7 @@ diagnose (const Arguments * arguments)
   /* Only an empty folder goes. */
   if (made)
     g_rmdir (arguments->output);
-  if (g_error_matches (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_CANCELLED))
+  if (g_error_matches (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_CANCELLED))
     return complain (FAILED, "stopped; nothing was written");
   return complain (FAILED, "%s", error->message);
 }

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "gst/file/jsonwriter.h"
-#include "gst/sim/effect-table.h"
+#include "gst/effect/effect.h"
 
 static gchar *
 number (gdouble value)

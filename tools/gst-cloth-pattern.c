@@ -4,7 +4,7 @@
 #include "config.h"
 
 #include "gst/file/textfile.h"
-#include "gst/mesh/garment.h"
+#include "gst/mesh/garment/garment.h"
 #include "gst/pattern/code.h"
 #include "gst/pattern/marray.h"
 #include "gst/pattern/pattern.h"

@@ -81,7 +81,7 @@ check_text (const gchar * data, gsize length, GError ** error)
         "%" G_GSIZE_FORMAT " bytes are more than the %d allowed", length,
         MAX_BYTES);
   if (!g_utf8_validate_len (data, length, NULL))
-    return refuse (error, CLOTH_FILE_ERROR_SYNTAX, "it is not UTF-8 text");
+    return refuse (error, CLOTH_FILE_ERROR_INVALID, "it is not UTF-8 text");
   for (gsize i = 0; i < length; i++) {
     gchar c = data[i];
 
@@ -90,7 +90,7 @@ check_text (const gchar * data, gsize length, GError ** error)
         gsize n = check_escape (data + i, length - i);
 
         if (n == 0)
-          return refuse (error, CLOTH_FILE_ERROR_SYNTAX,
+          return refuse (error, CLOTH_FILE_ERROR_INVALID,
               "the escape at offset %" G_GSIZE_FORMAT " is no character", i);
         i += n - 1;
       } else if (c == '"') {
@@ -101,7 +101,7 @@ check_text (const gchar * data, gsize length, GError ** error)
     if (c != 0 && strchr (" \t\r\n", c))
       continue;
     if (ended || (depth == 0 && c != '{'))
-      return refuse (error, CLOTH_FILE_ERROR_SYNTAX,
+      return refuse (error, CLOTH_FILE_ERROR_INVALID,
           "byte 0x%02x at offset %" G_GSIZE_FORMAT "; the file must hold one "
           "object and nothing else", (guchar) c, i);
     if (c == '"') {
@@ -116,14 +116,14 @@ check_text (const gchar * data, gsize length, GError ** error)
     } else if (c == ',') {
       n_values++;
     } else if (!strchr (":+-.", c) && !g_ascii_isalnum (c)) {
-      return refuse (error, CLOTH_FILE_ERROR_SYNTAX,
+      return refuse (error, CLOTH_FILE_ERROR_INVALID,
           "byte 0x%02x at offset %" G_GSIZE_FORMAT, (guchar) c, i);
     }
     if (n_values > MAX_VALUES)
       return refuse (error, CLOTH_FILE_ERROR_LIMIT,
           "more than %d values", MAX_VALUES);
   }
-  return ended || refuse (error, CLOTH_FILE_ERROR_SYNTAX,
+  return ended || refuse (error, CLOTH_FILE_ERROR_INVALID,
       "the file must hold one object, with all its brackets closed");
 }
 
@@ -177,17 +177,17 @@ cloth_json_parse (const gchar * data, gsize length, GError ** error)
       &members);
   g_signal_connect (parser, "object-end", G_CALLBACK (object_end), &members);
   if (!json_parser_load_from_data (parser, data, (gssize) length, &fault)) {
-    refuse (error, CLOTH_FILE_ERROR_SYNTAX, "%s", fault->message);
+    refuse (error, CLOTH_FILE_ERROR_INVALID, "%s", fault->message);
     return NULL;
   }
   g_signal_handlers_disconnect_by_data (parser, &members);
   if (!json_parser_get_root (parser)
       || !JSON_NODE_HOLDS_OBJECT (json_parser_get_root (parser))) {
-    refuse (error, CLOTH_FILE_ERROR_SYNTAX, "the file must hold one object");
+    refuse (error, CLOTH_FILE_ERROR_INVALID, "the file must hold one object");
     return NULL;
   }
   if (members.twice) {
-    refuse (error, CLOTH_FILE_ERROR_SYNTAX, "an object has a key twice");
+    refuse (error, CLOTH_FILE_ERROR_INVALID, "an object has a key twice");
     return NULL;
   }
   return g_steal_pointer (&parser);

@@ -7,10 +7,6 @@
 
 #define MAX_BYTES (16 * 1024 * 1024)
 
-/* *INDENT-OFF* */
-G_DEFINE_QUARK (cloth-file-error-quark, cloth_file_error)
-/* *INDENT-ON* */
-
 /**
  * cloth_text_file_load:
  * @path: a file

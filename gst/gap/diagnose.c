@@ -8,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/gap/front.h"
-#include "gst/mesh/hash.h"
+#include "gst/gap/inputs.h"
+#include "gst/file/hash.h"
 
 /* Version of the priors and thresholds: a change of either changes probabilities. */
 #define PRIORS "4"
@@ -166,7 +166,7 @@ check_steps (ClothDiagnosis * d, const ClothModel * model, GError ** error)
       CLOTH_DIAGNOSIS_WINDOW_S) / cloth_sim_get_time_step (sim);
   if (steps <= MOST_STEPS)
     return TRUE;
-  g_set_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_MODEL, "the model needs "
+  g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL, "the model needs "
       "%.2g steps a frame of %s, and a diagnosis simulates it hundreds of "
       "times; lower “damping.stiffness” or the stiffnesses", steps,
       r->name);
@@ -348,7 +348,7 @@ study_other_model (ClothDiagnosis * d, GError ** error)
             d->candidates->n_free, &d->study, &diverged))
       continue;
     /* one that these numbers make no cloth of tells nothing */
-    if (g_error_matches (diverged, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_MODEL))
+    if (g_error_matches (diverged, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL))
       return TRUE;
     g_propagate_error (error, g_steal_pointer (&diverged));
     return FALSE;
@@ -420,7 +420,7 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
  * @n_takes: how many, at least one; of the same cloth
  * @model: what the simulator knows
  * @options: what else is given
- * @error: #ClothGapError, #ClothSimError, or what reading a take says
+ * @error: #ClothFitError, #ClothSimError, or what reading a take says
  *
  * Runs the simulation with weak springs to what was recorded, tests by its score which
  * effect the residual asks for once the model's free numbers and the simulator's own

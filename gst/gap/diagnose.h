@@ -3,31 +3,13 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/gap/result.h"
-#include "gst/gap/sights.h"
-#include "gst/mesh/take.h"
+#include "gst/fit/error.h"
+#include "gst/gap/report/result.h"
+#include "gst/fit/recording/observations.h"
+#include "gst/take/take.h"
 #include "gst/sim/model.h"
 
 G_BEGIN_DECLS
-
-/**
- * ClothGapError:
- * @CLOTH_GAP_ERROR_TAKE: a take can't be diagnosed at all
- * @CLOTH_GAP_ERROR_EFFECT: an effect that the library doesn't have
- * @CLOTH_GAP_ERROR_MODEL: the model is impossible
- * @CLOTH_GAP_ERROR_CANCELLED: the progress function asked to stop
- *
- * Since: 0.1
- */
-typedef enum {
-  CLOTH_GAP_ERROR_TAKE,
-  CLOTH_GAP_ERROR_EFFECT,
-  CLOTH_GAP_ERROR_MODEL,
-  CLOTH_GAP_ERROR_CANCELLED
-} ClothGapError;
-
-#define CLOTH_GAP_ERROR (cloth_gap_error_quark ())
-GQuark cloth_gap_error_quark (void);
 
 /**
  * ClothGapProgress:

@@ -4,10 +4,10 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/gap/camera.h"
+#include "gst/gap/camera/view.h"
 #include "gst/gap/diagnose.h"
-#include "gst/gap/extent.h"
-#include "gst/gap/score.h"
+#include "gst/fit/nudge/windows.h"
+#include "gst/gap/inference/score.h"
 
 G_BEGIN_DECLS
 

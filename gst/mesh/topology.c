@@ -110,7 +110,7 @@ cloth_topology_equal (const ClothTopology * a, const ClothTopology * b)
 /**
  * cloth_topology_check:
  * @topology: what a file said
- * @error: #ClothMeshError
+ * @error: #ClothFileError
  *
  * Checks the limits, every index and every uv.
  *
@@ -123,7 +123,7 @@ cloth_topology_check (const ClothTopology * topology, GError ** error)
   guint n = topology->n_vertices;
 
   if (n == 0 || n > CLOTH_MAX_VERTICES || topology->n_faces > CLOTH_MAX_FACES) {
-    g_set_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_LIMIT,
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT,
         "%u vertices and %u faces: between 1 and %u vertices and at most %u "
         "faces are accepted", n, topology->n_faces, CLOTH_MAX_VERTICES,
         CLOTH_MAX_FACES);
@@ -131,7 +131,7 @@ cloth_topology_check (const ClothTopology * topology, GError ** error)
   }
   for (gsize i = 0; i < 2 * (gsize) n; i++) {
     if (!isfinite (topology->uv[i])) {
-      g_set_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID,
+      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
           "the uv of vertex %u is no finite number", (guint) (i / 2));
       return FALSE;
     }
@@ -140,7 +140,7 @@ cloth_topology_check (const ClothTopology * topology, GError ** error)
     guint32 index = topology->faces[i];
 
     if (index >= n && !(i % 4 == 3 && index == CLOTH_NO_VERTEX)) {
-      g_set_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID,
+      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
           "face %u names a vertex that is not there (there are %u)",
           (guint) (i / 4), n);
       return FALSE;
@@ -169,7 +169,7 @@ cloth_topology_free (ClothTopology * topology)
  * cloth_positions_check:
  * @positions: 3 numbers a vertex
  * @n_vertices: how many vertices
- * @error: #ClothMeshError
+ * @error: #ClothFileError
  *
  * A vertex is either seen, three finite numbers, or not seen, three NaN.
  *
@@ -186,7 +186,7 @@ cloth_positions_check (const gfloat * positions, guint n_vertices,
       continue;
     if (isnan (positions[0]) && isnan (positions[1]) && isnan (positions[2]))
       continue;
-    g_set_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID,
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
         "the position of vertex %u is neither three finite numbers nor three "
         "NaN", i);
     return FALSE;

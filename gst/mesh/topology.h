@@ -3,9 +3,13 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/mesh/file.h"
+#include "gst/file/file.h"
 
 G_BEGIN_DECLS
+
+/* Limits on untrusted input. */
+#define CLOTH_MAX_VERTICES 1000000u
+#define CLOTH_MAX_FACES 2000000u
 
 /* Fourth index of a triangle. */
 #define CLOTH_NO_VERTEX 0xffffffffu
@@ -82,6 +86,35 @@ typedef struct {
   guint columns;
   guint rows;
 } ClothMeshNote;
+
+/**
+ * ClothMeshFrame:
+ * @positions: 3 numbers a vertex, metres, NaN when not seen
+ * @states: a #ClothVertexState a vertex
+ * @covariances: (nullable): 6 numbers a vertex, m², NaN where not known
+ *
+ * One frame of a sequence.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  const gfloat *positions;
+  const guint8 *states;
+  const gfloat *covariances;
+} ClothMeshFrame;
+
+/**
+ * ClothSeamLine:
+ * @n_vertices: vertices of a line
+ * @lines: two lines of vertices on the edges of the cloth; each vertex of the first is
+ *   sewn to the one at its place in the second
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  guint n_vertices;
+  guint *lines[2];
+} ClothSeamLine;
 
 ClothTopology *cloth_topology_new (guint n_vertices, guint n_faces);
 ClothTopology *cloth_topology_new_grid (guint columns, guint rows,

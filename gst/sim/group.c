@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-#include "gst/sim/effect-table.h"
+#include "gst/effect/effect.h"
 #include "gst/sim/effects/effects.h"
 
 /* Every variant of the lanes; those of other machines are not built. */

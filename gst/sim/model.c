@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/sim/effect-table.h"
+#include "gst/effect/effect.h"
 
 /* *INDENT-OFF* */
 G_DEFINE_QUARK (cloth-model-error-quark, cloth_model_error)

@@ -8,7 +8,7 @@
 
 #include "gst/file/jsonvalue.h"
 #include "gst/file/jsonwriter.h"
-#include "gst/sim/effect-table.h"
+#include "gst/effect/effect.h"
 
 #define MAX_FREE 1024
 

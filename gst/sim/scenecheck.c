@@ -84,10 +84,10 @@ check_faces (const ClothTopology * topology, GError ** error)
     qsort (all[face].corner, 4, sizeof *corner, compare_indices);
     for (guint k = 1; k < n; k++)
       if (all[face].corner[k] == all[face].corner[k - 1])
-        return cloth_mesh_invalid (error, "face %u has vertex %u twice", face,
+        return cloth_file_invalid (error, "face %u has vertex %u twice", face,
             all[face].corner[k]);
     if (!(fabs (flat_area (topology, face)) > 1e-6 * size * size))
-      return cloth_mesh_invalid (error,
+      return cloth_file_invalid (error,
           "face %u (vertices %u, %u, %u) has no area on the "
           "flat cloth: its uv lie on a line", face, corner[0], corner[1],
           corner[2]);
@@ -95,7 +95,7 @@ check_faces (const ClothTopology * topology, GError ** error)
   qsort (all, topology->n_faces, sizeof *all, compare_corners);
   for (guint i = 1; i < topology->n_faces; i++)
     if (memcmp (all[i].corner, all[i - 1].corner, sizeof all[i].corner) == 0)
-      return cloth_mesh_invalid (error, "faces %u and %u are the same",
+      return cloth_file_invalid (error, "faces %u and %u are the same",
           all[i - 1].face, all[i].face);
   return TRUE;
 }
@@ -129,18 +129,18 @@ check_edges (const ClothTopology * topology, GError ** error)
     if (!cloth_side_same_edge (a, b))
       continue;
     if (i + 1 < n && cloth_side_same_edge (a, b + 1))
-      return cloth_mesh_invalid (error,
+      return cloth_file_invalid (error,
           "the edge from vertex %u to vertex %u belongs to "
           "more than two faces, %u, %u and %u among them", a->a, a->b,
           a->face, b->face, b[1].face);
     if (starts_at (topology, a) == starts_at (topology, b))
-      return cloth_mesh_invalid (error,
+      return cloth_file_invalid (error,
           "face %u is inverted against face %u: they run "
           "the same way along the edge from vertex %u to vertex %u", b->face,
           a->face, a->a, a->b);
     if ((flat_area (topology, a->face) > 0) != (flat_area (topology,
                 b->face) > 0))
-      return cloth_mesh_invalid (error,
+      return cloth_file_invalid (error,
           "face %u is inverted against face %u: on the flat "
           "cloth it lies folded over the edge from vertex %u to vertex %u",
           b->face, a->face, a->a, a->b);
@@ -157,24 +157,24 @@ check_numbers (const ClothScene * scene, GError ** error)
 
   for (guint k = 0; k < 3; k++)
     if (!isfinite (scene->gravity[k]))
-      return cloth_mesh_invalid (error, "gravity along %c is %g", axes[k],
+      return cloth_file_invalid (error, "gravity along %c is %g", axes[k],
           scene->gravity[k]);
   for (guint a = 0; a < 2; a++) {
     for (gsize i = 0; arrays[a] &&
         i < 3 * (gsize) scene->topology->n_vertices; i++)
       if (!isfinite (arrays[a][i]))
-        return cloth_mesh_invalid (error,
+        return cloth_file_invalid (error,
             "the %s of vertex %u along %c is %g at the start", names[a],
             (guint) (i / 3), axes[i % 3], arrays[a][i]);
   }
   if (!(scene->fps > 0) || !isfinite (scene->fps))
-    return cloth_mesh_invalid (error, "a frame rate of %g", scene->fps);
+    return cloth_file_invalid (error, "a frame rate of %g", scene->fps);
   if (scene->n_frames == 0)
-    return cloth_mesh_invalid (error, "a scene needs at least one frame");
+    return cloth_file_invalid (error, "a scene needs at least one frame");
   for (guint i = 0; i < scene->n_frames; i++)
     if (!isfinite (scene->times[i]) ||
         (i > 0 && scene->times[i] <= scene->times[i - 1]))
-      return cloth_mesh_invalid (error,
+      return cloth_file_invalid (error,
           "the time of frame %u, %g s, is not finite or does not rise", i,
           scene->times[i]);
   return TRUE;
@@ -190,16 +190,16 @@ check_held (const ClothScene * scene, GError ** error)
     const ClothHeld *other;
 
     if (held->vertex >= scene->topology->n_vertices)
-      return cloth_mesh_invalid (error,
+      return cloth_file_invalid (error,
           "held vertex %u is not in the mesh (there are %u)", held->vertex,
           scene->topology->n_vertices);
     if (!(held->from_s < held->until_s))
-      return cloth_mesh_invalid (error,
+      return cloth_file_invalid (error,
           "held vertex %u is let go at %g s, before it is held at %g s",
           held->vertex, held->until_s, held->from_s);
     other = g_hash_table_lookup (last, GUINT_TO_POINTER (held->vertex));
     if (other && held->from_s < other->until_s && other->from_s < held->until_s)
-      return cloth_mesh_invalid (error, "vertex %u is held twice at a time",
+      return cloth_file_invalid (error, "vertex %u is held twice at a time",
           held->vertex);
     g_hash_table_insert (last, GUINT_TO_POINTER (held->vertex),
         (gpointer) held);
@@ -210,7 +210,7 @@ check_held (const ClothScene * scene, GError ** error)
       if (scene->times[frame] >= held->from_s &&
           scene->times[frame] < held->until_s &&
           !isfinite (place[0] + place[1] + place[2]))
-        return cloth_mesh_invalid (error,
+        return cloth_file_invalid (error,
             "the clamp of vertex %u has no place in frame " "%u", held->vertex,
             frame);
     }
@@ -228,25 +228,25 @@ check_obstacles (const ClothScene * scene, GError ** error)
         item->kind == CLOTH_OBSTACLE_CAPSULE;
 
     if (round && !(item->radius_m > 0 && isfinite (item->radius_m)))
-      return cloth_mesh_invalid (error, "obstacle %u has the radius %g m", i,
+      return cloth_file_invalid (error, "obstacle %u has the radius %g m", i,
           item->radius_m);
     for (guint k = 0; k < 3; k++)
       if (!isfinite (item->point[k] + item->end[k] + item->normal[k]))
-        return cloth_mesh_invalid (error, "obstacle %u has no finite place", i);
+        return cloth_file_invalid (error, "obstacle %u has no finite place", i);
     if (!(isnan (item->friction) || item->friction >= 0))
-      return cloth_mesh_invalid (error, "obstacle %u has the friction %g", i,
+      return cloth_file_invalid (error, "obstacle %u has the friction %g", i,
           item->friction);
     for (gsize k = 0; k < 3 * (gsize) item->n_points; k++)
       if (!isfinite (item->points[k]))
-        return cloth_mesh_invalid (error,
+        return cloth_file_invalid (error,
             "point %u of obstacle %u is %g along %c", (guint) (k / 3), i,
             item->points[k], "xyz"[k % 3]);
     if (item->kind == CLOTH_OBSTACLE_MESH && item->n_triangles == 0)
-      return cloth_mesh_invalid (error,
+      return cloth_file_invalid (error,
           "obstacle %u is a mesh without triangles", i);
     for (gsize k = 0; k < 3 * (gsize) item->n_triangles; k++)
       if (item->triangles[k] >= item->n_points)
-        return cloth_mesh_invalid (error,
+        return cloth_file_invalid (error,
             "triangle %u of obstacle %u names a point that is not there",
             (guint) (k / 3), i);
   }
@@ -256,7 +256,7 @@ check_obstacles (const ClothScene * scene, GError ** error)
 /**
  * cloth_scene_check:
  * @scene: a scene, perhaps made by hand
- * @error: #ClothMeshError, naming the element and its value
+ * @error: #ClothFileError, naming the element and its value
  *
  * Refuses what no simulation could make sense of: faces that are degenerate, there
  * twice or inverted against a neighbour, edges of more than two faces, numbers that
@@ -271,7 +271,7 @@ cloth_scene_check (const ClothScene * scene, GError ** error)
   if (!cloth_topology_check (scene->topology, error))
     return FALSE;
   if (scene->topology->n_faces == 0)
-    return cloth_mesh_invalid (error, "a mesh without faces");
+    return cloth_file_invalid (error, "a mesh without faces");
   if (!check_faces (scene->topology, error) ||
       !check_edges (scene->topology, error) ||
       !check_numbers (scene, error) || !check_held (scene, error) ||
@@ -282,7 +282,7 @@ cloth_scene_check (const ClothScene * scene, GError ** error)
     guint n = scene->topology->n_vertices;
 
     if (seam->a >= n || seam->b >= n || seam->a == seam->b)
-      return cloth_mesh_invalid (error,
+      return cloth_file_invalid (error,
           "vertices %u and %u cannot be sewn together: " "there are %u",
           seam->a, seam->b, n);
   }

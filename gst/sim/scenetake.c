@@ -31,7 +31,7 @@ line_length (const ClothTopology * topology, const guint * line, guint n)
  * cloth_scene_sew:
  * @scene: a scene
  * @line: two lines of vertices
- * @error: #ClothMeshError
+ * @error: #ClothFileError
  *
  * Sews the lines together, vertex by vertex.
  *
@@ -48,14 +48,14 @@ cloth_scene_sew (ClothScene * scene, const ClothSeamLine * line,
   for (guint side = 0; side < 2; side++) {
     for (guint i = 0; i < line->n_vertices; i++)
       if (line->lines[side][i] >= scene->topology->n_vertices)
-        return cloth_mesh_invalid (error,
+        return cloth_file_invalid (error,
             "vertex %u of a seam is not in the mesh (there are %u)",
             line->lines[side][i], scene->topology->n_vertices);
     lengths[side] =
         line_length (scene->topology, line->lines[side], line->n_vertices);
   }
   if (fabs (lengths[0] - lengths[1]) > SEAM_EASE * MAX (lengths[0], lengths[1]))
-    return cloth_mesh_invalid (error,
+    return cloth_file_invalid (error,
         "the lines of the seam from vertex %u and from "
         "vertex %u are %g m and %g m long on the flat cloth; they may differ "
         "by %g%%", line->lines[0][0], line->lines[1][0], lengths[0], lengths[1],
@@ -85,11 +85,11 @@ read_clamps (ClothScene * scene, ClothTake * take, GError ** error)
   if (n == 0)
     return TRUE;
   if (!cloth_take_has_clamps (take))
-    return cloth_mesh_invalid (error,
+    return cloth_file_invalid (error,
         "take.json says that %u vertices are held, but "
         "there is no clamps.npy with their paths", scene->held->len);
   if (n * scene->n_frames > CLOTH_MAX_BUFFER / sizeof (gdouble))
-    return cloth_mesh_invalid (error,
+    return cloth_file_invalid (error,
         "clamps.npy: %u held vertices in %u frames are "
         "more than a simulation takes", scene->held->len, scene->n_frames);
   row = g_new (gfloat, n);
@@ -157,7 +157,7 @@ read_start (ClothScene * scene, ClothTake * take, GError ** error)
 /**
  * cloth_scene_new_from_take:
  * @take: a take
- * @error: #ClothMeshError, #GIOErrorEnum; an element that is wrong is named
+ * @error: #ClothFileError, #GIOErrorEnum; an element that is wrong is named
  *
  * The scene that was filmed: its mesh, clamps, obstacles, gravity and times. The cloth
  * starts at rest where the first frame saw it; vertices not seen then lie between their

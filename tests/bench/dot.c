@@ -1,8 +1,8 @@
 /* Speed of dot detection, on a set of eight pictures of 1004 by 1004.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/cv/reference.h"
-#include "gst/vision/dot.h"
+#include "tests/reference/reference.h"
+#include "gst/vision/dot/dot.h"
 
 #include <math.h>
 #include <stdlib.h>

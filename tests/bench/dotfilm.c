@@ -8,7 +8,7 @@
 #include "gst/pattern/marray.h"
 #include "gst/pattern/texture.h"
 #include "gst/rig/rigfile.h"
-#include "gst/vision/render.h"
+#include "gst/render/render.h"
 
 #define SIZE 1004
 #define FPS 25

@@ -1,7 +1,7 @@
 /* Drawing 1,000 squares over 1080p: this rasteriser in place against cairo.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/vision/draw.h"
+#include "gst/render/draw.h"
 
 #include <cairo.h>
 

@@ -11,8 +11,8 @@
 
 #include "gst/math/linalg.h"
 #include "gst/math/random.h"
-#include "gst/mesh/fill.h"
-#include "gst/mesh/npy.h"
+#include "gst/mesh/fill/fill.h"
+#include "gst/file/npy.h"
 
 #define COLUMNS 33
 #define ROWS 35

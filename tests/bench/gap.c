@@ -8,8 +8,8 @@
 #include <stdio.h>
 
 #include "gst/gap/diagnose.h"
-#include "gst/gap/experiment.h"
-#include "gst/sim/effect-table.h"
+#include "gst/gap/design/experiment.h"
+#include "gst/effect/effect.h"
 #include "tests/common/gaprecord.h"
 
 static const TestGapSheet sheet = { 33, 35, 250, 0.63, 0.67, 50., 4e-4 };

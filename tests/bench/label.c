@@ -6,8 +6,8 @@
 
 #include "gst/math/random.h"
 #include "gst/pattern/marray.h"
-#include "gst/vision/dotcolour.h"
-#include "gst/vision/lattice.h"
+#include "gst/vision/label/dot-colour.h"
+#include "gst/vision/label/dot-label.h"
 #include "tests/bench/clock.h"
 
 #define COLUMNS 31

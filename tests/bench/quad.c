@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "gst/vision/quad.h"
-#include "gst/vision/saddle.h"
+#include "gst/vision/quad/quad.h"
+#include "gst/vision/corner/saddle.h"
 #include "tests/bench/clock.h"
 
 #define FRAMES 24

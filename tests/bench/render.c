@@ -1,7 +1,7 @@
 /* How long a picture of a cloth takes to draw.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/vision/render.h"
+#include "gst/render/render.h"
 
 #include <math.h>
 #include <stdio.h>

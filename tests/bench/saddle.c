@@ -4,10 +4,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "gst/cv/reference.h"
-#include "gst/vision/corner.h"
-#include "gst/vision/saddle-mask.h"
-#include "gst/vision/saddle.h"
+#include "tests/reference/reference.h"
+#include "gst/vision/corner/corner.h"
+#include "gst/vision/corner/saddle-mask.h"
+#include "gst/vision/corner/saddle.h"
 #include "tests/bench/clock.h"
 
 #define WIDTH 1920

@@ -2,7 +2,7 @@
  * renderer that films cloth exactly.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/vision/surface.h"
+#include "gst/render/surface.h"
 
 #include <math.h>
 

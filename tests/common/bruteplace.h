@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/vision/place.h"
+#include "gst/vision/checker/pose.h"
 
 G_BEGIN_DECLS
 

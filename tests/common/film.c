@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/mesh/npy.h"
+#include "gst/file/npy.h"
 #include "gst/rig/rigfile.h"
 
 /* The mesh the film was rendered from. */

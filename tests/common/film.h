@@ -6,8 +6,8 @@
 
 #include "gst/pattern/pattern.h"
 #include "gst/rig/rig.h"
-#include "gst/vision/quad.h"
-#include "gst/vision/saddle.h"
+#include "gst/vision/quad/quad.h"
+#include "gst/vision/corner/saddle.h"
 
 G_BEGIN_DECLS
 

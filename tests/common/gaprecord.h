@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/mesh/take.h"
+#include "gst/take/take.h"
 #include "gst/sim/model.h"
 
 G_BEGIN_DECLS

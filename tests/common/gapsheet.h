@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/gap/result.h"
+#include "gst/gap/report/result.h"
 
 ClothGapResult *gap_sheet_new (guint columns, guint rows, guint n_frames);
 ClothGapResult *gap_sheet_new_spare (void);

@@ -1,14 +1,14 @@
 /* Board finder: real boards against OpenCV's corners, boards half hidden, no boards.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/vision/board.h"
+#include "gst/vision/checker/board.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "gst/math/random.h"
-#include "gst/vision/saddle.h"
+#include "gst/vision/corner/saddle.h"
 #include "tests/common/picture.h"
 
 /* A real picture of a board with the inner corners that OpenCV found. */

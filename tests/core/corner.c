@@ -1,7 +1,7 @@
 /* The corner model: exactness, scatter and own covariance, refusals.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/vision/corner.h"
+#include "gst/vision/corner/corner.h"
 
 #include "tests/core/checker.h"
 

@@ -1,12 +1,12 @@
 /* Dot detection against pictures drawn here, whose dots' centres are known exactly.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/vision/dot.h"
+#include "gst/vision/dot/dot.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "gst/vision/dot-spots.h"
+#include "gst/vision/dot/dot-spots.h"
 
 #define SUB 4
 /* Width of the edge's blur, px. */

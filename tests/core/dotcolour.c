@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "gst/math/random.h"
-#include "gst/vision/dotcolour.h"
+#include "gst/vision/label/dot-colour.h"
 
 #define COLOURS 5
 #define N 600

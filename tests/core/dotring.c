@@ -10,12 +10,12 @@
 #include <gst/video/video.h>
 #include <math.h>
 
-#include "gst/mesh/npy.h"
+#include "gst/file/npy.h"
 #include "gst/pattern/marray.h"
 #include "gst/rig/rigfile.h"
-#include "gst/vision/dot.h"
-#include "gst/vision/dotcolour.h"
-#include "gst/vision/lattice.h"
+#include "gst/vision/dot/dot.h"
+#include "gst/vision/label/dot-colour.h"
+#include "gst/vision/label/dot-label.h"
 #include "tests/common/picture.h"
 
 #define FOLDER TEST_DATA "/dots_ring8/"

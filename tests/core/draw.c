@@ -1,8 +1,8 @@
 /* Drawing: areas by closed forms, hidden lines, shapes that can't be drawn.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/vision/draw.h"
-#include "gst/vision/wireframe.h"
+#include "gst/render/draw.h"
+#include "gst/render/wireframe.h"
 
 #include <math.h>
 #include <string.h>

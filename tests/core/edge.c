@@ -1,8 +1,8 @@
 /* Edges and outlines of squares, straight and bent, against where they were painted.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/vision/edge.h"
-#include "gst/vision/outline.h"
+#include "gst/vision/corner/edge.h"
+#include "gst/vision/checker/outline.h"
 
 #include <string.h>
 

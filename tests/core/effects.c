@@ -1,7 +1,7 @@
 /* The table of effects: complete, in order, each description sound.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effect-table.h"
+#include "gst/effect/effect.h"
 
 #include <math.h>
 #include <string.h>

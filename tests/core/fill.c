@@ -1,15 +1,15 @@
 /* Holes filled, against closed forms and against recordings by other simulators.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/mesh/fill.h"
+#include "gst/mesh/fill/fill.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "gst/math/linalg.h"
 #include "gst/math/random.h"
-#include "gst/mesh/npy.h"
-#include "gst/mesh/smooth.h"
+#include "gst/file/npy.h"
+#include "gst/mesh/fill/smooth.h"
 
 #define COLUMNS 17
 #define ROWS 13

@@ -2,16 +2,16 @@
  * what hides what, what lens, shutter, light and noise do.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/vision/render.h"
+#include "gst/render/render.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "gst/pattern/texture.h"
-#include "gst/vision/saddle.h"
+#include "gst/vision/corner/saddle.h"
 #include "tests/common/picture.h"
 #ifdef HAVE_CLOTH_CV
-#include "gst/cv/reference.h"
+#include "tests/reference/reference.h"
 #endif
 
 #define WIDTH 640

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/gap/camera.h"
+#include "gst/gap/camera/view.h"
 #include "gst/gap/diagnose.h"
 #include "gst/math/random.h"
 
@@ -535,7 +535,7 @@ test_refused (void)
   for (guint i = 0; i < G_N_ELEMENTS (bad); i++) {
     g_assert_false (cloth_sights_add (sights, bad[i].camera, bad[i].time_s,
             bad[i].n, bad[i].vertices, bad[i].px, bad[i].covariances, &error));
-    g_assert_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE);
+    g_assert_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING);
     g_assert_nonnull (strstr (error->message, bad[i].says));
     g_clear_error (&error);
   }

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "gst/gap/diagnose.h"
-#include "gst/sim/effect-table.h"
+#include "gst/effect/effect.h"
 #include "tests/common/gaprecord.h"
 
 static const TestGapSheet sheet = { 9, 9, 75, 0.16, 0.16, 50., 3e-4 };
@@ -396,7 +396,7 @@ test_unknown_effect (void)
   ClothTake *takes[1] = { take };
 
   g_assert_null (cloth_gap_diagnose (takes, 1, model, &options, &error));
-  g_assert_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_EFFECT);
+  g_assert_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_EFFECT);
   g_assert_nonnull (strstr (error->message, "magic"));
 }
 
@@ -483,7 +483,7 @@ test_cancelled (void)
   ClothTake *takes[1] = { take };
 
   g_assert_null (cloth_gap_diagnose (takes, 1, model, &options, &error));
-  g_assert_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_CANCELLED);
+  g_assert_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_CANCELLED);
 }
 
 int

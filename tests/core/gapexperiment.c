@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "gst/gap/diagnose.h"
-#include "gst/gap/experiment.h"
-#include "gst/sim/effect-table.h"
+#include "gst/gap/design/experiment.h"
+#include "gst/effect/effect.h"
 #include "tests/common/gaprecord.h"
 
 static const TestGapSheet sheet = { 9, 9, 40, 0.16, 0.16, 50., 3e-4 };
@@ -376,7 +376,7 @@ test_cancelled (void)
   How how = {.progress = stop };
 
   g_assert_null (try_on (recording, members, 2, &how, &error));
-  g_assert_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_CANCELLED);
+  g_assert_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_CANCELLED);
 }
 
 /* Scenes as they are described: rigid turns, lengths of the flat cloth, clamps that hold

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/gap/gust.h"
+#include "gst/gap/inference/gust.h"
 #include "gst/math/linalg.h"
 #include "gst/math/random.h"
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "gst/gap/diagnose.h"
-#include "gst/gap/linear.h"
+#include "gst/fit/estimate/normal.h"
 #include "gst/math/linalg.h"
 #include "gst/math/random.h"
 
@@ -294,11 +294,11 @@ test_refused (void)
   g_autoptr (GError) error = NULL;
 
   g_assert_null (record (millimetres, 30, 0., 1e-4, &error));
-  g_assert_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE);
+  g_assert_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING);
   g_assert_nonnull (strstr (error->message, "millimetres"));
   g_clear_error (&error);
   g_assert_null (record (quartic, 1, 0., 1e-4, &error));
-  g_assert_error (error, CLOTH_GAP_ERROR, CLOTH_GAP_ERROR_TAKE);
+  g_assert_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING);
   g_assert_nonnull (strstr (error->message, "1 frames"));
 }
 

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/gap/region.h"
+#include "gst/gap/localise/localisation.h"
 #include "gst/math/random.h"
 
 #define COLUMNS 12

@@ -5,10 +5,11 @@
 #include <glib/gstdio.h>
 #include <math.h>
 
-#include "gst/gap/energy.h"
-#include "gst/gap/extent.h"
+#include "gst/fit/features/spectrum.h"
+#include "gst/fit/nudge/windows.h"
+#include "gst/gap/report/fill.h"
 #include "gst/math/random.h"
-#include "gst/sim/effect-table.h"
+#include "gst/effect/effect.h"
 
 #define COLUMNS 9
 #define ROWS 8

@@ -1,15 +1,15 @@
 /* Garments from drawings: panels, dots, seams, and every way to draw them wrong.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/mesh/garment.h"
+#include "gst/mesh/garment/garment.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "gst/mesh/delaunay.h"
-#include "gst/mesh/fill.h"
-#include "gst/mesh/obj.h"
-#include "gst/mesh/svgpath.h"
+#include "gst/mesh/garment/delaunay.h"
+#include "gst/mesh/fill/fill.h"
+#include "gst/mesh/formats/obj.h"
+#include "gst/mesh/garment/svgpath.h"
 #include "tests/core/meshpeer.h"
 
 #define HEAD "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"400mm\" " \
@@ -108,7 +108,7 @@ test_path_errors (void)
     g_autoptr (GArray) points = parse (bad[i], &error);
 
     g_assert_null (points);
-    g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
     g_assert_true (g_str_has_prefix (error->message, "path data"));
   }
 }
@@ -620,7 +620,7 @@ test_limits (void)
   g_clear_error (&error);
   g_assert_null (cloth_garment_new_from_svg (large, (8u << 20) + 1, &grid,
           &error));
-  g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_LIMIT);
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT);
 }
 
 int

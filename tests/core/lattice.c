@@ -6,7 +6,7 @@
 
 #include "gst/math/random.h"
 #include "gst/pattern/marray.h"
-#include "gst/vision/lattice.h"
+#include "gst/vision/label/dot-label.h"
 
 #define N (ROWS * COLUMNS)
 #define COLUMNS 24

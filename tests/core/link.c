@@ -6,8 +6,8 @@
 
 #include "gst/math/random.h"
 #include "gst/pattern/code.h"
-#include "gst/vision/link.h"
-#include "gst/vision/patch.h"
+#include "gst/vision/checker/link.h"
+#include "gst/vision/checker/patch.h"
 #include "tests/common/render.h"
 
 #define WIDTH 480

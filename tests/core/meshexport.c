@@ -2,7 +2,7 @@
  * What they contain is read by tests/generic/meshexports.py.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/mesh/sequence.h"
+#include "gst/take/sequence.h"
 #include "tests/core/meshpeer.h"
 
 #include <math.h>
@@ -65,7 +65,7 @@ write_two (const gchar * name, const ClothTopology * topology)
 static void
 expect (GError ** error, gint code, const gchar * text)
 {
-  g_assert_error (*error, CLOTH_MESH_ERROR, code);
+  g_assert_error (*error, CLOTH_FILE_ERROR, code);
   if (!strstr ((*error)->message, text))
     g_error ("“%s” does not say “%s”", (*error)->message, text);
   g_clear_error (error);
@@ -109,7 +109,7 @@ test_whole_or_not_at_all (void)
     g_assert_cmpuint (scratch_count (), ==, 0);
     writer = open_writer (formats[i].name, topology, 25, &error);
     g_assert_false (cloth_mesh_writer_close (writer, &error));
-    expect (&error, CLOTH_MESH_ERROR_INVALID, "no frame");
+    expect (&error, CLOTH_FILE_ERROR_INVALID, "no frame");
     cloth_mesh_writer_free (writer);
     g_assert_cmpuint (scratch_count (), ==, 0);
     write_two (formats[i].name, topology);
@@ -133,9 +133,9 @@ test_times_must_rise (void)
     g_assert_true (append (writer, N, 3, &error));
     if (formats[i].has_times) {
       g_assert_false (append (writer, N, 3, &error));
-      expect (&error, CLOTH_MESH_ERROR_INVALID, "not later");
+      expect (&error, CLOTH_FILE_ERROR_INVALID, "not later");
       g_assert_false (append (writer, N, NAN, &error));
-      expect (&error, CLOTH_MESH_ERROR_INVALID, "not later");
+      expect (&error, CLOTH_FILE_ERROR_INVALID, "not later");
     }
     scratch_end ();
   }
@@ -172,7 +172,7 @@ test_not_read (void)
     write_two (formats[i].name, topology);
     g_assert_null (cloth_mesh_reader_open (path, CLOTH_MESH_FORMAT_AUTO,
             &error));
-    expect (&error, CLOTH_MESH_ERROR_UNSUPPORTED, "written, not read");
+    expect (&error, CLOTH_FILE_ERROR_UNSUPPORTED, "written, not read");
   }
   scratch_end ();
 }
@@ -191,7 +191,7 @@ test_gltf_too_long (void)
   for (guint i = 0; i < 1000; i++)
     g_assert_true (append (writer, N, i, &error));
   g_assert_false (append (writer, N, 1000, &error));
-  expect (&error, CLOTH_MESH_ERROR_LIMIT, "at most 1000 frames; write OBJ");
+  expect (&error, CLOTH_FILE_ERROR_LIMIT, "at most 1000 frames; write OBJ");
   /* those that fit may still be kept */
   g_assert_true (cloth_mesh_writer_close (writer, &error));
   peer_run ("import json\n"
@@ -241,11 +241,11 @@ test_c3d_limits (void)
 
   scratch_begin ();
   g_assert_null (open_writer ("c.c3d", small, 0, &error));
-  expect (&error, CLOTH_MESH_ERROR_UNSUPPORTED, "format=csv");
+  expect (&error, CLOTH_FILE_ERROR_UNSUPPORTED, "format=csv");
   g_assert_null (open_writer ("c.c3d", more, 25, &error));
-  expect (&error, CLOTH_MESH_ERROR_LIMIT, "30000 vertices");
+  expect (&error, CLOTH_FILE_ERROR_LIMIT, "30000 vertices");
   g_assert_null (open_writer ("c.c3d", most, 25, &error));
-  expect (&error, CLOTH_MESH_ERROR_LIMIT, "format=csv");
+  expect (&error, CLOTH_FILE_ERROR_LIMIT, "format=csv");
   g_assert_cmpuint (scratch_count (), ==, 0);
   write_two ("many.c3d", many);
   peer_run ("d=open('many.c3d','rb').read()\n"
@@ -255,7 +255,7 @@ test_c3d_limits (void)
   for (guint i = 0; i < 65535; i++)
     g_assert_true (append (writer, N, i, &error));
   g_assert_false (append (writer, N, 65535, &error));
-  expect (&error, CLOTH_MESH_ERROR_LIMIT, "65535 frames");
+  expect (&error, CLOTH_FILE_ERROR_LIMIT, "65535 frames");
   scratch_end ();
 }
 

@@ -2,10 +2,10 @@
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/mesh/hold.h"
-#include "gst/mesh/obj.h"
-#include "gst/mesh/pc2.h"
-#include "gst/mesh/ply.h"
-#include "gst/mesh/sequence.h"
+#include "gst/mesh/formats/obj.h"
+#include "gst/mesh/formats/pc2.h"
+#include "gst/mesh/formats/ply.h"
+#include "gst/take/sequence.h"
 #include "tests/core/meshpeer.h"
 
 #include <math.h>
@@ -266,22 +266,22 @@ static const struct
   const gchar *text;
   gint code;
 } bad_obj[] = {
-  {"", CLOTH_MESH_ERROR_LIMIT},
-  {"f 1 2 3\n", CLOTH_MESH_ERROR_LIMIT},
-  {"v 0 0\n", CLOTH_MESH_ERROR_INVALID},
-  {"v 0 0 nan\n", CLOTH_MESH_ERROR_INVALID},
-  {"v 0 0 1e99\n", CLOTH_MESH_ERROR_INVALID},
-  {"v 0 0 x\n", CLOTH_MESH_ERROR_INVALID},
-  {"v 0 0\n1\n", CLOTH_MESH_ERROR_INVALID},
-  {"v 0 0 0\nf 1 1\n", CLOTH_MESH_ERROR_INVALID},
-  {"v 0 0 0\nf 1 1 2\n", CLOTH_MESH_ERROR_INVALID},
-  {"v 0 0 0\nf 1 1 0\n", CLOTH_MESH_ERROR_INVALID},
-  {"v 0 0 0\nf 1 1 -2\n", CLOTH_MESH_ERROR_INVALID},
-  {"v 0 0 0\nf 1 1 4294967297\n", CLOTH_MESH_ERROR_INVALID},
-  {"v 0 0 0\nf 1 1 1.5\n", CLOTH_MESH_ERROR_INVALID},
-  {"v 0 0 0\nf 1/1 1/1 1/1\n", CLOTH_MESH_ERROR_INVALID},
-  {"v 0 0 0\nvt inf 0\n", CLOTH_MESH_ERROR_INVALID},
-  {"v 0 0 0\nf 1/ 1/x 1\n", CLOTH_MESH_ERROR_INVALID},
+  {"", CLOTH_FILE_ERROR_LIMIT},
+  {"f 1 2 3\n", CLOTH_FILE_ERROR_LIMIT},
+  {"v 0 0\n", CLOTH_FILE_ERROR_INVALID},
+  {"v 0 0 nan\n", CLOTH_FILE_ERROR_INVALID},
+  {"v 0 0 1e99\n", CLOTH_FILE_ERROR_INVALID},
+  {"v 0 0 x\n", CLOTH_FILE_ERROR_INVALID},
+  {"v 0 0\n1\n", CLOTH_FILE_ERROR_INVALID},
+  {"v 0 0 0\nf 1 1\n", CLOTH_FILE_ERROR_INVALID},
+  {"v 0 0 0\nf 1 1 2\n", CLOTH_FILE_ERROR_INVALID},
+  {"v 0 0 0\nf 1 1 0\n", CLOTH_FILE_ERROR_INVALID},
+  {"v 0 0 0\nf 1 1 -2\n", CLOTH_FILE_ERROR_INVALID},
+  {"v 0 0 0\nf 1 1 4294967297\n", CLOTH_FILE_ERROR_INVALID},
+  {"v 0 0 0\nf 1 1 1.5\n", CLOTH_FILE_ERROR_INVALID},
+  {"v 0 0 0\nf 1/1 1/1 1/1\n", CLOTH_FILE_ERROR_INVALID},
+  {"v 0 0 0\nvt inf 0\n", CLOTH_FILE_ERROR_INVALID},
+  {"v 0 0 0\nf 1/ 1/x 1\n", CLOTH_FILE_ERROR_INVALID},
 };
 
 static const struct
@@ -289,42 +289,42 @@ static const struct
   const gchar *text;
   gint code;
 } bad_ply[] = {
-  {"", CLOTH_MESH_ERROR_INVALID},
-  {"plx\n", CLOTH_MESH_ERROR_INVALID},
-  {"ply\nend_header\n", CLOTH_MESH_ERROR_INVALID},
-  {"ply\nformat ascii 2.0\n", CLOTH_MESH_ERROR_UNSUPPORTED},
-  {"ply\nformat ascii 1.0\nend_header\n", CLOTH_MESH_ERROR_INVALID},
+  {"", CLOTH_FILE_ERROR_INVALID},
+  {"plx\n", CLOTH_FILE_ERROR_INVALID},
+  {"ply\nend_header\n", CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 2.0\n", CLOTH_FILE_ERROR_UNSUPPORTED},
+  {"ply\nformat ascii 1.0\nend_header\n", CLOTH_FILE_ERROR_INVALID},
   {"ply\nformat ascii 1.0\nelement vertex 999999999999\n",
-      CLOTH_MESH_ERROR_LIMIT},
-  {"ply\nformat ascii 1.0\nelement vertex -1\n", CLOTH_MESH_ERROR_INVALID},
-  {"ply\nformat ascii 1.0\nproperty float x\n", CLOTH_MESH_ERROR_INVALID},
+      CLOTH_FILE_ERROR_LIMIT},
+  {"ply\nformat ascii 1.0\nelement vertex -1\n", CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nproperty float x\n", CLOTH_FILE_ERROR_INVALID},
   {"ply\nformat ascii 1.0\nelement vertex 1\nproperty quux x\n",
-      CLOTH_MESH_ERROR_INVALID},
+      CLOTH_FILE_ERROR_INVALID},
   {"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
-        "property float x\n", CLOTH_MESH_ERROR_INVALID},
+        "property float x\n", CLOTH_FILE_ERROR_INVALID},
   {"ply\nformat ascii 1.0\nelement vertex 1\nelement vertex 1\n",
-      CLOTH_MESH_ERROR_INVALID},
+      CLOTH_FILE_ERROR_INVALID},
   {"ply\nformat ascii 1.0\nelement junk 100000000\nend_header\n",
-      CLOTH_MESH_ERROR_INVALID},
+      CLOTH_FILE_ERROR_INVALID},
   {"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
-        "property float y\nend_header\n1 2\n", CLOTH_MESH_ERROR_INVALID},
+        "property float y\nend_header\n1 2\n", CLOTH_FILE_ERROR_INVALID},
 #define XYZ "property float x\nproperty float y\nproperty float z\n"
   {"ply\nformat ascii 1.0\nelement vertex 1000000\n" XYZ "end_header\n1 2 3\n",
-      CLOTH_MESH_ERROR_TRUNCATED},
+      CLOTH_FILE_ERROR_TRUNCATED},
   {"ply\nformat binary_little_endian 1.0\nelement vertex 1\n" XYZ
-        "end_header\nabcdefghijk", CLOTH_MESH_ERROR_TRUNCATED},
+        "end_header\nabcdefghijk", CLOTH_FILE_ERROR_TRUNCATED},
   {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "end_header\n1 2 inf\n",
-      CLOTH_MESH_ERROR_INVALID},
+      CLOTH_FILE_ERROR_INVALID},
   {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "end_header\n1 nan 2\n",
-      CLOTH_MESH_ERROR_INVALID},
+      CLOTH_FILE_ERROR_INVALID},
   {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "property uchar state\n"
-        "end_header\n1 2 3 5\n", CLOTH_MESH_ERROR_INVALID},
+        "end_header\n1 2 3 5\n", CLOTH_FILE_ERROR_INVALID},
   {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "element face 1\n"
         "property list uchar int vertex_indices\nend_header\n1 2 3 3 0 0 1\n",
-      CLOTH_MESH_ERROR_INVALID},
+      CLOTH_FILE_ERROR_INVALID},
   {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "element face 1\n"
         "property list uchar int vertex_indices\nend_header\n1 2 3 2 0 0\n",
-      CLOTH_MESH_ERROR_INVALID},
+      CLOTH_FILE_ERROR_INVALID},
 };
 
 static void
@@ -336,7 +336,7 @@ test_hostile_text (void)
     g_assert_null (cloth_obj_parse (bad_obj[i].text, strlen (bad_obj[i].text),
             &error));
     g_test_message ("obj %u: %s", i, error->message);
-    g_assert_error (error, CLOTH_MESH_ERROR, bad_obj[i].code);
+    g_assert_error (error, CLOTH_FILE_ERROR, bad_obj[i].code);
   }
   for (guint i = 0; i < G_N_ELEMENTS (bad_ply); i++) {
     g_autoptr (ClothPly) ply = cloth_ply_new ();
@@ -345,7 +345,7 @@ test_hostile_text (void)
     g_assert_false (cloth_ply_parse (ply, bad_ply[i].text,
             strlen (bad_ply[i].text), &error));
     g_test_message ("ply %u: %s", i, error->message);
-    g_assert_error (error, CLOTH_MESH_ERROR, bad_ply[i].code);
+    g_assert_error (error, CLOTH_FILE_ERROR, bad_ply[i].code);
   }
 }
 
@@ -359,15 +359,15 @@ test_hostile_pc2 (void)
     gint32 samples;
     gint code;
   } cases[] = {
-    {2, 1, 0, 1, 1, CLOTH_MESH_ERROR_INVALID},
-    {1, 0, 0, 1, 1, CLOTH_MESH_ERROR_LIMIT},
-    {1, -5, 0, 1, 1, CLOTH_MESH_ERROR_LIMIT},
-    {1, 2000000, 0, 1, 0, CLOTH_MESH_ERROR_LIMIT},
-    {1, 1, 0, 1, -1, CLOTH_MESH_ERROR_INVALID},
-    {1, 1, NAN, 1, 1, CLOTH_MESH_ERROR_INVALID},
-    {1, 1, 0, 0, 1, CLOTH_MESH_ERROR_INVALID},
-    {1, 1, 0, 1, 3, CLOTH_MESH_ERROR_TRUNCATED},
-    {1, 1000000, 0, 1, G_MAXINT32, CLOTH_MESH_ERROR_TRUNCATED},
+    {2, 1, 0, 1, 1, CLOTH_FILE_ERROR_INVALID},
+    {1, 0, 0, 1, 1, CLOTH_FILE_ERROR_LIMIT},
+    {1, -5, 0, 1, 1, CLOTH_FILE_ERROR_LIMIT},
+    {1, 2000000, 0, 1, 0, CLOTH_FILE_ERROR_LIMIT},
+    {1, 1, 0, 1, -1, CLOTH_FILE_ERROR_INVALID},
+    {1, 1, NAN, 1, 1, CLOTH_FILE_ERROR_INVALID},
+    {1, 1, 0, 0, 1, CLOTH_FILE_ERROR_INVALID},
+    {1, 1, 0, 1, 3, CLOTH_FILE_ERROR_TRUNCATED},
+    {1, 1000000, 0, 1, G_MAXINT32, CLOTH_FILE_ERROR_TRUNCATED},
   };
 
   for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
@@ -382,7 +382,7 @@ test_hostile_pc2 (void)
     cloth_swap_little_endian (bytes + 12, 4, 5);
     g_assert_null (cloth_pc2_reader_new (cloth_input_new_memory (bytes,
                 sizeof bytes), &error));
-    g_assert_error (error, CLOTH_MESH_ERROR, cases[i].code);
+    g_assert_error (error, CLOTH_FILE_ERROR, cases[i].code);
   }
 }
 
@@ -424,10 +424,10 @@ test_sets_that_do_not_fit (void)
 
     g_assert_no_error (error);
     g_assert_false (cloth_mesh_reader_read (reader, 1, &contents, &error));
-    g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
     g_clear_error (&error);
     g_assert_false (cloth_mesh_reader_read (reader, 3, &contents, &error));
-    g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
   }
   scratch_end ();
 }
@@ -453,7 +453,7 @@ test_abort_and_replace (void)
     /* An empty sequence is refused. */
     writer = write_frames (path, CLOTH_MESH_FORMAT_AUTO, 0);
     g_assert_false (cloth_mesh_writer_close (writer, &error));
-    g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
     cloth_mesh_writer_free (writer);
     g_assert_cmpuint (scratch_count (), ==, 0);
     /* A shorter one replaces a longer one, whole. */
@@ -479,16 +479,16 @@ test_refused_frames (void)
   writer = write_frames (path, CLOTH_MESH_FORMAT_AUTO, 1);
   positions[4] = INFINITY;
   g_assert_false (cloth_mesh_writer_append (writer, 1, &contents, &error));
-  g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
   g_clear_error (&error);
   positions[4] = NAN;
   g_assert_false (cloth_mesh_writer_append (writer, 1, &contents, &error));
-  g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
   g_clear_error (&error);
   positions[4] = 0;
   states[3] = 9;
   g_assert_false (cloth_mesh_writer_append (writer, 1, &contents, &error));
-  g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
   scratch_end ();
 }
 
@@ -541,7 +541,7 @@ test_paths_stay_inside (void)
     g_autoptr (GError) fault = NULL;
 
     g_assert_null (cloth_path_inside (scratch, bad[i], &fault));
-    g_assert_error (fault, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+    g_assert_error (fault, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
   }
   scratch_write ("a", "x", 1);
   found = cloth_path_inside (scratch, "a", &error);

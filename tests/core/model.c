@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/sim/effect-table.h"
+#include "gst/effect/effect.h"
 #include "tests/core/meshpeer.h"
 
 static ClothModel *

@@ -1,7 +1,7 @@
 /* .npy files against NumPy itself, and hostile ones.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/mesh/npy.h"
+#include "gst/file/npy.h"
 #include "tests/core/meshpeer.h"
 
 #include <math.h>
@@ -198,7 +198,7 @@ test_row_too_large (void)
 
   g_assert_null (cloth_npy_writer_new ("a.npy", CLOTH_NPY_FLOAT64, 2, row_shape,
           &error));
-  g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_LIMIT);
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT);
 }
 
 static void
@@ -223,43 +223,43 @@ static const struct
 } hostile[] = {
   {"Fortran order",
         "{'descr': '<f4', 'fortran_order': True, 'shape': (2, 2), }",
-      CLOTH_MESH_ERROR_UNSUPPORTED},
+      CLOTH_FILE_ERROR_UNSUPPORTED},
   {"big-endian", "{'descr': '>f4', 'fortran_order': False, 'shape': (2, 2), }",
-      CLOTH_MESH_ERROR_UNSUPPORTED},
+      CLOTH_FILE_ERROR_UNSUPPORTED},
   {"objects", "{'descr': '|O', 'fortran_order': False, 'shape': (2,), }",
-      CLOTH_MESH_ERROR_UNSUPPORTED},
+      CLOTH_FILE_ERROR_UNSUPPORTED},
   {"records",
         "{'descr': [('a', '<f4')], 'fortran_order': False, 'shape': (2,)}",
-      CLOTH_MESH_ERROR_UNSUPPORTED},
+      CLOTH_FILE_ERROR_UNSUPPORTED},
   {"five dimensions",
         "{'descr': '<f4', 'fortran_order': False, 'shape': (1,1,1,1,1)}",
-      CLOTH_MESH_ERROR_UNSUPPORTED},
+      CLOTH_FILE_ERROR_UNSUPPORTED},
   {"too short", "{'descr': '<f4', 'fortran_order': False, 'shape': (17,)}",
-      CLOTH_MESH_ERROR_TRUNCATED},
+      CLOTH_FILE_ERROR_TRUNCATED},
   {"overflow of the product",
       "{'descr': '<f4', 'fortran_order': False, 'shape': "
-        "(4294967296, 4294967296)}", CLOTH_MESH_ERROR_INVALID},
+        "(4294967296, 4294967296)}", CLOTH_FILE_ERROR_INVALID},
   {"overflow of a length",
       "{'descr': '<f4', 'fortran_order': False, 'shape': "
-        "(18446744073709551616,)}", CLOTH_MESH_ERROR_INVALID},
+        "(18446744073709551616,)}", CLOTH_FILE_ERROR_INVALID},
   {"huge rows of an empty array",
         "{'descr': '<f4', 'fortran_order': False, 'shape': (0, 999999999999)}",
-      CLOTH_MESH_ERROR_LIMIT},
+      CLOTH_FILE_ERROR_LIMIT},
   {"negative length",
         "{'descr': '<f4', 'fortran_order': False, 'shape': (-1,)}",
-      CLOTH_MESH_ERROR_INVALID},
+      CLOTH_FILE_ERROR_INVALID},
   {"no tuple", "{'descr': '<f4', 'fortran_order': False, 'shape': (3)}",
-      CLOTH_MESH_ERROR_INVALID},
-  {"lacks a key", "{'descr': '<f4', 'shape': (3,)}", CLOTH_MESH_ERROR_INVALID},
+      CLOTH_FILE_ERROR_INVALID},
+  {"lacks a key", "{'descr': '<f4', 'shape': (3,)}", CLOTH_FILE_ERROR_INVALID},
   {"key twice", "{'shape': (1,), 'descr': '<f4', 'fortran_order': False, "
-        "'shape': (3,)}", CLOTH_MESH_ERROR_INVALID},
+        "'shape': (3,)}", CLOTH_FILE_ERROR_INVALID},
   {"unknown key", "{'descr': '<f4', 'fortran_order': False, 'shape': (3,), "
-        "'x': 1}", CLOTH_MESH_ERROR_INVALID},
+        "'x': 1}", CLOTH_FILE_ERROR_INVALID},
   {"no end", "{'descr': '<f4', 'fortran_order': False, 'shape': (3,",
-      CLOTH_MESH_ERROR_INVALID},
+      CLOTH_FILE_ERROR_INVALID},
   {"something behind", "{'descr': '<f4', 'fortran_order': False, "
-        "'shape': (3,)} + evil ()", CLOTH_MESH_ERROR_INVALID},
-  {"empty", "", CLOTH_MESH_ERROR_INVALID},
+        "'shape': (3,)} + evil ()", CLOTH_FILE_ERROR_INVALID},
+  {"empty", "", CLOTH_FILE_ERROR_INVALID},
 };
 
 static void
@@ -275,7 +275,7 @@ test_hostile (void)
     g_assert_null (cloth_npy_reader_new (cloth_input_new_memory (bytes,
                 10 + length + 64), &error));
     g_test_message ("%s: %s", hostile[i].what, error->message);
-    g_assert_error (error, CLOTH_MESH_ERROR, hostile[i].code);
+    g_assert_error (error, CLOTH_FILE_ERROR, hostile[i].code);
   }
 }
 
@@ -288,13 +288,13 @@ test_hostile_preface (void)
     gsize size;
     gint code;
   } cases[] = {
-    {"", 0, CLOTH_MESH_ERROR_TRUNCATED},
-    {"\x93NUMPY\x01\x00\x76", 9, CLOTH_MESH_ERROR_TRUNCATED},
-    {"\x93NUMPX\x01\x00\x00\x00", 10, CLOTH_MESH_ERROR_INVALID},
-    {"\x93NUMPY\x04\x00\x00\x00", 10, CLOTH_MESH_ERROR_UNSUPPORTED},
-    {"\x93NUMPY\x01\x00\x10\x00{", 11, CLOTH_MESH_ERROR_TRUNCATED},
-    {"\x93NUMPY\x02\x00\xff\xff\xff\xff", 12, CLOTH_MESH_ERROR_LIMIT},
-    {"\x93NUMPY\x03\x00\x10", 9, CLOTH_MESH_ERROR_TRUNCATED},
+    {"", 0, CLOTH_FILE_ERROR_TRUNCATED},
+    {"\x93NUMPY\x01\x00\x76", 9, CLOTH_FILE_ERROR_TRUNCATED},
+    {"\x93NUMPX\x01\x00\x00\x00", 10, CLOTH_FILE_ERROR_INVALID},
+    {"\x93NUMPY\x04\x00\x00\x00", 10, CLOTH_FILE_ERROR_UNSUPPORTED},
+    {"\x93NUMPY\x01\x00\x10\x00{", 11, CLOTH_FILE_ERROR_TRUNCATED},
+    {"\x93NUMPY\x02\x00\xff\xff\xff\xff", 12, CLOTH_FILE_ERROR_LIMIT},
+    {"\x93NUMPY\x03\x00\x10", 9, CLOTH_FILE_ERROR_TRUNCATED},
   };
 
   for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
@@ -302,7 +302,7 @@ test_hostile_preface (void)
 
     g_assert_null (cloth_npy_reader_new (cloth_input_new_memory (
                 (const guint8 *) cases[i].bytes, cases[i].size), &error));
-    g_assert_error (error, CLOTH_MESH_ERROR, cases[i].code);
+    g_assert_error (error, CLOTH_FILE_ERROR, cases[i].code);
   }
 }
 
@@ -322,16 +322,16 @@ test_rows_out_of_range (void)
   reader = cloth_npy_reader_open (path, &error);
   g_assert_no_error (error);
   g_assert_false (cloth_npy_reader_read_float (reader, 3, 1, items, &error));
-  g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
   g_clear_error (&error);
   g_assert_false (cloth_npy_reader_read_float (reader, 1, G_MAXUINT64, items,
           &error));
-  g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
   g_clear_error (&error);
   /* It shrinks under the reader. */
   g_assert_cmpint (truncate (path, 100), ==, 0);
   g_assert_false (cloth_npy_reader_read_float (reader, 0, 3, items, &error));
-  g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_TRUNCATED);
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_TRUNCATED);
   scratch_end ();
 }
 

@@ -3,8 +3,8 @@
  * The squares are painted one by one, each where a rule wants it.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/vision/quad.h"
-#include "gst/vision/saddle.h"
+#include "gst/vision/quad/quad.h"
+#include "gst/vision/corner/saddle.h"
 
 #include "tests/core/polygon.h"
 

@@ -138,7 +138,7 @@ test_mend (void)
 /* Codes of CLOTH_FILE_ERROR, apart from those of CLOTH_RIG_ERROR. */
 enum
 {
-  NOT_JSON = 100 + CLOTH_FILE_ERROR_SYNTAX,
+  NOT_JSON = 100 + CLOTH_FILE_ERROR_INVALID,
   TOO_MUCH = 100 + CLOTH_FILE_ERROR_LIMIT
 };
 

@@ -4,7 +4,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <math.h>
 
-#include "gst/vision/quad.h"
+#include "gst/vision/quad/quad.h"
 #include "tests/common/render.h"
 
 #define STEP (G_PI / 60)

@@ -1,7 +1,7 @@
 /* The saddle detector: the mask against floating point, closed forms, scatter, limits.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/vision/saddle.h"
+#include "gst/vision/corner/saddle.h"
 
 #include "tests/core/checker.h"
 

@@ -122,7 +122,7 @@ test_refused_takes (void)
     g_autoptr (GError) error = NULL;
 
     g_assert_null (load (path, &error));
-    g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
     g_test_message ("%s", error->message);
     g_assert_nonnull (strstr (error->message, cases[i].text));
     scratch_end ();
@@ -177,11 +177,11 @@ test_sewn (void)
   g_assert_true (cloth_scene_check (scene, &error));
   g_assert_no_error (error);
   g_assert_false (cloth_scene_sew (scene, &wrong, &error));
-  g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
   g_assert_nonnull (strstr (error->message, "vertex 8"));
   g_clear_error (&error);
   g_assert_false (cloth_scene_sew (longer, &good, &error));
-  g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
   g_assert_nonnull (strstr (error->message, "1.03 m"));
   g_assert_cmpuint (longer->seams->len, ==, 0);
 }
@@ -372,7 +372,7 @@ test_refused (void)
     g_assert_true (cloth_scene_check (scene, &error));
     cases[i].change (scene);
     g_assert_false (cloth_scene_check (scene, &error));
-    g_assert_cmpint (error->domain, ==, CLOTH_MESH_ERROR);
+    g_assert_cmpint (error->domain, ==, CLOTH_FILE_ERROR);
     g_test_message ("%s", error->message);
     g_assert_nonnull (strstr (error->message, cases[i].text));
   }

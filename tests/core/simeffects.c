@@ -4,7 +4,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "simscene.h"
 
-#include "gst/sim/effect-table.h"
+#include "gst/effect/effect.h"
 
 #define COLUMNS 6
 #define ROWS 7

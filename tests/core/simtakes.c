@@ -7,7 +7,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "simscene.h"
 
-#include "gst/mesh/npy.h"
+#include "gst/file/npy.h"
 #include "gst/sim/effects/effects.h"
 #include "simplot.h"
 

@@ -1,7 +1,7 @@
 /* Printed surfaces over a film, against closed forms.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/vision/surface.h"
+#include "gst/render/surface.h"
 
 #include <math.h>
 #include <string.h>

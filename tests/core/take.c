@@ -1,8 +1,8 @@
 /* Takes: a real one, one we write read by NumPy, and hostile ones.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/mesh/hash.h"
-#include "gst/mesh/take.h"
+#include "gst/file/hash.h"
+#include "gst/take/take.h"
 #include "tests/core/meshpeer.h"
 
 #include <math.h>
@@ -283,7 +283,7 @@ test_broken_garments (void)
     path = scratch_path ("g");
     take = cloth_take_open (path, &error);
     g_assert_null (take);
-    g_assert_cmpint (error->domain, ==, CLOTH_MESH_ERROR);
+    g_assert_cmpint (error->domain, ==, CLOTH_FILE_ERROR);
     g_test_message ("%s", error->message);
     scratch_end ();
   }
@@ -308,15 +308,15 @@ test_refused_frames (void)
   writer = write_frames ("t", 2, FALSE);
   g_assert_false (cloth_take_writer_append (writer, 0.1, positions, states,
           NULL, clamps, &error));
-  g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
   g_clear_error (&error);
   g_assert_false (cloth_take_writer_append (writer, NAN, positions, states,
           NULL, clamps, &error));
-  g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
   g_clear_error (&error);
   g_assert_false (cloth_take_writer_append (writer, 1, positions, states, NULL,
           NULL, &error));
-  g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
   scratch_end ();
 }
 
@@ -388,14 +388,14 @@ test_hostile_json (void)
     g_assert_null (cloth_take_info_parse (bad_json[i], strlen (bad_json[i]),
             &error));
     g_assert_nonnull (error);
-    g_assert_cmpint (error->domain, ==, CLOTH_MESH_ERROR);
+    g_assert_cmpint (error->domain, ==, CLOTH_FILE_ERROR);
     g_test_message ("%s", error->message);
   }
   /* Deep enough to overflow the stack of a recursive parser. */
   for (guint i = 0; i < 1000000; i++)
     g_string_append_c (deep, '[');
   g_assert_null (cloth_take_info_parse (deep->str, deep->len, &fault));
-  g_assert_error (fault, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+  g_assert_error (fault, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
 }
 
 /* Each line breaks a whole take in one way. */
@@ -478,7 +478,7 @@ test_broken_takes (void)
     g_assert_no_error (error);
     g_assert_false (read_frame (take, 2, &error));
     g_test_message ("%s", error->message);
-    g_assert_error (error, CLOTH_MESH_ERROR, CLOTH_MESH_ERROR_INVALID);
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
     scratch_end ();
   }
 }

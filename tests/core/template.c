@@ -1,7 +1,7 @@
 /* Square template: the paper's sum over pixels, literally; refusals.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/vision/template.h"
+#include "gst/vision/checker/template.h"
 
 #include "tests/core/polygon.h"
 

@@ -11,7 +11,7 @@
 #include <glib/gstdio.h>
 #include <math.h>
 
-#include "gst/mesh/take.h"
+#include "gst/take/take.h"
 
 #define COLUMNS 4
 #define ROWS 3

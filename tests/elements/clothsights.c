@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "elements/gstclothsights.h"
+#include "gst/cloth-io/observations.h"
 
 #define CAMERA(name) "{\"name\":\"" name "\",\"size\":[100,80]," \
     "\"K\":[[90,0,50],[0,90,40],[0,0,1]],\"distortion\":{\"model\":\"none\"," \

@@ -7,7 +7,7 @@
 #include <gst/video/video.h>
 #include <math.h>
 
-#include "gst/mesh/npy.h"
+#include "gst/file/npy.h"
 #include "gst/pattern/marray.h"
 #include "gst/rig/rigfile.h"
 

@@ -6,7 +6,7 @@
 #include <gst/cloth/cloth.h>
 #include <math.h>
 
-#include "gst/mesh/garment.h"
+#include "gst/mesh/garment/garment.h"
 #include "tests/core/meshpeer.h"
 
 #define COLUMNS 9

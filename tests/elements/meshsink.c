@@ -6,7 +6,7 @@
 #include <gst/cloth/cloth.h>
 #include <math.h>
 
-#include "gst/mesh/sequence.h"
+#include "gst/take/sequence.h"
 #include "tests/core/meshpeer.h"
 
 #define COLUMNS 3

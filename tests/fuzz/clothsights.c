@@ -4,7 +4,7 @@
 #include <gst/cloth/cloth.h>
 #include <math.h>
 
-#include "elements/gstclothsights.h"
+#include "gst/cloth-io/observations.h"
 
 int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
 

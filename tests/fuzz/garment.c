@@ -1,7 +1,7 @@
 /* Fuzz target: drawings of garments.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/mesh/garment.h"
+#include "gst/mesh/garment/garment.h"
 
 int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
 

@@ -1,7 +1,7 @@
 /* Fuzz target: .npy files.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/mesh/npy.h"
+#include "gst/file/npy.h"
 
 int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
 

@@ -1,7 +1,7 @@
 /* Fuzz target: PC2 point caches.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/mesh/pc2.h"
+#include "gst/mesh/formats/pc2.h"
 
 int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
 

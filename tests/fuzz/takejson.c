@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <string.h>
 
-#include "gst/mesh/takeinfo.h"
+#include "gst/take/take-info.h"
 
 int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
 

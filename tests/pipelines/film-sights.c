@@ -6,8 +6,8 @@
 #include <gst/gst.h>
 #include <math.h>
 
-#include "elements/gstclothsights.h"
-#include "gst/mesh/take.h"
+#include "gst/cloth-io/observations.h"
+#include "gst/take/take.h"
 #include "tests/common/film.h"
 
 #define FOLDER TEST_DATA "/checker_pair"

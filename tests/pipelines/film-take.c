@@ -9,7 +9,7 @@
 #include <gst/gst.h>
 #include <math.h>
 
-#include "gst/mesh/take.h"
+#include "gst/take/take.h"
 
 #define FOLDER TEST_DATA "/take_drag"
 #define SIDE 9

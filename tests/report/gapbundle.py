@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The report's script and style are what gst/gap/web makes of its sources.
+"""The report's script and style are what gst/gap/report/web makes of its sources.
 
   gapbundle.py check WEB          by the hashes in them: no network, no npm
   gapbundle.py rebuild WEB NPM    by making them anew, from the registry
@@ -55,7 +55,7 @@ def faults_of(web):
             faults.append('%s: no header' % made)
             continue
         if head[1].decode() != sources_hash(web):
-            faults.append('%s: the sources have changed, run npm ci && npm run build in gst/gap/web' % made)
+            faults.append('%s: the sources have changed, run npm ci && npm run build in gst/gap/report/web' % made)
         if head[2].decode() != hashlib.sha256(text[head.end():]).hexdigest():
             faults.append('%s: edited by hand' % made)
         for name, version in package['dependencies'].items():

@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/rig/effect.h"
+#include "gst/effect/effect.h"
 
 G_BEGIN_DECLS
 

@@ -1,0 +1,399 @@
+/* What the cameras saw of a take: its rig and its files of observations.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#ifdef HAVE_CONFIG_H
+#include "config.h"
+#endif
+
+#include "gst/cloth-io/observations.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/cloth-io/points.h"
+#include "gst/fit/error.h"
+#include "gst/rig/rigfile.h"
+
+#define FOLDER "observations"
+#define ENDING ".obs"
+/* Of a record; docs/streams.md has its fields. */
+#define HEADER 32
+#define SIZE_AT 8
+#define TIME_AT 16
+/* More than 65,536 features of each kind need. */
+#define MAX_RECORD (16u << 20)
+#define MAX_PICTURES 100000u
+/* Of all pictures together: 3 GB of memory. */
+#define MAX_POINTS (1u << 26)
+
+typedef struct
+{
+  ClothSights *sights;
+  guint camera;
+  gboolean labelled;            /* whether any picture had squares or dots */
+  GstClothPoints *points;
+  guint32 *vertices;
+  gdouble *px, *covariances;
+} Reader;
+
+static void
+reader_init (Reader * self, ClothSights * sights, guint camera, guint columns,
+    guint rows)
+{
+  gsize n = (gsize) columns * rows;
+
+  self->sights = sights;
+  self->camera = camera;
+  self->labelled = FALSE;
+  self->points = gst_cloth_points_new (columns, rows);
+  self->vertices = g_new (guint32, n);
+  self->px = g_new (gdouble, 2 * n);
+  self->covariances = g_new (gdouble, 3 * n);
+}
+
+static void
+reader_clear (Reader * self)
+{
+  gst_cloth_points_free (self->points);
+  g_free (self->vertices);
+  g_free (self->px);
+  g_free (self->covariances);
+}
+
+G_GNUC_PRINTF (2, 3)
+     static gboolean fail (GError ** error, const gchar * format, ...)
+{
+  va_list args;
+  g_autofree gchar *text = NULL;
+
+  va_start (args, format);
+  text = g_strdup_vprintf (format, args);
+  va_end (args);
+  g_set_error_literal (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING, text);
+  return FALSE;
+}
+
+static gboolean
+check_name (const Reader * self, const gchar * name, GError ** error)
+{
+  const gchar *own = self->sights->rig->cameras[self->camera].name;
+
+  if (!*name || g_str_equal (name, own))
+    return TRUE;
+  return fail (error,
+      "it is of camera “%s”, not of “%s”: name each file "
+      "as the property camera of its detector", name, own);
+}
+
+/* Puts the points into the reader's arrays; returns how many, or -1. */
+static gint
+find_points (Reader * self, GstBuffer * buffer, GError ** error)
+{
+  const ClothTriangulateView *view = &self->points->view;
+  guint n_vertices = self->points->columns * self->points->rows;
+  gint n = 0;
+
+  if (!gst_buffer_get_cloth_quads (buffer)
+      && !gst_buffer_get_cloth_dots (buffer))
+    return 0;                   /* of a picture that shows nothing */
+  self->labelled = TRUE;
+  if (!gst_cloth_points_find (self->points, buffer, error)
+      || !check_name (self, self->points->camera, error)
+      || !gst_cloth_points_check_places (self->points,
+          &self->sights->rig->cameras[self->camera], error))
+    return -1;
+  for (guint i = 0; i < n_vertices; i++) {
+    if (isnan (view->x[i]))
+      continue;
+    self->vertices[n] = i;
+    self->px[2 * n] = view->x[i];
+    self->px[2 * n + 1] = view->y[i];
+    self->covariances[3 * n] = view->xx[i];
+    self->covariances[3 * n + 1] = view->xy[i];
+    self->covariances[3 * n + 2] = view->yy[i];
+    n++;
+  }
+  return n;
+}
+
+static gboolean
+read_picture (Reader * self, const GByteArray * record, GError ** error)
+{
+  g_autoptr (GstBuffer) buffer = gst_buffer_new_memdup (record->data,
+      record->len);
+  g_autoptr (GstBuffer) target = gst_buffer_new ();
+  guint64 time = GST_READ_UINT64_LE (record->data + TIME_AT);
+  gint n;
+
+  if (!gst_cloth_observations_unpack (buffer, target, error))
+    return FALSE;
+  if (!GST_CLOCK_TIME_IS_VALID (time))
+    return fail (error, "it has no time: film with time stamps, as a source "
+        "with do-timestamp=true or a file has them");
+  n = find_points (self, target, error);
+  return n >= 0 && cloth_sights_add (self->sights, self->camera,
+      (gdouble) time / GST_SECOND, (guint) n, self->vertices, self->px,
+      self->covariances, error);
+}
+
+/* Reads the record at @at: its header tells its size. */
+static gboolean
+read_record (ClothInput * input, guint64 at, GByteArray * record,
+    GError ** error)
+{
+  guint64 left = cloth_input_get_size (input) - at;
+  guint32 size;
+
+  if (left < HEADER)
+    return fail (error, "the file ends inside a header: it was cut off; stop "
+        "a recording with EOS (gst-launch-1.0 -e)");
+  g_byte_array_set_size (record, HEADER);
+  if (!cloth_input_read_at (input, at, record->data, HEADER, error))
+    return FALSE;
+  if (memcmp (record->data, "GCOB", 4) != 0)
+    return fail (error, "no observation begins here: write the file by "
+        "clothmetapay ! filesink, with nothing between them");
+  size = GST_READ_UINT32_LE (record->data + SIZE_AT);
+  if (size < HEADER || size > MAX_RECORD)
+    return fail (error, "its size of %u bytes is impossible: %u to %u are "
+        "allowed", size, HEADER, MAX_RECORD);
+  if (size > left)
+    return fail (error, "the file ends inside it: it was cut off; stop a "
+        "recording with EOS (gst-launch-1.0 -e)");
+  g_byte_array_set_size (record, size);
+  return cloth_input_read_at (input, at, record->data, size, error);
+}
+
+static guint64
+count_points (const ClothSights * sights)
+{
+  guint64 n = 0;
+
+  for (guint i = 0; i < sights->list->len; i++)
+    n += g_array_index (sights->list, ClothSight, i).n;
+  return n;
+}
+
+static gboolean
+read_all (Reader * self, ClothInput * input, GError ** error)
+{
+  g_autoptr (GByteArray) record = g_byte_array_new ();
+  guint64 at = 0, n_points = count_points (self->sights);
+  const GArray *list = self->sights->list;
+
+  for (guint n = 0; at < cloth_input_get_size (input); n++) {
+    if (n == MAX_PICTURES || n_points > MAX_POINTS)
+      return fail (error, "picture %u: too many; at most %u pictures a camera "
+          "and %u points in all are read: cut the take into shorter ones", n,
+          MAX_PICTURES, MAX_POINTS);
+    if (!read_record (input, at, record, error)
+        || !read_picture (self, record, error)) {
+      g_prefix_error (error, "picture %u, at byte %" G_GUINT64_FORMAT ": ", n,
+          at);
+      return FALSE;
+    }
+    n_points += g_array_index (list, ClothSight, list->len - 1).n;
+    at += record->len;
+  }
+  if (at == 0)
+    return fail (error, "it is empty: nothing was recorded");
+  if (!self->labelled)
+    return fail (error, "no picture has squares or dots: put “saddledetect ! "
+        "quadtrack” or “dotlabel” before clothmetapay, or leave the file out");
+  return TRUE;
+}
+
+/**
+ * gst_cloth_sights_read:
+ * @sights: where the pictures go
+ * @camera: whose they are: its index in the rig
+ * @columns: vertices in a row of the cloth's grid, at least 2
+ * @rows: vertices in a column of it, at least 2
+ * @input: a row of observations, as docs/streams.md has them
+ * @error: #ClothFitError, #GST_CLOTH_ERROR; it says which picture is wrong, and why
+ *
+ * Reads the pictures of one camera. The squares or dots of each become one point a vertex
+ * just as triangulate makes them. GStreamer must have been initialised.
+ *
+ * Returns: %FALSE when a picture can't be one of this take; those before it are in @sights
+ * Since: 0.1
+ */
+gboolean
+gst_cloth_sights_read (ClothSights * sights, guint camera, guint columns,
+    guint rows, ClothInput * input, GError ** error)
+{
+  Reader reader;
+  gboolean good;
+
+  reader_init (&reader, sights, camera, columns, rows);
+  good = read_all (&reader, input, error);
+  reader_clear (&reader);
+  return good;
+}
+
+/* The names that files may have. */
+static gchar *
+list_names (const ClothRig * rig)
+{
+  GString *text = g_string_new (NULL);
+
+  for (guint i = 0; i < rig->n_cameras; i++)
+    g_string_append_printf (text, "%s%s" ENDING, i ? ", " : "",
+        rig->cameras[i].name);
+  return g_string_free (text, FALSE);
+}
+
+static gboolean
+is_of_camera (const gchar * name, const ClothRig * rig)
+{
+  for (guint i = 0; i < rig->n_cameras; i++) {
+    g_autofree gchar *own = g_strconcat (rig->cameras[i].name, ENDING, NULL);
+
+    if (g_str_equal (name, own))
+      return TRUE;
+  }
+  return FALSE;
+}
+
+/* Hidden files are of the system; all others must be a camera's. */
+static gboolean
+check_files (const gchar * path, const ClothRig * rig, GError ** error)
+{
+  g_autoptr (GDir) dir = g_dir_open (path, 0, error);
+  g_autofree gchar *names = list_names (rig);
+  const gchar *name;
+  guint n = 0;
+
+  if (!dir)
+    return FALSE;
+  while ((name = g_dir_read_name (dir))) {
+    g_autofree gchar *shown = g_filename_display_name (name);
+
+    if (*name == '.')
+      continue;
+    if (!is_of_camera (name, rig))
+      return fail (error,
+          "“" FOLDER "/%s” is of no camera of rig.json, whose "
+          "files would be %s: rename it, or take it away", shown, names);
+    n++;
+  }
+  return n > 0 || fail (error, "the folder " FOLDER " is empty: record %s into "
+      "it by clothmetapay ! filesink, or take it away", names);
+}
+
+/* Below the take's folder. */
+static gchar *
+name_file (const ClothRig * rig, guint camera)
+{
+  return g_strconcat (FOLDER "/", rig->cameras[camera].name, ENDING, NULL);
+}
+
+static gboolean
+load_files (ClothSights * sights, const gchar * folder,
+    const ClothTopology * topology, GError ** error)
+{
+  const ClothRig *rig = sights->rig;
+
+  for (guint i = 0; i < rig->n_cameras; i++) {
+    g_autofree gchar *name = name_file (rig, i);
+    g_autofree gchar *whole = g_build_filename (folder, name, NULL);
+    g_autofree gchar *path = NULL;
+    g_autoptr (ClothInput) input = NULL;
+
+    if (!g_file_test (whole, G_FILE_TEST_EXISTS))
+      continue;
+    if (!(path = cloth_path_inside (folder, name, error))
+        || !(input = cloth_input_open (path, error)))
+      return FALSE;
+    if (!gst_cloth_sights_read (sights, i, topology->columns, topology->rows,
+            input, error)) {
+      g_prefix_error (error, "%s: ", name);
+      return FALSE;
+    }
+  }
+  return TRUE;
+}
+
+/**
+ * gst_cloth_sights_load:
+ * @folder: (type filename): of a take
+ * @topology: the take's mesh
+ * @sights: (out) (transfer full) (nullable): what the cameras saw; %NULL when the take
+ *   doesn't say
+ * @error: #ClothFitError, #ClothRigError, #ClothFileError, #GST_CLOTH_ERROR, #GIOErrorEnum;
+ *   it names the file, the picture and what to do
+ *
+ * Reads observations/<camera>.obs of the cameras of rig.json, one picture after the other.
+ * Not each camera must have a file. A rig without the folder observations says nothing; the
+ * folder without a rig, without files or with files of other names is an error, and so is
+ * the folder when the mesh is no grid, whose vertices are numbered row by row.
+ *
+ * Returns: %FALSE when something is there that can't be used
+ * Since: 0.1
+ */
+gboolean
+gst_cloth_sights_load (const gchar * folder, const ClothTopology * topology,
+    ClothSights ** sights, GError ** error)
+{
+  g_autofree gchar *path = g_build_filename (folder, FOLDER, NULL);
+  g_autofree gchar *rig_file = g_build_filename (folder, "rig.json", NULL);
+  g_autofree gchar *rig_path = NULL;
+  g_autoptr (ClothSights) made = NULL;
+  ClothRig *rig;
+
+  *sights = NULL;
+  if (!g_file_test (path, G_FILE_TEST_EXISTS))
+    return TRUE;
+  if (!g_file_test (rig_file, G_FILE_TEST_EXISTS))
+    return fail (error,
+        "there are " FOLDER " but no rig.json in “%s”: add the "
+        "one that triangulate was given, or take them away", folder);
+  if (topology->columns < 2 || topology->rows < 2)
+    return fail (error,
+        "observations name the vertices of a grid, but the mesh "
+        "of “%s” is none: take the folder " FOLDER " away", folder);
+  if (!(rig_path = cloth_path_inside (folder, "rig.json", error)))
+    return FALSE;
+  rig = cloth_rig_load (rig_path, error);
+  if (!rig)
+    return FALSE;
+  made = cloth_sights_new (rig, topology->n_vertices);
+  if (!check_files (path, rig, error) || !gst_init_check (NULL, NULL, error)
+      || !load_files (made, folder, topology, error))
+    return FALSE;
+  *sights = g_steal_pointer (&made);
+  return TRUE;
+}
+
+/**
+ * gst_cloth_sights_load_take:
+ * @take: a take
+ * @sights: (out) (transfer full) (nullable): what the cameras saw
+ * @error: as of gst_cloth_sights_load ()
+ *
+ * As gst_cloth_sights_load (); what was read counts as files of the take.
+ *
+ * Returns: %FALSE when something is there that can't be used
+ * Since: 0.1
+ */
+gboolean
+gst_cloth_sights_load_take (ClothTake * take, ClothSights ** sights,
+    GError ** error)
+{
+  const gchar *folder = cloth_take_get_folder (take);
+
+  if (!gst_cloth_sights_load (folder, cloth_take_get_topology (take), sights,
+          error))
+    return FALSE;
+  if (!*sights)
+    return TRUE;
+  cloth_take_add_file (take, "rig.json");
+  for (guint i = 0; i < (*sights)->rig->n_cameras; i++) {
+    g_autofree gchar *name = name_file ((*sights)->rig, i);
+    g_autofree gchar *path = g_build_filename (folder, name, NULL);
+
+    if (g_file_test (path, G_FILE_TEST_EXISTS))
+      cloth_take_add_file (take, name);
+  }
+  return TRUE;
+}

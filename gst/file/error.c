@@ -1,0 +1,32 @@
+/* What can be wrong with the contents of a file.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/file/error.h"
+
+#include <stdarg.h>
+
+/* *INDENT-OFF* */
+G_DEFINE_QUARK (cloth-file-error-quark, cloth_file_error)
+/* *INDENT-ON* */
+
+/**
+ * cloth_file_invalid:
+ * @error: (out): set to %CLOTH_FILE_ERROR_INVALID
+ * @format: what is wrong and how to mend it
+ *
+ * Returns: %FALSE, so that a check may end with it
+ *
+ * Since: 0.1
+ */
+gboolean
+cloth_file_invalid (GError ** error, const gchar * format, ...)
+{
+  g_autofree gchar *text = NULL;
+  va_list arguments;
+
+  va_start (arguments, format);
+  text = g_strdup_vprintf (format, arguments);
+  va_end (arguments);
+  g_set_error_literal (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID, text);
+  return FALSE;
+}

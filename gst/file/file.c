@@ -1,0 +1,503 @@
+/* Files: bounded reads, writes that appear whole or not at all.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/file/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <gio/gio.h>
+#include <glib/gstdio.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define OUTPUT_BUFFER (1u << 18)
+
+struct _ClothInput
+{
+  gint fd;                      /* -1: memory */
+  const guint8 *data;
+  guint64 size;
+};
+
+struct _ClothOutput
+{
+  gchar *path;
+  gchar *temporary;             /* NULL once renamed */
+  FILE *file;                   /* NULL once finished */
+  gboolean sync;
+};
+
+static gboolean
+fail_errno (GError ** error, gint code, const gchar * doing, const gchar * path)
+{
+  g_autofree gchar *shown = g_filename_display_name (path);
+
+  g_set_error (error, G_IO_ERROR, g_io_error_from_errno (code),
+      "cannot %s “%s”: %s", doing, shown, g_strerror (code));
+  return FALSE;
+}
+
+/**
+ * cloth_input_open:
+ * @path: a regular file
+ * @error: #GIOErrorEnum
+ *
+ * Opens @path for reading. Pipes, devices and folders are refused, so that a name
+ * in a hostile manifest can neither block nor read without end.
+ *
+ * Returns: (transfer full): the input, or %NULL
+ * Since: 0.1
+ */
+ClothInput *
+cloth_input_open (const gchar * path, GError ** error)
+{
+  ClothInput *input;
+  struct stat info;
+  gint fd = g_open (path, O_RDONLY | O_CLOEXEC | O_NONBLOCK, 0);
+
+  if (fd < 0 || fstat (fd, &info) < 0) {
+    fail_errno (error, errno, "open", path);
+    if (fd >= 0)
+      close (fd);
+    return NULL;
+  }
+  if (!S_ISREG (info.st_mode)) {
+    g_autofree gchar *shown = g_filename_display_name (path);
+
+    close (fd);
+    g_set_error (error, G_IO_ERROR, G_IO_ERROR_NOT_REGULAR_FILE,
+        "“%s” is not a regular file", shown);
+    return NULL;
+  }
+  input = g_new0 (ClothInput, 1);
+  input->fd = fd;
+  input->size = (guint64) info.st_size;
+  return input;
+}
+
+/**
+ * cloth_input_new_memory:
+ * @data: @size bytes, borrowed: they must outlive the input
+ * @size: how many
+ *
+ * Returns: (transfer full): an input over memory
+ * Since: 0.1
+ */
+ClothInput *
+cloth_input_new_memory (const guint8 * data, gsize size)
+{
+  ClothInput *input = g_new0 (ClothInput, 1);
+
+  input->fd = -1;
+  input->data = data;
+  input->size = size;
+  return input;
+}
+
+/**
+ * cloth_input_get_size:
+ * @input: an input
+ *
+ * Returns: its size in bytes when it was opened
+ * Since: 0.1
+ */
+guint64
+cloth_input_get_size (const ClothInput * input)
+{
+  return input->size;
+}
+
+/**
+ * cloth_input_read_at:
+ * @input: an input
+ * @offset: first byte
+ * @destination: room for @size bytes
+ * @size: how many bytes
+ * @error: #ClothFileError, #GIOErrorEnum
+ *
+ * Reads exactly @size bytes. A file that shrank meanwhile is an error, not a crash
+ * (the reason for not mapping it).
+ *
+ * Returns: %TRUE when all were read
+ * Since: 0.1
+ */
+gboolean
+cloth_input_read_at (ClothInput * input, guint64 offset, gpointer destination,
+    gsize size, GError ** error)
+{
+  guint8 *to = destination;
+
+  if (offset > input->size || size > input->size - offset) {
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_TRUNCATED,
+        "%" G_GSIZE_FORMAT " bytes wanted at %" G_GUINT64_FORMAT
+        ", the file has %" G_GUINT64_FORMAT, size, offset, input->size);
+    return FALSE;
+  }
+  if (input->fd < 0) {
+    if (size > 0)
+      memcpy (to, input->data + offset, size);
+    return TRUE;
+  }
+  while (size > 0) {
+    gssize n = pread (input->fd, to, size, (off_t) offset);
+
+    if (n < 0 && errno == EINTR)
+      continue;
+    if (n < 0) {
+      g_set_error (error, G_IO_ERROR, g_io_error_from_errno (errno),
+          "cannot read: %s", g_strerror (errno));
+      return FALSE;
+    }
+    if (n == 0) {
+      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_TRUNCATED,
+          "the file became shorter while it was read");
+      return FALSE;
+    }
+    to += n;
+    offset += (guint64) n;
+    size -= (gsize) n;
+  }
+  return TRUE;
+}
+
+/**
+ * cloth_input_load:
+ * @input: an input
+ * @limit: the most bytes accepted
+ * @bytes: set to the contents with one 0 byte behind them (`bytes->len` counts it)
+ * @error: #ClothFileError, #GIOErrorEnum
+ *
+ * Reads everything. @bytes is reused, so that a sequence of files allocates once.
+ *
+ * Returns: %TRUE when all was read
+ * Since: 0.1
+ */
+gboolean
+cloth_input_load (ClothInput * input, gsize limit, GByteArray * bytes,
+    GError ** error)
+{
+  if (input->size > MIN (limit, CLOTH_MAX_BUFFER)) {
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT,
+        "%" G_GUINT64_FORMAT " bytes are more than the %" G_GSIZE_FORMAT
+        " accepted", input->size, (gsize) MIN (limit, CLOTH_MAX_BUFFER));
+    return FALSE;
+  }
+  g_byte_array_set_size (bytes, (guint) input->size + 1);
+  bytes->data[input->size] = 0;
+  return cloth_input_read_at (input, 0, bytes->data, (gsize) input->size,
+      error);
+}
+
+/**
+ * cloth_input_free:
+ * @input: (transfer full) (nullable): an input
+ *
+ * Since: 0.1
+ */
+void
+cloth_input_free (ClothInput * input)
+{
+  if (!input)
+    return;
+  if (input->fd >= 0)
+    close (input->fd);
+  g_free (input);
+}
+
+/**
+ * cloth_output_new:
+ * @path: the final name; its folder must exist
+ * @error: #GIOErrorEnum
+ *
+ * Starts a file under a hidden temporary name in the same folder, so that a later
+ * rename cannot cross file systems. Free without commit removes it.
+ *
+ * Returns: (transfer full): the output, or %NULL
+ * Since: 0.1
+ */
+ClothOutput *
+cloth_output_new (const gchar * path, GError ** error)
+{
+  g_autofree gchar *folder = g_path_get_dirname (path);
+  g_autofree gchar *base = g_path_get_basename (path);
+  g_autofree gchar *hidden = g_strdup_printf (".%s.XXXXXX", base);
+  g_autofree gchar *temporary = g_build_filename (folder, hidden, NULL);
+  ClothOutput *output;
+  gint fd;
+
+  if (g_file_test (path, G_FILE_TEST_IS_DIR)) {
+    fail_errno (error, EISDIR, "write", path);
+    return NULL;
+  }
+  fd = g_mkstemp_full (temporary, O_RDWR | O_CLOEXEC, 0666);
+  if (fd < 0) {
+    fail_errno (error, errno, "write", path);
+    return NULL;
+  }
+  output = g_new0 (ClothOutput, 1);
+  output->path = g_strdup (path);
+  output->sync = TRUE;
+  output->temporary = g_steal_pointer (&temporary);
+  output->file = fdopen (fd, "wb");
+  if (!output->file) {
+    fail_errno (error, errno, "write", path);
+    close (fd);
+    cloth_output_free (output);
+    return NULL;
+  }
+  setvbuf (output->file, NULL, _IOFBF, OUTPUT_BUFFER);
+  return output;
+}
+
+/**
+ * cloth_output_set_sync:
+ * @output: an output
+ * @sync: whether finishing waits until the bytes are on the disk, as it does by
+ *   default. A sequence of small files would wait for each of them.
+ *
+ * Since: 0.1
+ */
+void
+cloth_output_set_sync (ClothOutput * output, gboolean sync)
+{
+  output->sync = sync;
+}
+
+/**
+ * cloth_output_write:
+ * @output: an output not yet finished
+ * @data: bytes to append
+ * @size: how many
+ * @error: #GIOErrorEnum
+ *
+ * Returns: %TRUE when they were taken
+ * Since: 0.1
+ */
+gboolean
+cloth_output_write (ClothOutput * output, gconstpointer data, gsize size,
+    GError ** error)
+{
+  if (size > 0 && fwrite (data, size, 1, output->file) != 1)
+    return fail_errno (error, errno, "write", output->path);
+  return TRUE;
+}
+
+/**
+ * cloth_output_printf:
+ * @output: an output not yet finished
+ * @error: #GIOErrorEnum
+ * @format: as for printf. No floating point: its decimal point follows the locale
+ *
+ * Returns: %TRUE when the text was taken
+ * Since: 0.1
+ */
+gboolean
+cloth_output_printf (ClothOutput * output, GError ** error,
+    const gchar * format, ...)
+{
+  va_list arguments;
+  gint n;
+
+  va_start (arguments, format);
+  n = vfprintf (output->file, format, arguments);
+  va_end (arguments);
+  return n >= 0 || fail_errno (error, errno, "write", output->path);
+}
+
+/**
+ * cloth_output_write_at:
+ * @output: an output not yet finished
+ * @offset: where in what is already written
+ * @data: bytes that replace those there
+ * @size: how many
+ * @error: #GIOErrorEnum
+ *
+ * Mends a header whose counts are known at the end only; the next write appends
+ * again.
+ *
+ * Returns: %TRUE when they were taken
+ * Since: 0.1
+ */
+gboolean
+cloth_output_write_at (ClothOutput * output, guint64 offset,
+    gconstpointer data, gsize size, GError ** error)
+{
+  if (fseeko (output->file, (off_t) offset, SEEK_SET) < 0 ||
+      fwrite (data, size, 1, output->file) != 1 ||
+      fseeko (output->file, 0, SEEK_END) < 0)
+    return fail_errno (error, errno, "write", output->path);
+  return TRUE;
+}
+
+/**
+ * cloth_output_finish:
+ * @output: an output
+ * @error: #GIOErrorEnum
+ *
+ * Brings every byte to the disk and closes the file, still under its temporary
+ * name. A second call does nothing.
+ *
+ * Returns: %TRUE when the file is whole
+ * Since: 0.1
+ */
+gboolean
+cloth_output_finish (ClothOutput * output, GError ** error)
+{
+  gint failed = 0;
+
+  if (!output->file)
+    return TRUE;
+  if (fflush (output->file) != 0 ||
+      (output->sync && fsync (fileno (output->file)) < 0))
+    failed = errno;
+  if (fclose (output->file) != 0 && !failed)
+    failed = errno;
+  output->file = NULL;
+  return !failed || fail_errno (error, failed, "write", output->path);
+}
+
+/**
+ * cloth_output_commit:
+ * @outputs: (array length=n_outputs): files that belong together
+ * @n_outputs: how many
+ * @error: #GIOErrorEnum
+ *
+ * Finishes all, and only then gives them their final names, in order. When one
+ * cannot be renamed those before it are removed, so that no incomplete set stays.
+ *
+ * Returns: %TRUE when all have their names
+ * Since: 0.1
+ */
+gboolean
+cloth_output_commit (ClothOutput * const *outputs, guint n_outputs,
+    GError ** error)
+{
+  for (guint i = 0; i < n_outputs; i++)
+    if (!cloth_output_finish (outputs[i], error))
+      return FALSE;
+  for (guint i = 0; i < n_outputs; i++) {
+    if (g_rename (outputs[i]->temporary, outputs[i]->path) < 0) {
+      fail_errno (error, errno, "write", outputs[i]->path);
+      for (guint done = 0; done < i; done++)
+        g_unlink (outputs[done]->path);
+      return FALSE;
+    }
+    g_clear_pointer (&outputs[i]->temporary, g_free);
+  }
+  return TRUE;
+}
+
+/**
+ * cloth_file_write_text:
+ * @path: where the file shall be
+ * @text: what is in it
+ * @error: #GIOErrorEnum
+ *
+ * The file appears whole or not at all.
+ *
+ * Returns: %TRUE when it is there
+ * Since: 0.1
+ */
+gboolean
+cloth_file_write_text (const gchar * path, const gchar * text, GError ** error)
+{
+  g_autoptr (ClothOutput) output = cloth_output_new (path, error);
+
+  return output && cloth_output_write (output, text, strlen (text), error) &&
+      cloth_output_commit (&output, 1, error);
+}
+
+/**
+ * cloth_output_free:
+ * @output: (transfer full) (nullable): an output
+ *
+ * Frees it, and removes the file unless it was committed.
+ *
+ * Since: 0.1
+ */
+void
+cloth_output_free (ClothOutput * output)
+{
+  if (!output)
+    return;
+  if (output->file)
+    fclose (output->file);
+  if (output->temporary)
+    g_unlink (output->temporary);
+  g_free (output->temporary);
+  g_free (output->path);
+  g_free (output);
+}
+
+/**
+ * cloth_path_inside:
+ * @folder: the folder of a manifest
+ * @name: a file name that the manifest gives
+ * @error: #ClothFileError, #GIOErrorEnum
+ *
+ * Joins the two and makes sure that the file exists and lies inside @folder, after
+ * every symbolic link was followed.
+ *
+ * Returns: (transfer full) (type filename): the path, or %NULL
+ * Since: 0.1
+ */
+gchar *
+cloth_path_inside (const gchar * folder, const gchar * name, GError ** error)
+{
+  g_autofree gchar *path = NULL;
+  char *root = NULL, *real = NULL;
+  gboolean inside = FALSE;
+
+  if (!*name || g_path_is_absolute (name) || strstr (name, "..")) {
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+        "“%s” is no path inside the folder: name a file below it", name);
+    return NULL;
+  }
+  path = g_build_filename (folder, name, NULL);
+  root = realpath (folder, NULL);
+  real = realpath (path, NULL);
+  if (!root || !real) {
+    fail_errno (error, errno, "open", path);
+  } else {
+    gsize length = strlen (root);
+
+    inside = g_str_has_prefix (real, root) &&
+        (real[length] == '/' || g_str_equal (root, "/"));
+    if (!inside)
+      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+          "“%s” leads out of its folder", name);
+  }
+  free (root);
+  free (real);
+  return inside ? g_steal_pointer (&path) : NULL;
+}
+
+/**
+ * cloth_swap_little_endian:
+ * @items: numbers as they stand in a little-endian file, or are to stand there
+ * @item_size: 1, 2, 4 or 8 bytes each
+ * @n_items: how many
+ *
+ * Turns them in place into the processor's byte order, or back.
+ *
+ * Since: 0.1
+ */
+void
+cloth_swap_little_endian (gpointer items, gsize item_size, gsize n_items)
+{
+#if G_BYTE_ORDER != G_LITTLE_ENDIAN
+  guint8 *p = items;
+
+  for (gsize i = 0; i < n_items; i++, p += item_size) {
+    for (gsize a = 0, b = item_size - 1; a < b; a++, b--) {
+      guint8 kept = p[a];
+
+      p[a] = p[b];
+      p[b] = kept;
+    }
+  }
+#endif
+}

@@ -1,0 +1,480 @@
+/* What a model might lack.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/fit/estimate/candidates.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/fit/error.h"
+#include "gst/effect/effect.h"
+
+/* Finite differences are this share of a prior: chaos adds the same to every step, so a
+ * short one would drown in it. */
+#define STEP 0.4
+#define FREE_STEP 0.2
+/* Prior of the logarithm of a stiffness or damping, half of an order of magnitude. */
+#define LOG_PRIOR 1.2
+/* A clamp that is off its path by this many standard deviations of a mean of frames. */
+#define SLIP_SIGMAS 6.
+#define SLIP_FRAMES 5
+
+/* Parameters that shape an effect but mean nothing at its null: tried at these values,
+ * one candidate each, when the null value isn't the one to try. */
+static const struct
+{
+  const gchar *effect, *parameter;
+  gdouble values[2];
+  guint n;
+} shapes[] = {
+  {"mass_distribution", "height", {0.02, 0.06}, 2},
+  {"biphasic_stretch", "knee", {0.02}, 1},
+  {"plasticity", "yield", {10.}, 1},
+};
+
+/* Which parameters of an effect only shape it. */
+static const gchar *const shaping[] = {
+  "height", "knee", "yield", "strain", "time", "azimuth", "coefficient",
+  "turbulence", "held", NULL
+};
+
+/* Which of the model's numbers an effect is the same as. */
+static const struct
+{
+  const gchar *effect, *names[2];
+} same[] = {
+  {"bending", {"bending.warp", "bending.weft"}},
+  {"bending_anisotropy", {"bending.warp", "bending.weft"}},
+  {"stretch", {"stretch.warp", "stretch.weft"}},
+  {"stretch_anisotropy", {"stretch.warp", "stretch.weft"}},
+  {"shear", {"shear", NULL}},
+  {"damping_mass", {"damping.mass", NULL}},
+  {"damping_stiffness", {"damping.stiffness", NULL}},
+};
+
+static void
+clear_direction (gpointer item)
+{
+  g_free (((ClothGapDirection *) item)->name);
+}
+
+static gboolean
+is_free (const ClothModel * model, const gchar * name)
+{
+  for (guint i = 0; i < model->free->len; i++)
+    if (strcmp (g_array_index (model->free, ClothModelFree, i).name, name) == 0)
+      return TRUE;
+  return FALSE;
+}
+
+static gboolean
+add_free (ClothGapCandidates * c, const ClothModel * model, GError ** error)
+{
+  for (guint i = 0; i < model->free->len; i++) {
+    const ClothModelFree *f = &g_array_index (model->free, ClothModelFree, i);
+    ClothGapDirection d = { NULL };
+
+    if (!cloth_model_get (model, f->name, &d.centre, error))
+      return FALSE;
+    d.name = g_strdup (f->name);
+    d.logarithmic = f->range[0] > 0. && d.centre > 0.;
+    d.low = f->range[0];
+    d.high = f->range[1];
+    if (d.logarithmic) {
+      d.centre = log (d.centre);
+      d.low = log (d.low);
+      d.high = log (d.high);
+      d.prior = LOG_PRIOR;
+    } else {
+      d.prior = (d.high - d.low) / 4.;
+    }
+    d.fit_low = d.low;
+    d.fit_high = d.high;
+    d.step = FREE_STEP * d.prior;
+    g_array_append_val (c->directions, d);
+  }
+  c->n_free = c->directions->len;
+  return TRUE;
+}
+
+static ClothGapCandidate
+start (const ClothGapCandidates * c, const ClothEffect * effect)
+{
+  ClothGapCandidate candidate = { effect };
+
+  for (guint k = 0; k < effect->n_parameters; k++)
+    candidate.values[k] = effect->parameters[k].null_value;
+  candidate.first = c->directions->len;
+  return candidate;
+}
+
+static void
+add_direction (ClothGapCandidates * c, ClothGapCandidate * candidate, guint k)
+{
+  const ClothEffectParameter *p = &candidate->effect->parameters[k];
+  ClothGapDirection d = { NULL };
+
+  d.name = g_strdup_printf ("effects.%s.%s", candidate->effect->id, p->name);
+  d.centre = p->null_value;
+  d.prior = p->prior;
+  d.step = STEP * p->prior;
+  d.one_sided = p->one_sided;
+  d.low = d.fit_low = p->min;
+  d.high = d.fit_high = p->max;
+  g_array_append_val (c->directions, d);
+  candidate->parameters[candidate->n++] = k;
+}
+
+static void
+add_plain (ClothGapCandidates * c, const ClothEffect * effect)
+{
+  guint shape = 0, n = 1;
+
+  while (shape < G_N_ELEMENTS (shapes)
+      && strcmp (shapes[shape].effect, effect->id) != 0)
+    shape++;
+  if (shape < G_N_ELEMENTS (shapes))
+    n = shapes[shape].n;
+  for (guint i = 0; i < n; i++) {
+    ClothGapCandidate candidate = start (c, effect);
+
+    for (guint k = 0; k < effect->n_parameters; k++) {
+      const gchar *name = effect->parameters[k].name;
+
+      if (shape < G_N_ELEMENTS (shapes)
+          && strcmp (shapes[shape].parameter, name) == 0)
+        candidate.values[k] = shapes[shape].values[i];
+      else if (effect->n_parameters == 1 || !g_strv_contains (shaping, name))
+        add_direction (c, &candidate, k);
+    }
+    g_array_append_val (c->list, candidate);
+  }
+}
+
+static gdouble
+mean_off (const ClothRecording * r, guint held, guint vertex, guint begin,
+    guint end, guint k, guint * n)
+{
+  gdouble sum = 0.;
+
+  *n = 0;
+  for (guint f = begin; f < end; f++) {
+    gsize at = (gsize) f * r->n + vertex;
+
+    if (r->seen[at] == 0.)
+      continue;
+    sum += r->y[3 * at + k] -
+        r->scene->clamps[3 * ((gsize) f * r->scene->held->len + held) + k];
+    (*n)++;
+  }
+  return *n ? sum / *n : 0.;
+}
+
+/* When the seen place of a held vertex jumps most against its path, s; NaN when it never
+ * does. What is seen of a clamp is an observation like any other. */
+static gdouble
+find_slip (const ClothRecording * r, guint held)
+{
+  const ClothHeld *h = &g_array_index (r->scene->held, ClothHeld, held);
+  gdouble best = SLIP_SIGMAS * SLIP_SIGMAS, when = NAN;
+
+  for (guint f = SLIP_FRAMES; f + SLIP_FRAMES <= r->n_frames; f++) {
+    gdouble jump = 0.;
+    guint n[2];
+
+    if (r->times[f - SLIP_FRAMES] < h->from_s
+        || r->times[f + SLIP_FRAMES - 1] > h->until_s)
+      continue;
+    for (guint k = 0; k < 3; k++) {
+      gdouble before = mean_off (r, held, h->vertex, f - SLIP_FRAMES, f, k,
+          &n[0]);
+      gdouble after = mean_off (r, held, h->vertex, f, f + SLIP_FRAMES, k,
+          &n[1]);
+
+      if (n[0] && n[1])
+        jump += (after - before) * (after - before) / (r->sigma * r->sigma *
+            (1. / n[0] + 1. / n[1]));
+    }
+    if (jump > best) {
+      best = jump;
+      when = r->times[f];
+    }
+  }
+  return when;
+}
+
+static guint
+parameter_of (const ClothEffect * effect, const gchar * name)
+{
+  guint k = 0;
+
+  while (strcmp (effect->parameters[k].name, name) != 0)
+    k++;
+  return k;
+}
+
+static void
+add_slips (ClothGapCandidates * c, const ClothEffect * effect,
+    const ClothRecording * r)
+{
+  /* the ramp is over a twentieth of a second: it began before the middle of the jump */
+  const gdouble lead = 0.03;
+
+  for (guint held = 0; held < r->scene->held->len; held++) {
+    gdouble when = find_slip (r, held);
+    ClothGapCandidate candidate = start (c, effect);
+
+    candidate.values[parameter_of (effect, "held")] = held;
+    candidate.values[parameter_of (effect, "time")] =
+        isnan (when) ? r->times[0] : when - lead;
+    for (guint k = 0; k < 3; k++)
+      add_direction (c, &candidate, k);
+    g_array_append_val (c->list, candidate);
+  }
+}
+
+/* Gusts have no directions of their own, but those of wind. */
+static gboolean
+add_gust (ClothGapCandidates * c, const ClothEffect * effect)
+{
+  ClothGapCandidate candidate = start (c, effect);
+
+  for (guint i = 0; i < c->list->len; i++) {
+    const ClothGapCandidate *wind =
+        &g_array_index (c->list, ClothGapCandidate, i);
+
+    if (strcmp (wind->effect->id, "wind") != 0)
+      continue;
+    candidate.first = wind->first;
+    g_array_append_val (c->list, candidate);
+    return TRUE;
+  }
+  return FALSE;
+}
+
+/* NULL when the effect can be a candidate, else why not. */
+static const gchar *
+why_not (const ClothEffect * effect, const ClothModel * model,
+    const ClothRecording * r, gboolean frozen)
+{
+  if (effect->side == CLOTH_EFFECT_CAMERA || effect->side == CLOTH_EFFECT_IMAGE)
+    return
+        "The take has positions only: record what the cameras saw to test it "
+        "(rig.json, and observations/NAME.obs of each camera by detector ! "
+        "clothmetapay ! filesink; docs/formats.md).";
+  if (effect->side == CLOTH_EFFECT_NUMERICS)
+    return "It is part of the simulator's own error, which is projected out.";
+  if (effect->side == CLOTH_EFFECT_CLAMP && !r->scene->held->len)
+    return "Nothing is held in this take.";
+  if (strcmp (effect->id, "friction") == 0 && !r->scene->obstacles->len)
+    return "There is no obstacle in this take.";
+  if (strcmp (effect->id, "self_contact") == 0)
+    return "Contact switches on and off: it has no derivative to test by.";
+  for (guint i = 0; i < G_N_ELEMENTS (same) && !frozen; i++)
+    if (strcmp (same[i].effect, effect->id) == 0
+        && is_free (model, same[i].names[0]))
+      return "The model's own number is free and was fitted on this take: give "
+          "a baseline to freeze it.";
+  for (guint i = 0; i < model->effects->len; i++)
+    if (g_array_index (model->effects, ClothModelEffect, i).effect == effect)
+      return "The model has it already.";
+  return NULL;
+}
+
+static gboolean
+wanted (const gchar * const *effects, const gchar * id)
+{
+  return !effects || g_strv_contains (effects, id);
+}
+
+/**
+ * cloth_gap_candidates_new:
+ * @model: the model that is looked at
+ * @recording: what it is to explain
+ * @effects: (nullable) (array zero-terminated=1): ids of those to consider
+ * @frozen: whether the model's free numbers were fitted elsewhere
+ * @skip: told of those that are not considered
+ * @data: for @skip
+ * @error: #ClothFitError
+ *
+ * Returns: (transfer full) (nullable): the candidates
+ * Since: 0.1
+ */
+ClothGapCandidates *
+cloth_gap_candidates_new (const ClothModel * model,
+    const ClothRecording * recording, const gchar * const *effects,
+    gboolean frozen, ClothGapSkip skip, gpointer data, GError ** error)
+{
+  g_autoptr (ClothGapCandidates) c = g_new0 (ClothGapCandidates, 1);
+  guint n_effects;
+  const ClothEffect *const *table = cloth_effect_table (&n_effects);
+
+  c->directions = g_array_new (FALSE, FALSE, sizeof (ClothGapDirection));
+  g_array_set_clear_func (c->directions, clear_direction);
+  c->list = g_array_new (FALSE, FALSE, sizeof (ClothGapCandidate));
+  for (guint i = 0; effects && effects[i]; i++)
+    if (!cloth_effect_find (effects[i])) {
+      g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_EFFECT,
+          "there is no effect “%s”; gst-cloth-gap-1.0 effects lists them",
+          effects[i]);
+      return NULL;
+    }
+  if (!add_free (c, model, error))
+    return NULL;
+  for (guint i = 0; i < n_effects; i++) {
+    const gchar *reason;
+
+    if (!wanted (effects, table[i]->id))
+      continue;
+    reason = why_not (table[i], model, recording, frozen);
+    if (reason) {
+      if (skip)
+        skip (data, table[i], reason);
+    } else if (strcmp (table[i]->id, "clamp_slip") == 0) {
+      add_slips (c, table[i], recording);
+    } else if (strcmp (table[i]->id, "gust") == 0) {
+      if (!add_gust (c, table[i]) && skip)
+        skip (data, table[i],
+            "Gusts are winds that change: they are tested where wind is.");
+    } else {
+      add_plain (c, table[i]);
+    }
+  }
+  return g_steal_pointer (&c);
+}
+
+static void
+set_effect (const ClothGapCandidates * c, ClothModel * model, guint direction)
+{
+  for (guint i = 0; i < c->list->len; i++) {
+    const ClothGapCandidate *candidate =
+        &g_array_index (c->list, ClothGapCandidate, i);
+    gboolean there = FALSE;
+
+    if (direction < candidate->first
+        || direction >= candidate->first + candidate->n)
+      continue;
+    for (guint k = 0; k < model->effects->len; k++)
+      there |= g_array_index (model->effects, ClothModelEffect, k).effect ==
+          candidate->effect;
+    if (!there)
+      cloth_model_set_effect (model, candidate->effect, candidate->values);
+  }
+}
+
+/**
+ * cloth_gap_candidates_place:
+ * @candidates: the candidates
+ * @model: a model
+ * @direction: a direction
+ *
+ * Returns: where the model is along it: the number, or its logarithm
+ * Since: 0.1
+ */
+gdouble
+cloth_gap_candidates_place (const ClothGapCandidates * candidates,
+    const ClothModel * model, guint direction)
+{
+  const ClothGapDirection *d = cloth_gap_candidates_direction (candidates,
+      direction);
+  gdouble value = d->centre;
+
+  if (cloth_model_get (model, d->name, &value, NULL) && d->logarithmic)
+    value = log (value);
+  return value;
+}
+
+/**
+ * cloth_gap_candidates_move:
+ * @candidates: the candidates
+ * @model: where they start
+ * @directions: (array length=n): along which
+ * @changes: (array length=n): how far: added to the number, or to its logarithm
+ * @n: how many
+ *
+ * Returns: (transfer full): the model so changed, kept within each number's range
+ * Since: 0.1
+ */
+ClothModel *
+cloth_gap_candidates_move (const ClothGapCandidates * candidates,
+    const ClothModel * model, const guint * directions,
+    const gdouble * changes, guint n)
+{
+  ClothModel *moved = cloth_model_copy (model);
+
+  for (guint i = 0; i < n; i++) {
+    const ClothGapDirection *d = cloth_gap_candidates_direction (candidates,
+        directions[i]);
+    gdouble value;
+
+    set_effect (candidates, moved, directions[i]);
+    value = cloth_gap_candidates_place (candidates, moved, directions[i]);
+    value = CLAMP (value + changes[i], d->low, d->high);
+    cloth_model_set (moved, d->name, d->logarithmic ? exp (value) : value,
+        NULL);
+  }
+  return moved;
+}
+
+/**
+ * cloth_gap_candidates_bound:
+ * @candidates: the candidates
+ * @model: a model
+ * @direction: one of the free numbers
+ * @reach: how far it may be from where it is in @model, or the logarithm of it
+ *
+ * Bounds the number in fits to come. Logarithms reach less far up: by no more than makes
+ * as much of a difference.
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_candidates_bound (ClothGapCandidates * candidates,
+    const ClothModel * model, guint direction, gdouble reach)
+{
+  ClothGapDirection *d = &g_array_index (candidates->directions,
+      ClothGapDirection, direction);
+  gdouble value = cloth_gap_candidates_place (candidates, model, direction);
+
+  d->fit_low = MAX (d->low, value - reach);
+  d->fit_high = MIN (d->high, value + (d->logarithmic ? log1p (reach) : reach));
+}
+
+/**
+ * cloth_gap_candidates_has_room:
+ * @candidates: the candidates
+ * @model: where it starts
+ * @direction: along which
+ * @step: how far
+ *
+ * Returns: whether the number stays in its range @step above and below
+ * Since: 0.1
+ */
+gboolean
+cloth_gap_candidates_has_room (const ClothGapCandidates * candidates,
+    const ClothModel * model, guint direction, gdouble step)
+{
+  const ClothGapDirection *d = cloth_gap_candidates_direction (candidates,
+      direction);
+  gdouble value = cloth_gap_candidates_place (candidates, model, direction);
+
+  return value - step >= d->low && value + step <= d->high;
+}
+
+/**
+ * cloth_gap_candidates_free:
+ * @candidates: (nullable) (transfer full): the candidates
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_candidates_free (ClothGapCandidates * candidates)
+{
+  if (!candidates)
+    return;
+  if (candidates->directions)
+    g_array_unref (candidates->directions);
+  if (candidates->list)
+    g_array_unref (candidates->list);
+  g_free (candidates);
+}

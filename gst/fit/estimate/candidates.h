@@ -1,0 +1,118 @@
+/* What a model might lack, as directions in which to change it.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include <string.h>
+
+#include "gst/fit/recording/recording.h"
+#include "gst/sim/model.h"
+
+G_BEGIN_DECLS
+
+/**
+ * ClothGapDirection:
+ * @name: of the model's number, as cloth_model_set () takes it
+ * @logarithmic: the logarithm of the number is changed
+ * @centre: where it starts: the null value, or the model's
+ * @step: of the finite difference
+ * @prior: standard deviation of its prior
+ * @one_sided: it can only grow
+ * @low: least value
+ * @high: largest value
+ * @fit_low: least value that a fit may come to
+ * @fit_high: largest value that a fit may come to
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  gchar *name;
+  gboolean logarithmic;
+  gdouble centre;
+  gdouble step;
+  gdouble prior;
+  gboolean one_sided;
+  gdouble low;
+  gdouble high;
+  gdouble fit_low;
+  gdouble fit_high;
+} ClothGapDirection;
+
+/**
+ * ClothGapCandidate:
+ * @effect: the effect
+ * @values: its parameters where the directions leave them
+ * @first: of its directions
+ * @n: number of its directions
+ * @parameters: which parameter each of them is
+ *
+ * One way in which an effect may act: some of its parameters are directions, the others
+ * are fixed. An effect may have several candidates. Gusts have none of their own: @n is 0
+ * and @first that of wind.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  const ClothEffect *effect;
+  gdouble values[CLOTH_EFFECT_MAX_PARAMETERS];
+  guint first;
+  guint n;
+  guint parameters[CLOTH_EFFECT_MAX_PARAMETERS];
+} ClothGapCandidate;
+
+/**
+ * ClothGapCandidates:
+ * @directions: (element-type ClothGapDirection): the model's free numbers first, then
+ *   those of the candidates
+ * @n_free: how many of them are free numbers of the model
+ * @list: (element-type ClothGapCandidate): the candidates
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  GArray *directions;
+  guint n_free;
+  GArray *list;
+} ClothGapCandidates;
+
+/* Whether it is gusts, which no single direction stands for. */
+static inline gboolean
+cloth_gap_candidate_is_gust (const ClothGapCandidate * candidate)
+{
+  return strcmp (candidate->effect->id, "gust") == 0;
+}
+
+/* The i-th direction. */
+static inline const ClothGapDirection *
+cloth_gap_candidates_direction (const ClothGapCandidates * candidates, guint i)
+{
+  return &g_array_index (candidates->directions, ClothGapDirection, i);
+}
+
+/**
+ * ClothGapSkip:
+ * @data: the caller's
+ * @effect: an effect that is no candidate
+ * @reason: why
+ *
+ * Since: 0.1
+ */
+typedef void (*ClothGapSkip) (gpointer data, const ClothEffect * effect,
+    const gchar * reason);
+
+ClothGapCandidates *cloth_gap_candidates_new (const ClothModel * model,
+    const ClothRecording * recording, const gchar * const *effects,
+    gboolean frozen, ClothGapSkip skip, gpointer data, GError ** error);
+ClothModel *cloth_gap_candidates_move (const ClothGapCandidates * candidates,
+    const ClothModel * model, const guint * directions,
+    const gdouble * changes, guint n);
+gdouble cloth_gap_candidates_place (const ClothGapCandidates * candidates,
+    const ClothModel * model, guint direction);
+void cloth_gap_candidates_bound (ClothGapCandidates * candidates,
+    const ClothModel * model, guint direction, gdouble reach);
+gboolean cloth_gap_candidates_has_room (const ClothGapCandidates *
+    candidates, const ClothModel * model, guint direction, gdouble step);
+void cloth_gap_candidates_free (ClothGapCandidates * candidates);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothGapCandidates, cloth_gap_candidates_free)
+G_END_DECLS

@@ -1,0 +1,677 @@
+/* A recording under study.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/fit/estimate/sensitivities.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/fit/error.h"
+#include "gst/math/linalg.h"
+
+/* What chaos does counts as so many times the variance of its samples, which are few. */
+#define CHAOS_WIDTH 10.
+/* No step of a fit is longer than this many priors. */
+#define LONGEST 1.5
+/* A fit ends when it gains less than this share. */
+#define ENOUGH 4e-3
+/* A step that made things worse is cut to this share. */
+#define CUT 0.4
+
+/**
+ * cloth_study_options_init:
+ * @options: (out caller-allocates): how recordings are studied unless told otherwise
+ *
+ * Since: 0.1
+ */
+void
+cloth_study_options_init (ClothStudyOptions * options)
+{
+  *options = (ClothStudyOptions) {
+  .gains = { 1600. },.n_waves = 8,.block_s = 0.5,.highest_hz =
+        10.,.overdispersion = 5.};
+}
+
+/**
+ * cloth_study_new:
+ * @recording: a recording; must outlive the study
+ * @options: how to study it
+ *
+ * Since: 0.1
+ */
+ClothStudy *
+cloth_study_new (const ClothRecording * recording,
+    const ClothStudyOptions * options)
+{
+  ClothStudy *study = g_new0 (ClothStudy, 1);
+
+  study->recording = recording;
+  study->features = cloth_gap_features_new (recording, options->n_waves,
+      options->block_s, options->highest_hz);
+  return study;
+}
+
+static void
+forget (ClothStudy * study)
+{
+  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
+    g_clear_pointer (&study->z[g], g_free);
+    g_clear_pointer (&study->columns[g], g_free);
+    g_clear_pointer (&study->chaos[g], g_free);
+  }
+  g_clear_pointer (&study->sound, g_free);
+}
+
+/**
+ * cloth_study_copy:
+ * @study: a study that is linearised
+ * @options: how it is studied
+ *
+ * Returns: (transfer full): another one of the same recording, linearised at the same
+ *   model
+ * Since: 0.1
+ */
+ClothStudy *
+cloth_study_copy (const ClothStudy * study, const ClothStudyOptions * options)
+{
+  ClothStudy *copy = cloth_study_new (study->recording, options);
+  gsize row = study->features->size * sizeof (gdouble);
+
+  copy->signature = study->signature;
+  copy->m = study->m;
+  copy->n_chaos = study->n_chaos;
+  copy->sound = g_memdup2 (study->sound, study->m * sizeof (gboolean));
+  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
+    copy->z[g] = g_memdup2 (study->z[g], row);
+    copy->columns[g] = g_memdup2 (study->columns[g], study->m * row);
+    copy->chaos[g] = g_memdup2 (study->chaos[g], study->n_chaos * row);
+    if (study->left[g])
+      copy->left[g] = cloth_gap_power_copy (study->left[g]);
+  }
+  return copy;
+}
+
+/**
+ * cloth_study_free:
+ * @study: (nullable) (transfer full): a study
+ *
+ * Since: 0.1
+ */
+void
+cloth_study_free (ClothStudy * study)
+{
+  if (!study)
+    return;
+  forget (study);
+  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++)
+    cloth_gap_power_free (study->left[g]);
+  cloth_gap_features_free (study->features);
+  g_free (study);
+}
+
+/**
+ * cloth_study_signature_scale:
+ * @study: a study
+ *
+ * Returns: what the signature's features are to be multiplied by: each recording's are in
+ *   multiples of its own noise; 0 without a signature
+ * Since: 0.1
+ */
+gdouble
+cloth_study_signature_scale (const ClothStudy * study)
+{
+  return study->signature ? study->signature->features->sigma /
+      study->features->sigma : 0.;
+}
+
+/**
+ * cloth_study_count_chaos:
+ * @study: a study
+ *
+ * Returns: how many directions are known in which chaos moves the residual, that of the
+ *   signature included
+ * Since: 0.1
+ */
+guint
+cloth_study_count_chaos (const ClothStudy * study)
+{
+  return study->n_chaos + (study->signature ? study->signature->n_chaos : 0);
+}
+
+/**
+ * cloth_study_get_chaos:
+ * @study: a study
+ * @gain: which of the gains
+ * @columns: (out) (array): cloth_study_count_chaos () directions, each of features->size
+ *
+ * Since: 0.1
+ */
+void
+cloth_study_get_chaos (const ClothStudy * study, guint gain, gdouble * columns)
+{
+  gsize size = study->features->size, own = study->n_chaos * size;
+  gdouble scale = cloth_study_signature_scale (study);
+
+  if (own)
+    memcpy (columns, study->chaos[gain], own * sizeof (gdouble));
+  for (gsize k = 0; study->signature && k < study->signature->n_chaos * size;
+      k++)
+    columns[own + k] = scale * study->signature->chaos[gain][k];
+}
+
+/**
+ * cloth_study_get_chaos_precision:
+ * @study: a study
+ * @i: one of the directions of cloth_study_get_chaos ()
+ *
+ * Returns: of how far chaos goes along it, over the noise's variance
+ * Since: 0.1
+ */
+gdouble
+cloth_study_get_chaos_precision (const ClothStudy * study, guint i)
+{
+  return (i < study->n_chaos ? study->n_chaos : study->signature->n_chaos) /
+      CHAOS_WIDTH;
+}
+
+/**
+ * cloth_study_take_off_signature:
+ * @study: a study
+ * @gain: which of the gains
+ * @z: (inout) (array): features of a residual
+ *
+ * Takes off what the simulator itself is off by, if there is a signature.
+ *
+ * Since: 0.1
+ */
+void
+cloth_study_take_off_signature (const ClothStudy * study, guint gain,
+    gdouble * z)
+{
+  gdouble scale = cloth_study_signature_scale (study);
+
+  for (gsize k = 0; study->signature && k < study->features->size; k++)
+    z[k] -= scale * study->signature->z[gain][k];
+}
+
+/**
+ * cloth_study_residual:
+ * @study: a study
+ * @gain: which of the gains
+ *
+ * Returns: (transfer full) (array): what is to be explained: z less that of the signature
+ * Since: 0.1
+ */
+gdouble *
+cloth_study_residual (const ClothStudy * study, guint gain)
+{
+  gdouble *z = g_memdup2 (study->z[gain],
+      study->features->size * sizeof (gdouble));
+
+  cloth_study_take_off_signature (study, gain, z);
+  return z;
+}
+
+typedef struct
+{
+  const ClothStudy *study;
+  gdouble **z;                  /* of each model and gain */
+} Collect;
+
+static void
+collect (gpointer data, guint model, guint frame, const gdouble * positions)
+{
+  Collect *c = data;
+
+  cloth_gap_features_add (c->study->features, c->study->recording, frame,
+      positions, c->z[model]);
+}
+
+/**
+ * cloth_study_run:
+ * @study: a study
+ * @models: (array length=n): models
+ * @n: how many
+ * @options: how to simulate
+ * @z: (inout) (array): of each model and gain, z[model · gains + gain], the features of the
+ *   residual, each features->size; start with zeros
+ * @sound: (out) (array length=n): which models did not diverge
+ * @error: #ClothSimError, or #ClothFitError when it was stopped
+ *
+ * Simulates models drawn to the recording. The gains of a model run side by side, so that
+ * effects are computed in few groups.
+ *
+ * Returns: whether that could be done
+ * Since: 0.1
+ */
+gboolean
+cloth_study_run (const ClothStudy * study, ClothModel ** models, guint n,
+    ClothStudyOptions * options, gdouble ** z, gboolean * sound,
+    GError ** error)
+{
+  guint all = n * CLOTH_STUDY_N_GAINS;
+  g_autofree const ClothModel **lanes = g_new (const ClothModel *, all);
+  g_autofree gdouble *gains = g_new (gdouble, all);
+  g_autofree gboolean *ok = g_new (gboolean, all);
+  Collect c = { study, z };
+
+  for (guint i = 0; i < all; i++) {
+    lanes[i] = models[i / CLOTH_STUDY_N_GAINS];
+    gains[i] = options->gains[i % CLOTH_STUDY_N_GAINS];
+  }
+  options->simulations += all;
+  if (!cloth_rollout_nudged (study->recording, lanes, gains, all,
+          &options->rollout, collect, &c, ok, error))
+    return FALSE;
+  for (guint i = 0; i < n; i++)
+    sound[i] = TRUE;
+  for (guint i = 0; i < all; i++)
+    sound[i / CLOTH_STUDY_N_GAINS] &= ok[i];
+  return TRUE;
+}
+
+/* Features of one linearisation: of the model, of it moved along each direction, and of
+ * it moved back along those that are looked at from both sides. */
+typedef struct
+{
+  GPtrArray *models;
+  gdouble **z;                  /* by model and gain */
+  gboolean *sound;              /* by model */
+  guint *back;                  /* of each direction: a model, 0 for none */
+  gdouble *memory;              /* of the models moved back */
+  gdouble *reference;           /* what columns are differences from, by gain */
+} Moved;
+
+static void
+moved_clear (Moved * moved)
+{
+  g_clear_pointer (&moved->models, g_ptr_array_unref);
+  g_free (moved->z);
+  g_free (moved->sound);
+  g_free (moved->back);
+  g_free (moved->memory);
+  g_free (moved->reference);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Moved, moved_clear)
+     static void
+         move (Moved * moved, ClothStudy * study,
+    const ClothGapCandidates * candidates, const ClothModel * model,
+    const guint * directions, guint m)
+{
+  gsize size = study->features->size;
+  guint n;
+
+  moved->models =
+      g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_model_free);
+  moved->back = g_new0 (guint, m + 1);
+  g_ptr_array_add (moved->models, cloth_model_copy (model));
+  for (guint side = 0; side < 2; side++)
+    for (guint i = 0; i < m; i++) {
+      gdouble step = cloth_gap_candidates_direction (candidates,
+          directions[i])->step;
+
+      if (side && (directions[i] >= candidates->n_free
+              || !cloth_gap_candidates_has_room (candidates, model,
+                  directions[i], step)))
+        continue;
+      if (side) {
+        moved->back[i] = moved->models->len;
+        step = -step;
+      }
+      g_ptr_array_add (moved->models, cloth_gap_candidates_move (candidates,
+              model, &directions[i], &step, 1));
+    }
+  n = moved->models->len;
+  moved->sound = g_new (gboolean, n);
+  moved->z = g_new (gdouble *, n * CLOTH_STUDY_N_GAINS);
+  moved->memory = g_new0 (gdouble, (n - m) * CLOTH_STUDY_N_GAINS * size);
+  for (guint i = 0; i < n; i++)
+    for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++)
+      moved->z[i * CLOTH_STUDY_N_GAINS + g] = i == 0 ? study->z[g] :
+          i <= m ? study->columns[g] + (i - 1) * size :
+          moved->memory + ((i - m - 1) * CLOTH_STUDY_N_GAINS + g) * size;
+}
+
+/* Where the model is, seen from both sides: the mean of such pairs of runs. What chaos did
+ * to the model's own run is in its residual and must not be in the columns too, or each of
+ * them would seem to explain some of it. How the pairs differ shows what chaos does. */
+static void
+find_reference (Moved * moved, ClothStudy * study)
+{
+  gsize size = study->features->size;
+  g_autofree guint *pairs = g_new (guint, study->m + 1);
+  guint n = 0;
+
+  for (guint i = 0; i < study->m; i++)
+    if (moved->back[i] && moved->sound[moved->back[i]] && moved->sound[i + 1])
+      pairs[n++] = i;
+  study->n_chaos = n ? n + 1 : 0;
+  moved->reference = g_new0 (gdouble, CLOTH_STUDY_N_GAINS * size);
+  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
+    gdouble *reference = moved->reference + g * size;
+    gdouble *chaos = g_new0 (gdouble, study->n_chaos * size + 1);
+
+    study->chaos[g] = chaos;
+    for (guint p = 0; p < n; p++, chaos += size) {
+      const gdouble *before = moved->z[moved->back[pairs[p]] *
+          CLOTH_STUDY_N_GAINS + g];
+      const gdouble *behind = moved->z[(pairs[p] + 1) * CLOTH_STUDY_N_GAINS +
+          g];
+
+      for (gsize k = 0; k < size; k++) {
+        chaos[k] = 0.5 * (before[k] + behind[k]);
+        reference[k] += (chaos[k] - reference[k]) / (p + 1);
+      }
+    }
+    if (!n) {
+      memcpy (reference, study->z[g], size * sizeof (gdouble));
+      continue;
+    }
+    memcpy (chaos, study->z[g], size * sizeof (gdouble));
+    for (gsize k = 0; k < size; k++) {
+      gdouble mean = (n * reference[k] + chaos[k]) / (n + 1);
+
+      for (guint p = 0; p <= n; p++)
+        study->chaos[g][p * size + k] -= mean;
+    }
+  }
+}
+
+/**
+ * cloth_study_linearise:
+ * @study: a study
+ * @candidates: what directions mean
+ * @model: where to take derivatives
+ * @directions: (array length=m): with respect to what
+ * @m: how many
+ * @options: how
+ * @error: #ClothSimError, or #ClothFitError when the model itself can't be simulated
+ *
+ * Fills @study's z, columns, sound and chaos. Directions along which the simulation fails
+ * have columns of zeros. Free numbers are moved to both sides; the others' columns are
+ * differences from the mean of these.
+ *
+ * Since: 0.1
+ */
+gboolean
+cloth_study_linearise (ClothStudy * study,
+    const ClothGapCandidates * candidates, const ClothModel * model,
+    const guint * directions, guint m, ClothStudyOptions * options,
+    GError ** error)
+{
+  g_auto (Moved) moved = { NULL };
+  gsize size = study->features->size;
+
+  forget (study);
+  study->m = m;
+  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
+    study->z[g] = g_new0 (gdouble, size);
+    study->columns[g] = g_new0 (gdouble, m * size + 1);
+  }
+  study->sound = g_new0 (gboolean, m + 1);
+  move (&moved, study, candidates, model, directions, m);
+  if (!cloth_study_run (study, (ClothModel **) moved.models->pdata,
+          moved.models->len, options, moved.z, moved.sound, error))
+    return FALSE;
+  if (!moved.sound[0]) {
+    g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL, "%s: the "
+        "simulation diverges; give the model softer cloth, more damping or a "
+        "smaller time_step", study->recording->name);
+    return FALSE;
+  }
+  find_reference (&moved, study);
+  for (guint i = 0; i < m; i++) {
+    gdouble step = cloth_gap_candidates_direction (candidates,
+        directions[i])->step;
+    guint back = moved.back[i];
+
+    study->sound[i] = moved.sound[i + 1];
+    if (back && moved.sound[back])
+      step *= 2.;
+    else
+      back = 0;
+    for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
+      gdouble *column = study->columns[g] + i * size;
+      const gdouble *from = back ? moved.z[back * CLOTH_STUDY_N_GAINS + g] :
+          moved.reference + g * size;
+
+      for (gsize k = 0; k < size; k++)
+        column[k] = study->sound[i] ? (column[k] - from[k]) / step : 0.;
+    }
+  }
+  return TRUE;
+}
+
+/* A fit under way: its studies are linearised at the model at hand. */
+typedef struct
+{
+  ClothStudy **studies;
+  guint n_studies;
+  const ClothGapCandidates *candidates;
+  const guint *directions;
+  const gdouble *precisions;
+  guint m;
+  const gboolean *blocks;
+  gboolean even;
+  ClothStudyOptions *options;
+  ClothModel *model;
+  gdouble *moved;               /* from where the fit began */
+  GPtrArray *powers;            /* what weighs, by study and gain */
+} Fit;
+
+static void
+fit_clear (Fit * fit)
+{
+  cloth_model_free (fit->model);
+  g_free (fit->moved);
+  g_clear_pointer (&fit->powers, g_ptr_array_unref);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Fit, fit_clear)
+     static gboolean linearise (Fit * fit, GError ** error)
+{
+  for (guint s = 0; s < fit->n_studies; s++)
+    if (!cloth_study_linearise (fit->studies[s], fit->candidates, fit->model,
+            fit->directions, fit->m, fit->options, error))
+      return FALSE;
+  return TRUE;
+}
+
+/* All classes get what is in the mean of them. */
+static void
+make_even (ClothGapPower * power)
+{
+  gdouble mean = 0.;
+
+  for (guint i = 0; i < power->n; i++)
+    mean += power->values[i] / power->n;
+  for (guint i = 0; i < power->n; i++)
+    power->values[i] = mean;
+}
+
+/* Each feature weighs by the power that the model at hand leaves in its class, or in all. */
+static void
+weigh (Fit * fit)
+{
+  g_clear_pointer (&fit->powers, g_ptr_array_unref);
+  fit->powers = g_ptr_array_new_with_free_func (
+      (GDestroyNotify) cloth_gap_power_free);
+  for (guint s = 0; s < fit->n_studies; s++)
+    for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
+      const ClothStudy *study = fit->studies[s];
+      g_autofree gdouble *z = cloth_study_residual (study, g);
+
+      g_ptr_array_add (fit->powers, study->left[g] ?
+          cloth_gap_power_copy (study->left[g]) :
+          cloth_gap_power_new (study->features, z));
+      if (fit->even)
+        make_even (g_ptr_array_index (fit->powers, fit->powers->len - 1));
+    }
+}
+
+/* Normal equations of a study with what chaos does projected out; returns what is left of
+ * its square. Only the square is needed when @m is 0. */
+static gdouble
+equations_of (const Fit * fit, guint i, guint m, gdouble * g, gdouble * s)
+{
+  const ClothStudy *study = fit->studies[i / CLOTH_STUDY_N_GAINS];
+  guint gain = i % CLOTH_STUDY_N_GAINS;
+  guint n = fit->m > fit->candidates->n_free ?
+      cloth_study_count_chaos (study) : 0;
+  gsize size = study->features->size;
+  g_autofree gdouble *z = cloth_study_residual (study, gain);
+  g_autofree gdouble *columns = g_new (gdouble, (m + n) * size + 1);
+  g_autofree gdouble *precisions = g_new0 (gdouble, m + n + 1);
+  g_autoptr (ClothGapNormal) normal = NULL;
+
+  if (m)
+    memcpy (columns, study->columns[gain], m * size * sizeof (gdouble));
+  if (n)
+    cloth_study_get_chaos (study, gain, columns + m * size);
+  for (guint k = 0; k < n; k++)
+    precisions[k] = cloth_study_get_chaos_precision (study, k);
+  normal = cloth_gap_normal_new (study->features,
+      g_ptr_array_index (fit->powers, i), 1., z, columns, m + n);
+  return cloth_gap_normal_project (normal, fit->blocks, m, precisions, g, s);
+}
+
+/* Cost of the model at hand, and its normal equations when @a and @b are given. */
+static gdouble
+equations (const Fit * fit, gdouble * a, gdouble * b)
+{
+  gdouble over = fit->options->overdispersion, cost = 0.;
+  guint m = fit->m, n = a ? m : 0;
+  g_autofree gdouble *g = g_new (gdouble, (gsize) m * m + 1);
+  g_autofree gdouble *s = g_new (gdouble, m + 1);
+
+  for (guint i = 0; i < fit->powers->len; i++) {
+    cost += equations_of (fit, i, n, g, s);
+    for (guint k = 0; k < n * n; k++)
+      a[k] += g[k] / over;
+    for (guint k = 0; k < n; k++)
+      b[k] -= s[k] / over;
+  }
+  for (guint k = 0; k < m; k++) {
+    cost += over * fit->precisions[k] * fit->moved[k] * fit->moved[k];
+    if (!a)
+      continue;
+    a[k * m + k] += fit->precisions[k];
+    b[k] -= fit->precisions[k] * fit->moved[k];
+  }
+  return cost;
+}
+
+static void
+go (Fit * fit, const gdouble * step, gdouble share)
+{
+  g_autofree gdouble *part = g_new (gdouble, fit->m);
+  ClothModel *there;
+
+  for (guint i = 0; i < fit->m; i++) {
+    const ClothGapDirection *d = cloth_gap_candidates_direction
+        (fit->candidates, fit->directions[i]);
+    gdouble from = cloth_gap_candidates_place (fit->candidates, fit->model,
+        fit->directions[i]);
+
+    part[i] = CLAMP (from + share * step[i], d->fit_low, d->fit_high) - from;
+    fit->moved[i] += part[i];
+  }
+  there = cloth_gap_candidates_move (fit->candidates, fit->model,
+      fit->directions, part, fit->m);
+  cloth_model_free (fit->model);
+  fit->model = there;
+}
+
+/**
+ * cloth_study_fit:
+ * @studies: (array length=n_studies): recordings that are fitted together
+ * @n_studies: how many
+ * @candidates: what directions mean
+ * @model: where to start
+ * @directions: (array length=m): what is fitted
+ * @precisions: (array length=m): of their priors, centred at @model
+ * @m: how many
+ * @blocks: (nullable): which blocks of time count
+ * @even: whether all features weigh alike
+ * @begun: whether the studies are linearised at @model along @directions
+ * @n_passes: at most so many simulations of all
+ * @options: how
+ * @sigmas: (out) (nullable) (array length=m): standard deviations
+ * @error: #ClothSimError or #ClothFitError
+ *
+ * Gauss and Newton on the features of all gains, each weighed by the power that is left
+ * in its class, less what chaos does. That is the likeliest if what is left is noise; of a
+ * model that can't follow the cloth, @even finds what brings the cloth nearest. A step that
+ * makes things worse, or the simulation diverge, is cut.
+ *
+ * Returns: (transfer full) (nullable): the fitted model
+ * Since: 0.1
+ */
+ClothModel *
+cloth_study_fit (ClothStudy ** studies, guint n_studies,
+    const ClothGapCandidates * candidates, const ClothModel * model,
+    const guint * directions, const gdouble * precisions, guint m,
+    const gboolean * blocks, gboolean even, gboolean begun, guint n_passes,
+    ClothStudyOptions * options, gdouble * sigmas, GError ** error)
+{
+  g_auto (Fit) fit = { studies, n_studies, candidates, directions, precisions,
+    m, blocks, even, options, cloth_model_copy (model), g_new0 (gdouble, m + 1)
+  };
+  g_autofree gdouble *a = g_new (gdouble, m * m + 1);
+  g_autofree gdouble *b = g_new (gdouble, m + 1);
+  g_autofree gdouble *step = g_new0 (gdouble, m + 1);
+  g_autoptr (ClothModel) sound = NULL;
+  gdouble before = INFINITY;
+
+  for (guint pass = 0; pass < n_passes && m; pass++) {
+    g_autoptr (GError) failed = NULL;
+    gdouble cost;
+
+    if (!(begun && !pass) && !linearise (&fit, &failed) && (!sound
+            || !g_error_matches (failed, CLOTH_FIT_ERROR,
+                CLOTH_FIT_ERROR_MODEL))) {
+      g_propagate_error (error, g_steal_pointer (&failed));
+      return NULL;
+    }
+    if (pass) {
+      cost = failed ? INFINITY : equations (&fit, NULL, NULL);
+      if (!(cost < before)) {
+        if (failed && pass + 1 == n_passes)
+          return g_steal_pointer (&sound);
+        /* back, most of the way */
+        go (&fit, step, CUT - 1.);
+        for (guint i = 0; i < m; i++)
+          step[i] *= CUT;
+        continue;
+      }
+      if (before - cost < ENOUGH * before)
+        break;
+    }
+    cloth_model_free (sound);
+    sound = cloth_model_copy (fit.model);
+    weigh (&fit);
+    memset (a, 0, m * m * sizeof *a);
+    memset (b, 0, m * sizeof *b);
+    before = equations (&fit, a, b);
+    if (!cloth_cholesky_factor (m, a))
+      break;
+    cloth_cholesky_solve (m, a, b);
+    for (guint i = 0; i < m; i++) {
+      const ClothGapDirection *d = cloth_gap_candidates_direction (candidates,
+          directions[i]);
+
+      step[i] = CLAMP (b[i], -LONGEST * d->prior, LONGEST * d->prior);
+    }
+    if (pass + 1 < n_passes)
+      go (&fit, step, 1.);
+    if (sigmas) {
+      g_autofree gdouble *inverse = g_new (gdouble, m * m);
+
+      cloth_cholesky_inverse (m, a, inverse);
+      for (guint i = 0; i < m; i++)
+        sigmas[i] = sqrt (inverse[i * m + i]);
+    }
+  }
+  return g_steal_pointer (&fit.model);
+}

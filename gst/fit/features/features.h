@@ -1,0 +1,60 @@
+/* Residuals as few numbers: waves over the cloth, and in each block of time.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/fit/recording/recording.h"
+
+G_BEGIN_DECLS
+
+/* Most waves along u and along v. */
+#define CLOTH_GAP_MAX_WAVES_EACH 16
+
+/**
+ * ClothGapFeatures:
+ * @n: number of vertices
+ * @n_waves: waves over the flat cloth, orthonormal
+ * @waves: their values, [n][n_waves]
+ * @wave_numbers: cycles per metre, whichever way, [n_waves]
+ * @bands: 0 for the longest waves, growing, [n_waves]
+ * @n_bands: number of bands of waves
+ * @n_blocks: blocks of time
+ * @n_cosines: cosines kept of each block
+ * @block_frames: length of a block
+ * @cosines: [n_cosines][length of a block], orthonormal
+ * @first: first frame of each block and one past the last, [n_blocks + 1]
+ * @size: number of features: [n_blocks][n_cosines][n_waves][3]
+ * @sigma: of a coordinate, m: features of pure noise have the variance 1
+ *
+ * Discrete cosine transform over (u, v) and, block by block, over time; of cloths that
+ * are no grid the same waves made orthonormal on its vertices.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  guint n;
+  guint n_waves;
+  gdouble *waves;
+  gdouble *wave_numbers;
+  guint *bands;
+  guint n_bands;
+  guint n_blocks;
+  guint n_cosines;
+  guint block_frames;
+  gdouble *cosines;
+  guint *first;
+  gsize size;
+  gdouble sigma;
+} ClothGapFeatures;
+
+ClothGapFeatures *cloth_gap_features_new (const ClothRecording * recording,
+    guint n_waves_each, gdouble block_s, gdouble highest_hz);
+void cloth_gap_features_add (const ClothGapFeatures * features,
+    const ClothRecording * recording, guint frame, const gdouble * positions,
+    gdouble * z);
+void cloth_gap_features_window (const ClothGapFeatures * features,
+    const gdouble * z, guint part, guint n_parts, gdouble * windowed);
+void cloth_gap_features_free (ClothGapFeatures * features);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothGapFeatures, cloth_gap_features_free)
+G_END_DECLS

@@ -1,0 +1,520 @@
+/* A simulation that follows a recording by weak springs, frame by frame.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/fit/nudge/observer.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/fit/recording/recording.h"
+#include "gst/fit/recording/outliers.h"
+#include "gst/mesh/hold.h"
+#include "gst/sim/sim.h"
+
+/* Frames of the polynomial that velocities come from, and its order (Savitzky & Golay
+ * 1964). Of fewer frames the order is lower, down to 2, so that noise is smoothed. */
+#define WINDOW CLOTH_RECORDING_WINDOW
+G_STATIC_ASSERT (WINDOW == 2 * CLOTH_OBSERVER_LATENCY + 1);
+#define MASKS (1u << WINDOW)
+
+/* The two copies of the model in the simulation. */
+#define NUDGED 0
+#define FREE 1
+
+typedef struct
+{
+  gdouble time;
+  gdouble *positions;           /* 3 a vertex, NaN when not seen */
+  ClothRays *rays;              /* they lie on; unless has_rays, of an older frame */
+  gboolean has_rays;
+} Frame;
+
+struct _ClothObserver
+{
+  ClothObserverOptions options;
+  guint n;
+  ClothSim *sim;
+  ClothSim *forecast;           /* without springs: only for frames of rays */
+  gdouble *scene_start;
+  ClothHold *hold;
+  ClothTears *tears;
+  guint64 n_pushed, n_popped;
+  Frame ring[WINDOW];           /* frame i at i % WINDOW */
+  /* of the frame that was popped last, and of the one that is */
+  gdouble *velocity[2];
+  gdouble *weights;             /* all 1 */
+  gdouble *state, *free_state, *speeds;
+  gdouble *ahead, *ahead_speeds, *reference;    /* where rays' vertices may be */
+  gfloat *start;
+  /* which frames of the window saw a vertex → their weights in its derivative */
+  gdouble table[MASKS][WINDOW];
+  gboolean known[MASKS];
+
+  /* the window that is scored */
+  gdouble window_from, window_to, sum;
+  guint64 n_seen, n_all;
+  gboolean has_score;
+  ClothObserverScore score;
+};
+
+/**
+ * cloth_observer_new:
+ * @scene: what is filmed; its clamps' paths are followed by its times
+ * @model: what the simulator knows of the cloth
+ * @options: how
+ * @error: #ClothSimError
+ *
+ * x″ = M⁻¹F(x, x′) + g·m·(y − x) + 2ζ√g·m·(y′ − x′), m whether a vertex is seen. It starts
+ * with the first frame that is pushed. The observer keeps nothing of @scene and @model.
+ *
+ * Frames of rays draw it across them only. Along them y is where the simulation would be
+ * without springs, and y′ how fast; in the first frame, where the scene starts, at rest.
+ *
+ * Returns: (transfer full): an observer, or %NULL
+ * Since: 0.1
+ */
+ClothObserver *
+cloth_observer_new (const ClothScene * scene, const ClothModel * model,
+    const ClothObserverOptions * options, GError ** error)
+{
+  const ClothSimOptions sim_options = { FALSE, options->threads,
+    CLOTH_SIMD_BEST, options->seed
+  };
+  const ClothModel *models[2] = { model, model };
+  g_autoptr (ClothSim) sim = cloth_sim_new (scene, models, 2, &sim_options,
+      error);
+  ClothSim *forecast = sim ? cloth_sim_new (scene, models, 1, &sim_options,
+      error) : NULL;
+  ClothObserver *self;
+  gsize n;
+
+  if (!forecast)
+    return NULL;
+  self = g_new0 (ClothObserver, 1);
+  self->options = *options;
+  self->sim = g_steal_pointer (&sim);
+  self->forecast = forecast;
+  self->n = scene->topology->n_vertices;
+  self->hold = cloth_hold_new (scene->topology);
+  self->tears = cloth_tears_new (scene->topology);
+  n = 3 * (gsize) self->n;
+  for (guint i = 0; i < WINDOW; i++) {
+    self->ring[i].positions = g_new (gdouble, n);
+    self->ring[i].rays = cloth_rays_new (self->n);
+  }
+  self->scene_start = g_memdup2 (scene->positions, n * sizeof (gdouble));
+  self->ahead = g_new (gdouble, n);
+  self->ahead_speeds = g_new (gdouble, n);
+  self->reference = g_new (gdouble, n);
+  for (guint i = 0; i < 2; i++)
+    self->velocity[i] = g_new (gdouble, n);
+  self->state = g_new (gdouble, n);
+  self->free_state = g_new (gdouble, n);
+  self->speeds = g_new (gdouble, n);
+  self->start = g_new (gfloat, n);
+  self->weights = g_new (gdouble, self->n);
+  for (guint i = 0; i < self->n; i++)
+    self->weights[i] = 1.;
+  return self;
+}
+
+/**
+ * cloth_observer_restart:
+ * @observer: an observer
+ *
+ * Forgets all frames; the next one begins a new recording.
+ *
+ * Since: 0.1
+ */
+void
+cloth_observer_restart (ClothObserver * observer)
+{
+  observer->n_pushed = observer->n_popped = 0;
+  observer->n_all = 0;
+  observer->has_score = FALSE;
+}
+
+/**
+ * cloth_observer_push:
+ * @observer: an observer that has not more than %CLOTH_OBSERVER_LATENCY frames waiting
+ * @time_s: of the frame, seconds of the scene, later than the last one's
+ * @positions: 3 numbers a vertex, metres; NaN when not seen
+ *
+ * Gives it a frame. Vertices that would have to be torn off the cloth to be there count as
+ * not seen.
+ *
+ * Since: 0.1
+ */
+void
+cloth_observer_push (ClothObserver * observer, gdouble time_s,
+    const gfloat * positions)
+{
+  Frame *frame = &observer->ring[observer->n_pushed++ % WINDOW];
+
+  frame->time = time_s;
+  frame->has_rays = FALSE;
+  for (gsize i = 0; i < 3 * (gsize) observer->n; i++)
+    frame->positions[i] = positions[i];
+  cloth_tears_remove (observer->tears, 0., frame->positions);
+}
+
+/**
+ * cloth_observer_push_rays:
+ * @observer: an observer that has not more than %CLOTH_OBSERVER_LATENCY frames waiting,
+ *   all of rays
+ * @time_s: of the frame, seconds of the scene, later than the last one's
+ * @rays: what one camera saw
+ *
+ * Gives it a frame of which only the places across the rays are known.
+ *
+ * Since: 0.1
+ */
+void
+cloth_observer_push_rays (ClothObserver * observer, gdouble time_s,
+    const ClothRays * rays)
+{
+  Frame *frame = &observer->ring[observer->n_pushed++ % WINDOW];
+
+  frame->time = time_s;
+  frame->has_rays = TRUE;
+  cloth_rays_copy (frame->rays, rays);
+}
+
+/**
+ * cloth_observer_get_n_waiting:
+ * @observer: an observer
+ *
+ * Returns: number of frames that were pushed and not popped. With more than
+ *   %CLOTH_OBSERVER_LATENCY the next one is ready; at the end of a recording all are
+ * Since: 0.1
+ */
+guint
+cloth_observer_get_n_waiting (const ClothObserver * observer)
+{
+  return (guint) (observer->n_pushed - observer->n_popped);
+}
+
+/* Velocities at the frame that is popped, from all that the ring holds. */
+static void
+find_velocities (ClothObserver * self, gdouble * velocity)
+{
+  guint64 oldest = self->n_pushed > WINDOW ? self->n_pushed - WINDOW : 0;
+  guint in_ring = (guint) (self->n_pushed - oldest);
+  gdouble at = self->ring[self->n_popped % WINDOW].time;
+  const gdouble *places[WINDOW];
+  gdouble times[WINDOW];
+
+  memset (self->known, 0, sizeof self->known);
+  for (guint i = 0; i < in_ring; i++)
+    places[i] = self->ring[(oldest + i) % WINDOW].positions;
+  for (gsize v = 0; v < self->n; v++) {
+    guint mask = 0;
+    const gdouble *weights;
+
+    for (guint i = 0; i < in_ring; i++) {
+      const gdouble *p = places[i] + 3 * v;
+
+      if (isfinite (p[0] + p[1] + p[2]))
+        mask |= 1u << i;
+    }
+    weights = self->table[mask];
+    if (!self->known[mask]) {
+      for (guint i = 0; i < WINDOW; i++)
+        times[i] = self->ring[(oldest + i) % WINDOW].time;
+      cloth_recording_find_weights (times, mask, at, self->table[mask]);
+      self->known[mask] = TRUE;
+    }
+    for (guint k = 0; k < 3; k++) {
+      gdouble sum = mask ? 0 : NAN;
+
+      for (guint i = 0; i < in_ring; i++)
+        if (mask >> i & 1)
+          sum += weights[i] * places[i][3 * v + k];
+      velocity[3 * v + k] = sum;
+    }
+  }
+}
+
+/* Where the cloth would be at the frame that is popped if nothing drew it. */
+static void
+look_ahead (ClothObserver * self, gdouble time)
+{
+  const gsize n = 3 * (gsize) self->n;
+  gdouble last, dt;
+
+  if (self->n_popped == 0) {
+    memcpy (self->ahead, self->scene_start, n * sizeof *self->ahead);
+    memset (self->ahead_speeds, 0, n * sizeof *self->ahead_speeds);
+    return;
+  }
+  last = self->ring[(self->n_popped - 1) % WINDOW].time;
+  dt = time - last;
+  cloth_sim_get_velocities (self->sim, NUDGED, self->speeds);
+  cloth_sim_set_state (self->forecast, 0, self->state, self->speeds, last);
+  cloth_sim_advance (self->forecast, time);
+  cloth_sim_get_positions (self->forecast, 0, self->ahead);
+  cloth_sim_get_velocities (self->forecast, 0, self->ahead_speeds);
+  /* Targets move on straight lines. Here such a line has the mean of a parabola. */
+  for (gsize i = 0; i < n; i++)
+    self->ahead[i] -= (self->ahead_speeds[i] - self->speeds[i]) * dt / 6;
+}
+
+static void
+lift (ClothObserver * self, Frame * frame, const gdouble * reference)
+{
+  cloth_rays_lift (frame->rays, reference, frame->positions);
+  cloth_tears_remove (self->tears, 0., frame->positions);
+}
+
+/* Lifts this frame and those behind it to where the simulation goes. */
+static void
+lift_waiting (ClothObserver * self, gdouble at)
+{
+  for (guint64 i = self->n_popped; i < self->n_pushed; i++) {
+    Frame *frame = &self->ring[i % WINDOW];
+    gdouble dt = frame->time - at;
+
+    for (gsize k = 0; k < 3 * (gsize) self->n; k++)
+      self->reference[k] = self->ahead[k] + dt * self->ahead_speeds[k];
+    lift (self, frame, self->reference);
+  }
+}
+
+/* Along the rays nothing was seen to move: there the speeds are the simulation's. */
+static void
+take_speeds_along (const ClothObserver * self, const ClothRays * rays,
+    const gdouble * speeds, gdouble * velocity)
+{
+  for (guint v = 0; v < self->n; v++) {
+    gdouble *at = velocity + 3 * (gsize) v, across[3];
+    gdouble along = cloth_rays_split (rays, v, speeds + 3 * (gsize) v, across);
+
+    cloth_rays_split (rays, v, at, at);
+    for (guint k = 0; k < 3; k++)
+      at[k] += along * rays->directions[3 * (gsize) v + k];
+  }
+}
+
+/* Both copies where the first frame saw the cloth. */
+static void
+begin (ClothObserver * self, const Frame * frame, const gdouble * velocity)
+{
+  gsize n = 3 * (gsize) self->n;
+  const gfloat *filled;
+
+  for (gsize i = 0; i < n; i++) {
+    self->start[i] = (gfloat) (frame->has_rays && isnan (frame->positions[i]) ?
+        self->scene_start[i] : frame->positions[i]);
+    self->speeds[i] = isfinite (velocity[i]) ? velocity[i] : 0;
+  }
+  filled = cloth_hold_apply (self->hold, self->start);
+  for (gsize i = 0; i < n; i++)
+    self->state[i] = filled[i];
+  for (guint model = NUDGED; model <= FREE; model++)
+    cloth_sim_set_state (self->sim, model, self->state, self->speeds,
+        frame->time);
+}
+
+static gboolean
+check_state (ClothObserver * self, GError ** error)
+{
+  for (guint model = NUDGED; model <= FREE; model++) {
+    gdouble since_s;
+
+    if (cloth_sim_get_state (self->sim, model, &since_s) == CLOTH_SIM_OK)
+      continue;
+    g_set_error (error, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_MODEL,
+        "the simulation blew up at %.3f s: set “time_step” of the model below "
+        "%g s or to 0, or lower the stiffnesses and damping.stiffness",
+        since_s, cloth_sim_get_time_step (self->sim));
+    return FALSE;
+  }
+  return TRUE;
+}
+
+/* The free copy goes on from where the springs have brought the other one. */
+static void
+open_window (ClothObserver * self, gdouble time)
+{
+  cloth_sim_get_velocities (self->sim, NUDGED, self->speeds);
+  cloth_sim_set_state (self->sim, FREE, self->state, self->speeds, time);
+  self->window_from = time;
+  self->sum = 0;
+  self->n_seen = self->n_all = 0;
+}
+
+static void
+close_window (ClothObserver * self)
+{
+  self->score.from_s = self->window_from;
+  self->score.to_s = self->window_to;
+  self->score.rms = self->n_seen > 0 ? sqrt (self->sum / self->n_seen) : NAN;
+  self->score.coverage = (gdouble) self->n_seen / self->n_all;
+  self->has_score = TRUE;
+}
+
+static void
+add_to_window (ClothObserver * self, const Frame * frame)
+{
+  cloth_sim_get_positions (self->sim, FREE, self->free_state);
+  for (gsize v = 0; v < self->n; v++) {
+    gdouble away[3], square;
+
+    for (guint k = 0; k < 3; k++)
+      away[k] = frame->positions[3 * v + k] - self->free_state[3 * v + k];
+    if (frame->has_rays)
+      cloth_rays_split (frame->rays, (guint) v, away, away);
+    square = away[0] * away[0] + away[1] * away[1] + away[2] * away[2];
+    if (isfinite (square)) {
+      self->sum += square;
+      self->n_seen++;
+    }
+  }
+  self->n_all += self->n;
+  self->window_to = frame->time;
+}
+
+/**
+ * cloth_observer_pop:
+ * @observer: an observer that has a frame waiting
+ * @residuals: (out caller-allocates): recorded minus simulated, 3 numbers a vertex,
+ *   metres; NaN when not seen. Of rays: what is across them
+ * @error: #ClothSimError when the simulation blew up
+ *
+ * Goes on by one frame. The first frame's residual is 0 where it was seen.
+ *
+ * Returns: %TRUE when there is a residual; after an error only
+ *   cloth_observer_restart () helps
+ * Since: 0.1
+ */
+gboolean
+cloth_observer_pop (ClothObserver * observer, gfloat * residuals,
+    GError ** error)
+{
+  ClothObserver *self = observer;
+  Frame *frame = &self->ring[self->n_popped % WINDOW];
+  gdouble *velocity = self->velocity[self->n_popped % 2];
+  gdouble gain = self->options.gain;
+
+  if (frame->has_rays) {
+    look_ahead (self, frame->time);
+    lift_waiting (self, frame->time);
+  }
+  find_velocities (self, velocity);
+  if (frame->has_rays)
+    take_speeds_along (self, frame->rays, self->ahead_speeds, velocity);
+  if (self->n_popped == 0) {
+    begin (self, frame, velocity);
+  } else {
+    const Frame *last = &self->ring[(self->n_popped - 1) % WINDOW];
+
+    cloth_sim_set_targets (self->sim, NUDGED, last->positions,
+        frame->positions, self->velocity[(self->n_popped - 1) % 2], velocity,
+        self->weights, gain, 2 * self->options.damping_ratio * sqrt (gain),
+        last->time, frame->time);
+    cloth_sim_advance (self->sim, frame->time);
+    if (!check_state (self, error))
+      return FALSE;
+    cloth_sim_get_positions (self->sim, NUDGED, self->state);
+    if (frame->has_rays)
+      lift (self, frame, self->state);
+    add_to_window (self, frame);
+  }
+  for (gsize i = 0; i < 3 * (gsize) self->n; i++)
+    residuals[i] = (gfloat) (frame->positions[i] - self->state[i]);
+  if (self->n_popped == 0) {
+    open_window (self, frame->time);
+  } else if (frame->time >= self->window_from +
+      self->options.window_s * (1 - 1e-6)) {
+    close_window (self);
+    open_window (self, frame->time);
+  }
+  self->n_popped++;
+  return TRUE;
+}
+
+/**
+ * cloth_observer_get_lifted:
+ * @observer: an observer that has popped a frame of rays, and got none since
+ * @positions: (out caller-allocates): where that frame has its vertices: on their rays,
+ *   as far away as the simulation is; 3 numbers a vertex, metres, NaN when not seen
+ * @sigmas: (out caller-allocates): standard deviation of each across its ray, metres
+ *
+ * Since: 0.1
+ */
+void
+cloth_observer_get_lifted (const ClothObserver * observer, gfloat * positions,
+    gfloat * sigmas)
+{
+  const Frame *frame = &observer->ring[(observer->n_popped - 1) % WINDOW];
+  const gdouble *p = frame->positions, *c = frame->rays->centre;
+
+  for (guint i = 0; i < observer->n; i++, p += 3) {
+    for (guint k = 0; k < 3; k++)
+      positions[3 * (gsize) i + k] = (gfloat) p[k];
+    sigmas[i] = (gfloat) (frame->rays->spreads[i] *
+        sqrt ((p[0] - c[0]) * (p[0] - c[0]) + (p[1] - c[1]) * (p[1] - c[1]) +
+            (p[2] - c[2]) * (p[2] - c[2])));
+  }
+}
+
+/**
+ * cloth_observer_take_score:
+ * @observer: an observer
+ * @last: at the end of a recording: also score a window that is half full, or more
+ * @score: (out): the score
+ *
+ * To be asked after each frame that was popped, and at the end.
+ *
+ * Returns: %TRUE when a window was completed since it was asked last
+ * Since: 0.1
+ */
+gboolean
+cloth_observer_take_score (ClothObserver * observer, gboolean last,
+    ClothObserverScore * score)
+{
+  if (last && !observer->has_score && observer->n_all > 0 &&
+      observer->window_to - observer->window_from >=
+      0.5 * observer->options.window_s) {
+    close_window (observer);
+    observer->n_all = 0;
+  }
+  if (!observer->has_score)
+    return FALSE;
+  *score = observer->score;
+  observer->has_score = FALSE;
+  return TRUE;
+}
+
+/**
+ * cloth_observer_free:
+ * @observer: (transfer full) (nullable): an observer
+ *
+ * Since: 0.1
+ */
+void
+cloth_observer_free (ClothObserver * observer)
+{
+  if (!observer)
+    return;
+  for (guint i = 0; i < WINDOW; i++) {
+    g_free (observer->ring[i].positions);
+    cloth_rays_free (observer->ring[i].rays);
+  }
+  for (guint i = 0; i < 2; i++)
+    g_free (observer->velocity[i]);
+  g_free (observer->state);
+  g_free (observer->free_state);
+  g_free (observer->speeds);
+  g_free (observer->start);
+  g_free (observer->weights);
+  g_free (observer->scene_start);
+  g_free (observer->ahead);
+  g_free (observer->ahead_speeds);
+  g_free (observer->reference);
+  cloth_hold_free (observer->hold);
+  cloth_tears_free (observer->tears);
+  cloth_sim_free (observer->sim);
+  cloth_sim_free (observer->forecast);
+  g_free (observer);
+}

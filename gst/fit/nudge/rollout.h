@@ -1,0 +1,80 @@
+/* Simulations of a recorded scene, drawn to the recording or let go.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/fit/features/features.h"
+#include "gst/sim/sim.h"
+
+G_BEGIN_DECLS
+
+/**
+ * ClothRolloutProgress:
+ * @data: the caller's
+ * @share: of the frames that are done
+ *
+ * Returns: whether to go on
+ * Since: 0.1
+ */
+typedef gboolean (*ClothRolloutProgress) (gpointer data, gdouble share);
+
+/**
+ * ClothRolloutFailed:
+ * @data: the caller's
+ * @recording: whose scene was simulated
+ * @model: a model whose simulation diverged
+ * @sound_s: when it was sound for the last time, in the recording's time
+ *
+ * Since: 0.1
+ */
+typedef void (*ClothRolloutFailed) (gpointer data,
+    const ClothRecording * recording, const ClothModel * model,
+    gdouble sound_s);
+
+/**
+ * ClothRolloutOptions:
+ * @seed: of effects with chance in them
+ * @threads: 0 = one for each processor
+ * @progress: (nullable): told of each frame
+ * @failed: (nullable): told of each model that diverged, once, in their order
+ * @data: for @progress and @failed
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  guint64 seed;
+  guint threads;
+  ClothRolloutProgress progress;
+  ClothRolloutFailed failed;
+  gpointer data;
+} ClothRolloutOptions;
+
+/**
+ * ClothRolloutFrame:
+ * @data: the caller's
+ * @model: which model
+ * @frame: which frame
+ * @positions: where the model has the vertices, [n][3], m
+ *
+ * Called from several threads at a time, of different models.
+ *
+ * Since: 0.1
+ */
+typedef void (*ClothRolloutFrame) (gpointer data, guint model, guint frame,
+    const gdouble * positions);
+
+gboolean cloth_rollout_nudged (const ClothRecording * recording,
+    const ClothModel * const *models, const gdouble * gains, guint n_models,
+    const ClothRolloutOptions * options, ClothRolloutFrame each,
+    gpointer data, gboolean * sound, GError ** error);
+gboolean cloth_rollout_windows (const ClothRecording * recording,
+    const ClothModel * const *models, guint n_models, gdouble gain,
+    gdouble window_s, const ClothRolloutOptions * options,
+    ClothRolloutFrame each, gpointer data, gboolean * sound, GError ** error);
+guint *cloth_rollout_list_windows (const ClothRecording * recording,
+    gdouble window_s);
+
+/* Damping of the observer's springs: 2 ζ √gain. */
+#define CLOTH_ROLLOUT_ZETA 0.5
+
+G_END_DECLS

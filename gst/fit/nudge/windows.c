@@ -1,0 +1,314 @@
+/* How large the gap is, and where.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/fit/nudge/windows.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/math/random.h"
+
+/* The cloth in tiles of this many along u and v, for the bootstrap. */
+#define TILES 3
+
+typedef struct
+{
+  const ClothRecording *recording;
+  ClothGapExtent **extents;
+  guint n;
+} Gather;
+
+/* Unit vectors along warp, weft and normal at a vertex of a grid, from what was seen. */
+static gboolean
+frame_at (const ClothRecording * r, guint frame, guint vertex,
+    gdouble axes[3][3])
+{
+  const ClothTopology *t = r->scene->topology;
+  guint column, row, steps[2][2];
+  gdouble length;
+
+  if (!t->columns)
+    return FALSE;
+  column = vertex % t->columns;
+  row = vertex / t->columns;
+  steps[0][0] = column ? vertex - 1 : vertex;
+  steps[0][1] = column + 1 < t->columns ? vertex + 1 : vertex;
+  steps[1][0] = row ? vertex - t->columns : vertex;
+  steps[1][1] = row + 1 < t->rows ? vertex + t->columns : vertex;
+  for (guint a = 0; a < 2; a++) {
+    const gdouble *y = r->y + 3 * (gsize) frame * r->n;
+
+    length = 0.;
+    for (guint k = 0; k < 3; k++) {
+      axes[a][k] = y[3 * steps[a][1] + k] - y[3 * steps[a][0] + k];
+      length += axes[a][k] * axes[a][k];
+    }
+    if (!(length > 0.))
+      return FALSE;
+    for (guint k = 0; k < 3; k++)
+      axes[a][k] /= sqrt (length);
+  }
+  for (guint k = 0; k < 3; k++)
+    axes[2][k] = axes[0][(k + 1) % 3] * axes[1][(k + 2) % 3] -
+        axes[0][(k + 2) % 3] * axes[1][(k + 1) % 3];
+  length = sqrt (axes[2][0] * axes[2][0] + axes[2][1] * axes[2][1] +
+      axes[2][2] * axes[2][2]);
+  for (guint k = 0; k < 3 && length > 0.; k++)
+    axes[2][k] /= length;
+  return length > 0.;
+}
+
+/* Single numbers are enough: it is a difference. */
+static void
+keep_led (const ClothRecording * r, guint frame, const gdouble * positions,
+    gfloat * led)
+{
+  gsize begin = (gsize) frame * r->n;
+
+  for (gsize i = 0; i < 3 * (gsize) r->n; i++)
+    if (r->seen[begin + i / 3] > 0.)
+      led[3 * begin + i] = (gfloat) (positions[i] - r->y[3 * begin + i]);
+}
+
+static void
+gather (gpointer data, guint model, guint frame, const gdouble * positions)
+{
+  Gather *g = data;
+  const ClothRecording *r = g->recording;
+  ClothGapExtent *e = g->extents[model % g->n];
+
+  if (model >= g->n) {
+    cloth_gap_energy_add (e->energy, frame, positions);
+    keep_led (r, frame, positions, e->led);
+    return;
+  }
+  for (guint v = 0; v < r->n; v++) {
+    gsize at = (gsize) frame * r->n + v;
+    gdouble axes[3][3], d[3], square = 0.;
+
+    for (guint k = 0; k < 3; k++) {
+      e->positions[3 * at + k] = (gfloat) positions[3 * v + k];
+      d[k] = positions[3 * v + k] - r->y[3 * at + k];
+      square += d[k] * d[k];
+    }
+    if (r->seen[at] == 0.)
+      continue;
+    e->squares[at] = square;
+    if (frame_at (r, frame, v, axes))
+      for (guint a = 0; a < 3; a++) {
+        gdouble along = d[0] * axes[a][0] + d[1] * axes[a][1] +
+            d[2] * axes[a][2];
+
+        e->directions[a] += along * along;
+      }
+  }
+}
+
+static ClothGapExtent *
+extent_new (const ClothRecording * r, gdouble window_s)
+{
+  ClothGapExtent *e = g_new0 (ClothGapExtent, 1);
+  gsize all = (gsize) r->n * r->n_frames;
+
+  e->n = r->n;
+  e->n_frames = r->n_frames;
+  e->squares = g_new (gdouble, all);
+  e->positions = g_new (gfloat, 3 * all);
+  e->led = g_new0 (gfloat, 3 * all);
+  for (gsize i = 0; i < all; i++)
+    e->squares[i] = NAN;
+  for (gsize i = 0; i < 3 * all; i++)
+    e->positions[i] = (gfloat) r->y[i];
+  e->window = cloth_rollout_list_windows (r, window_s);
+  e->n_windows = e->window[r->n_frames - 1] + 1;
+  e->energy = cloth_gap_energy_new (r);
+  return e;
+}
+
+/**
+ * cloth_gap_extents_new:
+ * @recording: what is compared with
+ * @models: (array length=n_models): the models
+ * @n_models: how many
+ * @gain: of the observer that leads up to each window, 1/s²
+ * @window_s: length of the windows, s
+ * @options: how to simulate
+ * @error: #ClothSimError
+ *
+ * Returns: (transfer full) (nullable) (array length=n_models): each model's distances
+ * Since: 0.1
+ */
+ClothGapExtent **
+cloth_gap_extents_new (const ClothRecording * recording,
+    const ClothModel * const *models, guint n_models, gdouble gain,
+    gdouble window_s, const ClothRolloutOptions * options, GError ** error)
+{
+  ClothGapExtent **extents = g_new (ClothGapExtent *, n_models);
+  g_autofree gboolean *sound = g_new (gboolean, n_models);
+  Gather g = { recording, extents, n_models };
+
+  for (guint m = 0; m < n_models; m++)
+    extents[m] = extent_new (recording, window_s);
+  if (!cloth_rollout_windows (recording, models, n_models, gain, window_s,
+          options, gather, &g, sound, error)) {
+    cloth_gap_extents_free (extents, n_models);
+    return NULL;
+  }
+  for (guint m = 0; m < n_models; m++)
+    extents[m]->sound = sound[m];
+  return extents;
+}
+
+/**
+ * cloth_gap_extent_free:
+ * @extent: (nullable) (transfer full): distances
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_extent_free (ClothGapExtent * extent)
+{
+  if (!extent)
+    return;
+  g_free (extent->window);
+  g_free (extent->squares);
+  g_free (extent->positions);
+  g_free (extent->led);
+  cloth_gap_energy_free (extent->energy);
+  g_free (extent);
+}
+
+/**
+ * cloth_gap_extents_free:
+ * @extents: (nullable) (transfer full) (array length=n): distances
+ * @n: how many
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_extents_free (ClothGapExtent ** extents, guint n)
+{
+  for (guint m = 0; extents && m < n; m++)
+    cloth_gap_extent_free (extents[m]);
+  g_free (extents);
+}
+
+/**
+ * cloth_gap_extent_subtract:
+ * @extent: (inout): one model's distances from a recording
+ * @other: another's
+ * @recording: the recording
+ *
+ * Makes them the distances of the two models, with the recording's noise: what the gap
+ * would be if the other were reality.
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_extent_subtract (ClothGapExtent * extent,
+    const ClothGapExtent * other, const ClothRecording * recording)
+{
+  gsize all = (gsize) extent->n * extent->n_frames;
+
+  for (gsize i = 0; i < all; i++) {
+    extent->squares[i] = 3. * recording->sigma * recording->sigma;
+    for (guint k = 0; k < 3; k++) {
+      gdouble off = extent->positions[3 * i + k] - other->positions[3 * i + k];
+
+      extent->squares[i] += off * off;
+      extent->led[3 * i + k] -= other->led[3 * i + k];
+    }
+  }
+}
+
+/**
+ * cloth_gap_extent_square:
+ * @extent: distances
+ * @windows: (nullable): which windows count
+ *
+ * Returns: their mean square, m²; NaN when nothing was seen
+ * Since: 0.1
+ */
+gdouble
+cloth_gap_extent_square (const ClothGapExtent * extent,
+    const gboolean * windows)
+{
+  gdouble sum = 0.;
+  guint64 count = 0;
+
+  for (guint frame = 1; frame < extent->n_frames; frame++) {
+    if (windows && !windows[extent->window[frame]])
+      continue;
+    for (guint v = 0; v < extent->n; v++) {
+      gdouble square = extent->squares[(gsize) frame * extent->n + v];
+
+      if (isfinite (square)) {
+        sum += square;
+        count++;
+      }
+    }
+  }
+  return count ? sum / count : NAN;
+}
+
+/**
+ * cloth_gap_extents_interval:
+ * @extents: (array length=n): distances of the same recording
+ * @n: how many
+ * @windows: (nullable): which windows count
+ * @seed: of the draws
+ * @n_draws: how many
+ * @draws: (out) (array): mean squares, [n_draws][n]
+ *
+ * Bootstrap over windows × tiles of the cloth, drawn alike for all.
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_extents_interval (ClothGapExtent ** extents, guint n,
+    const gboolean * windows, guint64 seed, guint n_draws, gdouble * draws)
+{
+  guint n_windows = extents[0]->n_windows, n_cells = 0;
+  guint all = n_windows * TILES * TILES;
+  g_autofree gdouble *sums = g_new0 (gdouble, (gsize) all * n);
+  g_autofree gdouble *counts = g_new0 (gdouble, all);
+  g_autofree guint *cells = g_new (guint, all);
+  guint side = MAX (1, (guint) sqrt (extents[0]->n));
+  ClothRandom random;
+
+  for (guint frame = 1; frame < extents[0]->n_frames; frame++) {
+    guint w = extents[0]->window[frame];
+
+    for (guint v = 0; v < extents[0]->n; v++) {
+      guint tile = MIN (v % side * TILES / side, TILES - 1) + TILES *
+          MIN (v / side * TILES / side, TILES - 1);
+      guint cell = w * TILES * TILES + tile;
+      gsize at = (gsize) frame * extents[0]->n + v;
+
+      if (!isfinite (extents[0]->squares[at]))
+        continue;
+      counts[cell] += 1.;
+      for (guint m = 0; m < n; m++)
+        sums[(gsize) m * all + cell] += extents[m]->squares[at];
+    }
+  }
+  for (guint cell = 0; cell < all; cell++)
+    if (counts[cell] > 0. && (!windows || windows[cell / (TILES * TILES)]))
+      cells[n_cells++] = cell;
+  cloth_random_init (&random, seed);
+  for (guint d = 0; d < n_draws; d++) {
+    gdouble count = 0.;
+
+    for (guint m = 0; m < n; m++)
+      draws[(gsize) d * n + m] = 0.;
+    for (guint i = 0; i < n_cells; i++) {
+      guint cell = cells[cloth_random_below (&random, n_cells)];
+
+      count += counts[cell];
+      for (guint m = 0; m < n; m++)
+        draws[(gsize) d * n + m] += sums[(gsize) m * all + cell];
+    }
+    for (guint m = 0; m < n && count > 0.; m++)
+      draws[(gsize) d * n + m] /= count;
+  }
+}

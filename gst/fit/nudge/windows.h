@@ -1,0 +1,54 @@
+/* How large the gap is, and where: simulations let go in short windows.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/fit/features/spectrum.h"
+#include "gst/fit/nudge/rollout.h"
+
+G_BEGIN_DECLS
+
+/**
+ * ClothGapExtent:
+ * @n: number of vertices
+ * @n_frames: number of frames
+ * @n_windows: number of windows
+ * @window: which window leads to each frame, [n_frames]
+ * @squares: squared distance, [n_frames][n], m²; NaN where nothing was seen
+ * @positions: simulated, [n_frames][n][3], m
+ * @directions: mean square along warp, weft and normal, m²
+ * @led: off the recording while it was led to it all along, [n_frames][n][3], m; 0
+ *   where nothing was seen and in the first frame
+ * @energy: of its distances while it was led to the recording all along
+ * @sound: whether the simulation held
+ *
+ * One model's distances from a recording.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  guint n;
+  guint n_frames;
+  guint n_windows;
+  guint *window;
+  gdouble *squares;
+  gfloat *positions;
+  gdouble directions[3];
+  gfloat *led;
+  ClothGapEnergy *energy;
+  gboolean sound;
+} ClothGapExtent;
+
+ClothGapExtent **cloth_gap_extents_new (const ClothRecording * recording,
+    const ClothModel * const *models, guint n_models, gdouble gain,
+    gdouble window_s, const ClothRolloutOptions * options, GError ** error);
+void cloth_gap_extents_free (ClothGapExtent ** extents, guint n);
+void cloth_gap_extent_free (ClothGapExtent * extent);
+void cloth_gap_extent_subtract (ClothGapExtent * extent,
+    const ClothGapExtent * other, const ClothRecording * recording);
+gdouble cloth_gap_extent_square (const ClothGapExtent * extent,
+    const gboolean * windows);
+void cloth_gap_extents_interval (ClothGapExtent ** extents, guint n,
+    const gboolean * windows, guint64 seed, guint n_draws, gdouble * draws);
+
+G_END_DECLS

@@ -1,0 +1,12 @@
+/* Where vertices may have been while nobody saw them.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/fit/recording/recording.h"
+
+G_BEGIN_DECLS
+
+void cloth_recording_bridge (ClothRecording * recording);
+
+G_END_DECLS

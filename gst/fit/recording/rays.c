@@ -1,0 +1,181 @@
+/* What one camera saw of a cloth's vertices: rays, and points on them.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/fit/recording/rays.h"
+
+#include <math.h>
+#include <string.h>
+
+/**
+ * cloth_rays_new:
+ * @n: number of vertices
+ *
+ * Returns: (transfer full): rays of which none is seen
+ * Since: 0.1
+ */
+ClothRays *
+cloth_rays_new (guint n)
+{
+  ClothRays *rays = g_new0 (ClothRays, 1);
+
+  rays->n = n;
+  rays->directions = g_new (gdouble, 3 * (gsize) n);
+  rays->spreads = g_new (gdouble, n);
+  rays->scratch = g_new (gdouble, 6 * (gsize) n);
+  cloth_rays_clear (rays);
+  return rays;
+}
+
+/**
+ * cloth_rays_clear:
+ * @rays: rays
+ *
+ * Forgets them: none is seen.
+ *
+ * Since: 0.1
+ */
+void
+cloth_rays_clear (ClothRays * rays)
+{
+  for (gsize i = 0; i < 3 * (gsize) rays->n; i++)
+    rays->directions[i] = NAN;
+  for (guint i = 0; i < rays->n; i++)
+    rays->spreads[i] = NAN;
+}
+
+/* @x, @y: X/Z and Y/Z in the camera's frame, @c: their covariance xx, xy, yy. A step of
+ * (x, y) turns the direction by what of it is across, over the length of (x, y, 1): the
+ * trace of the direction's covariance is that of Σ less its part along. */
+static void
+cast_one (ClothRays * rays, const ClothCamera * camera, guint vertex,
+    gdouble x, gdouble y, const gdouble c[3])
+{
+  const gdouble *R = camera->R;
+  gdouble square = x * x + y * y + 1., length = sqrt (square);
+  gdouble along = (x * x * c[0] + 2. * x * y * c[1] + y * y * c[2]) / square;
+  gdouble *d = rays->directions + 3 * (gsize) vertex;
+
+  for (guint k = 0; k < 3; k++)
+    d[k] = (R[k] * x + R[3 + k] * y + R[6 + k]) / length;
+  rays->spreads[vertex] = sqrt ((c[0] + c[2] - along) / 2. / square);
+}
+
+/**
+ * cloth_rays_cast:
+ * @rays: where they go
+ * @camera: the camera, with its lens
+ * @view: what it saw, element i of vertex i; its covariances must not be %NULL
+ *
+ * The rays of a picture. Vertices that were not seen, and those at pixels that the lens
+ * can't have made, have none.
+ *
+ * Since: 0.1
+ */
+void
+cloth_rays_cast (ClothRays * rays, const ClothCamera * camera,
+    const ClothTriangulateView * view)
+{
+  gsize n = rays->n;
+  gdouble *x = rays->scratch, *y = x + n, *j = y + n;
+
+  /* camera's centre: −Rᵀt */
+  for (guint k = 0; k < 3; k++)
+    rays->centre[k] = -(camera->R[k] * camera->t[0] +
+        camera->R[3 + k] * camera->t[1] + camera->R[6 + k] * camera->t[2]);
+  cloth_camera_undistort_points (camera, (guint) n, view->x, view->y, x, y, j);
+  for (guint i = 0; i < n; i++) {
+    gdouble ux = j[i], uy = j[n + i], vx = j[2 * n + i], vy = j[3 * n + i];
+    gdouble a = view->xx[i], b = view->xy[i], c = view->yy[i];
+    const gdouble covariance[3] = {
+      ux * ux * a + 2. * ux * uy * b + uy * uy * c,
+      ux * vx * a + (ux * vy + uy * vx) * b + uy * vy * c,
+      vx * vx * a + 2. * vx * vy * b + vy * vy * c
+    };
+
+    cast_one (rays, camera, i, x[i], y[i], covariance);
+  }
+}
+
+/**
+ * cloth_rays_copy:
+ * @to: rays of as many vertices
+ * @from: rays
+ *
+ * Since: 0.1
+ */
+void
+cloth_rays_copy (ClothRays * to, const ClothRays * from)
+{
+  memcpy (to->centre, from->centre, sizeof to->centre);
+  memcpy (to->directions, from->directions,
+      3 * (gsize) from->n * sizeof *to->directions);
+  memcpy (to->spreads, from->spreads, from->n * sizeof *to->spreads);
+}
+
+/**
+ * cloth_rays_split:
+ * @rays: rays
+ * @vertex: which
+ * @v: a vector of the world
+ * @across: (out): its part across the ray; may be @v; NaN when there is no ray
+ *
+ * Returns: its part along the ray
+ * Since: 0.1
+ */
+gdouble
+cloth_rays_split (const ClothRays * rays, guint vertex, const gdouble v[3],
+    gdouble across[3])
+{
+  const gdouble *d = rays->directions + 3 * (gsize) vertex;
+  gdouble along = v[0] * d[0] + v[1] * d[1] + v[2] * d[2];
+
+  for (guint k = 0; k < 3; k++)
+    across[k] = v[k] - along * d[k];
+  return along;
+}
+
+/**
+ * cloth_rays_lift:
+ * @rays: rays
+ * @reference: where the vertices may be, 3 numbers a vertex, metres; NaN when not known
+ * @positions: (out caller-allocates): the place on each ray that is nearest to its
+ *   reference; NaN where one of them is missing, or the reference lies behind the camera
+ *
+ * Across the rays a position is what the camera saw, with a standard deviation of its
+ * distance from the camera times the ray's spread; along them it is the reference's.
+ *
+ * Since: 0.1
+ */
+void
+cloth_rays_lift (const ClothRays * rays, const gdouble * reference,
+    gdouble * positions)
+{
+  for (guint i = 0; i < rays->n; i++) {
+    const gdouble *d = rays->directions + 3 * (gsize) i;
+    gdouble v[3], along;
+
+    for (guint k = 0; k < 3; k++)
+      v[k] = reference[3 * (gsize) i + k] - rays->centre[k];
+    along = cloth_rays_split (rays, i, v, v);
+    for (guint k = 0; k < 3; k++)
+      positions[3 * (gsize) i + k] = along > 0. ?
+          rays->centre[k] + along * d[k] : NAN;
+  }
+}
+
+/**
+ * cloth_rays_free:
+ * @rays: (nullable) (transfer full): rays
+ *
+ * Since: 0.1
+ */
+void
+cloth_rays_free (ClothRays * rays)
+{
+  if (!rays)
+    return;
+  g_free (rays->directions);
+  g_free (rays->spreads);
+  g_free (rays->scratch);
+  g_free (rays);
+}

@@ -1,0 +1,594 @@
+/* Cameras: whether something was wrong with them, and the recording without it.
+ *
+ * The places in the pictures are held against each other only, never against a simulation:
+ * what is found here says nothing of the cloth, and the other way round.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <math.h>
+#include <string.h>
+
+#include "gst/fit/recording/interpolation.h"
+#include "gst/gap/diagnosis.h"
+#include "gst/math/linalg.h"
+
+/* Squares of the residual count so much less: detectors err alike in picture after
+ * picture. */
+#define OVERDISPERSION 20.
+/* A fault must take this share of the residual's square off blocks of time that it was
+ * not estimated on. */
+#define LEAST_IMPROVEMENT 0.02
+/* Mean square of what it moves points by, over that of what detection leaves. */
+#define LEAST_WAY 4.
+/* What the baselines ask for of the same effect is taken off so many times. */
+#define NULL_SHARE 1.5
+/* Evidence is divided by this before it becomes a probability. */
+#define TEMPERATURE 1.5
+/* Of a fault's estimate; priors are so many times as wide in it. */
+#define N_STEPS 3
+#define WIDTH 3.
+/* Faults with derivatives this alike can't be told apart. */
+#define AMBIGUOUS_COSINE 0.9
+/* … unless the one is this much less likely. */
+#define LEAST_ODDS 0.05
+/* Exponents that don't overflow. */
+#define LARGEST 600.
+
+/* One recording with sights, and what is taken to be wrong with its cameras. */
+typedef struct
+{
+  ClothDiagnosis *d;
+  const ClothRig *rig;
+  ClothGapCandidates *candidates;
+  GPtrArray *views;             /* of the takes that have sights of this rig */
+  ClothGapNormal *normal;       /* at the faults that are known */
+  /* of each candidate: what baselines ask for, whether it looks like the first fault */
+  gdouble *null_evidence;
+  gboolean *alike;
+} Search;
+
+static void
+search_clear (Search * s)
+{
+  cloth_gap_candidates_free (s->candidates);
+  g_clear_pointer (&s->views, g_ptr_array_unref);
+  cloth_gap_normal_free (s->normal);
+  g_free (s->null_evidence);
+  g_free (s->alike);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Search, search_clear)
+     static ClothSights *sights_of (const ClothDiagnosis * d, guint recording)
+{
+  const ClothGapOptions *o = d->options;
+  ClothSights *const *all = o->sights;
+
+  if (recording >= d->n_takes + o->n_baselines) {
+    all = o->hold_out_sights;
+    recording -= d->n_takes + o->n_baselines;
+  } else if (recording >= d->n_takes) {
+    all = o->baseline_sights;
+    recording -= d->n_takes;
+  }
+  return all ? all[recording] : NULL;
+}
+
+gboolean
+cloth_diagnosis_has_sights (const ClothDiagnosis * d)
+{
+  for (guint i = 0; i < d->n_takes; i++)
+    if (sights_of (d, i))
+      return TRUE;
+  return FALSE;
+}
+
+/* Those that matter. */
+guint
+cloth_diagnosis_count_faults (const ClothDiagnosis * d)
+{
+  guint n = 0;
+
+  for (guint i = 0; i < d->n_faults; i++)
+    n += !d->faults[i].small;
+  return n;
+}
+
+static gboolean
+same_cameras (const ClothRig * a, const ClothRig * b)
+{
+  if (a->n_cameras != b->n_cameras)
+    return FALSE;
+  for (guint c = 0; c < a->n_cameras; c++)
+    if (strcmp (a->cameras[c].name, b->cameras[c].name) != 0)
+      return FALSE;
+  return TRUE;
+}
+
+static GPtrArray *
+open_views (const Search * s, guint begin, guint end)
+{
+  GPtrArray *views = g_ptr_array_new_with_free_func (
+      (GDestroyNotify) cloth_camera_view_free);
+
+  for (guint i = begin; i < end; i++) {
+    const ClothSights *sights = sights_of (s->d, i);
+
+    if (sights && same_cameras (sights->rig, s->rig))
+      g_ptr_array_add (views,
+          cloth_camera_view_new (cloth_diagnosis_recording (s->d, i), sights,
+              s->d->options->threads));
+  }
+  return views;
+}
+
+/* The equations of all views together. */
+static ClothGapNormal *
+linearise (const Search * s, const GPtrArray * views,
+    ClothCameraErrors * errors)
+{
+  ClothGapNormal *all = NULL;
+
+  for (guint i = 0; i < views->len; i++) {
+    ClothCameraErrors mine;
+    ClothGapNormal *normal =
+        cloth_camera_view_linearise (g_ptr_array_index (views, i),
+        s->d->options->threads, &mine);
+
+    if (!normal)
+      continue;
+    if (!all)
+      *errors = mine;
+    all = cloth_gap_normal_append (all, normal);
+  }
+  return all;
+}
+
+static const ClothGapCandidate *
+candidate_at (const Search * s, guint i)
+{
+  return &g_array_index (s->candidates->list, ClothGapCandidate, i);
+}
+
+/* The effects that @normal asks for, beside the faults that are known. */
+static GArray *
+rank (const Search * s, ClothGapNormal * normal)
+{
+  const ClothDiagnosis *d = s->d;
+  guint m = s->candidates->directions->len;
+  g_autofree gboolean *blocks = g_new (gboolean, normal->n_blocks);
+  g_autofree gboolean *sound = g_new (gboolean, m);
+  guint nuisances[CLOTH_DIAGNOSIS_MAX_ACCEPTED * CLOTH_EFFECT_MAX_PARAMETERS];
+  gdouble precisions[G_N_ELEMENTS (nuisances)];
+  ClothGapTest test = {.normals = {normal},.candidates = s->candidates,.blocks =
+      blocks,.nuisances = nuisances,.precisions = precisions,.overdispersion =
+      OVERDISPERSION,.sound = sound
+  };
+  GArray *scores;
+
+  for (guint b = 0; b < normal->n_blocks; b++)
+    blocks[b] = TRUE;
+  for (guint k = 0; k < m; k++)
+    sound[k] = TRUE;
+  for (guint i = 0; i < d->n_faults; i++) {
+    const ClothGapCandidate *c = candidate_at (s, d->faults[i].candidate);
+
+    for (guint k = 0; k < c->n; k++) {
+      const gdouble prior = cloth_gap_candidates_direction (s->candidates,
+          c->first + k)->prior;
+
+      nuisances[test.n_nuisances] = c->first + k;
+      precisions[test.n_nuisances++] = 1. / (prior * prior);
+    }
+  }
+  test.n_numbers = test.n_nuisances;
+  scores = cloth_gap_test_run (&test);
+  for (guint i = 0; i < scores->len; i++) {
+    ClothGapScore *score = &g_array_index (scores, ClothGapScore, i);
+
+    score->evidence -= s->null_evidence[score->candidate];
+  }
+  g_array_sort (scores, cloth_gap_score_compare);
+  return scores;
+}
+
+/* What the baselines ask for, of each effect of any camera. */
+static void
+study_baselines (Search * s)
+{
+  const ClothDiagnosis *d = s->d;
+  g_autoptr (GPtrArray) views = open_views (s, d->n_takes,
+      d->n_takes + d->options->n_baselines);
+  ClothCameraErrors errors;
+  g_autoptr (ClothGapNormal) normal = linearise (s, views, &errors);
+  g_autoptr (GArray) scores = NULL;
+
+  if (!normal)
+    return;
+  scores = rank (s, normal);
+  for (guint i = 0; i < scores->len; i++) {
+    const ClothGapScore *score = &g_array_index (scores, ClothGapScore, i);
+
+    for (guint c = 0; c < s->candidates->list->len; c++)
+      if (candidate_at (s, c)->effect ==
+          candidate_at (s, score->candidate)->effect)
+        s->null_evidence[c] = NULL_SHARE * MAX (score->evidence, 0.);
+  }
+}
+
+/* Takes the known faults to act. */
+static void
+apply_faults (const ClothDiagnosis * d, ClothCameraView * view)
+{
+  cloth_camera_view_reset (view);
+  for (guint i = 0; i < d->n_faults; i++)
+    cloth_camera_view_apply (view, d->faults[i].camera, d->faults[i].effect,
+        d->faults[i].values);
+}
+
+/* One step of Gauss and Newton towards the most probable values of all faults. */
+static gboolean
+step_faults (Search * s)
+{
+  ClothDiagnosis *d = s->d;
+  const guint m = s->normal->m;
+  guint columns[CLOTH_DIAGNOSIS_MAX_ACCEPTED * CLOTH_EFFECT_MAX_PARAMETERS];
+  gdouble a[G_N_ELEMENTS (columns) * G_N_ELEMENTS (columns)] = { 0. };
+  gdouble x[G_N_ELEMENTS (columns)] = { 0. };
+  gdouble inverse[G_N_ELEMENTS (a)], r = 0., phi;
+  guint n = 0, at = 0;
+
+  for (guint i = 0; i < d->n_faults; i++) {
+    const ClothGapCandidate *c = candidate_at (s, d->faults[i].candidate);
+
+    for (guint k = 0; k < c->n; k++)
+      columns[n++] = c->first + k;
+  }
+  for (guint b = 0; b < s->normal->n_blocks; b++) {
+    const gdouble *g = s->normal->g + (gsize) b * m * m;
+
+    r += s->normal->r[b];
+    for (guint i = 0; i < n; i++) {
+      for (guint k = 0; k < n; k++)
+        a[i * n + k] += g[(gsize) columns[i] * m + columns[k]];
+      x[i] -= s->normal->s[(gsize) b * m + columns[i]];
+    }
+  }
+  phi = OVERDISPERSION * MAX (r / (s->normal->per_block * s->normal->n_blocks),
+      0.1);
+  for (guint i = 0; i < d->n_faults; i++) {
+    const ClothGapCandidate *c = candidate_at (s, d->faults[i].candidate);
+
+    for (guint k = 0; k < c->n; k++, at++) {
+      const gdouble prior = WIDTH * cloth_gap_candidates_direction
+          (s->candidates, c->first + k)->prior;
+
+      for (guint l = 0; l < n; l++)
+        a[at * n + l] /= phi;
+      x[at] = x[at] / phi - d->faults[i].values[k] / (prior * prior);
+      a[at * n + at] += 1. / (prior * prior);
+    }
+  }
+  if (!cloth_cholesky_factor (n, a))
+    return FALSE;
+  cloth_cholesky_solve (n, a, x);
+  cloth_cholesky_inverse (n, a, inverse);
+  at = 0;
+  for (guint i = 0; i < d->n_faults; i++) {
+    const ClothGapCandidate *c = candidate_at (s, d->faults[i].candidate);
+
+    for (guint k = 0; k < c->n; k++, at++) {
+      const ClothGapDirection *direction =
+          cloth_gap_candidates_direction (s->candidates, c->first + k);
+
+      d->faults[i].values[k] = CLAMP (d->faults[i].values[k] + x[at],
+          direction->low, direction->high);
+      d->faults[i].sigmas[k] = sqrt (inverse[at * n + at]);
+    }
+  }
+  return TRUE;
+}
+
+/* The equations once the faults are taken to act. */
+static gboolean
+look_again (Search * s)
+{
+  ClothCameraErrors errors;
+
+  for (guint i = 0; i < s->views->len; i++) {
+    ClothCameraView *view = g_ptr_array_index (s->views, i);
+
+    apply_faults (s->d, view);
+    cloth_camera_view_solve_unseen (view, s->d->options->threads);
+  }
+  cloth_gap_normal_free (s->normal);
+  s->normal = linearise (s, s->views, &errors);
+  if (s->normal)
+    s->d->camera_errors = errors;
+  return s->normal != NULL;
+}
+
+static gboolean
+is_drop (const ClothCameraFault * fault)
+{
+  return strcmp (fault->effect->id, "frame_drop") == 0;
+}
+
+/* Estimates the faults together. */
+static gboolean
+fit_faults (Search * s)
+{
+  ClothDiagnosis *d = s->d;
+
+  for (guint step = 0; step < N_STEPS; step++)
+    if (!step_faults (s) || !look_again (s))
+      return FALSE;
+  for (guint i = 0; i < d->n_faults; i++)
+    if (is_drop (&d->faults[i]))
+      d->faults[i].values[0] =
+          cloth_camera_view_stale_share (g_ptr_array_index (s->views, 0),
+          d->faults[i].camera, &d->faults[i].sigmas[0]);
+  return TRUE;
+}
+
+static const gchar *
+camera_name (const Search * s, guint camera)
+{
+  return camera < s->rig->n_cameras ?
+      g_intern_string (s->rig->cameras[camera].name) : NULL;
+}
+
+static const ClothCameraFault *
+find_fault (const Search * s, const ClothEffect * effect)
+{
+  for (guint i = 0; i < s->d->n_faults; i++)
+    if (s->d->faults[i].effect == effect)
+      return &s->d->faults[i];
+  return NULL;
+}
+
+/* Probability of an effect among those that were ranked together, or none of them. */
+static gdouble
+probability_of (const Search * s, const GArray * scores,
+    const ClothEffect * effect)
+{
+  gdouble total = 1., mine = 0.;
+
+  for (guint i = 0; i < scores->len; i++) {
+    const ClothGapScore *score = &g_array_index (scores, ClothGapScore, i);
+    gdouble odds = exp (MIN (score->evidence / TEMPERATURE, LARGEST));
+
+    total += odds;
+    if (candidate_at (s, score->candidate)->effect == effect)
+      mine = odds;
+  }
+  return mine / total;
+}
+
+static const ClothGapScore *
+find_score (const Search * s, const GArray * scores, const ClothEffect * effect,
+    const ClothGapScore * otherwise)
+{
+  for (guint i = 0; i < scores->len; i++) {
+    const ClothGapScore *score = &g_array_index (scores, ClothGapScore, i);
+
+    if (candidate_at (s, score->candidate)->effect == effect)
+      return score;
+  }
+  return otherwise;
+}
+
+/* What the pictures ask for beside the faults: @first before any was known, @last with
+ * all. Those that would do as well as the first fault stand in a group with it. */
+static void
+list_effects (const Search * s, const GArray * first, const GArray * last)
+{
+  const ClothDiagnosis *d = s->d;
+
+  for (guint i = 0; i < first->len; i++) {
+    const ClothGapScore *score = &g_array_index (first, ClothGapScore, i);
+    const ClothGapCandidate *c = candidate_at (s, score->candidate);
+    ClothGapEffect e = { c->effect,.group = -1,.shrink = {NAN, NAN, NAN} };
+
+    if (score->kept < CLOTH_GAP_IDENTIFIABLE || find_fault (s, c->effect))
+      continue;
+    if (d->n_faults && s->alike[score->candidate]) {
+      e.probability = probability_of (s, first, c->effect);
+      e.group = e.probability > LEAST_ODDS * probability_of (s, first,
+          d->faults[0].effect) ? 0 : -1;
+    } else {
+      e.probability = probability_of (s, last, c->effect);
+      score = find_score (s, last, c->effect, score);
+      c = candidate_at (s, score->candidate);
+    }
+    e.p_value = score->p_value;
+    e.constancy_p_value = score->constancy_p_value;
+    e.camera = camera_name (s, cloth_camera_of_candidate (c));
+    for (guint k = 0; k < c->n; k++) {
+      e.values[k] = score->changes[k];
+      e.sigmas[k] = CLOTH_DIAGNOSIS_SIGMA_WIDTH * score->sigmas[k];
+    }
+    g_array_append_val (d->camera_effects, e);
+  }
+}
+
+/* Puts the faults before what else was asked for; small ones behind. */
+static void
+list_faults (const Search * s)
+{
+  const ClothDiagnosis *d = s->d;
+  GArray *to = d->camera_effects;
+  guint first = 0;
+
+  for (guint i = 0; i < d->n_faults; i++) {
+    const ClothCameraFault *f = &d->faults[i];
+    ClothGapEffect e = { f->effect,.group = -1,.accepted =
+          !f->small,.probability = f->probability,.p_value =
+          f->p_value,.constancy_p_value = f->constancy_p_value,.shrink =
+          {NAN, NAN, NAN}
+    };
+
+    e.camera = camera_name (s, f->camera);
+    for (guint k = 0; k < f->effect->n_parameters; k++) {
+      e.values[k] = f->values[k];
+      e.sigmas[k] = CLOTH_DIAGNOSIS_SIGMA_WIDTH * f->sigmas[k];
+    }
+    for (guint k = 0; k < to->len && i == 0; k++)
+      if (g_array_index (to, ClothGapEffect, k).group == 0)
+        e.group = 0;
+    if (f->small)
+      g_array_append_val (to, e);
+    else
+      g_array_insert_val (to, first++, e);
+  }
+}
+
+/* Notes which effects of the same camera look like the fault that was found first. */
+static void
+find_alike (Search * s, guint fault)
+{
+  g_autofree gboolean *blocks = g_new (gboolean, s->normal->n_blocks);
+  const ClothGapTest test = {.normals = {s->normal},.candidates =
+      s->candidates,.blocks = blocks
+  };
+
+  for (guint b = 0; b < s->normal->n_blocks; b++)
+    blocks[b] = TRUE;
+  for (guint c = 0; c < s->candidates->list->len; c++)
+    s->alike[c] = candidate_at (s, c)->effect != candidate_at (s, fault)->effect
+        && cloth_camera_of_candidate (candidate_at (s, c)) ==
+        cloth_camera_of_candidate (candidate_at (s, fault))
+        && cloth_gap_test_cosine (&test, fault, c) > AMBIGUOUS_COSINE;
+}
+
+/* How far a fault by itself moves the points of the first take, mean square. */
+static gdouble
+way_of (const Search * s, const ClothCameraFault * fault)
+{
+  const ClothDiagnosis *d = s->d;
+  ClothCameraView *view = g_ptr_array_index (s->views, 0);
+  gdouble square;
+
+  cloth_camera_view_reset (view);
+  cloth_camera_view_apply (view, fault->camera, fault->effect, fault->values);
+  square = cloth_camera_view_way (view, d->options->threads);
+  apply_faults (d, view);
+  return square;
+}
+
+static void
+start_fault (const Search * s, const ClothGapScore * score,
+    ClothCameraFault * f)
+{
+  const ClothGapCandidate *c = candidate_at (s, score->candidate);
+
+  *f = (ClothCameraFault) {
+  .candidate = score->candidate,.effect = c->effect};
+  f->camera = cloth_camera_of_candidate (c);
+  f->probability = 1. / (1. + exp (-score->evidence / TEMPERATURE));
+  f->p_value = score->p_value;
+  f->constancy_p_value = score->constancy_p_value;
+}
+
+/* Takes in the likeliest fault, if it is asked for. */
+static gboolean
+take_in (Search * s, const GArray * scores)
+{
+  ClothDiagnosis *d = s->d;
+  ClothCameraFault *f = &d->faults[d->n_faults];
+  const ClothGapScore *score = scores->len ? &g_array_index (scores,
+      ClothGapScore, 0) : NULL;
+
+  if (!score || d->n_faults == G_N_ELEMENTS (d->faults)
+      || !(score->evidence >= CLOTH_DIAGNOSIS_LEAST_EVIDENCE)
+      || !(score->improvement > LEAST_IMPROVEMENT))
+    return FALSE;
+  if (!d->n_faults)
+    find_alike (s, score->candidate);
+  start_fault (s, score, f);
+  d->n_faults++;
+  if (!fit_faults (s)) {
+    d->n_faults--;
+    return FALSE;
+  }
+  return TRUE;
+}
+
+/* Faults that hardly move points count as small. Pictures that are the one before were found
+ * because they are far off. */
+static void
+find_small (Search * s)
+{
+  ClothDiagnosis *d = s->d;
+
+  for (guint i = 0; i < d->n_faults; i++)
+    d->faults[i].small = !is_drop (&d->faults[i])
+        && !(way_of (s, &d->faults[i]) > LEAST_WAY *
+        d->camera_errors.detection);
+}
+
+/* The recordings as the cameras would have shown them with nothing wrong. What the first
+ * take was before stays beside it. */
+static void
+correct (ClothDiagnosis * d, const Search * s)
+{
+  for (guint i = 0; i < d->recordings->len; i++) {
+    const ClothSights *sights = sights_of (d, i);
+    ClothRecording *r = cloth_diagnosis_recording (d, i);
+    g_autoptr (ClothCameraView) view = NULL;
+    gdouble square;
+
+    if (!sights || !same_cameras (sights->rig, s->rig)
+        || (i >= d->n_takes && i < d->n_takes + d->options->n_baselines))
+      continue;
+    view = cloth_camera_view_new (r, sights, d->options->threads);
+    apply_faults (d, view);
+    d->filmed[i] = g_memdup2 (r->y, 3 * (gsize) r->n * r->n_frames *
+        sizeof *r->y);
+    square = cloth_camera_view_correct (view, d->options->threads, r);
+    if (i == 0) {
+      d->camera_square = square;
+      d->camera_errors.triangulation = 0.;
+    }
+    cloth_recording_bridge (r);
+    cloth_recording_differentiate (r);
+  }
+}
+
+/**
+ * cloth_diagnosis_find_faults:
+ * @d: a diagnosis whose recordings are loaded
+ *
+ * Looks for what is wrong with the cameras and takes it off the recordings.
+ */
+void
+cloth_diagnosis_find_faults (ClothDiagnosis * d)
+{
+  g_auto (Search) s = { d };
+  g_autoptr (GArray) first = NULL, last = NULL;
+
+  d->camera_effects = g_array_new (FALSE, FALSE, sizeof (ClothGapEffect));
+  d->filmed = g_new0 (gdouble *, d->recordings->len);
+  for (guint i = 0; i < d->n_takes && !s.rig; i++)
+    s.rig = sights_of (d, i) ? sights_of (d, i)->rig : NULL;
+  if (!s.rig)
+    return;
+  s.candidates = cloth_camera_candidates_new (s.rig, d->options->effects);
+  s.null_evidence = g_new0 (gdouble, s.candidates->list->len + 1);
+  s.alike = g_new0 (gboolean, s.candidates->list->len + 1);
+  s.views = open_views (&s, 0, d->n_takes);
+  s.normal = linearise (&s, s.views, &d->camera_errors);
+  d->has_camera_errors = s.normal != NULL;
+  if (!s.normal)
+    return;
+  study_baselines (&s);
+  first = rank (&s, s.normal);
+  last = g_array_ref (first);
+  while (s.normal && take_in (&s, last)) {
+    g_array_unref (last);
+    last = rank (&s, s.normal);
+  }
+  find_small (&s);
+  list_effects (&s, first, last);
+  list_faults (&s);
+  if (cloth_diagnosis_count_faults (d))
+    correct (d, &s);
+}

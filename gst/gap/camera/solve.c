@@ -1,0 +1,574 @@
+/* All frames: normal equations of what may be wrong with the cameras, and points solved
+ * again.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/camera/camera-private.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/math/linalg.h"
+#include "gst/math/pool.h"
+
+#define N_COLUMNS CLOTH_CAMERA_N_COLUMNS
+/* ClothCameraPoints of all frames that are looked at, about; of more vertices some are left out. */
+#define MOST_POINTS 60000
+/* Blocks of time, s, and most of them. */
+#define BLOCK_S 0.5
+#define MOST_BLOCKS 64
+/* Steps from where the recording bridges a point to where pictures have it. */
+#define N_UNSEEN 4
+/* A picture is the one before when that explains this share of the way between the two,
+ * and the square that it explains is so many times what it leaves to each. */
+#define STALE_SHARE 0.6
+#define STALE_SQUARE 25.
+
+typedef struct
+{
+  const ClothCameraView *view;
+  ClothCameraPoints points;
+  guint n_cameras;
+  guint n_blocks;
+  guint *block;                 /* of each frame */
+  ClothCameraAim aim;
+  ClothGapNormal *normal;
+  gdouble *dof;                 /* of each block */
+  ClothCameraErrors *errors;    /* sums, of each block */
+  gdouble *n_points;
+  ClothCameraPicture **scratch; /* [workers][cameras] */
+  gdouble **columns;            /* [workers] */
+  /* of drops, per frame and camera: products of the residual with the way from the picture
+   * before, of that way, of the residual, and its degrees of freedom */
+  gdouble *along, *way, *rest, *freedom;
+} Work;
+
+/* Square of what no place of the point accounts for. */
+static gdouble
+left_of (const ClothCameraPoint * point)
+{
+  const gdouble *u = point->u;
+
+  return point->z2 - u[0] * u[0] - u[1] * u[1] - u[2] * u[2];
+}
+
+/* How far the pictures have a point from where it is said to be. */
+static gdouble
+square_of_way (const ClothCameraPoint * point)
+{
+  gdouble x[3] = { point->u[0], point->u[1], point->u[2] };
+
+  cloth_camera_backward (point->a, x);
+  return x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
+}
+
+static gdouble
+trace_of_inverse (const gdouble * factor)
+{
+  gdouble inverse[9];
+
+  cloth_cholesky_inverse (3, factor, inverse);
+  return inverse[0] + inverse[4] + inverse[8];
+}
+
+/* The columns of the pictures of a point with its movement projected out: what is left
+ * of their products goes into the block's normal equations. @v: L⁻¹JᵀB, [camera][column]. */
+static void
+add_point (const Work * work, const ClothCameraPicture * pictures, guint i,
+    const ClothCameraPoint * point, gdouble * v, guint block)
+{
+  const guint m = work->normal->m;
+  gdouble *g = work->normal->g + (gsize) block * m * m;
+  gdouble *s = work->normal->s + (gsize) block * m;
+  const guint n = point->n * N_COLUMNS;
+
+  for (guint q = 0; q < point->n; q++) {
+    const ClothCameraPicture *p = &pictures[point->cameras[q]];
+    const gdouble *b = p->b + 2 * (gsize) N_COLUMNS * i, *z = p->z + 2 * i;
+    const gdouble *j = p->j + 6 * (gsize) i;
+    const guint first = point->cameras[q] * N_COLUMNS;
+
+    for (guint k = 0; k < N_COLUMNS; k++) {
+      gdouble *to = v + 3 * (q * N_COLUMNS + k);
+
+      for (guint l = 0; l < 3; l++)
+        to[l] = j[l] * b[k] + j[3 + l] * b[N_COLUMNS + k];
+      cloth_camera_forward (point->a, to);
+      s[first + k] -= b[k] * z[0] + b[N_COLUMNS + k] * z[1] -
+          (to[0] * point->u[0] + to[1] * point->u[1] + to[2] * point->u[2]);
+      for (guint l = 0; l <= k; l++)
+        g[(gsize) (first + k) * m + first + l] += b[k] * b[l] +
+            b[N_COLUMNS + k] * b[N_COLUMNS + l];
+    }
+  }
+  for (guint k = 0; k < n; k++) {
+    const gdouble *x = v + 3 * k;
+    gdouble *row = g + (gsize) (point->cameras[k / N_COLUMNS] * N_COLUMNS +
+        k % N_COLUMNS) * m;
+
+    for (guint l = 0; l <= k; l++) {
+      const gdouble *y = v + 3 * l;
+
+      row[point->cameras[l / N_COLUMNS] * N_COLUMNS + l % N_COLUMNS] -=
+          x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+    }
+  }
+}
+
+/* How well each picture would fit the time of the one before. */
+static void
+add_drops (const Work * work, const ClothCameraPicture * pictures, guint i,
+    const ClothCameraPoint * point, guint frame)
+{
+  for (guint q = 0; q < point->n; q++) {
+    const guint camera = point->cameras[q];
+    const ClothCameraPicture *p = &pictures[camera];
+    const gdouble *b = p->b + 2 * (gsize) N_COLUMNS * i + CLOTH_CAMERA_DROP;
+    const gdouble *z = p->z + 2 * i, *j = p->j + 6 * (gsize) i;
+    gsize at = (gsize) frame * work->n_cameras + camera;
+    gdouble v[3];
+
+    for (guint l = 0; l < 3; l++)
+      v[l] = j[l] * b[0] + j[3 + l] * b[N_COLUMNS];
+    cloth_camera_forward (point->a, v);
+    work->along[at] += b[0] * z[0] + b[N_COLUMNS] * z[1] -
+        (v[0] * point->u[0] + v[1] * point->u[1] + v[2] * point->u[2]);
+    work->way[at] += b[0] * b[0] + b[N_COLUMNS] * b[N_COLUMNS] -
+        (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    work->rest[at] += left_of (point);
+    work->freedom[at] += 2. * point->n - 3.;
+  }
+}
+
+/* How far the cameras' faults move a point that all its pictures place together, squared. */
+static gdouble
+way_of (const ClothCameraPicture * pictures, guint i,
+    const ClothCameraPoint * point)
+{
+  gdouble x[3] = { 0. };
+
+  for (guint q = 0; q < point->n; q++) {
+    const ClothCameraPicture *p = &pictures[point->cameras[q]];
+    const gdouble *b = p->b + 2 * (gsize) N_COLUMNS * i + CLOTH_CAMERA_DROP;
+    const gdouble *j = p->j + 6 * (gsize) i;
+
+    for (guint k = 0; k < 3; k++)
+      x[k] += j[k] * b[0] + j[3 + k] * b[N_COLUMNS];
+  }
+  cloth_camera_forward (point->a, x);
+  cloth_camera_backward (point->a, x);
+  return x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
+}
+
+static void
+do_frame (const Work * work, ClothCameraPicture * pictures, gdouble * columns,
+    guint frame)
+{
+  const guint block = work->block[frame];
+
+  cloth_camera_look (work->view, &work->points, work->aim, pictures, frame);
+  for (guint i = 0; i < work->points.n; i++) {
+    ClothCameraPoint point;
+    ClothCameraErrors *e = &work->errors[block];
+
+    if (!cloth_camera_gather (pictures, work->n_cameras, i, FALSE, &point))
+      continue;
+    if (work->aim == CLOTH_CAMERA_DROPS) {
+      add_drops (work, pictures, i, &point, frame);
+      continue;
+    }
+    if (work->aim == CLOTH_CAMERA_WAY) {
+      e->triangulation += way_of (pictures, i, &point);
+      work->n_points[block] += 1.;
+      continue;
+    }
+    add_point (work, pictures, i, &point, columns, block);
+    work->normal->r[block] += left_of (&point);
+    work->dof[block] += 2. * point.n - 3.;
+    work->n_points[block] += 1.;
+    e->detection += trace_of_inverse (point.a);
+    *(point.contradicted ? &e->labels : &e->triangulation) +=
+        square_of_way (&point);
+  }
+}
+
+static void
+do_blocks (gpointer data, guint begin, guint end, guint worker)
+{
+  Work *work = data;
+
+  for (guint frame = 0; frame < work->view->recording->n_frames; frame++)
+    if (work->block[frame] >= begin && work->block[frame] < end)
+      do_frame (work, work->scratch[worker], work->columns[worker], frame);
+}
+
+static void
+run (Work * work, guint threads, ClothPoolFunc func)
+{
+  g_autoptr (ClothPool) pool = cloth_pool_new (threads);
+  guint n = cloth_pool_get_n_threads (pool);
+
+  work->scratch = g_new (ClothCameraPicture *, n);
+  work->columns = g_new (gdouble *, n);
+  for (guint t = 0; t < n; t++) {
+    work->scratch[t] = g_new0 (ClothCameraPicture, work->n_cameras);
+    work->columns[t] = g_new (gdouble, 3 * N_COLUMNS * work->n_cameras);
+    for (guint c = 0; c < work->n_cameras; c++)
+      cloth_camera_picture_init (&work->scratch[t][c], work->points.n);
+  }
+  cloth_pool_run (pool, func, work, work->n_blocks);
+  for (guint t = 0; t < n; t++) {
+    for (guint c = 0; c < work->n_cameras; c++)
+      cloth_camera_picture_clear (&work->scratch[t][c]);
+    g_free (work->scratch[t]);
+    g_free (work->columns[t]);
+  }
+  g_free (work->scratch);
+  g_free (work->columns);
+}
+
+static void
+divide_time (Work * work)
+{
+  const ClothRecording *r = work->view->recording;
+  gdouble duration = r->times[r->n_frames - 1] - r->times[0];
+
+  work->n_blocks = (guint) CLAMP (duration / BLOCK_S, 2, MOST_BLOCKS);
+  work->block = g_new (guint, r->n_frames);
+  for (guint f = 0; f < r->n_frames; f++)
+    work->block[f] = MIN ((guint) ((r->times[f] - r->times[0]) / duration *
+            work->n_blocks), work->n_blocks - 1);
+}
+
+/* @most: points of all frames that are looked at, about. */
+static void
+work_init (Work * work, ClothCameraView * v, ClothCameraAim aim, gsize most)
+{
+  const ClothRecording *r = v->recording;
+
+  *work = (Work) {
+  .view = v,.aim = aim,.n_cameras = v->sights->rig->n_cameras};
+  cloth_camera_points_init (&work->points, v,
+      (guint) (1 + (gsize) r->n * r->n_frames / most));
+  divide_time (work);
+}
+
+static void
+work_clear (Work * work)
+{
+  cloth_camera_points_clear (&work->points);
+  g_free (work->block);
+  g_free (work->dof);
+  g_free (work->n_points);
+  g_free (work->errors);
+  g_free (work->along);
+  g_free (work->way);
+  g_free (work->rest);
+  g_free (work->freedom);
+}
+
+void
+cloth_camera_find_stale (ClothCameraView * v, guint threads)
+{
+  Work work;
+  gsize n = (gsize) v->recording->n_frames * v->sights->rig->n_cameras;
+
+  work_init (&work, v, CLOTH_CAMERA_DROPS, MOST_POINTS);
+  work.along = g_new0 (gdouble, n);
+  work.way = g_new0 (gdouble, n);
+  work.rest = g_new0 (gdouble, n);
+  work.freedom = g_new0 (gdouble, n);
+  run (&work, threads, do_blocks);
+  for (gsize i = 0; i < n; i++) {
+    const gdouble gained = work.way[i] > 0. ?
+        work.along[i] * work.along[i] / work.way[i] : 0.;
+
+    v->stale[i] = work.along[i] > STALE_SHARE * work.way[i]
+        && gained * work.freedom[i] > STALE_SQUARE * (work.rest[i] - gained);
+  }
+  work_clear (&work);
+}
+
+/* Behind the cameras' columns, those of all cameras alike; the other triangle; the drops
+ * in shares of the pictures. */
+static void
+complete (ClothGapNormal * normal, guint n_cameras)
+{
+  const guint m = normal->m, own = n_cameras * N_COLUMNS;
+
+  for (guint block = 0; block < normal->n_blocks; block++) {
+    gdouble *g = normal->g + (gsize) block * m * m;
+    gdouble *s = normal->s + (gsize) block * m;
+
+    for (guint i = 0; i < own; i++)
+      for (guint k = 0; k < i; k++)
+        g[(gsize) k * m + i] = g[(gsize) i * m + k];
+    for (guint i = 0; i < own; i++)
+      for (guint k = 0; k < own; k++)
+        g[(gsize) i * m + own + k % N_COLUMNS] += g[(gsize) i * m + k];
+    for (guint i = 0; i < own; i++) {
+      const guint to = own + i % N_COLUMNS;
+
+      for (guint k = 0; k < N_COLUMNS; k++)
+        g[(gsize) to * m + own + k] += g[(gsize) i * m + own + k];
+      s[to] += s[i];
+    }
+    for (guint i = 0; i < own; i++)
+      for (guint k = 0; k < N_COLUMNS; k++)
+        g[(gsize) (own + k) * m + i] = g[(gsize) i * m + own + k];
+  }
+}
+
+/* Scales a column. */
+static void
+scale (ClothGapNormal * normal, guint column, gdouble by)
+{
+  for (guint block = 0; block < normal->n_blocks; block++) {
+    gdouble *g = normal->g + (gsize) block * normal->m * normal->m;
+
+    normal->s[(gsize) block * normal->m + column] *= by;
+    for (guint k = 0; k < normal->m; k++) {
+      g[(gsize) column * normal->m + k] *= by;
+      g[(gsize) k * normal->m + column] *= by;
+    }
+  }
+}
+
+static void
+sum_errors (const Work * work, ClothCameraErrors * errors)
+{
+  const ClothGapNormal *normal = work->normal;
+  gdouble n = 0., r = 0., dof = 0.;
+
+  *errors = (ClothCameraErrors) {
+  0.};
+  for (guint b = 0; b < work->n_blocks; b++) {
+    errors->detection += work->errors[b].detection;
+    errors->labels += work->errors[b].labels;
+    errors->triangulation += work->errors[b].triangulation;
+    n += work->n_points[b];
+    r += normal->r[b];
+    dof += work->dof[b];
+  }
+  errors->detection *= dof > 0. ? r / (dof * n) : 0.;
+  errors->labels /= MAX (n, 1.);
+  errors->triangulation /= MAX (n, 1.);
+}
+
+/**
+ * cloth_camera_view_linearise:
+ * @view: a recording beside its pictures
+ * @threads: threads to use, 0 = one for each processor; the result is the same for any
+ * @errors: (out): what detection, labels and triangulation leave
+ *
+ * Finds the normal equations of the residual: what is found less what is foretold, in multiples of the
+ * covariances, less what other places of the points would make equal. Columns are those of
+ * cloth_camera_candidates_new ().
+ *
+ * Returns: (transfer full) (nullable): the equations, in blocks of half a second; %NULL
+ *   when no point was seen by two cameras
+ * Since: 0.1
+ */
+ClothGapNormal *
+cloth_camera_view_linearise (ClothCameraView * view, guint threads,
+    ClothCameraErrors * errors)
+{
+  Work work;
+  ClothGapNormal *normal = g_new0 (ClothGapNormal, 1);
+  gdouble dof = 0.;
+
+  work_init (&work, view, CLOTH_CAMERA_FAULTS, MOST_POINTS);
+  normal->m = (work.n_cameras + 1) * N_COLUMNS;
+  normal->n_blocks = work.n_blocks;
+  normal->g = g_new0 (gdouble, (gsize) work.n_blocks * normal->m * normal->m);
+  normal->s = g_new0 (gdouble, (gsize) work.n_blocks * normal->m);
+  normal->r = g_new0 (gdouble, work.n_blocks);
+  work.normal = normal;
+  work.dof = g_new0 (gdouble, work.n_blocks);
+  work.n_points = g_new0 (gdouble, work.n_blocks);
+  work.errors = g_new0 (ClothCameraErrors, work.n_blocks);
+  run (&work, threads, do_blocks);
+  sum_errors (&work, errors);
+  for (guint b = 0; b < work.n_blocks; b++)
+    dof += work.dof[b];
+  normal->per_block = dof / work.n_blocks;
+  for (guint c = 0; c < work.n_cameras; c++) {
+    gdouble sigma, share = cloth_camera_view_stale_share (view, c, &sigma);
+
+    if (share > 0.)
+      scale (normal, c * N_COLUMNS + CLOTH_CAMERA_DROP, 1. / share);
+  }
+  complete (normal, work.n_cameras);
+  work_clear (&work);
+  if (dof > 0.)
+    return normal;
+  cloth_gap_normal_free (normal);
+  return NULL;
+}
+
+/* How far the points of a frame are from where the pictures have them; NaN where fewer than
+ * two cameras see one. */
+static void
+find_shifts (const Work * work, ClothCameraPicture * pictures, guint frame,
+    gdouble * shifts)
+{
+  cloth_camera_look (work->view, &work->points, work->aim, pictures, frame);
+  for (guint i = 0; i < work->points.n; i++, shifts += 3) {
+    ClothCameraPoint point;
+
+    shifts[0] = shifts[1] = shifts[2] = NAN;
+    if (!cloth_camera_gather (pictures, work->n_cameras, i, FALSE, &point))
+      continue;
+    memcpy (shifts, point.u, sizeof point.u);
+    cloth_camera_backward (point.a, shifts);
+  }
+}
+
+static void
+shift_blocks (gpointer data, guint begin, guint end, guint worker)
+{
+  Work *work = data;
+  const ClothRecording *r = work->view->recording;
+
+  for (guint frame = 0; frame < r->n_frames; frame++)
+    if (work->block[frame] >= begin && work->block[frame] < end)
+      find_shifts (work, work->scratch[worker], frame,
+          work->along + 3 * (gsize) frame * r->n);
+}
+
+static gdouble *
+solve (ClothCameraView * v, guint threads)
+{
+  const ClothRecording *r = v->recording;
+  Work work;
+  gdouble *shifts;
+
+  work_init (&work, v, CLOTH_CAMERA_SHIFT, G_MAXSIZE);
+  work.along = g_new (gdouble, 3 * (gsize) r->n * r->n_frames);
+  run (&work, threads, shift_blocks);
+  shifts = g_steal_pointer (&work.along);
+  work_clear (&work);
+  return shifts;
+}
+
+/**
+ * cloth_camera_view_solve_unseen:
+ * @view: a recording beside its pictures
+ * @threads: threads to use, 0 = one for each processor; the result is the same for any
+ *
+ * Puts points that the recording has not to where two or more pictures have them, the
+ * cameras being as they are taken to be.
+ *
+ * Since: 0.1
+ */
+void
+cloth_camera_view_solve_unseen (ClothCameraView * view, guint threads)
+{
+  ClothCameraView *v = view;
+  const ClothRecording *r = v->recording;
+  gsize all = (gsize) r->n * r->n_frames, unseen = 0;
+
+  for (gsize i = 0; i < all; i++)
+    if (!(r->seen[i] > 0.)) {
+      memcpy (v->y + 3 * i, r->y + 3 * i, 3 * sizeof *v->y);
+      unseen++;
+    }
+  if (!unseen)
+    return;
+  /* from where the recording bridges them, which may be far off */
+  for (guint step = 0; step < N_UNSEEN; step++) {
+    g_autofree gdouble *shifts = solve (v, threads);
+
+    for (gsize i = 0; i < all; i++)
+      for (guint k = 0; k < 3 && !(r->seen[i] > 0.); k++)
+        v->y[3 * i + k] += shifts[3 * i + k];
+  }
+}
+
+/* A point that too few cameras see goes with the others of its frame, a frame without any
+ * with the one before. */
+static void
+move_points (const ClothRecording * from, const gdouble * shifts,
+    ClothRecording * to)
+{
+  gdouble mean[3] = { 0. };
+
+  for (guint frame = 0; frame < from->n_frames; frame++) {
+    const gdouble *shift = shifts + 3 * (gsize) frame * from->n;
+    gdouble sum[3] = { 0. };
+    guint n = 0;
+
+    for (guint i = 0; i < from->n; i++)
+      if (!isnan (shift[3 * i])) {
+        n++;
+        for (guint k = 0; k < 3; k++)
+          sum[k] += shift[3 * i + k];
+      }
+    for (guint k = 0; k < 3 && n; k++)
+      mean[k] = sum[k] / n;
+    for (guint i = 0; i < 3 * from->n; i++) {
+      gsize at = 3 * (gsize) frame * from->n + i;
+
+      to->y[at] = from->y[at] + (isnan (shift[i]) ? mean[i % 3] : shift[i]);
+    }
+  }
+}
+
+/**
+ * cloth_camera_view_correct:
+ * @view: a recording beside its pictures, with what is wrong with the cameras applied
+ * @threads: threads to use, 0 = one for each processor; the result is the same for any
+ * @corrected: its recording, or a copy: the positions become what the cameras
+ *   would have made of the cloth with nothing wrong with them
+ *
+ * Solves the points again with the cameras as they are taken to be.
+ *
+ * Returns: mean square of what they move by, m²; NaN when no point was seen by two cameras
+ * Since: 0.1
+ */
+gdouble
+cloth_camera_view_correct (ClothCameraView * view, guint threads,
+    ClothRecording * corrected)
+{
+  const ClothRecording *r = view->recording;
+  g_autofree gdouble *shifts = solve (view, threads);
+  gdouble sum = 0.;
+  gsize n = 0;
+
+  for (gsize i = 0; i < (gsize) r->n * r->n_frames; i++) {
+    const gdouble *shift = shifts + 3 * i;
+
+    if (isnan (shift[0]) || !(r->seen[i] > 0.))
+      continue;
+    sum += shift[0] * shift[0] + shift[1] * shift[1] + shift[2] * shift[2];
+    n++;
+  }
+  move_points (r, shifts, corrected);
+  return n ? sum / n : NAN;
+}
+
+/**
+ * cloth_camera_view_way:
+ * @view: a recording beside its pictures, with what is wrong with the cameras applied
+ * @threads: threads to use, 0 = one for each processor; the result is the same for any
+ *
+ * Returns: mean square of what that moves points by which all their pictures place
+ *   together, m²; NaN when no point was seen by two cameras
+ * Since: 0.1
+ */
+gdouble
+cloth_camera_view_way (ClothCameraView * view, guint threads)
+{
+  Work work;
+  gdouble sum = 0., n = 0.;
+
+  work_init (&work, view, CLOTH_CAMERA_WAY, MOST_POINTS);
+  work.errors = g_new0 (ClothCameraErrors, work.n_blocks);
+  work.n_points = g_new0 (gdouble, work.n_blocks);
+  run (&work, threads, do_blocks);
+  for (guint b = 0; b < work.n_blocks; b++) {
+    sum += work.errors[b].triangulation;
+    n += work.n_points[b];
+  }
+  work_clear (&work);
+  return n > 0. ? sum / n : NAN;
+}

@@ -1,0 +1,171 @@
+/* What cameras saw against where the points are said to be.
+ *
+ * A point at x is seen by several cameras: y_c = h_c(x + dx; η) + noise. Whatever the point
+ * did, dx, is projected out of its pictures; what is left are epipolar errors, and they are
+ * linear in the cameras' small faults η (bundle adjustment's reduced camera system:
+ * R. Hartley and A. Zisserman, Multiple View Geometry, 2nd ed., A6.3).
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/camera/camera-private.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/math/linalg.h"
+#include "gst/math/pool.h"
+
+static guint
+nearest_frame (const ClothRecording * r, gdouble time_s)
+{
+  guint low = 0, high = r->n_frames - 1;
+
+  while (low < high) {
+    guint middle = (low + high) / 2;
+
+    if (r->times[middle] < time_s)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low > 0 && time_s - r->times[low - 1] < r->times[low] - time_s ?
+      low - 1 : low;
+}
+
+/* A picture belongs to the nearest frame, if that is less than half an interval away. */
+static void
+place_pictures (ClothCameraView * v)
+{
+  const ClothRecording *r = v->recording;
+
+  for (guint i = 0; i < v->sights->list->len; i++) {
+    const ClothSight *sight = &g_array_index (v->sights->list, ClothSight, i);
+    gdouble time_s = sight->time_s -
+        v->sights->rig->cameras[sight->camera].offset_s;
+    guint frame = nearest_frame (r, time_s);
+    gdouble interval = frame > 0 ? r->times[frame] - r->times[frame - 1] :
+        r->times[1] - r->times[0];
+
+    if (fabs (r->times[frame] - time_s) < 0.5 * interval)
+      *cloth_camera_picture (v, frame, sight->camera) = sight;
+  }
+}
+
+/**
+ * cloth_camera_view_new:
+ * @recording: where the points are said to be; kept by reference
+ * @sights: what was seen of it; kept by reference
+ * @threads: threads to use, 0 = one for each processor; the result is the same for any
+ *
+ * Lays pictures beside frames, and finds those that show the one before once more.
+ *
+ * Returns: (transfer full): both side by side, the cameras being as the rig says
+ * Since: 0.1
+ */
+ClothCameraView *
+cloth_camera_view_new (const ClothRecording * recording,
+    const ClothSights * sights, guint threads)
+{
+  ClothCameraView *v = g_new0 (ClothCameraView, 1);
+  gsize n = (gsize) recording->n_frames * sights->rig->n_cameras;
+
+  v->recording = recording;
+  v->sights = sights;
+  v->captures = g_new (ClothCapture, sights->rig->n_cameras);
+  v->lost = g_new (gboolean, sights->rig->n_cameras);
+  v->pictures = g_new0 (const ClothSight *, n);
+  v->stale = g_new0 (gboolean, n);
+  cloth_camera_view_reset (v);
+  place_pictures (v);
+  v->y = g_memdup2 (recording->y, 3 * (gsize) recording->n *
+      recording->n_frames * sizeof *v->y);
+  cloth_camera_view_solve_unseen (v, threads);
+  cloth_camera_find_stale (v, threads);
+  return v;
+}
+
+/**
+ * cloth_camera_view_reset:
+ * @view: a recording beside its pictures
+ *
+ * Takes the cameras to be as the rig says.
+ *
+ * Since: 0.1
+ */
+void
+cloth_camera_view_reset (ClothCameraView * view)
+{
+  for (guint c = 0; c < view->sights->rig->n_cameras; c++) {
+    cloth_capture_init (&view->captures[c], &view->sights->rig->cameras[c]);
+    view->lost[c] = FALSE;
+  }
+}
+
+/**
+ * cloth_camera_view_apply:
+ * @view: a recording beside its pictures
+ * @camera: a camera, or the number of cameras: all
+ * @effect: an effect that moves points
+ * @values: its parameters
+ *
+ * Takes cameras to be off by an effect more.
+ *
+ * Since: 0.1
+ */
+void
+cloth_camera_view_apply (ClothCameraView * view, guint camera,
+    const ClothEffect * effect, const gdouble * values)
+{
+  guint n = view->sights->rig->n_cameras;
+
+  for (guint c = camera < n ? camera : 0; c < n && (c == camera
+          || camera == n); c++) {
+    if (strcmp (effect->id, "frame_drop") == 0)
+      view->lost[c] = TRUE;
+    else
+      cloth_capture_add_effect (&view->captures[c], effect->id, values, NULL);
+  }
+}
+
+/**
+ * cloth_camera_view_free:
+ * @view: (nullable) (transfer full): what cloth_camera_view_new () made
+ *
+ * Since: 0.1
+ */
+void
+cloth_camera_view_free (ClothCameraView * view)
+{
+  if (!view)
+    return;
+  g_free (view->y);
+  g_free (view->captures);
+  g_free (view->lost);
+  g_free (view->pictures);
+  g_free (view->stale);
+  g_free (view);
+}
+
+/**
+ * cloth_camera_view_stale_share:
+ * @view: a recording beside its pictures
+ * @camera: a camera
+ * @sigma: (out): standard deviation of a share of so many pictures
+ *
+ * Returns: the share of its pictures that show the one before once more
+ * Since: 0.1
+ */
+gdouble
+cloth_camera_view_stale_share (const ClothCameraView * view, guint camera,
+    gdouble * sigma)
+{
+  guint n = 0, stale = 0;
+  gdouble share;
+
+  for (guint f = 0; f < view->recording->n_frames; f++) {
+    n += *cloth_camera_picture (view, f, camera) != NULL;
+    stale += *cloth_camera_stale (view, f, camera);
+  }
+  share = n ? (gdouble) stale / n : 0.;
+  *sigma = n ? sqrt (share * (1. - share) / n) : 0.;
+  return share;
+}

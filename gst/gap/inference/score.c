@@ -1,0 +1,458 @@
+/* Which effect: the score test (Rao 1948; Lagrange multipliers, Silvey 1959) of each
+ * candidate at its null.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/inference/score.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/gap/inference/gust.h"
+#include "gst/math/linalg.h"
+
+/* Features never count as less noisy than this share of what is expected of them. */
+#define LEAST_DISPERSION 0.1
+
+/* Gusts must be likelier by so much: a steady wind whose law is another than the model's
+ * seems to change, too. */
+#define GUST_MARGIN 10.
+
+/* P(χ² > x) with 1, 2 or 3 degrees of freedom; above, Wilson and Hilferty (1931). */
+static gdouble
+chi_square_tail (gdouble x, guint n)
+{
+  gdouble half = 0.5 * MAX (x, 0.), z;
+
+  switch (n) {
+    case 1:
+      return erfc (sqrt (half));
+    case 2:
+      return exp (-half);
+    case 3:
+      return erfc (sqrt (half)) + 2. * sqrt (half / G_PI) * exp (-half);
+    default:
+      z = (cbrt (x / n) - (1. - 2. / (9. * n))) / sqrt (2. / (9. * n));
+      return 0.5 * erfc (z * M_SQRT1_2);
+  }
+}
+
+typedef struct
+{
+  const ClothGapTest *test;
+  const ClothGapCandidate *candidate;
+  guint directions[4];
+  gdouble precisions[4];
+  gboolean one_sided;
+} Trial;
+
+static gboolean
+trial_init (Trial * trial, const ClothGapTest * test, guint candidate)
+{
+  const ClothGapCandidates *c = test->candidates;
+
+  trial->test = test;
+  trial->candidate = &g_array_index (c->list, ClothGapCandidate, candidate);
+  for (guint i = 0; i < trial->candidate->n; i++) {
+    const ClothGapDirection *d = cloth_gap_candidates_direction (c,
+        trial->candidate->first + i);
+
+    trial->directions[i] = trial->candidate->first + i;
+    trial->precisions[i] = 1. / (d->prior * d->prior);
+    trial->one_sided = trial->candidate->n == 1 && d->one_sided;
+    if (!test->sound[trial->directions[i]])
+      return FALSE;
+  }
+  return trial->candidate->n > 0;
+}
+
+/* The most probable changes from reduced equations of noise @phi: 0 where only growth is
+ * allowed. @inverse: their covariance. */
+static gboolean
+estimate (const Trial * trial, const ClothGapReduced * reduced, gdouble phi,
+    gdouble * changes, gdouble * inverse, gdouble * log_det)
+{
+  guint n = reduced->n;
+  gdouble a[16];
+
+  *log_det = 0.;
+  for (guint i = 0; i < n; i++) {
+    for (guint j = 0; j < n; j++)
+      a[i * n + j] = reduced->g[i * n + j] / phi;
+    a[i * n + i] += trial->precisions[i];
+    changes[i] = -reduced->s[i] / phi;
+  }
+  if (!cloth_cholesky_factor (n, a))
+    return FALSE;
+  for (guint i = 0; i < n; i++)
+    *log_det += 2. * log (a[i * n + i]) - log (trial->precisions[i]);
+  cloth_cholesky_solve (n, a, changes);
+  if (inverse)
+    cloth_cholesky_inverse (n, a, inverse);
+  if (trial->one_sided && changes[0] < 0.)
+    changes[0] = 0.;
+  return TRUE;
+}
+
+static gdouble
+count_features (const ClothGapTest * test, const ClothGapNormal * normal)
+{
+  gdouble count = 0.;
+
+  for (guint b = 0; b < normal->n_blocks; b++)
+    count += test->blocks[b] ? normal->per_block : 0.;
+  return count;
+}
+
+/**
+ * cloth_gap_test_dispersion:
+ * @test: what is tested
+ * @normal: normal equations of one gain
+ * @reduced: what is left of them
+ *
+ * Returns: how much more than the noise a square of the residual counts
+ * Since: 0.1
+ */
+gdouble
+cloth_gap_test_dispersion (const ClothGapTest * test,
+    const ClothGapNormal * normal, const ClothGapReduced * reduced)
+{
+  return test->overdispersion * MAX (reduced->r / count_features (test,
+          normal), LEAST_DISPERSION);
+}
+
+/**
+ * cloth_gap_test_reduce:
+ * @test: what is tested
+ * @normal: normal equations whose nuisances are those of the test
+ * @blocks: (array): which blocks count
+ * @directions: (array length=n): columns that are looked at, at most 4
+ * @n: how many
+ * @reduced: (out): what is left of them once the nuisances are projected out
+ *
+ * Returns: whether the nuisances could be solved for
+ * Since: 0.1
+ */
+gboolean
+cloth_gap_test_reduce (const ClothGapTest * test, const ClothGapNormal * normal,
+    const gboolean * blocks, const guint * directions, guint n,
+    ClothGapReduced * reduced)
+{
+  g_autofree gdouble *precisions = g_new (gdouble, test->n_nuisances + 1);
+
+  /* the equations are not divided by the noise yet */
+  for (guint i = 0; i < test->n_nuisances; i++)
+    precisions[i] = test->precisions[i] * test->overdispersion;
+  return cloth_gap_normal_reduce (normal, blocks, test->nuisances, precisions,
+      test->n_nuisances, directions, n, reduced);
+}
+
+static gboolean
+reduce (const Trial * trial, const ClothGapNormal * normal,
+    const gboolean * blocks, ClothGapReduced * reduced)
+{
+  return cloth_gap_test_reduce (trial->test, normal, blocks, trial->directions,
+      trial->candidate->n, reduced);
+}
+
+/* The nuisances, and with them the effect's @n directions, estimated from @blocks: changes
+ * of @columns, which lists them, from where the effect is @at. */
+static gboolean
+estimate_all (const Trial * trial, const ClothGapNormal * normal,
+    const gdouble * at, const gboolean * blocks, gdouble phi, guint n,
+    const guint * columns, gdouble * changes)
+{
+  const ClothGapTest *t = trial->test;
+  guint q = t->n_nuisances + n, m = normal->m;
+  g_autofree gdouble *a = g_new0 (gdouble, (gsize) q * q + 1);
+
+  memset (changes, 0, q * sizeof *changes);
+  for (guint b = 0; b < normal->n_blocks; b++) {
+    const gdouble *g = normal->g + (gsize) b * m * m;
+
+    for (guint i = 0; i < q && blocks[b]; i++) {
+      for (guint j = 0; j < q; j++)
+        a[(gsize) i * q + j] += g[(gsize) columns[i] * m + columns[j]];
+      changes[i] -= normal->s[(gsize) b * m + columns[i]];
+    }
+  }
+  for (guint i = 0; i < t->n_nuisances; i++)
+    a[(gsize) i * q + i] += t->precisions[i] * t->overdispersion;
+  for (guint k = 0; k < n; k++) {
+    const guint i = t->n_nuisances + k;
+
+    a[(gsize) i * q + i] += trial->precisions[k] * phi;
+    changes[i] -= trial->precisions[k] * phi * at[k];
+  }
+  if (!cloth_cholesky_factor (q, a))
+    return FALSE;
+  cloth_cholesky_solve (q, a, changes);
+  return !(n && trial->one_sided && at[0] + changes[t->n_nuisances] < 0.);
+}
+
+/* What the effect, which was simulated @at some place, makes better there in each block
+ * when it and the nuisances are estimated from the others, beyond what the nuisances do
+ * @without it. */
+static gdouble
+cross_validate (const Trial * trial, const ClothGapNormal * without,
+    const ClothGapNormal * with, const gdouble * at, gdouble phi,
+    gdouble * total)
+{
+  const ClothGapTest *t = trial->test;
+  guint n = trial->candidate->n, q = t->n_nuisances;
+  g_autofree gboolean *others = g_memdup2 (t->blocks,
+      with->n_blocks * sizeof *others);
+  g_autofree guint *columns = g_new (guint, q + n);
+  g_autofree gdouble *alone = g_new (gdouble, q + n);
+  g_autofree gdouble *both = g_new (gdouble, q + n);
+  gdouble gained = 0.;
+
+  for (guint i = 0; i < q + n; i++)
+    columns[i] = i < q ? t->nuisances[i] : trial->directions[i - q];
+  for (guint b = 0; b < with->n_blocks; b++) {
+    if (!t->blocks[b])
+      continue;
+    others[b] = FALSE;
+    *total += without->r[b];
+    if (estimate_all (trial, without, at, others, phi, 0, columns, alone)
+        && estimate_all (trial, with, at, others, phi, n, columns, both))
+      gained += without->r[b] - with->r[b] +
+          cloth_gap_normal_change (without, b, columns, alone, q) -
+          cloth_gap_normal_change (with, b, columns, both, q + n);
+    others[b] = TRUE;
+  }
+  return gained;
+}
+
+/**
+ * cloth_gap_test_improvement:
+ * @test: what is tested
+ * @candidate: a candidate
+ * @without: normal equations without it
+ * @with: normal equations where it was simulated
+ * @directions: (array): columns of its directions in them
+ * @at: (array): how far each is from its null there
+ * @phi: how much more than the noise a square counts
+ *
+ * Returns: as #ClothGapScore.improvement, by the derivatives there
+ * Since: 0.1
+ */
+gdouble
+cloth_gap_test_improvement (const ClothGapTest * test, guint candidate,
+    const ClothGapNormal * without, const ClothGapNormal * with,
+    const guint * directions, const gdouble * at, gdouble phi)
+{
+  Trial trial;
+  gdouble total = 0., gained;
+
+  if (!trial_init (&trial, test, candidate))
+    return 0.;
+  memcpy (trial.directions, directions,
+      trial.candidate->n * sizeof *directions);
+  gained = cross_validate (&trial, without, with, at, phi, &total);
+  return total > 0. ? gained / total : 0.;
+}
+
+/* χ² of the blocks' own estimates about the common one, and its degrees of freedom. */
+static gdouble
+heterogeneity (const Trial * trial, const ClothGapNormal * normal, gdouble phi,
+    const gdouble * common, guint * freedom)
+{
+  guint n = trial->candidate->n;
+  g_autofree gboolean *one = g_new0 (gboolean, normal->n_blocks);
+  gdouble sum = 0.;
+
+  for (guint b = 0; b < normal->n_blocks; b++) {
+    ClothGapReduced reduced;
+    gdouble a[16], rest[4] = { 0. }, x[4];
+
+    if (!trial->test->blocks[b])
+      continue;
+    one[b] = TRUE;
+    if (reduce (trial, normal, one, &reduced)) {
+      for (guint i = 0; i < n; i++) {
+        rest[i] = reduced.s[i];
+        for (guint j = 0; j < n; j++)
+          rest[i] += reduced.g[i * n + j] * common[j];
+      }
+      memcpy (a, reduced.g, sizeof a);
+      memcpy (x, rest, sizeof x);
+      if (cloth_cholesky_factor (n, a)) {
+        cloth_cholesky_solve (n, a, x);
+        for (guint i = 0; i < n; i++)
+          sum += rest[i] * x[i] / phi;
+        *freedom += n;
+      }
+    }
+    one[b] = FALSE;
+  }
+  return sum;
+}
+
+static gboolean
+run_trial (const Trial * trial, ClothGapScore * score)
+{
+  guint n = trial->candidate->n, freedom = 0;
+  gdouble gained = 0., total = 0., lm = 0., spread = 0.;
+  gdouble weight[4] = { 0. };
+  const gdouble null[4] = { 0. };
+  ClothGapTest numbers = *trial->test;  /* without chaos */
+
+  numbers.n_nuisances = numbers.n_numbers;
+  score->kept = 1.;
+  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
+    const ClothGapNormal *normal = trial->test->normals[g];
+    ClothGapReduced reduced, told;
+    gdouble phi, changes[4], inverse[16], log_det, fit = 0.;
+
+    if (!reduce (trial, normal, trial->test->blocks, &reduced)
+        || !cloth_gap_test_reduce (&numbers, normal, numbers.blocks,
+            trial->directions, n, &told))
+      return FALSE;
+    phi = cloth_gap_test_dispersion (trial->test, normal, &reduced);
+    if (!estimate (trial, &reduced, phi, changes, inverse, &log_det))
+      return FALSE;
+    for (guint i = 0; i < n; i++) {
+      fit -= 0.5 * reduced.s[i] / phi * changes[i];
+      score->kept = MIN (score->kept, told.kept[i]);
+      score->changes[i] += changes[i] / inverse[i * n + i];
+      weight[i] += 1. / inverse[i * n + i];
+    }
+    score->evidence += (fit - 0.5 * log_det) / CLOTH_STUDY_N_GAINS;
+    lm += 2. * fit / CLOTH_STUDY_N_GAINS;
+    gained += cross_validate (trial, normal, normal, null, phi, &total);
+    spread += heterogeneity (trial, normal, phi, changes, &freedom);
+  }
+  for (guint i = 0; i < n; i++) {
+    score->changes[i] /= weight[i];
+    score->sigmas[i] = sqrt (CLOTH_STUDY_N_GAINS / weight[i]);
+  }
+  score->improvement = total > 0. ? gained / total : 0.;
+  score->p_value = chi_square_tail (lm, n);
+  /* each direction's common value was fitted */
+  freedom /= CLOTH_STUDY_N_GAINS;
+  spread /= CLOTH_STUDY_N_GAINS;
+  score->constancy_p_value = freedom > n ?
+      chi_square_tail (spread, freedom - n) : NAN;
+  return TRUE;
+}
+
+static gboolean
+run_gusts (const ClothGapTest * test, const ClothGapCandidate * candidate,
+    ClothGapScore * score)
+{
+  const ClothEffectParameter *p = candidate->effect->parameters;
+  ClothGapGusts gusts;
+
+  /* the prior is that of the first parameter, the correlation time the second */
+  if (!cloth_gap_test_gusts (test, p[0].prior, exp (-test->block_s /
+              CLOTH_GAP_GUST_PARTS / p[1].null_value), &gusts))
+    return FALSE;
+  score->evidence = gusts.evidence - GUST_MARGIN;
+  score->kept = 1.;
+  score->changes[0] = gusts.intensity;
+  score->changes[1] = gusts.azimuth;
+  score->p_value = score->constancy_p_value = NAN;
+  return TRUE;
+}
+
+static gboolean
+run_candidate (const ClothGapTest * test, guint i, ClothGapScore * score)
+{
+  const ClothGapCandidate *candidate =
+      &g_array_index (test->candidates->list, ClothGapCandidate, i);
+  Trial trial;
+
+  if (cloth_gap_candidate_is_gust (candidate))
+    return run_gusts (test, candidate, score);
+  return trial_init (&trial, test, i) && run_trial (&trial, score);
+}
+
+/**
+ * cloth_gap_score_compare:
+ * @a: a #ClothGapScore
+ * @b: another
+ *
+ * Returns: which is likelier, for g_array_sort (): the likeliest first
+ * Since: 0.1
+ */
+gint
+cloth_gap_score_compare (gconstpointer a, gconstpointer b)
+{
+  const ClothGapScore *x = a, *y = b;
+
+  if (x->evidence != y->evidence)
+    return x->evidence > y->evidence ? -1 : 1;
+  return x->candidate < y->candidate ? -1 : x->candidate > y->candidate;
+}
+
+/**
+ * cloth_gap_test_run:
+ * @test: what is tested
+ *
+ * Returns: (transfer full) (element-type ClothGapScore): the best candidate of each
+ *   effect, the likeliest first; an effect of several candidates pays for the choice, one
+ *   that the nuisances can stand in for has no evidence: −∞
+ * Since: 0.1
+ */
+GArray *
+cloth_gap_test_run (const ClothGapTest * test)
+{
+  GArray *best = g_array_new (FALSE, FALSE, sizeof (ClothGapScore));
+  const GArray *list = test->candidates->list;
+
+  for (guint i = 0; i < list->len;) {
+    const ClothEffect *effect =
+        g_array_index (list, ClothGapCandidate, i).effect;
+    ClothGapScore most = {.evidence = -INFINITY };
+    guint n = 0;
+
+    for (; i < list->len
+        && g_array_index (list, ClothGapCandidate, i).effect == effect; i++) {
+      ClothGapScore score = {.candidate = i };
+
+      if (!run_candidate (test, i, &score))
+        continue;
+      n++;
+      if (score.evidence > most.evidence)
+        most = score;
+    }
+    if (!n)
+      continue;
+    most.evidence = most.kept < CLOTH_GAP_IDENTIFIABLE ? -INFINITY :
+        most.evidence - log (n);
+    g_array_append_val (best, most);
+  }
+  g_array_sort (best, cloth_gap_score_compare);
+  return best;
+}
+
+/**
+ * cloth_gap_test_cosine:
+ * @test: what is tested
+ * @one: a candidate
+ * @other: another
+ *
+ * Returns: largest cosine between what is left of their first directions' derivatives
+ *   once the nuisances are projected out, of the first gain
+ * Since: 0.1
+ */
+gdouble
+cloth_gap_test_cosine (const ClothGapTest * test, guint one, guint other)
+{
+  const GArray *list = test->candidates->list;
+  const ClothGapCandidate *a = &g_array_index (list, ClothGapCandidate, one);
+  const ClothGapCandidate *b = &g_array_index (list, ClothGapCandidate, other);
+  gdouble most = 0.;
+
+  for (guint i = 0; i < a->n; i++)
+    for (guint j = 0; j < b->n; j++) {
+      const guint directions[2] = { a->first + i, b->first + j };
+      ClothGapReduced r;
+
+      if (cloth_gap_normal_reduce (test->normals[0], test->blocks,
+              test->nuisances, test->precisions, test->n_nuisances,
+              directions, 2, &r) && r.g[0] > 0. && r.g[3] > 0.)
+        most = MAX (most, fabs (r.g[1]) / sqrt (r.g[0] * r.g[3]));
+    }
+  return most;
+}

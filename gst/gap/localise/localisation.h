@@ -1,0 +1,82 @@
+/* Which vertices a residual is significantly at, and from when on.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/fit/recording/recording.h"
+
+G_BEGIN_DECLS
+
+/**
+ * ClothGapLed:
+ * @recording: what was recorded
+ * @off: simulated less recorded while the simulation was led to it all along,
+ *   [n_frames][n][3], m; what is not seen and the first frame don't count
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  const ClothRecording *recording;
+  const gfloat *off;
+} ClothGapLed;
+
+/**
+ * ClothGapRegionOptions:
+ * @smooth_s: residuals are averaged over so long
+ * @sharpen: a force drags neighbours along: so much of the difference to each is added
+ * @gate: residuals of more than so many deviations count by their size, not their square
+ *   (Huber 1964)
+ * @null_alike: how much of the null's residual returns at random in a take that moves as
+ *   it did and had it taken off
+ * @null_other: how much of it is expected in a take that moves otherwise
+ * @doubt: so many times as much of the null must be exceeded for there to be a place
+ * @block_s: length of the blocks of the bootstrap
+ * @draws: of the bootstrap
+ * @significance: how often a place may be found where there is none
+ * @onset_ratio: square of a residual over the null's that speaks for a gap
+ * @onset_evidence: so much of the logarithms of it must add up
+ * @beginning_s: what begins earlier is there from the beginning
+ * @seed: of the bootstrap
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  gdouble smooth_s;
+  gdouble sharpen;
+  gdouble gate;
+  gdouble null_alike;
+  gdouble null_other;
+  gdouble doubt;
+  gdouble block_s;
+  guint draws;
+  gdouble significance;
+  gdouble onset_ratio;
+  gdouble onset_evidence;
+  gdouble beginning_s;
+  guint64 seed;
+} ClothGapRegionOptions;
+
+/**
+ * ClothGapRegion:
+ * @vertices: (element-type guint): where the residual is, growing; empty: nowhere
+ * @onset: frame where it begins; 0: it is there from the beginning, or nowhere
+ * @score: of the best place
+ * @threshold: what chance alone reaches
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  GArray *vertices;
+  guint onset;
+  gdouble score;
+  gdouble threshold;
+} ClothGapRegion;
+
+void cloth_gap_region_options_init (ClothGapRegionOptions * options);
+ClothGapRegion *cloth_gap_region_new (const ClothGapLed * take,
+    const ClothGapLed * nulls, guint n_nulls, gboolean alike,
+    const ClothGapRegionOptions * options);
+void cloth_gap_region_free (ClothGapRegion * region);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothGapRegion, cloth_gap_region_free)
+G_END_DECLS

@@ -1,0 +1,507 @@
+/* What a diagnosis found: its one sentence and gap.json.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/report/result.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/file/jsonwriter.h"
+
+static const gchar *const side_names[] = {
+  "physics", "clamp", "numerics", "camera", "image"
+};
+
+static const gchar *const role_names[] = {
+  "take", "baseline", "hold_out", "model"
+};
+
+static const ClothGapEffect *
+effect_at (const ClothGapResult * result, guint i)
+{
+  return &g_array_index (result->effects, ClothGapEffect, i);
+}
+
+/* The same with spaces: "air_drag" is said "air drag", and of which camera. */
+static void
+say_effect (GString * text, const ClothGapEffect * effect)
+{
+  gsize start = text->len;
+
+  g_string_append (text, effect->effect->id);
+  for (gsize i = start; i < text->len; i++) {
+    if (text->str[i] == '_')
+      text->str[i] = ' ';
+  }
+  if (effect->camera)
+    g_string_append_printf (text, " of %s", effect->camera);
+}
+
+/* "(or this, or that)": what is confused with an accepted effect. */
+static void
+say_rivals (GString * text, const ClothGapResult * result,
+    const ClothGapEffect * of)
+{
+  guint n = 0;
+
+  for (guint i = 0; of->group >= 0 && i < result->effects->len; i++) {
+    const ClothGapEffect *rival = effect_at (result, i);
+
+    if (rival == of || rival->group != of->group || rival->accepted)
+      continue;
+    g_string_append (text, n++ ? ", or " : " (or ");
+    say_effect (text, rival);
+  }
+  if (n > 0)
+    g_string_append_c (text, ')');
+}
+
+/* The names of the accepted effects; returns how many there are. */
+static guint
+say_accepted (GString * text, const ClothGapResult * result)
+{
+  guint n = 0, said = 0;
+
+  for (guint i = 0; i < result->effects->len; i++)
+    n += effect_at (result, i)->accepted ? 1 : 0;
+  for (guint i = 0; i < result->effects->len; i++) {
+    const ClothGapEffect *effect = effect_at (result, i);
+
+    if (!effect->accepted)
+      continue;
+    if (said > 0)
+      g_string_append (text, said + 1 == n ? " and " : ", ");
+    say_effect (text, effect);
+    say_rivals (text, result, effect);
+    said++;
+  }
+  return n;
+}
+
+/* With a point, whatever the language. */
+static void
+say_number (GString * text, const gchar * format, gdouble value)
+{
+  gchar digits[G_ASCII_DTOSTR_BUF_SIZE];
+
+  g_string_append (text, g_ascii_formatd (digits, sizeof digits, format,
+          value));
+}
+
+static void
+say_percent (GString * text, const ClothGapEstimate * share)
+{
+  say_number (text, "%.0f", 100 * share->value);
+  g_string_append_c (text, '%');
+  if (isfinite (share->low) && isfinite (share->high)) {
+    g_string_append (text, " [");
+    say_number (text, "%.0f", 100 * share->low);
+    g_string_append (text, ", ");
+    say_number (text, "%.0f", 100 * share->high);
+    g_string_append_c (text, ']');
+  }
+}
+
+static void
+say_length (GString * text, gdouble metres)
+{
+  say_number (text, "%.1f", 1000 * metres);
+  g_string_append (text, " mm");
+}
+
+/* ", 2.1× the floor" */
+static void
+say_floor (GString * text, const ClothGapResult * result)
+{
+  if (!(result->noise_floor.value > 0))
+    return;
+  g_string_append (text, ", ");
+  say_number (text, "%.1f", result->gap_before.value /
+      result->noise_floor.value);
+  g_string_append (text, "× the floor");
+}
+
+static void
+say_gap (GString * text, const ClothGapResult * result)
+{
+  if (!isfinite (result->gap_before.value))
+    return;
+  g_string_append (text, "Gap ");
+  say_length (text, result->gap_before.value);
+  say_floor (text, result);
+  g_string_append (text, ". ");
+}
+
+static const gchar *
+where_judged (const ClothGapResult * result)
+{
+  return result->held_out_takes ? "on an unseen take" :
+      "on held-out time blocks";
+}
+
+/* Gusts are never accepted: what they do follows from nothing. */
+static void
+say_none (GString * text, const ClothGapResult * result)
+{
+  const ClothGapEffect *first = result->effects->len ?
+      &g_array_index (result->effects, ClothGapEffect, 0) : NULL;
+
+  if (first && strcmp (first->effect->id, "gust") == 0
+      && first->probability > 0.3)
+    g_string_append_printf (text, "Gusts are the likeliest cause (%.0f%%), "
+        "which no simulation can foretell", 100. * first->probability);
+  else
+    g_string_append (text, "No effect of the library explains it");
+}
+
+/* What the accepted effects bring, on which data. */
+static void
+say_explained (GString * text, const ClothGapResult * result)
+{
+  gsize start = text->len;
+  guint n = say_accepted (text, result);
+
+  if (n > 0)
+    text->str[start] = g_ascii_toupper (text->str[start]);
+  if (n == 0) {
+    say_none (text, result);
+  } else if (isfinite (result->shrink.value)) {
+    g_string_append (text, n > 1 ? " explain " : " explains ");
+    say_percent (text, &result->shrink);
+    g_string_append_printf (text, " %s", where_judged (result));
+  } else if (isfinite (result->gap_after.value)) {
+    g_string_append (text, n > 1 ? " take it to " : " takes it to ");
+    say_length (text, result->gap_after.value);
+  } else {
+    g_string_append (text, n > 1 ? " were added" : " was added");
+  }
+}
+
+/**
+ * cloth_gap_result_summary:
+ * @result: a result
+ *
+ * Returns: (transfer full): the verdict in words, one line
+ * Since: 0.1
+ */
+gchar *
+cloth_gap_result_summary (const ClothGapResult * result)
+{
+  GString *text = g_string_new (NULL);
+
+  switch (result->verdict) {
+    case CLOTH_GAP_UNDECIDABLE:
+      g_string_append (text, "Undecidable: ");
+      g_string_append (text, result->reason ? result->reason :
+          "no reason was given.");
+      break;
+    case CLOTH_GAP_NO_GAP:
+      g_string_append (text, "No gap");
+      if (!isfinite (result->gap_before.value)) {
+        g_string_append_c (text, '.');
+        break;
+      }
+      g_string_append (text, ": ");
+      say_length (text, result->gap_before.value);
+      g_string_append_printf (text, " %s", where_judged (result));
+      say_floor (text, result);
+      g_string_append_c (text, '.');
+      break;
+    case CLOTH_GAP_EXPLAINED:
+    case CLOTH_GAP_AMBIGUOUS:
+      say_gap (text, result);
+      say_explained (text, result);
+      g_string_append (text, result->verdict == CLOTH_GAP_AMBIGUOUS ?
+          "; these data can't tell which." : ".");
+      break;
+    case CLOTH_GAP_UNEXPLAINED:
+      say_gap (text, result);
+      say_explained (text, result);
+      if (isfinite (result->gap_after.value)) {
+        g_string_append (text, "; ");
+        say_length (text, result->gap_after.value);
+        g_string_append (text, " remain that no effect of the library "
+            "explains");
+      }
+      g_string_append_c (text, '.');
+      if (result->reason)
+        g_string_append_printf (text, " %s", result->reason);
+      break;
+  }
+  return g_string_free (text, FALSE);
+}
+
+static void
+put_estimate (ClothJsonWriter * writer, const gchar * key,
+    const ClothGapEstimate * estimate)
+{
+  const gdouble interval[] = { estimate->low, estimate->high };
+
+  cloth_json_writer_begin_object (writer, key);
+  cloth_json_writer_number (writer, "value", estimate->value);
+  if (isfinite (interval[0]) && isfinite (interval[1]))
+    cloth_json_writer_numbers (writer, "interval", interval, 2);
+  else
+    cloth_json_writer_numbers (writer, "interval", NULL, 0);
+  cloth_json_writer_end_object (writer);
+}
+
+static void
+put_effect (ClothJsonWriter * writer, const ClothGapEffect * item)
+{
+  const ClothEffect *effect = item->effect;
+
+  cloth_json_writer_begin_object (writer, NULL);
+  cloth_json_writer_string (writer, "name", effect->id);
+  cloth_json_writer_string (writer, "side", side_names[effect->side]);
+  cloth_json_writer_string (writer, "camera", item->camera);
+  cloth_json_writer_number (writer, "probability", item->probability);
+  cloth_json_writer_boolean (writer, "accepted", item->accepted);
+  cloth_json_writer_begin_array (writer, "parameters");
+  for (guint i = 0; i < effect->n_parameters; i++) {
+    cloth_json_writer_begin_object (writer, NULL);
+    cloth_json_writer_string (writer, "name", effect->parameters[i].name);
+    cloth_json_writer_number (writer, "value", item->values[i]);
+    cloth_json_writer_number (writer, "sigma", item->sigmas[i]);
+    cloth_json_writer_string (writer, "unit", effect->parameters[i].unit);
+    cloth_json_writer_end_object (writer);
+  }
+  cloth_json_writer_end_array (writer);
+  cloth_json_writer_number (writer, "p_value", item->p_value);
+  cloth_json_writer_number (writer, "constancy_p_value",
+      item->constancy_p_value);
+  put_estimate (writer, "shrink", &item->shrink);
+  if (item->group >= 0)
+    cloth_json_writer_count (writer, "group", (guint64) item->group);
+  else
+    cloth_json_writer_string (writer, "group", NULL);
+  cloth_json_writer_boolean (writer, "refitted", item->refitted);
+  cloth_json_writer_end_object (writer);
+}
+
+static void
+put_groups (ClothJsonWriter * writer, const ClothGapResult * result)
+{
+  cloth_json_writer_begin_array (writer, "groups");
+  for (guint g = 0; g < result->groups->len; g++) {
+    const ClothGapGroup *group = &g_array_index (result->groups,
+        ClothGapGroup, g);
+
+    cloth_json_writer_begin_object (writer, NULL);
+    cloth_json_writer_begin_array (writer, "effects");
+    for (guint i = 0; i < result->effects->len; i++) {
+      if (effect_at (result, i)->group == (gint) g)
+        cloth_json_writer_string (writer, NULL,
+            effect_at (result, i)->effect->id);
+    }
+    cloth_json_writer_end_array (writer);
+    cloth_json_writer_string (writer, "experiment", group->experiment);
+    cloth_json_writer_number (writer, "evidence", group->evidence);
+    cloth_json_writer_end_object (writer);
+  }
+  cloth_json_writer_end_array (writer);
+}
+
+static void
+put_untested (ClothJsonWriter * writer, const ClothGapResult * result)
+{
+  cloth_json_writer_begin_array (writer, "untested");
+  for (guint i = 0; i < result->untested->len; i++) {
+    const ClothGapUntested *item = &g_array_index (result->untested,
+        ClothGapUntested, i);
+
+    cloth_json_writer_begin_object (writer, NULL);
+    cloth_json_writer_string (writer, "name", item->effect->id);
+    cloth_json_writer_string (writer, "side", side_names[item->effect->side]);
+    cloth_json_writer_string (writer, "reason", item->reason);
+    cloth_json_writer_end_object (writer);
+  }
+  cloth_json_writer_end_array (writer);
+}
+
+static void
+put_bands (ClothJsonWriter * writer, const gchar * key, const gchar * from,
+    const gchar * to, const GArray * bands)
+{
+  cloth_json_writer_begin_array (writer, key);
+  for (guint i = 0; i < bands->len; i++) {
+    const ClothGapBand *band = &g_array_index (bands, ClothGapBand, i);
+
+    cloth_json_writer_begin_object (writer, NULL);
+    cloth_json_writer_number (writer, from, band->from);
+    cloth_json_writer_number (writer, to, band->to);
+    cloth_json_writer_number (writer, "share", band->share);
+    cloth_json_writer_number (writer, "after", band->after);
+    cloth_json_writer_number (writer, "over_floor", band->over_floor);
+    cloth_json_writer_end_object (writer);
+  }
+  cloth_json_writer_end_array (writer);
+}
+
+static void
+put_region (ClothJsonWriter * writer, const GArray * region)
+{
+  if (!region) {
+    cloth_json_writer_string (writer, "region", NULL);
+    return;
+  }
+  cloth_json_writer_begin_array (writer, "region");
+  for (guint i = 0; i < region->len; i++)
+    cloth_json_writer_count (writer, NULL, g_array_index (region, guint, i));
+  cloth_json_writer_end_array (writer);
+}
+
+static void
+put_where (ClothJsonWriter * writer, const ClothGapResult * result)
+{
+  static const gchar *const directions[] = { "warp", "weft", "normal" };
+
+  cloth_json_writer_begin_object (writer, "where");
+  cloth_json_writer_string (writer, "take", result->playback.take);
+  cloth_json_writer_number (writer, "onset_s", result->onset_s);
+  put_region (writer, result->region);
+  cloth_json_writer_begin_object (writer, "directions");
+  for (guint i = 0; i < 3; i++)
+    cloth_json_writer_number (writer, directions[i], result->directions[i]);
+  cloth_json_writer_end_object (writer);
+  cloth_json_writer_number (writer, "static", result->still);
+  put_bands (writer, "bands", "from_hz", "to_hz", result->bands);
+  put_bands (writer, "waves", "from_per_m", "to_per_m", result->waves);
+  cloth_json_writer_begin_array (writer, "stages");
+  for (guint i = 0; i < result->stages->len; i++) {
+    const ClothGapStage *stage = &g_array_index (result->stages,
+        ClothGapStage, i);
+
+    cloth_json_writer_begin_object (writer, NULL);
+    cloth_json_writer_string (writer, "name", stage->name);
+    cloth_json_writer_number (writer, "share", stage->share);
+    cloth_json_writer_string (writer, "reason", stage->reason);
+    cloth_json_writer_end_object (writer);
+  }
+  cloth_json_writer_end_array (writer);
+  cloth_json_writer_numbers (writer, "vertices", result->vertices,
+      result->n_vertices);
+  cloth_json_writer_numbers (writer, "gained", result->gained,
+      result->n_vertices);
+  cloth_json_writer_numbers (writer, "frames", result->frames,
+      result->n_frames);
+  cloth_json_writer_end_object (writer);
+}
+
+static void
+put_provenance (ClothJsonWriter * writer, const ClothGapResult * result)
+{
+  cloth_json_writer_begin_array (writer, "inputs");
+  for (guint i = 0; i < result->inputs->len; i++) {
+    const ClothGapInput *item = &g_array_index (result->inputs,
+        ClothGapInput, i);
+
+    cloth_json_writer_begin_object (writer, NULL);
+    cloth_json_writer_string (writer, "role", role_names[item->role]);
+    cloth_json_writer_string (writer, "name", item->name);
+    cloth_json_writer_string (writer, "sha256", item->sha256);
+    cloth_json_writer_end_object (writer);
+  }
+  cloth_json_writer_end_array (writer);
+  cloth_json_writer_begin_array (writer, "thresholds");
+  for (guint i = 0; i < result->thresholds->len; i++) {
+    const ClothGapThreshold *item = &g_array_index (result->thresholds,
+        ClothGapThreshold, i);
+
+    cloth_json_writer_begin_object (writer, NULL);
+    cloth_json_writer_string (writer, "name", item->name);
+    cloth_json_writer_number (writer, "value", item->value);
+    cloth_json_writer_string (writer, "unit", item->unit);
+    cloth_json_writer_end_object (writer);
+  }
+  cloth_json_writer_end_array (writer);
+  cloth_json_writer_begin_array (writer, "failures");
+  for (guint i = 0; i < result->failures->len; i++) {
+    const ClothGapNote *item = &g_array_index (result->failures,
+        ClothGapNote, i);
+
+    cloth_json_writer_begin_object (writer, NULL);
+    cloth_json_writer_string (writer, "run", item->name);
+    cloth_json_writer_string (writer, "what", item->text);
+    cloth_json_writer_end_object (writer);
+  }
+  cloth_json_writer_end_array (writer);
+  cloth_json_writer_number (writer, "seconds", result->seconds);
+  cloth_json_writer_count (writer, "simulations", result->simulations);
+  cloth_json_writer_count (writer, "seed", result->seed);
+  cloth_json_writer_begin_array (writer, "versions");
+  for (guint i = 0; i < result->versions->len; i++) {
+    const ClothGapNote *item = &g_array_index (result->versions,
+        ClothGapNote, i);
+
+    cloth_json_writer_begin_object (writer, NULL);
+    cloth_json_writer_string (writer, "name", item->name);
+    cloth_json_writer_string (writer, "version", item->text);
+    cloth_json_writer_end_object (writer);
+  }
+  cloth_json_writer_end_array (writer);
+}
+
+/**
+ * cloth_gap_result_to_json:
+ * @result: a result
+ *
+ * docs/gap.schema.json describes it. `<`, `>` and `&` are written as escapes.
+ *
+ * Returns: (transfer full): the text of gap.json
+ * Since: 0.1
+ */
+gchar *
+cloth_gap_result_to_json (const ClothGapResult * result)
+{
+  g_autoptr (ClothJsonWriter) writer = cloth_json_writer_new ();
+  g_autofree gchar *summary = cloth_gap_result_summary (result);
+
+  cloth_json_writer_begin_object (writer, NULL);
+  cloth_json_writer_count (writer, "version", 1);
+  cloth_json_writer_string (writer, "verdict",
+      cloth_gap_verdict_name (result->verdict));
+  cloth_json_writer_string (writer, "summary", summary);
+  cloth_json_writer_string (writer, "reason", result->reason);
+  cloth_json_writer_begin_array (writer, "notes");
+  for (guint i = 0; i < result->notes->len; i++)
+    cloth_json_writer_string (writer, NULL, result->notes->pdata[i]);
+  cloth_json_writer_end_array (writer);
+  put_estimate (writer, "gap_before", &result->gap_before);
+  put_estimate (writer, "gap_after", &result->gap_after);
+  put_estimate (writer, "noise_floor", &result->noise_floor);
+  put_estimate (writer, "shrink", &result->shrink);
+  cloth_json_writer_number (writer, "rest_p_value", result->rest_p_value);
+  cloth_json_writer_string (writer, "held_out",
+      result->held_out_takes ? "takes" : "blocks");
+  cloth_json_writer_begin_array (writer, "effects");
+  for (guint i = 0; i < result->effects->len; i++)
+    put_effect (writer, effect_at (result, i));
+  cloth_json_writer_end_array (writer);
+  put_groups (writer, result);
+  put_untested (writer, result);
+  put_where (writer, result);
+  put_provenance (writer, result);
+  cloth_json_writer_end_object (writer);
+  return cloth_json_writer_finish (writer);
+}
+
+/**
+ * cloth_gap_result_write_json:
+ * @result: a result
+ * @path: where gap.json shall be
+ * @error: #GIOErrorEnum
+ *
+ * The file appears whole or not at all.
+ *
+ * Returns: %TRUE when it is there
+ * Since: 0.1
+ */
+gboolean
+cloth_gap_result_write_json (const ClothGapResult * result,
+    const gchar * path, GError ** error)
+{
+  g_autofree gchar *text = cloth_gap_result_to_json (result);
+
+  return cloth_file_write_text (path, text, error);
+}

@@ -1,0 +1,317 @@
+/* What a diagnosis found: making it and filling it.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/report/result.h"
+
+#include <math.h>
+
+static const ClothGapEstimate unknown = { NAN, NAN, NAN };
+
+static const gchar *const verdict_names[] = {
+  "undecidable", "no_gap", "explained", "ambiguous", "unexplained"
+};
+
+static void
+clear_group (gpointer item)
+{
+  g_free (((ClothGapGroup *) item)->experiment);
+}
+
+static void
+clear_untested (gpointer item)
+{
+  g_free (((ClothGapUntested *) item)->reason);
+}
+
+static void
+clear_stage (gpointer item)
+{
+  g_free (((ClothGapStage *) item)->name);
+  g_free (((ClothGapStage *) item)->reason);
+}
+
+static void
+clear_note (gpointer item)
+{
+  g_free (((ClothGapNote *) item)->name);
+  g_free (((ClothGapNote *) item)->text);
+}
+
+static void
+clear_input (gpointer item)
+{
+  g_free (((ClothGapInput *) item)->name);
+  g_free (((ClothGapInput *) item)->sha256);
+}
+
+static void
+clear_threshold (gpointer item)
+{
+  g_free (((ClothGapThreshold *) item)->name);
+  g_free (((ClothGapThreshold *) item)->unit);
+}
+
+static GArray *
+new_list (gsize size, GDestroyNotify clear)
+{
+  GArray *list = g_array_new (FALSE, TRUE, (guint) size);
+
+  if (clear)
+    g_array_set_clear_func (list, clear);
+  return list;
+}
+
+/**
+ * cloth_gap_result_new:
+ *
+ * Returns: (transfer full): a result that knows nothing: undecidable, without effects
+ * Since: 0.1
+ */
+ClothGapResult *
+cloth_gap_result_new (void)
+{
+  ClothGapResult *result = g_new0 (ClothGapResult, 1);
+
+  result->gap_before = result->gap_after = result->noise_floor = unknown;
+  result->shrink = unknown;
+  result->rest_p_value = result->onset_s = result->still = NAN;
+  for (guint i = 0; i < 3; i++)
+    result->directions[i] = NAN;
+  result->effects = new_list (sizeof (ClothGapEffect), NULL);
+  result->groups = new_list (sizeof (ClothGapGroup), clear_group);
+  result->untested = new_list (sizeof (ClothGapUntested), clear_untested);
+  result->bands = new_list (sizeof (ClothGapBand), NULL);
+  result->waves = new_list (sizeof (ClothGapBand), NULL);
+  result->stages = new_list (sizeof (ClothGapStage), clear_stage);
+  result->versions = new_list (sizeof (ClothGapNote), clear_note);
+  result->inputs = new_list (sizeof (ClothGapInput), clear_input);
+  result->thresholds = new_list (sizeof (ClothGapThreshold), clear_threshold);
+  result->notes = g_ptr_array_new_with_free_func (g_free);
+  result->failures = new_list (sizeof (ClothGapNote), clear_note);
+  return result;
+}
+
+/**
+ * cloth_gap_result_add_note:
+ * @result: a result
+ * @note: a sentence
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_result_add_note (ClothGapResult * result, const gchar * note)
+{
+  g_ptr_array_add (result->notes, g_strdup (note));
+}
+
+/**
+ * cloth_gap_result_add_effect:
+ * @result: a result
+ * @effect: an effect that was tested
+ *
+ * Effects are added in the order of their rank.
+ *
+ * Returns: (transfer none): what was found of it, all unknown yet; valid until the next
+ *   effect is added
+ * Since: 0.1
+ */
+ClothGapEffect *
+cloth_gap_result_add_effect (ClothGapResult * result,
+    const ClothEffect * effect)
+{
+  ClothGapEffect item = {.effect = effect,.probability = NAN,.p_value = NAN,
+    .constancy_p_value = NAN,.shrink = unknown,.group = -1
+  };
+
+  for (guint i = 0; i < CLOTH_EFFECT_MAX_PARAMETERS; i++)
+    item.values[i] = item.sigmas[i] = NAN;
+  g_array_append_val (result->effects, item);
+  return &g_array_index (result->effects, ClothGapEffect,
+      result->effects->len - 1);
+}
+
+/**
+ * cloth_gap_result_add_group:
+ * @result: a result
+ * @experiment: (nullable): what would tell its effects apart, a sentence
+ * @evidence: what that is expected to bring, log Bayes factor; NaN: not known
+ *
+ * Its index is one less than the number of groups.
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_result_add_group (ClothGapResult * result, const gchar * experiment,
+    gdouble evidence)
+{
+  ClothGapGroup item = { g_strdup (experiment), evidence };
+
+  g_array_append_val (result->groups, item);
+}
+
+/**
+ * cloth_gap_result_add_untested:
+ * @result: a result
+ * @effect: an effect that could not be tested
+ * @reason: why, and what would help, a sentence
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_result_add_untested (ClothGapResult * result,
+    const ClothEffect * effect, const gchar * reason)
+{
+  ClothGapUntested item = { effect, g_strdup (reason) };
+
+  g_array_append_val (result->untested, item);
+}
+
+/**
+ * cloth_gap_result_add_stage:
+ * @result: a result
+ * @name: of the stage
+ * @share: of the gap's variance; NaN: it could not be measured
+ * @reason: (nullable): why it could not, a sentence
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_result_add_stage (ClothGapResult * result, const gchar * name,
+    gdouble share, const gchar * reason)
+{
+  ClothGapStage item = { g_strdup (name), share, g_strdup (reason) };
+
+  g_array_append_val (result->stages, item);
+}
+
+/**
+ * cloth_gap_result_add_version:
+ * @result: a result
+ * @name: of what
+ * @version: its version
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_result_add_version (ClothGapResult * result, const gchar * name,
+    const gchar * version)
+{
+  ClothGapNote item = { g_strdup (name), g_strdup (version) };
+
+  g_array_append_val (result->versions, item);
+}
+
+/**
+ * cloth_gap_result_add_input:
+ * @result: a result
+ * @role: what it was used for
+ * @name: its name
+ * @sha256: (nullable): hash of its contents, in hexadecimal digits
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_result_add_input (ClothGapResult * result, ClothGapRole role,
+    const gchar * name, const gchar * sha256)
+{
+  ClothGapInput item = { role, g_strdup (name), g_strdup (sha256) };
+
+  g_array_append_val (result->inputs, item);
+}
+
+/**
+ * cloth_gap_result_add_threshold:
+ * @result: a result
+ * @name: of the threshold
+ * @value: its value
+ * @unit: in the notation of the SI, "1" for a ratio
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_result_add_threshold (ClothGapResult * result, const gchar * name,
+    gdouble value, const gchar * unit)
+{
+  ClothGapThreshold item = { g_strdup (name), value, g_strdup (unit) };
+
+  g_array_append_val (result->thresholds, item);
+}
+
+/**
+ * cloth_gap_result_add_failure:
+ * @result: a result
+ * @run: which simulation failed
+ * @what: what happened to it
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_result_add_failure (ClothGapResult * result, const gchar * run,
+    const gchar * what)
+{
+  ClothGapNote item = { g_strdup (run), g_strdup (what) };
+
+  g_array_append_val (result->failures, item);
+}
+
+/**
+ * cloth_gap_verdict_name:
+ * @verdict: a verdict
+ *
+ * Returns: (transfer none): its name in gap.json
+ * Since: 0.1
+ */
+const gchar *
+cloth_gap_verdict_name (ClothGapVerdict verdict)
+{
+  g_return_val_if_fail (verdict < G_N_ELEMENTS (verdict_names), NULL);
+  return verdict_names[verdict];
+}
+
+/**
+ * cloth_gap_result_free:
+ * @result: (transfer full) (nullable): a result
+ *
+ * Since: 0.1
+ */
+void
+cloth_gap_result_free (ClothGapResult * result)
+{
+  if (!result)
+    return;
+  g_free (result->reason);
+  g_ptr_array_unref (result->notes);
+  g_array_unref (result->effects);
+  g_array_unref (result->groups);
+  g_array_unref (result->untested);
+  g_free (result->vertices);
+  g_free (result->gained);
+  g_free (result->frames);
+  g_clear_pointer (&result->region, g_array_unref);
+  g_array_unref (result->bands);
+  g_array_unref (result->waves);
+  g_array_unref (result->stages);
+  g_array_unref (result->versions);
+  g_array_unref (result->inputs);
+  g_array_unref (result->thresholds);
+  g_array_unref (result->failures);
+  g_free (result->series.times);
+  g_free (result->series.before);
+  g_free (result->series.after);
+  g_free (result->series.null_low);
+  g_free (result->series.null_high);
+  g_free (result->spectrum.frequencies);
+  g_free (result->spectrum.waves);
+  g_free (result->spectrum.before);
+  g_free (result->spectrum.after);
+  g_free (result->spectrum.null);
+  g_free (result->playback.take);
+  cloth_topology_free (result->playback.topology);
+  g_free (result->playback.times);
+  g_free (result->playback.recorded);
+  g_free (result->playback.before);
+  g_free (result->playback.after);
+  g_free (result->playback.sigma);
+  cloth_model_free (result->model);
+  g_free (result);
+}

@@ -1,0 +1,505 @@
+/* Judging: how large the gap is without and with the effects, and what to say of it.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <math.h>
+#include <string.h>
+
+#include "gst/fit/recording/interpolation.h"
+#include "gst/gap/diagnosis.h"
+#include "gst/gap/report/fill.h"
+#include "gst/effect/effect.h"
+
+/* Gain of the observer that leads up to them, 1/s². */
+#define WINDOW_GAIN 1600.
+/* Variance of a gap that is hardly larger, over that before. */
+#define HARDLY_LARGER 1.05
+/* What parts faults of cameras that look alike. */
+static const gchar *const capture_sentence =
+    "Film a board that moves with all cameras, once more with half the "
+    "exposure time, and at rest: clocks, shutters and exposures show in motion "
+    "only, lenses and places at rest too.";
+/* A share of what is above the floor is told if that is this share of all. */
+#define LEAST_ABOVE_SHARE 0.1
+/* Of the bootstrap. */
+#define N_DRAWS 1000
+
+/* The windows that judge: those that end in a held-out block, or all. */
+static gboolean *
+judging_windows (const ClothDiagnosis * d, const ClothGapExtent * extent)
+{
+  const ClothGapFeatures *f = cloth_diagnosis_study (d, 0)->features;
+  gboolean *windows = g_new0 (gboolean, extent->n_windows);
+  gboolean any = FALSE;
+
+  for (guint frame = 1, block = 0; frame < extent->n_frames; frame++) {
+    while (block + 1 < f->n_blocks && frame >= f->first[block + 1])
+      block++;
+    windows[extent->window[frame]] = cloth_diagnosis_is_held_out (d, block);
+  }
+  for (guint w = 0; w < extent->n_windows; w++)
+    any |= windows[w];
+  for (guint w = 0; w < extent->n_windows && !any; w++)
+    windows[w] = TRUE;
+  return windows;
+}
+
+/* The middle 95% of @n draws that are @stride apart. */
+static ClothGapEstimate
+middle (gdouble value, const gdouble * draws, guint n, guint stride)
+{
+  ClothGapEstimate e = { value };
+  g_autoptr (GArray) sorted = g_array_new (FALSE, FALSE, sizeof (gdouble));
+
+  for (guint i = 0; i < n; i++)
+    g_array_append_val (sorted, draws[(gsize) i * stride]);
+  g_array_sort (sorted, cloth_recording_compare_numbers);
+  e.low = g_array_index (sorted, gdouble, n / 40);
+  e.high = g_array_index (sorted, gdouble, n - 1 - n / 40);
+  return e;
+}
+
+/* A length from the draws of its square. */
+static ClothGapEstimate
+estimate (gdouble square, const gdouble * draws, guint n, guint stride)
+{
+  ClothGapEstimate e = middle (sqrt (square), draws, n, stride);
+
+  e.low = sqrt (MAX (0., e.low));
+  e.high = sqrt (MAX (0., e.high));
+  return e;
+}
+
+/* Each model is let go in windows, and led to the start of each. */
+static ClothGapExtent **
+measure (ClothDiagnosis * d, const ClothRecording * r,
+    const ClothModel * const *models, guint n, GError ** error)
+{
+  d->study.simulations += 2 * n;
+  return cloth_gap_extents_new (r, models, n, WINDOW_GAIN,
+      CLOTH_DIAGNOSIS_WINDOW_S, &d->study.rollout, error);
+}
+
+/**
+ * cloth_diagnosis_find_gaps:
+ * @d: a diagnosis
+ * @begin: first recording
+ * @end: one behind the last
+ * @models: (array length=n): models
+ * @n: how many
+ * @squares: (out) (array length=n): sums over the recordings of their squared gaps, m²;
+ *   not finite where a simulation diverges
+ * @error: #ClothSimError
+ *
+ * Returns: whether it worked
+ */
+gboolean
+cloth_diagnosis_find_gaps (ClothDiagnosis * d, guint begin, guint end,
+    const ClothModel * const *models, guint n, gdouble * squares,
+    GError ** error)
+{
+  memset (squares, 0, n * sizeof *squares);
+  for (guint i = begin; i < end; i++) {
+    ClothGapExtent **extents = measure (d, cloth_diagnosis_recording (d, i),
+        models, n, error);
+
+    if (!extents)
+      return FALSE;
+    for (guint k = 0; k < n; k++)
+      squares[k] += extents[k]->sound ?
+          cloth_gap_extent_square (extents[k], NULL) : INFINITY;
+    cloth_gap_extents_free (extents, n);
+  }
+  return TRUE;
+}
+
+/* Without a baseline the floor is what the two force models differ by, and the noise:
+ * NaN on errors. */
+static gdouble
+own_floor (ClothDiagnosis * d, guint judge, const ClothGapExtent * extent,
+    ClothGapExtent ** null, GError ** error)
+{
+  const ClothRecording *r = cloth_diagnosis_recording (d, judge);
+  g_autoptr (ClothModel) other = cloth_diagnosis_other_model (d);
+  const ClothModel *models[1] = { other };
+  ClothGapExtent **extents;
+  gdouble sum = 0.;
+  gsize all = (gsize) r->n * r->n_frames, seen = 0;
+
+  extents = measure (d, r, models, 1, error);
+  if (!extents)
+    return NAN;
+  for (gsize i = 0; i < 3 * all && extents[0]->sound; i++) {
+    gdouble off = extents[0]->positions[i] - extent->positions[i];
+
+    if (isnan (extent->squares[i / 3]))
+      continue;
+    sum += off * off;
+    seen += i % 3 == 0;
+  }
+  if (extents[0]->sound) {
+    *null = extents[0];
+    cloth_gap_extent_subtract (*null, extent, r);
+    g_free (extents);
+  } else
+    cloth_gap_extents_free (extents, 1);
+  return 3. * r->sigma * r->sigma + sum / MAX (seen, 1);
+}
+
+/* What stands for a simulation that lacks nothing. */
+static void
+keep_null (ClothDiagnosis * d, ClothGapExtent * null, guint recording)
+{
+  d->nulls[d->n_nulls] = null;
+  d->null_recordings[d->n_nulls++] = recording;
+}
+
+/* The floor of the simulator's own error: what the baseline shows, and on takes that move
+ * otherwise what the two force models differ by there, if that is more. Its square goes
+ * into @draws, too. */
+static gboolean
+measure_floor (ClothDiagnosis * d, guint judge, const ClothGapExtent * extent,
+    gdouble * draws, GError ** error)
+{
+  const ClothModel *models[1] = { d->model };
+  ClothGapEstimate *result = &d->result->noise_floor;
+  ClothGapExtent **floor, *other = NULL;
+  guint baseline = d->n_takes;
+  const ClothStudy *signature = cloth_diagnosis_study (d, 0)->signature;
+  gdouble square;
+
+  /* of the first take's motion, if there is one */
+  for (guint i = d->n_takes; signature && i < d->studies->len; i++)
+    if (cloth_diagnosis_study (d, i) == signature)
+      baseline = i;
+  *result = (ClothGapEstimate) {
+  0., NAN, NAN};
+  if (d->options->n_baselines) {
+    floor = measure (d, cloth_diagnosis_recording (d, baseline), models, 1,
+        error);
+    if (!floor)
+      return FALSE;
+    square = cloth_gap_extent_square (floor[0], NULL);
+    cloth_gap_extents_interval (floor, 1, NULL, d->options->seed, N_DRAWS,
+        draws);
+    *result = estimate (square, draws, N_DRAWS, 1);
+    if (floor[0]->sound)
+      d->floor = g_steal_pointer (&floor[0]->energy);
+    if (floor[0]->sound)
+      keep_null (d, g_steal_pointer (&floor[0]), baseline);
+    d->null_alike = signature && d->n_nulls;
+    cloth_gap_extents_free (floor, 1);
+    if (cloth_diagnosis_has_signatures (d))
+      return TRUE;
+  }
+  square = own_floor (d, judge, extent, &other, error);
+  if (sqrt (square) > result->value) {
+    *result = (ClothGapEstimate) {
+    sqrt (square), NAN, NAN};
+    for (guint i = 0; i < N_DRAWS; i++)
+      draws[i] = square;
+    d->floor_null = d->n_nulls;
+  }
+  if (other)
+    keep_null (d, other, judge);
+  return !isnan (square);
+}
+
+static gdouble
+share_gone (const ClothGapResult * result, gdouble before, gdouble after)
+{
+  gdouble floor = result->noise_floor.value * result->noise_floor.value;
+
+  return before - floor > LEAST_ABOVE_SHARE * before ?
+      (before - after) / (before - floor) : NAN;
+}
+
+/* Of what is above the floor, the share that went; draws are @stride apart. */
+static void
+fill_shrink (ClothGapResult * result, gdouble before, gdouble after,
+    const gdouble * draws_before, const gdouble * draws_after, guint stride)
+{
+  g_autofree gdouble *shrinks = g_new (gdouble, N_DRAWS);
+  gdouble floor = result->noise_floor.value * result->noise_floor.value;
+
+  if (!(before - floor > LEAST_ABOVE_SHARE * before))
+    return;
+  /* of draws that are all floor no share can be told either: they count as if they were as
+   * little above it as one that can */
+  for (guint i = 0; i < N_DRAWS; i++) {
+    gdouble b = draws_before[i * stride], a = draws_after[i * stride];
+
+    shrinks[i] = (b - a) / MAX (b - floor, LEAST_ABOVE_SHARE * before);
+  }
+  result->shrink = middle (share_gone (result, before, after), shrinks,
+      N_DRAWS, 1);
+}
+
+/* How often a rest is no more than the floor, each drawn anew; draws of the rest are
+ * @stride apart. The observed ones count as one draw more (Davison and Hinkley 1997, 4.2). */
+static gdouble
+find_rest_p_value (const gdouble * rest, guint stride, const gdouble * floor)
+{
+  guint count = 0;
+
+  for (guint i = 0; i < N_DRAWS; i++)
+    for (guint j = 0; j < N_DRAWS; j++)
+      count += rest[i * stride] <= floor[j];
+  return (1. + count) / (1. + (gdouble) N_DRAWS * N_DRAWS);
+}
+
+/* Whether an effect is large enough to speak of. Where a signature is taken off, the
+ * evidence has said so of the first: the gap holds the simulator's own error too, which
+ * hides it where it is no larger. */
+static gboolean
+matters (const ClothDiagnosis * d, gboolean first, gdouble before,
+    gdouble after)
+{
+  const gdouble floor = d->result->noise_floor.value;
+
+  return after < (1. - CLOTH_DIAGNOSIS_LEAST_SHRINK) * before
+      || (first && cloth_diagnosis_has_signatures (d)
+      && after < HARDLY_LARGER * before
+      && after < CLOTH_DIAGNOSIS_BAND * floor * floor);
+}
+
+/* Where the gap of the first take lies, and what is needed to say more of it. */
+static void
+keep_first (ClothDiagnosis * d, ClothGapExtent * before, ClothGapExtent * after)
+{
+  cloth_gap_extent_fill (before, after, cloth_diagnosis_recording (d, 0),
+      d->takes[0], d->result);
+  if (before->sound) {
+    d->before = g_steal_pointer (&before->energy);
+    d->led = g_steal_pointer (&before->led);
+  }
+  if (after && after->sound)
+    d->after = g_steal_pointer (&after->energy);
+}
+
+/* Puts the positions that the cameras gave with their faults into a recording, or takes
+ * them out again. */
+static void
+swap_filmed (ClothDiagnosis * d, guint i)
+{
+  ClothRecording *r = cloth_diagnosis_recording (d, i);
+  gdouble *y = r->y;
+
+  r->y = d->filmed[i];
+  d->filmed[i] = y;
+  cloth_recording_bridge (r);
+  cloth_recording_differentiate (r);
+}
+
+/* The models' distances from a recording: the first one's from what the cameras gave, and
+ * where they had faults once more and all others' from what they would have given. */
+static ClothGapExtent **
+measure_models (ClothDiagnosis * d, guint i, const ClothModel * const *models,
+    guint n, GError ** error)
+{
+  const ClothRecording *r = cloth_diagnosis_recording (d, i);
+  ClothGapExtent **all = NULL, **others;
+
+  if (!d->filmed[i])
+    return measure (d, r, models, n, error);
+  swap_filmed (d, i);
+  all = measure (d, r, models, 1, error);
+  swap_filmed (d, i);
+  if (!all)
+    return NULL;
+  others = measure (d, r, models + 1, n - 1, error);
+  if (!others) {
+    cloth_gap_extents_free (all, 1);
+    return NULL;
+  }
+  all = g_renew (ClothGapExtent *, all, n);
+  memcpy (all + 1, others, (n - 1) * sizeof *all);
+  g_free (others);
+  return all;
+}
+
+/* How large the gap is before and after, on the hold-outs if there are any; the floor on
+ * the baselines. Of the effects taken in those stay that shrink it enough, one after the
+ * other; faults of cameras stay. */
+gboolean
+cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
+{
+  ClothGapResult *result = d->result;
+  const ClothModel *models[2 + CLOTH_DIAGNOSIS_MAX_ACCEPTED] = {
+    d->model, d->model
+  };
+  const guint faults = cloth_diagnosis_count_faults (d) > 0;
+  guint n = 1 + faults + d->n_chosen, best = faults;
+  guint judge = d->options->n_hold_outs ? d->n_takes + d->options->n_baselines
+      : 0;
+  g_autofree gdouble *draws = g_new0 (gdouble, N_DRAWS * n);
+  g_autofree gdouble *floor = g_new0 (gdouble, N_DRAWS);
+  g_autofree gboolean *windows = NULL;
+  ClothGapExtent **extents;
+  gdouble v[G_N_ELEMENTS (models)];
+
+  for (guint i = 0; i < d->n_chosen; i++)
+    models[1 + faults + i] = d->with[i];
+  cloth_diagnosis_begin_part (d, 0.85, 1., 0.4, "the gap in windows");
+  extents = measure_models (d, judge, models, n, error);
+  if (!extents)
+    return FALSE;
+  if (!judge)
+    windows = judging_windows (d, extents[0]);
+  for (guint i = 0; i < n; i++)
+    v[i] = cloth_gap_extent_square (extents[i], windows);
+  if (!measure_floor (d, judge, extents[0], floor, error)) {
+    cloth_gap_extents_free (extents, n);
+    return FALSE;
+  }
+  for (guint i = best + 1; i < n; i++)
+    if (matters (d, best == faults, v[best], v[i]))
+      best = i;
+  while (d->n_chosen > best - faults)
+    cloth_model_free (d->with[--d->n_chosen]);
+  cloth_gap_extents_interval (extents, n, windows, d->options->seed, N_DRAWS,
+      draws);
+  result->held_out_takes = d->options->n_hold_outs > 0;
+  result->gap_before = estimate (v[0], draws, N_DRAWS, n);
+  if (best) {
+    result->gap_after = estimate (v[best], draws + best, N_DRAWS, n);
+    fill_shrink (result, v[0], v[best], draws, draws + best, n);
+  }
+  result->rest_p_value = find_rest_p_value (draws + best, n, floor);
+  if (faults)
+    d->shrink_of_faults = share_gone (result, v[0], v[1]);
+  if (!judge)
+    keep_first (d, extents[0], best ? extents[best] : NULL);
+  cloth_gap_extents_free (extents, n);
+  if (!judge)
+    return TRUE;
+  models[1] = models[best];
+  n = best ? 2 : 1;
+  extents = measure_models (d, 0, models, n, error);
+  if (!extents)
+    return FALSE;
+  keep_first (d, extents[0], best ? extents[1] : NULL);
+  cloth_gap_extents_free (extents, n);
+  return TRUE;
+}
+
+/* The effects that are accepted, first in the order in which they were taken in. */
+static void
+accept_effects (ClothDiagnosis * d)
+{
+  const guint last = d->n_chosen - 1;
+  GArray *effects = d->result->effects;
+
+  for (guint c = d->n_chosen; c-- > 0;) {
+    const ClothGapCandidate *candidate = cloth_diagnosis_chosen (d, c);
+    ClothGapEffect e;
+    guint i = 0;
+
+    while (i < effects->len && g_array_index (effects, ClothGapEffect,
+            i).effect != candidate->effect)
+      i++;
+    /* the first test may not have been able to tell it from others */
+    if (i == effects->len)
+      cloth_gap_result_add_effect (d->result, candidate->effect);
+    e = g_array_index (effects, ClothGapEffect, i);
+    e.accepted = TRUE;
+    e.probability = d->probabilities[c];
+    e.shrink = d->result->shrink;
+    for (guint k = 0; k < candidate->effect->n_parameters; k++)
+      e.values[k] = candidate->values[k];
+    for (guint k = 0; k < candidate->n; k++) {
+      const ClothGapDirection *direction =
+          cloth_gap_candidates_direction (d->candidates, candidate->first + k);
+      guint p = candidate->parameters[k];
+
+      cloth_model_get (d->with[last], direction->name, &e.values[p], NULL);
+      e.sigmas[p] = CLOTH_DIAGNOSIS_SIGMA_WIDTH * d->sigmas[last][c][k];
+    }
+    g_array_remove_index (effects, i);
+    g_array_prepend_val (effects, e);
+  }
+}
+
+/* The cameras' effects among the others: what was wrong with them first, the rest behind
+ * what is likelier. */
+static void
+add_camera_effects (ClothDiagnosis * d)
+{
+  GArray *effects = d->result->effects;
+  gboolean alike = FALSE;
+
+  for (guint i = 0; i < d->camera_effects->len; i++) {
+    ClothGapEffect e = g_array_index (d->camera_effects, ClothGapEffect, i);
+    guint at = i;
+
+    /* a small fault is there, and yet not what the gap is about */
+    if (!e.accepted && i >= d->camera_effects->len - d->n_faults +
+        cloth_diagnosis_count_faults (d))
+      at = effects->len;
+    if (e.accepted)
+      e.shrink.value = d->shrink_of_faults;
+    for (; !e.accepted && at < effects->len; at++) {
+      const ClothGapEffect *other = &g_array_index (effects, ClothGapEffect,
+          at);
+
+      if (!other->accepted && other->probability < e.probability)
+        break;
+    }
+    if (e.group >= 0) {
+      e.group = (gint) d->result->groups->len;
+      alike = TRUE;
+    }
+    g_array_insert_val (effects, at, e);
+  }
+  if (alike)
+    cloth_gap_result_add_group (d->result, capture_sentence, NAN);
+}
+
+/* Whether another effect would do as well as one that is accepted. */
+static gboolean
+is_ambiguous (const ClothGapResult * r)
+{
+  for (guint i = 0; i < r->effects->len; i++)
+    if (g_array_index (r->effects, ClothGapEffect, i).accepted
+        && g_array_index (r->effects, ClothGapEffect, i).group >= 0)
+      return TRUE;
+  return FALSE;
+}
+
+/* Whether clamps are off their paths by enough to speak of, and no accepted effect moves
+ * clamps. */
+static gboolean
+are_clamps_off (const ClothDiagnosis * d, gdouble floor2)
+{
+  for (guint i = 0; i < d->n_chosen; i++)
+    if (cloth_diagnosis_chosen (d, i)->effect->side == CLOTH_EFFECT_CLAMP)
+      return FALSE;
+  return d->clamps_off > CLOTH_DIAGNOSIS_LEAST_SHRINK * floor2;
+}
+
+void
+cloth_diagnosis_decide (ClothDiagnosis * d)
+{
+  ClothGapResult *r = d->result;
+  gdouble floor2 = r->noise_floor.value * r->noise_floor.value;
+  guint accepted = d->n_chosen + cloth_diagnosis_count_faults (d);
+  gdouble rest = accepted ? r->gap_after.value : r->gap_before.value;
+  gboolean above = rest * rest > CLOTH_DIAGNOSIS_BAND * floor2;
+  /* an effect that was asked for and did not help stands for another */
+  gboolean other = d->asked && rest * rest > floor2;
+  gboolean clamps = are_clamps_off (d, floor2);
+
+  if (d->n_chosen)
+    accept_effects (d);
+  add_camera_effects (d);
+  if (above || clamps || (!accepted && (d->unknown || other)))
+    r->verdict = CLOTH_GAP_UNEXPLAINED;
+  else if (!accepted)
+    r->verdict = CLOTH_GAP_NO_GAP;
+  else
+    r->verdict = is_ambiguous (r) ? CLOTH_GAP_AMBIGUOUS : CLOTH_GAP_EXPLAINED;
+  if (clamps || (!accepted && d->unknown))
+    r->reason = g_steal_pointer (&d->unknown);
+  else if (!accepted && other && !above)
+    r->reason = g_strdup ("An effect was asked for, but with it unseen data "
+        "came no nearer.");
+}

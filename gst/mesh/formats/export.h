@@ -1,0 +1,72 @@
+/* What the writers of the formats have in common.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/file/fileset.h"
+#include "gst/file/spool.h"
+#include "gst/mesh/topology.h"
+
+G_BEGIN_DECLS
+
+/**
+ * ClothExportInfo:
+ * @stem: what the names of the files begin with; a take's folder
+ * @name: name of the object or take
+ * @topology: the mesh of every frame
+ * @fps_n: numerator of the frame rate, 0 when it varies
+ * @fps_d: its denominator
+ *
+ * What is known before the first frame. It outlives the export.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  gchar *stem;
+  gchar *name;
+  ClothTopology *topology;
+  gint fps_n, fps_d;
+} ClothExportInfo;
+
+/**
+ * ClothExporter:
+ * @keeps_nan: positions of vertices that are not seen come as NaN; else each has a
+ *   place
+ * @start: starts the files under temporary names
+ * @append: takes a frame; its number counts from 0
+ * @finish: gives the files their names; there was at least one frame
+ * @free: frees what @start returned and removes what was not finished
+ *
+ * How one format is written.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  gboolean keeps_nan;
+  gpointer (*start) (const ClothExportInfo * info, GError ** error);
+  gboolean (*append) (gpointer export, guint64 number, gdouble time_s,
+      const ClothMeshFrame * frame, GError ** error);
+  gboolean (*finish) (gpointer export, GError ** error);
+  void (*free) (gpointer export);
+} ClothExporter;
+
+extern const ClothExporter cloth_obj_pc2_exporter, cloth_ply_exporter,
+    cloth_take_exporter, cloth_gltf_exporter, cloth_usd_exporter,
+    cloth_vtp_exporter, cloth_c3d_exporter, cloth_csv_exporter;
+
+ClothOutput *cloth_export_open (const ClothExportInfo * info,
+    const gchar * ending, GError ** error);
+gchar *cloth_export_identifier (const ClothExportInfo * info);
+gfloat cloth_export_sigma (const gfloat * covariance);
+guint cloth_export_corners (const ClothTopology * topology, gsize face);
+void cloth_export_bounds (const gfloat * positions, guint n_vertices,
+    gfloat bounds[6]);
+gboolean cloth_export_check_later (guint64 number, gdouble before,
+    gdouble time_s, GError ** error);
+
+void cloth_text_append_float (GString * text, gfloat value);
+void cloth_text_append_double (GString * text, gdouble value);
+gboolean cloth_text_flush (GString * text, ClothOutput * output,
+    GError ** error);
+
+G_END_DECLS

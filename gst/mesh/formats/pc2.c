@@ -1,0 +1,278 @@
+/* PC2 point caches: where each vertex of a mesh is in each sample.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/mesh/formats/pc2.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The layout, little-endian: char[12] magic, int32 version = 1, int32 points,
+ * float32 start, float32 rate, int32 samples; then float32[samples][points][3]. */
+#define MAGIC "POINTCACHE2"
+#define MAGIC_SIZE 12
+#define HEADER_SIZE 32
+#define SAMPLES_OFFSET 28
+
+struct _ClothPc2Reader
+{
+  ClothInput *input;
+  ClothPc2Info info;
+};
+
+struct _ClothPc2Writer
+{
+  ClothOutput *output;
+  ClothPc2Info info;
+};
+
+static gboolean
+parse_header (ClothInput * input, ClothPc2Info * info, GError ** error)
+{
+  guint8 header[HEADER_SIZE];
+  gint32 counts[2], n_samples;
+  gfloat timing[2];
+  guint64 bytes;
+
+  if (!cloth_input_read_at (input, 0, header, sizeof header, error))
+    return FALSE;
+  memcpy (counts, header + 12, sizeof counts);
+  memcpy (timing, header + 20, sizeof timing);
+  memcpy (&n_samples, header + SAMPLES_OFFSET, sizeof n_samples);
+  cloth_swap_little_endian (counts, 4, 2);
+  cloth_swap_little_endian (timing, 4, 2);
+  cloth_swap_little_endian (&n_samples, 4, 1);
+  if (memcmp (header, MAGIC, MAGIC_SIZE) != 0 || counts[0] != 1) {
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+        "not a PC2 file of version 1");
+    return FALSE;
+  }
+  if (counts[1] < 1 || counts[1] > (gint32) CLOTH_MAX_VERTICES) {
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT,
+        "%d points: between 1 and %u are accepted", counts[1],
+        CLOTH_MAX_VERTICES);
+    return FALSE;
+  }
+  if (n_samples < 0 || !isfinite (timing[0]) || !isfinite (timing[1]) ||
+      timing[1] <= 0) {
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+        "the PC2 file has a negative number of samples, or a start or a rate "
+        "that makes no sense");
+    return FALSE;
+  }
+  bytes = (guint64) counts[1] * 12 * (guint64) n_samples;
+  if (bytes > cloth_input_get_size (input) - HEADER_SIZE) {
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_TRUNCATED,
+        "the PC2 file is cut short: %d samples are promised", n_samples);
+    return FALSE;
+  }
+  info->n_points = (guint) counts[1];
+  info->start = timing[0];
+  info->rate = timing[1];
+  info->n_samples = (guint) n_samples;
+  return TRUE;
+}
+
+/**
+ * cloth_pc2_reader_new:
+ * @input: (transfer full): the bytes of a PC2 file
+ * @error: #ClothFileError, #GIOErrorEnum
+ *
+ * Returns: (transfer full): a reader, or %NULL
+ * Since: 0.1
+ */
+ClothPc2Reader *
+cloth_pc2_reader_new (ClothInput * input, GError ** error)
+{
+  g_autoptr (ClothPc2Reader) reader = g_new0 (ClothPc2Reader, 1);
+
+  reader->input = input;
+  if (!parse_header (input, &reader->info, error))
+    return NULL;
+  return g_steal_pointer (&reader);
+}
+
+/**
+ * cloth_pc2_reader_open:
+ * @path: a PC2 file
+ * @error: #ClothFileError, #GIOErrorEnum
+ *
+ * Returns: (transfer full): a reader, or %NULL
+ * Since: 0.1
+ */
+ClothPc2Reader *
+cloth_pc2_reader_open (const gchar * path, GError ** error)
+{
+  ClothInput *input = cloth_input_open (path, error);
+  ClothPc2Reader *reader;
+
+  if (!input)
+    return NULL;
+  reader = cloth_pc2_reader_new (input, error);
+  if (!reader)
+    g_prefix_error (error, "%s: ", path);
+  return reader;
+}
+
+/**
+ * cloth_pc2_reader_get_info:
+ * @reader: a reader
+ *
+ * Returns: (transfer none): the header
+ * Since: 0.1
+ */
+const ClothPc2Info *
+cloth_pc2_reader_get_info (const ClothPc2Reader * reader)
+{
+  return &reader->info;
+}
+
+/**
+ * cloth_pc2_reader_read:
+ * @reader: a reader
+ * @sample: which sample
+ * @positions: (out caller-allocates): room for 3 numbers a point
+ * @error: #ClothFileError, #GIOErrorEnum
+ *
+ * Returns: %TRUE when the sample was read
+ * Since: 0.1
+ */
+gboolean
+cloth_pc2_reader_read (ClothPc2Reader * reader, guint sample,
+    gfloat * positions, GError ** error)
+{
+  gsize n_floats = 3 * (gsize) reader->info.n_points;
+
+  if (sample >= reader->info.n_samples) {
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+        "sample %u of %u", sample, reader->info.n_samples);
+    return FALSE;
+  }
+  if (!cloth_input_read_at (reader->input,
+          HEADER_SIZE + (guint64) sample * n_floats * sizeof *positions,
+          positions, n_floats * sizeof *positions, error))
+    return FALSE;
+  cloth_swap_little_endian (positions, sizeof *positions, n_floats);
+  return TRUE;
+}
+
+/**
+ * cloth_pc2_reader_free:
+ * @reader: (transfer full) (nullable): a reader
+ *
+ * Since: 0.1
+ */
+void
+cloth_pc2_reader_free (ClothPc2Reader * reader)
+{
+  if (!reader)
+    return;
+  cloth_input_free (reader->input);
+  g_free (reader);
+}
+
+/**
+ * cloth_pc2_writer_new:
+ * @path: final name of the file
+ * @n_points: vertices of the mesh
+ * @start: frame of the first sample
+ * @rate: frames from one sample to the next
+ * @error: #GIOErrorEnum
+ *
+ * Starts a point cache; samples are written as they come.
+ *
+ * Returns: (transfer full): a writer, or %NULL
+ * Since: 0.1
+ */
+ClothPc2Writer *
+cloth_pc2_writer_new (const gchar * path, guint n_points, gfloat start,
+    gfloat rate, GError ** error)
+{
+  g_autoptr (ClothPc2Writer) writer = g_new0 (ClothPc2Writer, 1);
+  guint8 header[HEADER_SIZE] = MAGIC;
+  gint32 counts[2] = { 1, (gint32) n_points };
+  gfloat timing[2] = { start, rate };
+
+  writer->info.n_points = n_points;
+  cloth_swap_little_endian (counts, 4, 2);
+  cloth_swap_little_endian (timing, 4, 2);
+  memcpy (header + 12, counts, sizeof counts);
+  memcpy (header + 20, timing, sizeof timing);
+  writer->output = cloth_output_new (path, error);
+  if (!writer->output || !cloth_output_write (writer->output, header,
+          sizeof header, error))
+    return NULL;
+  return g_steal_pointer (&writer);
+}
+
+/**
+ * cloth_pc2_writer_append:
+ * @writer: a writer
+ * @positions: 3 numbers a point
+ * @error: #GIOErrorEnum, #ClothFileError
+ *
+ * Returns: %TRUE when the sample was taken
+ * Since: 0.1
+ */
+gboolean
+cloth_pc2_writer_append (ClothPc2Writer * writer, const gfloat * positions,
+    GError ** error)
+{
+  gsize size = 3 * (gsize) writer->info.n_points * sizeof *positions;
+#if G_BYTE_ORDER == G_LITTLE_ENDIAN
+  gconstpointer ordered = positions;
+#else
+  g_autofree gpointer ordered = g_memdup2 (positions, size);
+
+  cloth_swap_little_endian (ordered, sizeof *positions,
+      size / sizeof *positions);
+#endif
+  if (writer->info.n_samples == G_MAXINT32) {
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT,
+        "a PC2 file holds no more samples");
+    return FALSE;
+  }
+  if (!cloth_output_write (writer->output, ordered, size, error))
+    return FALSE;
+  writer->info.n_samples++;
+  return TRUE;
+}
+
+/**
+ * cloth_pc2_writer_finish:
+ * @writer: a writer
+ * @error: #GIOErrorEnum
+ *
+ * Writes the number of samples. cloth_output_commit() gives the file its name.
+ *
+ * Returns: (transfer full): the output, or %NULL
+ * Since: 0.1
+ */
+ClothOutput *
+cloth_pc2_writer_finish (ClothPc2Writer * writer, GError ** error)
+{
+  guint32 n_samples = writer->info.n_samples;
+
+  cloth_swap_little_endian (&n_samples, 4, 1);
+  if (!cloth_output_write_at (writer->output, SAMPLES_OFFSET, &n_samples,
+          sizeof n_samples, error) ||
+      !cloth_output_finish (writer->output, error))
+    return NULL;
+  return g_steal_pointer (&writer->output);
+}
+
+/**
+ * cloth_pc2_writer_free:
+ * @writer: (transfer full) (nullable): a writer
+ *
+ * Frees it; a file that was not committed is removed.
+ *
+ * Since: 0.1
+ */
+void
+cloth_pc2_writer_free (ClothPc2Writer * writer)
+{
+  if (!writer)
+    return;
+  cloth_output_free (writer->output);
+  g_free (writer);
+}

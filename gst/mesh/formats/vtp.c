@@ -1,0 +1,208 @@
+/* VTK PolyData for ParaView: one VTP file a frame and a PVD file with their times.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <math.h>
+#include <string.h>
+
+#include "gst/mesh/formats/export.h"
+
+typedef struct
+{
+  const ClothExportInfo *info;
+  ClothOutput *collection;
+  ClothFileSet *files;
+  gchar *base;                  /* of the files' names, for XML */
+  GString *text;
+  gdouble time_s;
+  gsize n_corners;
+  guint32 *corners;             /* of all faces, one after the other */
+  guint32 *ends;                /* a face, in corners */
+  gfloat *scratch;              /* 3 a vertex */
+} Vtp;
+
+/* The arrays behind the XML text; each has its length, 8 bytes, before it. */
+typedef struct
+{
+  gsize item_size, n_items;
+  gpointer items;               /* in the byte order of the file */
+} Block;
+
+static void
+free_vtp (gpointer export)
+{
+  Vtp *self = export;
+
+  cloth_output_free (self->collection);
+  cloth_file_set_free (self->files);
+  g_string_free (self->text, TRUE);
+  g_free (self->base);
+  g_free (self->corners);
+  g_free (self->ends);
+  g_free (self->scratch);
+  g_free (self);
+}
+
+static void
+list_corners (Vtp * self)
+{
+  const ClothTopology *topology = self->info->topology;
+
+  self->corners = g_new (guint32, 4 * (gsize) topology->n_faces + 1);
+  self->ends = g_new (guint32, (gsize) topology->n_faces + 1);
+  for (gsize f = 0; f < topology->n_faces; f++) {
+    for (guint k = 0; k < cloth_export_corners (topology, f); k++)
+      self->corners[self->n_corners++] = topology->faces[4 * f + k];
+    self->ends[f] = (guint32) self->n_corners;
+  }
+  cloth_swap_little_endian (self->corners, sizeof *self->corners,
+      self->n_corners);
+  cloth_swap_little_endian (self->ends, sizeof *self->ends, topology->n_faces);
+}
+
+static gpointer
+start_vtp (const ClothExportInfo * info, GError ** error)
+{
+  g_autofree gchar *base = g_path_get_basename (info->stem);
+  Vtp *self = g_new0 (Vtp, 1);
+
+  self->info = info;
+  self->base = g_markup_escape_text (base, -1);
+  self->text = g_string_new ("<?xml version=\"1.0\"?>\n"
+      "<VTKFile type=\"Collection\" version=\"0.1\" "
+      "byte_order=\"LittleEndian\">\n  <Collection>\n");
+  self->scratch = g_new (gfloat, 3 * (gsize) info->topology->n_vertices);
+  list_corners (self);
+  self->collection = cloth_export_open (info, ".pvd", error);
+  if (self->collection)
+    self->files = cloth_file_set_new (info->stem, ".vtp", error);
+  if (self->files && cloth_text_flush (self->text, self->collection, error))
+    return self;
+  free_vtp (self);
+  return NULL;
+}
+
+static void
+append_array (GString * text, const gchar * type, const gchar * name,
+    guint n_components, guint64 * offset, const Block * block)
+{
+  g_string_append_printf (text, "<DataArray type=\"%s\" Name=\"%s\" "
+      "NumberOfComponents=\"%u\" format=\"appended\" offset=\"%"
+      G_GUINT64_FORMAT "\"/>\n", type, name, n_components, *offset);
+  *offset += 8 + block->item_size * block->n_items;
+}
+
+static gboolean
+write_block (ClothOutput * output, const Block * block, GError ** error)
+{
+  guint64 size = block->item_size * block->n_items, ordered = size;
+
+  cloth_swap_little_endian (&ordered, sizeof ordered, 1);
+  return cloth_output_write (output, &ordered, sizeof ordered, error) &&
+      cloth_output_write (output, block->items, size, error);
+}
+
+/* Fills the scratch memory with @values, or with standard deviations. */
+static gpointer
+order_floats (Vtp * self, const gfloat * values, gsize n)
+{
+  memcpy (self->scratch, values, n * sizeof *values);
+  cloth_swap_little_endian (self->scratch, sizeof *values, n);
+  return self->scratch;
+}
+
+static gpointer
+order_sigmas (Vtp * self, const ClothMeshFrame * frame)
+{
+  const gsize n = self->info->topology->n_vertices;
+
+  for (gsize i = 0; i < n; i++)
+    self->scratch[i] = frame->covariances &&
+        frame->states[i] != CLOTH_VERTEX_UNSEEN ?
+        cloth_export_sigma (frame->covariances + 6 * i) : NAN;
+  cloth_swap_little_endian (self->scratch, sizeof *self->scratch, n);
+  return self->scratch;
+}
+
+static gboolean
+write_frame (Vtp * self, ClothOutput * output, const ClothMeshFrame * frame,
+    GError ** error)
+{
+  const ClothTopology *topology = self->info->topology;
+  const gsize n = topology->n_vertices, n_faces = topology->n_faces;
+  Block states = { 1, n, (gpointer) frame->states }, sigmas = { 4, n, NULL };
+  Block uv = { 4, 2 * n, NULL }, points = { 4, 3 * n, NULL };
+  Block corners = { 4, self->n_corners, self->corners };
+  Block ends = { 4, n_faces, self->ends };
+  guint64 offset = 0;
+  GString *text = self->text;
+
+  g_string_append_printf (text, "<?xml version=\"1.0\"?>\n"
+      "<VTKFile type=\"PolyData\" version=\"1.0\" "
+      "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n"
+      "<Piece NumberOfPoints=\"%" G_GSIZE_FORMAT "\" NumberOfVerts=\"0\" "
+      "NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"%"
+      G_GSIZE_FORMAT "\">\n<PointData Scalars=\"sigma\" TCoords=\"uv\">\n", n,
+      n_faces);
+  append_array (text, "UInt8", "state", 1, &offset, &states);
+  append_array (text, "Float32", "sigma", 1, &offset, &sigmas);
+  append_array (text, "Float32", "uv", 2, &offset, &uv);
+  g_string_append (text, "</PointData>\n<Points>\n");
+  append_array (text, "Float32", "Points", 3, &offset, &points);
+  g_string_append (text, "</Points>\n<Polys>\n");
+  append_array (text, "Int32", "connectivity", 1, &offset, &corners);
+  append_array (text, "Int32", "offsets", 1, &offset, &ends);
+  g_string_append (text, "</Polys>\n</Piece>\n</PolyData>\n"
+      "<AppendedData encoding=\"raw\">\n_");
+  if (!cloth_text_flush (text, output, error) ||
+      !write_block (output, &states, error))
+    return FALSE;
+  sigmas.items = order_sigmas (self, frame);
+  if (!write_block (output, &sigmas, error))
+    return FALSE;
+  uv.items = order_floats (self, topology->uv, 2 * n);
+  if (!write_block (output, &uv, error))
+    return FALSE;
+  points.items = order_floats (self, frame->positions, 3 * n);
+  g_string_append (text, "\n</AppendedData>\n</VTKFile>\n");
+  return write_block (output, &points, error) &&
+      write_block (output, &corners, error) &&
+      write_block (output, &ends, error) &&
+      cloth_text_flush (text, output, error);
+}
+
+static gboolean
+append_vtp (gpointer export, guint64 number, gdouble time_s,
+    const ClothMeshFrame * frame, GError ** error)
+{
+  Vtp *self = export;
+  g_autoptr (ClothOutput) output = NULL;
+
+  if (!cloth_export_check_later (number, self->time_s, time_s, error))
+    return FALSE;
+  self->time_s = time_s;
+  output = cloth_file_set_begin (self->files, error);
+  if (!output || !write_frame (self, output, frame, error) ||
+      !cloth_file_set_end (self->files, output, error))
+    return FALSE;
+  g_string_append (self->text, "    <DataSet timestep=\"");
+  cloth_text_append_double (self->text, time_s);
+  g_string_append_printf (self->text, "\" group=\"\" part=\"0\" file=\"%s_%05"
+      G_GUINT64_FORMAT ".vtp\"/>\n", self->base, number);
+  return cloth_text_flush (self->text, self->collection, error);
+}
+
+static gboolean
+finish_vtp (gpointer export, GError ** error)
+{
+  static const gchar end[] = "  </Collection>\n</VTKFile>\n";
+  Vtp *self = export;
+
+  return cloth_output_write (self->collection, end, strlen (end), error) &&
+      cloth_output_finish (self->collection, error) &&
+      cloth_file_set_commit (self->files, error) &&
+      cloth_output_commit (&self->collection, 1, error);
+}
+
+const ClothExporter cloth_vtp_exporter = {
+  FALSE, start_vtp, append_vtp, finish_vtp, free_vtp
+};

@@ -1,0 +1,368 @@
+/* Anti-aliased drawing on 8-bit pictures of any layout.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+
+/* Every shape is a function from a pixel to a coverage, by the distance to its outline
+ * (box filter of one sample); draw-rows.c works it out along rows, once for all components
+ * of equal subsampling, and blends it into each. */
+#include "gst/render/draw.h"
+
+#include <math.h>
+
+#include "gst/render/draw-private.h"
+
+/* The next group of components that share one sampling grid; FALSE after the last. */
+static gboolean
+next_group (const ClothCanvas * canvas, ClothDrawGroup * group)
+{
+  const ClothComponent *c;
+  gint i = group->first + group->n;
+
+  if (i >= (gint) canvas->n_components) {
+    return FALSE;
+  }
+  c = &canvas->components[i];
+  group->first = i;
+  while (i < (gint) canvas->n_components
+      && canvas->components[i].shift_x == c->shift_x
+      && canvas->components[i].shift_y == c->shift_y) {
+    i++;
+  }
+  group->n = i - group->first;
+  group->width = c->width;
+  group->height = c->height;
+  group->scale_x = (gfloat) (1 << c->shift_x);
+  group->scale_y = (gfloat) (1 << c->shift_y);
+  group->offset_x = 0.5f * (group->scale_x - 1);
+  group->offset_y = 0.5f * (group->scale_y - 1);
+  group->softness = MAX (group->scale_x, group->scale_y);
+  return TRUE;
+}
+
+static guint8
+value_of (const ClothComponent * c, const ClothColour * colour)
+{
+  gfloat value = c->weights[0] * colour->r + c->weights[1] * colour->g +
+      c->weights[2] * colour->b + c->weights[3];
+
+  return (guint8) CLAMP (value + 0.5f, 0.0f, 255.0f);
+}
+
+/* The colour in the components of @group. */
+static ClothDrawInk
+ink_of (const ClothCanvas * canvas, const ClothDrawGroup * group,
+    const ClothColour * colour)
+{
+  ClothDrawInk ink = { &canvas->components[group->first], group->n };
+  const ClothComponent *c = ink.components;
+  guint8 *last = c->data;
+  gint k, i;
+
+  ink.step = c->step;
+  ink.stride = c->stride;
+  ink.data = c->data;
+  for (k = 0; k < ink.n; k++) {
+    ink.values[k] = value_of (&c[k], colour);
+    ink.data = MIN (ink.data, c[k].data);
+    last = MAX (last, c[k].data);
+    if (c[k].step != ink.step || c[k].stride != ink.stride) {
+      ink.step = 0;
+    }
+  }
+  if (ink.step < 2 || ink.step > 4 || last - ink.data >= ink.step) {
+    ink.step = 0;
+    return ink;
+  }
+  for (k = 0; k < ink.n; k++) {
+    gint at = (gint) (c[k].data - ink.data);
+
+    ink.own[at] = 1;
+    for (i = at; i < ink.step * CLOTH_DRAW_CHUNK; i += ink.step) {
+      ink.value[i] = ink.values[k];
+    }
+  }
+  return ink;
+}
+
+/**
+ * cloth_draw_line:
+ * @canvas: where to
+ * @x0: px
+ * @y0: px
+ * @x1: px
+ * @y1: px
+ * @width: px; a line thinner than a sample gets fainter
+ * @colour: colour
+ *
+ * Draws a straight line with round ends.
+ *
+ * Since: 0.1
+ */
+void
+cloth_draw_line (const ClothCanvas * canvas, gfloat x0, gfloat y0, gfloat x1,
+    gfloat y1, gfloat width, const ClothColour * colour)
+{
+  const ClothDrawRows *rows = cloth_draw_rows (CLOTH_SIMD_BEST);
+  ClothDrawGroup group = { 0 };
+  gfloat dx = x1 - x0, dy = y1 - y0, length2 = dx * dx + dy * dy;
+  gfloat length = sqrtf (length2);
+  ClothDrawLine line = { x0, y0, x1, y1, 1, 0, length };
+
+  if (!isfinite (length2) || !isfinite (x0) || !isfinite (y0)
+      || !(width > 0) || !(colour->a > 0)) {
+    return;
+  }
+  if (length > 0) {
+    line.ux = dx / length;
+    line.uy = dy / length;
+  }
+  if (fabsf (dy) > 1e-3f) {
+    line.strip = length / fabsf (dy);
+    line.slope = dx / dy;
+  }
+  line.most = 256 * colour->a * MIN (width, 1);
+
+  while (next_group (canvas, &group)) {
+    ClothDrawInk ink = ink_of (canvas, &group, colour);
+
+    line.radius = 0.5f * (width + group.softness);
+    line.strength = 256 * colour->a / group.softness;
+    rows->line (&group, &ink, &line);
+  }
+}
+
+/**
+ * cloth_draw_dashes:
+ * @canvas: where to
+ * @x0: px
+ * @y0: px
+ * @x1: px
+ * @y1: px
+ * @width: px
+ * @dash: length of a dash and of a gap, px
+ * @colour: colour
+ *
+ * Draws a dashed line; it begins and ends with a dash.
+ *
+ * Since: 0.1
+ */
+void
+cloth_draw_dashes (const ClothCanvas * canvas, gfloat x0, gfloat y0, gfloat x1,
+    gfloat y1, gfloat width, gfloat dash, const ClothColour * colour)
+{
+  gfloat length = hypotf (x1 - x0, y1 - y0);
+  gint i, n;
+
+  if (!isfinite (length) || !(dash > 0)) {
+    return;
+  }
+  /* an odd number of pieces, and never more than make sense on a picture */
+  n = (gint) MIN (length / dash, 4096) | 1;
+  for (i = 0; i < n; i += 2) {
+    gfloat a = (gfloat) i / (gfloat) n, b = (gfloat) (i + 1) / (gfloat) n;
+
+    cloth_draw_line (canvas, x0 + a * (x1 - x0), y0 + a * (y1 - y0),
+        x0 + b * (x1 - x0), y0 + b * (y1 - y0), width, colour);
+  }
+}
+
+/**
+ * cloth_draw_quad:
+ * @canvas: where to
+ * @x: corners in order, px
+ * @y: corners in order, px
+ * @colour: colour
+ *
+ * Fills a convex quadrilateral; one that is not convex is left out.
+ *
+ * Since: 0.1
+ */
+void
+cloth_draw_quad (const ClothCanvas * canvas, const gfloat x[4],
+    const gfloat y[4], const ClothColour * colour)
+{
+  const ClothDrawRows *rows = cloth_draw_rows (CLOTH_SIMD_BEST);
+  ClothDrawGroup group = { 0 };
+  ClothDrawQuad quad = {.top = y[0],.bottom = y[0],.full = 256 * colour->a };
+  gfloat turn = 0;
+  gint k;
+
+  if (!(colour->a > 0)) {
+    return;
+  }
+  for (k = 0; k < 4; k++) {
+    gint l = (k + 1) & 3, m = (k + 2) & 3;
+    gfloat cross = (x[l] - x[k]) * (y[m] - y[l]) - (y[l] - y[k]) * (x[m] -
+        x[l]);
+
+    /* all four turns the same way; fails for NaN too */
+    if (!isfinite (cross) || !(turn * cross >= 0) || cross == 0) {
+      return;
+    }
+    turn = cross;
+  }
+  for (k = 0; k < 4; k++) {
+    gint l = (k + 1) & 3;
+    gfloat ex = x[l] - x[k], ey = y[l] - y[k];
+    gfloat scale = (turn > 0 ? 1 : -1) / hypotf (ex, ey);
+
+    quad.nx[k] = -ey * scale;
+    quad.ny[k] = ex * scale;
+    quad.d[k] = -(quad.nx[k] * x[k] + quad.ny[k] * y[k]);
+    quad.top = MIN (quad.top, y[k]);
+    quad.bottom = MAX (quad.bottom, y[k]);
+  }
+  while (next_group (canvas, &group)) {
+    ClothDrawInk ink = ink_of (canvas, &group, colour);
+
+    rows->quad (&group, &ink, &quad);
+  }
+}
+
+/**
+ * cloth_draw_ellipse:
+ * @canvas: where to
+ * @x: centre, px
+ * @y: centre, px
+ * @xx: of the matrix C, px²
+ * @xy: of C
+ * @yy: of C
+ * @width: of the line, px
+ * @colour: colour
+ *
+ * Draws the ellipse p' C⁻¹ p = 1 about the centre: with C a covariance, its one-sigma
+ * contour. Left out when C is not positive definite.
+ *
+ * Since: 0.1
+ */
+void
+cloth_draw_ellipse (const ClothCanvas * canvas, gfloat x, gfloat y, gfloat xx,
+    gfloat xy, gfloat yy, gfloat width, const ClothColour * colour)
+{
+  /* the Cholesky factor of C maps the unit circle to the ellipse */
+  gfloat a = sqrtf (xx), b = xy / a, c = sqrtf (yy - b * b);
+  gfloat from_x = x + a, from_y = y + b;
+  gint i, n;
+
+  if (!isfinite (a) || !isfinite (b) || !isfinite (c) || !(a > 0)) {
+    return;
+  }
+  n = (gint) CLAMP (2 * MAX (a, sqrtf (yy)), 12.0f, 64.0f);
+  for (i = 1; i <= n; i++) {
+    gfloat angle = (gfloat) (2 * G_PI) * (gfloat) i / (gfloat) n;
+    gfloat u = cosf (angle), v = sinf (angle);
+    gfloat to_x = x + a * u, to_y = y + b * u + c * v;
+
+    cloth_draw_line (canvas, from_x, from_y, to_x, to_y, width, colour);
+    from_x = to_x;
+    from_y = to_y;
+  }
+}
+
+/* Digits as strokes on a grid of 3 × 5 points: "xy" pairs, a space lifts the pen. */
+static const gchar *const digits[] = {
+  "0020240400", "011014 0424", "002022020424", "00202404 0222", "000222 2024",
+  "200002222404", "200004242202", "002014", "0020240400 0222", "220200202404"
+};
+
+static void
+draw_digit (const ClothCanvas * canvas, gint digit, const gfloat origin[2],
+    const gfloat right[2], const gfloat down[2], gfloat width,
+    const ClothColour * colour)
+{
+  const gchar *s = digits[digit];
+  gfloat x = 0, y = 0;
+  gboolean pen = FALSE;
+
+  while (*s) {
+    gfloat u, v, to_x, to_y;
+
+    if (*s == ' ') {
+      pen = FALSE;
+      s++;
+      continue;
+    }
+    u = (gfloat) (s[0] - '0') / 2;
+    v = (gfloat) (s[1] - '0') / 4;
+    to_x = origin[0] + u * right[0] + v * down[0];
+    to_y = origin[1] + u * right[1] + v * down[1];
+    if (pen) {
+      cloth_draw_line (canvas, x, y, to_x, to_y, width, colour);
+    }
+    x = to_x;
+    y = to_y;
+    pen = TRUE;
+    s += 2;
+  }
+}
+
+/**
+ * cloth_draw_number:
+ * @canvas: where to
+ * @number: what to write, −9999 … 99999
+ * @origin: top-left of the first digit, px
+ * @right: from the left to the right edge of a digit, px
+ * @down: from its top to its bottom, px
+ * @width: of the strokes, px
+ * @colour: colour
+ *
+ * Writes a whole number along any direction, so that it can lie on the cloth. Digits
+ * are 1.6 @right apart.
+ *
+ * Since: 0.1
+ */
+void
+cloth_draw_number (const ClothCanvas * canvas, gint number,
+    const gfloat origin[2], const gfloat right[2], const gfloat down[2],
+    gfloat width, const ClothColour * colour)
+{
+  gchar text[16];
+  gfloat at[2] = { origin[0], origin[1] };
+  gint i;
+
+  g_snprintf (text, sizeof (text), "%d", CLAMP (number, -9999, 99999));
+  for (i = 0; text[i]; i++) {
+    if (text[i] == '-') {
+      cloth_draw_line (canvas, at[0] + 0.5f * down[0], at[1] + 0.5f * down[1],
+          at[0] + right[0] + 0.5f * down[0], at[1] + right[1] + 0.5f * down[1],
+          width, colour);
+    } else {
+      draw_digit (canvas, text[i] - '0', at, right, down, width, colour);
+    }
+    at[0] += 1.6f * right[0];
+    at[1] += 1.6f * right[1];
+  }
+}
+
+/**
+ * cloth_draw_confidence_colour:
+ * @confidence: −1 … 1
+ * @low: the confidence below which a square is given up, c_low of the paper
+ *
+ * The colours of the paper's figure 2: yellow for a confidence of 1, purple for @low
+ * (and whatever is below), through red and orange between.
+ *
+ * Returns: an opaque colour
+ * Since: 0.1
+ */
+ClothColour
+cloth_draw_confidence_colour (gfloat confidence, gfloat low)
+{
+  static const ClothColour stops[4] = {
+    {0.50f, 0.13f, 0.78f, 1}, {0.91f, 0.22f, 0.46f, 1},
+    {1.00f, 0.58f, 0.13f, 1}, {1.00f, 0.93f, 0.15f, 1}
+  };
+  gfloat t = low < 1 ? (confidence - low) / (1 - low) : 1;
+  const ClothColour *s;
+  ClothColour colour;
+  gfloat f;
+
+  t = t >= 0 ? MIN (t, 1) : 0;  /* NaN counts as low */
+  s = &stops[MIN ((gint) (3 * t), 2)];
+  f = 3 * t - (gfloat) (s - stops);
+  colour.r = s[0].r + f * (s[1].r - s[0].r);
+  colour.g = s[0].g + f * (s[1].g - s[0].g);
+  colour.b = s[0].b + f * (s[1].b - s[0].b);
+  colour.a = 1;
+  return colour;
+}

@@ -1,0 +1,639 @@
+/* Draws a printed cloth as a camera films it.
+ *
+ * The mesh is cut finer until what lies between its points is straight in the picture to
+ * a fraction of a pixel, whatever the lens, the rolling shutter or the twist of a face.
+ * Each point is then seen where and when the capture says; between points, depth and
+ * paint are interpolated in perspective. The picture is drawn in tiles, which are shared
+ * out between threads: none depends on another, so the bytes are the same for any number.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/render/render.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/render/render-private.h"
+
+#define TILE CLOTH_RENDER_TILE
+
+/* What the middle of an edge or face may be off between the points of the mesh. */
+#define STRAIGHT_PX 0.02
+/* The same for the middle of a twisted face, whose true shape nobody knows; and most
+ * triangles that are made for its sake. */
+#define TWIST_PX 0.1
+#define MAX_TWIST_TRIANGLES (1u << 16)
+/* Triangles whose edges are tried for bends by the lens. */
+#define LENS_TRIALS 2000
+/* Each level halves the edges; so many at most, and so many triangles. */
+#define MAX_LEVELS 8
+#define MAX_TRIANGLES (1u << 21)
+/* An exposure is drawn as instants between which no point moves farther, px. */
+#define INSTANT_PX 0.75
+#define MAX_INSTANTS 128
+/* Farther off than any picture: such triangles can't be drawn. */
+#define FAR_PX 1e6
+
+typedef struct
+{
+  gdouble px[2];
+  gdouble position[3];
+  gdouble depth;                /* along the line of sight; 0 when not seen */
+  gdouble normal[3];
+  gdouble light[2];             /* on the printed side, on the back */
+} Point;
+
+struct _ClothRenderer
+{
+  guint n_vertices, n_faces;
+  gfloat *uv;
+  guint32 *faces;
+  ClothRenderMesh *meshes[MAX_LEVELS + 1];
+  ClothPool *pool;
+  ClothRenderTileFunc draw_tile;
+  ClothSensor *sensor;
+  ClothLight light;
+  gsize light_size;
+
+  Point *points;
+  guint points_size;
+  ClothRenderTriangle *triangles;
+  guint triangles_size;
+  guint *first;                 /* of each tile in list, and one more */
+  guint tiles_size;
+  guint *list;
+  gsize list_size;
+  guint8 *scratch;              /* one a thread */
+
+  /* of the picture that is drawn */
+  const ClothRenderMesh *mesh;
+  const ClothCapture *capture;
+  const ClothMotion *motion;
+  gdouble time_s;
+  guint n_points;               /* of the mesh that is looked at */
+  gint columns, rows;           /* of tiles */
+  ClothRenderJob job;
+};
+
+/**
+ * cloth_render_style_init:
+ * @style: (out): a lamp above and beside the camera's usual place, y < 0; a grey wall
+ *
+ * Since: 0.1
+ */
+void
+cloth_render_style_init (ClothRenderStyle * style)
+{
+  *style = (ClothRenderStyle) {
+    .lamp = { -0.4, -0.8, 0.5 },.lamp_light = 0.6,.ambient_light =
+        0.35,.through = 0.3,.back = 0.7,.background = { 0.14, 0.09 }
+  };
+}
+
+/**
+ * cloth_renderer_new:
+ * @n_vertices: vertices of the mesh
+ * @uv: (array): 2 numbers a vertex, metres on the flat cloth
+ * @faces: (array): 4 indices a face, counter-clockwise seen from the printed side, the
+ *   last 0xffffffff for a triangle; all others below @n_vertices
+ * @n_faces: faces
+ * @threads: threads that draw, 0 for one a processor
+ * @simd: instruction set, %CLOTH_SIMD_BEST but in tests
+ *
+ * Returns: (transfer full): free with cloth_renderer_free ()
+ *
+ * Since: 0.1
+ */
+ClothRenderer *
+cloth_renderer_new (guint n_vertices, const gfloat * uv,
+    const guint32 * faces, guint n_faces, guint threads, ClothSimd simd)
+{
+  ClothRenderer *self = g_new0 (ClothRenderer, 1);
+
+  self->n_vertices = n_vertices;
+  self->n_faces = n_faces;
+  self->uv = g_memdup2 (uv, 2 * n_vertices * sizeof *uv);
+  self->faces = g_memdup2 (faces, 4 * (gsize) n_faces * sizeof *faces);
+  self->pool = cloth_pool_new (threads);
+  self->draw_tile = cloth_render_tile_func (simd);
+  self->sensor = cloth_sensor_new ();
+  self->scratch = g_aligned_alloc (cloth_pool_get_n_threads (self->pool),
+      cloth_render_tile_scratch (), 64);
+  return self;
+}
+
+/**
+ * cloth_renderer_free:
+ * @renderer: (nullable) (transfer full): a renderer
+ *
+ * Since: 0.1
+ */
+void
+cloth_renderer_free (ClothRenderer * renderer)
+{
+  if (!renderer)
+    return;
+  for (guint i = 0; i <= MAX_LEVELS; i++)
+    cloth_render_mesh_free (renderer->meshes[i]);
+  cloth_pool_free (renderer->pool);
+  cloth_sensor_free (renderer->sensor);
+  g_free (renderer->uv);
+  g_free (renderer->faces);
+  g_free (renderer->light.data);
+  g_free (renderer->points);
+  g_free (renderer->triangles);
+  g_free (renderer->first);
+  g_free (renderer->list);
+  g_aligned_free (renderer->scratch);
+  g_free (renderer);
+}
+
+/* ---- points ---- */
+
+static void
+see_points (gpointer data, guint begin, guint end, guint worker)
+{
+  ClothRenderer *self = data;
+  const ClothCamera *camera = &self->capture->camera;
+  const ClothRenderMesh *mesh = self->mesh;
+
+  for (guint i = begin; i < end; i++) {
+    Point *p = &self->points[i];
+    gboolean good = cloth_capture_project (self->capture, self->motion,
+        mesh->n_parents[i], mesh->parents[i], mesh->weights[i], self->time_s,
+        p->px, p->position);
+
+    p->depth = good ? camera->R[6] * p->position[0]
+        + camera->R[7] * p->position[1] + camera->R[8] * p->position[2]
+        + camera->t[2] : 0;
+    if (!(p->depth > 0 && fabs (p->px[0]) < FAR_PX && fabs (p->px[1]) < FAR_PX))
+      p->depth = 0;
+    memset (p->normal, 0, sizeof p->normal);
+  }
+}
+
+static void
+see (ClothRenderer * self, guint level, gdouble time_s)
+{
+  if (!self->meshes[level])
+    self->meshes[level] = cloth_render_mesh_new (self->n_vertices, self->uv,
+        self->faces, self->n_faces, 1u << level);
+  self->mesh = self->meshes[level];
+  self->time_s = time_s;
+  if (self->points_size < self->mesh->n_points) {
+    self->points_size = self->mesh->n_points;
+    self->points = g_renew (Point, self->points, self->points_size);
+  }
+  cloth_pool_run (self->pool, see_points, self, self->mesh->n_points);
+}
+
+/* How far the middle between two points is from where the perspective between them puts
+ * it. */
+static gdouble
+bend (const Point * a, const Point * b, const Point * middle)
+{
+  const gdouble sum = a->depth + b->depth;
+
+  if (a->depth <= 0 || b->depth <= 0 || middle->depth <= 0)
+    return 0;
+  return hypot ((a->depth * a->px[0] + b->depth * b->px[0]) / sum
+      - middle->px[0], (a->depth * a->px[1] + b->depth * b->px[1]) / sum
+      - middle->px[1]);
+}
+
+static gboolean
+near_picture (const ClothRenderer * self, const Point * p)
+{
+  const ClothCamera *camera = &self->capture->camera;
+
+  return p->depth > 0 && p->px[0] > -0.5 * camera->width
+      && p->px[0] < 1.5 * camera->width && p->px[1] > -0.5 * camera->height
+      && p->px[1] < 1.5 * camera->height;
+}
+
+static gboolean
+may_halve (const ClothRenderer * self, guint level, guint most)
+{
+  return level < MAX_LEVELS
+      && (guint64) self->n_faces * 2 << 2 * (level + 1) <= most;
+}
+
+/* How far the lens bends edges of the mesh that is looked at, px: some are tried. */
+static gdouble
+measure_lens (const ClothRenderer * self)
+{
+  const ClothRenderMesh *mesh = self->mesh;
+  const guint step = 1 + mesh->n_triangles / LENS_TRIALS;
+  gdouble most = 0;
+
+  for (guint i = 0; i < mesh->n_triangles; i += step) {
+    for (gint k = 0; k < 3; k++) {
+      const Point *a = &self->points[mesh->triangles[i][k]];
+      const Point *b = &self->points[mesh->triangles[i][(k + 1) % 3]];
+      Point middle = *a;
+
+      if (!near_picture (self, a) || !near_picture (self, b))
+        continue;
+      for (gint j = 0; j < 3; j++)
+        middle.position[j] = (a->position[j] + b->position[j]) / 2;
+      if (cloth_camera_project (&self->capture->camera, middle.position,
+              middle.px, NULL, NULL))
+        most = MAX (most, bend (a, b, &middle));
+    }
+  }
+  return most;
+}
+
+/* Halves edges until the middles are straight. The error of a twisted face falls to a
+ * quarter each time, that of a lens may lie anywhere. */
+static guint
+choose_level (ClothRenderer * self, gdouble time_s)
+{
+  gdouble most = 0;
+  guint level = 0;
+
+  see (self, 1, time_s);
+  for (guint i = self->n_vertices; i < self->mesh->n_points; i++) {
+    const guint *parents = self->mesh->parents[i];
+    /* The middle of a quad is cut by the diagonal from 1 to 3. */
+    const guint first = self->mesh->n_parents[i] == 4 ? 1 : 0;
+    const guint second = self->mesh->n_parents[i] == 4 ? 3 : 1;
+
+    if (near_picture (self, &self->points[i]))
+      most = MAX (most, bend (&self->points[parents[first]],
+              &self->points[parents[second]], &self->points[i]));
+  }
+  for (; most > TWIST_PX && may_halve (self, level, MAX_TWIST_TRIANGLES);
+      level++)
+    most /= 4;
+  while (self->capture->camera.lens != CLOTH_LENS_NONE
+      && may_halve (self, level, MAX_TRIANGLES)) {
+    see (self, level, time_s);
+    if (measure_lens (self) <= STRAIGHT_PX)
+      break;
+    level++;
+  }
+  return level;
+}
+
+/* Normals by the area of the triangles around a point, then the light on both sides. */
+static void
+light_points (ClothRenderer * self, const ClothRenderStyle * style)
+{
+  const ClothRenderMesh *mesh = self->mesh;
+  const gdouble length = sqrt (style->lamp[0] * style->lamp[0]
+      + style->lamp[1] * style->lamp[1] + style->lamp[2] * style->lamp[2]);
+
+  for (guint i = 0; i < mesh->n_triangles; i++) {
+    const guint *t = mesh->triangles[i];
+    const gdouble *a = self->points[t[0]].position;
+    const gdouble *b = self->points[t[1]].position;
+    const gdouble *c = self->points[t[2]].position;
+    gdouble p[3], q[3];
+
+    if (self->points[t[0]].depth <= 0 || self->points[t[1]].depth <= 0
+        || self->points[t[2]].depth <= 0)
+      continue;
+    for (gint k = 0; k < 3; k++) {
+      p[k] = b[k] - a[k];
+      q[k] = c[k] - a[k];
+    }
+    for (gint j = 0; j < 3; j++) {
+      gdouble *n = self->points[t[j]].normal;
+
+      n[0] += p[1] * q[2] - p[2] * q[1];
+      n[1] += p[2] * q[0] - p[0] * q[2];
+      n[2] += p[0] * q[1] - p[1] * q[0];
+    }
+  }
+  for (guint i = 0; i < mesh->n_points; i++) {
+    Point *p = &self->points[i];
+    const gdouble *n = p->normal;
+    const gdouble norm = sqrt (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    const gdouble facing = norm > 0 && length > 0 ? (n[0] * style->lamp[0]
+        + n[1] * style->lamp[1] + n[2] * style->lamp[2]) / (norm * length) : 0;
+
+    for (gint side = 0; side < 2; side++) {
+      const gdouble towards = side ? -facing : facing;
+
+      p->light[side] = style->ambient_light + style->lamp_light
+          * (towards > 0 ? towards : -towards * style->through);
+    }
+  }
+}
+
+/* ---- triangles ---- */
+
+/* The plane through three values over the picture, as value and slopes at point a. */
+static void
+set_plane (gdouble plane[3], gdouble area, const Point * a, const Point * b,
+    const Point * c, gdouble va, gdouble vb, gdouble vc)
+{
+  const gdouble p = vb - va, q = vc - va;
+
+  plane[0] = va;
+  plane[1] = (p * (c->px[1] - a->px[1]) - q * (b->px[1] - a->px[1])) / area;
+  plane[2] = (q * (b->px[0] - a->px[0]) - p * (c->px[0] - a->px[0])) / area;
+}
+
+/* Which levels of the paint fit the triangle: by the longest steps and the area of a pixel
+ * of the picture on the paint, where it is nearest and where it is farthest. */
+static void
+set_levels (const ClothPaint * paint, ClothRenderTriangle * t,
+    const Point * const *p)
+{
+  gdouble spacing = G_MAXDOUBLE, reach = 0;
+  gint level;
+
+  for (gint k = 0; k < 3; k++) {
+    const gdouble dx = p[k]->px[0] - t->x, dy = p[k]->px[1] - t->y;
+    const gdouble depth = p[k]->depth;
+    gdouble J[4], area;
+
+    for (gint j = 0; j < 2; j++) {
+      const gdouble *plane = j ? t->v : t->u;
+      const gdouble at = (plane[0] + plane[1] * dx + plane[2] * dy) * depth;
+
+      J[2 * j] = (plane[1] - at * t->w[1]) * depth;
+      J[2 * j + 1] = (plane[2] - at * t->w[2]) * depth;
+      reach = MAX (reach, fabs (J[2 * j]) + fabs (J[2 * j + 1]));
+    }
+    /* The points are a quarter of a pixel apart; seen edge-on, rather some stripes than
+     * all grey. */
+    area = sqrt (fabs (J[0] * J[3] - J[1] * J[2])) / 4;
+    spacing = MIN (spacing, MAX (area, MAX (hypot (J[0], J[2]),
+                hypot (J[1], J[3])) / 8));
+  }
+  level = spacing > 1 && spacing < 65536 ? ilogb (spacing * G_SQRT2) : 0;
+  t->level = MIN ((guint) level, paint->n_levels - 1);
+  reach = 0.6 * reach + ldexp (1, (gint) t->level);
+  level = reach < 65536 ? ilogb (reach) + 1 : CLOTH_PAINT_MAX_LEVELS;
+  t->flat_level = MIN ((guint) MAX (level, 0), CLOTH_PAINT_MAX_LEVELS);
+}
+
+static gboolean
+set_triangle (const ClothRenderer * self, const guint * corners,
+    ClothRenderTriangle * t)
+{
+  const ClothPaint *paint = self->job.paint;
+  const ClothCamera *camera = &self->capture->camera;
+  const Point *p[3];
+  gdouble area, w[3], uv[2][3], low[2], high[2];
+
+  for (gint k = 0; k < 3; k++) {
+    p[k] = &self->points[corners[k]];
+    if (p[k]->depth <= 0)
+      return FALSE;
+  }
+  for (gint k = 0; k < 2; k++) {
+    low[k] = MIN (p[0]->px[k], MIN (p[1]->px[k], p[2]->px[k]));
+    high[k] = MAX (p[0]->px[k], MAX (p[1]->px[k], p[2]->px[k]));
+  }
+  area = (p[1]->px[0] - p[0]->px[0]) * (p[2]->px[1] - p[0]->px[1])
+      - (p[1]->px[1] - p[0]->px[1]) * (p[2]->px[0] - p[0]->px[0]);
+  if (area == 0 || high[0] < -0.5 || high[1] < -0.5
+      || low[0] > camera->width - 0.5 || low[1] > camera->height - 0.5)
+    return FALSE;
+  t->left = MAX (0, (gint) floor (low[0] + 0.5));
+  t->top = MAX (0, (gint) floor (low[1] + 0.5));
+  t->right = MIN (camera->width - 1, (gint) floor (high[0] + 0.5));
+  t->bottom = MIN (camera->height - 1, (gint) floor (high[1] + 0.5));
+  /* Counter-clockwise is negative where y points down. */
+  t->front = area < 0;
+  t->x = p[0]->px[0];
+  t->y = p[0]->px[1];
+  for (gint k = 0; k < 3; k++) {
+    const gfloat *at = self->mesh->uv[corners[k]];
+
+    w[k] = 1 / p[k]->depth;
+    for (gint j = 0; j < 2; j++)
+      uv[j][k] = (at[j] - paint->origin_uv_m[j]) * paint->px_per_m[j] * w[k];
+  }
+  set_plane (t->w, area, p[0], p[1], p[2], w[0], w[1], w[2]);
+  set_plane (t->u, area, p[0], p[1], p[2], uv[0][0], uv[0][1], uv[0][2]);
+  set_plane (t->v, area, p[0], p[1], p[2], uv[1][0], uv[1][1], uv[1][2]);
+  set_plane (t->light, area, p[0], p[1], p[2], p[0]->light[!t->front],
+      p[1]->light[!t->front], p[2]->light[!t->front]);
+  set_levels (paint, t, p);
+  for (gint k = 0; k < 3; k++) {
+    /* From the lower to the higher of its ends, whichever triangle asks: both get the
+     * same number with opposite signs, and a point on it belongs to one of them. */
+    const guint i = corners[k], j = corners[(k + 1) % 3];
+    const Point *from = &self->points[MIN (i, j)];
+    const Point *to = &self->points[MAX (i, j)];
+    const gboolean along = (i < j) == (area > 0);
+    const gfloat a = (gfloat) (from->px[1] - to->px[1]);
+    const gfloat b = (gfloat) (to->px[0] - from->px[0]);
+
+    t->ex[k] = from->px[0];
+    t->ey[k] = from->px[1];
+    t->ea[k] = along ? a : -a;
+    t->eb[k] = along ? b : -b;
+    t->tie[k] = along ? -1 : 0;
+  }
+  return TRUE;
+}
+
+static void
+set_triangles (gpointer data, guint begin, guint end, guint worker)
+{
+  ClothRenderer *self = data;
+
+  for (guint i = begin; i < end; i++)
+    if (!set_triangle (self, self->mesh->triangles[i], &self->triangles[i]))
+      self->triangles[i].right = -1;
+}
+
+/* Which triangles touch which tile, in the order of the mesh. */
+static void
+sort_triangles (ClothRenderer * self)
+{
+  const guint n_tiles = (guint) (self->columns * self->rows);
+  const guint n = self->mesh->n_triangles;
+  gsize total = 0;
+
+  memset (self->first, 0, (n_tiles + 1) * sizeof *self->first);
+  for (gint pass = 0; pass < 2; pass++) {
+    for (guint i = 0; i < n; i++) {
+      const ClothRenderTriangle *t = &self->triangles[i];
+
+      if (t->right < 0)
+        continue;
+      for (gint y = t->top / TILE; y <= t->bottom / TILE; y++)
+        for (gint x = t->left / TILE; x <= t->right / TILE; x++) {
+          guint *slot = &self->first[y * self->columns + x];
+
+          if (pass)
+            self->list[*slot] = i;
+          (*slot)++;
+        }
+    }
+    if (pass == 0) {
+      /* Counts become places; filling then moves each to the next one's. */
+      for (guint i = 0; i <= n_tiles; i++) {
+        const guint count = i < n_tiles ? self->first[i] : 0;
+
+        self->first[i] = (guint) total;
+        total += count;
+      }
+      if (self->list_size < total) {
+        self->list_size = total;
+        self->list = g_renew (guint, self->list, total);
+      }
+    }
+  }
+  memmove (self->first + 1, self->first, n_tiles * sizeof *self->first);
+  self->first[0] = 0;
+}
+
+static void
+draw_tiles (gpointer data, guint begin, guint end, guint worker)
+{
+  ClothRenderer *self = data;
+  const guint n = (guint) (self->columns * self->rows);
+  gpointer scratch = self->scratch + worker * cloth_render_tile_scratch ();
+
+  for (guint i = begin; i < end; i++) {
+    /* Each thread gets some rows of all parts of the picture: work is even. */
+    const guint row = i / (guint) self->columns;
+    const guint half = ((guint) self->rows + 1) / 2;
+    const guint y = row < half ? 2 * row : 2 * (row - half) + 1;
+    const guint tile = y * (guint) self->columns + i % (guint) self->columns;
+
+    g_assert (tile < n);
+    self->draw_tile (&self->job, (gint) (tile % (guint) self->columns) * TILE,
+        (gint) y * TILE, self->list + self->first[tile],
+        self->first[tile + 1] - self->first[tile], scratch);
+  }
+}
+
+/* ---- the picture ---- */
+
+static void
+prepare_light (ClothRenderer * self, const ClothPaint * paint)
+{
+  const ClothCamera *camera = &self->capture->camera;
+  const gsize size = (gsize) camera->width * (gsize) camera->height
+      * paint->n_channels;
+  guint n_tiles;
+
+  self->light.width = camera->width;
+  self->light.height = camera->height;
+  self->light.n_channels = paint->n_channels;
+  if (self->light_size < size) {
+    self->light_size = size;
+    self->light.data = g_renew (gfloat, self->light.data, size);
+  }
+  memset (self->light.data, 0, size * sizeof (gfloat));
+  self->columns = (camera->width + TILE - 1) / TILE;
+  self->rows = (camera->height + TILE - 1) / TILE;
+  n_tiles = (guint) (self->columns * self->rows);
+  if (self->tiles_size < n_tiles) {
+    self->tiles_size = n_tiles;
+    self->first = g_renew (guint, self->first, n_tiles + 1);
+  }
+}
+
+/* Instants of the exposure: by how far points move in the picture meanwhile. */
+static guint
+count_instants (ClothRenderer * self, gdouble time_s)
+{
+  const gdouble exposure = self->capture->exposure_s;
+  g_autofree Point *start = NULL;
+  gdouble farthest = 0;
+
+  if (exposure <= 0)
+    return 1;
+  see (self, 0, time_s);
+  start = g_memdup2 (self->points, self->n_vertices * sizeof *start);
+  for (gint half = 1; half <= 2; half++) {
+    see (self, 0, time_s + exposure * half / 2);
+    for (guint i = 0; i < self->n_vertices; i++)
+      if (start[i].depth > 0 && self->points[i].depth > 0)
+        farthest = MAX (farthest, hypot (self->points[i].px[0]
+                - start[i].px[0], self->points[i].px[1] - start[i].px[1]));
+  }
+  return (guint) CLAMP (ceil (farthest / INSTANT_PX), 1, MAX_INSTANTS);
+}
+
+/**
+ * cloth_renderer_draw:
+ * @renderer: a renderer
+ * @paint: what is on the printed side
+ * @capture: the camera
+ * @style: light and background
+ * @motion: positions of the mesh's vertices around @time_s; what touches an unknown
+ *   vertex is left out
+ * @time_s: the picture's time by the camera's clock
+ *
+ * Draws the light that reaches the sensor: everything but what sensor and lens do to a
+ * picture that is already there, which is cloth_renderer_develop ()'s. What reaches
+ * behind the camera is left out. A corner of a printed square lies within some
+ * thousandths of a pixel of its place.
+ *
+ * Returns: (transfer none): the light, until the next call
+ *
+ * Since: 0.1
+ */
+const ClothLight *
+cloth_renderer_draw (ClothRenderer * renderer, const ClothPaint * paint,
+    const ClothCapture * capture, const ClothRenderStyle * style,
+    const ClothMotion * motion, gdouble time_s)
+{
+  ClothRenderer *self = renderer;
+  guint level, instants;
+
+  g_return_val_if_fail (motion->n_points == self->n_vertices, NULL);
+  self->capture = capture;
+  self->motion = motion;
+  prepare_light (self, paint);
+  level = choose_level (self, time_s);
+  instants = count_instants (self, time_s);
+  self->job = (ClothRenderJob) {
+    .paint = paint,.triangles = self->triangles,.back =
+        (gfloat) style->back,.weight = 1 / (gfloat) instants,.background =
+        { (gfloat) style->background[0],
+      (gfloat) ((style->background[1] - style->background[0])
+          / MAX (1, self->light.height - 1))
+  },.light = &self->light};
+  for (guint i = 0; i < instants; i++) {
+    see (self, level, time_s + capture->exposure_s * (i + 0.5) / instants);
+    light_points (self, style);
+    if (self->triangles_size < self->mesh->n_triangles) {
+      self->triangles_size = self->mesh->n_triangles;
+      self->triangles = g_renew (ClothRenderTriangle, self->triangles,
+          self->triangles_size);
+      self->job.triangles = self->triangles;
+    }
+    cloth_pool_run (self->pool, set_triangles, self, self->mesh->n_triangles);
+    sort_triangles (self);
+    cloth_pool_run (self->pool, draw_tiles, self,
+        (guint) (self->columns * self->rows));
+  }
+  return &self->light;
+}
+
+/**
+ * cloth_renderer_develop:
+ * @renderer: a renderer that has drawn
+ * @capture: the camera
+ * @frame: number of the picture
+ * @seed: of the noise
+ * @n_planes: 1 for a grey picture, 3 for red, green and blue
+ * @planes: (array length=n_planes): the first pixel of each plane
+ * @strides: (array length=n_planes): bytes from one row to the next
+ * @pixel_stride: bytes from one pixel to the next
+ *
+ * Makes a picture of the light, once for each drawing: change of the light across the
+ * picture, defocus, crosstalk of the colours, the transfer curve of sRGB, noise, whole
+ * levels. The noise is a function of seed, frame, pixel and channel only.
+ *
+ * Since: 0.1
+ */
+void
+cloth_renderer_develop (ClothRenderer * renderer,
+    const ClothCapture * capture, guint64 frame, guint64 seed, guint n_planes,
+    guint8 * const *planes, const gint * strides, gint pixel_stride)
+{
+  cloth_sensor_develop (renderer->sensor, renderer->pool, capture,
+      &renderer->light, frame, seed, n_planes, planes, strides, pixel_stride);
+}

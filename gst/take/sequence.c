@@ -1,0 +1,490 @@
+/* Mesh sequences on disk, whatever their format: reading frame by frame.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/take/sequence.h"
+
+#include <gio/gio.h>
+#include <math.h>
+#include <string.h>
+
+#include "gst/file/npy.h"
+#include "gst/mesh/formats/obj.h"
+#include "gst/mesh/formats/pc2.h"
+#include "gst/mesh/formats/ply.h"
+#include "gst/take/take.h"
+
+struct _ClothMeshReader
+{
+  ClothMeshFormat format;
+  ClothTopology *topology;      /* owned, but for a take */
+  guint n_frames;
+  gdouble fps;
+  gfloat *positions;            /* one frame */
+  guint8 *states;
+  gfloat *covariances;          /* NULL without */
+  /* OBJ and PC2 */
+  ClothObj *obj;
+  ClothPc2Reader *cache;        /* NULL: the OBJ file is the only frame */
+  ClothNpyReader *state_rows;   /* may be NULL */
+  guint n_seam_vertices;
+  /* PLY */
+  ClothPly *ply;
+  gchar *stem;
+  gboolean single;              /* one file without a number */
+  guint first;                  /* number of the first file */
+  /* take */
+  ClothTake *take;
+};
+
+static gboolean
+has_ending (const gchar * location, const gchar * ending)
+{
+  gsize n = strlen (location), m = strlen (ending);
+
+  return n >= m && g_ascii_strcasecmp (location + n - m, ending) == 0;
+}
+
+/* Formats told by one ending, which the location may lack when the format is set. */
+static const struct
+{
+  const gchar *ending;
+  ClothMeshFormat format;
+} endings[] = {
+  {".ply", CLOTH_MESH_FORMAT_PLY}, {".glb", CLOTH_MESH_FORMAT_GLTF},
+  {".usda", CLOTH_MESH_FORMAT_USD}, {".pvd", CLOTH_MESH_FORMAT_VTP},
+  {".vtp", CLOTH_MESH_FORMAT_VTP}, {".c3d", CLOTH_MESH_FORMAT_C3D},
+  {".csv", CLOTH_MESH_FORMAT_CSV}
+};
+
+/**
+ * cloth_mesh_format_guess:
+ * @location: file or folder, there or not yet
+ *
+ * `.ply`, `.glb`, `.usda`, `.pvd` or `.vtp`, `.c3d` and `.csv` say their formats;
+ * `.take`, `take.json`, a closing slash or a folder that is there is a take; anything
+ * else is OBJ + PC2.
+ *
+ * Returns: the format
+ * Since: 0.1
+ */
+ClothMeshFormat
+cloth_mesh_format_guess (const gchar * location)
+{
+  g_autofree gchar *base = g_path_get_basename (location);
+
+  for (guint i = 0; i < G_N_ELEMENTS (endings); i++)
+    if (has_ending (location, endings[i].ending))
+      return endings[i].format;
+  if (has_ending (location, ".take") || has_ending (location, "/") ||
+      g_str_equal (base, "take.json") ||
+      g_file_test (location, G_FILE_TEST_IS_DIR))
+    return CLOTH_MESH_FORMAT_TAKE;
+  return CLOTH_MESH_FORMAT_OBJ_PC2;
+}
+
+/**
+ * cloth_mesh_format_stem:
+ * @location: file or folder as the user gave it
+ * @format: a format, not %CLOTH_MESH_FORMAT_AUTO
+ *
+ * Returns: (transfer full): what the names of the files begin with; the folder of a
+ *   take
+ * Since: 0.1
+ */
+gchar *
+cloth_mesh_format_stem (const gchar * location, ClothMeshFormat format)
+{
+  gsize n = strlen (location);
+
+  switch (format) {
+    case CLOTH_MESH_FORMAT_PLY:
+      if (has_ending (location, "_%05d.ply"))
+        return g_strndup (location, n - strlen ("_%05d.ply"));
+      break;
+    case CLOTH_MESH_FORMAT_TAKE:
+      if (g_str_equal (location, "take.json"))
+        return g_strdup (".");
+      if (has_ending (location, "/take.json"))
+        n -= strlen ("/take.json");
+      while (n > 1 && location[n - 1] == '/')
+        n--;
+      return g_strndup (location, n);
+    case CLOTH_MESH_FORMAT_OBJ_PC2:
+      if (has_ending (location, ".obj") || has_ending (location, ".pc2"))
+        return g_strndup (location, n - strlen (".obj"));
+      break;
+    default:
+      break;
+  }
+  for (guint i = 0; i < G_N_ELEMENTS (endings); i++)
+    if (format == endings[i].format && has_ending (location, endings[i].ending))
+      return g_strndup (location, n - strlen (endings[i].ending));
+  return g_strdup (location);
+}
+
+static gboolean
+invalid (GError ** error, const gchar * what)
+{
+  g_set_error_literal (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID, what);
+  return FALSE;
+}
+
+static gboolean
+open_states (ClothMeshReader * reader, const gchar * stem, GError ** error)
+{
+  g_autofree gchar *path = g_strconcat (stem, ".states.npy", NULL);
+  const ClothNpyInfo *info;
+
+  if (!g_file_test (path, G_FILE_TEST_EXISTS))
+    return TRUE;
+  reader->state_rows = cloth_npy_reader_open (path, error);
+  if (!reader->state_rows)
+    return FALSE;
+  info = cloth_npy_reader_get_info (reader->state_rows);
+  if (info->type == CLOTH_NPY_UINT8 && info->rank == 2 &&
+      info->shape[0] == reader->n_frames &&
+      info->shape[1] == reader->topology->n_vertices)
+    return TRUE;
+  g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+      "%s does not belong to the point cache beside it: remove it or write both "
+      "again", path);
+  return FALSE;
+}
+
+static gboolean
+open_obj_pc2 (ClothMeshReader * reader, const gchar * stem, GError ** error)
+{
+  g_autofree gchar *obj_path = g_strconcat (stem, ".obj", NULL);
+  g_autofree gchar *pc2_path = g_strconcat (stem, ".pc2", NULL);
+  const ClothPc2Info *info;
+
+  reader->obj = cloth_obj_read (obj_path, error);
+  if (!reader->obj)
+    return FALSE;
+  reader->topology = g_steal_pointer (&reader->obj->topology);
+  reader->n_seam_vertices = reader->obj->n_seam_vertices;
+  reader->fps = reader->obj->fps;
+  reader->n_frames = 1;
+  if (!g_file_test (pc2_path, G_FILE_TEST_EXISTS))
+    return TRUE;
+  reader->cache = cloth_pc2_reader_open (pc2_path, error);
+  if (!reader->cache)
+    return FALSE;
+  info = cloth_pc2_reader_get_info (reader->cache);
+  if (info->n_points != reader->topology->n_vertices) {
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+        "%s has %u points, the OBJ file %u vertices", pc2_path, info->n_points,
+        reader->topology->n_vertices);
+    return FALSE;
+  }
+  if (info->n_samples == 0)
+    return invalid (error, "the point cache has no samples");
+  reader->n_frames = info->n_samples;
+  return open_states (reader, stem, error);
+}
+
+static gchar *
+ply_path (const ClothMeshReader * reader, guint frame)
+{
+  if (reader->single)
+    return g_strconcat (reader->stem, ".ply", NULL);
+  return g_strdup_printf ("%s_%05u.ply", reader->stem, reader->first + frame);
+}
+
+static gboolean
+ply_exists (const ClothMeshReader * reader, guint frame)
+{
+  g_autofree gchar *path = ply_path (reader, frame);
+
+  return g_file_test (path, G_FILE_TEST_EXISTS);
+}
+
+static gboolean
+read_ply (ClothMeshReader * reader, guint frame, GError ** error)
+{
+  g_autofree gchar *path = ply_path (reader, frame);
+
+  return cloth_ply_read (reader->ply, path, error);
+}
+
+static gboolean
+open_ply (ClothMeshReader * reader, const gchar * stem, GError ** error)
+{
+  ClothPly *ply = cloth_ply_new ();
+  ClothTopology *topology;
+
+  reader->ply = ply;
+  reader->stem = g_strdup (stem);
+  /* Sequences of other programs often begin with 1. */
+  if (!ply_exists (reader, 0)) {
+    reader->first = 1;
+    if (!ply_exists (reader, 0))
+      reader->single = TRUE;
+  }
+  reader->n_frames = 1;
+  while (!reader->single && ply_exists (reader, reader->n_frames))
+    reader->n_frames++;
+  if (!read_ply (reader, 0, error))
+    return FALSE;
+  topology = cloth_topology_new (ply->n_vertices, ply->n_faces);
+  memcpy (topology->uv, ply->uv, 2 * (gsize) ply->n_vertices * sizeof (gfloat));
+  if (!ply->has_uv)
+    memset (topology->uv, 0, 2 * (gsize) ply->n_vertices * sizeof (gfloat));
+  memcpy (topology->faces, ply->faces->data, ply->faces->len *
+      sizeof (guint32));
+  reader->topology = topology;
+  reader->fps = ply->note.fps;
+  cloth_mesh_note_apply (&ply->note, topology);
+  return cloth_topology_check (topology, error);
+}
+
+static gboolean
+open_take (ClothMeshReader * reader, const gchar * folder, GError ** error)
+{
+  gsize n;
+
+  reader->take = cloth_take_open (folder, error);
+  if (!reader->take)
+    return FALSE;
+  reader->topology = (ClothTopology *) cloth_take_get_topology (reader->take);
+  reader->n_frames = cloth_take_get_n_frames (reader->take);
+  reader->fps = cloth_take_get_info (reader->take)->fps;
+  n = reader->topology->n_vertices;
+  if (cloth_take_has_covariances (reader->take))
+    reader->covariances = g_new (gfloat, 6 * n);
+  return TRUE;
+}
+
+/**
+ * cloth_mesh_reader_open:
+ * @location: file or folder
+ * @format: its format
+ * @error: #ClothFileError, #GIOErrorEnum
+ *
+ * Opens a sequence. Only the topology and one frame are held in memory.
+ *
+ * Returns: (transfer full): a reader, or %NULL
+ * Since: 0.1
+ */
+ClothMeshReader *
+cloth_mesh_reader_open (const gchar * location, ClothMeshFormat format,
+    GError ** error)
+{
+  g_autoptr (ClothMeshReader) reader = g_new0 (ClothMeshReader, 1);
+  g_autofree gchar *stem = NULL;
+  gboolean opened = FALSE;
+
+  if (format == CLOTH_MESH_FORMAT_AUTO)
+    format = cloth_mesh_format_guess (location);
+  reader->format = format;
+  stem = cloth_mesh_format_stem (location, format);
+  switch (format) {
+    case CLOTH_MESH_FORMAT_PLY:
+      opened = open_ply (reader, stem, error);
+      break;
+    case CLOTH_MESH_FORMAT_TAKE:
+      opened = open_take (reader, stem, error);
+      break;
+    case CLOTH_MESH_FORMAT_OBJ_PC2:
+      opened = open_obj_pc2 (reader, stem, error);
+      break;
+    default:
+      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_UNSUPPORTED,
+          "%s: this format is written, not read: keep a take, OBJ + PC2 or PLY to "
+          "read the sequence again", location);
+      break;
+  }
+  if (!opened)
+    return NULL;
+  reader->positions = g_new (gfloat, 3 * (gsize) reader->topology->n_vertices);
+  reader->states = g_new (guint8, reader->topology->n_vertices);
+  return g_steal_pointer (&reader);
+}
+
+/**
+ * cloth_mesh_reader_get_topology:
+ * @reader: a reader
+ *
+ * Returns: (transfer none): the mesh of every frame
+ * Since: 0.1
+ */
+const ClothTopology *
+cloth_mesh_reader_get_topology (const ClothMeshReader * reader)
+{
+  return reader->topology;
+}
+
+/**
+ * cloth_mesh_reader_get_n_frames:
+ * @reader: a reader
+ *
+ * Returns: number of frames, at least 1
+ * Since: 0.1
+ */
+guint
+cloth_mesh_reader_get_n_frames (const ClothMeshReader * reader)
+{
+  return reader->n_frames;
+}
+
+/**
+ * cloth_mesh_reader_get_fps:
+ * @reader: a reader
+ *
+ * Returns: frames a second, 0 when the files do not say
+ * Since: 0.1
+ */
+gdouble
+cloth_mesh_reader_get_fps (const ClothMeshReader * reader)
+{
+  return reader->fps;
+}
+
+/**
+ * cloth_mesh_reader_get_times:
+ * @reader: a reader
+ *
+ * Returns: (transfer none) (nullable): the time of every frame, seconds, rising
+ * Since: 0.1
+ */
+const gdouble *
+cloth_mesh_reader_get_times (const ClothMeshReader * reader)
+{
+  return reader->take ? cloth_take_get_times (reader->take) : NULL;
+}
+
+/**
+ * cloth_mesh_reader_get_n_seam_vertices:
+ * @reader: a reader
+ *
+ * Returns: vertices that an OBJ file gives more than one uv, of which the first was
+ *   kept
+ * Since: 0.1
+ */
+guint
+cloth_mesh_reader_get_n_seam_vertices (const ClothMeshReader * reader)
+{
+  return reader->n_seam_vertices;
+}
+
+static gboolean
+read_obj_pc2 (ClothMeshReader * reader, guint frame, GError ** error)
+{
+  guint n = reader->topology->n_vertices;
+
+  if (!reader->cache)
+    memcpy (reader->positions, reader->obj->positions,
+        3 * (gsize) n * sizeof (gfloat));
+  else if (!cloth_pc2_reader_read (reader->cache, frame, reader->positions,
+          error))
+    return FALSE;
+  if (!cloth_positions_check (reader->positions, n, error))
+    return FALSE;
+  if (reader->state_rows) {
+    if (!cloth_npy_reader_read_raw (reader->state_rows, frame, 1,
+            reader->states, error) ||
+        !cloth_states_check (reader->states, n, error))
+      return FALSE;
+  } else {
+    memset (reader->states, CLOTH_VERTEX_MEASURED, n);
+  }
+  return TRUE;
+}
+
+static gboolean
+read_ply_frame (ClothMeshReader * reader, guint frame,
+    ClothMeshFrame * contents, GError ** error)
+{
+  const ClothTopology *topology = reader->topology;
+  const ClothPly *ply = reader->ply;
+
+  if (!read_ply (reader, frame, error))
+    return FALSE;
+  if (ply->n_vertices != topology->n_vertices ||
+      ply->n_faces != topology->n_faces ||
+      memcmp (ply->faces->data, topology->faces,
+          ply->faces->len * sizeof (guint32)) != 0) {
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+        "file %u of the PLY sequence has another mesh than the first one",
+        reader->first + frame);
+    return FALSE;
+  }
+  contents->positions = ply->positions;
+  contents->states = ply->states;
+  contents->covariances = ply->has_covariances ? ply->covariances : NULL;
+  return TRUE;
+}
+
+static gboolean
+read_take (ClothMeshReader * reader, guint frame, GError ** error)
+{
+  return cloth_take_read_positions (reader->take, frame, reader->positions,
+      error) && cloth_take_read_states (reader->take, frame,
+      reader->positions, reader->states, error) &&
+      (!reader->covariances || cloth_take_read_covariances (reader->take,
+          frame, reader->covariances, error));
+}
+
+/**
+ * cloth_mesh_reader_read:
+ * @reader: a reader
+ * @frame: which frame
+ * @contents: (out): set to the frame; valid until the next call
+ * @error: #ClothFileError, #GIOErrorEnum
+ *
+ * Vertices that the files call unseen are NaN, whatever place they hold there.
+ *
+ * Returns: %TRUE when the frame was read and is valid
+ * Since: 0.1
+ */
+gboolean
+cloth_mesh_reader_read (ClothMeshReader * reader, guint frame,
+    ClothMeshFrame * contents, GError ** error)
+{
+  if (frame >= reader->n_frames) {
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+        "frame %u of %u", frame, reader->n_frames);
+    return FALSE;
+  }
+  if (reader->format == CLOTH_MESH_FORMAT_PLY)
+    return read_ply_frame (reader, frame, contents, error);
+  if (reader->take ? !read_take (reader, frame, error) :
+      !read_obj_pc2 (reader, frame, error))
+    return FALSE;
+  for (gsize i = 0; i < reader->topology->n_vertices; i++) {
+    if (isnan (reader->positions[3 * i]))
+      reader->states[i] = CLOTH_VERTEX_UNSEEN;
+    else if (reader->states[i] == CLOTH_VERTEX_UNSEEN)
+      for (guint k = 0; k < 3; k++)
+        reader->positions[3 * i + k] = NAN;
+  }
+  contents->positions = reader->positions;
+  contents->states = reader->states;
+  contents->covariances = reader->covariances;
+  return TRUE;
+}
+
+/**
+ * cloth_mesh_reader_free:
+ * @reader: (transfer full) (nullable): a reader
+ *
+ * Since: 0.1
+ */
+void
+cloth_mesh_reader_free (ClothMeshReader * reader)
+{
+  if (!reader)
+    return;
+  if (!reader->take)
+    cloth_topology_free (reader->topology);
+  cloth_take_free (reader->take);
+  cloth_obj_free (reader->obj);
+  cloth_pc2_reader_free (reader->cache);
+  cloth_npy_reader_free (reader->state_rows);
+  cloth_ply_free (reader->ply);
+  g_free (reader->stem);
+  g_free (reader->positions);
+  g_free (reader->states);
+  g_free (reader->covariances);
+  g_free (reader);
+}

@@ -1,0 +1,69 @@
+/* take.json: what a take says of itself.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/take/obstacle.h"
+#include "gst/mesh/topology.h"
+
+G_BEGIN_DECLS
+
+/**
+ * ClothHeld:
+ * @vertex: a vertex that a clamp holds
+ * @from_s: held from here on, seconds; −∞ when from the beginning
+ * @until_s: let go here, seconds; ∞ when held to the end
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  guint vertex;
+  gdouble from_s;
+  gdouble until_s;
+} ClothHeld;
+
+/**
+ * ClothTakeInfo:
+ * @name: its name
+ * @fps: frames a second, 0 when only times.npy says
+ * @columns: vertices of a row of the grid, 0 with a mesh file
+ * @rows: rows of vertices of the grid
+ * @width_m: width of the grid, metres
+ * @height_m: its height, metres
+ * @mesh: (nullable): name of the OBJ file in the folder, when it is no grid
+ * @held: (element-type ClothHeld): what clamps hold, in the order of clamps.npy
+ * @noise_sigma_m: standard deviation of a coordinate, metres; NaN: estimate it
+ * @gravity: m/s²
+ * @obstacles: (element-type ClothObstacle): what the cloth may touch
+ * @seams: (element-type ClothSeamLine): what is sewn together, for a mesh file
+ * @notes: (nullable): for people
+ *
+ * The contents of take.json.
+ *
+ * Since: 0.1
+ */
+typedef struct {
+  gchar *name;
+  gdouble fps;
+  guint columns;
+  guint rows;
+  gdouble width_m;
+  gdouble height_m;
+  gchar *mesh;
+  GArray *held;
+  gdouble noise_sigma_m;
+  gdouble gravity[3];
+  GArray *obstacles;
+  GArray *seams;
+  gchar *notes;
+} ClothTakeInfo;
+
+ClothTakeInfo *cloth_take_info_new (const gchar * name);
+ClothTakeInfo *cloth_take_info_parse (const gchar * json, gsize size,
+    GError ** error);
+gchar *cloth_take_info_to_json (const ClothTakeInfo * info);
+ClothTakeInfo *cloth_take_info_copy (const ClothTakeInfo * info);
+void cloth_take_info_free (ClothTakeInfo * info);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothTakeInfo, cloth_take_info_free)
+G_END_DECLS

@@ -1,0 +1,587 @@
+/* A take: reading the folder that holds one recording of a cloth.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/take/take.h"
+
+#include <gio/gio.h>
+#include <math.h>
+
+#include "gst/file/hash.h"
+#include "gst/file/npy.h"
+#include "gst/mesh/formats/obj.h"
+
+#define MAX_FRAMES (CLOTH_MAX_BUFFER / sizeof (gdouble))
+
+struct _ClothTake
+{
+  gchar *folder;
+  GPtrArray *files;             /* names of those that are read, below the folder */
+  ClothTakeInfo *info;
+  ClothTopology *topology;
+  guint n_frames;
+  gdouble *times;               /* NULL: info->fps says */
+  ClothNpyReader *positions;
+  ClothNpyReader *covariances;  /* these may be NULL */
+  ClothNpyReader *clamps;
+  ClothNpyReader *states;
+};
+
+static void
+note_file (ClothTake * take, const gchar * name)
+{
+  g_ptr_array_add (take->files, g_strdup (name));
+}
+
+static gboolean
+load_info (ClothTake * take, GError ** error)
+{
+  g_autofree gchar *path = cloth_path_inside (take->folder, "take.json", error);
+  g_autoptr (ClothInput) input = path ? cloth_input_open (path, error) : NULL;
+  g_autoptr (GByteArray) bytes = g_byte_array_new ();
+
+  if (!input || !cloth_input_load (input, CLOTH_MAX_BUFFER, bytes, error))
+    return FALSE;
+  note_file (take, "take.json");
+  take->info = cloth_take_info_parse ((const gchar *) bytes->data,
+      bytes->len - 1, error);
+  return take->info != NULL;
+}
+
+static gboolean
+check_seams (const ClothTake * take, GError ** error)
+{
+  for (guint i = 0; i < take->info->seams->len; i++) {
+    const ClothSeamLine *line =
+        &g_array_index (take->info->seams, ClothSeamLine, i);
+
+    for (guint k = 0; k < 2 * line->n_vertices; k++) {
+      guint vertex = line->lines[k % 2][k / 2];
+
+      if (vertex < take->topology->n_vertices)
+        continue;
+      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+          "take.json: vertex %u of seam %u is not in the mesh", vertex, i);
+      return FALSE;
+    }
+  }
+  return TRUE;
+}
+
+static gboolean
+load_topology (ClothTake * take, GError ** error)
+{
+  const ClothTakeInfo *info = take->info;
+  g_autofree gchar *path = NULL;
+  g_autoptr (ClothObj) obj = NULL;
+
+  if (!info->mesh) {
+    take->topology = cloth_topology_new_grid (info->columns, info->rows,
+        (gfloat) info->width_m, (gfloat) info->height_m);
+    return TRUE;
+  }
+  path = cloth_path_inside (take->folder, info->mesh, error);
+  obj = path ? cloth_obj_read (path, error) : NULL;
+  if (!obj)
+    return FALSE;
+  note_file (take, info->mesh);
+  if (!obj->has_uv) {
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+        "%s: the mesh of a take needs uv (vt), in metres", info->mesh);
+    return FALSE;
+  }
+  take->topology = g_steal_pointer (&obj->topology);
+  for (guint i = 0; i < info->held->len; i++) {
+    if (g_array_index (info->held, ClothHeld,
+            i).vertex >= take->topology->n_vertices) {
+      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+          "take.json: held vertex %u is not in the mesh",
+          g_array_index (info->held, ClothHeld, i).vertex);
+      return FALSE;
+    }
+  }
+  return check_seams (take, error);
+}
+
+static gboolean
+load_obstacles (ClothTake * take, GError ** error)
+{
+  for (guint i = 0; i < take->info->obstacles->len; i++) {
+    ClothObstacle *obstacle =
+        &g_array_index (take->info->obstacles, ClothObstacle, i);
+
+    if (obstacle->kind != CLOTH_OBSTACLE_MESH)
+      continue;
+    if (!cloth_obstacle_load_mesh (obstacle, take->folder, error))
+      return FALSE;
+    note_file (take, obstacle->mesh);
+  }
+  return TRUE;
+}
+
+/* Opens an array and compares its shape; an absent @optional one is NULL. */
+static gboolean
+open_array (ClothTake * take, const gchar * name, gboolean optional,
+    guint rank, const guint64 * shape, ClothNpyReader ** reader,
+    GError ** error)
+{
+  g_autoptr (GError) fault = NULL;
+  g_autofree gchar *path = cloth_path_inside (take->folder, name, &fault);
+  const ClothNpyInfo *info;
+  gboolean match;
+
+  if (!path) {
+    if (optional && g_error_matches (fault, G_IO_ERROR, G_IO_ERROR_NOT_FOUND))
+      return TRUE;
+    g_propagate_error (error, g_steal_pointer (&fault));
+    return FALSE;
+  }
+  *reader = cloth_npy_reader_open (path, error);
+  if (!*reader)
+    return FALSE;
+  note_file (take, name);
+  info = cloth_npy_reader_get_info (*reader);
+  match = info->rank == rank;
+  /* A length of 0 stands for any. */
+  for (guint i = 0; match && i < rank; i++)
+    match = shape[i] == 0 || info->shape[i] == shape[i];
+  if (!match) {
+    GString *want = g_string_new (NULL), *have = g_string_new (NULL);
+
+    for (guint i = 0; i < rank; i++) {
+      if (shape[i] == 0)
+        g_string_append (want, "[frames]");
+      else
+        g_string_append_printf (want, "[%" G_GUINT64_FORMAT "]", shape[i]);
+    }
+    for (guint i = 0; i < info->rank; i++)
+      g_string_append_printf (have, "[%" G_GUINT64_FORMAT "]", info->shape[i]);
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+        "%s has the shape %s; the take needs %s", name, have->str, want->str);
+    g_string_free (want, TRUE);
+    g_string_free (have, TRUE);
+    return FALSE;
+  }
+  return TRUE;
+}
+
+static gboolean
+check_type (ClothNpyReader * reader, const gchar * name, gboolean bytes,
+    GError ** error)
+{
+  ClothNpyType type;
+
+  if (!reader)
+    return TRUE;
+  type = cloth_npy_reader_get_info (reader)->type;
+  if (bytes ? type == CLOTH_NPY_UINT8 :
+      type == CLOTH_NPY_FLOAT32 || type == CLOTH_NPY_FLOAT64)
+    return TRUE;
+  g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+      "%s must hold items of type %s", name, bytes ? "uint8" : "float32");
+  return FALSE;
+}
+
+static gboolean
+load_times (ClothTake * take, GError ** error)
+{
+  const guint64 shape[] = { take->n_frames };
+  g_autoptr (ClothNpyReader) reader = NULL;
+
+  if (!open_array (take, "times.npy", TRUE, 1, shape, &reader, error) ||
+      !check_type (reader, "times.npy", FALSE, error))
+    return FALSE;
+  if (!reader) {
+    if (take->info->fps > 0)
+      return TRUE;
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+        "the take has neither “fps” in take.json nor times.npy");
+    return FALSE;
+  }
+  take->times = g_new (gdouble, take->n_frames);
+  if (!cloth_npy_reader_read_double (reader, 0, take->n_frames, take->times,
+          error))
+    return FALSE;
+  for (guint i = 0; i < take->n_frames; i++) {
+    if (!isfinite (take->times[i]) ||
+        (i > 0 && take->times[i] <= take->times[i - 1])) {
+      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+          "times.npy: the time of frame %u is not finite or does not rise", i);
+      return FALSE;
+    }
+  }
+  return TRUE;
+}
+
+static gboolean
+load_arrays (ClothTake * take, GError ** error)
+{
+  guint64 n_vertices = take->topology->n_vertices;
+  guint64 n_held = take->info->held->len;
+  const guint64 positions[] = { 0, n_vertices, 3 };
+  guint64 n_frames;
+
+  if (!open_array (take, "positions.npy", FALSE, 3, positions,
+          &take->positions, error) ||
+      !check_type (take->positions, "positions.npy", FALSE, error))
+    return FALSE;
+  n_frames = cloth_npy_reader_get_info (take->positions)->n_rows;
+  if (n_frames == 0 || n_frames > MAX_FRAMES) {
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT,
+        "positions.npy: %" G_GUINT64_FORMAT " frames; between 1 and %"
+        G_GSIZE_FORMAT " are accepted", n_frames, (gsize) MAX_FRAMES);
+    return FALSE;
+  }
+  take->n_frames = (guint) n_frames;
+  {
+    const guint64 covariances[] = { n_frames, n_vertices, 6 };
+    const guint64 clamps[] = { n_frames, n_held, 3 };
+    const guint64 states[] = { n_frames, n_vertices };
+
+    if (!open_array (take, "covariance.npy", TRUE, 3, covariances,
+            &take->covariances, error) ||
+        !check_type (take->covariances, "covariance.npy", FALSE, error) ||
+        !open_array (take, "clamps.npy", TRUE, 3, clamps, &take->clamps,
+            error) || !check_type (take->clamps, "clamps.npy", FALSE, error) ||
+        !open_array (take, "states.npy", TRUE, 2, states, &take->states,
+            error) || !check_type (take->states, "states.npy", TRUE, error))
+      return FALSE;
+  }
+  if (take->clamps && n_held == 0) {
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+        "clamps.npy is there but take.json says of no vertex that it is held");
+    return FALSE;
+  }
+  return load_times (take, error);
+}
+
+/**
+ * cloth_take_open:
+ * @folder: a take
+ * @error: #ClothFileError, #GIOErrorEnum
+ *
+ * Opens a take and compares the shapes of all its arrays. Frames are read one by
+ * one; a take larger than the memory is fine. Nothing outside @folder is read.
+ *
+ * Returns: (transfer full): the take, or %NULL
+ * Since: 0.1
+ */
+ClothTake *
+cloth_take_open (const gchar * folder, GError ** error)
+{
+  g_autoptr (ClothTake) take = g_new0 (ClothTake, 1);
+
+  take->folder = g_strdup (folder);
+  take->files = g_ptr_array_new_with_free_func (g_free);
+  if (!load_info (take, error) ||
+      !load_topology (take, error) ||
+      !load_obstacles (take, error) || !load_arrays (take, error)) {
+    g_prefix_error (error, "%s: ", folder);
+    return NULL;
+  }
+  return g_steal_pointer (&take);
+}
+
+/**
+ * cloth_take_sha256:
+ * @take: a take
+ * @error: #ClothFileError, #GIOErrorEnum
+ *
+ * Reads all files that reading the take reads: take.json, its arrays, its meshes.
+ *
+ * Returns: (transfer full) (nullable): the hash of what `sha256sum` prints of them, sorted
+ *   by their names, 64 hexadecimal digits
+ * Since: 0.1
+ */
+gchar *
+cloth_take_sha256 (const ClothTake * take, GError ** error)
+{
+  return cloth_files_sha256 (take->folder, take->files, error);
+}
+
+/**
+ * cloth_take_add_file:
+ * @take: a take
+ * @name: a file below its folder that is read beside it
+ *
+ * From now on cloth_take_sha256 () reads it, too.
+ *
+ * Since: 0.1
+ */
+void
+cloth_take_add_file (ClothTake * take, const gchar * name)
+{
+  note_file (take, name);
+}
+
+/**
+ * cloth_take_get_folder:
+ * @take: a take
+ *
+ * Returns: (transfer none) (type filename): where it lies
+ * Since: 0.1
+ */
+const gchar *
+cloth_take_get_folder (const ClothTake * take)
+{
+  return take->folder;
+}
+
+/**
+ * cloth_take_get_info:
+ * @take: a take
+ *
+ * Returns: (transfer none): its take.json
+ * Since: 0.1
+ */
+const ClothTakeInfo *
+cloth_take_get_info (const ClothTake * take)
+{
+  return take->info;
+}
+
+/**
+ * cloth_take_get_topology:
+ * @take: a take
+ *
+ * Returns: (transfer none): its grid or mesh
+ * Since: 0.1
+ */
+const ClothTopology *
+cloth_take_get_topology (const ClothTake * take)
+{
+  return take->topology;
+}
+
+/**
+ * cloth_take_get_n_frames:
+ * @take: a take
+ *
+ * Returns: number of frames, at least 1
+ * Since: 0.1
+ */
+guint
+cloth_take_get_n_frames (const ClothTake * take)
+{
+  return take->n_frames;
+}
+
+/**
+ * cloth_take_get_times:
+ * @take: a take
+ *
+ * Returns: (transfer none) (nullable): times.npy, seconds, rising; %NULL when frames
+ *   follow each other at the take's fps
+ * Since: 0.1
+ */
+const gdouble *
+cloth_take_get_times (const ClothTake * take)
+{
+  return take->times;
+}
+
+/**
+ * cloth_take_get_time:
+ * @take: a take
+ * @frame: a frame
+ *
+ * Returns: its time in seconds
+ * Since: 0.1
+ */
+gdouble
+cloth_take_get_time (const ClothTake * take, guint frame)
+{
+  return take->times ? take->times[frame] : frame / take->info->fps;
+}
+
+/**
+ * cloth_take_has_covariances:
+ * @take: a take
+ *
+ * Returns: whether there is a covariance.npy
+ * Since: 0.1
+ */
+gboolean
+cloth_take_has_covariances (const ClothTake * take)
+{
+  return take->covariances != NULL;
+}
+
+/**
+ * cloth_take_has_clamps:
+ * @take: a take
+ *
+ * Returns: whether there is a clamps.npy
+ * Since: 0.1
+ */
+gboolean
+cloth_take_has_clamps (const ClothTake * take)
+{
+  return take->clamps != NULL;
+}
+
+/**
+ * cloth_take_read_positions:
+ * @take: a take
+ * @frame: which frame
+ * @positions: (out caller-allocates): room for 3 numbers a vertex, metres; NaN when
+ *   not seen
+ * @error: #ClothFileError, #GIOErrorEnum
+ *
+ * Returns: %TRUE when they were read and are valid
+ * Since: 0.1
+ */
+gboolean
+cloth_take_read_positions (ClothTake * take, guint frame, gfloat * positions,
+    GError ** error)
+{
+  if (cloth_npy_reader_read_float (take->positions, frame, 1, positions, error)
+      && cloth_positions_check (positions, take->topology->n_vertices, error))
+    return TRUE;
+  g_prefix_error (error, "positions.npy, frame %u: ", frame);
+  return FALSE;
+}
+
+/**
+ * cloth_states_check:
+ * @states: a #ClothVertexState a vertex
+ * @n_vertices: how many
+ * @error: #ClothFileError
+ *
+ * Returns: %TRUE when every one is known
+ * Since: 0.1
+ */
+gboolean
+cloth_states_check (const guint8 * states, guint n_vertices, GError ** error)
+{
+  for (guint i = 0; i < n_vertices; i++) {
+    if (states[i] > CLOTH_VERTEX_PREDICTED) {
+      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+          "vertex %u has the state %u, which is not between 0 and 4", i,
+          states[i]);
+      return FALSE;
+    }
+  }
+  return TRUE;
+}
+
+/**
+ * cloth_take_read_states:
+ * @take: a take
+ * @frame: which frame
+ * @positions: that frame's positions
+ * @states: (out caller-allocates): room for a #ClothVertexState a vertex
+ * @error: #ClothFileError, #GIOErrorEnum
+ *
+ * Without states.npy a vertex is measured, or unseen when NaN.
+ *
+ * Returns: %TRUE when they were read and are valid
+ * Since: 0.1
+ */
+gboolean
+cloth_take_read_states (ClothTake * take, guint frame,
+    const gfloat * positions, guint8 * states, GError ** error)
+{
+  guint n = take->topology->n_vertices;
+
+  if (!take->states) {
+    for (gsize i = 0; i < n; i++)
+      states[i] = isnan (positions[3 * i]) ? CLOTH_VERTEX_UNSEEN :
+          CLOTH_VERTEX_MEASURED;
+    return TRUE;
+  }
+  if (cloth_npy_reader_read_raw (take->states, frame, 1, states, error) &&
+      cloth_states_check (states, n, error))
+    return TRUE;
+  g_prefix_error (error, "states.npy, frame %u: ", frame);
+  return FALSE;
+}
+
+/**
+ * cloth_take_read_covariances:
+ * @take: a take that has covariances
+ * @frame: which frame
+ * @covariances: (out caller-allocates): room for 6 numbers a vertex: xx, xy, xz, yy,
+ *   yz, zz, m²; NaN where not known
+ * @error: #ClothFileError, #GIOErrorEnum
+ *
+ * Returns: %TRUE when they were read, none is infinite and no variance negative
+ * Since: 0.1
+ */
+gboolean
+cloth_take_read_covariances (ClothTake * take, guint frame,
+    gfloat * covariances, GError ** error)
+{
+  if (!cloth_npy_reader_read_float (take->covariances, frame, 1, covariances,
+          error))
+    return FALSE;
+  for (gsize i = 0; i < 6 * (gsize) take->topology->n_vertices; i++) {
+    gsize k = i % 6;
+
+    if (isinf (covariances[i]) || ((k == 0 || k == 3 || k == 5) &&
+            covariances[i] < 0)) {
+      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+          "covariance.npy, frame %u: vertex %u has an infinite covariance or "
+          "a negative variance", frame, (guint) (i / 6));
+      return FALSE;
+    }
+  }
+  return TRUE;
+}
+
+/**
+ * cloth_take_read_clamps:
+ * @take: a take that has clamps
+ * @frame: which frame
+ * @clamps: (out caller-allocates): room for 3 numbers a held vertex, metres
+ * @error: #ClothFileError, #GIOErrorEnum
+ *
+ * Returns: %TRUE when they were read and are finite for as long as they hold
+ * Since: 0.1
+ */
+gboolean
+cloth_take_read_clamps (ClothTake * take, guint frame, gfloat * clamps,
+    GError ** error)
+{
+  gdouble time = cloth_take_get_time (take, frame);
+
+  if (!cloth_npy_reader_read_float (take->clamps, frame, 1, clamps, error))
+    return FALSE;
+  for (gsize i = 0; i < take->info->held->len; i++) {
+    const ClothHeld *held = &g_array_index (take->info->held, ClothHeld, i);
+
+    if (time < held->from_s || time >= held->until_s)
+      continue;
+    for (guint k = 0; k < 3; k++) {
+      if (!isfinite (clamps[3 * i + k])) {
+        g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+            "clamps.npy, frame %u: the clamp of vertex %u has no place", frame,
+            held->vertex);
+        return FALSE;
+      }
+    }
+  }
+  return TRUE;
+}
+
+/**
+ * cloth_take_free:
+ * @take: (transfer full) (nullable): a take
+ *
+ * Since: 0.1
+ */
+void
+cloth_take_free (ClothTake * take)
+{
+  if (!take)
+    return;
+  g_free (take->folder);
+  g_ptr_array_unref (take->files);
+  cloth_take_info_free (take->info);
+  cloth_topology_free (take->topology);
+  cloth_npy_reader_free (take->positions);
+  cloth_npy_reader_free (take->covariances);
+  cloth_npy_reader_free (take->clamps);
+  cloth_npy_reader_free (take->states);
+  g_free (take->times);
+  g_free (take);
+}

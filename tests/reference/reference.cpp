@@ -1,0 +1,144 @@
+/* What OpenCV offers for the same tasks, for benchmarks and tests to compare with.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "tests/reference/reference.h"
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include <vector>
+
+struct _ClothCvSaddle {
+  cv::Mat smooth, xx, yy, xy, det, mask;
+};
+
+ClothCvSaddle *
+cloth_cv_saddle_new (void)
+{
+  cv::setNumThreads (1);
+  return new ClothCvSaddle ();
+}
+
+void
+cloth_cv_saddle_free (ClothCvSaddle * self)
+{
+  delete self;
+}
+
+/**
+ * cloth_cv_saddle_mask:
+ * @self: its buffers, kept from picture to picture
+ * @data: grey picture
+ * @width: columns
+ * @height: rows
+ * @stride: bytes from row to row
+ * @sigma: width of the Gaussian, px
+ * @epsilon: bound of −Det, grey levels² / px⁴
+ * @n_below: (out): how many pixels pass
+ *
+ * The chain a user of OpenCV would write: GaussianBlur, three Sobel second derivatives,
+ * the determinant, a comparison.
+ *
+ * Returns: FALSE when OpenCV threw.
+ */
+gboolean
+cloth_cv_saddle_mask (ClothCvSaddle * self, const guint8 * data, gint width,
+    gint height, gint stride, gdouble sigma, gdouble epsilon, guint * n_below)
+{
+  try {
+    const cv::Mat image (height, width, CV_8UC1,
+        const_cast < guint8 * >(data), (size_t) stride);
+
+    cv::GaussianBlur (image, self->smooth, cv::Size (0, 0), sigma, sigma,
+        cv::BORDER_REPLICATE);
+    /* Sobel's 3×3 kernels: [1 -2 1] by [1 2 1], and [-1 0 1] twice. */
+    cv::Sobel (self->smooth, self->xx, CV_32F, 2, 0, 3, 0.25);
+    cv::Sobel (self->smooth, self->yy, CV_32F, 0, 2, 3, 0.25);
+    cv::Sobel (self->smooth, self->xy, CV_32F, 1, 1, 3, 0.25);
+    cv::multiply (self->xx, self->yy, self->det);
+    cv::multiply (self->xy, self->xy, self->xy);
+    cv::subtract (self->det, self->xy, self->det);
+    cv::compare (self->det, -epsilon, self->mask, cv::CMP_LT);
+    *n_below = (guint) cv::countNonZero (self->mask);
+    return TRUE;
+  } catch (...) {
+    return FALSE;
+  }
+}
+
+/**
+ * cloth_cv_corner_sub_pix:
+ * @data: grey picture
+ * @width: columns
+ * @height: rows
+ * @stride: bytes from row to row
+ * @half_window: of the search window, px
+ * @xy: (inout): @n places
+ * @n: how many
+ *
+ * Returns: FALSE when OpenCV threw.
+ */
+gboolean
+cloth_cv_corner_sub_pix (const guint8 * data, gint width, gint height,
+    gint stride, gint half_window, gfloat * xy, guint n)
+{
+  try {
+    const cv::Mat image (height, width, CV_8UC1,
+        const_cast < guint8 * >(data), (size_t) stride);
+    cv::Mat corners ((int) n, 1, CV_32FC2, xy);
+
+    cv::cornerSubPix (image, corners, cv::Size (half_window, half_window),
+        cv::Size (-1, -1), cv::TermCriteria (cv::TermCriteria::COUNT +
+            cv::TermCriteria::EPS, 40, 1e-3));
+    return TRUE;
+  } catch (...) {
+    return FALSE;
+  }
+}
+
+/**
+ * cloth_cv_dots:
+ * @bgr: colour picture, three bytes a pixel
+ * @width: columns
+ * @height: rows
+ * @stride: bytes from row to row
+ * @min_area: least area of a contour, px
+ * @max_area: greatest area
+ * @n_dots: (out): contours between both
+ *
+ * Dots as Scholz et al. 2005, 4.1, find them: hue, Canny's edges of the luminance, outer
+ * contours, the centre of gravity of each.
+ *
+ * Returns: %FALSE when OpenCV failed
+ *
+ * Since: 0.1
+ */
+gboolean
+cloth_cv_dots (const guint8 * bgr, gint width, gint height, gint stride,
+    gdouble min_area, gdouble max_area, guint * n_dots)
+{
+  try {
+    const cv::Mat image (height, width, CV_8UC3,
+        const_cast < guint8 * >(bgr), (size_t) stride);
+    std::vector < std::vector < cv::Point > >contours;
+    std::vector < cv::Vec4i > levels;
+    cv::Mat hsv, grey, edges;
+
+    cv::cvtColor (image, hsv, cv::COLOR_BGR2HSV);
+    cv::cvtColor (image, grey, cv::COLOR_BGR2GRAY);
+    cv::Canny (grey, edges, 40, 100);
+    /* Outer contours wherever they lie: the cloth's own encloses the dots. */
+    cv::findContours (edges, contours, levels, cv::RETR_CCOMP,
+        cv::CHAIN_APPROX_NONE);
+    *n_dots = 0;
+    for (size_t i = 0; i < contours.size (); i++) {
+      const cv::Moments moments = cv::moments (contours[i]);
+
+      *n_dots += levels[i][3] < 0 && moments.m00 >= min_area
+          && moments.m00 <= max_area;
+    }
+    return TRUE;
+  } catch (...) {
+    return FALSE;
+  }
+}
