@@ -42,8 +42,9 @@ load_baseline (GstClothGapInputs * self, const gchar * folder, GError ** error)
   return self->baseline && cloth_gap_check_same_cloth ("the baseline",
       cloth_take_get_topology (self->baseline), "the take of location",
       cloth_take_get_topology (self->take), error)
-      && gst_cloth_sights_load (folder,
-      cloth_take_get_topology (self->baseline), &self->baseline_sights, error);
+      && gst_cloth_io_observations_load (folder,
+      cloth_take_get_topology (self->baseline), &self->baseline_observations,
+      error);
 }
 
 gboolean
@@ -63,8 +64,8 @@ gst_cloth_gap_inputs_load (GstClothGapInputs * inputs, GstElement * element,
   self->take = cloth_take_open (settings->location, &error);
   self->scene = self->take ? cloth_scene_new_from_take (self->take, &error) :
       NULL;
-  if (!self->scene || !gst_cloth_sights_load (settings->location,
-          cloth_take_get_topology (self->take), &self->sights, &error))
+  if (!self->scene || !gst_cloth_io_observations_load (settings->location,
+          cloth_take_get_topology (self->take), &self->observations, &error))
     return fail (element, "location", settings->location, error);
   if (!load_baseline (self, settings->baseline, &error))
     return fail (element, "baseline", settings->baseline, error);
@@ -98,8 +99,8 @@ gst_cloth_gap_inputs_clear (GstClothGapInputs * inputs)
   g_clear_pointer (&inputs->scene, cloth_scene_free);
   g_clear_pointer (&inputs->take, cloth_take_free);
   g_clear_pointer (&inputs->baseline, cloth_take_free);
-  g_clear_pointer (&inputs->sights, cloth_sights_free);
-  g_clear_pointer (&inputs->baseline_sights, cloth_sights_free);
+  g_clear_pointer (&inputs->observations, cloth_observations_free);
+  g_clear_pointer (&inputs->baseline_observations, cloth_observations_free);
   g_clear_pointer (&inputs->model, cloth_model_free);
   g_clear_pointer (&inputs->effects, g_strfreev);
 }

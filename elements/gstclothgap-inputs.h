@@ -16,7 +16,7 @@ G_BEGIN_DECLS
 typedef struct {
   ClothModel *model;
   ClothTake *take, *baseline;
-  ClothSights *sights, *baseline_sights;        /* NULL: the take doesn't say */
+  ClothObservations *observations, *baseline_observations;        /* NULL: the take doesn't say */
   gchar **effects;
   ClothScene *scene;
 } GstClothGapInputs;

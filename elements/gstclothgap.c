@@ -19,7 +19,7 @@
  * What one `camera` of `rig` saw lies on rays. All that is measured is across them: so
  * are the springs, the residuals and the scores. Along them the simulation is believed,
  * from the scene's start on, and the recording that is diagnosed at the end has the
- * simulation's distances from the camera. What moves the cloth along the sight stays
+ * simulation's distances from the camera. What moves the cloth along the observation stays
  * unseen; join two or more cameras by `triangulate` to see it. A recording from one camera
  * says nothing about the camera itself.
  *
@@ -443,8 +443,9 @@ finish (GstClothgap * self)
   const ClothGapOptions options = {
     .baselines = &self->inputs.baseline,
     .n_baselines = self->inputs.baseline ? 1 : 0,
-    .sights = self->view ? NULL : &self->inputs.sights,
-    .baseline_sights = self->view ? NULL : &self->inputs.baseline_sights,
+    .observations = self->view ? NULL : &self->inputs.observations,
+    .baseline_observations =
+        self->view ? NULL : &self->inputs.baseline_observations,
     .model_file = self->settings.model,
     .effects = (const gchar * const *) self->inputs.effects,
     .seed = self->settings.seed,

@@ -79,20 +79,20 @@ check_cloths (gchar ** folders, const GPtrArray * takes, const gchar * first,
 
 /* What the cameras saw of each take, NULL where it doesn't say. */
 static GPtrArray *
-load_sights (gchar ** folders, const GPtrArray * takes, GError ** error)
+load_observations (gchar ** folders, const GPtrArray * takes, GError ** error)
 {
   g_autoptr (GPtrArray) list =
-      g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_sights_free);
+      g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_observations_free);
 
   for (guint i = 0; i < takes->len; i++) {
-    ClothSights *sights;
+    ClothObservations *observations;
 
-    if (!gst_cloth_sights_load_take (g_ptr_array_index (takes, i), &sights,
-            error)) {
+    if (!gst_cloth_io_observations_load_take (g_ptr_array_index (takes, i),
+            &observations, error)) {
       g_prefix_error (error, "“%s”: ", folders[i]);
       return NULL;
     }
-    g_ptr_array_add (list, sights);
+    g_ptr_array_add (list, observations);
   }
   return g_steal_pointer (&list);
 }
@@ -105,9 +105,9 @@ run_diagnosis (const Arguments * arguments, gchar ** effects, GError ** error)
   g_autoptr (GPtrArray) takes = NULL;
   g_autoptr (GPtrArray) baselines = NULL;
   g_autoptr (GPtrArray) hold_outs = NULL;
-  g_autoptr (GPtrArray) sights = NULL;
-  g_autoptr (GPtrArray) baseline_sights = NULL;
-  g_autoptr (GPtrArray) hold_out_sights = NULL;
+  g_autoptr (GPtrArray) observations = NULL;
+  g_autoptr (GPtrArray) baseline_observations = NULL;
+  g_autoptr (GPtrArray) hold_out_observations = NULL;
   ClothGapOptions options = { 0 };
   ClothTake *first;
 
@@ -125,14 +125,17 @@ run_diagnosis (const Arguments * arguments, gchar ** effects, GError ** error)
       || !check_cloths (arguments->hold_outs, hold_outs, folders[0], first,
           error))
     return NULL;
-  if (!(sights = load_sights (folders, takes, error)) ||
-      !(baseline_sights = load_sights (arguments->baselines, baselines, error))
-      || !(hold_out_sights = load_sights (arguments->hold_outs, hold_outs,
-              error)))
+  if (!(observations = load_observations (folders, takes, error)) ||
+      !(baseline_observations =
+          load_observations (arguments->baselines, baselines, error))
+      || !(hold_out_observations =
+          load_observations (arguments->hold_outs, hold_outs, error)))
     return NULL;
-  options.sights = (ClothSights **) sights->pdata;
-  options.baseline_sights = (ClothSights **) baseline_sights->pdata;
-  options.hold_out_sights = (ClothSights **) hold_out_sights->pdata;
+  options.observations = (ClothObservations **) observations->pdata;
+  options.baseline_observations =
+      (ClothObservations **) baseline_observations->pdata;
+  options.hold_out_observations =
+      (ClothObservations **) hold_out_observations->pdata;
   options.baselines = (ClothTake **) baselines->pdata;
   options.n_baselines = baselines->len;
   options.hold_outs = (ClothTake **) hold_outs->pdata;

@@ -28,7 +28,7 @@
 
 typedef struct
 {
-  ClothSights *sights;
+  ClothObservations *observations;
   guint camera;
   gboolean labelled;            /* whether any picture had squares or dots */
   GstClothPoints *points;
@@ -37,12 +37,12 @@ typedef struct
 } Reader;
 
 static void
-reader_init (Reader * self, ClothSights * sights, guint camera, guint columns,
-    guint rows)
+reader_init (Reader * self, ClothObservations * observations, guint camera,
+    guint columns, guint rows)
 {
   gsize n = (gsize) columns * rows;
 
-  self->sights = sights;
+  self->observations = observations;
   self->camera = camera;
   self->labelled = FALSE;
   self->points = gst_cloth_points_new (columns, rows);
@@ -76,7 +76,7 @@ G_GNUC_PRINTF (2, 3)
 static gboolean
 check_name (const Reader * self, const gchar * name, GError ** error)
 {
-  const gchar *own = self->sights->rig->cameras[self->camera].name;
+  const gchar *own = self->observations->rig->cameras[self->camera].name;
 
   if (!*name || g_str_equal (name, own))
     return TRUE;
@@ -100,7 +100,7 @@ find_points (Reader * self, GstBuffer * buffer, GError ** error)
   if (!gst_cloth_points_find (self->points, buffer, error)
       || !check_name (self, self->points->camera, error)
       || !gst_cloth_points_check_places (self->points,
-          &self->sights->rig->cameras[self->camera], error))
+          &self->observations->rig->cameras[self->camera], error))
     return -1;
   for (guint i = 0; i < n_vertices; i++) {
     if (isnan (view->x[i]))
@@ -131,7 +131,7 @@ read_picture (Reader * self, const GByteArray * record, GError ** error)
     return fail (error, "it has no time: film with time stamps, as a source "
         "with do-timestamp=true or a file has them");
   n = find_points (self, target, error);
-  return n >= 0 && cloth_sights_add (self->sights, self->camera,
+  return n >= 0 && cloth_observations_add (self->observations, self->camera,
       (gdouble) time / GST_SECOND, (guint) n, self->vertices, self->px,
       self->covariances, error);
 }
@@ -165,12 +165,12 @@ read_record (ClothInput * input, guint64 at, GByteArray * record,
 }
 
 static guint64
-count_points (const ClothSights * sights)
+count_points (const ClothObservations * observations)
 {
   guint64 n = 0;
 
-  for (guint i = 0; i < sights->list->len; i++)
-    n += g_array_index (sights->list, ClothSight, i).n;
+  for (guint i = 0; i < observations->list->len; i++)
+    n += g_array_index (observations->list, ClothObservation, i).n;
   return n;
 }
 
@@ -178,8 +178,8 @@ static gboolean
 read_all (Reader * self, ClothInput * input, GError ** error)
 {
   g_autoptr (GByteArray) record = g_byte_array_new ();
-  guint64 at = 0, n_points = count_points (self->sights);
-  const GArray *list = self->sights->list;
+  guint64 at = 0, n_points = count_points (self->observations);
+  const GArray *list = self->observations->list;
 
   for (guint n = 0; at < cloth_input_get_size (input); n++) {
     if (n == MAX_PICTURES || n_points > MAX_POINTS)
@@ -192,7 +192,7 @@ read_all (Reader * self, ClothInput * input, GError ** error)
           at);
       return FALSE;
     }
-    n_points += g_array_index (list, ClothSight, list->len - 1).n;
+    n_points += g_array_index (list, ClothObservation, list->len - 1).n;
     at += record->len;
   }
   if (at == 0)
@@ -204,8 +204,8 @@ read_all (Reader * self, ClothInput * input, GError ** error)
 }
 
 /**
- * gst_cloth_sights_read:
- * @sights: where the pictures go
+ * gst_cloth_io_observations_read:
+ * @observations: where the pictures go
  * @camera: whose they are: its index in the rig
  * @columns: vertices in a row of the cloth's grid, at least 2
  * @rows: vertices in a column of it, at least 2
@@ -215,17 +215,17 @@ read_all (Reader * self, ClothInput * input, GError ** error)
  * Reads the pictures of one camera. The squares or dots of each become one point a vertex
  * just as triangulate makes them. GStreamer must have been initialised.
  *
- * Returns: %FALSE when a picture can't be one of this take; those before it are in @sights
+ * Returns: %FALSE when a picture can't be one of this take; those before it are in @observations
  * Since: 0.1
  */
 gboolean
-gst_cloth_sights_read (ClothSights * sights, guint camera, guint columns,
-    guint rows, ClothInput * input, GError ** error)
+gst_cloth_io_observations_read (ClothObservations * observations, guint camera,
+    guint columns, guint rows, ClothInput * input, GError ** error)
 {
   Reader reader;
   gboolean good;
 
-  reader_init (&reader, sights, camera, columns, rows);
+  reader_init (&reader, observations, camera, columns, rows);
   good = read_all (&reader, input, error);
   reader_clear (&reader);
   return good;
@@ -289,10 +289,10 @@ name_file (const ClothRig * rig, guint camera)
 }
 
 static gboolean
-load_files (ClothSights * sights, const gchar * folder,
+load_files (ClothObservations * observations, const gchar * folder,
     const ClothTopology * topology, GError ** error)
 {
-  const ClothRig *rig = sights->rig;
+  const ClothRig *rig = observations->rig;
 
   for (guint i = 0; i < rig->n_cameras; i++) {
     g_autofree gchar *name = name_file (rig, i);
@@ -305,8 +305,8 @@ load_files (ClothSights * sights, const gchar * folder,
     if (!(path = cloth_path_inside (folder, name, error))
         || !(input = cloth_input_open (path, error)))
       return FALSE;
-    if (!gst_cloth_sights_read (sights, i, topology->columns, topology->rows,
-            input, error)) {
+    if (!gst_cloth_io_observations_read (observations, i, topology->columns,
+            topology->rows, input, error)) {
       g_prefix_error (error, "%s: ", name);
       return FALSE;
     }
@@ -315,10 +315,10 @@ load_files (ClothSights * sights, const gchar * folder,
 }
 
 /**
- * gst_cloth_sights_load:
+ * gst_cloth_io_observations_load:
  * @folder: (type filename): of a take
  * @topology: the take's mesh
- * @sights: (out) (transfer full) (nullable): what the cameras saw; %NULL when the take
+ * @observations: (out) (transfer full) (nullable): what the cameras saw; %NULL when the take
  *   doesn't say
  * @error: #ClothFitError, #ClothRigError, #ClothFileError, #GST_CLOTH_ERROR, #GIOErrorEnum;
  *   it names the file, the picture and what to do
@@ -332,16 +332,17 @@ load_files (ClothSights * sights, const gchar * folder,
  * Since: 0.1
  */
 gboolean
-gst_cloth_sights_load (const gchar * folder, const ClothTopology * topology,
-    ClothSights ** sights, GError ** error)
+gst_cloth_io_observations_load (const gchar * folder,
+    const ClothTopology * topology, ClothObservations ** observations,
+    GError ** error)
 {
   g_autofree gchar *path = g_build_filename (folder, FOLDER, NULL);
   g_autofree gchar *rig_file = g_build_filename (folder, "rig.json", NULL);
   g_autofree gchar *rig_path = NULL;
-  g_autoptr (ClothSights) made = NULL;
+  g_autoptr (ClothObservations) made = NULL;
   ClothRig *rig;
 
-  *sights = NULL;
+  *observations = NULL;
   if (!g_file_test (path, G_FILE_TEST_EXISTS))
     return TRUE;
   if (!g_file_test (rig_file, G_FILE_TEST_EXISTS))
@@ -357,39 +358,39 @@ gst_cloth_sights_load (const gchar * folder, const ClothTopology * topology,
   rig = cloth_rig_load (rig_path, error);
   if (!rig)
     return FALSE;
-  made = cloth_sights_new (rig, topology->n_vertices);
+  made = cloth_observations_new (rig, topology->n_vertices);
   if (!check_files (path, rig, error) || !gst_init_check (NULL, NULL, error)
       || !load_files (made, folder, topology, error))
     return FALSE;
-  *sights = g_steal_pointer (&made);
+  *observations = g_steal_pointer (&made);
   return TRUE;
 }
 
 /**
- * gst_cloth_sights_load_take:
+ * gst_cloth_io_observations_load_take:
  * @take: a take
- * @sights: (out) (transfer full) (nullable): what the cameras saw
- * @error: as of gst_cloth_sights_load ()
+ * @observations: (out) (transfer full) (nullable): what the cameras saw
+ * @error: as of gst_cloth_io_observations_load ()
  *
- * As gst_cloth_sights_load (); what was read counts as files of the take.
+ * As gst_cloth_io_observations_load (); what was read counts as files of the take.
  *
  * Returns: %FALSE when something is there that can't be used
  * Since: 0.1
  */
 gboolean
-gst_cloth_sights_load_take (ClothTake * take, ClothSights ** sights,
-    GError ** error)
+gst_cloth_io_observations_load_take (ClothTake * take,
+    ClothObservations ** observations, GError ** error)
 {
   const gchar *folder = cloth_take_get_folder (take);
 
-  if (!gst_cloth_sights_load (folder, cloth_take_get_topology (take), sights,
-          error))
+  if (!gst_cloth_io_observations_load (folder, cloth_take_get_topology (take),
+          observations, error))
     return FALSE;
-  if (!*sights)
+  if (!*observations)
     return TRUE;
   cloth_take_add_file (take, "rig.json");
-  for (guint i = 0; i < (*sights)->rig->n_cameras; i++) {
-    g_autofree gchar *name = name_file ((*sights)->rig, i);
+  for (guint i = 0; i < (*observations)->rig->n_cameras; i++) {
+    g_autofree gchar *name = name_file ((*observations)->rig, i);
     g_autofree gchar *path = g_build_filename (folder, name, NULL);
 
     if (g_file_test (path, G_FILE_TEST_EXISTS))

@@ -8,11 +8,11 @@
 
 G_BEGIN_DECLS
 
-gboolean gst_cloth_sights_load (const gchar * folder,
-    const ClothTopology * topology, ClothSights ** sights, GError ** error);
-gboolean gst_cloth_sights_load_take (ClothTake * take, ClothSights ** sights,
+gboolean gst_cloth_io_observations_load (const gchar * folder,
+    const ClothTopology * topology, ClothObservations ** observations, GError ** error);
+gboolean gst_cloth_io_observations_load_take (ClothTake * take, ClothObservations ** observations,
     GError ** error);
-gboolean gst_cloth_sights_read (ClothSights * sights, guint camera,
+gboolean gst_cloth_io_observations_read (ClothObservations * observations, guint camera,
     guint columns, guint rows, ClothInput * input, GError ** error);
 
 G_END_DECLS

@@ -39,25 +39,25 @@ diagnosis_clear (ClothDiagnosis * d)
 {
   g_clear_pointer (&d->studies, g_ptr_array_unref);
   cloth_model_free (d->model);
-  cloth_gap_candidates_free (d->candidates);
+  cloth_candidates_free (d->candidates);
   g_free (d->precisions);
   g_free (d->all);
-  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++)
-    cloth_gap_normal_free (d->normals[g]);
-  g_free (d->chaos_precisions);
+  for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++)
+    cloth_normal_equations_free (d->normals[g]);
+  g_free (d->variability_precisions);
   g_free (d->nuisances);
   g_free (d->nuisance_precisions);
   g_free (d->sound);
   g_free (d->blocks);
   for (guint i = 0; i < d->n_chosen; i++)
     cloth_model_free (d->with[i]);
-  cloth_gap_energy_free (d->before);
-  cloth_gap_energy_free (d->after);
-  cloth_gap_energy_free (d->floor);
+  cloth_energy_spectrum_free (d->before);
+  cloth_energy_spectrum_free (d->after);
+  cloth_energy_spectrum_free (d->floor);
   cloth_gap_result_free (d->result);
-  g_free (d->led);
+  g_free (d->nudged);
   for (guint i = 0; i < d->n_nulls; i++)
-    cloth_gap_extent_free (d->nulls[i]);
+    cloth_windowed_gap_free (d->nulls[i]);
   g_free (d->what);
   g_free (d->unknown);
   g_free (d->null_evidence);
@@ -109,13 +109,13 @@ load_one (ClothDiagnosis * d, ClothTake * take, ClothGapRole role,
     return FALSE;
   /* the same cloth may be filmed twice */
   for (guint i = 0; i + 1 < d->recordings->len
-      && !cloth_diagnosis_has_sights (d); i++)
+      && !cloth_diagnosis_has_observations (d); i++)
     if (!cloth_recording_check_other (r, cloth_diagnosis_recording (d, i),
             error))
       return FALSE;
   cloth_gap_result_add_input (d->result, role, r->name, sha256);
   if (role != CLOTH_GAP_HOLD_OUT)
-    g_ptr_array_add (d->studies, cloth_study_new (r, &d->study));
+    g_ptr_array_add (d->studies, cloth_sensitivities_new (r, &d->study));
   return TRUE;
 }
 
@@ -183,7 +183,7 @@ skip (gpointer data, const ClothEffect * effect, const gchar * reason)
 
     if (d->has_camera_errors && !blind)
       return;
-    if (cloth_diagnosis_has_sights (d))
+    if (cloth_diagnosis_has_observations (d))
       reason = blind ? blind : "No point was seen by two cameras at a time.";
   }
   cloth_gap_result_add_untested (d->result, effect, reason);
@@ -199,9 +199,9 @@ note_ends (ClothDiagnosis * d)
   for (guint i = 0; i < d->candidates->n_free; i++) {
     const ClothModelFree *f = &g_array_index (d->model->free, ClothModelFree,
         i);
-    const ClothGapDirection *direction =
-        cloth_gap_candidates_direction (d->candidates, i);
-    const gdouble place = cloth_gap_candidates_place (d->candidates, d->model,
+    const ClothDirection *direction =
+        cloth_candidates_direction (d->candidates, i);
+    const gdouble place = cloth_candidates_place (d->candidates, d->model,
         i), slack = AT_END * (direction->high - direction->low);
     gdouble value = 0., possible[2] = { -INFINITY, INFINITY };
 
@@ -231,9 +231,11 @@ fit_free (ClothDiagnosis * d, const ClothModel * model, GError ** error)
   guint m = d->candidates->n_free;
   g_autofree gdouble *precisions = g_new (gdouble, m + 1);
   g_autofree gdouble *sigmas = g_new0 (gdouble, 2 * m + 1);
-  ClothStudy **studies = (ClothStudy **) d->studies->pdata + begin;
-  g_autoptr (GPtrArray) copies = g_ptr_array_new_with_free_func (
-      (GDestroyNotify) cloth_study_free);
+  ClothSensitivities **studies =
+      (ClothSensitivities **) d->studies->pdata + begin;
+  g_autoptr (GPtrArray) copies =
+      g_ptr_array_new_with_free_func ((GDestroyNotify)
+      cloth_sensitivities_free);
   g_autoptr (ClothModel) likeliest = NULL;
   g_autoptr (ClothModel) nearest = NULL;
   gdouble squares[2];
@@ -244,23 +246,25 @@ fit_free (ClothDiagnosis * d, const ClothModel * model, GError ** error)
     return TRUE;
   }
   for (guint i = 0; i < m; i++) {
-    gdouble prior = cloth_gap_candidates_direction (d->candidates, i)->prior;
+    gdouble prior = cloth_candidates_direction (d->candidates, i)->prior;
 
     precisions[i] = 1. / (prior * prior);
   }
   /* both begin at the same model: its derivatives are found once */
   for (guint i = 0; i < n; i++) {
-    if (!cloth_study_linearise (studies[i], d->candidates, model, d->all, m,
-            &d->study, error))
+    if (!cloth_sensitivities_linearise (studies[i], d->candidates, model,
+            d->all, m, &d->study, error))
       return FALSE;
-    g_ptr_array_add (copies, cloth_study_copy (studies[i], &d->study));
+    g_ptr_array_add (copies, cloth_sensitivities_copy (studies[i], &d->study));
   }
-  likeliest = cloth_study_fit (studies, n, d->candidates, model, d->all,
+  likeliest = cloth_gauss_newton_fit (studies, n, d->candidates, model, d->all,
       precisions, m, NULL, FALSE, TRUE, N_FIT, &d->study, sigmas, error);
-  nearest = likeliest ? cloth_study_fit ((ClothStudy **) copies->pdata, n,
-      d->candidates, model, d->all, precisions, m, NULL, TRUE, TRUE, N_FIT,
+  nearest =
+      likeliest ? cloth_gauss_newton_fit ((ClothSensitivities **) copies->pdata,
+      n, d->candidates, model, d->all, precisions, m, NULL, TRUE, TRUE, N_FIT,
       &d->study, sigmas + m, error) : NULL;
-  if (!nearest || !cloth_diagnosis_find_gaps (d, begin, begin + n,
+  if (!nearest
+      || !cloth_diagnosis_find_gaps (d, begin, begin + n,
           (const ClothModel *[]) { likeliest, nearest }, 2, squares, error))
     return FALSE;
   even = squares[1] < NEARER * squares[0];
@@ -274,7 +278,7 @@ fit_free (ClothDiagnosis * d, const ClothModel * model, GError ** error)
       continue;
     if (sigma > 0.)
       d->precisions[i] = MAX (precisions[i], 1. / (sigma * sigma));
-    cloth_gap_candidates_bound (d->candidates, d->model, i,
+    cloth_candidates_bound (d->candidates, d->model, i,
         FROZEN_REACH / sqrt (d->precisions[i]));
   }
   return TRUE;
@@ -298,7 +302,7 @@ note_nulls (ClothDiagnosis * d, const GArray * scores, gdouble share,
     const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
 
     for (guint c = 0; c < d->candidates->list->len; c++)
-      if (g_array_index (d->candidates->list, ClothGapCandidate, c).effect ==
+      if (g_array_index (d->candidates->list, ClothCandidate, c).effect ==
           cloth_diagnosis_candidate (d, s)->effect)
         d->null_evidence[c] = share * MAX (s->evidence, 0.);
     d->least_evidence = MAX (d->least_evidence, CLOTH_DIAGNOSIS_LEAST_EVIDENCE +
@@ -320,7 +324,7 @@ study_baselines (ClothDiagnosis * d, GError ** error)
     return FALSE;
   cloth_diagnosis_make_test (d, d->n_takes, d->studies->len, &test);
   scores = cloth_gap_test_run (&test);
-  if (cloth_diagnosis_has_signatures (d))
+  if (cloth_diagnosis_has_discrepancies (d))
     note_nulls (d, scores, 1., 0.);
   else
     note_nulls (d, scores, NULL_SHARE, NULL_MARGIN);
@@ -333,18 +337,19 @@ study_other_model (ClothDiagnosis * d, GError ** error)
 {
   g_autoptr (ClothModel) other = cloth_diagnosis_other_model (d);
   g_autoptr (GPtrArray) studies = g_ptr_array_new_with_free_func (
-      (GDestroyNotify) cloth_study_free);
+      (GDestroyNotify) cloth_sensitivities_free);
   g_autoptr (GArray) scores = NULL;
   ClothGapTest test = { {NULL} };
 
   cloth_diagnosis_begin_part (d, 0.4, 0.42, 1., "the other force model");
   for (guint i = 0; i < d->n_takes; i++) {
     g_autoptr (GError) diverged = NULL;
-    ClothStudy *s = cloth_study_new (cloth_diagnosis_recording (d, i),
+    ClothSensitivities *s =
+        cloth_sensitivities_new (cloth_diagnosis_recording (d, i),
         &d->study);
 
     g_ptr_array_add (studies, s);
-    if (cloth_study_linearise (s, d->candidates, other, d->all,
+    if (cloth_sensitivities_linearise (s, d->candidates, other, d->all,
             d->candidates->n_free, &d->study, &diverged))
       continue;
     /* one that these numbers make no cloth of tells nothing */
@@ -354,10 +359,10 @@ study_other_model (ClothDiagnosis * d, GError ** error)
     return FALSE;
   }
   for (guint i = 0; i < d->n_takes; i++)
-    cloth_diagnosis_study (d, i)->signature = g_ptr_array_index (studies, i);
+    cloth_diagnosis_study (d, i)->discrepancy = g_ptr_array_index (studies, i);
   cloth_diagnosis_make_test (d, 0, d->n_takes, &test);
   for (guint i = 0; i < d->n_takes; i++)
-    cloth_diagnosis_study (d, i)->signature = NULL;
+    cloth_diagnosis_study (d, i)->discrepancy = NULL;
   scores = cloth_gap_test_run (&test);
   note_nulls (d, scores, NULL_SHARE, NULL_MARGIN);
   return TRUE;
@@ -376,7 +381,7 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
     return TRUE;
   cloth_diagnosis_find_faults (d);
   d->candidates =
-      cloth_gap_candidates_new (model, cloth_diagnosis_recording (d, 0),
+      cloth_candidates_new (model, cloth_diagnosis_recording (d, 0),
       d->options->effects, d->options->n_baselines > 0, skip, d, error);
   if (!d->candidates)
     return FALSE;
@@ -390,7 +395,7 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
   cloth_diagnosis_begin_part (d, 0., 0.2, 0.2, "the model's free numbers");
   if (!fit_free (d, model, error))
     return FALSE;
-  cloth_diagnosis_find_signatures (d);
+  cloth_diagnosis_find_discrepancies (d);
   if (d->options->n_baselines && !study_baselines (d, error))
     return FALSE;
   if (!cloth_diagnosis_linearise (d, 0, d->n_takes, d->model, 0.3, 0.4, error))
@@ -438,7 +443,7 @@ cloth_gap_diagnose (ClothTake ** takes, guint n_takes,
   gint64 start = g_get_monotonic_time ();
 
   d.least_evidence = CLOTH_DIAGNOSIS_LEAST_EVIDENCE;
-  cloth_study_options_init (&d.study);
+  cloth_estimate_options_init (&d.study);
   d.study.rollout.seed = options->seed;
   d.study.rollout.threads = options->threads;
   d.study.rollout.progress = frame_done;
@@ -448,7 +453,7 @@ cloth_gap_diagnose (ClothTake ** takes, guint n_takes,
   d.recordings = g_ptr_array_new_with_free_func (
       (GDestroyNotify) cloth_recording_free);
   d.studies = g_ptr_array_new_with_free_func (
-      (GDestroyNotify) cloth_study_free);
+      (GDestroyNotify) cloth_sensitivities_free);
   if (!diagnose (&d, model, error))
     return NULL;
   if (d.model)

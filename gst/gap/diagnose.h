@@ -33,10 +33,10 @@ typedef gboolean (*ClothGapProgress) (gpointer data, gdouble share,
  * @hold_outs: (array length=n_hold_outs) (nullable): takes that judge, and on which
  *   nothing is fitted
  * @n_hold_outs: how many
- * @sights: (nullable) (array): what the cameras saw of each take; %NULL: of none, or
+ * @observations: (nullable) (array): what the cameras saw of each take; %NULL: of none, or
  *   not of that one
- * @baseline_sights: (nullable) (array): the same of each baseline
- * @hold_out_sights: (nullable) (array): the same of each hold-out
+ * @baseline_observations: (nullable) (array): the same of each baseline
+ * @hold_out_observations: (nullable) (array): the same of each hold-out
  * @model_file: (nullable): the file the model comes from, for its name and hash
  * @effects: (array zero-terminated=1) (nullable): ids of the effects to consider; %NULL:
  *   all
@@ -52,9 +52,9 @@ typedef struct {
   guint n_baselines;
   ClothTake **hold_outs;
   guint n_hold_outs;
-  ClothSights *const *sights;
-  ClothSights *const *baseline_sights;
-  ClothSights *const *hold_out_sights;
+  ClothObservations *const *observations;
+  ClothObservations *const *baseline_observations;
+  ClothObservations *const *hold_out_observations;
   const gchar *model_file;
   const gchar *const *effects;
   guint64 seed;

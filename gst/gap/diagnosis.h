@@ -13,7 +13,7 @@ G_BEGIN_DECLS
 
 /* An effect is accepted when its evidence is this at least, when it makes blocks better
  * that it was not estimated on, and when it removes this share of the gap's variance. Of the
- * first where a signature is taken off it is enough that the gap, in which the simulator's
+ * first where a discrepancy is taken off it is enough that the gap, in which the simulator's
  * own error is too, is hardly larger. */
 #define CLOTH_DIAGNOSIS_LEAST_EVIDENCE 10.
 #define CLOTH_DIAGNOSIS_LEAST_SHRINK 0.1
@@ -44,7 +44,7 @@ typedef struct
   ClothTake **takes;
   guint n_takes;
   const ClothGapOptions *options;
-  ClothStudyOptions study;
+  ClothEstimateOptions study;
   ClothGapResult *result;
   GPtrArray *recordings;        /* of the takes, the baselines, the hold-outs */
   GPtrArray *studies;           /* of the takes and the baselines */
@@ -58,12 +58,12 @@ typedef struct
   ClothCameraErrors camera_errors;
   GArray *camera_effects;       /* ClothGapEffect: those found first */
   ClothModel *model;            /* with its free numbers fitted */
-  ClothGapCandidates *candidates;
+  ClothCandidates *candidates;
   gdouble *precisions;          /* of the free numbers */
   guint *all;                   /* every direction */
-  ClothGapNormal *normals[CLOTH_STUDY_N_GAINS];
-  guint n_chaos;                /* of its columns, behind those of the directions */
-  gdouble *chaos_precisions;
+  ClothNormalEquations *normals[CLOTH_ESTIMATE_N_GAINS];
+  guint n_variability;                /* of its columns, behind those of the directions */
+  gdouble *variability_precisions;
   guint *nuisances;             /* of the test: what is fitted along, and its precisions */
   gdouble *nuisance_precisions;
   gboolean *sound;
@@ -84,11 +84,11 @@ typedef struct
                                    m²; 0: they are not */
   gboolean asked;               /* whether an effect was asked for */
   /* of the first take before and after, of the first baseline; NULL where there is none */
-  ClothGapEnergy *before, *after, *floor;
-  gfloat *led;                  /* residual of the first take, as an extent has it, or NULL */
+  ClothEnergySpectrum *before, *after, *floor;
+  gfloat *nudged;                  /* residual of the first take, as an extent has it, or NULL */
   /* of simulations that lack nothing, and what they are of: of a baseline, of the other
    * force model */
-  ClothGapExtent *nulls[2];
+  ClothWindowedGap *nulls[2];
   guint null_recordings[2];
   guint n_nulls;
   guint floor_null;             /* which of them is the floor */
@@ -107,23 +107,23 @@ cloth_diagnosis_recording (const ClothDiagnosis * d, guint i)
   return g_ptr_array_index (d->recordings, i);
 }
 
-static inline ClothStudy *
+static inline ClothSensitivities *
 cloth_diagnosis_study (const ClothDiagnosis * d, guint i)
 {
   return g_ptr_array_index (d->studies, i);
 }
 
-static inline const ClothGapCandidate *
+static inline const ClothCandidate *
 cloth_diagnosis_candidate (const ClothDiagnosis * d, const ClothGapScore * score)
 {
-  return &g_array_index (d->candidates->list, ClothGapCandidate,
+  return &g_array_index (d->candidates->list, ClothCandidate,
       score->candidate);
 }
 
-static inline const ClothGapCandidate *
+static inline const ClothCandidate *
 cloth_diagnosis_chosen (const ClothDiagnosis * d, guint i)
 {
-  return &g_array_index (d->candidates->list, ClothGapCandidate, d->chosen[i]);
+  return &g_array_index (d->candidates->list, ClothCandidate, d->chosen[i]);
 }
 
 /* Every other block of time judges what the others have fitted. */
@@ -150,7 +150,7 @@ gchar *cloth_diagnosis_doubt_result (ClothDiagnosis * d,
     const ClothModel * model);
 
 /* Cameras. */
-gboolean cloth_diagnosis_has_sights (const ClothDiagnosis * d);
+gboolean cloth_diagnosis_has_observations (const ClothDiagnosis * d);
 guint cloth_diagnosis_count_faults (const ClothDiagnosis * d);
 void cloth_diagnosis_find_faults (ClothDiagnosis * d);
 
@@ -158,14 +158,14 @@ void cloth_diagnosis_find_faults (ClothDiagnosis * d);
 ClothModel *cloth_diagnosis_other_model (const ClothDiagnosis * d);
 
 /* Which effects. */
-ClothGapPower *cloth_diagnosis_find_mismatch (const ClothDiagnosis * d,
+ClothPowerSpectrum *cloth_diagnosis_find_mismatch (const ClothDiagnosis * d,
     guint take, guint gain);
-ClothGapPower *cloth_diagnosis_find_weight (const ClothDiagnosis * d, guint take,
+ClothPowerSpectrum *cloth_diagnosis_find_weight (const ClothDiagnosis * d, guint take,
     guint gain);
 gdouble *cloth_diagnosis_list_columns (const ClothDiagnosis * d, guint take,
     guint gain, guint before, guint more);
-void cloth_diagnosis_find_signatures (ClothDiagnosis * d);
-gboolean cloth_diagnosis_has_signatures (const ClothDiagnosis * d);
+void cloth_diagnosis_find_discrepancies (ClothDiagnosis * d);
+gboolean cloth_diagnosis_has_discrepancies (const ClothDiagnosis * d);
 gboolean cloth_diagnosis_linearise (ClothDiagnosis * d, guint first, guint end,
     const ClothModel * model, gdouble from, gdouble to, GError ** error);
 void cloth_diagnosis_make_test (ClothDiagnosis * d, guint begin, guint end,

@@ -13,18 +13,18 @@
 /* The board's part at (@left, @top), turned by half a turn; one dot in ten is misread. */
 static ClothPatch *
 window (const ClothPattern * pattern, gint left, gint top, gint columns,
-    gint rows, ClothRandom * random, ClothPlacement * truth)
+    gint rows, ClothRandom * random, ClothPose * truth)
 {
   ClothPatch *patch = test_patch_new (columns + 1 + 2 * M, rows + 1 + 2 * M);
 
-  *truth = (ClothPlacement) {
+  *truth = (ClothPose) {
   2, left + columns + M, top + rows + M, 0};
   for (gint j = M; j <= rows + M; j++)
     for (gint i = M; i <= columns + M; i++) {
       const gint at = j * patch->columns + i;
       gint column, row;
 
-      cloth_placement_vertex (truth, i, j, &column, &row);
+      cloth_pose_vertex (truth, i, j, &column, &row);
       patch->kind[at] = column > 0 && row > 0 && column < pattern->columns
           && row < pattern->rows ? CLOTH_VERTEX_SADDLE : CLOTH_VERTEX_RIM;
       patch->linked[at] = patch->kind[at] == CLOTH_VERTEX_SADDLE;
@@ -32,7 +32,7 @@ window (const ClothPattern * pattern, gint left, gint top, gint columns,
       patch->y[at] = (gfloat) (-10 * j);
       if (i == columns + M || j == rows + M)
         continue;
-      cloth_placement_cell (truth, i, j, &column, &row);
+      cloth_pose_cell (truth, i, j, &column, &row);
       patch->square[at] = 1;
       patch->n_squares++;
       patch->odd_black = ((i + j) & 1) == (cloth_pattern_is_black (pattern,
@@ -50,10 +50,10 @@ window (const ClothPattern * pattern, gint left, gint top, gint columns,
 static void
 measure (const ClothPattern * pattern, gint columns, gint rows, gboolean brute)
 {
-  g_autoptr (ClothPlacer) placer = cloth_placer_new (pattern);
+  g_autoptr (ClothPoseFinder) placer = cloth_pose_finder_new (pattern);
   g_autoptr (ClothPatch) patch = NULL;
   gdouble least[2] = { G_MAXDOUBLE, G_MAXDOUBLE }, slow = 0;
-  ClothPlacement truth, best = { 0 };
+  ClothPose truth, best = { 0 };
   gboolean right = TRUE;
   ClothRandom random;
 
@@ -65,7 +65,7 @@ measure (const ClothPattern * pattern, gint columns, gint rows, gboolean brute)
     for (gint run = 0; run < 10; run++) {
       const gdouble start = cpu_ms ();
 
-      cloth_placer_run (placer, patch, &cloth_place_cloth, &truth, voted,
+      cloth_pose_finder_run (placer, patch, &cloth_pose_cloth, &truth, voted,
           &best);
       least[voted] = MIN (least[voted], cpu_ms () - start);
       right &= best.rotation == truth.rotation && best.column == truth.column
@@ -73,7 +73,7 @@ measure (const ClothPattern * pattern, gint columns, gint rows, gboolean brute)
     }
   if (brute) {
     slow = cpu_ms ();
-    test_brute_place (pattern, patch, &cloth_place_cloth, NULL, 0, &best);
+    test_brute_place (pattern, patch, &cloth_pose_cloth, NULL, 0, &best);
     slow = cpu_ms () - slow;
   }
   g_print ("%s board of %d by %d, patch of %d by %d placed %s in %.3f ms, with "

@@ -84,14 +84,14 @@ measure_experiment (ClothTake * take)
   const gdouble precisions[] = { 1., 1., 1., 1., 1., 1., 1. };
   g_autoptr (ClothModel) model = model_new (CLOTH_FORCE_MEMBRANE);
   g_autoptr (ClothRecording) recording = cloth_recording_new (take, NULL);
-  g_autoptr (ClothGapCandidates) candidates = cloth_gap_candidates_new (model,
+  g_autoptr (ClothCandidates) candidates = cloth_candidates_new (model,
       recording, none, TRUE, NULL, NULL, NULL);
   const ClothExperiment experiment = {
     recording, model, candidates, precisions, NULL
   };
   ClothModelEffect members[G_N_ELEMENTS (ids)];
   gdouble best = INFINITY;
-  ClothStudyOptions options;
+  ClothEstimateOptions options;
 
   for (guint i = 0; i < G_N_ELEMENTS (ids); i++) {
     members[i] = (ClothModelEffect) {
@@ -100,7 +100,7 @@ measure_experiment (ClothTake * take)
       members[i].values[k] = members[i].effect->parameters[k].null_value;
     members[i].values[0] = 0.5;
   }
-  cloth_study_options_init (&options);
+  cloth_estimate_options_init (&options);
   for (guint i = 0; i < 3; i++) {
     gint64 start = g_get_monotonic_time ();
     g_autoptr (GArray) trials = cloth_experiment_try (&experiment, members,

@@ -39,7 +39,7 @@ test_patch_free (ClothPatch * patch)
 /* What was seen, under a placement; corners that are no saddles stand alone. */
 static inline gdouble
 test_brute_score (const ClothPattern * pattern, const ClothPatch * patch,
-    const ClothPlaceWeights * weights, const ClothPlacement * placement)
+    const ClothPoseWeights * weights, const ClothPose * placement)
 {
   gdouble score = 0;
 
@@ -48,7 +48,7 @@ test_brute_score (const ClothPattern * pattern, const ClothPatch * patch,
       const gint at = j * patch->columns + i;
       gint c, r;
 
-      cloth_placement_vertex (placement, i, j, &c, &r);
+      cloth_pose_vertex (placement, i, j, &c, &r);
       if (patch->linked[at] || (weights->found_corners
               && patch->kind[at] == CLOTH_VERTEX_SADDLE))
         score += c < 1 || r < 1 || c >= pattern->columns || r >= pattern->rows
@@ -56,7 +56,7 @@ test_brute_score (const ClothPattern * pattern, const ClothPatch * patch,
       else if (patch->kind[at] >= CLOTH_VERTEX_UNSURE)
         score += c < 1 || r < 1 || c >= pattern->columns || r >= pattern->rows
             ? 0 : weights->cut_corner;
-      cloth_placement_cell (placement, i, j, &c, &r);
+      cloth_pose_cell (placement, i, j, &c, &r);
       if (c < 0 || r < 0 || c >= pattern->columns || r >= pattern->rows)
         score += patch->square[at] ? weights->square_outside : 0;
       else if (!patch->square[at])
@@ -72,8 +72,8 @@ test_brute_score (const ClothPattern * pattern, const ClothPatch * patch,
  * squares lie on black ones; @best gets its lead as weight. */
 static inline gboolean
 test_brute_place (const ClothPattern * pattern, const ClothPatch * patch,
-    const ClothPlaceWeights * weights, const ClothPlacement * votes,
-    guint n_votes, ClothPlacement * best)
+    const ClothPoseWeights * weights, const ClothPose * votes,
+    guint n_votes, ClothPose * best)
 {
   const gint reach = patch->columns + patch->rows + 2;
   gdouble first = -G_MAXDOUBLE, second = -G_MAXDOUBLE;
@@ -89,14 +89,14 @@ test_brute_place (const ClothPattern * pattern, const ClothPatch * patch,
   for (gint rotation = 0; rotation < 4; rotation++)
     for (gint row = -reach; row <= pattern->rows + reach; row++)
       for (gint column = -reach; column <= pattern->columns + reach; column++) {
-        ClothPlacement try = { rotation, column, row, 0 };
+        ClothPose try = { rotation, column, row, 0 };
         gboolean fits = box[2] >= 0;
         gdouble score;
 
         for (gint k = 0; k < 4 && fits; k += 2) {
           gint c, r;
 
-          cloth_placement_cell (&try, box[k & 2], box[(k & 2) + 1], &c, &r);
+          cloth_pose_cell (&try, box[k & 2], box[(k & 2) + 1], &c, &r);
           fits = c >= -1 && r >= -1 && c <= pattern->columns
               && r <= pattern->rows && cloth_pattern_is_black (pattern, c & 1,
               r & 1) == cloth_patch_is_black (patch, box[k & 2],
@@ -119,7 +119,7 @@ test_brute_place (const ClothPattern * pattern, const ClothPatch * patch,
       }
   /* The only one leads by a square. */
   best->weight = second == -G_MAXDOUBLE ? -weights->square_outside
-      : (gfloat) MIN (first - second, CLOTH_PLACE_MOST_LEAD);
+      : (gfloat) MIN (first - second, CLOTH_POSE_MOST_LEAD);
   return first > -G_MAXDOUBLE;
 }
 

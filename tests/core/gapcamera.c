@@ -144,10 +144,10 @@ picture (guint camera, const Fault * f, guint vertex, gdouble t, gdouble px[2])
 }
 
 /* All that the cameras see; only @n_seeing of them see anything. */
-static ClothSights *
+static ClothObservations *
 sights_new (const Fault * faults, guint n_faults, guint n_seeing)
 {
-  ClothSights *sights = cloth_sights_new (rig_new (), N);
+  ClothObservations *observations = cloth_observations_new (rig_new (), N);
   ClothRandom random;
 
   cloth_random_init (&random, 11);
@@ -172,12 +172,12 @@ sights_new (const Fault * faults, guint n_faults, guint n_seeing)
         covariances[3 * v] = covariances[3 * v + 2] = NOISE_PX * NOISE_PX;
         covariances[3 * v + 1] = 0.;
       }
-      cloth_sights_add (sights, c, frame / FPS, N, vertices, px, covariances,
-          &error);
+      cloth_observations_add (observations, c, frame / FPS, N, vertices, px,
+          covariances, &error);
       g_assert_no_error (error);
     }
   }
-  return sights;
+  return observations;
 }
 
 /* The sheet as it was, @off metres away along y; it has the noise of the pictures. Columns
@@ -255,18 +255,18 @@ static const gchar *const all_effects[] = {
 };
 
 static ClothGapResult *
-diagnose_seen (ClothSights * sights, ClothSights * baseline_sights,
-    guint n_columns, guint threads)
+diagnose_seen (ClothObservations * observations,
+    ClothObservations * baseline_observations, guint n_columns, guint threads)
 {
   g_autofree gchar *folder = NULL;
   g_autoptr (GError) error = NULL;
   g_autoptr (ClothTake) take = take_new (0., n_columns, &folder);
-  g_autoptr (ClothTake) baseline = baseline_sights ?
+  g_autoptr (ClothTake) baseline = baseline_observations ?
       cloth_take_open (folder, &error) : NULL;
   g_autoptr (ClothModel) model = cloth_model_new ();
-  const ClothGapOptions options = {.sights = &sights,.baselines =
-        &baseline,.n_baselines = baseline ? 1 : 0,.baseline_sights =
-        &baseline_sights,.effects = all_effects,.threads = threads
+  const ClothGapOptions options = {.observations = &observations,.baselines =
+        &baseline,.n_baselines = baseline ? 1 : 0,.baseline_observations =
+        &baseline_observations,.effects = all_effects,.threads = threads
   };
   ClothGapResult *result = cloth_gap_diagnose (&take, 1, model, &options,
       &error);
@@ -285,9 +285,10 @@ diagnose_seen (ClothSights * sights, ClothSights * baseline_sights,
 }
 
 static ClothGapResult *
-diagnose (ClothSights * sights, ClothSights * baseline_sights, guint threads)
+diagnose (ClothObservations * observations,
+    ClothObservations * baseline_observations, guint threads)
 {
-  return diagnose_seen (sights, baseline_sights, COLUMNS, threads);
+  return diagnose_seen (observations, baseline_observations, COLUMNS, threads);
 }
 
 static guint
@@ -327,8 +328,9 @@ static void
 test_named (gconstpointer data)
 {
   const Case *c = data;
-  g_autoptr (ClothSights) sights = sights_new (&c->fault, 1, N_CAMERAS);
-  g_autoptr (ClothGapResult) result = diagnose (sights, NULL, 2);
+  g_autoptr (ClothObservations) observations =
+      sights_new (&c->fault, 1, N_CAMERAS);
+  g_autoptr (ClothGapResult) result = diagnose (observations, NULL, 2);
   const ClothGapEffect *first = &g_array_index (result->effects,
       ClothGapEffect, 0);
   g_autofree gchar *camera = g_strdup_printf ("cam%u", c->fault.camera);
@@ -348,8 +350,9 @@ static void
 test_blur (void)
 {
   const Fault fault = { 1, 0., 0., 0., {0.}, 0., 0.02 };
-  g_autoptr (ClothSights) sights = sights_new (&fault, 1, N_CAMERAS);
-  g_autoptr (ClothGapResult) result = diagnose (sights, NULL, 2);
+  g_autoptr (ClothObservations) observations =
+      sights_new (&fault, 1, N_CAMERAS);
+  g_autoptr (ClothGapResult) result = diagnose (observations, NULL, 2);
   gboolean found = FALSE;
 
   g_assert_cmpuint (result->groups->len, ==, 1);
@@ -376,8 +379,9 @@ static void
 test_two (void)
 {
   const Fault faults[2] = { {0, 0.01}, {2, 0., -0.01} };
-  g_autoptr (ClothSights) sights = sights_new (faults, 2, N_CAMERAS);
-  g_autoptr (ClothGapResult) result = diagnose (sights, NULL, 2);
+  g_autoptr (ClothObservations) observations =
+      sights_new (faults, 2, N_CAMERAS);
+  g_autoptr (ClothGapResult) result = diagnose (observations, NULL, 2);
   gboolean found[2] = { FALSE, FALSE };
 
   g_assert_cmpuint (count_accepted (result), ==, 2);
@@ -397,8 +401,8 @@ test_two (void)
 static void
 test_nothing (void)
 {
-  g_autoptr (ClothSights) sights = sights_new (NULL, 0, N_CAMERAS);
-  g_autoptr (ClothGapResult) result = diagnose (sights, NULL, 2);
+  g_autoptr (ClothObservations) observations = sights_new (NULL, 0, N_CAMERAS);
+  g_autoptr (ClothGapResult) result = diagnose (observations, NULL, 2);
   const ClothGapStage *stage;
 
   g_assert_cmpuint (count_accepted (result), ==, 0);
@@ -413,8 +417,8 @@ static void
 test_holes (void)
 {
   const Fault fault = { 1, 0.03 };
-  g_autoptr (ClothSights) sights = sights_new (&fault, 1, 2);
-  g_autoptr (ClothGapResult) result = diagnose_seen (sights, NULL, 1, 2);
+  g_autoptr (ClothObservations) observations = sights_new (&fault, 1, 2);
+  g_autoptr (ClothGapResult) result = diagnose_seen (observations, NULL, 1, 2);
   const ClothGapEffect *first = &g_array_index (result->effects,
       ClothGapEffect, 0);
 
@@ -430,11 +434,12 @@ static void
 test_baseline (void)
 {
   const Fault fault = { 1, 0.012 };
-  g_autoptr (ClothSights) sights = sights_new (&fault, 1, N_CAMERAS);
-  g_autoptr (ClothSights) same = sights_new (&fault, 1, N_CAMERAS);
-  g_autoptr (ClothSights) sound = sights_new (NULL, 0, N_CAMERAS);
-  g_autoptr (ClothGapResult) known = diagnose (sights, same, 2);
-  g_autoptr (ClothGapResult) news = diagnose (sights, sound, 2);
+  g_autoptr (ClothObservations) observations =
+      sights_new (&fault, 1, N_CAMERAS);
+  g_autoptr (ClothObservations) same = sights_new (&fault, 1, N_CAMERAS);
+  g_autoptr (ClothObservations) sound = sights_new (NULL, 0, N_CAMERAS);
+  g_autoptr (ClothGapResult) known = diagnose (observations, same, 2);
+  g_autoptr (ClothGapResult) news = diagnose (observations, sound, 2);
 
   g_assert_cmpuint (count_accepted (known), ==, 0);
   g_assert_cmpuint (count_accepted (news), ==, 1);
@@ -444,9 +449,10 @@ static void
 test_threads (void)
 {
   const Fault fault = { 1, 0.012 };
-  g_autoptr (ClothSights) sights = sights_new (&fault, 1, N_CAMERAS);
-  g_autoptr (ClothGapResult) one = diagnose (sights, NULL, 1);
-  g_autoptr (ClothGapResult) two = diagnose (sights, NULL, 2);
+  g_autoptr (ClothObservations) observations =
+      sights_new (&fault, 1, N_CAMERAS);
+  g_autoptr (ClothGapResult) one = diagnose (observations, NULL, 1);
+  g_autoptr (ClothGapResult) two = diagnose (observations, NULL, 2);
   g_autofree gchar *a = NULL, *b = NULL;
 
   two->seconds = one->seconds;
@@ -459,8 +465,8 @@ test_threads (void)
 static void
 test_one_camera (void)
 {
-  g_autoptr (ClothSights) sights = sights_new (NULL, 0, 1);
-  g_autoptr (ClothGapResult) result = diagnose (sights, NULL, 1);
+  g_autoptr (ClothObservations) observations = sights_new (NULL, 0, 1);
+  g_autoptr (ClothGapResult) result = diagnose (observations, NULL, 1);
   guint n = 0;
 
   for (guint i = 0; i < result->untested->len; i++) {
@@ -476,12 +482,12 @@ test_one_camera (void)
 static void
 test_solved_again (void)
 {
-  g_autoptr (ClothSights) sights = sights_new (NULL, 0, N_CAMERAS);
+  g_autoptr (ClothObservations) observations = sights_new (NULL, 0, N_CAMERAS);
   g_autofree gchar *folder = NULL;
   g_autoptr (GError) error = NULL;
   g_autoptr (ClothTake) take = take_new (0.003, COLUMNS, &folder);
   ClothRecording *r = cloth_recording_new (take, &error);
-  g_autoptr (ClothCameraView) view = cloth_camera_view_new (r, sights, 2);
+  g_autoptr (ClothCameraView) view = cloth_camera_view_new (r, observations, 2);
   gdouble square, off = 0.;
 
   g_assert_no_error (error);
@@ -495,7 +501,7 @@ test_solved_again (void)
       for (guint k = 0; k < 3; k++)
         off += pow (r->y[3 * (f * N + v) + k] - X[k], 2.);
     }
-  /* 0.05 px at 1.1 m and 900 px are 0.06 mm across, some 0.1 mm along the sight */
+  /* 0.05 px at 1.1 m and 900 px are 0.06 mm across, some 0.1 mm along the observation */
   g_assert_cmpfloat (sqrt (off / (N * N_FRAMES)), <, 2e-4);
   cloth_recording_free (r);
   remove_take (folder);
@@ -504,7 +510,8 @@ test_solved_again (void)
 static void
 test_refused (void)
 {
-  g_autoptr (ClothSights) sights = cloth_sights_new (rig_new (), N);
+  g_autoptr (ClothObservations) observations =
+      cloth_observations_new (rig_new (), N);
   const guint32 twice[2] = { 3, 3 }, beyond[1] = { N }, fine[1] = { 5 };
   const gdouble px[4] = { 1., 2., 3., 4. }, nan_px[2] = { NAN, 1. };
   const gdouble cov[6] = { 1., 0., 1., 1., 0., 1. };
@@ -530,16 +537,17 @@ test_refused (void)
   };
   g_autoptr (GError) error = NULL;
 
-  cloth_sights_add (sights, 0, 0.5, 1, fine, px, cov, &error);
+  cloth_observations_add (observations, 0, 0.5, 1, fine, px, cov, &error);
   g_assert_no_error (error);
   for (guint i = 0; i < G_N_ELEMENTS (bad); i++) {
-    g_assert_false (cloth_sights_add (sights, bad[i].camera, bad[i].time_s,
-            bad[i].n, bad[i].vertices, bad[i].px, bad[i].covariances, &error));
+    g_assert_false (cloth_observations_add (observations, bad[i].camera,
+            bad[i].time_s, bad[i].n, bad[i].vertices, bad[i].px,
+            bad[i].covariances, &error));
     g_assert_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING);
     g_assert_nonnull (strstr (error->message, bad[i].says));
     g_clear_error (&error);
   }
-  g_assert_cmpuint (sights->list->len, ==, 1);
+  g_assert_cmpuint (observations->list->len, ==, 1);
 }
 
 int

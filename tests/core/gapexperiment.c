@@ -73,11 +73,11 @@ try_on (const ClothRecording * recording, const ClothModelEffect * members,
   static const gchar *const none[] = { NULL };
   const gdouble precisions[] = { FREE_PRECISION };
   g_autoptr (ClothModel) model = model_new ();
-  g_autoptr (ClothGapCandidates) candidates = NULL;
+  g_autoptr (ClothCandidates) candidates = NULL;
   gdouble mismatch[1000];
-  const ClothGapPower power = { G_N_ELEMENTS (mismatch), mismatch };
+  const ClothPowerSpectrum power = { G_N_ELEMENTS (mismatch), mismatch };
   ClothExperiment e = { recording, model, NULL, precisions, &power };
-  ClothStudyOptions options;
+  ClothEstimateOptions options;
   GArray *trials;
   gint64 start = g_get_monotonic_time ();
 
@@ -89,10 +89,10 @@ try_on (const ClothRecording * recording, const ClothModelEffect * members,
 
     g_array_append_val (model->free, f);
   }
-  candidates = cloth_gap_candidates_new (model, recording, none, TRUE, NULL,
+  candidates = cloth_candidates_new (model, recording, none, TRUE, NULL,
       NULL, NULL);
   e.candidates = candidates;
-  cloth_study_options_init (&options);
+  cloth_estimate_options_init (&options);
   options.overdispersion = OVERDISPERSION;
   options.rollout.threads = how->threads;
   options.rollout.progress = how->progress;
@@ -448,12 +448,12 @@ test_thin (void)
       "fine", 2);
   g_autoptr (ClothRecording) from = cloth_recording_new (big, NULL);
   g_autoptr (ClothRecording) small = cloth_recording_new (take, NULL);
-  g_autoptr (ClothRecording) to = cloth_recording_thin (from, 17);
+  g_autoptr (ClothRecording) to = cloth_recording_resample (from, 17);
   const guint corners[][2] = { {0, 0}, {32, 16}, {19 * 33, 16 * 17},
   {20 * 33 - 1, 17 * 17 - 1}
   };
 
-  g_assert_null (cloth_recording_thin (small, 17));
+  g_assert_null (cloth_recording_resample (small, 17));
   g_assert_cmpuint (to->n, ==, 17 * 17);
   g_assert_cmpuint (to->scene->held->len, ==, 2);
   g_assert_cmpuint (g_array_index (to->scene->held, ClothHeld, 1).vertex, ==,

@@ -45,10 +45,10 @@ fill (Data * data, gdouble gust, guint64 seed)
     }
 }
 
-static ClothGapNormal *
+static ClothNormalEquations *
 normal_of (const Data * data)
 {
-  ClothGapNormal *n = g_new0 (ClothGapNormal, 1);
+  ClothNormalEquations *n = g_new0 (ClothNormalEquations, 1);
 
   n->m = COLUMNS;
   n->n_blocks = BLOCKS;
@@ -106,16 +106,16 @@ find (const Data * data, const gboolean * blocks, ClothGapGusts * gusts,
     gdouble * phi)
 {
   const guint nuisance = 0;
-  g_autoptr (ClothGapNormal) normal = normal_of (data);
+  g_autoptr (ClothNormalEquations) normal = normal_of (data);
   ClothGapTest test = {
     .normals = {normal},.blocks = blocks,.nuisances = &nuisance,.precisions =
         &precision,.n_nuisances = 1,.overdispersion = overdispersion,.gusts = 1
   };
-  ClothGapReduced reduced;
+  ClothReducedEquations reduced;
   gdouble weighed = precision * overdispersion;
 
-  g_assert_true (cloth_gap_normal_reduce (normal, blocks, &nuisance, &weighed,
-          1, NULL, 0, &reduced));
+  g_assert_true (cloth_normal_equations_reduce (normal, blocks, &nuisance,
+          &weighed, 1, NULL, 0, &reduced));
   *phi = cloth_gap_test_dispersion (&test, normal, &reduced);
   return cloth_gap_test_gusts (&test, prior, share, gusts);
 }

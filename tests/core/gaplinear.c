@@ -48,7 +48,7 @@ turn_over (guint vertex, gdouble t, gfloat p[3])
   p[2] = (gfloat) (-spacing * row - 0.3 * t);
 }
 
-/* A patch comes in sight late, one goes out of sight, and one vertex is never seen. */
+/* A patch comes in sight late, one goes out of observation, and one vertex is never seen. */
 static void
 turning (guint vertex, gdouble t, gfloat p[3])
 {
@@ -62,7 +62,7 @@ turning (guint vertex, gdouble t, gfloat p[3])
     p[0] = p[1] = p[2] = NAN;
 }
 
-/* A patch goes out of sight before the one beside it comes in sight. */
+/* A patch goes out of observation before the one beside it comes in sight. */
 static void
 relay (guint vertex, gdouble t, gfloat p[3])
 {
@@ -309,12 +309,12 @@ test_features (void)
 {
   g_autoptr (GError) error = NULL;
   g_autoptr (ClothRecording) r = record (quartic, 30, 0., 1e-3, &error);
-  g_autoptr (ClothGapFeatures) f = NULL;
+  g_autoptr (ClothFeatures) f = NULL;
   g_autofree gdouble *z = NULL;
   gdouble positions[3 * N], square = 0., features = 0.;
 
   g_assert_no_error (error);
-  f = cloth_gap_features_new (r, 7, 0.2, 1000.);
+  f = cloth_features_new (r, 7, 0.2, 1000.);
   g_assert_cmpuint (f->n_waves, ==, N);
   g_assert_cmpuint (f->n_blocks, ==, 3);
   z = g_new0 (gdouble, f->size);
@@ -327,7 +327,7 @@ test_features (void)
         positions[3 * v + k] = r->y[3 * at + k] + off;
         square += r->seen[at] * off * off * 1e6;
       }
-    cloth_gap_features_add (f, r, frame, positions, z);
+    cloth_features_add (f, r, frame, positions, z);
   }
   for (gsize i = 0; i < f->size; i++)
     features += z[i] * z[i];
@@ -340,11 +340,11 @@ test_window (void)
 {
   g_autoptr (GError) error = NULL;
   g_autoptr (ClothRecording) r = record (quartic, 30, 0., 1e-3, &error);
-  g_autoptr (ClothGapFeatures) f = NULL;
+  g_autoptr (ClothFeatures) f = NULL;
   g_autofree gdouble *z = NULL, *part = NULL, *windowed = NULL, *sum = NULL;
 
   g_assert_no_error (error);
-  f = cloth_gap_features_new (r, 4, 0.2, 1000.);
+  f = cloth_features_new (r, 4, 0.2, 1000.);
   z = g_new0 (gdouble, f->size);
   windowed = g_new0 (gdouble, f->size);
   sum = g_new0 (gdouble, f->size);
@@ -359,11 +359,11 @@ test_window (void)
             1e-3 * sin (1. + 3. * i + 7. * frame);
       /* blocks of ten frames, in parts of three, three and four */
       if (MIN (frame % 10 / 3, 2) == p)
-        cloth_gap_features_add (f, r, frame, positions, part);
+        cloth_features_add (f, r, frame, positions, part);
       if (p == 0)
-        cloth_gap_features_add (f, r, frame, positions, z);
+        cloth_features_add (f, r, frame, positions, z);
     }
-    cloth_gap_features_window (f, z, p, 3, windowed);
+    cloth_features_window (f, z, p, 3, windowed);
     for (gsize i = 0; i < f->size; i++) {
       sum[i] += windowed[i];
       g_assert_cmpfloat_with_epsilon (windowed[i], part[i], 1e-9);
@@ -379,19 +379,19 @@ test_reduce (void)
 {
   g_autoptr (GError) error = NULL;
   g_autoptr (ClothRecording) r = record (quartic, 30, 0., 1e-3, &error);
-  g_autoptr (ClothGapFeatures) f = NULL;
-  g_autoptr (ClothGapPower) none = NULL;
-  g_autoptr (ClothGapNormal) normal = NULL;
+  g_autoptr (ClothFeatures) f = NULL;
+  g_autoptr (ClothPowerSpectrum) none = NULL;
+  g_autoptr (ClothNormalEquations) normal = NULL;
   g_autofree gdouble *columns = NULL, *z = NULL;
   const gdouble made_of[3] = { 2., 3., -5. }, precision = 0.;
   const guint directions[2] = { 0, 1 }, nuisance = 2;
   const gboolean blocks[3] = { TRUE, TRUE, FALSE };
-  ClothGapReduced reduced;
+  ClothReducedEquations reduced;
   gdouble changes[2], left = 0.;
   ClothRandom random;
 
   g_assert_no_error (error);
-  f = cloth_gap_features_new (r, 4, 0.2, 10.);
+  f = cloth_features_new (r, 4, 0.2, 10.);
   columns = g_new (gdouble, 3 * f->size);
   z = g_new0 (gdouble, f->size);
   cloth_random_init (&random, 3);
@@ -400,9 +400,9 @@ test_reduce (void)
   for (gsize i = 0; i < f->size; i++)
     for (guint k = 0; k < 3; k++)
       z[i] += made_of[k] * columns[k * f->size + i];
-  none = cloth_gap_power_new (f, z);
-  normal = cloth_gap_normal_new (f, none, 0., z, columns, 3);
-  g_assert_true (cloth_gap_normal_reduce (normal, blocks, &nuisance,
+  none = cloth_power_spectrum_new (f, z);
+  normal = cloth_normal_equations_new (f, none, 0., z, columns, 3);
+  g_assert_true (cloth_normal_equations_reduce (normal, blocks, &nuisance,
           &precision, 1, directions, 2, &reduced));
   memcpy (changes, reduced.s, sizeof changes);
   {
@@ -420,7 +420,7 @@ test_reduce (void)
   /* taking them off a block they were not estimated on leaves the nuisance's part */
   changes[0] = -changes[0];
   changes[1] = -changes[1];
-  left = normal->r[2] + cloth_gap_normal_change (normal, 2, directions,
+  left = normal->r[2] + cloth_normal_equations_change (normal, 2, directions,
       changes, 2);
   g_assert_cmpfloat (fabs (left - 25. * normal->g[2 * 9 + 8]), <, 1e-6 * left);
 }

@@ -167,7 +167,7 @@ look (ClothRays * rays, gboolean above, const gdouble * places)
 }
 
 /* A loose sheet at z = 0 is seen to hang in the air, the simulated one falls. From above
- * that is along the sight: it falls on undrawn, g·t²/2, and almost nothing remains. From
+ * that is along the observation: it falls on undrawn, g·t²/2, and almost nothing remains. From
  * the side the springs pull it to where it settles g/gain below what was seen. Unseen
  * vertices lie where the scene starts. */
 static void

@@ -102,20 +102,21 @@ add_step (gfloat * off, guint n_frames, guint begin, gdouble acceleration,
   }
 }
 
-static ClothGapRegion *
+static ClothLocalisation *
 find (ClothRecording * take, const gfloat * off, ClothRecording * null,
     const gfloat * null_off, gboolean alike)
 {
-  const ClothGapLed led = { take, off }, null_led = { null, null_off };
-  ClothGapRegionOptions options;
+  const ClothNudgedResidual nudged = { take, off }, null_nudged =
+      { null, null_off };
+  ClothLocalisationOptions options;
 
-  cloth_gap_region_options_init (&options);
+  cloth_localisation_options_init (&options);
   options.seed = 7;
-  return cloth_gap_region_new (&led, &null_led, 1, alike, &options);
+  return cloth_localisation_new (&nudged, &null_nudged, 1, alike, &options);
 }
 
 static void
-assert_patch (const ClothGapRegion * region)
+assert_patch (const ClothLocalisation * region)
 {
   guint both = 0;
 
@@ -142,7 +143,7 @@ test_noise (void)
     for (guint k = 0; k < 100; k++) {
       g_autofree gfloat *off = make_noise (FRAMES, SIGMA, alike[i], 2 * k + 1);
       g_autofree gfloat *null = make_noise (FRAMES, SIGMA, alike[i], 2 * k + 2);
-      g_autoptr (ClothGapRegion) region = find (r, off, r, null, FALSE);
+      g_autoptr (ClothLocalisation) region = find (r, off, r, null, FALSE);
 
       found += region->vertices->len > 0;
       g_assert_true (region->vertices->len || region->onset == 0);
@@ -164,14 +165,14 @@ test_step (void)
     for (guint same = 0; same < 2; same++) {
       g_autofree gfloat *off = make_noise (FRAMES, SIGMA, 0., 2 * k + 1);
       g_autofree gfloat *null = make_noise (FRAMES, SIGMA, 0., 2 * k + 2);
-      g_autoptr (ClothGapRegion) region = NULL;
+      g_autoptr (ClothLocalisation) region = NULL;
 
       /* what a baseline of the same motion shows, too, is no gap */
       for (gsize i = 0; i < 3 * N * FRAMES && same; i++) {
-        gfloat signature = (gfloat) (0.002 * sin (0.01 * i));
+        gfloat discrepancy = (gfloat) (0.002 * sin (0.01 * i));
 
-        off[i] += signature;
-        null[i] += signature;
+        off[i] += discrepancy;
+        null[i] += discrepancy;
       }
       add_step (off, FRAMES, 50, same ? 6. : 3., 0.3);
       region = find (r, off, r, null, same);
@@ -189,7 +190,7 @@ test_from_the_beginning (void)
   ClothRecording *r = record (FRAMES, SIGMA);
   g_autofree gfloat *off = make_noise (FRAMES, SIGMA, 0., 1);
   g_autofree gfloat *null = make_noise (FRAMES, SIGMA, 0., 2);
-  g_autoptr (ClothGapRegion) region = NULL;
+  g_autoptr (ClothLocalisation) region = NULL;
 
   add_step (off, FRAMES, 0, 3., 0.);
   region = find (r, off, r, null, FALSE);
@@ -205,7 +206,7 @@ test_everywhere (void)
   ClothRecording *r = record (FRAMES, SIGMA);
   g_autofree gfloat *off = make_noise (FRAMES, SIGMA, 0., 1);
   g_autofree gfloat *null = make_noise (FRAMES, SIGMA, 0., 2);
-  g_autoptr (ClothGapRegion) region = NULL;
+  g_autoptr (ClothLocalisation) region = NULL;
 
   for (gsize i = 60 * N * 3 + 2; i < 3 * N * FRAMES; i += 3)
     off[i] += 0.002f;
@@ -223,7 +224,7 @@ test_unseen (void)
   ClothRecording *r = record (FRAMES, SIGMA);
   g_autofree gfloat *off = make_noise (FRAMES, SIGMA, 0., 1);
   g_autofree gfloat *null = make_noise (FRAMES, SIGMA, 0., 2);
-  g_autoptr (ClothGapRegion) nothing = NULL, region = NULL, blind = NULL;
+  g_autoptr (ClothLocalisation) nothing = NULL, region = NULL, blind = NULL;
 
   for (guint f = 20; f < 40; f++)
     for (guint v = 0; v < 40; v++) {
@@ -259,8 +260,8 @@ test_odd (void)
   g_autofree gfloat *off = make_noise (FRAMES, SIGMA, 0., 1);
   g_autofree gfloat *null = make_noise (FRAMES, SIGMA, 0., 2);
   g_autofree gfloat *nothing = g_new0 (gfloat, 3 * N * FRAMES);
-  g_autoptr (ClothGapRegion) little = NULL, more = NULL, none = NULL;
-  g_autoptr (ClothGapRegion) flat = NULL;
+  g_autoptr (ClothLocalisation) little = NULL, more = NULL, none = NULL;
+  g_autoptr (ClothLocalisation) flat = NULL;
 
   little = find (seven, off, seven, null, FALSE);
   g_assert_cmpuint (little->vertices->len, ==, 0);

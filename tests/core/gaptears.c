@@ -16,7 +16,7 @@
 typedef struct
 {
   ClothTopology *topology;
-  ClothTears *tears;
+  ClothOutliers *tears;
   gdouble positions[3 * N];
 } Sheet;
 
@@ -26,7 +26,7 @@ set_up (Sheet * sheet, gconstpointer data)
 {
   sheet->topology = cloth_topology_new_grid (COLUMNS, ROWS,
       (gfloat) (EDGE * (COLUMNS - 1)), (gfloat) (EDGE * (ROWS - 1)));
-  sheet->tears = cloth_tears_new (sheet->topology);
+  sheet->tears = cloth_outliers_new (sheet->topology);
   for (guint v = 0; v < N; v++) {
     const gdouble angle = EDGE * (v % COLUMNS) / 0.1;
 
@@ -39,7 +39,7 @@ set_up (Sheet * sheet, gconstpointer data)
 static void
 tear_down (Sheet * sheet, gconstpointer data)
 {
-  cloth_tears_free (sheet->tears);
+  cloth_outliers_free (sheet->tears);
   cloth_topology_free (sheet->topology);
 }
 
@@ -68,7 +68,7 @@ is_gone (const Sheet * sheet, guint column, guint row)
 static guint
 cut (Sheet * sheet, gdouble slack_m)
 {
-  return cloth_tears_remove (sheet->tears, slack_m, sheet->positions);
+  return cloth_outliers_remove (sheet->tears, slack_m, sheet->positions);
 }
 
 /* Stretched to less than twice its length nothing is torn, and a hole tears nothing. */
@@ -180,15 +180,15 @@ test_hostile (void)
   const guint side = 300, n = side * side;
   g_autoptr (ClothTopology) topology = cloth_topology_new_grid (side, side, 1,
       1);
-  g_autoptr (ClothTears) tears = cloth_tears_new (topology);
+  g_autoptr (ClothOutliers) tears = cloth_outliers_new (topology);
   g_autofree gdouble *positions = g_new (gdouble, 3 * (gsize) n);
   ClothRandom random;
 
   cloth_random_init (&random, 4);
   for (guint i = 0; i < 3 * n; i++)
     positions[i] = 0.007 * cloth_random_gaussian (&random);
-  g_assert_cmpuint (cloth_tears_remove (tears, 0., positions), >, n / 2);
-  g_assert_cmpuint (cloth_tears_remove (tears, 0., positions), ==, 0);
+  g_assert_cmpuint (cloth_outliers_remove (tears, 0., positions), >, n / 2);
+  g_assert_cmpuint (cloth_outliers_remove (tears, 0., positions), ==, 0);
 }
 
 int

@@ -105,7 +105,7 @@ test_one_wave (void)
     per_m[k] = k * 2.;
   for (guint i = 0; i < G_N_ELEMENTS (waves); i++) {
     const Wave *w = &waves[i];
-    g_autoptr (ClothGapEnergy) e = cloth_gap_energy_new (r);
+    g_autoptr (ClothEnergySpectrum) e = cloth_energy_spectrum_new (r);
     g_autofree gdouble *cells = g_new (gdouble, 40 * FRAMES);
     gdouble expected = size * size / ((w->ku ? 2. : 1.) * (w->kv ? 2. : 1.) *
         (w->kt ? 2. : 1.));
@@ -123,14 +123,14 @@ test_one_wave (void)
               size * cosine (w->ku, v % COLUMNS, COLUMNS) *
               cosine (w->kv, v / COLUMNS, ROWS) * cosine (w->kt, f,
                   FRAMES) : 0.);
-      cloth_gap_energy_add (e, f, x);
+      cloth_energy_spectrum_add (e, f, x);
     }
     g_assert_cmpfloat_with_epsilon (e->highest_hz, FPS / 2., 1e-9);
-    g_assert_cmpfloat_with_epsilon (cloth_gap_energy_total (e), expected,
+    g_assert_cmpfloat_with_epsilon (cloth_energy_spectrum_total (e), expected,
         1e-9 * expected);
-    g_assert_cmpfloat_with_epsilon (cloth_gap_energy_static (e),
+    g_assert_cmpfloat_with_epsilon (cloth_energy_spectrum_static (e),
         w->kt ? 0. : expected, 1e-9 * expected);
-    cloth_gap_energy_bin (e, hz, FRAMES, per_m, 40, cells, NULL);
+    cloth_energy_spectrum_bin (e, hz, FRAMES, per_m, 40, cells, NULL);
     for (guint k = 0; k < 40 * FRAMES; k++)
       if (!isnan (cells[k]))
         g_assert_cmpfloat_with_epsilon (cells[k], k == cell ? expected : 0.,
@@ -148,8 +148,8 @@ test_tone_and_noise (void)
   const gdouble per_m[] = { 0., 8. };
   g_autoptr (ClothTake) take = NULL;
   g_autoptr (ClothRecording) r = record (gravity, 2 * 650, &take);
-  g_autoptr (ClothGapEnergy) tone = cloth_gap_energy_new (r);
-  g_autoptr (ClothGapEnergy) noise = cloth_gap_energy_new (r);
+  g_autoptr (ClothEnergySpectrum) tone = cloth_energy_spectrum_new (r);
+  g_autoptr (ClothEnergySpectrum) noise = cloth_energy_spectrum_new (r);
   gdouble cells[8], expected[8], all = 0.;
   ClothRandom random;
 
@@ -165,15 +165,15 @@ test_tone_and_noise (void)
       x[k] = at + (k % 3 == 2 ? 0.001 * sin (2. * G_PI * 3.3 * f / FPS) : 0.);
       y[k] = at + SIGMA * cloth_random_gaussian (&random);
     }
-    cloth_gap_energy_add (tone, f, x);
-    cloth_gap_energy_add (noise, f, y);
+    cloth_energy_spectrum_add (tone, f, x);
+    cloth_energy_spectrum_add (noise, f, y);
   }
-  cloth_gap_energy_bin (tone, hz, 4, per_m, 2, cells, expected);
+  cloth_energy_spectrum_bin (tone, hz, 4, per_m, 2, cells, expected);
   g_test_message ("3.3 Hz: %.4f of it from 2.5 to 5 Hz", cells[1] / 5e-7);
   g_assert_cmpfloat (cells[1], >, 0.98 * 5e-7);
   g_assert_cmpfloat (cells[1], <, 1.001 * 5e-7);
-  g_assert_cmpfloat (cloth_gap_energy_static (tone), <, 1e-4 * 5e-7);
-  cloth_gap_energy_bin (noise, hz, 4, per_m, 2, cells, expected);
+  g_assert_cmpfloat (cloth_energy_spectrum_static (tone), <, 1e-4 * 5e-7);
+  cloth_energy_spectrum_bin (noise, hz, 4, per_m, 2, cells, expected);
   for (guint k = 0; k < 8; k++) {
     all += expected[k];
     g_assert_cmpfloat_with_epsilon (cells[k], expected[k], 0.05 * expected[k]);
@@ -182,7 +182,7 @@ test_tone_and_noise (void)
   all = 0.;
   for (guint k = 0; k < 8; k++)
     all += cells[k];
-  g_assert_cmpfloat_with_epsilon (cloth_gap_energy_total (noise), all,
+  g_assert_cmpfloat_with_epsilon (cloth_energy_spectrum_total (noise), all,
       1e-9 * all);
 }
 
@@ -194,7 +194,7 @@ test_short (void)
   const gdouble all_waves = 0.;
   g_autoptr (ClothTake) take = NULL;
   g_autoptr (ClothRecording) r = record (gravity, 7, &take);
-  g_autoptr (ClothGapEnergy) e = cloth_gap_energy_new (r);
+  g_autoptr (ClothEnergySpectrum) e = cloth_energy_spectrum_new (r);
   gdouble cells[4], noise[4];
 
   for (guint v = 0; v < N; v++)
@@ -205,14 +205,14 @@ test_short (void)
     /* what is not seen may be anything */
     for (guint k = 0; k < 3 * N; k++)
       x[k] = f == 2 ? NAN : r->y[3 * (gsize) f * N + k];
-    cloth_gap_energy_add (e, f, x);
+    cloth_energy_spectrum_add (e, f, x);
   }
-  cloth_gap_energy_bin (e, hz, 4, &all_waves, 1, cells, noise);
+  cloth_energy_spectrum_bin (e, hz, 4, &all_waves, 1, cells, noise);
   g_assert_cmpfloat (cells[0], ==, 0.);
   g_assert_true (isnan (cells[1]) && isnan (cells[2]));
   g_assert_true (isnan (noise[1]));
   g_assert_cmpfloat (cells[3], ==, 0.);
-  g_assert_cmpfloat (cloth_gap_energy_total (e), ==, 0.);
+  g_assert_cmpfloat (cloth_energy_spectrum_total (e), ==, 0.);
 }
 
 /* A loose sheet that lies still where gravity a would pull it along one axis: windows
@@ -233,14 +233,15 @@ test_directions (void)
     g_autoptr (ClothGapResult) result = cloth_gap_result_new ();
     g_autoptr (GError) error = NULL;
     const ClothModel *models[2] = { model, lighter };
-    ClothGapExtent **extents;
+    ClothWindowedGap **extents;
 
     gravity[k] = a;
     r = record (gravity, FRAMES, &take);
     model->damping_mass = lighter->damping_mass = 0.;
     cloth_model_set_effect (lighter, cloth_effect_find ("gravity_scale"),
         &half);
-    extents = cloth_gap_extents_new (r, models, 2, gain, 0.3, &options, &error);
+    extents =
+        cloth_windowed_gaps_new (r, models, 2, gain, 0.3, &options, &error);
     g_assert_no_error (error);
     for (guint f = 1; f < FRAMES; f++) {
       guint begin = f, w = extents[0]->window[f];
@@ -253,10 +254,10 @@ test_directions (void)
       expected += d * d / (FRAMES - 1);
     }
     g_test_message ("axis %u: %g m, expected %g m", k, sqrt
-        (cloth_gap_extent_square (extents[0], NULL)), sqrt (expected));
-    g_assert_cmpfloat_with_epsilon (cloth_gap_extent_square (extents[0], NULL),
-        expected, 0.03 * expected);
-    cloth_gap_extent_fill (extents[0], extents[1], r, take, result);
+        (cloth_windowed_gap_square (extents[0], NULL)), sqrt (expected));
+    g_assert_cmpfloat_with_epsilon (cloth_windowed_gap_square (extents[0],
+            NULL), expected, 0.03 * expected);
+    cloth_windowed_gap_fill (extents[0], extents[1], r, take, result);
     for (guint i = 0; i < 3; i++)
       g_assert_cmpfloat_with_epsilon (result->directions[i], i == k, 1e-3);
     for (guint v = 0; v < N; v++) {
@@ -264,7 +265,7 @@ test_directions (void)
       gained += result->gained[v];
     }
     g_assert_cmpfloat_with_epsilon (gained, 0.75, 1e-3);
-    cloth_gap_extents_free (extents, 2);
+    cloth_windowed_gaps_free (extents, 2);
   }
 }
 

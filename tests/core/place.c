@@ -17,12 +17,12 @@
 /* Both ways to place a patch: in a film and in a single picture. */
 static gboolean
 run (gboolean single, const ClothPattern * pattern, const ClothPatch * patch,
-    const ClothPlacement * votes, guint n_votes, ClothPlacement * best)
+    const ClothPose * votes, guint n_votes, ClothPose * best)
 {
-  g_autoptr (ClothPlacer) placer = cloth_placer_new (pattern);
+  g_autoptr (ClothPoseFinder) placer = cloth_pose_finder_new (pattern);
 
-  return cloth_placer_run (placer, patch,
-      single ? &cloth_place_rigid : &cloth_place_cloth, votes, n_votes, best);
+  return cloth_pose_finder_run (placer, patch,
+      single ? &cloth_pose_rigid : &cloth_pose_cloth, votes, n_votes, best);
 }
 
 /* A patch with room for what tests need. */
@@ -52,7 +52,7 @@ turn (gint rotation, gint i, gint j, gint * column, gint * row)
  * upright in the picture, its own grid turned; @truth is where it lies. */
 static void
 fill (Window * window, const ClothPattern * pattern, gint left, gint top,
-    gint width, gint height, gint rotation, ClothPlacement * truth)
+    gint width, gint height, gint rotation, ClothPose * truth)
 {
   gint across = rotation & 1 ? height : width;
   gint down = rotation & 1 ? width : height;
@@ -69,7 +69,7 @@ fill (Window * window, const ClothPattern * pattern, gint left, gint top,
     low_c = MIN (low_c, c);
     low_r = MIN (low_r, r);
   }
-  *truth = (ClothPlacement) {
+  *truth = (ClothPose) {
   rotation, left - low_c, top - low_r, 0};
   patch->columns = columns;
   patch->rows = rows;
@@ -121,7 +121,7 @@ fill (Window * window, const ClothPattern * pattern, gint left, gint top,
 }
 
 static gboolean
-equal (const ClothPlacement * a, const ClothPlacement * b)
+equal (const ClothPose * a, const ClothPose * b)
 {
   return a->rotation == b->rotation && a->column == b->column
       && a->row == b->row;
@@ -145,7 +145,7 @@ test_coded (void)
     for (gint rotation = 0; rotation < 4; rotation++) {
       for (gint top = 0; top + size <= pattern->rows; top++)
         for (gint left = 0; left + size <= pattern->columns; left++) {
-          ClothPlacement truth, best;
+          ClothPose truth, best;
           gint middle;
 
           fill (window, pattern, left, top, size, size, rotation, &truth);
@@ -160,13 +160,13 @@ test_coded (void)
           n++;
         }
       for (gint k = 0; k < pattern->columns * pattern->rows; k++) {
-        ClothPlacement truth, best;
+        ClothPose truth, best;
 
         fill (window, pattern, k % pattern->columns, k / pattern->columns, 1, 1,
             rotation, &truth);
         memset (window->inside, 0, sizeof window->inside);
         g_assert_true (run (single, pattern, &window->patch, NULL, 0, &best));
-        g_assert_cmpfloat (best.weight, <, CLOTH_PLACE_MIN_LEAD);
+        g_assert_cmpfloat (best.weight, <, CLOTH_POSE_MIN_LEAD);
       }
     }
   g_test_message ("%u windows of %d squares: least lead %g, with one dot "
@@ -192,7 +192,7 @@ test_plain (void)
 
     for (gint single = 0; single < 2; single++)
       for (gint rotation = 0; rotation < 4; rotation++) {
-        ClothPlacement truth, best;
+        ClothPose truth, best;
 
         for (gint k = 0; k < columns * rows; k++) {
           gint left = k % columns, top = k / columns;
@@ -208,14 +208,14 @@ test_plain (void)
         fill (window, pattern, 0, 0, columns, rows, rotation, &truth);
         g_assert_true (run (single, pattern, &window->patch, NULL, 0, &best));
         g_assert_true (equal (&best, &truth));
-        g_assert_cmpfloat (best.weight, >, CLOTH_PLACE_MIN_LEAD);
+        g_assert_cmpfloat (best.weight, >, CLOTH_POSE_MIN_LEAD);
         /* Half of the board with three of its sides. */
         for (gint side = 0; side < 2; side++) {
           fill (window, pattern, side * (columns - columns / 2), 0, columns / 2,
               rows, rotation, &truth);
           g_assert_true (run (single, pattern, &window->patch, NULL, 0, &best));
           g_assert_true (equal (&best, &truth));
-          g_assert_cmpfloat (best.weight, >, CLOTH_PLACE_MIN_LEAD);
+          g_assert_cmpfloat (best.weight, >, CLOTH_POSE_MIN_LEAD);
         }
       }
   }
@@ -230,14 +230,14 @@ test_votes (void)
   g_autofree Window *window = g_new (Window, 1);
 
   for (gint single = 0; single < 2; single++) {
-    ClothPlacement truth, vote, best;
+    ClothPose truth, vote, best;
 
     fill (window, pattern, 3, 2, 3, 3, 1, &truth);
     vote = truth;
     vote.weight = 10;
     g_assert_true (run (single, pattern, &window->patch, &vote, 1, &best));
     g_assert_true (equal (&best, &truth));
-    g_assert_cmpfloat (best.weight, >, CLOTH_PLACE_MIN_LEAD);
+    g_assert_cmpfloat (best.weight, >, CLOTH_POSE_MIN_LEAD);
     /* Nothing lies on a square of the other colour. */
     vote.column++;
     vote.weight = 1000;
@@ -263,7 +263,7 @@ test_refused (void)
   g_autofree Window *window = g_new (Window, 1);
 
   for (gint single = 0; single < 2; single++) {
-    ClothPlacement truth, best;
+    ClothPose truth, best;
 
     fill (window, large, 0, 0, 15, 15, 0, &truth);
     g_assert_false (run (single, small, &window->patch, NULL, 0, &best));
@@ -278,7 +278,7 @@ test_refused (void)
  * upright. */
 static ClothPatch *
 random_patch (const ClothPattern * pattern, ClothRandom * random,
-    ClothPlacement * truth)
+    ClothPose * truth)
 {
   const gint columns = 2 + (gint) cloth_random_below (random, 24);
   const gint rows = 2 + (gint) cloth_random_below (random, 24);
@@ -286,14 +286,14 @@ random_patch (const ClothPattern * pattern, ClothRandom * random,
   const gint rotation = (gint) cloth_random_below (random, 4);
   gint column, row;
 
-  *truth = (ClothPlacement) {
+  *truth = (ClothPose) {
   rotation, 0, 0, 0};
-  cloth_placement_cell (truth, columns / 2, rows / 2, &column, &row);
+  cloth_pose_cell (truth, columns / 2, rows / 2, &column, &row);
   truth->column = (gint) cloth_random_below (random,
       (guint32) pattern->columns) - column;
   truth->row = (gint) cloth_random_below (random,
       (guint32) pattern->rows) - row;
-  cloth_placement_cell (truth, 0, 0, &column, &row);
+  cloth_pose_cell (truth, 0, 0, &column, &row);
   patch->odd_black = !cloth_pattern_is_black (pattern, column & 1, row & 1);
   for (gint j = 0; j + 1 < patch->rows; j++)
     for (gint i = 0; i + 1 < patch->columns; i++) {
@@ -301,7 +301,7 @@ random_patch (const ClothPattern * pattern, ClothRandom * random,
       const gdouble chance = cloth_random_uniform (random);
       gboolean on;
 
-      cloth_placement_cell (truth, i, j, &column, &row);
+      cloth_pose_cell (truth, i, j, &column, &row);
       on = column >= 0 && row >= 0 && column < pattern->columns
           && row < pattern->rows;
       patch->square[at] = on ? chance > 0.15 : chance > 0.998;
@@ -325,7 +325,7 @@ test_brute (void)
 {
   static const gint sizes[][2] =
       { {8, 8}, {11, 6}, {30, 24}, {4, 25}, {26, 26} };
-  ClothPlaceWeights weights[2] = { cloth_place_cloth, cloth_place_rigid };
+  ClothPoseWeights weights[2] = { cloth_pose_cloth, cloth_pose_rigid };
   guint n = 0, placed = 0, coded = 0;
   ClothRandom random;
 
@@ -338,14 +338,14 @@ test_brute (void)
     g_autoptr (ClothPattern) pattern =
         cloth_pattern_new_checker (sizes[s / 2][0], sizes[s / 2][1], 0.01, 0,
         s & 1, NULL);
-    g_autoptr (ClothPlacer) placer = NULL;
+    g_autoptr (ClothPoseFinder) placer = NULL;
 
     if (s & 1)
       g_assert_true (cloth_code_generate (pattern, CLOTH_CODE_DOT_RATIO, s,
               NULL, NULL));
-    placer = cloth_placer_new (pattern);
+    placer = cloth_pose_finder_new (pattern);
     for (guint k = 0; k < 60; k++) {
-      ClothPlacement best = { 0 }, brute = { 0 }, votes[3];
+      ClothPose best = { 0 }, brute = { 0 }, votes[3];
       g_autoptr (ClothPatch) patch = random_patch (pattern, &random, &votes[0]);
       const guint n_votes = cloth_random_below (&random, 4);
       gboolean fits;
@@ -356,8 +356,8 @@ test_brute (void)
       votes[2].rotation ^= 2;
       fits = test_brute_place (pattern, patch, &weights[k & 1], votes, n_votes,
           &brute);
-      g_assert_cmpint (cloth_placer_run (placer, patch, &weights[k & 1], votes,
-              n_votes, &best), ==, fits);
+      g_assert_cmpint (cloth_pose_finder_run (placer, patch, &weights[k & 1],
+              votes, n_votes, &best), ==, fits);
       if (!fits)
         continue;
       n++;
@@ -379,18 +379,18 @@ static void
 test_mapping (void)
 {
   for (gint rotation = 0; rotation < 4; rotation++) {
-    const ClothPlacement placement = { rotation, 5, -3, 0 };
+    const ClothPose placement = { rotation, 5, -3, 0 };
 
     for (gint j = -2; j < 3; j++)
       for (gint i = -2; i < 3; i++) {
         gint c, r, c1, r1, column, row;
 
-        cloth_placement_vertex (&placement, i, j, &column, &row);
+        cloth_pose_vertex (&placement, i, j, &column, &row);
         turn (rotation, i, j, &c, &r);
         g_assert_cmpint (column, ==, c + 5);
         g_assert_cmpint (row, ==, r - 3);
         turn (rotation, i + 1, j + 1, &c1, &r1);
-        cloth_placement_cell (&placement, i, j, &column, &row);
+        cloth_pose_cell (&placement, i, j, &column, &row);
         g_assert_cmpint (column, ==, MIN (c, c1) + 5);
         g_assert_cmpint (row, ==, MIN (r, r1) - 3);
       }
@@ -399,7 +399,7 @@ test_mapping (void)
 
 /* Marks the corners along the board's row @rim as found, or as linked; how many. */
 static gint
-mark (Window * window, const ClothPlacement * truth, gint rim, gboolean linked)
+mark (Window * window, const ClothPose * truth, gint rim, gboolean linked)
 {
   const ClothPatch *patch = &window->patch;
   gint n = 0;
@@ -408,7 +408,7 @@ mark (Window * window, const ClothPlacement * truth, gint rim, gboolean linked)
     for (gint i = 0; i < patch->columns; i++) {
       gint at = j * patch->columns + i, column, row;
 
-      cloth_placement_vertex (truth, i, j, &column, &row);
+      cloth_pose_vertex (truth, i, j, &column, &row);
       if (row != rim || !window->kind[at])
         continue;
       window->kind[at] = CLOTH_VERTEX_SADDLE;
@@ -426,7 +426,7 @@ test_evidence (void)
   g_autoptr (ClothPattern) pattern = cloth_pattern_new_checker (10, 7, 0.01, 0,
       TRUE, NULL);
   g_autofree Window *window = g_new (Window, 1);
-  ClothPlacement truth, best;
+  ClothPose truth, best;
 
   for (gint rotation = 0; rotation < 4; rotation++)
     for (gint width = 7; width <= 10; width++) {

@@ -155,23 +155,23 @@ see_dots (guint number, guint columns, guint rows, const GstClothDot * dots,
 }
 
 static gboolean
-load (const Fixture * f, ClothSights ** sights, GError ** error)
+load (const Fixture * f, ClothObservations ** observations, GError ** error)
 {
   g_autoptr (ClothTopology) grid = cloth_topology_new_grid (COLUMNS, ROWS, 0.2f,
       0.1f);
 
-  return gst_cloth_sights_load (f->folder, grid, sights, error);
+  return gst_cloth_io_observations_load (f->folder, grid, observations, error);
 }
 
-static ClothSights *
+static ClothObservations *
 load_well (const Fixture * f)
 {
   GError *error = NULL;
-  ClothSights *sights;
+  ClothObservations *observations;
 
-  load (f, &sights, &error);
+  load (f, &observations, &error);
   g_assert_no_error (error);
-  return sights;
+  return observations;
 }
 
 /* ---- what is there ---- */
@@ -192,14 +192,14 @@ test_none (Fixture * f, gconstpointer data)
 static void
 test_squares (Fixture * f, gconstpointer data)
 {
-  g_autoptr (ClothSights) sights = NULL;
+  g_autoptr (ClothObservations) observations = NULL;
   GstClothQuad quads[2] = { new_quad (0, 0, 20, 30, 1), new_quad (1, 0, 31, 30,
         3)
   };
   static const guint32 vertices[] = { 0, 1, 2, 3, 5 };
   static const gdouble px[] = { 20, 30, 30.25, 30, 41, 30, 20, 40, 41, 40 };
   static const gdouble variances[] = { 1, 1.5, 3, 1, 3 };
-  const ClothSight *sight;
+  const ClothObservation *observation;
 
   quads[1].x[3] = 45;
   append (f, see_quads (1, "left", 2, 1, quads, 2));
@@ -208,27 +208,30 @@ test_squares (Fixture * f, gconstpointer data)
   append (f, see_quads (2, "", 2, 1, quads, 2));
   append (f, new_picture (3));
   end_file (f, "left");
-  sights = load_well (f);
-  g_assert_cmpuint (sights->n_vertices, ==, COLUMNS * ROWS);
-  g_assert_cmpuint (sights->rig->n_cameras, ==, 2);
-  g_assert_cmpuint (sights->list->len, ==, 3);
-  sight = &g_array_index (sights->list, ClothSight, 0);
-  g_assert_cmpuint (sight->camera, ==, 0);
-  g_assert_cmpfloat (sight->time_s, ==, 0.04);
-  g_assert_cmpmem (sight->vertices, sight->n * sizeof *vertices, vertices,
-      sizeof vertices);
-  for (guint i = 0; i < sight->n; i++) {
-    g_assert_cmpfloat_with_epsilon (sight->px[2 * i], px[2 * i], 1e-12);
-    g_assert_cmpfloat_with_epsilon (sight->px[2 * i + 1], px[2 * i + 1], 1e-12);
-    g_assert_cmpfloat_with_epsilon (sight->covariances[3 * i], variances[i],
+  observations = load_well (f);
+  g_assert_cmpuint (observations->n_vertices, ==, COLUMNS * ROWS);
+  g_assert_cmpuint (observations->rig->n_cameras, ==, 2);
+  g_assert_cmpuint (observations->list->len, ==, 3);
+  observation = &g_array_index (observations->list, ClothObservation, 0);
+  g_assert_cmpuint (observation->camera, ==, 0);
+  g_assert_cmpfloat (observation->time_s, ==, 0.04);
+  g_assert_cmpmem (observation->vertices, observation->n * sizeof *vertices,
+      vertices, sizeof vertices);
+  for (guint i = 0; i < observation->n; i++) {
+    g_assert_cmpfloat_with_epsilon (observation->px[2 * i], px[2 * i], 1e-12);
+    g_assert_cmpfloat_with_epsilon (observation->px[2 * i + 1], px[2 * i + 1],
         1e-12);
-    g_assert_cmpfloat (sight->covariances[3 * i + 1], ==, 0);
-    g_assert_cmpfloat_with_epsilon (sight->covariances[3 * i + 2],
+    g_assert_cmpfloat_with_epsilon (observation->covariances[3 * i],
+        variances[i], 1e-12);
+    g_assert_cmpfloat (observation->covariances[3 * i + 1], ==, 0);
+    g_assert_cmpfloat_with_epsilon (observation->covariances[3 * i + 2],
         variances[i], 1e-12);
   }
   /* what is only guessed was not seen; nor was anything in a picture without metas */
-  g_assert_cmpuint (g_array_index (sights->list, ClothSight, 1).n, ==, 0);
-  g_assert_cmpuint (g_array_index (sights->list, ClothSight, 2).n, ==, 0);
+  g_assert_cmpuint (g_array_index (observations->list, ClothObservation, 1).n,
+      ==, 0);
+  g_assert_cmpuint (g_array_index (observations->list, ClothObservation, 2).n,
+      ==, 0);
 }
 
 /* A dot that runs into another and one without a label say nothing; those beside a fold,
@@ -236,9 +239,9 @@ test_squares (Fixture * f, gconstpointer data)
 static void
 test_dots (Fixture * f, gconstpointer data)
 {
-  g_autoptr (ClothSights) sights = NULL;
+  g_autoptr (ClothObservations) observations = NULL;
   GstClothDot dots[7] = { {0} };
-  const ClothSight *sight;
+  const ClothObservation *observation;
 
   for (guint i = 0; i < 6; i++) {
     dots[i].column = (gint) i % COLUMNS;
@@ -257,20 +260,21 @@ test_dots (Fixture * f, gconstpointer data)
   dots[4].touches = TRUE;       /* now they miss two; 0 and 3 one at most */
   append (f, see_dots (2, COLUMNS, ROWS, dots, 7));
   end_file (f, "left");
-  sights = load_well (f);
-  g_assert_cmpuint (sights->list->len, ==, 3);
-  sight = &g_array_index (sights->list, ClothSight, 0);
-  g_assert_cmpuint (sight->n, ==, 6);
-  g_assert_cmpfloat (sight->px[2 * 4], ==, 40);
-  g_assert_cmpfloat (sight->px[2 * 4 + 1], ==, 5.5);
-  g_assert_cmpfloat (sight->covariances[3 * 4], ==, 0.5);
-  g_assert_cmpfloat (sight->covariances[3 * 4 + 1], ==, 0.125);
-  g_assert_cmpfloat (sight->covariances[3 * 4 + 2], ==, 0.25);
-  g_assert_cmpuint (g_array_index (sights->list, ClothSight, 1).n, ==, 5);
-  sight = &g_array_index (sights->list, ClothSight, 2);
-  g_assert_cmpuint (sight->n, ==, 2);
-  g_assert_cmpuint (sight->vertices[0], ==, 0);
-  g_assert_cmpuint (sight->vertices[1], ==, 3);
+  observations = load_well (f);
+  g_assert_cmpuint (observations->list->len, ==, 3);
+  observation = &g_array_index (observations->list, ClothObservation, 0);
+  g_assert_cmpuint (observation->n, ==, 6);
+  g_assert_cmpfloat (observation->px[2 * 4], ==, 40);
+  g_assert_cmpfloat (observation->px[2 * 4 + 1], ==, 5.5);
+  g_assert_cmpfloat (observation->covariances[3 * 4], ==, 0.5);
+  g_assert_cmpfloat (observation->covariances[3 * 4 + 1], ==, 0.125);
+  g_assert_cmpfloat (observation->covariances[3 * 4 + 2], ==, 0.25);
+  g_assert_cmpuint (g_array_index (observations->list, ClothObservation, 1).n,
+      ==, 5);
+  observation = &g_array_index (observations->list, ClothObservation, 2);
+  g_assert_cmpuint (observation->n, ==, 2);
+  g_assert_cmpuint (observation->vertices[0], ==, 0);
+  g_assert_cmpuint (observation->vertices[1], ==, 3);
 }
 
 /* Squares of another board in the same pictures do no harm, nor what a later version
@@ -282,7 +286,7 @@ test_others (Fixture * f, gconstpointer data)
     0, 1, 0, 0, 0, 0, 0xe1, 0xf5, 0x05, 0, 0, 0, 0, 255, 255, 255, 255, 255,
     255, 255, 255, 'L', 'A', 'T', 'E', 4, 0, 0, 0, 1, 2, 3, 4
   };
-  g_autoptr (ClothSights) sights = NULL;
+  g_autoptr (ClothObservations) observations = NULL;
   const GstClothQuad quad = new_quad (4, 4, 20, 30, 1);
   const GstClothDot dot = {.column = 2,.row = 1,.x = 7,.y = 8 };
   GstBuffer *picture = see_quads (0, "left", 8, 8, &quad, 1);
@@ -295,15 +299,17 @@ test_others (Fixture * f, gconstpointer data)
   append (f, see_quads (5, "right", COLUMNS - 1, ROWS - 1, NULL, 0));
   end_file (f, "right");
   write_file (f, "observations/.hidden", "x", 1);
-  sights = load_well (f);
-  g_assert_cmpuint (sights->list->len, ==, 3);
+  observations = load_well (f);
+  g_assert_cmpuint (observations->list->len, ==, 3);
   /* a dot alone has its neighbours hidden */
-  g_assert_cmpuint (g_array_index (sights->list, ClothSight, 0).n, ==, 0);
-  g_assert_cmpfloat (g_array_index (sights->list, ClothSight, 1).time_s, ==,
-      0.1);
-  g_assert_cmpuint (g_array_index (sights->list, ClothSight, 2).camera, ==, 1);
-  g_assert_cmpfloat (g_array_index (sights->list, ClothSight, 2).time_s, ==,
-      0.2);
+  g_assert_cmpuint (g_array_index (observations->list, ClothObservation, 0).n,
+      ==, 0);
+  g_assert_cmpfloat (g_array_index (observations->list, ClothObservation,
+          1).time_s, ==, 0.1);
+  g_assert_cmpuint (g_array_index (observations->list, ClothObservation,
+          2).camera, ==, 1);
+  g_assert_cmpfloat (g_array_index (observations->list, ClothObservation,
+          2).time_s, ==, 0.2);
 }
 
 /* ---- what can't be used ---- */
@@ -312,10 +318,10 @@ static void
 refuse (const Fixture * f, const gchar * first, const gchar * second)
 {
   g_autoptr (GError) error = NULL;
-  ClothSights *sights = (ClothSights *) f;
+  ClothObservations *observations = (ClothObservations *) f;
 
-  g_assert_false (load (f, &sights, &error));
-  g_assert_null (sights);
+  g_assert_false (load (f, &observations, &error));
+  g_assert_null (observations);
   g_assert_nonnull (error);
   g_test_message ("%s", error->message);
   if (!strstr (error->message, first) || !strstr (error->message, second))
@@ -365,12 +371,13 @@ test_no_grid (Fixture * f, gconstpointer data)
   g_autoptr (ClothTopology) mesh = cloth_topology_new_grid (COLUMNS, ROWS, 0.2f,
       0.1f);
   g_autoptr (GError) error = NULL;
-  ClothSights *sights;
+  ClothObservations *observations;
 
   append (f, see_square (0));
   end_file (f, "left");
   mesh->columns = mesh->rows = 0;
-  g_assert_false (gst_cloth_sights_load (f->folder, mesh, &sights, &error));
+  g_assert_false (gst_cloth_io_observations_load (f->folder, mesh,
+          &observations, &error));
   g_assert_nonnull (strstr (error->message, "grid"));
 }
 
@@ -479,14 +486,14 @@ test_other_camera (Fixture * f, gconstpointer data)
 static void
 test_other_picture (Fixture * f, gconstpointer data)
 {
-  g_autoptr (ClothSights) sights = NULL;
+  g_autoptr (ClothObservations) observations = NULL;
   GstClothQuad quad = new_quad (0, 0, 99, 77, 1);
 
   append (f, see_quads (0, "left", 2, 1, &quad, 1));
   quad = new_quad (0, 0, -9, -7, 1);
   append (f, see_quads (1, "left", 2, 1, &quad, 1));
   end_file (f, "left");
-  sights = load_well (f);       /* less than a tenth outside */
+  observations = load_well (f); /* less than a tenth outside */
   quad = new_quad (0, 0, 101, 30, 1);
   append (f, see_quads (2, "left", 2, 1, &quad, 1));
   refuse_second (f, "vertex 1 is at (111.0, 30.0)", "100×80");

@@ -78,26 +78,28 @@ find_corner (const TestFilm * film, guint camera, guint frame, guint vertex,
 }
 
 static void
-check_points (const TestFilm * film, const ClothSights * sights)
+check_points (const TestFilm * film, const ClothObservations * observations)
 {
   guint n = 0, clear = 0, hidden = 0;
   gdouble sum = 0;
 
-  for (guint k = 0; k < sights->list->len; k++) {
-    const ClothSight *sight = &g_array_index (sights->list, ClothSight, k);
-    const guint frame = (guint) floor (sight->time_s * FPS + 0.5);
+  for (guint k = 0; k < observations->list->len; k++) {
+    const ClothObservation *observation =
+        &g_array_index (observations->list, ClothObservation, k);
+    const guint frame = (guint) floor (observation->time_s * FPS + 0.5);
     guint at = 0;
 
     g_assert_cmpuint (frame, <, film->n_frames);
-    for (guint vertex = 0; vertex < sights->n_vertices; vertex++) {
-      gboolean seen = at < sight->n && sight->vertices[at] == vertex;
+    for (guint vertex = 0; vertex < observations->n_vertices; vertex++) {
+      gboolean seen = at < observation->n
+          && observation->vertices[at] == vertex;
       gdouble px[2];
 
-      if (find_corner (film, sight->camera, frame, vertex, px)) {
+      if (find_corner (film, observation->camera, frame, vertex, px)) {
         clear++;
         if (seen) {
-          sum += (pow (sight->px[2 * at] - px[0], 2)
-              + pow (sight->px[2 * at + 1] - px[1], 2)) / 2;
+          sum += (pow (observation->px[2 * at] - px[0], 2)
+              + pow (observation->px[2 * at + 1] - px[1], 2)) / 2;
           n++;
         }
       } else {
@@ -115,17 +117,18 @@ check_points (const TestFilm * film, const ClothSights * sights)
 
 /* The film's first picture is at 80 ms: take and observations must agree on 0. */
 static void
-check_times (const ClothTake * take, const ClothSights * sights)
+check_times (const ClothTake * take, const ClothObservations * observations)
 {
   guint n[2] = { 0, 0 };
 
-  for (guint k = 0; k < sights->list->len; k++) {
-    const ClothSight *sight = &g_array_index (sights->list, ClothSight, k);
-    guint frame = n[sight->camera]++;
+  for (guint k = 0; k < observations->list->len; k++) {
+    const ClothObservation *observation =
+        &g_array_index (observations->list, ClothObservation, k);
+    guint frame = n[observation->camera]++;
 
-    g_assert_cmpfloat_with_epsilon (sight->time_s, cloth_take_get_time (take,
-            frame), 1e-9);
-    g_assert_cmpfloat_with_epsilon (sight->time_s, frame / FPS, 1e-9);
+    g_assert_cmpfloat_with_epsilon (observation->time_s,
+        cloth_take_get_time (take, frame), 1e-9);
+    g_assert_cmpfloat_with_epsilon (observation->time_s, frame / FPS, 1e-9);
   }
   g_assert_cmpuint (n[0], ==, cloth_take_get_n_frames (take));
   g_assert_cmpuint (n[1], ==, n[0]);
@@ -154,18 +157,18 @@ test_film (void)
   g_autofree gchar *folder = g_dir_make_tmp ("film-XXXXXX", &error);
   g_autoptr (TestFilm) film = test_film_load (FOLDER);
   g_autoptr (ClothTake) take = NULL;
-  g_autoptr (ClothSights) sights = NULL;
+  g_autoptr (ClothObservations) observations = NULL;
 
   g_assert_no_error (error);
   record (folder);
   take = cloth_take_open (folder, &error);
   g_assert_no_error (error);
-  gst_cloth_sights_load (folder, cloth_take_get_topology (take), &sights,
-      &error);
+  gst_cloth_io_observations_load (folder, cloth_take_get_topology (take),
+      &observations, &error);
   g_assert_no_error (error);
-  g_assert_nonnull (sights);
-  check_points (film, sights);
-  check_times (take, sights);
+  g_assert_nonnull (observations);
+  check_points (film, observations);
+  check_times (take, observations);
   remove_folder (folder);
 }
 

@@ -9,7 +9,7 @@
 #include "gst/fit/error.h"
 #include "gst/effect/effect.h"
 
-/* Finite differences are this share of a prior: chaos adds the same to every step, so a
+/* Finite differences are this share of a prior: variability adds the same to every step, so a
  * short one would drown in it. */
 #define STEP 0.4
 #define FREE_STEP 0.2
@@ -55,7 +55,7 @@ static const struct
 static void
 clear_direction (gpointer item)
 {
-  g_free (((ClothGapDirection *) item)->name);
+  g_free (((ClothDirection *) item)->name);
 }
 
 static gboolean
@@ -68,11 +68,11 @@ is_free (const ClothModel * model, const gchar * name)
 }
 
 static gboolean
-add_free (ClothGapCandidates * c, const ClothModel * model, GError ** error)
+add_free (ClothCandidates * c, const ClothModel * model, GError ** error)
 {
   for (guint i = 0; i < model->free->len; i++) {
     const ClothModelFree *f = &g_array_index (model->free, ClothModelFree, i);
-    ClothGapDirection d = { NULL };
+    ClothDirection d = { NULL };
 
     if (!cloth_model_get (model, f->name, &d.centre, error))
       return FALSE;
@@ -97,10 +97,10 @@ add_free (ClothGapCandidates * c, const ClothModel * model, GError ** error)
   return TRUE;
 }
 
-static ClothGapCandidate
-start (const ClothGapCandidates * c, const ClothEffect * effect)
+static ClothCandidate
+start (const ClothCandidates * c, const ClothEffect * effect)
 {
-  ClothGapCandidate candidate = { effect };
+  ClothCandidate candidate = { effect };
 
   for (guint k = 0; k < effect->n_parameters; k++)
     candidate.values[k] = effect->parameters[k].null_value;
@@ -109,10 +109,10 @@ start (const ClothGapCandidates * c, const ClothEffect * effect)
 }
 
 static void
-add_direction (ClothGapCandidates * c, ClothGapCandidate * candidate, guint k)
+add_direction (ClothCandidates * c, ClothCandidate * candidate, guint k)
 {
   const ClothEffectParameter *p = &candidate->effect->parameters[k];
-  ClothGapDirection d = { NULL };
+  ClothDirection d = { NULL };
 
   d.name = g_strdup_printf ("effects.%s.%s", candidate->effect->id, p->name);
   d.centre = p->null_value;
@@ -126,7 +126,7 @@ add_direction (ClothGapCandidates * c, ClothGapCandidate * candidate, guint k)
 }
 
 static void
-add_plain (ClothGapCandidates * c, const ClothEffect * effect)
+add_plain (ClothCandidates * c, const ClothEffect * effect)
 {
   guint shape = 0, n = 1;
 
@@ -136,7 +136,7 @@ add_plain (ClothGapCandidates * c, const ClothEffect * effect)
   if (shape < G_N_ELEMENTS (shapes))
     n = shapes[shape].n;
   for (guint i = 0; i < n; i++) {
-    ClothGapCandidate candidate = start (c, effect);
+    ClothCandidate candidate = start (c, effect);
 
     for (guint k = 0; k < effect->n_parameters; k++) {
       const gchar *name = effect->parameters[k].name;
@@ -214,7 +214,7 @@ parameter_of (const ClothEffect * effect, const gchar * name)
 }
 
 static void
-add_slips (ClothGapCandidates * c, const ClothEffect * effect,
+add_slips (ClothCandidates * c, const ClothEffect * effect,
     const ClothRecording * r)
 {
   /* the ramp is over a twentieth of a second: it began before the middle of the jump */
@@ -222,7 +222,7 @@ add_slips (ClothGapCandidates * c, const ClothEffect * effect,
 
   for (guint held = 0; held < r->scene->held->len; held++) {
     gdouble when = find_slip (r, held);
-    ClothGapCandidate candidate = start (c, effect);
+    ClothCandidate candidate = start (c, effect);
 
     candidate.values[parameter_of (effect, "held")] = held;
     candidate.values[parameter_of (effect, "time")] =
@@ -235,13 +235,12 @@ add_slips (ClothGapCandidates * c, const ClothEffect * effect,
 
 /* Gusts have no directions of their own, but those of wind. */
 static gboolean
-add_gust (ClothGapCandidates * c, const ClothEffect * effect)
+add_gust (ClothCandidates * c, const ClothEffect * effect)
 {
-  ClothGapCandidate candidate = start (c, effect);
+  ClothCandidate candidate = start (c, effect);
 
   for (guint i = 0; i < c->list->len; i++) {
-    const ClothGapCandidate *wind =
-        &g_array_index (c->list, ClothGapCandidate, i);
+    const ClothCandidate *wind = &g_array_index (c->list, ClothCandidate, i);
 
     if (strcmp (wind->effect->id, "wind") != 0)
       continue;
@@ -288,7 +287,7 @@ wanted (const gchar * const *effects, const gchar * id)
 }
 
 /**
- * cloth_gap_candidates_new:
+ * cloth_candidates_new:
  * @model: the model that is looked at
  * @recording: what it is to explain
  * @effects: (nullable) (array zero-terminated=1): ids of those to consider
@@ -300,18 +299,18 @@ wanted (const gchar * const *effects, const gchar * id)
  * Returns: (transfer full) (nullable): the candidates
  * Since: 0.1
  */
-ClothGapCandidates *
-cloth_gap_candidates_new (const ClothModel * model,
+ClothCandidates *
+cloth_candidates_new (const ClothModel * model,
     const ClothRecording * recording, const gchar * const *effects,
-    gboolean frozen, ClothGapSkip skip, gpointer data, GError ** error)
+    gboolean frozen, ClothCandidateSkip skip, gpointer data, GError ** error)
 {
-  g_autoptr (ClothGapCandidates) c = g_new0 (ClothGapCandidates, 1);
+  g_autoptr (ClothCandidates) c = g_new0 (ClothCandidates, 1);
   guint n_effects;
   const ClothEffect *const *table = cloth_effect_table (&n_effects);
 
-  c->directions = g_array_new (FALSE, FALSE, sizeof (ClothGapDirection));
+  c->directions = g_array_new (FALSE, FALSE, sizeof (ClothDirection));
   g_array_set_clear_func (c->directions, clear_direction);
-  c->list = g_array_new (FALSE, FALSE, sizeof (ClothGapCandidate));
+  c->list = g_array_new (FALSE, FALSE, sizeof (ClothCandidate));
   for (guint i = 0; effects && effects[i]; i++)
     if (!cloth_effect_find (effects[i])) {
       g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_EFFECT,
@@ -344,11 +343,11 @@ cloth_gap_candidates_new (const ClothModel * model,
 }
 
 static void
-set_effect (const ClothGapCandidates * c, ClothModel * model, guint direction)
+set_effect (const ClothCandidates * c, ClothModel * model, guint direction)
 {
   for (guint i = 0; i < c->list->len; i++) {
-    const ClothGapCandidate *candidate =
-        &g_array_index (c->list, ClothGapCandidate, i);
+    const ClothCandidate *candidate =
+        &g_array_index (c->list, ClothCandidate, i);
     gboolean there = FALSE;
 
     if (direction < candidate->first
@@ -363,7 +362,7 @@ set_effect (const ClothGapCandidates * c, ClothModel * model, guint direction)
 }
 
 /**
- * cloth_gap_candidates_place:
+ * cloth_candidates_place:
  * @candidates: the candidates
  * @model: a model
  * @direction: a direction
@@ -372,10 +371,10 @@ set_effect (const ClothGapCandidates * c, ClothModel * model, guint direction)
  * Since: 0.1
  */
 gdouble
-cloth_gap_candidates_place (const ClothGapCandidates * candidates,
+cloth_candidates_place (const ClothCandidates * candidates,
     const ClothModel * model, guint direction)
 {
-  const ClothGapDirection *d = cloth_gap_candidates_direction (candidates,
+  const ClothDirection *d = cloth_candidates_direction (candidates,
       direction);
   gdouble value = d->centre;
 
@@ -385,7 +384,7 @@ cloth_gap_candidates_place (const ClothGapCandidates * candidates,
 }
 
 /**
- * cloth_gap_candidates_move:
+ * cloth_candidates_move:
  * @candidates: the candidates
  * @model: where they start
  * @directions: (array length=n): along which
@@ -396,19 +395,19 @@ cloth_gap_candidates_place (const ClothGapCandidates * candidates,
  * Since: 0.1
  */
 ClothModel *
-cloth_gap_candidates_move (const ClothGapCandidates * candidates,
+cloth_candidates_move (const ClothCandidates * candidates,
     const ClothModel * model, const guint * directions,
     const gdouble * changes, guint n)
 {
   ClothModel *moved = cloth_model_copy (model);
 
   for (guint i = 0; i < n; i++) {
-    const ClothGapDirection *d = cloth_gap_candidates_direction (candidates,
+    const ClothDirection *d = cloth_candidates_direction (candidates,
         directions[i]);
     gdouble value;
 
     set_effect (candidates, moved, directions[i]);
-    value = cloth_gap_candidates_place (candidates, moved, directions[i]);
+    value = cloth_candidates_place (candidates, moved, directions[i]);
     value = CLAMP (value + changes[i], d->low, d->high);
     cloth_model_set (moved, d->name, d->logarithmic ? exp (value) : value,
         NULL);
@@ -417,7 +416,7 @@ cloth_gap_candidates_move (const ClothGapCandidates * candidates,
 }
 
 /**
- * cloth_gap_candidates_bound:
+ * cloth_candidates_bound:
  * @candidates: the candidates
  * @model: a model
  * @direction: one of the free numbers
@@ -429,19 +428,19 @@ cloth_gap_candidates_move (const ClothGapCandidates * candidates,
  * Since: 0.1
  */
 void
-cloth_gap_candidates_bound (ClothGapCandidates * candidates,
+cloth_candidates_bound (ClothCandidates * candidates,
     const ClothModel * model, guint direction, gdouble reach)
 {
-  ClothGapDirection *d = &g_array_index (candidates->directions,
-      ClothGapDirection, direction);
-  gdouble value = cloth_gap_candidates_place (candidates, model, direction);
+  ClothDirection *d = &g_array_index (candidates->directions,
+      ClothDirection, direction);
+  gdouble value = cloth_candidates_place (candidates, model, direction);
 
   d->fit_low = MAX (d->low, value - reach);
   d->fit_high = MIN (d->high, value + (d->logarithmic ? log1p (reach) : reach));
 }
 
 /**
- * cloth_gap_candidates_has_room:
+ * cloth_candidates_has_room:
  * @candidates: the candidates
  * @model: where it starts
  * @direction: along which
@@ -451,24 +450,24 @@ cloth_gap_candidates_bound (ClothGapCandidates * candidates,
  * Since: 0.1
  */
 gboolean
-cloth_gap_candidates_has_room (const ClothGapCandidates * candidates,
+cloth_candidates_has_room (const ClothCandidates * candidates,
     const ClothModel * model, guint direction, gdouble step)
 {
-  const ClothGapDirection *d = cloth_gap_candidates_direction (candidates,
+  const ClothDirection *d = cloth_candidates_direction (candidates,
       direction);
-  gdouble value = cloth_gap_candidates_place (candidates, model, direction);
+  gdouble value = cloth_candidates_place (candidates, model, direction);
 
   return value - step >= d->low && value + step <= d->high;
 }
 
 /**
- * cloth_gap_candidates_free:
+ * cloth_candidates_free:
  * @candidates: (nullable) (transfer full): the candidates
  *
  * Since: 0.1
  */
 void
-cloth_gap_candidates_free (ClothGapCandidates * candidates)
+cloth_candidates_free (ClothCandidates * candidates)
 {
   if (!candidates)
     return;

@@ -11,7 +11,7 @@
 G_BEGIN_DECLS
 
 /**
- * ClothGapDirection:
+ * ClothDirection:
  * @name: of the model's number, as cloth_model_set () takes it
  * @logarithmic: the logarithm of the number is changed
  * @centre: where it starts: the null value, or the model's
@@ -36,10 +36,10 @@ typedef struct {
   gdouble high;
   gdouble fit_low;
   gdouble fit_high;
-} ClothGapDirection;
+} ClothDirection;
 
 /**
- * ClothGapCandidate:
+ * ClothCandidate:
  * @effect: the effect
  * @values: its parameters where the directions leave them
  * @first: of its directions
@@ -58,14 +58,14 @@ typedef struct {
   guint first;
   guint n;
   guint parameters[CLOTH_EFFECT_MAX_PARAMETERS];
-} ClothGapCandidate;
+} ClothCandidate;
 
 /**
- * ClothGapCandidates:
- * @directions: (element-type ClothGapDirection): the model's free numbers first, then
+ * ClothCandidates:
+ * @directions: (element-type ClothDirection): the model's free numbers first, then
  *   those of the candidates
  * @n_free: how many of them are free numbers of the model
- * @list: (element-type ClothGapCandidate): the candidates
+ * @list: (element-type ClothCandidate): the candidates
  *
  * Since: 0.1
  */
@@ -73,46 +73,46 @@ typedef struct {
   GArray *directions;
   guint n_free;
   GArray *list;
-} ClothGapCandidates;
+} ClothCandidates;
 
 /* Whether it is gusts, which no single direction stands for. */
 static inline gboolean
-cloth_gap_candidate_is_gust (const ClothGapCandidate * candidate)
+cloth_candidate_is_gust (const ClothCandidate * candidate)
 {
   return strcmp (candidate->effect->id, "gust") == 0;
 }
 
 /* The i-th direction. */
-static inline const ClothGapDirection *
-cloth_gap_candidates_direction (const ClothGapCandidates * candidates, guint i)
+static inline const ClothDirection *
+cloth_candidates_direction (const ClothCandidates * candidates, guint i)
 {
-  return &g_array_index (candidates->directions, ClothGapDirection, i);
+  return &g_array_index (candidates->directions, ClothDirection, i);
 }
 
 /**
- * ClothGapSkip:
+ * ClothCandidateSkip:
  * @data: the caller's
  * @effect: an effect that is no candidate
  * @reason: why
  *
  * Since: 0.1
  */
-typedef void (*ClothGapSkip) (gpointer data, const ClothEffect * effect,
+typedef void (*ClothCandidateSkip) (gpointer data, const ClothEffect * effect,
     const gchar * reason);
 
-ClothGapCandidates *cloth_gap_candidates_new (const ClothModel * model,
+ClothCandidates *cloth_candidates_new (const ClothModel * model,
     const ClothRecording * recording, const gchar * const *effects,
-    gboolean frozen, ClothGapSkip skip, gpointer data, GError ** error);
-ClothModel *cloth_gap_candidates_move (const ClothGapCandidates * candidates,
+    gboolean frozen, ClothCandidateSkip skip, gpointer data, GError ** error);
+ClothModel *cloth_candidates_move (const ClothCandidates * candidates,
     const ClothModel * model, const guint * directions,
     const gdouble * changes, guint n);
-gdouble cloth_gap_candidates_place (const ClothGapCandidates * candidates,
+gdouble cloth_candidates_place (const ClothCandidates * candidates,
     const ClothModel * model, guint direction);
-void cloth_gap_candidates_bound (ClothGapCandidates * candidates,
+void cloth_candidates_bound (ClothCandidates * candidates,
     const ClothModel * model, guint direction, gdouble reach);
-gboolean cloth_gap_candidates_has_room (const ClothGapCandidates *
+gboolean cloth_candidates_has_room (const ClothCandidates *
     candidates, const ClothModel * model, guint direction, gdouble step);
-void cloth_gap_candidates_free (ClothGapCandidates * candidates);
+void cloth_candidates_free (ClothCandidates * candidates);
 
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothGapCandidates, cloth_gap_candidates_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothCandidates, cloth_candidates_free)
 G_END_DECLS

@@ -20,23 +20,23 @@ cosine_band (guint c)
 }
 
 static guint
-class_of (const ClothGapFeatures * f, guint cosine, guint wave, guint k)
+class_of (const ClothFeatures * f, guint cosine, guint wave, guint k)
 {
   return 3 * (cosine_band (cosine) * f->n_bands + f->bands[wave]) + k;
 }
 
 /**
- * cloth_gap_power_new:
+ * cloth_power_spectrum_new:
  * @features: what @z is of
  * @z: features
  *
  * Returns: (transfer full): their mean squares, class by class
  * Since: 0.1
  */
-ClothGapPower *
-cloth_gap_power_new (const ClothGapFeatures * features, const gdouble * z)
+ClothPowerSpectrum *
+cloth_power_spectrum_new (const ClothFeatures * features, const gdouble * z)
 {
-  ClothGapPower *power = g_new0 (ClothGapPower, 1);
+  ClothPowerSpectrum *power = g_new0 (ClothPowerSpectrum, 1);
   g_autofree guint *counts = NULL;
 
   power->n = 3 * (cosine_band (features->n_cosines - 1) + 1) *
@@ -59,29 +59,29 @@ cloth_gap_power_new (const ClothGapFeatures * features, const gdouble * z)
 }
 
 /**
- * cloth_gap_power_copy:
+ * cloth_power_spectrum_copy:
  * @power: mean squares
  *
  * Returns: (transfer full): the same
  * Since: 0.1
  */
-ClothGapPower *
-cloth_gap_power_copy (const ClothGapPower * power)
+ClothPowerSpectrum *
+cloth_power_spectrum_copy (const ClothPowerSpectrum * power)
 {
-  ClothGapPower *copy = g_memdup2 (power, sizeof *power);
+  ClothPowerSpectrum *copy = g_memdup2 (power, sizeof *power);
 
   copy->values = g_memdup2 (power->values, power->n * sizeof (gdouble));
   return copy;
 }
 
 /**
- * cloth_gap_power_free:
+ * cloth_power_spectrum_free:
  * @power: (nullable) (transfer full): mean squares
  *
  * Since: 0.1
  */
 void
-cloth_gap_power_free (ClothGapPower * power)
+cloth_power_spectrum_free (ClothPowerSpectrum * power)
 {
   if (!power)
     return;
@@ -90,7 +90,7 @@ cloth_gap_power_free (ClothGapPower * power)
 }
 
 /**
- * cloth_gap_normal_new:
+ * cloth_normal_equations_new:
  * @features: what @z and @columns are of
  * @mismatch: mean squares of what the simulator itself is off
  * @share: of them that counts as variance
@@ -103,12 +103,12 @@ cloth_gap_power_free (ClothGapPower * power)
  * Returns: (transfer full): the normal equations of each block
  * Since: 0.1
  */
-ClothGapNormal *
-cloth_gap_normal_new (const ClothGapFeatures * features,
-    const ClothGapPower * mismatch, gdouble share, const gdouble * z,
+ClothNormalEquations *
+cloth_normal_equations_new (const ClothFeatures * features,
+    const ClothPowerSpectrum * mismatch, gdouble share, const gdouble * z,
     const gdouble * columns, guint m)
 {
-  ClothGapNormal *n = g_new0 (ClothGapNormal, 1);
+  ClothNormalEquations *n = g_new0 (ClothNormalEquations, 1);
   gsize size = features->size / features->n_blocks;
   g_autofree gdouble *weighted = g_new (gdouble, size);
   g_autofree gdouble *weights = g_new (gdouble, size);
@@ -152,13 +152,13 @@ cloth_gap_normal_new (const ClothGapFeatures * features,
 }
 
 /**
- * cloth_gap_normal_free:
+ * cloth_normal_equations_free:
  * @normal: (nullable) (transfer full): normal equations
  *
  * Since: 0.1
  */
 void
-cloth_gap_normal_free (ClothGapNormal * normal)
+cloth_normal_equations_free (ClothNormalEquations * normal)
 {
   if (!normal)
     return;
@@ -169,15 +169,16 @@ cloth_gap_normal_free (ClothGapNormal * normal)
 }
 
 /**
- * cloth_gap_normal_append:
+ * cloth_normal_equations_append:
  * @to: (nullable) (transfer full): normal equations
  * @from: (transfer full): others with the same columns
  *
  * Returns: (transfer full): the blocks of both, those of @to first
  * Since: 0.1
  */
-ClothGapNormal *
-cloth_gap_normal_append (ClothGapNormal * to, ClothGapNormal * from)
+ClothNormalEquations *
+cloth_normal_equations_append (ClothNormalEquations * to,
+    ClothNormalEquations * from)
 {
   gsize square = (gsize) from->m * from->m;
 
@@ -192,12 +193,12 @@ cloth_gap_normal_append (ClothGapNormal * to, ClothGapNormal * from)
       (gsize) from->n_blocks * from->m * sizeof (gdouble));
   memcpy (to->r + to->n_blocks, from->r, from->n_blocks * sizeof (gdouble));
   to->n_blocks += from->n_blocks;
-  cloth_gap_normal_free (from);
+  cloth_normal_equations_free (from);
   return to;
 }
 
 /**
- * cloth_gap_normal_reduce:
+ * cloth_normal_equations_reduce:
  * @normal: normal equations
  * @blocks: (array): which blocks count
  * @nuisances: (array length=n_nuisances): columns that are fitted along
@@ -213,17 +214,17 @@ cloth_gap_normal_append (ClothGapNormal * to, ClothGapNormal * from)
  * Since: 0.1
  */
 gboolean
-cloth_gap_normal_reduce (const ClothGapNormal * normal,
+cloth_normal_equations_reduce (const ClothNormalEquations * normal,
     const gboolean * blocks, const guint * nuisances,
     const gdouble * precisions, guint n_nuisances, const guint * directions,
-    guint n, ClothGapReduced * reduced)
+    guint n, ClothReducedEquations * reduced)
 {
   guint m = normal->m, q = n_nuisances;
   g_autofree gdouble *a = g_new0 (gdouble, (gsize) q * q + 1);
   g_autofree gdouble *b = g_new0 (gdouble, (gsize) q * (n + 1) + 1);
   g_autofree gdouble *x = NULL;
 
-  *reduced = (ClothGapReduced) {
+  *reduced = (ClothReducedEquations) {
   n};
   for (guint i = 0; i < q; i++)
     a[(gsize) i * q + i] = precisions[i];
@@ -271,7 +272,7 @@ cloth_gap_normal_reduce (const ClothGapNormal * normal,
 }
 
 /**
- * cloth_gap_normal_project:
+ * cloth_normal_equations_project:
  * @normal: normal equations
  * @blocks: (nullable): which blocks count
  * @m: how many of the columns are kept: the first ones
@@ -286,7 +287,7 @@ cloth_gap_normal_reduce (const ClothGapNormal * normal,
  * Since: 0.1
  */
 gdouble
-cloth_gap_normal_project (const ClothGapNormal * normal,
+cloth_normal_equations_project (const ClothNormalEquations * normal,
     const gboolean * blocks, guint m, const gdouble * precisions, gdouble * g,
     gdouble * s)
 {
@@ -339,7 +340,7 @@ cloth_gap_normal_project (const ClothGapNormal * normal,
 }
 
 /**
- * cloth_gap_normal_change:
+ * cloth_normal_equations_change:
  * @normal: normal equations
  * @block: a block
  * @directions: (array length=n): columns
@@ -350,7 +351,7 @@ cloth_gap_normal_project (const ClothGapNormal * normal,
  * Since: 0.1
  */
 gdouble
-cloth_gap_normal_change (const ClothGapNormal * normal, guint block,
+cloth_normal_equations_change (const ClothNormalEquations * normal, guint block,
     const guint * directions, const gdouble * changes, guint n)
 {
   guint m = normal->m;

@@ -9,7 +9,7 @@
 G_BEGIN_DECLS
 
 /**
- * ClothGapPower:
+ * ClothPowerSpectrum:
  * @n: number of classes: bands of frequency, of waves, and axes
  * @values: mean square of the features of a class
  *
@@ -18,10 +18,10 @@ G_BEGIN_DECLS
 typedef struct {
   guint n;
   gdouble *values;
-} ClothGapPower;
+} ClothPowerSpectrum;
 
 /**
- * ClothGapNormal:
+ * ClothNormalEquations:
  * @m: number of columns
  * @n_blocks: number of blocks of time
  * @per_block: features of a block
@@ -38,10 +38,10 @@ typedef struct {
   gdouble *g;
   gdouble *s;
   gdouble *r;
-} ClothGapNormal;
+} ClothNormalEquations;
 
 /**
- * ClothGapReduced:
+ * ClothReducedEquations:
  * @n: number of directions
  * @g: their normal matrix with the nuisances projected out, n·n
  * @s: their score
@@ -56,28 +56,28 @@ typedef struct {
   gdouble s[4];
   gdouble kept[4];
   gdouble r;
-} ClothGapReduced;
+} ClothReducedEquations;
 
-ClothGapPower *cloth_gap_power_new (const ClothGapFeatures * features,
+ClothPowerSpectrum *cloth_power_spectrum_new (const ClothFeatures * features,
     const gdouble * z);
-ClothGapPower *cloth_gap_power_copy (const ClothGapPower * power);
-void cloth_gap_power_free (ClothGapPower * power);
-ClothGapNormal *cloth_gap_normal_new (const ClothGapFeatures * features,
-    const ClothGapPower * mismatch, gdouble share, const gdouble * z,
+ClothPowerSpectrum *cloth_power_spectrum_copy (const ClothPowerSpectrum * power);
+void cloth_power_spectrum_free (ClothPowerSpectrum * power);
+ClothNormalEquations *cloth_normal_equations_new (const ClothFeatures * features,
+    const ClothPowerSpectrum * mismatch, gdouble share, const gdouble * z,
     const gdouble * columns, guint m);
-ClothGapNormal *cloth_gap_normal_append (ClothGapNormal * to,
-    ClothGapNormal * from);
-void cloth_gap_normal_free (ClothGapNormal * normal);
-gboolean cloth_gap_normal_reduce (const ClothGapNormal * normal,
+ClothNormalEquations *cloth_normal_equations_append (ClothNormalEquations * to,
+    ClothNormalEquations * from);
+void cloth_normal_equations_free (ClothNormalEquations * normal);
+gboolean cloth_normal_equations_reduce (const ClothNormalEquations * normal,
     const gboolean * blocks, const guint * nuisances,
     const gdouble * precisions, guint n_nuisances, const guint * directions,
-    guint n, ClothGapReduced * reduced);
-gdouble cloth_gap_normal_project (const ClothGapNormal * normal,
+    guint n, ClothReducedEquations * reduced);
+gdouble cloth_normal_equations_project (const ClothNormalEquations * normal,
     const gboolean * blocks, guint m, const gdouble * precisions, gdouble * g,
     gdouble * s);
-gdouble cloth_gap_normal_change (const ClothGapNormal * normal, guint block,
+gdouble cloth_normal_equations_change (const ClothNormalEquations * normal, guint block,
     const guint * directions, const gdouble * changes, guint n);
 
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothGapPower, cloth_gap_power_free)
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothGapNormal, cloth_gap_normal_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothPowerSpectrum, cloth_power_spectrum_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothNormalEquations, cloth_normal_equations_free)
 G_END_DECLS

@@ -9,7 +9,7 @@
 #include "gst/fit/error.h"
 #include "gst/math/linalg.h"
 
-/* What chaos does counts as so many times the variance of its samples, which are few. */
+/* What variability does counts as so many times the variance of its samples, which are few. */
 #define CHAOS_WIDTH 10.
 /* No step of a fit is longer than this many priors. */
 #define LONGEST 1.5
@@ -19,51 +19,51 @@
 #define CUT 0.4
 
 /**
- * cloth_study_options_init:
+ * cloth_estimate_options_init:
  * @options: (out caller-allocates): how recordings are studied unless told otherwise
  *
  * Since: 0.1
  */
 void
-cloth_study_options_init (ClothStudyOptions * options)
+cloth_estimate_options_init (ClothEstimateOptions * options)
 {
-  *options = (ClothStudyOptions) {
+  *options = (ClothEstimateOptions) {
   .gains = { 1600. },.n_waves = 8,.block_s = 0.5,.highest_hz =
         10.,.overdispersion = 5.};
 }
 
 /**
- * cloth_study_new:
+ * cloth_sensitivities_new:
  * @recording: a recording; must outlive the study
  * @options: how to study it
  *
  * Since: 0.1
  */
-ClothStudy *
-cloth_study_new (const ClothRecording * recording,
-    const ClothStudyOptions * options)
+ClothSensitivities *
+cloth_sensitivities_new (const ClothRecording * recording,
+    const ClothEstimateOptions * options)
 {
-  ClothStudy *study = g_new0 (ClothStudy, 1);
+  ClothSensitivities *study = g_new0 (ClothSensitivities, 1);
 
   study->recording = recording;
-  study->features = cloth_gap_features_new (recording, options->n_waves,
+  study->features = cloth_features_new (recording, options->n_waves,
       options->block_s, options->highest_hz);
   return study;
 }
 
 static void
-forget (ClothStudy * study)
+forget (ClothSensitivities * study)
 {
-  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
+  for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++) {
     g_clear_pointer (&study->z[g], g_free);
     g_clear_pointer (&study->columns[g], g_free);
-    g_clear_pointer (&study->chaos[g], g_free);
+    g_clear_pointer (&study->variability[g], g_free);
   }
   g_clear_pointer (&study->sound, g_free);
 }
 
 /**
- * cloth_study_copy:
+ * cloth_sensitivities_copy:
  * @study: a study that is linearised
  * @options: how it is studied
  *
@@ -71,150 +71,157 @@ forget (ClothStudy * study)
  *   model
  * Since: 0.1
  */
-ClothStudy *
-cloth_study_copy (const ClothStudy * study, const ClothStudyOptions * options)
+ClothSensitivities *
+cloth_sensitivities_copy (const ClothSensitivities * study,
+    const ClothEstimateOptions * options)
 {
-  ClothStudy *copy = cloth_study_new (study->recording, options);
+  ClothSensitivities *copy =
+      cloth_sensitivities_new (study->recording, options);
   gsize row = study->features->size * sizeof (gdouble);
 
-  copy->signature = study->signature;
+  copy->discrepancy = study->discrepancy;
   copy->m = study->m;
-  copy->n_chaos = study->n_chaos;
+  copy->n_variability = study->n_variability;
   copy->sound = g_memdup2 (study->sound, study->m * sizeof (gboolean));
-  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
+  for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++) {
     copy->z[g] = g_memdup2 (study->z[g], row);
     copy->columns[g] = g_memdup2 (study->columns[g], study->m * row);
-    copy->chaos[g] = g_memdup2 (study->chaos[g], study->n_chaos * row);
+    copy->variability[g] =
+        g_memdup2 (study->variability[g], study->n_variability * row);
     if (study->left[g])
-      copy->left[g] = cloth_gap_power_copy (study->left[g]);
+      copy->left[g] = cloth_power_spectrum_copy (study->left[g]);
   }
   return copy;
 }
 
 /**
- * cloth_study_free:
+ * cloth_sensitivities_free:
  * @study: (nullable) (transfer full): a study
  *
  * Since: 0.1
  */
 void
-cloth_study_free (ClothStudy * study)
+cloth_sensitivities_free (ClothSensitivities * study)
 {
   if (!study)
     return;
   forget (study);
-  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++)
-    cloth_gap_power_free (study->left[g]);
-  cloth_gap_features_free (study->features);
+  for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++)
+    cloth_power_spectrum_free (study->left[g]);
+  cloth_features_free (study->features);
   g_free (study);
 }
 
 /**
- * cloth_study_signature_scale:
+ * cloth_sensitivities_discrepancy_scale:
  * @study: a study
  *
- * Returns: what the signature's features are to be multiplied by: each recording's are in
- *   multiples of its own noise; 0 without a signature
+ * Returns: what the discrepancy's features are to be multiplied by: each recording's are in
+ *   multiples of its own noise; 0 without a discrepancy
  * Since: 0.1
  */
 gdouble
-cloth_study_signature_scale (const ClothStudy * study)
+cloth_sensitivities_discrepancy_scale (const ClothSensitivities * study)
 {
-  return study->signature ? study->signature->features->sigma /
+  return study->discrepancy ? study->discrepancy->features->sigma /
       study->features->sigma : 0.;
 }
 
 /**
- * cloth_study_count_chaos:
+ * cloth_sensitivities_count_variability:
  * @study: a study
  *
- * Returns: how many directions are known in which chaos moves the residual, that of the
- *   signature included
+ * Returns: how many directions are known in which variability moves the residual, that of the
+ *   discrepancy included
  * Since: 0.1
  */
 guint
-cloth_study_count_chaos (const ClothStudy * study)
+cloth_sensitivities_count_variability (const ClothSensitivities * study)
 {
-  return study->n_chaos + (study->signature ? study->signature->n_chaos : 0);
+  return study->n_variability +
+      (study->discrepancy ? study->discrepancy->n_variability : 0);
 }
 
 /**
- * cloth_study_get_chaos:
+ * cloth_sensitivities_get_variability:
  * @study: a study
  * @gain: which of the gains
- * @columns: (out) (array): cloth_study_count_chaos () directions, each of features->size
+ * @columns: (out) (array): cloth_sensitivities_count_variability () directions, each of features->size
  *
  * Since: 0.1
  */
 void
-cloth_study_get_chaos (const ClothStudy * study, guint gain, gdouble * columns)
+cloth_sensitivities_get_variability (const ClothSensitivities * study,
+    guint gain, gdouble * columns)
 {
-  gsize size = study->features->size, own = study->n_chaos * size;
-  gdouble scale = cloth_study_signature_scale (study);
+  gsize size = study->features->size, own = study->n_variability * size;
+  gdouble scale = cloth_sensitivities_discrepancy_scale (study);
 
   if (own)
-    memcpy (columns, study->chaos[gain], own * sizeof (gdouble));
-  for (gsize k = 0; study->signature && k < study->signature->n_chaos * size;
-      k++)
-    columns[own + k] = scale * study->signature->chaos[gain][k];
+    memcpy (columns, study->variability[gain], own * sizeof (gdouble));
+  for (gsize k = 0;
+      study->discrepancy && k < study->discrepancy->n_variability * size; k++)
+    columns[own + k] = scale * study->discrepancy->variability[gain][k];
 }
 
 /**
- * cloth_study_get_chaos_precision:
+ * cloth_sensitivities_get_variability_precision:
  * @study: a study
- * @i: one of the directions of cloth_study_get_chaos ()
+ * @i: one of the directions of cloth_sensitivities_get_variability ()
  *
- * Returns: of how far chaos goes along it, over the noise's variance
+ * Returns: of how far variability goes along it, over the noise's variance
  * Since: 0.1
  */
 gdouble
-cloth_study_get_chaos_precision (const ClothStudy * study, guint i)
+cloth_sensitivities_get_variability_precision (const ClothSensitivities * study,
+    guint i)
 {
-  return (i < study->n_chaos ? study->n_chaos : study->signature->n_chaos) /
-      CHAOS_WIDTH;
+  return (i <
+      study->n_variability ? study->n_variability : study->
+      discrepancy->n_variability) / CHAOS_WIDTH;
 }
 
 /**
- * cloth_study_take_off_signature:
+ * cloth_sensitivities_take_off_discrepancy:
  * @study: a study
  * @gain: which of the gains
  * @z: (inout) (array): features of a residual
  *
- * Takes off what the simulator itself is off by, if there is a signature.
+ * Takes off what the simulator itself is off by, if there is a discrepancy.
  *
  * Since: 0.1
  */
 void
-cloth_study_take_off_signature (const ClothStudy * study, guint gain,
-    gdouble * z)
+cloth_sensitivities_take_off_discrepancy (const ClothSensitivities * study,
+    guint gain, gdouble * z)
 {
-  gdouble scale = cloth_study_signature_scale (study);
+  gdouble scale = cloth_sensitivities_discrepancy_scale (study);
 
-  for (gsize k = 0; study->signature && k < study->features->size; k++)
-    z[k] -= scale * study->signature->z[gain][k];
+  for (gsize k = 0; study->discrepancy && k < study->features->size; k++)
+    z[k] -= scale * study->discrepancy->z[gain][k];
 }
 
 /**
- * cloth_study_residual:
+ * cloth_sensitivities_residual:
  * @study: a study
  * @gain: which of the gains
  *
- * Returns: (transfer full) (array): what is to be explained: z less that of the signature
+ * Returns: (transfer full) (array): what is to be explained: z less that of the discrepancy
  * Since: 0.1
  */
 gdouble *
-cloth_study_residual (const ClothStudy * study, guint gain)
+cloth_sensitivities_residual (const ClothSensitivities * study, guint gain)
 {
   gdouble *z = g_memdup2 (study->z[gain],
       study->features->size * sizeof (gdouble));
 
-  cloth_study_take_off_signature (study, gain, z);
+  cloth_sensitivities_take_off_discrepancy (study, gain, z);
   return z;
 }
 
 typedef struct
 {
-  const ClothStudy *study;
+  const ClothSensitivities *study;
   gdouble **z;                  /* of each model and gain */
 } Collect;
 
@@ -223,12 +230,12 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
 {
   Collect *c = data;
 
-  cloth_gap_features_add (c->study->features, c->study->recording, frame,
+  cloth_features_add (c->study->features, c->study->recording, frame,
       positions, c->z[model]);
 }
 
 /**
- * cloth_study_run:
+ * cloth_sensitivities_run:
  * @study: a study
  * @models: (array length=n): models
  * @n: how many
@@ -245,19 +252,19 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
  * Since: 0.1
  */
 gboolean
-cloth_study_run (const ClothStudy * study, ClothModel ** models, guint n,
-    ClothStudyOptions * options, gdouble ** z, gboolean * sound,
+cloth_sensitivities_run (const ClothSensitivities * study, ClothModel ** models,
+    guint n, ClothEstimateOptions * options, gdouble ** z, gboolean * sound,
     GError ** error)
 {
-  guint all = n * CLOTH_STUDY_N_GAINS;
+  guint all = n * CLOTH_ESTIMATE_N_GAINS;
   g_autofree const ClothModel **lanes = g_new (const ClothModel *, all);
   g_autofree gdouble *gains = g_new (gdouble, all);
   g_autofree gboolean *ok = g_new (gboolean, all);
   Collect c = { study, z };
 
   for (guint i = 0; i < all; i++) {
-    lanes[i] = models[i / CLOTH_STUDY_N_GAINS];
-    gains[i] = options->gains[i % CLOTH_STUDY_N_GAINS];
+    lanes[i] = models[i / CLOTH_ESTIMATE_N_GAINS];
+    gains[i] = options->gains[i % CLOTH_ESTIMATE_N_GAINS];
   }
   options->simulations += all;
   if (!cloth_rollout_nudged (study->recording, lanes, gains, all,
@@ -266,7 +273,7 @@ cloth_study_run (const ClothStudy * study, ClothModel ** models, guint n,
   for (guint i = 0; i < n; i++)
     sound[i] = TRUE;
   for (guint i = 0; i < all; i++)
-    sound[i / CLOTH_STUDY_N_GAINS] &= ok[i];
+    sound[i / CLOTH_ESTIMATE_N_GAINS] &= ok[i];
   return TRUE;
 }
 
@@ -295,8 +302,8 @@ moved_clear (Moved * moved)
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Moved, moved_clear)
      static void
-         move (Moved * moved, ClothStudy * study,
-    const ClothGapCandidates * candidates, const ClothModel * model,
+         move (Moved * moved, ClothSensitivities * study,
+    const ClothCandidates * candidates, const ClothModel * model,
     const guint * directions, guint m)
 {
   gsize size = study->features->size;
@@ -308,36 +315,36 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Moved, moved_clear)
   g_ptr_array_add (moved->models, cloth_model_copy (model));
   for (guint side = 0; side < 2; side++)
     for (guint i = 0; i < m; i++) {
-      gdouble step = cloth_gap_candidates_direction (candidates,
+      gdouble step = cloth_candidates_direction (candidates,
           directions[i])->step;
 
       if (side && (directions[i] >= candidates->n_free
-              || !cloth_gap_candidates_has_room (candidates, model,
+              || !cloth_candidates_has_room (candidates, model,
                   directions[i], step)))
         continue;
       if (side) {
         moved->back[i] = moved->models->len;
         step = -step;
       }
-      g_ptr_array_add (moved->models, cloth_gap_candidates_move (candidates,
+      g_ptr_array_add (moved->models, cloth_candidates_move (candidates,
               model, &directions[i], &step, 1));
     }
   n = moved->models->len;
   moved->sound = g_new (gboolean, n);
-  moved->z = g_new (gdouble *, n * CLOTH_STUDY_N_GAINS);
-  moved->memory = g_new0 (gdouble, (n - m) * CLOTH_STUDY_N_GAINS * size);
+  moved->z = g_new (gdouble *, n * CLOTH_ESTIMATE_N_GAINS);
+  moved->memory = g_new0 (gdouble, (n - m) * CLOTH_ESTIMATE_N_GAINS * size);
   for (guint i = 0; i < n; i++)
-    for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++)
-      moved->z[i * CLOTH_STUDY_N_GAINS + g] = i == 0 ? study->z[g] :
+    for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++)
+      moved->z[i * CLOTH_ESTIMATE_N_GAINS + g] = i == 0 ? study->z[g] :
           i <= m ? study->columns[g] + (i - 1) * size :
-          moved->memory + ((i - m - 1) * CLOTH_STUDY_N_GAINS + g) * size;
+          moved->memory + ((i - m - 1) * CLOTH_ESTIMATE_N_GAINS + g) * size;
 }
 
-/* Where the model is, seen from both sides: the mean of such pairs of runs. What chaos did
+/* Where the model is, seen from both sides: the mean of such pairs of runs. What variability did
  * to the model's own run is in its residual and must not be in the columns too, or each of
- * them would seem to explain some of it. How the pairs differ shows what chaos does. */
+ * them would seem to explain some of it. How the pairs differ shows what variability does. */
 static void
-find_reference (Moved * moved, ClothStudy * study)
+find_reference (Moved * moved, ClothSensitivities * study)
 {
   gsize size = study->features->size;
   g_autofree guint *pairs = g_new (guint, study->m + 1);
@@ -346,40 +353,40 @@ find_reference (Moved * moved, ClothStudy * study)
   for (guint i = 0; i < study->m; i++)
     if (moved->back[i] && moved->sound[moved->back[i]] && moved->sound[i + 1])
       pairs[n++] = i;
-  study->n_chaos = n ? n + 1 : 0;
-  moved->reference = g_new0 (gdouble, CLOTH_STUDY_N_GAINS * size);
-  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
+  study->n_variability = n ? n + 1 : 0;
+  moved->reference = g_new0 (gdouble, CLOTH_ESTIMATE_N_GAINS * size);
+  for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++) {
     gdouble *reference = moved->reference + g * size;
-    gdouble *chaos = g_new0 (gdouble, study->n_chaos * size + 1);
+    gdouble *variability = g_new0 (gdouble, study->n_variability * size + 1);
 
-    study->chaos[g] = chaos;
-    for (guint p = 0; p < n; p++, chaos += size) {
+    study->variability[g] = variability;
+    for (guint p = 0; p < n; p++, variability += size) {
       const gdouble *before = moved->z[moved->back[pairs[p]] *
-          CLOTH_STUDY_N_GAINS + g];
-      const gdouble *behind = moved->z[(pairs[p] + 1) * CLOTH_STUDY_N_GAINS +
+          CLOTH_ESTIMATE_N_GAINS + g];
+      const gdouble *behind = moved->z[(pairs[p] + 1) * CLOTH_ESTIMATE_N_GAINS +
           g];
 
       for (gsize k = 0; k < size; k++) {
-        chaos[k] = 0.5 * (before[k] + behind[k]);
-        reference[k] += (chaos[k] - reference[k]) / (p + 1);
+        variability[k] = 0.5 * (before[k] + behind[k]);
+        reference[k] += (variability[k] - reference[k]) / (p + 1);
       }
     }
     if (!n) {
       memcpy (reference, study->z[g], size * sizeof (gdouble));
       continue;
     }
-    memcpy (chaos, study->z[g], size * sizeof (gdouble));
+    memcpy (variability, study->z[g], size * sizeof (gdouble));
     for (gsize k = 0; k < size; k++) {
-      gdouble mean = (n * reference[k] + chaos[k]) / (n + 1);
+      gdouble mean = (n * reference[k] + variability[k]) / (n + 1);
 
       for (guint p = 0; p <= n; p++)
-        study->chaos[g][p * size + k] -= mean;
+        study->variability[g][p * size + k] -= mean;
     }
   }
 }
 
 /**
- * cloth_study_linearise:
+ * cloth_sensitivities_linearise:
  * @study: a study
  * @candidates: what directions mean
  * @model: where to take derivatives
@@ -388,16 +395,16 @@ find_reference (Moved * moved, ClothStudy * study)
  * @options: how
  * @error: #ClothSimError, or #ClothFitError when the model itself can't be simulated
  *
- * Fills @study's z, columns, sound and chaos. Directions along which the simulation fails
+ * Fills @study's z, columns, sound and variability. Directions along which the simulation fails
  * have columns of zeros. Free numbers are moved to both sides; the others' columns are
  * differences from the mean of these.
  *
  * Since: 0.1
  */
 gboolean
-cloth_study_linearise (ClothStudy * study,
-    const ClothGapCandidates * candidates, const ClothModel * model,
-    const guint * directions, guint m, ClothStudyOptions * options,
+cloth_sensitivities_linearise (ClothSensitivities * study,
+    const ClothCandidates * candidates, const ClothModel * model,
+    const guint * directions, guint m, ClothEstimateOptions * options,
     GError ** error)
 {
   g_auto (Moved) moved = { NULL };
@@ -405,13 +412,13 @@ cloth_study_linearise (ClothStudy * study,
 
   forget (study);
   study->m = m;
-  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
+  for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++) {
     study->z[g] = g_new0 (gdouble, size);
     study->columns[g] = g_new0 (gdouble, m * size + 1);
   }
   study->sound = g_new0 (gboolean, m + 1);
   move (&moved, study, candidates, model, directions, m);
-  if (!cloth_study_run (study, (ClothModel **) moved.models->pdata,
+  if (!cloth_sensitivities_run (study, (ClothModel **) moved.models->pdata,
           moved.models->len, options, moved.z, moved.sound, error))
     return FALSE;
   if (!moved.sound[0]) {
@@ -422,7 +429,7 @@ cloth_study_linearise (ClothStudy * study,
   }
   find_reference (&moved, study);
   for (guint i = 0; i < m; i++) {
-    gdouble step = cloth_gap_candidates_direction (candidates,
+    gdouble step = cloth_candidates_direction (candidates,
         directions[i])->step;
     guint back = moved.back[i];
 
@@ -431,9 +438,9 @@ cloth_study_linearise (ClothStudy * study,
       step *= 2.;
     else
       back = 0;
-    for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
+    for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++) {
       gdouble *column = study->columns[g] + i * size;
-      const gdouble *from = back ? moved.z[back * CLOTH_STUDY_N_GAINS + g] :
+      const gdouble *from = back ? moved.z[back * CLOTH_ESTIMATE_N_GAINS + g] :
           moved.reference + g * size;
 
       for (gsize k = 0; k < size; k++)
@@ -446,15 +453,15 @@ cloth_study_linearise (ClothStudy * study,
 /* A fit under way: its studies are linearised at the model at hand. */
 typedef struct
 {
-  ClothStudy **studies;
+  ClothSensitivities **studies;
   guint n_studies;
-  const ClothGapCandidates *candidates;
+  const ClothCandidates *candidates;
   const guint *directions;
   const gdouble *precisions;
   guint m;
   const gboolean *blocks;
   gboolean even;
-  ClothStudyOptions *options;
+  ClothEstimateOptions *options;
   ClothModel *model;
   gdouble *moved;               /* from where the fit began */
   GPtrArray *powers;            /* what weighs, by study and gain */
@@ -472,15 +479,15 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Fit, fit_clear)
      static gboolean linearise (Fit * fit, GError ** error)
 {
   for (guint s = 0; s < fit->n_studies; s++)
-    if (!cloth_study_linearise (fit->studies[s], fit->candidates, fit->model,
-            fit->directions, fit->m, fit->options, error))
+    if (!cloth_sensitivities_linearise (fit->studies[s], fit->candidates,
+            fit->model, fit->directions, fit->m, fit->options, error))
       return FALSE;
   return TRUE;
 }
 
 /* All classes get what is in the mean of them. */
 static void
-make_even (ClothGapPower * power)
+make_even (ClothPowerSpectrum * power)
 {
   gdouble mean = 0.;
 
@@ -496,44 +503,45 @@ weigh (Fit * fit)
 {
   g_clear_pointer (&fit->powers, g_ptr_array_unref);
   fit->powers = g_ptr_array_new_with_free_func (
-      (GDestroyNotify) cloth_gap_power_free);
+      (GDestroyNotify) cloth_power_spectrum_free);
   for (guint s = 0; s < fit->n_studies; s++)
-    for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
-      const ClothStudy *study = fit->studies[s];
-      g_autofree gdouble *z = cloth_study_residual (study, g);
+    for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++) {
+      const ClothSensitivities *study = fit->studies[s];
+      g_autofree gdouble *z = cloth_sensitivities_residual (study, g);
 
       g_ptr_array_add (fit->powers, study->left[g] ?
-          cloth_gap_power_copy (study->left[g]) :
-          cloth_gap_power_new (study->features, z));
+          cloth_power_spectrum_copy (study->left[g]) :
+          cloth_power_spectrum_new (study->features, z));
       if (fit->even)
         make_even (g_ptr_array_index (fit->powers, fit->powers->len - 1));
     }
 }
 
-/* Normal equations of a study with what chaos does projected out; returns what is left of
+/* Normal equations of a study with what variability does projected out; returns what is left of
  * its square. Only the square is needed when @m is 0. */
 static gdouble
 equations_of (const Fit * fit, guint i, guint m, gdouble * g, gdouble * s)
 {
-  const ClothStudy *study = fit->studies[i / CLOTH_STUDY_N_GAINS];
-  guint gain = i % CLOTH_STUDY_N_GAINS;
+  const ClothSensitivities *study = fit->studies[i / CLOTH_ESTIMATE_N_GAINS];
+  guint gain = i % CLOTH_ESTIMATE_N_GAINS;
   guint n = fit->m > fit->candidates->n_free ?
-      cloth_study_count_chaos (study) : 0;
+      cloth_sensitivities_count_variability (study) : 0;
   gsize size = study->features->size;
-  g_autofree gdouble *z = cloth_study_residual (study, gain);
+  g_autofree gdouble *z = cloth_sensitivities_residual (study, gain);
   g_autofree gdouble *columns = g_new (gdouble, (m + n) * size + 1);
   g_autofree gdouble *precisions = g_new0 (gdouble, m + n + 1);
-  g_autoptr (ClothGapNormal) normal = NULL;
+  g_autoptr (ClothNormalEquations) normal = NULL;
 
   if (m)
     memcpy (columns, study->columns[gain], m * size * sizeof (gdouble));
   if (n)
-    cloth_study_get_chaos (study, gain, columns + m * size);
+    cloth_sensitivities_get_variability (study, gain, columns + m * size);
   for (guint k = 0; k < n; k++)
-    precisions[k] = cloth_study_get_chaos_precision (study, k);
-  normal = cloth_gap_normal_new (study->features,
+    precisions[k] = cloth_sensitivities_get_variability_precision (study, k);
+  normal = cloth_normal_equations_new (study->features,
       g_ptr_array_index (fit->powers, i), 1., z, columns, m + n);
-  return cloth_gap_normal_project (normal, fit->blocks, m, precisions, g, s);
+  return cloth_normal_equations_project (normal, fit->blocks, m, precisions, g,
+      s);
 }
 
 /* Cost of the model at hand, and its normal equations when @a and @b are given. */
@@ -569,22 +577,22 @@ go (Fit * fit, const gdouble * step, gdouble share)
   ClothModel *there;
 
   for (guint i = 0; i < fit->m; i++) {
-    const ClothGapDirection *d = cloth_gap_candidates_direction
+    const ClothDirection *d = cloth_candidates_direction
         (fit->candidates, fit->directions[i]);
-    gdouble from = cloth_gap_candidates_place (fit->candidates, fit->model,
+    gdouble from = cloth_candidates_place (fit->candidates, fit->model,
         fit->directions[i]);
 
     part[i] = CLAMP (from + share * step[i], d->fit_low, d->fit_high) - from;
     fit->moved[i] += part[i];
   }
-  there = cloth_gap_candidates_move (fit->candidates, fit->model,
+  there = cloth_candidates_move (fit->candidates, fit->model,
       fit->directions, part, fit->m);
   cloth_model_free (fit->model);
   fit->model = there;
 }
 
 /**
- * cloth_study_fit:
+ * cloth_gauss_newton_fit:
  * @studies: (array length=n_studies): recordings that are fitted together
  * @n_studies: how many
  * @candidates: what directions mean
@@ -601,7 +609,7 @@ go (Fit * fit, const gdouble * step, gdouble share)
  * @error: #ClothSimError or #ClothFitError
  *
  * Gauss and Newton on the features of all gains, each weighed by the power that is left
- * in its class, less what chaos does. That is the likeliest if what is left is noise; of a
+ * in its class, less what variability does. That is the likeliest if what is left is noise; of a
  * model that can't follow the cloth, @even finds what brings the cloth nearest. A step that
  * makes things worse, or the simulation diverge, is cut.
  *
@@ -609,11 +617,11 @@ go (Fit * fit, const gdouble * step, gdouble share)
  * Since: 0.1
  */
 ClothModel *
-cloth_study_fit (ClothStudy ** studies, guint n_studies,
-    const ClothGapCandidates * candidates, const ClothModel * model,
+cloth_gauss_newton_fit (ClothSensitivities ** studies, guint n_studies,
+    const ClothCandidates * candidates, const ClothModel * model,
     const guint * directions, const gdouble * precisions, guint m,
     const gboolean * blocks, gboolean even, gboolean begun, guint n_passes,
-    ClothStudyOptions * options, gdouble * sigmas, GError ** error)
+    ClothEstimateOptions * options, gdouble * sigmas, GError ** error)
 {
   g_auto (Fit) fit = { studies, n_studies, candidates, directions, precisions,
     m, blocks, even, options, cloth_model_copy (model), g_new0 (gdouble, m + 1)
@@ -658,7 +666,7 @@ cloth_study_fit (ClothStudy ** studies, guint n_studies,
       break;
     cloth_cholesky_solve (m, a, b);
     for (guint i = 0; i < m; i++) {
-      const ClothGapDirection *d = cloth_gap_candidates_direction (candidates,
+      const ClothDirection *d = cloth_candidates_direction (candidates,
           directions[i]);
 
       step[i] = CLAMP (b[i], -LONGEST * d->prior, LONGEST * d->prior);

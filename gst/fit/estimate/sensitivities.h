@@ -10,11 +10,11 @@
 G_BEGIN_DECLS
 
 /* Gains of the observer. One is enough: of 100, 400, 1600 and 6400 /s² on cloth of 33 × 35
- * vertices weak ones drown in chaos, strong ones in noise. */
-#define CLOTH_STUDY_N_GAINS 1
+ * vertices weak ones drown in variability, strong ones in noise. */
+#define CLOTH_ESTIMATE_N_GAINS 1
 
 /**
- * ClothStudyOptions:
+ * ClothEstimateOptions:
  * @gains: of the observer, 1/s²
  * @n_waves: waves along u and v
  * @block_s: length of blocks of time, s
@@ -26,27 +26,27 @@ G_BEGIN_DECLS
  * Since: 0.1
  */
 typedef struct {
-  gdouble gains[CLOTH_STUDY_N_GAINS];
+  gdouble gains[CLOTH_ESTIMATE_N_GAINS];
   guint n_waves;
   gdouble block_s;
   gdouble highest_hz;
   gdouble overdispersion;
   ClothRolloutOptions rollout;
   guint64 simulations;
-} ClothStudyOptions;
+} ClothEstimateOptions;
 
 /**
- * ClothStudy:
+ * ClothSensitivities:
  * @recording: the recording
  * @features: its features
  * @z: residual of the model at hand, per gain
  * @columns: its derivatives, [directions][features], per gain
  * @m: number of directions
  * @sound: which of them could be simulated
- * @chaos: what chaos does to the residual: runs that should be equal to first order less
- *   their mean, [n_chaos][features], per gain
- * @n_chaos: how many
- * @signature: (nullable): the study whose residual is what the simulator itself is off
+ * @variability: what variability does to the residual: runs that should be equal to first order less
+ *   their mean, [n_variability][features], per gain
+ * @n_variability: how many
+ * @discrepancy: (nullable): the study whose residual is what the simulator itself is off
  *   by here too; the caller's
  * @left: (nullable): the power that is left to doubt, per gain; a fit weighs by it instead
  *   of by what it leaves itself
@@ -55,43 +55,43 @@ typedef struct {
  */
 typedef struct _ClothStudy {
   const ClothRecording *recording;
-  ClothGapFeatures *features;
-  gdouble *z[CLOTH_STUDY_N_GAINS];
-  gdouble *columns[CLOTH_STUDY_N_GAINS];
+  ClothFeatures *features;
+  gdouble *z[CLOTH_ESTIMATE_N_GAINS];
+  gdouble *columns[CLOTH_ESTIMATE_N_GAINS];
   guint m;
   gboolean *sound;
-  gdouble *chaos[CLOTH_STUDY_N_GAINS];
-  guint n_chaos;
-  const struct _ClothStudy *signature;
-  ClothGapPower *left[CLOTH_STUDY_N_GAINS];
-} ClothStudy;
+  gdouble *variability[CLOTH_ESTIMATE_N_GAINS];
+  guint n_variability;
+  const struct _ClothStudy *discrepancy;
+  ClothPowerSpectrum *left[CLOTH_ESTIMATE_N_GAINS];
+} ClothSensitivities;
 
-void cloth_study_options_init (ClothStudyOptions * options);
-ClothStudy *cloth_study_new (const ClothRecording * recording,
-    const ClothStudyOptions * options);
-ClothStudy *cloth_study_copy (const ClothStudy * study,
-    const ClothStudyOptions * options);
-void cloth_study_free (ClothStudy * study);
-gdouble cloth_study_signature_scale (const ClothStudy * study);
-guint cloth_study_count_chaos (const ClothStudy * study);
-void cloth_study_get_chaos (const ClothStudy * study, guint gain,
+void cloth_estimate_options_init (ClothEstimateOptions * options);
+ClothSensitivities *cloth_sensitivities_new (const ClothRecording * recording,
+    const ClothEstimateOptions * options);
+ClothSensitivities *cloth_sensitivities_copy (const ClothSensitivities * study,
+    const ClothEstimateOptions * options);
+void cloth_sensitivities_free (ClothSensitivities * study);
+gdouble cloth_sensitivities_discrepancy_scale (const ClothSensitivities * study);
+guint cloth_sensitivities_count_variability (const ClothSensitivities * study);
+void cloth_sensitivities_get_variability (const ClothSensitivities * study, guint gain,
     gdouble * columns);
-gdouble cloth_study_get_chaos_precision (const ClothStudy * study, guint i);
-void cloth_study_take_off_signature (const ClothStudy * study, guint gain,
+gdouble cloth_sensitivities_get_variability_precision (const ClothSensitivities * study, guint i);
+void cloth_sensitivities_take_off_discrepancy (const ClothSensitivities * study, guint gain,
     gdouble * z);
-gdouble *cloth_study_residual (const ClothStudy * study, guint gain);
-gboolean cloth_study_run (const ClothStudy * study, ClothModel ** models, guint n,
-    ClothStudyOptions * options, gdouble ** z, gboolean * sound,
+gdouble *cloth_sensitivities_residual (const ClothSensitivities * study, guint gain);
+gboolean cloth_sensitivities_run (const ClothSensitivities * study, ClothModel ** models, guint n,
+    ClothEstimateOptions * options, gdouble ** z, gboolean * sound,
     GError ** error);
-gboolean cloth_study_linearise (ClothStudy * study,
-    const ClothGapCandidates * candidates, const ClothModel * model,
-    const guint * directions, guint m, ClothStudyOptions * options,
+gboolean cloth_sensitivities_linearise (ClothSensitivities * study,
+    const ClothCandidates * candidates, const ClothModel * model,
+    const guint * directions, guint m, ClothEstimateOptions * options,
     GError ** error);
-ClothModel *cloth_study_fit (ClothStudy ** studies, guint n_studies,
-    const ClothGapCandidates * candidates, const ClothModel * model,
+ClothModel *cloth_gauss_newton_fit (ClothSensitivities ** studies, guint n_studies,
+    const ClothCandidates * candidates, const ClothModel * model,
     const guint * directions, const gdouble * precisions, guint m,
     const gboolean * blocks, gboolean even, gboolean begun, guint n_passes,
-    ClothStudyOptions * options, gdouble * sigmas, GError ** error);
+    ClothEstimateOptions * options, gdouble * sigmas, GError ** error);
 
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothStudy, cloth_study_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothSensitivities, cloth_sensitivities_free)
 G_END_DECLS

@@ -52,8 +52,7 @@ fill_wave (const ClothTopology * t, guint ku, guint kv, gdouble * wave)
 
 /* Gram–Schmidt against the waves before, twice for rounding's sake. */
 static gboolean
-orthonormalise (const ClothGapFeatures * f, const gdouble * waves,
-    gdouble * wave)
+orthonormalise (const ClothFeatures * f, const gdouble * waves, gdouble * wave)
 {
   gdouble before = 0., after = 0.;
 
@@ -79,7 +78,7 @@ orthonormalise (const ClothGapFeatures * f, const gdouble * waves,
 }
 
 static void
-make_waves (ClothGapFeatures * f, const ClothTopology * t, guint each)
+make_waves (ClothFeatures * f, const ClothTopology * t, guint each)
 {
   g_autofree gdouble *waves = g_new (gdouble, (gsize) each * each * f->n);
 
@@ -106,20 +105,20 @@ make_waves (ClothGapFeatures * f, const ClothTopology * t, guint each)
 }
 
 /**
- * cloth_gap_features_new:
+ * cloth_features_new:
  * @recording: what they are of
- * @n_waves_each: waves along u and along v, at most %CLOTH_GAP_MAX_WAVES_EACH
+ * @n_waves_each: waves along u and along v, at most %CLOTH_FEATURES_MAX_WAVES_EACH
  * @block_s: length of a block of time, s
  * @highest_hz: highest frequency that is kept
  *
  * Returns: (transfer full): the features
  * Since: 0.1
  */
-ClothGapFeatures *
-cloth_gap_features_new (const ClothRecording * recording, guint n_waves_each,
+ClothFeatures *
+cloth_features_new (const ClothRecording * recording, guint n_waves_each,
     gdouble block_s, gdouble highest_hz)
 {
-  ClothGapFeatures *f = g_new0 (ClothGapFeatures, 1);
+  ClothFeatures *f = g_new0 (ClothFeatures, 1);
   gdouble span = recording->times[recording->n_frames - 1] -
       recording->times[0];
   gdouble frame_s = span / (recording->n_frames - 1);
@@ -127,7 +126,7 @@ cloth_gap_features_new (const ClothRecording * recording, guint n_waves_each,
   f->n = recording->n;
   f->sigma = recording->sigma;
   make_waves (f, recording->scene->topology, MIN (n_waves_each,
-          CLOTH_GAP_MAX_WAVES_EACH));
+          CLOTH_FEATURES_MAX_WAVES_EACH));
   f->block_frames = CLAMP ((guint) round (block_s / frame_s), 4,
       recording->n_frames);
   f->n_blocks = recording->n_frames / f->block_frames;
@@ -146,12 +145,13 @@ cloth_gap_features_new (const ClothRecording * recording, guint n_waves_each,
   return f;
 }
 
-typedef gdouble Sums[3][CLOTH_GAP_MAX_WAVES_EACH * CLOTH_GAP_MAX_WAVES_EACH];
+typedef gdouble Sums[3][CLOTH_FEATURES_MAX_WAVES_EACH *
+    CLOTH_FEATURES_MAX_WAVES_EACH];
 
 /* What is off in a frame, on each wave. Sums over vertices stay in their order, waves are
  * side by side: all instruction sets give the same bits. */
 static inline __attribute__((always_inline))
-     void project (const ClothGapFeatures * features,
+     void project (const ClothFeatures * features,
     const ClothRecording * recording, gsize begin, const gdouble * positions,
     Sums sums)
 {
@@ -175,7 +175,7 @@ static inline __attribute__((always_inline))
 
 #define KERNEL(suffix, target_attribute) \
 target_attribute static void \
-project_##suffix (const ClothGapFeatures * features, \
+project_##suffix (const ClothFeatures * features, \
     const ClothRecording * recording, gsize begin, const gdouble * positions, \
     Sums sums) \
 { \
@@ -202,7 +202,7 @@ KERNEL (avx512, __attribute__((target ("avx512f,avx512bw,avx512dq,avx512vl"))))
 #endif
 
 /**
- * cloth_gap_features_add:
+ * cloth_features_add:
  * @features: the features
  * @recording: the recording
  * @frame: one of its frames
@@ -214,7 +214,7 @@ KERNEL (avx512, __attribute__((target ("avx512f,avx512bw,avx512dq,avx512vl"))))
  * Since: 0.1
  */
 void
-cloth_gap_features_add (const ClothGapFeatures * features,
+cloth_features_add (const ClothFeatures * features,
     const ClothRecording * recording, guint frame, const gdouble * positions,
     gdouble * z)
 {
@@ -240,7 +240,7 @@ cloth_gap_features_add (const ClothGapFeatures * features,
 }
 
 /**
- * cloth_gap_features_window:
+ * cloth_features_window:
  * @features: the features
  * @z: features
  * @part: which part of every block of time
@@ -251,7 +251,7 @@ cloth_gap_features_add (const ClothGapFeatures * features,
  * Since: 0.1
  */
 void
-cloth_gap_features_window (const ClothGapFeatures * features, const gdouble * z,
+cloth_features_window (const ClothFeatures * features, const gdouble * z,
     guint part, guint n_parts, gdouble * windowed)
 {
   const guint n = features->n_cosines, frames = features->block_frames;
@@ -277,13 +277,13 @@ cloth_gap_features_window (const ClothGapFeatures * features, const gdouble * z,
 }
 
 /**
- * cloth_gap_features_free:
+ * cloth_features_free:
  * @features: (nullable) (transfer full): the features
  *
  * Since: 0.1
  */
 void
-cloth_gap_features_free (ClothGapFeatures * features)
+cloth_features_free (ClothFeatures * features)
 {
   if (!features)
     return;

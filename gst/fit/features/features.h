@@ -8,10 +8,10 @@
 G_BEGIN_DECLS
 
 /* Most waves along u and along v. */
-#define CLOTH_GAP_MAX_WAVES_EACH 16
+#define CLOTH_FEATURES_MAX_WAVES_EACH 16
 
 /**
- * ClothGapFeatures:
+ * ClothFeatures:
  * @n: number of vertices
  * @n_waves: waves over the flat cloth, orthonormal
  * @waves: their values, [n][n_waves]
@@ -45,16 +45,16 @@ typedef struct {
   guint *first;
   gsize size;
   gdouble sigma;
-} ClothGapFeatures;
+} ClothFeatures;
 
-ClothGapFeatures *cloth_gap_features_new (const ClothRecording * recording,
+ClothFeatures *cloth_features_new (const ClothRecording * recording,
     guint n_waves_each, gdouble block_s, gdouble highest_hz);
-void cloth_gap_features_add (const ClothGapFeatures * features,
+void cloth_features_add (const ClothFeatures * features,
     const ClothRecording * recording, guint frame, const gdouble * positions,
     gdouble * z);
-void cloth_gap_features_window (const ClothGapFeatures * features,
+void cloth_features_window (const ClothFeatures * features,
     const gdouble * z, guint part, guint n_parts, gdouble * windowed);
-void cloth_gap_features_free (ClothGapFeatures * features);
+void cloth_features_free (ClothFeatures * features);
 
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothGapFeatures, cloth_gap_features_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothFeatures, cloth_features_free)
 G_END_DECLS

@@ -13,23 +13,23 @@
 #define MAX_BLOCK_FRAMES 600u
 
 /**
- * cloth_gap_energy_new:
+ * cloth_energy_spectrum_new:
  * @recording: what the residual is of; borrowed
  *
  * Returns: (transfer full): no energy yet
  * Since: 0.1
  */
-ClothGapEnergy *
-cloth_gap_energy_new (const ClothRecording * recording)
+ClothEnergySpectrum *
+cloth_energy_spectrum_new (const ClothRecording * recording)
 {
-  ClothGapEnergy *e = g_new0 (ClothGapEnergy, 1);
+  ClothEnergySpectrum *e = g_new0 (ClothEnergySpectrum, 1);
   guint n = recording->n_frames;
   guint n_blocks = (n + MAX_BLOCK_FRAMES - 1) / MAX_BLOCK_FRAMES;
   gdouble frame_s = (recording->times[n - 1] - recording->times[0]) / (n - 1);
 
   e->recording = recording;
   e->highest_hz = 0.5 / frame_s;
-  e->features = cloth_gap_features_new (recording, CLOTH_GAP_MAX_WAVES_EACH,
+  e->features = cloth_features_new (recording, CLOTH_FEATURES_MAX_WAVES_EACH,
       n / n_blocks * frame_s, e->highest_hz);
   e->resolution_hz = 0.5 / (e->features->block_frames * frame_s);
   e->z = g_new0 (gdouble, e->features->size);
@@ -37,7 +37,7 @@ cloth_gap_energy_new (const ClothRecording * recording)
 }
 
 /**
- * cloth_gap_energy_add:
+ * cloth_energy_spectrum_add:
  * @energy: the energy
  * @frame: a frame, each once
  * @positions: simulated in this frame, [n][3], m
@@ -47,7 +47,7 @@ cloth_gap_energy_new (const ClothRecording * recording)
  * Since: 0.1
  */
 void
-cloth_gap_energy_add (ClothGapEnergy * energy, guint frame,
+cloth_energy_spectrum_add (ClothEnergySpectrum * energy, guint frame,
     const gdouble * positions)
 {
   const ClothRecording *r = energy->recording;
@@ -55,7 +55,7 @@ cloth_gap_energy_add (ClothGapEnergy * energy, guint frame,
 
   if (frame < energy->features->first[0])
     return;
-  cloth_gap_features_add (energy->features, r, frame, positions, energy->z);
+  cloth_features_add (energy->features, r, frame, positions, energy->z);
   for (guint v = 0; v < r->n; v++) {
     if (r->seen[(gsize) frame * r->n + v] == 0.)
       continue;
@@ -66,14 +66,14 @@ cloth_gap_energy_add (ClothGapEnergy * energy, guint frame,
 }
 
 static gdouble
-count (const ClothGapEnergy * e)
+count (const ClothEnergySpectrum * e)
 {
   return (gdouble) e->features->n * e->features->n_blocks *
       e->features->block_frames;
 }
 
 /**
- * cloth_gap_energy_total:
+ * cloth_energy_spectrum_total:
  * @energy: the energy
  *
  * Returns: mean square of the distance over vertices and frames, m²; of it the waves hold
@@ -81,22 +81,22 @@ count (const ClothGapEnergy * e)
  * Since: 0.1
  */
 gdouble
-cloth_gap_energy_total (const ClothGapEnergy * energy)
+cloth_energy_spectrum_total (const ClothEnergySpectrum * energy)
 {
   return energy->square / count (energy);
 }
 
 /**
- * cloth_gap_energy_static:
+ * cloth_energy_spectrum_static:
  * @energy: the energy
  *
  * Returns: mean square of each wave's mean over time, m²
  * Since: 0.1
  */
 gdouble
-cloth_gap_energy_static (const ClothGapEnergy * energy)
+cloth_energy_spectrum_static (const ClothEnergySpectrum * energy)
 {
-  const ClothGapFeatures *f = energy->features;
+  const ClothFeatures *f = energy->features;
   gsize block = 3 * (gsize) f->n_cosines * f->n_waves;
   gdouble sum = 0.;
 
@@ -122,7 +122,7 @@ find_cell (const gdouble * edges, guint n, gdouble x)
 }
 
 /**
- * cloth_gap_energy_bin:
+ * cloth_energy_spectrum_bin:
  * @energy: the energy
  * @hz: (array length=n_hz): where each band of frequencies begins, growing
  * @n_hz: how many; the last one has no end
@@ -135,11 +135,11 @@ find_cell (const gdouble * edges, guint n, gdouble x)
  * Since: 0.1
  */
 void
-cloth_gap_energy_bin (const ClothGapEnergy * energy, const gdouble * hz,
-    guint n_hz, const gdouble * waves, guint n_waves, gdouble * cells,
-    gdouble * noise)
+cloth_energy_spectrum_bin (const ClothEnergySpectrum * energy,
+    const gdouble * hz, guint n_hz, const gdouble * waves, guint n_waves,
+    gdouble * cells, gdouble * noise)
 {
-  const ClothGapFeatures *f = energy->features;
+  const ClothFeatures *f = energy->features;
   gdouble unit = f->sigma * f->sigma / count (energy);
 
   for (guint i = 0; i < n_hz * n_waves; i++) {
@@ -170,17 +170,17 @@ cloth_gap_energy_bin (const ClothGapEnergy * energy, const gdouble * hz,
 }
 
 /**
- * cloth_gap_energy_free:
+ * cloth_energy_spectrum_free:
  * @energy: (nullable) (transfer full): the energy
  *
  * Since: 0.1
  */
 void
-cloth_gap_energy_free (ClothGapEnergy * energy)
+cloth_energy_spectrum_free (ClothEnergySpectrum * energy)
 {
   if (!energy)
     return;
-  cloth_gap_features_free (energy->features);
+  cloth_features_free (energy->features);
   g_free (energy->z);
   g_free (energy);
 }

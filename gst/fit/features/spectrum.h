@@ -8,7 +8,7 @@
 G_BEGIN_DECLS
 
 /**
- * ClothGapEnergy:
+ * ClothEnergySpectrum:
  * @recording: what the residual is of
  * @features: waves over the cloth and cosines over all of the time
  * @z: the residual in them, in multiples of the noise
@@ -22,22 +22,22 @@ G_BEGIN_DECLS
  */
 typedef struct {
   const ClothRecording *recording;
-  ClothGapFeatures *features;
+  ClothFeatures *features;
   gdouble *z;
   gdouble square;
   gdouble highest_hz;
   gdouble resolution_hz;
-} ClothGapEnergy;
+} ClothEnergySpectrum;
 
-ClothGapEnergy *cloth_gap_energy_new (const ClothRecording * recording);
-void cloth_gap_energy_add (ClothGapEnergy * energy, guint frame,
+ClothEnergySpectrum *cloth_energy_spectrum_new (const ClothRecording * recording);
+void cloth_energy_spectrum_add (ClothEnergySpectrum * energy, guint frame,
     const gdouble * positions);
-gdouble cloth_gap_energy_total (const ClothGapEnergy * energy);
-gdouble cloth_gap_energy_static (const ClothGapEnergy * energy);
-void cloth_gap_energy_bin (const ClothGapEnergy * energy, const gdouble * hz,
+gdouble cloth_energy_spectrum_total (const ClothEnergySpectrum * energy);
+gdouble cloth_energy_spectrum_static (const ClothEnergySpectrum * energy);
+void cloth_energy_spectrum_bin (const ClothEnergySpectrum * energy, const gdouble * hz,
     guint n_hz, const gdouble * waves, guint n_waves, gdouble * cells,
     gdouble * noise);
-void cloth_gap_energy_free (ClothGapEnergy * energy);
+void cloth_energy_spectrum_free (ClothEnergySpectrum * energy);
 
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothGapEnergy, cloth_gap_energy_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothEnergySpectrum, cloth_energy_spectrum_free)
 G_END_DECLS

@@ -37,7 +37,7 @@ struct _ClothObserver
   ClothSim *forecast;           /* without springs: only for frames of rays */
   gdouble *scene_start;
   ClothHold *hold;
-  ClothTears *tears;
+  ClothOutliers *tears;
   guint64 n_pushed, n_popped;
   Frame ring[WINDOW];           /* frame i at i % WINDOW */
   /* of the frame that was popped last, and of the one that is */
@@ -96,7 +96,7 @@ cloth_observer_new (const ClothScene * scene, const ClothModel * model,
   self->forecast = forecast;
   self->n = scene->topology->n_vertices;
   self->hold = cloth_hold_new (scene->topology);
-  self->tears = cloth_tears_new (scene->topology);
+  self->tears = cloth_outliers_new (scene->topology);
   n = 3 * (gsize) self->n;
   for (guint i = 0; i < WINDOW; i++) {
     self->ring[i].positions = g_new (gdouble, n);
@@ -155,7 +155,7 @@ cloth_observer_push (ClothObserver * observer, gdouble time_s,
   frame->has_rays = FALSE;
   for (gsize i = 0; i < 3 * (gsize) observer->n; i++)
     frame->positions[i] = positions[i];
-  cloth_tears_remove (observer->tears, 0., frame->positions);
+  cloth_outliers_remove (observer->tears, 0., frame->positions);
 }
 
 /**
@@ -263,7 +263,7 @@ static void
 lift (ClothObserver * self, Frame * frame, const gdouble * reference)
 {
   cloth_rays_lift (frame->rays, reference, frame->positions);
-  cloth_tears_remove (self->tears, 0., frame->positions);
+  cloth_outliers_remove (self->tears, 0., frame->positions);
 }
 
 /* Lifts this frame and those behind it to where the simulation goes. */
@@ -513,7 +513,7 @@ cloth_observer_free (ClothObserver * observer)
   g_free (observer->ahead_speeds);
   g_free (observer->reference);
   cloth_hold_free (observer->hold);
-  cloth_tears_free (observer->tears);
+  cloth_outliers_free (observer->tears);
   cloth_sim_free (observer->sim);
   cloth_sim_free (observer->forecast);
   g_free (observer);

@@ -2,7 +2,7 @@
  *
  * The observer is that of data assimilation: weak springs of stiffness gain·m and damping
  * 2ζ√gain·m draw each seen vertex to where it was seen (nudging). What it lacks in force
- * shows as a steady distance, and chaos is held down.
+ * shows as a steady distance, and variability is held down.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/fit/nudge/rollout.h"
@@ -180,7 +180,7 @@ cloth_rollout_nudged (const ClothRecording * recording,
  * @window_s: length of the windows, s
  * @options: how to simulate
  * @each: called for each model in each frame of each window but its first; and in all
- *   frames but the first for the model led all along, as @n_models + its index
+ *   frames but the first for the model nudged all along, as @n_models + its index
  * @data: for @each
  * @sound: (out) (array length=n_models): which models did not diverge
  * @error: #ClothSimError, or #ClothFitError when it was stopped
@@ -197,7 +197,7 @@ cloth_rollout_windows (const ClothRecording * recording,
     ClothRolloutFrame each, gpointer data, gboolean * sound, GError ** error)
 {
   g_auto (Run) run = { 0 };
-  /* side by side: those let go, those led */
+  /* side by side: those let go, those nudged */
   g_autofree const ClothModel **both = g_new (const ClothModel *, 2 * n_models);
   g_autofree gdouble *gains = g_new0 (gdouble, 2 * n_models);
   g_autofree guint *windows = cloth_rollout_list_windows (recording, window_s);

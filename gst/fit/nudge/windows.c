@@ -14,7 +14,7 @@
 typedef struct
 {
   const ClothRecording *recording;
-  ClothGapExtent **extents;
+  ClothWindowedGap **extents;
   guint n;
 } Gather;
 
@@ -60,14 +60,14 @@ frame_at (const ClothRecording * r, guint frame, guint vertex,
 
 /* Single numbers are enough: it is a difference. */
 static void
-keep_led (const ClothRecording * r, guint frame, const gdouble * positions,
-    gfloat * led)
+keep_nudged (const ClothRecording * r, guint frame, const gdouble * positions,
+    gfloat * nudged)
 {
   gsize begin = (gsize) frame * r->n;
 
   for (gsize i = 0; i < 3 * (gsize) r->n; i++)
     if (r->seen[begin + i / 3] > 0.)
-      led[3 * begin + i] = (gfloat) (positions[i] - r->y[3 * begin + i]);
+      nudged[3 * begin + i] = (gfloat) (positions[i] - r->y[3 * begin + i]);
 }
 
 static void
@@ -75,11 +75,11 @@ gather (gpointer data, guint model, guint frame, const gdouble * positions)
 {
   Gather *g = data;
   const ClothRecording *r = g->recording;
-  ClothGapExtent *e = g->extents[model % g->n];
+  ClothWindowedGap *e = g->extents[model % g->n];
 
   if (model >= g->n) {
-    cloth_gap_energy_add (e->energy, frame, positions);
-    keep_led (r, frame, positions, e->led);
+    cloth_energy_spectrum_add (e->energy, frame, positions);
+    keep_nudged (r, frame, positions, e->nudged);
     return;
   }
   for (guint v = 0; v < r->n; v++) {
@@ -104,29 +104,29 @@ gather (gpointer data, guint model, guint frame, const gdouble * positions)
   }
 }
 
-static ClothGapExtent *
+static ClothWindowedGap *
 extent_new (const ClothRecording * r, gdouble window_s)
 {
-  ClothGapExtent *e = g_new0 (ClothGapExtent, 1);
+  ClothWindowedGap *e = g_new0 (ClothWindowedGap, 1);
   gsize all = (gsize) r->n * r->n_frames;
 
   e->n = r->n;
   e->n_frames = r->n_frames;
   e->squares = g_new (gdouble, all);
   e->positions = g_new (gfloat, 3 * all);
-  e->led = g_new0 (gfloat, 3 * all);
+  e->nudged = g_new0 (gfloat, 3 * all);
   for (gsize i = 0; i < all; i++)
     e->squares[i] = NAN;
   for (gsize i = 0; i < 3 * all; i++)
     e->positions[i] = (gfloat) r->y[i];
   e->window = cloth_rollout_list_windows (r, window_s);
   e->n_windows = e->window[r->n_frames - 1] + 1;
-  e->energy = cloth_gap_energy_new (r);
+  e->energy = cloth_energy_spectrum_new (r);
   return e;
 }
 
 /**
- * cloth_gap_extents_new:
+ * cloth_windowed_gaps_new:
  * @recording: what is compared with
  * @models: (array length=n_models): the models
  * @n_models: how many
@@ -138,12 +138,12 @@ extent_new (const ClothRecording * r, gdouble window_s)
  * Returns: (transfer full) (nullable) (array length=n_models): each model's distances
  * Since: 0.1
  */
-ClothGapExtent **
-cloth_gap_extents_new (const ClothRecording * recording,
+ClothWindowedGap **
+cloth_windowed_gaps_new (const ClothRecording * recording,
     const ClothModel * const *models, guint n_models, gdouble gain,
     gdouble window_s, const ClothRolloutOptions * options, GError ** error)
 {
-  ClothGapExtent **extents = g_new (ClothGapExtent *, n_models);
+  ClothWindowedGap **extents = g_new (ClothWindowedGap *, n_models);
   g_autofree gboolean *sound = g_new (gboolean, n_models);
   Gather g = { recording, extents, n_models };
 
@@ -151,7 +151,7 @@ cloth_gap_extents_new (const ClothRecording * recording,
     extents[m] = extent_new (recording, window_s);
   if (!cloth_rollout_windows (recording, models, n_models, gain, window_s,
           options, gather, &g, sound, error)) {
-    cloth_gap_extents_free (extents, n_models);
+    cloth_windowed_gaps_free (extents, n_models);
     return NULL;
   }
   for (guint m = 0; m < n_models; m++)
@@ -160,41 +160,41 @@ cloth_gap_extents_new (const ClothRecording * recording,
 }
 
 /**
- * cloth_gap_extent_free:
+ * cloth_windowed_gap_free:
  * @extent: (nullable) (transfer full): distances
  *
  * Since: 0.1
  */
 void
-cloth_gap_extent_free (ClothGapExtent * extent)
+cloth_windowed_gap_free (ClothWindowedGap * extent)
 {
   if (!extent)
     return;
   g_free (extent->window);
   g_free (extent->squares);
   g_free (extent->positions);
-  g_free (extent->led);
-  cloth_gap_energy_free (extent->energy);
+  g_free (extent->nudged);
+  cloth_energy_spectrum_free (extent->energy);
   g_free (extent);
 }
 
 /**
- * cloth_gap_extents_free:
+ * cloth_windowed_gaps_free:
  * @extents: (nullable) (transfer full) (array length=n): distances
  * @n: how many
  *
  * Since: 0.1
  */
 void
-cloth_gap_extents_free (ClothGapExtent ** extents, guint n)
+cloth_windowed_gaps_free (ClothWindowedGap ** extents, guint n)
 {
   for (guint m = 0; extents && m < n; m++)
-    cloth_gap_extent_free (extents[m]);
+    cloth_windowed_gap_free (extents[m]);
   g_free (extents);
 }
 
 /**
- * cloth_gap_extent_subtract:
+ * cloth_windowed_gap_subtract:
  * @extent: (inout): one model's distances from a recording
  * @other: another's
  * @recording: the recording
@@ -205,8 +205,8 @@ cloth_gap_extents_free (ClothGapExtent ** extents, guint n)
  * Since: 0.1
  */
 void
-cloth_gap_extent_subtract (ClothGapExtent * extent,
-    const ClothGapExtent * other, const ClothRecording * recording)
+cloth_windowed_gap_subtract (ClothWindowedGap * extent,
+    const ClothWindowedGap * other, const ClothRecording * recording)
 {
   gsize all = (gsize) extent->n * extent->n_frames;
 
@@ -216,13 +216,13 @@ cloth_gap_extent_subtract (ClothGapExtent * extent,
       gdouble off = extent->positions[3 * i + k] - other->positions[3 * i + k];
 
       extent->squares[i] += off * off;
-      extent->led[3 * i + k] -= other->led[3 * i + k];
+      extent->nudged[3 * i + k] -= other->nudged[3 * i + k];
     }
   }
 }
 
 /**
- * cloth_gap_extent_square:
+ * cloth_windowed_gap_square:
  * @extent: distances
  * @windows: (nullable): which windows count
  *
@@ -230,7 +230,7 @@ cloth_gap_extent_subtract (ClothGapExtent * extent,
  * Since: 0.1
  */
 gdouble
-cloth_gap_extent_square (const ClothGapExtent * extent,
+cloth_windowed_gap_square (const ClothWindowedGap * extent,
     const gboolean * windows)
 {
   gdouble sum = 0.;
@@ -252,7 +252,7 @@ cloth_gap_extent_square (const ClothGapExtent * extent,
 }
 
 /**
- * cloth_gap_extents_interval:
+ * cloth_windowed_gaps_interval:
  * @extents: (array length=n): distances of the same recording
  * @n: how many
  * @windows: (nullable): which windows count
@@ -265,7 +265,7 @@ cloth_gap_extent_square (const ClothGapExtent * extent,
  * Since: 0.1
  */
 void
-cloth_gap_extents_interval (ClothGapExtent ** extents, guint n,
+cloth_windowed_gaps_interval (ClothWindowedGap ** extents, guint n,
     const gboolean * windows, guint64 seed, guint n_draws, gdouble * draws)
 {
   guint n_windows = extents[0]->n_windows, n_cells = 0;

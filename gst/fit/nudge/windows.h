@@ -9,7 +9,7 @@
 G_BEGIN_DECLS
 
 /**
- * ClothGapExtent:
+ * ClothWindowedGap:
  * @n: number of vertices
  * @n_frames: number of frames
  * @n_windows: number of windows
@@ -17,9 +17,9 @@ G_BEGIN_DECLS
  * @squares: squared distance, [n_frames][n], m²; NaN where nothing was seen
  * @positions: simulated, [n_frames][n][3], m
  * @directions: mean square along warp, weft and normal, m²
- * @led: off the recording while it was led to it all along, [n_frames][n][3], m; 0
+ * @nudged: off the recording while it was nudged to it all along, [n_frames][n][3], m; 0
  *   where nothing was seen and in the first frame
- * @energy: of its distances while it was led to the recording all along
+ * @energy: of its distances while it was nudged to the recording all along
  * @sound: whether the simulation held
  *
  * One model's distances from a recording.
@@ -34,21 +34,21 @@ typedef struct {
   gdouble *squares;
   gfloat *positions;
   gdouble directions[3];
-  gfloat *led;
-  ClothGapEnergy *energy;
+  gfloat *nudged;
+  ClothEnergySpectrum *energy;
   gboolean sound;
-} ClothGapExtent;
+} ClothWindowedGap;
 
-ClothGapExtent **cloth_gap_extents_new (const ClothRecording * recording,
+ClothWindowedGap **cloth_windowed_gaps_new (const ClothRecording * recording,
     const ClothModel * const *models, guint n_models, gdouble gain,
     gdouble window_s, const ClothRolloutOptions * options, GError ** error);
-void cloth_gap_extents_free (ClothGapExtent ** extents, guint n);
-void cloth_gap_extent_free (ClothGapExtent * extent);
-void cloth_gap_extent_subtract (ClothGapExtent * extent,
-    const ClothGapExtent * other, const ClothRecording * recording);
-gdouble cloth_gap_extent_square (const ClothGapExtent * extent,
+void cloth_windowed_gaps_free (ClothWindowedGap ** extents, guint n);
+void cloth_windowed_gap_free (ClothWindowedGap * extent);
+void cloth_windowed_gap_subtract (ClothWindowedGap * extent,
+    const ClothWindowedGap * other, const ClothRecording * recording);
+gdouble cloth_windowed_gap_square (const ClothWindowedGap * extent,
     const gboolean * windows);
-void cloth_gap_extents_interval (ClothGapExtent ** extents, guint n,
+void cloth_windowed_gaps_interval (ClothWindowedGap ** extents, guint n,
     const gboolean * windows, guint64 seed, guint n_draws, gdouble * draws);
 
 G_END_DECLS

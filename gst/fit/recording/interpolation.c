@@ -243,12 +243,12 @@ static gboolean
 cut_loose (Bridge * b)
 {
   const ClothRecording *r = b->recording;
-  g_autoptr (ClothTears) tears = cloth_tears_new (r->scene->topology);
+  g_autoptr (ClothOutliers) tears = cloth_outliers_new (r->scene->topology);
   gdouble *start = b->moved;
   gboolean any = FALSE;
 
   memcpy (start, place (b, 0, 0), 3 * (gsize) r->n * sizeof *start);
-  if (!cloth_tears_remove (tears, 0., start))
+  if (!cloth_outliers_remove (tears, 0., start))
     return FALSE;
   for (guint v = 0; v < r->n; v++)
     if (isnan (start[3 * v]) && b->first[v] > 0)
@@ -257,7 +257,7 @@ cut_loose (Bridge * b)
 }
 
 /**
- * cloth_recording_bridge:
+ * cloth_recording_interpolate:
  * @recording: a recording whose @y is known where @seen is 1
  *
  * Fills the rest of @y. A held vertex is where its clamp was. Between two frames that know
@@ -268,7 +268,7 @@ cut_loose (Bridge * b)
  * Since: 0.1
  */
 void
-cloth_recording_bridge (ClothRecording * recording)
+cloth_recording_interpolate (ClothRecording * recording)
 {
   guint n = recording->n;
   g_auto (Bridge) b = { recording, g_new (gint, n), g_new (gint, n) };

@@ -7,6 +7,6 @@
 
 G_BEGIN_DECLS
 
-void cloth_recording_bridge (ClothRecording * recording);
+void cloth_recording_interpolate (ClothRecording * recording);
 
 G_END_DECLS

@@ -11,42 +11,43 @@
 static void
 clear_sight (gpointer item)
 {
-  ClothSight *sight = item;
+  ClothObservation *observation = item;
 
-  g_free (sight->vertices);
-  g_free (sight->px);
-  g_free (sight->covariances);
+  g_free (observation->vertices);
+  g_free (observation->px);
+  g_free (observation->covariances);
 }
 
 /**
- * cloth_sights_new:
+ * cloth_observations_new:
  * @rig: (transfer full): the cameras as calibrated
  * @n_vertices: number of the cloth's vertices
  *
  * Returns: (transfer full): no picture yet
  * Since: 0.1
  */
-ClothSights *
-cloth_sights_new (ClothRig * rig, guint n_vertices)
+ClothObservations *
+cloth_observations_new (ClothRig * rig, guint n_vertices)
 {
-  ClothSights *sights = g_new0 (ClothSights, 1);
+  ClothObservations *observations = g_new0 (ClothObservations, 1);
 
-  sights->rig = rig;
-  sights->n_vertices = n_vertices;
-  sights->list = g_array_new (FALSE, FALSE, sizeof (ClothSight));
-  g_array_set_clear_func (sights->list, clear_sight);
-  return sights;
+  observations->rig = rig;
+  observations->n_vertices = n_vertices;
+  observations->list = g_array_new (FALSE, FALSE, sizeof (ClothObservation));
+  g_array_set_clear_func (observations->list, clear_sight);
+  return observations;
 }
 
 /* The last picture of a camera, or NULL. */
-static const ClothSight *
-find_last (const ClothSights * sights, guint camera)
+static const ClothObservation *
+find_last (const ClothObservations * observations, guint camera)
 {
-  for (guint i = sights->list->len; i-- > 0;) {
-    const ClothSight *sight = &g_array_index (sights->list, ClothSight, i);
+  for (guint i = observations->list->len; i-- > 0;) {
+    const ClothObservation *observation =
+        &g_array_index (observations->list, ClothObservation, i);
 
-    if (sight->camera == camera)
-      return sight;
+    if (observation->camera == camera)
+      return observation;
   }
   return NULL;
 }
@@ -60,8 +61,8 @@ is_point (const gdouble * px, const gdouble * covariance)
 }
 
 /**
- * cloth_sights_add:
- * @sights: the pictures so far
+ * cloth_observations_add:
+ * @observations: the pictures so far
  * @camera: index of a camera in the rig
  * @time_s: when, by the camera's clock; later than its last picture
  * @n: number of points
@@ -76,62 +77,63 @@ is_point (const gdouble * px, const gdouble * covariance)
  * Since: 0.1
  */
 gboolean
-cloth_sights_add (ClothSights * sights, guint camera, gdouble time_s, guint n,
-    const guint32 * vertices, const gdouble * px, const gdouble * covariances,
-    GError ** error)
+cloth_observations_add (ClothObservations * observations, guint camera,
+    gdouble time_s, guint n, const guint32 * vertices, const gdouble * px,
+    const gdouble * covariances, GError ** error)
 {
-  const ClothSight *last;
-  ClothSight sight = { camera, time_s, n };
+  const ClothObservation *last;
+  ClothObservation observation = { camera, time_s, n };
 
-  if (camera >= sights->rig->n_cameras) {
+  if (camera >= observations->rig->n_cameras) {
     g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING,
         "a picture is of camera %u, but the rig has %u", camera,
-        sights->rig->n_cameras);
+        observations->rig->n_cameras);
     return FALSE;
   }
-  last = find_last (sights, camera);
+  last = find_last (observations, camera);
   if (!isfinite (time_s) || (last && !(time_s > last->time_s))) {
     g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING,
         "camera “%s”: a picture of %g s is not later than the one before it",
-        sights->rig->cameras[camera].name, time_s);
+        observations->rig->cameras[camera].name, time_s);
     return FALSE;
   }
   for (guint i = 0; i < n; i++) {
-    if (vertices[i] >= sights->n_vertices || (i
+    if (vertices[i] >= observations->n_vertices || (i
             && vertices[i] <= vertices[i - 1])) {
       g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING,
           "camera “%s”, %g s: vertex %u is not in order, or not one of the "
-          "cloth's %u", sights->rig->cameras[camera].name, time_s, vertices[i],
-          sights->n_vertices);
+          "cloth's %u", observations->rig->cameras[camera].name, time_s,
+          vertices[i], observations->n_vertices);
       return FALSE;
     }
     if (!is_point (px + 2 * (gsize) i, covariances + 3 * (gsize) i)) {
       g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING,
           "camera “%s”, %g s: vertex %u is not at a finite place with a "
-          "covariance", sights->rig->cameras[camera].name, time_s, vertices[i]);
+          "covariance", observations->rig->cameras[camera].name, time_s,
+          vertices[i]);
       return FALSE;
     }
   }
-  sight.vertices = g_memdup2 (vertices, n * sizeof *vertices);
-  sight.px = g_memdup2 (px, 2 * (gsize) n * sizeof *px);
-  sight.covariances = g_memdup2 (covariances, 3 * (gsize) n *
+  observation.vertices = g_memdup2 (vertices, n * sizeof *vertices);
+  observation.px = g_memdup2 (px, 2 * (gsize) n * sizeof *px);
+  observation.covariances = g_memdup2 (covariances, 3 * (gsize) n *
       sizeof *covariances);
-  g_array_append_val (sights->list, sight);
+  g_array_append_val (observations->list, observation);
   return TRUE;
 }
 
 /**
- * cloth_sights_free:
- * @sights: (nullable) (transfer full): pictures
+ * cloth_observations_free:
+ * @observations: (nullable) (transfer full): pictures
  *
  * Since: 0.1
  */
 void
-cloth_sights_free (ClothSights * sights)
+cloth_observations_free (ClothObservations * observations)
 {
-  if (!sights)
+  if (!observations)
     return;
-  cloth_rig_free (sights->rig);
-  g_array_unref (sights->list);
-  g_free (sights);
+  cloth_rig_free (observations->rig);
+  g_array_unref (observations->list);
+  g_free (observations);
 }

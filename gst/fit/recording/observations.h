@@ -8,7 +8,7 @@
 G_BEGIN_DECLS
 
 /**
- * ClothSight:
+ * ClothObservation:
  * @camera: its index in the rig
  * @time_s: when, by the camera's clock
  * @n: number of points
@@ -27,13 +27,13 @@ typedef struct {
   guint32 *vertices;
   gdouble *px;
   gdouble *covariances;
-} ClothSight;
+} ClothObservation;
 
 /**
- * ClothSights:
+ * ClothObservations:
  * @rig: the cameras as calibrated
  * @n_vertices: number of the cloth's vertices
- * @list: (element-type ClothSight): the pictures, of each camera in the order of time
+ * @list: (element-type ClothObservation): the pictures, of each camera in the order of time
  *
  * All pictures of one take.
  *
@@ -43,13 +43,13 @@ typedef struct {
   ClothRig *rig;
   guint n_vertices;
   GArray *list;
-} ClothSights;
+} ClothObservations;
 
-ClothSights *cloth_sights_new (ClothRig * rig, guint n_vertices);
-gboolean cloth_sights_add (ClothSights * sights, guint camera, gdouble time_s,
+ClothObservations *cloth_observations_new (ClothRig * rig, guint n_vertices);
+gboolean cloth_observations_add (ClothObservations * observations, guint camera, gdouble time_s,
     guint n, const guint32 * vertices, const gdouble * px,
     const gdouble * covariances, GError ** error);
-void cloth_sights_free (ClothSights * sights);
+void cloth_observations_free (ClothObservations * observations);
 
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothSights, cloth_sights_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothObservations, cloth_observations_free)
 G_END_DECLS

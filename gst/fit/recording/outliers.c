@@ -31,17 +31,17 @@ struct _ClothTears
 };
 
 /**
- * cloth_tears_new:
+ * cloth_outliers_new:
  * @topology: a mesh, with uv in metres
  *
  * Returns: (transfer full): what finds tears in its frames
  * Since: 0.1
  */
-ClothTears *
-cloth_tears_new (const ClothTopology * topology)
+ClothOutliers *
+cloth_outliers_new (const ClothTopology * topology)
 {
   const ClothTopology *t = topology;
-  ClothTears *tears = g_new0 (ClothTears, 1);
+  ClothOutliers *tears = g_new0 (ClothOutliers, 1);
 
   tears->n = t->n_vertices;
   tears->edges = g_array_new (FALSE, FALSE, sizeof (Edge));
@@ -68,7 +68,7 @@ cloth_tears_new (const ClothTopology * topology)
 }
 
 static guint
-find_piece (ClothTears * tears, guint v)
+find_piece (ClothOutliers * tears, guint v)
 {
   while (tears->piece[v] != v) {
     tears->piece[v] = tears->piece[tears->piece[v]];
@@ -78,7 +78,7 @@ find_piece (ClothTears * tears, guint v)
 }
 
 static void
-join (ClothTears * tears, guint a, guint b)
+join (ClothOutliers * tears, guint a, guint b)
 {
   a = find_piece (tears, a);
   b = find_piece (tears, b);
@@ -96,7 +96,7 @@ join (ClothTears * tears, guint a, guint b)
 
 /* Of two pieces the smaller one, and both when they are equal. */
 static void
-blame (ClothTears * tears, guint a, guint b)
+blame (ClothOutliers * tears, guint a, guint b)
 {
   a = find_piece (tears, a);
   b = find_piece (tears, b);
@@ -121,7 +121,7 @@ excess (const Edge * edge, gdouble slack_m, const gdouble * positions)
 
 /* Lists the torn edges. */
 static void
-find_torn (ClothTears * tears, gdouble slack_m, const gdouble * positions)
+find_torn (ClothOutliers * tears, gdouble slack_m, const gdouble * positions)
 {
   g_array_set_size (tears->torn, 0);
   for (guint i = 0; i < tears->edges->len; i++) {
@@ -135,7 +135,7 @@ find_torn (ClothTears * tears, gdouble slack_m, const gdouble * positions)
 
 /* The smaller ones of the pieces that were cut apart. */
 static void
-find_pieces (ClothTears * tears, gdouble slack_m, const gdouble * positions)
+find_pieces (ClothOutliers * tears, gdouble slack_m, const gdouble * positions)
 {
   for (guint v = 0; v < tears->n; v++) {
     tears->piece[v] = v;
@@ -160,7 +160,7 @@ find_pieces (ClothTears * tears, gdouble slack_m, const gdouble * positions)
 
 /* Drops edges at wrong vertices and sums up the others. */
 static gdouble
-sum_up (ClothTears * tears)
+sum_up (ClothOutliers * tears)
 {
   gdouble most = 0.;
   guint n = 0;
@@ -186,7 +186,7 @@ sum_up (ClothTears * tears)
 /* What tears a piece that hangs together elsewhere: the vertex that is most out of place goes
  * first, and with it what it made of its neighbours' distances. */
 static void
-find_denied (ClothTears * tears)
+find_denied (ClothOutliers * tears)
 {
   gdouble most;
 
@@ -203,7 +203,7 @@ find_denied (ClothTears * tears)
 }
 
 /**
- * cloth_tears_remove:
+ * cloth_outliers_remove:
  * @tears: of the mesh
  * @slack_m: how far noise may put two vertices apart, m
  * @positions: (inout) (array): 3 numbers a vertex, m; NaN when not seen
@@ -218,7 +218,8 @@ find_denied (ClothTears * tears)
  * Since: 0.1
  */
 guint
-cloth_tears_remove (ClothTears * tears, gdouble slack_m, gdouble * positions)
+cloth_outliers_remove (ClothOutliers * tears, gdouble slack_m,
+    gdouble * positions)
 {
   guint removed = 0;
 
@@ -238,13 +239,13 @@ cloth_tears_remove (ClothTears * tears, gdouble slack_m, gdouble * positions)
 }
 
 /**
- * cloth_tears_free:
+ * cloth_outliers_free:
  * @tears: (nullable) (transfer full): what finds tears
  *
  * Since: 0.1
  */
 void
-cloth_tears_free (ClothTears * tears)
+cloth_outliers_free (ClothOutliers * tears)
 {
   if (!tears)
     return;

@@ -7,12 +7,12 @@
 
 G_BEGIN_DECLS
 
-typedef struct _ClothTears ClothTears;
+typedef struct _ClothTears ClothOutliers;
 
-ClothTears *cloth_tears_new (const ClothTopology * topology);
-guint cloth_tears_remove (ClothTears * tears, gdouble slack_m,
+ClothOutliers *cloth_outliers_new (const ClothTopology * topology);
+guint cloth_outliers_remove (ClothOutliers * tears, gdouble slack_m,
     gdouble * positions);
-void cloth_tears_free (ClothTears * tears);
+void cloth_outliers_free (ClothOutliers * tears);
 
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothTears, cloth_tears_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothOutliers, cloth_outliers_free)
 G_END_DECLS

@@ -45,7 +45,7 @@ gboolean cloth_recording_check_other (const ClothRecording * recording,
     const ClothRecording * other, GError ** error);
 void cloth_recording_find_weights (const gdouble * times, guint mask,
     gdouble at, gdouble * weights);
-ClothRecording *cloth_recording_thin (const ClothRecording * recording,
+ClothRecording *cloth_recording_resample (const ClothRecording * recording,
     guint most);
 void cloth_recording_differentiate (ClothRecording * recording);
 gint cloth_recording_compare_numbers (gconstpointer a, gconstpointer b);

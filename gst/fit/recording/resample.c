@@ -75,7 +75,7 @@ hold (const ClothScene * from, ClothScene * to)
 }
 
 /**
- * cloth_recording_thin:
+ * cloth_recording_resample:
  * @recording: a recording
  * @most: lines that are enough along u and along v, at least 2
  *
@@ -87,7 +87,7 @@ hold (const ClothScene * from, ClothScene * to)
  * Since: 0.1
  */
 ClothRecording *
-cloth_recording_thin (const ClothRecording * recording, guint most)
+cloth_recording_resample (const ClothRecording * recording, guint most)
 {
   const ClothScene *scene = recording->scene;
   const ClothTopology *t = scene->topology;

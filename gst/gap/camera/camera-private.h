@@ -16,16 +16,16 @@ G_BEGIN_DECLS
 const ClothEffect *cloth_camera_column (guint column, guint * parameter);
 
 /* The picture of a frame; whether it shows the one before once more. */
-static inline const ClothSight **
+static inline const ClothObservation **
 cloth_camera_picture (const ClothCameraView * v, guint frame, guint camera)
 {
-  return v->pictures + (gsize) frame * v->sights->rig->n_cameras + camera;
+  return v->pictures + (gsize) frame * v->observations->rig->n_cameras + camera;
 }
 
 static inline gboolean *
 cloth_camera_stale (const ClothCameraView * v, guint frame, guint camera)
 {
-  return v->stale + (gsize) frame * v->sights->rig->n_cameras + camera;
+  return v->stale + (gsize) frame * v->observations->rig->n_cameras + camera;
 }
 
 /* Every stride-th vertex, as it moved. */
@@ -54,8 +54,8 @@ typedef enum
 /* One picture: where points are found and foretold, whitened by the covariance. */
 typedef struct
 {
-  const ClothSight *sight;
-  gint *at;                     /* [n]: index in the sight, or -1 */
+  const ClothObservation *observation;
+  gint *at;                     /* [n]: index in the observation, or -1 */
   gdouble *px, *other;          /* [n][2]: foretold */
   gdouble *z;                   /* [n][2]: found less foretold */
   gdouble *e;                   /* [n]: the length of it that no place accounts for */

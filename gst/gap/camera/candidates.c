@@ -42,10 +42,10 @@ cloth_camera_why_not (const ClothEffect * effect)
 }
 
 static void
-add_direction (ClothGapCandidates * c, const ClothEffect * effect, guint k)
+add_direction (ClothCandidates * c, const ClothEffect * effect, guint k)
 {
   const ClothEffectParameter *p = &effect->parameters[k];
-  ClothGapDirection d = { NULL };
+  ClothDirection d = { NULL };
 
   d.name = g_strdup_printf ("%s.%s", effect->id, p->name);
   d.centre = p->null_value;
@@ -60,7 +60,7 @@ add_direction (ClothGapCandidates * c, const ClothEffect * effect, guint k)
 static void
 clear_direction (gpointer item)
 {
-  g_free (((ClothGapDirection *) item)->name);
+  g_free (((ClothDirection *) item)->name);
 }
 
 static gboolean
@@ -80,15 +80,15 @@ is_wanted (const gchar * const *effects, const gchar * id)
  * Returns: (transfer full): the candidates
  * Since: 0.1
  */
-ClothGapCandidates *
+ClothCandidates *
 cloth_camera_candidates_new (const ClothRig * rig, const gchar * const *effects)
 {
-  ClothGapCandidates *c = g_new0 (ClothGapCandidates, 1);
+  ClothCandidates *c = g_new0 (ClothCandidates, 1);
   guint first = 0;
 
-  c->directions = g_array_new (FALSE, FALSE, sizeof (ClothGapDirection));
+  c->directions = g_array_new (FALSE, FALSE, sizeof (ClothDirection));
   g_array_set_clear_func (c->directions, clear_direction);
-  c->list = g_array_new (FALSE, FALSE, sizeof (ClothGapCandidate));
+  c->list = g_array_new (FALSE, FALSE, sizeof (ClothCandidate));
   for (guint camera = 0; camera <= rig->n_cameras; camera++)
     for (guint i = 0; i < G_N_ELEMENTS (movers); i++) {
       const ClothEffect *effect = cloth_capture_find_effect (movers[i].id);
@@ -103,7 +103,7 @@ cloth_camera_candidates_new (const ClothRig * rig, const gchar * const *effects)
 
     for (guint camera = 0; camera < n && is_wanted (effects, effect->id);
         camera++) {
-      ClothGapCandidate candidate = { effect };
+      ClothCandidate candidate = { effect };
 
       for (guint k = 0; k < effect->n_parameters; k++) {
         candidate.values[k] = effect->parameters[k].null_value;
@@ -127,7 +127,7 @@ cloth_camera_candidates_new (const ClothRig * rig, const gchar * const *effects)
  * Since: 0.1
  */
 guint
-cloth_camera_of_candidate (const ClothGapCandidate * candidate)
+cloth_camera_of_candidate (const ClothCandidate * candidate)
 {
   return candidate->first / CLOTH_CAMERA_N_COLUMNS;
 }

@@ -33,14 +33,14 @@
 /* Exponents that don't overflow. */
 #define LARGEST 600.
 
-/* One recording with sights, and what is taken to be wrong with its cameras. */
+/* One recording with observations, and what is taken to be wrong with its cameras. */
 typedef struct
 {
   ClothDiagnosis *d;
   const ClothRig *rig;
-  ClothGapCandidates *candidates;
-  GPtrArray *views;             /* of the takes that have sights of this rig */
-  ClothGapNormal *normal;       /* at the faults that are known */
+  ClothCandidates *candidates;
+  GPtrArray *views;             /* of the takes that have observations of this rig */
+  ClothNormalEquations *normal; /* at the faults that are known */
   /* of each candidate: what baselines ask for, whether it looks like the first fault */
   gdouble *null_evidence;
   gboolean *alike;
@@ -49,31 +49,32 @@ typedef struct
 static void
 search_clear (Search * s)
 {
-  cloth_gap_candidates_free (s->candidates);
+  cloth_candidates_free (s->candidates);
   g_clear_pointer (&s->views, g_ptr_array_unref);
-  cloth_gap_normal_free (s->normal);
+  cloth_normal_equations_free (s->normal);
   g_free (s->null_evidence);
   g_free (s->alike);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Search, search_clear)
-     static ClothSights *sights_of (const ClothDiagnosis * d, guint recording)
+     static ClothObservations *sights_of (const ClothDiagnosis * d,
+    guint recording)
 {
   const ClothGapOptions *o = d->options;
-  ClothSights *const *all = o->sights;
+  ClothObservations *const *all = o->observations;
 
   if (recording >= d->n_takes + o->n_baselines) {
-    all = o->hold_out_sights;
+    all = o->hold_out_observations;
     recording -= d->n_takes + o->n_baselines;
   } else if (recording >= d->n_takes) {
-    all = o->baseline_sights;
+    all = o->baseline_observations;
     recording -= d->n_takes;
   }
   return all ? all[recording] : NULL;
 }
 
 gboolean
-cloth_diagnosis_has_sights (const ClothDiagnosis * d)
+cloth_diagnosis_has_observations (const ClothDiagnosis * d)
 {
   for (guint i = 0; i < d->n_takes; i++)
     if (sights_of (d, i))
@@ -110,26 +111,26 @@ open_views (const Search * s, guint begin, guint end)
       (GDestroyNotify) cloth_camera_view_free);
 
   for (guint i = begin; i < end; i++) {
-    const ClothSights *sights = sights_of (s->d, i);
+    const ClothObservations *observations = sights_of (s->d, i);
 
-    if (sights && same_cameras (sights->rig, s->rig))
+    if (observations && same_cameras (observations->rig, s->rig))
       g_ptr_array_add (views,
-          cloth_camera_view_new (cloth_diagnosis_recording (s->d, i), sights,
-              s->d->options->threads));
+          cloth_camera_view_new (cloth_diagnosis_recording (s->d, i),
+              observations, s->d->options->threads));
   }
   return views;
 }
 
 /* The equations of all views together. */
-static ClothGapNormal *
+static ClothNormalEquations *
 linearise (const Search * s, const GPtrArray * views,
     ClothCameraErrors * errors)
 {
-  ClothGapNormal *all = NULL;
+  ClothNormalEquations *all = NULL;
 
   for (guint i = 0; i < views->len; i++) {
     ClothCameraErrors mine;
-    ClothGapNormal *normal =
+    ClothNormalEquations *normal =
         cloth_camera_view_linearise (g_ptr_array_index (views, i),
         s->d->options->threads, &mine);
 
@@ -137,20 +138,20 @@ linearise (const Search * s, const GPtrArray * views,
       continue;
     if (!all)
       *errors = mine;
-    all = cloth_gap_normal_append (all, normal);
+    all = cloth_normal_equations_append (all, normal);
   }
   return all;
 }
 
-static const ClothGapCandidate *
+static const ClothCandidate *
 candidate_at (const Search * s, guint i)
 {
-  return &g_array_index (s->candidates->list, ClothGapCandidate, i);
+  return &g_array_index (s->candidates->list, ClothCandidate, i);
 }
 
 /* The effects that @normal asks for, beside the faults that are known. */
 static GArray *
-rank (const Search * s, ClothGapNormal * normal)
+rank (const Search * s, ClothNormalEquations * normal)
 {
   const ClothDiagnosis *d = s->d;
   guint m = s->candidates->directions->len;
@@ -169,10 +170,10 @@ rank (const Search * s, ClothGapNormal * normal)
   for (guint k = 0; k < m; k++)
     sound[k] = TRUE;
   for (guint i = 0; i < d->n_faults; i++) {
-    const ClothGapCandidate *c = candidate_at (s, d->faults[i].candidate);
+    const ClothCandidate *c = candidate_at (s, d->faults[i].candidate);
 
     for (guint k = 0; k < c->n; k++) {
-      const gdouble prior = cloth_gap_candidates_direction (s->candidates,
+      const gdouble prior = cloth_candidates_direction (s->candidates,
           c->first + k)->prior;
 
       nuisances[test.n_nuisances] = c->first + k;
@@ -198,7 +199,7 @@ study_baselines (Search * s)
   g_autoptr (GPtrArray) views = open_views (s, d->n_takes,
       d->n_takes + d->options->n_baselines);
   ClothCameraErrors errors;
-  g_autoptr (ClothGapNormal) normal = linearise (s, views, &errors);
+  g_autoptr (ClothNormalEquations) normal = linearise (s, views, &errors);
   g_autoptr (GArray) scores = NULL;
 
   if (!normal)
@@ -237,7 +238,7 @@ step_faults (Search * s)
   guint n = 0, at = 0;
 
   for (guint i = 0; i < d->n_faults; i++) {
-    const ClothGapCandidate *c = candidate_at (s, d->faults[i].candidate);
+    const ClothCandidate *c = candidate_at (s, d->faults[i].candidate);
 
     for (guint k = 0; k < c->n; k++)
       columns[n++] = c->first + k;
@@ -255,10 +256,10 @@ step_faults (Search * s)
   phi = OVERDISPERSION * MAX (r / (s->normal->per_block * s->normal->n_blocks),
       0.1);
   for (guint i = 0; i < d->n_faults; i++) {
-    const ClothGapCandidate *c = candidate_at (s, d->faults[i].candidate);
+    const ClothCandidate *c = candidate_at (s, d->faults[i].candidate);
 
     for (guint k = 0; k < c->n; k++, at++) {
-      const gdouble prior = WIDTH * cloth_gap_candidates_direction
+      const gdouble prior = WIDTH * cloth_candidates_direction
           (s->candidates, c->first + k)->prior;
 
       for (guint l = 0; l < n; l++)
@@ -273,11 +274,11 @@ step_faults (Search * s)
   cloth_cholesky_inverse (n, a, inverse);
   at = 0;
   for (guint i = 0; i < d->n_faults; i++) {
-    const ClothGapCandidate *c = candidate_at (s, d->faults[i].candidate);
+    const ClothCandidate *c = candidate_at (s, d->faults[i].candidate);
 
     for (guint k = 0; k < c->n; k++, at++) {
-      const ClothGapDirection *direction =
-          cloth_gap_candidates_direction (s->candidates, c->first + k);
+      const ClothDirection *direction =
+          cloth_candidates_direction (s->candidates, c->first + k);
 
       d->faults[i].values[k] = CLAMP (d->faults[i].values[k] + x[at],
           direction->low, direction->high);
@@ -299,7 +300,7 @@ look_again (Search * s)
     apply_faults (s->d, view);
     cloth_camera_view_solve_unseen (view, s->d->options->threads);
   }
-  cloth_gap_normal_free (s->normal);
+  cloth_normal_equations_free (s->normal);
   s->normal = linearise (s, s->views, &errors);
   if (s->normal)
     s->d->camera_errors = errors;
@@ -385,7 +386,7 @@ list_effects (const Search * s, const GArray * first, const GArray * last)
 
   for (guint i = 0; i < first->len; i++) {
     const ClothGapScore *score = &g_array_index (first, ClothGapScore, i);
-    const ClothGapCandidate *c = candidate_at (s, score->candidate);
+    const ClothCandidate *c = candidate_at (s, score->candidate);
     ClothGapEffect e = { c->effect,.group = -1,.shrink = {NAN, NAN, NAN} };
 
     if (score->kept < CLOTH_GAP_IDENTIFIABLE || find_fault (s, c->effect))
@@ -469,7 +470,7 @@ way_of (const Search * s, const ClothCameraFault * fault)
 
   cloth_camera_view_reset (view);
   cloth_camera_view_apply (view, fault->camera, fault->effect, fault->values);
-  square = cloth_camera_view_way (view, d->options->threads);
+  square = cloth_camera_view_displacement (view, d->options->threads);
   apply_faults (d, view);
   return square;
 }
@@ -478,7 +479,7 @@ static void
 start_fault (const Search * s, const ClothGapScore * score,
     ClothCameraFault * f)
 {
-  const ClothGapCandidate *c = candidate_at (s, score->candidate);
+  const ClothCandidate *c = candidate_at (s, score->candidate);
 
   *f = (ClothCameraFault) {
   .candidate = score->candidate,.effect = c->effect};
@@ -531,15 +532,15 @@ static void
 correct (ClothDiagnosis * d, const Search * s)
 {
   for (guint i = 0; i < d->recordings->len; i++) {
-    const ClothSights *sights = sights_of (d, i);
+    const ClothObservations *observations = sights_of (d, i);
     ClothRecording *r = cloth_diagnosis_recording (d, i);
     g_autoptr (ClothCameraView) view = NULL;
     gdouble square;
 
-    if (!sights || !same_cameras (sights->rig, s->rig)
+    if (!observations || !same_cameras (observations->rig, s->rig)
         || (i >= d->n_takes && i < d->n_takes + d->options->n_baselines))
       continue;
-    view = cloth_camera_view_new (r, sights, d->options->threads);
+    view = cloth_camera_view_new (r, observations, d->options->threads);
     apply_faults (d, view);
     d->filmed[i] = g_memdup2 (r->y, 3 * (gsize) r->n * r->n_frames *
         sizeof *r->y);
@@ -548,7 +549,7 @@ correct (ClothDiagnosis * d, const Search * s)
       d->camera_square = square;
       d->camera_errors.triangulation = 0.;
     }
-    cloth_recording_bridge (r);
+    cloth_recording_interpolate (r);
     cloth_recording_differentiate (r);
   }
 }

@@ -79,10 +79,12 @@ match (ClothCameraPicture * p, const ClothCameraPoints * points)
   guint next = 0;
 
   for (guint i = 0; i < points->n; i++) {
-    while (next < p->sight->n && p->sight->vertices[next] < i * points->stride)
+    while (next < p->observation->n
+        && p->observation->vertices[next] < i * points->stride)
       next++;
-    p->at[i] = next < p->sight->n
-        && p->sight->vertices[next] == i * points->stride ? (gint) next : -1;
+    p->at[i] = next < p->observation->n
+        && p->observation->vertices[next] ==
+        i * points->stride ? (gint) next : -1;
   }
 }
 
@@ -107,14 +109,15 @@ whiten (const gdouble w[3], gdouble * first, gdouble * second)
 
 /* When the camera took the picture before, or NaN. */
 static gdouble
-time_before (const ClothCameraView * v, const ClothSight * sight)
+time_before (const ClothCameraView * v, const ClothObservation * observation)
 {
-  const ClothSight *first = (const ClothSight *) v->sights->list->data;
-  const guint camera = sight->camera;
+  const ClothObservation *first =
+      (const ClothObservation *) v->observations->list->data;
+  const guint camera = observation->camera;
 
-  while (sight-- > first)
-    if (sight->camera == camera)
-      return sight->time_s;
+  while (observation-- > first)
+    if (observation->camera == camera)
+      return observation->time_s;
   return NAN;
 }
 
@@ -149,13 +152,13 @@ static void
 look (const ClothCameraView * v, const ClothCameraPoints * points,
     ClothCameraAim aim, ClothCameraPicture * p, guint frame)
 {
-  const guint camera = p->sight->camera;
+  const guint camera = p->observation->camera;
   const ClothCapture *capture = &v->captures[camera];
   const ClothMotion *motion = &points->motion;
-  gdouble before = time_before (v, p->sight);
+  gdouble before = time_before (v, p->observation);
   const gboolean stale = *cloth_camera_stale (v, frame, camera);
   const gboolean held = v->lost[camera] && stale;
-  gdouble time_s = held ? before : p->sight->time_s;
+  gdouble time_s = held ? before : p->observation->time_s;
   const gsize row = 2 * N_COLUMNS;
 
   match (p, points);
@@ -169,8 +172,9 @@ look (const ClothCameraView * v, const ClothCameraPoints * points,
   if (aim == CLOTH_CAMERA_WAY) {
     ClothCapture rig;
 
-    cloth_capture_init (&rig, &v->sights->rig->cameras[camera]);
-    cloth_capture_observe (&rig, motion, p->sight->time_s, p->other, NULL);
+    cloth_capture_init (&rig, &v->observations->rig->cameras[camera]);
+    cloth_capture_observe (&rig, motion, p->observation->time_s, p->other,
+        NULL);
     put_column (p, points->n, CLOTH_CAMERA_DROP, 1.);
   }
   if (!held && !isnan (before) && (aim == CLOTH_CAMERA_DROPS
@@ -190,9 +194,9 @@ look (const ClothCameraView * v, const ClothCameraPoints * points,
       p->at[i] = -1;
       continue;
     }
-    whitener (p->sight->covariances + 3 * p->at[i], w);
+    whitener (p->observation->covariances + 3 * p->at[i], w);
     for (guint k = 0; k < 2; k++)
-      z[k] = p->sight->px[2 * p->at[i] + (gint) k] - p->px[2 * i + k];
+      z[k] = p->observation->px[2 * p->at[i] + (gint) k] - p->px[2 * i + k];
     whiten (w, &z[0], &z[1]);
     for (guint k = 0; k < 3; k++)
       whiten (w, &j[k], &j[3 + k]);
@@ -229,7 +233,7 @@ cloth_camera_gather (const ClothCameraPicture * pictures, guint n_cameras,
     const ClothCameraPicture *p = &pictures[c];
     const gdouble *z = p->z + 2 * i, *j = p->j + 6 * (gsize) i;
 
-    if (!p->sight || p->at[i] < 0)
+    if (!p->observation || p->at[i] < 0)
       continue;
     if (!all && p->e[i] > p->gross) {
       point->contradicted = TRUE;
@@ -268,11 +272,11 @@ void
 cloth_camera_look (const ClothCameraView * v, const ClothCameraPoints * points,
     ClothCameraAim aim, ClothCameraPicture * pictures, guint frame)
 {
-  const guint n_cameras = v->sights->rig->n_cameras;
+  const guint n_cameras = v->observations->rig->n_cameras;
 
   for (guint c = 0; c < n_cameras; c++) {
-    pictures[c].sight = *cloth_camera_picture (v, frame, c);
-    if (pictures[c].sight)
+    pictures[c].observation = *cloth_camera_picture (v, frame, c);
+    if (pictures[c].observation)
       look (v, points, aim, &pictures[c], frame);
   }
   for (guint i = 0; i < points->n; i++) {
@@ -287,13 +291,13 @@ cloth_camera_look (const ClothCameraView * v, const ClothCameraPoints * points,
       ClothCameraPicture *p = &pictures[c];
       const gdouble *z = p->z + 2 * i, *j = p->j + 6 * (gsize) i;
 
-      if (!p->sight || p->at[i] < 0)
+      if (!p->observation || p->at[i] < 0)
         continue;
       p->e[i] = solved ? hypot (z[0] - j[0] * x[0] - j[1] * x[1] - j[2] * x[2],
           z[1] - j[3] * x[0] - j[4] * x[1] - j[5] * x[2]) : NAN;
     }
   }
   for (guint c = 0; c < n_cameras; c++)
-    if (pictures[c].sight)
+    if (pictures[c].observation)
       find_gross (&pictures[c], points->n);
 }

@@ -31,7 +31,7 @@ typedef struct
   guint n_blocks;
   guint *block;                 /* of each frame */
   ClothCameraAim aim;
-  ClothGapNormal *normal;
+  ClothNormalEquations *normal;
   gdouble *dof;                 /* of each block */
   ClothCameraErrors *errors;    /* sums, of each block */
   gdouble *n_points;
@@ -246,7 +246,7 @@ work_init (Work * work, ClothCameraView * v, ClothCameraAim aim, gsize most)
   const ClothRecording *r = v->recording;
 
   *work = (Work) {
-  .view = v,.aim = aim,.n_cameras = v->sights->rig->n_cameras};
+  .view = v,.aim = aim,.n_cameras = v->observations->rig->n_cameras};
   cloth_camera_points_init (&work->points, v,
       (guint) (1 + (gsize) r->n * r->n_frames / most));
   divide_time (work);
@@ -270,7 +270,7 @@ void
 cloth_camera_find_stale (ClothCameraView * v, guint threads)
 {
   Work work;
-  gsize n = (gsize) v->recording->n_frames * v->sights->rig->n_cameras;
+  gsize n = (gsize) v->recording->n_frames * v->observations->rig->n_cameras;
 
   work_init (&work, v, CLOTH_CAMERA_DROPS, MOST_POINTS);
   work.along = g_new0 (gdouble, n);
@@ -291,7 +291,7 @@ cloth_camera_find_stale (ClothCameraView * v, guint threads)
 /* Behind the cameras' columns, those of all cameras alike; the other triangle; the drops
  * in shares of the pictures. */
 static void
-complete (ClothGapNormal * normal, guint n_cameras)
+complete (ClothNormalEquations * normal, guint n_cameras)
 {
   const guint m = normal->m, own = n_cameras * N_COLUMNS;
 
@@ -320,7 +320,7 @@ complete (ClothGapNormal * normal, guint n_cameras)
 
 /* Scales a column. */
 static void
-scale (ClothGapNormal * normal, guint column, gdouble by)
+scale (ClothNormalEquations * normal, guint column, gdouble by)
 {
   for (guint block = 0; block < normal->n_blocks; block++) {
     gdouble *g = normal->g + (gsize) block * normal->m * normal->m;
@@ -336,7 +336,7 @@ scale (ClothGapNormal * normal, guint column, gdouble by)
 static void
 sum_errors (const Work * work, ClothCameraErrors * errors)
 {
-  const ClothGapNormal *normal = work->normal;
+  const ClothNormalEquations *normal = work->normal;
   gdouble n = 0., r = 0., dof = 0.;
 
   *errors = (ClothCameraErrors) {
@@ -368,12 +368,12 @@ sum_errors (const Work * work, ClothCameraErrors * errors)
  *   when no point was seen by two cameras
  * Since: 0.1
  */
-ClothGapNormal *
+ClothNormalEquations *
 cloth_camera_view_linearise (ClothCameraView * view, guint threads,
     ClothCameraErrors * errors)
 {
   Work work;
-  ClothGapNormal *normal = g_new0 (ClothGapNormal, 1);
+  ClothNormalEquations *normal = g_new0 (ClothNormalEquations, 1);
   gdouble dof = 0.;
 
   work_init (&work, view, CLOTH_CAMERA_FAULTS, MOST_POINTS);
@@ -401,7 +401,7 @@ cloth_camera_view_linearise (ClothCameraView * view, guint threads,
   work_clear (&work);
   if (dof > 0.)
     return normal;
-  cloth_gap_normal_free (normal);
+  cloth_normal_equations_free (normal);
   return NULL;
 }
 
@@ -547,7 +547,7 @@ cloth_camera_view_correct (ClothCameraView * view, guint threads,
 }
 
 /**
- * cloth_camera_view_way:
+ * cloth_camera_view_displacement:
  * @view: a recording beside its pictures, with what is wrong with the cameras applied
  * @threads: threads to use, 0 = one for each processor; the result is the same for any
  *
@@ -556,7 +556,7 @@ cloth_camera_view_correct (ClothCameraView * view, guint threads,
  * Since: 0.1
  */
 gdouble
-cloth_camera_view_way (ClothCameraView * view, guint threads)
+cloth_camera_view_displacement (ClothCameraView * view, guint threads)
 {
   Work work;
   gdouble sum = 0., n = 0.;

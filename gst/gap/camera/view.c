@@ -37,23 +37,25 @@ place_pictures (ClothCameraView * v)
 {
   const ClothRecording *r = v->recording;
 
-  for (guint i = 0; i < v->sights->list->len; i++) {
-    const ClothSight *sight = &g_array_index (v->sights->list, ClothSight, i);
-    gdouble time_s = sight->time_s -
-        v->sights->rig->cameras[sight->camera].offset_s;
+  for (guint i = 0; i < v->observations->list->len; i++) {
+    const ClothObservation *observation =
+        &g_array_index (v->observations->list, ClothObservation, i);
+    gdouble time_s =
+        observation->time_s -
+        v->observations->rig->cameras[observation->camera].offset_s;
     guint frame = nearest_frame (r, time_s);
     gdouble interval = frame > 0 ? r->times[frame] - r->times[frame - 1] :
         r->times[1] - r->times[0];
 
     if (fabs (r->times[frame] - time_s) < 0.5 * interval)
-      *cloth_camera_picture (v, frame, sight->camera) = sight;
+      *cloth_camera_picture (v, frame, observation->camera) = observation;
   }
 }
 
 /**
  * cloth_camera_view_new:
  * @recording: where the points are said to be; kept by reference
- * @sights: what was seen of it; kept by reference
+ * @observations: what was seen of it; kept by reference
  * @threads: threads to use, 0 = one for each processor; the result is the same for any
  *
  * Lays pictures beside frames, and finds those that show the one before once more.
@@ -63,16 +65,16 @@ place_pictures (ClothCameraView * v)
  */
 ClothCameraView *
 cloth_camera_view_new (const ClothRecording * recording,
-    const ClothSights * sights, guint threads)
+    const ClothObservations * observations, guint threads)
 {
   ClothCameraView *v = g_new0 (ClothCameraView, 1);
-  gsize n = (gsize) recording->n_frames * sights->rig->n_cameras;
+  gsize n = (gsize) recording->n_frames * observations->rig->n_cameras;
 
   v->recording = recording;
-  v->sights = sights;
-  v->captures = g_new (ClothCapture, sights->rig->n_cameras);
-  v->lost = g_new (gboolean, sights->rig->n_cameras);
-  v->pictures = g_new0 (const ClothSight *, n);
+  v->observations = observations;
+  v->captures = g_new (ClothCapture, observations->rig->n_cameras);
+  v->lost = g_new (gboolean, observations->rig->n_cameras);
+  v->pictures = g_new0 (const ClothObservation *, n);
   v->stale = g_new0 (gboolean, n);
   cloth_camera_view_reset (v);
   place_pictures (v);
@@ -94,8 +96,9 @@ cloth_camera_view_new (const ClothRecording * recording,
 void
 cloth_camera_view_reset (ClothCameraView * view)
 {
-  for (guint c = 0; c < view->sights->rig->n_cameras; c++) {
-    cloth_capture_init (&view->captures[c], &view->sights->rig->cameras[c]);
+  for (guint c = 0; c < view->observations->rig->n_cameras; c++) {
+    cloth_capture_init (&view->captures[c],
+        &view->observations->rig->cameras[c]);
     view->lost[c] = FALSE;
   }
 }
@@ -115,7 +118,7 @@ void
 cloth_camera_view_apply (ClothCameraView * view, guint camera,
     const ClothEffect * effect, const gdouble * values)
 {
-  guint n = view->sights->rig->n_cameras;
+  guint n = view->observations->rig->n_cameras;
 
   for (guint c = camera < n ? camera : 0; c < n && (c == camera
           || camera == n); c++) {

@@ -14,7 +14,7 @@ G_BEGIN_DECLS
 /**
  * ClothCameraView:
  * @recording: where the points are said to be; its positions may be moved
- * @sights: what was seen of it
+ * @observations: what was seen of it
  * @y: the positions: the recording's, or where the pictures have a point that is missing
  *   there; NaN where neither tells, [n_frames][n][3], m
  * @captures: how each camera is taken to be, the rig's at first
@@ -28,10 +28,10 @@ G_BEGIN_DECLS
  */
 typedef struct {
   const ClothRecording *recording;
-  const ClothSights *sights;
+  const ClothObservations *observations;
   gdouble *y;
   ClothCapture *captures;
-  const ClothSight **pictures;
+  const ClothObservation **pictures;
   gboolean *stale;
   gboolean *lost;
 } ClothCameraView;
@@ -52,22 +52,22 @@ typedef struct {
   gdouble triangulation;
 } ClothCameraErrors;
 
-ClothGapCandidates *cloth_camera_candidates_new (const ClothRig * rig,
+ClothCandidates *cloth_camera_candidates_new (const ClothRig * rig,
     const gchar * const *effects);
 const gchar *cloth_camera_why_not (const ClothEffect * effect);
-guint cloth_camera_of_candidate (const ClothGapCandidate * candidate);
+guint cloth_camera_of_candidate (const ClothCandidate * candidate);
 
 ClothCameraView *cloth_camera_view_new (const ClothRecording * recording,
-    const ClothSights * sights, guint threads);
+    const ClothObservations * observations, guint threads);
 void cloth_camera_view_apply (ClothCameraView * view, guint camera,
     const ClothEffect * effect, const gdouble * values);
 void cloth_camera_view_reset (ClothCameraView * view);
 void cloth_camera_view_solve_unseen (ClothCameraView * view, guint threads);
-ClothGapNormal *cloth_camera_view_linearise (ClothCameraView * view,
+ClothNormalEquations *cloth_camera_view_linearise (ClothCameraView * view,
     guint threads, ClothCameraErrors * errors);
 gdouble cloth_camera_view_stale_share (const ClothCameraView * view,
     guint camera, gdouble * sigma);
-gdouble cloth_camera_view_way (ClothCameraView * view, guint threads);
+gdouble cloth_camera_view_displacement (ClothCameraView * view, guint threads);
 gdouble cloth_camera_view_correct (ClothCameraView * view, guint threads,
     ClothRecording * corrected);
 void cloth_camera_view_free (ClothCameraView * view);

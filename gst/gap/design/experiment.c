@@ -4,7 +4,7 @@
  *
  * Each capture is simulated without any of the effects, as if it were recorded. Observers
  * with one of the effects each follow that recording; how their residuals differ is what
- * would tell the effects apart, but for what the model's free numbers and chaos could do
+ * would tell the effects apart, but for what the model's free numbers and variability could do
  * as well.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
@@ -27,7 +27,7 @@ typedef struct
   const ClothExperiment *e;
   const ClothModelEffect *members;
   guint n_members;
-  ClothStudyOptions *options;
+  ClothEstimateOptions *options;
   ClothRecording *thin;         /* what the stage is of, if not the take itself */
   ClothStage *stage;
   gdouble *rest[2];             /* hanging as in the take, and from the side edge */
@@ -129,7 +129,7 @@ is_wind (const ClothEffect * effect)
 typedef struct
 {
   const ClothRecording *recording;
-  const ClothGapFeatures *features;
+  const ClothFeatures *features;
   gdouble *z;                   /* [model][feature] */
 } Collect;
 
@@ -138,14 +138,14 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
 {
   Collect *c = data;
 
-  cloth_gap_features_add (c->features, c->recording, frame, positions,
+  cloth_features_add (c->features, c->recording, frame, positions,
       c->z + model * c->features->size);
 }
 
 /* Features of the residuals with one member each; FALSE without an error when one
  * diverges. */
 static gboolean
-follow (Search * s, const ClothStudy * study, ClothStageMotion motion,
+follow (Search * s, const ClothSensitivities * study, ClothStageMotion motion,
     gdouble * z, GError ** error)
 {
   g_autoptr (GPtrArray) models = g_ptr_array_new_with_free_func (
@@ -178,12 +178,12 @@ follow (Search * s, const ClothStudy * study, ClothStageMotion motion,
 
 /* The simulator's own error in the features of a capture: of the take's class by class, in
  * proportion to the frames that a feature sums over. */
-static ClothGapPower *
-find_mismatch (const Search * s, const ClothGapFeatures * features,
+static ClothPowerSpectrum *
+find_mismatch (const Search * s, const ClothFeatures * features,
     const gdouble * nothing, gdouble faster)
 {
-  ClothGapPower *power = cloth_gap_power_new (features, nothing);
-  const ClothGapPower *known = s->e->mismatch;
+  ClothPowerSpectrum *power = cloth_power_spectrum_new (features, nothing);
+  const ClothPowerSpectrum *known = s->e->mismatch;
   guint band = 3 * features->n_bands;
 
   for (guint k = 0; known && k < power->n; k++) {
@@ -198,41 +198,42 @@ find_mismatch (const Search * s, const ClothGapFeatures * features,
 
 /* The evidence to expect between the two members that are nearest to each other. */
 static gdouble
-weigh (const Search * s, const ClothStudy * study, const gdouble * z,
+weigh (const Search * s, const ClothSensitivities * study, const gdouble * z,
     gdouble faster)
 {
-  const ClothGapFeatures *f = study->features;
-  guint n_free = s->e->candidates->n_free, q = n_free + study->n_chaos;
+  const ClothFeatures *f = study->features;
+  guint n_free = s->e->candidates->n_free, q = n_free + study->n_variability;
   guint m = q + s->n_members;
   g_autofree gdouble *columns = g_new (gdouble, m * f->size);
   g_autofree gdouble *nothing = g_new0 (gdouble, f->size);
   g_autofree guint *nuisances = g_new (guint, q + 1);
   g_autofree gdouble *precisions = g_new (gdouble, q + 1);
   g_autofree gboolean *blocks = g_new (gboolean, f->n_blocks);
-  g_autoptr (ClothGapPower) power = find_mismatch (s, f, nothing, faster);
-  g_autoptr (ClothGapNormal) normal = NULL;
+  g_autoptr (ClothPowerSpectrum) power = find_mismatch (s, f, nothing, faster);
+  g_autoptr (ClothNormalEquations) normal = NULL;
   gdouble least = INFINITY;
 
   memcpy (columns, study->columns[0], n_free * f->size * sizeof (gdouble));
-  memcpy (columns + n_free * f->size, study->chaos[0],
-      study->n_chaos * f->size * sizeof (gdouble));
+  memcpy (columns + n_free * f->size, study->variability[0],
+      study->n_variability * f->size * sizeof (gdouble));
   memcpy (columns + q * f->size, z, s->n_members * f->size * sizeof (gdouble));
   for (guint i = 0; i < q; i++) {
     nuisances[i] = i;
     precisions[i] = i < n_free ? s->options->overdispersion *
-        s->e->precisions[i] : cloth_study_get_chaos_precision (study,
+        s->
+        e->precisions[i] : cloth_sensitivities_get_variability_precision (study,
         i - n_free);
   }
   for (guint b = 0; b < f->n_blocks; b++)
     blocks[b] = TRUE;
-  normal = cloth_gap_normal_new (f, power, 1., nothing, columns, m);
+  normal = cloth_normal_equations_new (f, power, 1., nothing, columns, m);
   for (guint i = 0; i < s->n_members; i++)
     for (guint j = 0; j < i; j++) {
       const guint pair[2] = { q + i, q + j };
-      ClothGapReduced r;
+      ClothReducedEquations r;
 
-      if (!cloth_gap_normal_reduce (normal, blocks, nuisances, precisions, q,
-              pair, 2, &r))
+      if (!cloth_normal_equations_reduce (normal, blocks, nuisances, precisions,
+              q, pair, 2, &r))
         return NAN;
       least = MIN (least, MAX (0., r.g[0] - r.g[1] - r.g[2] + r.g[3]));
     }
@@ -251,7 +252,7 @@ try_motion (Search * s, ClothStageMotion motion, gdouble fps, GError ** error)
   g_autofree guint *directions = g_new (guint, n_free + 1);
   g_autoptr (ClothModel) model = cloth_model_copy (s->e->model);
   g_autoptr (ClothRecording) r = NULL;
-  g_autoptr (ClothStudy) study = NULL;
+  g_autoptr (ClothSensitivities) study = NULL;
   g_autofree gdouble *z = NULL;
 
   if (!settle (s, edge ? motion : CLOTH_MOTION_HANG, &s->rest[edge], error))
@@ -262,12 +263,12 @@ try_motion (Search * s, ClothStageMotion motion, gdouble fps, GError ** error)
           CLOTH_MOTION_SECONDS, s->rest[edge]), model, error);
   if (!r)
     return NAN;
-  study = cloth_study_new (r, s->options);
+  study = cloth_sensitivities_new (r, s->options);
   z = g_new0 (gdouble, s->n_members * study->features->size);
   for (guint i = 0; i < n_free; i++)
     directions[i] = i;
-  if (!cloth_study_linearise (study, s->e->candidates, model, directions,
-          n_free, s->options, error)
+  if (!cloth_sensitivities_linearise (study, s->e->candidates, model,
+          directions, n_free, s->options, error)
       || !follow (s, study, motion, z, error))
     return NAN;
   return weigh (s, study, z, fps / take_fps);
@@ -311,7 +312,7 @@ add_trial (Search * s, ClothStageMotion motion, gdouble fps, GArray * trials,
 GArray *
 cloth_experiment_try (const ClothExperiment * experiment,
     const ClothModelEffect * members, guint n_members,
-    ClothStudyOptions * options, GError ** error)
+    ClothEstimateOptions * options, GError ** error)
 {
   g_auto (Search) s = { experiment, members, n_members, options };
   const ClothRecording *r = experiment->recording;
@@ -323,7 +324,7 @@ cloth_experiment_try (const ClothExperiment * experiment,
 
   if (n_members < 2)
     return g_steal_pointer (&trials);
-  s.thin = cloth_recording_thin (r, CLOTH_EXPERIMENT_MOST_LINES);
+  s.thin = cloth_recording_resample (r, CLOTH_EXPERIMENT_MOST_LINES);
   s.stage = cloth_stage_new (s.thin ? s.thin : r);
   for (guint i = 0; i < n_members; i++)
     windy = windy || is_wind (members[i].effect);

@@ -37,9 +37,9 @@ G_BEGIN_DECLS
 typedef struct {
   const ClothRecording *recording;
   const ClothModel *model;
-  const ClothGapCandidates *candidates;
+  const ClothCandidates *candidates;
   const gdouble *precisions;
-  const ClothGapPower *mismatch;
+  const ClothPowerSpectrum *mismatch;
 } ClothExperiment;
 
 /**
@@ -61,7 +61,7 @@ typedef struct {
 
 GArray *cloth_experiment_try (const ClothExperiment * experiment,
     const ClothModelEffect * members, guint n_members,
-    ClothStudyOptions * options, GError ** error);
+    ClothEstimateOptions * options, GError ** error);
 const ClothTrial *cloth_experiment_choose (const GArray * trials);
 
 G_END_DECLS

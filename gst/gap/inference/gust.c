@@ -33,7 +33,7 @@ system_clear (System * system)
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (System, system_clear)
      static void assemble (const ClothGapTest * test, System * system)
 {
-  const ClothGapNormal *normal = test->normals[0];
+  const ClothNormalEquations *normal = test->normals[0];
   const guint m = normal->m, q = test->n_nuisances;
   const guint all = q + N_COLUMNS * normal->n_blocks;
 
@@ -130,7 +130,7 @@ cloth_gap_test_gusts (const ClothGapTest * test, gdouble intensity,
     gdouble share, ClothGapGusts * gusts)
 {
   g_auto (System) system = { 0 };
-  ClothGapReduced reduced;
+  ClothReducedEquations reduced;
   g_autofree gdouble *x = NULL;
   gdouble phi, none, sum = 0., best = -INFINITY;
   gdouble xx = 0., xy = 0., yy = 0.;

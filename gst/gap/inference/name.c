@@ -63,52 +63,53 @@ see_alike (ClothRecording * a, ClothRecording * b)
     a->seen[i] = b->seen[i] = a->seen[i] * b->seen[i];
 }
 
-/* Each study's signature: that of the baseline that moves alike, if there is one. */
+/* Each study's discrepancy: that of the baseline that moves alike, if there is one. */
 void
-cloth_diagnosis_find_signatures (ClothDiagnosis * d)
+cloth_diagnosis_find_discrepancies (ClothDiagnosis * d)
 {
   for (guint i = 0; i < d->studies->len; i++) {
-    ClothStudy *study = cloth_diagnosis_study (d, i);
+    ClothSensitivities *study = cloth_diagnosis_study (d, i);
 
-    for (guint k = d->n_takes; k < d->studies->len && !study->signature; k++)
+    for (guint k = d->n_takes; k < d->studies->len && !study->discrepancy; k++)
       if (i != k && moves_alike (study->recording,
               cloth_diagnosis_study (d, k)->recording))
-        study->signature = cloth_diagnosis_study (d, k);
+        study->discrepancy = cloth_diagnosis_study (d, k);
   }
   /* twice, for those that share a baseline */
   for (guint i = 0; i < 2 * d->studies->len; i++) {
-    const ClothStudy *study = cloth_diagnosis_study (d, i % d->studies->len);
+    const ClothSensitivities *study =
+        cloth_diagnosis_study (d, i % d->studies->len);
 
-    for (guint k = d->n_takes; study->signature && k < d->studies->len; k++)
-      if (cloth_diagnosis_study (d, k) == study->signature)
+    for (guint k = d->n_takes; study->discrepancy && k < d->studies->len; k++)
+      if (cloth_diagnosis_study (d, k) == study->discrepancy)
         see_alike (cloth_diagnosis_recording (d, i % d->studies->len),
             cloth_diagnosis_recording (d, k));
   }
 }
 
 gboolean
-cloth_diagnosis_has_signatures (const ClothDiagnosis * d)
+cloth_diagnosis_has_discrepancies (const ClothDiagnosis * d)
 {
   for (guint i = 0; i < d->n_takes; i++)
-    if (!cloth_diagnosis_study (d, i)->signature)
+    if (!cloth_diagnosis_study (d, i)->discrepancy)
       return FALSE;
   return TRUE;
 }
 
 /* Mean square that the simulator itself is off by, in the noise of a take: of the
  * baselines, else of the takes with the model fitted to them. */
-ClothGapPower *
+ClothPowerSpectrum *
 cloth_diagnosis_find_mismatch (const ClothDiagnosis * d, guint take, guint gain)
 {
   gdouble unit = cloth_diagnosis_study (d, take)->features->sigma;
   guint begin = d->options->n_baselines ? d->n_takes : 0;
   guint n = d->options->n_baselines ? d->options->n_baselines : d->n_takes;
-  ClothGapPower *mean = NULL;
+  ClothPowerSpectrum *mean = NULL;
 
   for (guint i = begin; i < begin + n; i++) {
-    const ClothStudy *study = cloth_diagnosis_study (d, i);
+    const ClothSensitivities *study = cloth_diagnosis_study (d, i);
     gdouble scale = study->features->sigma / unit;
-    ClothGapPower *power = cloth_gap_power_new (study->features,
+    ClothPowerSpectrum *power = cloth_power_spectrum_new (study->features,
         study->z[gain]);
 
     for (guint k = 0; k < power->n; k++)
@@ -119,33 +120,33 @@ cloth_diagnosis_find_mismatch (const ClothDiagnosis * d, guint take, guint gain)
     }
     for (guint k = 0; k < mean->n; k++)
       mean->values[k] += (power->values[k] - mean->values[k]) / (i - begin + 1);
-    cloth_gap_power_free (power);
+    cloth_power_spectrum_free (power);
   }
   return mean;
 }
 
 /* What weighs in a take: the power that is left to doubt, else the mismatch. */
-ClothGapPower *
+ClothPowerSpectrum *
 cloth_diagnosis_find_weight (const ClothDiagnosis * d, guint take, guint gain)
 {
-  const ClothStudy *s = cloth_diagnosis_study (d, take);
+  const ClothSensitivities *s = cloth_diagnosis_study (d, take);
 
-  return s->left[gain] ? cloth_gap_power_copy (s->left[gain]) :
+  return s->left[gain] ? cloth_power_spectrum_copy (s->left[gain]) :
       cloth_diagnosis_find_mismatch (d, take, gain);
 }
 
 /* Gusts, if they are looked for in a study, else NULL. */
-static const ClothGapCandidate *
-find_gusts (const ClothDiagnosis * d, const ClothStudy * study)
+static const ClothCandidate *
+find_gusts (const ClothDiagnosis * d, const ClothSensitivities * study)
 {
   const GArray *list = d->candidates->list;
 
   /* fits have derivatives of their own only */
   for (guint i = 0; study->m == d->candidates->directions->len && i < list->len;
       i++) {
-    const ClothGapCandidate *c = &g_array_index (list, ClothGapCandidate, i);
+    const ClothCandidate *c = &g_array_index (list, ClothCandidate, i);
 
-    if (cloth_gap_candidate_is_gust (c) && d->sound[c->first]
+    if (cloth_candidate_is_gust (c) && d->sound[c->first]
         && d->sound[c->first + 1])
       return c;
   }
@@ -153,59 +154,62 @@ find_gusts (const ClothDiagnosis * d, const ClothStudy * study)
 }
 
 /* The columns of the directions and behind them, where no other take has any, those of the
- * chaos: as many are @before it; last room for @more. */
+ * variability: as many are @before it; last room for @more. */
 gdouble *
 cloth_diagnosis_list_columns (const ClothDiagnosis * d, guint take, guint gain,
     guint before, guint more)
 {
-  const ClothStudy *s = cloth_diagnosis_study (d, take);
+  const ClothSensitivities *s = cloth_diagnosis_study (d, take);
   gsize size = s->features->size;
-  gdouble *columns = g_new0 (gdouble, (s->m + d->n_chaos + more) * size + 1);
+  gdouble *columns =
+      g_new0 (gdouble, (s->m + d->n_variability + more) * size + 1);
 
   memcpy (columns, s->columns[gain], s->m * size * sizeof (gdouble));
-  cloth_study_get_chaos (s, gain, columns + (s->m + before) * size);
+  cloth_sensitivities_get_variability (s, gain,
+      columns + (s->m + before) * size);
   return columns;
 }
 
-/* The signature of the simulator's own error in a take is that of a baseline that moves
+/* The discrepancy of the simulator's own error in a take is that of a baseline that moves
  * alike: taken off, a tenth of its power is left to doubt. The wind in the parts of the
  * blocks comes last, if gusts are looked for. */
-static ClothGapNormal *
+static ClothNormalEquations *
 normal_of (const ClothDiagnosis * d, guint take, guint gain, guint before)
 {
-  const ClothStudy *s = cloth_diagnosis_study (d, take);
-  const ClothGapCandidate *gusts = find_gusts (d, s);
+  const ClothSensitivities *s = cloth_diagnosis_study (d, take);
+  const ClothCandidate *gusts = find_gusts (d, s);
   const guint more = gusts ? CLOTH_GAP_GUST_COLUMNS : 0;
-  const guint n = s->m + d->n_chaos;
+  const guint n = s->m + d->n_variability;
   const gsize size = s->features->size;
-  g_autofree gdouble *z = cloth_study_residual (s, gain);
+  g_autofree gdouble *z = cloth_sensitivities_residual (s, gain);
   g_autofree gdouble *columns =
       cloth_diagnosis_list_columns (d, take, gain, before, more);
-  g_autoptr (ClothGapPower) weight =
+  g_autoptr (ClothPowerSpectrum) weight =
       cloth_diagnosis_find_weight (d, take, gain);
 
   for (guint i = 0; i < more; i++)
-    cloth_gap_features_window (s->features, columns + (gusts->first +
+    cloth_features_window (s->features, columns + (gusts->first +
             i % CLOTH_GAP_GUST_WAYS) * size, i / CLOTH_GAP_GUST_WAYS,
         CLOTH_GAP_GUST_PARTS, columns + (n + i) * size);
-  return cloth_gap_normal_new (s->features, weight, 1., z, columns, n + more);
+  return cloth_normal_equations_new (s->features, weight, 1., z, columns,
+      n + more);
 }
 
-/* The power left in the takes that a baseline's signature is taken off, once @score's
+/* The power left in the takes that a baseline's discrepancy is taken off, once @score's
  * changes (NULL: none) are made: a tenth of the mismatch at least is left to doubt. */
 void
 cloth_diagnosis_find_left (ClothDiagnosis * d, const ClothGapScore * score)
 {
-  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++)
+  for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++)
     for (guint i = 0; i < d->n_takes; i++) {
-      g_autoptr (ClothGapPower) mismatch =
+      g_autoptr (ClothPowerSpectrum) mismatch =
           cloth_diagnosis_find_mismatch (d, i, g);
-      ClothStudy *s = cloth_diagnosis_study (d, i);
-      g_autofree gdouble *z = cloth_study_residual (s, g);
+      ClothSensitivities *s = cloth_diagnosis_study (d, i);
+      g_autofree gdouble *z = cloth_sensitivities_residual (s, g);
       gsize size = s->features->size;
-      ClothGapPower *left;
+      ClothPowerSpectrum *left;
 
-      if (!s->signature)
+      if (!s->discrepancy)
         continue;
       for (guint c = 0; score && c < cloth_diagnosis_candidate (d, score)->n;
           c++) {
@@ -215,12 +219,12 @@ cloth_diagnosis_find_left (ClothDiagnosis * d, const ClothGapScore * score)
         for (gsize k = 0; k < size; k++)
           z[k] += score->changes[c] * column[k];
       }
-      left = cloth_gap_power_new (s->features, z);
+      left = cloth_power_spectrum_new (s->features, z);
       for (guint k = 0; k < left->n; k++)
         left->values[k] = MIN (score ? s->left[g]->values[k] :
             mismatch->values[k], MAX (left->values[k],
                 SIGNATURE_LEFT * mismatch->values[k]));
-      cloth_gap_power_free (s->left[g]);
+      cloth_power_spectrum_free (s->left[g]);
       s->left[g] = left;
     }
 }
@@ -236,30 +240,33 @@ cloth_diagnosis_linearise (ClothDiagnosis * d, guint first, guint end,
 
     cloth_diagnosis_begin_part (d, from + part * (i - first),
         from + part * (i - first + 1), 1., what);
-    if (!cloth_study_linearise (cloth_diagnosis_study (d, i), d->candidates,
-            model, d->all, d->candidates->directions->len, &d->study, error))
+    if (!cloth_sensitivities_linearise (cloth_diagnosis_study (d, i),
+            d->candidates, model, d->all, d->candidates->directions->len,
+            &d->study, error))
       return FALSE;
   }
   return TRUE;
 }
 
-/* The precisions of the chaos in the studies from begin to end. */
+/* The precisions of the variability in the studies from begin to end. */
 static void
-list_chaos (ClothDiagnosis * d, guint begin, guint end)
+list_variability (ClothDiagnosis * d, guint begin, guint end)
 {
   guint k = 0;
 
-  d->n_chaos = 0;
+  d->n_variability = 0;
   for (guint i = begin; i < end; i++)
-    d->n_chaos += cloth_study_count_chaos (cloth_diagnosis_study (d, i));
-  g_free (d->chaos_precisions);
-  d->chaos_precisions = g_new (gdouble, d->n_chaos + 1);
+    d->n_variability +=
+        cloth_sensitivities_count_variability (cloth_diagnosis_study (d, i));
+  g_free (d->variability_precisions);
+  d->variability_precisions = g_new (gdouble, d->n_variability + 1);
   for (guint i = begin; i < end; i++) {
-    const ClothStudy *s = cloth_diagnosis_study (d, i);
+    const ClothSensitivities *s = cloth_diagnosis_study (d, i);
 
-    for (guint c = 0; c < cloth_study_count_chaos (s); c++)
-      d->chaos_precisions[k++] = cloth_study_get_chaos_precision (s, c) /
-          d->study.overdispersion;
+    for (guint c = 0; c < cloth_sensitivities_count_variability (s); c++)
+      d->variability_precisions[k++] =
+          cloth_sensitivities_get_variability_precision (s,
+          c) / d->study.overdispersion;
   }
 }
 
@@ -268,20 +275,22 @@ void
 cloth_diagnosis_make_normals (ClothDiagnosis * d, guint begin, guint end,
     ClothGapTest * test)
 {
-  list_chaos (d, begin, end);
-  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
+  list_variability (d, begin, end);
+  for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++) {
     guint before = 0;
 
-    g_clear_pointer (&d->normals[g], cloth_gap_normal_free);
+    g_clear_pointer (&d->normals[g], cloth_normal_equations_free);
     for (guint i = begin; i < end; i++) {
       d->normals[g] =
-          cloth_gap_normal_append (d->normals[g], normal_of (d, i, g, before));
-      before += cloth_study_count_chaos (cloth_diagnosis_study (d, i));
+          cloth_normal_equations_append (d->normals[g], normal_of (d, i, g,
+              before));
+      before +=
+          cloth_sensitivities_count_variability (cloth_diagnosis_study (d, i));
     }
     test->normals[g] = d->normals[g];
   }
   test->gusts = find_gusts (d, cloth_diagnosis_study (d, begin)) ?
-      d->candidates->directions->len + d->n_chaos : 0;
+      d->candidates->directions->len + d->n_variability : 0;
 }
 
 /* The free numbers and the directions of what is taken in, with the precisions of their
@@ -299,14 +308,13 @@ cloth_diagnosis_list_taken_in (const ClothDiagnosis * d, gdouble width,
       gdouble prior;
 
       directions[m] = cloth_diagnosis_chosen (d, c)->first + k;
-      prior = cloth_gap_candidates_direction (d->candidates,
-          directions[m])->prior;
+      prior = cloth_candidates_direction (d->candidates, directions[m])->prior;
       precisions[m] = 1. / (width * width * prior * prior);
     }
   return m;
 }
 
-/* The free numbers, what is taken in, and chaos are fitted along when effects are tested. */
+/* The free numbers, what is taken in, and variability are fitted along when effects are tested. */
 void
 cloth_diagnosis_list_nuisances (ClothDiagnosis * d, ClothGapTest * test)
 {
@@ -314,16 +322,16 @@ cloth_diagnosis_list_nuisances (ClothDiagnosis * d, ClothGapTest * test)
 
   g_free (d->nuisances);
   g_free (d->nuisance_precisions);
-  d->nuisances = g_new (guint, n + d->n_chaos + 1);
-  d->nuisance_precisions = g_new (gdouble, n + d->n_chaos + 1);
+  d->nuisances = g_new (guint, n + d->n_variability + 1);
+  d->nuisance_precisions = g_new (gdouble, n + d->n_variability + 1);
   test->nuisances = d->nuisances;
   test->precisions = d->nuisance_precisions;
   test->n_nuisances = cloth_diagnosis_list_taken_in (d, 1.,
       d->nuisances, d->nuisance_precisions);
   test->n_numbers = test->n_nuisances;
-  for (guint k = 0; k < d->n_chaos; k++) {
+  for (guint k = 0; k < d->n_variability; k++) {
     d->nuisances[test->n_nuisances] = n + k;
-    d->nuisance_precisions[test->n_nuisances++] = d->chaos_precisions[k];
+    d->nuisance_precisions[test->n_nuisances++] = d->variability_precisions[k];
   }
 }
 
@@ -398,7 +406,7 @@ cloth_diagnosis_fill_effects (ClothDiagnosis * d, const ClothGapTest * test,
         TEMPERATURE - top);
   for (guint i = 0; i < scores->len; i++) {
     const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
-    const ClothGapCandidate *c = cloth_diagnosis_candidate (d, s);
+    const ClothCandidate *c = cloth_diagnosis_candidate (d, s);
     ClothGapEffect *e;
 
     if (s->kept < CLOTH_GAP_IDENTIFIABLE) {
@@ -420,7 +428,7 @@ cloth_diagnosis_fill_effects (ClothDiagnosis * d, const ClothGapTest * test,
       e->values[c->parameters[k]] += s->changes[k];
       e->sigmas[c->parameters[k]] = CLOTH_DIAGNOSIS_SIGMA_WIDTH * s->sigmas[k];
     }
-    if (cloth_gap_candidate_is_gust (c)) {
+    if (cloth_candidate_is_gust (c)) {
       e->values[0] = s->changes[0];
       e->values[2] = s->changes[1];
     }

@@ -39,7 +39,7 @@ chi_square_tail (gdouble x, guint n)
 typedef struct
 {
   const ClothGapTest *test;
-  const ClothGapCandidate *candidate;
+  const ClothCandidate *candidate;
   guint directions[4];
   gdouble precisions[4];
   gboolean one_sided;
@@ -48,12 +48,12 @@ typedef struct
 static gboolean
 trial_init (Trial * trial, const ClothGapTest * test, guint candidate)
 {
-  const ClothGapCandidates *c = test->candidates;
+  const ClothCandidates *c = test->candidates;
 
   trial->test = test;
-  trial->candidate = &g_array_index (c->list, ClothGapCandidate, candidate);
+  trial->candidate = &g_array_index (c->list, ClothCandidate, candidate);
   for (guint i = 0; i < trial->candidate->n; i++) {
-    const ClothGapDirection *d = cloth_gap_candidates_direction (c,
+    const ClothDirection *d = cloth_candidates_direction (c,
         trial->candidate->first + i);
 
     trial->directions[i] = trial->candidate->first + i;
@@ -68,8 +68,8 @@ trial_init (Trial * trial, const ClothGapTest * test, guint candidate)
 /* The most probable changes from reduced equations of noise @phi: 0 where only growth is
  * allowed. @inverse: their covariance. */
 static gboolean
-estimate (const Trial * trial, const ClothGapReduced * reduced, gdouble phi,
-    gdouble * changes, gdouble * inverse, gdouble * log_det)
+estimate (const Trial * trial, const ClothReducedEquations * reduced,
+    gdouble phi, gdouble * changes, gdouble * inverse, gdouble * log_det)
 {
   guint n = reduced->n;
   gdouble a[16];
@@ -94,7 +94,7 @@ estimate (const Trial * trial, const ClothGapReduced * reduced, gdouble phi,
 }
 
 static gdouble
-count_features (const ClothGapTest * test, const ClothGapNormal * normal)
+count_features (const ClothGapTest * test, const ClothNormalEquations * normal)
 {
   gdouble count = 0.;
 
@@ -114,7 +114,7 @@ count_features (const ClothGapTest * test, const ClothGapNormal * normal)
  */
 gdouble
 cloth_gap_test_dispersion (const ClothGapTest * test,
-    const ClothGapNormal * normal, const ClothGapReduced * reduced)
+    const ClothNormalEquations * normal, const ClothReducedEquations * reduced)
 {
   return test->overdispersion * MAX (reduced->r / count_features (test,
           normal), LEAST_DISPERSION);
@@ -133,22 +133,22 @@ cloth_gap_test_dispersion (const ClothGapTest * test,
  * Since: 0.1
  */
 gboolean
-cloth_gap_test_reduce (const ClothGapTest * test, const ClothGapNormal * normal,
-    const gboolean * blocks, const guint * directions, guint n,
-    ClothGapReduced * reduced)
+cloth_gap_test_reduce (const ClothGapTest * test,
+    const ClothNormalEquations * normal, const gboolean * blocks,
+    const guint * directions, guint n, ClothReducedEquations * reduced)
 {
   g_autofree gdouble *precisions = g_new (gdouble, test->n_nuisances + 1);
 
   /* the equations are not divided by the noise yet */
   for (guint i = 0; i < test->n_nuisances; i++)
     precisions[i] = test->precisions[i] * test->overdispersion;
-  return cloth_gap_normal_reduce (normal, blocks, test->nuisances, precisions,
-      test->n_nuisances, directions, n, reduced);
+  return cloth_normal_equations_reduce (normal, blocks, test->nuisances,
+      precisions, test->n_nuisances, directions, n, reduced);
 }
 
 static gboolean
-reduce (const Trial * trial, const ClothGapNormal * normal,
-    const gboolean * blocks, ClothGapReduced * reduced)
+reduce (const Trial * trial, const ClothNormalEquations * normal,
+    const gboolean * blocks, ClothReducedEquations * reduced)
 {
   return cloth_gap_test_reduce (trial->test, normal, blocks, trial->directions,
       trial->candidate->n, reduced);
@@ -157,7 +157,7 @@ reduce (const Trial * trial, const ClothGapNormal * normal,
 /* The nuisances, and with them the effect's @n directions, estimated from @blocks: changes
  * of @columns, which lists them, from where the effect is @at. */
 static gboolean
-estimate_all (const Trial * trial, const ClothGapNormal * normal,
+estimate_all (const Trial * trial, const ClothNormalEquations * normal,
     const gdouble * at, const gboolean * blocks, gdouble phi, guint n,
     const guint * columns, gdouble * changes)
 {
@@ -193,8 +193,8 @@ estimate_all (const Trial * trial, const ClothGapNormal * normal,
  * when it and the nuisances are estimated from the others, beyond what the nuisances do
  * @without it. */
 static gdouble
-cross_validate (const Trial * trial, const ClothGapNormal * without,
-    const ClothGapNormal * with, const gdouble * at, gdouble phi,
+cross_validate (const Trial * trial, const ClothNormalEquations * without,
+    const ClothNormalEquations * with, const gdouble * at, gdouble phi,
     gdouble * total)
 {
   const ClothGapTest *t = trial->test;
@@ -216,8 +216,8 @@ cross_validate (const Trial * trial, const ClothGapNormal * without,
     if (estimate_all (trial, without, at, others, phi, 0, columns, alone)
         && estimate_all (trial, with, at, others, phi, n, columns, both))
       gained += without->r[b] - with->r[b] +
-          cloth_gap_normal_change (without, b, columns, alone, q) -
-          cloth_gap_normal_change (with, b, columns, both, q + n);
+          cloth_normal_equations_change (without, b, columns, alone, q) -
+          cloth_normal_equations_change (with, b, columns, both, q + n);
     others[b] = TRUE;
   }
   return gained;
@@ -238,7 +238,7 @@ cross_validate (const Trial * trial, const ClothGapNormal * without,
  */
 gdouble
 cloth_gap_test_improvement (const ClothGapTest * test, guint candidate,
-    const ClothGapNormal * without, const ClothGapNormal * with,
+    const ClothNormalEquations * without, const ClothNormalEquations * with,
     const guint * directions, const gdouble * at, gdouble phi)
 {
   Trial trial;
@@ -254,15 +254,15 @@ cloth_gap_test_improvement (const ClothGapTest * test, guint candidate,
 
 /* χ² of the blocks' own estimates about the common one, and its degrees of freedom. */
 static gdouble
-heterogeneity (const Trial * trial, const ClothGapNormal * normal, gdouble phi,
-    const gdouble * common, guint * freedom)
+heterogeneity (const Trial * trial, const ClothNormalEquations * normal,
+    gdouble phi, const gdouble * common, guint * freedom)
 {
   guint n = trial->candidate->n;
   g_autofree gboolean *one = g_new0 (gboolean, normal->n_blocks);
   gdouble sum = 0.;
 
   for (guint b = 0; b < normal->n_blocks; b++) {
-    ClothGapReduced reduced;
+    ClothReducedEquations reduced;
     gdouble a[16], rest[4] = { 0. }, x[4];
 
     if (!trial->test->blocks[b])
@@ -295,13 +295,13 @@ run_trial (const Trial * trial, ClothGapScore * score)
   gdouble gained = 0., total = 0., lm = 0., spread = 0.;
   gdouble weight[4] = { 0. };
   const gdouble null[4] = { 0. };
-  ClothGapTest numbers = *trial->test;  /* without chaos */
+  ClothGapTest numbers = *trial->test;  /* without variability */
 
   numbers.n_nuisances = numbers.n_numbers;
   score->kept = 1.;
-  for (guint g = 0; g < CLOTH_STUDY_N_GAINS; g++) {
-    const ClothGapNormal *normal = trial->test->normals[g];
-    ClothGapReduced reduced, told;
+  for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++) {
+    const ClothNormalEquations *normal = trial->test->normals[g];
+    ClothReducedEquations reduced, told;
     gdouble phi, changes[4], inverse[16], log_det, fit = 0.;
 
     if (!reduce (trial, normal, trial->test->blocks, &reduced)
@@ -317,27 +317,27 @@ run_trial (const Trial * trial, ClothGapScore * score)
       score->changes[i] += changes[i] / inverse[i * n + i];
       weight[i] += 1. / inverse[i * n + i];
     }
-    score->evidence += (fit - 0.5 * log_det) / CLOTH_STUDY_N_GAINS;
-    lm += 2. * fit / CLOTH_STUDY_N_GAINS;
+    score->evidence += (fit - 0.5 * log_det) / CLOTH_ESTIMATE_N_GAINS;
+    lm += 2. * fit / CLOTH_ESTIMATE_N_GAINS;
     gained += cross_validate (trial, normal, normal, null, phi, &total);
     spread += heterogeneity (trial, normal, phi, changes, &freedom);
   }
   for (guint i = 0; i < n; i++) {
     score->changes[i] /= weight[i];
-    score->sigmas[i] = sqrt (CLOTH_STUDY_N_GAINS / weight[i]);
+    score->sigmas[i] = sqrt (CLOTH_ESTIMATE_N_GAINS / weight[i]);
   }
   score->improvement = total > 0. ? gained / total : 0.;
   score->p_value = chi_square_tail (lm, n);
   /* each direction's common value was fitted */
-  freedom /= CLOTH_STUDY_N_GAINS;
-  spread /= CLOTH_STUDY_N_GAINS;
+  freedom /= CLOTH_ESTIMATE_N_GAINS;
+  spread /= CLOTH_ESTIMATE_N_GAINS;
   score->constancy_p_value = freedom > n ?
       chi_square_tail (spread, freedom - n) : NAN;
   return TRUE;
 }
 
 static gboolean
-run_gusts (const ClothGapTest * test, const ClothGapCandidate * candidate,
+run_gusts (const ClothGapTest * test, const ClothCandidate * candidate,
     ClothGapScore * score)
 {
   const ClothEffectParameter *p = candidate->effect->parameters;
@@ -358,11 +358,11 @@ run_gusts (const ClothGapTest * test, const ClothGapCandidate * candidate,
 static gboolean
 run_candidate (const ClothGapTest * test, guint i, ClothGapScore * score)
 {
-  const ClothGapCandidate *candidate =
-      &g_array_index (test->candidates->list, ClothGapCandidate, i);
+  const ClothCandidate *candidate =
+      &g_array_index (test->candidates->list, ClothCandidate, i);
   Trial trial;
 
-  if (cloth_gap_candidate_is_gust (candidate))
+  if (cloth_candidate_is_gust (candidate))
     return run_gusts (test, candidate, score);
   return trial_init (&trial, test, i) && run_trial (&trial, score);
 }
@@ -401,13 +401,12 @@ cloth_gap_test_run (const ClothGapTest * test)
   const GArray *list = test->candidates->list;
 
   for (guint i = 0; i < list->len;) {
-    const ClothEffect *effect =
-        g_array_index (list, ClothGapCandidate, i).effect;
+    const ClothEffect *effect = g_array_index (list, ClothCandidate, i).effect;
     ClothGapScore most = {.evidence = -INFINITY };
     guint n = 0;
 
     for (; i < list->len
-        && g_array_index (list, ClothGapCandidate, i).effect == effect; i++) {
+        && g_array_index (list, ClothCandidate, i).effect == effect; i++) {
       ClothGapScore score = {.candidate = i };
 
       if (!run_candidate (test, i, &score))
@@ -440,16 +439,16 @@ gdouble
 cloth_gap_test_cosine (const ClothGapTest * test, guint one, guint other)
 {
   const GArray *list = test->candidates->list;
-  const ClothGapCandidate *a = &g_array_index (list, ClothGapCandidate, one);
-  const ClothGapCandidate *b = &g_array_index (list, ClothGapCandidate, other);
+  const ClothCandidate *a = &g_array_index (list, ClothCandidate, one);
+  const ClothCandidate *b = &g_array_index (list, ClothCandidate, other);
   gdouble most = 0.;
 
   for (guint i = 0; i < a->n; i++)
     for (guint j = 0; j < b->n; j++) {
       const guint directions[2] = { a->first + i, b->first + j };
-      ClothGapReduced r;
+      ClothReducedEquations r;
 
-      if (cloth_gap_normal_reduce (test->normals[0], test->blocks,
+      if (cloth_normal_equations_reduce (test->normals[0], test->blocks,
               test->nuisances, test->precisions, test->n_nuisances,
               directions, 2, &r) && r.g[0] > 0. && r.g[3] > 0.)
         most = MAX (most, fabs (r.g[1]) / sqrt (r.g[0] * r.g[3]));

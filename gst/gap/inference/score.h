@@ -41,8 +41,8 @@ typedef struct {
  * @precisions: (array length=n_nuisances): of their priors
  * @n_nuisances: how many
  * @n_numbers: the first so many of them are numbers of the model; the others stand for
- *   chaos
- * @overdispersion: see #ClothStudyOptions
+ *   variability
+ * @overdispersion: see #ClothEstimateOptions
  * @block_s: length of a block, s
  * @gusts: first column of the wind in the parts of a block, x and y of each; 0: there are
  *   none
@@ -51,8 +51,8 @@ typedef struct {
  * Since: 0.1
  */
 typedef struct {
-  ClothGapNormal *normals[CLOTH_STUDY_N_GAINS];
-  const ClothGapCandidates *candidates;
+  ClothNormalEquations *normals[CLOTH_ESTIMATE_N_GAINS];
+  const ClothCandidates *candidates;
   const gboolean *blocks;
   const guint *nuisances;
   const gdouble *precisions;
@@ -69,13 +69,13 @@ typedef struct {
 
 gint cloth_gap_score_compare (gconstpointer a, gconstpointer b);
 gboolean cloth_gap_test_reduce (const ClothGapTest * test,
-    const ClothGapNormal * normal, const gboolean * blocks,
-    const guint * directions, guint n, ClothGapReduced * reduced);
+    const ClothNormalEquations * normal, const gboolean * blocks,
+    const guint * directions, guint n, ClothReducedEquations * reduced);
 gdouble cloth_gap_test_dispersion (const ClothGapTest * test,
-    const ClothGapNormal * normal, const ClothGapReduced * reduced);
+    const ClothNormalEquations * normal, const ClothReducedEquations * reduced);
 gdouble cloth_gap_test_improvement (const ClothGapTest * test,
-    guint candidate, const ClothGapNormal * without,
-    const ClothGapNormal * with, const guint * directions, const gdouble * at,
+    guint candidate, const ClothNormalEquations * without,
+    const ClothNormalEquations * with, const guint * directions, const gdouble * at,
     gdouble phi);
 GArray *cloth_gap_test_run (const ClothGapTest * test);
 gdouble cloth_gap_test_cosine (const ClothGapTest * test, guint one,

@@ -23,7 +23,7 @@ cloth_diagnosis_is_settled (const ClothDiagnosis * d,
     if (cloth_diagnosis_chosen (d, i)->effect == effect)
       return TRUE;
   for (guint i = 0; i < d->n_dropped; i++)
-    if (g_array_index (d->candidates->list, ClothGapCandidate,
+    if (g_array_index (d->candidates->list, ClothCandidate,
             d->dropped[i]).effect == effect)
       return TRUE;
   return FALSE;
@@ -43,7 +43,8 @@ refit (ClothDiagnosis * d, const ClothModel * start, GError ** error)
 
   for (guint b = 0; b < d->n_blocks; b++)
     blocks[b] = !cloth_diagnosis_is_held_out (d, b);
-  d->with[now] = cloth_study_fit ((ClothStudy **) d->studies->pdata,
+  d->with[now] =
+      cloth_gauss_newton_fit ((ClothSensitivities **) d->studies->pdata,
       d->n_takes, d->candidates, start, directions, precisions, m, blocks,
       FALSE, FALSE, N_REFIT, &d->study, sigmas, error);
   m = d->candidates->n_free;
@@ -57,12 +58,12 @@ refit (ClothDiagnosis * d, const ClothModel * start, GError ** error)
 static ClothModel *
 move_to (const ClothDiagnosis * d, const gdouble * values)
 {
-  const ClothGapCandidate *c = cloth_diagnosis_chosen (d, d->n_chosen - 1);
+  const ClothCandidate *c = cloth_diagnosis_chosen (d, d->n_chosen - 1);
   guint directions[CLOTH_EFFECT_MAX_PARAMETERS];
 
   for (guint k = 0; k < c->n; k++)
     directions[k] = c->first + k;
-  return cloth_gap_candidates_move (d->candidates,
+  return cloth_candidates_move (d->candidates,
       d->n_chosen > 1 ? d->with[d->n_chosen - 2] : d->model, directions,
       values, c->n);
 }
@@ -71,12 +72,12 @@ move_to (const ClothDiagnosis * d, const gdouble * values)
 static void
 find_values (const ClothDiagnosis * d, guint chosen, gdouble * values)
 {
-  const ClothGapCandidate *c = cloth_diagnosis_chosen (d, chosen);
+  const ClothCandidate *c = cloth_diagnosis_chosen (d, chosen);
 
   for (guint k = 0; k < c->n; k++)
-    values[k] = cloth_gap_candidates_place (d->candidates,
+    values[k] = cloth_candidates_place (d->candidates,
         d->with[d->n_chosen - 1], c->first + k) -
-        cloth_gap_candidates_direction (d->candidates, c->first + k)->centre;
+        cloth_candidates_direction (d->candidates, c->first + k)->centre;
 }
 
 /* How much the residual would ask for an effect that is taken in if it were not: the
@@ -86,14 +87,14 @@ static gdouble
 find_need (const ClothDiagnosis * d, const ClothGapTest * test, guint chosen,
     guint first)
 {
-  const ClothGapCandidate *c = cloth_diagnosis_chosen (d, chosen);
-  const ClothStudy *study = cloth_diagnosis_study (d, 0);
-  guint n = c->n, m = study->m + d->n_chaos, q = 0, others = 0;
+  const ClothCandidate *c = cloth_diagnosis_chosen (d, chosen);
+  const ClothSensitivities *study = cloth_diagnosis_study (d, 0);
+  guint n = c->n, m = study->m + d->n_variability, q = 0, others = 0;
   g_autofree guint *nuisances = g_new (guint, m);
   g_autofree gdouble *precisions = g_new (gdouble, m);
   g_autofree guint *taken = g_new (guint, m);
   g_autofree gdouble *of_taken = g_new (gdouble, m);
-  ClothGapReduced r;
+  ClothReducedEquations r;
   guint directions[CLOTH_EFFECT_MAX_PARAMETERS];
   gdouble values[CLOTH_EFFECT_MAX_PARAMETERS];
   gdouble a[16], away[4], phi, need = -d->null_evidence[d->chosen[chosen]];
@@ -105,10 +106,10 @@ find_need (const ClothDiagnosis * d, const ClothGapTest * test, guint chosen,
       continue;
     }
     precisions[q] = test->overdispersion * (k < study->m ? of_taken[k] :
-        d->chaos_precisions[others++]);
+        d->variability_precisions[others++]);
     nuisances[q++] = k;
   }
-  if (!cloth_gap_normal_reduce (test->normals[0], test->blocks, nuisances,
+  if (!cloth_normal_equations_reduce (test->normals[0], test->blocks, nuisances,
           precisions, q, directions, n, &r))
     return INFINITY;
   phi = cloth_gap_test_dispersion (test, test->normals[0], &r);
@@ -206,7 +207,7 @@ gust_evidence (const ClothDiagnosis * d, const GArray * scores)
   for (guint i = 0; i < scores->len; i++) {
     const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
 
-    if (cloth_gap_candidate_is_gust (cloth_diagnosis_candidate (d, s)))
+    if (cloth_candidate_is_gust (cloth_diagnosis_candidate (d, s)))
       return s->evidence;
   }
   return -INFINITY;
@@ -216,9 +217,9 @@ gust_evidence (const ClothDiagnosis * d, const GArray * scores)
 static gboolean
 may_come (const ClothDiagnosis * d, const ClothGapScore * s, gdouble least)
 {
-  const ClothGapCandidate *c = cloth_diagnosis_candidate (d, s);
+  const ClothCandidate *c = cloth_diagnosis_candidate (d, s);
 
-  return !cloth_gap_candidate_is_gust (c) && s->evidence >= least
+  return !cloth_candidate_is_gust (c) && s->evidence >= least
       && s->improvement > 0. && !cloth_diagnosis_is_settled (d, c->effect);
 }
 
@@ -232,9 +233,9 @@ find_asked (const ClothDiagnosis * d, const GArray * scores, gboolean gusts)
 
   for (guint i = 0; i < scores->len; i++) {
     const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
-    const ClothGapCandidate *c = cloth_diagnosis_candidate (d, s);
+    const ClothCandidate *c = cloth_diagnosis_candidate (d, s);
 
-    if (!cloth_gap_candidate_is_gust (c)
+    if (!cloth_candidate_is_gust (c)
         && !cloth_diagnosis_is_settled (d, c->effect))
       return may_come (d, s, least) ? s : NULL;
   }

@@ -21,7 +21,7 @@
 typedef struct
 {
   ClothGapScore *score;
-  const ClothGapCandidate *candidate;
+  const ClothCandidate *candidate;
   gdouble at[CLOTH_EFFECT_MAX_PARAMETERS];      /* changes from the null */
   guint first;                  /* of its models */
   gdouble moved, gained;        /* by the last step, in priors and in evidence */
@@ -34,7 +34,7 @@ typedef struct
   const ClothGapTest *test;
   const ClothModel *base;       /* the model without them */
   gdouble **z;                  /* of each take: features by model */
-  ClothGapNormal *null;         /* the equations without any of them */
+  ClothNormalEquations *null;   /* the equations without any of them */
   gdouble phi;                  /* how much more than noise a square counts */
   gdouble without;              /* logarithm of the probability without any of them */
 } Court;
@@ -45,7 +45,7 @@ court_clear (Court * court)
   for (guint t = 0; t < court->d->n_takes; t++)
     g_free (court->z[t]);
   g_free (court->z);
-  cloth_gap_normal_free (court->null);
+  cloth_normal_equations_free (court->null);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Court, court_clear)
@@ -53,8 +53,8 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Court, court_clear)
      static void keep_in_range (const ClothDiagnosis * d, Rival * r)
 {
   for (guint k = 0; k < r->candidate->n; k++) {
-    const ClothGapDirection *direction =
-        cloth_gap_candidates_direction (d->candidates, r->candidate->first + k);
+    const ClothDirection *direction =
+        cloth_candidates_direction (d->candidates, r->candidate->first + k);
     const gdouble most = LONGEST * direction->prior;
 
     r->at[k] = CLAMP (r->at[k], MAX (-most, direction->low - direction->centre),
@@ -68,7 +68,7 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Court, court_clear)
 static gdouble
 step_of (const ClothDiagnosis * d, const Rival * r, guint k)
 {
-  return 0.5 * cloth_gap_candidates_direction (d->candidates,
+  return 0.5 * cloth_candidates_direction (d->candidates,
       r->candidate->first + k)->step;
 }
 
@@ -90,7 +90,7 @@ add_models (const Court * court, Rival * r, GPtrArray * models)
       at[(i - 1) / 2] += (i % 2 ? 1. : -1.) * step_of (court->d, r,
           (i - 1) / 2);
     g_ptr_array_add (models,
-        cloth_gap_candidates_move (court->d->candidates, court->base,
+        cloth_candidates_move (court->d->candidates, court->base,
             directions, at, n));
   }
 }
@@ -106,15 +106,15 @@ simulate (Court * court, GPtrArray * models, gboolean * sound, GError ** error)
   for (guint i = 0; i < models->len; i++)
     sound[i] = TRUE;
   for (guint t = 0; t < d->n_takes; t++) {
-    const ClothStudy *study = cloth_diagnosis_study (d, t);
+    const ClothSensitivities *study = cloth_diagnosis_study (d, t);
     const gsize size = study->features->size;
 
     g_free (court->z[t]);
     court->z[t] = g_new0 (gdouble, models->len * size);
     for (guint i = 0; i < models->len; i++)
       z[i] = court->z[t] + i * size;
-    if (!cloth_study_run (study, (ClothModel **) models->pdata, models->len,
-            &d->study, z, here, error))
+    if (!cloth_sensitivities_run (study, (ClothModel **) models->pdata,
+            models->len, &d->study, z, here, error))
       return FALSE;
     for (guint i = 0; i < models->len; i++)
       sound[i] = sound[i] && here[i];
@@ -124,41 +124,46 @@ simulate (Court * court, GPtrArray * models, gboolean * sound, GError ** error)
 
 /* The normal equations of a take where a rival is: as those of the test at the model without
  * it, and behind them its own directions. Its residual is the mean of its simulations, with
- * less chaos. */
-static ClothGapNormal *
+ * less variability. */
+static ClothNormalEquations *
 normal_of (const Court * court, const Rival * r, guint take, guint before)
 {
   const ClothDiagnosis *d = court->d;
-  const ClothStudy *s = cloth_diagnosis_study (d, take);
+  const ClothSensitivities *s = cloth_diagnosis_study (d, take);
   const gsize size = s->features->size;
-  const guint n = r->candidate->n, others = s->m + d->n_chaos;
+  const guint n = r->candidate->n, others = s->m + d->n_variability;
   const gdouble *own = court->z[take] + r->first * size;
   g_autofree gdouble *columns =
       cloth_diagnosis_list_columns (d, take, 0, before, n);
   g_autofree gdouble *z = g_new0 (gdouble, size);
-  g_autoptr (ClothGapPower) weight = cloth_diagnosis_find_weight (d, take, 0);
+  g_autoptr (ClothPowerSpectrum) weight =
+      cloth_diagnosis_find_weight (d, take, 0);
 
   for (guint i = 0; i <= 2 * n; i++)
     for (gsize k = 0; k < size; k++)
       z[k] += own[i * size + k] / (2 * n + 1);
-  cloth_study_take_off_signature (s, 0, z);
+  cloth_sensitivities_take_off_discrepancy (s, 0, z);
   for (guint i = 0; i < n; i++)
     for (gsize k = 0; k < size; k++)
       columns[(others + i) * size + k] = (own[(1 + 2 * i) * size + k] -
           own[(2 + 2 * i) * size + k]) / (2. * step_of (d, r, i));
-  return cloth_gap_normal_new (s->features, weight, 1., z, columns, others + n);
+  return cloth_normal_equations_new (s->features, weight, 1., z, columns,
+      others + n);
 }
 
 /* Those of all takes. */
-static ClothGapNormal *
+static ClothNormalEquations *
 all_normals (const Court * court, const Rival * r)
 {
-  ClothGapNormal *normal = NULL;
+  ClothNormalEquations *normal = NULL;
   guint before = 0;
 
   for (guint t = 0; t < court->d->n_takes; t++) {
-    normal = cloth_gap_normal_append (normal, normal_of (court, r, t, before));
-    before += cloth_study_count_chaos (cloth_diagnosis_study (court->d, t));
+    normal =
+        cloth_normal_equations_append (normal, normal_of (court, r, t, before));
+    before +=
+        cloth_sensitivities_count_variability (cloth_diagnosis_study (court->d,
+            t));
   }
   return normal;
 }
@@ -169,8 +174,8 @@ static void
 step (const Court * court, Rival * r)
 {
   const guint n = r->candidate->n;
-  g_autoptr (ClothGapNormal) here = all_normals (court, r);
-  ClothGapReduced reduced;
+  g_autoptr (ClothNormalEquations) here = all_normals (court, r);
+  ClothReducedEquations reduced;
   guint directions[CLOTH_EFFECT_MAX_PARAMETERS] = { 0 };
   gdouble a[16], inverse[16], by[4], log_det = 0., square, evidence;
 
@@ -182,7 +187,7 @@ step (const Court * court, Rival * r)
   r->score->improvement = cloth_gap_test_improvement (court->test,
       r->score->candidate, court->null, here, directions, r->at, court->phi);
   for (guint i = 0; i < n; i++) {
-    gdouble prior = cloth_gap_candidates_direction (court->d->candidates,
+    gdouble prior = cloth_candidates_direction (court->d->candidates,
         r->candidate->first + i)->prior;
 
     for (guint k = 0; k < n; k++)
@@ -207,7 +212,7 @@ step (const Court * court, Rival * r)
   keep_in_range (court->d, r);
   square = reduced.r / court->phi;
   for (guint i = 0; i < n; i++) {
-    gdouble prior = cloth_gap_candidates_direction (court->d->candidates,
+    gdouble prior = cloth_candidates_direction (court->d->candidates,
         r->candidate->first + i)->prior;
 
     by[i] = r->at[i] - by[i];
@@ -225,23 +230,23 @@ step (const Court * court, Rival * r)
   memcpy (r->score->changes, r->at, sizeof r->score->changes);
 }
 
-/* The residual without any rival, as that of the rivals freed of chaos. */
+/* The residual without any rival, as that of the rivals freed of variability. */
 static gboolean
 open_court (Court * court)
 {
   ClothDiagnosis *d = court->d;
-  const ClothGapCandidate none = { NULL };
+  const ClothCandidate none = { NULL };
   const Rival nobody = { NULL, &none };
-  ClothGapReduced reduced;
+  ClothReducedEquations reduced;
 
   court->z = g_new0 (gdouble *, d->n_takes);
   for (guint t = 0; t < d->n_takes; t++) {
-    const ClothStudy *s = cloth_diagnosis_study (d, t);
+    const ClothSensitivities *s = cloth_diagnosis_study (d, t);
     const gsize size = s->features->size;
 
     court->z[t] = g_memdup2 (s->z[0], size * sizeof (gdouble));
-    for (gsize k = 0; s->n_chaos && k < size; k++)
-      court->z[t][k] -= s->chaos[0][(s->n_chaos - 1) * size + k];
+    for (gsize k = 0; s->n_variability && k < size; k++)
+      court->z[t][k] -= s->variability[0][(s->n_variability - 1) * size + k];
   }
   court->null = all_normals (court, &nobody);
   if (!cloth_gap_test_reduce (court->test, court->null, court->test->blocks,
@@ -263,7 +268,7 @@ list_rivals (const Court * court, GArray * scores, gdouble least,
     ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
     Rival r = { s, cloth_diagnosis_candidate (d, s) };
 
-    if (!(s->evidence > least) || cloth_gap_candidate_is_gust (r.candidate))
+    if (!(s->evidence > least) || cloth_candidate_is_gust (r.candidate))
       continue;
     memcpy (r.at, s->changes, sizeof s->changes);
     keep_in_range (d, &r);

@@ -92,9 +92,10 @@ find_normals (const ClothTopology * t, const gdouble * y, gdouble * normals)
 
 /* @less, if any, is taken off. */
 static void
-split_init (Split * split, const ClothGapLed * led, const ClothGapLed * less)
+split_init (Split * split, const ClothNudgedResidual * nudged,
+    const ClothNudgedResidual * less)
 {
-  const ClothRecording *r = led->recording;
+  const ClothRecording *r = nudged->recording;
   gsize all = (gsize) r->n_frames * r->n;
   g_autofree gdouble *normals = g_new (gdouble, 3 * (gsize) r->n);
 
@@ -116,7 +117,7 @@ split_init (Split * split, const ClothGapLed * led, const ClothGapLed * less)
       gdouble off[3], along = 0., square = 0.;
 
       for (guint k = 0; k < 3; k++) {
-        off[k] = led->off[3 * at + k] - (less ? less->off[3 * at + k] : 0.f);
+        off[k] = nudged->off[3 * at + k] - (less ? less->off[3 * at + k] : 0.f);
         along += off[k] * normal[k];
         square += normal[k] * normal[k];
       }
@@ -247,7 +248,7 @@ sharpen (const Split * split, guint part, const guint * neighbours,
 
 /* Smoothed and sharpened. */
 static void
-prepare (Split * split, gboolean smoothed, const ClothGapRegionOptions * o,
+prepare (Split * split, gboolean smoothed, const ClothLocalisationOptions * o,
     const guint * neighbours, guint * width)
 {
   const ClothRecording *r = split->recording;
@@ -306,7 +307,7 @@ raise_least (gdouble * values, guint n)
 
 /* Adds Huber's square of what is over the null. */
 static void
-add (ClothGapLevel * level, const Split * split, guint part,
+add (ClothExcess * level, const Split * split, guint part,
     const gdouble * nulls, gdouble gate)
 {
   for (gsize i = 0; i < (gsize) level->n_frames * level->n; i++) {
@@ -319,11 +320,11 @@ add (ClothGapLevel * level, const Split * split, guint part,
   }
 }
 
-static ClothGapLevel *
+static ClothExcess *
 level_new (const Split * split)
 {
   const ClothRecording *r = split->recording;
-  ClothGapLevel *level = g_new0 (ClothGapLevel, 1);
+  ClothExcess *level = g_new0 (ClothExcess, 1);
 
   level->n = r->n;
   level->n_frames = r->n_frames;
@@ -332,7 +333,7 @@ level_new (const Split * split)
   return level;
 }
 
-/* cloth_gap_level_new:
+/* cloth_excess_new:
  * @take: a residual
  * @nulls: those of simulations that lack nothing; the larger counts
  * @n_nulls: how many
@@ -341,10 +342,10 @@ level_new (const Split * split)
  * @options: how
  *
  * Returns: (transfer full): its level */
-ClothGapLevel *
-cloth_gap_level_new (const ClothGapLed * take, const ClothGapLed * nulls,
-    guint n_nulls, gboolean alike, gboolean smooth,
-    const ClothGapRegionOptions * options)
+ClothExcess *
+cloth_excess_new (const ClothNudgedResidual * take,
+    const ClothNudgedResidual * nulls, guint n_nulls, gboolean alike,
+    gboolean smooth, const ClothLocalisationOptions * options)
 {
   const ClothRecording *r = take->recording;
   g_autofree guint *neighbours = list_neighbours (r->scene->topology);
@@ -352,7 +353,7 @@ cloth_gap_level_new (const ClothGapLed * take, const ClothGapLed * nulls,
   gdouble noise = isfinite (r->sigma) ? r->sigma * r->sigma : 0.;
   g_autofree gdouble *means = g_new0 (gdouble, 2 * (gsize) r->n);
   g_auto (Split) split = { NULL };
-  ClothGapLevel *level;
+  ClothExcess *level;
   guint width;
 
   for (guint i = 0; i < n_nulls; i++) {
@@ -386,19 +387,19 @@ cloth_gap_level_new (const ClothGapLed * take, const ClothGapLed * nulls,
   return level;
 }
 
-/* cloth_gap_level_new_null:
+/* cloth_excess_new_null:
  * @null: the residual of a simulation that lacks nothing
  * @options: how
  *
  * Returns: (transfer full): its level over its own mean of each vertex */
-ClothGapLevel *
-cloth_gap_level_new_null (const ClothGapLed * null,
-    const ClothGapRegionOptions * options)
+ClothExcess *
+cloth_excess_new_null (const ClothNudgedResidual * null,
+    const ClothLocalisationOptions * options)
 {
   const ClothRecording *r = null->recording;
   g_autofree guint *neighbours = list_neighbours (r->scene->topology);
   g_auto (Split) split = { NULL };
-  ClothGapLevel *level;
+  ClothExcess *level;
   guint width;
 
   split_init (&split, null, NULL);
@@ -413,10 +414,10 @@ cloth_gap_level_new_null (const ClothGapLed * null,
   return level;
 }
 
-/* cloth_gap_level_free:
+/* cloth_excess_free:
  * @level: (nullable) (transfer full): a level */
 void
-cloth_gap_level_free (ClothGapLevel * level)
+cloth_excess_free (ClothExcess * level)
 {
   if (!level)
     return;

@@ -14,14 +14,14 @@ typedef struct {
   guint n_frames;
   gfloat *values;
   guint8 *known;
-} ClothGapLevel;
+} ClothExcess;
 
-ClothGapLevel *cloth_gap_level_new (const ClothGapLed * take,
-    const ClothGapLed * nulls, guint n_nulls, gboolean alike, gboolean smooth,
-    const ClothGapRegionOptions * options);
-ClothGapLevel *cloth_gap_level_new_null (const ClothGapLed * null,
-    const ClothGapRegionOptions * options);
-void cloth_gap_level_free (ClothGapLevel * level);
+ClothExcess *cloth_excess_new (const ClothNudgedResidual * take,
+    const ClothNudgedResidual * nulls, guint n_nulls, gboolean alike, gboolean smooth,
+    const ClothLocalisationOptions * options);
+ClothExcess *cloth_excess_new_null (const ClothNudgedResidual * null,
+    const ClothLocalisationOptions * options);
+void cloth_excess_free (ClothExcess * level);
 
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothGapLevel, cloth_gap_level_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothExcess, cloth_excess_free)
 G_END_DECLS

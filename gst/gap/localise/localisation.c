@@ -37,15 +37,15 @@
 #define N_PASSES 2
 
 /**
- * cloth_gap_region_options_init:
+ * cloth_localisation_options_init:
  * @options: (out caller-allocates): how places are found unless told otherwise
  *
  * Since: 0.1
  */
 void
-cloth_gap_region_options_init (ClothGapRegionOptions * options)
+cloth_localisation_options_init (ClothLocalisationOptions * options)
 {
-  *options = (ClothGapRegionOptions) {
+  *options = (ClothLocalisationOptions) {
   .smooth_s = 0.1,.sharpen = 0.5,.gate =
         2.,.null_alike = 0.3,.null_other = 1.,.doubt = 1.,.block_s =
         0.5,.draws = 99,.significance = 0.05,.onset_ratio =
@@ -184,7 +184,7 @@ box_holds (const Box * box, const Cells * cells, guint v)
 /* Mean level of each vertex from a frame on, what is below the null counting as none; NaN
  * where too little is known. */
 static void
-average (const ClothGapLevel * level, guint from, gdouble * x)
+average (const ClothExcess * level, guint from, gdouble * x)
 {
   g_autofree guint *counts = g_new0 (guint, level->n);
 
@@ -227,8 +227,8 @@ draw_block (const gdouble * sums, const gdouble * counts, gsize row,
 /* Blocks of time of the null, drawn by chance, over such blocks: a take over a null that is
  * known by as much of it. What the best box reaches no more often than @significance. */
 static gdouble
-find_threshold (const ClothGapLevel * null, const Cells * cells,
-    guint block_frames, guint n_blocks, const ClothGapRegionOptions * o)
+find_threshold (const ClothExcess * null, const Cells * cells,
+    guint block_frames, guint n_blocks, const ClothLocalisationOptions * o)
 {
   guint n_starts, n_of_null;
   gsize row = null->n, last = null->n_frames * row;
@@ -303,7 +303,7 @@ find_place (const Cells * cells, const gdouble * x, gboolean * in)
 
 /* Mean of the residual's square over the null in a place, frame by frame; NaN: not seen. */
 static gdouble *
-follow (const ClothGapLevel * level, const gboolean * in)
+follow (const ClothExcess * level, const gboolean * in)
 {
   gdouble *series = g_new (gdouble, level->n_frames);
 
@@ -348,8 +348,8 @@ go_back (const gdouble * series, guint frame)
 /* Cumulative sum of what speaks for a gap (Page 1954, Biometrika 41); it begins where the
  * sum was last 0 when it reaches enough. */
 static guint
-find_onset (const ClothGapLevel * level, const gdouble * times,
-    const gboolean * in, const ClothGapRegionOptions * o)
+find_onset (const ClothExcess * level, const gdouble * times,
+    const gboolean * in, const ClothLocalisationOptions * o)
 {
   g_autofree gdouble *series = follow (level, in);
   gdouble sum = 0.;
@@ -375,9 +375,9 @@ find_onset (const ClothGapLevel * level, const gdouble * times,
 }
 
 static void
-locate (ClothGapRegion * region, const ClothGapLevel * place,
-    const ClothGapLevel * time, const ClothRecording * r, guint from,
-    const ClothGapRegionOptions * o)
+locate (ClothLocalisation * region, const ClothExcess * place,
+    const ClothExcess * time, const ClothRecording * r, guint from,
+    const ClothLocalisationOptions * o)
 {
   g_auto (Cells) cells = { 0 };
   g_autofree gdouble *x = g_new (gdouble, r->n);
@@ -397,8 +397,8 @@ locate (ClothGapRegion * region, const ClothGapLevel * place,
 }
 
 /**
- * cloth_gap_region_new:
- * @take: the residual of the simulation that was led to a take
+ * cloth_localisation_new:
+ * @take: the residual of the simulation that was nudged to a take
  * @nulls: (array length=n_nulls): the residuals of some that lack nothing, of the same
  *   cloth; in each vertex the larger counts, and chance is that of the first
  * @n_nulls: how many, at least one
@@ -409,15 +409,16 @@ locate (ClothGapRegion * region, const ClothGapLevel * place,
  *   from when on
  * Since: 0.1
  */
-ClothGapRegion *
-cloth_gap_region_new (const ClothGapLed * take, const ClothGapLed * nulls,
-    guint n_nulls, gboolean alike, const ClothGapRegionOptions * options)
+ClothLocalisation *
+cloth_localisation_new (const ClothNudgedResidual * take,
+    const ClothNudgedResidual * nulls, guint n_nulls, gboolean alike,
+    const ClothLocalisationOptions * options)
 {
   const ClothRecording *r = take->recording;
-  ClothGapRegion *region = g_new0 (ClothGapRegion, 1);
-  ClothGapRegionOptions doubtful = *options;
-  g_autoptr (ClothGapLevel) sure = NULL, place = NULL, time = NULL;
-  g_autoptr (ClothGapLevel) nothing = NULL;
+  ClothLocalisation *region = g_new0 (ClothLocalisation, 1);
+  ClothLocalisationOptions doubtful = *options;
+  g_autoptr (ClothExcess) sure = NULL, place = NULL, time = NULL;
+  g_autoptr (ClothExcess) nothing = NULL;
   g_auto (Cells) cells = { 0 };
   g_autofree gdouble *x = g_new (gdouble, r->n);
   gdouble frame_s = (r->times[r->n_frames - 1] - r->times[0]) /
@@ -429,8 +430,8 @@ cloth_gap_region_new (const ClothGapLed * take, const ClothGapLed * nulls,
   region->vertices = g_array_new (FALSE, FALSE, sizeof (guint));
   doubtful.null_alike *= options->doubt;
   doubtful.null_other *= options->doubt;
-  sure = cloth_gap_level_new (take, nulls, n_nulls, alike, TRUE, &doubtful);
-  nothing = cloth_gap_level_new_null (nulls, options);
+  sure = cloth_excess_new (take, nulls, n_nulls, alike, TRUE, &doubtful);
+  nothing = cloth_excess_new_null (nulls, options);
   cells_init (&cells, r->scene->topology, COARSE_LINES);
   for (guint b = 1; b <= n_blocks; b++) {
     guint begin = b < n_blocks ? r->n_frames - b * block : 0;
@@ -447,20 +448,20 @@ cloth_gap_region_new (const ClothGapLed * take, const ClothGapLed * nulls,
       options);
   if (!(region->score > region->threshold))
     return region;
-  place = cloth_gap_level_new (take, nulls, n_nulls, alike, TRUE, options);
-  time = cloth_gap_level_new (take, nulls, n_nulls, alike, FALSE, options);
+  place = cloth_excess_new (take, nulls, n_nulls, alike, TRUE, options);
+  time = cloth_excess_new (take, nulls, n_nulls, alike, FALSE, options);
   locate (region, place, time, r, from, options);
   return region;
 }
 
 /**
- * cloth_gap_region_free:
+ * cloth_localisation_free:
  * @region: (nullable) (transfer full): a place
  *
  * Since: 0.1
  */
 void
-cloth_gap_region_free (ClothGapRegion * region)
+cloth_localisation_free (ClothLocalisation * region)
 {
   if (!region)
     return;

@@ -8,9 +8,9 @@
 G_BEGIN_DECLS
 
 /**
- * ClothGapLed:
+ * ClothNudgedResidual:
  * @recording: what was recorded
- * @off: simulated less recorded while the simulation was led to it all along,
+ * @off: simulated less recorded while the simulation was nudged to it all along,
  *   [n_frames][n][3], m; what is not seen and the first frame don't count
  *
  * Since: 0.1
@@ -18,10 +18,10 @@ G_BEGIN_DECLS
 typedef struct {
   const ClothRecording *recording;
   const gfloat *off;
-} ClothGapLed;
+} ClothNudgedResidual;
 
 /**
- * ClothGapRegionOptions:
+ * ClothLocalisationOptions:
  * @smooth_s: residuals are averaged over so long
  * @sharpen: a force drags neighbours along: so much of the difference to each is added
  * @gate: residuals of more than so many deviations count by their size, not their square
@@ -54,10 +54,10 @@ typedef struct {
   gdouble onset_evidence;
   gdouble beginning_s;
   guint64 seed;
-} ClothGapRegionOptions;
+} ClothLocalisationOptions;
 
 /**
- * ClothGapRegion:
+ * ClothLocalisation:
  * @vertices: (element-type guint): where the residual is, growing; empty: nowhere
  * @onset: frame where it begins; 0: it is there from the beginning, or nowhere
  * @score: of the best place
@@ -70,13 +70,13 @@ typedef struct {
   guint onset;
   gdouble score;
   gdouble threshold;
-} ClothGapRegion;
+} ClothLocalisation;
 
-void cloth_gap_region_options_init (ClothGapRegionOptions * options);
-ClothGapRegion *cloth_gap_region_new (const ClothGapLed * take,
-    const ClothGapLed * nulls, guint n_nulls, gboolean alike,
-    const ClothGapRegionOptions * options);
-void cloth_gap_region_free (ClothGapRegion * region);
+void cloth_localisation_options_init (ClothLocalisationOptions * options);
+ClothLocalisation *cloth_localisation_new (const ClothNudgedResidual * take,
+    const ClothNudgedResidual * nulls, guint n_nulls, gboolean alike,
+    const ClothLocalisationOptions * options);
+void cloth_localisation_free (ClothLocalisation * region);
 
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothGapRegion, cloth_gap_region_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothLocalisation, cloth_localisation_free)
 G_END_DECLS

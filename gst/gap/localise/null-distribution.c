@@ -20,7 +20,7 @@
 
 /* Frames since the beginning of each frame's window. */
 static guint *
-list_phases (const ClothGapExtent * e)
+list_phases (const ClothWindowedGap * e)
 {
   guint *phases = g_new0 (guint, e->n_frames);
 
@@ -32,7 +32,7 @@ list_phases (const ClothGapExtent * e)
 
 /* Of the same motion: the null's own distance at about that time of that window. */
 static gdouble
-square_there (const ClothGapExtent * null, guint frame, guint v)
+square_there (const ClothWindowedGap * null, guint frame, guint v)
 {
   guint end = MIN (frame + HALF_FRAMES, null->n_frames - 1), n = 0;
   gdouble sum = 0.;
@@ -50,7 +50,7 @@ square_there (const ClothGapExtent * null, guint frame, guint v)
 
 /* Of another motion: its mean as long after the beginning of a window, [phases][n]. */
 static gdouble *
-pool (const ClothGapExtent * null, guint * n_phases)
+pool (const ClothWindowedGap * null, guint * n_phases)
 {
   g_autofree guint *phases = list_phases (null), *counts = NULL;
   gdouble *squares;
@@ -76,7 +76,7 @@ pool (const ClothGapExtent * null, guint * n_phases)
 }
 
 static void
-fill_sigma (const ClothGapExtent * null, gboolean same_motion,
+fill_sigma (const ClothWindowedGap * null, gboolean same_motion,
     const ClothRecording * r, const guint * phases, ClothGapPlayback * p)
 {
   guint n_phases;
@@ -101,7 +101,7 @@ fill_sigma (const ClothGapExtent * null, gboolean same_motion,
 /* Log-normal: from the gap of window @w of the null by chance of which parts of the cloth
  * are in it, twice, because the take's is by chance, too. */
 static void
-find_band_there (ClothGapExtent * null, guint w, guint64 seed, gdouble * low,
+find_band_there (ClothWindowedGap * null, guint w, guint64 seed, gdouble * low,
     gdouble * high)
 {
   g_autofree gboolean *one = g_new0 (gboolean, null->n_windows);
@@ -109,8 +109,8 @@ find_band_there (ClothGapExtent * null, guint w, guint64 seed, gdouble * low,
   gdouble centre, sum = 0.;
 
   one[w] = TRUE;
-  centre = log (cloth_gap_extent_square (null, one));
-  cloth_gap_extents_interval (&null, 1, one, seed, N_DRAWS, draws);
+  centre = log (cloth_windowed_gap_square (null, one));
+  cloth_windowed_gaps_interval (&null, 1, one, seed, N_DRAWS, draws);
   for (guint d = 0; d < N_DRAWS; d++)
     sum += pow (log (draws[d]) - centre, 2.);
   *low = exp (0.5 * (centre - BAND * sqrt (2. * sum / N_DRAWS)));
@@ -119,7 +119,7 @@ find_band_there (ClothGapExtent * null, guint w, guint64 seed, gdouble * low,
 
 /* Log-normal: what another window of the null would have. */
 static void
-find_band (ClothGapExtent * null, guint64 seed, gdouble * low, gdouble * high)
+find_band (ClothWindowedGap * null, guint64 seed, gdouble * low, gdouble * high)
 {
   g_autofree gboolean *one = g_new0 (gboolean, null->n_windows);
   gdouble sum = 0., squares = 0., sigma;
@@ -133,7 +133,7 @@ find_band (ClothGapExtent * null, guint64 seed, gdouble * low, gdouble * high)
     gdouble centre;
 
     one[w] = TRUE;
-    centre = log (cloth_gap_extent_square (null, one));
+    centre = log (cloth_windowed_gap_square (null, one));
     one[w] = FALSE;
     if (!isfinite (centre))
       continue;
@@ -149,7 +149,7 @@ find_band (ClothGapExtent * null, guint64 seed, gdouble * low, gdouble * high)
 }
 
 static void
-fill_series (ClothGapExtent * null, gboolean same_motion, guint64 seed,
+fill_series (ClothWindowedGap * null, gboolean same_motion, guint64 seed,
     ClothGapSeries * s)
 {
   gdouble low, high;
@@ -166,24 +166,24 @@ fill_series (ClothGapExtent * null, gboolean same_motion, guint64 seed,
 }
 
 /* Where no gap is found only a residual that is larger than all of the null has a place:
- * at times chaos brings back as much of it. */
+ * at times variability brings back as much of it. */
 static void
 fill_region (const ClothDiagnosis * d)
 {
   const ClothRecording *r = cloth_diagnosis_recording (d, 0);
-  const ClothGapLed take = { r, d->led };
-  ClothGapLed nulls[G_N_ELEMENTS (d->nulls)];
-  g_autoptr (ClothGapRegion) region = NULL;
-  ClothGapRegionOptions options;
+  const ClothNudgedResidual take = { r, d->nudged };
+  ClothNudgedResidual nulls[G_N_ELEMENTS (d->nulls)];
+  g_autoptr (ClothLocalisation) region = NULL;
+  ClothLocalisationOptions options;
 
   for (guint i = 0; i < d->n_nulls; i++)
-    nulls[i] = (ClothGapLed) {
-    cloth_diagnosis_recording (d, d->null_recordings[i]), d->nulls[i]->led};
-  cloth_gap_region_options_init (&options);
+    nulls[i] = (ClothNudgedResidual) {
+    cloth_diagnosis_recording (d, d->null_recordings[i]), d->nulls[i]->nudged};
+  cloth_localisation_options_init (&options);
   options.seed = d->options->seed;
   if (d->result->verdict == CLOTH_GAP_NO_GAP)
     options.doubt = d->null_alike ? DOUBT_ALIKE : DOUBT_OTHER;
-  region = cloth_gap_region_new (&take, nulls, d->n_nulls, d->null_alike,
+  region = cloth_localisation_new (&take, nulls, d->n_nulls, d->null_alike,
       &options);
   d->result->region = g_array_ref (region->vertices);
   if (region->onset)
@@ -196,7 +196,7 @@ cloth_diagnosis_fill_null (ClothDiagnosis * d)
 {
   const ClothRecording *r = cloth_diagnosis_recording (d, 0);
   g_autofree guint *windows = NULL, *phases = NULL;
-  ClothGapExtent *null;
+  ClothWindowedGap *null;
   gboolean same_motion;
 
   if (!d->n_nulls)
@@ -204,11 +204,11 @@ cloth_diagnosis_fill_null (ClothDiagnosis * d)
   null = d->nulls[MIN (d->floor_null, d->n_nulls - 1)];
   same_motion = d->null_alike || d->null_recordings[d->floor_null] == 0;
   windows = cloth_rollout_list_windows (r, CLOTH_DIAGNOSIS_WINDOW_S);
-  phases = list_phases (&(ClothGapExtent) {
+  phases = list_phases (&(ClothWindowedGap) {
       .n_frames = r->n_frames,.window = windows}
   );
   fill_sigma (null, same_motion, r, phases, &d->result->playback);
   fill_series (null, same_motion, d->options->seed, &d->result->series);
-  if (d->led)
+  if (d->nudged)
     fill_region (d);
 }

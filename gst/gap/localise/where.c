@@ -22,7 +22,7 @@ static const gdouble wave_edges[] = { 0., 0.5, 1.5, 2.5, 5.5, 11.5 };
 
 /* Octaves, or parts of them, from @first on, or from where each holds a frequency. */
 static GArray *
-list_bands (const ClothGapEnergy * e, gdouble first, gdouble factor)
+list_bands (const ClothEnergySpectrum * e, gdouble first, gdouble factor)
 {
   GArray *edges = g_array_new (FALSE, FALSE, sizeof (gdouble));
   gdouble at = 0.;
@@ -38,7 +38,7 @@ list_bands (const ClothGapEnergy * e, gdouble first, gdouble factor)
 /* What is compared: before, after (or NULL), the floor (or NULL: white noise). */
 typedef struct
 {
-  const ClothGapEnergy *before, *after, *floor;
+  const ClothEnergySpectrum *before, *after, *floor;
   gdouble longest;              /* m */
 } Compared;
 
@@ -47,14 +47,14 @@ static void
 bin (const Compared * c, const gdouble * hz, guint n_hz, const gdouble * waves,
     guint n_waves, gdouble * before, gdouble * after, gdouble * floor)
 {
-  cloth_gap_energy_bin (c->before, hz, n_hz, waves, n_waves, before,
+  cloth_energy_spectrum_bin (c->before, hz, n_hz, waves, n_waves, before,
       c->floor ? NULL : floor);
   for (guint i = 0; i < n_hz * n_waves; i++)
     after[i] = NAN;
   if (c->after)
-    cloth_gap_energy_bin (c->after, hz, n_hz, waves, n_waves, after, NULL);
+    cloth_energy_spectrum_bin (c->after, hz, n_hz, waves, n_waves, after, NULL);
   if (c->floor)
-    cloth_gap_energy_bin (c->floor, hz, n_hz, waves, n_waves, floor, NULL);
+    cloth_energy_spectrum_bin (c->floor, hz, n_hz, waves, n_waves, floor, NULL);
 }
 
 static gdouble
@@ -87,7 +87,7 @@ fill_frequencies (const Compared * c, ClothGapResult * result)
 
   bin (c, hz, n, &all_waves, 1, before, after, floor);
   all = sum (before, n);
-  result->still = cloth_gap_energy_static (c->before) / all;
+  result->still = cloth_energy_spectrum_static (c->before) / all;
   for (guint i = 0; i < n; i++)
     add_band (result->bands, hz[i], i + 1 < n ? hz[i + 1] :
         c->before->highest_hz, before[i] / all, after[i] / all,
@@ -116,10 +116,10 @@ fill_waves (const Compared * c, ClothGapResult * result)
   for (guint i = 0; i < n; i++)
     edges[i] = wave_edges[i] / (2. * c->longest);
   bin (c, &all_hz, 1, edges, n, before, after, floor);
-  add_rest (cloth_gap_energy_total (c->before), before);
+  add_rest (cloth_energy_spectrum_total (c->before), before);
   if (c->after)
-    add_rest (cloth_gap_energy_total (c->after), after);
-  add_rest (c->floor ? cloth_gap_energy_total (c->floor) :
+    add_rest (cloth_energy_spectrum_total (c->after), after);
+  add_rest (c->floor ? cloth_energy_spectrum_total (c->floor) :
       3. * sigma * sigma, floor);
   all = sum (before, n);
   for (guint i = 0; i < n && !isnan (before[i]); i++)

@@ -6,7 +6,7 @@
 #include <math.h>
 
 static void
-fill_playback (const ClothGapExtent * before, const ClothGapExtent * after,
+fill_playback (const ClothWindowedGap * before, const ClothWindowedGap * after,
     const ClothRecording * r, ClothTake * take, ClothGapPlayback * p)
 {
   gsize all = (gsize) r->n * r->n_frames;
@@ -25,7 +25,7 @@ fill_playback (const ClothGapExtent * before, const ClothGapExtent * after,
 }
 
 static void
-fill_series (const ClothGapExtent * before, const ClothGapExtent * after,
+fill_series (const ClothWindowedGap * before, const ClothWindowedGap * after,
     const ClothRecording * r, ClothGapSeries * s)
 {
   g_autofree gboolean *one = g_new0 (gboolean, before->n_windows);
@@ -42,15 +42,15 @@ fill_series (const ClothGapExtent * before, const ClothGapExtent * after,
   for (guint w = 0; w < s->n; w++) {
     one[w] = TRUE;
     s->times[w] /= counts[w];
-    s->before[w] = sqrt (cloth_gap_extent_square (before, one));
+    s->before[w] = sqrt (cloth_windowed_gap_square (before, one));
     if (after)
-      s->after[w] = sqrt (cloth_gap_extent_square (after, one));
+      s->after[w] = sqrt (cloth_windowed_gap_square (after, one));
     one[w] = FALSE;
   }
 }
 
 /**
- * cloth_gap_extent_fill:
+ * cloth_windowed_gap_fill:
  * @before: distances without the accepted effects
  * @after: (nullable): with them
  * @recording: what they are of
@@ -61,8 +61,8 @@ fill_series (const ClothGapExtent * before, const ClothGapExtent * after,
  * Since: 0.1
  */
 void
-cloth_gap_extent_fill (const ClothGapExtent * before,
-    const ClothGapExtent * after, const ClothRecording * recording,
+cloth_windowed_gap_fill (const ClothWindowedGap * before,
+    const ClothWindowedGap * after, const ClothRecording * recording,
     ClothTake * take, ClothGapResult * result)
 {
   gdouble sum = 0., along = 0.;

@@ -9,8 +9,8 @@
 
 G_BEGIN_DECLS
 
-void cloth_gap_extent_fill (const ClothGapExtent * before,
-    const ClothGapExtent * after, const ClothRecording * recording,
+void cloth_windowed_gap_fill (const ClothWindowedGap * before,
+    const ClothWindowedGap * after, const ClothRecording * recording,
     ClothTake * take, ClothGapResult * result);
 
 G_END_DECLS

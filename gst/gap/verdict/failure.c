@@ -10,7 +10,7 @@ static void
 tell_free (const ClothDiagnosis * d, const ClothModel * model, GString * text)
 {
   for (guint i = 0; d->candidates && i < d->candidates->n_free; i++) {
-    const gchar *name = cloth_gap_candidates_direction (d->candidates, i)->name;
+    const gchar *name = cloth_candidates_direction (d->candidates, i)->name;
     gdouble value = 0., fitted = NAN;
 
     if (!cloth_model_get (model, name, &value, NULL)
@@ -77,7 +77,7 @@ cloth_diagnosis_note_untested (ClothDiagnosis * d)
 {
   for (guint i = 0; i < d->candidates->list->len; i++) {
     const ClothEffect *effect = g_array_index (d->candidates->list,
-        ClothGapCandidate, i).effect;
+        ClothCandidate, i).effect;
 
     if (!is_told (d->result, effect))
       cloth_gap_result_add_untested (d->result, effect, "The simulation "

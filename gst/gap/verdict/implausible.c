@@ -56,7 +56,7 @@ trial_clear (Trial * t)
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Trial, trial_clear)
      static void trial_init (Trial * t, const ClothRecording * recording)
 {
-  t->thin = cloth_recording_thin (recording, TRIAL_LINES);
+  t->thin = cloth_recording_resample (recording, TRIAL_LINES);
   if (t->thin) {
     gsize all = (gsize) t->thin->n * t->thin->n_frames;
 
@@ -91,18 +91,18 @@ try_world (ClothDiagnosis * d, const Trial * t, const ClothModel * model,
     gdouble faster)
 {
   ClothRolloutOptions options = d->study.rollout;
-  ClothGapExtent **extents;
+  ClothWindowedGap **extents;
   gdouble square = NAN;
 
   options.progress = may_go_on;
   cloth_diagnosis_begin_part (d, d->from, d->to, d->each, "another world");
-  extents = cloth_gap_extents_new (&t->r, &model, 1,
+  extents = cloth_windowed_gaps_new (&t->r, &model, 1,
       TRIAL_GAIN * faster * faster, CLOTH_DIAGNOSIS_WINDOW_S / faster, &options,
       NULL);
   d->study.simulations += 2;
   if (extents && extents[0]->sound)
-    square = cloth_gap_extent_square (extents[0], NULL);
-  cloth_gap_extents_free (extents, 1);
+    square = cloth_windowed_gap_square (extents[0], NULL);
+  cloth_windowed_gaps_free (extents, 1);
   return square;
 }
 
@@ -256,7 +256,7 @@ cloth_diagnosis_find_doubt (ClothDiagnosis * d, const ClothModel * model)
     if (!(doubt = doubt_times (r)))
       doubt = doubt_seen (r);
   }
-  return doubt || cloth_diagnosis_has_sights (d) ? doubt :
+  return doubt || cloth_diagnosis_has_observations (d) ? doubt :
       doubt_world (d, model);
 }
 
@@ -353,7 +353,7 @@ cloth_diagnosis_doubt_result (ClothDiagnosis * d, const ClothModel * model)
     return doubt_floor (d, r);
   if ((doubt = doubt_size (r)))
     return doubt;
-  if (cloth_diagnosis_has_sights (d) && (doubt = doubt_world (d, model)))
+  if (cloth_diagnosis_has_observations (d) && (doubt = doubt_world (d, model)))
     return doubt;
   return doubt_rate (d, r, model);
 }

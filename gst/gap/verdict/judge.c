@@ -25,9 +25,9 @@ static const gchar *const capture_sentence =
 
 /* The windows that judge: those that end in a held-out block, or all. */
 static gboolean *
-judging_windows (const ClothDiagnosis * d, const ClothGapExtent * extent)
+judging_windows (const ClothDiagnosis * d, const ClothWindowedGap * extent)
 {
-  const ClothGapFeatures *f = cloth_diagnosis_study (d, 0)->features;
+  const ClothFeatures *f = cloth_diagnosis_study (d, 0)->features;
   gboolean *windows = g_new0 (gboolean, extent->n_windows);
   gboolean any = FALSE;
 
@@ -69,13 +69,13 @@ estimate (gdouble square, const gdouble * draws, guint n, guint stride)
   return e;
 }
 
-/* Each model is let go in windows, and led to the start of each. */
-static ClothGapExtent **
+/* Each model is let go in windows, and nudged to the start of each. */
+static ClothWindowedGap **
 measure (ClothDiagnosis * d, const ClothRecording * r,
     const ClothModel * const *models, guint n, GError ** error)
 {
   d->study.simulations += 2 * n;
-  return cloth_gap_extents_new (r, models, n, WINDOW_GAIN,
+  return cloth_windowed_gaps_new (r, models, n, WINDOW_GAIN,
       CLOTH_DIAGNOSIS_WINDOW_S, &d->study.rollout, error);
 }
 
@@ -99,15 +99,15 @@ cloth_diagnosis_find_gaps (ClothDiagnosis * d, guint begin, guint end,
 {
   memset (squares, 0, n * sizeof *squares);
   for (guint i = begin; i < end; i++) {
-    ClothGapExtent **extents = measure (d, cloth_diagnosis_recording (d, i),
+    ClothWindowedGap **extents = measure (d, cloth_diagnosis_recording (d, i),
         models, n, error);
 
     if (!extents)
       return FALSE;
     for (guint k = 0; k < n; k++)
       squares[k] += extents[k]->sound ?
-          cloth_gap_extent_square (extents[k], NULL) : INFINITY;
-    cloth_gap_extents_free (extents, n);
+          cloth_windowed_gap_square (extents[k], NULL) : INFINITY;
+    cloth_windowed_gaps_free (extents, n);
   }
   return TRUE;
 }
@@ -115,13 +115,13 @@ cloth_diagnosis_find_gaps (ClothDiagnosis * d, guint begin, guint end,
 /* Without a baseline the floor is what the two force models differ by, and the noise:
  * NaN on errors. */
 static gdouble
-own_floor (ClothDiagnosis * d, guint judge, const ClothGapExtent * extent,
-    ClothGapExtent ** null, GError ** error)
+own_floor (ClothDiagnosis * d, guint judge, const ClothWindowedGap * extent,
+    ClothWindowedGap ** null, GError ** error)
 {
   const ClothRecording *r = cloth_diagnosis_recording (d, judge);
   g_autoptr (ClothModel) other = cloth_diagnosis_other_model (d);
   const ClothModel *models[1] = { other };
-  ClothGapExtent **extents;
+  ClothWindowedGap **extents;
   gdouble sum = 0.;
   gsize all = (gsize) r->n * r->n_frames, seen = 0;
 
@@ -138,16 +138,16 @@ own_floor (ClothDiagnosis * d, guint judge, const ClothGapExtent * extent,
   }
   if (extents[0]->sound) {
     *null = extents[0];
-    cloth_gap_extent_subtract (*null, extent, r);
+    cloth_windowed_gap_subtract (*null, extent, r);
     g_free (extents);
   } else
-    cloth_gap_extents_free (extents, 1);
+    cloth_windowed_gaps_free (extents, 1);
   return 3. * r->sigma * r->sigma + sum / MAX (seen, 1);
 }
 
 /* What stands for a simulation that lacks nothing. */
 static void
-keep_null (ClothDiagnosis * d, ClothGapExtent * null, guint recording)
+keep_null (ClothDiagnosis * d, ClothWindowedGap * null, guint recording)
 {
   d->nulls[d->n_nulls] = null;
   d->null_recordings[d->n_nulls++] = recording;
@@ -157,19 +157,20 @@ keep_null (ClothDiagnosis * d, ClothGapExtent * null, guint recording)
  * otherwise what the two force models differ by there, if that is more. Its square goes
  * into @draws, too. */
 static gboolean
-measure_floor (ClothDiagnosis * d, guint judge, const ClothGapExtent * extent,
+measure_floor (ClothDiagnosis * d, guint judge, const ClothWindowedGap * extent,
     gdouble * draws, GError ** error)
 {
   const ClothModel *models[1] = { d->model };
   ClothGapEstimate *result = &d->result->noise_floor;
-  ClothGapExtent **floor, *other = NULL;
+  ClothWindowedGap **floor, *other = NULL;
   guint baseline = d->n_takes;
-  const ClothStudy *signature = cloth_diagnosis_study (d, 0)->signature;
+  const ClothSensitivities *discrepancy =
+      cloth_diagnosis_study (d, 0)->discrepancy;
   gdouble square;
 
   /* of the first take's motion, if there is one */
-  for (guint i = d->n_takes; signature && i < d->studies->len; i++)
-    if (cloth_diagnosis_study (d, i) == signature)
+  for (guint i = d->n_takes; discrepancy && i < d->studies->len; i++)
+    if (cloth_diagnosis_study (d, i) == discrepancy)
       baseline = i;
   *result = (ClothGapEstimate) {
   0., NAN, NAN};
@@ -178,17 +179,17 @@ measure_floor (ClothDiagnosis * d, guint judge, const ClothGapExtent * extent,
         error);
     if (!floor)
       return FALSE;
-    square = cloth_gap_extent_square (floor[0], NULL);
-    cloth_gap_extents_interval (floor, 1, NULL, d->options->seed, N_DRAWS,
+    square = cloth_windowed_gap_square (floor[0], NULL);
+    cloth_windowed_gaps_interval (floor, 1, NULL, d->options->seed, N_DRAWS,
         draws);
     *result = estimate (square, draws, N_DRAWS, 1);
     if (floor[0]->sound)
       d->floor = g_steal_pointer (&floor[0]->energy);
     if (floor[0]->sound)
       keep_null (d, g_steal_pointer (&floor[0]), baseline);
-    d->null_alike = signature && d->n_nulls;
-    cloth_gap_extents_free (floor, 1);
-    if (cloth_diagnosis_has_signatures (d))
+    d->null_alike = discrepancy && d->n_nulls;
+    cloth_windowed_gaps_free (floor, 1);
+    if (cloth_diagnosis_has_discrepancies (d))
       return TRUE;
   }
   square = own_floor (d, judge, extent, &other, error);
@@ -247,7 +248,7 @@ find_rest_p_value (const gdouble * rest, guint stride, const gdouble * floor)
   return (1. + count) / (1. + (gdouble) N_DRAWS * N_DRAWS);
 }
 
-/* Whether an effect is large enough to speak of. Where a signature is taken off, the
+/* Whether an effect is large enough to speak of. Where a discrepancy is taken off, the
  * evidence has said so of the first: the gap holds the simulator's own error too, which
  * hides it where it is no larger. */
 static gboolean
@@ -257,20 +258,21 @@ matters (const ClothDiagnosis * d, gboolean first, gdouble before,
   const gdouble floor = d->result->noise_floor.value;
 
   return after < (1. - CLOTH_DIAGNOSIS_LEAST_SHRINK) * before
-      || (first && cloth_diagnosis_has_signatures (d)
+      || (first && cloth_diagnosis_has_discrepancies (d)
       && after < HARDLY_LARGER * before
       && after < CLOTH_DIAGNOSIS_BAND * floor * floor);
 }
 
 /* Where the gap of the first take lies, and what is needed to say more of it. */
 static void
-keep_first (ClothDiagnosis * d, ClothGapExtent * before, ClothGapExtent * after)
+keep_first (ClothDiagnosis * d, ClothWindowedGap * before,
+    ClothWindowedGap * after)
 {
-  cloth_gap_extent_fill (before, after, cloth_diagnosis_recording (d, 0),
+  cloth_windowed_gap_fill (before, after, cloth_diagnosis_recording (d, 0),
       d->takes[0], d->result);
   if (before->sound) {
     d->before = g_steal_pointer (&before->energy);
-    d->led = g_steal_pointer (&before->led);
+    d->nudged = g_steal_pointer (&before->nudged);
   }
   if (after && after->sound)
     d->after = g_steal_pointer (&after->energy);
@@ -286,18 +288,18 @@ swap_filmed (ClothDiagnosis * d, guint i)
 
   r->y = d->filmed[i];
   d->filmed[i] = y;
-  cloth_recording_bridge (r);
+  cloth_recording_interpolate (r);
   cloth_recording_differentiate (r);
 }
 
 /* The models' distances from a recording: the first one's from what the cameras gave, and
  * where they had faults once more and all others' from what they would have given. */
-static ClothGapExtent **
+static ClothWindowedGap **
 measure_models (ClothDiagnosis * d, guint i, const ClothModel * const *models,
     guint n, GError ** error)
 {
   const ClothRecording *r = cloth_diagnosis_recording (d, i);
-  ClothGapExtent **all = NULL, **others;
+  ClothWindowedGap **all = NULL, **others;
 
   if (!d->filmed[i])
     return measure (d, r, models, n, error);
@@ -308,10 +310,10 @@ measure_models (ClothDiagnosis * d, guint i, const ClothModel * const *models,
     return NULL;
   others = measure (d, r, models + 1, n - 1, error);
   if (!others) {
-    cloth_gap_extents_free (all, 1);
+    cloth_windowed_gaps_free (all, 1);
     return NULL;
   }
-  all = g_renew (ClothGapExtent *, all, n);
+  all = g_renew (ClothWindowedGap *, all, n);
   memcpy (all + 1, others, (n - 1) * sizeof *all);
   g_free (others);
   return all;
@@ -334,7 +336,7 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
   g_autofree gdouble *draws = g_new0 (gdouble, N_DRAWS * n);
   g_autofree gdouble *floor = g_new0 (gdouble, N_DRAWS);
   g_autofree gboolean *windows = NULL;
-  ClothGapExtent **extents;
+  ClothWindowedGap **extents;
   gdouble v[G_N_ELEMENTS (models)];
 
   for (guint i = 0; i < d->n_chosen; i++)
@@ -346,9 +348,9 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
   if (!judge)
     windows = judging_windows (d, extents[0]);
   for (guint i = 0; i < n; i++)
-    v[i] = cloth_gap_extent_square (extents[i], windows);
+    v[i] = cloth_windowed_gap_square (extents[i], windows);
   if (!measure_floor (d, judge, extents[0], floor, error)) {
-    cloth_gap_extents_free (extents, n);
+    cloth_windowed_gaps_free (extents, n);
     return FALSE;
   }
   for (guint i = best + 1; i < n; i++)
@@ -356,7 +358,7 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
       best = i;
   while (d->n_chosen > best - faults)
     cloth_model_free (d->with[--d->n_chosen]);
-  cloth_gap_extents_interval (extents, n, windows, d->options->seed, N_DRAWS,
+  cloth_windowed_gaps_interval (extents, n, windows, d->options->seed, N_DRAWS,
       draws);
   result->held_out_takes = d->options->n_hold_outs > 0;
   result->gap_before = estimate (v[0], draws, N_DRAWS, n);
@@ -369,7 +371,7 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
     d->shrink_of_faults = share_gone (result, v[0], v[1]);
   if (!judge)
     keep_first (d, extents[0], best ? extents[best] : NULL);
-  cloth_gap_extents_free (extents, n);
+  cloth_windowed_gaps_free (extents, n);
   if (!judge)
     return TRUE;
   models[1] = models[best];
@@ -378,7 +380,7 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
   if (!extents)
     return FALSE;
   keep_first (d, extents[0], best ? extents[1] : NULL);
-  cloth_gap_extents_free (extents, n);
+  cloth_windowed_gaps_free (extents, n);
   return TRUE;
 }
 
@@ -390,7 +392,7 @@ accept_effects (ClothDiagnosis * d)
   GArray *effects = d->result->effects;
 
   for (guint c = d->n_chosen; c-- > 0;) {
-    const ClothGapCandidate *candidate = cloth_diagnosis_chosen (d, c);
+    const ClothCandidate *candidate = cloth_diagnosis_chosen (d, c);
     ClothGapEffect e;
     guint i = 0;
 
@@ -407,8 +409,8 @@ accept_effects (ClothDiagnosis * d)
     for (guint k = 0; k < candidate->effect->n_parameters; k++)
       e.values[k] = candidate->values[k];
     for (guint k = 0; k < candidate->n; k++) {
-      const ClothGapDirection *direction =
-          cloth_gap_candidates_direction (d->candidates, candidate->first + k);
+      const ClothDirection *direction =
+          cloth_candidates_direction (d->candidates, candidate->first + k);
       guint p = candidate->parameters[k];
 
       cloth_model_get (d->with[last], direction->name, &e.values[p], NULL);

@@ -7,15 +7,15 @@
 
 /* A rest this many times the noise speaks of something unknown … */
 #define UNKNOWN 1.9
-/* … if it is also this share of the simulator's own error: where that is large, chaos of
+/* … if it is also this share of the simulator's own error: where that is large, variability of
  * the real cloth is too. */
 #define UNKNOWN_SHARE 0.45
-/* Cloth that begins elsewhere than the baseline's has other chaos. It does if its first
+/* Cloth that begins elsewhere than the baseline's has other variability. It does if its first
  * frames differ by so many times the square of noise. */
 #define BEGIN_FRAMES 5
 #define BEGINS_ALIKE 2.
 #define UNKNOWN_SHARE_ELSEWHERE 0.75
-/* Cloth is led away when waves of at most half a length over the sheet, that change in at
+/* Cloth is nudged away when waves of at most half a length over the sheet, that change in at
  * most half a wave a block, have so many times the power of noise, and so many times that of
  * waves of one to one and a half lengths. */
 #define LONG_BAND 1
@@ -30,24 +30,26 @@
 #define LEAST_HELD 30
 
 /* Sums over takes of squares: of what is left, over the noise of the take and of its
- * signature; of the signature itself; the number of features. */
+ * discrepancy; of the discrepancy itself; the number of features. */
 typedef struct
 {
-  gdouble rest, signature, n;
+  gdouble rest, discrepancy, n;
 } Rest;
 
 /* With the free numbers fitted once more. */
 static void
-add_rest (const ClothDiagnosis * d, const ClothStudy * study, Rest * rest)
+add_rest (const ClothDiagnosis * d, const ClothSensitivities * study,
+    Rest * rest)
 {
   guint n = d->candidates->n_free;
-  gdouble scale = cloth_study_signature_scale (study);
-  g_autofree gdouble *z = cloth_study_residual (study, 0);
+  gdouble scale = cloth_sensitivities_discrepancy_scale (study);
+  g_autofree gdouble *z = cloth_sensitivities_residual (study, 0);
   g_autofree gboolean *blocks = g_new (gboolean, study->features->n_blocks);
   g_autofree gdouble *precisions = g_new (gdouble, n + 1);
-  g_autoptr (ClothGapPower) noise = cloth_gap_power_new (study->features, z);
-  g_autoptr (ClothGapNormal) normal = NULL;
-  ClothGapReduced reduced;
+  g_autoptr (ClothPowerSpectrum) noise =
+      cloth_power_spectrum_new (study->features, z);
+  g_autoptr (ClothNormalEquations) normal = NULL;
+  ClothReducedEquations reduced;
 
   for (guint k = 0; k < noise->n; k++)
     noise->values[k] = scale * scale;
@@ -55,24 +57,24 @@ add_rest (const ClothDiagnosis * d, const ClothStudy * study, Rest * rest)
     blocks[b] = TRUE;
   for (guint k = 0; k < n; k++)
     precisions[k] = d->precisions[k] * d->study.overdispersion;
-  normal = cloth_gap_normal_new (study->features, noise, 1., z,
+  normal = cloth_normal_equations_new (study->features, noise, 1., z,
       study->columns[0], n);
-  if (!cloth_gap_normal_reduce (normal, blocks, d->all, precisions, n, NULL, 0,
-          &reduced))
+  if (!cloth_normal_equations_reduce (normal, blocks, d->all, precisions, n,
+          NULL, 0, &reduced))
     return;
   rest->rest += reduced.r;
   rest->n += normal->per_block * normal->n_blocks;
   for (gsize k = 0; k < study->features->size; k++)
-    rest->signature += scale * scale / (1. + scale * scale) *
-        study->signature->z[0][k] * study->signature->z[0][k];
+    rest->discrepancy += scale * scale / (1. + scale * scale) *
+        study->discrepancy->z[0][k] * study->discrepancy->z[0][k];
 }
 
-/* Whether a take begins as the baseline does whose signature it has. */
+/* Whether a take begins as the baseline does whose discrepancy it has. */
 static gboolean
-begins_alike (const ClothStudy * study)
+begins_alike (const ClothSensitivities * study)
 {
   const ClothRecording *a = study->recording;
-  const ClothRecording *b = study->signature->recording;
+  const ClothRecording *b = study->discrepancy->recording;
   const gdouble noise = a->sigma * a->sigma + b->sigma * b->sigma;
   gdouble sum = 0.;
   gsize n = 0;
@@ -104,10 +106,10 @@ is_much (const ClothDiagnosis * d)
       share = UNKNOWN_SHARE_ELSEWHERE;
   }
   return rest.rest > UNKNOWN * UNKNOWN * rest.n
-      && rest.rest > share * share * rest.signature;
+      && rest.rest > share * share * rest.discrepancy;
 }
 
-/* Whether the cloth is slowly led elsewhere as a whole. Chaos has shorter waves, too. */
+/* Whether the cloth is slowly nudged elsewhere as a whole. Chaos has shorter waves, too. */
 static gboolean
 is_led_away (const ClothDiagnosis * d)
 {
@@ -115,11 +117,11 @@ is_led_away (const ClothDiagnosis * d)
   gsize n_slow = 0, n_wrinkles = 0;
 
   for (guint i = 0; i < d->n_takes; i++) {
-    const ClothStudy *study = cloth_diagnosis_study (d, i);
-    const ClothGapFeatures *f = study->features;
-    const gdouble scale = cloth_study_signature_scale (study);
+    const ClothSensitivities *study = cloth_diagnosis_study (d, i);
+    const ClothFeatures *f = study->features;
+    const gdouble scale = cloth_sensitivities_discrepancy_scale (study);
     const gdouble noise = 1. + scale * scale;
-    g_autofree gdouble *z = cloth_study_residual (study, 0);
+    g_autofree gdouble *z = cloth_sensitivities_residual (study, 0);
 
     for (gsize k = 0; k < f->size; k++) {
       const guint band = f->bands[k / 3 % f->n_waves];
@@ -198,7 +200,7 @@ find_clamps_off (ClothDiagnosis * d)
  *
  * Looks for signs that something is there, whatever it is, which the size of the gap need
  * not show: the floor holds the simulator's own error, too. Where baselines move alike, the
- * residual without their signature would be noise if the model lacked nothing.
+ * residual without their discrepancy would be noise if the model lacked nothing.
  *
  * Returns: (transfer full) (nullable): what speaks of something that is not in the
  *   baselines, a sentence; %NULL: nothing does
@@ -210,10 +212,10 @@ cloth_diagnosis_find_unknown (ClothDiagnosis * d)
 
   if (clamps)
     return clamps;
-  if (cloth_diagnosis_has_signatures (d) && is_led_away (d))
+  if (cloth_diagnosis_has_discrepancies (d) && is_led_away (d))
     return g_strdup ("Against the baseline the cloth as a whole is slowly led "
         "elsewhere, which its wrinkles don't account for.");
-  if (cloth_diagnosis_has_signatures (d) && is_much (d))
+  if (cloth_diagnosis_has_discrepancies (d) && is_much (d))
     return g_strdup ("What is left differs from what is left of the baseline "
         "by far more than noise.");
   return NULL;

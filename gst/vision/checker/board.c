@@ -27,7 +27,7 @@ struct _ClothBoardFinder
   ClothPattern pattern;
   ClothLinker *linker;
   ClothPatch patch;
-  ClothPlacer *placer;
+  ClothPoseFinder *placer;
   ClothBoardView view;
 };
 
@@ -52,7 +52,7 @@ cloth_board_finder_new (const ClothPattern * pattern)
     finder->pattern.code = g_memdup2 (pattern->code,
         (gsize) pattern->columns * (gsize) pattern->rows);
   finder->linker = cloth_linker_new ();
-  finder->placer = cloth_placer_new (pattern);
+  finder->placer = cloth_pose_finder_new (pattern);
   view->columns = pattern->columns + 1;
   view->rows = pattern->rows + 1;
   n = (gsize) view->columns * (gsize) view->rows;
@@ -75,7 +75,7 @@ cloth_board_finder_free (ClothBoardFinder * finder)
   g_free (finder->pattern.code);
   cloth_linker_free (finder->linker);
   cloth_patch_clear (&finder->patch);
-  cloth_placer_free (finder->placer);
+  cloth_pose_finder_free (finder->placer);
   g_free (finder->view.seen);
   g_free (finder->view.x);
   g_free (finder->view.y);
@@ -140,7 +140,7 @@ is_saddle (const ClothPatch * patch, gint i, gint j)
 /* Writes the placed patch's vertices into the view; vertices already there stay. */
 static void
 take_over (ClothBoardView * view, const ClothPatch * patch,
-    const ClothPlacement * placement)
+    const ClothPose * placement)
 {
   for (gint j = 0; j < patch->rows; j++)
     for (gint i = 0; i < patch->columns; i++) {
@@ -148,7 +148,7 @@ take_over (ClothBoardView * view, const ClothPatch * patch,
 
       if (!patch->kind[from])
         continue;
-      cloth_placement_vertex (placement, i, j, &column, &row);
+      cloth_pose_vertex (placement, i, j, &column, &row);
       if (column < 0 || row < 0 || column >= view->columns || row >= view->rows)
         continue;
       at = row * view->columns + column;
@@ -213,7 +213,7 @@ fit_homography (const ClothBoardView * view, gdouble h[8], gdouble centre[3])
 /* The placement of @patch that continues the plane of what is in the view, as a vote. */
 static gboolean
 vote_by_plane (const ClothBoardView * view, const ClothPatch * patch,
-    ClothPlacement * vote)
+    ClothPose * vote)
 {
   gdouble h[8], centre[3];
   gfloat best = -1;
@@ -221,7 +221,7 @@ vote_by_plane (const ClothBoardView * view, const ClothPatch * patch,
   if (view->n_seen < 6 || !fit_homography (view, h, centre))
     return FALSE;
   for (gint rotation = 0; rotation < 4; rotation++) {
-    ClothPlacement try = { rotation, 0, 0, HOMOGRAPHY_WEIGHT };
+    ClothPose try = { rotation, 0, 0, HOMOGRAPHY_WEIGHT };
     gdouble off_u = 0, off_v = 0, spread = 0;
     guint n = 0;
 
@@ -240,7 +240,7 @@ vote_by_plane (const ClothBoardView * view, const ClothPatch * patch,
             return FALSE;
           u = (h[0] * x + h[1] * y + h[2]) / w;
           v = (h[3] * x + h[4] * y + h[5]) / w;
-          cloth_placement_vertex (&try, i, j, &column, &row);
+          cloth_pose_vertex (&try, i, j, &column, &row);
           if (pass == 0) {
             off_u += u - column;
             off_v += v - row;
@@ -290,14 +290,14 @@ try_patch (ClothBoardFinder * finder, const ClothImage * image,
 {
   ClothPatchParams params =
       { 0.25f, 0.62f, -1.0f, 0.4f, TRUE, finder->pattern.code != NULL };
-  ClothPlacement vote, placement;
+  ClothPose vote, placement;
   guint n_votes;
 
   cloth_patch_build (&finder->patch, image, saddles, link, &params);
   if (!is_board (&finder->patch))
     return OTHER;
   n_votes = vote_by_plane (&finder->view, &finder->patch, &vote) ? 1 : 0;
-  if (!cloth_placer_run (finder->placer, &finder->patch, &cloth_place_rigid,
+  if (!cloth_pose_finder_run (finder->placer, &finder->patch, &cloth_pose_rigid,
           &vote, n_votes, &placement))
     return UNPLACED;
   if (placement.weight < MIN_LEAD || (finder->view.n_seen && !n_votes))

@@ -35,7 +35,7 @@
 
 /* Cloth folds, and a fold cuts squares anywhere, so that a corner which is no saddle says
  * nothing; but an inner corner beyond the rim can't be. */
-const ClothPlaceWeights cloth_place_cloth = {
+const ClothPoseWeights cloth_pose_cloth = {
   .square_outside = -6,
   .corner_outside = -6,
   .found_corners = TRUE,
@@ -47,7 +47,7 @@ const ClothPlaceWeights cloth_place_cloth = {
 /* A rigid board ends where its rim is seen. The edge of what covers it looks like a rim
  * now and then, and a corner of it like a saddle. A single picture gives no lead to what
  * is upright. */
-const ClothPlaceWeights cloth_place_rigid = {
+const ClothPoseWeights cloth_pose_rigid = {
   .square_outside = -6,
   .corner_outside = -2.5f,
   .cut_rim = -3,
@@ -67,7 +67,7 @@ typedef struct
 
 typedef struct
 {
-  ClothPlacement placement;     /* weight: of the votes, then of all evidence as well */
+  ClothPose placement;          /* weight: of the votes, then of all evidence as well */
   gint32 score;                 /* of the tables and the dots read */
   guint n_read;
   gint32 hope;                  /* of the dots read, what they promise of all */
@@ -93,7 +93,7 @@ static const gint turn_i[4] = { 1, 0, -1, 0 };
 static const gint turn_j[4] = { 0, 1, 0, -1 };
 
 /**
- * cloth_placement_vertex:
+ * cloth_pose_vertex:
  * @placement: a placement
  * @i: column of a vertex of the patch
  * @j: row of it
@@ -103,7 +103,7 @@ static const gint turn_j[4] = { 0, 1, 0, -1 };
  * Since: 0.1
  */
 void
-cloth_placement_vertex (const ClothPlacement * placement, gint i, gint j,
+cloth_pose_vertex (const ClothPose * placement, gint i, gint j,
     gint * column, gint * row)
 {
   const gint c = turn_i[placement->rotation], s = turn_j[placement->rotation];
@@ -113,7 +113,7 @@ cloth_placement_vertex (const ClothPlacement * placement, gint i, gint j,
 }
 
 /**
- * cloth_placement_cell:
+ * cloth_pose_cell:
  * @placement: a placement
  * @i: column of a cell of the patch, right of vertex @i
  * @j: row of it
@@ -123,10 +123,10 @@ cloth_placement_vertex (const ClothPlacement * placement, gint i, gint j,
  * Since: 0.1
  */
 void
-cloth_placement_cell (const ClothPlacement * placement, gint i, gint j,
+cloth_pose_cell (const ClothPose * placement, gint i, gint j,
     gint * column, gint * row)
 {
-  cloth_placement_vertex (placement, i, j, column, row);
+  cloth_pose_vertex (placement, i, j, column, row);
   /* The cell's first corner is another one after a turn. */
   if (placement->rotation == 1 || placement->rotation == 2)
     (*column)--;
@@ -179,7 +179,7 @@ is_rim (const ClothPatch * patch, gint i, gint j)
 /* What a vertex adds to a placement under which four squares meet there, and to one under
  * which they don't: not even on the board's rim. */
 static void
-weigh_corner (const ClothPatch * patch, const ClothPlaceWeights * weights,
+weigh_corner (const ClothPatch * patch, const ClothPoseWeights * weights,
     gint i, gint j, gfloat * on, gfloat * off)
 {
   const gint at = j * patch->columns + i;
@@ -200,7 +200,7 @@ steps (gfloat weight)
 }
 
 static void
-make_room (ClothPlacer * placer, const ClothPatch * patch)
+make_room (ClothPoseFinder * placer, const ClothPatch * patch)
 {
   const gsize n = (gsize) (patch->columns + 1) * (gsize) (patch->rows + 1);
 
@@ -215,7 +215,7 @@ make_room (ClothPlacer * placer, const ClothPatch * patch)
 
 /* The squares' extent; FALSE for a patch that has none, or is larger than any board. */
 static gboolean
-measure (ClothPlacer * placer, const ClothPatch * patch)
+measure (ClothPoseFinder * placer, const ClothPatch * patch)
 {
   gint *box = placer->box;
 
@@ -235,8 +235,8 @@ measure (ClothPlacer * placer, const ClothPatch * patch)
 
 /* Sums what the cells and corners say, and collects the dots. */
 static void
-gather (ClothPlacer * placer, const ClothPatch * patch,
-    const ClothPlaceWeights * weights)
+gather (ClothPoseFinder * placer, const ClothPatch * patch,
+    const ClothPoseWeights * weights)
 {
   const gint n = patch->columns + 1;
 
@@ -291,7 +291,7 @@ common_divisor (guint a, guint b)
 
 /* Dots side by side may belong to another piece of cloth: takes them from all over. */
 static void
-scatter (ClothPlacer * placer)
+scatter (ClothPoseFinder * placer)
 {
   const guint n = placer->found->len;
   guint step = MAX (1, (guint) (0.618 * n)), at = 0;
@@ -313,8 +313,8 @@ scatter (ClothPlacer * placer)
 
 /* Sum over the part of a table that two opposite cells, or vertices, of the board span. */
 static gint32
-table_sum (const ClothPlacer * placer, const gint32 * table, const gint a[2],
-    const gint b[2])
+table_sum (const ClothPoseFinder * placer, const gint32 * table,
+    const gint a[2], const gint b[2])
 {
   const gint n = placer->columns;
   const gint x0 = CLAMP (MIN (a[0], b[0]), 0, n - 1);
@@ -328,7 +328,7 @@ table_sum (const ClothPlacer * placer, const gint32 * table, const gint a[2],
 
 /* All evidence but the dots. */
 static gint32
-score_extent (const ClothPlacer * placer, const ClothPlacement * placement)
+score_extent (const ClothPoseFinder * placer, const ClothPose * placement)
 {
   const gint c = turn_i[placement->rotation], s = turn_j[placement->rotation];
   const gint columns = placer->pattern.columns, rows = placer->pattern.rows;
@@ -359,7 +359,8 @@ score_extent (const ClothPlacer * placer, const ClothPlacement * placement)
 /* Reads dots up to @to and adds what they say; FALSE when the rest can't bring the score
  * to @least any more. */
 static gboolean
-read_dots (const ClothPlacer * placer, Rival * rival, guint to, gint64 least)
+read_dots (const ClothPoseFinder * placer, Rival * rival, guint to,
+    gint64 least)
 {
   const Dot *dots = (const Dot *) placer->dots->data;
   const gint c = turn_i[rival->placement.rotation];
@@ -369,7 +370,7 @@ read_dots (const ClothPlacer * placer, Rival * rival, guint to, gint64 least)
   const gint8 *code = placer->code;
   gint column, row;
 
-  cloth_placement_cell (&rival->placement, 0, 0, &column, &row);
+  cloth_pose_cell (&rival->placement, 0, 0, &column, &row);
   column += SLACK + row * placer->stride + SLACK * placer->stride;
   while (rival->n_read < to) {
     const guint end = MIN (rival->n_read + CHUNK, to);
@@ -415,15 +416,15 @@ uprightness (const ClothPatch * patch, gint rotation)
 
 /* Whether two placements differ by a turn that leaves a plain board as it looks. */
 static gboolean
-are_twins (const ClothPattern * pattern, const ClothPlacement * a,
-    const ClothPlacement * b)
+are_twins (const ClothPattern * pattern, const ClothPose * a,
+    const ClothPose * b)
 {
   gboolean square = pattern->columns == pattern->rows;
-  ClothPlacement turned = *a;
+  ClothPose turned = *a;
 
   for (gint quarter = 1; quarter < 4; quarter++) {
     /* The board turned about its middle: (c, r) becomes (rows - r, c). */
-    turned = (ClothPlacement) {
+    turned = (ClothPose) {
     (turned.rotation + 1) & 3, (quarter & 1 ? pattern->rows
           : pattern->columns) - turned.row, turned.column};
     if ((quarter & 1) && !(square && (pattern->columns & 1)))
@@ -440,8 +441,8 @@ are_twins (const ClothPattern * pattern, const ClothPlacement * a,
 /* What corners that linking did not join, and that lie on the board's rim, add: what is
  * beside the board, like a plate that it is glued on, may give them the look of inner ones. */
 static gfloat
-found_on_rim (const ClothPlacer * placer, const ClothPatch * patch,
-    const ClothPlaceWeights * weights, const ClothPlacement * placement)
+found_on_rim (const ClothPoseFinder * placer, const ClothPatch * patch,
+    const ClothPoseWeights * weights, const ClothPose * placement)
 {
   const gint columns = placer->pattern.columns, rows = placer->pattern.rows;
   gfloat sum = 0;
@@ -453,7 +454,7 @@ found_on_rim (const ClothPlacer * placer, const ClothPatch * patch,
 
       if (patch->linked[at] || patch->kind[at] != CLOTH_VERTEX_SADDLE)
         continue;
-      cloth_placement_vertex (placement, i, j, &column, &row);
+      cloth_pose_vertex (placement, i, j, &column, &row);
       if (column >= 0 && row >= 0 && column <= columns && row <= rows
           && (column % columns == 0 || row % rows == 0))
         sum += weights->corner_outside;
@@ -465,8 +466,8 @@ found_on_rim (const ClothPlacer * placer, const ClothPatch * patch,
  * within: the board seen is smaller. A corner there that looks like a saddle counts half:
  * what is beside the board may give it the look. */
 static gboolean
-ends_early (const ClothPlacer * placer, const ClothPatch * patch,
-    const ClothPlacement * placement, gfloat share)
+ends_early (const ClothPoseFinder * placer, const ClothPatch * patch,
+    const ClothPose * placement, gfloat share)
 {
   const gint columns = placer->pattern.columns, rows = placer->pattern.rows;
 
@@ -482,7 +483,7 @@ ends_early (const ClothPlacer * placer, const ClothPatch * patch,
         const gint at = j * patch->columns + i;
         gint column, row;
 
-        cloth_placement_vertex (placement, i, j, &column, &row);
+        cloth_pose_vertex (placement, i, j, &column, &row);
         if (column > 0 && row > 0 && column < columns && row < rows
             && !patch->linked[at] && is_rim (patch, i, j))
           on_rim += patch->kind[at] == CLOTH_VERTEX_SADDLE ? 1 : 2;
@@ -503,15 +504,16 @@ typedef struct
 } Range;
 
 static Range
-range_of (const ClothPlacer * placer, const ClothPatch * patch, gint rotation)
+range_of (const ClothPoseFinder * placer, const ClothPatch * patch,
+    gint rotation)
 {
   const ClothPattern *pattern = &placer->pattern;
-  const ClothPlacement turned = { rotation };
+  const ClothPose turned = { rotation };
   const gint *box = placer->box;
   gint c0, r0, c1, r1;
 
-  cloth_placement_cell (&turned, box[0], box[1], &c0, &r0);
-  cloth_placement_cell (&turned, box[2], box[3], &c1, &r1);
+  cloth_pose_cell (&turned, box[0], box[1], &c0, &r0);
+  cloth_pose_cell (&turned, box[2], box[3], &c1, &r1);
   /* The board cell that the box's first cell falls on must have its colour. */
   return (Range) {
     rotation, {
@@ -524,7 +526,7 @@ range_of (const ClothPlacer * placer, const ClothPatch * patch, gint rotation)
 }
 
 static gboolean
-is_in (const Range * range, const ClothPlacement * placement)
+is_in (const Range * range, const ClothPose * placement)
 {
   return placement->column >= range->column[0]
       && placement->column <= range->column[1]
@@ -533,7 +535,7 @@ is_in (const Range * range, const ClothPlacement * placement)
 }
 
 static inline gboolean
-is_same (const ClothPlacement * a, const ClothPlacement * b)
+is_same (const ClothPose * a, const ClothPose * b)
 {
   return a->rotation == b->rotation && a->column == b->column
       && a->row == b->row;
@@ -541,7 +543,7 @@ is_same (const ClothPlacement * a, const ClothPlacement * b)
 
 /* Adds a rival all of whose dots were read. */
 static void
-take (ClothPlacer * placer, Rival * rival, gfloat * most)
+take (ClothPoseFinder * placer, Rival * rival, gfloat * most)
 {
   rival->placement.weight += (gfloat) rival->score / STEPS;
   *most = MAX (*most, rival->placement.weight);
@@ -559,8 +561,8 @@ compare_hope (gconstpointer a, gconstpointer b)
 /* Scores the placements that may come within @margin of the best; how many there are in
  * all. */
 static guint
-score_all (ClothPlacer * placer, const ClothPatch * patch,
-    const ClothPlacement * votes, guint n_votes, gfloat margin)
+score_all (ClothPoseFinder * placer, const ClothPatch * patch,
+    const ClothPose * votes, guint n_votes, gfloat margin)
 {
   const guint n_dots = placer->dots->len;
   const gint32 all = n_dots ? g_array_index (placer->dots, Dot, 0).rest : 0;
@@ -644,7 +646,7 @@ score_all (ClothPlacer * placer, const ClothPatch * patch,
 }
 
 /**
- * cloth_placer_run:
+ * cloth_pose_finder_run:
  * @placer: of the board
  * @patch: a patch of it
  * @weights: what the evidence weighs
@@ -664,9 +666,9 @@ score_all (ClothPlacer * placer, const ClothPatch * patch,
  * Since: 0.1
  */
 gboolean
-cloth_placer_run (ClothPlacer * placer, const ClothPatch * patch,
-    const ClothPlaceWeights * weights, const ClothPlacement * votes,
-    guint n_votes, ClothPlacement * best)
+cloth_pose_finder_run (ClothPoseFinder * placer, const ClothPatch * patch,
+    const ClothPoseWeights * weights, const ClothPose * votes,
+    guint n_votes, ClothPose * best)
 {
   gfloat prior[4] = { 0 }, most = -G_MAXFLOAT, score;
   const Rival *list;
@@ -677,14 +679,14 @@ cloth_placer_run (ClothPlacer * placer, const ClothPatch * patch,
   gather (placer, patch, weights);
   scatter (placer);
   n = score_all (placer, patch, votes, n_votes,
-      CLOTH_PLACE_MOST_LEAD + 2 * weights->upright);
+      CLOTH_POSE_MOST_LEAD + 2 * weights->upright);
   if (!placer->rivals->len)
     return FALSE;
   list = (const Rival *) placer->rivals->data;
   for (gint rotation = 0; rotation < 4 && !placer->coded; rotation++)
     prior[rotation] = weights->upright * uprightness (patch, rotation);
   for (guint k = 0; k < placer->rivals->len; k++) {
-    const ClothPlacement *own = &list[k].placement;
+    const ClothPose *own = &list[k].placement;
 
     if (own->weight + prior[own->rotation] > most) {
       most = own->weight + prior[own->rotation];
@@ -698,9 +700,9 @@ cloth_placer_run (ClothPlacer * placer, const ClothPatch * patch,
   *best = list[first].placement;
   /* What fits one way only hangs over on both sides. */
   best->weight = best->evidence =
-      n > 1 ? CLOTH_PLACE_MOST_LEAD : -weights->square_outside;
+      n > 1 ? CLOTH_POSE_MOST_LEAD : -weights->square_outside;
   for (guint k = 0; k < placer->rivals->len; k++) {
-    const ClothPlacement *own = &list[k].placement;
+    const ClothPose *own = &list[k].placement;
     const gboolean twin = !placer->coded
         && are_twins (&placer->pattern, best, own);
     gfloat lead = list[first].placement.weight - own->weight;
@@ -726,7 +728,7 @@ cloth_placer_run (ClothPlacer * placer, const ClothPatch * patch,
 }
 
 /**
- * cloth_placer_new:
+ * cloth_pose_finder_new:
  * @pattern: the board; copied
  *
  * Returns: (transfer full): what places patches on that board; it keeps its memory from
@@ -734,10 +736,10 @@ cloth_placer_run (ClothPlacer * placer, const ClothPatch * patch,
  *
  * Since: 0.1
  */
-ClothPlacer *
-cloth_placer_new (const ClothPattern * pattern)
+ClothPoseFinder *
+cloth_pose_finder_new (const ClothPattern * pattern)
 {
-  ClothPlacer *placer = g_new0 (ClothPlacer, 1);
+  ClothPoseFinder *placer = g_new0 (ClothPoseFinder, 1);
 
   placer->pattern = *pattern;
   placer->pattern.code = NULL;
@@ -759,13 +761,13 @@ cloth_placer_new (const ClothPattern * pattern)
 }
 
 /**
- * cloth_placer_free:
+ * cloth_pose_finder_free:
  * @placer: (transfer full): the placer
  *
  * Since: 0.1
  */
 void
-cloth_placer_free (ClothPlacer * placer)
+cloth_pose_finder_free (ClothPoseFinder * placer)
 {
   g_free (placer->code);
   g_free (placer->cells);

@@ -9,31 +9,31 @@
 G_BEGIN_DECLS
 
 /**
- * CLOTH_PLACE_MOST_LEAD:
+ * CLOTH_POSE_MOST_LEAD:
  *
  * Rivals that trail by more, log-likelihood, are not told apart.
  *
  * Since: 0.1
  */
-#define CLOTH_PLACE_MOST_LEAD 64.0f
+#define CLOTH_POSE_MOST_LEAD 64.0f
 
 /**
- * CLOTH_PLACE_MIN_LEAD:
+ * CLOTH_POSE_MIN_LEAD:
  *
  * Lead, log-likelihood, from which on a placement in a film is believed: just less than the
  * 3 of one cell that clearly shows cloth where the board would go on.
  *
  * Since: 0.1
  */
-#define CLOTH_PLACE_MIN_LEAD 2.9f
+#define CLOTH_POSE_MIN_LEAD 2.9f
 
 /**
- * ClothPlacement:
+ * ClothPose:
  * @rotation: quarter turns from the patch's grid to the board's, 0 to 3
  * @column: board vertex of the patch's vertex (0, 0)
  * @row: likewise
  * @weight: as a vote: log-likelihood in favour; as a result: log-likelihood of this
- *   placement less that of the next best, at most %CLOTH_PLACE_MOST_LEAD; that of one
+ *   placement less that of the next best, at most %CLOTH_POSE_MOST_LEAD; that of one
  *   square when there is no other
  * @evidence: as a result: the same lead by what was seen alone, over those that are no
  *   twins, less what was seen that speaks against the placement
@@ -51,10 +51,10 @@ typedef struct {
   gfloat weight;
   gfloat evidence;
   gboolean whole;
-} ClothPlacement;
+} ClothPose;
 
 /**
- * ClothPlaceWeights:
+ * ClothPoseWeights:
  * @square_outside: of a square seen where the board has none
  * @corner_outside: of an inner corner seen where the board has none
  * @found_corners: whether that holds for corners too that linking did not join
@@ -82,22 +82,22 @@ typedef struct {
   gboolean twins;
   gfloat least;
   gfloat rim_refuses;
-} ClothPlaceWeights;
+} ClothPoseWeights;
 
-extern const ClothPlaceWeights cloth_place_cloth, cloth_place_rigid;
+extern const ClothPoseWeights cloth_pose_cloth, cloth_pose_rigid;
 
-typedef struct _ClothPlacer ClothPlacer;
+typedef struct _ClothPlacer ClothPoseFinder;
 
-void cloth_placement_vertex (const ClothPlacement * placement, gint i, gint j,
+void cloth_pose_vertex (const ClothPose * placement, gint i, gint j,
     gint * column, gint * row);
-void cloth_placement_cell (const ClothPlacement * placement, gint i, gint j,
+void cloth_pose_cell (const ClothPose * placement, gint i, gint j,
     gint * column, gint * row);
 
-ClothPlacer *cloth_placer_new (const ClothPattern * pattern);
-void cloth_placer_free (ClothPlacer * placer);
-gboolean cloth_placer_run (ClothPlacer * placer, const ClothPatch * patch,
-    const ClothPlaceWeights * weights, const ClothPlacement * votes,
-    guint n_votes, ClothPlacement * best);
+ClothPoseFinder *cloth_pose_finder_new (const ClothPattern * pattern);
+void cloth_pose_finder_free (ClothPoseFinder * placer);
+gboolean cloth_pose_finder_run (ClothPoseFinder * placer, const ClothPatch * patch,
+    const ClothPoseWeights * weights, const ClothPose * votes,
+    guint n_votes, ClothPose * best);
 
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothPlacer, cloth_placer_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothPoseFinder, cloth_pose_finder_free)
 G_END_DECLS

@@ -28,7 +28,7 @@ former_at (const ClothDotLabeller * labeller, gint column, gint row)
 
 /* Which label each dot had in the former picture, if dots go on as they went. */
 void
-cloth_lattice_foretell (ClothDotLabeller * labeller)
+cloth_dot_label_foretell (ClothDotLabeller * labeller)
 {
   gfloat *nearest = labeller->scratch;
 
@@ -56,7 +56,7 @@ cloth_lattice_foretell (ClothDotLabeller * labeller)
 
 /* Keeps where the labels are for the next picture. */
 void
-cloth_lattice_remember (ClothDotLabeller * labeller)
+cloth_dot_label_remember (ClothDotLabeller * labeller)
 {
   for (gint k = 0; k < labeller->columns * labeller->rows; k++) {
     ClothLatticeFormer *former = &labeller->former[k];
@@ -204,7 +204,7 @@ weigh_guesses (const Guess * guesses, guint n, const ClothLatticeNode * node,
 /* Takes labels away from dots that lie nowhere near where the labelled dots around them
  * say, or that nothing but a wrong colour speaks for. */
 void
-cloth_lattice_prune (ClothDotLabeller * labeller)
+cloth_dot_label_prune (ClothDotLabeller * labeller)
 {
   const guint m = (guint) labeller->n_colours + 1;
 
@@ -229,7 +229,7 @@ cloth_lattice_prune (ClothDotLabeller * labeller)
   }
   for (gint here = 0; here < labeller->columns * labeller->rows; here++) {
     if (labeller->holders[here] >= 0 && labeller->doubtful[here]) {
-      cloth_lattice_take_label (&labeller->labels[labeller->holders[here]]);
+      cloth_dot_label_take_label (&labeller->labels[labeller->holders[here]]);
       labeller->holders[here] = -1;
     }
   }
@@ -283,7 +283,7 @@ extend_to (ClothDotLabeller * labeller, gint column, gint row,
 
 /* Labels dots next to labelled ones where place and colour agree. */
 void
-cloth_lattice_extend (ClothDotLabeller * labeller)
+cloth_dot_label_extend (ClothDotLabeller * labeller)
 {
   static const gint ways[4][2] = { {1, 0}, {0, 1}, {-1, 0}, {0, -1} };
   const gint columns = labeller->columns, rows = labeller->rows;

@@ -67,7 +67,7 @@ look_around (ClothDotLabeller * labeller, const ClothDot * dots)
     around->n = labeller->nodes[i].sound
         ? cloth_point_grid_within (labeller->grid, dots[i].x, dots[i].y,
         REACH * sqrtf (longer_variance (dots[i].shape)), around->near,
-        CLOTH_LATTICE_NEAR) : 0;
+        CLOTH_DOT_LABEL_NEAR) : 0;
   }
 }
 
@@ -371,7 +371,7 @@ count_squares (ClothDotLabeller * labeller)
 
 /* Makes nodes of the dots, and a grid to find them by. */
 void
-cloth_lattice_start (ClothDotLabeller * labeller, const ClothDot * dots)
+cloth_dot_label_start (ClothDotLabeller * labeller, const ClothDot * dots)
 {
   gfloat right = 1, bottom = 1, size = 0, cells;
   guint n = 0;
@@ -403,7 +403,7 @@ cloth_lattice_start (ClothDotLabeller * labeller, const ClothDot * dots)
 
 /* Finds each dot's neighbours: nodes[].next, back, step and squares. */
 void
-cloth_lattice_link (ClothDotLabeller * labeller, const ClothDot * dots)
+cloth_dot_label_link (ClothDotLabeller * labeller, const ClothDot * dots)
 {
   look_around (labeller, dots);
   for (guint i = 0; i < labeller->n; i++)
@@ -435,7 +435,8 @@ take_neighbours (ClothDotLabeller * labeller, guint at, gboolean others)
         || !(nodes[at].squares[slot] || others))
       continue;
     nodes[next].patch = nodes[at].patch;
-    cloth_lattice_step (&nodes[at], slot, nodes[next].cell, &nodes[next].turn);
+    cloth_dot_label_step (&nodes[at], slot, nodes[next].cell,
+        &nodes[next].turn);
     labeller->members[labeller->n_members++] = (guint) next;
   }
 }
@@ -464,7 +465,7 @@ grow_patch (ClothDotLabeller * labeller, guint seed)
 
 /* Finds the patches of the lattice, the best knit dots first. */
 void
-cloth_lattice_grow (ClothDotLabeller * labeller)
+cloth_dot_label_grow (ClothDotLabeller * labeller)
 {
   labeller->n_members = 0;
   g_array_set_size (labeller->patches, 0);

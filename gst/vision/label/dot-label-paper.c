@@ -162,7 +162,7 @@ take_next (ClothDotLabeller * labeller, guint i, gint way, const Frame * frame)
     return FALSE;
   dot = find_dot (labeller, node->x, node->y, step);
   if (dot < 0 || labeller->labels[dot].column >= 0
-      || cloth_lattice_look (labeller, (guint) dot)
+      || cloth_dot_label_look (labeller, (guint) dot)
       != labeller->matrix[row * labeller->columns + column])
     return FALSE;
   give_label (labeller, (guint) dot, column, row, labeller->labels[i].mirrored,
@@ -171,7 +171,7 @@ take_next (ClothDotLabeller * labeller, guint i, gint way, const Frame * frame)
   if (!is_near (there.u, frame->u, labeller->params.c)
       || !is_near (there.v, frame->v, labeller->params.c)) {
     labeller->holders[row * labeller->columns + column] = -1;
-    cloth_lattice_take_label (&labeller->labels[dot]);
+    cloth_dot_label_take_label (&labeller->labels[dot]);
     return FALSE;
   }
   labeller->frames[dot] = there;
@@ -208,7 +208,7 @@ grow_from (ClothDotLabeller * labeller, guint seed, gint column, gint row,
           - logf ((gfloat) (8 * labeller->columns * labeller->rows));
     } else {
       labeller->holders[label->row * labeller->columns + label->column] = -1;
-      cloth_lattice_take_label (label);
+      cloth_dot_label_take_label (label);
     }
   }
   return labeller->n_members >= labeller->params.least_region;
@@ -234,7 +234,7 @@ try_window (ClothDotLabeller * labeller, guint seed, const gfloat e1[2],
     dot = find_dot (labeller, node->x, node->y, step);
     if (dot < 0 || dot == (gint) seed)
       return FALSE;
-    colours[k] = cloth_lattice_look (labeller, (guint) dot);
+    colours[k] = cloth_dot_label_look (labeller, (guint) dot);
   }
   /* Turned by quarters, either way round. */
   for (gint turn = 0; turn < 8; turn++) {
@@ -245,7 +245,7 @@ try_window (ClothDotLabeller * labeller, guint seed, const gfloat e1[2],
     gpointer found;
     Frame frame;
 
-    key = cloth_lattice_look (labeller, seed);
+    key = cloth_dot_label_look (labeller, seed);
     for (gint k = 0; k < 8; k++)
       key = key * n + colours[(start + sense * k + 8) & 7];
     if (!g_hash_table_lookup_extended (labeller->windows,
@@ -268,7 +268,7 @@ try_window (ClothDotLabeller * labeller, guint seed, const gfloat e1[2],
 
 /* Labels the dots by seeds and growing of regions. */
 void
-cloth_lattice_label_as_paper (ClothDotLabeller * labeller)
+cloth_dot_label_label_as_paper (ClothDotLabeller * labeller)
 {
   guint patch = 0;
 

@@ -89,7 +89,7 @@ gain_at (const ClothDotLabeller * labeller, const ClothLatticePlace * place,
 
 /* Turns likelihoods into log-odds; takes all labels away. */
 void
-cloth_lattice_weigh (ClothDotLabeller * labeller,
+cloth_dot_label_weigh (ClothDotLabeller * labeller,
     const gfloat * log_likelihoods)
 {
   const guint m = (guint) labeller->n_colours;
@@ -100,7 +100,7 @@ cloth_lattice_weigh (ClothDotLabeller * labeller,
     gfloat *to = labeller->gains + i * (m + 1);
     gfloat most = -G_MAXFLOAT, sum = 0;
 
-    cloth_lattice_take_label (&labeller->labels[i]);
+    cloth_dot_label_take_label (&labeller->labels[i]);
     for (guint k = 0; k < m; k++)
       most = MAX (most, from[k]);
     for (guint k = 0; k < m; k++)
@@ -126,7 +126,7 @@ is_true_link (const ClothDotLabeller * labeller, const ClothLatticeNode * node,
   next = &labeller->nodes[node->next[slot]];
   if (next->patch != node->patch)
     return FALSE;
-  cloth_lattice_step (node, slot, cell, &turn);
+  cloth_dot_label_step (node, slot, cell, &turn);
   return cell[0] == next->cell[0] && cell[1] == next->cell[1]
       && turn == next->turn;
 }
@@ -193,7 +193,7 @@ ask_all (ClothDotLabeller * labeller, const guint * probes, guint n)
 {
   const guint m = (guint) labeller->n_colours + 1;
   const gint32 *middle = labeller->nodes[probes[0]].cell;
-  const gint pad = CLOTH_LATTICE_PAD, stride = labeller->columns + 2 * pad;
+  const gint pad = CLOTH_DOT_LABEL_PAD, stride = labeller->columns + 2 * pad;
   const gfloat *gains[N_FIRST];
   Candidate *candidates;
   gfloat best = -G_MAXFLOAT;
@@ -577,18 +577,18 @@ keep_unique (ClothDotLabeller * labeller)
     other = *holder < 0 ? NULL : &labeller->labels[*holder];
     if (!other || other->confidence < label->confidence) {
       if (other)
-        cloth_lattice_take_label (other);
+        cloth_dot_label_take_label (other);
       *holder = (gint32) i;
       continue;
     }
-    cloth_lattice_take_label (label);
+    cloth_dot_label_take_label (label);
   }
 }
 
 /* Counts how dots look whose labels say what colour they have, and learns how often the
  * two differ. */
 void
-cloth_lattice_compare (ClothDotLabeller * labeller)
+cloth_dot_label_compare (ClothDotLabeller * labeller)
 {
   guint n = 0, n_wrong = 0;
 
@@ -601,7 +601,7 @@ cloth_lattice_compare (ClothDotLabeller * labeller)
 
     if (labeller->holders[k] < 0)
       continue;
-    look = cloth_lattice_look (labeller, (guint) labeller->holders[k]);
+    look = cloth_dot_label_look (labeller, (guint) labeller->holders[k]);
     labeller->looks[colour][look] += 1;
     n++;
     n_wrong += look != colour;
@@ -690,7 +690,7 @@ place_by_search (ClothDotLabeller * labeller, guint number)
 
 /* Places the patches and labels their dots. */
 void
-cloth_lattice_place (ClothDotLabeller * labeller)
+cloth_dot_label_place (ClothDotLabeller * labeller)
 {
   const gfloat n_places = (gfloat) (TURNS * labeller->columns * labeller->rows);
   const gfloat needed = labeller->params.lead + logf (n_places);

@@ -27,18 +27,18 @@ typedef struct
 } ClothLatticeNode;
 
 /* Most dots around one that are looked at for neighbours. */
-#define CLOTH_LATTICE_NEAR 32
+#define CLOTH_DOT_LABEL_NEAR 32
 
 /* Dots about a patch's anchor that are asked of all placings lie no farther from it. */
-#define CLOTH_LATTICE_PAD 8
+#define CLOTH_DOT_LABEL_PAD 8
 
 /* The dots around a dot, which way they lie on the cloth but for some angle
  * (unit vectors) and how far, in pitches. */
 typedef struct
 {
-  gint32 near[CLOTH_LATTICE_NEAR];
-  gfloat way[CLOTH_LATTICE_NEAR][2];
-  gfloat distance[CLOTH_LATTICE_NEAR];
+  gint32 near[CLOTH_DOT_LABEL_NEAR];
+  gfloat way[CLOTH_DOT_LABEL_NEAR][2];
+  gfloat distance[CLOTH_DOT_LABEL_NEAR];
   guint n;
 } ClothLatticeAround;
 
@@ -91,7 +91,7 @@ struct _ClothDotLabeller
 {
   gint columns, rows, n_colours;
   guint8 *matrix;
-  guint8 *padded;               /* with n_colours on a rim CLOTH_LATTICE_PAD wide */
+  guint8 *padded;               /* with n_colours on a rim CLOTH_DOT_LABEL_PAD wide */
   guint8 *doubtful;             /* of each label */
   ClothLatticeCell *cells;      /* the array's, colour by colour */
   guint of_colour[CLOTH_DOT_COLOURS_MAX + 1];   /* where each colour's begin */
@@ -124,7 +124,7 @@ struct _ClothDotLabeller
 
 /* Where the neighbour of @slot lies in the patch, and how it is turned there. */
 static inline void
-cloth_lattice_step (const ClothLatticeNode * node, gint slot, gint32 cell[2],
+cloth_dot_label_step (const ClothLatticeNode * node, gint slot, gint32 cell[2],
     guint8 * turn)
 {
   static const gint8 ways[4][2] = { {1, 0}, {0, 1}, {-1, 0}, {0, -1} };
@@ -138,7 +138,7 @@ cloth_lattice_step (const ClothLatticeNode * node, gint slot, gint32 cell[2],
 
 /* The colour that dot @i looks most like. */
 static inline guint
-cloth_lattice_look (const ClothDotLabeller * labeller, guint i)
+cloth_dot_label_look (const ClothDotLabeller * labeller, guint i)
 {
   const gfloat *gains = labeller->gains
       + i * (guint) (labeller->n_colours + 1);
@@ -151,23 +151,23 @@ cloth_lattice_look (const ClothDotLabeller * labeller, guint i)
 }
 
 static inline void
-cloth_lattice_take_label (ClothDotLabel * label)
+cloth_dot_label_take_label (ClothDotLabel * label)
 {
   *label = (ClothDotLabel) {
   -1, -1, 0, FALSE, G_MAXUINT};
 }
 
-void cloth_lattice_start (ClothDotLabeller * labeller, const ClothDot * dots);
-void cloth_lattice_link (ClothDotLabeller * labeller, const ClothDot * dots);
-void cloth_lattice_grow (ClothDotLabeller * labeller);
-void cloth_lattice_weigh (ClothDotLabeller * labeller,
+void cloth_dot_label_start (ClothDotLabeller * labeller, const ClothDot * dots);
+void cloth_dot_label_link (ClothDotLabeller * labeller, const ClothDot * dots);
+void cloth_dot_label_grow (ClothDotLabeller * labeller);
+void cloth_dot_label_weigh (ClothDotLabeller * labeller,
     const gfloat * log_likelihoods);
-void cloth_lattice_place (ClothDotLabeller * labeller);
-void cloth_lattice_foretell (ClothDotLabeller * labeller);
-void cloth_lattice_compare (ClothDotLabeller * labeller);
-void cloth_lattice_prune (ClothDotLabeller * labeller);
-void cloth_lattice_extend (ClothDotLabeller * labeller);
-void cloth_lattice_remember (ClothDotLabeller * labeller);
-void cloth_lattice_label_as_paper (ClothDotLabeller * labeller);
+void cloth_dot_label_place (ClothDotLabeller * labeller);
+void cloth_dot_label_foretell (ClothDotLabeller * labeller);
+void cloth_dot_label_compare (ClothDotLabeller * labeller);
+void cloth_dot_label_prune (ClothDotLabeller * labeller);
+void cloth_dot_label_extend (ClothDotLabeller * labeller);
+void cloth_dot_label_remember (ClothDotLabeller * labeller);
+void cloth_dot_label_label_as_paper (ClothDotLabeller * labeller);
 
 G_END_DECLS

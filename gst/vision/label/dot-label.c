@@ -34,7 +34,7 @@ cloth_dot_label_default_params (void)
 static guint8 *
 pad_matrix (const ClothDotLabeller * labeller)
 {
-  const gsize pad = CLOTH_LATTICE_PAD, columns = (gsize) labeller->columns;
+  const gsize pad = CLOTH_DOT_LABEL_PAD, columns = (gsize) labeller->columns;
   const gsize rows = (gsize) labeller->rows, stride = columns + 2 * pad;
   guint8 *padded = g_malloc (stride * (rows + 2 * pad));
 
@@ -215,20 +215,20 @@ cloth_dot_labeller_run (ClothDotLabeller * labeller,
   if (labeller->error <= 0)
     labeller->error = labeller->params.colour_error;
   make_room (labeller, MIN (n_dots, CLOTH_DOT_MAX));
-  cloth_lattice_start (labeller, dots);
-  cloth_lattice_weigh (labeller, log_likelihoods);
+  cloth_dot_label_start (labeller, dots);
+  cloth_dot_label_weigh (labeller, log_likelihoods);
   if (params->paper) {
-    cloth_lattice_label_as_paper (labeller);
+    cloth_dot_label_label_as_paper (labeller);
     return;
   }
-  cloth_lattice_link (labeller, dots);
-  cloth_lattice_grow (labeller);
-  cloth_lattice_foretell (labeller);
-  cloth_lattice_place (labeller);
-  cloth_lattice_compare (labeller);
-  cloth_lattice_prune (labeller);
-  cloth_lattice_extend (labeller);
-  cloth_lattice_remember (labeller);
+  cloth_dot_label_link (labeller, dots);
+  cloth_dot_label_grow (labeller);
+  cloth_dot_label_foretell (labeller);
+  cloth_dot_label_place (labeller);
+  cloth_dot_label_compare (labeller);
+  cloth_dot_label_prune (labeller);
+  cloth_dot_label_extend (labeller);
+  cloth_dot_label_remember (labeller);
 }
 
 /**

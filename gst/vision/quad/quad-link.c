@@ -25,7 +25,7 @@
 /* A vertex this near a guess is that vertex, in squares. */
 #define SURE_REACH 0.3f
 /* The edge of something bright looks like cloth where the board would go on now and then,
- * so a larger lead than CLOTH_PLACE_MIN_LEAD is asked where the memory knows the board but
+ * so a larger lead than CLOTH_POSE_MIN_LEAD is asked where the memory knows the board but
  * not there, and most of one against the memory. */
 #define NEW_LEAD 4.0f
 #define SURE_LEAD 8.0f
@@ -105,7 +105,7 @@ guess_direction (ClothQuadTracker * tracker, gint column, gint row,
 }
 
 static void
-add_vote (ClothPlacement * votes, guint * n, const ClothPlacement * vote)
+add_vote (ClothPose * votes, guint * n, const ClothPose * vote)
 {
   guint k;
 
@@ -164,19 +164,18 @@ recall_all (ClothQuadTracker * tracker)
 
 /* Whether black squares of the patch come onto black ones of the board. */
 static gboolean
-is_same_colour (const ClothQuadTracker * tracker,
-    const ClothPlacement * placement)
+is_same_colour (const ClothQuadTracker * tracker, const ClothPose * placement)
 {
   gint column, row;
 
-  cloth_placement_cell (placement, 0, 0, &column, &row);
+  cloth_pose_cell (placement, 0, 0, &column, &row);
   return cloth_pattern_is_black (&tracker->pattern, column & 1, row & 1)
       == cloth_patch_is_black (&tracker->patch, 0, 0);
 }
 
 /* What the remembered vertices say of the place of the patch. */
 static guint
-vote_by_memory (ClothQuadTracker * tracker, ClothPlacement votes[MAX_VOTES])
+vote_by_memory (ClothQuadTracker * tracker, ClothPose votes[MAX_VOTES])
 {
   const ClothPatch *patch = &tracker->patch;
   gint columns = tracker->pattern.columns + 1;
@@ -191,7 +190,7 @@ vote_by_memory (ClothQuadTracker * tracker, ClothPlacement votes[MAX_VOTES])
       const gint vertex = near->vertex;
       const ClothQuadVertex *guess = &tracker->vertices[MAX (vertex, 0)];
       gfloat dx, dy, bx, by;
-      ClothPlacement vote;
+      ClothPose vote;
       gint column, row;
 
       if (patch->kind[at] != CLOTH_VERTEX_SADDLE || vertex < 0
@@ -202,7 +201,7 @@ vote_by_memory (ClothQuadTracker * tracker, ClothPlacement votes[MAX_VOTES])
         continue;
       vote.rotation = rotation_between (dx, dy, bx, by);
       vote.column = vote.row = 0;
-      cloth_placement_vertex (&vote, i, j, &column, &row);
+      cloth_pose_vertex (&vote, i, j, &column, &row);
       vote.column = vertex % columns - column;
       vote.row = vertex / columns - row;
       if (!is_same_colour (tracker, &vote))
@@ -224,7 +223,7 @@ vote_by_memory (ClothQuadTracker * tracker, ClothPlacement votes[MAX_VOTES])
 /* What a square given by the user says of it. */
 static guint
 vote_by_seed (ClothQuadTracker * tracker, const ClothQuadSeed * seed,
-    ClothPlacement * vote)
+    ClothPose * vote)
 {
   const ClothPatch *patch = &tracker->patch;
   const ClothPattern *pattern = &tracker->pattern;
@@ -252,7 +251,7 @@ vote_by_seed (ClothQuadTracker * tracker, const ClothQuadSeed * seed,
     return 0;
   dx = patch->x[best + 1] - patch->x[best];
   dy = patch->y[best + 1] - patch->y[best];
-  *vote = (ClothPlacement) {
+  *vote = (ClothPose) {
   rotation_between (dx, dy, seed->x[1] - seed->x[0],
         seed->y[1] - seed->y[0]), 0, 0, SEED};
   wanted_column = seed->column;
@@ -267,7 +266,7 @@ vote_by_seed (ClothQuadTracker * tracker, const ClothQuadSeed * seed,
       wanted_column--;
     vote->weight = SEED_UNTOLD;
   }
-  cloth_placement_cell (vote, best % patch->columns, best / patch->columns,
+  cloth_pose_cell (vote, best % patch->columns, best / patch->columns,
       &column, &row);
   vote->column = wanted_column - column;
   vote->row = wanted_row - row;
@@ -277,8 +276,7 @@ vote_by_seed (ClothQuadTracker * tracker, const ClothQuadSeed * seed,
 /* What the memory says of vertex (@i, @j) of the patch under a placement: 1 yes, -1 no, 0
  * nothing. */
 static gint
-recall (ClothQuadTracker * tracker, const ClothPlacement * placement, gint i,
-    gint j)
+recall (ClothQuadTracker * tracker, const ClothPose * placement, gint i, gint j)
 {
   const ClothQuadRecall *near = &g_array_index (tracker->recalls,
       ClothQuadRecall, j * tracker->patch.columns + i);
@@ -286,7 +284,7 @@ recall (ClothQuadTracker * tracker, const ClothPlacement * placement, gint i,
 
   if (near->vertex < 0 || near->distance > SURE_REACH)
     return 0;
-  cloth_placement_vertex (placement, i, j, &column, &row);
+  cloth_pose_vertex (placement, i, j, &column, &row);
   return column >= 0 && column <= tracker->pattern.columns
       && near->vertex == row * (tracker->pattern.columns + 1) + column ? 1 : -1;
 }
@@ -294,7 +292,7 @@ recall (ClothQuadTracker * tracker, const ClothPlacement * placement, gint i,
 /* The same of the cell (@i, @j): for less against. Even is against: a square has all of its
  * corners right. */
 static gint
-recall_square (ClothQuadTracker * tracker, const ClothPlacement * placement,
+recall_square (ClothQuadTracker * tracker, const ClothPose * placement,
     gint i, gint j)
 {
   gint sum = 0;
@@ -312,7 +310,7 @@ recall_square (ClothQuadTracker * tracker, const ClothPlacement * placement,
 
 /* Takes one square of a placed patch. */
 static void
-take_square (ClothQuadTracker * tracker, const ClothPlacement * placement,
+take_square (ClothQuadTracker * tracker, const ClothPose * placement,
     gint i, gint j)
 {
   const ClothPatch *patch = &tracker->patch;
@@ -322,7 +320,7 @@ take_square (ClothQuadTracker * tracker, const ClothPlacement * placement,
   gfloat x[4], y[4], cov[4][3], confidence;
   ClothQuadCell *cell;
 
-  cloth_placement_cell (placement, i, j, &column, &row);
+  cloth_pose_cell (placement, i, j, &column, &row);
   cell = cloth_quad_cell (tracker, column, row);
   if (!cell || !cell->wanted || cell->found)
     return;
@@ -331,7 +329,7 @@ take_square (ClothQuadTracker * tracker, const ClothPlacement * placement,
     gint lj = j + cloth_quad_corner_row[k];
     gint from = lj * patch->columns + li, c, r, to;
 
-    cloth_placement_vertex (placement, li, lj, &c, &r);
+    cloth_pose_vertex (placement, li, lj, &c, &r);
     /* An inner corner that is no saddle is where a fold cuts the square. */
     if (patch->kind[from] == CLOTH_VERTEX_RIM
         && cloth_quad_is_inner (tracker, c, r))
@@ -356,8 +354,7 @@ take_square (ClothQuadTracker * tracker, const ClothPlacement * placement,
 /* Takes the squares of the patch that the memory puts where the placement does, by at
  * least @least corners. */
 static void
-take_patch (ClothQuadTracker * tracker, const ClothPlacement * placement,
-    gint least)
+take_patch (ClothQuadTracker * tracker, const ClothPose * placement, gint least)
 {
   const ClothPatch *patch = &tracker->patch;
 
@@ -374,7 +371,7 @@ take_patch (ClothQuadTracker * tracker, const ClothPlacement * placement,
       if (!patch->kind[from]
           || recall (tracker, placement, i, j) < MIN (least, 1))
         continue;
-      cloth_placement_vertex (placement, i, j, &column, &row);
+      cloth_pose_vertex (placement, i, j, &column, &row);
       if (column < 0 || row < 0 || column > tracker->pattern.columns
           || row > tracker->pattern.rows)
         continue;
@@ -391,7 +388,7 @@ take_patch (ClothQuadTracker * tracker, const ClothPlacement * placement,
  * placed. @from: where its corners were noted already, the number of those noted if they
  * were not. */
 static void
-note_corners (ClothQuadTracker * tracker, const ClothPlacement * placement,
+note_corners (ClothQuadTracker * tracker, const ClothPose * placement,
     guint from)
 {
   const ClothPatch *patch = &tracker->patch;
@@ -403,7 +400,7 @@ note_corners (ClothQuadTracker * tracker, const ClothPlacement * placement,
       if (!patch->kind[at])
         continue;
       if (placement) {
-        cloth_placement_vertex (placement, i, j, &column, &row);
+        cloth_pose_vertex (placement, i, j, &column, &row);
         if (column >= 0 && row >= 0 && column <= tracker->pattern.columns
             && row <= tracker->pattern.rows)
           vertex = row * (tracker->pattern.columns + 1) + column;
@@ -525,7 +522,7 @@ doubt (ClothQuadTracker * tracker)
 /* Counts the cells around the patch that show the board's end, and those of which nothing
  * is known though the board goes on there; of the colour that the cloth has not. */
 static void
-count_rim (ClothQuadTracker * tracker, const ClothPlacement * placement,
+count_rim (ClothQuadTracker * tracker, const ClothPose * placement,
     gint * n_rim, gint * n_hidden)
 {
   const ClothPatch *patch = &tracker->patch;
@@ -542,7 +539,7 @@ count_rim (ClothQuadTracker * tracker, const ClothPlacement * placement,
               || patch->square[at + n]))
         continue;
       black = cloth_patch_is_black (patch, i, j);
-      cloth_placement_cell (placement, i, j, &column, &row);
+      cloth_pose_cell (placement, i, j, &column, &row);
       if (cloth_quad_cell (tracker, column, row))
         hidden[black]++;
       else
@@ -556,7 +553,7 @@ count_rim (ClothQuadTracker * tracker, const ClothPlacement * placement,
 /* Where the refused patches of the last picture put what this one does, the evidence for
  * that; else 0. */
 static gfloat
-evidence_before (ClothQuadTracker * tracker, const ClothPlacement * placement)
+evidence_before (ClothQuadTracker * tracker, const ClothPose * placement)
 {
   const ClothPatch *patch = &tracker->patch;
   gfloat evidence = G_MAXFLOAT;
@@ -579,7 +576,7 @@ evidence_before (ClothQuadTracker * tracker, const ClothPlacement * placement)
           near.index);
       if (sqrtf (near.distance2) > VOTE_REACH * before->size)
         continue;
-      cloth_placement_vertex (placement, i, j, &column, &row);
+      cloth_pose_vertex (placement, i, j, &column, &row);
       if (before->vertex != row * (tracker->pattern.columns + 1) + column) {
         against++;
         continue;
@@ -592,7 +589,7 @@ evidence_before (ClothQuadTracker * tracker, const ClothPlacement * placement)
 
 /* Keeps a patch refused for want of @evidence, which pictures have added up, in mind. */
 static void
-note_pending (ClothQuadTracker * tracker, const ClothPlacement * placement,
+note_pending (ClothQuadTracker * tracker, const ClothPose * placement,
     gfloat evidence)
 {
   const ClothPatch *patch = &tracker->patch;
@@ -605,7 +602,7 @@ note_pending (ClothQuadTracker * tracker, const ClothPlacement * placement,
 
       if (patch->kind[at] != CLOTH_VERTEX_SADDLE || !patch->kind[at + 1])
         continue;
-      cloth_placement_vertex (placement, i, j, &column, &row);
+      cloth_pose_vertex (placement, i, j, &column, &row);
       own.vertex = row * (tracker->pattern.columns + 1) + column;
       own.size = hypotf (patch->x[at + 1] - patch->x[at],
           patch->y[at + 1] - patch->y[at]);
@@ -620,7 +617,7 @@ note_pending (ClothQuadTracker * tracker, const ClothPlacement * placement,
  * mostly when nothing is remembered: then more is asked, or less a picture but in several
  * that follow each other. */
 static gboolean
-is_evident (ClothQuadTracker * tracker, const ClothPlacement * placement)
+is_evident (ClothQuadTracker * tracker, const ClothPose * placement)
 {
   const gfloat evidence = placement->evidence;
   gint rim, hidden;
@@ -656,12 +653,12 @@ is_evident (ClothQuadTracker * tracker, const ClothPlacement * placement)
 /* Places the patch that was just built. Linking may have joined pieces on both sides of a
  * fold: @other is the place that memory knows of the second piece, weight 0 for none. */
 static gboolean
-place (ClothQuadTracker * tracker, gboolean first, ClothPlacement * placement,
-    ClothPlacement * other)
+place (ClothQuadTracker * tracker, gboolean first, ClothPose * placement,
+    ClothPose * other)
 {
-  ClothPlacement votes[MAX_VOTES + MAX_SEEDS];
+  ClothPose votes[MAX_VOTES + MAX_SEEDS];
   guint n_memory, n;
-  ClothPlaceWeights weights = cloth_place_cloth;
+  ClothPoseWeights weights = cloth_pose_cloth;
   gfloat agrees = 0, known = 0;
   gboolean evident;
 
@@ -673,9 +670,9 @@ place (ClothQuadTracker * tracker, gboolean first, ClothPlacement * placement,
   /* With nothing to go by, a plain board that looks the same after a turn is taken the way
    * it is most upright; from then on the memory tells which way that was. */
   weights.twins = first && n == 0 && tracker->guess_vertex->len == 0;
-  if (!cloth_placer_run (tracker->placer, &tracker->patch, &weights, votes, n,
-          placement)
-      || placement->weight < CLOTH_PLACE_MIN_LEAD)
+  if (!cloth_pose_finder_run (tracker->placer, &tracker->patch, &weights, votes,
+          n, placement)
+      || placement->weight < CLOTH_POSE_MIN_LEAD)
     return FALSE;
   for (guint v = 0; v < n; v++)
     if (votes[v].rotation == placement->rotation
@@ -732,7 +729,7 @@ try_patch (ClothQuadTracker * tracker, const ClothLinkPatch * link,
   const ClothPatchParams params = { tracker->params->alpha,
     tracker->params->c_low, -3.0f, 0.25f, FALSE, tracker->pattern.code != NULL
   };
-  ClothPlacement placement, other = { 0 };
+  ClothPose placement, other = { 0 };
 
   cloth_patch_build (&tracker->patch, tracker->image, tracker->saddles, link,
       &params);
