@@ -24,8 +24,6 @@
  *     pattern=pattern.json effects="noise,sigma=3; rolling_shutter,seconds=0.01" ! \
  *     videoconvert ! autovideosink
  * ]|
- *
- * Since: 0.1
  */
 #ifdef HAVE_CONFIG_H
 #include "config.h"

@@ -18,16 +18,12 @@ G_DECLARE_DERIVABLE_TYPE (GstClothFilter, gst_cloth_filter, GST, CLOTH_FILTER,
 #define GST_CLOTH_FILTER_FORMATS "{ GRAY8, I420, YV12, NV12, NV21, Y42B, " \
     "NV16, NV61, Y444, NV24, Y41B, YUV9, YVU9, A420 }"
 
-/**
- * GstClothFilterFrame:
- * @luma: the picture's luma, mapped for reading
+/* @luma: the picture's luma, mapped for reading
  * @video: the whole picture, mapped for reading
  * @sequence: number of the picture: the buffer's offset where it has one, else its stream
  *   time in pictures, else counted from the start of the stream
  * @camera: name of the camera, "" when none was set
  * @buffer: the buffer, whose metas may be changed and whose memory may not
- *
- * Since: 0.1
  */
 typedef struct {
   ClothImage luma;
@@ -37,9 +33,7 @@ typedef struct {
   GstBuffer *buffer;
 } GstClothFilterFrame;
 
-/**
- * GstClothFilterClass:
- * @parent_class: the parent class
+/* @parent_class: the parent class
  * @start: the stream starts: load what the properties name, or post an error
  * @stop: the stream has stopped
  * @reset: pictures to come have nothing to do with those that were: at new caps, after a
@@ -47,8 +41,6 @@ typedef struct {
  * @analyse: look at one picture
  *
  * All but @analyse may be %NULL.
- *
- * Since: 0.1
  */
 struct _GstClothFilterClass {
   GstBaseTransformClass parent_class;

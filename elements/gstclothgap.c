@@ -40,8 +40,6 @@
  * gst-launch-1.0 -m meshsrc location=take ! clothgap model=model.json location=take \
  *     output=gap ! fakesink
  * ]|
- *
- * Since: 0.1
  */
 #ifdef HAVE_CONFIG_H
 #include "config.h"

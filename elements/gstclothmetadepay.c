@@ -22,8 +22,6 @@ GST_DEBUG_CATEGORY_STATIC (cloth_meta_depay_debug);
  * gst-launch-1.0 filesrc location=cam0.gdp ! gdpdepay ! clothmetadepay !
  *     clothoverlay ! videoconvert ! autovideosink
  * ```
- *
- * Since: 0.1
  */
 struct _GstClothMetaDepay
 {

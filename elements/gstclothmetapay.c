@@ -27,8 +27,6 @@ GST_DEBUG_CATEGORY_STATIC (cloth_meta_pay_debug);
  * gst-launch-1.0 videotestsrc num-buffers=10 ! clothmetapay ! gdppay !
  *     filesink location=cam0.gdp
  * ```
- *
- * Since: 0.1
  */
 struct _GstClothMetaPay
 {

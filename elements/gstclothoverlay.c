@@ -38,8 +38,6 @@
  *     rig=rig.json camera=cam0 gap-scale=20 ! videoconvert ! autovideosink \
  *     meshsrc location=take ! clothgap model=model.json location=take ! o.mesh
  * ]|
- *
- * Since: 0.1
  */
 #ifdef HAVE_CONFIG_H
 #include "config.h"

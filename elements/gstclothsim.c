@@ -18,8 +18,6 @@
  * |[
  * gst-launch-1.0 clothsim model=model.json location=take ! meshsink location=cloth.ply
  * ]|
- *
- * Since: 0.1
  */
 #ifdef HAVE_CONFIG_H
 #include "config.h"

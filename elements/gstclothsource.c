@@ -106,16 +106,12 @@ check_times (GstClothSource * self, const GstClothSourceStream * stream)
   return TRUE;
 }
 
-/**
- * gst_cloth_source_publish:
- * @source: the source, in its open method
+/* @source: the source, in its open method
  * @stream: what it is going to send
  *
  * Checks the stream and tells its caps and duration.
  *
  * Returns: %FALSE when the stream can't be sent; an error was posted
- *
- * Since: 0.1
  */
 gboolean
 gst_cloth_source_publish (GstClothSource * source,
@@ -153,13 +149,9 @@ gst_cloth_source_publish (GstClothSource * source,
   return TRUE;
 }
 
-/**
- * gst_cloth_source_is_flushing:
- * @source: the source, in its make_mesh method
+/* @source: the source, in its make_mesh method
  *
  * Returns: %TRUE when the mesh isn't wanted any more: a seek or a stop waits
- *
- * Since: 0.1
  */
 gboolean
 gst_cloth_source_is_flushing (GstClothSource * source)

@@ -14,9 +14,7 @@ G_BEGIN_DECLS
 G_DECLARE_DERIVABLE_TYPE (GstClothSource, gst_cloth_source, GST, CLOTH_SOURCE,
     GstPushSrc)
 
-/**
- * GstClothSourceClass:
- * @parent_class: the parent class
+/* @parent_class: the parent class
  * @backwards: whether frames can be made in falling order too
  * @open: load what the properties name and call gst_cloth_source_publish(), or post an
  *   error and return %FALSE
@@ -25,8 +23,6 @@ G_DECLARE_DERIVABLE_TYPE (GstClothSource, gst_cloth_source, GST, CLOTH_SOURCE,
  *   the source is flushing
  *
  * The base asks for frames in the order that seeks make.
- *
- * Since: 0.1
  */
 struct _GstClothSourceClass {
   GstPushSrcClass parent_class;
@@ -37,9 +33,7 @@ struct _GstClothSourceClass {
   GstClothMesh *(*make_mesh) (GstClothSource * source, guint frame);
 };
 
-/**
- * GstClothSourceStream:
- * @location: what the stream comes from, for messages
+/* @location: what the stream comes from, for messages
  * @advice: appended to the message that a time can't be played, or ""
  * @topology: of every mesh
  * @n_frames: frames, 1 or more
@@ -50,8 +44,6 @@ struct _GstClothSourceClass {
  * @fps_d: see @fps_n, over 0
  *
  * A mesh stream, but for its meshes.
- *
- * Since: 0.1
  */
 typedef struct {
   const gchar *location, *advice;

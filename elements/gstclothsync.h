@@ -20,9 +20,7 @@ typedef struct _GstClothSyncPadClass GstClothSyncPadClass;
 G_DECLARE_DERIVABLE_TYPE (GstClothSync, gst_cloth_sync, GST, CLOTH_SYNC,
     GstAggregator)
 
-/**
- * GstClothSyncPad:
- * @parent: the parent
+/* @parent: the parent
  * @index: what the pad is known by in the methods of #GstClothSyncClass
  * @period: of a frame, by the caps; %GST_CLOCK_TIME_NONE when they don't say
  * @used: frames that came into sets
@@ -30,8 +28,6 @@ G_DECLARE_DERIVABLE_TYPE (GstClothSync, gst_cloth_sync, GST, CLOTH_SYNC,
  *
  * A sink pad. A subclass that gives its pads properties derives them from this type and
  * names its own in the pad template; all fields are the base's.
- *
- * Since: 0.1
  */
 struct _GstClothSyncPad {
   GstAggregatorPad parent;
@@ -48,9 +44,7 @@ struct _GstClothSyncPadClass {
 GType gst_cloth_sync_pad_get_type (void);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (GstClothSyncPad, gst_object_unref)
 
-/**
- * GstClothSyncClass:
- * @parent_class: the parent class
+/* @parent_class: the parent class
  * @set_pad_caps: the caps of pad @index have changed, or, with @caps %NULL, the pad is
  *   gone. The subclass posts an element error and returns %FALSE when it can't work
  *   with them. The source pad is negotiated again before the next set.
@@ -67,8 +61,6 @@ G_DEFINE_AUTOPTR_CLEANUP_FUNC (GstClothSyncPad, gst_object_unref)
  * @reset: forgets what earlier frames have left (flush, stop). Optional.
  *
  * All of them are called from the streaming thread, with no lock held.
- *
- * Since: 0.1
  */
 struct _GstClothSyncClass {
   GstAggregatorClass parent_class;
@@ -83,28 +75,20 @@ struct _GstClothSyncClass {
   gpointer _reserved[4];
 };
 
-/**
- * gst_cloth_sync_add_always_pad:
- * @sync: the element, in its instance init
+/* @sync: the element, in its instance init
  * @templ_name: name of an always sink pad template of its class
  *
  * Adds the pad of an always template; it takes the lowest free index.
- *
- * Since: 0.1
  */
 void gst_cloth_sync_add_always_pad (GstClothSync * sync,
     const gchar * templ_name);
 
-/**
- * gst_cloth_sync_set_pad_offset:
- * @sync: the element
+/* @sync: the element
  * @index: pad index, below %GST_CLOTH_SYNC_MAX_PADS
  * @offset: the stream's time minus the common time, ns (`offset_s` of rig.json)
  *
  * Running times of the pad are lowered by @offset before the streams are joined; the
  * sets carry the common time. Frames that come to lie before time 0 are dropped.
- *
- * Since: 0.1
  */
 void gst_cloth_sync_set_pad_offset (GstClothSync * sync, guint index,
     GstClockTimeDiff offset);

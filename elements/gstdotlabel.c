@@ -22,8 +22,6 @@
  * gst-launch-1.0 filesrc location=cam0.mp4 ! decodebin ! dotlabel pattern=pattern.json ! \
  *     clothoverlay ! videoconvert ! autovideosink
  * ]|
- *
- * Since: 0.1
  */
 #ifdef HAVE_CONFIG_H
 #include "config.h"

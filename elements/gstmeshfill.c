@@ -27,8 +27,6 @@
  * |[
  * gst-launch-1.0 meshsrc location=take ! meshfill ! meshsink location=cloth.obj
  * ]|
- *
- * Since: 0.1
  */
 #ifdef HAVE_CONFIG_H
 #include "config.h"

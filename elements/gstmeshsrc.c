@@ -15,8 +15,6 @@
  * |[
  * gst-launch-1.0 meshsrc location=take ! meshsink location=cloth.ply
  * ]|
- *
- * Since: 0.1
  */
 #ifdef HAVE_CONFIG_H
 #include "config.h"

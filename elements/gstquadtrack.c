@@ -38,8 +38,6 @@ GST_DEBUG_CATEGORY_STATIC (quad_track_debug);
  * gst-launch-1.0 filesrc location=cam0.mp4 ! decodebin ! saddledetect !
  *     quadtrack columns=8 rows=8 ! clothoverlay ! videoconvert ! autovideosink
  * ```
- *
- * Since: 0.1
  */
 struct _GstQuadTrack
 {

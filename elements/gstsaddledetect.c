@@ -17,8 +17,6 @@
  * gst-launch-1.0 filesrc location=board.mp4 ! decodebin ! saddledetect ! \
  *     clothoverlay ! videoconvert ! autovideosink
  * ]|
- *
- * Since: 0.1
  */
 #ifdef HAVE_CONFIG_H
 #include "config.h"

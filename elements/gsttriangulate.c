@@ -28,8 +28,6 @@
  *     filesrc location=cam0.mp4 ! decodebin ! saddledetect ! quadtrack ! t.sink_0 \
  *     filesrc location=cam1.mp4 ! decodebin ! saddledetect ! quadtrack ! t.sink_1
  * ]|
- *
- * Since: 0.1
  */
 #ifdef HAVE_CONFIG_H
 #include "config.h"

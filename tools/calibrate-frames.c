@@ -99,9 +99,7 @@ read_all (GstElement * pipeline, const gchar * path, guint every,
   return TRUE;
 }
 
-/**
- * cloth_frames_read:
- * @path: a picture or a film
+/* @path: a picture or a film
  * @every: takes each so many-th picture, the first included
  * @function: gets them
  * @user_data: for @function

@@ -142,9 +142,7 @@ add_views (GString * s, const ClothCalibrateInput * in,
   }
 }
 
-/**
- * cloth_calibrate_report:
- * @input: what was calibrated; views camera by camera, in the order of the shots
+/* @input: what was calibrated; views camera by camera, in the order of the shots
  * @result: what came of it
  * @cameras: (element-type ClothShotCamera): where it came from
  *

@@ -32,9 +32,7 @@ shot_free (gpointer data)
   g_free (shot);
 }
 
-/**
- * cloth_shot_camera_new:
- * @name: the camera's name
+/* @name: the camera's name
  *
  * Returns: (transfer full): a camera without files.
  */
@@ -49,9 +47,7 @@ cloth_shot_camera_new (const gchar * name)
   return camera;
 }
 
-/**
- * cloth_shot_camera_free:
- * @camera: (transfer full): a camera
+/* @camera: (transfer full): a camera
  */
 void
 cloth_shot_camera_free (ClothShotCamera * camera)
@@ -75,9 +71,7 @@ add_file (ClothShotCamera * camera, const gchar * path, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_shot_camera_add:
- * @camera: a camera
+/* @camera: a camera
  * @pattern: a file, or a pattern as of a shell
  * @error: #GFileError when there is no such file, or one that the camera has already
  *
@@ -130,9 +124,7 @@ compare_files (gconstpointer a, gconstpointer b)
   return m < n ? -1 : m > n ? 1 : strcmp (x, y);
 }
 
-/**
- * cloth_shot_cameras_number:
- * @cameras: (element-type ClothShotCamera): all cameras, their files added
+/* @cameras: (element-type ClothShotCamera): all cameras, their files added
  *
  * Sorts the files of each camera by the last number in their names. Pictures of different
  * cameras were taken together when these numbers are equal; or, when some file has none or
@@ -274,9 +266,7 @@ look (const ClothImage * image, guint number, gpointer user_data,
   return camera->film;
 }
 
-/**
- * cloth_shot_camera_read:
- * @camera: a camera, numbered
+/* @camera: a camera, numbered
  * @pattern: the board
  * @every: of films each so many-th frame is looked at
  * @progress: (nullable) (scope call): called after each picture
@@ -337,9 +327,7 @@ difference (const ClothShot ** a, const ClothShot ** b, guint n_cameras)
   return sum / n_cameras;
 }
 
-/**
- * cloth_shot_cameras_choose:
- * @cameras: (element-type ClothShotCamera): all cameras, read
+/* @cameras: (element-type ClothShotCamera): all cameras, read
  * @max_views: most poses to keep
  *
  * Of films keeps poses that differ, each time the one that differs most from all kept, the

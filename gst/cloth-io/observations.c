@@ -203,9 +203,7 @@ read_all (Reader * self, ClothInput * input, GError ** error)
   return TRUE;
 }
 
-/**
- * gst_cloth_io_observations_read:
- * @observations: where the pictures go
+/* @observations: where the pictures go
  * @camera: whose they are: its index in the rig
  * @columns: vertices in a row of the cloth's grid, at least 2
  * @rows: vertices in a column of it, at least 2
@@ -216,7 +214,6 @@ read_all (Reader * self, ClothInput * input, GError ** error)
  * just as triangulate makes them. GStreamer must have been initialised.
  *
  * Returns: %FALSE when a picture can't be one of this take; those before it are in @observations
- * Since: 0.1
  */
 gboolean
 gst_cloth_io_observations_read (ClothObservations * observations, guint camera,
@@ -314,9 +311,7 @@ load_files (ClothObservations * observations, const gchar * folder,
   return TRUE;
 }
 
-/**
- * gst_cloth_io_observations_load:
- * @folder: (type filename): of a take
+/* @folder: (type filename): of a take
  * @topology: the take's mesh
  * @observations: (out) (transfer full) (nullable): what the cameras saw; %NULL when the take
  *   doesn't say
@@ -329,7 +324,6 @@ load_files (ClothObservations * observations, const gchar * folder,
  * the folder when the mesh is no grid, whose vertices are numbered row by row.
  *
  * Returns: %FALSE when something is there that can't be used
- * Since: 0.1
  */
 gboolean
 gst_cloth_io_observations_load (const gchar * folder,
@@ -366,16 +360,13 @@ gst_cloth_io_observations_load (const gchar * folder,
   return TRUE;
 }
 
-/**
- * gst_cloth_io_observations_load_take:
- * @take: a take
+/* @take: a take
  * @observations: (out) (transfer full) (nullable): what the cameras saw
  * @error: as of gst_cloth_io_observations_load ()
  *
  * As gst_cloth_io_observations_load (); what was read counts as files of the take.
  *
  * Returns: %FALSE when something is there that can't be used
- * Since: 0.1
  */
 gboolean
 gst_cloth_io_observations_load_take (ClothTake * take,

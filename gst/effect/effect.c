@@ -55,13 +55,10 @@ static const ClothEffect *const table[] = {
   &cloth_capture_noise.effect,
 };
 
-/**
- * cloth_effect_table:
- * @n_effects: (out): how many there are
+/* @n_effects: (out): how many there are
  *
  * Returns: (transfer none) (array length=n_effects): every effect once, by side:
  *   physics, clamp, numerics, camera, image
- * Since: 0.1
  */
 const ClothEffect *const *
 cloth_effect_table (guint * n_effects)
@@ -70,12 +67,9 @@ cloth_effect_table (guint * n_effects)
   return table;
 }
 
-/**
- * cloth_effect_find:
- * @id: name of an effect
+/* @id: name of an effect
  *
  * Returns: (transfer none) (nullable): the effect of that name
- * Since: 0.1
  */
 const ClothEffect *
 cloth_effect_find (const gchar * id)
@@ -86,12 +80,9 @@ cloth_effect_find (const gchar * id)
   return NULL;
 }
 
-/**
- * cloth_effect_side_name:
- * @side: a side
+/* @side: a side
  *
  * Returns: (transfer none): its name
- * Since: 0.1
  */
 const gchar *
 cloth_effect_side_name (ClothEffectSide side)

@@ -10,17 +10,13 @@ G_BEGIN_DECLS
 /* No effect has more parameters. */
 #define CLOTH_EFFECT_MAX_PARAMETERS 5
 
-/**
- * ClothEffectSide:
- * @CLOTH_EFFECT_PHYSICS: a force, a mass or a rest shape of the cloth
+/* @CLOTH_EFFECT_PHYSICS: a force, a mass or a rest shape of the cloth
  * @CLOTH_EFFECT_CLAMP: where the clamps really were
  * @CLOTH_EFFECT_NUMERICS: how the simulator computes
  * @CLOTH_EFFECT_CAMERA: where and when the cameras say a point was
  * @CLOTH_EFFECT_IMAGE: what the picture does to a point found in it
  *
  * On which side of the comparison an effect acts.
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_EFFECT_PHYSICS,
@@ -30,9 +26,7 @@ typedef enum {
   CLOTH_EFFECT_IMAGE
 } ClothEffectSide;
 
-/**
- * ClothEffectParameter:
- * @name: its key in model.json
+/* @name: its key in model.json
  * @unit: in the notation of the SI, "1" for a ratio
  * @null_value: the value at which the effect is not there
  * @min: least value that makes sense
@@ -43,8 +37,6 @@ typedef enum {
  * @blurb: one plain sentence
  *
  * One number of an effect.
- *
- * Since: 0.1
  */
 typedef struct {
   const gchar *name;
@@ -57,9 +49,7 @@ typedef struct {
   const gchar *blurb;
 } ClothEffectParameter;
 
-/**
- * ClothEffect:
- * @id: its name in model.json and gap.json
+/* @id: its name in model.json and gap.json
  * @side: where it acts
  * @blurb: one plain sentence
  * @source: where the law and the usual values come from
@@ -69,8 +59,6 @@ typedef struct {
  * @parameters: its numbers
  *
  * The description of an effect. There is one for each, constant and shared by all.
- *
- * Since: 0.1
  */
 typedef struct {
   const gchar *id;

@@ -9,14 +9,10 @@
 G_DEFINE_QUARK (cloth-file-error-quark, cloth_file_error)
 /* *INDENT-ON* */
 
-/**
- * cloth_file_invalid:
- * @error: (out): set to %CLOTH_FILE_ERROR_INVALID
+/* @error: (out): set to %CLOTH_FILE_ERROR_INVALID
  * @format: what is wrong and how to mend it
  *
  * Returns: %FALSE, so that a check may end with it
- *
- * Since: 0.1
  */
 gboolean
 cloth_file_invalid (GError ** error, const gchar * format, ...)

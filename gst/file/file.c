@@ -40,16 +40,13 @@ fail_errno (GError ** error, gint code, const gchar * doing, const gchar * path)
   return FALSE;
 }
 
-/**
- * cloth_input_open:
- * @path: a regular file
+/* @path: a regular file
  * @error: #GIOErrorEnum
  *
  * Opens @path for reading. Pipes, devices and folders are refused, so that a name
  * in a hostile manifest can neither block nor read without end.
  *
  * Returns: (transfer full): the input, or %NULL
- * Since: 0.1
  */
 ClothInput *
 cloth_input_open (const gchar * path, GError ** error)
@@ -78,13 +75,10 @@ cloth_input_open (const gchar * path, GError ** error)
   return input;
 }
 
-/**
- * cloth_input_new_memory:
- * @data: @size bytes, borrowed: they must outlive the input
+/* @data: @size bytes, borrowed: they must outlive the input
  * @size: how many
  *
  * Returns: (transfer full): an input over memory
- * Since: 0.1
  */
 ClothInput *
 cloth_input_new_memory (const guint8 * data, gsize size)
@@ -97,12 +91,9 @@ cloth_input_new_memory (const guint8 * data, gsize size)
   return input;
 }
 
-/**
- * cloth_input_get_size:
- * @input: an input
+/* @input: an input
  *
  * Returns: its size in bytes when it was opened
- * Since: 0.1
  */
 guint64
 cloth_input_get_size (const ClothInput * input)
@@ -110,9 +101,7 @@ cloth_input_get_size (const ClothInput * input)
   return input->size;
 }
 
-/**
- * cloth_input_read_at:
- * @input: an input
+/* @input: an input
  * @offset: first byte
  * @destination: room for @size bytes
  * @size: how many bytes
@@ -122,7 +111,6 @@ cloth_input_get_size (const ClothInput * input)
  * (the reason for not mapping it).
  *
  * Returns: %TRUE when all were read
- * Since: 0.1
  */
 gboolean
 cloth_input_read_at (ClothInput * input, guint64 offset, gpointer destination,
@@ -163,9 +151,7 @@ cloth_input_read_at (ClothInput * input, guint64 offset, gpointer destination,
   return TRUE;
 }
 
-/**
- * cloth_input_load:
- * @input: an input
+/* @input: an input
  * @limit: the most bytes accepted
  * @bytes: set to the contents with one 0 byte behind them (`bytes->len` counts it)
  * @error: #ClothFileError, #GIOErrorEnum
@@ -173,7 +159,6 @@ cloth_input_read_at (ClothInput * input, guint64 offset, gpointer destination,
  * Reads everything. @bytes is reused, so that a sequence of files allocates once.
  *
  * Returns: %TRUE when all was read
- * Since: 0.1
  */
 gboolean
 cloth_input_load (ClothInput * input, gsize limit, GByteArray * bytes,
@@ -191,11 +176,7 @@ cloth_input_load (ClothInput * input, gsize limit, GByteArray * bytes,
       error);
 }
 
-/**
- * cloth_input_free:
- * @input: (transfer full) (nullable): an input
- *
- * Since: 0.1
+/* @input: (transfer full) (nullable): an input
  */
 void
 cloth_input_free (ClothInput * input)
@@ -207,16 +188,13 @@ cloth_input_free (ClothInput * input)
   g_free (input);
 }
 
-/**
- * cloth_output_new:
- * @path: the final name; its folder must exist
+/* @path: the final name; its folder must exist
  * @error: #GIOErrorEnum
  *
  * Starts a file under a hidden temporary name in the same folder, so that a later
  * rename cannot cross file systems. Free without commit removes it.
  *
  * Returns: (transfer full): the output, or %NULL
- * Since: 0.1
  */
 ClothOutput *
 cloth_output_new (const gchar * path, GError ** error)
@@ -252,13 +230,9 @@ cloth_output_new (const gchar * path, GError ** error)
   return output;
 }
 
-/**
- * cloth_output_set_sync:
- * @output: an output
+/* @output: an output
  * @sync: whether finishing waits until the bytes are on the disk, as it does by
  *   default. A sequence of small files would wait for each of them.
- *
- * Since: 0.1
  */
 void
 cloth_output_set_sync (ClothOutput * output, gboolean sync)
@@ -266,15 +240,12 @@ cloth_output_set_sync (ClothOutput * output, gboolean sync)
   output->sync = sync;
 }
 
-/**
- * cloth_output_write:
- * @output: an output not yet finished
+/* @output: an output not yet finished
  * @data: bytes to append
  * @size: how many
  * @error: #GIOErrorEnum
  *
  * Returns: %TRUE when they were taken
- * Since: 0.1
  */
 gboolean
 cloth_output_write (ClothOutput * output, gconstpointer data, gsize size,
@@ -285,14 +256,11 @@ cloth_output_write (ClothOutput * output, gconstpointer data, gsize size,
   return TRUE;
 }
 
-/**
- * cloth_output_printf:
- * @output: an output not yet finished
+/* @output: an output not yet finished
  * @error: #GIOErrorEnum
  * @format: as for printf. No floating point: its decimal point follows the locale
  *
  * Returns: %TRUE when the text was taken
- * Since: 0.1
  */
 gboolean
 cloth_output_printf (ClothOutput * output, GError ** error,
@@ -307,9 +275,7 @@ cloth_output_printf (ClothOutput * output, GError ** error,
   return n >= 0 || fail_errno (error, errno, "write", output->path);
 }
 
-/**
- * cloth_output_write_at:
- * @output: an output not yet finished
+/* @output: an output not yet finished
  * @offset: where in what is already written
  * @data: bytes that replace those there
  * @size: how many
@@ -319,7 +285,6 @@ cloth_output_printf (ClothOutput * output, GError ** error,
  * again.
  *
  * Returns: %TRUE when they were taken
- * Since: 0.1
  */
 gboolean
 cloth_output_write_at (ClothOutput * output, guint64 offset,
@@ -332,16 +297,13 @@ cloth_output_write_at (ClothOutput * output, guint64 offset,
   return TRUE;
 }
 
-/**
- * cloth_output_finish:
- * @output: an output
+/* @output: an output
  * @error: #GIOErrorEnum
  *
  * Brings every byte to the disk and closes the file, still under its temporary
  * name. A second call does nothing.
  *
  * Returns: %TRUE when the file is whole
- * Since: 0.1
  */
 gboolean
 cloth_output_finish (ClothOutput * output, GError ** error)
@@ -359,9 +321,7 @@ cloth_output_finish (ClothOutput * output, GError ** error)
   return !failed || fail_errno (error, failed, "write", output->path);
 }
 
-/**
- * cloth_output_commit:
- * @outputs: (array length=n_outputs): files that belong together
+/* @outputs: (array length=n_outputs): files that belong together
  * @n_outputs: how many
  * @error: #GIOErrorEnum
  *
@@ -369,7 +329,6 @@ cloth_output_finish (ClothOutput * output, GError ** error)
  * cannot be renamed those before it are removed, so that no incomplete set stays.
  *
  * Returns: %TRUE when all have their names
- * Since: 0.1
  */
 gboolean
 cloth_output_commit (ClothOutput * const *outputs, guint n_outputs,
@@ -390,16 +349,13 @@ cloth_output_commit (ClothOutput * const *outputs, guint n_outputs,
   return TRUE;
 }
 
-/**
- * cloth_file_write_text:
- * @path: where the file shall be
+/* @path: where the file shall be
  * @text: what is in it
  * @error: #GIOErrorEnum
  *
  * The file appears whole or not at all.
  *
  * Returns: %TRUE when it is there
- * Since: 0.1
  */
 gboolean
 cloth_file_write_text (const gchar * path, const gchar * text, GError ** error)
@@ -410,13 +366,9 @@ cloth_file_write_text (const gchar * path, const gchar * text, GError ** error)
       cloth_output_commit (&output, 1, error);
 }
 
-/**
- * cloth_output_free:
- * @output: (transfer full) (nullable): an output
+/* @output: (transfer full) (nullable): an output
  *
  * Frees it, and removes the file unless it was committed.
- *
- * Since: 0.1
  */
 void
 cloth_output_free (ClothOutput * output)
@@ -432,9 +384,7 @@ cloth_output_free (ClothOutput * output)
   g_free (output);
 }
 
-/**
- * cloth_path_inside:
- * @folder: the folder of a manifest
+/* @folder: the folder of a manifest
  * @name: a file name that the manifest gives
  * @error: #ClothFileError, #GIOErrorEnum
  *
@@ -442,7 +392,6 @@ cloth_output_free (ClothOutput * output)
  * every symbolic link was followed.
  *
  * Returns: (transfer full) (type filename): the path, or %NULL
- * Since: 0.1
  */
 gchar *
 cloth_path_inside (const gchar * folder, const gchar * name, GError ** error)
@@ -475,15 +424,11 @@ cloth_path_inside (const gchar * folder, const gchar * name, GError ** error)
   return inside ? g_steal_pointer (&path) : NULL;
 }
 
-/**
- * cloth_swap_little_endian:
- * @items: numbers as they stand in a little-endian file, or are to stand there
+/* @items: numbers as they stand in a little-endian file, or are to stand there
  * @item_size: 1, 2, 4 or 8 bytes each
  * @n_items: how many
  *
  * Turns them in place into the processor's byte order, or back.
- *
- * Since: 0.1
  */
 void
 cloth_swap_little_endian (gpointer items, gsize item_size, gsize n_items)

@@ -26,16 +26,13 @@ fail_errno (GError ** error, const gchar * path)
   return FALSE;
 }
 
-/**
- * cloth_file_set_new:
- * @stem: what the names begin with
+/* @stem: what the names begin with
  * @ending: what they end with, with its point
  * @error: #GIOErrorEnum
  *
  * Starts `stem_00000.ending` and so on; they wait in a hidden folder beside.
  *
  * Returns: (transfer full): the set, or %NULL
- * Since: 0.1
  */
 ClothFileSet *
 cloth_file_set_new (const gchar * stem, const gchar * ending, GError ** error)
@@ -70,13 +67,10 @@ final_path (const ClothFileSet * set, guint64 number)
       set->ending);
 }
 
-/**
- * cloth_file_set_begin:
- * @set: the set
+/* @set: the set
  * @error: #GIOErrorEnum
  *
  * Returns: (transfer full): the next file, for cloth_file_set_end(), or %NULL
- * Since: 0.1
  */
 ClothOutput *
 cloth_file_set_begin (ClothFileSet * set, GError ** error)
@@ -89,14 +83,11 @@ cloth_file_set_begin (ClothFileSet * set, GError ** error)
   return output;
 }
 
-/**
- * cloth_file_set_end:
- * @set: the set
+/* @set: the set
  * @output: (transfer none): the file, whole now
  * @error: #GIOErrorEnum
  *
  * Returns: %TRUE when the file belongs to the set
- * Since: 0.1
  */
 gboolean
 cloth_file_set_end (ClothFileSet * set, ClothOutput * output, GError ** error)
@@ -126,15 +117,12 @@ sync_files (ClothFileSet * set, GError ** error)
 #endif
 }
 
-/**
- * cloth_file_set_commit:
- * @set: the set
+/* @set: the set
  * @error: #GIOErrorEnum
  *
  * Gives the files their names, replacing those of an earlier set, whole.
  *
  * Returns: %TRUE when all have them
- * Since: 0.1
  */
 gboolean
 cloth_file_set_commit (ClothFileSet * set, GError ** error)
@@ -165,13 +153,9 @@ cloth_file_set_commit (ClothFileSet * set, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_file_set_free:
- * @set: (transfer full) (nullable): the set
+/* @set: (transfer full) (nullable): the set
  *
  * Frees it; files that were not committed are removed.
- *
- * Since: 0.1
  */
 void
 cloth_file_set_free (ClothFileSet * set)

@@ -10,13 +10,10 @@
 /* Bytes that are read at a time. */
 #define PIECE (64u << 10)
 
-/**
- * cloth_file_sha256:
- * @path: a regular file of any size
+/* @path: a regular file of any size
  * @error: #ClothFileError, #GIOErrorEnum
  *
  * Returns: (transfer full) (nullable): SHA-256 of its bytes, 64 hexadecimal digits
- * Since: 0.1
  */
 gchar *
 cloth_file_sha256 (const gchar * path, GError ** error)
@@ -44,9 +41,7 @@ compare_names (gconstpointer a, gconstpointer b)
   return strcmp (*(const gchar * const *) a, *(const gchar * const *) b);
 }
 
-/**
- * cloth_files_sha256:
- * @folder: a folder
+/* @folder: a folder
  * @names: (element-type filename): files in it; sorted by this
  * @error: #ClothFileError, #GIOErrorEnum
  *
@@ -54,7 +49,6 @@ compare_names (gconstpointer a, gconstpointer b)
  * bytes of their names. Each counts once.
  *
  * Returns: (transfer full) (nullable): 64 hexadecimal digits
- * Since: 0.1
  */
 gchar *
 cloth_files_sha256 (const gchar * folder, GPtrArray * names, GError ** error)

@@ -147,9 +147,7 @@ object_end (JsonParser * parser, JsonObject * object, Members * self)
     self->twice = TRUE;
 }
 
-/**
- * cloth_json_parse:
- * @data: the text, not necessarily ended by 0
+/* @data: the text, not necessarily ended by 0
  * @length: its bytes
  * @error: #ClothFileError
  *
@@ -158,8 +156,6 @@ object_end (JsonParser * parser, JsonObject * object, Members * self)
  * and keys that an object has twice, of which it would silently take the last.
  *
  * Returns: (transfer full): a parser whose root is an object, or %NULL
- *
- * Since: 0.1
  */
 JsonParser *
 cloth_json_parse (const gchar * data, gsize length, GError ** error)

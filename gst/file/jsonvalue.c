@@ -5,15 +5,11 @@
 
 #include <math.h>
 
-/**
- * cloth_json_invalid:
- * @file: whose value it is
+/* @file: whose value it is
  * @error: (out): set to say so, behind the name of the file
  * @format: what is wrong and how to mend it
  *
  * Returns: %FALSE, so that a check may end with it
- *
- * Since: 0.1
  */
 gboolean
 cloth_json_invalid (const ClothJsonFile * file, GError ** error,
@@ -29,9 +25,7 @@ cloth_json_invalid (const ClothJsonFile * file, GError ** error,
   return FALSE;
 }
 
-/**
- * cloth_json_check_keys:
- * @file: whose object it is
+/* @file: whose object it is
  * @object: an object
  * @where: what messages call it
  * @allowed: the keys it may have, %NULL-terminated
@@ -40,8 +34,6 @@ cloth_json_invalid (const ClothJsonFile * file, GError ** error,
  * An unknown key is an error: a misspelt one would silently take its default.
  *
  * Returns: %TRUE when it has no others
- *
- * Since: 0.1
  */
 gboolean
 cloth_json_check_keys (const ClothJsonFile * file, JsonObject * object,
@@ -61,14 +53,10 @@ cloth_json_check_keys (const ClothJsonFile * file, JsonObject * object,
   return TRUE;
 }
 
-/**
- * cloth_json_find:
- * @object: an object
+/* @object: an object
  * @key: a key
  *
  * Returns: (transfer none) (nullable): its value; %NULL when absent or null
- *
- * Since: 0.1
  */
 JsonNode *
 cloth_json_find (JsonObject * object, const gchar * key)
@@ -78,14 +66,10 @@ cloth_json_find (JsonObject * object, const gchar * key)
   return node && !JSON_NODE_HOLDS_NULL (node) ? node : NULL;
 }
 
-/**
- * cloth_json_number:
- * @node: a value
+/* @node: a value
  * @value: (out): it
  *
  * Returns: %TRUE when it is a finite number
- *
- * Since: 0.1
  */
 gboolean
 cloth_json_number (JsonNode * node, gdouble * value)
@@ -102,9 +86,7 @@ cloth_json_number (JsonNode * node, gdouble * value)
   return isfinite (*value);
 }
 
-/**
- * cloth_json_get_number:
- * @file: whose object it is
+/* @file: whose object it is
  * @object: an object
  * @key: a key
  * @least: least value allowed
@@ -113,8 +95,6 @@ cloth_json_number (JsonNode * node, gdouble * value)
  * @error: as @file says
  *
  * Returns: %TRUE unless the key holds something else
- *
- * Since: 0.1
  */
 gboolean
 cloth_json_get_number (const ClothJsonFile * file, JsonObject * object,
@@ -133,9 +113,7 @@ cloth_json_get_number (const ClothJsonFile * file, JsonObject * object,
   return TRUE;
 }
 
-/**
- * cloth_json_get_count:
- * @file: whose object it is
+/* @file: whose object it is
  * @object: an object
  * @key: a key that must be there
  * @least: least value allowed
@@ -144,8 +122,6 @@ cloth_json_get_number (const ClothJsonFile * file, JsonObject * object,
  * @error: as @file says
  *
  * Returns: %TRUE when it is a whole number in range
- *
- * Since: 0.1
  */
 gboolean
 cloth_json_get_count (const ClothJsonFile * file, JsonObject * object,
@@ -162,17 +138,13 @@ cloth_json_get_count (const ClothJsonFile * file, JsonObject * object,
   return TRUE;
 }
 
-/**
- * cloth_json_get_string:
- * @file: whose object it is
+/* @file: whose object it is
  * @object: an object
  * @key: a key
  * @value: (inout) (transfer full): left alone when the key is absent or null
  * @error: as @file says
  *
  * Returns: %TRUE unless the key holds something else
- *
- * Since: 0.1
  */
 gboolean
 cloth_json_get_string (const ClothJsonFile * file, JsonObject * object,
@@ -189,9 +161,7 @@ cloth_json_get_string (const ClothJsonFile * file, JsonObject * object,
   return TRUE;
 }
 
-/**
- * cloth_json_get_vector:
- * @file: whose object it is
+/* @file: whose object it is
  * @object: an object
  * @key: a key
  * @needed: whether it must be there
@@ -199,8 +169,6 @@ cloth_json_get_string (const ClothJsonFile * file, JsonObject * object,
  * @error: as @file says
  *
  * Returns: %TRUE unless the key holds something else
- *
- * Since: 0.1
  */
 gboolean
 cloth_json_get_vector (const ClothJsonFile * file, JsonObject * object,
@@ -225,9 +193,7 @@ cloth_json_get_vector (const ClothJsonFile * file, JsonObject * object,
   return TRUE;
 }
 
-/**
- * cloth_json_get_list:
- * @file: whose object it is
+/* @file: whose object it is
  * @object: an object
  * @key: a key
  * @most: greatest length allowed
@@ -235,8 +201,6 @@ cloth_json_get_vector (const ClothJsonFile * file, JsonObject * object,
  * @error: as @file says
  *
  * Returns: (transfer none) (nullable): the list, %NULL when absent, null or bad
- *
- * Since: 0.1
  */
 JsonArray *
 cloth_json_get_list (const ClothJsonFile * file, JsonObject * object,
@@ -258,17 +222,13 @@ cloth_json_get_list (const ClothJsonFile * file, JsonObject * object,
   return array;
 }
 
-/**
- * cloth_json_item_object:
- * @file: whose list it is
+/* @file: whose list it is
  * @array: a list
  * @i: an item
  * @key: what messages call the list
  * @error: as @file says
  *
  * Returns: (transfer none) (nullable): the item when it is an object
- *
- * Since: 0.1
  */
 JsonObject *
 cloth_json_item_object (const ClothJsonFile * file, JsonArray * array, guint i,
@@ -283,13 +243,9 @@ cloth_json_item_object (const ClothJsonFile * file, JsonArray * array, guint i,
   return NULL;
 }
 
-/**
- * cloth_json_add_number:
- * @builder: is within an object
+/* @builder: is within an object
  * @key: a key
  * @value: its value; null when not finite, without a point when whole
- *
- * Since: 0.1
  */
 void
 cloth_json_add_number (JsonBuilder * builder, const gchar * key, gdouble value)
@@ -303,13 +259,9 @@ cloth_json_add_number (JsonBuilder * builder, const gchar * key, gdouble value)
     json_builder_add_double_value (builder, value);
 }
 
-/**
- * cloth_json_add_vector:
- * @builder: is within an object
+/* @builder: is within an object
  * @key: a key
  * @value: three numbers
- *
- * Since: 0.1
  */
 void
 cloth_json_add_vector (JsonBuilder * builder, const gchar * key,
@@ -322,13 +274,9 @@ cloth_json_add_vector (JsonBuilder * builder, const gchar * key,
   json_builder_end_array (builder);
 }
 
-/**
- * cloth_json_add_string:
- * @builder: is within an object
+/* @builder: is within an object
  * @key: a key
  * @value: its value
- *
- * Since: 0.1
  */
 void
 cloth_json_add_string (JsonBuilder * builder, const gchar * key,

@@ -7,15 +7,11 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothJsonFile:
- * @name: what messages begin with, such as `take.json`
+/* @name: what messages begin with, such as `take.json`
  * @domain: error domain of what is wrong with its values
  * @code: error code of the same
  *
  * Whose values are read.
- *
- * Since: 0.1
  */
 typedef struct {
   const gchar *name;

@@ -94,11 +94,7 @@ end (ClothJsonWriter * writer, gchar bracket)
   writer->first = FALSE;
 }
 
-/**
- * cloth_json_writer_new:
- *
- * Returns: (transfer full): a writer of an empty text
- * Since: 0.1
+/* Returns: (transfer full): a writer of an empty text
  */
 ClothJsonWriter *
 cloth_json_writer_new (void)
@@ -110,13 +106,9 @@ cloth_json_writer_new (void)
   return writer;
 }
 
-/**
- * cloth_json_writer_set_exact:
- * @writer: a writer
+/* @writer: a writer
  *
  * Numbers written from now on are, when read, the very same.
- *
- * Since: 0.1
  */
 void
 cloth_json_writer_set_exact (ClothJsonWriter * writer)
@@ -124,12 +116,8 @@ cloth_json_writer_set_exact (ClothJsonWriter * writer)
   writer->exact = TRUE;
 }
 
-/**
- * cloth_json_writer_begin_object:
- * @writer: a writer
+/* @writer: a writer
  * @key: (nullable): its key; %NULL in a list and at the top
- *
- * Since: 0.1
  */
 void
 cloth_json_writer_begin_object (ClothJsonWriter * writer, const gchar * key)
@@ -137,11 +125,7 @@ cloth_json_writer_begin_object (ClothJsonWriter * writer, const gchar * key)
   begin (writer, key, '{');
 }
 
-/**
- * cloth_json_writer_end_object:
- * @writer: a writer
- *
- * Since: 0.1
+/* @writer: a writer
  */
 void
 cloth_json_writer_end_object (ClothJsonWriter * writer)
@@ -149,12 +133,8 @@ cloth_json_writer_end_object (ClothJsonWriter * writer)
   end (writer, '}');
 }
 
-/**
- * cloth_json_writer_begin_array:
- * @writer: a writer
+/* @writer: a writer
  * @key: (nullable): its key; %NULL in a list
- *
- * Since: 0.1
  */
 void
 cloth_json_writer_begin_array (ClothJsonWriter * writer, const gchar * key)
@@ -162,11 +142,7 @@ cloth_json_writer_begin_array (ClothJsonWriter * writer, const gchar * key)
   begin (writer, key, '[');
 }
 
-/**
- * cloth_json_writer_end_array:
- * @writer: a writer
- *
- * Since: 0.1
+/* @writer: a writer
  */
 void
 cloth_json_writer_end_array (ClothJsonWriter * writer)
@@ -174,13 +150,9 @@ cloth_json_writer_end_array (ClothJsonWriter * writer)
   end (writer, ']');
 }
 
-/**
- * cloth_json_writer_string:
- * @writer: a writer
+/* @writer: a writer
  * @key: (nullable): its key; %NULL in a list
  * @value: (nullable): any bytes; %NULL writes null
- *
- * Since: 0.1
  */
 void
 cloth_json_writer_string (ClothJsonWriter * writer, const gchar * key,
@@ -193,13 +165,9 @@ cloth_json_writer_string (ClothJsonWriter * writer, const gchar * key,
     g_string_append (writer->text, "null");
 }
 
-/**
- * cloth_json_writer_number:
- * @writer: a writer
+/* @writer: a writer
  * @key: (nullable): its key; %NULL in a list
  * @value: written with seven digits, or exactly; null unless finite
- *
- * Since: 0.1
  */
 void
 cloth_json_writer_number (ClothJsonWriter * writer, const gchar * key,
@@ -209,13 +177,9 @@ cloth_json_writer_number (ClothJsonWriter * writer, const gchar * key,
   add_number (writer, value);
 }
 
-/**
- * cloth_json_writer_count:
- * @writer: a writer
+/* @writer: a writer
  * @key: (nullable): its key; %NULL in a list
  * @value: a whole number
- *
- * Since: 0.1
  */
 void
 cloth_json_writer_count (ClothJsonWriter * writer, const gchar * key,
@@ -225,13 +189,9 @@ cloth_json_writer_count (ClothJsonWriter * writer, const gchar * key,
   g_string_append_printf (writer->text, "%" G_GUINT64_FORMAT, value);
 }
 
-/**
- * cloth_json_writer_boolean:
- * @writer: a writer
+/* @writer: a writer
  * @key: (nullable): its key; %NULL in a list
  * @value: true or false
- *
- * Since: 0.1
  */
 void
 cloth_json_writer_boolean (ClothJsonWriter * writer, const gchar * key,
@@ -241,16 +201,12 @@ cloth_json_writer_boolean (ClothJsonWriter * writer, const gchar * key,
   g_string_append (writer->text, value ? "true" : "false");
 }
 
-/**
- * cloth_json_writer_numbers:
- * @writer: a writer
+/* @writer: a writer
  * @key: (nullable): its key; %NULL in a list
  * @values: (nullable): numbers; %NULL writes null
  * @n: how many
  *
  * A list of numbers, on one line.
- *
- * Since: 0.1
  */
 void
 cloth_json_writer_numbers (ClothJsonWriter * writer, const gchar * key,
@@ -270,13 +226,10 @@ cloth_json_writer_numbers (ClothJsonWriter * writer, const gchar * key,
   g_string_append_c (writer->text, ']');
 }
 
-/**
- * cloth_json_writer_finish:
- * @writer: a writer whose objects and lists are all ended
+/* @writer: a writer whose objects and lists are all ended
  *
  * Returns: (transfer full): the text, with a line break at its end; the writer can then
  *   only be freed
- * Since: 0.1
  */
 gchar *
 cloth_json_writer_finish (ClothJsonWriter * writer)
@@ -287,11 +240,7 @@ cloth_json_writer_finish (ClothJsonWriter * writer)
   return g_string_free (g_steal_pointer (&writer->text), FALSE);
 }
 
-/**
- * cloth_json_writer_free:
- * @writer: (transfer full) (nullable): a writer
- *
- * Since: 0.1
+/* @writer: (transfer full) (nullable): a writer
  */
 void
 cloth_json_writer_free (ClothJsonWriter * writer)

@@ -7,14 +7,9 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothJsonWriter:
- *
- * Text that grows. Keys are %NULL in lists. Strings that are not UTF-8 are made so;
+/* Text that grows. Keys are %NULL in lists. Strings that are not UTF-8 are made so;
  * what could end a script of HTML (`<`, `>`, `&`) is written as an escape, so that the
  * text may stand in a page. Objects and lists must be ended by whom began them.
- *
- * Since: 0.1
  */
 typedef struct _ClothJsonWriter ClothJsonWriter;
 

@@ -307,15 +307,12 @@ read_header (ClothInput * input, ClothNpyInfo * info, GError ** error)
       error);
 }
 
-/**
- * cloth_npy_reader_new:
- * @input: (transfer full): the bytes of an .npy file
+/* @input: (transfer full): the bytes of an .npy file
  * @error: #ClothFileError, #GIOErrorEnum
  *
  * Reads and checks the header. Nothing of the data is held in memory.
  *
  * Returns: (transfer full): a reader, or %NULL
- * Since: 0.1
  */
 ClothNpyReader *
 cloth_npy_reader_new (ClothInput * input, GError ** error)
@@ -328,13 +325,10 @@ cloth_npy_reader_new (ClothInput * input, GError ** error)
   return g_steal_pointer (&reader);
 }
 
-/**
- * cloth_npy_reader_open:
- * @path: an .npy file
+/* @path: an .npy file
  * @error: #ClothFileError, #GIOErrorEnum
  *
  * Returns: (transfer full): a reader, or %NULL
- * Since: 0.1
  */
 ClothNpyReader *
 cloth_npy_reader_open (const gchar * path, GError ** error)
@@ -350,12 +344,9 @@ cloth_npy_reader_open (const gchar * path, GError ** error)
   return reader;
 }
 
-/**
- * cloth_npy_reader_get_info:
- * @reader: a reader
+/* @reader: a reader
  *
  * Returns: (transfer none): what the header says
- * Since: 0.1
  */
 const ClothNpyInfo *
 cloth_npy_reader_get_info (const ClothNpyReader * reader)
@@ -452,9 +443,7 @@ read_rows (ClothNpyReader * reader, guint64 first_row, guint64 n_rows,
   return TRUE;
 }
 
-/**
- * cloth_npy_reader_read_float:
- * @reader: a reader
+/* @reader: a reader
  * @first_row: the first row wanted
  * @n_rows: how many rows
  * @items: (out caller-allocates): room for `n_rows * row_items` numbers
@@ -463,7 +452,6 @@ read_rows (ClothNpyReader * reader, guint64 first_row, guint64 n_rows,
  * Reads rows, whatever the type in the file, as float32.
  *
  * Returns: %TRUE when all were read
- * Since: 0.1
  */
 gboolean
 cloth_npy_reader_read_float (ClothNpyReader * reader, guint64 first_row,
@@ -472,9 +460,7 @@ cloth_npy_reader_read_float (ClothNpyReader * reader, guint64 first_row,
   return read_rows (reader, first_row, n_rows, items, NULL, error);
 }
 
-/**
- * cloth_npy_reader_read_double:
- * @reader: a reader
+/* @reader: a reader
  * @first_row: the first row wanted
  * @n_rows: how many rows
  * @items: (out caller-allocates): room for `n_rows * row_items` numbers
@@ -483,7 +469,6 @@ cloth_npy_reader_read_float (ClothNpyReader * reader, guint64 first_row,
  * Reads rows, whatever the type in the file, as float64.
  *
  * Returns: %TRUE when all were read
- * Since: 0.1
  */
 gboolean
 cloth_npy_reader_read_double (ClothNpyReader * reader, guint64 first_row,
@@ -492,9 +477,7 @@ cloth_npy_reader_read_double (ClothNpyReader * reader, guint64 first_row,
   return read_rows (reader, first_row, n_rows, NULL, items, error);
 }
 
-/**
- * cloth_npy_reader_read_raw:
- * @reader: a reader
+/* @reader: a reader
  * @first_row: the first row wanted
  * @n_rows: how many rows
  * @items: (out caller-allocates): room for `n_rows * row_items` items of the file's
@@ -504,7 +487,6 @@ cloth_npy_reader_read_double (ClothNpyReader * reader, guint64 first_row,
  * Reads rows as they are, in the processor's byte order.
  *
  * Returns: %TRUE when all were read
- * Since: 0.1
  */
 gboolean
 cloth_npy_reader_read_raw (ClothNpyReader * reader, guint64 first_row,
@@ -521,11 +503,7 @@ cloth_npy_reader_read_raw (ClothNpyReader * reader, guint64 first_row,
   return TRUE;
 }
 
-/**
- * cloth_npy_reader_free:
- * @reader: (transfer full) (nullable): a reader
- *
- * Since: 0.1
+/* @reader: (transfer full) (nullable): a reader
  */
 void
 cloth_npy_reader_free (ClothNpyReader * reader)
@@ -537,16 +515,13 @@ cloth_npy_reader_free (ClothNpyReader * reader)
   g_free (reader);
 }
 
-/**
- * cloth_npy_load_float:
- * @path: an .npy file of at most 512 MiB as float32
+/* @path: an .npy file of at most 512 MiB as float32
  * @info: (out): its shape
  * @error: #ClothFileError, #GIOErrorEnum
  *
  * Loads a whole array, whatever its type, as float32.
  *
  * Returns: (transfer full): its numbers in C order, g_free() them; or %NULL
- * Since: 0.1
  */
 gfloat *
 cloth_npy_load_float (const gchar * path, ClothNpyInfo * info, GError ** error)
@@ -599,9 +574,7 @@ make_header (const ClothNpyWriter * writer, guint64 n_rows, gsize size)
   return text;
 }
 
-/**
- * cloth_npy_writer_new:
- * @path: final name of the file
+/* @path: final name of the file
  * @type: type of an item
  * @rank: number of dimensions, 0 to 4
  * @row_shape: (array) (nullable): the lengths of every dimension but the first
@@ -612,7 +585,6 @@ make_header (const ClothNpyWriter * writer, guint64 n_rows, gsize size)
  * of rank 0 takes one row of one item.
  *
  * Returns: (transfer full): a writer, or %NULL
- * Since: 0.1
  */
 ClothNpyWriter *
 cloth_npy_writer_new (const gchar * path, ClothNpyType type, guint rank,
@@ -646,15 +618,12 @@ cloth_npy_writer_new (const gchar * path, ClothNpyType type, guint rank,
   return g_steal_pointer (&writer);
 }
 
-/**
- * cloth_npy_writer_append:
- * @writer: a writer
+/* @writer: a writer
  * @items: `n_rows` rows of the writer's type, in the processor's byte order
  * @n_rows: how many rows
  * @error: #GIOErrorEnum
  *
  * Returns: %TRUE when they were taken
- * Since: 0.1
  */
 gboolean
 cloth_npy_writer_append (ClothNpyWriter * writer, gconstpointer items,
@@ -675,16 +644,13 @@ cloth_npy_writer_append (ClothNpyWriter * writer, gconstpointer items,
   return TRUE;
 }
 
-/**
- * cloth_npy_writer_finish:
- * @writer: a writer
+/* @writer: a writer
  * @error: #GIOErrorEnum
  *
  * Writes the final shape. For files that appear together: cloth_output_commit()
  * gives them their names.
  *
  * Returns: (transfer full): the output, or %NULL
- * Since: 0.1
  */
 ClothOutput *
 cloth_npy_writer_finish (ClothNpyWriter * writer, GError ** error)
@@ -699,16 +665,13 @@ cloth_npy_writer_finish (ClothNpyWriter * writer, GError ** error)
   return g_steal_pointer (&writer->output);
 }
 
-/**
- * cloth_npy_writer_close:
- * @writer: a writer
+/* @writer: a writer
  * @error: #GIOErrorEnum
  *
  * Writes the final shape and gives the file its name. The writer can then only be
  * freed.
  *
  * Returns: %TRUE when the file is there
- * Since: 0.1
  */
 gboolean
 cloth_npy_writer_close (ClothNpyWriter * writer, GError ** error)
@@ -718,13 +681,9 @@ cloth_npy_writer_close (ClothNpyWriter * writer, GError ** error)
   return output && cloth_output_commit (&output, 1, error);
 }
 
-/**
- * cloth_npy_writer_free:
- * @writer: (transfer full) (nullable): a writer
+/* @writer: (transfer full) (nullable): a writer
  *
  * Frees it; a file that was not closed is removed.
- *
- * Since: 0.1
  */
 void
 cloth_npy_writer_free (ClothNpyWriter * writer)
@@ -735,9 +694,7 @@ cloth_npy_writer_free (ClothNpyWriter * writer)
   g_free (writer);
 }
 
-/**
- * cloth_npy_write:
- * @path: the file
+/* @path: the file
  * @type: type of an item
  * @rank: number of dimensions, 0 to 4
  * @shape: (array length=rank): their lengths
@@ -747,7 +704,6 @@ cloth_npy_writer_free (ClothNpyWriter * writer)
  * Writes a whole array.
  *
  * Returns: %TRUE when the file is there
- * Since: 0.1
  */
 gboolean
 cloth_npy_write (const gchar * path, ClothNpyType type, guint rank,

@@ -9,9 +9,7 @@ G_BEGIN_DECLS
 
 #define CLOTH_NPY_MAX_RANK 4
 
-/**
- * ClothNpyType:
- * @CLOTH_NPY_FLOAT32: `<f4`
+/* @CLOTH_NPY_FLOAT32: `<f4`
  * @CLOTH_NPY_FLOAT64: `<f8`
  * @CLOTH_NPY_INT8: `|i1`
  * @CLOTH_NPY_INT16: `<i2`
@@ -23,8 +21,6 @@ G_BEGIN_DECLS
  * @CLOTH_NPY_UINT64: `<u8`
  *
  * The types of item that are read and written.
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_NPY_FLOAT32,
@@ -39,9 +35,7 @@ typedef enum {
   CLOTH_NPY_UINT64
 } ClothNpyType;
 
-/**
- * ClothNpyInfo:
- * @type: type of an item
+/* @type: type of an item
  * @rank: number of dimensions, 0 for a lone number
  * @shape: @rank lengths
  * @item_size: bytes of an item
@@ -50,8 +44,6 @@ typedef enum {
  * @data_offset: where the first item stands
  *
  * What the header of an .npy file says.
- *
- * Since: 0.1
  */
 typedef struct {
   ClothNpyType type;

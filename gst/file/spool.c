@@ -25,15 +25,12 @@ fail_errno (GError ** error)
   return FALSE;
 }
 
-/**
- * cloth_spool_new:
- * @stem: what the names of the files begin with: the bytes wait on the same disk
+/* @stem: what the names of the files begin with: the bytes wait on the same disk
  * @error: #GIOErrorEnum
  *
  * Starts a file without a name, which is gone with the process.
  *
  * Returns: (transfer full): an empty spool, or %NULL
- * Since: 0.1
  */
 ClothSpool *
 cloth_spool_new (const gchar * stem, GError ** error)
@@ -60,15 +57,12 @@ cloth_spool_new (const gchar * stem, GError ** error)
   return spool;
 }
 
-/**
- * cloth_spool_write:
- * @spool: a spool
+/* @spool: a spool
  * @data: bytes to append
  * @size: how many
  * @error: #GIOErrorEnum
  *
  * Returns: %TRUE when they were taken
- * Since: 0.1
  */
 gboolean
 cloth_spool_write (ClothSpool * spool, gconstpointer data, gsize size,
@@ -78,14 +72,11 @@ cloth_spool_write (ClothSpool * spool, gconstpointer data, gsize size,
       fail_errno (error);
 }
 
-/**
- * cloth_spool_copy:
- * @spool: a spool, which takes no more after this
+/* @spool: a spool, which takes no more after this
  * @output: where to append all that it holds
  * @error: #GIOErrorEnum
  *
  * Returns: %TRUE when all was taken
- * Since: 0.1
  */
 gboolean
 cloth_spool_copy (ClothSpool * spool, ClothOutput * output, GError ** error)
@@ -101,11 +92,7 @@ cloth_spool_copy (ClothSpool * spool, ClothOutput * output, GError ** error)
   return !ferror (spool->file) || fail_errno (error);
 }
 
-/**
- * cloth_spool_free:
- * @spool: (transfer full) (nullable): a spool
- *
- * Since: 0.1
+/* @spool: (transfer full) (nullable): a spool
  */
 void
 cloth_spool_free (ClothSpool * spool)

@@ -7,17 +7,13 @@
 
 #define MAX_BYTES (16 * 1024 * 1024)
 
-/**
- * cloth_text_file_load:
- * @path: a file
+/* @path: a file
  * @length: (out): its bytes
  * @error: #GFileError, or #ClothFileError when it exceeds 16 MiB
  *
  * Looks at the size before it reads. Devices and pipes are refused: they may never end.
  *
  * Returns: (transfer full): the bytes and a 0, or %NULL.
- *
- * Since: 0.1
  */
 gchar *
 cloth_text_file_load (const gchar * path, gsize * length, GError ** error)

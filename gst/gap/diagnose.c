@@ -419,9 +419,7 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
   return cloth_diagnosis_propose (d, error);
 }
 
-/**
- * cloth_gap_diagnose:
- * @takes: (array length=n_takes): what was recorded
+/* @takes: (array length=n_takes): what was recorded
  * @n_takes: how many, at least one; of the same cloth
  * @model: what the simulator knows
  * @options: what else is given
@@ -433,7 +431,6 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
  * without and with them.
  *
  * Returns: (transfer full) (nullable): what was found
- * Since: 0.1
  */
 ClothGapResult *
 cloth_gap_diagnose (ClothTake ** takes, guint n_takes,

@@ -11,23 +11,18 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothGapProgress:
- * @data: what cloth_gap_diagnose () was given
+/* @data: what cloth_gap_diagnose () was given
  * @share: of the work that is done, 0 to 1, growing
  * @what: what is being done, a few words
  *
  * Called from the thread that diagnoses.
  *
  * Returns: whether to go on
- * Since: 0.1
  */
 typedef gboolean (*ClothGapProgress) (gpointer data, gdouble share,
     const gchar * what);
 
-/**
- * ClothGapOptions:
- * @baselines: (array length=n_baselines) (nullable): takes the model is accepted on; its
+/* @baselines: (array length=n_baselines) (nullable): takes the model is accepted on; its
  *   free parameters are fitted there and then frozen
  * @n_baselines: how many
  * @hold_outs: (array length=n_hold_outs) (nullable): takes that judge, and on which
@@ -44,8 +39,6 @@ typedef gboolean (*ClothGapProgress) (gpointer data, gdouble share,
  * @threads: threads to use, 0 = one for each processor
  * @progress: (nullable): told how far it is
  * @progress_data: for @progress
- *
- * Since: 0.1
  */
 typedef struct {
   ClothTake **baselines;

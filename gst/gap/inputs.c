@@ -71,15 +71,12 @@ guess (const gchar * id)
   return found ? g_string_free (g_steal_pointer (&text), FALSE) : NULL;
 }
 
-/**
- * cloth_gap_effects_parse:
- * @list: (nullable): ids of effects with commas between them; %NULL or "": all
+/* @list: (nullable): ids of effects with commas between them; %NULL or "": all
  * @error: #ClothFitError
  *
  * Returns: (transfer full) (nullable) (array zero-terminated=1): the ids, each once, as
  *   cloth_gap_diagnose () takes them; %NULL for all, or with @error set when one is not
  *   known: it names those that may be meant
- * Since: 0.1
  */
 gchar **
 cloth_gap_effects_parse (const gchar * list, GError ** error)
@@ -134,9 +131,7 @@ describe (const ClothTopology * cloth)
       cloth->n_vertices, cloth->n_faces);
 }
 
-/**
- * cloth_gap_check_same_cloth:
- * @name: what @cloth is called
+/* @name: what @cloth is called
  * @cloth: a cloth
  * @other_name: what @other is called
  * @other: another
@@ -145,7 +140,6 @@ describe (const ClothTopology * cloth)
  * Compares vertices, faces and, where both say it, the size on the flat cloth, to 1%.
  *
  * Returns: %TRUE when they are meshes of the same cloth
- * Since: 0.1
  */
 gboolean
 cloth_gap_check_same_cloth (const gchar * name, const ClothTopology * cloth,
@@ -199,9 +193,7 @@ write_model (const ClothModel * model, const gchar * folder, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_gap_result_write:
- * @result: what was found
+/* @result: what was found
  * @folder: where to; made with its parents when it is not there
  * @error: #GIOErrorEnum
  *
@@ -209,7 +201,6 @@ write_model (const ClothModel * model, const gchar * folder, GError ** error)
  * with it. Each is written whole or not at all.
  *
  * Returns: %TRUE when all are there
- * Since: 0.1
  */
 gboolean
 cloth_gap_result_write (const ClothGapResult * result, const gchar * folder,

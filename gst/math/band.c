@@ -14,16 +14,12 @@
 /* What is left of a pivot that is nothing but rounding, of its diagonal. */
 #define PIVOT_FLOOR 1e-11
 
-/**
- * cloth_band_factor:
- * @n: order
+/* @n: order
  * @bandwidth: greatest distance of a nonzero element from the diagonal
  * @a: (inout) (array): n·(bandwidth + 1), see CLOTH_BAND(); elements left of the first
  *   column are not looked at. Becomes the factor L, A = L Lᵀ
  *
  * Returns: %FALSE when @a isn't positive definite to working precision
- *
- * Since: 0.1
  */
 gboolean
 cloth_band_factor (guint n, guint bandwidth, gdouble * a)
@@ -54,15 +50,11 @@ cloth_band_factor (guint n, guint bandwidth, gdouble * a)
   return TRUE;
 }
 
-/**
- * cloth_band_solve:
- * @n: order
+/* @n: order
  * @bandwidth: bandwidth
  * @l: factor made by cloth_band_factor ()
  * @columns: number of right-hand sides
  * @b: (inout) (array): n·columns, row by row; becomes the solutions
- *
- * Since: 0.1
  */
 void
 cloth_band_solve (guint n, guint bandwidth, const gdouble * l, guint columns,
@@ -92,9 +84,7 @@ cloth_band_solve (guint n, guint bandwidth, const gdouble * l, guint columns,
   }
 }
 
-/**
- * cloth_band_inverse_diagonal:
- * @n: order
+/* @n: order
  * @bandwidth: bandwidth
  * @l: factor made by cloth_band_factor ()
  * @work: (array): n·(bandwidth + 1) numbers to work in
@@ -102,8 +92,6 @@ cloth_band_solve (guint n, guint bandwidth, const gdouble * l, guint columns,
  *
  * From the elements of the inverse within the band alone (K. Takahashi, J. Fagan, M.-S.
  * Chin, “Formation of a sparse bus impedance matrix”, 1973).
- *
- * Since: 0.1
  */
 void
 cloth_band_inverse_diagonal (guint n, guint bandwidth, const gdouble * l,

@@ -7,17 +7,13 @@
 
 G_BEGIN_DECLS
 
-/**
- * CLOTH_BAND:
- * @a: a banded matrix
+/* @a: a banded matrix
  * @bandwidth: its bandwidth
  * @i: row
  * @j: column, @i − @bandwidth to @i
  *
  * An element of the lower triangle. Each row holds @bandwidth + 1 numbers, its diagonal
  * last.
- *
- * Since: 0.1
  */
 #define CLOTH_BAND(a, bandwidth, i, j) \
     ((a)[(gsize) (i) * ((bandwidth) + 1) + (bandwidth) + (j) - (i)])

@@ -3,13 +3,9 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/math/cpu.h"
 
-/**
- * cloth_simd_resolve:
- * @wanted: the instruction set asked for
+/* @wanted: the instruction set asked for
  *
  * Returns: the highest instruction set, not above @wanted, that this processor has.
- *
- * Since: 0.1
  */
 ClothSimd
 cloth_simd_resolve (ClothSimd wanted)

@@ -7,17 +7,13 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothSimd:
- * @CLOTH_SIMD_SCALAR: portable C, the reference every kernel is tested against
+/* @CLOTH_SIMD_SCALAR: portable C, the reference every kernel is tested against
  * @CLOTH_SIMD_AVX2: AVX2 and FMA
  * @CLOTH_SIMD_AVX512: AVX-512 F, BW, DQ and VL, and BMI2
  * @CLOTH_SIMD_BEST: whatever the running processor offers
  *
  * Instruction sets a kernel can be asked to run with. A kernel that lacks the one
  * asked for takes the next lower one.
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_SIMD_SCALAR,

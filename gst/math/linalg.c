@@ -13,13 +13,9 @@
  * one of their inputs.
  */
 
-/**
- * cloth_mat3_mul:
- * @a: left factor
+/* @a: left factor
  * @b: right factor
  * @ab: (out): a·b
- *
- * Since: 0.1
  */
 void
 cloth_mat3_mul (const gdouble a[9], const gdouble b[9], gdouble ab[9])
@@ -33,13 +29,9 @@ cloth_mat3_mul (const gdouble a[9], const gdouble b[9], gdouble ab[9])
   memcpy (ab, m, sizeof (m));
 }
 
-/**
- * cloth_mat3_mul_tn:
- * @a: left factor, taken transposed
+/* @a: left factor, taken transposed
  * @b: right factor
  * @atb: (out): aᵀ·b
- *
- * Since: 0.1
  */
 void
 cloth_mat3_mul_tn (const gdouble a[9], const gdouble b[9], gdouble atb[9])
@@ -52,13 +44,9 @@ cloth_mat3_mul_tn (const gdouble a[9], const gdouble b[9], gdouble atb[9])
   memcpy (atb, m, sizeof (m));
 }
 
-/**
- * cloth_mat3_mul_nt:
- * @a: left factor
+/* @a: left factor
  * @b: right factor, taken transposed
  * @abt: (out): a·bᵀ
- *
- * Since: 0.1
  */
 void
 cloth_mat3_mul_nt (const gdouble a[9], const gdouble b[9], gdouble abt[9])
@@ -72,13 +60,9 @@ cloth_mat3_mul_nt (const gdouble a[9], const gdouble b[9], gdouble abt[9])
   memcpy (abt, m, sizeof (m));
 }
 
-/**
- * cloth_mat3_vec:
- * @a: matrix
+/* @a: matrix
  * @x: vector
  * @ax: (out): a·x
- *
- * Since: 0.1
  */
 void
 cloth_mat3_vec (const gdouble a[9], const gdouble x[3], gdouble ax[3])
@@ -89,13 +73,9 @@ cloth_mat3_vec (const gdouble a[9], const gdouble x[3], gdouble ax[3])
     ax[i] = a[3 * i] * x0 + a[3 * i + 1] * x1 + a[3 * i + 2] * x2;
 }
 
-/**
- * cloth_mat3_vec_t:
- * @a: matrix, taken transposed
+/* @a: matrix, taken transposed
  * @x: vector
  * @atx: (out): aᵀ·x
- *
- * Since: 0.1
  */
 void
 cloth_mat3_vec_t (const gdouble a[9], const gdouble x[3], gdouble atx[3])
@@ -106,13 +86,9 @@ cloth_mat3_vec_t (const gdouble a[9], const gdouble x[3], gdouble atx[3])
     atx[i] = a[i] * x0 + a[3 + i] * x1 + a[6 + i] * x2;
 }
 
-/**
- * cloth_mat3_det:
- * @a: matrix
+/* @a: matrix
  *
  * Returns: its determinant
- *
- * Since: 0.1
  */
 gdouble
 cloth_mat3_det (const gdouble a[9])
@@ -121,14 +97,10 @@ cloth_mat3_det (const gdouble a[9])
       a[1] * (a[3] * a[8] - a[5] * a[6]) + a[2] * (a[3] * a[7] - a[4] * a[6]);
 }
 
-/**
- * cloth_mat3_inverse:
- * @a: matrix
+/* @a: matrix
  * @inverse: (out): its inverse, by the adjugate
  *
  * Returns: %FALSE, and @inverse untouched, when @a is singular or not finite
- *
- * Since: 0.1
  */
 gboolean
 cloth_mat3_inverse (const gdouble a[9], gdouble inverse[9])
@@ -154,9 +126,7 @@ cloth_mat3_inverse (const gdouble a[9], gdouble inverse[9])
   return TRUE;
 }
 
-/**
- * cloth_mat3_nearest_rotation:
- * @a: any matrix, for instance a rotation with errors, or Σ y·xᵀ over pairs of points
+/* @a: any matrix, for instance a rotation with errors, or Σ y·xᵀ over pairs of points
  * @r: (out): the proper rotation that maximises trace (rᵀ·a)
  *
  * The rotation nearest to @a in the Frobenius norm; for @a = Σ y·xᵀ the one that best
@@ -164,8 +134,6 @@ cloth_mat3_inverse (const gdouble a[9], gdouble inverse[9])
  * quaternions, 1987.
  *
  * Returns: %FALSE when @a is not finite or the rotation is not determined
- *
- * Since: 0.1
  */
 gboolean
 cloth_mat3_nearest_rotation (const gdouble a[9], gdouble r[9])
@@ -198,9 +166,7 @@ cloth_mat3_nearest_rotation (const gdouble a[9], gdouble r[9])
   return TRUE;
 }
 
-/**
- * cloth_sym_eigen:
- * @n: order, 1 … %CLOTH_EIGEN_MAX
+/* @n: order, 1 … %CLOTH_EIGEN_MAX
  * @a: symmetric n×n matrix; only its upper triangle is read
  * @values: (out): n eigenvalues, ascending
  * @vectors: (out): n×n; row i is the unit eigenvector of values[i]
@@ -209,8 +175,6 @@ cloth_mat3_nearest_rotation (const gdouble a[9], gdouble r[9])
  * accurate to the last digits, also for small eigenvalues' vectors.
  *
  * Returns: %FALSE when @n is out of range or @a is not finite
- *
- * Since: 0.1
  */
 gboolean
 cloth_sym_eigen (guint n, const gdouble * a, gdouble * values,
@@ -286,16 +250,12 @@ cloth_sym_eigen (guint n, const gdouble * a, gdouble * values,
   return TRUE;
 }
 
-/**
- * cloth_cholesky_factor:
- * @n: order
+/* @n: order
  * @a: (inout): symmetric n×n matrix, of which the lower triangle is read; it becomes L
  *   with a = L·Lᵀ. The strict upper triangle is left alone.
  *
  * Returns: %FALSE when @a is not positive definite to working precision, or not
  *   finite; @a is then destroyed
- *
- * Since: 0.1
  */
 gboolean
 cloth_cholesky_factor (guint n, gdouble * a)
@@ -324,13 +284,9 @@ cloth_cholesky_factor (guint n, gdouble * a)
   return TRUE;
 }
 
-/**
- * cloth_cholesky_solve:
- * @n: order
+/* @n: order
  * @l: factor made by cloth_cholesky_factor ()
  * @b: (inout): n right-hand sides; becomes the solution
- *
- * Since: 0.1
  */
 void
 cloth_cholesky_solve (guint n, const gdouble * l, gdouble * b)
@@ -351,13 +307,9 @@ cloth_cholesky_solve (guint n, const gdouble * l, gdouble * b)
   }
 }
 
-/**
- * cloth_cholesky_inverse:
- * @n: order
+/* @n: order
  * @l: factor made by cloth_cholesky_factor ()
  * @inverse: (out): n×n, the inverse of the matrix factored, both triangles
- *
- * Since: 0.1
  */
 void
 cloth_cholesky_inverse (guint n, const gdouble * l, gdouble * inverse)
@@ -379,9 +331,7 @@ cloth_cholesky_inverse (guint n, const gdouble * l, gdouble * inverse)
     }
 }
 
-/**
- * cloth_least_squares:
- * @m: rows, >= @n
+/* @m: rows, >= @n
  * @n: unknowns
  * @a: (inout): m×n matrix; destroyed
  * @b: (inout): m right-hand sides; b[0 … n) becomes the x that minimises ‖a·x − b‖ and
@@ -391,8 +341,6 @@ cloth_cholesky_inverse (guint n, const gdouble * l, gdouble * inverse)
  * the normal equations do.
  *
  * Returns: %FALSE when @m < @n, the columns are dependent or anything is not finite
- *
- * Since: 0.1
  */
 gboolean
 cloth_least_squares (guint m, guint n, gdouble * a, gdouble * b)

@@ -78,14 +78,10 @@ worker_main (gpointer user_data)
   return NULL;
 }
 
-/**
- * cloth_pool_new:
- * @threads: threads that work on a loop, the calling one included; 0: as many as the
+/* @threads: threads that work on a loop, the calling one included; 0: as many as the
  *   machine has processors
  *
  * Returns: (transfer full): a pool whose threads wait for cloth_pool_run ()
- *
- * Since: 0.1
  */
 ClothPool *
 cloth_pool_new (guint threads)
@@ -110,11 +106,7 @@ cloth_pool_new (guint threads)
   return pool;
 }
 
-/**
- * cloth_pool_free:
- * @pool: (nullable) (transfer full): pool with no run under way
- *
- * Since: 0.1
+/* @pool: (nullable) (transfer full): pool with no run under way
  */
 void
 cloth_pool_free (ClothPool * pool)
@@ -134,13 +126,9 @@ cloth_pool_free (ClothPool * pool)
   g_free (pool);
 }
 
-/**
- * cloth_pool_get_n_threads:
- * @pool: (nullable): pool
+/* @pool: (nullable): pool
  *
  * Returns: how many workers there are; 1 for %NULL
- *
- * Since: 0.1
  */
 guint
 cloth_pool_get_n_threads (const ClothPool * pool)
@@ -179,9 +167,7 @@ run (ClothPool * pool, ClothPoolFunc func, gpointer data, guint n_items,
   g_mutex_unlock (&pool->run_lock);
 }
 
-/**
- * cloth_pool_run:
- * @pool: (nullable): pool; %NULL does everything in the calling thread
+/* @pool: (nullable): pool; %NULL does everything in the calling thread
  * @func: does a range of items
  * @data: for @func
  * @n_items: items 0 … @n_items − 1 are shared out in contiguous ranges of nearly equal
@@ -191,8 +177,6 @@ run (ClothPool * pool, ClothPoolFunc func, gpointer data, guint n_items,
  * result does not depend on the range it came in; then it does not depend on the number
  * of threads either. Calls from several threads take turns; @func must not call it on
  * the same pool.
- *
- * Since: 0.1
  */
 void
 cloth_pool_run (ClothPool * pool, ClothPoolFunc func, gpointer data,
@@ -201,9 +185,7 @@ cloth_pool_run (ClothPool * pool, ClothPoolFunc func, gpointer data,
   run (pool, func, data, n_items, FALSE);
 }
 
-/**
- * cloth_pool_run_one_by_one:
- * @pool: (nullable): pool; %NULL does everything in the calling thread
+/* @pool: (nullable): pool; %NULL does everything in the calling thread
  * @func: does a range of items
  * @data: for @func
  * @n_items: items 0 … @n_items − 1 are begun in this order, each by the next thread that
@@ -211,8 +193,6 @@ cloth_pool_run (ClothPool * pool, ClothPoolFunc func, gpointer data,
  *
  * As cloth_pool_run (), for items that take unlike times: no thread waits while there is
  * an item left. The longest ones should come first.
- *
- * Since: 0.1
  */
 void
 cloth_pool_run_one_by_one (ClothPool * pool, ClothPoolFunc func, gpointer data,

@@ -9,17 +9,13 @@ G_BEGIN_DECLS
 
 typedef struct _ClothPool ClothPool;
 
-/**
- * ClothPoolFunc:
- * @data: what cloth_pool_run () was given
+/* @data: what cloth_pool_run () was given
  * @begin: first item to do
  * @end: one past the last item to do
  * @worker: 0 … cloth_pool_get_n_threads () − 1, for scratch memory of one's own; what
  *   is written to the results must not depend on it
  *
  * A part of the loop.
- *
- * Since: 0.1
  */
 typedef void (*ClothPoolFunc) (gpointer data, guint begin, guint end,
     guint worker);

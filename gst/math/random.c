@@ -11,14 +11,10 @@ rotate_left (guint64 x, gint k)
   return (x << k) | (x >> (64 - k));
 }
 
-/**
- * cloth_random_init:
- * @random: (out): generator
+/* @random: (out): generator
  * @seed: any number; equal seeds give equal sequences
  *
  * The state is filled by splitmix64, as the authors of xoshiro advise.
- *
- * Since: 0.1
  */
 void
 cloth_random_init (ClothRandom * random, guint64 seed)
@@ -34,14 +30,10 @@ cloth_random_init (ClothRandom * random, guint64 seed)
   random->has_spare = FALSE;
 }
 
-/**
- * cloth_random_bits:
- * @random: generator
+/* @random: generator
  *
  * Returns: 64 random bits: xoshiro256++ (Blackman & Vigna, Scrambled linear
  *   pseudorandom number generators, 2021)
- *
- * Since: 0.1
  */
 guint64
 cloth_random_bits (ClothRandom * random)
@@ -59,13 +51,9 @@ cloth_random_bits (ClothRandom * random)
   return result;
 }
 
-/**
- * cloth_random_uniform:
- * @random: generator
+/* @random: generator
  *
  * Returns: a number of [0, 1), a multiple of 2⁻⁵³
- *
- * Since: 0.1
  */
 gdouble
 cloth_random_uniform (ClothRandom * random)
@@ -73,14 +61,10 @@ cloth_random_uniform (ClothRandom * random)
   return (gdouble) (cloth_random_bits (random) >> 11) * 0x1p-53;
 }
 
-/**
- * cloth_random_below:
- * @random: generator
+/* @random: generator
  * @bound: >= 1
  *
  * Returns: an integer of [0, @bound), each equally likely to 2⁻³²
- *
- * Since: 0.1
  */
 guint
 cloth_random_below (ClothRandom * random, guint bound)
@@ -88,14 +72,10 @@ cloth_random_below (ClothRandom * random, guint bound)
   return (guint) (((cloth_random_bits (random) >> 32) * bound) >> 32);
 }
 
-/**
- * cloth_random_gaussian:
- * @random: generator
+/* @random: generator
  *
  * Returns: a normal deviate of mean 0 and standard deviation 1 (Marsaglia's polar
  *   method)
- *
- * Since: 0.1
  */
 gdouble
 cloth_random_gaussian (ClothRandom * random)

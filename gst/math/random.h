@@ -7,12 +7,7 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothRandom:
- *
- * State of a generator; initialise it with cloth_random_init ().
- *
- * Since: 0.1
+/* State of a generator; initialise it with cloth_random_init ().
  */
 typedef struct {
   /*< private > */

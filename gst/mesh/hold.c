@@ -58,12 +58,9 @@ find_neighbours (const ClothTopology * topology, ClothHold * hold)
   hold->first[0] = 0;
 }
 
-/**
- * cloth_hold_new:
- * @topology: the mesh
+/* @topology: the mesh
  *
  * Returns: (transfer full): a filler for the frames of one sequence
- * Since: 0.1
  */
 ClothHold *
 cloth_hold_new (const ClothTopology * topology)
@@ -126,9 +123,7 @@ place_never_seen (ClothHold * hold)
   }
 }
 
-/**
- * cloth_hold_apply:
- * @hold: the filler
+/* @hold: the filler
  * @positions: the next frame, 3 numbers a vertex, NaN when not seen
  *
  * A vertex not seen stays where it was last seen. One never seen so far takes the
@@ -137,7 +132,6 @@ place_never_seen (ClothHold * hold)
  *
  * Returns: (transfer none): the frame with a place for every vertex; valid until the
  *   next call
- * Since: 0.1
  */
 const gfloat *
 cloth_hold_apply (ClothHold * hold, const gfloat * positions)
@@ -156,11 +150,7 @@ cloth_hold_apply (ClothHold * hold, const gfloat * positions)
   return hold->positions;
 }
 
-/**
- * cloth_hold_free:
- * @hold: (transfer full) (nullable): the filler
- *
- * Since: 0.1
+/* @hold: (transfer full) (nullable): the filler
  */
 void
 cloth_hold_free (ClothHold * hold)

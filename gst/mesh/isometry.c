@@ -108,9 +108,7 @@ find_worst (const ClothIsometry * isometry, const gfloat * covariances,
   return worst;
 }
 
-/**
- * cloth_isometry_check:
- * @isometry: the grid and its limits
+/* @isometry: the grid and its limits
  * @positions: (array): 3·columns·rows, metres; NaN: not seen
  * @covariances: (array) (nullable): 6·columns·rows: xx, xy, xz, yy, yz, zz, m²
  * @wrong: (out) (array): columns·rows: whether the vertex can't be where it is
@@ -121,8 +119,6 @@ find_worst (const ClothIsometry * isometry, const gfloat * covariances,
  * of two that only deny each other, the less certain one.
  *
  * Returns: number of wrong vertices
- *
- * Since: 0.1
  */
 guint
 cloth_isometry_check (const ClothIsometry * isometry,

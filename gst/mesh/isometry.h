@@ -7,17 +7,13 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothIsometry:
- * @columns: vertices in a row of the grid
+/* @columns: vertices in a row of the grid
  * @rows: vertices in a column
  * @edge_m: distance of neighbours on the flat cloth, metres
  * @shortest: least distance of neighbours in space over @edge_m; less than 1 since a chord
  *   is shorter than the bent cloth below it; 0: no limit
  * @longest: largest distance over @edge_m; more than 1 by what the cloth stretches; 0: no
  *   limit
- *
- * Since: 0.1
  */
 typedef struct {
   guint columns, rows;

@@ -3,16 +3,12 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/mesh/side.h"
 
-/**
- * cloth_side:
- * @from: one end, a vertex
+/* @from: one end, a vertex
  * @to: the other
  * @face: the face
  * @number: which of its sides
  *
  * Returns: the side, with its ends in order
- *
- * Since: 0.1
  */
 ClothSide
 cloth_side (guint32 from, guint32 to, guint32 face, guint32 number)
@@ -21,14 +17,10 @@ cloth_side (guint32 from, guint32 to, guint32 face, guint32 number)
   MIN (from, to), MAX (from, to), face, number};
 }
 
-/**
- * cloth_side_same_edge:
- * @x: a side
+/* @x: a side
  * @y: another
  *
  * Returns: whether they have the same ends
- *
- * Since: 0.1
  */
 gboolean
 cloth_side_same_edge (const ClothSide * x, const ClothSide * y)
@@ -36,16 +28,12 @@ cloth_side_same_edge (const ClothSide * x, const ClothSide * y)
   return x->a == y->a && x->b == y->b;
 }
 
-/**
- * cloth_side_compare:
- * @x: a #ClothSide
+/* @x: a #ClothSide
  * @y: another
  *
  * For qsort (): sides of the same edge become neighbours, by face, then by number.
  *
  * Returns: their order
- *
- * Since: 0.1
  */
 gint
 cloth_side_compare (gconstpointer x, gconstpointer y)

@@ -393,16 +393,12 @@ sew (const ClothTopology * topology, const GArray * seams)
   return same;
 }
 
-/**
- * cloth_stencils_new:
- * @topology: a mesh of quads, triangles or both, checked; without uv (all zeros) every
+/* @topology: a mesh of quads, triangles or both, checked; without uv (all zeros) every
  *   edge is taken to be as long as any other
  * @seams: (nullable) (element-type ClothSeamLine): which vertices are sewn to which;
  *   across a seam each face keeps its own measures
  *
  * Returns: (transfer full): its neighbours and second differences
- *
- * Since: 0.1
  */
 ClothStencils *
 cloth_stencils_new (const ClothTopology * topology, const GArray * seams)
@@ -431,11 +427,7 @@ cloth_stencils_new (const ClothTopology * topology, const GArray * seams)
   return self;
 }
 
-/**
- * cloth_stencils_free:
- * @stencils: (transfer full) (nullable): stencils
- *
- * Since: 0.1
+/* @stencils: (transfer full) (nullable): stencils
  */
 void
 cloth_stencils_free (ClothStencils * stencils)
@@ -454,13 +446,9 @@ cloth_stencils_free (ClothStencils * stencils)
   g_free (stencils);
 }
 
-/**
- * cloth_stencil_apply:
- * @stencil: a stencil
+/* @stencil: a stencil
  * @positions: 3 numbers a vertex, metres
  * @value: (out): its second difference, metres; NaN when a vertex is not seen
- *
- * Since: 0.1
  */
 void
 cloth_stencil_apply (const ClothStencil * stencil, const gfloat * positions,

@@ -10,26 +10,20 @@ G_BEGIN_DECLS
 /* Most vertices of one stencil. */
 #define CLOTH_STENCIL_SIZE 4
 
-/**
- * ClothStencil:
- * @vertex: its vertices, the last one %CLOTH_NO_VERTEX when it has three
+/* @vertex: its vertices, the last one %CLOTH_NO_VERTEX when it has three
  * @weight: their weights, which sum up to 0
  *
  * A second difference of positions: what the weights make of the vertices is 0 where the
  * cloth is flat and unstretched, or evenly stretched. Its square is its part of the
  * plate's energy, in units in which that of a regular grid is
  * (p−1 − 2 p0 + p+1)² along both lines and twice the twist's square.
- *
- * Since: 0.1
  */
 typedef struct {
   guint32 vertex[CLOTH_STENCIL_SIZE];
   gfloat weight[CLOTH_STENCIL_SIZE];
 } ClothStencil;
 
-/**
- * ClothStencils:
- * @n_vertices: vertices of the mesh
+/* @n_vertices: vertices of the mesh
  * @same: for each vertex the lowest one that it is sewn to, or itself; all else knows only
  *   those
  * @edge_m: mean length of an edge on the flat cloth, metres; 1 when uv is not known
@@ -44,8 +38,6 @@ typedef struct {
  *   corner or among triangles
  * @length: the edge's length on the flat cloth, metres, one for each of @near; 0 when uv
  *   is not known
- *
- * Since: 0.1
  */
 typedef struct {
   guint n_vertices;

@@ -7,13 +7,10 @@
 #include <stdio.h>
 #include <string.h>
 
-/**
- * cloth_topology_new:
- * @n_vertices: number of vertices
+/* @n_vertices: number of vertices
  * @n_faces: number of faces
  *
  * Returns: (transfer full): a topology with zeroed arrays, to be filled
- * Since: 0.1
  */
 ClothTopology *
 cloth_topology_new (guint n_vertices, guint n_faces)
@@ -27,9 +24,7 @@ cloth_topology_new (guint n_vertices, guint n_faces)
   return topology;
 }
 
-/**
- * cloth_topology_new_grid:
- * @columns: vertices of a row, at least 2
+/* @columns: vertices of a row, at least 2
  * @rows: rows of vertices, at least 2
  * @width_m: from the first to the last column, metres
  * @height_m: from the first to the last row, metres
@@ -38,7 +33,6 @@ cloth_topology_new (guint n_vertices, guint n_faces)
  * u to the right, v down.
  *
  * Returns: (transfer full): the grid
- * Since: 0.1
  */
 ClothTopology *
 cloth_topology_new_grid (guint columns, guint rows, gfloat width_m,
@@ -70,12 +64,9 @@ cloth_topology_new_grid (guint columns, guint rows, gfloat width_m,
   return topology;
 }
 
-/**
- * cloth_topology_copy:
- * @topology: a topology
+/* @topology: a topology
  *
  * Returns: (transfer full): a deep copy
- * Since: 0.1
  */
 ClothTopology *
 cloth_topology_copy (const ClothTopology * topology)
@@ -89,13 +80,10 @@ cloth_topology_copy (const ClothTopology * topology)
   return copy;
 }
 
-/**
- * cloth_topology_equal:
- * @a: a topology
+/* @a: a topology
  * @b: another
  *
  * Returns: %TRUE when vertices, faces, grid and uv are the same
- * Since: 0.1
  */
 gboolean
 cloth_topology_equal (const ClothTopology * a, const ClothTopology * b)
@@ -107,15 +95,12 @@ cloth_topology_equal (const ClothTopology * a, const ClothTopology * b)
       4 * (gsize) a->n_faces * sizeof *a->faces) == 0;
 }
 
-/**
- * cloth_topology_check:
- * @topology: what a file said
+/* @topology: what a file said
  * @error: #ClothFileError
  *
  * Checks the limits, every index and every uv.
  *
  * Returns: %TRUE when all is in range
- * Since: 0.1
  */
 gboolean
 cloth_topology_check (const ClothTopology * topology, GError ** error)
@@ -149,11 +134,7 @@ cloth_topology_check (const ClothTopology * topology, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_topology_free:
- * @topology: (transfer full) (nullable): a topology
- *
- * Since: 0.1
+/* @topology: (transfer full) (nullable): a topology
  */
 void
 cloth_topology_free (ClothTopology * topology)
@@ -165,16 +146,13 @@ cloth_topology_free (ClothTopology * topology)
   g_free (topology);
 }
 
-/**
- * cloth_positions_check:
- * @positions: 3 numbers a vertex
+/* @positions: 3 numbers a vertex
  * @n_vertices: how many vertices
  * @error: #ClothFileError
  *
  * A vertex is either seen, three finite numbers, or not seen, three NaN.
  *
  * Returns: %TRUE when every vertex is one of the two
- * Since: 0.1
  */
 gboolean
 cloth_positions_check (const gfloat * positions, guint n_vertices,
@@ -194,14 +172,11 @@ cloth_positions_check (const gfloat * positions, guint n_vertices,
   return TRUE;
 }
 
-/**
- * cloth_mesh_note_format:
- * @topology: a topology
+/* @topology: a topology
  * @fps_n: numerator of the frame rate, 0 when it varies
  * @fps_d: its denominator
  *
  * Returns: (transfer full): the text of the comment
- * Since: 0.1
  */
 gchar *
 cloth_mesh_note_format (const ClothTopology * topology, gint fps_n, gint fps_d)
@@ -210,13 +185,10 @@ cloth_mesh_note_format (const ClothTopology * topology, gint fps_n, gint fps_d)
       topology->columns, topology->rows);
 }
 
-/**
- * cloth_mesh_note_parse:
- * @text: a comment, without the characters that start it
+/* @text: a comment, without the characters that start it
  * @note: (out): set when it is one of ours
  *
  * Returns: %TRUE when it is
- * Since: 0.1
  */
 gboolean
 cloth_mesh_note_parse (const gchar * text, ClothMeshNote * note)
@@ -236,15 +208,11 @@ cloth_mesh_note_parse (const gchar * text, ClothMeshNote * note)
   return TRUE;
 }
 
-/**
- * cloth_mesh_note_apply:
- * @note: a comment's contents
+/* @note: a comment's contents
  * @topology: the topology read
  *
  * Marks @topology as the grid the comment claims, if the mesh has its vertices and
  * faces; another program may have cut the mesh and kept the comment.
- *
- * Since: 0.1
  */
 void
 cloth_mesh_note_apply (const ClothMeshNote * note, ClothTopology * topology)

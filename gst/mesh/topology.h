@@ -14,9 +14,7 @@ G_BEGIN_DECLS
 /* Fourth index of a triangle. */
 #define CLOTH_NO_VERTEX 0xffffffffu
 
-/**
- * ClothTopology:
- * @n_vertices: number of vertices
+/* @n_vertices: number of vertices
  * @columns: vertices of a row when the mesh is one regular grid, else 0
  * @rows: rows of vertices of a grid, else 0
  * @uv: 2 numbers a vertex, metres on the flat cloth; zeros when unknown
@@ -24,8 +22,6 @@ G_BEGIN_DECLS
  * @faces: 4 indices a face, the last %CLOTH_NO_VERTEX for a triangle
  *
  * What stays the same over a sequence of meshes.
- *
- * Since: 0.1
  */
 typedef struct {
   guint n_vertices;
@@ -36,13 +32,9 @@ typedef struct {
   guint32 *faces;
 } ClothTopology;
 
-/**
- * cloth_face_corners:
- * @face: 4 indices of a face
+/* @face: 4 indices of a face
  *
  * Returns: how many corners it has, 3 or 4
- *
- * Since: 0.1
  */
 static inline guint
 cloth_face_corners (const guint32 * face)
@@ -50,17 +42,13 @@ cloth_face_corners (const guint32 * face)
   return face[3] == CLOTH_NO_VERTEX ? 3 : 4;
 }
 
-/**
- * ClothVertexState:
- * @CLOTH_VERTEX_UNSEEN: not seen: the position is NaN
+/* @CLOTH_VERTEX_UNSEEN: not seen: the position is NaN
  * @CLOTH_VERTEX_MEASURED: measured by three or more views
  * @CLOTH_VERTEX_TWO_VIEWS: measured by two
  * @CLOTH_VERTEX_FILLED: interpolated
  * @CLOTH_VERTEX_PREDICTED: carried on in time or simulated
  *
  * The values of `GstClothVertexState`.
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_VERTEX_UNSEEN,
@@ -70,16 +58,12 @@ typedef enum {
   CLOTH_VERTEX_PREDICTED
 } ClothVertexState;
 
-/**
- * ClothMeshNote:
- * @fps: frames a second, 0 when unknown
+/* @fps: frames a second, 0 when unknown
  * @columns: vertices of a row of a grid, or 0
  * @rows: rows of a grid, or 0
  *
  * What OBJ and PLY have no field for. It travels in a comment, which other programs
  * skip: `gst-cloth fps 30000/1001 grid 33 35`.
- *
- * Since: 0.1
  */
 typedef struct {
   gdouble fps;
@@ -87,15 +71,11 @@ typedef struct {
   guint rows;
 } ClothMeshNote;
 
-/**
- * ClothMeshFrame:
- * @positions: 3 numbers a vertex, metres, NaN when not seen
+/* @positions: 3 numbers a vertex, metres, NaN when not seen
  * @states: a #ClothVertexState a vertex
  * @covariances: (nullable): 6 numbers a vertex, m², NaN where not known
  *
  * One frame of a sequence.
- *
- * Since: 0.1
  */
 typedef struct {
   const gfloat *positions;
@@ -103,13 +83,9 @@ typedef struct {
   const gfloat *covariances;
 } ClothMeshFrame;
 
-/**
- * ClothSeamLine:
- * @n_vertices: vertices of a line
+/* @n_vertices: vertices of a line
  * @lines: two lines of vertices on the edges of the cloth; each vertex of the first is
  *   sewn to the one at its place in the second
- *
- * Since: 0.1
  */
 typedef struct {
   guint n_vertices;

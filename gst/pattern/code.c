@@ -229,9 +229,7 @@ search_code (Search * search, ClothRandom * random)
   return n == n_squares;
 }
 
-/**
- * cloth_code_generate:
- * @pattern: a checkerboard of at least 4 by 4 squares; gets a code in place of any
+/* @pattern: a checkerboard of at least 4 by 4 squares; gets a code in place of any
  *   that it has
  * @dot_ratio: diameter of a dot over the edge of its square
  * @seed: equal seeds give equal codes on every machine
@@ -246,8 +244,6 @@ search_code (Search * search, ClothRandom * random)
  *
  * Returns: %FALSE with %CLOTH_PATTERN_ERROR_VALUE or %CLOTH_PATTERN_ERROR_CODE;
  *   @pattern is then as it was
- *
- * Since: 0.1
  */
 gboolean
 cloth_code_generate (ClothPattern * pattern, gdouble dot_ratio, guint64 seed,

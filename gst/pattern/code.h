@@ -7,23 +7,13 @@
 
 G_BEGIN_DECLS
 
-/**
- * CLOTH_CODE_DISTANCE:
- *
- * Least number of dots by which any two windows of a generated code differ, in all
+/* Least number of dots by which any two windows of a generated code differ, in all
  * rotations.
- *
- * Since: 0.1
  */
 #define CLOTH_CODE_DISTANCE 3
 
-/**
- * CLOTH_CODE_DOT_RATIO:
- *
- * Default diameter of a dot over the edge of its square. A dot takes 7% of its square,
+/* Default diameter of a dot over the edge of its square. A dot takes 7% of its square,
  * so the confidence of a black square that carries one is still 0.93.
- *
- * Since: 0.1
  */
 #define CLOTH_CODE_DOT_RATIO 0.3
 

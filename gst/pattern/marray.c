@@ -73,9 +73,7 @@ check_sizes (const ClothMArray * array, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_m_array_check:
- * @array: an array
+/* @array: an array
  * @error: return location
  *
  * Checks every limit: %CLOTH_M_ARRAY_MIN to %CLOTH_M_ARRAY_MAX dots each way, 2 to
@@ -84,8 +82,6 @@ check_sizes (const ClothMArray * array, GError ** error)
  * Whether windows are unique is not checked: print that has a few twins is still read.
  *
  * Returns: %TRUE when @array is sound, else %FALSE with %CLOTH_PATTERN_ERROR_VALUE
- *
- * Since: 0.1
  */
 gboolean
 cloth_m_array_check (const ClothMArray * array, GError ** error)
@@ -115,9 +111,7 @@ cloth_m_array_check (const ClothMArray * array, GError ** error)
   return check_sizes (array, error);
 }
 
-/**
- * cloth_m_array_new:
- * @columns: dots in a row
+/* @columns: dots in a row
  * @rows: dots in a column
  * @n_colours: how many colours; their names and shades are cyan, magenta, yellow,
  *   orange, green (the paper's), white, blue, red
@@ -131,8 +125,6 @@ cloth_m_array_check (const ClothMArray * array, GError ** error)
  *
  * Returns: (transfer full): the array; free with cloth_m_array_free(). %NULL with
  *   %CLOTH_PATTERN_ERROR_VALUE or %CLOTH_PATTERN_ERROR_CODE
- *
- * Since: 0.1
  */
 ClothMArray *
 cloth_m_array_new (gint columns, gint rows, gint n_colours, gdouble pitch_m,
@@ -159,11 +151,7 @@ cloth_m_array_new (gint columns, gint rows, gint n_colours, gdouble pitch_m,
   return g_steal_pointer (&array);
 }
 
-/**
- * cloth_m_array_free:
- * @array: (nullable) (transfer full): an array
- *
- * Since: 0.1
+/* @array: (nullable) (transfer full): an array
  */
 void
 cloth_m_array_free (ClothMArray * array)
@@ -300,9 +288,7 @@ read_array (JsonObject * object, ClothMArray * array, GError ** error)
   return cloth_m_array_check (array, error);
 }
 
-/**
- * cloth_m_array_load_data:
- * @data: (array length=size): the text of a pattern.json, not ended by 0
+/* @data: (array length=size): the text of a pattern.json, not ended by 0
  * @size: its bytes
  * @error: return location
  *
@@ -312,8 +298,6 @@ read_array (JsonObject * object, ClothMArray * array, GError ** error)
  * colours for each row. Other keys are an error.
  *
  * Returns: (transfer full): the array, or %NULL with a #ClothPatternError
- *
- * Since: 0.1
  */
 ClothMArray *
 cloth_m_array_load_data (const gchar * data, gsize size, GError ** error)
@@ -357,9 +341,7 @@ cloth_m_array_load_data (const gchar * data, gsize size, GError ** error)
   return g_steal_pointer (&array);
 }
 
-/**
- * cloth_m_array_load:
- * @path: (type filename): a pattern.json
+/* @path: (type filename): a pattern.json
  * @error: return location
  *
  * Reads an M-array; see cloth_m_array_load_data() for what the file holds. The error's
@@ -367,8 +349,6 @@ cloth_m_array_load_data (const gchar * data, gsize size, GError ** error)
  *
  * Returns: (transfer full): the array, or %NULL with a #ClothPatternError,
  *   #ClothFileError when the file is too large, or #GFileError
- *
- * Since: 0.1
  */
 ClothMArray *
 cloth_m_array_load (const gchar * path, GError ** error)
@@ -397,14 +377,10 @@ put_bytes (ClothJsonWriter * writer, const guint8 * values, gint n)
   cloth_json_writer_numbers (writer, NULL, numbers, (gsize) n);
 }
 
-/**
- * cloth_m_array_to_json:
- * @array: a sound array
+/* @array: a sound array
  *
  * Returns: (transfer full): the text of its pattern.json; equal arrays give equal bytes
  *   and every number reads back as it was
- *
- * Since: 0.1
  */
 gchar *
 cloth_m_array_to_json (const ClothMArray * array)
@@ -437,17 +413,13 @@ cloth_m_array_to_json (const ClothMArray * array)
   return cloth_json_writer_finish (writer);
 }
 
-/**
- * cloth_m_array_save:
- * @array: an array
+/* @array: an array
  * @path: (type filename): where to
  * @error: return location
  *
  * Writes pattern.json; the file appears whole or not at all.
  *
  * Returns: %FALSE with %CLOTH_PATTERN_ERROR_VALUE or a #GFileError
- *
- * Since: 0.1
  */
 gboolean
 cloth_m_array_save (const ClothMArray * array, const gchar * path,

@@ -7,57 +7,31 @@
 
 G_BEGIN_DECLS
 
-/**
- * CLOTH_M_ARRAY_MIN:
- *
- * Fewest dots each way: those of one window.
- *
- * Since: 0.1
+/* Fewest dots each way: those of one window.
  */
 #define CLOTH_M_ARRAY_MIN 3
 
-/**
- * CLOTH_M_ARRAY_MAX:
- *
- * Most dots each way; more values than theirs no JSON file may have.
- *
- * Since: 0.1
+/* Most dots each way; more values than theirs no JSON file may have.
  */
 #define CLOTH_M_ARRAY_MAX 400
 
-/**
- * CLOTH_M_ARRAY_MAX_COLOURS:
- *
- * Most colours of dots.
- *
- * Since: 0.1
+/* Most colours of dots.
  */
 #define CLOTH_M_ARRAY_MAX_COLOURS 8
 
-/**
- * CLOTH_M_ARRAY_MAX_DISTANCE:
- *
- * Greatest code distance that can be asked for.
- *
- * Since: 0.1
+/* Greatest code distance that can be asked for.
  */
 #define CLOTH_M_ARRAY_MAX_DISTANCE 5
 
-/**
- * ClothDotColour:
- * @name: what people call it, at most 31 bytes
+/* @name: what people call it, at most 31 bytes
  * @rgb: how it is printed, 0 to 255 each (sRGB)
- *
- * Since: 0.1
  */
 typedef struct {
   gchar name[32];
   guint8 rgb[3];
 } ClothDotColour;
 
-/**
- * ClothMArray:
- * @columns: dots in a row
+/* @columns: dots in a row
  * @rows: dots in a column
  * @n_colours: colours of dots, 2 to %CLOTH_M_ARRAY_MAX_COLOURS
  * @colours: the first @n_colours of them
@@ -69,8 +43,6 @@ typedef struct {
  *
  * Dots of several colours on black cloth. The mesh vertex of a dot is
  * row·columns+column; it lies at origin + (column, row)·pitch_m on the flat cloth.
- *
- * Since: 0.1
  */
 typedef struct {
   gint columns, rows;
@@ -83,15 +55,11 @@ typedef struct {
   guint8 *matrix;
 } ClothMArray;
 
-/**
- * ClothMArrayCode:
- * @distance: least number of dots by which any two windows differ, 1 to
+/* @distance: least number of dots by which any two windows differ, 1 to
  *   %CLOTH_M_ARRAY_MAX_DISTANCE
  * @two_sided: whether mirror images of windows differ as well: for cloth whose print is
  *   seen from both sides
  * @seed: equal seeds give equal arrays on every machine
- *
- * Since: 0.1
  */
 typedef struct {
   gint distance;

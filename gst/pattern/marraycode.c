@@ -199,9 +199,7 @@ check_room (const Search * search, GError ** error)
   return FALSE;
 }
 
-/**
- * cloth_m_array_generate:
- * @columns: dots in a row, %CLOTH_M_ARRAY_MIN to %CLOTH_M_ARRAY_MAX
+/* @columns: dots in a row, %CLOTH_M_ARRAY_MIN to %CLOTH_M_ARRAY_MAX
  * @rows: dots in a column
  * @n_colours: 2 to %CLOTH_M_ARRAY_MAX_COLOURS
  * @code: distance, sides, seed
@@ -217,8 +215,6 @@ check_room (const Search * search, GError ** error)
  *
  * Returns: %FALSE with %CLOTH_PATTERN_ERROR_VALUE where a number is outside its limits
  *   or no such array can exist, %CLOTH_PATTERN_ERROR_CODE where none was found
- *
- * Since: 0.1
  */
 gboolean
 cloth_m_array_generate (gint columns, gint rows, gint n_colours,

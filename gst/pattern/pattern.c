@@ -14,9 +14,7 @@
 #define SLACK 1e-9
 
 G_DEFINE_QUARK (cloth - pattern - error - quark, cloth_pattern_error)
-/**
- * cloth_pattern_check:
- * @pattern: a pattern
+/* @pattern: a pattern
  * @error: return location
  *
  * Checks every limit: 1 to %CLOTH_PATTERN_MAX_SQUARES squares each way, finite
@@ -24,8 +22,6 @@ G_DEFINE_QUARK (cloth - pattern - error - quark, cloth_pattern_error)
  * bytes 0 or 1.
  *
  * Returns: %TRUE when @pattern is sound, else %FALSE with %CLOTH_PATTERN_ERROR_VALUE
- *
- * Since: 0.1
  */
     gboolean
 cloth_pattern_check (const ClothPattern * pattern, GError ** error)
@@ -88,9 +84,7 @@ cloth_pattern_check (const ClothPattern * pattern, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_pattern_new_checker:
- * @columns: squares in a row
+/* @columns: squares in a row
  * @rows: squares in a column
  * @square_m: edge of a square, metres
  * @margin_m: plain cloth around the board, metres, 0 or more
@@ -101,8 +95,6 @@ cloth_pattern_check (const ClothPattern * pattern, GError ** error)
  *
  * Returns: (transfer full): the pattern; free with cloth_pattern_free(). %NULL with
  *   %CLOTH_PATTERN_ERROR_VALUE when a number is outside its limits
- *
- * Since: 0.1
  */
 ClothPattern *
 cloth_pattern_new_checker (gint columns, gint rows, gdouble square_m,
@@ -126,13 +118,9 @@ cloth_pattern_new_checker (gint columns, gint rows, gdouble square_m,
       error) ? g_steal_pointer (&pattern) : NULL;
 }
 
-/**
- * cloth_pattern_copy:
- * @pattern: a pattern
+/* @pattern: a pattern
  *
  * Returns: (transfer full): a copy with its own code
- *
- * Since: 0.1
  */
 ClothPattern *
 cloth_pattern_copy (const ClothPattern * pattern)
@@ -145,11 +133,7 @@ cloth_pattern_copy (const ClothPattern * pattern)
   return copy;
 }
 
-/**
- * cloth_pattern_free:
- * @pattern: (nullable) (transfer full): a pattern
- *
- * Since: 0.1
+/* @pattern: (nullable) (transfer full): a pattern
  */
 void
 cloth_pattern_free (ClothPattern * pattern)
@@ -324,9 +308,7 @@ read_version (JsonObject * object, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_pattern_load_data:
- * @data: (array length=size): the text of a pattern.json, not ended by 0
+/* @data: (array length=size): the text of a pattern.json, not ended by 0
  * @size: its bytes
  * @error: return location
  *
@@ -337,8 +319,6 @@ read_version (JsonObject * object, GError ** error)
  * `dot_ratio`. Other keys are an error.
  *
  * Returns: (transfer full): the pattern, or %NULL with a #ClothPatternError
- *
- * Since: 0.1
  */
 ClothPattern *
 cloth_pattern_load_data (const gchar * data, gsize size, GError ** error)
@@ -382,9 +362,7 @@ cloth_pattern_load_data (const gchar * data, gsize size, GError ** error)
       error) ? g_steal_pointer (&pattern) : NULL;
 }
 
-/**
- * cloth_pattern_load:
- * @path: (type filename): a pattern.json
+/* @path: (type filename): a pattern.json
  * @error: return location
  *
  * Reads a pattern; see cloth_pattern_load_data() for what the file holds. The error's
@@ -392,8 +370,6 @@ cloth_pattern_load_data (const gchar * data, gsize size, GError ** error)
  *
  * Returns: (transfer full): the pattern, or %NULL with a #ClothPatternError,
  *   #ClothFileError when the file is too large, or #GFileError
- *
- * Since: 0.1
  */
 ClothPattern *
 cloth_pattern_load (const gchar * path, GError ** error)
@@ -438,14 +414,10 @@ put_pair (GString * text, const gchar * key, const gdouble value[2])
   g_string_append (text, "],\n");
 }
 
-/**
- * cloth_pattern_to_json:
- * @pattern: a sound pattern
+/* @pattern: a sound pattern
  *
  * Returns: (transfer full): the text of its pattern.json; equal patterns give equal
  *   bytes and every number reads back as it was
- *
- * Since: 0.1
  */
 gchar *
 cloth_pattern_to_json (const ClothPattern * pattern)
@@ -478,17 +450,13 @@ cloth_pattern_to_json (const ClothPattern * pattern)
   return g_string_free (text, FALSE);
 }
 
-/**
- * cloth_pattern_save:
- * @pattern: a pattern
+/* @pattern: a pattern
  * @path: (type filename): where to
  * @error: return location
  *
  * Writes pattern.json; the file appears whole or not at all.
  *
  * Returns: %FALSE with %CLOTH_PATTERN_ERROR_VALUE or a #GFileError
- *
- * Since: 0.1
  */
 gboolean
 cloth_pattern_save (const ClothPattern * pattern, const gchar * path,

@@ -7,25 +7,16 @@
 
 G_BEGIN_DECLS
 
-/**
- * CLOTH_PATTERN_MAX_SQUARES:
- *
- * Most squares a board may have each way.
- *
- * Since: 0.1
+/* Most squares a board may have each way.
  */
 #define CLOTH_PATTERN_MAX_SQUARES 500
 
-/**
- * ClothPatternError:
- * @CLOTH_PATTERN_ERROR_FORMAT: the file is no pattern.json
+/* @CLOTH_PATTERN_ERROR_FORMAT: the file is no pattern.json
  * @CLOTH_PATTERN_ERROR_UNSUPPORTED: a version or a kind of pattern this build doesn't
  *   know
  * @CLOTH_PATTERN_ERROR_VALUE: a number outside its limits
  * @CLOTH_PATTERN_ERROR_CODE: no code with the wanted distance was found
  * @CLOTH_PATTERN_ERROR_PRINT: the print file could not be drawn
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_PATTERN_ERROR_FORMAT,
@@ -38,9 +29,7 @@ typedef enum {
 #define CLOTH_PATTERN_ERROR (cloth_pattern_error_quark ())
 GQuark cloth_pattern_error_quark (void);
 
-/**
- * ClothPattern:
- * @columns: squares in a row
+/* @columns: squares in a row
  * @rows: squares in a column
  * @square_m: edge of a square, metres
  * @origin_uv_m: place of the board's top-left outer corner on the flat cloth, metres
@@ -53,8 +42,6 @@ GQuark cloth_pattern_error_quark (void);
  * A checkerboard, plain or coded. Vertex row·(columns+1)+column is the board corner
  * (column, row), the outer ones included; it lies at
  * origin + (column, row)·square_m on the flat cloth.
- *
- * Since: 0.1
  */
 typedef struct {
   gint columns, rows;

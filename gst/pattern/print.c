@@ -16,14 +16,10 @@
 #define MAX_SHEETS 400
 #define MIN_TILE_MM 50.0
 
-/**
- * cloth_print_paper:
- * @name: "A0" to "A5", "letter", "legal", "tabloid", "cloth" or a size as "600x900mm"
+/* @name: "A0" to "A5", "letter", "legal", "tabloid", "cloth" or a size as "600x900mm"
  * @paper_mm: (out): width and height, mm; 0, 0 for "cloth"
  *
  * Returns: whether the name is known
- *
- * Since: 0.1
  */
 gboolean
 cloth_print_paper (const gchar * name, gdouble paper_mm[2])
@@ -114,9 +110,7 @@ lay_paper (const ClothPrintOptions * options, ClothPrintLayout * layout,
   return TRUE;
 }
 
-/**
- * cloth_print_layout:
- * @artwork: what is printed
+/* @artwork: what is printed
  * @options: paper, margin, overlap
  * @layout: (out): where everything goes
  * @error: return location
@@ -125,8 +119,6 @@ lay_paper (const ClothPrintOptions * options, ClothPrintLayout * layout,
  * the cloth every sheet has a strip with a ruler, patches and a caption.
  *
  * Returns: %FALSE with %CLOTH_PATTERN_ERROR_VALUE
- *
- * Since: 0.1
  */
 gboolean
 cloth_print_layout (const ClothArtwork * artwork,
@@ -212,9 +204,7 @@ set_pdf_date (cairo_surface_t * surface)
       text);
 }
 
-/**
- * cloth_print_pdf:
- * @artwork: what is printed
+/* @artwork: what is printed
  * @options: paper, margin, overlap
  * @error: return location
  *
@@ -223,8 +213,6 @@ set_pdf_date (cairo_surface_t * surface)
  * variable SOURCE_DATE_EPOCH, else 1970.
  *
  * Returns: (transfer full): the file, or %NULL with a #ClothPatternError
- *
- * Since: 0.1
  */
 GBytes *
 cloth_print_pdf (const ClothArtwork * artwork,
@@ -270,9 +258,7 @@ drop_surface_number (GByteArray * bytes)
     g_byte_array_remove_range (bytes, start, n);
 }
 
-/**
- * cloth_print_svg:
- * @artwork: what is printed
+/* @artwork: what is printed
  * @options: paper, margin, overlap
  * @column: which sheet across
  * @row: which sheet down
@@ -281,8 +267,6 @@ drop_surface_number (GByteArray * bytes)
  * Draws one sheet as an SVG whose size is given in mm. Equal input gives equal bytes.
  *
  * Returns: (transfer full): the file, or %NULL with a #ClothPatternError
- *
- * Since: 0.1
  */
 GBytes *
 cloth_print_svg (const ClothArtwork * artwork,
@@ -323,9 +307,7 @@ save_bytes (GBytes * bytes, const gchar * path, GError ** error)
   return g_file_set_contents (path, data, (gssize) size, error);
 }
 
-/**
- * cloth_print_save:
- * @artwork: what is printed
+/* @artwork: what is printed
  * @options: paper, margin, overlap
  * @path: (type filename): where to; ends with .pdf or .svg
  * @error: return location
@@ -336,8 +318,6 @@ save_bytes (GBytes * bytes, const gchar * path, GError ** error)
  *
  * Returns: (transfer full) (array zero-terminated=1): the files' names; free with
  *   g_strfreev(). %NULL with a #ClothPatternError or #GFileError
- *
- * Since: 0.1
  */
 gchar **
 cloth_print_save (const ClothArtwork * artwork,

@@ -8,29 +8,21 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothArtwork:
- * @checker: (nullable): a checkerboard, plain or coded
+/* @checker: (nullable): a checkerboard, plain or coded
  * @dots: (nullable): an M-array
  *
  * What is printed: exactly one of them.
- *
- * Since: 0.1
  */
 typedef struct {
   const ClothPattern *checker;
   const ClothMArray *dots;
 } ClothArtwork;
 
-/**
- * ClothPrintOptions:
- * @paper_mm: width and height of the paper, mm, either way round; 0, 0 for one sheet as
+/* @paper_mm: width and height of the paper, mm, either way round; 0, 0 for one sheet as
  *   large as it takes
  * @margin_mm: edge of the paper that printers leave blank, mm
  * @overlap_mm: how far neighbouring sheets show the same part of the cloth, mm
  * @notes: (nullable): printed after the caption
- *
- * Since: 0.1
  */
 typedef struct {
   gdouble paper_mm[2];
@@ -41,9 +33,7 @@ typedef struct {
 
 #define CLOTH_PRINT_OPTIONS_INIT { { 0, 0 }, 10, 10, NULL }
 
-/**
- * ClothPrintLayout:
- * @page_mm: width and height of each page, mm
+/* @page_mm: width and height of each page, mm
  * @tile_mm: place (x, y) and size (width, height) of the part of a page that shows the
  *   cloth, mm from the page's top-left corner
  * @step_mm: cloth between the left (top) edges of neighbouring tiles, mm
@@ -52,8 +42,6 @@ typedef struct {
  *
  * The tile of sheet (column, row) shows the cloth from column·@step_mm, row·@step_mm on;
  * the last ones may show less than a tile.
- *
- * Since: 0.1
  */
 typedef struct {
   gdouble page_mm[2];

@@ -9,15 +9,11 @@
 /* Points a side that a pixel under the edge of a dot is sampled with. */
 #define DOT_SAMPLES 16
 
-/**
- * cloth_pattern_white_at:
- * @pattern: a sound pattern
+/* @pattern: a sound pattern
  * @u: metres along the flat cloth's width
  * @v: metres along its height
  *
  * Returns: 1 where the cloth is white (all of it outside the board), 0 where black
- *
- * Since: 0.1
  */
 gdouble
 cloth_pattern_white_at (const ClothPattern * pattern, gdouble u, gdouble v)
@@ -135,9 +131,7 @@ texture_new (const gdouble cloth_m[2], gdouble px_per_m, gint n_channels,
   return texture;
 }
 
-/**
- * cloth_pattern_texture:
- * @pattern: a pattern
+/* @pattern: a pattern
  * @px_per_m: scale, pixels per metre
  * @black: grey value of black
  * @white: grey value of white, and of the cloth outside the board
@@ -150,8 +144,6 @@ texture_new (const gdouble cloth_m[2], gdouble px_per_m, gint n_channels,
  * Returns: (transfer full): a texture of round(cloth_m·px_per_m) pixels, at least 1
  *   each way; free with cloth_texture_free(). %NULL with %CLOTH_PATTERN_ERROR_VALUE
  *   when a side would exceed %CLOTH_TEXTURE_MAX_PX
- *
- * Since: 0.1
  */
 ClothTexture *
 cloth_pattern_texture (const ClothPattern * pattern, gdouble px_per_m,
@@ -185,9 +177,7 @@ cloth_pattern_texture (const ClothPattern * pattern, gdouble px_per_m,
   return texture;
 }
 
-/**
- * cloth_m_array_texture:
- * @array: an array of dots
+/* @array: an array of dots
  * @px_per_m: scale, pixels per metre
  * @ground: value of the cloth between the dots, in all three channels
  * @inks: red, green and blue of each of the array's colours
@@ -199,8 +189,6 @@ cloth_pattern_texture (const ClothPattern * pattern, gdouble px_per_m,
  * Returns: (transfer full): a texture of three channels and round(cloth_m·px_per_m)
  *   pixels, at least 1 each way; free with cloth_texture_free(). %NULL with
  *   %CLOTH_PATTERN_ERROR_VALUE when a side would exceed %CLOTH_TEXTURE_MAX_PX
- *
- * Since: 0.1
  */
 ClothTexture *
 cloth_m_array_texture (const ClothMArray * array, gdouble px_per_m,
@@ -239,11 +227,7 @@ cloth_m_array_texture (const ClothMArray * array, gdouble px_per_m,
   return texture;
 }
 
-/**
- * cloth_texture_free:
- * @texture: (nullable) (transfer full): a texture
- *
- * Since: 0.1
+/* @texture: (nullable) (transfer full): a texture
  */
 void
 cloth_texture_free (ClothTexture * texture)

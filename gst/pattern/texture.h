@@ -7,25 +7,16 @@
 
 G_BEGIN_DECLS
 
-/**
- * CLOTH_TEXTURE_MAX_PX:
- *
- * Most pixels a texture may have each way.
- *
- * Since: 0.1
+/* Most pixels a texture may have each way.
  */
 #define CLOTH_TEXTURE_MAX_PX 16384
 
-/**
- * ClothTexture:
- * @width: pixels a row
+/* @width: pixels a row
  * @height: rows
  * @n_channels: 1 for grey; 3 for red, green, blue, one after the other
  * @data: (array): @height·@width·@n_channels values
  * @px_per_m: scale; pixel (x, y) is the mean over the square of cloth from
  *   (x, y) / @px_per_m to (x + 1, y + 1) / @px_per_m
- *
- * Since: 0.1
  */
 typedef struct {
   gint width, height;

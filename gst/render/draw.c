@@ -84,9 +84,7 @@ ink_of (const ClothCanvas * canvas, const ClothDrawGroup * group,
   return ink;
 }
 
-/**
- * cloth_draw_line:
- * @canvas: where to
+/* @canvas: where to
  * @x0: px
  * @y0: px
  * @x1: px
@@ -95,8 +93,6 @@ ink_of (const ClothCanvas * canvas, const ClothDrawGroup * group,
  * @colour: colour
  *
  * Draws a straight line with round ends.
- *
- * Since: 0.1
  */
 void
 cloth_draw_line (const ClothCanvas * canvas, gfloat x0, gfloat y0, gfloat x1,
@@ -131,9 +127,7 @@ cloth_draw_line (const ClothCanvas * canvas, gfloat x0, gfloat y0, gfloat x1,
   }
 }
 
-/**
- * cloth_draw_dashes:
- * @canvas: where to
+/* @canvas: where to
  * @x0: px
  * @y0: px
  * @x1: px
@@ -143,8 +137,6 @@ cloth_draw_line (const ClothCanvas * canvas, gfloat x0, gfloat y0, gfloat x1,
  * @colour: colour
  *
  * Draws a dashed line; it begins and ends with a dash.
- *
- * Since: 0.1
  */
 void
 cloth_draw_dashes (const ClothCanvas * canvas, gfloat x0, gfloat y0, gfloat x1,
@@ -166,16 +158,12 @@ cloth_draw_dashes (const ClothCanvas * canvas, gfloat x0, gfloat y0, gfloat x1,
   }
 }
 
-/**
- * cloth_draw_quad:
- * @canvas: where to
+/* @canvas: where to
  * @x: corners in order, px
  * @y: corners in order, px
  * @colour: colour
  *
  * Fills a convex quadrilateral; one that is not convex is left out.
- *
- * Since: 0.1
  */
 void
 cloth_draw_quad (const ClothCanvas * canvas, const gfloat x[4],
@@ -219,9 +207,7 @@ cloth_draw_quad (const ClothCanvas * canvas, const gfloat x[4],
   }
 }
 
-/**
- * cloth_draw_ellipse:
- * @canvas: where to
+/* @canvas: where to
  * @x: centre, px
  * @y: centre, px
  * @xx: of the matrix C, px²
@@ -232,8 +218,6 @@ cloth_draw_quad (const ClothCanvas * canvas, const gfloat x[4],
  *
  * Draws the ellipse p' C⁻¹ p = 1 about the centre: with C a covariance, its one-sigma
  * contour. Left out when C is not positive definite.
- *
- * Since: 0.1
  */
 void
 cloth_draw_ellipse (const ClothCanvas * canvas, gfloat x, gfloat y, gfloat xx,
@@ -296,9 +280,7 @@ draw_digit (const ClothCanvas * canvas, gint digit, const gfloat origin[2],
   }
 }
 
-/**
- * cloth_draw_number:
- * @canvas: where to
+/* @canvas: where to
  * @number: what to write, −9999 … 99999
  * @origin: top-left of the first digit, px
  * @right: from the left to the right edge of a digit, px
@@ -308,8 +290,6 @@ draw_digit (const ClothCanvas * canvas, gint digit, const gfloat origin[2],
  *
  * Writes a whole number along any direction, so that it can lie on the cloth. Digits
  * are 1.6 @right apart.
- *
- * Since: 0.1
  */
 void
 cloth_draw_number (const ClothCanvas * canvas, gint number,
@@ -334,16 +314,13 @@ cloth_draw_number (const ClothCanvas * canvas, gint number,
   }
 }
 
-/**
- * cloth_draw_confidence_colour:
- * @confidence: −1 … 1
+/* @confidence: −1 … 1
  * @low: the confidence below which a square is given up, c_low of the paper
  *
  * The colours of the paper's figure 2: yellow for a confidence of 1, purple for @low
  * (and whatever is below), through red and orange between.
  *
  * Returns: an opaque colour
- * Since: 0.1
  */
 ClothColour
 cloth_draw_confidence_colour (gfloat confidence, gfloat low)

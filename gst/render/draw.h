@@ -7,24 +7,18 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothColour:
- * @r: red, 0 … 1
+/* @r: red, 0 … 1
  * @g: green, 0 … 1
  * @b: blue, 0 … 1
  * @a: opacity, 0 … 1
  *
  * Gamma-encoded, not premultiplied.
- *
- * Since: 0.1
  */
 typedef struct {
   gfloat r, g, b, a;
 } ClothColour;
 
-/**
- * ClothComponent:
- * @data: first sample
+/* @data: first sample
  * @stride: bytes from one row to the next
  * @step: bytes from one sample to the next of its row
  * @width: samples a row
@@ -34,8 +28,6 @@ typedef struct {
  * @weights: sample value 0 … 255 of a colour: w[0]·r + w[1]·g + w[2]·b + w[3]
  *
  * One colour component of a picture: luma, a chroma difference, red, …
- *
- * Since: 0.1
  */
 typedef struct {
   guint8 *data;
@@ -45,16 +37,12 @@ typedef struct {
   gfloat weights[4];
 } ClothComponent;
 
-/**
- * ClothCanvas:
- * @n_components: 1 … 4
+/* @n_components: 1 … 4
  * @components: components of equal subsampling next to each other
  *
  * A picture to draw on; owns nothing. All coordinates are full-resolution pixels with
  * the centre of the top-left pixel at (0, 0). Whatever lies outside is clipped; shapes
  * with coordinates that are not finite are not drawn.
- *
- * Since: 0.1
  */
 typedef struct {
   guint n_components;

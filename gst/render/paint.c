@@ -6,14 +6,10 @@
 #include <math.h>
 #include <string.h>
 
-/**
- * cloth_light_from_level:
- * @level: a value of a picture, 0 to 255
+/* @level: a value of a picture, 0 to 255
  *
  * Returns: its share of the brightest light, by the transfer curve of sRGB
  *   (IEC 61966-2-1)
- *
- * Since: 0.1
  */
 gfloat
 cloth_light_from_level (guint8 level)
@@ -92,9 +88,7 @@ narrow (ClothPaintLevel * level, guint n)
   g_free (wide);
 }
 
-/**
- * cloth_paint_new:
- * @data: the picture
+/* @data: the picture
  * @width: pixels a row, 1 to %CLOTH_PAINT_MAX_PX
  * @height: rows, 1 to %CLOTH_PAINT_MAX_PX
  * @stride: bytes from one row to the next
@@ -105,8 +99,6 @@ narrow (ClothPaintLevel * level, guint n)
  * @size_m: its width and height on the flat cloth, m
  *
  * Returns: (transfer full): free with cloth_paint_free ()
- *
- * Since: 0.1
  */
 ClothPaint *
 cloth_paint_new (const guint8 * data, gint width, gint height, gint stride,
@@ -149,11 +141,7 @@ cloth_paint_new (const guint8 * data, gint width, gint height, gint stride,
   return paint;
 }
 
-/**
- * cloth_paint_free:
- * @paint: (nullable) (transfer full): a paint
- *
- * Since: 0.1
+/* @paint: (nullable) (transfer full): a paint
  */
 void
 cloth_paint_free (ClothPaint * paint)

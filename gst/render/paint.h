@@ -7,27 +7,18 @@
 
 G_BEGIN_DECLS
 
-/**
- * CLOTH_PAINT_MAX_PX:
- *
- * Most pixels a picture on the cloth may have each way.
- *
- * Since: 0.1
+/* Most pixels a picture on the cloth may have each way.
  */
 #define CLOTH_PAINT_MAX_PX 8192
 
 #define CLOTH_PAINT_MAX_LEVELS 15
 
-/**
- * ClothPaintLevel:
- * @width: pixels a row
+/* @width: pixels a row
  * @height: rows
  * @data: reflected share of the light, @height·@width·channels
  * @flat: 1 where everything under the pixel and its eight neighbours is of one value
  *
  * The picture at one scale: each pixel is the mean over 2×2 of the level before.
- *
- * Since: 0.1
  */
 typedef struct {
   gint width, height;
@@ -35,9 +26,7 @@ typedef struct {
   guint8 *flat;
 } ClothPaintLevel;
 
-/**
- * ClothPaint:
- * @n_channels: 1 for grey, 3 for red, green, blue
+/* @n_channels: 1 for grey, 3 for red, green, blue
  * @origin_uv_m: place of the picture's top-left corner on the flat cloth, m
  * @px_per_m: its scale along u and v
  * @n_levels: number of @levels, >= 1
@@ -45,8 +34,6 @@ typedef struct {
  *
  * A picture printed on a cloth, in linear light. Beyond its edge its outermost pixels
  * go on.
- *
- * Since: 0.1
  */
 typedef struct {
   guint n_channels;

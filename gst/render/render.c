@@ -74,11 +74,7 @@ struct _ClothRenderer
   ClothRenderJob job;
 };
 
-/**
- * cloth_render_style_init:
- * @style: (out): a lamp above and beside the camera's usual place, y < 0; a grey wall
- *
- * Since: 0.1
+/* @style: (out): a lamp above and beside the camera's usual place, y < 0; a grey wall
  */
 void
 cloth_render_style_init (ClothRenderStyle * style)
@@ -89,9 +85,7 @@ cloth_render_style_init (ClothRenderStyle * style)
   };
 }
 
-/**
- * cloth_renderer_new:
- * @n_vertices: vertices of the mesh
+/* @n_vertices: vertices of the mesh
  * @uv: (array): 2 numbers a vertex, metres on the flat cloth
  * @faces: (array): 4 indices a face, counter-clockwise seen from the printed side, the
  *   last 0xffffffff for a triangle; all others below @n_vertices
@@ -100,8 +94,6 @@ cloth_render_style_init (ClothRenderStyle * style)
  * @simd: instruction set, %CLOTH_SIMD_BEST but in tests
  *
  * Returns: (transfer full): free with cloth_renderer_free ()
- *
- * Since: 0.1
  */
 ClothRenderer *
 cloth_renderer_new (guint n_vertices, const gfloat * uv,
@@ -121,11 +113,7 @@ cloth_renderer_new (guint n_vertices, const gfloat * uv,
   return self;
 }
 
-/**
- * cloth_renderer_free:
- * @renderer: (nullable) (transfer full): a renderer
- *
- * Since: 0.1
+/* @renderer: (nullable) (transfer full): a renderer
  */
 void
 cloth_renderer_free (ClothRenderer * renderer)
@@ -555,9 +543,7 @@ count_instants (ClothRenderer * self, gdouble time_s)
   return (guint) CLAMP (ceil (farthest / INSTANT_PX), 1, MAX_INSTANTS);
 }
 
-/**
- * cloth_renderer_draw:
- * @renderer: a renderer
+/* @renderer: a renderer
  * @paint: what is on the printed side
  * @capture: the camera
  * @style: light and background
@@ -571,8 +557,6 @@ count_instants (ClothRenderer * self, gdouble time_s)
  * thousandths of a pixel of its place.
  *
  * Returns: (transfer none): the light, until the next call
- *
- * Since: 0.1
  */
 const ClothLight *
 cloth_renderer_draw (ClothRenderer * renderer, const ClothPaint * paint,
@@ -612,9 +596,7 @@ cloth_renderer_draw (ClothRenderer * renderer, const ClothPaint * paint,
   return &self->light;
 }
 
-/**
- * cloth_renderer_develop:
- * @renderer: a renderer that has drawn
+/* @renderer: a renderer that has drawn
  * @capture: the camera
  * @frame: number of the picture
  * @seed: of the noise
@@ -626,8 +608,6 @@ cloth_renderer_draw (ClothRenderer * renderer, const ClothPaint * paint,
  * Makes a picture of the light, once for each drawing: change of the light across the
  * picture, defocus, crosstalk of the colours, the transfer curve of sRGB, noise, whole
  * levels. The noise is a function of seed, frame, pixel and channel only.
- *
- * Since: 0.1
  */
 void
 cloth_renderer_develop (ClothRenderer * renderer,

@@ -11,9 +11,7 @@ G_BEGIN_DECLS
 
 typedef struct _ClothRenderer ClothRenderer;
 
-/**
- * ClothRenderStyle:
- * @lamp: direction from the cloth to the lamp, world; of any length but 0
+/* @lamp: direction from the cloth to the lamp, world; of any length but 0
  * @lamp_light: light of the lamp on a cloth that faces it
  * @ambient_light: light from everywhere
  * @through: share of the lamp's light that passes through the cloth to its other side
@@ -22,8 +20,6 @@ typedef struct _ClothRenderer ClothRenderer;
  *
  * How the cloth is lit (Lambert's law). A light of 1 on a white cloth is the brightest
  * that a picture can show.
- *
- * Since: 0.1
  */
 typedef struct {
   gdouble lamp[3];
@@ -34,16 +30,12 @@ typedef struct {
   gdouble background[2];
 } ClothRenderStyle;
 
-/**
- * ClothLight:
- * @width: pixels a row
+/* @width: pixels a row
  * @height: rows
  * @n_channels: 1, or 3 for red, green, blue
  * @data: (array): the planes, one after the other; each @height·@width
  *
  * The light that falls on a sensor; 1 is the brightest that a picture can show.
- *
- * Since: 0.1
  */
 typedef struct {
   gint width, height;

@@ -91,9 +91,7 @@ set_level (ClothSurfaceLevel * level, const ClothPaintLevel * from,
     }
 }
 
-/**
- * cloth_surface_new:
- * @n_vertices: vertices of the mesh
+/* @n_vertices: vertices of the mesh
  * @uv: (array): 2 numbers a vertex, metres on the flat cloth
  * @faces: (array): 4 indices a face, the last 0xffffffff for a triangle; all others
  *   below @n_vertices
@@ -102,7 +100,6 @@ set_level (ClothSurfaceLevel * level, const ClothPaintLevel * from,
  * @simd: instruction set, %CLOTH_SIMD_BEST but in tests; all give the same bytes
  *
  * Returns: (transfer full): the surface
- * Since: 0.1
  */
 ClothSurface *
 cloth_surface_new (guint n_vertices, const gfloat * uv, const guint32 * faces,
@@ -144,11 +141,7 @@ free_picture (ClothSurface * self)
   g_clear_pointer (&self->last, g_free);
 }
 
-/**
- * cloth_surface_free:
- * @surface: (nullable) (transfer full): a surface
- *
- * Since: 0.1
+/* @surface: (nullable) (transfer full): a surface
  */
 void
 cloth_surface_free (ClothSurface * surface)
@@ -565,9 +558,7 @@ clear_picture (ClothSurface * self)
   }
 }
 
-/**
- * cloth_surface_draw:
- * @surface: the surface
+/* @surface: the surface
  * @canvas: where to
  * @width: of the picture, px; the projection is scaled when the camera's differs
  * @height: of the picture, px
@@ -578,8 +569,6 @@ clear_picture (ClothSurface * self)
  *
  * Draws every triangle whose three corners are known and before the camera; of several,
  * the nearest.
- *
- * Since: 0.1
  */
 void
 cloth_surface_draw (ClothSurface * surface, const ClothCanvas * canvas,

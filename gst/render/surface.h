@@ -10,14 +10,9 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothSurface:
- *
- * The triangles of one mesh with what is printed on it, and the buffers that drawing it
+/* The triangles of one mesh with what is printed on it, and the buffers that drawing it
  * over a film needs. Made for speed: one look at each pixel, edges are not smoothed, and
  * light and lens are exact at the vertices only. #ClothRenderer is the one that films.
- *
- * Since: 0.1
  */
 typedef struct _ClothSurface ClothSurface;
 

@@ -43,9 +43,7 @@ edge_key (guint32 a, guint32 b)
   return (guint64) MIN (a, b) << 32 | MAX (a, b);
 }
 
-/**
- * cloth_wireframe_new:
- * @n_vertices: vertices
+/* @n_vertices: vertices
  * @columns: of the grid of vertices; 0 without one
  * @rows: of the grid of vertices; 0 without one
  * @faces: (nullable): 4 vertex indices a face, the last one 0xffffffff for a triangle
@@ -54,7 +52,6 @@ edge_key (guint32 a, guint32 b)
  * Faces that name a vertex out of range are left out.
  *
  * Returns: (transfer full): the wireframe
- * Since: 0.1
  */
 ClothWireframe *
 cloth_wireframe_new (guint n_vertices, guint columns, guint rows,
@@ -121,11 +118,7 @@ cloth_wireframe_new (guint n_vertices, guint columns, guint rows,
   return wire;
 }
 
-/**
- * cloth_wireframe_free:
- * @wire: (nullable) (transfer full): the wireframe
- *
- * Since: 0.1
+/* @wire: (nullable) (transfer full): the wireframe
  */
 void
 cloth_wireframe_free (ClothWireframe * wire)
@@ -141,12 +134,9 @@ cloth_wireframe_free (ClothWireframe * wire)
   g_free (wire);
 }
 
-/**
- * cloth_wireframe_get_n_edges:
- * @wire: the wireframe
+/* @wire: the wireframe
  *
  * Returns: edges, each counted once
- * Since: 0.1
  */
 guint
 cloth_wireframe_get_n_edges (const ClothWireframe * wire)
@@ -312,9 +302,7 @@ fill_face (const ClothWireframe * wire, const ClothCanvas * canvas,
   }
 }
 
-/**
- * cloth_wireframe_draw:
- * @wire: the wireframe
+/* @wire: the wireframe
  * @canvas: where to
  * @width: of the picture, px; the projection is scaled when the camera's differs
  * @height: of the picture, px
@@ -327,8 +315,6 @@ fill_face (const ClothWireframe * wire, const ClothCanvas * canvas,
  * state. Halves that lie behind a face by more than the edge's own length are drawn
  * with the hidden opacity. Long edges stay straight: the lens bends their ends only.
  * Faces are filled first, when the style has an opacity for them.
- *
- * Since: 0.1
  */
 void
 cloth_wireframe_draw (ClothWireframe * wire, const ClothCanvas * canvas,

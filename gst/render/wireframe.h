@@ -9,26 +9,17 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothWireframe:
- *
- * The edges and faces of one mesh, with the buffers that drawing it needs.
- *
- * Since: 0.1
+/* The edges and faces of one mesh, with the buffers that drawing it needs.
  */
 typedef struct _ClothWireframe ClothWireframe;
 
-/**
- * ClothWireStyle:
- * @n_colours: colours, at least 1
+/* @n_colours: colours, at least 1
  * @colours: one for every vertex state; a state beyond them takes the last
  * @width: of a line, px
  * @opacity: of the lines, 0 … 1
  * @hidden_opacity: of those behind another part of the mesh; times @opacity
  * @fill_opacity: of the faces, each in the mean colour of its corners; those behind
  *   another part of the mesh or with a corner that is not known are not filled
- *
- * Since: 0.1
  */
 typedef struct {
   guint n_colours;

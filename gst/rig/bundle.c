@@ -450,9 +450,7 @@ sane (const ClothBundle * b)
   return TRUE;
 }
 
-/**
- * cloth_bundle_solve:
- * @bundle: the problem, its cameras and poses replaced by the result
+/* @bundle: the problem, its cameras and poses replaced by the result
  * @cost: (out) (optional): the sum of Huber's costs, in squared standard deviations
  * @error: #GIOErrorEnum cancelled, or #ClothRigError when the start is impossible
  *
@@ -461,8 +459,6 @@ sane (const ClothBundle * b)
  * modern synthesis", 2000). The order of all sums is fixed: equal input gives equal bytes.
  *
  * Returns: whether a minimum, or the last iteration, was reached.
- *
- * Since: 0.1
  */
 gboolean
 cloth_bundle_solve (ClothBundle * bundle, gdouble * cost, GError ** error)
@@ -519,9 +515,7 @@ cloth_bundle_solve (ClothBundle * bundle, gdouble * cost, GError ** error)
   return ok;
 }
 
-/**
- * cloth_bundle_covariance:
- * @bundle: a problem at its minimum
+/* @bundle: a problem at its minimum
  * @covariance: (out caller-allocates): 18×18 a camera, columns as in
  *   #CLOTH_CAMERA_N_PARAMETERS but for the rotation, which is a small one about the
  *   camera's own axes; zeros for what is not free
@@ -531,8 +525,6 @@ cloth_bundle_solve (ClothBundle * bundle, gdouble * cost, GError ** error)
  * Inverse of the information matrix, board poses marginalised, times the residual variance.
  *
  * Returns: whether the matrix could be inverted.
- *
- * Since: 0.1
  */
 gboolean
 cloth_bundle_covariance (const ClothBundle * bundle, gdouble * covariance,
@@ -588,15 +580,11 @@ cloth_bundle_covariance (const ClothBundle * bundle, gdouble * covariance,
   return ok;
 }
 
-/**
- * cloth_bundle_residuals:
- * @bundle: a problem
+/* @bundle: a problem
  * @view: which view
  * @dx: (out caller-allocates): seen minus predicted, px, a number a point; NaN where the
  *   point is not in front of the camera
  * @dy: (out caller-allocates): likewise
- *
- * Since: 0.1
  */
 void
 cloth_bundle_residuals (const ClothBundle * bundle, guint view, gdouble * dx,
@@ -617,9 +605,7 @@ cloth_bundle_residuals (const ClothBundle * bundle, guint view, gdouble * dx,
 /* The median of a squared distance in two dimensions that has unit variances. */
 #define MEDIAN_D2 (2 * G_LN2)
 
-/**
- * cloth_bundle_excess:
- * @bundle: a problem at, or near, its minimum
+/* @bundle: a problem at, or near, its minimum
  * @camera: a camera
  *
  * What the residuals scatter beyond the covariances of the corners: a board that is not
@@ -628,8 +614,6 @@ cloth_bundle_residuals (const ClothBundle * bundle, guint view, gdouble * dx,
  * 0.0001 px. Outliers don't move it.
  *
  * Returns: the standard deviation, px.
- *
- * Since: 0.1
  */
 gdouble
 cloth_bundle_excess (const ClothBundle * bundle, guint camera)

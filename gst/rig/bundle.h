@@ -9,9 +9,7 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothBundleView:
- * @camera: which camera
+/* @camera: which camera
  * @pose: which pose of the board
  * @use: whether it takes part in the fit
  * @n: points
@@ -21,8 +19,6 @@ G_BEGIN_DECLS
  * @cov: (array) (nullable): 3·@n: covariances xx, xy, yy, px²
  *
  * What one camera sees of the board in one pose. Owns nothing.
- *
- * Since: 0.1
  */
 typedef struct {
   guint camera, pose;
@@ -40,9 +36,7 @@ typedef struct {
 #define CLOTH_BUNDLE_COEFFICIENTS 0xff0u
 #define CLOTH_BUNDLE_PLACE 0x3f000u
 
-/**
- * ClothBundle:
- * @n_cameras: cameras
+/* @n_cameras: cameras
  * @cameras: (array length=n_cameras): in: start, out: result; K, k, R, t
  * @free: (array length=n_cameras): bits of the parameters that may change
  * @share_lens: whether all cameras have the same coefficients

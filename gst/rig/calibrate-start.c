@@ -17,13 +17,9 @@
 /* Boards closer to parallel than this don't determine a focal length. */
 #define MIN_TILT_DEGREES 4.0
 
-/**
- * cloth_calibrate_lens_bits:
- * @lens: a lens model
+/* @lens: a lens model
  *
  * Returns: the bits of its coefficients in ClothBundle.free.
- *
- * Since: 0.1
  */
 guint
 cloth_calibrate_lens_bits (ClothLens lens)
@@ -353,9 +349,7 @@ take_back (const ClothBundle * bundle, ClothBundleView * views)
   }
 }
 
-/**
- * cloth_calibrate_alone:
- * @camera: (inout): name, size and lens are read, K and k written
+/* @camera: (inout): name, size and lens are read, K and k written
  * @n_views: views of this camera, at least 3
  * @views: (array length=n_views): the views, each a pose of its own
  * @board: 3 numbers a vertex, m
@@ -371,8 +365,6 @@ take_back (const ClothBundle * bundle, ClothBundleView * views)
  * short fit without distortion; the best is refined, distortion joining by and by.
  *
  * Returns: %FALSE when the views don't determine the camera.
- *
- * Since: 0.1
  */
 gboolean
 cloth_calibrate_alone (ClothCamera * camera, guint n_views,
@@ -509,9 +501,7 @@ pair (const ClothBundle * b, const gdouble * view_poses, guint n_turns,
   return all->len / n_turns;
 }
 
-/**
- * cloth_calibrate_place:
- * @bundle: (inout): R and t of the cameras and all poses are written
+/* @bundle: (inout): R and t of the cameras and all poses are written
  * @view_poses: (inout): 12 numbers a view: board to the view's camera
  * @n_turns: ways to lay the board that look the same, 1 or more
  * @turns: 12 numbers each: the board's motion, the first one none
@@ -523,8 +513,6 @@ pair (const ClothBundle * b, const gdouble * view_poses, guint n_turns,
  * cameras which share most poses.
  *
  * Returns: whether all cameras could be reached.
- *
- * Since: 0.1
  */
 gboolean
 cloth_calibrate_place (ClothBundle * bundle, gdouble * view_poses,

@@ -38,11 +38,7 @@ typedef struct
   gpointer user_data;
 } Work;
 
-/**
- * cloth_calibrate_params_init:
- * @params: (out): set to the defaults
- *
- * Since: 0.1
+/* @params: (out): set to the defaults
  */
 void
 cloth_calibrate_params_init (ClothCalibrateParams * params)
@@ -53,11 +49,7 @@ cloth_calibrate_params_init (ClothCalibrateParams * params)
   params->max_iterations = 100;
 }
 
-/**
- * cloth_calibration_free:
- * @calibration: (transfer full) (nullable): a result
- *
- * Since: 0.1
+/* @calibration: (transfer full) (nullable): a result
  */
 void
 cloth_calibration_free (ClothCalibration * calibration)
@@ -632,9 +624,7 @@ leave_out (Work * w, ClothCalibration * result, GError ** error)
   return ok;
 }
 
-/**
- * cloth_calibrate:
- * @input: cameras, board and views
+/* @input: cameras, board and views
  * @params: how
  * @progress: (nullable) (scope call): told what goes on
  * @user_data: for @progress
@@ -648,8 +638,6 @@ leave_out (Work * w, ClothCalibration * result, GError ** error)
  * first camera. With @params->intrinsics_only all cameras stay at the origin.
  *
  * Returns: (transfer full): the result, or %NULL.
- *
- * Since: 0.1
  */
 ClothCalibration *
 cloth_calibrate (const ClothCalibrateInput * input,

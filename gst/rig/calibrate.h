@@ -8,9 +8,7 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothCalibrateInput:
- * @n_cameras: cameras, 1 to %CLOTH_RIG_MAX_CAMERAS
+/* @n_cameras: cameras, 1 to %CLOTH_RIG_MAX_CAMERAS
  * @cameras: (array length=n_cameras): of each, name, width, height and lens
  * @n_vertices: vertices of the board
  * @board: (array): 3 numbers a vertex, m; the board is flat: the third is 0
@@ -22,8 +20,6 @@ G_BEGIN_DECLS
  * @symmetries: (array) (nullable): for each of them @n_vertices numbers: the vertex that
  *   each vertex is turned onto. Cameras may have numbered the same pose from different
  *   ends; they are brought to agree
- *
- * Since: 0.1
  */
 typedef struct {
   guint n_cameras;
@@ -37,33 +33,25 @@ typedef struct {
   const guint *symmetries;
 } ClothCalibrateInput;
 
-/**
- * ClothCalibrateWorld:
- * @CLOTH_CALIBRATE_WORLD_CAMERA: the first camera's centre; x to its right, y along its
+/* @CLOTH_CALIBRATE_WORLD_CAMERA: the first camera's centre; x to its right, y along its
  *   view, z up in its picture
  * @CLOTH_CALIBRATE_WORLD_BOARD: vertex 0 of the board as the first pose shows it; x along
  *   its rows, z towards the first camera
  *
  * Where the world's origin and axes lie.
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_CALIBRATE_WORLD_CAMERA,
   CLOTH_CALIBRATE_WORLD_BOARD
 } ClothCalibrateWorld;
 
-/**
- * ClothCalibrateParams:
- * @intrinsics_only: views of different cameras were not taken at the same moments: don't
+/* @intrinsics_only: views of different cameras were not taken at the same moments: don't
  *   place the cameras
  * @share_lens: all cameras have the same distortion coefficients
  * @world: where the world lies
  * @huber: corners farther off than this many standard deviations get less weight
  * @leave_out: every so many poses one is left out for the check; 0: no check
  * @max_iterations: most iterations of each fit
- *
- * Since: 0.1
  */
 typedef struct {
   gboolean intrinsics_only;
@@ -74,17 +62,13 @@ typedef struct {
   guint max_iterations;
 } ClothCalibrateParams;
 
-/**
- * ClothCalibrateCamera:
- * @n_views: views used
+/* @n_views: views used
  * @n_shared: of these, views that other cameras saw at the same moment
  * @n_points: corners used
  * @rms: root mean square reprojection error, px: of the distance, over all corners used
  * @left_out_rms: the same on views that took no part in the fit but for their own pose; NaN
  *   without the check
  * @excess: what the corners scatter beyond their own covariances, px, one axis
- *
- * Since: 0.1
  */
 typedef struct {
   guint n_views, n_shared, n_points;
@@ -93,9 +77,7 @@ typedef struct {
   gdouble excess;
 } ClothCalibrateCamera;
 
-/**
- * ClothCalibration:
- * @rig: the cameras, with standard deviations
+/* @rig: the cameras, with standard deviations
  * @placed: whether the cameras' places were determined
  * @rms: root mean square reprojection error, px
  * @left_out_rms: as in #ClothCalibrateCamera, over all cameras
@@ -105,8 +87,6 @@ typedef struct {
  * @n_poses: poses below
  * @poses: (array): 12 numbers a pose of the input: R and t, board to world; NaN: unused,
  *   all NaN when not @placed
- *
- * Since: 0.1
  */
 typedef struct {
   ClothRig *rig;

@@ -8,13 +8,9 @@
 
 #include "gst/rig/rotation.h"
 
-/**
- * cloth_lens_n_coefficients:
- * @lens: a lens model
+/* @lens: a lens model
  *
  * Returns: how many coefficients it has.
- *
- * Since: 0.1
  */
 guint
 cloth_lens_n_coefficients (ClothLens lens)
@@ -32,14 +28,10 @@ cloth_lens_n_coefficients (ClothLens lens)
   }
 }
 
-/**
- * cloth_camera_copy:
- * @to: (out): overwritten, not cleared first
+/* @to: (out): overwritten, not cleared first
  * @from: a camera
  *
  * Copies a camera with its strings.
- *
- * Since: 0.1
  */
 void
 cloth_camera_copy (ClothCamera * to, const ClothCamera * from)
@@ -49,13 +41,9 @@ cloth_camera_copy (ClothCamera * to, const ClothCamera * from)
   to->device = g_strdup (from->device);
 }
 
-/**
- * cloth_camera_clear:
- * @camera: a camera
+/* @camera: a camera
  *
  * Frees its strings and sets everything to 0.
- *
- * Since: 0.1
  */
 void
 cloth_camera_clear (ClothCamera * camera)
@@ -171,9 +159,7 @@ distort (const ClothCamera * camera, gdouble x, gdouble y, gdouble d[2],
   }
 }
 
-/**
- * cloth_camera_distort:
- * @camera: a camera
+/* @camera: a camera
  * @xy: normalised coordinates (X/Z, Y/Z in the camera's frame)
  * @px: (out): where they appear, px
  * @d_xy: (out) (optional): row-major 2×2 derivative of @px with respect to @xy
@@ -181,8 +167,6 @@ distort (const ClothCamera * camera, gdouble x, gdouble y, gdouble d[2],
  * Applies the lens and the camera matrix. Distortion in OpenCV's meaning: Brown's
  * "Close-range camera calibration" (1971) with the rational radial term, or Kannala and
  * Brandt's "A generic camera model" (2006).
- *
- * Since: 0.1
  */
 void
 cloth_camera_distort (const ClothCamera * camera, const gdouble xy[2],
@@ -202,9 +186,7 @@ cloth_camera_distort (const ClothCamera * camera, const gdouble xy[2],
   }
 }
 
-/**
- * cloth_camera_project:
- * @camera: a camera
+/* @camera: a camera
  * @X: a point in the world, m
  * @px: (out): where it appears, px
  * @d_point: (out) (optional): row-major 2×3 derivative of @px with respect to @X
@@ -216,8 +198,6 @@ cloth_camera_distort (const ClothCamera * camera, const gdouble xy[2],
  * may fold back; such points are not told apart here.
  *
  * Returns: %FALSE, with nothing written, when @X is not in front of the camera.
- *
- * Since: 0.1
  */
 gboolean
 cloth_camera_project (const ClothCamera * camera, const gdouble X[3],
@@ -484,9 +464,7 @@ undistort_fisheye (const ClothCamera * camera, guint n, const gdouble * u,
   return n_good;
 }
 
-/**
- * cloth_camera_undistort_points:
- * @camera: a camera
+/* @camera: a camera
  * @n: points
  * @u: (array length=n): columns, px
  * @v: (array length=n): rows, px
@@ -500,8 +478,6 @@ undistort_fisheye (const ClothCamera * camera, guint n, const gdouble * u,
  * inverse, all outputs of the point are NaN.
  *
  * Returns: how many points have an inverse.
- *
- * Since: 0.1
  */
 guint
 cloth_camera_undistort_points (const ClothCamera * camera, guint n,

@@ -7,16 +7,12 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothLens:
- * @CLOTH_LENS_NONE: pinhole
+/* @CLOTH_LENS_NONE: pinhole
  * @CLOTH_LENS_BROWN5: Brown–Conrady, k1 k2 p1 p2 k3
  * @CLOTH_LENS_BROWN8: rational Brown–Conrady, k1 k2 p1 p2 k3 k4 k5 k6
  * @CLOTH_LENS_FISHEYE: equidistant (Kannala–Brandt), k1 k2 k3 k4
  *
  * Lens models; coefficients in OpenCV's order and meaning.
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_LENS_NONE,
@@ -25,9 +21,7 @@ typedef enum {
   CLOTH_LENS_FISHEYE
 } ClothLens;
 
-/**
- * ClothCamera:
- * @name: (nullable): its name in rig.json
+/* @name: (nullable): its name in rig.json
  * @width: picture width, px
  * @height: picture height, px
  * @K: row-major 3×3 camera matrix, px
@@ -42,8 +36,6 @@ typedef enum {
  * @k_sd: standard deviations of @k
  * @r_sd: standard deviations of a small rotation about the camera's axes, rad
  * @t_sd: standard deviations of @t, m
- *
- * Since: 0.1
  */
 typedef struct {
   gchar *name;
@@ -58,13 +50,8 @@ typedef struct {
   gdouble K_sd[4], k_sd[8], r_sd[3], t_sd[3];
 } ClothCamera;
 
-/**
- * CLOTH_CAMERA_N_PARAMETERS:
- *
- * Columns of the derivative with respect to a camera's parameters, in this order:
+/* Columns of the derivative with respect to a camera's parameters, in this order:
  * fx fy cx cy, k[0] … k[7], rotation vector (3), t (3).
- *
- * Since: 0.1
  */
 #define CLOTH_CAMERA_N_PARAMETERS 18
 

@@ -27,15 +27,11 @@ static const ClothCaptureEffect *const effects[] = {
   &cloth_capture_noise
 };
 
-/**
- * cloth_capture_init:
- * @capture: (out): overwritten
+/* @capture: (out): overwritten
  * @camera: the camera as calibrated
  *
  * A capture without any effect. The target is a corner of a printed checkerboard: 150
  * grey levels of contrast, 2 of noise, 0.7 px of blur, a window of ±5 px.
- *
- * Since: 0.1
  */
 void
 cloth_capture_init (ClothCapture * capture, const ClothCamera * camera)
@@ -47,14 +43,10 @@ cloth_capture_init (ClothCapture * capture, const ClothCamera * camera)
   capture->camera.device = NULL;
 }
 
-/**
- * cloth_capture_effect:
- * @index: 0 and up
+/* @index: 0 and up
  *
  * Returns: (nullable) (transfer none): the description of a camera or image effect;
  *   %NULL behind the last one
- *
- * Since: 0.1
  */
 const ClothEffect *
 cloth_capture_effect (guint index)
@@ -71,14 +63,10 @@ find (const gchar * id)
   return NULL;
 }
 
-/**
- * cloth_capture_find_effect:
- * @id: its name
+/* @id: its name
  *
  * Returns: (nullable) (transfer none): the description of the effect, or %NULL when no
  *   camera or image effect has the name
- *
- * Since: 0.1
  */
 const ClothEffect *
 cloth_capture_find_effect (const gchar * id)
@@ -137,9 +125,7 @@ check_value (const ClothEffect * effect, guint index, gdouble value,
   return FALSE;
 }
 
-/**
- * cloth_capture_add_effect:
- * @capture: a capture
+/* @capture: a capture
  * @id: name of a camera or image effect
  * @values: one number for each of its parameters, in their order
  * @error: return location
@@ -148,8 +134,6 @@ check_value (const ClothEffect * effect, guint index, gdouble value,
  *
  * Returns: %TRUE; %FALSE with %CLOTH_RIG_ERROR_VALUE when there is no such effect or a
  *   value is outside its range
- *
- * Since: 0.1
  */
 gboolean
 cloth_capture_add_effect (ClothCapture * capture, const gchar * id,
@@ -230,9 +214,7 @@ read_effect (ClothCapture * capture, const gchar * text, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_capture_add_effects:
- * @capture: a capture
+/* @capture: a capture
  * @text: (nullable): effects with their parameters:
  *   `noise,sigma=3; rolling_shutter,seconds=0.01`
  * @error: return location
@@ -241,8 +223,6 @@ read_effect (ClothCapture * capture, const gchar * text, GError ** error)
  * act from the light to the picture whatever the order they are named in.
  *
  * Returns: %TRUE; %FALSE with %CLOTH_RIG_ERROR_VALUE, @capture being as before
- *
- * Since: 0.1
  */
 gboolean
 cloth_capture_add_effects (ClothCapture * capture, const gchar * text,
@@ -266,15 +246,11 @@ cloth_capture_add_effects (ClothCapture * capture, const gchar * text,
   return TRUE;
 }
 
-/**
- * cloth_capture_is_dropped:
- * @capture: a capture
+/* @capture: a capture
  * @frame: number of the picture; the first, 0, is never lost
  * @seed: any number
  *
  * Returns: whether the picture is lost: a function of its arguments only
- *
- * Since: 0.1
  */
 gboolean
 cloth_capture_is_dropped (const ClothCapture * capture, guint64 frame,
@@ -343,9 +319,7 @@ project (const ClothCapture * capture, const ClothMotion * motion,
   return TRUE;
 }
 
-/**
- * cloth_capture_project:
- * @capture: a capture
+/* @capture: a capture
  * @motion: the cloth's vertices
  * @n_parents: how many vertices the point is the mean of
  * @parents: (array length=n_parents): these vertices
@@ -358,8 +332,6 @@ project (const ClothCapture * capture, const ClothMotion * motion,
  * and by the row on which the point falls.
  *
  * Returns: %FALSE when the point is behind the camera or not known
- *
- * Since: 0.1
  */
 gboolean
 cloth_capture_project (const ClothCapture * capture,
@@ -413,9 +385,7 @@ spread (const ClothCapture * capture, const gdouble w[2], gdouble lag_variance,
     added[i] = with[i] - without[i] + lag_variance * ww[i];
 }
 
-/**
- * cloth_capture_observe:
- * @capture: a capture
+/* @capture: a capture
  * @motion: where the points really are, a frame or more before and behind @time_s
  * @time_s: the picture's time by the camera's clock
  * @px: (array) (out caller-allocates): x, y of each point, px; NaN when it is behind the
@@ -429,8 +399,6 @@ spread (const ClothCapture * capture, const gdouble w[2], gdouble lag_variance,
  * cloth_camera_project () to the bit, and the covariances are 0.
  *
  * Returns: how many points are seen
- *
- * Since: 0.1
  */
 guint
 cloth_capture_observe (const ClothCapture * capture,

@@ -11,9 +11,7 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothCaptureTarget:
- * @contrast: bright minus dark, grey levels
+/* @contrast: bright minus dark, grey levels
  * @noise: standard deviation of a pixel without any effect, grey levels
  * @blur_px: standard deviation of the picture's blur without any effect, px
  * @window_px: half the side of the window that a point is refined in, px
@@ -21,8 +19,6 @@ G_BEGIN_DECLS
  *
  * What is looked for in the pictures, and how: it decides what blur, noise and shading do
  * to a measured point.
- *
- * Since: 0.1
  */
 typedef struct {
   gdouble contrast;
@@ -32,9 +28,7 @@ typedef struct {
   gdouble dot_radius_m;
 } ClothCaptureTarget;
 
-/**
- * ClothCapture:
- * @camera: the camera as it really is; its strings are %NULL
+/* @camera: the camera as it really is; its strings are %NULL
  * @exposure_s: how long the shutter is open, from the frame's time on, s
  * @drop_rate: share of the pictures that are lost; the one before stands in for them
  * @defocus_px: standard deviation of the Gaussian point spread, px
@@ -48,8 +42,6 @@ typedef struct {
  * A picture of time T shows at row y (of h) the cloth of time
  * T − camera.offset_s + camera.rolling_shutter_s·y/(h − 1), and of the @exposure_s from
  * then on.
- *
- * Since: 0.1
  */
 typedef struct {
   ClothCamera camera;

@@ -29,16 +29,12 @@ struct _ClothDotBend
   gdouble *plane[CLOTH_TRIANGULATE_MAX_CAMERAS];        /* x, y, xx, xy, yy */
 };
 
-/**
- * cloth_dot_bend_new:
- * @columns: dots in a row of the grid
+/* @columns: dots in a row of the grid
  * @rows: dots in a column
  * @pitch: distance of neighbours on the flat cloth, over 0, the unit of the positions
  * @diameter: of a dot, the same unit
  *
  * Returns: (transfer full): memory for the correction of a grid of dots
- *
- * Since: 0.1
  */
 ClothDotBend *
 cloth_dot_bend_new (guint columns, guint rows, gdouble pitch, gdouble diameter)
@@ -55,11 +51,7 @@ cloth_dot_bend_new (guint columns, guint rows, gdouble pitch, gdouble diameter)
   return self;
 }
 
-/**
- * cloth_dot_bend_free:
- * @self: (nullable) (transfer full): what cloth_dot_bend_new () gave
- *
- * Since: 0.1
+/* @self: (nullable) (transfer full): what cloth_dot_bend_new () gave
  */
 void
 cloth_dot_bend_free (ClothDotBend * self)
@@ -100,17 +92,13 @@ differ (const ClothDotBend * self, guint vertex, guint step, guint at, guint n,
   first[0] = second[0] = NAN;
 }
 
-/**
- * cloth_dot_bend_set_positions:
- * @self: memory for the correction
+/* @self: memory for the correction
  * @positions: (array): 3 a dot, row by row: where the dots are as far as is known, NaN
  *   where not
  *
  * Finds slopes and curvatures from differences to the neighbours.
  *
  * Returns: for how many dots they are known
- *
- * Since: 0.1
  */
 guint
 cloth_dot_bend_set_positions (ClothDotBend * self, const gfloat * positions)
@@ -189,9 +177,7 @@ gravity (const ClothDotBend * self, guint vertex, const ClothCamera * camera,
         + r2 / 4 * (a * d[U][k] + b * d[V][k]);
 }
 
-/**
- * cloth_dot_bend_correct:
- * @self: what cloth_dot_bend_set_positions () has been called on
+/* @self: what cloth_dot_bend_set_positions () has been called on
  * @index: which camera, below %CLOTH_TRIANGULATE_MAX_CAMERAS
  * @camera: the camera
  * @view: what it saw: centres of gravity, by dot
@@ -202,8 +188,6 @@ gravity (const ClothDotBend * self, guint vertex, const ClothCamera * camera,
  * nothing is changed. The neighbours tell the mean of the curvature around a dot: a crease
  * inside the dot moves it more, one beside it not at all, so the correction is as uncertain
  * as it is large, and its square is added to the covariance.
- *
- * Since: 0.1
  */
 void
 cloth_dot_bend_correct (ClothDotBend * self, guint index,
@@ -262,9 +246,7 @@ is_inside (const ClothDotBend * self, guint vertex)
       + p[3 * self->columns]);
 }
 
-/**
- * cloth_dot_bend_add_doubt:
- * @self: the correction
+/* @self: the correction
  * @positions: (array): 3 a dot: the dots with the correction, NaN where not known
  * @covariances: (array): 6 a dot, xx, xy, xz, yy, yz, zz: to be added to
  *
@@ -273,8 +255,6 @@ is_inside (const ClothDotBend * self, guint vertex)
  * falls unevenly on a bent dot shifts it in its plane, each way as large as the dot's mean
  * depth below or above its centre. Where not all neighbours are known it is as large as
  * the mean correction of the others, each way.
- *
- * Since: 0.1
  */
 void
 cloth_dot_bend_add_doubt (const ClothDotBend * self, const gfloat * positions,

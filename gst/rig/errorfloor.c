@@ -35,9 +35,7 @@ stated (guint n_views, const ClothTriangulateView * views,
   return n ? sum / (gdouble) n : 0;
 }
 
-/**
- * cloth_error_floor_add:
- * @self: the estimate; before the first set a guess with a weight of 0
+/* @self: the estimate; before the first set a guess with a weight of 0
  * @n_views: number of views
  * @views: what the cameras saw
  * @result: what was triangulated from it, with an error floor of @self's
@@ -47,8 +45,6 @@ stated (guint n_views, const ClothTriangulateView * views,
  *
  * Returns: chi² over its degrees of freedom, of this set with the floor that it was
  *   triangulated with; NaN when the set has too few to tell
- *
- * Since: 0.1
  */
 gdouble
 cloth_error_floor_add (ClothErrorFloor * self, guint n_views,

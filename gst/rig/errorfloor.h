@@ -7,12 +7,8 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothErrorFloor:
- * @floor: variance on top of each observation's own, px², as estimated so far
+/* @floor: variance on top of each observation's own, px², as estimated so far
  * @weight: degrees of freedom that @floor rests on
- *
- * Since: 0.1
  */
 typedef struct {
   gdouble floor;

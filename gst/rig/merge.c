@@ -22,13 +22,9 @@ struct _ClothMerge
   gdouble *planes;
 };
 
-/**
- * cloth_merge_new:
- * @n_points: number of points
+/* @n_points: number of points
  *
  * Returns: (transfer full): memory for the estimates of one picture
- *
- * Since: 0.1
  */
 ClothMerge *
 cloth_merge_new (guint n_points)
@@ -42,11 +38,7 @@ cloth_merge_new (guint n_points)
   return self;
 }
 
-/**
- * cloth_merge_free:
- * @self: (nullable) (transfer full): what cloth_merge_new () gave
- *
- * Since: 0.1
+/* @self: (nullable) (transfer full): what cloth_merge_new () gave
  */
 void
 cloth_merge_free (ClothMerge * self)
@@ -59,13 +51,9 @@ cloth_merge_free (ClothMerge * self)
   g_free (self);
 }
 
-/**
- * cloth_merge_clear:
- * @self: estimates of the picture before
+/* @self: estimates of the picture before
  *
  * Forgets them all.
- *
- * Since: 0.1
  */
 void
 cloth_merge_clear (ClothMerge * self)
@@ -73,9 +61,7 @@ cloth_merge_clear (ClothMerge * self)
   memset (self->n, 0, self->n_points);
 }
 
-/**
- * cloth_merge_add:
- * @self: estimates of a picture
+/* @self: estimates of a picture
  * @point: which point
  * @x: column, px
  * @y: row, px
@@ -85,8 +71,6 @@ cloth_merge_clear (ClothMerge * self)
  * Adds an estimate. One that is equal to an earlier one is the same measurement and adds
  * nothing; so does one that is not finite, or whose covariance is not positive definite,
  * and each beyond the fourth.
- *
- * Since: 0.1
  */
 void
 cloth_merge_add (ClothMerge * self, guint point, gdouble x, gdouble y,
@@ -147,9 +131,7 @@ merge (const Estimate * estimates, guint n, gdouble threshold,
   return TRUE;
 }
 
-/**
- * cloth_merge_finish:
- * @self: estimates of a picture
+/* @self: estimates of a picture
  * @threshold: distance from the common place, in an estimate's own standard deviations,
  *   above which the estimates contradict each other
  * @error_floor: variance on top of an estimate's own, px², in that comparison; it is not
@@ -162,8 +144,6 @@ merge (const Estimate * estimates, guint n, gdouble threshold,
  * covariance intersection with equal weights (Julier & Uhlmann, A non-divergent
  * estimation algorithm in the presence of unknown correlations, 1997). Points without an
  * estimate and those whose estimates contradict each other are not seen (NaN).
- *
- * Since: 0.1
  */
 void
 cloth_merge_finish (ClothMerge * self, gdouble threshold,

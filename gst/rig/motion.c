@@ -43,9 +43,7 @@ slope_at (const ClothMotion * motion, guint frame, guint point,
   }
 }
 
-/**
- * cloth_motion_at:
- * @motion: the frames
+/* @motion: the frames
  * @point: which point
  * @time_s: when
  * @position: (out caller-allocates): metres; NaN when not known
@@ -55,8 +53,6 @@ slope_at (const ClothMotion * motion, guint frame, guint point,
  * through a frame and its neighbours (Catmull and Rom 1974, for any spacing): exact for
  * parabolas but in the first and last interval, exact to the bit at the frames. Before
  * the first and behind the last frame the point goes on straight.
- *
- * Since: 0.1
  */
 void
 cloth_motion_at (const ClothMotion * motion, guint point, gdouble time_s,

@@ -7,17 +7,13 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothMotion:
- * @n_points: points of a frame
+/* @n_points: points of a frame
  * @n_frames: frames, >= 1
  * @times: (array length=n_frames): time of each frame, s, rising
  * @positions: (array length=n_frames): of each frame @n_points times x, y, z, metres;
  *   NaN where a point isn't known
  *
  * A stretch of a recording or simulation; owns nothing.
- *
- * Since: 0.1
  */
 typedef struct {
   guint n_points;

@@ -13,11 +13,7 @@
 #define LEAST_RADIUS 1e-6
 #define DEGREE (G_PI / 180)
 
-/**
- * cloth_orbit_init:
- * @orbit: (out): level, from −y, 1 m about the origin
- *
- * Since: 0.1
+/* @orbit: (out): level, from −y, 1 m about the origin
  */
 void
 cloth_orbit_init (ClothOrbit * orbit)
@@ -26,16 +22,13 @@ cloth_orbit_init (ClothOrbit * orbit)
   .radius = 1};
 }
 
-/**
- * cloth_orbit_frame:
- * @orbit: its centre and radius are set
+/* @orbit: its centre and radius are set
  * @n_points: how many
  * @points: 3 numbers a point, m; NaN where unknown
  *
  * Puts the sphere about the middle of the points' bounding box.
  *
  * Returns: %FALSE, and @orbit is as before, when no point is known
- * Since: 0.1
  */
 gboolean
 cloth_orbit_frame (ClothOrbit * orbit, guint n_points, const gdouble * points)
@@ -71,14 +64,10 @@ cloth_orbit_frame (ClothOrbit * orbit, guint n_points, const gdouble * points)
   return TRUE;
 }
 
-/**
- * cloth_orbit_camera:
- * @orbit: where from
+/* @orbit: where from
  * @width: of the picture, px
  * @height: of the picture, px
  * @camera: (out): a pinhole camera whose picture stands upright, z up
- *
- * Since: 0.1
  */
 void
 cloth_orbit_camera (const ClothOrbit * orbit, gint width, gint height,

@@ -7,9 +7,7 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothOrbit:
- * @centre: what is looked at, m, world
+/* @centre: what is looked at, m, world
  * @radius: of the sphere about it that is to fill the picture, m
  * @azimuth: where the camera stands, degrees counter-clockwise seen from above; 0 is
  *   at −y, 90 at +x
@@ -17,8 +15,6 @@ G_BEGIN_DECLS
  * @distance: from @centre, m; 0: so far that the sphere just fits into the picture
  *
  * A place on a sphere about what is looked at.
- *
- * Since: 0.1
  */
 typedef struct {
   gdouble centre[3];

@@ -35,9 +35,7 @@ normalise (guint n, const gdouble * a, const gdouble * b, gdouble c[2],
   return sqrt (fmax (0, middle - half) / (middle + half));
 }
 
-/**
- * cloth_planar_homography:
- * @n: points, at least 4
+/* @n: points, at least 4
  * @X: (array length=n): first coordinate on the plane
  * @Y: (array length=n): second coordinate on the plane
  * @x: (array length=n): first coordinate in the picture
@@ -48,8 +46,6 @@ normalise (guint n, const gdouble * a, const gdouble * b, gdouble c[2],
  * algorithm 4.2.
  *
  * Returns: %FALSE when the points don't determine it: too few, or on a line.
- *
- * Since: 0.1
  */
 gboolean
 cloth_planar_homography (guint n, const gdouble * X, const gdouble * Y,
@@ -95,9 +91,7 @@ cloth_planar_homography (guint n, const gdouble * X, const gdouble * Y,
   return TRUE;
 }
 
-/**
- * cloth_planar_focal:
- * @n_views: views
+/* @n_views: views
  * @H: (array): 9 numbers a view: homographies from the board to pixels
  * @cx: assumed principal point, px
  * @cy: assumed principal point, px
@@ -108,8 +102,6 @@ cloth_planar_homography (guint n, const gdouble * X, const gdouble * Y,
  * calibration", 2000, section 3.1, with skew 0 and a known principal point.
  *
  * Returns: %FALSE when the views don't determine it, as when all are seen straight on.
- *
- * Since: 0.1
  */
 gboolean
 cloth_planar_focal (guint n_views, const gdouble * H, gdouble cx, gdouble cy,
@@ -161,17 +153,13 @@ cloth_planar_focal (guint n_views, const gdouble * H, gdouble cx, gdouble cy,
   return TRUE;
 }
 
-/**
- * cloth_planar_pose:
- * @H: homography from the board (m) to normalised coordinates
+/* @H: homography from the board (m) to normalised coordinates
  * @R: (out): row-major rotation, board to camera
  * @t: (out): translation, m
  *
  * Zhang, section 3.1, with the nearest rotation; the board lies in front of the camera.
  *
  * Returns: %FALSE when @H is no view of a plane.
- *
- * Since: 0.1
  */
 gboolean
 cloth_planar_pose (const gdouble H[9], gdouble R[9], gdouble t[3])

@@ -16,13 +16,9 @@ G_DEFINE_QUARK (cloth - rig - error - quark, cloth_rig_error)
        "fisheye"
      };
 
-/**
- * cloth_lens_to_string:
- * @lens: a lens model
+/* @lens: a lens model
  *
  * Returns: its name in rig.json.
- *
- * Since: 0.1
  */
 const gchar *
 cloth_lens_to_string (ClothLens lens)
@@ -30,14 +26,10 @@ cloth_lens_to_string (ClothLens lens)
   return lens_names[lens];
 }
 
-/**
- * cloth_lens_from_string:
- * @name: a name as in rig.json
+/* @name: a name as in rig.json
  * @lens: (out): the model
  *
  * Returns: %FALSE when there is no such model.
- *
- * Since: 0.1
  */
 gboolean
 cloth_lens_from_string (const gchar * name, ClothLens * lens)
@@ -51,14 +43,10 @@ cloth_lens_from_string (const gchar * name, ClothLens * lens)
   return FALSE;
 }
 
-/**
- * cloth_rig_new:
- * @n_cameras: how many cameras
+/* @n_cameras: how many cameras
  *
  * Returns: (transfer full): a rig of pinhole cameras at the world's origin, their
  *   sizes and camera matrices not set.
- *
- * Since: 0.1
  */
 ClothRig *
 cloth_rig_new (guint n_cameras)
@@ -76,11 +64,7 @@ cloth_rig_new (guint n_cameras)
   return rig;
 }
 
-/**
- * cloth_rig_free:
- * @rig: (transfer full) (nullable): a rig
- *
- * Since: 0.1
+/* @rig: (transfer full) (nullable): a rig
  */
 void
 cloth_rig_free (ClothRig * rig)
@@ -93,14 +77,10 @@ cloth_rig_free (ClothRig * rig)
   g_free (rig);
 }
 
-/**
- * cloth_rig_find:
- * @rig: a rig
+/* @rig: a rig
  * @name: a camera's name
  *
  * Returns: (nullable) (transfer none): the camera of that name.
- *
- * Since: 0.1
  */
 const ClothCamera *
 cloth_rig_find (const ClothRig * rig, const gchar * name)
@@ -112,16 +92,12 @@ cloth_rig_find (const ClothRig * rig, const gchar * name)
   return NULL;
 }
 
-/**
- * cloth_rig_invalid:
- * @error: (out): set to %CLOTH_RIG_ERROR_VALUE
+/* @error: (out): set to %CLOTH_RIG_ERROR_VALUE
  * @where: what @key belongs to, "cameras[0]" for instance; "" for the whole file
  * @key: the key that is wrong; "" for all of @where
  * @format: what is wrong and how to mend it
  *
  * Returns: %FALSE, so that a check may end with it
- *
- * Since: 0.1
  */
 gboolean
 cloth_rig_invalid (GError ** error, const gchar * where, const gchar * key,
@@ -227,14 +203,10 @@ check_camera (const ClothCamera * c, const gchar * where, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_rig_mend_rotations:
- * @rig: a rig that passes cloth_rig_check()
+/* @rig: a rig that passes cloth_rig_check()
  *
  * Rotations typed with few digits become exact to rounding; what is one already keeps
  * its bytes.
- *
- * Since: 0.1
  */
 void
 cloth_rig_mend_rotations (ClothRig * rig)
@@ -247,17 +219,13 @@ cloth_rig_mend_rotations (ClothRig * rig)
   }
 }
 
-/**
- * cloth_rig_check:
- * @rig: a rig
+/* @rig: a rig
  * @error: #ClothRigError, naming camera, key and value
  *
  * Checks what every rig must hold: 1 to 64 cameras, unique names that do as file names,
  * sizes of 1 to 16384 px, finite numbers, positive focal lengths, rotations.
  *
  * Returns: whether all of it holds.
- *
- * Since: 0.1
  */
 gboolean
 cloth_rig_check (const ClothRig * rig, GError ** error)

@@ -7,31 +7,17 @@
 
 G_BEGIN_DECLS
 
-/**
- * CLOTH_RIG_MAX_CAMERAS:
- *
- * Most cameras a rig may have.
- *
- * Since: 0.1
+/* Most cameras a rig may have.
  */
 #define CLOTH_RIG_MAX_CAMERAS 64
 
-/**
- * CLOTH_RIG_MAX_SIZE:
- *
- * Largest width and height of a camera's picture, px.
- *
- * Since: 0.1
+/* Largest width and height of a camera's picture, px.
  */
 #define CLOTH_RIG_MAX_SIZE 16384
 
-/**
- * ClothRigError:
- * @CLOTH_RIG_ERROR_SYNTAX: the file is not YAML
+/* @CLOTH_RIG_ERROR_SYNTAX: the file is not YAML
  * @CLOTH_RIG_ERROR_VALUE: a key is missing or has an impossible value
  * @CLOTH_RIG_ERROR_LIMIT: a YAML file is deeper or longer than allowed
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_RIG_ERROR_SYNTAX,
@@ -44,12 +30,8 @@ GQuark cloth_rig_error_quark (void);
 gboolean cloth_rig_invalid (GError ** error, const gchar * where,
     const gchar * key, const gchar * format, ...) G_GNUC_PRINTF (4, 5);
 
-/**
- * ClothRig:
- * @n_cameras: how many, 1 to %CLOTH_RIG_MAX_CAMERAS
+/* @n_cameras: how many, 1 to %CLOTH_RIG_MAX_CAMERAS
  * @cameras: (array length=n_cameras): the cameras
- *
- * Since: 0.1
  */
 typedef struct {
   guint n_cameras;

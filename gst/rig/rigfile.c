@@ -226,15 +226,11 @@ read_camera (JsonNode * node, const gchar * where, ClothCamera * c,
   return TRUE;
 }
 
-/**
- * cloth_rig_load_data:
- * @data: the text of a rig.json, at most 16 MiB
+/* @data: the text of a rig.json, at most 16 MiB
  * @length: its bytes
  * @error: #ClothFileError, or #ClothRigError naming key and value
  *
  * Returns: (transfer full): the rig, or %NULL.
- *
- * Since: 0.1
  */
 ClothRig *
 cloth_rig_load_data (const gchar * data, gsize length, GError ** error)
@@ -290,14 +286,10 @@ cloth_rig_load_data (const gchar * data, gsize length, GError ** error)
   return g_steal_pointer (&rig);
 }
 
-/**
- * cloth_rig_load:
- * @path: a rig.json
+/* @path: a rig.json
  * @error: #GFileError, #ClothFileError or #ClothRigError, naming file, key and value
  *
  * Returns: (transfer full): the rig, or %NULL.
- *
- * Since: 0.1
  */
 ClothRig *
 cloth_rig_load (const gchar * path, GError ** error)
@@ -392,17 +384,13 @@ add_camera (JsonBuilder * b, const ClothCamera * c)
   json_builder_end_object (b);
 }
 
-/**
- * cloth_rig_save:
- * @rig: a rig that passes cloth_rig_check()
+/* @rig: a rig that passes cloth_rig_check()
  * @path: where to; replaced whole or not at all
  * @error: #GFileError or #ClothRigError
  *
  * Writes version 1. Numbers are written so that they read back as the same doubles.
  *
  * Returns: whether it was written.
- *
- * Since: 0.1
  */
 gboolean
 cloth_rig_save (const ClothRig * rig, const gchar * path, GError ** error)

@@ -270,9 +270,7 @@ import_opencv (GPtrArray * documents, const gchar * const *names, gint width,
   return finish (g_steal_pointer (&rig), error);
 }
 
-/**
- * cloth_rig_import_opencv:
- * @paths: (array zero-terminated=1): files of one calibration
+/* @paths: (array zero-terminated=1): files of one calibration
  * @width: picture width for files that don't say it, else 0
  * @height: picture height for files that don't say it, else 0
  * @error: #GFileError, #ClothFileError or #ClothRigError, naming key and value
@@ -284,8 +282,6 @@ import_opencv (GPtrArray * documents, const gchar * const *names, gint width,
  * their files, all at the origin, since such files don't place them.
  *
  * Returns: (transfer full): the rig, or %NULL.
- *
- * Since: 0.1
  */
 ClothRig *
 cloth_rig_import_opencv (const gchar * const *paths, gint width, gint height,
@@ -321,9 +317,7 @@ cloth_rig_import_opencv (const gchar * const *paths, gint width, gint height,
   return rig;
 }
 
-/**
- * cloth_rig_import_opencv_data:
- * @data: the text of one file
+/* @data: the text of one file
  * @length: its bytes, at most 16 MiB
  * @width: as in cloth_rig_import_opencv()
  * @height: as in cloth_rig_import_opencv()
@@ -333,8 +327,6 @@ cloth_rig_import_opencv (const gchar * const *paths, gint width, gint height,
  * file names it.
  *
  * Returns: (transfer full): the rig, or %NULL.
- *
- * Since: 0.1
  */
 ClothRig *
 cloth_rig_import_opencv_data (const gchar * data, gsize length, gint width,
@@ -434,9 +426,7 @@ read_kalibr_camera (const ClothYamlNode * node, const gchar * where,
   return TRUE;
 }
 
-/**
- * cloth_rig_import_kalibr_data:
- * @data: the text of a camchain file
+/* @data: the text of a camchain file
  * @length: its bytes, at most 16 MiB
  * @error: #ClothRigError, naming key and value
  *
@@ -445,8 +435,6 @@ read_kalibr_camera (const ClothYamlNode * node, const gchar * where,
  * from the second on. The world is the frame of cam0.
  *
  * Returns: (transfer full): the rig, or %NULL.
- *
- * Since: 0.1
  */
 ClothRig *
 cloth_rig_import_kalibr_data (const gchar * data, gsize length, GError ** error)
@@ -484,16 +472,12 @@ cloth_rig_import_kalibr_data (const gchar * data, gsize length, GError ** error)
   return finish (g_steal_pointer (&rig), error);
 }
 
-/**
- * cloth_rig_import_kalibr:
- * @path: a camchain file
+/* @path: a camchain file
  * @error: #GFileError, #ClothFileError or #ClothRigError
  *
  * As cloth_rig_import_kalibr_data(), from a file.
  *
  * Returns: (transfer full): the rig, or %NULL.
- *
- * Since: 0.1
  */
 ClothRig *
 cloth_rig_import_kalibr (const gchar * path, GError ** error)

@@ -22,14 +22,10 @@ series (const gdouble r[3], gdouble a, gdouble b, gdouble M[9])
   M[8] = 1 - b * (xx + yy);
 }
 
-/**
- * cloth_rotation_from_vector:
- * @r: rotation vector: axis times angle, rad
+/* @r: rotation vector: axis times angle, rad
  * @R: (out): row-major rotation matrix exp([r]x)
  *
  * Rodrigues' formula.
- *
- * Since: 0.1
  */
 void
 cloth_rotation_from_vector (const gdouble r[3], gdouble R[9])
@@ -45,15 +41,11 @@ cloth_rotation_from_vector (const gdouble r[3], gdouble R[9])
   }
 }
 
-/**
- * cloth_rotation_to_vector:
- * @R: row-major rotation matrix
+/* @R: row-major rotation matrix
  * @r: (out): rotation vector, its length in [0, π]
  *
  * By way of the unit quaternion, so that it is exact to rounding at every angle, half
  * turns included.
- *
- * Since: 0.1
  */
 void
 cloth_rotation_to_vector (const gdouble R[9], gdouble r[3])
@@ -93,14 +85,10 @@ cloth_rotation_to_vector (const gdouble R[9], gdouble r[3])
     r[i] = s * q[i + 1];
 }
 
-/**
- * cloth_rotation_left_jacobian:
- * @r: rotation vector
+/* @r: rotation vector
  * @J: (out): row-major 3×3: exp(r + J⁻¹ w) = exp(w) exp(r) to first order in w
  *
  * d(R X)/dr = −[R X]x J.
- *
- * Since: 0.1
  */
 void
 cloth_rotation_left_jacobian (const gdouble r[3], gdouble J[9])
@@ -117,12 +105,8 @@ cloth_rotation_left_jacobian (const gdouble r[3], gdouble J[9])
   }
 }
 
-/**
- * cloth_rotation_left_jacobian_inverse:
- * @r: rotation vector, shorter than 2π
+/* @r: rotation vector, shorter than 2π
  * @J: (out): row-major 3×3, the inverse of cloth_rotation_left_jacobian()
- *
- * Since: 0.1
  */
 void
 cloth_rotation_left_jacobian_inverse (const gdouble r[3], gdouble J[9])

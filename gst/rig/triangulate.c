@@ -21,11 +21,7 @@ free_scratch (ClothTriangulator * self)
   self->n_scratch = 0;
 }
 
-/**
- * cloth_triangulator_free:
- * @self: (nullable) (transfer full): a triangulator
- *
- * Since: 0.1
+/* @self: (nullable) (transfer full): a triangulator
  */
 void
 cloth_triangulator_free (ClothTriangulator * self)
@@ -42,12 +38,8 @@ cloth_triangulator_free (ClothTriangulator * self)
   g_free (self);
 }
 
-/**
- * cloth_triangulator_set_parameters:
- * @self: a triangulator
+/* @self: a triangulator
  * @parameters: copied; by default %CLOTH_TRIANGULATE_PARAMETERS_DEFAULT
- *
- * Since: 0.1
  */
 void
 cloth_triangulator_set_parameters (ClothTriangulator * self,
@@ -60,15 +52,11 @@ cloth_triangulator_set_parameters (ClothTriangulator * self,
       parameters->max_error * parameters->max_error : INFINITY;
 }
 
-/**
- * cloth_triangulator_set_pool:
- * @self: a triangulator
+/* @self: a triangulator
  * @pool: (nullable): threads to use, which must outlive their use; %NULL: the calling
  *   thread
  *
  * The results are the same bytes whatever the number of threads.
- *
- * Since: 0.1
  */
 void
 cloth_triangulator_set_pool (ClothTriangulator * self, ClothPool * pool)
@@ -76,14 +64,10 @@ cloth_triangulator_set_pool (ClothTriangulator * self, ClothPool * pool)
   self->pool = pool;
 }
 
-/**
- * cloth_triangulator_set_simd:
- * @self: a triangulator
+/* @self: a triangulator
  * @simd: vector instructions to use at most; by default the best
  *
  * The results are the same bytes whatever the instructions.
- *
- * Since: 0.1
  */
 void
 cloth_triangulator_set_simd (ClothTriangulator * self, ClothSimd simd)
@@ -436,9 +420,7 @@ ensure_memory (ClothTriangulator * self, guint n_points)
   r->n_points = n_points;
 }
 
-/**
- * cloth_triangulator_run:
- * @self: a triangulator
+/* @self: a triangulator
  * @n_views: as many as there are cameras
  * @views: (array length=n_views): what each camera saw, in the cameras' order
  * @n_points: number of points, 0 … %CLOTH_TRIANGULATE_MAX_POINTS
@@ -457,8 +439,6 @@ ensure_memory (ClothTriangulator * self, guint n_points)
  * Memory is allocated when the number of points or threads grows, not otherwise.
  *
  * Returns: %FALSE on wrong counts
- *
- * Since: 0.1
  */
 gboolean
 cloth_triangulator_run (ClothTriangulator * self, guint n_views,

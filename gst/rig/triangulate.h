@@ -16,14 +16,10 @@ G_BEGIN_DECLS
 #define CLOTH_TRIANGULATE_ERROR (cloth_triangulate_error_quark ())
 GQuark cloth_triangulate_error_quark (void);
 
-/**
- * ClothTriangulateError:
- * @CLOTH_TRIANGULATE_ERROR_CAMERAS: fewer than 2 or more than 64 cameras
+/* @CLOTH_TRIANGULATE_ERROR_CAMERAS: fewer than 2 or more than 64 cameras
  * @CLOTH_TRIANGULATE_ERROR_CAMERA: a camera that is not finite or projects onto a line
  * @CLOTH_TRIANGULATE_ERROR_VIEWS: not as many views as cameras
  * @CLOTH_TRIANGULATE_ERROR_POINTS: more points than the limit
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_TRIANGULATE_ERROR_CAMERAS,
@@ -32,13 +28,9 @@ typedef enum {
   CLOTH_TRIANGULATE_ERROR_POINTS
 } ClothTriangulateError;
 
-/**
- * ClothPointState:
- * @CLOTH_POINT_UNSEEN: not known, see #ClothPointReason
+/* @CLOTH_POINT_UNSEEN: not known, see #ClothPointReason
  * @CLOTH_POINT_MEASURED: three or more views agree
  * @CLOTH_POINT_TWO_VIEWS: two views: no third one checks it along the epipolar lines
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_POINT_UNSEEN,
@@ -46,17 +38,13 @@ typedef enum {
   CLOTH_POINT_TWO_VIEWS
 } ClothPointState;
 
-/**
- * ClothPointReason:
- * @CLOTH_POINT_FINE: the point is known
+/* @CLOTH_POINT_FINE: the point is known
  * @CLOTH_POINT_FEW_VIEWS: too few cameras saw it
  * @CLOTH_POINT_PARALLEL: its rays are so near to parallel that its distance is unknown
  * @CLOTH_POINT_BEHIND: its rays meet behind a camera
  * @CLOTH_POINT_DISAGREE: the views contradict each other and no majority of them agrees
  *
  * Why a point is %CLOTH_POINT_UNSEEN.
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_POINT_FINE,
@@ -66,9 +54,7 @@ typedef enum {
   CLOTH_POINT_DISAGREE
 } ClothPointReason;
 
-/**
- * ClothTriangulateParameters:
- * @min_views: views a point needs, >= 2
+/* @min_views: views a point needs, >= 2
  * @threshold: normalised error, in standard deviations, above which a view disagrees
  * @max_error: reprojection error above which a view disagrees whatever its stated
  *   covariance, px at the centre of the picture; 0 switches this test off
@@ -76,8 +62,6 @@ typedef enum {
  *   and lens model leave beyond the stated covariance
  * @huber: normalised error, in standard deviations, from which on the search for
  *   outliers gives an observation less weight
- *
- * Since: 0.1
  */
 typedef struct {
   guint min_views;
@@ -89,9 +73,7 @@ typedef struct {
 
 #define CLOTH_TRIANGULATE_PARAMETERS_DEFAULT { 2, 4., 0., 0., 2. }
 
-/**
- * ClothTriangulateView:
- * @x: (nullable): columns as filmed, px, NaN where the point was not seen; %NULL when
+/* @x: (nullable): columns as filmed, px, NaN where the point was not seen; %NULL when
  *   the camera has nothing for this call
  * @y: (nullable): rows as filmed, px
  * @xx: (nullable): variances of @x, px²; %NULL: 1 px² each and no covariance
@@ -100,17 +82,13 @@ typedef struct {
  *
  * What one camera saw: element i belongs to point i. An observation whose covariance is
  * not finite and positive definite counts as not seen.
- *
- * Since: 0.1
  */
 typedef struct {
   const gdouble *x, *y;
   const gdouble *xx, *xy, *yy;
 } ClothTriangulateView;
 
-/**
- * ClothTriangulation:
- * @n_points: number of points
+/* @n_points: number of points
  * @position: x, y, z: three arrays, the unit of the cameras' translations (m), world
  *   frame; NaN where unseen
  * @covariance: xx, xy, xz, yy, yz, zz: six arrays, m²; where unseen the variances are
@@ -122,8 +100,6 @@ typedef struct {
  * @n_rejected: views seen but left out because they disagree
  * @chi2: sum of squares of the normalised reprojection errors of the views used; it has
  *   2·n_views − 3 degrees of freedom. NaN where unseen
- *
- * Since: 0.1
  */
 typedef struct {
   guint n_points;

@@ -182,16 +182,12 @@ new_empty (guint n_cameras, GError ** error)
   return self;
 }
 
-/**
- * cloth_triangulator_new:
- * @n_cameras: 2 … %CLOTH_TRIANGULATE_MAX_CAMERAS
+/* @n_cameras: 2 … %CLOTH_TRIANGULATE_MAX_CAMERAS
  * @cameras: (array length=n_cameras): copied
  * @error: return location
  *
  * Returns: (transfer full) (nullable): a triangulator for these cameras; %NULL when
  *   there are too few or too many or one has numbers that make no camera
- *
- * Since: 0.1
  */
 ClothTriangulator *
 cloth_triangulator_new (guint n_cameras, const ClothCamera * cameras,
@@ -250,9 +246,7 @@ cloth_triangulator_new (guint n_cameras, const ClothCamera * cameras,
   return g_steal_pointer (&self);
 }
 
-/**
- * cloth_triangulator_new_projections:
- * @n_cameras: 2 … %CLOTH_TRIANGULATE_MAX_CAMERAS
+/* @n_cameras: 2 … %CLOTH_TRIANGULATE_MAX_CAMERAS
  * @projections: (array): 12·@n_cameras: row-major 3×4 matrices P, x ~ P·X in px, of any
  *   scale and sign
  * @error: return location
@@ -262,8 +256,6 @@ cloth_triangulator_new (guint n_cameras, const ClothCamera * cameras,
  * depth is positive in front of the camera if the picture's y axis points down.
  *
  * Returns: (transfer full) (nullable): a triangulator
- *
- * Since: 0.1
  */
 ClothTriangulator *
 cloth_triangulator_new_projections (guint n_cameras,

@@ -27,13 +27,9 @@ node_new (ClothYamlKind kind)
   return node;
 }
 
-/**
- * cloth_yaml_node_free:
- * @node: (transfer full) (nullable): a node
+/* @node: (transfer full) (nullable): a node
  *
  * Frees it with all below it.
- *
- * Since: 0.1
  */
 void
 cloth_yaml_node_free (ClothYamlNode * node)
@@ -46,15 +42,11 @@ cloth_yaml_node_free (ClothYamlNode * node)
   g_free (node);
 }
 
-/**
- * cloth_yaml_get:
- * @mapping: a node
+/* @mapping: a node
  * @key: a key
  *
  * Returns: (nullable) (transfer none): what @mapping holds under @key; %NULL also when
  *   it is no mapping.
- *
- * Since: 0.1
  */
 const ClothYamlNode *
 cloth_yaml_get (const ClothYamlNode * mapping, const gchar * key)
@@ -68,14 +60,10 @@ cloth_yaml_get (const ClothYamlNode * mapping, const gchar * key)
   return NULL;
 }
 
-/**
- * cloth_yaml_number:
- * @node: (nullable): a node
+/* @node: (nullable): a node
  * @value: (out): its number
  *
  * Returns: whether @node is a scalar that holds one finite number and nothing else.
- *
- * Since: 0.1
  */
 gboolean
 cloth_yaml_number (const ClothYamlNode * node, gdouble * value)
@@ -187,9 +175,7 @@ handle (Build * b, const yaml_event_t * event, GError ** error)
   }
 }
 
-/**
- * cloth_yaml_parse:
- * @data: the text of a YAML document
+/* @data: the text of a YAML document
  * @length: its bytes, at most 16 MiB
  * @error: #ClothRigError, naming the line
  *
@@ -198,8 +184,6 @@ handle (Build * b, const yaml_event_t * event, GError ** error)
  * YAML, is skipped.
  *
  * Returns: (transfer full): the root, or %NULL.
- *
- * Since: 0.1
  */
 ClothYamlNode *
 cloth_yaml_parse (const gchar * data, gsize length, GError ** error)

@@ -7,13 +7,9 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothYamlKind:
- * @CLOTH_YAML_SCALAR: text
+/* @CLOTH_YAML_SCALAR: text
  * @CLOTH_YAML_SEQUENCE: list of nodes
  * @CLOTH_YAML_MAPPING: unique keys with a node each
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_YAML_SCALAR,
@@ -23,14 +19,10 @@ typedef enum {
 
 typedef struct _ClothYamlNode ClothYamlNode;
 
-/**
- * ClothYamlNode:
- * @kind: which of the members below are used
+/* @kind: which of the members below are used
  * @text: the scalar
  * @items: (element-type ClothYamlNode): of a sequence or a mapping
  * @keys: (element-type utf8): of a mapping, in step with @items
- *
- * Since: 0.1
  */
 struct _ClothYamlNode {
   ClothYamlKind kind;

@@ -16,9 +16,7 @@ root (guint32 * parent, guint32 i)
   return i;
 }
 
-/*
- * cloth_body_merge_seams:
- * @seams: (element-type ClothSeam): what is sewn together
+/* @seams: (element-type ClothSeam): what is sewn together
  * @n: number of vertices
  * @n_particles: (out): number of particles
  *
@@ -250,9 +248,7 @@ take_obstacles (ClothBody * body, const ClothScene * scene)
   }
 }
 
-/*
- * cloth_body_path:
- * @held: index of what is held
+/* @held: index of what is held
  *
  * The place of a clamp on its logged path: a cubic through the frames' places whose slope
  * at a frame is that between its neighbours (Catmull and Rom 1974), so that the clamp's
@@ -302,9 +298,7 @@ cloth_body_path (const ClothBody * body, guint held, gdouble time_s,
   }
 }
 
-/*
- * cloth_body_new:
- * @scene: a scene that cloth_scene_check () accepts
+/* @scene: a scene that cloth_scene_check () accepts
  * @error: #ClothSimError
  *
  * Returns: (transfer full) (nullable): what the lanes share of @scene
@@ -349,9 +343,7 @@ cloth_body_new (const ClothScene * scene, GError ** error)
   return g_steal_pointer (&body);
 }
 
-/*
- * cloth_body_free:
- * @body: (nullable) (transfer full): a body
+/* @body: (nullable) (transfer full): a body
  */
 void
 cloth_body_free (ClothBody * body)

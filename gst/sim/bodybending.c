@@ -539,9 +539,7 @@ make_bounds (ClothBody * body)
   }
 }
 
-/*
- * cloth_body_make_hinges:
- * @body: a body whose triangles and bounds of stretch are known
+/* @body: a body whose triangles and bounds of stretch are known
  * @corners: vertices of each triangle
  * @error: #ClothSimError
  *

@@ -210,9 +210,7 @@ build (ClothBvh * bvh, guint first, guint n)
   build (bvh, first + n / 2, n - n / 2);
 }
 
-/**
- * cloth_bvh_new:
- * @points: 3 numbers a point, m; nothing of it is kept
+/* @points: 3 numbers a point, m; nothing of it is kept
  * @n_points: how many
  * @triangles: 3 points a triangle, counter-clockwise as seen from outside
  * @n_triangles: how many
@@ -220,7 +218,6 @@ build (ClothBvh * bvh, guint first, guint n)
  * Triangles without area, and those with a corner that is not finite, are left out.
  *
  * Returns: (transfer full): the hierarchy
- * Since: 0.1
  */
 ClothBvh *
 cloth_bvh_new (const gdouble * points, guint n_points,
@@ -260,11 +257,7 @@ cloth_bvh_new (const gdouble * points, guint n_points,
   return bvh;
 }
 
-/**
- * cloth_bvh_free:
- * @bvh: (nullable) (transfer full): a hierarchy
- *
- * Since: 0.1
+/* @bvh: (nullable) (transfer full): a hierarchy
  */
 void
 cloth_bvh_free (ClothBvh * bvh)
@@ -276,12 +269,9 @@ cloth_bvh_free (ClothBvh * bvh)
   g_free (bvh);
 }
 
-/**
- * cloth_bvh_is_closed:
- * @bvh: a hierarchy
+/* @bvh: a hierarchy
  *
  * Returns: whether every edge has two triangles, so that there is an inside
- * Since: 0.1
  */
 gboolean
 cloth_bvh_is_closed (const ClothBvh * bvh)
@@ -322,14 +312,11 @@ square_to_box (const Node * node, const gdouble p[3])
   return square;
 }
 
-/**
- * cloth_bvh_nearest:
- * @bvh: a hierarchy
+/* @bvh: a hierarchy
  * @point: a point
  * @hit: (out): the nearest point of the triangles
  *
  * Returns: %FALSE when there are no triangles, or @point is not finite
- * Since: 0.1
  */
 gboolean
 cloth_bvh_nearest (const ClothBvh * bvh, const gdouble point[3],

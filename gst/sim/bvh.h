@@ -9,17 +9,13 @@ G_BEGIN_DECLS
 
 typedef struct _ClothBvh ClothBvh;
 
-/**
- * ClothBvhHit:
- * @distance: how far away the nearest point is, m
+/* @distance: how far away the nearest point is, m
  * @point: the nearest point
  * @normal: where outside is there: of the face, or of an edge or corner the mean of its
  *   faces', each in proportion to its angle; unit length
  * @inside: the asking point lies behind it
  * @face: the nearest point lies within a face, not on an edge or corner
  * @border: it lies on an edge that has no second triangle
- *
- * Since: 0.1
  */
 typedef struct {
   gdouble distance;

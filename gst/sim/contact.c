@@ -69,9 +69,7 @@ struct _ClothContact
   Zone *zones;                  /* at their first particles */
 };
 
-/*
- * cloth_contact_new:
- * @mesh: must outlive the contact
+/* @mesh: must outlive the contact
  * @single: positions are to be single precision numbers
  *
  * Returns: (transfer full): the contact of one model; reset it before its first act
@@ -97,9 +95,7 @@ cloth_contact_new (const ClothContactMesh * mesh, gboolean single)
   return contact;
 }
 
-/*
- * cloth_contact_free:
- * @contact: (nullable) (transfer full): a contact
+/* @contact: (nullable) (transfer full): a contact
  */
 void
 cloth_contact_free (ClothContact * contact)
@@ -120,9 +116,7 @@ cloth_contact_free (ClothContact * contact)
   g_free (contact);
 }
 
-/*
- * cloth_contact_reset:
- * @positions: of the particles, which may cross: what does stays crossed
+/* @positions: of the particles, which may cross: what does stays crossed
  *
  * Forgets what was.
  */
@@ -419,9 +413,7 @@ is_hit (const ClothContact * contact, gdouble ahead, const gdouble * x,
   return FALSE;
 }
 
-/*
- * cloth_contact_act:
- * @thickness: of the cloth, m
+/* @thickness: of the cloth, m
  * @friction: Coulomb's coefficient of cloth on cloth
  * @seconds: since the last act
  * @ahead: until the next one

@@ -154,9 +154,7 @@ build (ClothContactMesh * mesh, guint32 * faces, guint n)
   return index;
 }
 
-/*
- * cloth_contact_mesh_new:
- * @body: a body, not needed afterwards
+/* @body: a body, not needed afterwards
  *
  * Returns: (transfer full): what all models of @body share
  */
@@ -188,9 +186,7 @@ cloth_contact_mesh_new (const ClothBody * body)
   return mesh;
 }
 
-/*
- * cloth_contact_mesh_free:
- * @mesh: (nullable) (transfer full): a mesh
+/* @mesh: (nullable) (transfer full): a mesh
  */
 void
 cloth_contact_mesh_free (ClothContactMesh * mesh)
@@ -221,9 +217,7 @@ distance (const gdouble a[3], const gdouble b[3])
   return hypot (a[0] - b[0], a[1] - b[1]);
 }
 
-/*
- * cloth_contact_mesh_corner_rest:
- * @of: a face, and one of its corners
+/* @of: a face, and one of its corners
  * @to: another face
  *
  * Returns: the distance of the corner from @to on the flat cloth, m; any great number
@@ -256,9 +250,7 @@ end_to_edge (const gdouble point[3], const gdouble a[3], const gdouble b[3])
   return hypot (a[0] + s * along[0] - point[0], a[1] + s * along[1] - point[1]);
 }
 
-/*
- * cloth_contact_mesh_edge_rest:
- * @of: a face, and one of its edges
+/* @of: a face, and one of its edges
  * @to: another face, and one of its edges
  *
  * Returns: their distance, as cloth_contact_mesh_corner_rest ()

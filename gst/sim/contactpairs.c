@@ -148,9 +148,7 @@ add_edges (ClothContactPairs * pairs, const ClothContactFace * a,
   }
 }
 
-/*
- * cloth_contact_pairs_find:
- * @from: where the particles start
+/* @from: where the particles start
  * @to: where they go, on straight lines
  * @thickness: to be kept, m
  * @margin: m

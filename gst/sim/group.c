@@ -162,9 +162,7 @@ choose_backend (guint n_models, gboolean others,
       count_rounds (n_models, wide->n_lanes, threads) ? narrow : wide;
 }
 
-/**
- * cloth_sim_groups_new:
- * @body: what is simulated; must outlive the groups
+/* @body: what is simulated; must outlive the groups
  * @models: (array length=n_models): with which models
  * @n_models: how many, at least 1
  * @options: how
@@ -222,9 +220,7 @@ cloth_sim_groups_new (const ClothBody * body, const ClothModel * const *models,
   return groups;
 }
 
-/**
- * cloth_sim_groups_free:
- * @groups: (nullable) (transfer full) (array length=n_groups): groups
+/* @groups: (nullable) (transfer full) (array length=n_groups): groups
  * @n_groups: how many
  */
 void

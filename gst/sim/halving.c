@@ -261,9 +261,7 @@ copy_rest (const ClothScene * old, ClothScene * scene)
   scene->obstacles = cloth_obstacles_copy (old->obstacles);
 }
 
-/*
- * cloth_halving_new:
- * @scene: a scene that cloth_scene_check () accepts
+/* @scene: a scene that cloth_scene_check () accepts
  *
  * Cuts each face into four. New vertices lie on the straight lines between old ones at
  * the start, so nothing is stretched. A grid stays a grid.
@@ -296,9 +294,7 @@ cloth_halving_new (const ClothScene * scene)
   return halving;
 }
 
-/*
- * cloth_halving_spread:
- * @halving: a halving
+/* @halving: a halving
  * @stride: numbers of a vertex
  * @old: numbers of the old vertices
  * @values: (out caller-allocates): numbers of the new ones; kept vertices keep theirs to
@@ -318,9 +314,7 @@ cloth_halving_spread (const ClothHalving * halving, guint stride,
   }
 }
 
-/*
- * cloth_halving_free:
- * @halving: (nullable) (transfer full): a halving
+/* @halving: (nullable) (transfer full): a halving
  */
 void
 cloth_halving_free (ClothHalving * halving)
@@ -333,9 +327,7 @@ cloth_halving_free (ClothHalving * halving)
   g_free (halving);
 }
 
-/*
- * cloth_scene_turn_diagonals:
- * @scene: a scene with faces of four vertices
+/* @scene: a scene with faces of four vertices
  * @all_one_way: let all diagonals of a grid run the same way; else each is turned
  *
  * A square is cut from its first corner, in a grid every second one from its next

@@ -47,11 +47,7 @@ free_clear (gpointer data)
   g_free (((ClothModelFree *) data)->name);
 }
 
-/**
- * cloth_model_new:
- *
- * Returns: (transfer full): a model with the default of every key and no effects
- * Since: 0.1
+/* Returns: (transfer full): a model with the default of every key and no effects
  */
 ClothModel *
 cloth_model_new (void)
@@ -72,12 +68,9 @@ cloth_model_new (void)
   return model;
 }
 
-/**
- * cloth_model_copy:
- * @model: a model
+/* @model: a model
  *
  * Returns: (transfer full): a deep copy
- * Since: 0.1
  */
 ClothModel *
 cloth_model_copy (const ClothModel * model)
@@ -109,15 +102,11 @@ find_effect (const ClothModel * model, const ClothEffect * effect)
   return NULL;
 }
 
-/**
- * cloth_model_set_effect:
- * @model: a model
+/* @model: a model
  * @effect: an effect
  * @values: (nullable): its parameters, as many as the effect has; %NULL for its nulls
  *
  * Adds the effect, or changes it when the model has it already.
- *
- * Since: 0.1
  */
 void
 cloth_model_set_effect (ClothModel * model, const ClothEffect * effect,
@@ -205,15 +194,12 @@ check_value (const gchar * name, gdouble value, const Place * place,
   return FALSE;
 }
 
-/**
- * cloth_model_get:
- * @model: a model
+/* @model: a model
  * @name: key of a number, `stretch.warp`, or of an effect's, `effects.wind.x`
  * @value: (out): its value; the null of an effect that the model has not
  * @error: #ClothModelError
  *
  * Returns: %TRUE when there is such a number
- * Since: 0.1
  */
 gboolean
 cloth_model_get (const ClothModel * model, const gchar * name,
@@ -233,9 +219,7 @@ cloth_model_get (const ClothModel * model, const gchar * name,
   return TRUE;
 }
 
-/**
- * cloth_model_set:
- * @model: a model
+/* @model: a model
  * @name: as for cloth_model_get ()
  * @value: its new value
  * @error: #ClothModelError, naming key and value
@@ -244,7 +228,6 @@ cloth_model_get (const ClothModel * model, const gchar * name,
  *
  * Returns: %TRUE when there is such a number and it may have this value; else nothing
  *   is changed
- * Since: 0.1
  */
 gboolean
 cloth_model_set (ClothModel * model, const gchar * name, gdouble value,
@@ -265,14 +248,11 @@ cloth_model_set (ClothModel * model, const gchar * name, gdouble value,
   return TRUE;
 }
 
-/**
- * cloth_model_get_range:
- * @name: as for cloth_model_get ()
+/* @name: as for cloth_model_get ()
  * @range: (out): least and greatest value it may have
  * @error: #ClothModelError
  *
  * Returns: %TRUE when there is such a number
- * Since: 0.1
  */
 gboolean
 cloth_model_get_range (const gchar * name, gdouble range[2], GError ** error)
@@ -315,13 +295,10 @@ check_free (const ClothModel * model, guint i, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_model_check:
- * @model: a model made by hand
+/* @model: a model made by hand
  * @error: #ClothModelError, naming key and value
  *
  * Returns: %TRUE when every number is one that it may have
- * Since: 0.1
  */
 gboolean
 cloth_model_check (const ClothModel * model, GError ** error)
@@ -353,11 +330,7 @@ cloth_model_check (const ClothModel * model, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_model_free:
- * @model: (nullable) (transfer full): a model
- *
- * Since: 0.1
+/* @model: (nullable) (transfer full): a model
  */
 void
 cloth_model_free (ClothModel * model)

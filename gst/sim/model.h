@@ -7,15 +7,11 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothModelError:
- * @CLOTH_MODEL_ERROR_FORMAT: a text that is no model.json
+/* @CLOTH_MODEL_ERROR_FORMAT: a text that is no model.json
  * @CLOTH_MODEL_ERROR_NAME: a key, parameter or effect that there is not
  * @CLOTH_MODEL_ERROR_VALUE: a value that cannot be
  *
  * What can be wrong with a model. Messages name the key and the value.
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_MODEL_ERROR_FORMAT,
@@ -26,61 +22,43 @@ typedef enum {
 #define CLOTH_MODEL_ERROR (cloth_model_error_quark ())
 GQuark cloth_model_error_quark (void);
 
-/**
- * ClothForceModel:
- * @CLOTH_FORCE_MEMBRANE: orthotropic membrane on triangles with a plate's bending
+/* @CLOTH_FORCE_MEMBRANE: orthotropic membrane on triangles with a plate's bending
  * @CLOTH_FORCE_MASS_SPRING: structural, shear and bend springs
  *
  * How the inner forces of the cloth are computed.
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_FORCE_MEMBRANE,
   CLOTH_FORCE_MASS_SPRING
 } ClothForceModel;
 
-/**
- * ClothIntegrator:
- * @CLOTH_INTEGRATOR_EXPLICIT: symplectic Euler, the reference
+/* @CLOTH_INTEGRATOR_EXPLICIT: symplectic Euler, the reference
  * @CLOTH_INTEGRATOR_IMPLICIT: linearly implicit, for stiff cloth
  *
  * How time passes.
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_INTEGRATOR_EXPLICIT,
   CLOTH_INTEGRATOR_IMPLICIT
 } ClothIntegrator;
 
-/**
- * ClothModelEffect:
- * @effect: an effect that the model has
+/* @effect: an effect that the model has
  * @values: its parameters, in the order of @effect
- *
- * Since: 0.1
  */
 typedef struct {
   const ClothEffect *effect;
   gdouble values[CLOTH_EFFECT_MAX_PARAMETERS];
 } ClothModelEffect;
 
-/**
- * ClothModelFree:
- * @name: a parameter that may be fitted, as cloth_model_get () names it
+/* @name: a parameter that may be fitted, as cloth_model_get () names it
  * @range: between which values
- *
- * Since: 0.1
  */
 typedef struct {
   gchar *name;
   gdouble range[2];
 } ClothModelFree;
 
-/**
- * ClothModel:
- * @force_model: how inner forces are computed
+/* @force_model: how inner forces are computed
  * @areal_density: kg/m²
  * @stretch_warp: stretch stiffness along u, N/m
  * @stretch_weft: stretch stiffness along v, N/m
@@ -97,8 +75,6 @@ typedef struct {
  * @free: (element-type ClothModelFree): what may be fitted
  *
  * The contents of model.json.
- *
- * Since: 0.1
  */
 typedef struct {
   ClothForceModel force_model;

@@ -201,9 +201,7 @@ parse_root (JsonObject * root, ClothModel * model, GError ** error)
   return FALSE;
 }
 
-/**
- * cloth_model_parse:
- * @json: the text of model.json
+/* @json: the text of model.json
  * @size: its bytes
  * @error: #ClothModelError, naming key and value
  *
@@ -211,7 +209,6 @@ parse_root (JsonObject * root, ClothModel * model, GError ** error)
  * error.
  *
  * Returns: (transfer full): the model, or %NULL
- * Since: 0.1
  */
 ClothModel *
 cloth_model_parse (const gchar * json, gsize size, GError ** error)
@@ -231,13 +228,10 @@ cloth_model_parse (const gchar * json, gsize size, GError ** error)
   return g_steal_pointer (&model);
 }
 
-/**
- * cloth_model_load:
- * @path: (type filename): a model.json
+/* @path: (type filename): a model.json
  * @error: #ClothModelError, #GFileError, #ClothFileError
  *
  * Returns: (transfer full): the model, or %NULL; the message names @path
- * Since: 0.1
  */
 ClothModel *
 cloth_model_load (const gchar * path, GError ** error)
@@ -278,14 +272,11 @@ write_effects (ClothJsonWriter * writer, const ClothModel * model)
   cloth_json_writer_end_object (writer);
 }
 
-/**
- * cloth_model_to_json:
- * @model: a model
+/* @model: a model
  *
  * Every key is written, numbers so that they are read as the very same.
  *
  * Returns: (transfer full): the text of its model.json
- * Since: 0.1
  */
 gchar *
 cloth_model_to_json (const ClothModel * model)

@@ -19,9 +19,7 @@ subtract (const gdouble * a, const gdouble * b, gdouble c[3])
     c[k] = a[k] - b[k];
 }
 
-/*
- * cloth_nearest_on_triangle:
- * @a: a corner, and @b and @c
+/* @a: a corner, and @b and @c
  * @point: a point
  * @weights: (out): the nearest point of the triangle is their sum over the corners
  *
@@ -92,9 +90,7 @@ cloth_nearest_on_triangle (const gdouble * a, const gdouble * b,
   return feature;
 }
 
-/*
- * cloth_nearest_of_edges:
- * @a0: where the first edge starts; it ends at @a1
+/* @a0: where the first edge starts; it ends at @a1
  * @b0: where the second edge starts; it ends at @b1
  * @s: (out): share of the first edge at which it is nearest to the second
  * @t: (out): share of the second edge there

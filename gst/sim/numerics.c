@@ -108,9 +108,7 @@ halve (ClothNumerics * numerics, gdouble factor, GError ** error)
   return TRUE;
 }
 
-/*
- * cloth_numerics_new:
- * @scene: a scene, which must stay while this is used
+/* @scene: a scene, which must stay while this is used
  * @models: models that are to be simulated together
  * @n_models: how many, at least 1
  * @error: #ClothSimError when they differ in a numerics effect, or when one asks for what
@@ -142,9 +140,7 @@ cloth_numerics_new (const ClothScene * scene, const ClothModel * const *models,
   return g_steal_pointer (&numerics);
 }
 
-/*
- * cloth_numerics_spread:
- * @numerics: what is simulated instead of a scene
+/* @numerics: what is simulated instead of a scene
  * @stride: numbers of a vertex, at most 3
  * @values: numbers of the scene's own vertices
  *
@@ -163,9 +159,7 @@ cloth_numerics_spread (ClothNumerics * numerics, guint stride,
   return values;
 }
 
-/*
- * cloth_numerics_free:
- * @numerics: (nullable) (transfer full): what is simulated instead of a scene
+/* @numerics: (nullable) (transfer full): what is simulated instead of a scene
  */
 void
 cloth_numerics_free (ClothNumerics * numerics)

@@ -6,9 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-/**
- * cloth_scene_new:
- * @topology: (transfer full): the cloth; its uv are metres on the flat cloth
+/* @topology: (transfer full): the cloth; its uv are metres on the flat cloth
  * @fps: frames a second
  * @n_frames: number of frames, at least 1
  *
@@ -16,7 +14,6 @@
  * downwards from z = 0, at rest, under 9.81 m/s².
  *
  * Returns: (transfer full): a scene
- * Since: 0.1
  */
 ClothScene *
 cloth_scene_new (ClothTopology * topology, gdouble fps, guint n_frames)
@@ -41,16 +38,13 @@ cloth_scene_new (ClothTopology * topology, gdouble fps, guint n_frames)
   return scene;
 }
 
-/**
- * cloth_scene_hold:
- * @scene: a scene
+/* @scene: a scene
  * @vertex: a vertex
  *
  * Holds a vertex where it is at the start, from the beginning to the end; change
  * @scene's held and clamps for anything else.
  *
  * Returns: its place in the held array
- * Since: 0.1
  */
 guint
 cloth_scene_hold (ClothScene * scene, guint vertex)
@@ -72,11 +66,7 @@ cloth_scene_hold (ClothScene * scene, guint vertex)
   return n;
 }
 
-/**
- * cloth_scene_free:
- * @scene: (nullable) (transfer full): a scene
- *
- * Since: 0.1
+/* @scene: (nullable) (transfer full): a scene
  */
 void
 cloth_scene_free (ClothScene * scene)

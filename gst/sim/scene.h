@@ -7,23 +7,17 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothSeam:
- * @a: a vertex
+/* @a: a vertex
  * @b: the vertex sewn to it
  *
  * Two vertices that are one particle.
- *
- * Since: 0.1
  */
 typedef struct {
   guint a;
   guint b;
 } ClothSeam;
 
-/**
- * ClothScene:
- * @topology: vertices, faces and where they lie on the flat cloth (metres)
+/* @topology: vertices, faces and where they lie on the flat cloth (metres)
  * @positions: where the vertices are at the start, n_vertices · 3, metres
  * @velocities: (nullable): how fast they are then, m/s; %NULL: at rest
  * @held: (element-type ClothHeld): what clamps hold
@@ -37,8 +31,6 @@ typedef struct {
  *
  * All that a simulation needs but the model. World coordinates, z up. The
  * simulation starts at @times[0].
- *
- * Since: 0.1
  */
 typedef struct {
   ClothTopology *topology;

@@ -253,9 +253,7 @@ check_obstacles (const ClothScene * scene, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_scene_check:
- * @scene: a scene, perhaps made by hand
+/* @scene: a scene, perhaps made by hand
  * @error: #ClothFileError, naming the element and its value
  *
  * Refuses what no simulation could make sense of: faces that are degenerate, there
@@ -263,7 +261,6 @@ check_obstacles (const ClothScene * scene, GError ** error)
  * are not finite, times that do not rise, what names vertices that are not there.
  *
  * Returns: %TRUE when there is nothing of the kind
- * Since: 0.1
  */
 gboolean
 cloth_scene_check (const ClothScene * scene, GError ** error)

@@ -27,9 +27,7 @@ line_length (const ClothTopology * topology, const guint * line, guint n)
   return length;
 }
 
-/**
- * cloth_scene_sew:
- * @scene: a scene
+/* @scene: a scene
  * @line: two lines of vertices
  * @error: #ClothFileError
  *
@@ -37,7 +35,6 @@ line_length (const ClothTopology * topology, const guint * line, guint n)
  *
  * Returns: %TRUE when all vertices are there and the lines are equally long on the flat
  *   cloth, to 2%
- * Since: 0.1
  */
 gboolean
 cloth_scene_sew (ClothScene * scene, const ClothSeamLine * line,
@@ -154,9 +151,7 @@ read_start (ClothScene * scene, ClothTake * take, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_scene_new_from_take:
- * @take: a take
+/* @take: a take
  * @error: #ClothFileError, #GIOErrorEnum; an element that is wrong is named
  *
  * The scene that was filmed: its mesh, clamps, obstacles, gravity and times. The cloth
@@ -165,7 +160,6 @@ read_start (ClothScene * scene, ClothTake * take, GError ** error)
  * flat from its clamps, u along x and v downwards. The scene is checked.
  *
  * Returns: (transfer full): the scene, or %NULL
- * Since: 0.1
  */
 ClothScene *
 cloth_scene_new_from_take (ClothTake * take, GError ** error)

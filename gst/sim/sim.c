@@ -190,9 +190,7 @@ check_time_step (const ClothSim * sim, const ClothModel * const *models,
   return FALSE;
 }
 
-/**
- * cloth_sim_new:
- * @scene: what to simulate; nothing of it is kept
+/* @scene: what to simulate; nothing of it is kept
  * @models: the models to simulate it with; nothing of them is kept
  * @n_models: how many, at least 1; they must agree in force_model, integrator,
  *   time_step and the numerics effects
@@ -210,7 +208,6 @@ check_time_step (const ClothSim * sim, const ClothModel * const *models,
  * vertices all the same. They must agree in these effects too.
  *
  * Returns: (transfer full) (nullable): the simulation at the time of the first frame
- * Since: 0.1
  */
 ClothSim *
 cloth_sim_new (const ClothScene * scene, const ClothModel * const *models,
@@ -261,11 +258,7 @@ cloth_sim_new (const ClothScene * scene, const ClothModel * const *models,
   return g_steal_pointer (&sim);
 }
 
-/**
- * cloth_sim_free:
- * @sim: (nullable) (transfer full): a simulation
- *
- * Since: 0.1
+/* @sim: (nullable) (transfer full): a simulation
  */
 void
 cloth_sim_free (ClothSim * sim)
@@ -287,12 +280,9 @@ cloth_sim_free (ClothSim * sim)
   g_free (sim);
 }
 
-/**
- * cloth_sim_get_n_models:
- * @sim: a simulation
+/* @sim: a simulation
  *
  * Returns: how many models it has
- * Since: 0.1
  */
 guint
 cloth_sim_get_n_models (const ClothSim * sim)
@@ -300,12 +290,9 @@ cloth_sim_get_n_models (const ClothSim * sim)
   return sim->n_models;
 }
 
-/**
- * cloth_sim_get_n_vertices:
- * @sim: a simulation
+/* @sim: a simulation
  *
  * Returns: how many vertices its cloth has
- * Since: 0.1
  */
 guint
 cloth_sim_get_n_vertices (const ClothSim * sim)
@@ -372,15 +359,11 @@ advance_adaptive (ClothSim * sim, gdouble until_s)
   }
 }
 
-/**
- * cloth_sim_advance:
- * @sim: a simulation
+/* @sim: a simulation
  * @until_s: where to stop, seconds; nothing happens when that is not ahead
  *
  * Moves all models on, in equal steps no longer than cloth_sim_get_time_step (). A model
  * that diverges is put back to where it was at the start of this call and stays there.
- *
- * Since: 0.1
  */
 void
 cloth_sim_advance (ClothSim * sim, gdouble until_s)
@@ -403,12 +386,9 @@ cloth_sim_advance (ClothSim * sim, gdouble until_s)
   sim->time = until_s;
 }
 
-/**
- * cloth_sim_get_time:
- * @sim: a simulation
+/* @sim: a simulation
  *
  * Returns: the time that its models have reached, seconds
- * Since: 0.1
  */
 gdouble
 cloth_sim_get_time (const ClothSim * sim)
@@ -416,12 +396,9 @@ cloth_sim_get_time (const ClothSim * sim)
   return sim->time;
 }
 
-/**
- * cloth_sim_get_time_step:
- * @sim: a simulation
+/* @sim: a simulation
  *
  * Returns: the longest step that cloth_sim_advance () takes, seconds
- * Since: 0.1
  */
 gdouble
 cloth_sim_get_time_step (ClothSim * sim)
@@ -463,13 +440,9 @@ to_particles (const ClothSim * sim, const gdouble * vertices,
         3 * sizeof *vertices);
 }
 
-/**
- * cloth_sim_get_positions:
- * @sim: a simulation
+/* @sim: a simulation
  * @model: index of a model
  * @positions: (out caller-allocates): where its vertices are, n_vertices · 3, metres
- *
- * Since: 0.1
  */
 void
 cloth_sim_get_positions (const ClothSim * sim, guint model, gdouble * positions)
@@ -481,13 +454,9 @@ cloth_sim_get_positions (const ClothSim * sim, guint model, gdouble * positions)
   from_particles (sim, sim->scratch[0], positions);
 }
 
-/**
- * cloth_sim_get_velocities:
- * @sim: a simulation
+/* @sim: a simulation
  * @model: index of a model
  * @velocities: (out caller-allocates): how fast its vertices are, n_vertices · 3, m/s
- *
- * Since: 0.1
  */
 void
 cloth_sim_get_velocities (const ClothSim * sim, guint model,
@@ -500,9 +469,7 @@ cloth_sim_get_velocities (const ClothSim * sim, guint model,
   from_particles (sim, sim->scratch[0], velocities);
 }
 
-/**
- * cloth_sim_set_state:
- * @sim: a simulation
+/* @sim: a simulation
  * @model: index of a model
  * @positions: where its vertices are to be, n_vertices · 3, metres
  * @velocities: (nullable): how fast, m/s; %NULL: at rest
@@ -511,8 +478,6 @@ cloth_sim_get_velocities (const ClothSim * sim, guint model,
  * Puts a model somewhere else, for example where it was observed. One that had diverged
  * moves again. Vertices that a clamp holds are drawn to its path within one frame. Of
  * vertices that are sewn together the first one's state counts.
- *
- * Since: 0.1
  */
 void
 cloth_sim_set_state (ClothSim * sim, guint model, const gdouble * positions,
@@ -535,14 +500,11 @@ cloth_sim_set_state (ClothSim * sim, guint model, const gdouble * positions,
   }
 }
 
-/**
- * cloth_sim_get_state:
- * @sim: a simulation
+/* @sim: a simulation
  * @model: index of a model
  * @since_s: (out) (optional): when it was sound for the last time, NaN when it is
  *
  * Returns: whether the model still moves
- * Since: 0.1
  */
 ClothSimState
 cloth_sim_get_state (const ClothSim * sim, guint model, gdouble * since_s)
@@ -556,13 +518,10 @@ cloth_sim_get_state (const ClothSim * sim, guint model, gdouble * since_s)
   return isnan (since) ? CLOTH_SIM_OK : CLOTH_SIM_DIVERGED;
 }
 
-/**
- * cloth_sim_get_energy:
- * @sim: a simulation
+/* @sim: a simulation
  * @model: index of a model
  *
  * Returns: its energies now, without those of effects
- * Since: 0.1
  */
 ClothSimEnergy
 cloth_sim_get_energy (const ClothSim * sim, guint model)
@@ -634,9 +593,7 @@ draw (ClothSim * sim, const ClothSimGroup * group, guint lane, guint n,
       t_now, t_next);
 }
 
-/**
- * cloth_sim_set_targets:
- * @sim: a simulation
+/* @sim: a simulation
  * @model: index of a model
  * @now: where the vertices were observed at @t_now, n_vertices · 3, metres
  * @next: where they were at @t_next
@@ -653,8 +610,6 @@ draw (ClothSim * sim, const ClothSimGroup * group, guint lane, guint n,
  * y′ on straight lines from now to next. Where a number is not finite the weight counts
  * as 0. Sewn vertices are drawn to the weighted mean of their targets. The gains take
  * part in the time step.
- *
- * Since: 0.1
  */
 void
 cloth_sim_set_targets (ClothSim * sim, guint model, const gdouble * now,
@@ -670,9 +625,7 @@ cloth_sim_set_targets (ClothSim * sim, guint model, const gdouble * now,
   draw (sim, group, lane, 1, t_now, t_next);
 }
 
-/**
- * cloth_sim_set_all_targets:
- * @sim: a simulation
+/* @sim: a simulation
  * @now: where the vertices were observed at @t_now, n_vertices · 3, metres
  * @next: where they were at @t_next
  * @velocity_now: their velocities at @t_now, m/s
@@ -684,8 +637,6 @@ cloth_sim_set_targets (ClothSim * sim, guint model, const gdouble * now,
  * @t_next: seconds, after @t_now
  *
  * As cloth_sim_set_targets () for every model, in less time.
- *
- * Since: 0.1
  */
 void
 cloth_sim_set_all_targets (ClothSim * sim, const gdouble * now,

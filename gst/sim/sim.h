@@ -11,12 +11,8 @@ G_BEGIN_DECLS
 
 typedef struct _ClothSim ClothSim;
 
-/**
- * ClothSimError:
- * @CLOTH_SIM_ERROR_SCENE: the scene can't be simulated
+/* @CLOTH_SIM_ERROR_SCENE: the scene can't be simulated
  * @CLOTH_SIM_ERROR_MODEL: a model is impossible
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_SIM_ERROR_SCENE,
@@ -26,27 +22,19 @@ typedef enum {
 #define CLOTH_SIM_ERROR (cloth_sim_error_quark ())
 GQuark cloth_sim_error_quark (void);
 
-/**
- * ClothSimState:
- * @CLOTH_SIM_OK: it moves
+/* @CLOTH_SIM_OK: it moves
  * @CLOTH_SIM_DIVERGED: its numbers went beyond all measure; it stands where it was when
  *   cloth_sim_advance () last returned with it sound
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_SIM_OK,
   CLOTH_SIM_DIVERGED
 } ClothSimState;
 
-/**
- * ClothSimOptions:
- * @single: numbers of single precision: twice as many models at a time
+/* @single: numbers of single precision: twice as many models at a time
  * @threads: threads to use, 0 = one for each processor
  * @simd: vector instructions to use; the result does not depend on them
  * @seed: of what is random in effects
- *
- * Since: 0.1
  */
 typedef struct {
   gboolean single;
@@ -55,13 +43,9 @@ typedef struct {
   guint64 seed;
 } ClothSimOptions;
 
-/**
- * ClothSimEnergy:
- * @kinetic: of motion, J
+/* @kinetic: of motion, J
  * @elastic: of stretch, shear and bending, J
  * @gravity: of height above the origin, J
- *
- * Since: 0.1
  */
 typedef struct {
   gdouble kinetic;

@@ -18,12 +18,8 @@ obstacle_clear (gpointer data)
   g_free (obstacle->triangles);
 }
 
-/**
- * cloth_obstacles_new:
- *
- * Returns: (transfer full) (element-type ClothObstacle): an empty list, which frees
+/* Returns: (transfer full) (element-type ClothObstacle): an empty list, which frees
  *   what its items own
- * Since: 0.1
  */
 GArray *
 cloth_obstacles_new (void)
@@ -34,12 +30,9 @@ cloth_obstacles_new (void)
   return obstacles;
 }
 
-/**
- * cloth_obstacles_copy:
- * @obstacles: (element-type ClothObstacle): obstacles
+/* @obstacles: (element-type ClothObstacle): obstacles
  *
  * Returns: (transfer full) (element-type ClothObstacle): a deep copy
- * Since: 0.1
  */
 GArray *
 cloth_obstacles_copy (const GArray * obstacles)
@@ -151,9 +144,7 @@ parse_obstacle (const ClothJsonFile * file, JsonObject * object,
   }
 }
 
-/**
- * cloth_obstacles_parse:
- * @file: whose object it is
+/* @file: whose object it is
  * @root: the object that may have the key `obstacles`
  * @obstacles: (element-type ClothObstacle): what is read is appended here
  * @error: as @file says
@@ -161,7 +152,6 @@ parse_obstacle (const ClothJsonFile * file, JsonObject * object,
  * Files of meshes are not touched; see cloth_obstacle_load_mesh ().
  *
  * Returns: %TRUE when every item is an obstacle
- * Since: 0.1
  */
 gboolean
 cloth_obstacles_parse (const ClothJsonFile * file, JsonObject * root,
@@ -188,12 +178,8 @@ cloth_obstacles_parse (const ClothJsonFile * file, JsonObject * root,
   return TRUE;
 }
 
-/**
- * cloth_obstacles_build:
- * @obstacles: (element-type ClothObstacle): obstacles
+/* @obstacles: (element-type ClothObstacle): obstacles
  * @builder: is within an object; gets the key `obstacles`
- *
- * Since: 0.1
  */
 void
 cloth_obstacles_build (const GArray * obstacles, JsonBuilder * builder)
@@ -232,16 +218,13 @@ cloth_obstacles_build (const GArray * obstacles, JsonBuilder * builder)
   json_builder_end_array (builder);
 }
 
-/**
- * cloth_obstacle_load_mesh:
- * @obstacle: an obstacle of the kind mesh
+/* @obstacle: an obstacle of the kind mesh
  * @folder: where its file is
  * @error: #ClothFileError, #GIOErrorEnum
  *
  * Reads the triangles; quads are cut in two. No path leads out of @folder.
  *
  * Returns: %TRUE when there is at least one triangle and every corner is finite
- * Since: 0.1
  */
 gboolean
 cloth_obstacle_load_mesh (ClothObstacle * obstacle, const gchar * folder,

@@ -9,14 +9,10 @@ G_BEGIN_DECLS
 
 #define CLOTH_MAX_OBSTACLES 1024
 
-/**
- * ClothObstacleKind:
- * @CLOTH_OBSTACLE_SPHERE: a ball
+/* @CLOTH_OBSTACLE_SPHERE: a ball
  * @CLOTH_OBSTACLE_PLANE: a half-space that the normal points out of
  * @CLOTH_OBSTACLE_CAPSULE: what lies within a radius of a line from point to end
  * @CLOTH_OBSTACLE_MESH: triangles, whose fronts (counter-clockwise) are outside
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_OBSTACLE_SPHERE,
@@ -25,9 +21,7 @@ typedef enum {
   CLOTH_OBSTACLE_MESH
 } ClothObstacleKind;
 
-/**
- * ClothObstacle:
- * @kind: its shape
+/* @kind: its shape
  * @point: centre of the sphere, a point of the plane, one end of the capsule's line,
  *   metres
  * @end: the other end of the capsule's line
@@ -41,8 +35,6 @@ typedef enum {
  * @triangles: 3 points a triangle
  *
  * Something at rest that the cloth may touch.
- *
- * Since: 0.1
  */
 typedef struct {
   ClothObstacleKind kind;

@@ -23,9 +23,7 @@ static const ClothExporter *const exporters[] = {
   &cloth_c3d_exporter, &cloth_csv_exporter
 };
 
-/**
- * cloth_mesh_writer_new:
- * @location: file or folder; a take's folder is made, no other one
+/* @location: file or folder; a take's folder is made, no other one
  * @format: its format
  * @name: (nullable): name of the object or take; by default, of the file
  * @topology: the mesh of every frame, copied
@@ -37,7 +35,6 @@ static const ClothExporter *const exporters[] = {
  * current one is held. The files get their names at the close.
  *
  * Returns: (transfer full): a writer, or %NULL
- * Since: 0.1
  */
 ClothMeshWriter *
 cloth_mesh_writer_new (const gchar * location, ClothMeshFormat format,
@@ -67,15 +64,12 @@ cloth_mesh_writer_new (const gchar * location, ClothMeshFormat format,
   return g_steal_pointer (&writer);
 }
 
-/**
- * cloth_mesh_writer_append:
- * @writer: a writer
+/* @writer: a writer
  * @time_s: time of the frame, seconds; OBJ + PC2, PLY and C3D don't keep it
  * @frame: the frame
  * @error: #ClothFileError, #GIOErrorEnum
  *
  * Returns: %TRUE when the frame was taken
- * Since: 0.1
  */
 gboolean
 cloth_mesh_writer_append (ClothMeshWriter * writer, gdouble time_s,
@@ -97,12 +91,9 @@ cloth_mesh_writer_append (ClothMeshWriter * writer, gdouble time_s,
   return TRUE;
 }
 
-/**
- * cloth_mesh_writer_get_n_frames:
- * @writer: a writer
+/* @writer: a writer
  *
  * Returns: frames taken so far
- * Since: 0.1
  */
 guint64
 cloth_mesh_writer_get_n_frames (const ClothMeshWriter * writer)
@@ -110,16 +101,13 @@ cloth_mesh_writer_get_n_frames (const ClothMeshWriter * writer)
   return writer->n_frames;
 }
 
-/**
- * cloth_mesh_writer_close:
- * @writer: a writer that has at least one frame
+/* @writer: a writer that has at least one frame
  * @error: #ClothFileError, #GIOErrorEnum
  *
  * Gives the files their names, replacing those of an earlier sequence. The writer
  * can then only be freed.
  *
  * Returns: %TRUE when the sequence is there
- * Since: 0.1
  */
 gboolean
 cloth_mesh_writer_close (ClothMeshWriter * writer, GError ** error)
@@ -132,13 +120,9 @@ cloth_mesh_writer_close (ClothMeshWriter * writer, GError ** error)
   return writer->exporter->finish (writer->export, error);
 }
 
-/**
- * cloth_mesh_writer_free:
- * @writer: (transfer full) (nullable): a writer
+/* @writer: (transfer full) (nullable): a writer
  *
  * Frees it; a sequence that was not closed leaves nothing behind.
- *
- * Since: 0.1
  */
 void
 cloth_mesh_writer_free (ClothMeshWriter * writer)

@@ -56,16 +56,13 @@ static const struct
   {".csv", CLOTH_MESH_FORMAT_CSV}
 };
 
-/**
- * cloth_mesh_format_guess:
- * @location: file or folder, there or not yet
+/* @location: file or folder, there or not yet
  *
  * `.ply`, `.glb`, `.usda`, `.pvd` or `.vtp`, `.c3d` and `.csv` say their formats;
  * `.take`, `take.json`, a closing slash or a folder that is there is a take; anything
  * else is OBJ + PC2.
  *
  * Returns: the format
- * Since: 0.1
  */
 ClothMeshFormat
 cloth_mesh_format_guess (const gchar * location)
@@ -82,14 +79,11 @@ cloth_mesh_format_guess (const gchar * location)
   return CLOTH_MESH_FORMAT_OBJ_PC2;
 }
 
-/**
- * cloth_mesh_format_stem:
- * @location: file or folder as the user gave it
+/* @location: file or folder as the user gave it
  * @format: a format, not %CLOTH_MESH_FORMAT_AUTO
  *
  * Returns: (transfer full): what the names of the files begin with; the folder of a
  *   take
- * Since: 0.1
  */
 gchar *
 cloth_mesh_format_stem (const gchar * location, ClothMeshFormat format)
@@ -255,16 +249,13 @@ open_take (ClothMeshReader * reader, const gchar * folder, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_mesh_reader_open:
- * @location: file or folder
+/* @location: file or folder
  * @format: its format
  * @error: #ClothFileError, #GIOErrorEnum
  *
  * Opens a sequence. Only the topology and one frame are held in memory.
  *
  * Returns: (transfer full): a reader, or %NULL
- * Since: 0.1
  */
 ClothMeshReader *
 cloth_mesh_reader_open (const gchar * location, ClothMeshFormat format,
@@ -301,12 +292,9 @@ cloth_mesh_reader_open (const gchar * location, ClothMeshFormat format,
   return g_steal_pointer (&reader);
 }
 
-/**
- * cloth_mesh_reader_get_topology:
- * @reader: a reader
+/* @reader: a reader
  *
  * Returns: (transfer none): the mesh of every frame
- * Since: 0.1
  */
 const ClothTopology *
 cloth_mesh_reader_get_topology (const ClothMeshReader * reader)
@@ -314,12 +302,9 @@ cloth_mesh_reader_get_topology (const ClothMeshReader * reader)
   return reader->topology;
 }
 
-/**
- * cloth_mesh_reader_get_n_frames:
- * @reader: a reader
+/* @reader: a reader
  *
  * Returns: number of frames, at least 1
- * Since: 0.1
  */
 guint
 cloth_mesh_reader_get_n_frames (const ClothMeshReader * reader)
@@ -327,12 +312,9 @@ cloth_mesh_reader_get_n_frames (const ClothMeshReader * reader)
   return reader->n_frames;
 }
 
-/**
- * cloth_mesh_reader_get_fps:
- * @reader: a reader
+/* @reader: a reader
  *
  * Returns: frames a second, 0 when the files do not say
- * Since: 0.1
  */
 gdouble
 cloth_mesh_reader_get_fps (const ClothMeshReader * reader)
@@ -340,12 +322,9 @@ cloth_mesh_reader_get_fps (const ClothMeshReader * reader)
   return reader->fps;
 }
 
-/**
- * cloth_mesh_reader_get_times:
- * @reader: a reader
+/* @reader: a reader
  *
  * Returns: (transfer none) (nullable): the time of every frame, seconds, rising
- * Since: 0.1
  */
 const gdouble *
 cloth_mesh_reader_get_times (const ClothMeshReader * reader)
@@ -353,13 +332,10 @@ cloth_mesh_reader_get_times (const ClothMeshReader * reader)
   return reader->take ? cloth_take_get_times (reader->take) : NULL;
 }
 
-/**
- * cloth_mesh_reader_get_n_seam_vertices:
- * @reader: a reader
+/* @reader: a reader
  *
  * Returns: vertices that an OBJ file gives more than one uv, of which the first was
  *   kept
- * Since: 0.1
  */
 guint
 cloth_mesh_reader_get_n_seam_vertices (const ClothMeshReader * reader)
@@ -425,9 +401,7 @@ read_take (ClothMeshReader * reader, guint frame, GError ** error)
           frame, reader->covariances, error));
 }
 
-/**
- * cloth_mesh_reader_read:
- * @reader: a reader
+/* @reader: a reader
  * @frame: which frame
  * @contents: (out): set to the frame; valid until the next call
  * @error: #ClothFileError, #GIOErrorEnum
@@ -435,7 +409,6 @@ read_take (ClothMeshReader * reader, guint frame, GError ** error)
  * Vertices that the files call unseen are NaN, whatever place they hold there.
  *
  * Returns: %TRUE when the frame was read and is valid
- * Since: 0.1
  */
 gboolean
 cloth_mesh_reader_read (ClothMeshReader * reader, guint frame,
@@ -464,11 +437,7 @@ cloth_mesh_reader_read (ClothMeshReader * reader, guint frame,
   return TRUE;
 }
 
-/**
- * cloth_mesh_reader_free:
- * @reader: (transfer full) (nullable): a reader
- *
- * Since: 0.1
+/* @reader: (transfer full) (nullable): a reader
  */
 void
 cloth_mesh_reader_free (ClothMeshReader * reader)

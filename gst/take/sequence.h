@@ -7,9 +7,7 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothMeshFormat:
- * @CLOTH_MESH_FORMAT_AUTO: what the location's ending says
+/* @CLOTH_MESH_FORMAT_AUTO: what the location's ending says
  * @CLOTH_MESH_FORMAT_OBJ_PC2: `name.obj`, `name.pc2` and `name.states.npy`
  * @CLOTH_MESH_FORMAT_PLY: `name_00000.ply`, `name_00001.ply` and so on
  * @CLOTH_MESH_FORMAT_TAKE: the folder of a take
@@ -20,8 +18,6 @@ G_BEGIN_DECLS
  * @CLOTH_MESH_FORMAT_CSV: `name.csv`
  *
  * Formats of mesh sequences. The last five are written only.
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_MESH_FORMAT_AUTO,

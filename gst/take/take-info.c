@@ -204,12 +204,9 @@ seam_clear (gpointer data)
   g_free (line->lines[1]);
 }
 
-/**
- * cloth_take_info_new:
- * @name: (nullable): name of the take
+/* @name: (nullable): name of the take
  *
  * Returns: (transfer full): a take's description with every default
- * Since: 0.1
  */
 ClothTakeInfo *
 cloth_take_info_new (const gchar * name)
@@ -226,9 +223,7 @@ cloth_take_info_new (const gchar * name)
   return info;
 }
 
-/**
- * cloth_take_info_parse:
- * @json: the text of take.json
+/* @json: the text of take.json
  * @size: its bytes
  * @error: #ClothFileError
  *
@@ -236,7 +231,6 @@ cloth_take_info_new (const gchar * name)
  * error: a misspelt key would silently take its default.
  *
  * Returns: (transfer full): the description, or %NULL
- * Since: 0.1
  */
 ClothTakeInfo *
 cloth_take_info_parse (const gchar * json, gsize size, GError ** error)
@@ -302,12 +296,9 @@ add_seams (JsonBuilder * builder, const GArray * seams)
   json_builder_end_array (builder);
 }
 
-/**
- * cloth_take_info_to_json:
- * @info: a description
+/* @info: a description
  *
  * Returns: (transfer full): the text of its take.json
- * Since: 0.1
  */
 gchar *
 cloth_take_info_to_json (const ClothTakeInfo * info)
@@ -344,11 +335,7 @@ cloth_take_info_to_json (const ClothTakeInfo * info)
   return json_to_string (root, TRUE);
 }
 
-/**
- * cloth_take_info_free:
- * @info: (transfer full) (nullable): a description
- *
- * Since: 0.1
+/* @info: (transfer full) (nullable): a description
  */
 void
 cloth_take_info_free (ClothTakeInfo * info)
@@ -364,15 +351,12 @@ cloth_take_info_free (ClothTakeInfo * info)
   g_free (info);
 }
 
-/**
- * cloth_take_info_copy:
- * @info: a description
+/* @info: a description
  *
  * For another take of the same scene. The files that it names have no folders any more,
  * which the other take need not have.
  *
  * Returns: (transfer full): a description
- * Since: 0.1
  */
 ClothTakeInfo *
 cloth_take_info_copy (const ClothTakeInfo * info)

@@ -8,13 +8,9 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothHeld:
- * @vertex: a vertex that a clamp holds
+/* @vertex: a vertex that a clamp holds
  * @from_s: held from here on, seconds; −∞ when from the beginning
  * @until_s: let go here, seconds; ∞ when held to the end
- *
- * Since: 0.1
  */
 typedef struct {
   guint vertex;
@@ -22,9 +18,7 @@ typedef struct {
   gdouble until_s;
 } ClothHeld;
 
-/**
- * ClothTakeInfo:
- * @name: its name
+/* @name: its name
  * @fps: frames a second, 0 when only times.npy says
  * @columns: vertices of a row of the grid, 0 with a mesh file
  * @rows: rows of vertices of the grid
@@ -39,8 +33,6 @@ typedef struct {
  * @notes: (nullable): for people
  *
  * The contents of take.json.
- *
- * Since: 0.1
  */
 typedef struct {
   gchar *name;

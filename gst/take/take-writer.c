@@ -120,9 +120,7 @@ write_obstacles (ClothTakeWriter * writer, const ClothTakeInfo * info,
   return TRUE;
 }
 
-/**
- * cloth_take_writer_new:
- * @folder: the take; made when it is not there, but not its parents
+/* @folder: the take; made when it is not there, but not its parents
  * @info: what take.json shall say; when `mesh` is set, the name of the OBJ file that
  *   is written from @topology. Meshes of obstacles are written under their names
  * @topology: the mesh
@@ -132,7 +130,6 @@ write_obstacles (ClothTakeWriter * writer, const ClothTakeInfo * info,
  * in an existing folder stay.
  *
  * Returns: (transfer full): a writer, or %NULL
- * Since: 0.1
  */
 ClothTakeWriter *
 cloth_take_writer_new (const gchar * folder, const ClothTakeInfo * info,
@@ -200,9 +197,7 @@ append_clamps (ClothTakeWriter * writer, const gfloat * clamps, GError ** error)
   return cloth_npy_writer_append (writer->arrays[CLAMPS], clamps, 1, error);
 }
 
-/**
- * cloth_take_writer_append:
- * @writer: a writer
+/* @writer: a writer
  * @time_s: time of the frame, seconds, later than the last one's
  * @positions: 3 numbers a vertex, NaN when not seen
  * @states: a #ClothVertexState a vertex
@@ -211,7 +206,6 @@ append_clamps (ClothTakeWriter * writer, const gfloat * clamps, GError ** error)
  * @error: #GIOErrorEnum, #ClothFileError
  *
  * Returns: %TRUE when the frame was taken
- * Since: 0.1
  */
 gboolean
 cloth_take_writer_append (ClothTakeWriter * writer, gdouble time_s,
@@ -254,15 +248,12 @@ remove_stale (ClothTakeWriter * writer)
   }
 }
 
-/**
- * cloth_take_writer_close:
- * @writer: a writer that has at least one frame
+/* @writer: a writer that has at least one frame
  * @error: #GIOErrorEnum, #ClothFileError
  *
  * Gives every file its name, take.json last. The writer can then only be freed.
  *
  * Returns: %TRUE when the take is there
- * Since: 0.1
  */
 gboolean
 cloth_take_writer_close (ClothTakeWriter * writer, GError ** error)
@@ -303,13 +294,9 @@ cloth_take_writer_close (ClothTakeWriter * writer, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_take_writer_free:
- * @writer: (transfer full) (nullable): a writer
+/* @writer: (transfer full) (nullable): a writer
  *
  * Frees it; a take that was not closed leaves nothing behind.
- *
- * Since: 0.1
  */
 void
 cloth_take_writer_free (ClothTakeWriter * writer)

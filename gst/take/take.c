@@ -254,16 +254,13 @@ load_arrays (ClothTake * take, GError ** error)
   return load_times (take, error);
 }
 
-/**
- * cloth_take_open:
- * @folder: a take
+/* @folder: a take
  * @error: #ClothFileError, #GIOErrorEnum
  *
  * Opens a take and compares the shapes of all its arrays. Frames are read one by
  * one; a take larger than the memory is fine. Nothing outside @folder is read.
  *
  * Returns: (transfer full): the take, or %NULL
- * Since: 0.1
  */
 ClothTake *
 cloth_take_open (const gchar * folder, GError ** error)
@@ -281,16 +278,13 @@ cloth_take_open (const gchar * folder, GError ** error)
   return g_steal_pointer (&take);
 }
 
-/**
- * cloth_take_sha256:
- * @take: a take
+/* @take: a take
  * @error: #ClothFileError, #GIOErrorEnum
  *
  * Reads all files that reading the take reads: take.json, its arrays, its meshes.
  *
  * Returns: (transfer full) (nullable): the hash of what `sha256sum` prints of them, sorted
  *   by their names, 64 hexadecimal digits
- * Since: 0.1
  */
 gchar *
 cloth_take_sha256 (const ClothTake * take, GError ** error)
@@ -298,14 +292,10 @@ cloth_take_sha256 (const ClothTake * take, GError ** error)
   return cloth_files_sha256 (take->folder, take->files, error);
 }
 
-/**
- * cloth_take_add_file:
- * @take: a take
+/* @take: a take
  * @name: a file below its folder that is read beside it
  *
  * From now on cloth_take_sha256 () reads it, too.
- *
- * Since: 0.1
  */
 void
 cloth_take_add_file (ClothTake * take, const gchar * name)
@@ -313,12 +303,9 @@ cloth_take_add_file (ClothTake * take, const gchar * name)
   note_file (take, name);
 }
 
-/**
- * cloth_take_get_folder:
- * @take: a take
+/* @take: a take
  *
  * Returns: (transfer none) (type filename): where it lies
- * Since: 0.1
  */
 const gchar *
 cloth_take_get_folder (const ClothTake * take)
@@ -326,12 +313,9 @@ cloth_take_get_folder (const ClothTake * take)
   return take->folder;
 }
 
-/**
- * cloth_take_get_info:
- * @take: a take
+/* @take: a take
  *
  * Returns: (transfer none): its take.json
- * Since: 0.1
  */
 const ClothTakeInfo *
 cloth_take_get_info (const ClothTake * take)
@@ -339,12 +323,9 @@ cloth_take_get_info (const ClothTake * take)
   return take->info;
 }
 
-/**
- * cloth_take_get_topology:
- * @take: a take
+/* @take: a take
  *
  * Returns: (transfer none): its grid or mesh
- * Since: 0.1
  */
 const ClothTopology *
 cloth_take_get_topology (const ClothTake * take)
@@ -352,12 +333,9 @@ cloth_take_get_topology (const ClothTake * take)
   return take->topology;
 }
 
-/**
- * cloth_take_get_n_frames:
- * @take: a take
+/* @take: a take
  *
  * Returns: number of frames, at least 1
- * Since: 0.1
  */
 guint
 cloth_take_get_n_frames (const ClothTake * take)
@@ -365,13 +343,10 @@ cloth_take_get_n_frames (const ClothTake * take)
   return take->n_frames;
 }
 
-/**
- * cloth_take_get_times:
- * @take: a take
+/* @take: a take
  *
  * Returns: (transfer none) (nullable): times.npy, seconds, rising; %NULL when frames
  *   follow each other at the take's fps
- * Since: 0.1
  */
 const gdouble *
 cloth_take_get_times (const ClothTake * take)
@@ -379,13 +354,10 @@ cloth_take_get_times (const ClothTake * take)
   return take->times;
 }
 
-/**
- * cloth_take_get_time:
- * @take: a take
+/* @take: a take
  * @frame: a frame
  *
  * Returns: its time in seconds
- * Since: 0.1
  */
 gdouble
 cloth_take_get_time (const ClothTake * take, guint frame)
@@ -393,12 +365,9 @@ cloth_take_get_time (const ClothTake * take, guint frame)
   return take->times ? take->times[frame] : frame / take->info->fps;
 }
 
-/**
- * cloth_take_has_covariances:
- * @take: a take
+/* @take: a take
  *
  * Returns: whether there is a covariance.npy
- * Since: 0.1
  */
 gboolean
 cloth_take_has_covariances (const ClothTake * take)
@@ -406,12 +375,9 @@ cloth_take_has_covariances (const ClothTake * take)
   return take->covariances != NULL;
 }
 
-/**
- * cloth_take_has_clamps:
- * @take: a take
+/* @take: a take
  *
  * Returns: whether there is a clamps.npy
- * Since: 0.1
  */
 gboolean
 cloth_take_has_clamps (const ClothTake * take)
@@ -419,16 +385,13 @@ cloth_take_has_clamps (const ClothTake * take)
   return take->clamps != NULL;
 }
 
-/**
- * cloth_take_read_positions:
- * @take: a take
+/* @take: a take
  * @frame: which frame
  * @positions: (out caller-allocates): room for 3 numbers a vertex, metres; NaN when
  *   not seen
  * @error: #ClothFileError, #GIOErrorEnum
  *
  * Returns: %TRUE when they were read and are valid
- * Since: 0.1
  */
 gboolean
 cloth_take_read_positions (ClothTake * take, guint frame, gfloat * positions,
@@ -441,14 +404,11 @@ cloth_take_read_positions (ClothTake * take, guint frame, gfloat * positions,
   return FALSE;
 }
 
-/**
- * cloth_states_check:
- * @states: a #ClothVertexState a vertex
+/* @states: a #ClothVertexState a vertex
  * @n_vertices: how many
  * @error: #ClothFileError
  *
  * Returns: %TRUE when every one is known
- * Since: 0.1
  */
 gboolean
 cloth_states_check (const guint8 * states, guint n_vertices, GError ** error)
@@ -464,9 +424,7 @@ cloth_states_check (const guint8 * states, guint n_vertices, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_take_read_states:
- * @take: a take
+/* @take: a take
  * @frame: which frame
  * @positions: that frame's positions
  * @states: (out caller-allocates): room for a #ClothVertexState a vertex
@@ -475,7 +433,6 @@ cloth_states_check (const guint8 * states, guint n_vertices, GError ** error)
  * Without states.npy a vertex is measured, or unseen when NaN.
  *
  * Returns: %TRUE when they were read and are valid
- * Since: 0.1
  */
 gboolean
 cloth_take_read_states (ClothTake * take, guint frame,
@@ -496,16 +453,13 @@ cloth_take_read_states (ClothTake * take, guint frame,
   return FALSE;
 }
 
-/**
- * cloth_take_read_covariances:
- * @take: a take that has covariances
+/* @take: a take that has covariances
  * @frame: which frame
  * @covariances: (out caller-allocates): room for 6 numbers a vertex: xx, xy, xz, yy,
  *   yz, zz, m²; NaN where not known
  * @error: #ClothFileError, #GIOErrorEnum
  *
  * Returns: %TRUE when they were read, none is infinite and no variance negative
- * Since: 0.1
  */
 gboolean
 cloth_take_read_covariances (ClothTake * take, guint frame,
@@ -528,15 +482,12 @@ cloth_take_read_covariances (ClothTake * take, guint frame,
   return TRUE;
 }
 
-/**
- * cloth_take_read_clamps:
- * @take: a take that has clamps
+/* @take: a take that has clamps
  * @frame: which frame
  * @clamps: (out caller-allocates): room for 3 numbers a held vertex, metres
  * @error: #ClothFileError, #GIOErrorEnum
  *
  * Returns: %TRUE when they were read and are finite for as long as they hold
- * Since: 0.1
  */
 gboolean
 cloth_take_read_clamps (ClothTake * take, guint frame, gfloat * clamps,
@@ -563,11 +514,7 @@ cloth_take_read_clamps (ClothTake * take, guint frame, gfloat * clamps,
   return TRUE;
 }
 
-/**
- * cloth_take_free:
- * @take: (transfer full) (nullable): a take
- *
- * Since: 0.1
+/* @take: (transfer full) (nullable): a take
  */
 void
 cloth_take_free (ClothTake * take)

@@ -7,16 +7,12 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothImage:
- * @data: (not nullable): top-left pixel
+/* @data: (not nullable): top-left pixel
  * @width: pixels a row, >= 1
  * @height: rows, >= 1
  * @stride: bytes from one row to the next, >= @width
  *
  * The luma plane of a frame. The centre of the top-left pixel is (0, 0).
- *
- * Since: 0.1
  */
 typedef struct {
   const guint8 *data;

@@ -26,12 +26,7 @@ struct _ClothPointGrid
   gfloat per_px;                /* 1 / size */
 };
 
-/**
- * cloth_point_grid_new:
- *
- * Returns: (transfer full): an empty grid; it keeps its memory when cleared.
- *
- * Since: 0.1
+/* Returns: (transfer full): an empty grid; it keeps its memory when cleared.
  */
 ClothPointGrid *
 cloth_point_grid_new (void)
@@ -39,11 +34,7 @@ cloth_point_grid_new (void)
   return g_new0 (ClothPointGrid, 1);
 }
 
-/**
- * cloth_point_grid_free:
- * @grid: (transfer full): the grid
- *
- * Since: 0.1
+/* @grid: (transfer full): the grid
  */
 void
 cloth_point_grid_free (ClothPointGrid * grid)
@@ -53,16 +44,12 @@ cloth_point_grid_free (ClothPointGrid * grid)
   g_free (grid);
 }
 
-/**
- * cloth_point_grid_clear:
- * @grid: the grid
+/* @grid: the grid
  * @width: width of the picture, px
  * @height: height of the picture, px
  * @n_expected: how many points will be added, about
  *
  * Takes out all points.
- *
- * Since: 0.1
  */
 void
 cloth_point_grid_clear (ClothPointGrid * grid, gint width, gint height,
@@ -101,16 +88,12 @@ cell_of (const ClothPointGrid * grid, gfloat x, gfloat y, gint * column,
   *row = cell_along (y * grid->per_px, grid->rows);
 }
 
-/**
- * cloth_point_grid_add:
- * @grid: the grid
+/* @grid: the grid
  * @x: column, px; may lie outside the picture
  * @y: row, px
  *
  * Adds a point; points are numbered from 0 in the order they are added. One with a NaN
  * coordinate is counted but never found.
- *
- * Since: 0.1
  */
 void
 cloth_point_grid_add (ClothPointGrid * grid, gfloat x, gfloat y)
@@ -203,9 +186,7 @@ find (const ClothPointGrid * grid, gfloat x, gfloat y, gfloat radius,
   return search.n;
 }
 
-/**
- * cloth_point_grid_nearest:
- * @grid: the grid
+/* @grid: the grid
  * @x: column, px
  * @y: row, px
  * @radius: largest distance, px
@@ -214,8 +195,6 @@ find (const ClothPointGrid * grid, gfloat x, gfloat y, gfloat radius,
  * @n_near: room in @near
  *
  * Returns: number of points found, 0 near a place that is no number
- *
- * Since: 0.1
  */
 guint
 cloth_point_grid_nearest (const ClothPointGrid * grid, gfloat x, gfloat y,
@@ -229,9 +208,7 @@ cloth_point_grid_nearest (const ClothPointGrid * grid, gfloat x, gfloat y,
   return find (grid, x, y, radius, near, n_near);
 }
 
-/**
- * cloth_point_grid_within:
- * @grid: the grid
+/* @grid: the grid
  * @x: column, px
  * @y: row, px
  * @radius: largest distance, px
@@ -242,8 +219,6 @@ cloth_point_grid_nearest (const ClothPointGrid * grid, gfloat x, gfloat y,
  * Finds points for less than it takes to sort them.
  *
  * Returns: number of points found, 0 near a place that is no number
- *
- * Since: 0.1
  */
 guint
 cloth_point_grid_within (const ClothPointGrid * grid, gfloat x, gfloat y,

@@ -7,12 +7,8 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothNear:
- * @distance2: squared distance, px²
+/* @distance2: squared distance, px²
  * @index: of the point
- *
- * Since: 0.1
  */
 typedef struct {
   gfloat distance2;

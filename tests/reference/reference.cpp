@@ -25,9 +25,7 @@ cloth_cv_saddle_free (ClothCvSaddle * self)
   delete self;
 }
 
-/**
- * cloth_cv_saddle_mask:
- * @self: its buffers, kept from picture to picture
+/* @self: its buffers, kept from picture to picture
  * @data: grey picture
  * @width: columns
  * @height: rows
@@ -66,9 +64,7 @@ cloth_cv_saddle_mask (ClothCvSaddle * self, const guint8 * data, gint width,
   }
 }
 
-/**
- * cloth_cv_corner_sub_pix:
- * @data: grey picture
+/* @data: grey picture
  * @width: columns
  * @height: rows
  * @stride: bytes from row to row
@@ -96,9 +92,7 @@ cloth_cv_corner_sub_pix (const guint8 * data, gint width, gint height,
   }
 }
 
-/**
- * cloth_cv_dots:
- * @bgr: colour picture, three bytes a pixel
+/* @bgr: colour picture, three bytes a pixel
  * @width: columns
  * @height: rows
  * @stride: bytes from row to row
@@ -110,8 +104,6 @@ cloth_cv_corner_sub_pix (const guint8 * data, gint width, gint height,
  * contours, the centre of gravity of each.
  *
  * Returns: %FALSE when OpenCV failed
- *
- * Since: 0.1
  */
 gboolean
 cloth_cv_dots (const guint8 * bgr, gint width, gint height, gint stride,

@@ -6,9 +6,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 
-/**
- * cloth_cv_triangulate_points:
- * @projections: two row-major 3×4 matrices
+/* @projections: two row-major 3×4 matrices
  * @n: points
  * @x0: (array length=n): columns in the first view
  * @y0: (array length=n): rows in the first view
@@ -19,8 +17,6 @@
  * Linear triangulation from two views by OpenCV, in its own threads' number of one.
  *
  * Returns: %FALSE when OpenCV threw
- *
- * Since: 0.1
  */
 gboolean
 cloth_cv_triangulate_points (const gdouble projections[24], guint n,

@@ -286,9 +286,7 @@ wanted (const gchar * const *effects, const gchar * id)
   return !effects || g_strv_contains (effects, id);
 }
 
-/**
- * cloth_candidates_new:
- * @model: the model that is looked at
+/* @model: the model that is looked at
  * @recording: what it is to explain
  * @effects: (nullable) (array zero-terminated=1): ids of those to consider
  * @frozen: whether the model's free numbers were fitted elsewhere
@@ -297,7 +295,6 @@ wanted (const gchar * const *effects, const gchar * id)
  * @error: #ClothFitError
  *
  * Returns: (transfer full) (nullable): the candidates
- * Since: 0.1
  */
 ClothCandidates *
 cloth_candidates_new (const ClothModel * model,
@@ -361,14 +358,11 @@ set_effect (const ClothCandidates * c, ClothModel * model, guint direction)
   }
 }
 
-/**
- * cloth_candidates_place:
- * @candidates: the candidates
+/* @candidates: the candidates
  * @model: a model
  * @direction: a direction
  *
  * Returns: where the model is along it: the number, or its logarithm
- * Since: 0.1
  */
 gdouble
 cloth_candidates_place (const ClothCandidates * candidates,
@@ -383,16 +377,13 @@ cloth_candidates_place (const ClothCandidates * candidates,
   return value;
 }
 
-/**
- * cloth_candidates_move:
- * @candidates: the candidates
+/* @candidates: the candidates
  * @model: where they start
  * @directions: (array length=n): along which
  * @changes: (array length=n): how far: added to the number, or to its logarithm
  * @n: how many
  *
  * Returns: (transfer full): the model so changed, kept within each number's range
- * Since: 0.1
  */
 ClothModel *
 cloth_candidates_move (const ClothCandidates * candidates,
@@ -415,17 +406,13 @@ cloth_candidates_move (const ClothCandidates * candidates,
   return moved;
 }
 
-/**
- * cloth_candidates_bound:
- * @candidates: the candidates
+/* @candidates: the candidates
  * @model: a model
  * @direction: one of the free numbers
  * @reach: how far it may be from where it is in @model, or the logarithm of it
  *
  * Bounds the number in fits to come. Logarithms reach less far up: by no more than makes
  * as much of a difference.
- *
- * Since: 0.1
  */
 void
 cloth_candidates_bound (ClothCandidates * candidates,
@@ -439,15 +426,12 @@ cloth_candidates_bound (ClothCandidates * candidates,
   d->fit_high = MIN (d->high, value + (d->logarithmic ? log1p (reach) : reach));
 }
 
-/**
- * cloth_candidates_has_room:
- * @candidates: the candidates
+/* @candidates: the candidates
  * @model: where it starts
  * @direction: along which
  * @step: how far
  *
  * Returns: whether the number stays in its range @step above and below
- * Since: 0.1
  */
 gboolean
 cloth_candidates_has_room (const ClothCandidates * candidates,
@@ -460,11 +444,7 @@ cloth_candidates_has_room (const ClothCandidates * candidates,
   return value - step >= d->low && value + step <= d->high;
 }
 
-/**
- * cloth_candidates_free:
- * @candidates: (nullable) (transfer full): the candidates
- *
- * Since: 0.1
+/* @candidates: (nullable) (transfer full): the candidates
  */
 void
 cloth_candidates_free (ClothCandidates * candidates)

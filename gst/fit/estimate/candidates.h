@@ -10,9 +10,7 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothDirection:
- * @name: of the model's number, as cloth_model_set () takes it
+/* @name: of the model's number, as cloth_model_set () takes it
  * @logarithmic: the logarithm of the number is changed
  * @centre: where it starts: the null value, or the model's
  * @step: of the finite difference
@@ -22,8 +20,6 @@ G_BEGIN_DECLS
  * @high: largest value
  * @fit_low: least value that a fit may come to
  * @fit_high: largest value that a fit may come to
- *
- * Since: 0.1
  */
 typedef struct {
   gchar *name;
@@ -38,9 +34,7 @@ typedef struct {
   gdouble fit_high;
 } ClothDirection;
 
-/**
- * ClothCandidate:
- * @effect: the effect
+/* @effect: the effect
  * @values: its parameters where the directions leave them
  * @first: of its directions
  * @n: number of its directions
@@ -49,8 +43,6 @@ typedef struct {
  * One way in which an effect may act: some of its parameters are directions, the others
  * are fixed. An effect may have several candidates. Gusts have none of their own: @n is 0
  * and @first that of wind.
- *
- * Since: 0.1
  */
 typedef struct {
   const ClothEffect *effect;
@@ -60,14 +52,10 @@ typedef struct {
   guint parameters[CLOTH_EFFECT_MAX_PARAMETERS];
 } ClothCandidate;
 
-/**
- * ClothCandidates:
- * @directions: (element-type ClothDirection): the model's free numbers first, then
+/* @directions: (element-type ClothDirection): the model's free numbers first, then
  *   those of the candidates
  * @n_free: how many of them are free numbers of the model
  * @list: (element-type ClothCandidate): the candidates
- *
- * Since: 0.1
  */
 typedef struct {
   GArray *directions;
@@ -89,13 +77,9 @@ cloth_candidates_direction (const ClothCandidates * candidates, guint i)
   return &g_array_index (candidates->directions, ClothDirection, i);
 }
 
-/**
- * ClothCandidateSkip:
- * @data: the caller's
+/* @data: the caller's
  * @effect: an effect that is no candidate
  * @reason: why
- *
- * Since: 0.1
  */
 typedef void (*ClothCandidateSkip) (gpointer data, const ClothEffect * effect,
     const gchar * reason);

@@ -25,13 +25,10 @@ class_of (const ClothFeatures * f, guint cosine, guint wave, guint k)
   return 3 * (cosine_band (cosine) * f->n_bands + f->bands[wave]) + k;
 }
 
-/**
- * cloth_power_spectrum_new:
- * @features: what @z is of
+/* @features: what @z is of
  * @z: features
  *
  * Returns: (transfer full): their mean squares, class by class
- * Since: 0.1
  */
 ClothPowerSpectrum *
 cloth_power_spectrum_new (const ClothFeatures * features, const gdouble * z)
@@ -58,12 +55,9 @@ cloth_power_spectrum_new (const ClothFeatures * features, const gdouble * z)
   return power;
 }
 
-/**
- * cloth_power_spectrum_copy:
- * @power: mean squares
+/* @power: mean squares
  *
  * Returns: (transfer full): the same
- * Since: 0.1
  */
 ClothPowerSpectrum *
 cloth_power_spectrum_copy (const ClothPowerSpectrum * power)
@@ -74,11 +68,7 @@ cloth_power_spectrum_copy (const ClothPowerSpectrum * power)
   return copy;
 }
 
-/**
- * cloth_power_spectrum_free:
- * @power: (nullable) (transfer full): mean squares
- *
- * Since: 0.1
+/* @power: (nullable) (transfer full): mean squares
  */
 void
 cloth_power_spectrum_free (ClothPowerSpectrum * power)
@@ -89,9 +79,7 @@ cloth_power_spectrum_free (ClothPowerSpectrum * power)
   g_free (power);
 }
 
-/**
- * cloth_normal_equations_new:
- * @features: what @z and @columns are of
+/* @features: what @z and @columns are of
  * @mismatch: mean squares of what the simulator itself is off
  * @share: of them that counts as variance
  * @z: features of the residual
@@ -101,7 +89,6 @@ cloth_power_spectrum_free (ClothPowerSpectrum * power)
  * Weights are 1 / (1 + share · mismatch): noise has the variance 1.
  *
  * Returns: (transfer full): the normal equations of each block
- * Since: 0.1
  */
 ClothNormalEquations *
 cloth_normal_equations_new (const ClothFeatures * features,
@@ -151,11 +138,7 @@ cloth_normal_equations_new (const ClothFeatures * features,
   return n;
 }
 
-/**
- * cloth_normal_equations_free:
- * @normal: (nullable) (transfer full): normal equations
- *
- * Since: 0.1
+/* @normal: (nullable) (transfer full): normal equations
  */
 void
 cloth_normal_equations_free (ClothNormalEquations * normal)
@@ -168,13 +151,10 @@ cloth_normal_equations_free (ClothNormalEquations * normal)
   g_free (normal);
 }
 
-/**
- * cloth_normal_equations_append:
- * @to: (nullable) (transfer full): normal equations
+/* @to: (nullable) (transfer full): normal equations
  * @from: (transfer full): others with the same columns
  *
  * Returns: (transfer full): the blocks of both, those of @to first
- * Since: 0.1
  */
 ClothNormalEquations *
 cloth_normal_equations_append (ClothNormalEquations * to,
@@ -197,9 +177,7 @@ cloth_normal_equations_append (ClothNormalEquations * to,
   return to;
 }
 
-/**
- * cloth_normal_equations_reduce:
- * @normal: normal equations
+/* @normal: normal equations
  * @blocks: (array): which blocks count
  * @nuisances: (array length=n_nuisances): columns that are fitted along
  * @precisions: (array length=n_nuisances): of their priors
@@ -211,7 +189,6 @@ cloth_normal_equations_append (ClothNormalEquations * to,
  * Projects the nuisances out: the Schur complement of the normal equations.
  *
  * Returns: whether the nuisances could be solved for
- * Since: 0.1
  */
 gboolean
 cloth_normal_equations_reduce (const ClothNormalEquations * normal,
@@ -271,9 +248,7 @@ cloth_normal_equations_reduce (const ClothNormalEquations * normal,
   return TRUE;
 }
 
-/**
- * cloth_normal_equations_project:
- * @normal: normal equations
+/* @normal: normal equations
  * @blocks: (nullable): which blocks count
  * @m: how many of the columns are kept: the first ones
  * @precisions: (array): of the priors of the others
@@ -284,7 +259,6 @@ cloth_normal_equations_reduce (const ClothNormalEquations * normal,
  *
  * Returns: what is left of the residual's square; all of it, and @g and @s as they are,
  *   when the others can't be solved for
- * Since: 0.1
  */
 gdouble
 cloth_normal_equations_project (const ClothNormalEquations * normal,
@@ -339,16 +313,13 @@ cloth_normal_equations_project (const ClothNormalEquations * normal,
   return r;
 }
 
-/**
- * cloth_normal_equations_change:
- * @normal: normal equations
+/* @normal: normal equations
  * @block: a block
  * @directions: (array length=n): columns
  * @changes: (array length=n): how far along each
  * @n: how many
  *
  * Returns: by how much the square of the residual in this block changes
- * Since: 0.1
  */
 gdouble
 cloth_normal_equations_change (const ClothNormalEquations * normal, guint block,

@@ -8,28 +8,20 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothPowerSpectrum:
- * @n: number of classes: bands of frequency, of waves, and axes
+/* @n: number of classes: bands of frequency, of waves, and axes
  * @values: mean square of the features of a class
- *
- * Since: 0.1
  */
 typedef struct {
   guint n;
   gdouble *values;
 } ClothPowerSpectrum;
 
-/**
- * ClothNormalEquations:
- * @m: number of columns
+/* @m: number of columns
  * @n_blocks: number of blocks of time
  * @per_block: features of a block
  * @g: BᵀWB, [n_blocks][m][m]
  * @s: BᵀWz, [n_blocks][m]
  * @r: zᵀWz, [n_blocks]
- *
- * Since: 0.1
  */
 typedef struct {
   guint m;
@@ -40,15 +32,11 @@ typedef struct {
   gdouble *r;
 } ClothNormalEquations;
 
-/**
- * ClothReducedEquations:
- * @n: number of directions
+/* @n: number of directions
  * @g: their normal matrix with the nuisances projected out, n·n
  * @s: their score
  * @kept: share of each direction's square that the projection kept
  * @r: square of the residual with the nuisances fitted
- *
- * Since: 0.1
  */
 typedef struct {
   guint n;

@@ -18,11 +18,7 @@
 /* A step that made things worse is cut to this share. */
 #define CUT 0.4
 
-/**
- * cloth_estimate_options_init:
- * @options: (out caller-allocates): how recordings are studied unless told otherwise
- *
- * Since: 0.1
+/* @options: (out caller-allocates): how recordings are studied unless told otherwise
  */
 void
 cloth_estimate_options_init (ClothEstimateOptions * options)
@@ -32,12 +28,8 @@ cloth_estimate_options_init (ClothEstimateOptions * options)
         10.,.overdispersion = 5.};
 }
 
-/**
- * cloth_sensitivities_new:
- * @recording: a recording; must outlive the study
+/* @recording: a recording; must outlive the study
  * @options: how to study it
- *
- * Since: 0.1
  */
 ClothSensitivities *
 cloth_sensitivities_new (const ClothRecording * recording,
@@ -62,14 +54,11 @@ forget (ClothSensitivities * study)
   g_clear_pointer (&study->sound, g_free);
 }
 
-/**
- * cloth_sensitivities_copy:
- * @study: a study that is linearised
+/* @study: a study that is linearised
  * @options: how it is studied
  *
  * Returns: (transfer full): another one of the same recording, linearised at the same
  *   model
- * Since: 0.1
  */
 ClothSensitivities *
 cloth_sensitivities_copy (const ClothSensitivities * study,
@@ -94,11 +83,7 @@ cloth_sensitivities_copy (const ClothSensitivities * study,
   return copy;
 }
 
-/**
- * cloth_sensitivities_free:
- * @study: (nullable) (transfer full): a study
- *
- * Since: 0.1
+/* @study: (nullable) (transfer full): a study
  */
 void
 cloth_sensitivities_free (ClothSensitivities * study)
@@ -112,13 +97,10 @@ cloth_sensitivities_free (ClothSensitivities * study)
   g_free (study);
 }
 
-/**
- * cloth_sensitivities_discrepancy_scale:
- * @study: a study
+/* @study: a study
  *
  * Returns: what the discrepancy's features are to be multiplied by: each recording's are in
  *   multiples of its own noise; 0 without a discrepancy
- * Since: 0.1
  */
 gdouble
 cloth_sensitivities_discrepancy_scale (const ClothSensitivities * study)
@@ -127,13 +109,10 @@ cloth_sensitivities_discrepancy_scale (const ClothSensitivities * study)
       study->features->sigma : 0.;
 }
 
-/**
- * cloth_sensitivities_count_variability:
- * @study: a study
+/* @study: a study
  *
  * Returns: how many directions are known in which variability moves the residual, that of the
  *   discrepancy included
- * Since: 0.1
  */
 guint
 cloth_sensitivities_count_variability (const ClothSensitivities * study)
@@ -142,13 +121,9 @@ cloth_sensitivities_count_variability (const ClothSensitivities * study)
       (study->discrepancy ? study->discrepancy->n_variability : 0);
 }
 
-/**
- * cloth_sensitivities_get_variability:
- * @study: a study
+/* @study: a study
  * @gain: which of the gains
  * @columns: (out) (array): cloth_sensitivities_count_variability () directions, each of features->size
- *
- * Since: 0.1
  */
 void
 cloth_sensitivities_get_variability (const ClothSensitivities * study,
@@ -164,13 +139,10 @@ cloth_sensitivities_get_variability (const ClothSensitivities * study,
     columns[own + k] = scale * study->discrepancy->variability[gain][k];
 }
 
-/**
- * cloth_sensitivities_get_variability_precision:
- * @study: a study
+/* @study: a study
  * @i: one of the directions of cloth_sensitivities_get_variability ()
  *
  * Returns: of how far variability goes along it, over the noise's variance
- * Since: 0.1
  */
 gdouble
 cloth_sensitivities_get_variability_precision (const ClothSensitivities * study,
@@ -181,15 +153,11 @@ cloth_sensitivities_get_variability_precision (const ClothSensitivities * study,
       discrepancy->n_variability) / CHAOS_WIDTH;
 }
 
-/**
- * cloth_sensitivities_take_off_discrepancy:
- * @study: a study
+/* @study: a study
  * @gain: which of the gains
  * @z: (inout) (array): features of a residual
  *
  * Takes off what the simulator itself is off by, if there is a discrepancy.
- *
- * Since: 0.1
  */
 void
 cloth_sensitivities_take_off_discrepancy (const ClothSensitivities * study,
@@ -201,13 +169,10 @@ cloth_sensitivities_take_off_discrepancy (const ClothSensitivities * study,
     z[k] -= scale * study->discrepancy->z[gain][k];
 }
 
-/**
- * cloth_sensitivities_residual:
- * @study: a study
+/* @study: a study
  * @gain: which of the gains
  *
  * Returns: (transfer full) (array): what is to be explained: z less that of the discrepancy
- * Since: 0.1
  */
 gdouble *
 cloth_sensitivities_residual (const ClothSensitivities * study, guint gain)
@@ -234,9 +199,7 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
       positions, c->z[model]);
 }
 
-/**
- * cloth_sensitivities_run:
- * @study: a study
+/* @study: a study
  * @models: (array length=n): models
  * @n: how many
  * @options: how to simulate
@@ -249,7 +212,6 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
  * effects are computed in few groups.
  *
  * Returns: whether that could be done
- * Since: 0.1
  */
 gboolean
 cloth_sensitivities_run (const ClothSensitivities * study, ClothModel ** models,
@@ -385,9 +347,7 @@ find_reference (Moved * moved, ClothSensitivities * study)
   }
 }
 
-/**
- * cloth_sensitivities_linearise:
- * @study: a study
+/* @study: a study
  * @candidates: what directions mean
  * @model: where to take derivatives
  * @directions: (array length=m): with respect to what
@@ -398,8 +358,6 @@ find_reference (Moved * moved, ClothSensitivities * study)
  * Fills @study's z, columns, sound and variability. Directions along which the simulation fails
  * have columns of zeros. Free numbers are moved to both sides; the others' columns are
  * differences from the mean of these.
- *
- * Since: 0.1
  */
 gboolean
 cloth_sensitivities_linearise (ClothSensitivities * study,
@@ -591,9 +549,7 @@ go (Fit * fit, const gdouble * step, gdouble share)
   fit->model = there;
 }
 
-/**
- * cloth_gauss_newton_fit:
- * @studies: (array length=n_studies): recordings that are fitted together
+/* @studies: (array length=n_studies): recordings that are fitted together
  * @n_studies: how many
  * @candidates: what directions mean
  * @model: where to start
@@ -614,7 +570,6 @@ go (Fit * fit, const gdouble * step, gdouble share)
  * makes things worse, or the simulation diverge, is cut.
  *
  * Returns: (transfer full) (nullable): the fitted model
- * Since: 0.1
  */
 ClothModel *
 cloth_gauss_newton_fit (ClothSensitivities ** studies, guint n_studies,

@@ -13,17 +13,13 @@ G_BEGIN_DECLS
  * vertices weak ones drown in variability, strong ones in noise. */
 #define CLOTH_ESTIMATE_N_GAINS 1
 
-/**
- * ClothEstimateOptions:
- * @gains: of the observer, 1/s²
+/* @gains: of the observer, 1/s²
  * @n_waves: waves along u and v
  * @block_s: length of blocks of time, s
  * @highest_hz: of the features
  * @overdispersion: features are not independent: their squares count this much less
  * @rollout: how to simulate
  * @simulations: (inout): counts them
- *
- * Since: 0.1
  */
 typedef struct {
   gdouble gains[CLOTH_ESTIMATE_N_GAINS];
@@ -35,9 +31,7 @@ typedef struct {
   guint64 simulations;
 } ClothEstimateOptions;
 
-/**
- * ClothSensitivities:
- * @recording: the recording
+/* @recording: the recording
  * @features: its features
  * @z: residual of the model at hand, per gain
  * @columns: its derivatives, [directions][features], per gain
@@ -50,8 +44,6 @@ typedef struct {
  *   by here too; the caller's
  * @left: (nullable): the power that is left to doubt, per gain; a fit weighs by it instead
  *   of by what it leaves itself
- *
- * Since: 0.1
  */
 typedef struct _ClothStudy {
   const ClothRecording *recording;

@@ -104,15 +104,12 @@ make_waves (ClothFeatures * f, const ClothTopology * t, guint each)
       f->waves[(gsize) v * f->n_waves + w] = waves[(gsize) w * f->n + v];
 }
 
-/**
- * cloth_features_new:
- * @recording: what they are of
+/* @recording: what they are of
  * @n_waves_each: waves along u and along v, at most %CLOTH_FEATURES_MAX_WAVES_EACH
  * @block_s: length of a block of time, s
  * @highest_hz: highest frequency that is kept
  *
  * Returns: (transfer full): the features
- * Since: 0.1
  */
 ClothFeatures *
 cloth_features_new (const ClothRecording * recording, guint n_waves_each,
@@ -201,17 +198,13 @@ KERNEL (avx512, __attribute__((target ("avx512f,avx512bw,avx512dq,avx512vl"))))
 #define PROJECT(level, ...) project_scalar (__VA_ARGS__)
 #endif
 
-/**
- * cloth_features_add:
- * @features: the features
+/* @features: the features
  * @recording: the recording
  * @frame: one of its frames
  * @positions: simulated in this frame, [n][3], m
  * @z: (inout): features of simulated less recorded; start with zeros
  *
  * Adds a frame's part. What was not seen counts as equal.
- *
- * Since: 0.1
  */
 void
 cloth_features_add (const ClothFeatures * features,
@@ -239,16 +232,12 @@ cloth_features_add (const ClothFeatures * features,
   }
 }
 
-/**
- * cloth_features_window:
- * @features: the features
+/* @features: the features
  * @z: features
  * @part: which part of every block of time
  * @n_parts: of how many, at most as many as a block has frames
  * @windowed: (out) (array): what is left of @z when all that is outside this part of the
  *   blocks is 0; of all parts the sum is @z
- *
- * Since: 0.1
  */
 void
 cloth_features_window (const ClothFeatures * features, const gdouble * z,
@@ -276,11 +265,7 @@ cloth_features_window (const ClothFeatures * features, const gdouble * z,
       }
 }
 
-/**
- * cloth_features_free:
- * @features: (nullable) (transfer full): the features
- *
- * Since: 0.1
+/* @features: (nullable) (transfer full): the features
  */
 void
 cloth_features_free (ClothFeatures * features)

@@ -10,9 +10,7 @@ G_BEGIN_DECLS
 /* Most waves along u and along v. */
 #define CLOTH_FEATURES_MAX_WAVES_EACH 16
 
-/**
- * ClothFeatures:
- * @n: number of vertices
+/* @n: number of vertices
  * @n_waves: waves over the flat cloth, orthonormal
  * @waves: their values, [n][n_waves]
  * @wave_numbers: cycles per metre, whichever way, [n_waves]
@@ -28,8 +26,6 @@ G_BEGIN_DECLS
  *
  * Discrete cosine transform over (u, v) and, block by block, over time; of cloths that
  * are no grid the same waves made orthonormal on its vertices.
- *
- * Since: 0.1
  */
 typedef struct {
   guint n;

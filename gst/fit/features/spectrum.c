@@ -12,12 +12,9 @@
  * of them. */
 #define MAX_BLOCK_FRAMES 600u
 
-/**
- * cloth_energy_spectrum_new:
- * @recording: what the residual is of; borrowed
+/* @recording: what the residual is of; borrowed
  *
  * Returns: (transfer full): no energy yet
- * Since: 0.1
  */
 ClothEnergySpectrum *
 cloth_energy_spectrum_new (const ClothRecording * recording)
@@ -36,15 +33,11 @@ cloth_energy_spectrum_new (const ClothRecording * recording)
   return e;
 }
 
-/**
- * cloth_energy_spectrum_add:
- * @energy: the energy
+/* @energy: the energy
  * @frame: a frame, each once
  * @positions: simulated in this frame, [n][3], m
  *
  * What was not seen counts as equal.
- *
- * Since: 0.1
  */
 void
 cloth_energy_spectrum_add (ClothEnergySpectrum * energy, guint frame,
@@ -72,13 +65,10 @@ count (const ClothEnergySpectrum * e)
       e->features->block_frames;
 }
 
-/**
- * cloth_energy_spectrum_total:
- * @energy: the energy
+/* @energy: the energy
  *
  * Returns: mean square of the distance over vertices and frames, m²; of it the waves hold
  *   what is not too fine for them
- * Since: 0.1
  */
 gdouble
 cloth_energy_spectrum_total (const ClothEnergySpectrum * energy)
@@ -86,12 +76,9 @@ cloth_energy_spectrum_total (const ClothEnergySpectrum * energy)
   return energy->square / count (energy);
 }
 
-/**
- * cloth_energy_spectrum_static:
- * @energy: the energy
+/* @energy: the energy
  *
  * Returns: mean square of each wave's mean over time, m²
- * Since: 0.1
  */
 gdouble
 cloth_energy_spectrum_static (const ClothEnergySpectrum * energy)
@@ -121,9 +108,7 @@ find_cell (const gdouble * edges, guint n, gdouble x)
   return cell;
 }
 
-/**
- * cloth_energy_spectrum_bin:
- * @energy: the energy
+/* @energy: the energy
  * @hz: (array length=n_hz): where each band of frequencies begins, growing
  * @n_hz: how many; the last one has no end
  * @waves: (array length=n_waves): where each band of waves begins, cycles per metre
@@ -131,8 +116,6 @@ find_cell (const gdouble * edges, guint n, gdouble x)
  * @cells: (out) (array): mean squares, [n_waves][n_hz], m²; NaN where the take is too
  *   short or the mesh too coarse to have any
  * @noise: (out) (optional) (array): what white noise would have there
- *
- * Since: 0.1
  */
 void
 cloth_energy_spectrum_bin (const ClothEnergySpectrum * energy,
@@ -169,11 +152,7 @@ cloth_energy_spectrum_bin (const ClothEnergySpectrum * energy,
   }
 }
 
-/**
- * cloth_energy_spectrum_free:
- * @energy: (nullable) (transfer full): the energy
- *
- * Since: 0.1
+/* @energy: (nullable) (transfer full): the energy
  */
 void
 cloth_energy_spectrum_free (ClothEnergySpectrum * energy)

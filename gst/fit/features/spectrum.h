@@ -7,9 +7,7 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothEnergySpectrum:
- * @recording: what the residual is of
+/* @recording: what the residual is of
  * @features: waves over the cloth and cosines over all of the time
  * @z: the residual in them, in multiples of the noise
  * @square: sum of the squared distances, m²
@@ -17,8 +15,6 @@ G_BEGIN_DECLS
  * @resolution_hz: how far its frequencies lie apart
  *
  * Fill it frame by frame, then ask.
- *
- * Since: 0.1
  */
 typedef struct {
   const ClothRecording *recording;

@@ -57,9 +57,7 @@ struct _ClothObserver
   ClothObserverScore score;
 };
 
-/**
- * cloth_observer_new:
- * @scene: what is filmed; its clamps' paths are followed by its times
+/* @scene: what is filmed; its clamps' paths are followed by its times
  * @model: what the simulator knows of the cloth
  * @options: how
  * @error: #ClothSimError
@@ -71,7 +69,6 @@ struct _ClothObserver
  * without springs, and y′ how fast; in the first frame, where the scene starts, at rest.
  *
  * Returns: (transfer full): an observer, or %NULL
- * Since: 0.1
  */
 ClothObserver *
 cloth_observer_new (const ClothScene * scene, const ClothModel * model,
@@ -118,13 +115,9 @@ cloth_observer_new (const ClothScene * scene, const ClothModel * model,
   return self;
 }
 
-/**
- * cloth_observer_restart:
- * @observer: an observer
+/* @observer: an observer
  *
  * Forgets all frames; the next one begins a new recording.
- *
- * Since: 0.1
  */
 void
 cloth_observer_restart (ClothObserver * observer)
@@ -134,16 +127,12 @@ cloth_observer_restart (ClothObserver * observer)
   observer->has_score = FALSE;
 }
 
-/**
- * cloth_observer_push:
- * @observer: an observer that has not more than %CLOTH_OBSERVER_LATENCY frames waiting
+/* @observer: an observer that has not more than %CLOTH_OBSERVER_LATENCY frames waiting
  * @time_s: of the frame, seconds of the scene, later than the last one's
  * @positions: 3 numbers a vertex, metres; NaN when not seen
  *
  * Gives it a frame. Vertices that would have to be torn off the cloth to be there count as
  * not seen.
- *
- * Since: 0.1
  */
 void
 cloth_observer_push (ClothObserver * observer, gdouble time_s,
@@ -158,16 +147,12 @@ cloth_observer_push (ClothObserver * observer, gdouble time_s,
   cloth_outliers_remove (observer->tears, 0., frame->positions);
 }
 
-/**
- * cloth_observer_push_rays:
- * @observer: an observer that has not more than %CLOTH_OBSERVER_LATENCY frames waiting,
+/* @observer: an observer that has not more than %CLOTH_OBSERVER_LATENCY frames waiting,
  *   all of rays
  * @time_s: of the frame, seconds of the scene, later than the last one's
  * @rays: what one camera saw
  *
  * Gives it a frame of which only the places across the rays are known.
- *
- * Since: 0.1
  */
 void
 cloth_observer_push_rays (ClothObserver * observer, gdouble time_s,
@@ -180,13 +165,10 @@ cloth_observer_push_rays (ClothObserver * observer, gdouble time_s,
   cloth_rays_copy (frame->rays, rays);
 }
 
-/**
- * cloth_observer_get_n_waiting:
- * @observer: an observer
+/* @observer: an observer
  *
  * Returns: number of frames that were pushed and not popped. With more than
  *   %CLOTH_OBSERVER_LATENCY the next one is ready; at the end of a recording all are
- * Since: 0.1
  */
 guint
 cloth_observer_get_n_waiting (const ClothObserver * observer)
@@ -374,9 +356,7 @@ add_to_window (ClothObserver * self, const Frame * frame)
   self->window_to = frame->time;
 }
 
-/**
- * cloth_observer_pop:
- * @observer: an observer that has a frame waiting
+/* @observer: an observer that has a frame waiting
  * @residuals: (out caller-allocates): recorded minus simulated, 3 numbers a vertex,
  *   metres; NaN when not seen. Of rays: what is across them
  * @error: #ClothSimError when the simulation blew up
@@ -385,7 +365,6 @@ add_to_window (ClothObserver * self, const Frame * frame)
  *
  * Returns: %TRUE when there is a residual; after an error only
  *   cloth_observer_restart () helps
- * Since: 0.1
  */
 gboolean
 cloth_observer_pop (ClothObserver * observer, gfloat * residuals,
@@ -433,14 +412,10 @@ cloth_observer_pop (ClothObserver * observer, gfloat * residuals,
   return TRUE;
 }
 
-/**
- * cloth_observer_get_lifted:
- * @observer: an observer that has popped a frame of rays, and got none since
+/* @observer: an observer that has popped a frame of rays, and got none since
  * @positions: (out caller-allocates): where that frame has its vertices: on their rays,
  *   as far away as the simulation is; 3 numbers a vertex, metres, NaN when not seen
  * @sigmas: (out caller-allocates): standard deviation of each across its ray, metres
- *
- * Since: 0.1
  */
 void
 cloth_observer_get_lifted (const ClothObserver * observer, gfloat * positions,
@@ -458,16 +433,13 @@ cloth_observer_get_lifted (const ClothObserver * observer, gfloat * positions,
   }
 }
 
-/**
- * cloth_observer_take_score:
- * @observer: an observer
+/* @observer: an observer
  * @last: at the end of a recording: also score a window that is half full, or more
  * @score: (out): the score
  *
  * To be asked after each frame that was popped, and at the end.
  *
  * Returns: %TRUE when a window was completed since it was asked last
- * Since: 0.1
  */
 gboolean
 cloth_observer_take_score (ClothObserver * observer, gboolean last,
@@ -486,11 +458,7 @@ cloth_observer_take_score (ClothObserver * observer, gboolean last,
   return TRUE;
 }
 
-/**
- * cloth_observer_free:
- * @observer: (transfer full) (nullable): an observer
- *
- * Since: 0.1
+/* @observer: (transfer full) (nullable): an observer
  */
 void
 cloth_observer_free (ClothObserver * observer)

@@ -15,15 +15,11 @@ G_BEGIN_DECLS
 
 typedef struct _ClothObserver ClothObserver;
 
-/**
- * ClothObserverOptions:
- * @gain: g of the springs, 1/s² (100)
+/* @gain: g of the springs, 1/s² (100)
  * @damping_ratio: ζ of the springs, 1 = critically damped (0.5)
  * @window_s: length of a scored window, seconds (0.3)
  * @seed: of what is random in effects
  * @threads: threads to use, 0 = one for each processor
- *
- * Since: 0.1
  */
 typedef struct {
   gdouble gain;
@@ -33,9 +29,7 @@ typedef struct {
   guint threads;
 } ClothObserverOptions;
 
-/**
- * ClothObserverScore:
- * @from_s: when the window begins, seconds
+/* @from_s: when the window begins, seconds
  * @to_s: time of its last frame
  * @rms: distance of recorded and simulated, RMS over what was seen, metres; NaN when
  *   nothing was. Of rays it is that across them
@@ -43,8 +37,6 @@ typedef struct {
  *
  * The gap of one window: the simulation starts where the springs have brought it and
  * then runs free.
- *
- * Since: 0.1
  */
 typedef struct {
   gdouble from_s;

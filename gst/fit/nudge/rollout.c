@@ -133,9 +133,7 @@ judge (Run * run, const ClothModel * const *models, guint n, gboolean * sound)
   }
 }
 
-/**
- * cloth_rollout_nudged:
- * @recording: what draws them
+/* @recording: what draws them
  * @models: (array length=n_models): the models
  * @gains: (array length=n_models): of each model's observer, 1/s²
  * @n_models: how many
@@ -144,8 +142,6 @@ judge (Run * run, const ClothModel * const *models, guint n, gboolean * sound)
  * @data: for @each
  * @sound: (out) (array length=n_models): which models did not diverge
  * @error: #ClothSimError, or #ClothFitError when it was stopped
- *
- * Since: 0.1
  */
 gboolean
 cloth_rollout_nudged (const ClothRecording * recording,
@@ -171,9 +167,7 @@ cloth_rollout_nudged (const ClothRecording * recording,
   return TRUE;
 }
 
-/**
- * cloth_rollout_windows:
- * @recording: what is compared with
+/* @recording: what is compared with
  * @models: (array length=n_models): the models
  * @n_models: how many
  * @gain: of the observer that leads up to each window, 1/s²
@@ -187,8 +181,6 @@ cloth_rollout_nudged (const ClothRecording * recording,
  *
  * The take in windows, each simulated freely from the state that nudging has reached at
  * its start.
- *
- * Since: 0.1
  */
 gboolean
 cloth_rollout_windows (const ClothRecording * recording,
@@ -227,16 +219,13 @@ cloth_rollout_windows (const ClothRecording * recording,
   return TRUE;
 }
 
-/**
- * cloth_rollout_list_windows:
- * @recording: a recording
+/* @recording: a recording
  * @window_s: length of the windows, s
  *
  * A window begins at the frame where the one before ends.
  *
  * Returns: (transfer full) (array): the window that leads to each frame; of the first
  *   frame that of the second
- * Since: 0.1
  */
 guint *
 cloth_rollout_list_windows (const ClothRecording * recording, gdouble window_s)

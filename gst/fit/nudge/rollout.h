@@ -8,38 +8,27 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothRolloutProgress:
- * @data: the caller's
+/* @data: the caller's
  * @share: of the frames that are done
  *
  * Returns: whether to go on
- * Since: 0.1
  */
 typedef gboolean (*ClothRolloutProgress) (gpointer data, gdouble share);
 
-/**
- * ClothRolloutFailed:
- * @data: the caller's
+/* @data: the caller's
  * @recording: whose scene was simulated
  * @model: a model whose simulation diverged
  * @sound_s: when it was sound for the last time, in the recording's time
- *
- * Since: 0.1
  */
 typedef void (*ClothRolloutFailed) (gpointer data,
     const ClothRecording * recording, const ClothModel * model,
     gdouble sound_s);
 
-/**
- * ClothRolloutOptions:
- * @seed: of effects with chance in them
+/* @seed: of effects with chance in them
  * @threads: 0 = one for each processor
  * @progress: (nullable): told of each frame
  * @failed: (nullable): told of each model that diverged, once, in their order
  * @data: for @progress and @failed
- *
- * Since: 0.1
  */
 typedef struct {
   guint64 seed;
@@ -49,16 +38,12 @@ typedef struct {
   gpointer data;
 } ClothRolloutOptions;
 
-/**
- * ClothRolloutFrame:
- * @data: the caller's
+/* @data: the caller's
  * @model: which model
  * @frame: which frame
  * @positions: where the model has the vertices, [n][3], m
  *
  * Called from several threads at a time, of different models.
- *
- * Since: 0.1
  */
 typedef void (*ClothRolloutFrame) (gpointer data, guint model, guint frame,
     const gdouble * positions);

@@ -125,9 +125,7 @@ extent_new (const ClothRecording * r, gdouble window_s)
   return e;
 }
 
-/**
- * cloth_windowed_gaps_new:
- * @recording: what is compared with
+/* @recording: what is compared with
  * @models: (array length=n_models): the models
  * @n_models: how many
  * @gain: of the observer that leads up to each window, 1/s²
@@ -136,7 +134,6 @@ extent_new (const ClothRecording * r, gdouble window_s)
  * @error: #ClothSimError
  *
  * Returns: (transfer full) (nullable) (array length=n_models): each model's distances
- * Since: 0.1
  */
 ClothWindowedGap **
 cloth_windowed_gaps_new (const ClothRecording * recording,
@@ -159,11 +156,7 @@ cloth_windowed_gaps_new (const ClothRecording * recording,
   return extents;
 }
 
-/**
- * cloth_windowed_gap_free:
- * @extent: (nullable) (transfer full): distances
- *
- * Since: 0.1
+/* @extent: (nullable) (transfer full): distances
  */
 void
 cloth_windowed_gap_free (ClothWindowedGap * extent)
@@ -178,12 +171,8 @@ cloth_windowed_gap_free (ClothWindowedGap * extent)
   g_free (extent);
 }
 
-/**
- * cloth_windowed_gaps_free:
- * @extents: (nullable) (transfer full) (array length=n): distances
+/* @extents: (nullable) (transfer full) (array length=n): distances
  * @n: how many
- *
- * Since: 0.1
  */
 void
 cloth_windowed_gaps_free (ClothWindowedGap ** extents, guint n)
@@ -193,16 +182,12 @@ cloth_windowed_gaps_free (ClothWindowedGap ** extents, guint n)
   g_free (extents);
 }
 
-/**
- * cloth_windowed_gap_subtract:
- * @extent: (inout): one model's distances from a recording
+/* @extent: (inout): one model's distances from a recording
  * @other: another's
  * @recording: the recording
  *
  * Makes them the distances of the two models, with the recording's noise: what the gap
  * would be if the other were reality.
- *
- * Since: 0.1
  */
 void
 cloth_windowed_gap_subtract (ClothWindowedGap * extent,
@@ -221,13 +206,10 @@ cloth_windowed_gap_subtract (ClothWindowedGap * extent,
   }
 }
 
-/**
- * cloth_windowed_gap_square:
- * @extent: distances
+/* @extent: distances
  * @windows: (nullable): which windows count
  *
  * Returns: their mean square, m²; NaN when nothing was seen
- * Since: 0.1
  */
 gdouble
 cloth_windowed_gap_square (const ClothWindowedGap * extent,
@@ -251,9 +233,7 @@ cloth_windowed_gap_square (const ClothWindowedGap * extent,
   return count ? sum / count : NAN;
 }
 
-/**
- * cloth_windowed_gaps_interval:
- * @extents: (array length=n): distances of the same recording
+/* @extents: (array length=n): distances of the same recording
  * @n: how many
  * @windows: (nullable): which windows count
  * @seed: of the draws
@@ -261,8 +241,6 @@ cloth_windowed_gap_square (const ClothWindowedGap * extent,
  * @draws: (out) (array): mean squares, [n_draws][n]
  *
  * Bootstrap over windows × tiles of the cloth, drawn alike for all.
- *
- * Since: 0.1
  */
 void
 cloth_windowed_gaps_interval (ClothWindowedGap ** extents, guint n,

@@ -8,9 +8,7 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothWindowedGap:
- * @n: number of vertices
+/* @n: number of vertices
  * @n_frames: number of frames
  * @n_windows: number of windows
  * @window: which window leads to each frame, [n_frames]
@@ -23,8 +21,6 @@ G_BEGIN_DECLS
  * @sound: whether the simulation held
  *
  * One model's distances from a recording.
- *
- * Since: 0.1
  */
 typedef struct {
   guint n;

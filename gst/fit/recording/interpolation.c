@@ -256,16 +256,12 @@ cut_loose (Bridge * b)
   return any;
 }
 
-/**
- * cloth_recording_interpolate:
- * @recording: a recording whose @y is known where @seen is 1
+/* @recording: a recording whose @y is known where @seen is 1
  *
  * Fills the rest of @y. A held vertex is where its clamp was. Between two frames that know
  * it a vertex moves evenly; before the first and after the last one it moves as its
  * neighbours in the mesh do, which keeps the cloth whole: a simulation that starts from a
  * crumpled patch would burst. One that would begin torn off begins between its neighbours.
- *
- * Since: 0.1
  */
 void
 cloth_recording_interpolate (ClothRecording * recording)

@@ -18,13 +18,10 @@ clear_sight (gpointer item)
   g_free (observation->covariances);
 }
 
-/**
- * cloth_observations_new:
- * @rig: (transfer full): the cameras as calibrated
+/* @rig: (transfer full): the cameras as calibrated
  * @n_vertices: number of the cloth's vertices
  *
  * Returns: (transfer full): no picture yet
- * Since: 0.1
  */
 ClothObservations *
 cloth_observations_new (ClothRig * rig, guint n_vertices)
@@ -60,9 +57,7 @@ is_point (const gdouble * px, const gdouble * covariance)
       && covariance[1] * covariance[1] <= covariance[0] * covariance[2];
 }
 
-/**
- * cloth_observations_add:
- * @observations: the pictures so far
+/* @observations: the pictures so far
  * @camera: index of a camera in the rig
  * @time_s: when, by the camera's clock; later than its last picture
  * @n: number of points
@@ -74,7 +69,6 @@ is_point (const gdouble * px, const gdouble * covariance)
  * Adds a picture; all is copied.
  *
  * Returns: %FALSE when it can't be one of this cloth and these cameras
- * Since: 0.1
  */
 gboolean
 cloth_observations_add (ClothObservations * observations, guint camera,
@@ -122,11 +116,7 @@ cloth_observations_add (ClothObservations * observations, guint camera,
   return TRUE;
 }
 
-/**
- * cloth_observations_free:
- * @observations: (nullable) (transfer full): pictures
- *
- * Since: 0.1
+/* @observations: (nullable) (transfer full): pictures
  */
 void
 cloth_observations_free (ClothObservations * observations)

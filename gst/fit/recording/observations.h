@@ -7,9 +7,7 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothObservation:
- * @camera: its index in the rig
+/* @camera: its index in the rig
  * @time_s: when, by the camera's clock
  * @n: number of points
  * @vertices: (array length=n): which vertex of the cloth each of them is, growing
@@ -17,8 +15,6 @@ G_BEGIN_DECLS
  * @covariances: (array length=n): xx, xy, yy of each, px²
  *
  * One picture.
- *
- * Since: 0.1
  */
 typedef struct {
   guint camera;
@@ -29,15 +25,11 @@ typedef struct {
   gdouble *covariances;
 } ClothObservation;
 
-/**
- * ClothObservations:
- * @rig: the cameras as calibrated
+/* @rig: the cameras as calibrated
  * @n_vertices: number of the cloth's vertices
  * @list: (element-type ClothObservation): the pictures, of each camera in the order of time
  *
  * All pictures of one take.
- *
- * Since: 0.1
  */
 typedef struct {
   ClothRig *rig;

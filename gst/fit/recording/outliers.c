@@ -30,12 +30,9 @@ struct _ClothTears
   gdouble *denials;             /* of a vertex, sum of excesses, m */
 };
 
-/**
- * cloth_outliers_new:
- * @topology: a mesh, with uv in metres
+/* @topology: a mesh, with uv in metres
  *
  * Returns: (transfer full): what finds tears in its frames
- * Since: 0.1
  */
 ClothOutliers *
 cloth_outliers_new (const ClothTopology * topology)
@@ -202,9 +199,7 @@ find_denied (ClothOutliers * tears)
   }
 }
 
-/**
- * cloth_outliers_remove:
- * @tears: of the mesh
+/* @tears: of the mesh
  * @slack_m: how far noise may put two vertices apart, m
  * @positions: (inout) (array): 3 numbers a vertex, m; NaN when not seen
  *
@@ -215,7 +210,6 @@ find_denied (ClothOutliers * tears)
  * apart.
  *
  * Returns: number of vertices removed
- * Since: 0.1
  */
 guint
 cloth_outliers_remove (ClothOutliers * tears, gdouble slack_m,
@@ -238,11 +232,7 @@ cloth_outliers_remove (ClothOutliers * tears, gdouble slack_m,
   return removed;
 }
 
-/**
- * cloth_outliers_free:
- * @tears: (nullable) (transfer full): what finds tears
- *
- * Since: 0.1
+/* @tears: (nullable) (transfer full): what finds tears
  */
 void
 cloth_outliers_free (ClothOutliers * tears)

@@ -75,15 +75,12 @@ typical_edge (const ClothTopology * t)
   return median (lengths);
 }
 
-/**
- * cloth_recording_find_scale:
- * @recording: a recording; what was not seen is left out
+/* @recording: a recording; what was not seen is left out
  * @corner: 0: edges from each face's first corner to the second, along one way of a grid; 1:
  *   from the second to the third, along the other
  *
  * Returns: how many times as long as on the flat cloth such edges are, the median; NaN: none
  *   was seen
- * Since: 0.1
  */
 gdouble
 cloth_recording_find_scale (const ClothRecording * recording, guint corner)
@@ -277,15 +274,12 @@ check_noise (const ClothRecording * r, gboolean told, gdouble edge,
   return FALSE;
 }
 
-/**
- * cloth_recording_check:
- * @recording: a recording as it was read: what was not seen is not bridged yet
+/* @recording: a recording as it was read: what was not seen is not bridged yet
  * @told: whether its noise is what take.json says; else it was estimated
  * @error: #ClothFitError
  *
  * Returns: %FALSE when it contradicts itself or its cloth: units, places that no cloth can
  *   be in, clamps that are not where they hold, noise that hides the cloth
- * Since: 0.1
  */
 gboolean
 cloth_recording_check (const ClothRecording * recording, gboolean told,
@@ -302,14 +296,11 @@ cloth_recording_check (const ClothRecording * recording, gboolean told,
       && check_noise (recording, told, edge, error);
 }
 
-/**
- * cloth_recording_check_other:
- * @recording: a recording
+/* @recording: a recording
  * @other: another of the same cloth
  * @error: #ClothFitError
  *
  * Returns: %FALSE when both hold the same positions: what judges must not be judged
- * Since: 0.1
  */
 gboolean
 cloth_recording_check_other (const ClothRecording * recording,

@@ -6,12 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-/**
- * cloth_rays_new:
- * @n: number of vertices
+/* @n: number of vertices
  *
  * Returns: (transfer full): rays of which none is seen
- * Since: 0.1
  */
 ClothRays *
 cloth_rays_new (guint n)
@@ -26,13 +23,9 @@ cloth_rays_new (guint n)
   return rays;
 }
 
-/**
- * cloth_rays_clear:
- * @rays: rays
+/* @rays: rays
  *
  * Forgets them: none is seen.
- *
- * Since: 0.1
  */
 void
 cloth_rays_clear (ClothRays * rays)
@@ -60,16 +53,12 @@ cast_one (ClothRays * rays, const ClothCamera * camera, guint vertex,
   rays->spreads[vertex] = sqrt ((c[0] + c[2] - along) / 2. / square);
 }
 
-/**
- * cloth_rays_cast:
- * @rays: where they go
+/* @rays: where they go
  * @camera: the camera, with its lens
  * @view: what it saw, element i of vertex i; its covariances must not be %NULL
  *
  * The rays of a picture. Vertices that were not seen, and those at pixels that the lens
  * can't have made, have none.
- *
- * Since: 0.1
  */
 void
 cloth_rays_cast (ClothRays * rays, const ClothCamera * camera,
@@ -96,12 +85,8 @@ cloth_rays_cast (ClothRays * rays, const ClothCamera * camera,
   }
 }
 
-/**
- * cloth_rays_copy:
- * @to: rays of as many vertices
+/* @to: rays of as many vertices
  * @from: rays
- *
- * Since: 0.1
  */
 void
 cloth_rays_copy (ClothRays * to, const ClothRays * from)
@@ -112,15 +97,12 @@ cloth_rays_copy (ClothRays * to, const ClothRays * from)
   memcpy (to->spreads, from->spreads, from->n * sizeof *to->spreads);
 }
 
-/**
- * cloth_rays_split:
- * @rays: rays
+/* @rays: rays
  * @vertex: which
  * @v: a vector of the world
  * @across: (out): its part across the ray; may be @v; NaN when there is no ray
  *
  * Returns: its part along the ray
- * Since: 0.1
  */
 gdouble
 cloth_rays_split (const ClothRays * rays, guint vertex, const gdouble v[3],
@@ -134,17 +116,13 @@ cloth_rays_split (const ClothRays * rays, guint vertex, const gdouble v[3],
   return along;
 }
 
-/**
- * cloth_rays_lift:
- * @rays: rays
+/* @rays: rays
  * @reference: where the vertices may be, 3 numbers a vertex, metres; NaN when not known
  * @positions: (out caller-allocates): the place on each ray that is nearest to its
  *   reference; NaN where one of them is missing, or the reference lies behind the camera
  *
  * Across the rays a position is what the camera saw, with a standard deviation of its
  * distance from the camera times the ray's spread; along them it is the reference's.
- *
- * Since: 0.1
  */
 void
 cloth_rays_lift (const ClothRays * rays, const gdouble * reference,
@@ -163,11 +141,7 @@ cloth_rays_lift (const ClothRays * rays, const gdouble * reference,
   }
 }
 
-/**
- * cloth_rays_free:
- * @rays: (nullable) (transfer full): rays
- *
- * Since: 0.1
+/* @rays: (nullable) (transfer full): rays
  */
 void
 cloth_rays_free (ClothRays * rays)

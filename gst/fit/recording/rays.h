@@ -7,17 +7,13 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothRays:
- * @n: number of vertices
+/* @n: number of vertices
  * @centre: where all rays begin, metres, world frame
  * @directions: (array): 3 numbers a vertex, length 1; NaN when not seen
  * @spreads: (array): standard deviation of each direction, the same all round, radians;
  *   NaN when not seen
  *
  * One picture. A ray says nothing of how far away its vertex is.
- *
- * Since: 0.1
  */
 typedef struct {
   guint n;

@@ -25,17 +25,13 @@ place (const ClothRecording * r, gdouble * of, guint frame, guint vertex)
   return of + 3 * ((gsize) frame * r->n + vertex);
 }
 
-/**
- * cloth_recording_find_weights:
- * @times: (array): of %CLOTH_RECORDING_WINDOW frames, s
+/* @times: (array): of %CLOTH_RECORDING_WINDOW frames, s
  * @mask: which of them count, the first in the lowest bit
  * @at: a time, s
  * @weights: (out) (array): of each frame, 1/s; 0 of those that don't count
  *
  * Weights whose sum with the frames' values is the derivative at @at of the polynomial
  * that fits them (Savitzky and Golay 1964, for any times). One frame alone has none: NaN.
- *
- * Since: 0.1
  */
 void
 cloth_recording_find_weights (const gdouble * times, guint mask, gdouble at,
@@ -78,13 +74,9 @@ cloth_recording_find_weights (const gdouble * times, guint mask, gdouble at,
       weights[i] += slope[k] * powers[i][k] / scale;
 }
 
-/**
- * cloth_recording_differentiate:
- * @recording: a recording with positions
+/* @recording: a recording with positions
  *
  * Fills its velocities.
- *
- * Since: 0.1
  */
 void
 cloth_recording_differentiate (ClothRecording * recording)
@@ -110,13 +102,10 @@ cloth_recording_differentiate (ClothRecording * recording)
   }
 }
 
-/**
- * cloth_recording_compare_numbers:
- * @a: a #gdouble
+/* @a: a #gdouble
  * @b: another
  *
  * Returns: which is larger, for g_array_sort ()
- * Since: 0.1
  */
 gint
 cloth_recording_compare_numbers (gconstpointer a, gconstpointer b)
@@ -126,15 +115,12 @@ cloth_recording_compare_numbers (gconstpointer a, gconstpointer b)
   return x < y ? -1 : x > y;
 }
 
-/**
- * cloth_recording_estimate_sigma:
- * @recording: a recording; what was not seen is left out
+/* @recording: a recording; what was not seen is left out
  *
  * Estimates white noise from the fourth differences in time of what was seen five times
  * running, by their median.
  *
  * Returns: standard deviation of a coordinate, m; NaN: nothing was seen so often
- * Since: 0.1
  */
 gdouble
 cloth_recording_estimate_sigma (const ClothRecording * recording)
@@ -223,12 +209,9 @@ remove_torn (ClothRecording * r)
   }
 }
 
-/**
- * cloth_recording_longest_side:
- * @recording: a recording
+/* @recording: a recording
  *
  * Returns: the longer side of its flat cloth, m
- * Since: 0.1
  */
 gdouble
 cloth_recording_longest_side (const ClothRecording * recording)
@@ -248,13 +231,10 @@ cloth_recording_longest_side (const ClothRecording * recording)
   return longest;
 }
 
-/**
- * cloth_recording_new:
- * @take: a take
+/* @take: a take
  * @error: #ClothFitError, or what reading it says
  *
  * Returns: (transfer full) (nullable): the recording
- * Since: 0.1
  */
 ClothRecording *
 cloth_recording_new (ClothTake * take, GError ** error)
@@ -295,11 +275,7 @@ cloth_recording_new (ClothTake * take, GError ** error)
   return g_steal_pointer (&r);
 }
 
-/**
- * cloth_recording_free:
- * @recording: (nullable) (transfer full): a recording
- *
- * Since: 0.1
+/* @recording: (nullable) (transfer full): a recording
  */
 void
 cloth_recording_free (ClothRecording * recording)

@@ -8,9 +8,7 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothRecording:
- * @name: of the take
+/* @name: of the take
  * @scene: what a simulation of it needs
  * @n: number of vertices
  * @n_frames: number of frames
@@ -19,8 +17,6 @@ G_BEGIN_DECLS
  * @y: positions, [n_frames][n][3], m; bridged where nothing was seen
  * @velocity: their derivative, m/s
  * @seen: 1 where a vertex was seen, else 0, [n_frames][n]
- *
- * Since: 0.1
  */
 typedef struct {
   gchar *name;

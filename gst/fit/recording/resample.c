@@ -74,9 +74,7 @@ hold (const ClothScene * from, ClothScene * to)
           3 * sizeof (gdouble));
 }
 
-/**
- * cloth_recording_resample:
- * @recording: a recording
+/* @recording: a recording
  * @most: lines that are enough along u and along v, at least 2
  *
  * The noise becomes less by the root of the vertices, so that the features' square over
@@ -84,7 +82,6 @@ hold (const ClothScene * from, ClothScene * to)
  *
  * Returns: (transfer full) (nullable): the same on a coarser grid; %NULL when it is no
  *   grid, or none that is finer, or has seams
- * Since: 0.1
  */
 ClothRecording *
 cloth_recording_resample (const ClothRecording * recording, guint most)

@@ -21,12 +21,9 @@ static const struct
   {"frame_drop", FALSE},
 };
 
-/**
- * cloth_camera_why_not:
- * @effect: a camera or image effect
+/* @effect: a camera or image effect
  *
  * Returns: (nullable): why points in pictures can't show it; %NULL when they can
- * Since: 0.1
  */
 const gchar *
 cloth_camera_why_not (const ClothEffect * effect)
@@ -69,16 +66,13 @@ is_wanted (const gchar * const *effects, const gchar * id)
   return !effects || g_strv_contains (effects, id);
 }
 
-/**
- * cloth_camera_candidates_new:
- * @rig: the cameras
+/* @rig: the cameras
  * @effects: (nullable) (array zero-terminated=1): ids of the effects to consider
  *
  * Every effect that moves points, of each camera and, where that makes sense, of all
  * alike. The directions are those of the first camera, of the second …, of all.
  *
  * Returns: (transfer full): the candidates
- * Since: 0.1
  */
 ClothCandidates *
 cloth_camera_candidates_new (const ClothRig * rig, const gchar * const *effects)
@@ -119,12 +113,9 @@ cloth_camera_candidates_new (const ClothRig * rig, const gchar * const *effects)
   return c;
 }
 
-/**
- * cloth_camera_of_candidate:
- * @candidate: one of cloth_camera_candidates_new ()
+/* @candidate: one of cloth_camera_candidates_new ()
  *
  * Returns: which camera it is of; the number of cameras: of all alike
- * Since: 0.1
  */
 guint
 cloth_camera_of_candidate (const ClothCandidate * candidate)

@@ -554,9 +554,7 @@ correct (ClothDiagnosis * d, const Search * s)
   }
 }
 
-/**
- * cloth_diagnosis_find_faults:
- * @d: a diagnosis whose recordings are loaded
+/* @d: a diagnosis whose recordings are loaded
  *
  * Looks for what is wrong with the cameras and takes it off the recordings.
  */

@@ -354,9 +354,7 @@ sum_errors (const Work * work, ClothCameraErrors * errors)
   errors->triangulation /= MAX (n, 1.);
 }
 
-/**
- * cloth_camera_view_linearise:
- * @view: a recording beside its pictures
+/* @view: a recording beside its pictures
  * @threads: threads to use, 0 = one for each processor; the result is the same for any
  * @errors: (out): what detection, labels and triangulation leave
  *
@@ -366,7 +364,6 @@ sum_errors (const Work * work, ClothCameraErrors * errors)
  *
  * Returns: (transfer full) (nullable): the equations, in blocks of half a second; %NULL
  *   when no point was seen by two cameras
- * Since: 0.1
  */
 ClothNormalEquations *
 cloth_camera_view_linearise (ClothCameraView * view, guint threads,
@@ -450,15 +447,11 @@ solve (ClothCameraView * v, guint threads)
   return shifts;
 }
 
-/**
- * cloth_camera_view_solve_unseen:
- * @view: a recording beside its pictures
+/* @view: a recording beside its pictures
  * @threads: threads to use, 0 = one for each processor; the result is the same for any
  *
  * Puts points that the recording has not to where two or more pictures have them, the
  * cameras being as they are taken to be.
- *
- * Since: 0.1
  */
 void
 cloth_camera_view_solve_unseen (ClothCameraView * view, guint threads)
@@ -513,9 +506,7 @@ move_points (const ClothRecording * from, const gdouble * shifts,
   }
 }
 
-/**
- * cloth_camera_view_correct:
- * @view: a recording beside its pictures, with what is wrong with the cameras applied
+/* @view: a recording beside its pictures, with what is wrong with the cameras applied
  * @threads: threads to use, 0 = one for each processor; the result is the same for any
  * @corrected: its recording, or a copy: the positions become what the cameras
  *   would have made of the cloth with nothing wrong with them
@@ -523,7 +514,6 @@ move_points (const ClothRecording * from, const gdouble * shifts,
  * Solves the points again with the cameras as they are taken to be.
  *
  * Returns: mean square of what they move by, m²; NaN when no point was seen by two cameras
- * Since: 0.1
  */
 gdouble
 cloth_camera_view_correct (ClothCameraView * view, guint threads,
@@ -546,14 +536,11 @@ cloth_camera_view_correct (ClothCameraView * view, guint threads,
   return n ? sum / n : NAN;
 }
 
-/**
- * cloth_camera_view_displacement:
- * @view: a recording beside its pictures, with what is wrong with the cameras applied
+/* @view: a recording beside its pictures, with what is wrong with the cameras applied
  * @threads: threads to use, 0 = one for each processor; the result is the same for any
  *
  * Returns: mean square of what that moves points by which all their pictures place
  *   together, m²; NaN when no point was seen by two cameras
- * Since: 0.1
  */
 gdouble
 cloth_camera_view_displacement (ClothCameraView * view, guint threads)

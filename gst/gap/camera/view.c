@@ -52,16 +52,13 @@ place_pictures (ClothCameraView * v)
   }
 }
 
-/**
- * cloth_camera_view_new:
- * @recording: where the points are said to be; kept by reference
+/* @recording: where the points are said to be; kept by reference
  * @observations: what was seen of it; kept by reference
  * @threads: threads to use, 0 = one for each processor; the result is the same for any
  *
  * Lays pictures beside frames, and finds those that show the one before once more.
  *
  * Returns: (transfer full): both side by side, the cameras being as the rig says
- * Since: 0.1
  */
 ClothCameraView *
 cloth_camera_view_new (const ClothRecording * recording,
@@ -85,13 +82,9 @@ cloth_camera_view_new (const ClothRecording * recording,
   return v;
 }
 
-/**
- * cloth_camera_view_reset:
- * @view: a recording beside its pictures
+/* @view: a recording beside its pictures
  *
  * Takes the cameras to be as the rig says.
- *
- * Since: 0.1
  */
 void
 cloth_camera_view_reset (ClothCameraView * view)
@@ -103,16 +96,12 @@ cloth_camera_view_reset (ClothCameraView * view)
   }
 }
 
-/**
- * cloth_camera_view_apply:
- * @view: a recording beside its pictures
+/* @view: a recording beside its pictures
  * @camera: a camera, or the number of cameras: all
  * @effect: an effect that moves points
  * @values: its parameters
  *
  * Takes cameras to be off by an effect more.
- *
- * Since: 0.1
  */
 void
 cloth_camera_view_apply (ClothCameraView * view, guint camera,
@@ -129,11 +118,7 @@ cloth_camera_view_apply (ClothCameraView * view, guint camera,
   }
 }
 
-/**
- * cloth_camera_view_free:
- * @view: (nullable) (transfer full): what cloth_camera_view_new () made
- *
- * Since: 0.1
+/* @view: (nullable) (transfer full): what cloth_camera_view_new () made
  */
 void
 cloth_camera_view_free (ClothCameraView * view)
@@ -148,14 +133,11 @@ cloth_camera_view_free (ClothCameraView * view)
   g_free (view);
 }
 
-/**
- * cloth_camera_view_stale_share:
- * @view: a recording beside its pictures
+/* @view: a recording beside its pictures
  * @camera: a camera
  * @sigma: (out): standard deviation of a share of so many pictures
  *
  * Returns: the share of its pictures that show the one before once more
- * Since: 0.1
  */
 gdouble
 cloth_camera_view_stale_share (const ClothCameraView * view, guint camera,

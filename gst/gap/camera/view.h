@@ -11,9 +11,7 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothCameraView:
- * @recording: where the points are said to be; its positions may be moved
+/* @recording: where the points are said to be; its positions may be moved
  * @observations: what was seen of it
  * @y: the positions: the recording's, or where the pictures have a point that is missing
  *   there; NaN where neither tells, [n_frames][n][3], m
@@ -23,8 +21,6 @@ G_BEGIN_DECLS
  * @lost: of each camera whether pictures are taken to be lost, so that @stale counts
  *
  * A recording beside its pictures.
- *
- * Since: 0.1
  */
 typedef struct {
   const ClothRecording *recording;
@@ -36,15 +32,11 @@ typedef struct {
   gboolean *lost;
 } ClothCameraView;
 
-/**
- * ClothCameraErrors:
- * @detection: of the places in the pictures, by their covariances and how well they agree
+/* @detection: of the places in the pictures, by their covariances and how well they agree
  * @labels: where a picture contradicts the others
  * @triangulation: how far points lie from where the pictures have them
  *
  * Mean squares of what the steps before it leave in the recording, m².
- *
- * Since: 0.1
  */
 typedef struct {
   gdouble detection;

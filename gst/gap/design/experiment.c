@@ -294,9 +294,7 @@ add_trial (Search * s, ClothStageMotion motion, gdouble fps, GArray * trials,
   return TRUE;
 }
 
-/**
- * cloth_experiment_try:
- * @experiment: what is to be parted where
+/* @experiment: what is to be parted where
  * @members: (array length=n_members): effects at their estimated values
  * @n_members: how many
  * @options: (inout): how recordings are studied
@@ -307,7 +305,6 @@ add_trial (Search * s, ClothStageMotion motion, gdouble fps, GArray * trials,
  *
  * Returns: (transfer full) (nullable) (element-type ClothTrial): what each would bring;
  *   empty when there are fewer than two members
- * Since: 0.1
  */
 GArray *
 cloth_experiment_try (const ClothExperiment * experiment,
@@ -341,13 +338,10 @@ cloth_experiment_try (const ClothExperiment * experiment,
   return g_steal_pointer (&trials);
 }
 
-/**
- * cloth_experiment_choose:
- * @trials: (element-type ClothTrial): the easiest first, then with more frames
+/* @trials: (element-type ClothTrial): the easiest first, then with more frames
  *
  * Returns: (nullable) (transfer none): the one that brings most; among those that bring
  *   %CLOTH_EXPERIMENT_MOST_EVIDENCE the first; %NULL when none brings enough
- * Since: 0.1
  */
 const ClothTrial *
 cloth_experiment_choose (const GArray * trials)

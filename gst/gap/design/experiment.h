@@ -21,9 +21,7 @@ G_BEGIN_DECLS
  * waves. */
 #define CLOTH_EXPERIMENT_MOST_LINES 17
 
-/**
- * ClothExperiment:
- * @recording: a take: its cloth, clamps, frame rate and noise are those of the captures
+/* @recording: a take: its cloth, clamps, frame rate and noise are those of the captures
  * @model: the model, with what is known to act and not in question
  * @candidates: its free numbers
  * @precisions: (array): of the free numbers
@@ -31,8 +29,6 @@ G_BEGIN_DECLS
  *   noise of @recording; %NULL: nothing
  *
  * What is to be parted where.
- *
- * Since: 0.1
  */
 typedef struct {
   const ClothRecording *recording;
@@ -42,16 +38,12 @@ typedef struct {
   const ClothPowerSpectrum *mismatch;
 } ClothExperiment;
 
-/**
- * ClothTrial:
- * @motion: what is filmed
+/* @motion: what is filmed
  * @fps: at how many frames a second
  * @evidence: logarithm of the Bayes factor to expect between those two of the effects
  *   that it parts worst; NaN: it could not be simulated
  *
  * What one capture would bring.
- *
- * Since: 0.1
  */
 typedef struct {
   ClothStageMotion motion;

@@ -121,14 +121,11 @@ find_extent (const ClothTopology * t, guint k)
   return high - low;
 }
 
-/**
- * cloth_stage_new:
- * @recording: a take; must outlive the stage
+/* @recording: a take; must outlive the stage
  *
  * Sets the cloth up as it was in the last frame with the most clamps.
  *
  * Returns: (transfer full): the stage
- * Since: 0.1
  */
 ClothStage *
 cloth_stage_new (const ClothRecording * recording)
@@ -159,11 +156,7 @@ cloth_stage_new (const ClothRecording * recording)
   return stage;
 }
 
-/**
- * cloth_stage_free:
- * @stage: (nullable) (transfer full): a stage
- *
- * Since: 0.1
+/* @stage: (nullable) (transfer full): a stage
  */
 void
 cloth_stage_free (ClothStage * stage)
@@ -191,9 +184,7 @@ find_left (const ClothStage * stage)
   return -1;
 }
 
-/**
- * cloth_stage_allows:
- * @stage: a stage
+/* @stage: a stage
  * @motion: a motion
  *
  * Something must be held; among obstacles nothing is turned, as that might put the cloth
@@ -201,7 +192,6 @@ find_left (const ClothStage * stage)
  * from; and of the clamps one must be left when another lets go.
  *
  * Returns: whether it can be filmed with this cloth as it is held
- * Since: 0.1
  */
 gboolean
 cloth_stage_allows (const ClothStage * stage, ClothStageMotion motion)
@@ -297,9 +287,7 @@ hang_by_edge (const ClothStage * stage, ClothScene * scene, gdouble * clamps,
   }
 }
 
-/**
- * cloth_stage_make_scene:
- * @stage: a stage that allows @motion
+/* @stage: a stage that allows @motion
  * @motion: how the cloth moves
  * @fps: frames a second
  * @seconds: how long
@@ -308,7 +296,6 @@ hang_by_edge (const ClothStage * stage, ClothScene * scene, gdouble * clamps,
  *   hangs from its side edge
  *
  * Returns: (transfer full): the scene; it begins at 0 s, at rest
- * Since: 0.1
  */
 ClothScene *
 cloth_stage_make_scene (const ClothStage * stage, ClothStageMotion motion,
@@ -355,13 +342,10 @@ cloth_stage_make_scene (const ClothStage * stage, ClothStageMotion motion,
   return scene;
 }
 
-/**
- * cloth_stage_describe:
- * @stage: a stage
+/* @stage: a stage
  * @motion: a motion
  *
  * Returns: (transfer full): what to do, without a full stop
- * Since: 0.1
  */
 gchar *
 cloth_stage_describe (const ClothStage * stage, ClothStageMotion motion)

@@ -7,9 +7,7 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothStageMotion:
- * @CLOTH_MOTION_HANG: it hangs still
+/* @CLOTH_MOTION_HANG: it hangs still
  * @CLOTH_MOTION_SWAY: the clamps sway slowly, out of the sheet's plane
  * @CLOTH_MOTION_SWING: they swing from side to side, in the sheet's plane
  * @CLOTH_MOTION_LIFT: they go up and down
@@ -22,8 +20,6 @@ G_BEGIN_DECLS
  * @CLOTH_N_MOTIONS: how many there are
  *
  * From the easiest to film to the hardest.
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_MOTION_HANG,
@@ -44,9 +40,7 @@ typedef enum {
 /* Speed of the fan's wind, m/s, horizontal and square to the sheet. */
 #define CLOTH_MOTION_FAN_M_S 2.
 
-/**
- * ClothStage:
- * @recording: the take whose cloth and clamps it has
+/* @recording: the take whose cloth and clamps it has
  * @frame: of the take: from here on it is set up
  * @held: (element-type guint): vertices that are held there
  * @clamps: where, [held][3], m
@@ -57,8 +51,6 @@ typedef enum {
  * @size_m: longest side of the flat cloth
  *
  * What all motions of one cloth share.
- *
- * Since: 0.1
  */
 typedef struct {
   const ClothRecording *recording;

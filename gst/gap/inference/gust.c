@@ -112,9 +112,7 @@ solve (const System * system, gdouble phi, gdouble intensity, gdouble share,
   return gained;
 }
 
-/**
- * cloth_gap_test_gusts:
- * @test: what is tested; its blocks of time must follow each other, and @test->gusts be set
+/* @test: what is tested; its blocks of time must follow each other, and @test->gusts be set
  * @intensity: prior of the gusts' standard deviation, m/s
  * @share: of a gust that is left after one part of a block
  * @gusts: (out): what was found
@@ -123,7 +121,6 @@ solve (const System * system, gdouble phi, gdouble intensity, gdouble share,
  * Uhlenbeck of unknown intensity, to none at all.
  *
  * Returns: whether it could be told
- * Since: 0.1
  */
 gboolean
 cloth_gap_test_gusts (const ClothGapTest * test, gdouble intensity,

@@ -12,15 +12,11 @@ G_BEGIN_DECLS
 #define CLOTH_GAP_GUST_PARTS 3
 #define CLOTH_GAP_GUST_COLUMNS (CLOTH_GAP_GUST_WAYS * CLOTH_GAP_GUST_PARTS)
 
-/**
- * ClothGapGusts:
- * @evidence: logarithm of the Bayes factor against no wind at all
+/* @evidence: logarithm of the Bayes factor against no wind at all
  * @intensity: root mean square of the winds' speed along the ground, m/s
  * @azimuth: which way most of it blows, ° from x to y, −90 to 90
  *
  * What is known of gusts.
- *
- * Since: 0.1
  */
 typedef struct {
   gdouble evidence;

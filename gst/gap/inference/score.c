@@ -103,14 +103,11 @@ count_features (const ClothGapTest * test, const ClothNormalEquations * normal)
   return count;
 }
 
-/**
- * cloth_gap_test_dispersion:
- * @test: what is tested
+/* @test: what is tested
  * @normal: normal equations of one gain
  * @reduced: what is left of them
  *
  * Returns: how much more than the noise a square of the residual counts
- * Since: 0.1
  */
 gdouble
 cloth_gap_test_dispersion (const ClothGapTest * test,
@@ -120,9 +117,7 @@ cloth_gap_test_dispersion (const ClothGapTest * test,
           normal), LEAST_DISPERSION);
 }
 
-/**
- * cloth_gap_test_reduce:
- * @test: what is tested
+/* @test: what is tested
  * @normal: normal equations whose nuisances are those of the test
  * @blocks: (array): which blocks count
  * @directions: (array length=n): columns that are looked at, at most 4
@@ -130,7 +125,6 @@ cloth_gap_test_dispersion (const ClothGapTest * test,
  * @reduced: (out): what is left of them once the nuisances are projected out
  *
  * Returns: whether the nuisances could be solved for
- * Since: 0.1
  */
 gboolean
 cloth_gap_test_reduce (const ClothGapTest * test,
@@ -223,9 +217,7 @@ cross_validate (const Trial * trial, const ClothNormalEquations * without,
   return gained;
 }
 
-/**
- * cloth_gap_test_improvement:
- * @test: what is tested
+/* @test: what is tested
  * @candidate: a candidate
  * @without: normal equations without it
  * @with: normal equations where it was simulated
@@ -234,7 +226,6 @@ cross_validate (const Trial * trial, const ClothNormalEquations * without,
  * @phi: how much more than the noise a square counts
  *
  * Returns: as #ClothGapScore.improvement, by the derivatives there
- * Since: 0.1
  */
 gdouble
 cloth_gap_test_improvement (const ClothGapTest * test, guint candidate,
@@ -367,13 +358,10 @@ run_candidate (const ClothGapTest * test, guint i, ClothGapScore * score)
   return trial_init (&trial, test, i) && run_trial (&trial, score);
 }
 
-/**
- * cloth_gap_score_compare:
- * @a: a #ClothGapScore
+/* @a: a #ClothGapScore
  * @b: another
  *
  * Returns: which is likelier, for g_array_sort (): the likeliest first
- * Since: 0.1
  */
 gint
 cloth_gap_score_compare (gconstpointer a, gconstpointer b)
@@ -385,14 +373,11 @@ cloth_gap_score_compare (gconstpointer a, gconstpointer b)
   return x->candidate < y->candidate ? -1 : x->candidate > y->candidate;
 }
 
-/**
- * cloth_gap_test_run:
- * @test: what is tested
+/* @test: what is tested
  *
  * Returns: (transfer full) (element-type ClothGapScore): the best candidate of each
  *   effect, the likeliest first; an effect of several candidates pays for the choice, one
  *   that the nuisances can stand in for has no evidence: −∞
- * Since: 0.1
  */
 GArray *
 cloth_gap_test_run (const ClothGapTest * test)
@@ -425,15 +410,12 @@ cloth_gap_test_run (const ClothGapTest * test)
   return best;
 }
 
-/**
- * cloth_gap_test_cosine:
- * @test: what is tested
+/* @test: what is tested
  * @one: a candidate
  * @other: another
  *
  * Returns: largest cosine between what is left of their first directions' derivatives
  *   once the nuisances are projected out, of the first gain
- * Since: 0.1
  */
 gdouble
 cloth_gap_test_cosine (const ClothGapTest * test, guint one, guint other)

@@ -7,9 +7,7 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothGapScore:
- * @candidate: index of the candidate
+/* @candidate: index of the candidate
  * @evidence: mean over the gains of the logarithm of the Bayes factor for it
  * @improvement: share of the residual's square that it removes from blocks of time that
  *   it was not estimated on
@@ -18,8 +16,6 @@ G_BEGIN_DECLS
  * @p_value: of no effect
  * @constancy_p_value: of the same effect in every block
  * @kept: share of its derivative that no number of the model can make up for
- *
- * Since: 0.1
  */
 typedef struct {
   guint candidate;
@@ -32,9 +28,7 @@ typedef struct {
   gdouble kept;
 } ClothGapScore;
 
-/**
- * ClothGapTest:
- * @normals: of each gain, over the blocks of all takes
+/* @normals: of each gain, over the blocks of all takes
  * @candidates: what the columns mean: column i is direction i
  * @blocks: (array): which blocks count
  * @nuisances: (array length=n_nuisances): columns that are fitted along
@@ -47,8 +41,6 @@ typedef struct {
  * @gusts: first column of the wind in the parts of a block, x and y of each; 0: there are
  *   none
  * @sound: (array): columns that could be simulated
- *
- * Since: 0.1
  */
 typedef struct {
   ClothNormalEquations *normals[CLOTH_ESTIMATE_N_GAINS];

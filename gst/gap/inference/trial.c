@@ -302,9 +302,7 @@ go (Court * court, GArray * rivals, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_diagnosis_try_rivals:
- * @d: a diagnosis whose takes are linearised at @base
+/* @d: a diagnosis whose takes are linearised at @base
  * @test: the test that @scores are of
  * @scores: (element-type ClothGapScore): the effects, the likeliest first
  * @base: the model without them

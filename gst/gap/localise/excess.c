@@ -333,8 +333,7 @@ level_new (const Split * split)
   return level;
 }
 
-/* cloth_excess_new:
- * @take: a residual
+/* @take: a residual
  * @nulls: those of simulations that lack nothing; the larger counts
  * @n_nulls: how many
  * @alike: whether the first moves as the take does: it is taken off, frame by frame
@@ -387,8 +386,7 @@ cloth_excess_new (const ClothNudgedResidual * take,
   return level;
 }
 
-/* cloth_excess_new_null:
- * @null: the residual of a simulation that lacks nothing
+/* @null: the residual of a simulation that lacks nothing
  * @options: how
  *
  * Returns: (transfer full): its level over its own mean of each vertex */
@@ -414,8 +412,7 @@ cloth_excess_new_null (const ClothNudgedResidual * null,
   return level;
 }
 
-/* cloth_excess_free:
- * @level: (nullable) (transfer full): a level */
+/* @level: (nullable) (transfer full): a level */
 void
 cloth_excess_free (ClothExcess * level)
 {

@@ -36,11 +36,7 @@
 /* Place and onset sharpen each other so often. */
 #define N_PASSES 2
 
-/**
- * cloth_localisation_options_init:
- * @options: (out caller-allocates): how places are found unless told otherwise
- *
- * Since: 0.1
+/* @options: (out caller-allocates): how places are found unless told otherwise
  */
 void
 cloth_localisation_options_init (ClothLocalisationOptions * options)
@@ -396,9 +392,7 @@ locate (ClothLocalisation * region, const ClothExcess * place,
       g_array_append_val (region->vertices, v);
 }
 
-/**
- * cloth_localisation_new:
- * @take: the residual of the simulation that was nudged to a take
+/* @take: the residual of the simulation that was nudged to a take
  * @nulls: (array length=n_nulls): the residuals of some that lack nothing, of the same
  *   cloth; in each vertex the larger counts, and chance is that of the first
  * @n_nulls: how many, at least one
@@ -407,7 +401,6 @@ locate (ClothLocalisation * region, const ClothExcess * place,
  *
  * Returns: (transfer full): where the residual is more than chance makes the null, and
  *   from when on
- * Since: 0.1
  */
 ClothLocalisation *
 cloth_localisation_new (const ClothNudgedResidual * take,
@@ -454,11 +447,7 @@ cloth_localisation_new (const ClothNudgedResidual * take,
   return region;
 }
 
-/**
- * cloth_localisation_free:
- * @region: (nullable) (transfer full): a place
- *
- * Since: 0.1
+/* @region: (nullable) (transfer full): a place
  */
 void
 cloth_localisation_free (ClothLocalisation * region)

@@ -7,22 +7,16 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothNudgedResidual:
- * @recording: what was recorded
+/* @recording: what was recorded
  * @off: simulated less recorded while the simulation was nudged to it all along,
  *   [n_frames][n][3], m; what is not seen and the first frame don't count
- *
- * Since: 0.1
  */
 typedef struct {
   const ClothRecording *recording;
   const gfloat *off;
 } ClothNudgedResidual;
 
-/**
- * ClothLocalisationOptions:
- * @smooth_s: residuals are averaged over so long
+/* @smooth_s: residuals are averaged over so long
  * @sharpen: a force drags neighbours along: so much of the difference to each is added
  * @gate: residuals of more than so many deviations count by their size, not their square
  *   (Huber 1964)
@@ -37,8 +31,6 @@ typedef struct {
  * @onset_evidence: so much of the logarithms of it must add up
  * @beginning_s: what begins earlier is there from the beginning
  * @seed: of the bootstrap
- *
- * Since: 0.1
  */
 typedef struct {
   gdouble smooth_s;
@@ -56,14 +48,10 @@ typedef struct {
   guint64 seed;
 } ClothLocalisationOptions;
 
-/**
- * ClothLocalisation:
- * @vertices: (element-type guint): where the residual is, growing; empty: nowhere
+/* @vertices: (element-type guint): where the residual is, growing; empty: nowhere
  * @onset: frame where it begins; 0: it is there from the beginning, or nowhere
  * @score: of the best place
  * @threshold: what chance alone reaches
- *
- * Since: 0.1
  */
 typedef struct {
   GArray *vertices;

@@ -301,8 +301,7 @@ put_spectrum (ClothJsonWriter * writer, const ClothGapSpectrum * spectrum)
   cloth_json_writer_end_object (writer);
 }
 
-/* cloth_gap_report_arrays:
- * @result: a result
+/* @result: a result
  *
  * What the page shows besides gap.json, as JSON: the playback, thinned until it takes
  * at most some 7 MB, the series, the spectrum and a sentence about each effect.

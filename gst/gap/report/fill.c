@@ -49,16 +49,12 @@ fill_series (const ClothWindowedGap * before, const ClothWindowedGap * after,
   }
 }
 
-/**
- * cloth_windowed_gap_fill:
- * @before: distances without the accepted effects
+/* @before: distances without the accepted effects
  * @after: (nullable): with them
  * @recording: what they are of
  * @take: its take
  * @result: (inout): gets the shares of vertices, frames and directions, what @after
  *   gains, the series and the playback
- *
- * Since: 0.1
  */
 void
 cloth_windowed_gap_fill (const ClothWindowedGap * before,

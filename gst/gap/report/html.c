@@ -38,9 +38,7 @@ load (const gchar * path, gchar ** text, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_gap_report_write:
- * @result: a result
+/* @result: a result
  * @path: where report.html shall be
  * @error: #GIOErrorEnum
  *
@@ -48,7 +46,6 @@ load (const gchar * path, gchar ** text, GError ** error)
  * whole or not at all. Long or fine playbacks are thinned: the file has at most 9 MB.
  *
  * Returns: %TRUE when it is there
- * Since: 0.1
  */
 gboolean
 cloth_gap_report_write (const ClothGapResult * result, const gchar * path,

@@ -177,12 +177,9 @@ say_explained (GString * text, const ClothGapResult * result)
   }
 }
 
-/**
- * cloth_gap_result_summary:
- * @result: a result
+/* @result: a result
  *
  * Returns: (transfer full): the verdict in words, one line
- * Since: 0.1
  */
 gchar *
 cloth_gap_result_summary (const ClothGapResult * result)
@@ -442,14 +439,11 @@ put_provenance (ClothJsonWriter * writer, const ClothGapResult * result)
   cloth_json_writer_end_array (writer);
 }
 
-/**
- * cloth_gap_result_to_json:
- * @result: a result
+/* @result: a result
  *
  * docs/gap.schema.json describes it. `<`, `>` and `&` are written as escapes.
  *
  * Returns: (transfer full): the text of gap.json
- * Since: 0.1
  */
 gchar *
 cloth_gap_result_to_json (const ClothGapResult * result)
@@ -486,16 +480,13 @@ cloth_gap_result_to_json (const ClothGapResult * result)
   return cloth_json_writer_finish (writer);
 }
 
-/**
- * cloth_gap_result_write_json:
- * @result: a result
+/* @result: a result
  * @path: where gap.json shall be
  * @error: #GIOErrorEnum
  *
  * The file appears whole or not at all.
  *
  * Returns: %TRUE when it is there
- * Since: 0.1
  */
 gboolean
 cloth_gap_result_write_json (const ClothGapResult * result,

@@ -61,11 +61,7 @@ new_list (gsize size, GDestroyNotify clear)
   return list;
 }
 
-/**
- * cloth_gap_result_new:
- *
- * Returns: (transfer full): a result that knows nothing: undecidable, without effects
- * Since: 0.1
+/* Returns: (transfer full): a result that knows nothing: undecidable, without effects
  */
 ClothGapResult *
 cloth_gap_result_new (void)
@@ -91,12 +87,8 @@ cloth_gap_result_new (void)
   return result;
 }
 
-/**
- * cloth_gap_result_add_note:
- * @result: a result
+/* @result: a result
  * @note: a sentence
- *
- * Since: 0.1
  */
 void
 cloth_gap_result_add_note (ClothGapResult * result, const gchar * note)
@@ -104,16 +96,13 @@ cloth_gap_result_add_note (ClothGapResult * result, const gchar * note)
   g_ptr_array_add (result->notes, g_strdup (note));
 }
 
-/**
- * cloth_gap_result_add_effect:
- * @result: a result
+/* @result: a result
  * @effect: an effect that was tested
  *
  * Effects are added in the order of their rank.
  *
  * Returns: (transfer none): what was found of it, all unknown yet; valid until the next
  *   effect is added
- * Since: 0.1
  */
 ClothGapEffect *
 cloth_gap_result_add_effect (ClothGapResult * result,
@@ -130,15 +119,11 @@ cloth_gap_result_add_effect (ClothGapResult * result,
       result->effects->len - 1);
 }
 
-/**
- * cloth_gap_result_add_group:
- * @result: a result
+/* @result: a result
  * @experiment: (nullable): what would tell its effects apart, a sentence
  * @evidence: what that is expected to bring, log Bayes factor; NaN: not known
  *
  * Its index is one less than the number of groups.
- *
- * Since: 0.1
  */
 void
 cloth_gap_result_add_group (ClothGapResult * result, const gchar * experiment,
@@ -149,13 +134,9 @@ cloth_gap_result_add_group (ClothGapResult * result, const gchar * experiment,
   g_array_append_val (result->groups, item);
 }
 
-/**
- * cloth_gap_result_add_untested:
- * @result: a result
+/* @result: a result
  * @effect: an effect that could not be tested
  * @reason: why, and what would help, a sentence
- *
- * Since: 0.1
  */
 void
 cloth_gap_result_add_untested (ClothGapResult * result,
@@ -166,14 +147,10 @@ cloth_gap_result_add_untested (ClothGapResult * result,
   g_array_append_val (result->untested, item);
 }
 
-/**
- * cloth_gap_result_add_stage:
- * @result: a result
+/* @result: a result
  * @name: of the stage
  * @share: of the gap's variance; NaN: it could not be measured
  * @reason: (nullable): why it could not, a sentence
- *
- * Since: 0.1
  */
 void
 cloth_gap_result_add_stage (ClothGapResult * result, const gchar * name,
@@ -184,13 +161,9 @@ cloth_gap_result_add_stage (ClothGapResult * result, const gchar * name,
   g_array_append_val (result->stages, item);
 }
 
-/**
- * cloth_gap_result_add_version:
- * @result: a result
+/* @result: a result
  * @name: of what
  * @version: its version
- *
- * Since: 0.1
  */
 void
 cloth_gap_result_add_version (ClothGapResult * result, const gchar * name,
@@ -201,14 +174,10 @@ cloth_gap_result_add_version (ClothGapResult * result, const gchar * name,
   g_array_append_val (result->versions, item);
 }
 
-/**
- * cloth_gap_result_add_input:
- * @result: a result
+/* @result: a result
  * @role: what it was used for
  * @name: its name
  * @sha256: (nullable): hash of its contents, in hexadecimal digits
- *
- * Since: 0.1
  */
 void
 cloth_gap_result_add_input (ClothGapResult * result, ClothGapRole role,
@@ -219,14 +188,10 @@ cloth_gap_result_add_input (ClothGapResult * result, ClothGapRole role,
   g_array_append_val (result->inputs, item);
 }
 
-/**
- * cloth_gap_result_add_threshold:
- * @result: a result
+/* @result: a result
  * @name: of the threshold
  * @value: its value
  * @unit: in the notation of the SI, "1" for a ratio
- *
- * Since: 0.1
  */
 void
 cloth_gap_result_add_threshold (ClothGapResult * result, const gchar * name,
@@ -237,13 +202,9 @@ cloth_gap_result_add_threshold (ClothGapResult * result, const gchar * name,
   g_array_append_val (result->thresholds, item);
 }
 
-/**
- * cloth_gap_result_add_failure:
- * @result: a result
+/* @result: a result
  * @run: which simulation failed
  * @what: what happened to it
- *
- * Since: 0.1
  */
 void
 cloth_gap_result_add_failure (ClothGapResult * result, const gchar * run,
@@ -254,12 +215,9 @@ cloth_gap_result_add_failure (ClothGapResult * result, const gchar * run,
   g_array_append_val (result->failures, item);
 }
 
-/**
- * cloth_gap_verdict_name:
- * @verdict: a verdict
+/* @verdict: a verdict
  *
  * Returns: (transfer none): its name in gap.json
- * Since: 0.1
  */
 const gchar *
 cloth_gap_verdict_name (ClothGapVerdict verdict)
@@ -268,11 +226,7 @@ cloth_gap_verdict_name (ClothGapVerdict verdict)
   return verdict_names[verdict];
 }
 
-/**
- * cloth_gap_result_free:
- * @result: (transfer full) (nullable): a result
- *
- * Since: 0.1
+/* @result: (transfer full) (nullable): a result
  */
 void
 cloth_gap_result_free (ClothGapResult * result)

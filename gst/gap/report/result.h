@@ -9,15 +9,11 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothGapVerdict:
- * @CLOTH_GAP_UNDECIDABLE: the data can't tell; `reason` says why
+/* @CLOTH_GAP_UNDECIDABLE: the data can't tell; `reason` says why
  * @CLOTH_GAP_NO_GAP: the simulation agrees with the recording
  * @CLOTH_GAP_EXPLAINED: the accepted effects explain the gap
  * @CLOTH_GAP_AMBIGUOUS: so they do, but others would do as well
  * @CLOTH_GAP_UNEXPLAINED: something remains that no effect of the library explains
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_GAP_UNDECIDABLE,
@@ -27,15 +23,11 @@ typedef enum {
   CLOTH_GAP_UNEXPLAINED
 } ClothGapVerdict;
 
-/**
- * ClothGapEstimate:
- * @value: the best estimate
+/* @value: the best estimate
  * @low: lower end of its 95% interval
  * @high: upper end
  *
  * A number and how sure it is. NaN: not known (null in gap.json).
- *
- * Since: 0.1
  */
 typedef struct {
   gdouble value;
@@ -43,9 +35,7 @@ typedef struct {
   gdouble high;
 } ClothGapEstimate;
 
-/**
- * ClothGapEffect:
- * @effect: which one: its names, units and side are taken from here
+/* @effect: which one: its names, units and side are taken from here
  * @camera: (nullable): name of the camera it is of, interned; %NULL: of no camera, or
  *   of all alike
  * @probability: that it acts, calibrated, 0 to 1
@@ -60,8 +50,6 @@ typedef struct {
  *   that it can't be told from it
  *
  * What was found of one effect.
- *
- * Since: 0.1
  */
 typedef struct {
   const ClothEffect *effect;
@@ -77,40 +65,28 @@ typedef struct {
   gboolean refitted;
 } ClothGapEffect;
 
-/**
- * ClothGapGroup:
- * @experiment: (nullable): the capture that would tell them apart, a sentence; %NULL:
+/* @experiment: (nullable): the capture that would tell them apart, a sentence; %NULL:
  *   none of those tried would
  * @evidence: what it is expected to bring, log Bayes factor; NaN: not known
  *
  * Effects that these data can't tell apart: those whose `group` is its index.
- *
- * Since: 0.1
  */
 typedef struct {
   gchar *experiment;
   gdouble evidence;
 } ClothGapGroup;
 
-/**
- * ClothGapUntested:
- * @effect: an effect that could not be tested
+/* @effect: an effect that could not be tested
  * @reason: why, and what would help, a sentence
- *
- * Since: 0.1
  */
 typedef struct {
   const ClothEffect *effect;
   gchar *reason;
 } ClothGapUntested;
 
-/**
- * ClothGapStage:
- * @name: of the stage: what happens between the cloth and the comparison
+/* @name: of the stage: what happens between the cloth and the comparison
  * @share: of the gap's variance that arises there, 0 to 1; NaN: could not be measured
  * @reason: (nullable): why it could not, a sentence
- *
- * Since: 0.1
  */
 typedef struct {
   gchar *name;
@@ -118,9 +94,7 @@ typedef struct {
   gchar *reason;
 } ClothGapStage;
 
-/**
- * ClothGapBand:
- * @from: where it begins: Hz, or cycles per metre over the flat cloth
+/* @from: where it begins: Hz, or cycles per metre over the flat cloth
  * @to: where it ends; infinite: nowhere
  * @share: of the residual's mean square, 0 to 1
  * @after: what the accepted effects leave of it, in the same unit: 1 is all of the
@@ -128,8 +102,6 @@ typedef struct {
  * @over_floor: @share over that of a simulation that lacks nothing; NaN: not known
  *
  * Of the residual of a simulation that is drawn to the recording.
- *
- * Since: 0.1
  */
 typedef struct {
   gdouble from;
@@ -139,14 +111,10 @@ typedef struct {
   gdouble over_floor;
 } ClothGapBand;
 
-/**
- * ClothGapRole:
- * @CLOTH_GAP_TAKE: it is diagnosed
+/* @CLOTH_GAP_TAKE: it is diagnosed
  * @CLOTH_GAP_BASELINE: the model is accepted on it
  * @CLOTH_GAP_HOLD_OUT: it judges, and nothing was fitted on it
  * @CLOTH_GAP_MODEL: the model's file
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_GAP_TAKE,
@@ -155,14 +123,10 @@ typedef enum {
   CLOTH_GAP_MODEL
 } ClothGapRole;
 
-/**
- * ClothGapInput:
- * @role: what it was used for
+/* @role: what it was used for
  * @name: its name
  * @sha256: (nullable): of a take what cloth_take_sha256 () says, of the model that of
  *   its file
- *
- * Since: 0.1
  */
 typedef struct {
   ClothGapRole role;
@@ -170,13 +134,9 @@ typedef struct {
   gchar *sha256;
 } ClothGapInput;
 
-/**
- * ClothGapThreshold:
- * @name: which one
+/* @name: which one
  * @value: its value
  * @unit: in the notation of the SI, "1" for a ratio
- *
- * Since: 0.1
  */
 typedef struct {
   gchar *name;
@@ -184,21 +144,15 @@ typedef struct {
   gchar *unit;
 } ClothGapThreshold;
 
-/**
- * ClothGapNote:
- * @name: of what
+/* @name: of what
  * @text: what there is to say of it
- *
- * Since: 0.1
  */
 typedef struct {
   gchar *name;
   gchar *text;
 } ClothGapNote;
 
-/**
- * ClothGapSeries:
- * @n: number of windows
+/* @n: number of windows
  * @times: centre of each, seconds, growing
  * @before: gap in it, RMS in metres; NaN: nothing was seen
  * @after: (nullable): with the accepted effects
@@ -206,8 +160,6 @@ typedef struct {
  * @null_high: (nullable): upper end
  *
  * The gap over time.
- *
- * Since: 0.1
  */
 typedef struct {
   guint n;
@@ -218,9 +170,7 @@ typedef struct {
   gdouble *null_high;
 } ClothGapSeries;
 
-/**
- * ClothGapSpectrum:
- * @n_frequencies: number of frequencies
+/* @n_frequencies: number of frequencies
  * @n_waves: number of wave numbers
  * @frequencies: Hz, growing; 0: what stands still
  * @waves: wave numbers over the flat cloth, whichever way: cycles per metre, growing
@@ -231,8 +181,6 @@ typedef struct {
  *
  * Where in space and time the energy lies of the residual of a simulation that is drawn
  * to the recording.
- *
- * Since: 0.1
  */
 typedef struct {
   guint n_frequencies;
@@ -244,9 +192,7 @@ typedef struct {
   gdouble *null;
 } ClothGapSpectrum;
 
-/**
- * ClothGapPlayback:
- * @take: (nullable): name of the take that is shown
+/* @take: (nullable): name of the take that is shown
  * @topology: (nullable): its mesh; %NULL: there is nothing to show
  * @n_frames: number of frames
  * @times: their times, seconds, growing
@@ -257,8 +203,6 @@ typedef struct {
  *   gap, RMS, [n_frames][n_vertices], metres
  *
  * The cloth as it moved.
- *
- * Since: 0.1
  */
 typedef struct {
   gchar *take;
@@ -271,9 +215,7 @@ typedef struct {
   gfloat *sigma;
 } ClothGapPlayback;
 
-/**
- * ClothGapResult:
- * @verdict: the outcome
+/* @verdict: the outcome
  * @reason: (nullable): why it is undecidable, and what would help, or what speaks of
  *   something unknown: a sentence
  * @notes: (element-type utf8): what else one should know of it, sentences
@@ -318,8 +260,6 @@ typedef struct {
  * All that a diagnosis has to say. Everything is owned by the result, but the effects'
  * constant descriptions. A number that is not known is NaN, a list without entries is
  * empty.
- *
- * Since: 0.1
  */
 typedef struct {
   ClothGapVerdict verdict;

@@ -79,9 +79,7 @@ measure (ClothDiagnosis * d, const ClothRecording * r,
       CLOTH_DIAGNOSIS_WINDOW_S, &d->study.rollout, error);
 }
 
-/**
- * cloth_diagnosis_find_gaps:
- * @d: a diagnosis
+/* @d: a diagnosis
  * @begin: first recording
  * @end: one behind the last
  * @models: (array length=n): models

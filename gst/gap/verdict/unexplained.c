@@ -194,9 +194,7 @@ find_clamps_off (ClothDiagnosis * d)
   return NULL;
 }
 
-/**
- * cloth_diagnosis_find_unknown:
- * @d: a diagnosis whose takes are linearised at the model
+/* @d: a diagnosis whose takes are linearised at the model
  *
  * Looks for signs that something is there, whatever it is, which the size of the gap need
  * not show: the floor holds the simulator's own error, too. Where baselines move alike, the

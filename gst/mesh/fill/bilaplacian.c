@@ -109,9 +109,7 @@ iterate (const ClothFill * self, const ClothHole * hole, gdouble * x)
   }
 }
 
-/**
- * cloth_fill_bilaplacian:
- * @self: the frame; the plate's places are the first guess
+/* @self: the frame; the plate's places are the first guess
  * @hole: an anchored hole
  *
  * Puts the vertices of the hole where L²(p) = 0, with L(p) = (1/n) Σ (p_i − p) and

@@ -54,9 +54,7 @@ cloth_fill_past (const ClothFill * self, guint lag)
   return self->history[(self->frames - lag) % self->depth];
 }
 
-/**
- * ClothFillShape:
- * @covariance: of a second difference around the hole, xx, xy, xz, yy, yz, zz, m²
+/* @covariance: of a second difference around the hole, xx, xy, xz, yy, yz, zz, m²
  * @noise: mean covariance of the vertices there, m²
  * @n: second differences that it was taken from
  */

@@ -27,16 +27,12 @@
 /* Frame periods after which, when the prediction has ended too, the cloth is met anew. */
 #define MOST_STEPS 2
 
-/**
- * cloth_fill_new:
- * @topology: the mesh, checked
+/* @topology: the mesh, checked
  * @seams: (nullable) (element-type ClothSeamLine): vertices that are one: the same place
  *   is found for them
  * @parameters: (nullable): how to fill; %NULL: the defaults
  *
  * Returns: (transfer full): what fills the frames of a sequence
- *
- * Since: 0.1
  */
 ClothFill *
 cloth_fill_new (const ClothTopology * topology, const GArray * seams,
@@ -80,12 +76,8 @@ cloth_fill_new (const ClothTopology * topology, const GArray * seams,
   return self;
 }
 
-/**
- * cloth_fill_set_parameters:
- * @fill: what fills
+/* @fill: what fills
  * @parameters: how, from the next frame on
- *
- * Since: 0.1
  */
 void
 cloth_fill_set_parameters (ClothFill * fill,
@@ -94,13 +86,9 @@ cloth_fill_set_parameters (ClothFill * fill,
   fill->parameters = *parameters;
 }
 
-/**
- * cloth_fill_get_stencils:
- * @fill: what fills
+/* @fill: what fills
  *
  * Returns: (transfer none): the mesh's neighbours and second differences
- *
- * Since: 0.1
  */
 const ClothStencils *
 cloth_fill_get_stencils (const ClothFill * fill)
@@ -108,13 +96,9 @@ cloth_fill_get_stencils (const ClothFill * fill)
   return fill->stencils;
 }
 
-/**
- * cloth_fill_reset:
- * @fill: what fills
+/* @fill: what fills
  *
  * Forgets the past: the next frame has nothing to do with the last one.
- *
- * Since: 0.1
  */
 void
 cloth_fill_reset (ClothFill * fill)
@@ -439,9 +423,7 @@ remember (ClothFill * self)
   self->frames++;
 }
 
-/**
- * cloth_fill_run:
- * @fill: what fills
+/* @fill: what fills
  * @time_s: the frame's time, seconds; a frame that isn't later than the last one, or comes
  *   after a gap longer than a prediction, starts a new sequence
  * @frame: the frame as measured; what its states call filled or predicted counts as unseen
@@ -457,8 +439,6 @@ remember (ClothFill * self)
  * taken as a sample of those inside. Part of it, what the persistence of the surroundings
  * explains, is known from the past; the noise of the ring is added, and what the filled
  * cloth lacks of its length.
- *
- * Since: 0.1
  */
 void
 cloth_fill_run (ClothFill * fill, gdouble time_s, const ClothMeshFrame * frame,
@@ -501,11 +481,7 @@ cloth_fill_run (ClothFill * fill, gdouble time_s, const ClothMeshFrame * frame,
     *counts = done;
 }
 
-/**
- * cloth_fill_free:
- * @fill: (transfer full) (nullable): what fills
- *
- * Since: 0.1
+/* @fill: (transfer full) (nullable): what fills
  */
 void
 cloth_fill_free (ClothFill * fill)

@@ -8,29 +8,21 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothFillMethod:
- * @CLOTH_FILL_PLATE: a thin plate with the flat cloth's measures, free at the cloth's
+/* @CLOTH_FILL_PLATE: a thin plate with the flat cloth's measures, free at the cloth's
  *   border, that keeps the shape last seen as far as its surroundings keep theirs
  * @CLOTH_FILL_BILAPLACIAN: the uniform bi-Laplacian of the paper, each frame alone
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_FILL_PLATE,
   CLOTH_FILL_BILAPLACIAN
 } ClothFillMethod;
 
-/**
- * ClothFillParameters:
- * @method: what fills a hole
+/* @method: what fills a hole
  * @noise_m: standard deviation of a coordinate that comes without covariance, metres
  * @max_sigma_m: a vertex less certain than this (RMS of its axes) stays unseen, metres
  * @prediction_s: how long a vertex that no ring holds is carried on, seconds
  * @outlier: a vertex is removed when it differs from what its neighbours and its past
  *   say by more than this many times what is usual around it; 0: never
- *
- * Since: 0.1
  */
 typedef struct {
   ClothFillMethod method;
@@ -46,9 +38,7 @@ typedef struct {
 #define CLOTH_FILL_PREDICTION 0.2
 #define CLOTH_FILL_OUTLIER 6.0
 
-/**
- * ClothFillCounts:
- * @outliers: measured vertices that were removed
+/* @outliers: measured vertices that were removed
  * @filled: vertices filled
  * @predicted: vertices predicted
  * @unseen: vertices that stay unseen
@@ -56,8 +46,6 @@ typedef struct {
  * @factored: holes whose system was new and had to be factored
  *
  * What was done to a frame.
- *
- * Since: 0.1
  */
 typedef struct {
   guint outliers;

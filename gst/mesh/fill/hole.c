@@ -201,16 +201,12 @@ look_around (ClothHole * self, const ClothStencils * stencils, gint * index)
   self->around = (guint *) (gpointer) g_array_free (around, FALSE);
 }
 
-/**
- * cloth_hole_new:
- * @stencils: the mesh's
+/* @stencils: the mesh's
  * @n: number of unknown vertices
  * @found: (array length=n): the unknown vertices: all that stencils connect
  * @index: (inout): −1 for every vertex of the mesh; it is used and given back so
  *
  * Returns: (transfer full): the hole with its factor
- *
- * Since: 0.1
  */
 ClothHole *
 cloth_hole_new (const ClothStencils * stencils, guint n, const guint * found,
@@ -250,14 +246,10 @@ cloth_hole_new (const ClothStencils * stencils, guint n, const guint * found,
   return self;
 }
 
-/**
- * cloth_hole_solve:
- * @hole: an anchored hole
+/* @hole: an anchored hole
  * @ring: (array): 3·n_ring: the places of the ring
  * @solution: (out) (array): 3·n: those of the hole's vertices, in the order of
  *   #ClothHole.vertices
- *
- * Since: 0.1
  */
 void
 cloth_hole_solve (const ClothHole * hole, const gdouble * ring,
@@ -281,11 +273,7 @@ cloth_hole_solve (const ClothHole * hole, const gdouble * ring,
   cloth_band_solve (hole->n, hole->bandwidth, hole->factor, 3, solution);
 }
 
-/**
- * cloth_hole_free:
- * @hole: (transfer full) (nullable): a hole
- *
- * Since: 0.1
+/* @hole: (transfer full) (nullable): a hole
  */
 void
 cloth_hole_free (ClothHole * hole)

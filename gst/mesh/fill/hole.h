@@ -7,9 +7,7 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothHole:
- * @n: unknown vertices
+/* @n: unknown vertices
  * @found: the unknown vertices, as the search found them
  * @vertices: the same in the order of the system
  * @n_ring: known vertices that hold it
@@ -25,8 +23,6 @@ G_BEGIN_DECLS
  *
  * The system depends on which vertices are unknown, not on where the others are, and so
  * is factored once and used as long as the hole stays.
- *
- * Since: 0.1
  */
 typedef struct {
   guint n;

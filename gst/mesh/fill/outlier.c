@@ -106,9 +106,7 @@ score (ClothFill * self, const gfloat * past, gfloat * length, gfloat * score)
   }
 }
 
-/**
- * cloth_fill_outliers:
- * @self: the frame
+/* @self: the frame
  *
  * A vertex is removed when it deviates from the mean of its neighbours more than the
  * threshold times what is usual around it, and so does the change of that since it was

@@ -8,17 +8,13 @@
 
 #include <math.h>
 
-/**
- * cloth_smooth_space:
- * @stencils: the mesh's
+/* @stencils: the mesh's
  * @weight: part of the way to the mean of its neighbours that a vertex goes, 0 to 1
  * @positions: 3 numbers a vertex, metres, NaN when not seen
  * @smoothed: (out): the same, smoothed; a vertex with a neighbour that isn't seen stays
  *
  * The neighbours are those on both sides of a vertex, of a vertex at the border those
  * along it: the mean of all would draw it in.
- *
- * Since: 0.1
  */
 void
 cloth_smooth_space (const ClothStencils * stencils, gdouble weight,
@@ -40,15 +36,11 @@ cloth_smooth_space (const ClothStencils * stencils, gdouble weight,
   }
 }
 
-/**
- * cloth_smooth_time:
- * @n_vertices: number of vertices
+/* @n_vertices: number of vertices
  * @weight: part of the way to the mean of the frames beside that a vertex goes, 0 to 1
  * @before: positions of the frame before
  * @after: positions of the frame after, as far away in time
  * @positions: (inout): positions of the frame; a vertex that either doesn't see stays
- *
- * Since: 0.1
  */
 void
 cloth_smooth_time (guint n_vertices, gdouble weight, const gfloat * before,

@@ -29,9 +29,7 @@ add_product (gdouble sum[6], const gdouble v[3])
   sum[5] += v[2] * v[2];
 }
 
-/**
- * cloth_fill_align:
- * @from: places before, 3 a vertex of the mesh
+/* @from: places before, 3 a vertex of the mesh
  * @to: places after
  * @n: number of vertices to look at
  * @vertices: those
@@ -85,9 +83,7 @@ cloth_fill_align (const gfloat * from, const gfloat * to, guint n,
   return found;
 }
 
-/**
- * cloth_fill_shape:
- * @self: the frame
+/* @self: the frame
  * @hole: a hole
  * @shape: (out): how bent the cloth is around it; 0 stencils when that is not known
  */
@@ -167,9 +163,7 @@ change (const ClothFill * self, const ClothHole * hole,
       LEAST_SIGNAL * sum) / n;
 }
 
-/**
- * cloth_fill_persistence:
- * @self: the frame
+/* @self: the frame
  * @hole: a hole
  * @shape: how bent the cloth is around it
  * @age: frames
@@ -203,9 +197,7 @@ cloth_fill_persistence (const ClothFill * self, const ClothHole * hole,
   return 0;
 }
 
-/**
- * cloth_fill_motion:
- * @self: the frame
+/* @self: the frame
  * @age: frames since the cloth was seen, at least 1
  * @keeps: (out): which part of the motion over the @age frames before then the cloth made
  *   again in as many frames before; what it will make now

@@ -5,14 +5,11 @@
 
 #include <math.h>
 
-/**
- * cloth_export_open:
- * @info: the export
+/* @info: the export
  * @ending: of the file's name, with its point
  * @error: #GIOErrorEnum
  *
  * Returns: (transfer full): a file of the export, or %NULL
- * Since: 0.1
  */
 ClothOutput *
 cloth_export_open (const ClothExportInfo * info, const gchar * ending,
@@ -23,13 +20,10 @@ cloth_export_open (const ClothExportInfo * info, const gchar * ending,
   return cloth_output_new (path, error);
 }
 
-/**
- * cloth_export_identifier:
- * @info: the export
+/* @info: the export
  *
  * Returns: (transfer full): its name in ASCII letters, digits and underscores, not
  *   beginning with a digit, as all formats take it
- * Since: 0.1
  */
 gchar *
 cloth_export_identifier (const ClothExportInfo * info)
@@ -40,12 +34,9 @@ cloth_export_identifier (const ClothExportInfo * info)
   return g_strcanon (name, G_CSET_A_2_Z G_CSET_a_2_z G_CSET_DIGITS, '_');
 }
 
-/**
- * cloth_export_sigma:
- * @covariance: 6 numbers, m²
+/* @covariance: 6 numbers, m²
  *
  * Returns: standard deviation, m, RMS over the three axes; NaN when not known
- * Since: 0.1
  */
 gfloat
 cloth_export_sigma (const gfloat * covariance)
@@ -55,13 +46,10 @@ cloth_export_sigma (const gfloat * covariance)
   return trace >= 0 ? (gfloat) sqrt (trace / 3) : NAN;
 }
 
-/**
- * cloth_export_corners:
- * @topology: a mesh
+/* @topology: a mesh
  * @face: which face
  *
  * Returns: 3 or 4
- * Since: 0.1
  */
 guint
 cloth_export_corners (const ClothTopology * topology, gsize face)
@@ -69,13 +57,9 @@ cloth_export_corners (const ClothTopology * topology, gsize face)
   return topology->faces[4 * face + 3] == CLOTH_NO_VERTEX ? 3 : 4;
 }
 
-/**
- * cloth_export_bounds:
- * @positions: 3 finite numbers a vertex
+/* @positions: 3 finite numbers a vertex
  * @n_vertices: at least 1
  * @bounds: (out caller-allocates): least x, y, z, greatest x, y, z
- *
- * Since: 0.1
  */
 void
 cloth_export_bounds (const gfloat * positions, guint n_vertices,
@@ -90,15 +74,12 @@ cloth_export_bounds (const gfloat * positions, guint n_vertices,
     }
 }
 
-/**
- * cloth_export_check_later:
- * @number: of the frame
+/* @number: of the frame
  * @before: time of the frame before; of no meaning for frame 0
  * @time_s: its own
  * @error: #ClothFileError
  *
  * Returns: whether the time rises
- * Since: 0.1
  */
 gboolean
 cloth_export_check_later (guint64 number, gdouble before, gdouble time_s,
@@ -111,14 +92,10 @@ cloth_export_check_later (guint64 number, gdouble before, gdouble time_s,
   return FALSE;
 }
 
-/**
- * cloth_text_append_float:
- * @text: text
+/* @text: text
  * @value: a number
  *
  * Nine digits bring every float32 back exactly, in any locale.
- *
- * Since: 0.1
  */
 void
 cloth_text_append_float (GString * text, gfloat value)
@@ -129,12 +106,8 @@ cloth_text_append_float (GString * text, gfloat value)
           value));
 }
 
-/**
- * cloth_text_append_double:
- * @text: text
+/* @text: text
  * @value: a number; twelve digits of it are kept
- *
- * Since: 0.1
  */
 void
 cloth_text_append_double (GString * text, gdouble value)
@@ -145,14 +118,11 @@ cloth_text_append_double (GString * text, gdouble value)
           value));
 }
 
-/**
- * cloth_text_flush:
- * @text: text; empty afterwards
+/* @text: text; empty afterwards
  * @output: where to
  * @error: #GIOErrorEnum
  *
  * Returns: %TRUE when it was taken
- * Since: 0.1
  */
 gboolean
 cloth_text_flush (GString * text, ClothOutput * output, GError ** error)

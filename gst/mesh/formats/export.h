@@ -9,17 +9,13 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothExportInfo:
- * @stem: what the names of the files begin with; a take's folder
+/* @stem: what the names of the files begin with; a take's folder
  * @name: name of the object or take
  * @topology: the mesh of every frame
  * @fps_n: numerator of the frame rate, 0 when it varies
  * @fps_d: its denominator
  *
  * What is known before the first frame. It outlives the export.
- *
- * Since: 0.1
  */
 typedef struct {
   gchar *stem;
@@ -28,9 +24,7 @@ typedef struct {
   gint fps_n, fps_d;
 } ClothExportInfo;
 
-/**
- * ClothExporter:
- * @keeps_nan: positions of vertices that are not seen come as NaN; else each has a
+/* @keeps_nan: positions of vertices that are not seen come as NaN; else each has a
  *   place
  * @start: starts the files under temporary names
  * @append: takes a frame; its number counts from 0
@@ -38,8 +32,6 @@ typedef struct {
  * @free: frees what @start returned and removes what was not finished
  *
  * How one format is written.
- *
- * Since: 0.1
  */
 typedef struct {
   gboolean keeps_nan;

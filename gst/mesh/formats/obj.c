@@ -284,9 +284,7 @@ parse (Parser * parser, GError ** error)
   return g_steal_pointer (&obj);
 }
 
-/**
- * cloth_obj_parse:
- * @text: an OBJ file with a 0 byte behind its @size bytes
+/* @text: an OBJ file with a 0 byte behind its @size bytes
  * @size: how many
  * @error: #ClothFileError
  *
@@ -294,7 +292,6 @@ parse (Parser * parser, GError ** error)
  * Indices may be negative, corners `v`, `v/vt`, `v//vn` or `v/vt/vn`.
  *
  * Returns: (transfer full): the mesh, or %NULL
- * Since: 0.1
  */
 ClothObj *
 cloth_obj_parse (const gchar * text, gsize size, GError ** error)
@@ -321,13 +318,10 @@ cloth_obj_parse (const gchar * text, gsize size, GError ** error)
   return obj;
 }
 
-/**
- * cloth_obj_read:
- * @path: an OBJ file of at most 512 MiB
+/* @path: an OBJ file of at most 512 MiB
  * @error: #ClothFileError, #GIOErrorEnum
  *
  * Returns: (transfer full): the mesh, or %NULL
- * Since: 0.1
  */
 ClothObj *
 cloth_obj_read (const gchar * path, GError ** error)
@@ -346,11 +340,7 @@ cloth_obj_read (const gchar * path, GError ** error)
   return obj;
 }
 
-/**
- * cloth_obj_free:
- * @obj: (transfer full) (nullable): a mesh
- *
- * Since: 0.1
+/* @obj: (transfer full) (nullable): a mesh
  */
 void
 cloth_obj_free (ClothObj * obj)
@@ -362,9 +352,7 @@ cloth_obj_free (ClothObj * obj)
   g_free (obj);
 }
 
-/**
- * cloth_obj_write:
- * @output: where to
+/* @output: where to
  * @name: name of the object; blanks become underscores
  * @topology: faces and uv
  * @positions: 3 finite numbers a vertex
@@ -375,7 +363,6 @@ cloth_obj_free (ClothObj * obj)
  * Writes one uv a vertex, so that `f` has the form `v/v`.
  *
  * Returns: %TRUE when all was taken
- * Since: 0.1
  */
 gboolean
 cloth_obj_write (ClothOutput * output, const gchar * name,

@@ -7,9 +7,7 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothObj:
- * @topology: faces and uv; of larger polygons, a fan of triangles
+/* @topology: faces and uv; of larger polygons, a fan of triangles
  * @positions: 3 numbers a vertex, as they stand in the file
  * @has_uv: whether the file gives uv
  * @n_seam_vertices: vertices that faces give different uv; the first one is kept
@@ -17,8 +15,6 @@ G_BEGIN_DECLS
  *
  * What an OBJ file holds. Vertices keep the file's order, which a point cache
  * relies on.
- *
- * Since: 0.1
  */
 typedef struct {
   ClothTopology *topology;

@@ -72,13 +72,10 @@ parse_header (ClothInput * input, ClothPc2Info * info, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_pc2_reader_new:
- * @input: (transfer full): the bytes of a PC2 file
+/* @input: (transfer full): the bytes of a PC2 file
  * @error: #ClothFileError, #GIOErrorEnum
  *
  * Returns: (transfer full): a reader, or %NULL
- * Since: 0.1
  */
 ClothPc2Reader *
 cloth_pc2_reader_new (ClothInput * input, GError ** error)
@@ -91,13 +88,10 @@ cloth_pc2_reader_new (ClothInput * input, GError ** error)
   return g_steal_pointer (&reader);
 }
 
-/**
- * cloth_pc2_reader_open:
- * @path: a PC2 file
+/* @path: a PC2 file
  * @error: #ClothFileError, #GIOErrorEnum
  *
  * Returns: (transfer full): a reader, or %NULL
- * Since: 0.1
  */
 ClothPc2Reader *
 cloth_pc2_reader_open (const gchar * path, GError ** error)
@@ -113,12 +107,9 @@ cloth_pc2_reader_open (const gchar * path, GError ** error)
   return reader;
 }
 
-/**
- * cloth_pc2_reader_get_info:
- * @reader: a reader
+/* @reader: a reader
  *
  * Returns: (transfer none): the header
- * Since: 0.1
  */
 const ClothPc2Info *
 cloth_pc2_reader_get_info (const ClothPc2Reader * reader)
@@ -126,15 +117,12 @@ cloth_pc2_reader_get_info (const ClothPc2Reader * reader)
   return &reader->info;
 }
 
-/**
- * cloth_pc2_reader_read:
- * @reader: a reader
+/* @reader: a reader
  * @sample: which sample
  * @positions: (out caller-allocates): room for 3 numbers a point
  * @error: #ClothFileError, #GIOErrorEnum
  *
  * Returns: %TRUE when the sample was read
- * Since: 0.1
  */
 gboolean
 cloth_pc2_reader_read (ClothPc2Reader * reader, guint sample,
@@ -155,11 +143,7 @@ cloth_pc2_reader_read (ClothPc2Reader * reader, guint sample,
   return TRUE;
 }
 
-/**
- * cloth_pc2_reader_free:
- * @reader: (transfer full) (nullable): a reader
- *
- * Since: 0.1
+/* @reader: (transfer full) (nullable): a reader
  */
 void
 cloth_pc2_reader_free (ClothPc2Reader * reader)
@@ -170,9 +154,7 @@ cloth_pc2_reader_free (ClothPc2Reader * reader)
   g_free (reader);
 }
 
-/**
- * cloth_pc2_writer_new:
- * @path: final name of the file
+/* @path: final name of the file
  * @n_points: vertices of the mesh
  * @start: frame of the first sample
  * @rate: frames from one sample to the next
@@ -181,7 +163,6 @@ cloth_pc2_reader_free (ClothPc2Reader * reader)
  * Starts a point cache; samples are written as they come.
  *
  * Returns: (transfer full): a writer, or %NULL
- * Since: 0.1
  */
 ClothPc2Writer *
 cloth_pc2_writer_new (const gchar * path, guint n_points, gfloat start,
@@ -204,14 +185,11 @@ cloth_pc2_writer_new (const gchar * path, guint n_points, gfloat start,
   return g_steal_pointer (&writer);
 }
 
-/**
- * cloth_pc2_writer_append:
- * @writer: a writer
+/* @writer: a writer
  * @positions: 3 numbers a point
  * @error: #GIOErrorEnum, #ClothFileError
  *
  * Returns: %TRUE when the sample was taken
- * Since: 0.1
  */
 gboolean
 cloth_pc2_writer_append (ClothPc2Writer * writer, const gfloat * positions,
@@ -237,15 +215,12 @@ cloth_pc2_writer_append (ClothPc2Writer * writer, const gfloat * positions,
   return TRUE;
 }
 
-/**
- * cloth_pc2_writer_finish:
- * @writer: a writer
+/* @writer: a writer
  * @error: #GIOErrorEnum
  *
  * Writes the number of samples. cloth_output_commit() gives the file its name.
  *
  * Returns: (transfer full): the output, or %NULL
- * Since: 0.1
  */
 ClothOutput *
 cloth_pc2_writer_finish (ClothPc2Writer * writer, GError ** error)
@@ -260,13 +235,9 @@ cloth_pc2_writer_finish (ClothPc2Writer * writer, GError ** error)
   return g_steal_pointer (&writer->output);
 }
 
-/**
- * cloth_pc2_writer_free:
- * @writer: (transfer full) (nullable): a writer
+/* @writer: (transfer full) (nullable): a writer
  *
  * Frees it; a file that was not committed is removed.
- *
- * Since: 0.1
  */
 void
 cloth_pc2_writer_free (ClothPc2Writer * writer)

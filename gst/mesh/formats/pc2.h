@@ -7,16 +7,12 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothPc2Info:
- * @n_points: vertices, as many as the mesh has
+/* @n_points: vertices, as many as the mesh has
  * @start: frame of the first sample
  * @rate: frames from one sample to the next
  * @n_samples: number of samples
  *
  * The header of a PC2 file. It knows no frame rate.
- *
- * Since: 0.1
  */
 typedef struct {
   guint n_points;

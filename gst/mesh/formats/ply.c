@@ -517,11 +517,7 @@ prepare_vertices (ClothPly * ply, const Element * element, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_ply_new:
- *
- * Returns: (transfer full): an empty frame to parse into
- * Since: 0.1
+/* Returns: (transfer full): an empty frame to parse into
  */
 ClothPly *
 cloth_ply_new (void)
@@ -533,9 +529,7 @@ cloth_ply_new (void)
   return ply;
 }
 
-/**
- * cloth_ply_parse:
- * @ply: set to what the file holds
+/* @ply: set to what the file holds
  * @bytes: a PLY file with a 0 byte behind its @size bytes
  * @size: how many
  * @error: #ClothFileError
@@ -545,7 +539,6 @@ cloth_ply_new (void)
  * Other elements and properties are skipped.
  *
  * Returns: %TRUE when the file is valid
- * Since: 0.1
  */
 gboolean
 cloth_ply_parse (ClothPly * ply, const gchar * bytes, gsize size,
@@ -581,14 +574,11 @@ cloth_ply_parse (ClothPly * ply, const gchar * bytes, gsize size,
   return cloth_positions_check (ply->positions, ply->n_vertices, error);
 }
 
-/**
- * cloth_ply_read:
- * @ply: set to what the file holds
+/* @ply: set to what the file holds
  * @path: a PLY file of at most 512 MiB
  * @error: #ClothFileError, #GIOErrorEnum
  *
  * Returns: %TRUE when the file is valid
- * Since: 0.1
  */
 gboolean
 cloth_ply_read (ClothPly * ply, const gchar * path, GError ** error)
@@ -606,11 +596,7 @@ cloth_ply_read (ClothPly * ply, const gchar * path, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_ply_free:
- * @ply: (transfer full) (nullable): a frame
- *
- * Since: 0.1
+/* @ply: (transfer full) (nullable): a frame
  */
 void
 cloth_ply_free (ClothPly * ply)

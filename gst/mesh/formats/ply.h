@@ -7,9 +7,7 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothPly:
- * @n_vertices: number of vertices
+/* @n_vertices: number of vertices
  * @n_faces: number of faces, after larger polygons became fans of triangles
  * @positions: 3 numbers a vertex
  * @uv: 2 numbers a vertex
@@ -23,8 +21,6 @@ G_BEGIN_DECLS
  *
  * What a PLY file holds. One is reused over a sequence of files, so that frames of
  * one size allocate nothing.
- *
- * Since: 0.1
  */
 typedef struct {
   guint n_vertices;

@@ -23,9 +23,7 @@ put_index (guint8 * to, guint32 value)
   return to + sizeof value;
 }
 
-/**
- * cloth_ply_write:
- * @output: where to
+/* @output: where to
  * @topology: faces and uv
  * @positions: 3 finite numbers a vertex
  * @states: a #ClothVertexState a vertex
@@ -40,7 +38,6 @@ put_index (guint8 * to, guint32 value)
  * scalar that viewers colour by; 0 where not known) and cov_xx to cov_zz.
  *
  * Returns: %TRUE when all was taken
- * Since: 0.1
  */
 gboolean
 cloth_ply_write (ClothOutput * output, const ClothTopology * topology,

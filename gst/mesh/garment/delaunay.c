@@ -82,16 +82,12 @@ circle (const gdouble * p, guint a, guint b, guint c)
   return t;
 }
 
-/**
- * cloth_delaunay:
- * @n: number of points, at least 3
+/* @n: number of points, at least 3
  * @points: (array): x and y of each, no two the same
  * @scale: their usual distance
  *
  * Returns: (transfer full) (element-type guint): three points a triangle; those of a
  *   positive area x·y′ − y·x′
- *
- * Since: 0.1
  */
 GArray *
 cloth_delaunay (guint n, const gdouble * points, gdouble scale)

@@ -184,16 +184,12 @@ parse_root (JsonObject * root, ClothGarment * garment, GError ** error)
   return !bad;
 }
 
-/**
- * cloth_garment_parse:
- * @json: the text of garment.json
+/* @json: the text of garment.json
  * @size: its bytes
  * @topology: (transfer full): the mesh that it speaks of, checked
  * @error: #ClothFileError
  *
  * Returns: (transfer full): the garment, or %NULL
- *
- * Since: 0.1
  */
 ClothGarment *
 cloth_garment_parse (const gchar * json, gsize size, ClothTopology * topology,
@@ -214,14 +210,10 @@ cloth_garment_parse (const gchar * json, gsize size, ClothTopology * topology,
   return g_steal_pointer (&garment);
 }
 
-/**
- * cloth_garment_load:
- * @path: a garment.json with its garment.obj beside it
+/* @path: a garment.json with its garment.obj beside it
  * @error: #ClothFileError, #ClothFileError, #GIOErrorEnum
  *
  * Returns: (transfer full): the garment, or %NULL
- *
- * Since: 0.1
  */
 ClothGarment *
 cloth_garment_load (const gchar * path, GError ** error)
@@ -266,13 +258,9 @@ write_lines (ClothJsonWriter * writer, const ClothGarment * garment)
   cloth_json_writer_end_array (writer);
 }
 
-/**
- * cloth_garment_to_json:
- * @garment: a garment
+/* @garment: a garment
  *
  * Returns: (transfer full): the text of garment.json (docs/formats.md)
- *
- * Since: 0.1
  */
 gchar *
 cloth_garment_to_json (const ClothGarment * garment)
@@ -308,9 +296,7 @@ cloth_garment_to_json (const ClothGarment * garment)
   return text;
 }
 
-/**
- * cloth_garment_save:
- * @garment: a garment
+/* @garment: a garment
  * @folder: a folder, which is there
  * @error: #ClothFileError or #GIOErrorEnum
  *
@@ -318,8 +304,6 @@ cloth_garment_to_json (const ClothGarment * garment)
  * z = −v, uv in metres.
  *
  * Returns: %FALSE when they can't be written; then neither is there
- *
- * Since: 0.1
  */
 gboolean
 cloth_garment_save (const ClothGarment * garment, const gchar * folder,

@@ -541,12 +541,7 @@ finish (Builder * self)
   garment->dots = g_memdup2 (self->dots->data, n * sizeof (gint));
 }
 
-/**
- * cloth_garment_new:
- *
- * Returns: (transfer full): a garment without mesh and panels, to be filled
- *
- * Since: 0.1
+/* Returns: (transfer full): a garment without mesh and panels, to be filled
  */
 ClothGarment *
 cloth_garment_new (void)
@@ -561,9 +556,7 @@ cloth_garment_new (void)
   return garment;
 }
 
-/**
- * cloth_garment_new_from_svg:
- * @svg: a drawing of the panels; see cloth_panels_parse ()
+/* @svg: a drawing of the panels; see cloth_panels_parse ()
  * @size: its bytes
  * @grid: the dots of the print that the panels are cut from
  * @error: #ClothFileError or #GMarkupError
@@ -571,8 +564,6 @@ cloth_garment_new (void)
  * Returns: (transfer full): the garment's mesh; %NULL with an error that names panel and
  *   place when an outline is open, crosses itself, leaves the cloth, lies over another
  *   panel or is too narrow, or when the edges of a seam don't match
- *
- * Since: 0.1
  */
 ClothGarment *
 cloth_garment_new_from_svg (const gchar * svg, gsize size,
@@ -610,11 +601,7 @@ cloth_garment_new_from_svg (const gchar * svg, gsize size,
   return good ? g_steal_pointer (&garment) : NULL;
 }
 
-/**
- * cloth_garment_free:
- * @garment: (transfer full) (nullable): a garment
- *
- * Since: 0.1
+/* @garment: (transfer full) (nullable): a garment
  */
 void
 cloth_garment_free (ClothGarment * garment)

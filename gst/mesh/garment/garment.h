@@ -10,17 +10,13 @@ G_BEGIN_DECLS
 /* Vertex of a garment that has no dot: it lies on an outline. */
 #define CLOTH_NO_DOT (-1)
 
-/**
- * ClothDotGrid:
- * @columns: dots in a row
+/* @columns: dots in a row
  * @rows: dots in a column
  * @pitch_m: from the centre of a dot to that of the next, metres
  * @origin_m: centre of the first dot from the top-left corner of the cloth, metres
  * @cloth_m: width and height of the printed cloth, metres
  *
  * The lattice of a printed M-array.
- *
- * Since: 0.1
  */
 typedef struct {
   guint columns;
@@ -30,15 +26,11 @@ typedef struct {
   gdouble cloth_m[2];
 } ClothDotGrid;
 
-/**
- * ClothPanel:
- * @name: its name
+/* @name: its name
  * @first: its first vertex
  * @n_vertices: how many vertices it has, from @first on; those of the outline come first,
  *   in the order of the outline
  * @n_border: how many of them lie on the outline
- *
- * Since: 0.1
  */
 typedef struct {
   gchar *name;
@@ -47,9 +39,7 @@ typedef struct {
   guint n_border;
 } ClothPanel;
 
-/**
- * ClothGarment:
- * @topology: all panels in one mesh; uv in metres on the printed cloth from its top-left
+/* @topology: all panels in one mesh; uv in metres on the printed cloth from its top-left
  *   corner; dots make quads where four are neighbours, the rest up to the outline is
  *   triangles
  * @dots: for each vertex which dot it is, row · columns + column, or %CLOTH_NO_DOT
@@ -61,8 +51,6 @@ typedef struct {
  *
  * Vertices at a seam are there once for each panel, as they have two places on the flat
  * cloth; the seams say which of them are one.
- *
- * Since: 0.1
  */
 typedef struct {
   ClothTopology *topology;

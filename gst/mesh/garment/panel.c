@@ -327,9 +327,7 @@ join_edges (ClothDrawnPanel * panel, GError ** error)
   return TRUE;
 }
 
-/**
- * cloth_panels_parse:
- * @svg: (nullable): an SVG drawing, UTF-8
+/* @svg: (nullable): an SVG drawing, UTF-8
  * @size: its bytes
  * @error: #ClothFileError
  *
@@ -339,8 +337,6 @@ join_edges (ClothDrawnPanel * panel, GError ** error)
  * corner is that of the printed cloth.
  *
  * Returns: (transfer full) (element-type ClothDrawnPanel): the panels
- *
- * Since: 0.1
  */
 GArray *
 cloth_panels_parse (const gchar * svg, gsize size, GError ** error)

@@ -7,15 +7,11 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothDrawnEdge:
- * @name: its id, or a number
+/* @name: its id, or a number
  * @seam: (nullable): name of its seam
  * @points: (element-type gdouble): x and y of its points, metres, in the direction of the
  *   outline
  * @length_m: its length, metres
- *
- * Since: 0.1
  */
 typedef struct {
   gchar *name;
@@ -24,13 +20,9 @@ typedef struct {
   gdouble length_m;
 } ClothDrawnEdge;
 
-/**
- * ClothDrawnPanel:
- * @name: its id
+/* @name: its id
  * @edges: (element-type ClothDrawnEdge): its outline: each edge begins where the one
  *   before ends; counter-clockwise as seen on the page
- *
- * Since: 0.1
  */
 typedef struct {
   gchar *name;

@@ -309,9 +309,7 @@ run (Path * path)
   }
 }
 
-/**
- * cloth_svg_path_parse:
- * @data: what stands in the attribute `d`: M L H V C S Q T A Z, absolute and relative
+/* @data: what stands in the attribute `d`: M L H V C S Q T A Z, absolute and relative
  * @tolerance: how far the line may be from a curve, in the file's units, above 0
  * @most_points: most points of the line
  * @points: (element-type gdouble): the line's points are added to it, x and y of each; a
@@ -319,8 +317,6 @@ run (Path * path)
  * @error: #ClothFileError
  *
  * Returns: %FALSE when the data is not one line
- *
- * Since: 0.1
  */
 gboolean
 cloth_svg_path_parse (const gchar * data, gdouble tolerance,

@@ -31,14 +31,10 @@ struct _ClothBoardFinder
   ClothBoardView view;
 };
 
-/**
- * cloth_board_finder_new:
- * @pattern: the board; copied
+/* @pattern: the board; copied
  *
  * Returns: (transfer full): a finder for that board; it keeps its memory from picture to
  *   picture.
- *
- * Since: 0.1
  */
 ClothBoardFinder *
 cloth_board_finder_new (const ClothPattern * pattern)
@@ -63,11 +59,7 @@ cloth_board_finder_new (const ClothPattern * pattern)
   return finder;
 }
 
-/**
- * cloth_board_finder_free:
- * @finder: (transfer full): the finder
- *
- * Since: 0.1
+/* @finder: (transfer full): the finder
  */
 void
 cloth_board_finder_free (ClothBoardFinder * finder)
@@ -306,9 +298,7 @@ try_patch (ClothBoardFinder * finder, const ClothImage * image,
   return PLACED;
 }
 
-/**
- * cloth_board_finder_find:
- * @finder: the finder
+/* @finder: the finder
  * @image: the picture
  * @saddles: (array length=n_saddles): its refined saddles
  * @n_saddles: how many
@@ -321,8 +311,6 @@ try_patch (ClothBoardFinder * finder, const ClothImage * image,
  * checkerboard stays without place.
  *
  * Returns: whether the board was found
- *
- * Since: 0.1
  */
 gboolean
 cloth_board_finder_find (ClothBoardFinder * finder, const ClothImage * image,

@@ -9,9 +9,7 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothBoardView:
- * @columns: vertices in a row, the pattern's squares + 1
+/* @columns: vertices in a row, the pattern's squares + 1
  * @rows: vertices in a column
  * @n_seen: vertices seen
  * @seen: rows·columns, #ClothVertexKind: how the vertex was found, 0 where it wasn't
@@ -21,8 +19,6 @@ G_BEGIN_DECLS
  *
  * The corners of one board in one picture, the outer ones included. Vertex
  * row·@columns + column.
- *
- * Since: 0.1
  */
 typedef struct {
   gint columns, rows;

@@ -53,12 +53,7 @@ struct _ClothLinker
   ClothPointGrid *grid;
 };
 
-/**
- * cloth_linker_new:
- *
- * Returns: (transfer full): a linker; it keeps its memory from picture to picture.
- *
- * Since: 0.1
+/* Returns: (transfer full): a linker; it keeps its memory from picture to picture.
  */
 ClothLinker *
 cloth_linker_new (void)
@@ -361,9 +356,7 @@ lay_out_patch (ClothLinker * linker, const ClothSaddle * saddles)
   g_array_append_val (linker->patches, patch);
 }
 
-/**
- * cloth_linker_run:
- * @linker: the linker
+/* @linker: the linker
  * @image: the picture the saddles were found in
  * @levels: (nullable) (array fixed-size=256): what each grey level counts as, %NULL: as
  *   itself. In logarithms an edge in the shadow is as strong as beside it.
@@ -376,8 +369,6 @@ lay_out_patch (ClothLinker * linker, const ClothSaddle * saddles)
  * with the size of the picture.
  *
  * Returns: number of patches
- *
- * Since: 0.1
  */
 guint
 cloth_linker_run (ClothLinker * linker, const ClothImage * image,
@@ -429,17 +420,13 @@ cloth_linker_run (ClothLinker * linker, const ClothImage * image,
   return linker->patches->len;
 }
 
-/**
- * cloth_link_largest:
- * @patches: (array length=n_patches): linked patches
+/* @patches: (array length=n_patches): linked patches
  * @n_patches: how many
  * @order: (out caller-allocates) (array length=n_order): numbers of the largest patches of
  *   at least four saddles, largest first
  * @n_order: room in @order
  *
  * Returns: how many were put into @order
- *
- * Since: 0.1
  */
 guint
 cloth_link_largest (const ClothLinkPatch * patches, guint n_patches,

@@ -8,24 +8,18 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothLinkNode:
- * @patch: number of the patch it belongs to, < 0 for none
+/* @patch: number of the patch it belongs to, < 0 for none
  * @i: column of the vertex in the patch's own grid, >= 0
  * @j: row of the vertex in the patch's own grid, >= 0
  *
  * What linking says of one saddle.
- *
- * Since: 0.1
  */
 typedef struct {
   gint patch;
   gint i, j;
 } ClothLinkNode;
 
-/**
- * ClothLinkPatch:
- * @columns: vertices in a row of the patch's bounding box
+/* @columns: vertices in a row of the patch's bounding box
  * @rows: vertices in a column
  * @n_nodes: saddles in the patch
  * @size: saddles times the mean diagonal of a square, px: of two boards with as many
@@ -38,8 +32,6 @@ typedef struct {
  *
  * One connected piece of checkerboard, in a grid of its own: columns go the way that,
  * turned by 90° from x towards y, gives the rows; where on the board it lies is not known.
- *
- * Since: 0.1
  */
 typedef struct {
   gint columns, rows;

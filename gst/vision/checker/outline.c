@@ -110,9 +110,7 @@ fit (ClothOutline * outline, const ClothImage * image, gint corner, gfloat x,
           contrast, black));
 }
 
-/**
- * cloth_outline_fit:
- * @outline: the outline
+/* @outline: the outline
  * @image: the picture
  * @corner: which corner
  * @x: where it lies, roughly, px
@@ -123,8 +121,6 @@ fit (ClothOutline * outline, const ClothImage * image, gint corner, gfloat x,
  * Fits one corner to sub-pixel accuracy and takes it into the outline.
  *
  * Returns: whether there is a corner
- *
- * Since: 0.1
  */
 gboolean
 cloth_outline_fit (ClothOutline * outline, const ClothImage * image,
@@ -178,9 +174,7 @@ is_plausible (const ClothOutline * outline)
   return TRUE;
 }
 
-/**
- * cloth_outline_complete:
- * @outline: (inout): corners that are there, guesses of the others, edges known
+/* @outline: (inout): corners that are there, guesses of the others, edges known
  * @image: the picture
  * @black: colour of the square
  *
@@ -188,8 +182,6 @@ is_plausible (const ClothOutline * outline)
  *
  * Returns: whether the outline is that of a square; if not, its contents are not to be
  *   used
- *
- * Since: 0.1
  */
 gboolean
 cloth_outline_complete (ClothOutline * outline, const ClothImage * image,

@@ -7,9 +7,7 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothOutline:
- * @x: columns of the corners in ring order, turning from x towards y, px
+/* @x: columns of the corners in ring order, turning from x towards y, px
  * @y: rows of them
  * @cov: covariance xx, xy, yy of each, px²
  * @have: which corners are there; the others are guesses
@@ -18,8 +16,6 @@ G_BEGIN_DECLS
  *   than squares may meet
  * @thorough: whether to try a smaller window where the usual one fails
  * @joined: which edges, from corner k to k + 1, are known to be edges
- *
- * Since: 0.1
  */
 typedef struct {
   gfloat x[4], y[4];

@@ -22,13 +22,9 @@
 /* The shorter of two strides of the grid that follow each other over the longer. */
 #define EVEN 0.7f
 
-/**
- * cloth_patch_clear:
- * @patch: the patch
+/* @patch: the patch
  *
  * Releases the memory a patch holds, not the patch itself.
- *
- * Since: 0.1
  */
 void
 cloth_patch_clear (ClothPatch * patch)
@@ -413,9 +409,7 @@ read_bit (const ClothPatch * patch, const ClothImage * image, gint i, gint j)
   return CLAMP (8 * ((level - own) / (other - own) - 0.4f), -3.0f, 3.0f);
 }
 
-/**
- * cloth_patch_build:
- * @patch: (out caller-allocates): zeroed before its first use; keeps its memory
+/* @patch: (out caller-allocates): zeroed before its first use; keeps its memory
  * @image: the picture
  * @saddles: the saddles that were linked
  * @link: one patch of them
@@ -423,8 +417,6 @@ read_bit (const ClothPatch * patch, const ClothImage * image, gint i, gint j)
  *
  * Takes over a linked patch, adds the squares around it that linking can't see, and
  * judges the cells beyond.
- *
- * Since: 0.1
  */
 void
 cloth_patch_build (ClothPatch * patch, const ClothImage * image,

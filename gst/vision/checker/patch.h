@@ -10,14 +10,10 @@ G_BEGIN_DECLS
 /* Free vertices kept around what linking found. */
 #define CLOTH_PATCH_MARGIN 2
 
-/**
- * ClothVertexKind:
- * @CLOTH_VERTEX_UNKNOWN: not seen
+/* @CLOTH_VERTEX_UNKNOWN: not seen
  * @CLOTH_VERTEX_SADDLE: an inner corner, four squares meet
  * @CLOTH_VERTEX_UNSURE: an inner corner by its look, fitted with a doubt
  * @CLOTH_VERTEX_RIM: a corner fitted where fewer edges meet, e.g. on the board's rim
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_VERTEX_UNKNOWN,
@@ -26,9 +22,7 @@ typedef enum {
   CLOTH_VERTEX_RIM
 } ClothVertexKind;
 
-/**
- * ClothPatch:
- * @columns: vertices in a row, the margin included
+/* @columns: vertices in a row, the margin included
  * @rows: vertices in a column
  * @n_squares: cells seen as squares
  * @kind: rows·columns, #ClothVertexKind
@@ -44,8 +38,6 @@ typedef enum {
  *   there
  * @bit: rows·columns, for squares seen: log-likelihood ratio that they carry a dot
  * @odd_black: whether cells with odd column + row are black, else the even ones
- *
- * Since: 0.1
  */
 typedef struct {
   gint columns, rows;
@@ -65,17 +57,13 @@ typedef struct {
   gsize capacity;
 } ClothPatch;
 
-/**
- * ClothPatchParams:
- * @alpha: width of the template's lapels over the square's edge
+/* @alpha: width of the template's lapels over the square's edge
  * @c_low: confidence from which a black cell is taken for a square
  * @other_colour: log-likelihood ratio of the board going on at a cell that shows the other
  *   colour
  * @alike: share of the contrast within which a cell shows the other colour
  * @thorough: whether to try harder to find corners, at the cost of exactness
  * @read_bits: whether to look for the dots of a coded board
- *
- * Since: 0.1
  */
 typedef struct {
   gfloat alpha;

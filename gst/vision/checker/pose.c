@@ -92,15 +92,11 @@ struct _ClothPlacer
 static const gint turn_i[4] = { 1, 0, -1, 0 };
 static const gint turn_j[4] = { 0, 1, 0, -1 };
 
-/**
- * cloth_pose_vertex:
- * @placement: a placement
+/* @placement: a placement
  * @i: column of a vertex of the patch
  * @j: row of it
  * @column: (out): column of the same vertex on the board
  * @row: (out): row of it
- *
- * Since: 0.1
  */
 void
 cloth_pose_vertex (const ClothPose * placement, gint i, gint j,
@@ -112,15 +108,11 @@ cloth_pose_vertex (const ClothPose * placement, gint i, gint j,
   *row = placement->row + s * i + c * j;
 }
 
-/**
- * cloth_pose_cell:
- * @placement: a placement
+/* @placement: a placement
  * @i: column of a cell of the patch, right of vertex @i
  * @j: row of it
  * @column: (out): column of the same cell on the board
  * @row: (out): row of it
- *
- * Since: 0.1
  */
 void
 cloth_pose_cell (const ClothPose * placement, gint i, gint j,
@@ -645,9 +637,7 @@ score_all (ClothPoseFinder * placer, const ClothPatch * patch,
   return n;
 }
 
-/**
- * cloth_pose_finder_run:
- * @placer: of the board
+/* @placer: of the board
  * @patch: a patch of it
  * @weights: what the evidence weighs
  * @votes: (array length=n_votes) (nullable): placements the caller believes in, weight =
@@ -662,8 +652,6 @@ score_all (ClothPoseFinder * placer, const ClothPatch * patch,
  * overstated. With no more than 256 dots in the patch all that matter are read.
  *
  * Returns: whether the patch fits the board anywhere
- *
- * Since: 0.1
  */
 gboolean
 cloth_pose_finder_run (ClothPoseFinder * placer, const ClothPatch * patch,
@@ -727,14 +715,10 @@ cloth_pose_finder_run (ClothPoseFinder * placer, const ClothPatch * patch,
   return TRUE;
 }
 
-/**
- * cloth_pose_finder_new:
- * @pattern: the board; copied
+/* @pattern: the board; copied
  *
  * Returns: (transfer full): what places patches on that board; it keeps its memory from
  *   patch to patch.
- *
- * Since: 0.1
  */
 ClothPoseFinder *
 cloth_pose_finder_new (const ClothPattern * pattern)
@@ -760,11 +744,7 @@ cloth_pose_finder_new (const ClothPattern * pattern)
   return placer;
 }
 
-/**
- * cloth_pose_finder_free:
- * @placer: (transfer full): the placer
- *
- * Since: 0.1
+/* @placer: (transfer full): the placer
  */
 void
 cloth_pose_finder_free (ClothPoseFinder * placer)

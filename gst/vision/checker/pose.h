@@ -8,28 +8,16 @@
 
 G_BEGIN_DECLS
 
-/**
- * CLOTH_POSE_MOST_LEAD:
- *
- * Rivals that trail by more, log-likelihood, are not told apart.
- *
- * Since: 0.1
+/* Rivals that trail by more, log-likelihood, are not told apart.
  */
 #define CLOTH_POSE_MOST_LEAD 64.0f
 
-/**
- * CLOTH_POSE_MIN_LEAD:
- *
- * Lead, log-likelihood, from which on a placement in a film is believed: just less than the
+/* Lead, log-likelihood, from which on a placement in a film is believed: just less than the
  * 3 of one cell that clearly shows cloth where the board would go on.
- *
- * Since: 0.1
  */
 #define CLOTH_POSE_MIN_LEAD 2.9f
 
-/**
- * ClothPose:
- * @rotation: quarter turns from the patch's grid to the board's, 0 to 3
+/* @rotation: quarter turns from the patch's grid to the board's, 0 to 3
  * @column: board vertex of the patch's vertex (0, 0)
  * @row: likewise
  * @weight: as a vote: log-likelihood in favour; as a result: log-likelihood of this
@@ -42,8 +30,6 @@ G_BEGIN_DECLS
  *
  * A way to lay a patch on the board: vertex (i, j) of the patch, turned @rotation times
  * by (i, j) → (-j, i), plus (@column, @row).
- *
- * Since: 0.1
  */
 typedef struct {
   gint rotation;
@@ -53,9 +39,7 @@ typedef struct {
   gboolean whole;
 } ClothPose;
 
-/**
- * ClothPoseWeights:
- * @square_outside: of a square seen where the board has none
+/* @square_outside: of a square seen where the board has none
  * @corner_outside: of an inner corner seen where the board has none
  * @found_corners: whether that holds for corners too that linking did not join
  * @cut_rim: of a corner that is no saddle where the board has an inner corner, if it lies
@@ -70,8 +54,6 @@ typedef struct {
  *   the board: the board seen is another, smaller one; 1 for never
  *
  * What the evidence for and against a placement weighs, log-likelihoods.
- *
- * Since: 0.1
  */
 typedef struct {
   gfloat square_outside;

@@ -62,9 +62,7 @@ take (const ClothImage * image, gfloat x, gfloat y, gfloat dx, gfloat dy,
   return n;
 }
 
-/**
- * cloth_quad_confidence:
- * @image: the picture
+/* @image: the picture
  * @x: columns of the four corners in ring order, px
  * @y: rows of the four corners, px
  * @alpha: width of the lapels over the edge of the square
@@ -78,8 +76,6 @@ take (const ClothImage * image, gfloat x, gfloat y, gfloat dx, gfloat dy,
  *
  * Returns: confidence in [-1, 1]; -1 when the cross is not wholly inside the picture or a
  *   corner is not finite
- *
- * Since: 0.1
  */
 gfloat
 cloth_quad_confidence (const ClothImage * image, const gfloat x[4],
@@ -144,9 +140,7 @@ middle_two (const gfloat v[4])
   return 0.5f * (sum - least - most);
 }
 
-/**
- * cloth_quad_shade:
- * @image: the picture
+/* @image: the picture
  * @x: columns of the four corners in ring order, px
  * @y: rows of the four corners, px
  * @black: whether the square is black on white, else white on black
@@ -157,8 +151,6 @@ middle_two (const gfloat v[4])
  * and one darker: it is the mean of the middle two.
  *
  * Returns: ratio, > 0; -1 where the square lies at the picture's edge
- *
- * Since: 0.1
  */
 gfloat
 cloth_quad_shade (const ClothImage * image, const gfloat x[4],
@@ -187,9 +179,7 @@ cloth_quad_shade (const ClothImage * image, const gfloat x[4],
   return middle_two (shade);
 }
 
-/**
- * cloth_quad_light:
- * @image: the picture
+/* @image: the picture
  * @x: columns of the four corners in ring order, px
  * @y: rows of the four corners, px
  * @black: whether the square is black on white, else white on black
@@ -198,8 +188,6 @@ cloth_quad_shade (const ClothImage * image, const gfloat x[4],
  * its edges over the brightest.
  *
  * Returns: ratio, no more than 1; 1 where the square lies at the picture's edge
- *
- * Since: 0.1
  */
 gfloat
 cloth_quad_light (const ClothImage * image, const gfloat x[4],

@@ -13,12 +13,7 @@
 /* Sharper edges look the same, px. */
 #define MIN_BLUR 0.25f
 
-/**
- * cloth_corner_default_params:
- *
- * Returns: parameters for squares of 12 px and more.
- *
- * Since: 0.1
+/* Returns: parameters for squares of 12 px and more.
  */
 ClothCornerParams
 cloth_corner_default_params (void)
@@ -359,9 +354,7 @@ covariance (const ClothCornerWindow * win, const Evaluation * e,
       fit->cov[0] > 0 && fit->cov[2] > 0;
 }
 
-/**
- * cloth_corner_refine:
- * @image: the picture
+/* @image: the picture
  * @x: where to start, px
  * @y: where to start, px
  * @params: the window and the start
@@ -377,8 +370,6 @@ covariance (const ClothCornerWindow * win, const Evaluation * e,
  * Returns: FALSE when the fit doesn't settle near its start, when the edges are within
  *   6 degrees of each other, when the window holds too few pixels or when the corner is
  *   uncertain by more than @params lets it move.
- *
- * Since: 0.1
  */
 gboolean
 cloth_corner_refine (const ClothImage * image, gfloat x, gfloat y,

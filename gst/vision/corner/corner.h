@@ -8,9 +8,7 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothCornerParams:
- * @radius: of the window, px, 2 to 12; it should not reach the next corners
+/* @radius: of the window, px, 2 to 12; it should not reach the next corners
  * @max_shift: the fit fails when it moves farther than this from its start, px
  * @blur: width of the edges to start from, px
  * @linear_light: whether to fit the squares of the grey levels. Films are coded with a
@@ -19,8 +17,6 @@ G_BEGIN_DECLS
  * @known_angles: whether @theta holds the start
  * @theta: directions of both edges to start from, radians from +x towards +y; they may
  *   be 20 degrees off
- *
- * Since: 0.1
  */
 typedef struct {
   gfloat radius;
@@ -31,9 +27,7 @@ typedef struct {
   gfloat theta[2];
 } ClothCornerParams;
 
-/**
- * ClothCornerFit:
- * @x: column of the corner, px, centre of the top-left pixel at 0
+/* @x: column of the corner, px, centre of the top-left pixel at 0
  * @y: row of the corner, px
  * @cov: covariance xx, xy, yy of (@x, @y), px²
  * @theta: directions of both edges, radians from +x towards +y, in the order of the start
@@ -46,8 +40,6 @@ typedef struct {
  *
  * A checker corner has c1 = c2 = 0, the corner of a square that stands alone
  * |c1| = |c2| = |c3|.
- *
- * Since: 0.1
  */
 typedef struct {
   gfloat x, y;

@@ -132,9 +132,7 @@ contrast_between (const ClothImage * image, const guint8 * levels, gfloat ax,
   return contrast;
 }
 
-/**
- * cloth_edge_contrast:
- * @image: the picture
+/* @image: the picture
  * @ax: column of one end, px
  * @ay: row of it
  * @bx: column of the other end
@@ -145,8 +143,6 @@ contrast_between (const ClothImage * image, const guint8 * levels, gfloat ax,
  *
  * Returns: mean difference of grey levels, positive if the bright side is the one reached
  *   by a turn from x towards y, negative if it is the other one, 0 if there is no such edge
- *
- * Since: 0.1
  */
 gfloat
 cloth_edge_contrast (const ClothImage * image, gfloat ax, gfloat ay,
@@ -155,9 +151,7 @@ cloth_edge_contrast (const ClothImage * image, gfloat ax, gfloat ay,
   return contrast_between (image, NULL, ax, ay, bx, by);
 }
 
-/**
- * cloth_edge_contrast_in_levels:
- * @image: the picture
+/* @image: the picture
  * @levels: (array fixed-size=256): what each grey level counts as
  * @ax: column of one end, px
  * @ay: row of it
@@ -167,8 +161,6 @@ cloth_edge_contrast (const ClothImage * image, gfloat ax, gfloat ay,
  * As cloth_edge_contrast() of the picture in these levels, which need not be made.
  *
  * Returns: as cloth_edge_contrast()
- *
- * Since: 0.1
  */
 gfloat
 cloth_edge_contrast_in_levels (const ClothImage * image,
@@ -198,9 +190,7 @@ crossing (const gfloat * at, gint k, gfloat level)
   return ((gfloat) k + (level - here) / (next - here)) / AROUND;
 }
 
-/**
- * cloth_edge_wedge:
- * @image: the picture
+/* @image: the picture
  * @x: column of a corner, px
  * @y: row of it
  * @radius: of a circle that reaches no other corner, px
@@ -213,8 +203,6 @@ crossing (const gfloat * at, gint k, gfloat level)
  * Finds the edges of the square that has a corner here, where they cross a circle.
  *
  * Returns: %FALSE when there is no such corner
- *
- * Since: 0.1
  */
 gboolean
 cloth_edge_wedge (const ClothImage * image, gfloat x, gfloat y,
@@ -287,9 +275,7 @@ steps_across (const ClothImage * image, gfloat x, gfloat y, gfloat nx,
   return TRUE;
 }
 
-/**
- * cloth_edge_walk:
- * @image: the picture
+/* @image: the picture
  * @x: column of the corner to start from, px
  * @y: row of it
  * @angle: direction in which the edge leaves it, rad from +x towards +y
@@ -303,8 +289,6 @@ steps_across (const ClothImage * image, gfloat x, gfloat y, gfloat nx,
  * Follows an edge, which may bend, to its end.
  *
  * Returns: %FALSE when it has no end within reach
- *
- * Since: 0.1
  */
 gboolean
 cloth_edge_walk (const ClothImage * image, gfloat x, gfloat y, gfloat angle,

@@ -53,12 +53,8 @@ round_weights (const gdouble * w, gint total, gint * rounded)
   return radius;
 }
 
-/**
- * cloth_saddle_kernel_init:
- * @kernel: (out caller-allocates): filled
+/* @kernel: (out caller-allocates): filled
  * @sigma: width of the Gaussian, px, 0.5 to 5
- *
- * Since: 0.1
  */
 void
 cloth_saddle_kernel_init (ClothSaddleKernel * kernel, gfloat sigma)
@@ -306,15 +302,11 @@ mask_cut_border (ClothSaddleMask * mask, const ClothImage * image, gint h)
   }
 }
 
-/**
- * cloth_saddle_mask_run:
- * @mask: its region set; the rest is filled
+/* @mask: its region set; the rest is filled
  * @kernel: the smoothing filter
  * @image: the picture
  * @threshold: a bit is set where the 16-bit determinant is below −@threshold
  * @level: the instruction set
- *
- * Since: 0.1
  */
 void
 cloth_saddle_mask_run (ClothSaddleMask * mask,

@@ -12,9 +12,7 @@ G_BEGIN_DECLS
 #define CLOTH_SADDLE_MAX_RADIUS 14
 #define CLOTH_SADDLE_MAX_STEP 3
 
-/**
- * ClothSaddleKernel:
- * @radius: taps on each side of the middle one
+/* @radius: taps on each side of the middle one
  * @step: distance h of the finite differences, px
  * @across: 2·@radius + 1 weights of the pass along rows, then a zero; their sum is 256
  *   or 128, and no even-odd pair exceeds 128, so that 255·pair fits 16 bits
@@ -36,9 +34,7 @@ typedef struct {
   gfloat scale;
 } ClothSaddleKernel;
 
-/**
- * ClothSaddleMask:
- * @x: column of the region in the picture
+/* @x: column of the region in the picture
  * @y: row of the region in the picture
  * @width: columns of the region
  * @height: rows of the region

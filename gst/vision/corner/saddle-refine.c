@@ -48,12 +48,8 @@ cloth_saddle_refiner_free (ClothSaddleRefiner * refiner)
     g_aligned_free (refiner);
 }
 
-/**
- * cloth_saddle_refiner_set:
- * @refiner: a refiner
+/* @refiner: a refiner
  * @sigma: width of the Gaussian, px; no more than 2.3 is used
- *
- * Since: 0.1
  */
 void
 cloth_saddle_refiner_set (ClothSaddleRefiner * refiner, gfloat sigma)
@@ -203,9 +199,7 @@ window (const ClothImage * image, gint x, gint y, guint8 * copy, gsize * stride)
   return copy;
 }
 
-/**
- * cloth_saddle_refiner_run:
- * @refiner: a refiner
+/* @refiner: a refiner
  * @image: the picture
  * @peak: where to start
  * @noise: standard deviation of the picture's noise, grey levels
@@ -218,8 +212,6 @@ window (const ClothImage * image, gint x, gint y, guint8 * copy, gsize * stride)
  * Covariance: of the gradient for white noise, through the inverse Hessian.
  *
  * Returns: FALSE when there is no saddle within 2 px and a bit of @peak.
- *
- * Since: 0.1
  */
 gboolean
 cloth_saddle_refiner_run (const ClothSaddleRefiner * refiner,

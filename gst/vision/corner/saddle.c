@@ -34,12 +34,7 @@ struct _ClothSaddleDetector
   gfloat noise;
 };
 
-/**
- * cloth_saddle_default_params:
- *
- * Returns: the parameters that suit a printed board filmed in focus.
- *
- * Since: 0.1
+/* Returns: the parameters that suit a printed board filmed in focus.
  */
 ClothSaddleParams
 cloth_saddle_default_params (void)
@@ -57,13 +52,8 @@ cloth_saddle_default_params (void)
   /* *INDENT-ON* */
 }
 
-/**
- * cloth_saddle_detector_new:
- *
- * Returns: (transfer full): a detector; it keeps its buffers from picture to picture, so
+/* Returns: (transfer full): a detector; it keeps its buffers from picture to picture, so
  *   that pictures of one size allocate nothing after the first. One thread at a time.
- *
- * Since: 0.1
  */
 ClothSaddleDetector *
 cloth_saddle_detector_new (void)
@@ -71,11 +61,7 @@ cloth_saddle_detector_new (void)
   return g_new0 (ClothSaddleDetector, 1);
 }
 
-/**
- * cloth_saddle_detector_free:
- * @detector: (transfer full) (nullable): freed
- *
- * Since: 0.1
+/* @detector: (transfer full) (nullable): freed
  */
 void
 cloth_saddle_detector_free (ClothSaddleDetector * detector)
@@ -448,9 +434,7 @@ in_range (gfloat value, gfloat low, gfloat high)
   return !(value > low) ? low : MIN (value, high);
 }
 
-/**
- * cloth_saddle_detector_run:
- * @detector: a detector
+/* @detector: a detector
  * @params: what to look for
  * @image: the picture, at most 65,536 pixels a side; read only during the call
  * @level: the highest instruction set to use; every one gives the same bytes
@@ -462,8 +446,6 @@ in_range (gfloat value, gfloat low, gfloat high)
  * A saddle's covariance is that of white noise of the picture's strength: as flat places
  * show it or, if that is more, as the corner model leaves unexplained around some of the
  * saddles. Where the corner model was fitted it is that of its own residual.
- *
- * Since: 0.1
  */
 void
 cloth_saddle_detector_run (ClothSaddleDetector * detector,
@@ -521,14 +503,10 @@ cloth_saddle_detector_run (ClothSaddleDetector * detector,
   }
 }
 
-/**
- * cloth_saddle_detector_get_candidates:
- * @detector: a detector
+/* @detector: a detector
  * @n_candidates: (out): how many
  *
  * Returns: (transfer none): the hyperbolic pixels of the last picture, row after row.
- *
- * Since: 0.1
  */
 const ClothSaddleCandidate *
 cloth_saddle_detector_get_candidates (const ClothSaddleDetector * detector,
@@ -538,15 +516,11 @@ cloth_saddle_detector_get_candidates (const ClothSaddleDetector * detector,
   return detector->candidates;
 }
 
-/**
- * cloth_saddle_detector_get_saddles:
- * @detector: a detector
+/* @detector: a detector
  * @n_saddles: (out): how many
  *
  * Returns: (transfer none): the refined saddles of the last picture, in the order of the
  *   rows of their strongest pixels.
- *
- * Since: 0.1
  */
 const ClothSaddle *
 cloth_saddle_detector_get_saddles (const ClothSaddleDetector * detector,
@@ -556,14 +530,10 @@ cloth_saddle_detector_get_saddles (const ClothSaddleDetector * detector,
   return detector->saddles;
 }
 
-/**
- * cloth_saddle_detector_was_cut:
- * @detector: a detector
+/* @detector: a detector
  *
  * Returns: whether the last picture had more candidates or saddles than allowed. Of
  *   candidates the strongest were kept, of saddles the topmost.
- *
- * Since: 0.1
  */
 gboolean
 cloth_saddle_detector_was_cut (const ClothSaddleDetector * detector)
@@ -571,13 +541,9 @@ cloth_saddle_detector_was_cut (const ClothSaddleDetector * detector)
   return detector->cut;
 }
 
-/**
- * cloth_saddle_detector_get_epsilon:
- * @detector: a detector
+/* @detector: a detector
  *
  * Returns: the bound that was in force for the last picture, grey levels² / px⁴.
- *
- * Since: 0.1
  */
 gfloat
 cloth_saddle_detector_get_epsilon (const ClothSaddleDetector * detector)
@@ -585,13 +551,9 @@ cloth_saddle_detector_get_epsilon (const ClothSaddleDetector * detector)
   return detector->epsilon;
 }
 
-/**
- * cloth_saddle_detector_get_noise:
- * @detector: a detector
+/* @detector: a detector
  *
  * Returns: the last picture's noise, standard deviation in grey levels.
- *
- * Since: 0.1
  */
 gfloat
 cloth_saddle_detector_get_noise (const ClothSaddleDetector * detector)

@@ -11,17 +11,13 @@ G_BEGIN_DECLS
 /* The most refined saddles, and the most candidates, that one picture may give. */
 #define CLOTH_SADDLE_MAX 65536
 
-/**
- * ClothSaddle:
- * @x: column of the saddle, px, centre of the top-left pixel at 0
+/* @x: column of the saddle, px, centre of the top-left pixel at 0
  * @y: row of the saddle, px
  * @response: −Det of the Hessian of the smoothed intensity there, grey levels² / px⁴
  * @axis: angle in [0, π) of the axis along which the intensity has its *maximum curvature
  *   upwards*, i.e. the bisector that runs through the two bright quadrants, radians,
  *   from +x towards +y
  * @cov: covariance xx, xy, yy of (@x, @y), px²
- *
- * Since: 0.1
  */
 typedef struct {
   gfloat x, y;
@@ -36,16 +32,12 @@ typedef struct {
   gfloat response;
 } ClothSaddleCandidate;
 
-/**
- * ClothSaddleRefine:
- * @CLOTH_SADDLE_REFINE_NONE: candidates only
+/* @CLOTH_SADDLE_REFINE_NONE: candidates only
  * @CLOTH_SADDLE_REFINE_STREAM: the saddle of the smoothed intensity, by Newton's method
  * @CLOTH_SADDLE_REFINE_MODEL: after that a fit of the corner model of
  *   gst/vision/corner/corner.h; slower and more exact
  *
  * How the sub-pixel position is found.
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_SADDLE_REFINE_NONE,
@@ -53,9 +45,7 @@ typedef enum {
   CLOTH_SADDLE_REFINE_MODEL
 } ClothSaddleRefine;
 
-/**
- * ClothSaddleParams:
- * @sigma: width of the Gaussian that smooths the picture, px, 0.5 to 5
+/* @sigma: width of the Gaussian that smooths the picture, px, 0.5 to 5
  * @epsilon: a pixel is a candidate when the determinant of the Hessian is below
  *   −@epsilon, grey levels² / px⁴, >= 0
  * @relative: the same bound as a share of the response that a sharp corner with the
@@ -73,8 +63,6 @@ typedef enum {
  * @max_saddles: the most refined saddles, at most %CLOTH_SADDLE_MAX
  *
  * Values out of range are brought into it; the region is cut to the picture.
- *
- * Since: 0.1
  */
 typedef struct {
   gfloat sigma;

@@ -19,13 +19,8 @@
 #define STEPS 5
 #define STEP_SHARE 0.2
 
-/**
- * cloth_dot_default_params:
- *
- * Returns: parameters for dots of 2 to 20 px radius: contrast 20, share 0.2, area from
+/* Returns: parameters for dots of 2 to 20 px radius: contrast 20, share 0.2, area from
  *   10 px on, diameter to 40 px, roundness 0.9
- *
- * Since: 0.1
  */
 ClothDotParams
 cloth_dot_default_params (void)
@@ -34,12 +29,7 @@ cloth_dot_default_params (void)
   20, 0.2f, 10, 40, 0.9f};
 }
 
-/**
- * cloth_dot_detector_new:
- *
- * Returns: (transfer full): a detector; its memory is used again for each picture
- *
- * Since: 0.1
+/* Returns: (transfer full): a detector; its memory is used again for each picture
  */
 ClothDotDetector *
 cloth_dot_detector_new (void)
@@ -54,11 +44,7 @@ cloth_dot_detector_new (void)
   return detector;
 }
 
-/**
- * cloth_dot_detector_free:
- * @detector: (nullable) (transfer full): a detector
- *
- * Since: 0.1
+/* @detector: (nullable) (transfer full): a detector
  */
 void
 cloth_dot_detector_free (ClothDotDetector * detector)
@@ -333,9 +319,7 @@ find_candidates (ClothDotDetector * detector)
   }
 }
 
-/**
- * cloth_dot_detector_run:
- * @detector: a detector
+/* @detector: a detector
  * @params: thresholds
  * @image: a picture, at most 32767 px each way (what lies beyond is not looked at)
  * @level: instruction set; all give the same
@@ -350,8 +334,6 @@ find_candidates (ClothDotDetector * detector)
  * Dots that the picture's border cuts are left out: their centres are not known. The
  * dots are in the order of their topmost pixels, row by row, but for those that were cut
  * from one spot, which follow each other.
- *
- * Since: 0.1
  */
 void
 cloth_dot_detector_run (ClothDotDetector * detector,
@@ -370,15 +352,11 @@ cloth_dot_detector_run (ClothDotDetector * detector,
   detector->image = NULL;
 }
 
-/**
- * cloth_dot_detector_get_dots:
- * @detector: a detector
+/* @detector: a detector
  * @n_dots: (out): how many
  *
  * Returns: (transfer none) (array length=n_dots): the dots of the last picture, until
  *   the next one
- *
- * Since: 0.1
  */
 const ClothDot *
 cloth_dot_detector_get_dots (const ClothDotDetector * detector, guint * n_dots)
@@ -387,14 +365,10 @@ cloth_dot_detector_get_dots (const ClothDotDetector * detector, guint * n_dots)
   return (const ClothDot *) (gpointer) detector->dots->data;
 }
 
-/**
- * cloth_dot_detector_was_cut:
- * @detector: a detector
+/* @detector: a detector
  *
  * Returns: whether the last picture had more dots than %CLOTH_DOT_MAX, or more specks
  *   than are looked at
- *
- * Since: 0.1
  */
 gboolean
 cloth_dot_detector_was_cut (const ClothDotDetector * detector)
@@ -402,14 +376,10 @@ cloth_dot_detector_was_cut (const ClothDotDetector * detector)
   return detector->cut;
 }
 
-/**
- * cloth_dot_detector_get_noise:
- * @detector: a detector
+/* @detector: a detector
  *
  * Returns: standard deviation of the last picture's noise, grey levels, from the insides
  *   of its dots; 0 where none is wide enough to tell
- *
- * Since: 0.1
  */
 gfloat
 cloth_dot_detector_get_noise (const ClothDotDetector * detector)

@@ -8,27 +8,15 @@
 
 G_BEGIN_DECLS
 
-/**
- * CLOTH_DOT_MAX:
- *
- * The most dots that one picture may give.
- *
- * Since: 0.1
+/* The most dots that one picture may give.
  */
 #define CLOTH_DOT_MAX 65536
 
-/**
- * CLOTH_DOT_MAX_DIAMETER:
- *
- * The widest dots that can be asked for, px.
- *
- * Since: 0.1
+/* The widest dots that can be asked for, px.
  */
 #define CLOTH_DOT_MAX_DIAMETER 200
 
-/**
- * ClothDotImage:
- * @luma: the picture's luma, or a grey picture
+/* @luma: the picture's luma, or a grey picture
  * @chroma: (nullable): top-left Cb and Cr sample; %NULL for a grey picture
  * @chroma_stride: bytes from one chroma row to the next
  * @chroma_step: bytes from one chroma sample to the next in a row: 1 for planes of their
@@ -36,8 +24,6 @@ G_BEGIN_DECLS
  * @chroma_shift: chroma is halved this many times across and down: 1, 1 for 4:2:0
  *
  * A view of a planar picture; owns nothing.
- *
- * Since: 0.1
  */
 typedef struct {
   ClothImage luma;
@@ -47,9 +33,7 @@ typedef struct {
   gint chroma_shift[2];
 } ClothDotImage;
 
-/**
- * ClothDot:
- * @x: column of the centre, px, centre of the top-left pixel at 0
+/* @x: column of the centre, px, centre of the top-left pixel at 0
  * @y: row of the centre, px
  * @cov: covariance xx, xy, yy of (@x, @y), px²: the picture's noise, taken for white, and
  *   what the method leaves
@@ -61,8 +45,6 @@ typedef struct {
  *   picture
  * @touches: whether it was cut from another dot or spot that it runs into; @cov then says
  *   too little
- *
- * Since: 0.1
  */
 typedef struct {
   gfloat x, y;
@@ -74,9 +56,7 @@ typedef struct {
   gboolean touches;
 } ClothDot;
 
-/**
- * ClothDotParams:
- * @contrast: least luma of a dot above the ground around it, grey levels, 1 to 254; never
+/* @contrast: least luma of a dot above the ground around it, grey levels, 1 to 254; never
  *   less than a quarter of the ground's
  * @share: least luma above the ground as a share of the brightest around, 0 to 0.9
  * @min_area: lower threshold of the area, px, at least 4
@@ -84,8 +64,6 @@ typedef struct {
  * @roundness: least area over that of the ellipse with the same second moments, 0 to 1
  *
  * Values out of range are brought into it.
- *
- * Since: 0.1
  */
 typedef struct {
   gfloat contrast;

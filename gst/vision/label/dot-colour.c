@@ -35,9 +35,7 @@ set_means (ClothDotColourModel * model, gint n)
   }
 }
 
-/**
- * cloth_dot_colour_model_init:
- * @model: (out caller-allocates): the model
+/* @model: (out caller-allocates): the model
  * @n: number of colours, 2 to %CLOTH_DOT_COLOURS_MAX
  * @rgb: (array length=n): how each is printed, 0 to 255 (sRGB)
  * @kr: share of red in the pictures' luma: 0.2126 for BT.709, 0.299 for BT.601
@@ -45,8 +43,6 @@ set_means (ClothDotColourModel * model, gint n)
  *
  * Expects the colours as they are printed. With cloth_dot_colour_model_adapt() and
  * cloth_dot_colour_model_learn() it becomes what a camera sees.
- *
- * Since: 0.1
  */
 void
 cloth_dot_colour_model_init (ClothDotColourModel * model, gint n,
@@ -102,16 +98,12 @@ density (const ClothDotColourClass * class, const gfloat chroma[2],
   return expf (-0.5f * d2) / (2 * (gfloat) G_PI * sqrtf (det));
 }
 
-/**
- * cloth_dot_colour_model_classify:
- * @model: the model
+/* @model: the model
  * @dots: (array length=n_dots): dots
  * @n_dots: how many
  * @log_likelihoods: (out caller-allocates): for each dot @model->n floats: the log
  *   density of its chroma over brightness if it has that colour. Outliers are part of
  *   each, so that a dot that looks like none of them tells nothing
- *
- * Since: 0.1
  */
 void
 cloth_dot_colour_model_classify (const ClothDotColourModel * model,
@@ -278,9 +270,7 @@ find_light (const ClothDotColourModel * model, gfloat saturation,
   return best;
 }
 
-/**
- * cloth_dot_colour_model_adapt:
- * @model: (inout): the model, as printed or from a chart
+/* @model: (inout): the model, as printed or from a chart
  * @dots: (array length=n_dots): dots of a picture or more
  * @n_dots: how many
  *
@@ -290,8 +280,6 @@ find_light (const ClothDotColourModel * model, gfloat saturation,
  * Laird & Rubin 1977), with the print as prior. The likeliest of these is taken.
  *
  * Returns: whether the dots show such colours; if not, @model stays as it was
- *
- * Since: 0.1
  */
 gboolean
 cloth_dot_colour_model_adapt (ClothDotColourModel * model,
@@ -377,9 +365,7 @@ learn_ground (ClothDotColourModel * model, const ClothDot * dots, guint n_dots,
   }
 }
 
-/**
- * cloth_dot_colour_model_learn:
- * @model: (inout): the model
+/* @model: (inout): the model
  * @dots: (array length=n_dots): dots of a picture
  * @n_dots: how many
  * @colours: (array length=n_dots): which colour the label of each dot says it has; -1 for
@@ -388,8 +374,6 @@ learn_ground (ClothDotColourModel * model, const ClothDot * dots, guint n_dots,
  * Learns from labelled dots, picture by picture: means and covariances of the colours
  * that forget slowly and that hardly heed dots far from the others, and what the ground
  * adds.
- *
- * Since: 0.1
  */
 void
 cloth_dot_colour_model_learn (ClothDotColourModel * model,
@@ -471,9 +455,7 @@ nearest_hue (const gfloat * hues, gint n, gfloat hue)
 /* Pixels that vote: within this share of the ellipse. */
 #define VOTES_WITHIN 0.8f
 
-/**
- * cloth_dot_colour_model_vote:
- * @model: the model; only the hues of its means count
+/* @model: the model; only the hues of its means count
  * @image: the picture
  * @dots: (array length=n_dots): its dots
  * @n_dots: how many
@@ -482,8 +464,6 @@ nearest_hue (const gfloat * hues, gint n, gfloat hue)
  *
  * Classifies as Scholz et al. 2005, 4.1 do: every pixel inside a dot votes for the colour
  * whose hue is nearest to its own.
- *
- * Since: 0.1
  */
 void
 cloth_dot_colour_model_vote (const ClothDotColourModel * model,

@@ -8,24 +8,18 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothDotColourClass:
- * @mean: Cb and Cr of the dot over its luma, both above the ground's
+/* @mean: Cb and Cr of the dot over its luma, both above the ground's
  * @cov: covariance xx, xy, yy of them from dot to dot, without the picture's noise
  *
  * One colour as a camera sees it. What shading does to a colour drops out of its
  * @mean.
- *
- * Since: 0.1
  */
 typedef struct {
   gfloat mean[2];
   gfloat cov[3];
 } ClothDotColourClass;
 
-/**
- * ClothDotColourModel:
- * @n: number of colours, 2 to %CLOTH_DOT_COLOURS_MAX
+/* @n: number of colours, 2 to %CLOTH_DOT_COLOURS_MAX
  * @classes: the first @n of them
  * @ground: Cb and Cr of the ground, grey levels from 128
  * @noise: standard deviation of a dot's mean Cb and Cr, grey levels
@@ -35,8 +29,6 @@ typedef struct {
  * @kb: share of blue in the pictures' luma
  *
  * The colours of the dots as one camera sees them. Plain data: copy it to keep it.
- *
- * Since: 0.1
  */
 typedef struct {
   gint n;

@@ -16,13 +16,8 @@
  * swapped. */
 #define SWAPPED 5.0f
 
-/**
- * cloth_dot_label_default_params:
- *
- * Returns: parameters: change of lattice vectors 0.4, colour errors 0.1, lead 6, seen
+/* Returns: parameters: change of lattice vectors 0.4, colour errors 0.1, lead 6, seen
  *   from both sides, not the paper's way; its regions of 20 dots
- *
- * Since: 0.1
  */
 ClothDotLabelParams
 cloth_dot_label_default_params (void)
@@ -62,9 +57,7 @@ sort_cells (ClothDotLabeller * labeller)
   labeller->of_colour[labeller->n_colours] = k;
 }
 
-/**
- * cloth_dot_labeller_new:
- * @columns: dots in a row of the array, 3 to 400
+/* @columns: dots in a row of the array, 3 to 400
  * @rows: dots in a column, 3 to 400
  * @n_colours: how many colours, 2 to %CLOTH_DOT_COLOURS_MAX
  * @matrix: (array): @rows·@columns bytes: which colour each dot has
@@ -72,8 +65,6 @@ sort_cells (ClothDotLabeller * labeller)
  *
  * Returns: (transfer full): a labeller for one camera's pictures; %NULL with
  *   %G_IO_ERROR_INVALID_ARGUMENT when a number is out of its range
- *
- * Since: 0.1
  */
 ClothDotLabeller *
 cloth_dot_labeller_new (gint columns, gint rows, gint n_colours,
@@ -120,11 +111,7 @@ cloth_dot_labeller_new (gint columns, gint rows, gint n_colours,
   return labeller;
 }
 
-/**
- * cloth_dot_labeller_free:
- * @labeller: (nullable) (transfer full): a labeller
- *
- * Since: 0.1
+/* @labeller: (nullable) (transfer full): a labeller
  */
 void
 cloth_dot_labeller_free (ClothDotLabeller * labeller)
@@ -179,9 +166,7 @@ within (gfloat value, gfloat least, gfloat most)
   return value >= least ? MIN (value, most) : least;
 }
 
-/**
- * cloth_dot_labeller_run:
- * @labeller: a labeller
+/* @labeller: a labeller
  * @params: constants
  * @dots: (array length=n_dots): the dots of the next picture
  * @n_dots: how many, at most %CLOTH_DOT_MAX (those beyond get no label)
@@ -199,8 +184,6 @@ within (gfloat value, gfloat least, gfloat most)
  *
  * Each label is given at most once. Dots that are in no patch, and patches that no
  * placing explains well enough, get none.
- *
- * Since: 0.1
  */
 void
 cloth_dot_labeller_run (ClothDotLabeller * labeller,
@@ -231,15 +214,11 @@ cloth_dot_labeller_run (ClothDotLabeller * labeller,
   cloth_dot_label_remember (labeller);
 }
 
-/**
- * cloth_dot_labeller_get_labels:
- * @labeller: a labeller
+/* @labeller: a labeller
  * @n_labels: (out): how many: one for each dot
  *
  * Returns: (transfer none) (array length=n_labels): labels of the dots of the last
  *   picture, in their order, until the next one
- *
- * Since: 0.1
  */
 const ClothDotLabel *
 cloth_dot_labeller_get_labels (const ClothDotLabeller * labeller,
@@ -249,9 +228,7 @@ cloth_dot_labeller_get_labels (const ClothDotLabeller * labeller,
   return labeller->labels;
 }
 
-/**
- * cloth_dot_labeller_find_swap:
- * @labeller: a labeller
+/* @labeller: a labeller
  * @a: (out): a colour
  * @b: (out): another
  *
@@ -260,8 +237,6 @@ cloth_dot_labeller_get_labels (const ClothDotLabeller * labeller,
  * does not hang on the colour of its own dot alone, so that some are found all the same.
  *
  * Returns: whether two colours are swapped
- *
- * Since: 0.1
  */
 gboolean
 cloth_dot_labeller_find_swap (const ClothDotLabeller * labeller, gint * a,
@@ -287,13 +262,9 @@ cloth_dot_labeller_find_swap (const ClothDotLabeller * labeller, gint * a,
   return FALSE;
 }
 
-/**
- * cloth_dot_labeller_reset:
- * @labeller: a labeller
+/* @labeller: a labeller
  *
  * Forgets the former pictures: the next one is of another film, or another part of it.
- *
- * Since: 0.1
  */
 void
 cloth_dot_labeller_reset (ClothDotLabeller * labeller)

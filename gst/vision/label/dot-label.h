@@ -7,26 +7,17 @@
 
 G_BEGIN_DECLS
 
-/**
- * CLOTH_DOT_COLOURS_MAX:
- *
- * Most colours of dots.
- *
- * Since: 0.1
+/* Most colours of dots.
  */
 #define CLOTH_DOT_COLOURS_MAX 8
 
-/**
- * ClothDotLabel:
- * @column: of the array, -1 for no label
+/* @column: of the array, -1 for no label
  * @row: of the array, -1 for no label
  * @confidence: log-odds of the label, nats: of the placing of its patch against the next
  *   best and against dots of random colours, the lesser; 0 without a label
  * @mirrored: whether the print is seen from behind
  * @patch: which connected piece of the lattice it lies in, from 0; %G_MAXUINT without a
  *   label
- *
- * Since: 0.1
  */
 typedef struct {
   gint column, row;
@@ -35,9 +26,7 @@ typedef struct {
   guint patch;
 } ClothDotLabel;
 
-/**
- * ClothDotLabelParams:
- * @c: greatest change of a lattice vector from dot to dot, as a share of its length:
+/* @c: greatest change of a lattice vector from dot to dot, as a share of its length:
  *   ‖u′−u‖ < c‖u‖, 0 to 1; 0.4
  * @colour_error: share of the dots that are taken for having any colour at all, 0.001 to
  *   0.9, until labels have shown how many look like another colour; 0.1, the worst of the
@@ -50,8 +39,6 @@ typedef struct {
  * @least_region: fewest dots of a region that the paper's way keeps, at least 3; 20
  *
  * Values out of range are brought into it.
- *
- * Since: 0.1
  */
 typedef struct {
   gfloat c;

@@ -30,12 +30,7 @@
 static const gint diagonal_column[4] = { -1, 1, 1, -1 };
 static const gint diagonal_row[4] = { -1, -1, 1, 1 };
 
-/**
- * cloth_quad_default_params:
- *
- * Returns: the paper's constants, linking on, black squares.
- *
- * Since: 0.1
+/* Returns: the paper's constants, linking on, black squares.
  */
 ClothQuadParams
 cloth_quad_default_params (void)
@@ -46,14 +41,10 @@ cloth_quad_default_params (void)
         CLOTH_SQUARES_BLACK};
 }
 
-/**
- * cloth_quad_tracker_new:
- * @pattern: the board; copied
+/* @pattern: the board; copied
  *
  * Returns: (transfer full): a tracker for that board. It keeps its memory from picture to
  *   picture and allocates none in steady state.
- *
- * Since: 0.1
  */
 ClothQuadTracker *
 cloth_quad_tracker_new (const ClothPattern * pattern)
@@ -92,11 +83,7 @@ cloth_quad_tracker_new (const ClothPattern * pattern)
   return tracker;
 }
 
-/**
- * cloth_quad_tracker_free:
- * @tracker: (transfer full): the tracker
- *
- * Since: 0.1
+/* @tracker: (transfer full): the tracker
  */
 void
 cloth_quad_tracker_free (ClothQuadTracker * tracker)
@@ -126,13 +113,9 @@ cloth_quad_tracker_free (ClothQuadTracker * tracker)
   g_free (tracker);
 }
 
-/**
- * cloth_quad_tracker_reset:
- * @tracker: the tracker
+/* @tracker: the tracker
  *
  * Forgets all squares and seeds, as at the start of another film.
- *
- * Since: 0.1
  */
 void
 cloth_quad_tracker_reset (ClothQuadTracker * tracker)
@@ -151,9 +134,7 @@ cloth_quad_tracker_reset (ClothQuadTracker * tracker)
   g_array_set_size (tracker->seeds, 0);
 }
 
-/**
- * cloth_quad_tracker_seed:
- * @tracker: the tracker
+/* @tracker: the tracker
  * @x: columns of the corners of one square, roughly, px: top-left, top-right,
  *   bottom-right, bottom-left as they lie on the flat board
  * @y: rows of them
@@ -163,8 +144,6 @@ cloth_quad_tracker_reset (ClothQuadTracker * tracker)
  * Tells the tracker where a square lies in the next picture (section 4 of the paper). A
  * square without place on the board counts as one in the board's middle, unless rim or
  * code say otherwise.
- *
- * Since: 0.1
  */
 void
 cloth_quad_tracker_seed (ClothQuadTracker * tracker, const gfloat x[4],
@@ -473,9 +452,7 @@ conclude (ClothQuadTracker * tracker)
     }
 }
 
-/**
- * cloth_quad_tracker_run:
- * @tracker: the tracker
+/* @tracker: the tracker
  * @params: parameters; may change from picture to picture
  * @image: the next picture
  * @saddles: (array length=n_saddles): its refined saddles
@@ -488,8 +465,6 @@ conclude (ClothQuadTracker * tracker)
  *
  * Returns: (array length=n_quads) (transfer none): squares tracked, predicted and just
  *   lost, by row and column; valid until the next call
- *
- * Since: 0.1
  */
 const ClothQuad *
 cloth_quad_tracker_run (ClothQuadTracker * tracker,

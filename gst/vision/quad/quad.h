@@ -9,14 +9,10 @@
 
 G_BEGIN_DECLS
 
-/**
- * ClothQuadState:
- * @CLOTH_QUAD_TRACKED: seen in this picture
+/* @CLOTH_QUAD_TRACKED: seen in this picture
  * @CLOTH_QUAD_PREDICTED: not seen; placed by its past motion and its neighbours
  * @CLOTH_QUAD_LOST: was tracked or predicted in the last picture and is no more; its
  *   corners are where it was guessed last
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_QUAD_TRACKED,
@@ -24,15 +20,11 @@ typedef enum {
   CLOTH_QUAD_LOST
 } ClothQuadState;
 
-/**
- * ClothSquares:
- * @CLOTH_SQUARES_BLACK: the black squares, as the paper does
+/* @CLOTH_SQUARES_BLACK: the black squares, as the paper does
  * @CLOTH_SQUARES_WHITE: the white ones
  * @CLOTH_SQUARES_BOTH: all of them
  *
  * Which squares are tracked.
- *
- * Since: 0.1
  */
 typedef enum {
   CLOTH_SQUARES_BLACK,
@@ -40,9 +32,7 @@ typedef enum {
   CLOTH_SQUARES_BOTH
 } ClothSquares;
 
-/**
- * ClothQuad:
- * @column: column of the square on the board
+/* @column: column of the square on the board
  * @row: row of it
  * @state: whether it was seen
  * @black: its colour
@@ -51,8 +41,6 @@ typedef enum {
  *   lie on the flat board
  * @y: rows of them
  * @cov: covariance xx, xy, yy of each corner, px²
- *
- * Since: 0.1
  */
 typedef struct {
   gint column, row;
@@ -63,9 +51,7 @@ typedef struct {
   gfloat cov[4][3];
 } ClothQuad;
 
-/**
- * ClothQuadParams:
- * @alpha: width of the template's lapels over the square's edge (paper: 0.25)
+/* @alpha: width of the template's lapels over the square's edge (paper: 0.25)
  * @c_low: confidence below which a square is given up (paper: 0.62)
  * @c_high: confidence at which the search for a better match stops (paper: 0.75)
  * @c_pred: confidence from which a square may predict its neighbours (paper: 0.7)
@@ -76,8 +62,6 @@ typedef struct {
  * @link: whether to join saddles into patches first; without it a square must be given and
  *   the tracker is the paper's alone
  * @squares: which squares are tracked
- *
- * Since: 0.1
  */
 typedef struct {
   gfloat alpha;
