@@ -1,5 +1,5 @@
 /*! Made by gst/gap/report/web/build.mjs: do not edit.
-sources sha256 083596a578ab8046166322c20e9dac4a5c6a1ea949f32bfb61372f845236c67f
+sources sha256 5e4682d1e1aafaf257db1afd3cbc5839b7bc078ea7c23bab3f0c99de577159e0
 below sha256 a77da81ab7b171743134c35b4d954fed275086e2b1fb05ca92cf3f258ec13bb6
 
 Our own part: SPDX-License-Identifier: LGPL-2.1-or-later. With it come
