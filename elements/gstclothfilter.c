@@ -8,6 +8,7 @@
 
 #include <gst/cloth/cloth.h>
 
+#include "elements/gstclothproperties.h"
 #include "elements/gstclothutil.h"
 
 GST_DEBUG_CATEGORY_STATIC (cloth_filter_debug);
@@ -20,11 +21,14 @@ typedef struct
   guint64 count;
 } GstClothFilterPrivate;
 
-enum
-{
-  PROP_0,
-  PROP_CAMERA
+/* *INDENT-OFF* */
+static const GstClothProperty properties[] = {
+  {"camera", "Camera",
+    "Name of the camera in the rig, which is written into the metadata",
+    G_TYPE_STRING, GST_CLOTH_SETTING (GstClothFilterPrivate, camera),
+    GST_PARAM_MUTABLE_PLAYING},
 };
+/* *INDENT-ON* */
 
 #define FILTER_CAPS GST_VIDEO_CAPS_MAKE (GST_CLOTH_FILTER_FORMATS) \
     ", width=(int)[ 1, 16384 ], height=(int)[ 1, 16384 ]"
@@ -174,49 +178,12 @@ gst_cloth_filter_transform_ip (GstBaseTransform * trans, GstBuffer * buffer)
 }
 
 static void
-gst_cloth_filter_set_property (GObject * object, guint id,
-    const GValue * value, GParamSpec * pspec)
-{
-  GstClothFilterPrivate *priv =
-      gst_cloth_filter_get_instance_private (GST_CLOTH_FILTER (object));
-
-  switch (id) {
-    case PROP_CAMERA:
-      GST_OBJECT_LOCK (object);
-      g_free (priv->camera);
-      priv->camera = g_value_dup_string (value);
-      GST_OBJECT_UNLOCK (object);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
-  }
-}
-
-static void
-gst_cloth_filter_get_property (GObject * object, guint id, GValue * value,
-    GParamSpec * pspec)
-{
-  GstClothFilterPrivate *priv =
-      gst_cloth_filter_get_instance_private (GST_CLOTH_FILTER (object));
-
-  switch (id) {
-    case PROP_CAMERA:
-      GST_OBJECT_LOCK (object);
-      g_value_set_string (value, priv->camera);
-      GST_OBJECT_UNLOCK (object);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
-  }
-}
-
-static void
 gst_cloth_filter_finalize (GObject * object)
 {
   GstClothFilterPrivate *priv =
       gst_cloth_filter_get_instance_private (GST_CLOTH_FILTER (object));
 
-  g_free (priv->camera);
+  gst_cloth_clear_settings (properties, G_N_ELEMENTS (properties), priv);
   G_OBJECT_CLASS (gst_cloth_filter_parent_class)->finalize (object);
 }
 
@@ -226,17 +193,14 @@ gst_cloth_filter_class_init (GstClothFilterClass * klass)
   GObjectClass *object_class = G_OBJECT_CLASS (klass);
   GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
   GstBaseTransformClass *trans_class = GST_BASE_TRANSFORM_CLASS (klass);
+  const GstClothFilterPrivate defaults = { NULL };
 
   GST_DEBUG_CATEGORY_INIT (cloth_filter_debug, "clothfilter", 0,
       "base of elements that look at pictures");
-  object_class->set_property = gst_cloth_filter_set_property;
-  object_class->get_property = gst_cloth_filter_get_property;
   object_class->finalize = gst_cloth_filter_finalize;
-  g_object_class_install_property (object_class, PROP_CAMERA,
-      g_param_spec_string ("camera", "Camera",
-          "Name of the camera in the rig, which is written into the metadata",
-          NULL, G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-          GST_PARAM_MUTABLE_PLAYING));
+  gst_cloth_install_properties (object_class, properties,
+      G_N_ELEMENTS (properties), &defaults,
+      g_type_class_get_instance_private_offset (klass));
   gst_element_class_add_static_pad_template (element_class, &sink_template);
   gst_element_class_add_static_pad_template (element_class, &src_template);
   trans_class->start = gst_cloth_filter_start;

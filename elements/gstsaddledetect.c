@@ -26,6 +26,7 @@
 
 #include <gst/cloth/cloth.h>
 
+#include "elements/gstclothproperties.h"
 #include "gst/vision/corner/saddle.h"
 
 GST_DEBUG_CATEGORY_STATIC (saddle_detect_debug);
@@ -36,21 +37,55 @@ G_STATIC_ASSERT (sizeof (ClothSaddle) == sizeof (GstClothSaddle));
 G_STATIC_ASSERT (G_STRUCT_OFFSET (ClothSaddle, cov) ==
     G_STRUCT_OFFSET (GstClothSaddle, cov_xx));
 
-enum
-{
-  PROP_0,
-  PROP_SIGMA,
-  PROP_EPSILON,
-  PROP_RELATIVE,
-  PROP_ROI_X,
-  PROP_ROI_Y,
-  PROP_ROI_WIDTH,
-  PROP_ROI_HEIGHT,
-  PROP_REFINE,
-  PROP_RADIUS,
-  PROP_MAX_CANDIDATES,
-  PROP_MAX_SADDLES,
+static const GEnumValue refine_values[] = {
+  {CLOTH_SADDLE_REFINE_NONE, "Candidates only", "none"},
+  {CLOTH_SADDLE_REFINE_STREAM,
+      "The saddle of the smoothed intensity", "stream"},
+  {CLOTH_SADDLE_REFINE_MODEL,
+      "A fit of two crossing edges; slower and more exact", "model"},
+  {0, NULL, NULL}
 };
+
+#define SETTING(member) GST_CLOTH_SETTING (ClothSaddleParams, member)
+
+/* *INDENT-OFF* */
+static const GstClothProperty properties[] = {
+  {"sigma", "Sigma", "Width of the Gaussian that smooths the picture, px",
+    G_TYPE_DOUBLE, SETTING (sigma), GST_PARAM_MUTABLE_PLAYING, 0.5, 5},
+  {"epsilon", "Epsilon",
+    "A pixel is a candidate when the determinant of the Hessian is below "
+    "minus this, grey levels squared per px^4",
+    G_TYPE_DOUBLE, SETTING (epsilon), GST_PARAM_MUTABLE_PLAYING, 0, 1e6},
+  {"relative-epsilon", "Relative epsilon",
+    "The same bound as a share of what a sharp corner with the picture's "
+    "own contrast would give; the larger of both holds",
+    G_TYPE_DOUBLE, SETTING (relative), GST_PARAM_MUTABLE_PLAYING, 0, 1},
+  {"roi-x", "Region's left", "Left column of the region searched",
+    G_TYPE_INT, SETTING (roi_x), GST_PARAM_MUTABLE_PLAYING, 0, 16383},
+  {"roi-y", "Region's top", "Top row of the region searched",
+    G_TYPE_INT, SETTING (roi_y), GST_PARAM_MUTABLE_PLAYING, 0, 16383},
+  {"roi-width", "Region's width",
+    "Columns searched (0 = up to the right border)",
+    G_TYPE_INT, SETTING (roi_width), GST_PARAM_MUTABLE_PLAYING, 0, 16384},
+  {"roi-height", "Region's height",
+    "Rows searched (0 = down to the lower border)",
+    G_TYPE_INT, SETTING (roi_height), GST_PARAM_MUTABLE_PLAYING, 0, 16384},
+  {"refine", "Refine", "How the place to a fraction of a pixel is found",
+    G_TYPE_ENUM, SETTING (refine), GST_PARAM_MUTABLE_PLAYING, 0, 0,
+    "GstSaddleDetectRefine", refine_values},
+  {"radius", "Radius",
+    "Window radius of refine=model, px; at most half the distance to the "
+    "next saddle is used. Bent cloth wants 4 to 5, a flat board 8 to 10",
+    G_TYPE_DOUBLE, SETTING (radius), GST_PARAM_MUTABLE_PLAYING, 2, 12},
+  {"max-candidates", "Most candidates",
+    "When more pixels than this pass, epsilon is raised for the picture",
+    G_TYPE_UINT, SETTING (max_candidates), GST_PARAM_MUTABLE_PLAYING, 0,
+    CLOTH_SADDLE_MAX},
+  {"max-saddles", "Most saddles", "The most refined saddles a picture",
+    G_TYPE_UINT, SETTING (max_saddles), GST_PARAM_MUTABLE_PLAYING, 0,
+    CLOTH_SADDLE_MAX},
+};
+/* *INDENT-ON* */
 
 struct _GstSaddleDetect
 {
@@ -72,123 +107,6 @@ G_DEFINE_TYPE_WITH_CODE (GstSaddleDetect, gst_saddle_detect,
         "corners of checkerboards"));
 GST_ELEMENT_REGISTER_DEFINE (saddledetect, "saddledetect", GST_RANK_NONE,
     GST_TYPE_SADDLE_DETECT);
-
-#define GST_TYPE_SADDLE_DETECT_REFINE (gst_saddle_detect_refine_get_type ())
-static GType
-gst_saddle_detect_refine_get_type (void)
-{
-  static gsize type = 0;
-  static const GEnumValue values[] = {
-    {CLOTH_SADDLE_REFINE_NONE, "Candidates only", "none"},
-    {CLOTH_SADDLE_REFINE_STREAM,
-        "The saddle of the smoothed intensity", "stream"},
-    {CLOTH_SADDLE_REFINE_MODEL,
-        "A fit of two crossing edges; slower and more exact", "model"},
-    {0, NULL, NULL}
-  };
-
-  if (g_once_init_enter (&type)) {
-    GType registered = g_enum_register_static ("GstSaddleDetectRefine", values);
-    g_once_init_leave (&type, registered);
-  }
-  return type;
-}
-
-static void
-gst_saddle_detect_set_property (GObject * object, guint id,
-    const GValue * value, GParamSpec * pspec)
-{
-  ClothSaddleParams *params = &GST_SADDLE_DETECT (object)->params;
-
-  GST_OBJECT_LOCK (object);
-  switch (id) {
-    case PROP_SIGMA:
-      params->sigma = (gfloat) g_value_get_double (value);
-      break;
-    case PROP_EPSILON:
-      params->epsilon = (gfloat) g_value_get_double (value);
-      break;
-    case PROP_RELATIVE:
-      params->relative = (gfloat) g_value_get_double (value);
-      break;
-    case PROP_ROI_X:
-      params->roi_x = g_value_get_int (value);
-      break;
-    case PROP_ROI_Y:
-      params->roi_y = g_value_get_int (value);
-      break;
-    case PROP_ROI_WIDTH:
-      params->roi_width = g_value_get_int (value);
-      break;
-    case PROP_ROI_HEIGHT:
-      params->roi_height = g_value_get_int (value);
-      break;
-    case PROP_REFINE:
-      params->refine = g_value_get_enum (value);
-      break;
-    case PROP_RADIUS:
-      params->radius = (gfloat) g_value_get_double (value);
-      break;
-    case PROP_MAX_CANDIDATES:
-      params->max_candidates = g_value_get_uint (value);
-      break;
-    case PROP_MAX_SADDLES:
-      params->max_saddles = g_value_get_uint (value);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
-      break;
-  }
-  GST_OBJECT_UNLOCK (object);
-}
-
-static void
-gst_saddle_detect_get_property (GObject * object, guint id, GValue * value,
-    GParamSpec * pspec)
-{
-  const ClothSaddleParams *params = &GST_SADDLE_DETECT (object)->params;
-
-  GST_OBJECT_LOCK (object);
-  switch (id) {
-    case PROP_SIGMA:
-      g_value_set_double (value, params->sigma);
-      break;
-    case PROP_EPSILON:
-      g_value_set_double (value, params->epsilon);
-      break;
-    case PROP_RELATIVE:
-      g_value_set_double (value, params->relative);
-      break;
-    case PROP_ROI_X:
-      g_value_set_int (value, params->roi_x);
-      break;
-    case PROP_ROI_Y:
-      g_value_set_int (value, params->roi_y);
-      break;
-    case PROP_ROI_WIDTH:
-      g_value_set_int (value, params->roi_width);
-      break;
-    case PROP_ROI_HEIGHT:
-      g_value_set_int (value, params->roi_height);
-      break;
-    case PROP_REFINE:
-      g_value_set_enum (value, params->refine);
-      break;
-    case PROP_RADIUS:
-      g_value_set_double (value, params->radius);
-      break;
-    case PROP_MAX_CANDIDATES:
-      g_value_set_uint (value, params->max_candidates);
-      break;
-    case PROP_MAX_SADDLES:
-      g_value_set_uint (value, params->max_saddles);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
-      break;
-  }
-  GST_OBJECT_UNLOCK (object);
-}
 
 static void
 gst_saddle_detect_finalize (GObject * object)
@@ -264,64 +182,18 @@ gst_saddle_detect_class_init (GstSaddleDetectClass * klass)
   GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
   GstClothFilterClass *filter_class = GST_CLOTH_FILTER_CLASS (klass);
   const ClothSaddleParams defaults = cloth_saddle_default_params ();
-  const GParamFlags flags = G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-      GST_PARAM_MUTABLE_PLAYING;
 
-  object_class->set_property = gst_saddle_detect_set_property;
-  object_class->get_property = gst_saddle_detect_get_property;
   object_class->finalize = gst_saddle_detect_finalize;
   filter_class->analyse = gst_saddle_detect_analyse;
   filter_class->reset = gst_saddle_detect_reset;
 
-  g_object_class_install_property (object_class, PROP_SIGMA,
-      g_param_spec_double ("sigma", "Sigma",
-          "Width of the Gaussian that smooths the picture, px", 0.5, 5.0,
-          defaults.sigma, flags));
-  g_object_class_install_property (object_class, PROP_EPSILON,
-      g_param_spec_double ("epsilon", "Epsilon",
-          "A pixel is a candidate when the determinant of the Hessian is below "
-          "minus this, grey levels squared per px^4", 0.0, 1e6,
-          defaults.epsilon, flags));
-  g_object_class_install_property (object_class, PROP_RELATIVE,
-      g_param_spec_double ("relative-epsilon", "Relative epsilon",
-          "The same bound as a share of what a sharp corner with the picture's "
-          "own contrast would give; the larger of both holds", 0.0, 1.0,
-          defaults.relative, flags));
-  g_object_class_install_property (object_class, PROP_ROI_X,
-      g_param_spec_int ("roi-x", "Region's left",
-          "Left column of the region searched", 0, 16383, 0, flags));
-  g_object_class_install_property (object_class, PROP_ROI_Y,
-      g_param_spec_int ("roi-y", "Region's top",
-          "Top row of the region searched", 0, 16383, 0, flags));
-  g_object_class_install_property (object_class, PROP_ROI_WIDTH,
-      g_param_spec_int ("roi-width", "Region's width",
-          "Columns searched (0 = up to the right border)", 0, 16384, 0, flags));
-  g_object_class_install_property (object_class, PROP_ROI_HEIGHT,
-      g_param_spec_int ("roi-height", "Region's height",
-          "Rows searched (0 = down to the lower border)", 0, 16384, 0, flags));
-  g_object_class_install_property (object_class, PROP_REFINE,
-      g_param_spec_enum ("refine", "Refine",
-          "How the place to a fraction of a pixel is found",
-          GST_TYPE_SADDLE_DETECT_REFINE, defaults.refine, flags));
-  g_object_class_install_property (object_class, PROP_RADIUS,
-      g_param_spec_double ("radius", "Radius",
-          "Window radius of refine=model, px; at most half the distance to the "
-          "next saddle is used. Bent cloth wants 4 to 5, a flat board 8 to 10",
-          2.0, 12.0, defaults.radius, flags));
-  g_object_class_install_property (object_class, PROP_MAX_CANDIDATES,
-      g_param_spec_uint ("max-candidates", "Most candidates",
-          "When more pixels than this pass, epsilon is raised for the picture",
-          0, CLOTH_SADDLE_MAX, defaults.max_candidates, flags));
-  g_object_class_install_property (object_class, PROP_MAX_SADDLES,
-      g_param_spec_uint ("max-saddles", "Most saddles",
-          "The most refined saddles a picture", 0, CLOTH_SADDLE_MAX,
-          defaults.max_saddles, flags));
-
+  gst_cloth_install_properties (object_class, properties,
+      G_N_ELEMENTS (properties), &defaults,
+      G_STRUCT_OFFSET (GstSaddleDetect, params));
   gst_element_class_set_static_metadata (element_class, "Saddle detector",
       "Filter/Analyzer/Video",
       "Finds the corners of checkerboards to a fraction of a pixel",
       "The gst-cloth developers");
-  gst_type_mark_as_plugin_api (GST_TYPE_SADDLE_DETECT_REFINE, 0);
 }
 
 static void
