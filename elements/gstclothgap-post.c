@@ -7,7 +7,7 @@
 
 #include "elements/gstclothgap-post.h"
 
-#include "gst/gap/inputs.h"
+#include "gst/gap/report/report.h"
 
 void
 gst_cloth_gap_post_score (GstElement * element,

@@ -10,7 +10,8 @@
 #include <unistd.h>
 
 #include "gst/cloth-io/observations.h"
-#include "gst/gap/inputs.h"
+#include "gst/gap/diagnose.h"
+#include "gst/gap/report/report.h"
 
 static volatile sig_atomic_t interrupted;
 

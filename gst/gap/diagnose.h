@@ -4,57 +4,10 @@
 #pragma once
 
 #include "gst/fit/error.h"
+#include "gst/gap/inputs.h"
 #include "gst/gap/report/result.h"
-#include "gst/fit/recording/observations.h"
-#include "gst/take/take.h"
-#include "gst/sim/model.h"
 
 G_BEGIN_DECLS
-
-/* @data: what cloth_gap_diagnose () was given
- * @share: of the work that is done, 0 to 1, growing
- * @what: what is being done, a few words
- *
- * Called from the thread that diagnoses.
- *
- * Returns: whether to go on
- */
-typedef gboolean (*ClothGapProgress) (gpointer data, gdouble share,
-    const gchar * what);
-
-/* @baselines: (array length=n_baselines) (nullable): takes the model is accepted on; its
- *   free parameters are fitted there and then frozen
- * @n_baselines: how many
- * @hold_outs: (array length=n_hold_outs) (nullable): takes that judge, and on which
- *   nothing is fitted
- * @n_hold_outs: how many
- * @observations: (nullable) (array): what the cameras saw of each take; %NULL: of none, or
- *   not of that one
- * @baseline_observations: (nullable) (array): the same of each baseline
- * @hold_out_observations: (nullable) (array): the same of each hold-out
- * @model_file: (nullable): the file the model comes from, for its name and hash
- * @effects: (array zero-terminated=1) (nullable): ids of the effects to consider; %NULL:
- *   all
- * @seed: of its random numbers
- * @threads: threads to use, 0 = one for each processor
- * @progress: (nullable): told how far it is
- * @progress_data: for @progress
- */
-typedef struct {
-  ClothTake **baselines;
-  guint n_baselines;
-  ClothTake **hold_outs;
-  guint n_hold_outs;
-  ClothObservations *const *observations;
-  ClothObservations *const *baseline_observations;
-  ClothObservations *const *hold_out_observations;
-  const gchar *model_file;
-  const gchar *const *effects;
-  guint64 seed;
-  guint threads;
-  ClothGapProgress progress;
-  gpointer progress_data;
-} ClothGapOptions;
 
 ClothGapResult *cloth_gap_diagnose (ClothTake ** takes, guint n_takes,
     const ClothModel * model, const ClothGapOptions * options,

@@ -1,13 +1,13 @@
-/* A diagnosis under way; private to diagnose.c, doubt.c, name.c, trial.c, select.c, rest.c,
- * judge.c, where.c, null.c, fault.c, failure.c and propose.c.
+/* The state of a diagnosis under way, which the stages of diagnose.c hand on.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/gap/camera/view.h"
-#include "gst/gap/diagnose.h"
+#include "gst/fit/estimate/sensitivities.h"
 #include "gst/fit/nudge/windows.h"
-#include "gst/gap/inference/score.h"
+#include "gst/gap/camera/solve.h"
+#include "gst/gap/inputs.h"
+#include "gst/gap/report/result.h"
 
 G_BEGIN_DECLS
 
@@ -23,8 +23,10 @@ G_BEGIN_DECLS
  * knows nothing of the simulator's own error: then about nine of ten of the blind benchmark's
  * intervals of 95% hold the truth. */
 #define CLOTH_DIAGNOSIS_SIGMA_WIDTH 3.6
-/* Length of the windows that the gap is measured in, s. */
+/* Length of the windows that the gap is measured in, s, and gain of the observer that leads up
+ * to them, 1/s². */
 #define CLOTH_DIAGNOSIS_WINDOW_S 0.3
+#define CLOTH_DIAGNOSIS_WINDOW_GAIN 1600.
 /* Most effects that are accepted. */
 #define CLOTH_DIAGNOSIS_MAX_ACCEPTED 3
 
@@ -114,13 +116,6 @@ cloth_diagnosis_study (const ClothDiagnosis * d, guint i)
 }
 
 static inline const ClothCandidate *
-cloth_diagnosis_candidate (const ClothDiagnosis * d, const ClothGapScore * score)
-{
-  return &g_array_index (d->candidates->list, ClothCandidate,
-      score->candidate);
-}
-
-static inline const ClothCandidate *
 cloth_diagnosis_chosen (const ClothDiagnosis * d, guint i)
 {
   return &g_array_index (d->candidates->list, ClothCandidate, d->chosen[i]);
@@ -133,76 +128,23 @@ cloth_diagnosis_is_held_out (const ClothDiagnosis * d, guint block)
   return !d->options->n_hold_outs && block % 2 == 1;
 }
 
-/* What comes now: from where to where it gets, and of the rest of it each simulation. */
+void cloth_diagnosis_init (ClothDiagnosis * d, ClothTake ** takes,
+    guint n_takes, const ClothGapOptions * options);
+void cloth_diagnosis_clear (ClothDiagnosis * d);
+
 void cloth_diagnosis_begin_part (ClothDiagnosis * d, gdouble from, gdouble to,
     gdouble each, const gchar * what);
-
-/* What went wrong on the way. */
-void cloth_diagnosis_note_failure (gpointer data,
-    const ClothRecording * recording, const ClothModel * model,
-    gdouble sound_s);
-void cloth_diagnosis_note_untested (ClothDiagnosis * d);
-
-/* Why nothing can be said: of the recordings, of what was found. NULL: it can. */
-gchar *cloth_diagnosis_find_doubt (ClothDiagnosis * d,
-    const ClothModel * model);
-gchar *cloth_diagnosis_doubt_result (ClothDiagnosis * d,
-    const ClothModel * model);
-
-/* Cameras. */
+ClothObservations *cloth_diagnosis_observations (const ClothDiagnosis * d,
+    guint recording);
 gboolean cloth_diagnosis_has_observations (const ClothDiagnosis * d);
 guint cloth_diagnosis_count_faults (const ClothDiagnosis * d);
-void cloth_diagnosis_find_faults (ClothDiagnosis * d);
-
-/* The model with the other force model. */
 ClothModel *cloth_diagnosis_other_model (const ClothDiagnosis * d);
-
-/* Which effects. */
-ClothPowerSpectrum *cloth_diagnosis_find_mismatch (const ClothDiagnosis * d,
-    guint take, guint gain);
-ClothPowerSpectrum *cloth_diagnosis_find_weight (const ClothDiagnosis * d, guint take,
-    guint gain);
-gdouble *cloth_diagnosis_list_columns (const ClothDiagnosis * d, guint take,
-    guint gain, guint before, guint more);
-void cloth_diagnosis_find_discrepancies (ClothDiagnosis * d);
-gboolean cloth_diagnosis_has_discrepancies (const ClothDiagnosis * d);
-gboolean cloth_diagnosis_linearise (ClothDiagnosis * d, guint first, guint end,
-    const ClothModel * model, gdouble from, gdouble to, GError ** error);
-void cloth_diagnosis_make_test (ClothDiagnosis * d, guint begin, guint end,
-    ClothGapTest * test);
-void cloth_diagnosis_make_normals (ClothDiagnosis * d, guint begin, guint end,
-    ClothGapTest * test);
-void cloth_diagnosis_list_nuisances (ClothDiagnosis * d, ClothGapTest * test);
-guint cloth_diagnosis_list_taken_in (const ClothDiagnosis * d, gdouble width,
-    guint * directions, gdouble * precisions);
-void cloth_diagnosis_find_left (ClothDiagnosis * d, const ClothGapScore * score);
-GArray *cloth_diagnosis_rank (ClothDiagnosis * d, ClothGapTest * test);
-gboolean cloth_diagnosis_try_rivals (ClothDiagnosis * d,
-    const ClothGapTest * test,
-    GArray * scores, const ClothModel * base, GError ** error);
-gdouble cloth_diagnosis_find_probability (const ClothDiagnosis * d,
-    const GArray * scores, const ClothGapScore * which);
-gboolean cloth_diagnosis_is_settled (const ClothDiagnosis * d,
+gboolean cloth_diagnosis_is_decided (const ClothDiagnosis * d,
     const ClothEffect * effect);
-void cloth_diagnosis_fill_effects (ClothDiagnosis * d,
-    const ClothGapTest * test, const GArray * scores);
-gboolean cloth_diagnosis_select (ClothDiagnosis * d, GError ** error);
+gboolean cloth_diagnosis_has_discrepancies (const ClothDiagnosis * d);
+ClothWindowedGap **cloth_diagnosis_measure_windows (ClothDiagnosis * d,
+    const ClothRecording * recording, const ClothModel * const *models,
+    guint n, GError ** error);
 
-/* What remains. */
-gchar *cloth_diagnosis_find_unknown (ClothDiagnosis * d);
-
-/* How much, and the verdict. */
-gboolean cloth_diagnosis_find_gaps (ClothDiagnosis * d, guint begin, guint end,
-    const ClothModel * const *models, guint n, gdouble * squares,
-    GError ** error);
-gboolean cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error);
-void cloth_diagnosis_decide (ClothDiagnosis * d);
-
-/* Where. */
-void cloth_diagnosis_locate (ClothDiagnosis * d);
-void cloth_diagnosis_fill_null (ClothDiagnosis * d);
-
-/* What to film next. */
-gboolean cloth_diagnosis_propose (ClothDiagnosis * d, GError ** error);
-
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (ClothDiagnosis, cloth_diagnosis_clear)
 G_END_DECLS

@@ -1,17 +1,13 @@
-/* What every front of the diagnosis needs alike: names of effects as people type them,
- * cloths that must be the same, the folder of a result.
+/* What every caller of the diagnosis checks: the names of effects as people type them, and
+ * that two cloths are the same one.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/inputs.h"
 
-#include <errno.h>
-#include <gio/gio.h>
-#include <glib/gstdio.h>
 #include <math.h>
 #include <string.h>
 
-#include "gst/gap/report/html.h"
-#include "gst/file/file.h"
+#include "gst/fit/error.h"
 #include "gst/effect/effect.h"
 
 /* Longest text that is compared with names. */
@@ -178,45 +174,4 @@ cloth_gap_check_same_cloth (const gchar * name, const ClothTopology * cloth,
     }
   }
   return TRUE;
-}
-
-/* Without a model none of an earlier diagnosis stays. */
-static gboolean
-write_model (const ClothModel * model, const gchar * folder, GError ** error)
-{
-  g_autofree gchar *path = g_build_filename (folder, "fitted.json", NULL);
-  g_autofree gchar *text = model ? cloth_model_to_json (model) : NULL;
-
-  if (text)
-    return cloth_file_write_text (path, text, error);
-  g_unlink (path);
-  return TRUE;
-}
-
-/* @result: what was found
- * @folder: where to; made with its parents when it is not there
- * @error: #GIOErrorEnum
- *
- * Writes gap.json and report.html, and, where something was fitted, fitted.json: the model
- * with it. Each is written whole or not at all.
- *
- * Returns: %TRUE when all are there
- */
-gboolean
-cloth_gap_result_write (const ClothGapResult * result, const gchar * folder,
-    GError ** error)
-{
-  g_autofree gchar *json = g_build_filename (folder, "gap.json", NULL);
-  g_autofree gchar *report = g_build_filename (folder, "report.html", NULL);
-
-  if (g_mkdir_with_parents (folder, 0777) != 0) {
-    gint code = errno;
-
-    g_set_error (error, G_IO_ERROR, g_io_error_from_errno (code),
-        "cannot make the folder “%s”: %s", folder, g_strerror (code));
-    return FALSE;
-  }
-  return write_model (result->model, folder, error) &&
-      cloth_gap_report_write (result, report, error) &&
-      cloth_gap_result_write_json (result, json, error);
 }

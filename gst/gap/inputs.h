@@ -1,18 +1,64 @@
-/* What every front of the diagnosis needs alike: names of effects as people type them,
- * cloths that must be the same, the folder of a result.
+/* What a diagnosis is given, and what every caller checks of it first: the names of effects as
+ * people type them, and that two cloths are the same one.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/gap/diagnose.h"
+#include "gst/fit/recording/observations.h"
+#include "gst/mesh/topology.h"
+#include "gst/sim/model.h"
+#include "gst/take/take.h"
 
 G_BEGIN_DECLS
+
+/* @data: what cloth_gap_diagnose () was given
+ * @share: of the work that is done, 0 to 1, growing
+ * @what: what is being done, a few words
+ *
+ * Called from the thread that diagnoses.
+ *
+ * Returns: whether to go on
+ */
+typedef gboolean (*ClothGapProgress) (gpointer data, gdouble share,
+    const gchar * what);
+
+/* @baselines: (array length=n_baselines) (nullable): takes the model is accepted on; its
+ *   free parameters are fitted there and then frozen
+ * @n_baselines: how many
+ * @hold_outs: (array length=n_hold_outs) (nullable): takes that judge, and on which
+ *   nothing is fitted
+ * @n_hold_outs: how many
+ * @observations: (nullable) (array): what the cameras saw of each take; %NULL: of none, or
+ *   not of that one
+ * @baseline_observations: (nullable) (array): the same of each baseline
+ * @hold_out_observations: (nullable) (array): the same of each hold-out
+ * @model_file: (nullable): the file the model comes from, for its name and hash
+ * @effects: (array zero-terminated=1) (nullable): ids of the effects to consider; %NULL:
+ *   all
+ * @seed: of its random numbers
+ * @threads: threads to use, 0 = one for each processor
+ * @progress: (nullable): told how far it is
+ * @progress_data: for @progress
+ */
+typedef struct {
+  ClothTake **baselines;
+  guint n_baselines;
+  ClothTake **hold_outs;
+  guint n_hold_outs;
+  ClothObservations *const *observations;
+  ClothObservations *const *baseline_observations;
+  ClothObservations *const *hold_out_observations;
+  const gchar *model_file;
+  const gchar *const *effects;
+  guint64 seed;
+  guint threads;
+  ClothGapProgress progress;
+  gpointer progress_data;
+} ClothGapOptions;
 
 gchar **cloth_gap_effects_parse (const gchar * list, GError ** error);
 gboolean cloth_gap_check_same_cloth (const gchar * name,
     const ClothTopology * cloth, const gchar * other_name,
     const ClothTopology * other, GError ** error);
-gboolean cloth_gap_result_write (const ClothGapResult * result,
-    const gchar * folder, GError ** error);
 
 G_END_DECLS

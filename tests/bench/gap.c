@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 #include "gst/gap/diagnose.h"
+#include "gst/gap/report/report.h"
 #include "gst/gap/design/experiment.h"
 #include "gst/effect/effect.h"
 #include "tests/common/gaprecord.h"

@@ -6,8 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/gap/camera/view.h"
+#include "gst/gap/camera/solve.h"
 #include "gst/gap/diagnose.h"
+#include "gst/gap/report/report.h"
 #include "gst/math/random.h"
 
 #define COLUMNS 9

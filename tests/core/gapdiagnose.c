@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "gst/gap/diagnose.h"
+#include "gst/gap/report/report.h"
 #include "gst/effect/effect.h"
 #include "tests/common/gaprecord.h"
 

@@ -1,7 +1,7 @@
 /* What a diagnosis says: its sentence, its JSON, and bytes that nobody vouches for.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/gap/report/result.h"
+#include "gst/gap/report/report.h"
 
 #include <math.h>
 #include <string.h>

@@ -7,7 +7,7 @@
 
 #include "gst/fit/features/spectrum.h"
 #include "gst/fit/nudge/windows.h"
-#include "gst/gap/report/fill.h"
+#include "gst/gap/localise/where.h"
 #include "gst/math/random.h"
 #include "gst/effect/effect.h"
 

@@ -3,7 +3,7 @@
  *   report-gapsheet KIND FOLDER
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/gap/report/html.h"
+#include "gst/gap/report/report.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,9 +1,12 @@
-/* What may be amiss with cameras, as directions.
+/* What may be wrong with cameras, as directions: one for each parameter of each effect that
+ * moves points in a picture, of each camera, and of all cameras alike.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/gap/camera/camera-private.h"
+#include "gst/gap/camera/candidates.h"
 
 #include <string.h>
+
+#include "gst/rig/capture.h"
 
 /* The effects that move points in a picture, and whether one number may hold for all
  * cameras. In the order of the columns. */

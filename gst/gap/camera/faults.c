@@ -4,11 +4,14 @@
  * what is found here says nothing of the cloth, and the other way round.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/camera/faults.h"
+
 #include <math.h>
 #include <string.h>
 
 #include "gst/fit/recording/interpolation.h"
-#include "gst/gap/diagnosis.h"
+#include "gst/gap/camera/candidates.h"
+#include "gst/gap/inference/score.h"
 #include "gst/math/linalg.h"
 
 /* Squares of the residual count so much less: detectors err alike in picture after
@@ -57,44 +60,7 @@ search_clear (Search * s)
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Search, search_clear)
-     static ClothObservations *sights_of (const ClothDiagnosis * d,
-    guint recording)
-{
-  const ClothGapOptions *o = d->options;
-  ClothObservations *const *all = o->observations;
-
-  if (recording >= d->n_takes + o->n_baselines) {
-    all = o->hold_out_observations;
-    recording -= d->n_takes + o->n_baselines;
-  } else if (recording >= d->n_takes) {
-    all = o->baseline_observations;
-    recording -= d->n_takes;
-  }
-  return all ? all[recording] : NULL;
-}
-
-gboolean
-cloth_diagnosis_has_observations (const ClothDiagnosis * d)
-{
-  for (guint i = 0; i < d->n_takes; i++)
-    if (sights_of (d, i))
-      return TRUE;
-  return FALSE;
-}
-
-/* Those that matter. */
-guint
-cloth_diagnosis_count_faults (const ClothDiagnosis * d)
-{
-  guint n = 0;
-
-  for (guint i = 0; i < d->n_faults; i++)
-    n += !d->faults[i].small;
-  return n;
-}
-
-static gboolean
-same_cameras (const ClothRig * a, const ClothRig * b)
+     static gboolean same_cameras (const ClothRig * a, const ClothRig * b)
 {
   if (a->n_cameras != b->n_cameras)
     return FALSE;
@@ -111,7 +77,8 @@ open_views (const Search * s, guint begin, guint end)
       (GDestroyNotify) cloth_camera_view_free);
 
   for (guint i = begin; i < end; i++) {
-    const ClothObservations *observations = sights_of (s->d, i);
+    const ClothObservations *observations =
+        cloth_diagnosis_observations (s->d, i);
 
     if (observations && same_cameras (observations->rig, s->rig))
       g_ptr_array_add (views,
@@ -532,7 +499,7 @@ static void
 correct (ClothDiagnosis * d, const Search * s)
 {
   for (guint i = 0; i < d->recordings->len; i++) {
-    const ClothObservations *observations = sights_of (d, i);
+    const ClothObservations *observations = cloth_diagnosis_observations (d, i);
     ClothRecording *r = cloth_diagnosis_recording (d, i);
     g_autoptr (ClothCameraView) view = NULL;
     gdouble square;
@@ -567,7 +534,9 @@ cloth_diagnosis_find_faults (ClothDiagnosis * d)
   d->camera_effects = g_array_new (FALSE, FALSE, sizeof (ClothGapEffect));
   d->filmed = g_new0 (gdouble *, d->recordings->len);
   for (guint i = 0; i < d->n_takes && !s.rig; i++)
-    s.rig = sights_of (d, i) ? sights_of (d, i)->rig : NULL;
+    s.rig =
+        cloth_diagnosis_observations (d, i) ? cloth_diagnosis_observations (d,
+        i)->rig : NULL;
   if (!s.rig)
     return;
   s.candidates = cloth_camera_candidates_new (s.rig, d->options->effects);

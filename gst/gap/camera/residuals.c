@@ -1,7 +1,13 @@
-/* One frame: what each camera's picture shows of the points, and where they meet.
+/* One frame: residuals of each camera's picture and their derivatives.
+ *
+ * Model: a point at x + dx is seen by camera c at y_c = h_c (x + dx; η) + noise, with the
+ * covariance Σ_c of the detector plus a floor. h_c is the camera's projection at the time of
+ * the picture, η its faults. To first order, with L_c the Cholesky factor of Σ_c:
+ *   z_c = L_c⁻¹ (y_c − h_c (x; η)) = J_c dx + B_c dη + white noise.
+ * J_c is the projection's derivative, B_c comes from finite differences.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/gap/camera/camera-private.h"
+#include "gst/gap/camera/residuals.h"
 
 #include <math.h>
 #include <string.h>
@@ -9,10 +15,11 @@
 #include "gst/math/linalg.h"
 
 #define N_COLUMNS CLOTH_CAMERA_N_COLUMNS
-/* Variance of each place beyond its covariance, px²: what detectors don't know of. */
+/* Variance that is added to the covariance of each observed point, px²: errors that detectors
+ * don't know of. */
 #define FLOOR 0.0025
-/* A place is another point's, or nobody's, when it is this many times as far off as nine in
- * ten of its picture's, and by this many deviations. */
+/* An observed point is an outlier, that is another point's or no point's, when its residual is
+ * this many times the 90% quantile of its picture, and this many standard deviations. */
 #define GROSS 4.
 #define GROSS_DEVIATIONS 6.
 
@@ -130,8 +137,9 @@ put_column (ClothCameraPicture * p, guint n, guint column, gdouble step)
           (p->other[2 * i + k] - p->px[2 * i + k]) / step;
 }
 
+/* Derivatives by all faults but frame_drop. */
 static void
-foretell_faults (const ClothMotion * motion, ClothCameraPicture * p,
+predict_faults (const ClothMotion * motion, ClothCameraPicture * p,
     const ClothCapture * capture, gdouble time_s)
 {
   for (guint column = 0; column < CLOTH_CAMERA_DROP; column++) {
@@ -147,10 +155,10 @@ foretell_faults (const ClothMotion * motion, ClothCameraPicture * p,
   }
 }
 
-/* All of one picture. */
+/* Residuals, derivatives and columns of one picture. */
 static void
 look (const ClothCameraView * v, const ClothCameraPoints * points,
-    ClothCameraAim aim, ClothCameraPicture * p, guint frame)
+    ClothCameraColumns columns, ClothCameraPicture * p, guint frame)
 {
   const guint camera = p->observation->camera;
   const ClothCapture *capture = &v->captures[camera];
@@ -162,14 +170,15 @@ look (const ClothCameraView * v, const ClothCameraPoints * points,
   const gsize row = 2 * N_COLUMNS;
 
   match (p, points);
-  /* it says nothing of where points are now */
-  for (guint i = 0; i < points->n && held && aim != CLOTH_CAMERA_WAY; i++)
+  /* a picture of an earlier time says nothing of where points are now */
+  for (guint i = 0;
+      i < points->n && held && columns != CLOTH_CAMERA_DISPLACEMENT; i++)
     p->at[i] = -1;
   cloth_capture_observe (capture, motion, time_s, p->px, NULL);
   memset (p->b, 0, row * points->n * sizeof *p->b);
-  if (aim == CLOTH_CAMERA_FAULTS)
-    foretell_faults (motion, p, capture, time_s);
-  if (aim == CLOTH_CAMERA_WAY) {
+  if (columns == CLOTH_CAMERA_FAULTS)
+    predict_faults (motion, p, capture, time_s);
+  if (columns == CLOTH_CAMERA_DISPLACEMENT) {
     ClothCapture rig;
 
     cloth_capture_init (&rig, &v->observations->rig->cameras[camera]);
@@ -177,8 +186,8 @@ look (const ClothCameraView * v, const ClothCameraPoints * points,
         NULL);
     put_column (p, points->n, CLOTH_CAMERA_DROP, 1.);
   }
-  if (!held && !isnan (before) && (aim == CLOTH_CAMERA_DROPS
-          || (aim == CLOTH_CAMERA_FAULTS && stale))) {
+  if (!held && !isnan (before) && (columns == CLOTH_CAMERA_DROPS
+          || (columns == CLOTH_CAMERA_FAULTS && stale))) {
     cloth_capture_observe (capture, motion, before, p->other, NULL);
     put_column (p, points->n, CLOTH_CAMERA_DROP, 1.);
   }
@@ -253,7 +262,7 @@ cloth_camera_gather (const ClothCameraPicture * pictures, guint n_cameras,
   return TRUE;
 }
 
-/* From where on a place contradicts those in the other pictures. */
+/* The residual above which an observed point contradicts the other pictures. */
 static void
 find_gross (ClothCameraPicture * p, guint n)
 {
@@ -270,14 +279,14 @@ find_gross (ClothCameraPicture * p, guint n)
 
 void
 cloth_camera_look (const ClothCameraView * v, const ClothCameraPoints * points,
-    ClothCameraAim aim, ClothCameraPicture * pictures, guint frame)
+    ClothCameraColumns columns, ClothCameraPicture * pictures, guint frame)
 {
   const guint n_cameras = v->observations->rig->n_cameras;
 
   for (guint c = 0; c < n_cameras; c++) {
     pictures[c].observation = *cloth_camera_picture (v, frame, c);
     if (pictures[c].observation)
-      look (v, points, aim, &pictures[c], frame);
+      look (v, points, columns, &pictures[c], frame);
   }
   for (guint i = 0; i < points->n; i++) {
     ClothCameraPoint point;

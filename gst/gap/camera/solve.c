@@ -1,25 +1,34 @@
-/* All frames: normal equations of what may be wrong with the cameras, and points solved
- * again.
+/* All frames: normal equations of what may be wrong with the cameras, and points solved again.
+ *
+ * Model: the whitened residuals of a point's pictures are z = J dx + B η + white noise, see
+ * residuals.c. The shift dx of each point is free, without a prior, and is projected out:
+ *   P = I − J (JᵀJ)⁻¹ Jᵀ,  g = BᵀPB,  s = −BᵀPz,  r = zᵀPz.
+ * What is left are epipolar errors: this is the reduced camera system of bundle adjustment
+ * (R. Hartley and A. Zisserman, Multiple View Geometry, 2nd ed., A6.3). A point in n pictures
+ * has 2n − 3 degrees of freedom left.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/gap/camera/camera-private.h"
+#include "gst/gap/camera/solve.h"
 
 #include <math.h>
 #include <string.h>
 
+#include "gst/gap/camera/residuals.h"
 #include "gst/math/linalg.h"
 #include "gst/math/pool.h"
 
 #define N_COLUMNS CLOTH_CAMERA_N_COLUMNS
-/* ClothCameraPoints of all frames that are looked at, about; of more vertices some are left out. */
+/* Points of all frames together that are used, about; of more vertices some are left out. */
 #define MOST_POINTS 60000
 /* Blocks of time, s, and most of them. */
 #define BLOCK_S 0.5
 #define MOST_BLOCKS 64
-/* Steps from where the recording bridges a point to where pictures have it. */
+/* Gauss–Newton steps from the interpolated position of an unseen point to where the pictures
+ * have it. */
 #define N_UNSEEN 4
-/* A picture is the one before when that explains this share of the way between the two,
- * and the square that it explains is so many times what it leaves to each. */
+/* A picture shows the one before once more when the residual has at least this share of the
+ * displacement between the two times, and when the square that this explains is so many times
+ * the mean square, per degree of freedom, of what it leaves. */
 #define STALE_SHARE 0.6
 #define STALE_SQUARE 25.
 
@@ -30,30 +39,30 @@ typedef struct
   guint n_cameras;
   guint n_blocks;
   guint *block;                 /* of each frame */
-  ClothCameraAim aim;
+  ClothCameraColumns aim;
   ClothNormalEquations *normal;
   gdouble *dof;                 /* of each block */
   ClothCameraErrors *errors;    /* sums, of each block */
   gdouble *n_points;
   ClothCameraPicture **scratch; /* [workers][cameras] */
   gdouble **columns;            /* [workers] */
-  /* of drops, per frame and camera: products of the residual with the way from the picture
-   * before, of that way, of the residual, and its degrees of freedom */
-  gdouble *along, *way, *rest, *freedom;
+  /* of drops, per frame and camera, with d the displacement since the picture before: zᵀPd,
+   * dᵀPd, zᵀPz and its degrees of freedom */
+  gdouble *along, *displacement, *rest, *freedom;
 } Work;
 
-/* Square of what no place of the point accounts for. */
+/* zᵀPz of a point. */
 static gdouble
-left_of (const ClothCameraPoint * point)
+residual_square (const ClothCameraPoint * point)
 {
   const gdouble *u = point->u;
 
   return point->z2 - u[0] * u[0] - u[1] * u[1] - u[2] * u[2];
 }
 
-/* How far the pictures have a point from where it is said to be. */
+/* Squared distance of a point from where the pictures have it, |(JᵀJ)⁻¹ Jᵀz|². */
 static gdouble
-square_of_way (const ClothCameraPoint * point)
+shift_square (const ClothCameraPoint * point)
 {
   gdouble x[3] = { point->u[0], point->u[1], point->u[2] };
 
@@ -70,8 +79,8 @@ trace_of_inverse (const gdouble * factor)
   return inverse[0] + inverse[4] + inverse[8];
 }
 
-/* The columns of the pictures of a point with its movement projected out: what is left
- * of their products goes into the block's normal equations. @v: L⁻¹JᵀB, [camera][column]. */
+/* Adds BᵀPB and −BᵀPz of a point to the block's normal equations; @v: L⁻¹JᵀB,
+ * [camera][column]. */
 static void
 add_point (const Work * work, const ClothCameraPicture * pictures, guint i,
     const ClothCameraPoint * point, gdouble * v, guint block)
@@ -114,7 +123,7 @@ add_point (const Work * work, const ClothCameraPicture * pictures, guint i,
   }
 }
 
-/* How well each picture would fit the time of the one before. */
+/* Adds what tells how well each picture would fit the time of the one before. */
 static void
 add_drops (const Work * work, const ClothCameraPicture * pictures, guint i,
     const ClothCameraPoint * point, guint frame)
@@ -132,16 +141,16 @@ add_drops (const Work * work, const ClothCameraPicture * pictures, guint i,
     cloth_camera_forward (point->a, v);
     work->along[at] += b[0] * z[0] + b[N_COLUMNS] * z[1] -
         (v[0] * point->u[0] + v[1] * point->u[1] + v[2] * point->u[2]);
-    work->way[at] += b[0] * b[0] + b[N_COLUMNS] * b[N_COLUMNS] -
+    work->displacement[at] += b[0] * b[0] + b[N_COLUMNS] * b[N_COLUMNS] -
         (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    work->rest[at] += left_of (point);
+    work->rest[at] += residual_square (point);
     work->freedom[at] += 2. * point->n - 3.;
   }
 }
 
-/* How far the cameras' faults move a point that all its pictures place together, squared. */
+/* Square by which the cameras' faults move a point that is solved from all its pictures. */
 static gdouble
-way_of (const ClothCameraPicture * pictures, guint i,
+displacement_square (const ClothCameraPicture * pictures, guint i,
     const ClothCameraPoint * point)
 {
   gdouble x[3] = { 0. };
@@ -176,18 +185,18 @@ do_frame (const Work * work, ClothCameraPicture * pictures, gdouble * columns,
       add_drops (work, pictures, i, &point, frame);
       continue;
     }
-    if (work->aim == CLOTH_CAMERA_WAY) {
-      e->triangulation += way_of (pictures, i, &point);
+    if (work->aim == CLOTH_CAMERA_DISPLACEMENT) {
+      e->triangulation += displacement_square (pictures, i, &point);
       work->n_points[block] += 1.;
       continue;
     }
     add_point (work, pictures, i, &point, columns, block);
-    work->normal->r[block] += left_of (&point);
+    work->normal->r[block] += residual_square (&point);
     work->dof[block] += 2. * point.n - 3.;
     work->n_points[block] += 1.;
     e->detection += trace_of_inverse (point.a);
     *(point.contradicted ? &e->labels : &e->triangulation) +=
-        square_of_way (&point);
+        shift_square (&point);
   }
 }
 
@@ -239,9 +248,9 @@ divide_time (Work * work)
             work->n_blocks), work->n_blocks - 1);
 }
 
-/* @most: points of all frames that are looked at, about. */
+/* @most: points of all frames together that are used, about. */
 static void
-work_init (Work * work, ClothCameraView * v, ClothCameraAim aim, gsize most)
+work_init (Work * work, ClothCameraView * v, ClothCameraColumns aim, gsize most)
 {
   const ClothRecording *r = v->recording;
 
@@ -261,35 +270,36 @@ work_clear (Work * work)
   g_free (work->n_points);
   g_free (work->errors);
   g_free (work->along);
-  g_free (work->way);
+  g_free (work->displacement);
   g_free (work->rest);
   g_free (work->freedom);
 }
 
-void
-cloth_camera_find_stale (ClothCameraView * v, guint threads)
+/* Notes which pictures show the one before once more. */
+static void
+find_stale (ClothCameraView * v, guint threads)
 {
   Work work;
   gsize n = (gsize) v->recording->n_frames * v->observations->rig->n_cameras;
 
   work_init (&work, v, CLOTH_CAMERA_DROPS, MOST_POINTS);
   work.along = g_new0 (gdouble, n);
-  work.way = g_new0 (gdouble, n);
+  work.displacement = g_new0 (gdouble, n);
   work.rest = g_new0 (gdouble, n);
   work.freedom = g_new0 (gdouble, n);
   run (&work, threads, do_blocks);
   for (gsize i = 0; i < n; i++) {
-    const gdouble gained = work.way[i] > 0. ?
-        work.along[i] * work.along[i] / work.way[i] : 0.;
+    const gdouble gained = work.displacement[i] > 0. ?
+        work.along[i] * work.along[i] / work.displacement[i] : 0.;
 
-    v->stale[i] = work.along[i] > STALE_SHARE * work.way[i]
+    v->stale[i] = work.along[i] > STALE_SHARE * work.displacement[i]
         && gained * work.freedom[i] > STALE_SQUARE * (work.rest[i] - gained);
   }
   work_clear (&work);
 }
 
-/* Behind the cameras' columns, those of all cameras alike; the other triangle; the drops
- * in shares of the pictures. */
+/* Fills the upper triangle, and behind the cameras' columns those of all cameras alike, which
+ * are their sums. */
 static void
 complete (ClothNormalEquations * normal, guint n_cameras)
 {
@@ -358,9 +368,9 @@ sum_errors (const Work * work, ClothCameraErrors * errors)
  * @threads: threads to use, 0 = one for each processor; the result is the same for any
  * @errors: (out): what detection, labels and triangulation leave
  *
- * Finds the normal equations of the residual: what is found less what is foretold, in multiples of the
- * covariances, less what other places of the points would make equal. Columns are those of
- * cloth_camera_candidates_new ().
+ * Finds the normal equations of the whitened residual, observed less predicted, with the points'
+ * shifts projected out. Columns are those of cloth_camera_candidates_new (); that of frame_drop
+ * is per share of the camera's pictures that are stale.
  *
  * Returns: (transfer full) (nullable): the equations, in blocks of half a second; %NULL
  *   when no point was seen by two cameras
@@ -402,7 +412,7 @@ cloth_camera_view_linearise (ClothCameraView * view, guint threads,
   return NULL;
 }
 
-/* How far the points of a frame are from where the pictures have them; NaN where fewer than
+/* The vectors from the points of a frame to where the pictures have them; NaN where fewer than
  * two cameras see one. */
 static void
 find_shifts (const Work * work, ClothCameraPicture * pictures, guint frame,
@@ -450,8 +460,8 @@ solve (ClothCameraView * v, guint threads)
 /* @view: a recording beside its pictures
  * @threads: threads to use, 0 = one for each processor; the result is the same for any
  *
- * Puts points that the recording has not to where two or more pictures have them, the
- * cameras being as they are taken to be.
+ * Moves points that the recording lacks to where two or more pictures have them, the cameras
+ * being as they are assumed to be.
  */
 void
 cloth_camera_view_solve_unseen (ClothCameraView * view, guint threads)
@@ -467,7 +477,7 @@ cloth_camera_view_solve_unseen (ClothCameraView * view, guint threads)
     }
   if (!unseen)
     return;
-  /* from where the recording bridges them, which may be far off */
+  /* from the interpolated positions, which may be far off */
   for (guint step = 0; step < N_UNSEEN; step++) {
     g_autofree gdouble *shifts = solve (v, threads);
 
@@ -477,8 +487,8 @@ cloth_camera_view_solve_unseen (ClothCameraView * view, guint threads)
   }
 }
 
-/* A point that too few cameras see goes with the others of its frame, a frame without any
- * with the one before. */
+/* A point that fewer than two cameras see is shifted by the mean of its frame, in a frame
+ * without any such mean by that of the frame before. */
 static void
 move_points (const ClothRecording * from, const gdouble * shifts,
     ClothRecording * to)
@@ -511,9 +521,9 @@ move_points (const ClothRecording * from, const gdouble * shifts,
  * @corrected: its recording, or a copy: the positions become what the cameras
  *   would have made of the cloth with nothing wrong with them
  *
- * Solves the points again with the cameras as they are taken to be.
+ * Solves the points again with the cameras as they are assumed to be.
  *
- * Returns: mean square of what they move by, m²; NaN when no point was seen by two cameras
+ * Returns: mean square of their displacement, m²; NaN when no point was seen by two cameras
  */
 gdouble
 cloth_camera_view_correct (ClothCameraView * view, guint threads,
@@ -539,8 +549,8 @@ cloth_camera_view_correct (ClothCameraView * view, guint threads,
 /* @view: a recording beside its pictures, with what is wrong with the cameras applied
  * @threads: threads to use, 0 = one for each processor; the result is the same for any
  *
- * Returns: mean square of what that moves points by which all their pictures place
- *   together, m²; NaN when no point was seen by two cameras
+ * Returns: mean square of the displacement of points, each solved from all its pictures, by
+ *   that, m²; NaN when no point was seen by two cameras
  */
 gdouble
 cloth_camera_view_displacement (ClothCameraView * view, guint threads)
@@ -548,7 +558,7 @@ cloth_camera_view_displacement (ClothCameraView * view, guint threads)
   Work work;
   gdouble sum = 0., n = 0.;
 
-  work_init (&work, view, CLOTH_CAMERA_WAY, MOST_POINTS);
+  work_init (&work, view, CLOTH_CAMERA_DISPLACEMENT, MOST_POINTS);
   work.errors = g_new0 (ClothCameraErrors, work.n_blocks);
   work.n_points = g_new0 (gdouble, work.n_blocks);
   run (&work, threads, do_blocks);
@@ -558,4 +568,24 @@ cloth_camera_view_displacement (ClothCameraView * view, guint threads)
   }
   work_clear (&work);
   return n > 0. ? sum / n : NAN;
+}
+
+/* @recording: the points' recorded positions; kept by reference
+ * @observations: what was seen of it; kept by reference
+ * @threads: threads to use, 0 = one for each processor; the result is the same for any
+ *
+ * Lays pictures beside frames, solves for points that the recording lacks, and finds the
+ * pictures that show the one before once more.
+ *
+ * Returns: (transfer full): both side by side, the cameras being as the rig says
+ */
+ClothCameraView *
+cloth_camera_view_new (const ClothRecording * recording,
+    const ClothObservations * observations, guint threads)
+{
+  ClothCameraView *view = cloth_camera_view_match (recording, observations);
+
+  cloth_camera_view_solve_unseen (view, threads);
+  find_stale (view, threads);
+  return view;
 }

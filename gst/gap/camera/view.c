@@ -1,18 +1,11 @@
-/* What cameras saw against where the points are said to be.
- *
- * A point at x is seen by several cameras: y_c = h_c(x + dx; η) + noise. Whatever the point
- * did, dx, is projected out of its pictures; what is left are epipolar errors, and they are
- * linear in the cameras' small faults η (bundle adjustment's reduced camera system:
- * R. Hartley and A. Zisserman, Multiple View Geometry, 2nd ed., A6.3).
+/* A recording beside the pictures that it was made from: which picture belongs to which frame,
+ * and how each camera is assumed to be.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/gap/camera/camera-private.h"
+#include "gst/gap/camera/view.h"
 
 #include <math.h>
 #include <string.h>
-
-#include "gst/math/linalg.h"
-#include "gst/math/pool.h"
 
 static guint
 nearest_frame (const ClothRecording * r, gdouble time_s)
@@ -52,17 +45,17 @@ place_pictures (ClothCameraView * v)
   }
 }
 
-/* @recording: where the points are said to be; kept by reference
+/* @recording: the points' recorded positions; kept by reference
  * @observations: what was seen of it; kept by reference
- * @threads: threads to use, 0 = one for each processor; the result is the same for any
  *
- * Lays pictures beside frames, and finds those that show the one before once more.
+ * Finds the picture of each frame. What the pictures say of unseen points, and which pictures
+ * are stale, is not known yet: see cloth_camera_view_new ().
  *
  * Returns: (transfer full): both side by side, the cameras being as the rig says
  */
 ClothCameraView *
-cloth_camera_view_new (const ClothRecording * recording,
-    const ClothObservations * observations, guint threads)
+cloth_camera_view_match (const ClothRecording * recording,
+    const ClothObservations * observations)
 {
   ClothCameraView *v = g_new0 (ClothCameraView, 1);
   gsize n = (gsize) recording->n_frames * observations->rig->n_cameras;
@@ -77,14 +70,12 @@ cloth_camera_view_new (const ClothRecording * recording,
   place_pictures (v);
   v->y = g_memdup2 (recording->y, 3 * (gsize) recording->n *
       recording->n_frames * sizeof *v->y);
-  cloth_camera_view_solve_unseen (v, threads);
-  cloth_camera_find_stale (v, threads);
   return v;
 }
 
 /* @view: a recording beside its pictures
  *
- * Takes the cameras to be as the rig says.
+ * Assumes the cameras to be as the rig says.
  */
 void
 cloth_camera_view_reset (ClothCameraView * view)
@@ -101,7 +92,7 @@ cloth_camera_view_reset (ClothCameraView * view)
  * @effect: an effect that moves points
  * @values: its parameters
  *
- * Takes cameras to be off by an effect more.
+ * Assumes one more effect to act on cameras.
  */
 void
 cloth_camera_view_apply (ClothCameraView * view, guint camera,

@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/gap/diagnose.h"
+#include "gst/fit/error.h"
 #include "gst/effect/effect.h"
 
 /* Before it is filmed, the cloth comes to rest with this damping, 1/s, for so long, s. */

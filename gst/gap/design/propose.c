@@ -1,11 +1,13 @@
 /* What to film next: a capture for each group of effects that the data can't tell apart.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/design/propose.h"
+
 #include <math.h>
 #include <string.h>
 
-#include "gst/gap/diagnosis.h"
 #include "gst/gap/design/experiment.h"
+#include "gst/gap/inference/name.h"
 
 /* Of a larger group the likeliest are to be parted. */
 #define MOST_MEMBERS 4

@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/gap/inference/score.h"
+#include "gst/gap/inference/test.h"
 
 G_BEGIN_DECLS
 

@@ -1,10 +1,12 @@
 /* Naming: how much the residual asks for each effect.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/inference/name.h"
+
 #include <math.h>
 #include <string.h>
 
-#include "gst/gap/diagnosis.h"
+#include "gst/gap/camera/candidates.h"
 #include "gst/gap/inference/gust.h"
 
 /* Clamps that are never further apart than this move alike, m. */
@@ -30,6 +32,52 @@
 #define ALIKE_COSINE 0.9
 /* Most effects that are reported together. */
 #define MOST_AMBIGUOUS 4
+
+/* Notes why an effect is no candidate. Camera effects are tested elsewhere. */
+static void
+skip (gpointer data, const ClothEffect * effect, const gchar * reason)
+{
+  ClothDiagnosis *d = data;
+
+  if (effect->side == CLOTH_EFFECT_CAMERA || effect->side == CLOTH_EFFECT_IMAGE) {
+    const gchar *blind = cloth_camera_why_not (effect);
+
+    if (d->has_camera_errors && !blind)
+      return;
+    if (cloth_diagnosis_has_observations (d))
+      reason = blind ? blind : "No point was seen by two cameras at a time.";
+  }
+  cloth_gap_result_add_untested (d->result, effect, reason);
+}
+
+/* @d: a diagnosis whose recordings are loaded and whose cameras are checked
+ * @model: what the simulator knows
+ * @error: #ClothFitError
+ *
+ * Lists the model's free numbers and the effects to test, as directions.
+ *
+ * Returns: whether that is possible
+ */
+gboolean
+cloth_diagnosis_list_candidates (ClothDiagnosis * d, const ClothModel * model,
+    GError ** error)
+{
+  guint n;
+
+  d->candidates =
+      cloth_candidates_new (model, cloth_diagnosis_recording (d, 0),
+      d->options->effects, d->options->n_baselines > 0, skip, d, error);
+  if (!d->candidates)
+    return FALSE;
+  n = d->candidates->directions->len;
+  d->all = g_new (guint, n + 1);
+  for (guint i = 0; i < n; i++)
+    d->all[i] = i;
+  d->precisions = g_new (gdouble, d->candidates->n_free + 1);
+  d->sound = g_new (gboolean, n + 1);
+  d->null_evidence = g_new0 (gdouble, d->candidates->list->len + 1);
+  return TRUE;
+}
 
 static gboolean
 moves_alike (const ClothRecording * a, const ClothRecording * b)
@@ -85,15 +133,6 @@ cloth_diagnosis_find_discrepancies (ClothDiagnosis * d)
         see_alike (cloth_diagnosis_recording (d, i % d->studies->len),
             cloth_diagnosis_recording (d, k));
   }
-}
-
-gboolean
-cloth_diagnosis_has_discrepancies (const ClothDiagnosis * d)
-{
-  for (guint i = 0; i < d->n_takes; i++)
-    if (!cloth_diagnosis_study (d, i)->discrepancy)
-      return FALSE;
-  return TRUE;
 }
 
 /* Mean square that the simulator itself is off by, in the noise of a take: of the
@@ -381,7 +420,7 @@ cloth_diagnosis_find_probability (const ClothDiagnosis * d,
   for (guint i = 0; i < scores->len; i++) {
     const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
 
-    if (!cloth_diagnosis_is_settled (d, cloth_diagnosis_candidate (d,
+    if (!cloth_diagnosis_is_decided (d, cloth_diagnosis_candidate (d,
                 s)->effect))
       total += exp ((s->evidence - which->evidence) / TEMPERATURE);
   }

@@ -10,9 +10,6 @@
 #include "gst/gap/inference/gust.h"
 #include "gst/math/linalg.h"
 
-/* Features never count as less noisy than this share of what is expected of them. */
-#define LEAST_DISPERSION 0.1
-
 /* Gusts must be likelier by so much: a steady wind whose law is another than the model's
  * seems to change, too. */
 #define GUST_MARGIN 10.
@@ -91,53 +88,6 @@ estimate (const Trial * trial, const ClothReducedEquations * reduced,
   if (trial->one_sided && changes[0] < 0.)
     changes[0] = 0.;
   return TRUE;
-}
-
-static gdouble
-count_features (const ClothGapTest * test, const ClothNormalEquations * normal)
-{
-  gdouble count = 0.;
-
-  for (guint b = 0; b < normal->n_blocks; b++)
-    count += test->blocks[b] ? normal->per_block : 0.;
-  return count;
-}
-
-/* @test: what is tested
- * @normal: normal equations of one gain
- * @reduced: what is left of them
- *
- * Returns: how much more than the noise a square of the residual counts
- */
-gdouble
-cloth_gap_test_dispersion (const ClothGapTest * test,
-    const ClothNormalEquations * normal, const ClothReducedEquations * reduced)
-{
-  return test->overdispersion * MAX (reduced->r / count_features (test,
-          normal), LEAST_DISPERSION);
-}
-
-/* @test: what is tested
- * @normal: normal equations whose nuisances are those of the test
- * @blocks: (array): which blocks count
- * @directions: (array length=n): columns that are looked at, at most 4
- * @n: how many
- * @reduced: (out): what is left of them once the nuisances are projected out
- *
- * Returns: whether the nuisances could be solved for
- */
-gboolean
-cloth_gap_test_reduce (const ClothGapTest * test,
-    const ClothNormalEquations * normal, const gboolean * blocks,
-    const guint * directions, guint n, ClothReducedEquations * reduced)
-{
-  g_autofree gdouble *precisions = g_new (gdouble, test->n_nuisances + 1);
-
-  /* the equations are not divided by the noise yet */
-  for (guint i = 0; i < test->n_nuisances; i++)
-    precisions[i] = test->precisions[i] * test->overdispersion;
-  return cloth_normal_equations_reduce (normal, blocks, test->nuisances,
-      precisions, test->n_nuisances, directions, n, reduced);
 }
 
 static gboolean

@@ -1,10 +1,13 @@
 /* Selection: effects are taken in one by one, and those go again that others make needless.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/inference/select.h"
+
 #include <math.h>
 #include <string.h>
 
-#include "gst/gap/diagnosis.h"
+#include "gst/fit/error.h"
+#include "gst/gap/inference/trial.h"
 #include "gst/math/linalg.h"
 
 /* Simulations of a fit with effects. */
@@ -13,21 +16,6 @@
 #define HARDLY_LESS 10.
 /* Priors of effects in it are so many times as wide. */
 #define REFIT_WIDTH 2.
-
-/* Whether an effect is taken in, or was and went again. */
-gboolean
-cloth_diagnosis_is_settled (const ClothDiagnosis * d,
-    const ClothEffect * effect)
-{
-  for (guint i = 0; i < d->n_chosen; i++)
-    if (cloth_diagnosis_chosen (d, i)->effect == effect)
-      return TRUE;
-  for (guint i = 0; i < d->n_dropped; i++)
-    if (g_array_index (d->candidates->list, ClothCandidate,
-            d->dropped[i]).effect == effect)
-      return TRUE;
-  return FALSE;
-}
 
 /* Fits what is taken in, from @start on. The free numbers may give a little. */
 static gboolean
@@ -220,7 +208,7 @@ may_come (const ClothDiagnosis * d, const ClothGapScore * s, gdouble least)
   const ClothCandidate *c = cloth_diagnosis_candidate (d, s);
 
   return !cloth_candidate_is_gust (c) && s->evidence >= least
-      && s->improvement > 0. && !cloth_diagnosis_is_settled (d, c->effect);
+      && s->improvement > 0. && !cloth_diagnosis_is_decided (d, c->effect);
 }
 
 /* The likeliest effect that is not settled yet, if it is asked for; nothing that is less
@@ -236,7 +224,7 @@ find_asked (const ClothDiagnosis * d, const GArray * scores, gboolean gusts)
     const ClothCandidate *c = cloth_diagnosis_candidate (d, s);
 
     if (!cloth_candidate_is_gust (c)
-        && !cloth_diagnosis_is_settled (d, c->effect))
+        && !cloth_diagnosis_is_decided (d, c->effect))
       return may_come (d, s, least) ? s : NULL;
   }
   return NULL;
@@ -338,7 +326,6 @@ cloth_diagnosis_select (ClothDiagnosis * d, GError ** error)
 
   cloth_diagnosis_find_left (d, NULL);
   cloth_diagnosis_make_test (d, 0, d->n_takes, &test);
-  d->unknown = cloth_diagnosis_find_unknown (d);
   scores = cloth_diagnosis_rank (d, &test);
   cloth_diagnosis_begin_part (d, 0.42, 0.48, 0.5, "the likeliest effects");
   if (!cloth_diagnosis_try_rivals (d, &test, scores, d->model, error))

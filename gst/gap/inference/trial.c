@@ -2,10 +2,11 @@
  * to be. There its derivative may be another than at its null.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/inference/trial.h"
+
 #include <math.h>
 #include <string.h>
 
-#include "gst/gap/diagnosis.h"
 #include "gst/math/linalg.h"
 
 /* So many effects at most, each for so many steps of Gauss and Newton at most, as long as it

@@ -18,6 +18,18 @@
 /* Least null of a vertex, of the median of all. */
 #define LEAST_NULL 0.25
 
+/* @options: (out caller-allocates): how places are found unless told otherwise
+ */
+void
+cloth_localisation_options_init (ClothLocalisationOptions * options)
+{
+  *options = (ClothLocalisationOptions) {
+  .smooth_s = 0.1,.sharpen = 0.5,.gate =
+        2.,.null_alike = 0.3,.null_other = 1.,.doubt = 1.,.block_s =
+        0.5,.draws = 99,.significance = 0.05,.onset_ratio =
+        2.,.onset_evidence = 3.,.beginning_s = 0.3};
+}
+
 /* A residual along the normal and along the cloth, each [n_frames][n][3]. */
 typedef struct
 {
@@ -307,30 +319,30 @@ raise_least (gdouble * values, guint n)
 
 /* Adds Huber's square of what is over the null. */
 static void
-add (ClothExcess * level, const Split * split, guint part,
+add (ClothExcess * excess, const Split * split, guint part,
     const gdouble * nulls, gdouble gate)
 {
-  for (gsize i = 0; i < (gsize) level->n_frames * level->n; i++) {
+  for (gsize i = 0; i < (gsize) excess->n_frames * excess->n; i++) {
     gdouble q = sqrt (square_of (split, part, i) / (part ? 2. : 1.) /
-        nulls[i % level->n]);
+        nulls[i % excess->n]);
 
     if (split->known[i])
-      level->values[i] += (gfloat) ((q < gate ? q * q : gate * (2. * q - gate))
+      excess->values[i] += (gfloat) ((q < gate ? q * q : gate * (2. * q - gate))
           - 1.);
   }
 }
 
 static ClothExcess *
-level_new (const Split * split)
+excess_new (const Split * split)
 {
   const ClothRecording *r = split->recording;
-  ClothExcess *level = g_new0 (ClothExcess, 1);
+  ClothExcess *excess = g_new0 (ClothExcess, 1);
 
-  level->n = r->n;
-  level->n_frames = r->n_frames;
-  level->values = g_new0 (gfloat, (gsize) r->n * r->n_frames);
-  level->known = g_memdup2 (split->known, (gsize) r->n * r->n_frames);
-  return level;
+  excess->n = r->n;
+  excess->n_frames = r->n_frames;
+  excess->values = g_new0 (gfloat, (gsize) r->n * r->n_frames);
+  excess->known = g_memdup2 (split->known, (gsize) r->n * r->n_frames);
+  return excess;
 }
 
 /* @take: a residual
@@ -340,7 +352,7 @@ level_new (const Split * split)
  * @smooth: whether to smooth and sharpen, for the place; else it is for the time
  * @options: how
  *
- * Returns: (transfer full): its level */
+ * Returns: (transfer full): its excess */
 ClothExcess *
 cloth_excess_new (const ClothNudgedResidual * take,
     const ClothNudgedResidual * nulls, guint n_nulls, gboolean alike,
@@ -352,7 +364,7 @@ cloth_excess_new (const ClothNudgedResidual * take,
   gdouble noise = isfinite (r->sigma) ? r->sigma * r->sigma : 0.;
   g_autofree gdouble *means = g_new0 (gdouble, 2 * (gsize) r->n);
   g_auto (Split) split = { NULL };
-  ClothExcess *level;
+  ClothExcess *excess;
   guint width;
 
   for (guint i = 0; i < n_nulls; i++) {
@@ -371,7 +383,7 @@ cloth_excess_new (const ClothNudgedResidual * take,
   prepare (&split, smooth, options, neighbours, &width);
   if (alike && isfinite (nulls->recording->sigma))
     noise += nulls->recording->sigma * nulls->recording->sigma;
-  level = level_new (&split);
+  excess = excess_new (&split);
   for (guint part = 0; part < 2; part++) {
     gdouble *null = means + part * r->n;
     gdouble b = smooth ? options->sharpen : 0.;
@@ -381,15 +393,15 @@ cloth_excess_new (const ClothNudgedResidual * take,
     for (guint v = 0; v < r->n; v++)
       null[v] = left * noise + share * share * null[v];
     raise_least (null, r->n);
-    add (level, &split, part, null, options->gate);
+    add (excess, &split, part, null, options->gate);
   }
-  return level;
+  return excess;
 }
 
 /* @null: the residual of a simulation that lacks nothing
  * @options: how
  *
- * Returns: (transfer full): its level over its own mean of each vertex */
+ * Returns: (transfer full): its excess over its own mean of each vertex */
 ClothExcess *
 cloth_excess_new_null (const ClothNudgedResidual * null,
     const ClothLocalisationOptions * options)
@@ -397,28 +409,28 @@ cloth_excess_new_null (const ClothNudgedResidual * null,
   const ClothRecording *r = null->recording;
   g_autofree guint *neighbours = list_neighbours (r->scene->topology);
   g_auto (Split) split = { NULL };
-  ClothExcess *level;
+  ClothExcess *excess;
   guint width;
 
   split_init (&split, null, NULL);
   prepare (&split, TRUE, options, neighbours, &width);
-  level = level_new (&split);
+  excess = excess_new (&split);
   for (guint part = 0; part < 2; part++) {
     g_autofree gdouble *nulls = find_means (&split, part);
 
     raise_least (nulls, r->n);
-    add (level, &split, part, nulls, options->gate);
+    add (excess, &split, part, nulls, options->gate);
   }
-  return level;
+  return excess;
 }
 
-/* @level: (nullable) (transfer full): a level */
+/* @excess: (nullable) (transfer full): an excess */
 void
-cloth_excess_free (ClothExcess * level)
+cloth_excess_free (ClothExcess * excess)
 {
-  if (!level)
+  if (!excess)
     return;
-  g_free (level->values);
-  g_free (level->known);
-  g_free (level);
+  g_free (excess->values);
+  g_free (excess->known);
+  g_free (excess);
 }

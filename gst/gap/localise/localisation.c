@@ -11,7 +11,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/gap/localise/excess.h"
 #include "gst/math/random.h"
 
 /* Lines of the flat cloth each way that boxes lie between, for significance and place. */
@@ -22,7 +21,7 @@
 /* Where the outside is this much of the inside, the place is no place: it is all that is
  * above the null. */
 #define EVERYWHERE 0.6
-/* Levels are of two parts, across and along the cloth, each 1 less than its square. */
+/* Excesses are of two parts, across and along the cloth, each 1 less than its square. */
 #define PARTS 2.
 /* Blocks of the null that happen to be quiet count as this much of its mean. */
 #define LEAST_UNDER 0.5
@@ -35,18 +34,6 @@
 #define BEFORE_MARGIN 1.1
 /* Place and onset sharpen each other so often. */
 #define N_PASSES 2
-
-/* @options: (out caller-allocates): how places are found unless told otherwise
- */
-void
-cloth_localisation_options_init (ClothLocalisationOptions * options)
-{
-  *options = (ClothLocalisationOptions) {
-  .smooth_s = 0.1,.sharpen = 0.5,.gate =
-        2.,.null_alike = 0.3,.null_other = 1.,.doubt = 1.,.block_s =
-        0.5,.draws = 99,.significance = 0.05,.onset_ratio =
-        2.,.onset_evidence = 3.,.beginning_s = 0.3};
-}
 
 /* The flat cloth between lines: in which cell each vertex lies. */
 typedef struct
@@ -177,23 +164,23 @@ box_holds (const Box * box, const Cells * cells, guint v)
       column < box->right;
 }
 
-/* Mean level of each vertex from a frame on, what is below the null counting as none; NaN
+/* Mean excess of each vertex from a frame on, what is below the null counting as none; NaN
  * where too little is known. */
 static void
-average (const ClothExcess * level, guint from, gdouble * x)
+average (const ClothExcess * excess, guint from, gdouble * x)
 {
-  g_autofree guint *counts = g_new0 (guint, level->n);
+  g_autofree guint *counts = g_new0 (guint, excess->n);
 
-  memset (x, 0, level->n * sizeof *x);
-  for (guint frame = from; frame < level->n_frames; frame++)
-    for (guint v = 0; v < level->n; v++) {
-      gsize at = (gsize) frame * level->n + v;
+  memset (x, 0, excess->n * sizeof *x);
+  for (guint frame = from; frame < excess->n_frames; frame++)
+    for (guint v = 0; v < excess->n; v++) {
+      gsize at = (gsize) frame * excess->n + v;
 
-      counts[v] += level->known[at];
-      x[v] += level->known[at] ? level->values[at] : 0.;
+      counts[v] += excess->known[at];
+      x[v] += excess->known[at] ? excess->values[at] : 0.;
     }
-  for (guint v = 0; v < level->n; v++)
-    x[v] = 4 * counts[v] < level->n_frames - from ? NAN :
+  for (guint v = 0; v < excess->n; v++)
+    x[v] = 4 * counts[v] < excess->n_frames - from ? NAN :
         MAX (x[v] / counts[v], 0.);
 }
 
@@ -299,19 +286,19 @@ find_place (const Cells * cells, const gdouble * x, gboolean * in)
 
 /* Mean of the residual's square over the null in a place, frame by frame; NaN: not seen. */
 static gdouble *
-follow (const ClothExcess * level, const gboolean * in)
+follow (const ClothExcess * excess, const gboolean * in)
 {
-  gdouble *series = g_new (gdouble, level->n_frames);
+  gdouble *series = g_new (gdouble, excess->n_frames);
 
-  for (guint frame = 0; frame < level->n_frames; frame++) {
+  for (guint frame = 0; frame < excess->n_frames; frame++) {
     gdouble sum = 0.;
     guint count = 0;
 
-    for (guint v = 0; v < level->n; v++) {
-      gsize at = (gsize) frame * level->n + v;
+    for (guint v = 0; v < excess->n; v++) {
+      gsize at = (gsize) frame * excess->n + v;
 
-      if (in[v] && level->known[at]) {
-        sum += 1. + level->values[at] / PARTS;
+      if (in[v] && excess->known[at]) {
+        sum += 1. + excess->values[at] / PARTS;
         count++;
       }
     }
@@ -344,14 +331,14 @@ go_back (const gdouble * series, guint frame)
 /* Cumulative sum of what speaks for a gap (Page 1954, Biometrika 41); it begins where the
  * sum was last 0 when it reaches enough. */
 static guint
-find_onset (const ClothExcess * level, const gdouble * times,
+find_onset (const ClothExcess * excess, const gdouble * times,
     const gboolean * in, const ClothLocalisationOptions * o)
 {
-  g_autofree gdouble *series = follow (level, in);
+  g_autofree gdouble *series = follow (excess, in);
   gdouble sum = 0.;
   guint last = 0;
 
-  for (guint frame = 1; frame < level->n_frames; frame++) {
+  for (guint frame = 1; frame < excess->n_frames; frame++) {
     if (isnan (series[frame]))
       continue;
     sum += MIN (log (MAX (series[frame], LEAST_SQUARE) / o->onset_ratio),

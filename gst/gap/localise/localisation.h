@@ -3,50 +3,9 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/fit/recording/recording.h"
+#include "gst/gap/localise/excess.h"
 
 G_BEGIN_DECLS
-
-/* @recording: what was recorded
- * @off: simulated less recorded while the simulation was nudged to it all along,
- *   [n_frames][n][3], m; what is not seen and the first frame don't count
- */
-typedef struct {
-  const ClothRecording *recording;
-  const gfloat *off;
-} ClothNudgedResidual;
-
-/* @smooth_s: residuals are averaged over so long
- * @sharpen: a force drags neighbours along: so much of the difference to each is added
- * @gate: residuals of more than so many deviations count by their size, not their square
- *   (Huber 1964)
- * @null_alike: how much of the null's residual returns at random in a take that moves as
- *   it did and had it taken off
- * @null_other: how much of it is expected in a take that moves otherwise
- * @doubt: so many times as much of the null must be exceeded for there to be a place
- * @block_s: length of the blocks of the bootstrap
- * @draws: of the bootstrap
- * @significance: how often a place may be found where there is none
- * @onset_ratio: square of a residual over the null's that speaks for a gap
- * @onset_evidence: so much of the logarithms of it must add up
- * @beginning_s: what begins earlier is there from the beginning
- * @seed: of the bootstrap
- */
-typedef struct {
-  gdouble smooth_s;
-  gdouble sharpen;
-  gdouble gate;
-  gdouble null_alike;
-  gdouble null_other;
-  gdouble doubt;
-  gdouble block_s;
-  guint draws;
-  gdouble significance;
-  gdouble onset_ratio;
-  gdouble onset_evidence;
-  gdouble beginning_s;
-  guint64 seed;
-} ClothLocalisationOptions;
 
 /* @vertices: (element-type guint): where the residual is, growing; empty: nowhere
  * @onset: frame where it begins; 0: it is there from the beginning, or nowhere
@@ -60,7 +19,6 @@ typedef struct {
   gdouble threshold;
 } ClothLocalisation;
 
-void cloth_localisation_options_init (ClothLocalisationOptions * options);
 ClothLocalisation *cloth_localisation_new (const ClothNudgedResidual * take,
     const ClothNudgedResidual * nulls, guint n_nulls, gboolean alike,
     const ClothLocalisationOptions * options);

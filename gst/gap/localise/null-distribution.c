@@ -2,10 +2,11 @@
  * and frame, and which vertices are significantly above it.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/localise/null-distribution.h"
+
 #include <math.h>
 #include <string.h>
 
-#include "gst/gap/diagnosis.h"
 #include "gst/gap/localise/localisation.h"
 
 /* Frames to either side that a vertex's expected distance is averaged over. */
@@ -192,7 +193,7 @@ fill_region (const ClothDiagnosis * d)
 
 /* Fills what the null is known for, once the gap is measured and judged. */
 void
-cloth_diagnosis_fill_null (ClothDiagnosis * d)
+cloth_diagnosis_fill_null_distribution (ClothDiagnosis * d)
 {
   const ClothRecording *r = cloth_diagnosis_recording (d, 0);
   g_autofree guint *windows = NULL, *phases = NULL;

@@ -318,10 +318,6 @@ void cloth_gap_result_add_threshold (ClothGapResult * result,
 void cloth_gap_result_add_failure (ClothGapResult * result,
     const gchar * run, const gchar * what);
 const gchar *cloth_gap_verdict_name (ClothGapVerdict verdict);
-gchar *cloth_gap_result_summary (const ClothGapResult * result);
-gchar *cloth_gap_result_to_json (const ClothGapResult * result);
-gboolean cloth_gap_result_write_json (const ClothGapResult * result,
-    const gchar * path, GError ** error);
 void cloth_gap_result_free (ClothGapResult * result);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothGapResult, cloth_gap_result_free)

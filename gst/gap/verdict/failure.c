@@ -1,13 +1,13 @@
-/* Simulations that diverged, and what could not be tested for it.
+/* Simulations that diverged, and effects that could not be tested for it.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/verdict/failure.h"
+
 #include <math.h>
 
-#include "gst/gap/diagnosis.h"
-
-/* The free numbers that are not where they were fitted. */
+/* Appends the free numbers that differ from their fitted values. */
 static void
-tell_free (const ClothDiagnosis * d, const ClothModel * model, GString * text)
+append_free (const ClothDiagnosis * d, const ClothModel * model, GString * text)
 {
   for (guint i = 0; d->candidates && i < d->candidates->n_free; i++) {
     const gchar *name = cloth_candidates_direction (d->candidates, i)->name;
@@ -22,8 +22,9 @@ tell_free (const ClothDiagnosis * d, const ClothModel * model, GString * text)
   }
 }
 
+/* Appends the parameters of effects that differ from their null values. */
 static void
-tell_effects (const ClothModel * model, GString * text)
+append_effects (const ClothModel * model, GString * text)
 {
   for (guint i = 0; i < model->effects->len; i++) {
     const ClothModelEffect *e = &g_array_index (model->effects,
@@ -37,7 +38,7 @@ tell_effects (const ClothModel * model, GString * text)
   }
 }
 
-/* A ClothRolloutFailed: what ran, on which recording, and with which numbers. */
+/* A #ClothRolloutFailed: notes what ran, on which recording, and with which numbers. */
 void
 cloth_diagnosis_note_failure (gpointer data, const ClothRecording * recording,
     const ClothModel * model, gdouble sound_s)
@@ -49,8 +50,8 @@ cloth_diagnosis_note_failure (gpointer data, const ClothRecording * recording,
 
   if (d->model && model->force_model != d->model->force_model)
     g_string_append (numbers, "the other force model");
-  tell_free (d, model, numbers);
-  tell_effects (model, numbers);
+  append_free (d, model, numbers);
+  append_effects (model, numbers);
   run = g_strdup_printf ("%s%s%s%s%s", d->what,
       g_str_has_suffix (d->what, recording->name) ? "" : " on ",
       g_str_has_suffix (d->what, recording->name) ? "" : recording->name,
@@ -59,7 +60,7 @@ cloth_diagnosis_note_failure (gpointer data, const ClothRecording * recording,
 }
 
 static gboolean
-is_told (const ClothGapResult * result, const ClothEffect * effect)
+is_listed (const ClothGapResult * result, const ClothEffect * effect)
 {
   for (guint i = 0; i < result->effects->len; i++)
     if (g_array_index (result->effects, ClothGapEffect, i).effect == effect)
@@ -70,8 +71,8 @@ is_told (const ClothGapResult * result, const ClothEffect * effect)
   return FALSE;
 }
 
-/* Effects that have neither a place among the ranked ones nor a reason why not: the simulation
- * diverges with them. */
+/* Notes the effects that are neither ranked nor listed as untested: the simulation diverges with
+ * them. */
 void
 cloth_diagnosis_note_untested (ClothDiagnosis * d)
 {
@@ -79,7 +80,7 @@ cloth_diagnosis_note_untested (ClothDiagnosis * d)
     const ClothEffect *effect = g_array_index (d->candidates->list,
         ClothCandidate, i).effect;
 
-    if (!is_told (d->result, effect))
+    if (!is_listed (d->result, effect))
       cloth_gap_result_add_untested (d->result, effect, "The simulation "
           "diverges with it; give the model softer cloth, more damping or a "
           "smaller time_step.");

@@ -1,62 +1,69 @@
-/* What makes a diagnosis undecidable: too little time, too few frames, too little seen, or
- * a world that is not the recording's.
+/* What makes a diagnosis undecidable: a recording that is too short, has too few frames or saw
+ * too little, or whose gravity, frame rate, size or noise are not what take.json says.
+ *
+ * Gravity and frame rate are tested by simulation: of each alternative the gap in windows is
+ * measured, on a coarse mesh, and an alternative whose squared gap is less than a quarter of
+ * the given one's is named. All else follows from the recording alone. Each check returns a
+ * sentence that says what to mend, or NULL.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/verdict/implausible.h"
+
 #include <math.h>
 #include <string.h>
 
-#include "gst/gap/diagnosis.h"
 
-/* Fewest windows of the gap: one to fit on, one to judge. */
+/* Fewest windows that the gap is measured in: one to fit on, one to judge. */
 #define LEAST_WINDOWS 2.
 /* Frames further apart than this share of a window don't show what happens in it. */
 #define LONGEST_INTERVAL (1. / 3.)
-/* Of all places this share must have been seen. */
+/* Of all vertices in all frames this share must have been seen. */
 #define LEAST_SEEN 0.2
-/* What nothing holds falls; a cloth that falls by less than this share of its longest side
- * while it should fall by all of it is held. */
+/* A cloth that nothing holds falls. One that falls by less than this share of its longest side
+ * in a time in which free fall takes it further than that side is held by something. */
 #define HARDLY_FALLEN 0.1
-/* Another world must make the gap's square this much less, on a cloth of so many lines. */
+/* An alternative gravity or frame rate is named when its squared gap is less than this share of
+ * the given one's. Grids are simulated with at most so many lines each way. */
 #define MUCH_LESS 0.25
-#define TRIAL_LINES 9
-/* Positions that jump by so many times the noise that is told, and this share of the longest
- * side, are not what they are told to be. */
+#define ALTERNATIVE_LINES 9
+/* Positions are noisier than given when the noise that is estimated from frame to frame is this
+ * many times the given one and this share of the longest side. */
 #define MOST_JUMPS 10.
 #define LEAST_JUMP 0.02
 /* A floor beyond this share of the cloth's longest side hides whether there is a gap. */
 #define MOST_FLOOR 0.1
-/* Edges that are so many times as long as on the flat cloth, all over it: its size is amiss. */
+/* The size of the cloth is wrong when edges everywhere are so many times as long as on the flat
+ * cloth. */
 #define MOST_STRETCH 1.2
-/* Gravity on earth, m/s², and by how much one that is told may differ from it anywhere there. */
+/* Gravity on earth, m/s², and the share by which it differs from place to place. */
 #define EARTH 9.81
 #define EARTH_SHARE 0.05
-/* Gain of the observer that leads up to its windows, 1/s². */
-#define TRIAL_GAIN 1600.
-/* Frame rates are mistaken by factors like these. Where the first or the last does best,
- * something else is amiss. */
-static const gdouble faster[] = { 0.25, 0.5, 2., 4. };
+/* Factors by which frame rates are mistaken. Where the first or the last does best, something
+ * else is wrong. */
+static const gdouble rates[] = { 0.25, 0.5, 2., 4. };
 
-/* A recording to be tried in other worlds: its scene and times are its own. */
+/* A copy of a recording, resampled to few vertices, whose gravity and times may be changed. */
 typedef struct
 {
   ClothRecording *thin;
   ClothRecording r;
   ClothScene scene;
   gdouble *times, *velocity;
-} Trial;
+} Alternative;
 
 static void
-trial_clear (Trial * t)
+alternative_clear (Alternative * t)
 {
   cloth_recording_free (t->thin);
   g_free (t->times);
   g_free (t->velocity);
 }
 
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Trial, trial_clear)
-     static void trial_init (Trial * t, const ClothRecording * recording)
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Alternative, alternative_clear)
+     static void alternative_init (Alternative * t,
+    const ClothRecording * recording)
 {
-  t->thin = cloth_recording_resample (recording, TRIAL_LINES);
+  t->thin = cloth_recording_resample (recording, ALTERNATIVE_LINES);
   if (t->thin) {
     gsize all = (gsize) t->thin->n * t->thin->n_frames;
 
@@ -74,9 +81,9 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Trial, trial_clear)
   cloth_recording_differentiate (&t->r);
 }
 
-/* A trial tells nothing of how far it is, but may be stopped. */
+/* These simulations do not count as progress, but may be stopped. */
 static gboolean
-may_go_on (gpointer data, gdouble share)
+may_continue (gpointer data, gdouble share)
 {
   const ClothDiagnosis *d = data;
 
@@ -84,31 +91,31 @@ may_go_on (gpointer data, gdouble share)
       || d->options->progress (d->options->progress_data, d->from, d->what);
 }
 
-/* The simulator's mean squared gap to a recording whose time runs so many times as fast:
- * NaN when it diverges or is stopped. */
+/* Mean squared gap to a recording whose time runs @faster times as fast, m²; NaN when the
+ * simulation diverges or is stopped. */
 static gdouble
-try_world (ClothDiagnosis * d, const Trial * t, const ClothModel * model,
-    gdouble faster)
+measure_alternative (ClothDiagnosis * d, const Alternative * t,
+    const ClothModel * model, gdouble faster)
 {
   ClothRolloutOptions options = d->study.rollout;
-  ClothWindowedGap **extents;
+  ClothWindowedGap **gaps;
   gdouble square = NAN;
 
-  options.progress = may_go_on;
+  options.progress = may_continue;
   cloth_diagnosis_begin_part (d, d->from, d->to, d->each, "another world");
-  extents = cloth_windowed_gaps_new (&t->r, &model, 1,
-      TRIAL_GAIN * faster * faster, CLOTH_DIAGNOSIS_WINDOW_S / faster, &options,
-      NULL);
+  gaps = cloth_windowed_gaps_new (&t->r, &model, 1,
+      CLOTH_DIAGNOSIS_WINDOW_GAIN * faster * faster,
+      CLOTH_DIAGNOSIS_WINDOW_S / faster, &options, NULL);
   d->study.simulations += 2;
-  if (extents && extents[0]->sound)
-    square = cloth_windowed_gap_square (extents[0], NULL);
-  cloth_windowed_gaps_free (extents, 1);
+  if (gaps && gaps[0]->sound)
+    square = cloth_windowed_gap_square (gaps[0], NULL);
+  cloth_windowed_gaps_free (gaps, 1);
   return square;
 }
 
-/* Whether other gravity makes much less of a gap: along another axis, or the earth's. */
+/* Whether gravity along another axis, or as strong as on earth, makes the gap much smaller. */
 static gchar *
-doubt_gravity (ClothDiagnosis * d, const ClothRecording * recording,
+check_gravity (ClothDiagnosis * d, const ClothRecording * recording,
     const ClothModel * model)
 {
   static const gchar *const names[] =
@@ -118,12 +125,12 @@ doubt_gravity (ClothDiagnosis * d, const ClothRecording * recording,
       gravity[2] * gravity[2]);
   const gdouble strengths[] = { g > 0. ? g : EARTH, EARTH };
   const guint n = g > 0. && fabs (g - EARTH) > EARTH_SHARE * EARTH ? 2 : 1;
-  g_auto (Trial) t = { NULL };
-  gdouble told, least = INFINITY, strength = 0.;
+  g_auto (Alternative) t = { NULL };
+  gdouble given, least = INFINITY, strength = 0.;
   guint best = 0;
 
-  trial_init (&t, recording);
-  told = try_world (d, &t, model, 1.);
+  alternative_init (&t, recording);
+  given = measure_alternative (d, &t, model, 1.);
   for (guint s = 0; s < n; s++)
     for (guint i = 0; i < G_N_ELEMENTS (names); i++) {
       gdouble square;
@@ -131,14 +138,14 @@ doubt_gravity (ClothDiagnosis * d, const ClothRecording * recording,
       for (guint k = 0; k < 3; k++)
         t.scene.gravity[k] =
             k == i / 2 ? (i % 2 ? -strengths[s] : strengths[s]) : 0.;
-      square = try_world (d, &t, model, 1.);
+      square = measure_alternative (d, &t, model, 1.);
       if (square < least) {
         least = square;
         strength = strengths[s];
         best = i;
       }
     }
-  if (!(least < MUCH_LESS * told))
+  if (!(least < MUCH_LESS * given))
     return NULL;
   return g_strdup_printf ("The cloth of %s moves as if gravity were along %s "
       "with %.3g m/s² and not as “gravity” of take.json says; mind the axes of "
@@ -146,7 +153,7 @@ doubt_gravity (ClothDiagnosis * d, const ClothRecording * recording,
 }
 
 static gchar *
-doubt_times (const ClothRecording * r)
+check_times (const ClothRecording * r)
 {
   const gdouble window = CLOTH_DIAGNOSIS_WINDOW_S;
   const gdouble duration = r->times[r->n_frames - 1] - r->times[0];
@@ -159,7 +166,7 @@ doubt_times (const ClothRecording * r)
       most = r->times[frame] - r->times[frame - 1];
       after = frame - 1;
     }
-  /* one hole may be as long as all the rest */
+  /* the interval without the longest hole */
   if (duration - most > LONGEST_INTERVAL * window * (r->n_frames - 2))
     return
         g_strdup_printf
@@ -183,7 +190,7 @@ doubt_times (const ClothRecording * r)
 }
 
 static gchar *
-doubt_seen (const ClothRecording * r)
+check_seen (const ClothRecording * r)
 {
   gsize all = (gsize) r->n * r->n_frames;
   gdouble seen = 0.;
@@ -198,7 +205,7 @@ doubt_seen (const ClothRecording * r)
       100. * seen / all, r->name, 100. * LEAST_SEEN);
 }
 
-/* Mean height of what a frame holds, against gravity, m. */
+/* Mean height of the vertices in a frame, along the direction against gravity, m. */
 static gdouble
 height_of (const ClothRecording * r, guint frame, gdouble g)
 {
@@ -211,7 +218,7 @@ height_of (const ClothRecording * r, guint frame, gdouble g)
 }
 
 static gchar *
-doubt_held (const ClothRecording * r)
+check_held (const ClothRecording * r)
 {
   const gdouble *gravity = r->scene->gravity;
   gdouble g = sqrt (gravity[0] * gravity[0] + gravity[1] * gravity[1] +
@@ -229,39 +236,46 @@ doubt_held (const ClothRecording * r)
       r->name);
 }
 
-/* Whether the world that the takes tell of is not the recordings'. */
+/* Whether all recordings have the gravity that is given, and name what holds the cloth. */
 static gchar *
-doubt_world (ClothDiagnosis * d, const ClothModel * model)
+check_scene (ClothDiagnosis * d, const ClothModel * model)
 {
-  gchar *doubt = NULL;
+  gchar *reason = NULL;
 
-  for (guint i = 0; i < d->recordings->len && !doubt; i++)
-    doubt = doubt_held (cloth_diagnosis_recording (d, i));
-  for (guint i = 0; i < d->recordings->len && !doubt; i++)
-    doubt = doubt_gravity (d, cloth_diagnosis_recording (d, i), model);
-  return doubt;
+  for (guint i = 0; i < d->recordings->len && !reason; i++)
+    reason = check_held (cloth_diagnosis_recording (d, i));
+  for (guint i = 0; i < d->recordings->len && !reason; i++)
+    reason = check_gravity (d, cloth_diagnosis_recording (d, i), model);
+  return reason;
 }
 
-/* Why the recordings can't be diagnosed, a sentence, or NULL. What is cheap to find out comes
- * first: of hours between two frames nothing is simulated. What cameras saw can be diagnosed
- * in any world. */
+/* @d: a diagnosis whose recordings are loaded
+ * @model: what the simulator knows
+ *
+ * Checks what follows from the recordings alone first: of hours between two frames nothing is
+ * simulated. Recordings with observations go on whatever their gravity is, as camera faults
+ * are found without a simulation.
+ *
+ * Returns: (transfer full) (nullable): why the recordings can't be diagnosed, a sentence
+ */
 gchar *
-cloth_diagnosis_find_doubt (ClothDiagnosis * d, const ClothModel * model)
+cloth_diagnosis_find_implausible_input (ClothDiagnosis * d,
+    const ClothModel * model)
 {
-  gchar *doubt = NULL;
+  gchar *reason = NULL;
 
-  for (guint i = 0; i < d->recordings->len && !doubt; i++) {
+  for (guint i = 0; i < d->recordings->len && !reason; i++) {
     const ClothRecording *r = cloth_diagnosis_recording (d, i);
 
-    if (!(doubt = doubt_times (r)))
-      doubt = doubt_seen (r);
+    if (!(reason = check_times (r)))
+      reason = check_seen (r);
   }
-  return doubt || cloth_diagnosis_has_observations (d) ? doubt :
-      doubt_world (d, model);
+  return reason || cloth_diagnosis_has_observations (d) ? reason :
+      check_scene (d, model);
 }
 
 static gchar *
-doubt_noise (const ClothRecording * r)
+check_noise (const ClothRecording * r)
 {
   gdouble jumps = cloth_recording_estimate_sigma (r);
 
@@ -274,9 +288,9 @@ doubt_noise (const ClothRecording * r)
       r->sigma);
 }
 
-/* Agreement says nothing where all agrees. */
+/* Agreement says nothing where the floor is so high that everything agrees. */
 static gchar *
-doubt_floor (ClothDiagnosis * d, const ClothRecording * r)
+check_floor (ClothDiagnosis * d, const ClothRecording * r)
 {
   gdouble floor = d->result->noise_floor.value;
 
@@ -288,7 +302,7 @@ doubt_floor (ClothDiagnosis * d, const ClothRecording * r)
 }
 
 static gchar *
-doubt_size (const ClothRecording * r)
+check_size (const ClothRecording * r)
 {
   for (guint corner = 0; corner < 2; corner++) {
     gdouble scale = cloth_recording_find_scale (r, corner);
@@ -301,30 +315,30 @@ doubt_size (const ClothRecording * r)
   return NULL;
 }
 
-/* Whether another frame rate makes much less of a gap. */
+/* Whether another frame rate makes the gap much smaller. */
 static gchar *
-doubt_rate (ClothDiagnosis * d, const ClothRecording * r,
+check_rate (ClothDiagnosis * d, const ClothRecording * r,
     const ClothModel * model)
 {
-  const guint n = G_N_ELEMENTS (faster);
-  g_auto (Trial) t = { NULL };
-  gdouble told, least = INFINITY, best = 1.;
+  const guint n = G_N_ELEMENTS (rates);
+  g_auto (Alternative) t = { NULL };
+  gdouble given, least = INFINITY, best = 1.;
 
-  trial_init (&t, r);
-  told = try_world (d, &t, model, 1.);
+  alternative_init (&t, r);
+  given = measure_alternative (d, &t, model, 1.);
   for (guint i = 0; i < n; i++) {
     gdouble square;
 
     for (guint f = 0; f < t.r.n_frames; f++)
-      t.times[f] = (t.thin ? t.thin : r)->times[f] / faster[i];
+      t.times[f] = (t.thin ? t.thin : r)->times[f] / rates[i];
     cloth_recording_differentiate (&t.r);
-    square = try_world (d, &t, model, faster[i]);
+    square = measure_alternative (d, &t, model, rates[i]);
     if (square < least) {
       least = square;
-      best = faster[i];
+      best = rates[i];
     }
   }
-  if (!(least < MUCH_LESS * told) || best == faster[0] || best == faster[n - 1])
+  if (!(least < MUCH_LESS * given) || best == rates[0] || best == rates[n - 1])
     return NULL;
   return g_strdup_printf ("The cloth of %s moves as if it were filmed at about "
       "%.3g frames a second; mind “fps” of take.json or times.npy.",
@@ -332,14 +346,21 @@ doubt_rate (ClothDiagnosis * d, const ClothRecording * r,
       best * (r->n_frames - 1) / (r->times[r->n_frames - 1] - r->times[0]));
 }
 
-/* The same of what was found: nothing to judge by, agreement in noise, or what no effect
- * explains looks like noise, another size or another frame rate. */
+/* @d: a diagnosis with a verdict
+ * @model: what the simulator knows
+ *
+ * Checks that there was something to judge by, that agreement is not only in noise, and that
+ * an unexplained gap does not look like noise, another size or another frame rate.
+ *
+ * Returns: (transfer full) (nullable): why the verdict says nothing, a sentence
+ */
 gchar *
-cloth_diagnosis_doubt_result (ClothDiagnosis * d, const ClothModel * model)
+cloth_diagnosis_find_implausible_result (ClothDiagnosis * d,
+    const ClothModel * model)
 {
   const ClothRecording *r = cloth_diagnosis_recording (d, 0);
   const ClothGapVerdict verdict = d->result->verdict;
-  gchar *doubt;
+  gchar *reason;
 
   if (!isfinite (d->result->gap_before.value))
     return g_strdup ("Nothing was seen in the parts that judge; give a take of "
@@ -347,13 +368,13 @@ cloth_diagnosis_doubt_result (ClothDiagnosis * d, const ClothModel * model)
   if (verdict != CLOTH_GAP_NO_GAP && (verdict != CLOTH_GAP_UNEXPLAINED
           || cloth_diagnosis_count_faults (d)))
     return NULL;
-  if ((doubt = doubt_noise (r)))
-    return doubt;
+  if ((reason = check_noise (r)))
+    return reason;
   if (verdict == CLOTH_GAP_NO_GAP)
-    return doubt_floor (d, r);
-  if ((doubt = doubt_size (r)))
-    return doubt;
-  if (cloth_diagnosis_has_observations (d) && (doubt = doubt_world (d, model)))
-    return doubt;
-  return doubt_rate (d, r, model);
+    return check_floor (d, r);
+  if ((reason = check_size (r)))
+    return reason;
+  if (cloth_diagnosis_has_observations (d) && (reason = check_scene (d, model)))
+    return reason;
+  return check_rate (d, r, model);
 }

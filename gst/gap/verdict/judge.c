@@ -1,16 +1,14 @@
 /* Judging: how large the gap is without and with the effects, and what to say of it.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/verdict/judge.h"
+
 #include <math.h>
 #include <string.h>
 
 #include "gst/fit/recording/interpolation.h"
-#include "gst/gap/diagnosis.h"
-#include "gst/gap/report/fill.h"
-#include "gst/effect/effect.h"
+#include "gst/gap/localise/where.h"
 
-/* Gain of the observer that leads up to them, 1/s². */
-#define WINDOW_GAIN 1600.
 /* Variance of a gap that is hardly larger, over that before. */
 #define HARDLY_LARGER 1.05
 /* What parts faults of cameras that look alike. */
@@ -69,47 +67,6 @@ estimate (gdouble square, const gdouble * draws, guint n, guint stride)
   return e;
 }
 
-/* Each model is let go in windows, and nudged to the start of each. */
-static ClothWindowedGap **
-measure (ClothDiagnosis * d, const ClothRecording * r,
-    const ClothModel * const *models, guint n, GError ** error)
-{
-  d->study.simulations += 2 * n;
-  return cloth_windowed_gaps_new (r, models, n, WINDOW_GAIN,
-      CLOTH_DIAGNOSIS_WINDOW_S, &d->study.rollout, error);
-}
-
-/* @d: a diagnosis
- * @begin: first recording
- * @end: one behind the last
- * @models: (array length=n): models
- * @n: how many
- * @squares: (out) (array length=n): sums over the recordings of their squared gaps, m²;
- *   not finite where a simulation diverges
- * @error: #ClothSimError
- *
- * Returns: whether it worked
- */
-gboolean
-cloth_diagnosis_find_gaps (ClothDiagnosis * d, guint begin, guint end,
-    const ClothModel * const *models, guint n, gdouble * squares,
-    GError ** error)
-{
-  memset (squares, 0, n * sizeof *squares);
-  for (guint i = begin; i < end; i++) {
-    ClothWindowedGap **extents = measure (d, cloth_diagnosis_recording (d, i),
-        models, n, error);
-
-    if (!extents)
-      return FALSE;
-    for (guint k = 0; k < n; k++)
-      squares[k] += extents[k]->sound ?
-          cloth_windowed_gap_square (extents[k], NULL) : INFINITY;
-    cloth_windowed_gaps_free (extents, n);
-  }
-  return TRUE;
-}
-
 /* Without a baseline the floor is what the two force models differ by, and the noise:
  * NaN on errors. */
 static gdouble
@@ -123,7 +80,7 @@ own_floor (ClothDiagnosis * d, guint judge, const ClothWindowedGap * extent,
   gdouble sum = 0.;
   gsize all = (gsize) r->n * r->n_frames, seen = 0;
 
-  extents = measure (d, r, models, 1, error);
+  extents = cloth_diagnosis_measure_windows (d, r, models, 1, error);
   if (!extents)
     return NAN;
   for (gsize i = 0; i < 3 * all && extents[0]->sound; i++) {
@@ -173,8 +130,9 @@ measure_floor (ClothDiagnosis * d, guint judge, const ClothWindowedGap * extent,
   *result = (ClothGapEstimate) {
   0., NAN, NAN};
   if (d->options->n_baselines) {
-    floor = measure (d, cloth_diagnosis_recording (d, baseline), models, 1,
-        error);
+    floor =
+        cloth_diagnosis_measure_windows (d, cloth_diagnosis_recording (d,
+            baseline), models, 1, error);
     if (!floor)
       return FALSE;
     square = cloth_windowed_gap_square (floor[0], NULL);
@@ -300,13 +258,13 @@ measure_models (ClothDiagnosis * d, guint i, const ClothModel * const *models,
   ClothWindowedGap **all = NULL, **others;
 
   if (!d->filmed[i])
-    return measure (d, r, models, n, error);
+    return cloth_diagnosis_measure_windows (d, r, models, n, error);
   swap_filmed (d, i);
-  all = measure (d, r, models, 1, error);
+  all = cloth_diagnosis_measure_windows (d, r, models, 1, error);
   swap_filmed (d, i);
   if (!all)
     return NULL;
-  others = measure (d, r, models + 1, n - 1, error);
+  others = cloth_diagnosis_measure_windows (d, r, models + 1, n - 1, error);
   if (!others) {
     cloth_windowed_gaps_free (all, 1);
     return NULL;

@@ -1,9 +1,9 @@
 /* What remains: signs of something in a take that its baseline has not.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include <math.h>
+#include "gst/gap/verdict/unexplained.h"
 
-#include "gst/gap/diagnosis.h"
+#include <math.h>
 
 /* A rest this many times the noise speaks of something unknown … */
 #define UNKNOWN 1.9
@@ -204,7 +204,7 @@ find_clamps_off (ClothDiagnosis * d)
  *   baselines, a sentence; %NULL: nothing does
  */
 gchar *
-cloth_diagnosis_find_unknown (ClothDiagnosis * d)
+cloth_diagnosis_find_unexplained (ClothDiagnosis * d)
 {
   gchar *clamps = d->options->n_baselines ? find_clamps_off (d) : NULL;
 

@@ -1,12 +1,22 @@
-/* What a diagnosis found: its one sentence and gap.json.
+/* What a diagnosis writes: its verdict in one sentence, gap.json, and the page that shows it.
+ *
+ * The page may load nothing and run nothing but its own script and style: their hashes
+ * stand in its content security policy. All text of strangers travels as JSON whose
+ * strings can't end a script, and the script puts it into the page as text.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/gap/report/result.h"
+#include "gst/gap/report/report.h"
 
+#include <errno.h>
+#include <gio/gio.h>
+#include <glib/gstdio.h>
 #include <math.h>
 #include <string.h>
 
+#include "gst/file/file.h"
 #include "gst/file/jsonwriter.h"
+#include "gst/gap/report/arrays.h"
+#include "web-resource.h"
 
 static const gchar *const side_names[] = {
   "physics", "clamp", "numerics", "camera", "image"
@@ -39,18 +49,18 @@ say_effect (GString * text, const ClothGapEffect * effect)
 
 /* "(or this, or that)": what is confused with an accepted effect. */
 static void
-say_rivals (GString * text, const ClothGapResult * result,
+say_alternatives (GString * text, const ClothGapResult * result,
     const ClothGapEffect * of)
 {
   guint n = 0;
 
   for (guint i = 0; of->group >= 0 && i < result->effects->len; i++) {
-    const ClothGapEffect *rival = effect_at (result, i);
+    const ClothGapEffect *other = effect_at (result, i);
 
-    if (rival == of || rival->group != of->group || rival->accepted)
+    if (other == of || other->group != of->group || other->accepted)
       continue;
     g_string_append (text, n++ ? ", or " : " (or ");
-    say_effect (text, rival);
+    say_effect (text, other);
   }
   if (n > 0)
     g_string_append_c (text, ')');
@@ -72,7 +82,7 @@ say_accepted (GString * text, const ClothGapResult * result)
     if (said > 0)
       g_string_append (text, said + 1 == n ? " and " : ", ");
     say_effect (text, effect);
-    say_rivals (text, result, effect);
+    say_alternatives (text, result, effect);
     said++;
   }
   return n;
@@ -495,4 +505,124 @@ cloth_gap_result_write_json (const ClothGapResult * result,
   g_autofree gchar *text = cloth_gap_result_to_json (result);
 
   return cloth_file_write_text (path, text, error);
+}
+
+static gchar *
+hash_of (const gchar * text)
+{
+  g_autoptr (GChecksum) sum = g_checksum_new (G_CHECKSUM_SHA256);
+  guint8 digest[32];
+  gsize size = sizeof digest;
+
+  g_checksum_update (sum, (const guchar *) text, -1);
+  g_checksum_get_digest (sum, digest, &size);
+  return g_base64_encode (digest, size);
+}
+
+static gboolean
+load (const gchar * path, gchar ** text, GError ** error)
+{
+  g_autoptr (GBytes) bytes = g_resource_lookup_data
+      (cloth_gap_web_get_resource (), path, G_RESOURCE_LOOKUP_FLAGS_NONE,
+      error);
+
+  if (!bytes)
+    return FALSE;
+  *text = g_strndup (g_bytes_get_data (bytes, NULL), g_bytes_get_size (bytes));
+  return TRUE;
+}
+
+/* @result: a result
+ * @path: where report.html shall be
+ * @error: #GIOErrorEnum
+ *
+ * Writes a page that shows @result. It needs no other file and no network. It appears
+ * whole or not at all. Long or fine playbacks are thinned: the file has at most 9 MB.
+ *
+ * Returns: %TRUE when it is there
+ */
+gboolean
+cloth_gap_report_write (const ClothGapResult * result, const gchar * path,
+    GError ** error)
+{
+  g_autofree gchar *script = NULL, *style = NULL, *script_hash = NULL;
+  g_autofree gchar *style_hash = NULL, *json = NULL, *arrays = NULL;
+  g_autofree gchar *summary = NULL, *words = NULL, *title = NULL;
+  g_autoptr (ClothOutput) output = NULL;
+
+  if (!load ("/cloth/gap/report.js", &script, error) ||
+      !load ("/cloth/gap/report.css", &style, error))
+    return FALSE;
+  script_hash = hash_of (script);
+  style_hash = hash_of (style);
+  json = cloth_gap_result_to_json (result);
+  arrays = cloth_gap_report_arrays (result);
+  summary = cloth_gap_result_summary (result);
+  words = g_utf8_make_valid (summary, -1);
+  title = g_markup_escape_text (words, -1);
+  output = cloth_output_new (path, error);
+  return output && cloth_output_printf (output, error,
+      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src "
+      "'none'; script-src 'sha256-%s'; style-src 'sha256-%s'; img-src data:; "
+      "base-uri 'none'; form-action 'none'\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, "
+      "initial-scale=1\">\n<meta name=\"referrer\" content=\"no-referrer\">\n"
+      "<title>%s</title>\n<link rel=\"icon\" href=\"data:,\">\n<style>",
+      script_hash, style_hash, title) &&
+      cloth_output_write (output, style, strlen (style), error) &&
+      cloth_output_printf (output, error, "</style>\n</head>\n<body>\n"
+      "<main id=\"report\"><noscript><header><h1>%s</h1><p>The rest of this "
+      "page needs JavaScript. gap.json says the same.</p></header></noscript>"
+      "</main>\n<script type=\"application/json\" id=\"gap\">\n", title) &&
+      cloth_output_write (output, json, strlen (json), error) &&
+      cloth_output_printf (output, error, "</script>\n"
+      "<script type=\"application/json\" id=\"arrays\">\n") &&
+      cloth_output_write (output, arrays, strlen (arrays), error) &&
+      cloth_output_printf (output, error, "</script>\n<script>") &&
+      cloth_output_write (output, script, strlen (script), error) &&
+      cloth_output_printf (output, error, "</script>\n</body>\n</html>\n") &&
+      cloth_output_finish (output, error) &&
+      cloth_output_commit (&output, 1, error);
+}
+
+/* Without a model none of an earlier diagnosis stays. */
+static gboolean
+write_model (const ClothModel * model, const gchar * folder, GError ** error)
+{
+  g_autofree gchar *path = g_build_filename (folder, "fitted.json", NULL);
+  g_autofree gchar *text = model ? cloth_model_to_json (model) : NULL;
+
+  if (text)
+    return cloth_file_write_text (path, text, error);
+  g_unlink (path);
+  return TRUE;
+}
+
+/* @result: what was found
+ * @folder: where to; made with its parents when it is not there
+ * @error: #GIOErrorEnum
+ *
+ * Writes gap.json and report.html, and, where something was fitted, fitted.json: the model
+ * with it. Each is written whole or not at all.
+ *
+ * Returns: %TRUE when all are there
+ */
+gboolean
+cloth_gap_result_write (const ClothGapResult * result, const gchar * folder,
+    GError ** error)
+{
+  g_autofree gchar *json = g_build_filename (folder, "gap.json", NULL);
+  g_autofree gchar *report = g_build_filename (folder, "report.html", NULL);
+
+  if (g_mkdir_with_parents (folder, 0777) != 0) {
+    gint code = errno;
+
+    g_set_error (error, G_IO_ERROR, g_io_error_from_errno (code),
+        "cannot make the folder “%s”: %s", folder, g_strerror (code));
+    return FALSE;
+  }
+  return write_model (result->model, folder, error) &&
+      cloth_gap_report_write (result, report, error) &&
+      cloth_gap_result_write_json (result, json, error);
 }

@@ -1,0 +1,12 @@
+/* What to film next.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/gap/diagnosis.h"
+
+G_BEGIN_DECLS
+
+gboolean cloth_diagnosis_propose (ClothDiagnosis * d, GError ** error);
+
+G_END_DECLS

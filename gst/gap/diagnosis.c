@@ -1,0 +1,214 @@
+/* The state of a diagnosis under way: its parts, its progress and what several stages ask of it.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/diagnosis.h"
+
+/* Tells the caller how far the diagnosis is, after each frame of each simulation. */
+static gboolean
+frame_done (gpointer data, gdouble share)
+{
+  ClothDiagnosis *d = data;
+  gdouble at = d->from + (d->to - d->from) * d->each * share;
+
+  if (share >= 1.)
+    d->from = at;
+  return !d->options->progress
+      || d->options->progress (d->options->progress_data, at, d->what);
+}
+
+/* @d: (out caller-allocates): a diagnosis of nothing yet
+ * @takes: (array length=n_takes): what was recorded; kept by reference
+ * @n_takes: how many
+ * @options: what else is given; kept by reference
+ */
+void
+cloth_diagnosis_init (ClothDiagnosis * d, ClothTake ** takes, guint n_takes,
+    const ClothGapOptions * options)
+{
+  *d = (ClothDiagnosis) {
+  takes, n_takes, options};
+  d->least_evidence = CLOTH_DIAGNOSIS_LEAST_EVIDENCE;
+  cloth_estimate_options_init (&d->study);
+  d->study.rollout.seed = options->seed;
+  d->study.rollout.threads = options->threads;
+  d->study.rollout.progress = frame_done;
+  d->study.rollout.data = d;
+  d->result = cloth_gap_result_new ();
+  d->recordings = g_ptr_array_new_with_free_func (
+      (GDestroyNotify) cloth_recording_free);
+  d->studies = g_ptr_array_new_with_free_func (
+      (GDestroyNotify) cloth_sensitivities_free);
+}
+
+/* @d: a diagnosis
+ *
+ * Frees all that it holds.
+ */
+void
+cloth_diagnosis_clear (ClothDiagnosis * d)
+{
+  g_clear_pointer (&d->studies, g_ptr_array_unref);
+  cloth_model_free (d->model);
+  cloth_candidates_free (d->candidates);
+  g_free (d->precisions);
+  g_free (d->all);
+  for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++)
+    cloth_normal_equations_free (d->normals[g]);
+  g_free (d->variability_precisions);
+  g_free (d->nuisances);
+  g_free (d->nuisance_precisions);
+  g_free (d->sound);
+  g_free (d->blocks);
+  for (guint i = 0; i < d->n_chosen; i++)
+    cloth_model_free (d->with[i]);
+  cloth_energy_spectrum_free (d->before);
+  cloth_energy_spectrum_free (d->after);
+  cloth_energy_spectrum_free (d->floor);
+  cloth_gap_result_free (d->result);
+  g_free (d->nudged);
+  for (guint i = 0; i < d->n_nulls; i++)
+    cloth_windowed_gap_free (d->nulls[i]);
+  g_free (d->what);
+  g_free (d->unknown);
+  g_free (d->null_evidence);
+  for (guint i = 0; d->filmed && i < d->recordings->len; i++)
+    g_free (d->filmed[i]);
+  g_free (d->filmed);
+  g_clear_pointer (&d->camera_effects, g_array_unref);
+  g_clear_pointer (&d->recordings, g_ptr_array_unref);
+}
+
+/* @d: a diagnosis
+ * @from: share of all the work that is done when the part begins
+ * @to: share that is done when it ends
+ * @each: share of the rest of the part that each simulation is
+ * @what: what is being done, a few words
+ *
+ * Begins a part of the work.
+ */
+void
+cloth_diagnosis_begin_part (ClothDiagnosis * d, gdouble from, gdouble to,
+    gdouble each, const gchar * what)
+{
+  d->from = from;
+  d->to = to;
+  d->each = each;
+  g_free (d->what);
+  d->what = g_strdup (what);
+}
+
+/* @d: a diagnosis
+ * @recording: which recording
+ *
+ * Returns: (nullable): what the cameras saw of it
+ */
+ClothObservations *
+cloth_diagnosis_observations (const ClothDiagnosis * d, guint recording)
+{
+  const ClothGapOptions *o = d->options;
+  ClothObservations *const *all = o->observations;
+
+  if (recording >= d->n_takes + o->n_baselines) {
+    all = o->hold_out_observations;
+    recording -= d->n_takes + o->n_baselines;
+  } else if (recording >= d->n_takes) {
+    all = o->baseline_observations;
+    recording -= d->n_takes;
+  }
+  return all ? all[recording] : NULL;
+}
+
+/* @d: a diagnosis
+ *
+ * Returns: whether cameras saw any of the takes
+ */
+gboolean
+cloth_diagnosis_has_observations (const ClothDiagnosis * d)
+{
+  for (guint i = 0; i < d->n_takes; i++)
+    if (cloth_diagnosis_observations (d, i))
+      return TRUE;
+  return FALSE;
+}
+
+/* @d: a diagnosis
+ *
+ * Returns: how many of the camera faults are large enough to matter
+ */
+guint
+cloth_diagnosis_count_faults (const ClothDiagnosis * d)
+{
+  guint n = 0;
+
+  for (guint i = 0; i < d->n_faults; i++)
+    n += !d->faults[i].small;
+  return n;
+}
+
+/* @d: a diagnosis whose model is fitted
+ *
+ * Returns: (transfer full): the model with the other force model
+ */
+ClothModel *
+cloth_diagnosis_other_model (const ClothDiagnosis * d)
+{
+  ClothModel *other = cloth_model_copy (d->model);
+
+  other->force_model = other->force_model == CLOTH_FORCE_MEMBRANE ?
+      CLOTH_FORCE_MASS_SPRING : CLOTH_FORCE_MEMBRANE;
+  return other;
+}
+
+/* @d: a diagnosis
+ * @effect: an effect
+ *
+ * Returns: whether it is accepted, or was and went again
+ */
+gboolean
+cloth_diagnosis_is_decided (const ClothDiagnosis * d,
+    const ClothEffect * effect)
+{
+  for (guint i = 0; i < d->n_chosen; i++)
+    if (cloth_diagnosis_chosen (d, i)->effect == effect)
+      return TRUE;
+  for (guint i = 0; i < d->n_dropped; i++)
+    if (g_array_index (d->candidates->list, ClothCandidate,
+            d->dropped[i]).effect == effect)
+      return TRUE;
+  return FALSE;
+}
+
+/* @d: a diagnosis
+ *
+ * Returns: whether every take has a baseline that moves alike, whose discrepancy is taken off
+ */
+gboolean
+cloth_diagnosis_has_discrepancies (const ClothDiagnosis * d)
+{
+  for (guint i = 0; i < d->n_takes; i++)
+    if (!cloth_diagnosis_study (d, i)->discrepancy)
+      return FALSE;
+  return TRUE;
+}
+
+/* @d: a diagnosis
+ * @recording: what the models are held against
+ * @models: (array length=n): models
+ * @n: how many
+ * @error: #ClothSimError
+ *
+ * Simulates each model twice: nudged to the recording all along, and from there let go at the
+ * start of each window.
+ *
+ * Returns: (transfer full) (nullable) (array length=n): their distances from the recording
+ */
+ClothWindowedGap **
+cloth_diagnosis_measure_windows (ClothDiagnosis * d,
+    const ClothRecording * recording, const ClothModel * const *models,
+    guint n, GError ** error)
+{
+  d->study.simulations += 2 * n;
+  return cloth_windowed_gaps_new (recording, models, n,
+      CLOTH_DIAGNOSIS_WINDOW_GAIN, CLOTH_DIAGNOSIS_WINDOW_S,
+      &d->study.rollout, error);
+}

@@ -1,0 +1,12 @@
+/* Selection: which effects are accepted, one by one.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/gap/diagnosis.h"
+
+G_BEGIN_DECLS
+
+gboolean cloth_diagnosis_select (ClothDiagnosis * d, GError ** error);
+
+G_END_DECLS

@@ -1,0 +1,44 @@
+/* What is tested: normal equations of a residual, and what is fitted along in each test.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/fit/estimate/sensitivities.h"
+
+G_BEGIN_DECLS
+
+/* @normals: of each gain, over the blocks of all takes
+ * @candidates: what the columns mean: column i is direction i
+ * @blocks: (array): which blocks count
+ * @nuisances: (array length=n_nuisances): columns that are fitted along
+ * @precisions: (array length=n_nuisances): of their priors
+ * @n_nuisances: how many
+ * @n_numbers: the first so many of them are numbers of the model; the others stand for
+ *   variability
+ * @overdispersion: see #ClothEstimateOptions
+ * @block_s: length of a block, s
+ * @gusts: first column of the wind in the parts of a block, x and y of each; 0: there are
+ *   none
+ * @sound: (array): columns that could be simulated
+ */
+typedef struct {
+  ClothNormalEquations *normals[CLOTH_ESTIMATE_N_GAINS];
+  const ClothCandidates *candidates;
+  const gboolean *blocks;
+  const guint *nuisances;
+  const gdouble *precisions;
+  guint n_nuisances;
+  guint n_numbers;
+  gdouble overdispersion;
+  gdouble block_s;
+  guint gusts;
+  const gboolean *sound;
+} ClothGapTest;
+
+gboolean cloth_gap_test_reduce (const ClothGapTest * test,
+    const ClothNormalEquations * normal, const gboolean * blocks,
+    const guint * directions, guint n, ClothReducedEquations * reduced);
+gdouble cloth_gap_test_dispersion (const ClothGapTest * test,
+    const ClothNormalEquations * normal, const ClothReducedEquations * reduced);
+
+G_END_DECLS

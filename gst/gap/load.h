@@ -1,0 +1,13 @@
+/* The recordings of a diagnosis: read, checked and noted among its inputs.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/gap/diagnosis.h"
+
+G_BEGIN_DECLS
+
+gboolean cloth_diagnosis_load (ClothDiagnosis * d, const ClothModel * model,
+    GError ** error);
+
+G_END_DECLS

@@ -1,0 +1,13 @@
+/* How large the gap is, and the verdict.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/gap/diagnosis.h"
+
+G_BEGIN_DECLS
+
+gboolean cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error);
+void cloth_diagnosis_decide (ClothDiagnosis * d);
+
+G_END_DECLS
