@@ -18,10 +18,6 @@
 #include "gst/gap/report/arrays.h"
 #include "web-resource.h"
 
-static const gchar *const side_names[] = {
-  "physics", "clamp", "numerics", "camera", "image"
-};
-
 static const gchar *const role_names[] = {
   "take", "baseline", "hold_out", "model"
 };
@@ -260,7 +256,8 @@ put_effect (ClothJsonWriter * writer, const ClothGapEffect * item)
 
   cloth_json_writer_begin_object (writer, NULL);
   cloth_json_writer_string (writer, "name", effect->id);
-  cloth_json_writer_string (writer, "side", side_names[effect->side]);
+  cloth_json_writer_string (writer, "side", 
+      cloth_effect_side_name (effect->side));
   cloth_json_writer_string (writer, "camera", item->camera);
   cloth_json_writer_number (writer, "probability", item->probability);
   cloth_json_writer_boolean (writer, "accepted", item->accepted);
@@ -319,7 +316,8 @@ put_untested (ClothJsonWriter * writer, const ClothGapResult * result)
 
     cloth_json_writer_begin_object (writer, NULL);
     cloth_json_writer_string (writer, "name", item->effect->id);
-    cloth_json_writer_string (writer, "side", side_names[item->effect->side]);
+    cloth_json_writer_string (writer, "side", 
+        cloth_effect_side_name (item->effect->side));
     cloth_json_writer_string (writer, "reason", item->reason);
     cloth_json_writer_end_object (writer);
   }
