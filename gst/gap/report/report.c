@@ -256,7 +256,7 @@ put_effect (ClothJsonWriter * writer, const ClothGapEffect * item)
 
   cloth_json_writer_begin_object (writer, NULL);
   cloth_json_writer_string (writer, "name", effect->id);
-  cloth_json_writer_string (writer, "side", 
+  cloth_json_writer_string (writer, "side",
       cloth_effect_side_name (effect->side));
   cloth_json_writer_string (writer, "camera", item->camera);
   cloth_json_writer_number (writer, "probability", item->probability);
@@ -316,7 +316,7 @@ put_untested (ClothJsonWriter * writer, const ClothGapResult * result)
 
     cloth_json_writer_begin_object (writer, NULL);
     cloth_json_writer_string (writer, "name", item->effect->id);
-    cloth_json_writer_string (writer, "side", 
+    cloth_json_writer_string (writer, "side",
         cloth_effect_side_name (item->effect->side));
     cloth_json_writer_string (writer, "reason", item->reason);
     cloth_json_writer_end_object (writer);
