@@ -1,7 +1,11 @@
-/* Cameras: whether something was wrong with them, and the recording without it.
+/* Decides what was wrong with the cameras, and gives the recordings without it.
  *
- * The places in the pictures are held against each other only, never against a simulation:
- * what is found here says nothing of the cloth, and the other way round.
+ * The points in the pictures are held against each other only, never against a simulation: what is
+ * found here says nothing of the cloth, and the other way round.
+ * Model: the normal equations of solve.c are linear in the faults. Each fault is tested by the score
+ * test of ../inference/score.c, the likeliest is accepted and fitted by Gauss–Newton together with
+ * those before it, and all are tested anew.
+ * Assumption: detectors err alike in picture after picture, so that squares count a twentieth.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/camera/faults.h"
@@ -14,37 +18,38 @@
 #include "gst/gap/inference/score.h"
 #include "gst/math/linalg.h"
 
-/* Squares of the residual count so much less: detectors err alike in picture after
- * picture. */
+/* Overdispersion: squares of the residual count so much less. */
 #define OVERDISPERSION 20.
 /* A fault must take this share of the residual's square off blocks of time that it was
  * not estimated on. */
 #define LEAST_IMPROVEMENT 0.02
-/* Mean square of what it moves points by, over that of what detection leaves. */
-#define LEAST_WAY 4.
-/* What the baselines ask for of the same effect is taken off so many times. */
+/* A fault matters when the mean square of the displacement of points by it is so many times
+ * that of the errors of detection. */
+#define LEAST_DISPLACEMENT 4.
+/* The baselines' log Bayes factor of the same effect is taken off so many times. */
 #define NULL_SHARE 1.5
-/* Evidence is divided by this before it becomes a probability. */
+/* The log Bayes factor is divided by this before it becomes a probability. */
 #define TEMPERATURE 1.5
-/* Of a fault's estimate; priors are so many times as wide in it. */
+/* Gauss–Newton steps of the fit of the faults, in which priors are so many times as wide. */
 #define N_STEPS 3
 #define WIDTH 3.
-/* Faults with derivatives this alike can't be told apart. */
+/* Faults whose derivatives have a larger cosine than this can't be told apart … */
 #define AMBIGUOUS_COSINE 0.9
-/* … unless the one is this much less likely. */
+/* … unless one is this much less likely than the other. */
 #define LEAST_ODDS 0.05
-/* Exponents that don't overflow. */
+/* Largest exponent, which does not overflow. */
 #define LARGEST 600.
 
-/* One recording with observations, and what is taken to be wrong with its cameras. */
+/* The search for faults. */
 typedef struct
 {
   ClothDiagnosis *d;
   const ClothRig *rig;
   ClothCandidates *candidates;
   GPtrArray *views;             /* of the takes that have observations of this rig */
-  ClothNormalEquations *normal; /* at the faults that are known */
-  /* of each candidate: what baselines ask for, whether it looks like the first fault */
+  ClothNormalEquations *normal; /* linearised at the known faults */
+  /* of each candidate: what its log Bayes factor must exceed, whether it looks like the first
+   * fault */
   gdouble *null_evidence;
   gboolean *alike;
 } Search;
@@ -116,7 +121,7 @@ candidate_at (const Search * s, guint i)
   return &g_array_index (s->candidates->list, ClothCandidate, i);
 }
 
-/* The effects that @normal asks for, beside the faults that are known. */
+/* The scores of all effects beside the known faults, the likeliest first. */
 static GArray *
 rank (const Search * s, ClothNormalEquations * normal)
 {
@@ -158,7 +163,7 @@ rank (const Search * s, ClothNormalEquations * normal)
   return scores;
 }
 
-/* What the baselines ask for, of each effect of any camera. */
+/* Notes how much the baselines support each effect, of any camera. */
 static void
 study_baselines (Search * s)
 {
@@ -182,7 +187,7 @@ study_baselines (Search * s)
   }
 }
 
-/* Takes the known faults to act. */
+/* Assumes the known faults to act. */
 static void
 apply_faults (const ClothDiagnosis * d, ClothCameraView * view)
 {
@@ -192,7 +197,7 @@ apply_faults (const ClothDiagnosis * d, ClothCameraView * view)
         d->faults[i].values);
 }
 
-/* One step of Gauss and Newton towards the most probable values of all faults. */
+/* One Gauss–Newton step towards the most probable values of all faults. */
 static gboolean
 step_faults (Search * s)
 {
@@ -255,9 +260,9 @@ step_faults (Search * s)
   return TRUE;
 }
 
-/* The equations once the faults are taken to act. */
+/* The normal equations, linearised at the known faults. */
 static gboolean
-look_again (Search * s)
+linearise_again (Search * s)
 {
   ClothCameraErrors errors;
 
@@ -287,7 +292,7 @@ fit_faults (Search * s)
   ClothDiagnosis *d = s->d;
 
   for (guint step = 0; step < N_STEPS; step++)
-    if (!step_faults (s) || !look_again (s))
+    if (!step_faults (s) || !linearise_again (s))
       return FALSE;
   for (guint i = 0; i < d->n_faults; i++)
     if (is_drop (&d->faults[i]))
@@ -344,8 +349,9 @@ find_score (const Search * s, const GArray * scores, const ClothEffect * effect,
   return otherwise;
 }
 
-/* What the pictures ask for beside the faults: @first before any was known, @last with
- * all. Those that would do as well as the first fault stand in a group with it. */
+/* Lists the effects beside the faults with their scores: @first before any fault was known,
+ * @last with all. Those that explain the pictures as well as the first fault form a group with
+ * it. */
 static void
 list_effects (const Search * s, const GArray * first, const GArray * last)
 {
@@ -378,7 +384,7 @@ list_effects (const Search * s, const GArray * first, const GArray * last)
   }
 }
 
-/* Puts the faults before what else was asked for; small ones behind. */
+/* Puts the faults before the other effects, small ones behind them. */
 static void
 list_faults (const Search * s)
 {
@@ -427,9 +433,9 @@ find_alike (Search * s, guint fault)
         && cloth_gap_test_cosine (&test, fault, c) > AMBIGUOUS_COSINE;
 }
 
-/* How far a fault by itself moves the points of the first take, mean square. */
+/* Mean square of the displacement of the first take's points by a fault alone, m². */
 static gdouble
-way_of (const Search * s, const ClothCameraFault * fault)
+displacement_square (const Search * s, const ClothCameraFault * fault)
 {
   const ClothDiagnosis *d = s->d;
   ClothCameraView *view = g_ptr_array_index (s->views, 0);
@@ -456,9 +462,9 @@ start_fault (const Search * s, const ClothGapScore * score,
   f->constancy_p_value = score->constancy_p_value;
 }
 
-/* Takes in the likeliest fault, if it is asked for. */
+/* Accepts and fits the likeliest fault, if it is supported. */
 static gboolean
-take_in (Search * s, const GArray * scores)
+accept_fault (Search * s, const GArray * scores)
 {
   ClothDiagnosis *d = s->d;
   ClothCameraFault *f = &d->faults[d->n_faults];
@@ -480,8 +486,8 @@ take_in (Search * s, const GArray * scores)
   return TRUE;
 }
 
-/* Faults that hardly move points count as small. Pictures that are the one before were found
- * because they are far off. */
+/* Faults that hardly move points count as small. Not lost pictures: they were found because
+ * they are far off. */
 static void
 find_small (Search * s)
 {
@@ -489,12 +495,12 @@ find_small (Search * s)
 
   for (guint i = 0; i < d->n_faults; i++)
     d->faults[i].small = !is_drop (&d->faults[i])
-        && !(way_of (s, &d->faults[i]) > LEAST_WAY *
+        && !(displacement_square (s, &d->faults[i]) > LEAST_DISPLACEMENT *
         d->camera_errors.detection);
 }
 
-/* The recordings as the cameras would have shown them with nothing wrong. What the first
- * take was before stays beside it. */
+/* Corrects the takes and hold-outs: their positions become those that cameras without the faults
+ * would have given. The positions before stay beside them. */
 static void
 correct (ClothDiagnosis * d, const Search * s)
 {
@@ -550,7 +556,7 @@ cloth_diagnosis_find_faults (ClothDiagnosis * d)
   study_baselines (&s);
   first = rank (&s, s.normal);
   last = g_array_ref (first);
-  while (s.normal && take_in (&s, last)) {
+  while (s.normal && accept_fault (&s, last)) {
     g_array_unref (last);
     last = rank (&s, s.normal);
   }

@@ -1,11 +1,13 @@
-/* The experiment that would part effects which a recording can't tell apart: T-optimal
- * discrimination (Atkinson and Fedorov, Biometrika 62, 1975) over a list of captures, for
- * the score test of the diagnosis.
+/* The experiment that would tell effects apart which a recording can't: T-optimal discrimination
+ * (Atkinson and Fedorov, Biometrika 62, 1975) over a list of captures, for the score test of the
+ * diagnosis.
  *
- * Each capture is simulated without any of the effects, as if it were recorded. Observers
- * with one of the effects each follow that recording; how their residuals differ is what
- * would tell the effects apart, but for what the model's free numbers and variability could do
- * as well.
+ * Each capture is simulated without any of the effects, as if it were recorded. Observers with one
+ * of the effects each follow that recording, and leave the residuals zᵢ.
+ * Assumption: if effect i acts, the residual of the model with effect j is zᵢ − zⱼ. What the
+ * model's free numbers and run-to-run variability could do as well is projected out by P.
+ * Formula: expected log Bayes factor of i against j = ½ (zᵢ − zⱼ)ᵀP(zᵢ − zⱼ)/φ₀, with φ₀ the
+ * overdispersion. A capture is worth the least of all pairs.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/design/experiment.h"

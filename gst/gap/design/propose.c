@@ -1,4 +1,5 @@
-/* What to film next: a capture for each group of effects that the data can't tell apart.
+/* Decides what to film next: for each group of effects that the data can't tell apart, the capture
+ * with the largest expected log Bayes factor between its two nearest effects (experiment.c).
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/design/propose.h"

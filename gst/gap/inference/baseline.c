@@ -1,5 +1,11 @@
-/* The baseline: the model's free numbers, and how much simulations that lack nothing ask for
- * each effect.
+/* Decides what the model is that effects are tested against, and what each effect must exceed.
+ *
+ * The model's free numbers are the most probable ones by Gauss–Newton, fitted on the baselines,
+ * else on the takes, with the variance that is left in each class of features as weights. Even
+ * weights are tried too, and taken when they leave a much smaller gap.
+ * Assumption: a baseline lacks no effect, or, without one, the difference of the two force models
+ * is like the simulator's own error. What the test of these supports of an effect is by mistake,
+ * and the effect's log Bayes factor on the takes must exceed it.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/inference/baseline.h"

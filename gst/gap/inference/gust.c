@@ -1,5 +1,13 @@
-/* Gusts: no two are alike, so there is no derivative with respect to them. But the observer
- * forgets within a tenth of a second: a gust is a wind of its own in each part of a block.
+/* Decides how much the residual supports gusts: winds that change from one moment to the next.
+ *
+ * No two gusts are alike, so there is no derivative with respect to them. But the observer forgets
+ * within a tenth of a second: a gust is a wind of its own in each third of a block of time.
+ * Model: the wind along the ground in these parts is an Ornstein–Uhlenbeck process (1930) with the
+ * standard deviation τ, and of its value a share a = exp (−Δt/T) is left after each part. It is a
+ * Markov chain, so that its precision K⁻¹/τ² is tridiagonal.
+ * Formula, with the normal equations G, b of the nuisances and of all winds w together:
+ *   log p (z | τ) = ½ bᵀ(G/φ + Λ)⁻¹b/φ² − ½ log det (G/φ + Λ) + ½ log det Λ + constant
+ *   log Bayes factor = log of the mean over τ of p (z | τ)/p (z | no wind)
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/inference/gust.h"

@@ -1,4 +1,14 @@
-/* Naming: how much the residual asks for each effect.
+/* Decides in which order the effects are named: assembles the normal equations of the takes, tests
+ * all candidates, and turns their log Bayes factors into probabilities.
+ *
+ * Model: z = simulated − recorded − discrepancy (Kennedy and O'Hagan 2001). Where a baseline moves
+ * alike, the discrepancy is its residual; else it is only a variance, class by class of features.
+ * A feature's weight is 1/(1 + d), with noise as the unit of variance and d the discrepancy's
+ * variance or, once a leading effect is known, the variance of the residual that it leaves.
+ * Directions of run-to-run variability are nuisances with the variance of their samples.
+ * Formulas:
+ *   probability = softmax of log Bayes factor/1.5 against none, then calibrated (Platt 1999)
+ *   effects of like probability, or of derivatives with a cosine over 0.9, form a group
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/inference/name.h"

@@ -1,5 +1,17 @@
-/* Which effect: the score test (Rao 1948; Lagrange multipliers, Silvey 1959) of each
- * candidate at its null.
+/* Decides how much the residual supports each effect: the score test of each candidate at its
+ * null (Rao 1948; as Lagrange multiplier test Silvey 1959).
+ *
+ * Model: z = −B dη − N dν + e, with the whitened features z of the residual, their derivatives B
+ * by the effect's directions and N by the nuisances, and e normal with the variance φ. The change
+ * dη has the normal prior of the effect, with precision R⁻¹ = diag(1/prior²).
+ * Assumption: the features are linear in dη as far as the prior reaches.
+ * Formulas, with g, s, r and φ of test.c:
+ *   A = g/φ + R⁻¹,  η̂ = −A⁻¹ s/φ,  covariance A⁻¹
+ *   log Bayes factor = ½ sᵀA⁻¹s/φ² − ½ log det (A R)
+ *   LM = sᵀA⁻¹s/φ², of which the p-value is the tail of χ²
+ *   improvement = share of zᵀz that is removed from each block by estimates from the others
+ *   constancy: Σ over blocks of ρᵀ g⁻¹ ρ/φ with ρ = s + g η̂ of the block is χ² about the common η̂
+ * A one-sided effect has η̂ ≥ 0.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/inference/score.h"

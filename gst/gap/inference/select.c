@@ -1,4 +1,12 @@
-/* Selection: effects are taken in one by one, and those go again that others make needless.
+/* Decides which effects are accepted: forward selection with a look ahead, and backward elimination.
+ *
+ * The likeliest effect is accepted when its log Bayes factor reaches the bound and it improves
+ * blocks of time that it was not estimated on. It is fitted by Gauss–Newton together with the
+ * free numbers and what is accepted already; then all effects are tested anew.
+ * Assumption: where the fit ends, the residual is linear in all accepted effects. There the log
+ * Bayes factor of an accepted effect against its absence is the Laplace approximation
+ *   ½ aᵀ(g/φ + R⁻¹)a − ½ log det (g R/φ + 1),  a = from the best values to the null,
+ * with all others fitted along; one below the bound goes again.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/inference/select.h"

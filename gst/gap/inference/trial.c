@@ -1,5 +1,11 @@
-/* The likeliest effects on trial: each is fitted by simulations of its own, where it is asked
- * to be. There its derivative may be another than at its null.
+/* Decides where the likeliest effects act, and how likely they are there.
+ *
+ * At its null an effect may have another derivative than where the residual asks it to be. Each of
+ * the likeliest effects is simulated there and takes Gauss–Newton steps in its own directions.
+ * Model: that of score.c, linearised at the effect's present values η instead of its null.
+ * Formula, with g, s, r at η and the step dη = −(g/φ + R⁻¹)⁻¹ (s/φ + R⁻¹η):
+ *   2 log p = −(r + 2 sᵀdη + dηᵀ g dη)/φ − (η + dη)ᵀR⁻¹(η + dη) − log det (g R/φ + 1)
+ *   log Bayes factor = log p − log p without any effect
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/inference/trial.h"

@@ -1,10 +1,12 @@
-/* How far a residual is above what it would be without a gap.
+/* Decides how far a residual is above what it would be without a gap, vertex by vertex.
  *
- * A force that the simulation lacks shows as a distance of force over gain from the
- * observer's targets: at once, but not only where it acts. Across the cloth the springs
- * hold against the tension of the cloth, which drags the next vertex along; along it
- * against its stretch, which drags whole rows. Part of that is undone by a Laplacian, as
- * far as noise allows.
+ * Model: a force f that the simulation lacks shows as a distance of f/(m·gain) from the observer's
+ * targets: at once, but not only where it acts. Across the cloth the springs hold against the
+ * tension of the cloth, which drags the next vertex along; along it against its stretch, which
+ * drags whole rows. Part of that is undone by a Laplacian, as far as noise allows.
+ * Formula, for the parts x along the normal and along the cloth:
+ *   excess = ρ (|x|/σ)² − 1,  σ² = noise + share² · mean square of the null,
+ * with Huber's ρ (1964), quadratic up to the gate and linear beyond.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/localise/excess.h"

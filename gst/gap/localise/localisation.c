@@ -1,9 +1,12 @@
-/* Which vertices a residual is significantly at, and from when on.
+/* Decides which vertices a residual is significantly at, and from when on.
  *
- * The place is a box on the flat cloth. Boxes of all sizes are scanned (Kulldorff 1997,
- * Communications in Statistics 26) over all of the take and over its later parts; what the
- * best of them reaches must be more than the best in blocks of time of the null, drawn by
- * chance, do. Its edges are where inside and outside differ most (Otsu 1979).
+ * Model: the place is a box on the flat cloth, the excess of its vertices (excess.c) has a mean
+ * above zero, that of all others none. Boxes of all sizes are scanned (Kulldorff 1997,
+ * Communications in Statistics 26) over all of the take and over its later parts.
+ * Formula: score of a box of k vertices = (Σ excess)²/k. The best score is significant when it is
+ * larger than 95% of the best scores of blocks of time of the null, drawn by chance.
+ * The place's edges are where inside and outside differ most (Otsu 1979). Its onset is where the
+ * cumulative sum of log (mean square/2 null) begins to rise (Page 1954, Biometrika 41).
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/localise/localisation.h"

@@ -1,5 +1,10 @@
-/* What would be there without a gap: the band over time, what is expected of each vertex
- * and frame, and which vertices are significantly above it.
+/* Decides what the gap would be if the simulation lacked nothing: over time, and for each vertex
+ * and frame.
+ *
+ * Model: the null is the gap of the model on the baseline, without one that of the other force model.
+ * Its squared gap in a window is log-normal. Where the null moves as the take does, the expected
+ * distance is that of the same vertex at about the same time, else its mean as long after the
+ * beginning of a window. Noise is the least.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/localise/null-distribution.h"

@@ -1,4 +1,11 @@
-/* What remains: signs of something in a take that its baseline has not.
+/* Decides whether something is in a take that its baseline has not and that the size of the gap need
+ * not show.
+ *
+ * Model: if nothing is missing, a take less its baseline is noise, with the variances of both.
+ * Three statistics, each against a fixed bound: the mean square of held vertices off their clamps'
+ * paths; the mean square of the features with the free numbers fitted anew, against noise and
+ * against the discrepancy; the mean square of slow long waves, against noise and against that of
+ * shorter waves, which run-to-run variability has as well.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/verdict/unexplained.h"
