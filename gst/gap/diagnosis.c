@@ -52,8 +52,7 @@ cloth_diagnosis_clear (ClothDiagnosis * d)
   cloth_candidates_free (d->candidates);
   g_free (d->precisions);
   g_free (d->all);
-  for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++)
-    cloth_normal_equations_free (d->normals[g]);
+  cloth_normal_equations_free (d->normal);
   g_free (d->variability_precisions);
   g_free (d->nuisances);
   g_free (d->nuisance_precisions);

@@ -63,7 +63,7 @@ typedef struct
   ClothCandidates *candidates;
   gdouble *precisions;          /* of the free numbers */
   guint *all;                   /* every direction */
-  ClothNormalEquations *normals[CLOTH_ESTIMATE_N_GAINS];
+  ClothNormalEquations *normal;
   guint n_variability;                /* of its columns, behind those of the directions */
   gdouble *variability_precisions;
   guint *nuisances;             /* of the test: what is fitted along, and its precisions */

@@ -108,7 +108,7 @@ find (const Data * data, const gboolean * blocks, ClothGapGusts * gusts,
   const guint nuisance = 0;
   g_autoptr (ClothNormalEquations) normal = normal_of (data);
   ClothGapTest test = {
-    .normals = {normal},.blocks = blocks,.nuisances = &nuisance,.precisions =
+    .normal = normal,.blocks = blocks,.nuisances = &nuisance,.precisions =
         &precision,.n_nuisances = 1,.overdispersion = overdispersion,.gusts = 1
   };
   ClothReducedEquations reduced;
@@ -178,7 +178,7 @@ test_blocks (void)
 static void
 test_none (void)
 {
-  const ClothGapTest test = { {NULL} };
+  const ClothGapTest test = { NULL };
   ClothGapGusts gusts;
 
   g_assert_false (cloth_gap_test_gusts (&test, prior, share, &gusts));

@@ -80,19 +80,18 @@ cloth_power_spectrum_free (ClothPowerSpectrum * power)
 }
 
 /* @features: what @z and @columns are of
- * @mismatch: mean squares of what the simulator itself is off
- * @share: of them that counts as variance
+ * @discrepancy: variance of the simulator's own error, class by class
  * @z: features of the residual
  * @columns: [m][features], their derivatives
  * @m: how many
  *
- * Weights are 1 / (1 + share · mismatch): noise has the variance 1.
+ * Weights are 1 / (1 + discrepancy): noise has the variance 1.
  *
  * Returns: (transfer full): the normal equations of each block
  */
 ClothNormalEquations *
 cloth_normal_equations_new (const ClothFeatures * features,
-    const ClothPowerSpectrum * mismatch, gdouble share, const gdouble * z,
+    const ClothPowerSpectrum * discrepancy, const gdouble * z,
     const gdouble * columns, guint m)
 {
   ClothNormalEquations *n = g_new0 (ClothNormalEquations, 1);
@@ -110,8 +109,8 @@ cloth_normal_equations_new (const ClothFeatures * features,
   for (guint c = 0; c < features->n_cosines; c++)
     for (guint w = 0; w < features->n_waves; w++)
       for (guint k = 0; k < 3; k++)
-        weights[i++] = 1. / (1. + share * mismatch->values[class_of (features,
-                    c, w, k)]);
+        weights[i++] =
+            1. / (1. + discrepancy->values[class_of (features, c, w, k)]);
   for (guint b = 0; b < n->n_blocks; b++) {
     const gdouble *zb = z + b * size;
 

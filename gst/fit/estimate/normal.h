@@ -51,7 +51,7 @@ ClothPowerSpectrum *cloth_power_spectrum_new (const ClothFeatures * features,
 ClothPowerSpectrum *cloth_power_spectrum_copy (const ClothPowerSpectrum * power);
 void cloth_power_spectrum_free (ClothPowerSpectrum * power);
 ClothNormalEquations *cloth_normal_equations_new (const ClothFeatures * features,
-    const ClothPowerSpectrum * mismatch, gdouble share, const gdouble * z,
+    const ClothPowerSpectrum * discrepancy, const gdouble * z,
     const gdouble * columns, guint m);
 ClothNormalEquations *cloth_normal_equations_append (ClothNormalEquations * to,
     ClothNormalEquations * from);

@@ -24,7 +24,7 @@ void
 cloth_estimate_options_init (ClothEstimateOptions * options)
 {
   *options = (ClothEstimateOptions) {
-  .gains = { 1600. },.n_waves = 8,.block_s = 0.5,.highest_hz =
+  .gain = 1600.,.n_waves = 8,.block_s = 0.5,.highest_hz =
         10.,.overdispersion = 5.};
 }
 
@@ -46,11 +46,9 @@ cloth_sensitivities_new (const ClothRecording * recording,
 static void
 forget (ClothSensitivities * study)
 {
-  for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++) {
-    g_clear_pointer (&study->z[g], g_free);
-    g_clear_pointer (&study->columns[g], g_free);
-    g_clear_pointer (&study->variability[g], g_free);
-  }
+  g_clear_pointer (&study->z, g_free);
+  g_clear_pointer (&study->columns, g_free);
+  g_clear_pointer (&study->variability, g_free);
   g_clear_pointer (&study->sound, g_free);
 }
 
@@ -72,14 +70,12 @@ cloth_sensitivities_copy (const ClothSensitivities * study,
   copy->m = study->m;
   copy->n_variability = study->n_variability;
   copy->sound = g_memdup2 (study->sound, study->m * sizeof (gboolean));
-  for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++) {
-    copy->z[g] = g_memdup2 (study->z[g], row);
-    copy->columns[g] = g_memdup2 (study->columns[g], study->m * row);
-    copy->variability[g] =
-        g_memdup2 (study->variability[g], study->n_variability * row);
-    if (study->left[g])
-      copy->left[g] = cloth_power_spectrum_copy (study->left[g]);
-  }
+  copy->z = g_memdup2 (study->z, row);
+  copy->columns = g_memdup2 (study->columns, study->m * row);
+  copy->variability =
+      g_memdup2 (study->variability, study->n_variability * row);
+  if (study->left)
+    copy->left = cloth_power_spectrum_copy (study->left);
   return copy;
 }
 
@@ -91,8 +87,7 @@ cloth_sensitivities_free (ClothSensitivities * study)
   if (!study)
     return;
   forget (study);
-  for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++)
-    cloth_power_spectrum_free (study->left[g]);
+  cloth_power_spectrum_free (study->left);
   cloth_features_free (study->features);
   g_free (study);
 }
@@ -122,21 +117,20 @@ cloth_sensitivities_count_variability (const ClothSensitivities * study)
 }
 
 /* @study: a study
- * @gain: which of the gains
  * @columns: (out) (array): cloth_sensitivities_count_variability () directions, each of features->size
  */
 void
 cloth_sensitivities_get_variability (const ClothSensitivities * study,
-    guint gain, gdouble * columns)
+    gdouble * columns)
 {
   gsize size = study->features->size, own = study->n_variability * size;
   gdouble scale = cloth_sensitivities_discrepancy_scale (study);
 
   if (own)
-    memcpy (columns, study->variability[gain], own * sizeof (gdouble));
+    memcpy (columns, study->variability, own * sizeof (gdouble));
   for (gsize k = 0;
       study->discrepancy && k < study->discrepancy->n_variability * size; k++)
-    columns[own + k] = scale * study->discrepancy->variability[gain][k];
+    columns[own + k] = scale * study->discrepancy->variability[k];
 }
 
 /* @study: a study
@@ -154,40 +148,38 @@ cloth_sensitivities_get_variability_precision (const ClothSensitivities * study,
 }
 
 /* @study: a study
- * @gain: which of the gains
  * @z: (inout) (array): features of a residual
  *
  * Takes off what the simulator itself is off by, if there is a discrepancy.
  */
 void
 cloth_sensitivities_take_off_discrepancy (const ClothSensitivities * study,
-    guint gain, gdouble * z)
+    gdouble * z)
 {
   gdouble scale = cloth_sensitivities_discrepancy_scale (study);
 
   for (gsize k = 0; study->discrepancy && k < study->features->size; k++)
-    z[k] -= scale * study->discrepancy->z[gain][k];
+    z[k] -= scale * study->discrepancy->z[k];
 }
 
 /* @study: a study
- * @gain: which of the gains
  *
  * Returns: (transfer full) (array): what is to be explained: z less that of the discrepancy
  */
 gdouble *
-cloth_sensitivities_residual (const ClothSensitivities * study, guint gain)
+cloth_sensitivities_residual (const ClothSensitivities * study)
 {
-  gdouble *z = g_memdup2 (study->z[gain],
+  gdouble *z = g_memdup2 (study->z,
       study->features->size * sizeof (gdouble));
 
-  cloth_sensitivities_take_off_discrepancy (study, gain, z);
+  cloth_sensitivities_take_off_discrepancy (study, z);
   return z;
 }
 
 typedef struct
 {
   const ClothSensitivities *study;
-  gdouble **z;                  /* of each model and gain */
+  gdouble **z;                  /* of each model */
 } Collect;
 
 static void
@@ -203,13 +195,12 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
  * @models: (array length=n): models
  * @n: how many
  * @options: how to simulate
- * @z: (inout) (array): of each model and gain, z[model · gains + gain], the features of the
- *   residual, each features->size; start with zeros
+ * @z: (inout) (array length=n): of each model, the features of the residual, each
+ *   features->size; start with zeros
  * @sound: (out) (array length=n): which models did not diverge
  * @error: #ClothSimError, or #ClothFitError when it was stopped
  *
- * Simulates models drawn to the recording. The gains of a model run side by side, so that
- * effects are computed in few groups.
+ * Simulates models drawn to the recording, side by side.
  *
  * Returns: whether that could be done
  */
@@ -218,25 +209,15 @@ cloth_sensitivities_run (const ClothSensitivities * study, ClothModel ** models,
     guint n, ClothEstimateOptions * options, gdouble ** z, gboolean * sound,
     GError ** error)
 {
-  guint all = n * CLOTH_ESTIMATE_N_GAINS;
-  g_autofree const ClothModel **lanes = g_new (const ClothModel *, all);
-  g_autofree gdouble *gains = g_new (gdouble, all);
-  g_autofree gboolean *ok = g_new (gboolean, all);
+  g_autofree gdouble *gains = g_new (gdouble, n);
   Collect c = { study, z };
 
-  for (guint i = 0; i < all; i++) {
-    lanes[i] = models[i / CLOTH_ESTIMATE_N_GAINS];
-    gains[i] = options->gains[i % CLOTH_ESTIMATE_N_GAINS];
-  }
-  options->simulations += all;
-  if (!cloth_rollout_nudged (study->recording, lanes, gains, all,
-          &options->rollout, collect, &c, ok, error))
-    return FALSE;
   for (guint i = 0; i < n; i++)
-    sound[i] = TRUE;
-  for (guint i = 0; i < all; i++)
-    sound[i / CLOTH_ESTIMATE_N_GAINS] &= ok[i];
-  return TRUE;
+    gains[i] = options->gain;
+  options->simulations += n;
+  return cloth_rollout_nudged (study->recording,
+      (const ClothModel * const *) models, gains, n, &options->rollout,
+      collect, &c, sound, error);
 }
 
 /* Features of one linearisation: of the model, of it moved along each direction, and of
@@ -244,11 +225,11 @@ cloth_sensitivities_run (const ClothSensitivities * study, ClothModel ** models,
 typedef struct
 {
   GPtrArray *models;
-  gdouble **z;                  /* by model and gain */
+  gdouble **z;                  /* by model */
   gboolean *sound;              /* by model */
   guint *back;                  /* of each direction: a model, 0 for none */
   gdouble *memory;              /* of the models moved back */
-  gdouble *reference;           /* what columns are differences from, by gain */
+  gdouble *reference;           /* what columns are differences from */
 } Moved;
 
 static void
@@ -293,13 +274,11 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Moved, moved_clear)
     }
   n = moved->models->len;
   moved->sound = g_new (gboolean, n);
-  moved->z = g_new (gdouble *, n * CLOTH_ESTIMATE_N_GAINS);
-  moved->memory = g_new0 (gdouble, (n - m) * CLOTH_ESTIMATE_N_GAINS * size);
+  moved->z = g_new (gdouble *, n);
+  moved->memory = g_new0 (gdouble, (n - m) * size);
   for (guint i = 0; i < n; i++)
-    for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++)
-      moved->z[i * CLOTH_ESTIMATE_N_GAINS + g] = i == 0 ? study->z[g] :
-          i <= m ? study->columns[g] + (i - 1) * size :
-          moved->memory + ((i - m - 1) * CLOTH_ESTIMATE_N_GAINS + g) * size;
+    moved->z[i] = i == 0 ? study->z : i <= m ? study->columns + (i - 1) * size :
+        moved->memory + (i - m - 1) * size;
 }
 
 /* Where the model is, seen from both sides: the mean of such pairs of runs. What variability did
@@ -310,40 +289,35 @@ find_reference (Moved * moved, ClothSensitivities * study)
 {
   gsize size = study->features->size;
   g_autofree guint *pairs = g_new (guint, study->m + 1);
+  gdouble *reference, *variability;
   guint n = 0;
 
   for (guint i = 0; i < study->m; i++)
     if (moved->back[i] && moved->sound[moved->back[i]] && moved->sound[i + 1])
       pairs[n++] = i;
   study->n_variability = n ? n + 1 : 0;
-  moved->reference = g_new0 (gdouble, CLOTH_ESTIMATE_N_GAINS * size);
-  for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++) {
-    gdouble *reference = moved->reference + g * size;
-    gdouble *variability = g_new0 (gdouble, study->n_variability * size + 1);
+  moved->reference = reference = g_new0 (gdouble, size);
+  study->variability = variability =
+      g_new0 (gdouble, study->n_variability * size + 1);
+  for (guint p = 0; p < n; p++, variability += size) {
+    const gdouble *before = moved->z[moved->back[pairs[p]]];
+    const gdouble *behind = moved->z[pairs[p] + 1];
 
-    study->variability[g] = variability;
-    for (guint p = 0; p < n; p++, variability += size) {
-      const gdouble *before = moved->z[moved->back[pairs[p]] *
-          CLOTH_ESTIMATE_N_GAINS + g];
-      const gdouble *behind = moved->z[(pairs[p] + 1) * CLOTH_ESTIMATE_N_GAINS +
-          g];
-
-      for (gsize k = 0; k < size; k++) {
-        variability[k] = 0.5 * (before[k] + behind[k]);
-        reference[k] += (variability[k] - reference[k]) / (p + 1);
-      }
-    }
-    if (!n) {
-      memcpy (reference, study->z[g], size * sizeof (gdouble));
-      continue;
-    }
-    memcpy (variability, study->z[g], size * sizeof (gdouble));
     for (gsize k = 0; k < size; k++) {
-      gdouble mean = (n * reference[k] + variability[k]) / (n + 1);
-
-      for (guint p = 0; p <= n; p++)
-        study->variability[g][p * size + k] -= mean;
+      variability[k] = 0.5 * (before[k] + behind[k]);
+      reference[k] += (variability[k] - reference[k]) / (p + 1);
     }
+  }
+  if (!n) {
+    memcpy (reference, study->z, size * sizeof (gdouble));
+    return;
+  }
+  memcpy (variability, study->z, size * sizeof (gdouble));
+  for (gsize k = 0; k < size; k++) {
+    gdouble mean = (n * reference[k] + variability[k]) / (n + 1);
+
+    for (guint p = 0; p <= n; p++)
+      study->variability[p * size + k] -= mean;
   }
 }
 
@@ -370,10 +344,8 @@ cloth_sensitivities_linearise (ClothSensitivities * study,
 
   forget (study);
   study->m = m;
-  for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++) {
-    study->z[g] = g_new0 (gdouble, size);
-    study->columns[g] = g_new0 (gdouble, m * size + 1);
-  }
+  study->z = g_new0 (gdouble, size);
+  study->columns = g_new0 (gdouble, m * size + 1);
   study->sound = g_new0 (gboolean, m + 1);
   move (&moved, study, candidates, model, directions, m);
   if (!cloth_sensitivities_run (study, (ClothModel **) moved.models->pdata,
@@ -390,20 +362,17 @@ cloth_sensitivities_linearise (ClothSensitivities * study,
     gdouble step = cloth_candidates_direction (candidates,
         directions[i])->step;
     guint back = moved.back[i];
+    gdouble *column = study->columns + i * size;
+    const gdouble *from;
 
     study->sound[i] = moved.sound[i + 1];
     if (back && moved.sound[back])
       step *= 2.;
     else
       back = 0;
-    for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++) {
-      gdouble *column = study->columns[g] + i * size;
-      const gdouble *from = back ? moved.z[back * CLOTH_ESTIMATE_N_GAINS + g] :
-          moved.reference + g * size;
-
-      for (gsize k = 0; k < size; k++)
-        column[k] = study->sound[i] ? (column[k] - from[k]) / step : 0.;
-    }
+    from = back ? moved.z[back] : moved.reference;
+    for (gsize k = 0; k < size; k++)
+      column[k] = study->sound[i] ? (column[k] - from[k]) / step : 0.;
   }
   return TRUE;
 }
@@ -422,7 +391,7 @@ typedef struct
   ClothEstimateOptions *options;
   ClothModel *model;
   gdouble *moved;               /* from where the fit began */
-  GPtrArray *powers;            /* what weighs, by study and gain */
+  GPtrArray *powers;            /* what weighs, by study */
 } Fit;
 
 static void
@@ -462,17 +431,16 @@ weigh (Fit * fit)
   g_clear_pointer (&fit->powers, g_ptr_array_unref);
   fit->powers = g_ptr_array_new_with_free_func (
       (GDestroyNotify) cloth_power_spectrum_free);
-  for (guint s = 0; s < fit->n_studies; s++)
-    for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++) {
-      const ClothSensitivities *study = fit->studies[s];
-      g_autofree gdouble *z = cloth_sensitivities_residual (study, g);
+  for (guint s = 0; s < fit->n_studies; s++) {
+    const ClothSensitivities *study = fit->studies[s];
+    g_autofree gdouble *z = cloth_sensitivities_residual (study);
 
-      g_ptr_array_add (fit->powers, study->left[g] ?
-          cloth_power_spectrum_copy (study->left[g]) :
-          cloth_power_spectrum_new (study->features, z));
-      if (fit->even)
-        make_even (g_ptr_array_index (fit->powers, fit->powers->len - 1));
-    }
+    g_ptr_array_add (fit->powers, study->left ?
+        cloth_power_spectrum_copy (study->left) :
+        cloth_power_spectrum_new (study->features, z));
+    if (fit->even)
+      make_even (g_ptr_array_index (fit->powers, s));
+  }
 }
 
 /* Normal equations of a study with what variability does projected out; returns what is left of
@@ -480,24 +448,23 @@ weigh (Fit * fit)
 static gdouble
 equations_of (const Fit * fit, guint i, guint m, gdouble * g, gdouble * s)
 {
-  const ClothSensitivities *study = fit->studies[i / CLOTH_ESTIMATE_N_GAINS];
-  guint gain = i % CLOTH_ESTIMATE_N_GAINS;
+  const ClothSensitivities *study = fit->studies[i];
   guint n = fit->m > fit->candidates->n_free ?
       cloth_sensitivities_count_variability (study) : 0;
   gsize size = study->features->size;
-  g_autofree gdouble *z = cloth_sensitivities_residual (study, gain);
+  g_autofree gdouble *z = cloth_sensitivities_residual (study);
   g_autofree gdouble *columns = g_new (gdouble, (m + n) * size + 1);
   g_autofree gdouble *precisions = g_new0 (gdouble, m + n + 1);
   g_autoptr (ClothNormalEquations) normal = NULL;
 
   if (m)
-    memcpy (columns, study->columns[gain], m * size * sizeof (gdouble));
+    memcpy (columns, study->columns, m * size * sizeof (gdouble));
   if (n)
-    cloth_sensitivities_get_variability (study, gain, columns + m * size);
+    cloth_sensitivities_get_variability (study, columns + m * size);
   for (guint k = 0; k < n; k++)
     precisions[k] = cloth_sensitivities_get_variability_precision (study, k);
   normal = cloth_normal_equations_new (study->features,
-      g_ptr_array_index (fit->powers, i), 1., z, columns, m + n);
+      g_ptr_array_index (fit->powers, i), z, columns, m + n);
   return cloth_normal_equations_project (normal, fit->blocks, m, precisions, g,
       s);
 }
@@ -564,7 +531,7 @@ go (Fit * fit, const gdouble * step, gdouble share)
  * @sigmas: (out) (nullable) (array length=m): standard deviations
  * @error: #ClothSimError or #ClothFitError
  *
- * Gauss and Newton on the features of all gains, each weighed by the power that is left
+ * Gauss and Newton on the features, each weighed by the power that is left
  * in its class, less what variability does. That is the likeliest if what is left is noise; of a
  * model that can't follow the cloth, @even finds what brings the cloth nearest. A step that
  * makes things worse, or the simulation diverge, is cut.

@@ -9,11 +9,8 @@
 
 G_BEGIN_DECLS
 
-/* Gains of the observer. One is enough: of 100, 400, 1600 and 6400 /s² on cloth of 33 × 35
- * vertices weak ones drown in variability, strong ones in noise. */
-#define CLOTH_ESTIMATE_N_GAINS 1
-
-/* @gains: of the observer, 1/s²
+/* @gain: of the observer, 1/s². Of 100, 400, 1600 and 6400 /s² on cloth of 33 × 35 vertices
+ *   weak ones drown in run-to-run variability, strong ones in noise
  * @n_waves: waves along u and v
  * @block_s: length of blocks of time, s
  * @highest_hz: of the features
@@ -22,7 +19,7 @@ G_BEGIN_DECLS
  * @simulations: (inout): counts them
  */
 typedef struct {
-  gdouble gains[CLOTH_ESTIMATE_N_GAINS];
+  gdouble gain;
   guint n_waves;
   gdouble block_s;
   gdouble highest_hz;
@@ -33,29 +30,29 @@ typedef struct {
 
 /* @recording: the recording
  * @features: its features
- * @z: residual of the model at hand, per gain
- * @columns: its derivatives, [directions][features], per gain
+ * @z: residual of the model at hand
+ * @columns: its derivatives, [directions][features]
  * @m: number of directions
  * @sound: which of them could be simulated
  * @variability: what variability does to the residual: runs that should be equal to first order less
- *   their mean, [n_variability][features], per gain
+ *   their mean, [n_variability][features]
  * @n_variability: how many
  * @discrepancy: (nullable): the study whose residual is what the simulator itself is off
  *   by here too; the caller's
- * @left: (nullable): the power that is left to doubt, per gain; a fit weighs by it instead
+ * @left: (nullable): the power that is left to doubt; a fit weighs by it instead
  *   of by what it leaves itself
  */
 typedef struct _ClothStudy {
   const ClothRecording *recording;
   ClothFeatures *features;
-  gdouble *z[CLOTH_ESTIMATE_N_GAINS];
-  gdouble *columns[CLOTH_ESTIMATE_N_GAINS];
+  gdouble *z;
+  gdouble *columns;
   guint m;
   gboolean *sound;
-  gdouble *variability[CLOTH_ESTIMATE_N_GAINS];
+  gdouble *variability;
   guint n_variability;
   const struct _ClothStudy *discrepancy;
-  ClothPowerSpectrum *left[CLOTH_ESTIMATE_N_GAINS];
+  ClothPowerSpectrum *left;
 } ClothSensitivities;
 
 void cloth_estimate_options_init (ClothEstimateOptions * options);
@@ -66,12 +63,12 @@ ClothSensitivities *cloth_sensitivities_copy (const ClothSensitivities * study,
 void cloth_sensitivities_free (ClothSensitivities * study);
 gdouble cloth_sensitivities_discrepancy_scale (const ClothSensitivities * study);
 guint cloth_sensitivities_count_variability (const ClothSensitivities * study);
-void cloth_sensitivities_get_variability (const ClothSensitivities * study, guint gain,
+void cloth_sensitivities_get_variability (const ClothSensitivities * study,
     gdouble * columns);
 gdouble cloth_sensitivities_get_variability_precision (const ClothSensitivities * study, guint i);
-void cloth_sensitivities_take_off_discrepancy (const ClothSensitivities * study, guint gain,
+void cloth_sensitivities_take_off_discrepancy (const ClothSensitivities * study,
     gdouble * z);
-gdouble *cloth_sensitivities_residual (const ClothSensitivities * study, guint gain);
+gdouble *cloth_sensitivities_residual (const ClothSensitivities * study);
 gboolean cloth_sensitivities_run (const ClothSensitivities * study, ClothModel ** models, guint n,
     ClothEstimateOptions * options, gdouble ** z, gboolean * sound,
     GError ** error);

@@ -131,9 +131,9 @@ rank (const Search * s, ClothNormalEquations * normal)
   g_autofree gboolean *sound = g_new (gboolean, m);
   guint nuisances[CLOTH_DIAGNOSIS_MAX_ACCEPTED * CLOTH_EFFECT_MAX_PARAMETERS];
   gdouble precisions[G_N_ELEMENTS (nuisances)];
-  ClothGapTest test = {.normals = {normal},.candidates = s->candidates,.blocks =
-      blocks,.nuisances = nuisances,.precisions = precisions,.overdispersion =
-      OVERDISPERSION,.sound = sound
+  ClothGapTest test = {.normal = normal,.candidates = s->candidates,.blocks =
+        blocks,.nuisances = nuisances,.precisions = precisions,.overdispersion =
+        OVERDISPERSION,.sound = sound
   };
   GArray *scores;
 
@@ -420,8 +420,8 @@ static void
 find_alike (Search * s, guint fault)
 {
   g_autofree gboolean *blocks = g_new (gboolean, s->normal->n_blocks);
-  const ClothGapTest test = {.normals = {s->normal},.candidates =
-      s->candidates,.blocks = blocks
+  const ClothGapTest test = {.normal = s->normal,.candidates =
+        s->candidates,.blocks = blocks
   };
 
   for (guint b = 0; b < s->normal->n_blocks; b++)

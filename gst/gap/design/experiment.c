@@ -165,7 +165,7 @@ follow (Search * s, const ClothSensitivities * study, ClothStageMotion motion,
       cloth_model_set_effect (model, member->effect, member->values);
     if (motion == CLOTH_MOTION_FAN_ON)
       blow (s->stage, model);
-    gains[i] = s->options->gains[0];
+    gains[i] = s->options->gain;
   }
   s->options->simulations += s->n_members;
   if (!cloth_rollout_nudged (study->recording,
@@ -215,8 +215,8 @@ weigh (const Search * s, const ClothSensitivities * study, const gdouble * z,
   g_autoptr (ClothNormalEquations) normal = NULL;
   gdouble least = INFINITY;
 
-  memcpy (columns, study->columns[0], n_free * f->size * sizeof (gdouble));
-  memcpy (columns + n_free * f->size, study->variability[0],
+  memcpy (columns, study->columns, n_free * f->size * sizeof (gdouble));
+  memcpy (columns + n_free * f->size, study->variability,
       study->n_variability * f->size * sizeof (gdouble));
   memcpy (columns + q * f->size, z, s->n_members * f->size * sizeof (gdouble));
   for (guint i = 0; i < q; i++) {
@@ -228,7 +228,7 @@ weigh (const Search * s, const ClothSensitivities * study, const gdouble * z,
   }
   for (guint b = 0; b < f->n_blocks; b++)
     blocks[b] = TRUE;
-  normal = cloth_normal_equations_new (f, power, 1., nothing, columns, m);
+  normal = cloth_normal_equations_new (f, power, nothing, columns, m);
   for (guint i = 0; i < s->n_members; i++)
     for (guint j = 0; j < i; j++) {
       const guint pair[2] = { q + i, q + j };

@@ -80,7 +80,7 @@ propose_one (ClothDiagnosis * d, guint group, GError ** error)
   ClothGapGroup *g = &g_array_index (d->result->groups, ClothGapGroup, group);
   g_autoptr (ClothModel) model = cloth_model_copy (d->model);
   g_autoptr (ClothPowerSpectrum) mismatch =
-      cloth_diagnosis_find_mismatch (d, 0, 0);
+      cloth_diagnosis_find_mismatch (d, 0);
   const ClothExperiment experiment = {
     cloth_diagnosis_recording (d, 0), model, d->candidates, d->precisions,
     mismatch

@@ -177,8 +177,7 @@ gboolean
 cloth_diagnosis_study_baselines (ClothDiagnosis * d, GError ** error)
 {
   g_autoptr (GArray) scores = NULL;
-  ClothGapTest test = { {NULL}
-  };
+  ClothGapTest test = { NULL };
 
   if (!cloth_diagnosis_linearise (d, d->n_takes, d->studies->len, d->model, 0.2,
           0.3, error))
@@ -200,8 +199,7 @@ cloth_diagnosis_study_other_model (ClothDiagnosis * d, GError ** error)
   g_autoptr (GPtrArray) studies = g_ptr_array_new_with_free_func (
       (GDestroyNotify) cloth_sensitivities_free);
   g_autoptr (GArray) scores = NULL;
-  ClothGapTest test = { {NULL}
-  };
+  ClothGapTest test = { NULL };
 
   cloth_diagnosis_begin_part (d, 0.4, 0.42, 1., "the other force model");
   for (guint i = 0; i < d->n_takes; i++) {

@@ -41,7 +41,7 @@ system_clear (System * system)
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (System, system_clear)
      static void assemble (const ClothGapTest * test, System * system)
 {
-  const ClothNormalEquations *normal = test->normals[0];
+  const ClothNormalEquations *normal = test->normal;
   const guint m = normal->m, q = test->n_nuisances;
   const guint all = q + N_COLUMNS * normal->n_blocks;
 
@@ -142,10 +142,10 @@ cloth_gap_test_gusts (const ClothGapTest * test, gdouble intensity,
 
   *gusts = (ClothGapGusts) {
   0};
-  if (!test->gusts || !cloth_gap_test_reduce (test, test->normals[0],
+  if (!test->gusts || !cloth_gap_test_reduce (test, test->normal,
           test->blocks, NULL, 0, &reduced))
     return FALSE;
-  phi = cloth_gap_test_dispersion (test, test->normals[0], &reduced);
+  phi = cloth_gap_test_dispersion (test, test->normal, &reduced);
   assemble (test, &system);
   x = g_new (gdouble, system.q + system.n + 1);
   none = solve (&system, phi, 0., share, x);

@@ -148,7 +148,7 @@ cloth_diagnosis_find_discrepancies (ClothDiagnosis * d)
 /* Mean square that the simulator itself is off by, in the noise of a take: of the
  * baselines, else of the takes with the model fitted to them. */
 ClothPowerSpectrum *
-cloth_diagnosis_find_mismatch (const ClothDiagnosis * d, guint take, guint gain)
+cloth_diagnosis_find_mismatch (const ClothDiagnosis * d, guint take)
 {
   gdouble unit = cloth_diagnosis_study (d, take)->features->sigma;
   guint begin = d->options->n_baselines ? d->n_takes : 0;
@@ -159,7 +159,7 @@ cloth_diagnosis_find_mismatch (const ClothDiagnosis * d, guint take, guint gain)
     const ClothSensitivities *study = cloth_diagnosis_study (d, i);
     gdouble scale = study->features->sigma / unit;
     ClothPowerSpectrum *power = cloth_power_spectrum_new (study->features,
-        study->z[gain]);
+        study->z);
 
     for (guint k = 0; k < power->n; k++)
       power->values[k] *= scale * scale;
@@ -176,12 +176,12 @@ cloth_diagnosis_find_mismatch (const ClothDiagnosis * d, guint take, guint gain)
 
 /* What weighs in a take: the power that is left to doubt, else the mismatch. */
 ClothPowerSpectrum *
-cloth_diagnosis_find_weight (const ClothDiagnosis * d, guint take, guint gain)
+cloth_diagnosis_find_weight (const ClothDiagnosis * d, guint take)
 {
   const ClothSensitivities *s = cloth_diagnosis_study (d, take);
 
-  return s->left[gain] ? cloth_power_spectrum_copy (s->left[gain]) :
-      cloth_diagnosis_find_mismatch (d, take, gain);
+  return s->left ? cloth_power_spectrum_copy (s->left) :
+      cloth_diagnosis_find_mismatch (d, take);
 }
 
 /* Gusts, if they are looked for in a study, else NULL. */
@@ -205,7 +205,7 @@ find_gusts (const ClothDiagnosis * d, const ClothSensitivities * study)
 /* The columns of the directions and behind them, where no other take has any, those of the
  * variability: as many are @before it; last room for @more. */
 gdouble *
-cloth_diagnosis_list_columns (const ClothDiagnosis * d, guint take, guint gain,
+cloth_diagnosis_list_columns (const ClothDiagnosis * d, guint take,
     guint before, guint more)
 {
   const ClothSensitivities *s = cloth_diagnosis_study (d, take);
@@ -213,9 +213,8 @@ cloth_diagnosis_list_columns (const ClothDiagnosis * d, guint take, guint gain,
   gdouble *columns =
       g_new0 (gdouble, (s->m + d->n_variability + more) * size + 1);
 
-  memcpy (columns, s->columns[gain], s->m * size * sizeof (gdouble));
-  cloth_sensitivities_get_variability (s, gain,
-      columns + (s->m + before) * size);
+  memcpy (columns, s->columns, s->m * size * sizeof (gdouble));
+  cloth_sensitivities_get_variability (s, columns + (s->m + before) * size);
   return columns;
 }
 
@@ -223,25 +222,23 @@ cloth_diagnosis_list_columns (const ClothDiagnosis * d, guint take, guint gain,
  * alike: taken off, a tenth of its power is left to doubt. The wind in the parts of the
  * blocks comes last, if gusts are looked for. */
 static ClothNormalEquations *
-normal_of (const ClothDiagnosis * d, guint take, guint gain, guint before)
+normal_of (const ClothDiagnosis * d, guint take, guint before)
 {
   const ClothSensitivities *s = cloth_diagnosis_study (d, take);
   const ClothCandidate *gusts = find_gusts (d, s);
   const guint more = gusts ? CLOTH_GAP_GUST_COLUMNS : 0;
   const guint n = s->m + d->n_variability;
   const gsize size = s->features->size;
-  g_autofree gdouble *z = cloth_sensitivities_residual (s, gain);
+  g_autofree gdouble *z = cloth_sensitivities_residual (s);
   g_autofree gdouble *columns =
-      cloth_diagnosis_list_columns (d, take, gain, before, more);
-  g_autoptr (ClothPowerSpectrum) weight =
-      cloth_diagnosis_find_weight (d, take, gain);
+      cloth_diagnosis_list_columns (d, take, before, more);
+  g_autoptr (ClothPowerSpectrum) weight = cloth_diagnosis_find_weight (d, take);
 
   for (guint i = 0; i < more; i++)
     cloth_features_window (s->features, columns + (gusts->first +
             i % CLOTH_GAP_GUST_WAYS) * size, i / CLOTH_GAP_GUST_WAYS,
         CLOTH_GAP_GUST_PARTS, columns + (n + i) * size);
-  return cloth_normal_equations_new (s->features, weight, 1., z, columns,
-      n + more);
+  return cloth_normal_equations_new (s->features, weight, z, columns, n + more);
 }
 
 /* The power left in the takes that a baseline's discrepancy is taken off, once @score's
@@ -249,33 +246,31 @@ normal_of (const ClothDiagnosis * d, guint take, guint gain, guint before)
 void
 cloth_diagnosis_find_left (ClothDiagnosis * d, const ClothGapScore * score)
 {
-  for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++)
-    for (guint i = 0; i < d->n_takes; i++) {
-      g_autoptr (ClothPowerSpectrum) mismatch =
-          cloth_diagnosis_find_mismatch (d, i, g);
-      ClothSensitivities *s = cloth_diagnosis_study (d, i);
-      g_autofree gdouble *z = cloth_sensitivities_residual (s, g);
-      gsize size = s->features->size;
-      ClothPowerSpectrum *left;
+  for (guint i = 0; i < d->n_takes; i++) {
+    g_autoptr (ClothPowerSpectrum) mismatch =
+        cloth_diagnosis_find_mismatch (d, i);
+    ClothSensitivities *s = cloth_diagnosis_study (d, i);
+    g_autofree gdouble *z = cloth_sensitivities_residual (s);
+    gsize size = s->features->size;
+    ClothPowerSpectrum *left;
 
-      if (!s->discrepancy)
-        continue;
-      for (guint c = 0; score && c < cloth_diagnosis_candidate (d, score)->n;
-          c++) {
-        const gdouble *column = s->columns[g] + (cloth_diagnosis_candidate (d,
-                score)->first + c) * size;
+    if (!s->discrepancy)
+      continue;
+    for (guint c = 0; score && c < cloth_diagnosis_candidate (d, score)->n; c++) {
+      const gdouble *column = s->columns + (cloth_diagnosis_candidate (d,
+              score)->first + c) * size;
 
-        for (gsize k = 0; k < size; k++)
-          z[k] += score->changes[c] * column[k];
-      }
-      left = cloth_power_spectrum_new (s->features, z);
-      for (guint k = 0; k < left->n; k++)
-        left->values[k] = MIN (score ? s->left[g]->values[k] :
-            mismatch->values[k], MAX (left->values[k],
-                SIGNATURE_LEFT * mismatch->values[k]));
-      cloth_power_spectrum_free (s->left[g]);
-      s->left[g] = left;
+      for (gsize k = 0; k < size; k++)
+        z[k] += score->changes[c] * column[k];
     }
+    left = cloth_power_spectrum_new (s->features, z);
+    for (guint k = 0; k < left->n; k++)
+      left->values[k] = MIN (score ? s->left->values[k] :
+          mismatch->values[k], MAX (left->values[k],
+              SIGNATURE_LEFT * mismatch->values[k]));
+    cloth_power_spectrum_free (s->left);
+    s->left = left;
+  }
 }
 
 gboolean
@@ -325,19 +320,14 @@ cloth_diagnosis_make_normals (ClothDiagnosis * d, guint begin, guint end,
     ClothGapTest * test)
 {
   list_variability (d, begin, end);
-  for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++) {
-    guint before = 0;
-
-    g_clear_pointer (&d->normals[g], cloth_normal_equations_free);
-    for (guint i = begin; i < end; i++) {
-      d->normals[g] =
-          cloth_normal_equations_append (d->normals[g], normal_of (d, i, g,
-              before));
-      before +=
-          cloth_sensitivities_count_variability (cloth_diagnosis_study (d, i));
-    }
-    test->normals[g] = d->normals[g];
+  g_clear_pointer (&d->normal, cloth_normal_equations_free);
+  for (guint i = begin, before = 0; i < end; i++) {
+    d->normal =
+        cloth_normal_equations_append (d->normal, normal_of (d, i, before));
+    before +=
+        cloth_sensitivities_count_variability (cloth_diagnosis_study (d, i));
   }
+  test->normal = d->normal;
   test->gusts = find_gusts (d, cloth_diagnosis_study (d, begin)) ?
       d->candidates->directions->len + d->n_variability : 0;
 }
@@ -397,7 +387,7 @@ cloth_diagnosis_make_test (ClothDiagnosis * d, guint begin, guint end,
       d->sound[k] = d->sound[k] && cloth_diagnosis_study (d, i)->sound[k];
   }
   cloth_diagnosis_make_normals (d, begin, end, test);
-  d->n_blocks = d->normals[0]->n_blocks;
+  d->n_blocks = d->normal->n_blocks;
   g_free (d->blocks);
   d->blocks = g_new (gboolean, d->n_blocks);
   for (guint b = 0; b < d->n_blocks; b++)

@@ -18,11 +18,11 @@ cloth_diagnosis_candidate (const ClothDiagnosis * d, const ClothGapScore * score
 gboolean cloth_diagnosis_list_candidates (ClothDiagnosis * d,
     const ClothModel * model, GError ** error);
 ClothPowerSpectrum *cloth_diagnosis_find_mismatch (const ClothDiagnosis * d,
-    guint take, guint gain);
+    guint take);
 ClothPowerSpectrum *cloth_diagnosis_find_weight (const ClothDiagnosis * d,
-    guint take, guint gain);
+    guint take);
 gdouble *cloth_diagnosis_list_columns (const ClothDiagnosis * d, guint take,
-    guint gain, guint before, guint more);
+    guint before, guint more);
 void cloth_diagnosis_find_discrepancies (ClothDiagnosis * d);
 gboolean cloth_diagnosis_linearise (ClothDiagnosis * d, guint first, guint end,
     const ClothModel * model, gdouble from, gdouble to, GError ** error);

@@ -245,45 +245,37 @@ static gboolean
 run_trial (const Trial * trial, ClothGapScore * score)
 {
   guint n = trial->candidate->n, freedom = 0;
-  gdouble gained = 0., total = 0., lm = 0., spread = 0.;
-  gdouble weight[4] = { 0. };
+  const ClothNormalEquations *normal = trial->test->normal;
+  gdouble gained, total = 0., spread;
+  ClothReducedEquations reduced, told;
+  gdouble phi, changes[4], inverse[16], log_det, fit = 0.;
   const gdouble null[4] = { 0. };
   ClothGapTest numbers = *trial->test;  /* without variability */
 
   numbers.n_nuisances = numbers.n_numbers;
   score->kept = 1.;
-  for (guint g = 0; g < CLOTH_ESTIMATE_N_GAINS; g++) {
-    const ClothNormalEquations *normal = trial->test->normals[g];
-    ClothReducedEquations reduced, told;
-    gdouble phi, changes[4], inverse[16], log_det, fit = 0.;
-
-    if (!reduce (trial, normal, trial->test->blocks, &reduced)
-        || !cloth_gap_test_reduce (&numbers, normal, numbers.blocks,
-            trial->directions, n, &told))
-      return FALSE;
-    phi = cloth_gap_test_dispersion (trial->test, normal, &reduced);
-    if (!estimate (trial, &reduced, phi, changes, inverse, &log_det))
-      return FALSE;
-    for (guint i = 0; i < n; i++) {
-      fit -= 0.5 * reduced.s[i] / phi * changes[i];
-      score->kept = MIN (score->kept, told.kept[i]);
-      score->changes[i] += changes[i] / inverse[i * n + i];
-      weight[i] += 1. / inverse[i * n + i];
-    }
-    score->evidence += (fit - 0.5 * log_det) / CLOTH_ESTIMATE_N_GAINS;
-    lm += 2. * fit / CLOTH_ESTIMATE_N_GAINS;
-    gained += cross_validate (trial, normal, normal, null, phi, &total);
-    spread += heterogeneity (trial, normal, phi, changes, &freedom);
-  }
+  if (!reduce (trial, normal, trial->test->blocks, &reduced)
+      || !cloth_gap_test_reduce (&numbers, normal, numbers.blocks,
+          trial->directions, n, &told))
+    return FALSE;
+  phi = cloth_gap_test_dispersion (trial->test, normal, &reduced);
+  if (!estimate (trial, &reduced, phi, changes, inverse, &log_det))
+    return FALSE;
   for (guint i = 0; i < n; i++) {
-    score->changes[i] /= weight[i];
-    score->sigmas[i] = sqrt (CLOTH_ESTIMATE_N_GAINS / weight[i]);
+    /* an estimate counts by its precision, the inverse of its variance */
+    const gdouble precision = 1. / inverse[i * n + i];
+
+    fit -= 0.5 * reduced.s[i] / phi * changes[i];
+    score->kept = MIN (score->kept, told.kept[i]);
+    score->changes[i] = changes[i] / inverse[i * n + i] / precision;
+    score->sigmas[i] = sqrt (1. / precision);
   }
+  score->evidence = fit - 0.5 * log_det;
+  gained = cross_validate (trial, normal, normal, null, phi, &total);
+  spread = heterogeneity (trial, normal, phi, changes, &freedom);
   score->improvement = total > 0. ? gained / total : 0.;
-  score->p_value = chi_square_tail (lm, n);
+  score->p_value = chi_square_tail (2. * fit, n);
   /* each direction's common value was fitted */
-  freedom /= CLOTH_ESTIMATE_N_GAINS;
-  spread /= CLOTH_ESTIMATE_N_GAINS;
   score->constancy_p_value = freedom > n ?
       chi_square_tail (spread, freedom - n) : NAN;
   return TRUE;
@@ -377,7 +369,7 @@ cloth_gap_test_run (const ClothGapTest * test)
  * @other: another
  *
  * Returns: largest cosine between what is left of their first directions' derivatives
- *   once the nuisances are projected out, of the first gain
+ *   once the nuisances are projected out
  */
 gdouble
 cloth_gap_test_cosine (const ClothGapTest * test, guint one, guint other)
@@ -392,7 +384,7 @@ cloth_gap_test_cosine (const ClothGapTest * test, guint one, guint other)
       const guint directions[2] = { a->first + i, b->first + j };
       ClothReducedEquations r;
 
-      if (cloth_normal_equations_reduce (test->normals[0], test->blocks,
+      if (cloth_normal_equations_reduce (test->normal, test->blocks,
               test->nuisances, test->precisions, test->n_nuisances,
               directions, 2, &r) && r.g[0] > 0. && r.g[3] > 0.)
         most = MAX (most, fabs (r.g[1]) / sqrt (r.g[0] * r.g[3]));

@@ -8,7 +8,7 @@
 G_BEGIN_DECLS
 
 /* @candidate: index of the candidate
- * @evidence: mean over the gains of the logarithm of the Bayes factor for it
+ * @evidence: logarithm of the Bayes factor for it
  * @improvement: share of the residual's square that it removes from blocks of time that
  *   it was not estimated on
  * @changes: expected changes of its directions; of gusts their intensity and azimuth

@@ -105,10 +105,10 @@ find_need (const ClothDiagnosis * d, const ClothGapTest * test, guint chosen,
         d->variability_precisions[others++]);
     nuisances[q++] = k;
   }
-  if (!cloth_normal_equations_reduce (test->normals[0], test->blocks, nuisances,
+  if (!cloth_normal_equations_reduce (test->normal, test->blocks, nuisances,
           precisions, q, directions, n, &r))
     return INFINITY;
-  phi = cloth_gap_test_dispersion (test, test->normals[0], &r);
+  phi = cloth_gap_test_dispersion (test, test->normal, &r);
   find_values (d, chosen, values);
   /* away: from the best place to the null */
   for (guint i = 0; i < n; i++) {
@@ -330,7 +330,7 @@ cloth_diagnosis_select (ClothDiagnosis * d, GError ** error)
 {
   g_autoptr (GArray) scores = NULL;
   const ClothGapScore *asked;
-  ClothGapTest test = { {NULL} };
+  ClothGapTest test = { NULL };
 
   cloth_diagnosis_find_left (d, NULL);
   cloth_diagnosis_make_test (d, 0, d->n_takes, &test);

@@ -24,7 +24,7 @@ count_features (const ClothGapTest * test, const ClothNormalEquations * normal)
 }
 
 /* @test: what is tested
- * @normal: normal equations of one gain
+ * @normal: normal equations
  * @reduced: what is left of them
  *
  * Returns: how much more than the noise a square of the residual counts

@@ -7,7 +7,7 @@
 
 G_BEGIN_DECLS
 
-/* @normals: of each gain, over the blocks of all takes
+/* @normal: the normal equations, over the blocks of all takes
  * @candidates: what the columns mean: column i is direction i
  * @blocks: (array): which blocks count
  * @nuisances: (array length=n_nuisances): columns that are fitted along
@@ -22,7 +22,7 @@ G_BEGIN_DECLS
  * @sound: (array): columns that could be simulated
  */
 typedef struct {
-  ClothNormalEquations *normals[CLOTH_ESTIMATE_N_GAINS];
+  ClothNormalEquations *normal;
   const ClothCandidates *candidates;
   const gboolean *blocks;
   const guint *nuisances;

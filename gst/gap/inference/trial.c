@@ -141,20 +141,19 @@ normal_of (const Court * court, const Rival * r, guint take, guint before)
   const guint n = r->candidate->n, others = s->m + d->n_variability;
   const gdouble *own = court->z[take] + r->first * size;
   g_autofree gdouble *columns =
-      cloth_diagnosis_list_columns (d, take, 0, before, n);
+      cloth_diagnosis_list_columns (d, take, before, n);
   g_autofree gdouble *z = g_new0 (gdouble, size);
-  g_autoptr (ClothPowerSpectrum) weight =
-      cloth_diagnosis_find_weight (d, take, 0);
+  g_autoptr (ClothPowerSpectrum) weight = cloth_diagnosis_find_weight (d, take);
 
   for (guint i = 0; i <= 2 * n; i++)
     for (gsize k = 0; k < size; k++)
       z[k] += own[i * size + k] / (2 * n + 1);
-  cloth_sensitivities_take_off_discrepancy (s, 0, z);
+  cloth_sensitivities_take_off_discrepancy (s, z);
   for (guint i = 0; i < n; i++)
     for (gsize k = 0; k < size; k++)
       columns[(others + i) * size + k] = (own[(1 + 2 * i) * size + k] -
           own[(2 + 2 * i) * size + k]) / (2. * step_of (d, r, i));
-  return cloth_normal_equations_new (s->features, weight, 1., z, columns,
+  return cloth_normal_equations_new (s->features, weight, z, columns,
       others + n);
 }
 
@@ -251,15 +250,15 @@ open_court (Court * court)
     const ClothSensitivities *s = cloth_diagnosis_study (d, t);
     const gsize size = s->features->size;
 
-    court->z[t] = g_memdup2 (s->z[0], size * sizeof (gdouble));
+    court->z[t] = g_memdup2 (s->z, size * sizeof (gdouble));
     for (gsize k = 0; s->n_variability && k < size; k++)
-      court->z[t][k] -= s->variability[0][(s->n_variability - 1) * size + k];
+      court->z[t][k] -= s->variability[(s->n_variability - 1) * size + k];
   }
   court->null = all_normals (court, &nobody);
   if (!cloth_gap_test_reduce (court->test, court->null, court->test->blocks,
           NULL, 0, &reduced))
     return FALSE;
-  court->phi = cloth_gap_test_dispersion (court->test, court->test->normals[0],
+  court->phi = cloth_gap_test_dispersion (court->test, court->test->normal,
       &reduced);
   court->without = -0.5 * reduced.r / court->phi;
   return TRUE;

@@ -50,7 +50,7 @@ add_rest (const ClothDiagnosis * d, const ClothSensitivities * study,
 {
   guint n = d->candidates->n_free;
   gdouble scale = cloth_sensitivities_discrepancy_scale (study);
-  g_autofree gdouble *z = cloth_sensitivities_residual (study, 0);
+  g_autofree gdouble *z = cloth_sensitivities_residual (study);
   g_autofree gboolean *blocks = g_new (gboolean, study->features->n_blocks);
   g_autofree gdouble *precisions = g_new (gdouble, n + 1);
   g_autoptr (ClothPowerSpectrum) noise =
@@ -64,8 +64,8 @@ add_rest (const ClothDiagnosis * d, const ClothSensitivities * study,
     blocks[b] = TRUE;
   for (guint k = 0; k < n; k++)
     precisions[k] = d->precisions[k] * d->study.overdispersion;
-  normal = cloth_normal_equations_new (study->features, noise, 1., z,
-      study->columns[0], n);
+  normal = cloth_normal_equations_new (study->features, noise, z,
+      study->columns, n);
   if (!cloth_normal_equations_reduce (normal, blocks, d->all, precisions, n,
           NULL, 0, &reduced))
     return;
@@ -73,7 +73,7 @@ add_rest (const ClothDiagnosis * d, const ClothSensitivities * study,
   rest->n += normal->per_block * normal->n_blocks;
   for (gsize k = 0; k < study->features->size; k++)
     rest->discrepancy += scale * scale / (1. + scale * scale) *
-        study->discrepancy->z[0][k] * study->discrepancy->z[0][k];
+        study->discrepancy->z[k] * study->discrepancy->z[k];
 }
 
 /* Whether a take begins as the baseline does whose discrepancy it has. */
@@ -128,7 +128,7 @@ is_led_away (const ClothDiagnosis * d)
     const ClothFeatures *f = study->features;
     const gdouble scale = cloth_sensitivities_discrepancy_scale (study);
     const gdouble noise = 1. + scale * scale;
-    g_autofree gdouble *z = cloth_sensitivities_residual (study, 0);
+    g_autofree gdouble *z = cloth_sensitivities_residual (study);
 
     for (gsize k = 0; k < f->size; k++) {
       const guint band = f->bands[k / 3 % f->n_waves];
