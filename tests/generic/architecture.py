@@ -23,11 +23,11 @@ PAPER = {'algorithm': ('#dfe9f3', '#7f9dbd'), 'gstreamer': ('#f6e6cf', '#c99f5c'
 FONT = 'font-family="DejaVu Sans, Verdana, sans-serif"'
 
 
-def uses_of(root):
+def uses_of(sources):
     """The rooms that each room uses, by the table's rules; none through another."""
     rooms = [room for room in floors.ALL if room.path != 'tests']
     uses = {room: set() for room in rooms}
-    for source, module, _ in floors.arrows(floors.read(root)):
+    for source, module, _ in floors.arrows(sources):
         other = floors.room_of(module)
         if other != source.room and floors.may_use(source.room, other):
             uses[source.room].add(other)
@@ -162,26 +162,31 @@ def wrap(text, most):
     return lines
 
 
-def draw_box(room, x, y):
+def sub_rooms(room, sources):
+    """Its folders, the lowest first."""
+    found = {source.path[len(room.path) + 1:].partition('/')[0] for source in sources
+             if source.room is room and '/' in source.path[len(room.path) + 1:]}
+    steps = [part for step in room.order for part in step]
+    return sorted(found, key=lambda part: (steps.index(part) if part in steps else 0, part))
+
+
+def draw_box(room, parts, x, y):
     kind = 'algorithm' if room in floors.ROOMS else 'gstreamer'
     paper, edge = PAPER[kind]
     yield ('<rect x="%d" y="%d" width="%d" height="%d" rx="9" fill="%s" stroke="%s" '
            'stroke-width="1.5"/>' % (x - BOX / 2, y, BOX, HEIGHT, paper, edge))
-    parts = ['%s/' % part for step in room.order or [] for part in step if '/' not in part and part]
-    lines = wrap(room.what, 31)
-    top = y + (HEIGHT - 18 - 16 * len(lines) - (15 if parts else 0)) / 2 + 14
-    yield '<text x="%d" y="%d" font-size="15" font-weight="bold" fill="%s">%s</text>' % (
-        x, top, INK, escape(room.path))
-    for k, line in enumerate(lines):
-        yield '<text x="%d" y="%d" font-size="12.5" fill="%s">%s</text>' % (
-            x, top + 18 + 16 * k, INK, escape(line))
-    if parts:
-        yield '<text x="%d" y="%d" font-size="11" fill="%s">%s</text>' % (
-            x, top + 18 + 16 * len(lines), FAINT, escape(' '.join(parts)))
+    rows = [(room.path, 15, INK, ' font-weight="bold"'), (room.what, 12.5, INK, '')]
+    rows += [(line, 11, FAINT, '') for line in wrap(' '.join(part + '/' for part in parts), 36)
+             if line]
+    top = y + HEIGHT / 2 - 16.5 * len(rows) / 2 + 13
+    for k, (text, size, ink, weight) in enumerate(rows):
+        yield '<text x="%d" y="%d" font-size="%g" fill="%s"%s>%s</text>' % (
+            x, top + 16.5 * k, size, ink, weight, escape(text))
 
 
 def draw(root):
-    rows, links, ways = storeys(uses_of(root))
+    sources = floors.read(root)
+    rows, links, ways = storeys(uses_of(sources))
     rows = untangle(rows, links)
     x = settle(rows, ways)
     total = len(rows) * (HEIGHT + BETWEEN) - BETWEEN + 2 * MARGIN
@@ -219,7 +224,7 @@ def draw(root):
     out.append('<g %s text-anchor="middle">' % FONT)
     for node in x:
         if is_room(node):
-            out += draw_box(node, round(x[node]), y[node])
+            out += draw_box(node, sub_rooms(node, sources), round(x[node]), y[node])
     out.append('</g>')
     out.append('</svg>')
     return '\n'.join(out) + '\n'
