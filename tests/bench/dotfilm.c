@@ -1,4 +1,4 @@
-/* Films of a cloth with 3,500 dots, drawn by gst/vision/render.
+/* Films of a cloth with 3,500 dots, drawn by gst/render.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "tests/bench/dotfilm.h"

@@ -7,7 +7,9 @@
 
 A module is a .c with its .h and its .inc.c; a header without a .c is a module of its own.
 One module uses another when it includes it, or when it names a function or a variable
-that the other defines. Only texts are read: nothing needs to be built.
+that the other defines. Only texts are read: nothing needs to be built. Names that a macro
+puts together by ## are not seen. So the one list of effects, gst/effect/list.h, is free to
+name what rooms above it define: the linker ties these to it.
 
 SPDX-License-Identifier: LGPL-2.1-or-later
 """
@@ -109,6 +111,9 @@ WORD = re.compile(r'[A-Za-z_]\w*')
 DOCUMENTS = ('README.md', 'CONTRIBUTING.md', 'SECURITY.md', 'docs/*.md')
 # A path that a document names; one inside another path, a URL or a build folder is not ours.
 NAMED = re.compile(r'(?<![\w./<$}-])((?:gst|elements|tools|tests|pipelines)/[\w.*/-]*)([<{$]?)')
+# A source that is named without its folder.
+BARE = re.compile(r'(?<![\w./<-])([a-z][\w-]*\.(?:inc\.c|c|h))\b')
+COMMENT = re.compile(r'/\*.*?\*/', re.S)
 OURS = re.compile(r'\b((?:gst_)?cloth_\w+|gst_\w+) ?\(\)')
 
 
@@ -373,17 +378,27 @@ def check_names(path, text, functions):
         yield 'names', '%s: there is no function %s ()' % (path, name)
 
 
-def check_documents(root, functions):
-    """What the documents name exists."""
+def check_paths(root, path, text, known):
+    for name, rest in sorted(set(NAMED.findall(text))):
+        # Of a pattern such as elements/gst<name>.c the folder exists.
+        name = os.path.dirname(name) if rest else name.rstrip('.-')
+        if not glob.glob(os.path.join(root, name)):
+            yield 'paths', '%s: %s does not exist' % (path, name)
+    for name in sorted(set(BARE.findall(text)) - known):
+        yield 'paths', '%s: %s does not exist' % (path, name)
+
+
+def check_documents(root, sources, functions):
+    """What the documents and the comments name exists."""
+    known = {os.path.basename(source.path) for source in sources} | {'config.h'}
+    for source in sources:
+        comments = ' '.join(COMMENT.findall(source.text))
+        yield from check_paths(root, source.path, comments, known)
     for path in sorted(sum((glob.glob(os.path.join(root, name)) for name in DOCUMENTS), [])):
         with open(path, encoding='utf-8') as file:
             text = file.read()
         path = os.path.relpath(path, root)
-        for name, rest in sorted(set(NAMED.findall(text))):
-            # Of a pattern such as elements/gst<name>.c the folder exists.
-            name = os.path.dirname(name) if rest else name.rstrip('.-')
-            if not glob.glob(os.path.join(root, name)):
-                yield 'paths', '%s: %s does not exist' % (path, name)
+        yield from check_paths(root, path, text, known)
         yield from check_names(path, text, functions)
 
 
@@ -399,7 +414,7 @@ def check(root):
             yield from check_includes(root, source)
     yield from check_modules(sources)
     yield from check_readmes(root, functions)
-    yield from check_documents(root, functions)
+    yield from check_documents(root, sources, functions)
 
 
 def write_tree(root, files):
@@ -476,6 +491,8 @@ def self_test():
         ('names', {'docs/a.md': 'It calls `cloth_gone()`.\n'}),
         ('paths', {'docs/a.md': 'See `gst/gone/a.c`.\n'}),
         ('paths', {'CONTRIBUTING.md': 'See `tests/gone*`.\n'}),
+        ('paths', {'gst/math/a.c': head + '/* As in gone.c. */\n'}),
+        ('paths', {'elements/gsta.c': head + '/* As in gst/gone/a.h. */\n'}),
         # A private header sees its own module's door; tests/core sees all.
         (None, {'gst/rig/rig-private.h': head + '#include "gst/rig/rig.h"\n',
                 'gst/rig/rig.c': head + '#include "gst/rig/rig-private.h"\n'}),
