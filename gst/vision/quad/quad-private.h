@@ -144,7 +144,9 @@ static const gint cloth_quad_corner_row[4] = { 0, 0, 1, 1 };
 gfloat cloth_quad_shortest (const gfloat x[4], const gfloat y[4]);
 gfloat cloth_quad_longest (const gfloat x[4], const gfloat y[4]);
 
-/* quad.c: moves the guesses of what was not found yet along with the corners around it
+/* quad-predict.c: the guess of each square, and of each corner of the board. */
+void cloth_quad_predict (ClothQuadTracker * tracker);
+/* Moves the guesses of what was not found yet along with the corners around it
  * that were. */
 void cloth_quad_spread_shift (ClothQuadTracker * tracker);
 /* quad-link.c: places the patches found by linking and takes over their squares. */
