@@ -1,9 +1,6 @@
-/* Shared inside libgstcloth-1.0: error domain, picture scaling, stream headers.
+/* Shared inside libgstcloth-1.0: error domain, stream headers.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include <gst/video/video.h>
-#include <gst/video/gstvideometa.h>
-
 #include "gst/cloth/gstclothprivate.h"
 
 /**
@@ -17,32 +14,6 @@ GQuark
 gst_cloth_error_quark (void)
 {
   return g_quark_from_static_string ("gst-cloth-error-quark");
-}
-
-/* TRUE when a meta's transformation is a change of the picture's size */
-gboolean
-gst_cloth_meta_get_scale (GQuark type, gpointer data, gdouble * scale_x,
-    gdouble * scale_y)
-{
-  const GstVideoMetaTransform *scale = data;
-
-  if (!GST_VIDEO_META_TRANSFORM_IS_SCALE (type))
-    return FALSE;
-  if (GST_VIDEO_INFO_WIDTH (scale->in_info) <= 0
-      || GST_VIDEO_INFO_HEIGHT (scale->in_info) <= 0)
-    return FALSE;
-  *scale_x = (gdouble) GST_VIDEO_INFO_WIDTH (scale->out_info)
-      / GST_VIDEO_INFO_WIDTH (scale->in_info);
-  *scale_y = (gdouble) GST_VIDEO_INFO_HEIGHT (scale->out_info)
-      / GST_VIDEO_INFO_HEIGHT (scale->in_info);
-  return *scale_x > 0 && *scale_y > 0;
-}
-
-gboolean
-gst_cloth_camera_is_valid (const gchar * camera)
-{
-  return camera == NULL || (strlen (camera) <= GST_CLOTH_MAX_CAMERA_NAME
-      && g_utf8_validate (camera, -1, NULL));
 }
 
 /* Takes both; stream headers are marked as such, for the payloaders. */

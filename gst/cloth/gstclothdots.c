@@ -1,20 +1,15 @@
 /* Coloured dots of one picture, as buffer metadata.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include <gst/video/video.h>
+#include "gst/cloth/gstclothpayload.h"
 
-#include "gst/cloth/gstclothprivate.h"
-
-/* One allocation: this, the dots, the camera's name. */
 struct _GstClothDots
 {
-  gatomicrefcount refs;
+  GstClothPayload payload;
   guint columns, rows;
   guint n_colours;
   guint n_dots;
-  guint64 sequence;
-  GstClothDot *dots;
-  gchar *camera;
+  GstClothDot dots[];
 };
 
 G_DEFINE_BOXED_TYPE (GstClothDot, gst_cloth_dot, gst_cloth_dot_copy,
@@ -92,26 +87,18 @@ gst_cloth_dot_set_log_likelihood (GstClothDot * dot, guint colour,
   return TRUE;
 }
 
-static GstClothDots *
-dots_alloc (const gchar * camera, guint64 sequence, guint columns, guint rows,
-    guint n_colours, guint n_dots)
+static void
+dots_scale (GstClothPayload * payload, gdouble scale_x, gdouble scale_y)
 {
-  gsize name = camera ? strlen (camera) : 0;
-  GstClothDots *dots = g_malloc (sizeof (GstClothDots)
-      + n_dots * sizeof (GstClothDot) + name + 1);
+  GstClothDots *dots = (GstClothDots *) payload;
 
-  g_atomic_ref_count_init (&dots->refs);
-  dots->sequence = sequence;
-  dots->columns = columns;
-  dots->rows = rows;
-  dots->n_colours = n_colours;
-  dots->n_dots = n_dots;
-  dots->dots = (GstClothDot *) (dots + 1);
-  dots->camera = (gchar *) (dots->dots + n_dots);
-  if (name)
-    memcpy (dots->camera, camera, name);
-  dots->camera[name] = 0;
-  return dots;
+  for (guint i = 0; i < dots->n_dots; i++) {
+    GstClothDot *d = &dots->dots[i];
+
+    gst_cloth_scale_place (&d->x, &d->y, scale_x, scale_y);
+    gst_cloth_scale_covariance (&d->cov_xx, &d->cov_xy, &d->cov_yy, scale_x,
+        scale_y);
+  }
 }
 
 /**
@@ -137,14 +124,20 @@ gst_cloth_dots_new (const gchar * camera, guint64 sequence, guint columns,
 {
   GstClothDots *payload;
 
-  g_return_val_if_fail (gst_cloth_camera_is_valid (camera), NULL);
   g_return_val_if_fail (dots || !n_dots, NULL);
   g_return_val_if_fail (n_dots <= GST_CLOTH_MAX_FEATURES, NULL);
   g_return_val_if_fail (columns <= GST_CLOTH_MAX_FEATURES
       && rows <= GST_CLOTH_MAX_FEATURES, NULL);
   g_return_val_if_fail (n_colours <= GST_CLOTH_DOT_MAX_COLOURS, NULL);
 
-  payload = dots_alloc (camera, sequence, columns, rows, n_colours, n_dots);
+  payload = gst_cloth_payload_new (sizeof *payload + n_dots * sizeof *dots,
+      camera, sequence, dots_scale);
+  if (!payload)
+    return NULL;
+  payload->columns = columns;
+  payload->rows = rows;
+  payload->n_colours = n_colours;
+  payload->n_dots = n_dots;
   if (n_dots)
     memcpy (payload->dots, dots, n_dots * sizeof *dots);
   return payload;
@@ -161,8 +154,7 @@ gst_cloth_dots_new (const gchar * camera, guint64 sequence, guint columns,
 GstClothDots *
 gst_cloth_dots_ref (GstClothDots * dots)
 {
-  g_atomic_ref_count_inc (&dots->refs);
-  return dots;
+  return g_atomic_rc_box_acquire (dots);
 }
 
 /**
@@ -176,8 +168,7 @@ gst_cloth_dots_ref (GstClothDots * dots)
 void
 gst_cloth_dots_unref (GstClothDots * dots)
 {
-  if (g_atomic_ref_count_dec (&dots->refs))
-    g_free (dots);
+  g_atomic_rc_box_release (dots);
 }
 
 /**
@@ -191,7 +182,7 @@ gst_cloth_dots_unref (GstClothDots * dots)
 const gchar *
 gst_cloth_dots_get_camera (const GstClothDots * dots)
 {
-  return dots->camera;
+  return dots->payload.camera;
 }
 
 /**
@@ -205,7 +196,7 @@ gst_cloth_dots_get_camera (const GstClothDots * dots)
 guint64
 gst_cloth_dots_get_sequence (const GstClothDots * dots)
 {
-  return dots->sequence;
+  return dots->payload.sequence;
 }
 
 /**
@@ -352,55 +343,8 @@ GstClothDots *
 gst_cloth_dots_scale (const GstClothDots * dots, gdouble scale_x,
     gdouble scale_y)
 {
-  GstClothDots *scaled;
-
-  g_return_val_if_fail (dots != NULL, NULL);
-  g_return_val_if_fail (scale_x > 0 && scale_y > 0, NULL);
-
-  scaled = dots_alloc (dots->camera, dots->sequence, dots->columns, dots->rows,
-      dots->n_colours, dots->n_dots);
-  for (guint i = 0; i < dots->n_dots; i++) {
-    GstClothDot *d = &scaled->dots[i];
-
-    *d = dots->dots[i];
-    d->x = gst_cloth_scale_place (d->x, scale_x);
-    d->y = gst_cloth_scale_place (d->y, scale_y);
-    d->cov_xx = (gfloat) (d->cov_xx * scale_x * scale_x);
-    d->cov_xy = (gfloat) (d->cov_xy * scale_x * scale_y);
-    d->cov_yy = (gfloat) (d->cov_yy * scale_y * scale_y);
-  }
-  return scaled;
-}
-
-static gboolean
-dots_meta_init (GstMeta * meta, gpointer params, GstBuffer * buffer)
-{
-  ((GstClothDotsMeta *) meta)->dots = NULL;
-  return TRUE;
-}
-
-static void
-dots_meta_free (GstMeta * meta, GstBuffer * buffer)
-{
-  g_clear_pointer (&((GstClothDotsMeta *) meta)->dots, gst_cloth_dots_unref);
-}
-
-static gboolean
-dots_meta_transform (GstBuffer * target, GstMeta * meta, GstBuffer * buffer,
-    GQuark type, gpointer data)
-{
-  GstClothDots *dots = ((GstClothDotsMeta *) meta)->dots;
-  gdouble sx, sy;
-
-  if (!dots)
-    return FALSE;
-  if (GST_META_TRANSFORM_IS_COPY (type))
-    dots = gst_cloth_dots_ref (dots);
-  else if (gst_cloth_meta_get_scale (type, data, &sx, &sy))
-    dots = gst_cloth_dots_scale (dots, sx, sy);
-  else
-    return FALSE;
-  return gst_buffer_add_cloth_dots_meta (target, dots) != NULL;
+  return gst_cloth_payload_scale ((const GstClothPayload *) dots, scale_x,
+      scale_y);
 }
 
 /**
@@ -414,17 +358,8 @@ GType
 gst_cloth_dots_meta_api_get_type (void)
 {
   static GType type;
-  static const gchar *tags[] = { GST_META_TAG_VIDEO_STR,
-    GST_META_TAG_VIDEO_ORIENTATION_STR, GST_META_TAG_VIDEO_SIZE_STR, NULL
-  };
 
-  if (g_once_init_enter (&type)) {
-    GType registered = gst_meta_api_type_register ("GstClothDotsMetaAPI",
-        tags);
-
-    g_once_init_leave (&type, registered);
-  }
-  return type;
+  return gst_cloth_payload_register_api (&type, "GstClothDotsMetaAPI", TRUE);
 }
 
 /**
@@ -439,15 +374,8 @@ gst_cloth_dots_meta_get_info (void)
 {
   static const GstMetaInfo *info;
 
-  if (g_once_init_enter (&info)) {
-    const GstMetaInfo *registered =
-        gst_meta_register (gst_cloth_dots_meta_api_get_type (),
-        "GstClothDotsMeta", sizeof (GstClothDotsMeta), dots_meta_init,
-        dots_meta_free, dots_meta_transform);
-
-    g_once_init_leave (&info, registered);
-  }
-  return info;
+  return gst_cloth_payload_register_meta (&info,
+      gst_cloth_dots_meta_api_get_type (), "GstClothDotsMeta");
 }
 
 /**
@@ -464,24 +392,8 @@ gst_cloth_dots_meta_get_info (void)
 GstClothDotsMeta *
 gst_buffer_add_cloth_dots_meta (GstBuffer * buffer, GstClothDots * dots)
 {
-  GstClothDotsMeta *meta;
-
-  g_return_val_if_fail (GST_IS_BUFFER (buffer), NULL);
-  g_return_val_if_fail (gst_buffer_is_writable (buffer), NULL);
-  g_return_val_if_fail (dots != NULL, NULL);
-
-  meta = (GstClothDotsMeta *) gst_buffer_get_meta (buffer,
-      gst_cloth_dots_meta_api_get_type ());
-  if (!meta)
-    meta = (GstClothDotsMeta *) gst_buffer_add_meta (buffer,
-        gst_cloth_dots_meta_get_info (), NULL);
-  if (!meta) {
-    gst_cloth_dots_unref (dots);
-    return NULL;
-  }
-  g_clear_pointer (&meta->dots, gst_cloth_dots_unref);
-  meta->dots = dots;
-  return meta;
+  return gst_cloth_payload_attach (dots, buffer,
+      gst_cloth_dots_meta_get_info ());
 }
 
 /**
@@ -496,10 +408,5 @@ gst_buffer_add_cloth_dots_meta (GstBuffer * buffer, GstClothDots * dots)
 GstClothDots *
 gst_buffer_get_cloth_dots (GstBuffer * buffer)
 {
-  GstMeta *meta;
-
-  g_return_val_if_fail (GST_IS_BUFFER (buffer), NULL);
-
-  meta = gst_buffer_get_meta (buffer, gst_cloth_dots_meta_api_get_type ());
-  return meta ? ((GstClothDotsMeta *) meta)->dots : NULL;
+  return gst_cloth_payload_find (buffer, gst_cloth_dots_meta_api_get_type ());
 }

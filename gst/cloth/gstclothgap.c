@@ -3,16 +3,14 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <math.h>
 
-#include "gst/cloth/gstclothprivate.h"
+#include "gst/cloth/gstclothpayload.h"
 
-/* One allocation: this, the residuals, the standard deviations. */
+/* The standard deviations follow the residuals. */
 struct _GstClothGap
 {
-  gatomicrefcount refs;
+  GstClothPayload payload;
   guint n_vertices;
-  guint64 sequence;
-  gfloat *residuals;
-  gfloat *sigmas;
+  gfloat residuals[];
 };
 
 G_DEFINE_BOXED_TYPE (GstClothGap, gst_cloth_gap, gst_cloth_gap_ref,
@@ -41,17 +39,16 @@ gst_cloth_gap_new (guint64 sequence, guint n_vertices,
     const gfloat * residuals, const gfloat * sigmas)
 {
   GstClothGap *gap;
+  gfloat *deviations;
 
   g_return_val_if_fail (residuals != NULL, NULL);
   g_return_val_if_fail (n_vertices >= 1
       && n_vertices <= GST_CLOTH_MAX_VERTICES, NULL);
 
-  gap = g_malloc (sizeof *gap + 4 * sizeof (gfloat) * (gsize) n_vertices);
-  g_atomic_ref_count_init (&gap->refs);
+  gap = gst_cloth_payload_new (sizeof *gap + 4 * sizeof (gfloat)
+      * (gsize) n_vertices, NULL, sequence, NULL);
   gap->n_vertices = n_vertices;
-  gap->sequence = sequence;
-  gap->residuals = (gfloat *) (gap + 1);
-  gap->sigmas = gap->residuals + 3 * (gsize) n_vertices;
+  deviations = gap->residuals + 3 * (gsize) n_vertices;
   for (gsize i = 0; i < n_vertices; i++) {
     const gfloat *from = residuals + 3 * i;
     gfloat *to = gap->residuals + 3 * i;
@@ -60,7 +57,7 @@ gst_cloth_gap_new (guint64 sequence, guint n_vertices,
 
     for (guint k = 0; k < 3; k++)
       to[k] = seen ? from[k] : NAN;
-    gap->sigmas[i] = sigmas && isfinite (sigmas[i]) && sigmas[i] >= 0 ?
+    deviations[i] = sigmas && isfinite (sigmas[i]) && sigmas[i] >= 0 ?
         sigmas[i] : NAN;
   }
   return gap;
@@ -112,8 +109,7 @@ gst_cloth_gap_new_from_arrays (guint64 sequence, const gfloat * residuals,
 GstClothGap *
 gst_cloth_gap_ref (GstClothGap * gap)
 {
-  g_atomic_ref_count_inc (&gap->refs);
-  return gap;
+  return g_atomic_rc_box_acquire (gap);
 }
 
 /**
@@ -127,8 +123,7 @@ gst_cloth_gap_ref (GstClothGap * gap)
 void
 gst_cloth_gap_unref (GstClothGap * gap)
 {
-  if (g_atomic_ref_count_dec (&gap->refs))
-    g_free (gap);
+  g_atomic_rc_box_release (gap);
 }
 
 /**
@@ -142,7 +137,7 @@ gst_cloth_gap_unref (GstClothGap * gap)
 guint64
 gst_cloth_gap_get_sequence (const GstClothGap * gap)
 {
-  return gap->sequence;
+  return gap->payload.sequence;
 }
 
 /**
@@ -193,34 +188,7 @@ gst_cloth_gap_get_sigmas (const GstClothGap * gap, guint * n_floats)
 {
   if (n_floats)
     *n_floats = gap->n_vertices;
-  return gap->sigmas;
-}
-
-static gboolean
-gap_meta_init (GstMeta * meta, gpointer params, GstBuffer * buffer)
-{
-  ((GstClothGapMeta *) meta)->gap = NULL;
-  return TRUE;
-}
-
-static void
-gap_meta_free (GstMeta * meta, GstBuffer * buffer)
-{
-  g_clear_pointer (&((GstClothGapMeta *) meta)->gap, gst_cloth_gap_unref);
-}
-
-/* A part of a mesh is no mesh: only whole buffers keep their gap. */
-static gboolean
-gap_meta_transform (GstBuffer * target, GstMeta * meta, GstBuffer * buffer,
-    GQuark type, gpointer data)
-{
-  const GstMetaTransformCopy *copy = data;
-  GstClothGap *gap = ((GstClothGapMeta *) meta)->gap;
-
-  if (!gap || !GST_META_TRANSFORM_IS_COPY (type) || copy->region)
-    return FALSE;
-  return gst_buffer_add_cloth_gap_meta (target, gst_cloth_gap_ref (gap)) !=
-      NULL;
+  return gap->residuals + 3 * (gsize) gap->n_vertices;
 }
 
 /**
@@ -234,14 +202,8 @@ GType
 gst_cloth_gap_meta_api_get_type (void)
 {
   static GType type;
-  static const gchar *tags[] = { NULL };
 
-  if (g_once_init_enter (&type)) {
-    GType registered = gst_meta_api_type_register ("GstClothGapMetaAPI", tags);
-
-    g_once_init_leave (&type, registered);
-  }
-  return type;
+  return gst_cloth_payload_register_api (&type, "GstClothGapMetaAPI", FALSE);
 }
 
 /**
@@ -256,15 +218,8 @@ gst_cloth_gap_meta_get_info (void)
 {
   static const GstMetaInfo *info;
 
-  if (g_once_init_enter (&info)) {
-    const GstMetaInfo *registered =
-        gst_meta_register (gst_cloth_gap_meta_api_get_type (),
-        "GstClothGapMeta", sizeof (GstClothGapMeta), gap_meta_init,
-        gap_meta_free, gap_meta_transform);
-
-    g_once_init_leave (&info, registered);
-  }
-  return info;
+  return gst_cloth_payload_register_meta (&info,
+      gst_cloth_gap_meta_api_get_type (), "GstClothGapMeta");
 }
 
 /**
@@ -281,24 +236,7 @@ gst_cloth_gap_meta_get_info (void)
 GstClothGapMeta *
 gst_buffer_add_cloth_gap_meta (GstBuffer * buffer, GstClothGap * gap)
 {
-  GstClothGapMeta *meta;
-
-  g_return_val_if_fail (GST_IS_BUFFER (buffer), NULL);
-  g_return_val_if_fail (gst_buffer_is_writable (buffer), NULL);
-  g_return_val_if_fail (gap != NULL, NULL);
-
-  meta = (GstClothGapMeta *) gst_buffer_get_meta (buffer,
-      gst_cloth_gap_meta_api_get_type ());
-  if (!meta)
-    meta = (GstClothGapMeta *) gst_buffer_add_meta (buffer,
-        gst_cloth_gap_meta_get_info (), NULL);
-  if (!meta) {
-    gst_cloth_gap_unref (gap);
-    return NULL;
-  }
-  g_clear_pointer (&meta->gap, gst_cloth_gap_unref);
-  meta->gap = gap;
-  return meta;
+  return gst_cloth_payload_attach (gap, buffer, gst_cloth_gap_meta_get_info ());
 }
 
 /**
@@ -313,10 +251,5 @@ gst_buffer_add_cloth_gap_meta (GstBuffer * buffer, GstClothGap * gap)
 GstClothGap *
 gst_buffer_get_cloth_gap (GstBuffer * buffer)
 {
-  GstMeta *meta;
-
-  g_return_val_if_fail (GST_IS_BUFFER (buffer), NULL);
-
-  meta = gst_buffer_get_meta (buffer, gst_cloth_gap_meta_api_get_type ());
-  return meta ? ((GstClothGapMeta *) meta)->gap : NULL;
+  return gst_cloth_payload_find (buffer, gst_cloth_gap_meta_api_get_type ());
 }

@@ -14,7 +14,6 @@
 
 struct _GstClothMesh
 {
-  gatomicrefcount refs;
   guint n_vertices;
   guint64 sequence;
   const gfloat *positions;
@@ -49,10 +48,9 @@ static GstClothMesh *
 mesh_alloc (guint64 sequence, guint n_vertices, gboolean covariances,
     gboolean with_bytes)
 {
-  GstClothMesh *mesh = g_malloc (sizeof (GstClothMesh)
+  GstClothMesh *mesh = g_atomic_rc_box_alloc (sizeof (GstClothMesh)
       + (with_bytes ? mesh_size (n_vertices, covariances) : 0));
 
-  g_atomic_ref_count_init (&mesh->refs);
   mesh->n_vertices = n_vertices;
   mesh->sequence = sequence;
   mesh->buffer = NULL;
@@ -173,8 +171,18 @@ gst_cloth_mesh_new_from_arrays (guint64 sequence, const gfloat * positions,
 GstClothMesh *
 gst_cloth_mesh_ref (GstClothMesh * mesh)
 {
-  g_atomic_ref_count_inc (&mesh->refs);
-  return mesh;
+  return g_atomic_rc_box_acquire (mesh);
+}
+
+static void
+mesh_clear (gpointer data)
+{
+  GstClothMesh *mesh = data;
+
+  if (mesh->buffer) {
+    gst_buffer_unmap (mesh->buffer, &mesh->map);
+    gst_buffer_unref (mesh->buffer);
+  }
 }
 
 /**
@@ -188,13 +196,7 @@ gst_cloth_mesh_ref (GstClothMesh * mesh)
 void
 gst_cloth_mesh_unref (GstClothMesh * mesh)
 {
-  if (!g_atomic_ref_count_dec (&mesh->refs))
-    return;
-  if (mesh->buffer) {
-    gst_buffer_unmap (mesh->buffer, &mesh->map);
-    gst_buffer_unref (mesh->buffer);
-  }
-  g_free (mesh);
+  g_atomic_rc_box_release_full (mesh, mesh_clear);
 }
 
 /**

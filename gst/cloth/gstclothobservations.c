@@ -14,18 +14,45 @@
 #define MAX_REFERENCE 255
 
 #define SECTION_HEADER 8
-#define SECTION_SADDLES "SADL"
-#define SECTION_QUADS "QUAD"
-#define SECTION_DOTS "DOTS"
 #define SECTION_TIME "TIME"
-#define SADDLES_HEADER 20
-#define QUADS_HEADER 24
-#define DOTS_HEADER 24
 #define TIME_HEADER 20
-#define SADDLE_BYTES 28
-#define CANDIDATE_BYTES 12
-#define QUAD_BYTES 96
-#define DOT_BYTES(n_colours) (36 + 4 * (n_colours))
+
+/* A section of features begins with the frame's number (64 bits), @n_counts numbers of 32
+ * bits, two of 16 bits (the length of the camera's name, and the colours of dots), and the
+ * name. Of what count i counts, each takes @item_bytes[i] bytes, a dot 4 more a colour.
+ * @too_many says what is wrong when a count is over #GST_CLOTH_MAX_FEATURES. */
+typedef struct
+{
+  const gchar *tag;
+  guint n_counts;
+  guint item_bytes[3];
+  const gchar *too_many;
+} FeatureKind;
+
+/* counts: refined saddles, candidates */
+static const FeatureKind saddles_kind = { "SADL", 2, {28, 12},
+"there are more than 65536 features"
+};
+
+/* counts: columns, rows, quads */
+static const FeatureKind quads_kind = { "QUAD", 3, {0, 0, 96},
+"there are more than 65536 quads, columns or rows"
+};
+
+/* counts: columns, rows, dots */
+static const FeatureKind dots_kind = { "DOTS", 3, {0, 0, 36},
+"there are more than 65536 dots, columns or rows"
+};
+
+static gsize
+items_size (const FeatureKind * kind, const guint counts[3], guint n_colours)
+{
+  gsize size = 0;
+
+  for (guint i = 0; i < kind->n_counts; i++)
+    size += (gsize) counts[i] * kind->item_bytes[i];
+  return size + (kind == &dots_kind ? (gsize) counts[2] * 4 * n_colours : 0);
+}
 
 static gsize
 padded (gsize size)
@@ -128,60 +155,77 @@ end_section (GByteArray * bytes, guint start, guint * n_sections)
   (*n_sections)++;
 }
 
+/* What a section of features begins with; the counts of what follows are still 0. */
+static guint
+begin_features (GByteArray * bytes, const FeatureKind * kind,
+    guint64 sequence, const gchar * camera, guint columns, guint rows,
+    guint n_colours)
+{
+  const guint counts[3] = { columns, rows, 0 };
+  guint start = begin_section (bytes, kind->tag);
+
+  put_u64 (bytes, sequence);
+  for (guint i = 0; i < kind->n_counts; i++)
+    put_u32 (bytes, counts[i]);
+  put_u16 (bytes, (guint) strlen (camera));
+  put_u16 (bytes, n_colours);
+  put_string (bytes, camera);
+  return start;
+}
+
+static void
+set_count (GByteArray * bytes, guint start, guint i, guint n)
+{
+  GST_WRITE_UINT32_LE (bytes->data + start + 8 + 4 * i, n);
+}
+
+/* Items of @n_floats each; one with a float that isn't finite is left out. */
+static guint
+put_finite (GByteArray * bytes, const gfloat * items, guint n_items,
+    guint n_floats)
+{
+  guint n = 0;
+
+  for (guint i = 0; i < n_items; i++, items += n_floats) {
+    if (all_finite (items, n_floats)) {
+      put_floats (bytes, items, n_floats);
+      n++;
+    }
+  }
+  return n;
+}
+
 static void
 put_saddles (GByteArray * bytes, const GstClothSaddles * saddles,
     guint * n_sections)
 {
-  const gchar *camera = gst_cloth_saddles_get_camera (saddles);
-  guint n_refined, n_candidates, n, start;
+  guint n_refined, n_candidates, start;
   const GstClothSaddle *refined = gst_cloth_saddles_get_refined (saddles,
       &n_refined);
   const GstClothCandidate *candidates =
       gst_cloth_saddles_get_candidates (saddles, &n_candidates);
 
-  start = begin_section (bytes, SECTION_SADDLES);
-  put_u64 (bytes, gst_cloth_saddles_get_sequence (saddles));
-  put_u32 (bytes, 0);
-  put_u32 (bytes, 0);
-  put_u16 (bytes, (guint) strlen (camera));
-  put_u16 (bytes, 0);
-  put_string (bytes, camera);
-  n = 0;
-  for (guint i = 0; i < n_refined; i++) {
-    if (all_finite ((const gfloat *) &refined[i], 7)) {
-      put_floats (bytes, (const gfloat *) &refined[i], 7);
-      n++;
-    }
-  }
-  GST_WRITE_UINT32_LE (bytes->data + start + 8, n);
-  n = 0;
-  for (guint i = 0; i < n_candidates; i++) {
-    if (all_finite ((const gfloat *) &candidates[i], 3)) {
-      put_floats (bytes, (const gfloat *) &candidates[i], 3);
-      n++;
-    }
-  }
-  GST_WRITE_UINT32_LE (bytes->data + start + 12, n);
+  start = begin_features (bytes, &saddles_kind,
+      gst_cloth_saddles_get_sequence (saddles),
+      gst_cloth_saddles_get_camera (saddles), 0, 0, 0);
+  set_count (bytes, start, 0,
+      put_finite (bytes, (const gfloat *) refined, n_refined, 7));
+  set_count (bytes, start, 1,
+      put_finite (bytes, (const gfloat *) candidates, n_candidates, 3));
   end_section (bytes, start, n_sections);
 }
 
 static void
 put_quads (GByteArray * bytes, const GstClothQuads * quads, guint * n_sections)
 {
-  const gchar *camera = gst_cloth_quads_get_camera (quads);
   guint columns = gst_cloth_quads_get_columns (quads);
   guint rows = gst_cloth_quads_get_rows (quads);
   guint n_quads, start, n = 0;
   const GstClothQuad *quad = gst_cloth_quads_get_quads (quads, &n_quads);
 
-  start = begin_section (bytes, SECTION_QUADS);
-  put_u64 (bytes, gst_cloth_quads_get_sequence (quads));
-  put_u32 (bytes, columns);
-  put_u32 (bytes, rows);
-  put_u32 (bytes, 0);
-  put_u16 (bytes, (guint) strlen (camera));
-  put_u16 (bytes, 0);
-  put_string (bytes, camera);
+  start = begin_features (bytes, &quads_kind,
+      gst_cloth_quads_get_sequence (quads), gst_cloth_quads_get_camera (quads),
+      columns, rows, 0);
   for (guint i = 0; i < n_quads; i++, quad++) {
     guint8 state[4] = { (guint8) quad->state, quad->black ? 1 : 0, 0, 0 };
 
@@ -200,28 +244,22 @@ put_quads (GByteArray * bytes, const GstClothQuads * quads, guint * n_sections)
     }
     n++;
   }
-  GST_WRITE_UINT32_LE (bytes->data + start + 16, n);
+  set_count (bytes, start, 2, n);
   end_section (bytes, start, n_sections);
 }
 
 static void
 put_dots (GByteArray * bytes, const GstClothDots * dots, guint * n_sections)
 {
-  const gchar *camera = gst_cloth_dots_get_camera (dots);
   guint columns = gst_cloth_dots_get_columns (dots);
   guint rows = gst_cloth_dots_get_rows (dots);
   guint n_colours = gst_cloth_dots_get_n_colours (dots);
   guint n_dots, start, n = 0;
   const GstClothDot *dot = gst_cloth_dots_get_dots (dots, &n_dots);
 
-  start = begin_section (bytes, SECTION_DOTS);
-  put_u64 (bytes, gst_cloth_dots_get_sequence (dots));
-  put_u32 (bytes, columns);
-  put_u32 (bytes, rows);
-  put_u32 (bytes, 0);
-  put_u16 (bytes, (guint) strlen (camera));
-  put_u16 (bytes, n_colours);
-  put_string (bytes, camera);
+  start = begin_features (bytes, &dots_kind,
+      gst_cloth_dots_get_sequence (dots), gst_cloth_dots_get_camera (dots),
+      columns, rows, n_colours);
   for (guint i = 0; i < n_dots; i++, dot++) {
     const guint8 flags[4] =
         { dot->mirrored ? 1 : 0, dot->touches ? 1 : 0, 0, 0 };
@@ -238,7 +276,7 @@ put_dots (GByteArray * bytes, const GstClothDots * dots, guint * n_sections)
     put_floats (bytes, dot->log_likelihood, n_colours);
     n++;
   }
-  GST_WRITE_UINT32_LE (bytes->data + start + 16, n);
+  set_count (bytes, start, 2, n);
   end_section (bytes, start, n_sections);
 }
 
@@ -306,7 +344,8 @@ gst_cloth_observations_pack (GstBuffer * buffer)
   GstClothDots *dots;
   GByteArray *bytes;
   GstBuffer *observation;
-  guint n_sections = 0, size = OBSERVATIONS_HEADER + 512;
+  guint n_sections = 0;
+  gsize size = OBSERVATIONS_HEADER + 512;
 
   g_return_val_if_fail (GST_IS_BUFFER (buffer), NULL);
 
@@ -314,15 +353,15 @@ gst_cloth_observations_pack (GstBuffer * buffer)
   quads = gst_buffer_get_cloth_quads (buffer);
   dots = gst_buffer_get_cloth_dots (buffer);
   if (saddles)
-    size += SADDLE_BYTES * gst_cloth_saddles_get_n_refined (saddles)
-        + CANDIDATE_BYTES * gst_cloth_saddles_get_n_candidates (saddles);
+    size += sizeof (GstClothSaddle) * gst_cloth_saddles_get_n_refined (saddles)
+        + sizeof (GstClothCandidate)
+        * gst_cloth_saddles_get_n_candidates (saddles);
   if (quads)
-    size += QUAD_BYTES * gst_cloth_quads_get_n_quads (quads);
+    size += sizeof (GstClothQuad) * gst_cloth_quads_get_n_quads (quads);
   if (dots)
-    size += DOT_BYTES (gst_cloth_dots_get_n_colours (dots))
-        * gst_cloth_dots_get_n_dots (dots);
+    size += sizeof (GstClothDot) * gst_cloth_dots_get_n_dots (dots);
 
-  bytes = g_byte_array_sized_new (size);
+  bytes = g_byte_array_sized_new ((guint) size);
   g_byte_array_append (bytes, (const guint8 *) OBSERVATIONS_MAGIC, 4);
   put_u16 (bytes, OBSERVATIONS_VERSION);
   put_u16 (bytes, OBSERVATIONS_HEADER);
@@ -387,121 +426,116 @@ fail (GError ** error, GstClothError code, const gchar * what,
   return FALSE;
 }
 
-/* The camera's name of @length bytes at @at; the section must hold it whole. */
-static gchar *
-get_camera (const Section * section, gsize at, guint length,
-    const gchar * what, GError ** error)
+typedef struct
 {
-  const gchar *name = (const gchar *) section->data + at;
+  guint64 sequence;
+  guint counts[3];
+  guint n_colours;
+  gchar camera[GST_CLOTH_MAX_CAMERA_NAME + 1];
+  const guint8 *items;
+} Features;
 
-  if (length > GST_CLOTH_MAX_CAMERA_NAME) {
-    fail (error, GST_CLOTH_ERROR_LIMIT, what, "the camera's name is too long");
-    return NULL;
+/* What begin_features () has written. @has: whether there was such a section before. */
+static gboolean
+read_features (const Section * section, const FeatureKind * kind,
+    gboolean has, Features * features, GError ** error)
+{
+  const guint8 *at = section->data;
+  const gchar *tag = kind->tag, *name;
+  gsize header = 12 + 4 * kind->n_counts, size;
+  guint length;
+
+  if (has)
+    return fail (error, GST_CLOTH_ERROR_VALUE, tag, "there are two of them");
+  if (section->size < header)
+    return fail (error, GST_CLOTH_ERROR_TRUNCATED, tag,
+        "it ends inside its header");
+  features->sequence = gst_cloth_read_u64 (at);
+  for (guint i = 0; i < kind->n_counts; i++) {
+    features->counts[i] = gst_cloth_read_u32 (at + 8 + 4 * i);
+    if (features->counts[i] > GST_CLOTH_MAX_FEATURES)
+      return fail (error, GST_CLOTH_ERROR_LIMIT, tag, kind->too_many);
   }
-  if (section->size - at < padded (length)) {
-    fail (error, GST_CLOTH_ERROR_TRUNCATED, what,
+  length = gst_cloth_read_u16 (at + header - 4);
+  features->n_colours = gst_cloth_read_u16 (at + header - 2);
+  if (kind == &dots_kind && features->n_colours > GST_CLOTH_DOT_MAX_COLOURS)
+    return fail (error, GST_CLOTH_ERROR_LIMIT, tag,
+        "there are more than 8 colours");
+
+  name = (const gchar *) at + header;
+  if (length > GST_CLOTH_MAX_CAMERA_NAME)
+    return fail (error, GST_CLOTH_ERROR_LIMIT, tag,
+        "the camera's name is too long");
+  if (section->size - header < padded (length))
+    return fail (error, GST_CLOTH_ERROR_TRUNCATED, tag,
         "it ends inside the camera's name");
-    return NULL;
-  }
-  if (length && !g_utf8_validate_len (name, length, NULL)) {
-    fail (error, GST_CLOTH_ERROR_VALUE, what, "the camera's name is not UTF-8");
-    return NULL;
-  }
-  return g_strndup (name, length);
+  if (length && !g_utf8_validate_len (name, length, NULL))
+    return fail (error, GST_CLOTH_ERROR_VALUE, tag,
+        "the camera's name is not UTF-8");
+  memcpy (features->camera, name, length);
+
+  size = header + padded (length) + items_size (kind, features->counts,
+      features->n_colours);
+  if (section->size != size)
+    return fail (error, section->size < size ? GST_CLOTH_ERROR_TRUNCATED :
+        GST_CLOTH_ERROR_VALUE, tag,
+        "its size is not that of what it announces");
+  features->items = at + header + padded (length);
+  return TRUE;
+}
+
+static gboolean
+read_finite (gfloat * items, const guint8 * at, guint n_floats, GError ** error)
+{
+  if (n_floats)
+    gst_cloth_copy_le32 (items, at, n_floats);
+  return all_finite (items, n_floats) || fail (error, GST_CLOTH_ERROR_VALUE,
+      saddles_kind.tag, "a float is not finite");
 }
 
 static gboolean
 read_saddles (const Section * section, Observed * observed, GError ** error)
 {
-  g_autofree gchar *camera = NULL;
+  Features features = { 0 };
   g_autofree GstClothSaddle *refined = NULL;
   g_autofree GstClothCandidate *candidates = NULL;
-  const guint8 *at = section->data;
-  guint64 sequence;
-  guint n_refined, n_candidates, length;
-  gsize need;
+  guint n_refined, n_candidates;
 
-  if (observed->saddles)
-    return fail (error, GST_CLOTH_ERROR_VALUE, SECTION_SADDLES,
-        "there are two of them");
-  if (section->size < SADDLES_HEADER)
-    return fail (error, GST_CLOTH_ERROR_TRUNCATED, SECTION_SADDLES,
-        "it ends inside its header");
-  sequence = gst_cloth_read_u64 (at);
-  n_refined = gst_cloth_read_u32 (at + 8);
-  n_candidates = gst_cloth_read_u32 (at + 12);
-  length = gst_cloth_read_u16 (at + 16);
-  if (n_refined > GST_CLOTH_MAX_FEATURES
-      || n_candidates > GST_CLOTH_MAX_FEATURES)
-    return fail (error, GST_CLOTH_ERROR_LIMIT, SECTION_SADDLES,
-        "there are more than 65536 features");
-  if (!(camera = get_camera (section, SADDLES_HEADER, length, SECTION_SADDLES,
-              error)))
+  if (!read_features (section, &saddles_kind, observed->saddles != NULL,
+          &features, error))
     return FALSE;
-  need = SADDLES_HEADER + padded (length) + (gsize) n_refined *SADDLE_BYTES
-      + (gsize) n_candidates *CANDIDATE_BYTES;
-  if (section->size != need)
-    return fail (error, section->size < need ? GST_CLOTH_ERROR_TRUNCATED :
-        GST_CLOTH_ERROR_VALUE, SECTION_SADDLES,
-        "its size is not that of what it announces");
+  n_refined = features.counts[0];
+  n_candidates = features.counts[1];
 
-  at += SADDLES_HEADER + padded (length);
   refined = g_new (GstClothSaddle, n_refined);
   candidates = g_new (GstClothCandidate, n_candidates);
-  for (guint i = 0; i < n_refined; i++, at += SADDLE_BYTES) {
-    gst_cloth_copy_le32 (&refined[i], at, 7);
-    if (!all_finite ((const gfloat *) &refined[i], 7))
-      return fail (error, GST_CLOTH_ERROR_VALUE, SECTION_SADDLES,
-          "a float is not finite");
-  }
-  for (guint i = 0; i < n_candidates; i++, at += CANDIDATE_BYTES) {
-    gst_cloth_copy_le32 (&candidates[i], at, 3);
-    if (!all_finite ((const gfloat *) &candidates[i], 3))
-      return fail (error, GST_CLOTH_ERROR_VALUE, SECTION_SADDLES,
-          "a float is not finite");
-  }
-  observed->saddles = gst_cloth_saddles_new (camera, sequence, refined,
-      n_refined, candidates, n_candidates);
+  if (!read_finite ((gfloat *) refined, features.items, 7 * n_refined, error)
+      || !read_finite ((gfloat *) candidates, features.items
+          + n_refined * sizeof *refined, 3 * n_candidates, error))
+    return FALSE;
+  observed->saddles = gst_cloth_saddles_new (features.camera,
+      features.sequence, refined, n_refined, candidates, n_candidates);
   return TRUE;
 }
 
 static gboolean
 read_quads (const Section * section, Observed * observed, GError ** error)
 {
-  g_autofree gchar *camera = NULL;
+  Features features = { 0 };
   g_autofree GstClothQuad *quads = NULL;
-  const guint8 *at = section->data;
-  guint64 sequence;
-  guint columns, rows, n_quads, length;
-  gsize need;
+  const guint8 *at;
+  guint columns, rows, n_quads;
 
-  if (observed->quads)
-    return fail (error, GST_CLOTH_ERROR_VALUE, SECTION_QUADS,
-        "there are two of them");
-  if (section->size < QUADS_HEADER)
-    return fail (error, GST_CLOTH_ERROR_TRUNCATED, SECTION_QUADS,
-        "it ends inside its header");
-  sequence = gst_cloth_read_u64 (at);
-  columns = gst_cloth_read_u32 (at + 8);
-  rows = gst_cloth_read_u32 (at + 12);
-  n_quads = gst_cloth_read_u32 (at + 16);
-  length = gst_cloth_read_u16 (at + 20);
-  if (columns > GST_CLOTH_MAX_FEATURES || rows > GST_CLOTH_MAX_FEATURES
-      || n_quads > GST_CLOTH_MAX_FEATURES)
-    return fail (error, GST_CLOTH_ERROR_LIMIT, SECTION_QUADS,
-        "there are more than 65536 quads, columns or rows");
-  if (!(camera = get_camera (section, QUADS_HEADER, length, SECTION_QUADS,
-              error)))
+  if (!read_features (section, &quads_kind, observed->quads != NULL, &features,
+          error))
     return FALSE;
-  need = QUADS_HEADER + padded (length) + (gsize) n_quads *QUAD_BYTES;
-  if (section->size != need)
-    return fail (error, section->size < need ? GST_CLOTH_ERROR_TRUNCATED :
-        GST_CLOTH_ERROR_VALUE, SECTION_QUADS,
-        "its size is not that of what it announces");
+  columns = features.counts[0];
+  rows = features.counts[1];
+  n_quads = features.counts[2];
 
-  at += QUADS_HEADER + padded (length);
+  at = features.items;
   quads = g_new0 (GstClothQuad, n_quads);
-  for (guint i = 0; i < n_quads; i++, at += QUAD_BYTES) {
+  for (guint i = 0; i < n_quads; i++, at += quads_kind.item_bytes[2]) {
     GstClothQuad *quad = &quads[i];
 
     quad->column = (gint) MIN (gst_cloth_read_u32 (at), (guint) G_MAXINT);
@@ -520,57 +554,36 @@ read_quads (const Section * section, Observed * observed, GError ** error)
       quad->cov_yy[c] = corner[4];
     }
     if (!quad_is_valid (quad, columns, rows) || at[9] > 1)
-      return fail (error, GST_CLOTH_ERROR_VALUE, SECTION_QUADS,
+      return fail (error, GST_CLOTH_ERROR_VALUE, quads_kind.tag,
           "a quad lies outside the board, has an unknown state or a float that "
           "is not finite");
   }
-  observed->quads = gst_cloth_quads_new (camera, sequence, columns, rows, quads,
-      n_quads);
+  observed->quads =
+      gst_cloth_quads_new (features.camera, features.sequence, columns, rows,
+      quads, n_quads);
   return TRUE;
 }
 
 static gboolean
 read_dots (const Section * section, Observed * observed, GError ** error)
 {
-  g_autofree gchar *camera = NULL;
+  Features features = { 0 };
   g_autofree GstClothDot *dots = NULL;
-  const guint8 *at = section->data;
-  guint64 sequence;
-  guint columns, rows, n_colours, n_dots, length;
-  gsize need;
+  const guint8 *at;
+  guint columns, rows, n_dots, n_colours;
 
-  if (observed->dots)
-    return fail (error, GST_CLOTH_ERROR_VALUE, SECTION_DOTS,
-        "there are two of them");
-  if (section->size < DOTS_HEADER)
-    return fail (error, GST_CLOTH_ERROR_TRUNCATED, SECTION_DOTS,
-        "it ends inside its header");
-  sequence = gst_cloth_read_u64 (at);
-  columns = gst_cloth_read_u32 (at + 8);
-  rows = gst_cloth_read_u32 (at + 12);
-  n_dots = gst_cloth_read_u32 (at + 16);
-  length = gst_cloth_read_u16 (at + 20);
-  n_colours = gst_cloth_read_u16 (at + 22);
-  if (columns > GST_CLOTH_MAX_FEATURES || rows > GST_CLOTH_MAX_FEATURES
-      || n_dots > GST_CLOTH_MAX_FEATURES)
-    return fail (error, GST_CLOTH_ERROR_LIMIT, SECTION_DOTS,
-        "there are more than 65536 dots, columns or rows");
-  if (n_colours > GST_CLOTH_DOT_MAX_COLOURS)
-    return fail (error, GST_CLOTH_ERROR_LIMIT, SECTION_DOTS,
-        "there are more than 8 colours");
-  if (!(camera = get_camera (section, DOTS_HEADER, length, SECTION_DOTS,
-              error)))
+  if (!read_features (section, &dots_kind, observed->dots != NULL, &features,
+          error))
     return FALSE;
-  need = DOTS_HEADER + padded (length)
-  + (gsize) n_dots *DOT_BYTES (n_colours);
-  if (section->size != need)
-    return fail (error, section->size < need ? GST_CLOTH_ERROR_TRUNCATED :
-        GST_CLOTH_ERROR_VALUE, SECTION_DOTS,
-        "its size is not that of what it announces");
+  columns = features.counts[0];
+  rows = features.counts[1];
+  n_dots = features.counts[2];
+  n_colours = features.n_colours;
 
-  at += DOTS_HEADER + padded (length);
+  at = features.items;
   dots = g_new0 (GstClothDot, n_dots);
-  for (guint i = 0; i < n_dots; i++, at += DOT_BYTES (n_colours)) {
+  for (guint i = 0; i < n_dots;
+      i++, at += dots_kind.item_bytes[2] + 4 * n_colours) {
     GstClothDot *dot = &dots[i];
     gfloat floats[6];
 
@@ -587,11 +600,12 @@ read_dots (const Section * section, Observed * observed, GError ** error)
     dot->cov_yy = floats[5];
     gst_cloth_copy_le32 (dot->log_likelihood, at + 36, n_colours);
     if (!dot_is_valid (dot, columns, rows, n_colours) || at[8] > 1 || at[9] > 1)
-      return fail (error, GST_CLOTH_ERROR_VALUE, SECTION_DOTS,
+      return fail (error, GST_CLOTH_ERROR_VALUE, dots_kind.tag,
           "a dot lies outside the pattern, has an unknown flag or a float that "
           "is not finite");
   }
-  observed->dots = gst_cloth_dots_new (camera, sequence, columns, rows,
+  observed->dots =
+      gst_cloth_dots_new (features.camera, features.sequence, columns, rows,
       n_colours, dots, n_dots);
   return TRUE;
 }
@@ -637,11 +651,11 @@ static gboolean
 read_section (const guint8 * tag, const Section * section,
     Observed * observed, GError ** error)
 {
-  if (memcmp (tag, SECTION_SADDLES, 4) == 0)
+  if (memcmp (tag, saddles_kind.tag, 4) == 0)
     return read_saddles (section, observed, error);
-  if (memcmp (tag, SECTION_QUADS, 4) == 0)
+  if (memcmp (tag, quads_kind.tag, 4) == 0)
     return read_quads (section, observed, error);
-  if (memcmp (tag, SECTION_DOTS, 4) == 0)
+  if (memcmp (tag, dots_kind.tag, 4) == 0)
     return read_dots (section, observed, error);
   if (memcmp (tag, SECTION_TIME, 4) == 0)
     return read_time (section, observed, error);

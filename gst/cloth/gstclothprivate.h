@@ -1,4 +1,4 @@
-/* Shared inside libgstcloth-1.0: picture scaling and bounded reading of bytes.
+/* Shared inside libgstcloth-1.0: bounded reading of bytes.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -11,16 +11,6 @@ G_BEGIN_DECLS
 G_STATIC_ASSERT (sizeof (GstClothSaddle) == 7 * sizeof (gfloat));
 G_STATIC_ASSERT (sizeof (GstClothCandidate) == 3 * sizeof (gfloat));
 
-/* Places keep to pixel centres, so the picture's edge stays its edge. */
-static inline gfloat
-gst_cloth_scale_place (gfloat place, gdouble scale)
-{
-  return (gfloat) ((place + 0.5) * scale - 0.5);
-}
-
-gboolean gst_cloth_meta_get_scale (GQuark type, gpointer data,
-    gdouble * scale_x, gdouble * scale_y);
-gboolean gst_cloth_camera_is_valid (const gchar * camera);
 GstCaps *gst_cloth_caps_with_header (GstCaps * caps, GstBuffer * header);
 gboolean gst_cloth_map (GstBuffer * buffer, GstMapInfo * map, GError ** error);
 gboolean gst_cloth_check_header (const guint8 * bytes, gsize size,

@@ -1,19 +1,14 @@
 /* Tracked squares of one picture, as buffer metadata.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include <gst/video/video.h>
+#include "gst/cloth/gstclothpayload.h"
 
-#include "gst/cloth/gstclothprivate.h"
-
-/* One allocation: this, the quads, the camera's name. */
 struct _GstClothQuads
 {
-  gatomicrefcount refs;
+  GstClothPayload payload;
   guint columns, rows;
   guint n_quads;
-  guint64 sequence;
-  GstClothQuad *quads;
-  gchar *camera;
+  GstClothQuad quads[];
 };
 
 G_DEFINE_BOXED_TYPE (GstClothQuad, gst_cloth_quad, gst_cloth_quad_copy,
@@ -112,25 +107,20 @@ gst_cloth_quad_set_corner (GstClothQuad * quad, guint corner, gfloat x,
   return TRUE;
 }
 
-static GstClothQuads *
-quads_alloc (const gchar * camera, guint64 sequence, guint columns, guint rows,
-    guint n_quads)
+static void
+quads_scale (GstClothPayload * payload, gdouble scale_x, gdouble scale_y)
 {
-  gsize name = camera ? strlen (camera) : 0;
-  GstClothQuads *quads = g_malloc (sizeof (GstClothQuads)
-      + n_quads * sizeof (GstClothQuad) + name + 1);
+  GstClothQuads *quads = (GstClothQuads *) payload;
 
-  g_atomic_ref_count_init (&quads->refs);
-  quads->sequence = sequence;
-  quads->columns = columns;
-  quads->rows = rows;
-  quads->n_quads = n_quads;
-  quads->quads = (GstClothQuad *) (quads + 1);
-  quads->camera = (gchar *) (quads->quads + n_quads);
-  if (name)
-    memcpy (quads->camera, camera, name);
-  quads->camera[name] = 0;
-  return quads;
+  for (guint i = 0; i < quads->n_quads; i++) {
+    GstClothQuad *q = &quads->quads[i];
+
+    for (guint c = 0; c < 4; c++) {
+      gst_cloth_scale_place (&q->x[c], &q->y[c], scale_x, scale_y);
+      gst_cloth_scale_covariance (&q->cov_xx[c], &q->cov_xy[c], &q->cov_yy[c],
+          scale_x, scale_y);
+    }
+  }
 }
 
 /**
@@ -156,13 +146,18 @@ gst_cloth_quads_new (const gchar * camera, guint64 sequence, guint columns,
 {
   GstClothQuads *payload;
 
-  g_return_val_if_fail (gst_cloth_camera_is_valid (camera), NULL);
   g_return_val_if_fail (quads || !n_quads, NULL);
   g_return_val_if_fail (n_quads <= GST_CLOTH_MAX_FEATURES, NULL);
   g_return_val_if_fail (columns <= GST_CLOTH_MAX_FEATURES
       && rows <= GST_CLOTH_MAX_FEATURES, NULL);
 
-  payload = quads_alloc (camera, sequence, columns, rows, n_quads);
+  payload = gst_cloth_payload_new (sizeof *payload + n_quads * sizeof *quads,
+      camera, sequence, quads_scale);
+  if (!payload)
+    return NULL;
+  payload->columns = columns;
+  payload->rows = rows;
+  payload->n_quads = n_quads;
   if (n_quads)
     memcpy (payload->quads, quads, n_quads * sizeof *quads);
   return payload;
@@ -179,8 +174,7 @@ gst_cloth_quads_new (const gchar * camera, guint64 sequence, guint columns,
 GstClothQuads *
 gst_cloth_quads_ref (GstClothQuads * quads)
 {
-  g_atomic_ref_count_inc (&quads->refs);
-  return quads;
+  return g_atomic_rc_box_acquire (quads);
 }
 
 /**
@@ -194,8 +188,7 @@ gst_cloth_quads_ref (GstClothQuads * quads)
 void
 gst_cloth_quads_unref (GstClothQuads * quads)
 {
-  if (g_atomic_ref_count_dec (&quads->refs))
-    g_free (quads);
+  g_atomic_rc_box_release (quads);
 }
 
 /**
@@ -209,7 +202,7 @@ gst_cloth_quads_unref (GstClothQuads * quads)
 const gchar *
 gst_cloth_quads_get_camera (const GstClothQuads * quads)
 {
-  return quads->camera;
+  return quads->payload.camera;
 }
 
 /**
@@ -223,7 +216,7 @@ gst_cloth_quads_get_camera (const GstClothQuads * quads)
 guint64
 gst_cloth_quads_get_sequence (const GstClothQuads * quads)
 {
-  return quads->sequence;
+  return quads->payload.sequence;
 }
 
 /**
@@ -349,57 +342,8 @@ GstClothQuads *
 gst_cloth_quads_scale (const GstClothQuads * quads, gdouble scale_x,
     gdouble scale_y)
 {
-  GstClothQuads *scaled;
-
-  g_return_val_if_fail (quads != NULL, NULL);
-  g_return_val_if_fail (scale_x > 0 && scale_y > 0, NULL);
-
-  scaled = quads_alloc (quads->camera, quads->sequence, quads->columns,
-      quads->rows, quads->n_quads);
-  for (guint i = 0; i < quads->n_quads; i++) {
-    GstClothQuad *q = &scaled->quads[i];
-
-    *q = quads->quads[i];
-    for (guint c = 0; c < 4; c++) {
-      q->x[c] = gst_cloth_scale_place (q->x[c], scale_x);
-      q->y[c] = gst_cloth_scale_place (q->y[c], scale_y);
-      q->cov_xx[c] = (gfloat) (q->cov_xx[c] * scale_x * scale_x);
-      q->cov_xy[c] = (gfloat) (q->cov_xy[c] * scale_x * scale_y);
-      q->cov_yy[c] = (gfloat) (q->cov_yy[c] * scale_y * scale_y);
-    }
-  }
-  return scaled;
-}
-
-static gboolean
-quads_meta_init (GstMeta * meta, gpointer params, GstBuffer * buffer)
-{
-  ((GstClothQuadsMeta *) meta)->quads = NULL;
-  return TRUE;
-}
-
-static void
-quads_meta_free (GstMeta * meta, GstBuffer * buffer)
-{
-  g_clear_pointer (&((GstClothQuadsMeta *) meta)->quads, gst_cloth_quads_unref);
-}
-
-static gboolean
-quads_meta_transform (GstBuffer * target, GstMeta * meta, GstBuffer * buffer,
-    GQuark type, gpointer data)
-{
-  GstClothQuads *quads = ((GstClothQuadsMeta *) meta)->quads;
-  gdouble sx, sy;
-
-  if (!quads)
-    return FALSE;
-  if (GST_META_TRANSFORM_IS_COPY (type))
-    quads = gst_cloth_quads_ref (quads);
-  else if (gst_cloth_meta_get_scale (type, data, &sx, &sy))
-    quads = gst_cloth_quads_scale (quads, sx, sy);
-  else
-    return FALSE;
-  return gst_buffer_add_cloth_quads_meta (target, quads) != NULL;
+  return gst_cloth_payload_scale ((const GstClothPayload *) quads, scale_x,
+      scale_y);
 }
 
 /**
@@ -413,17 +357,8 @@ GType
 gst_cloth_quads_meta_api_get_type (void)
 {
   static GType type;
-  static const gchar *tags[] = { GST_META_TAG_VIDEO_STR,
-    GST_META_TAG_VIDEO_ORIENTATION_STR, GST_META_TAG_VIDEO_SIZE_STR, NULL
-  };
 
-  if (g_once_init_enter (&type)) {
-    GType registered = gst_meta_api_type_register ("GstClothQuadsMetaAPI",
-        tags);
-
-    g_once_init_leave (&type, registered);
-  }
-  return type;
+  return gst_cloth_payload_register_api (&type, "GstClothQuadsMetaAPI", TRUE);
 }
 
 /**
@@ -438,15 +373,8 @@ gst_cloth_quads_meta_get_info (void)
 {
   static const GstMetaInfo *info;
 
-  if (g_once_init_enter (&info)) {
-    const GstMetaInfo *registered =
-        gst_meta_register (gst_cloth_quads_meta_api_get_type (),
-        "GstClothQuadsMeta", sizeof (GstClothQuadsMeta), quads_meta_init,
-        quads_meta_free, quads_meta_transform);
-
-    g_once_init_leave (&info, registered);
-  }
-  return info;
+  return gst_cloth_payload_register_meta (&info,
+      gst_cloth_quads_meta_api_get_type (), "GstClothQuadsMeta");
 }
 
 /**
@@ -463,24 +391,8 @@ gst_cloth_quads_meta_get_info (void)
 GstClothQuadsMeta *
 gst_buffer_add_cloth_quads_meta (GstBuffer * buffer, GstClothQuads * quads)
 {
-  GstClothQuadsMeta *meta;
-
-  g_return_val_if_fail (GST_IS_BUFFER (buffer), NULL);
-  g_return_val_if_fail (gst_buffer_is_writable (buffer), NULL);
-  g_return_val_if_fail (quads != NULL, NULL);
-
-  meta = (GstClothQuadsMeta *) gst_buffer_get_meta (buffer,
-      gst_cloth_quads_meta_api_get_type ());
-  if (!meta)
-    meta = (GstClothQuadsMeta *) gst_buffer_add_meta (buffer,
-        gst_cloth_quads_meta_get_info (), NULL);
-  if (!meta) {
-    gst_cloth_quads_unref (quads);
-    return NULL;
-  }
-  g_clear_pointer (&meta->quads, gst_cloth_quads_unref);
-  meta->quads = quads;
-  return meta;
+  return gst_cloth_payload_attach (quads, buffer,
+      gst_cloth_quads_meta_get_info ());
 }
 
 /**
@@ -495,10 +407,5 @@ gst_buffer_add_cloth_quads_meta (GstBuffer * buffer, GstClothQuads * quads)
 GstClothQuads *
 gst_buffer_get_cloth_quads (GstBuffer * buffer)
 {
-  GstMeta *meta;
-
-  g_return_val_if_fail (GST_IS_BUFFER (buffer), NULL);
-
-  meta = gst_buffer_get_meta (buffer, gst_cloth_quads_meta_api_get_type ());
-  return meta ? ((GstClothQuadsMeta *) meta)->quads : NULL;
+  return gst_cloth_payload_find (buffer, gst_cloth_quads_meta_api_get_type ());
 }

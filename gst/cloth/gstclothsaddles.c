@@ -3,19 +3,14 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <math.h>
 
-#include <gst/video/video.h>
+#include "gst/cloth/gstclothpayload.h"
 
-#include "gst/cloth/gstclothprivate.h"
-
-/* One allocation: this, the saddles, the candidates, the camera's name. */
+/* The candidates follow the refined saddles. */
 struct _GstClothSaddles
 {
-  gatomicrefcount refs;
+  GstClothPayload payload;
   guint n_refined, n_candidates;
-  guint64 sequence;
-  GstClothSaddle *refined;
-  GstClothCandidate *candidates;
-  gchar *camera;
+  GstClothSaddle refined[];
 };
 
 G_DEFINE_BOXED_TYPE (GstClothSaddle, gst_cloth_saddle, gst_cloth_saddle_copy,
@@ -77,26 +72,50 @@ gst_cloth_candidate_free (GstClothCandidate * candidate)
   g_free (candidate);
 }
 
-static GstClothSaddles *
-saddles_alloc (const gchar * camera, guint64 sequence, guint n_refined,
-    guint n_candidates)
+static GstClothCandidate *
+saddles_candidates (const GstClothSaddles * saddles)
 {
-  gsize name = camera ? strlen (camera) : 0;
-  gsize at = sizeof (GstClothSaddles);
-  GstClothSaddles *saddles = g_malloc (at + n_refined * sizeof (GstClothSaddle)
-      + n_candidates * sizeof (GstClothCandidate) + name + 1);
+  return (GstClothCandidate *) (saddles->refined + saddles->n_refined);
+}
 
-  g_atomic_ref_count_init (&saddles->refs);
-  saddles->sequence = sequence;
-  saddles->n_refined = n_refined;
-  saddles->n_candidates = n_candidates;
-  saddles->refined = (GstClothSaddle *) (saddles + 1);
-  saddles->candidates = (GstClothCandidate *) (saddles->refined + n_refined);
-  saddles->camera = (gchar *) (saddles->candidates + n_candidates);
-  if (name)
-    memcpy (saddles->camera, camera, name);
-  saddles->camera[name] = 0;
-  return saddles;
+/* The Hessian H of a saddle becomes S⁻¹ H S⁻¹. Taking the board's squares for right-
+ * angled, H is a multiple of [cos 2a, sin 2a; sin 2a, -cos 2a]; the axis is the
+ * eigenvector of its positive eigenvalue. */
+static gfloat
+scale_axis (gfloat axis, gdouble sx, gdouble sy)
+{
+  gdouble a;
+
+  if (sx == sy)
+    return axis;
+  a = 0.5 * atan2 (2 * sin (2 * axis) / (sx * sy),
+      cos (2 * axis) * (1 / (sx * sx) + 1 / (sy * sy)));
+  if (a < 0)
+    a += G_PI;
+  return (gfloat) a < (gfloat) G_PI ? (gfloat) a : 0;
+}
+
+/* A response is a determinant of second derivatives. */
+static void
+saddles_scale (GstClothPayload * payload, gdouble scale_x, gdouble scale_y)
+{
+  GstClothSaddles *saddles = (GstClothSaddles *) payload;
+  GstClothCandidate *candidate = saddles_candidates (saddles);
+  gdouble det = 1 / (scale_x * scale_x * scale_y * scale_y);
+
+  for (guint i = 0; i < saddles->n_refined; i++) {
+    GstClothSaddle *s = &saddles->refined[i];
+
+    gst_cloth_scale_place (&s->x, &s->y, scale_x, scale_y);
+    s->response = (gfloat) (s->response * det);
+    s->axis = scale_axis (s->axis, scale_x, scale_y);
+    gst_cloth_scale_covariance (&s->cov_xx, &s->cov_xy, &s->cov_yy, scale_x,
+        scale_y);
+  }
+  for (guint i = 0; i < saddles->n_candidates; i++, candidate++) {
+    gst_cloth_scale_place (&candidate->x, &candidate->y, scale_x, scale_y);
+    candidate->response = (gfloat) (candidate->response * det);
+  }
 }
 
 /**
@@ -123,17 +142,23 @@ gst_cloth_saddles_new (const gchar * camera, guint64 sequence,
 {
   GstClothSaddles *saddles;
 
-  g_return_val_if_fail (gst_cloth_camera_is_valid (camera), NULL);
   g_return_val_if_fail (refined || !n_refined, NULL);
   g_return_val_if_fail (candidates || !n_candidates, NULL);
   g_return_val_if_fail (n_refined <= GST_CLOTH_MAX_FEATURES, NULL);
   g_return_val_if_fail (n_candidates <= GST_CLOTH_MAX_FEATURES, NULL);
 
-  saddles = saddles_alloc (camera, sequence, n_refined, n_candidates);
+  saddles = gst_cloth_payload_new (sizeof *saddles
+      + n_refined * sizeof *refined + n_candidates * sizeof *candidates,
+      camera, sequence, saddles_scale);
+  if (!saddles)
+    return NULL;
+  saddles->n_refined = n_refined;
+  saddles->n_candidates = n_candidates;
   if (n_refined)
     memcpy (saddles->refined, refined, n_refined * sizeof *refined);
   if (n_candidates)
-    memcpy (saddles->candidates, candidates, n_candidates * sizeof *candidates);
+    memcpy (saddles_candidates (saddles), candidates,
+        n_candidates * sizeof *candidates);
   return saddles;
 }
 
@@ -148,8 +173,7 @@ gst_cloth_saddles_new (const gchar * camera, guint64 sequence,
 GstClothSaddles *
 gst_cloth_saddles_ref (GstClothSaddles * saddles)
 {
-  g_atomic_ref_count_inc (&saddles->refs);
-  return saddles;
+  return g_atomic_rc_box_acquire (saddles);
 }
 
 /**
@@ -163,8 +187,7 @@ gst_cloth_saddles_ref (GstClothSaddles * saddles)
 void
 gst_cloth_saddles_unref (GstClothSaddles * saddles)
 {
-  if (g_atomic_ref_count_dec (&saddles->refs))
-    g_free (saddles);
+  g_atomic_rc_box_release (saddles);
 }
 
 /**
@@ -178,7 +201,7 @@ gst_cloth_saddles_unref (GstClothSaddles * saddles)
 const gchar *
 gst_cloth_saddles_get_camera (const GstClothSaddles * saddles)
 {
-  return saddles->camera;
+  return saddles->payload.camera;
 }
 
 /**
@@ -192,7 +215,7 @@ gst_cloth_saddles_get_camera (const GstClothSaddles * saddles)
 guint64
 gst_cloth_saddles_get_sequence (const GstClothSaddles * saddles)
 {
-  return saddles->sequence;
+  return saddles->payload.sequence;
 }
 
 /**
@@ -258,7 +281,7 @@ gst_cloth_saddles_get_candidates (const GstClothSaddles * saddles,
 {
   if (n_candidates)
     *n_candidates = saddles->n_candidates;
-  return saddles->candidates;
+  return saddles_candidates (saddles);
 }
 
 /**
@@ -297,14 +320,8 @@ gst_cloth_saddles_get_candidate (const GstClothSaddles * saddles, guint index,
 {
   if (index >= saddles->n_candidates)
     return FALSE;
-  *candidate = saddles->candidates[index];
+  *candidate = saddles_candidates (saddles)[index];
   return TRUE;
-}
-
-static void
-saddles_release (gpointer saddles)
-{
-  gst_cloth_saddles_unref (saddles);
 }
 
 /**
@@ -324,25 +341,8 @@ GBytes *
 gst_cloth_saddles_get_points (GstClothSaddles * saddles)
 {
   return g_bytes_new_with_free_func (saddles->refined,
-      saddles->n_refined * sizeof (GstClothSaddle), saddles_release,
+      saddles->n_refined * sizeof (GstClothSaddle), g_atomic_rc_box_release,
       gst_cloth_saddles_ref (saddles));
-}
-
-/* The Hessian H of a saddle becomes S⁻¹ H S⁻¹. Taking the board's squares for right-
- * angled, H is a multiple of [cos 2a, sin 2a; sin 2a, -cos 2a]; the axis is the
- * eigenvector of its positive eigenvalue. */
-static gfloat
-scale_axis (gfloat axis, gdouble sx, gdouble sy)
-{
-  gdouble a;
-
-  if (sx == sy)
-    return axis;
-  a = 0.5 * atan2 (2 * sin (2 * axis) / (sx * sy),
-      cos (2 * axis) * (1 / (sx * sx) + 1 / (sy * sy)));
-  if (a < 0)
-    a += G_PI;
-  return (gfloat) a < (gfloat) G_PI ? (gfloat) a : 0;
 }
 
 /**
@@ -363,68 +363,8 @@ GstClothSaddles *
 gst_cloth_saddles_scale (const GstClothSaddles * saddles, gdouble scale_x,
     gdouble scale_y)
 {
-  GstClothSaddles *scaled;
-  gdouble det;
-
-  g_return_val_if_fail (saddles != NULL, NULL);
-  g_return_val_if_fail (scale_x > 0 && scale_y > 0, NULL);
-
-  det = 1 / (scale_x * scale_x * scale_y * scale_y);
-  scaled = saddles_alloc (saddles->camera, saddles->sequence,
-      saddles->n_refined, saddles->n_candidates);
-  for (guint i = 0; i < saddles->n_refined; i++) {
-    const GstClothSaddle *from = &saddles->refined[i];
-    GstClothSaddle *to = &scaled->refined[i];
-
-    to->x = gst_cloth_scale_place (from->x, scale_x);
-    to->y = gst_cloth_scale_place (from->y, scale_y);
-    to->response = (gfloat) (from->response * det);
-    to->axis = scale_axis (from->axis, scale_x, scale_y);
-    to->cov_xx = (gfloat) (from->cov_xx * scale_x * scale_x);
-    to->cov_xy = (gfloat) (from->cov_xy * scale_x * scale_y);
-    to->cov_yy = (gfloat) (from->cov_yy * scale_y * scale_y);
-  }
-  for (guint i = 0; i < saddles->n_candidates; i++) {
-    const GstClothCandidate *from = &saddles->candidates[i];
-    GstClothCandidate *to = &scaled->candidates[i];
-
-    to->x = gst_cloth_scale_place (from->x, scale_x);
-    to->y = gst_cloth_scale_place (from->y, scale_y);
-    to->response = (gfloat) (from->response * det);
-  }
-  return scaled;
-}
-
-static gboolean
-saddles_meta_init (GstMeta * meta, gpointer params, GstBuffer * buffer)
-{
-  ((GstClothSaddlesMeta *) meta)->saddles = NULL;
-  return TRUE;
-}
-
-static void
-saddles_meta_free (GstMeta * meta, GstBuffer * buffer)
-{
-  g_clear_pointer (&((GstClothSaddlesMeta *) meta)->saddles,
-      gst_cloth_saddles_unref);
-}
-
-static gboolean
-saddles_meta_transform (GstBuffer * target, GstMeta * meta, GstBuffer * buffer,
-    GQuark type, gpointer data)
-{
-  GstClothSaddles *saddles = ((GstClothSaddlesMeta *) meta)->saddles;
-  gdouble sx, sy;
-
-  if (!saddles)
-    return FALSE;
-  if (GST_META_TRANSFORM_IS_COPY (type))
-    saddles = gst_cloth_saddles_ref (saddles);
-  else if (gst_cloth_meta_get_scale (type, data, &sx, &sy))
-    saddles = gst_cloth_saddles_scale (saddles, sx, sy);
-  else
-    return FALSE;
-  return gst_buffer_add_cloth_saddles_meta (target, saddles) != NULL;
+  return gst_cloth_payload_scale ((const GstClothPayload *) saddles, scale_x,
+      scale_y);
 }
 
 /**
@@ -438,17 +378,8 @@ GType
 gst_cloth_saddles_meta_api_get_type (void)
 {
   static GType type;
-  static const gchar *tags[] = { GST_META_TAG_VIDEO_STR,
-    GST_META_TAG_VIDEO_ORIENTATION_STR, GST_META_TAG_VIDEO_SIZE_STR, NULL
-  };
 
-  if (g_once_init_enter (&type)) {
-    GType registered = gst_meta_api_type_register ("GstClothSaddlesMetaAPI",
-        tags);
-
-    g_once_init_leave (&type, registered);
-  }
-  return type;
+  return gst_cloth_payload_register_api (&type, "GstClothSaddlesMetaAPI", TRUE);
 }
 
 /**
@@ -463,15 +394,8 @@ gst_cloth_saddles_meta_get_info (void)
 {
   static const GstMetaInfo *info;
 
-  if (g_once_init_enter (&info)) {
-    const GstMetaInfo *registered =
-        gst_meta_register (gst_cloth_saddles_meta_api_get_type (),
-        "GstClothSaddlesMeta", sizeof (GstClothSaddlesMeta), saddles_meta_init,
-        saddles_meta_free, saddles_meta_transform);
-
-    g_once_init_leave (&info, registered);
-  }
-  return info;
+  return gst_cloth_payload_register_meta (&info,
+      gst_cloth_saddles_meta_api_get_type (), "GstClothSaddlesMeta");
 }
 
 /**
@@ -489,24 +413,8 @@ GstClothSaddlesMeta *
 gst_buffer_add_cloth_saddles_meta (GstBuffer * buffer,
     GstClothSaddles * saddles)
 {
-  GstClothSaddlesMeta *meta;
-
-  g_return_val_if_fail (GST_IS_BUFFER (buffer), NULL);
-  g_return_val_if_fail (gst_buffer_is_writable (buffer), NULL);
-  g_return_val_if_fail (saddles != NULL, NULL);
-
-  meta = (GstClothSaddlesMeta *) gst_buffer_get_meta (buffer,
-      gst_cloth_saddles_meta_api_get_type ());
-  if (!meta)
-    meta = (GstClothSaddlesMeta *) gst_buffer_add_meta (buffer,
-        gst_cloth_saddles_meta_get_info (), NULL);
-  if (!meta) {
-    gst_cloth_saddles_unref (saddles);
-    return NULL;
-  }
-  g_clear_pointer (&meta->saddles, gst_cloth_saddles_unref);
-  meta->saddles = saddles;
-  return meta;
+  return gst_cloth_payload_attach (saddles, buffer,
+      gst_cloth_saddles_meta_get_info ());
 }
 
 /**
@@ -521,10 +429,6 @@ gst_buffer_add_cloth_saddles_meta (GstBuffer * buffer,
 GstClothSaddles *
 gst_buffer_get_cloth_saddles (GstBuffer * buffer)
 {
-  GstMeta *meta;
-
-  g_return_val_if_fail (GST_IS_BUFFER (buffer), NULL);
-
-  meta = gst_buffer_get_meta (buffer, gst_cloth_saddles_meta_api_get_type ());
-  return meta ? ((GstClothSaddlesMeta *) meta)->saddles : NULL;
+  return gst_cloth_payload_find (buffer,
+      gst_cloth_saddles_meta_api_get_type ());
 }

@@ -13,7 +13,6 @@
 /* One allocation: this, uv, faces. */
 struct _GstClothTopology
 {
-  gatomicrefcount refs;
   guint n_vertices, columns, rows, n_faces;
   gfloat *uv;
   guint32 *faces;
@@ -69,10 +68,9 @@ check_values (const GstClothTopology * topology, GError ** error)
 static GstClothTopology *
 topology_alloc (guint n_vertices, guint columns, guint rows, guint n_faces)
 {
-  GstClothTopology *topology = g_malloc (sizeof (GstClothTopology)
+  GstClothTopology *topology = g_atomic_rc_box_alloc (sizeof (GstClothTopology)
       + 2 * sizeof (gfloat) * n_vertices + 4 * sizeof (guint32) * n_faces);
 
-  g_atomic_ref_count_init (&topology->refs);
   topology->n_vertices = n_vertices;
   topology->columns = columns;
   topology->rows = rows;
@@ -220,8 +218,7 @@ gst_cloth_topology_new_grid (guint columns, guint rows, gfloat width_m,
 GstClothTopology *
 gst_cloth_topology_ref (GstClothTopology * topology)
 {
-  g_atomic_ref_count_inc (&topology->refs);
-  return topology;
+  return g_atomic_rc_box_acquire (topology);
 }
 
 /**
@@ -235,8 +232,7 @@ gst_cloth_topology_ref (GstClothTopology * topology)
 void
 gst_cloth_topology_unref (GstClothTopology * topology)
 {
-  if (g_atomic_ref_count_dec (&topology->refs))
-    g_free (topology);
+  g_atomic_rc_box_release (topology);
 }
 
 /**

@@ -1,0 +1,194 @@
+/* What the payloads of buffer metadata have in common: one counted allocation, and a meta
+ * that holds it, copies it by reference and scales it with the picture.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <gst/video/video.h>
+#include <gst/video/gstvideometa.h>
+
+#include "gst/cloth/gstclothpayload.h"
+
+/* Every meta of this library is one of these under a name of its own. */
+typedef struct
+{
+  GstMeta meta;
+  GstClothPayload *payload;
+} PayloadMeta;
+
+G_STATIC_ASSERT (sizeof (PayloadMeta) == sizeof (GstClothSaddlesMeta));
+G_STATIC_ASSERT (sizeof (PayloadMeta) == sizeof (GstClothQuadsMeta));
+G_STATIC_ASSERT (sizeof (PayloadMeta) == sizeof (GstClothDotsMeta));
+G_STATIC_ASSERT (sizeof (PayloadMeta) == sizeof (GstClothGapMeta));
+
+/* @size: bytes of the payload's struct and items
+ * @camera: (nullable): UTF-8 of at most #GST_CLOTH_MAX_CAMERA_NAME bytes
+ * @sequence: number of the frame
+ * @scale: (nullable): how it is scaled
+ *
+ * Returns: (transfer full): a payload; what follows its #GstClothPayload is not set.
+ *   %NULL when @camera is no name.
+ */
+gpointer
+gst_cloth_payload_new (gsize size, const gchar * camera, guint64 sequence,
+    GstClothPayloadScale scale)
+{
+  GstClothPayload *payload;
+
+  g_return_val_if_fail (camera == NULL
+      || (strlen (camera) <= GST_CLOTH_MAX_CAMERA_NAME
+          && g_utf8_validate (camera, -1, NULL)), NULL);
+
+  payload = g_atomic_rc_box_alloc (size);
+  payload->sequence = sequence;
+  payload->scale = scale;
+  g_strlcpy (payload->camera, camera ? camera : "", sizeof payload->camera);
+  return payload;
+}
+
+/* Returns: (transfer full): the payload of the same picture at another size
+ */
+gpointer
+gst_cloth_payload_scale (const GstClothPayload * payload, gdouble scale_x,
+    gdouble scale_y)
+{
+  GstClothPayload *source = (GstClothPayload *) payload;
+  GstClothPayload *scaled;
+
+  g_return_val_if_fail (payload != NULL, NULL);
+  g_return_val_if_fail (scale_x > 0 && scale_y > 0, NULL);
+
+  scaled = g_atomic_rc_box_dup (g_atomic_rc_box_get_size (source), source);
+  scaled->scale (scaled, scale_x, scale_y);
+  return scaled;
+}
+
+static gboolean
+meta_init (GstMeta * meta, gpointer params, GstBuffer * buffer)
+{
+  ((PayloadMeta *) meta)->payload = NULL;
+  return TRUE;
+}
+
+static void
+meta_free (GstMeta * meta, GstBuffer * buffer)
+{
+  g_clear_pointer (&((PayloadMeta *) meta)->payload, g_atomic_rc_box_release);
+}
+
+/* TRUE when a meta's transformation is a change of the picture's size */
+static gboolean
+get_scale (GQuark type, gpointer data, gdouble * scale_x, gdouble * scale_y)
+{
+  const GstVideoMetaTransform *scale = data;
+
+  if (!GST_VIDEO_META_TRANSFORM_IS_SCALE (type))
+    return FALSE;
+  if (GST_VIDEO_INFO_WIDTH (scale->in_info) <= 0
+      || GST_VIDEO_INFO_HEIGHT (scale->in_info) <= 0)
+    return FALSE;
+  *scale_x = (gdouble) GST_VIDEO_INFO_WIDTH (scale->out_info)
+      / GST_VIDEO_INFO_WIDTH (scale->in_info);
+  *scale_y = (gdouble) GST_VIDEO_INFO_HEIGHT (scale->out_info)
+      / GST_VIDEO_INFO_HEIGHT (scale->in_info);
+  return *scale_x > 0 && *scale_y > 0;
+}
+
+/* A part of a mesh is no mesh: what is not of a picture stays with whole buffers only. */
+static gboolean
+meta_transform (GstBuffer * target, GstMeta * meta, GstBuffer * buffer,
+    GQuark type, gpointer data)
+{
+  GstClothPayload *payload = ((PayloadMeta *) meta)->payload;
+  gdouble sx, sy;
+
+  if (!payload)
+    return FALSE;
+  if (GST_META_TRANSFORM_IS_COPY (type)) {
+    if (!payload->scale && ((GstMetaTransformCopy *) data)->region)
+      return FALSE;
+    g_atomic_rc_box_acquire (payload);
+  } else if (payload->scale && get_scale (type, data, &sx, &sy)) {
+    payload = gst_cloth_payload_scale (payload, sx, sy);
+  } else {
+    return FALSE;
+  }
+  return gst_cloth_payload_attach (payload, target, meta->info) != NULL;
+}
+
+/* @type: where the type is kept, 0 at first
+ * @name: its name
+ * @of_picture: whether it changes with the picture's format, orientation and size
+ *
+ * Returns: the type of a meta's API, registered once
+ */
+GType
+gst_cloth_payload_register_api (GType * type, const gchar * name,
+    gboolean of_picture)
+{
+  static const gchar *tags[] = { GST_META_TAG_VIDEO_STR,
+    GST_META_TAG_VIDEO_ORIENTATION_STR, GST_META_TAG_VIDEO_SIZE_STR, NULL
+  };
+
+  if (g_once_init_enter (type))
+    g_once_init_leave (type,
+        gst_meta_api_type_register (name, of_picture ? tags : tags + 3));
+  return *type;
+}
+
+/* @info: where the meta is kept, %NULL at first
+ * @api: the type of its API
+ * @name: its name
+ *
+ * Returns: (transfer none): a meta's implementation, registered once
+ */
+const GstMetaInfo *
+gst_cloth_payload_register_meta (const GstMetaInfo ** info, GType api,
+    const gchar * name)
+{
+  if (g_once_init_enter (info))
+    g_once_init_leave (info, gst_meta_register (api, name,
+            sizeof (PayloadMeta), meta_init, meta_free, meta_transform));
+  return *info;
+}
+
+/* @payload: (transfer full): what to put on @buffer
+ * @buffer: a writable buffer
+ * @info: of the meta that holds it
+ *
+ * Puts @payload on @buffer, in place of the one it may have had.
+ *
+ * Returns: (transfer none): the meta that now holds @payload
+ */
+gpointer
+gst_cloth_payload_attach (gpointer payload, GstBuffer * buffer,
+    const GstMetaInfo * info)
+{
+  GstMeta *meta;
+
+  g_return_val_if_fail (GST_IS_BUFFER (buffer), NULL);
+  g_return_val_if_fail (gst_buffer_is_writable (buffer), NULL);
+  g_return_val_if_fail (payload != NULL, NULL);
+
+  meta = gst_buffer_get_meta (buffer, info->api);
+  if (!meta)
+    meta = gst_buffer_add_meta (buffer, info, NULL);
+  if (!meta) {
+    g_atomic_rc_box_release (payload);
+    return NULL;
+  }
+  meta_free (meta, buffer);
+  ((PayloadMeta *) meta)->payload = payload;
+  return meta;
+}
+
+/* Returns: (transfer none) (nullable): the payload that @buffer has under @api
+ */
+gpointer
+gst_cloth_payload_find (GstBuffer * buffer, GType api)
+{
+  GstMeta *meta;
+
+  g_return_val_if_fail (GST_IS_BUFFER (buffer), NULL);
+
+  meta = gst_buffer_get_meta (buffer, api);
+  return meta ? ((PayloadMeta *) meta)->payload : NULL;
+}

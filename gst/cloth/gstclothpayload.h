@@ -1,0 +1,56 @@
+/* Shared inside libgstcloth-1.0: what the payloads of buffer metadata have in common.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/cloth/gstclothprivate.h"
+
+G_BEGIN_DECLS
+
+typedef struct _GstClothPayload GstClothPayload;
+
+/* Changes a copy that nobody else holds yet to what it is in a picture of @scale_x times
+ * the width and @scale_y times the height. */
+typedef void (*GstClothPayloadScale) (GstClothPayload * payload,
+    gdouble scale_x, gdouble scale_y);
+
+/* What every payload begins with. A payload is one allocation of GLib's atomically counted
+ * boxes; its items follow its struct. It never changes once it has been handed out. */
+struct _GstClothPayload
+{
+  guint64 sequence;
+  GstClothPayloadScale scale;   /* NULL: not of a picture, so it has no scale */
+  gchar camera[GST_CLOTH_MAX_CAMERA_NAME + 1];
+};
+
+gpointer gst_cloth_payload_new (gsize size, const gchar * camera,
+    guint64 sequence, GstClothPayloadScale scale);
+gpointer gst_cloth_payload_scale (const GstClothPayload * payload,
+    gdouble scale_x, gdouble scale_y);
+
+GType gst_cloth_payload_register_api (GType * type, const gchar * name,
+    gboolean of_picture);
+const GstMetaInfo *gst_cloth_payload_register_meta (const GstMetaInfo ** info,
+    GType api, const gchar * name);
+gpointer gst_cloth_payload_attach (gpointer payload, GstBuffer * buffer,
+    const GstMetaInfo * info);
+gpointer gst_cloth_payload_find (GstBuffer * buffer, GType api);
+
+/* Places keep to pixel centres, so the picture's edge stays its edge. */
+static inline void
+gst_cloth_scale_place (gfloat * x, gfloat * y, gdouble scale_x, gdouble scale_y)
+{
+  *x = (gfloat) ((*x + 0.5) * scale_x - 0.5);
+  *y = (gfloat) ((*y + 0.5) * scale_y - 0.5);
+}
+
+static inline void
+gst_cloth_scale_covariance (gfloat * xx, gfloat * xy, gfloat * yy,
+    gdouble scale_x, gdouble scale_y)
+{
+  *xx = (gfloat) (*xx * scale_x * scale_x);
+  *xy = (gfloat) (*xy * scale_x * scale_y);
+  *yy = (gfloat) (*yy * scale_y * scale_y);
+}
+
+G_END_DECLS
