@@ -20,7 +20,7 @@ struct _GstClothGapView
   ClothRig *rig;
   const ClothCamera *camera;    /* NULL: not known yet */
   gint width, height;           /* of the stream */
-  GstClothPoints *points;
+  GstClothIoPoints *points;
   ClothRays *rays;
   guint64 sequence;             /* of the next picture */
   gboolean seen;                /* whether any picture had squares or dots */
@@ -84,7 +84,7 @@ gst_cloth_gap_view_new (GstElement * element,
   else if (g_file_test (beside, G_FILE_TEST_EXISTS))
     self->rig_file = g_steal_pointer (&beside);
   self->property = g_strdup (settings->camera);
-  self->points = gst_cloth_points_new (topology->columns, topology->rows);
+  self->points = gst_cloth_io_points_new (topology->columns, topology->rows);
   self->rays = cloth_rays_new (topology->n_vertices);
   return self;
 }
@@ -110,7 +110,7 @@ const ClothRays *
 gst_cloth_gap_view_read (GstClothGapView * view, GstElement * element,
     GstBuffer * buffer, guint64 * sequence, gdouble * offset_s)
 {
-  GstClothPoints *points = view->points;
+  GstClothIoPoints *points = view->points;
   g_autoptr (GstBuffer) picture = gst_buffer_new ();
   g_autoptr (GError) error = NULL;
   const gchar *name;
@@ -125,7 +125,7 @@ gst_cloth_gap_view_read (GstClothGapView * view, GstElement * element,
       && !gst_buffer_get_cloth_dots (picture)) {
     cloth_rays_clear (view->rays);
   } else {
-    if (!gst_cloth_points_find (points, picture, &error)) {
+    if (!gst_cloth_io_points_find (points, picture, &error)) {
       GST_ELEMENT_ERROR (element, STREAM, FORMAT,
           ("A picture is not of the scene's cloth: %s", error->message),
           (NULL));
@@ -135,7 +135,7 @@ gst_cloth_gap_view_read (GstClothGapView * view, GstElement * element,
         points->camera && *points->camera ? points->camera : NULL;
     if (!open_camera (view, element, name))
       return NULL;
-    if (!gst_cloth_points_check_places (points, view->camera, &error)) {
+    if (!gst_cloth_io_points_check_places (points, view->camera, &error)) {
       GST_ELEMENT_ERROR (element, STREAM, FORMAT,
           ("A picture is not of the camera “%s”: %s", view->camera->name,
               error->message), (NULL));
@@ -171,7 +171,7 @@ gst_cloth_gap_view_free (GstClothGapView * view)
   g_free (view->property);
   g_free (view->name);
   cloth_rig_free (view->rig);
-  gst_cloth_points_free (view->points);
+  gst_cloth_io_points_free (view->points);
   cloth_rays_free (view->rays);
   g_free (view);
 }

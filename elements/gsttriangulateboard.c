@@ -142,10 +142,10 @@ gst_triangulate_board_take (GstTriangulateBoard * board,
     return FALSE;
   }
   if (seen->dots) {
-    gst_cloth_points_add_dots (seen->dots, board->columns, board->rows,
+    gst_cloth_io_points_add_dots (seen->dots, board->columns, board->rows,
         board->seen, merge);
   } else {
-    gst_cloth_points_add_quads (seen->quads, board->columns, board->rows,
+    gst_cloth_io_points_add_quads (seen->quads, board->columns, board->rows,
         merge);
   }
   return TRUE;

@@ -31,7 +31,7 @@ typedef struct
   ClothObservations *observations;
   guint camera;
   gboolean labelled;            /* whether any picture had squares or dots */
-  GstClothPoints *points;
+  GstClothIoPoints *points;
   guint32 *vertices;
   gdouble *px, *covariances;
 } Reader;
@@ -45,7 +45,7 @@ reader_init (Reader * self, ClothObservations * observations, guint camera,
   self->observations = observations;
   self->camera = camera;
   self->labelled = FALSE;
-  self->points = gst_cloth_points_new (columns, rows);
+  self->points = gst_cloth_io_points_new (columns, rows);
   self->vertices = g_new (guint32, n);
   self->px = g_new (gdouble, 2 * n);
   self->covariances = g_new (gdouble, 3 * n);
@@ -54,7 +54,7 @@ reader_init (Reader * self, ClothObservations * observations, guint camera,
 static void
 reader_clear (Reader * self)
 {
-  gst_cloth_points_free (self->points);
+  gst_cloth_io_points_free (self->points);
   g_free (self->vertices);
   g_free (self->px);
   g_free (self->covariances);
@@ -97,9 +97,9 @@ find_points (Reader * self, GstBuffer * buffer, GError ** error)
       && !gst_buffer_get_cloth_dots (buffer))
     return 0;                   /* of a picture that shows nothing */
   self->labelled = TRUE;
-  if (!gst_cloth_points_find (self->points, buffer, error)
+  if (!gst_cloth_io_points_find (self->points, buffer, error)
       || !check_name (self, self->points->camera, error)
-      || !gst_cloth_points_check_places (self->points,
+      || !gst_cloth_io_points_check_places (self->points,
           &self->observations->rig->cameras[self->camera], error))
     return -1;
   for (guint i = 0; i < n_vertices; i++) {
@@ -311,7 +311,7 @@ load_files (ClothObservations * observations, const gchar * folder,
   return TRUE;
 }
 
-/* @folder: (type filename): of a take
+/* @folder: of a take
  * @topology: the take's mesh
  * @observations: (out) (transfer full) (nullable): what the cameras saw; %NULL when the take
  *   doesn't say

@@ -1,4 +1,4 @@
-/* The places of a grid's vertices that squares or dots in a picture tell.
+/* From the squares or dots of a picture to the places of a grid's vertices in it, px.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #ifdef HAVE_CONFIG_H
@@ -21,7 +21,7 @@
 #define MARGIN 0.1
 
 void
-gst_cloth_points_add_quads (const GstClothQuads * quads, guint columns,
+gst_cloth_io_points_add_quads (const GstClothQuads * quads, guint columns,
     guint rows, ClothMerge * merge)
 {
   const GstClothQuad *quad;
@@ -71,7 +71,7 @@ is_at_fold (const GstClothDot * dot, guint columns, guint rows,
 
 /* A dot seen from behind is the same vertex: cloth is thin. */
 void
-gst_cloth_points_add_dots (const GstClothDots * dots, guint columns,
+gst_cloth_io_points_add_dots (const GstClothDots * dots, guint columns,
     guint rows, guint8 * seen, ClothMerge * merge)
 {
   const GstClothDot *list;
@@ -96,10 +96,10 @@ gst_cloth_points_add_dots (const GstClothDots * dots, guint columns,
   }
 }
 
-GstClothPoints *
-gst_cloth_points_new (guint columns, guint rows)
+GstClothIoPoints *
+gst_cloth_io_points_new (guint columns, guint rows)
 {
-  GstClothPoints *points = g_new0 (GstClothPoints, 1);
+  GstClothIoPoints *points = g_new0 (GstClothIoPoints, 1);
 
   points->columns = columns;
   points->rows = rows;
@@ -110,7 +110,7 @@ gst_cloth_points_new (guint columns, guint rows)
 
 /* Takes what is of the grid; a picture may carry both kinds. */
 static gboolean
-merge_metas (GstClothPoints * self, GstBuffer * picture, GError ** error)
+merge_metas (GstClothIoPoints * self, GstBuffer * picture, GError ** error)
 {
   const GstClothQuads *quads = gst_buffer_get_cloth_quads (picture);
   const GstClothDots *dots = gst_buffer_get_cloth_dots (picture);
@@ -120,7 +120,7 @@ merge_metas (GstClothPoints * self, GstBuffer * picture, GError ** error)
     columns = gst_cloth_quads_get_columns (quads) + 1;
     rows = gst_cloth_quads_get_rows (quads) + 1;
     if (columns == self->columns && rows == self->rows) {
-      gst_cloth_points_add_quads (quads, columns, rows, self->merge);
+      gst_cloth_io_points_add_quads (quads, columns, rows, self->merge);
       self->camera = gst_cloth_quads_get_camera (quads);
       self->sequence = gst_cloth_quads_get_sequence (quads);
       return TRUE;
@@ -130,7 +130,8 @@ merge_metas (GstClothPoints * self, GstBuffer * picture, GError ** error)
     columns = gst_cloth_dots_get_columns (dots);
     rows = gst_cloth_dots_get_rows (dots);
     if (columns == self->columns && rows == self->rows) {
-      gst_cloth_points_add_dots (dots, columns, rows, self->seen, self->merge);
+      gst_cloth_io_points_add_dots (dots, columns, rows, self->seen,
+          self->merge);
       self->camera = gst_cloth_dots_get_camera (dots);
       self->sequence = gst_cloth_dots_get_sequence (dots);
       return TRUE;
@@ -144,7 +145,7 @@ merge_metas (GstClothPoints * self, GstBuffer * picture, GError ** error)
 }
 
 gboolean
-gst_cloth_points_find (GstClothPoints * points, GstBuffer * picture,
+gst_cloth_io_points_find (GstClothIoPoints * points, GstBuffer * picture,
     GError ** error)
 {
   cloth_merge_clear (points->merge);
@@ -155,7 +156,7 @@ gst_cloth_points_find (GstClothPoints * points, GstBuffer * picture,
 }
 
 gboolean
-gst_cloth_points_check_places (const GstClothPoints * points,
+gst_cloth_io_points_check_places (const GstClothIoPoints * points,
     const ClothCamera * camera, GError ** error)
 {
   gdouble w = camera->width, h = camera->height;
@@ -176,7 +177,7 @@ gst_cloth_points_check_places (const GstClothPoints * points,
 }
 
 void
-gst_cloth_points_free (GstClothPoints * points)
+gst_cloth_io_points_free (GstClothIoPoints * points)
 {
   if (!points)
     return;

@@ -1,4 +1,4 @@
-/* The places of a grid's vertices that squares or dots in a picture tell.
+/* From the squares or dots of a picture to the places of a grid's vertices in it, px.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -19,25 +19,25 @@ typedef struct {
 
   ClothMerge *merge;
   guint8 *seen;
-} GstClothPoints;
+} GstClothIoPoints;
 
-GstClothPoints *gst_cloth_points_new (guint columns, guint rows);
+GstClothIoPoints *gst_cloth_io_points_new (guint columns, guint rows);
 /* Merges the squares or dots of a picture, which must have some: FALSE when they are of
  * another grid (CLOTH_FIT_ERROR). What is found belongs to the picture and to @points. */
-gboolean gst_cloth_points_find (GstClothPoints * points, GstBuffer * picture,
+gboolean gst_cloth_io_points_find (GstClothIoPoints * points, GstBuffer * picture,
     GError ** error);
 /* FALSE when a point of the last picture lies where @camera sees nothing. */
-gboolean gst_cloth_points_check_places (const GstClothPoints * points,
+gboolean gst_cloth_io_points_check_places (const GstClothIoPoints * points,
     const ClothCamera * camera, GError ** error);
-void gst_cloth_points_free (GstClothPoints * points);
+void gst_cloth_io_points_free (GstClothIoPoints * points);
 
 /* @columns, @rows: of the grid's vertices, row * columns + column. Squares have a vertex at
  * each of their corners, so a board has one fewer of them each way. */
-void gst_cloth_points_add_quads (const GstClothQuads * quads, guint columns,
+void gst_cloth_io_points_add_quads (const GstClothQuads * quads, guint columns,
     guint rows, ClothMerge * merge);
 /* @seen: memory for columns * rows bytes. */
-void gst_cloth_points_add_dots (const GstClothDots * dots, guint columns,
+void gst_cloth_io_points_add_dots (const GstClothDots * dots, guint columns,
     guint rows, guint8 * seen, ClothMerge * merge);
 
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (GstClothPoints, gst_cloth_points_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (GstClothIoPoints, gst_cloth_io_points_free)
 G_END_DECLS

@@ -48,7 +48,7 @@ set_up (Fixture * f, gconstpointer data)
 {
   GError *error = NULL;
 
-  f->folder = g_dir_make_tmp ("clothsights-XXXXXX", &error);
+  f->folder = g_dir_make_tmp ("clothtakeobservations-XXXXXX", &error);
   g_assert_no_error (error);
   f->bytes = g_byte_array_new ();
   write_file (f, "rig.json", RIG, -1);
@@ -537,7 +537,8 @@ main (int argc, char **argv)
   gst_init (&argc, &argv);
   g_test_init (&argc, &argv, NULL);
   for (guint i = 0; i < G_N_ELEMENTS (tests); i++) {
-    g_autofree gchar *path = g_strconcat ("/sights/", tests[i].path, NULL);
+    g_autofree gchar *path =
+        g_strconcat ("/clothtakeobservations/", tests[i].path, NULL);
 
     g_test_add (path, Fixture, NULL, set_up, tests[i].test, tear_down);
   }

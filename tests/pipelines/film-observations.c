@@ -177,6 +177,6 @@ main (int argc, char **argv)
 {
   gst_init (&argc, &argv);
   g_test_init (&argc, &argv, NULL);
-  g_test_add_func ("/film/sights", test_film);
+  g_test_add_func ("/film/observations", test_film);
   return g_test_run ();
 }
