@@ -1,6 +1,7 @@
 /* Coloured dots of one picture, as buffer metadata.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/cloth/gstclothdots.h"
 #include "gst/cloth/gstclothpayload.h"
 
 struct _GstClothDots
@@ -11,6 +12,8 @@ struct _GstClothDots
   guint n_dots;
   GstClothDot dots[];
 };
+
+G_STATIC_ASSERT (sizeof (GstClothDotsMeta) == sizeof (GstClothPayloadMeta));
 
 G_DEFINE_BOXED_TYPE (GstClothDot, gst_cloth_dot, gst_cloth_dot_copy,
     gst_cloth_dot_free);

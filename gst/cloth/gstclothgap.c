@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <math.h>
 
+#include "gst/cloth/gstclothgap.h"
 #include "gst/cloth/gstclothpayload.h"
 
 /* The standard deviations follow the residuals. */
@@ -12,6 +13,8 @@ struct _GstClothGap
   guint n_vertices;
   gfloat residuals[];
 };
+
+G_STATIC_ASSERT (sizeof (GstClothGapMeta) == sizeof (GstClothPayloadMeta));
 
 G_DEFINE_BOXED_TYPE (GstClothGap, gst_cloth_gap, gst_cloth_gap_ref,
     gst_cloth_gap_unref);

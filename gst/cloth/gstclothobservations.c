@@ -3,7 +3,11 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <math.h>
 
+#include "gst/cloth/gstclothdots.h"
+#include "gst/cloth/gstclothobservations.h"
 #include "gst/cloth/gstclothprivate.h"
+#include "gst/cloth/gstclothquads.h"
+#include "gst/cloth/gstclothsaddles.h"
 
 /* docs/streams.md holds the layout, byte by byte. */
 #define OBSERVATIONS_MAGIC "GCOB"

@@ -7,18 +7,6 @@
 
 #include "gst/cloth/gstclothpayload.h"
 
-/* Every meta of this library is one of these under a name of its own. */
-typedef struct
-{
-  GstMeta meta;
-  GstClothPayload *payload;
-} PayloadMeta;
-
-G_STATIC_ASSERT (sizeof (PayloadMeta) == sizeof (GstClothSaddlesMeta));
-G_STATIC_ASSERT (sizeof (PayloadMeta) == sizeof (GstClothQuadsMeta));
-G_STATIC_ASSERT (sizeof (PayloadMeta) == sizeof (GstClothDotsMeta));
-G_STATIC_ASSERT (sizeof (PayloadMeta) == sizeof (GstClothGapMeta));
-
 /* @size: bytes of the payload's struct and items
  * @camera: (nullable): UTF-8 of at most #GST_CLOTH_MAX_CAMERA_NAME bytes
  * @sequence: number of the frame
@@ -64,14 +52,15 @@ gst_cloth_payload_scale (const GstClothPayload * payload, gdouble scale_x,
 static gboolean
 meta_init (GstMeta * meta, gpointer params, GstBuffer * buffer)
 {
-  ((PayloadMeta *) meta)->payload = NULL;
+  ((GstClothPayloadMeta *) meta)->payload = NULL;
   return TRUE;
 }
 
 static void
 meta_free (GstMeta * meta, GstBuffer * buffer)
 {
-  g_clear_pointer (&((PayloadMeta *) meta)->payload, g_atomic_rc_box_release);
+  g_clear_pointer (&((GstClothPayloadMeta *) meta)->payload,
+      g_atomic_rc_box_release);
 }
 
 /* TRUE when a meta's transformation is a change of the picture's size */
@@ -97,7 +86,7 @@ static gboolean
 meta_transform (GstBuffer * target, GstMeta * meta, GstBuffer * buffer,
     GQuark type, gpointer data)
 {
-  GstClothPayload *payload = ((PayloadMeta *) meta)->payload;
+  GstClothPayload *payload = ((GstClothPayloadMeta *) meta)->payload;
   gdouble sx, sy;
 
   if (!payload)
@@ -146,7 +135,8 @@ gst_cloth_payload_register_meta (const GstMetaInfo ** info, GType api,
 {
   if (g_once_init_enter (info))
     g_once_init_leave (info, gst_meta_register (api, name,
-            sizeof (PayloadMeta), meta_init, meta_free, meta_transform));
+            sizeof (GstClothPayloadMeta), meta_init, meta_free,
+            meta_transform));
   return *info;
 }
 
@@ -176,7 +166,7 @@ gst_cloth_payload_attach (gpointer payload, GstBuffer * buffer,
     return NULL;
   }
   meta_free (meta, buffer);
-  ((PayloadMeta *) meta)->payload = payload;
+  ((GstClothPayloadMeta *) meta)->payload = payload;
   return meta;
 }
 
@@ -190,5 +180,5 @@ gst_cloth_payload_find (GstBuffer * buffer, GType api)
   g_return_val_if_fail (GST_IS_BUFFER (buffer), NULL);
 
   meta = gst_buffer_get_meta (buffer, api);
-  return meta ? ((PayloadMeta *) meta)->payload : NULL;
+  return meta ? ((GstClothPayloadMeta *) meta)->payload : NULL;
 }

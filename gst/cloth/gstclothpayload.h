@@ -23,6 +23,13 @@ struct _GstClothPayload
   gchar camera[GST_CLOTH_MAX_CAMERA_NAME + 1];
 };
 
+/* Every meta that holds a payload is one of these under a name of its own. */
+typedef struct
+{
+  GstMeta meta;
+  GstClothPayload *payload;
+} GstClothPayloadMeta;
+
 gpointer gst_cloth_payload_new (gsize size, const gchar * camera,
     guint64 sequence, GstClothPayloadScale scale);
 gpointer gst_cloth_payload_scale (const GstClothPayload * payload,

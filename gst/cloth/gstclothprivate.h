@@ -3,13 +3,10 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include <gst/cloth/cloth.h>
+#include <gst/cloth/cloth-prelude.h>
 #include <string.h>
 
 G_BEGIN_DECLS
-
-G_STATIC_ASSERT (sizeof (GstClothSaddle) == 7 * sizeof (gfloat));
-G_STATIC_ASSERT (sizeof (GstClothCandidate) == 3 * sizeof (gfloat));
 
 GstCaps *gst_cloth_caps_with_header (GstCaps * caps, GstBuffer * header);
 gboolean gst_cloth_map (GstBuffer * buffer, GstMapInfo * map, GError ** error);

@@ -1,6 +1,7 @@
 /* Tracked squares of one picture, as buffer metadata.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/cloth/gstclothquads.h"
 #include "gst/cloth/gstclothpayload.h"
 
 struct _GstClothQuads
@@ -10,6 +11,8 @@ struct _GstClothQuads
   guint n_quads;
   GstClothQuad quads[];
 };
+
+G_STATIC_ASSERT (sizeof (GstClothQuadsMeta) == sizeof (GstClothPayloadMeta));
 
 G_DEFINE_BOXED_TYPE (GstClothQuad, gst_cloth_quad, gst_cloth_quad_copy,
     gst_cloth_quad_free);

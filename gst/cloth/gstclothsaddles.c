@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <math.h>
 
+#include "gst/cloth/gstclothsaddles.h"
 #include "gst/cloth/gstclothpayload.h"
 
 /* The candidates follow the refined saddles. */
@@ -12,6 +13,11 @@ struct _GstClothSaddles
   guint n_refined, n_candidates;
   GstClothSaddle refined[];
 };
+
+G_STATIC_ASSERT (sizeof (GstClothSaddlesMeta) == sizeof (GstClothPayloadMeta));
+/* They are written as rows of floats. */
+G_STATIC_ASSERT (sizeof (GstClothSaddle) == 7 * sizeof (gfloat));
+G_STATIC_ASSERT (sizeof (GstClothCandidate) == 3 * sizeof (gfloat));
 
 G_DEFINE_BOXED_TYPE (GstClothSaddle, gst_cloth_saddle, gst_cloth_saddle_copy,
     gst_cloth_saddle_free);

@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <math.h>
 
+#include "gst/cloth/gstclothmesh.h"
 #include "gst/cloth/gstclothprivate.h"
 
 /* docs/streams.md holds the layout, byte by byte. */
