@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "config.h"
 
-#include "gst/file/textfile.h"
+#include "gst/file/file.h"
 #include "gst/mesh/garment/garment.h"
 #include "gst/pattern/code.h"
 #include "gst/pattern/marray.h"

@@ -60,8 +60,13 @@ reader_clear (Reader * self)
   g_free (self->covariances);
 }
 
-G_GNUC_PRINTF (2, 3)
-     static gboolean fail (GError ** error, const gchar * format, ...)
+/* *INDENT-OFF* */
+static gboolean fail (GError ** error, const gchar * format, ...)
+    G_GNUC_PRINTF (2, 3);
+/* *INDENT-ON* */
+
+static gboolean
+fail (GError ** error, const gchar * format, ...)
 {
   va_list args;
   g_autofree gchar *text = NULL;

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #define OUTPUT_BUFFER (1u << 18)
+#define MAX_TEXT (16 * 1024 * 1024)
 
 struct _ClothInput
 {
@@ -28,6 +29,18 @@ struct _ClothOutput
   gchar *temporary;             /* NULL once renamed */
   FILE *file;                   /* NULL once finished */
   gboolean sync;
+};
+
+struct _ClothFileSet
+{
+  gchar *stem, *ending;
+  gchar *hidden;                /* the folder where they wait */
+  guint64 n_files;
+};
+
+struct _ClothSpool
+{
+  FILE *file;
 };
 
 static gboolean
@@ -382,6 +395,280 @@ cloth_output_free (ClothOutput * output)
   g_free (output->temporary);
   g_free (output->path);
   g_free (output);
+}
+
+/* @stem: what the names begin with
+ * @ending: what they end with, with its point
+ * @error: #GIOErrorEnum
+ *
+ * Starts `stem_00000.ending` and so on; they wait in a hidden folder beside.
+ *
+ * Returns: (transfer full): the set, or %NULL
+ */
+ClothFileSet *
+cloth_file_set_new (const gchar * stem, const gchar * ending, GError ** error)
+{
+  g_autofree gchar *folder = g_path_get_dirname (stem);
+  g_autofree gchar *base = g_path_get_basename (stem);
+  g_autofree gchar *name = g_strdup_printf (".%s.XXXXXX", base);
+  g_autofree gchar *hidden = g_build_filename (folder, name, NULL);
+  ClothFileSet *set;
+
+  if (!g_mkdtemp_full (hidden, 0777)) {
+    fail_errno (error, errno, "write", folder);
+    return NULL;
+  }
+  set = g_new0 (ClothFileSet, 1);
+  set->stem = g_strdup (stem);
+  set->ending = g_strdup (ending);
+  set->hidden = g_steal_pointer (&hidden);
+  return set;
+}
+
+static gchar *
+hidden_path (const ClothFileSet * set, guint64 number)
+{
+  return g_strdup_printf ("%s/%05" G_GUINT64_FORMAT, set->hidden, number);
+}
+
+static gchar *
+final_path (const ClothFileSet * set, guint64 number)
+{
+  return g_strdup_printf ("%s_%05" G_GUINT64_FORMAT "%s", set->stem, number,
+      set->ending);
+}
+
+/* @set: the set
+ * @error: #GIOErrorEnum
+ *
+ * Returns: (transfer full): the next file, for cloth_file_set_end(), or %NULL
+ */
+ClothOutput *
+cloth_file_set_begin (ClothFileSet * set, GError ** error)
+{
+  g_autofree gchar *path = hidden_path (set, set->n_files);
+  ClothOutput *output = cloth_output_new (path, error);
+
+  if (output)
+    cloth_output_set_sync (output, FALSE);
+  return output;
+}
+
+/* @set: the set
+ * @output: (transfer none): the file, whole now
+ * @error: #GIOErrorEnum
+ *
+ * Returns: %TRUE when the file belongs to the set
+ */
+gboolean
+cloth_file_set_end (ClothFileSet * set, ClothOutput * output, GError ** error)
+{
+  if (!cloth_output_commit (&output, 1, error))
+    return FALSE;
+  set->n_files++;
+  return TRUE;
+}
+
+/* All files to the disk at once, where the system can. */
+static gboolean
+sync_files (ClothFileSet * set, GError ** error)
+{
+#ifdef __linux__
+  gint fd = g_open (set->hidden, O_RDONLY | O_DIRECTORY | O_CLOEXEC, 0);
+  gboolean done = fd >= 0 && syncfs (fd) == 0;
+
+  if (!done)
+    fail_errno (error, errno, "write", set->stem);
+  if (fd >= 0)
+    close (fd);
+  return done;
+#else
+  sync ();
+  return TRUE;
+#endif
+}
+
+/* @set: the set
+ * @error: #GIOErrorEnum
+ *
+ * Gives the files their names, replacing those of an earlier set, whole.
+ *
+ * Returns: %TRUE when all have them
+ */
+gboolean
+cloth_file_set_commit (ClothFileSet * set, GError ** error)
+{
+  if (!sync_files (set, error))
+    return FALSE;
+  for (guint64 i = 0; i < set->n_files; i++) {
+    g_autofree gchar *from = hidden_path (set, i);
+    g_autofree gchar *to = final_path (set, i);
+
+    if (g_rename (from, to) < 0) {
+      fail_errno (error, errno, "write", to);
+      for (guint64 done = 0; done < i; done++) {
+        g_autofree gchar *path = final_path (set, done);
+
+        g_unlink (path);
+      }
+      return FALSE;
+    }
+  }
+  /* The rest of a longer sequence of this name would be read as part of it. */
+  for (guint64 i = set->n_files;; i++) {
+    g_autofree gchar *stale = final_path (set, i);
+
+    if (g_unlink (stale) < 0)
+      break;
+  }
+  return TRUE;
+}
+
+/* @set: (transfer full) (nullable): the set
+ *
+ * Frees it; files that were not committed are removed.
+ */
+void
+cloth_file_set_free (ClothFileSet * set)
+{
+  if (!set)
+    return;
+  for (guint64 i = 0; i < set->n_files; i++) {
+    g_autofree gchar *path = hidden_path (set, i);
+
+    g_unlink (path);
+  }
+  g_rmdir (set->hidden);
+  g_free (set->hidden);
+  g_free (set->stem);
+  g_free (set->ending);
+  g_free (set);
+}
+
+static gboolean
+fail_spool (GError ** error)
+{
+  gint code = errno;
+
+  g_set_error (error, G_IO_ERROR, g_io_error_from_errno (code),
+      "cannot keep what is to be written: %s", g_strerror (code));
+  return FALSE;
+}
+
+/* @stem: what the names of the files begin with: the bytes wait on the same disk
+ * @error: #GIOErrorEnum
+ *
+ * Starts a file without a name, which is gone with the process.
+ *
+ * Returns: (transfer full): an empty spool, or %NULL
+ */
+ClothSpool *
+cloth_spool_new (const gchar * stem, GError ** error)
+{
+  g_autofree gchar *folder = g_path_get_dirname (stem);
+  g_autofree gchar *path = g_build_filename (folder, ".spool.XXXXXX", NULL);
+  gint fd = g_mkstemp_full (path, O_RDWR | O_CLOEXEC, 0600);
+  FILE *file;
+  ClothSpool *spool;
+
+  if (fd < 0) {
+    fail_spool (error);
+    return NULL;
+  }
+  g_unlink (path);
+  file = fdopen (fd, "w+b");
+  if (!file) {
+    fail_spool (error);
+    close (fd);
+    return NULL;
+  }
+  spool = g_new (ClothSpool, 1);
+  spool->file = file;
+  return spool;
+}
+
+/* @spool: a spool
+ * @data: bytes to append
+ * @size: how many
+ * @error: #GIOErrorEnum
+ *
+ * Returns: %TRUE when they were taken
+ */
+gboolean
+cloth_spool_write (ClothSpool * spool, gconstpointer data, gsize size,
+    GError ** error)
+{
+  return size == 0 || fwrite (data, size, 1, spool->file) == 1 ||
+      fail_spool (error);
+}
+
+/* @spool: a spool, which takes no more after this
+ * @output: where to append all that it holds
+ * @error: #GIOErrorEnum
+ *
+ * Returns: %TRUE when all was taken
+ */
+gboolean
+cloth_spool_copy (ClothSpool * spool, ClothOutput * output, GError ** error)
+{
+  gchar block[1 << 14];
+  gsize n;
+
+  if (fflush (spool->file) != 0 || fseeko (spool->file, 0, SEEK_SET) < 0)
+    return fail_spool (error);
+  while ((n = fread (block, 1, sizeof block, spool->file)) > 0)
+    if (!cloth_output_write (output, block, n, error))
+      return FALSE;
+  return !ferror (spool->file) || fail_spool (error);
+}
+
+/* @spool: (transfer full) (nullable): a spool
+ */
+void
+cloth_spool_free (ClothSpool * spool)
+{
+  if (!spool)
+    return;
+  fclose (spool->file);
+  g_free (spool);
+}
+
+/* @path: a file
+ * @length: (out): its bytes
+ * @error: #GFileError, or #ClothFileError when it exceeds 16 MiB
+ *
+ * Looks at the size before it reads. Devices and pipes are refused: they may never end.
+ *
+ * Returns: (transfer full): the bytes and a 0, or %NULL.
+ */
+gchar *
+cloth_text_file_load (const gchar * path, gsize * length, GError ** error)
+{
+  GStatBuf st;
+  gchar *data = NULL;
+
+  if (g_stat (path, &st) == 0) {
+    if (!S_ISREG (st.st_mode)) {
+      g_set_error (error, G_FILE_ERROR, G_FILE_ERROR_INVAL,
+          "%s: not a regular file", path);
+      return NULL;
+    }
+    if (st.st_size > MAX_TEXT) {
+      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT,
+          "%s: %" G_GINT64_FORMAT " bytes are more than the %d allowed", path,
+          (gint64) st.st_size, MAX_TEXT);
+      return NULL;
+    }
+  }
+  if (!g_file_get_contents (path, &data, length, error))
+    return NULL;
+  if (*length > MAX_TEXT) {
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT,
+        "%s: grew beyond the %d bytes allowed", path, MAX_TEXT);
+    g_free (data);
+    return NULL;
+  }
+  return data;
 }
 
 /* @folder: the folder of a manifest

@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/file/jsonvalue.h"
+#include "gst/file/json.h"
 #include "gst/file/jsonwriter.h"
 #include "gst/math/random.h"
 
@@ -44,11 +44,13 @@ static const ClothDotColour default_colours[CLOTH_M_ARRAY_MAX_COLOURS] = {
   {"blue", {60, 70, 200}}, {"red", {205, 30, 30}}
 };
 
+/* *INDENT-OFF* */
+static gboolean refuse (GError ** error, const gchar * format, ...)
+    G_GNUC_PRINTF (2, 3);
+/* *INDENT-ON* */
+
 static gboolean
 refuse (GError ** error, const gchar * format, ...)
-G_GNUC_PRINTF (2, 3);
-
-     static gboolean refuse (GError ** error, const gchar * format, ...)
 {
   va_list arguments;
 

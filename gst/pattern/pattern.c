@@ -13,7 +13,10 @@
 /* Rounding of decimal sizes that should add up exactly. */
 #define SLACK 1e-9
 
-G_DEFINE_QUARK (cloth - pattern - error - quark, cloth_pattern_error)
+/* *INDENT-OFF* */
+G_DEFINE_QUARK (cloth-pattern-error-quark, cloth_pattern_error)
+/* *INDENT-ON* */
+
 /* @pattern: a pattern
  * @error: return location
  *
@@ -23,7 +26,7 @@ G_DEFINE_QUARK (cloth - pattern - error - quark, cloth_pattern_error)
  *
  * Returns: %TRUE when @pattern is sound, else %FALSE with %CLOTH_PATTERN_ERROR_VALUE
  */
-    gboolean
+gboolean
 cloth_pattern_check (const ClothPattern * pattern, GError ** error)
 {
   const gdouble size[2] = { pattern->columns * pattern->square_m,

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/file/textfile.h"
+#include "gst/file/file.h"
 #include "gst/math/linalg.h"
 #include "gst/rig/rotation.h"
 #include "gst/rig/yamltree.h"

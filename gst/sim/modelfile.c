@@ -6,9 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/file/jsonvalue.h"
-#include "gst/file/jsonwriter.h"
 #include "gst/effect/effect.h"
+#include "gst/file/json.h"
+#include "gst/file/jsonwriter.h"
 
 #define MAX_FREE 1024
 

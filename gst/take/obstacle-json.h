@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/file/jsonvalue.h"
+#include "gst/file/json.h"
 #include "gst/take/obstacle.h"
 
 G_BEGIN_DECLS

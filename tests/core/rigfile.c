@@ -6,7 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "gst/file/textfile.h"
+#include "gst/file/file.h"
 #include "gst/rig/rigfile.h"
 
 static const gchar good[] =

@@ -3,8 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/file/fileset.h"
-#include "gst/file/spool.h"
+#include "gst/file/file.h"
 #include "gst/mesh/topology.h"
 
 G_BEGIN_DECLS

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/file/jsonvalue.h"
+#include "gst/file/json.h"
 #include "gst/file/jsonwriter.h"
 #include "gst/mesh/formats/obj.h"
 
