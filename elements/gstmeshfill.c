@@ -41,7 +41,6 @@
 #include "elements/gstmeshformat.h"
 #include "gst/mesh/fill/fill.h"
 #include "gst/mesh/garment/garment.h"
-#include "gst/mesh/fill/smooth.h"
 
 GST_DEBUG_CATEGORY_STATIC (mesh_fill_debug);
 #define GST_CAT_DEFAULT mesh_fill_debug

@@ -102,6 +102,8 @@ void cloth_topology_free (ClothTopology * topology);
 
 gboolean cloth_positions_check (const gfloat * positions, guint n_vertices,
     GError ** error);
+gboolean cloth_states_check (const guint8 * states, guint n_vertices,
+    GError ** error);
 
 gchar *cloth_mesh_note_format (const ClothTopology * topology, gint fps_n,
     gint fps_d);

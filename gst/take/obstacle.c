@@ -1,12 +1,12 @@
 /* What the cloth may touch: reading, writing, copying.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/take/obstacle-json.h"
+#include "gst/take/obstacle.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "gst/mesh/formats/obj.h"
+#include "gst/mesh/formats/formats.h"
 
 static void
 obstacle_clear (gpointer data)

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/take/obstacle-json.h"
+#include "gst/take/obstacle.h"
 
 #define MAX_SEAMS 1024
 

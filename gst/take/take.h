@@ -40,9 +40,6 @@ gboolean cloth_take_writer_append (ClothTakeWriter * writer, gdouble time_s,
 gboolean cloth_take_writer_close (ClothTakeWriter * writer, GError ** error);
 void cloth_take_writer_free (ClothTakeWriter * writer);
 
-gboolean cloth_states_check (const guint8 * states, guint n_vertices,
-    GError ** error);
-
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothTake, cloth_take_free)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothTakeWriter, cloth_take_writer_free)
 G_END_DECLS

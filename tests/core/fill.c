@@ -9,7 +9,6 @@
 #include "gst/math/linalg.h"
 #include "gst/math/random.h"
 #include "gst/file/npy.h"
-#include "gst/mesh/fill/smooth.h"
 
 #define COLUMNS 17
 #define ROWS 13

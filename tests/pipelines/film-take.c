@@ -5,7 +5,7 @@
 #include <gio/gio.h>
 #include <glib/gstdio.h>
 #include <gst/app/gstappsink.h>
-#include <gst/cloth/gstclothquads.h>
+#include <gst/cloth/cloth.h>
 #include <gst/gst.h>
 #include <math.h>
 

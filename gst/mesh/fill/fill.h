@@ -69,5 +69,10 @@ void cloth_fill_run (ClothFill * fill, gdouble time_s,
     ClothFillCounts * counts);
 void cloth_fill_free (ClothFill * fill);
 
+void cloth_smooth_space (const ClothStencils * stencils, gdouble weight,
+    const gfloat * positions, gfloat * smoothed);
+void cloth_smooth_time (guint n_vertices, gdouble weight,
+    const gfloat * before, const gfloat * after, gfloat * positions);
+
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothFill, cloth_fill_free)
 G_END_DECLS

@@ -46,17 +46,6 @@ cloth_export_sigma (const gfloat * covariance)
   return trace >= 0 ? (gfloat) sqrt (trace / 3) : NAN;
 }
 
-/* @topology: a mesh
- * @face: which face
- *
- * Returns: 3 or 4
- */
-guint
-cloth_export_corners (const ClothTopology * topology, gsize face)
-{
-  return topology->faces[4 * face + 3] == CLOTH_NO_VERTEX ? 3 : 4;
-}
-
 /* @positions: 3 finite numbers a vertex
  * @n_vertices: at least 1
  * @bounds: (out caller-allocates): least x, y, z, greatest x, y, z

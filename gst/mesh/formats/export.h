@@ -42,14 +42,13 @@ typedef struct {
 } ClothExporter;
 
 extern const ClothExporter cloth_obj_pc2_exporter, cloth_ply_exporter,
-    cloth_take_exporter, cloth_gltf_exporter, cloth_usd_exporter,
-    cloth_vtp_exporter, cloth_c3d_exporter, cloth_csv_exporter;
+    cloth_gltf_exporter, cloth_usd_exporter, cloth_vtp_exporter,
+    cloth_c3d_exporter, cloth_csv_exporter;
 
 ClothOutput *cloth_export_open (const ClothExportInfo * info,
     const gchar * ending, GError ** error);
 gchar *cloth_export_identifier (const ClothExportInfo * info);
 gfloat cloth_export_sigma (const gfloat * covariance);
-guint cloth_export_corners (const ClothTopology * topology, gsize face);
 void cloth_export_bounds (const gfloat * positions, guint n_vertices,
     gfloat bounds[6]);
 gboolean cloth_export_check_later (guint64 number, gdouble before,

@@ -64,7 +64,7 @@ start_gltf (const ClothExportInfo * info, GError ** error)
   self->times = g_array_new (FALSE, FALSE, sizeof (gfloat));
   self->bounds = g_array_new (FALSE, FALSE, 6 * sizeof (gfloat));
   for (gsize f = 0; f < info->topology->n_faces; f++)
-    self->n_triangles += cloth_export_corners (info->topology, f) - 2;
+    self->n_triangles += cloth_face_corners (info->topology->faces + 4 * f) - 2;
   self->output = cloth_export_open (info, ".glb", error);
   if (self->output)
     self->binary = cloth_spool_new (info->stem, error);
@@ -143,7 +143,7 @@ write_triangles (Gltf * self, GError ** error)
   for (gsize f = 0; f < topology->n_faces; f++) {
     const guint32 *face = topology->faces + 4 * f;
 
-    for (guint k = 2; k < cloth_export_corners (topology, f); k++) {
+    for (guint k = 2; k < cloth_face_corners (topology->faces + 4 * f); k++) {
       guint32 triangle[3] = { face[0], face[k - 1], face[k] };
 
       cloth_swap_little_endian (triangle, sizeof *triangle, 3);

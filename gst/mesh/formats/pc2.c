@@ -6,6 +6,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/file/npy.h"
+#include "gst/mesh/formats/export.h"
+#include "gst/mesh/formats/obj.h"
+
 /* The layout, little-endian: char[12] magic, int32 version = 1, int32 points,
  * float32 start, float32 rate, int32 samples; then float32[samples][points][3]. */
 #define MAGIC "POINTCACHE2"
@@ -247,3 +251,77 @@ cloth_pc2_writer_free (ClothPc2Writer * writer)
   cloth_output_free (writer->output);
   g_free (writer);
 }
+
+/* An OBJ file with a PC2 file, and the states of the vertices. */
+
+typedef struct
+{
+  const ClothExportInfo *info;
+  ClothOutput *obj;
+  ClothPc2Writer *cache;
+  ClothNpyWriter *states;
+} ObjPc2;
+
+static void
+free_obj_pc2 (gpointer export)
+{
+  ObjPc2 *self = export;
+
+  cloth_output_free (self->obj);
+  cloth_pc2_writer_free (self->cache);
+  cloth_npy_writer_free (self->states);
+  g_free (self);
+}
+
+static gpointer
+start_obj_pc2 (const ClothExportInfo * info, GError ** error)
+{
+  const guint64 row_shape[] = { info->topology->n_vertices };
+  g_autofree gchar *pc2 = g_strconcat (info->stem, ".pc2", NULL);
+  g_autofree gchar *states = g_strconcat (info->stem, ".states.npy", NULL);
+  ObjPc2 *self = g_new0 (ObjPc2, 1);
+
+  self->info = info;
+  self->obj = cloth_export_open (info, ".obj", error);
+  if (self->obj)
+    self->cache = cloth_pc2_writer_new (pc2, info->topology->n_vertices, 0, 1,
+        error);
+  if (self->cache)
+    self->states = cloth_npy_writer_new (states, CLOTH_NPY_UINT8, 2, row_shape,
+        error);
+  if (self->states)
+    return self;
+  free_obj_pc2 (self);
+  return NULL;
+}
+
+static gboolean
+append_obj_pc2 (gpointer export, guint64 number, gdouble time_s,
+    const ClothMeshFrame * frame, GError ** error)
+{
+  ObjPc2 *self = export;
+  const ClothExportInfo *info = self->info;
+
+  /* The OBJ file shows the first frame. */
+  if (number == 0 && !cloth_obj_write (self->obj, info->name, info->topology,
+          frame->positions, info->fps_n, info->fps_d, error))
+    return FALSE;
+  return cloth_pc2_writer_append (self->cache, frame->positions, error) &&
+      cloth_npy_writer_append (self->states, frame->states, 1, error);
+}
+
+static gboolean
+finish_obj_pc2 (gpointer export, GError ** error)
+{
+  ObjPc2 *self = export;
+  g_autoptr (ClothOutput) cache = cloth_pc2_writer_finish (self->cache, error);
+  g_autoptr (ClothOutput) states = cache ?
+      cloth_npy_writer_finish (self->states, error) : NULL;
+  ClothOutput *outputs[] = { states, cache, self->obj };
+
+  return states && cloth_output_commit (outputs, G_N_ELEMENTS (outputs), error);
+}
+
+const ClothExporter cloth_obj_pc2_exporter = {
+  FALSE, start_obj_pc2, append_obj_pc2, finish_obj_pc2, free_obj_pc2
+};

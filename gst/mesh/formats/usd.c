@@ -78,10 +78,10 @@ append_topology (Usd * self)
   g_string_append (text, "    int[] faceVertexCounts = [");
   for (gsize f = 0; f < topology->n_faces; f++)
     g_string_append_printf (text, "%s%u", f > 0 ? ", " : "",
-        cloth_export_corners (topology, f));
+        cloth_face_corners (topology->faces + 4 * f));
   g_string_append (text, "]\n    int[] faceVertexIndices = [");
   for (gsize f = 0; f < topology->n_faces; f++)
-    for (guint k = 0; k < cloth_export_corners (topology, f); k++)
+    for (guint k = 0; k < cloth_face_corners (topology->faces + 4 * f); k++)
       g_string_append_printf (text, "%s%u", f > 0 || k > 0 ? ", " : "",
           topology->faces[4 * f + k]);
   g_string_append (text, "]\n    texCoord2f[] primvars:st = [");

@@ -50,7 +50,7 @@ list_corners (Vtp * self)
   self->corners = g_new (guint32, 4 * (gsize) topology->n_faces + 1);
   self->ends = g_new (guint32, (gsize) topology->n_faces + 1);
   for (gsize f = 0; f < topology->n_faces; f++) {
-    for (guint k = 0; k < cloth_export_corners (topology, f); k++)
+    for (guint k = 0; k < cloth_face_corners (topology->faces + 4 * f); k++)
       self->corners[self->n_corners++] = topology->faces[4 * f + k];
     self->ends[f] = (guint32) self->n_corners;
   }

@@ -8,7 +8,7 @@
 
 #include "gst/file/json.h"
 #include "gst/file/jsonwriter.h"
-#include "gst/mesh/formats/obj.h"
+#include "gst/mesh/formats/formats.h"
 
 /* Limits on untrusted input. */
 #define MOST_PANELS 64

@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/mesh/garment/garment.h"
+#include "gst/file/error.h"
 
 G_BEGIN_DECLS
 
