@@ -159,28 +159,7 @@ cloth_positions_check (const gfloat * positions, guint n_vertices,
     GError ** error)
 {
   for (guint i = 0; i < n_vertices; i++, positions += 3) {
-    /* @states: a #ClothVertexState a vertex
-     * @n_vertices: how many
-     * @error: #ClothFileError
-     *
-     * Returns: %TRUE when every one is known
-     */
-    gboolean
-        cloth_states_check (const guint8 * states, guint n_vertices,
-        GError ** error)
-    {
-      for (guint i = 0; i < n_vertices; i++) {
-        if (states[i] > CLOTH_VERTEX_PREDICTED) {
-          g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
-              "vertex %u has the state %u, which is not between 0 and 4", i,
-              states[i]);
-          return FALSE;
-        }
-      }
-      return TRUE;
-    }
-
-/* Finite numbers of a scale of metres have a finite sum; it tells most. */
+    /* Finite numbers of a scale of metres have a finite sum; it tells most. */
     if (isfinite (positions[0] + positions[1] + positions[2]))
       continue;
     if (isnan (positions[0]) && isnan (positions[1]) && isnan (positions[2]))
@@ -189,6 +168,26 @@ cloth_positions_check (const gfloat * positions, guint n_vertices,
         "the position of vertex %u is neither three finite numbers nor three "
         "NaN", i);
     return FALSE;
+  }
+  return TRUE;
+}
+
+/* @states: a #ClothVertexState a vertex
+ * @n_vertices: how many
+ * @error: #ClothFileError
+ *
+ * Returns: %TRUE when every one is known
+ */
+gboolean
+cloth_states_check (const guint8 * states, guint n_vertices, GError ** error)
+{
+  for (guint i = 0; i < n_vertices; i++) {
+    if (states[i] > CLOTH_VERTEX_PREDICTED) {
+      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+          "vertex %u has the state %u, which is not between 0 and 4", i,
+          states[i]);
+      return FALSE;
+    }
   }
   return TRUE;
 }

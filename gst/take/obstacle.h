@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/file/json.h"
+#include "gst/file/file.h"
 
 G_BEGIN_DECLS
 
@@ -54,8 +54,5 @@ GArray *cloth_obstacles_new (void);
 GArray *cloth_obstacles_copy (const GArray * obstacles);
 gboolean cloth_obstacle_load_mesh (ClothObstacle * obstacle,
     const gchar * folder, GError ** error);
-gboolean cloth_obstacles_parse (const ClothJsonFile * file,
-    JsonObject * root, GArray * obstacles, GError ** error);
-void cloth_obstacles_build (const GArray * obstacles, JsonBuilder * builder);
 
 G_END_DECLS

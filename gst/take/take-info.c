@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/take/obstacle.h"
+#include "gst/file/json.h"
 
 #define MAX_SEAMS 1024
 
@@ -156,6 +156,122 @@ parse_seams (JsonObject * root, ClothTakeInfo * info, GError ** error)
 }
 
 static gboolean
+parse_round (JsonObject * object,
+    const gchar * what, const gchar * from, ClothObstacle * obstacle,
+    GError ** error)
+{
+  if (!cloth_json_get_vector (&take_json, object, from, TRUE, obstacle->point,
+          error) ||
+      !cloth_json_get_number (&take_json, object, "radius_m", 1e-6, 1e6,
+          &obstacle->radius_m, error))
+    return FALSE;
+  return obstacle->radius_m > 0 ||
+      cloth_json_invalid (&take_json, error, "%s needs radius_m", what);
+}
+
+static gboolean
+parse_plane (JsonObject * object, ClothObstacle * obstacle, GError ** error)
+{
+  gdouble *normal = obstacle->normal, length;
+
+  if (!cloth_json_get_vector (&take_json, object, "point", TRUE,
+          obstacle->point, error)
+      || !cloth_json_get_vector (&take_json, object, "normal", TRUE, normal,
+          error))
+    return FALSE;
+  length = sqrt (normal[0] * normal[0] + normal[1] * normal[1] +
+      normal[2] * normal[2]);
+  if (length < 1e-9)
+    return cloth_json_invalid (&take_json, error,
+        "the “normal” of a plane has no length");
+  for (guint k = 0; k < 3; k++)
+    normal[k] /= length;
+  return TRUE;
+}
+
+static gboolean
+parse_mesh (JsonObject * object, ClothObstacle * obstacle, GError ** error)
+{
+  if (!cloth_json_get_string (&take_json, object, "mesh", &obstacle->mesh,
+          error))
+    return FALSE;
+  return (obstacle->mesh && *obstacle->mesh) ||
+      cloth_json_invalid (&take_json, error,
+      "an obstacle of “type” mesh needs “mesh”, the name of an OBJ file");
+}
+
+static gboolean
+parse_obstacle (JsonObject * object, ClothObstacle * obstacle, GError ** error)
+{
+  static const struct
+  {
+    const gchar *type, *what;
+    const gchar *const keys[6];
+  } shapes[] = {
+    {"sphere", "a sphere", {"type", "centre", "radius_m", "friction", NULL}},
+    {"plane", "a plane", {"type", "point", "normal", "friction", NULL}},
+    {"capsule", "a capsule",
+        {"type", "from", "to", "radius_m", "friction", NULL}},
+    {"mesh", "a mesh", {"type", "mesh", "friction", NULL}}
+  };
+  g_autofree gchar *type = NULL;
+  guint kind;
+
+  obstacle->friction = NAN;
+  if (!cloth_json_get_string (&take_json, object, "type", &type, error) ||
+      !cloth_json_get_number (&take_json, object, "friction", 0, 100,
+          &obstacle->friction, error))
+    return FALSE;
+  for (kind = 0; kind < G_N_ELEMENTS (shapes); kind++)
+    if (g_strcmp0 (type, shapes[kind].type) == 0)
+      break;
+  if (kind == G_N_ELEMENTS (shapes))
+    return cloth_json_invalid (&take_json, error,
+        "the “type” of an obstacle " "is sphere, plane, capsule or mesh");
+  obstacle->kind = (ClothObstacleKind) kind;
+  if (!cloth_json_check_keys (&take_json, object, shapes[kind].what,
+          shapes[kind].keys, error))
+    return FALSE;
+  switch (obstacle->kind) {
+    case CLOTH_OBSTACLE_SPHERE:
+      return parse_round (object, "a sphere", "centre", obstacle, error);
+    case CLOTH_OBSTACLE_CAPSULE:
+      return parse_round (object, "a capsule", "from", obstacle, error)
+          && cloth_json_get_vector (&take_json, object, "to", TRUE,
+          obstacle->end, error);
+    case CLOTH_OBSTACLE_MESH:
+      return parse_mesh (object, obstacle, error);
+    default:
+      return parse_plane (object, obstacle, error);
+  }
+}
+
+/* Files of meshes are not touched; see cloth_obstacle_load_mesh (). */
+static gboolean
+parse_obstacles (JsonObject * root, GArray * obstacles, GError ** error)
+{
+  gboolean bad;
+  JsonArray *list = cloth_json_get_list (&take_json, root, "obstacles",
+      CLOTH_MAX_OBSTACLES, &bad, error);
+
+  if (bad)
+    return FALSE;
+  for (guint i = 0; list && i < json_array_get_length (list); i++) {
+    JsonObject *object =
+        cloth_json_item_object (&take_json, list, i, "obstacles", error);
+    ClothObstacle *obstacle;
+
+    if (!object)
+      return FALSE;
+    g_array_set_size (obstacles, obstacles->len + 1);
+    obstacle = &g_array_index (obstacles, ClothObstacle, obstacles->len - 1);
+    if (!parse_obstacle (object, obstacle, error))
+      return FALSE;
+  }
+  return TRUE;
+}
+
+static gboolean
 parse_root (JsonObject * root, ClothTakeInfo * info, GError ** error)
 {
   static const gchar *const keys[] = { "version", "name", "fps", "grid",
@@ -191,7 +307,7 @@ parse_root (JsonObject * root, ClothTakeInfo * info, GError ** error)
   if (grid && !parse_grid (grid, info, error))
     return FALSE;
   return parse_held (root, info, error) &&
-      cloth_obstacles_parse (&take_json, root, info->obstacles, error) &&
+      parse_obstacles (root, info->obstacles, error) &&
       parse_seams (root, info, error);
 }
 
@@ -252,6 +368,43 @@ cloth_take_info_parse (const gchar * json, gsize size, GError ** error)
   if (!info->name)
     info->name = g_strdup ("");
   return g_steal_pointer (&info);
+}
+
+static void
+add_obstacles (JsonBuilder * builder, const GArray * obstacles)
+{
+  json_builder_set_member_name (builder, "obstacles");
+  json_builder_begin_array (builder);
+  for (guint i = 0; i < obstacles->len; i++) {
+    const ClothObstacle *item = &g_array_index (obstacles, ClothObstacle, i);
+
+    json_builder_begin_object (builder);
+    switch (item->kind) {
+      case CLOTH_OBSTACLE_SPHERE:
+        cloth_json_add_string (builder, "type", "sphere");
+        cloth_json_add_vector (builder, "centre", item->point);
+        cloth_json_add_number (builder, "radius_m", item->radius_m);
+        break;
+      case CLOTH_OBSTACLE_PLANE:
+        cloth_json_add_string (builder, "type", "plane");
+        cloth_json_add_vector (builder, "point", item->point);
+        cloth_json_add_vector (builder, "normal", item->normal);
+        break;
+      case CLOTH_OBSTACLE_CAPSULE:
+        cloth_json_add_string (builder, "type", "capsule");
+        cloth_json_add_vector (builder, "from", item->point);
+        cloth_json_add_vector (builder, "to", item->end);
+        cloth_json_add_number (builder, "radius_m", item->radius_m);
+        break;
+      case CLOTH_OBSTACLE_MESH:
+        cloth_json_add_string (builder, "type", "mesh");
+        cloth_json_add_string (builder, "mesh", item->mesh);
+        break;
+    }
+    cloth_json_add_number (builder, "friction", item->friction);
+    json_builder_end_object (builder);
+  }
+  json_builder_end_array (builder);
 }
 
 static void
@@ -325,7 +478,7 @@ cloth_take_info_to_json (const ClothTakeInfo * info)
   add_held (builder, info->held);
   cloth_json_add_number (builder, "noise_sigma_m", info->noise_sigma_m);
   cloth_json_add_vector (builder, "gravity", info->gravity);
-  cloth_obstacles_build (info->obstacles, builder);
+  add_obstacles (builder, info->obstacles);
   if (info->seams->len > 0)
     add_seams (builder, info->seams);
   if (info->notes)
