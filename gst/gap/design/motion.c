@@ -10,8 +10,8 @@
 #define RAMP_S 0.25
 /* When the corner that is dropped is let go, s. */
 #define RELEASE_S 0.2
-/* Corners nearer than this share of their distance on the flat cloth: the sheet between
- * them starts as a bow. */
+/* Where corners are nearer to each other than this share of their distance on the flat cloth,
+ * the sheet between them starts as a bow. */
 #define TAUT 0.999
 
 /* How far clamps move to each side: this share of the cloth's longest side, but no more
@@ -58,9 +58,9 @@ dot (const gdouble * a, const gdouble * b)
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* @a less what of it is along @b, of length 1: whether anything is left. */
+/* Makes @a orthogonal to @b, which has length 1, and of length 1: whether anything is left. */
 static gboolean
-make_square (gdouble * a, const gdouble * b)
+make_orthogonal (gdouble * a, const gdouble * b)
 {
   gdouble along = dot (a, b), length;
 
@@ -90,7 +90,7 @@ find_axes (ClothStage * stage)
       for (guint k = 0; k < 3; k++)
         apart[k] = stage->clamps[3 * i + k] - stage->clamps[3 * j + k];
       far = dot (apart, apart) - pow (dot (apart, stage->up), 2.);
-      if (far > widest && make_square (apart, stage->up)) {
+      if (far > widest && make_orthogonal (apart, stage->up)) {
         widest = far;
         memcpy (stage->along, apart, sizeof apart);
       }
@@ -99,7 +99,7 @@ find_axes (ClothStage * stage)
   for (guint axis = 0; axis < 2 && widest == 0.; axis++) {
     gdouble unit[3] = { axis == 0, axis == 1, 0. };
 
-    if (make_square (unit, stage->up)) {
+    if (make_orthogonal (unit, stage->up)) {
       widest = 1.;
       memcpy (stage->along, unit, sizeof unit);
     }
@@ -220,7 +220,7 @@ amplitude (const ClothStage * stage, ClothStageMotion motion)
   return MAX (0.01, round (100. * a) / 100.);
 }
 
-/* How far the clamps are from where they began, @time_s after that. */
+/* The displacement of the clamps @time_s after their motion began, m. */
 static void
 displace (const ClothStage * stage, ClothStageMotion motion, gdouble time_s,
     gdouble * offset)
@@ -236,7 +236,7 @@ displace (const ClothStage * stage, ClothStageMotion motion, gdouble time_s,
     offset[k] = far * axis[k];
 }
 
-/* By 90° about the vertical through the clamps' centre. */
+/* Turns a point by 90° about the vertical through the clamps' centre. */
 static void
 turn (const ClothStage * stage, gdouble * p)
 {
@@ -251,8 +251,8 @@ turn (const ClothStage * stage, gdouble * p)
         dot (from, stage->normal) * stage->along[k];
 }
 
-/* Hangs the grid from the corners of its last column, as much nearer to each other as
- * those of the first row were. */
+/* Hangs the grid from the corners of its last column, with the same ratio of their distance to
+ * that on the flat cloth as those of the first row had. */
 static void
 hang_by_edge (const ClothStage * stage, ClothScene * scene, gdouble * clamps,
     gboolean start)

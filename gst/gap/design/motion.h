@@ -37,7 +37,7 @@ typedef enum {
 
 /* How long each is filmed, s. */
 #define CLOTH_MOTION_SECONDS 2.
-/* Speed of the fan's wind, m/s, horizontal and square to the sheet. */
+/* Speed of the fan's wind, m/s, horizontal and orthogonal to the sheet. */
 #define CLOTH_MOTION_FAN_M_S 2.
 
 /* @recording: the take whose cloth and clamps it has
@@ -47,7 +47,7 @@ typedef enum {
  * @centre: their mean
  * @up: against gravity
  * @along: horizontal, from clamp to clamp
- * @normal: horizontal, square to the sheet
+ * @normal: horizontal, orthogonal to the sheet
  * @size_m: longest side of the flat cloth
  *
  * What all motions of one cloth share.

@@ -410,10 +410,11 @@ calibrate (gdouble probability)
                   ODDS_SLOPE_FOR * LARGEST_LOG_ODDS))));
 }
 
-/* That it is this effect, of those that are not settled yet, rather than another or none. */
-gdouble
-cloth_diagnosis_find_probability (const ClothDiagnosis * d,
-    const GArray * scores, const ClothGapScore * which)
+/* The softmax of one score among those of the effects that are not decided yet, and of none,
+ * whose log Bayes factor is 0. */
+static gdouble
+softmax (const ClothDiagnosis * d, const GArray * scores,
+    const ClothGapScore * which)
 {
   gdouble total = exp (-which->evidence / TEMPERATURE);
 
@@ -424,7 +425,21 @@ cloth_diagnosis_find_probability (const ClothDiagnosis * d,
                 s)->effect))
       total += exp ((s->evidence - which->evidence) / TEMPERATURE);
   }
-  return calibrate (1. / total);
+  return 1. / total;
+}
+
+/* @d: a diagnosis
+ * @scores: (element-type ClothGapScore): of all effects
+ * @which: one of them
+ *
+ * Returns: the calibrated probability that it is this effect, of those that are not decided
+ *   yet, rather than another or none
+ */
+gdouble
+cloth_diagnosis_find_probability (const ClothDiagnosis * d,
+    const GArray * scores, const ClothGapScore * which)
+{
+  return calibrate (softmax (d, scores, which));
 }
 
 void
@@ -434,15 +449,7 @@ cloth_diagnosis_fill_effects (ClothDiagnosis * d, const ClothGapTest * test,
   g_autofree const ClothGapScore **of = g_new (const ClothGapScore *,
       scores->len + 1);
   GArray *effects = d->result->effects;
-  gdouble total, top = 0.;
 
-  for (guint i = 0; i < scores->len; i++)
-    top = MAX (top, g_array_index (scores, ClothGapScore, i).evidence /
-        TEMPERATURE);
-  total = exp (-top);
-  for (guint i = 0; i < scores->len; i++)
-    total += exp (g_array_index (scores, ClothGapScore, i).evidence /
-        TEMPERATURE - top);
   for (guint i = 0; i < scores->len; i++) {
     const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
     const ClothCandidate *c = cloth_diagnosis_candidate (d, s);
@@ -455,7 +462,7 @@ cloth_diagnosis_fill_effects (ClothDiagnosis * d, const ClothGapTest * test,
     }
     of[effects->len] = s;
     e = cloth_gap_result_add_effect (d->result, c->effect);
-    e->probability = exp (s->evidence / TEMPERATURE - top) / total;
+    e->probability = softmax (d, scores, s);
     e->p_value = s->p_value;
     e->constancy_p_value = s->constancy_p_value;
     e->group = -1;
