@@ -64,8 +64,10 @@ search_clear (Search * s)
   g_free (s->alike);
 }
 
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Search, search_clear)
-     static gboolean same_cameras (const ClothRig * a, const ClothRig * b)
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Search, search_clear);
+
+static gboolean
+same_cameras (const ClothRig * a, const ClothRig * b)
 {
   if (a->n_cameras != b->n_cameras)
     return FALSE;

@@ -44,9 +44,10 @@ search_clear (Search * search)
   g_free (search->rest[1]);
 }
 
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Search, search_clear)
-     static void write_frame (gpointer data, guint model, guint frame,
-    const gdouble * positions)
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Search, search_clear);
+
+static void
+write_frame (gpointer data, guint model, guint frame, const gdouble * positions)
 {
   ClothRecording *r = data;
 

@@ -38,8 +38,10 @@ system_clear (System * system)
   g_free (system->b);
 }
 
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (System, system_clear)
-     static void assemble (const ClothGapTest * test, System * system)
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (System, system_clear);
+
+static void
+assemble (const ClothGapTest * test, System * system)
 {
   const ClothNormalEquations *normal = test->normal;
   const guint m = normal->m, q = test->n_nuisances;

@@ -55,9 +55,11 @@ court_clear (Court * court)
   cloth_normal_equations_free (court->null);
 }
 
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Court, court_clear)
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Court, court_clear);
+
 /* Changes of its directions within their ranges. */
-     static void keep_in_range (const ClothDiagnosis * d, Rival * r)
+static void
+keep_in_range (const ClothDiagnosis * d, Rival * r)
 {
   for (guint k = 0; k < r->candidate->n; k++) {
     const ClothDirection *direction =

@@ -48,9 +48,11 @@ split_clear (Split * split)
   g_free (split->known);
 }
 
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Split, split_clear)
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Split, split_clear);
+
 /* What was seen, and had been long enough for the simulation to be back. */
-     static guint8 *find_known (const ClothRecording * r)
+static guint8 *
+find_known (const ClothRecording * r)
 {
   guint8 *known = g_new0 (guint8, (gsize) r->n_frames * r->n);
   gdouble frame_s = (r->times[r->n_frames - 1] - r->times[0]) /

@@ -59,8 +59,10 @@ cells_clear (Cells * cells)
   g_free (cells->cell);
 }
 
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Cells, cells_clear)
-     static void cells_init (Cells * cells, const ClothTopology * t, guint most)
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Cells, cells_clear);
+
+static void
+cells_init (Cells * cells, const ClothTopology * t, guint most)
 {
   guint lines[2] = { t->columns, t->rows };
 

@@ -59,9 +59,10 @@ alternative_clear (Alternative * t)
   g_free (t->velocity);
 }
 
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Alternative, alternative_clear)
-     static void alternative_init (Alternative * t,
-    const ClothRecording * recording)
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Alternative, alternative_clear);
+
+static void
+alternative_init (Alternative * t, const ClothRecording * recording)
 {
   t->thin = cloth_recording_resample (recording, ALTERNATIVE_LINES);
   if (t->thin) {
