@@ -108,8 +108,8 @@ fill_provenance (const ClothDiagnosis * d, gint64 start)
  * @error: #ClothFitError, #ClothSimError, or what reading a take says
  *
  * Runs the simulation with weak springs to what was recorded, tests by its score which
- * effect the residual asks for once the model's free numbers and the simulator's own
- * error are taken off, adds those that are asked for one by one, and measures the gap
+ * effect the residual supports once the model's free numbers and the simulator's own
+ * error are taken off, adds those that are supported one by one, and measures the gap
  * without and with them.
  *
  * Returns: (transfer full) (nullable): what was found

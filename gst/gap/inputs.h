@@ -37,7 +37,7 @@ typedef gboolean (*ClothGapProgress) (gpointer data, gdouble share,
  *   all
  * @seed: of its random numbers
  * @threads: threads to use, 0 = one for each processor
- * @progress: (nullable): told how far it is
+ * @progress: (nullable): called with how far it is
  * @progress_data: for @progress
  */
 typedef struct {

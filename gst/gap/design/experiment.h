@@ -1,4 +1,4 @@
-/* The experiment that would part effects which a recording can't tell apart.
+/* The experiment that would tell effects apart which a recording can't.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -8,12 +8,13 @@
 
 G_BEGIN_DECLS
 
-/* Expected evidence is told up to here: beyond, the linear theory means no more than that
- * they are told apart. Of captures that reach it the first is taken, the easiest. */
+/* The expected log Bayes factor is given up to here: beyond, the linear theory means no more
+ * than that the effects are told apart. Of captures that reach it the first is taken, the
+ * easiest. */
 #define CLOTH_EXPERIMENT_MOST_EVIDENCE 100.
 /* A capture that is expected to bring less is not worth filming: odds of 20 to 1. */
 #define CLOTH_EXPERIMENT_LEAST_EVIDENCE 3.
-/* Twice the frame rate must bring so many times the evidence: it takes another camera. */
+/* Twice the frame rate must bring so many times the log Bayes factor: it takes another camera. */
 #define CLOTH_EXPERIMENT_FASTER 1.5
 /* Rates above this are not doubled, and none is simulated that is higher, 1/s. */
 #define CLOTH_EXPERIMENT_MOST_FPS 120.
@@ -28,7 +29,7 @@ G_BEGIN_DECLS
  * @mismatch: (nullable): mean squares of what the simulator itself is off by, in the
  *   noise of @recording; %NULL: nothing
  *
- * What is to be parted where.
+ * Where effects are to be told apart.
  */
 typedef struct {
   const ClothRecording *recording;
@@ -41,7 +42,7 @@ typedef struct {
 /* @motion: what is filmed
  * @fps: at how many frames a second
  * @evidence: logarithm of the Bayes factor to expect between those two of the effects
- *   that it parts worst; NaN: it could not be simulated
+ *   that it tells apart worst; NaN: it could not be simulated
  *
  * What one capture would bring.
  */

@@ -14,13 +14,13 @@
 #include <math.h>
 #include <string.h>
 
-/* A simulation that was not drawn somewhere is off there once it is drawn again; not for
+/* Where a simulation was not nudged, it is off for a while once it is nudged again, but not for
  * longer than this, s. */
 #define RETURN_S 0.15
 /* Least null of a vertex, of the median of all. */
 #define LEAST_NULL 0.25
 
-/* @options: (out caller-allocates): how places are found unless told otherwise
+/* @options: (out caller-allocates): how places are found unless the caller changes it
  */
 void
 cloth_localisation_options_init (ClothLocalisationOptions * options)

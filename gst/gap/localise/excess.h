@@ -23,11 +23,11 @@ typedef struct {
  * @null_alike: how much of the null's residual returns at random in a take that moves as
  *   it did and had it taken off
  * @null_other: how much of it is expected in a take that moves otherwise
- * @doubt: so many times as much of the null must be exceeded for there to be a place
+ * @doubt: this many times the null must be exceeded for there to be a place
  * @block_s: length of the blocks of the bootstrap
  * @draws: of the bootstrap
  * @significance: how often a place may be found where there is none
- * @onset_ratio: square of a residual over the null's that speaks for a gap
+ * @onset_ratio: square of a residual over the null's that supports a gap
  * @onset_evidence: so much of the logarithms of it must add up
  * @beginning_s: what begins earlier is there from the beginning
  * @seed: of the bootstrap

@@ -101,7 +101,7 @@ typedef struct {
  *   residual before; NaN: without any
  * @over_floor: @share over that of a simulation that lacks nothing; NaN: not known
  *
- * Of the residual of a simulation that is drawn to the recording.
+ * Of the residual of a simulation that is nudged to the recording.
  */
 typedef struct {
   gdouble from;
@@ -179,7 +179,7 @@ typedef struct {
  * @after: (nullable): with the accepted effects
  * @null: (nullable): of a simulation that lacks nothing
  *
- * Where in space and time the energy lies of the residual of a simulation that is drawn
+ * Where in space and time the energy lies of the residual of a simulation that is nudged
  * to the recording.
  */
 typedef struct {
@@ -216,8 +216,8 @@ typedef struct {
 } ClothGapPlayback;
 
 /* @verdict: the outcome
- * @reason: (nullable): why it is undecidable, and what would help, or what speaks of
- *   something unknown: a sentence
+ * @reason: (nullable): why it is undecidable, and what would help, or which sign there
+ *   is of something unknown: a sentence
  * @notes: (element-type utf8): what else one should know of it, sentences
  * @gap_before: recorded minus simulated on held-out data, RMS in metres
  * @gap_after: the same with the accepted effects; NaN without any

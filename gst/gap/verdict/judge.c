@@ -24,7 +24,7 @@ static const gchar *const capture_sentence =
     "Film a board that moves with all cameras, once more with half the "
     "exposure time, and at rest: clocks, shutters and exposures show in motion "
     "only, lenses and places at rest too.";
-/* A share of what is above the floor is told if that is this share of all. */
+/* A shrink is given when what is above the floor is this share of all, in variance. */
 #define LEAST_ABOVE_SHARE 0.1
 /* Of the bootstrap. */
 #define N_DRAWS 1000
@@ -108,7 +108,7 @@ own_floor (ClothDiagnosis * d, guint judge, const ClothWindowedGap * extent,
   return 3. * r->sigma * r->sigma + sum / MAX (seen, 1);
 }
 
-/* What stands for a simulation that lacks nothing. */
+/* Keeps the gap of a simulation that lacks nothing. */
 static void
 keep_null (ClothDiagnosis * d, ClothWindowedGap * null, guint recording)
 {
@@ -188,7 +188,7 @@ fill_shrink (ClothGapResult * result, gdouble before, gdouble after,
 
   if (!(before - floor > LEAST_ABOVE_SHARE * before))
     return;
-  /* of draws that are all floor no share can be told either: they count as if they were as
+  /* of draws that are all floor no share can be given either: they count as if they were as
    * little above it as one that can */
   for (guint i = 0; i < N_DRAWS; i++) {
     gdouble b = draws_before[i * stride], a = draws_after[i * stride];
@@ -212,7 +212,7 @@ find_rest_p_value (const gdouble * rest, guint stride, const gdouble * floor)
   return (1. + count) / (1. + (gdouble) N_DRAWS * N_DRAWS);
 }
 
-/* Whether an effect is large enough to speak of. Where a discrepancy is taken off, the
+/* Whether an effect is large enough to be accepted. Where a discrepancy is taken off, the
  * evidence has said so of the first: the gap holds the simulator's own error too, which
  * hides it where it is no larger. */
 static gboolean
@@ -284,7 +284,7 @@ measure_models (ClothDiagnosis * d, guint i, const ClothModel * const *models,
 }
 
 /* How large the gap is before and after, on the hold-outs if there are any; the floor on
- * the baselines. Of the effects taken in those stay that shrink it enough, one after the
+ * the baselines. Of the accepted effects those stay that shrink it enough, one after the
  * other; faults of cameras stay. */
 gboolean
 cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
@@ -348,7 +348,7 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
   return TRUE;
 }
 
-/* The effects that are accepted, first in the order in which they were taken in. */
+/* The effects that are accepted, first in the order in which they were accepted. */
 static void
 accept_effects (ClothDiagnosis * d)
 {
@@ -431,7 +431,7 @@ is_ambiguous (const ClothGapResult * r)
   return FALSE;
 }
 
-/* Whether clamps are off their paths by enough to speak of, and no accepted effect moves
+/* Whether clamps are off their paths by enough to matter, and no accepted effect moves
  * clamps. */
 static gboolean
 are_clamps_off (const ClothDiagnosis * d, gdouble floor2)
@@ -450,7 +450,7 @@ cloth_diagnosis_decide (ClothDiagnosis * d)
   guint accepted = d->n_chosen + cloth_diagnosis_count_faults (d);
   gdouble rest = accepted ? r->gap_after.value : r->gap_before.value;
   gboolean above = rest * rest > CLOTH_DIAGNOSIS_BAND * floor2;
-  /* an effect that was asked for and did not help stands for another */
+  /* an effect that was supported and did not help stands for another */
   gboolean other = d->asked && rest * rest > floor2;
   gboolean clamps = are_clamps_off (d, floor2);
 
