@@ -55,7 +55,7 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
   if (!d->options->n_baselines && !cloth_diagnosis_study_other_model (d, error))
     return FALSE;
   /* Residuals of takes and baselines: to a sign of something unknown, or to none. */
-  d->unknown = cloth_diagnosis_find_unexplained (d);
+  d->unexplained = cloth_diagnosis_find_unexplained (d);
   /* Residuals and derivatives: to the ranked effects, and to the models with those that are
    * accepted one by one. */
   if (!cloth_diagnosis_select (d, error))
@@ -94,7 +94,7 @@ fill_provenance (const ClothDiagnosis * d, gint64 start)
   cloth_gap_result_add_version (result, PACKAGE, PACKAGE_VERSION);
   cloth_gap_result_add_version (result, "priors", PRIORS);
   cloth_gap_result_add_threshold (result, "least evidence (logarithm of the "
-      "Bayes factor)", d->least_evidence, "1");
+      "Bayes factor)", d->least_log_bayes_factor, "1");
   cloth_gap_result_add_threshold (result, "least share of the gap's variance",
       CLOTH_DIAGNOSIS_LEAST_SHRINK, "1");
   cloth_gap_result_add_threshold (result,
@@ -126,8 +126,9 @@ cloth_gap_diagnose (ClothTake ** takes, guint n_takes,
   if (!diagnose (&d, model, error))
     return NULL;
   if (d.model)
-    d.result->model = d.n_chosen ? g_steal_pointer (&d.with[d.n_chosen - 1]) :
-        g_steal_pointer (&d.model);
+    d.result->model =
+        d.n_accepted ? g_steal_pointer (&d.with[d.n_accepted -
+            1]) : g_steal_pointer (&d.model);
   fill_provenance (&d, start);
   return g_steal_pointer (&d.result);
 }

@@ -27,7 +27,7 @@ cloth_diagnosis_init (ClothDiagnosis * d, ClothTake ** takes, guint n_takes,
 {
   *d = (ClothDiagnosis) {
   takes, n_takes, options};
-  d->least_evidence = CLOTH_DIAGNOSIS_LEAST_EVIDENCE;
+  d->least_log_bayes_factor = CLOTH_DIAGNOSIS_LEAST_LOG_BAYES_FACTOR;
   cloth_estimate_options_init (&d->study);
   d->study.rollout.seed = options->seed;
   d->study.rollout.threads = options->threads;
@@ -58,7 +58,7 @@ cloth_diagnosis_clear (ClothDiagnosis * d)
   g_free (d->nuisance_precisions);
   g_free (d->sound);
   g_free (d->blocks);
-  for (guint i = 0; i < d->n_chosen; i++)
+  for (guint i = 0; i < d->n_accepted; i++)
     cloth_model_free (d->with[i]);
   cloth_energy_spectrum_free (d->before);
   cloth_energy_spectrum_free (d->after);
@@ -68,11 +68,11 @@ cloth_diagnosis_clear (ClothDiagnosis * d)
   for (guint i = 0; i < d->n_nulls; i++)
     cloth_windowed_gap_free (d->nulls[i]);
   g_free (d->what);
-  g_free (d->unknown);
-  g_free (d->null_evidence);
-  for (guint i = 0; d->filmed && i < d->recordings->len; i++)
-    g_free (d->filmed[i]);
-  g_free (d->filmed);
+  g_free (d->unexplained);
+  g_free (d->null_log_bayes_factors);
+  for (guint i = 0; d->uncorrected && i < d->recordings->len; i++)
+    g_free (d->uncorrected[i]);
+  g_free (d->uncorrected);
   g_clear_pointer (&d->camera_effects, g_array_unref);
   g_clear_pointer (&d->recordings, g_ptr_array_unref);
 }
@@ -167,8 +167,8 @@ gboolean
 cloth_diagnosis_is_decided (const ClothDiagnosis * d,
     const ClothEffect * effect)
 {
-  for (guint i = 0; i < d->n_chosen; i++)
-    if (cloth_diagnosis_chosen (d, i)->effect == effect)
+  for (guint i = 0; i < d->n_accepted; i++)
+    if (cloth_diagnosis_accepted (d, i)->effect == effect)
       return TRUE;
   for (guint i = 0; i < d->n_dropped; i++)
     if (g_array_index (d->candidates->list, ClothCandidate,

@@ -15,11 +15,11 @@ G_BEGIN_DECLS
  * that it was not estimated on, and when it removes this share of the gap's variance. Of the
  * first where a discrepancy is taken off it is enough that the gap, in which the simulator's
  * own error is too, is hardly larger. */
-#define CLOTH_DIAGNOSIS_LEAST_EVIDENCE 10.
+#define CLOTH_DIAGNOSIS_LEAST_LOG_BAYES_FACTOR 10.
 #define CLOTH_DIAGNOSIS_LEAST_SHRINK 0.1
 /* What remains is no more than noise when it is below this many floors (variance). */
 #define CLOTH_DIAGNOSIS_BAND 2.25
-/* Deviations of parameters are told so many times as wide as the fit takes them for, which
+/* Standard deviations of parameters are given so many times as wide as the fit finds them, which
  * knows nothing of the simulator's own error: then about nine of ten of the blind benchmark's
  * intervals of 95% hold the truth. */
 #define CLOTH_DIAGNOSIS_SIGMA_WIDTH 3.6
@@ -30,7 +30,7 @@ G_BEGIN_DECLS
 /* Most effects that are accepted. */
 #define CLOTH_DIAGNOSIS_MAX_ACCEPTED 3
 
-/* What was wrong with a camera, or, one past the last, with all alike. */
+/* What was wrong with a camera, or, when @camera is the number of cameras, with all alike. */
 typedef struct
 {
   guint candidate, camera;
@@ -38,67 +38,104 @@ typedef struct
   gdouble values[CLOTH_EFFECT_MAX_PARAMETERS];
   gdouble sigmas[CLOTH_EFFECT_MAX_PARAMETERS];
   gdouble probability, p_value, constancy_p_value;
-  gboolean small;               /* it hardly moves points, but it is there */
+  gboolean small;               /* it acts, but hardly moves points */
 } ClothCameraFault;
 
 typedef struct
 {
+  /* What was given, and the result that every stage adds to; made by cloth_diagnosis_init (),
+   * read by all. */
   ClothTake **takes;
   guint n_takes;
   const ClothGapOptions *options;
   ClothEstimateOptions study;
   ClothGapResult *result;
-  GPtrArray *recordings;        /* of the takes, the baselines, the hold-outs */
-  GPtrArray *studies;           /* of the takes and the baselines */
-  /* what was wrong with the cameras; the recordings are without it, their positions with
-   * it stand in @filmed, where there is any; mean square of what it moved the points by, m² */
+
+  /* Made by load.c. The recordings are those of the takes, the baselines and the hold-outs,
+   * in this order; faults.c corrects them. The studies are those of the takes and the
+   * baselines; read and linearised by inference/, read by verdict/. */
+  GPtrArray *recordings;
+  GPtrArray *studies;
+
+  /* Camera faults, made by faults.c, read by judge.c and where.c: those that were accepted; the
+   * positions with them, as the cameras gave them, of each recording that was corrected; the
+   * mean square of their displacement by the faults, m²; what else is wrong with the points in
+   * the pictures; and the effects that were tested, for the result. The shrink by the faults is
+   * made by judge.c. */
   ClothCameraFault faults[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
   guint n_faults;
-  gdouble **filmed;
-  gdouble camera_square, shrink_of_faults;
+  gdouble **uncorrected;
+  gdouble camera_mean_square, shrink_of_faults;
   gboolean has_camera_errors;
   ClothCameraErrors camera_errors;
-  GArray *camera_effects;       /* ClothGapEffect: those found first */
-  ClothModel *model;            /* with its free numbers fitted */
+  GArray *camera_effects;       /* ClothGapEffect */
+
+  /* What is fitted and tested, made by name.c: the directions, and the numbers of all of them.
+   * The model with its free numbers fitted and the precisions of these are made by baseline.c.
+   * Read by all stages after it. */
   ClothCandidates *candidates;
-  gdouble *precisions;          /* of the free numbers */
-  guint *all;                   /* every direction */
+  guint *all;
+  ClothModel *model;
+  gdouble *precisions;
+
+  /* The test at hand, made by name.c, read by select.c and trial.c: the normal equations of the
+   * takes; the precisions of their columns of variability, which stand behind those of the
+   * directions; the columns that are fitted along in each test, and their precisions; the
+   * directions that could be simulated; the blocks of time that count. */
   ClothNormalEquations *normal;
-  guint n_variability;                /* of its columns, behind those of the directions */
+  guint n_variability;
   gdouble *variability_precisions;
-  guint *nuisances;             /* of the test: what is fitted along, and its precisions */
+  guint *nuisances;
   gdouble *nuisance_precisions;
   gboolean *sound;
-  gboolean *blocks;             /* that estimates come from */
+  gboolean *blocks;
   guint n_blocks;
-  /* Effects taken in, one by one: candidates, the models with them, deviations of the
-   * directions in them */
-  guint chosen[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
-  gdouble probabilities[CLOTH_DIAGNOSIS_MAX_ACCEPTED];  /* when they were taken in */
+
+  /* What an effect must exceed, made by baseline.c, read by name.c, trial.c and select.c: the
+   * least log Bayes factor of any, and for each candidate that of simulations which lack
+   * nothing. */
+  gdouble least_log_bayes_factor;
+  gdouble *null_log_bayes_factors;
+
+  /* Accepted effects one by one, made by select.c, shortened and read by judge.c: candidates,
+   * their probabilities when they were accepted, the models with them and those before, and in
+   * each of these models the standard deviations of their directions. */
+  guint accepted[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
+  gdouble probabilities[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
   ClothModel *with[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
   gdouble sigmas[CLOTH_DIAGNOSIS_MAX_ACCEPTED][CLOTH_DIAGNOSIS_MAX_ACCEPTED][CLOTH_EFFECT_MAX_PARAMETERS];
-  guint n_chosen;
-  /* those that others made needless */
+  guint n_accepted;
+
+  /* Candidates that later ones made needless, made and read by select.c, and whether any effect
+   * was supported, read by judge.c. */
   guint dropped[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
   guint n_dropped;
-  gchar *unknown;               /* what speaks of something, whatever it is, or NULL */
-  gdouble clamps_off;           /* square that clamps are further off their paths than usual,
-                                   m²; 0: they are not */
-  gboolean asked;               /* whether an effect was asked for */
-  /* of the first take before and after, of the first baseline; NULL where there is none */
+  gboolean supported;
+
+  /* A sign of something unknown, a sentence or NULL, and the mean square by which clamps are
+   * further off their paths than usual, m², or 0; made by unexplained.c, read by judge.c. */
+  gchar *unexplained;
+  gdouble clamps_off;
+
+  /* Energies of the nudged residuals of the first take before and after, and of the first
+   * baseline, NULL where there is none; made by judge.c, read by where.c. The nudged residual
+   * of the first take, as ClothWindowedGap has it, or NULL; read by null-distribution.c. */
   ClothEnergySpectrum *before, *after, *floor;
-  gfloat *nudged;                  /* residual of the first take, as an extent has it, or NULL */
-  /* of simulations that lack nothing, and what they are of: of a baseline, of the other
-   * force model */
+  gfloat *nudged;
+
+  /* Gaps of simulations that lack nothing, and the recordings that they are of: the model on a
+   * baseline, the other force model on a take; which of them is the floor; whether the first
+   * is of a baseline that moves as the first take does. Made by judge.c, read by
+   * null-distribution.c. */
   ClothWindowedGap *nulls[2];
   guint null_recordings[2];
   guint n_nulls;
-  guint floor_null;             /* which of them is the floor */
-  gboolean null_alike;          /* whether the first is of a baseline that moves as the
-                                   first take does */
-  gdouble least_evidence;
-  gdouble *null_evidence;       /* of each candidate, on the baselines */
-  /* of the running part of the work: its share of all, what of it each simulation gets */
+  guint floor_null;
+  gboolean null_alike;
+
+  /* The running part of the work, made by cloth_diagnosis_begin_part (): the shares of all the
+   * work at its begin and end, the share of the rest of it that each simulation is, and what is
+   * being done. */
   gdouble from, to, each;
   gchar *what;
 } ClothDiagnosis;
@@ -116,9 +153,9 @@ cloth_diagnosis_study (const ClothDiagnosis * d, guint i)
 }
 
 static inline const ClothCandidate *
-cloth_diagnosis_chosen (const ClothDiagnosis * d, guint i)
+cloth_diagnosis_accepted (const ClothDiagnosis * d, guint i)
 {
-  return &g_array_index (d->candidates->list, ClothCandidate, d->chosen[i]);
+  return &g_array_index (d->candidates->list, ClothCandidate, d->accepted[i]);
 }
 
 /* Every other block of time judges what the others have fitted. */

@@ -113,7 +113,7 @@ measure_experiment (ClothTake * take)
     for (guint k = 0; k < trials->len; k++)
       printf ("  motion %u at %g Hz: evidence %.3g\n", g_array_index (trials,
               ClothTrial, k).motion, g_array_index (trials, ClothTrial, k).fps,
-          g_array_index (trials, ClothTrial, k).evidence);
+          g_array_index (trials, ClothTrial, k).log_bayes_factor);
   }
   printf ("what to film next: %.1f s (asked: 5), %" G_GUINT64_FORMAT
       " simulations of %g s\n", best, options.simulations / 3,

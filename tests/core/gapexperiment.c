@@ -60,7 +60,7 @@ typedef struct
 {
   guint threads;
   gboolean free;                /* whether damping.mass may be fitted */
-  gdouble mismatch;             /* in all features */
+  gdouble discrepancy_variance; /* in all features */
   ClothRolloutProgress progress;
   guint64 simulations;          /* out */
   gdouble seconds;              /* out */
@@ -74,15 +74,16 @@ try_on (const ClothRecording * recording, const ClothModelEffect * members,
   const gdouble precisions[] = { FREE_PRECISION };
   g_autoptr (ClothModel) model = model_new ();
   g_autoptr (ClothCandidates) candidates = NULL;
-  gdouble mismatch[1000];
-  const ClothPowerSpectrum power = { G_N_ELEMENTS (mismatch), mismatch };
+  gdouble discrepancy_variance[1000];
+  const ClothPowerSpectrum power =
+      { G_N_ELEMENTS (discrepancy_variance), discrepancy_variance };
   ClothExperiment e = { recording, model, NULL, precisions, &power };
   ClothEstimateOptions options;
   GArray *trials;
   gint64 start = g_get_monotonic_time ();
 
-  for (guint i = 0; i < G_N_ELEMENTS (mismatch); i++)
-    mismatch[i] = how->mismatch;
+  for (guint i = 0; i < G_N_ELEMENTS (discrepancy_variance); i++)
+    discrepancy_variance[i] = how->discrepancy_variance;
   if (how->free) {
     ClothModelFree f = { g_strdup ("damping.mass"), {0., 20.}
     };
@@ -116,7 +117,7 @@ try_members (const ClothModelEffect * members, guint n, How * how)
     const ClothTrial *t = &g_array_index (trials, ClothTrial, i);
 
     g_test_message ("%s %s: motion %u at %g Hz: %g", members[0].effect->id,
-        members[n - 1].effect->id, t->motion, t->fps, t->evidence);
+        members[n - 1].effect->id, t->motion, t->fps, t->log_bayes_factor);
   }
   g_test_message ("%.2f s", how->seconds);
   return trials;
@@ -127,7 +128,7 @@ find (const GArray * trials, ClothStageMotion motion)
 {
   for (guint i = 0; i < trials->len; i++)
     if (g_array_index (trials, ClothTrial, i).motion == motion)
-      return g_array_index (trials, ClothTrial, i).evidence;
+      return g_array_index (trials, ClothTrial, i).log_bayes_factor;
   g_assert_not_reached ();
 }
 
@@ -204,7 +205,8 @@ test_gauge (void)
 
   g_assert_cmpuint (trials->len, >, 5);
   for (guint i = 0; i < trials->len; i++)
-    g_assert_cmpfloat (g_array_index (trials, ClothTrial, i).evidence, <, 0.05);
+    g_assert_cmpfloat (g_array_index (trials, ClothTrial, i).log_bayes_factor,
+        <, 0.05);
   g_assert_null (cloth_experiment_choose (trials));
 }
 
@@ -235,7 +237,7 @@ test_units (void)
   const ClothModelEffect members[] = {
     effect ("gravity_tilt", 0., 1.), effect ("gravity_tilt", 0., 0.)
   };
-  How sharp = { 0 }, blunt = {.mismatch = 3. };
+  How sharp = { 0 }, blunt = {.discrepancy_variance = 3. };
   g_autoptr (GArray) a = try_members (members, 2, &sharp);
   g_autoptr (GArray) b = try_members (members, 2, &blunt);
   const gdouble off = 9.81 * sin (G_PI / 180.) / 1600. / sheet.noise_m;
@@ -287,8 +289,8 @@ test_threads (void)
 
   g_assert_cmpuint (a->len, ==, b->len);
   for (guint i = 0; i < a->len; i++)
-    g_assert_true (g_array_index (a, ClothTrial, i).evidence ==
-        g_array_index (b, ClothTrial, i).evidence);
+    g_assert_true (g_array_index (a, ClothTrial, i).log_bayes_factor ==
+        g_array_index (b, ClothTrial, i).log_bayes_factor);
 }
 
 /* With one effect, or none, there is nothing to part and nothing is simulated. */
@@ -319,7 +321,8 @@ test_divergent (void)
 
   g_assert_cmpuint (trials->len, >, 0);
   for (guint i = 0; i < trials->len; i++)
-    g_assert_true (isnan (g_array_index (trials, ClothTrial, i).evidence));
+    g_assert_true (isnan (g_array_index (trials, ClothTrial,
+                i).log_bayes_factor));
   g_assert_null (cloth_experiment_choose (trials));
 }
 

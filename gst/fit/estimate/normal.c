@@ -181,7 +181,8 @@ cloth_normal_equations_append (ClothNormalEquations * to,
  * @nuisances: (array length=n_nuisances): columns that are fitted along
  * @precisions: (array length=n_nuisances): of their priors
  * @n_nuisances: how many
- * @directions: (array length=n): columns that are looked at, at most 4
+ * @directions: (array length=n): columns that are looked at, at most
+ *   %CLOTH_EFFECT_MAX_PARAMETERS
  * @n: how many
  * @reduced: (out): what is left of them
  *

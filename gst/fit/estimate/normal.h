@@ -4,6 +4,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
+#include "gst/effect/effect.h"
 #include "gst/fit/features/features.h"
 
 G_BEGIN_DECLS
@@ -40,9 +41,9 @@ typedef struct {
  */
 typedef struct {
   guint n;
-  gdouble g[16];
-  gdouble s[4];
-  gdouble kept[4];
+  gdouble g[CLOTH_EFFECT_MAX_PARAMETERS * CLOTH_EFFECT_MAX_PARAMETERS];
+  gdouble s[CLOTH_EFFECT_MAX_PARAMETERS];
+  gdouble kept[CLOTH_EFFECT_MAX_PARAMETERS];
   gdouble r;
 } ClothReducedEquations;
 

@@ -50,7 +50,7 @@ typedef struct
   ClothNormalEquations *normal; /* linearised at the known faults */
   /* of each candidate: what its log Bayes factor must exceed, whether it looks like the first
    * fault */
-  gdouble *null_evidence;
+  gdouble *null_log_bayes_factors;
   gboolean *alike;
 } Search;
 
@@ -60,7 +60,7 @@ search_clear (Search * s)
   cloth_candidates_free (s->candidates);
   g_clear_pointer (&s->views, g_ptr_array_unref);
   cloth_normal_equations_free (s->normal);
-  g_free (s->null_evidence);
+  g_free (s->null_log_bayes_factors);
   g_free (s->alike);
 }
 
@@ -159,7 +159,7 @@ rank (const Search * s, ClothNormalEquations * normal)
   for (guint i = 0; i < scores->len; i++) {
     ClothGapScore *score = &g_array_index (scores, ClothGapScore, i);
 
-    score->evidence -= s->null_evidence[score->candidate];
+    score->log_bayes_factor -= s->null_log_bayes_factors[score->candidate];
   }
   g_array_sort (scores, cloth_gap_score_compare);
   return scores;
@@ -185,7 +185,8 @@ study_baselines (Search * s)
     for (guint c = 0; c < s->candidates->list->len; c++)
       if (candidate_at (s, c)->effect ==
           candidate_at (s, score->candidate)->effect)
-        s->null_evidence[c] = NULL_SHARE * MAX (score->evidence, 0.);
+        s->null_log_bayes_factors[c] =
+            NULL_SHARE * MAX (score->log_bayes_factor, 0.);
   }
 }
 
@@ -329,7 +330,7 @@ probability_of (const Search * s, const GArray * scores,
 
   for (guint i = 0; i < scores->len; i++) {
     const ClothGapScore *score = &g_array_index (scores, ClothGapScore, i);
-    gdouble odds = exp (MIN (score->evidence / TEMPERATURE, LARGEST));
+    gdouble odds = exp (MIN (score->log_bayes_factor / TEMPERATURE, LARGEST));
 
     total += odds;
     if (candidate_at (s, score->candidate)->effect == effect)
@@ -459,7 +460,7 @@ start_fault (const Search * s, const ClothGapScore * score,
   *f = (ClothCameraFault) {
   .candidate = score->candidate,.effect = c->effect};
   f->camera = cloth_camera_of_candidate (c);
-  f->probability = 1. / (1. + exp (-score->evidence / TEMPERATURE));
+  f->probability = 1. / (1. + exp (-score->log_bayes_factor / TEMPERATURE));
   f->p_value = score->p_value;
   f->constancy_p_value = score->constancy_p_value;
 }
@@ -474,7 +475,7 @@ accept_fault (Search * s, const GArray * scores)
       ClothGapScore, 0) : NULL;
 
   if (!score || d->n_faults == G_N_ELEMENTS (d->faults)
-      || !(score->evidence >= CLOTH_DIAGNOSIS_LEAST_EVIDENCE)
+      || !(score->log_bayes_factor >= CLOTH_DIAGNOSIS_LEAST_LOG_BAYES_FACTOR)
       || !(score->improvement > LEAST_IMPROVEMENT))
     return FALSE;
   if (!d->n_faults)
@@ -517,11 +518,11 @@ correct (ClothDiagnosis * d, const Search * s)
       continue;
     view = cloth_camera_view_new (r, observations, d->options->threads);
     apply_faults (d, view);
-    d->filmed[i] = g_memdup2 (r->y, 3 * (gsize) r->n * r->n_frames *
+    d->uncorrected[i] = g_memdup2 (r->y, 3 * (gsize) r->n * r->n_frames *
         sizeof *r->y);
     square = cloth_camera_view_correct (view, d->options->threads, r);
     if (i == 0) {
-      d->camera_square = square;
+      d->camera_mean_square = square;
       d->camera_errors.triangulation = 0.;
     }
     cloth_recording_interpolate (r);
@@ -540,7 +541,7 @@ cloth_diagnosis_find_faults (ClothDiagnosis * d)
   g_autoptr (GArray) first = NULL, last = NULL;
 
   d->camera_effects = g_array_new (FALSE, FALSE, sizeof (ClothGapEffect));
-  d->filmed = g_new0 (gdouble *, d->recordings->len);
+  d->uncorrected = g_new0 (gdouble *, d->recordings->len);
   for (guint i = 0; i < d->n_takes && !s.rig; i++)
     s.rig =
         cloth_diagnosis_observations (d, i) ? cloth_diagnosis_observations (d,
@@ -548,7 +549,7 @@ cloth_diagnosis_find_faults (ClothDiagnosis * d)
   if (!s.rig)
     return;
   s.candidates = cloth_camera_candidates_new (s.rig, d->options->effects);
-  s.null_evidence = g_new0 (gdouble, s.candidates->list->len + 1);
+  s.null_log_bayes_factors = g_new0 (gdouble, s.candidates->list->len + 1);
   s.alike = g_new0 (gboolean, s.candidates->list->len + 1);
   s.views = open_views (&s, 0, d->n_takes);
   s.normal = linearise (&s, s.views, &d->camera_errors);

@@ -182,11 +182,11 @@ follow (Search * s, const ClothSensitivities * study, ClothStageMotion motion,
 /* The simulator's own error in the features of a capture: of the take's class by class, in
  * proportion to the frames that a feature sums over. */
 static ClothPowerSpectrum *
-find_mismatch (const Search * s, const ClothFeatures * features,
+find_discrepancy_variance (const Search * s, const ClothFeatures * features,
     const gdouble * nothing, gdouble faster)
 {
   ClothPowerSpectrum *power = cloth_power_spectrum_new (features, nothing);
-  const ClothPowerSpectrum *known = s->e->mismatch;
+  const ClothPowerSpectrum *known = s->e->discrepancy_variance;
   guint band = 3 * features->n_bands;
 
   for (guint k = 0; known && k < power->n; k++) {
@@ -212,7 +212,8 @@ weigh (const Search * s, const ClothSensitivities * study, const gdouble * z,
   g_autofree guint *nuisances = g_new (guint, q + 1);
   g_autofree gdouble *precisions = g_new (gdouble, q + 1);
   g_autofree gboolean *blocks = g_new (gboolean, f->n_blocks);
-  g_autoptr (ClothPowerSpectrum) power = find_mismatch (s, f, nothing, faster);
+  g_autoptr (ClothPowerSpectrum) power =
+      find_discrepancy_variance (s, f, nothing, faster);
   g_autoptr (ClothNormalEquations) normal = NULL;
   gdouble least = INFINITY;
 
@@ -286,13 +287,13 @@ add_trial (Search * s, ClothStageMotion motion, gdouble fps, GArray * trials,
   g_autoptr (GError) failed = NULL;
   ClothTrial trial = { motion, fps };
 
-  trial.evidence = try_motion (s, motion, fps, &failed);
+  trial.log_bayes_factor = try_motion (s, motion, fps, &failed);
   if (g_error_matches (failed, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_CANCELLED)) {
     g_propagate_error (error, g_steal_pointer (&failed));
     return FALSE;
   }
   if (failed)
-    trial.evidence = NAN;
+    trial.log_bayes_factor = NAN;
   g_array_append_val (trials, trial);
   return TRUE;
 }
@@ -334,7 +335,7 @@ cloth_experiment_try (const ClothExperiment * experiment,
         && !add_trial (&s, m, fps, trials, error))
       return NULL;
   best = cloth_experiment_choose (trials);
-  if (best && best->evidence < CLOTH_EXPERIMENT_MOST_EVIDENCE
+  if (best && best->log_bayes_factor < CLOTH_EXPERIMENT_MOST_LOG_BAYES_FACTOR
       && fps < CLOTH_EXPERIMENT_MOST_FPS
       && !add_trial (&s, best->motion, 2. * fps, trials, error))
     return NULL;
@@ -344,7 +345,7 @@ cloth_experiment_try (const ClothExperiment * experiment,
 /* @trials: (element-type ClothTrial): the easiest first, then with more frames
  *
  * Returns: (nullable) (transfer none): the one that brings most; among those that bring
- *   %CLOTH_EXPERIMENT_MOST_EVIDENCE the first; %NULL when none brings enough
+ *   %CLOTH_EXPERIMENT_MOST_LOG_BAYES_FACTOR the first; %NULL when none brings enough
  */
 const ClothTrial *
 cloth_experiment_choose (const GArray * trials)
@@ -354,14 +355,16 @@ cloth_experiment_choose (const GArray * trials)
 
   for (guint i = 0; i < trials->len; i++) {
     const ClothTrial *t = &g_array_index (trials, ClothTrial, i);
-    gdouble evidence = MIN (t->evidence, CLOTH_EXPERIMENT_MOST_EVIDENCE);
-    gdouble ask = best && t->fps > best->fps ?
-        CLOTH_EXPERIMENT_FASTER * most : most;
+    gdouble log_bayes_factor =
+        MIN (t->log_bayes_factor, CLOTH_EXPERIMENT_MOST_LOG_BAYES_FACTOR);
+    gdouble ask = best
+        && t->fps > best->fps ? CLOTH_EXPERIMENT_FASTER * most : most;
 
-    if (!isnan (t->evidence)
-        && evidence >= CLOTH_EXPERIMENT_LEAST_EVIDENCE && evidence > ask) {
+    if (!isnan (t->log_bayes_factor)
+        && log_bayes_factor >= CLOTH_EXPERIMENT_LEAST_LOG_BAYES_FACTOR
+        && log_bayes_factor > ask) {
       best = t;
-      most = evidence;
+      most = log_bayes_factor;
     }
   }
   return best;

@@ -11,9 +11,9 @@ G_BEGIN_DECLS
 /* The expected log Bayes factor is given up to here: beyond, the linear theory means no more
  * than that the effects are told apart. Of captures that reach it the first is taken, the
  * easiest. */
-#define CLOTH_EXPERIMENT_MOST_EVIDENCE 100.
+#define CLOTH_EXPERIMENT_MOST_LOG_BAYES_FACTOR 100.
 /* A capture that is expected to bring less is not worth filming: odds of 20 to 1. */
-#define CLOTH_EXPERIMENT_LEAST_EVIDENCE 3.
+#define CLOTH_EXPERIMENT_LEAST_LOG_BAYES_FACTOR 3.
 /* Twice the frame rate must bring so many times the log Bayes factor: it takes another camera. */
 #define CLOTH_EXPERIMENT_FASTER 1.5
 /* Rates above this are not doubled, and none is simulated that is higher, 1/s. */
@@ -26,7 +26,7 @@ G_BEGIN_DECLS
  * @model: the model, with what is known to act and not in question
  * @candidates: its free numbers
  * @precisions: (array): of the free numbers
- * @mismatch: (nullable): mean squares of what the simulator itself is off by, in the
+ * @discrepancy_variance: (nullable): mean squares of what the simulator itself is off by, in the
  *   noise of @recording; %NULL: nothing
  *
  * Where effects are to be told apart.
@@ -36,12 +36,12 @@ typedef struct {
   const ClothModel *model;
   const ClothCandidates *candidates;
   const gdouble *precisions;
-  const ClothPowerSpectrum *mismatch;
+  const ClothPowerSpectrum *discrepancy_variance;
 } ClothExperiment;
 
 /* @motion: what is filmed
  * @fps: at how many frames a second
- * @evidence: logarithm of the Bayes factor to expect between those two of the effects
+ * @log_bayes_factor: logarithm of the Bayes factor to expect between those two of the effects
  *   that it tells apart worst; NaN: it could not be simulated
  *
  * What one capture would bring.
@@ -49,7 +49,7 @@ typedef struct {
 typedef struct {
   ClothStageMotion motion;
   gdouble fps;
-  gdouble evidence;
+  gdouble log_bayes_factor;
 } ClothTrial;
 
 GArray *cloth_experiment_try (const ClothExperiment * experiment,

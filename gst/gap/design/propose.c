@@ -68,7 +68,7 @@ note_failures (ClothGapResult * result, const ClothStage * stage,
     const ClothTrial *t = &g_array_index (trials, ClothTrial, i);
     g_autofree gchar *what = cloth_stage_describe (stage, t->motion);
 
-    if (isnan (t->evidence))
+    if (isnan (t->log_bayes_factor))
       cloth_gap_result_add_failure (result, what, "The simulation of this "
           "capture diverged, so it was not considered.");
   }
@@ -79,11 +79,11 @@ propose_one (ClothDiagnosis * d, guint group, GError ** error)
 {
   ClothGapGroup *g = &g_array_index (d->result->groups, ClothGapGroup, group);
   g_autoptr (ClothModel) model = cloth_model_copy (d->model);
-  g_autoptr (ClothPowerSpectrum) mismatch =
-      cloth_diagnosis_find_mismatch (d, 0);
+  g_autoptr (ClothPowerSpectrum) discrepancy_variance =
+      cloth_diagnosis_find_discrepancy_variance (d, 0);
   const ClothExperiment experiment = {
     cloth_diagnosis_recording (d, 0), model, d->candidates, d->precisions,
-    mismatch
+    discrepancy_variance
   };
   g_autoptr (ClothStage) stage = cloth_stage_new (experiment.recording);
   ClothModelEffect members[MOST_MEMBERS];
@@ -103,7 +103,8 @@ propose_one (ClothDiagnosis * d, guint group, GError ** error)
   best = cloth_experiment_choose (trials);
   if (!best)
     return TRUE;
-  g->evidence = MIN (best->evidence, CLOTH_EXPERIMENT_MOST_EVIDENCE);
+  g->log_bayes_factor =
+      MIN (best->log_bayes_factor, CLOTH_EXPERIMENT_MOST_LOG_BAYES_FACTOR);
   g->experiment = cloth_stage_describe (stage, best->motion);
   if (best->fps > g_array_index (trials, ClothTrial, 0).fps) {
     g_autofree gchar *slow = g->experiment;

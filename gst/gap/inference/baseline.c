@@ -16,22 +16,22 @@
 #include "gst/fit/error.h"
 #include "gst/gap/inference/name.h"
 
-/* Squared gap of the nearest over that of the likeliest from which on it is taken. */
+/* The nearest numbers are taken when their squared gap is below this share of the likeliest's. */
 #define NEARER 0.8
 /* Simulations of the fit of the free numbers. */
 #define N_FIT 6
-/* Free numbers that were fitted on baselines give way by this share of their standard
- * deviations, and by no more than so many such shares: else they would take the place of
+/* Free numbers that were fitted on baselines get a prior of this share of their standard
+ * deviations, and move by no more than so many such shares: else they would take the place of
  * what is missing. */
 #define FROZEN_SHARE 0.5
 #define FROZEN_REACH 2.
 /* A number is at the end of its range when it is this share of it away. */
 #define AT_END 1e-3
-/* On takes that move otherwise than a baseline, what the baseline asks for of an effect
- * itself is taken off the effect's evidence so many times; without a baseline, what the
- * difference of the two force models asks for. */
+/* On takes that move otherwise than a baseline, the baseline's log Bayes factor of an
+ * effect is taken off so many times; without a baseline, that of the difference of the two
+ * force models. */
 #define NULL_SHARE 1.5
-/* And this often the largest of them is the evidence that any effect must have there. */
+/* And this many times the largest of them is added to what any effect must have there. */
 #define NULL_MARGIN 2.
 
 /* The sums over the recordings from @begin to @end of the squared gap of each of @n models, m²;
@@ -57,8 +57,9 @@ find_gaps (ClothDiagnosis * d, guint begin, guint end,
   return TRUE;
 }
 
-/* Where a fit ends at the end of a number's range in the model the cloth may be beyond it,
- * and the floor higher than it need be. What can't be is not beyond it. */
+/* Notes the numbers that a fit took to the end of their ranges in the model: the cloth may be
+ * beyond, and the floor then higher than it need be. The end of what is possible is no such
+ * end. */
 static void
 note_ends (ClothDiagnosis * d)
 {
@@ -88,9 +89,16 @@ note_ends (ClothDiagnosis * d)
   }
 }
 
-/* The model's free numbers: fitted on the baselines, else on the takes. The likeliest may
- * leave a cloth that is stretched for the sake of its wrinkles, where the simulator can't
- * make these; then what is nearest is taken. */
+/* @d: a diagnosis whose candidates are listed
+ * @model: what the simulator knows
+ * @error: #ClothSimError or #ClothFitError
+ *
+ * Fits the model's free numbers on the baselines, else on the takes. Where the simulator can't
+ * make the cloth's wrinkles, the likeliest numbers may stretch the cloth instead; then those
+ * that bring it nearest are taken.
+ *
+ * Returns: whether it could be simulated
+ */
 gboolean
 cloth_diagnosis_fit_free (ClothDiagnosis * d, const ClothModel * model,
     GError ** error)
@@ -164,15 +172,23 @@ note_nulls (ClothDiagnosis * d, const GArray * scores, gdouble share,
     for (guint c = 0; c < d->candidates->list->len; c++)
       if (g_array_index (d->candidates->list, ClothCandidate, c).effect ==
           cloth_diagnosis_candidate (d, s)->effect)
-        d->null_evidence[c] = share * MAX (s->evidence, 0.);
-    d->least_evidence = MAX (d->least_evidence, CLOTH_DIAGNOSIS_LEAST_EVIDENCE +
-        margin * MAX (s->evidence, 0.));
+        d->null_log_bayes_factors[c] = share * MAX (s->log_bayes_factor, 0.);
+    d->least_log_bayes_factor =
+        MAX (d->least_log_bayes_factor,
+        CLOTH_DIAGNOSIS_LEAST_LOG_BAYES_FACTOR +
+        margin * MAX (s->log_bayes_factor, 0.));
   }
 }
 
-/* What baselines ask for. Where it is taken off the takes themselves, an effect must ask
- * for more than that once more: another motion has more or less of the simulator's own
- * error. */
+/* @d: a diagnosis whose model is fitted
+ * @error: #ClothSimError or #ClothFitError
+ *
+ * Notes how much the baselines support each effect. On takes that move otherwise, where the
+ * discrepancy is not subtracted, more than that is taken off: another motion has more or less
+ * of the simulator's own error.
+ *
+ * Returns: whether the baselines could be simulated
+ */
 gboolean
 cloth_diagnosis_study_baselines (ClothDiagnosis * d, GError ** error)
 {
@@ -191,7 +207,14 @@ cloth_diagnosis_study_baselines (ClothDiagnosis * d, GError ** error)
   return TRUE;
 }
 
-/* Without a baseline: what the difference of the two force models asks for. */
+/* @d: a diagnosis whose takes are linearised
+ * @error: #ClothSimError or #ClothFitError
+ *
+ * Notes how much the difference of the two force models supports each effect. Nothing is noted
+ * when the other one diverges with these numbers.
+ *
+ * Returns: whether it could be simulated
+ */
 gboolean
 cloth_diagnosis_study_other_model (ClothDiagnosis * d, GError ** error)
 {
@@ -212,7 +235,6 @@ cloth_diagnosis_study_other_model (ClothDiagnosis * d, GError ** error)
     if (cloth_sensitivities_linearise (s, d->candidates, other, d->all,
             d->candidates->n_free, &d->study, &diverged))
       continue;
-    /* one that these numbers make no cloth of tells nothing */
     if (g_error_matches (diverged, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL))
       return TRUE;
     g_propagate_error (error, g_steal_pointer (&diverged));

@@ -1,4 +1,4 @@
-/* The model's free numbers, and how much simulations that lack nothing ask for each effect.
+/* The model's free numbers, and how much simulations that lack nothing support each effect.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once

@@ -130,7 +130,7 @@ solve (const System * system, gdouble phi, gdouble intensity, gdouble share,
  * Compares winds along the ground that change from part to part, a process of Ornstein and
  * Uhlenbeck of unknown intensity, to none at all.
  *
- * Returns: whether it could be told
+ * Returns: whether the equations could be solved
  */
 gboolean
 cloth_gap_test_gusts (const ClothGapTest * test, gdouble intensity,
@@ -171,7 +171,7 @@ cloth_gap_test_gusts (const ClothGapTest * test, gdouble intensity,
     }
     sum += exp (gained - best);
   }
-  gusts->evidence = best + log (sum / G_N_ELEMENTS (intensities));
+  gusts->log_bayes_factor = best + log (sum / G_N_ELEMENTS (intensities));
   gusts->intensity = sqrt ((xx + yy) / (system.n / N_WAYS));
   gusts->azimuth = 0.5 * atan2 (2. * xy, xx - yy) * 180. / G_PI;
   return TRUE;

@@ -12,14 +12,14 @@ G_BEGIN_DECLS
 #define CLOTH_GAP_GUST_PARTS 3
 #define CLOTH_GAP_GUST_COLUMNS (CLOTH_GAP_GUST_WAYS * CLOTH_GAP_GUST_PARTS)
 
-/* @evidence: logarithm of the Bayes factor against no wind at all
+/* @log_bayes_factor: logarithm of the Bayes factor against no wind at all
  * @intensity: root mean square of the winds' speed along the ground, m/s
  * @azimuth: which way most of it blows, ° from x to y, −90 to 90
  *
  * What is known of gusts.
  */
 typedef struct {
-  gdouble evidence;
+  gdouble log_bayes_factor;
   gdouble intensity;
   gdouble azimuth;
 } ClothGapGusts;

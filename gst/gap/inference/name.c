@@ -23,7 +23,7 @@
 #define SAME_PATH 1e-3
 /* What two takes of one motion share of the simulator's own error is taken off; this
  * part of its power stays. */
-#define SIGNATURE_LEFT 0.1
+#define LEAST_DISCREPANCY 0.1
 /* So often what a leading effect leaves in a take is what weighs, and all are tested
  * anew. */
 #define N_SHARPEN 2
@@ -85,7 +85,7 @@ cloth_diagnosis_list_candidates (ClothDiagnosis * d, const ClothModel * model,
     d->all[i] = i;
   d->precisions = g_new (gdouble, d->candidates->n_free + 1);
   d->sound = g_new (gboolean, n + 1);
-  d->null_evidence = g_new0 (gdouble, d->candidates->list->len + 1);
+  d->null_log_bayes_factors = g_new0 (gdouble, d->candidates->list->len + 1);
   return TRUE;
 }
 
@@ -148,7 +148,7 @@ cloth_diagnosis_find_discrepancies (ClothDiagnosis * d)
 /* Mean square that the simulator itself is off by, in the noise of a take: of the
  * baselines, else of the takes with the model fitted to them. */
 ClothPowerSpectrum *
-cloth_diagnosis_find_mismatch (const ClothDiagnosis * d, guint take)
+cloth_diagnosis_find_discrepancy_variance (const ClothDiagnosis * d, guint take)
 {
   gdouble unit = cloth_diagnosis_study (d, take)->features->sigma;
   guint begin = d->options->n_baselines ? d->n_takes : 0;
@@ -181,7 +181,7 @@ cloth_diagnosis_find_weight (const ClothDiagnosis * d, guint take)
   const ClothSensitivities *s = cloth_diagnosis_study (d, take);
 
   return s->left ? cloth_power_spectrum_copy (s->left) :
-      cloth_diagnosis_find_mismatch (d, take);
+      cloth_diagnosis_find_discrepancy_variance (d, take);
 }
 
 /* Gusts, if they are looked for in a study, else NULL. */
@@ -244,11 +244,12 @@ normal_of (const ClothDiagnosis * d, guint take, guint before)
 /* The power left in the takes that a baseline's discrepancy is taken off, once @score's
  * changes (NULL: none) are made: a tenth of the mismatch at least is left to doubt. */
 void
-cloth_diagnosis_find_left (ClothDiagnosis * d, const ClothGapScore * score)
+cloth_diagnosis_find_residual_variance (ClothDiagnosis * d,
+    const ClothGapScore * score)
 {
   for (guint i = 0; i < d->n_takes; i++) {
-    g_autoptr (ClothPowerSpectrum) mismatch =
-        cloth_diagnosis_find_mismatch (d, i);
+    g_autoptr (ClothPowerSpectrum) discrepancy_variance =
+        cloth_diagnosis_find_discrepancy_variance (d, i);
     ClothSensitivities *s = cloth_diagnosis_study (d, i);
     g_autofree gdouble *z = cloth_sensitivities_residual (s);
     gsize size = s->features->size;
@@ -266,8 +267,8 @@ cloth_diagnosis_find_left (ClothDiagnosis * d, const ClothGapScore * score)
     left = cloth_power_spectrum_new (s->features, z);
     for (guint k = 0; k < left->n; k++)
       left->values[k] = MIN (score ? s->left->values[k] :
-          mismatch->values[k], MAX (left->values[k],
-              SIGNATURE_LEFT * mismatch->values[k]));
+          discrepancy_variance->values[k], MAX (left->values[k],
+              LEAST_DISCREPANCY * discrepancy_variance->values[k]));
     cloth_power_spectrum_free (s->left);
     s->left = left;
   }
@@ -332,28 +333,28 @@ cloth_diagnosis_make_normals (ClothDiagnosis * d, guint begin, guint end,
       d->candidates->directions->len + d->n_variability : 0;
 }
 
-/* The free numbers and the directions of what is taken in, with the precisions of their
+/* The free numbers and the directions of what is accepted, with the precisions of their
  * priors; those of effects count @width times as wide. Returns how many. */
 guint
-cloth_diagnosis_list_taken_in (const ClothDiagnosis * d, gdouble width,
+cloth_diagnosis_list_accepted (const ClothDiagnosis * d, gdouble width,
     guint * directions, gdouble * precisions)
 {
   guint m = d->candidates->n_free;
 
   memcpy (directions, d->all, m * sizeof *directions);
   memcpy (precisions, d->precisions, m * sizeof *precisions);
-  for (guint c = 0; c < d->n_chosen; c++)
-    for (guint k = 0; k < cloth_diagnosis_chosen (d, c)->n; k++, m++) {
+  for (guint c = 0; c < d->n_accepted; c++)
+    for (guint k = 0; k < cloth_diagnosis_accepted (d, c)->n; k++, m++) {
       gdouble prior;
 
-      directions[m] = cloth_diagnosis_chosen (d, c)->first + k;
+      directions[m] = cloth_diagnosis_accepted (d, c)->first + k;
       prior = cloth_candidates_direction (d->candidates, directions[m])->prior;
       precisions[m] = 1. / (width * width * prior * prior);
     }
   return m;
 }
 
-/* The free numbers, what is taken in, and variability are fitted along when effects are tested. */
+/* The free numbers, what is accepted, and variability are fitted along when effects are tested. */
 void
 cloth_diagnosis_list_nuisances (ClothDiagnosis * d, ClothGapTest * test)
 {
@@ -365,7 +366,7 @@ cloth_diagnosis_list_nuisances (ClothDiagnosis * d, ClothGapTest * test)
   d->nuisance_precisions = g_new (gdouble, n + d->n_variability + 1);
   test->nuisances = d->nuisances;
   test->precisions = d->nuisance_precisions;
-  test->n_nuisances = cloth_diagnosis_list_taken_in (d, 1.,
+  test->n_nuisances = cloth_diagnosis_list_accepted (d, 1.,
       d->nuisances, d->nuisance_precisions);
   test->n_numbers = test->n_nuisances;
   for (guint k = 0; k < d->n_variability; k++) {
@@ -416,14 +417,15 @@ static gdouble
 softmax (const ClothDiagnosis * d, const GArray * scores,
     const ClothGapScore * which)
 {
-  gdouble total = exp (-which->evidence / TEMPERATURE);
+  gdouble total = exp (-which->log_bayes_factor / TEMPERATURE);
 
   for (guint i = 0; i < scores->len; i++) {
     const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
 
     if (!cloth_diagnosis_is_decided (d, cloth_diagnosis_candidate (d,
                 s)->effect))
-      total += exp ((s->evidence - which->evidence) / TEMPERATURE);
+      total +=
+          exp ((s->log_bayes_factor - which->log_bayes_factor) / TEMPERATURE);
   }
   return 1. / total;
 }
@@ -509,7 +511,8 @@ cloth_diagnosis_rank (ClothDiagnosis * d, ClothGapTest * test)
   GArray *scores = cloth_gap_test_run (test);
 
   for (guint k = 0; k < N_SHARPEN && scores->len; k++) {
-    cloth_diagnosis_find_left (d, &g_array_index (scores, ClothGapScore, 0));
+    cloth_diagnosis_find_residual_variance (d, &g_array_index (scores,
+            ClothGapScore, 0));
     cloth_diagnosis_make_normals (d, 0, d->n_takes, test);
     g_array_unref (scores);
     scores = cloth_gap_test_run (test);
@@ -517,7 +520,7 @@ cloth_diagnosis_rank (ClothDiagnosis * d, ClothGapTest * test)
   for (guint i = 0; i < scores->len; i++) {
     ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
 
-    s->evidence -= d->null_evidence[s->candidate];
+    s->log_bayes_factor -= d->null_log_bayes_factors[s->candidate];
   }
   g_array_sort (scores, cloth_gap_score_compare);
   return scores;

@@ -1,4 +1,4 @@
-/* Naming: how much the residual asks for each effect.
+/* Naming: how much the residual supports each effect.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -17,7 +17,7 @@ cloth_diagnosis_candidate (const ClothDiagnosis * d, const ClothGapScore * score
 
 gboolean cloth_diagnosis_list_candidates (ClothDiagnosis * d,
     const ClothModel * model, GError ** error);
-ClothPowerSpectrum *cloth_diagnosis_find_mismatch (const ClothDiagnosis * d,
+ClothPowerSpectrum *cloth_diagnosis_find_discrepancy_variance (const ClothDiagnosis * d,
     guint take);
 ClothPowerSpectrum *cloth_diagnosis_find_weight (const ClothDiagnosis * d,
     guint take);
@@ -31,9 +31,9 @@ void cloth_diagnosis_make_test (ClothDiagnosis * d, guint begin, guint end,
 void cloth_diagnosis_make_normals (ClothDiagnosis * d, guint begin, guint end,
     ClothGapTest * test);
 void cloth_diagnosis_list_nuisances (ClothDiagnosis * d, ClothGapTest * test);
-guint cloth_diagnosis_list_taken_in (const ClothDiagnosis * d, gdouble width,
+guint cloth_diagnosis_list_accepted (const ClothDiagnosis * d, gdouble width,
     guint * directions, gdouble * precisions);
-void cloth_diagnosis_find_left (ClothDiagnosis * d,
+void cloth_diagnosis_find_residual_variance (ClothDiagnosis * d,
     const ClothGapScore * score);
 GArray *cloth_diagnosis_rank (ClothDiagnosis * d, ClothGapTest * test);
 gdouble cloth_diagnosis_find_probability (const ClothDiagnosis * d,

@@ -26,6 +26,8 @@
  * seems to change, too. */
 #define GUST_MARGIN 10.
 
+#define MOST CLOTH_EFFECT_MAX_PARAMETERS
+
 /* P(χ² > x) with 1, 2 or 3 degrees of freedom; above, Wilson and Hilferty (1931). */
 static gdouble
 chi_square_tail (gdouble x, guint n)
@@ -49,8 +51,8 @@ typedef struct
 {
   const ClothGapTest *test;
   const ClothCandidate *candidate;
-  guint directions[4];
-  gdouble precisions[4];
+  guint directions[MOST];
+  gdouble precisions[MOST];
   gboolean one_sided;
 } Trial;
 
@@ -81,7 +83,7 @@ estimate (const Trial * trial, const ClothReducedEquations * reduced,
     gdouble phi, gdouble * changes, gdouble * inverse, gdouble * log_det)
 {
   guint n = reduced->n;
-  gdouble a[16];
+  gdouble a[MOST * MOST];
 
   *log_det = 0.;
   for (guint i = 0; i < n; i++) {
@@ -216,7 +218,7 @@ heterogeneity (const Trial * trial, const ClothNormalEquations * normal,
 
   for (guint b = 0; b < normal->n_blocks; b++) {
     ClothReducedEquations reduced;
-    gdouble a[16], rest[4] = { 0. }, x[4];
+    gdouble a[MOST * MOST], rest[MOST] = { 0. }, x[MOST];
 
     if (!trial->test->blocks[b])
       continue;
@@ -247,16 +249,16 @@ run_trial (const Trial * trial, ClothGapScore * score)
   guint n = trial->candidate->n, freedom = 0;
   const ClothNormalEquations *normal = trial->test->normal;
   gdouble gained, total = 0., spread;
-  ClothReducedEquations reduced, told;
-  gdouble phi, changes[4], inverse[16], log_det, fit = 0.;
-  const gdouble null[4] = { 0. };
+  ClothReducedEquations reduced, plain;
+  gdouble phi, changes[MOST], inverse[MOST * MOST], log_det, fit = 0.;
+  const gdouble null[MOST] = { 0. };
   ClothGapTest numbers = *trial->test;  /* without variability */
 
   numbers.n_nuisances = numbers.n_numbers;
   score->kept = 1.;
   if (!reduce (trial, normal, trial->test->blocks, &reduced)
       || !cloth_gap_test_reduce (&numbers, normal, numbers.blocks,
-          trial->directions, n, &told))
+          trial->directions, n, &plain))
     return FALSE;
   phi = cloth_gap_test_dispersion (trial->test, normal, &reduced);
   if (!estimate (trial, &reduced, phi, changes, inverse, &log_det))
@@ -266,11 +268,11 @@ run_trial (const Trial * trial, ClothGapScore * score)
     const gdouble precision = 1. / inverse[i * n + i];
 
     fit -= 0.5 * reduced.s[i] / phi * changes[i];
-    score->kept = MIN (score->kept, told.kept[i]);
+    score->kept = MIN (score->kept, plain.kept[i]);
     score->changes[i] = changes[i] / inverse[i * n + i] / precision;
     score->sigmas[i] = sqrt (1. / precision);
   }
-  score->evidence = fit - 0.5 * log_det;
+  score->log_bayes_factor = fit - 0.5 * log_det;
   gained = cross_validate (trial, normal, normal, null, phi, &total);
   spread = heterogeneity (trial, normal, phi, changes, &freedom);
   score->improvement = total > 0. ? gained / total : 0.;
@@ -292,7 +294,7 @@ run_gusts (const ClothGapTest * test, const ClothCandidate * candidate,
   if (!cloth_gap_test_gusts (test, p[0].prior, exp (-test->block_s /
               CLOTH_GAP_GUST_PARTS / p[1].null_value), &gusts))
     return FALSE;
-  score->evidence = gusts.evidence - GUST_MARGIN;
+  score->log_bayes_factor = gusts.log_bayes_factor - GUST_MARGIN;
   score->kept = 1.;
   score->changes[0] = gusts.intensity;
   score->changes[1] = gusts.azimuth;
@@ -322,8 +324,8 @@ cloth_gap_score_compare (gconstpointer a, gconstpointer b)
 {
   const ClothGapScore *x = a, *y = b;
 
-  if (x->evidence != y->evidence)
-    return x->evidence > y->evidence ? -1 : 1;
+  if (x->log_bayes_factor != y->log_bayes_factor)
+    return x->log_bayes_factor > y->log_bayes_factor ? -1 : 1;
   return x->candidate < y->candidate ? -1 : x->candidate > y->candidate;
 }
 
@@ -341,7 +343,7 @@ cloth_gap_test_run (const ClothGapTest * test)
 
   for (guint i = 0; i < list->len;) {
     const ClothEffect *effect = g_array_index (list, ClothCandidate, i).effect;
-    ClothGapScore most = {.evidence = -INFINITY };
+    ClothGapScore most = {.log_bayes_factor = -INFINITY };
     guint n = 0;
 
     for (; i < list->len
@@ -351,13 +353,13 @@ cloth_gap_test_run (const ClothGapTest * test)
       if (!run_candidate (test, i, &score))
         continue;
       n++;
-      if (score.evidence > most.evidence)
+      if (score.log_bayes_factor > most.log_bayes_factor)
         most = score;
     }
     if (!n)
       continue;
-    most.evidence = most.kept < CLOTH_GAP_IDENTIFIABLE ? -INFINITY :
-        most.evidence - log (n);
+    most.log_bayes_factor = most.kept < CLOTH_GAP_IDENTIFIABLE ? -INFINITY :
+        most.log_bayes_factor - log (n);
     g_array_append_val (best, most);
   }
   g_array_sort (best, cloth_gap_score_compare);
@@ -384,9 +386,8 @@ cloth_gap_test_cosine (const ClothGapTest * test, guint one, guint other)
       const guint directions[2] = { a->first + i, b->first + j };
       ClothReducedEquations r;
 
-      if (cloth_normal_equations_reduce (test->normal, test->blocks,
-              test->nuisances, test->precisions, test->n_nuisances,
-              directions, 2, &r) && r.g[0] > 0. && r.g[3] > 0.)
+      if (cloth_gap_test_reduce (test, test->normal, test->blocks, directions,
+              2, &r) && r.g[0] > 0. && r.g[3] > 0.)
         most = MAX (most, fabs (r.g[1]) / sqrt (r.g[0] * r.g[3]));
     }
   return most;

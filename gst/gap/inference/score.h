@@ -8,7 +8,7 @@
 G_BEGIN_DECLS
 
 /* @candidate: index of the candidate
- * @evidence: logarithm of the Bayes factor for it
+ * @log_bayes_factor: logarithm of the Bayes factor for it
  * @improvement: share of the residual's square that it removes from blocks of time that
  *   it was not estimated on
  * @changes: expected changes of its directions; of gusts their intensity and azimuth
@@ -19,16 +19,17 @@ G_BEGIN_DECLS
  */
 typedef struct {
   guint candidate;
-  gdouble evidence;
+  gdouble log_bayes_factor;
   gdouble improvement;
-  gdouble changes[4];
-  gdouble sigmas[4];
+  gdouble changes[CLOTH_EFFECT_MAX_PARAMETERS];
+  gdouble sigmas[CLOTH_EFFECT_MAX_PARAMETERS];
   gdouble p_value;
   gdouble constancy_p_value;
   gdouble kept;
 } ClothGapScore;
 
-/* Below this share left by the nuisances an effect can't be told from them. */
+/* An effect of whose squared derivative the nuisances leave less than this share can't be told
+ * from them. */
 #define CLOTH_GAP_IDENTIFIABLE 0.05
 
 gint cloth_gap_score_compare (gconstpointer a, gconstpointer b);

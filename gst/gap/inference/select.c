@@ -25,16 +25,16 @@
 /* Priors of effects in it are so many times as wide. */
 #define REFIT_WIDTH 2.
 
-/* Fits what is taken in, from @start on. The free numbers may give a little. */
+/* Fits what is accepted, from @start on. The free numbers may give a little. */
 static gboolean
 refit (ClothDiagnosis * d, const ClothModel * start, GError ** error)
 {
-  const guint now = d->n_chosen - 1, most = d->candidates->directions->len;
+  const guint now = d->n_accepted - 1, most = d->candidates->directions->len;
   g_autofree guint *directions = g_new (guint, most);
   g_autofree gdouble *precisions = g_new (gdouble, most);
   g_autofree gdouble *sigmas = g_new0 (gdouble, most);
   g_autofree gboolean *blocks = g_new (gboolean, d->n_blocks);
-  guint m = cloth_diagnosis_list_taken_in (d, REFIT_WIDTH, directions,
+  guint m = cloth_diagnosis_list_accepted (d, REFIT_WIDTH, directions,
       precisions);
 
   for (guint b = 0; b < d->n_blocks; b++)
@@ -45,7 +45,7 @@ refit (ClothDiagnosis * d, const ClothModel * start, GError ** error)
       FALSE, FALSE, N_REFIT, &d->study, sigmas, error);
   m = d->candidates->n_free;
   for (guint c = 0; c <= now; c++)
-    for (guint k = 0; k < cloth_diagnosis_chosen (d, c)->n; k++)
+    for (guint k = 0; k < cloth_diagnosis_accepted (d, c)->n; k++)
       d->sigmas[now][c][k] = sigmas[m++];
   return d->with[now] != NULL;
 }
@@ -54,36 +54,36 @@ refit (ClothDiagnosis * d, const ClothModel * start, GError ** error)
 static ClothModel *
 move_to (const ClothDiagnosis * d, const gdouble * values)
 {
-  const ClothCandidate *c = cloth_diagnosis_chosen (d, d->n_chosen - 1);
+  const ClothCandidate *c = cloth_diagnosis_accepted (d, d->n_accepted - 1);
   guint directions[CLOTH_EFFECT_MAX_PARAMETERS];
 
   for (guint k = 0; k < c->n; k++)
     directions[k] = c->first + k;
   return cloth_candidates_move (d->candidates,
-      d->n_chosen > 1 ? d->with[d->n_chosen - 2] : d->model, directions,
+      d->n_accepted > 1 ? d->with[d->n_accepted - 2] : d->model, directions,
       values, c->n);
 }
 
-/* How far each direction of an effect that is taken in is from its null. */
+/* How far each direction of an accepted effect is from its null. */
 static void
-find_values (const ClothDiagnosis * d, guint chosen, gdouble * values)
+find_values (const ClothDiagnosis * d, guint accepted, gdouble * values)
 {
-  const ClothCandidate *c = cloth_diagnosis_chosen (d, chosen);
+  const ClothCandidate *c = cloth_diagnosis_accepted (d, accepted);
 
   for (guint k = 0; k < c->n; k++)
     values[k] = cloth_candidates_place (d->candidates,
-        d->with[d->n_chosen - 1], c->first + k) -
+        d->with[d->n_accepted - 1], c->first + k) -
         cloth_candidates_direction (d->candidates, c->first + k)->centre;
 }
 
-/* How much the residual would ask for an effect that is taken in if it were not: the
+/* How much the residual would support an accepted effect if it were not accepted: the
  * logarithm of its Bayes factor where the fit left the studies, all else fitted along.
  * @first: of its columns there. */
 static gdouble
-find_need (const ClothDiagnosis * d, const ClothGapTest * test, guint chosen,
+find_need (const ClothDiagnosis * d, const ClothGapTest * test, guint accepted,
     guint first)
 {
-  const ClothCandidate *c = cloth_diagnosis_chosen (d, chosen);
+  const ClothCandidate *c = cloth_diagnosis_accepted (d, accepted);
   const ClothSensitivities *study = cloth_diagnosis_study (d, 0);
   guint n = c->n, m = study->m + d->n_variability, q = 0, others = 0;
   g_autofree guint *nuisances = g_new (guint, m);
@@ -93,9 +93,11 @@ find_need (const ClothDiagnosis * d, const ClothGapTest * test, guint chosen,
   ClothReducedEquations r;
   guint directions[CLOTH_EFFECT_MAX_PARAMETERS];
   gdouble values[CLOTH_EFFECT_MAX_PARAMETERS];
-  gdouble a[16], away[4], phi, need = -d->null_evidence[d->chosen[chosen]];
+  gdouble a[CLOTH_EFFECT_MAX_PARAMETERS * CLOTH_EFFECT_MAX_PARAMETERS];
+  gdouble away[CLOTH_EFFECT_MAX_PARAMETERS], phi, need =
+      -d->null_log_bayes_factors[d->accepted[accepted]];
 
-  cloth_diagnosis_list_taken_in (d, 1., taken, of_taken);
+  cloth_diagnosis_list_accepted (d, 1., taken, of_taken);
   for (guint k = 0; k < m; k++) {
     if (k >= first && k < first + n) {
       directions[k - first] = k;
@@ -109,7 +111,7 @@ find_need (const ClothDiagnosis * d, const ClothGapTest * test, guint chosen,
           precisions, q, directions, n, &r))
     return INFINITY;
   phi = cloth_gap_test_dispersion (test, test->normal, &r);
-  find_values (d, chosen, values);
+  find_values (d, accepted, values);
   /* away: from the best place to the null */
   for (guint i = 0; i < n; i++) {
     const gdouble precision = of_taken[first + i];
@@ -144,14 +146,14 @@ find_least_needed (ClothDiagnosis * d, guint * least)
   };
 
   cloth_diagnosis_make_normals (d, 0, d->n_takes, &test);
-  for (guint c = 0; c < d->n_chosen; c++) {
+  for (guint c = 0; c < d->n_accepted; c++) {
     gdouble need = find_need (d, &test, c, first);
 
     if (need < lowest) {
       lowest = need;
       *least = c;
     }
-    first += cloth_diagnosis_chosen (d, c)->n;
+    first += cloth_diagnosis_accepted (d, c)->n;
   }
   return lowest;
 }
@@ -160,23 +162,23 @@ find_least_needed (ClothDiagnosis * d, guint * least)
 static gboolean
 drop (ClothDiagnosis * d, guint which, GError ** error)
 {
-  const guint left = d->n_chosen - 1;
+  const guint left = d->n_accepted - 1;
   gdouble values[CLOTH_DIAGNOSIS_MAX_ACCEPTED][CLOTH_EFFECT_MAX_PARAMETERS];
 
-  d->dropped[d->n_dropped++] = d->chosen[which];
+  d->dropped[d->n_dropped++] = d->accepted[which];
   for (guint c = which; c < left; c++)
     find_values (d, c + 1, values[c]);
   for (guint c = which; c <= left; c++)
     g_clear_pointer (&d->with[c], cloth_model_free);
-  memmove (d->chosen + which, d->chosen + which + 1,
-      (left - which) * sizeof *d->chosen);
+  memmove (d->accepted + which, d->accepted + which + 1,
+      (left - which) * sizeof *d->accepted);
   memmove (d->probabilities + which, d->probabilities + which + 1,
       (left - which) * sizeof *d->probabilities);
-  for (d->n_chosen = which; d->n_chosen < left;) {
+  for (d->n_accepted = which; d->n_accepted < left;) {
     g_autoptr (ClothModel) start = NULL;
 
-    d->n_chosen++;
-    start = move_to (d, values[d->n_chosen - 1]);
+    d->n_accepted++;
+    start = move_to (d, values[d->n_accepted - 1]);
     if (!refit (d, start, error))
       return FALSE;
   }
@@ -189,8 +191,8 @@ drop_needless (ClothDiagnosis * d, GError ** error)
 {
   guint least = 0;
 
-  while (d->n_chosen > 1 && d->n_dropped < G_N_ELEMENTS (d->dropped)
-      && find_least_needed (d, &least) < d->least_evidence)
+  while (d->n_accepted > 1 && d->n_dropped < G_N_ELEMENTS (d->dropped)
+      && find_least_needed (d, &least) < d->least_log_bayes_factor)
     if (!drop (d, least, error))
       return FALSE;
   return TRUE;
@@ -198,34 +200,35 @@ drop_needless (ClothDiagnosis * d, GError ** error)
 
 /* How likely gusts are; −∞: they were not tested. */
 static gdouble
-gust_evidence (const ClothDiagnosis * d, const GArray * scores)
+find_gust_log_bayes_factor (const ClothDiagnosis * d, const GArray * scores)
 {
   for (guint i = 0; i < scores->len; i++) {
     const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
 
     if (cloth_candidate_is_gust (cloth_diagnosis_candidate (d, s)))
-      return s->evidence;
+      return s->log_bayes_factor;
   }
   return -INFINITY;
 }
 
-/* Whether an effect may be taken in: gusts can't, as what they did follows from nothing. */
+/* Whether an effect may be accepted: gusts can't, as what they did follows from nothing. */
 static gboolean
-may_come (const ClothDiagnosis * d, const ClothGapScore * s, gdouble least)
+may_be_accepted (const ClothDiagnosis * d, const ClothGapScore * s,
+    gdouble least)
 {
   const ClothCandidate *c = cloth_diagnosis_candidate (d, s);
 
-  return !cloth_candidate_is_gust (c) && s->evidence >= least
+  return !cloth_candidate_is_gust (c) && s->log_bayes_factor >= least
       && s->improvement > 0. && !cloth_diagnosis_is_decided (d, c->effect);
 }
 
-/* The likeliest effect that is not settled yet, if it is asked for; nothing that is less
+/* The likeliest effect that is not decided yet, if it is supported; nothing that is less
  * likely than gusts, if @gusts. */
 static const ClothGapScore *
-find_asked (const ClothDiagnosis * d, const GArray * scores, gboolean gusts)
+find_supported (const ClothDiagnosis * d, const GArray * scores, gboolean gusts)
 {
-  const gdouble least = MAX (d->least_evidence, gusts ?
-      gust_evidence (d, scores) : -INFINITY);
+  const gdouble least = MAX (d->least_log_bayes_factor, gusts ?
+      find_gust_log_bayes_factor (d, scores) : -INFINITY);
 
   for (guint i = 0; i < scores->len; i++) {
     const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
@@ -233,7 +236,7 @@ find_asked (const ClothDiagnosis * d, const GArray * scores, gboolean gusts)
 
     if (!cloth_candidate_is_gust (c)
         && !cloth_diagnosis_is_decided (d, c->effect))
-      return may_come (d, s, least) ? s : NULL;
+      return may_be_accepted (d, s, least) ? s : NULL;
   }
   return NULL;
 }
@@ -244,20 +247,20 @@ static gdouble
 find_next (ClothDiagnosis * d, ClothGapTest * test, const ClothGapScore * one)
 {
   g_autoptr (GArray) scores = NULL;
-  gdouble next = d->least_evidence;
+  gdouble next = d->least_log_bayes_factor;
 
-  d->chosen[d->n_chosen++] = one->candidate;
+  d->accepted[d->n_accepted++] = one->candidate;
   cloth_diagnosis_list_nuisances (d, test);
   scores = cloth_gap_test_run (test);
   for (guint i = 0; i < scores->len; i++) {
     const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
 
-    if (may_come (d, s, next + d->null_evidence[s->candidate]))
-      next = s->evidence - d->null_evidence[s->candidate];
+    if (may_be_accepted (d, s, next + d->null_log_bayes_factors[s->candidate]))
+      next = s->log_bayes_factor - d->null_log_bayes_factors[s->candidate];
   }
-  d->n_chosen--;
+  d->n_accepted--;
   cloth_diagnosis_list_nuisances (d, test);
-  return next - d->least_evidence;
+  return next - d->least_log_bayes_factor;
 }
 
 /* An effect may stand for two others, as wind does for drag and tilted gravity: of those
@@ -266,21 +269,22 @@ find_next (ClothDiagnosis * d, ClothGapTest * test, const ClothGapScore * one)
 static void
 look_ahead (ClothDiagnosis * d, ClothGapTest * test, GArray * scores)
 {
-  const ClothGapScore *first = find_asked (d, scores, TRUE);
+  const ClothGapScore *first = find_supported (d, scores, TRUE);
   ClothGapScore *best = NULL;
   gdouble least, most = 0., of_first = 0.;
 
   if (!first)
     return;
-  least = MAX (first->evidence - HARDLY_LESS, MAX (d->least_evidence,
-          gust_evidence (d, scores)));
+  least =
+      MAX (first->log_bayes_factor - HARDLY_LESS,
+      MAX (d->least_log_bayes_factor, find_gust_log_bayes_factor (d, scores)));
   for (guint i = 0; i < scores->len; i++) {
     ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
     gdouble all;
 
-    if (!may_come (d, s, least))
+    if (!may_be_accepted (d, s, least))
       continue;
-    all = s->evidence + find_next (d, test, s);
+    all = s->log_bayes_factor + find_next (d, test, s);
     if (s == first)
       of_first = all;
     if (!best || all > most) {
@@ -288,13 +292,13 @@ look_ahead (ClothDiagnosis * d, ClothGapTest * test, GArray * scores)
       best = s;
     }
   }
-  best->evidence = first->evidence + most - of_first;
+  best->log_bayes_factor = first->log_bayes_factor + most - of_first;
   g_array_sort (scores, cloth_gap_score_compare);
 }
 
-/* Fits with the last effect, from where it is asked to be, else from its null. */
+/* Fits with the last effect, from its estimated value, else from its null. */
 static gboolean
-take_in (ClothDiagnosis * d, const gdouble * changes, GError ** error)
+accept_last (ClothDiagnosis * d, const gdouble * changes, GError ** error)
 {
   const gdouble nothing[CLOTH_EFFECT_MAX_PARAMETERS] = { 0. };
   g_autoptr (GError) diverged = NULL;
@@ -318,61 +322,61 @@ end_with_sound (ClothDiagnosis * d, GError * failed, GError ** error)
     return FALSE;
   }
   g_error_free (failed);
-  while (d->n_chosen && !d->with[d->n_chosen - 1])
-    d->n_chosen--;
+  while (d->n_accepted && !d->with[d->n_accepted - 1])
+    d->n_accepted--;
   return TRUE;
 }
 
-/* Takes in effects one by one, as long as one is asked for: the next one by the same
+/* Accepts effects one by one, as long as one is supported: the next one by the same
  * derivatives first, and only then by new ones. */
 gboolean
 cloth_diagnosis_select (ClothDiagnosis * d, GError ** error)
 {
   g_autoptr (GArray) scores = NULL;
-  const ClothGapScore *asked;
+  const ClothGapScore *supported;
   ClothGapTest test = { NULL };
 
-  cloth_diagnosis_find_left (d, NULL);
+  cloth_diagnosis_find_residual_variance (d, NULL);
   cloth_diagnosis_make_test (d, 0, d->n_takes, &test);
   scores = cloth_diagnosis_rank (d, &test);
   cloth_diagnosis_begin_part (d, 0.42, 0.48, 0.5, "the likeliest effects");
-  if (!cloth_diagnosis_try_rivals (d, &test, scores, d->model, error))
+  if (!cloth_diagnosis_refine_hypotheses (d, &test, scores, d->model, error))
     return FALSE;
   look_ahead (d, &test, scores);
   cloth_diagnosis_fill_effects (d, &test, scores);
-  while ((asked = find_asked (d, scores, TRUE))) {
+  while ((supported = find_supported (d, scores, TRUE))) {
     GError *failed = NULL;
-    const ClothGapScore next = *asked;
-    guint done = d->n_chosen + d->n_dropped, dropped = d->n_dropped;
+    const ClothGapScore next = *supported;
+    guint done = d->n_accepted + d->n_dropped, dropped = d->n_dropped;
     gdouble from = 0.48 + 0.12 * MIN (done, CLOTH_DIAGNOSIS_MAX_ACCEPTED - 1);
 
-    d->asked = TRUE;
-    d->probabilities[d->n_chosen] =
+    d->supported = TRUE;
+    d->probabilities[d->n_accepted] =
         cloth_diagnosis_find_probability (d, scores, &next);
-    d->chosen[d->n_chosen++] = next.candidate;
+    d->accepted[d->n_accepted++] = next.candidate;
     cloth_diagnosis_list_nuisances (d, &test);
     g_array_unref (scores);
     scores = cloth_diagnosis_rank (d, &test);
     /* what derivatives elsewhere leave is not steady either */
-    asked = find_asked (d, scores, FALSE);
+    supported = find_supported (d, scores, FALSE);
     cloth_diagnosis_begin_part (d, from, from + 0.04, 0.4,
         cloth_diagnosis_candidate (d, &next)->effect->id);
-    if (!take_in (d, next.changes, &failed) || !drop_needless (d, &failed))
+    if (!accept_last (d, next.changes, &failed) || !drop_needless (d, &failed))
       return end_with_sound (d, failed, error);
-    /* one that went may leave room for what was not asked for beside it */
-    if (d->n_chosen == CLOTH_DIAGNOSIS_MAX_ACCEPTED
-        || (!asked && d->n_dropped == dropped))
+    /* one that went may leave room for what was not supported beside it */
+    if (d->n_accepted == CLOTH_DIAGNOSIS_MAX_ACCEPTED
+        || (!supported && d->n_dropped == dropped))
       break;
     if (!cloth_diagnosis_linearise (d, 0, d->n_takes,
-            d->with[d->n_chosen - 1], from + 0.04, from + 0.09, &failed))
+            d->with[d->n_accepted - 1], from + 0.04, from + 0.09, &failed))
       return end_with_sound (d, failed, error);
     cloth_diagnosis_make_test (d, 0, d->n_takes, &test);
     g_array_unref (scores);
     scores = cloth_diagnosis_rank (d, &test);
     cloth_diagnosis_begin_part (d, from + 0.09, from + 0.12, 0.5,
         "the likeliest effects");
-    if (!cloth_diagnosis_try_rivals (d, &test, scores,
-            d->with[d->n_chosen - 1], error))
+    if (!cloth_diagnosis_refine_hypotheses (d, &test, scores,
+            d->with[d->n_accepted - 1], error))
       return FALSE;
   }
   return TRUE;

@@ -40,7 +40,8 @@ cloth_gap_test_dispersion (const ClothGapTest * test,
 /* @test: what is tested
  * @normal: normal equations whose nuisances are those of the test
  * @blocks: (array): which blocks count
- * @directions: (array length=n): columns that are looked at, at most 4
+ * @directions: (array length=n): columns that are looked at, at most
+ *   %CLOTH_EFFECT_MAX_PARAMETERS
  * @n: how many
  * @reduced: (out): what is left of them once the nuisances are projected out
  *

@@ -15,26 +15,28 @@
 
 #include "gst/math/linalg.h"
 
-/* So many effects at most, each for so many steps of Gauss and Newton at most, as long as it
+/* So many effects at most, each for so many Gauss–Newton steps at most, as long as it
  * moves by this share of a prior and gains so much evidence. */
-#define MOST_RIVALS 12
+#define MOST_HYPOTHESES 12
 #define N_STEPS 6
 #define FAR 0.1
-#define MUCH CLOTH_DIAGNOSIS_LEAST_EVIDENCE
+#define MUCH CLOTH_DIAGNOSIS_LEAST_LOG_BAYES_FACTOR
 /* No effect goes further than so many priors. */
 #define LONGEST 3.
 
-/* An effect on trial. */
+#define MOST CLOTH_EFFECT_MAX_PARAMETERS
+
+/* The hypothesis that an effect acts, with its present values. */
 typedef struct
 {
   ClothGapScore *score;
   const ClothCandidate *candidate;
-  gdouble at[CLOTH_EFFECT_MAX_PARAMETERS];      /* changes from the null */
+  gdouble at[MOST];             /* changes from the null */
   guint first;                  /* of its models */
   gdouble moved, gained;        /* by the last step, in priors and in evidence */
-} Rival;
+} Hypothesis;
 
-/* Of all rivals: what is the same for each. */
+/* What is the same for all hypotheses. */
 typedef struct
 {
   ClothDiagnosis *d;
@@ -44,22 +46,22 @@ typedef struct
   ClothNormalEquations *null;   /* the equations without any of them */
   gdouble phi;                  /* how much more than noise a square counts */
   gdouble without;              /* logarithm of the probability without any of them */
-} Court;
+} Refinement;
 
 static void
-court_clear (Court * court)
+refinement_clear (Refinement * refinement)
 {
-  for (guint t = 0; t < court->d->n_takes; t++)
-    g_free (court->z[t]);
-  g_free (court->z);
-  cloth_normal_equations_free (court->null);
+  for (guint t = 0; t < refinement->d->n_takes; t++)
+    g_free (refinement->z[t]);
+  g_free (refinement->z);
+  cloth_normal_equations_free (refinement->null);
 }
 
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Court, court_clear);
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Refinement, refinement_clear);
 
 /* Changes of its directions within their ranges. */
 static void
-keep_in_range (const ClothDiagnosis * d, Rival * r)
+keep_in_range (const ClothDiagnosis * d, Hypothesis * r)
 {
   for (guint k = 0; k < r->candidate->n; k++) {
     const ClothDirection *direction =
@@ -75,7 +77,7 @@ keep_in_range (const ClothDiagnosis * d, Rival * r)
 
 /* Half of a direction's step, as at the null the way to both sides is a whole one. */
 static gdouble
-step_of (const ClothDiagnosis * d, const Rival * r, guint k)
+difference_step (const ClothDiagnosis * d, const Hypothesis * r, guint k)
 {
   return 0.5 * cloth_candidates_direction (d->candidates,
       r->candidate->first + k)->step;
@@ -83,32 +85,33 @@ step_of (const ClothDiagnosis * d, const Rival * r, guint k)
 
 /* Its model where it is, and there moved along each of its directions to both sides. */
 static void
-add_models (const Court * court, Rival * r, GPtrArray * models)
+add_models (const Refinement * refinement, Hypothesis * r, GPtrArray * models)
 {
   const guint n = r->candidate->n;
-  guint directions[CLOTH_EFFECT_MAX_PARAMETERS];
+  guint directions[MOST];
 
   r->first = models->len;
   for (guint k = 0; k < n; k++)
     directions[k] = r->candidate->first + k;
   for (guint i = 0; i <= 2 * n; i++) {
-    gdouble at[CLOTH_EFFECT_MAX_PARAMETERS];
+    gdouble at[MOST];
 
     memcpy (at, r->at, sizeof at);
     if (i)
-      at[(i - 1) / 2] += (i % 2 ? 1. : -1.) * step_of (court->d, r,
+      at[(i - 1) / 2] += (i % 2 ? 1. : -1.) * difference_step (refinement->d, r,
           (i - 1) / 2);
     g_ptr_array_add (models,
-        cloth_candidates_move (court->d->candidates, court->base,
+        cloth_candidates_move (refinement->d->candidates, refinement->base,
             directions, at, n));
   }
 }
 
 /* Features of the residual of each model in each take. */
 static gboolean
-simulate (Court * court, GPtrArray * models, gboolean * sound, GError ** error)
+simulate (Refinement * refinement, GPtrArray * models, gboolean * sound,
+    GError ** error)
 {
-  ClothDiagnosis *d = court->d;
+  ClothDiagnosis *d = refinement->d;
   g_autofree gdouble **z = g_new (gdouble *, models->len);
   g_autofree gboolean *here = g_new (gboolean, models->len);
 
@@ -118,10 +121,10 @@ simulate (Court * court, GPtrArray * models, gboolean * sound, GError ** error)
     const ClothSensitivities *study = cloth_diagnosis_study (d, t);
     const gsize size = study->features->size;
 
-    g_free (court->z[t]);
-    court->z[t] = g_new0 (gdouble, models->len * size);
+    g_free (refinement->z[t]);
+    refinement->z[t] = g_new0 (gdouble, models->len * size);
     for (guint i = 0; i < models->len; i++)
-      z[i] = court->z[t] + i * size;
+      z[i] = refinement->z[t] + i * size;
     if (!cloth_sensitivities_run (study, (ClothModel **) models->pdata,
             models->len, &d->study, z, here, error))
       return FALSE;
@@ -131,17 +134,18 @@ simulate (Court * court, GPtrArray * models, gboolean * sound, GError ** error)
   return TRUE;
 }
 
-/* The normal equations of a take where a rival is: as those of the test at the model without
+/* The normal equations of a take at a hypothesis: as those of the test at the model without
  * it, and behind them its own directions. Its residual is the mean of its simulations, with
  * less variability. */
 static ClothNormalEquations *
-normal_of (const Court * court, const Rival * r, guint take, guint before)
+normal_of (const Refinement * refinement, const Hypothesis * r, guint take,
+    guint before)
 {
-  const ClothDiagnosis *d = court->d;
+  const ClothDiagnosis *d = refinement->d;
   const ClothSensitivities *s = cloth_diagnosis_study (d, take);
   const gsize size = s->features->size;
   const guint n = r->candidate->n, others = s->m + d->n_variability;
-  const gdouble *own = court->z[take] + r->first * size;
+  const gdouble *own = refinement->z[take] + r->first * size;
   g_autofree gdouble *columns =
       cloth_diagnosis_list_columns (d, take, before, n);
   g_autofree gdouble *z = g_new0 (gdouble, size);
@@ -154,55 +158,58 @@ normal_of (const Court * court, const Rival * r, guint take, guint before)
   for (guint i = 0; i < n; i++)
     for (gsize k = 0; k < size; k++)
       columns[(others + i) * size + k] = (own[(1 + 2 * i) * size + k] -
-          own[(2 + 2 * i) * size + k]) / (2. * step_of (d, r, i));
+          own[(2 + 2 * i) * size + k]) / (2. * difference_step (d, r, i));
   return cloth_normal_equations_new (s->features, weight, z, columns,
       others + n);
 }
 
 /* Those of all takes. */
 static ClothNormalEquations *
-all_normals (const Court * court, const Rival * r)
+sum_normals (const Refinement * refinement, const Hypothesis * r)
 {
   ClothNormalEquations *normal = NULL;
   guint before = 0;
 
-  for (guint t = 0; t < court->d->n_takes; t++) {
+  for (guint t = 0; t < refinement->d->n_takes; t++) {
     normal =
-        cloth_normal_equations_append (normal, normal_of (court, r, t, before));
+        cloth_normal_equations_append (normal, normal_of (refinement, r, t,
+            before));
     before +=
-        cloth_sensitivities_count_variability (cloth_diagnosis_study (court->d,
-            t));
+        cloth_sensitivities_count_variability (cloth_diagnosis_study
+        (refinement->d, t));
   }
   return normal;
 }
 
-/* Takes a step from where a rival is; the evidence is that of where it comes to, by the
+/* Takes a step from where a hypothesis is; the evidence is that of where it comes to, by the
  * derivatives here. */
 static void
-step (const Court * court, Rival * r)
+step (const Refinement * refinement, Hypothesis * r)
 {
   const guint n = r->candidate->n;
-  g_autoptr (ClothNormalEquations) here = all_normals (court, r);
+  g_autoptr (ClothNormalEquations) here = sum_normals (refinement, r);
   ClothReducedEquations reduced;
-  guint directions[CLOTH_EFFECT_MAX_PARAMETERS] = { 0 };
-  gdouble a[16], inverse[16], by[4], log_det = 0., square, evidence;
+  guint directions[MOST] = { 0 };
+  gdouble a[MOST * MOST], inverse[MOST * MOST], by[MOST], log_det =
+      0., square, log_bayes_factor;
 
   for (guint i = 0; i < n; i++)
     directions[i] = here->m - n + i;
-  if (!cloth_gap_test_reduce (court->test, here, court->test->blocks,
+  if (!cloth_gap_test_reduce (refinement->test, here, refinement->test->blocks,
           directions, n, &reduced))
     return;
-  r->score->improvement = cloth_gap_test_improvement (court->test,
-      r->score->candidate, court->null, here, directions, r->at, court->phi);
+  r->score->improvement = cloth_gap_test_improvement (refinement->test,
+      r->score->candidate, refinement->null, here, directions, r->at,
+      refinement->phi);
   for (guint i = 0; i < n; i++) {
-    gdouble prior = cloth_candidates_direction (court->d->candidates,
+    gdouble prior = cloth_candidates_direction (refinement->d->candidates,
         r->candidate->first + i)->prior;
 
     for (guint k = 0; k < n; k++)
-      a[i * n + k] = reduced.g[i * n + k] / court->phi;
+      a[i * n + k] = reduced.g[i * n + k] / refinement->phi;
     a[i * n + i] += 1. / (prior * prior);
     log_det += 2. * log (prior);
-    by[i] = -reduced.s[i] / court->phi - r->at[i] / (prior * prior);
+    by[i] = -reduced.s[i] / refinement->phi - r->at[i] / (prior * prior);
   }
   if (!cloth_cholesky_factor (n, a))
     return;
@@ -217,95 +224,96 @@ step (const Court * court, Rival * r)
     by[i] = from;
     r->score->sigmas[i] = sqrt (inverse[i * n + i]);
   }
-  keep_in_range (court->d, r);
-  square = reduced.r / court->phi;
+  keep_in_range (refinement->d, r);
+  square = reduced.r / refinement->phi;
   for (guint i = 0; i < n; i++) {
-    gdouble prior = cloth_candidates_direction (court->d->candidates,
+    gdouble prior = cloth_candidates_direction (refinement->d->candidates,
         r->candidate->first + i)->prior;
 
     by[i] = r->at[i] - by[i];
     r->moved = MAX (r->moved, fabs (by[i]) / prior);
     square += r->at[i] * r->at[i] / (prior * prior) +
-        2. * reduced.s[i] / court->phi * by[i];
+        2. * reduced.s[i] / refinement->phi * by[i];
     for (guint k = 0; k <= i; k++)
       square += (k < i ? 2. : 1.) * by[i] * by[k] * reduced.g[i * n + k] /
-          court->phi;
+          refinement->phi;
   }
-  evidence = -0.5 * (square + log_det) - court->without -
-      court->d->null_evidence[r->score->candidate];
-  r->gained = evidence - r->score->evidence;
-  r->score->evidence = evidence;
+  log_bayes_factor = -0.5 * (square + log_det) - refinement->without -
+      refinement->d->null_log_bayes_factors[r->score->candidate];
+  r->gained = log_bayes_factor - r->score->log_bayes_factor;
+  r->score->log_bayes_factor = log_bayes_factor;
   memcpy (r->score->changes, r->at, sizeof r->score->changes);
 }
 
-/* The residual without any rival, as that of the rivals freed of variability. */
+/* The residual without any effect, as that of the hypotheses freed of variability. */
 static gboolean
-open_court (Court * court)
+start (Refinement * refinement)
 {
-  ClothDiagnosis *d = court->d;
-  const ClothCandidate none = { NULL };
-  const Rival nobody = { NULL, &none };
+  ClothDiagnosis *d = refinement->d;
+  const ClothCandidate no_candidate = { NULL };
+  const Hypothesis none = { NULL, &no_candidate };
   ClothReducedEquations reduced;
 
-  court->z = g_new0 (gdouble *, d->n_takes);
+  refinement->z = g_new0 (gdouble *, d->n_takes);
   for (guint t = 0; t < d->n_takes; t++) {
     const ClothSensitivities *s = cloth_diagnosis_study (d, t);
     const gsize size = s->features->size;
 
-    court->z[t] = g_memdup2 (s->z, size * sizeof (gdouble));
+    refinement->z[t] = g_memdup2 (s->z, size * sizeof (gdouble));
     for (gsize k = 0; s->n_variability && k < size; k++)
-      court->z[t][k] -= s->variability[(s->n_variability - 1) * size + k];
+      refinement->z[t][k] -= s->variability[(s->n_variability - 1) * size + k];
   }
-  court->null = all_normals (court, &nobody);
-  if (!cloth_gap_test_reduce (court->test, court->null, court->test->blocks,
-          NULL, 0, &reduced))
+  refinement->null = sum_normals (refinement, &none);
+  if (!cloth_gap_test_reduce (refinement->test, refinement->null,
+          refinement->test->blocks, NULL, 0, &reduced))
     return FALSE;
-  court->phi = cloth_gap_test_dispersion (court->test, court->test->normal,
+  refinement->phi =
+      cloth_gap_test_dispersion (refinement->test, refinement->test->normal,
       &reduced);
-  court->without = -0.5 * reduced.r / court->phi;
+  refinement->without = -0.5 * reduced.r / refinement->phi;
   return TRUE;
 }
 
 static void
-list_rivals (const Court * court, GArray * scores, gdouble least,
-    GArray * rivals)
+list_hypotheses (const Refinement * refinement, GArray * scores, gdouble least,
+    GArray * hypotheses)
 {
-  const ClothDiagnosis *d = court->d;
+  const ClothDiagnosis *d = refinement->d;
 
-  for (guint i = 0; i < scores->len && rivals->len < MOST_RIVALS; i++) {
+  for (guint i = 0; i < scores->len && hypotheses->len < MOST_HYPOTHESES; i++) {
     ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
-    Rival r = { s, cloth_diagnosis_candidate (d, s) };
+    Hypothesis r = { s, cloth_diagnosis_candidate (d, s) };
 
-    if (!(s->evidence > least) || cloth_candidate_is_gust (r.candidate))
+    if (!(s->log_bayes_factor > least) || cloth_candidate_is_gust (r.candidate))
       continue;
     memcpy (r.at, s->changes, sizeof s->changes);
     keep_in_range (d, &r);
-    g_array_append_val (rivals, r);
+    g_array_append_val (hypotheses, r);
   }
 }
 
 /* One step of each. */
 static gboolean
-go (Court * court, GArray * rivals, GError ** error)
+step_all (Refinement * refinement, GArray * hypotheses, GError ** error)
 {
   g_autoptr (GPtrArray) models =
       g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_model_free);
   g_autofree gboolean *sound = NULL;
 
-  for (guint i = 0; i < rivals->len; i++)
-    add_models (court, &g_array_index (rivals, Rival, i), models);
+  for (guint i = 0; i < hypotheses->len; i++)
+    add_models (refinement, &g_array_index (hypotheses, Hypothesis, i), models);
   sound = g_new (gboolean, models->len);
-  if (!simulate (court, models, sound, error))
+  if (!simulate (refinement, models, sound, error))
     return FALSE;
-  for (guint i = 0; i < rivals->len; i++) {
-    Rival *r = &g_array_index (rivals, Rival, i);
+  for (guint i = 0; i < hypotheses->len; i++) {
+    Hypothesis *r = &g_array_index (hypotheses, Hypothesis, i);
     gboolean ok = TRUE;
 
     for (guint k = 0; k <= 2 * r->candidate->n; k++)
       ok = ok && sound[r->first + k];
     r->moved = r->gained = 0.;
     if (ok)
-      step (court, r);
+      step (refinement, r);
   }
   return TRUE;
 }
@@ -317,30 +325,33 @@ go (Court * court, GArray * rivals, GError ** error)
  * @error: #ClothSimError
  *
  * Derivatives at the null may not hold where the residual asks an effect to be. The
- * likeliest of those that are asked for get simulations of their own, and with them new
+ * likeliest of those that are supported get simulations of their own, and with them new
  * changes and a new evidence, against the same residual without any of them.
  *
  * Returns: whether that could be simulated
  */
 gboolean
-cloth_diagnosis_try_rivals (ClothDiagnosis * d, const ClothGapTest * test,
-    GArray * scores, const ClothModel * base, GError ** error)
+cloth_diagnosis_refine_hypotheses (ClothDiagnosis * d,
+    const ClothGapTest * test, GArray * scores, const ClothModel * base,
+    GError ** error)
 {
-  g_auto (Court) court = { d, test, base };
-  g_autoptr (GArray) rivals = g_array_new (FALSE, FALSE, sizeof (Rival));
+  g_auto (Refinement) refinement = { d, test, base };
+  g_autoptr (GArray) hypotheses =
+      g_array_new (FALSE, FALSE, sizeof (Hypothesis));
 
-  if (!open_court (&court))
+  if (!start (&refinement))
     return TRUE;
-  /* the first ones are named, later ones only taken in */
-  list_rivals (&court, scores, d->n_chosen ? d->least_evidence : 0., rivals);
-  for (guint i = 0; i < N_STEPS && rivals->len; i++) {
-    if (!go (&court, rivals, error))
+  /* the first ones are named, later ones only accepted */
+  list_hypotheses (&refinement, scores,
+      d->n_accepted ? d->least_log_bayes_factor : 0., hypotheses);
+  for (guint i = 0; i < N_STEPS && hypotheses->len; i++) {
+    if (!step_all (&refinement, hypotheses, error))
       return FALSE;
-    for (guint k = rivals->len; k-- > 0;) {
-      const Rival *r = &g_array_index (rivals, Rival, k);
+    for (guint k = hypotheses->len; k-- > 0;) {
+      const Hypothesis *r = &g_array_index (hypotheses, Hypothesis, k);
 
       if (r->moved < FAR || r->gained < MUCH)
-        g_array_remove_index (rivals, k);
+        g_array_remove_index (hypotheses, k);
     }
   }
   g_array_sort (scores, cloth_gap_score_compare);

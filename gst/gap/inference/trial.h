@@ -7,7 +7,7 @@
 
 G_BEGIN_DECLS
 
-gboolean cloth_diagnosis_try_rivals (ClothDiagnosis * d,
+gboolean cloth_diagnosis_refine_hypotheses (ClothDiagnosis * d,
     const ClothGapTest * test, GArray * scores, const ClothModel * base,
     GError ** error);
 

@@ -294,7 +294,7 @@ fill_stages (const ClothDiagnosis * d, const ClothRecording * r)
     "camera", "detection", "labels", "triangulation", "noise", "physics"
   };
   const ClothCameraErrors *e = &d->camera_errors;
-  gdouble shares[] = { d->camera_square, e->detection, e->labels,
+  gdouble shares[] = { d->camera_mean_square, e->detection, e->labels,
     e->triangulation, 3. * r->sigma * r->sigma, 0.
   };
   const guint physics = G_N_ELEMENTS (names) - 1, noise = physics - 1;

@@ -300,7 +300,7 @@ put_groups (ClothJsonWriter * writer, const ClothGapResult * result)
     }
     cloth_json_writer_end_array (writer);
     cloth_json_writer_string (writer, "experiment", group->experiment);
-    cloth_json_writer_number (writer, "evidence", group->evidence);
+    cloth_json_writer_number (writer, "evidence", group->log_bayes_factor);
     cloth_json_writer_end_object (writer);
   }
   cloth_json_writer_end_array (writer);

@@ -121,15 +121,15 @@ cloth_gap_result_add_effect (ClothGapResult * result,
 
 /* @result: a result
  * @experiment: (nullable): what would tell its effects apart, a sentence
- * @evidence: what that is expected to bring, log Bayes factor; NaN: not known
+ * @log_bayes_factor: what that is expected to bring, log Bayes factor; NaN: not known
  *
  * Its index is one less than the number of groups.
  */
 void
 cloth_gap_result_add_group (ClothGapResult * result, const gchar * experiment,
-    gdouble evidence)
+    gdouble log_bayes_factor)
 {
-  ClothGapGroup item = { g_strdup (experiment), evidence };
+  ClothGapGroup item = { g_strdup (experiment), log_bayes_factor };
 
   g_array_append_val (result->groups, item);
 }

@@ -67,13 +67,13 @@ typedef struct {
 
 /* @experiment: (nullable): the capture that would tell them apart, a sentence; %NULL:
  *   none of those tried would
- * @evidence: what it is expected to bring, log Bayes factor; NaN: not known
+ * @log_bayes_factor: what it is expected to bring, log Bayes factor; NaN: not known
  *
  * Effects that these data can't tell apart: those whose `group` is its index.
  */
 typedef struct {
   gchar *experiment;
-  gdouble evidence;
+  gdouble log_bayes_factor;
 } ClothGapGroup;
 
 /* @effect: an effect that could not be tested
@@ -304,7 +304,7 @@ void cloth_gap_result_add_note (ClothGapResult * result, const gchar * note);
 ClothGapEffect *cloth_gap_result_add_effect (ClothGapResult * result,
     const ClothEffect * effect);
 void cloth_gap_result_add_group (ClothGapResult * result,
-    const gchar * experiment, gdouble evidence);
+    const gchar * experiment, gdouble log_bayes_factor);
 void cloth_gap_result_add_untested (ClothGapResult * result,
     const ClothEffect * effect, const gchar * reason);
 void cloth_gap_result_add_stage (ClothGapResult * result, const gchar * name,

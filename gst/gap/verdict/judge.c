@@ -31,27 +31,27 @@ static const gchar *const capture_sentence =
 
 /* The windows that judge: those that end in a held-out block, or all. */
 static gboolean *
-judging_windows (const ClothDiagnosis * d, const ClothWindowedGap * extent)
+judging_windows (const ClothDiagnosis * d, const ClothWindowedGap * gap)
 {
   const ClothFeatures *f = cloth_diagnosis_study (d, 0)->features;
-  gboolean *windows = g_new0 (gboolean, extent->n_windows);
+  gboolean *windows = g_new0 (gboolean, gap->n_windows);
   gboolean any = FALSE;
 
-  for (guint frame = 1, block = 0; frame < extent->n_frames; frame++) {
+  for (guint frame = 1, block = 0; frame < gap->n_frames; frame++) {
     while (block + 1 < f->n_blocks && frame >= f->first[block + 1])
       block++;
-    windows[extent->window[frame]] = cloth_diagnosis_is_held_out (d, block);
+    windows[gap->window[frame]] = cloth_diagnosis_is_held_out (d, block);
   }
-  for (guint w = 0; w < extent->n_windows; w++)
+  for (guint w = 0; w < gap->n_windows; w++)
     any |= windows[w];
-  for (guint w = 0; w < extent->n_windows && !any; w++)
+  for (guint w = 0; w < gap->n_windows && !any; w++)
     windows[w] = TRUE;
   return windows;
 }
 
 /* The middle 95% of @n draws that are @stride apart. */
 static ClothGapEstimate
-middle (gdouble value, const gdouble * draws, guint n, guint stride)
+find_interval (gdouble value, const gdouble * draws, guint n, guint stride)
 {
   ClothGapEstimate e = { value };
   g_autoptr (GArray) sorted = g_array_new (FALSE, FALSE, sizeof (gdouble));
@@ -68,7 +68,7 @@ middle (gdouble value, const gdouble * draws, guint n, guint stride)
 static ClothGapEstimate
 estimate (gdouble square, const gdouble * draws, guint n, guint stride)
 {
-  ClothGapEstimate e = middle (sqrt (square), draws, n, stride);
+  ClothGapEstimate e = find_interval (sqrt (square), draws, n, stride);
 
   e.low = sqrt (MAX (0., e.low));
   e.high = sqrt (MAX (0., e.high));
@@ -78,33 +78,33 @@ estimate (gdouble square, const gdouble * draws, guint n, guint stride)
 /* Without a baseline the floor is what the two force models differ by, and the noise:
  * NaN on errors. */
 static gdouble
-own_floor (ClothDiagnosis * d, guint judge, const ClothWindowedGap * extent,
+own_floor (ClothDiagnosis * d, guint judge, const ClothWindowedGap * gap,
     ClothWindowedGap ** null, GError ** error)
 {
   const ClothRecording *r = cloth_diagnosis_recording (d, judge);
   g_autoptr (ClothModel) other = cloth_diagnosis_other_model (d);
   const ClothModel *models[1] = { other };
-  ClothWindowedGap **extents;
+  ClothWindowedGap **gaps;
   gdouble sum = 0.;
   gsize all = (gsize) r->n * r->n_frames, seen = 0;
 
-  extents = cloth_diagnosis_measure_windows (d, r, models, 1, error);
-  if (!extents)
+  gaps = cloth_diagnosis_measure_windows (d, r, models, 1, error);
+  if (!gaps)
     return NAN;
-  for (gsize i = 0; i < 3 * all && extents[0]->sound; i++) {
-    gdouble off = extents[0]->positions[i] - extent->positions[i];
+  for (gsize i = 0; i < 3 * all && gaps[0]->sound; i++) {
+    gdouble off = gaps[0]->positions[i] - gap->positions[i];
 
-    if (isnan (extent->squares[i / 3]))
+    if (isnan (gap->squares[i / 3]))
       continue;
     sum += off * off;
     seen += i % 3 == 0;
   }
-  if (extents[0]->sound) {
-    *null = extents[0];
-    cloth_windowed_gap_subtract (*null, extent, r);
-    g_free (extents);
+  if (gaps[0]->sound) {
+    *null = gaps[0];
+    cloth_windowed_gap_subtract (*null, gap, r);
+    g_free (gaps);
   } else
-    cloth_windowed_gaps_free (extents, 1);
+    cloth_windowed_gaps_free (gaps, 1);
   return 3. * r->sigma * r->sigma + sum / MAX (seen, 1);
 }
 
@@ -120,7 +120,7 @@ keep_null (ClothDiagnosis * d, ClothWindowedGap * null, guint recording)
  * otherwise what the two force models differ by there, if that is more. Its square goes
  * into @draws, too. */
 static gboolean
-measure_floor (ClothDiagnosis * d, guint judge, const ClothWindowedGap * extent,
+measure_floor (ClothDiagnosis * d, guint judge, const ClothWindowedGap * gap,
     gdouble * draws, GError ** error)
 {
   const ClothModel *models[1] = { d->model };
@@ -156,7 +156,7 @@ measure_floor (ClothDiagnosis * d, guint judge, const ClothWindowedGap * extent,
     if (cloth_diagnosis_has_discrepancies (d))
       return TRUE;
   }
-  square = own_floor (d, judge, extent, &other, error);
+  square = own_floor (d, judge, gap, &other, error);
   if (sqrt (square) > result->value) {
     *result = (ClothGapEstimate) {
     sqrt (square), NAN, NAN};
@@ -195,7 +195,7 @@ fill_shrink (ClothGapResult * result, gdouble before, gdouble after,
 
     shrinks[i] = (b - a) / MAX (b - floor, LEAST_ABOVE_SHARE * before);
   }
-  result->shrink = middle (share_gone (result, before, after), shrinks,
+  result->shrink = find_interval (share_gone (result, before, after), shrinks,
       N_DRAWS, 1);
 }
 
@@ -216,7 +216,7 @@ find_rest_p_value (const gdouble * rest, guint stride, const gdouble * floor)
  * evidence has said so of the first: the gap holds the simulator's own error too, which
  * hides it where it is no larger. */
 static gboolean
-matters (const ClothDiagnosis * d, gboolean first, gdouble before,
+is_improved (const ClothDiagnosis * d, gboolean first, gdouble before,
     gdouble after)
 {
   const gdouble floor = d->result->noise_floor.value;
@@ -245,13 +245,13 @@ keep_first (ClothDiagnosis * d, ClothWindowedGap * before,
 /* Puts the positions that the cameras gave with their faults into a recording, or takes
  * them out again. */
 static void
-swap_filmed (ClothDiagnosis * d, guint i)
+swap_uncorrected (ClothDiagnosis * d, guint i)
 {
   ClothRecording *r = cloth_diagnosis_recording (d, i);
   gdouble *y = r->y;
 
-  r->y = d->filmed[i];
-  d->filmed[i] = y;
+  r->y = d->uncorrected[i];
+  d->uncorrected[i] = y;
   cloth_recording_interpolate (r);
   cloth_recording_differentiate (r);
 }
@@ -265,11 +265,11 @@ measure_models (ClothDiagnosis * d, guint i, const ClothModel * const *models,
   const ClothRecording *r = cloth_diagnosis_recording (d, i);
   ClothWindowedGap **all = NULL, **others;
 
-  if (!d->filmed[i])
+  if (!d->uncorrected[i])
     return cloth_diagnosis_measure_windows (d, r, models, n, error);
-  swap_filmed (d, i);
+  swap_uncorrected (d, i);
   all = cloth_diagnosis_measure_windows (d, r, models, 1, error);
-  swap_filmed (d, i);
+  swap_uncorrected (d, i);
   if (!all)
     return NULL;
   others = cloth_diagnosis_measure_windows (d, r, models + 1, n - 1, error);
@@ -294,35 +294,35 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
     d->model, d->model
   };
   const guint faults = cloth_diagnosis_count_faults (d) > 0;
-  guint n = 1 + faults + d->n_chosen, best = faults;
+  guint n = 1 + faults + d->n_accepted, best = faults;
   guint judge = d->options->n_hold_outs ? d->n_takes + d->options->n_baselines
       : 0;
   g_autofree gdouble *draws = g_new0 (gdouble, N_DRAWS * n);
   g_autofree gdouble *floor = g_new0 (gdouble, N_DRAWS);
   g_autofree gboolean *windows = NULL;
-  ClothWindowedGap **extents;
+  ClothWindowedGap **gaps;
   gdouble v[G_N_ELEMENTS (models)];
 
-  for (guint i = 0; i < d->n_chosen; i++)
+  for (guint i = 0; i < d->n_accepted; i++)
     models[1 + faults + i] = d->with[i];
   cloth_diagnosis_begin_part (d, 0.85, 1., 0.4, "the gap in windows");
-  extents = measure_models (d, judge, models, n, error);
-  if (!extents)
+  gaps = measure_models (d, judge, models, n, error);
+  if (!gaps)
     return FALSE;
   if (!judge)
-    windows = judging_windows (d, extents[0]);
+    windows = judging_windows (d, gaps[0]);
   for (guint i = 0; i < n; i++)
-    v[i] = cloth_windowed_gap_square (extents[i], windows);
-  if (!measure_floor (d, judge, extents[0], floor, error)) {
-    cloth_windowed_gaps_free (extents, n);
+    v[i] = cloth_windowed_gap_square (gaps[i], windows);
+  if (!measure_floor (d, judge, gaps[0], floor, error)) {
+    cloth_windowed_gaps_free (gaps, n);
     return FALSE;
   }
   for (guint i = best + 1; i < n; i++)
-    if (matters (d, best == faults, v[best], v[i]))
+    if (is_improved (d, best == faults, v[best], v[i]))
       best = i;
-  while (d->n_chosen > best - faults)
-    cloth_model_free (d->with[--d->n_chosen]);
-  cloth_windowed_gaps_interval (extents, n, windows, d->options->seed, N_DRAWS,
+  while (d->n_accepted > best - faults)
+    cloth_model_free (d->with[--d->n_accepted]);
+  cloth_windowed_gaps_interval (gaps, n, windows, d->options->seed, N_DRAWS,
       draws);
   result->held_out_takes = d->options->n_hold_outs > 0;
   result->gap_before = estimate (v[0], draws, N_DRAWS, n);
@@ -334,17 +334,17 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
   if (faults)
     d->shrink_of_faults = share_gone (result, v[0], v[1]);
   if (!judge)
-    keep_first (d, extents[0], best ? extents[best] : NULL);
-  cloth_windowed_gaps_free (extents, n);
+    keep_first (d, gaps[0], best ? gaps[best] : NULL);
+  cloth_windowed_gaps_free (gaps, n);
   if (!judge)
     return TRUE;
   models[1] = models[best];
   n = best ? 2 : 1;
-  extents = measure_models (d, 0, models, n, error);
-  if (!extents)
+  gaps = measure_models (d, 0, models, n, error);
+  if (!gaps)
     return FALSE;
-  keep_first (d, extents[0], best ? extents[1] : NULL);
-  cloth_windowed_gaps_free (extents, n);
+  keep_first (d, gaps[0], best ? gaps[1] : NULL);
+  cloth_windowed_gaps_free (gaps, n);
   return TRUE;
 }
 
@@ -352,11 +352,11 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
 static void
 accept_effects (ClothDiagnosis * d)
 {
-  const guint last = d->n_chosen - 1;
+  const guint last = d->n_accepted - 1;
   GArray *effects = d->result->effects;
 
-  for (guint c = d->n_chosen; c-- > 0;) {
-    const ClothCandidate *candidate = cloth_diagnosis_chosen (d, c);
+  for (guint c = d->n_accepted; c-- > 0;) {
+    const ClothCandidate *candidate = cloth_diagnosis_accepted (d, c);
     ClothGapEffect e;
     guint i = 0;
 
@@ -436,8 +436,8 @@ is_ambiguous (const ClothGapResult * r)
 static gboolean
 are_clamps_off (const ClothDiagnosis * d, gdouble floor2)
 {
-  for (guint i = 0; i < d->n_chosen; i++)
-    if (cloth_diagnosis_chosen (d, i)->effect->side == CLOTH_EFFECT_CLAMP)
+  for (guint i = 0; i < d->n_accepted; i++)
+    if (cloth_diagnosis_accepted (d, i)->effect->side == CLOTH_EFFECT_CLAMP)
       return FALSE;
   return d->clamps_off > CLOTH_DIAGNOSIS_LEAST_SHRINK * floor2;
 }
@@ -447,24 +447,24 @@ cloth_diagnosis_decide (ClothDiagnosis * d)
 {
   ClothGapResult *r = d->result;
   gdouble floor2 = r->noise_floor.value * r->noise_floor.value;
-  guint accepted = d->n_chosen + cloth_diagnosis_count_faults (d);
+  guint accepted = d->n_accepted + cloth_diagnosis_count_faults (d);
   gdouble rest = accepted ? r->gap_after.value : r->gap_before.value;
   gboolean above = rest * rest > CLOTH_DIAGNOSIS_BAND * floor2;
   /* an effect that was supported and did not help stands for another */
-  gboolean other = d->asked && rest * rest > floor2;
+  gboolean other = d->supported && rest * rest > floor2;
   gboolean clamps = are_clamps_off (d, floor2);
 
-  if (d->n_chosen)
+  if (d->n_accepted)
     accept_effects (d);
   add_camera_effects (d);
-  if (above || clamps || (!accepted && (d->unknown || other)))
+  if (above || clamps || (!accepted && (d->unexplained || other)))
     r->verdict = CLOTH_GAP_UNEXPLAINED;
   else if (!accepted)
     r->verdict = CLOTH_GAP_NO_GAP;
   else
     r->verdict = is_ambiguous (r) ? CLOTH_GAP_AMBIGUOUS : CLOTH_GAP_EXPLAINED;
-  if (clamps || (!accepted && d->unknown))
-    r->reason = g_steal_pointer (&d->unknown);
+  if (clamps || (!accepted && d->unexplained))
+    r->reason = g_steal_pointer (&d->unexplained);
   else if (!accepted && other && !above)
     r->reason = g_strdup ("An effect was asked for, but with it unseen data "
         "came no nearer.");

@@ -29,7 +29,7 @@
 #define SLOW_COSINES 2
 #define WRINKLE_BAND 3
 #define SLOW 5.
-#define LED 4.
+#define SLOW_OVER_WRINKLES 4.
 /* Clamps are off their paths with so many times the square that the baseline has there, or
  * noise, and by so much at least, which nobody logs more exactly; told of so many places. */
 #define CLAMPS_OFF 2.
@@ -118,7 +118,7 @@ is_much (const ClothDiagnosis * d)
 
 /* Whether the cloth is slowly nudged elsewhere as a whole. Chaos has shorter waves, too. */
 static gboolean
-is_led_away (const ClothDiagnosis * d)
+is_moved_slowly (const ClothDiagnosis * d)
 {
   gdouble slow = 0., wrinkles = 0.;
   gsize n_slow = 0, n_wrinkles = 0;
@@ -143,7 +143,8 @@ is_led_away (const ClothDiagnosis * d)
       }
     }
   }
-  return slow > SLOW * n_slow && slow * n_wrinkles > LED * wrinkles * n_slow;
+  return slow > SLOW * n_slow
+      && slow * n_wrinkles > SLOW_OVER_WRINKLES * wrinkles * n_slow;
 }
 
 /* Mean square of what a recording's held vertices are seen off their clamps' paths, m²; NaN:
@@ -217,7 +218,7 @@ cloth_diagnosis_find_unexplained (ClothDiagnosis * d)
 
   if (clamps)
     return clamps;
-  if (cloth_diagnosis_has_discrepancies (d) && is_led_away (d))
+  if (cloth_diagnosis_has_discrepancies (d) && is_moved_slowly (d))
     return g_strdup ("Against the baseline the cloth as a whole is slowly led "
         "elsewhere, which its wrinkles don't account for.");
   if (cloth_diagnosis_has_discrepancies (d) && is_much (d))
