@@ -21,64 +21,66 @@
 /* Version of the priors and thresholds: a change of either changes probabilities. */
 #define PRIORS "4"
 
-/* Each stage reads what those before it wrote into the diagnosis. */
+/* The stages. Each reads what those before it wrote into the diagnosis. */
 static gboolean
 diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
 {
   gchar *implausible;
 
-  /* Takes, baselines and hold-outs: to recordings, all but hold-outs to studies. */
+  /* Reads the takes, baselines and hold-outs; writes the recordings and the studies. */
   if (!cloth_diagnosis_load (d, model, error))
     return FALSE;
-  /* Recordings and model: to a reason why nothing can be decided, or to none. */
+  /* Reads the recordings; writes the reason why nothing can be decided, if there is one. */
   d->result->reason = cloth_diagnosis_find_implausible_input (d, model);
   if (d->result->reason)
     return TRUE;
-  /* Observations: to camera faults; the recordings become those without the faults. */
+  /* Reads the observations; writes the camera faults, and the recordings without them. */
   cloth_diagnosis_find_faults (d);
-  /* The model and the wanted effects: to the directions that are fitted and tested. */
+  /* Reads the model and the wanted effects; writes the directions that are fitted and tested. */
   if (!cloth_diagnosis_list_candidates (d, model, error))
     return FALSE;
-  /* Studies of the baselines, without any of the takes: to the fitted model and the
-   * precisions of its free numbers. */
+  /* Reads the studies of the baselines, without any those of the takes; writes the fitted model
+   * and the precisions of its free numbers. */
   if (!cloth_diagnosis_fit_free (d, model, error))
     return FALSE;
-  /* Recordings: to each study's discrepancy, the baseline that moves alike. */
+  /* Reads the recordings; writes each study's discrepancy, the baseline that moves alike. */
   cloth_diagnosis_find_discrepancies (d);
-  /* Studies of the baselines at the fitted model: to what each effect's evidence must exceed. */
+  /* Reads the studies of the baselines at the fitted model; writes what the log Bayes factor of
+   * each effect must exceed. */
   if (d->options->n_baselines && !cloth_diagnosis_study_baselines (d, error))
     return FALSE;
-  /* Studies of the takes: to their residuals and derivatives at the fitted model. */
+  /* Reads the studies of the takes; writes their residuals and derivatives at the model. */
   if (!cloth_diagnosis_linearise (d, 0, d->n_takes, d->model, 0.3, 0.4, error))
     return FALSE;
-  /* Without a baseline, the other force model on the takes: to that evidence. */
+  /* Without a baseline: reads the takes with the other force model; writes the same bounds. */
   if (!d->options->n_baselines && !cloth_diagnosis_study_other_model (d, error))
     return FALSE;
-  /* Residuals of takes and baselines: to a sign of something unknown, or to none. */
+  /* Reads the residuals of takes and baselines; writes a sign of something unknown. */
   d->unexplained = cloth_diagnosis_find_unexplained (d);
-  /* Residuals and derivatives: to the ranked effects, and to the models with those that are
-   * accepted one by one. */
+  /* Reads the residuals and derivatives; writes the ranked effects, and the models with those
+   * that are accepted one by one. */
   if (!cloth_diagnosis_select (d, error))
     return FALSE;
-  /* Candidates and ranked effects: to the effects that could not be tested. */
+  /* Reads the candidates and the ranked effects; writes those that could not be tested. */
   cloth_diagnosis_note_untested (d);
-  /* The models with and without effects: to the gap, its floor and its shrink. */
+  /* Reads the models with and without effects; writes the gap, its floor and its shrink. */
   if (!cloth_diagnosis_measure (d, error))
     return FALSE;
-  /* Residual energies and camera errors: to frequencies, waves and stages. */
+  /* Reads the energies of residuals and the camera errors; writes frequencies, waves, stages. */
   cloth_diagnosis_locate (d);
-  /* Gaps, accepted effects and camera faults: to the verdict. */
+  /* Reads the gaps, the accepted effects and the camera faults; writes the verdict. */
   cloth_diagnosis_decide (d);
-  /* Verdict and gaps: to a reason why they decide nothing, or to none. */
+  /* Reads the verdict and the gaps; writes the reason why they decide nothing. */
   implausible = cloth_diagnosis_find_implausible_result (d, model);
   if (implausible) {
     g_free (d->result->reason);
     d->result->reason = implausible;
     d->result->verdict = CLOTH_GAP_UNDECIDABLE;
   }
-  /* Gaps of simulations that lack nothing: to the band over time, the place and the onset. */
+  /* Reads the gaps of simulations that lack nothing; writes the band over time, the place and
+   * the onset. */
   cloth_diagnosis_fill_null_distribution (d);
-  /* Groups of effects that can't be told apart: to what to film next. */
+  /* Reads the groups of effects that can't be told apart; writes what to film next. */
   return cloth_diagnosis_propose (d, error);
 }
 
