@@ -6,7 +6,7 @@
 #include <gst/gst.h>
 
 #include "elements/gstclothgap-settings.h"
-#include "gst/fit/recording/observations.h"
+#include "gst/fit/recording/recording.h"
 #include "gst/take/take.h"
 #include "gst/sim/model.h"
 #include "gst/sim/scene.h"

@@ -6,7 +6,7 @@
 #include <gst/gst.h>
 
 #include "gst/gap/diagnose.h"
-#include "gst/fit/nudge/observer.h"
+#include "gst/fit/nudge/nudge.h"
 
 G_BEGIN_DECLS
 

@@ -6,7 +6,7 @@
 #include <gst/cloth/cloth.h>
 
 #include "elements/gstclothgap-settings.h"
-#include "gst/fit/recording/rays.h"
+#include "gst/fit/recording/recording.h"
 #include "gst/mesh/topology.h"
 
 G_BEGIN_DECLS

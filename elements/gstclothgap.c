@@ -54,7 +54,7 @@
 #include "elements/gstclothgap-record.h"
 #include "elements/gstclothgap-view.h"
 #include "elements/gstclothutil.h"
-#include "gst/fit/nudge/observer.h"
+#include "gst/fit/nudge/nudge.h"
 
 GST_DEBUG_CATEGORY_STATIC (cloth_gap_debug);
 #define GST_CAT_DEFAULT cloth_gap_debug

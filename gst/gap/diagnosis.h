@@ -3,8 +3,8 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/fit/estimate/sensitivities.h"
-#include "gst/fit/nudge/windows.h"
+#include "gst/fit/estimate/estimate.h"
+#include "gst/fit/nudge/nudge.h"
 #include "gst/gap/camera/solve.h"
 #include "gst/gap/inputs.h"
 #include "gst/gap/report/result.h"

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "gst/gap/diagnose.h"
-#include "gst/fit/estimate/normal.h"
+#include "gst/fit/estimate/estimate.h"
 #include "gst/math/linalg.h"
 #include "gst/math/random.h"
 

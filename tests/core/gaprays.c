@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <math.h>
 
-#include "gst/fit/nudge/observer.h"
+#include "gst/fit/nudge/nudge.h"
 
 #define NEAR(a, b, e) g_assert_cmpfloat_with_epsilon (a, b, e)
 #define N 4

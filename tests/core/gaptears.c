@@ -5,7 +5,7 @@
 #include <glib.h>
 #include <math.h>
 
-#include "gst/fit/recording/outliers.h"
+#include "gst/fit/recording/recording.h"
 #include "gst/math/random.h"
 
 #define COLUMNS 12

@@ -5,8 +5,8 @@
 #include <glib/gstdio.h>
 #include <math.h>
 
-#include "gst/fit/features/spectrum.h"
-#include "gst/fit/nudge/windows.h"
+#include "gst/fit/features/features.h"
+#include "gst/fit/nudge/nudge.h"
 #include "gst/gap/localise/where.h"
 #include "gst/math/random.h"
 #include "gst/effect/effect.h"

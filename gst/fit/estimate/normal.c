@@ -1,4 +1,15 @@
-/* The linear part of the diagnosis.
+/* The normal equations of a linearised residual, block by block of time.
+ *
+ * Model: features of the residual z = −B θ − N ν + ε, where B are derivatives with respect to
+ *   what is looked at and N with respect to nuisances that are fitted along.
+ * Assumption: features are independent and Gaussian. Their variance is that of noise, 1, plus
+ *   that of the simulator's own error, its discrepancy, which is the same within a class of
+ *   features: a band of frequencies, a band of wave lengths and an axis. So
+ *   W = diag (1 / (1 + discrepancy)). Nuisances have the prior precision Λ.
+ * Formula: with the nuisances projected out (Schur complement; Frisch and Waugh)
+ *     g = Bᵀ P B,  s = Bᵀ P z,  r = zᵀ P z,  P = W − W N (NᵀWN + Λ)⁻¹ NᵀW.
+ * Reference: Kennedy and O'Hagan, Bayesian calibration of computer models, 2001 (discrepancy);
+ *   Frisch and Waugh, Econometrica 1, 1933 (projection).
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/fit/estimate/normal.h"
@@ -6,7 +17,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/math/linalg.h"
+#include "gst/fit/estimate/posterior.h"
 
 /* Bands of cosines: 0, 1, 2, 3–4, 5–8 … */
 static guint
@@ -177,16 +188,104 @@ cloth_normal_equations_append (ClothNormalEquations * to,
 }
 
 /* @normal: normal equations
+ * @blocks: (nullable): which blocks count
+ * @columns: (array length=n): columns
+ * @n: how many
+ * @g: (out) (array): BᵀWB of these columns, n·n
+ * @s: (out) (array length=n): BᵀWz
+ *
+ * Returns: zᵀWz
+ */
+gdouble
+cloth_normal_equations_sum (const ClothNormalEquations * normal,
+    const gboolean * blocks, const guint * columns, guint n, gdouble * g,
+    gdouble * s)
+{
+  const guint m = normal->m;
+  gdouble r = 0.;
+
+  memset (g, 0, (gsize) n * n * sizeof *g);
+  memset (s, 0, n * sizeof *s);
+  for (guint block = 0; block < normal->n_blocks; block++) {
+    const gdouble *from = normal->g + (gsize) block * m * m;
+
+    if (blocks && !blocks[block])
+      continue;
+    r += normal->r[block];
+    for (guint i = 0; i < n; i++) {
+      for (guint j = 0; j < n; j++)
+        g[(gsize) i * n + j] += from[(gsize) columns[i] * m + columns[j]];
+      s[i] += normal->s[(gsize) block * m + columns[i]];
+    }
+  }
+  return r;
+}
+
+/* Sums @g, @s and @r of the directions over the blocks that count (all, if @blocks is NULL) and
+ * projects the nuisances out of them. Returns whether these could be solved for; if not, the
+ * sums are there as they are. @kept: (nullable): as #ClothReducedEquations has it. */
+static gboolean
+sum_and_project (const ClothNormalEquations * normal, const gboolean * blocks,
+    const guint * nuisances, const gdouble * precisions, guint n_nuisances,
+    const guint * directions, guint n, gdouble * g, gdouble * s, gdouble * r,
+    gdouble * kept)
+{
+  const guint m = normal->m, q = n_nuisances;
+  g_auto (ClothPosterior) posterior = { 0 };
+  g_autofree gdouble *b = g_new0 (gdouble, (gsize) q * (n + 1) + 1);
+  g_autofree gdouble *x = NULL;
+
+  *r = cloth_normal_equations_sum (normal, blocks, directions, n, g, s);
+  cloth_posterior_init (&posterior, q);
+  cloth_posterior_add_prior (&posterior, precisions, NULL);
+  for (guint block = 0; block < normal->n_blocks; block++) {
+    const gdouble *from = normal->g + (gsize) block * m * m;
+    const gdouble *score = normal->s + (gsize) block * m;
+
+    if (blocks && !blocks[block])
+      continue;
+    for (guint i = 0; i < q; i++) {
+      const gdouble *row = from + (gsize) nuisances[i] * m;
+
+      for (guint j = 0; j < q; j++)
+        posterior.precision[(gsize) i * q + j] += row[nuisances[j]];
+      for (guint j = 0; j < n; j++)
+        b[(gsize) j * q + i] += row[directions[j]];
+      b[(gsize) n * q + i] += score[nuisances[i]];
+    }
+  }
+  for (guint i = 0; kept && i < n; i++)
+    kept[i] = g[(gsize) i * n + i];
+  if (!cloth_posterior_solve (&posterior))
+    return FALSE;
+  x = g_memdup2 (b, sizeof (gdouble) * q * (n + 1) + sizeof (gdouble));
+  for (guint j = 0; j <= n; j++)
+    cloth_posterior_apply (&posterior, x + (gsize) j * q);
+  for (guint k = 0; k < q; k++) {
+    const gdouble last = x[(gsize) n * q + k];
+
+    for (guint i = 0; i < n; i++) {
+      const gdouble across = b[(gsize) i * q + k];
+
+      for (guint j = 0; j < n; j++)
+        g[(gsize) i * n + j] -= across * x[(gsize) j * q + k];
+      s[i] -= across * last;
+    }
+    *r -= b[(gsize) n * q + k] * last;
+  }
+  for (guint i = 0; kept && i < n; i++)
+    kept[i] = kept[i] > 0. ? g[(gsize) i * n + i] / kept[i] : 0.;
+  return TRUE;
+}
+
+/* @normal: normal equations
  * @blocks: (array): which blocks count
  * @nuisances: (array length=n_nuisances): columns that are fitted along
  * @precisions: (array length=n_nuisances): of their priors
  * @n_nuisances: how many
- * @directions: (array length=n): columns that are looked at, at most
- *   %CLOTH_EFFECT_MAX_PARAMETERS
- * @n: how many
- * @reduced: (out): what is left of them
- *
- * Projects the nuisances out: the Schur complement of the normal equations.
+ * @directions: (array length=n): columns that are looked at
+ * @n: how many, at most CLOTH_EFFECT_MAX_PARAMETERS
+ * @reduced: (out): what remains of them once the nuisances are projected out
  *
  * Returns: whether the nuisances could be solved for
  */
@@ -196,68 +295,21 @@ cloth_normal_equations_reduce (const ClothNormalEquations * normal,
     const gdouble * precisions, guint n_nuisances, const guint * directions,
     guint n, ClothReducedEquations * reduced)
 {
-  guint m = normal->m, q = n_nuisances;
-  g_autofree gdouble *a = g_new0 (gdouble, (gsize) q * q + 1);
-  g_autofree gdouble *b = g_new0 (gdouble, (gsize) q * (n + 1) + 1);
-  g_autofree gdouble *x = NULL;
-
-  *reduced = (ClothReducedEquations) {
-  n};
-  for (guint i = 0; i < q; i++)
-    a[(gsize) i * q + i] = precisions[i];
-  for (guint block = 0; block < normal->n_blocks; block++) {
-    const gdouble *g = normal->g + (gsize) block * m * m;
-    const gdouble *s = normal->s + (gsize) block * m;
-
-    if (!blocks[block])
-      continue;
-    reduced->r += normal->r[block];
-    for (guint i = 0; i < q; i++) {
-      for (guint j = 0; j < q; j++)
-        a[(gsize) i * q + j] += g[(gsize) nuisances[i] * m + nuisances[j]];
-      for (guint j = 0; j < n; j++)
-        b[(gsize) j * q + i] += g[(gsize) nuisances[i] * m + directions[j]];
-      b[(gsize) n * q + i] += s[nuisances[i]];
-    }
-    for (guint i = 0; i < n; i++) {
-      for (guint j = 0; j < n; j++)
-        reduced->g[i * n + j] += g[(gsize) directions[i] * m + directions[j]];
-      reduced->s[i] += s[directions[i]];
-    }
-  }
-  for (guint i = 0; i < n; i++)
-    reduced->kept[i] = reduced->g[i * n + i];
-  if (q) {
-    if (!cloth_cholesky_factor (q, a))
-      return FALSE;
-    x = g_memdup2 (b, sizeof (gdouble) * q * (n + 1));
-    for (guint j = 0; j <= n; j++)
-      cloth_cholesky_solve (q, a, x + (gsize) j * q);
-    for (guint k = 0; k < q; k++) {
-      for (guint i = 0; i < n; i++) {
-        for (guint j = 0; j < n; j++)
-          reduced->g[i * n + j] -= b[(gsize) i * q + k] * x[(gsize) j * q + k];
-        reduced->s[i] -= b[(gsize) i * q + k] * x[(gsize) n * q + k];
-      }
-      reduced->r -= b[(gsize) n * q + k] * x[(gsize) n * q + k];
-    }
-  }
-  for (guint i = 0; i < n; i++)
-    reduced->kept[i] = reduced->kept[i] > 0. ?
-        reduced->g[i * n + i] / reduced->kept[i] : 0.;
-  return TRUE;
+  reduced->n = n;
+  return sum_and_project (normal, blocks, nuisances, precisions, n_nuisances,
+      directions, n, reduced->g, reduced->s, &reduced->r, reduced->kept);
 }
 
 /* @normal: normal equations
  * @blocks: (nullable): which blocks count
  * @m: how many of the columns are kept: the first ones
  * @precisions: (array): of the priors of the others
- * @g: (out) (array): what is left of the kept ones' normal matrix, m·m
- * @s: (out) (array length=m): and of their score
+ * @g: (out) (array): the kept ones' normal matrix with the others projected out, m·m
+ * @s: (out) (array length=m): and their score
  *
  * Projects the last columns out.
  *
- * Returns: what is left of the residual's square; all of it, and @g and @s as they are,
+ * Returns: zᵀWz with the others fitted; without, and @g and @s of the kept ones as they are,
  *   when the others can't be solved for
  */
 gdouble
@@ -265,51 +317,13 @@ cloth_normal_equations_project (const ClothNormalEquations * normal,
     const gboolean * blocks, guint m, const gdouble * precisions, gdouble * g,
     gdouble * s)
 {
-  guint all = normal->m, q = all - m;
-  g_autofree gdouble *a = g_new0 (gdouble, (gsize) q * q + 1);
-  g_autofree gdouble *b = g_new0 (gdouble, (gsize) (m + 1) * q + 1);
-  g_autofree gdouble *x = NULL;
-  gdouble r = 0.;
+  g_autofree guint *columns = g_new (guint, normal->m + 1);
+  gdouble r;
 
-  memset (g, 0, (gsize) m * m * sizeof *g);
-  memset (s, 0, m * sizeof *s);
-  for (guint i = 0; i < q; i++)
-    a[(gsize) i * q + i] = precisions[i];
-  for (guint block = 0; block < normal->n_blocks; block++) {
-    const gdouble *from = normal->g + (gsize) block * all * all;
-    const gdouble *score = normal->s + (gsize) block * all;
-
-    if (blocks && !blocks[block])
-      continue;
-    r += normal->r[block];
-    for (guint i = 0; i < m; i++) {
-      s[i] += score[i];
-      for (guint k = 0; k < m; k++)
-        g[(gsize) i * m + k] += from[(gsize) i * all + k];
-    }
-    for (guint i = 0; i < q; i++) {
-      b[(gsize) m * q + i] += score[m + i];
-      for (guint k = 0; k < m; k++)
-        b[(gsize) k * q + i] += from[(gsize) k * all + m + i];
-      for (guint k = 0; k < q; k++)
-        a[(gsize) i * q + k] += from[(gsize) (m + i) * all + m + k];
-    }
-  }
-  if (!q || !cloth_cholesky_factor (q, a))
-    return r;
-  x = g_memdup2 (b, sizeof (gdouble) * q * (m + 1));
-  for (guint k = 0; k <= m; k++)
-    cloth_cholesky_solve (q, a, x + (gsize) k * q);
-  for (guint i = 0; i < q; i++) {
-    const gdouble last = x[(gsize) m * q + i];
-
-    r -= b[(gsize) m * q + i] * last;
-    for (guint k = 0; k < m; k++) {
-      s[k] -= b[(gsize) k * q + i] * last;
-      for (guint l = 0; l < m; l++)
-        g[(gsize) k * m + l] -= b[(gsize) k * q + i] * x[(gsize) l * q + i];
-    }
-  }
+  for (guint i = 0; i < normal->m; i++)
+    columns[i] = i;
+  sum_and_project (normal, blocks, columns + m, precisions, normal->m - m,
+      columns, m, g, s, &r, NULL);
   return r;
 }
 

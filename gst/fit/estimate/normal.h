@@ -1,5 +1,4 @@
-/* The linear part of the diagnosis: residual features and their derivatives, block by
- * block, as normal equations.
+/* Features of a residual and their derivatives as normal equations, block by block.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -37,7 +36,7 @@ typedef struct {
  * @g: their normal matrix with the nuisances projected out, n·n
  * @s: their score
  * @kept: share of each direction's square that the projection kept
- * @r: square of the residual with the nuisances fitted
+ * @r: zᵀWz with the nuisances fitted
  */
 typedef struct {
   guint n;
@@ -57,6 +56,9 @@ ClothNormalEquations *cloth_normal_equations_new (const ClothFeatures * features
 ClothNormalEquations *cloth_normal_equations_append (ClothNormalEquations * to,
     ClothNormalEquations * from);
 void cloth_normal_equations_free (ClothNormalEquations * normal);
+gdouble cloth_normal_equations_sum (const ClothNormalEquations * normal,
+    const gboolean * blocks, const guint * columns, guint n, gdouble * g,
+    gdouble * s);
 gboolean cloth_normal_equations_reduce (const ClothNormalEquations * normal,
     const gboolean * blocks, const guint * nuisances,
     const gdouble * precisions, guint n_nuisances, const guint * directions,

@@ -5,7 +5,7 @@
 
 #include "gst/fit/estimate/candidates.h"
 #include "gst/fit/estimate/normal.h"
-#include "gst/fit/nudge/rollout.h"
+#include "gst/fit/nudge/nudge.h"
 
 G_BEGIN_DECLS
 
@@ -42,7 +42,7 @@ typedef struct {
  * @left: (nullable): the power that is left to doubt; a fit weighs by it instead
  *   of by what it leaves itself
  */
-typedef struct _ClothStudy {
+typedef struct _ClothSensitivities {
   const ClothRecording *recording;
   ClothFeatures *features;
   gdouble *z;
@@ -51,7 +51,7 @@ typedef struct _ClothStudy {
   gboolean *sound;
   gdouble *variability;
   guint n_variability;
-  const struct _ClothStudy *discrepancy;
+  const struct _ClothSensitivities *discrepancy;
   ClothPowerSpectrum *left;
 } ClothSensitivities;
 
@@ -76,11 +76,6 @@ gboolean cloth_sensitivities_linearise (ClothSensitivities * study,
     const ClothCandidates * candidates, const ClothModel * model,
     const guint * directions, guint m, ClothEstimateOptions * options,
     GError ** error);
-ClothModel *cloth_gauss_newton_fit (ClothSensitivities ** studies, guint n_studies,
-    const ClothCandidates * candidates, const ClothModel * model,
-    const guint * directions, const gdouble * precisions, guint m,
-    const gboolean * blocks, gboolean even, gboolean begun, guint n_passes,
-    ClothEstimateOptions * options, gdouble * sigmas, GError ** error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothSensitivities, cloth_sensitivities_free)
 G_END_DECLS

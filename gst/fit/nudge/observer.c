@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "gst/fit/recording/recording.h"
-#include "gst/fit/recording/outliers.h"
 #include "gst/mesh/hold.h"
 #include "gst/sim/sim.h"
 

@@ -4,7 +4,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/fit/recording/rays.h"
+#include "gst/fit/recording/recording.h"
 #include "gst/sim/model.h"
 #include "gst/sim/scene.h"
 

@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/fit/features/spectrum.h"
+#include "gst/fit/features/features.h"
 #include "gst/fit/nudge/rollout.h"
 
 G_BEGIN_DECLS

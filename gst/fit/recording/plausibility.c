@@ -1,12 +1,14 @@
 /* Recordings that can't be what they say they are: other units, other axes, other vertices.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/fit/recording/plausibility.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "gst/fit/error.h"
-#include "gst/fit/recording/recording.h"
+#include "gst/fit/recording/signal.h"
 
 /* Frames that lengths of edges are looked at in. */
 #define N_LOOKS 8
@@ -103,6 +105,28 @@ cloth_recording_find_scale (const ClothRecording * recording, guint corner)
       g_array_append_val (ratios, ratio);
     }
   return median (ratios);
+}
+
+/* @recording: a recording
+ *
+ * Returns: the longer side of its flat cloth, m
+ */
+gdouble
+cloth_recording_longest_side (const ClothRecording * recording)
+{
+  const ClothTopology *t = recording->scene->topology;
+  gdouble longest = 0.;
+
+  for (guint k = 0; k < 2; k++) {
+    gdouble low = INFINITY, high = -INFINITY;
+
+    for (gsize i = 0; i < t->n_vertices; i++) {
+      low = MIN (low, t->uv[2 * i + k]);
+      high = MAX (high, t->uv[2 * i + k]);
+    }
+    longest = MAX (longest, high - low);
+  }
+  return longest;
 }
 
 /* A cloth's edges are about as long as on the flat cloth, in metres: both ways of a grid. */

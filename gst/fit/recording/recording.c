@@ -1,4 +1,4 @@
-/* A recording made ready for the diagnosis.
+/* A recording made ready for a fit, and as one of a coarser grid.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/fit/recording/recording.h"
@@ -6,15 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/fit/recording/interpolation.h"
 #include "gst/fit/error.h"
-#include "gst/fit/recording/outliers.h"
-#include "gst/math/linalg.h"
 
-/* Median of |x| of a normal variable over its standard deviation. */
-#define MEDIAN_OF_NORMAL 0.6745
-/* Variance of a fourth difference of white noise of variance 1. */
-#define FOURTH_DIFFERENCE 70.
 /* Noise puts two vertices no further apart than this many standard deviations of one
  * coordinate. */
 #define FAR_APART 6.
@@ -23,132 +16,6 @@ static gdouble *
 place (const ClothRecording * r, gdouble * of, guint frame, guint vertex)
 {
   return of + 3 * ((gsize) frame * r->n + vertex);
-}
-
-/* @times: (array): of %CLOTH_RECORDING_WINDOW frames, s
- * @mask: which of them count, the first in the lowest bit
- * @at: a time, s
- * @weights: (out) (array): of each frame, 1/s; 0 of those that don't count
- *
- * Weights whose sum with the frames' values is the derivative at @at of the polynomial
- * that fits them (Savitzky and Golay 1964, for any times). One frame alone has none: NaN.
- */
-void
-cloth_recording_find_weights (const gdouble * times, guint mask, gdouble at,
-    gdouble * weights)
-{
-  const guint all = CLOTH_RECORDING_WINDOW, order = CLOTH_RECORDING_ORDER;
-  gdouble normal[(CLOTH_RECORDING_ORDER + 1) * (CLOTH_RECORDING_ORDER + 1)];
-  gdouble powers[CLOTH_RECORDING_WINDOW][CLOTH_RECORDING_ORDER + 1];
-  gdouble slope[CLOTH_RECORDING_ORDER + 1] = { 0., 1. }, scale = 0.;
-  guint n = 0, terms;
-
-  for (guint i = 0; i < all; i++) {
-    weights[i] = 0.;
-    if (!(mask >> i & 1))
-      continue;
-    n++;
-    scale = MAX (scale, fabs (times[i] - at));
-  }
-  if (n < 2) {
-    for (guint i = 0; i < all; i++)
-      weights[i] = NAN;
-    return;
-  }
-  /* a straight line through the first frames of a fall would be far off */
-  terms = n == 2 ? 2 : MAX (3, n + order + 1 - all);
-  memset (normal, 0, sizeof normal);
-  for (guint i = 0; i < all; i++) {
-    powers[i][0] = 1.;
-    for (guint k = 1; k < terms; k++)
-      powers[i][k] = powers[i][k - 1] * (times[i] - at) / scale;
-    for (guint k = 0; mask >> i & 1 && k < terms; k++)
-      for (guint l = 0; l < terms; l++)
-        normal[k * terms + l] += powers[i][k] * powers[i][l];
-  }
-  if (!cloth_cholesky_factor (terms, normal))
-    return;
-  cloth_cholesky_solve (terms, normal, slope);
-  for (guint i = 0; i < all; i++)
-    for (guint k = 0; mask >> i & 1 && k < terms; k++)
-      weights[i] += slope[k] * powers[i][k] / scale;
-}
-
-/* @recording: a recording with positions
- *
- * Fills its velocities.
- */
-void
-cloth_recording_differentiate (ClothRecording * recording)
-{
-  ClothRecording *r = recording;
-  gsize row = 3 * (gsize) r->n;
-
-  for (guint frame = 0; frame < r->n_frames; frame++) {
-    gint begin = (gint) frame - CLOTH_RECORDING_WINDOW / 2;
-    gdouble weights[CLOTH_RECORDING_WINDOW];
-    gdouble *to = r->velocity + frame * row;
-
-    begin = CLAMP (begin, 0, (gint) r->n_frames - CLOTH_RECORDING_WINDOW);
-    cloth_recording_find_weights (r->times + begin,
-        (1u << CLOTH_RECORDING_WINDOW) - 1, r->times[frame], weights);
-    memset (to, 0, row * sizeof *to);
-    for (guint i = 0; i < CLOTH_RECORDING_WINDOW; i++) {
-      const gdouble *from = r->y + ((guint) begin + i) * row;
-
-      for (gsize k = 0; k < row; k++)
-        to[k] += weights[i] * from[k];
-    }
-  }
-}
-
-/* @a: a #gdouble
- * @b: another
- *
- * Returns: which is larger, for g_array_sort ()
- */
-gint
-cloth_recording_compare_numbers (gconstpointer a, gconstpointer b)
-{
-  gdouble x = *(const gdouble *) a, y = *(const gdouble *) b;
-
-  return x < y ? -1 : x > y;
-}
-
-/* @recording: a recording; what was not seen is left out
- *
- * Estimates white noise from the fourth differences in time of what was seen five times
- * running, by their median.
- *
- * Returns: standard deviation of a coordinate, m; NaN: nothing was seen so often
- */
-gdouble
-cloth_recording_estimate_sigma (const ClothRecording * recording)
-{
-  const ClothRecording *r = recording;
-  g_autoptr (GArray) all = g_array_new (FALSE, FALSE, sizeof (gdouble));
-
-  for (guint frame = 0; frame + 5 <= r->n_frames; frame++)
-    for (guint v = 0; v < r->n; v++) {
-      const gdouble *y[5];
-      gdouble seen = 1.;
-
-      for (guint i = 0; i < 5; i++) {
-        y[i] = place (r, r->y, frame + i, v);
-        seen *= r->seen[(gsize) (frame + i) * r->n + v];
-      }
-      for (guint k = 0; k < 3 && seen > 0.; k++) {
-        gdouble d = fabs (y[0][k] - 4. * y[1][k] + 6. * y[2][k] -
-            4. * y[3][k] + y[4][k]);
-
-        g_array_append_val (all, d);
-      }
-    }
-  if (!all->len)
-    return NAN;
-  g_array_sort (all, cloth_recording_compare_numbers);
-  return g_array_index (all, gdouble, all->len / 2) / MEDIAN_OF_NORMAL /
-      sqrt (FOURTH_DIFFERENCE);
 }
 
 static gboolean
@@ -209,28 +76,6 @@ remove_torn (ClothRecording * r)
   }
 }
 
-/* @recording: a recording
- *
- * Returns: the longer side of its flat cloth, m
- */
-gdouble
-cloth_recording_longest_side (const ClothRecording * recording)
-{
-  const ClothTopology *t = recording->scene->topology;
-  gdouble longest = 0.;
-
-  for (guint k = 0; k < 2; k++) {
-    gdouble low = INFINITY, high = -INFINITY;
-
-    for (gsize i = 0; i < t->n_vertices; i++) {
-      low = MIN (low, t->uv[2 * i + k]);
-      high = MAX (high, t->uv[2 * i + k]);
-    }
-    longest = MAX (longest, high - low);
-  }
-  return longest;
-}
-
 /* @take: a take
  * @error: #ClothFitError, or what reading it says
  *
@@ -273,6 +118,114 @@ cloth_recording_new (ClothTake * take, GError ** error)
   cloth_recording_interpolate (r);
   cloth_recording_differentiate (r);
   return g_steal_pointer (&r);
+}
+
+/* Where line @i of @n lies among @all: the line below and how far it is beyond. */
+static guint
+find_line (guint i, guint n, guint all, gdouble * beyond)
+{
+  gdouble at = (gdouble) i * (all - 1) / (n - 1);
+  guint line = MIN ((guint) at, all - 2);
+
+  *beyond = at - line;
+  return line;
+}
+
+/* Between the four vertices about each, frame by frame. */
+static void
+interpolate (const ClothRecording * from, ClothRecording * to)
+{
+  const ClothTopology *a = from->scene->topology, *b = to->scene->topology;
+
+  for (guint row = 0; row < b->rows; row++)
+    for (guint column = 0; column < b->columns; column++) {
+      gdouble u, v;
+      guint i = find_line (column, b->columns, a->columns, &u);
+      guint first = find_line (row, b->rows, a->rows, &v) * a->columns + i;
+
+      for (guint frame = 0; frame < to->n_frames; frame++) {
+        const gdouble *y = from->y + 3 * ((gsize) frame * from->n + first);
+        gdouble *p = to->y + 3 * ((gsize) frame * to->n + row * b->columns +
+            column);
+
+        for (guint k = 0; k < 3; k++)
+          p[k] = (1. - v) * ((1. - u) * y[k] + u * y[3 + k]) +
+              v * ((1. - u) * y[3 * a->columns + k] +
+              u * y[3 * a->columns + 3 + k]);
+      }
+    }
+}
+
+/* Clamps hold the nearest vertices, each but one. */
+static void
+hold (const ClothScene * from, ClothScene * to)
+{
+  const ClothTopology *a = from->topology, *b = to->topology;
+  g_autofree guint *of = g_new (guint, from->held->len + 1);
+
+  for (guint i = 0; i < from->held->len; i++) {
+    ClothHeld held = g_array_index (from->held, ClothHeld, i);
+    guint column = (guint) round ((gdouble) (held.vertex % a->columns) *
+        (b->columns - 1) / (a->columns - 1));
+    guint row = (guint) round ((gdouble) (held.vertex / a->columns) *
+        (b->rows - 1) / (a->rows - 1));
+    gboolean taken = FALSE;
+
+    held.vertex = row * b->columns + column;
+    for (guint k = 0; k < to->held->len; k++)
+      taken = taken
+          || g_array_index (to->held, ClothHeld, k).vertex == held.vertex;
+    if (taken)
+      continue;
+    of[to->held->len] = i;
+    g_array_append_val (to->held, held);
+  }
+  to->clamps = g_new (gdouble, 3 * (gsize) from->n_frames * to->held->len + 1);
+  for (guint frame = 0; frame < from->n_frames; frame++)
+    for (guint i = 0; i < to->held->len; i++)
+      memcpy (to->clamps + 3 * ((gsize) frame * to->held->len + i),
+          from->clamps + 3 * ((gsize) frame * from->held->len + of[i]),
+          3 * sizeof (gdouble));
+}
+
+/* @recording: a recording
+ * @most: lines that are enough along u and along v, at least 2
+ *
+ * The noise becomes less by the root of the vertices, so that the features' square over
+ * the noise stays what it was. Everything counts as seen; velocities are not filled.
+ *
+ * Returns: (transfer full) (nullable): the same on a coarser grid; %NULL when it is no
+ *   grid, or none that is finer, or has seams
+ */
+ClothRecording *
+cloth_recording_resample (const ClothRecording * recording, guint most)
+{
+  const ClothScene *scene = recording->scene;
+  const ClothTopology *t = scene->topology;
+  gsize last = t->n_vertices - 1;
+  guint columns = MIN (t->columns, most), rows = MIN (t->rows, most);
+  ClothRecording *r;
+
+  if (!t->columns || scene->seams->len
+      || (columns == t->columns && rows == t->rows))
+    return NULL;
+  r = g_new0 (ClothRecording, 1);
+  r->name = g_strdup (recording->name);
+  r->n = columns * rows;
+  r->n_frames = recording->n_frames;
+  r->times = g_memdup2 (recording->times, r->n_frames * sizeof (gdouble));
+  r->sigma = recording->sigma * sqrt ((gdouble) r->n / recording->n);
+  r->scene = cloth_scene_new (cloth_topology_new_grid (columns, rows,
+          t->uv[2 * last] - t->uv[0], t->uv[2 * last + 1] - t->uv[1]),
+      scene->fps, scene->n_frames);
+  memcpy (r->scene->times, scene->times, scene->n_frames * sizeof (gdouble));
+  memcpy (r->scene->gravity, scene->gravity, sizeof scene->gravity);
+  g_array_unref (r->scene->obstacles);
+  r->scene->obstacles = cloth_obstacles_copy (scene->obstacles);
+  hold (scene, r->scene);
+  r->y = g_new (gdouble, 3 * (gsize) r->n * r->n_frames);
+  interpolate (recording, r);
+  return r;
 }
 
 /* @recording: (nullable) (transfer full): a recording

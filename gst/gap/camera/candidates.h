@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/fit/estimate/candidates.h"
+#include "gst/fit/estimate/estimate.h"
 #include "gst/rig/rig.h"
 
 G_BEGIN_DECLS

@@ -13,10 +13,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/fit/recording/interpolation.h"
+#include "gst/fit/recording/recording.h"
 #include "gst/gap/camera/candidates.h"
 #include "gst/gap/inference/score.h"
-#include "gst/math/linalg.h"
 
 /* Overdispersion: squares of the residual count so much less. */
 #define OVERDISPERSION 20.
@@ -205,11 +204,12 @@ static gboolean
 step_faults (Search * s)
 {
   ClothDiagnosis *d = s->d;
-  const guint m = s->normal->m;
   guint columns[CLOTH_DIAGNOSIS_MAX_ACCEPTED * CLOTH_EFFECT_MAX_PARAMETERS];
-  gdouble a[G_N_ELEMENTS (columns) * G_N_ELEMENTS (columns)] = { 0. };
-  gdouble x[G_N_ELEMENTS (columns)] = { 0. };
-  gdouble inverse[G_N_ELEMENTS (a)], r = 0., phi;
+  gdouble g[G_N_ELEMENTS (columns) * G_N_ELEMENTS (columns)];
+  gdouble covariance[G_N_ELEMENTS (g)], r, phi;
+  gdouble score[G_N_ELEMENTS (columns)], precisions[G_N_ELEMENTS (columns)];
+  gdouble means[G_N_ELEMENTS (columns)];
+  g_auto (ClothPosterior) posterior = { 0 };
   guint n = 0, at = 0;
 
   for (guint i = 0; i < d->n_faults; i++) {
@@ -218,16 +218,7 @@ step_faults (Search * s)
     for (guint k = 0; k < c->n; k++)
       columns[n++] = c->first + k;
   }
-  for (guint b = 0; b < s->normal->n_blocks; b++) {
-    const gdouble *g = s->normal->g + (gsize) b * m * m;
-
-    r += s->normal->r[b];
-    for (guint i = 0; i < n; i++) {
-      for (guint k = 0; k < n; k++)
-        a[i * n + k] += g[(gsize) columns[i] * m + columns[k]];
-      x[i] -= s->normal->s[(gsize) b * m + columns[i]];
-    }
-  }
+  r = cloth_normal_equations_sum (s->normal, NULL, columns, n, g, score);
   phi = OVERDISPERSION * MAX (r / (s->normal->per_block * s->normal->n_blocks),
       0.1);
   for (guint i = 0; i < d->n_faults; i++) {
@@ -237,16 +228,16 @@ step_faults (Search * s)
       const gdouble prior = WIDTH * cloth_candidates_direction
           (s->candidates, c->first + k)->prior;
 
-      for (guint l = 0; l < n; l++)
-        a[at * n + l] /= phi;
-      x[at] = x[at] / phi - d->faults[i].values[k] / (prior * prior);
-      a[at * n + at] += 1. / (prior * prior);
+      precisions[at] = 1. / (prior * prior);
+      means[at] = -d->faults[i].values[k];
     }
   }
-  if (!cloth_cholesky_factor (n, a))
+  cloth_posterior_init (&posterior, n);
+  cloth_posterior_add_data (&posterior, g, score, phi);
+  cloth_posterior_add_prior (&posterior, precisions, means);
+  if (!cloth_posterior_solve (&posterior))
     return FALSE;
-  cloth_cholesky_solve (n, a, x);
-  cloth_cholesky_inverse (n, a, inverse);
+  cloth_posterior_covariance (&posterior, covariance);
   at = 0;
   for (guint i = 0; i < d->n_faults; i++) {
     const ClothCandidate *c = candidate_at (s, d->faults[i].candidate);
@@ -255,9 +246,9 @@ step_faults (Search * s)
       const ClothDirection *direction =
           cloth_candidates_direction (s->candidates, c->first + k);
 
-      d->faults[i].values[k] = CLAMP (d->faults[i].values[k] + x[at],
-          direction->low, direction->high);
-      d->faults[i].sigmas[k] = sqrt (inverse[at * n + at]);
+      d->faults[i].values[k] = CLAMP (d->faults[i].values[k] +
+          posterior.mean[at], direction->low, direction->high);
+      d->faults[i].sigmas[k] = sqrt (covariance[at * n + at]);
     }
   }
   return TRUE;

@@ -4,7 +4,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/fit/estimate/normal.h"
+#include "gst/fit/estimate/estimate.h"
 #include "gst/gap/camera/view.h"
 
 G_BEGIN_DECLS

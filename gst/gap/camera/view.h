@@ -4,7 +4,6 @@
 #pragma once
 
 #include "gst/effect/effect.h"
-#include "gst/fit/recording/observations.h"
 #include "gst/fit/recording/recording.h"
 #include "gst/rig/capture.h"
 

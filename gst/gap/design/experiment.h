@@ -4,7 +4,7 @@
 #pragma once
 
 #include "gst/gap/design/motion.h"
-#include "gst/fit/estimate/sensitivities.h"
+#include "gst/fit/estimate/estimate.h"
 
 G_BEGIN_DECLS
 

@@ -136,10 +136,12 @@ cloth_diagnosis_fit_free (ClothDiagnosis * d, const ClothModel * model,
     g_ptr_array_add (copies, cloth_sensitivities_copy (studies[i], &d->study));
   }
   likeliest = cloth_gauss_newton_fit (studies, n, d->candidates, model, d->all,
-      precisions, m, NULL, FALSE, TRUE, N_FIT, &d->study, sigmas, error);
+      precisions, m, NULL, CLOTH_FIT_IS_LINEARISED, N_FIT, &d->study,
+      sigmas, error);
   nearest =
       likeliest ? cloth_gauss_newton_fit ((ClothSensitivities **) copies->pdata,
-      n, d->candidates, model, d->all, precisions, m, NULL, TRUE, TRUE, N_FIT,
+      n, d->candidates, model, d->all, precisions, m, NULL,
+      CLOTH_FIT_EQUAL_WEIGHTS | CLOTH_FIT_IS_LINEARISED, N_FIT,
       &d->study, sigmas + m, error) : NULL;
   if (!nearest
       || !find_gaps (d, begin, begin + n,

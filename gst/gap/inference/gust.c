@@ -15,7 +15,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/math/linalg.h"
 
 /* Intensities that are tried, in priors of the effect. */
 static const gdouble intensities[] = { 0.5, 1., 2., 4. };
@@ -93,30 +92,31 @@ solve (const System * system, gdouble phi, gdouble intensity, gdouble share,
   const guint all = system->q + system->n;
   const guint size = intensity > 0. ? all : system->q;
   const guint n_parts = system->n / N_WAYS;
-  g_autofree gdouble *a = g_new (gdouble, (gsize) size * size + 1);
-  gdouble gained = 0.;
+  g_auto (ClothPosterior) posterior = { 0 };
+  gdouble gained;
 
+  cloth_posterior_init (&posterior, size);
   for (guint i = 0; i < size; i++) {
-    memcpy (a + (gsize) i * size, system->a + (gsize) i * all,
-        size * sizeof *a);
-    x[i] = system->b[i];
+    gdouble *a = posterior.precision + (gsize) i * size;
+
+    memcpy (a, system->a + (gsize) i * all, size * sizeof *a);
+    posterior.mean[i] = system->b[i];
     for (guint k = system->q; k < size && i >= system->q; k++)
       if ((i - k) % N_WAYS == 0)
-        a[(gsize) i * size + k] += phi / (intensity * intensity) *
+        a[k] += phi / (intensity * intensity) *
             ornstein (n_parts, share, (i - system->q) / N_WAYS,
             (k - system->q) / N_WAYS);
   }
   if (!size)
     return 0.;
-  if (!cloth_cholesky_factor (size, a))
+  if (!cloth_posterior_solve (&posterior))
     return NAN;
-  for (guint i = 0; i < size; i++)
-    gained -= 2. * log (a[(gsize) i * size + i]);
+  gained = -cloth_posterior_log_determinant (&posterior);
   /* of the winds' prior: the chain's determinant is that of its kicks */
   if (size > system->q)
     gained += system->n * log (phi / (intensity * intensity)) -
         N_WAYS * (n_parts - 1.) * log (1. - share * share);
-  cloth_cholesky_solve (size, a, x);
+  memcpy (x, posterior.mean, size * sizeof *x);
   for (guint i = 0; i < size; i++)
     gained += x[i] * system->b[i] / phi;
   return gained;

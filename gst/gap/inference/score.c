@@ -20,7 +20,6 @@
 #include <string.h>
 
 #include "gst/gap/inference/gust.h"
-#include "gst/math/linalg.h"
 
 /* Gusts must be likelier by so much: a steady wind whose law is another than the model's
  * seems to change, too. */
@@ -82,23 +81,18 @@ static gboolean
 estimate (const Trial * trial, const ClothReducedEquations * reduced,
     gdouble phi, gdouble * changes, gdouble * inverse, gdouble * log_det)
 {
-  guint n = reduced->n;
-  gdouble a[MOST * MOST];
+  g_auto (ClothPosterior) posterior = { 0 };
 
-  *log_det = 0.;
-  for (guint i = 0; i < n; i++) {
-    for (guint j = 0; j < n; j++)
-      a[i * n + j] = reduced->g[i * n + j] / phi;
-    a[i * n + i] += trial->precisions[i];
-    changes[i] = -reduced->s[i] / phi;
-  }
-  if (!cloth_cholesky_factor (n, a))
+  cloth_posterior_init (&posterior, reduced->n);
+  cloth_posterior_add_data (&posterior, reduced->g, reduced->s, phi);
+  cloth_posterior_add_prior (&posterior, trial->precisions, NULL);
+  if (!cloth_posterior_solve (&posterior))
     return FALSE;
-  for (guint i = 0; i < n; i++)
-    *log_det += 2. * log (a[i * n + i]) - log (trial->precisions[i]);
-  cloth_cholesky_solve (n, a, changes);
-  if (inverse)
-    cloth_cholesky_inverse (n, a, inverse);
+  *log_det = cloth_posterior_log_determinant (&posterior);
+  for (guint i = 0; i < reduced->n; i++)
+    *log_det -= log (trial->precisions[i]);
+  memcpy (changes, posterior.mean, reduced->n * sizeof *changes);
+  cloth_posterior_covariance (&posterior, inverse);
   if (trial->one_sided && changes[0] < 0.)
     changes[0] = 0.;
   return TRUE;
@@ -120,30 +114,26 @@ estimate_all (const Trial * trial, const ClothNormalEquations * normal,
     const guint * columns, gdouble * changes)
 {
   const ClothGapTest *t = trial->test;
-  guint q = t->n_nuisances + n, m = normal->m;
-  g_autofree gdouble *a = g_new0 (gdouble, (gsize) q * q + 1);
+  const guint q = t->n_nuisances + n;
+  g_auto (ClothPosterior) posterior = { 0 };
+  g_autofree gdouble *g = g_new (gdouble, (gsize) q * q + 1);
+  g_autofree gdouble *s = g_new (gdouble, q + 1);
+  g_autofree gdouble *precisions = g_new (gdouble, q + 1);
+  g_autofree gdouble *means = g_new0 (gdouble, q + 1);
 
-  memset (changes, 0, q * sizeof *changes);
-  for (guint b = 0; b < normal->n_blocks; b++) {
-    const gdouble *g = normal->g + (gsize) b * m * m;
-
-    for (guint i = 0; i < q && blocks[b]; i++) {
-      for (guint j = 0; j < q; j++)
-        a[(gsize) i * q + j] += g[(gsize) columns[i] * m + columns[j]];
-      changes[i] -= normal->s[(gsize) b * m + columns[i]];
-    }
-  }
   for (guint i = 0; i < t->n_nuisances; i++)
-    a[(gsize) i * q + i] += t->precisions[i] * t->overdispersion;
+    precisions[i] = t->precisions[i] * t->overdispersion;
   for (guint k = 0; k < n; k++) {
-    const guint i = t->n_nuisances + k;
-
-    a[(gsize) i * q + i] += trial->precisions[k] * phi;
-    changes[i] -= trial->precisions[k] * phi * at[k];
+    precisions[t->n_nuisances + k] = trial->precisions[k] * phi;
+    means[t->n_nuisances + k] = -at[k];
   }
-  if (!cloth_cholesky_factor (q, a))
+  cloth_normal_equations_sum (normal, blocks, columns, q, g, s);
+  cloth_posterior_init (&posterior, q);
+  cloth_posterior_add_data (&posterior, g, s, 1.);
+  cloth_posterior_add_prior (&posterior, precisions, means);
+  if (!cloth_posterior_solve (&posterior))
     return FALSE;
-  cloth_cholesky_solve (q, a, changes);
+  memcpy (changes, posterior.mean, q * sizeof *changes);
   return !(n && trial->one_sided && at[0] + changes[t->n_nuisances] < 0.);
 }
 
@@ -218,7 +208,8 @@ heterogeneity (const Trial * trial, const ClothNormalEquations * normal,
 
   for (guint b = 0; b < normal->n_blocks; b++) {
     ClothReducedEquations reduced;
-    gdouble a[MOST * MOST], rest[MOST] = { 0. }, x[MOST];
+    gdouble rest[MOST];
+    g_auto (ClothPosterior) own = { 0 };
 
     if (!trial->test->blocks[b])
       continue;
@@ -229,12 +220,12 @@ heterogeneity (const Trial * trial, const ClothNormalEquations * normal,
         for (guint j = 0; j < n; j++)
           rest[i] += reduced.g[i * n + j] * common[j];
       }
-      memcpy (a, reduced.g, sizeof a);
-      memcpy (x, rest, sizeof x);
-      if (cloth_cholesky_factor (n, a)) {
-        cloth_cholesky_solve (n, a, x);
+      /* what this block's own estimate is beyond the common one */
+      cloth_posterior_init (&own, n);
+      cloth_posterior_add_data (&own, reduced.g, rest, 1.);
+      if (cloth_posterior_solve (&own)) {
         for (guint i = 0; i < n; i++)
-          sum += rest[i] * x[i] / phi;
+          sum -= rest[i] * own.mean[i] / phi;
         *freedom += n;
       }
     }
@@ -370,8 +361,8 @@ cloth_gap_test_run (const ClothGapTest * test)
  * @one: a candidate
  * @other: another
  *
- * Returns: largest cosine between what is left of their first directions' derivatives
- *   once the nuisances are projected out
+ * Returns: largest cosine between a derivative of the one and one of the other once the
+ *   nuisances are projected out
  */
 gdouble
 cloth_gap_test_cosine (const ClothGapTest * test, guint one, guint other)

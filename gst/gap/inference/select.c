@@ -16,7 +16,6 @@
 
 #include "gst/fit/error.h"
 #include "gst/gap/inference/trial.h"
-#include "gst/math/linalg.h"
 
 /* Simulations of a fit with effects. */
 #define N_REFIT 3
@@ -42,7 +41,7 @@ refit (ClothDiagnosis * d, const ClothModel * start, GError ** error)
   d->with[now] =
       cloth_gauss_newton_fit ((ClothSensitivities **) d->studies->pdata,
       d->n_takes, d->candidates, start, directions, precisions, m, blocks,
-      FALSE, FALSE, N_REFIT, &d->study, sigmas, error);
+      CLOTH_FIT_DEFAULT, N_REFIT, &d->study, sigmas, error);
   m = d->candidates->n_free;
   for (guint c = 0; c <= now; c++)
     for (guint k = 0; k < cloth_diagnosis_accepted (d, c)->n; k++)
@@ -93,9 +92,9 @@ find_need (const ClothDiagnosis * d, const ClothGapTest * test, guint accepted,
   ClothReducedEquations r;
   guint directions[CLOTH_EFFECT_MAX_PARAMETERS];
   gdouble values[CLOTH_EFFECT_MAX_PARAMETERS];
-  gdouble a[CLOTH_EFFECT_MAX_PARAMETERS * CLOTH_EFFECT_MAX_PARAMETERS];
-  gdouble away[CLOTH_EFFECT_MAX_PARAMETERS], phi, need =
-      -d->null_log_bayes_factors[d->accepted[accepted]];
+  gdouble away[CLOTH_EFFECT_MAX_PARAMETERS];
+  gdouble phi, need = -d->null_log_bayes_factors[d->accepted[accepted]];
+  g_auto (ClothPosterior) posterior = { 0 };
 
   cloth_diagnosis_list_accepted (d, 1., taken, of_taken);
   for (guint k = 0; k < m; k++) {
@@ -112,22 +111,20 @@ find_need (const ClothDiagnosis * d, const ClothGapTest * test, guint accepted,
     return INFINITY;
   phi = cloth_gap_test_dispersion (test, test->normal, &r);
   find_values (d, accepted, values);
-  /* away: from the best place to the null */
+  /* changes are counted from where the effect is, its null is at -values */
   for (guint i = 0; i < n; i++) {
-    const gdouble precision = of_taken[first + i];
-
-    away[i] = r.s[i] / phi + precision * values[i];
-    for (guint k = 0; k < n; k++)
-      a[i * n + k] = r.g[i * n + k] / phi + (i == k ? precision : 0.);
-    need += 0.5 * log (precision);
+    away[i] = -values[i];
+    need += 0.5 * log (of_taken[first + i]);
   }
-  if (!cloth_cholesky_factor (n, a))
+  cloth_posterior_init (&posterior, n);
+  cloth_posterior_add_data (&posterior, r.g, r.s, phi);
+  cloth_posterior_add_prior (&posterior, of_taken + first, away);
+  if (!cloth_posterior_solve (&posterior))
     return INFINITY;
-  cloth_cholesky_solve (n, a, away);
-  for (guint i = 0; i < n; i++) {
-    need -= log (a[i * n + i]);
-    away[i] -= values[i];
-  }
+  need -= 0.5 * cloth_posterior_log_determinant (&posterior);
+  /* from the most probable place to the null */
+  for (guint i = 0; i < n; i++)
+    away[i] -= posterior.mean[i];
   for (guint i = 0; i < n; i++)
     for (guint k = 0; k < n; k++)
       need += 0.5 * away[i] * away[k] * (r.g[i * n + k] / phi + (i == k ?

@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/fit/estimate/sensitivities.h"
+#include "gst/fit/estimate/estimate.h"
 
 G_BEGIN_DECLS
 

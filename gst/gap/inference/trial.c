@@ -13,7 +13,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/math/linalg.h"
 
 /* So many effects at most, each for so many Gauss–Newton steps at most, as long as it
  * moves by this share of a prior and gains so much evidence. */
@@ -190,8 +189,9 @@ step (const Refinement * refinement, Hypothesis * r)
   g_autoptr (ClothNormalEquations) here = sum_normals (refinement, r);
   ClothReducedEquations reduced;
   guint directions[MOST] = { 0 };
-  gdouble a[MOST * MOST], inverse[MOST * MOST], by[MOST], log_det =
-      0., square, log_bayes_factor;
+  gdouble by[MOST], precisions[MOST], means[MOST], covariance[MOST * MOST];
+  gdouble log_det, square, log_bayes_factor;
+  g_auto (ClothPosterior) posterior = { 0 };
 
   for (guint i = 0; i < n; i++)
     directions[i] = here->m - n + i;
@@ -205,24 +205,21 @@ step (const Refinement * refinement, Hypothesis * r)
     gdouble prior = cloth_candidates_direction (refinement->d->candidates,
         r->candidate->first + i)->prior;
 
-    for (guint k = 0; k < n; k++)
-      a[i * n + k] = reduced.g[i * n + k] / refinement->phi;
-    a[i * n + i] += 1. / (prior * prior);
-    log_det += 2. * log (prior);
-    by[i] = -reduced.s[i] / refinement->phi - r->at[i] / (prior * prior);
+    precisions[i] = 1. / (prior * prior);
+    means[i] = -r->at[i];
   }
-  if (!cloth_cholesky_factor (n, a))
+  cloth_posterior_init (&posterior, n);
+  cloth_posterior_add_data (&posterior, reduced.g, reduced.s, refinement->phi);
+  cloth_posterior_add_prior (&posterior, precisions, means);
+  if (!cloth_posterior_solve (&posterior))
     return;
-  for (guint i = 0; i < n; i++)
-    log_det += 2. * log (a[i * n + i]);
-  cloth_cholesky_solve (n, a, by);
-  cloth_cholesky_inverse (n, a, inverse);
+  log_det = cloth_posterior_log_determinant (&posterior);
+  cloth_posterior_covariance (&posterior, covariance);
   for (guint i = 0; i < n; i++) {
-    gdouble from = r->at[i];
-
-    r->at[i] += by[i];
-    by[i] = from;
-    r->score->sigmas[i] = sqrt (inverse[i * n + i]);
+    log_det -= log (precisions[i]);
+    by[i] = r->at[i];
+    r->at[i] += posterior.mean[i];
+    r->score->sigmas[i] = sqrt (covariance[i * n + i]);
   }
   keep_in_range (refinement->d, r);
   square = reduced.r / refinement->phi;
@@ -232,7 +229,7 @@ step (const Refinement * refinement, Hypothesis * r)
 
     by[i] = r->at[i] - by[i];
     r->moved = MAX (r->moved, fabs (by[i]) / prior);
-    square += r->at[i] * r->at[i] / (prior * prior) +
+    square += r->at[i] * r->at[i] * precisions[i] +
         2. * reduced.s[i] / refinement->phi * by[i];
     for (guint k = 0; k <= i; k++)
       square += (k < i ? 2. : 1.) * by[i] * by[k] * reduced.g[i * n + k] /

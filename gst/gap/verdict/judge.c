@@ -14,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/fit/recording/interpolation.h"
+#include "gst/fit/recording/recording.h"
 #include "gst/gap/localise/where.h"
 
 /* Variance of a gap that is hardly larger, over that before. */

@@ -1,0 +1,20 @@
+/* Recordings as signals in time: their derivative and their noise.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/fit/recording/recording-type.h"
+
+G_BEGIN_DECLS
+
+/* Frames of the polynomial that the velocity comes from, and its order. */
+#define CLOTH_RECORDING_WINDOW 7
+#define CLOTH_RECORDING_ORDER 4
+
+void cloth_recording_find_weights (const gdouble * times, guint mask,
+    gdouble at, gdouble * weights);
+void cloth_recording_differentiate (ClothRecording * recording);
+gint cloth_recording_compare_numbers (gconstpointer a, gconstpointer b);
+gdouble cloth_recording_estimate_sigma (const ClothRecording * recording);
+
+G_END_DECLS
