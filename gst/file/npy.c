@@ -515,36 +515,6 @@ cloth_npy_reader_free (ClothNpyReader * reader)
   g_free (reader);
 }
 
-/* @path: an .npy file of at most 512 MiB as float32
- * @info: (out): its shape
- * @error: #ClothFileError, #GIOErrorEnum
- *
- * Loads a whole array, whatever its type, as float32.
- *
- * Returns: (transfer full): its numbers in C order, g_free() them; or %NULL
- */
-gfloat *
-cloth_npy_load_float (const gchar * path, ClothNpyInfo * info, GError ** error)
-{
-  g_autoptr (ClothNpyReader) reader = cloth_npy_reader_open (path, error);
-  g_autofree gfloat *items = NULL;
-  guint64 n_items;
-
-  if (!reader)
-    return NULL;
-  *info = reader->info;
-  n_items = info->n_rows * info->row_items;
-  if (n_items > CLOTH_MAX_BUFFER / sizeof (gfloat)) {
-    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT,
-        "%s: larger than the %u bytes accepted", path, CLOTH_MAX_BUFFER);
-    return NULL;
-  }
-  items = g_new (gfloat, MAX (n_items, 1));
-  if (!read_rows (reader, 0, info->n_rows, items, NULL, error))
-    return NULL;
-  return g_steal_pointer (&items);
-}
-
 /* The whole header for @n_rows rows, padded with blanks to @size bytes (0: to the
  * next multiple of 64 that would hold any number of rows). */
 static GString *
@@ -665,22 +635,6 @@ cloth_npy_writer_finish (ClothNpyWriter * writer, GError ** error)
   return g_steal_pointer (&writer->output);
 }
 
-/* @writer: a writer
- * @error: #GIOErrorEnum
- *
- * Writes the final shape and gives the file its name. The writer can then only be
- * freed.
- *
- * Returns: %TRUE when the file is there
- */
-gboolean
-cloth_npy_writer_close (ClothNpyWriter * writer, GError ** error)
-{
-  g_autoptr (ClothOutput) output = cloth_npy_writer_finish (writer, error);
-
-  return output && cloth_output_commit (&output, 1, error);
-}
-
 /* @writer: (transfer full) (nullable): a writer
  *
  * Frees it; a file that was not closed is removed.
@@ -692,27 +646,4 @@ cloth_npy_writer_free (ClothNpyWriter * writer)
     return;
   cloth_output_free (writer->output);
   g_free (writer);
-}
-
-/* @path: the file
- * @type: type of an item
- * @rank: number of dimensions, 0 to 4
- * @shape: (array length=rank): their lengths
- * @items: the numbers in C order
- * @error: #GIOErrorEnum
- *
- * Writes a whole array.
- *
- * Returns: %TRUE when the file is there
- */
-gboolean
-cloth_npy_write (const gchar * path, ClothNpyType type, guint rank,
-    const guint64 * shape, gconstpointer items, GError ** error)
-{
-  g_autoptr (ClothNpyWriter) writer = cloth_npy_writer_new (path, type, rank,
-      rank > 1 ? shape + 1 : NULL, error);
-
-  return writer &&
-      cloth_npy_writer_append (writer, items, rank > 0 ? shape[0] : 1, error) &&
-      cloth_npy_writer_close (writer, error);
 }

@@ -68,18 +68,13 @@ gboolean cloth_npy_reader_read_double (ClothNpyReader * reader,
 gboolean cloth_npy_reader_read_raw (ClothNpyReader * reader,
     guint64 first_row, guint64 n_rows, gpointer items, GError ** error);
 void cloth_npy_reader_free (ClothNpyReader * reader);
-gfloat *cloth_npy_load_float (const gchar * path, ClothNpyInfo * info,
-    GError ** error);
 
 ClothNpyWriter *cloth_npy_writer_new (const gchar * path, ClothNpyType type,
     guint rank, const guint64 * row_shape, GError ** error);
 gboolean cloth_npy_writer_append (ClothNpyWriter * writer,
     gconstpointer items, guint64 n_rows, GError ** error);
 ClothOutput *cloth_npy_writer_finish (ClothNpyWriter * writer, GError ** error);
-gboolean cloth_npy_writer_close (ClothNpyWriter * writer, GError ** error);
 void cloth_npy_writer_free (ClothNpyWriter * writer);
-gboolean cloth_npy_write (const gchar * path, ClothNpyType type, guint rank,
-    const guint64 * shape, gconstpointer items, GError ** error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothNpyReader, cloth_npy_reader_free)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothNpyWriter, cloth_npy_writer_free)

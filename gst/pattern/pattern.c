@@ -121,21 +121,6 @@ cloth_pattern_new_checker (gint columns, gint rows, gdouble square_m,
       error) ? g_steal_pointer (&pattern) : NULL;
 }
 
-/* @pattern: a pattern
- *
- * Returns: (transfer full): a copy with its own code
- */
-ClothPattern *
-cloth_pattern_copy (const ClothPattern * pattern)
-{
-  ClothPattern *copy = g_memdup2 (pattern, sizeof *pattern);
-
-  if (pattern->code)
-    copy->code =
-        g_memdup2 (pattern->code, (gsize) pattern->columns * pattern->rows);
-  return copy;
-}
-
 /* @pattern: (nullable) (transfer full): a pattern
  */
 void

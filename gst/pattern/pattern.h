@@ -55,7 +55,6 @@ typedef struct {
 
 ClothPattern *cloth_pattern_new_checker (gint columns, gint rows,
     gdouble square_m, gdouble margin_m, gboolean first_black, GError ** error);
-ClothPattern *cloth_pattern_copy (const ClothPattern * pattern);
 void cloth_pattern_free (ClothPattern * pattern);
 
 gboolean cloth_pattern_check (const ClothPattern * pattern, GError ** error);

@@ -9,34 +9,6 @@
 /* Points a side that a pixel under the edge of a dot is sampled with. */
 #define DOT_SAMPLES 16
 
-/* @pattern: a sound pattern
- * @u: metres along the flat cloth's width
- * @v: metres along its height
- *
- * Returns: 1 where the cloth is white (all of it outside the board), 0 where black
- */
-gdouble
-cloth_pattern_white_at (const ClothPattern * pattern, gdouble u, gdouble v)
-{
-  const gdouble x = (u - pattern->origin_uv_m[0]) / pattern->square_m;
-  const gdouble y = (v - pattern->origin_uv_m[1]) / pattern->square_m;
-  gint column, row;
-  gboolean black;
-
-  if (!(x >= 0 && x < pattern->columns && y >= 0 && y < pattern->rows))
-    return 1;
-  column = (gint) x;
-  row = (gint) y;
-  black = cloth_pattern_is_black (pattern, column, row);
-  if (cloth_pattern_has_dot (pattern, column, row)) {
-    gdouble dx = x - column - 0.5, dy = y - row - 0.5;
-
-    if (4 * (dx * dx + dy * dy) < pattern->dot_ratio * pattern->dot_ratio)
-      black = !black;
-  }
-  return !black;
-}
-
 /* Over [a, b] in squares: @share becomes the part of it on the board, the value is the
  * mean of +1 on even squares, −1 on odd ones, 0 off the board. */
 static gdouble

@@ -25,8 +25,6 @@ typedef struct {
   gdouble px_per_m;
 } ClothTexture;
 
-gdouble cloth_pattern_white_at (const ClothPattern * pattern, gdouble u,
-    gdouble v);
 ClothTexture *cloth_pattern_texture (const ClothPattern * pattern,
     gdouble px_per_m, guint8 black, guint8 white, GError ** error);
 ClothTexture *cloth_m_array_texture (const ClothMArray * array,

@@ -12,7 +12,7 @@
 #include "gst/math/linalg.h"
 #include "gst/math/random.h"
 #include "gst/mesh/fill/fill.h"
-#include "gst/file/npy.h"
+#include "tests/common/npyfloats.h"
 
 #define COLUMNS 33
 #define ROWS 35
@@ -267,7 +267,7 @@ load (Recording * recording, const gchar * path)
 
   cloth_random_init (&random, 1);
   recording->path = path;
-  recording->truth = cloth_npy_load_float (path, &info, &error);
+  recording->truth = load_npy_floats (path, &info, &error);
   if (!recording->truth) {
     fprintf (stderr, "%s\n", error->message);
     return FALSE;

@@ -11,8 +11,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/file/npy.h"
 #include "gst/rig/rigfile.h"
+#include "tests/common/npyfloats.h"
 
 /* The mesh the film was rendered from. */
 #define COLUMNS 33
@@ -314,7 +314,7 @@ test_film_load (const gchar * folder)
   g_assert_cmpuint (film->rig->n_cameras, ==, TEST_FILM_CAMERAS);
   film->pattern = cloth_pattern_load (pattern, &error);
   g_assert_no_error (error);
-  vertices = cloth_npy_load_float (truth, &info, &error);
+  vertices = load_npy_floats (truth, &info, &error);
   g_assert_no_error (error);
   g_assert_cmpuint (info.row_items, ==, 3 * ROWS * COLUMNS);
   film->n_frames = (guint) info.n_rows;

@@ -10,12 +10,12 @@
 #include <gst/video/video.h>
 #include <math.h>
 
-#include "gst/file/npy.h"
 #include "gst/pattern/marray.h"
 #include "gst/rig/rigfile.h"
 #include "gst/vision/dot/dot.h"
 #include "gst/vision/label/dot-colour.h"
 #include "gst/vision/label/dot-label.h"
+#include "tests/common/npyfloats.h"
 #include "tests/common/picture.h"
 
 #define FOLDER TEST_DATA "/dots_ring8/"
@@ -526,7 +526,7 @@ main (int argc, char **argv)
   if (argc > 1)
     films = argv[1];
   truth = g_build_filename (films, "vertices.npy", NULL);
-  meshes = cloth_npy_load_float (truth, &info, &error);
+  meshes = load_npy_floats (truth, &info, &error);
   g_assert_no_error (error);
   g_assert_cmpuint (info.row_items, ==, 3 * ROWS * COLUMNS);
   if (argc > 1)

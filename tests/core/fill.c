@@ -8,7 +8,7 @@
 
 #include "gst/math/linalg.h"
 #include "gst/math/random.h"
-#include "gst/file/npy.h"
+#include "tests/common/npyfloats.h"
 
 #define COLUMNS 17
 #define ROWS 13
@@ -552,7 +552,7 @@ test_take (gconstpointer data)
   gdouble all[2] = { 0, 0 }, squares[3] = { 0, };
   ClothNpyInfo info;
 
-  take.frames = cloth_npy_load_float (take.path, &info, NULL);
+  take.frames = load_npy_floats (take.path, &info, NULL);
   g_assert_nonnull (take.frames);
   g_assert_cmpuint (info.row_items, ==, 3 * TAKE_N);
   for (guint place = 0; place < G_N_ELEMENTS (places); place++) {

@@ -4,8 +4,8 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "simscene.h"
 
-#include "gst/file/npy.h"
 #include "gst/sim/effects/effects.h"
+#include "tests/common/npyfloats.h"
 
 #define N_FABRICS 16
 #define N_PULLS 5
@@ -39,7 +39,7 @@ read_curves (void)
 {
   g_autoptr (GError) error = NULL;
   ClothNpyInfo info;
-  gfloat *items = cloth_npy_load_float (TEST_DATA "/knits/curves.npy", &info,
+  gfloat *items = load_npy_floats (TEST_DATA "/knits/curves.npy", &info,
       &error);
 
   g_assert_no_error (error);

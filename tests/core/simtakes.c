@@ -7,8 +7,8 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "simscene.h"
 
-#include "gst/file/npy.h"
 #include "gst/sim/effects/effects.h"
+#include "tests/common/npyfloats.h"
 #include "simplot.h"
 
 #define COLUMNS 33
@@ -43,7 +43,7 @@ load (const gchar * name)
   g_autofree gchar *path = g_build_filename (TEST_DATA, "sway", name, NULL);
   g_autoptr (GError) error = NULL;
   ClothNpyInfo info;
-  gfloat *items = cloth_npy_load_float (path, &info, &error);
+  gfloat *items = load_npy_floats (path, &info, &error);
 
   g_assert_no_error (error);
   return items;

@@ -7,9 +7,9 @@
 #include <gst/video/video.h>
 #include <math.h>
 
-#include "gst/file/npy.h"
 #include "gst/pattern/marray.h"
 #include "gst/rig/rigfile.h"
+#include "tests/common/npyfloats.h"
 
 #define RING TEST_DATA "/dots_ring8/"
 /* The mesh that the pictures were rendered from; bilinear in each cell. */
@@ -35,7 +35,7 @@ ring_open (Ring * ring)
   g_assert_no_error (error);
   ring->rig = cloth_rig_load (RING "rig.json", &error);
   g_assert_no_error (error);
-  ring->mesh = cloth_npy_load_float (RING "vertices.npy", &info, &error);
+  ring->mesh = load_npy_floats (RING "vertices.npy", &info, &error);
   g_assert_no_error (error);
 }
 

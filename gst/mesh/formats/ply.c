@@ -630,24 +630,12 @@ put_index (guint8 * to, guint32 value)
   return to + sizeof value;
 }
 
-/* @output: where to
- * @topology: faces and uv
- * @positions: 3 finite numbers a vertex
- * @states: a #ClothVertexState a vertex
- * @covariances: (nullable): 6 numbers a vertex, m²
- * @fps_n: numerator of the frame rate, 0 when it varies
- * @fps_d: its denominator
- * @scratch: reused from frame to frame
- * @error: #GIOErrorEnum
- *
- * Writes binary little-endian. Properties of a vertex: x y z, s t (uv), state; with
- * covariances also `quality` = standard deviation in metres (RMS of the axes; the
- * scalar that viewers colour by; 0 where not known) and cov_xx to cov_zz.
- *
- * Returns: %TRUE when all was taken
- */
-gboolean
-cloth_ply_write (ClothOutput * output, const ClothTopology * topology,
+/* Binary little-endian. Properties of a vertex: x y z, s t (uv), state; with covariances
+ * also `quality` = standard deviation in metres (RMS of the axes; the scalar that viewers
+ * colour by; 0 where not known) and cov_xx to cov_zz. @scratch is reused from frame to
+ * frame. */
+static gboolean
+write_frame (ClothOutput * output, const ClothTopology * topology,
     const gfloat * positions, const guint8 * states,
     const gfloat * covariances, gint fps_n, gint fps_d, GByteArray * scratch,
     GError ** error)
@@ -730,7 +718,7 @@ append_ply (gpointer export, guint64 number, gdouble time_s,
   const ClothExportInfo *info = self->info;
   g_autoptr (ClothOutput) output = cloth_file_set_begin (self->files, error);
 
-  return output && cloth_ply_write (output, info->topology, frame->positions,
+  return output && write_frame (output, info->topology, frame->positions,
       frame->states, frame->covariances, info->fps_n, info->fps_d,
       self->scratch, error) && cloth_file_set_end (self->files, output, error);
 }

@@ -44,10 +44,6 @@ gboolean cloth_ply_parse (ClothPly * ply, const gchar * bytes, gsize size,
     GError ** error);
 gboolean cloth_ply_read (ClothPly * ply, const gchar * path, GError ** error);
 void cloth_ply_free (ClothPly * ply);
-gboolean cloth_ply_write (ClothOutput * output, const ClothTopology * topology,
-    const gfloat * positions, const guint8 * states,
-    const gfloat * covariances, gint fps_n, gint fps_d, GByteArray * scratch,
-    GError ** error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothPly, cloth_ply_free)
 G_END_DECLS
