@@ -1,11 +1,8 @@
 /* gst-cloth-calibrate-1.0: calibrates a rig from pictures or films of a board.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "config.h"
-
 #include <gio/gio.h>
 #include <gst/gst.h>
-#include <locale.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -16,30 +13,16 @@
 #include "gst/rig/calibrate.h"
 #include "gst/rig/rigfile.h"
 #include "gst/rig/rigyaml.h"
-#include "tools/length.h"
-
-#define TOOL "gst-cloth-calibrate-1.0"
-
-enum
-{ DONE = 0, FAILED = 1, BAD_USAGE = 2 };
+#include "tools/tool.h"
 
 typedef struct
 {
-  gboolean version, share_lens, intrinsics_only;
+  gboolean share_lens, intrinsics_only;
   gint columns, rows, every, max_views, leave_out;
   gchar *pattern, *square, *first, *lens, *world, *size, *output;
   gchar **opencv, *kalibr;
   gchar **cameras;
 } Arguments;
-
-static gint
-complain (gint code, const gchar * message)
-{
-  g_printerr (TOOL ": %s\n", message);
-  if (code == BAD_USAGE)
-    g_printerr ("Try \"" TOOL " --help\".\n");
-  return code;
-}
 
 static ClothPattern *
 make_pattern (const Arguments * a, gint * code, GError ** error)
@@ -255,7 +238,7 @@ calibrate (const Arguments * a, GPtrArray * cameras,
   if (isatty (2))
     g_printerr ("\r\033[K");
   if (!result || !cloth_rig_save (result->rig, a->output, &error))
-    return complain (FAILED, error->message);
+    return complain (FAILED, "%s", error->message);
   report = cloth_calibrate_report (&in, result, cameras);
   g_print ("board: %d × %d squares of %g mm\n%s\nwrote %s\n", pattern->columns,
       pattern->rows, 1e3 * pattern->square_m, report, a->output);
@@ -283,7 +266,7 @@ import (const Arguments * a)
   if (!rig && width == 0 && strstr (error->message, "no picture size"))
     g_prefix_error (&error, "give --size: ");
   if (!rig || !cloth_rig_save (rig, a->output, &error))
-    return complain (FAILED, error->message);
+    return complain (FAILED, "%s", error->message);
   for (guint c = 0; c < rig->n_cameras; c++)
     g_print ("camera %s: %d×%d, %s lens\n", rig->cameras[c].name,
         rig->cameras[c].width, rig->cameras[c].height,
@@ -293,8 +276,9 @@ import (const Arguments * a)
 }
 
 static gint
-run (const Arguments * a)
+run (gconstpointer data)
 {
+  const Arguments *a = data;
   g_autoptr (ClothPattern) pattern = NULL;
   g_autoptr (GPtrArray) cameras = NULL;
   g_autoptr (GError) error = NULL;
@@ -302,10 +286,6 @@ run (const Arguments * a)
   ClothLens lens;
   gint code;
 
-  if (a->version) {
-    g_print (TOOL " (%s) %s\n", PACKAGE, PACKAGE_VERSION);
-    return DONE;
-  }
   if (!a->output)
     return complain (BAD_USAGE, "name the file to write: --output rig.json");
   if (a->opencv || a->kalibr)
@@ -319,10 +299,10 @@ run (const Arguments * a)
         "more, --leave-out 0 or 2 or more");
   pattern = make_pattern (a, &code, &error);
   if (!pattern)
-    return complain (code, error->message);
+    return complain (code, "%s", error->message);
   cameras = sort_arguments (a->cameras, &code, &error);
   if (!cameras)
-    return complain (code, error->message);
+    return complain (code, "%s", error->message);
   /* Better now than after an hour of reading. */
   folder = g_path_get_dirname (a->output);
   if (access (folder, W_OK) != 0)
@@ -337,7 +317,7 @@ run (const Arguments * a)
             show_reading, NULL, &error)) {
       if (isatty (2))
         g_printerr ("\n");
-      return complain (FAILED, error->message);
+      return complain (FAILED, "%s", error->message);
     }
     if (isatty (2) && camera->film)
       g_printerr ("\n");
@@ -386,28 +366,18 @@ main (int argc, char **argv)
         "WIDTHxHEIGHT"},
     {"output", 'o', 0, G_OPTION_ARG_FILENAME, &a.output,
         "The rig.json to write", "FILE"},
-    {"version", 0, 0, G_OPTION_ARG_NONE, &a.version,
-        "Show the version and exit", NULL},
     {G_OPTION_REMAINING, 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &a.cameras, NULL,
         "CAMERA=FILE…"},
     {NULL}
   };
-  g_autoptr (GOptionContext) context =
-      g_option_context_new ("- calibrate cameras from a board");
-  g_autoptr (GError) error = NULL;
   gint code;
 
-  /* Only the characters: numbers stay with the decimal point. */
-  setlocale (LC_CTYPE, "");
   gst_init (NULL, NULL);
   a.first = g_strdup ("black");
   a.lens = g_strdup ("brown5");
   a.world = g_strdup ("camera");
-  g_option_context_add_main_entries (context, entries, NULL);
-  if (g_option_context_parse (context, &argc, &argv, &error))
-    code = run (&a);
-  else
-    code = complain (BAD_USAGE, error->message);
+  code = tool_main ("gst-cloth-calibrate-1.0",
+      "- calibrate cameras from a board", entries, g_strdupv (argv), run, &a);
   g_free (a.pattern);
   g_free (a.square);
   g_free (a.first);

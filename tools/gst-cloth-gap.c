@@ -2,23 +2,17 @@
  * simulation from what was filmed.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "config.h"
-
 #include "tools/gap-tool.h"
 
-#include <locale.h>
 #include <string.h>
 
 static gint
-run (const Arguments * arguments)
+run (gconstpointer data)
 {
+  const Arguments *arguments = data;
   const gchar *command = arguments->rest ? arguments->rest[0] : NULL;
   gboolean is_diagnose = !g_strcmp0 (command, "diagnose");
 
-  if (arguments->version) {
-    g_print (TOOL " (%s) %s\n", PACKAGE, PACKAGE_VERSION);
-    return DONE;
-  }
   if (!command)
     return complain (BAD_USAGE,
         "name a command: diagnose, effects or simulate");
@@ -90,26 +84,14 @@ main (int argc, char **argv)
         "Of all random numbers (0)", "N"},
     {"threads", 0, 0, G_OPTION_ARG_INT, &arguments.threads,
         "Threads, 0 for all processors (0)", "N"},
-    {"version", 0, 0, G_OPTION_ARG_NONE, &arguments.version,
-        "Show the version and exit", NULL},
     {G_OPTION_REMAINING, 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &arguments.rest,
         NULL, "diagnose TAKE… | effects | simulate MODEL"},
     {NULL}
   };
-  g_autoptr (GOptionContext) context =
-      g_option_context_new ("- say where a simulation of cloth departs from "
-      "recordings");
-  g_auto (GStrv) words = spread_lists (argv);
-  g_autoptr (GError) error = NULL;
-  gint code;
+  gint code = tool_main ("gst-cloth-gap-1.0",
+      "- say where a simulation of cloth departs from recordings", entries,
+      spread_lists (argv), run, &arguments);
 
-  /* Only the characters: numbers stay with the decimal point. */
-  setlocale (LC_CTYPE, "");
-  g_option_context_add_main_entries (context, entries, NULL);
-  if (g_option_context_parse_strv (context, &words, &error))
-    code = run (&arguments);
-  else
-    code = complain (BAD_USAGE, "%s", error->message);
   g_free (arguments.model);
   g_free (arguments.effects);
   g_free (arguments.format);

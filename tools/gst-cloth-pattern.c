@@ -1,22 +1,17 @@
 /* gst-cloth-pattern-1.0: writes print files of patterns and their pattern.json.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "config.h"
-
 #include "gst/file/file.h"
 #include "gst/mesh/garment/garment.h"
 #include "gst/pattern/code.h"
 #include "gst/pattern/marray.h"
 #include "gst/pattern/pattern.h"
 #include "gst/pattern/print.h"
-#include "tools/length.h"
+#include "tools/tool.h"
 
 #include <glib/gstdio.h>
-#include <locale.h>
 #include <math.h>
 #include <string.h>
-
-#define TOOL "gst-cloth-pattern-1.0"
 
 /* The paper's cloth and its dots (Scholz et al. 2005, 3.1). */
 #define DOTS_COLUMNS 76
@@ -25,9 +20,6 @@
 #define DOTS_DIAMETER_RATIO (13.0 / 20.0)
 #define DOTS_DISTANCE 1
 #define SEED 1
-
-enum
-{ DONE = 0, FAILED = 1, BAD_USAGE = 2 };
 
 /* Kinds of pattern. */
 enum
@@ -38,7 +30,7 @@ enum
 
 typedef struct
 {
-  gboolean version, two_sided;
+  gboolean two_sided;
   gint columns, rows, colours, distance;
   gchar *square, *margin, *first, *paper, *page_margin, *overlap, *output;
   gchar *pitch, *diameter, *pattern;
@@ -48,21 +40,12 @@ typedef struct
 } Arguments;
 
 static gint
-complain (gint code, const gchar * message)
-{
-  g_printerr (TOOL ": %s\n", message);
-  if (code == BAD_USAGE)
-    g_printerr ("Try \"" TOOL " --help\".\n");
-  return code;
-}
-
-static gint
 fail (gint value_code, GError * error)
 {
   gboolean usage = g_error_matches (error, CLOTH_PATTERN_ERROR,
       CLOTH_PATTERN_ERROR_VALUE);
 
-  return complain (usage ? value_code : FAILED, error->message);
+  return complain (usage ? value_code : FAILED, "%s", error->message);
 }
 
 /* Fills @options and checks the layout; %DONE or an exit code. */
@@ -76,19 +59,17 @@ lay_out (const Arguments * arguments, const ClothArtwork * artwork,
   const gchar *overlap = arguments->overlap ? arguments->overlap : "10mm";
   ClothPrintLayout layout;
   g_autoptr (GError) error = NULL;
-  g_autofree gchar *message = NULL;
   gdouble metres;
 
   if (!cloth_print_paper (paper, options->paper_mm)) {
-    message = g_strdup_printf ("--paper %s: give A0 to A5, letter, legal, "
+    return complain (BAD_USAGE, "--paper %s: give A0 to A5, letter, legal, "
         "tabloid, cloth or a size as 600x900mm", paper);
-    return complain (BAD_USAGE, message);
   }
   if (!parse_length ("page-margin", margin, &metres, &error))
-    return complain (BAD_USAGE, error->message);
+    return complain (BAD_USAGE, "%s", error->message);
   options->margin_mm = metres * 1000;
   if (!parse_length ("overlap", overlap, &metres, &error))
-    return complain (BAD_USAGE, error->message);
+    return complain (BAD_USAGE, "%s", error->message);
   options->overlap_mm = metres * 1000;
   if (!cloth_print_layout (artwork, options, &layout, &error))
     return fail (BAD_USAGE, error);
@@ -147,13 +128,11 @@ check_options (const Arguments * a, guint kind)
   };
 
   for (gsize i = 0; i < G_N_ELEMENTS (options); i++) {
-    g_autofree gchar *message = NULL;
 
     if (!options[i].given || options[i].kinds & kind)
       continue;
-    message = g_strdup_printf ("--%s is not for a pattern of kind %s",
+    return complain (BAD_USAGE, "--%s is not for a pattern of kind %s",
         options[i].name, a->kinds[0]);
-    return complain (BAD_USAGE, message);
   }
   return DONE;
 }
@@ -183,16 +162,16 @@ run_m_array (const Arguments * arguments)
 
   if (!parse_length ("pitch", arguments->pitch ? arguments->pitch : "20mm",
           &pitch, &error))
-    return complain (BAD_USAGE, error->message);
+    return complain (BAD_USAGE, "%s", error->message);
   /* Whole micrometres, so that 0.65 · 20 mm is the 0.013 that is written in files. */
   diameter = round (DOTS_DIAMETER_RATIO * pitch * 1e6) / 1e6;
   if (arguments->diameter
       && !parse_length ("diameter", arguments->diameter, &diameter, &error))
-    return complain (BAD_USAGE, error->message);
+    return complain (BAD_USAGE, "%s", error->message);
   margin = pitch / 2;
   if (arguments->margin
       && !parse_length ("margin", arguments->margin, &margin, &error))
-    return complain (BAD_USAGE, error->message);
+    return complain (BAD_USAGE, "%s", error->message);
   array = cloth_m_array_new (columns, rows, colours, pitch, diameter, margin,
       &code, &error);
   if (!array)
@@ -215,22 +194,21 @@ run_checker (const Arguments * arguments, gboolean coded)
   g_autoptr (ClothPattern) pattern = NULL;
   ClothArtwork artwork = { NULL };
   g_autoptr (GError) error = NULL;
-  g_autofree gchar *message = NULL, *notes = NULL;
+  g_autofree gchar *notes = NULL;
   gdouble square, margin;
   gint window, exit_code;
 
   if (strcmp (first, "black") && strcmp (first, "white")) {
-    message = g_strdup_printf ("--first %s: give black or white", first);
-    return complain (BAD_USAGE, message);
+    return complain (BAD_USAGE, "--first %s: give black or white", first);
   }
   if (!parse_length ("square", arguments->square ? arguments->square : "50mm",
           &square, &error))
-    return complain (BAD_USAGE, error->message);
+    return complain (BAD_USAGE, "%s", error->message);
   /* White around the board, so that its outer corners can be seen. */
   margin = square / 2;
   if (arguments->margin
       && !parse_length ("margin", arguments->margin, &margin, &error))
-    return complain (BAD_USAGE, error->message);
+    return complain (BAD_USAGE, "%s", error->message);
   pattern = cloth_pattern_new_checker (given (arguments->columns, 8),
       given (arguments->rows, 8), square, margin,
       !strcmp (first, "black"), &error);
@@ -258,7 +236,7 @@ run_garment (const Arguments * arguments)
   g_autoptr (GError) error = NULL;
   g_autoptr (ClothMArray) array = NULL;
   g_autoptr (ClothGarment) garment = NULL;
-  g_autofree gchar *svg = NULL, *message = NULL;
+  g_autofree gchar *svg = NULL;
   ClothDotGrid grid;
   gsize size;
   guint dots = 0;
@@ -270,7 +248,7 @@ run_garment (const Arguments * arguments)
     return complain (BAD_USAGE, "name the folder to write: --output garment");
   array = cloth_m_array_load (arguments->pattern, &error);
   if (!array)
-    return complain (FAILED, error->message);
+    return complain (FAILED, "%s", error->message);
   grid = (ClothDotGrid) {
     (guint) array->columns, (guint) array->rows, array->pitch_m, {
     array->origin_uv_m[0], array->origin_uv_m[1]}
@@ -279,18 +257,16 @@ run_garment (const Arguments * arguments)
   };
   svg = cloth_text_file_load (arguments->kinds[1], &size, &error);
   if (!svg)
-    return complain (FAILED, error->message);
+    return complain (FAILED, "%s", error->message);
   garment = cloth_garment_new_from_svg (svg, size, &grid, &error);
   if (!garment) {
-    message = g_strdup_printf ("%s: %s", arguments->kinds[1], error->message);
-    return complain (FAILED, message);
+    return complain (FAILED, "%s: %s", arguments->kinds[1], error->message);
   }
   if (g_mkdir_with_parents (arguments->output, 0777) != 0) {
-    message = g_strdup_printf ("%s: can't make the folder", arguments->output);
-    return complain (FAILED, message);
+    return complain (FAILED, "%s: can't make the folder", arguments->output);
   }
   if (!cloth_garment_save (garment, arguments->output, &error))
-    return complain (FAILED, error->message);
+    return complain (FAILED, "%s", error->message);
   for (guint v = 0; v < garment->topology->n_vertices; v++)
     dots += garment->dots[v] != CLOTH_NO_DOT;
   g_print ("%s/garment.json\n%s/garment.obj\n", arguments->output,
@@ -302,19 +278,15 @@ run_garment (const Arguments * arguments)
 }
 
 static gint
-run (const Arguments * arguments)
+run (gconstpointer data)
 {
+  const Arguments *arguments = data;
   static const gchar *const names[] = {
     "checker", "coded-checker", "m-array", "garment"
   };
-  g_autofree gchar *message = NULL;
   guint kind = 0;
   gint exit_code;
 
-  if (arguments->version) {
-    g_print (TOOL " (%s) %s\n", PACKAGE, PACKAGE_VERSION);
-    return DONE;
-  }
   if (!arguments->kinds)
     return complain (BAD_USAGE,
         "name one kind of pattern: checker, coded-checker or m-array; or "
@@ -323,9 +295,8 @@ run (const Arguments * arguments)
     if (!strcmp (arguments->kinds[0], names[i]))
       kind = 1u << i;
   if (!kind) {
-    message = g_strdup_printf ("no pattern \"%s\": there are checker, "
+    return complain (BAD_USAGE, "no pattern \"%s\": there are checker, "
         "coded-checker, m-array and garment", arguments->kinds[0]);
-    return complain (BAD_USAGE, message);
   }
   if (g_strv_length (arguments->kinds) != (kind == GARMENT ? 2 : 1))
     return complain (BAD_USAGE, kind == GARMENT ?
@@ -340,9 +311,8 @@ run (const Arguments * arguments)
     return complain (BAD_USAGE, "name the file to write: --output board.pdf");
   if (!g_str_has_suffix (arguments->output, ".pdf")
       && !g_str_has_suffix (arguments->output, ".svg")) {
-    message = g_strdup_printf ("--output %s: the name must end with .pdf or "
+    return complain (BAD_USAGE, "--output %s: the name must end with .pdf or "
         ".svg", arguments->output);
-    return complain (BAD_USAGE, message);
   }
   return kind == DOTS ? run_m_array (arguments)
       : run_checker (arguments, kind == CODED);
@@ -394,24 +364,14 @@ main (int argc, char **argv)
     {"output", 'o', 0, G_OPTION_ARG_FILENAME, &arguments.output,
         "File to write, .pdf or .svg; pattern.json is put beside it. Of a "
           "garment the folder", "FILE"},
-    {"version", 0, 0, G_OPTION_ARG_NONE, &arguments.version,
-        "Show the version and exit", NULL},
     {G_OPTION_REMAINING, 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &arguments.kinds,
         NULL, "checker|coded-checker|m-array|garment DRAWING"},
     {NULL}
   };
-  g_autoptr (GOptionContext) context =
-      g_option_context_new ("- print patterns at true size");
-  g_autoptr (GError) error = NULL;
-  gint code;
+  gint code = tool_main ("gst-cloth-pattern-1.0",
+      "- print patterns at true size", entries, g_strdupv (argv), run,
+      &arguments);
 
-  /* Only the characters: numbers stay with the decimal point. */
-  setlocale (LC_CTYPE, "");
-  g_option_context_add_main_entries (context, entries, NULL);
-  if (g_option_context_parse (context, &argc, &argv, &error))
-    code = run (&arguments);
-  else
-    code = complain (BAD_USAGE, error->message);
   g_free (arguments.square);
   g_free (arguments.pattern);
   g_free (arguments.pitch);

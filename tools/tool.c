@@ -1,0 +1,114 @@
+/* What the programs have in common: the command line and what they print of themselves.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "config.h"
+
+#include "tools/tool.h"
+
+#include <locale.h>
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+static const gchar *program;
+/* Whether a line of progress waits for its end. */
+static gboolean in_line;
+
+/* @name: of the program
+ * @summary: what it does, for --help
+ * @entries: its options, but for --version
+ * @words: (transfer full): the command line
+ * @run: what it does with @arguments, which the options have filled
+ *
+ * Returns: the exit code
+ */
+gint
+tool_main (const gchar * name, const gchar * summary,
+    const GOptionEntry * entries, gchar ** words,
+    gint (*run) (gconstpointer arguments), gconstpointer arguments)
+{
+  gboolean version = FALSE;
+  const GOptionEntry common[] = {
+    {"version", 0, 0, G_OPTION_ARG_NONE, &version, "Show the version and exit",
+        NULL},
+    {NULL}
+  };
+  g_autoptr (GOptionContext) context = g_option_context_new (summary);
+  g_auto (GStrv) owned = words;
+  g_autoptr (GError) error = NULL;
+
+  program = name;
+  /* Only the characters: numbers stay with the decimal point. */
+  setlocale (LC_CTYPE, "");
+  g_option_context_add_main_entries (context, entries, NULL);
+  g_option_context_add_main_entries (context, common, NULL);
+  if (!g_option_context_parse_strv (context, &owned, &error))
+    return complain (BAD_USAGE, "%s", error->message);
+  if (version) {
+    g_print ("%s (%s) %s\n", program, PACKAGE, PACKAGE_VERSION);
+    return DONE;
+  }
+  return run (arguments);
+}
+
+/* Says on the error stream what is wrong. Returns @code. */
+gint
+complain (gint code, const gchar * format, ...)
+{
+  g_autofree gchar *message = NULL;
+  va_list arguments;
+
+  va_start (arguments, format);
+  message = g_strdup_vprintf (format, arguments);
+  va_end (arguments);
+  g_printerr ("%s%s: %s\n", in_line ? "\n" : "", program, message);
+  if (code == BAD_USAGE)
+    g_printerr ("Try \"%s --help\".\n", program);
+  return code;
+}
+
+/* On a terminal a line that changes, else a line at the beginning and each tenth. */
+void
+tell_progress (gdouble share, const gchar * what)
+{
+  static gint last = -1, tenth = -1;
+  gint percent = (gint) (100 * CLAMP (share, 0, 1) + 1e-9);
+  const gchar *gap = what ? " " : "";
+
+  if (!what)
+    what = "";
+  if (isatty (STDERR_FILENO) && last < 100) {
+    in_line = percent < 100;
+    g_printerr ("\r\033[K%3d%%%s%s%s", percent, gap, what, in_line ? "" : "\n");
+  } else if (percent / 10 > tenth) {
+    g_printerr ("%d%%%s%s\n", percent, gap, what);
+  }
+  last = MAX (last, percent);
+  tenth = last / 10;
+}
+
+/* "50mm", "5cm", "0.05m" or "2in", the value of --@option, in metres. */
+gboolean
+parse_length (const gchar * option, const gchar * text, gdouble * metres,
+    GError ** error)
+{
+  static const struct
+  {
+    const gchar *name;
+    gdouble per_metre;
+  } units[] = { {"mm", 1000}, {"cm", 100}, {"m", 1}, {"in", 1000 / 25.4} };
+  gchar *end;
+  gdouble value = g_ascii_strtod (text, &end);
+
+  for (gsize i = 0; i < G_N_ELEMENTS (units) && end != text; i++) {
+    /* Divided, so that 50mm is the 0.05 that is written in files. */
+    if (!strcmp (end, units[i].name) && isfinite (value) && value >= 0) {
+      *metres = value / units[i].per_metre;
+      return TRUE;
+    }
+  }
+  g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
+      "--%s %s: give a length with its unit, mm, cm, m or in, for instance "
+      "50mm", option, text);
+  return FALSE;
+}

@@ -1,0 +1,22 @@
+/* What the programs have in common: the command line and what they print of themselves.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include <glib.h>
+
+G_BEGIN_DECLS
+
+/* Exit codes. */
+enum
+{ DONE = 0, FAILED = 1, BAD_USAGE = 2 };
+
+gint tool_main (const gchar * name, const gchar * summary,
+    const GOptionEntry * entries, gchar ** words,
+    gint (*run) (gconstpointer arguments), gconstpointer arguments);
+gint complain (gint code, const gchar * format, ...) G_GNUC_PRINTF (2, 3);
+void tell_progress (gdouble share, const gchar * what);
+gboolean parse_length (const gchar * option, const gchar * text,
+    gdouble * metres, GError ** error);
+
+G_END_DECLS
