@@ -114,6 +114,7 @@ NAMED = re.compile(r'(?<![\w./<$}-])((?:gst|elements|tools|tests|pipelines)/[\w.
 # A source that is named without its folder.
 BARE = re.compile(r'(?<![\w./<-])([a-z][\w-]*\.(?:inc\.c|c|h))\b')
 COMMENT = re.compile(r'/\*.*?\*/', re.S)
+OF_FILE = re.compile(r'`(\w+) ?\(\)` of\s+`([\w./-]+\.[ch])`')
 OURS = re.compile(r'\b((?:gst_)?cloth_\w+|gst_\w+) ?\(\)')
 
 
@@ -374,8 +375,12 @@ def check_readmes(root, functions):
 
 
 def check_names(path, text, functions):
-    for name in sorted(set(OURS.findall(text)) - functions):
+    """functions: the files that define each."""
+    for name in sorted(set(OURS.findall(text)) - functions.keys()):
         yield 'names', '%s: there is no function %s ()' % (path, name)
+    for name, file in sorted(set(OF_FILE.findall(text))):
+        if file not in functions.get(name, [file]):
+            yield 'names', '%s: %s () is not in %s' % (path, name, file)
 
 
 def check_paths(root, path, text, known):
@@ -407,7 +412,10 @@ def check(root):
     sources = read(root)
     if not sources:
         yield 'rooms', '%s: no source found' % root
-    functions = set().union(*(source.functions for source in sources))
+    functions = {}
+    for source in sources:
+        for name in source.functions:
+            functions.setdefault(name, []).append(source.path)
     for source in sources:
         yield from check_text(source)
         if source.room:
@@ -489,6 +497,7 @@ def self_test():
         ('readme', {'gst/math/README.md': 'each header; first `gone.c`\n'}),
         ('names', {'gst/math/README.md': 'each header; cloth_gone ()\n'}),
         ('names', {'docs/a.md': 'It calls `cloth_gone()`.\n'}),
+        ('names', {'docs/a.md': '`cloth_small()` of `gst/math/each.h`\n'}),
         ('paths', {'docs/a.md': 'See `gst/gone/a.c`.\n'}),
         ('paths', {'CONTRIBUTING.md': 'See `tests/gone*`.\n'}),
         ('paths', {'gst/math/a.c': head + '/* As in gone.c. */\n'}),
