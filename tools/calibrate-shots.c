@@ -10,7 +10,7 @@
 
 #include "calibrate-frames.h"
 #include "gst/rig/planar.h"
-#include "gst/vision/checker/board.h"
+#include "gst/vision/checker/checker.h"
 #include "gst/vision/corner/saddle.h"
 
 /* Fewer corners than this are not worth a pose. */

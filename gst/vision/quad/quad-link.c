@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "gst/vision/quad/quad-private.h"
-#include "gst/vision/checker/template.h"
 
 /* Patches looked at in a picture, largest first. */
 #define MAX_PATCHES 48

@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/vision/checker/pose.h"
+#include "gst/vision/checker/checker.h"
 #include "gst/vision/pointgrid.h"
 #include "gst/vision/quad/quad.h"
 

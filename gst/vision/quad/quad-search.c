@@ -9,9 +9,7 @@
 #include <string.h>
 
 #include "gst/vision/corner/edge.h"
-#include "gst/vision/checker/outline.h"
 #include "gst/vision/quad/quad-private.h"
-#include "gst/vision/checker/template.h"
 
 /* Candidates looked at for a corner, and how many of them may be refined saddles. */
 #define MAX_CANDIDATES 8

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "gst/vision/quad/quad-private.h"
-#include "gst/vision/checker/template.h"
 
 /* Squares from which the print's shade is known, and how far from it a square's may be. */
 #define LEAST_SHADES 20

@@ -14,7 +14,6 @@
 #include <string.h>
 
 #include "gst/vision/quad/quad-private.h"
-#include "gst/vision/checker/template.h"
 
 /* Pictures for which a square not seen is still given out as predicted. */
 #define PREDICTED_FOR 5
