@@ -4,7 +4,7 @@
 #pragma once
 
 #include "gst/pattern/pattern.h"
-#include "gst/rig/bundle.h"
+#include "gst/rig/calibrate.h"
 
 G_BEGIN_DECLS
 
