@@ -1,8 +1,8 @@
 /* What is tested, with the nuisances projected out.
  *
- * Model: whitened features z = B dη + N dν + noise. The nuisances ν have a prior precision Λ;
- * η are the directions that are looked at. With φ₀ the overdispersion, which stands for
- * features that are not independent, Rao's score test (1948) of η = 0 needs
+ * Model: whitened features z = −B dη − N dν + noise, with derivatives B by the directions that
+ * are looked at and N by the nuisances, whose prior precision is Λ. With φ₀ the overdispersion,
+ * as features are not independent, Rao's score test (1948) of dη = 0 needs
  *   g = Bᵀ P B,  s = Bᵀ P z,  r = zᵀ P z,  P = I − N (NᵀN + φ₀ Λ)⁻¹ Nᵀ.
  * The variance of the noise is estimated from what is left:
  *   φ = φ₀ · max (r / number of features, 0.1).

@@ -15,7 +15,7 @@
 
 
 /* So many effects at most, each for so many Gauss–Newton steps at most, as long as it
- * moves by this share of a prior and gains so much evidence. */
+ * moves by this share of a prior and gains so much in its log Bayes factor. */
 #define MOST_HYPOTHESES 12
 #define N_STEPS 6
 #define FAR 0.1
