@@ -15,7 +15,6 @@
 #include <math.h>
 #include <string.h>
 
-
 /* Intensities that are tried, in priors of the effect. */
 static const gdouble intensities[] = { 0.5, 1., 2., 4. };
 

@@ -13,7 +13,6 @@
 #include <math.h>
 #include <string.h>
 
-
 /* So many effects at most, each for so many Gauss–Newton steps at most, as long as it
  * moves by this share of a prior and gains so much in its log Bayes factor. */
 #define MOST_HYPOTHESES 12

@@ -12,7 +12,6 @@
 #include <math.h>
 #include <string.h>
 
-
 /* Fewest windows that the gap is measured in: one to fit on, one to judge. */
 #define LEAST_WINDOWS 2.
 /* Frames further apart than this share of a window don't show what happens in it. */
