@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "tests/reference/cv.h"
+#include "tests/reference/reference.h"
 #include "gst/math/random.h"
 #include "gst/rig/triangulate.h"
 

@@ -1,4 +1,6 @@
-/* What OpenCV offers for the same tasks, for benchmarks and tests to compare with.
+/* OpenCV's functions for the tasks of this project, as plain C functions: the peer that the
+ * benchmarks and some tests are held against. Pictures may have any stride; what OpenCV
+ * throws becomes FALSE. The product links nothing of OpenCV.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -20,5 +22,9 @@ gboolean cloth_cv_corner_sub_pix (const guint8 * data, gint width,
 
 gboolean cloth_cv_dots (const guint8 * bgr, gint width, gint height,
     gint stride, gdouble min_area, gdouble max_area, guint * n_dots);
+
+gboolean cloth_cv_triangulate_points (const gdouble projections[24], guint n,
+    const gdouble * x0, const gdouble * y0, const gdouble * x1,
+    const gdouble * y1, gdouble * points);
 
 G_END_DECLS
