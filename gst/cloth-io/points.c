@@ -52,8 +52,8 @@ is_usable (const GstClothDot * dot, guint columns, guint rows)
       && (guint) dot->column < columns && (guint) dot->row < rows;
 }
 
-/* Where two of a dot's neighbours are not seen a fold's edge hides them, and it may hide a
- * part of the dot too: its centre of gravity is then another. */
+/* Where two of a dot's neighbours are not seen, the edge of a fold hides them. It may hide a
+ * part of the dot too, which moves the centre of gravity of what is seen. */
 static gboolean
 is_at_fold (const GstClothDot * dot, guint columns, guint rows,
     const guint8 * seen)
@@ -108,7 +108,7 @@ gst_cloth_io_points_new (guint columns, guint rows)
   return points;
 }
 
-/* Takes what is of the grid; a picture may carry both kinds. */
+/* Takes the squares or the dots, whichever are of the grid; a picture may carry both. */
 static gboolean
 merge_metas (GstClothIoPoints * self, GstBuffer * picture, GError ** error)
 {

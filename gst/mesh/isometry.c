@@ -1,14 +1,16 @@
-/* Cloth bends but hardly stretches: points that deny it are wrong.
+/* Cloth bends but hardly stretches: points too far from or too near to their neighbours are
+ * wrong.
  *
- * A point seen by two cameras alone can't be checked by a third, and a corner that a fold
- * has cut off looks like any other. Their distance from their neighbours tells.
+ * A third camera can check a point that two cameras have measured. Where there is none, or
+ * where a fold hides a corner and its edge looks like one, the distances from the
+ * neighbours are the only check.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/mesh/isometry.h"
 
 #include <math.h>
 
-/* Standard deviations of a distance that are forgiven. */
+/* A distance may be out of its limits by this many of its standard deviations. */
 #define FORGIVEN 3.0
 
 /* By how much the distance of two vertices is out of its limits, metres. */
@@ -42,7 +44,7 @@ excess (const ClothIsometry * isometry, const gfloat * positions,
   return out > FORGIVEN * sqrt (MAX (variance, 0)) ? out : 0;
 }
 
-/* The sum of a vertex's excesses over its four neighbours. */
+/* The denial of vertex @k: the sum of its excesses over its four neighbours, metres. */
 static gdouble
 denial (const ClothIsometry * isometry, const gfloat * positions,
     const gfloat * covariances, const gboolean * wrong, guint k)
@@ -74,7 +76,7 @@ size (const gfloat * covariances, guint k)
       + covariances[6 * k + 3] + covariances[6 * k + 5] : 0;
 }
 
-/* The denials of a grid are followed by the greatest of each row. */
+/* Behind the denials of all vertices, @denials holds the greatest one of each row. */
 static void
 find_most_of_row (const ClothIsometry * isometry, guint row, gdouble * denials)
 {
@@ -86,8 +88,8 @@ find_most_of_row (const ClothIsometry * isometry, guint row, gdouble * denials)
   denials[isometry->columns * isometry->rows + row] = most;
 }
 
-/* The first of the least certain of those that are most out of place; the number of all
- * when none is. */
+/* The vertex with the greatest denial; of equal ones the least certain one, of these the
+ * first. The number of all vertices when every denial is 0. */
 static guint
 find_worst (const ClothIsometry * isometry, const gfloat * covariances,
     const gdouble * denials)
@@ -114,9 +116,10 @@ find_worst (const ClothIsometry * isometry, const gfloat * covariances,
  * @wrong: (out) (array): columns·rows: whether the vertex can't be where it is
  * @denials: (out) (array): (columns + 1)·rows, room to work in
  *
- * Finds the vertices whose distances from their neighbours no cloth allows. The one that
- * is most out of place goes first, and with it what it made of its neighbours' distances;
- * of two that only deny each other, the less certain one.
+ * Finds the vertices whose distances from their neighbours no cloth allows. The one with
+ * the greatest denial is called wrong first; its distances then no longer count for its
+ * neighbours. Where two vertices have only their common distance wrong, the less certain
+ * one is called wrong.
  *
  * Returns: number of wrong vertices
  */

@@ -1,4 +1,5 @@
-/* Cloth bends but hardly stretches: points that deny it are wrong.
+/* Cloth bends but hardly stretches: points too far from or too near to their neighbours are
+ * wrong.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once

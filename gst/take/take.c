@@ -587,7 +587,7 @@ write_obj (ClothTakeWriter * writer, const gchar * file, const gchar * name,
       cloth_output_finish (output, error);
 }
 
-/* The mesh lies flat in its file: what a take has of it is faces and uv. */
+/* In its file the mesh lies flat: a take needs only its faces and uv. */
 static gboolean
 write_mesh (ClothTakeWriter * writer, const ClothTakeInfo * info,
     const ClothTopology * topology, GError ** error)
@@ -661,7 +661,7 @@ cloth_take_writer_new (const gchar * folder, const ClothTakeInfo * info,
   return g_steal_pointer (&writer);
 }
 
-/* Covariances may begin late or pause: frames without them are NaN. */
+/* Some frames may come without covariances: theirs are written as NaN. */
 static gboolean
 append_covariances (ClothTakeWriter * writer, const gfloat * covariances,
     GError ** error)
@@ -737,8 +737,8 @@ cloth_take_writer_append (ClothTakeWriter * writer, gdouble time_s,
   return TRUE;
 }
 
-/* What an earlier take in the same folder had and this one has not would be read
- * with it. Without take.json the folder is no take until all is in place. */
+/* Removes the arrays of an earlier take in the same folder that this one does not have: they
+ * would be read with it. Without take.json the folder is no take until all is in place. */
 static void
 remove_stale (ClothTakeWriter * writer)
 {

@@ -18,15 +18,15 @@
 #define REACH 5
 #define MOST_REGION 160
 #define MOST_AROUND 400
-/* Multiplications that a factor may take; a larger hole is none that a plate could fill. */
+/* Multiplications that a factor may take; a plate could not fill a larger hole. */
 #define MOST_WORK 4e9
-/* Right-hand sides times unknowns up to which leverage is computed; beyond, it is that of
- * a wide hole. */
+/* The leverage is computed up to this many right-hand sides times unknowns; beyond, it is
+ * taken to be that of a wide hole. */
 #define MOST_LEVERAGE 20000
 #define WIDE_LEVERAGE 1.0
 
-/* Numbers what @index knows as hole in an order that keeps coupled ones near: levels of a
- * walk from @start. Returns the vertex it ended with. */
+/* Numbers the vertices that @index has as the hole's, level by level of a breadth-first walk
+ * from @start, so that coupled ones have near numbers. Returns the last vertex. */
 static guint
 walk (const ClothStencils * stencils, guint n, guint start, gint * index,
     guint * order)

@@ -347,7 +347,7 @@ cut_short (GError ** error)
       "it is cut short, or has something that is no number");
 }
 
-/* The least bytes of an element's items, against what remains, before anything is
+/* Compares the least bytes that an element's items take with what remains, before anything is
  * allocated for them. */
 static gboolean
 check_count (const Element * element, const Data * data, GError ** error)

@@ -19,7 +19,8 @@
 #define SEAM_EASE 0.02
 /* Least distance of a dot's vertex from the border, pitches. */
 #define CLEARANCE 0.499
-/* A triangle with less of a pitch's square is three vertices of a straight border. */
+/* Least area of a triangle, squares of the pitch. One with less has its three vertices on
+ * a straight border. */
 #define SLIVER 1e-3
 #define MOST_VERTICES 65536
 /* How far a panel may leave the cloth: the drawing's rounding. */
@@ -80,7 +81,7 @@ typedef struct
   guint panel, edge;
 } EdgeRef;
 
-/* How many pieces each edge is cut into; edges of a seam the same. */
+/* How many pieces each edge is cut into. The two edges of a seam get the same number. */
 static gboolean
 count_pieces (Builder * self, GArray * seam_edges, GError ** error)
 {
@@ -170,7 +171,8 @@ edge_vertices (const Builder * self, EdgeRef ref, gboolean backwards, guint * n)
   return vertices;
 }
 
-/* Both sides of a seam lie with the print up when they run against each other. */
+/* The two edges of a seam run against each other along their outlines, as both panels have
+ * the print up. */
 static void
 sew (Builder * self, const GArray * seam_edges)
 {
@@ -378,7 +380,7 @@ add_dots (Builder * self, ClothPanel * panel)
     }
 }
 
-/* The cell of the print that a triangle is half of, or −1. */
+/* The cell of four dots of which the triangle @t is one half; −1 when it is of none. */
 static gint
 find_cell (const Builder * self, const ClothPanel * panel, const guint * t)
 {

@@ -142,7 +142,7 @@ curve_to (Path * path, const gdouble b[2], const gdouble c[2],
   for (guint i = 0; i < 2; i++)
     bend += fmax ((a[i] - 2 * b[i] + c[i]) * (a[i] - 2 * b[i] + c[i]),
         (b[i] - 2 * c[i] + d[i]) * (b[i] - 2 * c[i] + d[i]));
-  /* a piece of 1/n lies within 6 |second difference| / (8 n²) of its chord */
+  /* a piece of 1/n of the curve lies within 6 |second difference| / (8 n²) of its chord */
   n = (guint) CLAMP (ceil (sqrt (0.75 * sqrt (bend) / path->tolerance)), 1,
       MOST_PIECES);
   for (guint k = 1; k <= n; k++) {
