@@ -115,21 +115,17 @@ cloth_topology_check (const ClothTopology * topology, GError ** error)
     return FALSE;
   }
   for (gsize i = 0; i < 2 * (gsize) n; i++) {
-    if (!isfinite (topology->uv[i])) {
-      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+    if (!isfinite (topology->uv[i]))
+      return cloth_file_invalid (error,
           "the uv of vertex %u is no finite number", (guint) (i / 2));
-      return FALSE;
-    }
   }
   for (gsize i = 0; i < 4 * (gsize) topology->n_faces; i++) {
     guint32 index = topology->faces[i];
 
-    if (index >= n && !(i % 4 == 3 && index == CLOTH_NO_VERTEX)) {
-      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+    if (index >= n && !(i % 4 == 3 && index == CLOTH_NO_VERTEX))
+      return cloth_file_invalid (error,
           "face %u names a vertex that is not there (there are %u)",
           (guint) (i / 4), n);
-      return FALSE;
-    }
   }
   return TRUE;
 }
@@ -164,10 +160,9 @@ cloth_positions_check (const gfloat * positions, guint n_vertices,
       continue;
     if (isnan (positions[0]) && isnan (positions[1]) && isnan (positions[2]))
       continue;
-    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+    return cloth_file_invalid (error,
         "the position of vertex %u is neither three finite numbers nor three "
         "NaN", i);
-    return FALSE;
   }
   return TRUE;
 }
@@ -182,12 +177,10 @@ gboolean
 cloth_states_check (const guint8 * states, guint n_vertices, GError ** error)
 {
   for (guint i = 0; i < n_vertices; i++) {
-    if (states[i] > CLOTH_VERTEX_PREDICTED) {
-      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+    if (states[i] > CLOTH_VERTEX_PREDICTED)
+      return cloth_file_invalid (error,
           "vertex %u has the state %u, which is not between 0 and 4", i,
           states[i]);
-      return FALSE;
-    }
   }
   return TRUE;
 }

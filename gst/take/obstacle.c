@@ -72,20 +72,16 @@ cloth_obstacle_load_mesh (ClothObstacle * obstacle, const gchar * folder,
   if (!obj)
     return FALSE;
   topology = obj->topology;
-  if (topology->n_faces == 0) {
-    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+  if (topology->n_faces == 0)
+    return cloth_file_invalid (error,
         "%s: an obstacle needs faces", obstacle->mesh);
-    return FALSE;
-  }
   obstacle->n_points = topology->n_vertices;
   obstacle->points = g_new (gdouble, 3 * (gsize) topology->n_vertices);
   for (gsize i = 0; i < 3 * (gsize) topology->n_vertices; i++) {
     obstacle->points[i] = obj->positions[i];
-    if (!isfinite (obstacle->points[i])) {
-      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+    if (!isfinite (obstacle->points[i]))
+      return cloth_file_invalid (error,
           "%s: point %u has no finite place", obstacle->mesh, (guint) (i / 3));
-      return FALSE;
-    }
   }
   obstacle->triangles = g_new (guint32, 6 * (gsize) topology->n_faces);
   triangle = obstacle->triangles;

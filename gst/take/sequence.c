@@ -125,13 +125,6 @@ cloth_mesh_format_stem (const gchar * location, ClothMeshFormat format)
 }
 
 static gboolean
-invalid (GError ** error, const gchar * what)
-{
-  g_set_error_literal (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID, what);
-  return FALSE;
-}
-
-static gboolean
 open_states (ClothMeshReader * reader, const gchar * stem, GError ** error)
 {
   g_autofree gchar *path = g_strconcat (stem, ".states.npy", NULL);
@@ -147,10 +140,9 @@ open_states (ClothMeshReader * reader, const gchar * stem, GError ** error)
       info->shape[0] == reader->n_frames &&
       info->shape[1] == reader->topology->n_vertices)
     return TRUE;
-  g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+  return cloth_file_invalid (error,
       "%s does not belong to the point cache beside it: remove it or write both "
       "again", path);
-  return FALSE;
 }
 
 static gboolean
@@ -173,14 +165,12 @@ open_obj_pc2 (ClothMeshReader * reader, const gchar * stem, GError ** error)
   if (!reader->cache)
     return FALSE;
   info = cloth_pc2_reader_get_info (reader->cache);
-  if (info->n_points != reader->topology->n_vertices) {
-    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+  if (info->n_points != reader->topology->n_vertices)
+    return cloth_file_invalid (error,
         "%s has %u points, the OBJ file %u vertices", pc2_path, info->n_points,
         reader->topology->n_vertices);
-    return FALSE;
-  }
   if (info->n_samples == 0)
-    return invalid (error, "the point cache has no samples");
+    return cloth_file_invalid (error, "the point cache has no samples");
   reader->n_frames = info->n_samples;
   return open_states (reader, stem, error);
 }
@@ -387,12 +377,10 @@ read_ply_frame (ClothMeshReader * reader, guint frame,
   if (ply->n_vertices != topology->n_vertices ||
       ply->n_faces != topology->n_faces ||
       memcmp (ply->faces->data, topology->faces,
-          ply->faces->len * sizeof (guint32)) != 0) {
-    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+          ply->faces->len * sizeof (guint32)) != 0)
+    return cloth_file_invalid (error,
         "file %u of the PLY sequence has another mesh than the first one",
         reader->first + frame);
-    return FALSE;
-  }
   contents->positions = ply->positions;
   contents->states = ply->states;
   contents->covariances = ply->has_covariances ? ply->covariances : NULL;
@@ -422,11 +410,9 @@ gboolean
 cloth_mesh_reader_read (ClothMeshReader * reader, guint frame,
     ClothMeshFrame * contents, GError ** error)
 {
-  if (frame >= reader->n_frames) {
-    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+  if (frame >= reader->n_frames)
+    return cloth_file_invalid (error,
         "frame %u of %u", frame, reader->n_frames);
-    return FALSE;
-  }
   if (reader->format == CLOTH_MESH_FORMAT_PLY)
     return read_ply_frame (reader, frame, contents, error);
   if (reader->take ? !read_take (reader, frame, error) :
@@ -643,11 +629,8 @@ cloth_mesh_writer_get_n_frames (const ClothMeshWriter * writer)
 gboolean
 cloth_mesh_writer_close (ClothMeshWriter * writer, GError ** error)
 {
-  if (writer->n_frames == 0) {
-    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
-        "there is no frame to write");
-    return FALSE;
-  }
+  if (writer->n_frames == 0)
+    return cloth_file_invalid (error, "there is no frame to write");
   return writer->exporter->finish (writer->export, error);
 }
 

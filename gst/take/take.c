@@ -89,9 +89,8 @@ check_seams (const ClothTake * take, GError ** error)
 
       if (vertex < take->topology->n_vertices)
         continue;
-      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+      return cloth_file_invalid (error,
           "take.json: vertex %u of seam %u is not in the mesh", vertex, i);
-      return FALSE;
     }
   }
   return TRUE;
@@ -114,20 +113,16 @@ load_topology (ClothTake * take, GError ** error)
   if (!obj)
     return FALSE;
   note_file (take, info->mesh);
-  if (!obj->has_uv) {
-    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+  if (!obj->has_uv)
+    return cloth_file_invalid (error,
         "%s: the mesh of a take needs uv (vt), in metres", info->mesh);
-    return FALSE;
-  }
   take->topology = g_steal_pointer (&obj->topology);
   for (guint i = 0; i < info->held->len; i++) {
     if (g_array_index (info->held, ClothHeld,
-            i).vertex >= take->topology->n_vertices) {
-      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+            i).vertex >= take->topology->n_vertices)
+      return cloth_file_invalid (error,
           "take.json: held vertex %u is not in the mesh",
           g_array_index (info->held, ClothHeld, i).vertex);
-      return FALSE;
-    }
   }
   return check_seams (take, error);
 }
@@ -206,9 +201,8 @@ check_type (ClothNpyReader * reader, const gchar * name, gboolean bytes,
   if (bytes ? type == CLOTH_NPY_UINT8 :
       type == CLOTH_NPY_FLOAT32 || type == CLOTH_NPY_FLOAT64)
     return TRUE;
-  g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+  return cloth_file_invalid (error,
       "%s must hold items of type %s", name, bytes ? "uint8" : "float32");
-  return FALSE;
 }
 
 static gboolean
@@ -223,9 +217,8 @@ load_times (ClothTake * take, GError ** error)
   if (!reader) {
     if (take->info->fps > 0)
       return TRUE;
-    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+    return cloth_file_invalid (error,
         "the take has neither “fps” in take.json nor times.npy");
-    return FALSE;
   }
   take->times = g_new (gdouble, take->n_frames);
   if (!cloth_npy_reader_read_double (reader, 0, take->n_frames, take->times,
@@ -233,11 +226,9 @@ load_times (ClothTake * take, GError ** error)
     return FALSE;
   for (guint i = 0; i < take->n_frames; i++) {
     if (!isfinite (take->times[i]) ||
-        (i > 0 && take->times[i] <= take->times[i - 1])) {
-      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+        (i > 0 && take->times[i] <= take->times[i - 1]))
+      return cloth_file_invalid (error,
           "times.npy: the time of frame %u is not finite or does not rise", i);
-      return FALSE;
-    }
   }
   return TRUE;
 }
@@ -276,11 +267,9 @@ load_arrays (ClothTake * take, GError ** error)
             error) || !check_type (take->states, "states.npy", TRUE, error))
       return FALSE;
   }
-  if (take->clamps && n_held == 0) {
-    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+  if (take->clamps && n_held == 0)
+    return cloth_file_invalid (error,
         "clamps.npy is there but take.json says of no vertex that it is held");
-    return FALSE;
-  }
   return load_times (take, error);
 }
 
@@ -482,12 +471,10 @@ cloth_take_read_covariances (ClothTake * take, guint frame,
     gsize k = i % 6;
 
     if (isinf (covariances[i]) || ((k == 0 || k == 3 || k == 5) &&
-            covariances[i] < 0)) {
-      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+            covariances[i] < 0))
+      return cloth_file_invalid (error,
           "covariance.npy, frame %u: vertex %u has an infinite covariance or "
           "a negative variance", frame, (guint) (i / 6));
-      return FALSE;
-    }
   }
   return TRUE;
 }
@@ -513,12 +500,10 @@ cloth_take_read_clamps (ClothTake * take, guint frame, gfloat * clamps,
     if (time < held->from_s || time >= held->until_s)
       continue;
     for (guint k = 0; k < 3; k++) {
-      if (!isfinite (clamps[3 * i + k])) {
-        g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+      if (!isfinite (clamps[3 * i + k]))
+        return cloth_file_invalid (error,
             "clamps.npy, frame %u: the clamp of vertex %u has no place", frame,
             held->vertex);
-        return FALSE;
-      }
     }
   }
   return TRUE;
@@ -695,11 +680,9 @@ append_clamps (ClothTakeWriter * writer, const gfloat * clamps, GError ** error)
     return FALSE;
   if (!writer->arrays[CLAMPS])
     return TRUE;
-  if (!clamps) {
-    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+  if (!clamps)
+    return cloth_file_invalid (error,
         "a frame lacks the clamps that the first one had");
-    return FALSE;
-  }
   return cloth_npy_writer_append (writer->arrays[CLAMPS], clamps, 1, error);
 }
 
@@ -719,12 +702,10 @@ cloth_take_writer_append (ClothTakeWriter * writer, gdouble time_s,
     const gfloat * covariances, const gfloat * clamps, GError ** error)
 {
   if (!isfinite (time_s) || (writer->n_frames > 0 &&
-          time_s <= writer->last_time)) {
-    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+          time_s <= writer->last_time))
+    return cloth_file_invalid (error,
         "frame %" G_GUINT64_FORMAT " is not later than the one before",
         writer->n_frames);
-    return FALSE;
-  }
   if (!cloth_npy_writer_append (writer->arrays[POSITIONS], positions, 1,
           error) ||
       !cloth_npy_writer_append (writer->arrays[TIMES], &time_s, 1, error) ||
@@ -769,11 +750,8 @@ cloth_take_writer_close (ClothTakeWriter * writer, GError ** error)
       g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_output_free);
   ClothOutput *output;
 
-  if (writer->n_frames == 0) {
-    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
-        "a take needs at least one frame");
-    return FALSE;
-  }
+  if (writer->n_frames == 0)
+    return cloth_file_invalid (error, "a take needs at least one frame");
   while (writer->meshes->len > 0)
     g_ptr_array_add (outputs, g_ptr_array_steal_index (writer->meshes, 0));
   for (guint i = 0; i < N_ARRAYS; i++) {

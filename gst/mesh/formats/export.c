@@ -76,9 +76,8 @@ cloth_export_check_later (guint64 number, gdouble before, gdouble time_s,
 {
   if (isfinite (time_s) && (number == 0 || time_s > before))
     return TRUE;
-  g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+  return cloth_file_invalid (error,
       "frame %" G_GUINT64_FORMAT " is not later than the one before", number);
-  return FALSE;
 }
 
 /* @text: text

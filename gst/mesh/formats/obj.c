@@ -25,9 +25,8 @@ typedef struct
 static gboolean
 invalid (Parser * parser, const gchar * what, GError ** error)
 {
-  g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+  return cloth_file_invalid (error,
       "line %u of the OBJ file: %s", parser->line, what);
-  return FALSE;
 }
 
 static gboolean
@@ -239,12 +238,10 @@ assign_uv (Parser * parser, ClothObj * obj, GError ** error)
 
     if (vertex == CLOTH_NO_VERTEX || corners[i] == NO_UV)
       continue;
-    if (corners[i] >= parser->uv->len / 2) {
-      g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+    if (corners[i] >= parser->uv->len / 2)
+      return cloth_file_invalid (error,
           "face %u of the OBJ file names a uv that is not there",
           (guint) (i / 4));
-      return FALSE;
-    }
     from = given + 2 * corners[i];
     to = topology->uv + 2 * vertex;
     if (!seen[vertex]) {

@@ -45,11 +45,8 @@ parse_header (ClothInput * input, ClothPc2Info * info, GError ** error)
   cloth_swap_little_endian (counts, 4, 2);
   cloth_swap_little_endian (timing, 4, 2);
   cloth_swap_little_endian (&n_samples, 4, 1);
-  if (memcmp (header, MAGIC, MAGIC_SIZE) != 0 || counts[0] != 1) {
-    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
-        "not a PC2 file of version 1");
-    return FALSE;
-  }
+  if (memcmp (header, MAGIC, MAGIC_SIZE) != 0 || counts[0] != 1)
+    return cloth_file_invalid (error, "not a PC2 file of version 1");
   if (counts[1] < 1 || counts[1] > (gint32) CLOTH_MAX_VERTICES) {
     g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT,
         "%d points: between 1 and %u are accepted", counts[1],
@@ -57,12 +54,10 @@ parse_header (ClothInput * input, ClothPc2Info * info, GError ** error)
     return FALSE;
   }
   if (n_samples < 0 || !isfinite (timing[0]) || !isfinite (timing[1]) ||
-      timing[1] <= 0) {
-    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+      timing[1] <= 0)
+    return cloth_file_invalid (error,
         "the PC2 file has a negative number of samples, or a start or a rate "
         "that makes no sense");
-    return FALSE;
-  }
   bytes = (guint64) counts[1] * 12 * (guint64) n_samples;
   if (bytes > cloth_input_get_size (input) - HEADER_SIZE) {
     g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_TRUNCATED,
@@ -134,11 +129,9 @@ cloth_pc2_reader_read (ClothPc2Reader * reader, guint sample,
 {
   gsize n_floats = 3 * (gsize) reader->info.n_points;
 
-  if (sample >= reader->info.n_samples) {
-    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+  if (sample >= reader->info.n_samples)
+    return cloth_file_invalid (error,
         "sample %u of %u", sample, reader->info.n_samples);
-    return FALSE;
-  }
   if (!cloth_input_read_at (reader->input,
           HEADER_SIZE + (guint64) sample * n_floats * sizeof *positions,
           positions, n_floats * sizeof *positions, error))
