@@ -174,8 +174,8 @@ accept (gpointer data)
     const ClothSensitivities *s = fit->sensitivities[i];
     g_autofree gdouble *z = cloth_sensitivities_residual (s);
 
-    g_ptr_array_add (fit->variances, s->left ?
-        cloth_power_spectrum_copy (s->left) :
+    g_ptr_array_add (fit->variances, s->residual_variance ?
+        cloth_power_spectrum_copy (s->residual_variance) :
         cloth_power_spectrum_new (s->features, z));
     if (fit->equal_weights)
       set_equal (g_ptr_array_index (fit->variances, i));

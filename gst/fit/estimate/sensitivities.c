@@ -1,4 +1,15 @@
-/* A recording under study.
+/* Residuals of nudged simulations and their derivatives with respect to a model's numbers.
+ *
+ * Model: z (θ) are features of simulated less recorded positions in units of the noise, with
+ *   the model at θ nudged to the recording.
+ * Assumption: z is linear in θ over a step of a finite difference. The rest is run-to-run
+ *   variability: tiny changes that grow, as wrinkles fall one way or the other. Its directions
+ *   are few samples; along each it counts with ten times their variance.
+ * Formula: Bᵢ = (z (θ + hᵢeᵢ) − z (θ − hᵢeᵢ)) / 2hᵢ for free numbers; for effects, which lie at their
+ *   null, (z (θ + hᵢeᵢ) − z̄) / hᵢ, where z̄ is the mean of the midpoints of those pairs. How the
+ *   midpoints and z (θ) scatter about their mean shows the variability.
+ *   What is to be explained is z less that of the discrepancy, in units of its own noise.
+ * Reference: Kennedy and O'Hagan 2001 (discrepancy).
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/fit/estimate/sensitivities.h"
@@ -10,7 +21,7 @@
 
 /* Variability counts as so many times the variance of its samples, which are few. */
 #define VARIABILITY_WIDTH 10.
-/* @options: (out caller-allocates): how recordings are studied unless told otherwise
+/* @options: (out caller-allocates): the default values
  */
 void
 cloth_estimate_options_init (ClothEstimateOptions * options)
@@ -20,157 +31,165 @@ cloth_estimate_options_init (ClothEstimateOptions * options)
         10.,.overdispersion = 5.};
 }
 
-/* @recording: a recording; must outlive the study
- * @options: how to study it
+/* @recording: a recording; must outlive them
+ * @options: how to simulate
  */
 ClothSensitivities *
 cloth_sensitivities_new (const ClothRecording * recording,
     const ClothEstimateOptions * options)
 {
-  ClothSensitivities *study = g_new0 (ClothSensitivities, 1);
+  ClothSensitivities *sensitivities = g_new0 (ClothSensitivities, 1);
 
-  study->recording = recording;
-  study->features = cloth_features_new (recording, options->n_waves,
+  sensitivities->recording = recording;
+  sensitivities->features = cloth_features_new (recording, options->n_waves,
       options->block_s, options->highest_hz);
-  return study;
+  return sensitivities;
 }
 
 static void
-forget (ClothSensitivities * study)
+forget (ClothSensitivities * sensitivities)
 {
-  g_clear_pointer (&study->z, g_free);
-  g_clear_pointer (&study->columns, g_free);
-  g_clear_pointer (&study->variability, g_free);
-  g_clear_pointer (&study->sound, g_free);
+  g_clear_pointer (&sensitivities->z, g_free);
+  g_clear_pointer (&sensitivities->columns, g_free);
+  g_clear_pointer (&sensitivities->variability, g_free);
+  g_clear_pointer (&sensitivities->sound, g_free);
 }
 
-/* @study: a study that is linearised
- * @options: how it is studied
+/* @sensitivities: sensitivities, linearised
+ * @options: how to simulate
  *
  * Returns: (transfer full): another one of the same recording, linearised at the same
  *   model
  */
 ClothSensitivities *
-cloth_sensitivities_copy (const ClothSensitivities * study,
+cloth_sensitivities_copy (const ClothSensitivities * sensitivities,
     const ClothEstimateOptions * options)
 {
   ClothSensitivities *copy =
-      cloth_sensitivities_new (study->recording, options);
-  gsize row = study->features->size * sizeof (gdouble);
+      cloth_sensitivities_new (sensitivities->recording, options);
+  gsize row = sensitivities->features->size * sizeof (gdouble);
 
-  copy->discrepancy = study->discrepancy;
-  copy->m = study->m;
-  copy->n_variability = study->n_variability;
-  copy->sound = g_memdup2 (study->sound, study->m * sizeof (gboolean));
-  copy->z = g_memdup2 (study->z, row);
-  copy->columns = g_memdup2 (study->columns, study->m * row);
+  copy->discrepancy = sensitivities->discrepancy;
+  copy->m = sensitivities->m;
+  copy->n_variability = sensitivities->n_variability;
+  copy->sound =
+      g_memdup2 (sensitivities->sound, sensitivities->m * sizeof (gboolean));
+  copy->z = g_memdup2 (sensitivities->z, row);
+  copy->columns = g_memdup2 (sensitivities->columns, sensitivities->m * row);
   copy->variability =
-      g_memdup2 (study->variability, study->n_variability * row);
-  if (study->left)
-    copy->left = cloth_power_spectrum_copy (study->left);
+      g_memdup2 (sensitivities->variability,
+      sensitivities->n_variability * row);
+  if (sensitivities->residual_variance)
+    copy->residual_variance =
+        cloth_power_spectrum_copy (sensitivities->residual_variance);
   return copy;
 }
 
-/* @study: (nullable) (transfer full): a study
+/* @sensitivities: (nullable) (transfer full): sensitivities
  */
 void
-cloth_sensitivities_free (ClothSensitivities * study)
+cloth_sensitivities_free (ClothSensitivities * sensitivities)
 {
-  if (!study)
+  if (!sensitivities)
     return;
-  forget (study);
-  cloth_power_spectrum_free (study->left);
-  cloth_features_free (study->features);
-  g_free (study);
+  forget (sensitivities);
+  cloth_power_spectrum_free (sensitivities->residual_variance);
+  cloth_features_free (sensitivities->features);
+  g_free (sensitivities);
 }
 
-/* @study: a study
+/* @sensitivities: sensitivities
  *
  * Returns: what the discrepancy's features are to be multiplied by: each recording's are in
  *   multiples of its own noise; 0 without a discrepancy
  */
 gdouble
-cloth_sensitivities_discrepancy_scale (const ClothSensitivities * study)
+cloth_sensitivities_discrepancy_scale (const ClothSensitivities * sensitivities)
 {
-  return study->discrepancy ? study->discrepancy->features->sigma /
-      study->features->sigma : 0.;
+  return sensitivities->discrepancy ? sensitivities->discrepancy->
+      features->sigma / sensitivities->features->sigma : 0.;
 }
 
-/* @study: a study
+/* @sensitivities: sensitivities
  *
  * Returns: how many directions are known in which variability moves the residual, that of the
  *   discrepancy included
  */
 guint
-cloth_sensitivities_count_variability (const ClothSensitivities * study)
+cloth_sensitivities_count_variability (const ClothSensitivities * sensitivities)
 {
-  return study->n_variability +
-      (study->discrepancy ? study->discrepancy->n_variability : 0);
+  return sensitivities->n_variability +
+      (sensitivities->discrepancy ? sensitivities->
+      discrepancy->n_variability : 0);
 }
 
-/* @study: a study
+/* @sensitivities: sensitivities
  * @columns: (out) (array): cloth_sensitivities_count_variability () directions, each of features->size
  */
 void
-cloth_sensitivities_get_variability (const ClothSensitivities * study,
+cloth_sensitivities_get_variability (const ClothSensitivities * sensitivities,
     gdouble * columns)
 {
-  gsize size = study->features->size, own = study->n_variability * size;
-  gdouble scale = cloth_sensitivities_discrepancy_scale (study);
+  gsize size = sensitivities->features->size, own =
+      sensitivities->n_variability * size;
+  gdouble scale = cloth_sensitivities_discrepancy_scale (sensitivities);
 
   if (own)
-    memcpy (columns, study->variability, own * sizeof (gdouble));
+    memcpy (columns, sensitivities->variability, own * sizeof (gdouble));
   for (gsize k = 0;
-      study->discrepancy && k < study->discrepancy->n_variability * size; k++)
-    columns[own + k] = scale * study->discrepancy->variability[k];
+      sensitivities->discrepancy
+      && k < sensitivities->discrepancy->n_variability * size; k++)
+    columns[own + k] = scale * sensitivities->discrepancy->variability[k];
 }
 
-/* @study: a study
+/* @sensitivities: sensitivities
  * @i: one of the directions of cloth_sensitivities_get_variability ()
  *
  * Returns: of how far variability goes along it, over the noise's variance
  */
 gdouble
-cloth_sensitivities_get_variability_precision (const ClothSensitivities * study,
-    guint i)
+cloth_sensitivities_get_variability_precision (const ClothSensitivities *
+    sensitivities, guint i)
 {
   return (i <
-      study->n_variability ? study->n_variability : study->
+      sensitivities->
+      n_variability ? sensitivities->n_variability : sensitivities->
       discrepancy->n_variability) / VARIABILITY_WIDTH;
 }
 
-/* @study: a study
+/* @sensitivities: sensitivities
  * @z: (inout) (array): features of a residual
  *
  * Takes off what the simulator itself is off by, if there is a discrepancy.
  */
 void
-cloth_sensitivities_take_off_discrepancy (const ClothSensitivities * study,
-    gdouble * z)
+cloth_sensitivities_take_off_discrepancy (const ClothSensitivities *
+    sensitivities, gdouble * z)
 {
-  gdouble scale = cloth_sensitivities_discrepancy_scale (study);
+  gdouble scale = cloth_sensitivities_discrepancy_scale (sensitivities);
 
-  for (gsize k = 0; study->discrepancy && k < study->features->size; k++)
-    z[k] -= scale * study->discrepancy->z[k];
+  for (gsize k = 0;
+      sensitivities->discrepancy && k < sensitivities->features->size; k++)
+    z[k] -= scale * sensitivities->discrepancy->z[k];
 }
 
-/* @study: a study
+/* @sensitivities: sensitivities
  *
  * Returns: (transfer full) (array): what is to be explained: z less that of the discrepancy
  */
 gdouble *
-cloth_sensitivities_residual (const ClothSensitivities * study)
+cloth_sensitivities_residual (const ClothSensitivities * sensitivities)
 {
-  gdouble *z = g_memdup2 (study->z,
-      study->features->size * sizeof (gdouble));
+  gdouble *z = g_memdup2 (sensitivities->z,
+      sensitivities->features->size * sizeof (gdouble));
 
-  cloth_sensitivities_take_off_discrepancy (study, z);
+  cloth_sensitivities_take_off_discrepancy (sensitivities, z);
   return z;
 }
 
 typedef struct
 {
-  const ClothSensitivities *study;
+  const ClothSensitivities *sensitivities;
   gdouble **z;                  /* of each model */
 } Collect;
 
@@ -179,11 +198,11 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
 {
   Collect *c = data;
 
-  cloth_features_add (c->study->features, c->study->recording, frame,
-      positions, c->z[model]);
+  cloth_features_add (c->sensitivities->features, c->sensitivities->recording,
+      frame, positions, c->z[model]);
 }
 
-/* @study: a study
+/* @sensitivities: sensitivities
  * @models: (array length=n): models
  * @n: how many
  * @options: how to simulate
@@ -197,17 +216,17 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
  * Returns: whether that could be done
  */
 gboolean
-cloth_sensitivities_run (const ClothSensitivities * study, ClothModel ** models,
-    guint n, ClothEstimateOptions * options, gdouble ** z, gboolean * sound,
-    GError ** error)
+cloth_sensitivities_run (const ClothSensitivities * sensitivities,
+    ClothModel ** models, guint n, ClothEstimateOptions * options, gdouble ** z,
+    gboolean * sound, GError ** error)
 {
   g_autofree gdouble *gains = g_new (gdouble, n);
-  Collect c = { study, z };
+  Collect c = { sensitivities, z };
 
   for (guint i = 0; i < n; i++)
     gains[i] = options->gain;
   options->simulations += n;
-  return cloth_rollout_nudged (study->recording,
+  return cloth_rollout_nudged (sensitivities->recording,
       (const ClothModel * const *) models, gains, n, &options->rollout,
       collect, &c, sound, error);
 }
@@ -237,11 +256,11 @@ moved_clear (Moved * moved)
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Moved, moved_clear)
      static void
-         move (Moved * moved, ClothSensitivities * study,
+         move (Moved * moved, ClothSensitivities * sensitivities,
     const ClothCandidates * candidates, const ClothModel * model,
     const guint * directions, guint m)
 {
-  gsize size = study->features->size;
+  gsize size = sensitivities->features->size;
   guint n;
 
   moved->models =
@@ -269,28 +288,30 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Moved, moved_clear)
   moved->z = g_new (gdouble *, n);
   moved->memory = g_new0 (gdouble, (n - m) * size);
   for (guint i = 0; i < n; i++)
-    moved->z[i] = i == 0 ? study->z : i <= m ? study->columns + (i - 1) * size :
-        moved->memory + (i - m - 1) * size;
+    moved->z[i] =
+        i == 0 ? sensitivities->z : i <=
+        m ? sensitivities->columns + (i - 1) * size : moved->memory + (i - m -
+        1) * size;
 }
 
 /* Where the model is, seen from both sides: the mean of such pairs of runs. What variability did
  * to the model's own run is in its residual and must not be in the columns too, or each of
  * them would seem to explain some of it. How the pairs differ shows what variability does. */
 static void
-find_reference (Moved * moved, ClothSensitivities * study)
+find_reference (Moved * moved, ClothSensitivities * sensitivities)
 {
-  gsize size = study->features->size;
-  g_autofree guint *pairs = g_new (guint, study->m + 1);
+  gsize size = sensitivities->features->size;
+  g_autofree guint *pairs = g_new (guint, sensitivities->m + 1);
   gdouble *reference, *variability;
   guint n = 0;
 
-  for (guint i = 0; i < study->m; i++)
+  for (guint i = 0; i < sensitivities->m; i++)
     if (moved->back[i] && moved->sound[moved->back[i]] && moved->sound[i + 1])
       pairs[n++] = i;
-  study->n_variability = n ? n + 1 : 0;
+  sensitivities->n_variability = n ? n + 1 : 0;
   moved->reference = reference = g_new0 (gdouble, size);
-  study->variability = variability =
-      g_new0 (gdouble, study->n_variability * size + 1);
+  sensitivities->variability = variability =
+      g_new0 (gdouble, sensitivities->n_variability * size + 1);
   for (guint p = 0; p < n; p++, variability += size) {
     const gdouble *before = moved->z[moved->back[pairs[p]]];
     const gdouble *behind = moved->z[pairs[p] + 1];
@@ -301,19 +322,19 @@ find_reference (Moved * moved, ClothSensitivities * study)
     }
   }
   if (!n) {
-    memcpy (reference, study->z, size * sizeof (gdouble));
+    memcpy (reference, sensitivities->z, size * sizeof (gdouble));
     return;
   }
-  memcpy (variability, study->z, size * sizeof (gdouble));
+  memcpy (variability, sensitivities->z, size * sizeof (gdouble));
   for (gsize k = 0; k < size; k++) {
     gdouble mean = (n * reference[k] + variability[k]) / (n + 1);
 
     for (guint p = 0; p <= n; p++)
-      study->variability[p * size + k] -= mean;
+      sensitivities->variability[p * size + k] -= mean;
   }
 }
 
-/* @study: a study
+/* @sensitivities: sensitivities
  * @candidates: what directions mean
  * @model: where to take derivatives
  * @directions: (array length=m): with respect to what
@@ -321,50 +342,51 @@ find_reference (Moved * moved, ClothSensitivities * study)
  * @options: how
  * @error: #ClothSimError, or #ClothFitError when the model itself can't be simulated
  *
- * Fills @study's z, columns, sound and variability. Directions along which the simulation fails
+ * Fills @sensitivities's z, columns, sound and variability. Directions along which the simulation fails
  * have columns of zeros. Free numbers are moved to both sides; the others' columns are
  * differences from the mean of these.
  */
 gboolean
-cloth_sensitivities_linearise (ClothSensitivities * study,
+cloth_sensitivities_linearise (ClothSensitivities * sensitivities,
     const ClothCandidates * candidates, const ClothModel * model,
     const guint * directions, guint m, ClothEstimateOptions * options,
     GError ** error)
 {
   g_auto (Moved) moved = { NULL };
-  gsize size = study->features->size;
+  gsize size = sensitivities->features->size;
 
-  forget (study);
-  study->m = m;
-  study->z = g_new0 (gdouble, size);
-  study->columns = g_new0 (gdouble, m * size + 1);
-  study->sound = g_new0 (gboolean, m + 1);
-  move (&moved, study, candidates, model, directions, m);
-  if (!cloth_sensitivities_run (study, (ClothModel **) moved.models->pdata,
-          moved.models->len, options, moved.z, moved.sound, error))
+  forget (sensitivities);
+  sensitivities->m = m;
+  sensitivities->z = g_new0 (gdouble, size);
+  sensitivities->columns = g_new0 (gdouble, m * size + 1);
+  sensitivities->sound = g_new0 (gboolean, m + 1);
+  move (&moved, sensitivities, candidates, model, directions, m);
+  if (!cloth_sensitivities_run (sensitivities,
+          (ClothModel **) moved.models->pdata, moved.models->len, options,
+          moved.z, moved.sound, error))
     return FALSE;
   if (!moved.sound[0]) {
     g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL, "%s: the "
         "simulation diverges; give the model softer cloth, more damping or a "
-        "smaller time_step", study->recording->name);
+        "smaller time_step", sensitivities->recording->name);
     return FALSE;
   }
-  find_reference (&moved, study);
+  find_reference (&moved, sensitivities);
   for (guint i = 0; i < m; i++) {
     gdouble step = cloth_candidates_direction (candidates,
         directions[i])->step;
     guint back = moved.back[i];
-    gdouble *column = study->columns + i * size;
+    gdouble *column = sensitivities->columns + i * size;
     const gdouble *from;
 
-    study->sound[i] = moved.sound[i + 1];
+    sensitivities->sound[i] = moved.sound[i + 1];
     if (back && moved.sound[back])
       step *= 2.;
     else
       back = 0;
     from = back ? moved.z[back] : moved.reference;
     for (gsize k = 0; k < size; k++)
-      column[k] = study->sound[i] ? (column[k] - from[k]) / step : 0.;
+      column[k] = sensitivities->sound[i] ? (column[k] - from[k]) / step : 0.;
   }
   return TRUE;
 }

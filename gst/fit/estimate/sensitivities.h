@@ -1,4 +1,4 @@
-/* A recording under study: residuals of nudged simulations and their derivatives.
+/* Residuals of nudged simulations of one recording and their derivatives.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -34,13 +34,13 @@ typedef struct {
  * @columns: its derivatives, [directions][features]
  * @m: number of directions
  * @sound: which of them could be simulated
- * @variability: what variability does to the residual: runs that should be equal to first order less
- *   their mean, [n_variability][features]
+ * @variability: run-to-run variability of the residual: runs that should be equal to first
+ *   order less their mean, [n_variability][features]
  * @n_variability: how many
- * @discrepancy: (nullable): the study whose residual is what the simulator itself is off
- *   by here too; the caller's
- * @left: (nullable): the power that is left to doubt; a fit weighs by it instead
- *   of by what it leaves itself
+ * @discrepancy: (nullable): those of a recording whose residual is the simulator's own
+ *   error here too; the caller's
+ * @residual_variance: (nullable): variance of the features beside that of noise, class by
+ *   class, that a fit weighs by; %NULL: the power that the fit itself leaves
  */
 typedef struct _ClothSensitivities {
   const ClothRecording *recording;
@@ -52,27 +52,28 @@ typedef struct _ClothSensitivities {
   gdouble *variability;
   guint n_variability;
   const struct _ClothSensitivities *discrepancy;
-  ClothPowerSpectrum *left;
+  ClothPowerSpectrum *residual_variance;
 } ClothSensitivities;
 
 void cloth_estimate_options_init (ClothEstimateOptions * options);
 ClothSensitivities *cloth_sensitivities_new (const ClothRecording * recording,
     const ClothEstimateOptions * options);
-ClothSensitivities *cloth_sensitivities_copy (const ClothSensitivities * study,
+ClothSensitivities *cloth_sensitivities_copy (const ClothSensitivities * sensitivities,
     const ClothEstimateOptions * options);
-void cloth_sensitivities_free (ClothSensitivities * study);
-gdouble cloth_sensitivities_discrepancy_scale (const ClothSensitivities * study);
-guint cloth_sensitivities_count_variability (const ClothSensitivities * study);
-void cloth_sensitivities_get_variability (const ClothSensitivities * study,
+void cloth_sensitivities_free (ClothSensitivities * sensitivities);
+gdouble cloth_sensitivities_discrepancy_scale (const ClothSensitivities * sensitivities);
+guint cloth_sensitivities_count_variability (const ClothSensitivities * sensitivities);
+void cloth_sensitivities_get_variability (const ClothSensitivities * sensitivities,
     gdouble * columns);
-gdouble cloth_sensitivities_get_variability_precision (const ClothSensitivities * study, guint i);
-void cloth_sensitivities_take_off_discrepancy (const ClothSensitivities * study,
+gdouble cloth_sensitivities_get_variability_precision (const ClothSensitivities * sensitivities, guint i);
+void cloth_sensitivities_take_off_discrepancy (const ClothSensitivities * sensitivities,
     gdouble * z);
-gdouble *cloth_sensitivities_residual (const ClothSensitivities * study);
-gboolean cloth_sensitivities_run (const ClothSensitivities * study, ClothModel ** models, guint n,
+gdouble *cloth_sensitivities_residual (const ClothSensitivities * sensitivities);
+gboolean cloth_sensitivities_run (const ClothSensitivities * sensitivities,
+    ClothModel ** models, guint n,
     ClothEstimateOptions * options, gdouble ** z, gboolean * sound,
     GError ** error);
-gboolean cloth_sensitivities_linearise (ClothSensitivities * study,
+gboolean cloth_sensitivities_linearise (ClothSensitivities * sensitivities,
     const ClothCandidates * candidates, const ClothModel * model,
     const guint * directions, guint m, ClothEstimateOptions * options,
     GError ** error);

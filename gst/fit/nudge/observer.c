@@ -1,4 +1,12 @@
-/* A simulation that follows a recording by weak springs, frame by frame.
+/* A simulation that is nudged to a recording frame by frame, as it is filmed.
+ *
+ * Model: x″ = M⁻¹F(x, x′) + g·m·(y − x) + 2ζ√g·m·(y′ − x′), m whether a vertex is seen; a second
+ *   simulation without springs starts from the first one's state at each window.
+ * Assumption: velocities y′ are those of a polynomial through seven frames (Savitzky and Golay
+ *   1964), so a frame is compared three frames after it came.
+ * Formula: residual = y − x; of a window, RMS of recorded minus free over what was seen. Of
+ *   frames of rays only the part across each ray counts.
+ * Reference: Hoke and Anthes 1976 (nudging, an observer in the sense of Luenberger 1964).
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/fit/nudge/observer.h"
@@ -36,7 +44,7 @@ struct _ClothObserver
   ClothSim *forecast;           /* without springs: only for frames of rays */
   gdouble *scene_start;
   ClothHold *hold;
-  ClothOutliers *tears;
+  ClothOutliers *outliers;
   guint64 n_pushed, n_popped;
   Frame ring[WINDOW];           /* frame i at i % WINDOW */
   /* of the frame that was popped last, and of the one that is */
@@ -92,7 +100,7 @@ cloth_observer_new (const ClothScene * scene, const ClothModel * model,
   self->forecast = forecast;
   self->n = scene->topology->n_vertices;
   self->hold = cloth_hold_new (scene->topology);
-  self->tears = cloth_outliers_new (scene->topology);
+  self->outliers = cloth_outliers_new (scene->topology);
   n = 3 * (gsize) self->n;
   for (guint i = 0; i < WINDOW; i++) {
     self->ring[i].positions = g_new (gdouble, n);
@@ -143,7 +151,7 @@ cloth_observer_push (ClothObserver * observer, gdouble time_s,
   frame->has_rays = FALSE;
   for (gsize i = 0; i < 3 * (gsize) observer->n; i++)
     frame->positions[i] = positions[i];
-  cloth_outliers_remove (observer->tears, 0., frame->positions);
+  cloth_outliers_remove (observer->outliers, 0., frame->positions);
 }
 
 /* @observer: an observer that has not more than %CLOTH_OBSERVER_LATENCY frames waiting,
@@ -244,7 +252,7 @@ static void
 lift (ClothObserver * self, Frame * frame, const gdouble * reference)
 {
   cloth_rays_lift (frame->rays, reference, frame->positions);
-  cloth_outliers_remove (self->tears, 0., frame->positions);
+  cloth_outliers_remove (self->outliers, 0., frame->positions);
 }
 
 /* Lifts this frame and those behind it to where the simulation goes. */
@@ -480,7 +488,7 @@ cloth_observer_free (ClothObserver * observer)
   g_free (observer->ahead_speeds);
   g_free (observer->reference);
   cloth_hold_free (observer->hold);
-  cloth_outliers_free (observer->tears);
+  cloth_outliers_free (observer->outliers);
   cloth_sim_free (observer->sim);
   cloth_sim_free (observer->forecast);
   g_free (observer);

@@ -1,8 +1,14 @@
-/* Simulations of a recorded scene.
+/* Simulations of a whole recording, nudged to it or let go in windows.
  *
- * The observer is that of data assimilation: weak springs of stiffness gain·m and damping
- * 2ζ√gain·m draw each seen vertex to where it was seen (nudging). What it lacks in force
- * shows as a steady distance, and variability is held down.
+ * Model: M x″ = F (x, x′; θ) + M g W (y − x) + M 2ζ√g W (y′ − x′), with y the recorded positions,
+ *   g the gain of the observer, ζ its damping ratio and W 1 where a vertex was seen, else 0.
+ * Assumption: between two frames y and y′ lie on straight lines. The springs are so weak that forces which the model lacks show as a distance, and so strong
+ *   that run-to-run variability does not grow.
+ * Formula: a missing force f per mass shows as a steady distance f/g. The simulation forgets
+ *   its past with the time 1/(ζ√g). In windows the gap is that of a free simulation from the
+ *   nudged state at the window's start.
+ * Reference: Hoke and Anthes 1976 (nudging); Kalnay, Atmospheric Modeling, Data Assimilation and
+ *   Predictability, 2003, section 5.6.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/fit/nudge/rollout.h"
@@ -25,8 +31,8 @@ typedef struct
   gsize row;                    /* numbers of a model */
   gdouble *x;                   /* of each model */
   gdouble *v;
-  /* of the running call of tell () */
-  ClothRolloutFrame each;
+  /* of the running call of report_frame () */
+  ClothRolloutFrame on_frame;
   gpointer data;
   guint frame;
 } Run;
@@ -72,7 +78,7 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Run, run_clear)
 }
 
 static void
-nudge (Run * run, guint frame, const gdouble * gains)
+set_targets (Run * run, guint frame, const gdouble * gains)
 {
   const ClothRecording *r = run->recording;
   guint next = MIN (frame + 1, r->n_frames - 1);
@@ -89,24 +95,24 @@ nudge (Run * run, guint frame, const gdouble * gains)
 }
 
 static void
-tell_models (gpointer data, guint begin, guint end, guint worker)
+report_models (gpointer data, guint begin, guint end, guint worker)
 {
   Run *run = data;
 
   for (guint m = begin; m < end; m++)
-    run->each (run->data, m, run->frame, run->x + m * run->row);
+    run->on_frame (run->data, m, run->frame, run->x + m * run->row);
 }
 
 static gboolean
-tell (Run * run, guint frame, ClothRolloutFrame each, gpointer data,
+report_frame (Run * run, guint frame, ClothRolloutFrame on_frame, gpointer data,
     GError ** error)
 {
-  run->each = each;
+  run->on_frame = on_frame;
   run->data = data;
   run->frame = frame;
   for (guint m = 0; m < run->n_models; m++)
     cloth_sim_get_positions (run->sim, m, run->x + m * run->row);
-  cloth_pool_run (run->pool, tell_models, run, run->n_models);
+  cloth_pool_run (run->pool, report_models, run, run->n_models);
   if (!run->options->progress
       || run->options->progress (run->options->data,
           (frame + 1.) / run->recording->n_frames))
@@ -116,9 +122,10 @@ tell (Run * run, guint frame, ClothRolloutFrame each, gpointer data,
   return FALSE;
 }
 
-/* Each model is judged by all its simulations. */
+/* A model is sound if all its simulations are. */
 static void
-judge (Run * run, const ClothModel * const *models, guint n, gboolean * sound)
+note_diverged (Run * run, const ClothModel * const *models, guint n,
+    gboolean * sound)
 {
   for (guint m = 0; m < run->n_models; m++) {
     gdouble since_s;
@@ -138,15 +145,15 @@ judge (Run * run, const ClothModel * const *models, guint n, gboolean * sound)
  * @gains: (array length=n_models): of each model's observer, 1/s²
  * @n_models: how many
  * @options: how to simulate
- * @each: called for each model in each frame
- * @data: for @each
+ * @on_frame: called for each model in each frame
+ * @data: for @on_frame
  * @sound: (out) (array length=n_models): which models did not diverge
  * @error: #ClothSimError, or #ClothFitError when it was stopped
  */
 gboolean
 cloth_rollout_nudged (const ClothRecording * recording,
     const ClothModel * const *models, const gdouble * gains, guint n_models,
-    const ClothRolloutOptions * options, ClothRolloutFrame each,
+    const ClothRolloutOptions * options, ClothRolloutFrame on_frame,
     gpointer data, gboolean * sound, GError ** error)
 {
   g_auto (Run) run = { 0 };
@@ -155,15 +162,15 @@ cloth_rollout_nudged (const ClothRecording * recording,
     return FALSE;
   for (guint m = 0; m < n_models; m++)
     sound[m] = TRUE;
-  if (!tell (&run, 0, each, data, error))
+  if (!report_frame (&run, 0, on_frame, data, error))
     return FALSE;
   for (guint frame = 0; frame + 1 < recording->n_frames; frame++) {
-    nudge (&run, frame, gains);
+    set_targets (&run, frame, gains);
     cloth_sim_advance (run.sim, recording->times[frame + 1]);
-    if (!tell (&run, frame + 1, each, data, error))
+    if (!report_frame (&run, frame + 1, on_frame, data, error))
       return FALSE;
   }
-  judge (&run, models, n_models, sound);
+  note_diverged (&run, models, n_models, sound);
   return TRUE;
 }
 
@@ -173,9 +180,9 @@ cloth_rollout_nudged (const ClothRecording * recording,
  * @gain: of the observer that leads up to each window, 1/s²
  * @window_s: length of the windows, s
  * @options: how to simulate
- * @each: called for each model in each frame of each window but its first; and in all
+ * @on_frame: called for each model in each frame of each window but its first; and in all
  *   frames but the first for the model nudged all along, as @n_models + its index
- * @data: for @each
+ * @data: for @on_frame
  * @sound: (out) (array length=n_models): which models did not diverge
  * @error: #ClothSimError, or #ClothFitError when it was stopped
  *
@@ -186,7 +193,8 @@ gboolean
 cloth_rollout_windows (const ClothRecording * recording,
     const ClothModel * const *models, guint n_models, gdouble gain,
     gdouble window_s, const ClothRolloutOptions * options,
-    ClothRolloutFrame each, gpointer data, gboolean * sound, GError ** error)
+    ClothRolloutFrame on_frame, gpointer data, gboolean * sound,
+    GError ** error)
 {
   g_auto (Run) run = { 0 };
   /* side by side: those let go, those nudged */
@@ -203,19 +211,19 @@ cloth_rollout_windows (const ClothRecording * recording,
     return FALSE;
   for (guint frame = 0; frame + 1 < recording->n_frames; frame++) {
     if (frame && windows[frame + 1] != windows[frame]) {
-      judge (&run, models, n_models, sound);
+      note_diverged (&run, models, n_models, sound);
       for (guint m = 0; m < n_models; m++) {
         cloth_sim_get_positions (run.sim, n_models + m, run.x);
         cloth_sim_get_velocities (run.sim, n_models + m, run.v);
         cloth_sim_set_state (run.sim, m, run.x, run.v, recording->times[frame]);
       }
     }
-    nudge (&run, frame, gains);
+    set_targets (&run, frame, gains);
     cloth_sim_advance (run.sim, recording->times[frame + 1]);
-    if (!tell (&run, frame + 1, each, data, error))
+    if (!report_frame (&run, frame + 1, on_frame, data, error))
       return FALSE;
   }
-  judge (&run, models, n_models, sound);
+  note_diverged (&run, models, n_models, sound);
   return TRUE;
 }
 

@@ -50,12 +50,12 @@ typedef void (*ClothRolloutFrame) (gpointer data, guint model, guint frame,
 
 gboolean cloth_rollout_nudged (const ClothRecording * recording,
     const ClothModel * const *models, const gdouble * gains, guint n_models,
-    const ClothRolloutOptions * options, ClothRolloutFrame each,
+    const ClothRolloutOptions * options, ClothRolloutFrame on_frame,
     gpointer data, gboolean * sound, GError ** error);
 gboolean cloth_rollout_windows (const ClothRecording * recording,
     const ClothModel * const *models, guint n_models, gdouble gain,
     gdouble window_s, const ClothRolloutOptions * options,
-    ClothRolloutFrame each, gpointer data, gboolean * sound, GError ** error);
+    ClothRolloutFrame on_frame, gpointer data, gboolean * sound, GError ** error);
 guint *cloth_rollout_list_windows (const ClothRecording * recording,
     gdouble window_s);
 

@@ -1,4 +1,11 @@
-/* How large the gap is, and where.
+/* How large the gap is, and where, with the sampling error of its mean square.
+ *
+ * Model: the gap of a window is recorded minus simulated, freely from the nudged state at its
+ *   start. The recording is one draw of windows and of places on the cloth.
+ * Assumption: windows × tiles of the cloth are independent; within one, distances need not be.
+ * Formula: mean square = Σ |x − y|² / number of seen vertices and frames. Its distribution is that
+ *   of sums over as many windows × tiles, drawn with replacement.
+ * Reference: Efron and Tibshirani, An Introduction to the Bootstrap, 1993, section 8.6 (blocks).
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/fit/nudge/windows.h"
@@ -14,13 +21,13 @@
 typedef struct
 {
   const ClothRecording *recording;
-  ClothWindowedGap **extents;
+  ClothWindowedGap **gaps;
   guint n;
 } Gather;
 
 /* Unit vectors along warp, weft and normal at a vertex of a grid, from what was seen. */
 static gboolean
-frame_at (const ClothRecording * r, guint frame, guint vertex,
+find_axes (const ClothRecording * r, guint frame, guint vertex,
     gdouble axes[3][3])
 {
   const ClothTopology *t = r->scene->topology;
@@ -71,11 +78,11 @@ keep_nudged (const ClothRecording * r, guint frame, const gdouble * positions,
 }
 
 static void
-gather (gpointer data, guint model, guint frame, const gdouble * positions)
+add_frame (gpointer data, guint model, guint frame, const gdouble * positions)
 {
   Gather *g = data;
   const ClothRecording *r = g->recording;
-  ClothWindowedGap *e = g->extents[model % g->n];
+  ClothWindowedGap *e = g->gaps[model % g->n];
 
   if (model >= g->n) {
     cloth_energy_spectrum_add (e->energy, frame, positions);
@@ -94,7 +101,7 @@ gather (gpointer data, guint model, guint frame, const gdouble * positions)
     if (r->seen[at] == 0.)
       continue;
     e->squares[at] = square;
-    if (frame_at (r, frame, v, axes))
+    if (find_axes (r, frame, v, axes))
       for (guint a = 0; a < 3; a++) {
         gdouble along = d[0] * axes[a][0] + d[1] * axes[a][1] +
             d[2] * axes[a][2];
@@ -105,7 +112,7 @@ gather (gpointer data, guint model, guint frame, const gdouble * positions)
 }
 
 static ClothWindowedGap *
-extent_new (const ClothRecording * r, gdouble window_s)
+gap_new (const ClothRecording * r, gdouble window_s)
 {
   ClothWindowedGap *e = g_new0 (ClothWindowedGap, 1);
   gsize all = (gsize) r->n * r->n_frames;
@@ -140,49 +147,49 @@ cloth_windowed_gaps_new (const ClothRecording * recording,
     const ClothModel * const *models, guint n_models, gdouble gain,
     gdouble window_s, const ClothRolloutOptions * options, GError ** error)
 {
-  ClothWindowedGap **extents = g_new (ClothWindowedGap *, n_models);
+  ClothWindowedGap **gaps = g_new (ClothWindowedGap *, n_models);
   g_autofree gboolean *sound = g_new (gboolean, n_models);
-  Gather g = { recording, extents, n_models };
+  Gather g = { recording, gaps, n_models };
 
   for (guint m = 0; m < n_models; m++)
-    extents[m] = extent_new (recording, window_s);
+    gaps[m] = gap_new (recording, window_s);
   if (!cloth_rollout_windows (recording, models, n_models, gain, window_s,
-          options, gather, &g, sound, error)) {
-    cloth_windowed_gaps_free (extents, n_models);
+          options, add_frame, &g, sound, error)) {
+    cloth_windowed_gaps_free (gaps, n_models);
     return NULL;
   }
   for (guint m = 0; m < n_models; m++)
-    extents[m]->sound = sound[m];
-  return extents;
+    gaps[m]->sound = sound[m];
+  return gaps;
 }
 
-/* @extent: (nullable) (transfer full): distances
+/* @gap: (nullable) (transfer full): distances
  */
 void
-cloth_windowed_gap_free (ClothWindowedGap * extent)
+cloth_windowed_gap_free (ClothWindowedGap * gap)
 {
-  if (!extent)
+  if (!gap)
     return;
-  g_free (extent->window);
-  g_free (extent->squares);
-  g_free (extent->positions);
-  g_free (extent->nudged);
-  cloth_energy_spectrum_free (extent->energy);
-  g_free (extent);
+  g_free (gap->window);
+  g_free (gap->squares);
+  g_free (gap->positions);
+  g_free (gap->nudged);
+  cloth_energy_spectrum_free (gap->energy);
+  g_free (gap);
 }
 
-/* @extents: (nullable) (transfer full) (array length=n): distances
+/* @gaps: (nullable) (transfer full) (array length=n): distances
  * @n: how many
  */
 void
-cloth_windowed_gaps_free (ClothWindowedGap ** extents, guint n)
+cloth_windowed_gaps_free (ClothWindowedGap ** gaps, guint n)
 {
-  for (guint m = 0; extents && m < n; m++)
-    cloth_windowed_gap_free (extents[m]);
-  g_free (extents);
+  for (guint m = 0; gaps && m < n; m++)
+    cloth_windowed_gap_free (gaps[m]);
+  g_free (gaps);
 }
 
-/* @extent: (inout): one model's distances from a recording
+/* @gap: (inout): one model's distances from a recording
  * @other: another's
  * @recording: the recording
  *
@@ -190,39 +197,39 @@ cloth_windowed_gaps_free (ClothWindowedGap ** extents, guint n)
  * would be if the other were reality.
  */
 void
-cloth_windowed_gap_subtract (ClothWindowedGap * extent,
+cloth_windowed_gap_subtract (ClothWindowedGap * gap,
     const ClothWindowedGap * other, const ClothRecording * recording)
 {
-  gsize all = (gsize) extent->n * extent->n_frames;
+  gsize all = (gsize) gap->n * gap->n_frames;
 
   for (gsize i = 0; i < all; i++) {
-    extent->squares[i] = 3. * recording->sigma * recording->sigma;
+    gap->squares[i] = 3. * recording->sigma * recording->sigma;
     for (guint k = 0; k < 3; k++) {
-      gdouble off = extent->positions[3 * i + k] - other->positions[3 * i + k];
+      gdouble off = gap->positions[3 * i + k] - other->positions[3 * i + k];
 
-      extent->squares[i] += off * off;
-      extent->nudged[3 * i + k] -= other->nudged[3 * i + k];
+      gap->squares[i] += off * off;
+      gap->nudged[3 * i + k] -= other->nudged[3 * i + k];
     }
   }
 }
 
-/* @extent: distances
+/* @gap: distances
  * @windows: (nullable): which windows count
  *
  * Returns: their mean square, m²; NaN when nothing was seen
  */
 gdouble
-cloth_windowed_gap_square (const ClothWindowedGap * extent,
+cloth_windowed_gap_square (const ClothWindowedGap * gap,
     const gboolean * windows)
 {
   gdouble sum = 0.;
   guint64 count = 0;
 
-  for (guint frame = 1; frame < extent->n_frames; frame++) {
-    if (windows && !windows[extent->window[frame]])
+  for (guint frame = 1; frame < gap->n_frames; frame++) {
+    if (windows && !windows[gap->window[frame]])
       continue;
-    for (guint v = 0; v < extent->n; v++) {
-      gdouble square = extent->squares[(gsize) frame * extent->n + v];
+    for (guint v = 0; v < gap->n; v++) {
+      gdouble square = gap->squares[(gsize) frame * gap->n + v];
 
       if (isfinite (square)) {
         sum += square;
@@ -233,7 +240,7 @@ cloth_windowed_gap_square (const ClothWindowedGap * extent,
   return count ? sum / count : NAN;
 }
 
-/* @extents: (array length=n): distances of the same recording
+/* @gaps: (array length=n): distances of the same recording
  * @n: how many
  * @windows: (nullable): which windows count
  * @seed: of the draws
@@ -243,31 +250,31 @@ cloth_windowed_gap_square (const ClothWindowedGap * extent,
  * Bootstrap over windows × tiles of the cloth, drawn alike for all.
  */
 void
-cloth_windowed_gaps_interval (ClothWindowedGap ** extents, guint n,
+cloth_windowed_gaps_interval (ClothWindowedGap ** gaps, guint n,
     const gboolean * windows, guint64 seed, guint n_draws, gdouble * draws)
 {
-  guint n_windows = extents[0]->n_windows, n_cells = 0;
+  guint n_windows = gaps[0]->n_windows, n_cells = 0;
   guint all = n_windows * TILES * TILES;
   g_autofree gdouble *sums = g_new0 (gdouble, (gsize) all * n);
   g_autofree gdouble *counts = g_new0 (gdouble, all);
   g_autofree guint *cells = g_new (guint, all);
-  guint side = MAX (1, (guint) sqrt (extents[0]->n));
+  guint side = MAX (1, (guint) sqrt (gaps[0]->n));
   ClothRandom random;
 
-  for (guint frame = 1; frame < extents[0]->n_frames; frame++) {
-    guint w = extents[0]->window[frame];
+  for (guint frame = 1; frame < gaps[0]->n_frames; frame++) {
+    guint w = gaps[0]->window[frame];
 
-    for (guint v = 0; v < extents[0]->n; v++) {
+    for (guint v = 0; v < gaps[0]->n; v++) {
       guint tile = MIN (v % side * TILES / side, TILES - 1) + TILES *
           MIN (v / side * TILES / side, TILES - 1);
       guint cell = w * TILES * TILES + tile;
-      gsize at = (gsize) frame * extents[0]->n + v;
+      gsize at = (gsize) frame * gaps[0]->n + v;
 
-      if (!isfinite (extents[0]->squares[at]))
+      if (!isfinite (gaps[0]->squares[at]))
         continue;
       counts[cell] += 1.;
       for (guint m = 0; m < n; m++)
-        sums[(gsize) m * all + cell] += extents[m]->squares[at];
+        sums[(gsize) m * all + cell] += gaps[m]->squares[at];
     }
   }
   for (guint cell = 0; cell < all; cell++)

@@ -38,13 +38,13 @@ typedef struct {
 ClothWindowedGap **cloth_windowed_gaps_new (const ClothRecording * recording,
     const ClothModel * const *models, guint n_models, gdouble gain,
     gdouble window_s, const ClothRolloutOptions * options, GError ** error);
-void cloth_windowed_gaps_free (ClothWindowedGap ** extents, guint n);
-void cloth_windowed_gap_free (ClothWindowedGap * extent);
-void cloth_windowed_gap_subtract (ClothWindowedGap * extent,
+void cloth_windowed_gaps_free (ClothWindowedGap ** gaps, guint n);
+void cloth_windowed_gap_free (ClothWindowedGap * gap);
+void cloth_windowed_gap_subtract (ClothWindowedGap * gap,
     const ClothWindowedGap * other, const ClothRecording * recording);
-gdouble cloth_windowed_gap_square (const ClothWindowedGap * extent,
+gdouble cloth_windowed_gap_square (const ClothWindowedGap * gap,
     const gboolean * windows);
-void cloth_windowed_gaps_interval (ClothWindowedGap ** extents, guint n,
+void cloth_windowed_gaps_interval (ClothWindowedGap ** gaps, guint n,
     const gboolean * windows, guint64 seed, guint n_draws, gdouble * draws);
 
 G_END_DECLS

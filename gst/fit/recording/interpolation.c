@@ -243,12 +243,12 @@ static gboolean
 cut_loose (Bridge * b)
 {
   const ClothRecording *r = b->recording;
-  g_autoptr (ClothOutliers) tears = cloth_outliers_new (r->scene->topology);
+  g_autoptr (ClothOutliers) outliers = cloth_outliers_new (r->scene->topology);
   gdouble *start = b->moved;
   gboolean any = FALSE;
 
   memcpy (start, place (b, 0, 0), 3 * (gsize) r->n * sizeof *start);
-  if (!cloth_outliers_remove (tears, 0., start))
+  if (!cloth_outliers_remove (outliers, 0., start))
     return FALSE;
   for (guint v = 0; v < r->n; v++)
     if (isnan (start[3 * v]) && b->first[v] > 0)

@@ -19,7 +19,7 @@ typedef struct
   gdouble flat;                 /* m; of torn ones what they are longer than they may be */
 } Edge;
 
-struct _ClothTears
+struct _ClothOutliers
 {
   guint n;
   GArray *edges;                /* Edge */
@@ -38,15 +38,15 @@ ClothOutliers *
 cloth_outliers_new (const ClothTopology * topology)
 {
   const ClothTopology *t = topology;
-  ClothOutliers *tears = g_new0 (ClothOutliers, 1);
+  ClothOutliers *outliers = g_new0 (ClothOutliers, 1);
 
-  tears->n = t->n_vertices;
-  tears->edges = g_array_new (FALSE, FALSE, sizeof (Edge));
-  tears->piece = g_new (guint, tears->n);
-  tears->size = g_new (guint, tears->n);
-  tears->wrong = g_new (gboolean, tears->n);
-  tears->torn = g_array_new (FALSE, FALSE, sizeof (Edge));
-  tears->denials = g_new (gdouble, tears->n);
+  outliers->n = t->n_vertices;
+  outliers->edges = g_array_new (FALSE, FALSE, sizeof (Edge));
+  outliers->piece = g_new (guint, outliers->n);
+  outliers->size = g_new (guint, outliers->n);
+  outliers->wrong = g_new (gboolean, outliers->n);
+  outliers->torn = g_array_new (FALSE, FALSE, sizeof (Edge));
+  outliers->denials = g_new (gdouble, outliers->n);
   for (guint f = 0; f < t->n_faces; f++) {
     const guint32 *face = t->faces + 4 * (gsize) f;
     guint corners = cloth_face_corners (face);
@@ -58,51 +58,51 @@ cloth_outliers_new (const ClothTopology * topology)
 
       edge.flat = hypot ((gdouble) a[0] - b[0], (gdouble) a[1] - b[1]);
       if (edge.flat > 0.)
-        g_array_append_val (tears->edges, edge);
+        g_array_append_val (outliers->edges, edge);
     }
   }
-  return tears;
+  return outliers;
 }
 
 static guint
-find_piece (ClothOutliers * tears, guint v)
+find_piece (ClothOutliers * outliers, guint v)
 {
-  while (tears->piece[v] != v) {
-    tears->piece[v] = tears->piece[tears->piece[v]];
-    v = tears->piece[v];
+  while (outliers->piece[v] != v) {
+    outliers->piece[v] = outliers->piece[outliers->piece[v]];
+    v = outliers->piece[v];
   }
   return v;
 }
 
 static void
-join (ClothOutliers * tears, guint a, guint b)
+join (ClothOutliers * outliers, guint a, guint b)
 {
-  a = find_piece (tears, a);
-  b = find_piece (tears, b);
+  a = find_piece (outliers, a);
+  b = find_piece (outliers, b);
   if (a == b)
     return;
-  if (tears->size[a] < tears->size[b]) {
+  if (outliers->size[a] < outliers->size[b]) {
     guint c = a;
 
     a = b;
     b = c;
   }
-  tears->piece[b] = a;
-  tears->size[a] += tears->size[b];
+  outliers->piece[b] = a;
+  outliers->size[a] += outliers->size[b];
 }
 
 /* Of two pieces the smaller one, and both when they are equal. */
 static void
-blame (ClothOutliers * tears, guint a, guint b)
+blame (ClothOutliers * outliers, guint a, guint b)
 {
-  a = find_piece (tears, a);
-  b = find_piece (tears, b);
+  a = find_piece (outliers, a);
+  b = find_piece (outliers, b);
   if (a == b)
     return;
-  if (tears->size[a] <= tears->size[b])
-    tears->wrong[a] = TRUE;
-  if (tears->size[b] <= tears->size[a])
-    tears->wrong[b] = TRUE;
+  if (outliers->size[a] <= outliers->size[b])
+    outliers->wrong[a] = TRUE;
+  if (outliers->size[b] <= outliers->size[a])
+    outliers->wrong[b] = TRUE;
 }
 
 /* Over the distance that neighbours on the cloth may have; NaN when one was not seen. */
@@ -118,64 +118,67 @@ excess (const Edge * edge, gdouble slack_m, const gdouble * positions)
 
 /* Lists the torn edges. */
 static void
-find_torn (ClothOutliers * tears, gdouble slack_m, const gdouble * positions)
+find_torn (ClothOutliers * outliers, gdouble slack_m, const gdouble * positions)
 {
-  g_array_set_size (tears->torn, 0);
-  for (guint i = 0; i < tears->edges->len; i++) {
-    Edge edge = g_array_index (tears->edges, Edge, i);
+  g_array_set_size (outliers->torn, 0);
+  for (guint i = 0; i < outliers->edges->len; i++) {
+    Edge edge = g_array_index (outliers->edges, Edge, i);
 
     edge.flat = excess (&edge, slack_m, positions);
     if (edge.flat > 0.)
-      g_array_append_val (tears->torn, edge);
+      g_array_append_val (outliers->torn, edge);
   }
 }
 
 /* The smaller ones of the pieces that were cut apart. */
 static void
-find_pieces (ClothOutliers * tears, gdouble slack_m, const gdouble * positions)
+find_pieces (ClothOutliers * outliers, gdouble slack_m,
+    const gdouble * positions)
 {
-  for (guint v = 0; v < tears->n; v++) {
-    tears->piece[v] = v;
-    tears->size[v] = 1;
-    tears->wrong[v] = FALSE;
+  for (guint v = 0; v < outliers->n; v++) {
+    outliers->piece[v] = v;
+    outliers->size[v] = 1;
+    outliers->wrong[v] = FALSE;
   }
-  for (guint i = 0; i < tears->edges->len; i++) {
-    const Edge *edge = &g_array_index (tears->edges, Edge, i);
+  for (guint i = 0; i < outliers->edges->len; i++) {
+    const Edge *edge = &g_array_index (outliers->edges, Edge, i);
 
     if (excess (edge, slack_m, positions) <= 0.)
-      join (tears, edge->a, edge->b);
+      join (outliers, edge->a, edge->b);
   }
-  for (guint i = 0; i < tears->torn->len; i++) {
-    const Edge *edge = &g_array_index (tears->torn, Edge, i);
+  for (guint i = 0; i < outliers->torn->len; i++) {
+    const Edge *edge = &g_array_index (outliers->torn, Edge, i);
 
-    blame (tears, edge->a, edge->b);
+    blame (outliers, edge->a, edge->b);
   }
   /* a piece's own vertex is the only one that was blamed for it */
-  for (guint v = 0; v < tears->n; v++)
-    tears->wrong[v] = tears->wrong[find_piece (tears, v)];
+  for (guint v = 0; v < outliers->n; v++)
+    outliers->wrong[v] = outliers->wrong[find_piece (outliers, v)];
 }
 
 /* Drops edges at wrong vertices and sums up the others. */
 static gdouble
-sum_up (ClothOutliers * tears)
+sum_up (ClothOutliers * outliers)
 {
   gdouble most = 0.;
   guint n = 0;
 
-  for (guint i = 0; i < tears->torn->len; i++) {
-    const Edge edge = g_array_index (tears->torn, Edge, i);
+  for (guint i = 0; i < outliers->torn->len; i++) {
+    const Edge edge = g_array_index (outliers->torn, Edge, i);
 
-    tears->denials[edge.a] = tears->denials[edge.b] = 0.;
-    if (!tears->wrong[edge.a] && !tears->wrong[edge.b])
-      g_array_index (tears->torn, Edge, n++) = edge;
+    outliers->denials[edge.a] = outliers->denials[edge.b] = 0.;
+    if (!outliers->wrong[edge.a] && !outliers->wrong[edge.b])
+      g_array_index (outliers->torn, Edge, n++) = edge;
   }
-  g_array_set_size (tears->torn, n);
+  g_array_set_size (outliers->torn, n);
   for (guint i = 0; i < n; i++) {
-    const Edge *edge = &g_array_index (tears->torn, Edge, i);
+    const Edge *edge = &g_array_index (outliers->torn, Edge, i);
 
-    tears->denials[edge->a] += edge->flat;
-    tears->denials[edge->b] += edge->flat;
-    most = MAX (most, MAX (tears->denials[edge->a], tears->denials[edge->b]));
+    outliers->denials[edge->a] += edge->flat;
+    outliers->denials[edge->b] += edge->flat;
+    most =
+        MAX (most, MAX (outliers->denials[edge->a],
+            outliers->denials[edge->b]));
   }
   return most;
 }
@@ -183,23 +186,23 @@ sum_up (ClothOutliers * tears)
 /* What tears a piece that hangs together elsewhere: the vertex that is most out of place goes
  * first, and with it what it made of its neighbours' distances. */
 static void
-find_denied (ClothOutliers * tears)
+find_denied (ClothOutliers * outliers)
 {
   gdouble most;
 
-  while ((most = sum_up (tears)) > 0.) {
-    const gboolean all = tears->torn->len > MOST_TORN;
+  while ((most = sum_up (outliers)) > 0.) {
+    const gboolean all = outliers->torn->len > MOST_TORN;
 
-    for (guint i = 0; i < tears->torn->len; i++) {
-      const Edge *edge = &g_array_index (tears->torn, Edge, i);
+    for (guint i = 0; i < outliers->torn->len; i++) {
+      const Edge *edge = &g_array_index (outliers->torn, Edge, i);
 
-      tears->wrong[edge->a] |= all || tears->denials[edge->a] == most;
-      tears->wrong[edge->b] |= all || tears->denials[edge->b] == most;
+      outliers->wrong[edge->a] |= all || outliers->denials[edge->a] == most;
+      outliers->wrong[edge->b] |= all || outliers->denials[edge->b] == most;
     }
   }
 }
 
-/* @tears: of the mesh
+/* @outliers: of the mesh
  * @slack_m: how far noise may put two vertices apart, m
  * @positions: (inout) (array): 3 numbers a vertex, m; NaN when not seen
  *
@@ -212,18 +215,18 @@ find_denied (ClothOutliers * tears)
  * Returns: number of vertices removed
  */
 guint
-cloth_outliers_remove (ClothOutliers * tears, gdouble slack_m,
+cloth_outliers_remove (ClothOutliers * outliers, gdouble slack_m,
     gdouble * positions)
 {
   guint removed = 0;
 
-  find_torn (tears, slack_m, positions);
-  if (!tears->torn->len)
+  find_torn (outliers, slack_m, positions);
+  if (!outliers->torn->len)
     return 0;
-  find_pieces (tears, slack_m, positions);
-  find_denied (tears);
-  for (guint v = 0; v < tears->n; v++) {
-    if (!tears->wrong[v])
+  find_pieces (outliers, slack_m, positions);
+  find_denied (outliers);
+  for (guint v = 0; v < outliers->n; v++) {
+    if (!outliers->wrong[v])
       continue;
     for (guint k = 0; k < 3; k++)
       positions[3 * (gsize) v + k] = NAN;
@@ -232,18 +235,18 @@ cloth_outliers_remove (ClothOutliers * tears, gdouble slack_m,
   return removed;
 }
 
-/* @tears: (nullable) (transfer full): what finds tears
+/* @outliers: (nullable) (transfer full): what finds tears
  */
 void
-cloth_outliers_free (ClothOutliers * tears)
+cloth_outliers_free (ClothOutliers * outliers)
 {
-  if (!tears)
+  if (!outliers)
     return;
-  g_array_unref (tears->edges);
-  g_free (tears->piece);
-  g_free (tears->size);
-  g_free (tears->wrong);
-  g_array_unref (tears->torn);
-  g_free (tears->denials);
-  g_free (tears);
+  g_array_unref (outliers->edges);
+  g_free (outliers->piece);
+  g_free (outliers->size);
+  g_free (outliers->wrong);
+  g_array_unref (outliers->torn);
+  g_free (outliers->denials);
+  g_free (outliers);
 }

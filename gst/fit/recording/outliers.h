@@ -7,12 +7,12 @@
 
 G_BEGIN_DECLS
 
-typedef struct _ClothTears ClothOutliers;
+typedef struct _ClothOutliers ClothOutliers;
 
 ClothOutliers *cloth_outliers_new (const ClothTopology * topology);
-guint cloth_outliers_remove (ClothOutliers * tears, gdouble slack_m,
+guint cloth_outliers_remove (ClothOutliers * outliers, gdouble slack_m,
     gdouble * positions);
-void cloth_outliers_free (ClothOutliers * tears);
+void cloth_outliers_free (ClothOutliers * outliers);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothOutliers, cloth_outliers_free)
 G_END_DECLS

@@ -56,20 +56,20 @@ read_seen (ClothRecording * r, guint frame, gdouble * row)
 static void
 remove_torn (ClothRecording * r)
 {
-  g_autoptr (ClothOutliers) tears = cloth_outliers_new (r->scene->topology);
+  g_autoptr (ClothOutliers) outliers = cloth_outliers_new (r->scene->topology);
   g_autofree gdouble *row = g_new (gdouble, 3 * (gsize) r->n);
   gdouble sigma = r->sigma > 0. ? r->sigma : 0.;
   gboolean estimated = FALSE;
 
   for (guint frame = 0; frame < r->n_frames; frame++) {
     read_seen (r, frame, row);
-    if (!cloth_outliers_remove (tears, FAR_APART * sigma, row))
+    if (!cloth_outliers_remove (outliers, FAR_APART * sigma, row))
       continue;
     if (!estimated) {
       sigma = fmax (sigma, cloth_recording_estimate_sigma (r));
       estimated = TRUE;
       read_seen (r, frame, row);
-      cloth_outliers_remove (tears, FAR_APART * sigma, row);
+      cloth_outliers_remove (outliers, FAR_APART * sigma, row);
     }
     for (guint v = 0; v < r->n; v++)
       r->seen[(gsize) frame * r->n + v] = isnan (row[3 * (gsize) v]) ? 0. : 1.;

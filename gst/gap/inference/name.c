@@ -180,7 +180,8 @@ cloth_diagnosis_find_weight (const ClothDiagnosis * d, guint take)
 {
   const ClothSensitivities *s = cloth_diagnosis_study (d, take);
 
-  return s->left ? cloth_power_spectrum_copy (s->left) :
+  return s->
+      residual_variance ? cloth_power_spectrum_copy (s->residual_variance) :
       cloth_diagnosis_find_discrepancy_variance (d, take);
 }
 
@@ -266,11 +267,11 @@ cloth_diagnosis_find_residual_variance (ClothDiagnosis * d,
     }
     left = cloth_power_spectrum_new (s->features, z);
     for (guint k = 0; k < left->n; k++)
-      left->values[k] = MIN (score ? s->left->values[k] :
+      left->values[k] = MIN (score ? s->residual_variance->values[k] :
           discrepancy_variance->values[k], MAX (left->values[k],
               LEAST_DISCREPANCY * discrepancy_variance->values[k]));
-    cloth_power_spectrum_free (s->left);
-    s->left = left;
+    cloth_power_spectrum_free (s->residual_variance);
+    s->residual_variance = left;
   }
 }
 
