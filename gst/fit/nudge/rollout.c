@@ -2,8 +2,9 @@
  *
  * Model: M x″ = F (x, x′; θ) + M g W (y − x) + M 2ζ√g W (y′ − x′), with y the recorded positions,
  *   g the gain of the observer, ζ its damping ratio and W 1 where a vertex was seen, else 0.
- * Assumption: between two frames y and y′ lie on straight lines. The springs are so weak that forces which the model lacks show as a distance, and so strong
- *   that run-to-run variability does not grow.
+ * Assumption: between two frames y and y′ lie on straight lines. The springs are so weak
+ *   that forces which the model lacks show as a distance, and so strong that run-to-run
+ *   variability does not grow.
  * Formula: a missing force f per mass shows as a steady distance f/g. The simulation forgets
  *   its past with the time 1/(ζ√g). In windows the gap is that of a free simulation from the
  *   nudged state at the window's start.
