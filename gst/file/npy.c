@@ -56,6 +56,14 @@ typedef struct
   const gchar *at, *end;
 } Text;
 
+static gboolean
+invalid (GError ** error, const gchar * what)
+{
+  g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+      "not a valid .npy file: %s", what);
+  return FALSE;
+}
+
 static void
 skip_blanks (Text * text)
 {
@@ -130,7 +138,7 @@ static gboolean
 take_shape (Text * text, ClothNpyInfo * info, GError ** error)
 {
   if (!take_char (text, '('))
-    return cloth_file_invalid (error, "the shape is no tuple");
+    return invalid (error, "the shape is no tuple");
   info->rank = 0;
   while (!take_char (text, ')')) {
     if (info->rank == CLOTH_NPY_MAX_RANK) {
@@ -139,12 +147,11 @@ take_shape (Text * text, ClothNpyInfo * info, GError ** error)
       return FALSE;
     }
     if (!take_count (text, &info->shape[info->rank++]))
-      return cloth_file_invalid (error,
-          "a length of the shape is no whole number");
+      return invalid (error, "a length of the shape is no whole number");
     if (take_char (text, ','))
       continue;
     if (info->rank < 2 || !take_char (text, ')'))
-      return cloth_file_invalid (error, "the shape is no tuple");
+      return invalid (error, "the shape is no tuple");
     break;
   }
   return TRUE;
@@ -176,10 +183,10 @@ parse_dictionary (Text text, ClothNpyInfo * info, GError ** error)
   gchar key[32], descr[32];
 
   if (!take_char (&text, '{'))
-    return cloth_file_invalid (error, "the header is no dictionary");
+    return invalid (error, "the header is no dictionary");
   while (!take_char (&text, '}')) {
     if (!take_string (&text, key, sizeof key) || !take_char (&text, ':'))
-      return cloth_file_invalid (error, "a key of the header cannot be read");
+      return invalid (error, "a key of the header cannot be read");
     if (g_str_equal (key, "descr") && !have_descr) {
       if (!take_string (&text, descr, sizeof descr)) {
         g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_UNSUPPORTED,
@@ -187,7 +194,7 @@ parse_dictionary (Text text, ClothNpyInfo * info, GError ** error)
         return FALSE;
       }
       if (!g_utf8_validate (descr, -1, NULL))
-        return cloth_file_invalid (error, "the type is no text");
+        return invalid (error, "the type is no text");
       if (!find_type (descr, info, error))
         return FALSE;
       have_descr = TRUE;
@@ -198,30 +205,26 @@ parse_dictionary (Text text, ClothNpyInfo * info, GError ** error)
         return FALSE;
       }
       if (!take_word (&text, "False"))
-        return cloth_file_invalid (error,
-            "fortran_order is neither True nor False");
+        return invalid (error, "fortran_order is neither True nor False");
       have_order = TRUE;
     } else if (g_str_equal (key, "shape") && !have_shape) {
       if (!take_shape (&text, info, error))
         return FALSE;
       have_shape = TRUE;
     } else {
-      return cloth_file_invalid (error,
-          "the header has an unknown or a repeated key");
+      return invalid (error, "the header has an unknown or a repeated key");
     }
     if (!take_char (&text, ',')) {
       if (!take_char (&text, '}'))
-        return cloth_file_invalid (error,
-            "the dictionary of the header does not end");
+        return invalid (error, "the dictionary of the header does not end");
       break;
     }
   }
   skip_blanks (&text);
   if (text.at != text.end)
-    return cloth_file_invalid (error, "something stands behind the dictionary");
+    return invalid (error, "something stands behind the dictionary");
   if (!have_descr || !have_order || !have_shape)
-    return cloth_file_invalid (error,
-        "the header lacks descr, fortran_order or shape");
+    return invalid (error, "the header lacks descr, fortran_order or shape");
   return TRUE;
 }
 
@@ -236,10 +239,10 @@ check_sizes (ClothNpyInfo * info, guint64 remaining, GError ** error)
   for (guint i = 1; i < info->rank; i++)
     if (!g_uint64_checked_mul (&info->row_items, info->row_items,
             info->shape[i]))
-      return cloth_file_invalid (error, "the shape overflows");
+      return invalid (error, "the shape overflows");
   if (!g_uint64_checked_mul (&items, info->row_items, info->n_rows) ||
       !g_uint64_checked_mul (&bytes, items, info->item_size))
-    return cloth_file_invalid (error, "the shape overflows");
+    return invalid (error, "the shape overflows");
   if (bytes > remaining) {
     g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_TRUNCATED,
         "the shape asks for %" G_GUINT64_FORMAT " bytes, %" G_GUINT64_FORMAT
@@ -267,7 +270,7 @@ read_header (ClothInput * input, ClothNpyInfo * info, GError ** error)
   if (!cloth_input_read_at (input, 0, preface, 10, error))
     return FALSE;
   if (memcmp (preface, MAGIC, MAGIC_SIZE) != 0)
-    return cloth_file_invalid (error, "it does not begin with the magic bytes");
+    return invalid (error, "it does not begin with the magic bytes");
   switch (preface[6]) {
     case 1:
       start = 10;

@@ -296,6 +296,9 @@ test_hostile (void)
                 10 + length + 64), &error));
     g_test_message ("%s: %s", hostile[i].what, error->message);
     g_assert_error (error, CLOTH_FILE_ERROR, hostile[i].code);
+    if (hostile[i].code == CLOTH_FILE_ERROR_INVALID)
+      g_assert_true (g_str_has_prefix (error->message,
+              "not a valid .npy file: "));
   }
 }
 
