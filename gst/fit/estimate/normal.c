@@ -279,7 +279,7 @@ sum_and_project (const ClothNormalEquations * normal, const gboolean * blocks,
 }
 
 /* @normal: normal equations
- * @blocks: (array): which blocks count
+ * @blocks: (nullable): which blocks count
  * @nuisances: (array length=n_nuisances): columns that are fitted along
  * @precisions: (array length=n_nuisances): of their priors
  * @n_nuisances: how many

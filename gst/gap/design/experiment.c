@@ -211,7 +211,6 @@ weigh (const Search * s, const ClothSensitivities * study, const gdouble * z,
   g_autofree gdouble *nothing = g_new0 (gdouble, f->size);
   g_autofree guint *nuisances = g_new (guint, q + 1);
   g_autofree gdouble *precisions = g_new (gdouble, q + 1);
-  g_autofree gboolean *blocks = g_new (gboolean, f->n_blocks);
   g_autoptr (ClothPowerSpectrum) power =
       find_discrepancy_variance (s, f, nothing, faster);
   g_autoptr (ClothNormalEquations) normal = NULL;
@@ -228,15 +227,13 @@ weigh (const Search * s, const ClothSensitivities * study, const gdouble * z,
         e->precisions[i] : cloth_sensitivities_get_variability_precision (study,
         i - n_free);
   }
-  for (guint b = 0; b < f->n_blocks; b++)
-    blocks[b] = TRUE;
   normal = cloth_normal_equations_new (f, power, nothing, columns, m);
   for (guint i = 0; i < s->n_members; i++)
     for (guint j = 0; j < i; j++) {
       const guint pair[2] = { q + i, q + j };
       ClothReducedEquations r;
 
-      if (!cloth_normal_equations_reduce (normal, blocks, nuisances, precisions,
+      if (!cloth_normal_equations_reduce (normal, NULL, nuisances, precisions,
               q, pair, 2, &r))
         return NAN;
       least = MIN (least, MAX (0., r.g[0] - r.g[1] - r.g[2] + r.g[3]));

@@ -51,7 +51,6 @@ add_rest (const ClothDiagnosis * d, const ClothSensitivities * study,
   guint n = d->candidates->n_free;
   gdouble scale = cloth_sensitivities_discrepancy_scale (study);
   g_autofree gdouble *z = cloth_sensitivities_residual (study);
-  g_autofree gboolean *blocks = g_new (gboolean, study->features->n_blocks);
   g_autofree gdouble *precisions = g_new (gdouble, n + 1);
   g_autoptr (ClothPowerSpectrum) noise =
       cloth_power_spectrum_new (study->features, z);
@@ -60,13 +59,11 @@ add_rest (const ClothDiagnosis * d, const ClothSensitivities * study,
 
   for (guint k = 0; k < noise->n; k++)
     noise->values[k] = scale * scale;
-  for (guint b = 0; b < study->features->n_blocks; b++)
-    blocks[b] = TRUE;
   for (guint k = 0; k < n; k++)
     precisions[k] = d->precisions[k] * d->study.overdispersion;
   normal = cloth_normal_equations_new (study->features, noise, z,
       study->columns, n);
-  if (!cloth_normal_equations_reduce (normal, blocks, d->all, precisions, n,
+  if (!cloth_normal_equations_reduce (normal, NULL, d->all, precisions, n,
           NULL, 0, &reduced))
     return;
   rest->rest += reduced.r;
