@@ -94,8 +94,18 @@ ALL = ROOMS + [LIBRARY] + UPPER
 APART = {('tools', 'elements')}
 # These look into a room to test what its doors don't show.
 PRY = ('tests/core/', 'tests/fuzz/', 'tests/bench/')
-# What does not hold yet is told and lets the check pass.
-PENDING = {'order', 'doors', 'circles', 'table', 'readme'}
+# What does not hold yet, as rule and how the fault begins: it is told and passes.
+PENDING = (
+    ('order', 'gst/effect/effect.c'), ('doors', 'gst/effect/effect.c'),
+    ('table', 'gst/effect: has no door list.h'), ('readme', 'gst/effect/README.md: list.h'),
+    ('table', 'gst/rig: has no door reconstruct.h'), ('readme', 'gst/rig/README.md: reconstruct.h'),
+    ('doors', 'elements/gsttriangulatesolve.h'),
+    ('table', 'gst/vision: has no door label'), ('readme', 'gst/vision/README.md: label'),
+    ('doors', 'elements/gstdotlabel'),
+    ('circles', 'gst/effect'), ('circles', 'elements/gstclothcamera'),
+    ('circles', 'elements/gstclothsync'), ('circles', 'gst/rig/triangulate'),
+    ('circles', 'gst/vision/corner/saddle'), ('circles', 'gst/vision/dot/dot'),
+)
 
 LICENCE = 'SPDX-License-Identifier: LGPL-2.1-or-later'
 WARN_LINES, MAX_LINES, README_LINES = 800, 1200, 15
@@ -343,7 +353,7 @@ def check_modules(sources):
         for source, module, by in found:
             if source.module in circle and module in circle:
                 ways.setdefault((source.module, module), by)
-        yield 'circles', 'circle of %d modules: %s' % (len(circle), '; '.join(
+        yield 'circles', '%s: in a circle of %d modules: %s' % (circle[0], len(circle), '; '.join(
             '%s uses %s by %s' % (a, b, by) for (a, b), by in sorted(ways.items())[:40]))
 
 
@@ -544,10 +554,13 @@ def main(arguments):
         print_table()
         return 0
     faults = list(check(arguments[0]))
+    status = 0
     for rule, text in faults:
-        told = rule == 'long' or rule in PENDING
+        told = rule == 'long' or any(
+            rule == kind and text.startswith(start) for kind, start in PENDING)
         print('%s: %s: %s' % ('warning' if told else 'error', rule, text))
-    return int(any(rule != 'long' and rule not in PENDING for rule, _ in faults))
+        status |= not told
+    return int(status)
 
 
 if __name__ == '__main__':
