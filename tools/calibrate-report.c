@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "gst/math/linalg.h"
+#include "gst/math/vec3.h"
 #include "gst/rig/rotation.h"
 
 /* Good views give about 1, a board of other squares than said 6. */
@@ -36,18 +37,15 @@ add_rms (GString * s, const gchar * text, gdouble rms)
 static void
 add_place (GString * s, const ClothCamera * first, const ClothCamera * camera)
 {
-  gdouble R[9], r[3], Rt[3], t[3], length = 0, angle;
+  gdouble R[9], r[3], Rt[3], t[3], angle;
 
   cloth_mat3_mul_nt (camera->R, first->R, R);
   cloth_mat3_vec (R, first->t, Rt);
   cloth_rotation_to_vector (R, r);
-  for (guint i = 0; i < 3; i++) {
-    t[i] = camera->t[i] - Rt[i];
-    length += t[i] * t[i];
-  }
-  angle = sqrt (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+  cloth_vec3_subtract (camera->t, Rt, t);
+  angle = cloth_vec3_length (r);
   g_string_append_printf (s, "  from %s: %.1f mm away, turned by %.3f°\n",
-      first->name, 1e3 * sqrt (length), angle * 180 / G_PI);
+      first->name, 1e3 * cloth_vec3_length (t), angle * 180 / G_PI);
   for (guint i = 0; i < 3; i++)
     g_string_append_printf (s, "    r%c  %12.6f ± %-10.2g rad    "
         "t%c  %12.4f ± %-8.2g mm\n", "xyz"[i], r[i], camera->r_sd[i],

@@ -12,6 +12,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/math/vec3.h"
 #include "gst/render/render-private.h"
 
 #define TILE CLOTH_RENDER_TILE
@@ -268,37 +269,30 @@ static void
 light_points (ClothRenderer * self, const ClothRenderStyle * style)
 {
   const ClothRenderMesh *mesh = self->mesh;
-  const gdouble length = sqrt (style->lamp[0] * style->lamp[0]
-      + style->lamp[1] * style->lamp[1] + style->lamp[2] * style->lamp[2]);
+  const gdouble length = cloth_vec3_length (style->lamp);
 
   for (guint i = 0; i < mesh->n_triangles; i++) {
     const guint *t = mesh->triangles[i];
     const gdouble *a = self->points[t[0]].position;
     const gdouble *b = self->points[t[1]].position;
     const gdouble *c = self->points[t[2]].position;
-    gdouble p[3], q[3];
+    gdouble p[3], q[3], normal[3];
 
     if (self->points[t[0]].depth <= 0 || self->points[t[1]].depth <= 0
         || self->points[t[2]].depth <= 0)
       continue;
-    for (gint k = 0; k < 3; k++) {
-      p[k] = b[k] - a[k];
-      q[k] = c[k] - a[k];
-    }
-    for (gint j = 0; j < 3; j++) {
-      gdouble *n = self->points[t[j]].normal;
-
-      n[0] += p[1] * q[2] - p[2] * q[1];
-      n[1] += p[2] * q[0] - p[0] * q[2];
-      n[2] += p[0] * q[1] - p[1] * q[0];
-    }
+    cloth_vec3_subtract (b, a, p);
+    cloth_vec3_subtract (c, a, q);
+    cloth_vec3_cross (p, q, normal);
+    for (gint j = 0; j < 3; j++)
+      cloth_vec3_add_scaled (self->points[t[j]].normal, 1, normal);
   }
   for (guint i = 0; i < mesh->n_points; i++) {
     Point *p = &self->points[i];
     const gdouble *n = p->normal;
-    const gdouble norm = sqrt (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    const gdouble facing = norm > 0 && length > 0 ? (n[0] * style->lamp[0]
-        + n[1] * style->lamp[1] + n[2] * style->lamp[2]) / (norm * length) : 0;
+    const gdouble norm = cloth_vec3_length (n);
+    const gdouble facing = norm > 0 && length > 0 ?
+        cloth_vec3_dot (n, style->lamp) / (norm * length) : 0;
 
     for (gint side = 0; side < 2; side++) {
       const gdouble towards = side ? -facing : facing;

@@ -7,6 +7,8 @@
 #include <string.h>
 
 #include "gst/math/linalg.h"
+#include "gst/math/statistics.h"
+#include "gst/math/vec3.h"
 #include "gst/rig/planar.h"
 #include "gst/rig/rig.h"
 #include "gst/rig/rotation.h"
@@ -114,14 +116,6 @@ rms_of_view (const ClothBundle * b, guint v)
   return isnan (sum) ? HUGE_VAL : sqrt (sum / n);
 }
 
-static gint
-compare (gconstpointer a, gconstpointer b)
-{
-  gdouble x = *(const gdouble *) a, y = *(const gdouble *) b;
-
-  return (x > y) - (x < y);
-}
-
 /* A pose can be caught in the wrong tilt, or thrown away by a step that helped the others.
  * Views that fit worse than @factor times the median try the other tilt, and both tilts
  * of a new start. TRUE when one fitted better. */
@@ -131,6 +125,7 @@ mend_poses (const ClothBundle * bundle, gdouble factor)
   gboolean better = FALSE;
   g_autofree gdouble *rms = g_new (gdouble, bundle->n_views);
   g_autofree gdouble *sorted = g_new (gdouble, bundle->n_views);
+  gdouble median;
   guint n_used = 0;
 
   for (guint v = 0; v < bundle->n_views; v++) {
@@ -138,7 +133,7 @@ mend_poses (const ClothBundle * bundle, gdouble factor)
     if (bundle->views[v].use)
       sorted[n_used++] = rms[v];
   }
-  qsort (sorted, n_used, sizeof *sorted, compare);
+  median = cloth_median (sorted, n_used);
   for (guint v = 0; v < bundle->n_views; v++) {
     ClothBundleView view = bundle->views[v];
     gdouble *pose = bundle->poses + 12 * (gsize) v;
@@ -146,7 +141,7 @@ mend_poses (const ClothBundle * bundle, gdouble factor)
     guint nothing = 0, n = 2, best = 0;
     ClothBundle one = *bundle;
 
-    if (!view.use || rms[v] < factor * sorted[n_used / 2])
+    if (!view.use || rms[v] < factor * median)
       continue;
     memcpy (tries[0], pose, sizeof tries[0]);
     flip (&view, bundle->board, pose, tries[1]);
@@ -448,7 +443,7 @@ distance (const gdouble A[12], const gdouble B[12])
 
   cloth_mat3_mul_nt (A, B, R);
   cloth_rotation_to_vector (R, r);
-  turned = sqrt (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+  turned = cloth_vec3_length (r);
   for (gint j = 9; j < 12; j++) {
     moved += (A[j] - B[j]) * (A[j] - B[j]);
     size += A[j] * A[j] + B[j] * B[j];

@@ -7,6 +7,8 @@
 #include <string.h>
 
 #include "gst/math/linalg.h"
+#include "gst/math/statistics.h"
+#include "gst/math/vec3.h"
 #include "gst/rig/calibrate-start.h"
 #include "gst/rig/planar.h"
 
@@ -252,14 +254,6 @@ view_rms (const ClothBundle * b, guint v)
   return sqrt (sum / n);
 }
 
-static gint
-compare_doubles (gconstpointer a, gconstpointer b)
-{
-  gdouble x = *(const gdouble *) a, y = *(const gdouble *) b;
-
-  return (x > y) - (x < y);
-}
-
 /* Over the views whose poses other cameras see too; only these can contradict. */
 static gdouble
 median_view_rms (const ClothBundle * b, const gboolean * shared)
@@ -271,8 +265,7 @@ median_view_rms (const ClothBundle * b, const gboolean * shared)
     if (b->views[v].use && shared[v])
       rms[n++] = view_rms (b, v);
   }
-  qsort (rms, n, sizeof *rms, compare_doubles);
-  return n ? rms[n / 2] : NAN;
+  return cloth_median (rms, n);
 }
 
 /* What each camera reaches without the others. */
@@ -540,8 +533,7 @@ place_world (const Work * w, ClothCalibration * result, const gdouble * C)
   for (guint p = 0; p < result->n_poses; p++) {
     gdouble *P = result->poses + 12 * (gsize) p, *from = P + 9, M[9], d[3];
 
-    for (gint i = 0; i < 3; i++)
-      d[i] = from[i] - t[i];
+    cloth_vec3_subtract (from, t, d);
     cloth_mat3_vec_t (R, d, from);
     cloth_mat3_mul_tn (R, P, M);
     memcpy (P, M, sizeof M);

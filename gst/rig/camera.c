@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/math/vec3.h"
 #include "gst/rig/rotation.h"
 
 /* @lens: a lens model
@@ -247,10 +248,9 @@ cloth_camera_project (const ClothCamera * camera, const gdouble X[3],
       gdouble *row = d_parameters + i * CLOTH_CAMERA_N_PARAMETERS;
       const gdouble *a = A + 3 * i;
       /* a · (w × RX) = w · (RX × a) */
-      gdouble c[3] = { RX[1] * a[2] - RX[2] * a[1],
-        RX[2] * a[0] - RX[0] * a[2], RX[0] * a[1] - RX[1] * a[0]
-      };
+      gdouble c[3];
 
+      cloth_vec3_cross (RX, a, c);
       row[i] = d[i];
       row[2 + i] = 1;
       for (guint j = 0; j < n; j++)

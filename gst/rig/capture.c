@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "gst/math/random.h"
+#include "gst/math/vec3.h"
 #include "gst/rig/effects/effects.h"
 #include "gst/rig/rig.h"
 
@@ -423,8 +424,7 @@ cloth_capture_observe (const ClothCapture * capture,
 
     if (good && target->dot_radius_m > 0) {
       const gdouble *R = capture->camera.R;
-      const gdouble depth = R[6] * seen[0] + R[7] * seen[1] + R[8] * seen[2]
-          + capture->camera.t[2];
+      const gdouble depth = cloth_vec3_dot (R + 6, seen) + capture->camera.t[2];
       const gdouble radius = target->dot_radius_m * capture->camera.K[0]
           / depth;
 
@@ -436,9 +436,7 @@ cloth_capture_observe (const ClothCapture * capture,
     n_seen += !!good;
     if (covariances) {
       gdouble *added = covariances + 3 * (gsize) i;
-      const gdouble w[2] = { J[0] * v[0] + J[1] * v[1] + J[2] * v[2],
-        J[3] * v[0] + J[4] * v[1] + J[5] * v[2]
-      };
+      const gdouble w[2] = { cloth_vec3_dot (J, v), cloth_vec3_dot (J + 3, v) };
 
       if (good)
         spread (capture, w, lag_variance, added);

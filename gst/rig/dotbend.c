@@ -14,6 +14,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/math/vec3.h"
+
 /* Derivatives of a vertex. */
 enum
 { U, V, UU, VV, UV, N_DERIVATIVES };
@@ -139,8 +141,10 @@ cloth_dot_bend_set_positions (ClothDotBend * self, const gfloat * positions)
 static gdouble
 triple (const gdouble a[3], const gdouble b[3], const gdouble c[3])
 {
-  return c[0] * (a[1] * b[2] - a[2] * b[1]) + c[1] * (a[2] * b[0]
-      - a[0] * b[2]) + c[2] * (a[0] * b[1] - a[1] * b[0]);
+  gdouble ab[3];
+
+  cloth_vec3_cross (a, b, ab);
+  return cloth_vec3_dot (c, ab);
 }
 
 /* The place whose picture is the centre of gravity of the dot's. */
@@ -154,10 +158,9 @@ gravity (const ClothDotBend * self, guint vertex, const ClothCamera * camera,
   const gdouble *axis = camera->R + 6;
   gdouble view[3], w, z, a, b, steep;
 
-  for (gint k = 0; k < 3; k++)
-    view[k] = eye[k] - X[k];
+  cloth_vec3_subtract (eye, X, view);
   w = triple (d[U], d[V], view);
-  z = axis[0] * X[0] + axis[1] * X[1] + axis[2] * X[2] + camera->t[2];
+  z = cloth_vec3_dot (axis, X) + camera->t[2];
   a = (triple (d[UU], d[V], view) + triple (d[U], d[UV], view)) / w;
   b = (triple (d[UV], d[V], view) + triple (d[U], d[VV], view)) / w;
   for (gint k = 0; k < 3; k++) {
@@ -277,7 +280,7 @@ cloth_dot_bend_add_doubt (const ClothDotBend * self, const gfloat * positions,
         continue;
       for (gint k = 0; k < 3 && isfinite (d[U][0]); k++)
         shift[k] = positions[3 * i + k] - self->position[3 * (gsize) i + k];
-      squared = shift[0] * shift[0] + shift[1] * shift[1] + shift[2] * shift[2];
+      squared = cloth_vec3_dot (shift, shift);
       if (pass == 0) {
         if (inside) {
           mean += squared;

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "gst/math/linalg.h"
+#include "gst/math/vec3.h"
 
 /* How far R R' may be from the identity: a matrix typed with five digits passes. */
 #define ROTATION_TOLERANCE 1e-4
@@ -155,8 +156,7 @@ rotation_error (const gdouble R[9])
   for (gint i = 0; i < 9; i++) {
     const gdouble *a = R + i / 3 * 3, *b = R + i % 3 * 3;
 
-    worst = fmax (worst,
-        fabs (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] - (i % 4 == 0)));
+    worst = fmax (worst, fabs (cloth_vec3_dot (a, b) - (i % 4 == 0)));
   }
   return worst;
 }

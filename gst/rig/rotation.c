@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+#include "gst/math/vec3.h"
+
 /* I + a [r]x + b [r]x². Both maps and both Jacobians have this form. */
 static void
 series (const gdouble r[3], gdouble a, gdouble b, gdouble M[9])
@@ -30,7 +32,7 @@ series (const gdouble r[3], gdouble a, gdouble b, gdouble M[9])
 void
 cloth_rotation_from_vector (const gdouble r[3], gdouble R[9])
 {
-  gdouble t2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+  gdouble t2 = cloth_vec3_dot (r, r);
 
   if (t2 < 1e-8) {
     series (r, 1 - t2 / 6, 0.5 - t2 / 24, R);
@@ -93,7 +95,7 @@ cloth_rotation_to_vector (const gdouble R[9], gdouble r[3])
 void
 cloth_rotation_left_jacobian (const gdouble r[3], gdouble J[9])
 {
-  gdouble t2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+  gdouble t2 = cloth_vec3_dot (r, r);
 
   if (t2 < 1e-4) {
     series (r, 0.5 - t2 / 24 + t2 * t2 / 720,
@@ -111,7 +113,7 @@ cloth_rotation_left_jacobian (const gdouble r[3], gdouble J[9])
 void
 cloth_rotation_left_jacobian_inverse (const gdouble r[3], gdouble J[9])
 {
-  gdouble t2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+  gdouble t2 = cloth_vec3_dot (r, r);
 
   if (t2 < 1e-4) {
     series (r, -0.5, 1. / 12 + t2 / 720 + t2 * t2 / 30240, J);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "gst/math/linalg.h"
+#include "gst/math/vec3.h"
 #include "gst/rig/triangulateprivate.h"
 
 GQuark
@@ -290,7 +291,7 @@ cloth_triangulator_new_projections (guint n_cameras,
 
         for (gint j = 0; j < 4; j++)
           row[j] -= (axis ? c->cy : c->cx) * P[8 + j];
-        rest[axis] = sqrt (row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
+        rest[axis] = cloth_vec3_length (row);
         for (gint j = 0; j < 4; j++)
           row[j] /= rest[axis];
       }

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "gst/math/vec3.h"
 #include "gst/mesh/side.h"
 #include "gst/sim/nearest.h"
 
@@ -38,35 +39,6 @@ struct _ClothBvh
   Node *nodes;
   gboolean closed;
 };
-
-static gdouble
-dot (const gdouble a[3], const gdouble b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void
-subtract (const gdouble a[3], const gdouble b[3], gdouble c[3])
-{
-  for (guint k = 0; k < 3; k++)
-    c[k] = a[k] - b[k];
-}
-
-static void
-add_scaled (gdouble a[3], gdouble s, const gdouble b[3])
-{
-  for (guint k = 0; k < 3; k++)
-    a[k] += s * b[k];
-}
-
-static void
-normalize (gdouble a[3])
-{
-  gdouble length = sqrt (dot (a, a));
-
-  for (guint k = 0; k < 3 && length > 0.; k++)
-    a[k] /= length;
-}
 
 static gint
 compare_points (gconstpointer a, gconstpointer b, gpointer data)
@@ -127,11 +99,11 @@ make_normals (ClothBvh * bvh, const guint32 * corners, guint n_points)
       gdouble e[3], f[3];
 
       sides[3 * i + k] = cloth_side (a, b, i, k);
-      subtract (t->corner[(k + 1) % 3], t->corner[k], e);
-      subtract (t->corner[(k + 2) % 3], t->corner[k], f);
-      add_scaled (of_corner + 3 * (gsize) a,
-          acos (CLAMP (dot (e, f) / sqrt (dot (e, e) * dot (f, f)), -1., 1.)),
-          t->normal[6]);
+      cloth_vec3_subtract (t->corner[(k + 1) % 3], t->corner[k], e);
+      cloth_vec3_subtract (t->corner[(k + 2) % 3], t->corner[k], f);
+      cloth_vec3_add_scaled (of_corner + 3 * (gsize) a,
+          acos (CLAMP (cloth_vec3_dot (e, f) / sqrt (cloth_vec3_dot (e,
+                          e) * cloth_vec3_dot (f, f)), -1., 1.)), t->normal[6]);
     }
   }
   qsort (sides, n, sizeof *sides, cloth_side_compare);
@@ -140,8 +112,9 @@ make_normals (ClothBvh * bvh, const guint32 * corners, guint n_points)
 
     for (end = i; end < n && cloth_side_same_edge (&sides[end], &sides[i]);
         end++)
-      add_scaled (sum, 1., bvh->triangles[sides[end].face].normal[6]);
-    normalize (sum);
+      cloth_vec3_add_scaled (sum, 1.,
+          bvh->triangles[sides[end].face].normal[6]);
+    cloth_vec3_normalise (sum);
     if (end - i < 2) {
       on_border[sides[i].a] = on_border[sides[i].b] = TRUE;
       bvh->closed = FALSE;
@@ -160,7 +133,7 @@ make_normals (ClothBvh * bvh, const guint32 * corners, guint n_points)
       guint32 p = corners[3 * i + k];
 
       memcpy (t->normal[k], of_corner + 3 * (gsize) p, sizeof t->normal[k]);
-      normalize (t->normal[k]);
+      cloth_vec3_normalise (t->normal[k]);
       t->border[k] = on_border[p];
     }
   }
@@ -238,16 +211,15 @@ cloth_bvh_new (const gdouble * points, guint n_points,
       memcpy (t->corner[k], points + 3 * (gsize) p, sizeof t->corner[k]);
       corners[3 * bvh->n_triangles + k] = same[p];
     }
-    subtract (t->corner[1], t->corner[0], e);
-    subtract (t->corner[2], t->corner[0], f);
-    n[0] = e[1] * f[2] - e[2] * f[1];
-    n[1] = e[2] * f[0] - e[0] * f[2];
-    n[2] = e[0] * f[1] - e[1] * f[0];
-    square = dot (n, n);
+    cloth_vec3_subtract (t->corner[1], t->corner[0], e);
+    cloth_vec3_subtract (t->corner[2], t->corner[0], f);
+    cloth_vec3_cross (e, f, n);
+    square = cloth_vec3_dot (n, n);
     /* thinner than this it has no direction */
-    if (!(square > 1e-24 * dot (e, e) * dot (f, f)) || !isfinite (square))
+    if (!(square > 1e-24 * cloth_vec3_dot (e, e) * cloth_vec3_dot (f, f))
+        || !isfinite (square))
       continue;
-    normalize (n);
+    cloth_vec3_normalise (n);
     bvh->n_triangles++;
   }
   make_normals (bvh, corners, n_points);
@@ -288,9 +260,10 @@ nearest_of_triangle (const Triangle * t, const gdouble p[3], gdouble point[3])
       t->corner[2], p, weights);
 
   if (feature == CLOTH_NEAREST_FACE) {
-    subtract (p, t->corner[0], ap);
+    cloth_vec3_subtract (p, t->corner[0], ap);
     memcpy (point, p, sizeof ap);
-    add_scaled (point, -dot (ap, t->normal[6]), t->normal[6]);
+    cloth_vec3_add_scaled (point, -cloth_vec3_dot (ap, t->normal[6]),
+        t->normal[6]);
     return feature;
   }
   for (guint k = 0; k < 3; k++)
@@ -352,8 +325,8 @@ cloth_bvh_nearest (const ClothBvh * bvh, const gdouble point[3],
       gdouble q[3], square;
       guint f = nearest_of_triangle (&bvh->triangles[i], point, q);
 
-      subtract (point, q, away);
-      square = dot (away, away);
+      cloth_vec3_subtract (point, q, away);
+      square = cloth_vec3_dot (away, away);
       if (square < least) {
         least = square;
         best = &bvh->triangles[i];
@@ -364,10 +337,10 @@ cloth_bvh_nearest (const ClothBvh * bvh, const gdouble point[3],
   }
   if (!best)
     return FALSE;
-  subtract (point, hit->point, away);
+  cloth_vec3_subtract (point, hit->point, away);
   hit->distance = sqrt (least);
   memcpy (hit->normal, best->normal[feature], sizeof hit->normal);
-  hit->inside = dot (away, hit->normal) < 0.;
+  hit->inside = cloth_vec3_dot (away, hit->normal) < 0.;
   hit->face = feature == 6;
   hit->border = best->border[feature];
   return TRUE;

@@ -24,6 +24,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/math/vec3.h"
 #include "gst/sim/contacttouch.h"
 
 /* Over the mean length of an edge: how far beyond the thickness pairs are listed. */
@@ -150,7 +151,7 @@ measure (const ClothContact * contact, const gdouble * from, const gdouble * to,
 
     for (gsize k = 0; k < 3; k++)
       way[k] = to[3 * i + k] - from[3 * i + k] - mean[k];
-    lengths[i] = sqrt (cloth_contact_dot (way, way));
+    lengths[i] = sqrt (cloth_vec3_dot (way, way));
     longest = MAX (longest, lengths[i]);
   }
   return longest;
@@ -249,7 +250,7 @@ look (ClothContact * contact, gdouble seconds, gdouble reserve,
     touch.mass = mass > 0. ? 1. / mass : 0.;
     cloth_contact_touch_between (&touch, contact->before, was);
     touch.least =
-        h - (1. - open) * MAX (h - MAX (cloth_contact_dot (touch.normal, was),
+        h - (1. - open) * MAX (h - MAX (cloth_vec3_dot (touch.normal, was),
             0.), 0.);
     add_touch (contact, &touch);
   }
@@ -404,10 +405,10 @@ is_hit (const ClothContact * contact, gdouble ahead, const gdouble * x,
       continue;
     cloth_contact_touch_between (touch, x, apart);
     cloth_contact_touch_between (touch, v, u);
-    if (cloth_contact_dot (touch->normal,
-            apart) + ahead * cloth_contact_dot (touch->normal,
+    if (cloth_vec3_dot (touch->normal,
+            apart) + ahead * cloth_vec3_dot (touch->normal,
             u) < (1. - HIT) * touch->pair->thickness
-        && cloth_contact_dot (touch->normal, u) < 0.)
+        && cloth_vec3_dot (touch->normal, u) < 0.)
       return TRUE;
   }
   return FALSE;

@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "gst/math/vec3.h"
 #include "gst/sim/nearest.h"
 
 /* Over the thickness: so much farther away parts that lie on each other still touch. */
@@ -46,7 +47,7 @@ cloth_contact_touch_look (const ClothContactPair * pair,
   for (guint c = 0; c < 3; c++)
     touch->normal[c] = touch->weight[0] * x[0][c] + touch->weight[1] * x[1][c] +
         touch->weight[2] * x[2][c] + touch->weight[3] * x[3][c];
-  touch->distance = sqrt (cloth_contact_dot (touch->normal, touch->normal));
+  touch->distance = sqrt (cloth_vec3_dot (touch->normal, touch->normal));
   scale = 1. / MAX (touch->distance, CLOTH_CONTACT_NEAR);
   for (guint c = 0; c < 3; c++)
     touch->normal[c] *= scale;
@@ -75,8 +76,7 @@ cloth_contact_pair_is_parted (const ClothContactPair * pair, const gdouble * x,
   gdouble low = INFINITY, high = -INFINITY;
 
   for (guint k = 0; k < 4; k++) {
-    gdouble along =
-        cloth_contact_dot (normal, x + 3 * (gsize) pair->particle[k]);
+    gdouble along = cloth_vec3_dot (normal, x + 3 * (gsize) pair->particle[k]);
 
     if (k < pair->n_first)
       low = MIN (low, along);
@@ -115,12 +115,12 @@ cloth_contact_touch_part (const ClothContactTouch * touch,
   gdouble depth, along, stop, slide;
 
   cloth_contact_touch_between (touch, x, apart);
-  depth = touch->least - cloth_contact_dot (n, apart);
+  depth = touch->least - cloth_vec3_dot (n, apart);
   if (!(depth > -BAND * h) || !(touch->mass > 0.))
     return 0.;
   cloth_contact_touch_between (touch, v, u);
-  along = cloth_contact_dot (n, u);
-  slide = sqrt (MAX (cloth_contact_dot (u, u) - along * along, 0.));
+  along = cloth_vec3_dot (n, u);
+  slide = sqrt (MAX (cloth_vec3_dot (u, u) - along * along, 0.));
   /* past a corner or an edge what comes nearer may only slide by */
   if (depth < 0. && !touch->flat && slide * seconds > REST * h)
     return 0.;
@@ -137,7 +137,7 @@ cloth_contact_touch_part (const ClothContactTouch * touch,
     cloth_contact_touch_between (touch, before, was);
     for (guint k = 0; k < 3; k++)
       was[k] = apart[k] - was[k];
-    along = cloth_contact_dot (n, was);
+    along = cloth_vec3_dot (n, was);
     for (guint k = 0; k < 3; k++) {
       dv[k] -= brake * u[k];
       dx[k] -= 0.5 * (brake + brake * brake) * (was[k] - along * n[k]);

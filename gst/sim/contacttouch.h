@@ -23,12 +23,6 @@ typedef struct
   gdouble mass;                 /* that an impulse between them moves */
 } ClothContactTouch;
 
-static inline gdouble
-cloth_contact_dot (const gdouble a[3], const gdouble b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 void cloth_contact_touch_look (const ClothContactPair * pair,
     const gdouble * positions, ClothContactTouch * touch);
 void cloth_contact_touch_between (const ClothContactTouch * touch,

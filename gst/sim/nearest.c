@@ -3,21 +3,10 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/sim/nearest.h"
 
+#include "gst/math/vec3.h"
+
 /* Edges at a smaller angle than the square root of this count as parallel. */
 #define PARALLEL 1e-6
-
-static gdouble
-dot (const gdouble a[3], const gdouble b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void
-subtract (const gdouble * a, const gdouble * b, gdouble c[3])
-{
-  for (guint k = 0; k < 3; k++)
-    c[k] = a[k] - b[k];
-}
 
 /* @a: a corner, and @b and @c
  * @point: a point
@@ -37,17 +26,17 @@ cloth_nearest_on_triangle (const gdouble * a, const gdouble * b,
   gdouble d1, d2, d3, d4, d5, d6;
   guint feature;
 
-  subtract (b, a, ab);
-  subtract (c, a, ac);
-  subtract (point, a, ap);
-  subtract (point, b, bp);
-  subtract (point, c, cp);
-  d1 = dot (ab, ap);
-  d2 = dot (ac, ap);
-  d3 = dot (ab, bp);
-  d4 = dot (ac, bp);
-  d5 = dot (ab, cp);
-  d6 = dot (ac, cp);
+  cloth_vec3_subtract (b, a, ab);
+  cloth_vec3_subtract (c, a, ac);
+  cloth_vec3_subtract (point, a, ap);
+  cloth_vec3_subtract (point, b, bp);
+  cloth_vec3_subtract (point, c, cp);
+  d1 = cloth_vec3_dot (ab, ap);
+  d2 = cloth_vec3_dot (ac, ap);
+  d3 = cloth_vec3_dot (ab, bp);
+  d4 = cloth_vec3_dot (ac, bp);
+  d5 = cloth_vec3_dot (ab, cp);
+  d6 = cloth_vec3_dot (ac, cp);
   vc = d1 * d4 - d3 * d2;
   vb = d5 * d2 - d1 * d6;
   va = d3 * d6 - d5 * d4;
@@ -106,14 +95,14 @@ cloth_nearest_of_edges (const gdouble * a0, const gdouble * a1,
 {
   gdouble a[3], b[3], r[3], aa, bb, ab, ar, br, det;
 
-  subtract (a1, a0, a);
-  subtract (b1, b0, b);
-  subtract (a0, b0, r);
-  aa = dot (a, a);
-  bb = dot (b, b);
-  ab = dot (a, b);
-  ar = dot (a, r);
-  br = dot (b, r);
+  cloth_vec3_subtract (a1, a0, a);
+  cloth_vec3_subtract (b1, b0, b);
+  cloth_vec3_subtract (a0, b0, r);
+  aa = cloth_vec3_dot (a, a);
+  bb = cloth_vec3_dot (b, b);
+  ab = cloth_vec3_dot (a, b);
+  ar = cloth_vec3_dot (a, r);
+  br = cloth_vec3_dot (b, r);
   det = aa * bb - ab * ab;
   *s = det > PARALLEL * aa * bb ? (ab * br - ar * bb) / det : 0.;
   *s = CLAMP (*s, 0., 1.);

@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "gst/math/random.h"
+#include "gst/math/vec3.h"
 
 /* The cloth in tiles of this many along u and v, for the bootstrap. */
 #define TILES 3
@@ -32,7 +33,6 @@ find_axes (const ClothRecording * r, guint frame, guint vertex,
 {
   const ClothTopology *t = r->scene->topology;
   guint column, row, steps[2][2];
-  gdouble length;
 
   if (!t->columns)
     return FALSE;
@@ -45,24 +45,12 @@ find_axes (const ClothRecording * r, guint frame, guint vertex,
   for (guint a = 0; a < 2; a++) {
     const gdouble *y = r->y + 3 * (gsize) frame * r->n;
 
-    length = 0.;
-    for (guint k = 0; k < 3; k++) {
-      axes[a][k] = y[3 * steps[a][1] + k] - y[3 * steps[a][0] + k];
-      length += axes[a][k] * axes[a][k];
-    }
-    if (!(length > 0.))
+    cloth_vec3_subtract (y + 3 * steps[a][1], y + 3 * steps[a][0], axes[a]);
+    if (!(cloth_vec3_normalise (axes[a]) > 0.))
       return FALSE;
-    for (guint k = 0; k < 3; k++)
-      axes[a][k] /= sqrt (length);
   }
-  for (guint k = 0; k < 3; k++)
-    axes[2][k] = axes[0][(k + 1) % 3] * axes[1][(k + 2) % 3] -
-        axes[0][(k + 2) % 3] * axes[1][(k + 1) % 3];
-  length = sqrt (axes[2][0] * axes[2][0] + axes[2][1] * axes[2][1] +
-      axes[2][2] * axes[2][2]);
-  for (guint k = 0; k < 3 && length > 0.; k++)
-    axes[2][k] /= length;
-  return length > 0.;
+  cloth_vec3_cross (axes[0], axes[1], axes[2]);
+  return cloth_vec3_normalise (axes[2]) > 0.;
 }
 
 /* Single numbers are enough: it is a difference. */

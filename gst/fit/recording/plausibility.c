@@ -9,6 +9,7 @@
 
 #include "gst/fit/error.h"
 #include "gst/fit/recording/signal.h"
+#include "gst/math/statistics.h"
 
 /* Frames that lengths of edges are looked at in. */
 #define N_LOOKS 8
@@ -54,15 +55,6 @@ flat_length (const ClothTopology * t, guint a, guint b)
 }
 
 static gdouble
-median (GArray * numbers)
-{
-  if (!numbers->len)
-    return NAN;
-  g_array_sort (numbers, cloth_recording_compare_numbers);
-  return g_array_index (numbers, gdouble, numbers->len / 2);
-}
-
-static gdouble
 typical_edge (const ClothTopology * t)
 {
   g_autoptr (GArray) lengths = g_array_new (FALSE, FALSE, sizeof (gdouble));
@@ -74,7 +66,7 @@ typical_edge (const ClothTopology * t)
     if (flat > 0.)
       g_array_append_val (lengths, flat);
   }
-  return median (lengths);
+  return cloth_median ((gdouble *) lengths->data, lengths->len);
 }
 
 /* @recording: a recording; what was not seen is left out
@@ -104,7 +96,7 @@ cloth_recording_find_scale (const ClothRecording * recording, guint corner)
       ratio = distance (place (r, frame, a), place (r, frame, b)) / flat;
       g_array_append_val (ratios, ratio);
     }
-  return median (ratios);
+  return cloth_median ((gdouble *) ratios->data, ratios->len);
 }
 
 /* @recording: a recording

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/math/vec3.h"
+
 /* @n: number of vertices
  *
  * Returns: (transfer full): rays of which none is seen
@@ -109,7 +111,7 @@ cloth_rays_split (const ClothRays * rays, guint vertex, const gdouble v[3],
     gdouble across[3])
 {
   const gdouble *d = rays->directions + 3 * (gsize) vertex;
-  gdouble along = v[0] * d[0] + v[1] * d[1] + v[2] * d[2];
+  gdouble along = cloth_vec3_dot (v, d);
 
   for (guint k = 0; k < 3; k++)
     across[k] = v[k] - along * d[k];
@@ -132,8 +134,7 @@ cloth_rays_lift (const ClothRays * rays, const gdouble * reference,
     const gdouble *d = rays->directions + 3 * (gsize) i;
     gdouble v[3], along;
 
-    for (guint k = 0; k < 3; k++)
-      v[k] = reference[3 * (gsize) i + k] - rays->centre[k];
+    cloth_vec3_subtract (reference + 3 * (gsize) i, rays->centre, v);
     along = cloth_rays_split (rays, i, v, v);
     for (guint k = 0; k < 3; k++)
       positions[3 * (gsize) i + k] = along > 0. ?

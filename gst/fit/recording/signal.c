@@ -16,6 +16,7 @@
 #include <string.h>
 
 #include "gst/math/linalg.h"
+#include "gst/math/statistics.h"
 
 /* Median of |x| of a normal variable over its standard deviation. */
 #define MEDIAN_OF_NORMAL 0.6745
@@ -98,19 +99,6 @@ cloth_recording_differentiate (ClothRecording * recording)
   }
 }
 
-/* @a: a #gdouble
- * @b: another
- *
- * Returns: which is larger, for g_array_sort ()
- */
-gint
-cloth_recording_compare_numbers (gconstpointer a, gconstpointer b)
-{
-  gdouble x = *(const gdouble *) a, y = *(const gdouble *) b;
-
-  return x < y ? -1 : x > y;
-}
-
 /* @recording: a recording; what was not seen is left out
  *
  * Estimates white noise from the fourth differences in time of what was seen five times
@@ -140,9 +128,6 @@ cloth_recording_estimate_sigma (const ClothRecording * recording)
         g_array_append_val (all, d);
       }
     }
-  if (!all->len)
-    return NAN;
-  g_array_sort (all, cloth_recording_compare_numbers);
-  return g_array_index (all, gdouble, all->len / 2) / MEDIAN_OF_NORMAL /
+  return cloth_median ((gdouble *) all->data, all->len) / MEDIAN_OF_NORMAL /
       sqrt (FOURTH_DIFFERENCE);
 }

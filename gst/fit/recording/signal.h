@@ -14,7 +14,6 @@ G_BEGIN_DECLS
 void cloth_recording_find_weights (const gdouble * times, guint mask,
     gdouble at, gdouble * weights);
 void cloth_recording_differentiate (ClothRecording * recording);
-gint cloth_recording_compare_numbers (gconstpointer a, gconstpointer b);
 gdouble cloth_recording_estimate_sigma (const ClothRecording * recording);
 
 G_END_DECLS

@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "gst/math/linalg.h"
+#include "gst/math/statistics.h"
 
 #define N_COLUMNS CLOTH_CAMERA_N_COLUMNS
 /* Variance that is added to the covariance of each observed point, px²: errors that detectors
@@ -272,7 +273,7 @@ find_gross (ClothCameraPicture * p, guint n)
   for (guint i = 0; i < n; i++)
     if (p->at[i] >= 0 && !isnan (p->e[i]))
       all[count++] = p->e[i];
-  qsort (all, count, sizeof *all, cloth_recording_compare_numbers);
+  qsort (all, count, sizeof *all, cloth_compare_doubles);
   p->gross =
       count ? MAX (GROSS * all[9 * count / 10], GROSS_DEVIATIONS) : INFINITY;
 }

@@ -16,6 +16,7 @@
 #include "gst/gap/camera/residuals.h"
 #include "gst/math/linalg.h"
 #include "gst/math/pool.h"
+#include "gst/math/vec3.h"
 
 #define N_COLUMNS CLOTH_CAMERA_N_COLUMNS
 /* Points of all frames together that are used, about; of more vertices some are left out. */
@@ -67,7 +68,7 @@ shift_square (const ClothCameraPoint * point)
   gdouble x[3] = { point->u[0], point->u[1], point->u[2] };
 
   cloth_camera_backward (point->a, x);
-  return x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
+  return cloth_vec3_dot (x, x);
 }
 
 static gdouble
@@ -103,7 +104,7 @@ add_point (const Work * work, const ClothCameraPicture * pictures, guint i,
         to[l] = j[l] * b[k] + j[3 + l] * b[N_COLUMNS + k];
       cloth_camera_forward (point->a, to);
       s[first + k] -= b[k] * z[0] + b[N_COLUMNS + k] * z[1] -
-          (to[0] * point->u[0] + to[1] * point->u[1] + to[2] * point->u[2]);
+          cloth_vec3_dot (to, point->u);
       for (guint l = 0; l <= k; l++)
         g[(gsize) (first + k) * m + first + l] += b[k] * b[l] +
             b[N_COLUMNS + k] * b[N_COLUMNS + l];
@@ -118,7 +119,7 @@ add_point (const Work * work, const ClothCameraPicture * pictures, guint i,
       const gdouble *y = v + 3 * l;
 
       row[point->cameras[l / N_COLUMNS] * N_COLUMNS + l % N_COLUMNS] -=
-          x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+          cloth_vec3_dot (x, y);
     }
   }
 }
@@ -140,9 +141,9 @@ add_drops (const Work * work, const ClothCameraPicture * pictures, guint i,
       v[l] = j[l] * b[0] + j[3 + l] * b[N_COLUMNS];
     cloth_camera_forward (point->a, v);
     work->along[at] += b[0] * z[0] + b[N_COLUMNS] * z[1] -
-        (v[0] * point->u[0] + v[1] * point->u[1] + v[2] * point->u[2]);
+        cloth_vec3_dot (v, point->u);
     work->displacement[at] += b[0] * b[0] + b[N_COLUMNS] * b[N_COLUMNS] -
-        (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+        cloth_vec3_dot (v, v);
     work->rest[at] += residual_square (point);
     work->freedom[at] += 2. * point->n - 3.;
   }
@@ -165,7 +166,7 @@ displacement_square (const ClothCameraPicture * pictures, guint i,
   }
   cloth_camera_forward (point->a, x);
   cloth_camera_backward (point->a, x);
-  return x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
+  return cloth_vec3_dot (x, x);
 }
 
 static void
@@ -539,7 +540,7 @@ cloth_camera_view_correct (ClothCameraView * view, guint threads,
 
     if (isnan (shift[0]) || !(r->seen[i] > 0.))
       continue;
-    sum += shift[0] * shift[0] + shift[1] * shift[1] + shift[2] * shift[2];
+    sum += cloth_vec3_dot (shift, shift);
     n++;
   }
   move_points (r, shifts, corrected);

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/math/vec3.h"
+
 /* Motions of the clamps begin within this time, s. */
 #define RAMP_S 0.25
 /* When the corner that is dropped is let go, s. */
@@ -52,33 +54,19 @@ find_frame (ClothStage * stage)
   }
 }
 
-static gdouble
-dot (const gdouble * a, const gdouble * b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Makes @a orthogonal to @b, which has length 1, and of length 1: whether anything is left. */
 static gboolean
 make_orthogonal (gdouble * a, const gdouble * b)
 {
-  gdouble along = dot (a, b), length;
-
-  for (guint k = 0; k < 3; k++)
-    a[k] -= along * b[k];
-  length = sqrt (dot (a, a));
-  if (!(length > 1e-6))
-    return FALSE;
-  for (guint k = 0; k < 3; k++)
-    a[k] /= length;
-  return TRUE;
+  cloth_vec3_add_scaled (a, -cloth_vec3_dot (a, b), b);
+  return cloth_vec3_normalise (a) > 1e-6;
 }
 
 static void
 find_axes (ClothStage * stage)
 {
   const gdouble *g = stage->recording->scene->gravity;
-  gdouble size = sqrt (dot (g, g)), widest = 0.;
+  gdouble size = cloth_vec3_length (g), widest = 0.;
   guint n = stage->held->len;
 
   for (guint k = 0; k < 3; k++)
@@ -87,9 +75,10 @@ find_axes (ClothStage * stage)
     for (guint j = 0; j < i; j++) {
       gdouble apart[3], far;
 
-      for (guint k = 0; k < 3; k++)
-        apart[k] = stage->clamps[3 * i + k] - stage->clamps[3 * j + k];
-      far = dot (apart, apart) - pow (dot (apart, stage->up), 2.);
+      cloth_vec3_subtract (stage->clamps + 3 * i, stage->clamps + 3 * j, apart);
+      far =
+          cloth_vec3_dot (apart, apart) - pow (cloth_vec3_dot (apart,
+              stage->up), 2.);
       if (far > widest && make_orthogonal (apart, stage->up)) {
         widest = far;
         memcpy (stage->along, apart, sizeof apart);
@@ -104,9 +93,7 @@ find_axes (ClothStage * stage)
       memcpy (stage->along, unit, sizeof unit);
     }
   }
-  for (guint k = 0; k < 3; k++)
-    stage->normal[k] = stage->up[(k + 1) % 3] * stage->along[(k + 2) % 3] -
-        stage->up[(k + 2) % 3] * stage->along[(k + 1) % 3];
+  cloth_vec3_cross (stage->up, stage->along, stage->normal);
 }
 
 static gdouble
@@ -242,13 +229,12 @@ turn (const ClothStage * stage, gdouble * p)
 {
   gdouble from[3], height;
 
-  for (guint k = 0; k < 3; k++)
-    from[k] = p[k] - stage->centre[k];
-  height = dot (from, stage->up);
+  cloth_vec3_subtract (p, stage->centre, from);
+  height = cloth_vec3_dot (from, stage->up);
   for (guint k = 0; k < 3; k++)
     p[k] = stage->centre[k] + height * stage->up[k] +
-        dot (from, stage->along) * stage->normal[k] -
-        dot (from, stage->normal) * stage->along[k];
+        cloth_vec3_dot (from, stage->along) * stage->normal[k] -
+        cloth_vec3_dot (from, stage->normal) * stage->along[k];
 }
 
 /* Hangs the grid from the corners of its last column, with the same ratio of their distance to

@@ -20,31 +20,13 @@
 #include <string.h>
 
 #include "gst/gap/inference/gust.h"
+#include "gst/math/statistics.h"
 
 /* Gusts must be likelier by so much: a steady wind whose law is another than the model's
  * seems to change, too. */
 #define GUST_MARGIN 10.
 
 #define MOST CLOTH_EFFECT_MAX_PARAMETERS
-
-/* P(χ² > x) with 1, 2 or 3 degrees of freedom; above, Wilson and Hilferty (1931). */
-static gdouble
-chi_square_tail (gdouble x, guint n)
-{
-  gdouble half = 0.5 * MAX (x, 0.), z;
-
-  switch (n) {
-    case 1:
-      return erfc (sqrt (half));
-    case 2:
-      return exp (-half);
-    case 3:
-      return erfc (sqrt (half)) + 2. * sqrt (half / G_PI) * exp (-half);
-    default:
-      z = (cbrt (x / n) - (1. - 2. / (9. * n))) / sqrt (2. / (9. * n));
-      return 0.5 * erfc (z * M_SQRT1_2);
-  }
-}
 
 typedef struct
 {
@@ -267,10 +249,10 @@ run_trial (const Trial * trial, ClothGapScore * score)
   gained = cross_validate (trial, normal, normal, null, phi, &total);
   spread = heterogeneity (trial, normal, phi, changes, &freedom);
   score->improvement = total > 0. ? gained / total : 0.;
-  score->p_value = chi_square_tail (2. * fit, n);
+  score->p_value = cloth_chi_square_tail (2. * fit, n);
   /* each direction's common value was fitted */
   score->constancy_p_value = freedom > n ?
-      chi_square_tail (spread, freedom - n) : NAN;
+      cloth_chi_square_tail (spread, freedom - n) : NAN;
   return TRUE;
 }
 

@@ -14,6 +14,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/math/statistics.h"
+
 /* Where a simulation was not nudged, it is off for a while once it is nudged again, but not for
  * longer than this, s. */
 #define RETURN_S 0.15
@@ -313,10 +315,8 @@ static void
 raise_least (gdouble * values, guint n)
 {
   g_autofree gdouble *sorted = g_memdup2 (values, n * sizeof *values);
-  gdouble least;
+  const gdouble least = MAX (LEAST_NULL * cloth_median (sorted, n), 1e-18);
 
-  qsort (sorted, n, sizeof *sorted, cloth_recording_compare_numbers);
-  least = MAX (LEAST_NULL * sorted[n / 2], 1e-18);
   for (guint v = 0; v < n; v++)
     values[v] = MAX (values[v], least);
 }

@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "gst/math/random.h"
+#include "gst/math/statistics.h"
 
 /* Lines of the flat cloth each way that boxes lie between, for significance and place. */
 #define COARSE_LINES 16
@@ -262,7 +263,7 @@ find_threshold (const ClothExcess * null, const Cells * cells,
       best[d] = MAX (best[d], score_of (cells, x, b, n_blocks));
     }
   }
-  qsort (best, o->draws, sizeof *best, cloth_recording_compare_numbers);
+  qsort (best, o->draws, sizeof *best, cloth_compare_doubles);
   return best[MIN (o->draws - 1, (guint) ((1. - o->significance) * o->draws))];
 }
 
@@ -324,7 +325,7 @@ go_back (const gdouble * series, guint frame)
       g_array_append_val (before, series[i]);
   if (!before->len)
     return frame;
-  g_array_sort (before, cloth_recording_compare_numbers);
+  g_array_sort (before, cloth_compare_doubles);
   least = BEFORE_MARGIN * g_array_index (before, gdouble, (guint)
       (BEFORE_QUANTILE * (before->len - 1)));
   while (frame > 1 && !(series[frame - 1] <= least)

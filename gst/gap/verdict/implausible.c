@@ -12,6 +12,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/math/vec3.h"
+
 /* Fewest windows that the gap is measured in: one to fit on, one to judge. */
 #define LEAST_WINDOWS 2.
 /* Frames further apart than this share of a window don't show what happens in it. */
@@ -121,8 +123,7 @@ check_gravity (ClothDiagnosis * d, const ClothRecording * recording,
   static const gchar *const names[] =
       { "+x", "−x", "+y", "−y", "+z", "−z" };
   const gdouble *gravity = recording->scene->gravity;
-  const gdouble g = sqrt (gravity[0] * gravity[0] + gravity[1] * gravity[1] +
-      gravity[2] * gravity[2]);
+  const gdouble g = cloth_vec3_length (gravity);
   const gdouble strengths[] = { g > 0. ? g : EARTH, EARTH };
   const guint n = g > 0. && fabs (g - EARTH) > EARTH_SHARE * EARTH ? 2 : 1;
   g_auto (Alternative) t = { NULL };
@@ -221,8 +222,7 @@ static gchar *
 check_held (const ClothRecording * r)
 {
   const gdouble *gravity = r->scene->gravity;
-  gdouble g = sqrt (gravity[0] * gravity[0] + gravity[1] * gravity[1] +
-      gravity[2] * gravity[2]);
+  gdouble g = cloth_vec3_length (gravity);
   gdouble duration = r->times[r->n_frames - 1] - r->times[0];
   gdouble side = cloth_recording_longest_side (r);
 

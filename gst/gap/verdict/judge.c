@@ -16,6 +16,7 @@
 
 #include "gst/fit/recording/recording.h"
 #include "gst/gap/localise/where.h"
+#include "gst/math/statistics.h"
 
 /* Variance of a gap that is hardly larger, over that before. */
 #define HARDLY_LARGER 1.05
@@ -58,7 +59,7 @@ find_interval (gdouble value, const gdouble * draws, guint n, guint stride)
 
   for (guint i = 0; i < n; i++)
     g_array_append_val (sorted, draws[(gsize) i * stride]);
-  g_array_sort (sorted, cloth_recording_compare_numbers);
+  g_array_sort (sorted, cloth_compare_doubles);
   e.low = g_array_index (sorted, gdouble, n / 40);
   e.high = g_array_index (sorted, gdouble, n - 1 - n / 40);
   return e;

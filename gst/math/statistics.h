@@ -1,0 +1,14 @@
+/* Order statistics and the χ² distribution.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include <glib.h>
+
+G_BEGIN_DECLS
+
+gint cloth_compare_doubles (gconstpointer a, gconstpointer b);
+gdouble cloth_median (gdouble * values, gsize n);
+gdouble cloth_chi_square_tail (gdouble x, guint n);
+
+G_END_DECLS
