@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/math/cpu.h"
+#include "gst/math/simd.h"
 #include "gst/render/draw.h"
 
 G_BEGIN_DECLS
@@ -56,6 +56,6 @@ typedef struct {
       const ClothDrawQuad * quad);
 } ClothDrawRows;
 
-const ClothDrawRows *cloth_draw_rows (ClothSimd simd);
+CLOTH_SIMD_TABLES (ClothDrawRows, cloth_draw_rows);
 
 G_END_DECLS

@@ -98,7 +98,8 @@ void
 cloth_draw_line (const ClothCanvas * canvas, gfloat x0, gfloat y0, gfloat x1,
     gfloat y1, gfloat width, const ClothColour * colour)
 {
-  const ClothDrawRows *rows = cloth_draw_rows (CLOTH_SIMD_BEST);
+  const ClothDrawRows *rows = CLOTH_SIMD_TABLE (cloth_draw_rows,
+      CLOTH_SIMD_BEST);
   ClothDrawGroup group = { 0 };
   gfloat dx = x1 - x0, dy = y1 - y0, length2 = dx * dx + dy * dy;
   gfloat length = sqrtf (length2);
@@ -169,7 +170,8 @@ void
 cloth_draw_quad (const ClothCanvas * canvas, const gfloat x[4],
     const gfloat y[4], const ClothColour * colour)
 {
-  const ClothDrawRows *rows = cloth_draw_rows (CLOTH_SIMD_BEST);
+  const ClothDrawRows *rows = CLOTH_SIMD_TABLE (cloth_draw_rows,
+      CLOTH_SIMD_BEST);
   ClothDrawGroup group = { 0 };
   ClothDrawQuad quad = {.top = y[0],.bottom = y[0],.full = 256 * colour->a };
   gfloat turn = 0;

@@ -52,12 +52,15 @@ typedef struct {
   ClothLight *light;            /* added to */
 } ClothRenderJob;
 
-/* Draws the pixels of one tile: those triangles of the job that the list names. */
-typedef void (*ClothRenderTileFunc) (const ClothRenderJob * job, gint left,
-    gint top, const guint * list, guint n_list, gpointer scratch);
+/* Draws the pixels of one tile: those triangles of the job that the list names.
+ * @scratch: @scratch_size bytes, aligned to 64. */
+typedef struct {
+  void (*draw) (const ClothRenderJob * job, gint left, gint top,
+      const guint * list, guint n_list, gpointer scratch);
+  gsize scratch_size;
+} ClothRenderTile;
 
-gsize cloth_render_tile_scratch (void);
-ClothRenderTileFunc cloth_render_tile_func (ClothSimd simd);
+CLOTH_SIMD_TABLES (ClothRenderTile, cloth_render_tile);
 
 /* From light to levels. */
 typedef struct _ClothSensor ClothSensor;

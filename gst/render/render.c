@@ -50,7 +50,7 @@ struct _ClothRenderer
   guint32 *faces;
   ClothRenderMesh *meshes[MAX_LEVELS + 1];
   ClothPool *pool;
-  ClothRenderTileFunc draw_tile;
+  const ClothRenderTile *tile;
   ClothSensor *sensor;
   ClothLight light;
   gsize light_size;
@@ -107,10 +107,10 @@ cloth_renderer_new (guint n_vertices, const gfloat * uv,
   self->uv = g_memdup2 (uv, 2 * n_vertices * sizeof *uv);
   self->faces = g_memdup2 (faces, 4 * (gsize) n_faces * sizeof *faces);
   self->pool = cloth_pool_new (threads);
-  self->draw_tile = cloth_render_tile_func (simd);
+  self->tile = CLOTH_SIMD_TABLE (cloth_render_tile, simd);
   self->sensor = cloth_sensor_new ();
   self->scratch = g_aligned_alloc (cloth_pool_get_n_threads (self->pool),
-      cloth_render_tile_scratch (), 64);
+      self->tile->scratch_size, 64);
   return self;
 }
 
@@ -472,7 +472,7 @@ draw_tiles (gpointer data, guint begin, guint end, guint worker)
 {
   ClothRenderer *self = data;
   const guint n = (guint) (self->columns * self->rows);
-  gpointer scratch = self->scratch + worker * cloth_render_tile_scratch ();
+  gpointer scratch = self->scratch + worker * self->tile->scratch_size;
 
   for (guint i = begin; i < end; i++) {
     /* Each thread gets some rows of all parts of the picture: work is even. */
@@ -482,7 +482,7 @@ draw_tiles (gpointer data, guint begin, guint end, guint worker)
     const guint tile = y * (guint) self->columns + i % (guint) self->columns;
 
     g_assert (tile < n);
-    self->draw_tile (&self->job, (gint) (tile % (guint) self->columns) * TILE,
+    self->tile->draw (&self->job, (gint) (tile % (guint) self->columns) * TILE,
         (gint) y * TILE, self->list + self->first[tile],
         self->first[tile + 1] - self->first[tile], scratch);
   }

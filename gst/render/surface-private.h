@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/math/cpu.h"
+#include "gst/math/simd.h"
 #include "gst/render/draw.h"
 
 G_BEGIN_DECLS
@@ -40,6 +40,6 @@ typedef struct {
       const gint * weights, gint opacity, guint8 * to, gint step);
 } ClothSurfaceRows;
 
-const ClothSurfaceRows *cloth_surface_rows (ClothSimd simd);
+CLOTH_SIMD_TABLES (ClothSurfaceRows, cloth_surface_rows);
 
 G_END_DECLS

@@ -125,7 +125,7 @@ cloth_surface_new (guint n_vertices, const gfloat * uv, const guint32 * faces,
       t[2] = face[k];
     }
   }
-  self->rows = cloth_surface_rows (simd);
+  self->rows = CLOTH_SIMD_TABLE (cloth_surface_rows, simd);
   self->n_levels = paint->n_levels;
   for (guint i = 0; i < paint->n_levels; i++)
     set_level (&self->levels[i], &paint->levels[i], paint->n_channels);

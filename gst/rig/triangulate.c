@@ -72,7 +72,7 @@ cloth_triangulator_set_pool (ClothTriangulator * self, ClothPool * pool)
 void
 cloth_triangulator_set_simd (ClothTriangulator * self, ClothSimd simd)
 {
-  self->kernel = cloth_triangulate_kernel (simd);
+  self->kernel = CLOTH_SIMD_TABLE (cloth_triangulate_kernel, simd);
 }
 
 /* One observation with the lens model's own undistortion, where the kernel's short Newton

@@ -179,7 +179,7 @@ new_empty (guint n_cameras, GError ** error)
   self->n_cameras = n_cameras;
   self->cameras = g_new0 (TriangulateCamera, n_cameras);
   cloth_triangulator_set_parameters (self, &parameters);
-  self->kernel = cloth_triangulate_kernel (CLOTH_SIMD_BEST);
+  self->kernel = CLOTH_SIMD_TABLE (cloth_triangulate_kernel, CLOTH_SIMD_BEST);
   return self;
 }
 

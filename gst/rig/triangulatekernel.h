@@ -70,6 +70,6 @@ typedef struct {
       gdouble * out);
 } TriangulateKernel;
 
-const TriangulateKernel *cloth_triangulate_kernel (ClothSimd simd);
+CLOTH_SIMD_TABLES (TriangulateKernel, cloth_triangulate_kernel);
 
 G_END_DECLS

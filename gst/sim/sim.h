@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/math/cpu.h"
+#include "gst/math/simd.h"
 #include "gst/sim/model.h"
 #include "gst/sim/scene.h"
 

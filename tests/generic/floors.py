@@ -114,7 +114,7 @@ INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"]', re.M)
 NOISE = re.compile(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'', re.S)
 DIRECTIVE = re.compile(r'^[ \t]*#(?:\\\n|[^\n])*', re.M)
 # A macro that adds the suffix of a variant to a name.
-VARIANT = re.compile(r'\b(?:CLOTH_LANE_NAME|NAME) \((\w+)\)')
+VARIANT = re.compile(r'\b(?:CLOTH_LANE_NAME|CLOTH_SIMD_NAME) \((\w+)\)')
 # What the macros of GLib define.
 QUARK = re.compile(r'^G_DEFINE_QUARK \(\s*[\w-]+,\s*(\w+)', re.M)
 TYPE = re.compile(r'^G_DEFINE_(?:ABSTRACT_|BOXED_|FINAL_)?TYPE\w* \(\s*\w+,\s*(\w+)', re.M)

@@ -16,7 +16,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/math/cpu.h"
+#include "gst/fit/features/projection.h"
 
 /* A wave that the others make up to this share of its length is left out. */
 #define DEPENDENT 1e-3
@@ -152,62 +152,6 @@ cloth_features_new (const ClothRecording * recording, guint n_waves_each,
   return f;
 }
 
-typedef gdouble Sums[3][CLOTH_FEATURES_MAX_WAVES_EACH *
-    CLOTH_FEATURES_MAX_WAVES_EACH];
-
-/* What is off in a frame, on each wave. Sums over vertices stay in their order, waves are
- * side by side: all instruction sets give the same bits. */
-static inline __attribute__((always_inline))
-     void project (const ClothFeatures * features,
-    const ClothRecording * recording, gsize begin, const gdouble * positions,
-    Sums sums)
-{
-  guint n_waves = features->n_waves;
-
-  memset (sums, 0, sizeof (Sums));
-  for (guint v = 0; v < features->n; v++) {
-    const gdouble *wave = features->waves + (gsize) v * n_waves;
-    gdouble off[3];
-
-    if (recording->seen[begin + v] == 0.)
-      continue;
-    for (guint k = 0; k < 3; k++)
-      off[k] = (positions[3 * v + k] - recording->y[3 * (begin + v) + k]) /
-          features->sigma;
-    for (guint k = 0; k < 3; k++)
-      for (guint w = 0; w < n_waves; w++)
-        sums[k][w] += wave[w] * off[k];
-  }
-}
-
-#define KERNEL(suffix, target_attribute) \
-target_attribute static void \
-project_##suffix (const ClothFeatures * features, \
-    const ClothRecording * recording, gsize begin, const gdouble * positions, \
-    Sums sums) \
-{ \
-  project (features, recording, begin, positions, sums); \
-}
-
-/* *INDENT-OFF* */
-KERNEL (scalar,)
-#if defined (__x86_64__) && defined (__GNUC__)
-KERNEL (avx2, __attribute__((target ("avx2"))))
-KERNEL (avx512, __attribute__((target ("avx512f,avx512bw,avx512dq,avx512vl"))))
-/* *INDENT-ON* */
-#define PROJECT(level, ...) \
-  do { \
-    if ((level) == CLOTH_SIMD_AVX512) \
-      project_avx512 (__VA_ARGS__); \
-    else if ((level) == CLOTH_SIMD_AVX2) \
-      project_avx2 (__VA_ARGS__); \
-    else \
-      project_scalar (__VA_ARGS__); \
-  } while (0)
-#else
-#define PROJECT(level, ...) project_scalar (__VA_ARGS__)
-#endif
-
 /* @features: the features
  * @recording: the recording
  * @frame: one of its frames
@@ -223,15 +167,15 @@ cloth_features_add (const ClothFeatures * features,
 {
   guint n_waves = features->n_waves, block = 0, at;
   gsize begin = (gsize) frame * features->n;
-  Sums sums;
+  gdouble sums[3][CLOTH_FEATURES_MAX_WAVES];
 
   if (frame < features->first[0])
     return;
   while (frame >= features->first[block + 1])
     block++;
   at = frame - features->first[block];
-  PROJECT (cloth_simd_resolve (CLOTH_SIMD_BEST), features, recording, begin,
-      positions, sums);
+  CLOTH_SIMD_TABLE (cloth_projection, CLOTH_SIMD_BEST)->project (features,
+      recording, begin, positions, sums);
   for (guint c = 0; c < features->n_cosines; c++) {
     gdouble cosine = features->cosines[(gsize) c * features->block_frames + at];
     gdouble *to = z + 3 * ((gsize) block * features->n_cosines + c) * n_waves;

@@ -75,7 +75,7 @@ static const gfloat node_weight[N_NODES] =
 /* The blurred product of two steps is not the product of the blurred steps unless they
  * cross at right angles: with r the correlation of the distances to both edges,
  * d E[sgn sgn] / dr = 4 phi2 (Plackett 1954), integrated from r = 0 by r = sin t. */
-INLINE void
+static void
 basis (ClothCornerWindow * win, const ClothCornerState * st, gfloat * sums)
 {
   const gfloat k = 0.70710678f / st->blur;
@@ -172,7 +172,7 @@ linearise (const ClothCornerWindow * win, gint v, const ClothCornerState * st,
 /* Sums with one of the first five parameters; those of the others alone are the basis's. */
 #define N_CROSS 35
 
-INLINE void
+static void
 normal (const ClothCornerWindow * win, const ClothCornerState * st,
     const gfloat * c, const gfloat * sums, gfloat * out, gfloat * gradient,
     gfloat * cost)
@@ -208,7 +208,7 @@ normal (const ClothCornerWindow * win, const ClothCornerState * st,
   *cost = sum_lanes (&acc[N_CROSS + 5]);
 }
 
-INLINE void
+static void
 influence (const ClothCornerWindow * win, const ClothCornerState * st,
     const gfloat * c, const gfloat * root, const gfloat * row, gfloat * out)
 {
@@ -249,70 +249,6 @@ influence (const ClothCornerWindow * win, const ClothCornerState * st,
     out[n] = sum_lanes (&acc[n]);
 }
 
-#define KERNELS(suffix, target_attribute) \
-target_attribute static void \
-basis_##suffix (ClothCornerWindow * window, const ClothCornerState * state, \
-    gfloat * sums) \
-{ \
-  basis (window, state, sums); \
-} \
-target_attribute static void \
-normal_##suffix (const ClothCornerWindow * window, \
-    const ClothCornerState * state, const gfloat * c, const gfloat * sums, \
-    gfloat * out, gfloat * gradient, gfloat * cost) \
-{ \
-  normal (window, state, c, sums, out, gradient, cost); \
-} \
-target_attribute static void \
-influence_##suffix (const ClothCornerWindow * window, \
-    const ClothCornerState * state, const gfloat * c, const gfloat * root, \
-    const gfloat * row, gfloat * out) \
-{ \
-  influence (window, state, c, root, row, out); \
-}
-
-/* *INDENT-OFF* */
-KERNELS (scalar,)
-#if defined (__x86_64__) && defined (__GNUC__)
-KERNELS (avx2, __attribute__((target ("avx2"))))
-KERNELS (avx512,
-    __attribute__((target ("avx512f,avx512bw,avx512dq,avx512vl"))))
-/* *INDENT-ON* */
-#define DISPATCH(level, function, ...) \
-  do { \
-    if ((level) == CLOTH_SIMD_AVX512) \
-      function##_avx512 (__VA_ARGS__); \
-    else if ((level) == CLOTH_SIMD_AVX2) \
-      function##_avx2 (__VA_ARGS__); \
-    else \
-      function##_scalar (__VA_ARGS__); \
-  } while (0)
-#else
-#define DISPATCH(level, function, ...) function##_scalar (__VA_ARGS__)
-#endif
-
-void
-cloth_corner_basis (ClothCornerWindow * window,
-    const ClothCornerState * state, gfloat sums[CLOTH_CORNER_N_BASIS],
-    ClothSimd level)
-{
-  DISPATCH (level, basis, window, state, sums);
-}
-
-void
-cloth_corner_normal (const ClothCornerWindow * window,
-    const ClothCornerState * state, const gfloat c[4],
-    const gfloat sums[CLOTH_CORNER_N_BASIS], gfloat out[CLOTH_CORNER_N_SUMS],
-    gfloat gradient[5], gfloat * cost, ClothSimd level)
-{
-  DISPATCH (level, normal, window, state, c, sums, out, gradient, cost);
-}
-
-void
-cloth_corner_influence (const ClothCornerWindow * window,
-    const ClothCornerState * state, const gfloat c[4],
-    const gfloat root[CLOTH_CORNER_N * CLOTH_CORNER_N],
-    const gfloat row[2 * CLOTH_CORNER_N], gfloat cov[3], ClothSimd level)
-{
-  DISPATCH (level, influence, window, state, c, root, row, cov);
-}
+const ClothCornerModel CLOTH_SIMD_NAME (cloth_corner_model) = { basis, normal,
+  influence
+};

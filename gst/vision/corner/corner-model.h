@@ -4,7 +4,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/math/cpu.h"
+#include "gst/math/simd.h"
 
 G_BEGIN_DECLS
 
@@ -21,7 +21,7 @@ typedef struct {
   ClothLanes y[CLOTH_CORNER_MAX_VECTORS];
   ClothLanes value[CLOTH_CORNER_MAX_VECTORS];
   ClothLanes weight[CLOTH_CORNER_MAX_VECTORS];
-  /* Left by cloth_corner_basis() for cloth_corner_normal(). */
+  /* Left by the basis for the normal equations. */
   ClothLanes e1[CLOTH_CORNER_MAX_VECTORS];
   ClothLanes e2[CLOTH_CORNER_MAX_VECTORS];
   ClothLanes g1[CLOTH_CORNER_MAX_VECTORS];
@@ -43,24 +43,27 @@ typedef struct {
 #define CLOTH_CORNER_N_SUMS 45
 #define CLOTH_CORNER_N_BASIS 14
 
-/* sums: upper triangle by rows of BᵀWB with B = (1, e1, e2, e12), then BᵀWI. e12 is the
- * blurred product of both steps. */
-void cloth_corner_basis (ClothCornerWindow * window,
-    const ClothCornerState * state, gfloat sums[CLOTH_CORNER_N_BASIS], ClothSimd level);
-/* normal: upper triangle by rows of JᵀWJ; gradient: JᵀWr of the first five; cost: rᵀWr.
- * @sums: what cloth_corner_basis() gave. */
-void cloth_corner_normal (const ClothCornerWindow * window,
-    const ClothCornerState * state, const gfloat c[4],
-    const gfloat sums[CLOTH_CORNER_N_BASIS],
-    gfloat normal[CLOTH_CORNER_N_SUMS], gfloat gradient[5], gfloat * cost,
-    ClothSimd level);
-/* What the residuals, taken for independent noise, do to two linear combinations of the
- * parameters: the covariance xx, xy, yy. @root: Cholesky's factor of JᵀWJ, its diagonal
- * inverted; @row: both combinations times (JᵀWJ)⁻¹. Each squared residual is divided by
- * one minus its leverage (MacKinnon & White 1985, HC2). */
-void cloth_corner_influence (const ClothCornerWindow * window,
-    const ClothCornerState * state, const gfloat c[4],
-    const gfloat root[CLOTH_CORNER_N * CLOTH_CORNER_N],
-    const gfloat row[2 * CLOTH_CORNER_N], gfloat cov[3], ClothSimd level);
+/* @basis: @sums: upper triangle by rows of BᵀWB with B = (1, e1, e2, e12), then BᵀWI. e12 is
+ *   the blurred product of both steps.
+ * @normal: @normal: upper triangle by rows of JᵀWJ; @gradient: JᵀWr of the first five;
+ *   @cost: rᵀWr. @sums: what @basis gave.
+ * @influence: what the residuals, taken for independent noise, do to two linear
+ *   combinations of the parameters: the covariance xx, xy, yy. @root: Cholesky's factor of
+ *   JᵀWJ, its diagonal inverted; @row: both combinations times (JᵀWJ)⁻¹. Each squared
+ *   residual is divided by one minus its leverage (MacKinnon & White 1985, HC2). */
+typedef struct {
+  void (*basis) (ClothCornerWindow * window, const ClothCornerState * state,
+      gfloat sums[CLOTH_CORNER_N_BASIS]);
+  void (*normal) (const ClothCornerWindow * window,
+      const ClothCornerState * state, const gfloat c[4],
+      const gfloat sums[CLOTH_CORNER_N_BASIS],
+      gfloat normal[CLOTH_CORNER_N_SUMS], gfloat gradient[5], gfloat * cost);
+  void (*influence) (const ClothCornerWindow * window,
+      const ClothCornerState * state, const gfloat c[4],
+      const gfloat root[CLOTH_CORNER_N * CLOTH_CORNER_N],
+      const gfloat row[2 * CLOTH_CORNER_N], gfloat cov[3]);
+} ClothCornerModel;
+
+CLOTH_SIMD_TABLES (ClothCornerModel, cloth_corner_model);
 
 G_END_DECLS

@@ -251,15 +251,15 @@ typedef struct
 } Evaluation;
 
 static gboolean
-evaluate (ClothCornerWindow * win, Evaluation * e, ClothSimd level)
+evaluate (ClothCornerWindow * win, Evaluation * e,
+    const ClothCornerModel * model)
 {
   gfloat sums[CLOTH_CORNER_N_BASIS];
 
-  cloth_corner_basis (win, &e->state, sums, level);
+  model->basis (win, &e->state, sums);
   if (!solve_levels (sums, e->c))
     return FALSE;
-  cloth_corner_normal (win, &e->state, e->c, sums, e->normal, e->gradient,
-      &e->cost, level);
+  model->normal (win, &e->state, e->c, sums, e->normal, e->gradient, &e->cost);
   return isfinite (e->cost);
 }
 
@@ -322,7 +322,7 @@ step (const Evaluation * from, gdouble damping, gfloat radius,
  * often larger than that of areas. */
 static gboolean
 covariance (const ClothCornerWindow * win, const Evaluation * e,
-    ClothCornerFit * fit, ClothSimd level)
+    ClothCornerFit * fit, const ClothCornerModel * model)
 {
   gdouble a[CLOTH_CORNER_N * CLOTH_CORNER_N], m[4], sum = 0, square = 0, left;
   gfloat root[CLOTH_CORNER_N * CLOTH_CORNER_N], row[2 * CLOTH_CORNER_N];
@@ -349,7 +349,7 @@ covariance (const ClothCornerWindow * win, const Evaluation * e,
   }
   for (gint i = 0; i < CLOTH_CORNER_N * CLOTH_CORNER_N; i++)
     root[i] = i % CLOTH_CORNER_N >= i / CLOTH_CORNER_N ? (gfloat) a[i] : 0;
-  cloth_corner_influence (win, &e->state, e->c, root, row, fit->cov, level);
+  model->influence (win, &e->state, e->c, root, row, fit->cov);
   return isfinite (fit->cov[0] + fit->cov[1] + fit->cov[2]) &&
       fit->cov[0] > 0 && fit->cov[2] > 0;
 }
@@ -375,6 +375,7 @@ gboolean
 cloth_corner_refine (const ClothImage * image, gfloat x, gfloat y,
     const ClothCornerParams * params, ClothSimd level, ClothCornerFit * fit)
 {
+  const ClothCornerModel *model = CLOTH_SIMD_TABLE (cloth_corner_model, level);
   ClothCornerWindow win;
   Evaluation best, next;
   gfloat radius = params->radius > 2 ? MIN (params->radius, 12.0f) : 2.0f;
@@ -386,7 +387,6 @@ cloth_corner_refine (const ClothImage * image, gfloat x, gfloat y,
   if (!(x >= 0 && y >= 0 && x <= (gfloat) (image->width - 1)
           && y <= (gfloat) (image->height - 1)))
     return FALSE;
-  level = cloth_simd_resolve (level);
   ix = (gint) floorf (x + 0.5f);
   iy = (gint) floorf (y + 0.5f);
   if (!take_window (&win, image, x, y, ix, iy, radius,
@@ -409,7 +409,7 @@ cloth_corner_refine (const ClothImage * image, gfloat x, gfloat y,
     best.state.theta1 = theta[0];
     best.state.theta2 = theta[1];
   }
-  if (!evaluate (&win, &best, level))
+  if (!evaluate (&win, &best, model))
     return FALSE;
 
   while (evaluations < MAX_EVALUATIONS && !settled) {
@@ -421,7 +421,7 @@ cloth_corner_refine (const ClothImage * image, gfloat x, gfloat y,
       settled = TRUE;
       break;
     }
-    if (!evaluate (&win, &next, level))
+    if (!evaluate (&win, &next, model))
       return FALSE;
     evaluations++;
     if (next.cost <= best.cost * 1.000001f) {
@@ -438,7 +438,7 @@ cloth_corner_refine (const ClothImage * image, gfloat x, gfloat y,
   if (!settled && moved > 0.02)
     return FALSE;
 
-  if (!covariance (&win, &best, fit, level))
+  if (!covariance (&win, &best, fit, model))
     return FALSE;
   fit->x = (gfloat) ix + best.state.x;
   fit->y = (gfloat) iy + best.state.y;

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/vision/corner/saddle-mask-x86.h"
+#include "gst/vision/corner/saddle-tile.h"
 
 /* Positive part of the second difference of the weights: what a picture of 0 and 1
  * can make of it at most. */
@@ -252,10 +252,9 @@ mask_run_scalar (ClothSaddleMask * mask, const ClothSaddleKernel * kernel,
   }
 }
 
-#if defined (__x86_64__) && defined (__GNUC__)
 static void
 mask_run_tiles (ClothSaddleMask * mask, const ClothSaddleKernel * kernel,
-    const ClothImage * image, gint threshold, ClothSimd level)
+    const ClothImage * image, gint threshold, const ClothSaddleTile * tile)
 {
   const gsize rows = (gsize) (2 * kernel->radius + 2 * kernel->step + 4);
   /* All rows of a tile stay in the first-level cache. */
@@ -270,15 +269,9 @@ mask_run_tiles (ClothSaddleMask * mask, const ClothSaddleKernel * kernel,
     gint from = (gint) ((gint64) mask->words * i / n_tiles);
     gint to = (gint) ((gint64) mask->words * (i + 1) / n_tiles);
 
-    if (level == CLOTH_SIMD_AVX512)
-      cloth_saddle_mask_tile_avx512 (mask, kernel, image, threshold, from,
-          to - from, scratch);
-    else
-      cloth_saddle_mask_tile_avx2 (mask, kernel, image, threshold, from,
-          to - from, scratch);
+    tile->run (mask, kernel, image, threshold, from, to - from, scratch);
   }
 }
-#endif
 
 /* Nothing is told where a difference would reach over the picture's border: there the
  * repeated border itself makes corners of edges. */
@@ -313,14 +306,14 @@ cloth_saddle_mask_run (ClothSaddleMask * mask,
     const ClothSaddleKernel * kernel, const ClothImage * image,
     gint threshold, ClothSimd level)
 {
+  const ClothSaddleTile *tile = CLOTH_SIMD_TABLE (cloth_saddle_tile, level);
+
   mask->words = (mask->width + 63) / 64;
   mask->n_blocks = 0;
   mask_resize (mask);
-#if defined (__x86_64__) && defined (__GNUC__)
-  if (level == CLOTH_SIMD_AVX2 || level == CLOTH_SIMD_AVX512)
-    mask_run_tiles (mask, kernel, image, threshold, level);
+  if (tile->run)
+    mask_run_tiles (mask, kernel, image, threshold, tile);
   else
-#endif
     mask_run_scalar (mask, kernel, image, threshold);
   mask_cut_border (mask, image, kernel->step);
 }

@@ -6,21 +6,13 @@
 #include <math.h>
 #include <string.h>
 
-#if defined (__x86_64__) && defined (__GNUC__)
-#include <immintrin.h>
-#define WITH_X86 1
-#endif
+#include "gst/vision/corner/saddle-derivatives.h"
 
 #define PHASES 32
-#define TAPS 16
+#define TAPS CLOTH_SADDLE_TAPS
 #define RADIUS 7
 /* The window holds 15 pixels; a wider Gaussian than this would be cut off by it. */
 #define WIDEST 2.3
-
-/* Sixteen lanes in every instruction set, so that sums come out the same in all. */
-typedef gfloat v16f __attribute__((vector_size (64)));
-typedef gfloat v8f __attribute__((vector_size (32)));
-typedef gfloat v4f __attribute__((vector_size (16)));
 
 struct _ClothSaddleRefiner
 {
@@ -28,7 +20,7 @@ struct _ClothSaddleRefiner
   /* Standard deviation of F_x for unit white noise. */
   gfloat gradient_noise;
   /* Gaussian and its first two derivatives, centred at RADIUS + phase / PHASES - 1/2. */
-  v16f taps[PHASES + 1][3];
+  ClothSaddleTaps taps[PHASES + 1][3];
 };
 
 ClothSaddleRefiner *
@@ -93,90 +85,6 @@ cloth_saddle_refiner_set (ClothSaddleRefiner * refiner, gfloat sigma)
   refiner->gradient_noise = (gfloat) sqrt (sum_g * sum_d);
 }
 
-#define INLINE static inline __attribute__((always_inline))
-
-/* Smoothed derivatives: out = Fx, Fy, Fxx, Fxy, Fyy. */
-INLINE void
-derivatives (const v16f * rows, const v16f * gx, const v16f * gy, gfloat * out)
-{
-  v16f a0 = { 0 }, a1 = { 0 }, a2 = { 0 };
-  v16f p[5];
-
-#pragma GCC unroll 15
-  for (gint j = 0; j < TAPS - 1; j++) {
-    a0 += rows[j] * gy[0][j];
-    a1 += rows[j] * gy[1][j];
-    a2 += rows[j] * gy[2][j];
-  }
-  p[0] = a0 * gx[1];
-  p[1] = a1 * gx[0];
-  p[2] = a0 * gx[2];
-  p[3] = a1 * gx[1];
-  p[4] = a2 * gx[0];
-  for (gint k = 0; k < 5; k++) {
-    v8f half[2], s;
-    v4f quarter[2], t;
-
-    memcpy (half, &p[k], sizeof (half));
-    s = half[0] + half[1];
-    memcpy (quarter, &s, sizeof (quarter));
-    t = quarter[0] + quarter[1];
-    out[k] = (t[0] + t[2]) + (t[1] + t[3]);
-  }
-}
-
-static void
-derivatives_scalar (const guint8 * data, gsize stride, const v16f * gx,
-    const v16f * gy, gfloat * out)
-{
-  v16f rows[TAPS - 1];
-
-  for (gint j = 0; j < TAPS - 1; j++) {
-    for (gint i = 0; i < TAPS; i++)
-      rows[j][i] = data[(gsize) j * stride + (gsize) i];
-  }
-  derivatives (rows, gx, gy, out);
-}
-
-#ifdef WITH_X86
-/* *INDENT-OFF* */
-__attribute__((target ("avx2")))
-/* *INDENT-ON* */
-static void
-derivatives_avx2 (const guint8 * data, gsize stride, const v16f * gx,
-    const v16f * gy, gfloat * out)
-{
-  v16f rows[TAPS - 1];
-
-  for (gint j = 0; j < TAPS - 1; j++) {
-    __m128i bytes = _mm_loadu_si128 ((const __m128i *) (data +
-            (gsize) j * stride));
-    __m256 half[2] = {
-      _mm256_cvtepi32_ps (_mm256_cvtepu8_epi32 (bytes)),
-      _mm256_cvtepi32_ps (_mm256_cvtepu8_epi32 (_mm_srli_si128 (bytes, 8)))
-    };
-    memcpy (&rows[j], half, sizeof (half));
-  }
-  derivatives (rows, gx, gy, out);
-}
-
-/* *INDENT-OFF* */
-__attribute__((target ("avx512f,avx512bw,avx512dq,avx512vl")))
-/* *INDENT-ON* */
-
-static void
-derivatives_avx512 (const guint8 * data, gsize stride, const v16f * gx,
-    const v16f * gy, gfloat * out)
-{
-  v16f rows[TAPS - 1];
-
-  for (gint j = 0; j < TAPS - 1; j++)
-    rows[j] = (v16f) _mm512_cvtepi32_ps (_mm512_cvtepu8_epi32 (_mm_loadu_si128 (
-                (const __m128i *) (data + (gsize) j * stride))));
-  derivatives (rows, gx, gy, out);
-}
-#endif
-
 /* The window around (x, y); a copy with the border repeated where it leaves the
  * picture. One column more than the taps is read. */
 static const guint8 *
@@ -218,6 +126,8 @@ cloth_saddle_refiner_run (const ClothSaddleRefiner * refiner,
     const ClothImage * image, const ClothSaddleCandidate * peak, gfloat noise,
     ClothSaddle * saddle, gfloat theta[2], ClothSimd level)
 {
+  const ClothSaddleDerivatives *kernel =
+      CLOTH_SIMD_TABLE (cloth_saddle_derivatives, level);
   gfloat x = peak->x, y = peak->y, f[5] = { 0 }, det = 0;
   gfloat reach = 1.0f + MAX (1.5f, refiner->sigma);
 
@@ -230,17 +140,7 @@ cloth_saddle_refiner_run (const ClothSaddleRefiner * refiner,
     gsize stride;
     const guint8 *data = window (image, ix, iy, copy, &stride);
 
-#ifdef WITH_X86
-    if (level == CLOTH_SIMD_AVX512)
-      derivatives_avx512 (data, stride, refiner->taps[px], refiner->taps[py],
-          f);
-    else if (level == CLOTH_SIMD_AVX2)
-      derivatives_avx2 (data, stride, refiner->taps[px], refiner->taps[py], f);
-    else
-#endif
-      derivatives_scalar (data, stride, refiner->taps[px], refiner->taps[py],
-          f);
-
+    kernel->derivatives (data, stride, refiner->taps[px], refiner->taps[py], f);
     det = f[2] * f[4] - f[3] * f[3];
     if (!(det < 0))
       return FALSE;

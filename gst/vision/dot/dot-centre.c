@@ -1,15 +1,26 @@
 /* The centres of dots: the ground around each, then the mean of what is brighter.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/vision/dot/dot-around.h"
+#include "gst/vision/dot/dot-centre.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "gst/vision/dot/dot-rows.h"
+#include "gst/vision/dot/dot-private.h"
 
 #define TILE CLOTH_DOT_TILE
 #define MARGIN CLOTH_DOT_MARGIN
+/* How far the ring in which the ground is looked for goes beyond the window, px. */
+#define RING 2.0
+/* Half-axes of the inside, of the spot's. */
+#define INSIDE 0.5
+/* Fewest pixels that give the ground. */
+#define MIN_GROUND 8
+/* Least luma of a dot above its ground over the ground: the noise of a bright wall gives
+ * spots as well. */
+#define LEAST_WEBER 0.25f
+/* Least share of the ring about a spot that was cut from another that is ground. */
+#define LEAST_GROUND 0.5f
 /* Variance of a centre without any noise, px², times the area: what sampling and the
  * tails of neighbours leave, measured on drawn dots of radius 2.5 to 15. */
 #define METHOD_VARIANCE 0.0016f
@@ -29,6 +40,33 @@ typedef struct
 {
   gdouble nx, ny, reach;
 } Side;
+
+/* The ellipse of second moments @shape. */
+static ClothDotAxes
+get_axes (const gdouble shape[3])
+{
+  const gdouble mean = (shape[0] + shape[2]) / 2;
+  const gdouble half = (shape[0] - shape[2]) / 2;
+  const gdouble root = sqrt (half * half + shape[1] * shape[1]);
+
+  return (ClothDotAxes) {
+  2 *sqrt (mean + root), 2 * sqrt (MAX (mean - root, 1.0 / 12)),
+        root > 0 ? half / root : 1, root > 0 ? shape[1] / root : 0};
+}
+
+/* With half-axes @scale times as long and @margin longer. */
+static ClothDotEllipse
+get_ellipse (const ClothDotAxes * axes, gdouble scale, gdouble margin)
+{
+  const gdouble a = axes->a * scale + margin, b = axes->b * scale + margin;
+  const gdouble p = (1 / (a * a) + 1 / (b * b)) / 2;
+  const gdouble q = (1 / (a * a) - 1 / (b * b)) / 2;
+  const gdouble A = p + q * axes->c, B = q * axes->s, C = p - q * axes->c;
+
+  return (ClothDotEllipse) {
+  -B / A, 1 / A, 1 / (a * a * b * b * A * A), sqrt (C) * a * b,
+        sqrt (A) * a * b};
+}
 
 /* Half the extent of the ellipse of second moments @shape towards (@dx, @dy). */
 static gdouble
@@ -54,7 +92,7 @@ sort_candidates (ClothDotDetector * detector)
     ClothDotCandidate *spot =
         &g_array_index (detector->candidates, ClothDotCandidate, i);
 
-    spot->axes = cloth_dot_axes (spot->shape);
+    spot->axes = get_axes (spot->shape);
     spot->tile = (gint) spot->y / TILE * detector->columns
         + (gint) spot->x / TILE;
     ends[spot->tile]++;
@@ -146,143 +184,98 @@ clip_rows (const Side * side, const ClothDotCandidate * spot, gint top, gint n,
                       spot->y))));
 }
 
-/* Lanes that are summed apart; the order of the sums is the same on every machine. */
-#define LANES 8
-#define INLINE static inline __attribute__((always_inline))
-
-typedef gfloat Floats __attribute__((vector_size (4 * LANES)));
-typedef gint32 Ints __attribute__((vector_size (4 * LANES)));
-typedef guint8 Bytes __attribute__((vector_size (2 * LANES)));
-typedef guint64 Pair __attribute__((vector_size (2 * LANES)));
-typedef gint16 Shorts __attribute__((vector_size (4 * LANES)));
-typedef gint16 HalfShorts __attribute__((vector_size (2 * LANES)));
-
-/* Sums of 1, x, y, x², xy, y², lane by lane. */
-typedef struct
-{
-  Floats m[6];
-} Moments;
-
-/* Adds columns at @x, by their sums of 1, y, y². */
-INLINE void
-add_columns (Moments * sum, Floats x, const Floats column[3])
-{
-  sum->m[0] += column[0];
-  sum->m[1] += column[0] * x;
-  sum->m[2] += column[1];
-  sum->m[3] += column[0] * (x * x);
-  sum->m[4] += column[1] * x;
-  sum->m[5] += column[2];
-}
-
-INLINE void
-total (const Moments * sum, gdouble m[6])
-{
-  for (gint k = 0; k < 6; k++) {
-    const Floats v = sum->m[k];
-    const Floats a = v + __builtin_shufflevector (v, v, 4, 5, 6, 7, 0, 1, 2, 3);
-    const Floats b = a + __builtin_shufflevector (a, a, 2, 3, 0, 1, 6, 7, 4, 5);
-
-    m[k] = b[0] + b[1];
-  }
-}
-
-/* What of a picture is weighed, and how. */
-typedef struct
-{
-  const ClothImage *luma;
-  gint x0, y0;                  /* the middle, about */
-  gint left, right;             /* columns of all rows */
-  gint top, n;                  /* rows */
-  const gint *first, *last;     /* columns of each */
-  gfloat foot, gain;
-} Weighing;
-
-/* By way of 16 bits, for which compilers know instructions. */
-INLINE Floats
-floats_of_bytes (Bytes bytes)
-{
-  const Shorts shorts = __builtin_convertvector (bytes, Shorts);
-  const HalfShorts half = __builtin_shufflevector (shorts, shorts, 0, 1, 2, 3,
-      4, 5, 6, 7);
-
-  return __builtin_convertvector (__builtin_convertvector (half, Ints), Floats);
-}
-
-/* @shares weighs each pixel by its luma, @edges counts those between foot and top. */
-INLINE void
-weigh_rows (const Weighing * weighing, gdouble shares[6], gdouble edges[6])
-{
-  static const Ints lane = { 0, 1, 2, 3, 4, 5, 6, 7 };
-  static const Floats one = { 1, 1, 1, 1, 1, 1, 1, 1 }, zero = { 0 };
-  const ClothImage *luma = weighing->luma;
-  Moments all_shares = { 0 }, all_edges = { 0 };
-
-  for (gint x = weighing->left; x <= weighing->right; x += LANES) {
-    const Floats dx = __builtin_convertvector (lane + (x - weighing->x0),
-        Floats);
-    const gsize room = (gsize) MIN (LANES, luma->width - x);
-    const guint8 *row = luma->data
-        + (gsize) weighing->top * (gsize) luma->stride + x;
-    Floats share[3] = { 0 }, edge[3] = { 0 };
-    Floats dy = zero + (gfloat) (weighing->top - weighing->y0);
-
-    for (gint i = 0; i < weighing->n; i++, row += luma->stride, dy += one) {
-      const Ints inside = (lane >= weighing->first[i] - x)
-          & (lane <= weighing->last[i] - x);
-      const Floats dy2 = dy * dy;
-      Bytes bytes = { 0 };
-      Floats raw, s;
-      Ints above, below, e;
-
-      if (room == LANES) {
-        guint64 eight;
-
-        memcpy (&eight, row, LANES);
-        bytes = (Bytes) (Pair) {
-        eight};
-      } else {
-        memcpy (&bytes, row, room);
-      }
-      raw = (floats_of_bytes (bytes) - weighing->foot) * weighing->gain;
-      above = inside & (raw > zero);
-      below = raw < one;
-      e = above & below;
-      s = (Floats) ((((Ints) raw & below) | ((Ints) one & ~below)) & above);
-      share[0] += s;
-      share[1] += s * dy;
-      share[2] += s * dy2;
-      edge[0] += (Floats) ((Ints) one & e);
-      edge[1] += (Floats) ((Ints) dy & e);
-      edge[2] += (Floats) ((Ints) dy2 & e);
-    }
-    add_columns (&all_shares, dx, share);
-    add_columns (&all_edges, dx, edge);
-  }
-  total (&all_shares, shares);
-  total (&all_edges, edges);
-}
-
+/* Where the ellipses about @spot are. */
 static void
-weigh_rows_plain (const Weighing * weighing, gdouble shares[6],
-    gdouble edges[6])
+find_rows (const ClothDotDetector * detector,
+    const ClothDotCandidate * spot, ClothDotRows * rows)
 {
-  weigh_rows (weighing, shares, edges);
+  const ClothImage *luma = &detector->image->luma;
+  const ClothDotEllipse inside = get_ellipse (&spot->axes, INSIDE, 0);
+  gint y1;
+
+  rows->window = get_ellipse (&spot->axes, 1, MARGIN);
+  rows->ring = get_ellipse (&spot->axes, 1, MARGIN + RING);
+  rows->y0 = MAX (0, (gint) ceil (spot->y - rows->ring.height));
+  y1 = MIN (luma->height - 1, (gint) floor (spot->y + rows->ring.height));
+  rows->n = CLAMP (y1 - rows->y0 + 1, 0, CLOTH_DOT_MAX_ROWS);
+  rows->inside_y0 = MAX (0, (gint) floor (spot->y - inside.height));
+  y1 = MIN (luma->height - 1, (gint) ceil (spot->y + inside.height));
+  rows->inside_n = CLAMP (y1 - rows->inside_y0 + 1, 0, CLOTH_DOT_MAX_ROWS);
+  detector->kernels->find_rows (&inside, spot->x, spot->y, rows->inside_y0,
+      rows->inside_n, luma->width, rows->inside.first, rows->inside.last);
+  detector->kernels->find_rows (&rows->window, spot->x, spot->y, rows->y0,
+      rows->n, luma->width, rows->weighed.first, rows->weighed.last);
+  detector->kernels->find_rows (&rows->ring, spot->x, spot->y, rows->y0,
+      rows->n, luma->width, rows->around.first, rows->around.last);
 }
 
-#if defined (__x86_64__) && defined (__GNUC__)
-#pragma GCC push_options
-#pragma GCC target ("avx2")
-static void
-weigh_rows_avx2 (const Weighing * weighing, gdouble shares[6], gdouble edges[6])
+static ClothDotTally
+tally_ring (const ClothDotDetector * detector, const ClothDotCandidate * spot,
+    const ClothDotRows * rows, guint8 most)
 {
-  weigh_rows (weighing, shares, edges);
+  ClothDotTally tally = { 0 };
+
+  detector->kernels->add_ring (&detector->image->luma, spot, rows, most,
+      &tally);
+  return tally;
 }
 
-#pragma GCC pop_options
-#else
-#define weigh_rows_avx2 weigh_rows_plain
-#endif
+/* Does a spot that was cut from another stand out? Where a wall's noise was cut there is
+ * hardly any ground about it. */
+static gboolean
+is_apart (const ClothDotDetector * detector, const ClothDotCandidate * spot,
+    const ClothDotRows * rows, const ClothDot * dot)
+{
+  const guint8 middle = (guint8) ((dot->colour[0] + dot->background) / 2);
+  const ClothDotTally dark = tally_ring (detector, spot, rows, middle);
+  const ClothDotTally all = tally_ring (detector, spot, rows, 255);
+
+  return (gfloat) dark.n >= LEAST_GROUND * (gfloat) all.n;
+}
+
+static gint64
+sum_chroma (const ClothDotImage * image, const ClothDotRows * rows, gint k)
+{
+  gint64 sum = 0;
+
+  for (gint i = 0; i < rows->inside_n; i++) {
+    const guint8 *chroma = image->chroma[k]
+        + (gsize) ((rows->inside_y0 + i) >> image->chroma_shift[1])
+        * (gsize) image->chroma_stride;
+
+    for (gint x = rows->inside.first[i]; x <= rows->inside.last[i]; x++)
+      sum += chroma[(x >> image->chroma_shift[0]) * image->chroma_step];
+  }
+  return sum;
+}
+
+/* Luma of the ground, mean colour of the inside, noise. FALSE when there is no inside or
+ * too little contrast. */
+static gboolean
+look_around (const ClothDotDetector * detector,
+    const ClothDotCandidate * spot, const ClothDotRows * rows, ClothDot * dot,
+    ClothDotBends * bends)
+{
+  const ClothDotImage *image = detector->image;
+  ClothDotTally ground, bright = { 0 };
+
+  detector->kernels->add_inside (&image->luma, rows, &bright, bends);
+  if (bright.n == 0)
+    return FALSE;
+  ground = tally_ring (detector, spot, rows, spot->threshold);
+  dot->background = ground.n >= MIN_GROUND
+      ? (gfloat) ground.sum / (gfloat) ground.n
+      : (gfloat) detector->low[(gint) spot->y / TILE * detector->columns
+      + (gint) spot->x / TILE];
+  dot->colour[0] = (gfloat) bright.sum / (gfloat) bright.n;
+  if (dot->colour[0] - dot->background < MAX (detector->params.contrast,
+          LEAST_WEBER * dot->background))
+    return FALSE;
+  for (gint k = 0; k < 2; k++)
+    dot->colour[1 + k] = image->chroma[k]
+        ? (gfloat) sum_chroma (image, rows, k) / (gfloat) bright.n : 128;
+  return !spot->touches || is_apart (detector, spot, rows, dot);
+}
 
 /* Weighs the window by what luma has above the foot, at most up to the top. With white
  * noise σ only pixels between both pass it on: cov = (σ·gain)²·Σ (p − c)(p − c)ᵀ / (Σw)²,
@@ -294,7 +287,7 @@ weigh_window (const ClothDotDetector * detector,
   const ClothImage *luma = &detector->image->luma;
   const ClothDotEllipse *window = &rows->window;
   const gfloat contrast = dot->colour[0] - dot->background;
-  Weighing weighing = {
+  ClothDotWeighing weighing = {
     .luma = luma,.x0 = (gint) floor (spot->x),.y0 = (gint) floor (spot->y),
     .foot = dot->background + (gfloat) FOOT * contrast,
     .gain = 1 / ((gfloat) (TOP - FOOT) * contrast),
@@ -326,10 +319,7 @@ weigh_window (const ClothDotDetector * detector,
     weighing.first = own.first;
     weighing.last = own.last;
   }
-  if (detector->level >= CLOTH_SIMD_AVX2)
-    weigh_rows_avx2 (&weighing, w, e);
-  else
-    weigh_rows_plain (&weighing, w, e);
+  detector->kernels->weigh (&weighing, w, e);
   if (!(w[0] > 1))
     return FALSE;
   c[0] = w[1] / w[0];
@@ -364,8 +354,8 @@ cloth_dot_measure (ClothDotDetector * detector)
     ClothDot dot;
     ClothDotRows rows;
 
-    cloth_dot_find_rows (detector, spot, &rows);
-    if (cloth_dot_look_around (detector, spot, &rows, &dot, &bends)
+    find_rows (detector, spot, &rows);
+    if (look_around (detector, spot, &rows, &dot, &bends)
         && weigh_window (detector, spot, &rows, &dot)
         && dot.area >= detector->params.min_area) {
       g_array_append_val (detector->dots, dot);

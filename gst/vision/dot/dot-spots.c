@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-#include "gst/vision/dot/dot-rows.h"
+#include "gst/vision/dot/dot-private.h"
 
 /* Room for @n more runs, as far as there may be that many; the first of them. */
 static ClothDotRun *

@@ -4,8 +4,8 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/vision/dot/dot.h"
 
+#include "gst/vision/dot/dot-centre.h"
 #include "gst/vision/dot/dot-private.h"
-#include "gst/vision/dot/dot-rows.h"
 #include "gst/vision/dot/dot-spots.h"
 
 #define TILE CLOTH_DOT_TILE
@@ -200,19 +200,19 @@ set_thresholds (ClothDotDetector * detector)
 }
 
 static void
-find_runs (ClothDotDetector * detector, ClothSimd level)
+find_runs (ClothDotDetector * detector)
 {
   const ClothImage *luma = &detector->image->luma;
   const gint columns = detector->columns;
 
   for (gint row = 0; row < detector->rows; row++)
-    cloth_dot_tile_bounds (luma, row, detector->least + row * columns,
-        detector->most + row * columns, level);
+    detector->kernels->find_bounds (luma, row,
+        detector->least + row * columns, detector->most + row * columns);
   set_thresholds (detector);
   for (gint y = 0; y < luma->height; y++) {
-    cloth_dot_row_bits (luma->data + (gsize) y * (gsize) luma->stride,
-        luma->width, detector->threshold + y / TILE * columns, detector->bits,
-        level);
+    detector->kernels->find_bits (luma->data +
+        (gsize) y * (gsize) luma->stride, luma->width,
+        detector->threshold + y / TILE * columns, detector->bits);
     cloth_dot_runs_of_bits (detector->runs, detector->bits, columns, y);
   }
   detector->cut = detector->runs->len >= CLOTH_DOT_MAX_RUNS;
@@ -343,10 +343,9 @@ cloth_dot_detector_run (ClothDotDetector * detector,
 
   within_reach.luma.width = MIN (image->luma.width, MAX_EDGE);
   within_reach.luma.height = MIN (image->luma.height, MAX_EDGE);
-  level = cloth_simd_resolve (level);
   start (detector, params, &within_reach);
-  detector->level = level;
-  find_runs (detector, level);
+  detector->kernels = CLOTH_SIMD_TABLE (cloth_dot_kernels, level);
+  find_runs (detector);
   find_candidates (detector);
   cloth_dot_measure (detector);
   detector->image = NULL;

@@ -18,13 +18,14 @@ G_BEGIN_DECLS
 /* Bytes of a row of the picture for a tile, with what the widest filter reaches. */
 #define CLOTH_SADDLE_TILE_LINE(words) ((gsize) (64 * (words) + 192))
 
-/* @scratch: aligned to 64 bytes, cloth_saddle_tile_size() of them. Words [word,
- * word + words) of every row of @mask are filled. */
-void cloth_saddle_mask_tile_avx2 (ClothSaddleMask * mask,
-    const ClothSaddleKernel * kernel, const ClothImage * image,
-    gint threshold, gint word, gint words, guint8 * scratch);
-void cloth_saddle_mask_tile_avx512 (ClothSaddleMask * mask,
-    const ClothSaddleKernel * kernel, const ClothImage * image,
-    gint threshold, gint word, gint words, guint8 * scratch);
+/* @run: fills words [word, word + words) of every row of @mask; NULL: there is only the
+ *   reference. @scratch: aligned to 64 bytes, as many as mask_run_tiles () counts. */
+typedef struct {
+  void (*run) (ClothSaddleMask * mask, const ClothSaddleKernel * kernel,
+      const ClothImage * image, gint threshold, gint word, gint words,
+      guint8 * scratch);
+} ClothSaddleTile;
+
+CLOTH_SIMD_TABLES (ClothSaddleTile, cloth_saddle_tile);
 
 G_END_DECLS

@@ -1,7 +1,7 @@
 /* Which vector instructions the running processor offers.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/math/cpu.h"
+#include "gst/math/simd.h"
 
 /* @wanted: the instruction set asked for
  *
@@ -12,7 +12,7 @@ cloth_simd_resolve (ClothSimd wanted)
 {
   ClothSimd best = CLOTH_SIMD_SCALAR;
 
-#if defined (__x86_64__) && defined (__GNUC__)
+#ifdef __x86_64__
   __builtin_cpu_init ();
   if (__builtin_cpu_supports ("avx2") && __builtin_cpu_supports ("fma")) {
     best = CLOTH_SIMD_AVX2;
