@@ -60,7 +60,7 @@ struct _GstQuadTrack
   ClothSaddleDetector *detector;
   GArray *taken_seeds;          /* gfloat, of this picture */
   GArray *saddles;              /* GstClothSaddle */
-  GArray *candidates;           /* ClothSaddleCandidate */
+  GArray *candidates;           /* GstClothCandidate */
   GArray *quads;                /* GstClothQuad */
   gboolean found;
   GstQuadTrackWarned warned;
@@ -107,10 +107,12 @@ gst_quad_track_squares_get_type (void)
 }
 
 G_DEFINE_TYPE (GstQuadTrack, gst_quad_track, GST_TYPE_CLOTH_FILTER);
+
 GST_ELEMENT_REGISTER_DEFINE (quadtrack, "quadtrack", GST_RANK_NONE,
     GST_TYPE_QUAD_TRACK);
 
 G_STATIC_ASSERT (sizeof (GstClothSaddle) == sizeof (ClothSaddle));
+G_STATIC_ASSERT (sizeof (GstClothCandidate) == sizeof (ClothSaddleCandidate));
 G_STATIC_ASSERT ((gint) GST_CLOTH_QUAD_TRACKED == (gint) CLOTH_QUAD_TRACKED);
 G_STATIC_ASSERT ((gint) GST_CLOTH_QUAD_LOST == (gint) CLOTH_QUAD_LOST);
 
@@ -246,16 +248,11 @@ gst_quad_track_take_saddles (GstQuadTrack * self, GstClothSaddles * meta,
   from = gst_cloth_saddles_get_candidates (meta, &n);
   g_array_set_size (self->candidates, 0);
   for (guint k = 0; k < n; k++) {
-    ClothSaddleCandidate candidate;
-
     if (!(from[k].x >= -0.5f && from[k].y >= -0.5f
             && from[k].x < (gfloat) image->width - 0.5f
             && from[k].y < (gfloat) image->height - 0.5f))
       continue;
-    candidate.x = (guint16) lrintf (from[k].x);
-    candidate.y = (guint16) lrintf (from[k].y);
-    candidate.response = from[k].response;
-    g_array_append_val (self->candidates, candidate);
+    g_array_append_val (self->candidates, from[k]);
   }
 }
 
@@ -623,6 +620,6 @@ gst_quad_track_init (GstQuadTrack * self)
   self->seeds = g_array_new (FALSE, FALSE, sizeof (gfloat));
   self->taken_seeds = g_array_new (FALSE, FALSE, sizeof (gfloat));
   self->saddles = g_array_new (FALSE, FALSE, sizeof (GstClothSaddle));
-  self->candidates = g_array_new (FALSE, FALSE, sizeof (ClothSaddleCandidate));
+  self->candidates = g_array_new (FALSE, FALSE, sizeof (GstClothCandidate));
   self->quads = g_array_new (FALSE, FALSE, sizeof (GstClothQuad));
 }

@@ -34,6 +34,7 @@ GST_DEBUG_CATEGORY_STATIC (saddle_detect_debug);
 
 /* The refined saddles go into the metadata as they are. */
 G_STATIC_ASSERT (sizeof (ClothSaddle) == sizeof (GstClothSaddle));
+G_STATIC_ASSERT (sizeof (ClothSaddleCandidate) == sizeof (GstClothCandidate));
 G_STATIC_ASSERT (G_STRUCT_OFFSET (ClothSaddle, cov) ==
     G_STRUCT_OFFSET (GstClothSaddle, cov_xx));
 
@@ -96,8 +97,6 @@ struct _GstSaddleDetect
 
   /* the streaming thread's own */
   ClothSaddleDetector *detector;
-  GstClothCandidate *candidates;
-  guint candidates_allocated;
   gboolean warned;
 };
 
@@ -114,7 +113,6 @@ gst_saddle_detect_finalize (GObject * object)
   GstSaddleDetect *self = GST_SADDLE_DETECT (object);
 
   cloth_saddle_detector_free (self->detector);
-  g_free (self->candidates);
   G_OBJECT_CLASS (gst_saddle_detect_parent_class)->finalize (object);
 }
 
@@ -144,23 +142,9 @@ gst_saddle_detect_analyse (GstClothFilter * filter,
     self->warned = TRUE;
   }
 
-  if (n_candidates > self->candidates_allocated) {
-    self->candidates_allocated = n_candidates + n_candidates / 2;
-    self->candidates = g_renew (GstClothCandidate, self->candidates,
-        self->candidates_allocated);
-  }
-  for (guint i = 0; i < n_candidates; i++) {
-    /* *INDENT-OFF* */
-    self->candidates[i] = (GstClothCandidate) {
-      .x = candidates[i].x,
-      .y = candidates[i].y,
-      .response = candidates[i].response,
-    };
-    /* *INDENT-ON* */
-  }
   payload = gst_cloth_saddles_new (frame->camera, frame->sequence,
-      (const GstClothSaddle *) saddles, n_saddles, self->candidates,
-      n_candidates);
+      (const GstClothSaddle *) saddles, n_saddles,
+      (const GstClothCandidate *) candidates, n_candidates);
   gst_buffer_add_cloth_saddles_meta (frame->buffer, payload);
   GST_LOG_OBJECT (self, "%u saddles, %u candidates, epsilon %g, noise %g",
       n_saddles, n_candidates,

@@ -27,5 +27,10 @@ while IFS= read -r file; do
 done < <(find -H gst elements tools tests -name '*.c' | sort)
 
 [ "$status" -eq 0 ] || echo "Run tests/style.sh --fix."
+# Without its semicolon indent takes such a macro for the head of what follows.
+if grep -rnE '^G_DEFINE_(QUARK|AUTO)[A-Z_]* \([^()]*\)$' --include='*.c' gst elements tools tests; then
+  echo "A semicolon is missing; a quark is a function of its own."
+  status=1
+fi
 echo "$files files"
 [ "$files" -gt 0 ] && exit $status

@@ -5,9 +5,11 @@
 
 #include <stdarg.h>
 
-/* *INDENT-OFF* */
-G_DEFINE_QUARK (cloth-file-error-quark, cloth_file_error)
-/* *INDENT-ON* */
+GQuark
+cloth_file_error_quark (void)
+{
+  return g_quark_from_static_string ("cloth-file-error-quark");
+}
 
 /* @error: (out): set to %CLOTH_FILE_ERROR_INVALID
  * @format: what is wrong and how to mend it

@@ -3,6 +3,8 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/fit/error.h"
 
-/* *INDENT-OFF* */
-G_DEFINE_QUARK (cloth-fit-error-quark, cloth_fit_error)
-/* *INDENT-ON* */
+GQuark
+cloth_fit_error_quark (void)
+{
+  return g_quark_from_static_string ("cloth-fit-error-quark");
+}

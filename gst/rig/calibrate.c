@@ -77,8 +77,10 @@ work_clear (Work * w)
   cloth_rig_free (w->rig);
 }
 
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Work, work_clear)
-     static void tell (const Work * w, const gchar * stage, gdouble fraction)
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Work, work_clear);
+
+static void
+tell (const Work * w, const gchar * stage, gdouble fraction)
 {
   if (w->progress)
     w->progress (stage, fraction, w->user_data);

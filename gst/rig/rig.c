@@ -12,10 +12,15 @@
 /* How far R R' may be from the identity: a matrix typed with five digits passes. */
 #define ROTATION_TOLERANCE 1e-4
 
-G_DEFINE_QUARK (cloth - rig - error - quark, cloth_rig_error)
-     static const gchar *const lens_names[] = { "none", "brown5", "brown8",
-       "fisheye"
-     };
+GQuark
+cloth_rig_error_quark (void)
+{
+  return g_quark_from_static_string ("cloth-rig-error-quark");
+}
+
+static const gchar *const lens_names[] = { "none", "brown5", "brown8",
+  "fisheye"
+};
 
 /* @lens: a lens model
  *

@@ -8,9 +8,11 @@
 
 #include "gst/effect/effect.h"
 
-/* *INDENT-OFF* */
-G_DEFINE_QUARK (cloth-model-error-quark, cloth_model_error)
-/* *INDENT-ON* */
+GQuark
+cloth_model_error_quark (void)
+{
+  return g_quark_from_static_string ("cloth-model-error-quark");
+}
 
 /* Every number of model.json but those of effects. */
 static const struct

@@ -46,10 +46,12 @@ canvas_free (Canvas * canvas)
   g_free (canvas);
 }
 
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (Canvas, canvas_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (Canvas, canvas_free);
+
 /* An ellipse with a soft edge, the mean of SUB·SUB points a pixel: it looks the same
  * from both sides of its centre, so that is exact. */
-     static void draw (Canvas * canvas, Drawn dot, gdouble contrast)
+static void
+draw (Canvas * canvas, Drawn dot, gdouble contrast)
 {
   const gdouble c = cos (dot.angle), s = sin (dot.angle);
   const gdouble reach = MAX (dot.a, dot.b) + 5 * BLUR;

@@ -30,10 +30,12 @@ raster_clear (Raster * raster)
   g_free (raster->rgb);
 }
 
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Raster, raster_clear)
-     static gchar *folder;
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Raster, raster_clear);
 
-     static gchar *in_folder (const gchar * name)
+static gchar *folder;
+
+static gchar *
+in_folder (const gchar * name)
 {
   return g_build_filename (folder, name, NULL);
 }

@@ -63,8 +63,8 @@ scene_paint (Scene * scene, gint left, gint top)
       top + SIDE - 0.5, BLACK);
   for (gint c = 0; c < 4; c++) {
     ClothSaddleCandidate candidate = {
-      (guint16) (left + (c == 1 || c == 2 ? SIDE : 0)),
-      (guint16) (top + (c >= 2 ? SIDE : 0)), 100
+      (gfloat) (left + (c == 1 || c == 2 ? SIDE : 0)),
+      (gfloat) (top + (c >= 2 ? SIDE : 0)), 100
     };
 
     g_array_append_val (scene->candidates, candidate);

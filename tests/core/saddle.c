@@ -181,7 +181,7 @@ test_reference (void)
     candidates = cloth_saddle_detector_get_candidates (detector, &n);
     g_assert_cmpuint (n, >, 20);
     for (guint i = 0; i < n; i++) {
-      gint at = candidates[i].y * W + candidates[i].x;
+      gint at = (gint) candidates[i].y * W + (gint) candidates[i].x;
       found[at] = TRUE;
       worst = MAX (worst, fabs (candidates[i].response + det[at]));
     }

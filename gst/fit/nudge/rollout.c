@@ -49,9 +49,10 @@ run_clear (Run * run)
   g_free (run->v);
 }
 
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Run, run_clear)
-     static gboolean
-         run_init (Run * run, const ClothRecording * recording,
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Run, run_clear);
+
+static gboolean
+run_init (Run * run, const ClothRecording * recording,
     const ClothModel * const *models, guint n_models,
     const ClothRolloutOptions * options, GError ** error)
 {

@@ -37,8 +37,10 @@ bridge_clear (Bridge * b)
   g_free (b->moved);
 }
 
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Bridge, bridge_clear)
-     static gdouble *place (const Bridge * b, guint frame, guint vertex)
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Bridge, bridge_clear);
+
+static gdouble *
+place (const Bridge * b, guint frame, guint vertex)
 {
   return b->recording->y + 3 * ((gsize) frame * b->recording->n + vertex);
 }

@@ -242,8 +242,8 @@ scan_mask (ClothSaddleDetector * self, gint threshold, gint listed, gint reach,
 
         if (d >= -threshold)
           continue;
-        pixel.x = (guint16) (mask->x + x);
-        pixel.y = (guint16) (mask->y + y);
+        pixel.x = (gfloat) (mask->x + x);
+        pixel.y = (gfloat) (mask->y + y);
         pixel.response = (gfloat) - d * self->kernel.scale;
         if (d >= -listed || self->n_candidates == limit)
           all &= d >= -listed;

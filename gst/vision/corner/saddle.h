@@ -26,9 +26,10 @@ typedef struct {
   gfloat cov[3];
 } ClothSaddle;
 
-/* A pixel with Det(I * G) < -epsilon: where a corner may be put (paper 3.4). */
+/* A pixel with Det(I * G) < -epsilon: where a corner may be put (paper 3.4). Its place is
+ * whole in the picture that was searched, and need not be in one that was scaled since. */
 typedef struct {
-  guint16 x, y;
+  gfloat x, y;
   gfloat response;
 } ClothSaddleCandidate;
 
