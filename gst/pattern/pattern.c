@@ -13,9 +13,11 @@
 /* Rounding of decimal sizes that should add up exactly. */
 #define SLACK 1e-9
 
-/* *INDENT-OFF* */
-G_DEFINE_QUARK (cloth-pattern-error-quark, cloth_pattern_error)
-/* *INDENT-ON* */
+GQuark
+cloth_pattern_error_quark (void)
+{
+  return g_quark_from_static_string ("cloth-pattern-error-quark");
+}
 
 /* @pattern: a pattern
  * @error: return location

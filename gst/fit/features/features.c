@@ -16,7 +16,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/fit/features/projection.h"
+#include "gst/fit/features/features-private.h"
 
 /* A wave that the others make up to this share of its length is left out. */
 #define DEPENDENT 1e-3

@@ -1,7 +1,7 @@
 /* The waves of what is off in a frame.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/fit/features/projection.h"
+#include "gst/fit/features/features-private.h"
 
 #include <string.h>
 
