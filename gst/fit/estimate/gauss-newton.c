@@ -134,8 +134,10 @@ fit_clear (Fit * fit)
   g_clear_pointer (&fit->variances, g_ptr_array_unref);
 }
 
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Fit, fit_clear)
-     static gboolean linearise (gpointer data, GError ** error)
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Fit, fit_clear);
+
+static gboolean
+linearise (gpointer data, GError ** error)
 {
   Fit *fit = data;
 

@@ -254,9 +254,10 @@ moved_clear (Moved * moved)
   g_free (moved->reference);
 }
 
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Moved, moved_clear)
-     static void
-         move (Moved * moved, ClothSensitivities * sensitivities,
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Moved, moved_clear);
+
+static void
+move (Moved * moved, ClothSensitivities * sensitivities,
     const ClothCandidates * candidates, const ClothModel * model,
     const guint * directions, guint m)
 {
