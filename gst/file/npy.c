@@ -409,7 +409,7 @@ read_rows (ClothNpyReader * reader, guint64 first_row, guint64 n_rows,
 {
   const ClothNpyInfo *info = &reader->info;
   gsize size = info->item_size;
-  guint64 offset, n_items, done = 0;
+  guint64 offset = 0, n_items = 0, done = 0;
 
   if (!find_rows (info, first_row, n_rows, &offset, &n_items, error))
     return FALSE;
@@ -491,7 +491,7 @@ cloth_npy_reader_read_raw (ClothNpyReader * reader, guint64 first_row,
     guint64 n_rows, gpointer items, GError ** error)
 {
   gsize size = reader->info.item_size;
-  guint64 offset, n_items;
+  guint64 offset = 0, n_items = 0;
 
   if (!find_rows (&reader->info, first_row, n_rows, &offset, &n_items, error) ||
       !cloth_input_read_at (reader->input, offset, items,

@@ -12,6 +12,7 @@ load_npy_floats (const gchar * path, ClothNpyInfo * info, GError ** error)
   g_autoptr (ClothNpyReader) reader = cloth_npy_reader_open (path, error);
   g_autofree gfloat *items = NULL;
 
+  *info = (ClothNpyInfo) { 0 };
   if (!reader)
     return NULL;
   *info = *cloth_npy_reader_get_info (reader);
