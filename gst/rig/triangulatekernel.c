@@ -1,7 +1,7 @@
 /* Inner loops of triangulation: the same arithmetic for 1, 4 or 8 points at a time.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/rig/triangulatekernel.h"
+#include "gst/rig/triangulateprivate.h"
 
 #include <math.h>
 

@@ -103,8 +103,7 @@ PENDING = (
     ('table', 'gst/vision: has no door label'), ('readme', 'gst/vision/README.md: label'),
     ('doors', 'elements/gstdotlabel'),
     ('circles', 'gst/effect'), ('circles', 'elements/gstclothcamera'),
-    ('circles', 'elements/gstclothsync'), ('circles', 'gst/rig/triangulate'),
-    ('circles', 'gst/vision/corner/saddle'), ('circles', 'gst/vision/dot/dot'),
+    ('circles', 'elements/gstclothsync'),
 )
 
 LICENCE = 'SPDX-License-Identifier: LGPL-2.1-or-later'

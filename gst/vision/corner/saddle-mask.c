@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/vision/corner/saddle-tile.h"
+#include "gst/vision/corner/saddle-mask-private.h"
 
 /* Positive part of the second difference of the weights: what a picture of 0 and 1
  * can make of it at most. */

@@ -1,7 +1,7 @@
 /* The sub-pixel place of a saddle from the pixels around its strongest one.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/vision/corner/saddle-refine.h"
+#include "gst/vision/corner/saddle-private.h"
 
 #include <math.h>
 #include <string.h>

@@ -5,7 +5,7 @@
  * in equal lanes. A tile is as wide as lets its rows stay in the first-level cache.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/vision/corner/saddle-tile.h"
+#include "gst/vision/corner/saddle-mask-private.h"
 
 #ifdef __AVX2__
 

@@ -8,7 +8,7 @@
 
 #include "gst/vision/corner/corner.h"
 #include "gst/vision/corner/saddle-mask.h"
-#include "gst/vision/corner/saddle-refine.h"
+#include "gst/vision/corner/saddle-private.h"
 
 /* Saddles whose residual is looked at in a picture. */
 #define MAX_RESIDUALS 12

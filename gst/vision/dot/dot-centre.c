@@ -1,8 +1,6 @@
 /* The centres of dots: the ground around each, then the mean of what is brighter.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/vision/dot/dot-centre.h"
-
 #include <math.h>
 #include <string.h>
 

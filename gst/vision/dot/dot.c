@@ -4,7 +4,6 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/vision/dot/dot.h"
 
-#include "gst/vision/dot/dot-centre.h"
 #include "gst/vision/dot/dot-private.h"
 #include "gst/vision/dot/dot-spots.h"
 
