@@ -358,12 +358,10 @@ static gboolean
 find_rows (const ClothNpyInfo * info, guint64 first, guint64 n_rows,
     guint64 * offset, guint64 * n_items, GError ** error)
 {
-  if (first > info->n_rows || n_rows > info->n_rows - first) {
-    cloth_file_invalid (error,
+  if (first > info->n_rows || n_rows > info->n_rows - first)
+    return cloth_file_invalid (error,
         "rows %" G_GUINT64_FORMAT " to %" G_GUINT64_FORMAT
         " of %" G_GUINT64_FORMAT, first, first + n_rows, info->n_rows);
-    return FALSE;
-  }
   *offset = info->data_offset + first * info->row_items * info->item_size;
   *n_items = n_rows * info->row_items;
   return TRUE;
