@@ -37,28 +37,75 @@
 #include <string.h>
 
 #include "elements/gstclothpaint.h"
+#include "elements/gstclothproperties.h"
 #include "elements/gstclothutil.h"
 #include "gst/render/render.h"
+#include "gst/rig/orbit.h"
 
 GST_DEBUG_CATEGORY_STATIC (cloth_camera_debug);
 #define GST_CAT_DEFAULT cloth_camera_debug
 
-#define DEFAULT_SEED 0
-#define DEFAULT_THREADS 0
+/* Of pictures of the free view, which may be of any size. */
+#define DEFAULT_WIDTH 1280
+#define DEFAULT_HEIGHT 720
 
-enum
+typedef struct
 {
-  PROP_0,
-  PROP_RIG,
-  PROP_CAMERA,
-  PROP_PATTERN,
-  PROP_TEXTURE,
-  PROP_EFFECTS,
-  PROP_SEED,
-  PROP_THREADS,
-  PROP_VIEW,
-  PROP_VIEW_LAST = PROP_VIEW + GST_CLOTH_CAMERA_VIEW_SETTINGS - 1
+  gchar *rig, *camera, *pattern, *texture, *effects;
+  gdouble azimuth, elevation, distance;
+  guint64 seed;
+  guint threads;
+} Settings;
+
+#define SETTING(member) GST_CLOTH_SETTING (Settings, member)
+#define ANY_TIME (GST_PARAM_CONTROLLABLE | GST_PARAM_MUTABLE_PLAYING)
+
+/* *INDENT-OFF* */
+static const GstClothProperty properties[] = {
+  {"rig", "Rig",
+    "Calibration file (rig.json) that has the camera; without one the view is free",
+    G_TYPE_STRING, SETTING (rig), GST_PARAM_MUTABLE_READY},
+  {"camera", "Camera",
+    "Name in the rig of the camera that films; may be left out when the rig has "
+    "one camera",
+    G_TYPE_STRING, SETTING (camera), GST_PARAM_MUTABLE_READY},
+  {"pattern", "Pattern",
+    "Pattern file (pattern.json) that is printed on the cloth: squares or coloured dots",
+    G_TYPE_STRING, SETTING (pattern), GST_PARAM_MUTABLE_READY},
+  {"texture", "Texture",
+    "Picture file that is printed over the whole cloth, instead of a pattern",
+    G_TYPE_STRING, SETTING (texture), GST_PARAM_MUTABLE_READY},
+  {"effects", "Effects",
+    "Camera and image effects, as “noise,sigma=3; "
+    "rolling_shutter,seconds=0.01”",
+    G_TYPE_STRING, SETTING (effects), GST_PARAM_MUTABLE_READY},
+  {"seed", "Seed", "Seed of the noise and of which pictures are lost",
+    G_TYPE_UINT64, SETTING (seed), GST_PARAM_MUTABLE_READY},
+  {"threads", "Threads", "Threads that draw; 0: one a processor",
+    G_TYPE_UINT, SETTING (threads), GST_PARAM_MUTABLE_READY, 0, 1024},
+  {"azimuth", "azimuth",
+    "Free view: side from which the cloth is seen, degrees counter-clockwise "
+    "from above; 0: from −y, 90: from +x",
+    G_TYPE_DOUBLE, SETTING (azimuth), ANY_TIME, -3600, 3600},
+  {"elevation", "elevation",
+    "Free view: height from which the cloth is seen, degrees above the horizon",
+    G_TYPE_DOUBLE, SETTING (elevation), ANY_TIME, -90, 90},
+  {"distance", "distance",
+    "Free view: distance from the middle of the first mesh, m; 0: so far that "
+    "all of that mesh is seen from any side",
+    G_TYPE_DOUBLE, SETTING (distance), ANY_TIME, 0, 1000},
 };
+/* *INDENT-ON* */
+
+static const Settings default_settings = {.elevation = 15 };
+
+/* The format of the pictures, and the RGB that those of luma and chroma come from. */
+typedef struct
+{
+  GstVideoInfo info, drawn;
+  GstVideoConverter *converter; /* NULL: drawn as it leaves */
+  GstBuffer *rgb;
+} Output;
 
 /* One mesh of the window around the picture that is drawn. */
 typedef struct
@@ -74,20 +121,19 @@ struct _GstClothCamera
   GstBaseTransform parent;
 
   /* with the object lock */
-  gchar *rig, *camera, *pattern, *texture, *effects;
-  GstClothCameraView view;
-  guint64 seed;
-  guint threads;
+  Settings settings;
   GstClockTime latency;
 
   /* from start to stop */
   ClothCapture capture;
   gboolean free_view;           /* without a rig */
+  ClothOrbit orbit;             /* of the free view */
+  gboolean framed;              /* the orbit knows where the cloth is */
   gboolean still;               /* a picture shows the mesh of its own time only */
 
   /* streaming thread */
   GstCaps *mesh_caps;           /* that the renderer is made for */
-  GstClothCameraOutput output;
+  Output output;
   ClothRenderer *renderer;
   ClothPaint *paint;
   ClothRenderStyle style;
@@ -115,6 +161,71 @@ static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE ("src",
 G_DEFINE_TYPE (GstClothCamera, gst_cloth_camera, GST_TYPE_BASE_TRANSFORM);
 GST_ELEMENT_REGISTER_DEFINE (clothcamera, "clothcamera", GST_RANK_NONE,
     GST_TYPE_CLOTH_CAMERA);
+
+/* ---- the formats of pictures: drawn in them, or drawn in RGB and converted ---- */
+
+static void
+output_clear (Output * output)
+{
+  g_clear_pointer (&output->converter, gst_video_converter_free);
+  gst_clear_buffer (&output->rgb);
+}
+
+/* Pictures of luma and chroma are computed by GStreamer from RGB, with the matrix, the
+ * range and the sites of chroma that the caps say. FALSE: @caps are no video. */
+static gboolean
+output_set (Output * output, GstCaps * caps)
+{
+  output_clear (output);
+  if (!gst_video_info_from_caps (&output->info, caps))
+    return FALSE;
+  output->drawn = output->info;
+  if (!GST_VIDEO_INFO_IS_YUV (&output->info))
+    return TRUE;
+  if (!gst_video_info_set_format (&output->drawn, GST_VIDEO_FORMAT_RGBx,
+          GST_VIDEO_INFO_WIDTH (&output->info),
+          GST_VIDEO_INFO_HEIGHT (&output->info)))
+    return FALSE;
+  output->drawn.fps_n = GST_VIDEO_INFO_FPS_N (&output->info);
+  output->drawn.fps_d = GST_VIDEO_INFO_FPS_D (&output->info);
+  /* one thread, so that no seam between threads can show */
+  output->converter = gst_video_converter_new (&output->drawn, &output->info,
+      NULL);
+  if (!output->converter)
+    return FALSE;
+  output->rgb = gst_buffer_new_allocate (NULL, GST_VIDEO_INFO_SIZE
+      (&output->drawn), NULL);
+  return TRUE;
+}
+
+/* Maps @picture, and what is to be drawn into: @picture itself or the RGB before. */
+static gboolean
+output_map (Output * output,
+    GstBuffer * picture, GstVideoFrame * frame, GstVideoFrame * drawn)
+{
+  if (!gst_video_frame_map (frame, &output->info, picture, GST_MAP_WRITE))
+    return FALSE;
+  if (!output->converter) {
+    *drawn = *frame;
+    return TRUE;
+  }
+  if (gst_video_frame_map (drawn, &output->drawn, output->rgb,
+          GST_MAP_READWRITE))
+    return TRUE;
+  gst_video_frame_unmap (frame);
+  return FALSE;
+}
+
+/* To be called when all is drawn. */
+static void
+output_unmap (Output * output, GstVideoFrame * frame, GstVideoFrame * drawn)
+{
+  if (output->converter) {
+    gst_video_converter_frame (output->converter, drawn, frame);
+    gst_video_frame_unmap (drawn);
+  }
+  gst_video_frame_unmap (frame);
+}
 
 /* ---- the window of meshes ---- */
 
@@ -298,10 +409,11 @@ draw (GstClothCamera * self, const Frame * frame, GstVideoFrame * video)
   cloth_renderer_draw (self->renderer, self->paint, &self->capture,
       &self->style, &motion, frame->time_s);
   cloth_renderer_develop (self->renderer, &self->capture, frame->sequence,
-      self->seed, n_planes, planes, strides,
+      self->settings.seed, n_planes, planes, strides,
       GST_VIDEO_FRAME_COMP_PSTRIDE (video, 0));
 }
 
+/* About where the cloth was when it was first seen, from where the settings say. */
 static void
 aim (GstClothCamera * self, const Frame * frame)
 {
@@ -311,14 +423,19 @@ aim (GstClothCamera * self, const Frame * frame)
 
   if (GST_CLOCK_TIME_IS_VALID (time))
     gst_object_sync_values (GST_OBJECT (self), time);
+  if (!self->framed)
+    self->framed = cloth_orbit_frame (&self->orbit, self->n_vertices,
+        frame->positions);
   GST_OBJECT_LOCK (self);
-  gst_cloth_camera_view_aim (&self->view, self->n_vertices, frame->positions,
-      GST_VIDEO_INFO_WIDTH (&self->output.info),
-      GST_VIDEO_INFO_HEIGHT (&self->output.info), &camera);
+  self->orbit.azimuth = self->settings.azimuth;
+  self->orbit.elevation = self->settings.elevation;
+  self->orbit.distance = self->settings.distance;
   GST_OBJECT_UNLOCK (self);
+  cloth_orbit_camera (&self->orbit, GST_VIDEO_INFO_WIDTH (&self->output.info),
+      GST_VIDEO_INFO_HEIGHT (&self->output.info), &camera);
   cloth_capture_init (&self->capture, &camera);
   /* they were good at the start */
-  cloth_capture_add_effects (&self->capture, self->effects, NULL);
+  cloth_capture_add_effects (&self->capture, self->settings.effects, NULL);
 }
 
 static GstFlowReturn
@@ -337,7 +454,7 @@ gst_cloth_camera_generate_output (GstBaseTransform * trans, GstBuffer ** output)
   if (self->free_view)
     aim (self, frame);
   if (self->last && cloth_capture_is_dropped (&self->capture,
-          frame->sequence, self->seed)) {
+          frame->sequence, self->settings.seed)) {
     picture = gst_buffer_copy (self->last);
     gst_buffer_copy_into (picture, frame->buffer, GST_BUFFER_COPY_TIMESTAMPS,
         0, -1);
@@ -346,14 +463,14 @@ gst_cloth_camera_generate_output (GstBaseTransform * trans, GstBuffer ** output)
         ->prepare_output_buffer (trans, frame->buffer, &picture);
     if (flow != GST_FLOW_OK)
       return flow;
-    if (!gst_cloth_camera_output_map (&self->output, picture, &video, &drawn)) {
+    if (!output_map (&self->output, picture, &video, &drawn)) {
       GST_ELEMENT_ERROR (self, STREAM, FORMAT,
           ("The picture does not fit its caps."), (NULL));
       gst_buffer_unref (picture);
       return GST_FLOW_ERROR;
     }
     draw (self, frame, &drawn);
-    gst_cloth_camera_output_unmap (&self->output, &video, &drawn);
+    output_unmap (&self->output, &video, &drawn);
     if (self->capture.drop_rate > 0)
       gst_buffer_replace (&self->last, picture);
   }
@@ -472,20 +589,21 @@ gst_cloth_camera_load (GstClothCamera * self)
   const ClothCamera *camera;
   ClothCamera any;
 
-  self->free_view = !self->rig && !self->camera;
+  self->free_view = !self->settings.rig && !self->settings.camera;
   if (self->free_view) {
-    cloth_orbit_camera (&self->view.orbit, 1, 1, &any);
+    cloth_orbit_camera (&self->orbit, 1, 1, &any);
     camera = &any;
   } else {
-    rig = gst_cloth_open_rig (GST_ELEMENT (self), self->rig, self->camera,
-        &camera);
+    rig = gst_cloth_open_rig (GST_ELEMENT (self), self->settings.rig,
+        self->settings.camera, &camera);
     if (!rig)
       return FALSE;
   }
   cloth_capture_init (&self->capture, camera);
-  if (!cloth_capture_add_effects (&self->capture, self->effects, &error)) {
+  if (!cloth_capture_add_effects (&self->capture, self->settings.effects,
+          &error)) {
     GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS, ("Wrong effects: %s",
-            error->message), ("effects=%s", self->effects));
+            error->message), ("effects=%s", self->settings.effects));
     return FALSE;
   }
   self->still = self->capture.exposure_s == 0
@@ -499,7 +617,7 @@ gst_cloth_camera_start (GstBaseTransform * trans)
 {
   GstClothCamera *self = GST_CLOTH_CAMERA (trans);
 
-  if (self->pattern && self->texture) {
+  if (self->settings.pattern && self->settings.texture) {
     GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
         ("The cloth can't carry both a pattern and a texture."),
         ("Leave out pattern= or texture=."));
@@ -514,7 +632,7 @@ gst_cloth_camera_forget (GstClothCamera * self)
   gst_cloth_camera_reset (self);
   g_ptr_array_set_size (self->spare, 0);
   gst_clear_caps (&self->mesh_caps);
-  self->view.framed = FALSE;
+  self->framed = FALSE;
   g_clear_pointer (&self->renderer, cloth_renderer_free);
   g_clear_pointer (&self->paint, cloth_paint_free);
 }
@@ -525,7 +643,7 @@ gst_cloth_camera_stop (GstBaseTransform * trans)
   GstClothCamera *self = GST_CLOTH_CAMERA (trans);
 
   gst_cloth_camera_forget (self);
-  gst_cloth_camera_output_clear (&self->output);
+  output_clear (&self->output);
   memset (&self->capture, 0, sizeof (self->capture));
   GST_OBJECT_LOCK (self);
   self->latency = 0;
@@ -538,12 +656,13 @@ gst_cloth_camera_set_caps (GstBaseTransform * trans, GstCaps * in,
     GstCaps * out)
 {
   GstClothCamera *self = GST_CLOTH_CAMERA (trans);
+  const Settings *settings = &self->settings;
   g_autoptr (GError) error = NULL;
   g_autoptr (GstClothTopology) topology = NULL;
   const gfloat *uv;
   const guint32 *faces;
 
-  if (!gst_cloth_camera_output_set (&self->output, out)) {
+  if (!output_set (&self->output, out)) {
     GST_ERROR_OBJECT (self, "can't make pictures of %" GST_PTR_FORMAT, out);
     return FALSE;
   }
@@ -567,21 +686,21 @@ gst_cloth_camera_set_caps (GstBaseTransform * trans, GstCaps * in,
   self->fps_d = GST_VIDEO_INFO_FPS_D (&self->output.info);
   uv = gst_cloth_topology_get_uv (topology, NULL);
   faces = gst_cloth_topology_get_faces (topology, NULL);
-  if (self->pattern)
-    self->paint = gst_cloth_paint_pattern (self->pattern, &error);
-  else if (self->texture)
-    self->paint = gst_cloth_paint_texture (self->texture, uv, self->n_vertices,
-        &error);
+  if (settings->pattern)
+    self->paint = gst_cloth_paint_pattern (settings->pattern, &error);
+  else if (settings->texture)
+    self->paint = gst_cloth_paint_texture (settings->texture, uv,
+        self->n_vertices, &error);
   else
     self->paint = gst_cloth_paint_white ();
   if (!self->paint) {
     GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ,
-        ("Can't put “%s” on the cloth: %s", self->pattern ? self->pattern :
-            self->texture, error->message), (NULL));
+        ("Can't put “%s” on the cloth: %s", settings->pattern ?
+            settings->pattern : settings->texture, error->message), (NULL));
     return FALSE;
   }
   self->renderer = cloth_renderer_new (self->n_vertices, uv, faces,
-      gst_cloth_topology_get_n_faces (topology), self->threads,
+      gst_cloth_topology_get_n_faces (topology), settings->threads,
       CLOTH_SIMD_BEST);
   gst_caps_replace (&self->mesh_caps, in);
   update_latency (self);
@@ -612,117 +731,71 @@ static GstCaps *
 gst_cloth_camera_fixate_caps (GstBaseTransform * trans,
     GstPadDirection direction, GstCaps * caps, GstCaps * other)
 {
-  if (direction == GST_PAD_SINK)
-    other = gst_cloth_camera_view_fixate (other);
+  GstStructure *structure;
+
+  if (direction == GST_PAD_SINK) {
+    other = gst_caps_make_writable (gst_caps_truncate (other));
+    structure = gst_caps_get_structure (other, 0);
+    gst_structure_fixate_field_nearest_int (structure, "width", DEFAULT_WIDTH);
+    gst_structure_fixate_field_nearest_int (structure, "height",
+        DEFAULT_HEIGHT);
+  }
   return gst_caps_fixate (other);
 }
 
+/* Offers pools of buffers that may have strides of their own. */
 static gboolean
 gst_cloth_camera_decide_allocation (GstBaseTransform * trans, GstQuery * query)
 {
-  return gst_cloth_camera_output_allocate (query) &&
-      GST_BASE_TRANSFORM_CLASS (gst_cloth_camera_parent_class)
+  g_autoptr (GstBufferPool) pool = NULL;
+  GstStructure *config;
+  GstCaps *caps;
+  GstVideoInfo info;
+  guint size, least = 0, most = 0;
+  const gboolean offered = gst_query_get_n_allocation_pools (query) > 0;
+
+  gst_query_parse_allocation (query, &caps, NULL);
+  if (!caps || !gst_video_info_from_caps (&info, caps))
+    return FALSE;
+  size = (guint) GST_VIDEO_INFO_SIZE (&info);
+  if (offered) {
+    guint asked;
+
+    gst_query_parse_nth_allocation_pool (query, 0, &pool, &asked, &least,
+        &most);
+    size = MAX (size, asked);
+  }
+  if (!pool)
+    pool = gst_video_buffer_pool_new ();
+  config = gst_buffer_pool_get_config (pool);
+  gst_buffer_pool_config_set_params (config, caps, size, least, most);
+  if (gst_query_find_allocation_meta (query, GST_VIDEO_META_API_TYPE, NULL))
+    gst_buffer_pool_config_add_option (config,
+        GST_BUFFER_POOL_OPTION_VIDEO_META);
+  gst_buffer_pool_set_config (pool, config);
+  if (offered)
+    gst_query_set_nth_allocation_pool (query, 0, pool, size, least, most);
+  else
+    gst_query_add_allocation_pool (query, pool, size, least, most);
+  return GST_BASE_TRANSFORM_CLASS (gst_cloth_camera_parent_class)
       ->decide_allocation (trans, query);
 }
 
 /* ---- GObject ---- */
-
-static gchar **
-text_of (GstClothCamera * self, guint id)
-{
-  switch (id) {
-    case PROP_RIG:
-      return &self->rig;
-    case PROP_CAMERA:
-      return &self->camera;
-    case PROP_PATTERN:
-      return &self->pattern;
-    case PROP_TEXTURE:
-      return &self->texture;
-    case PROP_EFFECTS:
-      return &self->effects;
-    default:
-      return NULL;
-  }
-}
-
-static gdouble *
-view_of (GstClothCamera * self, guint id)
-{
-  return id >= PROP_VIEW && id <= PROP_VIEW_LAST ?
-      &self->view.settings[id - PROP_VIEW] : NULL;
-}
-
-static void
-gst_cloth_camera_set_property (GObject * object, guint id,
-    const GValue * value, GParamSpec * pspec)
-{
-  GstClothCamera *self = GST_CLOTH_CAMERA (object);
-  gchar **text = text_of (self, id);
-
-  GST_OBJECT_LOCK (self);
-  if (!gst_cloth_may_change (GST_ELEMENT (self), pspec)) {
-    GST_OBJECT_UNLOCK (self);
-    return;
-  }
-  if (text) {
-    g_free (*text);
-    *text = g_value_dup_string (value);
-  } else if (view_of (self, id)) {
-    *view_of (self, id) = g_value_get_double (value);
-  } else if (id == PROP_SEED) {
-    self->seed = g_value_get_uint64 (value);
-  } else if (id == PROP_THREADS) {
-    self->threads = g_value_get_uint (value);
-  } else {
-    G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
-  }
-  GST_OBJECT_UNLOCK (self);
-}
-
-static void
-gst_cloth_camera_get_property (GObject * object, guint id, GValue * value,
-    GParamSpec * pspec)
-{
-  GstClothCamera *self = GST_CLOTH_CAMERA (object);
-  gchar **text = text_of (self, id);
-
-  GST_OBJECT_LOCK (self);
-  if (text)
-    g_value_set_string (value, *text);
-  else if (view_of (self, id))
-    g_value_set_double (value, *view_of (self, id));
-  else if (id == PROP_SEED)
-    g_value_set_uint64 (value, self->seed);
-  else if (id == PROP_THREADS)
-    g_value_set_uint (value, self->threads);
-  else
-    G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
-  GST_OBJECT_UNLOCK (self);
-}
 
 static void
 gst_cloth_camera_finalize (GObject * object)
 {
   GstClothCamera *self = GST_CLOTH_CAMERA (object);
 
-  for (guint id = PROP_RIG; id <= PROP_EFFECTS; id++)
-    g_free (*text_of (self, id));
+  gst_cloth_clear_settings (properties, G_N_ELEMENTS (properties),
+      &self->settings);
   gst_cloth_camera_forget (self);
   g_ptr_array_unref (self->window);
   g_ptr_array_unref (self->spare);
   g_ptr_array_unref (self->positions);
   g_array_unref (self->times);
   G_OBJECT_CLASS (gst_cloth_camera_parent_class)->finalize (object);
-}
-
-static void
-install_string (GObjectClass * klass, guint id, const gchar * name,
-    const gchar * nick, const gchar * blurb)
-{
-  g_object_class_install_property (klass, id, g_param_spec_string (name, nick,
-          blurb, NULL, G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-          GST_PARAM_MUTABLE_READY));
 }
 
 static void
@@ -734,32 +807,10 @@ gst_cloth_camera_class_init (GstClothCameraClass * klass)
 
   GST_DEBUG_CATEGORY_INIT (cloth_camera_debug, "clothcamera", 0,
       "synthetic film of meshes");
-  object_class->set_property = gst_cloth_camera_set_property;
-  object_class->get_property = gst_cloth_camera_get_property;
   object_class->finalize = gst_cloth_camera_finalize;
-  install_string (object_class, PROP_RIG, "rig", "Rig",
-      "Calibration file (rig.json) that has the camera; without one the view is free");
-  install_string (object_class, PROP_CAMERA, "camera", "Camera",
-      "Name in the rig of the camera that films; may be left out when the rig has "
-      "one camera");
-  gst_cloth_camera_view_install (object_class, PROP_VIEW);
-  install_string (object_class, PROP_PATTERN, "pattern", "Pattern",
-      "Pattern file (pattern.json) that is printed on the cloth: squares or coloured dots");
-  install_string (object_class, PROP_TEXTURE, "texture", "Texture",
-      "Picture file that is printed over the whole cloth, instead of a pattern");
-  install_string (object_class, PROP_EFFECTS, "effects", "Effects",
-      "Camera and image effects, as “noise,sigma=3; "
-      "rolling_shutter,seconds=0.01”");
-  g_object_class_install_property (object_class, PROP_SEED,
-      g_param_spec_uint64 ("seed", "Seed",
-          "Seed of the noise and of which pictures are lost", 0, G_MAXUINT64,
-          DEFAULT_SEED, G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-          GST_PARAM_MUTABLE_READY));
-  g_object_class_install_property (object_class, PROP_THREADS,
-      g_param_spec_uint ("threads", "Threads",
-          "Threads that draw; 0: one a processor", 0, 1024, DEFAULT_THREADS,
-          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-          GST_PARAM_MUTABLE_READY));
+  gst_cloth_install_properties (object_class, properties,
+      G_N_ELEMENTS (properties), &default_settings,
+      G_STRUCT_OFFSET (GstClothCamera, settings));
   gst_element_class_add_static_pad_template (element_class, &sink_template);
   gst_element_class_add_static_pad_template (element_class, &src_template);
   gst_element_class_set_static_metadata (element_class, "Cloth camera",
@@ -786,9 +837,8 @@ gst_cloth_camera_init (GstClothCamera * self)
   self->spare = g_ptr_array_new_with_free_func (frame_free);
   self->positions = g_ptr_array_new ();
   self->times = g_array_new (FALSE, FALSE, sizeof (gdouble));
-  gst_cloth_camera_view_init (&self->view);
-  self->threads = DEFAULT_THREADS;
-  self->seed = DEFAULT_SEED;
+  cloth_orbit_init (&self->orbit);
+  self->settings = default_settings;
   cloth_render_style_init (&self->style);
   gst_base_transform_set_qos_enabled (GST_BASE_TRANSFORM (self), FALSE);
 }

@@ -27,32 +27,50 @@
 
 #include <string.h>
 
-#include "elements/gstclothutil.h"
+#include "elements/gstclothproperties.h"
 #include "elements/gstmeshformat.h"
 #include "gst/sim/sim.h"
 
 GST_DEBUG_CATEGORY_STATIC (cloth_sim_debug);
 #define GST_CAT_DEFAULT cloth_sim_debug
 
-enum
+typedef struct
 {
-  PROP_0,
-  PROP_MODEL,
-  PROP_LOCATION,
-  PROP_LIVE,
-  PROP_SEED,
-  PROP_THREADS
+  gchar *model, *location;
+  gboolean live;
+  guint64 seed;
+  guint threads;
+} Settings;
+
+#define SETTING(member) GST_CLOTH_SETTING (Settings, member)
+
+/* *INDENT-OFF* */
+static const GstClothProperty properties[] = {
+  {"model", "Model", "What the cloth is like: a model.json",
+    G_TYPE_STRING, SETTING (model), GST_PARAM_MUTABLE_READY},
+  {"location", "Location",
+    "Folder of the take that gives the scene: mesh, clamps, obstacles and "
+    "times",
+    G_TYPE_STRING, SETTING (location), GST_PARAM_MUTABLE_READY},
+  {"live", "Live",
+    "Send frames at the pace of the clock, not as fast as they come",
+    G_TYPE_BOOLEAN, SETTING (live), GST_PARAM_MUTABLE_READY},
+  {"seed", "Seed", "Seed of what is random in effects, such as gusts",
+    G_TYPE_UINT64, SETTING (seed), GST_PARAM_MUTABLE_READY},
+  {"threads", "Threads",
+    "Threads that simulate; 0: one a processor. The result is the same",
+    G_TYPE_UINT, SETTING (threads), GST_PARAM_MUTABLE_READY, 0, 1024},
 };
+/* *INDENT-ON* */
+
+static const Settings default_settings = { NULL, NULL, FALSE, 0, 0 };
 
 struct _GstClothSim
 {
   GstClothSource parent;
 
   /* with the object lock */
-  gchar *model_location;
-  gchar *location;
-  guint64 seed;
-  guint threads;
+  Settings settings;
 
   /* from start to stop */
   ClothScene *scene;
@@ -71,8 +89,9 @@ GST_ELEMENT_REGISTER_DEFINE (clothsim, "clothsim", GST_RANK_NONE,
 static gboolean
 make_sim (GstClothSim * self)
 {
-  const ClothSimOptions options = { FALSE, self->threads, CLOTH_SIMD_BEST,
-    self->seed
+  const ClothSimOptions options =
+      { FALSE, self->settings.threads, CLOTH_SIMD_BEST,
+    self->settings.seed
   };
   const ClothModel *models[1] = { self->model };
   g_autoptr (GError) error = NULL;
@@ -83,7 +102,7 @@ make_sim (GstClothSim * self)
   if (self->sim)
     return TRUE;
   GST_ELEMENT_ERROR (self, STREAM, FORMAT, ("Cannot simulate “%s” in the "
-          "scene “%s”: %s", self->model_location, self->location,
+          "scene “%s”: %s", self->settings.model, self->settings.location,
           error->message), (NULL));
   return FALSE;
 }
@@ -92,14 +111,15 @@ static gboolean
 load_scene (GstClothSim * self)
 {
   g_autoptr (GError) error = NULL;
-  g_autoptr (ClothTake) take = cloth_take_open (self->location, &error);
+  g_autoptr (ClothTake) take =
+      cloth_take_open (self->settings.location, &error);
 
   if (take)
     self->scene = cloth_scene_new_from_take (take, &error);
   if (self->scene)
     return TRUE;
-  gst_mesh_post_error (GST_ELEMENT (self), "read the scene", self->location,
-      FALSE, error);
+  gst_mesh_post_error (GST_ELEMENT (self), "read the scene",
+      self->settings.location, FALSE, error);
   return FALSE;
 }
 
@@ -108,7 +128,7 @@ load_model (GstClothSim * self)
 {
   g_autoptr (GError) error = NULL;
 
-  self->model = cloth_model_load (self->model_location, &error);
+  self->model = cloth_model_load (self->settings.model, &error);
   if (self->model)
     return TRUE;
   if (error->domain == CLOTH_MODEL_ERROR)
@@ -137,11 +157,12 @@ static gboolean
 gst_cloth_sim_open (GstClothSource * source)
 {
   GstClothSim *self = GST_CLOTH_SIM (source);
-  GstClothSourceStream stream = { self->location, "", NULL, 0, NULL, 0, 0, 1 };
+  GstClothSourceStream stream =
+      { self->settings.location, "", NULL, 0, NULL, 0, 0, 1 };
   gsize n;
 
-  if (!self->model_location || !*self->model_location ||
-      !self->location || !*self->location) {
+  if (!self->settings.model || !*self->settings.model ||
+      !self->settings.location || !*self->settings.location) {
     GST_ELEMENT_ERROR (self, RESOURCE, NOT_FOUND,
         ("Set the property “model” "
             "to a model.json and “location” to the take that gives the scene"),
@@ -184,7 +205,7 @@ gst_cloth_sim_make_mesh (GstClothSource * source, guint frame)
     GST_ELEMENT_ERROR (self, STREAM, FAILED,
         ("The simulation of “%s” blew up "
             "at %.3f s: set its “time_step” below %g s or to 0, or lower its "
-            "stiffnesses and damping.stiffness", self->model_location, since_s,
+            "stiffnesses and damping.stiffness", self->settings.model, since_s,
             cloth_sim_get_time_step (self->sim)), (NULL));
     return NULL;
   }
@@ -195,72 +216,19 @@ gst_cloth_sim_make_mesh (GstClothSource * source, guint frame)
       self->states, NULL);
 }
 
+/* What "live" says is the base's to act on. */
 static void
 gst_cloth_sim_set_property (GObject * object, guint id, const GValue * value,
     GParamSpec * spec)
 {
   GstClothSim *self = GST_CLOTH_SIM (object);
+  gboolean live;
 
+  gst_cloth_set_property (object, id, value, spec);
   GST_OBJECT_LOCK (self);
-  if (!gst_cloth_may_change (GST_ELEMENT (self), spec)) {
-    GST_OBJECT_UNLOCK (self);
-    return;
-  }
-  switch (id) {
-    case PROP_LIVE:            /* the base takes the lock itself */
-      break;
-    case PROP_MODEL:
-      g_free (self->model_location);
-      self->model_location = g_value_dup_string (value);
-      break;
-    case PROP_LOCATION:
-      g_free (self->location);
-      self->location = g_value_dup_string (value);
-      break;
-    case PROP_SEED:
-      self->seed = g_value_get_uint64 (value);
-      break;
-    case PROP_THREADS:
-      self->threads = g_value_get_uint (value);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, spec);
-      break;
-  }
+  live = self->settings.live;
   GST_OBJECT_UNLOCK (self);
-  if (id == PROP_LIVE)
-    gst_base_src_set_live (GST_BASE_SRC (self), g_value_get_boolean (value));
-}
-
-static void
-gst_cloth_sim_get_property (GObject * object, guint id, GValue * value,
-    GParamSpec * spec)
-{
-  GstClothSim *self = GST_CLOTH_SIM (object);
-
-  if (id == PROP_LIVE) {
-    g_value_set_boolean (value, gst_base_src_is_live (GST_BASE_SRC (self)));
-    return;
-  }
-  GST_OBJECT_LOCK (self);
-  switch (id) {
-    case PROP_MODEL:
-      g_value_set_string (value, self->model_location);
-      break;
-    case PROP_LOCATION:
-      g_value_set_string (value, self->location);
-      break;
-    case PROP_SEED:
-      g_value_set_uint64 (value, self->seed);
-      break;
-    case PROP_THREADS:
-      g_value_set_uint (value, self->threads);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, spec);
-      break;
-  }
-  GST_OBJECT_UNLOCK (self);
+  gst_base_src_set_live (GST_BASE_SRC (self), live);
 }
 
 static void
@@ -268,43 +236,24 @@ gst_cloth_sim_finalize (GObject * object)
 {
   GstClothSim *self = GST_CLOTH_SIM (object);
 
-  g_free (self->model_location);
-  g_free (self->location);
+  gst_cloth_clear_settings (properties, G_N_ELEMENTS (properties),
+      &self->settings);
   G_OBJECT_CLASS (gst_cloth_sim_parent_class)->finalize (object);
 }
 
 static void
 gst_cloth_sim_class_init (GstClothSimClass * klass)
 {
-  const GParamFlags flags = G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-      GST_PARAM_MUTABLE_READY;
   GObjectClass *object_class = G_OBJECT_CLASS (klass);
   GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
   GstClothSourceClass *source_class = GST_CLOTH_SOURCE_CLASS (klass);
 
   GST_DEBUG_CATEGORY_INIT (cloth_sim_debug, "clothsim", 0, "simulated cloth");
-  object_class->set_property = gst_cloth_sim_set_property;
-  object_class->get_property = gst_cloth_sim_get_property;
   object_class->finalize = gst_cloth_sim_finalize;
-  g_object_class_install_property (object_class, PROP_MODEL,
-      g_param_spec_string ("model", "Model",
-          "What the cloth is like: a model.json", NULL, flags));
-  g_object_class_install_property (object_class, PROP_LOCATION,
-      g_param_spec_string ("location", "Location",
-          "Folder of the take that gives the scene: mesh, clamps, obstacles and "
-          "times", NULL, flags));
-  g_object_class_install_property (object_class, PROP_LIVE,
-      g_param_spec_boolean ("live", "Live",
-          "Send frames at the pace of the clock, not as fast as they come",
-          FALSE, flags));
-  g_object_class_install_property (object_class, PROP_SEED,
-      g_param_spec_uint64 ("seed", "Seed",
-          "Seed of what is random in effects, such as gusts", 0, G_MAXUINT64, 0,
-          flags));
-  g_object_class_install_property (object_class, PROP_THREADS,
-      g_param_spec_uint ("threads", "Threads",
-          "Threads that simulate; 0: one a processor. The result is the same",
-          0, 1024, 0, flags));
+  gst_cloth_install_properties (object_class, properties,
+      G_N_ELEMENTS (properties), &default_settings,
+      G_STRUCT_OFFSET (GstClothSim, settings));
+  object_class->set_property = gst_cloth_sim_set_property;
   gst_element_class_set_static_metadata (element_class, "Cloth simulator",
       "Source", "Simulates a cloth as a mesh stream",
       "The gst-cloth developers");
@@ -316,4 +265,5 @@ gst_cloth_sim_class_init (GstClothSimClass * klass)
 static void
 gst_cloth_sim_init (GstClothSim * self)
 {
+  self->settings = default_settings;
 }

@@ -15,30 +15,21 @@ G_STATIC_ASSERT ((int) CLOTH_VERTEX_PREDICTED ==
     (int) GST_CLOTH_VERTEX_PREDICTED);
 G_STATIC_ASSERT (CLOTH_NO_VERTEX == GST_CLOTH_NO_VERTEX);
 
-GType
-gst_mesh_format_get_type (void)
-{
-  static gsize type = 0;
-  static const GEnumValue values[] = {
-    {CLOTH_MESH_FORMAT_AUTO, "What the location's ending says, else OBJ + PC2",
-        "auto"},
-    {CLOTH_MESH_FORMAT_OBJ_PC2, "OBJ mesh with a PC2 point cache", "obj-pc2"},
-    {CLOTH_MESH_FORMAT_PLY, "One PLY file a frame", "ply"},
-    {CLOTH_MESH_FORMAT_TAKE, "Folder of a take", "take"},
-    {CLOTH_MESH_FORMAT_GLTF, "glTF 2.0 (.glb), for short clips; written only",
-        "gltf"},
-    {CLOTH_MESH_FORMAT_USD, "USD as text (.usda); written only", "usd"},
-    {CLOTH_MESH_FORMAT_VTP, "VTK PolyData (.pvd and .vtp); written only",
-        "vtp"},
-    {CLOTH_MESH_FORMAT_C3D, "C3D, vertices as markers; written only", "c3d"},
-    {CLOTH_MESH_FORMAT_CSV, "Table as text (.csv); written only", "csv"},
-    {0, NULL, NULL}
-  };
-
-  if (g_once_init_enter (&type))
-    g_once_init_leave (&type, g_enum_register_static ("GstMeshFormat", values));
-  return type;
-}
+const GEnumValue gst_mesh_format_values[] = {
+  {CLOTH_MESH_FORMAT_AUTO, "What the location's ending says, else OBJ + PC2",
+      "auto"},
+  {CLOTH_MESH_FORMAT_OBJ_PC2, "OBJ mesh with a PC2 point cache", "obj-pc2"},
+  {CLOTH_MESH_FORMAT_PLY, "One PLY file a frame", "ply"},
+  {CLOTH_MESH_FORMAT_TAKE, "Folder of a take", "take"},
+  {CLOTH_MESH_FORMAT_GLTF, "glTF 2.0 (.glb), for short clips; written only",
+      "gltf"},
+  {CLOTH_MESH_FORMAT_USD, "USD as text (.usda); written only", "usd"},
+  {CLOTH_MESH_FORMAT_VTP, "VTK PolyData (.pvd and .vtp); written only",
+      "vtp"},
+  {CLOTH_MESH_FORMAT_C3D, "C3D, vertices as markers; written only", "c3d"},
+  {CLOTH_MESH_FORMAT_CSV, "Table as text (.csv); written only", "csv"},
+  {0, NULL, NULL}
+};
 
 /* Whether @message names the file, or one in the folder, itself. */
 static gboolean

@@ -9,8 +9,8 @@
 
 G_BEGIN_DECLS
 
-#define GST_TYPE_MESH_FORMAT (gst_mesh_format_get_type ())
-GType gst_mesh_format_get_type (void);
+/* Of the enum GstMeshFormat. */
+extern const GEnumValue gst_mesh_format_values[];
 
 ClothTopology *gst_mesh_copy_topology (const GstClothTopology * from);
 void gst_mesh_post_error (GstElement * element, const gchar * doing,

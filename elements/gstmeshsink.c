@@ -29,28 +29,45 @@
 
 #include <gst/cloth/cloth.h>
 
+#include "elements/gstclothproperties.h"
 #include "elements/gstclothutil.h"
 #include "elements/gstmeshformat.h"
 
 GST_DEBUG_CATEGORY_STATIC (mesh_sink_debug);
 #define GST_CAT_DEFAULT mesh_sink_debug
 
-enum
+typedef struct
 {
-  PROP_0,
-  PROP_LOCATION,
-  PROP_FORMAT,
-  PROP_MESH_NAME
+  gchar *location, *mesh_name;
+  ClothMeshFormat format;
+} Settings;
+
+#define SETTING(member) GST_CLOTH_SETTING (Settings, member)
+
+/* *INDENT-OFF* */
+static const GstClothProperty properties[] = {
+  {"location", "Location",
+    "File or folder to write: name.obj (with name.pc2 beside it), name.ply "
+    "(name_00000.ply and so on), name.glb, name.usda, name.pvd (with "
+    "name_00000.vtp and so on), name.c3d, name.csv or the folder of a take",
+    G_TYPE_STRING, SETTING (location), GST_PARAM_MUTABLE_READY},
+  {"format", "Format", "Format of the files",
+    G_TYPE_ENUM, SETTING (format), GST_PARAM_MUTABLE_READY, 0, 0,
+    "GstMeshFormat", gst_mesh_format_values},
+  {"mesh-name", "Mesh name",
+    "Name of the object or take in the files; by default, that of the file",
+    G_TYPE_STRING, SETTING (mesh_name), GST_PARAM_MUTABLE_READY},
 };
+/* *INDENT-ON* */
+
+static const Settings default_settings = { NULL, NULL, CLOTH_MESH_FORMAT_AUTO };
 
 struct _GstMeshSink
 {
   GstBaseSink parent;
 
   /* with the object lock */
-  gchar *location;
-  ClothMeshFormat format;
-  gchar *mesh_name;
+  Settings settings;
 
   /* streaming thread */
   ClothTopology *topology;
@@ -71,7 +88,8 @@ fail (GstMeshSink * self, const gchar * doing, const GError * error)
 {
   g_clear_pointer (&self->writer, cloth_mesh_writer_free);
   self->failed = TRUE;
-  gst_mesh_post_error (GST_ELEMENT (self), doing, self->location, TRUE, error);
+  gst_mesh_post_error (GST_ELEMENT (self), doing, self->settings.location, TRUE,
+      error);
 }
 
 static gboolean
@@ -115,8 +133,10 @@ open_writer (GstMeshSink * self)
 {
   g_autoptr (GError) error = NULL;
 
-  self->writer = cloth_mesh_writer_new (self->location, self->format,
-      self->mesh_name, self->topology, self->fps_n, self->fps_d, &error);
+  self->writer =
+      cloth_mesh_writer_new (self->settings.location, self->settings.format,
+      self->settings.mesh_name, self->topology, self->fps_n, self->fps_d,
+      &error);
   if (!self->writer)
     fail (self, "write", error);
   return self->writer != NULL;
@@ -192,7 +212,7 @@ finish (GstMeshSink * self)
     return FALSE;
   }
   GST_INFO_OBJECT (self, "%" G_GUINT64_FORMAT " frames written to %s",
-      cloth_mesh_writer_get_n_frames (self->writer), self->location);
+      cloth_mesh_writer_get_n_frames (self->writer), self->settings.location);
   g_clear_pointer (&self->writer, cloth_mesh_writer_free);
   return TRUE;
 }
@@ -230,7 +250,7 @@ gst_mesh_sink_start (GstBaseSink * sink)
 {
   GstMeshSink *self = GST_MESH_SINK (sink);
 
-  if (!self->location || !*self->location) {
+  if (!self->settings.location || !*self->settings.location) {
     GST_ELEMENT_ERROR (self, RESOURCE, NOT_FOUND,
         ("No location given: set the property “location” to a file or folder"),
         (NULL));
@@ -251,68 +271,14 @@ gst_mesh_sink_stop (GstBaseSink * sink)
 }
 
 static void
-gst_mesh_sink_set_property (GObject * object, guint id, const GValue * value,
-    GParamSpec * spec)
-{
-  GstMeshSink *self = GST_MESH_SINK (object);
-
-  GST_OBJECT_LOCK (self);
-  if (!gst_cloth_may_change (GST_ELEMENT (self), spec)) {
-    GST_OBJECT_UNLOCK (self);
-    return;
-  }
-  switch (id) {
-    case PROP_LOCATION:
-      g_free (self->location);
-      self->location = g_value_dup_string (value);
-      break;
-    case PROP_FORMAT:
-      self->format = g_value_get_enum (value);
-      break;
-    case PROP_MESH_NAME:
-      g_free (self->mesh_name);
-      self->mesh_name = g_value_dup_string (value);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, spec);
-      break;
-  }
-  GST_OBJECT_UNLOCK (self);
-}
-
-static void
-gst_mesh_sink_get_property (GObject * object, guint id, GValue * value,
-    GParamSpec * spec)
-{
-  GstMeshSink *self = GST_MESH_SINK (object);
-
-  GST_OBJECT_LOCK (self);
-  switch (id) {
-    case PROP_LOCATION:
-      g_value_set_string (value, self->location);
-      break;
-    case PROP_FORMAT:
-      g_value_set_enum (value, self->format);
-      break;
-    case PROP_MESH_NAME:
-      g_value_set_string (value, self->mesh_name);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, spec);
-      break;
-  }
-  GST_OBJECT_UNLOCK (self);
-}
-
-static void
 gst_mesh_sink_finalize (GObject * object)
 {
   GstMeshSink *self = GST_MESH_SINK (object);
 
   cloth_mesh_writer_free (self->writer);
   cloth_topology_free (self->topology);
-  g_free (self->location);
-  g_free (self->mesh_name);
+  gst_cloth_clear_settings (properties, G_N_ELEMENTS (properties),
+      &self->settings);
   G_OBJECT_CLASS (gst_mesh_sink_parent_class)->finalize (object);
 }
 
@@ -325,27 +291,10 @@ gst_mesh_sink_class_init (GstMeshSinkClass * klass)
 
   GST_DEBUG_CATEGORY_INIT (mesh_sink_debug, "meshsink", 0,
       "mesh stream into files");
-  object_class->set_property = gst_mesh_sink_set_property;
-  object_class->get_property = gst_mesh_sink_get_property;
   object_class->finalize = gst_mesh_sink_finalize;
-  g_object_class_install_property (object_class, PROP_LOCATION,
-      g_param_spec_string ("location", "Location",
-          "File or folder to write: name.obj (with name.pc2 beside it), name.ply "
-          "(name_00000.ply and so on), name.glb, name.usda, name.pvd (with "
-          "name_00000.vtp and so on), name.c3d, name.csv or the folder of a take",
-          NULL,
-          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-          GST_PARAM_MUTABLE_READY));
-  g_object_class_install_property (object_class, PROP_FORMAT,
-      g_param_spec_enum ("format", "Format", "Format of the files",
-          GST_TYPE_MESH_FORMAT, CLOTH_MESH_FORMAT_AUTO,
-          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-          GST_PARAM_MUTABLE_READY));
-  g_object_class_install_property (object_class, PROP_MESH_NAME,
-      g_param_spec_string ("mesh-name", "Mesh name",
-          "Name of the object or take in the files; by default, that of the file",
-          NULL, G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-          GST_PARAM_MUTABLE_READY));
+  gst_cloth_install_properties (object_class, properties,
+      G_N_ELEMENTS (properties), &default_settings,
+      G_STRUCT_OFFSET (GstMeshSink, settings));
   gst_element_class_add_static_pad_template (element_class, &sink_template);
   gst_element_class_set_static_metadata (element_class, "Mesh file sink",
       "Sink/File",
@@ -356,11 +305,11 @@ gst_mesh_sink_class_init (GstMeshSinkClass * klass)
   sink_class->event = gst_mesh_sink_event;
   sink_class->start = gst_mesh_sink_start;
   sink_class->stop = gst_mesh_sink_stop;
-  gst_type_mark_as_plugin_api (GST_TYPE_MESH_FORMAT, 0);
 }
 
 static void
 gst_mesh_sink_init (GstMeshSink * self)
 {
+  self->settings = default_settings;
   gst_base_sink_set_sync (GST_BASE_SINK (self), FALSE);
 }

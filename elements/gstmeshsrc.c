@@ -22,7 +22,7 @@
 
 #include "elements/gstmeshsrc.h"
 
-#include "elements/gstclothutil.h"
+#include "elements/gstclothproperties.h"
 #include "elements/gstmeshformat.h"
 
 GST_DEBUG_CATEGORY_STATIC (mesh_src_debug);
@@ -30,12 +30,33 @@ GST_DEBUG_CATEGORY_STATIC (mesh_src_debug);
 
 #define FALLBACK_FPS 30
 
-enum
+typedef struct
 {
-  PROP_0,
-  PROP_LOCATION,
-  PROP_FORMAT,
-  PROP_FPS
+  gchar *location;
+  ClothMeshFormat format;
+  gint fps[2];                  /* 0/1: what the files say */
+} Settings;
+
+#define SETTING(member) GST_CLOTH_SETTING (Settings, member)
+
+/* *INDENT-OFF* */
+static const GstClothProperty properties[] = {
+  {"location", "Location",
+    "File or folder to read: name.obj (with name.pc2 beside it), name.ply "
+    "(or name_00000.ply and so on) or the folder of a take",
+    G_TYPE_STRING, SETTING (location), GST_PARAM_MUTABLE_READY},
+  {"format", "Format", "Format of the files",
+    G_TYPE_ENUM, SETTING (format), GST_PARAM_MUTABLE_READY, 0, 0,
+    "GstMeshFormat", gst_mesh_format_values},
+  {"fps", "Frames a second",
+    "Frame rate to play at; 0/1 takes that of the files, or 30/1 when they "
+    "have none",
+    GST_CLOTH_TYPE_FRACTION, SETTING (fps), GST_PARAM_MUTABLE_READY},
+};
+/* *INDENT-ON* */
+
+static const Settings default_settings = { NULL, CLOTH_MESH_FORMAT_AUTO,
+  {0, 1}
 };
 
 struct _GstMeshSrc
@@ -43,9 +64,7 @@ struct _GstMeshSrc
   GstClothSource parent;
 
   /* with the object lock */
-  gchar *location;
-  ClothMeshFormat format;
-  gint wanted_n, wanted_d;      /* 0/1: what the files say */
+  Settings settings;
 
   /* from start to stop */
   ClothMeshReader *reader;
@@ -60,9 +79,9 @@ choose_rate (GstMeshSrc * self, GstClothSourceStream * stream)
 {
   gdouble fps = cloth_mesh_reader_get_fps (self->reader);
 
-  if (self->wanted_n > 0) {
-    stream->fps_n = self->wanted_n;
-    stream->fps_d = self->wanted_d;
+  if (self->settings.fps[0] > 0) {
+    stream->fps_n = self->settings.fps[0];
+    stream->fps_d = self->settings.fps[1];
     return;
   }
   stream->times = cloth_mesh_reader_get_times (self->reader);
@@ -80,22 +99,24 @@ static gboolean
 gst_mesh_src_open (GstClothSource * source)
 {
   GstMeshSrc *self = GST_MESH_SRC (source);
-  GstClothSourceStream stream = { self->location,
+  GstClothSourceStream stream = { self->settings.location,
     "; or set “fps” to play at a rate of your own", NULL, 0, NULL, 0, 0, 1
   };
   g_autoptr (GError) error = NULL;
   guint n_seam_vertices;
 
-  if (!self->location || !*self->location) {
+  if (!self->settings.location || !*self->settings.location) {
     GST_ELEMENT_ERROR (self, RESOURCE, NOT_FOUND,
         ("No location given: set the property “location” to a file or folder"),
         (NULL));
     return FALSE;
   }
-  self->reader = cloth_mesh_reader_open (self->location, self->format, &error);
+  self->reader =
+      cloth_mesh_reader_open (self->settings.location, self->settings.format,
+      &error);
   if (!self->reader) {
-    gst_mesh_post_error (GST_ELEMENT (self), "read", self->location, FALSE,
-        error);
+    gst_mesh_post_error (GST_ELEMENT (self), "read", self->settings.location,
+        FALSE, error);
     return FALSE;
   }
   n_seam_vertices = cloth_mesh_reader_get_n_seam_vertices (self->reader);
@@ -103,7 +124,7 @@ gst_mesh_src_open (GstClothSource * source)
     GST_ELEMENT_WARNING (self, STREAM, FORMAT,
         ("%u vertices of “%s” have more than one uv, the first is kept; split "
             "the mesh at its uv seams to keep all", n_seam_vertices,
-            self->location), (NULL));
+            self->settings.location), (NULL));
   stream.topology = cloth_mesh_reader_get_topology (self->reader);
   stream.n_frames = cloth_mesh_reader_get_n_frames (self->reader);
   choose_rate (self, &stream);
@@ -124,8 +145,8 @@ gst_mesh_src_make_mesh (GstClothSource * source, guint number)
   ClothMeshFrame frame;
 
   if (!cloth_mesh_reader_read (self->reader, number, &frame, &error)) {
-    gst_mesh_post_error (GST_ELEMENT (self), "read", self->location, FALSE,
-        error);
+    gst_mesh_post_error (GST_ELEMENT (self), "read", self->settings.location,
+        FALSE, error);
     return NULL;
   }
   return gst_cloth_mesh_new (number,
@@ -134,65 +155,12 @@ gst_mesh_src_make_mesh (GstClothSource * source, guint number)
 }
 
 static void
-gst_mesh_src_set_property (GObject * object, guint id, const GValue * value,
-    GParamSpec * spec)
-{
-  GstMeshSrc *self = GST_MESH_SRC (object);
-
-  GST_OBJECT_LOCK (self);
-  if (!gst_cloth_may_change (GST_ELEMENT (self), spec)) {
-    GST_OBJECT_UNLOCK (self);
-    return;
-  }
-  switch (id) {
-    case PROP_LOCATION:
-      g_free (self->location);
-      self->location = g_value_dup_string (value);
-      break;
-    case PROP_FORMAT:
-      self->format = g_value_get_enum (value);
-      break;
-    case PROP_FPS:
-      self->wanted_n = gst_value_get_fraction_numerator (value);
-      self->wanted_d = gst_value_get_fraction_denominator (value);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, spec);
-      break;
-  }
-  GST_OBJECT_UNLOCK (self);
-}
-
-static void
-gst_mesh_src_get_property (GObject * object, guint id, GValue * value,
-    GParamSpec * spec)
-{
-  GstMeshSrc *self = GST_MESH_SRC (object);
-
-  GST_OBJECT_LOCK (self);
-  switch (id) {
-    case PROP_LOCATION:
-      g_value_set_string (value, self->location);
-      break;
-    case PROP_FORMAT:
-      g_value_set_enum (value, self->format);
-      break;
-    case PROP_FPS:
-      gst_value_set_fraction (value, self->wanted_n, self->wanted_d);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, spec);
-      break;
-  }
-  GST_OBJECT_UNLOCK (self);
-}
-
-static void
 gst_mesh_src_finalize (GObject * object)
 {
   GstMeshSrc *self = GST_MESH_SRC (object);
 
-  g_free (self->location);
+  gst_cloth_clear_settings (properties, G_N_ELEMENTS (properties),
+      &self->settings);
   G_OBJECT_CLASS (gst_mesh_src_parent_class)->finalize (object);
 }
 
@@ -205,26 +173,10 @@ gst_mesh_src_class_init (GstMeshSrcClass * klass)
 
   GST_DEBUG_CATEGORY_INIT (mesh_src_debug, "meshsrc", 0,
       "files into a mesh stream");
-  object_class->set_property = gst_mesh_src_set_property;
-  object_class->get_property = gst_mesh_src_get_property;
   object_class->finalize = gst_mesh_src_finalize;
-  g_object_class_install_property (object_class, PROP_LOCATION,
-      g_param_spec_string ("location", "Location",
-          "File or folder to read: name.obj (with name.pc2 beside it), name.ply "
-          "(or name_00000.ply and so on) or the folder of a take", NULL,
-          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-          GST_PARAM_MUTABLE_READY));
-  g_object_class_install_property (object_class, PROP_FORMAT,
-      g_param_spec_enum ("format", "Format", "Format of the files",
-          GST_TYPE_MESH_FORMAT, CLOTH_MESH_FORMAT_AUTO,
-          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-          GST_PARAM_MUTABLE_READY));
-  g_object_class_install_property (object_class, PROP_FPS,
-      gst_param_spec_fraction ("fps", "Frames a second",
-          "Frame rate to play at; 0/1 takes that of the files, or 30/1 when they "
-          "have none", 0, 1, G_MAXINT, 1, 0, 1,
-          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-          GST_PARAM_MUTABLE_READY));
+  gst_cloth_install_properties (object_class, properties,
+      G_N_ELEMENTS (properties), &default_settings,
+      G_STRUCT_OFFSET (GstMeshSrc, settings));
   gst_element_class_set_static_metadata (element_class, "Mesh file source",
       "Source/File", "Reads a mesh stream from OBJ + PC2, PLY or a take",
       "The gst-cloth developers");
@@ -232,11 +184,10 @@ gst_mesh_src_class_init (GstMeshSrcClass * klass)
   source_class->open = gst_mesh_src_open;
   source_class->close = gst_mesh_src_close;
   source_class->make_mesh = gst_mesh_src_make_mesh;
-  gst_type_mark_as_plugin_api (GST_TYPE_MESH_FORMAT, 0);
 }
 
 static void
 gst_mesh_src_init (GstMeshSrc * self)
 {
-  self->wanted_d = 1;
+  self->settings = default_settings;
 }

@@ -6,10 +6,8 @@
 #include <gst/cloth/cloth.h>
 #include <gst/video/navigation.h>
 #include <math.h>
-#include <string.h>
 
-#include "elements/gstclothutil.h"
-#include "elements/gstquadtrackseed.h"
+#include "elements/gstclothproperties.h"
 #include "gst/pattern/pattern.h"
 #include "gst/vision/quad/quad.h"
 #include "gst/vision/corner/saddle.h"
@@ -39,72 +37,106 @@ GST_DEBUG_CATEGORY_STATIC (quad_track_debug);
  *     quadtrack columns=8 rows=8 ! clothoverlay ! videoconvert ! autovideosink
  * ```
  */
+/* A square given by hand: its corners, px, and which one of the board it is, -1 where that
+ * is not told. */
+typedef struct
+{
+  gfloat x[4], y[4];
+  gint column, row;
+} Seed;
+
+typedef struct
+{
+  gchar *pattern, *seed;
+  gint columns, rows;
+  gboolean first_black;
+  ClothQuadParams params;
+} Settings;
+
 struct _GstQuadTrack
 {
   GstClothFilter parent;
 
-  /* Properties, protected by the object lock. */
-  gchar *pattern_path;
-  gint columns, rows;
-  gboolean first_black;
-  gchar *seed;
-  ClothQuadParams params;
+  /* with the object lock */
+  Settings settings;
+  Seed clicked;                 /* corners so far */
+  guint n_clicks;
+  GArray *seeds;                /* Seed, for the next picture */
 
-  /* Clicks, protected by the object lock. */
-  GArray *clicks;               /* gfloat, x and y of up to four */
-  GArray *seeds;                /* gfloat, ten each: corners, column, row */
-
-  /* Streaming thread. */
+  /* streaming thread */
   ClothPattern *pattern;
   ClothQuadTracker *tracker;
   ClothSaddleDetector *detector;
-  GArray *taken_seeds;          /* gfloat, of this picture */
+  GArray *taken_seeds;          /* Seed, of this picture */
   GArray *saddles;              /* GstClothSaddle */
   GArray *candidates;           /* GstClothCandidate */
   GArray *quads;                /* GstClothQuad */
   gboolean found;
-  GstQuadTrackWarned warned;
-  gfloat first_seed[GST_QUAD_TRACK_SEED_NUMBERS];       /* of the property */
+  gboolean warned_of_start, warned_of_seed;
+  Seed first_seed;              /* of the property */
   gboolean has_first_seed, knows_first, was_reset;
   guint64 first_sequence;       /* of the picture that the property is about */
 };
 
-enum
-{
-  PROP_0,
-  PROP_PATTERN,
-  PROP_COLUMNS,
-  PROP_ROWS,
-  PROP_FIRST_BLACK,
-  PROP_SEED,
-  PROP_LINK,
-  PROP_SQUARES,
-  PROP_ALPHA,
-  PROP_C_LOW,
-  PROP_C_HIGH,
-  PROP_C_PRED,
-  PROP_DAMPING,
-  PROP_CONSISTENCY,
-  PROP_MAX_VARIANTS
+static const GEnumValue squares_values[] = {
+  {CLOTH_SQUARES_BLACK, "Black squares", "black"},
+  {CLOTH_SQUARES_WHITE, "White squares", "white"},
+  {CLOTH_SQUARES_BOTH, "Squares of both colours", "both"},
+  {0, NULL, NULL}
 };
 
-#define GST_TYPE_QUAD_TRACK_SQUARES (gst_quad_track_squares_get_type ())
-static GType
-gst_quad_track_squares_get_type (void)
-{
-  static const GEnumValue values[] = {
-    {CLOTH_SQUARES_BLACK, "Black squares", "black"},
-    {CLOTH_SQUARES_WHITE, "White squares", "white"},
-    {CLOTH_SQUARES_BOTH, "Squares of both colours", "both"},
-    {0, NULL, NULL}
-  };
-  static gsize type = 0;
+#define SETTING(member) GST_CLOTH_SETTING (Settings, member)
+#define ANY_TIME (GST_PARAM_MUTABLE_PLAYING | GST_PARAM_CONTROLLABLE)
 
-  if (g_once_init_enter (&type))
-    g_once_init_leave (&type, g_enum_register_static ("GstQuadTrackSquares",
-            values));
-  return type;
-}
+/* *INDENT-OFF* */
+static const GstClothProperty properties[] = {
+  {"pattern", "Pattern",
+    "File pattern.json of the board; without it columns, rows and "
+    "first-black tell what the board is",
+    G_TYPE_STRING, SETTING (pattern), GST_PARAM_MUTABLE_READY},
+  {"columns", "Columns", "Number of squares in a row of the board",
+    G_TYPE_INT, SETTING (columns), GST_PARAM_MUTABLE_READY, 2, 500},
+  {"rows", "Rows", "Number of squares in a column of the board",
+    G_TYPE_INT, SETTING (rows), GST_PARAM_MUTABLE_READY, 2, 500},
+  {"first-black", "First square black",
+    "Whether the square at the top left of the board is black",
+    G_TYPE_BOOLEAN, SETTING (first_black), GST_PARAM_MUTABLE_READY},
+  {"seed", "Seed",
+    "Corners of one square in the first picture, x0,y0,x1,y1,x2,y2,x3,y3 "
+    "in pixels, and its column,row on the board if known",
+    G_TYPE_STRING, SETTING (seed), GST_PARAM_MUTABLE_READY},
+  {"link", "Link",
+    "Whether saddles are joined into pieces of the board in each picture, "
+    "which needs no seed and recovers from total loss",
+    G_TYPE_BOOLEAN, SETTING (params.link), ANY_TIME},
+  {"squares", "Squares", "Colour of the squares that are tracked",
+    G_TYPE_ENUM, SETTING (params.squares), ANY_TIME, 0, 0,
+    "GstQuadTrackSquares", squares_values},
+  {"alpha", "Alpha",
+    "Width of the lapels that the template adds around a square, over the "
+    "square's edge",
+    G_TYPE_FLOAT, SETTING (params.alpha), ANY_TIME, 0.05, 1},
+  {"c-low", "Low confidence", "Confidence below which a square is given up",
+    G_TYPE_FLOAT, SETTING (params.c_low), ANY_TIME, -1, 1},
+  {"c-high", "High confidence",
+    "Confidence at which the search for a better match stops and above "
+    "which a neighbour counts for consistency",
+    G_TYPE_FLOAT, SETTING (params.c_high), ANY_TIME, -1, 1},
+  {"c-pred", "Predicting confidence",
+    "Confidence above which a square predicts its neighbours",
+    G_TYPE_FLOAT, SETTING (params.c_pred), ANY_TIME, -1, 1},
+  {"damping", "Damping",
+    "Factor on the confidence of a square that extension has just added",
+    G_TYPE_FLOAT, SETTING (params.damping), ANY_TIME, 0, 1},
+  {"consistency", "Consistency",
+    "Distance up to which two squares agree on their common corner, over "
+    "the larger square's size",
+    G_TYPE_FLOAT, SETTING (params.consistency), ANY_TIME, 0, 2},
+  {"max-variants", "Most variants",
+    "Number of corner triples tried at most for one square",
+    G_TYPE_UINT, SETTING (params.max_variants), ANY_TIME, 1, 512},
+};
+/* *INDENT-ON* */
 
 G_DEFINE_TYPE (GstQuadTrack, gst_quad_track, GST_TYPE_CLOTH_FILTER);
 
@@ -116,6 +148,114 @@ G_STATIC_ASSERT (sizeof (GstClothCandidate) == sizeof (ClothSaddleCandidate));
 G_STATIC_ASSERT ((gint) GST_CLOTH_QUAD_TRACKED == (gint) CLOTH_QUAD_TRACKED);
 G_STATIC_ASSERT ((gint) GST_CLOTH_QUAD_LOST == (gint) CLOTH_QUAD_LOST);
 
+/* Reads "x0,y0,…,y3" or "x0,y0,…,y3,column,row". */
+static gboolean
+parse_seed (const gchar * text, Seed * seed)
+{
+  g_auto (GStrv) parts = g_strsplit (text, ",", 11);
+  gdouble values[10];
+  guint n = g_strv_length (parts);
+
+  if (n != 8 && n != 10)
+    return FALSE;
+  values[8] = values[9] = -1;
+  for (guint k = 0; k < n; k++) {
+    gchar *end;
+
+    values[k] = g_ascii_strtod (g_strstrip (parts[k]), &end);
+    if (end == parts[k] || *end || !isfinite (values[k])
+        || fabs (values[k]) > 1e6
+        || (k >= 8 && (values[k] < 0 || values[k] != floor (values[k]))))
+      return FALSE;
+  }
+  for (guint c = 0; c < 4; c++) {
+    seed->x[c] = (gfloat) values[2 * c];
+    seed->y[c] = (gfloat) values[2 * c + 1];
+  }
+  seed->column = (gint) values[8];
+  seed->row = (gint) values[9];
+  return TRUE;
+}
+
+/* Warns, once, when nothing can be found without a seed and there is none. */
+static void
+check_start (GstQuadTrack * self, const ClothQuadParams * params, guint n_seeds)
+{
+  if (self->warned_of_start)
+    return;
+  if (params->link) {
+    if (MIN (self->pattern->columns, self->pattern->rows) > 2)
+      return;
+    self->warned_of_start = TRUE;
+    GST_ELEMENT_WARNING (self, RESOURCE, SETTINGS,
+        ("A board of %d×%d squares is too narrow to be found by itself.",
+            self->pattern->columns, self->pattern->rows),
+        ("Set link=false and give a square by \"seed\" or by clicks, or use a "
+            "board of three or more squares each way"));
+    return;
+  }
+  self->warned_of_start = TRUE;
+  if (!n_seeds)
+    GST_ELEMENT_WARNING (self, RESOURCE, SETTINGS,
+        ("With link=false nothing is tracked until a square is given."),
+        ("Set \"seed\", click the four corners of a square in the video "
+            "window, or set \"link\" to true"));
+}
+
+/* Warns, once, when the square that a seed is said to be can't be tracked. */
+static void
+check_seed (GstQuadTrack * self, const ClothQuadParams * params,
+    const Seed * seed)
+{
+  const ClothPattern *pattern = self->pattern;
+  const gint column = seed->column, row = seed->row;
+
+  if (self->warned_of_seed || column < 0 || row < 0)
+    return;
+  if (column >= pattern->columns || row >= pattern->rows) {
+    self->warned_of_seed = TRUE;
+    GST_ELEMENT_WARNING (self, RESOURCE, SETTINGS,
+        ("The seed's square %d,%d is not on the board of %d×%d squares, so the "
+            "seed is of no use.", column, row, pattern->columns, pattern->rows),
+        ("End \"seed\" by the square's column,row, counted from 0, or leave "
+            "both out"));
+  } else if (!params->link && params->squares != CLOTH_SQUARES_BOTH
+      && cloth_pattern_is_black (pattern, column, row)
+      != (params->squares == CLOTH_SQUARES_BLACK)) {
+    self->warned_of_seed = TRUE;
+    GST_ELEMENT_WARNING (self, RESOURCE, SETTINGS,
+        ("The seed's square %d,%d is of the colour that is not tracked, so "
+            "nothing starts from it.", column, row),
+        ("Give a square of the other colour, or set \"squares\" to both"));
+  }
+}
+
+/* Warns, once, when no square has started from the seeds of this picture. */
+static void
+check_tracked (GstQuadTrack * self, const ClothQuadParams * params,
+    guint n_tracked)
+{
+  if (self->warned_of_seed || params->link || !self->taken_seeds->len
+      || n_tracked)
+    return;
+  self->warned_of_seed = TRUE;
+  GST_ELEMENT_WARNING (self, RESOURCE, SETTINGS,
+      ("No square is seen where one was given, so nothing starts from it."),
+      ("Give the corners of a sharp square, 8 pixels or wider, to within half of "
+          "its width, and if its column,row is told, from the corner that is its "
+          "top-left one on the flat board; or set \"link\" to true"));
+}
+
+/* What was clicked into earlier pictures is of them. */
+static void
+forget_clicks (GstQuadTrack * self)
+{
+  GST_OBJECT_LOCK (self);
+  self->n_clicks = 0;
+  g_array_set_size (self->seeds, 0);
+  GST_OBJECT_UNLOCK (self);
+}
+
 static gboolean
 gst_quad_track_start (GstClothFilter * filter)
 {
@@ -126,17 +266,17 @@ gst_quad_track_start (GstClothFilter * filter)
   gboolean first_black;
 
   GST_OBJECT_LOCK (self);
-  path = g_strdup (self->pattern_path);
-  seed = g_strdup (self->seed);
-  columns = self->columns;
-  rows = self->rows;
-  first_black = self->first_black;
+  path = g_strdup (self->settings.pattern);
+  seed = g_strdup (self->settings.seed);
+  columns = self->settings.columns;
+  rows = self->settings.rows;
+  first_black = self->settings.first_black;
   GST_OBJECT_UNLOCK (self);
 
   self->has_first_seed = seed != NULL;
   self->knows_first = FALSE;
   self->was_reset = TRUE;
-  if (seed && !gst_quad_track_seed_parse (seed, self->first_seed)) {
+  if (seed && !parse_seed (seed, &self->first_seed)) {
     GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
         ("Can't read the seed \"%s\".", seed),
         ("\"seed\" takes x0,y0,x1,y1,x2,y2,x3,y3 in pixels, and the square's "
@@ -159,7 +299,7 @@ gst_quad_track_start (GstClothFilter * filter)
   }
   self->tracker = cloth_quad_tracker_new (self->pattern);
   self->found = FALSE;
-  memset (&self->warned, 0, sizeof (self->warned));
+  self->warned_of_start = self->warned_of_seed = FALSE;
   return TRUE;
 }
 
@@ -171,10 +311,7 @@ gst_quad_track_stop (GstClothFilter * filter)
   g_clear_pointer (&self->tracker, cloth_quad_tracker_free);
   g_clear_pointer (&self->pattern, cloth_pattern_free);
   g_clear_pointer (&self->detector, cloth_saddle_detector_free);
-  GST_OBJECT_LOCK (self);
-  g_array_set_size (self->clicks, 0);
-  g_array_set_size (self->seeds, 0);
-  GST_OBJECT_UNLOCK (self);
+  forget_clicks (self);
 }
 
 static void
@@ -186,11 +323,7 @@ gst_quad_track_reset (GstClothFilter * filter)
     return;
   cloth_quad_tracker_reset (self->tracker);
   self->was_reset = TRUE;
-  /* what was clicked into earlier pictures is of them */
-  GST_OBJECT_LOCK (self);
-  g_array_set_size (self->clicks, 0);
-  g_array_set_size (self->seeds, 0);
-  GST_OBJECT_UNLOCK (self);
+  forget_clicks (self);
 }
 
 /* Tells the bus when the board comes into sight and when it is gone. */
@@ -256,6 +389,64 @@ gst_quad_track_take_saddles (GstQuadTrack * self, GstClothSaddles * meta,
   }
 }
 
+/* The seeds of this picture are from now on in taken_seeds: with the lock held no message
+ * may be posted. Returns the parameters of this picture. */
+static ClothQuadParams
+take_seeds (GstQuadTrack * self, guint64 sequence)
+{
+  ClothQuadParams params;
+  GArray *seeds;
+
+  if (!self->knows_first)
+    self->first_sequence = sequence;
+  self->knows_first = TRUE;
+  GST_OBJECT_LOCK (self);
+  params = self->settings.params;
+  /* again after a seek back to it, not elsewhere: there it would be wrong */
+  if (self->has_first_seed && self->was_reset
+      && sequence == self->first_sequence)
+    g_array_append_val (self->seeds, self->first_seed);
+  self->was_reset = FALSE;
+  seeds = self->seeds;
+  self->seeds = self->taken_seeds;
+  self->taken_seeds = seeds;
+  g_array_set_size (self->seeds, 0);
+  GST_OBJECT_UNLOCK (self);
+  return params;
+}
+
+/* Returns how many of the squares are tracked. */
+static guint
+attach_quads (GstQuadTrack * self, const GstClothFilterFrame * frame,
+    const ClothQuad * quads, guint n)
+{
+  guint n_tracked = 0;
+
+  g_array_set_size (self->quads, n);
+  for (guint k = 0; k < n; k++) {
+    GstClothQuad *quad = &g_array_index (self->quads, GstClothQuad, k);
+
+    quad->column = quads[k].column;
+    quad->row = quads[k].row;
+    quad->state = (GstClothQuadState) quads[k].state;
+    quad->black = quads[k].black;
+    quad->confidence = quads[k].confidence;
+    for (gint c = 0; c < 4; c++) {
+      quad->x[c] = quads[k].x[c];
+      quad->y[c] = quads[k].y[c];
+      quad->cov_xx[c] = quads[k].cov[c][0];
+      quad->cov_xy[c] = quads[k].cov[c][1];
+      quad->cov_yy[c] = quads[k].cov[c][2];
+    }
+    n_tracked += quads[k].state == CLOTH_QUAD_TRACKED;
+  }
+  gst_buffer_add_cloth_quads_meta (frame->buffer,
+      gst_cloth_quads_new (frame->camera, frame->sequence,
+          (guint) self->pattern->columns, (guint) self->pattern->rows,
+          (const GstClothQuad *) self->quads->data, n));
+  return n_tracked;
+}
+
 static GstFlowReturn
 gst_quad_track_analyse (GstClothFilter * filter,
     const GstClothFilterFrame * frame)
@@ -266,7 +457,7 @@ gst_quad_track_analyse (GstClothFilter * filter,
   const ClothSaddle *saddles;
   const ClothQuad *quads;
   ClothQuadParams params;
-  guint n_saddles, n_candidates, n, tracked = 0, n_seeds;
+  guint n_saddles, n_candidates, n, n_tracked;
 
   if (meta) {
     gst_quad_track_take_saddles (self, meta, &frame->luma);
@@ -286,69 +477,22 @@ gst_quad_track_analyse (GstClothFilter * filter,
         &n_candidates);
   }
 
-  if (!self->knows_first)
-    self->first_sequence = frame->sequence;
-  self->knows_first = TRUE;
-  GST_OBJECT_LOCK (self);
-  params = self->params;
-  /* again after a seek back to it, not elsewhere: there it would be wrong */
-  if (self->has_first_seed && self->was_reset
-      && frame->sequence == self->first_sequence)
-    g_array_append_vals (self->seeds, self->first_seed,
-        GST_QUAD_TRACK_SEED_NUMBERS);
-  self->was_reset = FALSE;
-  /* a message must not be posted with the lock held */
-  n_seeds = self->seeds->len / GST_QUAD_TRACK_SEED_NUMBERS;
-  g_array_set_size (self->taken_seeds, 0);
-  g_array_append_vals (self->taken_seeds, self->seeds->data, self->seeds->len);
-  g_array_set_size (self->seeds, 0);
-  GST_OBJECT_UNLOCK (self);
-  gst_quad_track_seed_check_start (GST_ELEMENT (self), &self->warned,
-      self->pattern, &params, n_seeds);
-  for (guint s = 0; s < n_seeds; s++) {
-    const gfloat *seed = &g_array_index (self->taken_seeds, gfloat,
-        s * GST_QUAD_TRACK_SEED_NUMBERS);
-    gint column = (gint) seed[8], row = (gint) seed[9];
-    gfloat x[4], y[4];
+  params = take_seeds (self, frame->sequence);
+  check_start (self, &params, self->taken_seeds->len);
+  for (guint s = 0; s < self->taken_seeds->len; s++) {
+    const Seed *seed = &g_array_index (self->taken_seeds, Seed, s);
 
-    for (gint c = 0; c < 4; c++) {
-      x[c] = seed[2 * c];
-      y[c] = seed[2 * c + 1];
-    }
-    gst_quad_track_seed_check (GST_ELEMENT (self), &self->warned, self->pattern,
-        &params, column, row);
-    cloth_quad_tracker_seed (self->tracker, x, y, column, row);
+    check_seed (self, &params, seed);
+    cloth_quad_tracker_seed (self->tracker, seed->x, seed->y, seed->column,
+        seed->row);
   }
-
   quads = cloth_quad_tracker_run (self->tracker, &params, &frame->luma,
       saddles, n_saddles, candidates, n_candidates, &n);
-  n = MIN (n, GST_CLOTH_MAX_FEATURES);
-  g_array_set_size (self->quads, n);
-  for (guint k = 0; k < n; k++) {
-    GstClothQuad *quad = &g_array_index (self->quads, GstClothQuad, k);
-
-    quad->column = quads[k].column;
-    quad->row = quads[k].row;
-    quad->state = (GstClothQuadState) quads[k].state;
-    quad->black = quads[k].black;
-    quad->confidence = quads[k].confidence;
-    for (gint c = 0; c < 4; c++) {
-      quad->x[c] = quads[k].x[c];
-      quad->y[c] = quads[k].y[c];
-      quad->cov_xx[c] = quads[k].cov[c][0];
-      quad->cov_xy[c] = quads[k].cov[c][1];
-      quad->cov_yy[c] = quads[k].cov[c][2];
-    }
-    tracked += quads[k].state == CLOTH_QUAD_TRACKED;
-  }
-  gst_buffer_add_cloth_quads_meta (frame->buffer,
-      gst_cloth_quads_new (frame->camera, frame->sequence,
-          (guint) self->pattern->columns, (guint) self->pattern->rows,
-          (const GstClothQuad *) self->quads->data, n));
-  gst_quad_track_seed_check_tracked (GST_ELEMENT (self), &self->warned, &params,
-      n_seeds, tracked);
-  gst_quad_track_tell (self, frame, tracked);
-  GST_LOG_OBJECT (self, "%u saddles, %u squares tracked", n_saddles, tracked);
+  n_tracked = attach_quads (self, frame, quads,
+      MIN (n, GST_CLOTH_MAX_FEATURES));
+  check_tracked (self, &params, n_tracked);
+  gst_quad_track_tell (self, frame, n_tracked);
+  GST_LOG_OBJECT (self, "%u saddles, %u squares tracked", n_saddles, n_tracked);
   return GST_FLOW_OK;
 }
 
@@ -367,18 +511,15 @@ gst_quad_track_src_event (GstBaseTransform * trans, GstEvent * event)
           &y) && isfinite (x) && isfinite (y)) {
     GST_OBJECT_LOCK (self);
     if (button == 1) {
-      gfloat point[2] = { (gfloat) x, (gfloat) y };
-
-      g_array_append_vals (self->clicks, point, 2);
-      if (self->clicks->len == 8) {
-        gfloat untold[2] = { -1, -1 };
-
-        g_array_append_vals (self->seeds, self->clicks->data, 8);
-        g_array_append_vals (self->seeds, untold, 2);
-        g_array_set_size (self->clicks, 0);
+      self->clicked.x[self->n_clicks] = (gfloat) x;
+      self->clicked.y[self->n_clicks] = (gfloat) y;
+      if (++self->n_clicks == 4) {
+        self->clicked.column = self->clicked.row = -1;
+        g_array_append_val (self->seeds, self->clicked);
+        self->n_clicks = 0;
       }
     } else {
-      g_array_set_size (self->clicks, 0);
+      self->n_clicks = 0;
     }
     GST_OBJECT_UNLOCK (self);
   }
@@ -386,122 +527,14 @@ gst_quad_track_src_event (GstBaseTransform * trans, GstEvent * event)
       (trans, event);
 }
 
-static void
-gst_quad_track_set_property (GObject * object, guint id, const GValue * value,
-    GParamSpec * pspec)
+static Settings
+default_settings (void)
 {
-  GstQuadTrack *self = GST_QUAD_TRACK (object);
+  const Settings defaults = { NULL, NULL, 8, 8, TRUE,
+    cloth_quad_default_params ()
+  };
 
-  GST_OBJECT_LOCK (self);
-  if (!gst_cloth_may_change (GST_ELEMENT (self), pspec)) {
-    GST_OBJECT_UNLOCK (self);
-    return;
-  }
-  switch (id) {
-    case PROP_PATTERN:
-      g_free (self->pattern_path);
-      self->pattern_path = g_value_dup_string (value);
-      break;
-    case PROP_COLUMNS:
-      self->columns = g_value_get_int (value);
-      break;
-    case PROP_ROWS:
-      self->rows = g_value_get_int (value);
-      break;
-    case PROP_FIRST_BLACK:
-      self->first_black = g_value_get_boolean (value);
-      break;
-    case PROP_SEED:
-      g_free (self->seed);
-      self->seed = g_value_dup_string (value);
-      break;
-    case PROP_LINK:
-      self->params.link = g_value_get_boolean (value);
-      break;
-    case PROP_SQUARES:
-      self->params.squares = (ClothSquares) g_value_get_enum (value);
-      break;
-    case PROP_ALPHA:
-      self->params.alpha = g_value_get_float (value);
-      break;
-    case PROP_C_LOW:
-      self->params.c_low = g_value_get_float (value);
-      break;
-    case PROP_C_HIGH:
-      self->params.c_high = g_value_get_float (value);
-      break;
-    case PROP_C_PRED:
-      self->params.c_pred = g_value_get_float (value);
-      break;
-    case PROP_DAMPING:
-      self->params.damping = g_value_get_float (value);
-      break;
-    case PROP_CONSISTENCY:
-      self->params.consistency = g_value_get_float (value);
-      break;
-    case PROP_MAX_VARIANTS:
-      self->params.max_variants = g_value_get_uint (value);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
-  }
-  GST_OBJECT_UNLOCK (self);
-}
-
-static void
-gst_quad_track_get_property (GObject * object, guint id, GValue * value,
-    GParamSpec * pspec)
-{
-  GstQuadTrack *self = GST_QUAD_TRACK (object);
-
-  GST_OBJECT_LOCK (self);
-  switch (id) {
-    case PROP_PATTERN:
-      g_value_set_string (value, self->pattern_path);
-      break;
-    case PROP_COLUMNS:
-      g_value_set_int (value, self->columns);
-      break;
-    case PROP_ROWS:
-      g_value_set_int (value, self->rows);
-      break;
-    case PROP_FIRST_BLACK:
-      g_value_set_boolean (value, self->first_black);
-      break;
-    case PROP_SEED:
-      g_value_set_string (value, self->seed);
-      break;
-    case PROP_LINK:
-      g_value_set_boolean (value, self->params.link);
-      break;
-    case PROP_SQUARES:
-      g_value_set_enum (value, (gint) self->params.squares);
-      break;
-    case PROP_ALPHA:
-      g_value_set_float (value, self->params.alpha);
-      break;
-    case PROP_C_LOW:
-      g_value_set_float (value, self->params.c_low);
-      break;
-    case PROP_C_HIGH:
-      g_value_set_float (value, self->params.c_high);
-      break;
-    case PROP_C_PRED:
-      g_value_set_float (value, self->params.c_pred);
-      break;
-    case PROP_DAMPING:
-      g_value_set_float (value, self->params.damping);
-      break;
-    case PROP_CONSISTENCY:
-      g_value_set_float (value, self->params.consistency);
-      break;
-    case PROP_MAX_VARIANTS:
-      g_value_set_uint (value, self->params.max_variants);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
-  }
-  GST_OBJECT_UNLOCK (self);
+  return defaults;
 }
 
 static void
@@ -509,9 +542,8 @@ gst_quad_track_finalize (GObject * object)
 {
   GstQuadTrack *self = GST_QUAD_TRACK (object);
 
-  g_free (self->pattern_path);
-  g_free (self->seed);
-  g_array_unref (self->clicks);
+  gst_cloth_clear_settings (properties, G_N_ELEMENTS (properties),
+      &self->settings);
   g_array_unref (self->seeds);
   g_array_unref (self->taken_seeds);
   g_array_unref (self->saddles);
@@ -527,77 +559,14 @@ gst_quad_track_class_init (GstQuadTrackClass * klass)
   GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
   GstBaseTransformClass *trans_class = GST_BASE_TRANSFORM_CLASS (klass);
   GstClothFilterClass *filter_class = GST_CLOTH_FILTER_CLASS (klass);
-  const ClothQuadParams standard = cloth_quad_default_params ();
-  const GParamFlags at_start = G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS
-      | GST_PARAM_MUTABLE_READY;
-  const GParamFlags any_time = G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS
-      | GST_PARAM_MUTABLE_PLAYING | GST_PARAM_CONTROLLABLE;
+  const Settings defaults = default_settings ();
 
   GST_DEBUG_CATEGORY_INIT (quad_track_debug, "quadtrack", 0,
       "tracking of checkerboard squares");
-  object_class->set_property = gst_quad_track_set_property;
-  object_class->get_property = gst_quad_track_get_property;
   object_class->finalize = gst_quad_track_finalize;
-
-  g_object_class_install_property (object_class, PROP_PATTERN,
-      g_param_spec_string ("pattern", "Pattern",
-          "File pattern.json of the board; without it columns, rows and "
-          "first-black tell what the board is", NULL, at_start));
-  g_object_class_install_property (object_class, PROP_COLUMNS,
-      g_param_spec_int ("columns", "Columns",
-          "Number of squares in a row of the board", 2, 500, 8, at_start));
-  g_object_class_install_property (object_class, PROP_ROWS,
-      g_param_spec_int ("rows", "Rows",
-          "Number of squares in a column of the board", 2, 500, 8, at_start));
-  g_object_class_install_property (object_class, PROP_FIRST_BLACK,
-      g_param_spec_boolean ("first-black", "First square black",
-          "Whether the square at the top left of the board is black", TRUE,
-          at_start));
-  g_object_class_install_property (object_class, PROP_SEED,
-      g_param_spec_string ("seed", "Seed",
-          "Corners of one square in the first picture, x0,y0,x1,y1,x2,y2,x3,y3 "
-          "in pixels, and its column,row on the board if known", NULL,
-          at_start));
-  g_object_class_install_property (object_class, PROP_LINK,
-      g_param_spec_boolean ("link", "Link",
-          "Whether saddles are joined into pieces of the board in each picture, "
-          "which needs no seed and recovers from total loss", standard.link,
-          any_time));
-  g_object_class_install_property (object_class, PROP_SQUARES,
-      g_param_spec_enum ("squares", "Squares",
-          "Colour of the squares that are tracked",
-          GST_TYPE_QUAD_TRACK_SQUARES, (gint) standard.squares, any_time));
-  g_object_class_install_property (object_class, PROP_ALPHA,
-      g_param_spec_float ("alpha", "Alpha",
-          "Width of the lapels that the template adds around a square, over the "
-          "square's edge", 0.05f, 1.0f, standard.alpha, any_time));
-  g_object_class_install_property (object_class, PROP_C_LOW,
-      g_param_spec_float ("c-low", "Low confidence",
-          "Confidence below which a square is given up", -1.0f, 1.0f,
-          standard.c_low, any_time));
-  g_object_class_install_property (object_class, PROP_C_HIGH,
-      g_param_spec_float ("c-high", "High confidence",
-          "Confidence at which the search for a better match stops and above "
-          "which a neighbour counts for consistency", -1.0f, 1.0f,
-          standard.c_high, any_time));
-  g_object_class_install_property (object_class, PROP_C_PRED,
-      g_param_spec_float ("c-pred", "Predicting confidence",
-          "Confidence above which a square predicts its neighbours", -1.0f,
-          1.0f, standard.c_pred, any_time));
-  g_object_class_install_property (object_class, PROP_DAMPING,
-      g_param_spec_float ("damping", "Damping",
-          "Factor on the confidence of a square that extension has just added",
-          0.0f, 1.0f, standard.damping, any_time));
-  g_object_class_install_property (object_class, PROP_CONSISTENCY,
-      g_param_spec_float ("consistency", "Consistency",
-          "Distance up to which two squares agree on their common corner, over "
-          "the larger square's size", 0.0f, 2.0f, standard.consistency,
-          any_time));
-  g_object_class_install_property (object_class, PROP_MAX_VARIANTS,
-      g_param_spec_uint ("max-variants", "Most variants",
-          "Number of corner triples tried at most for one square", 1, 512,
-          standard.max_variants, any_time));
-
+  gst_cloth_install_properties (object_class, properties,
+      G_N_ELEMENTS (properties), &defaults,
+      G_STRUCT_OFFSET (GstQuadTrack, settings));
   gst_element_class_set_static_metadata (element_class, "Quad tracker",
       "Filter/Analyzer/Video",
       "Tracks the squares of a checkerboard on cloth",
@@ -607,18 +576,14 @@ gst_quad_track_class_init (GstQuadTrackClass * klass)
   filter_class->stop = gst_quad_track_stop;
   filter_class->reset = gst_quad_track_reset;
   filter_class->analyse = gst_quad_track_analyse;
-  gst_type_mark_as_plugin_api (GST_TYPE_QUAD_TRACK_SQUARES, 0);
 }
 
 static void
 gst_quad_track_init (GstQuadTrack * self)
 {
-  self->columns = self->rows = 8;
-  self->first_black = TRUE;
-  self->params = cloth_quad_default_params ();
-  self->clicks = g_array_new (FALSE, FALSE, sizeof (gfloat));
-  self->seeds = g_array_new (FALSE, FALSE, sizeof (gfloat));
-  self->taken_seeds = g_array_new (FALSE, FALSE, sizeof (gfloat));
+  self->settings = default_settings ();
+  self->seeds = g_array_new (FALSE, FALSE, sizeof (Seed));
+  self->taken_seeds = g_array_new (FALSE, FALSE, sizeof (Seed));
   self->saddles = g_array_new (FALSE, FALSE, sizeof (GstClothSaddle));
   self->candidates = g_array_new (FALSE, FALSE, sizeof (GstClothCandidate));
   self->quads = g_array_new (FALSE, FALSE, sizeof (GstClothQuad));
