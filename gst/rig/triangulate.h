@@ -80,8 +80,8 @@ typedef struct {
  * @xy: (nullable): covariances of @x and @y, px²; %NULL: none
  * @yy: (nullable): variances of @y, px²; %NULL: as @xx
  *
- * What one camera saw: element i belongs to point i. An observation whose covariance is
- * not finite and positive definite counts as not seen.
+ * What one camera saw: element i belongs to point i. An observation whose covariance,
+ * with the error floor added, is not finite and positive definite counts as not seen.
  */
 typedef struct {
   const gdouble *x, *y;

@@ -1,7 +1,7 @@
 /* Points that no cloth allows: found on bent grids whose wrong points are known.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/mesh/isometry.h"
+#include "gst/rig/isometry.h"
 
 #include <math.h>
 #include <string.h>

@@ -6,7 +6,7 @@
  * neighbours are the only check.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/mesh/isometry.h"
+#include "gst/rig/isometry.h"
 
 #include <math.h>
 
