@@ -1,4 +1,4 @@
-/* clothoverlay: squares, saddles and gaps from their metadata into a video frame.
+/* clothoverlay: squares, saddles and dots from their metadata into a video frame.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #ifdef HAVE_CONFIG_H
@@ -13,12 +13,24 @@
 #define CROSS_ARM 4.0f
 #define DASH 4.0f
 
+/* Indices on squares smaller or dots closer than this could not be read, px. */
+#define LEAST_SIZE_FOR_INDEX 14.0f
+
 static const ClothColour saddle_colour = { 0.10f, 0.90f, 0.95f, 1 };
 static const ClothColour text_on_black = { 1, 1, 1, 0.95f };
 static const ClothColour text_on_white = { 0.05f, 0.05f, 0.15f, 0.95f };
 
+static ClothColour
+with_opacity (ClothColour colour, gfloat opacity)
+{
+  colour.a *= opacity;
+  return colour;
+}
+
+/* ---- squares ---- */
+
 static void
-draw_index (const ClothCanvas * canvas, const GstClothQuad * quad,
+draw_quad_index (const ClothCanvas * canvas, const GstClothQuad * quad,
     const ClothColour * colour)
 {
   const gfloat *x = quad->x, *y = quad->y;
@@ -94,10 +106,12 @@ gst_cloth_overlay_draw_quads (const ClothCanvas * canvas,
         style->opacity);
 
     if (quads[i].state != GST_CLOTH_QUAD_LOST) {
-      draw_index (canvas, &quads[i], &colour);
+      draw_quad_index (canvas, &quads[i], &colour);
     }
   }
 }
+
+/* ---- saddles ---- */
 
 static void
 draw_cross (const ClothCanvas * canvas, gfloat x, gfloat y, gfloat arm,
@@ -135,113 +149,136 @@ gst_cloth_overlay_draw_saddles (const ClothCanvas * canvas,
   }
 }
 
-/* ---- the gap ---- */
+/* ---- dots ---- */
 
-/* The scale's bar in a picture of this height and more, px. */
-#define BAR_HEIGHT 96.0f
-#define BAR_WIDTH 10.0f
-#define BAR_MARGIN 12.0f
-#define DIGIT_HEIGHT 11.0f
+/* Log-odds of a label that is drawn in the colour of full confidence, nats. */
+#define SURE 20.0f
+/* Arms of the cross on a dot without a label; half the size of a dot's mark, px. */
+#define DOT_ARM 3.0f
+#define MARK 2.0f
+/* Share of a link that is left free at each end: the dots stay visible. */
+#define FREE 0.2f
 
-/* The report's colours: plain cloth for no distance, to a dark red. */
-const ClothColour *
-gst_cloth_overlay_heat_colours (void)
+static const ClothColour unlabelled_colour = { 1, 0.15f, 0.15f, 1 };
+static const ClothColour behind_colour = { 0.30f, 0.65f, 1, 1 };
+static const ClothColour text_on_dot = { 1, 1, 1, 0.95f };
+
+static ClothColour
+dot_colour (const GstClothDot * dot, const GstClothOverlayStyle * style)
 {
-  static const struct
-  {
-    gfloat at, rgb[3];
-  } stops[5] = {
-    {0.00f, {240, 234, 222}}, {0.20f, {248, 214, 150}}, {0.45f, {244, 150, 70}},
-    {0.70f, {214, 62, 52}}, {1.00f, {104, 10, 62}}
-  };
-  static const ClothColour unseen = { 0.502f, 0.525f, 0.569f, 1 };
-  static ClothColour colours[GST_CLOTH_OVERLAY_HEATS];
-  static gsize done;
-
-  if (g_once_init_enter (&done)) {
-    guint i, k = 0, n = GST_CLOTH_OVERLAY_HEATS - 1;
-
-    for (i = 0; i < n; i++) {
-      gfloat at = (gfloat) i / (gfloat) (n - 1), f;
-      gfloat *to[3] = { &colours[i].r, &colours[i].g, &colours[i].b };
-      guint c;
-
-      while (k < 3 && stops[k + 1].at < at) {
-        k++;
-      }
-      f = (at - stops[k].at) / (stops[k + 1].at - stops[k].at);
-      for (c = 0; c < 3; c++) {
-        *to[c] = (stops[k].rgb[c] + f * (stops[k + 1].rgb[c] -
-                stops[k].rgb[c])) / 255;
-      }
-      colours[i].a = 1;
-    }
-    colours[n] = unseen;
-    g_once_init_leave (&done, 1);
-  }
-  return colours;
+  return with_opacity (cloth_draw_confidence_colour (MIN (dot->confidence
+              / SURE, 1), 0), style->opacity);
 }
 
-void
-gst_cloth_overlay_heat (GstClothGap * gap, guint scale_mm, guint8 * heats)
-{
-  const guint last = GST_CLOTH_OVERLAY_HEATS - 2;
-  const gfloat *r = gst_cloth_gap_get_residuals (gap, NULL);
-  const gfloat per_metre = 1000 * (gfloat) last / (gfloat) scale_mm;
-  guint i, n = gst_cloth_gap_get_n_vertices (gap);
-
-  for (i = 0; i < n; i++, r += 3) {
-    gfloat heat = per_metre * sqrtf (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
-
-    heats[i] = (guint8) (isnan (heat) ? last + 1 :
-        heat < (gfloat) last ? (guint) (heat + 0.5f) : last);
-  }
-}
-
-/* A number with an edge of the other lightness, so that any film leaves it legible. */
 static void
-draw_label (const ClothCanvas * canvas, gint number, gfloat x, gfloat y,
-    gfloat size, gfloat opacity)
+draw_link (const ClothCanvas * canvas, const GstClothDot * a,
+    const GstClothDot * b, const GstClothOverlayStyle * style)
 {
-  const gfloat origin[2] = { x, y }, right[2] = { 0.57f * size, 0 };
-  const gfloat down[2] = { 0, size };
-  ClothColour edge = with_opacity (text_on_white, opacity);
-  ClothColour text = with_opacity (text_on_black, opacity);
+  gfloat dx = b->x - a->x, dy = b->y - a->y;
+  ClothColour colour =
+      dot_colour (a->confidence < b->confidence ? a : b, style);
 
-  cloth_draw_number (canvas, number, origin, right, down, 0.36f * size, &edge);
-  cloth_draw_number (canvas, number, origin, right, down, 0.14f * size, &text);
+  if (a->mirrored) {
+    colour = with_opacity (behind_colour, style->opacity);
+  }
+  cloth_draw_line (canvas, a->x + FREE * dx, a->y + FREE * dy, b->x - FREE * dx,
+      b->y - FREE * dy, style->line_width, &colour);
+}
+
+/* Column above, row below, upright in the picture. */
+static void
+draw_dot_index (const ClothCanvas * canvas, const GstClothDot * dot,
+    gfloat size, const GstClothOverlayStyle * style)
+{
+  ClothColour colour = with_opacity (text_on_dot, style->opacity);
+  const gint numbers[2] = { dot->column, dot->row };
+  const gfloat right[2] = { 0.16f * size, 0 }, down[2] = { 0, 0.28f * size };
+
+  for (gint line = 0; line < 2; line++) {
+    gfloat origin[2] = { dot->x - 0.2f * size,
+      dot->y + (line ? 0.06f : -0.34f) * size
+    };
+
+    cloth_draw_number (canvas, numbers[line], origin, right, down,
+        MAX (1.0f, 0.04f * size), &colour);
+  }
+}
+
+static gboolean
+has_label (const GstClothDot * dot, guint columns, guint rows)
+{
+  return dot->column >= 0 && dot->row >= 0 && (guint) dot->column < columns
+      && (guint) dot->row < rows;
+}
+
+/* Pictures share the table, so that it needs no memory anew: what is found may be of
+ * another picture, and a dot has the label when it says so itself. */
+static const GstClothDot *
+find_dot (GHashTable * by_label, guint columns, guint rows,
+    const GstClothDot * dots, guint n, gint column, gint row)
+{
+  const guint key = (guint) row * columns + (guint) column;
+  const guint i = GPOINTER_TO_UINT (g_hash_table_lookup (by_label,
+          GUINT_TO_POINTER (key)));
+
+  return i < n && dots[i].column == column && dots[i].row == row
+      && has_label (&dots[i], columns, rows) ? &dots[i] : NULL;
 }
 
 void
-gst_cloth_overlay_draw_scale (const ClothCanvas * canvas, gint width,
-    gint height, const GstClothOverlayStyle * style)
+gst_cloth_overlay_draw_dots (const ClothCanvas * canvas, GstClothDots * dots,
+    GHashTable * by_label, const GstClothOverlayStyle * style)
 {
-  const ClothColour *colours = gst_cloth_overlay_heat_colours ();
-  const guint n = GST_CLOTH_OVERLAY_HEATS - 1;
-  gfloat grow = MAX (1.0f, (gfloat) height / 480);
-  gfloat tall = grow * BAR_HEIGHT, wide = grow * BAR_WIDTH;
-  gfloat left = grow * BAR_MARGIN;
-  gfloat bottom = (gfloat) height - grow * BAR_MARGIN;
-  gfloat size = grow * DIGIT_HEIGHT;
-  guint i;
+  guint n, columns = gst_cloth_dots_get_columns (dots);
+  guint rows = gst_cloth_dots_get_rows (dots);
+  const GstClothDot *dot = gst_cloth_dots_get_dots (dots, &n);
+  ClothColour cross = with_opacity (unlabelled_colour, style->opacity);
 
-  /* In a thumbnail there is no place for it. */
-  if ((gfloat) height < 2 * tall || (gfloat) width < 2 * tall) {
-    return;
+  if (g_hash_table_size (by_label) > GST_CLOTH_MAX_FEATURES) {
+    g_hash_table_remove_all (by_label);
   }
-  for (i = 0; i < n; i++) {
-    gfloat y0 = bottom - tall * (gfloat) (i + 1) / (gfloat) n;
-    gfloat y1 = bottom - tall * (gfloat) i / (gfloat) n;
-    const gfloat x[4] = { left, left + wide, left + wide, left };
-    const gfloat y[4] = { y0, y0, y1, y1 };
-    ClothColour colour = with_opacity (colours[i], style->opacity);
+  for (guint i = 0; i < n; i++) {
+    if (has_label (&dot[i], columns, rows)) {
+      g_hash_table_insert (by_label, GUINT_TO_POINTER ((guint) dot[i].row
+              * columns + (guint) dot[i].column), GUINT_TO_POINTER (i));
+    }
+  }
+  for (guint i = 0; i < n; i++) {
+    const GstClothDot *d = &dot[i];
+    const GstClothDot *right, *below;
 
-    cloth_draw_quad (canvas, x, y, &colour);
+    if (!has_label (d, columns, rows)) {
+      if (style->draw_dots) {
+        cloth_draw_line (canvas, d->x - DOT_ARM, d->y - DOT_ARM,
+            d->x + DOT_ARM, d->y + DOT_ARM, style->line_width, &cross);
+        cloth_draw_line (canvas, d->x - DOT_ARM, d->y + DOT_ARM,
+            d->x + DOT_ARM, d->y - DOT_ARM, style->line_width, &cross);
+      }
+      continue;
+    }
+    right = find_dot (by_label, columns, rows, dot, n, d->column + 1, d->row);
+    below = find_dot (by_label, columns, rows, dot, n, d->column, d->row + 1);
+    if (style->draw_dots) {
+      ClothColour colour = dot_colour (d, style);
+
+      if (right) {
+        draw_link (canvas, d, right, style);
+      }
+      if (below) {
+        draw_link (canvas, d, below, style);
+      }
+      cloth_draw_ellipse (canvas, d->x, d->y, MARK * MARK, 0, MARK * MARK,
+          style->line_width, &colour);
+    }
+    if (style->draw_indices && (right || below)) {
+      const GstClothDot *other = right ? right : below;
+      gfloat size = hypotf (other->x - d->x, other->y - d->y);
+
+      if (size >= LEAST_SIZE_FOR_INDEX) {
+        draw_dot_index (canvas, d, size, style);
+      }
+    }
   }
-  draw_label (canvas, 0, left + 1.6f * wide, bottom - size, size,
-      style->opacity);
-  draw_label (canvas, (gint) style->gap_scale, left + 1.6f * wide,
-      bottom - tall, size, style->opacity);
 }
 
 /* ---- the picture ---- */

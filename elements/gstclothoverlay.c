@@ -44,32 +44,27 @@
 #endif
 
 #include "elements/gstclothoverlay.h"
-#include "elements/gstclothoverlay-draw.h"
-#include "elements/gstclothutil.h"
 
-#include <gst/cloth/cloth.h>
-#include <gst/video/video.h>
 #include <math.h>
+
+#include "elements/gstclothoverlay-draw.h"
+#include "elements/gstclothpaint.h"
+#include "elements/gstclothproperties.h"
+#include "elements/gstclothutil.h"
+#include "gst/render/surface.h"
+#include "gst/render/wireframe.h"
 
 GST_DEBUG_CATEGORY_STATIC (cloth_overlay_debug);
 #define GST_CAT_DEFAULT cloth_overlay_debug
 
-#define DEFAULT_DRAW_SADDLES TRUE
-#define DEFAULT_DRAW_QUADS TRUE
-#define DEFAULT_DRAW_DOTS TRUE
-#define DEFAULT_DRAW_INDICES FALSE
-#define DEFAULT_DRAW_MESH TRUE
-#define DEFAULT_DRAW_GAP TRUE
-#define DEFAULT_GAP_SCALE 10
-#define DEFAULT_LINE_WIDTH 1.5
-#define DEFAULT_OPACITY 1.0
-#define DEFAULT_FILL_OPACITY 0.3
-#define DEFAULT_C_LOW 0.62
-#define DEFAULT_ELLIPSE_SCALE 0.0
-
 /* indices of the pads */
 #define VIDEO 0
 #define MESH 1
+
+/* Of the lines of a mesh that lie behind another part of it. */
+#define HIDDEN_OPACITY 0.25f
+/* Of the heat map: the film shows through. */
+#define HEAT_OPACITY 0.6f
 
 /* A calibration fits a picture of other size when the shapes agree this well. */
 #define ASPECT_SLACK 0.01
@@ -78,13 +73,27 @@ GST_DEBUG_CATEGORY_STATIC (cloth_overlay_debug);
     "Y41B, YUV9, YVU9, A420, YUY2, UYVY, YVYU, AYUV, BGRx, RGBx, xBGR, xRGB, " \
     "BGRA, RGBA, ABGR, ARGB, RGB, BGR }"
 
+typedef struct
+{
+  GstClothOverlayStyle style;
+  gchar *rig, *camera, *texture;
+} Settings;
+
+/* The mesh of one topology. */
+typedef struct
+{
+  GstClothTopology *topology;
+  ClothWireframe *wire;
+  ClothSurface *surface;        /* NULL until something is printed on it */
+  guint8 *heats;                /* one a vertex */
+} Mesh;
+
 struct _GstClothOverlay
 {
   GstClothSync parent;
 
   /* with the object lock */
-  GstClothOverlayStyle style;
-  gchar *rig_path, *camera_name, *texture;
+  Settings settings;
   gboolean rig_changed, texture_changed;
 
   /* streaming thread */
@@ -92,7 +101,7 @@ struct _GstClothOverlay
   GstCaps *video_caps;
   gboolean knows_strides;       /* downstream, of GstVideoMeta */
   GHashTable *dots_by_label;
-  GstClothOverlayMesh *mesh;
+  Mesh *mesh;
   ClothRig *rig;
   const ClothCamera *camera;    /* of @rig */
 };
@@ -103,26 +112,91 @@ GST_ELEMENT_REGISTER_DEFINE_WITH_CODE (clothoverlay, "clothoverlay",
     GST_DEBUG_CATEGORY_INIT (cloth_overlay_debug, "clothoverlay", 0,
         "drawing of cloth metadata and meshes"));
 
-enum
-{
-  PROP_0,
-  PROP_DRAW_SADDLES,
-  PROP_DRAW_QUADS,
-  PROP_DRAW_DOTS,
-  PROP_DRAW_INDICES,
-  PROP_DRAW_MESH,
-  PROP_MESH_STYLE,
-  PROP_TEXTURE,
-  PROP_DRAW_GAP,
-  PROP_GAP_SCALE,
-  PROP_LINE_WIDTH,
-  PROP_OPACITY,
-  PROP_FILL_OPACITY,
-  PROP_C_LOW,
-  PROP_ELLIPSE_SCALE,
-  PROP_RIG,
-  PROP_CAMERA
+static const GEnumValue mesh_styles[] = {
+  {GST_CLOTH_OVERLAY_MESH_WIREFRAME, "Lines, coloured by what is known of "
+        "each vertex", "wireframe"},
+  {GST_CLOTH_OVERLAY_MESH_SHADED, "Surface in light and shade, with texture "
+        "if there is one", "shaded"},
+  {0, NULL, NULL}
 };
+
+#define SETTING(member) GST_CLOTH_SETTING (Settings, member)
+#define MUTABLE GST_PARAM_MUTABLE_PLAYING
+#define ANIMATED (GST_PARAM_CONTROLLABLE | GST_PARAM_MUTABLE_PLAYING)
+
+/* *INDENT-OFF* */
+static const GstClothProperty properties[] = {
+  {"draw-saddles", "draw-saddles",
+    "Draw the saddle points as crosses; the raw candidates as dots when none "
+    "was refined",
+    G_TYPE_BOOLEAN, SETTING (style.draw_saddles), ANIMATED},
+  {"draw-quads", "draw-quads",
+    "Draw the squares, coloured by confidence: yellow for 1, purple for c-low; "
+    "dashed when only predicted",
+    G_TYPE_BOOLEAN, SETTING (style.draw_quads), ANIMATED},
+  {"draw-dots", "draw-dots",
+    "Draw the labelled dots and the links between neighbours of the pattern, yellow "
+    "for sure labels to purple, blue where seen from behind; a red cross on dots "
+    "without a label",
+    G_TYPE_BOOLEAN, SETTING (style.draw_dots), ANIMATED},
+  {"draw-indices", "draw-indices",
+    "Write column (above) and row (below) into the squares and onto the dots",
+    G_TYPE_BOOLEAN, SETTING (style.draw_indices), ANIMATED},
+  {"draw-mesh", "draw-mesh",
+    "Draw the mesh of the mesh pad",
+    G_TYPE_BOOLEAN, SETTING (style.draw_mesh), ANIMATED},
+  {"mesh-style", "mesh-style",
+    "How the mesh is drawn: wireframe (green measured, amber from two views, "
+    "blue filled, violet predicted; faint where hidden) or shaded (a surface, "
+    "its hidden parts hidden)",
+    G_TYPE_ENUM, SETTING (style.mesh_style), ANIMATED, 0, 0,
+    "GstClothOverlayMeshStyle", mesh_styles},
+  {"texture", "texture",
+    "Picture file that is printed over the whole cloth, on both its sides, when it "
+    "is drawn shaded; without one it is white",
+    G_TYPE_STRING, SETTING (texture), MUTABLE},
+  {"draw-gap", "draw-gap",
+    "Where the mesh carries its distance from a simulation, draw it as a heat map, "
+    "pale for none to dark red for gap-scale, grey where not seen",
+    G_TYPE_BOOLEAN, SETTING (style.draw_gap), ANIMATED},
+  {"gap-scale", "gap-scale",
+    "Distance from the simulation that has the last colour, mm",
+    G_TYPE_UINT, SETTING (style.gap_scale), ANIMATED, 1, 99999},
+  {"line-width", "line-width",
+    "Width of all lines, px",
+    G_TYPE_DOUBLE, SETTING (style.line_width), ANIMATED, 0.25, 100},
+  {"opacity", "opacity",
+    "Opacity of everything drawn",
+    G_TYPE_DOUBLE, SETTING (style.opacity), ANIMATED, 0, 1},
+  {"fill-opacity", "fill-opacity",
+    "Opacity of the inside of tracked squares; times opacity",
+    G_TYPE_DOUBLE, SETTING (style.fill_opacity), ANIMATED, 0, 1},
+  {"c-low", "c-low",
+    "Confidence drawn in purple: the one below which the tracker gives a square "
+    "up",
+    G_TYPE_DOUBLE, SETTING (style.c_low), ANIMATED, -1, 1},
+  {"ellipse-scale", "ellipse-scale",
+    "Draw the one-sigma covariance ellipses of the saddles enlarged this many "
+    "times; 0: don't",
+    G_TYPE_DOUBLE, SETTING (style.ellipse_scale), ANIMATED, 0, 100000},
+  {"rig", "rig",
+    "Calibration file (rig.json) by which the mesh is projected",
+    G_TYPE_STRING, SETTING (rig), MUTABLE},
+  {"camera", "camera",
+    "Name in the rig of the camera that took the picture; may be left out when "
+    "the rig has one camera",
+    G_TYPE_STRING, SETTING (camera), MUTABLE},
+};
+
+static const Settings defaults = {
+  .style = {
+    .draw_saddles = TRUE, .draw_quads = TRUE, .draw_dots = TRUE,
+    .draw_mesh = TRUE, .draw_gap = TRUE, .gap_scale = 10,
+    .line_width = 1.5f, .opacity = 1, .fill_opacity = 0.3f, .c_low = 0.62f,
+    .mesh_style = GST_CLOTH_OVERLAY_MESH_WIREFRAME
+  }
+};
+/* *INDENT-ON* */
 
 static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE ("sink",
     GST_PAD_SINK, GST_PAD_ALWAYS,
@@ -135,6 +209,105 @@ static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE ("src",
 
 /* ---- the mesh ---- */
 
+/* by GstClothVertexState */
+static const ClothColour vertex_colours[] = {
+  {0.55f, 0.55f, 0.55f, 1},     /* unseen */
+  {0.20f, 0.85f, 0.45f, 1},     /* measured: green */
+  {1.00f, 0.72f, 0.15f, 1},     /* two views: amber */
+  {0.25f, 0.60f, 1.00f, 1},     /* filled: blue */
+  {0.75f, 0.45f, 1.00f, 1}      /* predicted: violet */
+};
+
+static Mesh *
+mesh_new (GstClothTopology * topology)
+{
+  Mesh *self = g_new0 (Mesh, 1);
+  guint n_indices;
+  const guint32 *faces = gst_cloth_topology_get_faces (topology, &n_indices);
+  const guint n_vertices = gst_cloth_topology_get_n_vertices (topology);
+
+  self->topology = gst_cloth_topology_ref (topology);
+  self->heats = g_malloc (n_vertices);
+  self->wire = cloth_wireframe_new (n_vertices,
+      gst_cloth_topology_get_columns (topology),
+      gst_cloth_topology_get_rows (topology), faces, n_indices / 4);
+  return self;
+}
+
+static void
+mesh_free (Mesh * self)
+{
+  if (!self) {
+    return;
+  }
+  gst_cloth_topology_unref (self->topology);
+  cloth_wireframe_free (self->wire);
+  cloth_surface_free (self->surface);
+  g_free (self->heats);
+  g_free (self);
+}
+
+/* Puts @texture on the surface, or plain white when it is NULL. */
+static gboolean
+mesh_print (Mesh * self, const gchar * texture, GError ** error)
+{
+  const guint n_vertices = gst_cloth_topology_get_n_vertices (self->topology);
+  const gfloat *uv = gst_cloth_topology_get_uv (self->topology, NULL);
+  guint n_indices;
+  const guint32 *faces =
+      gst_cloth_topology_get_faces (self->topology, &n_indices);
+  g_autoptr (ClothPaint) paint = texture ? gst_cloth_paint_texture (texture,
+      uv, n_vertices, error) : gst_cloth_paint_white ();
+
+  if (!paint) {
+    return FALSE;
+  }
+  g_clear_pointer (&self->surface, cloth_surface_free);
+  self->surface = cloth_surface_new (n_vertices, uv, faces, n_indices / 4,
+      paint, CLOTH_SIMD_BEST);
+  return TRUE;
+}
+
+static void
+mesh_draw (Mesh * self,
+    const ClothCanvas * canvas, gint width, gint height,
+    const ClothCamera * camera, GstClothMesh * mesh, GstClothGap * gap,
+    const GstClothOverlayStyle * style)
+{
+  ClothWireStyle wire_style = {
+    G_N_ELEMENTS (vertex_colours), vertex_colours, style->line_width,
+    style->opacity, HIDDEN_OPACITY, 0
+  };
+  ClothColour heat_colours[CLOTH_DRAW_HEATS];
+  const gfloat *positions = gst_cloth_mesh_get_positions (mesh, NULL);
+  const guint8 *states = gst_cloth_mesh_get_states (mesh, NULL);
+  const gboolean hot = gap && gst_cloth_gap_get_n_vertices (gap) ==
+      gst_cloth_topology_get_n_vertices (self->topology);
+
+  if (hot) {
+    cloth_draw_heats (gst_cloth_gap_get_residuals (gap, NULL),
+        gst_cloth_gap_get_n_vertices (gap), style->gap_scale, self->heats);
+    cloth_draw_heat_colours (heat_colours);
+    states = self->heats;
+    wire_style.n_colours = CLOTH_DRAW_HEATS;
+    wire_style.colours = heat_colours;
+    wire_style.fill_opacity = HEAT_OPACITY * style->opacity;
+  } else if (style->mesh_style == GST_CLOTH_OVERLAY_MESH_SHADED) {
+    ClothRenderStyle light;
+
+    cloth_render_style_init (&light);
+    cloth_surface_draw (self->surface, canvas, width, height, camera,
+        positions, &light, style->opacity);
+    return;
+  }
+  cloth_wireframe_draw (self->wire, canvas, width, height, camera, positions,
+      states, &wire_style);
+  if (hot) {
+    cloth_draw_heat_scale (canvas, width, height, style->gap_scale,
+        style->opacity);
+  }
+}
+
 static gboolean
 gst_cloth_overlay_load_rig (GstClothOverlay * self)
 {
@@ -146,8 +319,8 @@ gst_cloth_overlay_load_rig (GstClothOverlay * self)
     return TRUE;
   }
   self->rig_changed = FALSE;
-  path = g_strdup (self->rig_path);
-  name = g_strdup (self->camera_name);
+  path = g_strdup (self->settings.rig);
+  name = g_strdup (self->settings.camera);
   GST_OBJECT_UNLOCK (self);
 
   self->camera = NULL;
@@ -191,14 +364,14 @@ gst_cloth_overlay_print (GstClothOverlay * self)
   g_autofree gchar *texture = NULL;
 
   GST_OBJECT_LOCK (self);
-  if (!self->texture_changed && gst_cloth_overlay_mesh_is_printed (self->mesh)) {
+  if (!self->texture_changed && self->mesh->surface) {
     GST_OBJECT_UNLOCK (self);
     return TRUE;
   }
   self->texture_changed = FALSE;
-  texture = g_strdup (self->texture);
+  texture = g_strdup (self->settings.texture);
   GST_OBJECT_UNLOCK (self);
-  if (gst_cloth_overlay_mesh_print (self->mesh, texture, &error)) {
+  if (mesh_print (self->mesh, texture, &error)) {
     return TRUE;
   }
   GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ,
@@ -211,14 +384,14 @@ gst_cloth_overlay_draw_mesh (GstClothOverlay * self, const ClothCanvas * canvas,
     GstBuffer * buffer, const GstClothOverlayStyle * style)
 {
   g_autoptr (GstClothMesh) mesh = gst_cloth_read_mesh (GST_ELEMENT (self),
-      buffer, gst_cloth_overlay_mesh_get_n_vertices (self->mesh));
+      buffer, gst_cloth_topology_get_n_vertices (self->mesh->topology));
   GstClothGap *gap = style->draw_gap ? gst_buffer_get_cloth_gap (buffer) : NULL;
 
   if (!mesh || (style->mesh_style == GST_CLOTH_OVERLAY_MESH_SHADED
           && !gst_cloth_overlay_print (self))) {
     return FALSE;
   }
-  gst_cloth_overlay_mesh_draw (self->mesh, canvas,
+  mesh_draw (self->mesh, canvas,
       GST_VIDEO_INFO_WIDTH (&self->info), GST_VIDEO_INFO_HEIGHT (&self->info),
       self->camera, mesh, gap, style);
   return TRUE;
@@ -243,7 +416,7 @@ gst_cloth_overlay_set_pad_caps (GstClothSync * sync, guint index,
     return TRUE;
   }
 
-  g_clear_pointer (&self->mesh, gst_cloth_overlay_mesh_free);
+  g_clear_pointer (&self->mesh, mesh_free);
   if (!caps) {
     return TRUE;
   }
@@ -251,7 +424,7 @@ gst_cloth_overlay_set_pad_caps (GstClothSync * sync, guint index,
   if (!topology) {
     return FALSE;
   }
-  self->mesh = gst_cloth_overlay_mesh_new (topology);
+  self->mesh = mesh_new (topology);
   return gst_cloth_overlay_load_rig (self);
 }
 
@@ -352,7 +525,7 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
     gst_object_sync_values (GST_OBJECT (self), pts);
   }
   GST_OBJECT_LOCK (self);
-  style = self->style;
+  style = self->settings.style;
   GST_OBJECT_UNLOCK (self);
   if (!style.draw_mesh || !self->mesh) {
     mesh = NULL;
@@ -476,7 +649,7 @@ gst_cloth_overlay_stop (GstAggregator * agg)
   GstClothOverlay *self = GST_CLOTH_OVERLAY (agg);
 
   gst_caps_replace (&self->video_caps, NULL);
-  g_clear_pointer (&self->mesh, gst_cloth_overlay_mesh_free);
+  g_clear_pointer (&self->mesh, mesh_free);
   self->camera = NULL;
   g_clear_pointer (&self->rig, cloth_rig_free);
   return GST_AGGREGATOR_CLASS (gst_cloth_overlay_parent_class)->stop (agg);
@@ -490,129 +663,11 @@ gst_cloth_overlay_set_property (GObject * object, guint id,
 {
   GstClothOverlay *self = GST_CLOTH_OVERLAY (object);
 
+  gst_cloth_set_property (object, id, value, pspec);
   GST_OBJECT_LOCK (self);
-  switch (id) {
-    case PROP_DRAW_SADDLES:
-      self->style.draw_saddles = g_value_get_boolean (value);
-      break;
-    case PROP_DRAW_QUADS:
-      self->style.draw_quads = g_value_get_boolean (value);
-      break;
-    case PROP_DRAW_DOTS:
-      self->style.draw_dots = g_value_get_boolean (value);
-      break;
-    case PROP_DRAW_INDICES:
-      self->style.draw_indices = g_value_get_boolean (value);
-      break;
-    case PROP_DRAW_MESH:
-      self->style.draw_mesh = g_value_get_boolean (value);
-      break;
-    case PROP_MESH_STYLE:
-      self->style.mesh_style = g_value_get_enum (value);
-      break;
-    case PROP_TEXTURE:
-      g_free (self->texture);
-      self->texture = g_value_dup_string (value);
-      self->texture_changed = TRUE;
-      break;
-    case PROP_DRAW_GAP:
-      self->style.draw_gap = g_value_get_boolean (value);
-      break;
-    case PROP_GAP_SCALE:
-      self->style.gap_scale = g_value_get_uint (value);
-      break;
-    case PROP_LINE_WIDTH:
-      self->style.line_width = (gfloat) g_value_get_double (value);
-      break;
-    case PROP_OPACITY:
-      self->style.opacity = (gfloat) g_value_get_double (value);
-      break;
-    case PROP_FILL_OPACITY:
-      self->style.fill_opacity = (gfloat) g_value_get_double (value);
-      break;
-    case PROP_C_LOW:
-      self->style.c_low = (gfloat) g_value_get_double (value);
-      break;
-    case PROP_ELLIPSE_SCALE:
-      self->style.ellipse_scale = (gfloat) g_value_get_double (value);
-      break;
-    case PROP_RIG:
-      g_free (self->rig_path);
-      self->rig_path = g_value_dup_string (value);
-      self->rig_changed = TRUE;
-      break;
-    case PROP_CAMERA:
-      g_free (self->camera_name);
-      self->camera_name = g_value_dup_string (value);
-      self->rig_changed = TRUE;
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
-      break;
-  }
-  GST_OBJECT_UNLOCK (self);
-}
-
-static void
-gst_cloth_overlay_get_property (GObject * object, guint id, GValue * value,
-    GParamSpec * pspec)
-{
-  GstClothOverlay *self = GST_CLOTH_OVERLAY (object);
-
-  GST_OBJECT_LOCK (self);
-  switch (id) {
-    case PROP_DRAW_SADDLES:
-      g_value_set_boolean (value, self->style.draw_saddles);
-      break;
-    case PROP_DRAW_QUADS:
-      g_value_set_boolean (value, self->style.draw_quads);
-      break;
-    case PROP_DRAW_DOTS:
-      g_value_set_boolean (value, self->style.draw_dots);
-      break;
-    case PROP_DRAW_INDICES:
-      g_value_set_boolean (value, self->style.draw_indices);
-      break;
-    case PROP_DRAW_MESH:
-      g_value_set_boolean (value, self->style.draw_mesh);
-      break;
-    case PROP_MESH_STYLE:
-      g_value_set_enum (value, self->style.mesh_style);
-      break;
-    case PROP_TEXTURE:
-      g_value_set_string (value, self->texture);
-      break;
-    case PROP_DRAW_GAP:
-      g_value_set_boolean (value, self->style.draw_gap);
-      break;
-    case PROP_GAP_SCALE:
-      g_value_set_uint (value, self->style.gap_scale);
-      break;
-    case PROP_LINE_WIDTH:
-      g_value_set_double (value, self->style.line_width);
-      break;
-    case PROP_OPACITY:
-      g_value_set_double (value, self->style.opacity);
-      break;
-    case PROP_FILL_OPACITY:
-      g_value_set_double (value, self->style.fill_opacity);
-      break;
-    case PROP_C_LOW:
-      g_value_set_double (value, self->style.c_low);
-      break;
-    case PROP_ELLIPSE_SCALE:
-      g_value_set_double (value, self->style.ellipse_scale);
-      break;
-    case PROP_RIG:
-      g_value_set_string (value, self->rig_path);
-      break;
-    case PROP_CAMERA:
-      g_value_set_string (value, self->camera_name);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
-      break;
-  }
+  self->texture_changed |= g_str_equal (pspec->name, "texture");
+  self->rig_changed |= g_str_equal (pspec->name, "rig")
+      || g_str_equal (pspec->name, "camera");
   GST_OBJECT_UNLOCK (self);
 }
 
@@ -623,39 +678,11 @@ gst_cloth_overlay_finalize (GObject * object)
 
   gst_caps_replace (&self->video_caps, NULL);
   g_hash_table_unref (self->dots_by_label);
-  g_clear_pointer (&self->mesh, gst_cloth_overlay_mesh_free);
+  g_clear_pointer (&self->mesh, mesh_free);
   g_clear_pointer (&self->rig, cloth_rig_free);
-  g_free (self->rig_path);
-  g_free (self->camera_name);
-  g_free (self->texture);
+  gst_cloth_clear_settings (properties, G_N_ELEMENTS (properties),
+      &self->settings);
   G_OBJECT_CLASS (gst_cloth_overlay_parent_class)->finalize (object);
-}
-
-static void
-install_boolean (GObjectClass * klass, guint id, const gchar * name,
-    const gchar * blurb, gboolean value)
-{
-  g_object_class_install_property (klass, id, g_param_spec_boolean (name, name,
-          blurb, value, G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-          GST_PARAM_CONTROLLABLE | GST_PARAM_MUTABLE_PLAYING));
-}
-
-static void
-install_double (GObjectClass * klass, guint id, const gchar * name,
-    const gchar * blurb, gdouble low, gdouble high, gdouble value)
-{
-  g_object_class_install_property (klass, id, g_param_spec_double (name, name,
-          blurb, low, high, value, G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-          GST_PARAM_CONTROLLABLE | GST_PARAM_MUTABLE_PLAYING));
-}
-
-static void
-install_string (GObjectClass * klass, guint id, const gchar * name,
-    const gchar * blurb)
-{
-  g_object_class_install_property (klass, id, g_param_spec_string (name, name,
-          blurb, NULL, G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-          GST_PARAM_MUTABLE_PLAYING));
 }
 
 static void
@@ -666,8 +693,10 @@ gst_cloth_overlay_class_init (GstClothOverlayClass * klass)
   GstAggregatorClass *agg_class = GST_AGGREGATOR_CLASS (klass);
   GstClothSyncClass *sync_class = GST_CLOTH_SYNC_CLASS (klass);
 
+  gst_cloth_install_properties (object_class, properties,
+      G_N_ELEMENTS (properties), &defaults, G_STRUCT_OFFSET (GstClothOverlay,
+          settings));
   object_class->set_property = gst_cloth_overlay_set_property;
-  object_class->get_property = gst_cloth_overlay_get_property;
   object_class->finalize = gst_cloth_overlay_finalize;
   agg_class->decide_allocation = gst_cloth_overlay_decide_allocation;
   agg_class->sink_query = gst_cloth_overlay_sink_query;
@@ -677,61 +706,6 @@ gst_cloth_overlay_class_init (GstClothOverlayClass * klass)
   sync_class->set_pad_caps = gst_cloth_overlay_set_pad_caps;
   sync_class->negotiate_src = gst_cloth_overlay_negotiate_src;
   sync_class->process_set = gst_cloth_overlay_process_set;
-
-  install_boolean (object_class, PROP_DRAW_SADDLES, "draw-saddles",
-      "Draw the saddle points as crosses; the raw candidates as dots when none "
-      "was refined", DEFAULT_DRAW_SADDLES);
-  install_boolean (object_class, PROP_DRAW_QUADS, "draw-quads",
-      "Draw the squares, coloured by confidence: yellow for 1, purple for c-low; "
-      "dashed when only predicted", DEFAULT_DRAW_QUADS);
-  install_boolean (object_class, PROP_DRAW_DOTS, "draw-dots",
-      "Draw the labelled dots and the links between neighbours of the pattern, yellow "
-      "for sure labels to purple, blue where seen from behind; a red cross on dots "
-      "without a label", DEFAULT_DRAW_DOTS);
-  install_boolean (object_class, PROP_DRAW_INDICES, "draw-indices",
-      "Write column (above) and row (below) into the squares and onto the dots",
-      DEFAULT_DRAW_INDICES);
-  install_boolean (object_class, PROP_DRAW_MESH, "draw-mesh",
-      "Draw the mesh of the mesh pad", DEFAULT_DRAW_MESH);
-  g_object_class_install_property (object_class, PROP_MESH_STYLE,
-      g_param_spec_enum ("mesh-style", "mesh-style",
-          "How the mesh is drawn: wireframe (green measured, amber from two views, "
-          "blue filled, violet predicted; faint where hidden) or shaded (a surface, "
-          "its hidden parts hidden)",
-          gst_cloth_overlay_mesh_style_get_type (),
-          GST_CLOTH_OVERLAY_MESH_WIREFRAME,
-          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-          GST_PARAM_CONTROLLABLE | GST_PARAM_MUTABLE_PLAYING));
-  install_string (object_class, PROP_TEXTURE, "texture",
-      "Picture file that is printed over the whole cloth, on both its sides, when it "
-      "is drawn shaded; without one it is white");
-  install_boolean (object_class, PROP_DRAW_GAP, "draw-gap",
-      "Where the mesh carries its distance from a simulation, draw it as a heat map, "
-      "pale for none to dark red for gap-scale, grey where not seen",
-      DEFAULT_DRAW_GAP);
-  g_object_class_install_property (object_class, PROP_GAP_SCALE,
-      g_param_spec_uint ("gap-scale", "gap-scale",
-          "Distance from the simulation that has the last colour, mm", 1, 99999,
-          DEFAULT_GAP_SCALE, G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-          GST_PARAM_CONTROLLABLE | GST_PARAM_MUTABLE_PLAYING));
-  install_double (object_class, PROP_LINE_WIDTH, "line-width",
-      "Width of all lines, px", 0.25, 100, DEFAULT_LINE_WIDTH);
-  install_double (object_class, PROP_OPACITY, "opacity",
-      "Opacity of everything drawn", 0, 1, DEFAULT_OPACITY);
-  install_double (object_class, PROP_FILL_OPACITY, "fill-opacity",
-      "Opacity of the inside of tracked squares; times opacity", 0, 1,
-      DEFAULT_FILL_OPACITY);
-  install_double (object_class, PROP_C_LOW, "c-low",
-      "Confidence drawn in purple: the one below which the tracker gives a square "
-      "up", -1, 1, DEFAULT_C_LOW);
-  install_double (object_class, PROP_ELLIPSE_SCALE, "ellipse-scale",
-      "Draw the one-sigma covariance ellipses of the saddles enlarged this many "
-      "times; 0: don't", 0, 100000, DEFAULT_ELLIPSE_SCALE);
-  install_string (object_class, PROP_RIG, "rig",
-      "Calibration file (rig.json) by which the mesh is projected");
-  install_string (object_class, PROP_CAMERA, "camera",
-      "Name in the rig of the camera that took the picture; may be left out when "
-      "the rig has one camera");
 
   gst_element_class_add_static_pad_template_with_gtype (element_class,
       &sink_template, GST_TYPE_CLOTH_SYNC_PAD);
@@ -743,24 +717,12 @@ gst_cloth_overlay_class_init (GstClothOverlayClass * klass)
       "Filter/Effect/Video",
       "Draws saddles, squares, labelled dots, meshes and their distance from a simulation",
       "The gst-cloth developers");
-  gst_type_mark_as_plugin_api (gst_cloth_overlay_mesh_style_get_type (), 0);
 }
 
 static void
 gst_cloth_overlay_init (GstClothOverlay * self)
 {
-  self->style.draw_saddles = DEFAULT_DRAW_SADDLES;
-  self->style.draw_quads = DEFAULT_DRAW_QUADS;
-  self->style.draw_dots = DEFAULT_DRAW_DOTS;
-  self->style.draw_indices = DEFAULT_DRAW_INDICES;
-  self->style.draw_mesh = DEFAULT_DRAW_MESH;
-  self->style.draw_gap = DEFAULT_DRAW_GAP;
-  self->style.gap_scale = DEFAULT_GAP_SCALE;
-  self->style.line_width = (gfloat) DEFAULT_LINE_WIDTH;
-  self->style.opacity = (gfloat) DEFAULT_OPACITY;
-  self->style.fill_opacity = (gfloat) DEFAULT_FILL_OPACITY;
-  self->style.c_low = (gfloat) DEFAULT_C_LOW;
-  self->style.ellipse_scale = (gfloat) DEFAULT_ELLIPSE_SCALE;
+  self->settings = defaults;
   self->dots_by_label = g_hash_table_new (NULL, NULL);
   gst_cloth_sync_add_always_pad (GST_CLOTH_SYNC (self), "sink");
 }

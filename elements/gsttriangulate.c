@@ -10,9 +10,9 @@
  * squares that they carry as #GstClothQuads, or the dots of #GstClothDots. Each frame of
  * the mesh has a vertex for every corner of the board, or every dot of the array: its
  * place, its 3×3 covariance, and whether three or more views agree on it, only two saw
- * it, or it is unseen. A vertex seen by one camera, or contradicted, is unseen; nothing is carried over from earlier frames. Clocks that the
- * rig knows to differ (`offset_s`) are known from the first pictures on, which make no
- * mesh then.
+ * it, or it is unseen. A vertex seen by one camera, or contradicted, is unseen; nothing is
+ * carried over from earlier frames. Clocks that the rig knows to differ (`offset_s`) are
+ * known from the first pictures on, which make no mesh then.
  *
  * The mesh's frame rate is the cameras'. While they differ it is the last one that was
  * sent, so that a camera joining late doesn't change it in mid-stream; 0/1, variable, when
@@ -34,67 +34,142 @@
 #endif
 
 #include "elements/gsttriangulate.h"
-#include "elements/gsttriangulateboard.h"
-#include "elements/gsttriangulatecheck.h"
-#include "elements/gsttriangulatepad.h"
-#include "elements/gsttriangulatesolve.h"
-#include "elements/gsttriangulateviews.h"
 
 #include <gst/cloth/cloth.h>
+
+#include "elements/gstclothproperties.h"
+#include "elements/gsttriangulatepad.h"
+#include "gst/cloth-io/points.h"
+#include "gst/pattern/marray.h"
 #include "gst/rig/merge.h"
+#include "gst/rig/reconstruct.h"
 #include "gst/rig/rigfile.h"
-#include "gst/rig/triangulate.h"
 
 GST_DEBUG_CATEGORY_STATIC (triangulate_debug);
 #define GST_CAT_DEFAULT triangulate_debug
 
-#define DEFAULT_THRESHOLD 4.0
-#define DEFAULT_MAX_ERROR 0.0
-#define DEFAULT_ERROR_FLOOR -1.0
-#define DEFAULT_HUBER 2.0
-/* Bent into a fold a square's edge is a chord; woven cloth stretches a little. */
-#define DEFAULT_MIN_LENGTH 0.8
-#define DEFAULT_MAX_LENGTH 1.05
-#define DEFAULT_THREADS 0
 #define MAX_THREADS 1024
+/* Every so many sets it is looked whether the cameras fit together. */
+#define CHECKED_SETS 25
 #define SINK_CAPS "video/x-raw(ANY), width=(int)[ 1, 16384 ], " \
     "height=(int)[ 1, 16384 ]; " GST_CLOTH_OBSERVATIONS_CAPS
+
+/* A vertex has the state of its point. */
+G_STATIC_ASSERT ((gint) CLOTH_POINT_UNSEEN == GST_CLOTH_VERTEX_UNSEEN);
+G_STATIC_ASSERT ((gint) CLOTH_POINT_MEASURED == GST_CLOTH_VERTEX_MEASURED);
+G_STATIC_ASSERT ((gint) CLOTH_POINT_TWO_VIEWS == GST_CLOTH_VERTEX_TWO_VIEWS);
+
+/* The printed pattern: squares or dots in, a grid of vertices out. */
+typedef struct
+{
+  ClothPattern *checker;        /* one of these two */
+  ClothMArray *dots;
+  GstClothTopology *topology;
+  ClothReconstructionGrid grid;
+  guint8 *seen;                 /* whether a picture shows a dot */
+  const gchar *features;        /* what is seen of it: squares or dots */
+  const gchar *detector;        /* elements that find them */
+} Board;
+
+/* What one picture carries: one of the two, or neither. */
+typedef struct
+{
+  GstClothQuads *quads;
+  GstClothDots *dots;
+} Seen;
+
+/* Whether the cameras fit together, over some sets; all 0 at the start. */
+typedef struct
+{
+  guint n_sets;
+  gboolean warned;
+  gboolean seen[CLOTH_RIG_MAX_CAMERAS];
+  guint64 n_compared[CLOTH_RIG_MAX_CAMERAS];
+  guint64 n_left_out[CLOTH_RIG_MAX_CAMERAS];
+} Check;
+
+typedef struct
+{
+  gchar *rig, *pattern;
+  ClothReconstructionParameters parameters;
+  guint threads;
+} Settings;
 
 struct _GstTriangulate
 {
   GstClothSync parent;
 
   /* object lock */
-  gchar *rig_location, *pattern_location;
+  Settings settings;
   gboolean rig_changed, pattern_changed, parameters_changed;
-  ClothTriangulateParameters parameters;
-  gdouble min_length, max_length;
-  guint threads;
 
   /* streaming thread */
   ClothRig *rig;
-  GstTriangulateBoard *board;
+  Board *board;
   gint fps_n, fps_d;            /* as sent downstream; fps_n -1: not yet */
   ClothPool *pool;
+  ClothReconstruction *reconstruction;
+  gdouble threshold;            /* in force */
   ClothMerge *merge[CLOTH_RIG_MAX_CAMERAS];
-  GstTriangulateSolve solve;
   GstTriangulateView view[GST_CLOTH_SYNC_MAX_PADS];
   guint64 sequence;
-  GstTriangulateCheck check;
+  Check check;
 };
 
-enum
-{
-  PROP_0,
-  PROP_RIG,
-  PROP_PATTERN,
-  PROP_THRESHOLD,
-  PROP_MAX_ERROR,
-  PROP_ERROR_FLOOR,
-  PROP_HUBER,
-  PROP_MIN_LENGTH,
-  PROP_MAX_LENGTH,
-  PROP_THREADS
+#define SETTING(member) GST_CLOTH_SETTING (Settings, member)
+
+/* *INDENT-OFF* */
+static const GstClothProperty properties[] = {
+  {"rig", "Rig",
+    "File rig.json with the calibrated cameras; a new one counts from the "
+    "next set on",
+    G_TYPE_STRING, SETTING (rig), GST_PARAM_MUTABLE_PLAYING},
+  {"pattern", "Pattern",
+    "File pattern.json of what is filmed: the mesh has a vertex for each corner "
+    "of a checkerboard's squares, or for each dot of an M-array",
+    G_TYPE_STRING, SETTING (pattern), GST_PARAM_MUTABLE_PLAYING},
+  {"threshold", "Threshold",
+    "A view is left out when it is further from what the others say than "
+    "this many standard deviations",
+    G_TYPE_DOUBLE, SETTING (parameters.triangulate.threshold),
+    GST_PARAM_MUTABLE_PLAYING, 0.1, G_MAXDOUBLE},
+  {"max-error", "Maximum error",
+    "A view is left out when its reprojection error is larger than this, in "
+    "px, whatever its covariance says; 0: no such limit",
+    G_TYPE_DOUBLE, SETTING (parameters.triangulate.max_error),
+    GST_PARAM_MUTABLE_PLAYING, 0, G_MAXDOUBLE},
+  {"error-floor", "Error floor",
+    "Variance in px² added to every observation's own, which knows of the "
+    "picture's noise only: what calibration, lens model and compression "
+    "leave; -1: what the film's own residuals tell where three cameras see a "
+    "point, 0.01 until they do",
+    G_TYPE_DOUBLE, SETTING (parameters.triangulate.error_floor),
+    GST_PARAM_MUTABLE_PLAYING, -1, 1e6},
+  {"huber", "Huber",
+    "While looking for the view to leave out, errors beyond this many "
+    "standard deviations weigh less",
+    G_TYPE_DOUBLE, SETTING (parameters.triangulate.huber),
+    GST_PARAM_MUTABLE_PLAYING, 0.1, G_MAXDOUBLE},
+  {"min-length", "Least length",
+    "Vertices are dropped that are nearer to their neighbours in space than "
+    "this share of their distance on the flat cloth; 0: no such limit",
+    G_TYPE_DOUBLE, SETTING (parameters.shortest),
+    GST_PARAM_MUTABLE_PLAYING, 0, 1},
+  {"max-length", "Largest length",
+    "Vertices are dropped that are farther from their neighbours in space "
+    "than this share of their distance on the flat cloth, more for cloth "
+    "that stretches; 0: no such limit",
+    G_TYPE_DOUBLE, SETTING (parameters.longest),
+    GST_PARAM_MUTABLE_PLAYING, 0, 10},
+  {"threads", "Threads",
+    "Threads that triangulate; 0: as many as there are processors. The "
+    "result is the same",
+    G_TYPE_UINT, SETTING (threads), GST_PARAM_MUTABLE_PLAYING, 0, MAX_THREADS},
+};
+/* *INDENT-ON* */
+
+static const Settings defaults = {
+  .parameters = CLOTH_RECONSTRUCTION_PARAMETERS_DEFAULT
 };
 
 G_DEFINE_TYPE_WITH_CODE (GstTriangulate, gst_triangulate, GST_TYPE_CLOTH_SYNC,
@@ -112,6 +187,226 @@ static GstStaticPadTemplate src_template =
 GST_STATIC_PAD_TEMPLATE ("src", GST_PAD_SRC, GST_PAD_ALWAYS,
     GST_STATIC_CAPS (GST_CLOTH_MESH_CAPS));
 
+/* ---- the pattern ---- */
+
+static GstClothTopology *
+make_topology (const Board * board, const gdouble origin_m[2], GError ** error)
+{
+  guint columns = board->grid.columns, rows = board->grid.rows;
+  g_autofree gfloat *uv = g_new (gfloat, 2 * (gsize) columns * rows);
+  g_autoptr (GstClothTopology) grid = NULL;
+  const guint32 *faces;
+  guint n_indices, i;
+
+  for (i = 0; i < columns * rows; i++) {
+    uv[2 * i] = (gfloat) (origin_m[0] + (i % columns) * board->grid.edge_m);
+    uv[2 * i + 1] = (gfloat) (origin_m[1] + (i / columns) * board->grid.edge_m);
+  }
+  /* its faces, at another place */
+  grid = gst_cloth_topology_new_grid (columns, rows, 1.0f, 1.0f, error);
+  if (!grid) {
+    return NULL;
+  }
+  faces = gst_cloth_topology_get_faces (grid, &n_indices);
+  return gst_cloth_topology_new (columns * rows, columns, rows, uv, faces,
+      n_indices / 4, error);
+}
+
+static void
+board_free (Board * board)
+{
+  if (!board) {
+    return;
+  }
+  g_clear_pointer (&board->checker, cloth_pattern_free);
+  g_clear_pointer (&board->dots, cloth_m_array_free);
+  g_clear_pointer (&board->topology, gst_cloth_topology_unref);
+  g_free (board->seen);
+  g_free (board);
+}
+
+/* Reads a pattern.json. A checkerboard has a vertex for each corner of its squares, an
+ * M-array one for each dot; uv is their place on the cloth. */
+static Board *
+board_load (const gchar * path, GError ** error)
+{
+  Board *board = g_new0 (Board, 1);
+  g_autoptr (GError) other = NULL;
+  const gdouble *origin_m = NULL;
+
+  board->dots = cloth_m_array_load (path, &other);
+  if (board->dots) {
+    board->grid.columns = (guint) board->dots->columns;
+    board->grid.rows = (guint) board->dots->rows;
+    board->grid.edge_m = board->dots->pitch_m;
+    board->grid.dot_m = board->dots->diameter_m;
+    board->features = "dots";
+    board->detector = "dotlabel";
+    board->seen = g_malloc (board->grid.columns * board->grid.rows);
+    origin_m = board->dots->origin_uv_m;
+  } else if (g_error_matches (other, CLOTH_PATTERN_ERROR,
+          CLOTH_PATTERN_ERROR_UNSUPPORTED)) {
+    board->checker = cloth_pattern_load (path, error);
+    if (board->checker) {
+      board->grid.columns = (guint) board->checker->columns + 1;
+      board->grid.rows = (guint) board->checker->rows + 1;
+      board->grid.edge_m = board->checker->square_m;
+      board->features = "squares";
+      board->detector = "saddledetect ! quadtrack";
+      origin_m = board->checker->origin_uv_m;
+    }
+  } else {
+    g_propagate_error (error, g_steal_pointer (&other));
+  }
+  if (origin_m) {
+    board->topology = make_topology (board, origin_m, error);
+  }
+  if (!board->topology) {
+    g_clear_pointer (&board, board_free);
+  }
+  return board;
+}
+
+/* What of @buffer is of this kind of board, else of the other; FALSE: none of both. */
+static gboolean
+board_see (const Board * board, GstBuffer * buffer, Seen * seen)
+{
+  seen->quads = gst_buffer_get_cloth_quads (buffer);
+  seen->dots = gst_buffer_get_cloth_dots (buffer);
+  if (board->dots && seen->dots) {
+    seen->quads = NULL;
+  } else if (board->checker && seen->quads) {
+    seen->dots = NULL;
+  }
+  return seen->quads || seen->dots;
+}
+
+static const gchar *
+seen_camera (const Seen * seen)
+{
+  return seen->dots ? gst_cloth_dots_get_camera (seen->dots) :
+      gst_cloth_quads_get_camera (seen->quads);
+}
+
+static guint64
+seen_sequence (const Seen * seen)
+{
+  return seen->dots ? gst_cloth_dots_get_sequence (seen->dots) :
+      gst_cloth_quads_get_sequence (seen->quads);
+}
+
+/* Adds the places that pad @index measures to @merge; FALSE, after an element error, when
+ * they are of another pattern. */
+static gboolean
+board_take (Board * board, GstElement * self, guint index, const Seen * seen,
+    ClothMerge * merge)
+{
+  guint squares = board->checker ? 1 : 0;       /* corners are one more */
+  guint columns = board->grid.columns - squares;
+  guint rows = board->grid.rows - squares;
+  guint seen_columns, seen_rows;
+
+  if (seen->dots ? !board->dots : !board->checker) {
+    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+        ("The pictures on sink_%u carry %s, but pattern has %s.", index,
+            seen->dots ? "dots" : "squares", board->features),
+        ("Set pattern to the pattern.json of what is filmed, or put %s before "
+            "the pad.", board->detector));
+    return FALSE;
+  }
+  seen_columns = seen->dots ? gst_cloth_dots_get_columns (seen->dots) :
+      gst_cloth_quads_get_columns (seen->quads);
+  seen_rows = seen->dots ? gst_cloth_dots_get_rows (seen->dots) :
+      gst_cloth_quads_get_rows (seen->quads);
+  if (seen_columns != columns || seen_rows != rows) {
+    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+        ("The %s on sink_%u are of a pattern of %u×%u, but pattern has %u×%u.",
+            board->features, index, seen_columns, seen_rows, columns, rows),
+        ("Give the detector and this element the same pattern."));
+    return FALSE;
+  }
+  if (seen->dots) {
+    gst_cloth_io_points_add_dots (seen->dots, board->grid.columns,
+        board->grid.rows, board->seen, merge);
+  } else {
+    gst_cloth_io_points_add_quads (seen->quads, board->grid.columns,
+        board->grid.rows, merge);
+  }
+  return TRUE;
+}
+
+/* ---- whether the cameras fit together ---- */
+
+/* Counts one set. Every 25 sets posts, once, a warning if fewer than two cameras have
+ * carried squares or dots yet, or if a camera contradicts the others on more than half of
+ * what it sees; the message's details name it as "camera". */
+static void
+check_add (Check * check, GstElement * element, const Board * board,
+    const ClothRig * rig, const ClothTriangulateView * views,
+    const ClothReconstructed * result)
+{
+  guint c, worst = 0, n_seeing = 0;
+  const gchar *seeing = NULL;
+  gdouble share = 0.;
+
+  if (check->warned) {
+    return;
+  }
+  for (c = 0; c < rig->n_cameras; c++) {
+    check->seen[c] |= views[c].x != NULL;
+    check->n_compared[c] += result->n_compared[c];
+    check->n_left_out[c] += result->n_left_out[c];
+  }
+  if (++check->n_sets % CHECKED_SETS) {
+    return;
+  }
+  for (c = 0; c < rig->n_cameras; c++) {
+    if (check->seen[c]) {
+      seeing = rig->cameras[c].name;
+      n_seeing++;
+    }
+  }
+  if (n_seeing == 1) {
+    check->warned = TRUE;
+    GST_ELEMENT_WARNING (element, STREAM, FAILED,
+        ("Only camera \"%s\" carries %s so far, so every vertex is unseen.",
+            seeing, board->features),
+        ("Link two or more cameras, each with %s before its sink pad.",
+            board->detector));
+    return;
+  }
+  if (n_seeing == 0) {
+    check->warned = TRUE;
+    GST_ELEMENT_WARNING (element, STREAM, FAILED,
+        ("No picture so far carries %s, so every vertex is unseen.",
+            board->features),
+        ("Put %s before each sink pad, and nothing that drops metadata between "
+            "them and it.", board->detector));
+    return;
+  }
+  for (c = 0; c < rig->n_cameras; c++) {
+    gdouble s = (gdouble) check->n_left_out[c] /
+        (gdouble) MAX (check->n_compared[c], 1);
+
+    if (s > share) {
+      share = s;
+      worst = c;
+    }
+    check->n_compared[c] = check->n_left_out[c] = 0;
+  }
+  if (share > 0.5) {
+    check->warned = TRUE;
+    GST_ELEMENT_WARNING_WITH_DETAILS (element, STREAM, FAILED,
+        ("Camera \"%s\" contradicts the others on %.0f%% of the %s it sees.",
+            rig->cameras[worst].name, 100. * share, board->features),
+        ("See that each pad has its own camera and that the cameras stand as when "
+            "rig was made; else calibrate again, or raise error-floor."),
+        ("camera", G_TYPE_STRING, rig->cameras[worst].name, NULL));
+  }
+}
+
+/* ---- rig, pattern and parameters ---- */
+
 static void
 gst_triangulate_clear_merges (GstTriangulate * self)
 {
@@ -128,10 +423,10 @@ gst_triangulate_load_rig (GstTriangulate * self)
   g_autofree gchar *location = NULL;
   g_autoptr (GError) error = NULL;
   g_autoptr (ClothRig) rig = NULL;
-  ClothTriangulator *triangulator;
+  ClothReconstruction *reconstruction;
 
   GST_OBJECT_LOCK (self);
-  location = g_strdup (self->rig_location);
+  location = g_strdup (self->settings.rig);
   self->rig_changed = FALSE;
   self->parameters_changed = TRUE;
   GST_OBJECT_UNLOCK (self);
@@ -149,16 +444,18 @@ gst_triangulate_load_rig (GstTriangulate * self)
         ("Set rig to a rig.json; it is now \"%s\".", location));
     return FALSE;
   }
-  triangulator = cloth_triangulator_new (rig->n_cameras, rig->cameras, &error);
-  if (!triangulator) {
+  reconstruction = cloth_reconstruction_new (rig, &error);
+  if (!reconstruction) {
     GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
         ("%s (%s).", error->message, location),
         ("Calibrate two or more cameras together into one rig.json."));
     return FALSE;
   }
-  cloth_triangulator_free (self->solve.triangulator);
-  self->solve.triangulator = triangulator;
-  self->solve.floor.weight = 0;
+  if (self->board) {
+    cloth_reconstruction_set_grid (reconstruction, &self->board->grid);
+  }
+  cloth_reconstruction_free (self->reconstruction);
+  self->reconstruction = reconstruction;
   cloth_rig_free (self->rig);
   self->rig = g_steal_pointer (&rig);
   return TRUE;
@@ -169,10 +466,10 @@ gst_triangulate_load_pattern (GstTriangulate * self)
 {
   g_autofree gchar *location = NULL;
   g_autoptr (GError) error = NULL;
-  GstTriangulateBoard *board;
+  Board *board;
 
   GST_OBJECT_LOCK (self);
-  location = g_strdup (self->pattern_location);
+  location = g_strdup (self->settings.pattern);
   self->pattern_changed = FALSE;
   GST_OBJECT_UNLOCK (self);
 
@@ -183,24 +480,24 @@ gst_triangulate_load_pattern (GstTriangulate * self)
             "written beside the print."));
     return FALSE;
   }
-  board = gst_triangulate_board_load (location, &error);
+  board = board_load (location, &error);
   if (!board) {
     GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ,
         ("The pattern could not be read: %s", error->message),
         ("Set pattern to a pattern.json; it is now \"%s\".", location));
     return FALSE;
   }
-  gst_triangulate_board_free (self->board);
+  board_free (self->board);
   self->board = board;
   gst_triangulate_clear_merges (self);
-  gst_triangulate_solve_set_board (&self->solve, board);
+  cloth_reconstruction_set_grid (self->reconstruction, &board->grid);
   return TRUE;
 }
 
 static gboolean
 gst_triangulate_apply_parameters (GstTriangulate * self)
 {
-  ClothTriangulateParameters parameters;
+  ClothReconstructionParameters parameters;
   gboolean rig_changed, changed;
   guint threads;
 
@@ -211,17 +508,16 @@ gst_triangulate_apply_parameters (GstTriangulate * self)
     return FALSE;
   }
   GST_OBJECT_LOCK (self);
-  parameters = self->parameters;
-  self->solve.min_length = self->min_length;
-  self->solve.max_length = self->max_length;
-  threads = self->threads;
+  parameters = self->settings.parameters;
+  threads = self->settings.threads;
   changed = self->parameters_changed;
   self->parameters_changed = FALSE;
   GST_OBJECT_UNLOCK (self);
   if (!changed) {
     return TRUE;
   }
-  self->solve.parameters = parameters;
+  self->threshold = parameters.triangulate.threshold;
+  cloth_reconstruction_set_parameters (self->reconstruction, &parameters);
   if (threads == 0) {
     threads = MIN (g_get_num_processors (), MAX_THREADS);
   }
@@ -229,7 +525,7 @@ gst_triangulate_apply_parameters (GstTriangulate * self)
     cloth_pool_free (self->pool);
     self->pool = cloth_pool_new (threads);
   }
-  cloth_triangulator_set_pool (self->solve.triangulator, self->pool);
+  cloth_reconstruction_set_pool (self->reconstruction, self->pool);
   return TRUE;
 }
 
@@ -238,9 +534,9 @@ gst_triangulate_forget (GstTriangulate * self)
 {
   guint i;
 
-  gst_triangulate_solve_clear (&self->solve);
+  g_clear_pointer (&self->reconstruction, cloth_reconstruction_free);
   g_clear_pointer (&self->rig, cloth_rig_free);
-  g_clear_pointer (&self->board, gst_triangulate_board_free);
+  g_clear_pointer (&self->board, board_free);
   g_clear_pointer (&self->pool, cloth_pool_free);
   gst_triangulate_clear_merges (self);
   self->fps_n = -1;
@@ -269,6 +565,8 @@ gst_triangulate_stop (GstAggregator * agg)
   gst_triangulate_forget (GST_TRIANGULATE (agg));
   return GST_AGGREGATOR_CLASS (gst_triangulate_parent_class)->stop (agg);
 }
+
+/* ---- GstClothSync ---- */
 
 static gboolean
 gst_triangulate_set_pad_caps (GstClothSync * sync, guint index, GstCaps * caps)
@@ -325,33 +623,34 @@ static GstFlowReturn
 gst_triangulate_make_mesh (GstTriangulate * self,
     const ClothTriangulateView * views, GstBuffer ** out)
 {
-  GstTriangulateSolve *solve = &self->solve;
   g_autoptr (GError) error = NULL;
   g_autoptr (GstClothMesh) mesh = NULL;
+  const ClothReconstructed *result =
+      cloth_reconstruction_run (self->reconstruction, views, &error);
 
-  if (!gst_triangulate_solve_run (solve, self->rig, self->board, views, &error)) {
+  if (!result) {
     GST_ELEMENT_ERROR (self, STREAM, FAILED, ("%s", error->message), (NULL));
     return GST_FLOW_ERROR;
   }
-  gst_triangulate_check_add (&self->check, GST_ELEMENT (self), self->board,
-      self->rig, views, solve->result);
-  mesh = gst_cloth_mesh_new (self->sequence, solve->n_vertices,
-      solve->positions, solve->result->state, solve->covariances);
+  check_add (&self->check, GST_ELEMENT (self), self->board, self->rig, views,
+      result);
+  mesh = gst_cloth_mesh_new (self->sequence, result->n_vertices,
+      result->positions, result->states, result->covariances);
   *out = gst_cloth_mesh_to_buffer (mesh);
   GST_LOG_OBJECT (self, "frame %" G_GUINT64_FORMAT ": error floor %g px²",
-      self->sequence, solve->floor.floor);
+      self->sequence, result->error_floor);
   return GST_FLOW_OK;
 }
 
 /* What a view carries, in its own or in unpacked metadata. */
 static gboolean
 gst_triangulate_look (GstTriangulate * self, guint index, GstBuffer * view,
-    GstBuffer ** unpacked, GstTriangulateSeen * seen)
+    GstBuffer ** unpacked, Seen * seen)
 {
   g_autoptr (GError) error = NULL;
 
   if (!self->view[index].observations) {
-    return gst_triangulate_board_see (self->board, view, seen);
+    return board_see (self->board, view, seen);
   }
   *unpacked = gst_buffer_new ();
   if (!gst_cloth_observations_unpack (view, *unpacked, &error)) {
@@ -365,7 +664,7 @@ gst_triangulate_look (GstTriangulate * self, guint index, GstBuffer * view,
     }
     return FALSE;
   }
-  return gst_triangulate_board_see (self->board, *unpacked, seen);
+  return board_see (self->board, *unpacked, seen);
 }
 
 static GstFlowReturn
@@ -375,7 +674,7 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   GstTriangulate *self = GST_TRIANGULATE (sync);
   ClothTriangulateView seen[CLOTH_RIG_MAX_CAMERAS] = { {NULL} };
   GstBuffer *unpacked[GST_CLOTH_SYNC_MAX_PADS] = { NULL };
-  GstTriangulateSeen carried[GST_CLOTH_SYNC_MAX_PADS];
+  Seen carried[GST_CLOTH_SYNC_MAX_PADS];
   GstReferenceTimestampMeta *stamp = NULL;
   GstFlowReturn ret = GST_FLOW_ERROR;
   gboolean moved;
@@ -402,9 +701,9 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
       continue;
     }
     if (n_carried++ == 0) {
-      self->sequence = gst_triangulate_seen_sequence (&carried[i]);
+      self->sequence = seen_sequence (&carried[i]);
     }
-    name = gst_triangulate_seen_camera (&carried[i]);
+    name = seen_camera (&carried[i]);
     if (name[0] != '\0' && g_strcmp0 (name, self->view[i].meta) != 0) {
       g_free (self->view[i].meta);
       self->view[i].meta = g_strdup (name);
@@ -426,16 +725,17 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
       continue;
     }
     if (!self->merge[camera]) {
-      self->merge[camera] = cloth_merge_new (self->solve.n_vertices);
+      self->merge[camera] = cloth_merge_new (self->board->grid.columns
+          * self->board->grid.rows);
     }
     cloth_merge_clear (self->merge[camera]);
-    if (!gst_triangulate_board_take (self->board, GST_ELEMENT (self), i,
+    if (!board_take (self->board, GST_ELEMENT (self), i,
             &carried[i], self->merge[camera])) {
       goto done;
     }
-    cloth_merge_finish (self->merge[camera],
-        self->solve.parameters.threshold, gst_triangulate_solve_get_floor
-        (&self->solve), &seen[camera]);
+    cloth_merge_finish (self->merge[camera], self->threshold,
+        cloth_reconstruction_get_error_floor (self->reconstruction),
+        &seen[camera]);
   }
   ret = gst_triangulate_make_mesh (self, seen, out);
   if (ret == GST_FLOW_OK && stamp) {
@@ -459,97 +759,25 @@ gst_triangulate_reset (GstClothSync * sync)
   self->sequence = G_MAXUINT64; /* the first set's is 0 */
 }
 
+/* ---- GObject ---- */
+
 static void
 gst_triangulate_set_property (GObject * object, guint id, const GValue * value,
     GParamSpec * pspec)
 {
   GstTriangulate *self = GST_TRIANGULATE (object);
+  const gboolean is_pattern = g_str_equal (pspec->name, "pattern");
 
+  gst_cloth_set_property (object, id, value, pspec);
   GST_OBJECT_LOCK (self);
-  switch (id) {
-    case PROP_RIG:
-      g_free (self->rig_location);
-      self->rig_location = g_value_dup_string (value);
-      self->rig_changed = TRUE;
-      break;
-    case PROP_PATTERN:
-      g_free (self->pattern_location);
-      self->pattern_location = g_value_dup_string (value);
-      self->pattern_changed = TRUE;
-      break;
-    case PROP_THRESHOLD:
-      self->parameters.threshold = g_value_get_double (value);
-      break;
-    case PROP_MAX_ERROR:
-      self->parameters.max_error = g_value_get_double (value);
-      break;
-    case PROP_ERROR_FLOOR:
-      self->parameters.error_floor = g_value_get_double (value);
-      break;
-    case PROP_HUBER:
-      self->parameters.huber = g_value_get_double (value);
-      break;
-    case PROP_MIN_LENGTH:
-      self->min_length = g_value_get_double (value);
-      break;
-    case PROP_MAX_LENGTH:
-      self->max_length = g_value_get_double (value);
-      break;
-    case PROP_THREADS:
-      self->threads = g_value_get_uint (value);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
-      break;
-  }
+  self->rig_changed |= g_str_equal (pspec->name, "rig");
+  self->pattern_changed |= is_pattern;
   self->parameters_changed = TRUE;
   GST_OBJECT_UNLOCK (self);
-  if (id == PROP_PATTERN) {
+  if (is_pattern) {
     /* new caps before the next set */
     gst_pad_mark_reconfigure (GST_AGGREGATOR_SRC_PAD (self));
   }
-}
-
-static void
-gst_triangulate_get_property (GObject * object, guint id, GValue * value,
-    GParamSpec * pspec)
-{
-  GstTriangulate *self = GST_TRIANGULATE (object);
-
-  GST_OBJECT_LOCK (self);
-  switch (id) {
-    case PROP_RIG:
-      g_value_set_string (value, self->rig_location);
-      break;
-    case PROP_PATTERN:
-      g_value_set_string (value, self->pattern_location);
-      break;
-    case PROP_THRESHOLD:
-      g_value_set_double (value, self->parameters.threshold);
-      break;
-    case PROP_MAX_ERROR:
-      g_value_set_double (value, self->parameters.max_error);
-      break;
-    case PROP_ERROR_FLOOR:
-      g_value_set_double (value, self->parameters.error_floor);
-      break;
-    case PROP_HUBER:
-      g_value_set_double (value, self->parameters.huber);
-      break;
-    case PROP_MIN_LENGTH:
-      g_value_set_double (value, self->min_length);
-      break;
-    case PROP_MAX_LENGTH:
-      g_value_set_double (value, self->max_length);
-      break;
-    case PROP_THREADS:
-      g_value_set_uint (value, self->threads);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
-      break;
-  }
-  GST_OBJECT_UNLOCK (self);
 }
 
 static void
@@ -557,8 +785,8 @@ gst_triangulate_finalize (GObject * object)
 {
   GstTriangulate *self = GST_TRIANGULATE (object);
 
-  g_free (self->rig_location);
-  g_free (self->pattern_location);
+  gst_cloth_clear_settings (properties, G_N_ELEMENTS (properties),
+      &self->settings);
   G_OBJECT_CLASS (gst_triangulate_parent_class)->finalize (object);
 }
 
@@ -588,15 +816,15 @@ gst_triangulate_release_pad (GstElement * element, GstPad * pad)
 static void
 gst_triangulate_class_init (GstTriangulateClass * klass)
 {
-  const GParamFlags flags = G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-      GST_PARAM_MUTABLE_PLAYING;
   GObjectClass *object_class = G_OBJECT_CLASS (klass);
   GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
   GstAggregatorClass *agg_class = GST_AGGREGATOR_CLASS (klass);
   GstClothSyncClass *sync_class = GST_CLOTH_SYNC_CLASS (klass);
 
+  gst_cloth_install_properties (object_class, properties,
+      G_N_ELEMENTS (properties), &defaults, G_STRUCT_OFFSET (GstTriangulate,
+          settings));
   object_class->set_property = gst_triangulate_set_property;
-  object_class->get_property = gst_triangulate_get_property;
   object_class->finalize = gst_triangulate_finalize;
   element_class->request_new_pad = gst_triangulate_request_new_pad;
   element_class->release_pad = gst_triangulate_release_pad;
@@ -606,97 +834,6 @@ gst_triangulate_class_init (GstTriangulateClass * klass)
   sync_class->negotiate_src = gst_triangulate_negotiate_src;
   sync_class->process_set = gst_triangulate_process_set;
   sync_class->reset = gst_triangulate_reset;
-
-  /**
-   * GstTriangulate:rig:
-   *
-   * Since: 0.1
-   */
-  g_object_class_install_property (object_class, PROP_RIG,
-      g_param_spec_string ("rig", "Rig",
-          "File rig.json with the calibrated cameras; a new one counts from the "
-          "next set on", NULL, flags));
-  /**
-   * GstTriangulate:pattern:
-   *
-   * Since: 0.1
-   */
-  g_object_class_install_property (object_class, PROP_PATTERN,
-      g_param_spec_string ("pattern", "Pattern",
-          "File pattern.json of what is filmed: the mesh has a vertex for each corner "
-          "of a checkerboard's squares, or for each dot of an M-array", NULL,
-          flags));
-  /**
-   * GstTriangulate:threshold:
-   *
-   * Since: 0.1
-   */
-  g_object_class_install_property (object_class, PROP_THRESHOLD,
-      g_param_spec_double ("threshold", "Threshold",
-          "A view is left out when it is further from what the others say than "
-          "this many standard deviations", 0.1, G_MAXDOUBLE, DEFAULT_THRESHOLD,
-          flags));
-  /**
-   * GstTriangulate:max-error:
-   *
-   * Since: 0.1
-   */
-  g_object_class_install_property (object_class, PROP_MAX_ERROR,
-      g_param_spec_double ("max-error", "Maximum error",
-          "A view is left out when its reprojection error is larger than this, in "
-          "px, whatever its covariance says; 0: no such limit", 0.0,
-          G_MAXDOUBLE, DEFAULT_MAX_ERROR, flags));
-  /**
-   * GstTriangulate:error-floor:
-   *
-   * Since: 0.1
-   */
-  g_object_class_install_property (object_class, PROP_ERROR_FLOOR,
-      g_param_spec_double ("error-floor", "Error floor",
-          "Variance in px² added to every observation's own, which knows of the "
-          "picture's noise only: what calibration, lens model and compression "
-          "leave; -1: what the film's own residuals tell where three cameras see a "
-          "point, 0.01 until they do", -1.0, 1e6, DEFAULT_ERROR_FLOOR, flags));
-  /**
-   * GstTriangulate:huber:
-   *
-   * Since: 0.1
-   */
-  g_object_class_install_property (object_class, PROP_HUBER,
-      g_param_spec_double ("huber", "Huber",
-          "While looking for the view to leave out, errors beyond this many "
-          "standard deviations weigh less", 0.1, G_MAXDOUBLE, DEFAULT_HUBER,
-          flags));
-  /**
-   * GstTriangulate:min-length:
-   *
-   * Since: 0.1
-   */
-  g_object_class_install_property (object_class, PROP_MIN_LENGTH,
-      g_param_spec_double ("min-length", "Least length",
-          "Vertices are dropped that are nearer to their neighbours in space than "
-          "this share of their distance on the flat cloth; 0: no such limit",
-          0.0, 1.0, DEFAULT_MIN_LENGTH, flags));
-  /**
-   * GstTriangulate:max-length:
-   *
-   * Since: 0.1
-   */
-  g_object_class_install_property (object_class, PROP_MAX_LENGTH,
-      g_param_spec_double ("max-length", "Largest length",
-          "Vertices are dropped that are farther from their neighbours in space "
-          "than this share of their distance on the flat cloth, more for cloth "
-          "that stretches; 0: no such limit", 0.0, 10.0, DEFAULT_MAX_LENGTH,
-          flags));
-  /**
-   * GstTriangulate:threads:
-   *
-   * Since: 0.1
-   */
-  g_object_class_install_property (object_class, PROP_THREADS,
-      g_param_spec_uint ("threads", "Threads",
-          "Threads that triangulate; 0: as many as there are processors. The "
-          "result is the same", 0, MAX_THREADS, DEFAULT_THREADS, flags));
 
   gst_element_class_add_static_pad_template_with_gtype (element_class,
       &sink_template, GST_TYPE_TRIANGULATE_PAD);
@@ -712,15 +849,9 @@ gst_triangulate_class_init (GstTriangulateClass * klass)
 static void
 gst_triangulate_init (GstTriangulate * self)
 {
-  static const ClothTriangulateParameters parameters = { 2, DEFAULT_THRESHOLD,
-    DEFAULT_MAX_ERROR, DEFAULT_ERROR_FLOOR, DEFAULT_HUBER
-  };
   guint i;
 
-  self->parameters = parameters;
-  self->min_length = DEFAULT_MIN_LENGTH;
-  self->max_length = DEFAULT_MAX_LENGTH;
-  self->threads = DEFAULT_THREADS;
+  self->settings = defaults;
   self->fps_n = -1;
   for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
     self->view[i].camera = -1;

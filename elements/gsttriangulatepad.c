@@ -1,4 +1,4 @@
-/* Sink pads of triangulate: each has a camera.
+/* Sink pads of triangulate, and which camera of the rig each belongs to.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #ifdef HAVE_CONFIG_H
@@ -6,6 +6,8 @@
 #endif
 
 #include "elements/gsttriangulatepad.h"
+
+#include "elements/gstclothproperties.h"
 
 struct _GstTriangulatePad
 {
@@ -16,53 +18,20 @@ struct _GstTriangulatePad
 
 G_DEFINE_TYPE (GstTriangulatePad, gst_triangulate_pad, GST_TYPE_CLOTH_SYNC_PAD);
 
-enum
-{
-  PROP_PAD_0,
-  PROP_PAD_CAMERA
+/* *INDENT-OFF* */
+static const GstClothProperty properties[] = {
+  {"camera", "Camera",
+    "Name of the pad's camera in rig; by default the one that the metadata "
+    "names, else the camera at the pad's place in the order of pads",
+    G_TYPE_STRING, GST_CLOTH_SETTING (GstTriangulatePad, camera),
+    GST_PARAM_MUTABLE_PLAYING},
 };
-
-static void
-gst_triangulate_pad_set_property (GObject * object, guint id,
-    const GValue * value, GParamSpec * pspec)
-{
-  GstTriangulatePad *self = GST_TRIANGULATE_PAD (object);
-
-  switch (id) {
-    case PROP_PAD_CAMERA:
-      GST_OBJECT_LOCK (self);
-      g_free (self->camera);
-      self->camera = g_value_dup_string (value);
-      GST_OBJECT_UNLOCK (self);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
-      break;
-  }
-}
-
-static void
-gst_triangulate_pad_get_property (GObject * object, guint id, GValue * value,
-    GParamSpec * pspec)
-{
-  GstTriangulatePad *self = GST_TRIANGULATE_PAD (object);
-
-  switch (id) {
-    case PROP_PAD_CAMERA:
-      GST_OBJECT_LOCK (self);
-      g_value_set_string (value, self->camera);
-      GST_OBJECT_UNLOCK (self);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
-      break;
-  }
-}
+/* *INDENT-ON* */
 
 static void
 gst_triangulate_pad_finalize (GObject * object)
 {
-  g_free (GST_TRIANGULATE_PAD (object)->camera);
+  gst_cloth_clear_settings (properties, G_N_ELEMENTS (properties), object);
   G_OBJECT_CLASS (gst_triangulate_pad_parent_class)->finalize (object);
 }
 
@@ -70,39 +39,16 @@ static void
 gst_triangulate_pad_class_init (GstTriangulatePadClass * klass)
 {
   GObjectClass *object_class = G_OBJECT_CLASS (klass);
+  const GstTriangulatePad defaults = {.camera = NULL };
 
-  object_class->set_property = gst_triangulate_pad_set_property;
-  object_class->get_property = gst_triangulate_pad_get_property;
   object_class->finalize = gst_triangulate_pad_finalize;
-
-  /**
-   * GstTriangulatePad:camera:
-   *
-   * Since: 0.1
-   */
-  g_object_class_install_property (object_class, PROP_PAD_CAMERA,
-      g_param_spec_string ("camera", "Camera",
-          "Name of the pad's camera in rig; by default the one that the metadata "
-          "names, else the camera at the pad's place in the order of pads",
-          NULL,
-          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-          GST_PARAM_MUTABLE_PLAYING));
+  gst_cloth_install_properties (object_class, properties,
+      G_N_ELEMENTS (properties), &defaults, 0);
 }
 
 static void
 gst_triangulate_pad_init (GstTriangulatePad * pad)
 {
-}
-
-void
-gst_triangulate_pad_update_camera (GstTriangulatePad * pad, gchar ** camera)
-{
-  GST_OBJECT_LOCK (pad);
-  if (g_strcmp0 (*camera, pad->camera) != 0) {
-    g_free (*camera);
-    *camera = g_strdup (pad->camera);
-  }
-  GST_OBJECT_UNLOCK (pad);
 }
 
 static GObject *
@@ -137,4 +83,161 @@ gst_triangulate_pad_child_proxy_init (gpointer iface, gpointer data)
 
   proxy->get_child_by_index = gst_triangulate_get_child_by_index;
   proxy->get_children_count = gst_triangulate_get_children_count;
+}
+
+/* ---- which camera each pad belongs to ---- */
+
+void
+gst_triangulate_view_forget (GstTriangulateView * view)
+{
+  GstClockTimeDiff offset = view->offset;       /* the base still has it */
+
+  g_free (view->property);
+  g_free (view->meta);
+  memset (view, 0, sizeof (*view));
+  view->camera = -1;
+  view->offset = offset;
+}
+
+/* Notes which pads there are and the cameras that their properties name. */
+static guint
+look_at_pads (GstClothSync * self, GstTriangulateView * views)
+{
+  guint i, n_pads = 0;
+  GList *l;
+
+  for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
+    views[i].present = FALSE;
+    views[i].camera = -1;
+  }
+  GST_OBJECT_LOCK (self);
+  for (l = GST_ELEMENT (self)->sinkpads; l; l = l->next) {
+    GstTriangulatePad *pad = GST_TRIANGULATE_PAD (l->data);
+    GstTriangulateView *view = &views[GST_CLOTH_SYNC_PAD (pad)->index];
+
+    view->present = TRUE;
+    n_pads++;
+    GST_OBJECT_LOCK (pad);
+    if (g_strcmp0 (view->property, pad->camera) != 0) {
+      g_free (view->property);
+      view->property = g_strdup (pad->camera);
+    }
+    GST_OBJECT_UNLOCK (pad);
+  }
+  GST_OBJECT_UNLOCK (self);
+  return n_pads;
+}
+
+gboolean
+gst_triangulate_views_map (GstClothSync * self, GstTriangulateView * views,
+    const ClothRig * rig, gboolean * moved)
+{
+  guint n_pads = look_at_pads (self, views);
+  gint taken[CLOTH_RIG_MAX_CAMERAS];
+  guint i, rank = 0;
+
+  *moved = FALSE;
+  for (i = 0; i < rig->n_cameras; i++) {
+    taken[i] = -1;
+  }
+  if (n_pads > rig->n_cameras) {
+    GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
+        ("There are %u sink pads but rig has %u cameras.", n_pads,
+            rig->n_cameras),
+        ("Link one pad a camera, or set rig to one with all of them."));
+    return FALSE;
+  }
+  for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
+    GstTriangulateView *view = &views[i];
+    const gchar *name = view->property ? view->property : view->meta;
+    const ClothCamera *camera;
+    GstClockTimeDiff offset;
+
+    if (!view->present) {
+      continue;
+    }
+    if (name) {
+      camera = cloth_rig_find (rig, name);
+      if (!camera) {
+        GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
+            ("Pad sink_%u is of camera \"%s\", which rig does not have.", i,
+                name),
+            ("Set sink_%u::camera to a name in rig, the first of which is "
+                "\"%s\".", i, rig->cameras[0].name));
+        return FALSE;
+      }
+    } else if (n_pads != rig->n_cameras) {
+      if (!view->carries) {
+        continue;               /* nothing to place; its metadata may still say */
+      }
+      GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
+          ("There are %u sink pads for %u cameras, so which is pad sink_%u's "
+              "can't be told.", n_pads, rig->n_cameras, i),
+          ("Set sink_%u::camera, or camera on the detector before it, to a name "
+              "in rig.", i));
+      return FALSE;
+    } else {
+      camera = &rig->cameras[rank];
+    }
+    rank++;
+    view->camera = (gint) (camera - rig->cameras);
+    if (taken[view->camera] >= 0) {
+      GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
+          ("Pads sink_%d and sink_%u are both of camera \"%s\".",
+              taken[view->camera], i, camera->name),
+          ("Set the pads' property camera to different names in rig."));
+      return FALSE;
+    }
+    taken[view->camera] = (gint) i;
+    if (view->has_caps && (view->width != camera->width
+            || view->height != camera->height)) {
+      GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+          ("Pictures on sink_%u are %d×%d, but camera \"%s\" was calibrated at "
+              "%d×%d.", i, view->width, view->height, camera->name,
+              camera->width, camera->height),
+          ("Film at the calibrated size, put videoscale after the detector, or "
+              "calibrate at this size."));
+      return FALSE;
+    }
+    offset = (GstClockTimeDiff) (camera->offset_s * GST_SECOND);
+    if (view->offset != offset) {
+      view->offset = offset;
+      *moved = TRUE;
+      gst_cloth_sync_set_pad_offset (self, i, offset);
+    }
+  }
+  return TRUE;
+}
+
+/* While the cameras differ what was said before stands: one that joins with another rate
+ * must not end a recording. */
+gboolean
+gst_triangulate_views_rate (const GstTriangulateView * views, gint * fps_n,
+    gint * fps_d)
+{
+  gboolean agreed = TRUE;
+  gint n = -1, d = 1;
+  guint i;
+
+  for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
+    if (!views[i].has_caps) {
+      continue;
+    }
+    if (n >= 0 && (n != views[i].fps_n || d != views[i].fps_d)) {
+      agreed = FALSE;
+    }
+    n = views[i].fps_n;
+    d = views[i].fps_d;
+  }
+  if (n < 0) {
+    return FALSE;
+  }
+  if (agreed) {
+    *fps_n = n;
+    *fps_d = d;
+  } else if (*fps_n < 0) {
+    *fps_n = 0;                 /* sets come when they come */
+    *fps_d = 1;
+  }
+  return TRUE;
 }

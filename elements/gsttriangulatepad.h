@@ -1,9 +1,10 @@
-/* Sink pads of triangulate: each has a camera.
+/* Sink pads of triangulate, and which camera of the rig each belongs to.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
 #include "elements/gstclothsync.h"
+#include "gst/rig/rig.h"
 
 G_BEGIN_DECLS
 
@@ -11,10 +12,32 @@ G_BEGIN_DECLS
 G_DECLARE_FINAL_TYPE (GstTriangulatePad, gst_triangulate_pad, GST,
     TRIANGULATE_PAD, GstClothSyncPad)
 
-/* Renews *@camera when the property camera is another. */
-void gst_triangulate_pad_update_camera (GstTriangulatePad * pad,
-    gchar ** camera);
 /* Makes sink_0::camera work on a gst-launch line: the interface of the element. */
 void gst_triangulate_pad_child_proxy_init (gpointer iface, gpointer data);
+
+/* What is known of a pad; streaming thread. */
+typedef struct {
+  gboolean has_caps, observations;
+  gboolean warned;              /* that a buffer is damaged */
+  gint width, height;
+  gint fps_n, fps_d;
+  gchar *property;              /* the pad's property, of this set */
+  gchar *meta;                  /* the name that the metadata carries */
+  gboolean present, carries;
+  gint camera;                  /* in rig; -1 when not known */
+  GstClockTimeDiff offset;
+} GstTriangulateView;
+
+void gst_triangulate_view_forget (GstTriangulateView * view);
+/* Finds each pad its camera: by its property, by the name in the metadata, by the order
+ * of pads; %FALSE after an element error. @views: one for every pad index. @moved: a
+ * camera's clock turned out to be another than the set was joined by. */
+gboolean gst_triangulate_views_map (GstClothSync * sync,
+    GstTriangulateView * views, const ClothRig * rig, gboolean * moved);
+
+/* The rate of the mesh as far as the cameras' caps tell; *fps_n: the one said before, -1
+ * for none. FALSE when no caps are known yet. */
+gboolean gst_triangulate_views_rate (const GstTriangulateView * views,
+    gint * fps_n, gint * fps_d);
 
 G_END_DECLS

@@ -345,3 +345,117 @@ cloth_draw_confidence_colour (gfloat confidence, gfloat low)
   colour.a = 1;
   return colour;
 }
+
+/* ---- heat maps ---- */
+
+/* The scale's bar in a picture of 480 rows, px; it grows with taller ones. */
+#define BAR_HEIGHT 96.0f
+#define BAR_WIDTH 10.0f
+#define BAR_MARGIN 12.0f
+#define DIGIT_HEIGHT 11.0f
+
+/* @colours: (out) (array): colours of a heat map, those of the report: plain cloth for
+ *   nothing to a dark red for the scale's end and all beyond, then a grey for what isn't
+ *   known
+ */
+void
+cloth_draw_heat_colours (ClothColour colours[CLOTH_DRAW_HEATS])
+{
+  static const struct
+  {
+    gfloat at, rgb[3];
+  } stops[5] = {
+    {0.00f, {240, 234, 222}}, {0.20f, {248, 214, 150}}, {0.45f, {244, 150, 70}},
+    {0.70f, {214, 62, 52}}, {1.00f, {104, 10, 62}}
+  };
+  static const ClothColour unknown = { 0.502f, 0.525f, 0.569f, 1 };
+  const guint n = CLOTH_DRAW_HEATS - 1;
+  guint k = 0;
+
+  for (guint i = 0; i < n; i++) {
+    const gfloat at = (gfloat) i / (gfloat) (n - 1);
+    gfloat *to[3] = { &colours[i].r, &colours[i].g, &colours[i].b }, f;
+
+    while (k < 3 && stops[k + 1].at < at)
+      k++;
+    f = (at - stops[k].at) / (stops[k + 1].at - stops[k].at);
+    for (guint j = 0; j < 3; j++)
+      *to[j] = (stops[k].rgb[j] + f * (stops[k + 1].rgb[j] -
+              stops[k].rgb[j])) / 255;
+    colours[i].a = 1;
+  }
+  colours[n] = unknown;
+}
+
+/* @residuals: (array): 3 a vertex, metres; NaN where not known
+ * @n: number of vertices
+ * @scale_mm: length of a residual that has the last colour, mm
+ * @heats: (out) (array): index of each vertex's colour in cloth_draw_heat_colours ()
+ */
+void
+cloth_draw_heats (const gfloat * residuals, guint n, guint scale_mm,
+    guint8 * heats)
+{
+  const guint last = CLOTH_DRAW_HEATS - 2;
+  const gfloat per_metre = 1000 * (gfloat) last / (gfloat) scale_mm;
+  const gfloat *r = residuals;
+
+  for (guint i = 0; i < n; i++, r += 3) {
+    gfloat heat = per_metre * sqrtf (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+
+    heats[i] = (guint8) (isnan (heat) ? last + 1 :
+        heat < (gfloat) last ? (guint) (heat + 0.5f) : last);
+  }
+}
+
+/* A number with an edge of the other lightness, so that any film leaves it legible. */
+static void
+draw_label (const ClothCanvas * canvas, gint number, gfloat x, gfloat y,
+    gfloat size, gfloat opacity)
+{
+  const gfloat origin[2] = { x, y }, right[2] = { 0.57f * size, 0 };
+  const gfloat down[2] = { 0, size };
+  const ClothColour edge = { 0.05f, 0.05f, 0.15f, 0.95f * opacity };
+  const ClothColour text = { 1, 1, 1, 0.95f * opacity };
+
+  cloth_draw_number (canvas, number, origin, right, down, 0.36f * size, &edge);
+  cloth_draw_number (canvas, number, origin, right, down, 0.14f * size, &text);
+}
+
+/* @canvas: picture to draw on
+ * @width: of the picture, px
+ * @height: of the picture, px
+ * @scale_mm: the scale's end, mm
+ * @opacity: 0 … 1
+ *
+ * Draws the scale of a heat map at the lower left, 0 and its end beside it. In a thumbnail
+ * there is no place for it.
+ */
+void
+cloth_draw_heat_scale (const ClothCanvas * canvas, gint width, gint height,
+    guint scale_mm, gfloat opacity)
+{
+  const guint n = CLOTH_DRAW_HEATS - 1;
+  const gfloat grow = MAX (1.0f, (gfloat) height / 480);
+  const gfloat tall = grow * BAR_HEIGHT, wide = grow * BAR_WIDTH;
+  const gfloat left = grow * BAR_MARGIN;
+  const gfloat bottom = (gfloat) height - grow * BAR_MARGIN;
+  const gfloat size = grow * DIGIT_HEIGHT;
+  ClothColour colours[CLOTH_DRAW_HEATS];
+
+  if ((gfloat) height < 2 * tall || (gfloat) width < 2 * tall)
+    return;
+  cloth_draw_heat_colours (colours);
+  for (guint i = 0; i < n; i++) {
+    const gfloat y0 = bottom - tall * (gfloat) (i + 1) / (gfloat) n;
+    const gfloat y1 = bottom - tall * (gfloat) i / (gfloat) n;
+    const gfloat x[4] = { left, left + wide, left + wide, left };
+    const gfloat y[4] = { y0, y0, y1, y1 };
+
+    colours[i].a *= opacity;
+    cloth_draw_quad (canvas, x, y, &colours[i]);
+  }
+  draw_label (canvas, 0, left + 1.6f * wide, bottom - size, size, opacity);
+  draw_label (canvas, (gint) scale_mm, left + 1.6f * wide, bottom - tall, size,
+      opacity);
+}

@@ -64,4 +64,13 @@ void cloth_draw_number (const ClothCanvas * canvas, gint number,
 
 ClothColour cloth_draw_confidence_colour (gfloat confidence, gfloat low);
 
+/* Colours of a heat map. */
+#define CLOTH_DRAW_HEATS 65
+
+void cloth_draw_heat_colours (ClothColour colours[CLOTH_DRAW_HEATS]);
+void cloth_draw_heats (const gfloat * residuals, guint n, guint scale_mm,
+    guint8 * heats);
+void cloth_draw_heat_scale (const ClothCanvas * canvas, gint width,
+    gint height, guint scale_mm, gfloat opacity);
+
 G_END_DECLS
