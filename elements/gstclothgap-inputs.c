@@ -1,4 +1,5 @@
-/* clothgap: the files it reads at the start.
+/* clothgap: what a diagnosis is made of: the files that are read at the start, the camera of
+ * an observation stream, and the recording that went by.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #ifdef HAVE_CONFIG_H
@@ -7,10 +8,16 @@
 
 #include "elements/gstclothgap-inputs.h"
 
-#include "gst/cloth-io/observations.h"
+#include <glib/gstdio.h>
+#include <math.h>
+
 #include "elements/gstclothutil.h"
 #include "elements/gstmeshformat.h"
+#include "gst/cloth-io/observations.h"
+#include "gst/cloth-io/points.h"
 #include "gst/gap/inputs.h"
+
+/* ---- files ---- */
 
 static gboolean
 fail (GstElement * element, const gchar * property, const gchar * path,
@@ -34,7 +41,7 @@ require (GstElement * element, const gchar * value, const gchar * name,
 }
 
 static gboolean
-load_baseline (GstClothGapInputs * self, const gchar * folder, GError ** error)
+load_baseline (GstGapInputs * self, const gchar * folder, GError ** error)
 {
   if (!folder)
     return TRUE;
@@ -48,10 +55,10 @@ load_baseline (GstClothGapInputs * self, const gchar * folder, GError ** error)
 }
 
 gboolean
-gst_cloth_gap_inputs_load (GstClothGapInputs * inputs, GstElement * element,
-    const GstClothGapSettings * settings)
+gst_gap_inputs_load (GstGapInputs * inputs, GstElement * element,
+    const GstGapSettings * settings)
 {
-  GstClothGapInputs *self = inputs;
+  GstGapInputs *self = inputs;
   g_autoptr (GError) error = NULL;
 
   if (!require (element, settings->model, "model", "a model.json") ||
@@ -74,7 +81,7 @@ gst_cloth_gap_inputs_load (GstClothGapInputs * inputs, GstElement * element,
 }
 
 gboolean
-gst_cloth_gap_inputs_check_mesh (const GstClothGapInputs * inputs,
+gst_gap_inputs_check_mesh (const GstGapInputs * inputs,
     GstElement * element, const GstCaps * caps)
 {
   g_autoptr (GError) error = NULL;
@@ -94,7 +101,7 @@ gst_cloth_gap_inputs_check_mesh (const GstClothGapInputs * inputs,
 }
 
 void
-gst_cloth_gap_inputs_clear (GstClothGapInputs * inputs)
+gst_gap_inputs_clear (GstGapInputs * inputs)
 {
   g_clear_pointer (&inputs->scene, cloth_scene_free);
   g_clear_pointer (&inputs->take, cloth_take_free);
@@ -103,4 +110,285 @@ gst_cloth_gap_inputs_clear (GstClothGapInputs * inputs)
   g_clear_pointer (&inputs->baseline_observations, cloth_observations_free);
   g_clear_pointer (&inputs->model, cloth_model_free);
   g_clear_pointer (&inputs->effects, g_strfreev);
+}
+
+/* ---- the camera of an observation stream ---- */
+
+struct _GstGapView
+{
+  gchar *rig_file;
+  gchar *property;              /* NULL: the metas name the camera */
+  gchar *name;                  /* by which the camera was found; NULL: the only one */
+  ClothRig *rig;
+  const ClothCamera *camera;    /* NULL: not known yet */
+  gint width, height;           /* of the stream */
+  GstClothIoPoints *points;
+  ClothRays *rays;
+  guint64 sequence;             /* of the next picture */
+  gboolean seen;                /* whether any picture had squares or dots */
+};
+
+static gboolean
+check_size (const GstGapView * self, GstElement * element)
+{
+  const ClothCamera *camera = self->camera;
+
+  if (self->width == camera->width && self->height == camera->height)
+    return TRUE;
+  GST_ELEMENT_ERROR (element, STREAM, FORMAT,
+      ("Pictures are %d×%d, but camera “%s” was calibrated at %d×%d.",
+          self->width, self->height, camera->name, camera->width,
+          camera->height),
+      ("Film at the calibrated size, put videoscale after the detector, or "
+          "calibrate at this size."));
+  return FALSE;
+}
+
+static gboolean
+open_camera (GstGapView * self, GstElement * element, const gchar * name)
+{
+  if (self->camera && g_strcmp0 (name, self->name) == 0)
+    return TRUE;
+  if (self->camera && name) {
+    GST_ELEMENT_ERROR (element, STREAM, FORMAT,
+        ("A picture is of camera “%s”, those before it are of “%s”.",
+            name, self->camera->name),
+        ("Give each camera a clothgap of its own, or all of them one "
+            "triangulate before it."));
+    return FALSE;
+  }
+  if (self->camera)
+    return TRUE;
+  self->rig = gst_cloth_open_rig (element, self->rig_file, name, &self->camera);
+  if (!self->rig)
+    return FALSE;
+  self->name = g_strdup (name);
+  return check_size (self, element);
+}
+
+GstGapView *
+gst_gap_view_new (GstElement * element,
+    const GstGapSettings * settings, const ClothTopology * topology)
+{
+  g_autofree gchar *beside = g_build_filename (settings->location, "rig.json",
+      NULL);
+  GstGapView *self;
+
+  if (topology->columns < 2 || topology->rows < 2) {
+    GST_ELEMENT_ERROR (element, STREAM, FORMAT,
+        ("Observations name the vertices of a grid, but the scene's mesh is "
+            "none."), ("location=%s", settings->location));
+    return NULL;
+  }
+  self = g_new0 (GstGapView, 1);
+  if (settings->rig)
+    self->rig_file = g_strdup (settings->rig);
+  else if (g_file_test (beside, G_FILE_TEST_EXISTS))
+    self->rig_file = g_steal_pointer (&beside);
+  self->property = g_strdup (settings->camera);
+  self->points = gst_cloth_io_points_new (topology->columns, topology->rows);
+  self->rays = cloth_rays_new (topology->n_vertices);
+  return self;
+}
+
+/* What can be known before the first picture is checked now. */
+gboolean
+gst_gap_view_set_caps (GstGapView * view, GstElement * element,
+    const GstCaps * caps)
+{
+  const GstStructure *s = gst_caps_get_structure (caps, 0);
+
+  view->width = view->height = 0;
+  gst_structure_get_int (s, "width", &view->width);
+  gst_structure_get_int (s, "height", &view->height);
+  if (view->camera)
+    return check_size (view, element);
+  return (view->rig_file && !view->property)
+      || open_camera (view, element, view->property);
+}
+
+/* A picture that shows nothing has no rays, and may not say whose it is. */
+const ClothRays *
+gst_gap_view_read (GstGapView * view, GstElement * element,
+    GstBuffer * buffer, guint64 * sequence, gdouble * offset_s)
+{
+  GstClothIoPoints *points = view->points;
+  g_autoptr (GstBuffer) picture = gst_buffer_new ();
+  g_autoptr (GError) error = NULL;
+  const gchar *name;
+
+  if (!gst_cloth_observations_unpack (buffer, picture, &error)) {
+    GST_ELEMENT_ERROR (element, STREAM, DECODE,
+        ("The observation stream is damaged: %s. Write it anew with "
+            "clothmetapay.", error->message), (NULL));
+    return NULL;
+  }
+  if (!gst_buffer_get_cloth_quads (picture)
+      && !gst_buffer_get_cloth_dots (picture)) {
+    cloth_rays_clear (view->rays);
+  } else {
+    if (!gst_cloth_io_points_find (points, picture, &error)) {
+      GST_ELEMENT_ERROR (element, STREAM, FORMAT,
+          ("A picture is not of the scene's cloth: %s", error->message),
+          (NULL));
+      return NULL;
+    }
+    name = view->property ? view->property :
+        points->camera && *points->camera ? points->camera : NULL;
+    if (!open_camera (view, element, name))
+      return NULL;
+    if (!gst_cloth_io_points_check_places (points, view->camera, &error)) {
+      GST_ELEMENT_ERROR (element, STREAM, FORMAT,
+          ("A picture is not of the camera “%s”: %s", view->camera->name,
+              error->message), (NULL));
+      return NULL;
+    }
+    cloth_rays_cast (view->rays, view->camera, &points->view);
+    view->sequence = points->sequence;
+    view->seen = TRUE;
+  }
+  *sequence = view->sequence++;
+  *offset_s = view->camera ? view->camera->offset_s : 0.;
+  return view->rays;
+}
+
+gboolean
+gst_gap_view_check_seen (const GstGapView * view, GstElement * element)
+{
+  if (view->seen)
+    return TRUE;
+  GST_ELEMENT_ERROR (element, STREAM, FAILED,
+      ("No picture showed squares or dots of the cloth."),
+      ("Put “saddledetect ! quadtrack” or “dotlabel” before clothmetapay."));
+  return FALSE;
+}
+
+void
+gst_gap_view_free (GstGapView * view)
+{
+  if (!view)
+    return;
+  g_free (view->rig_file);
+  g_free (view->property);
+  g_free (view->name);
+  cloth_rig_free (view->rig);
+  gst_cloth_io_points_free (view->points);
+  cloth_rays_free (view->rays);
+  g_free (view);
+}
+
+/* ---- the recording ---- */
+
+struct _GstGapRecord
+{
+  gchar *folder;                /* temporary */
+  ClothTakeWriter *writer;
+  /* the scene's clamps, for a recording whose frames have times of their own */
+  guint n_held, n_frames;
+  gdouble *times, *clamps;
+  gfloat *row;
+};
+
+/* The take starts with the first mesh that is appended. @info: of the scene's take. */
+GstGapRecord *
+gst_gap_record_new (const ClothTakeInfo * info, const ClothScene * scene,
+    GError ** error)
+{
+  GstGapRecord *record = g_new0 (GstGapRecord, 1);
+  g_autoptr (ClothTakeInfo) flat = cloth_take_info_copy (info);
+  gsize n;
+
+  record->folder = g_dir_make_tmp ("clothgap-XXXXXX", error);
+  record->writer = record->folder ? cloth_take_writer_new (record->folder, flat,
+      scene->topology, error) : NULL;
+  if (!record->writer) {
+    gst_gap_record_free (record);
+    return NULL;
+  }
+  record->n_held = scene->held->len;
+  record->n_frames = scene->n_frames;
+  n = 3 * (gsize) record->n_held;
+  record->times = g_memdup2 (scene->times,
+      record->n_frames * sizeof *record->times);
+  if (n > 0) {
+    record->clamps = g_memdup2 (scene->clamps,
+        n * record->n_frames * sizeof *record->clamps);
+    record->row = g_new (gfloat, n);
+  }
+  return record;
+}
+
+/* Between two logged places a clamp moves evenly, as in the simulation. */
+static void
+find_clamps (GstGapRecord * record, gdouble time)
+{
+  gsize n = 3 * (gsize) record->n_held;
+  guint after = 0;
+  const gdouble *a, *b;
+  gdouble share = 0;
+
+  while (after < record->n_frames && record->times[after] < time)
+    after++;
+  b = record->clamps + n * MIN (after, record->n_frames - 1);
+  a = record->clamps + n * (after > 0 ? after - 1 : 0);
+  if (after > 0 && after < record->n_frames)
+    share = (time - record->times[after - 1]) /
+        (record->times[after] - record->times[after - 1]);
+  for (gsize i = 0; i < n; i++)
+    record->row[i] = (gfloat) (a[i] + share * (b[i] - a[i]));
+}
+
+gboolean
+gst_gap_record_append (GstGapRecord * record, gdouble time_s,
+    const gfloat * positions, const guint8 * states, const gfloat * covariances,
+    GError ** error)
+{
+  if (record->n_held > 0)
+    find_clamps (record, time_s);
+  return cloth_take_writer_append (record->writer, time_s,
+      positions, states, covariances, record->row, error);
+}
+
+/* Ends the take; the record can then only be freed. */
+ClothGapResult *
+gst_gap_record_diagnose (GstGapRecord * record,
+    const ClothModel * model, const ClothGapOptions * options, GError ** error)
+{
+  g_autoptr (ClothTake) take = NULL;
+
+  if (!cloth_take_writer_close (record->writer, error))
+    return NULL;
+  take = cloth_take_open (record->folder, error);
+  return take ? cloth_gap_diagnose (&take, 1, model, options, error) : NULL;
+}
+
+static void
+remove_folder (const gchar * folder)
+{
+  GDir *dir = g_dir_open (folder, 0, NULL);
+  const gchar *name;
+
+  while (dir && (name = g_dir_read_name (dir))) {
+    g_autofree gchar *path = g_build_filename (folder, name, NULL);
+
+    g_unlink (path);
+  }
+  if (dir)
+    g_dir_close (dir);
+  g_rmdir (folder);
+}
+
+void
+gst_gap_record_free (GstGapRecord * record)
+{
+  if (!record)
+    return;
+  cloth_take_writer_free (record->writer);
+  if (record->folder)
+    remove_folder (record->folder);
+  g_free (record->folder);
+  g_free (record->times);
+  g_free (record->clamps);
+  g_free (record->row);
+  g_free (record);
 }

@@ -50,11 +50,11 @@
 #include <math.h>
 
 #include "elements/gstclothgap-inputs.h"
-#include "elements/gstclothgap-post.h"
-#include "elements/gstclothgap-record.h"
-#include "elements/gstclothgap-view.h"
+#include "elements/gstclothproperties.h"
 #include "elements/gstclothutil.h"
 #include "gst/fit/nudge/nudge.h"
+#include "gst/gap/diagnose.h"
+#include "gst/gap/report/report.h"
 
 GST_DEBUG_CATEGORY_STATIC (cloth_gap_debug);
 #define GST_CAT_DEFAULT cloth_gap_debug
@@ -73,30 +73,30 @@ typedef struct
   guint64 sequence;
 } Waiting;
 
-struct _GstClothgap
+struct _GstGapDiagnose
 {
   GstElement parent;
   GstPad *sinkpad, *srcpad;
 
   /* with the object lock */
-  GstClothGapSettings settings;
+  GstGapSettings settings;
 
   gint cancelled;               /* atomic */
 
   /* from start to stop */
-  GstClothGapInputs inputs;     /* setting them also with the object lock */
+  GstGapInputs inputs;          /* setting them also with the object lock */
   ClothObserver *observer;
 
   /* with the stream lock; fps also with the object lock */
   GstSegment segment;
   gint fps_n, fps_d;            /* 0/1: not known */
   guint n_vertices;             /* 0: no caps yet */
-  GstClothGapView *view;        /* of observations; NULL: meshes */
+  GstGapView *view;             /* of observations; NULL: meshes */
   GQueue waiting;
   guint64 n_frames;             /* that came in since the beginning */
   gdouble last_time;
   gboolean new_segment, warned;
-  GstClothGapRecord *record;
+  GstGapRecord *record;
   gfloat *residuals, *sigmas;
   gfloat *positions;            /* as recorded by one camera */
   guint8 *states;
@@ -109,15 +109,57 @@ static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE ("sink",
 static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE ("src",
     GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS (CAPS));
 
-G_DEFINE_TYPE (GstClothgap, gst_clothgap, GST_TYPE_ELEMENT);
 GST_ELEMENT_REGISTER_DEFINE_WITH_CODE (clothgap, "clothgap", GST_RANK_NONE,
-    GST_TYPE_CLOTHGAP, GST_DEBUG_CATEGORY_INIT (cloth_gap_debug,
+    GST_TYPE_GAP_DIAGNOSE, GST_DEBUG_CATEGORY_INIT (cloth_gap_debug,
         "clothgap", 0, "recorded against simulated cloth"));
+
+static gpointer gst_gap_diagnose_parent_class;
+
+#define SETTING(member) GST_CLOTH_SETTING (GstGapSettings, member)
+
+/* *INDENT-OFF* */
+static const GstClothProperty properties[] = {
+  {"model", "Model",
+    "What the simulator knows of the cloth (model.json)",
+    G_TYPE_STRING, SETTING (model), GST_PARAM_MUTABLE_READY},
+  {"location", "Location",
+    "Folder of the take that gives the scene: mesh, paths of the "
+    "clamps, obstacles, gravity; for a stream from a take, that take",
+    G_TYPE_STRING, SETTING (location), GST_PARAM_MUTABLE_READY},
+  {"rig", "Rig",
+    "Calibration file (rig.json) that has the camera of the observations; by "
+    "default the one in the folder of location",
+    G_TYPE_STRING, SETTING (rig), GST_PARAM_MUTABLE_READY},
+  {"camera", "Camera",
+    "Name in the rig of the camera of the observations; by default the one that "
+    "the metadata names, else the only one of the rig",
+    G_TYPE_STRING, SETTING (camera), GST_PARAM_MUTABLE_READY},
+  {"baseline", "Baseline",
+    "Folder of a take the model is accepted on: its free "
+    "parameters are fitted there",
+    G_TYPE_STRING, SETTING (baseline), GST_PARAM_MUTABLE_READY},
+  {"effects", "Effects",
+    "Effects to consider, with commas between them; by default all",
+    G_TYPE_STRING, SETTING (effects), GST_PARAM_MUTABLE_READY},
+  {"output", "Output",
+    "Folder for gap.json, report.html and fitted.json; by default none is written",
+    G_TYPE_STRING, SETTING (output), GST_PARAM_MUTABLE_READY},
+  {"seed", "Seed", "Seed of all random numbers",
+    G_TYPE_UINT64, SETTING (seed), GST_PARAM_MUTABLE_READY},
+  {"threads", "Threads",
+    "Threads that simulate; 0: one a processor. The result is the same",
+    G_TYPE_UINT, SETTING (threads), GST_PARAM_MUTABLE_READY, 0, 1024},
+  {"window", "Window", "Length of a scored window, seconds",
+    G_TYPE_DOUBLE, SETTING (window), GST_PARAM_MUTABLE_READY, 0.01, 60},
+};
+/* *INDENT-ON* */
+
+static const GstGapSettings defaults = {.window = 0.3 };
 
 /* ---- what waits ---- */
 
 static GstFlowReturn
-send (GstClothgap * self, GstMiniObject * object)
+send (GstGapDiagnose * self, GstMiniObject * object)
 {
   if (GST_IS_BUFFER (object))
     return gst_pad_push (self->srcpad, GST_BUFFER_CAST (object));
@@ -127,7 +169,7 @@ send (GstClothgap * self, GstMiniObject * object)
 
 /* Sends what need not wait for a frame. */
 static GstFlowReturn
-send_others (GstClothgap * self)
+send_others (GstGapDiagnose * self)
 {
   GstFlowReturn flow = GST_FLOW_OK;
   Waiting *first;
@@ -142,7 +184,7 @@ send_others (GstClothgap * self)
 }
 
 static void
-enqueue_frame (GstClothgap * self, GstBuffer * buffer, gdouble time,
+enqueue_frame (GstGapDiagnose * self, GstBuffer * buffer, gdouble time,
     guint64 sequence)
 {
   const Waiting waiting =
@@ -152,7 +194,7 @@ enqueue_frame (GstClothgap * self, GstBuffer * buffer, gdouble time,
 }
 
 static GstFlowReturn
-enqueue_other (GstClothgap * self, gpointer object)
+enqueue_other (GstGapDiagnose * self, gpointer object)
 {
   const Waiting waiting = { object };
 
@@ -171,28 +213,38 @@ free_waiting (gpointer data)
 
 /* A new recording; frames of the old one that still wait lose their turn. */
 static void
-restart (GstClothgap * self)
+restart (GstGapDiagnose * self)
 {
   if (self->observer)
     cloth_observer_restart (self->observer);
-  g_clear_pointer (&self->record, gst_cloth_gap_record_free);
+  g_clear_pointer (&self->record, gst_gap_record_free);
   self->n_frames = 0;
 }
 
 /* ---- frames ---- */
 
 static void
-post_score (GstClothgap * self, gboolean last)
+post_score (GstGapDiagnose * self, gboolean last)
 {
   ClothObserverScore score;
 
-  if (cloth_observer_take_score (self->observer, last, &score))
-    gst_cloth_gap_post_score (GST_ELEMENT (self), &score);
+  if (!cloth_observer_take_score (self->observer, last, &score))
+    return;
+  GST_DEBUG_OBJECT (self, "%.3f s … %.3f s: %.2f mm, %.0f%% seen",
+      score.from_s, score.to_s, 1000 * score.rms, 100 * score.coverage);
+  gst_element_post_message (GST_ELEMENT (self),
+      gst_message_new_element (GST_OBJECT (self),
+          gst_structure_new ("clothgap/score",
+              "time", G_TYPE_UINT64, (guint64) (score.from_s * 1e9 + 0.5),
+              "duration", G_TYPE_UINT64,
+              (guint64) ((score.to_s - score.from_s) * 1e9 + 0.5),
+              "rms", G_TYPE_DOUBLE, score.rms,
+              "coverage", G_TYPE_DOUBLE, score.coverage, NULL)));
 }
 
 /* Of a mesh's coordinates: its covariances, else what the scene's take says. */
 static void
-find_sigmas (GstClothgap * self, const gfloat * c)
+find_sigmas (GstGapDiagnose * self, const gfloat * c)
 {
   gfloat noise =
       (gfloat) cloth_take_get_info (self->inputs.take)->noise_sigma_m;
@@ -203,17 +255,17 @@ find_sigmas (GstClothgap * self, const gfloat * c)
 }
 
 static gboolean
-record_frame (GstClothgap * self, gdouble time, const gfloat * positions,
+record_frame (GstGapDiagnose * self, gdouble time, const gfloat * positions,
     const guint8 * states, const gfloat * covariances)
 {
   g_autoptr (GError) error = NULL;
 
   if (!self->record)
     self->record =
-        gst_cloth_gap_record_new (cloth_take_get_info (self->inputs.take),
+        gst_gap_record_new (cloth_take_get_info (self->inputs.take),
         self->inputs.scene, &error);
   if (self->record
-      && gst_cloth_gap_record_append (self->record, time, positions, states,
+      && gst_gap_record_append (self->record, time, positions, states,
           covariances, &error))
     return TRUE;
   GST_ELEMENT_ERROR (self, RESOURCE, WRITE,
@@ -224,7 +276,7 @@ record_frame (GstClothgap * self, gdouble time, const gfloat * positions,
 }
 
 static gboolean
-record_mesh (GstClothgap * self, gdouble time, GstBuffer * buffer)
+record_mesh (GstGapDiagnose * self, gdouble time, GstBuffer * buffer)
 {
   g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_from_buffer (buffer, NULL);
   const gfloat *covariances = gst_cloth_mesh_get_covariances (mesh, NULL);
@@ -236,7 +288,7 @@ record_mesh (GstClothgap * self, gdouble time, GstBuffer * buffer)
 
 /* As far away as the simulation is. */
 static gboolean
-record_rays (GstClothgap * self, gdouble time)
+record_rays (GstGapDiagnose * self, gdouble time)
 {
   cloth_observer_get_lifted (self->observer, self->positions, self->sigmas);
   for (gsize i = 0; i < self->n_vertices; i++)
@@ -246,7 +298,7 @@ record_rays (GstClothgap * self, gdouble time)
 }
 
 static GstFlowReturn
-send_frame (GstClothgap * self)
+send_frame (GstGapDiagnose * self)
 {
   g_autoptr (GError) error = NULL;
   g_autofree Waiting *waiting = NULL;
@@ -275,7 +327,7 @@ send_frame (GstClothgap * self)
 }
 
 static GstFlowReturn
-send_ready (GstClothgap * self, guint latency)
+send_ready (GstGapDiagnose * self, guint latency)
 {
   GstFlowReturn flow = GST_FLOW_OK;
 
@@ -287,7 +339,7 @@ send_ready (GstClothgap * self, guint latency)
 
 /* Everything leaves: the last frames make do with those before them. */
 static GstFlowReturn
-drain (GstClothgap * self)
+drain (GstGapDiagnose * self)
 {
   GstFlowReturn flow = send_ready (self, 0);
 
@@ -296,7 +348,7 @@ drain (GstClothgap * self)
 
 /* Seconds of the scene; NaN when the buffer has no time and the caps no rate. */
 static gdouble
-find_time (GstClothgap * self, GstBuffer * buffer)
+find_time (GstGapDiagnose * self, GstBuffer * buffer)
 {
   GstClockTime time = gst_cloth_stream_time (&self->segment, buffer);
 
@@ -310,7 +362,7 @@ find_time (GstClothgap * self, GstBuffer * buffer)
 
 /* Without clamps a scene has no end. */
 static gboolean
-is_in_scene (const GstClothgap * self, gdouble time)
+is_in_scene (const GstGapDiagnose * self, gdouble time)
 {
   const ClothScene *scene = self->inputs.scene;
   gdouble slack = 0.5 / scene->fps;
@@ -321,14 +373,14 @@ is_in_scene (const GstClothgap * self, gdouble time)
 }
 
 static const gchar *
-get_noun (const GstClothgap * self)
+get_noun (const GstGapDiagnose * self)
 {
   return self->view ? "picture" : "mesh";
 }
 
 /* Passes a frame that can't be scored, and says why, once. */
 static GstFlowReturn
-let_pass (GstClothgap * self, GstBuffer * buffer, gdouble time)
+let_pass (GstGapDiagnose * self, GstBuffer * buffer, gdouble time)
 {
   GstFlowReturn flow = GST_FLOW_OK;
 
@@ -358,7 +410,7 @@ let_pass (GstClothgap * self, GstBuffer * buffer, gdouble time)
 
 /* TRUE when it may be scored; else @flow says what became of the buffer. */
 static gboolean
-is_next (GstClothgap * self, GstBuffer * buffer, gdouble time,
+is_next (GstGapDiagnose * self, GstBuffer * buffer, gdouble time,
     GstFlowReturn * flow)
 {
   if (isnan (time)) {
@@ -383,9 +435,9 @@ is_next (GstClothgap * self, GstBuffer * buffer, gdouble time,
 }
 
 static GstFlowReturn
-gst_clothgap_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
+gst_gap_diagnose_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
 {
-  GstClothgap *self = GST_CLOTHGAP (parent);
+  GstGapDiagnose *self = GST_GAP_DIAGNOSE (parent);
   g_autoptr (GstClothMesh) mesh = NULL;
   const ClothRays *rays = NULL;
   gdouble time, offset_s = 0;
@@ -397,7 +449,7 @@ gst_clothgap_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
     return GST_FLOW_NOT_NEGOTIATED;
   }
   if (self->view) {
-    rays = gst_cloth_gap_view_read (self->view, GST_ELEMENT (self), buffer,
+    rays = gst_gap_view_read (self->view, GST_ELEMENT (self), buffer,
         &sequence, &offset_s);
   } else {
     mesh = gst_cloth_read_mesh (GST_ELEMENT (self), buffer, self->n_vertices);
@@ -427,16 +479,43 @@ gst_clothgap_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
 static gboolean
 go_on (gpointer data, gdouble share, const gchar * what)
 {
-  GstClothgap *self = data;
+  GstGapDiagnose *self = data;
 
   GST_LOG_OBJECT (self, "%.0f%% %s", 100 * share, what);
   return !g_atomic_int_get (&self->cancelled);
 }
 
+/* Writes the report first when there is an @output. */
+static gboolean
+post_verdict (GstElement * element, const ClothGapResult * result,
+    const gchar * output, GError ** error)
+{
+  const gchar *verdict = cloth_gap_verdict_name (result->verdict);
+  g_autofree gchar *summary = cloth_gap_result_summary (result);
+  g_autofree gchar *json = cloth_gap_result_to_json (result);
+  GstStructure *structure = gst_structure_new ("clothgap/verdict",
+      "verdict", G_TYPE_STRING, verdict, "summary", G_TYPE_STRING, summary,
+      "json", G_TYPE_STRING, json, NULL);
+
+  GST_INFO_OBJECT (element, "%s: %s", verdict, summary);
+  if (output) {
+    g_autofree gchar *report = g_build_filename (output, "report.html", NULL);
+
+    if (!cloth_gap_result_write (result, output, error)) {
+      gst_structure_free (structure);
+      return FALSE;
+    }
+    gst_structure_set (structure, "report", G_TYPE_STRING, report, NULL);
+  }
+  gst_element_post_message (element,
+      gst_message_new_element (GST_OBJECT (element), structure));
+  return TRUE;
+}
+
 /* Of a recording by one camera the other cameras' pictures say nothing: its distances
  * are not measured. */
 static void
-finish (GstClothgap * self)
+finish (GstGapDiagnose * self)
 {
   const ClothGapOptions options = {
     .baselines = &self->inputs.baseline,
@@ -464,14 +543,13 @@ finish (GstClothgap * self)
             " whose time is the scene's; set location= to its own take" : ""));
     return;
   }
-  if (self->view && !gst_cloth_gap_view_check_seen (self->view,
-          GST_ELEMENT (self)))
+  if (self->view && !gst_gap_view_check_seen (self->view, GST_ELEMENT (self)))
     return;
   result =
-      gst_cloth_gap_record_diagnose (self->record, self->inputs.model, &options,
+      gst_gap_record_diagnose (self->record, self->inputs.model, &options,
       &error);
-  g_clear_pointer (&self->record, gst_cloth_gap_record_free);
-  if (result && gst_cloth_gap_post_verdict (GST_ELEMENT (self), result,
+  g_clear_pointer (&self->record, gst_gap_record_free);
+  if (result && post_verdict (GST_ELEMENT (self), result,
           self->settings.output, &error))
     return;
   if (result)
@@ -487,7 +565,7 @@ finish (GstClothgap * self)
 
 /* One recording is of meshes or of observations: their distances mean different things. */
 static gboolean
-set_kind (GstClothgap * self, gboolean observations)
+set_kind (GstGapDiagnose * self, gboolean observations)
 {
   if (observations != (self->view != NULL) && self->n_frames > 0) {
     GST_ELEMENT_ERROR (self, STREAM, FORMAT,
@@ -498,15 +576,15 @@ set_kind (GstClothgap * self, gboolean observations)
     return FALSE;
   }
   if (!observations)
-    g_clear_pointer (&self->view, gst_cloth_gap_view_free);
+    g_clear_pointer (&self->view, gst_gap_view_free);
   else if (!self->view)
-    self->view = gst_cloth_gap_view_new (GST_ELEMENT (self), &self->settings,
+    self->view = gst_gap_view_new (GST_ELEMENT (self), &self->settings,
         self->inputs.scene->topology);
   return observations == (self->view != NULL);
 }
 
 static gboolean
-set_caps (GstClothgap * self, GstCaps * caps)
+set_caps (GstGapDiagnose * self, GstCaps * caps)
 {
   GstStructure *s = gst_caps_get_structure (caps, 0);
   gboolean observations = gst_structure_has_name (s,
@@ -514,9 +592,8 @@ set_caps (GstClothgap * self, GstCaps * caps)
   gint fps_n = 0, fps_d = 1;
 
   if (!set_kind (self, observations) || !(observations ?
-          gst_cloth_gap_view_set_caps (self->view, GST_ELEMENT (self), caps) :
-          gst_cloth_gap_inputs_check_mesh (&self->inputs, GST_ELEMENT (self),
-              caps)))
+          gst_gap_view_set_caps (self->view, GST_ELEMENT (self), caps) :
+          gst_gap_inputs_check_mesh (&self->inputs, GST_ELEMENT (self), caps)))
     return FALSE;
   gst_structure_get_fraction (s, "framerate", &fps_n, &fps_d);
   if (self->n_vertices == 0) {
@@ -536,7 +613,7 @@ set_caps (GstClothgap * self, GstCaps * caps)
 }
 
 static gboolean
-set_segment (GstClothgap * self, GstEvent * event)
+set_segment (GstGapDiagnose * self, GstEvent * event)
 {
   gst_event_copy_segment (event, &self->segment);
   self->new_segment = TRUE;
@@ -548,7 +625,7 @@ set_segment (GstClothgap * self, GstEvent * event)
 }
 
 static void
-flush (GstClothgap * self)
+flush (GstGapDiagnose * self)
 {
   g_queue_clear_full (&self->waiting, free_waiting);
   restart (self);
@@ -559,7 +636,7 @@ flush (GstClothgap * self)
 
 /* What is known of the stream outlives a flush: our peer gets it with the next frame. */
 static void
-keep_sticky_events (GstClothgap * self)
+keep_sticky_events (GstGapDiagnose * self)
 {
   for (GList * l = self->waiting.head; l; l = l->next) {
     Waiting *waiting = l->data;
@@ -571,9 +648,9 @@ keep_sticky_events (GstClothgap * self)
 }
 
 static gboolean
-gst_clothgap_sink_event (GstPad * pad, GstObject * parent, GstEvent * event)
+gst_gap_diagnose_sink_event (GstPad * pad, GstObject * parent, GstEvent * event)
 {
-  GstClothgap *self = GST_CLOTHGAP (parent);
+  GstGapDiagnose *self = GST_GAP_DIAGNOSE (parent);
   gboolean good = TRUE;
 
   switch (GST_EVENT_TYPE (event)) {
@@ -615,9 +692,9 @@ gst_clothgap_sink_event (GstPad * pad, GstObject * parent, GstEvent * event)
 }
 
 static gboolean
-gst_clothgap_src_query (GstPad * pad, GstObject * parent, GstQuery * query)
+gst_gap_diagnose_src_query (GstPad * pad, GstObject * parent, GstQuery * query)
 {
-  GstClothgap *self = GST_CLOTHGAP (parent);
+  GstGapDiagnose *self = GST_GAP_DIAGNOSE (parent);
   GstClockTime own = 0;
 
   if (GST_QUERY_TYPE (query) != GST_QUERY_LATENCY)
@@ -639,16 +716,16 @@ gst_clothgap_src_query (GstPad * pad, GstObject * parent, GstQuery * query)
 /* ---- start and stop ---- */
 
 static gboolean
-start (GstClothgap * self)
+start (GstGapDiagnose * self)
 {
-  const GstClothGapSettings *settings = &self->settings;
+  const GstGapSettings *settings = &self->settings;
   const ClothObserverOptions options =
       { GAIN, DAMPING_RATIO, settings->window, settings->seed,
     settings->threads
   };
   g_autoptr (GError) error = NULL;
-  GstClothGapInputs inputs = { NULL };
-  gboolean good = gst_cloth_gap_inputs_load (&inputs, GST_ELEMENT (self),
+  GstGapInputs inputs = { NULL };
+  gboolean good = gst_gap_inputs_load (&inputs, GST_ELEMENT (self),
       settings);
 
   GST_OBJECT_LOCK (self);
@@ -669,9 +746,9 @@ start (GstClothgap * self)
 }
 
 static void
-stop (GstClothgap * self)
+stop (GstGapDiagnose * self)
 {
-  GstClothGapInputs inputs, none = { NULL };
+  GstGapInputs inputs, none = { NULL };
 
   flush (self);
   GST_OBJECT_LOCK (self);
@@ -679,9 +756,9 @@ stop (GstClothgap * self)
   self->inputs = none;
   self->fps_n = 0;
   GST_OBJECT_UNLOCK (self);
-  gst_cloth_gap_inputs_clear (&inputs);
+  gst_gap_inputs_clear (&inputs);
   g_clear_pointer (&self->observer, cloth_observer_free);
-  g_clear_pointer (&self->view, gst_cloth_gap_view_free);
+  g_clear_pointer (&self->view, gst_gap_view_free);
   g_clear_pointer (&self->residuals, g_free);
   g_clear_pointer (&self->sigmas, g_free);
   g_clear_pointer (&self->positions, g_free);
@@ -690,9 +767,9 @@ stop (GstClothgap * self)
 }
 
 static GstStateChangeReturn
-gst_clothgap_change_state (GstElement * element, GstStateChange transition)
+gst_gap_diagnose_change_state (GstElement * element, GstStateChange transition)
 {
-  GstClothgap *self = GST_CLOTHGAP (element);
+  GstGapDiagnose *self = GST_GAP_DIAGNOSE (element);
   GstStateChangeReturn result;
 
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED && !start (self)) {
@@ -703,7 +780,7 @@ gst_clothgap_change_state (GstElement * element, GstStateChange transition)
   if (transition == GST_STATE_CHANGE_PAUSED_TO_READY)
     g_atomic_int_set (&self->cancelled, TRUE);
   result = GST_ELEMENT_CLASS
-      (gst_clothgap_parent_class)->change_state (element, transition);
+      (gst_gap_diagnose_parent_class)->change_state (element, transition);
   if (transition == GST_STATE_CHANGE_PAUSED_TO_READY ||
       (transition == GST_STATE_CHANGE_READY_TO_PAUSED &&
           result == GST_STATE_CHANGE_FAILURE))
@@ -714,49 +791,28 @@ gst_clothgap_change_state (GstElement * element, GstStateChange transition)
 /* ---- GObject ---- */
 
 static void
-gst_clothgap_set_property (GObject * object, guint id,
-    const GValue * value, GParamSpec * spec)
+gst_gap_diagnose_finalize (GObject * object)
 {
-  GstClothgap *self = GST_CLOTHGAP (object);
-
-  GST_OBJECT_LOCK (self);
-  if (gst_cloth_may_change (GST_ELEMENT (self), spec))
-    gst_cloth_gap_settings_set (&self->settings, id, value);
-  GST_OBJECT_UNLOCK (self);
-}
-
-static void
-gst_clothgap_get_property (GObject * object, guint id, GValue * value,
-    GParamSpec * spec)
-{
-  GstClothgap *self = GST_CLOTHGAP (object);
-
-  GST_OBJECT_LOCK (self);
-  gst_cloth_gap_settings_get (&self->settings, id, value);
-  GST_OBJECT_UNLOCK (self);
-}
-
-static void
-gst_clothgap_finalize (GObject * object)
-{
-  GstClothgap *self = GST_CLOTHGAP (object);
+  GstGapDiagnose *self = GST_GAP_DIAGNOSE (object);
 
   stop (self);
-  gst_cloth_gap_settings_clear (&self->settings);
-  G_OBJECT_CLASS (gst_clothgap_parent_class)->finalize (object);
+  gst_cloth_clear_settings (properties, G_N_ELEMENTS (properties),
+      &self->settings);
+  G_OBJECT_CLASS (gst_gap_diagnose_parent_class)->finalize (object);
 }
 
 static void
-gst_clothgap_class_init (GstClothgapClass * klass)
+gst_gap_diagnose_class_init (gpointer klass, gpointer data)
 {
   GObjectClass *object_class = G_OBJECT_CLASS (klass);
   GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
 
-  object_class->set_property = gst_clothgap_set_property;
-  object_class->get_property = gst_clothgap_get_property;
-  object_class->finalize = gst_clothgap_finalize;
-  element_class->change_state = gst_clothgap_change_state;
-  gst_cloth_gap_settings_install (object_class);
+  gst_gap_diagnose_parent_class = g_type_class_peek_parent (klass);
+  object_class->finalize = gst_gap_diagnose_finalize;
+  element_class->change_state = gst_gap_diagnose_change_state;
+  gst_cloth_install_properties (object_class, properties,
+      G_N_ELEMENTS (properties), &defaults, G_STRUCT_OFFSET (GstGapDiagnose,
+          settings));
   gst_element_class_add_static_pad_template (element_class, &sink_template);
   gst_element_class_add_static_pad_template (element_class, &src_template);
   gst_element_class_set_static_metadata (element_class, "Cloth gap",
@@ -766,19 +822,36 @@ gst_clothgap_class_init (GstClothgapClass * klass)
 }
 
 static void
-gst_clothgap_init (GstClothgap * self)
+gst_gap_diagnose_init (GTypeInstance * instance, gpointer klass)
 {
+  GstGapDiagnose *self = GST_GAP_DIAGNOSE (instance);
+
   self->sinkpad = gst_pad_new_from_static_template (&sink_template, "sink");
-  gst_pad_set_chain_function (self->sinkpad, gst_clothgap_chain);
-  gst_pad_set_event_function (self->sinkpad, gst_clothgap_sink_event);
+  gst_pad_set_chain_function (self->sinkpad, gst_gap_diagnose_chain);
+  gst_pad_set_event_function (self->sinkpad, gst_gap_diagnose_sink_event);
   GST_PAD_SET_PROXY_CAPS (self->sinkpad);
   gst_element_add_pad (GST_ELEMENT (self), self->sinkpad);
   self->srcpad = gst_pad_new_from_static_template (&src_template, "src");
-  gst_pad_set_query_function (self->srcpad, gst_clothgap_src_query);
+  gst_pad_set_query_function (self->srcpad, gst_gap_diagnose_src_query);
   GST_PAD_SET_PROXY_CAPS (self->srcpad);
   gst_element_add_pad (GST_ELEMENT (self), self->srcpad);
   g_queue_init (&self->waiting);
   gst_segment_init (&self->segment, GST_FORMAT_TIME);
-  gst_cloth_gap_settings_init (&self->settings);
+  self->settings = defaults;
   self->fps_d = 1;
+}
+
+/* In C the type has another name than GstClothGap, the payload that it puts on meshes. What
+ * users see of it, also in the names of its instances, is the element's name. */
+GType
+gst_gap_diagnose_get_type (void)
+{
+  static gsize type;
+
+  if (g_once_init_enter (&type))
+    g_once_init_leave (&type, g_type_register_static_simple (GST_TYPE_ELEMENT,
+            "GstClothgap", sizeof (GstGapDiagnoseClass),
+            gst_gap_diagnose_class_init, sizeof (GstGapDiagnose),
+            gst_gap_diagnose_init, 0));
+  return type;
 }

@@ -7,10 +7,10 @@
 
 G_BEGIN_DECLS
 
-/* Not GstClothGap: that is what it puts on the meshes. */
-#define GST_TYPE_CLOTHGAP (gst_clothgap_get_type ())
-G_DECLARE_FINAL_TYPE (GstClothgap, gst_clothgap, GST,
-    CLOTHGAP, GstElement)
+/* What it puts on the meshes is #GstClothGap. */
+#define GST_TYPE_GAP_DIAGNOSE (gst_gap_diagnose_get_type ())
+G_DECLARE_FINAL_TYPE (GstGapDiagnose, gst_gap_diagnose, GST,
+    GAP_DIAGNOSE, GstElement)
 GST_ELEMENT_REGISTER_DECLARE (clothgap);
 
 G_END_DECLS

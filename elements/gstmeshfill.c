@@ -37,6 +37,7 @@
 #include <gst/cloth/cloth.h>
 #include <math.h>
 
+#include "elements/gstclothproperties.h"
 #include "elements/gstclothutil.h"
 #include "elements/gstmeshformat.h"
 #include "gst/mesh/fill/fill.h"
@@ -58,17 +59,21 @@ typedef struct
   guint8 *states;
 } Frame;
 
+typedef struct
+{
+  ClothFillParameters parameters;
+  gdouble smooth_space, smooth_time;
+  gchar *garment;
+} Settings;
+
 struct _GstMeshFill
 {
   GstElement parent;
   GstPad *sinkpad, *srcpad;
 
   /* object lock */
-  ClothFillParameters parameters;
-  gboolean parameters_changed;
-  gdouble smooth_space, smooth_time;
+  Settings settings;
   gint fps_n, fps_d;
-  gchar *garment_location;
 
   /* from READY to PAUSED on */
   ClothGarment *garment;
@@ -87,19 +92,6 @@ struct _GstMeshFill
   guint8 *chosen_states;
 };
 
-enum
-{
-  PROP_0,
-  PROP_METHOD,
-  PROP_GARMENT,
-  PROP_NOISE,
-  PROP_MAX_SIGMA,
-  PROP_PREDICTION,
-  PROP_OUTLIER_THRESHOLD,
-  PROP_SMOOTH_SPACE,
-  PROP_SMOOTH_TIME
-};
-
 static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE ("sink",
     GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS (GST_CLOTH_MESH_CAPS));
 static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE ("src",
@@ -109,25 +101,54 @@ G_DEFINE_TYPE (GstMeshFill, gst_mesh_fill, GST_TYPE_ELEMENT);
 GST_ELEMENT_REGISTER_DEFINE (meshfill, "meshfill", GST_RANK_NONE,
     GST_TYPE_MESH_FILL);
 
-#define GST_TYPE_MESH_FILL_METHOD (gst_mesh_fill_method_get_type ())
-static GType
-gst_mesh_fill_method_get_type (void)
-{
-  static gsize type = 0;
-  static const GEnumValue values[] = {
-    {CLOTH_FILL_PLATE,
-          "A thin plate with the flat cloth's measures and the shape seen before",
-        "plate"},
-    {CLOTH_FILL_BILAPLACIAN,
-        "The paper's uniform bi-Laplacian, each frame alone", "bilaplacian"},
-    {0, NULL, NULL}
-  };
+static const GEnumValue methods[] = {
+  {CLOTH_FILL_PLATE,
+        "A thin plate with the flat cloth's measures and the shape seen before",
+      "plate"},
+  {CLOTH_FILL_BILAPLACIAN,
+      "The paper's uniform bi-Laplacian, each frame alone", "bilaplacian"},
+  {0, NULL, NULL}
+};
 
-  if (g_once_init_enter (&type))
-    g_once_init_leave (&type, g_enum_register_static ("GstMeshFillMethod",
-            values));
-  return type;
-}
+#define SETTING(member) GST_CLOTH_SETTING (Settings, member)
+
+/* *INDENT-OFF* */
+static const GstClothProperty properties[] = {
+  {"method", "Method", "What fills a hole",
+    G_TYPE_ENUM, SETTING (parameters.method), GST_PARAM_MUTABLE_PLAYING, 0, 0,
+    "GstMeshFillMethod", methods},
+  {"garment", "Garment",
+    "File garment.json of the garment that the dots are on: a grid of "
+    "dots comes in, the garment's mesh goes out, sewn at its seams",
+    G_TYPE_STRING, SETTING (garment), GST_PARAM_MUTABLE_READY},
+  {"noise", "Noise",
+    "Standard deviation of a coordinate that comes without covariance, metres",
+    G_TYPE_DOUBLE, SETTING (parameters.noise_m), GST_PARAM_MUTABLE_PLAYING, 0, 1},
+  {"max-sigma", "Largest sigma",
+    "A vertex with a standard deviation above this (RMS of its axes) stays "
+    "unseen, metres",
+    G_TYPE_DOUBLE, SETTING (parameters.max_sigma_m), GST_PARAM_MUTABLE_PLAYING, 0, 1000},
+  {"prediction", "Prediction",
+    "How long a vertex is carried on that nothing around it holds, seconds",
+    G_TYPE_DOUBLE, SETTING (parameters.prediction_s), GST_PARAM_MUTABLE_PLAYING, 0, 3600},
+  {"outlier-threshold", "Outlier threshold",
+    "A vertex is removed that differs from its neighbours and its past by more "
+    "than this many times what is usual around it; 0: none",
+    G_TYPE_DOUBLE, SETTING (parameters.outlier), GST_PARAM_MUTABLE_PLAYING, 0, 1000},
+  {"smooth-space", "Smoothing in space",
+    "Part of the way to the mean of its neighbours that a vertex goes",
+    G_TYPE_DOUBLE, SETTING (smooth_space), GST_PARAM_MUTABLE_PLAYING, 0, 1},
+  {"smooth-time", "Smoothing in time",
+    "Part of the way to the mean of the frames before and after that a vertex "
+    "goes; above 0 the element is a frame late",
+    G_TYPE_DOUBLE, SETTING (smooth_time), GST_PARAM_MUTABLE_READY, 0, 1},
+};
+/* *INDENT-ON* */
+
+static const Settings defaults = {
+  .parameters = {CLOTH_FILL_PLATE, CLOTH_FILL_NOISE, CLOTH_FILL_MAX_SIGMA,
+      CLOTH_FILL_PREDICTION, CLOTH_FILL_OUTLIER}
+};
 
 /* ---- frames ---- */
 
@@ -272,9 +293,7 @@ gst_mesh_fill_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
 {
   GstMeshFill *self = GST_MESH_FILL (parent);
   g_autoptr (GstClothMesh) mesh = NULL;
-  ClothFillParameters parameters;
   gdouble smooth_space, smooth_time;
-  gboolean changed;
   GstFlowReturn flow = GST_FLOW_OK;
   Frame *frame = &self->frame[2], *waiting = &self->frame[1], swap;
 
@@ -288,14 +307,10 @@ gst_mesh_fill_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
     return GST_FLOW_ERROR;
   }
   GST_OBJECT_LOCK (self);
-  parameters = self->parameters;
-  changed = self->parameters_changed;
-  self->parameters_changed = FALSE;
-  smooth_space = self->smooth_space;
-  smooth_time = self->smooth_time;
+  cloth_fill_set_parameters (self->fill, &self->settings.parameters);
+  smooth_space = self->settings.smooth_space;
+  smooth_time = self->settings.smooth_time;
   GST_OBJECT_UNLOCK (self);
-  if (changed)
-    cloth_fill_set_parameters (self->fill, &parameters);
 
   frame->buffer = buffer;
   frame->sequence = gst_cloth_mesh_get_sequence (mesh);
@@ -357,8 +372,7 @@ set_caps (GstMeshFill * self, const GstCaps * caps)
   clear_topology (self);
   GST_OBJECT_LOCK (self);
   self->fill = cloth_fill_new (topology,
-      self->garment ? self->garment->seams : NULL, &self->parameters);
-  self->parameters_changed = FALSE;
+      self->garment ? self->garment->seams : NULL, &self->settings.parameters);
   GST_OBJECT_UNLOCK (self);
   n = topology->n_vertices;
   for (guint i = 0; i < G_N_ELEMENTS (self->frame); i++) {
@@ -475,7 +489,7 @@ gst_mesh_fill_src_query (GstPad * pad, GstObject * parent, GstQuery * query)
   if (!gst_pad_peer_query (self->sinkpad, query))
     return FALSE;
   GST_OBJECT_LOCK (self);
-  if (self->smooth_time > 0 && self->fps_n > 0)
+  if (self->settings.smooth_time > 0 && self->fps_n > 0)
     own = gst_util_uint64_scale_int (GST_SECOND, self->fps_d, self->fps_n);
   GST_OBJECT_UNLOCK (self);
   gst_cloth_add_latency (query, own);
@@ -489,7 +503,7 @@ open_garment (GstMeshFill * self)
   g_autoptr (GError) error = NULL;
 
   GST_OBJECT_LOCK (self);
-  location = g_strdup (self->garment_location);
+  location = g_strdup (self->settings.garment);
   GST_OBJECT_UNLOCK (self);
   g_clear_pointer (&self->garment, cloth_garment_free);
   if (!location)
@@ -522,91 +536,7 @@ gst_mesh_fill_change_state (GstElement * element, GstStateChange transition)
   return result;
 }
 
-/* ---- properties ---- */
-
-static void
-gst_mesh_fill_set_property (GObject * object, guint id, const GValue * value,
-    GParamSpec * spec)
-{
-  GstMeshFill *self = GST_MESH_FILL (object);
-
-  GST_OBJECT_LOCK (self);
-  if (!gst_cloth_may_change (GST_ELEMENT (self), spec)) {
-    GST_OBJECT_UNLOCK (self);
-    return;
-  }
-  self->parameters_changed = TRUE;
-  switch (id) {
-    case PROP_METHOD:
-      self->parameters.method = g_value_get_enum (value);
-      break;
-    case PROP_GARMENT:
-      g_free (self->garment_location);
-      self->garment_location = g_value_dup_string (value);
-      break;
-    case PROP_NOISE:
-      self->parameters.noise_m = g_value_get_double (value);
-      break;
-    case PROP_MAX_SIGMA:
-      self->parameters.max_sigma_m = g_value_get_double (value);
-      break;
-    case PROP_PREDICTION:
-      self->parameters.prediction_s = g_value_get_double (value);
-      break;
-    case PROP_OUTLIER_THRESHOLD:
-      self->parameters.outlier = g_value_get_double (value);
-      break;
-    case PROP_SMOOTH_SPACE:
-      self->smooth_space = g_value_get_double (value);
-      break;
-    case PROP_SMOOTH_TIME:
-      self->smooth_time = g_value_get_double (value);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, spec);
-      break;
-  }
-  GST_OBJECT_UNLOCK (self);
-}
-
-static void
-gst_mesh_fill_get_property (GObject * object, guint id, GValue * value,
-    GParamSpec * spec)
-{
-  GstMeshFill *self = GST_MESH_FILL (object);
-
-  GST_OBJECT_LOCK (self);
-  switch (id) {
-    case PROP_METHOD:
-      g_value_set_enum (value, self->parameters.method);
-      break;
-    case PROP_GARMENT:
-      g_value_set_string (value, self->garment_location);
-      break;
-    case PROP_NOISE:
-      g_value_set_double (value, self->parameters.noise_m);
-      break;
-    case PROP_MAX_SIGMA:
-      g_value_set_double (value, self->parameters.max_sigma_m);
-      break;
-    case PROP_PREDICTION:
-      g_value_set_double (value, self->parameters.prediction_s);
-      break;
-    case PROP_OUTLIER_THRESHOLD:
-      g_value_set_double (value, self->parameters.outlier);
-      break;
-    case PROP_SMOOTH_SPACE:
-      g_value_set_double (value, self->smooth_space);
-      break;
-    case PROP_SMOOTH_TIME:
-      g_value_set_double (value, self->smooth_time);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, spec);
-      break;
-  }
-  GST_OBJECT_UNLOCK (self);
-}
+/* ---- GObject ---- */
 
 static void
 gst_mesh_fill_finalize (GObject * object)
@@ -615,18 +545,9 @@ gst_mesh_fill_finalize (GObject * object)
 
   clear_topology (self);
   cloth_garment_free (self->garment);
-  g_free (self->garment_location);
+  gst_cloth_clear_settings (properties, G_N_ELEMENTS (properties),
+      &self->settings);
   G_OBJECT_CLASS (gst_mesh_fill_parent_class)->finalize (object);
-}
-
-static void
-install_double (GObjectClass * klass, guint id, const gchar * name,
-    const gchar * nick, const gchar * blurb, gdouble most, gdouble standard,
-    GParamFlags mutable)
-{
-  g_object_class_install_property (klass, id, g_param_spec_double (name, nick,
-          blurb, 0, most, standard,
-          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | mutable));
 }
 
 static void
@@ -636,43 +557,10 @@ gst_mesh_fill_class_init (GstMeshFillClass * klass)
   GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
 
   GST_DEBUG_CATEGORY_INIT (mesh_fill_debug, "meshfill", 0, "holes of meshes");
-  object_class->set_property = gst_mesh_fill_set_property;
-  object_class->get_property = gst_mesh_fill_get_property;
   object_class->finalize = gst_mesh_fill_finalize;
-  g_object_class_install_property (object_class, PROP_METHOD,
-      g_param_spec_enum ("method", "Method", "What fills a hole",
-          GST_TYPE_MESH_FILL_METHOD, CLOTH_FILL_PLATE,
-          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-          GST_PARAM_MUTABLE_PLAYING));
-  g_object_class_install_property (object_class, PROP_GARMENT,
-      g_param_spec_string ("garment", "Garment",
-          "File garment.json of the garment that the dots are on: a grid of "
-          "dots comes in, the garment's mesh goes out, sewn at its seams", NULL,
-          G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-          GST_PARAM_MUTABLE_READY));
-  install_double (object_class, PROP_NOISE, "noise", "Noise",
-      "Standard deviation of a coordinate that comes without covariance, metres",
-      1, CLOTH_FILL_NOISE, GST_PARAM_MUTABLE_PLAYING);
-  install_double (object_class, PROP_MAX_SIGMA, "max-sigma", "Largest sigma",
-      "A vertex with a standard deviation above this (RMS of its axes) stays "
-      "unseen, metres", 1000, CLOTH_FILL_MAX_SIGMA, GST_PARAM_MUTABLE_PLAYING);
-  install_double (object_class, PROP_PREDICTION, "prediction", "Prediction",
-      "How long a vertex is carried on that nothing around it holds, seconds",
-      3600, CLOTH_FILL_PREDICTION, GST_PARAM_MUTABLE_PLAYING);
-  install_double (object_class, PROP_OUTLIER_THRESHOLD, "outlier-threshold",
-      "Outlier threshold",
-      "A vertex is removed that differs from its neighbours and its past by more "
-      "than this many times what is usual around it; 0: none", 1000,
-      CLOTH_FILL_OUTLIER, GST_PARAM_MUTABLE_PLAYING);
-  install_double (object_class, PROP_SMOOTH_SPACE, "smooth-space",
-      "Smoothing in space",
-      "Part of the way to the mean of its neighbours that a vertex goes", 1, 0,
-      GST_PARAM_MUTABLE_PLAYING);
-  install_double (object_class, PROP_SMOOTH_TIME, "smooth-time",
-      "Smoothing in time",
-      "Part of the way to the mean of the frames before and after that a vertex "
-      "goes; above 0 the element is a frame late", 1, 0,
-      GST_PARAM_MUTABLE_READY);
+  gst_cloth_install_properties (object_class, properties,
+      G_N_ELEMENTS (properties), &defaults, G_STRUCT_OFFSET (GstMeshFill,
+          settings));
   gst_element_class_add_static_pad_template (element_class, &sink_template);
   gst_element_class_add_static_pad_template (element_class, &src_template);
   gst_element_class_set_static_metadata (element_class, "Mesh filler",
@@ -680,17 +568,12 @@ gst_mesh_fill_class_init (GstMeshFillClass * klass)
       "Fills holes in a mesh stream, removes outliers, smooths",
       "The gst-cloth developers");
   element_class->change_state = gst_mesh_fill_change_state;
-  gst_type_mark_as_plugin_api (GST_TYPE_MESH_FILL_METHOD, 0);
 }
 
 static void
 gst_mesh_fill_init (GstMeshFill * self)
 {
-  self->parameters.method = CLOTH_FILL_PLATE;
-  self->parameters.noise_m = CLOTH_FILL_NOISE;
-  self->parameters.max_sigma_m = CLOTH_FILL_MAX_SIGMA;
-  self->parameters.prediction_s = CLOTH_FILL_PREDICTION;
-  self->parameters.outlier = CLOTH_FILL_OUTLIER;
+  self->settings = defaults;
   self->fps_d = 1;
   gst_segment_init (&self->segment, GST_FORMAT_TIME);
   self->sinkpad = gst_pad_new_from_static_template (&sink_template, "sink");

@@ -101,7 +101,7 @@ struct _GstTriangulate
 
   /* object lock */
   Settings settings;
-  gboolean rig_changed, pattern_changed, parameters_changed;
+  gboolean rig_changed, pattern_changed;
 
   /* streaming thread */
   ClothRig *rig;
@@ -428,7 +428,6 @@ gst_triangulate_load_rig (GstTriangulate * self)
   GST_OBJECT_LOCK (self);
   location = g_strdup (self->settings.rig);
   self->rig_changed = FALSE;
-  self->parameters_changed = TRUE;
   GST_OBJECT_UNLOCK (self);
 
   if (!location) {
@@ -498,7 +497,7 @@ static gboolean
 gst_triangulate_apply_parameters (GstTriangulate * self)
 {
   ClothReconstructionParameters parameters;
-  gboolean rig_changed, changed;
+  gboolean rig_changed;
   guint threads;
 
   GST_OBJECT_LOCK (self);
@@ -510,12 +509,7 @@ gst_triangulate_apply_parameters (GstTriangulate * self)
   GST_OBJECT_LOCK (self);
   parameters = self->settings.parameters;
   threads = self->settings.threads;
-  changed = self->parameters_changed;
-  self->parameters_changed = FALSE;
   GST_OBJECT_UNLOCK (self);
-  if (!changed) {
-    return TRUE;
-  }
   self->threshold = parameters.triangulate.threshold;
   cloth_reconstruction_set_parameters (self->reconstruction, &parameters);
   if (threads == 0) {
@@ -772,7 +766,6 @@ gst_triangulate_set_property (GObject * object, guint id, const GValue * value,
   GST_OBJECT_LOCK (self);
   self->rig_changed |= g_str_equal (pspec->name, "rig");
   self->pattern_changed |= is_pattern;
-  self->parameters_changed = TRUE;
   GST_OBJECT_UNLOCK (self);
   if (is_pattern) {
     /* new caps before the next set */
