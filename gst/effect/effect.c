@@ -5,54 +5,16 @@
 
 #include <string.h>
 
-#include "gst/rig/effects/effects.h"
-#include "gst/sim/effects/effects.h"
+#define LANES(name) extern const ClothEffect cloth_effect_##name;
+#define SCENE(name) LANES (name)
+#define CAPTURE(name) LANES (name)
+#include "gst/effect/list.h"
 
-/* Documents and results list them in this order. */
 static const ClothEffect *const table[] = {
-  &cloth_effect_air_drag,
-  &cloth_effect_air_drag_linear,
-  &cloth_effect_air_drag_tangential,
-  &cloth_effect_wind,
-  &cloth_effect_gust,
-  &cloth_effect_added_mass,
-  &cloth_effect_bending,
-  &cloth_effect_bending_anisotropy,
-  &cloth_effect_bending_softening,
-  &cloth_effect_stretch,
-  &cloth_effect_stretch_anisotropy,
-  &cloth_effect_shear,
-  &cloth_effect_grain_angle,
-  &cloth_effect_biphasic_stretch,
-  &cloth_effect_hysteresis,
-  &cloth_effect_damping_mass,
-  &cloth_effect_damping_stiffness,
-  &cloth_effect_plasticity,
-  &cloth_effect_rest_curvature,
-  &cloth_effect_areal_mass,
-  &cloth_effect_mass_distribution,
-  &cloth_effect_gravity_tilt,
-  &cloth_effect_gravity_scale,
-  &cloth_effect_shrinkage,
-  &cloth_effect_self_contact,
-  &cloth_effect_friction,
-  &cloth_effect_clamp_slip,
-  &cloth_effect_clamp_compliance,
-  &cloth_effect_clamp_delay,
-  &cloth_effect_time_step,
-  &cloth_effect_mesh_resolution,
-  &cloth_effect_mesh_diagonals,
-  &cloth_capture_lens_distortion.effect,
-  &cloth_capture_focal_length.effect,
-  &cloth_capture_extrinsic_drift.effect,
-  &cloth_capture_sync_offset.effect,
-  &cloth_capture_rolling_shutter.effect,
-  &cloth_capture_frame_drop.effect,
-  &cloth_capture_motion_blur.effect,
-  &cloth_capture_defocus.effect,
-  &cloth_capture_shading_shift.effect,
-  &cloth_capture_colour_crosstalk.effect,
-  &cloth_capture_noise.effect,
+#define LANES(name) &cloth_effect_##name,
+#define SCENE(name) LANES (name)
+#define CAPTURE(name) LANES (name)
+#include "gst/effect/list.h"
 };
 
 /* @n_effects: (out): how many there are

@@ -26,6 +26,26 @@ typedef enum {
   CLOTH_EFFECT_IMAGE
 } ClothEffectSide;
 
+/* @CLOTH_EFFECT_TEST_SCORE: by derivatives of what is simulated, or seen, along its parameters
+ * @CLOTH_EFFECT_TEST_JUMP: the same, once for each clamp, from when the clamp is seen to
+ *   jump off its path; its parameters “held” and “time” say which clamp and when
+ * @CLOTH_EFFECT_TEST_STOCHASTIC: it is chance that another effect's parameters change with
+ *   time: by how much these differ from one part of a take to the next; it is never
+ *   accepted, as what it did follows from nothing
+ * @CLOTH_EFFECT_TEST_REPEAT: by the share of pictures that show the one before once more
+ * @CLOTH_EFFECT_TEST_NONE: not at all
+ *
+ * How a diagnosis tests an effect. Those of numerics are never tested: they are part of
+ * the simulator's own error, which is projected out.
+ */
+typedef enum {
+  CLOTH_EFFECT_TEST_SCORE,
+  CLOTH_EFFECT_TEST_JUMP,
+  CLOTH_EFFECT_TEST_STOCHASTIC,
+  CLOTH_EFFECT_TEST_REPEAT,
+  CLOTH_EFFECT_TEST_NONE
+} ClothEffectTest;
+
 /* @name: its key in model.json
  * @unit: in the notation of the SI, "1" for a ratio
  * @null_value: the value at which the effect is not there
@@ -34,6 +54,10 @@ typedef enum {
  * @prior: scale of the values that a diagnosis expects: the standard deviation about
  *   @null_value, or the mean distance from it when @one_sided
  * @one_sided: nature has it on one side of @null_value only, that of @min < @max
+ * @shapes: it only shapes the effect and means nothing at the null of the others: a
+ *   diagnosis leaves it where it is
+ * @n_tried: number of @tried
+ * @tried: where to leave it, one trial each; none: at @null_value
  * @blurb: one plain sentence
  *
  * One number of an effect.
@@ -46,6 +70,9 @@ typedef struct {
   gdouble max;
   gdouble prior;
   gboolean one_sided;
+  gboolean shapes;
+  guint n_tried;
+  gdouble tried[2];
   const gchar *blurb;
 } ClothEffectParameter;
 
@@ -55,6 +82,15 @@ typedef struct {
  * @source: where the law and the usual values come from
  * @regressor: how a residual force would show it, one sentence
  * @confusions: (nullable) (array zero-terminated=1): ids of effects that look alike
+ * @test: how a diagnosis tests it
+ * @untested: of %CLOTH_EFFECT_TEST_NONE: why not; of %CLOTH_EFFECT_TEST_STOCHASTIC: why
+ *   not where @varies isn't tested either; one sentence
+ * @varies: of %CLOTH_EFFECT_TEST_STOCHASTIC: id of the effect whose parameters change
+ * @same_as: (nullable): the model's own number that it changes too: where that one is
+ *   fitted to a take, the effect can't be tested on it
+ * @needs_obstacles: without obstacles it does nothing
+ * @is_moving_air: it is not there where the air is still
+ * @shared: of cameras: a value may hold for all of them
  * @n_parameters: number of @parameters
  * @parameters: its numbers
  *
@@ -67,6 +103,13 @@ typedef struct {
   const gchar *source;
   const gchar *regressor;
   const gchar *const *confusions;
+  ClothEffectTest test;
+  const gchar *untested;
+  const gchar *varies;
+  const gchar *same_as;
+  gboolean needs_obstacles;
+  gboolean is_moving_air;
+  gboolean shared;
   guint n_parameters;
   ClothEffectParameter parameters[CLOTH_EFFECT_MAX_PARAMETERS];
 } ClothEffect;

@@ -8,7 +8,6 @@
 
 #include "gst/math/random.h"
 #include "gst/math/vec3.h"
-#include "gst/rig/effects/effects.h"
 #include "gst/rig/rig.h"
 
 /* Longest text of effects, and most effects in it. */
@@ -18,14 +17,18 @@
 #define MAX_ROW_STEPS 20
 #define ROW_SETTLED_PX 1e-9
 
-/* In the order of the documents. */
-static const ClothCaptureEffect *const effects[] = {
-  &cloth_capture_lens_distortion, &cloth_capture_focal_length,
-  &cloth_capture_extrinsic_drift, &cloth_capture_sync_offset,
-  &cloth_capture_rolling_shutter, &cloth_capture_frame_drop,
-  &cloth_capture_motion_blur, &cloth_capture_defocus,
-  &cloth_capture_shading_shift, &cloth_capture_colour_crosstalk,
-  &cloth_capture_noise
+typedef struct
+{
+  const ClothEffect *effect;
+  void (*apply) (const gdouble * values, ClothCapture * capture);
+} CaptureEffect;
+
+#define CAPTURE(name) extern const ClothEffect cloth_effect_##name;
+#include "gst/effect/list.h"
+
+static const CaptureEffect effects[] = {
+#define CAPTURE(name) { &cloth_effect_##name, cloth_capture_##name },
+#include "gst/effect/list.h"
 };
 
 /* @capture: (out): overwritten
@@ -44,37 +47,13 @@ cloth_capture_init (ClothCapture * capture, const ClothCamera * camera)
   capture->camera.device = NULL;
 }
 
-/* @index: 0 and up
- *
- * Returns: (nullable) (transfer none): the description of a camera or image effect;
- *   %NULL behind the last one
- */
-const ClothEffect *
-cloth_capture_effect (guint index)
-{
-  return index < G_N_ELEMENTS (effects) ? &effects[index]->effect : NULL;
-}
-
-static const ClothCaptureEffect *
+static const CaptureEffect *
 find (const gchar * id)
 {
   for (guint i = 0; i < G_N_ELEMENTS (effects); i++)
-    if (g_str_equal (effects[i]->effect.id, id))
-      return effects[i];
+    if (g_str_equal (effects[i].effect->id, id))
+      return &effects[i];
   return NULL;
-}
-
-/* @id: its name
- *
- * Returns: (nullable) (transfer none): the description of the effect, or %NULL when no
- *   camera or image effect has the name
- */
-const ClothEffect *
-cloth_capture_find_effect (const gchar * id)
-{
-  const ClothCaptureEffect *found = find (id);
-
-  return found ? &found->effect : NULL;
 }
 
 static gchar *
@@ -83,7 +62,7 @@ list_effects (void)
   GString *text = g_string_new (NULL);
 
   for (guint i = 0; i < G_N_ELEMENTS (effects); i++)
-    g_string_append_printf (text, "%s%s", i ? ", " : "", effects[i]->effect.id);
+    g_string_append_printf (text, "%s%s", i ? ", " : "", effects[i].effect->id);
   return g_string_free (text, FALSE);
 }
 
@@ -98,10 +77,10 @@ list_parameters (const ClothEffect * effect)
   return g_string_free (text, FALSE);
 }
 
-static const ClothCaptureEffect *
+static const CaptureEffect *
 find_or_tell (const gchar * id, GError ** error)
 {
-  const ClothCaptureEffect *found = find (id);
+  const CaptureEffect *found = find (id);
   g_autofree gchar *known = NULL;
 
   if (found)
@@ -140,12 +119,12 @@ gboolean
 cloth_capture_add_effect (ClothCapture * capture, const gchar * id,
     const gdouble * values, GError ** error)
 {
-  const ClothCaptureEffect *found = find_or_tell (id, error);
+  const CaptureEffect *found = find_or_tell (id, error);
 
   if (!found)
     return FALSE;
-  for (guint i = 0; i < found->effect.n_parameters; i++)
-    if (!check_value (&found->effect, i, values[i], error))
+  for (guint i = 0; i < found->effect->n_parameters; i++)
+    if (!check_value (found->effect, i, values[i], error))
       return FALSE;
   found->apply (values, capture);
   return TRUE;
@@ -192,23 +171,23 @@ static gboolean
 read_effect (ClothCapture * capture, const gchar * text, GError ** error)
 {
   g_auto (GStrv) parts = g_strsplit (text, ",", -1);
-  const ClothCaptureEffect *found = find_or_tell (g_strstrip (parts[0]), error);
+  const CaptureEffect *found = find_or_tell (g_strstrip (parts[0]), error);
   gdouble values[CLOTH_EFFECT_MAX_PARAMETERS];
   guint seen = 0;
 
   if (!found)
     return FALSE;
-  for (guint i = 0; i < found->effect.n_parameters; i++)
-    values[i] = found->effect.parameters[i].null_value;
+  for (guint i = 0; i < found->effect->n_parameters; i++)
+    values[i] = found->effect->parameters[i].null_value;
   for (guint i = 1; parts[i]; i++)
-    if (!read_parameter (&found->effect, g_strstrip (parts[i]), values, &seen,
+    if (!read_parameter (found->effect, g_strstrip (parts[i]), values, &seen,
             error))
       return FALSE;
   if (!seen) {
-    g_autofree gchar *known = list_parameters (&found->effect);
+    g_autofree gchar *known = list_parameters (found->effect);
 
     g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_VALUE,
-        "%s: say how much, as name=number, with: %s", found->effect.id, known);
+        "%s: say how much, as name=number, with: %s", found->effect->id, known);
     return FALSE;
   }
   found->apply (values, capture);

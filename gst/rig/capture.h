@@ -55,10 +55,13 @@ typedef struct {
   ClothCaptureTarget target;
 } ClothCapture;
 
+/* What each effect changes in a capture; null @values leave every bit of it as it is. */
+#define CAPTURE(name) \
+    void cloth_capture_##name (const gdouble * values, ClothCapture * capture);
+#include "gst/effect/list.h"
+
 void cloth_capture_init (ClothCapture * capture, const ClothCamera * camera);
 
-const ClothEffect *cloth_capture_effect (guint index);
-const ClothEffect *cloth_capture_find_effect (const gchar * id);
 gboolean cloth_capture_add_effect (ClothCapture * capture, const gchar * id,
     const gdouble * values, GError ** error);
 gboolean cloth_capture_add_effects (ClothCapture * capture,

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "gst/sim/bvh.h"
-#include "gst/sim/scene.h"
+#include "gst/take/take.h"
 
 G_BEGIN_DECLS
 
@@ -104,13 +104,7 @@ typedef struct
   ClothBvh **bvhs;              /* of each obstacle; NULL but for meshes */
 } ClothBody;
 
-ClothBody *cloth_body_new (const ClothScene * scene, GError ** error);
 void cloth_body_free (ClothBody * body);
-guint32 *cloth_body_merge_seams (const GArray * seams, guint n,
-    guint * n_particles);
-gboolean cloth_body_make_hinges (ClothBody * body, const guint32 * corners,
-    GError ** error);
-void cloth_body_make_springs (ClothBody * body);
 void cloth_body_path (const ClothBody * body, guint held, gdouble time_s,
     gdouble position[3]);
 

@@ -1,13 +1,14 @@
 /* How a body bends: linear measures of its curvature, on grids and on other meshes.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/sim/bodybending.h"
+
 #include <math.h>
 #include <string.h>
 
 #include "gst/math/linalg.h"
 #include "gst/mesh/side.h"
-#include "gst/sim/body.h"
-#include "gst/sim/sim.h"
+#include "gst/sim/types.h"
 
 /* ---- grids ---- */
 

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 
 #include "gst/effect/effect.h"
-#include "gst/sim/effects/effects.h"
 
 /* Every variant of the lanes; those of other machines are not built. */
 extern const ClothLaneBackend cloth_lane_backend_one;
@@ -49,48 +48,24 @@ wide_backend (const ClothSimOptions * options)
       &cloth_lane_backend_double_generic;
 }
 
-/* Of grids all of the cloth's forces are found in one pass, unless one of these is there;
- * and contact is looked for lane by lane. */
-static gboolean
-is_slow (const ClothEffect * effect)
-{
-  return effect == &cloth_effect_self_contact
-      || effect == &cloth_effect_shrinkage
-      || effect == &cloth_effect_grain_angle
-      || effect == &cloth_effect_added_mass;
-}
-
-/* Those that find forces of their own; all others change numbers or the clamps. */
-static gboolean
-has_forces (const ClothEffect * effect)
-{
-  return effect == &cloth_effect_air_drag
-      || effect == &cloth_effect_air_drag_linear
-      || effect == &cloth_effect_air_drag_tangential
-      || effect == &cloth_effect_wind || effect == &cloth_effect_gust
-      || effect == &cloth_effect_biphasic_stretch
-      || effect == &cloth_effect_hysteresis
-      || effect == &cloth_effect_bending_softening
-      || effect == &cloth_effect_rest_curvature
-      || effect == &cloth_effect_plasticity;
-}
-
 /* The effects that cost time. */
 static guint64
-list_effects (const ClothModel * model)
+list_effects (const ClothModel * model, const ClothLaneBackend * backend)
 {
   guint n;
   const ClothEffect *const *table = cloth_effect_table (&n);
   guint64 effects = 0;
 
-  for (guint i = 0; i < model->effects->len; i++)
-    for (guint k = 0; k < n; k++) {
-      const ClothEffect *effect = table[k];
+  for (guint i = 0; i < model->effects->len; i++) {
+    const ClothEffect *effect =
+        g_array_index (model->effects, ClothModelEffect, i).effect;
+    ClothLaneCost cost = backend->cost (effect);
 
-      if (g_array_index (model->effects, ClothModelEffect, i).effect == effect
-          && (is_slow (effect) || has_forces (effect)))
-        effects |= (guint64) 1 << MIN (k, 31) << (is_slow (effect) ? 32 : 0);
-    }
+    for (guint k = 0; k < n && cost != CLOTH_LANE_COST_NONE; k++)
+      if (table[k] == effect)
+        effects |= (guint64) 1 << MIN (k, 31) <<
+            (cost == CLOTH_LANE_COST_HIGH ? 32 : 0);
+  }
   return effects;
 }
 
@@ -191,7 +166,7 @@ cloth_sim_groups_new (const ClothBody * body, const ClothModel * const *models,
 
   for (guint i = 0; i < n_models; i++)
     places[i] = (Place) {
-    list_effects (models[i]), i};
+    list_effects (models[i], wide), i};
   qsort (places, n_models, sizeof *places, compare_places);
   n_own = fill_up (places, n_models, narrow_backend (wide)->n_lanes);
   groups = g_new0 (ClothSimGroup,

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#include "gst/sim/body.h"
+#include "gst/sim/bodybuild.h"
 
 typedef struct
 {

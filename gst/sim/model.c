@@ -1,4 +1,4 @@
-/* A model of a cloth: defaults, effects, values by name, limits.
+/* A model of a cloth: defaults, effects, values by name, limits, and its file.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/sim/model.h"
@@ -6,7 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/effect/effect.h"
+#include "gst/file/json.h"
+#include "gst/file/jsonwriter.h"
 
 GQuark
 cloth_model_error_quark (void)
@@ -342,4 +343,316 @@ cloth_model_free (ClothModel * model)
   g_array_unref (model->effects);
   g_array_unref (model->free);
   g_free (model);
+}
+
+/* ---- model.json ---- */
+
+#define MAX_FREE 1024
+
+static const gchar *const force_models[] = { "membrane", "mass-spring", NULL };
+static const gchar *const integrators[] = { "explicit", "implicit", NULL };
+
+static const ClothJsonFile model_json =
+    { "model.json", cloth_model_error_quark, CLOTH_MODEL_ERROR_VALUE };
+
+static gboolean
+set_number (ClothModel * model, const gchar * name, JsonNode * node,
+    GError ** error)
+{
+  gdouble number, range[2];
+
+  /* A name that does not exist is to be told before its value. */
+  if (!cloth_model_get_range (name, range, error)) {
+    g_prefix_error (error, "model.json: ");
+    return FALSE;
+  }
+  if (!cloth_json_number (node, &number))
+    return cloth_json_invalid (&model_json, error,
+        "“%s” must be a number from %g to %g", name, range[0], range[1]);
+  if (cloth_model_set (model, name, number, error))
+    return TRUE;
+  g_prefix_error (error, "model.json: ");
+  return FALSE;
+}
+
+/* An object of numbers, whose names are put behind @prefix. */
+static gboolean
+set_numbers (ClothModel * model, const gchar * prefix, JsonNode * node,
+    GError ** error)
+{
+  g_autoptr (GList) members = NULL;
+
+  if (!JSON_NODE_HOLDS_OBJECT (node))
+    return cloth_json_invalid (&model_json, error,
+        "“%s” must be an object of numbers", prefix);
+  members = json_object_get_members (json_node_get_object (node));
+  for (GList * at = members; at; at = at->next) {
+    g_autofree gchar *name = g_strdup_printf ("%s.%s", prefix,
+        (const gchar *) at->data);
+
+    if (!set_number (model, name,
+            json_object_get_member (json_node_get_object (node), at->data),
+            error))
+      return FALSE;
+  }
+  return TRUE;
+}
+
+static gboolean
+set_effects (ClothModel * model, JsonNode * node, GError ** error)
+{
+  g_autoptr (GList) members = NULL;
+
+  if (!JSON_NODE_HOLDS_OBJECT (node))
+    return cloth_json_invalid (&model_json, error,
+        "“effects” must be an object: {name: {parameter: value}}");
+  members = json_object_get_members (json_node_get_object (node));
+  for (GList * at = members; at; at = at->next) {
+    const ClothEffect *effect = cloth_effect_find (at->data);
+    g_autofree gchar *prefix = g_strdup_printf ("effects.%s",
+        (const gchar *) at->data);
+
+    if (!effect) {
+      g_set_error (error, CLOTH_MODEL_ERROR, CLOTH_MODEL_ERROR_NAME,
+          "model.json: “%s”: there is no such effect; "
+          "gst-cloth-gap-1.0 effects lists them", prefix);
+      return FALSE;
+    }
+    cloth_model_set_effect (model, effect, NULL);
+    if (!set_numbers (model, prefix,
+            json_object_get_member (json_node_get_object (node), at->data),
+            error))
+      return FALSE;
+  }
+  return TRUE;
+}
+
+static gboolean
+set_free (ClothModel * model, JsonObject * root, GError ** error)
+{
+  static const gchar *const allowed[] = { "name", "range", NULL };
+  gboolean bad;
+  JsonArray *list = cloth_json_get_list (&model_json, root, "free", MAX_FREE,
+      &bad, error);
+
+  if (bad)
+    return FALSE;
+  for (guint i = 0; list && i < json_array_get_length (list); i++) {
+    JsonObject *object =
+        cloth_json_item_object (&model_json, list, i, "free", error);
+    ClothModelFree *entry;
+    JsonNode *node;
+    JsonArray *range;
+
+    if (!object ||
+        !cloth_json_check_keys (&model_json, object, "“free”", allowed,
+            error))
+      return FALSE;
+    g_array_set_size (model->free, i + 1);
+    entry = &g_array_index (model->free, ClothModelFree, i);
+    if (!cloth_json_get_string (&model_json, object, "name", &entry->name,
+            error))
+      return FALSE;
+    node = cloth_json_find (object, "range");
+    range = node && JSON_NODE_HOLDS_ARRAY (node) ? json_node_get_array (node) :
+        NULL;
+    if (!entry->name || !range || json_array_get_length (range) != 2 ||
+        !cloth_json_number (json_array_get_element (range, 0),
+            &entry->range[0]) ||
+        !cloth_json_number (json_array_get_element (range, 1),
+            &entry->range[1]))
+      return cloth_json_invalid (&model_json, error,
+          "item %u of “free” must "
+          "be {\"name\": a number of the model, \"range\": [least, most]}", i);
+  }
+  return TRUE;
+}
+
+/* Leaves @choice when the key is absent. */
+static gboolean
+get_choice (JsonObject * root, const gchar * key, const gchar * const *words,
+    guint * choice, GError ** error)
+{
+  g_autofree gchar *word = NULL, *list = NULL;
+
+  if (!cloth_json_get_string (&model_json, root, key, &word, error))
+    return FALSE;
+  if (!word)
+    return TRUE;
+  for (guint i = 0; words[i]; i++) {
+    if (strcmp (words[i], word) != 0)
+      continue;
+    *choice = i;
+    return TRUE;
+  }
+  list = g_strjoinv (" or ", (gchar **) words);
+  return cloth_json_invalid (&model_json, error,
+      "“%s” is “%s”; it must be %s", key, word, list);
+}
+
+static gboolean
+parse_root (JsonObject * root, ClothModel * model, GError ** error)
+{
+  static const gchar *const allowed[] = { "version", "force_model",
+    "areal_density", "stretch", "shear", "bending", "damping",
+    "compression_ratio", "air_density", "integrator", "time_step", "effects",
+    "free", NULL
+  };
+  static const gchar *const numbers[] = { "areal_density", "shear",
+    "compression_ratio", "air_density", "time_step"
+  };
+  static const gchar *const objects[] = { "stretch", "bending", "damping" };
+  guint version, force_model = 0, integrator = 0;
+  JsonNode *node;
+
+  if (!cloth_json_get_count (&model_json, root, "version", 0, G_MAXINT,
+          &version, error))
+    return FALSE;
+  if (version != 1) {
+    g_set_error (error, CLOTH_MODEL_ERROR, CLOTH_MODEL_ERROR_FORMAT,
+        "model.json: version %u is not read, only 1", version);
+    return FALSE;
+  }
+  if (!cloth_json_check_keys (&model_json, root, "model.json", allowed, error)
+      || !get_choice (root, "force_model", force_models, &force_model, error)
+      || !get_choice (root, "integrator", integrators, &integrator, error))
+    return FALSE;
+  model->force_model = (ClothForceModel) force_model;
+  model->integrator = (ClothIntegrator) integrator;
+  for (guint i = 0; i < G_N_ELEMENTS (numbers); i++)
+    if ((node = cloth_json_find (root, numbers[i])) &&
+        !set_number (model, numbers[i], node, error))
+      return FALSE;
+  for (guint i = 0; i < G_N_ELEMENTS (objects); i++)
+    if ((node = cloth_json_find (root, objects[i])) &&
+        !set_numbers (model, objects[i], node, error))
+      return FALSE;
+  if ((node = cloth_json_find (root, "effects")) &&
+      !set_effects (model, node, error))
+    return FALSE;
+  if (!set_free (model, root, error))
+    return FALSE;
+  if (cloth_model_check (model, error))
+    return TRUE;
+  g_prefix_error (error, "model.json: ");
+  return FALSE;
+}
+
+/* @json: the text of model.json
+ * @size: its bytes
+ * @error: #ClothModelError, naming key and value
+ *
+ * Reads and checks a model. Missing keys take their defaults, unknown ones are an
+ * error.
+ *
+ * Returns: (transfer full): the model, or %NULL
+ */
+ClothModel *
+cloth_model_parse (const gchar * json, gsize size, GError ** error)
+{
+  g_autoptr (ClothModel) model = cloth_model_new ();
+  g_autoptr (GError) fault = NULL;
+  g_autoptr (JsonParser) parser = cloth_json_parse (json, size, &fault);
+
+  if (!parser) {
+    g_set_error (error, CLOTH_MODEL_ERROR, CLOTH_MODEL_ERROR_FORMAT,
+        "model.json: %s", fault->message);
+    return NULL;
+  }
+  if (!parse_root (json_node_get_object (json_parser_get_root (parser)), model,
+          error))
+    return NULL;
+  return g_steal_pointer (&model);
+}
+
+/* @path: (type filename): a model.json
+ * @error: #ClothModelError, #GFileError, #ClothFileError
+ *
+ * Returns: (transfer full): the model, or %NULL; the message names @path
+ */
+ClothModel *
+cloth_model_load (const gchar * path, GError ** error)
+{
+  gsize size;
+  g_autofree gchar *text = cloth_text_file_load (path, &size, error);
+  ClothModel *model = text ? cloth_model_parse (text, size, error) : NULL;
+
+  if (text && !model)
+    g_prefix_error (error, "%s: ", path);
+  return model;
+}
+
+static void
+write_pair (ClothJsonWriter * writer, const gchar * key,
+    const gchar * const names[2], gdouble a, gdouble b)
+{
+  cloth_json_writer_begin_object (writer, key);
+  cloth_json_writer_number (writer, names[0], a);
+  cloth_json_writer_number (writer, names[1], b);
+  cloth_json_writer_end_object (writer);
+}
+
+static void
+write_effects (ClothJsonWriter * writer, const ClothModel * model)
+{
+  cloth_json_writer_begin_object (writer, "effects");
+  for (guint i = 0; i < model->effects->len; i++) {
+    const ClothModelEffect *entry =
+        &g_array_index (model->effects, ClothModelEffect, i);
+
+    cloth_json_writer_begin_object (writer, entry->effect->id);
+    for (guint k = 0; k < entry->effect->n_parameters; k++)
+      cloth_json_writer_number (writer, entry->effect->parameters[k].name,
+          entry->values[k]);
+    cloth_json_writer_end_object (writer);
+  }
+  cloth_json_writer_end_object (writer);
+}
+
+/* @model: a model
+ *
+ * Every key is written, numbers so that they are read as the very same.
+ *
+ * Returns: (transfer full): the text of its model.json
+ */
+gchar *
+cloth_model_to_json (const ClothModel * model)
+{
+  static const gchar *const directions[2] = { "warp", "weft" };
+  static const gchar *const dampings[2] = { "mass", "stiffness" };
+  g_autoptr (ClothJsonWriter) writer = cloth_json_writer_new ();
+
+  cloth_json_writer_set_exact (writer);
+  cloth_json_writer_begin_object (writer, NULL);
+  cloth_json_writer_count (writer, "version", 1);
+  cloth_json_writer_string (writer, "force_model",
+      force_models[model->force_model]);
+  cloth_json_writer_number (writer, "areal_density", model->areal_density);
+  write_pair (writer, "stretch", directions, model->stretch_warp,
+      model->stretch_weft);
+  cloth_json_writer_number (writer, "shear", model->shear);
+  write_pair (writer, "bending", directions, model->bending_warp,
+      model->bending_weft);
+  write_pair (writer, "damping", dampings, model->damping_mass,
+      model->damping_stiffness);
+  cloth_json_writer_number (writer, "compression_ratio",
+      model->compression_ratio);
+  cloth_json_writer_number (writer, "air_density", model->air_density);
+  cloth_json_writer_string (writer, "integrator",
+      integrators[model->integrator]);
+  cloth_json_writer_number (writer, "time_step", model->time_step);
+  write_effects (writer, model);
+  cloth_json_writer_begin_array (writer, "free");
+  for (guint i = 0; i < model->free->len; i++) {
+    const ClothModelFree *entry =
+        &g_array_index (model->free, ClothModelFree, i);
+
+    cloth_json_writer_begin_object (writer, NULL);
+    cloth_json_writer_string (writer, "name", entry->name);
+    cloth_json_writer_numbers (writer, "range", entry->range, 2);
+    cloth_json_writer_end_object (writer);
+  }
+  cloth_json_writer_end_array (writer);
+  cloth_json_writer_end_object (writer);
+  return cloth_json_writer_finish (writer);
 }

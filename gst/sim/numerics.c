@@ -3,8 +3,10 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/sim/numerics.h"
 
-#include "gst/sim/effects/effects.h"
-#include "gst/sim/sim.h"
+#include "gst/sim/types.h"
+
+#define SCENE(name) extern const ClothEffect cloth_effect_##name;
+#include "gst/effect/list.h"
 
 /* A parameter of a numerics effect; its null where the model has it not. */
 static gdouble

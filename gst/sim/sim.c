@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "gst/math/pool.h"
+#include "gst/sim/bodybuild.h"
 #include "gst/sim/group.h"
 #include "gst/sim/numerics.h"
 
@@ -56,12 +57,6 @@ struct _ClothSim
   guint n_steps;
   gdouble *too_long;            /* of each group */
 };
-
-GQuark
-cloth_sim_error_quark (void)
-{
-  return g_quark_from_static_string ("cloth-sim-error-quark");
-}
 
 static gboolean
 check_models (const ClothModel * const *models, guint n_models, GError ** error)

@@ -3,24 +3,13 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/math/simd.h"
 #include "gst/sim/model.h"
 #include "gst/sim/scene.h"
+#include "gst/sim/types.h"
 
 G_BEGIN_DECLS
 
 typedef struct _ClothSim ClothSim;
-
-/* @CLOTH_SIM_ERROR_SCENE: the scene can't be simulated
- * @CLOTH_SIM_ERROR_MODEL: a model is impossible
- */
-typedef enum {
-  CLOTH_SIM_ERROR_SCENE,
-  CLOTH_SIM_ERROR_MODEL
-} ClothSimError;
-
-#define CLOTH_SIM_ERROR (cloth_sim_error_quark ())
-GQuark cloth_sim_error_quark (void);
 
 /* @CLOTH_SIM_OK: it moves
  * @CLOTH_SIM_DIVERGED: its numbers went beyond all measure; it stands where it was when
@@ -30,28 +19,6 @@ typedef enum {
   CLOTH_SIM_OK,
   CLOTH_SIM_DIVERGED
 } ClothSimState;
-
-/* @single: numbers of single precision: twice as many models at a time
- * @threads: threads to use, 0 = one for each processor
- * @simd: vector instructions to use; the result does not depend on them
- * @seed: of what is random in effects
- */
-typedef struct {
-  gboolean single;
-  guint threads;
-  ClothSimd simd;
-  guint64 seed;
-} ClothSimOptions;
-
-/* @kinetic: of motion, J
- * @elastic: of stretch, shear and bending, J
- * @gravity: of height above the origin, J
- */
-typedef struct {
-  gdouble kinetic;
-  gdouble elastic;
-  gdouble gravity;
-} ClothSimEnergy;
 
 ClothSim *cloth_sim_new (const ClothScene * scene,
     const ClothModel * const *models, guint n_models,

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/sim/model.h"
+
 /* The ids that results use; other programs rely on them. */
 static const struct
 {
@@ -98,6 +100,50 @@ check_parameter (const ClothEffect * effect, const ClothEffectParameter * p)
     g_assert_true (p->min == p->null_value);
   g_assert_cmpfloat (p->prior, >, 0);
   g_assert_cmpfloat (p->prior, <=, p->max - p->min);
+  g_assert_cmpuint (p->n_tried, <=, G_N_ELEMENTS (p->tried));
+  g_assert_true (p->shapes || p->n_tried == 0);
+  for (guint i = 0; i < p->n_tried; i++) {
+    g_assert_cmpfloat (p->min, <=, p->tried[i]);
+    g_assert_cmpfloat (p->tried[i], <=, p->max);
+  }
+}
+
+static const ClothEffectParameter *
+find_parameter (const ClothEffect * effect, const gchar * name)
+{
+  for (guint k = 0; k < effect->n_parameters; k++)
+    if (strcmp (effect->parameters[k].name, name) == 0)
+      return &effect->parameters[k];
+  return NULL;
+}
+
+/* What a diagnosis relies on. */
+static void
+check_test (const ClothEffect * effect)
+{
+  gdouble range[2];
+  guint n_own = 0;
+
+  for (guint k = 0; k < effect->n_parameters; k++)
+    n_own += !effect->parameters[k].shapes;
+  g_assert_cmpuint (n_own, >, 0);
+  if (effect->test == CLOTH_EFFECT_TEST_NONE
+      || effect->test == CLOTH_EFFECT_TEST_STOCHASTIC)
+    check_sentence (effect->untested);
+  else
+    g_assert_null (effect->untested);
+  if (effect->test == CLOTH_EFFECT_TEST_JUMP) {
+    g_assert_cmpint (effect->side, ==, CLOTH_EFFECT_CLAMP);
+    g_assert_true (find_parameter (effect, "held")->shapes);
+    g_assert_true (find_parameter (effect, "time")->shapes);
+  }
+  if (effect->test == CLOTH_EFFECT_TEST_STOCHASTIC)
+    g_assert_cmpint (cloth_effect_find (effect->varies)->test, ==,
+        CLOTH_EFFECT_TEST_SCORE);
+  else
+    g_assert_null (effect->varies);
+  if (effect->same_as)
+    g_assert_true (cloth_model_get_range (effect->same_as, range, NULL));
 }
 
 static void
@@ -120,6 +166,7 @@ test_descriptions (void)
         g_assert_cmpstr (effect->parameters[k].name, !=,
             effect->parameters[j].name);
     }
+    check_test (effect);
     for (guint k = 0; effect->confusions && effect->confusions[k]; k++) {
       const gchar *other = effect->confusions[k];
 

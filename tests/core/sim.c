@@ -4,8 +4,6 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "simscene.h"
 
-#include "gst/sim/effects/effects.h"
-
 #define N_MODELS 19
 /* As many as fill the widest lanes. */
 #define N_WIDE 16

@@ -6,8 +6,6 @@
 #include "simcrossings.h"
 #include "simscene.h"
 
-#include "gst/sim/effects/effects.h"
-
 #define THICKNESS 1e-3
 
 static void

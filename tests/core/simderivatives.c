@@ -5,7 +5,6 @@
 #include "simscene.h"
 
 #include "gst/effect/effect.h"
-#include "gst/sim/effects/effects.h"
 
 #define COLUMNS 17
 #define ROWS 18

@@ -3,8 +3,6 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "simscene.h"
 
-#include "gst/sim/effects/effects.h"
-
 #define G 9.81
 
 /* A strip down from the origin, 2 vertices wide, its upper edge held; its rows are moved

@@ -5,8 +5,6 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "simscene.h"
 
-#include "gst/sim/effects/effects.h"
-
 static ClothModel *
 implicit_new (gdouble density, gdouble stretch, gdouble time_step)
 {

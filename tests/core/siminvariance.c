@@ -5,7 +5,6 @@
 #include "simscene.h"
 
 #include "gst/math/random.h"
-#include "gst/sim/effects/effects.h"
 
 #define COLUMNS 9
 #define ROWS 11

@@ -4,7 +4,6 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "simscene.h"
 
-#include "gst/sim/effects/effects.h"
 #include "tests/common/npyfloats.h"
 
 #define N_FABRICS 16

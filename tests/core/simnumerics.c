@@ -3,7 +3,6 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "simscene.h"
 
-#include "gst/sim/effects/effects.h"
 #include "gst/sim/halving.h"
 
 /* Sizes are binary fractions: half of a float is the same float on both ways. */

@@ -6,7 +6,6 @@
 
 #include "gst/math/random.h"
 #include "gst/sim/bvh.h"
-#include "gst/sim/effects/effects.h"
 
 #define N 7
 

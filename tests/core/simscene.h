@@ -8,6 +8,10 @@
 
 #include "gst/sim/sim.h"
 
+#define LANES(name) extern const ClothEffect cloth_effect_##name;
+#define SCENE(name) LANES (name)
+#include "gst/effect/list.h"
+
 G_GNUC_UNUSED static ClothScene *
 sheet_new (guint columns, guint rows, gdouble width, gdouble height)
 {

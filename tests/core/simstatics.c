@@ -3,8 +3,6 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "simscene.h"
 
-#include "gst/sim/effects/effects.h"
-
 /* x = ½ g t² but for half a step, which symplectic Euler is ahead: exactly known. */
 static void
 test_free_fall (void)

@@ -28,7 +28,7 @@ INLINE = re.compile(r'`((?:gst-launch-1\.0|gst-inspect-1\.0|gst-cloth-[a-z]+-1\.
                     r'[^`]* [^`]*)`')
 LINK = re.compile(r'\]\(([^)\s]+)\)')
 # For those who work on the source; what they tell to run is tests/run.sh and its parts.
-FOR_DEVELOPERS = ('CONTRIBUTING.md', 'SECURITY.md')
+FOR_DEVELOPERS = ('CONTRIBUTING.md', 'SECURITY.md', 'docs/adding-an-effect.md')
 # The command that runs this very test.
 OURSELVES = './tests/run.sh'
 

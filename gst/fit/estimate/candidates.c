@@ -28,39 +28,6 @@
 #define SLIP_SIGMAS 6.
 #define SLIP_FRAMES 5
 
-/* Parameters that shape an effect but mean nothing at its null: tried at these values,
- * one candidate each, when the null value isn't the one to try. */
-static const struct
-{
-  const gchar *effect, *parameter;
-  gdouble values[2];
-  guint n;
-} shapes[] = {
-  {"mass_distribution", "height", {0.02, 0.06}, 2},
-  {"biphasic_stretch", "knee", {0.02}, 1},
-  {"plasticity", "yield", {10.}, 1},
-};
-
-/* Which parameters of an effect only shape it. */
-static const gchar *const shaping[] = {
-  "height", "knee", "yield", "strain", "time", "azimuth", "coefficient",
-  "turbulence", "held", NULL
-};
-
-/* Which of the model's numbers an effect is the same as. */
-static const struct
-{
-  const gchar *effect, *names[2];
-} same[] = {
-  {"bending", {"bending.warp", "bending.weft"}},
-  {"bending_anisotropy", {"bending.warp", "bending.weft"}},
-  {"stretch", {"stretch.warp", "stretch.weft"}},
-  {"stretch_anisotropy", {"stretch.warp", "stretch.weft"}},
-  {"shear", {"shear", NULL}},
-  {"damping_mass", {"damping.mass", NULL}},
-  {"damping_stiffness", {"damping.stiffness", NULL}},
-};
-
 static void
 clear_direction (gpointer item)
 {
@@ -134,27 +101,24 @@ add_direction (ClothCandidates * c, ClothCandidate * candidate, guint k)
   candidate->parameters[candidate->n++] = k;
 }
 
+/* One candidate for each value that a shaping parameter is tried at. */
 static void
 add_plain (ClothCandidates * c, const ClothEffect * effect)
 {
-  guint shape = 0, n = 1;
+  guint n = 1;
 
-  while (shape < G_N_ELEMENTS (shapes)
-      && strcmp (shapes[shape].effect, effect->id) != 0)
-    shape++;
-  if (shape < G_N_ELEMENTS (shapes))
-    n = shapes[shape].n;
+  for (guint k = 0; k < effect->n_parameters; k++)
+    n = MAX (n, effect->parameters[k].n_tried);
   for (guint i = 0; i < n; i++) {
     ClothCandidate candidate = start (c, effect);
 
     for (guint k = 0; k < effect->n_parameters; k++) {
-      const gchar *name = effect->parameters[k].name;
+      const ClothEffectParameter *p = &effect->parameters[k];
 
-      if (shape < G_N_ELEMENTS (shapes)
-          && strcmp (shapes[shape].parameter, name) == 0)
-        candidate.values[k] = shapes[shape].values[i];
-      else if (effect->n_parameters == 1 || !g_strv_contains (shaping, name))
+      if (!p->shapes)
         add_direction (c, &candidate, k);
+      else if (p->n_tried)
+        candidate.values[k] = p->tried[MIN (i, p->n_tried - 1)];
     }
     g_array_append_val (c->list, candidate);
   }
@@ -225,7 +189,7 @@ parameter_of (const ClothEffect * effect, const gchar * name)
 }
 
 static void
-add_slips (ClothCandidates * c, const ClothEffect * effect,
+add_jumps (ClothCandidates * c, const ClothEffect * effect,
     const ClothRecording * r)
 {
   /* the ramp is over a twentieth of a second: it began before the middle of the jump */
@@ -238,24 +202,25 @@ add_slips (ClothCandidates * c, const ClothEffect * effect,
     candidate.values[parameter_of (effect, "held")] = held;
     candidate.values[parameter_of (effect, "time")] =
         isnan (when) ? r->times[0] : when - lead;
-    for (guint k = 0; k < 3; k++)
-      add_direction (c, &candidate, k);
+    for (guint k = 0; k < effect->n_parameters; k++)
+      if (!effect->parameters[k].shapes)
+        add_direction (c, &candidate, k);
     g_array_append_val (c->list, candidate);
   }
 }
 
-/* Gusts have no directions of their own, but those of wind. */
+/* What varies by chance has no directions of its own, but those of what varies. */
 static gboolean
-add_gust (ClothCandidates * c, const ClothEffect * effect)
+add_stochastic (ClothCandidates * c, const ClothEffect * effect)
 {
   ClothCandidate candidate = start (c, effect);
 
   for (guint i = 0; i < c->list->len; i++) {
-    const ClothCandidate *wind = &g_array_index (c->list, ClothCandidate, i);
+    const ClothCandidate *steady = &g_array_index (c->list, ClothCandidate, i);
 
-    if (strcmp (wind->effect->id, "wind") != 0)
+    if (strcmp (steady->effect->id, effect->varies) != 0)
       continue;
-    candidate.first = wind->first;
+    candidate.first = steady->first;
     g_array_append_val (c->list, candidate);
     return TRUE;
   }
@@ -276,15 +241,13 @@ why_not (const ClothEffect * effect, const ClothModel * model,
     return "It is part of the simulator's own error, which is projected out.";
   if (effect->side == CLOTH_EFFECT_CLAMP && !r->scene->held->len)
     return "Nothing is held in this take.";
-  if (strcmp (effect->id, "friction") == 0 && !r->scene->obstacles->len)
+  if (effect->needs_obstacles && !r->scene->obstacles->len)
     return "There is no obstacle in this take.";
-  if (strcmp (effect->id, "self_contact") == 0)
-    return "Contact switches on and off: it has no derivative to test by.";
-  for (guint i = 0; i < G_N_ELEMENTS (same) && !frozen; i++)
-    if (strcmp (same[i].effect, effect->id) == 0
-        && is_free (model, same[i].names[0]))
-      return "The model's own number is free and was fitted on this take: give "
-          "a baseline to freeze it.";
+  if (effect->test == CLOTH_EFFECT_TEST_NONE)
+    return effect->untested;
+  if (effect->same_as && !frozen && is_free (model, effect->same_as))
+    return "The model's own number is free and was fitted on this take: give "
+        "a baseline to freeze it.";
   for (guint i = 0; i < model->effects->len; i++)
     if (g_array_index (model->effects, ClothModelEffect, i).effect == effect)
       return "The model has it already.";
@@ -337,12 +300,11 @@ cloth_candidates_new (const ClothModel * model,
     if (reason) {
       if (skip)
         skip (data, table[i], reason);
-    } else if (strcmp (table[i]->id, "clamp_slip") == 0) {
-      add_slips (c, table[i], recording);
-    } else if (strcmp (table[i]->id, "gust") == 0) {
-      if (!add_gust (c, table[i]) && skip)
-        skip (data, table[i],
-            "Gusts are winds that change: they are tested where wind is.");
+    } else if (table[i]->test == CLOTH_EFFECT_TEST_JUMP) {
+      add_jumps (c, table[i], recording);
+    } else if (table[i]->test == CLOTH_EFFECT_TEST_STOCHASTIC) {
+      if (!add_stochastic (c, table[i]) && skip)
+        skip (data, table[i], table[i]->untested);
     } else {
       add_plain (c, table[i]);
     }

@@ -3,8 +3,6 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include <string.h>
-
 #include "gst/fit/recording/recording.h"
 #include "gst/sim/model.h"
 
@@ -63,11 +61,12 @@ typedef struct {
   GArray *list;
 } ClothCandidates;
 
-/* Whether it is gusts, which no single direction stands for. */
+/* Whether it is chance that the parameters of another effect change, as with gusts: no
+ * single direction stands for it. */
 static inline gboolean
-cloth_candidate_is_gust (const ClothCandidate * candidate)
+cloth_candidate_is_stochastic (const ClothCandidate * candidate)
 {
-  return strcmp (candidate->effect->id, "gust") == 0;
+  return candidate->effect->test == CLOTH_EFFECT_TEST_STOCHASTIC;
 }
 
 /* The i-th direction. */

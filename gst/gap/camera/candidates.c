@@ -4,41 +4,37 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/camera/candidates.h"
 
-#include <string.h>
+#include "gst/effect/effect.h"
 
-#include "gst/rig/capture.h"
-
-/* The effects that move points in a picture, and whether one number may hold for all
- * cameras. In the order of the columns. */
-static const struct
+/* The effects that move points in a picture, in the order of the columns: those with a
+ * derivative, then that of lost pictures. NULL behind the last one. */
+static const ClothEffect *
+mover (guint index)
 {
-  const gchar *id;
-  gboolean shared;
-} movers[] = {
-  {"lens_distortion", TRUE},
-  {"focal_length", TRUE},
-  {"extrinsic_drift", FALSE},
-  {"sync_offset", FALSE},
-  {"rolling_shutter", TRUE},
-  {"motion_blur", FALSE},
-  {"frame_drop", FALSE},
-};
+  static const ClothEffectTest tests[] =
+      { CLOTH_EFFECT_TEST_SCORE, CLOTH_EFFECT_TEST_REPEAT };
+  guint n;
+  const ClothEffect *const *table = cloth_effect_table (&n);
 
-/* @effect: a camera or image effect
- *
- * Returns: (nullable): why points in pictures can't show it; %NULL when they can
- */
-const gchar *
-cloth_camera_why_not (const ClothEffect * effect)
+  for (guint t = 0; t < G_N_ELEMENTS (tests); t++)
+    for (guint i = 0; i < n; i++)
+      if ((table[i]->side == CLOTH_EFFECT_CAMERA
+              || table[i]->side == CLOTH_EFFECT_IMAGE)
+          && table[i]->test == tests[t] && index-- == 0)
+        return table[i];
+  return NULL;
+}
+
+/* Returns: how many columns each camera has, one for each parameter */
+guint
+cloth_camera_n_columns (void)
 {
-  for (guint i = 0; i < G_N_ELEMENTS (movers); i++)
-    if (strcmp (movers[i].id, effect->id) == 0)
-      return NULL;
-  if (strcmp (effect->id, "shading_shift") == 0)
-    return "It moves the centres of dots by the square of their size, which "
-        "observations don't hold.";
-  return "It moves no point but makes all scatter more: see the share of the "
-      "stage “detection”.";
+  const ClothEffect *effect;
+  guint n = 0;
+
+  for (guint i = 0; (effect = mover (i)); i++)
+    n += effect->n_parameters;
+  return n;
 }
 
 static void
@@ -81,21 +77,19 @@ ClothCandidates *
 cloth_camera_candidates_new (const ClothRig * rig, const gchar * const *effects)
 {
   ClothCandidates *c = g_new0 (ClothCandidates, 1);
+  const guint n_columns = cloth_camera_n_columns ();
+  const ClothEffect *effect;
   guint first = 0;
 
   c->directions = g_array_new (FALSE, FALSE, sizeof (ClothDirection));
   g_array_set_clear_func (c->directions, clear_direction);
   c->list = g_array_new (FALSE, FALSE, sizeof (ClothCandidate));
   for (guint camera = 0; camera <= rig->n_cameras; camera++)
-    for (guint i = 0; i < G_N_ELEMENTS (movers); i++) {
-      const ClothEffect *effect = cloth_capture_find_effect (movers[i].id);
-
+    for (guint i = 0; (effect = mover (i)); i++)
       for (guint k = 0; k < effect->n_parameters; k++)
         add_direction (c, effect, k);
-    }
-  for (guint i = 0; i < G_N_ELEMENTS (movers); i++) {
-    const ClothEffect *effect = cloth_capture_find_effect (movers[i].id);
-    guint n = movers[i].shared && rig->n_cameras > 1 ? rig->n_cameras + 1 :
+  for (guint i = 0; (effect = mover (i)); i++) {
+    guint n = effect->shared && rig->n_cameras > 1 ? rig->n_cameras + 1 :
         rig->n_cameras;
 
     for (guint camera = 0; camera < n && is_wanted (effects, effect->id);
@@ -106,13 +100,12 @@ cloth_camera_candidates_new (const ClothRig * rig, const gchar * const *effects)
         candidate.values[k] = effect->parameters[k].null_value;
         candidate.parameters[k] = k;
       }
-      candidate.first = camera * CLOTH_CAMERA_N_COLUMNS + first;
+      candidate.first = camera * n_columns + first;
       candidate.n = effect->n_parameters;
       g_array_append_val (c->list, candidate);
     }
     first += effect->n_parameters;
   }
-  g_assert (first == CLOTH_CAMERA_N_COLUMNS);
   return c;
 }
 
@@ -123,16 +116,16 @@ cloth_camera_candidates_new (const ClothRig * rig, const gchar * const *effects)
 guint
 cloth_camera_of_candidate (const ClothCandidate * candidate)
 {
-  return candidate->first / CLOTH_CAMERA_N_COLUMNS;
+  return candidate->first / cloth_camera_n_columns ();
 }
 
 /* The effect and parameter of a column of one camera. */
 const ClothEffect *
 cloth_camera_column (guint column, guint * parameter)
 {
-  for (guint i = 0; i < G_N_ELEMENTS (movers); i++) {
-    const ClothEffect *effect = cloth_capture_find_effect (movers[i].id);
+  const ClothEffect *effect;
 
+  for (guint i = 0; (effect = mover (i)); i++) {
     if (column < effect->n_parameters) {
       *parameter = column;
       return effect;

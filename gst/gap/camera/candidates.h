@@ -8,16 +8,13 @@
 
 G_BEGIN_DECLS
 
-/* Columns of each camera; the last one is frame_drop, which has no derivative. */
-#define CLOTH_CAMERA_N_COLUMNS 10
-#define CLOTH_CAMERA_DROP (CLOTH_CAMERA_N_COLUMNS - 1)
 /* The step of a finite difference is this share of the prior's standard deviation. */
 #define CLOTH_CAMERA_STEP 0.05
 
 ClothCandidates *cloth_camera_candidates_new (const ClothRig * rig,
     const gchar * const *effects);
-const gchar *cloth_camera_why_not (const ClothEffect * effect);
 guint cloth_camera_of_candidate (const ClothCandidate * candidate);
+guint cloth_camera_n_columns (void);
 const ClothEffect *cloth_camera_column (guint column, guint * parameter);
 
 G_END_DECLS

@@ -276,7 +276,7 @@ linearise_again (Search * s)
 static gboolean
 is_drop (const ClothCameraFault * fault)
 {
-  return strcmp (fault->effect->id, "frame_drop") == 0;
+  return fault->effect->test == CLOTH_EFFECT_TEST_REPEAT;
 }
 
 /* Estimates the faults together. */

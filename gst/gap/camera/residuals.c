@@ -15,7 +15,6 @@
 #include "gst/math/linalg.h"
 #include "gst/math/statistics.h"
 
-#define N_COLUMNS CLOTH_CAMERA_N_COLUMNS
 /* Variance that is added to the covariance of each observed point, px²: errors that detectors
  * don't know of. */
 #define FLOOR 0.0025
@@ -65,7 +64,8 @@ cloth_camera_picture_init (ClothCameraPicture * p, guint n)
   p->e = g_new (gdouble, n);
   p->sorted = g_new (gdouble, n);
   p->j = g_new (gdouble, 6 * n);
-  p->b = g_new (gdouble, 2 * N_COLUMNS * n);
+  p->n_columns = cloth_camera_n_columns ();
+  p->b = g_new (gdouble, 2 * p->n_columns * n);
 }
 
 void
@@ -134,7 +134,7 @@ put_column (ClothCameraPicture * p, guint n, guint column, gdouble step)
 {
   for (guint i = 0; i < n; i++)
     for (guint k = 0; k < 2; k++)
-      p->b[2 * (gsize) N_COLUMNS * i + k * N_COLUMNS + column] =
+      p->b[2 * (gsize) p->n_columns * i + k * p->n_columns + column] =
           (p->other[2 * i + k] - p->px[2 * i + k]) / step;
 }
 
@@ -143,7 +143,7 @@ static void
 predict_faults (const ClothMotion * motion, ClothCameraPicture * p,
     const ClothCapture * capture, gdouble time_s)
 {
-  for (guint column = 0; column < CLOTH_CAMERA_DROP; column++) {
+  for (guint column = 0; column + 1 < p->n_columns; column++) {
     gdouble values[CLOTH_EFFECT_MAX_PARAMETERS] = { 0. };
     ClothCapture off = *capture;
     guint k;
@@ -168,7 +168,8 @@ look (const ClothCameraView * v, const ClothCameraPoints * points,
   const gboolean stale = *cloth_camera_stale (v, frame, camera);
   const gboolean held = v->lost[camera] && stale;
   gdouble time_s = held ? before : p->observation->time_s;
-  const gsize row = 2 * N_COLUMNS;
+  const guint n_columns = p->n_columns;
+  const gsize row = 2 * n_columns;
 
   match (p, points);
   /* a picture of an earlier time says nothing of where points are now */
@@ -185,12 +186,12 @@ look (const ClothCameraView * v, const ClothCameraPoints * points,
     cloth_capture_init (&rig, &v->observations->rig->cameras[camera]);
     cloth_capture_observe (&rig, motion, p->observation->time_s, p->other,
         NULL);
-    put_column (p, points->n, CLOTH_CAMERA_DROP, 1.);
+    put_column (p, points->n, n_columns - 1, 1.);
   }
   if (!held && !isnan (before) && (columns == CLOTH_CAMERA_DROPS
           || (columns == CLOTH_CAMERA_FAULTS && stale))) {
     cloth_capture_observe (capture, motion, before, p->other, NULL);
-    put_column (p, points->n, CLOTH_CAMERA_DROP, 1.);
+    put_column (p, points->n, n_columns - 1, 1.);
   }
   for (guint i = 0; i < points->n; i++) {
     gdouble X[3], px[2], w[3], *z = p->z + 2 * i, *j = p->j + 6 * (gsize) i;
@@ -210,10 +211,10 @@ look (const ClothCameraView * v, const ClothCameraPoints * points,
     whiten (w, &z[0], &z[1]);
     for (guint k = 0; k < 3; k++)
       whiten (w, &j[k], &j[3 + k]);
-    for (guint k = 0; k < N_COLUMNS; k++) {
-      if (isnan (b[k] + b[N_COLUMNS + k]))
-        b[k] = b[N_COLUMNS + k] = 0.;
-      whiten (w, &b[k], &b[N_COLUMNS + k]);
+    for (guint k = 0; k < n_columns; k++) {
+      if (isnan (b[k] + b[n_columns + k]))
+        b[k] = b[n_columns + k] = 0.;
+      whiten (w, &b[k], &b[n_columns + k]);
     }
   }
 }

@@ -51,7 +51,9 @@ typedef struct
   gdouble *e;                   /* [n]: length of z less its part that a shift of the point explains */
   gdouble *sorted;              /* [n]: those of e that are known */
   gdouble *j;                   /* [n][2][3]: derivative by the point's position */
-  gdouble *b;                   /* [n][2][N_COLUMNS]: derivative by the camera's faults */
+  guint n_columns;
+  gdouble *b;                   /* [n][2][n_columns]: derivative by the camera's faults; the
+                                 * last column is that of lost pictures */
   gdouble gross;                /* an e above this is an outlier */
 } ClothCameraPicture;
 

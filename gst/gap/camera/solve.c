@@ -18,7 +18,6 @@
 #include "gst/math/pool.h"
 #include "gst/math/vec3.h"
 
-#define N_COLUMNS CLOTH_CAMERA_N_COLUMNS
 /* Points of all frames together that are used, about; of more vertices some are left out. */
 #define MOST_POINTS 60000
 /* Blocks of time, s, and most of them. */
@@ -89,36 +88,36 @@ add_point (const Work * work, const ClothCameraPicture * pictures, guint i,
   const guint m = work->normal->m;
   gdouble *g = work->normal->g + (gsize) block * m * m;
   gdouble *s = work->normal->s + (gsize) block * m;
-  const guint n = point->n * N_COLUMNS;
+  const guint n_columns = pictures->n_columns, n = point->n * n_columns;
 
   for (guint q = 0; q < point->n; q++) {
     const ClothCameraPicture *p = &pictures[point->cameras[q]];
-    const gdouble *b = p->b + 2 * (gsize) N_COLUMNS * i, *z = p->z + 2 * i;
+    const gdouble *b = p->b + 2 * (gsize) n_columns * i, *z = p->z + 2 * i;
     const gdouble *j = p->j + 6 * (gsize) i;
-    const guint first = point->cameras[q] * N_COLUMNS;
+    const guint first = point->cameras[q] * n_columns;
 
-    for (guint k = 0; k < N_COLUMNS; k++) {
-      gdouble *to = v + 3 * (q * N_COLUMNS + k);
+    for (guint k = 0; k < n_columns; k++) {
+      gdouble *to = v + 3 * (q * n_columns + k);
 
       for (guint l = 0; l < 3; l++)
-        to[l] = j[l] * b[k] + j[3 + l] * b[N_COLUMNS + k];
+        to[l] = j[l] * b[k] + j[3 + l] * b[n_columns + k];
       cloth_camera_forward (point->a, to);
-      s[first + k] -= b[k] * z[0] + b[N_COLUMNS + k] * z[1] -
+      s[first + k] -= b[k] * z[0] + b[n_columns + k] * z[1] -
           cloth_vec3_dot (to, point->u);
       for (guint l = 0; l <= k; l++)
         g[(gsize) (first + k) * m + first + l] += b[k] * b[l] +
-            b[N_COLUMNS + k] * b[N_COLUMNS + l];
+            b[n_columns + k] * b[n_columns + l];
     }
   }
   for (guint k = 0; k < n; k++) {
     const gdouble *x = v + 3 * k;
-    gdouble *row = g + (gsize) (point->cameras[k / N_COLUMNS] * N_COLUMNS +
-        k % N_COLUMNS) * m;
+    gdouble *row = g + (gsize) (point->cameras[k / n_columns] * n_columns +
+        k % n_columns) * m;
 
     for (guint l = 0; l <= k; l++) {
       const gdouble *y = v + 3 * l;
 
-      row[point->cameras[l / N_COLUMNS] * N_COLUMNS + l % N_COLUMNS] -=
+      row[point->cameras[l / n_columns] * n_columns + l % n_columns] -=
           cloth_vec3_dot (x, y);
     }
   }
@@ -132,17 +131,18 @@ add_drops (const Work * work, const ClothCameraPicture * pictures, guint i,
   for (guint q = 0; q < point->n; q++) {
     const guint camera = point->cameras[q];
     const ClothCameraPicture *p = &pictures[camera];
-    const gdouble *b = p->b + 2 * (gsize) N_COLUMNS * i + CLOTH_CAMERA_DROP;
+    const guint n_columns = p->n_columns;
+    const gdouble *b = p->b + 2 * (gsize) n_columns * i + n_columns - 1;
     const gdouble *z = p->z + 2 * i, *j = p->j + 6 * (gsize) i;
     gsize at = (gsize) frame * work->n_cameras + camera;
     gdouble v[3];
 
     for (guint l = 0; l < 3; l++)
-      v[l] = j[l] * b[0] + j[3 + l] * b[N_COLUMNS];
+      v[l] = j[l] * b[0] + j[3 + l] * b[n_columns];
     cloth_camera_forward (point->a, v);
-    work->along[at] += b[0] * z[0] + b[N_COLUMNS] * z[1] -
+    work->along[at] += b[0] * z[0] + b[n_columns] * z[1] -
         cloth_vec3_dot (v, point->u);
-    work->displacement[at] += b[0] * b[0] + b[N_COLUMNS] * b[N_COLUMNS] -
+    work->displacement[at] += b[0] * b[0] + b[n_columns] * b[n_columns] -
         cloth_vec3_dot (v, v);
     work->rest[at] += residual_square (point);
     work->freedom[at] += 2. * point->n - 3.;
@@ -158,11 +158,12 @@ displacement_square (const ClothCameraPicture * pictures, guint i,
 
   for (guint q = 0; q < point->n; q++) {
     const ClothCameraPicture *p = &pictures[point->cameras[q]];
-    const gdouble *b = p->b + 2 * (gsize) N_COLUMNS * i + CLOTH_CAMERA_DROP;
+    const guint n_columns = p->n_columns;
+    const gdouble *b = p->b + 2 * (gsize) n_columns * i + n_columns - 1;
     const gdouble *j = p->j + 6 * (gsize) i;
 
     for (guint k = 0; k < 3; k++)
-      x[k] += j[k] * b[0] + j[3 + k] * b[N_COLUMNS];
+      x[k] += j[k] * b[0] + j[3 + k] * b[n_columns];
   }
   cloth_camera_forward (point->a, x);
   cloth_camera_backward (point->a, x);
@@ -221,7 +222,8 @@ run (Work * work, guint threads, ClothPoolFunc func)
   work->columns = g_new (gdouble *, n);
   for (guint t = 0; t < n; t++) {
     work->scratch[t] = g_new0 (ClothCameraPicture, work->n_cameras);
-    work->columns[t] = g_new (gdouble, 3 * N_COLUMNS * work->n_cameras);
+    work->columns[t] = g_new (gdouble,
+        3 * cloth_camera_n_columns () * work->n_cameras);
     for (guint c = 0; c < work->n_cameras; c++)
       cloth_camera_picture_init (&work->scratch[t][c], work->points.n);
   }
@@ -304,7 +306,8 @@ find_stale (ClothCameraView * v, guint threads)
 static void
 complete (ClothNormalEquations * normal, guint n_cameras)
 {
-  const guint m = normal->m, own = n_cameras * N_COLUMNS;
+  const guint m = normal->m, n_columns = m / (n_cameras + 1);
+  const guint own = n_cameras * n_columns;
 
   for (guint block = 0; block < normal->n_blocks; block++) {
     gdouble *g = normal->g + (gsize) block * m * m;
@@ -315,16 +318,16 @@ complete (ClothNormalEquations * normal, guint n_cameras)
         g[(gsize) k * m + i] = g[(gsize) i * m + k];
     for (guint i = 0; i < own; i++)
       for (guint k = 0; k < own; k++)
-        g[(gsize) i * m + own + k % N_COLUMNS] += g[(gsize) i * m + k];
+        g[(gsize) i * m + own + k % n_columns] += g[(gsize) i * m + k];
     for (guint i = 0; i < own; i++) {
-      const guint to = own + i % N_COLUMNS;
+      const guint to = own + i % n_columns;
 
-      for (guint k = 0; k < N_COLUMNS; k++)
+      for (guint k = 0; k < n_columns; k++)
         g[(gsize) to * m + own + k] += g[(gsize) i * m + own + k];
       s[to] += s[i];
     }
     for (guint i = 0; i < own; i++)
-      for (guint k = 0; k < N_COLUMNS; k++)
+      for (guint k = 0; k < n_columns; k++)
         g[(gsize) (own + k) * m + i] = g[(gsize) i * m + own + k];
   }
 }
@@ -382,10 +385,11 @@ cloth_camera_view_linearise (ClothCameraView * view, guint threads,
 {
   Work work;
   ClothNormalEquations *normal = g_new0 (ClothNormalEquations, 1);
+  const guint n_columns = cloth_camera_n_columns ();
   gdouble dof = 0.;
 
   work_init (&work, view, CLOTH_CAMERA_FAULTS, MOST_POINTS);
-  normal->m = (work.n_cameras + 1) * N_COLUMNS;
+  normal->m = (work.n_cameras + 1) * n_columns;
   normal->n_blocks = work.n_blocks;
   normal->g = g_new0 (gdouble, (gsize) work.n_blocks * normal->m * normal->m);
   normal->s = g_new0 (gdouble, (gsize) work.n_blocks * normal->m);
@@ -403,7 +407,7 @@ cloth_camera_view_linearise (ClothCameraView * view, guint threads,
     gdouble sigma, share = cloth_camera_view_stale_share (view, c, &sigma);
 
     if (share > 0.)
-      scale (normal, c * N_COLUMNS + CLOTH_CAMERA_DROP, 1. / share);
+      scale (normal, (c + 1) * n_columns - 1, 1. / share);
   }
   complete (normal, work.n_cameras);
   work_clear (&work);

@@ -5,7 +5,6 @@
 #include "gst/gap/camera/view.h"
 
 #include <math.h>
-#include <string.h>
 
 static guint
 nearest_frame (const ClothRecording * r, gdouble time_s)
@@ -102,7 +101,7 @@ cloth_camera_view_apply (ClothCameraView * view, guint camera,
 
   for (guint c = camera < n ? camera : 0; c < n && (c == camera
           || camera == n); c++) {
-    if (strcmp (effect->id, "frame_drop") == 0)
+    if (effect->test == CLOTH_EFFECT_TEST_REPEAT)
       view->lost[c] = TRUE;
     else
       cloth_capture_add_effect (&view->captures[c], effect->id, values, NULL);

@@ -123,12 +123,6 @@ blow (const ClothStage * stage, ClothModel * model)
   }
 }
 
-static gboolean
-is_wind (const ClothEffect * effect)
-{
-  return strcmp (effect->id, "wind") == 0 || strcmp (effect->id, "gust") == 0;
-}
-
 typedef struct
 {
   const ClothRecording *recording;
@@ -162,7 +156,7 @@ follow (Search * s, const ClothSensitivities * study, ClothStageMotion motion,
     const ClothModelEffect *member = &s->members[i];
 
     g_ptr_array_add (models, model);
-    if (motion != CLOTH_MOTION_FAN_OFF || !is_wind (member->effect))
+    if (motion != CLOTH_MOTION_FAN_OFF || !member->effect->is_moving_air)
       cloth_model_set_effect (model, member->effect, member->values);
     if (motion == CLOTH_MOTION_FAN_ON)
       blow (s->stage, model);
@@ -325,7 +319,7 @@ cloth_experiment_try (const ClothExperiment * experiment,
   s.thin = cloth_recording_resample (r, CLOTH_EXPERIMENT_MOST_LINES);
   s.stage = cloth_stage_new (s.thin ? s.thin : r);
   for (guint i = 0; i < n_members; i++)
-    windy = windy || is_wind (members[i].effect);
+    windy = windy || members[i].effect->is_moving_air;
   for (guint m = 0; m < CLOTH_N_MOTIONS; m++)
     if (cloth_stage_allows (s.stage, m)
         && (windy || (m != CLOTH_MOTION_FAN_OFF && m != CLOTH_MOTION_FAN_ON))

@@ -50,7 +50,7 @@ skip (gpointer data, const ClothEffect * effect, const gchar * reason)
   ClothDiagnosis *d = data;
 
   if (effect->side == CLOTH_EFFECT_CAMERA || effect->side == CLOTH_EFFECT_IMAGE) {
-    const gchar *blind = cloth_camera_why_not (effect);
+    const gchar *blind = effect->untested;
 
     if (d->has_camera_errors && !blind)
       return;
@@ -196,7 +196,7 @@ find_gusts (const ClothDiagnosis * d, const ClothSensitivities * study)
       i++) {
     const ClothCandidate *c = &g_array_index (list, ClothCandidate, i);
 
-    if (cloth_candidate_is_gust (c) && d->sound[c->first]
+    if (cloth_candidate_is_stochastic (c) && d->sound[c->first]
         && d->sound[c->first + 1])
       return c;
   }
@@ -477,7 +477,7 @@ cloth_diagnosis_fill_effects (ClothDiagnosis * d, const ClothGapTest * test,
       e->values[c->parameters[k]] += s->changes[k];
       e->sigmas[c->parameters[k]] = CLOTH_DIAGNOSIS_SIGMA_WIDTH * s->sigmas[k];
     }
-    if (cloth_candidate_is_gust (c)) {
+    if (cloth_candidate_is_stochastic (c)) {
       e->values[0] = s->changes[0];
       e->values[2] = s->changes[1];
     }

@@ -282,7 +282,7 @@ run_candidate (const ClothGapTest * test, guint i, ClothGapScore * score)
       &g_array_index (test->candidates->list, ClothCandidate, i);
   Trial trial;
 
-  if (cloth_candidate_is_gust (candidate))
+  if (cloth_candidate_is_stochastic (candidate))
     return run_gusts (test, candidate, score);
   return trial_init (&trial, test, i) && run_trial (&trial, score);
 }

@@ -202,7 +202,7 @@ find_gust_log_bayes_factor (const ClothDiagnosis * d, const GArray * scores)
   for (guint i = 0; i < scores->len; i++) {
     const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
 
-    if (cloth_candidate_is_gust (cloth_diagnosis_candidate (d, s)))
+    if (cloth_candidate_is_stochastic (cloth_diagnosis_candidate (d, s)))
       return s->log_bayes_factor;
   }
   return -INFINITY;
@@ -215,7 +215,7 @@ may_be_accepted (const ClothDiagnosis * d, const ClothGapScore * s,
 {
   const ClothCandidate *c = cloth_diagnosis_candidate (d, s);
 
-  return !cloth_candidate_is_gust (c) && s->log_bayes_factor >= least
+  return !cloth_candidate_is_stochastic (c) && s->log_bayes_factor >= least
       && s->improvement > 0. && !cloth_diagnosis_is_decided (d, c->effect);
 }
 
@@ -231,7 +231,7 @@ find_supported (const ClothDiagnosis * d, const GArray * scores, gboolean gusts)
     const ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
     const ClothCandidate *c = cloth_diagnosis_candidate (d, s);
 
-    if (!cloth_candidate_is_gust (c)
+    if (!cloth_candidate_is_stochastic (c)
         && !cloth_diagnosis_is_decided (d, c->effect))
       return may_be_accepted (d, s, least) ? s : NULL;
   }

@@ -11,7 +11,6 @@
 #include <gio/gio.h>
 #include <glib/gstdio.h>
 #include <math.h>
-#include <string.h>
 
 #include "gst/file/file.h"
 #include "gst/file/jsonwriter.h"
@@ -152,7 +151,7 @@ say_none (GString * text, const ClothGapResult * result)
   const ClothGapEffect *first = result->effects->len ?
       &g_array_index (result->effects, ClothGapEffect, 0) : NULL;
 
-  if (first && strcmp (first->effect->id, "gust") == 0
+  if (first && first->effect->test == CLOTH_EFFECT_TEST_STOCHASTIC
       && first->probability > 0.3)
     g_string_append_printf (text, "Gusts are the likeliest cause (%.0f%%), "
         "which no simulation can foretell", 100. * first->probability);

@@ -1,7 +1,7 @@
 /* extrinsic_drift: A camera that was turned after its calibration.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/rig/effects/effects.h"
+#include "gst/rig/capture.h"
 
 #include <string.h>
 
@@ -11,8 +11,8 @@
 static const gchar *const confusions[] =
     { "focal_length", "gravity_tilt", NULL };
 
-static void
-apply (const gdouble * values, ClothCapture * capture)
+void
+cloth_capture_extrinsic_drift (const gdouble * values, ClothCapture * capture)
 {
   ClothCamera *camera = &capture->camera;
   gdouble D[9], R[9], t[3];
@@ -26,27 +26,33 @@ apply (const gdouble * values, ClothCapture * capture)
   memcpy (camera->t, t, sizeof t);
 }
 
-const ClothCaptureEffect cloth_capture_extrinsic_drift = {
-  {
-        "extrinsic_drift",
-        CLOTH_EFFECT_CAMERA,
-        "The camera has turned since it was calibrated, as by a touch or a "
-        "warming stand.",
-        "A turn of 1 mrad moves the picture by 1.4 px at a focal length of "
-        "1,400 px.",
-        "All points of one camera are off by nearly the same number of "
-        "pixels, moving or not; rays of different cameras miss each other.",
-        confusions,
-        3,
-        {
-              {"tilt", "rad", 0, -0.2, 0.2, 0.002, FALSE,
-                  "Turn about the camera's x axis: positive looks up"},
-              {"pan", "rad", 0, -0.2, 0.2, 0.002, FALSE,
-                  "Turn about its y axis: positive looks right"},
-              {"roll", "rad", 0, -0.2, 0.2, 0.002, FALSE,
-                  "Turn about its line of sight: positive turns the picture "
-                    "counter-clockwise"},
-            }
-      },
-  apply
+/* *INDENT-OFF* */
+const ClothEffect cloth_effect_extrinsic_drift = {
+  .id = "extrinsic_drift",
+  .side = CLOTH_EFFECT_CAMERA,
+  .blurb =
+      "The camera has turned since it was calibrated, as by a touch or a "
+      "warming stand.",
+  .source =
+      "A turn of 1 mrad moves the picture by 1.4 px at a focal length of "
+      "1,400 px.",
+  .regressor =
+      "All points of one camera are off by nearly the same number of pixels, "
+      "moving or not; rays of different cameras miss each other.",
+  .confusions = confusions,
+  .n_parameters = 3,
+  .parameters = {
+    {.name = "tilt", .unit = "rad", .null_value = 0, .min = -0.2, .max = 0.2,
+        .prior = 0.002,
+        .blurb = "Turn about the camera's x axis: positive looks up"},
+    {.name = "pan", .unit = "rad", .null_value = 0, .min = -0.2, .max = 0.2,
+        .prior = 0.002,
+        .blurb = "Turn about its y axis: positive looks right"},
+    {.name = "roll", .unit = "rad", .null_value = 0, .min = -0.2, .max = 0.2,
+        .prior = 0.002,
+        .blurb =
+            "Turn about its line of sight: positive turns the picture "
+            "counter-clockwise"},
+  }
 };
+/* *INDENT-ON* */

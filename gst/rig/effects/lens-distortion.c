@@ -1,13 +1,13 @@
 /* lens_distortion: Radial distortion that the calibration missed.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/rig/effects/effects.h"
+#include "gst/rig/capture.h"
 
 static const gchar *const confusions[] =
     { "focal_length", "extrinsic_drift", NULL };
 
-static void
-apply (const gdouble * values, ClothCapture * capture)
+void
+cloth_capture_lens_distortion (const gdouble * values, ClothCapture * capture)
 {
   if (values[0] == 0 && values[1] == 0)
     return;
@@ -17,25 +17,29 @@ apply (const gdouble * values, ClothCapture * capture)
   capture->camera.k[1] += values[1];
 }
 
-const ClothCaptureEffect cloth_capture_lens_distortion = {
-  {
-        "lens_distortion",
-        CLOTH_EFFECT_CAMERA,
-        "The lens bends lines more than its calibration says.",
-        "D. C. Brown, Close-range camera calibration, 1971; residual k1 "
-        "after a poor calibration is some hundredths.",
-        "Triangulated points are off by an amount that grows with the cube "
-        "of the distance from the picture's centre, in each camera alike, "
-        "moving or not; reprojection residuals show it when three cameras "
-        "see a point.",
-        confusions,
-        2,
-        {
-              {"k1", "1", 0, -1, 1, 0.02, FALSE,
-                  "Added to the coefficient of r³"},
-              {"k2", "1", 0, -1, 1, 0.02, FALSE,
-                  "Added to the coefficient of r⁵"},
-            }
-      },
-  apply
+/* *INDENT-OFF* */
+const ClothEffect cloth_effect_lens_distortion = {
+  .id = "lens_distortion",
+  .side = CLOTH_EFFECT_CAMERA,
+  .blurb =
+      "The lens bends lines more than its calibration says.",
+  .source =
+      "D. C. Brown, Close-range camera calibration, 1971; residual k1 after a "
+      "poor calibration is some hundredths.",
+  .regressor =
+      "Triangulated points are off by an amount that grows with the cube of "
+      "the distance from the picture's centre, in each camera alike, moving "
+      "or not; reprojection residuals show it when three cameras see a point.",
+  .confusions = confusions,
+  .shared = TRUE,
+  .n_parameters = 2,
+  .parameters = {
+    {.name = "k1", .unit = "1", .null_value = 0, .min = -1, .max = 1,
+        .prior = 0.02,
+        .blurb = "Added to the coefficient of r³"},
+    {.name = "k2", .unit = "1", .null_value = 0, .min = -1, .max = 1,
+        .prior = 0.02,
+        .blurb = "Added to the coefficient of r⁵"},
+  }
 };
+/* *INDENT-ON* */

@@ -1,7 +1,7 @@
 /* Air that has to move with the cloth.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -74,7 +74,6 @@ inertia (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_added_mass) = {
-  .id = "added_mass",
   .state_size = sizeof (ClothLane3),
   .inertia = inertia,
 };

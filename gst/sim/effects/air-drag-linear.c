@@ -1,7 +1,7 @@
 /* Drag in proportion to the velocity, the same in all directions.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -61,7 +61,7 @@ force (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_air_drag_linear) = {
-  .id = "air_drag_linear",
+  .order = CLOTH_LANE_ORDER_AIR,
   .rate = rate,
   .force = force,
 };

@@ -1,7 +1,7 @@
 /* Friction of air along the cloth.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -56,7 +56,7 @@ force (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_air_drag_tangential) = {
-  .id = "air_drag_tangential",
+  .order = CLOTH_LANE_ORDER_AIR,
   .force = force,
 };
 #endif

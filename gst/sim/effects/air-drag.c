@@ -1,7 +1,7 @@
 /* Drag of still air on cloth that moves across itself.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -59,7 +59,7 @@ force (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_air_drag) = {
-  .id = "air_drag",
+  .order = CLOTH_LANE_ORDER_AIR,
   .force = force,
 };
 #endif

@@ -1,7 +1,7 @@
 /* Areal mass other than the model’s.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -46,7 +46,6 @@ setup (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_areal_mass) = {
-  .id = "areal_mass",
   .setup = setup,
 };
 #endif

@@ -1,7 +1,7 @@
 /* Warp and weft bend differently.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -23,6 +23,7 @@ const ClothEffect cloth_effect_bending_anisotropy = {
       "Bending forces of one sign in folds across the warp, of the "
       "other in folds across the weft.",
   .confusions = confusions,
+  .same_as = "bending.warp",
   .n_parameters = 1,
   .parameters = {
     {.name = "log_ratio", .unit = "1", .null_value = 0, .min = -4.6, .max = 4.6,
@@ -46,7 +47,6 @@ setup (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_bending_anisotropy) = {
-  .id = "bending_anisotropy",
   .setup = setup,
 };
 #endif

@@ -1,7 +1,7 @@
 /* Bending stiffness that falls with curvature.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -55,7 +55,7 @@ force (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_bending_softening) = {
-  .id = "bending_softening",
+  .order = CLOTH_LANE_ORDER_FOLDS,
   .force = force,
 };
 #endif

@@ -1,7 +1,7 @@
 /* Stretch that stiffens beyond a knee.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -30,7 +30,7 @@ const ClothEffect cloth_effect_biphasic_stretch = {
         .prior = 3,
         .blurb = "Stiffness added beyond the knee over the model’s"},
     {.name = "knee", .unit = "1", .null_value = 0.1, .min = 0, .max = 10,
-        .prior = 0.1,
+        .prior = 0.1, .shapes = TRUE, .n_tried = 1, .tried = {0.02},
         .blurb = "Strain from which it acts; without ratio it means nothing"},
   }
 };
@@ -65,7 +65,7 @@ force (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_biphasic_stretch) = {
-  .id = "biphasic_stretch",
+  .order = CLOTH_LANE_ORDER_THREADS,
   .rate = rate,
   .force = force,
 };

@@ -1,7 +1,7 @@
 /* Clamps that give.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -40,7 +40,6 @@ setup (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_clamp_compliance) = {
-  .id = "clamp_compliance",
   .setup = setup,
 };
 #endif

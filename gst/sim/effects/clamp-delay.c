@@ -1,7 +1,7 @@
 /* Clamps logged at another time.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -51,7 +51,6 @@ clamp (const ClothLaneState * state, const ClothLaneEffect * effect,
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_clamp_delay) = {
-  .id = "clamp_delay",
   .clamp = clamp,
 };
 #endif

@@ -1,7 +1,7 @@
 /* A clamp that slipped.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -22,6 +22,7 @@ const ClothEffect cloth_effect_clamp_slip = {
       "A jump of the residual next to one clamp that then stays: slip "
       "is irreversible, compliance is not.",
   .confusions = confusions,
+  .test = CLOTH_EFFECT_TEST_JUMP,
   .n_parameters = 5,
   .parameters = {
     {.name = "x", .unit = "m", .null_value = 0, .min = -0.5, .max = 0.5,
@@ -34,10 +35,10 @@ const ClothEffect cloth_effect_clamp_slip = {
         .prior = 0.01,
         .blurb = "Displacement along z"},
     {.name = "time", .unit = "s", .null_value = 0, .min = -1000000.0, .max = 1000000.0,
-        .prior = 1,
+        .prior = 1, .shapes = TRUE,
         .blurb = "When it began; without displacement it means nothing"},
     {.name = "held", .unit = "1", .null_value = -1, .min = -1, .max = 999999,
-        .prior = 1,
+        .prior = 1, .shapes = TRUE,
         .blurb = "Which clamp, counted from 0 in the list “held” of the take; −1 "
             "is every one"},
   }
@@ -67,7 +68,6 @@ clamp (const ClothLaneState * state, const ClothLaneEffect * effect,
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_clamp_slip) = {
-  .id = "clamp_slip",
   .clamp = clamp,
 };
 #endif

@@ -1,7 +1,7 @@
 /* More loss of velocity than the model’s.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -23,6 +23,7 @@ const ClothEffect cloth_effect_damping_mass = {
       "A force against the velocity in proportion to mass; the same as "
       "air_drag_linear where the areal mass is even.",
   .confusions = confusions,
+  .same_as = "damping.mass",
   .n_parameters = 1,
   .parameters = {
     {.name = "rate", .unit = "1/s", .null_value = 0, .min = 0, .max = 50,
@@ -42,7 +43,6 @@ setup (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_damping_mass) = {
-  .id = "damping_mass",
   .setup = setup,
 };
 #endif

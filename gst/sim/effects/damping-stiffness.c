@@ -1,7 +1,7 @@
 /* More internal damping than the model’s.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -23,6 +23,7 @@ const ClothEffect cloth_effect_damping_stiffness = {
       "high modes; damping of the integrator looks alike but changes "
       "with the time step.",
   .confusions = confusions,
+  .same_as = "damping.stiffness",
   .n_parameters = 1,
   .parameters = {
     {.name = "time", .unit = "s", .null_value = 0, .min = 0, .max = 0.1,
@@ -42,7 +43,6 @@ setup (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_damping_stiffness) = {
-  .id = "damping_stiffness",
   .setup = setup,
 };
 #endif

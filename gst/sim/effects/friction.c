@@ -1,7 +1,7 @@
 /* Friction on obstacles.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -22,6 +22,7 @@ const ClothEffect cloth_effect_friction = {
       "A tangential force at contacts, against sliding and bounded by "
       "the normal force.",
   .confusions = confusions,
+  .needs_obstacles = TRUE,
   .n_parameters = 1,
   .parameters = {
     {.name = "coefficient", .unit = "1", .null_value = 0, .min = 0, .max = 2,
@@ -42,7 +43,6 @@ setup (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_friction) = {
-  .id = "friction",
   .setup = setup,
 };
 #endif

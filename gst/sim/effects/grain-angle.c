@@ -1,7 +1,7 @@
 /* Cloth cut askew to its threads.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -54,7 +54,8 @@ setup (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_grain_angle) = {
-  .id = "grain_angle",
+  .order = CLOTH_LANE_ORDER_DIRECTIONS,
+  .changes_rest = TRUE,
   .setup = setup,
 };
 #endif

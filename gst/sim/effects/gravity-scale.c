@@ -1,7 +1,7 @@
 /* Gravity, or the time base, is off.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -41,7 +41,6 @@ setup (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_gravity_scale) = {
-  .id = "gravity_scale",
   .setup = setup,
 };
 #endif

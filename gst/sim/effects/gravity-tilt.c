@@ -1,7 +1,7 @@
 /* A world that is not upright.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -64,7 +64,7 @@ setup (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_gravity_tilt) = {
-  .id = "gravity_tilt",
+  .order = CLOTH_LANE_ORDER_DIRECTIONS,
   .setup = setup,
 };
 #endif

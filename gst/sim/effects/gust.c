@@ -1,7 +1,7 @@
 /* Gusts: a wind that comes and goes.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -25,24 +25,29 @@ const ClothEffect cloth_effect_gust = {
       "whose sign and size change with a correlation time; a steady "
       "wind fitted to parts of the take would not stay the same.",
   .confusions = confusions,
+  .test = CLOTH_EFFECT_TEST_STOCHASTIC,
+  .varies = "wind",
+  .untested =
+      "Gusts are winds that change: they are tested where wind is.",
+  .is_moving_air = TRUE,
   .n_parameters = 5,
   .parameters = {
     {.name = "intensity", .unit = "m/s", .null_value = 0, .min = 0, .max = 20,
         .prior = 0.3, .one_sided = TRUE,
         .blurb = "Standard deviation of the speed"},
     {.name = "time", .unit = "s", .null_value = 0.5, .min = 0.01, .max = 60,
-        .prior = 0.5,
+        .prior = 0.5, .shapes = TRUE,
         .blurb = "Correlation time: after it 37% of a gust are left"},
     {.name = "azimuth", .unit = "°", .null_value = 90, .min = -180, .max = 180,
-        .prior = 90,
+        .prior = 90, .shapes = TRUE,
         .blurb = "Horizontal direction that positive gusts blow to: 0 is x, 90 is "
             "y"},
     {.name = "coefficient", .unit = "1", .null_value = 1.5, .min = 0, .max = 20,
-        .prior = 0.5,
+        .prior = 0.5, .shapes = TRUE,
         .blurb = "C_N of the cloth in this wind; at any value no wind means no "
             "force; in a model that has air_drag give both the same"},
     {.name = "turbulence", .unit = "m/s", .null_value = 0.5, .min = 0.01, .max = 10,
-        .prior = 0.3,
+        .prior = 0.3, .shapes = TRUE,
         .blurb = "Speed below which the force is in proportion to the wind, for "
             "air that is never still; about 1.6 times the standard deviation "
             "of its fluctuations"},
@@ -114,7 +119,7 @@ force (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_gust) = {
-  .id = "gust",
+  .order = CLOTH_LANE_ORDER_AIR,
   .fixed_size = sizeof (Gust),
   .force = force,
 };

@@ -1,7 +1,7 @@
 /* Threads that rub: tension that depends on the way there.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -30,7 +30,7 @@ const ClothEffect cloth_effect_hysteresis = {
         .prior = 1, .one_sided = TRUE,
         .blurb = "Tension at which the threads slide"},
     {.name = "strain", .unit = "1", .null_value = 0.01, .min = 1e-05, .max = 1,
-        .prior = 0.01,
+        .prior = 0.01, .shapes = TRUE,
         .blurb = "Strain over which the tension builds up; without tension it "
             "means nothing"},
   }
@@ -99,7 +99,7 @@ force (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_hysteresis) = {
-  .id = "hysteresis",
+  .order = CLOTH_LANE_ORDER_THREADS,
   .triangle_size = sizeof (Thread),
   .rate = rate,
   .force = force,

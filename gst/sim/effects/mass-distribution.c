@@ -1,7 +1,7 @@
 /* A heavy hem.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -28,7 +28,7 @@ const ClothEffect cloth_effect_mass_distribution = {
         .prior = 2, .one_sided = TRUE,
         .blurb = "Areal mass in the band over that of the rest"},
     {.name = "height", .unit = "m", .null_value = 0.02, .min = 0.001, .max = 10,
-        .prior = 0.02,
+        .prior = 0.02, .shapes = TRUE, .n_tried = 2, .tried = {0.02, 0.06},
         .blurb = "Height of the band on the flat cloth; with a factor of 1 it "
             "means nothing"},
   }
@@ -101,7 +101,6 @@ setup (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_mass_distribution) = {
-  .id = "mass_distribution",
   .setup = setup,
 };
 #endif

@@ -1,9 +1,8 @@
 /* How squares are cut into triangles.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
-#ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
   "shear", "mesh_resolution",
   NULL
@@ -31,4 +30,3 @@ const ClothEffect cloth_effect_mesh_diagonals = {
   }
 };
 /* *INDENT-ON* */
-#endif

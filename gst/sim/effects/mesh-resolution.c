@@ -1,9 +1,8 @@
 /* The size of the triangles.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
-#ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
   "bending", "mesh_diagonals", "time_step",
   NULL
@@ -29,4 +28,3 @@ const ClothEffect cloth_effect_mesh_resolution = {
   }
 };
 /* *INDENT-ON* */
-#endif

@@ -1,7 +1,7 @@
 /* Folds that stay.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -28,7 +28,7 @@ const ClothEffect cloth_effect_plasticity = {
         .prior = 0.3, .one_sided = TRUE,
         .blurb = "Share of the curvature beyond yield that stays"},
     {.name = "yield", .unit = "1/m", .null_value = 30, .min = 0, .max = 1000,
-        .prior = 20,
+        .prior = 20, .shapes = TRUE, .n_tried = 1, .tried = {10},
         .blurb = "Curvature from which folds stay; without share it means nothing"},
   }
 };
@@ -69,7 +69,7 @@ force (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_plasticity) = {
-  .id = "plasticity",
+  .order = CLOTH_LANE_ORDER_CREASES,
   .hinge_size = sizeof (ClothLane),
   .force = force,
   .reset = reset,

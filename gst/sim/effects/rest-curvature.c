@@ -1,7 +1,7 @@
 /* Cloth that curls by itself.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -54,7 +54,7 @@ force (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_rest_curvature) = {
-  .id = "rest_curvature",
+  .order = CLOTH_LANE_ORDER_FOLDS,
   .force = force,
 };
 #endif

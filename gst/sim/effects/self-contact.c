@@ -1,7 +1,7 @@
 /* Cloth that touches itself.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -24,6 +24,9 @@ const ClothEffect cloth_effect_self_contact = {
       "Pairs of equal and opposite forces along the normal where two "
       "parts of the cloth are as near as its thickness.",
   .confusions = confusions,
+  .test = CLOTH_EFFECT_TEST_NONE,
+  .untested =
+      "Contact switches on and off: it has no derivative to test by.",
   .n_parameters = 1,
   .parameters = {
     {.name = "thickness", .unit = "m", .null_value = 0, .min = 0, .max = 0.01,
@@ -164,7 +167,7 @@ collide (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_self_contact) = {
-  .id = "self_contact",
+  .order = CLOTH_LANE_ORDER_CONTACT,
   .fixed_size = sizeof (SelfContact),
   .setup = setup,
   .rate = rate,

@@ -1,7 +1,7 @@
 /* Shear stiffness other than the model’s.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -21,6 +21,7 @@ const ClothEffect cloth_effect_shear = {
       "Forces within the plane in proportion to the angle between warp "
       "and weft threads; cosine −0.67 with areal_mass.",
   .confusions = confusions,
+  .same_as = "shear",
   .n_parameters = 1,
   .parameters = {
     {.name = "log_ratio", .unit = "1", .null_value = 0, .min = -6.9, .max = 6.9,
@@ -40,7 +41,6 @@ setup (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_shear) = {
-  .id = "shear",
   .setup = setup,
 };
 #endif

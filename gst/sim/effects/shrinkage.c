@@ -1,7 +1,7 @@
 /* Cloth smaller than its pattern.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -51,7 +51,7 @@ setup (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_shrinkage) = {
-  .id = "shrinkage",
+  .changes_rest = TRUE,
   .setup = setup,
 };
 #endif

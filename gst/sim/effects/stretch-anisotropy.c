@@ -1,7 +1,7 @@
 /* Warp and weft stretch differently.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -22,6 +22,7 @@ const ClothEffect cloth_effect_stretch_anisotropy = {
       "Forces within the plane of one sign along the warp, of the other "
       "along the weft.",
   .confusions = confusions,
+  .same_as = "stretch.warp",
   .n_parameters = 1,
   .parameters = {
     {.name = "log_ratio", .unit = "1", .null_value = 0, .min = -4.6, .max = 4.6,
@@ -45,7 +46,6 @@ setup (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_stretch_anisotropy) = {
-  .id = "stretch_anisotropy",
   .setup = setup,
 };
 #endif

@@ -1,7 +1,7 @@
 /* Stretch stiffness other than the model’s.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -23,6 +23,7 @@ const ClothEffect cloth_effect_stretch = {
       "weft, most below the clamps; cosine 0.63 with bending, 0.46 with "
       "shrinkage, −0.67 with areal_mass.",
   .confusions = confusions,
+  .same_as = "stretch.warp",
   .n_parameters = 1,
   .parameters = {
     {.name = "log_ratio", .unit = "1", .null_value = 0, .min = -6.9, .max = 6.9,
@@ -45,7 +46,6 @@ setup (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_stretch) = {
-  .id = "stretch",
   .setup = setup,
 };
 #endif

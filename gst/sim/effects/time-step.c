@@ -1,9 +1,8 @@
 /* The time step.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
-#ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
   "damping_stiffness", "mesh_resolution",
   NULL
@@ -31,4 +30,3 @@ const ClothEffect cloth_effect_time_step = {
   }
 };
 /* *INDENT-ON* */
-#endif

@@ -1,7 +1,7 @@
 /* A steady wind.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/effects/effects.h"
+#include "gst/effect/effect.h"
 
 #ifndef CLOTH_SIM_LANES
 static const gchar *const confusions[] = {
@@ -27,6 +27,7 @@ const ClothEffect cloth_effect_wind = {
       "proportion to the normal part of one fixed direction; cosine "
       "0.89 with gravity_tilt, which does not follow the normal.",
   .confusions = confusions,
+  .is_moving_air = TRUE,
   .n_parameters = 5,
   .parameters = {
     {.name = "x", .unit = "m/s", .null_value = 0, .min = -30, .max = 30,
@@ -39,11 +40,11 @@ const ClothEffect cloth_effect_wind = {
         .prior = 0.3,
         .blurb = "Velocity of the air along z, upwards"},
     {.name = "coefficient", .unit = "1", .null_value = 1.5, .min = 0, .max = 20,
-        .prior = 0.5,
+        .prior = 0.5, .shapes = TRUE,
         .blurb = "C_N of the cloth in this wind; at any value no wind means no "
             "force; in a model that has air_drag give both the same"},
     {.name = "turbulence", .unit = "m/s", .null_value = 0.5, .min = 0.01, .max = 10,
-        .prior = 0.3,
+        .prior = 0.3, .shapes = TRUE,
         .blurb = "Speed below which the force is in proportion to the wind, for "
             "air that is never still; about 1.6 times the standard deviation "
             "of its fluctuations"},
@@ -62,7 +63,7 @@ force (ClothLaneState * state, ClothLaneEffect * effect)
 }
 
 const ClothLaneHooks CLOTH_LANE_NAME (cloth_hooks_wind) = {
-  .id = "wind",
+  .order = CLOTH_LANE_ORDER_AIR,
   .force = force,
 };
 #endif

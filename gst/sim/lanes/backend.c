@@ -102,54 +102,60 @@ load_models (ClothLaneState * state, const ClothModel * const *models)
     state->mass[i] = state->density * (ClothReal) state->body->area[i];
 }
 
-static const ClothModelEffect *
-find_effect (const ClothModel * model, const gchar * id)
+static const gdouble *
+find_values (const ClothModel * model, const ClothEffect * effect)
 {
   for (guint i = 0; i < model->effects->len; i++) {
     const ClothModelEffect *e =
         &g_array_index (model->effects, ClothModelEffect, i);
 
-    if (strcmp (e->effect->id, id) == 0)
-      return e;
+    if (e->effect == effect)
+      return e->values;
   }
   return NULL;
+}
+
+/* Adds an effect if any of the models has it. */
+static void
+load_effect (ClothLaneState * state, const ClothModel * const *models,
+    const ClothLanePart * part)
+{
+  ClothLaneEffect *effect = &state->effects[state->n_effects];
+  const ClothLaneHooks *hooks = part->hooks;
+  gboolean there = FALSE;
+
+  for (guint l = 0; l < CLOTH_N_LANES; l++) {
+    const gdouble *values = find_values (models[l], part->effect);
+
+    there |= values != NULL;
+    for (guint k = 0; k < part->effect->n_parameters; k++)
+      CLOTH_LANE_AT (&effect->p[k], l) = (ClothReal) (values ? values[k] :
+          part->effect->parameters[k].null_value);
+  }
+  if (!there)
+    return;
+  effect->hooks = hooks;
+  effect->state = lanes_new (1, hooks->state_size * state->n +
+      hooks->triangle_size * state->body->n_triangles +
+      hooks->hinge_size * state->body->n_hinges + hooks->fixed_size);
+  state->has_forces |= hooks->force != NULL;
+  state->has_inertia |= hooks->inertia != NULL;
+  state->n_effects++;
 }
 
 static void
 load_effects (ClothLaneState * state, const ClothModel * const *models)
 {
-  const ClothLaneHooks *const *all = CLOTH_LANE_NAME (cloth_lane_hooks);
+  const ClothLanePart *parts = CLOTH_LANE_NAME (cloth_lane_parts);
   guint n = 0;
 
-  while (all[n])
+  while (parts[n].effect)
     n++;
   state->effects = lanes_new (n, sizeof *state->effects);
-  for (guint i = 0; i < n; i++) {
-    ClothLaneEffect *effect = &state->effects[state->n_effects];
-    const ClothEffect *description = NULL;
-
-    for (guint l = 0; l < CLOTH_N_LANES && !description; l++) {
-      const ClothModelEffect *e = find_effect (models[l], all[i]->id);
-
-      description = e ? e->effect : NULL;
-    }
-    if (!description)
-      continue;
-    effect->hooks = all[i];
-    state->has_forces |= all[i]->force != NULL;
-    state->has_inertia |= all[i]->inertia != NULL;
-    for (guint l = 0; l < CLOTH_N_LANES; l++) {
-      const ClothModelEffect *e = find_effect (models[l], all[i]->id);
-
-      for (guint k = 0; k < description->n_parameters; k++)
-        CLOTH_LANE_AT (&effect->p[k], l) = (ClothReal) (e ? e->values[k] :
-            description->parameters[k].null_value);
-    }
-    effect->state = lanes_new (1, all[i]->state_size * state->n +
-        all[i]->triangle_size * state->body->n_triangles +
-        all[i]->hinge_size * state->body->n_hinges + all[i]->fixed_size);
-    state->n_effects++;
-  }
+  for (guint order = 0; order < CLOTH_LANE_N_ORDERS; order++)
+    for (guint i = 0; i < n; i++)
+      if (parts[i].hooks->order == order)
+        load_effect (state, models, &parts[i]);
 }
 
 /* What follows from the numbers once every effect has had its say. */
@@ -360,9 +366,6 @@ finish_step (ClothLaneState * state, gdouble time_s)
   for (guint i = 0; i < state->n_effects; i++)
     if (state->effects[i].hooks->collide)
       state->effects[i].hooks->collide (state, &state->effects[i]);
-  for (guint i = 0; i < state->n_effects; i++)
-    if (state->effects[i].hooks->after_step)
-      state->effects[i].hooks->after_step (state, &state->effects[i]);
 }
 
 static gdouble
@@ -551,10 +554,26 @@ group_energy (gpointer group, guint lane)
   return energy;
 }
 
+/* Of grids all of the cloth's forces are found in one pass, unless lengths at rest change
+ * or an effect acts on the sum of all forces; contact is looked for lane by lane. */
+static ClothLaneCost
+cost (const ClothEffect * effect)
+{
+  const ClothLanePart *part = CLOTH_LANE_NAME (cloth_lane_parts);
+
+  while (part->effect && part->effect != effect)
+    part++;
+  if (!part->effect)
+    return CLOTH_LANE_COST_NONE;
+  if (part->hooks->changes_rest || part->hooks->inertia || part->hooks->collide)
+    return CLOTH_LANE_COST_HIGH;
+  return part->hooks->force ? CLOTH_LANE_COST_LOW : CLOTH_LANE_COST_NONE;
+}
+
 extern const ClothLaneBackend CLOTH_LANE_NAME (cloth_lane_backend);
 
 const ClothLaneBackend CLOTH_LANE_NAME (cloth_lane_backend) = {
-  CLOTH_N_LANES, group_new, group_free, group_time_step,
+  CLOTH_N_LANES, cost, group_new, group_free, group_time_step,
   group_staged_time_step, group_advance,
   group_try_step, group_take_step,
   group_get, group_set, group_set_time, group_set_targets, group_diverged,

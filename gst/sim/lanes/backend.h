@@ -1,18 +1,30 @@
-/* What sim.c calls of each variant of the lanes.
+/* What sim.c and group.c call of each variant of the lanes.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
 #include "gst/sim/body.h"
-#include "gst/sim/sim.h"
+#include "gst/sim/model.h"
+#include "gst/sim/types.h"
 
 G_BEGIN_DECLS
+
+/* What an effect of one model costs all models of its group: nothing when it only changes
+ * numbers or the clamps, little when it finds forces of its own, much when forces take
+ * more than one pass. */
+typedef enum
+{
+  CLOTH_LANE_COST_NONE,
+  CLOTH_LANE_COST_LOW,
+  CLOTH_LANE_COST_HIGH
+} ClothLaneCost;
 
 /* Arrays are by particle, 3 numbers each. A group is n_lanes models; lanes beyond those
  * given repeat the first. */
 typedef struct
 {
   guint n_lanes;
+  ClothLaneCost (*cost) (const ClothEffect * effect);
   gpointer (*group_new) (const ClothBody * body,
       const ClothModel * const *models, guint n_models, guint64 seed);
   void (*group_free) (gpointer group);

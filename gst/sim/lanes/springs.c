@@ -2,7 +2,7 @@
  * each with a damper; its bend springs are those of bending.c.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/lanes/stiffness.h"
+#include "gst/sim/lanes/state.h"
 
 /* What the effects' change of the rest shape does to the length of a spring. */
 CLOTH_LANE_INLINE ClothLane

@@ -5,7 +5,7 @@
 
 #include "gst/sim/body.h"
 #include "gst/sim/lanes/lane.h"
-#include "gst/sim/sim.h"
+#include "gst/sim/model.h"
 
 typedef struct _ClothLaneHooks ClothLaneHooks;
 typedef struct _ClothLaneObstacles ClothLaneObstacles;
@@ -50,6 +50,14 @@ typedef struct
   ClothReal u, v, length;
   ClothReal warp, weft, shear;
 } ClothLaneSpring;
+
+/* A spring's part of the matrix of an implicit step: direction, stiffness along it, tension
+ * over length where it pulls. */
+typedef struct
+{
+  ClothLane along[3];
+  ClothLane k, damped, g;
+} ClothLaneLink;
 
 typedef struct
 {
@@ -137,11 +145,26 @@ typedef struct
   ClothLane3 *sound_x, *sound_v;
 } ClothLaneState;
 
+/* When the effects of a model act within each of their hooks. Those of one order act as
+ * the list of effects has them. Sums in floating point depend on it in their last bits. */
+typedef enum
+{
+  CLOTH_LANE_ORDER_SIZES,       /* of masses, stiffnesses, damping, gravity, clamps */
+  CLOTH_LANE_ORDER_DIRECTIONS,  /* of threads and of gravity, which have their sizes then */
+  CLOTH_LANE_ORDER_AIR,
+  CLOTH_LANE_ORDER_THREADS,     /* forces along the threads */
+  CLOTH_LANE_ORDER_FOLDS,       /* forces across them */
+  CLOTH_LANE_ORDER_CREASES,     /* folds that change the rest of the others */
+  CLOTH_LANE_ORDER_CONTACT,
+  CLOTH_LANE_N_ORDERS
+} ClothLaneOrder;
+
 /* What an effect does; any of them may be NULL. At its null each must add exactly 0 or
  * multiply by exactly 1, lane by lane. */
 struct _ClothLaneHooks
 {
-  const gchar *id;
+  ClothLaneOrder order;
+  gboolean changes_rest;        /* setup changes ClothLaneState.rest */
   gsize state_size;             /* bytes of state for each particle */
   gsize triangle_size;          /* for each triangle */
   gsize hinge_size;             /* for each hinge */
@@ -161,8 +184,6 @@ struct _ClothLaneHooks
   /* every step, when particles are where forces, obstacles and clamps put them: the
    * only one that may move them */
   void (*collide) (ClothLaneState * state, ClothLaneEffect * effect);
-  /* every step, when the particles have moved */
-  void (*after_step) (ClothLaneState * state, ClothLaneEffect * effect);
   /* at the start, and when a lane's state was set from outside: forget what came before
    * there */
   void (*reset) (ClothLaneState * state, ClothLaneEffect * effect,
@@ -171,8 +192,14 @@ struct _ClothLaneHooks
   void (*clear) (ClothLaneState * state, ClothLaneEffect * effect);
 };
 
-extern const ClothLaneHooks
-    * const CLOTH_LANE_NAME (cloth_lane_hooks)[] G_GNUC_INTERNAL;
+typedef struct
+{
+  const ClothEffect *effect;
+  const ClothLaneHooks *hooks;
+} ClothLanePart;
+
+/* Of each effect that has hooks, then one of NULL. */
+extern const ClothLanePart CLOTH_LANE_NAME (cloth_lane_parts)[] G_GNUC_INTERNAL;
 
 /* Terms of a step. */
 void CLOTH_LANE_NAME (cloth_lane_membrane) (ClothLaneState * state);
@@ -182,6 +209,8 @@ ClothLane CLOTH_LANE_NAME (cloth_lane_membrane_energy) (const ClothLaneState *
 void CLOTH_LANE_NAME (cloth_lane_springs) (ClothLaneState * state);
 ClothLane CLOTH_LANE_NAME (cloth_lane_springs_energy) (const ClothLaneState *
     state);
+void CLOTH_LANE_NAME (cloth_lane_springs_links) (const ClothLaneState * state,
+    ClothLaneLink * links);
 void CLOTH_LANE_NAME (cloth_lane_bending) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_bends) (const ClothLaneState * state,
     ClothLane warp, ClothLane weft, const ClothLane3 * z, ClothLane3 * f);

@@ -12,13 +12,6 @@ typedef struct
   ClothLane k[3], g[3];
 } ClothLaneFacet;
 
-/* A spring's part: direction, stiffness along it, tension over length where it pulls. */
-typedef struct
-{
-  ClothLane along[3];
-  ClothLane k, damped, g;
-} ClothLaneLink;
-
 /* M (1 + αh) + h βK + h² K, h the γ of the formula, from the places and velocities of the last
  * cloth_lane_stiffness_update (); mass is the first term's factor. */
 typedef struct
@@ -41,5 +34,3 @@ void CLOTH_LANE_NAME (cloth_lane_stiffness_diagonal) (const ClothLaneState *
     state, const ClothLaneStiffness * matrix, ClothLane (*inverse)[6]);
 ClothLane CLOTH_LANE_NAME (cloth_lane_stiffness_change) (const ClothLaneState *
     state, const ClothLaneStiffness * matrix, const ClothLane3 * dx);
-void CLOTH_LANE_NAME (cloth_lane_springs_links) (const ClothLaneState * state,
-    ClothLaneLink * links);
