@@ -204,8 +204,9 @@ uv_of (const Mesh * mesh, guint triangle, guint corner)
   return mesh->body->uv + 2 * mesh->corners[3 * triangle + corner % 3];
 }
 
-/* Adds the corner @half, whose next two are at @from and @to, on the other side of their
- * edge than @away, and what lies across the triangle's other edges. */
+/* Adds the corner @half of a triangle whose next two corners are at @from and @to. It lies
+ * on the other side of their edge than @away. The corners across the triangle's other two
+ * edges follow. */
 static void
 unfold (const Mesh * mesh, guint32 half, const gdouble from[2],
     const gdouble to[2], const gdouble away[2], guint more, Patch * patch)
@@ -333,7 +334,7 @@ add_weight (Curvature * curvature, guint32 particle, gdouble weight,
     curvature->c[r][i] += weight * form[r];
 }
 
-/* Of @form, what is square to @basis, of length 1; FALSE if nothing is. */
+/* Makes @form orthogonal to @basis and of length 1; FALSE if nothing of it is left. */
 static gboolean
 make_square (gdouble basis[3][3], guint n, gdouble form[3])
 {
@@ -357,8 +358,8 @@ make_square (gdouble basis[3][3], guint n, gdouble form[3])
 /* The mean curvature of a triangle by Gauss's theorem, from the slopes at its edges (Oñate
  * and Zárate 2000; the slopes are corrected, so that irregular meshes do as well). As
  * neighbours share these, a sheet of constant curvature is free of forces inside on any
- * mesh. No moment acts across a free edge, so the curvature across it takes what value
- * costs least: none of the energy is its. */
+ * mesh. No moment acts across a free edge, so the curvature across it is the one of least
+ * energy and adds nothing to it. */
 static void
 add_triangle_hinges (ClothBody * body, const Mesh * mesh, guint triangle)
 {
@@ -428,7 +429,8 @@ add_triangle_hinges (ClothBody * body, const Mesh * mesh, guint triangle)
   }
 }
 
-/* The matrix of all hinges, row by row: a fraction of the work of one after the other. */
+/* The matrix of all hinges, row by row. Multiplying by it is a fraction of the work of
+ * going through the hinges one by one. */
 static void
 make_bends (ClothBody * body)
 {

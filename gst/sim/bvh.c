@@ -25,7 +25,8 @@ typedef struct
   gboolean border[N_FEATURES];
 } Triangle;
 
-/* A leaf has @n triangles from @first; else its halves are the next node and @first. */
+/* A leaf has @n triangles from @first on. The halves of any other node are the next node
+ * and the node @first. */
 typedef struct
 {
   gdouble low[3], high[3];

@@ -27,21 +27,24 @@
 #include "gst/math/vec3.h"
 #include "gst/sim/contacttouch.h"
 
-/* Over the mean length of an edge: how far beyond the thickness pairs are listed. */
+/* Pairs are listed when they are nearer than the thickness and this share of the mean
+ * length of an edge. */
 #define MARGIN 0.3
-/* How often pairs take their turns, and looks are taken anew, at most. */
+/* Most rounds in which each pair is parted once; most searches for pairs that touch, and
+ * that cross, within one act. */
 #define MAX_TURNS 10
 #define MAX_LOOKS 4
 #define MAX_ZONE_LOOKS 30
-/* Over the thickness: how much nearer pairs may get by their turns before another look. */
+/* Share of the thickness by which pairs may come nearer while others are parted, before
+ * touching pairs are searched for anew. */
 #define RESERVE 0.125
-/* Over the thickness: what is left to the next act. */
+/* Pairs that are too near by less than this share of the thickness wait for the next act. */
 #define SETTLED 1e-3
-/* Over the thickness: coming nearer by this until the next act is a hit. */
+/* A hit: a pair that will come nearer by this share of the thickness until the next act. */
 #define HIT 0.25
 /* Parts that are nearer than the thickness from the start are parted in this time, s. */
 #define PARTING 0.01
-/* Farther than this nobody goes in a step, m. */
+/* No particle moves farther than this in a step, m. */
 #define MAX_WAY 1e3
 
 /* Particles that move as one. */
@@ -117,9 +120,9 @@ cloth_contact_free (ClothContact * contact)
   g_free (contact);
 }
 
-/* @positions: of the particles, which may cross: what does stays crossed
+/* @positions: of the particles; parts that cross there are left crossed
  *
- * Forgets what was.
+ * Starts anew from these positions: what happened before is forgotten.
  */
 void
 cloth_contact_reset (ClothContact * contact, const gdouble * positions)
@@ -175,9 +178,10 @@ add_touch (ClothContact * contact, const ClothContactTouch * touch)
   contact->touches[contact->n_touches++] = *touch;
 }
 
-/* Whether the parts may have crossed on their straight ways from before to @x. What one
- * direction parts at both ends it parts in between; tried are the direction between them
- * @now, that before and their mean. When they may, @now becomes what was before. */
+/* Whether the parts may have crossed on their straight ways from before to @x. They have
+ * not when a plane of one direction lies between them at both ends, as it then does at all
+ * times between. Three directions are tried: that between the nearest points @now, that
+ * before, and their mean. If none does, @now becomes what was before. */
 static gboolean
 crosses (const ClothContact * contact, const ClothContactPair * pair,
     const gdouble * x, ClothContactTouch * now)
@@ -200,8 +204,8 @@ crosses (const ClothContact * contact, const ClothContactPair * pair,
   return TRUE;
 }
 
-/* Lists what touches, what may do so before long and what may cross, from where everything
- * is now. */
+/* Lists the pairs that touch, that may touch soon and that may cross, by the present
+ * positions. */
 static void
 look (ClothContact * contact, gdouble seconds, gdouble reserve,
     const gdouble * inverse_mass, const gdouble * x)
@@ -233,7 +237,7 @@ look (ClothContact * contact, gdouble seconds, gdouble reserve,
       continue;
     cloth_contact_touch_look (pair, x, &touch);
     spare = touch.distance - h;
-    /* what others speak for is only to be kept from crossing, until it has moved on */
+    /* a pair whose nearest points another pair has too is only kept from crossing */
     may_cross = !(ahead < touch.distance);
     if (!touch.acts)
       spare = MAX (spare, MIN (touch.distance, 0.25 * h + reserve));
@@ -314,7 +318,7 @@ join_zones (ClothContact * contact, const gdouble * x, gboolean first)
   return any;
 }
 
-/* Each zone moves as its mass does on the mean, or as what is held of it. */
+/* Each zone moves with the mean velocity of its mass, or with its held particles. */
 static void
 move_zones (ClothContact * contact, const gdouble * inverse_mass, gdouble * x,
     gdouble * v)
@@ -391,8 +395,8 @@ update (ClothContact * contact, gdouble thickness, gdouble seconds,
   return NEW;
 }
 
-/* Whether something would come much nearer than its thickness in the time @ahead: then
- * contact should act sooner, since what is pushed far stretches what it hangs on. */
+/* Whether some pair would come much nearer than its thickness in the time @ahead. Contact
+ * should then act sooner: a particle that is pushed far stretches the cloth about it. */
 static gboolean
 is_hit (const ClothContact * contact, gdouble ahead, const gdouble * x,
     const gdouble * v)

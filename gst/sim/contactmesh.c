@@ -121,8 +121,8 @@ compare_middles (gconstpointer a, gconstpointer b, gpointer data)
   return i < j ? -1 : i > j;
 }
 
-/* Neighbours on the flat cloth stay neighbours, so the halves are good ones however the
- * cloth lies. Panels are parted first. */
+/* Halves the faces by their places on the flat cloth, panels first. Neighbours there stay
+ * neighbours, so the halves are compact however the cloth lies. */
 static guint32
 build (ClothContactMesh * mesh, guint32 * faces, guint n)
 {

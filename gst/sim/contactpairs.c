@@ -8,8 +8,8 @@
 
 /* Cloth crumpled to a point would have more pairs than memory: the rest is left out. */
 #define MAX_PAIRS ((gsize) 1 << 20)
-/* Each whole leaves two pairs of halves behind, each pair of halves one: twice the
- * logarithm of 2³² faces. */
+/* Depth of the search: a node leaves two pairs of halves on the stack, each of these one
+ * more, so twice the logarithm of 2³² faces is enough. */
 #define MAX_STACK 256
 
 void
@@ -78,7 +78,8 @@ follow (ClothContactPairs * pairs, const gdouble * from, const gdouble * to,
   }
 }
 
-/* At most the thickness, and at most what leaves neighbours in peace. */
+/* Adds a pair. It keeps the thickness, or less where the triangles about are so small that
+ * neighbours would touch. */
 static void
 add_pair (ClothContactPairs * pairs, const guint32 particle[4], guint n_first,
     guint owns, gdouble thickness)

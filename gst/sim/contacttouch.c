@@ -8,13 +8,14 @@
 #include "gst/math/vec3.h"
 #include "gst/sim/nearest.h"
 
-/* Over the thickness: so much farther away parts that lie on each other still touch. */
+/* Parts that lie on each other still touch when they are farther apart than the thickness
+ * by this share of it. */
 #define BAND 0.02
-/* Over the thickness: what slides by less between two acts rests. */
+/* Parts that slide by less than this share of the thickness between two acts are at rest. */
 #define REST 0.1
 
-/* The nearest points of a pair: their difference, and whether this pair, and no other
- * that has them too, is to keep them apart. */
+/* Finds the nearest points of a pair: their difference, and whether this pair is the one to
+ * keep them apart. Where several pairs have the same nearest points only one of them does. */
 void
 cloth_contact_touch_look (const ClothContactPair * pair,
     const gdouble * positions, ClothContactTouch * touch)
@@ -101,10 +102,11 @@ push (const ClothContactTouch * touch, const gdouble * inverse_mass,
   }
 }
 
-/* Takes the parts of one pair apart to what they are to keep, and stops them where they
- * come nearer. Coulomb's friction takes from their sliding at most the coefficient times
- * what stops them, and of the way they slid all if they stick, half that share if they
- * slide on. Returns by how much they were too near, or would have been. */
+/* Moves the parts of one pair to the distance that they are to keep, and stops their
+ * approach. Coulomb's friction reduces their sliding velocity by at most the coefficient
+ * times the change that stopped the approach. It also takes back the way they slid: all of
+ * it when they stick, half of the same share of it when they slide on. Returns by how much
+ * they were too near, or would have been. */
 gdouble
 cloth_contact_touch_part (const ClothContactTouch * touch,
     const gdouble * before, gdouble friction, gdouble seconds,

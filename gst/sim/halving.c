@@ -70,8 +70,8 @@ add_face (ClothTopology * topology, guint32 a, guint32 b, guint32 c, guint32 d)
   memcpy (topology->faces + 4 * (gsize) topology->n_faces++, face, sizeof face);
 }
 
-/* Each face becomes four; a square's keep the direction of its diagonal. Faces of a grid
- * were laid already. */
+/* Each face becomes four. The four of a square are cut along the same diagonal as it was.
+ * The faces of a grid have been made already. */
 static void
 cut_faces (Maker * maker, ClothTopology * topology)
 {
@@ -148,8 +148,8 @@ halve_topology (Maker * maker)
   return topology;
 }
 
-/* What lies between held vertices is held between them. Old clamps keep their places in
- * the list, which effects count in. */
+/* A vertex between held ones is held on the mean of their paths. Old clamps keep their
+ * indices in the list, by which effects name them. */
 static void
 halve_clamps (const ClothScene * old, const ClothHalving * halving)
 {

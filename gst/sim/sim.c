@@ -16,14 +16,14 @@
 #define STEPS_AN_OCTAVE 8.
 /* Shorter implicit steps than this part of a frame are not tried. */
 #define LEAST_STEP (1. / 4096.)
-/* So many steps in a row that could have been longer, and the next one is. */
+/* After so many steps in a row that could have been longer, the next one is longer. */
 #define GOOD_STEPS 3
 /* Steps of one cloth_sim_advance (); more means a model far out of range. */
 #define MAX_STEPS 1e8
-/* s; shorter steps would not come to an end while anybody waits. */
+/* Models that need shorter steps are refused, s: they would take days. */
 #define SHORTEST_STEP 1e-8
-/* Most stages of a step; what else a step costs, in stages; a staged step is at most this
- * many times as long as a plain one. */
+/* Most stages of a step; the cost of the rest of a step, in stages; how many times as long
+ * as a plain step a staged one may be. */
 #define MAX_STAGES 8
 #define OTHER_COSTS 0.6
 #define LONGEST_STAGED 64.
@@ -537,7 +537,8 @@ spread_targets (ClothSim * sim, const gdouble * now, const gdouble * next,
   gdouble *total = sim->scratch[4];
   guint n = sim->body->n_particles;
 
-  /* NaN makes weights of what lies between seen and unseen NaN, which draws nothing */
+  /* a vertex between one that was seen and one that was not gets the weight NaN, and is
+   * not drawn */
   for (guint i = 0; i < sim->n_vertices; i++) {
     gdouble sum = 0.;
 
