@@ -4,7 +4,6 @@
 #pragma once
 
 #include "gst/sim/bvh.h"
-#include "gst/take/take.h"
 
 G_BEGIN_DECLS
 

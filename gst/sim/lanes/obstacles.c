@@ -7,6 +7,7 @@
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/sim/lanes/state.h"
+#include "gst/take/take.h"
 
 /* How far behind a mesh that isn't closed the cloth counts as having come through it, m,
  * beside the way of the step. */
