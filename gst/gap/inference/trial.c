@@ -280,7 +280,8 @@ list_hypotheses (const Refinement * refinement, GArray * scores, gdouble least,
     ClothGapScore *s = &g_array_index (scores, ClothGapScore, i);
     Hypothesis r = { s, cloth_diagnosis_candidate (d, s) };
 
-    if (!(s->log_bayes_factor > least) || cloth_candidate_is_stochastic (r.candidate))
+    if (!(s->log_bayes_factor > least)
+        || cloth_candidate_is_stochastic (r.candidate))
       continue;
     memcpy (r.at, s->changes, sizeof s->changes);
     keep_in_range (d, &r);
