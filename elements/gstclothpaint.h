@@ -1,11 +1,18 @@
-/* What is on a cloth: patterns and pictures from files.
+/* Pictures from any file, and what they and patterns are on a cloth.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
+#include <gst/gst.h>
+
 #include "gst/render/paint.h"
 
 G_BEGIN_DECLS
+
+/* The first picture of a file that GStreamer decodes, in one of @formats, as caps write
+ * them. */
+GstSample *gst_cloth_load_picture (const gchar * path, const gchar * formats,
+    gint max_px, GError ** error);
 
 ClothPaint *gst_cloth_paint_pattern (const gchar * path, GError ** error);
 /* A picture over the whole of the flat cloth. */

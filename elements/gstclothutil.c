@@ -70,19 +70,6 @@ gst_cloth_add_latency (GstQuery * query, GstClockTime own)
       GST_CLOCK_TIME_IS_VALID (most) ? most + own : most);
 }
 
-/* Whether a property may be set now; warns when it is mutable in READY only and the
- * element runs. With the object lock. */
-gboolean
-gst_cloth_may_change (GstElement * element, const GParamSpec * spec)
-{
-  if (GST_STATE (element) <= GST_STATE_READY ||
-      !(spec->flags & GST_PARAM_MUTABLE_READY))
-    return TRUE;
-  GST_WARNING_OBJECT (element, "“%s” cannot change while running",
-      spec->name);
-  return FALSE;
-}
-
 /* The rig of the file @path (nullable) and in it the camera @name, which may be NULL when
  * there is one camera. NULL when an error was posted. */
 ClothRig *

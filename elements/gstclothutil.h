@@ -16,7 +16,6 @@ GstCaps *gst_cloth_carry_caps (const GstCaps * caps,
 GstClockTime gst_cloth_stream_time (const GstSegment * segment,
     GstBuffer * buffer);
 void gst_cloth_add_latency (GstQuery * query, GstClockTime own);
-gboolean gst_cloth_may_change (GstElement * element, const GParamSpec * spec);
 ClothRig *gst_cloth_open_rig (GstElement * element, const gchar * path,
     const gchar * name, const ClothCamera ** camera);
 GstClothTopology *gst_cloth_read_topology (GstElement * element,

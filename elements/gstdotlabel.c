@@ -31,7 +31,7 @@
 
 #include <gst/cloth/cloth.h>
 
-#include "elements/gstclothpicture.h"
+#include "elements/gstclothpaint.h"
 #include "elements/gstclothproperties.h"
 #include "gst/pattern/marray.h"
 #include "gst/vision/label/label.h"

@@ -243,16 +243,6 @@ cloth_output_new (const gchar * path, GError ** error)
   return output;
 }
 
-/* @output: an output
- * @sync: whether finishing waits until the bytes are on the disk, as it does by
- *   default. A sequence of small files would wait for each of them.
- */
-void
-cloth_output_set_sync (ClothOutput * output, gboolean sync)
-{
-  output->sync = sync;
-}
-
 /* @output: an output not yet finished
  * @data: bytes to append
  * @size: how many
@@ -450,7 +440,7 @@ cloth_file_set_begin (ClothFileSet * set, GError ** error)
   ClothOutput *output = cloth_output_new (path, error);
 
   if (output)
-    cloth_output_set_sync (output, FALSE);
+    output->sync = FALSE;
   return output;
 }
 

@@ -26,7 +26,6 @@ void cloth_input_free (ClothInput * input);
 typedef struct _ClothOutput ClothOutput;
 
 ClothOutput *cloth_output_new (const gchar * path, GError ** error);
-void cloth_output_set_sync (ClothOutput * output, gboolean sync);
 gboolean cloth_output_write (ClothOutput * output, gconstpointer data,
     gsize size, GError ** error);
 gboolean cloth_output_printf (ClothOutput * output, GError ** error,

@@ -106,20 +106,3 @@ cloth_rotation_left_jacobian (const gdouble r[3], gdouble J[9])
     series (r, 2 * h * h / t2, (t - sin (t)) / (t2 * t), J);
   }
 }
-
-/* @r: rotation vector, shorter than 2π
- * @J: (out): row-major 3×3, the inverse of cloth_rotation_left_jacobian()
- */
-void
-cloth_rotation_left_jacobian_inverse (const gdouble r[3], gdouble J[9])
-{
-  gdouble t2 = cloth_vec3_dot (r, r);
-
-  if (t2 < 1e-4) {
-    series (r, -0.5, 1. / 12 + t2 / 720 + t2 * t2 / 30240, J);
-  } else {
-    gdouble h = 0.5 * sqrt (t2);
-
-    series (r, -0.5, (1 - h * cos (h) / sin (h)) / t2, J);
-  }
-}

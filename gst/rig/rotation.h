@@ -10,6 +10,5 @@ G_BEGIN_DECLS
 void cloth_rotation_from_vector (const gdouble r[3], gdouble R[9]);
 void cloth_rotation_to_vector (const gdouble R[9], gdouble r[3]);
 void cloth_rotation_left_jacobian (const gdouble r[3], gdouble J[9]);
-void cloth_rotation_left_jacobian_inverse (const gdouble r[3], gdouble J[9]);
 
 G_END_DECLS

@@ -241,6 +241,42 @@ test_consistency_bounds (void)
   g_assert_true (keeps_middle (2, 2, 10, FALSE));
 }
 
+/* The candidates of a picture that was scaled after its saddles were found lie between the
+ * pixels. Those of a square that moved by 14.8 px lie within the search's reach of 15 px;
+ * rounded to whole pixels they would lie 15.2 px away. */
+static void
+test_scaled_candidates (void)
+{
+  const gdouble x = 113.7, y = 103.7;
+  g_auto (Scene) scene = { 0 };
+  const ClothQuad *quad;
+
+  scene_init (&scene, 2, 2);
+  scene_paint (&scene, 100, 100);
+  polygon_paint_box (&scene.image, 99.5 + SIDE, 99.5 + SIDE, 108.5 + SIDE,
+      108.5 + SIDE, BLACK);
+  scene_seed (&scene, 100, 100, 0, 0);
+  g_assert_cmpuint (scene_run (&scene), ==, 1);
+
+  scene_wipe (&scene);
+  polygon_paint_box (&scene.image, x, y, x + SIDE, y + SIDE, BLACK);
+  polygon_paint_box (&scene.image, x + SIDE, y + SIDE, x + SIDE + 9,
+      y + SIDE + 9, BLACK);
+  for (gint c = 0; c < 4; c++) {
+    ClothSaddleCandidate candidate = {
+      (gfloat) (x + (c == 1 || c == 2 ? SIDE : 0)),
+      (gfloat) (y + (c >= 2 ? SIDE : 0)), 100
+    };
+
+    g_array_append_val (scene.candidates, candidate);
+  }
+  g_assert_cmpuint (scene_run (&scene), ==, 1);
+  quad = scene_find (&scene, 0, 0, CLOTH_QUAD_TRACKED);
+  g_assert_nonnull (quad);
+  g_assert_cmpfloat_with_epsilon (quad->x[0], x, 0.3);
+  g_assert_cmpfloat_with_epsilon (quad->y[0], y, 0.3);
+}
+
 /* The speed of the last two pictures is kept (3.6): what gains less than the search's
  * reach from picture to picture is followed however fast it gets. */
 static void
@@ -563,6 +599,7 @@ main (int argc, char **argv)
   g_test_init (&argc, &argv, NULL);
   g_test_add_func ("/quad/consistency", test_consistency);
   g_test_add_func ("/quad/consistency-bounds", test_consistency_bounds);
+  g_test_add_func ("/quad/scaled-candidates", test_scaled_candidates);
   g_test_add_func ("/quad/prediction", test_prediction);
   g_test_add_func ("/quad/taken", test_taken);
   g_test_add_func ("/quad/lost", test_lost);

@@ -23,11 +23,12 @@ struct _ClothPc2Reader
   ClothPc2Info info;
 };
 
-struct _ClothPc2Writer
+/* A cache under a temporary name. */
+typedef struct
 {
   ClothOutput *output;
   ClothPc2Info info;
-};
+} Writer;
 
 static gboolean
 parse_header (ClothInput * input, ClothPc2Info * info, GError ** error)
@@ -151,6 +152,15 @@ cloth_pc2_reader_free (ClothPc2Reader * reader)
   g_free (reader);
 }
 
+static void
+writer_free (Writer * writer)
+{
+  if (!writer)
+    return;
+  cloth_output_free (writer->output);
+  g_free (writer);
+}
+
 /* @path: final name of the file
  * @n_points: vertices of the mesh
  * @start: frame of the first sample
@@ -161,11 +171,11 @@ cloth_pc2_reader_free (ClothPc2Reader * reader)
  *
  * Returns: (transfer full): a writer, or %NULL
  */
-ClothPc2Writer *
-cloth_pc2_writer_new (const gchar * path, guint n_points, gfloat start,
+static Writer *
+writer_new (const gchar * path, guint n_points, gfloat start,
     gfloat rate, GError ** error)
 {
-  g_autoptr (ClothPc2Writer) writer = g_new0 (ClothPc2Writer, 1);
+  Writer *writer = g_new0 (Writer, 1);
   guint8 header[HEADER_SIZE] = MAGIC;
   gint32 counts[2] = { 1, (gint32) n_points };
   gfloat timing[2] = { start, rate };
@@ -177,9 +187,11 @@ cloth_pc2_writer_new (const gchar * path, guint n_points, gfloat start,
   memcpy (header + 20, timing, sizeof timing);
   writer->output = cloth_output_new (path, error);
   if (!writer->output || !cloth_output_write (writer->output, header,
-          sizeof header, error))
+          sizeof header, error)) {
+    writer_free (writer);
     return NULL;
-  return g_steal_pointer (&writer);
+  }
+  return writer;
 }
 
 /* @writer: a writer
@@ -188,9 +200,8 @@ cloth_pc2_writer_new (const gchar * path, guint n_points, gfloat start,
  *
  * Returns: %TRUE when the sample was taken
  */
-gboolean
-cloth_pc2_writer_append (ClothPc2Writer * writer, const gfloat * positions,
-    GError ** error)
+static gboolean
+writer_append (Writer * writer, const gfloat * positions, GError ** error)
 {
   gsize size = 3 * (gsize) writer->info.n_points * sizeof *positions;
 #if G_BYTE_ORDER == G_LITTLE_ENDIAN
@@ -219,8 +230,8 @@ cloth_pc2_writer_append (ClothPc2Writer * writer, const gfloat * positions,
  *
  * Returns: (transfer full): the output, or %NULL
  */
-ClothOutput *
-cloth_pc2_writer_finish (ClothPc2Writer * writer, GError ** error)
+static ClothOutput *
+writer_finish (Writer * writer, GError ** error)
 {
   guint32 n_samples = writer->info.n_samples;
 
@@ -232,26 +243,13 @@ cloth_pc2_writer_finish (ClothPc2Writer * writer, GError ** error)
   return g_steal_pointer (&writer->output);
 }
 
-/* @writer: (transfer full) (nullable): a writer
- *
- * Frees it; a file that was not committed is removed.
- */
-void
-cloth_pc2_writer_free (ClothPc2Writer * writer)
-{
-  if (!writer)
-    return;
-  cloth_output_free (writer->output);
-  g_free (writer);
-}
-
 /* An OBJ file with a PC2 file, and the states of the vertices. */
 
 typedef struct
 {
   const ClothExportInfo *info;
   ClothOutput *obj;
-  ClothPc2Writer *cache;
+  Writer *cache;
   ClothNpyWriter *states;
 } ObjPc2;
 
@@ -261,7 +259,7 @@ free_obj_pc2 (gpointer export)
   ObjPc2 *self = export;
 
   cloth_output_free (self->obj);
-  cloth_pc2_writer_free (self->cache);
+  writer_free (self->cache);
   cloth_npy_writer_free (self->states);
   g_free (self);
 }
@@ -277,8 +275,7 @@ start_obj_pc2 (const ClothExportInfo * info, GError ** error)
   self->info = info;
   self->obj = cloth_export_open (info, ".obj", error);
   if (self->obj)
-    self->cache = cloth_pc2_writer_new (pc2, info->topology->n_vertices, 0, 1,
-        error);
+    self->cache = writer_new (pc2, info->topology->n_vertices, 0, 1, error);
   if (self->cache)
     self->states = cloth_npy_writer_new (states, CLOTH_NPY_UINT8, 2, row_shape,
         error);
@@ -299,7 +296,7 @@ append_obj_pc2 (gpointer export, guint64 number, gdouble time_s,
   if (number == 0 && !cloth_obj_write (self->obj, info->name, info->topology,
           frame->positions, info->fps_n, info->fps_d, error))
     return FALSE;
-  return cloth_pc2_writer_append (self->cache, frame->positions, error) &&
+  return writer_append (self->cache, frame->positions, error) &&
       cloth_npy_writer_append (self->states, frame->states, 1, error);
 }
 
@@ -307,7 +304,7 @@ static gboolean
 finish_obj_pc2 (gpointer export, GError ** error)
 {
   ObjPc2 *self = export;
-  g_autoptr (ClothOutput) cache = cloth_pc2_writer_finish (self->cache, error);
+  g_autoptr (ClothOutput) cache = writer_finish (self->cache, error);
   g_autoptr (ClothOutput) states = cache ?
       cloth_npy_writer_finish (self->states, error) : NULL;
   ClothOutput *outputs[] = { states, cache, self->obj };

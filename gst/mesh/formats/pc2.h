@@ -22,7 +22,6 @@ typedef struct {
 } ClothPc2Info;
 
 typedef struct _ClothPc2Reader ClothPc2Reader;
-typedef struct _ClothPc2Writer ClothPc2Writer;
 
 ClothPc2Reader *cloth_pc2_reader_open (const gchar * path, GError ** error);
 ClothPc2Reader *cloth_pc2_reader_new (ClothInput * input, GError ** error);
@@ -31,13 +30,5 @@ gboolean cloth_pc2_reader_read (ClothPc2Reader * reader, guint sample,
     gfloat * positions, GError ** error);
 void cloth_pc2_reader_free (ClothPc2Reader * reader);
 
-ClothPc2Writer *cloth_pc2_writer_new (const gchar * path, guint n_points,
-    gfloat start, gfloat rate, GError ** error);
-gboolean cloth_pc2_writer_append (ClothPc2Writer * writer,
-    const gfloat * positions, GError ** error);
-ClothOutput *cloth_pc2_writer_finish (ClothPc2Writer * writer, GError ** error);
-void cloth_pc2_writer_free (ClothPc2Writer * writer);
-
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothPc2Reader, cloth_pc2_reader_free)
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothPc2Writer, cloth_pc2_writer_free)
 G_END_DECLS
