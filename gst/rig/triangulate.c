@@ -73,6 +73,12 @@ void
 cloth_triangulator_set_simd (ClothTriangulator * self, ClothSimd simd)
 {
   self->kernel = CLOTH_SIMD_TABLE (cloth_triangulate_kernel, simd);
+#ifdef __x86_64__
+  /* Whoever has AVX2 has the fused instructions. */
+  if (simd == CLOTH_SIMD_SCALAR
+      && cloth_simd_resolve (CLOTH_SIMD_BEST) != CLOTH_SIMD_SCALAR)
+    self->kernel = &cloth_triangulate_kernel_fused;
+#endif
 }
 
 /* One observation with the lens model's own undistortion, where the kernel's short Newton

@@ -72,6 +72,10 @@ typedef struct {
 } TriangulateKernel;
 
 CLOTH_SIMD_TABLES (TriangulateKernel, cloth_triangulate_kernel);
+#ifdef __x86_64__
+/* Scalar, for processors that have fused instructions. */
+extern const TriangulateKernel cloth_triangulate_kernel_fused;
+#endif
 
 /* One thread's memory. */
 typedef struct
