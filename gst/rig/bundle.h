@@ -50,7 +50,7 @@ typedef struct {
  * @max_iterations: of Levenberg and Marquardt's method
  * @cancellable: (nullable): stops it
  *
- * A problem of bundle adjustment. Since: 0.1
+ * A problem of bundle adjustment.
  */
 typedef struct {
   guint n_cameras;

@@ -1,6 +1,6 @@
 /* How one camera takes its pictures: its calibration, and what a calibration doesn't
  * tell. The camera and image effects change it; what it then makes of moving points is
- * foretold here, what it makes of a whole cloth is drawn by gst/render/render.c.
+ * predicted here, what it makes of a whole cloth is drawn by gst/render/render.c.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once

@@ -113,7 +113,8 @@ is_much (const ClothDiagnosis * d)
       && rest.rest > share * share * rest.discrepancy;
 }
 
-/* Whether the cloth is slowly nudged elsewhere as a whole. Chaos has shorter waves, too. */
+/* Whether something moves the cloth as a whole, slowly and in long waves. Run-to-run
+ * variability has shorter waves, too. */
 static gboolean
 is_moved_slowly (const ClothDiagnosis * d)
 {

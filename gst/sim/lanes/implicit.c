@@ -35,7 +35,7 @@
  * was not foreseen. */
 #define EULER_ERROR 0.5
 #define BDF2_ERROR (2. / 9.)
-/* Nothing is foretold from a step so many times shorter. */
+/* Nothing is predicted from a step so many times shorter. */
 #define MAX_GROWTH 2.1
 
 struct _ClothLaneImplicit

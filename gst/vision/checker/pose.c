@@ -6,8 +6,8 @@
  * plain checkerboard may look the same upside down, that it is more often upright.
  *
  * All but the dots counts alike wherever on the board it lies, so two summed-area tables
- * of the patch give it for any placement at once. Dots are read in a scattered order, and
- * a placement is given up as soon as even the rest of them could not save it.
+ * of the patch give it for any pose at once. Dots are read in a scattered order, and
+ * a pose is given up as soon as even the rest of them could not save it.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/vision/checker/pose.h"
@@ -21,7 +21,7 @@
 #define EVEN 0.2f
 /* Squares by which a patch may stick out: clutter may have joined it. */
 #define SLACK 1
-/* Dots read between two looks at the bound, and of a placement at first. */
+/* Dots read between two looks at the bound, and of a pose at first. */
 #define CHUNK 16
 #define PROBE 256
 /* Share by which these agree from which all are read at once. */
@@ -67,11 +67,11 @@ typedef struct
 
 typedef struct
 {
-  ClothPose placement;          /* weight: of the votes, then of all evidence as well */
+  ClothPose pose;               /* weight: of the votes, then of all evidence as well */
   gint32 score;                 /* of the tables and the dots read */
   guint n_read;
   gint32 hope;                  /* of the dots read, what they promise of all */
-} Rival;
+} Hypothesis;
 
 struct _ClothPlacer
 {
@@ -86,43 +86,43 @@ struct _ClothPlacer
   gint32 off;                   /* what they add when none does */
   gint box[4];                  /* of the squares */
   GArray *found, *dots;         /* Dot, as they lie and scattered */
-  GArray *rivals, *put_off;     /* Rival, all of whose dots are read, and the others */
+  GArray *hypotheses, *put_off; /* Hypothesis, all of whose dots are read, and the others */
 };
 
 static const gint turn_i[4] = { 1, 0, -1, 0 };
 static const gint turn_j[4] = { 0, 1, 0, -1 };
 
-/* @placement: a placement
+/* @pose: a pose
  * @i: column of a vertex of the patch
  * @j: row of it
  * @column: (out): column of the same vertex on the board
  * @row: (out): row of it
  */
 void
-cloth_pose_vertex (const ClothPose * placement, gint i, gint j,
+cloth_pose_vertex (const ClothPose * pose, gint i, gint j,
     gint * column, gint * row)
 {
-  const gint c = turn_i[placement->rotation], s = turn_j[placement->rotation];
+  const gint c = turn_i[pose->rotation], s = turn_j[pose->rotation];
 
-  *column = placement->column + c * i - s * j;
-  *row = placement->row + s * i + c * j;
+  *column = pose->column + c * i - s * j;
+  *row = pose->row + s * i + c * j;
 }
 
-/* @placement: a placement
+/* @pose: a pose
  * @i: column of a cell of the patch, right of vertex @i
  * @j: row of it
  * @column: (out): column of the same cell on the board
  * @row: (out): row of it
  */
 void
-cloth_pose_cell (const ClothPose * placement, gint i, gint j,
+cloth_pose_cell (const ClothPose * pose, gint i, gint j,
     gint * column, gint * row)
 {
-  cloth_pose_vertex (placement, i, j, column, row);
+  cloth_pose_vertex (pose, i, j, column, row);
   /* The cell's first corner is another one after a turn. */
-  if (placement->rotation == 1 || placement->rotation == 2)
+  if (pose->rotation == 1 || pose->rotation == 2)
     (*column)--;
-  if (placement->rotation >= 2)
+  if (pose->rotation >= 2)
     (*row)--;
 }
 
@@ -168,7 +168,7 @@ is_rim (const ClothPatch * patch, gint i, gint j)
   return FALSE;
 }
 
-/* What a vertex adds to a placement under which four squares meet there, and to one under
+/* What a vertex adds to a pose under which four squares meet there, and to one under
  * which they don't: not even on the board's rim. */
 static void
 weigh_corner (const ClothPatch * patch, const ClothPoseWeights * weights,
@@ -192,24 +192,24 @@ steps (gfloat weight)
 }
 
 static void
-make_room (ClothPoseFinder * placer, const ClothPatch * patch)
+make_room (ClothPoseFinder * finder, const ClothPatch * patch)
 {
   const gsize n = (gsize) (patch->columns + 1) * (gsize) (patch->rows + 1);
 
-  placer->columns = patch->columns + 1;
-  placer->rows = patch->rows + 1;
-  if (n <= placer->capacity)
+  finder->columns = patch->columns + 1;
+  finder->rows = patch->rows + 1;
+  if (n <= finder->capacity)
     return;
-  placer->cells = g_renew (gint32, placer->cells, n);
-  placer->corners = g_renew (gint32, placer->corners, n);
-  placer->capacity = n;
+  finder->cells = g_renew (gint32, finder->cells, n);
+  finder->corners = g_renew (gint32, finder->corners, n);
+  finder->capacity = n;
 }
 
 /* The squares' extent; FALSE for a patch that has none, or is larger than any board. */
 static gboolean
-measure (ClothPoseFinder * placer, const ClothPatch * patch)
+measure (ClothPoseFinder * finder, const ClothPatch * patch)
 {
-  gint *box = placer->box;
+  gint *box = finder->box;
 
   box[0] = box[1] = G_MAXINT;
   box[2] = box[3] = G_MININT;
@@ -227,19 +227,19 @@ measure (ClothPoseFinder * placer, const ClothPatch * patch)
 
 /* Sums what the cells and corners say, and collects the dots. */
 static void
-gather (ClothPoseFinder * placer, const ClothPatch * patch,
+gather (ClothPoseFinder * finder, const ClothPatch * patch,
     const ClothPoseWeights * weights)
 {
   const gint n = patch->columns + 1;
 
-  make_room (placer, patch);
-  placer->off = 0;
-  g_array_set_size (placer->found, 0);
-  memset (placer->cells, 0, sizeof (gint32) * (gsize) n);
-  memset (placer->corners, 0, sizeof (gint32) * (gsize) n);
+  make_room (finder, patch);
+  finder->off = 0;
+  g_array_set_size (finder->found, 0);
+  memset (finder->cells, 0, sizeof (gint32) * (gsize) n);
+  memset (finder->corners, 0, sizeof (gint32) * (gsize) n);
   for (gint j = 0; j < patch->rows; j++) {
-    gint32 *cell = placer->cells + (j + 1) * n;
-    gint32 *corner = placer->corners + (j + 1) * n;
+    gint32 *cell = finder->cells + (j + 1) * n;
+    gint32 *corner = finder->corners + (j + 1) * n;
     gint32 cells = 0, corners = 0;
 
     cell[0] = corner[0] = 0;
@@ -251,19 +251,19 @@ gather (ClothPoseFinder * placer, const ClothPatch * patch,
       if (has_cell) {
         weigh_corner (patch, weights, i, j, &on, &off);
         corners += steps (on) - steps (off);
-        placer->off += steps (off);
+        finder->off += steps (off);
         on = patch->square[at] ? 0 : patch->inside[at];
         off = patch->square[at] ? weights->square_outside : 0;
         cells += steps (on) - steps (off);
-        placer->off += steps (off);
+        finder->off += steps (off);
       }
       cell[i + 1] = cell[i + 1 - n] + cells;
       corner[i + 1] = corner[i + 1 - n] + corners;
-      if (has_cell && placer->coded && patch->square[at]
+      if (has_cell && finder->coded && patch->square[at]
           && steps (patch->bit[at])) {
         Dot dot = { (gint16) i, (gint16) j, steps (patch->bit[at]), 0 };
 
-        g_array_append_val (placer->found, dot);
+        g_array_append_val (finder->found, dot);
       }
     }
   }
@@ -283,20 +283,20 @@ common_divisor (guint a, guint b)
 
 /* Dots side by side may belong to another piece of cloth: takes them from all over. */
 static void
-scatter (ClothPoseFinder * placer)
+scatter (ClothPoseFinder * finder)
 {
-  const guint n = placer->found->len;
+  const guint n = finder->found->len;
   guint step = MAX (1, (guint) (0.618 * n)), at = 0;
   gint32 rest = 0;
 
-  g_array_set_size (placer->dots, n);
+  g_array_set_size (finder->dots, n);
   while (common_divisor (step, n) > 1)
     step++;
   for (guint k = 0; k < n; k++, at = (at + step) % n)
-    g_array_index (placer->dots, Dot, k) =
-        g_array_index (placer->found, Dot, at);
+    g_array_index (finder->dots, Dot, k) =
+        g_array_index (finder->found, Dot, at);
   for (guint k = n; k-- > 0;) {
-    Dot *dot = &g_array_index (placer->dots, Dot, k);
+    Dot *dot = &g_array_index (finder->dots, Dot, k);
 
     rest += ABS (dot->weight);
     dot->rest = rest;
@@ -305,14 +305,14 @@ scatter (ClothPoseFinder * placer)
 
 /* Sum over the part of a table that two opposite cells, or vertices, of the board span. */
 static gint32
-table_sum (const ClothPoseFinder * placer, const gint32 * table,
+table_sum (const ClothPoseFinder * finder, const gint32 * table,
     const gint a[2], const gint b[2])
 {
-  const gint n = placer->columns;
+  const gint n = finder->columns;
   const gint x0 = CLAMP (MIN (a[0], b[0]), 0, n - 1);
-  const gint y0 = CLAMP (MIN (a[1], b[1]), 0, placer->rows - 1);
+  const gint y0 = CLAMP (MIN (a[1], b[1]), 0, finder->rows - 1);
   const gint x1 = CLAMP (MAX (a[0], b[0]) + 1, x0, n - 1);
-  const gint y1 = CLAMP (MAX (a[1], b[1]) + 1, y0, placer->rows - 1);
+  const gint y1 = CLAMP (MAX (a[1], b[1]) + 1, y0, finder->rows - 1);
 
   return table[y1 * n + x1] - table[y0 * n + x1] - table[y1 * n + x0]
       + table[y0 * n + x0];
@@ -320,29 +320,29 @@ table_sum (const ClothPoseFinder * placer, const gint32 * table,
 
 /* All evidence but the dots. */
 static gint32
-score_extent (const ClothPoseFinder * placer, const ClothPose * placement)
+score_extent (const ClothPoseFinder * finder, const ClothPose * pose)
 {
-  const gint c = turn_i[placement->rotation], s = turn_j[placement->rotation];
-  const gint columns = placer->pattern.columns, rows = placer->pattern.rows;
-  gint32 score = placer->off;
+  const gint c = turn_i[pose->rotation], s = turn_j[pose->rotation];
+  const gint columns = finder->pattern.columns, rows = finder->pattern.rows;
+  gint32 score = finder->off;
   gint end[2][2];
 
   /* Where the patch has the board's first and last cell, and first and last vertex. */
   for (gint inner = 0; inner < 2; inner++) {
-    const gint moved_column = !inner && (placement->rotation == 1
-        || placement->rotation == 2);
-    const gint moved_row = !inner && placement->rotation >= 2;
+    const gint moved_column = !inner && (pose->rotation == 1
+        || pose->rotation == 2);
+    const gint moved_row = !inner && pose->rotation >= 2;
 
     if (inner && (columns < 2 || rows < 2))
       continue;
     for (gint k = 0; k < 2; k++) {
-      gint u = (k ? columns - 1 : inner) + moved_column - placement->column;
-      gint v = (k ? rows - 1 : inner) + moved_row - placement->row;
+      gint u = (k ? columns - 1 : inner) + moved_column - pose->column;
+      gint v = (k ? rows - 1 : inner) + moved_row - pose->row;
 
       end[k][0] = c * u + s * v;
       end[k][1] = -s * u + c * v;
     }
-    score += table_sum (placer, inner ? placer->corners : placer->cells,
+    score += table_sum (finder, inner ? finder->corners : finder->cells,
         end[0], end[1]);
   }
   return score;
@@ -351,32 +351,33 @@ score_extent (const ClothPoseFinder * placer, const ClothPose * placement)
 /* Reads dots up to @to and adds what they say; FALSE when the rest can't bring the score
  * to @least any more. */
 static gboolean
-read_dots (const ClothPoseFinder * placer, Rival * rival, guint to,
+read_dots (const ClothPoseFinder * finder, Hypothesis * hypothesis, guint to,
     gint64 least)
 {
-  const Dot *dots = (const Dot *) placer->dots->data;
-  const gint c = turn_i[rival->placement.rotation];
-  const gint s = turn_j[rival->placement.rotation];
-  const gint along_i = c + s * placer->stride;
-  const gint along_j = c * placer->stride - s;
-  const gint8 *code = placer->code;
+  const Dot *dots = (const Dot *) finder->dots->data;
+  const gint c = turn_i[hypothesis->pose.rotation];
+  const gint s = turn_j[hypothesis->pose.rotation];
+  const gint along_i = c + s * finder->stride;
+  const gint along_j = c * finder->stride - s;
+  const gint8 *code = finder->code;
   gint column, row;
 
-  cloth_pose_cell (&rival->placement, 0, 0, &column, &row);
-  column += SLACK + row * placer->stride + SLACK * placer->stride;
-  while (rival->n_read < to) {
-    const guint end = MIN (rival->n_read + CHUNK, to);
+  cloth_pose_cell (&hypothesis->pose, 0, 0, &column, &row);
+  column += SLACK + row * finder->stride + SLACK * finder->stride;
+  while (hypothesis->n_read < to) {
+    const guint end = MIN (hypothesis->n_read + CHUNK, to);
 
-    if (rival->score + (gint64) dots[rival->n_read].rest < least)
+    if (hypothesis->score + (gint64) dots[hypothesis->n_read].rest < least)
       return FALSE;
-    for (; rival->n_read < end; rival->n_read++) {
-      const Dot *dot = &dots[rival->n_read];
+    for (; hypothesis->n_read < end; hypothesis->n_read++) {
+      const Dot *dot = &dots[hypothesis->n_read];
 
-      rival->score += dot->weight
+      hypothesis->score += dot->weight
           * code[column + dot->i * along_i + dot->j * along_j];
     }
   }
-  return rival->score + (gint64) (to < placer->dots->len ? dots[to].rest : 0)
+  return hypothesis->score + (gint64) (to <
+      finder->dots->len ? dots[to].rest : 0)
       >= least;
 }
 
@@ -433,10 +434,10 @@ are_twins (const ClothPattern * pattern, const ClothPose * a,
 /* What corners that linking did not join, and that lie on the board's rim, add: what is
  * beside the board, like a plate that it is glued on, may give them the look of inner ones. */
 static gfloat
-found_on_rim (const ClothPoseFinder * placer, const ClothPatch * patch,
-    const ClothPoseWeights * weights, const ClothPose * placement)
+found_on_rim (const ClothPoseFinder * finder, const ClothPatch * patch,
+    const ClothPoseWeights * weights, const ClothPose * pose)
 {
-  const gint columns = placer->pattern.columns, rows = placer->pattern.rows;
+  const gint columns = finder->pattern.columns, rows = finder->pattern.rows;
   gfloat sum = 0;
 
   for (gint j = 0; j + 1 < patch->rows && weights->found_corners; j++)
@@ -446,7 +447,7 @@ found_on_rim (const ClothPoseFinder * placer, const ClothPatch * patch,
 
       if (patch->linked[at] || patch->kind[at] != CLOTH_VERTEX_SADDLE)
         continue;
-      cloth_pose_vertex (placement, i, j, &column, &row);
+      cloth_pose_vertex (pose, i, j, &column, &row);
       if (column >= 0 && row >= 0 && column <= columns && row <= rows
           && (column % columns == 0 || row % rows == 0))
         sum += weights->corner_outside;
@@ -458,16 +459,15 @@ found_on_rim (const ClothPoseFinder * placer, const ClothPatch * patch,
  * within: the board seen is smaller. A corner there that looks like a saddle counts half:
  * what is beside the board may give it the look. */
 static gboolean
-ends_early (const ClothPoseFinder * placer, const ClothPatch * patch,
-    const ClothPose * placement, gfloat share)
+ends_early (const ClothPoseFinder * finder, const ClothPatch * patch,
+    const ClothPose * pose, gfloat share)
 {
-  const gint columns = placer->pattern.columns, rows = placer->pattern.rows;
+  const gint columns = finder->pattern.columns, rows = finder->pattern.rows;
 
   for (gint along = 0; along < 2; along++)
     for (gint line = 0; line < (along ? patch->rows : patch->columns); line++) {
       const gint n = along ? patch->columns : patch->rows;
-      const gint length = ((placement->rotation & 1) == along ? rows
-          : columns) - 1;
+      const gint length = ((pose->rotation & 1) == along ? rows : columns) - 1;
       gint on_rim = 0;
 
       for (gint k = 0; k < n; k++) {
@@ -475,7 +475,7 @@ ends_early (const ClothPoseFinder * placer, const ClothPatch * patch,
         const gint at = j * patch->columns + i;
         gint column, row;
 
-        cloth_pose_vertex (placement, i, j, &column, &row);
+        cloth_pose_vertex (pose, i, j, &column, &row);
         if (column > 0 && row > 0 && column < columns && row < rows
             && !patch->linked[at] && is_rim (patch, i, j))
           on_rim += patch->kind[at] == CLOTH_VERTEX_SADDLE ? 1 : 2;
@@ -496,12 +496,12 @@ typedef struct
 } Range;
 
 static Range
-range_of (const ClothPoseFinder * placer, const ClothPatch * patch,
+range_of (const ClothPoseFinder * finder, const ClothPatch * patch,
     gint rotation)
 {
-  const ClothPattern *pattern = &placer->pattern;
+  const ClothPattern *pattern = &finder->pattern;
   const ClothPose turned = { rotation };
-  const gint *box = placer->box;
+  const gint *box = finder->box;
   gint c0, r0, c1, r1;
 
   cloth_pose_cell (&turned, box[0], box[1], &c0, &r0);
@@ -518,12 +518,12 @@ range_of (const ClothPoseFinder * placer, const ClothPatch * patch,
 }
 
 static gboolean
-is_in (const Range * range, const ClothPose * placement)
+is_in (const Range * range, const ClothPose * pose)
 {
-  return placement->column >= range->column[0]
-      && placement->column <= range->column[1]
-      && placement->row >= range->row[0] && placement->row <= range->row[1]
-      && ((placement->column + placement->row) & 1) == range->odd;
+  return pose->column >= range->column[0]
+      && pose->column <= range->column[1]
+      && pose->row >= range->row[0] && pose->row <= range->row[1]
+      && ((pose->column + pose->row) & 1) == range->odd;
 }
 
 static inline gboolean
@@ -533,19 +533,20 @@ is_same (const ClothPose * a, const ClothPose * b)
       && a->row == b->row;
 }
 
-/* Adds a rival all of whose dots were read. */
+/* Adds a hypothesis all of whose dots were read. */
 static void
-take (ClothPoseFinder * placer, Rival * rival, gfloat * most)
+take (ClothPoseFinder * finder, Hypothesis * hypothesis, gfloat * most)
 {
-  rival->placement.weight += (gfloat) rival->score / STEPS;
-  *most = MAX (*most, rival->placement.weight);
-  g_array_append_val (placer->rivals, *rival);
+  hypothesis->pose.weight += (gfloat) hypothesis->score / STEPS;
+  *most = MAX (*most, hypothesis->pose.weight);
+  g_array_append_val (finder->hypotheses, *hypothesis);
 }
 
 static gint
 compare_hope (gconstpointer a, gconstpointer b)
 {
-  gint32 of_a = ((const Rival *) a)->hope, of_b = ((const Rival *) b)->hope;
+  gint32 of_a = ((const Hypothesis *) a)->hope, of_b =
+      ((const Hypothesis *) b)->hope;
 
   return (of_a < of_b) - (of_a > of_b);
 }
@@ -553,41 +554,41 @@ compare_hope (gconstpointer a, gconstpointer b)
 /* Scores the placements that may come within @margin of the best; how many there are in
  * all. */
 static guint
-score_all (ClothPoseFinder * placer, const ClothPatch * patch,
+score_all (ClothPoseFinder * finder, const ClothPatch * patch,
     const ClothPose * votes, guint n_votes, gfloat margin)
 {
-  const guint n_dots = placer->dots->len;
-  const gint32 all = n_dots ? g_array_index (placer->dots, Dot, 0).rest : 0;
+  const guint n_dots = finder->dots->len;
+  const gint32 all = n_dots ? g_array_index (finder->dots, Dot, 0).rest : 0;
   gfloat most = -1e9f;          /* times STEPS fits 64 bits */
   guint n_voted, n_put_off, n = 0;
   Range ranges[4];
 
-  g_array_set_size (placer->rivals, 0);
-  g_array_set_size (placer->put_off, 0);
+  g_array_set_size (finder->hypotheses, 0);
+  g_array_set_size (finder->put_off, 0);
   for (gint rotation = 0; rotation < 4; rotation++)
-    ranges[rotation] = range_of (placer, patch, rotation);
+    ranges[rotation] = range_of (finder, patch, rotation);
   /* What is voted for first: if it is right, most others are ruled out at once. */
   for (guint k = 0; k < n_votes; k++) {
-    Rival rival = { votes[k] };
+    Hypothesis hypothesis = { votes[k] };
     guint same = 0;
 
     if (!is_in (&ranges[votes[k].rotation & 3], &votes[k]))
       continue;
-    while (same < placer->rivals->len && !is_same (&votes[k],
-            &g_array_index (placer->rivals, Rival, same).placement))
+    while (same < finder->hypotheses->len && !is_same (&votes[k],
+            &g_array_index (finder->hypotheses, Hypothesis, same).pose))
       same++;
-    if (same < placer->rivals->len) {
-      Rival *other = &g_array_index (placer->rivals, Rival, same);
+    if (same < finder->hypotheses->len) {
+      Hypothesis *other = &g_array_index (finder->hypotheses, Hypothesis, same);
 
-      other->placement.weight += votes[k].weight;
-      most = MAX (most, other->placement.weight);
+      other->pose.weight += votes[k].weight;
+      most = MAX (most, other->pose.weight);
       continue;
     }
-    rival.score = score_extent (placer, &rival.placement);
-    read_dots (placer, &rival, n_dots, G_MININT64);
-    take (placer, &rival, &most);
+    hypothesis.score = score_extent (finder, &hypothesis.pose);
+    read_dots (finder, &hypothesis, n_dots, G_MININT64);
+    take (finder, &hypothesis, &most);
   }
-  n_voted = placer->rivals->len;
+  n_voted = finder->hypotheses->len;
   for (gint rotation = 0; rotation < 4; rotation++) {
     const Range *range = &ranges[rotation];
 
@@ -595,58 +596,59 @@ score_all (ClothPoseFinder * placer, const ClothPatch * patch,
       for (gint column = range->column[0] + ((range->column[0] + row
                   + range->odd) & 1); column <= range->column[1]; column += 2) {
         const gint64 least = (gint64) ((most - margin) * STEPS);
-        Rival rival = { {rotation, column, row} };
+        Hypothesis hypothesis = { {rotation, column, row} };
         guint voted = 0;
         gint32 extent;
 
         n++;
-        extent = rival.score = score_extent (placer, &rival.placement);
+        extent = hypothesis.score = score_extent (finder, &hypothesis.pose);
         if (extent + (gint64) all < least)
           continue;
-        while (voted < n_voted && !is_same (&rival.placement,
-                &g_array_index (placer->rivals, Rival, voted).placement))
+        while (voted < n_voted && !is_same (&hypothesis.pose,
+                &g_array_index (finder->hypotheses, Hypothesis, voted).pose))
           voted++;
-        if (voted < n_voted || !read_dots (placer, &rival, MIN (n_dots, PROBE),
-                least))
+        if (voted < n_voted
+            || !read_dots (finder, &hypothesis, MIN (n_dots, PROBE), least))
           continue;
-        if (rival.n_read < n_dots) {
+        if (hypothesis.n_read < n_dots) {
           const gint32 rest =
-              g_array_index (placer->dots, Dot, rival.n_read).rest;
-          const gfloat agree = (gfloat) (rival.score - extent)
+              g_array_index (finder->dots, Dot, hypothesis.n_read).rest;
+          const gfloat agree = (gfloat) (hypothesis.score - extent)
               / (gfloat) (all - rest);
 
-          rival.hope = rival.score + (gint32) (agree * (gfloat) rest);
+          hypothesis.hope = hypothesis.score + (gint32) (agree * (gfloat) rest);
           if (agree < PROMISING) {
-            g_array_append_val (placer->put_off, rival);
+            g_array_append_val (finder->put_off, hypothesis);
             continue;
           }
-          if (!read_dots (placer, &rival, n_dots, least))
+          if (!read_dots (finder, &hypothesis, n_dots, least))
             continue;
         }
-        take (placer, &rival, &most);
+        take (finder, &hypothesis, &most);
       }
   }
-  g_array_sort (placer->put_off, compare_hope);
-  n_put_off = MIN (placer->put_off->len, MOST_READ);
+  g_array_sort (finder->put_off, compare_hope);
+  n_put_off = MIN (finder->put_off->len, MOST_READ);
   for (guint k = 0; k < n_put_off; k++) {
-    Rival *rival = &g_array_index (placer->put_off, Rival, k);
+    Hypothesis *hypothesis = &g_array_index (finder->put_off, Hypothesis, k);
 
-    if (read_dots (placer, rival, n_dots, (gint64) ((most - margin) * STEPS)))
-      take (placer, rival, &most);
+    if (read_dots (finder, hypothesis, n_dots,
+            (gint64) ((most - margin) * STEPS)))
+      take (finder, hypothesis, &most);
   }
   return n;
 }
 
-/* @placer: of the board
+/* @finder: of the board
  * @patch: a patch of it
  * @weights: what the evidence weighs
  * @votes: (array length=n_votes) (nullable): placements the caller believes in, weight =
  *   log-likelihood
  * @n_votes: how many
- * @best: (out): the best placement; weight = its lead over the next best
+ * @best: (out): the best pose; weight = its lead over the next best
  *
  * The lead is over the placements whose dots were all read. Where a first reading of 256
- * dots finds less than half of them in agreement, a placement waits, and only the 64 most
+ * dots finds less than half of them in agreement, a pose waits, and only the 64 most
  * hopeful of those that wait are read to the end: a lead over one of the others, which
  * would have to agree far better in the dots that are left, is not counted and may be
  * overstated. With no more than 256 dots in the patch all that matter are read.
@@ -654,27 +656,27 @@ score_all (ClothPoseFinder * placer, const ClothPatch * patch,
  * Returns: whether the patch fits the board anywhere
  */
 gboolean
-cloth_pose_finder_run (ClothPoseFinder * placer, const ClothPatch * patch,
+cloth_pose_finder_run (ClothPoseFinder * finder, const ClothPatch * patch,
     const ClothPoseWeights * weights, const ClothPose * votes,
     guint n_votes, ClothPose * best)
 {
   gfloat prior[4] = { 0 }, most = -G_MAXFLOAT, score;
-  const Rival *list;
+  const Hypothesis *list;
   guint first = 0, n;
 
-  if (!measure (placer, patch))
+  if (!measure (finder, patch))
     return FALSE;
-  gather (placer, patch, weights);
-  scatter (placer);
-  n = score_all (placer, patch, votes, n_votes,
+  gather (finder, patch, weights);
+  scatter (finder);
+  n = score_all (finder, patch, votes, n_votes,
       CLOTH_POSE_MOST_LEAD + 2 * weights->upright);
-  if (!placer->rivals->len)
+  if (!finder->hypotheses->len)
     return FALSE;
-  list = (const Rival *) placer->rivals->data;
-  for (gint rotation = 0; rotation < 4 && !placer->coded; rotation++)
+  list = (const Hypothesis *) finder->hypotheses->data;
+  for (gint rotation = 0; rotation < 4 && !finder->coded; rotation++)
     prior[rotation] = weights->upright * uprightness (patch, rotation);
-  for (guint k = 0; k < placer->rivals->len; k++) {
-    const ClothPose *own = &list[k].placement;
+  for (guint k = 0; k < finder->hypotheses->len; k++) {
+    const ClothPose *own = &list[k].pose;
 
     if (own->weight + prior[own->rotation] > most) {
       most = own->weight + prior[own->rotation];
@@ -682,18 +684,18 @@ cloth_pose_finder_run (ClothPoseFinder * placer, const ClothPatch * patch,
     }
   }
   if ((gfloat) list[first].score / STEPS < weights->least
-      || (weights->rim_refuses < 1 && ends_early (placer, patch,
-              &list[first].placement, weights->rim_refuses)))
+      || (weights->rim_refuses < 1 && ends_early (finder, patch,
+              &list[first].pose, weights->rim_refuses)))
     return FALSE;
-  *best = list[first].placement;
+  *best = list[first].pose;
   /* What fits one way only hangs over on both sides. */
   best->weight = best->evidence =
       n > 1 ? CLOTH_POSE_MOST_LEAD : -weights->square_outside;
-  for (guint k = 0; k < placer->rivals->len; k++) {
-    const ClothPose *own = &list[k].placement;
-    const gboolean twin = !placer->coded
-        && are_twins (&placer->pattern, best, own);
-    gfloat lead = list[first].placement.weight - own->weight;
+  for (guint k = 0; k < finder->hypotheses->len; k++) {
+    const ClothPose *own = &list[k].pose;
+    const gboolean twin = !finder->coded
+        && are_twins (&finder->pattern, best, own);
+    gfloat lead = list[first].pose.weight - own->weight;
 
     if (k == first)
       continue;
@@ -708,9 +710,9 @@ cloth_pose_finder_run (ClothPoseFinder * placer, const ClothPatch * patch,
   }
   score = (gfloat) list[first].score / STEPS;
   best->whole = (gfloat) patch->n_squares
-      >= WHOLE * (gfloat) (placer->pattern.columns * placer->pattern.rows);
+      >= WHOLE * (gfloat) (finder->pattern.columns * finder->pattern.rows);
   if (best->whole)
-    score -= found_on_rim (placer, patch, weights, best);
+    score -= found_on_rim (finder, patch, weights, best);
   best->evidence += MIN (score, 0.0f);
   return TRUE;
 }
@@ -723,38 +725,38 @@ cloth_pose_finder_run (ClothPoseFinder * placer, const ClothPatch * patch,
 ClothPoseFinder *
 cloth_pose_finder_new (const ClothPattern * pattern)
 {
-  ClothPoseFinder *placer = g_new0 (ClothPoseFinder, 1);
+  ClothPoseFinder *finder = g_new0 (ClothPoseFinder, 1);
 
-  placer->pattern = *pattern;
-  placer->pattern.code = NULL;
-  placer->coded = pattern->code != NULL;
-  placer->found = g_array_new (FALSE, FALSE, sizeof (Dot));
-  placer->dots = g_array_new (FALSE, FALSE, sizeof (Dot));
-  placer->rivals = g_array_new (FALSE, FALSE, sizeof (Rival));
-  placer->put_off = g_array_new (FALSE, FALSE, sizeof (Rival));
-  if (!placer->coded)
-    return placer;
-  placer->stride = pattern->columns + 2 * SLACK;
-  placer->code = g_new0 (gint8, (gsize) placer->stride
+  finder->pattern = *pattern;
+  finder->pattern.code = NULL;
+  finder->coded = pattern->code != NULL;
+  finder->found = g_array_new (FALSE, FALSE, sizeof (Dot));
+  finder->dots = g_array_new (FALSE, FALSE, sizeof (Dot));
+  finder->hypotheses = g_array_new (FALSE, FALSE, sizeof (Hypothesis));
+  finder->put_off = g_array_new (FALSE, FALSE, sizeof (Hypothesis));
+  if (!finder->coded)
+    return finder;
+  finder->stride = pattern->columns + 2 * SLACK;
+  finder->code = g_new0 (gint8, (gsize) finder->stride
       * (gsize) (pattern->rows + 2 * SLACK));
   for (gint row = 0; row < pattern->rows; row++)
     for (gint column = 0; column < pattern->columns; column++)
-      placer->code[(row + SLACK) * placer->stride + column + SLACK] =
+      finder->code[(row + SLACK) * finder->stride + column + SLACK] =
           pattern->code[row * pattern->columns + column] ? 1 : -1;
-  return placer;
+  return finder;
 }
 
-/* @placer: (transfer full): the placer
+/* @finder: (transfer full): the finder
  */
 void
-cloth_pose_finder_free (ClothPoseFinder * placer)
+cloth_pose_finder_free (ClothPoseFinder * finder)
 {
-  g_free (placer->code);
-  g_free (placer->cells);
-  g_free (placer->corners);
-  g_array_unref (placer->found);
-  g_array_unref (placer->dots);
-  g_array_unref (placer->rivals);
-  g_array_unref (placer->put_off);
-  g_free (placer);
+  g_free (finder->code);
+  g_free (finder->cells);
+  g_free (finder->corners);
+  g_array_unref (finder->found);
+  g_array_unref (finder->dots);
+  g_array_unref (finder->hypotheses);
+  g_array_unref (finder->put_off);
+  g_free (finder);
 }

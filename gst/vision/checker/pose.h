@@ -8,11 +8,11 @@
 
 G_BEGIN_DECLS
 
-/* Rivals that trail by more, log-likelihood, are not told apart.
+/* Hypotheses that trail by more, log-likelihood, are not told apart.
  */
 #define CLOTH_POSE_MOST_LEAD 64.0f
 
-/* Lead, log-likelihood, from which on a placement in a film is believed: just less than the
+/* Lead, log-likelihood, from which on a pose in a film is believed: just less than the
  * 3 of one cell that clearly shows cloth where the board would go on.
  */
 #define CLOTH_POSE_MIN_LEAD 2.9f
@@ -21,12 +21,12 @@ G_BEGIN_DECLS
  * @column: board vertex of the patch's vertex (0, 0)
  * @row: likewise
  * @weight: as a vote: log-likelihood in favour; as a result: log-likelihood of this
- *   placement less that of the next best, at most %CLOTH_POSE_MOST_LEAD; that of one
+ *   pose less that of the next best, at most %CLOTH_POSE_MOST_LEAD; that of one
  *   square when there is no other
  * @evidence: as a result: the same lead by what was seen alone, over those that are no
- *   twins, less what was seen that speaks against the placement
+ *   twins, less what was seen that speaks against the pose
  * @whole: as a result: whether most of the board is in sight; then corners on its rim that
- *   linking did not join don't speak against the placement
+ *   linking did not join don't speak against the pose
  *
  * A way to lay a patch on the board: vertex (i, j) of the patch, turned @rotation times
  * by (i, j) → (-j, i), plus (@column, @row).
@@ -48,12 +48,12 @@ typedef struct {
  *   there
  * @upright: of a plain board being upright rather than on its side; adds to the lead
  * @twins: whether placements that a turn of the whole board carries into each other are
- *   no rivals: the more upright one is taken, and being upright adds to no lead
- * @least: a placement is refused when what was seen makes it less likely
+ *   no hypotheses: the more upright one is taken, and being upright adds to no lead
+ * @least: a pose is refused when what was seen makes it less likely
  * @rim_refuses: and when a straight rim runs along more than this share of a line within
  *   the board: the board seen is another, smaller one; 1 for never
  *
- * What the evidence for and against a placement weighs, log-likelihoods.
+ * What the evidence for and against a pose weighs, log-likelihoods.
  */
 typedef struct {
   gfloat square_outside;
@@ -70,14 +70,14 @@ extern const ClothPoseWeights cloth_pose_cloth, cloth_pose_rigid;
 
 typedef struct _ClothPlacer ClothPoseFinder;
 
-void cloth_pose_vertex (const ClothPose * placement, gint i, gint j,
+void cloth_pose_vertex (const ClothPose * pose, gint i, gint j,
     gint * column, gint * row);
-void cloth_pose_cell (const ClothPose * placement, gint i, gint j,
+void cloth_pose_cell (const ClothPose * pose, gint i, gint j,
     gint * column, gint * row);
 
 ClothPoseFinder *cloth_pose_finder_new (const ClothPattern * pattern);
-void cloth_pose_finder_free (ClothPoseFinder * placer);
-gboolean cloth_pose_finder_run (ClothPoseFinder * placer, const ClothPatch * patch,
+void cloth_pose_finder_free (ClothPoseFinder * finder);
+gboolean cloth_pose_finder_run (ClothPoseFinder * finder, const ClothPatch * patch,
     const ClothPoseWeights * weights, const ClothPose * votes,
     guint n_votes, ClothPose * best);
 
