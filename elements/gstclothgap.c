@@ -19,7 +19,7 @@
  * What one `camera` of `rig` saw lies on rays. All that is measured is across them: so
  * are the springs, the residuals and the scores. Along them the simulation is believed,
  * from the scene's start on, and the recording that is diagnosed at the end has the
- * simulation's distances from the camera. What moves the cloth along the observation stays
+ * simulation's distances from the camera. What moves the cloth along the line of sight stays
  * unseen; join two or more cameras by `triangulate` to see it. A recording from one camera
  * says nothing about the camera itself.
  *

@@ -31,8 +31,14 @@ size_is_right (const GstClothProperty * property)
       return property->size == sizeof (gchar *);
     case GST_CLOTH_TYPE_FRACTION:
       return property->size == 2 * sizeof (gint);
-    default:
+    case G_TYPE_BOOLEAN:
+    case G_TYPE_INT:
+    case G_TYPE_UINT:
+    case G_TYPE_FLOAT:
+    case G_TYPE_ENUM:
       return property->size == sizeof (gint);
+    default:
+      return FALSE;
   }
 }
 
@@ -176,10 +182,12 @@ write_member (const GstClothProperty * property, gpointer member,
       g_free (*(gchar **) member);
       *(gchar **) member = g_value_dup_string (value);
       break;
-    default:
+    case GST_CLOTH_TYPE_FRACTION:
       ((gint *) member)[0] = gst_value_get_fraction_numerator (value);
       ((gint *) member)[1] = gst_value_get_fraction_denominator (value);
       break;
+    default:
+      g_assert_not_reached ();
   }
 }
 
@@ -212,10 +220,12 @@ read_member (const GstClothProperty * property, gconstpointer member,
     case G_TYPE_STRING:
       g_value_set_string (value, *(const gchar * const *) member);
       break;
-    default:
+    case GST_CLOTH_TYPE_FRACTION:
       gst_value_set_fraction (value, ((const gint *) member)[0],
           ((const gint *) member)[1]);
       break;
+    default:
+      g_assert_not_reached ();
   }
 }
 

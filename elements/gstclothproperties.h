@@ -8,7 +8,7 @@
 G_BEGIN_DECLS
 
 /* GST_TYPE_FRACTION is known at run time only. */
-#define GST_CLOTH_TYPE_FRACTION G_TYPE_INVALID
+#define GST_CLOTH_TYPE_FRACTION G_TYPE_FUNDAMENTAL_MAX
 
 /* Where a property's value is kept: a member of the element's settings, which are a struct
  * of the element's own or the algorithm's parameters. */

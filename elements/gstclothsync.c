@@ -429,15 +429,16 @@ gst_cloth_sync_stop (GstAggregator * agg)
   return TRUE;
 }
 
-/* ---- the joining of streams ---- */
-
-/* How a set is made. The earliest frame at the head of any pad gives the set its time
+/* ---- the joining of streams ----
+ *
+ * How a set is made. The earliest frame at the head of any pad gives the set its time
  * t; every head of running time <= t + tolerance belongs to it, one frame a pad. When
  * not live the base waits until every pad that is not at EOS has a head, so the sets
  * depend on the time stamps alone and not on which thread came first. When live it
  * waits no longer than clock time t + latency (upstream's, the tolerance and the
  * latency property) and goes on with what is there. A GAP says that a pad has nothing
  * for a while: it is never a view, but it spares the wait. */
+
 /* The heads of all pads, by index. */
 typedef struct
 {

@@ -1,5 +1,5 @@
-/* What several elements do alike: caps, times, properties that hold from start to stop, the
- * camera of a rig, what comes as a mesh stream.
+/* What several elements do alike: caps, times, the camera of a rig, what comes as a mesh
+ * stream.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #ifdef HAVE_CONFIG_H

@@ -69,7 +69,7 @@ run_simulation (const Arguments * arguments, GError ** error)
   info = cloth_take_info_copy (cloth_take_get_info (take));
   info->noise_sigma_m = 0;
   g_free (info->notes);
-  info->notes = g_strdup ("simulated by gst-cloth-gap-1.0");
+  info->notes = g_strdup ("simulated by " PROGRAM);
   writer = cloth_take_writer_new (arguments->output, info, scene->topology,
       error);
   return writer && write_frames (sim, scene, writer, error) &&

@@ -5,6 +5,8 @@
 
 #include "tools/tool.h"
 
+#define PROGRAM "gst-cloth-gap-1.0"
+
 typedef struct
 {
   gchar *format, *scene, *output, *model, *effects;

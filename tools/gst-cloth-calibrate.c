@@ -286,6 +286,7 @@ run (gconstpointer data)
   ClothLens lens;
   gint code;
 
+  gst_init (NULL, NULL);
   if (!a->output)
     return complain (BAD_USAGE, "name the file to write: --output rig.json");
   if (a->opencv || a->kalibr)
@@ -372,7 +373,6 @@ main (int argc, char **argv)
   };
   gint code;
 
-  gst_init (NULL, NULL);
   a.first = g_strdup ("black");
   a.lens = g_strdup ("brown5");
   a.world = g_strdup ("camera");

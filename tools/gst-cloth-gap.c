@@ -88,7 +88,7 @@ main (int argc, char **argv)
         NULL, "diagnose TAKE… | effects | simulate MODEL"},
     {NULL}
   };
-  gint code = tool_main ("gst-cloth-gap-1.0",
+  gint code = tool_main (PROGRAM,
       "- say where a simulation of cloth departs from recordings", entries,
       spread_lists (argv), run, &arguments);
 

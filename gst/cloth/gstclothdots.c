@@ -127,6 +127,7 @@ gst_cloth_dots_new (const gchar * camera, guint64 sequence, guint columns,
 {
   GstClothDots *payload;
 
+  g_return_val_if_fail (gst_cloth_camera_is_valid (camera), NULL);
   g_return_val_if_fail (dots || !n_dots, NULL);
   g_return_val_if_fail (n_dots <= GST_CLOTH_MAX_FEATURES, NULL);
   g_return_val_if_fail (columns <= GST_CLOTH_MAX_FEATURES

@@ -8,24 +8,18 @@
 #include "gst/cloth/gstclothpayload.h"
 
 /* @size: bytes of the payload's struct and items
- * @camera: (nullable): UTF-8 of at most #GST_CLOTH_MAX_CAMERA_NAME bytes
+ * @camera: (nullable): a name that gst_cloth_camera_is_valid()
  * @sequence: number of the frame
  * @scale: (nullable): how it is scaled
  *
- * Returns: (transfer full): a payload; what follows its #GstClothPayload is not set.
- *   %NULL when @camera is no name.
+ * Returns: (transfer full): a payload; what follows its #GstClothPayload is not set
  */
 gpointer
 gst_cloth_payload_new (gsize size, const gchar * camera, guint64 sequence,
     GstClothPayloadScale scale)
 {
-  GstClothPayload *payload;
+  GstClothPayload *payload = g_atomic_rc_box_alloc (size);
 
-  g_return_val_if_fail (camera == NULL
-      || (strlen (camera) <= GST_CLOTH_MAX_CAMERA_NAME
-          && g_utf8_validate (camera, -1, NULL)), NULL);
-
-  payload = g_atomic_rc_box_alloc (size);
   payload->sequence = sequence;
   payload->scale = scale;
   g_strlcpy (payload->camera, camera ? camera : "", sizeof payload->camera);

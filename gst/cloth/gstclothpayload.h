@@ -30,6 +30,14 @@ typedef struct
   GstClothPayload *payload;
 } GstClothPayloadMeta;
 
+/* @camera: (nullable): UTF-8 of at most #GST_CLOTH_MAX_CAMERA_NAME bytes */
+static inline gboolean
+gst_cloth_camera_is_valid (const gchar * camera)
+{
+  return camera == NULL || (strlen (camera) <= GST_CLOTH_MAX_CAMERA_NAME
+      && g_utf8_validate (camera, -1, NULL));
+}
+
 gpointer gst_cloth_payload_new (gsize size, const gchar * camera,
     guint64 sequence, GstClothPayloadScale scale);
 gpointer gst_cloth_payload_scale (const GstClothPayload * payload,

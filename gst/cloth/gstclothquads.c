@@ -149,6 +149,7 @@ gst_cloth_quads_new (const gchar * camera, guint64 sequence, guint columns,
 {
   GstClothQuads *payload;
 
+  g_return_val_if_fail (gst_cloth_camera_is_valid (camera), NULL);
   g_return_val_if_fail (quads || !n_quads, NULL);
   g_return_val_if_fail (n_quads <= GST_CLOTH_MAX_FEATURES, NULL);
   g_return_val_if_fail (columns <= GST_CLOTH_MAX_FEATURES

@@ -148,6 +148,7 @@ gst_cloth_saddles_new (const gchar * camera, guint64 sequence,
 {
   GstClothSaddles *saddles;
 
+  g_return_val_if_fail (gst_cloth_camera_is_valid (camera), NULL);
   g_return_val_if_fail (refined || !n_refined, NULL);
   g_return_val_if_fail (candidates || !n_candidates, NULL);
   g_return_val_if_fail (n_refined <= GST_CLOTH_MAX_FEATURES, NULL);

@@ -42,6 +42,17 @@ cloth_effect_find (const gchar * id)
   return NULL;
 }
 
+/* @ids: (nullable) (array zero-terminated=1): ids of effects; %NULL: of all
+ * @id: id of an effect
+ *
+ * Returns: whether it is one of them
+ */
+gboolean
+cloth_effect_is_among (const gchar * const *ids, const gchar * id)
+{
+  return !ids || g_strv_contains (ids, id);
+}
+
 /* @side: a side
  *
  * Returns: (transfer none): its name

@@ -32,7 +32,8 @@ typedef enum {
  * @CLOTH_EFFECT_TEST_STOCHASTIC: it is chance that another effect's parameters change with
  *   time: by how much these differ from one part of a take to the next; it is never
  *   accepted, as what it did follows from nothing
- * @CLOTH_EFFECT_TEST_REPEAT: by the share of pictures that show the one before once more
+ * @CLOTH_EFFECT_TEST_REPEAT: by the share of pictures that show the one before once more;
+ *   one effect of one parameter
  * @CLOTH_EFFECT_TEST_NONE: not at all
  *
  * How a diagnosis tests an effect. Those of numerics are never tested: they are part of
@@ -116,6 +117,7 @@ typedef struct {
 
 const ClothEffect *const *cloth_effect_table (guint * n_effects);
 const ClothEffect *cloth_effect_find (const gchar * id);
+gboolean cloth_effect_is_among (const gchar * const *ids, const gchar * id);
 const gchar *cloth_effect_side_name (ClothEffectSide side);
 
 G_END_DECLS

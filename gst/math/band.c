@@ -9,7 +9,6 @@
 #include "gst/math/band.h"
 
 #include <math.h>
-#include <string.h>
 
 /* What is left of a pivot that is nothing but rounding, of its diagonal. */
 #define PIVOT_FLOOR 1e-11

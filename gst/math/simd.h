@@ -3,8 +3,9 @@
  *
  * An inner loop that is worth it lies in a source of its own, a kernel, which is named
  * among the kernels of its room's meson.build and compiled once for every level. It is
- * plain C; where it needs the instructions themselves it asks the compiler which ones it
- * may use (__AVX512BW__, __AVX2__). At its end is a table of its functions:
+ * plain C; where it needs the instructions themselves it asks for CLOTH_SIMD_BITS, the width
+ * of its level's vectors: 0, 256 or 512. (What the compiler may use, __AVX2__ and the like,
+ * depends on the flags of who builds.) At its end is a table of its functions:
  *
  *   const ClothDrawRows CLOTH_SIMD_NAME (cloth_draw_rows) = { line, quad };
  *

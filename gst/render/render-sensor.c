@@ -4,7 +4,6 @@
 #include "gst/render/render-private.h"
 
 #include <math.h>
-#include <string.h>
 
 /* The transfer curve as a table, straight between its places. */
 #define CURVE 4096

@@ -373,7 +373,7 @@ spread (const ClothCapture * capture, const gdouble w[2], gdouble lag_variance,
  * @covariances: (nullable) (array) (out caller-allocates): xx, xy, yy of each point, px²:
  *   what the effects add to the covariance that a measured point has without them
  *
- * Foretells where the points will be measured on average, and how much more they scatter.
+ * Predicts where the points will be measured on average, and how much more they scatter.
  * Occlusion is not looked at. Lost pictures count by their mean: each point is later by
  * the mean number of pictures lost in a row. Without effects this is
  * cloth_camera_project () to the bit, and the covariances are 0.

@@ -4,7 +4,6 @@
 #include "gst/rig/planar.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "gst/math/linalg.h"
 

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#ifdef __AVX2__
+#if CLOTH_SIMD_BITS >= 256
 #include <immintrin.h>
 #endif
 
@@ -35,7 +35,7 @@
 #define CHOOSE(mask, a, b) V_CHOOSE (mask, VECTOR (a), VECTOR (b))
 #define INLINE static inline __attribute__((always_inline))
 
-#if defined (__AVX512DQ__)
+#if CLOTH_SIMD_BITS == 512
 INLINE __m512d
 same (__m512d a)
 {
@@ -53,7 +53,7 @@ same (__m512d a)
 #define BITS(mask) ((guint) (mask) & 0xff)
 #define LOAD _mm512_loadu_pd
 #define STORE _mm512_storeu_pd
-#elif defined (__AVX2__)
+#elif CLOTH_SIMD_BITS == 256
 typedef gint64 Mask4 __attribute__((vector_size (32)));
 
 INLINE __m256d

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "gst/math/linalg.h"
+#include "gst/math/vec3.h"
 #include "gst/mesh/side.h"
 #include "gst/sim/types.h"
 
@@ -338,21 +339,12 @@ add_weight (Curvature * curvature, guint32 particle, gdouble weight,
 static gboolean
 make_square (gdouble basis[3][3], guint n, gdouble form[3])
 {
-  gdouble length;
-
   for (guint i = 0; i < n; i++) {
-    gdouble dot = basis[i][0] * form[0] + basis[i][1] * form[1] +
-        basis[i][2] * form[2];
+    const gdouble dot = cloth_vec3_dot (basis[i], form);
 
-    for (guint r = 0; r < 3; r++)
-      form[r] -= dot * basis[i][r];
+    cloth_vec3_add_scaled (form, -dot, basis[i]);
   }
-  length = sqrt (form[0] * form[0] + form[1] * form[1] + form[2] * form[2]);
-  if (length < 1e-3)
-    return FALSE;
-  for (guint r = 0; r < 3; r++)
-    form[r] /= length;
-  return TRUE;
+  return cloth_vec3_normalise (form) >= 1e-3;
 }
 
 /* The mean curvature of a triangle by Gauss's theorem, from the slopes at its edges (Oñate

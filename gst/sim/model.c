@@ -3,7 +3,6 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/sim/model.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "gst/file/json.h"

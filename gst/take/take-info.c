@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "gst/file/json.h"
+#include "gst/math/vec3.h"
 
 #define MAX_SEAMS 1024
 
@@ -172,20 +173,14 @@ parse_round (JsonObject * object,
 static gboolean
 parse_plane (JsonObject * object, ClothObstacle * obstacle, GError ** error)
 {
-  gdouble *normal = obstacle->normal, length;
-
   if (!cloth_json_get_vector (&take_json, object, "point", TRUE,
           obstacle->point, error)
-      || !cloth_json_get_vector (&take_json, object, "normal", TRUE, normal,
-          error))
+      || !cloth_json_get_vector (&take_json, object, "normal", TRUE,
+          obstacle->normal, error))
     return FALSE;
-  length = sqrt (normal[0] * normal[0] + normal[1] * normal[1] +
-      normal[2] * normal[2]);
-  if (length < 1e-9)
+  if (cloth_vec3_normalise (obstacle->normal) < 1e-9)
     return cloth_json_invalid (&take_json, error,
         "the “normal” of a plane has no length");
-  for (guint k = 0; k < 3; k++)
-    normal[k] /= length;
   return TRUE;
 }
 

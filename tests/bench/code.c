@@ -1,12 +1,12 @@
 /* Time to make a code and to place patches on coded and plain boards, against looking at
- * every square under every placement.
+ * every square under every pose.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 
 #include "gst/math/random.h"
 #include "gst/pattern/code.h"
 #include "tests/bench/clock.h"
-#include "tests/common/bruteplace.h"
+#include "tests/common/brutepose.h"
 
 #define M CLOTH_PATCH_MARGIN
 
@@ -50,7 +50,7 @@ window (const ClothPattern * pattern, gint left, gint top, gint columns,
 static void
 measure (const ClothPattern * pattern, gint columns, gint rows, gboolean brute)
 {
-  g_autoptr (ClothPoseFinder) placer = cloth_pose_finder_new (pattern);
+  g_autoptr (ClothPoseFinder) pose_finder = cloth_pose_finder_new (pattern);
   g_autoptr (ClothPatch) patch = NULL;
   gdouble least[2] = { G_MAXDOUBLE, G_MAXDOUBLE }, slow = 0;
   ClothPose truth, best = { 0 };
@@ -65,8 +65,8 @@ measure (const ClothPattern * pattern, gint columns, gint rows, gboolean brute)
     for (gint run = 0; run < 10; run++) {
       const gdouble start = cpu_ms ();
 
-      cloth_pose_finder_run (placer, patch, &cloth_pose_cloth, &truth, voted,
-          &best);
+      cloth_pose_finder_run (pose_finder, patch, &cloth_pose_cloth, &truth,
+          voted, &best);
       least[voted] = MIN (least[voted], cpu_ms () - start);
       right &= best.rotation == truth.rotation && best.column == truth.column
           && best.row == truth.row;
@@ -82,7 +82,7 @@ measure (const ClothPattern * pattern, gint columns, gint rows, gboolean brute)
       right ? "right" : pattern->code ? "WRONG" : "anywhere", least[0],
       least[1]);
   if (brute)
-    g_print ("; every square under every placement %.1f ms: %.0f times", slow,
+    g_print ("; every square under every pose %.1f ms: %.0f times", slow,
         slow / least[0]);
   g_print ("\n");
 }

@@ -306,7 +306,6 @@ fill_table (ClothGapResult * result)
     item->constancy_p_value = row->effect == 2 ? 0.012 : 0.5;
     item->group = row->group;
     item->accepted = i == 0;
-    item->refitted = row->effect == 5;
     for (guint k = 0; k < effects[row->effect].n_parameters; k++) {
       item->values[k] = row->values[k];
       item->sigmas[k] = row->sigmas[k];

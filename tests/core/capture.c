@@ -7,16 +7,7 @@
 #include <string.h>
 
 #include "gst/rig/rig.h"
-
-/* All camera and image effects. */
-#define CAPTURE(name) extern const ClothEffect cloth_effect_##name;
-#include "gst/effect/list.h"
-
-static const ClothEffect *const all_effects[] = {
-#define CAPTURE(name) &cloth_effect_##name,
-#include "gst/effect/list.h"
-  NULL
-};
+#include "tests/common/captureeffects.h"
 
 #define POINTS 5
 #define FRAMES 6
@@ -90,7 +81,7 @@ test_null (void)
   guint n = 0;
 
   scene_init (&scene, 1.1, -0.7);
-  for (guint i = 0; (effect = all_effects[i]); i++, n++) {
+  for (guint i = 0; (effect = capture_effects[i]); i++, n++) {
     for (guint o = 0; o < G_N_ELEMENTS (others); o++) {
       gdouble values[CLOTH_EFFECT_MAX_PARAMETERS], px[2][2 * POINTS];
       gdouble cov[2][3 * POINTS];
@@ -147,7 +138,7 @@ test_each_acts (void)
   Scene scene;
 
   scene_init (&scene, 1.1, -0.7);
-  for (guint i = 0; (effect = all_effects[i]); i++) {
+  for (guint i = 0; (effect = capture_effects[i]); i++) {
     g_assert_nonnull (effect->blurb);
     g_assert_nonnull (effect->source);
     g_assert_nonnull (effect->regressor);
@@ -205,7 +196,7 @@ test_derivatives (void)
   Scene scene;
 
   scene_init (&scene, 1.1, -0.7);
-  for (guint i = 0; (effect = all_effects[i]); i++)
+  for (guint i = 0; (effect = capture_effects[i]); i++)
     for (guint k = 0; k < effect->n_parameters; k++) {
       gdouble at[3][5 * POINTS], apart = 0, size = 0;
 

@@ -9,20 +9,11 @@
 
 #include "gst/pattern/texture.h"
 #include "gst/vision/corner/saddle.h"
+#include "tests/common/captureeffects.h"
 #include "tests/common/picture.h"
 #ifdef HAVE_CLOTH_CV
 #include "tests/reference/reference.h"
 #endif
-
-/* All camera and image effects. */
-#define CAPTURE(name) extern const ClothEffect cloth_effect_##name;
-#include "gst/effect/list.h"
-
-static const ClothEffect *const all_effects[] = {
-#define CAPTURE(name) &cloth_effect_##name,
-#include "gst/effect/list.h"
-  NULL
-};
 
 #define WIDTH 640
 #define HEIGHT 480
@@ -877,7 +868,7 @@ test_same_bytes (void)
 
       g_assert_cmpmem (a, WIDTH * HEIGHT, b, WIDTH * HEIGHT);
     }
-  for (guint i = 0; (effect = all_effects[i]); i++) {
+  for (guint i = 0; (effect = capture_effects[i]); i++) {
     g_autofree gchar *text = g_strdup_printf ("%s,%s=%g", effect->id,
         effect->parameters[0].name, effect->parameters[0].null_value);
     const Options options = { NULL, text, velocity };

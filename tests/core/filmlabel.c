@@ -1,8 +1,6 @@
 /* Labels of a film's dots in light that the print doesn't allow for.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include <string.h>
-
 #include "gst/math/random.h"
 #include "gst/vision/label/label.h"
 
@@ -151,8 +149,8 @@ test_learns (void)
   shares[1] = share_right (learning, array);
   g_test_message ("%.1f%% right, %.1f%% when learnt", 100 * shares[0],
       100 * shares[1]);
+  g_assert_cmpfloat (shares[0], <, 0.95);
   g_assert_cmpfloat (shares[1], >, 0.99);
-  g_assert_cmpfloat (shares[1], >=, shares[0]);
 }
 
 /* Dots of another print: told once, after a while or at the end of the film. */
@@ -235,6 +233,7 @@ test_chart (void)
   g_assert_cmpmem (before, N * COLOURS * sizeof (gfloat),
       cloth_film_labeller_get_likelihoods (labeller),
       N * COLOURS * sizeof (gfloat));
+  g_assert_cmpfloat (share_right (labeller, array), <, 0.95);
   film (array, tinted, 3, chart);
   g_assert_true (cloth_film_labeller_learn_chart (labeller, &params, chart, N));
   g_assert_cmpuint (run (labeller, FALSE, dots), >, N * 9 / 10);

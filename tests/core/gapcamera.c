@@ -146,7 +146,7 @@ picture (guint camera, const Fault * f, guint vertex, gdouble t, gdouble px[2])
 
 /* All that the cameras see; only @n_seeing of them see anything. */
 static ClothObservations *
-sights_new (const Fault * faults, guint n_faults, guint n_seeing)
+observations_new (const Fault * faults, guint n_faults, guint n_seeing)
 {
   ClothObservations *observations = cloth_observations_new (rig_new (), N);
   ClothRandom random;
@@ -330,7 +330,7 @@ test_named (gconstpointer data)
 {
   const Case *c = data;
   g_autoptr (ClothObservations) observations =
-      sights_new (&c->fault, 1, N_CAMERAS);
+      observations_new (&c->fault, 1, N_CAMERAS);
   g_autoptr (ClothGapResult) result = diagnose (observations, NULL, 2);
   const ClothGapEffect *first = &g_array_index (result->effects,
       ClothGapEffect, 0);
@@ -352,7 +352,7 @@ test_blur (void)
 {
   const Fault fault = { 1, 0., 0., 0., {0.}, 0., 0.02 };
   g_autoptr (ClothObservations) observations =
-      sights_new (&fault, 1, N_CAMERAS);
+      observations_new (&fault, 1, N_CAMERAS);
   g_autoptr (ClothGapResult) result = diagnose (observations, NULL, 2);
   gboolean found = FALSE;
 
@@ -381,7 +381,7 @@ test_two (void)
 {
   const Fault faults[2] = { {0, 0.01}, {2, 0., -0.01} };
   g_autoptr (ClothObservations) observations =
-      sights_new (faults, 2, N_CAMERAS);
+      observations_new (faults, 2, N_CAMERAS);
   g_autoptr (ClothGapResult) result = diagnose (observations, NULL, 2);
   gboolean found[2] = { FALSE, FALSE };
 
@@ -402,7 +402,8 @@ test_two (void)
 static void
 test_nothing (void)
 {
-  g_autoptr (ClothObservations) observations = sights_new (NULL, 0, N_CAMERAS);
+  g_autoptr (ClothObservations) observations =
+      observations_new (NULL, 0, N_CAMERAS);
   g_autoptr (ClothGapResult) result = diagnose (observations, NULL, 2);
   const ClothGapStage *stage;
 
@@ -418,7 +419,7 @@ static void
 test_holes (void)
 {
   const Fault fault = { 1, 0.03 };
-  g_autoptr (ClothObservations) observations = sights_new (&fault, 1, 2);
+  g_autoptr (ClothObservations) observations = observations_new (&fault, 1, 2);
   g_autoptr (ClothGapResult) result = diagnose_seen (observations, NULL, 1, 2);
   const ClothGapEffect *first = &g_array_index (result->effects,
       ClothGapEffect, 0);
@@ -436,9 +437,9 @@ test_baseline (void)
 {
   const Fault fault = { 1, 0.012 };
   g_autoptr (ClothObservations) observations =
-      sights_new (&fault, 1, N_CAMERAS);
-  g_autoptr (ClothObservations) same = sights_new (&fault, 1, N_CAMERAS);
-  g_autoptr (ClothObservations) sound = sights_new (NULL, 0, N_CAMERAS);
+      observations_new (&fault, 1, N_CAMERAS);
+  g_autoptr (ClothObservations) same = observations_new (&fault, 1, N_CAMERAS);
+  g_autoptr (ClothObservations) sound = observations_new (NULL, 0, N_CAMERAS);
   g_autoptr (ClothGapResult) known = diagnose (observations, same, 2);
   g_autoptr (ClothGapResult) news = diagnose (observations, sound, 2);
 
@@ -451,7 +452,7 @@ test_threads (void)
 {
   const Fault fault = { 1, 0.012 };
   g_autoptr (ClothObservations) observations =
-      sights_new (&fault, 1, N_CAMERAS);
+      observations_new (&fault, 1, N_CAMERAS);
   g_autoptr (ClothGapResult) one = diagnose (observations, NULL, 1);
   g_autoptr (ClothGapResult) two = diagnose (observations, NULL, 2);
   g_autofree gchar *a = NULL, *b = NULL;
@@ -466,7 +467,7 @@ test_threads (void)
 static void
 test_one_camera (void)
 {
-  g_autoptr (ClothObservations) observations = sights_new (NULL, 0, 1);
+  g_autoptr (ClothObservations) observations = observations_new (NULL, 0, 1);
   g_autoptr (ClothGapResult) result = diagnose (observations, NULL, 1);
   guint n = 0;
 
@@ -483,7 +484,8 @@ test_one_camera (void)
 static void
 test_solved_again (void)
 {
-  g_autoptr (ClothObservations) observations = sights_new (NULL, 0, N_CAMERAS);
+  g_autoptr (ClothObservations) observations =
+      observations_new (NULL, 0, N_CAMERAS);
   g_autofree gchar *folder = NULL;
   g_autoptr (GError) error = NULL;
   g_autoptr (ClothTake) take = take_new (0.003, COLUMNS, &folder);

@@ -401,14 +401,15 @@ test_unknown_effect (void)
   g_assert_nonnull (strstr (error->message, "magic"));
 }
 
-/* Shear may not be fitted to what the cloth has, and the diagnosis says so. */
+/* Shear may not be fitted to what the cloth has, and the diagnosis says so. As it is fitted
+ * on the take itself, the effect that changes it can't be told from it. */
 static void
 test_narrow (void)
 {
   g_autoptr (GError) error = NULL;
   g_autoptr (ClothModel) model = model_new (CLOTH_FORCE_MEMBRANE);
   g_autoptr (ClothTake) take = record ("plain", NULL, NULL, FALSE, 1);
-  const gchar *const effects[] = { "air_drag", NULL };
+  const gchar *const effects[] = { "air_drag", "shear", NULL };
   const ClothGapOptions options = {.effects = effects };
   ClothModelFree *shear = &g_array_index (model->free, ClothModelFree, 2);
   ClothTake *takes[1] = { take };
@@ -418,6 +419,12 @@ test_narrow (void)
   wide = cloth_gap_diagnose (takes, 1, model, &options, &error);
   g_assert_no_error (error);
   g_assert_cmpuint (wide->notes->len, ==, 0);
+  g_assert_cmpuint (wide->untested->len, ==, 1);
+  g_assert_cmpstr (g_array_index (wide->untested, ClothGapUntested,
+          0).effect->id, ==, "shear");
+  g_assert_cmpuint (wide->effects->len, ==, 1);
+  g_assert_cmpstr (g_array_index (wide->effects, ClothGapEffect,
+          0).effect->id, ==, "air_drag");
   g_assert_cmpstr (shear->name, ==, "shear");
   shear->range[0] = 8. * model->shear;
   model->shear = 12. * model->shear;

@@ -48,7 +48,7 @@ turn_over (guint vertex, gdouble t, gfloat p[3])
   p[2] = (gfloat) (-spacing * row - 0.3 * t);
 }
 
-/* A patch comes in sight late, one goes out of observation, and one vertex is never seen. */
+/* A patch comes in sight late, one goes out of sight, and one vertex is never seen. */
 static void
 turning (guint vertex, gdouble t, gfloat p[3])
 {
@@ -62,7 +62,7 @@ turning (guint vertex, gdouble t, gfloat p[3])
     p[0] = p[1] = p[2] = NAN;
 }
 
-/* A patch goes out of observation before the one beside it comes in sight. */
+/* A patch goes out of sight before the one beside it comes in sight. */
 static void
 relay (guint vertex, gdouble t, gfloat p[3])
 {

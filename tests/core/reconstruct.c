@@ -57,9 +57,10 @@ film_init (Film * film, guint n_cameras)
 static void
 film_clear (Film * film)
 {
-  cloth_rig_free (film->rig);
+  g_clear_pointer (&film->rig, cloth_rig_free);
 }
 
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Film, film_clear);
 static void
 look (Film * film, guint camera, guint i, const gdouble X[3])
 {
@@ -134,7 +135,7 @@ test_plane (void)
   for (guint n = 2; n <= MAX_CAMERAS; n++) {
     g_autoptr (ClothReconstruction) self = NULL;
     const ClothReconstructed *result;
-    Film film;
+    g_auto (Film) film = { 0 };
 
     film_init (&film, n);
     film_plane (&film);
@@ -150,7 +151,6 @@ test_plane (void)
       g_assert_cmpuint (result->n_compared[c], ==, N);
       g_assert_cmpuint (result->n_left_out[c], ==, 0);
     }
-    film_clear (&film);
   }
 }
 
@@ -166,7 +166,7 @@ test_covariance (void)
   const guint middle = ROWS / 2 * COLUMNS + COLUMNS / 2;
   const gfloat *c;
   gdouble each;
-  Film film;
+  g_auto (Film) film = { 0 };
 
   film_init (&film, 2);
   film_plane (&film);
@@ -181,7 +181,6 @@ test_covariance (void)
   g_assert_cmpfloat_with_epsilon (c[5], each / 2, 1e-4 * each);
   for (guint k = 1; k < 5; k += k == 2 ? 2 : 1)
     g_assert_cmpfloat_with_epsilon (c[k], 0, 1e-4 * each);
-  film_clear (&film);
 }
 
 /* Observations say 0.01 px² and scatter by 0.01 + 0.09 px². */
@@ -192,7 +191,7 @@ test_error_floor (void)
   g_autoptr (ClothReconstruction) self = NULL, anew = NULL;
   ClothRandom random;
   gdouble floor = 0;
-  Film film;
+  g_auto (Film) film = { 0 };
 
   film_init (&film, MAX_CAMERAS);
   self = make (&film, &corners);
@@ -217,7 +216,6 @@ test_error_floor (void)
   film_plane (&film);
   anew = make (&film, &corners);
   g_assert_cmpfloat (run (anew, &film)->error_floor, <, 1e-3);
-  film_clear (&film);
 }
 
 /* The centre of gravity of the picture of a dot on a cylinder of 0.1 m, by its outline. */
@@ -256,7 +254,7 @@ test_dots (void)
 {
   const gdouble pitch = 0.012, radius = 0.004;
   gdouble rms[2] = { 0 };
-  Film film;
+  g_auto (Film) film = { 0 };
 
   film_init (&film, MAX_CAMERAS);
   for (guint i = 0; i < N; i++) {
@@ -282,7 +280,6 @@ test_dots (void)
   }
   g_assert_cmpfloat (sqrt (rms[0]), >, 1.5e-5);
   g_assert_cmpfloat (sqrt (rms[1]), <, sqrt (rms[0]) / 5);
-  film_clear (&film);
 }
 
 static void
@@ -291,7 +288,7 @@ test_threads (void)
   g_autoptr (ClothPool) pool = cloth_pool_new (3);
   g_autoptr (ClothReconstruction) one = NULL, many = NULL;
   const ClothReconstructed *a, *b;
-  Film film;
+  g_auto (Film) film = { 0 };
 
   film_init (&film, 3);
   film_plane (&film);
@@ -306,7 +303,6 @@ test_threads (void)
   g_assert_cmpmem (a->covariances, 6 * N * sizeof (gfloat), b->covariances,
       6 * N * sizeof (gfloat));
   g_assert_cmpmem (a->states, N, b->states, N);
-  film_clear (&film);
 }
 
 /* ---- what is not ---- */
@@ -317,7 +313,7 @@ test_wrong_view (void)
 {
   g_autoptr (ClothReconstruction) self = NULL;
   const ClothReconstructed *result;
-  Film film;
+  g_auto (Film) film = { 0 };
 
   film_init (&film, MAX_CAMERAS);
   film_plane (&film);
@@ -333,7 +329,6 @@ test_wrong_view (void)
     g_assert_cmpuint (result->n_compared[c], ==, N);
     g_assert_cmpuint (result->n_left_out[c], ==, c == 2);
   }
-  film_clear (&film);
 }
 
 /* Of two cameras none can be outvoted: what leaves the epipolar line is not known. */
@@ -342,7 +337,7 @@ test_contradiction (void)
 {
   g_autoptr (ClothReconstruction) self = NULL;
   const ClothReconstructed *result;
-  Film film;
+  g_auto (Film) film = { 0 };
 
   film_init (&film, 2);
   film_plane (&film);
@@ -354,7 +349,6 @@ test_contradiction (void)
     if (i != 30)
       g_assert_cmpuint (result->states[i], ==, CLOTH_POINT_TWO_VIEWS);
   g_assert_cmpuint (result->n_left_out[0] + result->n_left_out[1], >, 0);
-  film_clear (&film);
 }
 
 /* Both cameras see another place than the vertex: only its neighbours tell. */
@@ -365,7 +359,7 @@ test_stretched (void)
       CLOTH_RECONSTRUCTION_PARAMETERS_DEFAULT;
   g_autoptr (ClothReconstruction) self = NULL;
   const ClothReconstructed *result;
-  Film film;
+  g_auto (Film) film = { 0 };
 
   film_init (&film, 2);
   film_plane (&film);
@@ -385,7 +379,6 @@ test_stretched (void)
   result = run (self, &film);
   g_assert_cmpuint (result->states[31], ==, CLOTH_POINT_TWO_VIEWS);
   g_assert_cmpfloat (miss (result, &film, 31), <, 1e-6);
-  film_clear (&film);
 }
 
 static void
@@ -396,7 +389,7 @@ test_few_views (void)
   for (guint seeing = 0; seeing < 2; seeing++) {
     g_autoptr (ClothReconstruction) self = NULL;
     const ClothReconstructed *result;
-    Film film;
+    g_auto (Film) film = { 0 };
 
     film_init (&film, 3);
     film_plane (&film);
@@ -409,7 +402,6 @@ test_few_views (void)
     for (guint c = 0; c < 3; c++)
       g_assert_cmpuint (result->n_compared[c], ==, 0);
     g_assert_cmpfloat (result->error_floor, ==, 0.01);
-    film_clear (&film);
   }
 }
 
@@ -419,7 +411,7 @@ test_unusable_views (void)
 {
   g_autoptr (ClothReconstruction) self = NULL;
   const ClothReconstructed *result;
-  Film film;
+  g_auto (Film) film = { 0 };
 
   film_init (&film, 2);
   film_plane (&film);
@@ -437,7 +429,6 @@ test_unusable_views (void)
     else
       g_assert_cmpuint (result->states[i], ==, CLOTH_POINT_TWO_VIEWS);
   }
-  film_clear (&film);
 }
 
 static void
@@ -447,7 +438,7 @@ test_unusable_cameras (void)
     const ClothTriangulateError expected = fault == 0 ?
         CLOTH_TRIANGULATE_ERROR_CAMERAS : CLOTH_TRIANGULATE_ERROR_CAMERA;
     g_autoptr (GError) error = NULL;
-    Film film;
+    g_auto (Film) film = { 0 };
 
     film_init (&film, fault == 0 ? 1 : 2);
     if (fault == 1)
@@ -456,7 +447,6 @@ test_unusable_cameras (void)
       film.rig->cameras[0].t[1] = NAN;
     g_assert_null (cloth_reconstruction_new (film.rig, &error));
     g_assert_true (g_error_matches (error, CLOTH_TRIANGULATE_ERROR, expected));
-    film_clear (&film);
   }
 }
 
@@ -466,7 +456,7 @@ test_too_many_vertices (void)
   const ClothReconstructionGrid huge = { 1001, 1000, EDGE, 0 };
   g_autoptr (ClothReconstruction) self = NULL;
   g_autoptr (GError) error = NULL;
-  Film film;
+  g_auto (Film) film = { 0 };
 
   film_init (&film, 2);
   film_plane (&film);
@@ -477,7 +467,6 @@ test_too_many_vertices (void)
   /* and goes on with a grid that it can do */
   cloth_reconstruction_set_grid (self, &corners);
   g_assert_cmpfloat (miss (run (self, &film), &film, 0), <, 1e-6);
-  film_clear (&film);
 }
 
 int

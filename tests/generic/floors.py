@@ -101,8 +101,11 @@ LICENCE = 'SPDX-License-Identifier: LGPL-2.1-or-later'
 WARN_LINES, MAX_LINES, README_LINES = 800, 1200, 15
 SOURCES = ('.c', '.h', '.cpp', '.cc', '.cxx', '.hpp')
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"]', re.M)
+OTHER_INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[^<" \t]', re.M)
 NOISE = re.compile(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'', re.S)
 DIRECTIVE = re.compile(r'^[ \t]*#(?:\\\n|[^\n])*', re.M)
+MACRO = re.compile(r'^[ \t]*#[ \t]*define[ \t]+\w+((?:\\\n|[^\n])*)', re.M)
+BRACES = re.compile(r'\{[^{}]*\}')
 # A macro that adds the suffix of a variant to a name.
 VARIANT = re.compile(r'\b(?:CLOTH_LANE_NAME|CLOTH_SIMD_NAME) \((\w+)\)')
 # What the macros of GLib define.
@@ -132,7 +135,7 @@ def room_of(path):
 
 
 def is_gstreamer(name):
-    return name.startswith('gst/') and room_of(name) not in ROOMS
+    return re.search(r'(^|/)gst/', name) and room_of(name) not in ROOMS
 
 
 class Source:
@@ -144,22 +147,25 @@ class Source:
         self.path, self.room, self.module = path, room_of(path), stem(path)
         self.includes = []
         for name in INCLUDE.findall(self.text):
-            beside = os.path.join(os.path.dirname(path), name)
+            beside = os.path.normpath(os.path.join(os.path.dirname(path), name))
             self.includes.append(beside if os.path.exists(os.path.join(root, beside)) else name)
         code = NOISE.sub(lambda noise: '""' if noise[0][0] == '"' else ' ', self.text)
+        # The macros of an error domain and of a type only give these another name.
+        macros = re.sub(r'\w+_(quark|get_type)\b', '', ' '.join(MACRO.findall(code)))
         code = VARIANT.sub(r'\1', DIRECTIVE.sub('', code))
-        self.globals, self.functions, bodies = definitions(code)
+        self.globals, self.functions, self.declared, bodies = definitions(code)
         self.globals |= {name + '_quark' for name in QUARK.findall(code)}
         self.globals |= {name + '_get_type' for name in TYPE.findall(code)}
         self.functions |= self.globals
         # A prototype in a header uses nothing: only what a function there does.
-        self.words = set(WORD.findall(' '.join(bodies) if path.endswith('.h') else code))
+        self.words = set(WORD.findall(macros + ' '.join(bodies) if path.endswith('.h')
+                                      else macros + code))
 
 
 def definitions(code):
-    """The global functions and variables that a file defines, all its functions, and the
-    texts of these."""
-    names, functions, bodies = set(), set(), []
+    """The global functions and variables that a file defines, all its functions, what it
+    declares only, and the texts of the functions."""
+    names, functions, declared, bodies = set(), set(), set(), []
     depth, start, opened = 0, 0, 0
     for match in re.finditer(r'[{};]', code):
         at = match.start()
@@ -177,13 +183,33 @@ def definitions(code):
                     names.add(name)
                 start = at + 1
         elif depth == 0:
-            head = re.split(r'[=\[]', code[start:at], maxsplit=1)[0]
-            words = WORD.findall(head)
-            if len(words) > 1 and not re.search(r'\b(static|extern|typedef)\b|[({]', head) \
-                    and words[0] not in ('struct', 'union', 'enum'):
-                names.add(words[-1])
+            name = variable(code[start:at])
+            if name is None:
+                declared.add(called(code[start:at].rstrip()))
+            elif re.search(r'\bextern\b', code[start:at]):
+                declared.add(name)
+            elif name and not re.search(r'\bstatic\b', code[start:at]):
+                names.add(name)
             start = at + 1
-    return names, functions, bodies
+    return names, functions, declared, bodies
+
+
+def variable(text):
+    """The variable of a declaration without its semicolon; '' if it has none, None if it is
+    that of a function."""
+    while BRACES.search(text):
+        text = BRACES.sub(' ; ', text)
+    head = re.split(r'[=\[]', text, maxsplit=1)[0]
+    pointer = re.match(r'[\w\s*]*\(\s*\*\s*(\w+)', head)
+    words = WORD.findall(head.rpartition(';')[2])
+    if re.search(r'\btypedef\b', head):
+        return ''
+    if pointer:
+        return pointer[1]
+    if '(' in head:
+        return None
+    tagged = words and words[0] in ('struct', 'union', 'enum')
+    return words[-1] if len(words) > (0 if ';' in head else 2 if tagged else 1) else ''
 
 
 def called(head):
@@ -207,12 +233,8 @@ def read(root):
 
 def arrows(sources):
     """(source, module that it uses, file or name by which) of all that is not a test."""
-    product = [source for source in sources if source.room and source.room.path != 'tests']
+    product, homes = of_product(sources)
     known = {source.path for source in product}
-    homes = {}
-    for source in product:
-        for name in source.globals:
-            homes.setdefault(name, set()).add(source.module)
     found = []
     for source in product:
         for name in source.includes:
@@ -224,6 +246,29 @@ def arrows(sources):
             if len(homes[name]) == 1 and (source.room.path == 'tools' or room_of(home).path != 'tools'):
                 found.append((source, home, name))
     return [arrow for arrow in found if arrow[0].module != arrow[1]]
+
+
+def of_product(sources):
+    """The sources that are no tests, and the modules that define each global name."""
+    product = [source for source in sources if source.room and source.room.path != 'tests']
+    homes = {}
+    for source in product:
+        for name in source.globals:
+            homes.setdefault(name, set()).add(source.module)
+    return product, homes
+
+
+def check_declarations(sources):
+    """A name is defined once, and declared in its room only: others take it by a door."""
+    product, homes = of_product(sources)
+    for name, modules in sorted(homes.items()):
+        if len(modules) > 1 and any(room_of(module).path != 'tools' for module in modules):
+            yield 'globals', '%s: defined by %s' % (name, ', '.join(sorted(modules)))
+    for source in product:
+        for name in sorted(source.declared & homes.keys()):
+            if source.room not in {room_of(module) for module in homes[name]}:
+                yield 'doors', '%s: declares %s, which is of %s' % (
+                    source.path, name, min(homes[name]))
 
 
 def circles(pairs):
@@ -277,6 +322,8 @@ def check_text(source):
         for name in sorted(source.globals):
             if not name.startswith(prefix):
                 yield 'globals', '%s: %s is global without %s' % (path, name, prefix)
+    if OTHER_INCLUDE.search(text) or any('..' in name for name in INCLUDE.findall(text)):
+        yield 'includes', '%s: an include by a macro or by ..' % path
 
 
 def check_includes(root, source):
@@ -286,7 +333,9 @@ def check_includes(root, source):
         other = room_of(name)
         if name.startswith('opencv') and not path.startswith('tests/'):
             yield 'opencv', '%s: OpenCV is only in the tests' % path
-        if room in ROOMS and is_gstreamer(name):
+        if other and room.path != 'tests' and not name.endswith(SOURCES):
+            yield 'includes', '%s: %s is read as C, but has not the name of a source' % (path, name)
+        elif room in ROOMS and is_gstreamer(name):
             yield 'gstreamer', '%s: an algorithm room includes %s' % (path, name)
         elif other and not os.path.exists(os.path.join(root, name)):
             yield 'missing', '%s: %s does not exist' % (path, name)
@@ -407,6 +456,8 @@ def check_documents(root, sources, functions):
         path = os.path.relpath(path, root)
         yield from check_paths(root, path, text)
         yield from check_names(path, text, functions)
+        for name in sorted(set(re.findall('`' + BARE.pattern + '`', text)) - known):
+            yield 'paths', '%s: %s does not exist' % (path, name)
 
 
 def check(root):
@@ -422,6 +473,7 @@ def check(root):
         yield from check_text(source)
         if source.room:
             yield from check_includes(root, source)
+    yield from check_declarations(sources)
     yield from check_modules(sources)
     yield from check_readmes(root, functions)
     yield from check_documents(root, sources, functions)
@@ -474,6 +526,20 @@ def self_test():
                    'gst/vision/corner/b.h': head}),
         ('doors', {'tests/elements/a.c': head + '#include "gst/sim/body.h"\n',
                    'gst/sim/body.h': head}),
+        ('doors', {'elements/gsta.c': head + 'void cloth_rig_sum (void);\n',
+                   'gst/rig/a.c': define % 'cloth_rig_sum'}),
+        ('doors', {'elements/gsta.c': head + 'extern struct Rig cloth_rig;\n',
+                   'gst/rig/a.c': head + 'struct Rig cloth_rig = { 1 };\n'}),
+        ('globals', {'gst/math/a.c': head + 'struct Sum small_sum = { 1 };\n'}),
+        ('globals', {'gst/math/a.c': head + 'void (*small_hook) (void);\n'}),
+        ('globals', {'gst/math/a.c': head + 'struct { int a; } small_sum;\n'}),
+        ('globals', {'gst/math/a.c': define % 'cloth_sum', 'gst/rig/a.c': define % 'cloth_sum'}),
+        ('includes', {'gst/math/a.c': head + '#include FILE_OF_SUMS\n'}),
+        ('includes', {'gst/math/a.c': head + '#include "table.inc"\n', 'gst/math/table.inc': head}),
+        ('includes', {'gst/vision/dot/a.c': head + '#include "../image.h"\n'}),
+        ('gstreamer', {'gst/rig/a.c': head + '#include <gstreamer-1.0/gst/gst.h>\n'}),
+        ('order', {'gst/math/a.h': head + '#define SUM \\\n  cloth_rig_sum ()\n',
+                   'gst/rig/a.c': define % 'cloth_rig_sum'}),
         ('order', {'gst/math/a.c': head + '#include "gst/vision/quad/quad.h"\n'}),
         ('order', {'gst/math/a.c': use % 'cloth_rig_sum', 'gst/rig/a.c': define % 'cloth_rig_sum'}),
         ('order', {'gst/cloth/a.c': head + '#include "gst/math/each.h"\n'}),
@@ -501,6 +567,7 @@ def self_test():
         ('names', {'docs/a.md': 'It calls `cloth_gone()`.\n'}),
         ('names', {'docs/a.md': '`cloth_small()` of `gst/math/each.h`\n'}),
         ('paths', {'docs/a.md': 'See `gst/gone/a.c`.\n'}),
+        ('paths', {'docs/a.md': 'See `gone.c`.\n'}),
         ('paths', {'CONTRIBUTING.md': 'See `tests/gone*`.\n'}),
         ('paths', {'gst/math/a.c': head + '/* As in gone.c. */\n'}),
         ('paths', {'elements/gsta.c': head + '/* As in gst/gone/a.h. */\n'}),

@@ -34,6 +34,18 @@ clear_direction (gpointer item)
   g_free (((ClothDirection *) item)->name);
 }
 
+/* Returns: (transfer full): room for candidates, none yet */
+ClothCandidates *
+cloth_candidates_new_empty (void)
+{
+  ClothCandidates *c = g_new0 (ClothCandidates, 1);
+
+  c->directions = g_array_new (FALSE, FALSE, sizeof (ClothDirection));
+  g_array_set_clear_func (c->directions, clear_direction);
+  c->list = g_array_new (FALSE, FALSE, sizeof (ClothCandidate));
+  return c;
+}
+
 static gboolean
 is_free (const ClothModel * model, const gchar * name)
 {
@@ -254,12 +266,6 @@ why_not (const ClothEffect * effect, const ClothModel * model,
   return NULL;
 }
 
-static gboolean
-wanted (const gchar * const *effects, const gchar * id)
-{
-  return !effects || g_strv_contains (effects, id);
-}
-
 /* @model: the model that is looked at
  * @recording: what it is to explain
  * @effects: (nullable) (array zero-terminated=1): ids of those to consider
@@ -275,13 +281,10 @@ cloth_candidates_new (const ClothModel * model,
     const ClothRecording * recording, const gchar * const *effects,
     gboolean frozen, ClothCandidateSkip skip, gpointer data, GError ** error)
 {
-  g_autoptr (ClothCandidates) c = g_new0 (ClothCandidates, 1);
+  g_autoptr (ClothCandidates) c = cloth_candidates_new_empty ();
   guint n_effects;
   const ClothEffect *const *table = cloth_effect_table (&n_effects);
 
-  c->directions = g_array_new (FALSE, FALSE, sizeof (ClothDirection));
-  g_array_set_clear_func (c->directions, clear_direction);
-  c->list = g_array_new (FALSE, FALSE, sizeof (ClothCandidate));
   for (guint i = 0; effects && effects[i]; i++)
     if (!cloth_effect_find (effects[i])) {
       g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_EFFECT,
@@ -294,7 +297,7 @@ cloth_candidates_new (const ClothModel * model,
   for (guint i = 0; i < n_effects; i++) {
     const gchar *reason;
 
-    if (!wanted (effects, table[i]->id))
+    if (!cloth_effect_is_among (effects, table[i]->id))
       continue;
     reason = why_not (table[i], model, recording, frozen);
     if (reason) {

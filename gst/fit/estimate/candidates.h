@@ -83,6 +83,7 @@ cloth_candidates_direction (const ClothCandidates * candidates, guint i)
 typedef void (*ClothCandidateSkip) (gpointer data, const ClothEffect * effect,
     const gchar * reason);
 
+ClothCandidates *cloth_candidates_new_empty (void);
 ClothCandidates *cloth_candidates_new (const ClothModel * model,
     const ClothRecording * recording, const gchar * const *effects,
     gboolean frozen, ClothCandidateSkip skip, gpointer data, GError ** error);

@@ -32,14 +32,14 @@ find_cost (const ClothGaussNewtonProblem * problem, gpointer data,
     ClothPosterior * posterior)
 {
   gdouble cost = problem->add_data (data, posterior);
+  g_autofree gdouble *back = g_new (gdouble, o->m);
 
   for (guint k = 0; k < o->m; k++) {
     cost += o->overdispersion * o->precisions[k] * moved[k] * moved[k];
-    if (!posterior)
-      continue;
-    posterior->precision[k * o->m + k] += o->precisions[k];
-    posterior->mean[k] -= o->precisions[k] * moved[k];
+    back[k] = -moved[k];
   }
+  if (posterior)
+    cloth_posterior_add_prior (posterior, o->precisions, back);
   return cost;
 }
 

@@ -25,15 +25,21 @@ mover (guint index)
   return NULL;
 }
 
-/* Returns: how many columns each camera has, one for each parameter */
+/* Returns: how many columns each camera has, one for each parameter; the last is that of
+ *   repeated pictures, the only one by which points are not moved
+ */
 guint
 cloth_camera_n_columns (void)
 {
   const ClothEffect *effect;
-  guint n = 0;
+  guint n = 0, n_repeating = 0;
 
-  for (guint i = 0; (effect = mover (i)); i++)
+  for (guint i = 0; (effect = mover (i)); i++) {
     n += effect->n_parameters;
+    if (effect->test == CLOTH_EFFECT_TEST_REPEAT)
+      n_repeating += effect->n_parameters;
+  }
+  g_assert (n_repeating == 1);
   return n;
 }
 
@@ -53,18 +59,6 @@ add_direction (ClothCandidates * c, const ClothEffect * effect, guint k)
   g_array_append_val (c->directions, d);
 }
 
-static void
-clear_direction (gpointer item)
-{
-  g_free (((ClothDirection *) item)->name);
-}
-
-static gboolean
-is_wanted (const gchar * const *effects, const gchar * id)
-{
-  return !effects || g_strv_contains (effects, id);
-}
-
 /* @rig: the cameras
  * @effects: (nullable) (array zero-terminated=1): ids of the effects to consider
  *
@@ -76,14 +70,11 @@ is_wanted (const gchar * const *effects, const gchar * id)
 ClothCandidates *
 cloth_camera_candidates_new (const ClothRig * rig, const gchar * const *effects)
 {
-  ClothCandidates *c = g_new0 (ClothCandidates, 1);
+  ClothCandidates *c = cloth_candidates_new_empty ();
   const guint n_columns = cloth_camera_n_columns ();
   const ClothEffect *effect;
   guint first = 0;
 
-  c->directions = g_array_new (FALSE, FALSE, sizeof (ClothDirection));
-  g_array_set_clear_func (c->directions, clear_direction);
-  c->list = g_array_new (FALSE, FALSE, sizeof (ClothCandidate));
   for (guint camera = 0; camera <= rig->n_cameras; camera++)
     for (guint i = 0; (effect = mover (i)); i++)
       for (guint k = 0; k < effect->n_parameters; k++)
@@ -92,8 +83,8 @@ cloth_camera_candidates_new (const ClothRig * rig, const gchar * const *effects)
     guint n = effect->shared && rig->n_cameras > 1 ? rig->n_cameras + 1 :
         rig->n_cameras;
 
-    for (guint camera = 0; camera < n && is_wanted (effects, effect->id);
-        camera++) {
+    for (guint camera = 0;
+        camera < n && cloth_effect_is_among (effects, effect->id); camera++) {
       ClothCandidate candidate = { effect };
 
       for (guint k = 0; k < effect->n_parameters; k++) {

@@ -46,8 +46,8 @@ typedef struct {
  * @shrink: by how much the held-out gap shrinks when all accepted effects are added, of variance
  * @group: index into `groups`, or -1 when nothing is confused with it
  * @accepted: whether it is part of the model that `gap_after` is measured with
- * @refitted: whether it equals a free parameter that was re-fitted on the take, so
- *   that it can't be told from it
+ * @refitted: always %FALSE: an effect that equals a free parameter of the model can't be
+ *   told from it, so it is among the untested ones. Part of the file's format.
  *
  * What was found of one effect.
  */

@@ -146,7 +146,7 @@ typedef struct
 } ClothLaneState;
 
 /* When the effects of a model act within each of their hooks. Those of one order act as
- * the list of effects has them. Sums in floating point depend on it in their last bits. */
+ * the list of effects has them; those that name none are of the first. Sums in floating point depend on it in their last bits. */
 typedef enum
 {
   CLOTH_LANE_ORDER_SIZES,       /* of masses, stiffnesses, damping, gravity, clamps */

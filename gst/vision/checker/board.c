@@ -17,7 +17,7 @@
 #define MIN_BLACK 0.3f
 /* Distance of a corner from where a straight line of others puts it, over theirs. */
 #define MAX_STRAY 0.25f
-/* Lead, in log-likelihood, of the placement believed over the next best. */
+/* Lead, in log-likelihood, of the pose believed over the next best. */
 #define MIN_LEAD 6.0f
 /* What a flat board's homography adds for a patch it predicts. */
 #define HOMOGRAPHY_WEIGHT 12.0f
@@ -27,7 +27,7 @@ struct _ClothBoardFinder
   ClothPattern pattern;
   ClothLinker *linker;
   ClothPatch patch;
-  ClothPoseFinder *placer;
+  ClothPoseFinder *pose_finder;
   ClothBoardView view;
 };
 
@@ -48,7 +48,7 @@ cloth_board_finder_new (const ClothPattern * pattern)
     finder->pattern.code = g_memdup2 (pattern->code,
         (gsize) pattern->columns * (gsize) pattern->rows);
   finder->linker = cloth_linker_new ();
-  finder->placer = cloth_pose_finder_new (pattern);
+  finder->pose_finder = cloth_pose_finder_new (pattern);
   view->columns = pattern->columns + 1;
   view->rows = pattern->rows + 1;
   n = (gsize) view->columns * (gsize) view->rows;
@@ -67,7 +67,7 @@ cloth_board_finder_free (ClothBoardFinder * finder)
   g_free (finder->pattern.code);
   cloth_linker_free (finder->linker);
   cloth_patch_clear (&finder->patch);
-  cloth_pose_finder_free (finder->placer);
+  cloth_pose_finder_free (finder->pose_finder);
   g_free (finder->view.seen);
   g_free (finder->view.x);
   g_free (finder->view.y);
@@ -132,7 +132,7 @@ is_saddle (const ClothPatch * patch, gint i, gint j)
 /* Writes the placed patch's vertices into the view; vertices already there stay. */
 static void
 take_over (ClothBoardView * view, const ClothPatch * patch,
-    const ClothPose * placement)
+    const ClothPose * pose)
 {
   for (gint j = 0; j < patch->rows; j++)
     for (gint i = 0; i < patch->columns; i++) {
@@ -140,7 +140,7 @@ take_over (ClothBoardView * view, const ClothPatch * patch,
 
       if (!patch->kind[from])
         continue;
-      cloth_pose_vertex (placement, i, j, &column, &row);
+      cloth_pose_vertex (pose, i, j, &column, &row);
       if (column < 0 || row < 0 || column >= view->columns || row >= view->rows)
         continue;
       at = row * view->columns + column;
@@ -202,7 +202,7 @@ fit_homography (const ClothBoardView * view, gdouble h[8], gdouble centre[3])
   return TRUE;
 }
 
-/* The placement of @patch that continues the plane of what is in the view, as a vote. */
+/* The pose of @patch that continues the plane of what is in the view, as a vote. */
 static gboolean
 vote_by_plane (const ClothBoardView * view, const ClothPatch * patch,
     ClothPose * vote)
@@ -282,19 +282,19 @@ try_patch (ClothBoardFinder * finder, const ClothImage * image,
 {
   ClothPatchParams params =
       { 0.25f, 0.62f, -1.0f, 0.4f, TRUE, finder->pattern.code != NULL };
-  ClothPose vote, placement;
+  ClothPose vote, pose;
   guint n_votes;
 
   cloth_patch_build (&finder->patch, image, saddles, link, &params);
   if (!is_board (&finder->patch))
     return OTHER;
   n_votes = vote_by_plane (&finder->view, &finder->patch, &vote) ? 1 : 0;
-  if (!cloth_pose_finder_run (finder->placer, &finder->patch, &cloth_pose_rigid,
-          &vote, n_votes, &placement))
+  if (!cloth_pose_finder_run (finder->pose_finder, &finder->patch,
+          &cloth_pose_rigid, &vote, n_votes, &pose))
     return UNPLACED;
-  if (placement.weight < MIN_LEAD || (finder->view.n_seen && !n_votes))
+  if (pose.weight < MIN_LEAD || (finder->view.n_seen && !n_votes))
     return UNPLACED;
-  take_over (&finder->view, &finder->patch, &placement);
+  take_over (&finder->view, &finder->patch, &pose);
   return PLACED;
 }
 

@@ -28,7 +28,7 @@
 #define PROMISING 0.5f
 /* Share of the board's squares from which on a patch is the whole board. */
 #define WHOLE 0.75f
-/* Of the placements that these dots leave, all of them are read for so many at most. */
+/* Of the poses that these dots leave, all of them are read for so many at most. */
 #define MOST_READ 64
 /* Vertices of a patch each way: sums stay within 32 bits. */
 #define MOST_VERTICES 1024
@@ -73,7 +73,7 @@ typedef struct
   gint32 hope;                  /* of the dots read, what they promise of all */
 } Hypothesis;
 
-struct _ClothPlacer
+struct _ClothPoseFinder
 {
   ClothPattern pattern;
   gboolean coded;
@@ -407,7 +407,7 @@ uprightness (const ClothPatch * patch, gint rotation)
   return (rotation == 1 || rotation == 2 ? -dx : dx) / hypotf (dx, dy);
 }
 
-/* Whether two placements differ by a turn that leaves a plain board as it looks. */
+/* Whether two poses differ by a turn that leaves a plain board as it looks. */
 static gboolean
 are_twins (const ClothPattern * pattern, const ClothPose * a,
     const ClothPose * b)
@@ -486,7 +486,7 @@ ends_early (const ClothPoseFinder * finder, const ClothPatch * patch,
   return FALSE;
 }
 
-/* Placements under one rotation that colour and the patch's extent allow, but for some
+/* Poses under one rotation that colour and the patch's extent allow, but for some
  * overhang. */
 typedef struct
 {
@@ -551,7 +551,7 @@ compare_hope (gconstpointer a, gconstpointer b)
   return (of_a < of_b) - (of_a > of_b);
 }
 
-/* Scores the placements that may come within @margin of the best; how many there are in
+/* Scores the poses that may come within @margin of the best; how many there are in
  * all. */
 static guint
 score_all (ClothPoseFinder * finder, const ClothPatch * patch,
@@ -642,12 +642,12 @@ score_all (ClothPoseFinder * finder, const ClothPatch * patch,
 /* @finder: of the board
  * @patch: a patch of it
  * @weights: what the evidence weighs
- * @votes: (array length=n_votes) (nullable): placements the caller believes in, weight =
+ * @votes: (array length=n_votes) (nullable): poses the caller believes in, weight =
  *   log-likelihood
  * @n_votes: how many
  * @best: (out): the best pose; weight = its lead over the next best
  *
- * The lead is over the placements whose dots were all read. Where a first reading of 256
+ * The lead is over the poses whose dots were all read. Where a first reading of 256
  * dots finds less than half of them in agreement, a pose waits, and only the 64 most
  * hopeful of those that wait are read to the end: a lead over one of the others, which
  * would have to agree far better in the dots that are left, is not counted and may be

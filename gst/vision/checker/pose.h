@@ -47,7 +47,7 @@ typedef struct {
  * @cut_corner: the same of one that stands alone: something may cover the other squares
  *   there
  * @upright: of a plain board being upright rather than on its side; adds to the lead
- * @twins: whether placements that a turn of the whole board carries into each other are
+ * @twins: whether poses that a turn of the whole board carries into each other are
  *   no hypotheses: the more upright one is taken, and being upright adds to no lead
  * @least: a pose is refused when what was seen makes it less likely
  * @rim_refuses: and when a straight rim runs along more than this share of a line within
@@ -68,7 +68,7 @@ typedef struct {
 
 extern const ClothPoseWeights cloth_pose_cloth, cloth_pose_rigid;
 
-typedef struct _ClothPlacer ClothPoseFinder;
+typedef struct _ClothPoseFinder ClothPoseFinder;
 
 void cloth_pose_vertex (const ClothPose * pose, gint i, gint j,
     gint * column, gint * row);

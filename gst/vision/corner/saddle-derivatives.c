@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#ifdef __AVX2__
+#if CLOTH_SIMD_BITS >= 256
 #include <immintrin.h>
 #endif
 
@@ -50,10 +50,10 @@ weigh (const ClothSaddleTaps * rows, const ClothSaddleTaps * gx,
 INLINE void
 load (const guint8 * data, ClothSaddleTaps * row)
 {
-#if defined (__AVX512F__)
+#if CLOTH_SIMD_BITS == 512
   *row = (ClothSaddleTaps) _mm512_cvtepi32_ps (_mm512_cvtepu8_epi32
       (_mm_loadu_si128 ((const __m128i *) data)));
-#elif defined (__AVX2__)
+#elif CLOTH_SIMD_BITS == 256
   const __m128i bytes = _mm_loadu_si128 ((const __m128i *) data);
   const __m256 half[2] = {
     _mm256_cvtepi32_ps (_mm256_cvtepu8_epi32 (bytes)),

@@ -4,7 +4,6 @@
 #include "gst/vision/corner/saddle-private.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "gst/vision/corner/saddle-derivatives.h"
 

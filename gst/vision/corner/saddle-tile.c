@@ -7,7 +7,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/vision/corner/saddle-mask-private.h"
 
-#ifdef __AVX2__
+#if CLOTH_SIMD_BITS >= 256
 
 #include <immintrin.h>
 #include <string.h>
@@ -16,7 +16,7 @@
 #define MARGIN CLOTH_SADDLE_TILE_MARGIN
 #define INLINE static inline __attribute__((always_inline))
 
-#ifdef __AVX512BW__
+#if CLOTH_SIMD_BITS == 512
 #define LANES 32
 #define VEC __m512i
 #define LOAD(p) _mm512_loadu_si512 ((const void *) (p))

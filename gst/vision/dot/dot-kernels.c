@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef __AVX2__
+#if CLOTH_SIMD_BITS >= 256
 #include <emmintrin.h>
 #endif
 
@@ -34,7 +34,7 @@ span_bits (const guint8 * row, gint n, guint8 threshold)
   return (guint16) bits;
 }
 
-#ifdef __AVX2__
+#if CLOTH_SIMD_BITS >= 256
 static guint8
 lowest_byte (__m128i v)
 {
@@ -81,7 +81,7 @@ find_bounds (const ClothImage * image, gint tile_row, guint8 * least,
   const guint8 *data = image->data + (gsize) y0 * (gsize) image->stride;
 
   for (gint x = 0, t = 0; x < image->width; x += TILE, t++) {
-#ifdef __AVX2__
+#if CLOTH_SIMD_BITS >= 256
     if (x + TILE <= image->width) {
       tile_bounds (data + x, image->stride, rows, &least[t], &most[t]);
       continue;
@@ -100,7 +100,7 @@ find_bits (const guint8 * row, gint width, const guint8 * thresholds,
     guint16 * bits)
 {
   for (gint x = 0, t = 0; x < width; x += TILE, t++) {
-#ifdef __AVX2__
+#if CLOTH_SIMD_BITS >= 256
     if (x + TILE <= width) {
       bits[t] = tile_bits (row + x, thresholds[t]);
       continue;

@@ -151,7 +151,8 @@ struct _ClothDotDetector
   gfloat noise;
 };
 
-/* dot-centre.c: appends a dot for each candidate that has contrast and lies whole in the picture. */
+/* dot-centre.c: appends a dot for each candidate that has contrast and lies whole in the
+ * picture. */
 void cloth_dot_measure (ClothDotDetector * detector);
 
 G_END_DECLS

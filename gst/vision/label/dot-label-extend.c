@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-/* How well a neighbour foretells where a dot lies: standard deviation as a share of the
+/* How well a neighbour predicts where a dot lies: standard deviation as a share of the
  * lattice vector. */
 #define MISS 0.15f
 /* Log-odds that a dot so found needs, and rounds of looking. */
@@ -28,12 +28,12 @@ former_at (const ClothDotLabeller * labeller, gint column, gint row)
 
 /* Which label each dot had in the former picture, if dots go on as they went. */
 void
-cloth_dot_label_foretell (ClothDotLabeller * labeller)
+cloth_dot_label_predict (ClothDotLabeller * labeller)
 {
   gfloat *nearest = labeller->scratch;
 
   for (guint i = 0; i < labeller->n; i++) {
-    labeller->foretold[i] = -1;
+    labeller->predicted[i] = -1;
     nearest[i] = G_MAXFLOAT;
   }
   for (gint row = 0; row < labeller->rows; row++) {
@@ -49,7 +49,7 @@ cloth_dot_label_foretell (ClothDotLabeller * labeller)
           || near.distance2 >= nearest[near.index])
         continue;
       nearest[near.index] = near.distance2;
-      labeller->foretold[near.index] = row * labeller->columns + column;
+      labeller->predicted[near.index] = row * labeller->columns + column;
     }
   }
 }
@@ -82,7 +82,7 @@ cloth_dot_label_remember (ClothDotLabeller * labeller)
 
 /* --- from neighbour to neighbour ------------------------------------------------------ */
 
-/* Where a dot is foretold to lie. */
+/* Where a dot is predicted to lie. */
 typedef struct
 {
   gfloat x, y, pitch;
@@ -229,7 +229,7 @@ cloth_dot_label_prune (ClothDotLabeller * labeller)
   }
   for (gint here = 0; here < labeller->columns * labeller->rows; here++) {
     if (labeller->holders[here] >= 0 && labeller->doubtful[here]) {
-      cloth_dot_label_take_label (&labeller->labels[labeller->holders[here]]);
+      cloth_dot_label_clear (&labeller->labels[labeller->holders[here]]);
       labeller->holders[here] = -1;
     }
   }

@@ -278,7 +278,7 @@ differ (const gfloat a[2], const gfloat b[2], gfloat c)
   return x * x + y * y >= c * c * longer;
 }
 
-/* Vectors to neighbours; those without one are foretold from the opposite. */
+/* Vectors to neighbours; those without one are predicted from the opposite. */
 static void
 measure_steps (ClothDotLabeller * labeller)
 {

@@ -171,7 +171,7 @@ take_next (ClothDotLabeller * labeller, guint i, gint way, const Frame * frame)
   if (!is_near (there.u, frame->u, labeller->params.c)
       || !is_near (there.v, frame->v, labeller->params.c)) {
     labeller->holders[row * labeller->columns + column] = -1;
-    cloth_dot_label_take_label (&labeller->labels[dot]);
+    cloth_dot_label_clear (&labeller->labels[dot]);
     return FALSE;
   }
   labeller->frames[dot] = there;
@@ -208,7 +208,7 @@ grow_from (ClothDotLabeller * labeller, guint seed, gint column, gint row,
           - logf ((gfloat) (8 * labeller->columns * labeller->rows));
     } else {
       labeller->holders[label->row * labeller->columns + label->column] = -1;
-      cloth_dot_label_take_label (label);
+      cloth_dot_label_clear (label);
     }
   }
   return labeller->n_members >= labeller->params.least_region;
@@ -268,7 +268,7 @@ try_window (ClothDotLabeller * labeller, guint seed, const gfloat e1[2],
 
 /* Labels the dots by seeds and growing of regions. */
 void
-cloth_dot_label_label_as_paper (ClothDotLabeller * labeller)
+cloth_dot_label_as_paper (ClothDotLabeller * labeller)
 {
   guint patch = 0;
 

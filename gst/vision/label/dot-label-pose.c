@@ -22,9 +22,9 @@
 /* Most placings that all dots judge. */
 #define N_JUDGED 32
 #define TURNS 8
-/* What a place that the former picture foretells must have before random colours: as if
+/* What a place that the former picture predicts must have before random colours: as if
  * it were one of ten. */
-#define FORETOLD 2.3f
+#define PREDICTED 2.3f
 /* What each neighbour adds to the log-odds that a dot fits or not, and how often all are
  * asked. */
 #define COUPLING 1.0f
@@ -100,7 +100,7 @@ cloth_dot_label_weigh (ClothDotLabeller * labeller,
     gfloat *to = labeller->gains + i * (m + 1);
     gfloat most = -G_MAXFLOAT, sum = 0;
 
-    cloth_dot_label_take_label (&labeller->labels[i]);
+    cloth_dot_label_clear (&labeller->labels[i]);
     for (guint k = 0; k < m; k++)
       most = MAX (most, from[k]);
     for (guint k = 0; k < m; k++)
@@ -345,11 +345,11 @@ search (ClothDotLabeller * labeller, const ClothLatticePatch * patch,
 /* Where the former picture's labels put a patch, by those of @anchor and two of its
  * neighbours. FALSE if they don't say. */
 static gboolean
-foretell (const ClothDotLabeller * labeller, guint anchor,
+predict (const ClothDotLabeller * labeller, guint anchor,
     ClothLatticePlace * place)
 {
   const ClothLatticeNode *node = &labeller->nodes[anchor];
-  const gint32 here = labeller->foretold[anchor];
+  const gint32 here = labeller->predicted[anchor];
   gboolean known[2] = { FALSE, FALSE };
 
   if (here < 0)
@@ -361,7 +361,7 @@ foretell (const ClothDotLabeller * labeller, guint anchor,
 
     if (!is_true_link (labeller, node, slot))
       continue;
-    there = labeller->foretold[node->next[slot]];
+    there = labeller->predicted[node->next[slot]];
     if (there < 0)
       continue;
     by[0] = there % labeller->columns - here % labeller->columns;
@@ -394,7 +394,7 @@ judge (const ClothDotLabeller * labeller, const ClothLatticePatch * patch,
   const gfloat n_places = (gfloat) (TURNS * labeller->columns * labeller->rows);
   const Candidate *candidates =
       (const Candidate *) (gpointer) labeller->candidates->data;
-  gfloat first = 0, rival = logf (n_places);
+  gfloat first = 0, second = logf (n_places);
 
   for (guint k = 0; k < MIN (labeller->candidates->len, N_JUDGED); k++) {
     const ClothLatticePlace place = place_of_candidate (&candidates[k], middle);
@@ -403,9 +403,9 @@ judge (const ClothDotLabeller * labeller, const ClothLatticePatch * patch,
     if (k == 0)
       first = score;
     else
-      rival = MAX (rival, score);
+      second = MAX (second, score);
   }
-  return first - rival;
+  return first - second;
 }
 
 /* The most that the dots of a patch could say to any placing. */
@@ -577,11 +577,11 @@ keep_unique (ClothDotLabeller * labeller)
     other = *holder < 0 ? NULL : &labeller->labels[*holder];
     if (!other || other->confidence < label->confidence) {
       if (other)
-        cloth_dot_label_take_label (other);
+        cloth_dot_label_clear (other);
       *holder = (gint32) i;
       continue;
     }
-    cloth_dot_label_take_label (label);
+    cloth_dot_label_clear (label);
   }
 }
 
@@ -613,7 +613,7 @@ cloth_dot_label_compare (ClothDotLabeller * labeller)
 }
 
 /* Parts patch @number by what fits @place, and labels the piece that @anchor is in if it
- * is sure enough. The place is the first of the candidates, or the one that was foretold,
+ * is sure enough. The place is the first of the candidates, or the one that was predicted,
  * which then needs @expected more than random colours give. */
 static void
 settle (ClothDotLabeller * labeller, guint number, guint anchor,
@@ -638,7 +638,7 @@ settle (ClothDotLabeller * labeller, guint number, guint anchor,
 
 /* Places a patch where the former picture had it, if its colours say so too. */
 static gboolean
-place_as_foretold (ClothDotLabeller * labeller, guint number)
+place_as_predicted (ClothDotLabeller * labeller, guint number)
 {
   const ClothLatticePatch *patch =
       &g_array_index (labeller->patches, ClothLatticePatch, number);
@@ -650,15 +650,15 @@ place_as_foretold (ClothDotLabeller * labeller, guint number)
     ClothLatticePlace place = { 0 };
     gfloat score = 0;
 
-    if (!foretell (labeller, anchor, &place))
+    if (!predict (labeller, anchor, &place))
       continue;
     tries++;
     n = choose_probes (labeller, patch, anchor, probes);
     for (guint i = 0; i < n; i++)
       score += gain_at (labeller, &place, probes[i]);
-    if (score < labeller->params.lead + FORETOLD)
+    if (score < labeller->params.lead + PREDICTED)
       continue;
-    settle (labeller, number, anchor, &place, FORETOLD);
+    settle (labeller, number, anchor, &place, PREDICTED);
     return TRUE;
   }
   return FALSE;
@@ -701,9 +701,9 @@ cloth_dot_label_place (ClothDotLabeller * labeller)
         &g_array_index (labeller->patches, ClothLatticePatch, k);
     const gfloat most = most_of_patch (labeller, patch);
 
-    if (patch->done || most < labeller->params.lead + FORETOLD)
+    if (patch->done || most < labeller->params.lead + PREDICTED)
       continue;
-    if (!place_as_foretold (labeller, k) && most >= needed)
+    if (!place_as_predicted (labeller, k) && most >= needed)
       place_by_search (labeller, k);
   }
   keep_unique (labeller);

@@ -14,7 +14,7 @@ typedef struct
 {
   gfloat x, y;
   gfloat shape[3];              /* second moments of its area, px², without blur */
-  gfloat step[4][2];            /* to the neighbour of each slot, px; foretold if none */
+  gfloat step[4][2];            /* to the neighbour of each slot, px; predicted if none */
   gint32 next[4];               /* neighbour of each slot, -1: none */
   guint8 back[4];               /* the slot of the neighbour that leads back */
   guint8 squares[4];            /* closed squares that the link is a side of */
@@ -112,7 +112,7 @@ struct _ClothDotLabeller
   gfloat *gains;                /* n·(n_colours + 1): log-odds of each colour against any, the
                                  * last where the array has no dot */
   ClothDotLabel *labels;
-  gint32 *foretold;             /* label of each dot by the former picture, -1: none */
+  gint32 *predicted;             /* label of each dot by the former picture, -1: none */
   guint *members;               /* dots, patch by patch */
   guint *queue;
   ClothLatticeFrame *frames;
@@ -151,7 +151,7 @@ cloth_dot_label_look (const ClothDotLabeller * labeller, guint i)
 }
 
 static inline void
-cloth_dot_label_take_label (ClothDotLabel * label)
+cloth_dot_label_clear (ClothDotLabel * label)
 {
   *label = (ClothDotLabel) {
   -1, -1, 0, FALSE, G_MAXUINT};
@@ -163,11 +163,11 @@ void cloth_dot_label_grow (ClothDotLabeller * labeller);
 void cloth_dot_label_weigh (ClothDotLabeller * labeller,
     const gfloat * log_likelihoods);
 void cloth_dot_label_place (ClothDotLabeller * labeller);
-void cloth_dot_label_foretell (ClothDotLabeller * labeller);
+void cloth_dot_label_predict (ClothDotLabeller * labeller);
 void cloth_dot_label_compare (ClothDotLabeller * labeller);
 void cloth_dot_label_prune (ClothDotLabeller * labeller);
 void cloth_dot_label_extend (ClothDotLabeller * labeller);
 void cloth_dot_label_remember (ClothDotLabeller * labeller);
-void cloth_dot_label_label_as_paper (ClothDotLabeller * labeller);
+void cloth_dot_label_as_paper (ClothDotLabeller * labeller);
 
 G_END_DECLS

@@ -128,7 +128,7 @@ cloth_dot_labeller_free (ClothDotLabeller * labeller)
   g_free (labeller->doubtful);
   g_clear_pointer (&labeller->windows, g_hash_table_unref);
   g_free (labeller->former);
-  g_free (labeller->foretold);
+  g_free (labeller->predicted);
   g_free (labeller->nodes);
   g_free (labeller->around);
   g_free (labeller->gains);
@@ -153,7 +153,7 @@ make_room (ClothDotLabeller * labeller, guint n)
   labeller->gains = g_renew (gfloat, labeller->gains,
       (gsize) n * (gsize) (labeller->n_colours + 1));
   labeller->labels = g_renew (ClothDotLabel, labeller->labels, n);
-  labeller->foretold = g_renew (gint32, labeller->foretold, n);
+  labeller->predicted = g_renew (gint32, labeller->predicted, n);
   labeller->members = g_renew (guint, labeller->members, n);
   labeller->queue = g_renew (guint, labeller->queue, n);
   labeller->frames = g_renew (ClothLatticeFrame, labeller->frames, n);
@@ -178,7 +178,7 @@ within (gfloat value, gfloat least, gfloat most)
  * turns and shifts and mirrored, is the one that the colours of all its dots together
  * make likeliest. It counts when it leads by @params->lead before the next best and
  * before random colours. Dots that together contradict it are cut off and placed anew.
- * Where the former picture's labels foretell a placing, that one is tried first; the
+ * Where the former picture's labels predict a placing, that one is tried first; the
  * colours of its dots must say so too. Then dots next to labelled ones are labelled where
  * both place and colour agree, and labels taken away from dots that lie elsewhere.
  *
@@ -201,12 +201,12 @@ cloth_dot_labeller_run (ClothDotLabeller * labeller,
   cloth_dot_label_start (labeller, dots);
   cloth_dot_label_weigh (labeller, log_likelihoods);
   if (params->paper) {
-    cloth_dot_label_label_as_paper (labeller);
+    cloth_dot_label_as_paper (labeller);
     return;
   }
   cloth_dot_label_link (labeller, dots);
   cloth_dot_label_grow (labeller);
-  cloth_dot_label_foretell (labeller);
+  cloth_dot_label_predict (labeller);
   cloth_dot_label_place (labeller);
   cloth_dot_label_compare (labeller);
   cloth_dot_label_prune (labeller);

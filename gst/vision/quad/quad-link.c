@@ -2,13 +2,12 @@
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <math.h>
-#include <string.h>
 
 #include "gst/vision/quad/quad-private.h"
 
 /* Patches looked at in a picture, largest first. */
 #define MAX_PATCHES 48
-/* Different placements that the vertices of one patch may vote for. */
+/* Different poses that the vertices of one patch may vote for. */
 #define MAX_VOTES 12
 /* Log-likelihood of one vertex near its guess, and of all of them together. */
 #define VOTE 2.0f
@@ -28,7 +27,7 @@
  * not there, and most of one against the memory. */
 #define NEW_LEAD 4.0f
 #define SURE_LEAD 8.0f
-/* Where neither memory nor a seed says so much for a placement, what is seen must. */
+/* Where neither memory nor a seed says so much for a pose, what is seen must. */
 #define KNOWN 1.0f
 /* Evidence like that of four, three and one cells that show the board's end. */
 #define EVIDENT 11.9f
@@ -53,9 +52,9 @@
 #define RECKON_PATCHES 6
 /* Seeds looked at for one patch. */
 #define MAX_SEEDS 4
-/* Log-likelihood of a seed whose place on the board was told, and of one without. */
+/* Log-likelihood of a seed whose place on the board was given, and of one without. */
 #define SEED 40.0f
-#define SEED_UNTOLD 4.0f
+#define SEED_WITHOUT_PLACE 4.0f
 
 /* Rotation of a patch whose +i runs along (@dx, @dy) where the board's columns run along
  * (@bx, @by). */
@@ -163,11 +162,11 @@ recall_all (ClothQuadTracker * tracker)
 
 /* Whether black squares of the patch come onto black ones of the board. */
 static gboolean
-is_same_colour (const ClothQuadTracker * tracker, const ClothPose * placement)
+is_same_colour (const ClothQuadTracker * tracker, const ClothPose * pose)
 {
   gint column, row;
 
-  cloth_pose_cell (placement, 0, 0, &column, &row);
+  cloth_pose_cell (pose, 0, 0, &column, &row);
   return cloth_pattern_is_black (&tracker->pattern, column & 1, row & 1)
       == cloth_patch_is_black (&tracker->patch, 0, 0);
 }
@@ -263,7 +262,7 @@ vote_by_seed (ClothQuadTracker * tracker, const ClothQuadSeed * seed,
         != cloth_patch_is_black (patch, best % patch->columns,
             best / patch->columns))
       wanted_column--;
-    vote->weight = SEED_UNTOLD;
+    vote->weight = SEED_WITHOUT_PLACE;
   }
   cloth_pose_cell (vote, best % patch->columns, best / patch->columns,
       &column, &row);
@@ -272,10 +271,10 @@ vote_by_seed (ClothQuadTracker * tracker, const ClothQuadSeed * seed,
   return 1;
 }
 
-/* What the memory says of vertex (@i, @j) of the patch under a placement: 1 yes, -1 no, 0
+/* What the memory says of vertex (@i, @j) of the patch under a pose: 1 yes, -1 no, 0
  * nothing. */
 static gint
-recall (ClothQuadTracker * tracker, const ClothPose * placement, gint i, gint j)
+recall (ClothQuadTracker * tracker, const ClothPose * pose, gint i, gint j)
 {
   const ClothQuadRecall *near = &g_array_index (tracker->recalls,
       ClothQuadRecall, j * tracker->patch.columns + i);
@@ -283,7 +282,7 @@ recall (ClothQuadTracker * tracker, const ClothPose * placement, gint i, gint j)
 
   if (near->vertex < 0 || near->distance > SURE_REACH)
     return 0;
-  cloth_pose_vertex (placement, i, j, &column, &row);
+  cloth_pose_vertex (pose, i, j, &column, &row);
   return column >= 0 && column <= tracker->pattern.columns
       && near->vertex == row * (tracker->pattern.columns + 1) + column ? 1 : -1;
 }
@@ -291,14 +290,14 @@ recall (ClothQuadTracker * tracker, const ClothPose * placement, gint i, gint j)
 /* The same of the cell (@i, @j): for less against. Even is against: a square has all of its
  * corners right. */
 static gint
-recall_square (ClothQuadTracker * tracker, const ClothPose * placement,
+recall_square (ClothQuadTracker * tracker, const ClothPose * pose,
     gint i, gint j)
 {
   gint sum = 0;
   gboolean against = FALSE;
 
   for (gint k = 0; k < 4; k++) {
-    const gint says = recall (tracker, placement,
+    const gint says = recall (tracker, pose,
         i + cloth_quad_corner_column[k], j + cloth_quad_corner_row[k]);
 
     sum += says;
@@ -309,8 +308,7 @@ recall_square (ClothQuadTracker * tracker, const ClothPose * placement,
 
 /* Takes one square of a placed patch. */
 static void
-take_square (ClothQuadTracker * tracker, const ClothPose * placement,
-    gint i, gint j)
+take_square (ClothQuadTracker * tracker, const ClothPose * pose, gint i, gint j)
 {
   const ClothPatch *patch = &tracker->patch;
   const ClothQuadParams *params = tracker->params;
@@ -319,7 +317,7 @@ take_square (ClothQuadTracker * tracker, const ClothPose * placement,
   gfloat x[4], y[4], cov[4][3], confidence;
   ClothQuadCell *cell;
 
-  cloth_pose_cell (placement, i, j, &column, &row);
+  cloth_pose_cell (pose, i, j, &column, &row);
   cell = cloth_quad_cell (tracker, column, row);
   if (!cell || !cell->wanted || cell->found)
     return;
@@ -328,7 +326,7 @@ take_square (ClothQuadTracker * tracker, const ClothPose * placement,
     gint lj = j + cloth_quad_corner_row[k];
     gint from = lj * patch->columns + li, c, r, to;
 
-    cloth_pose_vertex (placement, li, lj, &c, &r);
+    cloth_pose_vertex (pose, li, lj, &c, &r);
     /* An inner corner that is no saddle is where a fold cuts the square. */
     if (patch->kind[from] == CLOTH_VERTEX_RIM
         && cloth_quad_is_inner (tracker, c, r))
@@ -345,32 +343,32 @@ take_square (ClothQuadTracker * tracker, const ClothPose * placement,
     return;
   /* Of a doubtful one the memory, if there is any, must know. */
   if (confidence < params->c_high && tracker->guess_vertex->len > 0
-      && recall_square (tracker, placement, i, j) < (cell->age == 0 ? 3 : 1))
+      && recall_square (tracker, pose, i, j) < (cell->age == 0 ? 3 : 1))
     return;
   cloth_quad_take (tracker, cell, black, x, y, cov, confidence);
 }
 
-/* Takes the squares of the patch that the memory puts where the placement does, by at
+/* Takes the squares of the patch that the memory puts where the pose does, by at
  * least @least corners. */
 static void
-take_patch (ClothQuadTracker * tracker, const ClothPose * placement, gint least)
+take_patch (ClothQuadTracker * tracker, const ClothPose * pose, gint least)
 {
   const ClothPatch *patch = &tracker->patch;
 
   for (gint j = 0; j + 1 < patch->rows; j++)
     for (gint i = 0; i + 1 < patch->columns; i++)
       if (patch->square[j * patch->columns + i]
-          && recall_square (tracker, placement, i, j) >= least)
-        take_square (tracker, placement, i, j);
+          && recall_square (tracker, pose, i, j) >= least)
+        take_square (tracker, pose, i, j);
   for (gint j = 0; j < patch->rows; j++)
     for (gint i = 0; i < patch->columns; i++) {
       gint from = j * patch->columns + i, column, row;
       ClothQuadVertex *vertex;
 
       if (!patch->kind[from]
-          || recall (tracker, placement, i, j) < MIN (least, 1))
+          || recall (tracker, pose, i, j) < MIN (least, 1))
         continue;
-      cloth_pose_vertex (placement, i, j, &column, &row);
+      cloth_pose_vertex (pose, i, j, &column, &row);
       if (column < 0 || row < 0 || column > tracker->pattern.columns
           || row > tracker->pattern.rows)
         continue;
@@ -387,8 +385,7 @@ take_patch (ClothQuadTracker * tracker, const ClothPose * placement, gint least)
  * placed. @from: where its corners were noted already, the number of those noted if they
  * were not. */
 static void
-note_corners (ClothQuadTracker * tracker, const ClothPose * placement,
-    guint from)
+note_corners (ClothQuadTracker * tracker, const ClothPose * pose, guint from)
 {
   const ClothPatch *patch = &tracker->patch;
 
@@ -398,8 +395,8 @@ note_corners (ClothQuadTracker * tracker, const ClothPose * placement,
 
       if (!patch->kind[at])
         continue;
-      if (placement) {
-        cloth_pose_vertex (placement, i, j, &column, &row);
+      if (pose) {
+        cloth_pose_vertex (pose, i, j, &column, &row);
         if (column >= 0 && row >= 0 && column <= tracker->pattern.columns
             && row <= tracker->pattern.rows)
           vertex = row * (tracker->pattern.columns + 1) + column;
@@ -521,7 +518,7 @@ doubt (ClothQuadTracker * tracker)
 /* Counts the cells around the patch that show the board's end, and those of which nothing
  * is known though the board goes on there; of the colour that the cloth has not. */
 static void
-count_rim (ClothQuadTracker * tracker, const ClothPose * placement,
+count_rim (ClothQuadTracker * tracker, const ClothPose * pose,
     gint * n_rim, gint * n_hidden)
 {
   const ClothPatch *patch = &tracker->patch;
@@ -538,7 +535,7 @@ count_rim (ClothQuadTracker * tracker, const ClothPose * placement,
               || patch->square[at + n]))
         continue;
       black = cloth_patch_is_black (patch, i, j);
-      cloth_pose_cell (placement, i, j, &column, &row);
+      cloth_pose_cell (pose, i, j, &column, &row);
       if (cloth_quad_cell (tracker, column, row))
         hidden[black]++;
       else
@@ -552,7 +549,7 @@ count_rim (ClothQuadTracker * tracker, const ClothPose * placement,
 /* Where the refused patches of the last picture put what this one does, the evidence for
  * that; else 0. */
 static gfloat
-evidence_before (ClothQuadTracker * tracker, const ClothPose * placement)
+evidence_before (ClothQuadTracker * tracker, const ClothPose * pose)
 {
   const ClothPatch *patch = &tracker->patch;
   gfloat evidence = G_MAXFLOAT;
@@ -575,7 +572,7 @@ evidence_before (ClothQuadTracker * tracker, const ClothPose * placement)
           near.index);
       if (sqrtf (near.distance2) > VOTE_REACH * before->size)
         continue;
-      cloth_pose_vertex (placement, i, j, &column, &row);
+      cloth_pose_vertex (pose, i, j, &column, &row);
       if (before->vertex != row * (tracker->pattern.columns + 1) + column) {
         against++;
         continue;
@@ -588,7 +585,7 @@ evidence_before (ClothQuadTracker * tracker, const ClothPose * placement)
 
 /* Keeps a patch refused for want of @evidence, which pictures have added up, in mind. */
 static void
-note_pending (ClothQuadTracker * tracker, const ClothPose * placement,
+note_pending (ClothQuadTracker * tracker, const ClothPose * pose,
     gfloat evidence)
 {
   const ClothPatch *patch = &tracker->patch;
@@ -601,7 +598,7 @@ note_pending (ClothQuadTracker * tracker, const ClothPose * placement,
 
       if (patch->kind[at] != CLOTH_VERTEX_SADDLE || !patch->kind[at + 1])
         continue;
-      cloth_pose_vertex (placement, i, j, &column, &row);
+      cloth_pose_vertex (pose, i, j, &column, &row);
       own.vertex = row * (tracker->pattern.columns + 1) + column;
       own.size = hypotf (patch->x[at + 1] - patch->x[at],
           patch->y[at + 1] - patch->y[at]);
@@ -616,9 +613,9 @@ note_pending (ClothQuadTracker * tracker, const ClothPose * placement,
  * mostly when nothing is remembered: then more is asked, or less a picture but in several
  * that follow each other. */
 static gboolean
-is_evident (ClothQuadTracker * tracker, const ClothPose * placement)
+is_evident (ClothQuadTracker * tracker, const ClothPose * pose)
 {
-  const gfloat evidence = placement->evidence;
+  const gfloat evidence = pose->evidence;
   gint rim, hidden;
   gfloat before;
 
@@ -626,9 +623,9 @@ is_evident (ClothQuadTracker * tracker, const ClothPose * placement)
     return evidence >= READ;
   if (evidence < HINT)
     return FALSE;
-  if (placement->whole)
+  if (pose->whole)
     return TRUE;
-  count_rim (tracker, placement, &rim, &hidden);
+  count_rim (tracker, pose, &rim, &hidden);
   if (evidence >= EVIDENT && hidden <= HIDDEN * rim + 1)
     return TRUE;
   if (tracker->guess_vertex->len > 0) {
@@ -642,17 +639,17 @@ is_evident (ClothQuadTracker * tracker, const ClothPose * placement)
     if (rim < LEAST_RIM || hidden > HIDDEN * rim)
       return FALSE;
   }
-  before = evidence_before (tracker, placement);
+  before = evidence_before (tracker, pose);
   if (before > 0 && before + evidence >= FAIR)
     return TRUE;
-  note_pending (tracker, placement, before + evidence);
+  note_pending (tracker, pose, before + evidence);
   return FALSE;
 }
 
 /* Places the patch that was just built. Linking may have joined pieces on both sides of a
  * fold: @other is the place that memory knows of the second piece, weight 0 for none. */
 static gboolean
-place (ClothQuadTracker * tracker, gboolean first, ClothPose * placement,
+place (ClothQuadTracker * tracker, gboolean first, ClothPose * pose,
     ClothPose * other)
 {
   ClothPose votes[MAX_VOTES + MAX_SEEDS];
@@ -669,38 +666,36 @@ place (ClothQuadTracker * tracker, gboolean first, ClothPose * placement,
   /* With nothing to go by, a plain board that looks the same after a turn is taken the way
    * it is most upright; from then on the memory tells which way that was. */
   weights.twins = first && n == 0 && tracker->guess_vertex->len == 0;
-  if (!cloth_pose_finder_run (tracker->placer, &tracker->patch, &weights, votes,
-          n, placement)
-      || placement->weight < CLOTH_POSE_MIN_LEAD)
+  if (!cloth_pose_finder_run (tracker->pose_finder, &tracker->patch, &weights,
+          votes, n, pose)
+      || pose->weight < CLOTH_POSE_MIN_LEAD)
     return FALSE;
   for (guint v = 0; v < n; v++)
-    if (votes[v].rotation == placement->rotation
-        && votes[v].column == placement->column
-        && votes[v].row == placement->row)
+    if (votes[v].rotation == pose->rotation
+        && votes[v].column == pose->column && votes[v].row == pose->row)
       known += votes[v].weight;
-  evident = known < KNOWN && is_evident (tracker, placement);
+  evident = known < KNOWN && is_evident (tracker, pose);
   if (known < KNOWN && !evident)
     return FALSE;
   for (guint v = 0; v < n_memory; v++)
-    if (votes[v].rotation == placement->rotation
-        && votes[v].column == placement->column
-        && votes[v].row == placement->row)
+    if (votes[v].rotation == pose->rotation
+        && votes[v].column == pose->column && votes[v].row == pose->row)
       agrees = votes[v].weight;
     else if (votes[v].weight > other->weight)
       *other = votes[v];
   /* What the largest patch shows overrules the memory: it had slipped. The others must
    * fit to what is known by then, or show their place beyond doubt. */
-  if (!first && placement->weight < SURE_LEAD && (agrees == 0 ? !evident
+  if (!first && pose->weight < SURE_LEAD && (agrees == 0 ? !evident
           || other->weight > KNOWN : other->weight > agrees))
     return FALSE;
   /* A board that was just seen is hardly anywhere else. */
   if (first && agrees == 0 && tracker->guess_vertex->len > 0
-      && placement->weight < NEW_LEAD && doubt (tracker))
+      && pose->weight < NEW_LEAD && doubt (tracker))
     return FALSE;
   /* Where it knows both places well, the patch is joined over a fold. */
   if (first && other->weight > agrees && other->weight > STRONG_VOTE
       && agrees <= STRONG_VOTE) {
-    if (placement->weight < SURE_LEAD && doubt (tracker))
+    if (pose->weight < SURE_LEAD && doubt (tracker))
       return FALSE;
     forget (tracker);
     other->weight = 0;
@@ -728,16 +723,16 @@ try_patch (ClothQuadTracker * tracker, const ClothLinkPatch * link,
   const ClothPatchParams params = { tracker->params->alpha,
     tracker->params->c_low, -3.0f, 0.25f, FALSE, tracker->pattern.code != NULL
   };
-  ClothPose placement, other = { 0 };
+  ClothPose pose, other = { 0 };
 
   cloth_patch_build (&tracker->patch, tracker->image, tracker->saddles, link,
       &params);
-  if (!place (tracker, n_placed == 0, &placement, &other)) {
+  if (!place (tracker, n_placed == 0, &pose, &other)) {
     note_corners (tracker, NULL, from);
     return FALSE;
   }
-  note_corners (tracker, &placement, from);
-  take_patch (tracker, &placement, placement.evidence < MIXED ? 3 : 0);
+  note_corners (tracker, &pose, from);
+  take_patch (tracker, &pose, pose.evidence < MIXED ? 3 : 0);
   if (other.weight > STRONG_VOTE)
     take_patch (tracker, &other, 3);
   /* The others are looked for where the first one's motion has brought them. */

@@ -101,7 +101,7 @@ struct _ClothQuadTracker
   guint8 logarithm[256];        /* of a grey level */
   guint8 *logarithms;           /* of the picture's levels, where they were asked for */
   gsize logarithms_size;
-  ClothPoseFinder *placer;
+  ClothPoseFinder *pose_finder;
   GArray *seeds;                /* ClothQuadSeed */
   GArray *out;                  /* ClothQuad */
 

@@ -6,7 +6,6 @@
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <math.h>
-#include <string.h>
 
 #include "gst/vision/corner/edge.h"
 #include "gst/vision/quad/quad-private.h"

@@ -67,7 +67,7 @@ cloth_quad_tracker_new (const ClothPattern * pattern)
       sizeof (ClothQuadPending));
   tracker->pending_corner_now = g_array_new (FALSE, FALSE,
       sizeof (ClothQuadPending));
-  tracker->placer = cloth_pose_finder_new (pattern);
+  tracker->pose_finder = cloth_pose_finder_new (pattern);
   tracker->seeds = g_array_new (FALSE, FALSE, sizeof (ClothQuadSeed));
   tracker->out =
       g_array_sized_new (FALSE, FALSE, sizeof (ClothQuad), (guint) n);
@@ -100,7 +100,7 @@ cloth_quad_tracker_free (ClothQuadTracker * tracker)
   cloth_point_grid_free (tracker->pending_now);
   g_array_unref (tracker->pending_corner);
   g_array_unref (tracker->pending_corner_now);
-  cloth_pose_finder_free (tracker->placer);
+  cloth_pose_finder_free (tracker->pose_finder);
   g_array_unref (tracker->seeds);
   g_array_unref (tracker->out);
   g_free (tracker);

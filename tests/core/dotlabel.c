@@ -542,19 +542,19 @@ main (int argc, char **argv)
   code.seed = 2;
   if (!cloth_m_array_generate (COLUMNS, ROWS, COLOURS, &code, other, NULL))
     return 1;
-  g_test_add_func ("/lattice/views", test_views);
-  g_test_add_func ("/lattice/diameters", test_diameters);
-  g_test_add_func ("/lattice/hard-pictures", test_hard_pictures);
-  g_test_add_func ("/lattice/fold", test_fold);
-  g_test_add_func ("/lattice/twice", test_twice);
-  g_test_add_func ("/lattice/through-time", test_through_time);
-  g_test_add_func ("/lattice/repeatable", test_repeatable);
-  g_test_add_func ("/lattice/swapped-colours", test_swapped_colours);
-  g_test_add_func ("/lattice/no-swap", test_no_swap);
-  g_test_add_func ("/lattice/one-sided", test_one_sided);
-  g_test_add_func ("/lattice/no-lattice", test_no_lattice);
-  g_test_add_func ("/lattice/no-numbers", test_no_numbers);
-  g_test_add_func ("/lattice/wrong-pattern", test_wrong_pattern);
-  g_test_add_func ("/lattice/bad-arrays", test_bad_arrays);
+  g_test_add_func ("/dotlabel/views", test_views);
+  g_test_add_func ("/dotlabel/diameters", test_diameters);
+  g_test_add_func ("/dotlabel/hard-pictures", test_hard_pictures);
+  g_test_add_func ("/dotlabel/fold", test_fold);
+  g_test_add_func ("/dotlabel/twice", test_twice);
+  g_test_add_func ("/dotlabel/through-time", test_through_time);
+  g_test_add_func ("/dotlabel/repeatable", test_repeatable);
+  g_test_add_func ("/dotlabel/swapped-colours", test_swapped_colours);
+  g_test_add_func ("/dotlabel/no-swap", test_no_swap);
+  g_test_add_func ("/dotlabel/one-sided", test_one_sided);
+  g_test_add_func ("/dotlabel/no-lattice", test_no_lattice);
+  g_test_add_func ("/dotlabel/no-numbers", test_no_numbers);
+  g_test_add_func ("/dotlabel/wrong-pattern", test_wrong_pattern);
+  g_test_add_func ("/dotlabel/bad-arrays", test_bad_arrays);
   return g_test_run ();
 }

@@ -195,7 +195,7 @@ int
 main (int argc, char **argv)
 {
   g_test_init (&argc, &argv, NULL);
-#define ADD(name) g_test_add ("/gaptears/" #name, Sheet, NULL, set_up, \
+#define ADD(name) g_test_add ("/outliers/" #name, Sheet, NULL, set_up, \
       test_##name, tear_down)
   ADD (whole);
   ADD (patch);
@@ -204,6 +204,6 @@ main (int argc, char **argv)
   ADD (slack);
   ADD (unseen);
   ADD (anything);
-  g_test_add_func ("/gaptears/hostile", test_hostile);
+  g_test_add_func ("/outliers/hostile", test_hostile);
   return g_test_run ();
 }

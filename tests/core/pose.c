@@ -7,7 +7,7 @@
 
 #include "gst/math/random.h"
 #include "gst/pattern/code.h"
-#include "tests/common/bruteplace.h"
+#include "tests/common/brutepose.h"
 
 #define M CLOTH_PATCH_MARGIN
 #define MOST 24
@@ -19,9 +19,9 @@ static gboolean
 run (gboolean single, const ClothPattern * pattern, const ClothPatch * patch,
     const ClothPose * votes, guint n_votes, ClothPose * best)
 {
-  g_autoptr (ClothPoseFinder) placer = cloth_pose_finder_new (pattern);
+  g_autoptr (ClothPoseFinder) pose_finder = cloth_pose_finder_new (pattern);
 
-  return cloth_pose_finder_run (placer, patch,
+  return cloth_pose_finder_run (pose_finder, patch,
       single ? &cloth_pose_rigid : &cloth_pose_cloth, votes, n_votes, best);
 }
 
@@ -319,7 +319,7 @@ random_patch (const ClothPattern * pattern, ClothRandom * random,
   return patch;
 }
 
-/* The same as by looking at every square under every placement: place and lead. */
+/* The same as by looking at every square under every pose: place and lead. */
 static void
 test_brute (void)
 {
@@ -338,12 +338,12 @@ test_brute (void)
     g_autoptr (ClothPattern) pattern =
         cloth_pattern_new_checker (sizes[s / 2][0], sizes[s / 2][1], 0.01, 0,
         s & 1, NULL);
-    g_autoptr (ClothPoseFinder) placer = NULL;
+    g_autoptr (ClothPoseFinder) pose_finder = NULL;
 
     if (s & 1)
       g_assert_true (cloth_code_generate (pattern, CLOTH_CODE_DOT_RATIO, s,
               NULL, NULL));
-    placer = cloth_pose_finder_new (pattern);
+    pose_finder = cloth_pose_finder_new (pattern);
     for (guint k = 0; k < 60; k++) {
       ClothPose best = { 0 }, brute = { 0 }, votes[3];
       g_autoptr (ClothPatch) patch = random_patch (pattern, &random, &votes[0]);
@@ -356,8 +356,8 @@ test_brute (void)
       votes[2].rotation ^= 2;
       fits = test_brute_place (pattern, patch, &weights[k & 1], votes, n_votes,
           &brute);
-      g_assert_cmpint (cloth_pose_finder_run (placer, patch, &weights[k & 1],
-              votes, n_votes, &best), ==, fits);
+      g_assert_cmpint (cloth_pose_finder_run (pose_finder, patch,
+              &weights[k & 1], votes, n_votes, &best), ==, fits);
       if (!fits)
         continue;
       n++;
@@ -374,23 +374,23 @@ test_brute (void)
   g_assert_cmpuint (coded, >, 100);
 }
 
-/* Cells and vertices under a placement agree: a cell's vertices are its own. */
+/* Cells and vertices under a pose agree: a cell's vertices are its own. */
 static void
 test_mapping (void)
 {
   for (gint rotation = 0; rotation < 4; rotation++) {
-    const ClothPose placement = { rotation, 5, -3, 0 };
+    const ClothPose pose = { rotation, 5, -3, 0 };
 
     for (gint j = -2; j < 3; j++)
       for (gint i = -2; i < 3; i++) {
         gint c, r, c1, r1, column, row;
 
-        cloth_pose_vertex (&placement, i, j, &column, &row);
+        cloth_pose_vertex (&pose, i, j, &column, &row);
         turn (rotation, i, j, &c, &r);
         g_assert_cmpint (column, ==, c + 5);
         g_assert_cmpint (row, ==, r - 3);
         turn (rotation, i + 1, j + 1, &c1, &r1);
-        cloth_pose_cell (&placement, i, j, &column, &row);
+        cloth_pose_cell (&pose, i, j, &column, &row);
         g_assert_cmpint (column, ==, MIN (c, c1) + 5);
         g_assert_cmpint (row, ==, MIN (r, r1) - 3);
       }
@@ -462,12 +462,12 @@ int
 main (int argc, char **argv)
 {
   g_test_init (&argc, &argv, NULL);
-  g_test_add_func ("/place/mapping", test_mapping);
-  g_test_add_func ("/place/coded", test_coded);
-  g_test_add_func ("/place/plain", test_plain);
-  g_test_add_func ("/place/brute", test_brute);
-  g_test_add_func ("/place/votes", test_votes);
-  g_test_add_func ("/place/refused", test_refused);
-  g_test_add_func ("/place/evidence", test_evidence);
+  g_test_add_func ("/pose/mapping", test_mapping);
+  g_test_add_func ("/pose/coded", test_coded);
+  g_test_add_func ("/pose/plain", test_plain);
+  g_test_add_func ("/pose/brute", test_brute);
+  g_test_add_func ("/pose/votes", test_votes);
+  g_test_add_func ("/pose/refused", test_refused);
+  g_test_add_func ("/pose/evidence", test_evidence);
   return g_test_run ();
 }

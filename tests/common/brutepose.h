@@ -1,4 +1,4 @@
-/* Placing a patch by its definition: every placement, square by square.
+/* Placing a patch by its definition: every pose, square by square.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -36,10 +36,10 @@ test_patch_free (ClothPatch * patch)
   g_free (patch);
 }
 
-/* What was seen, under a placement; corners that are no saddles stand alone. */
+/* What was seen, under a pose; corners that are no saddles stand alone. */
 static inline gdouble
 test_brute_score (const ClothPattern * pattern, const ClothPatch * patch,
-    const ClothPoseWeights * weights, const ClothPose * placement)
+    const ClothPoseWeights * weights, const ClothPose * pose)
 {
   gdouble score = 0;
 
@@ -48,7 +48,7 @@ test_brute_score (const ClothPattern * pattern, const ClothPatch * patch,
       const gint at = j * patch->columns + i;
       gint c, r;
 
-      cloth_pose_vertex (placement, i, j, &c, &r);
+      cloth_pose_vertex (pose, i, j, &c, &r);
       if (patch->linked[at] || (weights->found_corners
               && patch->kind[at] == CLOTH_VERTEX_SADDLE))
         score += c < 1 || r < 1 || c >= pattern->columns || r >= pattern->rows
@@ -56,7 +56,7 @@ test_brute_score (const ClothPattern * pattern, const ClothPatch * patch,
       else if (patch->kind[at] >= CLOTH_VERTEX_UNSURE)
         score += c < 1 || r < 1 || c >= pattern->columns || r >= pattern->rows
             ? 0 : weights->cut_corner;
-      cloth_pose_cell (placement, i, j, &c, &r);
+      cloth_pose_cell (pose, i, j, &c, &r);
       if (c < 0 || r < 0 || c >= pattern->columns || r >= pattern->rows)
         score += patch->square[at] ? weights->square_outside : 0;
       else if (!patch->square[at])
@@ -68,7 +68,7 @@ test_brute_score (const ClothPattern * pattern, const ClothPatch * patch,
   return score;
 }
 
-/* The best of all placements by which no square sticks out by more than one, and black
+/* The best of all poses by which no square sticks out by more than one, and black
  * squares lie on black ones; @best gets its lead as weight. */
 static inline gboolean
 test_brute_place (const ClothPattern * pattern, const ClothPatch * patch,
