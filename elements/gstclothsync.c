@@ -19,6 +19,7 @@ GST_DEBUG_CATEGORY_STATIC (cloth_sync_debug);
 #define FALLBACK_TOLERANCE (GST_SECOND / 60)
 /* Keeps sums of times far from overflow. */
 #define MAX_TOLERANCE (3600 * GST_SECOND)
+#define MAX_JUMP (10 * GST_SECOND)
 
 typedef struct
 {
@@ -28,17 +29,19 @@ typedef struct
   GMutex release_lock;
 
   /* with the object lock */
-  GstClockTime tolerance;
+  GstClockTime tolerance, max_jump;
   guint min_views;
   GstClockTimeDiff offset[GST_CLOTH_SYNC_MAX_PADS];
   GstClockTime effective;       /* the tolerance in force */
   guint64 taken;                /* indices in use */
   guint64 released;             /* of pads that the subclass still believes in */
-  guint64 n_sets, n_incomplete, n_dropped;
+  guint64 n_sets, n_incomplete, n_dropped, n_implausible;
 
   /* streaming thread */
+  gboolean is_live;
   gboolean has_last;
-  GstClockTimeDiff last_time, last_tolerance;
+  GstClockTimeDiff last_time;
+  GstClockTime last_tolerance;
   guint64 last_mask;
 } GstClothSyncPrivate;
 
@@ -55,6 +58,13 @@ static const GstClothProperty properties[] = {
     "Sets with frames from fewer pads than this are dropped",
     G_TYPE_UINT, GST_CLOTH_SETTING (GstClothSyncPrivate, min_views),
     GST_PARAM_MUTABLE_PLAYING, 1, GST_CLOTH_SYNC_MAX_PADS},
+  {"max-jump", "Largest jump in time",
+    "A frame farther than this ahead of the one before it on its pad, in ns, "
+    "and twice as far as that one was from its own, waits until the next "
+    "one's time bears it out or contradicts it: then it is dropped. The "
+    "largest value believes every time stamp",
+    G_TYPE_UINT64, GST_CLOTH_SETTING (GstClothSyncPrivate, max_jump),
+    GST_PARAM_MUTABLE_PLAYING},
 };
 /* *INDENT-ON* */
 
@@ -63,36 +73,15 @@ static const GstClothProperty properties[] = {
 
 static const GstClothSyncPrivate defaults = {
   .tolerance = GST_CLOCK_TIME_NONE,
+  .max_jump = MAX_JUMP,
   .min_views = 1,
   .effective = FALLBACK_TOLERANCE
 };
-
-G_DEFINE_TYPE (GstClothSyncPad, gst_cloth_sync_pad, GST_TYPE_AGGREGATOR_PAD);
 
 G_DEFINE_ABSTRACT_TYPE_WITH_CODE (GstClothSync, gst_cloth_sync,
     GST_TYPE_AGGREGATOR, G_ADD_PRIVATE (GstClothSync)
     GST_DEBUG_CATEGORY_INIT (cloth_sync_debug, "clothsync", 0,
         "joining of streams by running time"));
-
-/* What was looked at before the flush, to know the deadline, is still held. */
-static GstFlowReturn
-gst_cloth_sync_pad_flush (GstAggregatorPad * pad, GstAggregator * agg)
-{
-  gst_aggregator_pad_drop_buffer (pad);
-  return GST_FLOW_OK;
-}
-
-static void
-gst_cloth_sync_pad_class_init (GstClothSyncPadClass * klass)
-{
-  GST_AGGREGATOR_PAD_CLASS (klass)->flush = gst_cloth_sync_pad_flush;
-}
-
-static void
-gst_cloth_sync_pad_init (GstClothSyncPad * pad)
-{
-  pad->period = GST_CLOCK_TIME_NONE;
-}
 
 /* Tolerance and latency follow from the pads' frame rates and offsets. */
 static void
@@ -347,7 +336,8 @@ gst_cloth_sync_clip (GstAggregator * agg, GstAggregatorPad * aggpad,
       || aggpad->segment.format != GST_FORMAT_TIME) {
     return buffer;
   }
-  if (GST_BUFFER_DURATION_IS_VALID (buffer)) {
+  if (GST_BUFFER_DURATION_IS_VALID (buffer)
+      && GST_BUFFER_DURATION (buffer) < GST_CLOCK_TIME_NONE - start) {
     stop = start + GST_BUFFER_DURATION (buffer);
   }
   if (!gst_segment_clip (&aggpad->segment, GST_FORMAT_TIME, start, stop,
@@ -396,6 +386,9 @@ gst_cloth_sync_restart (GstClothSync * self)
   GST_OBJECT_LOCK (self);
   GST_AGGREGATOR_PAD (GST_AGGREGATOR_SRC_PAD (self))->segment.position =
       GST_CLOCK_TIME_NONE;
+  for (GList * l = GST_ELEMENT (self)->sinkpads; l; l = l->next) {
+    gst_cloth_sync_pad_reset (GST_CLOTH_SYNC_PAD (l->data));
+  }
   GST_OBJECT_UNLOCK (self);
   if (klass->reset) {
     klass->reset (self);
@@ -417,6 +410,12 @@ gst_cloth_sync_start (GstAggregator * agg)
 
   GST_OBJECT_LOCK (self);
   priv->n_sets = priv->n_incomplete = priv->n_dropped = 0;
+  priv->n_implausible = 0;
+  for (GList * l = GST_ELEMENT (self)->sinkpads; l; l = l->next) {
+    GstClothSyncPad *pad = GST_CLOTH_SYNC_PAD (l->data);
+
+    pad->warned_ahead = pad->warned_back = FALSE;
+  }
   GST_OBJECT_UNLOCK (self);
   gst_cloth_sync_restart (self);
   return TRUE;
@@ -449,7 +448,15 @@ typedef struct
   guint n, n_pads, n_eos, n_waiting;
 } Heads;
 
-/* Time of a frame on the common clock; GST_CLOCK_STIME_NONE when it has none. */
+/* Whether @time is at most @span after @since; nothing overflows. */
+static gboolean
+is_within (GstClockTimeDiff time, GstClockTimeDiff since, guint64 span)
+{
+  return time <= since || (guint64) time - (guint64) since <= span;
+}
+
+/* Time of a frame on the common clock, the largest one where it is beyond all that 64 bits
+ * hold; GST_CLOCK_STIME_NONE when it has none. */
 static GstClockTimeDiff
 gst_cloth_sync_time (GstClothSync * self, GstClothSyncPad * pad,
     GstBuffer * buffer)
@@ -470,6 +477,10 @@ gst_cloth_sync_time (GstClothSync * self, GstClothSyncPad * pad,
   GST_OBJECT_UNLOCK (pad);
   if (!GST_CLOCK_TIME_IS_VALID (running)) {
     return GST_CLOCK_STIME_NONE;
+  }
+  running = MIN (running, (guint64) G_MAXINT64);
+  if (offset < 0 && running > (guint64) (G_MAXINT64 + offset)) {
+    return G_MAXINT64;
   }
   return (GstClockTimeDiff) running - offset;
 }
@@ -497,7 +508,7 @@ gst_cloth_sync_gather (GstClothSync * self, Heads * heads)
     if (!pad) {
       continue;
     }
-    head = heads->head[i] = gst_aggregator_pad_peek_buffer (pad);
+    head = heads->head[i] = gst_cloth_sync_pad_look (heads->pad[i]);
     if (!head) {
       if (gst_aggregator_pad_is_eos (pad)) {
         heads->n_eos++;
@@ -522,13 +533,36 @@ gst_cloth_sync_release_heads (Heads * heads)
   }
 }
 
+/* What to do about the time of the head of pad @i. A live stream may have been silent until
+ * now, and its frames come when they are made. */
+static GstClothSyncVerdict
+gst_cloth_sync_judge (GstClothSync * self, const Heads * heads, guint i)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  GstClockTimeDiff start = priv->has_last ? priv->last_time : 0;
+  GstClockTime max_jump, now;
+
+  GST_OBJECT_LOCK (self);
+  max_jump = priv->max_jump;
+  GST_OBJECT_UNLOCK (self);
+  if (priv->is_live) {
+    now = gst_element_get_current_running_time (GST_ELEMENT (self));
+    if (GST_CLOCK_TIME_IS_VALID (now)) {
+      start = MAX (start, (GstClockTimeDiff) MIN (now, (guint64) G_MAXINT64));
+    }
+  }
+  return gst_cloth_sync_pad_judge (heads->pad[i],
+      heads->head[i] ? heads->time[i] : GST_CLOCK_STIME_NONE, start, max_jump);
+}
+
 /* The running time from which the live deadline counts: the next set's. NONE makes the
  * aggregator wait without a deadline, right while there is no frame at all. */
 static GstClockTime
 gst_cloth_sync_get_next_time (GstAggregator * agg)
 {
   GstClothSync *self = GST_CLOTH_SYNC (agg);
-  GstClockTimeDiff first = G_MAXINT64;
+  GstClockTimeDiff first = 0;
+  gboolean has_first = FALSE;
   Heads heads;
   guint i;
 
@@ -536,13 +570,17 @@ gst_cloth_sync_get_next_time (GstAggregator * agg)
   gst_cloth_sync_gather (self, &heads);
   for (i = 0; i < heads.n; i++) {
     if (heads.head[i]) {
-      /* a frame without a time is dealt with at once: its time is the least value */
-      first = MIN (first, heads.time[i]);
+      /* a frame without a time, and one that is doubted, is dealt with at once */
+      const GstClockTimeDiff time = GST_CLOCK_STIME_IS_VALID (heads.time[i])
+          && gst_cloth_sync_judge (self, &heads, i) == GST_CLOTH_SYNC_KEEP ?
+          MAX (heads.time[i], 0) : 0;
+
+      first = has_first ? MIN (first, time) : time;
+      has_first = TRUE;
     }
   }
   gst_cloth_sync_release_heads (&heads);
-  return first == G_MAXINT64 ? GST_CLOCK_TIME_NONE : (GstClockTime) MAX (first,
-      0);
+  return has_first ? (GstClockTime) first : GST_CLOCK_TIME_NONE;
 }
 
 /* Takes the head of a pad; see the release lock. */
@@ -553,9 +591,88 @@ gst_cloth_sync_pop (GstClothSync * self, GstClothSyncPad * pad)
   GstBuffer *buffer;
 
   g_mutex_lock (&priv->release_lock);
-  buffer = gst_aggregator_pad_pop_buffer (GST_AGGREGATOR_PAD_CAST (pad));
+  buffer = gst_cloth_sync_pad_take (pad);
   g_mutex_unlock (&priv->release_lock);
   return buffer;
+}
+
+/* What a message calls the stream of a pad. */
+static gchar *
+gst_cloth_sync_name_stream (GstClothSync * self, GstClothSyncPad * pad)
+{
+  GstClothSyncClass *klass = GST_CLOTH_SYNC_GET_CLASS (self);
+  g_autofree gchar *camera =
+      klass->get_camera ? klass->get_camera (self, pad->index) : NULL;
+
+  return camera ? g_strdup_printf ("camera \"%s\" (pad %s)", camera,
+      GST_PAD_NAME (pad)) : g_strdup_printf ("pad %s", GST_PAD_NAME (pad));
+}
+
+/* Drops a frame whose time its successor, if any, contradicts. */
+static void
+gst_cloth_sync_refuse (GstClothSync * self, GstClothSyncPad * pad)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  g_autofree gchar *stream = gst_cloth_sync_name_stream (self, pad);
+
+  GST_OBJECT_LOCK (self);
+  priv->n_implausible++;
+  pad->implausible++;
+  GST_OBJECT_UNLOCK (self);
+  if (!pad->warned_ahead) {
+    GST_ELEMENT_WARNING (self, STREAM, FORMAT,
+        ("A frame of %s was dropped: its time stamp, %.3f s, is far ahead and "
+            "the next frame's is not.", stream,
+            (gdouble) pad->held_time / GST_SECOND),
+        ("Later ones are only counted, as \"implausible\" in stats. If such "
+            "jumps are real, raise max-jump."));
+    pad->warned_ahead = TRUE;
+  }
+  gst_cloth_sync_pad_refuse (pad);
+}
+
+/* Looks whether the heads' times can be believed. TRUE when a head has changed: they have
+ * to be looked at anew. */
+static gboolean
+gst_cloth_sync_settle_times (GstClothSync * self, Heads * heads)
+{
+  gboolean changed = FALSE;
+  guint i;
+
+  for (i = 0; i < heads->n; i++) {
+    GstClothSyncPad *pad = heads->pad[i];
+    const GstClockTimeDiff time = heads->time[i];
+    GstBuffer *buffer;
+
+    if (!pad || (heads->head[i] && !GST_CLOCK_STIME_IS_VALID (time))) {
+      continue;
+    }
+    switch (gst_cloth_sync_judge (self, heads, i)) {
+      case GST_CLOTH_SYNC_KEEP:
+        if (heads->head[i]) {
+          gst_cloth_sync_pad_note (pad, time);
+        }
+        continue;
+      case GST_CLOTH_SYNC_HOLD:
+        buffer = gst_cloth_sync_pop (self, pad);
+        /* flushed meanwhile, it is not there or another one */
+        if (buffer) {
+          gst_cloth_sync_pad_hold (pad, buffer,
+              gst_cloth_sync_time (self, pad, buffer));
+        }
+        break;
+      case GST_CLOTH_SYNC_BELIEVE:
+        GST_INFO_OBJECT (pad, "time stamps jump to %" GST_STIME_FORMAT,
+            GST_STIME_ARGS (pad->held_time));
+        gst_cloth_sync_pad_believe (pad);
+        break;
+      case GST_CLOTH_SYNC_REFUSE:
+        gst_cloth_sync_refuse (self, pad);
+        break;
+    }
+    changed = TRUE;
+  }
+  return changed;
 }
 
 static void
@@ -568,14 +685,16 @@ gst_cloth_sync_discard_head (GstClothSync * self, GstClothSyncPad * pad)
 
 static void
 gst_cloth_sync_drop (GstClothSync * self, GstClothSyncPad * pad,
-    GstBuffer * buffer)
+    GstBuffer * buffer, GstClockTimeDiff time)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
   GstAggregatorPad *aggpad = GST_AGGREGATOR_PAD (pad);
   GstClockTime pts = GST_BUFFER_PTS (buffer);
+  GstClockTime max_jump;
   GstMessage *message;
 
   GST_OBJECT_LOCK (self);
+  max_jump = priv->max_jump;
   priv->n_dropped++;
   pad->dropped++;
   GST_OBJECT_UNLOCK (self);
@@ -587,15 +706,27 @@ gst_cloth_sync_drop (GstClothSync * self, GstClothSyncPad * pad,
   gst_message_set_qos_stats (message, GST_FORMAT_BUFFERS, pad->used,
       pad->dropped);
   gst_element_post_message (GST_ELEMENT (self), message);
+  if (priv->has_last && !pad->warned_back
+      && !is_within (priv->last_time, time, max_jump)) {
+    g_autofree gchar *stream = gst_cloth_sync_name_stream (self, pad);
+
+    GST_ELEMENT_WARNING (self, STREAM, FORMAT,
+        ("Frames of %s are dropped: their time stamps went back to %.3f s, "
+            "but %.3f s has gone by.", stream, (gdouble) time / GST_SECOND,
+            (gdouble) priv->last_time / GST_SECOND),
+        ("Streams are joined by running time, which never goes back. See what "
+            "stamps these frames."));
+    pad->warned_back = TRUE;
+  }
   gst_cloth_sync_discard_head (self, pad);
 }
 
 /* Takes away heads that no set will want: frames too late for a set that has gone, and
- * gaps that end before the set at @first closes. TRUE when one was taken: what follows
- * it has to be looked at first. */
+ * gaps that end before the set at @first closes, or with @first %NULL all of them. TRUE
+ * when one was taken: what follows it has to be looked at first. */
 static gboolean
 gst_cloth_sync_discard (GstClothSync * self, Heads * heads,
-    GstClockTimeDiff first, GstClockTimeDiff tolerance)
+    const GstClockTimeDiff * first, GstClockTime tolerance)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
   gboolean discarded = FALSE;
@@ -610,9 +741,12 @@ gst_cloth_sync_discard (GstClothSync * self, Heads * heads,
     }
     if (heads->gap[i]) {
       if (GST_BUFFER_DURATION_IS_VALID (heads->head[i])) {
-        time += (GstClockTimeDiff) GST_BUFFER_DURATION (heads->head[i]);
+        const GstClockTime room = (guint64) G_MAXINT64 - (guint64) time;
+
+        time += (GstClockTimeDiff) MIN (GST_BUFFER_DURATION (heads->head[i]),
+            MIN (room, (guint64) G_MAXINT64));
       }
-      if (first == G_MAXINT64 || time <= first + tolerance) {
+      if (!first || is_within (time, *first, tolerance)) {
         gst_cloth_sync_discard_head (self, heads->pad[i]);
         discarded = TRUE;
       }
@@ -622,10 +756,10 @@ gst_cloth_sync_discard (GstClothSync * self, Heads * heads,
     if (priv->has_last) {
       late |= time <= priv->last_time;
       late |= !(priv->last_mask >> i & 1)
-          && time <= priv->last_time + priv->last_tolerance;
+          && is_within (time, priv->last_time, priv->last_tolerance);
     }
     if (late) {
-      gst_cloth_sync_drop (self, heads->pad[i], heads->head[i]);
+      gst_cloth_sync_drop (self, heads->pad[i], heads->head[i], time);
       discarded = TRUE;
     }
   }
@@ -761,7 +895,9 @@ gst_cloth_sync_aggregate (GstAggregator * agg, gboolean timeout)
   GstClothSync *self = GST_CLOTH_SYNC (agg);
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
   GstFlowReturn ret = GST_AGGREGATOR_FLOW_NEED_DATA;
-  GstClockTimeDiff first = G_MAXINT64, tolerance;
+  GstClockTimeDiff first = 0;
+  gboolean has_first = FALSE;
+  GstClockTime tolerance;
   guint64 mask = 0;
   gint untimed = -1;
   Heads heads;
@@ -769,12 +905,16 @@ gst_cloth_sync_aggregate (GstAggregator * agg, gboolean timeout)
 
   gst_cloth_sync_forget_released (self);
   GST_OBJECT_LOCK (self);
-  tolerance = (GstClockTimeDiff) priv->effective;
+  tolerance = priv->effective;
   GST_OBJECT_UNLOCK (self);
+  priv->is_live = GST_CLOCK_TIME_IS_VALID (gst_aggregator_get_latency (agg));
 
   g_mutex_lock (&priv->release_lock);
   gst_cloth_sync_gather (self, &heads);
   g_mutex_unlock (&priv->release_lock);
+  if (gst_cloth_sync_settle_times (self, &heads)) {
+    goto done;
+  }
   if (heads.n_eos == heads.n_pads) {
     ret = gst_cloth_sync_end (self);
     goto done;
@@ -789,7 +929,8 @@ gst_cloth_sync_aggregate (GstAggregator * agg, gboolean timeout)
     if (!GST_CLOCK_STIME_IS_VALID (heads.time[i])) {
       untimed = (gint) i;
     } else if (!heads.gap[i]) {
-      first = MIN (first, heads.time[i]);
+      first = has_first ? MIN (first, heads.time[i]) : heads.time[i];
+      has_first = TRUE;
     }
   }
   if (untimed >= 0) {
@@ -808,13 +949,14 @@ gst_cloth_sync_aggregate (GstAggregator * agg, gboolean timeout)
     }
     goto done;
   }
-  if (gst_cloth_sync_discard (self, &heads, first, tolerance)
-      || first == G_MAXINT64) {
+  if (gst_cloth_sync_discard (self, &heads, has_first ? &first : NULL,
+          tolerance) || !has_first) {
     goto done;
   }
 
   for (i = 0; i < heads.n; i++) {
-    if (heads.head[i] && !heads.gap[i] && heads.time[i] <= first + tolerance) {
+    if (heads.head[i] && !heads.gap[i]
+        && is_within (heads.time[i], first, tolerance)) {
       mask |= G_GUINT64_CONSTANT (1) << i;
     }
   }
@@ -860,7 +1002,8 @@ gst_cloth_sync_get_property (GObject * object, guint id, GValue * value,
   g_value_take_boxed (value, gst_structure_new ("stats",
           "sets", G_TYPE_UINT64, priv->n_sets,
           "incomplete", G_TYPE_UINT64, priv->n_incomplete,
-          "dropped", G_TYPE_UINT64, priv->n_dropped, NULL));
+          "dropped", G_TYPE_UINT64, priv->n_dropped,
+          "implausible", G_TYPE_UINT64, priv->n_implausible, NULL));
   GST_OBJECT_UNLOCK (object);
 }
 
@@ -902,7 +1045,8 @@ gst_cloth_sync_class_init (GstClothSyncClass * klass)
   g_object_class_install_property (object_class, PROP_STATS,
       g_param_spec_boxed ("stats", "Statistics",
           "Counts since the start: sets processed, sets dropped as incomplete "
-          "(fewer than min-views frames), frames dropped as late",
+          "(fewer than min-views frames), frames dropped as late, and as "
+          "implausible (max-jump)",
           GST_TYPE_STRUCTURE, G_PARAM_READABLE | G_PARAM_STATIC_STRINGS));
 
   gst_type_mark_as_plugin_api (GST_TYPE_CLOTH_SYNC, 0);

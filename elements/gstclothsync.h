@@ -3,46 +3,15 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include <gst/gst.h>
-#include <gst/base/gstaggregator.h>
+#include "elements/gstclothsyncpad.h"
 
 G_BEGIN_DECLS
 
 #define GST_CLOTH_SYNC_MAX_PADS 64
 
-#define GST_TYPE_CLOTH_SYNC_PAD (gst_cloth_sync_pad_get_type ())
-#define GST_CLOTH_SYNC_PAD(obj) (G_TYPE_CHECK_INSTANCE_CAST ((obj), \
-    GST_TYPE_CLOTH_SYNC_PAD, GstClothSyncPad))
-typedef struct _GstClothSyncPad GstClothSyncPad;
-typedef struct _GstClothSyncPadClass GstClothSyncPadClass;
-
 #define GST_TYPE_CLOTH_SYNC (gst_cloth_sync_get_type ())
 G_DECLARE_DERIVABLE_TYPE (GstClothSync, gst_cloth_sync, GST, CLOTH_SYNC,
     GstAggregator)
-
-/* @parent: the parent
- * @index: what the pad is known by in the methods of #GstClothSyncClass
- * @period: of a frame, by the caps; %GST_CLOCK_TIME_NONE when they don't say
- * @used: frames that came into sets
- * @dropped: frames that came too late
- *
- * A sink pad. A subclass that gives its pads properties derives them from this type and
- * names its own in the pad template; all fields are the base's.
- */
-struct _GstClothSyncPad {
-  GstAggregatorPad parent;
-
-  guint index;
-  GstClockTime period;
-  guint64 used, dropped;
-};
-
-struct _GstClothSyncPadClass {
-  GstAggregatorPadClass parent_class;
-};
-
-GType gst_cloth_sync_pad_get_type (void);
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (GstClothSyncPad, gst_object_unref)
 
 /* @parent_class: the parent class
  * @set_pad_caps: the caps of pad @index have changed, or, with @caps %NULL, the pad is
@@ -59,6 +28,8 @@ G_DEFINE_AUTOPTR_CLEANUP_FUNC (GstClothSyncPad, gst_object_unref)
  *   it without a copy take it and put %NULL in its place. @out takes the result; left
  *   %NULL a GAP event is sent for this set. The base sets its time stamps.
  * @reset: forgets what earlier frames have left (flush, stop). Optional.
+ * @get_camera: (transfer full) (nullable): name of the camera whose frames come to pad
+ *   @index, for messages. Optional.
  *
  * All of them are called from the streaming thread, with no lock held.
  */
@@ -71,6 +42,7 @@ struct _GstClothSyncClass {
   GstFlowReturn (*process_set) (GstClothSync * sync, GstBuffer ** views, guint n,
       guint64 mask, GstClockTime pts, GstClockTime duration, GstBuffer ** out);
   void (*reset) (GstClothSync * sync);
+  gchar *(*get_camera) (GstClothSync * sync, guint index);
 
   gpointer _reserved[4];
 };

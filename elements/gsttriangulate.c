@@ -753,6 +753,16 @@ gst_triangulate_reset (GstClothSync * sync)
   self->sequence = G_MAXUINT64; /* the first set's is 0 */
 }
 
+static gchar *
+gst_triangulate_get_camera (GstClothSync * sync, guint index)
+{
+  GstTriangulate *self = GST_TRIANGULATE (sync);
+  const gint camera = self->view[index].camera;
+
+  return self->rig && camera >= 0 ? g_strdup (self->rig->cameras[camera].name) :
+      NULL;
+}
+
 /* ---- GObject ---- */
 
 static void
@@ -827,6 +837,7 @@ gst_triangulate_class_init (GstTriangulateClass * klass)
   sync_class->negotiate_src = gst_triangulate_negotiate_src;
   sync_class->process_set = gst_triangulate_process_set;
   sync_class->reset = gst_triangulate_reset;
+  sync_class->get_camera = gst_triangulate_get_camera;
 
   gst_element_class_add_static_pad_template_with_gtype (element_class,
       &sink_template, GST_TYPE_TRIANGULATE_PAD);

@@ -186,6 +186,12 @@ check_camera (const ClothCamera * c, const gchar * where, GError ** error)
       || !isfinite (c->offset_s))
     return cloth_rig_invalid (error, where, "",
         "holds a number that is not finite");
+  if (fabs (c->offset_s) > CLOTH_RIG_MAX_SECONDS
+      || fabs (c->rolling_shutter_s) > CLOTH_RIG_MAX_SECONDS)
+    return cloth_rig_invalid (error, where, "",
+        "has an offset_s of %g s and a rolling_shutter_s of %g s; both must be "
+        "within ±%g s", c->offset_s, c->rolling_shutter_s,
+        CLOTH_RIG_MAX_SECONDS);
   if (!(c->K[0] > 0) || !(c->K[4] > 0))
     return cloth_rig_invalid (error, where, "K",
         "focal lengths %g and %g px; both must be positive", c->K[0], c->K[4]);

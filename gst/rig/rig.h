@@ -15,6 +15,10 @@ G_BEGIN_DECLS
  */
 #define CLOTH_RIG_MAX_SIZE 16384
 
+/* Seconds that a camera's clock may be off, and its shutter may roll: 31 years.
+ */
+#define CLOTH_RIG_MAX_SECONDS 1e9
+
 /* @CLOTH_RIG_ERROR_SYNTAX: the file is not YAML
  * @CLOTH_RIG_ERROR_VALUE: a key is missing or has an impossible value
  * @CLOTH_RIG_ERROR_LIMIT: a YAML file is deeper or longer than allowed

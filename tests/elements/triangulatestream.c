@@ -252,6 +252,28 @@ GST_START_TEST (test_capture_time)
 
 GST_END_TEST;
 
+/* A time stamp years ahead costs its frame, and the message names the camera. */
+GST_START_TEST (test_wild_time)
+{
+  Bench b;
+
+  bench_init (&b, 3);
+  push_all (&b, 0);
+  expect_all (&b, 0, GST_CLOTH_VERTEX_MEASURED);
+  push (&b, 1, NULL, G_MAXINT);
+  push_seen (&b, 0, 0, 1, ALL, NULL);
+  push_seen (&b, 2, 2, 1, ALL, NULL);
+  push_seen (&b, 1, 1, 1, ALL, NULL);
+  expect_all (&b, 1, GST_CLOTH_VERTEX_MEASURED);
+  expect_message (&b, GST_MESSAGE_WARNING,
+      "camera \"cam1\" (pad sink_1) was dropped: its time stamp, 85899345.880 s");
+  push_all (&b, 2);
+  expect_all (&b, 2, GST_CLOTH_VERTEX_MEASURED);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
 /* Flush, end, and back to NULL and PLAYING again. */
 GST_START_TEST (test_flush_and_restart)
 {
@@ -310,6 +332,7 @@ triangulatestream_suite (void)
   tcase_add_test (tc, test_rates_differ);
   tcase_add_test (tc, test_late_camera_of_other_rate);
   tcase_add_test (tc, test_capture_time);
+  tcase_add_test (tc, test_wild_time);
   tcase_add_test (tc, test_flush_and_restart);
   return s;
 }

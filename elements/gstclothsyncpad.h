@@ -1,0 +1,101 @@
+/* Sink pads of the elements that join several streams: the frame at the head of each, and
+ * whether its time can be believed.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include <gst/gst.h>
+#include <gst/base/gstaggregator.h>
+
+G_BEGIN_DECLS
+
+#define GST_TYPE_CLOTH_SYNC_PAD (gst_cloth_sync_pad_get_type ())
+#define GST_CLOTH_SYNC_PAD(obj) (G_TYPE_CHECK_INSTANCE_CAST ((obj), \
+    GST_TYPE_CLOTH_SYNC_PAD, GstClothSyncPad))
+typedef struct _GstClothSyncPad GstClothSyncPad;
+typedef struct _GstClothSyncPadClass GstClothSyncPadClass;
+
+/* @parent: the parent
+ * @index: what the pad is known by in the methods of #GstClothSyncClass
+ * @period: of a frame, by the caps; %GST_CLOCK_TIME_NONE when they don't say
+ * @used: frames that came into sets
+ * @dropped: frames that came too late
+ * @implausible: frames whose time the next one did not bear out
+ *
+ * A sink pad. A subclass of #GstClothSync that gives its pads properties derives them from
+ * this type and names its own in the pad template; all fields are the base's.
+ */
+struct _GstClothSyncPad {
+  GstAggregatorPad parent;
+
+  guint index;
+  GstClockTime period;
+  guint64 used, dropped, implausible;
+
+  /*< private > */
+  /* object lock of the pad */
+  GstBuffer *held;              /* too far ahead: waits for the next frame's word */
+  GstClockTimeDiff held_time;
+  gboolean believed;            /* the held one is the head */
+  GstClockTimeDiff last;        /* the latest time believed; NONE: none yet */
+  guint64 interval;             /* from the time before to @last */
+
+  /* streaming thread of the element */
+  gboolean warned_ahead, warned_back;
+};
+
+struct _GstClothSyncPadClass {
+  GstAggregatorPadClass parent_class;
+};
+
+/* What is to be done about the times of a pad.
+ *
+ * @GST_CLOTH_SYNC_KEEP: nothing
+ * @GST_CLOTH_SYNC_HOLD: the head is too far ahead: it waits for the next frame
+ * @GST_CLOTH_SYNC_BELIEVE: the frame held is borne out: it is the head
+ * @GST_CLOTH_SYNC_REFUSE: the frame held is not borne out: it goes
+ */
+typedef enum {
+  GST_CLOTH_SYNC_KEEP,
+  GST_CLOTH_SYNC_HOLD,
+  GST_CLOTH_SYNC_BELIEVE,
+  GST_CLOTH_SYNC_REFUSE
+} GstClothSyncVerdict;
+
+GType gst_cloth_sync_pad_get_type (void);
+
+/* Returns: (transfer full) (nullable): the frame at the head, which stays there */
+GstBuffer *gst_cloth_sync_pad_look (GstClothSyncPad * pad);
+
+/* Returns: (transfer full) (nullable): the frame at the head */
+GstBuffer *gst_cloth_sync_pad_take (GstClothSyncPad * pad);
+
+/* @time: common time of the head, a valid one; %GST_CLOCK_STIME_NONE: there is no head
+ * @start: what the first frame of a pad is measured from
+ * @max_jump: how far a frame may lie ahead without being doubted, ns
+ *
+ * A frame is doubted when it lies more than @max_jump ahead of the one before it on its
+ * pad, and more than twice as far as that one did of its own predecessor. It is believed
+ * when the next frame comes after it and is no farther from it than the two bounds, or the
+ * jump itself, allow; so a damaged time stamp costs its frame, and a pause costs nothing.
+ *
+ * Returns: what to do; it stays the same until that is done
+ */
+GstClothSyncVerdict gst_cloth_sync_pad_judge (GstClothSyncPad * pad,
+    GstClockTimeDiff time, GstClockTimeDiff start, GstClockTime max_jump);
+
+/* Notes that the head is kept for its time. */
+void gst_cloth_sync_pad_note (GstClothSyncPad * pad, GstClockTimeDiff time);
+
+/* Holds @buffer (transfer full), taken from the head; @time: its common time. */
+void gst_cloth_sync_pad_hold (GstClothSyncPad * pad, GstBuffer * buffer,
+    GstClockTimeDiff time);
+
+void gst_cloth_sync_pad_believe (GstClothSyncPad * pad);
+void gst_cloth_sync_pad_refuse (GstClothSyncPad * pad);
+
+/* Forgets all times, and what is held. */
+void gst_cloth_sync_pad_reset (GstClothSyncPad * pad);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (GstClothSyncPad, gst_object_unref)
+G_END_DECLS
