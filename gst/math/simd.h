@@ -42,6 +42,7 @@ typedef enum {
   CLOTH_SIMD_BEST = 0xff
 } ClothSimd;
 
+gboolean cloth_simd_from_string (const gchar * text, ClothSimd * level);
 ClothSimd cloth_simd_resolve (ClothSimd wanted);
 
 /* In a kernel: the name that something has at the level that is being compiled. */
