@@ -409,7 +409,7 @@ ceiling (gdouble value)
 
 /* A centre on a border belongs to the triangle to its right or below. */
 static void
-fill_triangle (ClothSurface * self, const guint32 * t)
+fill_triangle (ClothSurface * self, const guint32 * t, ClothWork * work)
 {
   const Vertex *p[3] = { &self->vertices[t[0]], &self->vertices[t[1]],
     &self->vertices[t[2]]
@@ -420,10 +420,14 @@ fill_triangle (ClothSurface * self, const guint32 * t)
   const gdouble high = MAX (p[0]->y, MAX (p[1]->y, p[2]->y));
   const gint top = MAX (ceiling (low), 0);
   const gint end = MIN (ceiling (high), self->height);
+  const gdouble west = MAX (MIN (p[0]->x, MIN (p[1]->x, p[2]->x)), 0);
+  const gdouble east = MIN (MAX (p[0]->x, MAX (p[1]->x, p[2]->x)),
+      self->width);
   Plane plane;
   Edge edges[3];
 
-  if (!(fabs (area) > 1e-9) || top >= end)
+  if (!(fabs (area) > 1e-9) || top >= end
+      || !cloth_work_take (work, (end - top) * MAX (east - west, 0)))
     return;
   set_plane (self, t, p, area, &plane);
   for (guint k = 0; k < 3; k++)
@@ -584,7 +588,7 @@ cloth_surface_draw (ClothSurface * surface, const ClothCanvas * canvas,
   light_vertices (surface, positions, style);
   for (gsize i = 0; i < surface->n_triangles; i++)
     if (is_seen (surface, surface->triangles + 3 * i))
-      fill_triangle (surface, surface->triangles + 3 * i);
+      fill_triangle (surface, surface->triangles + 3 * i, canvas->work);
   for (guint i = 0; i < canvas->n_components; i++)
     lay_component (surface, &canvas->components[i], part);
   clear_picture (surface);

@@ -156,9 +156,10 @@ film (const Mesh * mesh, const ClothPaint * paint, const Options * options)
   style.ambient_light = 1;
   style.lamp_light = 0;
   style.background[0] = style.background[1] = 0;
-  light = cloth_renderer_draw (renderer, paint, &capture, &style, &motion, 1);
+  light =
+      cloth_renderer_draw (renderer, paint, &capture, &style, &motion, 1, NULL);
   cloth_renderer_develop (renderer, &capture, options->frame, options->seed,
-      n_planes, planes, strides, 1);
+      n_planes, planes, strides, 1, NULL);
   if (options->light)
     memcpy (options->light, light->data, size * sizeof (gfloat));
   return data;
@@ -827,7 +828,9 @@ test_lambert (void)
     style.lamp[0] = 3 * sin (angle * G_PI / 180);
     style.lamp[1] = -3 * facing;
     style.lamp[2] = 0;
-    light = cloth_renderer_draw (renderer, white, &capture, &style, &motion, 0);
+    light =
+        cloth_renderer_draw (renderer, white, &capture, &style, &motion, 0,
+        NULL);
     g_assert_cmpfloat_with_epsilon (light->data[240 * WIDTH + 320],
         0.35 + 0.6 * (facing > 0 ? facing : -0.3 * facing), 1e-5);
     g_assert_cmpfloat_with_epsilon (light->data[0], 0.14, 1e-5);

@@ -2,6 +2,7 @@
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "tests/elements/clothoverlayscene.h"
+#include "tests/elements/damage.h"
 
 static const gchar second_camera[] =
     ", {\"name\": \"right\", \"size\": [80, 60], "
@@ -324,14 +325,181 @@ GST_END_TEST;
 GST_START_TEST (test_bad_mesh)
 {
   g_autofree gchar *rig = write_rig ("", "");
-  g_autofree gchar *properties = g_strdup_printf ("rig=%s", rig);
+  g_autofree gchar *properties = g_strdup_printf ("rig=%s strict=true", rig);
   GstBuffer *garbage = gst_buffer_new_memdup ("garbage", 7);
 
   GST_BUFFER_PTS (garbage) = 0;
-  expect_error (properties, 80, 60, garbage, 0, "no valid mesh");
+  expect_error (properties, 80, 60, garbage, 0, "The stream is damaged");
   expect_error (properties, 80, 60, mesh_buffer (COLUMNS * ROWS + 1, -1), 0,
       "stream of 12");
   g_unlink (rig);
+}
+
+GST_END_TEST;
+
+/* The picture goes on without its mesh. */
+GST_START_TEST (test_damaged_mesh)
+{
+  g_autofree gchar *rig = write_rig ("", "");
+  g_autofree gchar *properties = g_strdup_printf ("rig=%s", rig);
+  GstVideoInfo info;
+  GstBuffer *buffer = picture ("GRAY8", 80, 60, 0, &info);
+  GstBuffer *garbage = gst_buffer_new_memdup ("garbage", 7);
+  g_autoptr (GstBuffer) before = gst_buffer_copy_deep (buffer);
+  g_autoptr (GstBuffer) out = NULL;
+  g_autoptr (GstBus) bus = gst_bus_new ();
+  GstHarness *h = overlay (properties, NULL), *m = mesh_pad (h);
+  GstMapInfo map;
+
+  gst_element_set_bus (h->element, bus);
+  gst_harness_set_src_caps (h, gst_video_info_to_caps (&info));
+  GST_BUFFER_PTS (garbage) = 0;
+  fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_OK);
+  fail_unless_equals_int (gst_harness_push (m, garbage), GST_FLOW_OK);
+  gst_harness_push_event (m, gst_event_new_eos ());
+  gst_harness_push_event (h, gst_event_new_eos ());
+  out = gst_harness_pull (h);
+  fail_unless (out != NULL);
+  fail_unless (gst_buffer_map (before, &map, GST_MAP_READ));
+  fail_unless_equals_int (gst_buffer_memcmp (out, 0, map.data, map.size), 0);
+  gst_buffer_unmap (before, &map);
+  assert_dropped (h->element, bus, 1, "damaged packet");
+  gst_harness_teardown (m);
+  gst_element_set_bus (h->element, NULL);
+  gst_harness_teardown (h);
+  g_unlink (rig);
+}
+
+GST_END_TEST;
+
+/* 65,536 marks that each cover a picture of 4K: at once or nothing. The first ones are
+ * there, one warning says that others are not, and the next picture is drawn in full. */
+GST_START_TEST (test_crowd)
+{
+  const guint n = GST_CLOTH_MAX_FEATURES;
+  g_autofree GstClothQuad *quads = g_new (GstClothQuad, n);
+  g_autofree GstClothSaddle *saddles = g_new0 (GstClothSaddle, n);
+  GstVideoInfo info;
+  g_autoptr (GstBuffer) empty = picture ("GRAY8", 3840, 2160, 0, &info);
+  g_autoptr (GstBus) bus = gst_bus_new ();
+  GstHarness *h = overlay ("ellipse-scale=1000 line-width=20", &info);
+  guint n_changed[2];
+
+  gst_element_set_bus (h->element, bus);
+  for (guint i = 0; i < n; i++) {
+    quads[i] = quad_at (-1e4, -1e4, 2e4, 1);
+    quads[i].state = (GstClothQuadState) (__i__ % 2);
+    saddles[i].x = saddles[i].y = 1000;
+    saddles[i].cov_xx = saddles[i].cov_yy = 1;
+  }
+  for (guint round = 0; round < 2; round++) {
+    GstBuffer *buffer = gst_buffer_copy (empty);
+    g_autoptr (GstBuffer) out = NULL;
+    GstMapInfo map;
+
+    if (__i__ < 2)
+      add_quads (buffer, quads, round ? 1 : n);
+    else
+      gst_buffer_add_cloth_saddles_meta (buffer, gst_cloth_saddles_new ("cam0",
+              0, saddles, round ? 1 : n, NULL, 0));
+    fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_OK);
+    out = gst_harness_pull (h);
+    fail_unless (gst_buffer_map (out, &map, GST_MAP_READ));
+    n_changed[round] = 0;
+    for (gsize i = 0; i < map.size; i++)
+      n_changed[round] += map.data[i] != FILL;
+    gst_buffer_unmap (out, &map);
+  }
+  /* all marks are at the same place */
+  fail_unless_equals_int (n_changed[0], n_changed[1]);
+  fail_unless (__i__ == 1 || n_changed[0] > 1000);
+  if (__i__ != 1) {
+    g_autoptr (GstMessage) message = gst_bus_pop_filtered (bus,
+        GST_MESSAGE_WARNING);
+    g_autoptr (GError) error = NULL;
+
+    fail_unless (message != NULL);
+    gst_message_parse_warning (message, &error, NULL);
+    fail_unless (strstr (error->message, "more than 64 times") != NULL);
+  }
+  fail_unless (gst_bus_pop_filtered (bus, GST_MESSAGE_WARNING
+          | GST_MESSAGE_ERROR) == NULL);
+  gst_element_set_bus (h->element, NULL);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+/* Calls us in the streaming thread before a picture is drawn. */
+typedef struct
+{
+  GstControlBinding parent;
+  GstHarness *h;
+} Interruption;
+typedef GstControlBindingClass InterruptionClass;
+
+GType interruption_get_type (void);
+G_DEFINE_TYPE (Interruption, interruption, GST_TYPE_CONTROL_BINDING);
+
+static gboolean
+interruption_sync (GstControlBinding * binding, GstObject * object,
+    GstClockTime time, GstClockTime last)
+{
+  gst_harness_push_event (((Interruption *) binding)->h,
+      gst_event_new_flush_start ());
+  return TRUE;
+}
+
+static void
+interruption_class_init (InterruptionClass * klass)
+{
+  klass->sync_values = interruption_sync;
+}
+
+static void
+interruption_init (Interruption * self)
+{
+}
+
+/* A flush while a picture is drawn: nothing more is drawn. After it all is as before. */
+GST_START_TEST (test_interrupted)
+{
+  GstClothQuad quad = quad_at (5, 5, 50, 1);
+  GstVideoInfo info;
+  g_autoptr (GstBuffer) empty = picture ("GRAY8", 80, 60, 0, &info);
+  GstHarness *h = overlay ("", &info);
+  Interruption *interruption = g_object_new (interruption_get_type (),
+      "object", h->element, "name", "opacity", NULL);
+  GstSegment segment;
+
+  interruption->h = h;
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  for (guint round = 0; round < 2; round++) {
+    GstBuffer *buffer = gst_buffer_copy (empty);
+    g_autoptr (GstBuffer) out = NULL;
+    GstMapInfo map;
+    guint n_changed = 0;
+
+    if (round == 0) {
+      gst_object_add_control_binding (GST_OBJECT (h->element),
+          GST_CONTROL_BINDING (interruption));
+    } else {
+      gst_object_remove_control_binding (GST_OBJECT (h->element),
+          GST_CONTROL_BINDING (interruption));
+      gst_harness_push_event (h, gst_event_new_flush_stop (TRUE));
+      gst_harness_push_event (h, gst_event_new_segment (&segment));
+    }
+    add_quads (buffer, &quad, 1);
+    gst_harness_push (h, buffer);
+    out = gst_harness_pull (h);
+    fail_unless (out != NULL);
+    fail_unless (gst_buffer_map (out, &map, GST_MAP_READ));
+    for (gsize i = 0; i < map.size; i++)
+      n_changed += map.data[i] != FILL;
+    gst_buffer_unmap (out, &map);
+    fail_unless_equals_int (n_changed > 0, round == 1);
+  }
+  gst_harness_teardown (h);
 }
 
 GST_END_TEST;
@@ -382,6 +550,9 @@ clothoverlayinput_suite (void)
   tcase_add_test (tc, test_texture_not_there);
   tcase_add_test (tc, test_other_shape);
   tcase_add_test (tc, test_bad_mesh);
+  tcase_add_test (tc, test_damaged_mesh);
+  tcase_add_loop_test (tc, test_crowd, 0, 3);
+  tcase_add_test (tc, test_interrupted);
   tcase_add_test (tc, test_short_picture);
   tcase_add_test (tc, test_second_mesh_pad);
   return s;
