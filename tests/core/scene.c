@@ -86,6 +86,9 @@ test_start (void)
     "p[0]=np.nan; j['held'][1]['from_s']=0.1; c[:,1]=[7,7,7]",
     /* times of its own */
     "t=[0,.1,.2,.3]; del j['fps']",
+    /* an arm that throws, and what is let go before it jumps */
+    "c[2:,1,0]+=33",
+    "j['held'][1]['until_s']=0.2; c[2:,1,0]+=1e6",
     /* what a clamp says after it let go means nothing */
     "j['held'][1]['until_s']=0.2; c[2:,1]=np.nan",
   };
@@ -115,6 +118,10 @@ test_refused_takes (void)
     {"j['held'].append({'vertex':2}); c=c[:,[0,1,1]]",
         "vertex 2 is held twice"},
     {"j['held'][1]['vertex']=0", "vertex 0 is held twice"},
+    {"c[2:,1,0]+=100", "vertex 2 jumps 100 m between frames 1 and 2"},
+    {"c[3,0,2]-=35", "vertex 0 jumps 35 m between frames 2 and 3"},
+    {"t=[0,.1,.1001,.3]; c[2:,1,1]+=1", "vertex 2 jumps 1 m"},
+    {"c[1,1]=3e38", "vertex 2 jumps"},
   };
 
   for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {

@@ -650,6 +650,7 @@ GST_START_TEST (test_refused)
     {"camera=a pattern=/nowhere/pattern.json", "/nowhere/pattern.json"},
     {"camera=a texture=/nowhere/a.png", "there is no such file"},
     {"camera=a texture=" PATTERN, "pattern.json"},
+    {"camera=a texture=" TEST_DATA, "is a folder"},
     {"camera=a effects=motion_blur,exposure=0.01", "rising times"}
   };
 
