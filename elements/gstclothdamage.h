@@ -24,7 +24,7 @@ typedef struct {
     "packets are dropped, with one warning and at the end of the stream their number", \
     G_TYPE_BOOLEAN, GST_CLOTH_SETTING (struct_type, member.strict), \
     GST_PARAM_MUTABLE_PLAYING}, \
-  {"dropped", "Dropped", "Damaged packets dropped since the element started", \
+  {"dropped", "Dropped", "Damaged packets dropped since the element started; can only be read", \
     G_TYPE_UINT64, GST_CLOTH_SETTING (struct_type, member.n_dropped), \
     G_PARAM_READABLE}
 

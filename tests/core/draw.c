@@ -530,6 +530,49 @@ test_work_stopped (void)
   cloth_wireframe_free (wire);
 }
 
+/* Eight hundred faces that each cover the picture: of the depths and lines only so much is
+ * worked out; the next mesh, small, is drawn as without a limit. */
+static void
+test_work_of_mesh (void)
+{
+  const guint columns = 401, n = 2 * columns;
+  g_autofree gfloat *crowd = g_new (gfloat, 3 * n), *small = g_new (gfloat,
+      3 * n);
+  g_autofree guint8 *states = g_malloc0 (n), *plain = NULL;
+  ClothCamera camera = pinhole ();
+  ClothWireStyle style = { 1, &white, 1, 1, 0.25f, 0.5f };
+  ClothWireframe *wire = cloth_wireframe_new (n, columns, 2, NULL, 0);
+  ClothCanvas canvas = black_canvas (0);
+  ClothWork work = { 64 * SIZE * SIZE, NULL, FALSE };
+
+  for (guint i = 0; i < n; i++) {
+    const gfloat share = (gfloat) (i % columns) / (gfloat) columns;
+
+    crowd[3 * i] = i % 2 ? 3 : -3;
+    crowd[3 * i + 1] = i < columns ? 3 : -3;
+    small[3 * i] = 0.4f * share - 0.2f;
+    small[3 * i + 1] = i < columns ? 0.2f : -0.2f;
+    crowd[3 * i + 2] = small[3 * i + 2] = 1;
+  }
+  cloth_wireframe_draw (wire, &canvas, SIZE, SIZE, &camera, small, states,
+      &style);
+  plain = g_memdup2 (pixels, sizeof pixels);
+  canvas = black_canvas (0);
+  canvas.work = &work;
+  cloth_wireframe_draw (wire, &canvas, SIZE, SIZE, &camera, crowd, states,
+      &style);
+  g_assert_true (work.left_out);
+  canvas = black_canvas (0);
+  work = (ClothWork) {
+  64 *SIZE * SIZE, NULL, FALSE};
+  canvas.work = &work;
+  cloth_wireframe_draw (wire, &canvas, SIZE, SIZE, &camera, small, states,
+      &style);
+  g_assert_false (work.left_out);
+  g_assert_cmpmem (pixels, sizeof pixels, plain, sizeof pixels);
+  cloth_wireframe_free (wire);
+}
+
 int
 main (int argc, char **argv)
 {
@@ -538,6 +581,7 @@ main (int argc, char **argv)
   g_test_add_func ("/draw/work-too-little", test_work_too_little);
   g_test_add_func ("/draw/work-of-lines", test_work_of_lines);
   g_test_add_func ("/draw/work-stopped", test_work_stopped);
+  g_test_add_func ("/draw/work-of-mesh", test_work_of_mesh);
   g_test_add_func ("/draw/line-area", test_line_area);
   g_test_add_func ("/draw/thin-line", test_thin_line);
   g_test_add_func ("/draw/dashes", test_dashes);
