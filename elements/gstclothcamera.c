@@ -18,8 +18,9 @@
  * that look at the cloth between two meshes hold pictures back until the meshes around
  * them are there.
  *
- * A mesh whose triangles cover the picture more than 256 times, which no cloth does, counts as
- * damaged. A damaged mesh gives no picture and is counted in `dropped`; the first gives a
+ * A mesh counts as damaged when the upright boxes around its triangles, each as far as it lies
+ * in the picture, cover that more than 256 times. A layer of cloth meshed by about as many
+ * columns as rows covers it twice, or, seen aslant, eight times. A damaged mesh gives no picture and is counted in `dropped`; the first gives a
  * warning, the end of the stream an info message with their number. With `strict`, for
  * files, the first is an error.
  *
@@ -51,8 +52,8 @@
 GST_DEBUG_CATEGORY_STATIC (cloth_camera_debug);
 #define GST_CAT_DEFAULT cloth_camera_debug
 
-/* Most of the picture's areas that all triangles together may touch, hidden ones and corners
- * that they leave free included: cloth in a heap has some tens of layers. */
+/* So many times the picture's area the boxes around all triangles may cover, hidden ones
+ * included: cloth in a heap has some tens of layers. */
 #define MOST_LAYERS 256
 
 /* Of pictures of the free view, which may be of any size. */
@@ -400,7 +401,8 @@ give_up (GstClothCamera * self, const ClothWork * work)
     return GST_FLOW_FLUSHING;
   if (work->left_out) {
     g_set_error (&error, GST_CLOTH_ERROR, GST_CLOTH_ERROR_LIMIT,
-        "The mesh covers the picture more than %d times", MOST_LAYERS);
+        "The boxes around the mesh's triangles cover the picture more than %d "
+        "times", MOST_LAYERS);
     return gst_cloth_damage_add (&self->settings.damage, GST_ELEMENT (self),
         error);
   }

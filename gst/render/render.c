@@ -467,7 +467,8 @@ sort_triangles (ClothRenderer * self)
   self->first[0] = 0;
 }
 
-/* What all the triangles may touch of the picture, whatever they hide of each other. */
+/* The boxes around all the triangles, whatever they hide of each other: a triangle is asked at
+ * each pixel of its box. */
 static gboolean
 take_work (const ClothRenderer * self, ClothWork * work)
 {

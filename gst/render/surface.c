@@ -407,6 +407,19 @@ ceiling (gdouble value)
   return whole + (whole < value);
 }
 
+/* Pixels of a triangle in so many rows of the picture: not more than lie around it there, and
+ * in a narrow one a chunk in each row. */
+static gdouble
+count_pixels (const ClothSurface * self, const Vertex * const *p, gdouble area,
+    gint rows)
+{
+  const gdouble left = MAX (MIN (p[0]->x, MIN (p[1]->x, p[2]->x)), 0);
+  const gdouble right = MIN (MAX (p[0]->x, MAX (p[1]->x, p[2]->x)),
+      self->width);
+
+  return MIN (rows * MAX (right - left, 0), fabs (area) / 2 + rows * CHUNK);
+}
+
 /* A centre on a border belongs to the triangle to its right or below. */
 static void
 fill_triangle (ClothSurface * self, const guint32 * t, ClothWork * work)
@@ -420,14 +433,11 @@ fill_triangle (ClothSurface * self, const guint32 * t, ClothWork * work)
   const gdouble high = MAX (p[0]->y, MAX (p[1]->y, p[2]->y));
   const gint top = MAX (ceiling (low), 0);
   const gint end = MIN (ceiling (high), self->height);
-  const gdouble west = MAX (MIN (p[0]->x, MIN (p[1]->x, p[2]->x)), 0);
-  const gdouble east = MIN (MAX (p[0]->x, MAX (p[1]->x, p[2]->x)),
-      self->width);
   Plane plane;
   Edge edges[3];
 
   if (!(fabs (area) > 1e-9) || top >= end
-      || !cloth_work_take (work, (end - top) * MAX (east - west, 0)))
+      || !cloth_work_take (work, count_pixels (self, p, area, end - top)))
     return;
   set_plane (self, t, p, area, &plane);
   for (guint k = 0; k < 3; k++)

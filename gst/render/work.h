@@ -11,7 +11,7 @@ G_BEGIN_DECLS
 #define CLOTH_WORK_SHAPE 16
 
 /* @left: samples that may still be drawn; what is known of a shape before it is drawn counts,
- *   the part of its surroundings that lies in the picture
+ *   at most the box around it as far as that lies in the picture
  * @stop: (nullable): not 0 as soon as the picture isn't wanted any more; any thread may set it
  * @left_out: something was left out, and all that came after it, because @left was too little
  *
