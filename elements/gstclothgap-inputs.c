@@ -71,7 +71,8 @@ gst_gap_inputs_load (GstGapInputs * inputs, GstElement * element,
   self->take = cloth_take_open (settings->location, &error);
   self->scene = self->take ? cloth_scene_new_from_take (self->take, &error) :
       NULL;
-  if (!self->scene || !gst_cloth_io_observations_load (settings->location,
+  if (!self->scene || !cloth_scene_check_paths (self->scene, &error)
+      || !gst_cloth_io_observations_load (settings->location,
           cloth_take_get_topology (self->take), &self->observations, &error))
     return fail (element, "location", settings->location, error);
   if (!load_baseline (self, settings->baseline, &error))
