@@ -18,11 +18,11 @@
  * that look at the cloth between two meshes hold pictures back until the meshes around
  * them are there.
  *
- * A mesh counts as damaged when the upright boxes around its triangles, each as far as it lies
- * in the picture, cover that more than 256 times. A layer of cloth meshed by about as many
- * columns as rows covers it twice, or, seen aslant, eight times. A damaged mesh gives no picture and is counted in `dropped`; the first gives a
- * warning, the end of the stream an info message with their number. With `strict`, for
- * files, the first is an error.
+ * A damaged mesh gives no picture and is counted in `dropped`; the first gives a warning, the
+ * end of the stream an info message with their number. With `strict`, for files, the first is
+ * an error. A mesh counts as damaged, too, when the upright boxes around its triangles, each
+ * as far as it lies in the picture, cover that more than 256 times. A layer of cloth meshed
+ * by about as many columns as rows covers it twice, or, seen aslant, eight times.
  *
  * ## Example
  * |[
