@@ -18,6 +18,12 @@
  * that look at the cloth between two meshes hold pictures back until the meshes around
  * them are there.
  *
+ * A damaged mesh gives no picture and is counted in `dropped`; the first gives a warning, the
+ * end of the stream an info message with their number. With `strict`, for files, the first is
+ * an error. A mesh counts as damaged, too, when the upright boxes around its triangles, each
+ * as far as it lies in the picture, cover that more than 256 times. A layer of cloth meshed
+ * by about as many columns as rows covers it twice, or, seen aslant, eight times.
+ *
  * ## Example
  * |[
  * gst-launch-1.0 meshsrc location=take ! clothcamera rig=rig.json camera=cam0 \
@@ -36,6 +42,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "elements/gstclothdamage.h"
 #include "elements/gstclothpaint.h"
 #include "elements/gstclothproperties.h"
 #include "elements/gstclothutil.h"
@@ -44,6 +51,10 @@
 
 GST_DEBUG_CATEGORY_STATIC (cloth_camera_debug);
 #define GST_CAT_DEFAULT cloth_camera_debug
+
+/* So many times the picture's area the boxes around all triangles may cover, hidden ones
+ * included: cloth in a heap has some tens of layers. */
+#define MOST_LAYERS 256
 
 /* Of pictures of the free view, which may be of any size. */
 #define DEFAULT_WIDTH 1280
@@ -55,6 +66,7 @@ typedef struct
   gdouble azimuth, elevation, distance;
   guint64 seed;
   guint threads;
+  GstClothDamage damage;
 } Settings;
 
 #define SETTING(member) GST_CLOTH_SETTING (Settings, member)
@@ -94,6 +106,7 @@ static const GstClothProperty properties[] = {
     "Free view: distance from the middle of the first mesh, m; 0: so far that "
     "all of that mesh is seen from any side",
     G_TYPE_DOUBLE, SETTING (distance), ANY_TIME, 0, 1000},
+  GST_CLOTH_DAMAGE_PROPERTIES (Settings, damage),
 };
 /* *INDENT-ON* */
 
@@ -123,6 +136,8 @@ struct _GstClothCamera
   /* with the object lock */
   Settings settings;
   GstClockTime latency;
+
+  gint stopped;                 /* atomic: nobody waits for the picture any more */
 
   /* from start to stop */
   ClothCapture capture;
@@ -324,6 +339,7 @@ gst_cloth_camera_submit_input_buffer (GstBaseTransform * trans,
   GstClothCamera *self = GST_CLOTH_CAMERA (trans);
   g_autoptr (GstBuffer) buffer = input;
   g_autoptr (GstClothMesh) mesh = NULL;
+  g_autoptr (GError) error = NULL;
   const gfloat *positions;
   Frame *frame;
 
@@ -332,9 +348,13 @@ gst_cloth_camera_submit_input_buffer (GstBaseTransform * trans,
         GST_FLOW_NOT_NEGOTIATED;
   if (!self->renderer)
     return GST_FLOW_NOT_NEGOTIATED;
-  mesh = gst_cloth_read_mesh (GST_ELEMENT (self), buffer, self->n_vertices);
-  if (!mesh)
-    return GST_FLOW_ERROR;
+  mesh = gst_cloth_parse_mesh (buffer, self->n_vertices, &error);
+  if (!mesh) {
+    /* those without a time that come after it keep their own */
+    self->count++;
+    return gst_cloth_damage_add (&self->settings.damage, GST_ELEMENT (self),
+        error);
+  }
   frame = self->spare->len > 0 ?
       g_ptr_array_steal_index_fast (self->spare, self->spare->len - 1) :
       g_new0 (Frame, 1);
@@ -369,9 +389,39 @@ gst_cloth_camera_submit_input_buffer (GstBaseTransform * trans,
 
 /* ---- pictures ---- */
 
-static void
-draw (GstClothCamera * self, const Frame * frame, GstVideoFrame * video)
+/* What wasn't drawn: nobody wants it, its mesh is none, or it is too large. */
+static GstFlowReturn
+give_up (GstClothCamera * self, const ClothWork * work)
 {
+  const gint width = self->capture.camera.width;
+  const gint height = self->capture.camera.height;
+  g_autoptr (GError) error = NULL;
+
+  if (cloth_work_is_stopped (work))
+    return GST_FLOW_FLUSHING;
+  if (work->left_out) {
+    g_set_error (&error, GST_CLOTH_ERROR, GST_CLOTH_ERROR_LIMIT,
+        "The boxes around the mesh's triangles cover the picture more than %d "
+        "times", MOST_LAYERS);
+    return gst_cloth_damage_add (&self->settings.damage, GST_ELEMENT (self),
+        error);
+  }
+  GST_ELEMENT_ERROR (self, RESOURCE, NO_SPACE_LEFT,
+      ("There is no memory for a picture of %d×%d.", width, height),
+      ("Take a smaller one: width and height of the caps, or of the camera in "
+          "the rig."));
+  return GST_FLOW_ERROR;
+}
+
+/* Leaves *@drawn FALSE when there is no picture. */
+static GstFlowReturn
+draw (GstClothCamera * self, const Frame * frame, GstVideoFrame * video,
+    gboolean * drawn)
+{
+  const ClothCamera *camera = &self->capture.camera;
+  ClothWork work = { MOST_LAYERS * (gdouble) camera->width * camera->height,
+    &self->stopped, FALSE
+  };
   const gboolean grey = GST_VIDEO_INFO_IS_GRAY (&video->info);
   const guint n_planes = grey ? 1 : 3;
   ClothMotion motion = { self->n_vertices, 0 };
@@ -406,11 +456,17 @@ draw (GstClothCamera * self, const Frame * frame, GstVideoFrame * video)
       memset ((guint8 *) GST_VIDEO_FRAME_PLANE_DATA (video, 0)
           + (gssize) y * strides[0], 0xff, 4 * (gsize)
           GST_VIDEO_FRAME_WIDTH (video));
-  cloth_renderer_draw (self->renderer, self->paint, &self->capture,
-      &self->style, &motion, frame->time_s);
+  *drawn = FALSE;
+  if (!cloth_renderer_draw (self->renderer, self->paint, &self->capture,
+          &self->style, &motion, frame->time_s, &work))
+    return give_up (self, &work);
   cloth_renderer_develop (self->renderer, &self->capture, frame->sequence,
       self->settings.seed, n_planes, planes, strides,
-      GST_VIDEO_FRAME_COMP_PSTRIDE (video, 0));
+      GST_VIDEO_FRAME_COMP_PSTRIDE (video, 0), &work);
+  if (cloth_work_is_stopped (&work))
+    return GST_FLOW_FLUSHING;
+  *drawn = TRUE;
+  return GST_FLOW_OK;
 }
 
 /* About where the cloth was when it was first seen, from where the settings say. */
@@ -438,47 +494,63 @@ aim (GstClothCamera * self, const Frame * frame)
   cloth_capture_add_effects (&self->capture, self->settings.effects, NULL);
 }
 
+/* Leaves *@picture NULL when the mesh is dropped. */
+static GstFlowReturn
+make_picture (GstClothCamera * self, const Frame * frame, GstBuffer ** picture)
+{
+  g_autoptr (GstBuffer) made = NULL;
+  GstVideoFrame video, rgb;
+  GstFlowReturn flow;
+  gboolean drawn;
+
+  if (self->last && cloth_capture_is_dropped (&self->capture,
+          frame->sequence, self->settings.seed)) {
+    *picture = gst_buffer_copy (self->last);
+    gst_buffer_copy_into (*picture, frame->buffer, GST_BUFFER_COPY_TIMESTAMPS,
+        0, -1);
+    return GST_FLOW_OK;
+  }
+  flow = GST_BASE_TRANSFORM_CLASS (gst_cloth_camera_parent_class)
+      ->prepare_output_buffer (GST_BASE_TRANSFORM (self), frame->buffer, &made);
+  if (flow != GST_FLOW_OK)
+    return flow;
+  if (!output_map (&self->output, made, &video, &rgb)) {
+    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+        ("The picture does not fit its caps."), (NULL));
+    return GST_FLOW_ERROR;
+  }
+  flow = draw (self, frame, &rgb, &drawn);
+  output_unmap (&self->output, &video, &rgb);
+  if (!drawn)
+    return flow;
+  if (self->capture.drop_rate > 0)
+    gst_buffer_replace (&self->last, made);
+  *picture = g_steal_pointer (&made);
+  return GST_FLOW_OK;
+}
+
 static GstFlowReturn
 gst_cloth_camera_generate_output (GstBaseTransform * trans, GstBuffer ** output)
 {
   GstClothCamera *self = GST_CLOTH_CAMERA (trans);
-  GstBuffer *picture = NULL;
-  GstVideoFrame video, drawn;
   GstFlowReturn flow;
-  Frame *frame;
 
   *output = NULL;
-  if (!is_ready (self))
-    return GST_FLOW_OK;
-  frame = frame_at (self, self->next);
-  if (self->free_view)
-    aim (self, frame);
-  if (self->last && cloth_capture_is_dropped (&self->capture,
-          frame->sequence, self->settings.seed)) {
-    picture = gst_buffer_copy (self->last);
-    gst_buffer_copy_into (picture, frame->buffer, GST_BUFFER_COPY_TIMESTAMPS,
-        0, -1);
-  } else {
-    flow = GST_BASE_TRANSFORM_CLASS (gst_cloth_camera_parent_class)
-        ->prepare_output_buffer (trans, frame->buffer, &picture);
+  while (!*output && is_ready (self)) {
+    const Frame *frame = frame_at (self, self->next);
+
+    if (self->free_view)
+      aim (self, frame);
+    flow = make_picture (self, frame, output);
     if (flow != GST_FLOW_OK)
       return flow;
-    if (!output_map (&self->output, picture, &video, &drawn)) {
-      GST_ELEMENT_ERROR (self, STREAM, FORMAT,
-          ("The picture does not fit its caps."), (NULL));
-      gst_buffer_unref (picture);
-      return GST_FLOW_ERROR;
+    if (*output) {
+      GST_BUFFER_OFFSET (*output) = frame->sequence;
+      GST_BUFFER_OFFSET_END (*output) = frame->sequence + 1;
     }
-    draw (self, frame, &drawn);
-    output_unmap (&self->output, &video, &drawn);
-    if (self->capture.drop_rate > 0)
-      gst_buffer_replace (&self->last, picture);
+    self->next++;
+    prune (self);
   }
-  GST_BUFFER_OFFSET (picture) = frame->sequence;
-  GST_BUFFER_OFFSET_END (picture) = frame->sequence + 1;
-  *output = picture;
-  self->next++;
-  prune (self);
   return GST_FLOW_OK;
 }
 
@@ -527,7 +599,11 @@ gst_cloth_camera_sink_event (GstBaseTransform * trans, GstEvent * event)
       gst_cloth_camera_drain (self);
       gst_cloth_camera_reset (self);
       break;
+    case GST_EVENT_FLUSH_START:
+      g_atomic_int_set (&self->stopped, TRUE);
+      break;
     case GST_EVENT_FLUSH_STOP:
+      g_atomic_int_set (&self->stopped, FALSE);
       gst_cloth_camera_reset (self);
       break;
     default:
@@ -535,6 +611,20 @@ gst_cloth_camera_sink_event (GstBaseTransform * trans, GstEvent * event)
   }
   return GST_BASE_TRANSFORM_CLASS (gst_cloth_camera_parent_class)->sink_event
       (trans, event);
+}
+
+/* A large picture takes its time, and holds the streaming thread, which has to end. */
+static GstStateChangeReturn
+gst_cloth_camera_change_state (GstElement * element, GstStateChange transition)
+{
+  GstClothCamera *self = GST_CLOTH_CAMERA (element);
+
+  if (transition == GST_STATE_CHANGE_READY_TO_PAUSED)
+    g_atomic_int_set (&self->stopped, FALSE);
+  else if (transition == GST_STATE_CHANGE_PAUSED_TO_READY)
+    g_atomic_int_set (&self->stopped, TRUE);
+  return GST_ELEMENT_CLASS (gst_cloth_camera_parent_class)->change_state
+      (element, transition);
 }
 
 /* How long a picture waits: for the last instant that it shows, the mesh behind it, and
@@ -623,6 +713,7 @@ gst_cloth_camera_start (GstBaseTransform * trans)
         ("Leave out pattern= or texture=."));
     return FALSE;
   }
+  gst_cloth_damage_reset (&self->settings.damage, GST_ELEMENT (self));
   return gst_cloth_camera_load (self);
 }
 
@@ -817,6 +908,7 @@ gst_cloth_camera_class_init (GstClothCameraClass * klass)
       "Filter/Converter/Video",
       "Films a mesh stream: a textured cloth as a camera of a rig sees it",
       "The gst-cloth developers");
+  element_class->change_state = gst_cloth_camera_change_state;
   trans_class->start = gst_cloth_camera_start;
   trans_class->stop = gst_cloth_camera_stop;
   trans_class->set_caps = gst_cloth_camera_set_caps;
@@ -839,6 +931,8 @@ gst_cloth_camera_init (GstClothCamera * self)
   self->times = g_array_new (FALSE, FALSE, sizeof (gdouble));
   cloth_orbit_init (&self->orbit);
   self->settings = default_settings;
+  gst_cloth_damage_watch (&self->settings.damage, GST_ELEMENT (self),
+      GST_BASE_TRANSFORM_SRC_PAD (self));
   cloth_render_style_init (&self->style);
   gst_base_transform_set_qos_enabled (GST_BASE_TRANSFORM (self), FALSE);
 }

@@ -71,7 +71,8 @@ gst_gap_inputs_load (GstGapInputs * inputs, GstElement * element,
   self->take = cloth_take_open (settings->location, &error);
   self->scene = self->take ? cloth_scene_new_from_take (self->take, &error) :
       NULL;
-  if (!self->scene || !gst_cloth_io_observations_load (settings->location,
+  if (!self->scene || !cloth_scene_check_paths (self->scene, &error)
+      || !gst_cloth_io_observations_load (settings->location,
           cloth_take_get_topology (self->take), &self->observations, &error))
     return fail (element, "location", settings->location, error);
   if (!load_baseline (self, settings->baseline, &error))
@@ -210,19 +211,12 @@ gst_gap_view_set_caps (GstGapView * view, GstElement * element,
 /* A picture that shows nothing has no rays, and may not say whose it is. */
 const ClothRays *
 gst_gap_view_read (GstGapView * view, GstElement * element,
-    GstBuffer * buffer, guint64 * sequence, gdouble * offset_s)
+    GstBuffer * picture, guint64 * sequence, gdouble * offset_s)
 {
   GstClothIoPoints *points = view->points;
-  g_autoptr (GstBuffer) picture = gst_buffer_new ();
   g_autoptr (GError) error = NULL;
   const gchar *name;
 
-  if (!gst_cloth_observations_unpack (buffer, picture, &error)) {
-    GST_ELEMENT_ERROR (element, STREAM, DECODE,
-        ("The observation stream is damaged: %s. Write it anew with "
-            "clothmetapay.", error->message), (NULL));
-    return NULL;
-  }
   if (!gst_buffer_get_cloth_quads (picture)
       && !gst_buffer_get_cloth_dots (picture)) {
     cloth_rays_clear (view->rays);

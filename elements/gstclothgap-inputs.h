@@ -7,6 +7,7 @@
 #include <gst/cloth/cloth.h>
 
 #include "gst/fit/recording/recording.h"
+#include "elements/gstclothdamage.h"
 #include "gst/gap/diagnose.h"
 #include "gst/mesh/topology.h"
 #include "gst/sim/model.h"
@@ -21,6 +22,7 @@ typedef struct {
   guint64 seed;
   guint threads;
   gdouble window;               /* seconds */
+  GstClothDamage damage;
 } GstGapSettings;
 
 typedef struct {
@@ -49,7 +51,7 @@ gboolean gst_gap_view_set_caps (GstGapView * view,
 /* @sequence, @offset_s: of the picture, and of the camera's clock to the rig's. What is
  * returned belongs to @view. */
 const ClothRays *gst_gap_view_read (GstGapView * view,
-    GstElement * element, GstBuffer * buffer, guint64 * sequence,
+    GstElement * element, GstBuffer * picture, guint64 * sequence,
     gdouble * offset_s);
 /* Posts an error when no picture so far showed squares or dots. */
 gboolean gst_gap_view_check_seen (const GstGapView * view,

@@ -94,6 +94,7 @@ struct _GstGapDiagnose
   GstGapView *view;             /* of observations; NULL: meshes */
   GQueue waiting;
   guint64 n_frames;             /* that came in since the beginning */
+  guint64 n_damaged;            /* that came between these */
   gdouble last_time;
   gboolean new_segment, warned;
   GstGapRecord *record;
@@ -151,6 +152,7 @@ static const GstClothProperty properties[] = {
     G_TYPE_UINT, SETTING (threads), GST_PARAM_MUTABLE_READY, 0, 1024},
   {"window", "Window", "Length of a scored window, seconds",
     G_TYPE_DOUBLE, SETTING (window), GST_PARAM_MUTABLE_READY, 0.01, 60},
+  GST_CLOTH_DAMAGE_PROPERTIES (GstGapSettings, damage),
 };
 /* *INDENT-ON* */
 
@@ -218,7 +220,7 @@ restart (GstGapDiagnose * self)
   if (self->observer)
     cloth_observer_restart (self->observer);
   g_clear_pointer (&self->record, gst_gap_record_free);
-  self->n_frames = 0;
+  self->n_frames = self->n_damaged = 0;
 }
 
 /* ---- frames ---- */
@@ -357,7 +359,7 @@ find_time (GstGapDiagnose * self, GstBuffer * buffer)
   if (self->fps_n <= 0)
     return NAN;
   return self->inputs.scene->times[0] +
-      (gdouble) self->n_frames * self->fps_d / self->fps_n;
+      (gdouble) (self->n_frames + self->n_damaged) * self->fps_d / self->fps_n;
 }
 
 /* Without clamps a scene has no end. */
@@ -439,6 +441,8 @@ gst_gap_diagnose_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
 {
   GstGapDiagnose *self = GST_GAP_DIAGNOSE (parent);
   g_autoptr (GstClothMesh) mesh = NULL;
+  g_autoptr (GstBuffer) picture = NULL;
+  g_autoptr (GError) error = NULL;
   const ClothRays *rays = NULL;
   gdouble time, offset_s = 0;
   guint64 sequence = 0;
@@ -449,15 +453,26 @@ gst_gap_diagnose_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
     return GST_FLOW_NOT_NEGOTIATED;
   }
   if (self->view) {
-    rays = gst_gap_view_read (self->view, GST_ELEMENT (self), buffer,
-        &sequence, &offset_s);
+    picture = gst_buffer_new ();
+    gst_cloth_observations_unpack (buffer, picture, &error);
   } else {
-    mesh = gst_cloth_read_mesh (GST_ELEMENT (self), buffer, self->n_vertices);
-    sequence = mesh ? gst_cloth_mesh_get_sequence (mesh) : 0;
+    mesh = gst_cloth_parse_mesh (buffer, self->n_vertices, &error);
   }
-  if (!mesh && !rays) {
+  if (error) {
+    self->n_damaged++;
     gst_buffer_unref (buffer);
-    return GST_FLOW_ERROR;
+    return gst_cloth_damage_add (&self->settings.damage, GST_ELEMENT (self),
+        error);
+  }
+  if (self->view) {
+    rays = gst_gap_view_read (self->view, GST_ELEMENT (self), picture,
+        &sequence, &offset_s);
+    if (!rays) {
+      gst_buffer_unref (buffer);
+      return GST_FLOW_ERROR;
+    }
+  } else {
+    sequence = gst_cloth_mesh_get_sequence (mesh);
   }
   time = find_time (self, buffer) - offset_s;
   if (!is_next (self, buffer, time, &flow))
@@ -742,6 +757,7 @@ start (GstGapDiagnose * self)
     return FALSE;
   }
   flush (self);
+  gst_cloth_damage_reset (&self->settings.damage, GST_ELEMENT (self));
   return TRUE;
 }
 
@@ -833,6 +849,8 @@ gst_gap_diagnose_init (GTypeInstance * instance, gpointer klass)
   gst_element_add_pad (GST_ELEMENT (self), self->sinkpad);
   self->srcpad = gst_pad_new_from_static_template (&src_template, "src");
   gst_pad_set_query_function (self->srcpad, gst_gap_diagnose_src_query);
+  gst_cloth_damage_watch (&self->settings.damage, GST_ELEMENT (self),
+      self->srcpad);
   GST_PAD_SET_PROXY_CAPS (self->srcpad);
   gst_element_add_pad (GST_ELEMENT (self), self->srcpad);
   g_queue_init (&self->waiting);

@@ -4,7 +4,9 @@
 #include <gst/video/video.h>
 #include <gst/cloth/cloth.h>
 
+#include "elements/gstclothdamage.h"
 #include "elements/gstclothmetadepay.h"
+#include "elements/gstclothproperties.h"
 #include "elements/gstclothutil.h"
 
 GST_DEBUG_CATEGORY_STATIC (cloth_meta_depay_debug);
@@ -17,18 +19,36 @@ GST_DEBUG_CATEGORY_STATIC (cloth_meta_depay_debug);
  * the metas on them, so that every element that takes pictures with metas takes them.
  * All pictures share one read-only memory: black costs nothing.
  *
+ * A damaged packet is dropped and counted in `dropped`; the first gives a warning, the end
+ * of the stream an info message with their number. With `strict`, for files, the first is an
+ * error.
+ *
  * ## Example
  * ```
  * gst-launch-1.0 filesrc location=cam0.gdp ! gdpdepay ! clothmetadepay !
  *     clothoverlay ! videoconvert ! autovideosink
  * ```
  */
+typedef struct
+{
+  GstClothDamage damage;
+} Settings;
+
 struct _GstClothMetaDepay
 {
   GstBaseTransform parent;
 
+  Settings settings;            /* object lock */
   GstMemory *black;
 };
+
+/* *INDENT-OFF* */
+static const GstClothProperty properties[] = {
+  GST_CLOTH_DAMAGE_PROPERTIES (Settings, damage),
+};
+/* *INDENT-ON* */
+
+static const Settings defaults = { {FALSE, 0, 0} };
 
 /* In all of these zero bytes are black. */
 #define FORMATS "{ GRAY8, BGRx, RGBx, xRGB, xBGR, RGB, BGR }"
@@ -83,28 +103,37 @@ gst_cloth_meta_depay_prepare_output_buffer (GstBaseTransform * trans,
     GstBuffer * observation, GstBuffer ** picture)
 {
   GstClothMetaDepay *self = GST_CLOTH_META_DEPAY (trans);
-  g_autoptr (GstBuffer) made = gst_buffer_new ();
-  g_autoptr (GError) error = NULL;
+  GstBuffer *made = gst_buffer_new ();
 
   gst_buffer_append_memory (made, gst_memory_ref (self->black));
   gst_buffer_copy_into (made, observation, GST_BUFFER_COPY_FLAGS
       | GST_BUFFER_COPY_TIMESTAMPS, 0, -1);
-  if (!gst_cloth_observations_unpack (observation, made, &error)) {
-    GST_ELEMENT_ERROR (self, STREAM, DECODE,
-        ("The observation stream is damaged: %s. Write it anew with "
-            "clothmetapay.", error->message), (NULL));
-    return GST_FLOW_ERROR;
-  }
-  *picture = g_steal_pointer (&made);
+  *picture = made;
   return GST_FLOW_OK;
 }
 
-/* The picture is whole already. */
 static GstFlowReturn
 gst_cloth_meta_depay_transform (GstBaseTransform * trans,
     GstBuffer * observation, GstBuffer * picture)
 {
-  return GST_FLOW_OK;
+  GstClothMetaDepay *self = GST_CLOTH_META_DEPAY (trans);
+  g_autoptr (GError) error = NULL;
+  GstFlowReturn flow;
+
+  if (gst_cloth_observations_unpack (observation, picture, &error))
+    return GST_FLOW_OK;
+  flow = gst_cloth_damage_add (&self->settings.damage, GST_ELEMENT (self),
+      error);
+  return flow == GST_FLOW_OK ? GST_BASE_TRANSFORM_FLOW_DROPPED : flow;
+}
+
+static gboolean
+gst_cloth_meta_depay_start (GstBaseTransform * trans)
+{
+  GstClothMetaDepay *self = GST_CLOTH_META_DEPAY (trans);
+
+  gst_cloth_damage_reset (&self->settings.damage, GST_ELEMENT (self));
+  return TRUE;
 }
 
 static gboolean
@@ -122,11 +151,15 @@ gst_cloth_meta_depay_class_init (GstClothMetaDepayClass * klass)
   GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
   GstBaseTransformClass *trans_class = GST_BASE_TRANSFORM_CLASS (klass);
 
+  gst_cloth_install_properties (G_OBJECT_CLASS (klass), properties,
+      G_N_ELEMENTS (properties), &defaults,
+      G_STRUCT_OFFSET (GstClothMetaDepay, settings));
   trans_class->transform_caps = gst_cloth_meta_depay_transform_caps;
   trans_class->set_caps = gst_cloth_meta_depay_set_caps;
   trans_class->prepare_output_buffer =
       gst_cloth_meta_depay_prepare_output_buffer;
   trans_class->transform = gst_cloth_meta_depay_transform;
+  trans_class->start = gst_cloth_meta_depay_start;
   trans_class->stop = gst_cloth_meta_depay_stop;
 
   gst_element_class_add_static_pad_template (element_class, &sink_template);
@@ -142,5 +175,8 @@ gst_cloth_meta_depay_class_init (GstClothMetaDepayClass * klass)
 static void
 gst_cloth_meta_depay_init (GstClothMetaDepay * self)
 {
+  self->settings = defaults;
+  gst_cloth_damage_watch (&self->settings.damage, GST_ELEMENT (self),
+      GST_BASE_TRANSFORM_SRC_PAD (self));
   gst_base_transform_set_qos_enabled (GST_BASE_TRANSFORM (self), FALSE);
 }

@@ -330,6 +330,7 @@ gst_cloth_overlay_canvas (GstVideoFrame * frame, ClothCanvas * canvas)
 {
   guint i;
 
+  canvas->work = NULL;
   canvas->n_components = GST_VIDEO_FRAME_N_COMPONENTS (frame);
   for (i = 0; i < canvas->n_components; i++) {
     ClothComponent *c = &canvas->components[i];

@@ -12,6 +12,13 @@
  * as a surface with any picture on it (`mesh-style`, `texture`). A mesh that `clothgap`
  * has been over is drawn as a heat map of its distance from the simulation.
  *
+ * What a stranger's packets say is drawn as far as it covers the picture at most 64 times
+ * (at least 100 million pixels); what comes after that is left out, with one warning.
+ *
+ * A picture whose mesh is damaged goes on without it. The mesh is counted in `dropped`; the
+ * first gives a warning, the end of the stream an info message with their number. With
+ * `strict`, for files, the first is an error.
+ *
  * ## Squares over a film
  * |[
  * gst-launch-1.0 filesrc location=cam0.mp4 ! decodebin ! saddledetect ! quadtrack ! \
@@ -47,6 +54,7 @@
 
 #include <math.h>
 
+#include "elements/gstclothdamage.h"
 #include "elements/gstclothoverlay-draw.h"
 #include "elements/gstclothpaint.h"
 #include "elements/gstclothproperties.h"
@@ -60,6 +68,12 @@ GST_DEBUG_CATEGORY_STATIC (cloth_overlay_debug);
 /* indices of the pads */
 #define VIDEO 0
 #define MESH 1
+
+/* So many times the picture's area is drawn over it, what is transparent or hidden included,
+ * and in small pictures at least so many samples, which take about a tenth of a second.
+ * 65,536 squares with outlines and numbers need less than a fifth of it. */
+#define MOST_LAYERS 64
+#define LEAST_SAMPLES 1e8
 
 /* Of the lines of a mesh that lie behind another part of it. */
 #define HIDDEN_OPACITY 0.25f
@@ -77,6 +91,7 @@ typedef struct
 {
   GstClothOverlayStyle style;
   gchar *rig, *camera, *texture;
+  GstClothDamage damage;
 } Settings;
 
 /* The mesh of one topology. */
@@ -96,6 +111,8 @@ struct _GstClothOverlay
   Settings settings;
   gboolean rig_changed, texture_changed;
 
+  gint stopped;                 /* atomic: nobody waits for the picture any more */
+
   /* streaming thread */
   GstVideoInfo info;
   GstCaps *video_caps;
@@ -104,6 +121,7 @@ struct _GstClothOverlay
   Mesh *mesh;
   ClothRig *rig;
   const ClothCamera *camera;    /* of @rig */
+  gboolean warned;              /* that not all was drawn */
 };
 
 G_DEFINE_TYPE (GstClothOverlay, gst_cloth_overlay, GST_TYPE_CLOTH_SYNC);
@@ -186,6 +204,7 @@ static const GstClothProperty properties[] = {
     "Name in the rig of the camera that took the picture; may be left out when "
     "the rig has one camera",
     G_TYPE_STRING, SETTING (camera), MUTABLE},
+  GST_CLOTH_DAMAGE_PROPERTIES (Settings, damage),
 };
 
 static const Settings defaults = {
@@ -379,22 +398,28 @@ gst_cloth_overlay_print (GstClothOverlay * self)
   return FALSE;
 }
 
-static gboolean
+/* A picture whose mesh is damaged goes on without it. */
+static GstFlowReturn
 gst_cloth_overlay_draw_mesh (GstClothOverlay * self, const ClothCanvas * canvas,
     GstBuffer * buffer, const GstClothOverlayStyle * style)
 {
-  g_autoptr (GstClothMesh) mesh = gst_cloth_read_mesh (GST_ELEMENT (self),
-      buffer, gst_cloth_topology_get_n_vertices (self->mesh->topology));
+  g_autoptr (GError) error = NULL;
+  g_autoptr (GstClothMesh) mesh = gst_cloth_parse_mesh (buffer,
+      gst_cloth_topology_get_n_vertices (self->mesh->topology), &error);
   GstClothGap *gap = style->draw_gap ? gst_buffer_get_cloth_gap (buffer) : NULL;
 
-  if (!mesh || (style->mesh_style == GST_CLOTH_OVERLAY_MESH_SHADED
-          && !gst_cloth_overlay_print (self))) {
-    return FALSE;
+  if (!mesh) {
+    return gst_cloth_damage_add (&self->settings.damage, GST_ELEMENT (self),
+        error);
+  }
+  if (style->mesh_style == GST_CLOTH_OVERLAY_MESH_SHADED
+      && !gst_cloth_overlay_print (self)) {
+    return GST_FLOW_ERROR;
   }
   mesh_draw (self->mesh, canvas,
       GST_VIDEO_INFO_WIDTH (&self->info), GST_VIDEO_INFO_HEIGHT (&self->info),
       self->camera, mesh, gap, style);
-  return TRUE;
+  return GST_FLOW_OK;
 }
 
 /* ---- GstClothSync ---- */
@@ -501,6 +526,33 @@ gst_cloth_overlay_make_plain (GstClothOverlay * self, GstBuffer * buffer)
   return g_steal_pointer (&plain);
 }
 
+/* What a picture may cost. */
+static ClothWork
+gst_cloth_overlay_allow (GstClothOverlay * self)
+{
+  const gdouble area = (gdouble) GST_VIDEO_INFO_WIDTH (&self->info) *
+      GST_VIDEO_INFO_HEIGHT (&self->info);
+  const ClothWork work = { MAX (MOST_LAYERS * area, LEAST_SAMPLES),
+    &self->stopped, FALSE
+  };
+
+  return work;
+}
+
+static void
+gst_cloth_overlay_tell (GstClothOverlay * self, const ClothWork * work)
+{
+  if (!work->left_out || self->warned) {
+    return;
+  }
+  self->warned = TRUE;
+  GST_ELEMENT_WARNING (self, STREAM, FAILED,
+      ("What is to be drawn covers the picture more than %d times; the rest "
+          "was left out.", MOST_LAYERS),
+      ("Make line-width or ellipse-scale smaller; if they are small, what came "
+          "is of no cloth. Of other pictures like it you are not told."));
+}
+
 static GstFlowReturn
 gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
     guint64 mask, GstClockTime pts, GstClockTime duration, GstBuffer ** out)
@@ -511,6 +563,7 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   gboolean has_quads, has_dots, has_saddles;
   GstVideoFrame frame;
   ClothCanvas canvas;
+  ClothWork work = gst_cloth_overlay_allow (self);
   GstClothOverlayStyle style;
 
   if (!views[VIDEO]) {
@@ -559,6 +612,7 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
     return GST_FLOW_ERROR;
   }
   gst_cloth_overlay_canvas (&frame, &canvas);
+  canvas.work = &work;
   if (has_quads) {
     guint n_quads;
     const GstClothQuad *quads =
@@ -570,14 +624,15 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
     gst_cloth_overlay_draw_dots (&canvas, gst_buffer_get_cloth_dots (*out),
         self->dots_by_label, &style);
   }
-  if (mesh && !gst_cloth_overlay_draw_mesh (self, &canvas, mesh, &style)) {
-    ret = GST_FLOW_ERROR;
+  if (mesh) {
+    ret = gst_cloth_overlay_draw_mesh (self, &canvas, mesh, &style);
   }
   if (has_saddles) {
     gst_cloth_overlay_draw_saddles (&canvas,
         gst_buffer_get_cloth_saddles (*out), &style);
   }
   gst_video_frame_unmap (&frame);
+  gst_cloth_overlay_tell (self, &work);
   return ret;
 }
 
@@ -628,6 +683,38 @@ gst_cloth_overlay_src_query (GstAggregator * agg, GstQuery * query)
       query);
 }
 
+/* A picture with much to draw takes its time, and holds the streaming thread. */
+static gboolean
+gst_cloth_overlay_sink_event (GstAggregator * agg, GstAggregatorPad * pad,
+    GstEvent * event)
+{
+  GstClothOverlay *self = GST_CLOTH_OVERLAY (agg);
+
+  if (!g_strcmp0 (GST_PAD_NAME (pad), "sink")) {
+    if (GST_EVENT_TYPE (event) == GST_EVENT_FLUSH_START) {
+      g_atomic_int_set (&self->stopped, TRUE);
+    } else if (GST_EVENT_TYPE (event) == GST_EVENT_FLUSH_STOP) {
+      g_atomic_int_set (&self->stopped, FALSE);
+    }
+  }
+  return GST_AGGREGATOR_CLASS (gst_cloth_overlay_parent_class)->sink_event (agg,
+      pad, event);
+}
+
+static GstStateChangeReturn
+gst_cloth_overlay_change_state (GstElement * element, GstStateChange transition)
+{
+  GstClothOverlay *self = GST_CLOTH_OVERLAY (element);
+
+  if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
+    g_atomic_int_set (&self->stopped, FALSE);
+  } else if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
+    g_atomic_int_set (&self->stopped, TRUE);
+  }
+  return GST_ELEMENT_CLASS (gst_cloth_overlay_parent_class)->change_state
+      (element, transition);
+}
+
 /* Clicks into a video sink are for the tracker upstream; the base class would drop
  * them. */
 static gboolean
@@ -641,6 +728,15 @@ gst_cloth_overlay_src_event (GstAggregator * agg, GstEvent * event)
   }
   return GST_AGGREGATOR_CLASS (gst_cloth_overlay_parent_class)->src_event (agg,
       event);
+}
+
+static gboolean
+gst_cloth_overlay_start (GstAggregator * agg)
+{
+  GST_CLOTH_OVERLAY (agg)->warned = FALSE;
+  gst_cloth_damage_reset (&GST_CLOTH_OVERLAY (agg)->settings.damage,
+      GST_ELEMENT (agg));
+  return GST_AGGREGATOR_CLASS (gst_cloth_overlay_parent_class)->start (agg);
 }
 
 static gboolean
@@ -700,8 +796,11 @@ gst_cloth_overlay_class_init (GstClothOverlayClass * klass)
   object_class->finalize = gst_cloth_overlay_finalize;
   agg_class->decide_allocation = gst_cloth_overlay_decide_allocation;
   agg_class->sink_query = gst_cloth_overlay_sink_query;
+  element_class->change_state = gst_cloth_overlay_change_state;
+  agg_class->sink_event = gst_cloth_overlay_sink_event;
   agg_class->src_query = gst_cloth_overlay_src_query;
   agg_class->src_event = gst_cloth_overlay_src_event;
+  agg_class->start = gst_cloth_overlay_start;
   agg_class->stop = gst_cloth_overlay_stop;
   sync_class->set_pad_caps = gst_cloth_overlay_set_pad_caps;
   sync_class->negotiate_src = gst_cloth_overlay_negotiate_src;
@@ -724,5 +823,7 @@ gst_cloth_overlay_init (GstClothOverlay * self)
 {
   self->settings = defaults;
   self->dots_by_label = g_hash_table_new (NULL, NULL);
+  gst_cloth_damage_watch (&self->settings.damage, GST_ELEMENT (self),
+      GST_AGGREGATOR_SRC_PAD (self));
   gst_cloth_sync_add_always_pad (GST_CLOTH_SYNC (self), "sink");
 }

@@ -37,6 +37,11 @@ gst_cloth_load_picture (const gchar * path, const gchar * formats,
   g_autoptr (GstElement) source = NULL, sink = NULL;
   GstSample *sample = NULL;
 
+  if (g_file_test (path, G_FILE_TEST_IS_DIR)) {
+    g_set_error (error, G_IO_ERROR, G_IO_ERROR_IS_DIRECTORY,
+        "%s is a folder: name a picture file in it", path);
+    return NULL;
+  }
   if (!g_file_test (path, G_FILE_TEST_IS_REGULAR)) {
     g_set_error (error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND,
         "%s: there is no such file", path);

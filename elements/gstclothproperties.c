@@ -67,8 +67,9 @@ make_enum_spec (const GstClothProperty * property, gint standard,
 static GParamSpec *
 make_spec (const GstClothProperty * property, gconstpointer standard)
 {
-  const GParamFlags flags =
-      property->flags | G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS;
+  const GParamFlags access =
+      property->flags & G_PARAM_READABLE ? 0 : G_PARAM_READWRITE;
+  const GParamFlags flags = property->flags | access | G_PARAM_STATIC_STRINGS;
   const gchar *name = property->name, *nick = property->nick;
   const gchar *blurb = property->blurb;
   const gdouble low = property->minimum, high = property->maximum;

@@ -25,9 +25,9 @@ G_BEGIN_DECLS
  *   %GST_CLOTH_TYPE_FRACTION in a gint[2], numerator and denominator
  * @offset: of the member in the settings; GST_CLOTH_SETTING() gives it and @size
  * @size: of the member
- * @flags: when the property may be set: GST_PARAM_MUTABLE_…, GST_PARAM_CONTROLLABLE. All
- *   are readable and writable; one of %GST_PARAM_MUTABLE_READY is refused while the
- *   element runs
+ * @flags: when the property may be set: GST_PARAM_MUTABLE_…, GST_PARAM_CONTROLLABLE; one of
+ *   %GST_PARAM_MUTABLE_READY is refused while the element runs. %G_PARAM_READABLE: it can
+ *   only be read; all others are readable and writable
  * @minimum: of numbers; a %G_TYPE_UINT64 takes all that fit, a fraction any from 0 on
  * @maximum: see @minimum
  * @enum_name: of the GType that is registered for @enum_values; tables may share it

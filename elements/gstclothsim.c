@@ -116,7 +116,7 @@ load_scene (GstClothSim * self)
 
   if (take)
     self->scene = cloth_scene_new_from_take (take, &error);
-  if (self->scene)
+  if (self->scene && cloth_scene_check_paths (self->scene, &error))
     return TRUE;
   gst_mesh_post_error (GST_ELEMENT (self), "read the scene",
       self->settings.location, FALSE, error);

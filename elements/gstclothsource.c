@@ -235,14 +235,42 @@ gst_cloth_source_is_seekable (GstBaseSrc * src)
 }
 
 static gboolean
+can_seek (GstClothSource * self, GstEvent * event)
+{
+  GstSeekType start_type, stop_type;
+  gint64 start, stop;
+  GstFormat format;
+  gdouble rate;
+
+  gst_event_parse_seek (event, &rate, &format, NULL, &start_type, &start,
+      &stop_type, &stop);
+  if (format != GST_FORMAT_TIME
+      || (rate < 0 && !GST_CLOTH_SOURCE_GET_CLASS (self)->backwards))
+    return FALSE;
+  return start_type != GST_SEEK_TYPE_SET || stop_type != GST_SEEK_TYPE_SET
+      || stop < 0 || start <= stop;
+}
+
+/* The base class flushes first and asks then; after a refusal the stream would go on without
+ * a segment. */
+static gboolean
+gst_cloth_source_event (GstBaseSrc * src, GstEvent * event)
+{
+  if (GST_EVENT_TYPE (event) == GST_EVENT_SEEK
+      && !can_seek (GST_CLOTH_SOURCE (src), event)) {
+    GST_INFO_OBJECT (src, "refused: %" GST_PTR_FORMAT, event);
+    return FALSE;
+  }
+  return GST_BASE_SRC_CLASS (gst_cloth_source_parent_class)->event (src, event);
+}
+
+/* What comes here was let through by can_seek (), or is the start of the stream. */
+static gboolean
 gst_cloth_source_do_seek (GstBaseSrc * src, GstSegment * segment)
 {
   GstClothSourcePrivate *priv =
       gst_cloth_source_get_instance_private (GST_CLOTH_SOURCE (src));
 
-  if (segment->format != GST_FORMAT_TIME || (segment->rate < 0 &&
-          !GST_CLOTH_SOURCE_GET_CLASS (src)->backwards))
-    return FALSE;
   segment->time = segment->start;
   if (segment->rate >= 0)
     priv->next = frame_at (priv, segment->position);
@@ -316,6 +344,7 @@ gst_cloth_source_class_init (GstClothSourceClass * klass)
   src_class->get_caps = gst_cloth_source_get_caps;
   src_class->get_times = gst_cloth_source_get_times;
   src_class->is_seekable = gst_cloth_source_is_seekable;
+  src_class->event = gst_cloth_source_event;
   src_class->do_seek = gst_cloth_source_do_seek;
   GST_PUSH_SRC_CLASS (klass)->create = gst_cloth_source_create;
   gst_type_mark_as_plugin_api (GST_TYPE_CLOTH_SOURCE, 0);

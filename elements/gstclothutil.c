@@ -122,23 +122,32 @@ gst_cloth_read_topology (GstElement * element, const GstCaps * caps)
   return topology;
 }
 
-/* A frame of a mesh stream of @n_vertices; NULL when an error was posted. */
+/* A frame of a mesh stream of @n_vertices. */
+GstClothMesh *
+gst_cloth_parse_mesh (GstBuffer * buffer, guint n_vertices, GError ** error)
+{
+  g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_from_buffer (buffer, error);
+
+  if (!mesh)
+    return NULL;
+  if (gst_cloth_mesh_get_n_vertices (mesh) != n_vertices) {
+    g_set_error (error, GST_CLOTH_ERROR, GST_CLOTH_ERROR_VALUE,
+        "A mesh of %u vertices in a stream of %u",
+        gst_cloth_mesh_get_n_vertices (mesh), n_vertices);
+    return NULL;
+  }
+  return g_steal_pointer (&mesh);
+}
+
+/* The same for what ends at a damaged frame; NULL when an error was posted. */
 GstClothMesh *
 gst_cloth_read_mesh (GstElement * element, GstBuffer * buffer, guint n_vertices)
 {
   g_autoptr (GError) error = NULL;
-  g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_from_buffer (buffer, &error);
+  GstClothMesh *mesh = gst_cloth_parse_mesh (buffer, n_vertices, &error);
 
-  if (!mesh) {
+  if (!mesh)
     GST_ELEMENT_ERROR (element, STREAM, DECODE,
         ("A buffer holds no valid mesh: %s", error->message), (NULL));
-    return NULL;
-  }
-  if (gst_cloth_mesh_get_n_vertices (mesh) != n_vertices) {
-    GST_ELEMENT_ERROR (element, STREAM, DECODE,
-        ("A mesh of %u vertices in a stream of %u",
-            gst_cloth_mesh_get_n_vertices (mesh), n_vertices), (NULL));
-    return NULL;
-  }
-  return g_steal_pointer (&mesh);
+  return mesh;
 }

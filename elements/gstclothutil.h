@@ -20,6 +20,8 @@ ClothRig *gst_cloth_open_rig (GstElement * element, const gchar * path,
     const gchar * name, const ClothCamera ** camera);
 GstClothTopology *gst_cloth_read_topology (GstElement * element,
     const GstCaps * caps);
+GstClothMesh *gst_cloth_parse_mesh (GstBuffer * buffer, guint n_vertices,
+    GError ** error);
 GstClothMesh *gst_cloth_read_mesh (GstElement * element, GstBuffer * buffer,
     guint n_vertices);
 

@@ -37,6 +37,7 @@
 #include <gst/cloth/cloth.h>
 #include <math.h>
 
+#include "elements/gstclothdamage.h"
 #include "elements/gstclothproperties.h"
 #include "elements/gstclothutil.h"
 #include "elements/gstmeshformat.h"
@@ -64,6 +65,7 @@ typedef struct
   ClothFillParameters parameters;
   gdouble smooth_space, smooth_time;
   gchar *garment;
+  GstClothDamage damage;
 } Settings;
 
 struct _GstMeshFill
@@ -142,6 +144,7 @@ static const GstClothProperty properties[] = {
     "Part of the way to the mean of the frames before and after that a vertex "
     "goes; above 0 the element is a frame late",
     G_TYPE_DOUBLE, SETTING (smooth_time), GST_PARAM_MUTABLE_READY, 0, 1},
+  GST_CLOTH_DAMAGE_PROPERTIES (Settings, damage),
 };
 /* *INDENT-ON* */
 
@@ -293,6 +296,7 @@ gst_mesh_fill_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
 {
   GstMeshFill *self = GST_MESH_FILL (parent);
   g_autoptr (GstClothMesh) mesh = NULL;
+  g_autoptr (GError) error = NULL;
   gdouble smooth_space, smooth_time;
   GstFlowReturn flow = GST_FLOW_OK;
   Frame *frame = &self->frame[2], *waiting = &self->frame[1], swap;
@@ -301,10 +305,13 @@ gst_mesh_fill_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
     gst_buffer_unref (buffer);
     return GST_FLOW_NOT_NEGOTIATED;
   }
-  mesh = gst_cloth_read_mesh (GST_ELEMENT (self), buffer, self->n_input);
+  mesh = gst_cloth_parse_mesh (buffer, self->n_input, &error);
   if (!mesh) {
+    /* those without a time that come after it keep their own */
+    self->n_frames++;
     gst_buffer_unref (buffer);
-    return GST_FLOW_ERROR;
+    return gst_cloth_damage_add (&self->settings.damage, GST_ELEMENT (self),
+        error);
   }
   GST_OBJECT_LOCK (self);
   cloth_fill_set_parameters (self->fill, &self->settings.parameters);
@@ -524,6 +531,7 @@ gst_mesh_fill_change_state (GstElement * element, GstStateChange transition)
 
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
     gst_segment_init (&self->segment, GST_FORMAT_TIME);
+    gst_cloth_damage_reset (&self->settings.damage, element);
     if (!open_garment (self))
       return GST_STATE_CHANGE_FAILURE;
   }
@@ -583,5 +591,7 @@ gst_mesh_fill_init (GstMeshFill * self)
   gst_element_add_pad (GST_ELEMENT (self), self->sinkpad);
   self->srcpad = gst_pad_new_from_static_template (&src_template, "src");
   gst_pad_set_query_function (self->srcpad, gst_mesh_fill_src_query);
+  gst_cloth_damage_watch (&self->settings.damage, GST_ELEMENT (self),
+      self->srcpad);
   gst_element_add_pad (GST_ELEMENT (self), self->srcpad);
 }

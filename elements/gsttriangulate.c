@@ -18,6 +18,10 @@
  * sent, so that a camera joining late doesn't change it in mid-stream; 0/1, variable, when
  * they differ from the start. Frames come with the times of their pictures all the same.
  *
+ * A damaged packet of observations counts as a camera that saw nothing. It is counted in
+ * `dropped`; the first gives a warning, the end of the stream an info message with their
+ * number. With `strict`, for files, the first is an error.
+ *
  * A sink pad is given its camera of `rig` by its own property `camera`, else by the name
  * that the metadata carries, else by the order of the pads.
  *
@@ -37,6 +41,7 @@
 
 #include <gst/cloth/cloth.h>
 
+#include "elements/gstclothdamage.h"
 #include "elements/gstclothproperties.h"
 #include "elements/gsttriangulatepad.h"
 #include "gst/cloth-io/points.h"
@@ -93,6 +98,7 @@ typedef struct
   gchar *rig, *pattern;
   ClothReconstructionParameters parameters;
   guint threads;
+  GstClothDamage damage;
 } Settings;
 
 struct _GstTriangulate
@@ -165,6 +171,7 @@ static const GstClothProperty properties[] = {
     "Threads that triangulate; 0: as many as there are processors. The "
     "result is the same",
     G_TYPE_UINT, SETTING (threads), GST_PARAM_MUTABLE_PLAYING, 0, MAX_THREADS},
+  GST_CLOTH_DAMAGE_PROPERTIES (Settings, damage),
 };
 /* *INDENT-ON* */
 
@@ -544,6 +551,7 @@ gst_triangulate_start (GstAggregator * agg)
 {
   GstTriangulate *self = GST_TRIANGULATE (agg);
 
+  gst_cloth_damage_reset (&self->settings.damage, GST_ELEMENT (self));
   if (GST_AGGREGATOR_CLASS (gst_triangulate_parent_class)->start (agg)
       && gst_triangulate_load_rig (self) && gst_triangulate_load_pattern (self)) {
     return TRUE;
@@ -636,29 +644,27 @@ gst_triangulate_make_mesh (GstTriangulate * self,
   return GST_FLOW_OK;
 }
 
-/* What a view carries, in its own or in unpacked metadata. */
-static gboolean
+/* Whether a view carries anything, in its own or in unpacked metadata. A damaged one is as
+ * good as none. */
+static GstFlowReturn
 gst_triangulate_look (GstTriangulate * self, guint index, GstBuffer * view,
-    GstBuffer ** unpacked, Seen * seen)
+    GstBuffer ** unpacked, Seen * seen, gboolean * carries)
 {
   g_autoptr (GError) error = NULL;
 
+  *carries = FALSE;
   if (!self->view[index].observations) {
-    return board_see (self->board, view, seen);
+    *carries = board_see (self->board, view, seen);
+    return GST_FLOW_OK;
   }
   *unpacked = gst_buffer_new ();
   if (!gst_cloth_observations_unpack (view, *unpacked, &error)) {
-    GST_DEBUG_OBJECT (self, "sink_%u: %s", index, error->message);
-    if (!self->view[index].warned) {
-      self->view[index].warned = TRUE;
-      GST_ELEMENT_WARNING (self, STREAM, DECODE,
-          ("A buffer on sink_%u holds no observations: %s", index,
-              error->message), ("It counts as a picture with nothing seen; so "
-              "do others like it, of which you are not told."));
-    }
-    return FALSE;
+    g_prefix_error (&error, "sink_%u: ", index);
+    return gst_cloth_damage_add (&self->settings.damage, GST_ELEMENT (self),
+        error);
   }
-  return board_see (self->board, *unpacked, seen);
+  *carries = board_see (self->board, *unpacked, seen);
+  return GST_FLOW_OK;
 }
 
 static GstFlowReturn
@@ -685,8 +691,11 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
     if (!views[i]) {
       continue;
     }
-    self->view[i].carries = gst_triangulate_look (self, i, views[i],
-        &unpacked[i], &carried[i]);
+    ret = gst_triangulate_look (self, i, views[i], &unpacked[i], &carried[i],
+        &self->view[i].carries);
+    if (ret != GST_FLOW_OK) {
+      goto done;
+    }
     if (!stamp) {
       stamp = gst_buffer_get_reference_timestamp_meta (unpacked[i] ?
           unpacked[i] : views[i], NULL);
@@ -703,6 +712,7 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
       self->view[i].meta = g_strdup (name);
     }
   }
+  ret = GST_FLOW_ERROR;
   if (!gst_triangulate_views_map (sync, self->view, self->rig, &moved)) {
     goto done;
   }
@@ -856,6 +866,8 @@ gst_triangulate_init (GstTriangulate * self)
   guint i;
 
   self->settings = defaults;
+  gst_cloth_damage_watch (&self->settings.damage, GST_ELEMENT (self),
+      GST_AGGREGATOR_SRC_PAD (self));
   self->fps_n = -1;
   for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
     self->view[i].camera = -1;

@@ -18,7 +18,6 @@ void gst_triangulate_pad_child_proxy_init (gpointer iface, gpointer data);
 /* What is known of a pad; streaming thread. */
 typedef struct {
   gboolean has_caps, observations;
-  gboolean warned;              /* that a buffer is damaged */
   gint width, height;
   gint fps_n, fps_d;
   gchar *property;              /* the pad's property, of this set */

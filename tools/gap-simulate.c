@@ -61,7 +61,8 @@ run_simulation (const Arguments * arguments, GError ** error)
   if (!take)
     return FALSE;
   scene = cloth_scene_new_from_take (take, error);
-  sim = scene ? cloth_sim_new (scene, models, 1, &options, error) : NULL;
+  sim = scene && cloth_scene_check_paths (scene, error) ?
+      cloth_sim_new (scene, models, 1, &options, error) : NULL;
   if (!sim) {
     g_prefix_error (error, "%s: ", arguments->scene);
     return FALSE;

@@ -3,8 +3,10 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <math.h>
 
+#include "gst/cloth/gstclothclock.h"
 #include "gst/cloth/gstclothdots.h"
 #include "gst/cloth/gstclothobservations.h"
+#include "gst/cloth/gstclothplaces.h"
 #include "gst/cloth/gstclothprivate.h"
 #include "gst/cloth/gstclothquads.h"
 #include "gst/cloth/gstclothsaddles.h"
@@ -224,16 +226,25 @@ put_quads (GByteArray * bytes, const GstClothQuads * quads, guint * n_sections)
 {
   guint columns = gst_cloth_quads_get_columns (quads);
   guint rows = gst_cloth_quads_get_rows (quads);
-  guint n_quads, start, n = 0;
+  guint n_quads, start, n_places = 0, n = 0;
   const GstClothQuad *quad = gst_cloth_quads_get_quads (quads, &n_quads);
+  g_autofree guint64 *places = g_new (guint64, n_quads);
+  g_autofree guint8 *left_out = g_new0 (guint8, n_quads);
 
+  for (guint i = 0; i < n_quads; i++) {
+    left_out[i] = !quad_is_valid (&quad[i], columns, rows);
+    if (!left_out[i])
+      places[n_places++] =
+          gst_cloth_place (quad[i].column, quad[i].row, columns, i);
+  }
+  gst_cloth_places_mark_repeated (places, n_places, left_out);
   start = begin_features (bytes, &quads_kind,
       gst_cloth_quads_get_sequence (quads), gst_cloth_quads_get_camera (quads),
       columns, rows, 0);
   for (guint i = 0; i < n_quads; i++, quad++) {
     guint8 state[4] = { (guint8) quad->state, quad->black ? 1 : 0, 0, 0 };
 
-    if (!quad_is_valid (quad, columns, rows))
+    if (left_out[i])
       continue;
     put_u32 (bytes, (guint32) quad->column);
     put_u32 (bytes, (guint32) quad->row);
@@ -258,9 +269,18 @@ put_dots (GByteArray * bytes, const GstClothDots * dots, guint * n_sections)
   guint columns = gst_cloth_dots_get_columns (dots);
   guint rows = gst_cloth_dots_get_rows (dots);
   guint n_colours = gst_cloth_dots_get_n_colours (dots);
-  guint n_dots, start, n = 0;
+  guint n_dots, start, n_places = 0, n = 0;
   const GstClothDot *dot = gst_cloth_dots_get_dots (dots, &n_dots);
+  g_autofree guint64 *places = g_new (guint64, n_dots);
+  g_autofree guint8 *left_out = g_new0 (guint8, n_dots);
 
+  for (guint i = 0; i < n_dots; i++) {
+    left_out[i] = !dot_is_valid (&dot[i], columns, rows, n_colours);
+    if (!left_out[i] && dot[i].column >= 0)
+      places[n_places++] =
+          gst_cloth_place (dot[i].column, dot[i].row, columns, i);
+  }
+  gst_cloth_places_mark_repeated (places, n_places, left_out);
   start = begin_features (bytes, &dots_kind,
       gst_cloth_dots_get_sequence (dots), gst_cloth_dots_get_camera (dots),
       columns, rows, n_colours);
@@ -271,7 +291,7 @@ put_dots (GByteArray * bytes, const GstClothDots * dots, guint * n_sections)
       dot->cov_xy, dot->cov_yy
     };
 
-    if (!dot_is_valid (dot, columns, rows, n_colours))
+    if (left_out[i])
       continue;
     put_u32 (bytes, (guint32) dot->column);
     put_u32 (bytes, (guint32) dot->row);
@@ -285,8 +305,7 @@ put_dots (GByteArray * bytes, const GstClothDots * dots, guint * n_sections)
 }
 
 /* A reference is written as the text of its caps: these are the characters that such
- * caps need (timestamp/x-ntp; timestamp/x-ptp, version=IEEE1588-2008, domain=1). The
- * reader hands nothing else to GStreamer's parser. */
+ * caps need (timestamp/x-ntp; timestamp/x-ptp, version=(string)IEEE1588-2008). */
 static gboolean
 reference_is_plain (const gchar * text, gsize length)
 {
@@ -297,6 +316,15 @@ reference_is_plain (const gchar * text, gsize length)
                 text[i])))
       return FALSE;
   return TRUE;
+}
+
+/* What a reader would pass over need not be written. */
+static gboolean
+reference_is_known (const gchar * text)
+{
+  g_autoptr (GstCaps) caps = gst_cloth_clock_from_text (text, strlen (text));
+
+  return caps != NULL;
 }
 
 static void
@@ -312,8 +340,8 @@ put_times (GByteArray * bytes, GstBuffer * buffer, guint * n_sections)
     g_autofree gchar *reference = gst_caps_to_string (time->reference);
     guint start;
 
-    if (!gst_caps_is_fixed (time->reference)
-        || !reference_is_plain (reference, strlen (reference)))
+    if (!reference_is_plain (reference, strlen (reference))
+        || !reference_is_known (reference))
       continue;
     start = begin_section (bytes, SECTION_TIME);
     put_u64 (bytes, time->timestamp);
@@ -331,8 +359,8 @@ put_times (GByteArray * bytes, GstBuffer * buffer, guint * n_sections)
  *
  * Writes what was seen in a picture, without the picture: the saddles, the quads and the dots
  * on @buffer, with camera and sequence number, and its #GstReferenceTimestampMeta. A
- * feature with a float that isn't finite, a quad or dot outside its pattern, and a reference
- * clock whose caps aren't fixed or need more than plain characters are left out. @buffer
+ * feature with a float that isn't finite, a quad or dot outside its pattern or at the place of
+ * an earlier one, and a reference clock that isn't one of GStreamer's own are left out. @buffer
  * without any such meta gives a buffer without sections.
  *
  * Returns: (transfer full): a new buffer in the layout of the observation stream, with
@@ -527,6 +555,7 @@ read_quads (const Section * section, Observed * observed, GError ** error)
 {
   Features features = { 0 };
   g_autofree GstClothQuad *quads = NULL;
+  g_autofree guint64 *places = NULL;
   const guint8 *at;
   guint columns, rows, n_quads;
 
@@ -539,6 +568,7 @@ read_quads (const Section * section, Observed * observed, GError ** error)
 
   at = features.items;
   quads = g_new0 (GstClothQuad, n_quads);
+  places = g_new (guint64, n_quads);
   for (guint i = 0; i < n_quads; i++, at += quads_kind.item_bytes[2]) {
     GstClothQuad *quad = &quads[i];
 
@@ -561,7 +591,11 @@ read_quads (const Section * section, Observed * observed, GError ** error)
       return fail (error, GST_CLOTH_ERROR_VALUE, quads_kind.tag,
           "a quad lies outside the board, has an unknown state or a float that "
           "is not finite");
+    places[i] = gst_cloth_place (quad->column, quad->row, columns, i);
   }
+  if (!gst_cloth_places_sort (places, n_quads))
+    return fail (error, GST_CLOTH_ERROR_VALUE, quads_kind.tag,
+        "two quads have the same column and row");
   observed->quads =
       gst_cloth_quads_new (features.camera, features.sequence, columns, rows,
       quads, n_quads);
@@ -573,8 +607,9 @@ read_dots (const Section * section, Observed * observed, GError ** error)
 {
   Features features = { 0 };
   g_autofree GstClothDot *dots = NULL;
+  g_autofree guint64 *places = NULL;
   const guint8 *at;
-  guint columns, rows, n_dots, n_colours;
+  guint columns, rows, n_dots, n_colours, n_places = 0;
 
   if (!read_features (section, &dots_kind, observed->dots != NULL, &features,
           error))
@@ -586,6 +621,7 @@ read_dots (const Section * section, Observed * observed, GError ** error)
 
   at = features.items;
   dots = g_new0 (GstClothDot, n_dots);
+  places = g_new (guint64, n_dots);
   for (guint i = 0; i < n_dots;
       i++, at += dots_kind.item_bytes[2] + 4 * n_colours) {
     GstClothDot *dot = &dots[i];
@@ -607,7 +643,12 @@ read_dots (const Section * section, Observed * observed, GError ** error)
       return fail (error, GST_CLOTH_ERROR_VALUE, dots_kind.tag,
           "a dot lies outside the pattern, has an unknown flag or a float that "
           "is not finite");
+    if (dot->column >= 0)
+      places[n_places++] = gst_cloth_place (dot->column, dot->row, columns, i);
   }
+  if (!gst_cloth_places_sort (places, n_places))
+    return fail (error, GST_CLOTH_ERROR_VALUE, dots_kind.tag,
+        "two dots have the same label");
   observed->dots =
       gst_cloth_dots_new (features.camera, features.sequence, columns, rows,
       n_colours, dots, n_dots);
@@ -617,7 +658,7 @@ read_dots (const Section * section, Observed * observed, GError ** error)
 static gboolean
 read_time (const Section * section, Observed * observed, GError ** error)
 {
-  g_autofree gchar *text = NULL;
+  const gchar *text;
   GstCaps *reference;
   guint length;
 
@@ -634,15 +675,14 @@ read_time (const Section * section, Observed * observed, GError ** error)
   if (section->size != TIME_HEADER + padded (length))
     return fail (error, GST_CLOTH_ERROR_TRUNCATED, SECTION_TIME,
         "its size is not that of what it announces");
-  text = g_strndup ((const gchar *) section->data + TIME_HEADER, length);
-  reference = reference_is_plain (text, strlen (text)) && strlen (text)
-      == length ? gst_caps_from_string (text) : NULL;
-  if (!reference || !gst_caps_is_fixed (reference)
-      || gst_cloth_read_u64 (section->data) == GST_CLOCK_TIME_NONE) {
-    g_clear_pointer (&reference, gst_caps_unref);
+  text = (const gchar *) section->data + TIME_HEADER;
+  if (!reference_is_plain (text, length)
+      || gst_cloth_read_u64 (section->data) == GST_CLOCK_TIME_NONE)
     return fail (error, GST_CLOTH_ERROR_VALUE, SECTION_TIME,
-        "the reference clock is no fixed caps, or there is no time");
-  }
+        "the reference clock is no plain text, or there is no time");
+  reference = gst_cloth_clock_from_text (text, length);
+  if (!reference)
+    return TRUE;                /* of a clock that this library doesn't know */
   observed->references[observed->n_times] = reference;
   observed->timestamps[observed->n_times] = gst_cloth_read_u64 (section->data);
   observed->durations[observed->n_times] =
@@ -713,8 +753,8 @@ read_observation (const guint8 * bytes, gsize size, Observed * observed,
  * @error: return location for a #GST_CLOTH_ERROR
  *
  * Puts on @target the metas that @observation holds: saddles, quads, dots and reference
- * time stamps. Sections of a kind that this library doesn't know are passed over. Time stamps
- * and flags of @target stay.
+ * time stamps. Sections of a kind that this library doesn't know are passed over, and so are
+ * times of a clock that it doesn't know. Time stamps and flags of @target stay.
  *
  * Returns: %FALSE with @error set, and @target as it was, when the bytes are no valid
  *   observation

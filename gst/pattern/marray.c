@@ -15,8 +15,11 @@
 #include "gst/file/jsonwriter.h"
 #include "gst/math/random.h"
 
-/* Sizes of cloth beyond this are a mistake of the unit. */
+/* Sizes of cloth beyond these are a mistake of the unit. */
+#define MIN_METRES 1e-6
 #define MAX_METRES 1000.0
+/* Smaller dots, of their pitch, no camera sees that sees several. */
+#define LEAST_DIAMETER 0.01
 /* Rounding of decimal sizes that should add up exactly. */
 #define SLACK 1e-9
 
@@ -298,14 +301,15 @@ check_sizes (const ClothMArray * array, GError ** error)
 {
   const gint dots[2] = { array->columns, array->rows };
 
-  if (!(array->pitch_m > 0 && array->pitch_m <= MAX_METRES))
+  if (!(array->pitch_m >= MIN_METRES && array->pitch_m <= MAX_METRES))
     return refuse (error, "pitch_m is %g: give the distance of the dots' "
-        "centres in metres, more than 0 and at most %g", array->pitch_m,
+        "centres in metres, from %g to %g", array->pitch_m, MIN_METRES,
         MAX_METRES);
-  if (!(array->diameter_m > 0 && array->diameter_m < array->pitch_m))
+  if (!(array->diameter_m >= LEAST_DIAMETER * array->pitch_m
+          && array->diameter_m < array->pitch_m))
     return refuse (error, "diameter_m is %g: give the dots' diameter in "
-        "metres, more than 0 and less than the pitch of %g",
-        array->diameter_m, array->pitch_m);
+        "metres, at least %g and less than the pitch of %g", array->diameter_m,
+        LEAST_DIAMETER * array->pitch_m, array->pitch_m);
   for (gint i = 0; i < 2; i++) {
     const gdouble first = array->origin_uv_m[i] - array->diameter_m / 2;
     const gdouble last = array->origin_uv_m[i]
@@ -324,18 +328,9 @@ check_sizes (const ClothMArray * array, GError ** error)
   return TRUE;
 }
 
-/* @array: an array
- * @error: return location
- *
- * Checks every limit: %CLOTH_M_ARRAY_MIN to %CLOTH_M_ARRAY_MAX dots each way, 2 to
- * %CLOTH_M_ARRAY_MAX_COLOURS different colours of different names, finite positive sizes,
- * dots apart from each other and within the cloth, colours of the matrix among those named.
- * Whether windows are unique is not checked: print that has a few twins is still read.
- *
- * Returns: %TRUE when @array is sound, else %FALSE with %CLOTH_PATTERN_ERROR_VALUE
- */
-gboolean
-cloth_m_array_check (const ClothMArray * array, GError ** error)
+/* Everything but the matrix. */
+static gboolean
+check_frame (const ClothMArray * array, GError ** error)
 {
   if (array->columns < CLOTH_M_ARRAY_MIN || array->columns > CLOTH_M_ARRAY_MAX
       || array->rows < CLOTH_M_ARRAY_MIN || array->rows > CLOTH_M_ARRAY_MAX)
@@ -354,12 +349,40 @@ cloth_m_array_check (const ClothMArray * array, GError ** error)
             "they are printed", array->colours[j].name, array->colours[i].name);
     }
   }
-  for (gint i = 0; i < array->columns * array->rows; i++) {
-    if (array->matrix[i] >= array->n_colours)
-      return refuse (error, "the matrix has a colour %d: there are 0 to %d",
-          array->matrix[i], array->n_colours - 1);
-  }
   return check_sizes (array, error);
+}
+
+/* @array: an array
+ * @error: return location
+ *
+ * Checks every limit: %CLOTH_M_ARRAY_MIN to %CLOTH_M_ARRAY_MAX dots each way, 2 to
+ * %CLOTH_M_ARRAY_MAX_COLOURS different colours of different names, sizes from a micrometre
+ * to a kilometre, dots apart from each other and within the cloth, colours of the matrix among
+ * those named and not all the same. Whether windows are unique is not checked: print that has
+ * a few twins is still read.
+ *
+ * Returns: %TRUE when @array is sound, else %FALSE with %CLOTH_PATTERN_ERROR_VALUE
+ */
+gboolean
+cloth_m_array_check (const ClothMArray * array, GError ** error)
+{
+  const guint8 *matrix = array->matrix;
+  gint n, n_alike = 0;
+
+  if (!check_frame (array, error))
+    return FALSE;
+  n = array->columns * array->rows;
+  for (gint i = 0; i < n; i++) {
+    if (matrix[i] >= array->n_colours)
+      return refuse (error, "the matrix has a colour %d: there are 0 to %d",
+          matrix[i], array->n_colours - 1);
+    n_alike += matrix[i] == matrix[0];
+  }
+  if (n_alike == n)
+    return refuse (error, "all dots of the matrix are %s: without a second "
+        "colour no dot can be told from another",
+        array->colours[matrix[0]].name);
+  return TRUE;
 }
 
 /* @columns: dots in a row
@@ -395,7 +418,7 @@ cloth_m_array_new (gint columns, gint rows, gint n_colours, gdouble pitch_m,
   memcpy (array->colours, default_colours, sizeof default_colours);
   array->matrix = g_malloc0 (CLOTH_M_ARRAY_MAX * CLOTH_M_ARRAY_MAX);
   /* The sizes first: the search may take a while. */
-  if (!cloth_m_array_check (array, error)
+  if (!check_frame (array, error)
       || !cloth_m_array_generate (columns, rows, n_colours, code,
           array->matrix, error))
     return NULL;

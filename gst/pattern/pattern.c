@@ -8,7 +8,8 @@
 
 #include "gst/file/json.h"
 
-/* Sizes of cloth beyond this are a mistake of the unit. */
+/* Sizes of cloth beyond these are a mistake of the unit. */
+#define MIN_METRES 1e-6
 #define MAX_METRES 1000.0
 /* Rounding of decimal sizes that should add up exactly. */
 #define SLACK 1e-9
@@ -22,8 +23,8 @@ cloth_pattern_error_quark (void)
 /* @pattern: a pattern
  * @error: return location
  *
- * Checks every limit: 1 to %CLOTH_PATTERN_MAX_SQUARES squares each way, finite
- * positive sizes, the board within the cloth, a dot smaller than its square, code
+ * Checks every limit: 1 to %CLOTH_PATTERN_MAX_SQUARES squares each way, sizes from a
+ * micrometre to a kilometre, the board within the cloth, a dot smaller than its square, code
  * bytes 0 or 1.
  *
  * Returns: %TRUE when @pattern is sound, else %FALSE with %CLOTH_PATTERN_ERROR_VALUE
@@ -42,10 +43,10 @@ cloth_pattern_check (const ClothPattern * pattern, GError ** error)
         pattern->rows, CLOTH_PATTERN_MAX_SQUARES);
     return FALSE;
   }
-  if (!(pattern->square_m > 0 && pattern->square_m <= MAX_METRES)) {
+  if (!(pattern->square_m >= MIN_METRES && pattern->square_m <= MAX_METRES)) {
     g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_VALUE,
-        "square_m is %g: give the edge of a square in metres, more than 0 and "
-        "at most %g", pattern->square_m, MAX_METRES);
+        "square_m is %g: give the edge of a square in metres, from %g to %g",
+        pattern->square_m, MIN_METRES, MAX_METRES);
     return FALSE;
   }
   for (gint i = 0; i < 2; i++) {

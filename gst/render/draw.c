@@ -84,6 +84,27 @@ ink_of (const ClothCanvas * canvas, const ClothDrawGroup * group,
   return ink;
 }
 
+/* Pixels of a range of rows or columns that lie in the picture, along its @size. */
+static gdouble
+clipped (gfloat low, gfloat high, gint size)
+{
+  const gdouble a = MAX (low, 0.0f), b = MIN (high, (gfloat) size);
+
+  return MAX (b - a, 0);
+}
+
+/* Whether a shape between two corners may be drawn that is at most @wide in each row. */
+static gboolean
+take_work (const ClothCanvas * canvas, gfloat left, gfloat top, gfloat right,
+    gfloat bottom, gfloat wide)
+{
+  const ClothComponent *c = &canvas->components[0];
+
+  return !canvas->work || cloth_work_take (canvas->work,
+      clipped (top, bottom, c->height << c->shift_y)
+      * MIN (clipped (left, right, c->width << c->shift_x), (gdouble) wide));
+}
+
 /* @canvas: where to
  * @x0: px
  * @y0: px
@@ -118,7 +139,13 @@ cloth_draw_line (const ClothCanvas * canvas, gfloat x0, gfloat y0, gfloat x1,
     line.slope = dx / dy;
   }
   line.most = 256 * colour->a * MIN (width, 1);
-
+  line.radius = 0.5f * (width + 1);
+  if (!take_work (canvas, MIN (x0, x1) - line.radius,
+          MIN (y0, y1) - line.radius, MAX (x0, x1) + line.radius,
+          MAX (y0, y1) + line.radius,
+          line.strip > 0 ? 2 * line.strip * line.radius : INFINITY)) {
+    return;
+  }
   while (next_group (canvas, &group)) {
     ClothDrawInk ink = ink_of (canvas, &group, colour);
 
@@ -151,7 +178,7 @@ cloth_draw_dashes (const ClothCanvas * canvas, gfloat x0, gfloat y0, gfloat x1,
   }
   /* an odd number of pieces, and never more than make sense on a picture */
   n = (gint) MIN (length / dash, 4096) | 1;
-  for (i = 0; i < n; i += 2) {
+  for (i = 0; i < n && !cloth_work_is_over (canvas->work); i += 2) {
     gfloat a = (gfloat) i / (gfloat) n, b = (gfloat) (i + 1) / (gfloat) n;
 
     cloth_draw_line (canvas, x0 + a * (x1 - x0), y0 + a * (y1 - y0),
@@ -174,7 +201,7 @@ cloth_draw_quad (const ClothCanvas * canvas, const gfloat x[4],
       CLOTH_SIMD_BEST);
   ClothDrawGroup group = { 0 };
   ClothDrawQuad quad = {.top = y[0],.bottom = y[0],.full = 256 * colour->a };
-  gfloat turn = 0;
+  gfloat turn = 0, left, right;
   gint k;
 
   if (!(colour->a > 0)) {
@@ -191,6 +218,7 @@ cloth_draw_quad (const ClothCanvas * canvas, const gfloat x[4],
     }
     turn = cross;
   }
+  left = right = x[0];
   for (k = 0; k < 4; k++) {
     gint l = (k + 1) & 3;
     gfloat ex = x[l] - x[k], ey = y[l] - y[k];
@@ -201,6 +229,11 @@ cloth_draw_quad (const ClothCanvas * canvas, const gfloat x[4],
     quad.d[k] = -(quad.nx[k] * x[k] + quad.ny[k] * y[k]);
     quad.top = MIN (quad.top, y[k]);
     quad.bottom = MAX (quad.bottom, y[k]);
+    left = MIN (left, x[k]);
+    right = MAX (right, x[k]);
+  }
+  if (!take_work (canvas, left, quad.top, right, quad.bottom, INFINITY)) {
+    return;
   }
   while (next_group (canvas, &group)) {
     ClothDrawInk ink = ink_of (canvas, &group, colour);
@@ -234,7 +267,7 @@ cloth_draw_ellipse (const ClothCanvas * canvas, gfloat x, gfloat y, gfloat xx,
     return;
   }
   n = (gint) CLAMP (2 * MAX (a, sqrtf (yy)), 12.0f, 64.0f);
-  for (i = 1; i <= n; i++) {
+  for (i = 1; i <= n && !cloth_work_is_over (canvas->work); i++) {
     gfloat angle = (gfloat) (2 * G_PI) * (gfloat) i / (gfloat) n;
     gfloat u = cosf (angle), v = sinf (angle);
     gfloat to_x = x + a * u, to_y = y + b * u + c * v;

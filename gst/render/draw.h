@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include <glib.h>
+#include "gst/render/work.h"
 
 G_BEGIN_DECLS
 
@@ -39,6 +39,7 @@ typedef struct {
 
 /* @n_components: 1 … 4
  * @components: components of equal subsampling next to each other
+ * @work: (nullable): how much may be drawn; owned by whom the canvas is from
  *
  * A picture to draw on; owns nothing. All coordinates are full-resolution pixels with
  * the centre of the top-left pixel at (0, 0). Whatever lies outside is clipped; shapes
@@ -47,6 +48,7 @@ typedef struct {
 typedef struct {
   guint n_components;
   ClothComponent components[4];
+  ClothWork *work;
 } ClothCanvas;
 
 void cloth_draw_line (const ClothCanvas * canvas, gfloat x0, gfloat y0,

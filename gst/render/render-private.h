@@ -50,6 +50,7 @@ typedef struct {
   gfloat weight;                /* of this instant in the exposure */
   gfloat background[2];         /* at row 0, and change per row */
   ClothLight *light;            /* added to */
+  const ClothWork *work;        /* nullable: when to stop */
 } ClothRenderJob;
 
 /* Draws the pixels of one tile: those triangles of the job that the list names.
@@ -70,6 +71,6 @@ void cloth_sensor_free (ClothSensor * sensor);
 void cloth_sensor_develop (ClothSensor * sensor, ClothPool * pool,
     const ClothCapture * capture, ClothLight * light, guint64 frame,
     guint64 seed, guint n_planes, guint8 * const *planes,
-    const gint * strides, gint pixel_stride);
+    const gint * strides, gint pixel_stride, const ClothWork * work);
 
 G_END_DECLS

@@ -23,6 +23,7 @@ struct _ClothSensor
 
   /* of the picture that is made */
   const ClothCapture *capture;
+  const ClothWork *work;
   ClothLight *light;
   gfloat *plane;
   guint64 key;
@@ -118,7 +119,7 @@ shade_rows (gpointer data, guint begin, guint end, guint worker)
   const gint width = self->light->width, height = self->light->height;
   const gfloat gx = (gfloat) g[0];
 
-  for (guint y = begin; y < end; y++) {
+  for (guint y = begin; y < end && !cloth_work_is_stopped (self->work); y++) {
     const gfloat at_left = (gfloat) (1 + g[1] * (y - (height - 1) / 2.0)
         - g[0] * (width - 1) / 2.0);
     gfloat *row = self->plane + (gsize) y * (gsize) width;
@@ -164,7 +165,7 @@ blur_rows (gpointer data, guint begin, guint end, guint worker)
   ClothSensor *self = data;
   const gint width = self->light->width, reach = self->reach;
 
-  for (guint y = begin; y < end; y++) {
+  for (guint y = begin; y < end && !cloth_work_is_stopped (self->work); y++) {
     const gfloat *from = self->plane + (gsize) y * (gsize) width;
     gfloat *to = self->copy + (gsize) y * (gsize) width;
 
@@ -192,7 +193,7 @@ blur_columns (gpointer data, guint begin, guint end, guint worker)
   ClothSensor *self = data;
   const gint width = self->light->width, height = self->light->height;
 
-  for (guint y = begin; y < end; y++) {
+  for (guint y = begin; y < end && !cloth_work_is_stopped (self->work); y++) {
     gfloat *to = self->plane + (gsize) y * (gsize) width;
 
     for (gint x = 0; x < width; x++)
@@ -256,7 +257,7 @@ develop_rows (gpointer data, guint begin, guint end, guint worker)
   const gsize size = (gsize) light->width * (gsize) light->height;
   const gfloat leak = (gfloat) (self->capture->crosstalk / 2);
 
-  for (guint y = begin; y < end; y++) {
+  for (guint y = begin; y < end && !cloth_work_is_stopped (self->work); y++) {
     for (gint x = 0; x < light->width; x++) {
       const gsize at = (gsize) y * (gsize) light->width + (gsize) x;
       gfloat value[3], level[3];
@@ -292,12 +293,13 @@ void
 cloth_sensor_develop (ClothSensor * sensor, ClothPool * pool,
     const ClothCapture * capture, ClothLight * light, guint64 frame,
     guint64 seed, guint n_planes, guint8 * const *planes, const gint * strides,
-    gint pixel_stride)
+    gint pixel_stride, const ClothWork * work)
 {
   ClothSensor *self = sensor;
   const gsize size = (gsize) light->width * (gsize) light->height;
 
   self->capture = capture;
+  self->work = work;
   self->light = light;
   self->n_planes = n_planes;
   self->pixel_stride = pixel_stride;

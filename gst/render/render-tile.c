@@ -263,7 +263,7 @@ draw_tile (const ClothRenderJob * job, gint left, gint top,
   memcpy (&sy, sample_y, sizeof sy);
   if (n_list > 0) {
     memset (s->touched, 0, sizeof s->touched);
-    for (guint i = 0; i < n_list; i++)
+    for (guint i = 0; i < n_list && !cloth_work_is_stopped (job->work); i++)
       fill_triangle (s, &job->triangles[list[i]], (gint) list[i], left,
           top, sx, sy);
   }

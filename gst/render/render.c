@@ -467,6 +467,21 @@ sort_triangles (ClothRenderer * self)
   self->first[0] = 0;
 }
 
+/* The boxes around all the triangles, whatever they hide of each other: a triangle is asked at
+ * each pixel of its box. */
+static gboolean
+take_work (const ClothRenderer * self, ClothWork * work)
+{
+  for (guint i = 0; i < self->mesh->n_triangles; i++) {
+    const ClothRenderTriangle *t = &self->triangles[i];
+
+    if (t->right >= 0 && !cloth_work_take (work,
+            (gdouble) (t->right - t->left + 1) * (t->bottom - t->top + 1)))
+      return FALSE;
+  }
+  return TRUE;
+}
+
 static void
 draw_tiles (gpointer data, guint begin, guint end, guint worker)
 {
@@ -474,7 +489,7 @@ draw_tiles (gpointer data, guint begin, guint end, guint worker)
   const guint n = (guint) (self->columns * self->rows);
   gpointer scratch = self->scratch + worker * self->tile->scratch_size;
 
-  for (guint i = begin; i < end; i++) {
+  for (guint i = begin; i < end && !cloth_work_is_stopped (self->job.work); i++) {
     /* Each thread gets some rows of all parts of the picture: work is even. */
     const guint row = i / (guint) self->columns;
     const guint half = ((guint) self->rows + 1) / 2;
@@ -490,7 +505,8 @@ draw_tiles (gpointer data, guint begin, guint end, guint worker)
 
 /* ---- the picture ---- */
 
-static void
+/* FALSE when there is no memory for the picture. */
+static gboolean
 prepare_light (ClothRenderer * self, const ClothPaint * paint)
 {
   const ClothCamera *camera = &self->capture->camera;
@@ -502,8 +518,12 @@ prepare_light (ClothRenderer * self, const ClothPaint * paint)
   self->light.height = camera->height;
   self->light.n_channels = paint->n_channels;
   if (self->light_size < size) {
+    g_clear_pointer (&self->light.data, g_free);
+    self->light_size = 0;
+    self->light.data = g_try_new (gfloat, size);
+    if (!self->light.data)
+      return FALSE;
     self->light_size = size;
-    self->light.data = g_renew (gfloat, self->light.data, size);
   }
   memset (self->light.data, 0, size * sizeof (gfloat));
   self->columns = (camera->width + TILE - 1) / TILE;
@@ -513,6 +533,7 @@ prepare_light (ClothRenderer * self, const ClothPaint * paint)
     self->tiles_size = n_tiles;
     self->first = g_renew (guint, self->first, n_tiles + 1);
   }
+  return TRUE;
 }
 
 /* Instants of the exposure: by how far points move in the picture meanwhile. */
@@ -544,26 +565,30 @@ count_instants (ClothRenderer * self, gdouble time_s)
  * @motion: positions of the mesh's vertices around @time_s; what touches an unknown
  *   vertex is left out
  * @time_s: the picture's time by the camera's clock
+ * @work: (nullable): how much may be drawn in each instant of the exposure
  *
  * Draws the light that reaches the sensor: everything but what sensor and lens do to a
  * picture that is already there, which is cloth_renderer_develop ()'s. What reaches
  * behind the camera is left out. A corner of a printed square lies within some
  * thousandths of a pixel of its place.
  *
- * Returns: (transfer none): the light, until the next call
+ * Returns: (transfer none) (nullable): the light, until the next call; %NULL when @work was
+ *   stopped or too little, or else when there is no memory for such a picture
  */
 const ClothLight *
 cloth_renderer_draw (ClothRenderer * renderer, const ClothPaint * paint,
     const ClothCapture * capture, const ClothRenderStyle * style,
-    const ClothMotion * motion, gdouble time_s)
+    const ClothMotion * motion, gdouble time_s, ClothWork * work)
 {
   ClothRenderer *self = renderer;
+  const gdouble each = work ? work->left : 0;
   guint level, instants;
 
   g_return_val_if_fail (motion->n_points == self->n_vertices, NULL);
   self->capture = capture;
   self->motion = motion;
-  prepare_light (self, paint);
+  if (!prepare_light (self, paint))
+    return NULL;
   level = choose_level (self, time_s);
   instants = count_instants (self, time_s);
   self->job = (ClothRenderJob) {
@@ -572,7 +597,7 @@ cloth_renderer_draw (ClothRenderer * renderer, const ClothPaint * paint,
         { (gfloat) style->background[0],
       (gfloat) ((style->background[1] - style->background[0])
           / MAX (1, self->light.height - 1))
-  },.light = &self->light};
+  },.light = &self->light,.work = work};
   for (guint i = 0; i < instants; i++) {
     see (self, level, time_s + capture->exposure_s * (i + 0.5) / instants);
     light_points (self, style);
@@ -583,11 +608,15 @@ cloth_renderer_draw (ClothRenderer * renderer, const ClothPaint * paint,
       self->job.triangles = self->triangles;
     }
     cloth_pool_run (self->pool, set_triangles, self, self->mesh->n_triangles);
+    if (work)
+      work->left = each;
+    if (!take_work (self, work))
+      return NULL;
     sort_triangles (self);
     cloth_pool_run (self->pool, draw_tiles, self,
         (guint) (self->columns * self->rows));
   }
-  return &self->light;
+  return cloth_work_is_stopped (work) ? NULL : &self->light;
 }
 
 /* @renderer: a renderer that has drawn
@@ -598,6 +627,7 @@ cloth_renderer_draw (ClothRenderer * renderer, const ClothPaint * paint,
  * @planes: (array length=n_planes): the first pixel of each plane
  * @strides: (array length=n_planes): bytes from one row to the next
  * @pixel_stride: bytes from one pixel to the next
+ * @work: (nullable): when to stop; what isn't done then stays as it was
  *
  * Makes a picture of the light, once for each drawing: change of the light across the
  * picture, defocus, crosstalk of the colours, the transfer curve of sRGB, noise, whole
@@ -606,8 +636,10 @@ cloth_renderer_draw (ClothRenderer * renderer, const ClothPaint * paint,
 void
 cloth_renderer_develop (ClothRenderer * renderer,
     const ClothCapture * capture, guint64 frame, guint64 seed, guint n_planes,
-    guint8 * const *planes, const gint * strides, gint pixel_stride)
+    guint8 * const *planes, const gint * strides, gint pixel_stride,
+    const ClothWork * work)
 {
   cloth_sensor_develop (renderer->sensor, renderer->pool, capture,
-      &renderer->light, frame, seed, n_planes, planes, strides, pixel_stride);
+      &renderer->light, frame, seed, n_planes, planes, strides, pixel_stride,
+      work);
 }

@@ -6,6 +6,7 @@
 #include "gst/math/simd.h"
 #include "gst/rig/capture.h"
 #include "gst/render/paint.h"
+#include "gst/render/work.h"
 
 G_BEGIN_DECLS
 
@@ -51,11 +52,11 @@ void cloth_renderer_free (ClothRenderer * renderer);
 const ClothLight *cloth_renderer_draw (ClothRenderer * renderer,
     const ClothPaint * paint, const ClothCapture * capture,
     const ClothRenderStyle * style, const ClothMotion * motion,
-    gdouble time_s);
+    gdouble time_s, ClothWork * work);
 void cloth_renderer_develop (ClothRenderer * renderer,
     const ClothCapture * capture, guint64 frame, guint64 seed,
     guint n_planes, guint8 * const *planes, const gint * strides,
-    gint pixel_stride);
+    gint pixel_stride, const ClothWork * work);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothRenderer, cloth_renderer_free)
 G_END_DECLS

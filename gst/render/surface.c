@@ -407,9 +407,22 @@ ceiling (gdouble value)
   return whole + (whole < value);
 }
 
+/* Pixels of a triangle in so many rows of the picture: not more than lie around it there, and
+ * in a narrow one a chunk in each row. */
+static gdouble
+count_pixels (const ClothSurface * self, const Vertex * const *p, gdouble area,
+    gint rows)
+{
+  const gdouble left = MAX (MIN (p[0]->x, MIN (p[1]->x, p[2]->x)), 0);
+  const gdouble right = MIN (MAX (p[0]->x, MAX (p[1]->x, p[2]->x)),
+      self->width);
+
+  return MIN (rows * MAX (right - left, 0), fabs (area) / 2 + rows * CHUNK);
+}
+
 /* A centre on a border belongs to the triangle to its right or below. */
 static void
-fill_triangle (ClothSurface * self, const guint32 * t)
+fill_triangle (ClothSurface * self, const guint32 * t, ClothWork * work)
 {
   const Vertex *p[3] = { &self->vertices[t[0]], &self->vertices[t[1]],
     &self->vertices[t[2]]
@@ -423,7 +436,8 @@ fill_triangle (ClothSurface * self, const guint32 * t)
   Plane plane;
   Edge edges[3];
 
-  if (!(fabs (area) > 1e-9) || top >= end)
+  if (!(fabs (area) > 1e-9) || top >= end
+      || !cloth_work_take (work, count_pixels (self, p, area, end - top)))
     return;
   set_plane (self, t, p, area, &plane);
   for (guint k = 0; k < 3; k++)
@@ -584,7 +598,7 @@ cloth_surface_draw (ClothSurface * surface, const ClothCanvas * canvas,
   light_vertices (surface, positions, style);
   for (gsize i = 0; i < surface->n_triangles; i++)
     if (is_seen (surface, surface->triangles + 3 * i))
-      fill_triangle (surface, surface->triangles + 3 * i);
+      fill_triangle (surface, surface->triangles + 3 * i, canvas->work);
   for (guint i = 0; i < canvas->n_components; i++)
     lay_component (surface, &canvas->components[i], part);
   clear_picture (surface);

@@ -173,7 +173,7 @@ project (ClothWireframe * wire, gint width, gint height,
 
 /* Nearest depth of the faces, one value for DEPTH_SCALE² pixels. */
 static void
-draw_depth (ClothWireframe * wire, gint columns, gint rows)
+draw_depth (ClothWireframe * wire, gint columns, gint rows, ClothWork * work)
 {
   gsize n = (gsize) columns * (gsize) rows, i;
   guint t;
@@ -210,6 +210,12 @@ draw_depth (ClothWireframe * wire, gint columns, gint rows)
     y1 = (gint) CLAMP (MAX (a->y, MAX (b->y, c->y)) / DEPTH_SCALE, -1, 32767);
     x1 = MIN (x1, columns - 1);
     y1 = MIN (y1, rows - 1);
+    if (x0 > x1 || y0 > y1) {
+      continue;
+    }
+    if (!cloth_work_take (work, (gdouble) (x1 - x0 + 1) * (y1 - y0 + 1))) {
+      return;
+    }
     for (y = y0; y <= y1; y++) {
       gfloat *row = wire->depth + (gsize) y * (gsize) columns;
       gfloat qy = ((gfloat) y + 0.5f) * DEPTH_SCALE - a->y;
@@ -327,7 +333,7 @@ cloth_wireframe_draw (ClothWireframe * wire, const ClothCanvas * canvas,
   guint i;
 
   project (wire, width, height, camera, positions);
-  draw_depth (wire, columns, rows);
+  draw_depth (wire, columns, rows, canvas->work);
   for (i = 0; style->fill_opacity > 0 && i < wire->n_faces; i++) {
     fill_face (wire, canvas, columns, rows, wire->faces + 4 * (gsize) i,
         positions, states, style);

@@ -11,6 +11,10 @@
 
 /* How far R R' may be from the identity: a matrix typed with five digits passes. */
 #define ROTATION_TOLERANCE 1e-4
+/* Focal lengths as parts of the picture's longer side: wider than any fisheye, longer than any
+ * telescope. */
+#define MIN_FOCAL 0.01
+#define MAX_FOCAL 1e4
 
 GQuark
 cloth_rig_error_quark (void)
@@ -169,6 +173,7 @@ rotation_error (const gdouble R[9])
 static gboolean
 check_camera (const ClothCamera * c, const gchar * where, GError ** error)
 {
+  const gdouble side = MAX (c->width, c->height);
   gdouble off;
   guint n = cloth_lens_n_coefficients (c->lens);
 
@@ -192,9 +197,11 @@ check_camera (const ClothCamera * c, const gchar * where, GError ** error)
         "has an offset_s of %g s and a rolling_shutter_s of %g s; both must be "
         "within ±%g s", c->offset_s, c->rolling_shutter_s,
         CLOTH_RIG_MAX_SECONDS);
-  if (!(c->K[0] > 0) || !(c->K[4] > 0))
+  if (!(MIN (c->K[0], c->K[4]) >= MIN_FOCAL * side)
+      || !(MAX (c->K[0], c->K[4]) <= MAX_FOCAL * side))
     return cloth_rig_invalid (error, where, "K",
-        "focal lengths %g and %g px; both must be positive", c->K[0], c->K[4]);
+        "focal lengths %g and %g px; a picture %d px wide or high has %g to %g px",
+        c->K[0], c->K[4], (gint) side, MIN_FOCAL * side, MAX_FOCAL * side);
   if (c->K[3] != 0 || c->K[6] != 0 || c->K[7] != 0 || c->K[8] != 1)
     return cloth_rig_invalid (error, where, "K",
         "must be [[fx, skew, cx], [0, fy, cy], [0, 0, 1]]");
@@ -234,7 +241,8 @@ cloth_rig_mend_rotations (ClothRig * rig)
  * @error: #ClothRigError, naming camera, key and value
  *
  * Checks what every rig must hold: 1 to 64 cameras, unique names that do as file names,
- * sizes of 1 to 16384 px, finite numbers, positive focal lengths, rotations.
+ * sizes of 1 to 16384 px, finite numbers, focal lengths of a hundredth to 10,000 times the
+ * picture's longer side, rotations.
  *
  * Returns: whether all of it holds.
  */

@@ -12,6 +12,8 @@
 
 /* A rate for one frame alone, which has none. */
 #define FALLBACK_FPS 30.
+/* Nothing that holds a cloth moves faster than sound, m/s; a path that does is broken. */
+#define MAX_CLAMP_SPEED 340.
 /* Two lines of a seam may differ by this part of the longer one, as cut cloth does. */
 #define SEAM_EASE 0.02
 
@@ -552,5 +554,49 @@ cloth_scene_check (const ClothScene * scene, GError ** error)
           "vertices %u and %u cannot be sewn together: " "there are %u",
           seam->a, seam->b, n);
   }
+  return TRUE;
+}
+
+/* Between frames through which it holds, a clamp goes along its path. */
+static gboolean
+check_path (const ClothScene * scene, guint i, GError ** error)
+{
+  const ClothHeld *held = &g_array_index (scene->held, ClothHeld, i);
+  const gsize step = 3 * (gsize) scene->held->len;
+
+  for (guint frame = 1; frame < scene->n_frames; frame++) {
+    const gdouble *a = scene->clamps + step * (frame - 1) + 3 * i, *b =
+        a + step;
+    const gdouble way =
+        sqrt ((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]) +
+        (b[2] - a[2]) * (b[2] - a[2]));
+    const gdouble span = scene->times[frame] - scene->times[frame - 1];
+
+    if (is_held (held, scene->times[frame - 1])
+        && is_held (held, scene->times[frame])
+        && !(way <= MAX_CLAMP_SPEED * span))
+      return cloth_file_invalid (error,
+          "the clamp of vertex %u jumps %g m between frames %u and %u, in %g s; "
+          "nothing moves faster than %g m/s: mend its path, which is in metres, "
+          "or let it go (until_s) before the jump", held->vertex, way,
+          frame - 1, frame, span, MAX_CLAMP_SPEED);
+  }
+  return TRUE;
+}
+
+/* @scene: a scene that cloth_scene_check () accepts
+ * @error: #ClothFileError, naming the clamp and the frames
+ *
+ * Refuses clamps that jump, which no simulation survives, before one is run. A diagnosis knows
+ * better what is wrong with such a recording.
+ *
+ * Returns: %TRUE when no clamp moves faster than sound
+ */
+gboolean
+cloth_scene_check_paths (const ClothScene * scene, GError ** error)
+{
+  for (guint i = 0; i < scene->held->len; i++)
+    if (!check_path (scene, i, error))
+      return FALSE;
   return TRUE;
 }

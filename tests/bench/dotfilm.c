@@ -174,8 +174,10 @@ film (DotFilmCloth cloth, const gdouble size[2], const ClothRig * rig,
 
       cloth_capture_init (&capture, &rig->cameras[i]);
       cloth_capture_add_effects (&capture, NOISE, NULL);
-      cloth_renderer_draw (renderer, paint, &capture, &style, &motion, time_s);
-      cloth_renderer_develop (renderer, &capture, k, i, 3, planes, strides, 3);
+      cloth_renderer_draw (renderer, paint, &capture, &style, &motion, time_s,
+          NULL);
+      cloth_renderer_develop (renderer, &capture, k, i, 3, planes, strides, 3,
+          NULL);
       pictures[i][k] = pack (converter, &from, rgb, &to);
     }
   }

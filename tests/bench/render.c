@@ -69,8 +69,9 @@ best_ms (const ClothPaint * paint, const gchar * effects, guint threads,
   for (gint i = 0; i < REPEATS; i++) {
     const gint64 start = g_get_monotonic_time ();
 
-    cloth_renderer_draw (renderer, paint, &capture, &style, &motion, 0);
-    cloth_renderer_develop (renderer, &capture, 0, 0, 1, planes, strides, 1);
+    cloth_renderer_draw (renderer, paint, &capture, &style, &motion, 0, NULL);
+    cloth_renderer_develop (renderer, &capture, 0, 0, 1, planes, strides, 1,
+        NULL);
     best = MIN (best, (gdouble) (g_get_monotonic_time () - start) / 1000);
   }
   return best;

@@ -94,8 +94,9 @@ time_renderer (const ClothPaint * paint, const ClothRenderStyle * style,
   for (gint i = 0; i < 5; i++) {
     const gdouble start = cpu_ms ();
 
-    cloth_renderer_draw (renderer, paint, &capture, style, &motion, 0);
-    cloth_renderer_develop (renderer, &capture, 0, 0, 3, planes, strides, 4);
+    cloth_renderer_draw (renderer, paint, &capture, style, &motion, 0, NULL);
+    cloth_renderer_develop (renderer, &capture, 0, 0, 3, planes, strides, 4,
+        NULL);
     best = MIN (best, cpu_ms () - start);
   }
   return best;

@@ -2,6 +2,7 @@
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <gst/cloth/cloth.h>
+#include <malloc.h>
 #include <math.h>
 #include <string.h>
 
@@ -129,8 +130,9 @@ observed_buffer (GRand * rand, guint n_refined, guint n_candidates,
   for (guint i = 0; i < 3 * n_candidates; i++)
     ((gfloat *) candidates)[i] = (gfloat) g_rand_double_range (rand, 0, 2000);
   for (guint i = 0; i < n_quads; i++) {
-    quads[i].column = g_rand_int_range (rand, 0, 40);
-    quads[i].row = g_rand_int_range (rand, 0, 30);
+    /* each once, in no order that anybody would sort by */
+    quads[i].column = (gint) (i * 40503 % 65536 % 256);
+    quads[i].row = (gint) (i * 40503 % 65536 / 256);
     quads[i].state = (GstClothQuadState) g_rand_int_range (rand, 0, 3);
     quads[i].black = g_rand_boolean (rand);
     quads[i].confidence = (gfloat) g_rand_double (rand);
@@ -144,8 +146,8 @@ observed_buffer (GRand * rand, guint n_refined, guint n_candidates,
   gst_buffer_add_cloth_saddles_meta (buffer, gst_cloth_saddles_new
       ("caméra gauche", 1234567890123, refined, n_refined, candidates,
           n_candidates));
-  gst_buffer_add_cloth_quads_meta (buffer, gst_cloth_quads_new (NULL, 17, 40,
-          30, quads, n_quads));
+  gst_buffer_add_cloth_quads_meta (buffer, gst_cloth_quads_new (NULL, 17, 256,
+          256, quads, n_quads));
   gst_buffer_add_reference_timestamp_meta (buffer, ptp, 1700000000000000000,
       GST_CLOCK_TIME_NONE);
   gst_buffer_add_reference_timestamp_meta (buffer, ntp, 99, 5);
@@ -224,6 +226,83 @@ test_nothing (void)
   g_assert_true (gst_cloth_observations_unpack (packed, packed, &error));
   g_assert_null (gst_buffer_get_cloth_saddles (packed));
   g_assert_null (gst_buffer_get_cloth_quads (packed));
+}
+
+/* Of features at one place the first valid one is written; a reader refuses such bytes. */
+static void
+test_repeated_places (void)
+{
+  GstClothQuad quads[6] = { {.column = 1,.row = 1,.confidence = NAN}, {.column =
+        1,.row = 1,.confidence = 0.1f}, {.column = 1}, {.column = 1,.row =
+        1,.confidence = 0.2f}, {.row = 1,.confidence = 0.3f}, {.column = 1}
+  };
+  GstClothDot dots[6] = { {.column = -1,.row = -1}, {.column = 3,.row = 2,.x =
+        1}, {.column = -1,.row = -1}, {.column = 3,.row = 2,.x = 2}, {.column =
+        2,.row = 3}, {.column = 3,.row = 2,.x = 3}
+  };
+  g_autoptr (GstBuffer) buffer = gst_buffer_new ();
+  g_autoptr (GstBuffer) packed = NULL;
+  g_autoptr (GstBuffer) target = gst_buffer_new ();
+  g_autoptr (GError) error = NULL;
+  const GstClothQuad *quad;
+  const GstClothDot *dot;
+  guint n;
+
+  gst_buffer_add_cloth_quads_meta (buffer, gst_cloth_quads_new ("a", 1, 2, 2,
+          quads, 6));
+  gst_buffer_add_cloth_dots_meta (buffer, gst_cloth_dots_new ("a", 1, 4, 4, 1,
+          dots, 6));
+  packed = gst_cloth_observations_pack (buffer);
+  gst_cloth_observations_unpack (packed, target, &error);
+  g_assert_no_error (error);
+  quad = gst_cloth_quads_get_quads (gst_buffer_get_cloth_quads (target), &n);
+  g_assert_cmpuint (n, ==, 3);
+  g_assert_cmpfloat (quad[0].confidence, ==, 0.1f);
+  g_assert_cmpint (quad[1].row, ==, 0);
+  g_assert_cmpfloat (quad[2].confidence, ==, 0.3f);
+  dot = gst_cloth_dots_get_dots (gst_buffer_get_cloth_dots (target), &n);
+  g_assert_cmpuint (n, ==, 4);
+  g_assert_cmpint (dot[0].column, ==, -1);
+  g_assert_cmpfloat (dot[1].x, ==, 1);
+  g_assert_cmpint (dot[2].column, ==, -1);
+  g_assert_cmpint (dot[3].row, ==, 3);
+}
+
+/* Two quads, then two dots, whose bytes say the same place; whether it is the place of the
+ * last or of the one before makes no difference. */
+static void
+test_repeated_refused (void)
+{
+  const GstClothQuad quads[3] = { {.column = 1}, {.row = 1}, {.column = 1,.row =
+        1}
+  };
+  const GstClothDot dots[3] = { {.column = 1}, {.row = 1}, {.column = 1,.row = 1}
+  };
+  static const guint8 places[2][8] = { {1, 0, 0, 0, 0, 0, 0, 0}, {0, 0, 0, 0, 1,
+      0, 0, 0}
+  };
+
+  for (guint kind = 0; kind < 2; kind++) {
+    g_autoptr (GstBuffer) buffer = gst_buffer_new ();
+    g_autoptr (GstBuffer) packed = NULL;
+    g_autofree guint8 *bytes = NULL;
+    gsize size, last;
+
+    if (kind == 0)
+      gst_buffer_add_cloth_quads_meta (buffer, gst_cloth_quads_new (NULL, 1, 2,
+              2, quads, 3));
+    else
+      gst_buffer_add_cloth_dots_meta (buffer, gst_cloth_dots_new (NULL, 1, 2, 2,
+              1, dots, 3));
+    packed = gst_cloth_observations_pack (buffer);
+    gst_buffer_extract_dup (packed, 0, gst_buffer_get_size (packed),
+        (gpointer *) & bytes, &size);
+    last = size - (kind == 0 ? 96 : 40);
+    for (guint i = 0; i < 2; i++) {
+      memcpy (bytes + last, places[i], 8);
+      assert_refused (bytes, size, GST_CLOTH_ERROR_VALUE, "repeated");
+    }
+  }
 }
 
 /* What the reader would refuse is left out by the writer, the rest stays. */
@@ -372,6 +451,167 @@ test_too_many_times (void)
   g_assert_error (error, GST_CLOTH_ERROR, GST_CLOTH_ERROR_LIMIT);
 }
 
+/* An observation with nothing but reference times, one of each of @texts. */
+static GstBuffer *
+times_buffer (const gchar * const *texts, guint n)
+{
+  g_autoptr (GByteArray) bytes = g_byte_array_new ();
+  gsize size;
+
+  g_byte_array_append (bytes, golden, 32);
+  for (guint i = 0; i < n; i++) {
+    const guint length = (guint) strlen (texts[i]);
+    guint8 section[28 + 256] = { 'T', 'I', 'M', 'E' };
+
+    GST_WRITE_UINT32_LE (section + 4, 20 + (length + 3) / 4 * 4);
+    section[8] = (guint8) (i + 1);
+    GST_WRITE_UINT32_LE (section + 24, length);
+    memcpy (section + 28, texts[i], length);
+    g_byte_array_append (bytes, section, 28 + (length + 3) / 4 * 4);
+  }
+  GST_WRITE_UINT32_LE (bytes->data + 8, bytes->len);
+  GST_WRITE_UINT32_LE (bytes->data + 12, n);
+  size = bytes->len;
+  return gst_buffer_new_memdup (bytes->data, size);
+}
+
+/* The clocks of GStreamer 1.22 to 1.26 and its plugins, as its documentation and its
+ * sources write them. Packed again they are the same bytes. */
+static void
+test_known_clocks (void)
+{
+  static const gchar *const clocks[] = {
+    "timestamp/x-ntp",
+    "timestamp/x-ntp, host=(string)pool.ntp.org, port=(int)123",
+    "timestamp/x-ntp, port=(int)65535",
+    "timestamp/x-ptp",
+    "timestamp/x-ptp, version=(string)IEEE1588-2008, domain=(int)0",
+    "timestamp/x-ptp, domain=(int)255, version=(string)IEEE1588-2019",
+    "timestamp/x-unix",
+    "timestamp/x-decklink-stream",
+    "timestamp/x-decklink-hardware",
+    "timestamp/x-aja-stream",
+    "timestamp/x-ndi-timecode",
+    "timestamp/x-ndi-timestamp",
+  };
+  g_autoptr (GstBuffer) observation = times_buffer (clocks,
+      G_N_ELEMENTS (clocks));
+  g_autoptr (GstBuffer) target = gst_buffer_new ();
+  g_autoptr (GstBuffer) packed = NULL;
+  g_autoptr (GError) error = NULL;
+  gpointer iterator = NULL;
+  GstMapInfo map;
+
+  gst_cloth_observations_unpack (observation, target, &error);
+  g_assert_no_error (error);
+  for (guint i = 0; i < G_N_ELEMENTS (clocks); i++) {
+    const GstReferenceTimestampMeta *time = (GstReferenceTimestampMeta *)
+        gst_buffer_iterate_meta_filtered (target, &iterator,
+        GST_REFERENCE_TIMESTAMP_META_API_TYPE);
+    g_autoptr (GstCaps) expected = gst_caps_from_string (clocks[i]);
+
+    g_assert_nonnull (time);
+    g_assert_true (gst_caps_is_strictly_equal (time->reference, expected));
+    g_assert_cmpuint (time->timestamp, ==, i + 1);
+  }
+  GST_BUFFER_PTS (target) = 100 * GST_MSECOND;
+  packed = gst_cloth_observations_pack (target);
+  g_assert_true (gst_buffer_map (observation, &map, GST_MAP_READ));
+  g_assert_cmpint (gst_buffer_memcmp (packed, 0, map.data, map.size), ==, 0);
+  g_assert_cmpuint (gst_buffer_get_size (packed), ==, map.size);
+  gst_buffer_unmap (observation, &map);
+}
+
+/* Times of other clocks, and of these with what no such clock has, are passed over when
+ * read and left out when written; what else the packet holds stays. */
+static void
+test_unknown_clocks (void)
+{
+  static const gchar *const clocks[] = {
+    "timestamp/x-odd", "timestamp/x-ntp2", "timestamp/x-nt", "x-ntp", "a",
+    "timestamp/x-ntp,", "timestamp/x-ntp, ", "timestamp/x-ntp ",
+    "timestamp/x-ntp(host)", "timestamp/x-ntp, host", "timestamp/x-ntp, host=",
+    "timestamp/x-ntp, host=(string)", "timestamp/x-ntp, host=a",
+    "timestamp/x-ntp, host=(int)1", "timestamp/x-ntp, host=(string)a b",
+    "timestamp/x-ntp,host=(string)a", "timestamp/x-ntp, Host=(string)a",
+    "timestamp/x-ntp, host=(string)a, host=(string)b",
+    "timestamp/x-ntp, port=(int)0", "timestamp/x-ntp, port=(int)65536",
+    "timestamp/x-ntp, port=(int)-1", "timestamp/x-ntp, port=(int)0123",
+    "timestamp/x-ntp, port=(int)4294967419", "timestamp/x-ntp, port=(int)12a",
+    "timestamp/x-ntp, port=(int)", "timestamp/x-ntp, port=(string)123",
+    "timestamp/x-ntp, port=123", "timestamp/x-ntp, domain=(int)1",
+    "timestamp/x-ptp, domain=(int)256", "timestamp/x-unix, host=(string)a",
+    "timestamp/x-ntp, c=(fraction)-2147483648/-1",
+    "timestamp/x-ntp, port=(int)123 timestamp/x-ntp",
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (clocks); i++) {
+    const gchar *both[2] = { clocks[i], "timestamp/x-unix" };
+    g_autoptr (GstBuffer) observation = times_buffer (both, 2);
+    g_autoptr (GstBuffer) target = gst_buffer_new ();
+    g_autoptr (GError) error = NULL;
+    GstReferenceTimestampMeta *time;
+
+    g_test_message ("%s", clocks[i]);
+    gst_cloth_observations_unpack (observation, target, &error);
+    g_assert_no_error (error);
+    time = gst_buffer_get_reference_timestamp_meta (target, NULL);
+    g_assert_cmpuint (time->timestamp, ==, 2);
+    g_assert_cmpuint (gst_buffer_get_n_meta (target,
+            GST_REFERENCE_TIMESTAMP_META_API_TYPE), ==, 1);
+  }
+}
+
+static void
+test_unknown_clocks_left_out (void)
+{
+  static const gchar *const clocks[] = { "timestamp/x-odd",
+    "timestamp/x-ntp, host=(string)\"a b\"", "timestamp/x-ntp, stratum=(int)1",
+    "timestamp/x-ntp; timestamp/x-unix", "timestamp/x-ntp, port=(int)[ 1, 2 ]",
+    "timestamp/x-unix(memory:other)", "EMPTY", "ANY",
+  };
+  g_autoptr (GstBuffer) buffer = gst_buffer_new ();
+  g_autoptr (GstBuffer) packed = NULL;
+
+  for (guint i = 0; i < G_N_ELEMENTS (clocks); i++) {
+    g_autoptr (GstCaps) caps = gst_caps_from_string (clocks[i]);
+
+    gst_buffer_add_reference_timestamp_meta (buffer, caps, 1, 1);
+  }
+  packed = gst_cloth_observations_pack (buffer);
+  g_assert_cmpuint (gst_buffer_get_size (packed), ==, 32);
+}
+
+/* A stranger's packets, none like the other: GStreamer would remember all their names. */
+static void
+test_clocks_leave_no_trace (void)
+{
+  const guint n_packets = 5000;
+  gsize before = 0;
+
+  for (guint i = 0; i < n_packets; i++) {
+    gchar *texts[12];
+    g_autoptr (GstBuffer) observation = NULL;
+    g_autoptr (GstBuffer) target = gst_buffer_new ();
+    g_autoptr (GError) error = NULL;
+
+    for (guint k = 0; k < G_N_ELEMENTS (texts); k++)
+      texts[k] = g_strdup_printf ("timestamp/x-%0200u, name%u-%u=(int)1",
+          12 * i + k, i, k);
+    observation = times_buffer ((const gchar * const *) texts,
+        G_N_ELEMENTS (texts));
+    for (guint k = 0; k < G_N_ELEMENTS (texts); k++)
+      g_free (texts[k]);
+    gst_cloth_observations_unpack (observation, target, &error);
+    g_assert_no_error (error);
+    if (i == n_packets / 10)
+      before = mallinfo2 ().uordblks;
+  }
+  g_test_message ("%" G_GSSIZE_FORMAT " bytes more",
+      (gssize) (mallinfo2 ().uordblks - before));
+  g_assert_cmpuint (mallinfo2 ().uordblks, <=, before + 65536);
+}
+
 int
 main (int argc, char **argv)
 {
@@ -380,9 +620,18 @@ main (int argc, char **argv)
   g_test_add_func ("/cloth/observations/golden", test_golden);
   g_test_add_func ("/cloth/observations/round-trips", test_round_trips);
   g_test_add_func ("/cloth/observations/nothing", test_nothing);
+  g_test_add_func ("/cloth/observations/repeated-places", test_repeated_places);
+  g_test_add_func ("/cloth/observations/repeated-refused",
+      test_repeated_refused);
   g_test_add_func ("/cloth/observations/invalid", test_invalid_left_out);
   g_test_add_func ("/cloth/observations/hostile", test_hostile);
   g_test_add_func ("/cloth/observations/truncated", test_truncated);
   g_test_add_func ("/cloth/observations/too-many-times", test_too_many_times);
+  g_test_add_func ("/cloth/observations/known-clocks", test_known_clocks);
+  g_test_add_func ("/cloth/observations/unknown-clocks", test_unknown_clocks);
+  g_test_add_func ("/cloth/observations/unknown-clocks-left-out",
+      test_unknown_clocks_left_out);
+  g_test_add_func ("/cloth/observations/clocks-leave-no-trace",
+      test_clocks_leave_no_trace);
   return g_test_run ();
 }

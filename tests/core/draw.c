@@ -418,10 +418,170 @@ test_bad_vertices (void)
   cloth_wireframe_free (wire);
 }
 
+/* One of each shape. */
+static void
+draw_all (const ClothCanvas * canvas)
+{
+  static const ClothColour half = { 1, 1, 1, 0.5f };
+  const gfloat x[4] = { -10, 60, 70, -20 }, y[4] = { 5, -30, 50, 200 };
+  const gfloat origin[2] = { 30, 30 }, right[2] = { 9, 1 }, down[2] =
+      { -1, 15 };
+
+  cloth_draw_quad (canvas, x, y, &half);
+  cloth_draw_line (canvas, -500, 20, 600, 70, 3, &half);
+  cloth_draw_dashes (canvas, 10, -1e6f, 40, 1e6f, 2, 7, &half);
+  cloth_draw_ellipse (canvas, 40, 50, 900, 100, 400, 2, &half);
+  cloth_draw_number (canvas, 47, origin, right, down, 2, &half);
+}
+
+/* What fits is drawn as if there were no limit. */
+static void
+test_work_enough (void)
+{
+  ClothCanvas canvas = black_canvas (0);
+  ClothWork work = { 1e6, NULL, FALSE };
+  g_autofree guint8 *all = NULL;
+
+  draw_all (&canvas);
+  all = g_memdup2 (pixels, sizeof pixels);
+  canvas = black_canvas (0);
+  canvas.work = &work;
+  draw_all (&canvas);
+  g_assert_cmpmem (pixels, sizeof pixels, all, sizeof pixels);
+  g_assert_false (work.left_out);
+  /* the quad, the line, what is seen of 4096 dashes and what isn't */
+  g_assert_cmpfloat (1e6 - work.left, >,
+      5000 + 96 * 3 + 2048 * CLOTH_WORK_SHAPE);
+  g_assert_cmpfloat (1e6 - work.left, <, 60000);
+}
+
+/* Room for three pictures and a half: three are drawn, and nothing after them. */
+static void
+test_work_too_little (void)
+{
+  static const ClothColour half = { 1, 1, 1, 0.5f };
+  const gfloat x[4] = { -10, 200, 200, -10 }, y[4] = { -10, -10, 200, 200 };
+  ClothCanvas canvas = black_canvas (0);
+  ClothWork work = { 3.5 * SIZE * SIZE, NULL, FALSE };
+  g_autofree guint8 *three = NULL;
+
+  for (guint i = 0; i < 3; i++)
+    cloth_draw_quad (&canvas, x, y, &half);
+  three = g_memdup2 (pixels, sizeof pixels);
+  canvas = black_canvas (0);
+  canvas.work = &work;
+  for (guint i = 0; i < 3; i++)
+    cloth_draw_quad (&canvas, x, y, &half);
+  g_assert_false (work.left_out);
+  for (guint i = 0; i < 5; i++)
+    cloth_draw_quad (&canvas, x, y, &half);
+  g_assert_true (work.left_out);
+  draw_all (&canvas);
+  g_assert_cmpmem (pixels, sizeof pixels, three, sizeof pixels);
+}
+
+/* Lines as long as a float allows cost what is seen of them. */
+static void
+test_work_of_lines (void)
+{
+  static const gfloat ends[][4] = {
+    {-1e18f, 48, 1e18f, 48}, {48, -1e18f, 48, 1e18f}, {-1e18f, -1e18f, 1e18f,
+        1e18f}, {1e18f, 1e18f, 1e18f, 1e18f}, {-50, -50, -10, 1e18f}
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (ends); i++) {
+    ClothCanvas canvas = black_canvas (0);
+    ClothWork work = { 1e6, NULL, FALSE };
+
+    canvas.work = &work;
+    cloth_draw_line (&canvas, ends[i][0], ends[i][1], ends[i][2], ends[i][3], 4,
+        &white);
+    g_test_message ("%g", 1e6 - work.left);
+    g_assert_cmpfloat (1e6 - work.left, >=, CLOTH_WORK_SHAPE);
+    g_assert_cmpfloat (1e6 - work.left, <=, CLOTH_WORK_SHAPE + 96 * 9);
+  }
+}
+
+static void
+test_work_stopped (void)
+{
+  const gfloat positions[12] = { -0.2f, -0.2f, 1, 0.2f, -0.2f, 1, -0.2f, 0.2f,
+    1, 0.2f, 0.2f, 1
+  };
+  const guint8 states[4] = { 0 };
+  ClothCamera camera = pinhole ();
+  ClothWireStyle style = { 1, &white, 1, 1, 0.25f, 1 };
+  ClothWireframe *wire = cloth_wireframe_new (4, 2, 2, NULL, 0);
+  ClothCanvas canvas = black_canvas (0);
+  gint stop = 1;
+  ClothWork work = { 1e6, &stop, FALSE };
+
+  canvas.work = &work;
+  draw_all (&canvas);
+  cloth_wireframe_draw (wire, &canvas, SIZE, SIZE, &camera, positions, states,
+      &style);
+  g_assert_cmpfloat (area (0), ==, 0);
+  g_assert_cmpfloat (work.left, ==, 1e6);
+  g_assert_false (work.left_out);
+  stop = 0;
+  cloth_wireframe_draw (wire, &canvas, SIZE, SIZE, &camera, positions, states,
+      &style);
+  g_assert_cmpfloat (area (0), >, 100);
+  cloth_wireframe_free (wire);
+}
+
+/* Eight hundred faces that each cover the picture: of the depths and lines only so much is
+ * worked out; the next mesh, small, is drawn as without a limit. */
+static void
+test_work_of_mesh (void)
+{
+  const guint columns = 401, n = 2 * columns;
+  g_autofree gfloat *crowd = g_new (gfloat, 3 * n), *small = g_new (gfloat,
+      3 * n);
+  g_autofree guint8 *states = g_malloc0 (n), *plain = NULL;
+  ClothCamera camera = pinhole ();
+  ClothWireStyle style = { 1, &white, 1, 1, 0.25f, 0.5f };
+  ClothWireframe *wire = cloth_wireframe_new (n, columns, 2, NULL, 0);
+  ClothCanvas canvas = black_canvas (0);
+  ClothWork work = { 64 * SIZE * SIZE, NULL, FALSE };
+
+  for (guint i = 0; i < n; i++) {
+    const gfloat share = (gfloat) (i % columns) / (gfloat) columns;
+
+    crowd[3 * i] = i % 2 ? 3 : -3;
+    crowd[3 * i + 1] = i < columns ? 3 : -3;
+    small[3 * i] = 0.4f * share - 0.2f;
+    small[3 * i + 1] = i < columns ? 0.2f : -0.2f;
+    crowd[3 * i + 2] = small[3 * i + 2] = 1;
+  }
+  cloth_wireframe_draw (wire, &canvas, SIZE, SIZE, &camera, small, states,
+      &style);
+  plain = g_memdup2 (pixels, sizeof pixels);
+  canvas = black_canvas (0);
+  canvas.work = &work;
+  cloth_wireframe_draw (wire, &canvas, SIZE, SIZE, &camera, crowd, states,
+      &style);
+  g_assert_true (work.left_out);
+  canvas = black_canvas (0);
+  work = (ClothWork) {
+  64 *SIZE * SIZE, NULL, FALSE};
+  canvas.work = &work;
+  cloth_wireframe_draw (wire, &canvas, SIZE, SIZE, &camera, small, states,
+      &style);
+  g_assert_false (work.left_out);
+  g_assert_cmpmem (pixels, sizeof pixels, plain, sizeof pixels);
+  cloth_wireframe_free (wire);
+}
+
 int
 main (int argc, char **argv)
 {
   g_test_init (&argc, &argv, NULL);
+  g_test_add_func ("/draw/work-enough", test_work_enough);
+  g_test_add_func ("/draw/work-too-little", test_work_too_little);
+  g_test_add_func ("/draw/work-of-lines", test_work_of_lines);
+  g_test_add_func ("/draw/work-stopped", test_work_stopped);
+  g_test_add_func ("/draw/work-of-mesh", test_work_of_mesh);
   g_test_add_func ("/draw/line-area", test_line_area);
   g_test_add_func ("/draw/thin-line", test_thin_line);
   g_test_add_func ("/draw/dashes", test_dashes);

@@ -156,9 +156,10 @@ film (const Mesh * mesh, const ClothPaint * paint, const Options * options)
   style.ambient_light = 1;
   style.lamp_light = 0;
   style.background[0] = style.background[1] = 0;
-  light = cloth_renderer_draw (renderer, paint, &capture, &style, &motion, 1);
+  light =
+      cloth_renderer_draw (renderer, paint, &capture, &style, &motion, 1, NULL);
   cloth_renderer_develop (renderer, &capture, options->frame, options->seed,
-      n_planes, planes, strides, 1);
+      n_planes, planes, strides, 1, NULL);
   if (options->light)
     memcpy (options->light, light->data, size * sizeof (gfloat));
   return data;
@@ -827,13 +828,60 @@ test_lambert (void)
     style.lamp[0] = 3 * sin (angle * G_PI / 180);
     style.lamp[1] = -3 * facing;
     style.lamp[2] = 0;
-    light = cloth_renderer_draw (renderer, white, &capture, &style, &motion, 0);
+    light =
+        cloth_renderer_draw (renderer, white, &capture, &style, &motion, 0,
+        NULL);
     g_assert_cmpfloat_with_epsilon (light->data[240 * WIDTH + 320],
         0.35 + 0.6 * (facing > 0 ? facing : -0.3 * facing), 1e-5);
     g_assert_cmpfloat_with_epsilon (light->data[0], 0.14, 1e-5);
     g_assert_cmpfloat_with_epsilon (light->data[(HEIGHT - 1) * WIDTH], 0.09,
         1e-5);
   }
+}
+
+/* Two triangles of about the picture's area: too little for a hundredth of it, enough for
+ * all of it; of a picture that nobody wants nothing is left. */
+static void
+test_work (void)
+{
+  g_autoptr (ClothPaint) white = plain_paint (255);
+  g_autoptr (Mesh) mesh = square ();
+  const gdouble times[1] = { 0 };
+  const gdouble *const frames[1] = { mesh->positions };
+  const ClothMotion motion = { 9, 1, times, frames };
+  g_autoptr (ClothRenderer) renderer = cloth_renderer_new (9, mesh->uv,
+      mesh->faces, mesh->n_faces, 2, CLOTH_SIMD_BEST);
+  const gsize size = WIDTH * HEIGHT;
+  g_autofree guint8 *data = g_malloc0 (size);
+  g_autofree gfloat *light = NULL;
+  guint8 *const planes[1] = { data };
+  const gint strides[1] = { WIDTH };
+  gint stop = 0;
+  ClothWork little = { size / 100., &stop, FALSE };
+  ClothWork enough = { 8. * size, &stop, FALSE };
+  ClothRenderStyle style;
+  ClothCapture capture;
+
+  cloth_render_style_init (&style);
+  cloth_capture_init (&capture, &camera);
+  light = g_memdup2 (cloth_renderer_draw (renderer, white, &capture, &style,
+          &motion, 0, NULL)->data, size * sizeof (gfloat));
+  g_assert_null (cloth_renderer_draw (renderer, white, &capture, &style,
+          &motion, 0, &little));
+  g_assert_true (little.left_out);
+  stop = 1;
+  g_assert_null (cloth_renderer_draw (renderer, white, &capture, &style,
+          &motion, 0, &enough));
+  g_assert_false (enough.left_out);
+  cloth_renderer_develop (renderer, &capture, 0, 0, 1, planes, strides, 1,
+      &enough);
+  for (gsize i = 0; i < size; i++)
+    g_assert_cmpint (data[i], ==, 0);
+  stop = 0;
+  g_assert_cmpmem (cloth_renderer_draw (renderer, white, &capture, &style,
+          &motion, 0, &enough)->data, size * sizeof (gfloat), light,
+      size * sizeof (gfloat));
+  g_assert_false (enough.left_out);
 }
 
 /* ---- sameness ---- */
@@ -908,6 +956,7 @@ int
 main (int argc, char **argv)
 {
   g_test_init (&argc, &argv, NULL);
+  g_test_add_func ("/filming/work", test_work);
   g_test_add_func ("/filming/edges", test_edges);
   g_test_add_func ("/filming/corners", test_corners);
   g_test_add_func ("/filming/lens", test_lens);

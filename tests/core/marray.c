@@ -97,7 +97,8 @@ test_new_refused (void)
   {NAN, 0.013, 0.01}, {INFINITY, 0.013, 0.01}, {0.02, 0, 0.01},
   {0.02, 0.02, 0.01}, {0.02, NAN, 0.01}, {0.02, 0.013, 0.006},
   {0.02, 0.013, -1}, {0.02, 0.013, NAN}, {200, 0.013, 0.01},
-  {0.02, 0.013, 1e9}
+  {0.02, 0.013, 1e9}, {1e-300, 5e-301, 0.01}, {0.9e-6, 0.5e-6, 0.01},
+  {0.02, 1e-300, 0.01}, {0.02, 0.000199, 0.01}
   };
   const ClothMArrayCode code = CLOTH_M_ARRAY_CODE_INIT;
 
@@ -216,6 +217,13 @@ test_read_refused (void)
         CLOTH_PATTERN_ERROR_FORMAT, "matrix"},
     {HEAD SIZE COUNT "\"matrix\":[[0,1,null],[0,0,1],[1,0,1]]}",
         CLOTH_PATTERN_ERROR_FORMAT, "matrix"},
+    {HEAD SIZE COUNT "\"matrix\":[[0,0,0],[0,0,0],[0,0,0]]}",
+        CLOTH_PATTERN_ERROR_VALUE, "all dots of the matrix are red"},
+    {HEAD SIZE COUNT "\"matrix\":[[1,1,1],[1,1,1],[1,1,1]]}",
+        CLOTH_PATTERN_ERROR_VALUE, "all dots of the matrix are blue"},
+    {HEAD "\"pitch_m\":1e-300,\"diameter_m\":5e-301,"
+          "\"origin_uv_m\":[0.01,0.01],\"cloth_m\":[0.06,0.06]," COUNT MATRIX,
+        CLOTH_PATTERN_ERROR_VALUE, "from 1e-06 to 1000"},
     {HEAD SIZE COUNT "\"matrix\":[7,7,7]}", CLOTH_PATTERN_ERROR_FORMAT,
         "matrix"},
     {HEAD SIZE COUNT "\"matrix\":{}}", CLOTH_PATTERN_ERROR_FORMAT, "matrix"},

@@ -55,6 +55,7 @@ test_new_refused (void)
     {8, 8, 0, 0}, {8, 8, -0.05, 0}, {8, 8, NAN, 0}, {8, 8, INFINITY, 0},
     {8, 8, 0.05, -0.01}, {8, 8, 0.05, NAN}, {8, 8, 0.05, INFINITY},
     {500, 500, 10, 0}, {G_MAXINT, G_MININT, 1e-300, 0},
+    {8, 8, 1e-300, 0.1}, {8, 8, 0.99e-6, 0}, {8, 8, G_MINDOUBLE, 0},
   };
 
   for (gsize i = 0; i < G_N_ELEMENTS (cases); i++) {
@@ -63,6 +64,22 @@ test_new_refused (void)
     g_assert_null (cloth_pattern_new_checker (cases[i].columns, cases[i].rows,
             cases[i].square_m, cases[i].margin_m, TRUE, &error));
     g_assert_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_VALUE);
+  }
+}
+
+/* The finest print and the largest tarpaulin. */
+static void
+test_new_extremes (void)
+{
+  const gdouble squares[] = { 1e-6, 1e-5, 1, 1000. / 8 };
+
+  for (gsize i = 0; i < G_N_ELEMENTS (squares); i++) {
+    g_autoptr (GError) error = NULL;
+    g_autoptr (ClothPattern) pattern =
+        cloth_pattern_new_checker (8, 8, squares[i], 0, TRUE, &error);
+
+    g_assert_no_error (error);
+    g_assert_nonnull (pattern);
   }
 }
 
@@ -151,6 +168,8 @@ test_refused (void)
         "\"square_m\""},
     {HEAD "\"columns\":2,\"rows\":2,\"square_m\":1e999}",
         CLOTH_PATTERN_ERROR_FORMAT, "\"square_m\""},
+    {HEAD "\"columns\":2,\"rows\":2,\"square_m\":1e-300}",
+        CLOTH_PATTERN_ERROR_VALUE, "from 1e-06 to 1000"},
     {HEAD "\"columns\":2,\"rows\":2,\"square_m\":\"5\"}",
         CLOTH_PATTERN_ERROR_FORMAT, "\"square_m\""},
     {HEAD SIZE ",\"first_square\":\"red\"}", CLOTH_PATTERN_ERROR_FORMAT,
@@ -230,6 +249,7 @@ main (int argc, char **argv)
   g_test_add_func ("/pattern/real-file", test_real_file);
   g_test_add_func ("/pattern/new", test_new);
   g_test_add_func ("/pattern/new-refused", test_new_refused);
+  g_test_add_func ("/pattern/new-extremes", test_new_extremes);
   g_test_add_func ("/pattern/round-trip", test_round_trip);
   g_test_add_func ("/pattern/defaults", test_defaults);
   g_test_add_func ("/pattern/refused", test_refused);

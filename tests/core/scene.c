@@ -140,6 +140,41 @@ test_refused_takes (void)
   }
 }
 
+/* Clamps that jump, for those who would simulate them; the scene itself can be read. */
+static void
+test_paths (void)
+{
+  static const struct
+  {
+    const gchar *change, *text;
+  } cases[] = {
+    {"c[2:,1,0]+=100", "vertex 2 jumps 100 m between frames 1 and 2"},
+    {"c[3,0,2]-=35", "vertex 0 jumps 35 m between frames 2 and 3"},
+    {"t=[0,.1,.1001,.3]; c[2:,1,1]+=1", "vertex 2 jumps 1 m"},
+    {"c[1,1]=3e38", "vertex 2 jumps"},
+    /* an arm that throws; what is let go before it jumps, or not yet held */
+    {"c[2:,1,0]+=33", NULL},
+    {"j['held'][1]['until_s']=0.2; c[2:,1,0]+=1e6", NULL},
+    {"j['held'][1]['from_s']=0.2; c[:2,1,0]=np.nan", NULL},
+    {"j['held']=[]; c=None", NULL},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autofree gchar *path = write_take (cases[i].change);
+    g_autoptr (GError) error = NULL;
+    g_autoptr (ClothScene) scene = load (path, &error);
+
+    g_assert_no_error (error);
+    g_assert_true (cloth_scene_check_paths (scene, &error) == !cases[i].text);
+    if (cases[i].text) {
+      g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+      g_test_message ("%s", error->message);
+      g_assert_nonnull (strstr (error->message, cases[i].text));
+    }
+    scratch_end ();
+  }
+}
+
 /* Two sheets of 2 × 2 vertices beside each other, v of the second stretched. */
 static ClothScene *
 panels (gfloat stretch)
@@ -385,6 +420,7 @@ main (int argc, char **argv)
   g_test_add_func ("/scene/real-take", test_real_take);
   g_test_add_func ("/scene/start", test_start);
   g_test_add_func ("/scene/refused-takes", test_refused_takes);
+  g_test_add_func ("/scene/paths", test_paths);
   g_test_add_func ("/scene/sewn", test_sewn);
   g_test_add_func ("/scene/refused", test_refused);
   return g_test_run ();

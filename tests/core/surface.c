@@ -221,6 +221,39 @@ test_nearest (void)
   }
 }
 
+/* Two squares that cover the picture, the nearer last, with room for one and a half: only
+ * the first is there, and of a picture that nobody wants nothing. Then all is as ever. */
+static void
+test_work (void)
+{
+  static const guint32 faces[8] = { 0, 1, 2, 3, 4, 5, 6, 7 };
+  g_autoptr (ClothPaint) paint = new_ramp ();
+  g_autofree Picture *picture = new_rgb ();
+  g_autoptr (ClothSurface) surface = NULL;
+  const guint8 *middle = picture->data + 3 * (75 * WIDTH + 100);
+  gfloat positions[24], uv[16];
+  gint stop = 0;
+  ClothWork work = { 3 * WIDTH * HEIGHT, &stop, FALSE };
+
+  put_square (positions, uv, 20, 2, 0.25);
+  put_square (positions + 12, uv + 8, 20, 1, 0.75);
+  surface = cloth_surface_new (8, uv, faces, 2, paint, CLOTH_SIMD_BEST);
+  picture->canvas.work = &work;
+  stop = 1;
+  cloth_surface_draw (surface, &picture->canvas, WIDTH, HEIGHT, &camera,
+      positions, &even, 1);
+  g_assert_cmpint (middle[0], ==, FILM);
+  stop = 0;
+  cloth_surface_draw (surface, &picture->canvas, WIDTH, HEIGHT, &camera,
+      positions, &even, 1);
+  g_assert_true (work.left_out);
+  g_assert_cmpint (ABS (middle[0] - 62), <=, 2);
+  picture->canvas.work = NULL;
+  cloth_surface_draw (surface, &picture->canvas, WIDTH, HEIGHT, &camera,
+      positions, &even, 1);
+  g_assert_cmpint (ABS (middle[0] - 190), <=, 2);
+}
+
 static void
 test_opacity (void)
 {
@@ -371,6 +404,7 @@ int
 main (int argc, char **argv)
 {
   g_test_init (&argc, &argv, NULL);
+  g_test_add_func ("/surface/work", test_work);
   g_test_add_func ("/surface/plane", test_plane);
   g_test_add_func ("/surface/nearest", test_nearest);
   g_test_add_func ("/surface/opacity", test_opacity);

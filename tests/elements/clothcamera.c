@@ -8,6 +8,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "tests/elements/damage.h"
+
 #define PATTERN TEST_DATA "/checker_pair/pattern.json"
 
 static gchar *folder, *rig;
@@ -546,6 +548,62 @@ GST_START_TEST (test_free_view)
 
 GST_END_TEST;
 
+/* A damaged mesh has no picture; those around it have. */
+GST_START_TEST (test_damaged)
+{
+  GstHarness *h = harness ("camera=a", "GRAY8");
+  g_autoptr (GstElement) camera = gst_harness_find_element (h, "clothcamera");
+  g_autoptr (GstBus) bus = gst_bus_new ();
+
+  gst_element_set_bus (camera, bus);
+  for (guint i = 0; i < 6; i++)
+    fail_unless_equals_int (gst_harness_push (h, i % 3 == 0 ?
+            mesh_buffer (i, 4, 3, 0) : i % 3 == 1 ? mesh_buffer (i, 3, 3, 0) :
+            gst_buffer_new_memdup ("garbage", 7)), GST_FLOW_OK);
+  fail_unless_equals_int (gst_harness_buffers_received (h), 2);
+  assert_dropped (camera, bus, 4, "9 vertices in a stream of 12");
+  gst_harness_push_event (h, gst_event_new_eos ());
+  assert_summed_up (bus, 4);
+  gst_element_set_bus (camera, NULL);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+/* A mesh each of whose 600 triangles covers the picture: no cloth, and hours of work for
+ * large ones. The next mesh is drawn. */
+GST_START_TEST (test_crowded)
+{
+  const guint columns = 301, rows = 2, n = columns * rows;
+  g_autofree gfloat *positions = g_new (gfloat, 3 * n);
+  g_autofree guint8 *states = g_malloc (n);
+  GstHarness *h = harness ("camera=a", "GRAY8");
+  g_autoptr (GstElement) camera = gst_harness_find_element (h, "clothcamera");
+  g_autoptr (GstBus) bus = gst_bus_new ();
+  g_autoptr (GstClothMesh) mesh = NULL;
+
+  for (guint i = 0; i < n; i++) {
+    positions[3 * i] = i % columns % 2 ? 4 : -4;
+    positions[3 * i + 1] = 0.001f * (gfloat) (i % columns);
+    positions[3 * i + 2] = i / columns ? -4 : 4;
+    states[i] = GST_CLOTH_VERTEX_PREDICTED;
+  }
+  mesh = gst_cloth_mesh_new (0, n, positions, states, NULL);
+  gst_element_set_bus (camera, bus);
+  gst_harness_set_src_caps (h, mesh_caps (columns, rows));
+  fail_unless_equals_int (gst_harness_push (h, gst_cloth_mesh_to_buffer (mesh)),
+      GST_FLOW_OK);
+  fail_unless_equals_int (gst_harness_buffers_received (h), 0);
+  fail_unless_equals_int (gst_harness_push (h, mesh_buffer (1, columns, rows,
+              0)), GST_FLOW_OK);
+  fail_unless_equals_int (gst_harness_buffers_received (h), 1);
+  assert_dropped (camera, bus, 1, "more than 256 times");
+  gst_element_set_bus (camera, NULL);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
 static void
 assert_refused (const gchar * launch, const gchar * says)
 {
@@ -592,6 +650,7 @@ GST_START_TEST (test_refused)
     {"camera=a pattern=/nowhere/pattern.json", "/nowhere/pattern.json"},
     {"camera=a texture=/nowhere/a.png", "there is no such file"},
     {"camera=a texture=" PATTERN, "pattern.json"},
+    {"camera=a texture=" TEST_DATA, "is a folder"},
     {"camera=a effects=motion_blur,exposure=0.01", "rising times"}
   };
 
@@ -627,6 +686,8 @@ clothcamera_suite (void)
   tcase_add_test (tc, test_reconfigure);
   tcase_add_test (tc, test_other_camera);
   tcase_add_test (tc, test_free_view);
+  tcase_add_test (tc, test_damaged);
+  tcase_add_test (tc, test_crowded);
   tcase_add_test (tc, test_refused);
   return s;
 }

@@ -6,6 +6,8 @@
 #include <gst/video/video.h>
 #include <gst/cloth/cloth.h>
 
+#include "tests/elements/damage.h"
+
 #define OBSERVATIONS "application/x-cloth-observations, version=(int)1, " \
     "width=(int)321, height=(int)239, framerate=(fraction)25/1"
 
@@ -219,32 +221,86 @@ GST_START_TEST (test_renegotiation)
 
 GST_END_TEST;
 
+static const guint8 damaged[3][40] = { "nothing of the kind", "GCOB\1\0\40",
+  "GCOB\2\0\40"
+};
+
+/* What a network damages is dropped, what comes between goes on. */
 GST_START_TEST (test_depay_damaged)
 {
-  static const guint8 damaged[3][40] = { "nothing of the kind", "GCOB\1\0\40",
-    "GCOB\2\0\40"
-  };
+  GstHarness *h = gst_harness_new ("clothmetadepay");
+  g_autoptr (GstBus) bus = gst_bus_new ();
+  guint n_damaged = 0;
+  guint64 dropped;
 
+  gst_element_set_bus (h->element, bus);
+  gst_harness_set_src_caps_str (h, OBSERVATIONS);
+  for (guint number = 0; number < 3; number++) {
+    g_autoptr (GstBuffer) picture = make_picture (number, 16);
+    g_autoptr (GstBuffer) out = NULL;
+
+    for (guint i = 0; i < 40; i++, n_damaged++)
+      fail_unless_equals_int (gst_harness_push (h, gst_buffer_new_memdup
+              (damaged[i % 3], sizeof damaged[0])), GST_FLOW_OK);
+    fail_unless_equals_int (gst_harness_push (h,
+            gst_cloth_observations_pack (picture)), GST_FLOW_OK);
+    fail_unless_equals_int (gst_harness_buffers_in_queue (h), 1);
+    out = gst_harness_pull (h);
+    check_metas (out, number);
+    fail_unless (GST_BUFFER_IS_DISCONT (out));
+  }
+  assert_dropped (h->element, bus, n_damaged, "damaged packet");
+  assert_summed_up (bus, 0);
+  gst_harness_push_event (h, gst_event_new_eos ());
+  assert_summed_up (bus, n_damaged);
+
+  /* a new start counts anew */
+  gst_element_set_state (h->element, GST_STATE_READY);
+  gst_element_set_state (h->element, GST_STATE_PLAYING);
+  g_object_get (h->element, "dropped", &dropped, NULL);
+  fail_unless_equals_uint64 (dropped, 0);
+  gst_element_set_bus (h->element, NULL);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_depay_strict)
+{
   for (guint i = 0; i < G_N_ELEMENTS (damaged); i++) {
-    GstHarness *h = gst_harness_new ("clothmetadepay");
+    GstHarness *h = gst_harness_new_parse ("clothmetadepay strict=true");
     g_autoptr (GstBus) bus = gst_bus_new ();
-    g_autoptr (GstMessage) message = NULL;
-    g_autoptr (GError) error = NULL;
+    g_autoptr (GstElement) depay = gst_harness_find_element (h,
+        "clothmetadepay");
 
-    gst_element_set_bus (h->element, bus);
+    gst_element_set_bus (depay, bus);
     gst_harness_set_src_caps_str (h, OBSERVATIONS);
     fail_unless_equals_int (gst_harness_push (h, gst_buffer_new_memdup
             (damaged[i], sizeof damaged[i])), GST_FLOW_ERROR);
-    message = gst_bus_pop_filtered (bus, GST_MESSAGE_ERROR);
-    fail_unless (message != NULL);
-    gst_message_parse_error (message, &error, NULL);
-    fail_unless (g_error_matches (error, GST_STREAM_ERROR,
-            GST_STREAM_ERROR_DECODE));
-    fail_unless (strstr (error->message, "clothmetapay") != NULL);
+    assert_refused_damage (depay, bus, "observation");
     fail_unless_equals_int (gst_harness_buffers_in_queue (h), 0);
-    gst_element_set_bus (h->element, NULL);
+    gst_element_set_bus (depay, NULL);
     gst_harness_teardown (h);
   }
+}
+
+GST_END_TEST;
+
+/* Nothing damaged: nothing is told. */
+GST_START_TEST (test_depay_sound)
+{
+  GstHarness *h = gst_harness_new ("clothmetadepay");
+  g_autoptr (GstBus) bus = gst_bus_new ();
+  g_autoptr (GstBuffer) picture = make_picture (0, 16);
+
+  gst_element_set_bus (h->element, bus);
+  gst_harness_set_src_caps_str (h, OBSERVATIONS);
+  gst_harness_push (h, gst_cloth_observations_pack (picture));
+  gst_harness_push_event (h, gst_event_new_eos ());
+  fail_unless (gst_bus_pop_filtered (bus, GST_MESSAGE_WARNING | GST_MESSAGE_INFO
+          | GST_MESSAGE_ERROR) == NULL);
+  gst_element_set_bus (h->element, NULL);
+  gst_harness_teardown (h);
 }
 
 GST_END_TEST;
@@ -276,6 +332,8 @@ clothmetapay_suite (void)
   tcase_add_test (chain, test_depay_shares_black);
   tcase_add_test (chain, test_renegotiation);
   tcase_add_test (chain, test_depay_damaged);
+  tcase_add_test (chain, test_depay_strict);
+  tcase_add_test (chain, test_depay_sound);
   tcase_add_test (chain, test_depay_other_version);
   return suite;
 }

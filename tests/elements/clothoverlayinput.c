@@ -2,6 +2,7 @@
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "tests/elements/clothoverlayscene.h"
+#include "tests/elements/damage.h"
 
 static const gchar second_camera[] =
     ", {\"name\": \"right\", \"size\": [80, 60], "
@@ -324,14 +325,254 @@ GST_END_TEST;
 GST_START_TEST (test_bad_mesh)
 {
   g_autofree gchar *rig = write_rig ("", "");
-  g_autofree gchar *properties = g_strdup_printf ("rig=%s", rig);
+  g_autofree gchar *properties = g_strdup_printf ("rig=%s strict=true", rig);
   GstBuffer *garbage = gst_buffer_new_memdup ("garbage", 7);
 
   GST_BUFFER_PTS (garbage) = 0;
-  expect_error (properties, 80, 60, garbage, 0, "no valid mesh");
+  expect_error (properties, 80, 60, garbage, 0, "The stream is damaged");
   expect_error (properties, 80, 60, mesh_buffer (COLUMNS * ROWS + 1, -1), 0,
       "stream of 12");
   g_unlink (rig);
+}
+
+GST_END_TEST;
+
+/* The picture goes on without its mesh. */
+GST_START_TEST (test_damaged_mesh)
+{
+  g_autofree gchar *rig = write_rig ("", "");
+  g_autofree gchar *properties = g_strdup_printf ("rig=%s", rig);
+  GstVideoInfo info;
+  GstBuffer *buffer = picture ("GRAY8", 80, 60, 0, &info);
+  GstBuffer *garbage = gst_buffer_new_memdup ("garbage", 7);
+  g_autoptr (GstBuffer) before = gst_buffer_copy_deep (buffer);
+  g_autoptr (GstBuffer) out = NULL;
+  g_autoptr (GstBus) bus = gst_bus_new ();
+  GstHarness *h = overlay (properties, NULL), *m = mesh_pad (h);
+  GstMapInfo map;
+
+  gst_element_set_bus (h->element, bus);
+  gst_harness_set_src_caps (h, gst_video_info_to_caps (&info));
+  GST_BUFFER_PTS (garbage) = 0;
+  fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_OK);
+  fail_unless_equals_int (gst_harness_push (m, garbage), GST_FLOW_OK);
+  gst_harness_push_event (m, gst_event_new_eos ());
+  gst_harness_push_event (h, gst_event_new_eos ());
+  out = gst_harness_pull (h);
+  fail_unless (out != NULL);
+  fail_unless (gst_buffer_map (before, &map, GST_MAP_READ));
+  fail_unless_equals_int (gst_buffer_memcmp (out, 0, map.data, map.size), 0);
+  gst_buffer_unmap (before, &map);
+  assert_dropped (h->element, bus, 1, "damaged packet");
+  gst_harness_teardown (m);
+  gst_element_set_bus (h->element, NULL);
+  gst_harness_teardown (h);
+  g_unlink (rig);
+}
+
+GST_END_TEST;
+
+/* 65,536 marks that each cover a picture of 4K, or lie all around it in thousands of dashes.
+ * The first ones are there, one warning says that others are not, and the next picture is
+ * drawn in full. */
+GST_START_TEST (test_crowd)
+{
+  const guint n = GST_CLOTH_MAX_FEATURES;
+  g_autofree GstClothQuad *quads = g_new (GstClothQuad, n);
+  g_autofree GstClothSaddle *saddles = g_new0 (GstClothSaddle, n);
+  GstVideoInfo info;
+  g_autoptr (GstBuffer) empty = picture ("GRAY8", 3840, 2160, 0, &info);
+  g_autoptr (GstBus) bus = gst_bus_new ();
+  g_autoptr (GstMessage) message = NULL;
+  g_autoptr (GError) error = NULL;
+  GstHarness *h = overlay ("ellipse-scale=1000 line-width=20", &info);
+  guint n_changed[2];
+
+  gst_element_set_bus (h->element, bus);
+  for (guint i = 0; i < n; i++) {
+    quads[i] = quad_at (-1e4, -1e4, 2e4, 1);
+    quads[i].state = (GstClothQuadState) (__i__ % 2);
+    saddles[i].x = saddles[i].y = 1000;
+    saddles[i].cov_xx = saddles[i].cov_yy = 1;
+  }
+  for (guint round = 0; round < 2; round++) {
+    GstBuffer *buffer = gst_buffer_copy (empty);
+    g_autoptr (GstBuffer) out = NULL;
+    GstMapInfo map;
+
+    GST_BUFFER_PTS (buffer) = round * GST_BUFFER_DURATION (buffer);
+    if (__i__ < 2)
+      add_quads (buffer, quads, round ? 1 : n);
+    else
+      gst_buffer_add_cloth_saddles_meta (buffer, gst_cloth_saddles_new ("cam0",
+              0, saddles, round ? 1 : n, NULL, 0));
+    fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_OK);
+    out = gst_harness_pull (h);
+    fail_unless (gst_buffer_map (out, &map, GST_MAP_READ));
+    n_changed[round] = 0;
+    for (gsize i = 0; i < map.size; i++)
+      n_changed[round] += map.data[i] != FILL;
+    gst_buffer_unmap (out, &map);
+  }
+  /* all marks are at the same place; the dashes are outside */
+  fail_unless_equals_int (n_changed[0], n_changed[1]);
+  fail_unless_equals_int (n_changed[0] > 1000, __i__ != 1);
+  message = gst_bus_pop_filtered (bus, GST_MESSAGE_WARNING);
+  fail_unless (message != NULL);
+  gst_message_parse_warning (message, &error, NULL);
+  fail_unless (strstr (error->message, "more than 64 times") != NULL);
+  fail_unless (gst_bus_pop_filtered (bus, GST_MESSAGE_WARNING
+          | GST_MESSAGE_ERROR) == NULL);
+  gst_element_set_bus (h->element, NULL);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+/* As many squares as a packet may hold, side by side with outlines and numbers: none is
+ * left out. */
+GST_START_TEST (test_many_squares)
+{
+  g_autofree GstClothQuad *quads = g_new (GstClothQuad, 65536);
+  GstVideoInfo info;
+  GstBuffer *buffer = picture ("GRAY8", 3840, 3840, 0, &info);
+  g_autoptr (GstBuffer) out = NULL;
+  g_autoptr (GstBus) bus = gst_bus_new ();
+  GstHarness *h = overlay ("draw-indices=true", &info);
+
+  gst_element_set_bus (h->element, bus);
+  for (guint i = 0; i < 65536; i++)
+    quads[i] = quad_at (15 * (i % 256), 15 * (i / 256), 15, 1);
+  add_quads (buffer, quads, 65536);
+  fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_OK);
+  out = gst_harness_pull (h);
+  fail_unless (out != NULL);
+  fail_unless (gst_bus_pop_filtered (bus, GST_MESSAGE_WARNING) == NULL);
+  gst_element_set_bus (h->element, NULL);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+/* Flushes before a picture is drawn, from another thread, as a seek does; drawing begins when
+ * downstream has heard of it. */
+typedef struct
+{
+  GstControlBinding parent;
+  GstHarness *h;
+  GThread *thread;
+  GMutex lock;
+  GCond cond;
+  gboolean flushing;
+} Interruption;
+typedef GstControlBindingClass InterruptionClass;
+
+GType interruption_get_type (void);
+G_DEFINE_TYPE (Interruption, interruption, GST_TYPE_CONTROL_BINDING);
+
+static gpointer
+flush (gpointer data)
+{
+  gst_harness_push_event (data, gst_event_new_flush_start ());
+  return NULL;
+}
+
+static GstPadProbeReturn
+hear_of_flush (GstPad * pad, GstPadProbeInfo * info, gpointer data)
+{
+  Interruption *self = data;
+
+  if (GST_EVENT_TYPE (GST_PAD_PROBE_INFO_EVENT (info)) == GST_EVENT_FLUSH_START) {
+    g_mutex_lock (&self->lock);
+    self->flushing = TRUE;
+    g_cond_broadcast (&self->cond);
+    g_mutex_unlock (&self->lock);
+  }
+  return GST_PAD_PROBE_OK;
+}
+
+static gboolean
+interruption_sync (GstControlBinding * binding, GstObject * object,
+    GstClockTime time, GstClockTime last)
+{
+  Interruption *self = (Interruption *) binding;
+
+  g_mutex_lock (&self->lock);
+  if (!self->thread) {
+    self->thread = g_thread_new ("flush", flush, self->h);
+    while (!self->flushing)
+      g_cond_wait (&self->cond, &self->lock);
+    g_cond_broadcast (&self->cond);
+  }
+  g_mutex_unlock (&self->lock);
+  return TRUE;
+}
+
+static void
+interruption_class_init (InterruptionClass * klass)
+{
+  klass->sync_values = interruption_sync;
+}
+
+static void
+interruption_init (Interruption * self)
+{
+  g_mutex_init (&self->lock);
+  g_cond_init (&self->cond);
+}
+
+/* A picture whose bytes stay ours, with one square; they say whether it was drawn. */
+static gboolean
+push_watched (GstHarness * h, GstVideoInfo * info, guint8 * data)
+{
+  const gsize size = GST_VIDEO_INFO_SIZE (info);
+  const GstClothQuad quad = quad_at (5, 5, 50, 1);
+  GstBuffer *buffer = gst_buffer_new_wrapped_full (0, data, size, 0, size, NULL,
+      NULL);
+
+  memset (data, FILL, size);
+  GST_BUFFER_PTS (buffer) = 0;
+  GST_BUFFER_DURATION (buffer) = GST_SECOND / 30;
+  add_quads (buffer, &quad, 1);
+  return gst_harness_push (h, buffer) == GST_FLOW_OK;
+}
+
+/* A flush while a picture is drawn: nothing more is drawn. After it all is as before. */
+GST_START_TEST (test_interrupted)
+{
+  GstVideoInfo info;
+  GstBuffer *any = picture ("GRAY8", 80, 60, 0, &info);
+  g_autofree guint8 *data = g_malloc (GST_VIDEO_INFO_SIZE (&info));
+  GstHarness *h = overlay ("", &info);
+  Interruption *interruption = g_object_new (interruption_get_type (),
+      "object", h->element, "name", "opacity", NULL);
+  g_autoptr (GstBuffer) out = NULL;
+  GstSegment segment;
+
+  gst_buffer_unref (any);
+  interruption->h = h;
+  gst_pad_add_probe (h->sinkpad, GST_PAD_PROBE_TYPE_EVENT_FLUSH, hear_of_flush,
+      interruption, NULL);
+  gst_object_add_control_binding (GST_OBJECT (h->element),
+      GST_CONTROL_BINDING (interruption));
+  fail_unless (push_watched (h, &info, data));
+  g_mutex_lock (&interruption->lock);
+  while (!interruption->flushing)
+    g_cond_wait (&interruption->cond, &interruption->lock);
+  g_mutex_unlock (&interruption->lock);
+  /* it waits for the picture */
+  g_thread_join (interruption->thread);
+  for (gsize i = 0; i < GST_VIDEO_INFO_SIZE (&info); i++)
+    fail_unless_equals_int (data[i], FILL);
+
+  gst_harness_push_event (h, gst_event_new_flush_stop (TRUE));
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  gst_harness_push_event (h, gst_event_new_segment (&segment));
+  fail_unless (push_watched (h, &info, data));
+  out = gst_harness_pull (h);
+  fail_unless (out != NULL);
+  fail_unless (data[30 * 80 + 30] != FILL);
+  gst_harness_teardown (h);
 }
 
 GST_END_TEST;
@@ -382,6 +623,10 @@ clothoverlayinput_suite (void)
   tcase_add_test (tc, test_texture_not_there);
   tcase_add_test (tc, test_other_shape);
   tcase_add_test (tc, test_bad_mesh);
+  tcase_add_test (tc, test_damaged_mesh);
+  tcase_add_loop_test (tc, test_crowd, 0, 3);
+  tcase_add_test (tc, test_many_squares);
+  tcase_add_test (tc, test_interrupted);
   tcase_add_test (tc, test_short_picture);
   tcase_add_test (tc, test_second_mesh_pad);
   return s;

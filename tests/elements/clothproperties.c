@@ -16,7 +16,7 @@ typedef struct
   gboolean boolean;
   gint integer;
   guint natural;
-  guint64 large;
+  guint64 large, count;
   gfloat single;
   gdouble real;
   gfloat narrow;                /* of a property that is a double */
@@ -25,7 +25,8 @@ typedef struct
   gint fraction[2];
 } Settings;
 
-static const Settings default_settings = { TRUE, -3, 4, G_MAXUINT64, 0.5f, 0.1,
+static const Settings default_settings =
+    { TRUE, -3, 4, G_MAXUINT64, 7, 0.5f, 0.1,
   0.25f, COLOUR_BLUE, NULL, NULL, {30, 1}
 };
 
@@ -43,6 +44,7 @@ static const GstClothProperty properties[] = {
   {"integer", "i", "I", G_TYPE_INT, SETTING (integer), GST_PARAM_MUTABLE_PLAYING, -5, 5},
   {"natural", "n", "N", G_TYPE_UINT, SETTING (natural), GST_PARAM_MUTABLE_PLAYING, 0, G_MAXUINT},
   {"large", "l", "L", G_TYPE_UINT64, SETTING (large), GST_PARAM_MUTABLE_PLAYING},
+  {"count", "o", "O", G_TYPE_UINT64, SETTING (count), G_PARAM_READABLE},
   {"single", "s", "S", G_TYPE_FLOAT, SETTING (single), GST_PARAM_MUTABLE_PLAYING, 0, 0.9},
   {"real", "r", "R", G_TYPE_DOUBLE, SETTING (real), GST_PARAM_MUTABLE_PLAYING, 0, G_MAXDOUBLE},
   {"narrow", "w", "W", G_TYPE_DOUBLE, SETTING (narrow), GST_PARAM_MUTABLE_PLAYING, -1, 1},
@@ -207,6 +209,26 @@ GST_START_TEST (test_round)
 
 GST_END_TEST;
 
+/* What the element counts others can look at. */
+GST_START_TEST (test_read_only)
+{
+  TestElement *element = g_object_new (test_element_get_type (), NULL);
+  GParamSpec *spec = g_object_class_find_property (G_OBJECT_GET_CLASS (element),
+      "count");
+  guint64 count;
+
+  fail_unless (spec->flags & G_PARAM_READABLE);
+  fail_if (spec->flags & G_PARAM_WRITABLE);
+  element->settings.count = 8;
+  g_object_get (element, "count", &count, NULL);
+  fail_unless_equals_uint64 (count, 8);
+  ASSERT_WARNING (g_object_set (element, "count", (guint64) 9, NULL));
+  fail_unless_equals_uint64 (element->settings.count, 8);
+  gst_object_unref (element);
+}
+
+GST_END_TEST;
+
 /* What holds from start to stop is refused while the element runs; the rest is not. */
 GST_START_TEST (test_running)
 {
@@ -239,6 +261,7 @@ clothproperties_suite (void)
   suite_add_tcase (suite, general);
   tcase_add_test (general, test_defaults);
   tcase_add_test (general, test_round);
+  tcase_add_test (general, test_read_only);
   tcase_add_test (general, test_running);
   return suite;
 }

@@ -89,6 +89,50 @@ play (GstElement * pipeline, GstMessageType wanted)
   fail_unless_equals_int (GST_MESSAGE_TYPE (message), wanted);
 }
 
+/* What can't be sought is refused before anything is flushed: the stream goes on as it was. */
+GST_START_TEST (test_refused_seeks)
+{
+  static const struct
+  {
+    gdouble rate;
+    GstFormat format;
+    gint64 start, stop;
+  } cases[] = {
+    {-1, GST_FORMAT_TIME, 0, 10 * PERIOD},
+    {1, GST_FORMAT_TIME, 10 * PERIOD, 5 * PERIOD},
+    {1, GST_FORMAT_BYTES, 0, -1},
+    {1, GST_FORMAT_DEFAULT, 3, -1},
+    {1, GST_FORMAT_PERCENT, GST_FORMAT_PERCENT_MAX / 2, -1},
+  };
+  GstHarness *h;
+
+  scratch_begin ();
+  h = harness (knit, "");
+  gst_harness_play (h);
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autoptr (GstBuffer) buffer = gst_harness_pull (h);
+    GstEvent *event;
+
+    fail_unless_equals_uint64 (GST_BUFFER_OFFSET (buffer), i);
+    fail_if (gst_harness_push_upstream_event (h, gst_event_new_seek
+            (cases[i].rate, cases[i].format, GST_SEEK_FLAG_FLUSH,
+                GST_SEEK_TYPE_SET, cases[i].start, GST_SEEK_TYPE_SET,
+                cases[i].stop)), "case %u", i);
+    while ((event = gst_harness_try_pull_event (h))) {
+      fail_if (GST_EVENT_TYPE (event) == GST_EVENT_FLUSH_START
+          || GST_EVENT_TYPE (event) == GST_EVENT_FLUSH_STOP, "case %u", i);
+      gst_event_unref (event);
+    }
+    event = gst_pad_get_sticky_event (h->sinkpad, GST_EVENT_SEGMENT, 0);
+    fail_unless (event != NULL);
+    gst_event_unref (event);
+  }
+  gst_harness_teardown (h);
+  scratch_end ();
+}
+
+GST_END_TEST;
+
 static void
 note_buffer (GstElement * sink, GstBuffer * buffer, GstPad * pad,
     GPtrArray * buffers)
@@ -331,6 +375,7 @@ clothsim_suite (void)
 
   suite_add_tcase (suite, tests);
   tcase_add_test (tests, test_whole_scene);
+  tcase_add_test (tests, test_refused_seeks);
   tcase_add_test (tests, test_seeks);
   tcase_add_test (tests, test_live);
   tcase_add_test (tests, test_live_late);

@@ -592,7 +592,7 @@ GST_START_TEST (test_no_chart)
       "Can't read the chart: /nonexistent/chart.png: there is no such file");
   refuse_to_start (RING "pattern.json", RING "rig.json",
       "Can't read the chart");
-  refuse_to_start (RING "pattern.json", TEST_DATA, "Can't read the chart");
+  refuse_to_start (RING "pattern.json", TEST_DATA, "is a folder");
 }
 
 GST_END_TEST;

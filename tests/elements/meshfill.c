@@ -8,6 +8,7 @@
 
 #include "gst/mesh/garment/garment.h"
 #include "tests/core/meshpeer.h"
+#include "tests/elements/damage.h"
 
 #define COLUMNS 9
 #define ROWS 8
@@ -271,20 +272,57 @@ GST_START_TEST (test_caps)
 
 GST_END_TEST;
 
-GST_START_TEST (test_bad_frames)
+static GstBuffer *
+make_garbage (void)
 {
-  GstHarness *h = harness ("meshfill", 25);
-  g_autoptr (GstCaps) other = make_caps (4, 3, 25);
   GstBuffer *garbage = gst_buffer_new_allocate (NULL, 100, NULL);
 
   gst_buffer_memset (garbage, 0, 0x5a, 100);
-  fail_unless_equals_int (gst_harness_push (h, garbage), GST_FLOW_ERROR);
+  return garbage;
+}
+
+/* What has no time of its own keeps it when a frame before it is dropped. */
+GST_START_TEST (test_damaged)
+{
+  GstHarness *h = harness ("meshfill", 25);
+  g_autoptr (GstElement) fill = gst_harness_find_element (h, "meshfill");
+  g_autoptr (GstBus) bus = gst_bus_new ();
+
+  gst_element_set_bus (fill, bus);
+  for (guint k = 0; k < 8; k++) {
+    g_autoptr (GstClothMesh) mesh = NULL;
+
+    fail_unless_equals_int (gst_harness_push (h, k % 2 ? make_garbage () :
+            make_frame (k, 1)), GST_FLOW_OK);
+    fail_unless_equals_int (gst_harness_buffers_in_queue (h), (k + 1) % 2);
+    mesh = k % 2 ? NULL : pull (h, k);
+  }
+  assert_dropped (fill, bus, 4, "damaged packet");
+  gst_harness_push_event (h, gst_event_new_eos ());
+  assert_summed_up (bus, 4);
+  gst_element_set_bus (fill, NULL);
   gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_bad_frames)
+{
+  GstHarness *h = harness ("meshfill strict=true", 25);
+  g_autoptr (GstElement) fill = gst_harness_find_element (h, "meshfill");
+  g_autoptr (GstBus) bus = gst_bus_new ();
+  g_autoptr (GstCaps) other = make_caps (4, 3, 25);
+
+  gst_element_set_bus (fill, bus);
+  fail_unless_equals_int (gst_harness_push (h, make_garbage ()),
+      GST_FLOW_ERROR);
+  assert_refused_damage (fill, bus, "mesh");
   /* more vertices than the caps promise */
-  h = gst_harness_new_parse ("meshfill");
   gst_harness_set_src_caps (h, gst_caps_ref (other));
   fail_unless_equals_int (gst_harness_push (h, make_frame (0, 1)),
       GST_FLOW_ERROR);
+  assert_refused_damage (fill, bus, "in a stream of 12");
+  gst_element_set_bus (fill, NULL);
   gst_harness_teardown (h);
   /* caps without topology */
   h = gst_harness_new_parse ("meshfill");
@@ -427,6 +465,7 @@ meshfill_suite (void)
   tcase_add_test (test, test_latency);
   tcase_add_test (test, test_flush);
   tcase_add_test (test, test_caps);
+  tcase_add_test (test, test_damaged);
   tcase_add_test (test, test_bad_frames);
   tcase_add_test (test, test_take);
   tcase_add_test (test, test_garment);

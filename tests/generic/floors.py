@@ -64,7 +64,7 @@ ROOMS = [
          [[''], ['formats'], ['fill', 'garment']]),
     Room('gst/take', 'recordings on disk', ['take.h', 'sequence.h']),
     Room('gst/render', 'pictures of a known cloth',
-         ['render.h', 'surface.h', 'wireframe.h', 'paint.h', 'draw.h']),
+         ['render.h', 'surface.h', 'wireframe.h', 'paint.h', 'draw.h', 'work.h']),
     Room('gst/vision', 'pictures in, points out',
          {'': ['image.h'], 'corner': ['saddle.h', 'corner.h', 'edge.h'], 'checker': ['checker.h'],
           'quad': ['quad.h'], 'dot': ['dot.h'], 'label': ['label.h']},
