@@ -3,9 +3,9 @@
  * ordinary test run exercises what the fuzzer found.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include <glib.h>
+#include "fuzz.h"
 
-int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
+#include <glib.h>
 
 #define MAX_MUTATIONS 2000
 
@@ -34,6 +34,7 @@ main (int argc, char **argv)
   const gchar *name;
   guint files = 0;
 
+  LLVMFuzzerInitialize (&argc, &argv);
   if (argc != 2 || !(dir = g_dir_open (argv[1], 0, &error))) {
     g_printerr ("usage: %s CORPUS-FOLDER (%s)\n", argv[0],
         error ? error->message : "one argument");
