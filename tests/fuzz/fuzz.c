@@ -58,7 +58,8 @@ fuzz_take_place (FuzzBytes * bytes, gfloat extent)
 gchar *
 fuzz_take_text (FuzzBytes * bytes)
 {
-  gchar *text = g_strndup ((const gchar *) bytes->data, bytes->size);
+  gchar *text = bytes->size > 0 ?
+      g_strndup ((const gchar *) bytes->data, bytes->size) : g_strdup ("");
 
   bytes->size = 0;
   return text;

@@ -45,7 +45,7 @@ add_saddles (GstBuffer * buffer, FuzzBytes * bytes)
     s->x = fuzz_take_place (bytes, WIDTH);
     s->y = fuzz_take_place (bytes, HEIGHT);
     s->response = fuzz_take_place (bytes, 1);
-    s->axis = fuzz_take_place (bytes, G_PI);
+    s->axis = fuzz_take_place (bytes, (gfloat) G_PI);
     s->cov_xx = fuzz_take_place (bytes, 1);
     s->cov_xy = fuzz_take_place (bytes, 1);
     s->cov_yy = fuzz_take_place (bytes, 1);
