@@ -147,3 +147,58 @@ g_async_queue_pop (GAsyncQueue * queue)
   __tsan_acquire (queue);
   return data;
 }
+
+gpointer
+g_async_queue_try_pop (GAsyncQueue * queue)
+{
+  gpointer data;
+
+  REAL (g_async_queue_try_pop);
+  data = real (queue);
+  __tsan_acquire (queue);
+  return data;
+}
+
+gpointer
+g_async_queue_timeout_pop (GAsyncQueue * queue, guint64 timeout)
+{
+  gpointer data;
+
+  REAL (g_async_queue_timeout_pop);
+  data = real (queue, timeout);
+  __tsan_acquire (queue);
+  return data;
+}
+
+gint
+g_async_queue_length (GAsyncQueue * queue)
+{
+  gint length;
+
+  REAL (g_async_queue_length);
+  length = real (queue);
+  __tsan_acquire (queue);
+  return length;
+}
+
+/* Who drops the last reference sees what the others did before they dropped theirs. */
+void
+g_object_unref (gpointer object)
+{
+  REAL (g_object_unref);
+  __tsan_release (object);
+  __tsan_acquire (object);
+  real (object);
+}
+
+void
+gst_mini_object_unref (gpointer object)
+{
+  static void (*real) (gpointer);
+
+  if (!real)
+    real = (void (*)(gpointer)) find ("gst_mini_object_unref");
+  __tsan_release (object);
+  __tsan_acquire (object);
+  real (object);
+}
