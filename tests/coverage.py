@@ -3,7 +3,7 @@
 
   tests/coverage.py BUILD-FOLDER
 
-A branch that a g_assert () or g_return_* () makes is not counted: no input takes it. A source
+A branch that g_assert (), g_return_* () or g_new () makes is not counted: no input takes it. A source
 that is compiled several times counts as covered where any of its objects is.
 
 SPDX-License-Identifier: LGPL-2.1-or-later
@@ -25,7 +25,7 @@ PARSERS = [
     'gst/cloth-io/observations.c', 'tools/tool.c']
 COMMITS = ['gst/file/file.c']
 LINES, BRANCHES, COMMIT = 90, 95, 100
-GUARD = re.compile(r'\bg_(assert|return)\w* \(')
+GUARD = re.compile(r'\bg_(assert|return|new|renew)\w* \(')
 
 root = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..')
 build = os.path.abspath(sys.argv[1])
