@@ -113,7 +113,6 @@ cloth_test_races ()
   export LD_PRELOAD=$folder/tsan-locks.so
   # Elements lock their pads one way going up and another going down the stream, on purpose.
   export TSAN_OPTIONS=halt_on_error=1:ignore_noninstrumented_modules=1:detect_deadlocks=0
-  TSAN_OPTIONS+=:suppressions=$PWD/tests/tsan.supp
   # shellcheck disable=SC2086
   cloth_test_share "$folder" core $CLOTH_THREADED_CORE || status=1
   # shellcheck disable=SC2086
