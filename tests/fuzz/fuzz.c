@@ -5,12 +5,22 @@
 
 #include <glib/gstdio.h>
 #include <math.h>
+#include <signal.h>
+#include <stdlib.h>
 #include <string.h>
 
-/* A critical is a fault of ours, whatever the input. */
+static void
+stop (int number)
+{
+  abort ();
+}
+
+/* A critical is a fault of ours, whatever the input. GLib traps then, but libFuzzer keeps the
+ * input only of a program that aborts. */
 int
 LLVMFuzzerInitialize (int *argc, char ***argv)
 {
+  signal (SIGTRAP, stop);
   g_log_set_always_fatal (G_LOG_FATAL_MASK | G_LOG_LEVEL_CRITICAL);
   return 0;
 }
