@@ -8,12 +8,14 @@ cloth_packages ()
   sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' "$1/tests/packages.txt"
 }
 
-# cloth_install_packages ROOT: leaves apt alone when nothing is missing.
+# cloth_install_packages ROOT [PACKAGE...]: those of the list and these; leaves apt alone when
+# nothing is missing.
 cloth_install_packages ()
 {
-  local missing="" package status as_root=""
+  local missing="" package status as_root="" root=$1
 
-  for package in $(cloth_packages "$1"); do
+  shift
+  for package in $(cloth_packages "$root") "$@"; do
     status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) || true
     [ "$status" = installed ] || missing="$missing $package"
   done

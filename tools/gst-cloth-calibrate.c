@@ -3,7 +3,6 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <gio/gio.h>
 #include <gst/gst.h>
-#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -251,13 +250,11 @@ import (const Arguments * a)
   g_autoptr (GError) error = NULL;
   g_autoptr (ClothRig) rig = NULL;
   gint width = 0, height = 0;
-  gchar rest;
 
   if ((a->opencv && a->kalibr) || a->cameras)
     return complain (BAD_USAGE, "--import-opencv and --import-kalibr stand "
         "alone, without each other and without pictures");
-  if (a->size && (sscanf (a->size, "%dx%d%c", &width, &height, &rest) != 2
-          || width < 1 || height < 1))
+  if (a->size && !parse_size (a->size, &width, &height))
     return complain (BAD_USAGE, "--size: give WIDTHxHEIGHT, for instance "
         "640x480");
   rig = a->opencv ? cloth_rig_import_opencv ((const gchar * const *) a->opencv,

@@ -112,3 +112,25 @@ parse_length (const gchar * option, const gchar * text, gdouble * metres,
       "50mm", option, text);
   return FALSE;
 }
+
+/* "640x480", the size of a picture. */
+gboolean
+parse_size (const gchar * text, gint * width, gint * height)
+{
+  gint64 size[2];
+
+  for (guint i = 0; i < 2; i++) {
+    gchar *end;
+
+    /* No sign, no space. */
+    if (!g_ascii_isdigit (*text))
+      return FALSE;
+    size[i] = g_ascii_strtoll (text, &end, 10);
+    if (size[i] < 1 || size[i] > G_MAXINT || *end != (i == 0 ? 'x' : 0))
+      return FALSE;
+    text = end + 1;
+  }
+  *width = (gint) size[0];
+  *height = (gint) size[1];
+  return TRUE;
+}

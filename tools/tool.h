@@ -18,5 +18,6 @@ gint complain (gint code, const gchar * format, ...) G_GNUC_PRINTF (2, 3);
 void tell_progress (gdouble share, const gchar * what);
 gboolean parse_length (const gchar * option, const gchar * text,
     gdouble * metres, GError ** error);
+gboolean parse_size (const gchar * text, gint * width, gint * height);
 
 G_END_DECLS

@@ -222,8 +222,10 @@ open_ply (ClothMeshReader * reader, const gchar * stem, GError ** error)
   memcpy (topology->uv, ply->uv, 2 * (gsize) ply->n_vertices * sizeof (gfloat));
   if (!ply->has_uv)
     memset (topology->uv, 0, 2 * (gsize) ply->n_vertices * sizeof (gfloat));
-  memcpy (topology->faces, ply->faces->data, ply->faces->len *
-      sizeof (guint32));
+  /* A cloud of points has none, and then no data. */
+  if (ply->n_faces > 0)
+    memcpy (topology->faces, ply->faces->data, ply->faces->len *
+        sizeof (guint32));
   reader->topology = topology;
   reader->fps = ply->note.fps;
   cloth_mesh_note_apply (&ply->note, topology);
@@ -375,9 +377,9 @@ read_ply_frame (ClothMeshReader * reader, guint frame,
   if (!read_ply (reader, frame, error))
     return FALSE;
   if (ply->n_vertices != topology->n_vertices ||
-      ply->n_faces != topology->n_faces ||
-      memcmp (ply->faces->data, topology->faces,
-          ply->faces->len * sizeof (guint32)) != 0)
+      ply->n_faces != topology->n_faces || (ply->n_faces > 0 &&
+          memcmp (ply->faces->data, topology->faces,
+              ply->faces->len * sizeof (guint32)) != 0))
     return cloth_file_invalid (error,
         "file %u of the PLY sequence has another mesh than the first one",
         reader->first + frame);

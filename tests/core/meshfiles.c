@@ -325,6 +325,41 @@ static const struct
   {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "element face 1\n"
         "property list uchar int vertex_indices\nend_header\n1 2 3 2 0 0\n",
       CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\n\nend_header\n", CLOTH_FILE_ERROR_INVALID},
+  {"ply\ncomment\nobj_info x\nformat ascii 1.0\nformat ascii 1.0\n",
+      CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex\n", CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 0\n" XYZ "end_header\n",
+      CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement junk 1\nelement vertex 1\n" XYZ
+        "end_header\n", CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 1\nproperty list float int x\n",
+      CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 1\nproperty list char quux x\n",
+      CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement junk 1\nproperty list char int x\n"
+        "element vertex 1\n" XYZ "end_header\n-1\n1 2 3\n",
+      CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement junk 1\nproperty list int16 uint16 x\n"
+        "element vertex 1\n" XYZ "end_header\n9 1\n1 2 3\n",
+      CLOTH_FILE_ERROR_TRUNCATED},
+  {"ply\nformat binary_big_endian 1.0\nelement junk 1\n"
+        "property list char short x\nelement vertex 1\n" XYZ "end_header\n"
+        "\xff" "0123456789abcdef", CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "property float u\n"
+        "property float v\nend_header\n1 2 3 nan 0\n",
+      CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "property char state\n"
+        "end_header\n1 2 3 -1\n", CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "element face 1\n"
+        "property list uchar int vertex_indices\nend_header\n1 2 3 3 0 0 -1\n",
+      CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "element face 1\n"
+        "property list uint int vertex_indices\nend_header\n1 2 3 256 0 0 0\n",
+      CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "element face 1\n"
+        "property list uchar int vertex_indices\nend_header\n1 2 3 3 0 0\n",
+      CLOTH_FILE_ERROR_TRUNCATED},
 };
 
 static void

@@ -237,6 +237,42 @@ test_bad (void)
   }
 }
 
+/* The second camera's turn as a vector along its axis, as long as the angle: a quarter about
+ * z takes x to y. Nothing else that is short of a matrix is taken. */
+static void
+test_rotation_vector (void)
+{
+  static const gchar format[] = "%%YAML:1.0\n---\n"
+      "image_width: 640\nimage_height: 480\n"
+      "M1: [ 500, 0, 320, 0, 500, 240, 0, 0, 1 ]\nD1: [ 0, 0, 0, 0 ]\n"
+      "M2: [ 500, 0, 320, 0, 500, 240, 0, 0, 1 ]\nD2: [ 0, 0, 0, 0 ]\n"
+      "R: %s\nT: [ 1, 2, 3 ]\n";
+  static const gdouble quarter[9] = { 0, -1, 0, 1, 0, 0, 0, 0, 1 };
+  static const gchar *const bad[][2] = {
+    {"[ 1, 0 ]", "2 numbers, not 9 or 3"},
+    {"[ 0, 0, 0, 1 ]", "4 numbers, not 9 or 3"},
+    {"[ 0, 0, .nan ]", "not a finite number"},
+    {"[ 0, 0, {a: 1} ]", "not a finite number"},
+    {"[ 1, 0, 0, 0, 1, 0, 0, 0, 1, 0 ]", "more than 9 numbers"},
+    {"1", "rows, cols and data"},
+    {"{ rows: 3, data: [ 0, 0, 1 ] }", "rows, cols and data"},
+  };
+  g_autofree gchar *text =
+      g_strdup_printf (format, "[ 0, 0, 1.5707963267948966 ]");
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRig) rig =
+      cloth_rig_import_opencv_data (text, strlen (text), 0, 0, &error);
+
+  g_assert_no_error (error);
+  for (guint i = 0; i < 9; i++)
+    g_assert_cmpfloat_with_epsilon (rig->cameras[1].R[i], quarter[i], 1e-12);
+  for (guint i = 0; i < G_N_ELEMENTS (bad); i++) {
+    g_autofree gchar *worse = g_strdup_printf (format, bad[i][0]);
+
+    assert_refused (FALSE, worse, CLOTH_RIG_ERROR_VALUE, bad[i][1]);
+  }
+}
+
 static void
 test_hostile (void)
 {
@@ -274,6 +310,7 @@ main (int argc, char **argv)
   g_test_add_func ("/rigyaml/opencv-fisheye", test_opencv_fisheye);
   g_test_add_func ("/rigyaml/kalibr", test_kalibr);
   g_test_add_func ("/rigyaml/bad", test_bad);
+  g_test_add_func ("/rigyaml/rotation-vector", test_rotation_vector);
   g_test_add_func ("/rigyaml/hostile", test_hostile);
   return g_test_run ();
 }

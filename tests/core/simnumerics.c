@@ -140,7 +140,8 @@ test_state (void)
     guint factor = side + 1, columns = factor * (COLUMNS - 1) + 1;
 
     g_free (target);
-    target = g_memdup2 (at->positions, 3 * n * sizeof *target);
+    target = g_memdup2 (at->positions,
+        3 * at->topology->n_vertices * sizeof *target);
     for (guint i = 0; i < at->topology->n_vertices; i++) {
       gdouble column = (gdouble) (i % columns) / factor;
 

@@ -1,9 +1,9 @@
 /* Fuzz target: a frame of a mesh stream.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include <gst/cloth/cloth.h>
+#include "fuzz.h"
 
-int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
+#include <gst/cloth/cloth.h>
 
 int
 LLVMFuzzerTestOneInput (const guint8 * data, gsize size)

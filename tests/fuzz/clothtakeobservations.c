@@ -1,12 +1,12 @@
 /* Fuzz target: a camera's file of observations, for a grid of 9 × 9 vertices.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "fuzz.h"
+
 #include <gst/cloth/cloth.h>
 #include <math.h>
 
 #include "gst/cloth-io/observations.h"
-
-int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
 
 int
 LLVMFuzzerTestOneInput (const guint8 * data, gsize size)

@@ -1,11 +1,11 @@
 /* Fuzz target: effects as people type them.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "fuzz.h"
+
 #include "gst/rig/capture.h"
 
 #include <math.h>
-
-int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
 
 int
 LLVMFuzzerTestOneInput (const guint8 * data, gsize size)

@@ -1,9 +1,9 @@
 /* Fuzz target: garment.json.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/mesh/garment/garment.h"
+#include "fuzz.h"
 
-int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
+#include "gst/mesh/garment/garment.h"
 
 int
 LLVMFuzzerTestOneInput (const guint8 * data, gsize size)

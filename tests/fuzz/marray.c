@@ -1,11 +1,11 @@
 /* Fuzz target: pattern.json of colour-coded dots.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "fuzz.h"
+
 #include "gst/pattern/marray.h"
 
 #include <string.h>
-
-int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
 
 int
 LLVMFuzzerTestOneInput (const guint8 * data, gsize size)

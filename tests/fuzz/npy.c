@@ -1,9 +1,9 @@
 /* Fuzz target: .npy files.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/file/npy.h"
+#include "fuzz.h"
 
-int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
+#include "gst/file/npy.h"
 
 int
 LLVMFuzzerTestOneInput (const guint8 * data, gsize size)

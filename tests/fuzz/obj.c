@@ -1,11 +1,11 @@
 /* Fuzz target: OBJ files.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "fuzz.h"
+
 #include <string.h>
 
 #include "gst/mesh/formats/obj.h"
-
-int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
 
 int
 LLVMFuzzerTestOneInput (const guint8 * data, gsize size)

@@ -1,11 +1,11 @@
 /* Fuzz target: pattern.json.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "fuzz.h"
+
 #include "gst/pattern/pattern.h"
 
 #include <string.h>
-
-int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
 
 int
 LLVMFuzzerTestOneInput (const guint8 * data, gsize size)

@@ -1,9 +1,9 @@
 /* Fuzz target: PC2 point caches.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/mesh/formats/pc2.h"
+#include "fuzz.h"
 
-int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
+#include "gst/mesh/formats/pc2.h"
 
 int
 LLVMFuzzerTestOneInput (const guint8 * data, gsize size)

@@ -3,16 +3,14 @@
  * ordinary test run exercises what the fuzzer found.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "fuzz.h"
+
 #include <glib.h>
 
-int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
-
-#define MAX_MUTATIONS 2000
-
 static void
-replay (const guint8 * data, gsize size)
+replay (const guint8 * data, gsize size, gsize n_mutations)
 {
-  gsize step = MAX (1, size / MAX_MUTATIONS);
+  gsize step = MAX (1, size / n_mutations);
 
   LLVMFuzzerTestOneInput (data, size);
   for (gsize n = 0; n < size; n += step) {
@@ -34,9 +32,10 @@ main (int argc, char **argv)
   const gchar *name;
   guint files = 0;
 
-  if (argc != 2 || !(dir = g_dir_open (argv[1], 0, &error))) {
-    g_printerr ("usage: %s CORPUS-FOLDER (%s)\n", argv[0],
-        error ? error->message : "one argument");
+  LLVMFuzzerInitialize (&argc, &argv);
+  if (argc != 3 || !(dir = g_dir_open (argv[1], 0, &error))) {
+    g_printerr ("usage: %s CORPUS-FOLDER MUTATIONS (%s)\n", argv[0],
+        error ? error->message : "two arguments");
     return 2;
   }
   while ((name = g_dir_read_name (dir))) {
@@ -48,7 +47,8 @@ main (int argc, char **argv)
       g_printerr ("%s\n", error->message);
       return 1;
     }
-    replay ((const guint8 *) bytes, size);
+    replay ((const guint8 *) bytes, size,
+        (gsize) MAX (1, g_ascii_strtoull (argv[2], NULL, 10)));
     files++;
   }
   g_print ("%u corpus files replayed\n", files);

@@ -1,9 +1,9 @@
 /* Fuzz target: rig.json. What loads must pass its own check.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/rig/rigfile.h"
+#include "fuzz.h"
 
-int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
+#include "gst/rig/rigfile.h"
 
 int
 LLVMFuzzerTestOneInput (const guint8 * data, gsize size)

@@ -1,9 +1,9 @@
 /* Fuzz target: OpenCV's and Kalibr's YAML. What imports must pass the rig's check.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/rig/rigyaml.h"
+#include "fuzz.h"
 
-int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
+#include "gst/rig/rigyaml.h"
 
 static void
 check (const ClothRig * rig, const GError * error)

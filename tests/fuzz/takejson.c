@@ -1,11 +1,11 @@
 /* Fuzz target: take.json.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "fuzz.h"
+
 #include <string.h>
 
 #include "gst/take/take-info.h"
-
-int LLVMFuzzerTestOneInput (const guint8 * data, gsize size);
 
 int
 LLVMFuzzerTestOneInput (const guint8 * data, gsize size)

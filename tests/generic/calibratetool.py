@@ -144,6 +144,10 @@ _, cameras = calibrate('--import-opencv', os.path.join(boards, 'left_intrinsics.
 check(cameras[0]['K'][0][0] == 535.91573396163199 and cameras[0]['name'] == 'left_intrinsics',
       'OpenCV import')
 refused(1, '--size', '--output', output, '--import-opencv', os.path.join(boards, 'intrinsics.yml'))
+# 640 and 480 with 2^32 added, and what else only looks like a size.
+for size in '4294967936x4294967776', ' 640x480', '640x480x', '+640x480', '640', 'x480', '0x480', '-1x-1':
+    refused(2, '--size', '--size', size, '--output', output, '--import-opencv',
+            os.path.join(boards, 'intrinsics.yml'))
 refused(1, 'no Kalibr camera chain', '--output', output, '--import-kalibr',
         os.path.join(boards, 'left_intrinsics.yml'))
 hang = os.path.join(folder, 'hang.yml')

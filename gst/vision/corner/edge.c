@@ -61,12 +61,6 @@ is_inside (const ClothImage * image, gfloat x, gfloat y, gfloat reach)
       && y + reach < (gfloat) (image->height - 1);
 }
 
-static inline gfloat
-bilinear (const ClothImage * image, gfloat x, gfloat y)
-{
-  return is_inside (image, x, y, 0) ? bilinear_inside (image, x, y) : -1;
-}
-
 /* @levels: what each grey level counts as, NULL: as itself */
 static inline gint
 nearest (const ClothImage * image, const guint8 * levels, gfloat x, gfloat y)

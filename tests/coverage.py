@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""Prints the coverage of each room, of each parser and of the commits of files, from gcov's counts.
+
+  tests/coverage.py BUILD-FOLDER
+
+A branch that g_assert (), g_return_* () or g_new () makes is not counted: no input takes it. A source
+that is compiled several times counts as covered where any of its objects is.
+
+SPDX-License-Identifier: LGPL-2.1-or-later
+"""
+import collections
+import json
+import os
+import re
+import subprocess
+import sys
+
+# What reads bytes that nobody vouches for, and what gives files their names.
+PARSERS = [
+    'gst/file/json.c', 'gst/file/npy.c', 'gst/pattern/pattern.c', 'gst/pattern/marray.c',
+    'gst/rig/rigfile.c', 'gst/rig/rigyaml.c', 'gst/rig/yamltree.c', 'gst/mesh/formats/obj.c',
+    'gst/mesh/formats/pc2.c', 'gst/mesh/formats/ply.c', 'gst/take/take-info.c', 'gst/take/take.c',
+    'gst/take/obstacle.c', 'gst/take/sequence.c', 'gst/sim/model.c', 'gst/cloth/gstclothmesh.c',
+    'gst/cloth/gstclothobservations.c', 'gst/cloth/gstclothtopology.c',
+    'gst/cloth-io/observations.c', 'tools/tool.c']
+COMMITS = ['gst/file/file.c']
+LINES, BRANCHES, COMMIT = 90, 95, 100
+GUARD = re.compile(r'\bg_(assert|return|new|renew)\w* \(')
+
+root = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..')
+build = os.path.abspath(sys.argv[1])
+
+
+class Source:
+    """What was run of one file, by the numbers of its lines."""
+
+    def __init__(self, path):
+        with open(os.path.join(root, path), encoding='utf-8') as file:
+            self.text = file.read().split('\n')
+        self.lines = collections.Counter()
+        self.branches = collections.Counter()
+
+    def add(self, line):
+        number = line['line_number']
+        self.lines[number] += line['count']
+        if GUARD.search(self.text[number - 1]):
+            return
+        for i, branch in enumerate(line['branches']):
+            self.branches[number, i] += branch['count']
+
+
+def read(build):
+    """All sources of the project that the build has compiled."""
+    sources = {}
+    notes = [os.path.join(folder, name) for folder, _, names in os.walk(build)
+             for name in names if name.endswith('.gcno') and '/tests/' not in folder]
+    for first in range(0, len(notes), 50):
+        out = subprocess.run(['gcov', '--json-format', '--stdout', '--branch-probabilities']
+                             + notes[first:first + 50], cwd=build, check=True, text=True,
+                             stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout
+        for report in filter(None, out.split('\n')):
+            for file in json.loads(report)['files']:
+                path = os.path.relpath(os.path.join(build, file['file']), root)
+                if path.startswith(('..', 'build')) or not path.endswith('.c'):
+                    continue
+                source = sources.setdefault(path, Source(path))
+                for line in file['lines']:
+                    source.add(line)
+    return sources
+
+
+def share(counters):
+    """Percent of what was run at least once, and of how many."""
+    counts = [count for counter in counters for count in counter.values()]
+    return 100 * sum(count > 0 for count in counts) / max(1, len(counts)), len(counts)
+
+
+def row(name, sources):
+    lines, n_lines = share(source.lines for source in sources)
+    branches, n_branches = share(source.branches for source in sources)
+    print('%-38s %6.1f%% of %6d %6.1f%% of %6d' % (name, lines, n_lines, branches, n_branches))
+    return lines, branches
+
+
+def room_of(path):
+    parts = path.split('/')
+    return '/'.join(parts[:2]) if parts[0] == 'gst' else parts[0]
+
+
+sources = read(build)
+if not sources:
+    sys.exit('no counts in ' + build)
+below = []
+print('%-38s %17s %17s' % ('room', 'lines', 'branches'))
+rooms = collections.defaultdict(list)
+for path, source in sources.items():
+    rooms[room_of(path)].append(source)
+for room in sorted(rooms):
+    if row(room, rooms[room])[0] < LINES:
+        below.append(room + ': lines')
+print('\n%-38s %17s %17s' % ('parser', 'lines', 'branches'))
+for path in PARSERS:
+    if row(path, [sources[path]])[1] < BRANCHES:
+        below.append(path + ': branches')
+print('\n%-38s %17s %17s' % ('commit', 'lines', 'branches'))
+for path in COMMITS:
+    if min(row(path, [sources[path]])) < COMMIT:
+        below.append(path)
+with open(os.path.join(build, 'uncovered.txt'), 'w', encoding='utf-8') as file:
+    for path in sorted(sources):
+        source = sources[path]
+        dark = {number for number, count in source.lines.items() if not count}
+        halves = {number for (number, _), count in source.branches.items() if not count} - dark
+        for number in sorted(dark | halves):
+            file.write('%s:%d: %s: %s\n' % (path, number, 'line' if number in dark else 'branch',
+                                            source.text[number - 1].strip()))
+print('\nBelow the aims (lines of a room %d%%, branches of a parser %d%%, commits %d%%): %s'
+      % (LINES, BRANCHES, COMMIT, ', '.join(below) or 'none'))
