@@ -215,7 +215,7 @@ test_save_refused (void)
 
   g_assert_false (cloth_pattern_save (pattern, "/nowhere/pattern.json",
           &error));
-  g_assert_error (error, G_FILE_ERROR, G_FILE_ERROR_NOENT);
+  g_assert_error (error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND);
   g_clear_error (&error);
   pattern->square_m = NAN;
   g_assert_false (cloth_pattern_save (pattern, "/nowhere/pattern.json",

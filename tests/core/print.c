@@ -519,7 +519,7 @@ test_save_refused (void)
   g_clear_error (&error);
   g_assert_null (cloth_print_save (BOARD (pattern), &options,
           "/nowhere/board.pdf", &error));
-  g_assert_error (error, G_FILE_ERROR, G_FILE_ERROR_NOENT);
+  g_assert_error (error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND);
   g_clear_error (&error);
   g_assert_null (cloth_print_svg (BOARD (pattern), &options, 1, 0, &error));
   g_assert_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_VALUE);
