@@ -36,8 +36,11 @@ cloth_input_open (const gchar * path, GError ** error)
 {
   ClothInput *input;
   struct stat info;
-  gint fd = g_open (path, O_RDONLY | O_CLOEXEC | O_NONBLOCK, 0);
+  gint fd;
 
+  do
+    fd = g_open (path, O_RDONLY | O_CLOEXEC | O_NONBLOCK, 0);
+  while (fd < 0 && errno == EINTR);
   if (fd < 0 || fstat (fd, &info) < 0) {
     cloth_file_fail (error, errno, "open", path);
     if (fd >= 0)

@@ -637,18 +637,20 @@ cloth_npy_writer_finish (ClothNpyWriter * writer, GError ** error)
  * @n_rows: (out): how many whole rows are there
  * @error: #ClothFileError, #GIOErrorEnum
  *
- * Returns: %TRUE when its header can be read
+ * Returns: %TRUE when its header can be read, or had not been written yet
  */
 gboolean
 cloth_npy_part_count (const ClothParts * parts, const gchar * name,
     guint64 * n_rows, GError ** error)
 {
   g_autofree gchar *path = cloth_parts_get_path (parts, name);
-  g_autoptr (ClothNpyReader) reader = cloth_npy_reader_open (path, error);
+  GError *fault = NULL;
+  g_autoptr (ClothNpyReader) reader = cloth_npy_reader_open (path, &fault);
   const ClothNpyInfo *info = reader ? &reader->info : NULL;
 
+  *n_rows = 0;
   if (!reader)
-    return FALSE;
+    return cloth_file_is_unwritten (fault, error);
   if (info->rank == 0 || info->row_items == 0)
     return invalid (error, "it has no rows that can be counted");
   *n_rows = (cloth_input_get_size (reader->input) - info->data_offset) /

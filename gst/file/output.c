@@ -203,6 +203,7 @@ cloth_output_new (const gchar * path, GError ** error)
       output->alone = TRUE;
       return output;
     }
+    g_unlink (temporary);
     close (fd);
   }
 }

@@ -118,12 +118,13 @@ cloth_csv_recover (ClothParts * parts, const gchar * base,
       g_ascii_strtoull (cloth_parts_get_note (parts), NULL, 10);
   g_autofree gchar *name = g_strconcat (base, ".csv", NULL);
   g_autofree gchar *path = cloth_parts_get_path (parts, name);
-  g_autoptr (ClothInput) input = cloth_input_open (path, error);
+  GError *fault = NULL;
+  g_autoptr (ClothInput) input = cloth_input_open (path, &fault);
   g_autoptr (ClothOutput) output = NULL;
   guint64 end;
 
   if (!input)
-    return FALSE;
+    return cloth_file_is_unwritten (fault, error);
   if (n_vertices == 0 || n_vertices > CLOTH_MAX_VERTICES)
     return cloth_file_invalid (error, "how many vertices it has is not noted");
   if (!count_frames (input, n_vertices, &recovered->n_frames, &end, error))

@@ -304,11 +304,13 @@ static gboolean
 count_samples (const gchar * path, guint64 * n_samples, guint64 * rest,
     guint64 * sample_size, GError ** error)
 {
-  g_autoptr (ClothPc2Reader) reader = cloth_pc2_reader_open (path, error);
+  GError *fault = NULL;
+  g_autoptr (ClothPc2Reader) reader = cloth_pc2_reader_open (path, &fault);
   guint64 bytes;
 
+  *n_samples = *rest = *sample_size = 0;
   if (!reader)
-    return FALSE;
+    return cloth_file_is_unwritten (fault, error);
   *sample_size = 3 * sizeof (gfloat) * (guint64) reader->info.n_points;
   bytes = cloth_input_get_size (reader->input) - HEADER_SIZE;
   *n_samples = MIN (bytes / *sample_size, G_MAXINT32);

@@ -238,12 +238,13 @@ cloth_vtp_recover (ClothParts * parts, const gchar * base,
   const guint64 n_files = cloth_parts_count_numbered (parts, base, ".vtp");
   g_autofree gchar *name = g_strconcat (base, ".pvd", NULL);
   g_autofree gchar *path = cloth_parts_get_path (parts, name);
-  g_autoptr (GArray) ends = list_frames (path, error);
+  GError *fault = NULL;
+  g_autoptr (GArray) ends = list_frames (path, &fault);
   g_autoptr (ClothOutput) output = NULL;
   guint64 n;
 
   if (!ends)
-    return FALSE;
+    return cloth_file_is_unwritten (fault, error);
   n = recovered->n_frames = MIN (n_files, ends->len);
   recovered->cut = n_files != n || ends->len != n;
   if (n == 0)
