@@ -36,7 +36,7 @@ struct _ClothParts
   gint lock;
   gboolean reopened;
   gboolean unsynced;            /* files were not brought to the disk one by one */
-  gboolean keep;                /* the hidden folder stays */
+  gboolean keep;                /* nothing is to be removed */
   GPtrArray *replaced;          /* names that are not written, but go */
 };
 
@@ -480,9 +480,11 @@ cloth_parts_commit (ClothParts * parts, GError ** error)
     }
     return FALSE;
   }
-  parts->keep = FALSE;
   if (!parts->reopened)
     clear_older (parts);
+  /* Readers wait for this. */
+  remove_parts (parts->path);
+  parts->keep = TRUE;
   return TRUE;
 }
 
@@ -700,7 +702,7 @@ resume (ClothParts * parts, gboolean overwrite, ClothRemains * remains,
   if (!place (parts, names, error))
     return FALSE;
   *remains = CLOTH_REMAINS_PLACED;
-  parts->keep = FALSE;
+  remove_parts (parts->path);
   return TRUE;
 }
 
