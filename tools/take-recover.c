@@ -23,7 +23,8 @@ tell (const gchar * shown, const ClothRecovered * recovered)
         recovered->dropped);
 }
 
-static gint
+/* A message for each that can't be finished. */
+static gboolean
 recover_one (const gchar * path, gboolean overwrite)
 {
   g_autofree gchar *target = cloth_recover_get_target (path);
@@ -33,54 +34,59 @@ recover_one (const gchar * path, gboolean overwrite)
 
   if (cloth_recover (path, overwrite, &recovered, &error)) {
     tell (shown, &recovered);
-    return DONE;
+    return TRUE;
   }
   if (g_error_matches (error, G_IO_ERROR, G_IO_ERROR_EXISTS))
-    return complain (FAILED, "%s: %s; move it away, or say --overwrite. The "
-        "remains are in “%s”", shown, error->message, path);
-  return complain (FAILED, "%s: %s. The remains are in “%s”", shown,
-      error->message, path);
+    complain (FAILED, "%s: %s; move it away, or say --overwrite. The remains "
+        "are in “%s”", shown, error->message, path);
+  else
+    complain (FAILED, "%s: %s. The remains are in “%s”", shown,
+        error->message, path);
+  return FALSE;
 }
 
 /* Of several recordings to one name only the newest is finished: the next would replace
  * it. */
-static gint
+static gboolean
 recover_all (const gchar * location, gboolean overwrite)
 {
   g_autoptr (GError) error = NULL;
   g_autoptr (GPtrArray) found = cloth_recover_find (location, &error);
   g_autoptr (GHashTable) seen =
       g_hash_table_new_full (g_str_hash, g_str_equal, g_free, NULL);
-  gint code = DONE;
+  gboolean done = TRUE;
 
-  if (!found)
-    return complain (FAILED, "%s", error->message);
+  if (!found) {
+    complain (FAILED, "%s", error->message);
+    return FALSE;
+  }
   if (found->len == 0)
     g_print ("%s: there is nothing to recover\n", location);
   for (guint i = 0; i < found->len; i++) {
     const gchar *path = found->pdata[i];
     gchar *target = cloth_recover_get_target (path);
 
-    if (g_hash_table_add (seen, target))
-      code = MAX (code, recover_one (path, overwrite));
-    else
-      code =
-          complain (FAILED,
-          "%s: “%s” is older; move the newer one away and "
-          "call again to finish it too", target, path);
+    if (g_hash_table_add (seen, target)) {
+      done &= recover_one (path, overwrite);
+    } else {
+      complain (FAILED,
+          "%s: “%s” is older; move the newer one away and call "
+          "again to finish it too", (const gchar *) target, path);
+      done = FALSE;
+    }
   }
-  return code;
+  return done;
 }
 
 gint
 recover_takes (const Arguments * arguments)
 {
-  gint code = DONE;
+  gboolean done = TRUE;
 
   if (!arguments->rest[1])
     return complain (BAD_USAGE,
         "name the recording, or the folder it lies in: recover FOLDER|FILE");
   for (guint i = 1; arguments->rest[i]; i++)
-    code = MAX (code, recover_all (arguments->rest[i], arguments->overwrite));
-  return code;
+    done &= recover_all (arguments->rest[i], arguments->overwrite);
+  return done ? DONE : FAILED;
 }

@@ -85,7 +85,9 @@ cloth_recover_get_target (const gchar * path)
   g_autofree gchar *folder = g_path_get_dirname (path);
   g_autofree gchar *head = cloth_parts_get_head (path);
 
-  return g_str_equal (head, "take.json") ? g_steal_pointer (&folder) :
+  if (g_str_equal (head, "take.json"))
+    return g_steal_pointer (&folder);
+  return g_str_equal (folder, ".") ? g_steal_pointer (&head) :
       g_build_filename (folder, head, NULL);
 }
 

@@ -513,7 +513,8 @@ test_half_placed (void)
 static void
 test_hostile (void)
 {
-  static const gchar *const bad_headers[] = { "", "\x93NUMPY", "no array at all",
+  static const gchar *const bad_headers[] =
+      { "", "\x93NUMPY", "no array at all",
     "\x93NUMPY\x01\x00\x06\x00{'a':1"
   };
   g_autofree gchar *outside = NULL;
