@@ -116,6 +116,30 @@ sync_fd (gint fd)
   return failed;
 }
 
+/* @fd: a file
+ * @data: bytes to append
+ * @size: how many
+ *
+ * Returns: 0 when all were taken, or what the system says
+ */
+gint
+cloth_file_append (gint fd, gconstpointer data, gsize size)
+{
+  const guint8 *from = data;
+
+  while (size > 0) {
+    gssize n = write (fd, from, size);
+
+    if (n < 0 && errno == EINTR)
+      continue;
+    if (n < 0)
+      return errno;
+    from += n;
+    size -= (gsize) n;
+  }
+  return 0;
+}
+
 /* @from: a file or folder
  * @to: its new name, in the same file system
  *
@@ -281,17 +305,9 @@ static gboolean
 write_all (ClothOutput * output, const guint8 * data, gsize size,
     GError ** error)
 {
-  while (size > 0) {
-    gssize n = write (output->fd, data, size);
+  const gint code = cloth_file_append (output->fd, data, size);
 
-    if (n < 0 && errno == EINTR)
-      continue;
-    if (n < 0)
-      return cloth_file_fail (error, errno, "write", output->shown);
-    data += n;
-    size -= (gsize) n;
-  }
-  return TRUE;
+  return !code || cloth_file_fail (error, code, "write", output->shown);
 }
 
 /* @output: an output not yet committed

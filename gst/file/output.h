@@ -38,6 +38,7 @@ gboolean cloth_file_write_text (const gchar * path, const gchar * text,
 gboolean cloth_file_check_target (const gchar * path, GError ** error);
 gboolean cloth_file_lock_new (gint fd);
 gboolean cloth_file_lock_old (gint fd);
+gint cloth_file_append (gint fd, gconstpointer data, gsize size);
 gint cloth_file_rename (const gchar * from, const gchar * to);
 gboolean cloth_folder_sync (const gchar * folder, GError ** error);
 gboolean cloth_file_fail (GError ** error, gint code, const gchar * doing,

@@ -165,8 +165,6 @@ make_folder (const gchar * path, const gchar * folder, const gchar * head,
 {
   g_autofree gchar *template = g_strdup (path);
   g_autofree gchar *lock = NULL, *whole = NULL;
-  const gssize size = (gssize) strlen (note);
-  gssize n;
   gint fd, code;
 
   if (!g_mkdtemp_full (template, 0777)) {
@@ -186,15 +184,10 @@ make_folder (const gchar * path, const gchar * folder, const gchar * head,
     remove_folder (template);
     return 0;
   }
-  if (fd >= 0) {
-    do
-      n = write (fd, note, (gsize) size);
-    while (n < 0 && errno == EINTR);
-    if (n < 0 || g_mkdir (whole, 0777) < 0)
-      code = errno;
-    else if (n < size)
-      code = ENOSPC;
-  }
+  if (fd >= 0)
+    code = cloth_file_append (fd, note, strlen (note));
+  if (!code && g_mkdir (whole, 0777) < 0)
+    code = errno;
   if (code) {
     cloth_file_fail (error, code, "write", folder);
     remove_parts (template);
