@@ -172,12 +172,16 @@ cloth_folder_sync (const gchar * folder, GError ** error)
   do
     fd = g_open (folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC, 0);
   while (fd < 0 && errno == EINTR);
+  if (fd < 0 && errno == EACCES)
+    return TRUE;
   if (fd < 0)
-    return errno == EACCES || cloth_file_fail (error, errno, "open", folder);
+    return cloth_file_fail (error, errno, "open", folder);
   if (sync_fd (fd) && errno != EINVAL)
     code = errno;
   close (fd);
-  return !code || cloth_file_fail (error, code, "write", folder);
+  if (code)
+    return cloth_file_fail (error, code, "write", folder);
+  return TRUE;
 }
 
 static ClothOutput *
@@ -307,7 +311,9 @@ write_all (ClothOutput * output, const guint8 * data, gsize size,
 {
   const gint code = cloth_file_append (output->fd, data, size);
 
-  return !code || cloth_file_fail (error, code, "write", output->shown);
+  if (code)
+    return cloth_file_fail (error, code, "write", output->shown);
+  return TRUE;
 }
 
 /* @output: an output not yet committed
@@ -453,7 +459,8 @@ cloth_output_commit (ClothOutput * output, GError ** error)
   failed = cloth_file_rename (output->temporary, output->path);
   if (failed)
     return cloth_file_fail (error, failed, "write", output->shown);
-  g_clear_pointer (&output->temporary, g_free);
+  g_free (output->temporary);
+  output->temporary = NULL;
   /* After an interrupted close the file is closed, too. */
   failed = close (output->fd) < 0 && errno != EINTR ? errno : 0;
   output->fd = -1;

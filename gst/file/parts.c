@@ -177,11 +177,10 @@ make_folder (const gchar * path, const gchar * folder, const gchar * head,
     fd = g_open (lock, O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
   while (fd < 0 && errno == EINTR);
   code = fd < 0 ? errno : 0;
-  if (code == ENOENT)
-    return 0;
-  if (fd >= 0 && !cloth_file_lock_new (fd)) {
-    close (fd);
+  if (code == ENOENT || (fd >= 0 && !cloth_file_lock_new (fd))) {
     remove_folder (template);
+    if (fd >= 0)
+      close (fd);
     return 0;
   }
   if (fd >= 0)
@@ -318,7 +317,9 @@ sync_files (const gchar * folder, GError ** error)
   code = errno;
   if (fd >= 0)
     close (fd);
-  return !failed || cloth_file_fail (error, code, "write", folder);
+  if (failed)
+    return cloth_file_fail (error, code, "write", folder);
+  return TRUE;
 #else
   sync ();
   return TRUE;
@@ -331,7 +332,9 @@ move (const gchar * from, const gchar * to, const gchar * shown,
 {
   const gint code = cloth_file_rename (from, to);
 
-  return !code || cloth_file_fail (error, code, "write", shown);
+  if (code)
+    return cloth_file_fail (error, code, "write", shown);
+  return TRUE;
 }
 
 static gboolean
@@ -404,8 +407,11 @@ put_back (const ClothParts * parts, GError ** error)
     if (!move (from, to, to, error))
       return FALSE;
   }
-  return names && cloth_folder_sync (parts->folder, error) &&
-      (g_rmdir (old) == 0 || cloth_file_fail (error, errno, "write", old));
+  if (!names || !cloth_folder_sync (parts->folder, error))
+    return FALSE;
+  if (g_rmdir (old) < 0)
+    return cloth_file_fail (error, errno, "write", old);
+  return TRUE;
 }
 
 /* As it was before the commit, as far as that can be had. */

@@ -457,6 +457,7 @@ test_several (void)
   g_autoptr (GPtrArray) found = NULL;
   g_autoptr (GError) error = NULL;
   struct timespec times[2] = { {1000, 0}, {1000, 0} };
+  g_autofree gchar *lone = NULL;
   ClothRecovered recovered;
 
   scratch_begin ();
@@ -475,6 +476,15 @@ test_several (void)
   g_assert_false (cloth_recover (found->pdata[1], FALSE, &recovered, &error));
   g_assert_error (error, G_IO_ERROR, G_IO_ERROR_EXISTS);
   g_assert_true (g_file_test (found->pdata[1], G_FILE_TEST_IS_DIR));
+  /* of the same age: by their names */
+  lone = scratch_path (".c.obj.part-000000");
+  g_assert_true (g_file_set_contents (lone, "", 0, NULL));
+  g_assert_cmpint (utimensat (AT_FDCWD, lone, times, 0), ==, 0);
+  g_assert_cmpint (utimensat (AT_FDCWD, found->pdata[1], times, 0), ==, 0);
+  g_ptr_array_unref (found);
+  found = cloth_recover_find (path, NULL);
+  g_assert_cmpuint (found->len, ==, 2);
+  g_assert_cmpstr (found->pdata[0], ==, lone);
   scratch_end ();
 }
 
@@ -635,6 +645,84 @@ test_device (void)
   }
 }
 
+/* The device may come later, too. */
+static void
+test_device_meanwhile (void)
+{
+  g_autoptr (ClothOutput) output = NULL;
+  g_autoptr (ClothMeshWriter) writer = NULL;
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *path = NULL;
+  g_autofree gchar *pc2 = NULL;
+
+  scratch_begin ();
+  path = scratch_path ("c.obj");
+  pc2 = scratch_path ("c.pc2");
+  output = cloth_output_new (pc2, &error);
+  writer = start (path);
+  g_assert_true (append (writer, 0, 0, FALSE));
+  g_assert_cmpint (mkfifo (pc2, 0600), ==, 0);
+  g_assert_false (cloth_output_commit (output, &error));
+  g_assert_error (error, G_IO_ERROR, G_IO_ERROR_NOT_REGULAR_FILE);
+  g_clear_error (&error);
+  g_assert_false (cloth_mesh_writer_close (writer, &error));
+  g_assert_error (error, G_IO_ERROR, G_IO_ERROR_NOT_REGULAR_FILE);
+  g_clear_pointer (&output, cloth_output_free);
+  g_clear_pointer (&writer, cloth_mesh_writer_free);
+  g_assert_cmpuint (scratch_count (), ==, 1);
+  scratch_end ();
+}
+
+/* Names that are like those of parts, parts of other things, parts without a lock. */
+static void
+test_names (void)
+{
+  static const gchar *const others[] = { ".x", ".part-abcdef", "c.part-abcdef",
+    ".c.obj.part-abcdefg", ".c.obj.part_abcdef", ".a-long-name-without-it"
+  };
+  g_autofree gchar *garment = NULL;
+  g_autofree gchar *whole = NULL;
+  g_autofree gchar *unlocked = NULL;
+  g_autofree gchar *link = NULL;
+  g_autofree gchar *target = NULL;
+  g_autofree gchar *path = NULL;
+  g_autofree gchar *table = NULL;
+  g_autoptr (GPtrArray) found = NULL;
+  ClothRecovered recovered;
+
+  scratch_begin ();
+  for (guint i = 0; i < G_N_ELEMENTS (others); i++) {
+    g_autofree gchar *other = scratch_path (others[i]);
+
+    g_assert_true (g_file_set_contents (other, "mine", 4, NULL));
+  }
+  assert_nothing_left (scratch);
+  garment = scratch_path (".garment.json.part-abcdef");
+  whole = g_build_filename (garment, "new", NULL);
+  unlocked = scratch_path (".c.obj.part-abcdef");
+  link = scratch_path (".c.csv.part-abcdef");
+  g_assert_cmpint (g_mkdir_with_parents (whole, 0777), ==, 0);
+  g_assert_cmpint (g_mkdir (unlocked, 0777), ==, 0);
+  g_assert_cmpint (symlink (others[0], link), ==, 0);
+  path = scratch_path ("c.obj");
+  table = scratch_path ("c.csv");
+  g_assert_cmpint (cloth_recover_look (path, CLOTH_MESH_FORMAT_AUTO), ==,
+      CLOTH_LEFT_NOTHING);
+  g_assert_cmpint (cloth_recover_look (table, CLOTH_MESH_FORMAT_AUTO), ==,
+      CLOTH_LEFT_NOTHING);
+  g_assert_cmpint (cloth_recover_look ("/nonexistent/c.obj",
+          CLOTH_MESH_FORMAT_AUTO), ==, CLOTH_LEFT_NOTHING);
+  g_assert_true (cloth_recover (garment, FALSE, &recovered, NULL));
+  g_assert_true (cloth_recover (unlocked, FALSE, &recovered, NULL));
+  g_assert_false (cloth_recover (link, FALSE, &recovered, NULL));
+  found = cloth_recover_find (scratch, NULL);
+  g_assert_cmpuint (found->len, ==, 1);
+  g_assert_cmpuint (scratch_count (), ==, G_N_ELEMENTS (others) + 1);
+  target = cloth_recover_get_target ("./.c.obj.part-abcdef");
+  g_assert_cmpstr (target, ==, "c.obj");
+  scratch_end ();
+}
+
 /* A folder where a file is meant, a file where a folder is meant. */
 static void
 test_wrong_kind (void)
@@ -703,6 +791,8 @@ main (int argc, char **argv)
   g_test_add_func ("/recover/hostile", test_hostile);
   g_test_add_func ("/recover/no-regular-file", test_no_regular_file);
   g_test_add_func ("/recover/device", test_device);
+  g_test_add_func ("/recover/device-meanwhile", test_device_meanwhile);
+  g_test_add_func ("/recover/names", test_names);
   g_test_add_func ("/recover/wrong-kind", test_wrong_kind);
   g_test_add_func ("/recover/link", test_link);
   return g_test_run ();

@@ -18,7 +18,8 @@
 
 #define VISIBLE __attribute__ ((visibility ("default")))
 
-void cloth_fault_arm (const gchar * call, guint nth, gint code);
+void cloth_fault_arm (const gchar * call, guint nth, gint code,
+    gboolean for_good);
 gboolean cloth_fault_fired (void);
 
 static struct
@@ -26,16 +27,17 @@ static struct
   const gchar *call;
   guint left;
   gint code;
-  gboolean armed, fired;
+  gboolean armed, fired, for_good;
 } fault;
 
 VISIBLE void
-cloth_fault_arm (const gchar * call, guint nth, gint code)
+cloth_fault_arm (const gchar * call, guint nth, gint code, gboolean for_good)
 {
   fault.call = call;
   fault.left = nth;
   fault.code = code;
   fault.armed = nth > 0;
+  fault.for_good = for_good;
   fault.fired = FALSE;
 }
 
@@ -50,8 +52,9 @@ cloth_fault_fired (void)
 static gboolean
 strikes (const gchar * call)
 {
-  if (!fault.armed || fault.fired || (*fault.call != '*' &&
-          strcmp (fault.call, call) != 0) || --fault.left > 0)
+  if (!fault.armed || (fault.fired && !fault.for_good) ||
+      (*fault.call != '*' && strcmp (fault.call, call) != 0) ||
+      (!fault.fired && --fault.left > 0))
     return FALSE;
   fault.fired = TRUE;
   if (fault.code == CLOTH_FAULT_KILL)
@@ -142,6 +145,7 @@ WRITER (opendir, DIR *, NULL, (const char *path), (path))
     return next arguments; \
   }
 
+/* *INDENT-OFF* */
 #undef pwrite
 #undef pread
 #undef ftruncate
@@ -154,7 +158,12 @@ MOVED (ftruncate, "ftruncate", int, (int fd, off_t size), (fd, size))
 MOVED (ftruncate64, "ftruncate", int, (int fd, off_t size), (fd, size))
 MOVED (lseek, "lseek", off_t, (int fd, off_t to, int from), (fd, to, from))
 MOVED (lseek64, "lseek", off_t, (int fd, off_t to, int from), (fd, to, from))
-     VISIBLE int fsync (int fd)
+MOVED (fstat, "fstat", int, (int fd, struct stat * info), (fd, info))
+MOVED (fstat64, "fstat", int, (int fd, struct stat64 * info), (fd, info))
+/* *INDENT-ON* */
+
+VISIBLE int
+fsync (int fd)
 {
   NEXT (fsync);
   if (strikes ("fsync"))

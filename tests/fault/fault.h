@@ -20,9 +20,12 @@ enum
  * @nth: which call of it fails, from 1 on; 0: none does
  * @code: an errno, or one of the above
  *
+ * @for_good: whether all later ones fail as well
+ *
  * Until the next one, calls are counted and not brought to the disk.
  */
-typedef void (*ClothFaultArm) (const gchar * call, guint nth, gint code);
+typedef void (*ClothFaultArm) (const gchar * call, guint nth, gint code,
+    gboolean for_good);
 /* Returns: whether the fault happened. From then on none does */
 typedef gboolean (*ClothFaultFired) (void);
 

@@ -53,11 +53,13 @@ static const Fault faults[] = {
   {"pwrite", CLOTH_FAULT_SHORT, HARMLESS},
   {"pread", EIO}, {"pread", EINTR, HARMLESS}, {"pread", CLOTH_FAULT_SHORT,
       HARMLESS},
-  {"fsync", EIO}, {"fsync", ENOSPC}, {"fsync", EINTR, HARMLESS},
+  {"fsync", EIO}, {"fsync", ENOSPC}, {"fsync", EINVAL, MAYBE}, {"fsync", EINTR,
+      HARMLESS},
   {"syncfs", EIO}, {"syncfs", EINTR, HARMLESS},
   {"rename", EIO}, {"rename", ENOSPC}, {"rename", EINTR, HARMLESS},
   {"open", EIO, MAYBE}, {"open", ENOSPC, MAYBE}, {"open", EMFILE, MAYBE},
-  {"open", EINTR, HARMLESS},
+  {"open", ENOENT, MAYBE}, {"open", EACCES, MAYBE},
+  {"open", EINTR, HARMLESS}, {"fstat", EIO, MAYBE},
   {"close", EIO, MAYBE}, {"close", EINTR, HARMLESS},
   {"ftruncate", EIO}, {"ftruncate", EINTR, HARMLESS},
   {"lseek", EIO}, {"mkdir", ENOSPC, MAYBE}, {"mkdir", EIO, MAYBE}, {"opendir",
@@ -185,21 +187,33 @@ write_file (const gchar * path, guint round, GError ** error)
   const gsize size = 700000;
   g_autofree gchar *bytes = g_malloc (size);
   g_autoptr (ClothOutput) output = NULL;
+  g_autoptr (ClothOutput) held = NULL;
 
   memset (bytes, round == 0 ? 'o' : 'n', size);
-  output = cloth_output_new (path, error);
-  return output && cloth_output_write (output, bytes, 10, error) &&
+  held = cloth_output_new (path, error);
+  output = held ? cloth_output_new (path, error) : NULL;
+  return output && cloth_output_write (held, bytes, size, error) &&
+      cloth_output_write (output, bytes, 10, error) &&
+      cloth_output_copy (held, output, error) &&
       cloth_output_write (output, bytes, size, error) &&
       cloth_output_printf (output, error, "%u", round) &&
       cloth_output_write_at (output, 5, "five", 4, error) &&
       cloth_output_commit (output, error);
 }
 
+static gboolean
+write_at_once (const gchar * path, guint round, GError ** error)
+{
+  g_autofree gchar *bytes = g_strnfill (300000, round == 0 ? 'o' : 'n');
+
+  return cloth_file_write_text (path, bytes, error);
+}
+
 static const Writer writers[] = {
   {"c.obj", write_mesh}, {"c.ply", write_mesh}, {"c.take", write_mesh},
   {"c.glb", write_mesh}, {"c.usda", write_mesh}, {"c.pvd", write_mesh},
   {"c.c3d", write_mesh}, {"c.csv", write_mesh}, {"t.take", write_take},
-  {"file", write_file}, {"rig.json", write_rig},
+  {"file", write_file}, {"text", write_at_once}, {"rig.json", write_rig},
   {"pattern.json", write_pattern}, {"garment.json", write_garment},
   {"report", write_report, TRUE}
 };
@@ -350,7 +364,7 @@ test_writer (gconstpointer data)
     g_autoptr (GHashTable) old = NULL;
     g_autoptr (GHashTable) new = NULL;
 
-    arm ("", 0, 0);
+    arm ("", 0, 0, FALSE);
     begin (writer, with_old, 0);
     old = look (TRUE);
     begin (writer, with_old, 1);
@@ -361,7 +375,7 @@ test_writer (gconstpointer data)
         gboolean done;
 
         begin (writer, with_old, 0);
-        arm (faults[i].call, nth, faults[i].code);
+        arm (faults[i].call, nth, faults[i].code, FALSE);
         done = writer->write (path, 1, &error);
         if (!fired ()) {
           g_assert_no_error (error);
@@ -516,14 +530,19 @@ check_killed (const gchar * path, gboolean with_old, gboolean readable,
     g_assert_true (is_visible (old) || is_visible (new) || !with_old);
 }
 
+static gboolean
+is_readable (const Writer * writer)
+{
+  return g_str_has_suffix (writer->name, ".obj") ||
+      g_str_has_suffix (writer->name, ".ply") ||
+      g_str_has_suffix (writer->name, ".take");
+}
+
 /* A child is killed at each of its calls in turn. */
 static void
 test_kill (gconstpointer data)
 {
   const Writer *writer = data;
-  const gboolean readable = g_str_has_suffix (writer->name, ".obj") ||
-      g_str_has_suffix (writer->name, ".ply") ||
-      g_str_has_suffix (writer->name, ".take");
   const guint before = n_kills;
 
   scratch_begin ();
@@ -533,7 +552,7 @@ test_kill (gconstpointer data)
     g_autoptr (GHashTable) new = NULL;
     gint status = 0;
 
-    arm ("", 0, 0);
+    arm ("", 0, 0, FALSE);
     begin (writer, with_old, 0);
     old = look (TRUE);
     begin (writer, with_old, 1);
@@ -545,7 +564,7 @@ test_kill (gconstpointer data)
       child = fork ();
       g_assert_cmpint (child, >=, 0);
       if (child == 0) {
-        arm ("*", nth, CLOTH_FAULT_KILL);
+        arm ("*", nth, CLOTH_FAULT_KILL, FALSE);
         writer->write (path, 1, NULL);
         _exit (0);
       }
@@ -554,11 +573,51 @@ test_kill (gconstpointer data)
         break;
       g_assert_cmpint (WTERMSIG (status), ==, SIGKILL);
       n_kills++;
-      check_killed (path, with_old, readable, old, new);
+      check_killed (path, with_old, is_readable (writer), old, new);
     }
   }
   g_assert_cmpuint (n_kills, >, before + 20);
   g_test_message ("%s: %u kills", writer->name, n_kills - before);
+  scratch_end ();
+}
+
+/* From some call on the disk is dead: putting back fails, too. What is there when it lives
+ * again can be told and ended. */
+static void
+test_dead (gconstpointer data)
+{
+  static const gchar *const calls[] = { "*", "rename", "rmdir", "fsync" };
+  const Writer *writer = data;
+  const guint before = n_faults;
+
+  scratch_begin ();
+  for (guint with_old = 0; with_old < 2; with_old++) {
+    g_autofree gchar *path = scratch_path (writer->name);
+    g_autoptr (GHashTable) old = NULL;
+    g_autoptr (GHashTable) new = NULL;
+
+    arm ("", 0, 0, FALSE);
+    begin (writer, with_old, 0);
+    old = look (TRUE);
+    begin (writer, with_old, 1);
+    new = look (TRUE);
+    for (guint i = 0; i < G_N_ELEMENTS (calls); i++) {
+      for (guint nth = 1;; nth++) {
+        g_autoptr (GError) error = NULL;
+        gboolean done;
+
+        begin (writer, with_old, 0);
+        arm (calls[i], nth, EIO, TRUE);
+        done = writer->write (path, 1, &error);
+        if (!fired ())
+          break;
+        n_faults++;
+        g_assert_true (done == !error);
+        check_killed (path, with_old, is_readable (writer), old, new);
+      }
+    }
+  }
+  g_test_message ("%s: %u dead disks", writer->name, n_faults - before);
   scratch_end ();
 }
 
@@ -578,7 +637,7 @@ test_recover (gconstpointer data)
     pid_t child = fork ();
 
     if (child == 0) {
-      arm ("*", at, CLOTH_FAULT_KILL);
+      arm ("*", at, CLOTH_FAULT_KILL, FALSE);
       writer->write (path, 1, NULL);
       _exit (0);
     }
@@ -599,12 +658,12 @@ test_recover (gconstpointer data)
         empty_scratch ();
         child = fork ();
         if (child == 0) {
-          arm ("*", at, CLOTH_FAULT_KILL);
+          arm ("*", at, CLOTH_FAULT_KILL, FALSE);
           writer->write (path, 1, NULL);
           _exit (0);
         }
         g_assert_cmpint (waitpid (child, &status, 0), ==, child);
-        arm (faults[i].call, nth, faults[i].code);
+        arm (faults[i].call, nth, faults[i].code, FALSE);
         found = recover (path, FALSE, &recovered, &error);
         struck = fired ();
         if (struck) {
@@ -651,11 +710,14 @@ main (int argc, char **argv)
   for (guint i = 0; i < G_N_ELEMENTS (writers); i++) {
     g_autofree gchar *fault = g_strconcat ("/fault/", writers[i].name, NULL);
     g_autofree gchar *killed = g_strconcat ("/kill/", writers[i].name, NULL);
+    g_autofree gchar *dead = g_strconcat ("/dead/", writers[i].name, NULL);
     g_autofree gchar *again = g_strconcat ("/recover/", writers[i].name, NULL);
 
     g_test_add_data_func (fault, &writers[i], test_writer);
-    if (writers[i].write == write_mesh || writers[i].write == write_take)
+    if (writers[i].write == write_mesh || writers[i].write == write_take) {
       g_test_add_data_func (killed, &writers[i], test_kill);
+      g_test_add_data_func (dead, &writers[i], test_dead);
+    }
     if (i < 3)
       g_test_add_data_func (again, &writers[i], test_recover);
   }
