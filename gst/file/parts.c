@@ -342,9 +342,14 @@ move_away (const ClothParts * parts, const gchar * name, GError ** error)
 {
   g_autofree gchar *from = target (parts, name);
   g_autofree gchar *to = inside (parts, "old", name);
+  gint code;
 
-  return cloth_file_check_target (from, error) &&
-      (!is_there (from) || move (from, to, from, error));
+  if (!cloth_file_check_target (from, error))
+    return FALSE;
+  code = cloth_file_rename (from, to);
+  if (code && code != ENOENT)
+    return cloth_file_fail (error, code, "write", from);
+  return TRUE;
 }
 
 /* The head goes first: without it readers find nothing. Of numbered files the last ones
@@ -564,16 +569,16 @@ cloth_parts_find (const gchar * folder, const gchar * head, GError ** error)
     return NULL;
   while ((name = g_dir_read_name (dir))) {
     g_autofree gchar *base = cloth_parts_get_head (name);
-    GStatBuf info;
+    GStatBuf info = { 0 };
     Found item;
 
     if (!base || (head && !g_str_equal (base, head)))
       continue;
     item.path = g_build_filename (folder, name, NULL);
-    item.changed_ns = 0;
-    if (g_lstat (item.path, &info) == 0)
-      item.changed_ns = (gint64) info.st_mtim.tv_sec * G_GINT64_CONSTANT
-          (1000000000) + info.st_mtim.tv_nsec;
+    /* One that vanishes meanwhile is the oldest. */
+    g_lstat (item.path, &info);
+    item.changed_ns = (gint64) info.st_mtim.tv_sec * G_GINT64_CONSTANT
+        (1000000000) + info.st_mtim.tv_nsec;
     g_array_append_val (found, item);
   }
   g_dir_close (dir);
@@ -629,21 +634,36 @@ cloth_parts_check_placed (const gchar * head, GError ** error)
   return TRUE;
 }
 
+static gboolean
+fail_busy (GError ** error)
+{
+  g_set_error (error, G_IO_ERROR, G_IO_ERROR_BUSY,
+      "it is being written: end that program first");
+  return FALSE;
+}
+
 /* @path: a lone file that cloth_parts_find() found
+ * @error: #GIOErrorEnum; %G_IO_ERROR_BUSY: its writer lives
  *
  * Removes it when its writer is gone.
  *
  * Returns: whether that was so
  */
 gboolean
-cloth_parts_remove_lone (const gchar * path)
+cloth_parts_remove_lone (const gchar * path, GError ** error)
 {
   gint fd = g_open (path, O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0);
-  gboolean removed = fd >= 0 && cloth_file_lock_old (fd) &&
-      g_unlink (path) == 0;
+  gboolean removed;
 
-  if (fd >= 0)
-    close (fd);
+  if (fd < 0)
+    return cloth_file_fail (error, errno, "open", path);
+  if (!cloth_file_lock_old (fd))
+    removed = fail_busy (error);
+  else
+    removed = TRUE;
+  if (removed && g_unlink (path) < 0)
+    removed = cloth_file_fail (error, errno, "remove", path);
+  close (fd);
   return removed;
 }
 
@@ -734,8 +754,7 @@ cloth_parts_reopen (const gchar * path, gboolean overwrite,
   }
   if (fd >= 0 && !cloth_file_lock_old (fd)) {
     close (fd);
-    g_set_error (error, G_IO_ERROR, G_IO_ERROR_BUSY,
-        "it is being written: end that program first");
+    fail_busy (error);
     return NULL;
   }
   parts = wrap (path, head, fd);

@@ -41,7 +41,7 @@ gboolean cloth_parts_check_placed (const gchar * head, GError ** error);
 gchar *cloth_parts_get_head (const gchar * path);
 ClothParts *cloth_parts_reopen (const gchar * path, gboolean overwrite,
     ClothRemains * remains, GError ** error);
-gboolean cloth_parts_remove_lone (const gchar * path);
+gboolean cloth_parts_remove_lone (const gchar * path, GError ** error);
 void cloth_parts_discard (ClothParts * parts);
 const gchar *cloth_parts_get_note (const ClothParts * parts);
 gchar *cloth_parts_get_path (const ClothParts * parts, const gchar * name);

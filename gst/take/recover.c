@@ -137,13 +137,8 @@ cloth_recover (const gchar * path, gboolean overwrite,
   ClothRemains remains;
 
   memset (recovered, 0, sizeof *recovered);
-  if (!g_file_test (path, G_FILE_TEST_IS_DIR)) {
-    if (cloth_parts_remove_lone (path))
-      return TRUE;
-    g_set_error (error, G_IO_ERROR, G_IO_ERROR_BUSY,
-        "it is being written: end that program first");
-    return FALSE;
-  }
+  if (!g_file_test (path, G_FILE_TEST_IS_DIR))
+    return cloth_parts_remove_lone (path, error);
   parts = cloth_parts_reopen (path, overwrite, &remains, error);
   if (!parts)
     return FALSE;

@@ -458,6 +458,7 @@ test_several (void)
   g_autoptr (GError) error = NULL;
   struct timespec times[2] = { {1000, 0}, {1000, 0} };
   g_autofree gchar *lone = NULL;
+  g_autofree gchar *other = NULL;
   ClothRecovered recovered;
 
   scratch_begin ();
@@ -485,6 +486,25 @@ test_several (void)
   found = cloth_recover_find (path, NULL);
   g_assert_cmpuint (found->len, ==, 2);
   g_assert_cmpstr (found->pdata[0], ==, lone);
+  /* of many ages: the newest first */
+  for (guint i = 0; i < 10; i++) {
+    g_autofree gchar *path_i = g_strdup_printf ("%s/.d.obj.part-00000%u",
+        scratch, i);
+
+    times[1].tv_sec = 2000 + (i * 7) % 10;
+    g_assert_true (g_file_set_contents (path_i, "", 0, NULL));
+    g_assert_cmpint (utimensat (AT_FDCWD, path_i, times, 0), ==, 0);
+  }
+  g_ptr_array_unref (found);
+  other = scratch_path ("d.obj");
+  found = cloth_recover_find (other, NULL);
+  g_assert_cmpuint (found->len, ==, 10);
+  for (guint i = 0; i < 10; i++) {
+    const gchar *path_i = found->pdata[i];
+
+    g_assert_cmpuint ((guint) (path_i[strlen (path_i) - 1] - '0') * 7 % 10, ==,
+        9 - i);
+  }
   scratch_end ();
 }
 
@@ -516,6 +536,43 @@ test_half_placed (void)
       assert_frames (path, 0, 2);
       scratch_end ();
     }
+  }
+}
+
+/* Somebody recorded anew where a commit was cut off: that stays, unless told. */
+static void
+test_half_placed_taken (void)
+{
+  static const gchar *const subs[] = { "old", "placing" };
+
+  for (guint k = 0; k < G_N_ELEMENTS (subs); k++) {
+    g_autofree gchar *path = NULL;
+    g_autofree gchar *hidden = NULL;
+    g_autofree gchar *sub = NULL;
+    g_autofree gchar *waiting = NULL;
+    g_autofree gchar *bytes = NULL;
+    g_autoptr (GError) error = NULL;
+    ClothRecovered recovered;
+
+    scratch_begin ();
+    path = scratch_path ("c.csv");
+    hidden = scratch_path (".c.csv.part-abcdef");
+    sub = g_build_filename (hidden, subs[k], NULL);
+    waiting = g_build_filename (sub, "c.csv", NULL);
+    g_assert_cmpint (g_mkdir_with_parents (sub, 0777), ==, 0);
+    g_assert_true (g_file_set_contents (waiting, "waiting", -1, NULL));
+    g_assert_true (g_file_set_contents (path, "mine", -1, NULL));
+    g_assert_false (cloth_recover (hidden, FALSE, &recovered, &error));
+    g_assert_error (error, G_IO_ERROR, G_IO_ERROR_EXISTS);
+    g_clear_error (&error);
+    g_assert_true (g_file_get_contents (path, &bytes, NULL, NULL));
+    g_assert_cmpstr (bytes, ==, "mine");
+    g_clear_pointer (&bytes, g_free);
+    g_assert_true (cloth_recover (hidden, TRUE, &recovered, &error));
+    g_assert_true (g_file_get_contents (path, &bytes, NULL, NULL));
+    g_assert_cmpstr (bytes, ==, "waiting");
+    g_assert_cmpuint (scratch_count (), ==, 1);
+    scratch_end ();
   }
 }
 
@@ -788,6 +845,7 @@ main (int argc, char **argv)
   g_test_add_func ("/recover/replaced", test_replaced);
   g_test_add_func ("/recover/several", test_several);
   g_test_add_func ("/recover/half-placed", test_half_placed);
+  g_test_add_func ("/recover/half-placed-taken", test_half_placed_taken);
   g_test_add_func ("/recover/hostile", test_hostile);
   g_test_add_func ("/recover/no-regular-file", test_no_regular_file);
   g_test_add_func ("/recover/device", test_device);

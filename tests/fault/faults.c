@@ -115,7 +115,7 @@ write_mesh (const gchar * path, guint round, GError ** error)
   return writer && cloth_mesh_writer_close (writer, error);
 }
 
-/* A take with a mesh of its own, an obstacle and clamps. */
+/* A take with a mesh of its own, clamps, and covariances that begin late. */
 static gboolean
 write_take (const gchar * path, guint round, GError ** error)
 {
@@ -124,20 +124,19 @@ write_take (const gchar * path, guint round, GError ** error)
   g_autoptr (ClothTakeInfo) info = cloth_take_info_new ("t");
   g_autoptr (ClothTakeWriter) writer = NULL;
   const guint n_frames = round == 0 ? OLD_FRAMES : NEW_FRAMES;
-  ClothHeld held = { 0, -G_MAXDOUBLE, G_MAXDOUBLE };
-  gfloat positions[3 * N], clamps[3] = { 1, 2, 3 };
+  ClothHeld held = { 0, -1, 9 };
+  gfloat positions[3 * N], clamps[3] = { 1, 2, 3 }, covariances[6 * N] = { 0 };
   guint8 states[N];
 
   info->fps = 25;
   info->mesh = g_strdup (round == 0 ? "old.obj" : "new.obj");
-  held.from_s = -1;
-  held.until_s = 9;
   g_array_append_val (info->held, held);
   writer = cloth_take_writer_new (path, info, topology, error);
   for (guint f = 0; writer && f < n_frames; f++) {
     fill_frame (round, f, positions, states);
-    if (!cloth_take_writer_append (writer, f / 25., positions, states, NULL,
-            round == 0 ? clamps : NULL, error))
+    if (!cloth_take_writer_append (writer, f / 25., positions, states,
+            round == 1 && f > 0 ? covariances : NULL, round == 0 ? clamps :
+            NULL, error))
       return FALSE;
   }
   return writer && cloth_take_writer_close (writer, error);
@@ -621,6 +620,27 @@ test_dead (gconstpointer data)
   scratch_end ();
 }
 
+/* What can't be removed is told. */
+static void
+test_lone (void)
+{
+  g_autofree gchar *path = NULL;
+  g_autoptr (GError) error = NULL;
+  ClothRecovered recovered;
+
+  scratch_begin ();
+  path = scratch_path (".rig.json.part-abcdef");
+  g_assert_true (g_file_set_contents (path, "{", 1, NULL));
+  arm ("unlink", 1, EACCES, FALSE);
+  g_assert_false (cloth_recover (path, FALSE, &recovered, &error));
+  g_assert_true (fired ());
+  g_assert_error (error, G_IO_ERROR, G_IO_ERROR_PERMISSION_DENIED);
+  g_clear_error (&error);
+  g_assert_true (cloth_recover (path, FALSE, &recovered, &error));
+  g_assert_cmpuint (scratch_count (), ==, 0);
+  scratch_end ();
+}
+
 /* Recovering fails as well as writing does: what can be recovered stays so. */
 static void
 test_recover (gconstpointer data)
@@ -721,6 +741,7 @@ main (int argc, char **argv)
     if (i < 3)
       g_test_add_data_func (again, &writers[i], test_recover);
   }
+  g_test_add_func ("/lone", test_lone);
   rigs[0] = cloth_rig_load (TEST_DATA "/checker_pair/rig.json", &error);
   g_assert_no_error (error);
   rigs[1] = cloth_rig_load (TEST_DATA "/dots_ring8/rig.json", &error);
