@@ -5,6 +5,7 @@
 #include "gst/pattern/print.h"
 
 #include <cairo.h>
+#include <gio/gio.h>
 #include <glib/gstdio.h>
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,7 @@
 /* rig.json: reading, writing and refusing.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <gio/gio.h>
 #include <glib/gstdio.h>
 #include <math.h>
 #include <string.h>
