@@ -9,8 +9,13 @@
  * Writes OBJ + PC2 (what Blender and most others read), one PLY file a frame or the
  * folder of a take, which `meshsrc` reads again, and glTF, USD, VTP (ParaView), C3D and
  * CSV for other programs. Frames go to temporary names as they come; at EOS, or when
- * the element is stopped, the files get their names. After an error nothing is left. A
- * flush starts the recording anew, as in filesink.
+ * the element is stopped, the files get their names, all together. After an error nothing
+ * is left. A flush starts the recording anew, as in filesink.
+ *
+ * When the program is killed, the frames written so far wait in a hidden folder beside
+ * the files, and `gst-cloth-take-1.0 recover` finishes the recording (not glTF, USD and
+ * C3D). The next `meshsink` at the same location says so by a warning; when its own
+ * recording is whole, it takes the place of the interrupted one.
  *
  * Takes, C3D and CSV say which vertices are not seen. In the others such a vertex holds
  * its last place, one never seen so far the mean of its neighbours; `state`, where the
@@ -32,6 +37,7 @@
 #include "elements/gstclothproperties.h"
 #include "elements/gstclothutil.h"
 #include "elements/gstmeshformat.h"
+#include "gst/take/recover.h"
 
 GST_DEBUG_CATEGORY_STATIC (mesh_sink_debug);
 #define GST_CAT_DEFAULT mesh_sink_debug
@@ -245,6 +251,30 @@ gst_mesh_sink_event (GstBaseSink * sink, GstEvent * event)
   return GST_BASE_SINK_CLASS (gst_mesh_sink_parent_class)->event (sink, event);
 }
 
+/* Recording on would lose what can be finished, but is no error. */
+static void
+warn_of_remains (GstMeshSink * self)
+{
+  const gchar *location = self->settings.location;
+
+  switch (cloth_recover_look (location, self->settings.format)) {
+    case CLOTH_LEFT_FRAMES:
+      GST_ELEMENT_WARNING (self, RESOURCE, FAILED,
+          ("A recording to “%s” was interrupted: to keep it, stop and run "
+              "“gst-cloth-take-1.0 recover”; this one is going to replace it",
+              location), (NULL));
+      break;
+    case CLOTH_LEFT_LOST:
+      GST_ELEMENT_WARNING (self, RESOURCE, FAILED,
+          ("A recording to “%s” was interrupted, and its format can't be "
+              "finished: its remains go when this one is whole", location),
+          (NULL));
+      break;
+    default:
+      break;
+  }
+}
+
 static gboolean
 gst_mesh_sink_start (GstBaseSink * sink)
 {
@@ -256,6 +286,7 @@ gst_mesh_sink_start (GstBaseSink * sink)
         (NULL));
     return FALSE;
   }
+  warn_of_remains (self);
   self->failed = FALSE;
   return TRUE;
 }

@@ -4,42 +4,18 @@
 #include "tools/gap-tool.h"
 
 #include <glib/gstdio.h>
-#include <signal.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "gst/cloth-io/observations.h"
 #include "gst/gap/diagnose.h"
 #include "gst/gap/report/report.h"
 
-static volatile sig_atomic_t interrupted;
-
-static void
-interrupt (int number)
-{
-  interrupted = 1;
-}
-
-/* Once: the next one ends the program at once. */
-static void
-catch_interrupts (void)
-{
-  struct sigaction action;
-
-  memset (&action, 0, sizeof action);
-  action.sa_handler = interrupt;
-  action.sa_flags = (int) (SA_RESETHAND | SA_RESTART);
-  sigemptyset (&action.sa_mask);
-  sigaction (SIGINT, &action, NULL);
-  sigaction (SIGTERM, &action, NULL);
-}
-
 static gboolean
 go_on (gpointer data, gdouble share, const gchar * what)
 {
   tell_progress (share, what);
-  return !interrupted;
+  return !was_interrupted ();
 }
 
 static GPtrArray *

@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "tools/gap-tool.h"
 
+#include <gio/gio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,6 +23,11 @@ write_frames (ClothSim * sim, const ClothScene * scene,
   for (guint frame = 0; frame < scene->n_frames; frame++) {
     gdouble since_s;
 
+    if (was_interrupted ()) {
+      g_set_error (error, G_IO_ERROR, G_IO_ERROR_CANCELLED,
+          "stopped; nothing was written");
+      return FALSE;
+    }
     cloth_sim_advance (sim, scene->times[frame]);
     if (cloth_sim_get_state (sim, 0, &since_s) != CLOTH_SIM_OK) {
       g_set_error (error, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_MODEL,
@@ -107,6 +113,7 @@ simulate (const Arguments * arguments)
     return complain (BAD_USAGE, "--threads: give 0 for all, or a number");
   if (is_same_folder (arguments->scene, arguments->output))
     return complain (BAD_USAGE, "--output is the scene itself; name another");
+  catch_interrupts ();
   if (run_simulation (arguments, &error))
     return DONE;
   return complain (FAILED, "%s", error->message);

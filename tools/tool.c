@@ -7,12 +7,14 @@
 
 #include <locale.h>
 #include <math.h>
+#include <signal.h>
 #include <string.h>
 #include <unistd.h>
 
 static const gchar *program;
 /* Whether a line of progress waits for its end. */
 static gboolean in_line;
+static volatile sig_atomic_t interrupted;
 
 /* @name: of the program
  * @summary: what it does, for --help
@@ -85,6 +87,32 @@ tell_progress (gdouble share, const gchar * what)
   }
   last = MAX (last, percent);
   tenth = last / 10;
+}
+
+static void
+interrupt (int number)
+{
+  interrupted = 1;
+}
+
+/* Ctrl-C and SIGTERM are only noted, once: the next one ends the program at once. */
+void
+catch_interrupts (void)
+{
+  struct sigaction action;
+
+  memset (&action, 0, sizeof action);
+  action.sa_handler = interrupt;
+  action.sa_flags = (int) (SA_RESETHAND | SA_RESTART);
+  sigemptyset (&action.sa_mask);
+  sigaction (SIGINT, &action, NULL);
+  sigaction (SIGTERM, &action, NULL);
+}
+
+gboolean
+was_interrupted (void)
+{
+  return interrupted;
 }
 
 /* "50mm", "5cm", "0.05m" or "2in", the value of --@option, in metres. */

@@ -16,6 +16,8 @@ gint tool_main (const gchar * name, const gchar * summary,
     gint (*run) (gconstpointer arguments), gconstpointer arguments);
 gint complain (gint code, const gchar * format, ...) G_GNUC_PRINTF (2, 3);
 void tell_progress (gdouble share, const gchar * what);
+void catch_interrupts (void);
+gboolean was_interrupted (void);
 gboolean parse_length (const gchar * option, const gchar * text,
     gdouble * metres, GError ** error);
 gboolean parse_size (const gchar * text, gint * width, gint * height);

@@ -19,6 +19,7 @@ typedef enum {
 
 #define CLOTH_FILE_ERROR (cloth_file_error_quark ())
 GQuark cloth_file_error_quark (void);
+gboolean cloth_file_is_unwritten (GError * fault, GError ** error);
 gboolean cloth_file_invalid (GError ** error, const gchar * format, ...)
     G_GNUC_PRINTF (2, 3);
 

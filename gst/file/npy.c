@@ -542,20 +542,19 @@ make_header (const ClothNpyWriter * writer, guint64 n_rows, gsize size)
   return text;
 }
 
-/* @path: final name of the file
+/* @output: (transfer full): an empty file
  * @type: type of an item
  * @rank: number of dimensions, 0 to 4
  * @row_shape: (array) (nullable): the lengths of every dimension but the first
  * @error: #GIOErrorEnum
  *
  * Starts an array whose first length is known at the end only: rows are appended as
- * they come and nothing is held. Until the close it has a temporary name. An array
- * of rank 0 takes one row of one item.
+ * they come and nothing is held. An array of rank 0 takes one row of one item.
  *
  * Returns: (transfer full): a writer, or %NULL
  */
 ClothNpyWriter *
-cloth_npy_writer_new (const gchar * path, ClothNpyType type, guint rank,
+cloth_npy_writer_new (ClothOutput * output, ClothNpyType type, guint rank,
     const guint64 * row_shape, GError ** error)
 {
   g_autoptr (ClothNpyWriter) writer = g_new0 (ClothNpyWriter, 1);
@@ -564,6 +563,7 @@ cloth_npy_writer_new (const gchar * path, ClothNpyType type, guint rank,
 
   g_return_val_if_fail (rank <= CLOTH_NPY_MAX_RANK, NULL);
 
+  writer->output = output;
   writer->type = type;
   writer->rank = rank;
   for (guint i = 1; i < rank; i++) {
@@ -576,9 +576,6 @@ cloth_npy_writer_new (const gchar * path, ClothNpyType type, guint rank,
     }
   }
   writer->row_bytes = (gsize) bytes;
-  writer->output = cloth_output_new (path, error);
-  if (!writer->output)
-    return NULL;
   header = make_header (writer, 0, 0);
   writer->header_size = header->len;
   if (!cloth_output_write (writer->output, header->str, header->len, error))
@@ -590,6 +587,8 @@ cloth_npy_writer_new (const gchar * path, ClothNpyType type, guint rank,
  * @items: `n_rows` rows of the writer's type, in the processor's byte order
  * @n_rows: how many rows
  * @error: #GIOErrorEnum
+ *
+ * The rows outlive the program from then on.
  *
  * Returns: %TRUE when they were taken
  */
@@ -606,7 +605,8 @@ cloth_npy_writer_append (ClothNpyWriter * writer, gconstpointer items,
 
   cloth_swap_little_endian (ordered, size, bytes / size);
 #endif
-  if (!cloth_output_write (writer->output, ordered, bytes, error))
+  if (!cloth_output_write (writer->output, ordered, bytes, error) ||
+      !cloth_output_flush (writer->output, error))
     return FALSE;
   writer->shape[0] += n_rows;
   return TRUE;
@@ -615,27 +615,81 @@ cloth_npy_writer_append (ClothNpyWriter * writer, gconstpointer items,
 /* @writer: a writer
  * @error: #GIOErrorEnum
  *
- * Writes the final shape. For files that appear together: cloth_output_commit()
- * gives them their names.
+ * Writes the final shape and commits the file. The writer can then only be freed.
  *
- * Returns: (transfer full): the output, or %NULL
+ * Returns: %TRUE when the file is whole
  */
-ClothOutput *
+gboolean
 cloth_npy_writer_finish (ClothNpyWriter * writer, GError ** error)
 {
   g_autoptr (GString) header =
       make_header (writer, writer->shape[0], writer->header_size);
 
-  g_assert (header->len == writer->header_size);
-  if (!cloth_output_write_at (writer->output, 0, header->str, header->len,
-          error) || !cloth_output_finish (writer->output, error))
-    return NULL;
-  return g_steal_pointer (&writer->output);
+  /* One that another program made may be too narrow. */
+  if (header->len != writer->header_size)
+    return invalid (error, "the header has no room for the number of rows");
+  return cloth_output_write_at (writer->output, 0, header->str, header->len,
+      error) && cloth_output_commit (writer->output, error);
+}
+
+/* @parts: what a killed program left
+ * @name: of an array, whole or not
+ * @n_rows: (out): how many whole rows are there
+ * @error: #ClothFileError, #GIOErrorEnum
+ *
+ * Returns: %TRUE when its header can be read, or had not been written yet
+ */
+gboolean
+cloth_npy_part_count (const ClothParts * parts, const gchar * name,
+    guint64 * n_rows, GError ** error)
+{
+  g_autofree gchar *path = cloth_parts_get_path (parts, name);
+  GError *fault = NULL;
+  g_autoptr (ClothNpyReader) reader = cloth_npy_reader_open (path, &fault);
+  const ClothNpyInfo *info = reader ? &reader->info : NULL;
+
+  *n_rows = 0;
+  if (!reader)
+    return cloth_file_is_unwritten (fault, error);
+  if (info->rank == 0 || info->row_items == 0)
+    return invalid (error, "it has no rows that can be counted");
+  *n_rows = (cloth_input_get_size (reader->input) - info->data_offset) /
+      (info->row_items * info->item_size);
+  return TRUE;
+}
+
+/* @parts: what a killed program left
+ * @name: of an array that has at least @n_rows
+ * @n_rows: how many are kept
+ * @error: #ClothFileError, #GIOErrorEnum
+ *
+ * Returns: %TRUE when the array is whole
+ */
+gboolean
+cloth_npy_part_finish (ClothParts * parts, const gchar * name, guint64 n_rows,
+    GError ** error)
+{
+  g_autofree gchar *path = cloth_parts_get_path (parts, name);
+  g_autoptr (ClothNpyReader) reader = cloth_npy_reader_open (path, error);
+  g_autoptr (ClothNpyWriter) writer = NULL;
+  const ClothNpyInfo *info = reader ? &reader->info : NULL;
+
+  if (!reader)
+    return FALSE;
+  writer = g_new0 (ClothNpyWriter, 1);
+  writer->type = info->type;
+  writer->rank = info->rank;
+  memcpy (writer->shape, info->shape, sizeof writer->shape);
+  writer->shape[0] = n_rows;
+  writer->header_size = (gsize) info->data_offset;
+  writer->output = cloth_parts_continue (parts, name, info->data_offset +
+      n_rows * info->row_items * info->item_size, error);
+  return writer->output && cloth_npy_writer_finish (writer, error);
 }
 
 /* @writer: (transfer full) (nullable): a writer
  *
- * Frees it; a file that was not closed is removed.
+ * Frees it; a file that was not finished is removed.
  */
 void
 cloth_npy_writer_free (ClothNpyWriter * writer)

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "gst/file/file.h"
+#include "gst/file/parts.h"
 
 G_BEGIN_DECLS
 
@@ -69,11 +70,15 @@ gboolean cloth_npy_reader_read_raw (ClothNpyReader * reader,
     guint64 first_row, guint64 n_rows, gpointer items, GError ** error);
 void cloth_npy_reader_free (ClothNpyReader * reader);
 
-ClothNpyWriter *cloth_npy_writer_new (const gchar * path, ClothNpyType type,
+ClothNpyWriter *cloth_npy_writer_new (ClothOutput * output, ClothNpyType type,
     guint rank, const guint64 * row_shape, GError ** error);
+gboolean cloth_npy_part_count (const ClothParts * parts, const gchar * name,
+    guint64 * n_rows, GError ** error);
+gboolean cloth_npy_part_finish (ClothParts * parts, const gchar * name,
+    guint64 n_rows, GError ** error);
 gboolean cloth_npy_writer_append (ClothNpyWriter * writer,
     gconstpointer items, guint64 n_rows, GError ** error);
-ClothOutput *cloth_npy_writer_finish (ClothNpyWriter * writer, GError ** error);
+gboolean cloth_npy_writer_finish (ClothNpyWriter * writer, GError ** error);
 void cloth_npy_writer_free (ClothNpyWriter * writer);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothNpyReader, cloth_npy_reader_free)

@@ -13,6 +13,7 @@
 
 #include "gst/file/json.h"
 #include "gst/file/jsonwriter.h"
+#include "gst/file/output.h"
 #include "gst/math/random.h"
 
 /* Sizes of cloth beyond these are a mistake of the unit. */
@@ -693,7 +694,7 @@ cloth_m_array_to_json (const ClothMArray * array)
  *
  * Writes pattern.json; the file appears whole or not at all.
  *
- * Returns: %FALSE with %CLOTH_PATTERN_ERROR_VALUE or a #GFileError
+ * Returns: %FALSE with %CLOTH_PATTERN_ERROR_VALUE or a #GIOErrorEnum
  */
 gboolean
 cloth_m_array_save (const ClothMArray * array, const gchar * path,
@@ -704,5 +705,5 @@ cloth_m_array_save (const ClothMArray * array, const gchar * path,
   if (!cloth_m_array_check (array, error))
     return FALSE;
   text = cloth_m_array_to_json (array);
-  return g_file_set_contents (path, text, -1, error);
+  return cloth_file_write_text (path, text, error);
 }

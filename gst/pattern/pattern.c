@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "gst/file/json.h"
+#include "gst/file/output.h"
 
 /* Sizes of cloth beyond these are a mistake of the unit. */
 #define MIN_METRES 1e-6
@@ -447,7 +448,7 @@ cloth_pattern_to_json (const ClothPattern * pattern)
  *
  * Writes pattern.json; the file appears whole or not at all.
  *
- * Returns: %FALSE with %CLOTH_PATTERN_ERROR_VALUE or a #GFileError
+ * Returns: %FALSE with %CLOTH_PATTERN_ERROR_VALUE or a #GIOErrorEnum
  */
 gboolean
 cloth_pattern_save (const ClothPattern * pattern, const gchar * path,
@@ -458,5 +459,5 @@ cloth_pattern_save (const ClothPattern * pattern, const gchar * path,
   if (!cloth_pattern_check (pattern, error))
     return FALSE;
   text = cloth_pattern_to_json (pattern);
-  return g_file_set_contents (path, text, -1, error);
+  return cloth_file_write_text (path, text, error);
 }

@@ -5,6 +5,7 @@
 #include "gst/pattern/print.h"
 
 #include "config.h"
+#include "gst/file/output.h"
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
@@ -610,7 +611,7 @@ save_bytes (GBytes * bytes, const gchar * path, GError ** error)
   if (!bytes)
     return FALSE;
   data = g_bytes_get_data (bytes, &size);
-  return g_file_set_contents (path, data, (gssize) size, error);
+  return cloth_file_write (path, data, size, error);
 }
 
 /* @artwork: what is printed
@@ -623,7 +624,7 @@ save_bytes (GBytes * bytes, const gchar * path, GError ** error)
  * whole or not at all.
  *
  * Returns: (transfer full) (array zero-terminated=1): the files' names; free with
- *   g_strfreev(). %NULL with a #ClothPatternError or #GFileError
+ *   g_strfreev(). %NULL with a #ClothPatternError or #GIOErrorEnum
  */
 gchar **
 cloth_print_save (const ClothArtwork * artwork,

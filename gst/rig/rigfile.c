@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "gst/file/json.h"
+#include "gst/file/output.h"
 
 static gboolean
 check_keys (JsonObject * object, const gchar * where,
@@ -386,7 +387,7 @@ add_camera (JsonBuilder * b, const ClothCamera * c)
 
 /* @rig: a rig that passes cloth_rig_check()
  * @path: where to; replaced whole or not at all
- * @error: #GFileError or #ClothRigError
+ * @error: #GIOErrorEnum or #ClothRigError
  *
  * Writes version 1. Numbers are written so that they read back as the same doubles.
  *
@@ -420,6 +421,5 @@ cloth_rig_save (const ClothRig * rig, const gchar * path, GError ** error)
   json_generator_set_root (generator, root);
   text = json_generator_to_data (generator, NULL);
   line = g_strconcat (text, "\n", NULL);
-  return g_file_set_contents_full (path, line, -1,
-      G_FILE_SET_CONTENTS_CONSISTENT, 0666, error);
+  return cloth_file_write_text (path, line, error);
 }

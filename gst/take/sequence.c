@@ -152,6 +152,8 @@ open_obj_pc2 (ClothMeshReader * reader, const gchar * stem, GError ** error)
   g_autofree gchar *pc2_path = g_strconcat (stem, ".pc2", NULL);
   const ClothPc2Info *info;
 
+  if (!cloth_parts_check_placed (obj_path, error))
+    return FALSE;
   reader->obj = cloth_obj_read (obj_path, error);
   if (!reader->obj)
     return FALSE;
@@ -202,10 +204,13 @@ read_ply (ClothMeshReader * reader, guint frame, GError ** error)
 static gboolean
 open_ply (ClothMeshReader * reader, const gchar * stem, GError ** error)
 {
-  ClothPly *ply = cloth_ply_new ();
+  g_autofree gchar *head = g_strconcat (stem, ".ply", NULL);
+  ClothPly *ply;
   ClothTopology *topology;
 
-  reader->ply = ply;
+  if (!cloth_parts_check_placed (head, error))
+    return FALSE;
+  reader->ply = ply = cloth_ply_new ();
   reader->stem = g_strdup (stem);
   /* Sequences of other programs often begin with 1. */
   if (!ply_exists (reader, 0)) {
@@ -532,7 +537,7 @@ free_take (gpointer export)
 }
 
 static const ClothExporter take_exporter = {
-  TRUE, start_take, append_take, finish_take, free_take
+  TRUE, NULL, start_take, append_take, finish_take, free_take
 };
 
 /* by ClothMeshFormat */
@@ -541,6 +546,25 @@ static const ClothExporter *const exporters[] = {
   &cloth_gltf_exporter, &cloth_usd_exporter, &cloth_vtp_exporter,
   &cloth_c3d_exporter, &cloth_csv_exporter
 };
+
+/* @location: file or folder as the user gave it
+ * @format: its format
+ *
+ * Returns: (transfer full): the file that readers open first; of numbered files, their
+ *   stem with the ending
+ */
+gchar *
+cloth_mesh_format_head (const gchar * location, ClothMeshFormat format)
+{
+  g_autofree gchar *stem = NULL;
+
+  if (format == CLOTH_MESH_FORMAT_AUTO)
+    format = cloth_mesh_format_guess (location);
+  stem = cloth_mesh_format_stem (location, format);
+  if (!exporters[format]->ending)
+    return g_build_filename (stem, "take.json", NULL);
+  return g_strconcat (stem, exporters[format]->ending, NULL);
+}
 
 /* @location: file or folder; a take's folder is made, no other one
  * @format: its format
@@ -561,6 +585,8 @@ cloth_mesh_writer_new (const gchar * location, ClothMeshFormat format,
     GError ** error)
 {
   g_autoptr (ClothMeshWriter) writer = NULL;
+  g_autofree gchar *note = NULL;
+  g_autofree gchar *head = NULL;
 
   if (format == CLOTH_MESH_FORMAT_AUTO)
     format = cloth_mesh_format_guess (location);
@@ -570,11 +596,19 @@ cloth_mesh_writer_new (const gchar * location, ClothMeshFormat format,
   writer = g_new0 (ClothMeshWriter, 1);
   writer->exporter = exporters[format];
   writer->info.stem = cloth_mesh_format_stem (location, format);
-  writer->info.name = name ? g_strdup (name) :
-      g_path_get_basename (writer->info.stem);
+  writer->info.base = g_path_get_basename (writer->info.stem);
+  writer->info.name = g_strdup (name ? name : writer->info.base);
   writer->info.fps_n = fps_n;
   writer->info.fps_d = fps_d;
   writer->info.topology = cloth_topology_copy (topology);
+  if (writer->exporter->ending) {
+    note = g_strdup_printf ("%u", topology->n_vertices);
+    head = cloth_mesh_format_head (location, format);
+    /* The location itself, which may lack the ending, is no name for a file either. */
+    if (!cloth_file_check_target (location, error) ||
+        !(writer->info.parts = cloth_parts_new (head, note, error)))
+      return NULL;
+  }
   writer->export = writer->exporter->start (&writer->info, error);
   if (!writer->export)
     return NULL;
@@ -633,7 +667,8 @@ cloth_mesh_writer_close (ClothMeshWriter * writer, GError ** error)
 {
   if (writer->n_frames == 0)
     return cloth_file_invalid (error, "there is no frame to write");
-  return writer->exporter->finish (writer->export, error);
+  return writer->exporter->finish (writer->export, error) &&
+      (!writer->info.parts || cloth_parts_commit (writer->info.parts, error));
 }
 
 /* @writer: (transfer full) (nullable): a writer
@@ -647,9 +682,11 @@ cloth_mesh_writer_free (ClothMeshWriter * writer)
     return;
   if (writer->export)
     writer->exporter->free (writer->export);
+  cloth_parts_free (writer->info.parts);
   cloth_hold_free (writer->hold);
   cloth_topology_free (writer->info.topology);
   g_free (writer->info.stem);
+  g_free (writer->info.base);
   g_free (writer->info.name);
   g_free (writer);
 }

@@ -36,6 +36,7 @@ typedef struct _ClothMeshWriter ClothMeshWriter;
 
 ClothMeshFormat cloth_mesh_format_guess (const gchar * location);
 gchar *cloth_mesh_format_stem (const gchar * location, ClothMeshFormat format);
+gchar *cloth_mesh_format_head (const gchar * location, ClothMeshFormat format);
 
 ClothMeshReader *cloth_mesh_reader_open (const gchar * location,
     ClothMeshFormat format, GError ** error);

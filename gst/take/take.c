@@ -13,6 +13,7 @@
 #include "gst/file/npy.h"
 #include "gst/mesh/formats/formats.h"
 
+#define JSON "take.json"
 #define MAX_FRAMES (CLOTH_MAX_BUFFER / sizeof (gdouble))
 
 struct _ClothTake
@@ -47,11 +48,10 @@ struct _ClothTakeWriter
 {
   gchar *folder;
   gboolean made_folder;
-  gchar *json;
+  ClothParts *parts;
   guint n_vertices, n_held;
   guint64 n_frames;
   gdouble last_time;
-  GPtrArray *meshes;            /* ClothOutput: the cloth, obstacles */
   ClothNpyWriter *arrays[N_ARRAYS];
   gfloat *unknown;              /* one frame of NaN covariances */
 };
@@ -65,13 +65,15 @@ note_file (ClothTake * take, const gchar * name)
 static gboolean
 load_info (ClothTake * take, GError ** error)
 {
-  g_autofree gchar *path = cloth_path_inside (take->folder, "take.json", error);
+  g_autofree gchar *head = g_build_filename (take->folder, JSON, NULL);
+  g_autofree gchar *path = cloth_parts_check_placed (head, error) ?
+      cloth_path_inside (take->folder, JSON, error) : NULL;
   g_autoptr (ClothInput) input = path ? cloth_input_open (path, error) : NULL;
   g_autoptr (GByteArray) bytes = g_byte_array_new ();
 
   if (!input || !cloth_input_load (input, CLOTH_MAX_BUFFER, bytes, error))
     return FALSE;
-  note_file (take, "take.json");
+  note_file (take, JSON);
   take->info = cloth_take_info_parse ((const gchar *) bytes->data,
       bytes->len - 1, error);
   return take->info != NULL;
@@ -535,11 +537,12 @@ start_array (ClothTakeWriter * writer, Array array, ClothNpyType type,
     guint rank, guint64 a, guint64 b, GError ** error)
 {
   const guint64 row_shape[] = { a, b };
-  g_autofree gchar *path = g_build_filename (writer->folder,
-      array_names[array], NULL);
-
-  writer->arrays[array] = cloth_npy_writer_new (path, type, rank, row_shape,
+  ClothOutput *output = cloth_parts_open (writer->parts, array_names[array],
       error);
+
+  if (output)
+    writer->arrays[array] = cloth_npy_writer_new (output, type, rank, row_shape,
+        error);
   return writer->arrays[array] != NULL;
 }
 
@@ -552,24 +555,21 @@ make_folder (ClothTakeWriter * writer, GError ** error)
   }
   if (errno == EEXIST && g_file_test (writer->folder, G_FILE_TEST_IS_DIR))
     return TRUE;
-  g_set_error (error, G_IO_ERROR, g_io_error_from_errno (errno),
-      "cannot make the folder “%s”: %s", writer->folder,
-      g_strerror (errno));
-  return FALSE;
+  if (errno == EEXIST)
+    errno = ENOTDIR;
+  return cloth_file_fail (error, errno, "make the folder", writer->folder);
 }
 
 static gboolean
 write_obj (ClothTakeWriter * writer, const gchar * file, const gchar * name,
     const ClothTopology * topology, const gfloat * positions, GError ** error)
 {
-  g_autofree gchar *path = g_build_filename (writer->folder, file, NULL);
-  ClothOutput *output = cloth_output_new (path, error);
+  g_autoptr (ClothOutput) output =
+      cloth_parts_open (writer->parts, file, error);
 
-  if (!output)
-    return FALSE;
-  g_ptr_array_add (writer->meshes, output);
-  return cloth_obj_write (output, name, topology, positions, 0, 1, error) &&
-      cloth_output_finish (output, error);
+  return output &&
+      cloth_obj_write (output, name, topology, positions, 0, 1, error) &&
+      cloth_output_commit (output, error);
 }
 
 /* In its file the mesh lies flat: a take needs only its faces and uv. */
@@ -611,14 +611,27 @@ write_obstacles (ClothTakeWriter * writer, const ClothTakeInfo * info,
   return TRUE;
 }
 
+static gboolean
+write_json (ClothTakeWriter * writer, const ClothTakeInfo * info,
+    GError ** error)
+{
+  g_autofree gchar *json = cloth_take_info_to_json (info);
+  g_autoptr (ClothOutput) output =
+      cloth_parts_open (writer->parts, JSON, error);
+
+  return output && cloth_output_write (output, json, strlen (json), error) &&
+      cloth_output_write (output, "\n", 1, error) &&
+      cloth_output_commit (output, error);
+}
+
 /* @folder: the take; made when it is not there, but not its parents
  * @info: what take.json shall say; when `mesh` is set, the name of the OBJ file that
  *   is written from @topology. Meshes of obstacles are written under their names
  * @topology: the mesh
  * @error: #GIOErrorEnum, #ClothFileError
  *
- * Starts a take. Frames are written as they come, under temporary names. Other files
- * in an existing folder stay.
+ * Starts a take. Frames are written as they come, into a hidden folder in @folder. Other
+ * files in an existing folder stay.
  *
  * Returns: (transfer full): a writer, or %NULL
  */
@@ -627,21 +640,21 @@ cloth_take_writer_new (const gchar * folder, const ClothTakeInfo * info,
     const ClothTopology * topology, GError ** error)
 {
   g_autoptr (ClothTakeWriter) writer = g_new0 (ClothTakeWriter, 1);
+  g_autofree gchar *head = g_build_filename (folder, JSON, NULL);
 
   writer->folder = g_strdup (folder);
-  writer->json = cloth_take_info_to_json (info);
-  writer->meshes =
-      g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_output_free);
   writer->n_vertices = topology->n_vertices;
   writer->n_held = info->held->len;
   if (!make_folder (writer, error) ||
-      (info->mesh && !write_mesh (writer, info, topology, error)) ||
-      !write_obstacles (writer, info, error) ||
-      !start_array (writer, POSITIONS, CLOTH_NPY_FLOAT32, 3,
-          writer->n_vertices, 3, error) ||
-      !start_array (writer, TIMES, CLOTH_NPY_FLOAT64, 1, 0, 0, error) ||
-      !start_array (writer, STATES, CLOTH_NPY_UINT8, 2, writer->n_vertices, 0,
-          error))
+      !(writer->parts = cloth_parts_new (head, "", error)) ||
+      !write_json (writer, info, error) || (info->mesh
+          && !write_mesh (writer, info, topology, error))
+      || !write_obstacles (writer, info, error)
+      || !start_array (writer, POSITIONS, CLOTH_NPY_FLOAT32, 3,
+          writer->n_vertices, 3, error)
+      || !start_array (writer, TIMES, CLOTH_NPY_FLOAT64, 1, 0, 0, error)
+      || !start_array (writer, STATES, CLOTH_NPY_UINT8, 2, writer->n_vertices,
+          0, error))
     return NULL;
   return g_steal_pointer (&writer);
 }
@@ -718,61 +731,27 @@ cloth_take_writer_append (ClothTakeWriter * writer, gdouble time_s,
   return TRUE;
 }
 
-/* Removes the arrays of an earlier take in the same folder that this one does not have: they
- * would be read with it. Without take.json the folder is no take until all is in place. */
-static void
-remove_stale (ClothTakeWriter * writer)
-{
-  g_autofree gchar *json = g_build_filename (writer->folder, "take.json", NULL);
-
-  g_unlink (json);
-  for (guint i = 0; i < N_ARRAYS; i++) {
-    g_autofree gchar *path = g_build_filename (writer->folder,
-        array_names[i], NULL);
-
-    if (!writer->arrays[i])
-      g_unlink (path);
-  }
-}
-
 /* @writer: a writer that has at least one frame
  * @error: #GIOErrorEnum, #ClothFileError
  *
- * Gives every file its name, take.json last. The writer can then only be freed.
+ * Gives every file its name, take.json last: without it the folder is no take. Arrays of
+ * an earlier take in the same folder that this one does not have go; they would be read
+ * with it. The writer can then only be freed.
  *
  * Returns: %TRUE when the take is there
  */
 gboolean
 cloth_take_writer_close (ClothTakeWriter * writer, GError ** error)
 {
-  g_autofree gchar *path = g_build_filename (writer->folder, "take.json", NULL);
-  g_autoptr (GPtrArray) outputs =
-      g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_output_free);
-  ClothOutput *output;
-
   if (writer->n_frames == 0)
     return cloth_file_invalid (error, "a take needs at least one frame");
-  while (writer->meshes->len > 0)
-    g_ptr_array_add (outputs, g_ptr_array_steal_index (writer->meshes, 0));
   for (guint i = 0; i < N_ARRAYS; i++) {
     if (!writer->arrays[i])
-      continue;
-    output = cloth_npy_writer_finish (writer->arrays[i], error);
-    if (!output)
+      cloth_parts_replace (writer->parts, array_names[i]);
+    else if (!cloth_npy_writer_finish (writer->arrays[i], error))
       return FALSE;
-    g_ptr_array_add (outputs, output);
   }
-  output = cloth_output_new (path, error);
-  if (!output)
-    return FALSE;
-  g_ptr_array_add (outputs, output);
-  if (!cloth_output_write (output, writer->json, strlen (writer->json), error)
-      || !cloth_output_write (output, "\n", 1, error) ||
-      !cloth_output_finish (output, error))
-    return FALSE;
-  remove_stale (writer);
-  if (!cloth_output_commit ((ClothOutput **) outputs->pdata, outputs->len,
-          error))
+  if (!cloth_parts_commit (writer->parts, error))
     return FALSE;
   writer->made_folder = FALSE;
   return TRUE;
@@ -789,12 +768,76 @@ cloth_take_writer_free (ClothTakeWriter * writer)
     return;
   for (guint i = 0; i < N_ARRAYS; i++)
     cloth_npy_writer_free (writer->arrays[i]);
-  g_ptr_array_unref (writer->meshes);
+  cloth_parts_free (writer->parts);
   /* Only an empty folder goes. */
   if (writer->made_folder)
     g_rmdir (writer->folder);
   g_free (writer->unknown);
-  g_free (writer->json);
   g_free (writer->folder);
   g_free (writer);
+}
+
+/* Counts the rows of all arrays. One that begins later has too few when it was caught
+ * being filled up: it is left out. */
+static gboolean
+count_rows (ClothParts * parts, guint64 n_rows[N_ARRAYS],
+    ClothRecovered * recovered, GError ** error)
+{
+  guint64 most;
+
+  for (guint i = 0; i < N_ARRAYS; i++) {
+    g_autofree gchar *path = cloth_parts_get_path (parts, array_names[i]);
+
+    n_rows[i] = G_MAXUINT64;
+    if (i > STATES && !g_file_test (path, G_FILE_TEST_EXISTS))
+      continue;
+    if (!cloth_npy_part_count (parts, array_names[i], &n_rows[i], error))
+      return FALSE;
+  }
+  most = MAX (n_rows[POSITIONS], MAX (n_rows[TIMES], n_rows[STATES]));
+  recovered->n_frames = MIN (n_rows[POSITIONS], MIN (n_rows[TIMES],
+          n_rows[STATES]));
+  for (guint i = COVARIANCES; i < N_ARRAYS; i++) {
+    if (n_rows[i] < recovered->n_frames - MIN (recovered->n_frames, 1)) {
+      recovered->dropped = array_names[i];
+      cloth_parts_drop (parts, array_names[i]);
+      n_rows[i] = G_MAXUINT64;
+    }
+  }
+  for (guint i = COVARIANCES; i < N_ARRAYS; i++)
+    recovered->n_frames = MIN (recovered->n_frames, n_rows[i]);
+  recovered->cut = recovered->n_frames != most;
+  return TRUE;
+}
+
+/* @parts: what was left of a take
+ * @base: not used: its files have names of their own
+ * @recovered: (out): how much it is
+ * @error: #ClothFileError, #GIOErrorEnum
+ *
+ * A #ClothRecover.
+ */
+gboolean
+cloth_take_recover (ClothParts * parts, const gchar * base,
+    ClothRecovered * recovered, GError ** error)
+{
+  guint64 n_rows[N_ARRAYS];
+
+  /* The arrays are begun after all that is written at once. */
+  for (guint i = 0; i <= STATES; i++) {
+    g_autofree gchar *path = cloth_parts_get_path (parts, array_names[i]);
+
+    if (!g_file_test (path, G_FILE_TEST_EXISTS))
+      return TRUE;
+  }
+  if (!count_rows (parts, n_rows, recovered, error))
+    return FALSE;
+  for (guint i = 0; recovered->n_frames > 0 && i < N_ARRAYS; i++) {
+    if (n_rows[i] == G_MAXUINT64)
+      cloth_parts_replace (parts, array_names[i]);
+    else if (!cloth_npy_part_finish (parts, array_names[i],
+            recovered->n_frames, error))
+      return FALSE;
+  }
+  return TRUE;
 }

@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
+#include "gst/mesh/formats/formats.h"
 #include "gst/take/take-info.h"
 
 G_BEGIN_DECLS
@@ -39,6 +40,8 @@ gboolean cloth_take_writer_append (ClothTakeWriter * writer, gdouble time_s,
     const gfloat * covariances, const gfloat * clamps, GError ** error);
 gboolean cloth_take_writer_close (ClothTakeWriter * writer, GError ** error);
 void cloth_take_writer_free (ClothTakeWriter * writer);
+gboolean cloth_take_recover (ClothParts * parts, const gchar * base,
+    ClothRecovered * recovered, GError ** error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothTake, cloth_take_free)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothTakeWriter, cloth_take_writer_free)

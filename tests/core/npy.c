@@ -20,12 +20,14 @@ static const struct
   {CLOTH_NPY_UINT32, "uint32"}, {CLOTH_NPY_UINT64, "uint64"},
 };
 
-static gboolean
-close_writer (ClothNpyWriter * writer, GError ** error)
+static ClothNpyWriter *
+start_writer (const gchar * path, ClothNpyType type, guint rank,
+    const guint64 * row_shape, GError ** error)
 {
-  g_autoptr (ClothOutput) output = cloth_npy_writer_finish (writer, error);
+  ClothOutput *output = cloth_output_new (path, error);
 
-  return output && cloth_output_commit (&output, 1, error);
+  return output ?
+      cloth_npy_writer_new (output, type, rank, row_shape, error) : NULL;
 }
 
 /* A whole array of @rank dimensions. */
@@ -33,11 +35,12 @@ static gboolean
 write_array (const gchar * path, ClothNpyType type, guint rank,
     const guint64 * shape, gconstpointer items, GError ** error)
 {
-  g_autoptr (ClothNpyWriter) writer = cloth_npy_writer_new (path, type, rank,
+  g_autoptr (ClothNpyWriter) writer = start_writer (path, type, rank,
       rank > 1 ? shape + 1 : NULL, error);
 
   return writer && cloth_npy_writer_append (writer, items,
-      rank > 0 ? shape[0] : 1, error) && close_writer (writer, error);
+      rank > 0 ? shape[0] : 1, error)
+      && cloth_npy_writer_finish (writer, error);
 }
 
 /* NumPy writes every type, rank and version; the values are a ramp. */
@@ -148,7 +151,7 @@ test_streams (void)
 
   scratch_begin ();
   path = scratch_path ("long.npy");
-  writer = cloth_npy_writer_new (path, CLOTH_NPY_FLOAT32, 3, row_shape, &error);
+  writer = start_writer (path, CLOTH_NPY_FLOAT32, 3, row_shape, &error);
   g_assert_no_error (error);
   for (guint row = 0; row < 1234; row++) {
     gfloat items[21];
@@ -159,7 +162,7 @@ test_streams (void)
     g_assert_true (cloth_npy_writer_append (writer, items, 1, &error));
   }
   g_assert_false (g_file_test (path, G_FILE_TEST_EXISTS));
-  g_assert_true (close_writer (writer, &error));
+  g_assert_true (cloth_npy_writer_finish (writer, &error));
   g_assert_no_error (error);
   peer_run ("a=np.load('long.npy')\n"
       "assert a.shape==(1234,7,3) and a.dtype==np.float32\n"
@@ -182,7 +185,7 @@ test_abort_leaves_nothing (void)
   scratch_begin ();
   path = scratch_path ("a.npy");
   scratch_write ("a.npy", "before", -1);
-  writer = cloth_npy_writer_new (path, CLOTH_NPY_FLOAT32, 1, NULL, &error);
+  writer = start_writer (path, CLOTH_NPY_FLOAT32, 1, NULL, &error);
   g_assert_true (cloth_npy_writer_append (writer, items, 4, &error));
   g_assert_cmpuint (scratch_count (), ==, 2);
   cloth_npy_writer_free (writer);
@@ -198,14 +201,13 @@ test_unwritable (void)
   g_autoptr (GError) error = NULL;
   g_autofree gchar *folder = NULL;
 
-  g_assert_null (cloth_npy_writer_new ("/nonexistent/a.npy",
+  g_assert_null (start_writer ("/nonexistent/a.npy",
           CLOTH_NPY_FLOAT32, 1, NULL, &error));
   g_assert_error (error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND);
   g_clear_error (&error);
   scratch_begin ();
   folder = scratch_path ("");
-  g_assert_null (cloth_npy_writer_new (folder, CLOTH_NPY_FLOAT32, 1, NULL,
-          &error));
+  g_assert_null (start_writer (folder, CLOTH_NPY_FLOAT32, 1, NULL, &error));
   g_assert_nonnull (error);
   scratch_end ();
 }
@@ -216,7 +218,7 @@ test_row_too_large (void)
   g_autoptr (GError) error = NULL;
   static const guint64 row_shape[] = { CLOTH_MAX_BUFFER };
 
-  g_assert_null (cloth_npy_writer_new ("a.npy", CLOTH_NPY_FLOAT64, 2, row_shape,
+  g_assert_null (start_writer ("a.npy", CLOTH_NPY_FLOAT64, 2, row_shape,
           &error));
   g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT);
 }

@@ -5,6 +5,7 @@
 #include <gst/check/gstharness.h>
 #include <gst/cloth/cloth.h>
 #include <math.h>
+#include <sys/stat.h>
 
 #include "gst/take/sequence.h"
 #include "tests/core/meshpeer.h"
@@ -351,6 +352,124 @@ GST_START_TEST (test_unwritable)
 
 GST_END_TEST;
 
+/* What is no regular file stays; /dev/null.obj is not made either. */
+GST_START_TEST (test_device)
+{
+  static const gchar *const formats[] = { "auto", "obj-pc2", "csv" };
+
+  for (guint i = 0; i < G_N_ELEMENTS (formats); i++) {
+    Sink sink = open_sink ("/dev/null", formats[i]);
+    GStatBuf info;
+
+    fail_unless_equals_int (gst_harness_push (sink.harness, make_buffer (0,
+                N)), GST_FLOW_ERROR);
+    expect_error (&sink, GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_WRITE,
+        "name a regular file");
+    close_sink (&sink);
+    fail_unless_equals_int (g_stat ("/dev/null", &info), 0);
+    fail_unless (S_ISCHR (info.st_mode));
+    fail_if (g_file_test ("/dev/null.obj", G_FILE_TEST_EXISTS));
+  }
+}
+
+GST_END_TEST;
+
+/* What a program that is gone left of @name. */
+static gchar *
+leave_remains (const gchar * name)
+{
+  g_autofree gchar *head = scratch_path (name);
+  g_autofree gchar *hidden = g_str_has_suffix (name, ".take") ?
+      g_strdup_printf ("%s/.take.json.part-abcdef", head) :
+      g_strdup_printf ("%s/.%s.part-abcdef", scratch, name);
+  g_autofree gchar *whole = g_build_filename (hidden, "new", NULL);
+  g_autofree gchar *lock = g_build_filename (hidden, "recording", NULL);
+
+  fail_unless_equals_int (g_mkdir_with_parents (whole, 0777), 0);
+  fail_unless (g_file_set_contents (lock, "6", 1, NULL));
+  return g_steal_pointer (&hidden);
+}
+
+static void
+expect_warning (Sink * sink, const gchar * text)
+{
+  g_autoptr (GstMessage) message = gst_bus_pop_filtered (sink->bus,
+      GST_MESSAGE_WARNING);
+  g_autoptr (GError) error = NULL;
+
+  if (!text) {
+    fail_unless (message == NULL);
+    return;
+  }
+  fail_unless (message != NULL, "no warning was posted");
+  gst_message_parse_warning (message, &error, NULL);
+  fail_unless (g_error_matches (error, GST_RESOURCE_ERROR,
+          GST_RESOURCE_ERROR_FAILED));
+  fail_unless (strstr (error->message, text) != NULL, "%s", error->message);
+}
+
+/* An interrupted recording is told of, and goes when the next one is whole. */
+GST_START_TEST (test_remains)
+{
+  static const struct
+  {
+    const gchar *name, *text;
+  } cases[] = {
+    {"c.obj", "gst-cloth-take-1.0 recover"},
+    {"c.ply", "gst-cloth-take-1.0 recover"},
+    {"c.take", "gst-cloth-take-1.0 recover"},
+    {"c.csv", "gst-cloth-take-1.0 recover"},
+    {"c.usda", "can't be finished"}, {"c.glb", "can't be finished"}
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autofree gchar *left = NULL;
+    Sink sink;
+
+    scratch_begin ();
+    left = leave_remains (cases[i].name);
+    sink = open_sink (cases[i].name, "auto");
+    expect_warning (&sink, cases[i].text);
+    expect_warning (&sink, NULL);
+    push_frames (&sink, 0, 2);
+    fail_unless (g_file_test (left, G_FILE_TEST_IS_DIR));
+    fail_unless (gst_harness_push_event (sink.harness, gst_event_new_eos ()));
+    expect_no_error (&sink);
+    fail_if (g_file_test (left, G_FILE_TEST_IS_DIR));
+    close_sink (&sink);
+    scratch_end ();
+  }
+}
+
+GST_END_TEST;
+
+/* Nothing is told of another location, nor of a program that lives. */
+GST_START_TEST (test_no_remains)
+{
+  g_autofree gchar *left = NULL;
+  Sink first, second, other;
+
+  scratch_begin ();
+  left = leave_remains ("other.obj");
+  first = open_sink ("c.obj", "auto");
+  push_frames (&first, 0, 1);
+  second = open_sink ("c.obj", "auto");
+  other = open_sink ("c.obj", "ply");
+  expect_warning (&first, NULL);
+  expect_warning (&second, NULL);
+  expect_warning (&other, NULL);
+  push_frames (&first, 1, 1);
+  fail_unless (gst_harness_push_event (first.harness, gst_event_new_eos ()));
+  expect_frames ("c.obj", 0, 2, 25);
+  fail_unless (g_file_test (left, G_FILE_TEST_IS_DIR));
+  close_sink (&first);
+  close_sink (&second);
+  close_sink (&other);
+  scratch_end ();
+}
+
+GST_END_TEST;
+
 GST_START_TEST (test_no_location)
 {
   g_autoptr (GstElement) element =
@@ -406,6 +525,9 @@ meshsink_suite (void)
   tcase_add_test (tests, test_time_that_does_not_rise);
   tcase_add_test (tests, test_no_mesh);
   tcase_add_test (tests, test_unwritable);
+  tcase_add_test (tests, test_device);
+  tcase_add_test (tests, test_remains);
+  tcase_add_test (tests, test_no_remains);
   tcase_add_test (tests, test_no_location);
   tcase_add_test (tests, test_bad_caps);
   return suite;

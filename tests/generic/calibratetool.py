@@ -9,6 +9,7 @@ import json
 import math
 import os
 import re
+import stat
 import subprocess
 import sys
 import tempfile
@@ -143,6 +144,10 @@ check('board found in 10 of 13 pictures' in report and rms(report)[0] < 0.18,
 _, cameras = calibrate('--import-opencv', os.path.join(boards, 'left_intrinsics.yml'))
 check(cameras[0]['K'][0][0] == 535.91573396163199 and cameras[0]['name'] == 'left_intrinsics',
       'OpenCV import')
+# for root, too, a device stays one
+refused(1, 'name a regular file', '--output', '/dev/null', '--import-opencv',
+        os.path.join(boards, 'left_intrinsics.yml'))
+check(stat.S_ISCHR(os.stat('/dev/null').st_mode), '/dev/null stays')
 refused(1, '--size', '--output', output, '--import-opencv', os.path.join(boards, 'intrinsics.yml'))
 # 640 and 480 with 2^32 added, and what else only looks like a size.
 for size in '4294967936x4294967776', ' 640x480', '640x480x', '+640x480', '640', 'x480', '0x480', '-1x-1':

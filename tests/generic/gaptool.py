@@ -145,6 +145,23 @@ def interrupt(folder):
     _, said = child.communicate(timeout=120)
     expect(child.returncode == 1 and 'stopped' in said, 'SIGINT: ' + said.strip()[-80:])
     expect(not os.path.exists(os.path.join(folder, 'stopped')), 'which leaves nothing')
+    # simulate, in a new folder and over an earlier take; long enough to be caught
+    n_frames = len(numpy.load(os.path.join(drag, 'positions.npy')))
+    long = variant(folder, 'long', times=numpy.arange(n_frames) * 5.0)
+    for number, name in ((signal.SIGINT, 'stopped'), (signal.SIGTERM, 'earlier')):
+        if name == 'earlier':
+            shutil.copytree(drop, os.path.join(folder, name))
+        before = os.path.exists(os.path.join(folder, name)) and contents(os.path.join(folder, name))
+        child = subprocess.Popen([tool, 'simulate', knit, '--scene', long, '--output', name],
+                                 cwd=folder, stderr=subprocess.PIPE, stdout=subprocess.PIPE,
+                                 text=True)
+        child.stderr.readline()
+        child.send_signal(number)
+        _, said = child.communicate(timeout=120)
+        expect(child.returncode == 1 and 'stopped; nothing was written' in said,
+               'simulate stopped: %d %s' % (child.returncode, said.strip()[-80:]))
+        after = os.path.exists(os.path.join(folder, name)) and contents(os.path.join(folder, name))
+        expect(after == before, 'which leaves nothing')
 
 
 def refusals(folder):

@@ -12,7 +12,7 @@
 #include <glib/gstdio.h>
 #include <math.h>
 
-#include "gst/file/file.h"
+#include "gst/file/output.h"
 #include "gst/file/jsonwriter.h"
 #include "gst/gap/report/arrays.h"
 #include "web-resource.h"
@@ -579,8 +579,7 @@ cloth_gap_report_write (const ClothGapResult * result, const gchar * path,
       cloth_output_printf (output, error, "</script>\n<script>") &&
       cloth_output_write (output, script, strlen (script), error) &&
       cloth_output_printf (output, error, "</script>\n</body>\n</html>\n") &&
-      cloth_output_finish (output, error) &&
-      cloth_output_commit (&output, 1, error);
+      cloth_output_commit (output, error);
 }
 
 /* Without a model none of an earlier diagnosis stays. */

@@ -314,9 +314,9 @@ finish_c3d (gpointer export, GError ** error)
       cloth_output_write_at (self->output, self->frames_offset, count, 2,
       error) &&
       cloth_output_write_at (self->output, self->end_offset, count, 2, error)
-      && cloth_output_commit (&self->output, 1, error);
+      && cloth_output_commit (self->output, error);
 }
 
 const ClothExporter cloth_c3d_exporter = {
-  TRUE, start_c3d, append_c3d, finish_c3d, free_c3d
+  TRUE, ".c3d", start_c3d, append_c3d, finish_c3d, free_c3d
 };

@@ -2,6 +2,7 @@
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <math.h>
+#include <string.h>
 
 #include "gst/mesh/formats/export.h"
 
@@ -70,7 +71,8 @@ append_csv (gpointer export, guint64 number, gdouble time_s,
       cloth_text_append_float (text, sigma);
     g_string_append_printf (text, ",%u\n", frame->states[i]);
   }
-  return cloth_text_flush (text, self->output, error);
+  return cloth_text_flush (text, self->output, error) &&
+      cloth_output_flush (self->output, error);
 }
 
 static gboolean
@@ -78,9 +80,62 @@ finish_csv (gpointer export, GError ** error)
 {
   Csv *self = export;
 
-  return cloth_output_commit (&self->output, 1, error);
+  return cloth_output_commit (self->output, error);
+}
+
+/* Where the last whole frame of @n_vertices lines ends. */
+static gboolean
+count_frames (ClothInput * input, guint64 n_vertices, guint64 * n_frames,
+    guint64 * end, GError ** error)
+{
+  const guint64 size = cloth_input_get_size (input);
+  gchar block[1 << 14];
+  guint64 n_lines = 0;
+
+  *n_frames = 0;
+  *end = 0;
+  for (guint64 at = 0; at < size; at += sizeof block) {
+    const gsize n = (gsize) MIN (sizeof block, size - at);
+
+    if (!cloth_input_read_at (input, at, block, n, error))
+      return FALSE;
+    for (gsize i = 0; i < n; i++) {
+      /* The first line is the header. */
+      if (block[i] != '\n' || n_lines++ == 0 || (n_lines - 1) % n_vertices != 0)
+        continue;
+      *n_frames = (n_lines - 1) / n_vertices;
+      *end = at + i + 1;
+    }
+  }
+  return TRUE;
+}
+
+gboolean
+cloth_csv_recover (ClothParts * parts, const gchar * base,
+    ClothRecovered * recovered, GError ** error)
+{
+  const guint64 n_vertices =
+      g_ascii_strtoull (cloth_parts_get_note (parts), NULL, 10);
+  g_autofree gchar *name = g_strconcat (base, ".csv", NULL);
+  g_autofree gchar *path = cloth_parts_get_path (parts, name);
+  GError *fault = NULL;
+  g_autoptr (ClothInput) input = cloth_input_open (path, &fault);
+  g_autoptr (ClothOutput) output = NULL;
+  guint64 end;
+
+  if (!input)
+    return cloth_file_is_unwritten (fault, error);
+  if (n_vertices == 0 || n_vertices > CLOTH_MAX_VERTICES)
+    return cloth_file_invalid (error, "how many vertices it has is not noted");
+  if (!count_frames (input, n_vertices, &recovered->n_frames, &end, error))
+    return FALSE;
+  recovered->cut = end < cloth_input_get_size (input);
+  if (recovered->n_frames == 0)
+    return TRUE;
+  output = cloth_parts_continue (parts, name, end, error);
+  return output && cloth_output_commit (output, error);
 }
 
 const ClothExporter cloth_csv_exporter = {
-  TRUE, start_csv, append_csv, finish_csv, free_csv
+  TRUE, ".csv", start_csv, append_csv, finish_csv, free_csv
 };

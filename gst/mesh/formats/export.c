@@ -15,9 +15,9 @@ ClothOutput *
 cloth_export_open (const ClothExportInfo * info, const gchar * ending,
     GError ** error)
 {
-  g_autofree gchar *path = g_strconcat (info->stem, ending, NULL);
+  g_autofree gchar *name = g_strconcat (info->base, ending, NULL);
 
-  return cloth_output_new (path, error);
+  return cloth_parts_open (info->parts, name, error);
 }
 
 /* @info: the export

@@ -22,7 +22,7 @@ typedef struct
 {
   const ClothExportInfo *info;
   ClothOutput *output;
-  ClothSpool *binary;           /* waits: the JSON text stands before it */
+  ClothOutput *binary;          /* waits: the JSON text stands before it */
   guint n_triangles;
   gfloat *first;                /* positions of frame 0 */
   gfloat *scratch;              /* one frame */
@@ -37,7 +37,7 @@ free_gltf (gpointer export)
   Gltf *self = export;
 
   cloth_output_free (self->output);
-  cloth_spool_free (self->binary);
+  cloth_output_free (self->binary);
   g_free (self->first);
   g_free (self->scratch);
   g_array_unref (self->times);
@@ -46,10 +46,10 @@ free_gltf (gpointer export)
 }
 
 static gboolean
-write_floats (ClothSpool * spool, gfloat * values, gsize n, GError ** error)
+write_floats (ClothOutput * binary, gfloat * values, gsize n, GError ** error)
 {
   cloth_swap_little_endian (values, sizeof *values, n);
-  return cloth_spool_write (spool, values, n * sizeof *values, error);
+  return cloth_output_write (binary, values, n * sizeof *values, error);
 }
 
 static gpointer
@@ -67,7 +67,7 @@ start_gltf (const ClothExportInfo * info, GError ** error)
     self->n_triangles += cloth_face_corners (info->topology->faces + 4 * f) - 2;
   self->output = cloth_export_open (info, ".glb", error);
   if (self->output)
-    self->binary = cloth_spool_new (info->stem, error);
+    self->binary = cloth_export_open (info, ".bin", error);
   if (self->binary) {
     memcpy (self->scratch, info->topology->uv, 2 * n * sizeof (gfloat));
     if (write_floats (self->binary, self->scratch, 2 * n, error))
@@ -147,7 +147,7 @@ write_triangles (Gltf * self, GError ** error)
       guint32 triangle[3] = { face[0], face[k - 1], face[k] };
 
       cloth_swap_little_endian (triangle, sizeof *triangle, 3);
-      if (!cloth_spool_write (self->binary, triangle, sizeof triangle, error))
+      if (!cloth_output_write (self->binary, triangle, sizeof triangle, error))
         return FALSE;
     }
   }
@@ -290,10 +290,10 @@ finish_gltf (gpointer export, GError ** error)
       cloth_output_write (self->output, header, sizeof header, error) &&
       cloth_output_write (self->output, json->str, json->len, error) &&
       cloth_output_write (self->output, chunk, sizeof chunk, error) &&
-      cloth_spool_copy (self->binary, self->output, error) &&
-      cloth_output_commit (&self->output, 1, error);
+      cloth_output_copy (self->binary, self->output, error) &&
+      cloth_output_commit (self->output, error);
 }
 
 const ClothExporter cloth_gltf_exporter = {
-  FALSE, start_gltf, append_gltf, finish_gltf, free_gltf
+  FALSE, ".glb", start_gltf, append_gltf, finish_gltf, free_gltf
 };

@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
+#include "gst/file/output.h"
 #include "gst/mesh/topology.h"
 
 G_BEGIN_DECLS

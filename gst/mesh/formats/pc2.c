@@ -161,7 +161,7 @@ writer_free (Writer * writer)
   g_free (writer);
 }
 
-/* @path: final name of the file
+/* @output: (transfer full): an empty file
  * @n_points: vertices of the mesh
  * @start: frame of the first sample
  * @rate: frames from one sample to the next
@@ -172,7 +172,7 @@ writer_free (Writer * writer)
  * Returns: (transfer full): a writer, or %NULL
  */
 static Writer *
-writer_new (const gchar * path, guint n_points, gfloat start,
+writer_new (ClothOutput * output, guint n_points, gfloat start,
     gfloat rate, GError ** error)
 {
   Writer *writer = g_new0 (Writer, 1);
@@ -185,9 +185,8 @@ writer_new (const gchar * path, guint n_points, gfloat start,
   cloth_swap_little_endian (timing, 4, 2);
   memcpy (header + 12, counts, sizeof counts);
   memcpy (header + 20, timing, sizeof timing);
-  writer->output = cloth_output_new (path, error);
-  if (!writer->output || !cloth_output_write (writer->output, header,
-          sizeof header, error)) {
+  writer->output = output;
+  if (!cloth_output_write (output, header, sizeof header, error)) {
     writer_free (writer);
     return NULL;
   }
@@ -217,30 +216,20 @@ writer_append (Writer * writer, const gfloat * positions, GError ** error)
         "a PC2 file holds no more samples");
     return FALSE;
   }
-  if (!cloth_output_write (writer->output, ordered, size, error))
+  if (!cloth_output_write (writer->output, ordered, size, error) ||
+      !cloth_output_flush (writer->output, error))
     return FALSE;
   writer->info.n_samples++;
   return TRUE;
 }
 
-/* @writer: a writer
- * @error: #GIOErrorEnum
- *
- * Writes the number of samples. cloth_output_commit() gives the file its name.
- *
- * Returns: (transfer full): the output, or %NULL
- */
-static ClothOutput *
-writer_finish (Writer * writer, GError ** error)
+/* The number of samples is known at the end only. */
+static gboolean
+finish_cache (ClothOutput * output, guint32 n_samples, GError ** error)
 {
-  guint32 n_samples = writer->info.n_samples;
-
   cloth_swap_little_endian (&n_samples, 4, 1);
-  if (!cloth_output_write_at (writer->output, SAMPLES_OFFSET, &n_samples,
-          sizeof n_samples, error) ||
-      !cloth_output_finish (writer->output, error))
-    return NULL;
-  return g_steal_pointer (&writer->output);
+  return cloth_output_write_at (output, SAMPLES_OFFSET, &n_samples,
+      sizeof n_samples, error) && cloth_output_commit (output, error);
 }
 
 /* An OBJ file with a PC2 file, and the states of the vertices. */
@@ -268,16 +257,17 @@ static gpointer
 start_obj_pc2 (const ClothExportInfo * info, GError ** error)
 {
   const guint64 row_shape[] = { info->topology->n_vertices };
-  g_autofree gchar *pc2 = g_strconcat (info->stem, ".pc2", NULL);
-  g_autofree gchar *states = g_strconcat (info->stem, ".states.npy", NULL);
   ObjPc2 *self = g_new0 (ObjPc2, 1);
+  ClothOutput *output;
 
   self->info = info;
   self->obj = cloth_export_open (info, ".obj", error);
-  if (self->obj)
-    self->cache = writer_new (pc2, info->topology->n_vertices, 0, 1, error);
-  if (self->cache)
-    self->states = cloth_npy_writer_new (states, CLOTH_NPY_UINT8, 2, row_shape,
+  output = self->obj ? cloth_export_open (info, ".pc2", error) : NULL;
+  if (output)
+    self->cache = writer_new (output, info->topology->n_vertices, 0, 1, error);
+  output = self->cache ? cloth_export_open (info, ".states.npy", error) : NULL;
+  if (output)
+    self->states = cloth_npy_writer_new (output, CLOTH_NPY_UINT8, 2, row_shape,
         error);
   if (self->states)
     return self;
@@ -292,9 +282,10 @@ append_obj_pc2 (gpointer export, guint64 number, gdouble time_s,
   ObjPc2 *self = export;
   const ClothExportInfo *info = self->info;
 
-  /* The OBJ file shows the first frame. */
-  if (number == 0 && !cloth_obj_write (self->obj, info->name, info->topology,
-          frame->positions, info->fps_n, info->fps_d, error))
+  /* The OBJ file shows the first frame, and is whole with it. */
+  if (number == 0 && (!cloth_obj_write (self->obj, info->name, info->topology,
+              frame->positions, info->fps_n, info->fps_d, error) ||
+          !cloth_output_commit (self->obj, error)))
     return FALSE;
   return writer_append (self->cache, frame->positions, error) &&
       cloth_npy_writer_append (self->states, frame->states, 1, error);
@@ -304,14 +295,55 @@ static gboolean
 finish_obj_pc2 (gpointer export, GError ** error)
 {
   ObjPc2 *self = export;
-  g_autoptr (ClothOutput) cache = writer_finish (self->cache, error);
-  g_autoptr (ClothOutput) states = cache ?
-      cloth_npy_writer_finish (self->states, error) : NULL;
-  ClothOutput *outputs[] = { states, cache, self->obj };
 
-  return states && cloth_output_commit (outputs, G_N_ELEMENTS (outputs), error);
+  return finish_cache (self->cache->output, self->cache->info.n_samples, error)
+      && cloth_npy_writer_finish (self->states, error);
+}
+
+static gboolean
+count_samples (const gchar * path, guint64 * n_samples, guint64 * rest,
+    guint64 * sample_size, GError ** error)
+{
+  GError *fault = NULL;
+  g_autoptr (ClothPc2Reader) reader = cloth_pc2_reader_open (path, &fault);
+  guint64 bytes;
+
+  *n_samples = *rest = *sample_size = 0;
+  if (!reader)
+    return cloth_file_is_unwritten (fault, error);
+  *sample_size = 3 * sizeof (gfloat) * (guint64) reader->info.n_points;
+  bytes = cloth_input_get_size (reader->input) - HEADER_SIZE;
+  *n_samples = MIN (bytes / *sample_size, G_MAXINT32);
+  *rest = bytes % *sample_size;
+  return TRUE;
+}
+
+gboolean
+cloth_obj_pc2_recover (ClothParts * parts, const gchar * base,
+    ClothRecovered * recovered, GError ** error)
+{
+  g_autofree gchar *obj = g_strconcat (base, ".obj", NULL);
+  g_autofree gchar *pc2 = g_strconcat (base, ".pc2", NULL);
+  g_autofree gchar *states = g_strconcat (base, ".states.npy", NULL);
+  g_autofree gchar *path = cloth_parts_get_path (parts, pc2);
+  g_autoptr (ClothOutput) output = NULL;
+  guint64 n_samples, rest, size, n_states;
+
+  if (!cloth_parts_is_whole (parts, obj))
+    return TRUE;
+  if (!count_samples (path, &n_samples, &rest, &size, error) ||
+      !cloth_npy_part_count (parts, states, &n_states, error))
+    return FALSE;
+  recovered->n_frames = MIN (n_samples, n_states);
+  recovered->cut = rest > 0 || n_samples != n_states;
+  if (recovered->n_frames == 0)
+    return TRUE;
+  output = cloth_parts_continue (parts, pc2, HEADER_SIZE +
+      recovered->n_frames * size, error);
+  return output && finish_cache (output, (guint32) recovered->n_frames, error)
+      && cloth_npy_part_finish (parts, states, recovered->n_frames, error);
 }
 
 const ClothExporter cloth_obj_pc2_exporter = {
-  FALSE, start_obj_pc2, append_obj_pc2, finish_obj_pc2, free_obj_pc2
+  FALSE, ".obj", start_obj_pc2, append_obj_pc2, finish_obj_pc2, free_obj_pc2
 };

@@ -691,21 +691,16 @@ write_frame (ClothOutput * output, const ClothTopology * topology,
 typedef struct
 {
   const ClothExportInfo *info;
-  ClothFileSet *files;
+  guint64 n_frames;
   GByteArray *scratch;
 } Export;
 
 static gpointer
 start_ply (const ClothExportInfo * info, GError ** error)
 {
-  ClothFileSet *files = cloth_file_set_new (info->stem, ".ply", error);
-  Export *self;
+  Export *self = g_new0 (Export, 1);
 
-  if (!files)
-    return NULL;
-  self = g_new (Export, 1);
   self->info = info;
-  self->files = files;
   self->scratch = g_byte_array_new ();
   return self;
 }
@@ -716,11 +711,15 @@ append_ply (gpointer export, guint64 number, gdouble time_s,
 {
   Export *self = export;
   const ClothExportInfo *info = self->info;
-  g_autoptr (ClothOutput) output = cloth_file_set_begin (self->files, error);
+  g_autoptr (ClothOutput) output = cloth_parts_open_numbered (info->parts,
+      info->base, number, ".ply", error);
 
-  return output && write_frame (output, info->topology, frame->positions,
-      frame->states, frame->covariances, info->fps_n, info->fps_d,
-      self->scratch, error) && cloth_file_set_end (self->files, output, error);
+  if (!output || !write_frame (output, info->topology, frame->positions,
+          frame->states, frame->covariances, info->fps_n, info->fps_d,
+          self->scratch, error) || !cloth_output_commit (output, error))
+    return FALSE;
+  self->n_frames = number + 1;
+  return TRUE;
 }
 
 static gboolean
@@ -728,7 +727,9 @@ finish_ply (gpointer export, GError ** error)
 {
   Export *self = export;
 
-  return cloth_file_set_commit (self->files, error);
+  cloth_parts_replace_numbered (self->info->parts, self->info->base,
+      self->n_frames, ".ply");
+  return TRUE;
 }
 
 static void
@@ -736,11 +737,20 @@ free_ply (gpointer export)
 {
   Export *self = export;
 
-  cloth_file_set_free (self->files);
   g_byte_array_unref (self->scratch);
   g_free (self);
 }
 
+gboolean
+cloth_ply_recover (ClothParts * parts, const gchar * base,
+    ClothRecovered * recovered, GError ** error)
+{
+  recovered->n_frames = cloth_parts_count_numbered (parts, base, ".ply");
+  recovered->cut = cloth_parts_has_unfinished (parts);
+  cloth_parts_replace_numbered (parts, base, recovered->n_frames, ".ply");
+  return TRUE;
+}
+
 const ClothExporter cloth_ply_exporter = {
-  FALSE, start_ply, append_ply, finish_ply, free_ply
+  FALSE, ".ply", start_ply, append_ply, finish_ply, free_ply
 };

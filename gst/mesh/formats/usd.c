@@ -17,7 +17,7 @@ typedef struct
 {
   const ClothExportInfo *info;
   ClothOutput *output;
-  ClothSpool *extents;          /* wait: they stand behind all points */
+  ClothOutput *extents;         /* wait: they stand behind all points */
   GString *text;
   guint64 code_offset;
   gdouble start_s, codes_per_second, code;
@@ -29,7 +29,7 @@ free_usd (gpointer export)
   Usd *self = export;
 
   cloth_output_free (self->output);
-  cloth_spool_free (self->extents);
+  cloth_output_free (self->extents);
   g_string_free (self->text, TRUE);
   g_free (self);
 }
@@ -105,7 +105,7 @@ start_usd (const ClothExportInfo * info, GError ** error)
   self->text = g_string_new (NULL);
   self->output = cloth_export_open (info, ".usda", error);
   if (self->output)
-    self->extents = cloth_spool_new (info->stem, error);
+    self->extents = cloth_export_open (info, ".extents", error);
   if (self->extents) {
     append_header (self, name);
     append_topology (self);
@@ -155,7 +155,7 @@ append_usd (gpointer export, guint64 number, gdouble time_s,
   g_string_append (self->text, ", ");
   append_vector (self->text, bounds + 3, 3);
   g_string_append (self->text, "],\n");
-  return cloth_spool_write (self->extents, self->text->str, self->text->len,
+  return cloth_output_write (self->extents, self->text->str, self->text->len,
       error);
 }
 
@@ -171,11 +171,11 @@ finish_usd (gpointer export, GError ** error)
   return cloth_output_write_at (self->output, self->code_offset,
       self->text->str, MIN (self->text->len, CODE_WIDTH), error) &&
       cloth_output_write (self->output, between, strlen (between), error) &&
-      cloth_spool_copy (self->extents, self->output, error) &&
+      cloth_output_copy (self->extents, self->output, error) &&
       cloth_output_write (self->output, end, strlen (end), error) &&
-      cloth_output_commit (&self->output, 1, error);
+      cloth_output_commit (self->output, error);
 }
 
 const ClothExporter cloth_usd_exporter = {
-  FALSE, start_usd, append_usd, finish_usd, free_usd
+  FALSE, ".usda", start_usd, append_usd, finish_usd, free_usd
 };

@@ -10,7 +10,7 @@ typedef struct
 {
   const ClothExportInfo *info;
   ClothOutput *collection;
-  ClothFileSet *files;
+  guint64 n_frames;
   gchar *base;                  /* of the files' names, for XML */
   GString *text;
   gdouble time_s;
@@ -33,7 +33,6 @@ free_vtp (gpointer export)
   Vtp *self = export;
 
   cloth_output_free (self->collection);
-  cloth_file_set_free (self->files);
   g_string_free (self->text, TRUE);
   g_free (self->base);
   g_free (self->corners);
@@ -62,20 +61,18 @@ list_corners (Vtp * self)
 static gpointer
 start_vtp (const ClothExportInfo * info, GError ** error)
 {
-  g_autofree gchar *base = g_path_get_basename (info->stem);
   Vtp *self = g_new0 (Vtp, 1);
 
   self->info = info;
-  self->base = g_markup_escape_text (base, -1);
+  self->base = g_markup_escape_text (info->base, -1);
   self->text = g_string_new ("<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"Collection\" version=\"0.1\" "
       "byte_order=\"LittleEndian\">\n  <Collection>\n");
   self->scratch = g_new (gfloat, 3 * (gsize) info->topology->n_vertices);
   list_corners (self);
   self->collection = cloth_export_open (info, ".pvd", error);
-  if (self->collection)
-    self->files = cloth_file_set_new (info->stem, ".vtp", error);
-  if (self->files && cloth_text_flush (self->text, self->collection, error))
+  if (self->collection &&
+      cloth_text_flush (self->text, self->collection, error))
     return self;
   free_vtp (self);
   return NULL;
@@ -180,29 +177,90 @@ append_vtp (gpointer export, guint64 number, gdouble time_s,
   if (!cloth_export_check_later (number, self->time_s, time_s, error))
     return FALSE;
   self->time_s = time_s;
-  output = cloth_file_set_begin (self->files, error);
+  output = cloth_parts_open_numbered (self->info->parts, self->info->base,
+      number, ".vtp", error);
   if (!output || !write_frame (self, output, frame, error) ||
-      !cloth_file_set_end (self->files, output, error))
+      !cloth_output_commit (output, error))
     return FALSE;
+  self->n_frames = number + 1;
   g_string_append (self->text, "    <DataSet timestep=\"");
   cloth_text_append_double (self->text, time_s);
   g_string_append_printf (self->text, "\" group=\"\" part=\"0\" file=\"%s_%05"
       G_GUINT64_FORMAT ".vtp\"/>\n", self->base, number);
-  return cloth_text_flush (self->text, self->collection, error);
+  return cloth_text_flush (self->text, self->collection, error) &&
+      cloth_output_flush (self->collection, error);
+}
+
+static gboolean
+end_collection (ClothOutput * collection, GError ** error)
+{
+  static const gchar end[] = "  </Collection>\n</VTKFile>\n";
+
+  return cloth_output_write (collection, end, strlen (end), error) &&
+      cloth_output_commit (collection, error);
 }
 
 static gboolean
 finish_vtp (gpointer export, GError ** error)
 {
-  static const gchar end[] = "  </Collection>\n</VTKFile>\n";
   Vtp *self = export;
 
-  return cloth_output_write (self->collection, end, strlen (end), error) &&
-      cloth_output_finish (self->collection, error) &&
-      cloth_file_set_commit (self->files, error) &&
-      cloth_output_commit (&self->collection, 1, error);
+  cloth_parts_replace_numbered (self->info->parts, self->info->base,
+      self->n_frames, ".vtp");
+  return end_collection (self->collection, error);
+}
+
+/* How many frames the collection lists, and where each line ends. */
+static GArray *
+list_frames (const gchar * path, GError ** error)
+{
+  g_autoptr (ClothInput) input = cloth_input_open (path, error);
+  g_autoptr (GByteArray) bytes = g_byte_array_new ();
+  g_autoptr (GArray) ends = g_array_new (FALSE, FALSE, sizeof (guint64));
+  const gchar *text, *line, *end;
+
+  if (!input || !cloth_input_load (input, CLOTH_MAX_BUFFER, bytes, error))
+    return NULL;
+  text = line = (const gchar *) bytes->data;
+  for (; (end = strchr (line, '\n')); line = end + 1) {
+    const guint64 offset = (guint64) (end + 1 - text);
+
+    if (g_str_has_prefix (line, "    <DataSet "))
+      g_array_append_val (ends, offset);
+  }
+  return g_steal_pointer (&ends);
+}
+
+gboolean
+cloth_vtp_recover (ClothParts * parts, const gchar * base,
+    ClothRecovered * recovered, GError ** error)
+{
+  const guint64 n_files = cloth_parts_count_numbered (parts, base, ".vtp");
+  g_autofree gchar *name = g_strconcat (base, ".pvd", NULL);
+  g_autofree gchar *path = cloth_parts_get_path (parts, name);
+  GError *fault = NULL;
+  g_autoptr (GArray) ends = list_frames (path, &fault);
+  g_autoptr (ClothOutput) output = NULL;
+  guint64 n;
+
+  if (!ends)
+    return cloth_file_is_unwritten (fault, error);
+  n = recovered->n_frames = MIN (n_files, ends->len);
+  recovered->cut = n_files != n || ends->len != n;
+  if (n == 0)
+    return TRUE;
+  for (guint64 i = n; i < n_files; i++) {
+    g_autofree gchar *file = g_strdup_printf ("%s_%05" G_GUINT64_FORMAT ".vtp",
+        base, i);
+
+    cloth_parts_drop (parts, file);
+  }
+  cloth_parts_replace_numbered (parts, base, n, ".vtp");
+  output = cloth_parts_continue (parts, name,
+      g_array_index (ends, guint64, n - 1), error);
+  return output && end_collection (output, error);
 }
 
 const ClothExporter cloth_vtp_exporter = {
-  FALSE, start_vtp, append_vtp, finish_vtp, free_vtp
+  FALSE, ".pvd", start_vtp, append_vtp, finish_vtp, free_vtp
 };

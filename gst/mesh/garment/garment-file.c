@@ -310,28 +310,24 @@ cloth_garment_save (const ClothGarment * garment, const gchar * folder,
     GError ** error)
 {
   const ClothTopology *topology = garment->topology;
-  g_autofree gchar *json_path = g_build_filename (folder, "garment.json", NULL);
-  g_autofree gchar *obj_path = g_build_filename (folder, "garment.obj", NULL);
+  g_autofree gchar *head = g_build_filename (folder, "garment.json", NULL);
   g_autofree gchar *text = cloth_garment_to_json (garment);
   g_autofree gfloat *positions =
       g_new0 (gfloat, 3 * (gsize) topology->n_vertices);
-  g_autoptr (ClothOutput) json = cloth_output_new (json_path, error);
+  g_autoptr (ClothParts) parts = cloth_parts_new (head, "", error);
+  g_autoptr (ClothOutput) json = NULL;
   g_autoptr (ClothOutput) obj = NULL;
-  ClothOutput *outputs[2];
 
-  if (!json)
-    return FALSE;
-  obj = cloth_output_new (obj_path, error);
+  json = parts ? cloth_parts_open (parts, "garment.json", error) : NULL;
+  obj = json ? cloth_parts_open (parts, "garment.obj", error) : NULL;
   if (!obj)
     return FALSE;
   for (guint v = 0; v < topology->n_vertices; v++) {
     positions[3 * v] = topology->uv[2 * v];
     positions[3 * v + 2] = -topology->uv[2 * v + 1];
   }
-  outputs[0] = json;
-  outputs[1] = obj;
   return cloth_output_write (json, text, strlen (text), error)
       && cloth_obj_write (obj, "garment", topology, positions, 0, 1, error)
-      && cloth_output_finish (json, error) && cloth_output_finish (obj, error)
-      && cloth_output_commit (outputs, 2, error);
+      && cloth_output_commit (json, error) && cloth_output_commit (obj, error)
+      && cloth_parts_commit (parts, error);
 }

@@ -1,0 +1,155 @@
+/* Recordings whose program was killed.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/take/recover.h"
+
+#include <gio/gio.h>
+#include <string.h>
+
+#include "gst/take/take.h"
+
+/* By the end of the name of the file that readers open first. The last three keep what they
+ * need until their end in memory, or write it there. */
+static const struct
+{
+  const gchar *ending;
+  ClothRecover recover;
+} formats[] = {
+  {"take.json", cloth_take_recover}, {".obj", cloth_obj_pc2_recover},
+  {".ply", cloth_ply_recover}, {".pvd", cloth_vtp_recover},
+  {".csv", cloth_csv_recover}, {".glb", NULL}, {".usda", NULL}, {".c3d", NULL}
+};
+
+/* The place in the table, or its length. */
+static guint
+find_format (const gchar * head)
+{
+  guint i = 0;
+
+  while (i < G_N_ELEMENTS (formats) &&
+      !g_str_has_suffix (head, formats[i].ending))
+    i++;
+  return i;
+}
+
+/* @location: where a recording is to be written
+ * @format: its format
+ *
+ * Returns: what a program that was killed left there
+ */
+ClothLeft
+cloth_recover_look (const gchar * location, ClothMeshFormat format)
+{
+  g_autofree gchar *head = cloth_mesh_format_head (location, format);
+  g_autofree gchar *folder = g_path_get_dirname (head);
+  g_autofree gchar *base = g_path_get_basename (head);
+  g_autoptr (GPtrArray) found = cloth_parts_find (folder, base, NULL);
+
+  for (guint i = 0; found && i < found->len; i++)
+    if (cloth_parts_is_dead (found->pdata[i]))
+      return formats[find_format (base)].recover ? CLOTH_LEFT_FRAMES :
+          CLOTH_LEFT_LOST;
+  return CLOTH_LEFT_NOTHING;
+}
+
+/* @location: a folder, or a recording as it was to be called
+ * @error: #GFileError
+ *
+ * Finds what programs left there, be they killed or at work.
+ *
+ * Returns: (transfer full) (element-type filename): for cloth_recover(); of each recording
+ *   what was written to last comes first. Or %NULL
+ */
+GPtrArray *
+cloth_recover_find (const gchar * location, GError ** error)
+{
+  g_autofree gchar *head = NULL;
+  g_autofree gchar *folder = NULL;
+  g_autofree gchar *base = NULL;
+
+  if (g_file_test (location, G_FILE_TEST_IS_DIR))
+    return cloth_parts_find (location, NULL, error);
+  head = cloth_mesh_format_head (location, CLOTH_MESH_FORMAT_AUTO);
+  folder = g_path_get_dirname (head);
+  base = g_path_get_basename (head);
+  return cloth_parts_find (folder, base, error);
+}
+
+/* @path: one that cloth_recover_find() found
+ *
+ * Returns: (transfer full): what it was to be: a file, or the folder of a take
+ */
+gchar *
+cloth_recover_get_target (const gchar * path)
+{
+  g_autofree gchar *folder = g_path_get_dirname (path);
+  g_autofree gchar *head = cloth_parts_get_head (path);
+
+  if (g_str_equal (head, "take.json"))
+    return g_steal_pointer (&folder);
+  return g_str_equal (folder, ".") ? g_steal_pointer (&head) :
+      g_build_filename (folder, head, NULL);
+}
+
+static gboolean
+finish (ClothParts * parts, const gchar * head, ClothRecovered * recovered,
+    GError ** error)
+{
+  const guint i = find_format (head);
+  g_autofree gchar *base = NULL;
+
+  if (i == G_N_ELEMENTS (formats)) {
+    cloth_parts_discard (parts);
+    return TRUE;
+  }
+  if (!formats[i].recover) {
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_UNSUPPORTED,
+        "a file of this format can't be finished: its frames are lost. Record a "
+        "take, OBJ + PC2, PLY, VTP or CSV where that matters");
+    return FALSE;
+  }
+  base = g_strndup (head, strlen (head) - strlen (formats[i].ending));
+  if (!formats[i].recover (parts, base, recovered, error))
+    return FALSE;
+  if (recovered->n_frames > 0)
+    return cloth_parts_commit (parts, error);
+  cloth_parts_discard (parts);
+  return TRUE;
+}
+
+/* @path: one that cloth_recover_find() found
+ * @overwrite: whether a recording may be replaced that has the name meanwhile
+ * @recovered: (out): what it became
+ * @error: #ClothFileError, #GIOErrorEnum; %G_IO_ERROR_BUSY: the program lives;
+ *   %G_IO_ERROR_EXISTS: a recording would be replaced
+ *
+ * Finishes a recording; one without a whole frame is removed. After an error all stays as
+ * it is.
+ *
+ * Returns: %TRUE when nothing is left of it but the recording
+ */
+gboolean
+cloth_recover (const gchar * path, gboolean overwrite,
+    ClothRecovered * recovered, GError ** error)
+{
+  g_autofree gchar *head = cloth_parts_get_head (path);
+  g_autoptr (ClothParts) parts = NULL;
+  ClothRemains remains;
+
+  memset (recovered, 0, sizeof *recovered);
+  if (!g_file_test (path, G_FILE_TEST_IS_DIR))
+    return cloth_parts_remove_lone (path, error);
+  parts = cloth_parts_reopen (path, overwrite, &remains, error);
+  if (!parts)
+    return FALSE;
+  switch (remains) {
+    case CLOTH_REMAINS_PLACED:
+      recovered->placed = TRUE;
+      return TRUE;
+    case CLOTH_REMAINS_NOTHING:
+      cloth_parts_discard (parts);
+      return TRUE;
+    default:
+      return finish (parts, head, recovered, error);
+  }
+}
