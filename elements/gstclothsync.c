@@ -292,6 +292,13 @@ gst_cloth_sync_sink_event (GstAggregator * agg, GstAggregatorPad * aggpad,
   GstClothSyncClass *klass = GST_CLOTH_SYNC_GET_CLASS (self);
   GstClothSyncPad *pad = GST_CLOTH_SYNC_PAD (aggpad);
 
+  if (GST_EVENT_TYPE (event) == GST_EVENT_CAPS
+      && gst_cloth_sync_pad_is_holding (pad)) {
+    /* what is held is of the caps before */
+    gst_clear_event (&pad->caps);
+    pad->caps = event;
+    return TRUE;
+  }
   if (GST_EVENT_TYPE (event) == GST_EVENT_CAPS) {
     GstCaps *caps;
 
@@ -322,6 +329,28 @@ gst_cloth_sync_sink_event (GstAggregator * agg, GstAggregatorPad * aggpad,
   }
   return GST_AGGREGATOR_CLASS (gst_cloth_sync_parent_class)->sink_event (agg,
       aggpad, event);
+}
+
+/* Handles the caps that have waited for a held frame to go. FALSE: they were refused. */
+static gboolean
+gst_cloth_sync_take_caps (GstClothSync * self)
+{
+  g_autoptr (GList) pads = NULL;
+  gboolean taken = TRUE;
+
+  GST_OBJECT_LOCK (self);
+  pads = g_list_copy_deep (GST_ELEMENT (self)->sinkpads,
+      (GCopyFunc) (gpointer) gst_object_ref, NULL);
+  GST_OBJECT_UNLOCK (self);
+  for (GList * l = pads; l; l = l->next) {
+    g_autoptr (GstClothSyncPad) pad = l->data;
+
+    if (pad->caps && !gst_cloth_sync_pad_is_holding (pad)) {
+      taken &= gst_cloth_sync_sink_event (GST_AGGREGATOR (self),
+          GST_AGGREGATOR_PAD (pad), g_steal_pointer (&pad->caps));
+    }
+  }
+  return taken;
 }
 
 static GstBuffer *
@@ -381,15 +410,19 @@ gst_cloth_sync_restart (GstClothSync * self)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
   GstClothSyncClass *klass = GST_CLOTH_SYNC_GET_CLASS (self);
+  g_autoptr (GList) pads = NULL;
 
   priv->has_last = FALSE;
   GST_OBJECT_LOCK (self);
   GST_AGGREGATOR_PAD (GST_AGGREGATOR_SRC_PAD (self))->segment.position =
       GST_CLOCK_TIME_NONE;
-  for (GList * l = GST_ELEMENT (self)->sinkpads; l; l = l->next) {
-    gst_cloth_sync_pad_reset (GST_CLOTH_SYNC_PAD (l->data));
-  }
+  pads = g_list_copy_deep (GST_ELEMENT (self)->sinkpads,
+      (GCopyFunc) (gpointer) gst_object_ref, NULL);
   GST_OBJECT_UNLOCK (self);
+  for (GList * l = pads; l; l = l->next) {
+    gst_cloth_sync_pad_reset (GST_CLOTH_SYNC_PAD (l->data));
+    gst_object_unref (l->data);
+  }
   if (klass->reset) {
     klass->reset (self);
   }
@@ -414,9 +447,11 @@ gst_cloth_sync_start (GstAggregator * agg)
   for (GList * l = GST_ELEMENT (self)->sinkpads; l; l = l->next) {
     GstClothSyncPad *pad = GST_CLOTH_SYNC_PAD (l->data);
 
-    pad->warned_ahead = pad->warned_back = FALSE;
+    pad->warned_ahead = pad->warned_back = pad->warned_untimed = FALSE;
+    pad->used = pad->dropped = pad->implausible = 0;
   }
   GST_OBJECT_UNLOCK (self);
+  priv->is_live = FALSE;
   gst_cloth_sync_restart (self);
   return TRUE;
 }
@@ -508,7 +543,8 @@ gst_cloth_sync_gather (GstClothSync * self, Heads * heads)
     if (!pad) {
       continue;
     }
-    head = heads->head[i] = gst_cloth_sync_pad_look (heads->pad[i]);
+    head = heads->head[i] =
+        gst_cloth_sync_pad_look (heads->pad[i], &heads->time[i]);
     if (!head) {
       if (gst_aggregator_pad_is_eos (pad)) {
         heads->n_eos++;
@@ -518,8 +554,24 @@ gst_cloth_sync_gather (GstClothSync * self, Heads * heads)
       continue;
     }
     heads->gap[i] = GST_BUFFER_FLAG_IS_SET (head, GST_BUFFER_FLAG_GAP);
-    heads->time[i] = gst_cloth_sync_time (self, heads->pad[i], head);
+    if (!GST_CLOCK_STIME_IS_VALID (heads->time[i])) {
+      heads->time[i] = gst_cloth_sync_time (self, heads->pad[i], head);
+    }
   }
+}
+
+/* When what the head says ends: of a gap, not before its frames may come. */
+static GstClockTimeDiff
+gst_cloth_sync_end_of_head (const Heads * heads, guint i)
+{
+  const GstClockTimeDiff time = heads->time[i];
+  const guint64 room = (guint64) G_MAXINT64 - (guint64) time;
+
+  if (!heads->gap[i] || !GST_BUFFER_DURATION_IS_VALID (heads->head[i])) {
+    return time;
+  }
+  return time + (GstClockTimeDiff) MIN (GST_BUFFER_DURATION (heads->head[i]),
+      MIN (room, (guint64) G_MAXINT64));
 }
 
 static void
@@ -536,7 +588,8 @@ gst_cloth_sync_release_heads (Heads * heads)
 /* What to do about the time of the head of pad @i. A live stream may have been silent until
  * now, and its frames come when they are made. */
 static GstClothSyncVerdict
-gst_cloth_sync_judge (GstClothSync * self, const Heads * heads, guint i)
+gst_cloth_sync_judge (GstClothSync * self, const Heads * heads, guint i,
+    gboolean is_live)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
   GstClockTimeDiff start = priv->has_last ? priv->last_time : 0;
@@ -545,7 +598,7 @@ gst_cloth_sync_judge (GstClothSync * self, const Heads * heads, guint i)
   GST_OBJECT_LOCK (self);
   max_jump = priv->max_jump;
   GST_OBJECT_UNLOCK (self);
-  if (priv->is_live) {
+  if (is_live) {
     now = gst_element_get_current_running_time (GST_ELEMENT (self));
     if (GST_CLOCK_TIME_IS_VALID (now)) {
       start = MAX (start, (GstClockTimeDiff) MIN (now, (guint64) G_MAXINT64));
@@ -556,7 +609,8 @@ gst_cloth_sync_judge (GstClothSync * self, const Heads * heads, guint i)
 }
 
 /* The running time from which the live deadline counts: the next set's. NONE makes the
- * aggregator wait without a deadline, right while there is no frame at all. */
+ * aggregator wait without a deadline, right while there is no frame at all. It matters for
+ * live streams only. */
 static GstClockTime
 gst_cloth_sync_get_next_time (GstAggregator * agg)
 {
@@ -572,8 +626,8 @@ gst_cloth_sync_get_next_time (GstAggregator * agg)
     if (heads.head[i]) {
       /* a frame without a time, and one that is doubted, is dealt with at once */
       const GstClockTimeDiff time = GST_CLOCK_STIME_IS_VALID (heads.time[i])
-          && gst_cloth_sync_judge (self, &heads, i) == GST_CLOTH_SYNC_KEEP ?
-          MAX (heads.time[i], 0) : 0;
+          && gst_cloth_sync_judge (self, &heads, i, TRUE) ==
+          GST_CLOTH_SYNC_KEEP ? MAX (heads.time[i], 0) : 0;
 
       first = has_first ? MIN (first, time) : time;
       has_first = TRUE;
@@ -608,22 +662,30 @@ gst_cloth_sync_name_stream (GstClothSync * self, GstClothSyncPad * pad)
       GST_PAD_NAME (pad)) : g_strdup_printf ("pad %s", GST_PAD_NAME (pad));
 }
 
-/* Drops a frame whose time its successor, if any, contradicts. */
 static void
-gst_cloth_sync_refuse (GstClothSync * self, GstClothSyncPad * pad)
+gst_cloth_sync_count_implausible (GstClothSync * self, GstClothSyncPad * pad)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
-  g_autofree gchar *stream = gst_cloth_sync_name_stream (self, pad);
 
   GST_OBJECT_LOCK (self);
   priv->n_implausible++;
   pad->implausible++;
   GST_OBJECT_UNLOCK (self);
+}
+
+/* Drops a frame whose time its successor, if any, contradicts. */
+static void
+gst_cloth_sync_refuse (GstClothSync * self, GstClothSyncPad * pad,
+    gboolean is_last)
+{
+  g_autofree gchar *stream = gst_cloth_sync_name_stream (self, pad);
+
+  gst_cloth_sync_count_implausible (self, pad);
   if (!pad->warned_ahead) {
     GST_ELEMENT_WARNING (self, STREAM, FORMAT,
         ("A frame of %s was dropped: its time stamp, %.3f s, is far ahead and "
-            "the next frame's is not.", stream,
-            (gdouble) pad->held_time / GST_SECOND),
+            "%s.", stream, (gdouble) pad->held_time / GST_SECOND, is_last ?
+            "none comes after it" : "the next frame's is not"),
         ("Later ones are only counted, as \"implausible\" in stats. If such "
             "jumps are real, raise max-jump."));
     pad->warned_ahead = TRUE;
@@ -631,11 +693,59 @@ gst_cloth_sync_refuse (GstClothSync * self, GstClothSyncPad * pad)
   gst_cloth_sync_pad_refuse (pad);
 }
 
+/* Drops a frame without a time on a pad that has had times, among others. */
+static void
+gst_cloth_sync_refuse_untimed (GstClothSync * self, GstClothSyncPad * pad)
+{
+  g_autofree gchar *stream = gst_cloth_sync_name_stream (self, pad);
+  g_autoptr (GstBuffer) buffer = gst_cloth_sync_pop (self, pad);
+
+  gst_cloth_sync_count_implausible (self, pad);
+  if (!pad->warned_untimed) {
+    GST_ELEMENT_WARNING (self, STREAM, FORMAT,
+        ("A frame of %s was dropped: it has no time stamp.", stream),
+        ("Streams are joined by running time. Later ones are only counted, as "
+            "\"implausible\" in stats."));
+    pad->warned_untimed = TRUE;
+  }
+}
+
+/* Believes in a jump, and says so where the others have not jumped: they go on without. */
+static void
+gst_cloth_sync_believe (GstClothSync * self, const Heads * heads, guint i)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  GstClothSyncPad *pad = heads->pad[i];
+  gboolean alone = FALSE;
+  GstClockTime max_jump;
+
+  GST_OBJECT_LOCK (self);
+  max_jump = priv->max_jump;
+  GST_OBJECT_UNLOCK (self);
+  for (guint k = 0; k < heads->n; k++) {
+    alone |= k != i && heads->head[k] && !heads->gap[k]
+        && !gst_cloth_sync_pad_is_holding (heads->pad[k])
+        && !is_within (pad->held_time, heads->time[k], max_jump);
+  }
+  if (alone && GST_CLOCK_STIME_IS_VALID (pad->last) && !pad->warned_ahead) {
+    g_autofree gchar *stream = gst_cloth_sync_name_stream (self, pad);
+
+    GST_ELEMENT_WARNING (self, STREAM, FORMAT,
+        ("The time stamps of %s jump to %.3f s; the others go on without it "
+            "until they come there.", stream,
+            (gdouble) pad->held_time / GST_SECOND),
+        ("See what stamps these frames."));
+    pad->warned_ahead = TRUE;
+  }
+  gst_cloth_sync_pad_believe (pad);
+}
+
 /* Looks whether the heads' times can be believed. TRUE when a head has changed: they have
  * to be looked at anew. */
 static gboolean
 gst_cloth_sync_settle_times (GstClothSync * self, Heads * heads)
 {
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
   gboolean changed = FALSE;
   guint i;
 
@@ -644,13 +754,22 @@ gst_cloth_sync_settle_times (GstClothSync * self, Heads * heads)
     const GstClockTimeDiff time = heads->time[i];
     GstBuffer *buffer;
 
-    if (!pad || (heads->head[i] && !GST_CLOCK_STIME_IS_VALID (time))) {
+    if (!pad) {
       continue;
     }
-    switch (gst_cloth_sync_judge (self, heads, i)) {
+    if (heads->head[i] && !GST_CLOCK_STIME_IS_VALID (time)) {
+      if (heads->n_pads > 1 && GST_CLOCK_STIME_IS_VALID (pad->last)) {
+        gst_clear_buffer (&heads->head[i]);
+        gst_cloth_sync_refuse_untimed (self, pad);
+        changed = TRUE;
+      }
+      continue;
+    }
+    switch (gst_cloth_sync_judge (self, heads, i, priv->is_live)) {
       case GST_CLOTH_SYNC_KEEP:
         if (heads->head[i]) {
-          gst_cloth_sync_pad_note (pad, time);
+          gst_cloth_sync_pad_note (pad, time,
+              gst_cloth_sync_end_of_head (heads, i));
         }
         continue;
       case GST_CLOTH_SYNC_HOLD:
@@ -662,12 +781,10 @@ gst_cloth_sync_settle_times (GstClothSync * self, Heads * heads)
         }
         break;
       case GST_CLOTH_SYNC_BELIEVE:
-        GST_INFO_OBJECT (pad, "time stamps jump to %" GST_STIME_FORMAT,
-            GST_STIME_ARGS (pad->held_time));
-        gst_cloth_sync_pad_believe (pad);
+        gst_cloth_sync_believe (self, heads, i);
         break;
       case GST_CLOTH_SYNC_REFUSE:
-        gst_cloth_sync_refuse (self, pad);
+        gst_cloth_sync_refuse (self, pad, !heads->head[i]);
         break;
     }
     changed = TRUE;
@@ -710,12 +827,22 @@ gst_cloth_sync_drop (GstClothSync * self, GstClothSyncPad * pad,
       && !is_within (priv->last_time, time, max_jump)) {
     g_autofree gchar *stream = gst_cloth_sync_name_stream (self, pad);
 
-    GST_ELEMENT_WARNING (self, STREAM, FORMAT,
-        ("Frames of %s are dropped: their time stamps went back to %.3f s, "
-            "but %.3f s has gone by.", stream, (gdouble) time / GST_SECOND,
-            (gdouble) priv->last_time / GST_SECOND),
-        ("Streams are joined by running time, which never goes back. See what "
-            "stamps these frames."));
+    if (time < pad->last) {
+      GST_ELEMENT_WARNING (self, STREAM, FORMAT,
+          ("Frames of %s are dropped: their time stamps went back to %.3f s, "
+              "but %.3f s has gone by.", stream, (gdouble) time / GST_SECOND,
+              (gdouble) priv->last_time / GST_SECOND),
+          ("Streams are joined by running time, which never goes back. See "
+              "what stamps these frames."));
+    } else {
+      GST_ELEMENT_WARNING (self, STREAM, FORMAT,
+          ("Frames of %s are dropped: they come when the set of %.3f s has "
+              "gone, and are of %.3f s.", stream,
+              (gdouble) priv->last_time / GST_SECOND,
+              (gdouble) time / GST_SECOND),
+          ("Raise latency, or see whether another stream's time stamps run "
+              "ahead."));
+    }
     pad->warned_back = TRUE;
   }
   gst_cloth_sync_discard_head (self, pad);
@@ -740,13 +867,8 @@ gst_cloth_sync_discard (GstClothSync * self, Heads * heads,
       continue;
     }
     if (heads->gap[i]) {
-      if (GST_BUFFER_DURATION_IS_VALID (heads->head[i])) {
-        const GstClockTime room = (guint64) G_MAXINT64 - (guint64) time;
-
-        time += (GstClockTimeDiff) MIN (GST_BUFFER_DURATION (heads->head[i]),
-            MIN (room, (guint64) G_MAXINT64));
-      }
-      if (!first || is_within (time, *first, tolerance)) {
+      if (!first || is_within (gst_cloth_sync_end_of_head (heads, i), *first,
+              tolerance)) {
         gst_cloth_sync_discard_head (self, heads->pad[i]);
         discarded = TRUE;
       }
@@ -904,6 +1026,9 @@ gst_cloth_sync_aggregate (GstAggregator * agg, gboolean timeout)
   guint i;
 
   gst_cloth_sync_forget_released (self);
+  if (!gst_cloth_sync_take_caps (self)) {
+    return GST_FLOW_NOT_NEGOTIATED;
+  }
   GST_OBJECT_LOCK (self);
   tolerance = priv->effective;
   GST_OBJECT_UNLOCK (self);

@@ -7,16 +7,21 @@
 
 #include "elements/gstclothsyncpad.h"
 
+/* Pauses of a film are shorter, and one damaged time stamp of 200,000 is. */
+#define LONGEST_PAUSE (24 * 3600 * GST_SECOND)
+
 G_DEFINE_TYPE (GstClothSyncPad, gst_cloth_sync_pad, GST_TYPE_AGGREGATOR_PAD);
 
 GstBuffer *
-gst_cloth_sync_pad_look (GstClothSyncPad * pad)
+gst_cloth_sync_pad_look (GstClothSyncPad * pad, GstClockTimeDiff * time)
 {
   GstBuffer *head = NULL;
 
+  *time = GST_CLOCK_STIME_NONE;
   GST_OBJECT_LOCK (pad);
   if (pad->believed) {
     head = gst_buffer_ref (pad->held);
+    *time = pad->held_time;
   }
   GST_OBJECT_UNLOCK (pad);
   return head ? head :
@@ -38,6 +43,17 @@ gst_cloth_sync_pad_take (GstClothSyncPad * pad)
       gst_aggregator_pad_pop_buffer (GST_AGGREGATOR_PAD_CAST (pad));
 }
 
+gboolean
+gst_cloth_sync_pad_is_holding (GstClothSyncPad * pad)
+{
+  gboolean is_holding;
+
+  GST_OBJECT_LOCK (pad);
+  is_holding = pad->held != NULL;
+  GST_OBJECT_UNLOCK (pad);
+  return is_holding;
+}
+
 static GstClothSyncVerdict
 judge (const GstClothSyncPad * pad, GstClockTimeDiff time, gboolean is_eos,
     GstClockTimeDiff start, GstClockTime max_jump)
@@ -56,7 +72,9 @@ judge (const GstClothSyncPad * pad, GstClockTimeDiff time, gboolean is_eos,
         GST_CLOTH_SYNC_HOLD : GST_CLOTH_SYNC_KEEP;
   }
   if (is_head) {
-    most = MAX (most, (guint64) pad->held_time - (guint64) last);
+    /* live, the clock may have gone past it meanwhile */
+    most = MAX (most, pad->held_time > last ?
+        (guint64) pad->held_time - (guint64) last : 0);
     return time > pad->held_time
         && (guint64) time - (guint64) pad->held_time <= most ?
         GST_CLOTH_SYNC_BELIEVE : GST_CLOTH_SYNC_REFUSE;
@@ -65,7 +83,9 @@ judge (const GstClothSyncPad * pad, GstClockTimeDiff time, gboolean is_eos,
     return GST_CLOTH_SYNC_KEEP;
   }
   /* The only frame of its pad is contradicted by none. */
-  return first ? GST_CLOTH_SYNC_BELIEVE : GST_CLOTH_SYNC_REFUSE;
+  return first || pad->held_time <= last
+      || (guint64) pad->held_time - (guint64) last <= LONGEST_PAUSE ?
+      GST_CLOTH_SYNC_BELIEVE : GST_CLOTH_SYNC_REFUSE;
 }
 
 GstClothSyncVerdict
@@ -83,14 +103,17 @@ gst_cloth_sync_pad_judge (GstClothSyncPad * pad, GstClockTimeDiff time,
 }
 
 void
-gst_cloth_sync_pad_note (GstClothSyncPad * pad, GstClockTimeDiff time)
+gst_cloth_sync_pad_note (GstClothSyncPad * pad, GstClockTimeDiff time,
+    GstClockTimeDiff end)
 {
   GST_OBJECT_LOCK (pad);
   if (!GST_CLOCK_STIME_IS_VALID (pad->last)) {
-    pad->last = time;
-  } else if (time > pad->last) {
-    pad->interval = (guint64) time - (guint64) pad->last;
-    pad->last = time;
+    pad->last = end;
+  } else if (end > pad->last) {
+    if (time > pad->last) {
+      pad->interval = (guint64) time - (guint64) pad->last;
+    }
+    pad->last = end;
   }
   GST_OBJECT_UNLOCK (pad);
 }
@@ -100,7 +123,6 @@ gst_cloth_sync_pad_hold (GstClothSyncPad * pad, GstBuffer * buffer,
     GstClockTimeDiff time)
 {
   GST_OBJECT_LOCK (pad);
-  gst_clear_buffer (&pad->held);
   pad->held = buffer;
   pad->held_time = time;
   GST_OBJECT_UNLOCK (pad);
@@ -117,16 +139,21 @@ gst_cloth_sync_pad_believe (GstClothSyncPad * pad)
 void
 gst_cloth_sync_pad_refuse (GstClothSyncPad * pad)
 {
+  g_autoptr (GstBuffer) held = NULL;
+
   GST_OBJECT_LOCK (pad);
-  gst_clear_buffer (&pad->held);
+  held = g_steal_pointer (&pad->held);
   GST_OBJECT_UNLOCK (pad);
 }
 
 void
 gst_cloth_sync_pad_reset (GstClothSyncPad * pad)
 {
+  /* freed without the lock: who made it may do anything then */
+  g_autoptr (GstBuffer) held = NULL;
+
   GST_OBJECT_LOCK (pad);
-  gst_clear_buffer (&pad->held);
+  held = g_steal_pointer (&pad->held);
   pad->believed = FALSE;
   pad->last = GST_CLOCK_STIME_NONE;
   pad->interval = 0;
@@ -146,6 +173,7 @@ static void
 gst_cloth_sync_pad_finalize (GObject * object)
 {
   gst_cloth_sync_pad_reset (GST_CLOTH_SYNC_PAD (object));
+  gst_clear_event (&GST_CLOTH_SYNC_PAD (object)->caps);
   G_OBJECT_CLASS (gst_cloth_sync_pad_parent_class)->finalize (object);
 }
 

@@ -35,13 +35,14 @@ struct _GstClothSyncPad {
   /*< private > */
   /* object lock of the pad */
   GstBuffer *held;              /* too far ahead: waits for the next frame's word */
-  GstClockTimeDiff held_time;
+  GstClockTimeDiff held_time;   /* by the segment that it came with */
   gboolean believed;            /* the held one is the head */
   GstClockTimeDiff last;        /* the latest time believed; NONE: none yet */
   guint64 interval;             /* from the time before to @last */
 
   /* streaming thread of the element */
-  gboolean warned_ahead, warned_back;
+  GstEvent *caps;               /* came after @held, and counts once that one is gone */
+  gboolean warned_ahead, warned_back, warned_untimed;
 };
 
 struct _GstClothSyncPadClass {
@@ -64,8 +65,16 @@ typedef enum {
 
 GType gst_cloth_sync_pad_get_type (void);
 
-/* Returns: (transfer full) (nullable): the frame at the head, which stays there */
-GstBuffer *gst_cloth_sync_pad_look (GstClothSyncPad * pad);
+/* @time: (out): common time of the frame, when that is known already, else
+ *   %GST_CLOCK_STIME_NONE
+ *
+ * Returns: (transfer full) (nullable): the frame at the head, which stays there
+ */
+GstBuffer *gst_cloth_sync_pad_look (GstClothSyncPad * pad,
+    GstClockTimeDiff * time);
+
+/* Whether a frame is held, or was and is the head. */
+gboolean gst_cloth_sync_pad_is_holding (GstClothSyncPad * pad);
 
 /* Returns: (transfer full) (nullable): the frame at the head */
 GstBuffer *gst_cloth_sync_pad_take (GstClothSyncPad * pad);
@@ -77,15 +86,19 @@ GstBuffer *gst_cloth_sync_pad_take (GstClothSyncPad * pad);
  * A frame is doubted when it lies more than @max_jump ahead of the one before it on its
  * pad, and more than twice as far as that one did of its own predecessor. It is believed
  * when the next frame comes after it and is no farther from it than the two bounds, or the
- * jump itself, allow; so a damaged time stamp costs its frame, and a pause costs nothing.
+ * jump itself, allow; at the end of the stream when the jump is of a day at most, which of
+ * damaged time stamps hardly any is. So a damaged time stamp costs its frame, and a pause
+ * costs nothing.
  *
- * Returns: what to do; it stays the same until that is done
+ * Returns: what to do
  */
 GstClothSyncVerdict gst_cloth_sync_pad_judge (GstClothSyncPad * pad,
     GstClockTimeDiff time, GstClockTimeDiff start, GstClockTime max_jump);
 
-/* Notes that the head is kept for its time. */
-void gst_cloth_sync_pad_note (GstClothSyncPad * pad, GstClockTimeDiff time);
+/* Notes that the head is kept for its time; @end: when what it says ends, of a frame @time
+ * as well. */
+void gst_cloth_sync_pad_note (GstClothSyncPad * pad, GstClockTimeDiff time,
+    GstClockTimeDiff end);
 
 /* Holds @buffer (transfer full), taken from the head; @time: its common time. */
 void gst_cloth_sync_pad_hold (GstClothSyncPad * pad, GstBuffer * buffer,

@@ -248,6 +248,173 @@ GST_START_TEST (test_all_believed)
 
 GST_END_TEST;
 
+/* A frame without any time among others with theirs: it goes, they stay. */
+GST_START_TEST (test_untimed)
+{
+  Bench b;
+  guint f;
+
+  bench_init (&b, 2, FALSE);
+  for (f = 0; f < 4; f++) {
+    push (&b, 0, f * FRAME);
+    if (f == 2) {
+      push (&b, 1, GST_CLOCK_TIME_NONE);
+    }
+    push (&b, 1, f * FRAME);
+  }
+  eos (&b, 0);
+  eos (&b, 1);
+  for (f = 0; f < 4; f++) {
+    expect (&b, f * FRAME, 3);
+  }
+  expect_eos (&b);
+  expect_warning (&b, "pad sink_1 was dropped: it has no time stamp");
+  expect_silence (&b);
+  fail_unless_equals_uint64 (stat_of (&b, "implausible"), 1);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* Pictures a minute from each other, each in a segment of its own, as concat makes them: a
+ * held one keeps the time of its segment. */
+GST_START_TEST (test_segments)
+{
+  GstSegment segment;
+  Bench b;
+  guint f;
+
+  bench_init (&b, 1, FALSE);
+  for (f = 0; f < 5; f++) {
+    gst_segment_init (&segment, GST_FORMAT_TIME);
+    segment.base = f * 60 * GST_SECOND;
+    segment.start = segment.time = f * GST_SECOND;
+    give (&b, 0, gst_event_new_segment (&segment));
+    push (&b, 0, f * GST_SECOND);
+  }
+  eos (&b, 0);
+  for (f = 0; f < 5; f++) {
+    expect (&b, f * 60 * GST_SECOND, 1);
+  }
+  expect_eos (&b);
+  expect_silence (&b);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* Caps that come behind a held frame count when it has gone. */
+GST_START_TEST (test_caps)
+{
+  Bench b;
+
+  bench_init (&b, 1, FALSE);
+  push (&b, 0, 0);
+  expect (&b, 0, 1);
+  fail_unless_equals_int (TEST_SYNC (b.sync)->n_caps, 1);
+  push (&b, 0, 3600 * GST_SECOND);
+  caps (&b, 0, "test/x-frames,framerate=60/1");
+  settle (&b, 0);
+  fail_unless_equals_int (TEST_SYNC (b.sync)->n_caps, 1);
+  push (&b, 0, 3600 * GST_SECOND + FRAME);
+  expect (&b, 3600 * GST_SECOND, 1);
+  expect (&b, 3600 * GST_SECOND + FRAME, 1);
+  fail_unless_equals_int (TEST_SYNC (b.sync)->n_caps, 2);
+  /* refused ones end the stream, then */
+  push (&b, 0, 2 * 3600 * GST_SECOND);
+  caps (&b, 0, "test/x-frames,refuse=true");
+  push (&b, 0, 2 * 3600 * GST_SECOND + FRAME);
+  expect (&b, 2 * 3600 * GST_SECOND, 1);
+  {
+    g_autoptr (GstMessage) error = gst_bus_timed_pop_filtered (b.bus,
+        10 * GST_SECOND, GST_MESSAGE_ERROR);
+
+    fail_unless (error != NULL);
+  }
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* A pad goes while one of its frames is held: the others go on. */
+GST_START_TEST (test_release)
+{
+  Bench b;
+
+  bench_init (&b, 2, FALSE);
+  push (&b, 0, 0);
+  push (&b, 1, 0);
+  expect (&b, 0, 3);
+  push (&b, 1, G_MAXINT64);
+  push (&b, 0, FRAME);
+  settle (&b, 1);
+  bench_remove_pad (&b, 1);
+  expect (&b, FRAME, 1);
+  eos (&b, 0);
+  expect_eos (&b);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* One of two cameras jumps for good: the other goes on, and it is said. */
+GST_START_TEST (test_one_jumps)
+{
+  Bench b;
+  guint f;
+
+  bench_init (&b, 2, FALSE);
+  for (f = 0; f < 6; f++) {
+    push (&b, 0, f * FRAME);
+    push (&b, 1, f * FRAME + (f < 3 ? 0 : 3600 * GST_SECOND));
+  }
+  eos (&b, 0);
+  eos (&b, 1);
+  for (f = 0; f < 6; f++) {
+    expect (&b, f * FRAME, f < 3 ? 3 : 1);
+  }
+  for (f = 3; f < 6; f++) {
+    expect (&b, f * FRAME + 3600 * GST_SECOND, 2);
+  }
+  expect_eos (&b);
+  expect_warning (&b, "pad sink_1 jump to 3600.099 s");
+  expect_silence (&b);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* After a pause the last frame of all is one, too. */
+GST_START_TEST (test_pause_at_the_end)
+{
+  Bench b;
+
+  bench_init (&b, 1, FALSE);
+  push (&b, 0, 0);
+  push (&b, 0, 3600 * GST_SECOND);
+  eos (&b, 0);
+  expect (&b, 0, 1);
+  expect (&b, 3600 * GST_SECOND, 1);
+  expect_eos (&b);
+  expect_silence (&b);
+  bench_clear (&b);
+
+  /* a gap says how long nothing comes */
+  bench_init (&b, 2, FALSE);
+  gap (&b, 1, 0, 30 * GST_SECOND);
+  push (&b, 1, 30 * GST_SECOND);
+  push (&b, 0, 0);
+  eos (&b, 0);
+  eos (&b, 1);
+  expect (&b, 0, 1);
+  expect (&b, 30 * GST_SECOND, 2);
+  expect_eos (&b);
+  expect_silence (&b);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
 /* Two frames that bear each other out move the stream's time on; that what follows is lost
  * is said once. */
 GST_START_TEST (test_back)
@@ -380,6 +547,32 @@ GST_START_TEST (test_offset)
 
 GST_END_TEST;
 
+/* Live, all cameras begin a minute after the pipeline: the first set waits for them. */
+GST_START_TEST (test_live_start)
+{
+  Bench b;
+  GstTestClock *clock;
+
+  bench_init (&b, 2, TRUE);
+  clock = gst_harness_get_testclock (b.src);
+  gst_test_clock_set_time (clock, 60 * GST_SECOND);
+  push (&b, 0, 60 * GST_SECOND);
+  {
+    GstClockID id;
+
+    /* the deadline: it waits */
+    gst_test_clock_wait_for_next_pending_id (clock, &id);
+    fail_unless (gst_clock_id_get_time (id) > 60 * GST_SECOND);
+    gst_clock_id_unref (id);
+  }
+  push (&b, 1, 60 * GST_SECOND);
+  expect (&b, 60 * GST_SECOND, 3);
+  gst_object_unref (clock);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
 /* Live: a camera that was silent for a minute is believed at once, one that lies is not. */
 GST_START_TEST (test_live)
 {
@@ -422,10 +615,17 @@ clothsynctimes_suite (void)
   tcase_add_test (tc, test_far_at_the_end);
   tcase_add_test (tc, test_all_believed);
   tcase_add_test (tc, test_back);
+  tcase_add_test (tc, test_untimed);
+  tcase_add_test (tc, test_segments);
+  tcase_add_test (tc, test_caps);
+  tcase_add_test (tc, test_release);
+  tcase_add_test (tc, test_one_jumps);
+  tcase_add_test (tc, test_pause_at_the_end);
   tcase_add_test (tc, test_gaps);
   tcase_add_test (tc, test_duration);
   tcase_add_test (tc, test_flush);
   tcase_add_test (tc, test_offset);
+  tcase_add_test (tc, test_live_start);
   tcase_add_test (tc, test_live);
   return s;
 }
