@@ -21,8 +21,9 @@
  * A damaged mesh gives no picture and is counted in `dropped`; the first gives a warning, the
  * end of the stream an info message with their number. With `strict`, for files, the first is
  * an error. A mesh counts as damaged, too, when the upright boxes around its triangles, each
- * as far as it lies in the picture, cover that more than 256 times. A layer of cloth meshed
- * by about as many columns as rows covers it twice, or, seen aslant, eight times.
+ * as far as it lies in the picture, cover that more than 256 times, and 100 million pixels.
+ * A layer of cloth meshed by about as many columns as rows covers it twice, or, seen aslant,
+ * eight times.
  *
  * ## Example
  * |[
@@ -53,8 +54,10 @@ GST_DEBUG_CATEGORY_STATIC (cloth_camera_debug);
 #define GST_CAT_DEFAULT cloth_camera_debug
 
 /* So many times the picture's area the boxes around all triangles may cover, hidden ones
- * included: cloth in a heap has some tens of layers. */
+ * included: cloth in a heap has some tens of layers. In small pictures it is so many samples
+ * at least: a million triangles of one each. */
 #define MOST_LAYERS 256
+#define LEAST_SAMPLES 1e8
 
 /* Of pictures of the free view, which may be of any size. */
 #define DEFAULT_WIDTH 1280
@@ -401,8 +404,9 @@ give_up (GstClothCamera * self, const ClothWork * work)
     return GST_FLOW_FLUSHING;
   if (work->left_out) {
     g_set_error (&error, GST_CLOTH_ERROR, GST_CLOTH_ERROR_LIMIT,
-        "The boxes around the mesh's triangles cover the picture more than %d "
-        "times", MOST_LAYERS);
+        "The boxes around the mesh's triangles cover the picture too often, "
+        "more than %.0f times", MAX (MOST_LAYERS, LEAST_SAMPLES /
+            ((gdouble) width * height)));
     return gst_cloth_damage_add (&self->settings.damage, GST_ELEMENT (self),
         error);
   }
@@ -419,7 +423,8 @@ draw (GstClothCamera * self, const Frame * frame, GstVideoFrame * video,
     gboolean * drawn)
 {
   const ClothCamera *camera = &self->capture.camera;
-  ClothWork work = { MOST_LAYERS * (gdouble) camera->width * camera->height,
+  ClothWork work = { MAX (LEAST_SAMPLES,
+        MOST_LAYERS * (gdouble) camera->width * camera->height),
     &self->stopped, FALSE
   };
   const gboolean grey = GST_VIDEO_INFO_IS_GRAY (&video->info);

@@ -211,38 +211,69 @@ has_label (const GstClothDot * dot, guint columns, guint rows)
       && (guint) dot->row < rows;
 }
 
-/* Pictures share the table, so that it needs no memory anew: what is found may be of
- * another picture, and a dot has the label when it says so itself. */
-static const GstClothDot *
-find_dot (GHashTable * by_label, guint columns, guint rows,
-    const GstClothDot * dots, guint n, gint column, gint row)
+/* Where a dot belongs in the pattern, and in the low half which dot it is. */
+static guint64
+place_of_dot (guint columns, gint column, gint row, guint index)
 {
-  const guint key = (guint) row * columns + (guint) column;
-  const guint i = GPOINTER_TO_UINT (g_hash_table_lookup (by_label,
-          GUINT_TO_POINTER (key)));
+  return ((guint64) (guint) row * columns + (guint) column) << 32 | index;
+}
 
-  return i < n && dots[i].column == column && dots[i].row == row
-      && has_label (&dots[i], columns, rows) ? &dots[i] : NULL;
+static gint
+compare_places (gconstpointer a, gconstpointer b)
+{
+  const guint64 x = *(const guint64 *) a, y = *(const guint64 *) b;
+
+  return (x > y) - (x < y);
+}
+
+/* The first dot at a place of @places, which are in order. Labels may be a stranger's: no
+ * table is hashed by them. */
+static const GstClothDot *
+find_dot (const GArray * places, guint columns, guint rows,
+    const GstClothDot * dots, gint column, gint row)
+{
+  const guint64 key = place_of_dot (columns, column, row, 0);
+  guint low = 0, high = places->len;
+  guint64 found;
+
+  if ((guint) column >= columns || (guint) row >= rows) {
+    return NULL;
+  }
+  while (low < high) {
+    const guint middle = (low + high) / 2;
+
+    if (g_array_index (places, guint64, middle) < key) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  if (low == places->len) {
+    return NULL;
+  }
+  found = g_array_index (places, guint64, low);
+  return found >> 32 == key >> 32 ? &dots[found & G_MAXUINT32] : NULL;
 }
 
 void
 gst_cloth_overlay_draw_dots (const ClothCanvas * canvas, GstClothDots * dots,
-    GHashTable * by_label, const GstClothOverlayStyle * style)
+    GArray * places, const GstClothOverlayStyle * style)
 {
   guint n, columns = gst_cloth_dots_get_columns (dots);
   guint rows = gst_cloth_dots_get_rows (dots);
   const GstClothDot *dot = gst_cloth_dots_get_dots (dots, &n);
   ClothColour cross = with_opacity (unlabelled_colour, style->opacity);
 
-  if (g_hash_table_size (by_label) > GST_CLOTH_MAX_FEATURES) {
-    g_hash_table_remove_all (by_label);
-  }
+  g_array_set_size (places, 0);
   for (guint i = 0; i < n; i++) {
     if (has_label (&dot[i], columns, rows)) {
-      g_hash_table_insert (by_label, GUINT_TO_POINTER ((guint) dot[i].row
-              * columns + (guint) dot[i].column), GUINT_TO_POINTER (i));
+      const guint64 place =
+          place_of_dot (columns, dot[i].column, dot[i].row, i);
+
+      g_array_append_val (places, place);
     }
   }
+  g_array_sort (places, compare_places);
   for (guint i = 0; i < n; i++) {
     const GstClothDot *d = &dot[i];
     const GstClothDot *right, *below;
@@ -256,8 +287,8 @@ gst_cloth_overlay_draw_dots (const ClothCanvas * canvas, GstClothDots * dots,
       }
       continue;
     }
-    right = find_dot (by_label, columns, rows, dot, n, d->column + 1, d->row);
-    below = find_dot (by_label, columns, rows, dot, n, d->column, d->row + 1);
+    right = find_dot (places, columns, rows, dot, d->column + 1, d->row);
+    below = find_dot (places, columns, rows, dot, d->column, d->row + 1);
     if (style->draw_dots) {
       ClothColour colour = dot_colour (d, style);
 

@@ -33,7 +33,7 @@ void gst_cloth_overlay_draw_saddles (const ClothCanvas * canvas,
 /* Labelled dots and the links between neighbours of the pattern; crosses on the others.
  * @by_label is room for finding neighbours, kept over the pictures of a film. */
 void gst_cloth_overlay_draw_dots (const ClothCanvas * canvas,
-    GstClothDots * dots, GHashTable * by_label,
+    GstClothDots * dots, GArray * places,
     const GstClothOverlayStyle * style);
 
 G_END_DECLS

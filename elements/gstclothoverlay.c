@@ -13,7 +13,7 @@
  * has been over is drawn as a heat map of its distance from the simulation.
  *
  * What a stranger's packets say is drawn as far as it covers the picture at most 64 times
- * (at least 100 million pixels); what comes after that is left out, with one warning.
+ * (at least 300 million pixels); what comes after that is left out, with one warning.
  *
  * A picture whose mesh is damaged goes on without it. The mesh is counted in `dropped`; the
  * first gives a warning, the end of the stream an info message with their number. With
@@ -70,10 +70,10 @@ GST_DEBUG_CATEGORY_STATIC (cloth_overlay_debug);
 #define MESH 1
 
 /* So many times the picture's area is drawn over it, what is transparent or hidden included,
- * and in small pictures at least so many samples, which take about a tenth of a second.
+ * and in small pictures at least so many samples, which take some tenths of a second.
  * 65,536 squares with outlines and numbers need less than a fifth of it. */
 #define MOST_LAYERS 64
-#define LEAST_SAMPLES 1e8
+#define LEAST_SAMPLES 3e8
 
 /* Of the lines of a mesh that lie behind another part of it. */
 #define HIDDEN_OPACITY 0.25f
@@ -117,7 +117,7 @@ struct _GstClothOverlay
   GstVideoInfo info;
   GstCaps *video_caps;
   gboolean knows_strides;       /* downstream, of GstVideoMeta */
-  GHashTable *dots_by_label;
+  GArray *dot_places;
   Mesh *mesh;
   ClothRig *rig;
   const ClothCamera *camera;    /* of @rig */
@@ -547,8 +547,7 @@ gst_cloth_overlay_tell (GstClothOverlay * self, const ClothWork * work)
   }
   self->warned = TRUE;
   GST_ELEMENT_WARNING (self, STREAM, FAILED,
-      ("What is to be drawn covers the picture more than %d times; the rest "
-          "was left out.", MOST_LAYERS),
+      ("What is to be drawn is too much for a picture: the rest was left out."),
       ("Make line-width or ellipse-scale smaller; if they are small, what came "
           "is of no cloth. Of other pictures like it you are not told."));
 }
@@ -622,7 +621,7 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   }
   if (has_dots) {
     gst_cloth_overlay_draw_dots (&canvas, gst_buffer_get_cloth_dots (*out),
-        self->dots_by_label, &style);
+        self->dot_places, &style);
   }
   if (mesh) {
     ret = gst_cloth_overlay_draw_mesh (self, &canvas, mesh, &style);
@@ -773,7 +772,7 @@ gst_cloth_overlay_finalize (GObject * object)
   GstClothOverlay *self = GST_CLOTH_OVERLAY (object);
 
   gst_caps_replace (&self->video_caps, NULL);
-  g_hash_table_unref (self->dots_by_label);
+  g_array_unref (self->dot_places);
   g_clear_pointer (&self->mesh, mesh_free);
   g_clear_pointer (&self->rig, cloth_rig_free);
   gst_cloth_clear_settings (properties, G_N_ELEMENTS (properties),
@@ -822,7 +821,7 @@ static void
 gst_cloth_overlay_init (GstClothOverlay * self)
 {
   self->settings = defaults;
-  self->dots_by_label = g_hash_table_new (NULL, NULL);
+  self->dot_places = g_array_new (FALSE, FALSE, sizeof (guint64));
   gst_cloth_damage_watch (&self->settings.damage, GST_ELEMENT (self),
       GST_AGGREGATOR_SRC_PAD (self));
   gst_cloth_sync_add_always_pad (GST_CLOTH_SYNC (self), "sink");

@@ -234,21 +234,32 @@ gst_cloth_source_is_seekable (GstBaseSrc * src)
   return is_open && !gst_base_src_is_live (src);
 }
 
+/* Whether the segment can be what the seek wants, by the arithmetic that the base class will
+ * use. */
 static gboolean
 can_seek (GstClothSource * self, GstEvent * event)
 {
   GstSeekType start_type, stop_type;
+  GstSeekFlags flags;
   gint64 start, stop;
   GstFormat format;
+  GstSegment segment;
   gdouble rate;
 
-  gst_event_parse_seek (event, &rate, &format, NULL, &start_type, &start,
+  gst_event_parse_seek (event, &rate, &format, &flags, &start_type, &start,
       &stop_type, &stop);
   if (format != GST_FORMAT_TIME
-      || (rate < 0 && !GST_CLOTH_SOURCE_GET_CLASS (self)->backwards))
+      || (rate < 0 && !GST_CLOTH_SOURCE_GET_CLASS (self)->backwards)
+      || (start_type == GST_SEEK_TYPE_SET && stop_type == GST_SEEK_TYPE_SET
+          && stop >= 0 && start > stop))
     return FALSE;
-  return start_type != GST_SEEK_TYPE_SET || stop_type != GST_SEEK_TYPE_SET
-      || stop < 0 || start <= stop;
+  GST_OBJECT_LOCK (self);
+  gst_segment_copy_into (&GST_BASE_SRC (self)->segment, &segment);
+  GST_OBJECT_UNLOCK (self);
+  if (segment.format != GST_FORMAT_TIME)
+    return TRUE;                /* it is none yet */
+  return gst_segment_do_seek (&segment, rate, format, flags, start_type,
+      (guint64) start, stop_type, (guint64) stop, NULL);
 }
 
 /* The base class flushes first and asks then; after a refusal the stream would go on without

@@ -25,7 +25,7 @@ typedef struct
   Field fields[MAX_FIELDS];
 } Clock;
 
-/* All that GStreamer 1.22 to 1.26 and its plugins put on pictures; docs/streams.md says
+/* Those that GStreamer 1.22 to 1.26 and its own plugins put on pictures; docs/streams.md says
  * which of them. */
 static const Clock clocks[] = {
   {"timestamp/x-ntp", {{"host", G_TYPE_STRING, 0, 0},
@@ -64,7 +64,7 @@ take_value (Rest * rest, const gchar ** value, gsize * length)
 {
   *value = rest->at;
   while (rest->at < rest->end && (g_ascii_isalnum (*rest->at)
-          || (*rest->at && strchr ("_-+/.", *rest->at))))
+          || (*rest->at && strchr ("_-+/.:", *rest->at))))
     rest->at++;
   *length = (gsize) (rest->at - *value);
   return *length > 0;

@@ -312,7 +312,7 @@ reference_is_plain (const gchar * text, gsize length)
   if (length < 1 || length > MAX_REFERENCE)
     return FALSE;
   for (gsize i = 0; i < length; i++)
-    if (!g_ascii_isalnum (text[i]) && !(text[i] && strchr ("/_-+., =()",
+    if (!g_ascii_isalnum (text[i]) && !(text[i] && strchr ("/_-+.:, =()",
                 text[i])))
       return FALSE;
   return TRUE;
@@ -340,7 +340,8 @@ put_times (GByteArray * bytes, GstBuffer * buffer, guint * n_sections)
     g_autofree gchar *reference = gst_caps_to_string (time->reference);
     guint start;
 
-    if (!reference_is_plain (reference, strlen (reference))
+    if (!GST_CLOCK_TIME_IS_VALID (time->timestamp)
+        || !reference_is_plain (reference, strlen (reference))
         || !reference_is_known (reference))
       continue;
     start = begin_section (bytes, SECTION_TIME);

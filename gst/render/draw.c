@@ -93,16 +93,30 @@ clipped (gfloat low, gfloat high, gint size)
   return MAX (b - a, 0);
 }
 
-/* Whether a shape between two corners may be drawn that is at most @wide in each row. */
+/* What a shape's edges and its coarsest samples reach beyond its corners, px. */
+#define REACH 16
+
+/* Whether a shape between two corners is to be drawn that is at most @wide in each row: it
+ * is not when it lies beside the picture, or when there is no work left for it. A row costs a
+ * chunk at least. */
 static gboolean
 take_work (const ClothCanvas * canvas, gfloat left, gfloat top, gfloat right,
     gfloat bottom, gfloat wide)
 {
   const ClothComponent *c = &canvas->components[0];
+  const gint width = c->width << c->shift_x, height = c->height << c->shift_y;
+  gdouble row;
 
-  return !canvas->work || cloth_work_take (canvas->work,
-      clipped (top, bottom, c->height << c->shift_y)
-      * MIN (clipped (left, right, c->width << c->shift_x), (gdouble) wide));
+  if (!(right + REACH > 0) || !(left - REACH < (gfloat) width)
+      || !(bottom + REACH > 0) || !(top - REACH < (gfloat) height)) {
+    cloth_work_take (canvas->work, 0);
+    return FALSE;
+  }
+  if (!canvas->work)
+    return TRUE;
+  row = MIN (clipped (left, right, width), (gdouble) wide);
+  return cloth_work_take (canvas->work, MAX (row, CLOTH_DRAW_CHUNK) *
+      clipped (top - 1, bottom + 1, height));
 }
 
 /* @canvas: where to

@@ -565,7 +565,8 @@ count_instants (ClothRenderer * self, gdouble time_s)
  * @motion: positions of the mesh's vertices around @time_s; what touches an unknown
  *   vertex is left out
  * @time_s: the picture's time by the camera's clock
- * @work: (nullable): how much may be drawn in each instant of the exposure
+ * @work: (nullable): how much may be drawn in one instant of the exposure; each of the others
+ *   adds an eighth
  *
  * Draws the light that reaches the sensor: everything but what sensor and lens do to a
  * picture that is already there, which is cloth_renderer_develop ()'s. What reaches
@@ -599,6 +600,8 @@ cloth_renderer_draw (ClothRenderer * renderer, const ClothPaint * paint,
           / MAX (1, self->light.height - 1))
   },.light = &self->light,.work = work};
   for (guint i = 0; i < instants; i++) {
+    if (cloth_work_is_stopped (work))
+      return NULL;
     see (self, level, time_s + capture->exposure_s * (i + 0.5) / instants);
     light_points (self, style);
     if (self->triangles_size < self->mesh->n_triangles) {
@@ -608,8 +611,8 @@ cloth_renderer_draw (ClothRenderer * renderer, const ClothPaint * paint,
       self->job.triangles = self->triangles;
     }
     cloth_pool_run (self->pool, set_triangles, self, self->mesh->n_triangles);
-    if (work)
-      work->left = each;
+    if (work && i > 0)
+      work->left = MIN (work->left + each / 8, each);
     if (!take_work (self, work))
       return NULL;
     sort_triangles (self);

@@ -417,7 +417,7 @@ count_pixels (const ClothSurface * self, const Vertex * const *p, gdouble area,
   const gdouble right = MIN (MAX (p[0]->x, MAX (p[1]->x, p[2]->x)),
       self->width);
 
-  return MIN (rows * MAX (right - left, 0), fabs (area) / 2 + rows * CHUNK);
+  return MIN (rows * MAX (right - left, CHUNK), fabs (area) / 2 + rows * CHUNK);
 }
 
 /* A centre on a border belongs to the triangle to its right or below. */
@@ -437,6 +437,8 @@ fill_triangle (ClothSurface * self, const guint32 * t, ClothWork * work)
   Edge edges[3];
 
   if (!(fabs (area) > 1e-9) || top >= end
+      || MAX (p[0]->x, MAX (p[1]->x, p[2]->x)) < 0
+      || MIN (p[0]->x, MIN (p[1]->x, p[2]->x)) > self->width
       || !cloth_work_take (work, count_pixels (self, p, area, end - top)))
     return;
   set_plane (self, t, p, area, &plane);

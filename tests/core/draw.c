@@ -498,7 +498,30 @@ test_work_of_lines (void)
         &white);
     g_test_message ("%g", 1e6 - work.left);
     g_assert_cmpfloat (1e6 - work.left, >=, CLOTH_WORK_SHAPE);
-    g_assert_cmpfloat (1e6 - work.left, <=, CLOTH_WORK_SHAPE + 96 * 9);
+    g_assert_cmpfloat (1e6 - work.left, <=, CLOTH_WORK_SHAPE + 96 * 16);
+  }
+}
+
+/* What is narrower than a pixel costs its rows; what lies beside the picture is not looked at,
+ * and costs no more than any shape. */
+static void
+test_work_of_slivers (void)
+{
+  static const gfloat lefts[] = { 40, -5000, 5000 };
+
+  for (guint i = 0; i < G_N_ELEMENTS (lefts); i++) {
+    const gfloat l = lefts[i], r = l + 0.001f;
+    const gfloat x[4] = { l, r, r, l }, y[4] = { -1e4f, -1e4f, 1e4f, 1e4f };
+    ClothCanvas canvas = black_canvas (0);
+    ClothWork work = { 1e6, NULL, FALSE };
+
+    canvas.work = &work;
+    cloth_draw_quad (&canvas, x, y, &white);
+    cloth_draw_line (&canvas, l, -1e4f, l, 1e4f, 1, &white);
+    if (i == 0)
+      g_assert_cmpfloat (1e6 - work.left, >=, 2 * 96 * 16);
+    else
+      g_assert_cmpfloat (work.left, ==, 1e6 - 2 * CLOTH_WORK_SHAPE);
   }
 }
 
@@ -564,7 +587,7 @@ test_work_of_mesh (void)
   g_assert_true (work.left_out);
   canvas = black_canvas (0);
   work = (ClothWork) {
-  64 *SIZE * SIZE, NULL, FALSE};
+  1e6, NULL, FALSE};
   canvas.work = &work;
   cloth_wireframe_draw (wire, &canvas, SIZE, SIZE, &camera, small, states,
       &style);
@@ -580,6 +603,7 @@ main (int argc, char **argv)
   g_test_add_func ("/draw/work-enough", test_work_enough);
   g_test_add_func ("/draw/work-too-little", test_work_too_little);
   g_test_add_func ("/draw/work-of-lines", test_work_of_lines);
+  g_test_add_func ("/draw/work-of-slivers", test_work_of_slivers);
   g_test_add_func ("/draw/work-stopped", test_work_stopped);
   g_test_add_func ("/draw/work-of-mesh", test_work_of_mesh);
   g_test_add_func ("/draw/line-area", test_line_area);
