@@ -211,7 +211,8 @@ gst_gap_view_set_caps (GstGapView * view, GstElement * element,
 /* A picture that shows nothing has no rays, and may not say whose it is. */
 const ClothRays *
 gst_gap_view_read (GstGapView * view, GstElement * element,
-    GstBuffer * picture, guint64 * sequence, gdouble * offset_s)
+    GstBuffer * picture, guint64 * sequence, gdouble * offset_s,
+    GError ** damage)
 {
   GstClothIoPoints *points = view->points;
   g_autoptr (GError) error = NULL;
@@ -222,6 +223,10 @@ gst_gap_view_read (GstGapView * view, GstElement * element,
     cloth_rays_clear (view->rays);
   } else {
     if (!gst_cloth_io_points_find (points, picture, &error)) {
+      if (view->seen) {
+        g_propagate_error (damage, g_steal_pointer (&error));
+        return NULL;
+      }
       GST_ELEMENT_ERROR (element, STREAM, FORMAT,
           ("A picture is not of the scene's cloth: %s", error->message),
           (NULL));
@@ -229,9 +234,19 @@ gst_gap_view_read (GstGapView * view, GstElement * element,
     }
     name = view->property ? view->property :
         points->camera && *points->camera ? points->camera : NULL;
+    if (view->seen && name && view->name && g_strcmp0 (name, view->name) != 0) {
+      g_set_error (damage, GST_CLOTH_ERROR, GST_CLOTH_ERROR_VALUE,
+          "a picture is of camera “%s”, those before it are of “%s”",
+          name, view->name);
+      return NULL;
+    }
     if (!open_camera (view, element, name))
       return NULL;
     if (!gst_cloth_io_points_check_places (points, view->camera, &error)) {
+      if (view->seen) {
+        g_propagate_error (damage, g_steal_pointer (&error));
+        return NULL;
+      }
       GST_ELEMENT_ERROR (element, STREAM, FORMAT,
           ("A picture is not of the camera “%s”: %s", view->camera->name,
               error->message), (NULL));

@@ -49,10 +49,11 @@ GstGapView *gst_gap_view_new (GstElement * element,
 gboolean gst_gap_view_set_caps (GstGapView * view,
     GstElement * element, const GstCaps * caps);
 /* @sequence, @offset_s: of the picture, and of the camera's clock to the rig's. What is
- * returned belongs to @view. */
+ * returned belongs to @view. @damage: set, and no error posted, when the picture contradicts
+ * those before it. */
 const ClothRays *gst_gap_view_read (GstGapView * view,
     GstElement * element, GstBuffer * picture, guint64 * sequence,
-    gdouble * offset_s);
+    gdouble * offset_s, GError ** damage);
 /* Posts an error when no picture so far showed squares or dots. */
 gboolean gst_gap_view_check_seen (const GstGapView * view,
     GstElement * element);

@@ -466,10 +466,14 @@ gst_gap_diagnose_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
   }
   if (self->view) {
     rays = gst_gap_view_read (self->view, GST_ELEMENT (self), picture,
-        &sequence, &offset_s);
+        &sequence, &offset_s, &error);
     if (!rays) {
       gst_buffer_unref (buffer);
-      return GST_FLOW_ERROR;
+      if (!error)
+        return GST_FLOW_ERROR;
+      self->n_damaged++;
+      return gst_cloth_damage_add (&self->settings.damage, GST_ELEMENT (self),
+          error);
     }
   } else {
     sequence = gst_cloth_mesh_get_sequence (mesh);

@@ -302,6 +302,21 @@ seen_sequence (const Seen * seen)
       gst_cloth_quads_get_sequence (seen->quads);
 }
 
+/* Whether what is seen is of the pattern's kind and size. */
+static gboolean
+board_fits (const Board * board, const Seen * seen)
+{
+  const guint squares = board->checker ? 1 : 0; /* corners are one more */
+
+  return seen->dots ? board->dots
+      && gst_cloth_dots_get_columns (seen->dots) == board->grid.columns
+      && gst_cloth_dots_get_rows (seen->dots) == board->grid.rows :
+      board->checker
+      && gst_cloth_quads_get_columns (seen->quads) + squares ==
+      board->grid.columns
+      && gst_cloth_quads_get_rows (seen->quads) + squares == board->grid.rows;
+}
+
 /* Adds the places that pad @index measures to @merge; FALSE, after an element error, when
  * they are of another pattern. */
 static gboolean
@@ -497,6 +512,9 @@ gst_triangulate_load_pattern (GstTriangulate * self)
   self->board = board;
   gst_triangulate_clear_merges (self);
   cloth_reconstruction_set_grid (self->reconstruction, &board->grid);
+  for (guint i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
+    self->view[i].trusted = FALSE;
+  }
   return TRUE;
 }
 
@@ -664,7 +682,18 @@ gst_triangulate_look (GstTriangulate * self, guint index, GstBuffer * view,
         error);
   }
   *carries = board_see (self->board, *unpacked, seen);
-  return GST_FLOW_OK;
+  if (!*carries || !self->view[index].trusted
+      || (board_fits (self->board, seen) && (seen_camera (seen)[0] == '\0'
+              || !self->view[index].meta || g_str_equal (seen_camera (seen),
+                  self->view[index].meta))))
+    return GST_FLOW_OK;
+  /* those before it were right, so it is this one that isn't */
+  *carries = FALSE;
+  g_set_error (&error, GST_CLOTH_ERROR, GST_CLOTH_ERROR_VALUE,
+      "sink_%u: it is of another camera or pattern than those before it",
+      index);
+  return gst_cloth_damage_add (&self->settings.damage, GST_ELEMENT (self),
+      error);
 }
 
 static GstFlowReturn
@@ -737,6 +766,7 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
             &carried[i], self->merge[camera])) {
       goto done;
     }
+    self->view[i].trusted = self->view[i].observations;
     cloth_merge_finish (self->merge[camera], self->threshold,
         cloth_reconstruction_get_error_floor (self->reconstruction),
         &seen[camera]);

@@ -273,6 +273,55 @@ GST_START_TEST (test_names_of_pads)
 
 GST_END_TEST;
 
+static GstBuffer *
+packet (Bench * b, guint camera, guint frame, const gchar * name, guint columns)
+{
+  GstClothQuad quads[N_QUADS];
+  g_autoptr (GstBuffer) buffer = NULL;
+
+  see (b, camera, frame, quads);
+  buffer = picture (gst_cloth_quads_new (name, frame, columns, ROWS, quads,
+          N_QUADS), frame);
+  return gst_cloth_observations_pack (buffer);
+}
+
+/* Well-formed packets that name another camera, or another board, than those before them: as
+ * if that camera saw nothing. From the first packet on they are an error. */
+GST_START_TEST (test_forged)
+{
+  static const gchar *const names[] = { "nobody", "cam2", "cam0" };
+  Bench b;
+  guint frame, i;
+
+  bench_open (&b, 3);
+  bench_link (&b, 3, FALSE, OBSERVATIONS);
+  for (frame = 0; frame < 5; frame++) {
+    const gboolean forged = frame > 0 && frame < 4;
+
+    for (i = 0; i < 3; i++) {
+      g_autofree gchar *name = g_strdup_printf ("cam%u", i);
+
+      fail_unless_equals_int (gst_harness_push (b.in[i], i == 0 && forged ?
+              packet (&b, i, frame, names[frame - 1],
+                  frame == 3 ? COLUMNS + 1 : COLUMNS) :
+              packet (&b, i, frame, name, COLUMNS)), GST_FLOW_OK);
+    }
+    expect_all (&b, frame, forged ? GST_CLOTH_VERTEX_TWO_VIEWS :
+        GST_CLOTH_VERTEX_MEASURED);
+  }
+  assert_dropped (b.element, b.bus, 3, "another camera or pattern");
+  bench_clear (&b);
+
+  bench_open (&b, 3);
+  bench_link (&b, 3, FALSE, OBSERVATIONS);
+  for (i = 0; i < 3; i++)
+    gst_harness_push (b.in[i], packet (&b, i, 0, i ? NULL : "nobody", COLUMNS));
+  expect_error (&b, "nobody");
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
 /* The same from observation streams, beside a picture. */
 GST_START_TEST (test_observations)
 {
@@ -355,6 +404,7 @@ triangulate_suite (void)
   tcase_add_test (tc, test_names_in_metadata);
   tcase_add_test (tc, test_names_of_pads);
   tcase_add_test (tc, test_observations);
+  tcase_add_test (tc, test_forged);
   return s;
 }
 
