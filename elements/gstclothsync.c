@@ -698,8 +698,9 @@ static void
 gst_cloth_sync_refuse_untimed (GstClothSync * self, GstClothSyncPad * pad)
 {
   g_autofree gchar *stream = gst_cloth_sync_name_stream (self, pad);
-  g_autoptr (GstBuffer) buffer = gst_cloth_sync_pop (self, pad);
+  GstBuffer *buffer = gst_cloth_sync_pop (self, pad);
 
+  gst_clear_buffer (&buffer);
   gst_cloth_sync_count_implausible (self, pad);
   if (!pad->warned_untimed) {
     GST_ELEMENT_WARNING (self, STREAM, FORMAT,
