@@ -326,6 +326,14 @@ gst_cloth_sync_sink_event (GstAggregator * agg, GstAggregatorPad * aggpad,
       gst_event_unref (event);
       return FALSE;
     }
+    if (segment->rate < 0 && !GST_CLOCK_TIME_IS_VALID (segment->stop)) {
+      GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+          ("Pad %s has a segment that is played backwards from no end.",
+              GST_PAD_NAME (pad)),
+          ("Seek with a stop position, or play forwards."));
+      gst_event_unref (event);
+      return FALSE;
+    }
   }
   return GST_AGGREGATOR_CLASS (gst_cloth_sync_parent_class)->sink_event (agg,
       aggpad, event);

@@ -34,7 +34,7 @@ struct _ClothParts
   gchar *path;                  /* the hidden folder */
   gchar *note;
   gint lock;
-  gboolean reopened;
+  gboolean reopened, overwrite;
   gboolean unsynced;            /* files were not brought to the disk one by one */
   gboolean keep;                /* nothing is to be removed */
   GPtrArray *replaced;          /* names that are not written, but go */
@@ -458,6 +458,23 @@ clear_older (const ClothParts * parts)
   }
 }
 
+/* Whether nothing is where these shall be, but for what is the parts' own. */
+static gboolean
+check_free (const ClothParts * parts, const GPtrArray * names, GError ** error)
+{
+  for (guint i = 0; i < names->len; i++) {
+    g_autofree gchar *path = target (parts, names->pdata[i]);
+    g_autofree gchar *shown = g_filename_display_name (path);
+
+    if (is_own (names->pdata[i]) || !is_there (path))
+      continue;
+    g_set_error (error, G_IO_ERROR, G_IO_ERROR_EXISTS,
+        "“%s” is there and would be overwritten", shown);
+    return FALSE;
+  }
+  return TRUE;
+}
+
 /* @parts: parts whose files were all committed
  * @error: #GIOErrorEnum
  *
@@ -473,7 +490,9 @@ cloth_parts_commit (ClothParts * parts, GError ** error)
   g_autofree gchar *whole = inside (parts, "new", NULL);
   g_autoptr (GPtrArray) names = list_names (parts, "new", error);
 
-  if (!names || (parts->unsynced && !sync_files (whole, error)) ||
+  if (!names || (parts->reopened && !parts->overwrite
+          && !check_free (parts, parts->replaced, error))
+      || (parts->unsynced && !sync_files (whole, error)) ||
       !cloth_folder_sync (whole, error))
     return FALSE;
   if (!move_all_away (parts, names, error) || !begin_placing (parts, error) ||
@@ -575,8 +594,13 @@ cloth_parts_find (const gchar * folder, const gchar * head, GError ** error)
     if (!base || (head && !g_str_equal (base, head)))
       continue;
     item.path = g_build_filename (folder, name, NULL);
+    /* Links lead elsewhere, and others' files are not ours to end or remove. */
+    if (g_lstat (item.path, &info) == 0 && (S_ISLNK (info.st_mode)
+            || info.st_uid != geteuid ())) {
+      g_free (item.path);
+      continue;
+    }
     /* One that vanishes meanwhile is the oldest. */
-    g_lstat (item.path, &info);
     item.changed_ns = (gint64) info.st_mtim.tv_sec * G_GINT64_CONSTANT
         (1000000000) + info.st_mtim.tv_nsec;
     g_array_append_val (found, item);
@@ -667,23 +691,6 @@ cloth_parts_remove_lone (const gchar * path, GError ** error)
   return removed;
 }
 
-/* Whether nothing is where these shall be, but for what is the parts' own. */
-static gboolean
-check_free (const ClothParts * parts, const GPtrArray * names, GError ** error)
-{
-  for (guint i = 0; i < names->len; i++) {
-    g_autofree gchar *path = target (parts, names->pdata[i]);
-    g_autofree gchar *shown = g_filename_display_name (path);
-
-    if (is_own (names->pdata[i]) || !is_there (path))
-      continue;
-    g_set_error (error, G_IO_ERROR, G_IO_ERROR_EXISTS,
-        "“%s” is there and would be overwritten", shown);
-    return FALSE;
-  }
-  return TRUE;
-}
-
 /* None of the files, whole or not, has got its name meanwhile. */
 static gboolean
 check_all_free (const ClothParts * parts, GError ** error)
@@ -700,6 +707,23 @@ check_all_free (const ClothParts * parts, GError ** error)
   return TRUE;
 }
 
+/* Whether there is no file in a folder, nor in those that a part has. */
+static gboolean
+holds_nothing (const gchar * path)
+{
+  GDir *dir = is_folder (path) ? g_dir_open (path, 0, NULL) : NULL;
+  gboolean nothing = dir != NULL;
+  const gchar *name;
+
+  while (nothing && (name = g_dir_read_name (dir))) {
+    g_autofree gchar *sub = g_build_filename (path, name, NULL);
+
+    nothing = holds_nothing (sub);
+  }
+  g_clear_pointer (&dir, g_dir_close);
+  return nothing;
+}
+
 /* Ends or undoes a commit that was cut off. */
 static gboolean
 resume (ClothParts * parts, gboolean overwrite, ClothRemains * remains,
@@ -708,8 +732,8 @@ resume (ClothParts * parts, gboolean overwrite, ClothRemains * remains,
   const gboolean placing = has_folder (parts, "placing");
   g_autoptr (GPtrArray) names = NULL;
 
-  *remains = has_folder (parts, "new") ? CLOTH_REMAINS_UNFINISHED :
-      CLOTH_REMAINS_NOTHING;
+  *remains = parts->lock >= 0 && has_folder (parts, "new") ?
+      CLOTH_REMAINS_UNFINISHED : CLOTH_REMAINS_NOTHING;
   if (!placing && !has_folder (parts, "old"))
     return overwrite || check_all_free (parts, error);
   names = list_names (parts, placing ? "placing" : "old", error);
@@ -748,7 +772,8 @@ cloth_parts_reopen (const gchar * path, gboolean overwrite,
   do
     fd = g_open (lock, O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0);
   while (fd < 0 && errno == EINTR);
-  if (fd < 0 && errno != ENOENT) {
+  /* Without it the folder may be anybody's, unless nothing is in it. */
+  if (fd < 0 && (errno != ENOENT || !holds_nothing (path))) {
     cloth_file_fail (error, errno, "open", lock);
     return NULL;
   }
@@ -759,12 +784,32 @@ cloth_parts_reopen (const gchar * path, gboolean overwrite,
   }
   parts = wrap (path, head, fd);
   parts->reopened = TRUE;
+  parts->overwrite = overwrite;
   parts->keep = TRUE;
   while (fd >= 0 && pread (fd, note, sizeof note - 1, 0) < 0 && errno == EINTR);
   parts->note = g_strdup (note);
   if (!resume (parts, overwrite, remains, error))
     return NULL;
   return g_steal_pointer (&parts);
+}
+
+/* Returns: bytes of the files that are not whole */
+guint64
+cloth_parts_count_bytes (const ClothParts * parts)
+{
+  GDir *dir = g_dir_open (parts->path, 0, NULL);
+  const gchar *name;
+  guint64 n = 0;
+
+  while (dir && (name = g_dir_read_name (dir))) {
+    g_autofree gchar *path = inside (parts, name, NULL);
+    GStatBuf info;
+
+    if (g_lstat (path, &info) == 0 && S_ISREG (info.st_mode))
+      n += (guint64) info.st_size;
+  }
+  g_clear_pointer (&dir, g_dir_close);
+  return n;
 }
 
 /* @parts: parts that were reopened; their files go when they are freed

@@ -42,6 +42,7 @@ gchar *cloth_parts_get_head (const gchar * path);
 ClothParts *cloth_parts_reopen (const gchar * path, gboolean overwrite,
     ClothRemains * remains, GError ** error);
 gboolean cloth_parts_remove_lone (const gchar * path, GError ** error);
+guint64 cloth_parts_count_bytes (const ClothParts * parts);
 void cloth_parts_discard (ClothParts * parts);
 const gchar *cloth_parts_get_note (const ClothParts * parts);
 gchar *cloth_parts_get_path (const ClothParts * parts, const gchar * name);

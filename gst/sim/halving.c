@@ -192,7 +192,8 @@ halve_clamps (const ClothScene * old, const ClothHalving * halving)
   scene->clamps = g_new (gdouble, 3 * (gsize) old->n_frames *
       scene->held->len + 1);
   for (guint frame = 0; frame < old->n_frames; frame++) {
-    const gdouble *path = old->clamps + 3 * (gsize) frame * n_old_held;
+    const gdouble *path = n_old_held ?
+        old->clamps + 3 * (gsize) frame * n_old_held : NULL;
     gdouble *to = scene->clamps + 3 * (gsize) frame * scene->held->len;
 
     for (guint i = 0; i < scene->held->len; i++) {

@@ -8,6 +8,9 @@
 
 #include "gst/take/take.h"
 
+/* More bytes without a whole frame are not removed: somebody may know what to do with them. */
+#define MOST_LOST 65536
+
 /* By the end of the name of the file that readers open first. The last three keep what they
  * need until their end in memory, or write it there. */
 static const struct
@@ -99,8 +102,9 @@ finish (ClothParts * parts, const gchar * head, ClothRecovered * recovered,
   g_autofree gchar *base = NULL;
 
   if (i == G_N_ELEMENTS (formats)) {
-    cloth_parts_discard (parts);
-    return TRUE;
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_UNSUPPORTED,
+        "it is no recording, and is left alone");
+    return FALSE;
   }
   if (!formats[i].recover) {
     g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_UNSUPPORTED,
@@ -113,6 +117,12 @@ finish (ClothParts * parts, const gchar * head, ClothRecovered * recovered,
     return FALSE;
   if (recovered->n_frames > 0)
     return cloth_parts_commit (parts, error);
+  if (cloth_parts_count_bytes (parts) > MOST_LOST) {
+    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
+        "no whole frame is found in it, but there are %" G_GUINT64_FORMAT
+        " bytes: they are left as they are", cloth_parts_count_bytes (parts));
+    return FALSE;
+  }
   cloth_parts_discard (parts);
   return TRUE;
 }
@@ -137,7 +147,8 @@ cloth_recover (const gchar * path, gboolean overwrite,
   ClothRemains remains;
 
   memset (recovered, 0, sizeof *recovered);
-  if (!g_file_test (path, G_FILE_TEST_IS_DIR))
+  if (!g_file_test (path, G_FILE_TEST_IS_DIR)
+      || g_file_test (path, G_FILE_TEST_IS_SYMLINK))
     return cloth_parts_remove_lone (path, error);
   parts = cloth_parts_reopen (path, overwrite, &remains, error);
   if (!parts)

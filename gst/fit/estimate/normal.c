@@ -207,7 +207,7 @@ cloth_normal_equations_sum (const ClothNormalEquations * normal,
   memset (g, 0, (gsize) n * n * sizeof *g);
   memset (s, 0, n * sizeof *s);
   for (guint block = 0; block < normal->n_blocks; block++) {
-    const gdouble *from = normal->g + (gsize) block * m * m;
+    const gdouble *from = m ? normal->g + (gsize) block * m * m : NULL;
 
     if (blocks && !blocks[block])
       continue;
@@ -239,7 +239,7 @@ sum_and_project (const ClothNormalEquations * normal, const gboolean * blocks,
   cloth_posterior_init (&posterior, q);
   cloth_posterior_add_prior (&posterior, precisions, NULL);
   for (guint block = 0; block < normal->n_blocks; block++) {
-    const gdouble *from = normal->g + (gsize) block * m * m;
+    const gdouble *from = m ? normal->g + (gsize) block * m * m : NULL;
     const gdouble *score = normal->s + (gsize) block * m;
 
     if (blocks && !blocks[block])

@@ -179,7 +179,7 @@ do_frame (const Work * work, ClothCameraPicture * pictures, gdouble * columns,
   cloth_camera_look (work->view, &work->points, work->aim, pictures, frame);
   for (guint i = 0; i < work->points.n; i++) {
     ClothCameraPoint point;
-    ClothCameraErrors *e = &work->errors[block];
+    ClothCameraErrors *e = work->errors ? &work->errors[block] : NULL;
 
     if (!cloth_camera_gather (pictures, work->n_cameras, i, FALSE, &point))
       continue;
