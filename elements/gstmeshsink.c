@@ -9,13 +9,13 @@
  * Writes OBJ + PC2 (what Blender and most others read), one PLY file a frame or the
  * folder of a take, which `meshsrc` reads again, and glTF, USD, VTP (ParaView), C3D and
  * CSV for other programs. Frames go to temporary names as they come; at EOS, or when
- * the element is stopped, the files get their names, all together. After an error nothing
- * is left. A flush starts the recording anew, as in filesink.
+ * the element is stopped, the files get their names, all together. A flush starts the
+ * recording anew, as in filesink.
  *
- * When the program is killed, the frames written so far wait in a hidden folder beside
- * the files, and `gst-cloth-take-1.0 recover` finishes the recording (not glTF, USD and
- * C3D). The next `meshsink` at the same location says so by a warning; when its own
- * recording is whole, it takes the place of the interrupted one.
+ * When the program is killed or an error ends the recording, a full disk for example, the
+ * frames written so far wait in a hidden folder beside the files, and
+ * `gst-cloth-take-1.0 recover` finishes the recording (not glTF, USD and C3D). The error
+ * says so, and so does a warning of the next `meshsink` at the same location.
  *
  * Takes, C3D and CSV say which vertices are not seen. In the others such a vertex holds
  * its last place, one never seen so far the mean of its neighbours; `state`, where the
@@ -89,11 +89,26 @@ G_DEFINE_TYPE (GstMeshSink, gst_mesh_sink, GST_TYPE_BASE_SINK);
 GST_ELEMENT_REGISTER_DEFINE (meshsink, "meshsink", GST_RANK_NONE,
     GST_TYPE_MESH_SINK);
 
+/* What was recorded is not lost. Told before the error, which ends the program. */
+static void
+stop_recording (GstMeshSink * self)
+{
+  self->failed = TRUE;
+  if (!self->writer)
+    return;
+  if (cloth_mesh_writer_leave (self->writer))
+    GST_ELEMENT_WARNING (self, RESOURCE, FAILED,
+        ("The %" G_GUINT64_FORMAT " frames recorded until then are kept: "
+            "“gst-cloth-take-1.0 recover %s” finishes the recording",
+            cloth_mesh_writer_get_n_frames (self->writer),
+            self->settings.location), (NULL));
+  g_clear_pointer (&self->writer, cloth_mesh_writer_free);
+}
+
 static void
 fail (GstMeshSink * self, const gchar * doing, const GError * error)
 {
-  g_clear_pointer (&self->writer, cloth_mesh_writer_free);
-  self->failed = TRUE;
+  stop_recording (self);
   gst_mesh_post_error (GST_ELEMENT (self), doing, self->settings.location, TRUE,
       error);
 }
@@ -111,8 +126,7 @@ gst_mesh_sink_set_caps (GstBaseSink * sink, GstCaps * caps)
     return FALSE;
   parsed = gst_cloth_read_topology (GST_ELEMENT (self), caps);
   if (!parsed) {
-    g_clear_pointer (&self->writer, cloth_mesh_writer_free);
-    self->failed = TRUE;
+    stop_recording (self);
     return FALSE;
   }
   topology = gst_mesh_copy_topology (parsed);
@@ -120,8 +134,7 @@ gst_mesh_sink_set_caps (GstBaseSink * sink, GstCaps * caps)
       &fps_n, &fps_d);
   if (self->writer && (!cloth_topology_equal (topology, self->topology) ||
           fps_n != self->fps_n || fps_d != self->fps_d)) {
-    g_clear_pointer (&self->writer, cloth_mesh_writer_free);
-    self->failed = TRUE;
+    stop_recording (self);
     GST_ELEMENT_ERROR (self, STREAM, FORMAT,
         ("The mesh or its frame rate changed in the middle of the recording; "
             "stop and record to another location"), ("%" GST_PTR_FORMAT, caps));
@@ -184,8 +197,7 @@ gst_mesh_sink_render (GstBaseSink * sink, GstBuffer * buffer)
   mesh = gst_cloth_read_mesh (GST_ELEMENT (self), buffer,
       self->topology->n_vertices);
   if (!mesh) {
-    g_clear_pointer (&self->writer, cloth_mesh_writer_free);
-    self->failed = TRUE;
+    stop_recording (self);
     return GST_FLOW_ERROR;
   }
   if (!self->writer && !open_writer (self))
@@ -251,7 +263,7 @@ gst_mesh_sink_event (GstBaseSink * sink, GstEvent * event)
   return GST_BASE_SINK_CLASS (gst_mesh_sink_parent_class)->event (sink, event);
 }
 
-/* Recording on would lose what can be finished, but is no error. */
+/* That something waits is no error. */
 static void
 warn_of_remains (GstMeshSink * self)
 {
@@ -260,15 +272,14 @@ warn_of_remains (GstMeshSink * self)
   switch (cloth_recover_look (location, self->settings.format)) {
     case CLOTH_LEFT_FRAMES:
       GST_ELEMENT_WARNING (self, RESOURCE, FAILED,
-          ("A recording to “%s” was interrupted: to keep it, stop and run "
-              "“gst-cloth-take-1.0 recover”; this one is going to replace it",
-              location), (NULL));
+          ("A recording to “%s” was interrupted: “gst-cloth-take-1.0 recover "
+              "%s” finishes it, when this one is moved away",
+              location, location), (NULL));
       break;
     case CLOTH_LEFT_LOST:
       GST_ELEMENT_WARNING (self, RESOURCE, FAILED,
-          ("A recording to “%s” was interrupted, and its format can't be "
-              "finished: its remains go when this one is whole", location),
-          (NULL));
+          ("A recording to “%s” was interrupted and can't be finished: its "
+              "remains go when this one is whole", location), (NULL));
       break;
     default:
       break;

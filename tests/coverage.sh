@@ -3,7 +3,8 @@
 #
 #   tests/coverage.sh           builds into ./build-coverage, runs the suites core, elements and
 #                               generic, prints a table; what stays uncovered is listed in
-#                               build-coverage/uncovered.txt
+#                               build-coverage/uncovered.txt. Fails when a test does, or an
+#                               aim is missed
 #
 # SPDX-License-Identifier: LGPL-2.1-or-later
 set -u
@@ -18,4 +19,5 @@ ninja -C $build || exit 1
 # Counts of an earlier run are not those of this one.
 find $build -name '*.gcda' -delete
 meson test -C $build --no-rebuild --suite core --suite elements --suite generic
-/usr/bin/python3 tests/coverage.py $build
+status=$?
+/usr/bin/python3 tests/coverage.py $build && exit $status

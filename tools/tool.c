@@ -95,11 +95,12 @@ interrupt (int number)
   interrupted = 1;
 }
 
-/* Ctrl-C and SIGTERM are only noted, once: the next one ends the program at once. */
+/* Ctrl-C, SIGTERM and a closed terminal, unless nohup had it ignored, are only noted, once:
+ * the next one ends the program at once. */
 void
 catch_interrupts (void)
 {
-  struct sigaction action;
+  struct sigaction action, before;
 
   memset (&action, 0, sizeof action);
   action.sa_handler = interrupt;
@@ -107,6 +108,8 @@ catch_interrupts (void)
   sigemptyset (&action.sa_mask);
   sigaction (SIGINT, &action, NULL);
   sigaction (SIGTERM, &action, NULL);
+  if (sigaction (SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+    sigaction (SIGHUP, &action, NULL);
 }
 
 gboolean

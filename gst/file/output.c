@@ -9,6 +9,7 @@
 #include <fcntl.h>
 #include <gio/gio.h>
 #include <glib/gstdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -69,15 +70,8 @@ cloth_file_check_target (const gchar * path, GError ** error)
   return FALSE;
 }
 
-/* @fd: a file just made, under a name that nobody knows
- *
- * Locks it for as long as it is open, which tells that its writer lives. Where the system
- * has no locks it stays without; there cloth_file_lock_old() never has one either.
- *
- * Returns: %FALSE when a cleaner was quicker: make another file
- */
-gboolean
-cloth_file_lock_new (gint fd)
+static gint
+lock (gint fd)
 {
   struct stat info;
   gint failed;
@@ -85,24 +79,35 @@ cloth_file_lock_new (gint fd)
   do
     failed = flock (fd, LOCK_EX | LOCK_NB);
   while (failed && errno == EINTR);
-  if (failed && errno == EWOULDBLOCK)
-    return FALSE;
-  return fstat (fd, &info) < 0 || info.st_nlink > 0;
+  if (failed)
+    return errno;
+  return fstat (fd, &info) == 0 && info.st_nlink == 0 ? ENOENT : 0;
+}
+
+/* @fd: a file just made, under a name that nobody knows
+ *
+ * Locks it for as long as it is open, which tells that its writer lives. Where the system
+ * has no locks it stays without; there cloth_file_lock_old() never has one either.
+ *
+ * Returns: 0, or what the system says: a cleaner was quicker, make another file
+ */
+gint
+cloth_file_lock_new (gint fd)
+{
+  const gint code = lock (fd);
+
+  return code == EWOULDBLOCK || code == ENOENT ? code : 0;
 }
 
 /* @fd: a file that a writer made
  *
- * Returns: whether the writer is gone; then the file is locked for as long as it is open
+ * Returns: 0 when the writer is gone: then the file is locked for as long as it is open.
+ *   EWOULDBLOCK: it lives; ENOENT: the file has been removed; others: this can't be told
  */
-gboolean
+gint
 cloth_file_lock_old (gint fd)
 {
-  gint failed;
-
-  do
-    failed = flock (fd, LOCK_EX | LOCK_NB);
-  while (failed && errno == EINTR);
-  return !failed;
+  return lock (fd);
 }
 
 static gint
@@ -198,7 +203,27 @@ wrap (gint fd, const gchar * temporary, const gchar * path, const gchar * shown)
   return output;
 }
 
-/* @path: the final name; its folder must exist
+/* A rename would replace a link, not the file that it leads to. */
+static gchar *
+follow_links (const gchar * path, GError ** error)
+{
+  GStatBuf info;
+  gchar *real, *copy;
+
+  if (g_lstat (path, &info) < 0 || !S_ISLNK (info.st_mode))
+    return g_strdup (path);
+  real = realpath (path, NULL);
+  if (!real) {
+    cloth_file_fail (error, errno, "follow the link", path);
+    return NULL;
+  }
+  copy = g_strdup (real);
+  free (real);
+  return copy;
+}
+
+/* @path: the final name; its folder must exist. Of a link, the file that it leads to is
+ *   replaced
  * @error: #GIOErrorEnum
  *
  * Starts a file under a hidden temporary name in the same folder, so that a later
@@ -209,31 +234,38 @@ wrap (gint fd, const gchar * temporary, const gchar * path, const gchar * shown)
 ClothOutput *
 cloth_output_new (const gchar * path, GError ** error)
 {
-  g_autofree gchar *folder = g_path_get_dirname (path);
-  g_autofree gchar *base = g_path_get_basename (path);
-  g_autofree gchar *hidden = g_strconcat (".", base, CLOTH_PART_MARK, NULL);
-  ClothOutput *output;
+  g_autofree gchar *real = cloth_file_check_target (path, error) ?
+      follow_links (path, error) : NULL;
+  g_autofree gchar *folder = NULL;
+  g_autofree gchar *base = NULL;
+  g_autofree gchar *hidden = NULL;
+  gint fd, code = 0;
 
-  if (!cloth_file_check_target (path, error))
+  if (!real)
     return NULL;
-  for (;;) {
+  folder = g_path_get_dirname (real);
+  base = g_path_get_basename (real);
+  hidden = g_strconcat (".", base, CLOTH_PART_MARK, NULL);
+  for (guint i = 0; i < CLOTH_MOST_TRIES; i++) {
     g_autofree gchar *temporary = g_build_filename (folder, hidden, NULL);
-    gint fd = g_mkstemp_full (temporary, O_RDWR | O_CLOEXEC, 0666);
 
-    if (fd < 0 && errno == EINTR)
-      continue;
-    if (fd < 0) {
-      cloth_file_fail (error, errno, "write", path);
-      return NULL;
-    }
-    if (cloth_file_lock_new (fd)) {
-      output = wrap (fd, temporary, path, path);
+    fd = g_mkstemp_full (temporary, O_RDWR | O_CLOEXEC, 0666);
+    code = fd < 0 ? errno : cloth_file_lock_new (fd);
+    if (!code) {
+      ClothOutput *output = wrap (fd, temporary, real, path);
+
       output->alone = TRUE;
       return output;
     }
-    g_unlink (temporary);
-    close (fd);
+    if (fd >= 0) {
+      g_unlink (temporary);
+      close (fd);
+    } else if (code != EINTR) {
+      break;
+    }
   }
+  cloth_file_fail (error, code, "write", path);
+  return NULL;
 }
 
 static gint

@@ -9,6 +9,8 @@ G_BEGIN_DECLS
 
 /* Behind the final name of an unfinished file, whose own name begins with a point. */
 #define CLOTH_PART_MARK ".part-XXXXXX"
+/* As often a name is looked for, when a cleaner is quicker each time. */
+#define CLOTH_MOST_TRIES 100
 
 /* A file that has a temporary name until it is whole. */
 typedef struct _ClothOutput ClothOutput;
@@ -36,8 +38,8 @@ gboolean cloth_file_write_text (const gchar * path, const gchar * text,
 
 /* What outputs and parts have in common. */
 gboolean cloth_file_check_target (const gchar * path, GError ** error);
-gboolean cloth_file_lock_new (gint fd);
-gboolean cloth_file_lock_old (gint fd);
+gint cloth_file_lock_new (gint fd);
+gint cloth_file_lock_old (gint fd);
 gint cloth_file_append (gint fd, gconstpointer data, gsize size);
 gint cloth_file_rename (const gchar * from, const gchar * to);
 gboolean cloth_folder_sync (const gchar * folder, GError ** error);

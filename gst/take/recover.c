@@ -47,15 +47,28 @@ cloth_recover_look (const gchar * location, ClothMeshFormat format)
   g_autofree gchar *folder = g_path_get_dirname (head);
   g_autofree gchar *base = g_path_get_basename (head);
   g_autoptr (GPtrArray) found = cloth_parts_find (folder, base, NULL);
+  ClothLeft left = CLOTH_LEFT_NOTHING;
 
-  for (guint i = 0; found && i < found->len; i++)
-    if (cloth_parts_is_dead (found->pdata[i]))
-      return formats[find_format (base)].recover ? CLOTH_LEFT_FRAMES :
-          CLOTH_LEFT_LOST;
-  return CLOTH_LEFT_NOTHING;
+  for (guint i = 0; found && i < found->len; i++) {
+    if (!cloth_parts_is_dead (found->pdata[i]))
+      continue;
+    if (cloth_parts_has_frame (found->pdata[i]))
+      return CLOTH_LEFT_FRAMES;
+    left = CLOTH_LEFT_LOST;
+  }
+  return left;
 }
 
-/* @location: a folder, or a recording as it was to be called
+static GPtrArray *
+name_one (const gchar * path)
+{
+  GPtrArray *paths = g_ptr_array_new_with_free_func (g_free);
+
+  g_ptr_array_add (paths, g_strdup (path));
+  return paths;
+}
+
+/* @location: a folder, or a recording as it was to be called, or what is left of it
  * @error: #GFileError
  *
  * Finds what programs left there, be they killed or at work.
@@ -70,6 +83,10 @@ cloth_recover_find (const gchar * location, GError ** error)
   g_autofree gchar *folder = NULL;
   g_autofree gchar *base = NULL;
 
+  head = cloth_parts_get_head (location);
+  if (head && g_file_test (location, G_FILE_TEST_EXISTS))
+    return name_one (location);
+  g_clear_pointer (&head, g_free);
   if (g_file_test (location, G_FILE_TEST_IS_DIR))
     return cloth_parts_find (location, NULL, error);
   head = cloth_mesh_format_head (location, CLOTH_MESH_FORMAT_AUTO);
@@ -123,8 +140,7 @@ finish (ClothParts * parts, const gchar * head, ClothRecovered * recovered,
         " bytes: they are left as they are", cloth_parts_count_bytes (parts));
     return FALSE;
   }
-  cloth_parts_discard (parts);
-  return TRUE;
+  return cloth_parts_discard (parts, error);
 }
 
 /* @path: one that cloth_recover_find() found
@@ -158,8 +174,7 @@ cloth_recover (const gchar * path, gboolean overwrite,
       recovered->placed = TRUE;
       return TRUE;
     case CLOTH_REMAINS_NOTHING:
-      cloth_parts_discard (parts);
-      return TRUE;
+      return cloth_parts_discard (parts, error);
     default:
       return finish (parts, head, recovered, error);
   }

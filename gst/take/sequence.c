@@ -146,14 +146,12 @@ open_states (ClothMeshReader * reader, const gchar * stem, GError ** error)
 }
 
 static gboolean
-open_obj_pc2 (ClothMeshReader * reader, const gchar * stem, GError ** error)
+load_obj_pc2 (ClothMeshReader * reader, const gchar * stem,
+    const gchar * obj_path, GError ** error)
 {
-  g_autofree gchar *obj_path = g_strconcat (stem, ".obj", NULL);
   g_autofree gchar *pc2_path = g_strconcat (stem, ".pc2", NULL);
   const ClothPc2Info *info;
 
-  if (!cloth_parts_check_placed (obj_path, error))
-    return FALSE;
   reader->obj = cloth_obj_read (obj_path, error);
   if (!reader->obj)
     return FALSE;
@@ -175,6 +173,17 @@ open_obj_pc2 (ClothMeshReader * reader, const gchar * stem, GError ** error)
     return cloth_file_invalid (error, "the point cache has no samples");
   reader->n_frames = info->n_samples;
   return open_states (reader, stem, error);
+}
+
+static gboolean
+open_obj_pc2 (ClothMeshReader * reader, const gchar * stem, GError ** error)
+{
+  g_autofree gchar *path = g_strconcat (stem, ".obj", NULL);
+  ClothPlaced placed;
+
+  return cloth_parts_begin_reading (path, &placed, error) &&
+      load_obj_pc2 (reader, stem, path, error) &&
+      cloth_parts_end_reading (path, &placed, error);
 }
 
 static gchar *
@@ -205,10 +214,11 @@ static gboolean
 open_ply (ClothMeshReader * reader, const gchar * stem, GError ** error)
 {
   g_autofree gchar *head = g_strconcat (stem, ".ply", NULL);
+  ClothPlaced placed;
   ClothPly *ply;
   ClothTopology *topology;
 
-  if (!cloth_parts_check_placed (head, error))
+  if (!cloth_parts_begin_reading (head, &placed, error))
     return FALSE;
   reader->ply = ply = cloth_ply_new ();
   reader->stem = g_strdup (stem);
@@ -537,7 +547,7 @@ free_take (gpointer export)
 }
 
 static const ClothExporter take_exporter = {
-  TRUE, NULL, start_take, append_take, finish_take, free_take
+  TRUE, NULL, TRUE, start_take, append_take, finish_take, free_take
 };
 
 /* by ClothMeshFormat */
@@ -641,7 +651,8 @@ cloth_mesh_writer_append (ClothMeshWriter * writer, gdouble time_s,
           &shown, error))
     return FALSE;
   writer->n_frames++;
-  return TRUE;
+  return !writer->info.parts || !writer->exporter->lasts ||
+      cloth_parts_note_frame (writer->info.parts, error);
 }
 
 /* @writer: a writer
@@ -671,9 +682,24 @@ cloth_mesh_writer_close (ClothMeshWriter * writer, GError ** error)
       (!writer->info.parts || cloth_parts_commit (writer->info.parts, error));
 }
 
+/* @writer: a writer that can't go on, or whose close failed
+ *
+ * The frames taken so far stay when it is freed, to be finished by cloth_recover(), where
+ * the format allows that.
+ *
+ * Returns: whether there are such frames
+ */
+gboolean
+cloth_mesh_writer_leave (ClothMeshWriter * writer)
+{
+  return writer->info.parts ? cloth_parts_leave (writer->info.parts) :
+      cloth_take_writer_leave (writer->export);
+}
+
 /* @writer: (transfer full) (nullable): a writer
  *
- * Frees it; a sequence that was not closed leaves nothing behind.
+ * Frees it; a sequence that was not closed leaves nothing behind, unless
+ * cloth_mesh_writer_leave() said so.
  */
 void
 cloth_mesh_writer_free (ClothMeshWriter * writer)

@@ -57,6 +57,7 @@ gboolean cloth_mesh_writer_append (ClothMeshWriter * writer, gdouble time_s,
     const ClothMeshFrame * frame, GError ** error);
 guint64 cloth_mesh_writer_get_n_frames (const ClothMeshWriter * writer);
 gboolean cloth_mesh_writer_close (ClothMeshWriter * writer, GError ** error);
+gboolean cloth_mesh_writer_leave (ClothMeshWriter * writer);
 void cloth_mesh_writer_free (ClothMeshWriter * writer);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothMeshReader, cloth_mesh_reader_free)

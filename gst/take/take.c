@@ -65,9 +65,7 @@ note_file (ClothTake * take, const gchar * name)
 static gboolean
 load_info (ClothTake * take, GError ** error)
 {
-  g_autofree gchar *head = g_build_filename (take->folder, JSON, NULL);
-  g_autofree gchar *path = cloth_parts_check_placed (head, error) ?
-      cloth_path_inside (take->folder, JSON, error) : NULL;
+  g_autofree gchar *path = cloth_path_inside (take->folder, JSON, error);
   g_autoptr (ClothInput) input = path ? cloth_input_open (path, error) : NULL;
   g_autoptr (GByteArray) bytes = g_byte_array_new ();
 
@@ -287,12 +285,15 @@ ClothTake *
 cloth_take_open (const gchar * folder, GError ** error)
 {
   g_autoptr (ClothTake) take = g_new0 (ClothTake, 1);
+  g_autofree gchar *head = g_build_filename (folder, JSON, NULL);
+  ClothPlaced placed;
 
   take->folder = g_strdup (folder);
   take->files = g_ptr_array_new_with_free_func (g_free);
-  if (!load_info (take, error) ||
-      !load_topology (take, error) ||
-      !load_obstacles (take, error) || !load_arrays (take, error)) {
+  if (!cloth_parts_begin_reading (head, &placed, error) ||
+      !load_info (take, error) || !load_topology (take, error) ||
+      !load_obstacles (take, error) || !load_arrays (take, error) ||
+      !cloth_parts_end_reading (head, &placed, error)) {
     g_prefix_error (error, "%s: ", folder);
     return NULL;
   }
@@ -728,7 +729,7 @@ cloth_take_writer_append (ClothTakeWriter * writer, gdouble time_s,
     return FALSE;
   writer->last_time = time_s;
   writer->n_frames++;
-  return TRUE;
+  return cloth_parts_note_frame (writer->parts, error);
 }
 
 /* @writer: a writer that has at least one frame
@@ -757,9 +758,22 @@ cloth_take_writer_close (ClothTakeWriter * writer, GError ** error)
   return TRUE;
 }
 
+/* @writer: a writer that can't go on, or whose close failed
+ *
+ * The frames taken so far stay when it is freed, to be finished by cloth_recover().
+ *
+ * Returns: whether there are such frames
+ */
+gboolean
+cloth_take_writer_leave (ClothTakeWriter * writer)
+{
+  return cloth_parts_leave (writer->parts);
+}
+
 /* @writer: (transfer full) (nullable): a writer
  *
- * Frees it; a take that was not closed leaves nothing behind.
+ * Frees it; a take that was not closed leaves nothing behind, unless
+ * cloth_take_writer_leave() said so.
  */
 void
 cloth_take_writer_free (ClothTakeWriter * writer)

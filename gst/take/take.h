@@ -39,6 +39,7 @@ gboolean cloth_take_writer_append (ClothTakeWriter * writer, gdouble time_s,
     const gfloat * positions, const guint8 * states,
     const gfloat * covariances, const gfloat * clamps, GError ** error);
 gboolean cloth_take_writer_close (ClothTakeWriter * writer, GError ** error);
+gboolean cloth_take_writer_leave (ClothTakeWriter * writer);
 void cloth_take_writer_free (ClothTakeWriter * writer);
 gboolean cloth_take_recover (ClothParts * parts, const gchar * base,
     ClothRecovered * recovered, GError ** error);

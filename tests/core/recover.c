@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "gst/mesh/garment/garment.h"
 #include "gst/take/recover.h"
 #include "gst/take/take.h"
 #include "tests/core/meshpeer.h"
@@ -426,30 +427,219 @@ test_living_lone_file (void)
   scratch_end ();
 }
 
-/* The next recording takes the place of the interrupted one, once it is whole. */
+/* The next recording leaves the interrupted one where it can be finished. */
 static void
-test_replaced (void)
+test_next (void)
 {
   scratch_begin ();
   for (guint i = 0; i < G_N_ELEMENTS (readable); i++) {
     g_autofree gchar *path = scratch_path (readable[i]);
     g_autofree gchar *left = NULL;
+    g_autofree gchar *empty = NULL;
+    g_autoptr (GPtrArray) found = NULL;
+    g_autoptr (GError) error = NULL;
     ClothMeshWriter *writer;
+    ClothRecovered recovered;
 
     be_killed (path, 1, 7, G_MAXUINT);
     left = find_one (path);
+    be_killed (path, 1, 0, G_MAXUINT);
+    found = cloth_recover_find (path, NULL);
+    g_assert_cmpuint (found->len, ==, 2);
     writer = start (path);
     g_assert_true (append (writer, 2, 0, FALSE));
     cloth_mesh_writer_free (writer);
-    g_assert_true (g_file_test (left, G_FILE_TEST_IS_DIR));
     record (path, 2, 3);
-    assert_nothing_left (path);
+    /* The one without a frame is gone. */
+    empty = find_one (path);
+    g_assert_cmpstr (empty, ==, left);
+    g_assert_cmpint (cloth_recover_look (path, CLOTH_MESH_FORMAT_AUTO), ==,
+        CLOTH_LEFT_FRAMES);
     assert_frames (path, 2, 3);
+    g_assert_true (cloth_recover (left, TRUE, &recovered, &error));
+    g_assert_no_error (error);
+    assert_nothing_left (path);
+    assert_frames (path, 1, 7);
   }
   scratch_end ();
 }
 
-/* The newest comes first, and the older one stays. */
+/* An error ends a recording: its frames wait, where there are some that can be read. */
+static void
+test_left (void)
+{
+  static const struct
+  {
+    const gchar *name;
+    guint n_frames;
+    gboolean stays;
+  } cases[] = {
+    {"c.obj", 3, TRUE}, {"c.ply", 1, TRUE}, {"c.take", 3, TRUE},
+    {"c.pvd", 2, TRUE}, {"c.csv", 2, TRUE}, {"d.obj", 0, FALSE},
+    {"d.take", 0, FALSE}, {"c.glb", 3, FALSE}, {"c.usda", 3, FALSE},
+    {"c.c3d", 3, FALSE}
+  };
+
+  scratch_begin ();
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autofree gchar *path = scratch_path (cases[i].name);
+    g_autofree gchar *left = NULL;
+    g_autoptr (GError) error = NULL;
+    ClothMeshWriter *writer = start (path);
+    ClothRecovered recovered;
+
+    for (guint f = 0; f < cases[i].n_frames; f++)
+      g_assert_true (append (writer, 1, f, FALSE));
+    g_assert_true (cloth_mesh_writer_leave (writer) == cases[i].stays);
+    cloth_mesh_writer_free (writer);
+    if (!cases[i].stays) {
+      assert_nothing_left (path);
+      continue;
+    }
+    left = find_one (path);
+    g_assert_true (cloth_recover (left, FALSE, &recovered, &error));
+    g_assert_no_error (error);
+    g_assert_cmpuint (recovered.n_frames, ==, cases[i].n_frames);
+    g_assert_false (recovered.cut);
+    assert_nothing_left (path);
+    if (i < G_N_ELEMENTS (readable))
+      assert_frames (path, 1, cases[i].n_frames);
+  }
+  scratch_end ();
+}
+
+/* Another program gives its files the same names just now. */
+static void
+test_concurrent (void)
+{
+  static const gchar *const subs[] = { "old", "placing" };
+
+  for (guint k = 0; k < G_N_ELEMENTS (subs); k++) {
+    g_autofree gchar *path = NULL;
+    g_autofree gchar *other = NULL;
+    g_autofree gchar *sub = NULL;
+    g_autoptr (ClothMeshWriter) first = NULL;
+    g_autoptr (ClothMeshWriter) second = NULL;
+    g_autoptr (GError) error = NULL;
+
+    scratch_begin ();
+    path = scratch_path ("c.obj");
+    record (path, 0, 2);
+    first = start (path);
+    other = find_one (path);
+    sub = g_build_filename (other, subs[k], NULL);
+    g_assert_cmpint (g_mkdir (sub, 0777), ==, 0);
+    second = start (path);
+    g_assert_true (append (second, 2, 0, FALSE));
+    g_assert_false (cloth_mesh_writer_close (second, &error));
+    g_assert_error (error, G_IO_ERROR, G_IO_ERROR_BUSY);
+    g_assert_true (cloth_mesh_writer_leave (second));
+    g_assert_cmpint (g_rmdir (sub), ==, 0);
+    assert_frames (path, 0, 2);
+    scratch_end ();
+  }
+}
+
+/* A reader has opened one file of a recording when another one takes the names. */
+static void
+test_replaced_meanwhile (void)
+{
+  g_autofree gchar *path = NULL;
+  g_autoptr (GError) error = NULL;
+  ClothPlaced placed;
+
+  scratch_begin ();
+  path = scratch_path ("c.obj");
+  record (path, 0, 2);
+  g_assert_true (cloth_parts_begin_reading (path, &placed, &error));
+  g_assert_true (cloth_parts_end_reading (path, &placed, &error));
+  record (path, 1, 2);
+  g_assert_false (cloth_parts_end_reading (path, &placed, &error));
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+  g_assert_nonnull (strstr (error->message, "try again"));
+  scratch_end ();
+}
+
+/* When the computer loses its power, files that had been written to may be empty. */
+static void
+test_power (void)
+{
+  static const gchar *const names[] = { "c.ply", "c.pvd" };
+
+  for (guint i = 0; i < G_N_ELEMENTS (names); i++) {
+    g_autofree gchar *path = NULL;
+    g_autofree gchar *left = NULL;
+    g_autofree gchar *empty = NULL;
+    g_autofree gchar *next = NULL;
+    g_autoptr (GError) error = NULL;
+    ClothRecovered recovered;
+
+    scratch_begin ();
+    path = scratch_path (names[i]);
+    be_killed (path, 1, 5, G_MAXUINT);
+    left = find_one (path);
+    empty = g_strconcat (left, "/new/c_00003", i == 0 ? ".ply" : ".vtp", NULL);
+    g_assert_cmpint (truncate (empty, 0), ==, 0);
+    g_assert_true (cloth_recover (left, FALSE, &recovered, &error));
+    g_assert_no_error (error);
+    g_assert_cmpuint (recovered.n_frames, ==, 3);
+    next = scratch_path (i == 0 ? "c_00003.ply" : "c_00003.vtp");
+    g_assert_false (g_file_test (next, G_FILE_TEST_EXISTS));
+    if (i == 0)
+      assert_frames (path, 1, 3);
+    g_assert_cmpuint (scratch_count (), ==, i == 0 ? 3 : 4);
+    scratch_end ();
+  }
+}
+
+/* A garment has two files that belong together. */
+static void
+test_garment (void)
+{
+  g_autofree gchar *path = NULL;
+  g_autofree gchar *sub = NULL;
+  g_autoptr (ClothGarment) garment = cloth_garment_new ();
+  g_autoptr (ClothGarment) again = NULL;
+  g_autoptr (GError) error = NULL;
+
+  scratch_begin ();
+  path = scratch_path ("garment.json");
+  garment->topology = make_topology ();
+  garment->dots = g_new (gint, N);
+  garment->columns = COLUMNS;
+  garment->rows = ROWS;
+  for (gint v = 0; v < N; v++)
+    garment->dots[v] = v;
+  g_assert_true (cloth_garment_save (garment, scratch, &error));
+  sub = scratch_path (".garment.json.part-abcdef/placing");
+  g_assert_cmpint (g_mkdir_with_parents (sub, 0777), ==, 0);
+  g_assert_null (cloth_garment_load (path, &error));
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+  g_assert_nonnull (strstr (error->message, "only a part"));
+  g_clear_error (&error);
+  g_assert_cmpint (g_rmdir (sub), ==, 0);
+  again = cloth_garment_load (path, &error);
+  g_assert_no_error (error);
+  g_assert_cmpuint (again->topology->n_vertices, ==, N);
+  scratch_end ();
+}
+
+/* A folder and all that is in it was last written to at a time. */
+static void
+set_age (const gchar * path, const struct timespec times[2])
+{
+  g_autoptr (GDir) dir = g_dir_open (path, 0, NULL);
+  const gchar *name;
+
+  while (dir && (name = g_dir_read_name (dir))) {
+    g_autofree gchar *file = g_build_filename (path, name, NULL);
+
+    g_assert_cmpint (utimensat (AT_FDCWD, file, times, 0), ==, 0);
+  }
+  g_assert_cmpint (utimensat (AT_FDCWD, path, times, 0), ==, 0);
+}
+
+/* The newest comes first, and the older one stays. A folder is as new as what is in it. */
 static void
 test_several (void)
 {
@@ -467,7 +657,7 @@ test_several (void)
   {
     g_autofree gchar *older = find_one (path);
 
-    g_assert_cmpint (utimensat (AT_FDCWD, older, times, 0), ==, 0);
+    set_age (older, times);
   }
   be_killed (path, 2, 3, G_MAXUINT);
   found = cloth_recover_find (path, NULL);
@@ -481,7 +671,7 @@ test_several (void)
   lone = scratch_path (".c.obj.part-000000");
   g_assert_true (g_file_set_contents (lone, "", 0, NULL));
   g_assert_cmpint (utimensat (AT_FDCWD, lone, times, 0), ==, 0);
-  g_assert_cmpint (utimensat (AT_FDCWD, found->pdata[1], times, 0), ==, 0);
+  set_age (found->pdata[1], times);
   g_ptr_array_unref (found);
   found = cloth_recover_find (path, NULL);
   g_assert_cmpuint (found->len, ==, 2);
@@ -567,7 +757,14 @@ test_half_placed_taken (void)
     g_assert_false (cloth_recover (hidden, TRUE, &recovered, NULL));
     g_assert_true (g_file_test (waiting, G_FILE_TEST_EXISTS));
     lock = g_build_filename (hidden, "recording", NULL);
-    g_assert_true (g_file_set_contents (lock, "", 0, NULL));
+    g_assert_true (g_file_set_contents (lock, "gst-cloth recording 2\n\n", -1,
+            NULL));
+    g_assert_false (cloth_recover (hidden, TRUE, &recovered, &error));
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+    g_clear_error (&error);
+    g_assert_true (g_file_test (waiting, G_FILE_TEST_EXISTS));
+    g_assert_true (g_file_set_contents (lock, "gst-cloth recording 1\n\n", -1,
+            NULL));
     g_assert_false (cloth_recover (hidden, FALSE, &recovered, &error));
     g_assert_error (error, G_IO_ERROR, G_IO_ERROR_EXISTS);
     g_clear_error (&error);
@@ -815,23 +1012,47 @@ test_wrong_kind (void)
   scratch_end ();
 }
 
-/* A link stays what it was when the commit fails, and is replaced when not. */
+/* Of a link the file is written that it leads to. A recording, which is several files in
+ * one folder, refuses it. */
 static void
 test_link (void)
 {
+  g_autoptr (ClothTopology) topology = make_topology ();
+  g_autoptr (ClothMeshWriter) writer = NULL;
+  g_autoptr (GError) error = NULL;
   g_autofree gchar *path = NULL;
+  g_autofree gchar *folder = NULL;
   g_autofree gchar *elsewhere = NULL;
+  g_autofree gchar *nowhere = NULL;
   g_autofree gchar *bytes = NULL;
+  struct stat info;
 
   scratch_begin ();
   path = scratch_path ("c.obj");
-  elsewhere = scratch_path ("elsewhere");
+  folder = scratch_path ("folder");
+  elsewhere = scratch_path ("folder/elsewhere");
+  nowhere = scratch_path ("nowhere");
+  g_assert_cmpint (g_mkdir (folder, 0777), ==, 0);
   g_assert_true (g_file_set_contents (elsewhere, "mine", 4, NULL));
-  g_assert_cmpint (symlink (elsewhere, path), ==, 0);
-  record (path, 0, 2);
-  assert_frames (path, 0, 2);
+  g_assert_cmpint (symlink ("folder/elsewhere", path), ==, 0);
+  g_assert_cmpint (symlink ("missing", nowhere), ==, 0);
+  writer = cloth_mesh_writer_new (path, CLOTH_MESH_FORMAT_AUTO, NULL, topology,
+      25, 1, &error);
+  g_assert_null (writer);
+  g_assert_error (error, G_IO_ERROR, G_IO_ERROR_NOT_REGULAR_FILE);
+  g_clear_error (&error);
   g_assert_true (g_file_get_contents (elsewhere, &bytes, NULL, NULL));
   g_assert_cmpstr (bytes, ==, "mine");
+  g_clear_pointer (&bytes, g_free);
+  g_assert_true (cloth_file_write_text (path, "yours", &error));
+  g_assert_no_error (error);
+  g_assert_true (g_file_get_contents (elsewhere, &bytes, NULL, NULL));
+  g_assert_cmpstr (bytes, ==, "yours");
+  g_assert_cmpint (lstat (path, &info), ==, 0);
+  g_assert_true (S_ISLNK (info.st_mode));
+  g_assert_false (cloth_file_write_text (nowhere, "yours", &error));
+  g_assert_error (error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND);
+  g_assert_cmpuint (scratch_count (), ==, 3);
   scratch_end ();
 }
 
@@ -849,7 +1070,12 @@ main (int argc, char **argv)
   g_test_add_func ("/recover/never-overwrites", test_never_overwrites);
   g_test_add_func ("/recover/living", test_living);
   g_test_add_func ("/recover/living-lone-file", test_living_lone_file);
-  g_test_add_func ("/recover/replaced", test_replaced);
+  g_test_add_func ("/recover/next", test_next);
+  g_test_add_func ("/recover/left", test_left);
+  g_test_add_func ("/recover/concurrent", test_concurrent);
+  g_test_add_func ("/recover/replaced-meanwhile", test_replaced_meanwhile);
+  g_test_add_func ("/recover/power", test_power);
+  g_test_add_func ("/recover/garment", test_garment);
   g_test_add_func ("/recover/several", test_several);
   g_test_add_func ("/recover/half-placed", test_half_placed);
   g_test_add_func ("/recover/half-placed-taken", test_half_placed_taken);

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <sys/stat.h>
 
+#include "gst/take/recover.h"
 #include "gst/take/sequence.h"
 #include "tests/core/meshpeer.h"
 
@@ -146,6 +147,40 @@ expect_frames (const gchar * location, guint begin, guint n, gdouble fps)
   }
 }
 
+static void
+expect_warning (Sink * sink, const gchar * text)
+{
+  g_autoptr (GstMessage) message = gst_bus_pop_filtered (sink->bus,
+      GST_MESSAGE_WARNING);
+  g_autoptr (GError) error = NULL;
+
+  if (!text) {
+    fail_unless (message == NULL);
+    return;
+  }
+  fail_unless (message != NULL, "no warning was posted");
+  gst_message_parse_warning (message, &error, NULL);
+  fail_unless (g_error_matches (error, GST_RESOURCE_ERROR,
+          GST_RESOURCE_ERROR_FAILED));
+  fail_unless (strstr (error->message, text) != NULL, "%s", error->message);
+}
+
+/* What an error left can be finished, and is nothing but these frames. */
+static void
+expect_kept (const gchar * name, guint first, guint n_frames)
+{
+  g_autofree gchar *path = scratch_path (name);
+  g_autoptr (GPtrArray) found = cloth_recover_find (path, NULL);
+  g_autoptr (GError) error = NULL;
+  ClothRecovered recovered;
+
+  fail_unless (found != NULL && found->len == 1);
+  fail_unless (cloth_recover (found->pdata[0], FALSE, &recovered, &error));
+  fail_unless (error == NULL);
+  fail_unless_equals_int (recovered.n_frames, n_frames);
+  expect_frames (name, first, n_frames, 25);
+}
+
 static const gchar *const names[] = { "c.obj", "c.ply", "c.take" };
 
 /* The property wins over the ending; there is nothing before EOS. */
@@ -261,7 +296,7 @@ GST_START_TEST (test_renegotiation)
       expect_error (&sink, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT,
           "changed in the middle");
       close_sink (&sink);
-      fail_unless_equals_int (scratch_count (), 0);
+      expect_kept (names[i], 0, 4);
       scratch_end ();
     }
   }
@@ -283,13 +318,16 @@ GST_START_TEST (test_bad_buffers)
     fail_unless_equals_int (gst_harness_push (sink.harness, buffer),
         GST_FLOW_ERROR);
     expect_error (&sink, GST_STREAM_ERROR, GST_STREAM_ERROR_DECODE, "mesh");
-    fail_unless_equals_int (scratch_count (), 0);
+    expect_warning (&sink, "The 3 frames recorded until then are kept: "
+        "“gst-cloth-take-1.0 recover /");
+    fail_unless_equals_int (scratch_count (), 1);
     /* It stays an error: nothing half appears at EOS or stop. */
     fail_unless_equals_int (gst_harness_push (sink.harness, make_buffer (4,
                 N)), GST_FLOW_ERROR);
     gst_harness_push_event (sink.harness, gst_event_new_eos ());
     close_sink (&sink);
-    fail_unless_equals_int (scratch_count (), 0);
+    fail_unless_equals_int (scratch_count (), 1);
+    expect_kept ("c.obj", 0, 3);
     scratch_end ();
   }
 }
@@ -310,7 +348,7 @@ GST_START_TEST (test_time_that_does_not_rise)
       GST_FLOW_ERROR);
   fail_if (gst_harness_push_event (sink.harness, gst_event_new_eos ()));
   close_sink_quietly (&sink);
-  fail_unless_equals_int (scratch_count (), 0);
+  expect_kept ("c.take", 2, 1);
   scratch_end ();
 }
 
@@ -376,7 +414,7 @@ GST_END_TEST;
 
 /* What a program that is gone left of @name. */
 static gchar *
-leave_remains (const gchar * name)
+leave_remains (const gchar * name, gboolean frame)
 {
   g_autofree gchar *head = scratch_path (name);
   g_autofree gchar *hidden = g_str_has_suffix (name, ".take") ?
@@ -386,39 +424,26 @@ leave_remains (const gchar * name)
   g_autofree gchar *lock = g_build_filename (hidden, "recording", NULL);
 
   fail_unless_equals_int (g_mkdir_with_parents (whole, 0777), 0);
-  fail_unless (g_file_set_contents (lock, "6", 1, NULL));
+  fail_unless (g_file_set_contents (lock, frame ?
+          "gst-cloth recording 1\n6\nframe\n" : "gst-cloth recording 1\n6\n",
+          -1, NULL));
   return g_steal_pointer (&hidden);
 }
 
-static void
-expect_warning (Sink * sink, const gchar * text)
-{
-  g_autoptr (GstMessage) message = gst_bus_pop_filtered (sink->bus,
-      GST_MESSAGE_WARNING);
-  g_autoptr (GError) error = NULL;
-
-  if (!text) {
-    fail_unless (message == NULL);
-    return;
-  }
-  fail_unless (message != NULL, "no warning was posted");
-  gst_message_parse_warning (message, &error, NULL);
-  fail_unless (g_error_matches (error, GST_RESOURCE_ERROR,
-          GST_RESOURCE_ERROR_FAILED));
-  fail_unless (strstr (error->message, text) != NULL, "%s", error->message);
-}
-
-/* An interrupted recording is told of, and goes when the next one is whole. */
+/* An interrupted recording is told of. When the next one is whole, it goes unless it can be
+ * recovered. */
 GST_START_TEST (test_remains)
 {
   static const struct
   {
     const gchar *name, *text;
+    gboolean frame;
   } cases[] = {
-    {"c.obj", "gst-cloth-take-1.0 recover"},
-    {"c.ply", "gst-cloth-take-1.0 recover"},
-    {"c.take", "gst-cloth-take-1.0 recover"},
-    {"c.csv", "gst-cloth-take-1.0 recover"},
+    {"c.obj", "gst-cloth-take-1.0 recover /", TRUE},
+    {"c.ply", "gst-cloth-take-1.0 recover /", TRUE},
+    {"c.take", "gst-cloth-take-1.0 recover /", TRUE},
+    {"c.csv", "gst-cloth-take-1.0 recover /", TRUE},
+    {"c.obj", "can't be finished"}, {"c.take", "can't be finished"},
     {"c.usda", "can't be finished"}, {"c.glb", "can't be finished"}
   };
 
@@ -427,7 +452,7 @@ GST_START_TEST (test_remains)
     Sink sink;
 
     scratch_begin ();
-    left = leave_remains (cases[i].name);
+    left = leave_remains (cases[i].name, cases[i].frame);
     sink = open_sink (cases[i].name, "auto");
     expect_warning (&sink, cases[i].text);
     expect_warning (&sink, NULL);
@@ -435,7 +460,7 @@ GST_START_TEST (test_remains)
     fail_unless (g_file_test (left, G_FILE_TEST_IS_DIR));
     fail_unless (gst_harness_push_event (sink.harness, gst_event_new_eos ()));
     expect_no_error (&sink);
-    fail_if (g_file_test (left, G_FILE_TEST_IS_DIR));
+    fail_unless (g_file_test (left, G_FILE_TEST_IS_DIR) == cases[i].frame);
     close_sink (&sink);
     scratch_end ();
   }
@@ -450,7 +475,7 @@ GST_START_TEST (test_no_remains)
   Sink first, second, other;
 
   scratch_begin ();
-  left = leave_remains ("other.obj");
+  left = leave_remains ("other.obj", TRUE);
   first = open_sink ("c.obj", "auto");
   push_frames (&first, 0, 1);
   second = open_sink ("c.obj", "auto");

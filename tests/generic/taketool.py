@@ -7,11 +7,14 @@ SPDX-License-Identifier: LGPL-2.1-or-later
 """
 import glob
 import os
+import re
+import resource
 import signal
 import stat
 import subprocess
 import sys
 import tempfile
+import time
 
 import numpy
 
@@ -21,8 +24,8 @@ positions = numpy.load(os.path.join(drop, 'positions.npy'))
 faults = []
 
 
-def run(*command, cwd=None):
-    return subprocess.run(command, cwd=cwd, stdin=subprocess.DEVNULL, capture_output=True,
+def run(*command, cwd=None, **more):
+    return subprocess.run(command, cwd=cwd, **more, stdin=subprocess.DEVNULL, capture_output=True,
                           text=True, timeout=120, env=dict(os.environ, LC_ALL='C.UTF-8'))
 
 
@@ -50,10 +53,14 @@ def record(folder, name):
              if name.endswith('.take') else os.path.join(folder, '.%s.part-*' % base, '*.pc2'))
     size = 128 + 3 * 12 * positions.shape[1]
     older = set(glob.glob(parts))
-    while child.poll() is None:
+    until = time.monotonic() + 60
+    while child.poll() is None and time.monotonic() < until:
+        time.sleep(0.005)
         if any(os.path.getsize(path) > size for path in set(glob.glob(parts)) - older):
             child.send_signal(signal.SIGKILL)
             break
+    if child.poll() is None and time.monotonic() >= until:
+        child.terminate()
     said = child.communicate(timeout=60)[0]
     expect(child.returncode == -signal.SIGKILL, name + ' is killed')
     return said
@@ -99,8 +106,28 @@ def finished(folder):
     done = run(tool, 'recover', '--overwrite', 'c.obj', cwd=folder)
     expect(done.returncode == 1 and 'frames kept' in done.stdout and 'is older' in done.stderr,
            done.stdout.strip())
-    done = run(tool, 'recover', '--overwrite', 'c.obj', cwd=folder)
+    # by the path that was told
+    older = done.stderr.split('“')[1].split('”')[0]
+    done = run(tool, 'recover', '--overwrite', older, cwd=folder)
     expect(done.returncode == 0 and 'frames kept' in done.stdout, done.stdout.strip())
+
+
+def full(folder):
+    """A disk that becomes full, here a limit of the file's size: what was recorded is kept."""
+    size = 128 + 14 * 12 * positions.shape[1]
+    done = run('gst-launch-1.0', 'meshsrc', 'location=' + drop, '!', 'meshsink', 'location=f.obj',
+               cwd=folder, restore_signals=False,
+               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)))
+    kept = re.search(r'The (\d+) frames recorded until then are kept: '
+                     r'“gst-cloth-take-1.0 recover f.obj”', done.stderr + done.stdout)
+    expect(done.returncode == 1 and kept and int(kept[1]) >= 2 and
+           not os.path.exists(os.path.join(folder, 'f.obj')), done.stderr.strip()[-300:])
+    done = run(tool, 'recover', 'f.obj', cwd=folder)
+    got = read_pc2(os.path.join(folder, 'f.pc2'))
+    truth = positions[:len(got)].astype(numpy.float32)
+    seen = ~numpy.isnan(truth)
+    expect(done.returncode == 0 and len(got) >= int(kept[1]) and (got[seen] == truth[seen]).all(),
+           done.stdout.strip())
 
 
 def usage(folder):
@@ -114,23 +141,35 @@ def usage(folder):
 
 
 def devices(folder):
-    """Where a name is asked for, a device is refused, and stays."""
-    for command in ([pattern, 'checker', '--output', '/dev/null'],
-                    [pattern, 'm-array', '--columns', '6', '--rows', '6', '--spacing', '20mm',
-                     '--output', '/dev/null'],
-                    ['gst-launch-1.0', 'meshsrc', 'location=' + drop, '!', 'meshsink',
-                     'location=/dev/null'],
-                    ['gst-launch-1.0', 'meshsrc', 'location=' + drop, '!', 'meshsink',
-                     'location=/dev/null', 'format=take']):
+    """Where a name is asked for, a device or a pipe is refused, and stays."""
+    record_to = ['gst-launch-1.0', 'meshsrc', 'location=' + drop, '!', 'meshsink']
+    m_array = [pattern, 'm-array', '--columns', '6', '--rows', '6', '--pitch', '20mm', '--output']
+    refused = 'is a device, a pipe or a socket: name a regular file'
+    pipes = [os.path.join(folder, name) for name in ('x.pdf', 'x.svg', 'x.csv', 'x')]
+    for pipe in pipes:
+        os.mkfifo(pipe)
+    before = sorted(os.listdir(folder))
+    for command, told, code in (
+            ([pattern, 'checker', '--output', pipes[0]], refused, 1),
+            (m_array + [pipes[1]], refused, 1),
+            (record_to + ['location=' + pipes[2]], refused, 1),
+            (record_to + ['location=' + pipes[3]], refused, 1),
+            (record_to + ['location=/dev/null'], refused, 1),
+            (record_to + ['location=' + pipes[3], 'format=take'], 'Not a directory', 1),
+            (record_to + ['location=/dev/null', 'format=take'], 'Not a directory', 1)):
         done = run(*command, cwd=folder)
-        expect(done.returncode != 0 and stat.S_ISCHR(os.stat('/dev/null').st_mode) and
-               not glob.glob('/dev/null?*') and not glob.glob('/dev/.null*'),
-               ' '.join([os.path.basename(command[0])] + command[1:]))
+        expect(done.returncode == code and told in done.stderr,
+               ' '.join([os.path.basename(command[0])] + command[1:]) + ': ' + done.stderr[-300:])
+    expect(sorted(os.listdir(folder)) == before and
+           all(stat.S_ISFIFO(os.stat(pipe).st_mode) for pipe in pipes), 'the pipes stay, alone')
+    expect(stat.S_ISCHR(os.stat('/dev/null').st_mode) and not os.path.exists('/dev/null.obj'),
+           'the device stays')
 
 
 with tempfile.TemporaryDirectory(prefix='cloth-taketool-') as scratch:
     killed(scratch)
     finished(scratch)
+    full(scratch)
     usage(scratch)
     devices(scratch)
 sys.exit(1 if faults else 0)

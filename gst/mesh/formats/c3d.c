@@ -318,5 +318,5 @@ finish_c3d (gpointer export, GError ** error)
 }
 
 const ClothExporter cloth_c3d_exporter = {
-  TRUE, ".c3d", start_c3d, append_c3d, finish_c3d, free_c3d
+  TRUE, ".c3d", FALSE, start_c3d, append_c3d, finish_c3d, free_c3d
 };

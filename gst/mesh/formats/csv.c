@@ -137,5 +137,5 @@ cloth_csv_recover (ClothParts * parts, const gchar * base,
 }
 
 const ClothExporter cloth_csv_exporter = {
-  TRUE, ".csv", start_csv, append_csv, finish_csv, free_csv
+  TRUE, ".csv", TRUE, start_csv, append_csv, finish_csv, free_csv
 };

@@ -30,6 +30,7 @@ typedef struct {
 /* @keeps_nan: positions of vertices that are not seen come as NaN; else each has a
  *   place
  * @ending: of the file that readers open first; %NULL for a take
+ * @lasts: what is written can be read before the end, and so be recovered
  * @start: starts the files
  * @append: takes a frame; its number counts from 0
  * @finish: makes the files whole; there was at least one frame
@@ -40,6 +41,7 @@ typedef struct {
 typedef struct {
   gboolean keeps_nan;
   const gchar *ending;
+  gboolean lasts;
   gpointer (*start) (const ClothExportInfo * info, GError ** error);
   gboolean (*append) (gpointer export, guint64 number, gdouble time_s,
       const ClothMeshFrame * frame, GError ** error);

@@ -295,5 +295,5 @@ finish_gltf (gpointer export, GError ** error)
 }
 
 const ClothExporter cloth_gltf_exporter = {
-  FALSE, ".glb", start_gltf, append_gltf, finish_gltf, free_gltf
+  FALSE, ".glb", FALSE, start_gltf, append_gltf, finish_gltf, free_gltf
 };

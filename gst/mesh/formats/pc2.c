@@ -345,5 +345,6 @@ cloth_obj_pc2_recover (ClothParts * parts, const gchar * base,
 }
 
 const ClothExporter cloth_obj_pc2_exporter = {
-  FALSE, ".obj", start_obj_pc2, append_obj_pc2, finish_obj_pc2, free_obj_pc2
+  FALSE, ".obj", TRUE, start_obj_pc2, append_obj_pc2, finish_obj_pc2,
+  free_obj_pc2
 };

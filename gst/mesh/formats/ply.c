@@ -747,10 +747,13 @@ cloth_ply_recover (ClothParts * parts, const gchar * base,
 {
   recovered->n_frames = cloth_parts_count_numbered (parts, base, ".ply");
   recovered->cut = cloth_parts_has_unfinished (parts);
+  if (recovered->n_frames == 0)
+    return TRUE;
+  cloth_parts_drop_numbered (parts, base, recovered->n_frames, ".ply");
   cloth_parts_replace_numbered (parts, base, recovered->n_frames, ".ply");
   return TRUE;
 }
 
 const ClothExporter cloth_ply_exporter = {
-  FALSE, ".ply", start_ply, append_ply, finish_ply, free_ply
+  FALSE, ".ply", TRUE, start_ply, append_ply, finish_ply, free_ply
 };

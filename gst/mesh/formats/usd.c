@@ -177,5 +177,5 @@ finish_usd (gpointer export, GError ** error)
 }
 
 const ClothExporter cloth_usd_exporter = {
-  FALSE, ".usda", start_usd, append_usd, finish_usd, free_usd
+  FALSE, ".usda", FALSE, start_usd, append_usd, finish_usd, free_usd
 };

@@ -249,12 +249,7 @@ cloth_vtp_recover (ClothParts * parts, const gchar * base,
   recovered->cut = n_files != n || ends->len != n;
   if (n == 0)
     return TRUE;
-  for (guint64 i = n; i < n_files; i++) {
-    g_autofree gchar *file = g_strdup_printf ("%s_%05" G_GUINT64_FORMAT ".vtp",
-        base, i);
-
-    cloth_parts_drop (parts, file);
-  }
+  cloth_parts_drop_numbered (parts, base, n, ".vtp");
   cloth_parts_replace_numbered (parts, base, n, ".vtp");
   output = cloth_parts_continue (parts, name,
       g_array_index (ends, guint64, n - 1), error);
@@ -262,5 +257,5 @@ cloth_vtp_recover (ClothParts * parts, const gchar * base,
 }
 
 const ClothExporter cloth_vtp_exporter = {
-  FALSE, ".pvd", start_vtp, append_vtp, finish_vtp, free_vtp
+  FALSE, ".pvd", TRUE, start_vtp, append_vtp, finish_vtp, free_vtp
 };

@@ -219,7 +219,10 @@ ClothGarment *
 cloth_garment_load (const gchar * path, GError ** error)
 {
   gsize size;
-  g_autofree gchar *json = cloth_text_file_load (path, &size, error);
+  ClothPlaced placed;
+  g_autofree gchar *json =
+      cloth_parts_begin_reading (path, &placed, error) ?
+      cloth_text_file_load (path, &size, error) : NULL;
   g_autofree gchar *folder = g_path_get_dirname (path);
   g_autofree gchar *mesh = NULL;
   g_autoptr (ClothObj) obj = NULL;
@@ -228,7 +231,8 @@ cloth_garment_load (const gchar * path, GError ** error)
     return NULL;
   mesh = cloth_path_inside (folder, "garment.obj", error);
   obj = mesh ? cloth_obj_read (mesh, error) : NULL;
-  if (!obj || !cloth_topology_check (obj->topology, error))
+  if (!obj || !cloth_parts_end_reading (path, &placed, error) ||
+      !cloth_topology_check (obj->topology, error))
     return NULL;
   return cloth_garment_parse (json, size, g_steal_pointer (&obj->topology),
       error);

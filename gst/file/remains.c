@@ -1,0 +1,541 @@
+/* What programs that are gone left of parts.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/file/parts-private.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <gio/gio.h>
+#include <glib/gstdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+gint
+cloth_parts_open_lock (const gchar * path)
+{
+  g_autofree gchar *lock = g_build_filename (path, CLOTH_PARTS_LOCK, NULL);
+  gint fd;
+
+  do
+    fd = g_open (cloth_is_folder (path) ? lock : path,
+        O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0);
+  while (fd < 0 && errno == EINTR);
+  return fd;
+}
+
+/* @fd: of `recording`
+ * @note: (out) (nullable) (transfer full): what the writer noted
+ * @has_frame: (out): whether there is something to recover
+ *
+ * Returns: %FALSE when its head is not what a writer of parts writes
+ */
+gboolean
+cloth_parts_read_lock (gint fd, gchar ** note, gboolean * has_frame)
+{
+  gchar text[sizeof CLOTH_PARTS_MAGIC + CLOTH_PARTS_MAX_NOTE +
+      sizeof CLOTH_PARTS_FRAME] = "";
+  g_auto (GStrv) lines = NULL;
+  gssize n;
+
+  do
+    n = pread (fd, text, sizeof text - 1, 0);
+  while (n < 0 && errno == EINTR);
+  *has_frame = FALSE;
+  if (n < 0 || !g_str_has_prefix (text, CLOTH_PARTS_MAGIC))
+    return FALSE;
+  lines = g_strsplit (text, "\n", -1);
+  *has_frame = g_strv_length (lines) > 3;
+  if (note)
+    *note = g_strdup (g_strv_length (lines) > 2 ? lines[1] : "");
+  return TRUE;
+}
+
+gboolean
+cloth_parts_is_committing (const gchar * path)
+{
+  g_autofree gchar *old = g_build_filename (path, "old", NULL);
+  g_autofree gchar *placing = g_build_filename (path, "placing", NULL);
+
+  return cloth_is_folder (old) || cloth_is_folder (placing);
+}
+
+/* @path: a path
+ *
+ * Returns: (transfer full) (nullable): the name for which it holds a part, or %NULL when it
+ *   is none
+ */
+gchar *
+cloth_parts_get_head (const gchar * path)
+{
+  g_autofree gchar *base = g_path_get_basename (path);
+  const gsize n = strlen (base), mark = strlen (CLOTH_PART_MARK);
+  const gsize digits = strlen ("XXXXXX");
+
+  if (*base != '.' || n < mark + 2 ||
+      strncmp (base + n - mark, CLOTH_PART_MARK, mark - digits) != 0)
+    return NULL;
+  return g_strndup (base + 1, n - mark - 1);
+}
+
+typedef struct
+{
+  gchar *path;
+  gint64 changed_ns;
+} Found;
+
+static gint64
+changed_ns (const GStatBuf * info)
+{
+  return (gint64) info->st_mtim.tv_sec * G_GINT64_CONSTANT (1000000000) +
+      info->st_mtim.tv_nsec;
+}
+
+/* When a file, or one in a folder, was written to last. What vanishes meanwhile is the
+ * oldest. */
+static gint64
+last_change (const gchar * path, gboolean deeper)
+{
+  GDir *dir = deeper
+      && cloth_is_folder (path) ? g_dir_open (path, 0, NULL) : NULL;
+  const gchar *name;
+  GStatBuf info;
+  gint64 last_ns = g_lstat (path, &info) == 0 ? changed_ns (&info) : 0;
+
+  while (dir && (name = g_dir_read_name (dir))) {
+    g_autofree gchar *file = g_build_filename (path, name, NULL);
+
+    last_ns = MAX (last_ns, last_change (file, FALSE));
+  }
+  g_clear_pointer (&dir, g_dir_close);
+  return last_ns;
+}
+
+static gint
+compare_ages (gconstpointer a, gconstpointer b)
+{
+  const Found *one = a, *other = b;
+
+  if (one->changed_ns != other->changed_ns)
+    return one->changed_ns < other->changed_ns ? 1 : -1;
+  return strcmp (one->path, other->path);
+}
+
+/* @folder: where to look
+ * @head: (nullable): for what, or all
+ * @error: #GFileError
+ *
+ * Finds parts, whether their writers live or not. A lone file is a part of its own.
+ *
+ * Returns: (transfer full) (element-type filename) (nullable): their paths, the one that
+ *   was written to last first
+ */
+GPtrArray *
+cloth_parts_find (const gchar * folder, const gchar * head, GError ** error)
+{
+  g_autoptr (GArray) found = g_array_new (FALSE, FALSE, sizeof (Found));
+  GPtrArray *paths;
+  GDir *dir = g_dir_open (folder, 0, error);
+  const gchar *name;
+
+  if (!dir)
+    return NULL;
+  while ((name = g_dir_read_name (dir))) {
+    g_autofree gchar *base = cloth_parts_get_head (name);
+    GStatBuf info = { 0 };
+    Found item;
+
+    if (!base || (head && !g_str_equal (base, head)))
+      continue;
+    item.path = g_build_filename (folder, name, NULL);
+    /* Links lead elsewhere, and others' files are not ours to end or remove. */
+    if (g_lstat (item.path, &info) == 0 && (S_ISLNK (info.st_mode)
+            || info.st_uid != geteuid ())) {
+      g_free (item.path);
+      continue;
+    }
+    item.changed_ns = last_change (item.path, TRUE);
+    g_array_append_val (found, item);
+  }
+  g_dir_close (dir);
+  g_array_sort (found, compare_ages);
+  paths = g_ptr_array_new_with_free_func (g_free);
+  for (guint i = 0; i < found->len; i++)
+    g_ptr_array_add (paths, g_array_index (found, Found, i).path);
+  return paths;
+}
+
+/* @path: one that cloth_parts_find() found
+ *
+ * Returns: whether its writer is gone
+ */
+gboolean
+cloth_parts_is_dead (const gchar * path)
+{
+  gint fd = cloth_parts_open_lock (path);
+  gboolean dead = fd >= 0 && !cloth_file_lock_old (fd);
+
+  if (fd >= 0)
+    close (fd);
+  return dead;
+}
+
+/* @path: one that cloth_parts_find() found
+ *
+ * Returns: whether there is something to recover
+ */
+gboolean
+cloth_parts_has_frame (const gchar * path)
+{
+  gint fd = cloth_is_folder (path) ? cloth_parts_open_lock (path) : -1;
+  gboolean has_frame = FALSE;
+
+  if (fd >= 0) {
+    cloth_parts_read_lock (fd, NULL, &has_frame);
+    close (fd);
+  }
+  return has_frame;
+}
+
+static ClothPlaced
+look_at (const gchar * head)
+{
+  GStatBuf info;
+  ClothPlaced placed = { 0 };
+
+  if (g_stat (head, &info) == 0) {
+    placed.device = info.st_dev;
+    placed.inode = info.st_ino;
+    placed.changed_ns = changed_ns (&info);
+  }
+  return placed;
+}
+
+/* @head: what a reader opens first
+ * @placed: (out): for cloth_parts_end_reading()
+ * @error: %CLOTH_FILE_ERROR_INVALID
+ *
+ * Returns: %FALSE when a writer that lives, or one that was killed, may have given some of
+ *   its files their names and others not
+ */
+gboolean
+cloth_parts_begin_reading (const gchar * head, ClothPlaced * placed,
+    GError ** error)
+{
+  g_autofree gchar *folder = g_path_get_dirname (head);
+  g_autofree gchar *base = g_path_get_basename (head);
+  g_autoptr (GPtrArray) found = NULL;
+
+  *placed = look_at (head);
+  found = cloth_parts_find (folder, base, NULL);
+  for (guint i = 0; found && i < found->len; i++) {
+    g_autofree gchar *shown = g_filename_display_name (head);
+
+    if (cloth_parts_is_committing (found->pdata[i]))
+      return cloth_file_invalid (error,
+          "only a part of what belongs to “%s” is "
+          "in place: a program is just writing it, or was killed; for the latter "
+          "there is “gst-cloth-take-1.0 recover”", shown);
+  }
+  return TRUE;
+}
+
+/* @head: what a reader opened first, before its other files
+ * @placed: what cloth_parts_begin_reading() saw
+ * @error: %CLOTH_FILE_ERROR_INVALID
+ *
+ * Returns: %FALSE when not all that was opened meanwhile need be of one commit
+ */
+gboolean
+cloth_parts_end_reading (const gchar * head, const ClothPlaced * placed,
+    GError ** error)
+{
+  g_autofree gchar *shown = g_filename_display_name (head);
+  ClothPlaced now;
+
+  if (!cloth_parts_begin_reading (head, &now, error))
+    return FALSE;
+  if (now.device == placed->device && now.inode == placed->inode &&
+      now.changed_ns == placed->changed_ns)
+    return TRUE;
+  return cloth_file_invalid (error,
+      "“%s” was replaced while it was opened: try again", shown);
+}
+
+/* Why what a writer made can't be had. */
+static gboolean
+fail_locked (gint code, const gchar * path, GError ** error)
+{
+  if (code == EWOULDBLOCK)
+    g_set_error (error, G_IO_ERROR, G_IO_ERROR_BUSY,
+        "it is being written: end that program first");
+  else if (code == ENOENT)
+    g_set_error (error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND,
+        "another program has just finished or removed it");
+  else
+    g_set_error (error, G_IO_ERROR, g_io_error_from_errno (code),
+        "whether its program lives can't be told, as its file can't be locked "
+        "(%s): copy the folder to a disk where that can be done",
+        g_strerror (code));
+  return FALSE;
+}
+
+/* @path: a lone file that cloth_parts_find() found
+ * @error: #GIOErrorEnum; %G_IO_ERROR_BUSY: its writer lives
+ *
+ * Removes it when its writer is gone.
+ *
+ * Returns: whether that was so
+ */
+gboolean
+cloth_parts_remove_lone (const gchar * path, GError ** error)
+{
+  gint fd = cloth_parts_open_lock (path);
+  gboolean removed;
+  gint code;
+
+  if (fd < 0)
+    return cloth_file_fail (error, errno, "open", path);
+  code = cloth_file_lock_old (fd);
+  removed = code ? fail_locked (code, path, error) : TRUE;
+  if (removed && g_unlink (path) < 0)
+    removed = cloth_file_fail (error, errno, "remove", path);
+  close (fd);
+  return removed;
+}
+
+/* Whether there is no file in a folder, nor in those that a part has. */
+static gboolean
+holds_nothing (const gchar * path)
+{
+  GDir *dir = cloth_is_folder (path) ? g_dir_open (path, 0, NULL) : NULL;
+  gboolean nothing = dir != NULL;
+  const gchar *name;
+
+  while (nothing && (name = g_dir_read_name (dir))) {
+    g_autofree gchar *sub = g_build_filename (path, name, NULL);
+
+    nothing = holds_nothing (sub);
+  }
+  g_clear_pointer (&dir, g_dir_close);
+  return nothing;
+}
+
+/* Whether it is what a writer made: at the very first it had not said so yet. */
+static gboolean
+is_recording (ClothParts * parts)
+{
+  g_autoptr (GPtrArray) names = NULL;
+  struct stat info;
+
+  if (cloth_parts_read_lock (parts->lock, &parts->note, &parts->has_frame))
+    return TRUE;
+  parts->note = g_strdup ("");
+  names = cloth_parts_list_names (parts, NULL, NULL);
+  return names && names->len == 1 && fstat (parts->lock, &info) == 0 &&
+      info.st_size < (off_t) strlen (CLOTH_PARTS_MAGIC);
+}
+
+/* @path: a folder that cloth_parts_find() found
+ * @overwrite: whether files may be replaced that got the names since
+ * @remains: (out): how far the writer had come
+ * @error: #GIOErrorEnum; %G_IO_ERROR_BUSY: the writer lives; %G_IO_ERROR_EXISTS: files
+ *   would be replaced
+ *
+ * Locks what a killed program left. A commit that was cut off is ended, or undone.
+ *
+ * Returns: (transfer full): the parts, or %NULL
+ */
+ClothParts *
+cloth_parts_reopen (const gchar * path, gboolean overwrite,
+    ClothRemains * remains, GError ** error)
+{
+  g_autofree gchar *head = cloth_parts_get_head (path);
+  g_autoptr (ClothParts) parts = NULL;
+  gint fd = cloth_parts_open_lock (path);
+  gint code = fd < 0 ? errno : cloth_file_lock_old (fd);
+
+  /* Without its lock the folder may be anybody's, unless nothing is in it. */
+  if (fd < 0 && (code != ENOENT || !holds_nothing (path))) {
+    g_autofree gchar *lock = g_build_filename (path, CLOTH_PARTS_LOCK, NULL);
+
+    cloth_file_fail (error, code, "open", lock);
+    return NULL;
+  }
+  parts = cloth_parts_wrap (path, head, fd);
+  parts->reopened = TRUE;
+  parts->overwrite = overwrite;
+  parts->keep = TRUE;
+  /* Nobody vouches for what a computer that lost its power had brought to the disk. */
+  parts->unsynced = TRUE;
+  if (fd >= 0 && code) {
+    fail_locked (code, path, error);
+    return NULL;
+  }
+  if (fd >= 0 && !is_recording (parts)) {
+    cloth_file_invalid (error, "it is not what a recording leaves");
+    return NULL;
+  }
+  if (!cloth_parts_resume (parts, overwrite, remains, error))
+    return NULL;
+  return g_steal_pointer (&parts);
+}
+
+/* Returns: bytes of the files that are not whole */
+guint64
+cloth_parts_count_bytes (const ClothParts * parts)
+{
+  GDir *dir = g_dir_open (parts->path, 0, NULL);
+  const gchar *name;
+  guint64 n = 0;
+
+  while (dir && (name = g_dir_read_name (dir))) {
+    g_autofree gchar *path = cloth_parts_inside (parts, name, NULL);
+    GStatBuf info;
+
+    if (g_lstat (path, &info) == 0 && S_ISREG (info.st_mode))
+      n += (guint64) info.st_size;
+  }
+  g_clear_pointer (&dir, g_dir_close);
+  return n;
+}
+
+/* @parts: parts that were reopened
+ * @error: #GIOErrorEnum
+ *
+ * Removes their files.
+ *
+ * Returns: %TRUE when nothing is left
+ */
+gboolean
+cloth_parts_discard (ClothParts * parts, GError ** error)
+{
+  const gboolean removed = cloth_remove_parts (parts->path, parts->lock);
+
+  parts->lock = -1;
+  if (!removed)
+    g_set_error (error, G_IO_ERROR, G_IO_ERROR_FAILED,
+        "not all of it can be removed");
+  return removed;
+}
+
+/* @parts: parts that were reopened
+ *
+ * Returns: (transfer none): what their writer noted
+ */
+const gchar *
+cloth_parts_get_note (const ClothParts * parts)
+{
+  return parts->note;
+}
+
+/* @parts: parts
+ * @name: of one of its files
+ *
+ * Returns: whether it was whole
+ */
+gboolean
+cloth_parts_is_whole (const ClothParts * parts, const gchar * name)
+{
+  g_autofree gchar *whole = cloth_parts_inside (parts, "new", name);
+
+  return cloth_is_there (whole);
+}
+
+/* @parts: parts
+ * @name: of one of its files
+ *
+ * Returns: (transfer full) (type filename): where it lies, be it whole or not
+ */
+gchar *
+cloth_parts_get_path (const ClothParts * parts, const gchar * name)
+{
+  return cloth_parts_is_whole (parts, name) ? cloth_parts_inside (parts, "new",
+      name) : cloth_parts_inside (parts, name, NULL);
+}
+
+/* @parts: parts
+ *
+ * Returns: whether a file was being written
+ */
+gboolean
+cloth_parts_has_unfinished (const ClothParts * parts)
+{
+  g_autoptr (GPtrArray) names = cloth_parts_list_names (parts, NULL, NULL);
+
+  for (guint i = 0; names && i < names->len; i++)
+    if (!cloth_parts_is_own (names->pdata[i]))
+      return TRUE;
+  return FALSE;
+}
+
+/* @parts: parts
+ * @stem: what the names begin with, without the folder
+ * @ending: what the names end with
+ *
+ * Returns: how many numbered files, from 0 on, are whole. One without a byte is not: so
+ *   they look when the computer lost its power
+ */
+guint64
+cloth_parts_count_numbered (const ClothParts * parts, const gchar * stem,
+    const gchar * ending)
+{
+  for (guint64 i = 0;; i++) {
+    g_autofree gchar *name = cloth_parts_number (stem, i, ending);
+    g_autofree gchar *path = cloth_parts_inside (parts, "new", name);
+    GStatBuf info;
+
+    if (g_lstat (path, &info) < 0 || !S_ISREG (info.st_mode) ||
+        info.st_size == 0)
+      return i;
+  }
+}
+
+/* @parts: parts
+ * @stem: what the names begin with, without the folder
+ * @first: the first number that is not kept
+ * @ending: what the names end with
+ */
+void
+cloth_parts_drop_numbered (ClothParts * parts, const gchar * stem,
+    guint64 first, const gchar * ending)
+{
+  for (;; first++) {
+    g_autofree gchar *name = cloth_parts_number (stem, first, ending);
+
+    if (!cloth_parts_is_whole (parts, name))
+      return;
+    cloth_parts_drop (parts, name);
+  }
+}
+
+/* @parts: parts that were reopened
+ * @name: of one of its files
+ * @size: how much of it is kept
+ * @error: #GIOErrorEnum
+ *
+ * Returns: (transfer full): the file, to be gone on with, or %NULL
+ */
+ClothOutput *
+cloth_parts_continue (ClothParts * parts, const gchar * name, guint64 size,
+    GError ** error)
+{
+  g_autofree gchar *part = cloth_parts_inside (parts, name, NULL);
+  g_autofree gchar *whole = cloth_parts_inside (parts, "new", name);
+  g_autofree gchar *path = cloth_parts_target (parts, name);
+
+  if (cloth_is_there (whole) && !cloth_parts_move (whole, part, path, error))
+    return NULL;
+  return cloth_output_continue (part, whole, path, size, error);
+}
+
+/* @parts: parts
+ * @name: of a file that is not kept
+ */
+void
+cloth_parts_drop (ClothParts * parts, const gchar * name)
+{
+  g_autofree gchar *path = cloth_parts_get_path (parts, name);
+
+  g_unlink (path);
+}
