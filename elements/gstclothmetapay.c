@@ -31,6 +31,8 @@ GST_DEBUG_CATEGORY_STATIC (cloth_meta_pay_debug);
 struct _GstClothMetaPay
 {
   GstBaseTransform parent;
+
+  gboolean told;                /* of a clock that is left out */
 };
 
 static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE ("sink",
@@ -74,11 +76,34 @@ write_running_time (const GstSegment * segment, GstBuffer * observation)
   gst_buffer_fill (observation, TIME_AT, bytes, sizeof bytes);
 }
 
+/* Says once that the times of a clock go no further. */
+static void
+tell_of_clocks (GstClothMetaPay * self, GstBuffer * picture,
+    GstBuffer * observation)
+{
+  const guint n =
+      gst_buffer_get_n_meta (picture, GST_REFERENCE_TIMESTAMP_META_API_TYPE);
+  g_autoptr (GstBuffer) unpacked = NULL;
+
+  if (n == 0 || self->told)
+    return;
+  unpacked = gst_buffer_new ();
+  if (!gst_cloth_observations_unpack (observation, unpacked, NULL) ||
+      gst_buffer_get_n_meta (unpacked,
+          GST_REFERENCE_TIMESTAMP_META_API_TYPE) == n)
+    return;
+  self->told = TRUE;
+  GST_ELEMENT_WARNING (self, STREAM, FORMAT,
+      ("Pictures have times of a clock that observations can't carry: these "
+          "times are left out"), ("docs/streams.md lists the clocks."));
+}
+
 static GstFlowReturn
 gst_cloth_meta_pay_prepare_output_buffer (GstBaseTransform * trans,
     GstBuffer * picture, GstBuffer ** observation)
 {
   *observation = gst_cloth_observations_pack (picture);
+  tell_of_clocks (GST_CLOTH_META_PAY (trans), picture, *observation);
   write_running_time (&trans->segment, *observation);
   GST_LOG_OBJECT (trans, "%" GST_PTR_FORMAT, *observation);
   return GST_FLOW_OK;
@@ -90,6 +115,13 @@ gst_cloth_meta_pay_transform (GstBaseTransform * trans, GstBuffer * picture,
     GstBuffer * observation)
 {
   return GST_FLOW_OK;
+}
+
+static gboolean
+gst_cloth_meta_pay_start (GstBaseTransform * trans)
+{
+  GST_CLOTH_META_PAY (trans)->told = FALSE;
+  return TRUE;
 }
 
 /* The metas ride on whatever memory upstream likes; only nothing of ours does. */
@@ -107,6 +139,7 @@ gst_cloth_meta_pay_class_init (GstClothMetaPayClass * klass)
   GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
   GstBaseTransformClass *trans_class = GST_BASE_TRANSFORM_CLASS (klass);
 
+  trans_class->start = gst_cloth_meta_pay_start;
   trans_class->transform_caps = gst_cloth_meta_pay_transform_caps;
   trans_class->prepare_output_buffer = gst_cloth_meta_pay_prepare_output_buffer;
   trans_class->transform = gst_cloth_meta_pay_transform;

@@ -762,6 +762,7 @@ gst_cloth_sync_settle_times (GstClothSync * self, Heads * heads)
     GstClothSyncPad *pad = heads->pad[i];
     const GstClockTimeDiff time = heads->time[i];
     GstBuffer *buffer;
+    guint n_flushes;
 
     if (!pad) {
       continue;
@@ -782,11 +783,12 @@ gst_cloth_sync_settle_times (GstClothSync * self, Heads * heads)
         }
         continue;
       case GST_CLOTH_SYNC_HOLD:
+        n_flushes = gst_cloth_sync_pad_count_flushes (pad);
         buffer = gst_cloth_sync_pop (self, pad);
         /* flushed meanwhile, it is not there or another one */
         if (buffer) {
           gst_cloth_sync_pad_hold (pad, buffer,
-              gst_cloth_sync_time (self, pad, buffer));
+              gst_cloth_sync_time (self, pad, buffer), n_flushes);
         }
         break;
       case GST_CLOTH_SYNC_BELIEVE:

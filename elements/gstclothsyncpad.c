@@ -120,12 +120,27 @@ gst_cloth_sync_pad_note (GstClothSyncPad * pad, GstClockTimeDiff time,
 
 void
 gst_cloth_sync_pad_hold (GstClothSyncPad * pad, GstBuffer * buffer,
-    GstClockTimeDiff time)
+    GstClockTimeDiff time, guint n_flushes)
 {
+  g_autoptr (GstBuffer) taken = buffer;
+
   GST_OBJECT_LOCK (pad);
-  pad->held = buffer;
-  pad->held_time = time;
+  if (pad->n_flushes == n_flushes) {
+    pad->held = g_steal_pointer (&taken);
+    pad->held_time = time;
+  }
   GST_OBJECT_UNLOCK (pad);
+}
+
+guint
+gst_cloth_sync_pad_count_flushes (GstClothSyncPad * pad)
+{
+  guint n_flushes;
+
+  GST_OBJECT_LOCK (pad);
+  n_flushes = pad->n_flushes;
+  GST_OBJECT_UNLOCK (pad);
+  return n_flushes;
 }
 
 void
@@ -157,6 +172,7 @@ gst_cloth_sync_pad_reset (GstClothSyncPad * pad)
   pad->believed = FALSE;
   pad->last = GST_CLOCK_STIME_NONE;
   pad->interval = 0;
+  pad->n_flushes++;
   GST_OBJECT_UNLOCK (pad);
 }
 

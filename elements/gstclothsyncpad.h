@@ -39,6 +39,7 @@ struct _GstClothSyncPad {
   gboolean believed;            /* the held one is the head */
   GstClockTimeDiff last;        /* the latest time believed; NONE: none yet */
   guint64 interval;             /* from the time before to @last */
+  guint n_flushes;
 
   /* streaming thread of the element */
   GstEvent *caps;               /* came after @held, and counts once that one is gone */
@@ -100,9 +101,13 @@ GstClothSyncVerdict gst_cloth_sync_pad_judge (GstClothSyncPad * pad,
 void gst_cloth_sync_pad_note (GstClothSyncPad * pad, GstClockTimeDiff time,
     GstClockTimeDiff end);
 
-/* Holds @buffer (transfer full), taken from the head; @time: its common time. */
+/* Returns: how often the pad was flushed */
+guint gst_cloth_sync_pad_count_flushes (GstClothSyncPad * pad);
+
+/* Holds @buffer (transfer full), taken from the head; @time: its common time; @n_flushes:
+ * counted before it was taken. What a flush came after is dropped. */
 void gst_cloth_sync_pad_hold (GstClothSyncPad * pad, GstBuffer * buffer,
-    GstClockTimeDiff time);
+    GstClockTimeDiff time, guint n_flushes);
 
 void gst_cloth_sync_pad_believe (GstClothSyncPad * pad);
 void gst_cloth_sync_pad_refuse (GstClothSyncPad * pad);

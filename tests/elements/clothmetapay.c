@@ -143,6 +143,54 @@ GST_START_TEST (test_running_time)
 
 GST_END_TEST;
 
+/* Times of clocks of the table are carried; of others that they are not is said, once. */
+GST_START_TEST (test_clocks)
+{
+  static const struct
+  {
+    const gchar *clock;
+    gboolean known;
+  } cases[] = {
+    {"timestamp/x-unix", TRUE},
+    {"timestamp/x-ntp, host=(string)pool.ntp.org, port=(int)123", TRUE},
+    {"timestamp/x-of-a-vendor", FALSE},
+    {"timestamp/x-ntp, host=(string)pool.ntp.org, port=(int)-1", FALSE},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    GstHarness *h = gst_harness_new ("clothmetapay");
+    g_autoptr (GstBus) bus = gst_bus_new ();
+    g_autoptr (GstCaps) clock = gst_caps_from_string (cases[i].clock);
+    g_autoptr (GstMessage) message = NULL;
+    g_autoptr (GstMessage) second = NULL;
+
+    gst_element_set_bus (h->element, bus);
+    gst_harness_set_src_caps_str (h, "video/x-raw, format=(string)GRAY8, "
+        "width=(int)321, height=(int)239, framerate=(fraction)25/1");
+    for (guint k = 0; k < 2; k++) {
+      g_autoptr (GstBuffer) observation = NULL;
+      g_autoptr (GstBuffer) unpacked = gst_buffer_new ();
+      GstBuffer *picture = make_picture (k, 324 * 239);
+
+      gst_buffer_add_reference_timestamp_meta (picture, clock, 7 * GST_SECOND,
+          GST_CLOCK_TIME_NONE);
+      fail_unless_equals_int (gst_harness_push (h, picture), GST_FLOW_OK);
+      observation = gst_harness_pull (h);
+      fail_unless (gst_cloth_observations_unpack (observation, unpacked, NULL));
+      fail_unless_equals_int (gst_buffer_get_n_meta (unpacked,
+              GST_REFERENCE_TIMESTAMP_META_API_TYPE), cases[i].known);
+    }
+    message = gst_bus_pop_filtered (bus, GST_MESSAGE_WARNING);
+    second = gst_bus_pop_filtered (bus, GST_MESSAGE_WARNING);
+    fail_unless ((message != NULL) == !cases[i].known);
+    fail_unless (second == NULL);
+    gst_element_set_bus (h->element, NULL);
+    gst_harness_teardown (h);
+  }
+}
+
+GST_END_TEST;
+
 GST_START_TEST (test_there_and_back)
 {
   static const gchar *const carriers[] = { "", "gdppay ! gdpdepay ! ",
@@ -328,6 +376,7 @@ clothmetapay_suite (void)
   tcase_add_test (chain, test_pay);
   tcase_add_test (chain, test_pay_without_metas);
   tcase_add_test (chain, test_running_time);
+  tcase_add_test (chain, test_clocks);
   tcase_add_test (chain, test_there_and_back);
   tcase_add_test (chain, test_depay_shares_black);
   tcase_add_test (chain, test_renegotiation);

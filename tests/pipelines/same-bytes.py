@@ -75,6 +75,18 @@ def run(tool, data, level, threads):
         return digests(folder)
 
 
+def effective(level):
+    """What this processor has of a level."""
+    flags = set()
+    with open('/proc/cpuinfo', encoding='utf-8') as file:
+        for line in file:
+            if line.startswith('flags'):
+                flags.update(line.split())
+    best = 2 if flags >= {'bmi2', 'avx512f', 'avx512bw', 'avx512dq', 'avx512vl'} else \
+        1 if flags >= {'avx2', 'fma'} else 0
+    return LEVELS[min(best, LEVELS.index(level) if level else 2)]
+
+
 def check_names(tool):
     """A level that isn't one is said, and nothing else changes."""
     done = subprocess.run([tool, 'effects'], env={**os.environ, 'CLOTH_SIMD': 'sse9'}, check=False,
@@ -97,8 +109,8 @@ def main(tool, data):
                 assert len(found) > 12, sorted(found)
             differ = sorted(name for name in first.keys() | found.keys()
                             if first.get(name) != found.get(name))
-            print('%s, %d threads: %d files, %d differ %s'
-                  % (level or 'best', threads, len(found), len(differ), differ))
+            print('%s (here %s), %d threads: %d files, %d differ %s'
+                  % (level or 'best', effective(level), threads, len(found), len(differ), differ))
             assert not differ
 
 
