@@ -64,7 +64,7 @@ test_threads ()
 
 case "${1:-}" in
   "") more=() ;;
-  --sanitize) more=(clang libclang-rt-14-dev) ;;
+  --sanitize) more=(clang libclang-rt-dev) ;;
   --tsan) more=() ;;
   *) fail "tests/run.sh takes --sanitize, --tsan or nothing" ;;
 esac

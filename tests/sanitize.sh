@@ -67,13 +67,15 @@ cloth_test_share ()
 
   shift 2
   rm -f "$folder/meson-logs/share-$suite.json"
+  # Without a name meson would run all.
+  [ $# -gt 0 ] || return 1
   meson test -C "$folder" --no-rebuild --print-errorlogs --logbase "share-$suite" \
       --suite "$suite" -t 6 "$@"
 }
 
-# cloth_test_addresses FOLDER
+# cloth_test_addresses FOLDER: in a shell of its own, for what it exports.
 cloth_test_addresses ()
-{
+(
   local folder status=0 asan
 
   folder=$(cd "$1" && pwd)
@@ -95,12 +97,12 @@ cloth_test_addresses ()
   # shellcheck disable=SC2086
   cloth_test_share "$folder" generic $CLOTH_PROGRAMS || status=1
   echo "Left out of $1: $CLOTH_SLOW, and the pipelines and programs but $CLOTH_CHAINS $CLOTH_PROGRAMS"
-  return $status
-}
+  exit $status
+)
 
-# cloth_test_races FOLDER
+# cloth_test_races FOLDER: in a shell of its own, for what it preloads.
 cloth_test_races ()
-{
+(
   local folder status=0
 
   folder=$(cd "$1" && pwd)
@@ -117,5 +119,5 @@ cloth_test_races ()
   cloth_test_share "$folder" core $CLOTH_THREADED_CORE || status=1
   # shellcheck disable=SC2086
   cloth_test_share "$folder" elements $CLOTH_THREADED_ELEMENTS || status=1
-  return $status
-}
+  exit $status
+)
