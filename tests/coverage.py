@@ -3,8 +3,9 @@
 
   tests/coverage.py BUILD-FOLDER
 
-A branch that g_assert (), g_return_* () or g_new () makes is not counted: no input takes it. A source
-that is compiled several times counts as covered where any of its objects is.
+A branch that g_assert (), g_return_* (), g_new () or g_clear_* () makes is not counted, nor one at the
+end of a scope, where autoptr looks for what is to be freed: no input takes it. A source that is
+compiled several times counts as covered where any of its objects is.
 
 SPDX-License-Identifier: LGPL-2.1-or-later
 """
@@ -26,7 +27,7 @@ PARSERS = [
 COMMITS = ['gst/file/output.c', 'gst/file/parts.c', 'gst/file/commit.c', 'gst/file/remains.c',
            'gst/take/recover.c']
 LINES, BRANCHES, COMMIT = 90, 95, 100
-GUARD = re.compile(r'\bg_(assert|return|new|renew)\w* \(')
+GUARD = re.compile(r'\bg_(assert|return|new|renew|clear)\w* \(|^\s*(return [^&|?]*;|\})$')
 
 root = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..')
 build = os.path.abspath(sys.argv[1])

@@ -255,8 +255,7 @@ cloth_parts_end_reading (const gchar * head, const ClothPlaced * placed,
 
   if (!cloth_parts_begin_reading (head, &now, error))
     return FALSE;
-  if (now.device == placed->device && now.inode == placed->inode &&
-      now.changed_ns == placed->changed_ns)
+  if (memcmp (&now, placed, sizeof now) == 0)
     return TRUE;
   return cloth_file_invalid (error,
       "“%s” was replaced while it was opened: try again", shown);
@@ -291,15 +290,18 @@ gboolean
 cloth_parts_remove_lone (const gchar * path, GError ** error)
 {
   gint fd = cloth_parts_open_lock (path);
-  gboolean removed;
+  gboolean removed = FALSE;
   gint code;
 
   if (fd < 0)
     return cloth_file_fail (error, errno, "open", path);
   code = cloth_file_lock_old (fd);
-  removed = code ? fail_locked (code, path, error) : TRUE;
-  if (removed && g_unlink (path) < 0)
-    removed = cloth_file_fail (error, errno, "remove", path);
+  if (code)
+    fail_locked (code, path, error);
+  else if (g_unlink (path) == 0)
+    removed = TRUE;
+  else
+    cloth_file_fail (error, errno, "remove", path);
   close (fd);
   return removed;
 }
@@ -381,22 +383,20 @@ cloth_parts_reopen (const gchar * path, gboolean overwrite,
   return g_steal_pointer (&parts);
 }
 
-/* Returns: bytes of the files that are not whole */
+/* Returns: bytes of the files that are not whole; of a folder that can't be read, many */
 guint64
 cloth_parts_count_bytes (const ClothParts * parts)
 {
-  GDir *dir = g_dir_open (parts->path, 0, NULL);
-  const gchar *name;
-  guint64 n = 0;
+  g_autoptr (GPtrArray) names = cloth_parts_list_names (parts, NULL, NULL);
+  guint64 n = names ? 0 : G_MAXUINT64;
 
-  while (dir && (name = g_dir_read_name (dir))) {
-    g_autofree gchar *path = cloth_parts_inside (parts, name, NULL);
+  for (guint i = 0; names && i < names->len; i++) {
+    g_autofree gchar *path = cloth_parts_inside (parts, names->pdata[i], NULL);
     GStatBuf info;
 
     if (g_lstat (path, &info) == 0 && S_ISREG (info.st_mode))
       n += (guint64) info.st_size;
   }
-  g_clear_pointer (&dir, g_dir_close);
   return n;
 }
 

@@ -59,12 +59,16 @@ cloth_recover_look (const gchar * location, ClothMeshFormat format)
   return left;
 }
 
+/* The path alone, without a separator at its end. */
 static GPtrArray *
 name_one (const gchar * path)
 {
   GPtrArray *paths = g_ptr_array_new_with_free_func (g_free);
+  gsize n = strlen (path);
 
-  g_ptr_array_add (paths, g_strdup (path));
+  while (path[n - 1] == G_DIR_SEPARATOR)
+    n--;
+  g_ptr_array_add (paths, g_strndup (path, n));
   return paths;
 }
 
@@ -79,14 +83,13 @@ name_one (const gchar * path)
 GPtrArray *
 cloth_recover_find (const gchar * location, GError ** error)
 {
+  g_autofree gchar *part = cloth_parts_get_head (location);
   g_autofree gchar *head = NULL;
   g_autofree gchar *folder = NULL;
   g_autofree gchar *base = NULL;
 
-  head = cloth_parts_get_head (location);
-  if (head && g_file_test (location, G_FILE_TEST_EXISTS))
+  if (part && g_file_test (location, G_FILE_TEST_EXISTS))
     return name_one (location);
-  g_clear_pointer (&head, g_free);
   if (g_file_test (location, G_FILE_TEST_IS_DIR))
     return cloth_parts_find (location, NULL, error);
   head = cloth_mesh_format_head (location, CLOTH_MESH_FORMAT_AUTO);

@@ -545,6 +545,7 @@ static void
 test_replaced_meanwhile (void)
 {
   g_autofree gchar *path = NULL;
+  g_autofree gchar *sub = NULL;
   g_autoptr (GError) error = NULL;
   ClothPlaced placed;
 
@@ -557,6 +558,14 @@ test_replaced_meanwhile (void)
   g_assert_false (cloth_parts_end_reading (path, &placed, &error));
   g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
   g_assert_nonnull (strstr (error->message, "try again"));
+  g_clear_error (&error);
+  /* just now */
+  g_assert_true (cloth_parts_begin_reading (path, &placed, &error));
+  sub = scratch_path (".c.obj.part-abcdef/placing");
+  g_assert_cmpint (g_mkdir_with_parents (sub, 0777), ==, 0);
+  g_assert_false (cloth_parts_end_reading (path, &placed, &error));
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+  g_assert_nonnull (strstr (error->message, "only a part"));
   scratch_end ();
 }
 
@@ -676,6 +685,11 @@ test_several (void)
   found = cloth_recover_find (path, NULL);
   g_assert_cmpuint (found->len, ==, 2);
   g_assert_cmpstr (found->pdata[0], ==, lone);
+  g_assert_cmpint (cloth_recover_look (path, CLOTH_MESH_FORMAT_AUTO), ==,
+      CLOTH_LEFT_FRAMES);
+  g_assert_true (cloth_recover (found->pdata[1], TRUE, &recovered, &error));
+  g_assert_cmpint (cloth_recover_look (path, CLOTH_MESH_FORMAT_AUTO), ==,
+      CLOTH_LEFT_LOST);
   /* of many ages: the newest first */
   for (guint i = 0; i < 10; i++) {
     g_autofree gchar *path_i = g_strdup_printf ("%s/.d.obj.part-00000%u",
@@ -775,6 +789,150 @@ test_half_placed_taken (void)
     g_assert_true (g_file_get_contents (path, &bytes, NULL, NULL));
     g_assert_cmpstr (bytes, ==, "waiting");
     g_assert_cmpuint (scratch_count (), ==, 1);
+    scratch_end ();
+  }
+}
+
+/* What is no recording, what somebody may know what to do with, and what is another user's. */
+static void
+test_left_alone (void)
+{
+  static const struct
+  {
+    const gchar *hidden, *recording, *file;
+    gsize size;
+    gint code;                  /* −1: it is removed */
+    const gchar *message;
+  } cases[] = {
+    {".garment.json.part-abcdef", "gst-cloth recording 1\n\n", "garment.obj", 3,
+        CLOTH_FILE_ERROR_UNSUPPORTED, "no recording"},
+    {".c.obj.part-abcdef", "gst-cloth recording 1\n6\n", "c.obj", 65537,
+        CLOTH_FILE_ERROR_INVALID, "65561 bytes"},
+    {".c.obj.part-abcdef", "gst-cloth recording 1\n6\n", "c.obj", 65000, -1,
+        NULL},
+    {".c.obj.part-abcdef", "6", "c.obj", 3, CLOTH_FILE_ERROR_INVALID,
+        "not what a recording leaves"},
+    {".c.obj.part-abcdef", "", "c.obj", 3, CLOTH_FILE_ERROR_INVALID,
+        "not what a recording leaves"},
+    {".c.obj.part-abcdef", "gst-cloth rec", "c.obj", 3,
+        CLOTH_FILE_ERROR_INVALID, "not what a recording leaves"},
+    /* the note was not written yet */
+    {".c.obj.part-abcdef", "gst-cloth rec", NULL, 0, -1, NULL},
+    {".c.obj.part-abcdef", "gst-cloth recording 1\n", NULL, 0, -1, NULL},
+    /* nor is it of ours */
+    {".c.obj.part-abcdef", "gst-cloth recording one\n", NULL, 0,
+        CLOTH_FILE_ERROR_INVALID, "not what a recording leaves"},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autofree gchar *hidden = NULL;
+    g_autofree gchar *whole = NULL;
+    g_autofree gchar *lock = NULL;
+    g_autofree gchar *bytes = g_strnfill (cases[i].size, 'x');
+    g_autoptr (GError) error = NULL;
+    ClothRecovered recovered;
+    gboolean done;
+
+    scratch_begin ();
+    hidden = scratch_path (cases[i].hidden);
+    whole = g_build_filename (hidden, "new", NULL);
+    lock = g_build_filename (hidden, "recording", NULL);
+    g_assert_cmpint (g_mkdir_with_parents (whole, 0777), ==, 0);
+    if (!cases[i].file)
+      g_assert_cmpint (g_rmdir (whole), ==, 0);
+    g_assert_true (g_file_set_contents (lock, cases[i].recording, -1, NULL));
+    if (cases[i].file) {
+      g_autofree gchar *file = g_build_filename (hidden, cases[i].file, NULL);
+
+      g_assert_true (g_file_set_contents (file, bytes, (gssize) cases[i].size,
+              NULL));
+    }
+    done = cloth_recover (hidden, TRUE, &recovered, &error);
+    g_assert_true (g_file_test (hidden, G_FILE_TEST_IS_DIR) == !done);
+    if (cases[i].code < 0) {
+      g_assert_no_error (error);
+      scratch_end ();
+      continue;
+    }
+    g_assert_error (error, CLOTH_FILE_ERROR, cases[i].code);
+    g_assert_nonnull (strstr (error->message, cases[i].message));
+    /* another user's, and a link to one's own */
+    if (geteuid () == 0 && chown (hidden, 1, 1) == 0) {
+      g_autoptr (GPtrArray) found = cloth_recover_find (scratch, NULL);
+
+      g_assert_cmpuint (found->len, ==, 0);
+    }
+    {
+      g_autofree gchar *link = scratch_path (".d.obj.part-abcdef");
+
+      g_clear_error (&error);
+      g_assert_cmpint (symlink (hidden, link), ==, 0);
+      g_assert_false (cloth_recover (link, TRUE, &recovered, &error));
+      g_assert_nonnull (error);
+      g_assert_true (g_file_test (hidden, G_FILE_TEST_IS_DIR));
+    }
+    scratch_end ();
+  }
+}
+
+/* Programs were killed while their files got their names; then somebody records anew. */
+static void
+test_committing (void)
+{
+  static const gchar *const subs[] = { "old", "placing" };
+
+  for (guint k = 0; k < G_N_ELEMENTS (subs); k++) {
+    g_autofree gchar *path = NULL;
+    g_autofree gchar *left = NULL;
+    g_autofree gchar *sub = NULL;
+    g_autoptr (GError) error = NULL;
+    ClothRecovered recovered;
+
+    scratch_begin ();
+    path = scratch_path ("c.obj");
+    be_killed (path, 1, 4, G_MAXUINT);
+    left = find_one (path);
+    sub = g_build_filename (left, subs[k], NULL);
+    g_assert_cmpint (g_mkdir (sub, 0777), ==, 0);
+    record (path, 2, 3);
+    /* What had its names is overwritten; what had not can be recovered still. */
+    assert_frames (path, 2, 3);
+    g_assert_true (g_file_test (left, G_FILE_TEST_IS_DIR) == (k == 0));
+    if (k == 0) {
+      g_assert_true (cloth_recover (left, TRUE, &recovered, &error));
+      g_assert_no_error (error);
+      assert_frames (path, 1, 4);
+    }
+    scratch_end ();
+  }
+}
+
+/* What is left can be named itself. */
+static void
+test_by_its_path (void)
+{
+  static const gchar *const ends[] = { "", "/", "//" };
+
+  for (guint i = 0; i < G_N_ELEMENTS (ends); i++) {
+    g_autofree gchar *path = NULL;
+    g_autofree gchar *left = NULL;
+    g_autofree gchar *named = NULL;
+    g_autoptr (GPtrArray) found = NULL;
+    g_autoptr (GError) error = NULL;
+    ClothRecovered recovered;
+
+    scratch_begin ();
+    path = scratch_path ("c.take");
+    be_killed (path, 1, 4, G_MAXUINT);
+    left = find_one (path);
+    named = g_strconcat (left, ends[i], NULL);
+    found = cloth_recover_find (named, &error);
+    g_assert_no_error (error);
+    g_assert_cmpuint (found->len, ==, 1);
+    g_assert_cmpstr (found->pdata[0], ==, left);
+    g_assert_true (cloth_recover (found->pdata[0], FALSE, &recovered, &error));
+    assert_frames (path, 1, 4);
+    assert_nothing_left (path);
     scratch_end ();
   }
 }
@@ -1079,6 +1237,9 @@ main (int argc, char **argv)
   g_test_add_func ("/recover/several", test_several);
   g_test_add_func ("/recover/half-placed", test_half_placed);
   g_test_add_func ("/recover/half-placed-taken", test_half_placed_taken);
+  g_test_add_func ("/recover/left-alone", test_left_alone);
+  g_test_add_func ("/recover/committing", test_committing);
+  g_test_add_func ("/recover/by-its-path", test_by_its_path);
   g_test_add_func ("/recover/hostile", test_hostile);
   g_test_add_func ("/recover/no-regular-file", test_no_regular_file);
   g_test_add_func ("/recover/device", test_device);

@@ -116,6 +116,9 @@ clear_file (gint fd)
 #undef open64
 OPEN (open)
     OPEN (open64)
+WRITER (lstat, int, -1, (const char *path, struct stat * info), (path, info))
+WRITER (lstat64, int, -1, (const char *path, struct stat64 * info), (path,
+        info))
 WRITER (rename, int, -1, (const char *from, const char *to), (from, to))
 WRITER (close, int, (next (fd), -1), (int fd), (fd))
 WRITER (mkdir, int, -1, (const char *path, mode_t mode), (path, mode))

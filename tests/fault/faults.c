@@ -59,7 +59,7 @@ static const Fault faults[] = {
   {"rename", EIO}, {"rename", ENOSPC}, {"rename", EINTR, HARMLESS},
   {"open", EIO, MAYBE}, {"open", ENOSPC, MAYBE}, {"open", EMFILE, MAYBE},
   {"open", ENOENT, MAYBE}, {"open", EACCES, MAYBE},
-  {"open", EINTR, HARMLESS}, {"fstat", EIO, MAYBE},
+  {"open", EINTR, HARMLESS}, {"fstat", EIO, MAYBE}, {"lstat", EIO, MAYBE},
   {"close", EIO, MAYBE}, {"close", EINTR, HARMLESS},
   {"ftruncate", EIO}, {"ftruncate", EINTR, HARMLESS},
   {"lseek", EIO}, {"mkdir", ENOSPC, MAYBE}, {"mkdir", EIO, MAYBE}, {"opendir",
@@ -207,6 +207,7 @@ write_file (const gchar * path, guint round, GError ** error)
   output = held ? cloth_output_new (path, error) : NULL;
   return output && cloth_output_write (held, bytes, size, error) &&
       cloth_output_write (output, bytes, 10, error) &&
+      cloth_output_write (output, NULL, 0, error) &&
       cloth_output_copy (held, output, error) &&
       cloth_output_write (output, bytes, size, error) &&
       cloth_output_printf (output, error, "%u", round) &&
@@ -690,6 +691,71 @@ test_lone (void)
   scratch_end ();
 }
 
+/* What is left is looked for while calls fail: nothing is made up, and nothing happens to
+ * it. */
+static void
+test_look (void)
+{
+  static const gchar *const calls[] = { "open", "lstat", "opendir", "flock",
+    "pread", "fstat"
+  };
+  g_autofree gchar *path = NULL;
+  g_autoptr (GError) error = NULL;
+  ClothMeshWriter *writer;
+  g_autoptr (ClothTopology) topology =
+      cloth_topology_new_grid (COLUMNS, ROWS, 0.5f, 0.25f);
+  gfloat positions[3 * N] = { 0 };
+  guint8 states[N] = { 0 };
+  ClothMeshFrame frame = { positions, states, NULL };
+
+  scratch_begin ();
+  path = scratch_path ("c.obj");
+  writer = cloth_mesh_writer_new (path, CLOTH_MESH_FORMAT_AUTO, NULL, topology,
+      25, 1, &error);
+  g_assert_true (cloth_mesh_writer_append (writer, 0, &frame, &error));
+  g_assert_true (cloth_mesh_writer_leave (writer));
+  cloth_mesh_writer_free (writer);
+  for (guint i = 0; i < G_N_ELEMENTS (calls); i++) {
+    for (guint nth = 1;; nth++) {
+      ClothLeft left;
+
+      arm (calls[i], nth, EIO, FALSE);
+      left = cloth_recover_look (path, CLOTH_MESH_FORMAT_AUTO);
+      if (!fired ()) {
+        g_assert_cmpint (left, ==, CLOTH_LEFT_FRAMES);
+        break;
+      }
+      n_faults++;
+    }
+  }
+  scratch_end ();
+}
+
+/* However often a cleaner is quicker, it ends. */
+static void
+test_cleaner (void)
+{
+  static const gint codes[] = { EWOULDBLOCK, CLOTH_FAULT_CLEARED };
+
+  scratch_begin ();
+  for (guint i = 0; i < G_N_ELEMENTS (codes); i++) {
+    g_autofree gchar *path = scratch_path ("c.obj");
+    g_autoptr (GError) error = NULL;
+
+    arm ("flock", 1, codes[i], TRUE);
+    g_assert_null (cloth_output_new (path, &error));
+    g_assert_true (fired ());
+    g_assert_nonnull (error);
+    g_clear_error (&error);
+    arm ("flock", 1, codes[i], TRUE);
+    g_assert_null (cloth_parts_new (path, "", &error));
+    g_assert_true (fired ());
+    g_assert_nonnull (error);
+    g_assert_cmpuint (scratch_count (), ==, 0);
+  }
+  scratch_end ();
+}
+
 /* Recovering fails as well as writing does: what can be recovered stays so. */
 static void
 test_recover (gconstpointer data)
@@ -796,6 +862,8 @@ main (int argc, char **argv)
       g_test_add_data_func (again, &writers[i], test_recover);
   }
   g_test_add_func ("/lone", test_lone);
+  g_test_add_func ("/look", test_look);
+  g_test_add_func ("/cleaner", test_cleaner);
   rigs[0] = cloth_rig_load (TEST_DATA "/checker_pair/rig.json", &error);
   g_assert_no_error (error);
   rigs[1] = cloth_rig_load (TEST_DATA "/dots_ring8/rig.json", &error);
