@@ -194,7 +194,7 @@ clear_older (const ClothParts * parts)
     /* One's own may be without a lock, where the system has none. */
     if (!g_str_equal (path, parts->path) && !cloth_file_lock_old (fd)
         && cloth_parts_read_lock (fd, NULL, &has_frame)) {
-      if (!has_frame || cloth_is_folder (placing)) {
+      if (!has_frame || g_file_test (placing, G_FILE_TEST_IS_DIR)) {
         cloth_remove_parts (path, fd);
         continue;
       }

@@ -480,6 +480,7 @@ gboolean
 cloth_output_commit (ClothOutput * output, GError ** error)
 {
   g_autofree gchar *folder = g_path_get_dirname (output->path);
+  gboolean closed;
   gint failed;
 
   if (!cloth_output_flush (output, error))
@@ -494,10 +495,10 @@ cloth_output_commit (ClothOutput * output, GError ** error)
   g_free (output->temporary);
   output->temporary = NULL;
   /* After an interrupted close the file is closed, too. */
-  failed = close (output->fd) < 0 && errno != EINTR ? errno : 0;
+  closed = close (output->fd) == 0 || errno == EINTR;
   output->fd = -1;
-  if (failed)
-    return cloth_file_fail (error, failed, "write", output->shown);
+  if (!closed)
+    return cloth_file_fail (error, errno, "write", output->shown);
   return !output->alone || cloth_folder_sync (folder, error);
 }
 

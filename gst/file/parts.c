@@ -38,13 +38,22 @@ cloth_parts_target (const ClothParts * parts, const gchar * name)
   return g_build_filename (parts->folder, name, NULL);
 }
 
+/* What can't be looked at may be there: nothing is removed or replaced for that. */
+static gboolean
+is_missing (gint code)
+{
+  return code == ENOENT || code == ENOTDIR;
+}
+
 /* Links are not followed: what nobody vouches for must not lead elsewhere. */
 gboolean
 cloth_is_folder (const gchar * path)
 {
   GStatBuf info;
 
-  return g_lstat (path, &info) == 0 && S_ISDIR (info.st_mode);
+  if (g_lstat (path, &info) < 0)
+    return !is_missing (errno);
+  return S_ISDIR (info.st_mode);
 }
 
 gboolean
@@ -60,7 +69,7 @@ cloth_is_there (const gchar * path)
 {
   GStatBuf info;
 
-  return g_lstat (path, &info) == 0;
+  return g_lstat (path, &info) == 0 || !is_missing (errno);
 }
 
 static gint
@@ -346,19 +355,23 @@ cloth_parts_replace (ClothParts * parts, const gchar * name)
  * @stem: what the names begin with, without the folder
  * @first: the first number that is not written
  * @ending: what the names end with
+ * @error: #GIOErrorEnum
  *
  * The rest of a longer sequence of this name goes.
+ *
+ * Returns: %TRUE when it is known
  */
-void
+gboolean
 cloth_parts_replace_numbered (ClothParts * parts, const gchar * stem,
-    guint64 first, const gchar * ending)
+    guint64 first, const gchar * ending, GError ** error)
 {
   for (;; first++) {
     g_autofree gchar *name = cloth_parts_number (stem, first, ending);
     g_autofree gchar *path = cloth_parts_target (parts, name);
+    GStatBuf info;
 
-    if (!cloth_is_there (path))
-      return;
+    if (g_lstat (path, &info) < 0)
+      return is_missing (errno) || cloth_file_fail (error, errno, "read", path);
     cloth_parts_replace (parts, name);
   }
 }

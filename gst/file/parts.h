@@ -17,8 +17,8 @@ ClothOutput *cloth_parts_open (ClothParts * parts, const gchar * name,
 ClothOutput *cloth_parts_open_numbered (ClothParts * parts,
     const gchar * stem, guint64 number, const gchar * ending, GError ** error);
 void cloth_parts_replace (ClothParts * parts, const gchar * name);
-void cloth_parts_replace_numbered (ClothParts * parts, const gchar * stem,
-    guint64 first, const gchar * ending);
+gboolean cloth_parts_replace_numbered (ClothParts * parts,
+    const gchar * stem, guint64 first, const gchar * ending, GError ** error);
 gboolean cloth_parts_note_frame (ClothParts * parts, GError ** error);
 gboolean cloth_parts_leave (ClothParts * parts);
 gboolean cloth_parts_commit (ClothParts * parts, GError ** error);
@@ -54,16 +54,15 @@ gchar *cloth_parts_get_head (const gchar * path);
 ClothParts *cloth_parts_reopen (const gchar * path, gboolean overwrite,
     ClothRemains * remains, GError ** error);
 gboolean cloth_parts_remove_lone (const gchar * path, GError ** error);
-guint64 cloth_parts_count_bytes (const ClothParts * parts);
 gboolean cloth_parts_discard (ClothParts * parts, GError ** error);
 const gchar *cloth_parts_get_note (const ClothParts * parts);
 gchar *cloth_parts_get_path (const ClothParts * parts, const gchar * name);
 gboolean cloth_parts_is_whole (const ClothParts * parts, const gchar * name);
 gboolean cloth_parts_has_unfinished (const ClothParts * parts);
-guint64 cloth_parts_count_numbered (const ClothParts * parts,
-    const gchar * stem, const gchar * ending);
-void cloth_parts_drop_numbered (ClothParts * parts, const gchar * stem,
-    guint64 first, const gchar * ending);
+gboolean cloth_parts_count_numbered (const ClothParts * parts,
+    const gchar * stem, const gchar * ending, guint64 * n, GError ** error);
+gboolean cloth_parts_drop_numbered (ClothParts * parts, const gchar * stem,
+    guint64 first, const gchar * ending, GError ** error);
 ClothOutput *cloth_parts_continue (ClothParts * parts, const gchar * name,
     guint64 size, GError ** error);
 void cloth_parts_drop (ClothParts * parts, const gchar * name);

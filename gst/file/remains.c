@@ -383,23 +383,6 @@ cloth_parts_reopen (const gchar * path, gboolean overwrite,
   return g_steal_pointer (&parts);
 }
 
-/* Returns: bytes of the files that are not whole; of a folder that can't be read, many */
-guint64
-cloth_parts_count_bytes (const ClothParts * parts)
-{
-  g_autoptr (GPtrArray) names = cloth_parts_list_names (parts, NULL, NULL);
-  guint64 n = names ? 0 : G_MAXUINT64;
-
-  for (guint i = 0; names && i < names->len; i++) {
-    g_autofree gchar *path = cloth_parts_inside (parts, names->pdata[i], NULL);
-    GStatBuf info;
-
-    if (g_lstat (path, &info) == 0 && S_ISREG (info.st_mode))
-      n += (guint64) info.st_size;
-  }
-  return n;
-}
-
 /* @parts: parts that were reopened
  * @error: #GIOErrorEnum
  *
@@ -472,22 +455,25 @@ cloth_parts_has_unfinished (const ClothParts * parts)
 /* @parts: parts
  * @stem: what the names begin with, without the folder
  * @ending: what the names end with
- *
- * Returns: how many numbered files, from 0 on, are whole. One without a byte is not: so
+ * @n: (out): how many numbered files, from 0 on, are whole. One without a byte is not: so
  *   they look when the computer lost its power
+ * @error: #GIOErrorEnum
+ *
+ * Returns: %TRUE when that can be told
  */
-guint64
+gboolean
 cloth_parts_count_numbered (const ClothParts * parts, const gchar * stem,
-    const gchar * ending)
+    const gchar * ending, guint64 * n, GError ** error)
 {
-  for (guint64 i = 0;; i++) {
-    g_autofree gchar *name = cloth_parts_number (stem, i, ending);
+  for (*n = 0;; (*n)++) {
+    g_autofree gchar *name = cloth_parts_number (stem, *n, ending);
     g_autofree gchar *path = cloth_parts_inside (parts, "new", name);
     GStatBuf info;
 
-    if (g_lstat (path, &info) < 0 || !S_ISREG (info.st_mode) ||
-        info.st_size == 0)
-      return i;
+    if (g_lstat (path, &info) < 0)
+      return errno == ENOENT || cloth_file_fail (error, errno, "read", path);
+    if (!S_ISREG (info.st_mode) || info.st_size == 0)
+      return TRUE;
   }
 }
 
@@ -495,17 +481,20 @@ cloth_parts_count_numbered (const ClothParts * parts, const gchar * stem,
  * @stem: what the names begin with, without the folder
  * @first: the first number that is not kept
  * @ending: what the names end with
+ * @error: #GIOErrorEnum
+ *
+ * Returns: %TRUE when no such file is left
  */
-void
+gboolean
 cloth_parts_drop_numbered (ClothParts * parts, const gchar * stem,
-    guint64 first, const gchar * ending)
+    guint64 first, const gchar * ending, GError ** error)
 {
   for (;; first++) {
     g_autofree gchar *name = cloth_parts_number (stem, first, ending);
+    g_autofree gchar *path = cloth_parts_inside (parts, "new", name);
 
-    if (!cloth_parts_is_whole (parts, name))
-      return;
-    cloth_parts_drop (parts, name);
+    if (g_unlink (path) < 0)
+      return errno == ENOENT || cloth_file_fail (error, errno, "remove", path);
   }
 }
 

@@ -8,9 +8,6 @@
 
 #include "gst/take/take.h"
 
-/* More bytes without a whole frame are not removed: somebody may know what to do with them. */
-#define MOST_LOST 65536
-
 /* By the end of the name of the file that readers open first. The last three keep what they
  * need until their end in memory, or write it there. */
 static const struct
@@ -115,8 +112,8 @@ cloth_recover_get_target (const gchar * path)
 }
 
 static gboolean
-finish (ClothParts * parts, const gchar * head, ClothRecovered * recovered,
-    GError ** error)
+finish (ClothParts * parts, const gchar * path, const gchar * head,
+    ClothRecovered * recovered, GError ** error)
 {
   const guint i = find_format (head);
   g_autofree gchar *base = NULL;
@@ -137,12 +134,10 @@ finish (ClothParts * parts, const gchar * head, ClothRecovered * recovered,
     return FALSE;
   if (recovered->n_frames > 0)
     return cloth_parts_commit (parts, error);
-  if (cloth_parts_count_bytes (parts) > MOST_LOST) {
-    g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID,
-        "no whole frame is found in it, but there are %" G_GUINT64_FORMAT
-        " bytes: they are left as they are", cloth_parts_count_bytes (parts));
-    return FALSE;
-  }
+  /* Somebody may know what to do with it. */
+  if (cloth_parts_has_frame (path))
+    return cloth_file_invalid (error,
+        "no whole frame is found, though there was one: it is left as it is");
   return cloth_parts_discard (parts, error);
 }
 
@@ -179,6 +174,6 @@ cloth_recover (const gchar * path, gboolean overwrite,
     case CLOTH_REMAINS_NOTHING:
       return cloth_parts_discard (parts, error);
     default:
-      return finish (parts, head, recovered, error);
+      return finish (parts, path, head, recovered, error);
   }
 }

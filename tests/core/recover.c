@@ -369,6 +369,32 @@ test_never_overwrites (void)
   scratch_end ();
 }
 
+/* Frames that a longer recording has under the next numbers would be read with these. */
+static void
+test_longer (void)
+{
+  g_autofree gchar *path = NULL;
+  g_autofree gchar *left = NULL;
+  g_autofree gchar *next = NULL;
+  g_autoptr (GError) error = NULL;
+  ClothRecovered recovered;
+
+  scratch_begin ();
+  path = scratch_path ("c.ply");
+  next = scratch_path ("c_00003.ply");
+  be_killed (path, 1, 3, G_MAXUINT);
+  left = find_one (path);
+  g_assert_true (g_file_set_contents (next, "mine", -1, NULL));
+  g_assert_false (cloth_recover (left, FALSE, &recovered, &error));
+  g_assert_error (error, G_IO_ERROR, G_IO_ERROR_EXISTS);
+  g_assert_true (g_file_test (next, G_FILE_TEST_EXISTS));
+  g_clear_error (&error);
+  g_assert_true (cloth_recover (left, TRUE, &recovered, &error));
+  g_assert_false (g_file_test (next, G_FILE_TEST_EXISTS));
+  assert_frames (path, 1, 3);
+  scratch_end ();
+}
+
 /* A living writer keeps its parts, and others don't clear them. */
 static void
 test_living (void)
@@ -436,6 +462,8 @@ test_next (void)
     g_autofree gchar *path = scratch_path (readable[i]);
     g_autofree gchar *left = NULL;
     g_autofree gchar *empty = NULL;
+    g_autofree gchar *other = NULL;
+    g_autofree gchar *lock = NULL;
     g_autoptr (GPtrArray) found = NULL;
     g_autoptr (GError) error = NULL;
     ClothMeshWriter *writer;
@@ -446,11 +474,17 @@ test_next (void)
     be_killed (path, 1, 0, G_MAXUINT);
     found = cloth_recover_find (path, NULL);
     g_assert_cmpuint (found->len, ==, 2);
+    other = i == 2 ? g_build_filename (path, ".take.json.part-other0", NULL) :
+        g_strdup_printf ("%s/.%s.part-other0", scratch, readable[i]);
+    lock = g_build_filename (other, "recording", NULL);
+    g_assert_cmpint (g_mkdir (other, 0777), ==, 0);
+    g_assert_true (g_file_set_contents (lock, "mine", -1, NULL));
     writer = start (path);
     g_assert_true (append (writer, 2, 0, FALSE));
     cloth_mesh_writer_free (writer);
     record (path, 2, 3);
-    /* The one without a frame is gone. */
+    /* The one without a frame is gone, somebody else's is not. */
+    scratch_remove (other);
     empty = find_one (path);
     g_assert_cmpstr (empty, ==, left);
     g_assert_cmpint (cloth_recover_look (path, CLOTH_MESH_FORMAT_AUTO), ==,
@@ -573,9 +607,10 @@ test_replaced_meanwhile (void)
 static void
 test_power (void)
 {
-  static const gchar *const names[] = { "c.ply", "c.pvd" };
+  static const gchar *const names[] = { "c.ply", "c.pvd", "c.ply" };
 
   for (guint i = 0; i < G_N_ELEMENTS (names); i++) {
+    const gchar *ending = i == 1 ? ".vtp" : ".ply";
     g_autofree gchar *path = NULL;
     g_autofree gchar *left = NULL;
     g_autofree gchar *empty = NULL;
@@ -587,16 +622,21 @@ test_power (void)
     path = scratch_path (names[i]);
     be_killed (path, 1, 5, G_MAXUINT);
     left = find_one (path);
-    empty = g_strconcat (left, "/new/c_00003", i == 0 ? ".ply" : ".vtp", NULL);
+    empty = g_strconcat (left, "/new/c_00003", ending, NULL);
     g_assert_cmpint (truncate (empty, 0), ==, 0);
+    /* nor is a pipe whole */
+    if (i == 2) {
+      g_assert_cmpint (g_unlink (empty), ==, 0);
+      g_assert_cmpint (mkfifo (empty, 0600), ==, 0);
+    }
     g_assert_true (cloth_recover (left, FALSE, &recovered, &error));
     g_assert_no_error (error);
     g_assert_cmpuint (recovered.n_frames, ==, 3);
-    next = scratch_path (i == 0 ? "c_00003.ply" : "c_00003.vtp");
+    next = g_strconcat (scratch, "/c_00003", ending, NULL);
     g_assert_false (g_file_test (next, G_FILE_TEST_EXISTS));
-    if (i == 0)
+    if (i != 1)
       assert_frames (path, 1, 3);
-    g_assert_cmpuint (scratch_count (), ==, i == 0 ? 3 : 4);
+    g_assert_cmpuint (scratch_count (), ==, i == 1 ? 4 : 3);
     scratch_end ();
   }
 }
@@ -806,9 +846,9 @@ test_left_alone (void)
   } cases[] = {
     {".garment.json.part-abcdef", "gst-cloth recording 1\n\n", "garment.obj", 3,
         CLOTH_FILE_ERROR_UNSUPPORTED, "no recording"},
-    {".c.obj.part-abcdef", "gst-cloth recording 1\n6\n", "c.obj", 65537,
-        CLOTH_FILE_ERROR_INVALID, "65561 bytes"},
-    {".c.obj.part-abcdef", "gst-cloth recording 1\n6\n", "c.obj", 65000, -1,
+    {".c.obj.part-abcdef", "gst-cloth recording 1\n6\nframe\n", "c.obj", 3,
+        CLOTH_FILE_ERROR_INVALID, "no whole frame is found"},
+    {".c.obj.part-abcdef", "gst-cloth recording 1\n6\nfra", "c.obj", 3, -1,
         NULL},
     {".c.obj.part-abcdef", "6", "c.obj", 3, CLOTH_FILE_ERROR_INVALID,
         "not what a recording leaves"},
@@ -918,6 +958,7 @@ test_by_its_path (void)
     g_autofree gchar *left = NULL;
     g_autofree gchar *named = NULL;
     g_autoptr (GPtrArray) found = NULL;
+    g_autoptr (GPtrArray) none = NULL;
     g_autoptr (GError) error = NULL;
     ClothRecovered recovered;
 
@@ -933,6 +974,8 @@ test_by_its_path (void)
     g_assert_true (cloth_recover (found->pdata[0], FALSE, &recovered, &error));
     assert_frames (path, 1, 4);
     assert_nothing_left (path);
+    none = cloth_recover_find (left, NULL);
+    g_assert_true (!none || none->len == 0);
     scratch_end ();
   }
 }
@@ -1226,6 +1269,7 @@ main (int argc, char **argv)
   g_test_add_func ("/recover/no-frame", test_no_frame);
   g_test_add_func ("/recover/lost", test_lost);
   g_test_add_func ("/recover/never-overwrites", test_never_overwrites);
+  g_test_add_func ("/recover/longer", test_longer);
   g_test_add_func ("/recover/living", test_living);
   g_test_add_func ("/recover/living-lone-file", test_living_lone_file);
   g_test_add_func ("/recover/next", test_next);

@@ -116,9 +116,6 @@ clear_file (gint fd)
 #undef open64
 OPEN (open)
     OPEN (open64)
-WRITER (lstat, int, -1, (const char *path, struct stat * info), (path, info))
-WRITER (lstat64, int, -1, (const char *path, struct stat64 * info), (path,
-        info))
 WRITER (rename, int, -1, (const char *from, const char *to), (from, to))
 WRITER (close, int, (next (fd), -1), (int fd), (fd))
 WRITER (mkdir, int, -1, (const char *path, mode_t mode), (path, mode))
@@ -161,6 +158,8 @@ MOVED (ftruncate, "ftruncate", int, (int fd, off_t size), (fd, size))
 MOVED (ftruncate64, "ftruncate", int, (int fd, off_t size), (fd, size))
 MOVED (lseek, "lseek", off_t, (int fd, off_t to, int from), (fd, to, from))
 MOVED (lseek64, "lseek", off_t, (int fd, off_t to, int from), (fd, to, from))
+MOVED (lstat, "lstat", int, (const char *path, struct stat * info), (path, info))
+MOVED (lstat64, "lstat", int, (const char *path, struct stat64 * info), (path, info))
 MOVED (fstat, "fstat", int, (int fd, struct stat * info), (fd, info))
 MOVED (fstat64, "fstat", int, (int fd, struct stat64 * info), (fd, info))
 /* *INDENT-ON* */

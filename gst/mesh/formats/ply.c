@@ -727,9 +727,8 @@ finish_ply (gpointer export, GError ** error)
 {
   Export *self = export;
 
-  cloth_parts_replace_numbered (self->info->parts, self->info->base,
-      self->n_frames, ".ply");
-  return TRUE;
+  return cloth_parts_replace_numbered (self->info->parts, self->info->base,
+      self->n_frames, ".ply", error);
 }
 
 static void
@@ -745,13 +744,14 @@ gboolean
 cloth_ply_recover (ClothParts * parts, const gchar * base,
     ClothRecovered * recovered, GError ** error)
 {
-  recovered->n_frames = cloth_parts_count_numbered (parts, base, ".ply");
+  const guint64 *n = &recovered->n_frames;
+
+  if (!cloth_parts_count_numbered (parts, base, ".ply", &recovered->n_frames,
+          error))
+    return FALSE;
   recovered->cut = cloth_parts_has_unfinished (parts);
-  if (recovered->n_frames == 0)
-    return TRUE;
-  cloth_parts_drop_numbered (parts, base, recovered->n_frames, ".ply");
-  cloth_parts_replace_numbered (parts, base, recovered->n_frames, ".ply");
-  return TRUE;
+  return *n == 0 || (cloth_parts_drop_numbered (parts, base, *n, ".ply", error)
+      && cloth_parts_replace_numbered (parts, base, *n, ".ply", error));
 }
 
 const ClothExporter cloth_ply_exporter = {

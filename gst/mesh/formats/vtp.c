@@ -205,9 +205,9 @@ finish_vtp (gpointer export, GError ** error)
 {
   Vtp *self = export;
 
-  cloth_parts_replace_numbered (self->info->parts, self->info->base,
-      self->n_frames, ".vtp");
-  return end_collection (self->collection, error);
+  return cloth_parts_replace_numbered (self->info->parts, self->info->base,
+      self->n_frames, ".vtp", error) && end_collection (self->collection,
+      error);
 }
 
 /* How many frames the collection lists, and where each line ends. */
@@ -235,22 +235,24 @@ gboolean
 cloth_vtp_recover (ClothParts * parts, const gchar * base,
     ClothRecovered * recovered, GError ** error)
 {
-  const guint64 n_files = cloth_parts_count_numbered (parts, base, ".vtp");
   g_autofree gchar *name = g_strconcat (base, ".pvd", NULL);
   g_autofree gchar *path = cloth_parts_get_path (parts, name);
   GError *fault = NULL;
   g_autoptr (GArray) ends = list_frames (path, &fault);
   g_autoptr (ClothOutput) output = NULL;
-  guint64 n;
+  guint64 n, n_files;
 
   if (!ends)
     return cloth_file_is_unwritten (fault, error);
+  if (!cloth_parts_count_numbered (parts, base, ".vtp", &n_files, error))
+    return FALSE;
   n = recovered->n_frames = MIN (n_files, ends->len);
   recovered->cut = n_files != n || ends->len != n;
   if (n == 0)
     return TRUE;
-  cloth_parts_drop_numbered (parts, base, n, ".vtp");
-  cloth_parts_replace_numbered (parts, base, n, ".vtp");
+  if (!cloth_parts_drop_numbered (parts, base, n, ".vtp", error) ||
+      !cloth_parts_replace_numbered (parts, base, n, ".vtp", error))
+    return FALSE;
   output = cloth_parts_continue (parts, name,
       g_array_index (ends, guint64, n - 1), error);
   return output && end_collection (output, error);
