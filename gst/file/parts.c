@@ -369,9 +369,12 @@ cloth_parts_replace_numbered (ClothParts * parts, const gchar * stem,
     g_autofree gchar *name = cloth_parts_number (stem, first, ending);
     g_autofree gchar *path = cloth_parts_target (parts, name);
     GStatBuf info;
+    const gboolean there = g_lstat (path, &info) == 0;
 
-    if (g_lstat (path, &info) < 0)
-      return is_missing (errno) || cloth_file_fail (error, errno, "read", path);
+    if (!there && is_missing (errno))
+      return TRUE;
+    if (!there)
+      return cloth_file_fail (error, errno, "read", path);
     cloth_parts_replace (parts, name);
   }
 }

@@ -469,9 +469,12 @@ cloth_parts_count_numbered (const ClothParts * parts, const gchar * stem,
     g_autofree gchar *name = cloth_parts_number (stem, *n, ending);
     g_autofree gchar *path = cloth_parts_inside (parts, "new", name);
     GStatBuf info;
+    const gboolean there = g_lstat (path, &info) == 0;
 
-    if (g_lstat (path, &info) < 0)
-      return errno == ENOENT || cloth_file_fail (error, errno, "read", path);
+    if (!there && errno == ENOENT)
+      return TRUE;
+    if (!there)
+      return cloth_file_fail (error, errno, "read", path);
     if (!S_ISREG (info.st_mode) || info.st_size == 0)
       return TRUE;
   }
@@ -493,8 +496,12 @@ cloth_parts_drop_numbered (ClothParts * parts, const gchar * stem,
     g_autofree gchar *name = cloth_parts_number (stem, first, ending);
     g_autofree gchar *path = cloth_parts_inside (parts, "new", name);
 
-    if (g_unlink (path) < 0)
-      return errno == ENOENT || cloth_file_fail (error, errno, "remove", path);
+    const gboolean removed = g_unlink (path) == 0;
+
+    if (!removed && errno == ENOENT)
+      return TRUE;
+    if (!removed)
+      return cloth_file_fail (error, errno, "remove", path);
   }
 }
 

@@ -464,6 +464,7 @@ test_next (void)
     g_autofree gchar *empty = NULL;
     g_autofree gchar *other = NULL;
     g_autofree gchar *lock = NULL;
+    g_autofree gchar *lone = NULL;
     g_autoptr (GPtrArray) found = NULL;
     g_autoptr (GError) error = NULL;
     ClothMeshWriter *writer;
@@ -479,12 +480,16 @@ test_next (void)
     lock = g_build_filename (other, "recording", NULL);
     g_assert_cmpint (g_mkdir (other, 0777), ==, 0);
     g_assert_true (g_file_set_contents (lock, "mine", -1, NULL));
+    lone = g_strdup (other);
+    lone[strlen (lone) - 1] = '1';
+    g_assert_true (g_file_set_contents (lone, "mine", -1, NULL));
     writer = start (path);
     g_assert_true (append (writer, 2, 0, FALSE));
     cloth_mesh_writer_free (writer);
     record (path, 2, 3);
     /* The one without a frame is gone, somebody else's is not. */
     scratch_remove (other);
+    g_assert_cmpint (g_unlink (lone), ==, 0);
     empty = find_one (path);
     g_assert_cmpstr (empty, ==, left);
     g_assert_cmpint (cloth_recover_look (path, CLOTH_MESH_FORMAT_AUTO), ==,
