@@ -6,6 +6,7 @@
 #include "gst/mesh/formats/pc2.h"
 #include "gst/mesh/formats/ply.h"
 #include "gst/take/sequence.h"
+#include "gst/take/take.h"
 #include "tests/core/meshpeer.h"
 
 #include <math.h>
@@ -741,6 +742,210 @@ test_sets_that_do_not_fit (void)
   scratch_end ();
 }
 
+/* What a location means, and what the names of its files begin with. */
+static void
+test_locations (void)
+{
+  static const struct
+  {
+    const gchar *location;
+    ClothMeshFormat format;
+    const gchar *stem;
+  } cases[] = {
+    {"a.obj", CLOTH_MESH_FORMAT_OBJ_PC2, "a"},
+    {"a.PC2", CLOTH_MESH_FORMAT_OBJ_PC2, "a"},
+    {"b", CLOTH_MESH_FORMAT_OBJ_PC2, "b"},
+    {"a_%05d.ply", CLOTH_MESH_FORMAT_PLY, "a"},
+    {"a.ply", CLOTH_MESH_FORMAT_PLY, "a"},
+    {"a.take", CLOTH_MESH_FORMAT_TAKE, "a.take"},
+    {"a.take/", CLOTH_MESH_FORMAT_TAKE, "a.take"},
+    {"a//", CLOTH_MESH_FORMAT_TAKE, "a"},
+    {"/", CLOTH_MESH_FORMAT_TAKE, "/"},
+    {"take.json", CLOTH_MESH_FORMAT_TAKE, "."},
+    {"a/take.json", CLOTH_MESH_FORMAT_TAKE, "a"},
+    {"a//take.json", CLOTH_MESH_FORMAT_TAKE, "a"},
+    {"a.vtp", CLOTH_MESH_FORMAT_VTP, "a"},
+    {"a.pvd", CLOTH_MESH_FORMAT_VTP, "a"},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    ClothMeshFormat format = cloth_mesh_format_guess (cases[i].location);
+    g_autofree gchar *stem = cloth_mesh_format_stem (cases[i].location, format);
+
+    g_test_message ("%s: %s", cases[i].location, stem);
+    g_assert_cmpint (format, ==, cases[i].format);
+    g_assert_cmpstr (stem, ==, cases[i].stem);
+  }
+}
+
+/* A point cache or its states that do not fit the mesh: which of them is wrong. */
+static void
+test_caches_that_do_not_fit (void)
+{
+  static const struct
+  {
+    const gchar *script, *says;
+  } cases[] = {
+    {"d[16]=19", "c.pc2 has 19 points, the OBJ file 20 vertices"},
+    {"d[28]=0", "the point cache has no samples"},
+    {"d[24:28]=b'\\0'*4", "c.pc2: the PC2 file has a negative number"},
+    {"np.save('c.states.npy',np.zeros((7,20),'i4'))", "c.states.npy does not"},
+    {"np.save('c.states.npy',np.zeros(140,'u1'))", "c.states.npy does not"},
+    {"np.save('c.states.npy',np.zeros((6,20),'u1'))", "c.states.npy does not"},
+    {"np.save('c.states.npy',np.zeros((7,21),'u1'))", "c.states.npy does not"},
+    {"open('c.states.npy','wb').write(b'')", "c.states.npy: 10 bytes wanted"},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autofree gchar *path = NULL, *script = NULL;
+    g_autoptr (GError) error = NULL;
+
+    scratch_begin ();
+    path = scratch_path ("c.obj");
+    write_sequence ("c.obj", CLOTH_MESH_FORMAT_AUTO, FRAMES);
+    script = g_strdup_printf ("d=bytearray(open('c.pc2','rb').read())\n%s\n"
+        "open('c.pc2','wb').write(d)", cases[i].script);
+    peer_run (script);
+    g_assert_null (cloth_mesh_reader_open (path, CLOTH_MESH_FORMAT_AUTO,
+            &error));
+    g_test_message ("%s", error->message);
+    g_assert_cmpint (error->domain, ==, CLOTH_FILE_ERROR);
+    g_assert_nonnull (strstr (error->message, cases[i].says));
+    scratch_end ();
+  }
+}
+
+/* What shows only at the frame: the files change while they are read, or hold there what
+ * is no place and no state. */
+static void
+test_broken_frames (void)
+{
+  static const struct
+  {
+    const gchar *name, *script;
+    ClothFileError code;
+  } cases[] = {
+    {"c.obj", "os.truncate('c.pc2',100)", CLOTH_FILE_ERROR_TRUNCATED},
+    {"c.obj", "os.truncate('c.states.npy',100)", CLOTH_FILE_ERROR_TRUNCATED},
+    {"c.obj", "f=open('c.pc2','r+b'); f.seek(32+4*240); "
+          "f.write(struct.pack('<f',np.inf))", CLOTH_FILE_ERROR_INVALID},
+    {"c.obj", "f=open('c.states.npy','r+b'); f.seek(-3*20,2); f.write(b'\\5')",
+        CLOTH_FILE_ERROR_INVALID},
+    {"c.take", "os.truncate('c.take/states.npy',130)",
+        CLOTH_FILE_ERROR_TRUNCATED},
+    {"c.take", "os.truncate('c.take/covariance.npy',130)",
+        CLOTH_FILE_ERROR_TRUNCATED},
+    {"c.ply", "os.truncate('c_00004.ply',100)", CLOTH_FILE_ERROR_INVALID},
+    {"c.ply", "d=open('c_00004.ply','rb').read().replace(b'face 12',b'face 11')"
+          "\nopen('c_00004.ply','wb').write(d)", CLOTH_FILE_ERROR_INVALID},
+    {"c.ply", "f=open('c_00004.ply','r+b'); f.seek(-1,2); "
+          "f.seek(-3,1); f.write(b'\\0')", CLOTH_FILE_ERROR_INVALID},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autofree gchar *path = NULL;
+    g_autoptr (ClothMeshReader) reader = NULL;
+    g_autoptr (GError) error = NULL;
+    ClothMeshFrame contents;
+
+    scratch_begin ();
+    path = scratch_path (cases[i].name);
+    write_sequence (cases[i].name, CLOTH_MESH_FORMAT_AUTO, FRAMES);
+    reader = cloth_mesh_reader_open (path, CLOTH_MESH_FORMAT_AUTO, &error);
+    g_assert_no_error (error);
+    g_assert_true (cloth_mesh_reader_read (reader, 4, &contents, &error));
+    peer_run (cases[i].script);
+    g_assert_false (cloth_mesh_reader_read (reader, 4, &contents, &error));
+    g_test_message ("%s", error->message);
+    g_assert_error (error, CLOTH_FILE_ERROR, (gint) cases[i].code);
+    scratch_end ();
+  }
+}
+
+/* A mesh without a cache is one frame; a cloud of points has no faces. */
+static void
+test_lone_files (void)
+{
+  g_autofree gchar *obj = NULL, *ply = NULL;
+  ClothMeshFrame contents;
+
+  scratch_begin ();
+  obj = scratch_path ("a.obj");
+  ply = scratch_path ("p.ply");
+  scratch_write ("a.obj", "v 1 2 3\nv 4 5 6\nv 7 8 9\nf 1 2 3\n", -1);
+  scratch_write ("p_00000.ply", "ply\nformat ascii 1.0\nelement vertex 2\n" XYZ
+      "end_header\n1 2 3\n4 5 6\n", -1);
+  for (guint i = 0; i < 2; i++) {
+    g_autoptr (GError) error = NULL;
+    g_autoptr (ClothMeshReader) reader = cloth_mesh_reader_open (i ? ply : obj,
+        CLOTH_MESH_FORMAT_AUTO, &error);
+
+    g_assert_no_error (error);
+    g_assert_cmpuint (cloth_mesh_reader_get_n_frames (reader), ==, 1);
+    g_assert_cmpuint (cloth_mesh_reader_get_topology (reader)->n_faces, ==,
+        i ? 0 : 1);
+    g_assert_true (cloth_mesh_reader_read (reader, 0, &contents, &error));
+    g_assert_cmpfloat (contents.positions[5], ==, 6);
+    g_assert_cmpuint (contents.states[1], ==, CLOTH_VERTEX_MEASURED);
+  }
+  scratch_end ();
+}
+
+/* A take has a grid only when its sizes give the very mesh. */
+static void
+test_grids_of_takes (void)
+{
+  static const struct
+  {
+    guint columns, rows;
+    gfloat width, height;
+    gboolean grid;
+  } cases[] = {
+    {3, 2, 0.63f, 1, TRUE}, {3, 2, 1 / 3.f, 1, TRUE}, {0, 2, 1, 1, FALSE},
+    {3, 0, 1, 1, FALSE}, {3, 2, 1e-7f, 1, FALSE}, {3, 2, 1, 1e-7f, FALSE},
+    {3, 2, 2e6f, 1, FALSE}, {3, 2, 1, 2e6f, FALSE}, {3, 2, 1e-6f, 1e6f, TRUE},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autoptr (ClothTopology) topology = cloth_topology_new_grid (3, 2,
+        cases[i].width, cases[i].height);
+    g_autoptr (ClothMeshWriter) writer = NULL;
+    g_autoptr (ClothTake) take = NULL;
+    g_autoptr (GError) error = NULL;
+    g_autofree gchar *path = NULL;
+    static const gfloat positions[18] = { 0 };
+    static const guint8 states[6] = { 1, 1, 1, 1, 1, 1 };
+    ClothMeshFrame frame = { positions, states, NULL };
+
+    topology->columns = cases[i].columns;
+    topology->rows = cases[i].rows;
+    scratch_begin ();
+    path = scratch_path ("g.take");
+    writer = cloth_mesh_writer_new (path, CLOTH_MESH_FORMAT_AUTO, NULL,
+        topology, 0, 1, &error);
+    g_assert_no_error (error);
+    g_assert_true (cloth_mesh_writer_append (writer, 0, &frame, &error));
+    g_assert_true (cloth_mesh_writer_close (writer, &error));
+    g_assert_no_error (error);
+    take = cloth_take_open (path, &error);
+    g_assert_no_error (error);
+    g_assert_cmpfloat (cloth_take_get_info (take)->fps, ==, 0);
+    g_assert_cmpstr (cloth_take_get_info (take)->mesh, ==,
+        cases[i].grid ? NULL : "mesh.obj");
+    g_assert_cmpfloat (cloth_take_get_topology (take)->uv[10], ==,
+        cases[i].width);
+    scratch_end ();
+  }
+  {
+    g_autoptr (ClothTopology) nothing = cloth_topology_new (0, 0);
+    g_autoptr (GError) error = NULL;
+
+    g_assert_null (cloth_mesh_writer_new ("/nonexistent/a.take",
+            CLOTH_MESH_FORMAT_AUTO, NULL, nothing, 0, 1, &error));
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT);
+  }
+}
+
 static void
 test_abort_and_replace (void)
 {
@@ -880,6 +1085,12 @@ main (int argc, char **argv)
   g_test_add_func ("/meshfiles/pc2-samples", test_pc2_samples);
   g_test_add_func ("/meshfiles/sets-that-do-not-fit",
       test_sets_that_do_not_fit);
+  g_test_add_func ("/meshfiles/locations", test_locations);
+  g_test_add_func ("/meshfiles/caches-that-do-not-fit",
+      test_caches_that_do_not_fit);
+  g_test_add_func ("/meshfiles/broken-frames", test_broken_frames);
+  g_test_add_func ("/meshfiles/lone-files", test_lone_files);
+  g_test_add_func ("/meshfiles/grids-of-takes", test_grids_of_takes);
   g_test_add_func ("/meshfiles/abort-and-replace", test_abort_and_replace);
   g_test_add_func ("/meshfiles/refused-frames", test_refused_frames);
   g_test_add_func ("/meshfiles/paths-stay-inside", test_paths_stay_inside);
