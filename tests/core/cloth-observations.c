@@ -603,8 +603,33 @@ test_unknown_clocks_left_out (void)
 
     gst_buffer_add_reference_timestamp_meta (buffer, caps, 1, 1);
   }
+  {
+    g_autoptr (GstCaps) known = gst_caps_from_string ("timestamp/x-ntp");
+
+    gst_buffer_add_reference_timestamp_meta (buffer, known, 1, 1)->timestamp =
+        GST_CLOCK_TIME_NONE;
+  }
   packed = gst_cloth_observations_pack (buffer);
   g_assert_cmpuint (gst_buffer_get_size (packed), ==, 32);
+}
+
+/* As many as a reader takes. */
+static void
+test_many_clocks_left_out (void)
+{
+  g_autoptr (GstBuffer) buffer = gst_buffer_new ();
+  g_autoptr (GstBuffer) target = gst_buffer_new ();
+  g_autoptr (GstBuffer) packed = NULL;
+  g_autoptr (GstCaps) caps = gst_caps_from_string ("timestamp/x-ntp");
+  g_autoptr (GError) error = NULL;
+
+  for (guint i = 0; i < 17; i++)
+    gst_buffer_add_reference_timestamp_meta (buffer, caps, i, 1);
+  packed = gst_cloth_observations_pack (buffer);
+  g_assert_true (gst_cloth_observations_unpack (packed, target, &error));
+  g_assert_no_error (error);
+  g_assert_cmpuint (gst_buffer_get_n_meta (target,
+          GST_REFERENCE_TIMESTAMP_META_API_TYPE), ==, 16);
 }
 
 /* A stranger's packets, none like the other: GStreamer would remember all their names. */
@@ -656,6 +681,8 @@ main (int argc, char **argv)
   g_test_add_func ("/cloth/observations/unknown-clocks", test_unknown_clocks);
   g_test_add_func ("/cloth/observations/unknown-clocks-left-out",
       test_unknown_clocks_left_out);
+  g_test_add_func ("/cloth/observations/many-clocks-left-out",
+      test_many_clocks_left_out);
   g_test_add_func ("/cloth/observations/clocks-leave-no-trace",
       test_clocks_leave_no_trace);
   return g_test_run ();

@@ -6,7 +6,9 @@
 #include "tests/core/meshpeer.h"
 
 #include <math.h>
+#include <signal.h>
 #include <string.h>
+#include <sys/resource.h>
 
 #define COLUMNS 3
 #define ROWS 2
@@ -50,16 +52,23 @@ append (ClothMeshWriter * writer, guint n, gdouble time_s, GError ** error)
 }
 
 static void
-write_two (const gchar * name, const ClothTopology * topology)
+write_frames (const gchar * name, const ClothTopology * topology,
+    guint n_frames)
 {
   g_autoptr (GError) error = NULL;
   g_autoptr (ClothMeshWriter) writer = open_writer (name, topology, 25, &error);
 
   g_assert_no_error (error);
-  for (guint i = 0; i < 2; i++)
+  for (guint i = 0; i < n_frames; i++)
     g_assert_true (append (writer, topology->n_vertices, i, &error));
   g_assert_true (cloth_mesh_writer_close (writer, &error));
   g_assert_no_error (error);
+}
+
+static void
+write_two (const gchar * name, const ClothTopology * topology)
+{
+  write_frames (name, topology, 2);
 }
 
 static void
@@ -280,6 +289,80 @@ test_vtp_stale (void)
   scratch_end ();
 }
 
+static gsize
+largest_file (const gchar * folder)
+{
+  g_autoptr (GDir) dir = g_dir_open (folder, 0, NULL);
+  const gchar *name;
+  gsize largest = 0;
+
+  while ((name = g_dir_read_name (dir))) {
+    g_autofree gchar *path = g_build_filename (folder, name, NULL);
+    GStatBuf st;
+
+    g_assert_cmpint (g_stat (path, &st), ==, 0);
+    largest = MAX (largest, S_ISDIR (st.st_mode) ? largest_file (path) :
+        (gsize) st.st_size);
+  }
+  return largest;
+}
+
+/* Files that the system stops at a size: in each of the arrays that a frame is written as, which
+ * are larger than the buffer. Nothing of them stays. */
+static void
+test_no_room (void)
+{
+  static const struct
+  {
+    const gchar *name;
+    guint n_frames;
+    gboolean grid;
+  } cases[] = {
+    /* The cache of points is larger than the mesh, here. */
+    {"c.obj", 8, FALSE}, {"c.ply", 1, FALSE}, {"c.take", 2, FALSE},
+    {"c.take", 2, TRUE}, {"c.pvd", 1, FALSE}, {"c.csv", 2, FALSE},
+    {"c.usda", 2, FALSE}, {"c.glb", 2, FALSE},
+  };
+  static const gdouble shares[] =
+      { 1 / 80., 1 / 5., 2 / 5., 7 / 10., 19 / 20. };
+  g_autoptr (ClothTopology) topology = cloth_topology_new_grid (250, 250, 1, 1);
+  struct rlimit before;
+
+  g_assert_cmpint (getrlimit (RLIMIT_FSIZE, &before), ==, 0);
+  signal (SIGXFSZ, SIG_IGN);
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    gsize whole;
+
+    topology->columns = topology->rows = cases[i].grid ? 250 : 0;
+    scratch_begin ();
+    write_frames (cases[i].name, topology, cases[i].n_frames);
+    whole = largest_file (scratch);
+    scratch_end ();
+    for (guint k = 0; k < G_N_ELEMENTS (shares); k++) {
+      struct rlimit limit = before;
+      g_autoptr (GError) error = NULL;
+      ClothMeshWriter *writer;
+
+      scratch_begin ();
+      limit.rlim_cur = (rlim_t) (shares[k] * (gdouble) whole);
+      g_assert_cmpint (setrlimit (RLIMIT_FSIZE, &limit), ==, 0);
+      writer = open_writer (cases[i].name, topology, 25, &error);
+      for (guint frame = 0; frame < cases[i].n_frames && !error; frame++)
+        append (writer, topology->n_vertices, frame, &error);
+      if (!error)
+        cloth_mesh_writer_close (writer, &error);
+      cloth_mesh_writer_free (writer);
+      g_assert_cmpint (setrlimit (RLIMIT_FSIZE, &before), ==, 0);
+      g_assert_nonnull (error);
+      g_test_message ("%s, %g: %s", cases[i].name, shares[k], error->message);
+      g_assert_cmpint (error->domain, ==, G_IO_ERROR);
+      g_assert_cmpuint (scratch_count (), ==, 0);
+      scratch_end ();
+    }
+  }
+  signal (SIGXFSZ, SIG_DFL);
+}
+
 int
 main (int argc, char **argv)
 {
@@ -288,6 +371,7 @@ main (int argc, char **argv)
   g_test_add_func ("/meshexport/whole-or-not-at-all", test_whole_or_not_at_all);
   g_test_add_func ("/meshexport/times-must-rise", test_times_must_rise);
   g_test_add_func ("/meshexport/unwritable", test_unwritable);
+  g_test_add_func ("/meshexport/no-room", test_no_room);
   g_test_add_func ("/meshexport/not-read", test_not_read);
   g_test_add_func ("/meshexport/gltf-too-long", test_gltf_too_long);
   g_test_add_func ("/meshexport/gltf-still", test_gltf_still);
