@@ -2,6 +2,8 @@
  * What they contain is read by tests/generic/meshexports.py.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/file/file.h"
+#include "gst/mesh/formats/export.h"
 #include "gst/take/sequence.h"
 #include "tests/core/meshpeer.h"
 
@@ -9,6 +11,7 @@
 #include <signal.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #define COLUMNS 3
 #define ROWS 2
@@ -289,6 +292,55 @@ test_vtp_stale (void)
   scratch_end ();
 }
 
+/* What a killed program left of a collection: the frames count that are listed and there. */
+static void
+test_vtp_left (void)
+{
+  static const struct
+  {
+    guint n_files, n_listed, n_frames;
+    gboolean cut;
+  } cases[] = { {3, 4, 3, TRUE}, {4, 3, 3, TRUE}, {3, 3, 3, FALSE},
+  {0, 3, 0, TRUE}, {0, 0, 0, FALSE}
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autoptr (GString) text = g_string_new ("<Collection>\n");
+    g_autofree gchar *head = NULL, *path = NULL;
+    g_autoptr (ClothParts) parts = NULL;
+    g_autoptr (GError) error = NULL;
+    ClothRecovered recovered = { 0 };
+
+    scratch_begin ();
+    head = scratch_path ("c.pvd");
+    parts = cloth_parts_new (head, "", &error);
+    g_assert_no_error (error);
+    for (guint k = 0; k < cases[i].n_files; k++) {
+      g_autoptr (ClothOutput) output =
+          cloth_parts_open_numbered (parts, "c", k, ".vtp", &error);
+
+      g_assert_true (cloth_output_commit (output, &error));
+    }
+    for (guint k = 0; k < cases[i].n_listed; k++)
+      g_string_append_printf (text, "    <DataSet file=\"c_%05u.vtp\"/>\n", k);
+    g_string_append (text, "    <DataSet fi");
+    path = cloth_parts_get_path (parts, "c.pvd");
+    g_assert_true (g_file_set_contents (path, text->str, -1, NULL));
+    g_assert_true (cloth_vtp_recover (parts, "c", &recovered, &error));
+    g_assert_no_error (error);
+    g_assert_cmpuint (recovered.n_frames, ==, cases[i].n_frames);
+    g_assert_cmpint (recovered.cut, ==, cases[i].cut);
+    g_assert_cmpuint (cloth_parts_count_numbered (parts, "c", ".vtp"), ==,
+        cases[i].n_frames);
+    g_clear_pointer (&path, g_free);
+    path = cloth_parts_get_path (parts, "c.pvd");
+    g_assert_cmpint (truncate (path, (off_t) CLOTH_MAX_BUFFER + 1), ==, 0);
+    g_assert_false (cloth_vtp_recover (parts, "c", &recovered, &error));
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT);
+    scratch_end ();
+  }
+}
+
 static gsize
 largest_file (const gchar * folder)
 {
@@ -371,6 +423,7 @@ main (int argc, char **argv)
   g_test_add_func ("/meshexport/whole-or-not-at-all", test_whole_or_not_at_all);
   g_test_add_func ("/meshexport/times-must-rise", test_times_must_rise);
   g_test_add_func ("/meshexport/unwritable", test_unwritable);
+  g_test_add_func ("/meshexport/vtp-left", test_vtp_left);
   g_test_add_func ("/meshexport/no-room", test_no_room);
   g_test_add_func ("/meshexport/not-read", test_not_read);
   g_test_add_func ("/meshexport/gltf-too-long", test_gltf_too_long);

@@ -753,6 +753,26 @@ test_names_taken (void)
             covariances, clamps, &error));
     g_assert_error (error, G_IO_ERROR, G_IO_ERROR_IS_DIRECTORY);
   }
+  /* Clamps of no vertex are no file. */
+  {
+    static const gfloat positions[12] = { 0 }, clamps[3] = { 0 };
+    static const guint8 states[4] = { 1, 1, 1, 1 };
+    g_autofree gchar *path = scratch_path ("w");
+    g_autofree gchar *file = g_build_filename (path, "clamps.npy", NULL);
+    g_autoptr (ClothTopology) topology = cloth_topology_new_grid (2, 2, 1, 1);
+    g_autoptr (ClothTakeInfo) info = cloth_take_info_new ("x");
+    g_autoptr (ClothTakeWriter) own = NULL;
+    g_autoptr (GError) error = NULL;
+
+    info->columns = info->rows = 2;
+    info->width_m = info->height_m = 1;
+    own = cloth_take_writer_new (path, info, topology, &error);
+    g_assert_no_error (error);
+    g_assert_true (cloth_take_writer_append (own, 0, positions, states, NULL,
+            clamps, &error));
+    g_assert_true (cloth_take_writer_close (own, &error));
+    g_assert_false (g_file_test (file, G_FILE_TEST_EXISTS));
+  }
   writer = write_frames ("v", 0, FALSE);
   g_assert_false (cloth_take_writer_close (writer, &fault));
   g_assert_error (fault, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
