@@ -3,9 +3,11 @@
 
   tests/coverage.py BUILD-FOLDER
 
-A branch that g_assert (), g_return_* (), g_new () or g_clear_* () makes is not counted, nor one at the
-end of a scope, where autoptr looks for what is to be freed: no input takes it. A source that is
-compiled several times counts as covered where any of its objects is.
+A branch that g_assert (), g_return_* (), g_new (), g_clear_* () or G_DEFINE_* ()
+makes is not counted: no input takes it. Neither is what frees a g_autoptr or g_autofree: the compiler puts it on the lines where the
+variable is declared, where something is returned and where a block ends; one of these that holds a
+condition of ours is counted. A source that is compiled several times counts as covered where any of
+its objects is.
 
 SPDX-License-Identifier: LGPL-2.1-or-later
 """
@@ -24,10 +26,48 @@ PARSERS = [
     'gst/take/obstacle.c', 'gst/take/sequence.c', 'gst/sim/model.c', 'gst/cloth/gstclothmesh.c',
     'gst/cloth/gstclothobservations.c', 'gst/cloth/gstclothtopology.c',
     'gst/cloth-io/observations.c', 'tools/tool.c']
+# Branches of parsers that no test takes: file, what, why it is left in.
+FREES = 'frees nothing', 'every release function takes NULL; g_autoptr asks by itself'
+FOLDED = ('an impossible half of a condition',
+          'the compiler has answered it at a line before, or knows not that a refusal is FALSE')
+BUFFERED = 'a failed write of a header', 'it stays in the buffer: a later write or the end fails'
+UNREACHED = [
+    ('gst/file/json.c', *FOLDED),
+    ('gst/file/npy.c', 'the type of the caller, or none, where types are converted',
+     'rows of that type are read as they are; the compiler warns of a type that is missing'),
+    ('gst/file/npy.c', *BUFFERED),
+    ('gst/pattern/pattern.c', *FREES),
+    ('gst/pattern/pattern.c', *FOLDED),
+    ('gst/pattern/pattern.c', 'a number that 17 digits are too few for', 'there is none'),
+    ('gst/pattern/pattern.c', 'a pattern without a code', 'an inline function asks once more'),
+    ('gst/pattern/marray.c', *FREES),
+    ('gst/pattern/marray.c', *FOLDED),
+    ('gst/pattern/marray.c', 'a search that goes back beyond the first dot',
+     'it would have tried each colour of all the others'),
+    ('gst/rig/yamltree.c', *FREES),
+    ('gst/rig/yamltree.c', 'no memory for libyaml', 'GLib has ended the program by then'),
+    ('gst/mesh/formats/obj.c', '8,000,000 uv', '56 MB of text'),
+    ('gst/mesh/formats/pc2.c', *BUFFERED),
+    ('gst/mesh/formats/pc2.c', '2,147,483,647 samples', '25 GB'),
+    ('gst/mesh/formats/ply.c', 'a value of no type', 'the header has only known ones'),
+    ('gst/mesh/formats/ply.c', *BUFFERED),
+    ('gst/take/take-info.c', *FOLDED),
+    ('gst/take/take-info.c', 'an obstacle of no kind', 'the enumeration has no other'),
+    ('gst/take/take.c', *FREES),
+    ('gst/take/take.c', 'times.npy that cannot be read', 'its size was compared when it was opened'),
+    ('gst/take/take.c', 'a failed write of take.json', 'it stays in the buffer: the end fails'),
+    ('gst/take/sequence.c', *FREES),
+    ('gst/cloth/gstclothobservations.c', *FOLDED),
+    ('gst/cloth/gstclothobservations.c', 'a reference without a name', 'no caps are so short'),
+    ('gst/cloth/gstclothtopology.c', *FOLDED),
+    ('gst/cloth-io/observations.c', *FOLDED),
+    ('gst/cloth-io/observations.c', 'GStreamer that does not start', 'the tests need it'),
+    ('tools/tool.c', 'progress on a terminal after its end', 'what is counted is an estimate')]
 COMMITS = ['gst/file/output.c', 'gst/file/parts.c', 'gst/file/commit.c', 'gst/file/remains.c',
            'gst/take/recover.c']
 LINES, BRANCHES, COMMIT = 90, 95, 100
-GUARD = re.compile(r'\bg_(assert|return|new|renew|clear)\w* \(|^\s*(return [^&|?]*;|\})$')
+GUARD = re.compile(r'\bg_(assert|return|new|renew|clear)\w* \(|^G_DEFINE_'
+                   r'|^\s*(\}|(return|g_auto\w*) (?!.*(\?|&&|\|\|)).*[=;])$')
 
 root = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..')
 build = os.path.abspath(sys.argv[1])
@@ -108,6 +148,9 @@ print('\n%-38s %17s %17s' % ('commit', 'lines', 'branches'))
 for path in COMMITS:
     if min(row(path, [sources[path]])) < COMMIT:
         below.append(path)
+print('\nNot reached in the parsers, and why it is there:')
+for path, what, why in UNREACHED:
+    print('  %s: %s: %s' % (path, what, why))
 with open(os.path.join(build, 'uncovered.txt'), 'w', encoding='utf-8') as file:
     for path in sorted(sources):
         source = sources[path]

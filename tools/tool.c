@@ -74,7 +74,7 @@ void
 tell_progress (gdouble share, const gchar * what)
 {
   static gint last = -1, tenth = -1;
-  gint percent = (gint) (100 * CLAMP (share, 0, 1) + 1e-9);
+  gint percent = (gint) (100 * MIN (share, 1) + 1e-9);
   const gchar *gap = what ? " " : "";
 
   if (!what)

@@ -64,7 +64,7 @@ check_escape (const gchar * at, gsize rest)
   gint code = unicode_escape (at, rest), second;
 
   if (code < 0)
-    return rest > 1 && at[1] != 0 && strchr ("\"\\/bfnrt", at[1]) ? 2 : 0;
+    return rest > 1 && strchr ("\"\\/bfnrt", at[1]) ? 2 : 0;
   if (code < 0xd800 || code > 0xdfff)
     return code ? 6 : 0;
   second = unicode_escape (at + 6, rest - 6);
@@ -84,6 +84,7 @@ check_text (const gchar * data, gsize length, GError ** error)
     return refuse (error, CLOTH_FILE_ERROR_LIMIT,
         "%" G_GSIZE_FORMAT " bytes are more than the %d allowed", length,
         MAX_BYTES);
+  /* A 0 is not, either. */
   if (!g_utf8_validate_len (data, length, NULL))
     return refuse (error, CLOTH_FILE_ERROR_INVALID, "it is not UTF-8 text");
   for (gsize i = 0; i < length; i++) {
@@ -102,7 +103,7 @@ check_text (const gchar * data, gsize length, GError ** error)
       }
       continue;
     }
-    if (c != 0 && strchr (" \t\r\n", c))
+    if (strchr (" \t\r\n", c))
       continue;
     if (ended || (depth == 0 && c != '{'))
       return refuse (error, CLOTH_FILE_ERROR_INVALID,
@@ -181,11 +182,6 @@ cloth_json_parse (const gchar * data, gsize length, GError ** error)
     return NULL;
   }
   g_signal_handlers_disconnect_by_data (parser, &members);
-  if (!json_parser_get_root (parser)
-      || !JSON_NODE_HOLDS_OBJECT (json_parser_get_root (parser))) {
-    refuse (error, CLOTH_FILE_ERROR_INVALID, "the file must hold one object");
-    return NULL;
-  }
   if (members.twice) {
     refuse (error, CLOTH_FILE_ERROR_INVALID, "an object has a key twice");
     return NULL;

@@ -51,7 +51,7 @@ cloth_yaml_node_free (ClothYamlNode * node)
 const ClothYamlNode *
 cloth_yaml_get (const ClothYamlNode * mapping, const gchar * key)
 {
-  if (!mapping || mapping->kind != CLOTH_YAML_MAPPING)
+  if (mapping->kind != CLOTH_YAML_MAPPING)
     return NULL;
   for (guint i = 0; i < mapping->items->len; i++) {
     if (g_str_equal (g_ptr_array_index (mapping->keys, i), key))
@@ -95,7 +95,7 @@ G_GNUC_PRINTF (4, 5)
 typedef struct
 {
   ClothYamlNode *root;
-  ClothYamlNode *open[MAX_DEPTH];
+  ClothYamlNode *open[MAX_DEPTH + 1];   /* below the first, which is none */
   gint depth;
   gchar *key;                   /* read, its value is still to come */
   guint n_events;
@@ -105,7 +105,7 @@ typedef struct
 static gboolean
 attach (Build * b, ClothYamlNode * node, gsize line, GError ** error)
 {
-  ClothYamlNode *parent = b->depth > 0 ? b->open[b->depth - 1] : NULL;
+  ClothYamlNode *parent = b->open[b->depth];
 
   if (!parent) {
     b->root = node;
@@ -115,29 +115,26 @@ attach (Build * b, ClothYamlNode * node, gsize line, GError ** error)
     g_ptr_array_add (parent->keys, g_steal_pointer (&b->key));
     g_ptr_array_add (parent->items, node);
   } else {
-    gboolean scalar = node->kind == CLOTH_YAML_SCALAR;
-
     if (parent->keys->len >= MAX_KEYS) {
       cloth_yaml_node_free (node);
       return fail (error, CLOTH_RIG_ERROR_LIMIT, line,
           "more than %d keys in one mapping", MAX_KEYS);
     }
-    if (scalar && !cloth_yaml_get (parent, node->text)) {
+    if (node->kind != CLOTH_YAML_SCALAR)
+      fail (error, CLOTH_RIG_ERROR_SYNTAX, line, "a key must be plain text");
+    else if (cloth_yaml_get (parent, node->text))
+      fail (error, CLOTH_RIG_ERROR_VALUE, line, "key \"%s\" is there twice",
+          node->text);
+    else
       b->key = g_steal_pointer (&node->text);
-      cloth_yaml_node_free (node);
-      return TRUE;
-    }
-    fail (error, scalar ? CLOTH_RIG_ERROR_VALUE : CLOTH_RIG_ERROR_SYNTAX, line,
-        scalar ? "key \"%s\" is there twice" : "a key must be plain text%s",
-        scalar ? node->text : "");
     cloth_yaml_node_free (node);
-    return FALSE;
+    return b->key != NULL;
   }
   if (node->kind != CLOTH_YAML_SCALAR) {
     if (b->depth == MAX_DEPTH)
       return fail (error, CLOTH_RIG_ERROR_LIMIT, line,
           "nested deeper than %d levels", MAX_DEPTH);
-    b->open[b->depth++] = node;
+    b->open[++b->depth] = node;
   }
   return TRUE;
 }

@@ -3,7 +3,6 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/take/obstacle.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "gst/mesh/formats/formats.h"
@@ -58,7 +57,7 @@ cloth_obstacles_copy (const GArray * obstacles)
  *
  * Reads the triangles; quads are cut in two. No path leads out of @folder.
  *
- * Returns: %TRUE when there is at least one triangle and every corner is finite
+ * Returns: %TRUE when there is at least one triangle; every corner is finite then
  */
 gboolean
 cloth_obstacle_load_mesh (ClothObstacle * obstacle, const gchar * folder,
@@ -77,12 +76,8 @@ cloth_obstacle_load_mesh (ClothObstacle * obstacle, const gchar * folder,
         "%s: an obstacle needs faces", obstacle->mesh);
   obstacle->n_points = topology->n_vertices;
   obstacle->points = g_new (gdouble, 3 * (gsize) topology->n_vertices);
-  for (gsize i = 0; i < 3 * (gsize) topology->n_vertices; i++) {
+  for (gsize i = 0; i < 3 * (gsize) topology->n_vertices; i++)
     obstacle->points[i] = obj->positions[i];
-    if (!isfinite (obstacle->points[i]))
-      return cloth_file_invalid (error,
-          "%s: point %u has no finite place", obstacle->mesh, (guint) (i / 3));
-  }
   obstacle->triangles = g_new (guint32, 6 * (gsize) topology->n_faces);
   triangle = obstacle->triangles;
   for (guint i = 0; i < topology->n_faces; i++) {

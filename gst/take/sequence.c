@@ -471,15 +471,16 @@ cloth_mesh_reader_free (ClothMeshReader * reader)
 
 /* Writing */
 
-/* A grid is told by its sizes, if these give the very same uv and faces. */
+/* A grid is told by its sizes, if take.json may have them and they give the very same uv and
+ * faces. */
 static gboolean
 is_grid (const ClothTopology * topology)
 {
   g_autoptr (ClothTopology) grid = NULL;
   const gfloat *last = topology->uv + 2 * (gsize) (topology->n_vertices - 1);
 
-  if (topology->columns < 2 || topology->rows < 2 || last[0] < 1e-6f ||
-      last[1] < 1e-6f)
+  if (topology->columns < 2 || topology->rows < 2 ||
+      MIN (last[0], last[1]) < 1e-6f || MAX (last[0], last[1]) > 1e6f)
     return FALSE;
   grid = cloth_topology_new_grid (topology->columns, topology->rows, last[0],
       last[1]);
@@ -490,19 +491,19 @@ is_grid (const ClothTopology * topology)
 static gdouble
 shortest (gfloat value)
 {
-  gdouble number = value;
+  gdouble number;
+  volatile gfloat narrowed;
+  gint digits = 0;
 
-  for (gint digits = 1; digits <= 9; digits++) {
+  /* Nine digits are enough for any. */
+  do {
     gchar format[8], text[G_ASCII_DTOSTR_BUF_SIZE];
-    volatile gfloat narrowed;
 
-    g_snprintf (format, sizeof format, "%%.%dg", digits);
+    g_snprintf (format, sizeof format, "%%.%dg", ++digits);
     number = g_ascii_strtod (g_ascii_formatd (text, sizeof text, format, value),
         NULL);
     narrowed = (gfloat) number;
-    if (narrowed == value)
-      break;
-  }
+  } while (narrowed != value);
   return number;
 }
 

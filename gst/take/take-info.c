@@ -88,7 +88,7 @@ static gboolean
 parse_line (JsonNode * node, guint seam, ClothSeamLine * line, guint side,
     GError ** error)
 {
-  JsonArray *array = node && JSON_NODE_HOLDS_ARRAY (node) ?
+  JsonArray *array = JSON_NODE_HOLDS_ARRAY (node) ?
       json_node_get_array (node) : NULL;
   guint n = array ? json_array_get_length (array) : 0;
   g_autoptr (GHashTable) seen = g_hash_table_new (NULL, NULL);

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "tests/core/farmemory.h"
 #include "tests/core/refused.h"
 
 /* The layout as docs/streams.md has it, written out by hand: two triangles and a quad
@@ -110,6 +111,10 @@ test_topology_bytes (void)
   g_assert_cmpmem (gst_cloth_topology_get_faces (read, &n), sizeof faces, faces,
       sizeof faces);
   g_assert_cmpuint (n, ==, 8);
+  g_assert_true (gst_cloth_topology_get_faces (read, NULL) ==
+      gst_cloth_topology_get_faces (read, &n));
+  g_assert_true (gst_cloth_topology_ref (read) == read);
+  gst_cloth_topology_unref (read);
 }
 
 static void
@@ -182,9 +187,29 @@ test_bad_caps (void)
     g_assert_error (why, GST_CLOTH_ERROR, cases[i].code);
     g_test_message ("%s: %s", cases[i].caps, why->message);
   }
-  gst_caps_set_simple (differ, "vertices", G_TYPE_INT, 5, NULL);
-  g_assert_null (gst_cloth_topology_from_caps (differ, &error));
-  g_assert_error (error, GST_CLOTH_ERROR, GST_CLOTH_ERROR_CAPS);
+  for (gint vertices = -1; vertices <= 5; vertices += 6) {
+    g_clear_error (&error);
+    gst_caps_set_simple (differ, "vertices", G_TYPE_INT, vertices, NULL);
+    g_assert_null (gst_cloth_topology_from_caps (differ, &error));
+    g_assert_error (error, GST_CLOTH_ERROR, GST_CLOTH_ERROR_CAPS);
+    g_assert_true (g_str_has_suffix (error->message,
+            " vertices, their streamheader 4"));
+  }
+}
+
+static void
+test_unreadable (void)
+{
+  g_autoptr (GstBuffer) buffer = far_buffer (sizeof topology_bytes);
+  g_autoptr (GError) error = NULL;
+
+  g_assert_null (gst_cloth_topology_from_buffer (buffer, &error));
+  g_assert_nonnull (error);
+  g_assert_cmpint (error->domain, ==, GST_CLOTH_ERROR);
+  g_clear_error (&error);
+  g_assert_null (gst_cloth_mesh_from_buffer (buffer, &error));
+  g_assert_nonnull (error);
+  g_assert_cmpint (error->domain, ==, GST_CLOTH_ERROR);
 }
 
 typedef struct
@@ -289,6 +314,10 @@ test_bad_topology (void)
           &error));
   g_assert_error (error, GST_CLOTH_ERROR, GST_CLOTH_ERROR_VALUE);
   g_clear_error (&error);
+  g_assert_null (gst_cloth_topology_new_from_arrays (0, 0, uv, 6, faces, 3,
+          &error));
+  g_assert_error (error, GST_CLOTH_ERROR, GST_CLOTH_ERROR_VALUE);
+  g_clear_error (&error);
   for (guint i = 0; i < G_N_ELEMENTS (sizes); i++) {
     g_assert_null (gst_cloth_topology_new_grid (sizes[i][0], sizes[i][1], 1, 1,
             &error));
@@ -298,8 +327,16 @@ test_bad_topology (void)
   g_assert_null (gst_cloth_topology_new_grid (2, 2, 0, 1, &error));
   g_assert_error (error, GST_CLOTH_ERROR, GST_CLOTH_ERROR_VALUE);
   g_clear_error (&error);
-  g_assert_null (gst_cloth_topology_new_grid (2, 2, 1, INFINITY, &error));
-  g_assert_error (error, GST_CLOTH_ERROR, GST_CLOTH_ERROR_VALUE);
+  {
+    static const gfloat sizes_m[][2] = { {1, INFINITY}, {NAN, 1}, {1, -1} };
+
+    for (guint i = 0; i < G_N_ELEMENTS (sizes_m); i++) {
+      g_assert_null (gst_cloth_topology_new_grid (2, 2, sizes_m[i][0],
+              sizes_m[i][1], &error));
+      g_assert_error (error, GST_CLOTH_ERROR, GST_CLOTH_ERROR_VALUE);
+      g_clear_error (&error);
+    }
+  }
 }
 
 static void
@@ -427,12 +464,12 @@ test_mesh_zero_copy (void)
 static void
 test_mesh_settles_states (void)
 {
-  const gfloat positions[15] = { 1, 2, 3, 1, NAN, 3, 4, 5, 6, INFINITY, 0, 0,
-    1, 1, 1
+  const gfloat positions[18] = { 1, 2, 3, 1, NAN, 3, 4, 5, 6, INFINITY, 0, 0,
+    1, 1, 1, 1, 1, -INFINITY
   };
-  const guint8 states[5] = { 1, 1, 0, 3, 99 };
-  const gfloat covariances[30] = { 1, 2, INFINITY, 4, 5, 6 };
-  g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_new (0, 5, positions, states,
+  const guint8 states[6] = { 1, 1, 0, 3, 99, 2 };
+  const gfloat covariances[36] = { 1, 2, INFINITY, 4, 5, 6 };
+  g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_new (0, 6, positions, states,
       covariances);
   g_autoptr (GstBuffer) buffer = gst_cloth_mesh_to_buffer (mesh);
   g_autoptr (GError) error = NULL;
@@ -447,7 +484,7 @@ test_mesh_settles_states (void)
   g_assert_cmpfloat (p[2], ==, 3);
   g_assert_cmpfloat (c[1], ==, 2);
   g_assert_true (isnan (c[2]));
-  for (guint i = 1; i < 5; i++) {
+  for (guint i = 1; i < 6; i++) {
     g_assert_cmpuint (s[i], ==, GST_CLOTH_VERTEX_UNSEEN);
     for (guint k = 0; k < 3; k++)
       g_assert_true (isnan (p[3 * i + k]));
@@ -472,7 +509,9 @@ test_hostile_mesh (void)
     {"an unknown flag", 20, 2, GST_CLOTH_ERROR_VALUE},
     {"seen at NaN", 32, NOT_A_NUMBER, GST_CLOTH_ERROR_VALUE},
     {"seen at infinity", 36, INFINITE, GST_CLOTH_ERROR_VALUE},
+    {"seen at infinity, z", 40, INFINITE, GST_CLOTH_ERROR_VALUE},
     {"unseen somewhere", 44, 0, GST_CLOTH_ERROR_VALUE},
+    {"unseen somewhere, y", 48, 0, GST_CLOTH_ERROR_VALUE},
     {"unseen at infinity", 52, INFINITE, GST_CLOTH_ERROR_VALUE},
     {"state 5", 54, 0x00057fc0, GST_CLOTH_ERROR_VALUE},
   };
@@ -527,6 +566,7 @@ main (int argc, char **argv)
   g_test_add_func ("/cloth/topology/bytes", test_topology_bytes);
   g_test_add_func ("/cloth/topology/caps", test_caps);
   g_test_add_func ("/cloth/topology/bad-caps", test_bad_caps);
+  g_test_add_func ("/cloth/unreadable", test_unreadable);
   g_test_add_func ("/cloth/topology/hostile", test_hostile_topology);
   g_test_add_func ("/cloth/topology/bad-values", test_bad_topology);
   g_test_add_func ("/cloth/mesh/bytes", test_mesh_bytes);

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "tests/core/farmemory.h"
 #include "tests/core/refused.h"
 
 /* The layout as docs/streams.md has it, written out by hand: an unknown section, a
@@ -316,6 +317,10 @@ test_invalid_left_out (void)
   GstClothQuad quads[5] = { {.column = 1}, {.column = 2}, {.row = -1}, {.state =
         (GstClothQuadState) 3}, {.column = 1,.y = {0, 0, NAN, 0}}
   };
+  const GstClothDot dots[4] = { {.column = -1,.row = 2}, {.column = 2,.row =
+        -1},
+  {.column = -1,.row = -1,.x = 7}, {.column = 4}
+  };
   g_autoptr (GstBuffer) buffer = gst_buffer_new ();
   g_autoptr (GstBuffer) packed = NULL;
   g_autoptr (GstBuffer) target = gst_buffer_new ();
@@ -330,6 +335,8 @@ test_invalid_left_out (void)
           refined, 3, candidates, 2));
   gst_buffer_add_cloth_quads_meta (buffer, gst_cloth_quads_new ("a", 1, 2, 2,
           quads, 5));
+  gst_buffer_add_cloth_dots_meta (buffer, gst_cloth_dots_new ("a", 1, 4, 4, 1,
+          dots, 4));
   gst_buffer_add_reference_timestamp_meta (buffer, odd, 1, 1);
   gst_buffer_add_reference_timestamp_meta (buffer, any, 1, 1);
   packed = gst_cloth_observations_pack (buffer);
@@ -345,6 +352,10 @@ test_invalid_left_out (void)
   g_assert_cmpfloat (candidate.x, ==, 5);
   g_assert_cmpuint (gst_cloth_quads_get_n_quads (gst_buffer_get_cloth_quads
           (target)), ==, 1);
+  g_assert_cmpuint (gst_cloth_dots_get_n_dots (gst_buffer_get_cloth_dots
+          (target)), ==, 1);
+  g_assert_cmpfloat (gst_cloth_dots_get_dots (gst_buffer_get_cloth_dots
+          (target), NULL)[0].x, ==, 7);
   g_assert_null (gst_buffer_get_reference_timestamp_meta (target, NULL));
 }
 
@@ -369,6 +380,7 @@ test_hostile (void)
     {"unknown section of 4 GB", 36, 0xfffffffc, GST_CLOTH_ERROR_TRUNCATED},
     {"section size no multiple of 4", 36, 5, GST_CLOTH_ERROR_VALUE},
     {"section one word too long", 36, 8, GST_CLOTH_ERROR_VALUE},
+    {"time: shorter than its header", 48, 16, GST_CLOTH_ERROR_TRUNCATED},
     {"time: no time", 52, 7, -1},
     {"time: text longer than section", 68, 17, GST_CLOTH_ERROR_TRUNCATED},
     {"time: text of 4 GB", 68, 0xffffffff, GST_CLOTH_ERROR_LIMIT},
@@ -401,6 +413,10 @@ test_hostile (void)
     {"quads: state 255", 204, 0x01ff, GST_CLOTH_ERROR_VALUE},
     {"quads: neither black nor white", 204, 0x0201, GST_CLOTH_ERROR_VALUE},
     {"quads: confidence NaN", 208, 0x7fc00000, GST_CLOTH_ERROR_VALUE},
+    {"quads: y NaN", 228, 0x7fc00000, GST_CLOTH_ERROR_VALUE},
+    {"quads: cov_xx NaN", 244, 0x7fc00000, GST_CLOTH_ERROR_VALUE},
+    {"quads: cov_xy NaN", 260, 0x7fc00000, GST_CLOTH_ERROR_VALUE},
+    {"quads: cov_yy NaN", 276, 0x7fc00000, GST_CLOTH_ERROR_VALUE},
     {"quads: corner infinite", 272, 0xff800000, GST_CLOTH_ERROR_VALUE},
   };
   guint8 bent[sizeof golden];
@@ -414,6 +430,15 @@ test_hostile (void)
     }
     GST_WRITE_UINT32_LE (bent + cases[i].at, cases[i].word);
     assert_refused (bent, sizeof bent, cases[i].code, cases[i].name);
+  }
+  {
+    g_autoptr (GstBuffer) far = far_buffer (sizeof golden);
+    g_autoptr (GstBuffer) target = gst_buffer_new ();
+    g_autoptr (GError) error = NULL;
+
+    g_assert_false (gst_cloth_observations_unpack (far, target, &error));
+    g_assert_nonnull (error);
+    g_assert_cmpint (error->domain, ==, GST_CLOTH_ERROR);
   }
 }
 
@@ -578,8 +603,33 @@ test_unknown_clocks_left_out (void)
 
     gst_buffer_add_reference_timestamp_meta (buffer, caps, 1, 1);
   }
+  {
+    g_autoptr (GstCaps) known = gst_caps_from_string ("timestamp/x-ntp");
+
+    gst_buffer_add_reference_timestamp_meta (buffer, known, 1, 1)->timestamp =
+        GST_CLOCK_TIME_NONE;
+  }
   packed = gst_cloth_observations_pack (buffer);
   g_assert_cmpuint (gst_buffer_get_size (packed), ==, 32);
+}
+
+/* As many as a reader takes. */
+static void
+test_many_clocks_left_out (void)
+{
+  g_autoptr (GstBuffer) buffer = gst_buffer_new ();
+  g_autoptr (GstBuffer) target = gst_buffer_new ();
+  g_autoptr (GstBuffer) packed = NULL;
+  g_autoptr (GstCaps) caps = gst_caps_from_string ("timestamp/x-ntp");
+  g_autoptr (GError) error = NULL;
+
+  for (guint i = 0; i < 17; i++)
+    gst_buffer_add_reference_timestamp_meta (buffer, caps, i, 1);
+  packed = gst_cloth_observations_pack (buffer);
+  g_assert_true (gst_cloth_observations_unpack (packed, target, &error));
+  g_assert_no_error (error);
+  g_assert_cmpuint (gst_buffer_get_n_meta (target,
+          GST_REFERENCE_TIMESTAMP_META_API_TYPE), ==, 16);
 }
 
 /* A stranger's packets, none like the other: GStreamer would remember all their names. */
@@ -631,6 +681,8 @@ main (int argc, char **argv)
   g_test_add_func ("/cloth/observations/unknown-clocks", test_unknown_clocks);
   g_test_add_func ("/cloth/observations/unknown-clocks-left-out",
       test_unknown_clocks_left_out);
+  g_test_add_func ("/cloth/observations/many-clocks-left-out",
+      test_many_clocks_left_out);
   g_test_add_func ("/cloth/observations/clocks-leave-no-trace",
       test_clocks_leave_no_trace);
   return g_test_run ();

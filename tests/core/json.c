@@ -4,6 +4,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/file/json.h"
 
+#include <math.h>
 #include <string.h>
 
 static const ClothJsonFile file = { "test.json", cloth_file_error_quark,
@@ -37,7 +38,9 @@ test_texts (void)
     "{\"a\":\"\\x41\"}", "{\"a\":\"\\101\"}", "{\"a\":\"\\u12g4\"}",
     "{\"a\":\"\\u12", "{\"a\":\"\\u0000\"}", "{\"a\":\"\\ud83d\"}",
     "{\"a\":\"\\ud83d\\u0041\"}", "{\"a\":\"\\ud83d\\ue000\"}",
-    "{\"a\":\"\\ud83dx\"}", "{\"a\":\"\\udc00\\udc00\"}", "{\"a\":\"\\udfff\"}",
+    "{\"a\":\"\\ud83dx\"}", "{\"a\":\"\\ud83d, and more\"}",
+    "{\"a\":\"\\ud83d\\nand more\"}",
+    "{\"a\":\"\\udc00\\udc00\"}", "{\"a\":\"\\udfff\"}",
     "{\"a\":1,\"a\":1}", "{\"a\":{\"b\":1,\"b\":2}}", "{\"a\":\"\xff\"}", "}",
     "]"
   };
@@ -171,6 +174,35 @@ test_message (void)
   g_assert_nonnull (strstr (error->message, "“v”"));
 }
 
+/* Whole numbers have no point, and what a reader would take for another number has one. */
+static void
+test_added_numbers (void)
+{
+  static const struct
+  {
+    gdouble value;
+    const gchar *text;
+  } cases[] = {
+    {2, "{\"v\":2}"}, {-0.5, "{\"v\":-0.5}"}, {0, "{\"v\":0}"},
+    {-999999999999999., "{\"v\":-999999999999999}"},
+    {1e15, "{\"v\":1000000000000000.0}"},
+    {NAN, "{\"v\":null}"}, {-INFINITY, "{\"v\":null}"},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autoptr (JsonBuilder) builder = json_builder_new ();
+    g_autoptr (JsonNode) root = NULL;
+    g_autofree gchar *text = NULL;
+
+    json_builder_begin_object (builder);
+    cloth_json_add_number (builder, "v", cases[i].value);
+    json_builder_end_object (builder);
+    root = json_builder_get_root (builder);
+    text = json_to_string (root, FALSE);
+    g_assert_cmpstr (text, ==, cases[i].text);
+  }
+}
+
 int
 main (int argc, char **argv)
 {
@@ -179,5 +211,6 @@ main (int argc, char **argv)
   g_test_add_func ("/json/limits", test_limits);
   g_test_add_func ("/json/values", test_values);
   g_test_add_func ("/json/message", test_message);
+  g_test_add_func ("/json/added-numbers", test_added_numbers);
   return g_test_run ();
 }

@@ -75,6 +75,7 @@ test_generate_refused (void)
      * either centre 60 windows. */
     {10, 10, 2, 1, FALSE, CLOTH_PATTERN_ERROR_CODE, "more colours"},
     {40, 40, 5, 4, FALSE, CLOTH_PATTERN_ERROR_CODE, "less distance"},
+    {7, 7, 2, 1, TRUE, CLOTH_PATTERN_ERROR_CODE, "was found for both sides"},
   };
 
   for (gsize i = 0; i < G_N_ELEMENTS (cases); i++) {
@@ -251,6 +252,24 @@ test_read_refused (void)
     {"{\"pattern\":\"m-array\",\"colours\":[\"red\",\"blue\"],"
           "\"rgb\":[[1,2,3],[4,5,256]]," SIZE COUNT MATRIX,
         CLOTH_PATTERN_ERROR_FORMAT, "rgb"},
+    {"{\"version\":\"1\",\"pattern\":\"m-array\"}", CLOTH_PATTERN_ERROR_FORMAT,
+        "version"},
+    {"{\"pattern\":\"m-array\",\"colours\":[\"red\",[\"blue\"]],"
+          "\"rgb\":[[1,2,3],[4,5,6]]," SIZE COUNT MATRIX,
+        CLOTH_PATTERN_ERROR_FORMAT, "item 1 of “colours”"},
+    {HEAD SIZE COUNT "\"matrix\":[[0,1,1],[0,0],[1,0,1]]}",
+        CLOTH_PATTERN_ERROR_FORMAT, "item 1 of “matrix”"},
+    {HEAD COUNT "\"pitch_m\":0.02,\"diameter_m\":\"x\"," MATRIX,
+        CLOTH_PATTERN_ERROR_FORMAT, "diameter_m"},
+    {HEAD COUNT "\"pitch_m\":1,\"diameter_m\":0.5,\"origin_uv_m\":[\"0\",0]}",
+        CLOTH_PATTERN_ERROR_FORMAT, "“origin_uv_m” must be a list of two"},
+    {HEAD COUNT "\"pitch_m\":1,\"diameter_m\":0.5,\"origin_uv_m\":[0,null]}",
+        CLOTH_PATTERN_ERROR_FORMAT, "“origin_uv_m” must be a list of two"},
+    {HEAD COUNT "\"pitch_m\":1,\"diameter_m\":0.5,\"origin_uv_m\":[0,0],"
+          "\"cloth_m\":[1]}", CLOTH_PATTERN_ERROR_FORMAT, "cloth_m"},
+    {HEAD "\"pitch_m\":0.02,\"diameter_m\":0.01,\"origin_uv_m\":[0.01,0.01],"
+          "\"cloth_m\":[0.06,0.05]," COUNT MATRIX, CLOTH_PATTERN_ERROR_VALUE,
+        "height"},
     {HEAD "\"pitch_m\":\"wide\"," COUNT MATRIX, CLOTH_PATTERN_ERROR_FORMAT,
         "pitch_m"},
     {HEAD "\"pitch_m\":0.02,\"diameter_m\":0.03,\"origin_uv_m\":[0.01,0.01],"
@@ -269,6 +288,33 @@ test_read_refused (void)
             strlen (cases[i].text), &error));
     g_test_message ("→ %s", error->message);
     g_assert_error (error, CLOTH_PATTERN_ERROR, cases[i].code);
+    g_assert_nonnull (strstr (error->message, cases[i].says));
+  }
+}
+
+/* Counts that no file can have. */
+static void
+test_check_refused (void)
+{
+  static const struct
+  {
+    gint columns, rows, n_colours;
+    const gchar *says;
+  } cases[] = {
+    {2, 4, 5, "2 by 4 dots"}, {401, 4, 5, "401 by 4 dots"},
+    {6, 2, 5, "6 by 2 dots"}, {6, 401, 5, "6 by 401 dots"},
+    {6, 4, 1, "1 colours"}, {6, 4, 9, "9 colours"},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autoptr (ClothMArray) array = made (6, 4, 3);
+    g_autoptr (GError) error = NULL;
+
+    array->columns = cases[i].columns;
+    array->rows = cases[i].rows;
+    array->n_colours = cases[i].n_colours;
+    g_assert_false (cloth_m_array_check (array, &error));
+    g_assert_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_VALUE);
     g_assert_nonnull (strstr (error->message, cases[i].says));
   }
 }
@@ -343,6 +389,7 @@ test_texture_refused (void)
     g_assert_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_VALUE);
   }
   array->matrix[3] = 5;
+  g_assert_false (cloth_m_array_check (array, NULL));
   {
     g_autoptr (GError) error = NULL;
 
@@ -363,6 +410,7 @@ main (int argc, char **argv)
   g_test_add_func ("/m-array/largest", test_largest);
   g_test_add_func ("/m-array/read", test_read);
   g_test_add_func ("/m-array/read-refused", test_read_refused);
+  g_test_add_func ("/m-array/check-refused", test_check_refused);
   g_test_add_func ("/m-array/load-refused", test_load_refused);
   g_test_add_func ("/m-array/texture", test_texture);
   g_test_add_func ("/m-array/texture-refused", test_texture_refused);

@@ -2,11 +2,16 @@
  * What they contain is read by tests/generic/meshexports.py.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/file/file.h"
+#include "gst/mesh/formats/export.h"
 #include "gst/take/sequence.h"
 #include "tests/core/meshpeer.h"
 
 #include <math.h>
+#include <signal.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #define COLUMNS 3
 #define ROWS 2
@@ -50,16 +55,23 @@ append (ClothMeshWriter * writer, guint n, gdouble time_s, GError ** error)
 }
 
 static void
-write_two (const gchar * name, const ClothTopology * topology)
+write_frames (const gchar * name, const ClothTopology * topology,
+    guint n_frames)
 {
   g_autoptr (GError) error = NULL;
   g_autoptr (ClothMeshWriter) writer = open_writer (name, topology, 25, &error);
 
   g_assert_no_error (error);
-  for (guint i = 0; i < 2; i++)
+  for (guint i = 0; i < n_frames; i++)
     g_assert_true (append (writer, topology->n_vertices, i, &error));
   g_assert_true (cloth_mesh_writer_close (writer, &error));
   g_assert_no_error (error);
+}
+
+static void
+write_two (const gchar * name, const ClothTopology * topology)
+{
+  write_frames (name, topology, 2);
 }
 
 static void
@@ -280,6 +292,129 @@ test_vtp_stale (void)
   scratch_end ();
 }
 
+/* What a killed program left of a collection: the frames count that are listed and there. */
+static void
+test_vtp_left (void)
+{
+  static const struct
+  {
+    guint n_files, n_listed, n_frames;
+    gboolean cut;
+  } cases[] = { {3, 4, 3, TRUE}, {4, 3, 3, TRUE}, {3, 3, 3, FALSE},
+  {0, 3, 0, TRUE}, {0, 0, 0, FALSE}
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autoptr (GString) text = g_string_new ("<Collection>\n");
+    g_autofree gchar *head = NULL, *path = NULL;
+    g_autoptr (ClothParts) parts = NULL;
+    g_autoptr (GError) error = NULL;
+    ClothRecovered recovered = { 0 };
+
+    scratch_begin ();
+    head = scratch_path ("c.pvd");
+    parts = cloth_parts_new (head, "", &error);
+    g_assert_no_error (error);
+    for (guint k = 0; k < cases[i].n_files; k++) {
+      g_autoptr (ClothOutput) output =
+          cloth_parts_open_numbered (parts, "c", k, ".vtp", &error);
+
+      g_assert_true (cloth_output_commit (output, &error));
+    }
+    for (guint k = 0; k < cases[i].n_listed; k++)
+      g_string_append_printf (text, "    <DataSet file=\"c_%05u.vtp\"/>\n", k);
+    g_string_append (text, "    <DataSet fi");
+    path = cloth_parts_get_path (parts, "c.pvd");
+    g_assert_true (g_file_set_contents (path, text->str, -1, NULL));
+    g_assert_true (cloth_vtp_recover (parts, "c", &recovered, &error));
+    g_assert_no_error (error);
+    g_assert_cmpuint (recovered.n_frames, ==, cases[i].n_frames);
+    g_assert_cmpint (recovered.cut, ==, cases[i].cut);
+    g_assert_cmpuint (cloth_parts_count_numbered (parts, "c", ".vtp"), ==,
+        cases[i].n_frames);
+    g_clear_pointer (&path, g_free);
+    path = cloth_parts_get_path (parts, "c.pvd");
+    g_assert_cmpint (truncate (path, (off_t) CLOTH_MAX_BUFFER + 1), ==, 0);
+    g_assert_false (cloth_vtp_recover (parts, "c", &recovered, &error));
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT);
+    scratch_end ();
+  }
+}
+
+static gsize
+largest_file (const gchar * folder)
+{
+  g_autoptr (GDir) dir = g_dir_open (folder, 0, NULL);
+  const gchar *name;
+  gsize largest = 0;
+
+  while ((name = g_dir_read_name (dir))) {
+    g_autofree gchar *path = g_build_filename (folder, name, NULL);
+    GStatBuf st;
+
+    g_assert_cmpint (g_stat (path, &st), ==, 0);
+    largest = MAX (largest, S_ISDIR (st.st_mode) ? largest_file (path) :
+        (gsize) st.st_size);
+  }
+  return largest;
+}
+
+/* Files that the system stops at a size: in each of the arrays that a frame is written as, which
+ * are larger than the buffer. Nothing of them stays. */
+static void
+test_no_room (void)
+{
+  static const struct
+  {
+    const gchar *name;
+    guint n_frames;
+    gboolean grid;
+  } cases[] = {
+    /* The cache of points is larger than the mesh, here. */
+    {"c.obj", 8, FALSE}, {"c.ply", 1, FALSE}, {"c.take", 2, FALSE},
+    {"c.take", 2, TRUE}, {"c.pvd", 1, FALSE}, {"c.csv", 2, FALSE},
+    {"c.usda", 2, FALSE}, {"c.glb", 2, FALSE},
+  };
+  static const gdouble shares[] =
+      { 1 / 80., 1 / 5., 2 / 5., 7 / 10., 19 / 20. };
+  g_autoptr (ClothTopology) topology = cloth_topology_new_grid (250, 250, 1, 1);
+  struct rlimit before;
+
+  g_assert_cmpint (getrlimit (RLIMIT_FSIZE, &before), ==, 0);
+  signal (SIGXFSZ, SIG_IGN);
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    gsize whole;
+
+    topology->columns = topology->rows = cases[i].grid ? 250 : 0;
+    scratch_begin ();
+    write_frames (cases[i].name, topology, cases[i].n_frames);
+    whole = largest_file (scratch);
+    scratch_end ();
+    for (guint k = 0; k < G_N_ELEMENTS (shares); k++) {
+      struct rlimit limit = before;
+      g_autoptr (GError) error = NULL;
+      ClothMeshWriter *writer;
+
+      scratch_begin ();
+      limit.rlim_cur = (rlim_t) (shares[k] * (gdouble) whole);
+      g_assert_cmpint (setrlimit (RLIMIT_FSIZE, &limit), ==, 0);
+      writer = open_writer (cases[i].name, topology, 25, &error);
+      for (guint frame = 0; frame < cases[i].n_frames && !error; frame++)
+        append (writer, topology->n_vertices, frame, &error);
+      if (!error)
+        cloth_mesh_writer_close (writer, &error);
+      cloth_mesh_writer_free (writer);
+      g_assert_cmpint (setrlimit (RLIMIT_FSIZE, &before), ==, 0);
+      g_assert_nonnull (error);
+      g_test_message ("%s, %g: %s", cases[i].name, shares[k], error->message);
+      g_assert_cmpint (error->domain, ==, G_IO_ERROR);
+      g_assert_cmpuint (scratch_count (), ==, 0);
+      scratch_end ();
+    }
+  }
+  signal (SIGXFSZ, SIG_DFL);
+}
+
 int
 main (int argc, char **argv)
 {
@@ -288,6 +423,8 @@ main (int argc, char **argv)
   g_test_add_func ("/meshexport/whole-or-not-at-all", test_whole_or_not_at_all);
   g_test_add_func ("/meshexport/times-must-rise", test_times_must_rise);
   g_test_add_func ("/meshexport/unwritable", test_unwritable);
+  g_test_add_func ("/meshexport/vtp-left", test_vtp_left);
+  g_test_add_func ("/meshexport/no-room", test_no_room);
   g_test_add_func ("/meshexport/not-read", test_not_read);
   g_test_add_func ("/meshexport/gltf-too-long", test_gltf_too_long);
   g_test_add_func ("/meshexport/gltf-still", test_gltf_still);

@@ -6,6 +6,7 @@
 #include "gst/mesh/formats/pc2.h"
 #include "gst/mesh/formats/ply.h"
 #include "gst/take/sequence.h"
+#include "gst/take/take.h"
 #include "tests/core/meshpeer.h"
 
 #include <math.h>
@@ -261,6 +262,188 @@ test_obj_tolerance (void)
   g_assert_cmpuint (obj->n_seam_vertices, ==, 1);
 }
 
+/* Where a text may end, or a line go on: the faces that come of it, of a mesh of three
+ * vertices and one uv. */
+static void
+test_obj_ends (void)
+{
+  static const struct
+  {
+    const gchar *text;
+    guint n_faces;
+  } good[] = {
+    {"", 0}, {"f", 0}, {"v", 0}, {" \t\r", 0}, {"# nothing", 0},
+    {"vtx 1 2\nff 1 2 3\nv\n", 0},
+    {"f 1 2 3", 1}, {"f 1 2 3 ", 1}, {"f 1 2 3\r\n", 1}, {"f\t1 2 3#4", 1},
+    {"f 1/1 2/1 3/1", 1}, {"f 1/1/1 2//1 3/1/9", 1},
+    {"f 1 2 \\\r\n3 1", 1}, {"f 1 2\\\n3 1", 1}, {"f 1 \\\n2 3 1 2", 3},
+  };
+  static const gchar *const bad[] = {
+    "f 1 2 \\", "f 1 2 \\3", "f 1 2 \\\r", "f 1 2 \\\r3", "f 1 2 \\\r\n",
+    "f 1 2 -", "f 1 2 3//", "f 1 2 3//x", "f 1 2 3//0", "f 1 2 42949672970",
+    "v 1 2", "v 1 2 #3", "vt 1", "f 1 2 3x", "f 1 2 3/x", "f 1/2 2 3",
+    "f 1 2 3/", "f 1/ 2 3",
+  };
+#define MESH "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n"
+
+  for (guint i = 0; i < G_N_ELEMENTS (good); i++) {
+    g_autofree gchar *text = g_strconcat (MESH, good[i].text, NULL);
+    g_autoptr (GError) error = NULL;
+    g_autoptr (ClothObj) obj = cloth_obj_parse (text, strlen (text), &error);
+
+    g_assert_no_error (error);
+    g_assert_cmpuint (obj->topology->n_vertices, ==, 3);
+    g_assert_cmpuint (obj->topology->n_faces, ==, good[i].n_faces);
+  }
+  for (guint i = 0; i < G_N_ELEMENTS (bad); i++) {
+    g_autofree gchar *text = g_strconcat (MESH, bad[i], NULL);
+    g_autoptr (GError) error = NULL;
+
+    g_assert_null (cloth_obj_parse (text, strlen (text), &error));
+    g_test_message ("%s: %s", bad[i], error->message);
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+  }
+  {
+    static const gchar zero[] = MESH "f 1 2 3\0", seam[] = MESH "vt 0 1\n"
+        "f 1/1 2/1 3/1\nf 1/2 2/1 3/1\nf 1/1 2/1 3/1\n";
+    g_autoptr (GError) error = NULL;
+    g_autoptr (ClothObj) obj = cloth_obj_parse (seam, strlen (seam), &error);
+
+    g_assert_no_error (error);
+    g_assert_cmpuint (obj->n_seam_vertices, ==, 1);
+    g_assert_null (cloth_obj_parse (zero, sizeof zero - 1, &error));
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+    g_assert_nonnull (strstr (error->message, "no text"));
+  }
+}
+
+/* Every type of number, and what means nothing to us: elements without properties, a
+ * face's colour and a list that is not its corners, a u without a v. */
+static void
+test_ply_tolerance (void)
+{
+  static const gchar head[] = "ply\nformat binary_little_endian 1.0\n"
+      "element nothing 0\nelement vertex 3\nproperty short x\n"
+      "property ushort y\nproperty char z\nproperty float u\n"
+      "element face 1\nproperty list uchar uchar other\n"
+      "property uchar red\nproperty list ushort uint vertex_indices\n"
+      "end_header\n";
+  static const guint8 data[] = {
+    0xfe, 0xff, 0xfe, 0xff, 0xfd, 0, 0, 0x80, 0x3f,
+    1, 0, 2, 0, 3, 0, 0, 0, 0x40,
+    0, 1, 0, 2, 127, 0, 0, 0, 0,
+    2, 7, 7, 255, 3, 0, 2, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0
+  };
+  static const gfloat positions[] = { -2, 65534, -3, 1, 2, 3, 256, 512, 127 };
+  static const guint32 face[] = { 2, 1, 0, CLOTH_NO_VERTEX };
+  g_autoptr (GByteArray) bytes = g_byte_array_new ();
+  g_autoptr (ClothPly) ply = cloth_ply_new ();
+  g_autoptr (GError) error = NULL;
+
+  g_byte_array_append (bytes, (const guint8 *) head, sizeof head - 1);
+  g_byte_array_append (bytes, data, sizeof data);
+  g_assert_true (cloth_ply_parse (ply, (const gchar *) bytes->data,
+          bytes->len - 1, &error));
+  g_assert_no_error (error);
+  g_assert_cmpuint (ply->n_vertices, ==, 3);
+  g_assert_cmpmem (ply->positions, 36, positions, sizeof positions);
+  g_assert_false (ply->has_uv);
+  g_assert_cmpuint (ply->n_faces, ==, 1);
+  g_assert_cmpmem (ply->faces->data, 16, face, sizeof face);
+}
+
+/* A triangle has three corners in the file. */
+static void
+test_ply_triangle (void)
+{
+  g_autoptr (ClothTopology) topology = cloth_topology_new (3, 1);
+  static const guint32 face[] = { 0, 1, 2, CLOTH_NO_VERTEX };
+  static const gfloat positions[] = { 0, 0, 0, 1, 0, 0, 0, 1, 0 };
+  static const guint8 states[] = { 1, 1, 1 };
+  ClothMeshFrame frame = { positions, states, NULL };
+  g_autoptr (ClothMeshWriter) writer = NULL;
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *path = NULL;
+
+  memcpy (topology->faces, face, sizeof face);
+  scratch_begin ();
+  path = scratch_path ("t.ply");
+  writer = cloth_mesh_writer_new (path, CLOTH_MESH_FORMAT_AUTO, "t", topology,
+      25, 1, &error);
+  g_assert_no_error (error);
+  g_assert_true (cloth_mesh_writer_append (writer, 0, &frame, &error));
+  g_assert_true (cloth_mesh_writer_close (writer, &error));
+  peer_run ("d=open('t_00000.ply','rb').read()\n"
+      "assert struct.unpack('<B3I',d[-13:])==(3,0,1,2)\n"
+      "assert len(d.split(b'end_header\\n',1)[1])==3*21+13\n");
+  scratch_end ();
+}
+
+/* One vertex, or one face, more than is accepted. */
+static void
+test_too_many (void)
+{
+  static const gchar vertex[] = "v 0 0 0\n";
+  g_autoptr (GString) text = g_string_new (NULL);
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothPly) ply = cloth_ply_new ();
+
+  for (guint i = 0; i <= CLOTH_MAX_VERTICES; i++)
+    g_string_append_len (text, vertex, sizeof vertex - 1);
+  g_assert_null (cloth_obj_parse (text->str, text->len, &error));
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT);
+  g_assert_true (g_str_has_prefix (error->message, "line 1000001 "));
+  g_clear_error (&error);
+
+  g_string_assign (text, "v 0 0 0\nf");
+  for (guint i = 0; i <= CLOTH_MAX_FACES; i++)
+    g_string_append (text, " 1");
+  g_assert_null (cloth_obj_parse (text->str, text->len, &error));
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT);
+  g_assert_true (g_str_has_prefix (error->message, "line 2 "));
+  g_clear_error (&error);
+
+  /* Each of these faces is 253 triangles. */
+  g_string_assign (text, "ply\nformat binary_little_endian 1.0\n"
+      "element vertex 1\nproperty char x\nproperty char y\nproperty char z\n"
+      "element face 8000\nproperty list uchar uchar vertex_index\n"
+      "end_header\n");
+  g_string_set_size (text, text->len + 3);
+  memset (text->str + text->len - 3, 0, 3);
+  for (guint i = 0; i < 8000; i++) {
+    g_string_append_c (text, '\xff');
+    g_string_set_size (text, text->len + 255);
+    memset (text->str + text->len - 255, 0, 255);
+  }
+  g_assert_false (cloth_ply_parse (ply, text->str, text->len, &error));
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT);
+  g_assert_nonnull (strstr (error->message, "too many faces"));
+}
+
+/* Files that the memory does not take are refused by their size: this one is all hole. */
+static void
+test_too_large (void)
+{
+  static const gchar *const names[] = { "a.obj", "a.ply" };
+
+  scratch_begin ();
+  for (guint i = 0; i < G_N_ELEMENTS (names); i++) {
+    g_autofree gchar *path = scratch_path (names[i]);
+    g_autoptr (ClothPly) ply = cloth_ply_new ();
+    g_autoptr (GError) error = NULL;
+
+    scratch_write (names[i], "x\n", -1);
+    g_assert_cmpint (truncate (path, (off_t) CLOTH_MAX_BUFFER + 1), ==, 0);
+    if (i == 0)
+      g_assert_null (cloth_obj_read (path, &error));
+    else
+      g_assert_false (cloth_ply_read (ply, path, &error));
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT);
+    g_assert_true (g_str_has_prefix (error->message, path));
+  }
+  scratch_end ();
+}
+
 static const struct
 {
   const gchar *text;
@@ -360,6 +543,38 @@ static const struct
   {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "element face 1\n"
         "property list uchar int vertex_indices\nend_header\n1 2 3 3 0 0\n",
       CLOTH_FILE_ERROR_TRUNCATED},
+  {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "element face 1\n"
+        "property list uchar int vertex_indices\nend_header\n1 2 3 ",
+      CLOTH_FILE_ERROR_TRUNCATED},
+  {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "end_header\n1 2 x\n",
+      CLOTH_FILE_ERROR_TRUNCATED},
+  {"ply\nformat ascii 1.0\nelement junk 1\nproperty list char int x\n"
+        "end_header\n\n", CLOTH_FILE_ERROR_TRUNCATED},
+  {"ply\nformat ascii 1.0\nelement junk 1\nproperty list char int x\n"
+        "end_header\n1e10\n", CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement junk 1\nproperty list char int x\n"
+        "end_header\nnan\n", CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "element face 1\n"
+        "property list uchar int vertex_indices\nend_header\n1 2 3 nan\n",
+      CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "property float cov_xx\n"
+        "end_header\n1 2 3 inf\n", CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "property float u\n"
+        "property float v\nend_header\n1 2 3 0 -inf\n",
+      CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 1\nproperty list int32 float\n",
+      CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 1\nproperty map int32 float x\n",
+      CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii 1.0\nelement vertex 1\nproperty list quux int x\n",
+      CLOTH_FILE_ERROR_INVALID},
+  {"ply\nformat ascii\n", CLOTH_FILE_ERROR_UNSUPPORTED},
+  {"ply\nformat binary_middle_endian 1.0\n", CLOTH_FILE_ERROR_UNSUPPORTED},
+  {"ply\nformat ascii 1.0\nelement a 0\nelement b 0\nelement c 0\n"
+        "element d 0\nelement e 0\nelement f 0\nelement g 0\nelement h 0\n"
+        "element i 0\nelement j 0\nelement k 0\nelement l 0\nelement m 0\n"
+        "element n 0\nelement o 0\nelement p 0\nelement q 0\n",
+      CLOTH_FILE_ERROR_INVALID},
 };
 
 static void
@@ -372,6 +587,22 @@ test_hostile_text (void)
             &error));
     g_test_message ("obj %u: %s", i, error->message);
     g_assert_error (error, CLOTH_FILE_ERROR, bad_obj[i].code);
+  }
+  {
+    static const gchar zero[] = "ply\nformat ascii 1.0\nelement vertex\0 1\n";
+    g_autoptr (GString) text = g_string_new ("ply\nformat ascii 1.0\n"
+        "element vertex 1\n");
+    g_autoptr (ClothPly) ply = cloth_ply_new ();
+    g_autoptr (GError) error = NULL;
+
+    g_assert_false (cloth_ply_parse (ply, zero, sizeof zero - 1, &error));
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+    g_clear_error (&error);
+    for (guint i = 0; i < 1000; i++)
+      g_string_append_printf (text, "property float p%u\n", i);
+    g_assert_false (cloth_ply_parse (ply, text->str, text->len, &error));
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+    g_assert_nonnull (strstr (error->message, "too many"));
   }
   for (guint i = 0; i < G_N_ELEMENTS (bad_ply); i++) {
     g_autoptr (ClothPly) ply = cloth_ply_new ();
@@ -401,6 +632,7 @@ test_hostile_pc2 (void)
     {1, 1, 0, 1, -1, CLOTH_FILE_ERROR_INVALID},
     {1, 1, NAN, 1, 1, CLOTH_FILE_ERROR_INVALID},
     {1, 1, 0, 0, 1, CLOTH_FILE_ERROR_INVALID},
+    {1, 1, 0, INFINITY, 1, CLOTH_FILE_ERROR_INVALID},
     {1, 1, 0, 1, 3, CLOTH_FILE_ERROR_TRUNCATED},
     {1, 1000000, 0, 1, G_MAXINT32, CLOTH_FILE_ERROR_TRUNCATED},
   };
@@ -419,6 +651,49 @@ test_hostile_pc2 (void)
                 sizeof bytes), &error));
     g_assert_error (error, CLOTH_FILE_ERROR, cases[i].code);
   }
+  {
+    guint8 bytes[32] = "POINTCACHE3";
+    g_autoptr (GError) error = NULL;
+
+    bytes[12] = 1;
+    g_assert_null (cloth_pc2_reader_new (cloth_input_new_memory (bytes,
+                sizeof bytes), &error));
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+    g_assert_cmpstr (error->message, ==, "not a PC2 file of version 1");
+    g_clear_error (&error);
+    g_assert_null (cloth_pc2_reader_new (cloth_input_new_memory (bytes,
+                sizeof bytes - 1), &error));
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_TRUNCATED);
+  }
+}
+
+/* Samples that are not there, or no longer. */
+static void
+test_pc2_samples (void)
+{
+  g_autofree gchar *path = NULL;
+  g_autoptr (ClothPc2Reader) reader = NULL;
+  g_autoptr (GError) error = NULL;
+  gfloat positions[3 * N];
+
+  g_assert_null (cloth_pc2_reader_open ("/nonexistent.pc2", &error));
+  g_assert_error (error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND);
+  g_clear_error (&error);
+  scratch_begin ();
+  write_sequence ("c.obj", CLOTH_MESH_FORMAT_AUTO, FRAMES);
+  path = scratch_path ("c.pc2");
+  reader = cloth_pc2_reader_open (path, &error);
+  g_assert_no_error (error);
+  g_assert_true (cloth_pc2_reader_read (reader, FRAMES - 1, positions, &error));
+  g_assert_cmpfloat (positions[2], ==, (FRAMES - 1) * (FRAMES - 1));
+  g_assert_false (cloth_pc2_reader_read (reader, FRAMES, positions, &error));
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+  g_assert_cmpstr (error->message, ==, "sample 7 of 7");
+  g_clear_error (&error);
+  g_assert_cmpint (truncate (path, 32 + 12 * N), ==, 0);
+  g_assert_false (cloth_pc2_reader_read (reader, 1, positions, &error));
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_TRUNCATED);
+  scratch_end ();
 }
 
 static void
@@ -465,6 +740,210 @@ test_sets_that_do_not_fit (void)
     g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
   }
   scratch_end ();
+}
+
+/* What a location means, and what the names of its files begin with. */
+static void
+test_locations (void)
+{
+  static const struct
+  {
+    const gchar *location;
+    ClothMeshFormat format;
+    const gchar *stem;
+  } cases[] = {
+    {"a.obj", CLOTH_MESH_FORMAT_OBJ_PC2, "a"},
+    {"a.PC2", CLOTH_MESH_FORMAT_OBJ_PC2, "a"},
+    {"b", CLOTH_MESH_FORMAT_OBJ_PC2, "b"},
+    {"a_%05d.ply", CLOTH_MESH_FORMAT_PLY, "a"},
+    {"a.ply", CLOTH_MESH_FORMAT_PLY, "a"},
+    {"a.take", CLOTH_MESH_FORMAT_TAKE, "a.take"},
+    {"a.take/", CLOTH_MESH_FORMAT_TAKE, "a.take"},
+    {"a//", CLOTH_MESH_FORMAT_TAKE, "a"},
+    {"/", CLOTH_MESH_FORMAT_TAKE, "/"},
+    {"take.json", CLOTH_MESH_FORMAT_TAKE, "."},
+    {"a/take.json", CLOTH_MESH_FORMAT_TAKE, "a"},
+    {"a//take.json", CLOTH_MESH_FORMAT_TAKE, "a"},
+    {"a.vtp", CLOTH_MESH_FORMAT_VTP, "a"},
+    {"a.pvd", CLOTH_MESH_FORMAT_VTP, "a"},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    ClothMeshFormat format = cloth_mesh_format_guess (cases[i].location);
+    g_autofree gchar *stem = cloth_mesh_format_stem (cases[i].location, format);
+
+    g_test_message ("%s: %s", cases[i].location, stem);
+    g_assert_cmpint (format, ==, cases[i].format);
+    g_assert_cmpstr (stem, ==, cases[i].stem);
+  }
+}
+
+/* A point cache or its states that do not fit the mesh: which of them is wrong. */
+static void
+test_caches_that_do_not_fit (void)
+{
+  static const struct
+  {
+    const gchar *script, *says;
+  } cases[] = {
+    {"d[16]=19", "c.pc2 has 19 points, the OBJ file 20 vertices"},
+    {"d[28]=0", "the point cache has no samples"},
+    {"d[24:28]=b'\\0'*4", "c.pc2: the PC2 file has a negative number"},
+    {"np.save('c.states.npy',np.zeros((7,20),'i4'))", "c.states.npy does not"},
+    {"np.save('c.states.npy',np.zeros(140,'u1'))", "c.states.npy does not"},
+    {"np.save('c.states.npy',np.zeros((6,20),'u1'))", "c.states.npy does not"},
+    {"np.save('c.states.npy',np.zeros((7,21),'u1'))", "c.states.npy does not"},
+    {"open('c.states.npy','wb').write(b'')", "c.states.npy: 10 bytes wanted"},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autofree gchar *path = NULL, *script = NULL;
+    g_autoptr (GError) error = NULL;
+
+    scratch_begin ();
+    path = scratch_path ("c.obj");
+    write_sequence ("c.obj", CLOTH_MESH_FORMAT_AUTO, FRAMES);
+    script = g_strdup_printf ("d=bytearray(open('c.pc2','rb').read())\n%s\n"
+        "open('c.pc2','wb').write(d)", cases[i].script);
+    peer_run (script);
+    g_assert_null (cloth_mesh_reader_open (path, CLOTH_MESH_FORMAT_AUTO,
+            &error));
+    g_test_message ("%s", error->message);
+    g_assert_cmpint (error->domain, ==, CLOTH_FILE_ERROR);
+    g_assert_nonnull (strstr (error->message, cases[i].says));
+    scratch_end ();
+  }
+}
+
+/* What shows only at the frame: the files change while they are read, or hold there what
+ * is no place and no state. */
+static void
+test_broken_frames (void)
+{
+  static const struct
+  {
+    const gchar *name, *script;
+    ClothFileError code;
+  } cases[] = {
+    {"c.obj", "os.truncate('c.pc2',100)", CLOTH_FILE_ERROR_TRUNCATED},
+    {"c.obj", "os.truncate('c.states.npy',100)", CLOTH_FILE_ERROR_TRUNCATED},
+    {"c.obj", "f=open('c.pc2','r+b'); f.seek(32+4*240); "
+          "f.write(struct.pack('<f',np.inf))", CLOTH_FILE_ERROR_INVALID},
+    {"c.obj", "f=open('c.states.npy','r+b'); f.seek(-3*20,2); f.write(b'\\5')",
+        CLOTH_FILE_ERROR_INVALID},
+    {"c.take", "os.truncate('c.take/states.npy',130)",
+        CLOTH_FILE_ERROR_TRUNCATED},
+    {"c.take", "os.truncate('c.take/covariance.npy',130)",
+        CLOTH_FILE_ERROR_TRUNCATED},
+    {"c.ply", "os.truncate('c_00004.ply',100)", CLOTH_FILE_ERROR_INVALID},
+    {"c.ply", "d=open('c_00004.ply','rb').read().replace(b'face 12',b'face 11')"
+          "\nopen('c_00004.ply','wb').write(d)", CLOTH_FILE_ERROR_INVALID},
+    {"c.ply", "f=open('c_00004.ply','r+b'); f.seek(-1,2); "
+          "f.seek(-3,1); f.write(b'\\0')", CLOTH_FILE_ERROR_INVALID},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autofree gchar *path = NULL;
+    g_autoptr (ClothMeshReader) reader = NULL;
+    g_autoptr (GError) error = NULL;
+    ClothMeshFrame contents;
+
+    scratch_begin ();
+    path = scratch_path (cases[i].name);
+    write_sequence (cases[i].name, CLOTH_MESH_FORMAT_AUTO, FRAMES);
+    reader = cloth_mesh_reader_open (path, CLOTH_MESH_FORMAT_AUTO, &error);
+    g_assert_no_error (error);
+    g_assert_true (cloth_mesh_reader_read (reader, 4, &contents, &error));
+    peer_run (cases[i].script);
+    g_assert_false (cloth_mesh_reader_read (reader, 4, &contents, &error));
+    g_test_message ("%s", error->message);
+    g_assert_error (error, CLOTH_FILE_ERROR, (gint) cases[i].code);
+    scratch_end ();
+  }
+}
+
+/* A mesh without a cache is one frame; a cloud of points has no faces. */
+static void
+test_lone_files (void)
+{
+  g_autofree gchar *obj = NULL, *ply = NULL;
+  ClothMeshFrame contents;
+
+  scratch_begin ();
+  obj = scratch_path ("a.obj");
+  ply = scratch_path ("p.ply");
+  scratch_write ("a.obj", "v 1 2 3\nv 4 5 6\nv 7 8 9\nf 1 2 3\n", -1);
+  scratch_write ("p_00000.ply", "ply\nformat ascii 1.0\nelement vertex 2\n" XYZ
+      "end_header\n1 2 3\n4 5 6\n", -1);
+  for (guint i = 0; i < 2; i++) {
+    g_autoptr (GError) error = NULL;
+    g_autoptr (ClothMeshReader) reader = cloth_mesh_reader_open (i ? ply : obj,
+        CLOTH_MESH_FORMAT_AUTO, &error);
+
+    g_assert_no_error (error);
+    g_assert_cmpuint (cloth_mesh_reader_get_n_frames (reader), ==, 1);
+    g_assert_cmpuint (cloth_mesh_reader_get_topology (reader)->n_faces, ==,
+        i ? 0 : 1);
+    g_assert_true (cloth_mesh_reader_read (reader, 0, &contents, &error));
+    g_assert_cmpfloat (contents.positions[5], ==, 6);
+    g_assert_cmpuint (contents.states[1], ==, CLOTH_VERTEX_MEASURED);
+  }
+  scratch_end ();
+}
+
+/* A take has a grid only when its sizes give the very mesh. */
+static void
+test_grids_of_takes (void)
+{
+  static const struct
+  {
+    guint columns, rows;
+    gfloat width, height;
+    gboolean grid;
+  } cases[] = {
+    {3, 2, 0.63f, 1, TRUE}, {3, 2, 1 / 3.f, 1, TRUE}, {0, 2, 1, 1, FALSE},
+    {3, 0, 1, 1, FALSE}, {3, 2, 1e-7f, 1, FALSE}, {3, 2, 1, 1e-7f, FALSE},
+    {3, 2, 2e6f, 1, FALSE}, {3, 2, 1, 2e6f, FALSE}, {3, 2, 1e-6f, 1e6f, TRUE},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autoptr (ClothTopology) topology = cloth_topology_new_grid (3, 2,
+        cases[i].width, cases[i].height);
+    g_autoptr (ClothMeshWriter) writer = NULL;
+    g_autoptr (ClothTake) take = NULL;
+    g_autoptr (GError) error = NULL;
+    g_autofree gchar *path = NULL;
+    static const gfloat positions[18] = { 0 };
+    static const guint8 states[6] = { 1, 1, 1, 1, 1, 1 };
+    ClothMeshFrame frame = { positions, states, NULL };
+
+    topology->columns = cases[i].columns;
+    topology->rows = cases[i].rows;
+    scratch_begin ();
+    path = scratch_path ("g.take");
+    writer = cloth_mesh_writer_new (path, CLOTH_MESH_FORMAT_AUTO, NULL,
+        topology, 0, 1, &error);
+    g_assert_no_error (error);
+    g_assert_true (cloth_mesh_writer_append (writer, 0, &frame, &error));
+    g_assert_true (cloth_mesh_writer_close (writer, &error));
+    g_assert_no_error (error);
+    take = cloth_take_open (path, &error);
+    g_assert_no_error (error);
+    g_assert_cmpfloat (cloth_take_get_info (take)->fps, ==, 0);
+    g_assert_cmpstr (cloth_take_get_info (take)->mesh, ==,
+        cases[i].grid ? NULL : "mesh.obj");
+    g_assert_cmpfloat (cloth_take_get_topology (take)->uv[10], ==,
+        cases[i].width);
+    scratch_end ();
+  }
+  {
+    g_autoptr (ClothTopology) nothing = cloth_topology_new (0, 0);
+    g_autoptr (GError) error = NULL;
+
+    g_assert_null (cloth_mesh_writer_new ("/nonexistent/a.take",
+            CLOTH_MESH_FORMAT_AUTO, NULL, nothing, 0, 1, &error));
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT);
+  }
 }
 
 static void
@@ -595,11 +1074,23 @@ main (int argc, char **argv)
   g_test_add_func ("/meshfiles/ply", test_ply);
   g_test_add_func ("/meshfiles/foreign", test_foreign_files);
   g_test_add_func ("/meshfiles/obj-tolerance", test_obj_tolerance);
+  g_test_add_func ("/meshfiles/obj-ends", test_obj_ends);
+  g_test_add_func ("/meshfiles/ply-tolerance", test_ply_tolerance);
+  g_test_add_func ("/meshfiles/ply-triangle", test_ply_triangle);
+  g_test_add_func ("/meshfiles/too-many", test_too_many);
+  g_test_add_func ("/meshfiles/too-large", test_too_large);
   g_test_add_func ("/meshfiles/hold-unseen-parts", test_hold_unseen_parts);
   g_test_add_func ("/meshfiles/hostile-text", test_hostile_text);
   g_test_add_func ("/meshfiles/hostile-pc2", test_hostile_pc2);
+  g_test_add_func ("/meshfiles/pc2-samples", test_pc2_samples);
   g_test_add_func ("/meshfiles/sets-that-do-not-fit",
       test_sets_that_do_not_fit);
+  g_test_add_func ("/meshfiles/locations", test_locations);
+  g_test_add_func ("/meshfiles/caches-that-do-not-fit",
+      test_caches_that_do_not_fit);
+  g_test_add_func ("/meshfiles/broken-frames", test_broken_frames);
+  g_test_add_func ("/meshfiles/lone-files", test_lone_files);
+  g_test_add_func ("/meshfiles/grids-of-takes", test_grids_of_takes);
   g_test_add_func ("/meshfiles/abort-and-replace", test_abort_and_replace);
   g_test_add_func ("/meshfiles/refused-frames", test_refused_frames);
   g_test_add_func ("/meshfiles/paths-stay-inside", test_paths_stay_inside);

@@ -101,6 +101,9 @@ test_full (void)
   check_full (model);
   g_assert_true (cloth_model_check (model, &error));
   copy = cloth_model_copy (model);
+  /* An effect that is there is changed, not added. */
+  cloth_model_set_effect (model, cloth_effect_find ("wind"), NULL);
+  g_assert_cmpuint (model->effects->len, ==, 2);
   g_assert_true (cloth_model_set (model, "shear", 99, &error));
   check_full (copy);
   json = cloth_model_to_json (copy);
@@ -241,6 +244,11 @@ static const struct
   {V "\"free\":{}}", "free"}, {V "\"free\":[3]}", "free"},
   {V "\"free\":[{\"name\":\"shear\"}]}", "free"},
   {V "\"free\":[{\"range\":[1,2]}]}", "free"},
+  {V "\"free\":[{\"name\":3,\"range\":[1,2]}]}", "“name”"},
+  {V "\"free\":[{\"name\":\"shear\",\"range\":3}]}", "item 0 of “free”"},
+  {V "\"free\":[{\"name\":\"shear\",\"range\":[null,1]}]}", "“free”"},
+  {V "\"free\":[{\"name\":\"shear\",\"range\":[0,1e99]}]}",
+      "“shear” is 1e+99"},
   {V "\"free\":[{\"name\":\"shear\",\"range\":[1]}]}", "free"},
   {V "\"free\":[{\"name\":\"shear\",\"range\":[1,\"2\"]}]}", "free"},
   {V "\"free\":[{\"name\":\"shear\",\"range\":[2,1]}]}", "“shear”, 2 to 1"},

@@ -217,8 +217,14 @@ test_row_too_large (void)
 {
   g_autoptr (GError) error = NULL;
   static const guint64 row_shape[] = { CLOTH_MAX_BUFFER };
+  /* Over 2^64 bytes. */
+  static const guint64 overflow[] = { G_MAXUINT64 };
 
   g_assert_null (start_writer ("a.npy", CLOTH_NPY_FLOAT64, 2, row_shape,
+          &error));
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT);
+  g_clear_error (&error);
+  g_assert_null (start_writer ("a.npy", CLOTH_NPY_FLOAT64, 2, overflow,
           &error));
   g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT);
 }
@@ -236,6 +242,18 @@ test_not_regular (void)
   g_clear_error (&error);
   g_assert_null (cloth_npy_reader_open ("/nonexistent.npy", &error));
   g_assert_error (error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND);
+  g_clear_error (&error);
+  /* A file that is no array is named. */
+  scratch_begin ();
+  scratch_write ("a.npy", "no magic bytes here", -1);
+  {
+    g_autofree gchar *path = scratch_path ("a.npy");
+
+    g_assert_null (cloth_npy_reader_open (path, &error));
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+    g_assert_true (g_str_has_prefix (error->message, path));
+  }
+  scratch_end ();
 }
 
 static const struct
@@ -282,7 +300,89 @@ static const struct
   {"something behind", "{'descr': '<f4', 'fortran_order': False, "
         "'shape': (3,)} + evil ()", CLOTH_FILE_ERROR_INVALID},
   {"empty", "", CLOTH_FILE_ERROR_INVALID},
+  {"ends before a text", "{'descr': ", CLOTH_FILE_ERROR_UNSUPPORTED},
+  {"ends before a key", "{", CLOTH_FILE_ERROR_INVALID},
+  {"ends in a text", "{'descr': '<f4", CLOTH_FILE_ERROR_UNSUPPORTED},
+  {"ends in a key", "{'descr", CLOTH_FILE_ERROR_INVALID},
+  {"key without a colon", "{'descr' '<f4'}", CLOTH_FILE_ERROR_INVALID},
+  {"escape in a type", "{'descr': '\\x3cf4'}", CLOTH_FILE_ERROR_UNSUPPORTED},
+  {"key too long", "{'descrdescrdescrdescrdescrdescrdescr': 1}",
+      CLOTH_FILE_ERROR_INVALID},
+  {"type that is no text", "{'descr': '\xff\xfe'}", CLOTH_FILE_ERROR_INVALID},
+  {"byte of unknown type",
+        "{'descr': '<i3', 'fortran_order': False, 'shape': (2,)}",
+      CLOTH_FILE_ERROR_UNSUPPORTED},
+  {"order cut short", "{'descr': '<f4', 'fortran_order': Fals",
+      CLOTH_FILE_ERROR_INVALID},
+  {"order a number", "{'descr': '<f4', 'fortran_order': 0, 'shape': (2,)}",
+      CLOTH_FILE_ERROR_INVALID},
+  {"type twice", "{'descr': '<f4', 'descr': '<f4'}", CLOTH_FILE_ERROR_INVALID},
+  {"order twice", "{'fortran_order': False, 'fortran_order': False}",
+      CLOTH_FILE_ERROR_INVALID},
+  {"no type", "{'fortran_order': False, 'shape': (2,)}",
+      CLOTH_FILE_ERROR_INVALID},
+  {"no shape", "{'descr': '<f4', 'fortran_order': False}",
+      CLOTH_FILE_ERROR_INVALID},
+  {"two numbers without a comma",
+        "{'descr': '<f4', 'fortran_order': False, 'shape': (2 2)}",
+      CLOTH_FILE_ERROR_INVALID},
+  {"number over 64 bits by a digit", "{'shape': (184467440737095516150,)}",
+      CLOTH_FILE_ERROR_INVALID},
+  {"no tuple at all", "{'descr': '<f4', 'fortran_order': False, 'shape': 3}",
+      CLOTH_FILE_ERROR_INVALID},
+  {"two lengths and no end",
+        "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 2;",
+      CLOTH_FILE_ERROR_INVALID},
+  {"two keys without a comma", "{'descr': '<f4' 'fortran_order': False}",
+      CLOTH_FILE_ERROR_INVALID},
+  {"ends in a length", "{'shape': (2", CLOTH_FILE_ERROR_INVALID},
+  {"overflow within a row",
+      "{'descr': '<f4', 'fortran_order': False, 'shape': "
+        "(0, 4294967296, 4294967296)}", CLOTH_FILE_ERROR_INVALID},
+  {"overflow in bytes",
+      "{'descr': '<f8', 'fortran_order': False, 'shape': "
+        "(4294967296, 4294967295)}", CLOTH_FILE_ERROR_INVALID},
 };
+
+/* Headers of other writers, for an array of two items or two rows of one. */
+static void
+test_tolerance (void)
+{
+  static const struct
+  {
+    const gchar *dictionary;
+    ClothNpyType type;
+    guint rank;
+  } good[] = {
+    /* Python 2 wrote long integers so. */
+    {"{'descr': '<f4', 'fortran_order': False, 'shape': (2L, 1L)}",
+        CLOTH_NPY_FLOAT32, 2},
+    {"{\"descr\":\"<u1\",\"fortran_order\":False,\"shape\":(2,)}",
+        CLOTH_NPY_UINT8, 1},
+    {"{'descr': '<i1', 'fortran_order': False, 'shape': (2,), } \n",
+        CLOTH_NPY_INT8, 1},
+    {" { 'shape' : ( 2 , ) , 'descr' : '<u8' , 'fortran_order' : False , } ",
+        CLOTH_NPY_UINT64, 1},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (good); i++) {
+    guint8 bytes[256] = "\x93NUMPY\x01";
+    gsize length = strlen (good[i].dictionary);
+    g_autoptr (GError) error = NULL;
+    g_autoptr (ClothNpyReader) reader = NULL;
+    const ClothNpyInfo *info;
+
+    bytes[8] = (guint8) length;
+    memcpy (bytes + 10, good[i].dictionary, length);
+    reader = cloth_npy_reader_new (cloth_input_new_memory (bytes,
+            10 + length + 16), &error);
+    g_assert_no_error (error);
+    info = cloth_npy_reader_get_info (reader);
+    g_assert_cmpint (info->type, ==, good[i].type);
+    g_assert_cmpuint (info->rank, ==, good[i].rank);
+    g_assert_cmpuint (info->n_rows, ==, 2);
+  }
+}
 
 static void
 test_hostile (void)
@@ -320,6 +420,10 @@ test_hostile_preface (void)
     {"\x93NUMPY\x01\x00\x10\x00{", 11, CLOTH_FILE_ERROR_TRUNCATED},
     {"\x93NUMPY\x02\x00\xff\xff\xff\xff", 12, CLOTH_FILE_ERROR_LIMIT},
     {"\x93NUMPY\x03\x00\x10", 9, CLOTH_FILE_ERROR_TRUNCATED},
+    {"\x93NUMPY\x03\x00\x10\x00", 10, CLOTH_FILE_ERROR_TRUNCATED},
+    /* A type that ends in a 0. */
+    {"\x93NUMPY\x01\x00\x0d\x00{'descr': '\0'", 23,
+        CLOTH_FILE_ERROR_UNSUPPORTED},
   };
 
   for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
@@ -339,6 +443,7 @@ test_rows_out_of_range (void)
   g_autoptr (ClothNpyReader) reader = NULL;
   guint64 shape[] = { 3, 2 };
   gfloat items[6] = { 0 };
+  gdouble doubles[6];
 
   scratch_begin ();
   path = scratch_path ("a.npy");
@@ -353,10 +458,81 @@ test_rows_out_of_range (void)
           &error));
   g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
   g_clear_error (&error);
+  g_assert_false (cloth_npy_reader_read_raw (reader, 2, 2, items, &error));
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+  g_assert_cmpstr (error->message, ==, "rows 2 to 4 of 3");
+  g_clear_error (&error);
+  g_assert_false (cloth_npy_reader_read_float (reader, 4, 0, items, &error));
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+  g_clear_error (&error);
   /* It shrinks under the reader. */
   g_assert_cmpint (truncate (path, 100), ==, 0);
   g_assert_false (cloth_npy_reader_read_float (reader, 0, 3, items, &error));
   g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_TRUNCATED);
+  g_clear_error (&error);
+  g_assert_false (cloth_npy_reader_read_double (reader, 0, 3, doubles, &error));
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_TRUNCATED);
+  g_clear_error (&error);
+  g_assert_false (cloth_npy_reader_read_raw (reader, 0, 3, items, &error));
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_TRUNCATED);
+  scratch_end ();
+}
+
+/* What a killed program left, or what somebody put there. */
+static void
+test_parts (void)
+{
+  static const struct
+  {
+    const gchar *shape;
+    guint data_bytes;
+    gboolean counted;
+    guint64 n_rows;
+    const gchar *says;
+  } cases[] = {
+    {"()", 4, FALSE, 0, "it has no rows that can be counted"},
+    {"(0, 0)", 0, FALSE, 0, "it has no rows that can be counted"},
+    {"(9,)", 40, TRUE, 10, "the header has no room for the number of rows"},
+  };
+  g_autofree gchar *head = NULL;
+
+  scratch_begin ();
+  head = scratch_path ("take.json");
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autoptr (GError) error = NULL;
+    g_autoptr (ClothParts) parts = cloth_parts_new (head, "", &error);
+    g_autofree gchar *path = NULL, *text = g_strdup_printf ("{'descr': '<f4', "
+        "'fortran_order': False, 'shape': %s}\n", cases[i].shape);
+    g_autoptr (GByteArray) bytes = g_byte_array_new ();
+    guint8 length = (guint8) strlen (text);
+    guint64 n_rows = 1;
+
+    g_assert_no_error (error);
+    path = cloth_parts_get_path (parts, "a.npy");
+    /* Killed before it had begun the file. */
+    g_assert_true (cloth_npy_part_count (parts, "a.npy", &n_rows, &error));
+    g_assert_cmpuint (n_rows, ==, 0);
+    g_assert_false (cloth_npy_part_finish (parts, "a.npy", 0, &error));
+    g_assert_error (error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND);
+    g_clear_error (&error);
+
+    g_byte_array_append (bytes, (const guint8 *) "\x93NUMPY\x01\x00", 8);
+    g_byte_array_append (bytes, &length, 1);
+    g_byte_array_append (bytes, (const guint8 *) "", 1);
+    g_byte_array_append (bytes, (const guint8 *) text, length);
+    g_byte_array_set_size (bytes, bytes->len + cases[i].data_bytes);
+    g_assert_true (g_file_set_contents (path, (const gchar *) bytes->data,
+            bytes->len, NULL));
+    g_assert_true (cloth_npy_part_count (parts, "a.npy", &n_rows, &error) ==
+        cases[i].counted);
+    if (cases[i].counted) {
+      g_assert_no_error (error);
+      g_assert_cmpuint (n_rows, ==, cases[i].n_rows);
+      g_assert_false (cloth_npy_part_finish (parts, "a.npy", n_rows, &error));
+    }
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+    g_assert_nonnull (strstr (error->message, cases[i].says));
+  }
   scratch_end ();
 }
 
@@ -371,8 +547,10 @@ main (int argc, char **argv)
   g_test_add_func ("/npy/unwritable", test_unwritable);
   g_test_add_func ("/npy/row-too-large", test_row_too_large);
   g_test_add_func ("/npy/not-regular", test_not_regular);
+  g_test_add_func ("/npy/tolerance", test_tolerance);
   g_test_add_func ("/npy/hostile", test_hostile);
   g_test_add_func ("/npy/hostile-preface", test_hostile_preface);
   g_test_add_func ("/npy/rows-out-of-range", test_rows_out_of_range);
+  g_test_add_func ("/npy/parts", test_parts);
   return g_test_run ();
 }

@@ -199,6 +199,33 @@ test_refused (void)
         CLOTH_PATTERN_ERROR_VALUE, "dot_ratio"},
     {HEAD SIZE ",\"dot_ratio\":0.3}", CLOTH_PATTERN_ERROR_FORMAT,
         "\"dot_ratio\""},
+    {HEAD SIZE ",\"code\":[\"01\",\"10\"],\"dot_ratio\":0}",
+        CLOTH_PATTERN_ERROR_VALUE, "dot_ratio is 0"},
+    {HEAD SIZE ",\"code\":7}", CLOTH_PATTERN_ERROR_FORMAT, "each row"},
+    {HEAD SIZE ",\"code\":[\"01\",[\"10\"]]}", CLOTH_PATTERN_ERROR_FORMAT,
+        "each column"},
+    {HEAD SIZE ",\"code\":[\"01\",true]}", CLOTH_PATTERN_ERROR_FORMAT,
+        "each column"},
+    {HEAD SIZE ",\"cloth_m\":[0,1]}", CLOTH_PATTERN_ERROR_VALUE,
+        "cloth_m has 0"},
+    {HEAD SIZE ",\"cloth_m\":[1,1001]}", CLOTH_PATTERN_ERROR_VALUE,
+        "at most 1000"},
+    {HEAD SIZE ",\"cloth_m\":[1,0.19]}", CLOTH_PATTERN_ERROR_VALUE,
+        "the board's height goes from 0 m to 0.2 m"},
+    {HEAD SIZE ",\"cloth_m\":[\"1\",1]}", CLOTH_PATTERN_ERROR_FORMAT,
+        "\"cloth_m\""},
+    {HEAD "\"columns\":-7,\"rows\":2,\"square_m\":1}",
+        CLOTH_PATTERN_ERROR_VALUE, "1 to 500"},
+    {HEAD "\"columns\":[2],\"rows\":2,\"square_m\":1}",
+        CLOTH_PATTERN_ERROR_FORMAT, "\"columns\""},
+    {HEAD "\"columns\":2,\"rows\":\"2\",\"square_m\":1}",
+        CLOTH_PATTERN_ERROR_FORMAT, "\"rows\""},
+    {HEAD "\"columns\":2,\"rows\":2,\"square_m\":[1]}",
+        CLOTH_PATTERN_ERROR_FORMAT, "\"square_m\""},
+    {"{\"pattern\":[\"checker\"]}", CLOTH_PATTERN_ERROR_FORMAT,
+        "\"pattern\""},
+    {HEAD SIZE ",\"first_square\":null}", CLOTH_PATTERN_ERROR_FORMAT,
+        "\"first_square\""},
   };
 
   for (gsize i = 0; i < G_N_ELEMENTS (cases); i++) {
@@ -211,6 +238,21 @@ test_refused (void)
     g_assert_error (error, CLOTH_PATTERN_ERROR, cases[i].code);
     g_assert_nonnull (strstr (error->message, cases[i].says));
   }
+}
+
+static void
+test_bad_file (void)
+{
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *dir = g_dir_make_tmp ("pattern-XXXXXX", NULL);
+  g_autofree gchar *path = g_build_filename (dir, "pattern.json", NULL);
+
+  g_assert_true (g_file_set_contents (path, "{", 1, NULL));
+  g_assert_null (cloth_pattern_load (path, &error));
+  g_assert_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_FORMAT);
+  g_assert_true (g_str_has_prefix (error->message, path));
+  g_unlink (path);
+  g_rmdir (dir);
 }
 
 static void
@@ -241,6 +283,15 @@ test_save_refused (void)
   g_assert_false (cloth_pattern_save (pattern, "/nowhere/pattern.json",
           &error));
   g_assert_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_VALUE);
+  g_clear_error (&error);
+  pattern->square_m = 0.05;
+  pattern->dot_ratio = 0.3;
+  pattern->code = g_malloc0 (16);
+  pattern->code[15] = 2;
+  g_assert_false (cloth_pattern_save (pattern, "/nowhere/pattern.json",
+          &error));
+  g_assert_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_VALUE);
+  g_assert_nonnull (strstr (error->message, "a value of 2"));
 }
 
 int
@@ -254,6 +305,7 @@ main (int argc, char **argv)
   g_test_add_func ("/pattern/round-trip", test_round_trip);
   g_test_add_func ("/pattern/defaults", test_defaults);
   g_test_add_func ("/pattern/refused", test_refused);
+  g_test_add_func ("/pattern/bad-file", test_bad_file);
   g_test_add_func ("/pattern/missing-file", test_missing_file);
   g_test_add_func ("/pattern/save-refused", test_save_refused);
   return g_test_run ();

@@ -115,6 +115,64 @@ test_save (void)
   g_assert_cmpint (g_rmdir (dir), ==, 0);
 }
 
+/* What only some cameras have is written when there is any of it. */
+static void
+test_save_some (void)
+{
+  g_autofree gchar *dir = g_dir_make_tmp ("rigXXXXXX", NULL);
+  g_autofree gchar *path = g_build_filename (dir, "a.json", NULL);
+
+  for (guint i = 0; i < 5; i++) {
+    g_autoptr (GError) error = NULL;
+    g_autoptr (ClothRig) rig = cloth_rig_load_data (good, strlen (good),
+        &error);
+    g_autoptr (ClothRig) again = NULL;
+    ClothCamera *c = &rig->cameras[0];
+    const ClothCamera *d;
+
+    g_assert_no_error (error);
+    memset (c->K_sd, 0, sizeof c->K_sd);
+    memset (c->r_sd, 0, sizeof c->r_sd);
+    c->rolling_shutter_s = i == 0 ? 0.02 : 0;
+    c->offset_s = i == 0 ? 0 : -0.5;
+    if (i > 0)
+      (i == 1 ? c->K_sd : i == 2 ? c->k_sd : i == 3 ? c->r_sd : c->t_sd)[2] = 3;
+    g_assert_true (cloth_rig_save (rig, path, &error));
+    again = cloth_rig_load (path, &error);
+    g_assert_no_error (error);
+    d = &again->cameras[0];
+    g_assert_cmpfloat (d->rolling_shutter_s, ==, c->rolling_shutter_s);
+    g_assert_cmpfloat (d->offset_s, ==, c->offset_s);
+    g_assert_cmpfloat (d->K_sd[2], ==, i == 1 ? 3 : 0);
+    g_assert_cmpfloat (d->k_sd[2], ==, i == 2 ? 3 : 0);
+    g_assert_cmpfloat (d->r_sd[2], ==, i == 3 ? 3 : 0);
+    g_assert_cmpfloat (d->t_sd[2], ==, i == 4 ? 3 : 0);
+  }
+  g_unlink (path);
+  g_rmdir (dir);
+}
+
+/* A lens without coefficients may have an empty list of them, or none. */
+static void
+test_no_lens (void)
+{
+  static const gchar *const lenses[] = { "{\"model\":\"none\"}",
+    "{\"model\":\"none\",\"coefficients\":[]}"
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (lenses); i++) {
+    g_auto (GStrv) parts = g_strsplit (good,
+        "{\"model\":\"fisheye\",\"coefficients\":[0.1,0.2,-3e-3,4]}", 2);
+    g_autofree gchar *text = g_strjoinv (lenses[i], parts);
+    g_autoptr (GError) error = NULL;
+    g_autoptr (ClothRig) rig = cloth_rig_load_data (text, strlen (text),
+        &error);
+
+    g_assert_no_error (error);
+    g_assert_cmpint (rig->cameras[0].lens, ==, CLOTH_LENS_NONE);
+  }
+}
+
 /* A matrix typed with five digits is a rotation again once loaded. */
 static void
 test_mend (void)
@@ -184,6 +242,25 @@ static const Bad bads[] = {
   {"500.5,0,320", "500.5,0,null", CLOTH_RIG_ERROR_VALUE, "cameras[0].K[0]"},
   {"[0,501,240]", "[0.1,501,240]", CLOTH_RIG_ERROR_VALUE, "cameras[0].K"},
   {",[0,501,240]", "", CLOTH_RIG_ERROR_VALUE, "cameras[0].K"},
+  {"\"K\":[[500.5,0,320],[0,501,240],[0,0,1]],", "", CLOTH_RIG_ERROR_VALUE,
+      "cameras[0].K: is missing"},
+  {"[[500.5,0,320],[0,501,240],[0,0,1]]", "7", CLOTH_RIG_ERROR_VALUE,
+      "cameras[0].K: must be 3 rows"},
+  {"\"R\":[[0,-1,0],[1,0,0],[0,0,1]],", "", CLOTH_RIG_ERROR_VALUE,
+      "cameras[0].R: is missing"},
+  {"\"distortion\":{\"model\":\"fisheye\",\"coefficients\":[0.1,0.2,-3e-3,4]},",
+      "", CLOTH_RIG_ERROR_VALUE, "cameras[0].distortion: is missing"},
+  {"{\"model\":\"fisheye\",\"coefficients\":[0.1,0.2,-3e-3,4]}", "\"none\"",
+      CLOTH_RIG_ERROR_VALUE, "cameras[0].distortion: must be an object"},
+  {"{\"model\":\"fisheye\"", "{\"model\":\"fisheye\",\"k\":1",
+      CLOTH_RIG_ERROR_VALUE, "cameras[0].distortion.k: unknown key"},
+  {"\"model\":\"fisheye\",", "", CLOTH_RIG_ERROR_VALUE,
+      "cameras[0].distortion.model: is missing"},
+  {"\"model\":\"fisheye\"", "\"model\":[]", CLOTH_RIG_ERROR_VALUE,
+      "cameras[0].distortion.model: must be a string"},
+  {"{\"K\":[1,2,3,4],\"rotation\":[1,2,3]}", "[]", CLOTH_RIG_ERROR_VALUE,
+      "cameras[0].standard_deviations: must be an object"},
+  {"0.02", "\"0.02\"", CLOTH_RIG_ERROR_VALUE, "rolling_shutter_s"},
   {"\"fisheye\"", "\"fish\"", CLOTH_RIG_ERROR_VALUE, "\"fish\""},
   {"\"fisheye\"", "\"brown5\"", CLOTH_RIG_ERROR_VALUE, "4 numbers, not 5"},
   {"\"fisheye\"", "\"none\"", CLOTH_RIG_ERROR_VALUE, "4 numbers, not 0"},
@@ -249,6 +326,10 @@ test_bad (void)
   assert_refused ("[]", -1, NOT_JSON, "one object");
   assert_refused ("{\"version\":1,\"cameras\":[]}", -1, CLOTH_RIG_ERROR_VALUE,
       "0 of them");
+  assert_refused ("{\"version\":1}", -1, CLOTH_RIG_ERROR_VALUE,
+      "cameras: must be a list");
+  assert_refused ("{\"version\":1,\"cameras\":{}}", -1, CLOTH_RIG_ERROR_VALUE,
+      "cameras: must be a list");
   assert_refused ("{\"version\":1,\"cameras\":[[]]}", -1,
       CLOTH_RIG_ERROR_VALUE, "cameras[0]");
   assert_refused ("{\"a\0\"}", 6, NOT_JSON, "not JSON");
@@ -313,6 +394,8 @@ main (int argc, char **argv)
   g_test_add_func ("/rigfile/load", test_load);
   g_test_add_func ("/rigfile/rendered", test_rendered);
   g_test_add_func ("/rigfile/save", test_save);
+  g_test_add_func ("/rigfile/save-some", test_save_some);
+  g_test_add_func ("/rigfile/no-lens", test_no_lens);
   g_test_add_func ("/rigfile/mend", test_mend);
   g_test_add_func ("/rigfile/bad", test_bad);
   g_test_add_func ("/rigfile/limits", test_limits);

@@ -163,7 +163,14 @@ static const Bad bad_opencv[] = {
   {"501.,", "1,2,3,", CLOTH_RIG_ERROR_VALUE, "more than 9"},
   {"501.,", "*x,", CLOTH_RIG_ERROR_SYNTAX, "aliases"},
   {"rows: 3", "rows: 4", CLOTH_RIG_ERROR_VALUE, "says 4×3"},
+  {"501.", "''", CLOTH_RIG_ERROR_VALUE, "\"\" is not a finite number"},
+  {"501.", "5 01.", CLOTH_RIG_ERROR_VALUE, "not a finite number"},
+  {"[ 500., 0., 320., 0., 501., 240., 0., 0., 1. ]", "7",
+      CLOTH_RIG_ERROR_VALUE, "camera_matrix: must be a list of numbers"},
+  {"500., 0., 320.,", "[ 500., x, 320. ],", CLOTH_RIG_ERROR_VALUE,
+      "\"x\" is not a finite number"},
   {"rows: 3", "rows: x", CLOTH_RIG_ERROR_VALUE, "rows, cols and data"},
+  {"cols: 3", "cols: [3]", CLOTH_RIG_ERROR_VALUE, "rows, cols and data"},
   {"camera_matrix", "matrix", CLOTH_RIG_ERROR_VALUE, "camera_matrix"},
   {"distortion_coefficients", "k", CLOTH_RIG_ERROR_VALUE,
       "distortion_coefficients"},
@@ -174,6 +181,15 @@ static const Bad bad_opencv[] = {
   {"rows: 4\n   cols: 1\n   dt: d\n   data: [ ",
         "rows: 5\n   cols: 1\n   dt: d\n   data: [ 7, ",
       CLOTH_RIG_ERROR_VALUE, "coefficient 5"},
+  {"rows: 4\n   cols: 1\n   dt: d\n   data: [ 1e-1, ",
+        "rows: 3\n   cols: 1\n   dt: d\n   data: [ ",
+      CLOTH_RIG_ERROR_VALUE, "holds 3 coefficients; a fisheye has 4"},
+  {"fisheye_model: 1\ncamera_matrix", "matrix", CLOTH_RIG_ERROR_VALUE,
+      "camera_matrix: is missing"},
+  {"image_height: 480", "image_height: high", CLOTH_RIG_ERROR_VALUE,
+      "numbers"},
+  {"image_height: 480", "image_height: 480.5", CLOTH_RIG_ERROR_VALUE,
+      "480.5 must be"},
   {"image_width: 640", "image_width: 0", CLOTH_RIG_ERROR_VALUE, "0 must be"},
   {"image_width: 640", "image_width: 6e9", CLOTH_RIG_ERROR_VALUE, "6e+09"},
   {"image_width: 640", "image_width: wide", CLOTH_RIG_ERROR_VALUE, "numbers"},
@@ -181,6 +197,8 @@ static const Bad bad_opencv[] = {
   {"camera_name: top", "camera_name: a/b", CLOTH_RIG_ERROR_VALUE, "slash"},
   {"camera_name: top", "camera_name: [top", CLOTH_RIG_ERROR_SYNTAX, "line"},
   {"camera_name: top", "? [a]\n: top", CLOTH_RIG_ERROR_SYNTAX, "plain text"},
+  {"camera_name: top", "camera_name: \"t\\0p\"", CLOTH_RIG_ERROR_SYNTAX,
+      "line 3: text holds a 0"},
 };
 
 static const Bad bad_kalibr[] = {
@@ -188,6 +206,18 @@ static const Bad bad_kalibr[] = {
   {"pinhole", "omni", CLOTH_RIG_ERROR_VALUE, "\"omni\""},
   {"camera_model: pinhole", "a: b", CLOTH_RIG_ERROR_VALUE,
       "cam0.camera_model"},
+  {"camera_model: pinhole", "camera_model: [a]", CLOTH_RIG_ERROR_VALUE,
+      "cam0.camera_model: is missing or no text"},
+  {"distortion_model: radtan", "a: b", CLOTH_RIG_ERROR_VALUE,
+      "cam0.distortion_model: is missing or no text"},
+  {"[752, 480]", "[752, 0]", CLOTH_RIG_ERROR_VALUE, "0 must be"},
+  {"[752, 480]", "[1e9, 480]", CLOTH_RIG_ERROR_VALUE, "1e+09 must be"},
+  {"- [0.0, 0.0, 0.0, 1.0]", "- [0.1, 0.0, 0.0, 1.0]", CLOTH_RIG_ERROR_VALUE,
+      "last row"},
+  {"- [0.0, 0.0, 0.0, 1.0]", "- [0.0, 0.1, 0.0, 1.0]", CLOTH_RIG_ERROR_VALUE,
+      "last row"},
+  {"- [0.0, 0.0, 0.0, 1.0]", "- [0.0, 0.0, 0.1, 1.0]", CLOTH_RIG_ERROR_VALUE,
+      "last row"},
   {"radtan", "fov", CLOTH_RIG_ERROR_VALUE, "\"fov\""},
   {"0.00087,", "", CLOTH_RIG_ERROR_VALUE, "cam0.distortion_coeffs"},
   {"461.629", "0", CLOTH_RIG_ERROR_VALUE, "cameras[0].K"},
@@ -273,12 +303,158 @@ test_rotation_vector (void)
   }
 }
 
+/* The lens that a file's coefficients mean, whatever they are called. */
+static void
+test_opencv_lenses (void)
+{
+  static const struct
+  {
+    const gchar *line, *coefficients;
+    ClothLens lens;
+    const gchar *says;
+  } cases[] = {
+    {"a: b", "[]", CLOTH_LENS_NONE, NULL},
+    {"a: b", "[ .1, .2, .3, .4 ]", CLOTH_LENS_BROWN5, NULL},
+    {"a: b", "[ .1, .2, .3, .4, .5 ]", CLOTH_LENS_BROWN5, NULL},
+    {"a: b", "[ .1, .2, .3, .4, .5, .6, .7, .8 ]", CLOTH_LENS_BROWN8, NULL},
+    {"a: b", "[ .1, 0, 0, 0, 0, .6, 0, 0, 0, 0, 0, 0 ]", CLOTH_LENS_BROWN8,
+        NULL},
+    {"a: b", "[ .1, 0, 0, 0, 0, .6, 0, 0, 0, 0, 0, 0, 0, 0 ]",
+        CLOTH_LENS_BROWN8, NULL},
+    {"fisheye_model: 0", "[ .1, .2, .3, .4 ]", CLOTH_LENS_BROWN5, NULL},
+    {"fisheye_model: no", "[ .1, .2, .3, .4 ]", CLOTH_LENS_BROWN5, NULL},
+    {"distortion_model: plumb_bob", "[ .1, .2, .3, .4, .5 ]",
+        CLOTH_LENS_BROWN5, NULL},
+    {"distortion_model: [ fisheye ]", "[ .1, .2, .3, .4 ]", CLOTH_LENS_BROWN5,
+        NULL},
+    {"distortion_model: equidistant", "[ .1, .2, .3, .4 ]", CLOTH_LENS_FISHEYE,
+        NULL},
+    {"distortion_model: fisheye", "[ .1, .2, .3, .4 ]", CLOTH_LENS_FISHEYE,
+        NULL},
+    {"a: b", "[ 1, 0, 0 ]", 0, "holds 3 coefficients; OpenCV knows 4, 5, 8, "},
+    {"a: b", "[ 1, 0, 0, 0, 0, 0, 0, 0, 0 ]", 0, "holds 9 coefficients"},
+    {"a: b", "[ .1, 0, 0, 0, 0, 0, 0, 0, .5, 0, 0, 0 ]", 0,
+        "coefficient 9 is 0.5; a Brown lens of at most 8"},
+    {"a: b", "[ 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 ]", 0,
+        "more than 14 numbers"},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autofree gchar *text = g_strdup_printf ("%s\ncamera_name: [ top ]\n"
+        "image_width: 640\nimage_height: 480\nK: [ 500, 0, 320, 0, 500, 240, "
+        "0, 0, 1 ]\nD: %s\n", cases[i].line, cases[i].coefficients);
+    g_autoptr (GError) error = NULL;
+    g_autoptr (ClothRig) rig = NULL;
+
+    if (cases[i].says) {
+      assert_refused (FALSE, text, CLOTH_RIG_ERROR_VALUE, cases[i].says);
+      continue;
+    }
+    rig = cloth_rig_import_opencv_data (text, strlen (text), 640, 480, &error);
+    g_assert_no_error (error);
+    g_assert_cmpint (rig->cameras[0].lens, ==, cases[i].lens);
+    g_assert_cmpfloat (rig->cameras[0].k[0], ==, i ? .1 : 0);
+    /* A list is no name. */
+    g_assert_cmpstr (rig->cameras[0].name, ==, "camera");
+    g_clear_pointer (&rig, cloth_rig_free);
+    g_assert_null (cloth_rig_import_opencv_data (text, strlen (text), 640, 240,
+            &error));
+    g_assert_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_VALUE);
+    g_assert_nonnull (strstr (error->message, "640×480, not 640×240"));
+  }
+}
+
+/* What a stereo file lacks is named. */
+static void
+test_bad_stereo (void)
+{
+  static const gchar good[] = "M1: [ 500, 0, 320, 0, 500, 240, 0, 0, 1 ]\n"
+      "D1: [ 0, 0, 0, 0 ]\nM2: [ 500, 0, 320, 0, 500, 240, 0, 0, 1 ]\n"
+      "D2: [ 0, 0, 0, 0 ]\nR: [ 0, 0, 0 ]\nT: [ 1, 2, 3 ]\n"
+      "image_width: 640\nimage_height: 480\n";
+  static const gchar *const cases[][3] = {
+    {"M2", "N2", "M2: is missing"},
+    {"M2: [ 500", "M2: [ x", "M2: \"x\" is not a finite number"},
+    {"D1", "E", "D1: is missing"},
+    {"D2: [ 0,", "D2: [", "D2: holds 3 coefficients"},
+    {"image_width", "w", "no picture size"},
+    {"R: ", "S: ", "R: is missing; give the file"},
+    {"T: ", "U: ", "T: is missing; give the file"},
+    {"T: [ 1,", "T: [", "T: holds 2 numbers, not 3"},
+  };
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRig) rig =
+      cloth_rig_import_opencv_data (good, strlen (good), 0, 0, &error);
+
+  g_assert_no_error (error);
+  g_assert_cmpfloat (rig->cameras[1].t[2], ==, 3);
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_auto (GStrv) parts = g_strsplit (good, cases[i][0], 2);
+    g_autofree gchar *text = g_strjoinv (cases[i][1], parts);
+
+    g_assert_cmpuint (g_strv_length (parts), ==, 2);
+    assert_refused (FALSE, text, CLOTH_RIG_ERROR_VALUE, cases[i][2]);
+  }
+}
+
+/* Messages begin with the file; a camera without a name has that of its file. */
+static void
+test_files (void)
+{
+  static const struct
+  {
+    const gchar *name, *camera;
+  } named[] = { {"front.yml", "front"}, {"front", "front"}, {".yml", ".yml"} };
+  const gchar *none[] = { NULL };
+  g_autofree gchar *dir = g_dir_make_tmp ("rigXXXXXX", NULL);
+  g_autofree gchar *missing = g_build_filename (dir, "missing", NULL);
+  g_auto (GStrv) parts = g_strsplit (mono, "camera_name: top\n", 2);
+  g_autofree gchar *text = g_strjoinv ("", parts);
+  g_autoptr (GError) error = NULL;
+
+  for (guint i = 0; i < G_N_ELEMENTS (named); i++) {
+    g_autofree gchar *path = g_build_filename (dir, named[i].name, NULL);
+    const gchar *paths[] = { path, NULL };
+    g_autoptr (ClothRig) rig = NULL;
+
+    g_assert_true (g_file_set_contents (path, text, -1, NULL));
+    rig = cloth_rig_import_opencv (paths, 0, 0, &error);
+    g_assert_no_error (error);
+    g_assert_cmpstr (rig->cameras[0].name, ==, named[i].camera);
+    g_clear_pointer (&rig, cloth_rig_free);
+
+    g_assert_true (g_file_set_contents (path, chain, -1, NULL));
+    rig = cloth_rig_import_kalibr (path, &error);
+    g_assert_no_error (error);
+    g_assert_cmpuint (rig->n_cameras, ==, 3);
+
+    g_assert_true (g_file_set_contents (path, "a: [", -1, NULL));
+    g_assert_null (cloth_rig_import_opencv (paths, 0, 0, &error));
+    g_assert_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_SYNTAX);
+    g_assert_true (g_str_has_prefix (error->message, path));
+    g_clear_error (&error);
+    g_assert_null (cloth_rig_import_kalibr (path, &error));
+    g_assert_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_SYNTAX);
+    g_assert_true (g_str_has_prefix (error->message, path));
+    g_clear_error (&error);
+    g_unlink (path);
+  }
+  g_assert_null (cloth_rig_import_kalibr (missing, &error));
+  g_assert_error (error, G_FILE_ERROR, G_FILE_ERROR_NOENT);
+  g_clear_error (&error);
+  g_assert_null (cloth_rig_import_opencv (none, 640, 480, &error));
+  g_assert_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_VALUE);
+  g_assert_true (g_str_has_prefix (error->message, "no file: "));
+  g_rmdir (dir);
+}
+
 static void
 test_hostile (void)
 {
   g_autofree gchar *deep = g_strnfill (100000, '[');
   g_autoptr (GString) long_list = g_string_new ("a: [");
   g_autoptr (GString) keys = g_string_new ("");
+  g_autoptr (GString) cameras = g_string_new ("");
 
   /* The one that hangs OpenCV 4.6's own reader for ever. */
   assert_refused (FALSE, "%YAML:1.0\n---a: 1\nb<!--\nc: 2\n",
@@ -291,9 +467,13 @@ test_hostile (void)
   for (guint i = 0; i < 1500; i++)
     g_string_append_printf (keys, "k%u: 1\n", i);
   assert_refused (FALSE, keys->str, CLOTH_RIG_ERROR_LIMIT, "1000 keys");
+  for (guint i = 0; i <= CLOTH_RIG_MAX_CAMERAS; i++)
+    g_string_append_printf (cameras, "cam%u: 1\n", i);
   /* A bomb of aliases. */
   assert_refused (TRUE, "a: &a [x,x]\nb: &b [*a,*a]\n",
       CLOTH_RIG_ERROR_SYNTAX, "aliases");
+  assert_refused (TRUE, cameras->str, CLOTH_RIG_ERROR_VALUE,
+      "more than 64 cameras");
   assert_refused (TRUE, "", CLOTH_RIG_ERROR_SYNTAX, "no YAML document");
   assert_refused (FALSE, "%YAML:1.0", CLOTH_RIG_ERROR_SYNTAX,
       "no YAML document");
@@ -311,6 +491,9 @@ main (int argc, char **argv)
   g_test_add_func ("/rigyaml/kalibr", test_kalibr);
   g_test_add_func ("/rigyaml/bad", test_bad);
   g_test_add_func ("/rigyaml/rotation-vector", test_rotation_vector);
+  g_test_add_func ("/rigyaml/opencv-lenses", test_opencv_lenses);
+  g_test_add_func ("/rigyaml/bad-stereo", test_bad_stereo);
+  g_test_add_func ("/rigyaml/files", test_files);
   g_test_add_func ("/rigyaml/hostile", test_hostile);
   return g_test_run ();
 }

@@ -376,6 +376,94 @@ static const gchar *const bad_json[] = {
   MESH ",\"seams\":[{\"lines\":[[0,1000000],[2,3]]}]}",
 };
 
+/* What a mistake in take.json is called. */
+static const struct
+{
+  const gchar *text, *says;
+} named_json[] = {
+  {"{\"version\":1,\"grid\":{\"columns\":3,\"colums\":2}}", "colums"},
+  {"{\"version\":1,\"grid\":{\"columns\":3,\"rows\":1}}", "“rows”"},
+  {"{\"version\":1,\"grid\":{\"columns\":3,\"rows\":2,\"width_m\":1,"
+        "\"height_m\":\"1\"}}", "“height_m”"},
+  {"{\"version\":1,\"grid\":{\"columns\":3,\"rows\":2,\"height_m\":1}}",
+      "“grid” needs width_m and height_m"},
+  {OK ",\"held\":[{\"vertex\":1,\"from_s\":\"0\"}]}", "“from_s”"},
+  {OK ",\"held\":[{\"vertex\":1,\"until_s\":1e10}]}", "“until_s”"},
+  {MESH ",\"seams\":[{\"lines\":[3,[0,1]]}]}",
+      "a line of seam 0 must be a list of at least two vertices"},
+  {MESH ",\"seams\":[{\"lines\":[[0,\"1\"],[2,3]]}]}", "whole numbers"},
+  {OK ",\"obstacles\":[{\"type\":\"sphere\",\"radius_m\":1}]}", "“centre”"},
+  {OK ",\"obstacles\":[{\"type\":\"plane\",\"normal\":[0,0,1]}]}",
+      "“point”"},
+  {OK ",\"obstacles\":[{\"type\":\"plane\",\"point\":[0,0,1]}]}",
+      "“normal”"},
+  {OK ",\"obstacles\":[{\"type\":\"mesh\",\"mesh\":3}]}", "“mesh”"},
+  {OK ",\"obstacles\":[{\"type\":3}]}", "“type”"},
+  {OK ",\"obstacles\":[{\"type\":\"plane\",\"friction\":-1}]}",
+      "“friction”"},
+  {OK ",\"obstacles\":3}", "“obstacles”"},
+  {OK ",\"obstacles\":[3]}", "“obstacles”"},
+  {"{\"version\":1,\"mesh\":3}", "“mesh”"},
+  {OK ",\"notes\":3}", "“notes”"},
+};
+
+static void
+test_named_json (void)
+{
+  for (guint i = 0; i < G_N_ELEMENTS (named_json); i++) {
+    g_autoptr (GError) error = NULL;
+
+    g_assert_null (cloth_take_info_parse (named_json[i].text,
+            strlen (named_json[i].text), &error));
+    g_test_message ("%s", error->message);
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+    g_assert_true (g_str_has_prefix (error->message, "take.json: "));
+    g_assert_nonnull (strstr (error->message, named_json[i].says));
+  }
+}
+
+/* A description without a name, and one of every obstacle, for another take. */
+static void
+test_copied_info (void)
+{
+  static const gchar text[] = MESH ",\"obstacles\":["
+      "{\"type\":\"plane\",\"point\":[1,2,3],\"normal\":[0,0,5]},"
+      "{\"type\":\"mesh\",\"mesh\":\"sub/wedge.obj\",\"friction\":0.5}],"
+      "\"held\":[{\"vertex\":3,\"from_s\":-2}],"
+      "\"seams\":[{\"lines\":[[0,1],[2,3]]}],\"notes\":\"n\"}";
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothTakeInfo) info =
+      cloth_take_info_parse (text, strlen (text), &error);
+  g_autoptr (ClothTakeInfo) unnamed = cloth_take_info_new (NULL);
+  g_autoptr (ClothTakeInfo) copy = NULL, empty = NULL;
+  const ClothObstacle *plane;
+
+  g_assert_no_error (error);
+  copy = cloth_take_info_copy (info);
+  g_assert_cmpstr (copy->mesh, ==, "mesh.obj");
+  g_assert_cmpstr (copy->notes, ==, "n");
+  g_assert_cmpuint (copy->obstacles->len, ==, 2);
+  plane = &g_array_index (copy->obstacles, ClothObstacle, 0);
+  g_assert_cmpint (plane->kind, ==, CLOTH_OBSTACLE_PLANE);
+  g_assert_cmpfloat (plane->point[2], ==, 3);
+  g_assert_cmpfloat (plane->normal[2], ==, 1);
+  g_assert_true (isnan (plane->friction));
+  g_assert_null (plane->mesh);
+  g_assert_cmpstr (plane[1].mesh, ==, "obstacle-1.obj");
+  g_assert_cmpfloat (plane[1].friction, ==, 0.5);
+  g_assert_cmpuint (copy->held->len, ==, 1);
+  g_assert_cmpfloat (g_array_index (copy->held, ClothHeld, 0).from_s, ==, -2);
+  g_assert_cmpuint (copy->seams->len, ==, 1);
+
+  unnamed->columns = unnamed->rows = 2;
+  unnamed->width_m = unnamed->height_m = 1;
+  unnamed->fps = 25;
+  empty = cloth_take_info_copy (unnamed);
+  g_assert_cmpstr (empty->name, ==, "");
+  g_assert_null (empty->mesh);
+  g_assert_cmpuint (empty->rows, ==, 2);
+}
+
 static void
 test_hostile_json (void)
 {
@@ -424,6 +512,15 @@ static const gchar *const breaks[] = {
       "os.rename('t/mesh.obj','mesh.obj')",
   "open('t/mesh.obj','w').write('v 0 0 0\\n'*6)",
   "open('t/mesh.obj','w').write('v 0 0 0\\nvt 0 0\\nf 1/1 1/1 1/1\\n')",
+  "open('t/mesh.obj','w').write('v 0 x 0\\n')",
+  "os.truncate('t/take.json',(512<<20)+1)",
+  "os.remove('t/times.npy'); os.mkdir('t/times.npy')",
+  "os.remove('t/covariance.npy'); os.mkdir('t/covariance.npy')",
+  "np.save('t/covariance.npy',np.zeros((5,6,6),'i4'))",
+  "np.save('t/clamps.npy',np.zeros((5,1,3),'i4'))",
+  "np.save('t/times.npy',np.arange(5))",
+  "s=open('t/take.json').read()\nimport json\nd=json.loads(s)\nd['held']=[]\n"
+      "json.dump(d,open('t/take.json','w'))",
 };
 
 /* These show only when the frame is read. */
@@ -434,6 +531,10 @@ static const gchar *const frame_breaks[] = {
   "a=np.load('t/covariance.npy'); a[2,3,5]=-1; np.save('t/covariance.npy',a)",
   "a=np.load('t/states.npy'); a[2,3]=5; np.save('t/states.npy',a)",
   "a=np.load('t/clamps.npy'); a[2]=np.nan; np.save('t/clamps.npy',a)",
+};
+
+static const gchar *const frame_files[] = {
+  "positions.npy", "states.npy", "covariance.npy", "clamps.npy"
 };
 
 static gboolean
@@ -479,6 +580,29 @@ test_broken_takes (void)
     g_assert_false (read_frame (take, 2, &error));
     g_test_message ("%s", error->message);
     g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+    scratch_end ();
+  }
+}
+
+/* Arrays that become shorter while the take is open. */
+static void
+test_shrinking_takes (void)
+{
+  for (guint i = 0; i < G_N_ELEMENTS (frame_files); i++) {
+    g_autofree gchar *path = NULL, *file = NULL;
+    g_autoptr (ClothTake) take = NULL;
+    g_autoptr (GError) error = NULL;
+
+    scratch_begin ();
+    path = scratch_path ("t");
+    file = g_build_filename (path, frame_files[i], NULL);
+    write_take ("t", 5, FALSE);
+    take = cloth_take_open (path, &error);
+    g_assert_no_error (error);
+    g_assert_true (read_frame (take, 4, &error));
+    g_assert_cmpint (truncate (file, 128), ==, 0);
+    g_assert_false (read_frame (take, 4, &error));
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_TRUNCATED);
     scratch_end ();
   }
 }
@@ -578,6 +702,84 @@ test_unwritable (void)
   g_assert_nonnull (error);
 }
 
+/* Folders have the names that files of the take need. */
+static void
+test_names_taken (void)
+{
+  static const gchar *const names[] = { "take.json", "mesh.obj", "wedge.obj",
+    "positions.npy", "times.npy", "states.npy"
+  };
+  g_autoptr (ClothTakeWriter) writer = NULL;
+  g_autoptr (GError) fault = NULL;
+
+  for (guint i = 0; i < G_N_ELEMENTS (names); i++) {
+    g_autofree gchar *path = NULL, *folder = NULL, *taken = NULL;
+    g_autoptr (ClothTake) take = NULL;
+    g_autoptr (GError) error = NULL;
+
+    write_garment ("[]", WEDGE);
+    path = scratch_path ("g");
+    folder = scratch_path ("h");
+    taken = g_build_filename (folder, names[i], NULL);
+    g_assert_cmpint (g_mkdir_with_parents (taken, 0755), ==, 0);
+    take = cloth_take_open (path, &error);
+    g_assert_no_error (error);
+    g_assert_null (cloth_take_writer_new (folder, cloth_take_get_info (take),
+            cloth_take_get_topology (take), &error));
+    g_assert_error (error, G_IO_ERROR, G_IO_ERROR_IS_DIRECTORY);
+    g_assert_nonnull (strstr (error->message, names[i]));
+    scratch_end ();
+  }
+  /* Those that begin with a frame, or never. */
+  scratch_begin ();
+  peer_run ("os.makedirs('t/clamps.npy'); os.makedirs('u/covariance.npy')");
+  for (guint i = 0; i < 2; i++) {
+    g_autofree gchar *path = scratch_path (i ? "u" : "t");
+    g_autoptr (ClothTopology) topology = cloth_topology_new_grid (3, 2, 1, 1);
+    g_autoptr (ClothTakeInfo) info = cloth_take_info_new ("x");
+    g_autoptr (ClothTakeWriter) own = NULL;
+    g_autoptr (GError) error = NULL;
+    ClothHeld held = {.vertex = 2,.from_s = -INFINITY,.until_s = 1.5 };
+    gfloat positions[18] = { 0 }, covariances[36] = { 0 }, clamps[3] = { 0 };
+    guint8 states[6] = { 1, 1, 1, 1, 1, 1 };
+
+    info->columns = 3;
+    info->rows = 2;
+    info->width_m = info->height_m = 1;
+    g_array_append_val (info->held, held);
+    own = cloth_take_writer_new (path, info, topology, &error);
+    g_assert_no_error (error);
+    g_assert_false (cloth_take_writer_append (own, 0, positions, states,
+            covariances, clamps, &error));
+    g_assert_error (error, G_IO_ERROR, G_IO_ERROR_IS_DIRECTORY);
+  }
+  /* Clamps of no vertex are no file. */
+  {
+    static const gfloat positions[12] = { 0 }, clamps[3] = { 0 };
+    static const guint8 states[4] = { 1, 1, 1, 1 };
+    g_autofree gchar *path = scratch_path ("w");
+    g_autofree gchar *file = g_build_filename (path, "clamps.npy", NULL);
+    g_autoptr (ClothTopology) topology = cloth_topology_new_grid (2, 2, 1, 1);
+    g_autoptr (ClothTakeInfo) info = cloth_take_info_new ("x");
+    g_autoptr (ClothTakeWriter) own = NULL;
+    g_autoptr (GError) error = NULL;
+
+    info->columns = info->rows = 2;
+    info->width_m = info->height_m = 1;
+    own = cloth_take_writer_new (path, info, topology, &error);
+    g_assert_no_error (error);
+    g_assert_true (cloth_take_writer_append (own, 0, positions, states, NULL,
+            clamps, &error));
+    g_assert_true (cloth_take_writer_close (own, &error));
+    g_assert_false (g_file_test (file, G_FILE_TEST_EXISTS));
+  }
+  writer = write_frames ("v", 0, FALSE);
+  g_assert_false (cloth_take_writer_close (writer, &fault));
+  g_assert_error (fault, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+  g_assert_cmpstr (fault->message, ==, "a take needs at least one frame");
+  scratch_end ();
+}
+
 int
 main (int argc, char **argv)
 {
@@ -593,5 +795,9 @@ main (int argc, char **argv)
   g_test_add_func ("/take/hash", test_hash);
   g_test_add_func ("/take/file-hash", test_file_hash);
   g_test_add_func ("/take/unwritable", test_unwritable);
+  g_test_add_func ("/take/named-json", test_named_json);
+  g_test_add_func ("/take/copied-info", test_copied_info);
+  g_test_add_func ("/take/shrinking", test_shrinking_takes);
+  g_test_add_func ("/take/names-taken", test_names_taken);
   return g_test_run ();
 }

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "gst/cloth-io/observations.h"
+#include "gst/take/take.h"
 
 #define CAMERA(name) "{\"name\":\"" name "\",\"size\":[100,80]," \
     "\"K\":[[90,0,50],[0,90,40],[0,0,1]],\"distortion\":{\"model\":\"none\"," \
@@ -363,6 +364,9 @@ test_names (Fixture * f, gconstpointer data)
   g_assert_cmpint (g_mkdir (folder, 0777), ==, 0);
   g_assert_cmpint (symlink ("/dev/zero", left), ==, 0);
   refuse (f, "left.obs", "out of");
+  g_remove (left);
+  g_assert_cmpint (g_mkdir (left, 0777), ==, 0);
+  refuse (f, "left.obs", "regular");
 }
 
 static void
@@ -375,10 +379,91 @@ test_no_grid (Fixture * f, gconstpointer data)
 
   append (f, see_square (0));
   end_file (f, "left");
-  mesh->columns = mesh->rows = 0;
-  g_assert_false (gst_cloth_io_observations_load (f->folder, mesh,
-          &observations, &error));
-  g_assert_nonnull (strstr (error->message, "grid"));
+  for (guint i = 0; i < 3; i++) {
+    mesh->columns = i == 1 ? COLUMNS : 0;
+    mesh->rows = i == 2 ? ROWS : 0;
+    g_assert_false (gst_cloth_io_observations_load (f->folder, mesh,
+            &observations, &error));
+    g_assert_nonnull (strstr (error->message, "grid"));
+    g_clear_error (&error);
+  }
+}
+
+/* The files that were read are files of the take; a camera without one has none. */
+static void
+test_of_take (Fixture * f, gconstpointer data)
+{
+  static const gfloat positions[3 * COLUMNS * ROWS] = { 0 };
+  static const guint8 states[COLUMNS * ROWS] = { 1, 1, 1, 1, 1, 1 };
+  g_autoptr (ClothTakeInfo) info = cloth_take_info_new ("t");
+  g_autoptr (ClothTopology) grid = cloth_topology_new_grid (COLUMNS, ROWS, 0.2f,
+      0.1f);
+  g_autoptr (ClothTakeWriter) writer = NULL;
+  g_autofree gchar *bare = NULL;
+  g_autoptr (GError) error = NULL;
+
+  info->columns = COLUMNS;
+  info->rows = ROWS;
+  info->width_m = 0.2;
+  info->height_m = 0.1;
+  writer = cloth_take_writer_new (f->folder, info, grid, &error);
+  g_assert_no_error (error);
+  g_assert_true (cloth_take_writer_append (writer, 0, positions, states, NULL,
+          NULL, &error));
+  g_assert_true (cloth_take_writer_close (writer, &error));
+  for (guint i = 0; i < 3; i++) {
+    g_autoptr (ClothTake) take = cloth_take_open (f->folder, &error);
+    g_autoptr (ClothObservations) observations = NULL;
+    g_autofree gchar *sha256 = NULL;
+
+    g_assert_no_error (error);
+    if (i == 1) {
+      append (f, see_square (1));
+      end_file (f, "left");
+    } else if (i == 2) {
+      write_file (f, "observations/left.obs", "x", 1);
+      g_assert_false (gst_cloth_io_observations_load_take (take, &observations,
+              &error));
+      g_assert_null (observations);
+      g_assert_nonnull (error);
+      break;
+    }
+    g_assert_true (gst_cloth_io_observations_load_take (take, &observations,
+            &error));
+    g_assert_true ((observations != NULL) == (i == 1));
+    sha256 = cloth_take_sha256 (take, &error);
+    g_assert_no_error (error);
+    if (i == 0)
+      bare = g_steal_pointer (&sha256);
+    else
+      g_assert_cmpstr (sha256, !=, bare);
+  }
+}
+
+/* A file that becomes shorter while it is read. */
+static void
+test_shrinking (Fixture * f, gconstpointer data)
+{
+  g_autofree gchar *path = in_folder (f, "observations/left.obs");
+  g_autoptr (ClothObservations) observations = NULL;
+  g_autoptr (ClothInput) input = NULL;
+  g_autoptr (GError) error = NULL;
+
+  append (f, see_square (1));
+  append (f, see_square (2));
+  end_file (f, "left");
+  observations = load_well (f);
+  input = cloth_input_open (path, &error);
+  g_assert_no_error (error);
+  for (guint i = 0; i < 2; i++) {
+    /* within the observation, then within its header */
+    g_assert_cmpint (truncate (path, i ? 31 : 33), ==, 0);
+    g_assert_false (gst_cloth_io_observations_read (observations, 1, COLUMNS,
+            ROWS, input, &error));
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_TRUNCATED);
+    g_assert_true (g_str_has_prefix (error->message, "picture 0, at byte 0: "));
+    g_clear_error (&error);
+  }
 }
 
 /* A good picture, then one that is not. */
@@ -516,6 +601,16 @@ test_unlabelled (Fixture * f, gconstpointer data)
   refuse (f, "left.obs", "quadtrack");
 }
 
+/* More pictures than a camera may have, of which none shows anything. */
+static void
+test_too_many (Fixture * f, gconstpointer data)
+{
+  for (guint i = 0; i <= 100000; i++)
+    append (f, new_picture (i));
+  end_file (f, "left");
+  refuse (f, "left.obs: picture 100000: too many", "into shorter ones");
+}
+
 int
 main (int argc, char **argv)
 {
@@ -527,11 +622,13 @@ main (int argc, char **argv)
     {"none", test_none}, {"squares", test_squares}, {"dots", test_dots},
     {"others", test_others}, {"no-rig", test_no_rig},
     {"names", test_names}, {"no-grid", test_no_grid},
+    {"of-take", test_of_take}, {"shrinking", test_shrinking},
     {"cut-off", test_cut_off}, {"sizes", test_sizes},
     {"garbage", test_garbage}, {"times", test_times},
     {"other-pattern", test_other_pattern},
     {"other-camera", test_other_camera},
-    {"other-picture", test_other_picture}, {"unlabelled", test_unlabelled}
+    {"other-picture", test_other_picture}, {"unlabelled", test_unlabelled},
+    {"too-many", test_too_many}
   };
 
   gst_init (&argc, &argv);

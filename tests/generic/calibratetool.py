@@ -153,6 +153,14 @@ refused(1, '--size', '--output', output, '--import-opencv', os.path.join(boards,
 for size in '4294967936x4294967776', ' 640x480', '640x480x', '+640x480', '640', 'x480', '0x480', '-1x-1':
     refused(2, '--size', '--size', size, '--output', output, '--import-opencv',
             os.path.join(boards, 'intrinsics.yml'))
+# A file that doesn't say it, as OpenCV's sample writes them.
+unsized = os.path.join(folder, 'unsized.yml')
+with open(os.path.join(boards, 'left_intrinsics.yml'), encoding='utf-8') as file:
+    text = re.sub('image_(width|height).*\n', '', file.read())
+with open(unsized, 'w', encoding='utf-8') as file:
+    file.write(text)
+_, cameras = calibrate('--size', '641x479', '--import-opencv', unsized)
+check(cameras[0]['size'] == [641, 479] and cameras[0]['name'] == 'unsized', '--size')
 refused(1, 'no Kalibr camera chain', '--output', output, '--import-kalibr',
         os.path.join(boards, 'left_intrinsics.yml'))
 hang = os.path.join(folder, 'hang.yml')

@@ -8,6 +8,7 @@ SPDX-License-Identifier: LGPL-2.1-or-later
 import hashlib
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -95,6 +96,16 @@ def simulate(folder):
     expect(done.returncode == 0 and windy[-1, :, 1].mean() > got[-1, :, 1].mean() + 0.001,
            'wind along y blows along y: %.1f mm' %
            (1000 * (windy[-1, :, 1].mean() - got[-1, :, 1].mean())))
+
+
+def on_terminal(folder, *arguments):
+    """What a terminal is told as standard error, up to 4096 bytes of it."""
+    terminal, end = os.openpty()
+    subprocess.run([tool, *arguments], cwd=folder, stderr=end, timeout=120)
+    os.close(end)
+    said = os.read(terminal, 4096).decode()
+    os.close(terminal)
+    return said
 
 
 def distance(folder, name):
@@ -363,13 +374,12 @@ def failures(folder):
         expect(not os.path.exists(os.path.join(folder, 'y')), 'nothing is left')
     expect(contents(os.path.join(folder, 'a')) == before, 'the old take stays as it was')
     # on a terminal the message has a line of its own, below that of the progress
-    terminal, end = os.openpty()
-    subprocess.run([tool, 'simulate', 'step.json', '--scene', drop, '--output', 'y'], cwd=folder,
-                   stderr=end, timeout=120)
-    os.close(end)
-    said = os.read(terminal, 4096).decode()
-    os.close(terminal)
+    said = on_terminal(folder, 'simulate', 'step.json', '--scene', drop, '--output', 'y')
     expect('%\r\ngst-cloth-gap-1.0: the simulation blew up' in said, 'a terminal: %r' % said)
+    # which stays one line, and ends
+    said = on_terminal(folder, 'simulate', knit, '--scene', drop, '--output', 'z')
+    expect(re.fullmatch(r'(\r\x1b\[K *\d+%)+\r\n', said) and '100%\r\n' in said,
+           'progress on a terminal: %r' % said)
 
 
 with tempfile.TemporaryDirectory(prefix='cloth-gaptool-') as scratch:

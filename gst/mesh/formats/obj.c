@@ -12,7 +12,7 @@
 
 typedef struct
 {
-  const gchar *at, *end;
+  const gchar *at, *end;        /* a 0 byte, the only one, stands at the end */
   guint line;
   GArray *positions;            /* gfloat, 3 a vertex */
   GArray *uv;                   /* gfloat, 2 each */
@@ -42,12 +42,11 @@ too_many (Parser * parser, GError ** error)
 static void
 skip_blanks (Parser * parser)
 {
-  for (; parser->at < parser->end; parser->at++) {
+  for (;; parser->at++) {
     if (*parser->at == ' ' || *parser->at == '\t' || *parser->at == '\r')
       continue;
-    if (*parser->at == '\\' && parser->at + 1 < parser->end &&
-        (parser->at[1] == '\n' || (parser->at[1] == '\r' &&
-                parser->at + 2 < parser->end && parser->at[2] == '\n'))) {
+    if (*parser->at == '\\' && (parser->at[1] == '\n' ||
+            (parser->at[1] == '\r' && parser->at[2] == '\n'))) {
       parser->at += parser->at[1] == '\r' ? 2 : 1;
       parser->line++;
       continue;
@@ -59,7 +58,7 @@ skip_blanks (Parser * parser)
 static gboolean
 at_line_end (Parser * parser)
 {
-  return parser->at >= parser->end || *parser->at == '\n' || *parser->at == '#';
+  return *parser->at == 0 || *parser->at == '\n' || *parser->at == '#';
 }
 
 static void
@@ -85,7 +84,7 @@ take_floats (Parser * parser, GArray * array, guint n, GError ** error)
       return invalid (parser, "a coordinate is missing", error);
     value = g_ascii_strtod (parser->at, &end);
     number = (gfloat) value;
-    if (end == parser->at || end > parser->end || !isfinite (number))
+    if (end == parser->at || !isfinite (number))
       return invalid (parser, "a coordinate is no finite number", error);
     parser->at = end;
     g_array_append_val (array, number);
@@ -101,13 +100,12 @@ take_index (Parser * parser, guint so_far, guint32 * index, GError ** error)
   guint64 n = 0;
   const gchar *start;
 
-  if (parser->at < parser->end && *parser->at == '-') {
+  if (*parser->at == '-') {
     negative = TRUE;
     parser->at++;
   }
   start = parser->at;
-  while (parser->at < parser->end && g_ascii_isdigit (*parser->at) &&
-      n < G_MAXUINT32)
+  while (g_ascii_isdigit (*parser->at) && n < G_MAXUINT32)
     n = n * 10 + (guint64) (*parser->at++ - '0');
   if (parser->at == start)
     return invalid (parser, "an index of the face is no whole number", error);
@@ -127,19 +125,18 @@ take_corner (Parser * parser, GError ** error)
 
   if (!take_index (parser, n_vertices, &corner[0], error))
     return FALSE;
-  if (parser->at < parser->end && *parser->at == '/') {
+  if (*parser->at == '/') {
     parser->at++;
-    if (parser->at < parser->end && *parser->at != '/' &&
-        !take_index (parser, n_uv, &corner[1], error))
+    if (*parser->at != '/' && !take_index (parser, n_uv, &corner[1], error))
       return FALSE;
-    if (parser->at < parser->end && *parser->at == '/') {
+    if (*parser->at == '/') {
       parser->at++;
       if (!take_index (parser, G_MAXUINT32, &normal, error))
         return FALSE;
     }
   }
-  if (parser->at < parser->end && !g_ascii_isspace (*parser->at) &&
-      *parser->at != '\\' && *parser->at != '#')
+  if (!at_line_end (parser) && !g_ascii_isspace (*parser->at) &&
+      *parser->at != '\\')
     return invalid (parser, "a corner of the face cannot be read", error);
   g_array_append_vals (parser->corners, corner, 2);
   return TRUE;
@@ -193,8 +190,7 @@ keyword (Parser * parser, const gchar * word)
 {
   gsize n = strlen (word);
 
-  if ((gsize) (parser->end - parser->at) <= n ||
-      memcmp (parser->at, word, n) != 0 ||
+  if (strncmp (parser->at, word, n) != 0 ||
       (parser->at[n] != ' ' && parser->at[n] != '\t'))
     return FALSE;
   parser->at += n;
@@ -217,7 +213,7 @@ take_line (Parser * parser, GError ** error)
   }
   if (keyword (parser, "f"))
     return take_face (parser, error);
-  if (parser->at < parser->end && *parser->at == '#')
+  if (*parser->at == '#')
     cloth_mesh_note_parse (parser->at + 1, &parser->note);
   return TRUE;
 }

@@ -282,7 +282,7 @@ take_ascii (Data * data, gdouble * value)
   if (data->at >= data->end)
     return FALSE;
   *value = g_ascii_strtod (data->at, &end);
-  if (end == data->at || end > data->end)
+  if (end == data->at)
     return FALSE;
   data->at = end;
   return TRUE;
