@@ -3,11 +3,11 @@
 
   tests/coverage.py BUILD-FOLDER
 
-A branch that g_assert (), g_return_* (), g_new (), g_clear_* () or G_DEFINE_* ()
-makes is not counted: no input takes it. Neither is what frees a g_autoptr or g_autofree: the compiler puts it on the lines where the
-variable is declared, where something is returned and where a block ends; one of these that holds a
-condition of ours is counted. A source that is compiled several times counts as covered where any of
-its objects is.
+A branch that g_assert (), g_return_* (), g_new (), g_clear_* () or G_DEFINE_* () makes is not counted:
+no input takes it. Neither is what frees a g_autoptr or g_autofree: the compiler puts it on the lines
+where the variable is declared, where something is returned and where a block ends; one of these that
+holds a condition of ours is counted. A source that is compiled several times counts as covered where
+any of its objects is.
 
 SPDX-License-Identifier: LGPL-2.1-or-later
 """
