@@ -326,17 +326,31 @@ gst_cloth_sync_sink_event (GstAggregator * agg, GstAggregatorPad * aggpad,
       gst_event_unref (event);
       return FALSE;
     }
-    if (segment->rate < 0 && !GST_CLOCK_TIME_IS_VALID (segment->stop)) {
-      GST_ELEMENT_ERROR (self, STREAM, FORMAT,
-          ("Pad %s has a segment that is played backwards from no end.",
-              GST_PAD_NAME (pad)),
-          ("Seek with a stop position, or play forwards."));
-      gst_event_unref (event);
-      return FALSE;
-    }
   }
   return GST_AGGREGATOR_CLASS (gst_cloth_sync_parent_class)->sink_event (agg,
       aggpad, event);
+}
+
+/* Before it is queued: the base class computes with the queue's last segment. */
+static GstFlowReturn
+gst_cloth_sync_sink_event_pre_queue (GstAggregator * agg,
+    GstAggregatorPad * aggpad, GstEvent * event)
+{
+  const GstSegment *segment;
+
+  if (GST_EVENT_TYPE (event) == GST_EVENT_SEGMENT) {
+    gst_event_parse_segment (event, &segment);
+    if (segment->rate < 0 && !GST_CLOCK_TIME_IS_VALID (segment->stop)) {
+      GST_ELEMENT_ERROR (agg, STREAM, FORMAT,
+          ("Pad %s has a segment that is played backwards from no end.",
+              GST_PAD_NAME (aggpad)),
+          ("Seek with a stop position, or play forwards."));
+      gst_event_unref (event);
+      return GST_FLOW_ERROR;
+    }
+  }
+  return GST_AGGREGATOR_CLASS
+      (gst_cloth_sync_parent_class)->sink_event_pre_queue (agg, aggpad, event);
 }
 
 /* Handles the caps that have waited for a held frame to go. FALSE: they were refused. */
@@ -1169,6 +1183,7 @@ gst_cloth_sync_class_init (GstClothSyncClass * klass)
   element_class->release_pad = gst_cloth_sync_release_pad;
   agg_class->create_new_pad = gst_cloth_sync_create_new_pad;
   agg_class->sink_event = gst_cloth_sync_sink_event;
+  agg_class->sink_event_pre_queue = gst_cloth_sync_sink_event_pre_queue;
   agg_class->clip = gst_cloth_sync_clip;
   agg_class->get_next_time = gst_cloth_sync_get_next_time;
   agg_class->aggregate = gst_cloth_sync_aggregate;

@@ -527,6 +527,35 @@ GST_START_TEST (test_flush)
 
 GST_END_TEST;
 
+/* Running times backwards count from the end: a segment without one is refused before the
+ * base class computes with it. */
+GST_START_TEST (test_backwards_from_no_end)
+{
+  g_autoptr (GstMessage) message = NULL;
+  g_autoptr (GError) error = NULL;
+  GstSegment segment;
+  Bench b;
+
+  bench_init (&b, 2, FALSE);
+  push (&b, 0, 0);
+  push (&b, 1, 0);
+  expect (&b, 0, 2);
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  segment.rate = -1;
+  give (&b, 0, gst_event_new_segment (&segment));
+  push (&b, 0, FRAME);
+  settle (&b, 0);
+  message = gst_bus_pop_filtered (b.bus, GST_MESSAGE_ERROR);
+  fail_unless (message != NULL);
+  gst_message_parse_error (message, &error, NULL);
+  fail_unless (g_error_matches (error, GST_STREAM_ERROR,
+          GST_STREAM_ERROR_FORMAT));
+  fail_unless (strstr (error->message, "sink_0") != NULL);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
 /* Offsets at the ends of their range. */
 GST_START_TEST (test_offset)
 {
@@ -624,6 +653,7 @@ clothsynctimes_suite (void)
   tcase_add_test (tc, test_gaps);
   tcase_add_test (tc, test_duration);
   tcase_add_test (tc, test_flush);
+  tcase_add_test (tc, test_backwards_from_no_end);
   tcase_add_test (tc, test_offset);
   tcase_add_test (tc, test_live_start);
   tcase_add_test (tc, test_live);

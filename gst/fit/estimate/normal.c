@@ -240,7 +240,7 @@ sum_and_project (const ClothNormalEquations * normal, const gboolean * blocks,
   cloth_posterior_add_prior (&posterior, precisions, NULL);
   for (guint block = 0; block < normal->n_blocks; block++) {
     const gdouble *from = m ? normal->g + (gsize) block * m * m : NULL;
-    const gdouble *score = normal->s + (gsize) block * m;
+    const gdouble *score = m ? normal->s + (gsize) block * m : NULL;
 
     if (blocks && !blocks[block])
       continue;
