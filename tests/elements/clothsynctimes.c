@@ -539,7 +539,7 @@ GST_START_TEST (test_backwards_from_no_end)
   bench_init (&b, 2, FALSE);
   push (&b, 0, 0);
   push (&b, 1, 0);
-  expect (&b, 0, 2);
+  expect (&b, 0, 3);
   gst_segment_init (&segment, GST_FORMAT_TIME);
   segment.rate = -1;
   give (&b, 0, gst_event_new_segment (&segment));
