@@ -7,12 +7,15 @@
 
 #include <glib.h>
 
+static guint64 n_inputs;
+
 static void
 replay (const guint8 * data, gsize size, gsize n_mutations)
 {
   gsize step = MAX (1, size / n_mutations);
 
   LLVMFuzzerTestOneInput (data, size);
+  n_inputs++;
   for (gsize n = 0; n < size; n += step) {
     /* An exact copy each time: an overread is seen by the sanitizers. */
     g_autofree guint8 *cut = g_memdup2 (data, n);
@@ -21,6 +24,7 @@ replay (const guint8 * data, gsize size, gsize n_mutations)
     LLVMFuzzerTestOneInput (cut, n);
     bent[n] ^= (guint8) (0xff << (n % 7));
     LLVMFuzzerTestOneInput (bent, size);
+    n_inputs += 2;
   }
 }
 
@@ -51,6 +55,7 @@ main (int argc, char **argv)
         (gsize) MAX (1, g_ascii_strtoull (argv[2], NULL, 10)));
     files++;
   }
-  g_print ("%u corpus files replayed\n", files);
+  g_print ("%u corpus files replayed, %" G_GUINT64_FORMAT " inputs in all\n",
+      files, n_inputs);
   return files ? 0 : 1;
 }
