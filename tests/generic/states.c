@@ -6,7 +6,9 @@
 
 #include <gst/gst.h>
 
-#define CYCLES 3
+#define CYCLES 30
+
+static guint n_cycles;
 
 static GstElement *
 make (gconstpointer data)
@@ -50,7 +52,7 @@ test_states (gconstpointer data)
   guint refused = 0;
 
   gst_element_set_bus (element, bus);
-  for (guint cycle = 0; cycle < CYCLES; cycle++) {
+  for (guint cycle = 0; cycle < CYCLES; cycle++, n_cycles++) {
     for (guint n = 0; n < G_N_ELEMENTS (way); n++) {
       if (gst_element_set_state (element, way[n]) == GST_STATE_CHANGE_FAILURE) {
         g_assert_cmpuint (count_errors (bus), >, 0);
@@ -73,7 +75,7 @@ test_states_straight (gconstpointer data)
 {
   g_autoptr (GstElement) element = make (data);
 
-  for (guint cycle = 0; cycle < CYCLES; cycle++) {
+  for (guint cycle = 0; cycle < CYCLES; cycle++, n_cycles++) {
     gst_element_set_state (element, GST_STATE_PLAYING);
     g_assert_cmpint (gst_element_set_state (element, GST_STATE_NULL), ==,
         GST_STATE_CHANGE_SUCCESS);
@@ -281,7 +283,7 @@ test_request_pads (gconstpointer data)
 
     if (pad_template->presence != GST_PAD_REQUEST)
       continue;
-    for (guint cycle = 0; cycle < CYCLES; cycle++) {
+    for (guint cycle = 0; cycle < CYCLES; cycle++, n_cycles++) {
       GstPad *pads[3] = { NULL };
 
       for (guint n = 0; n < wanted; n++) {
@@ -334,6 +336,7 @@ main (int argc, char **argv)
     g_error ("no element of the plugin was found in GST_PLUGIN_PATH_1_0");
   g_test_message ("%u elements", n_elements);
   status = g_test_run ();
+  g_print ("# %u state cycles\n", n_cycles);
   gst_plugin_feature_list_free (features);
   gst_deinit ();
   return status;
