@@ -32,6 +32,7 @@ struct _GstClothMetaPay
 {
   GstBaseTransform parent;
 
+  guint n_clocks;               /* of the last picture that was looked at */
   gboolean told;                /* of a clock that is left out */
 };
 
@@ -85,8 +86,9 @@ tell_of_clocks (GstClothMetaPay * self, GstBuffer * picture,
       gst_buffer_get_n_meta (picture, GST_REFERENCE_TIMESTAMP_META_API_TYPE);
   g_autoptr (GstBuffer) unpacked = NULL;
 
-  if (n == 0 || self->told)
+  if (n == self->n_clocks || self->told)
     return;
+  self->n_clocks = n;
   unpacked = gst_buffer_new ();
   if (!gst_cloth_observations_unpack (observation, unpacked, NULL) ||
       gst_buffer_get_n_meta (unpacked,
@@ -121,6 +123,7 @@ static gboolean
 gst_cloth_meta_pay_start (GstBaseTransform * trans)
 {
   GST_CLOTH_META_PAY (trans)->told = FALSE;
+  GST_CLOTH_META_PAY (trans)->n_clocks = 0;
   return TRUE;
 }
 

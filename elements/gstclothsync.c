@@ -799,7 +799,10 @@ gst_cloth_sync_settle_times (GstClothSync * self, Heads * heads)
       case GST_CLOTH_SYNC_HOLD:
         n_flushes = gst_cloth_sync_pad_count_flushes (pad);
         buffer = gst_cloth_sync_pop (self, pad);
-        /* flushed meanwhile, it is not there or another one */
+        /* flushed meanwhile, it is not there or another one, which may be held as well */
+        if (buffer && buffer != heads->head[i]) {
+          n_flushes = gst_cloth_sync_pad_count_flushes (pad);
+        }
         if (buffer) {
           gst_cloth_sync_pad_hold (pad, buffer,
               gst_cloth_sync_time (self, pad, buffer), n_flushes);

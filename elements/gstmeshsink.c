@@ -33,6 +33,7 @@
 #include "elements/gstmeshsink.h"
 
 #include <gst/cloth/cloth.h>
+#include <string.h>
 
 #include "elements/gstclothproperties.h"
 #include "elements/gstclothutil.h"
@@ -89,28 +90,65 @@ G_DEFINE_TYPE (GstMeshSink, gst_mesh_sink, GST_TYPE_BASE_SINK);
 GST_ELEMENT_REGISTER_DEFINE (meshsink, "meshsink", GST_RANK_NONE,
     GST_TYPE_MESH_SINK);
 
-/* What was recorded is not lost. Told before the error, which ends the program. */
-static void
+/* Returns: (transfer full): the command that finishes what is left at the location */
+static gchar *
+recover_command (GstMeshSink * self)
+{
+  g_autofree gchar *name = cloth_recover_get_name (self->settings.location,
+      self->settings.format);
+  g_autofree gchar *path = *name == '-' ? g_strconcat ("./", name, NULL) :
+      g_strdup (name);
+  g_autofree gchar *quoted = g_shell_quote (path);
+
+  return g_strdup_printf ("gst-cloth-take-1.0 recover %s",
+      strpbrk (path, " \t\n\\\"'`$&|;<>()*?[]{}!#~") ? quoted : path);
+}
+
+/* What was recorded is not lost.
+ *
+ * Returns: (transfer full) (nullable): what is to be told of it */
+static gchar *
 stop_recording (GstMeshSink * self)
 {
+  g_autofree gchar *command = recover_command (self);
+  guint64 n_frames;
+  gchar *kept = NULL;
+
   self->failed = TRUE;
   if (!self->writer)
-    return;
+    return NULL;
+  n_frames = cloth_mesh_writer_get_n_frames (self->writer);
   if (cloth_mesh_writer_leave (self->writer))
-    GST_ELEMENT_WARNING (self, RESOURCE, FAILED,
-        ("The %" G_GUINT64_FORMAT " frames recorded until then are kept: "
-            "“gst-cloth-take-1.0 recover %s” finishes the recording",
-            cloth_mesh_writer_get_n_frames (self->writer),
-            self->settings.location), (NULL));
+    kept =
+        g_strdup_printf ("%" G_GUINT64_FORMAT
+        " frame%s kept: “%s” finishes " "the recording", n_frames,
+        n_frames == 1 ? " is" : "s are", command);
   g_clear_pointer (&self->writer, cloth_mesh_writer_free);
+  return kept;
 }
 
 static void
 fail (GstMeshSink * self, const gchar * doing, const GError * error)
 {
-  stop_recording (self);
+  g_autofree gchar *kept = stop_recording (self);
+  g_autoptr (GError) whole = g_error_copy (error);
+
+  if (kept) {
+    g_free (whole->message);
+    whole->message = g_strdup_printf ("%s. %s", error->message, kept);
+  }
   gst_mesh_post_error (GST_ELEMENT (self), doing, self->settings.location, TRUE,
-      error);
+      whole);
+}
+
+/* After an error that was posted already. */
+static void
+stop_and_tell (GstMeshSink * self)
+{
+  g_autofree gchar *kept = stop_recording (self);
+
+  if (kept)
+    GST_ELEMENT_WARNING (self, RESOURCE, FAILED, ("%s", kept), (NULL));
 }
 
 static gboolean
@@ -126,7 +164,7 @@ gst_mesh_sink_set_caps (GstBaseSink * sink, GstCaps * caps)
     return FALSE;
   parsed = gst_cloth_read_topology (GST_ELEMENT (self), caps);
   if (!parsed) {
-    stop_recording (self);
+    stop_and_tell (self);
     return FALSE;
   }
   topology = gst_mesh_copy_topology (parsed);
@@ -134,10 +172,12 @@ gst_mesh_sink_set_caps (GstBaseSink * sink, GstCaps * caps)
       &fps_n, &fps_d);
   if (self->writer && (!cloth_topology_equal (topology, self->topology) ||
           fps_n != self->fps_n || fps_d != self->fps_d)) {
-    stop_recording (self);
+    g_autofree gchar *kept = stop_recording (self);
+
     GST_ELEMENT_ERROR (self, STREAM, FORMAT,
         ("The mesh or its frame rate changed in the middle of the recording; "
-            "stop and record to another location"), ("%" GST_PTR_FORMAT, caps));
+            "stop and record to another location. %s", kept ? kept : ""),
+        ("%" GST_PTR_FORMAT, caps));
     return FALSE;
   }
   cloth_topology_free (self->topology);
@@ -197,7 +237,7 @@ gst_mesh_sink_render (GstBaseSink * sink, GstBuffer * buffer)
   mesh = gst_cloth_read_mesh (GST_ELEMENT (self), buffer,
       self->topology->n_vertices);
   if (!mesh) {
-    stop_recording (self);
+    stop_and_tell (self);
     return GST_FLOW_ERROR;
   }
   if (!self->writer && !open_writer (self))
@@ -268,13 +308,13 @@ static void
 warn_of_remains (GstMeshSink * self)
 {
   const gchar *location = self->settings.location;
+  g_autofree gchar *command = recover_command (self);
 
   switch (cloth_recover_look (location, self->settings.format)) {
     case CLOTH_LEFT_FRAMES:
       GST_ELEMENT_WARNING (self, RESOURCE, FAILED,
-          ("A recording to “%s” was interrupted: “gst-cloth-take-1.0 recover "
-              "%s” finishes it, when this one is moved away",
-              location, location), (NULL));
+          ("A recording to “%s” was interrupted: “%s” finishes it, when this "
+              "one is moved away", location, command), (NULL));
       break;
     case CLOTH_LEFT_LOST:
       GST_ELEMENT_WARNING (self, RESOURCE, FAILED,

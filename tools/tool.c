@@ -95,21 +95,22 @@ interrupt (int number)
   interrupted = 1;
 }
 
-/* Ctrl-C, SIGTERM and a closed terminal, unless nohup had it ignored, are only noted, once:
- * the next one ends the program at once. */
+/* Ctrl-C, SIGTERM and a closed terminal, unless a shell or nohup had them ignored, are only
+ * noted, once: the next one ends the program at once. */
 void
 catch_interrupts (void)
 {
+  static const gint signals[] = { SIGINT, SIGTERM, SIGHUP };
   struct sigaction action, before;
 
   memset (&action, 0, sizeof action);
   action.sa_handler = interrupt;
   action.sa_flags = (int) (SA_RESETHAND | SA_RESTART);
   sigemptyset (&action.sa_mask);
-  sigaction (SIGINT, &action, NULL);
-  sigaction (SIGTERM, &action, NULL);
-  if (sigaction (SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN)
-    sigaction (SIGHUP, &action, NULL);
+  for (guint i = 0; i < G_N_ELEMENTS (signals); i++)
+    if (sigaction (signals[i], NULL, &before) == 0
+        && before.sa_handler != SIG_IGN)
+      sigaction (signals[i], &action, NULL);
 }
 
 gboolean

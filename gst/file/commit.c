@@ -11,6 +11,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+/* Two seconds or so, in which any other commit has ended. */
+#define MOST_WAITS 200
+#define LONGEST_WAIT_US 20000
+
 /* All files of a folder to the disk at once, where the system can. */
 static gboolean
 sync_files (const gchar * folder, GError ** error)
@@ -62,26 +66,70 @@ move_away (const ClothParts * parts, const gchar * name, GError ** error)
   return TRUE;
 }
 
-/* Of two programs each has made its `old` before it looks for the other's: at most one
- * goes on. */
+/* Whether nothing is where these shall be, but for what is the parts' own. */
 static gboolean
-check_alone (const ClothParts * parts, GError ** error)
+check_free (const ClothParts * parts, const GPtrArray * names, GError ** error)
+{
+  for (guint i = 0; i < names->len; i++) {
+    g_autofree gchar *path = cloth_parts_target (parts, names->pdata[i]);
+    g_autofree gchar *shown = g_filename_display_name (path);
+
+    if (cloth_parts_is_own (names->pdata[i]) || !cloth_is_there (path))
+      continue;
+    g_set_error (error, G_IO_ERROR, G_IO_ERROR_EXISTS,
+        "“%s” is there and would be overwritten", shown);
+    return FALSE;
+  }
+  return TRUE;
+}
+
+/* Whether another program is giving its files these names. */
+static gboolean
+is_another_committing (const ClothParts * parts)
 {
   g_autoptr (GPtrArray) found = cloth_parts_find (parts->folder, parts->head,
       NULL);
 
-  for (guint i = 0; found && i < found->len; i++) {
-    const gchar *path = found->pdata[i];
+  for (guint i = 0; found && i < found->len; i++)
+    if (!g_str_equal (found->pdata[i], parts->path) &&
+        cloth_parts_is_committing (found->pdata[i]))
+      return TRUE;
+  return FALSE;
+}
 
-    if (g_str_equal (path, parts->path) || !cloth_parts_is_committing (path) ||
-        cloth_parts_is_dead (path))
-      continue;
-    g_set_error (error, G_IO_ERROR, G_IO_ERROR_BUSY,
-        "another program is just giving its files the name “%s”",
-        parts->head);
-    return FALSE;
+/* Makes `old`. Of two programs each has made its own before it looks for the other's: at
+ * most one goes on, the other one waits. */
+static gboolean
+begin (const ClothParts * parts, GError ** error)
+{
+  g_autofree gchar *old = cloth_parts_inside (parts, "old", NULL);
+
+  for (guint i = 0; i < MOST_WAITS; i++) {
+    if (g_mkdir (old, 0777) < 0)
+      return cloth_file_fail (error, errno, "write", old);
+    if (!is_another_committing (parts))
+      return TRUE;
+    g_rmdir (old);
+    if (!cloth_parts_check_ended (parts->folder, parts->head, error))
+      return FALSE;
+    g_usleep (g_random_int_range (1000, LONGEST_WAIT_US));
   }
-  return TRUE;
+  g_set_error (error, G_IO_ERROR, G_IO_ERROR_BUSY,
+      "another program is giving its files the name “%s”, or was killed "
+      "doing so: then “gst-cloth-take-1.0 recover” ends that first",
+      parts->head);
+  return FALSE;
+}
+
+/* What was free when the parts were reopened may be taken by now. From here on no other
+ * program takes it. */
+static gboolean
+check_still_free (const ClothParts * parts, const GPtrArray * names,
+    GError ** error)
+{
+  return !parts->reopened || parts->overwrite ||
+      (check_free (parts, names, error) && check_free (parts, parts->replaced,
+          error));
 }
 
 /* The head goes first: without it readers find nothing. Of numbered files the last ones
@@ -90,11 +138,8 @@ static gboolean
 move_all_away (const ClothParts * parts, const GPtrArray * names,
     GError ** error)
 {
-  g_autofree gchar *old = cloth_parts_inside (parts, "old", NULL);
-
-  if (g_mkdir (old, 0777) < 0)
-    return cloth_file_fail (error, errno, "write", old);
-  if (!check_alone (parts, error) || !cloth_folder_sync (parts->path, error))
+  if (!begin (parts, error) || !check_still_free (parts, names, error) ||
+      !cloth_folder_sync (parts->path, error))
     return FALSE;
   for (guint i = names->len; i-- > 0;) {
     if (!move_away (parts, names->pdata[i], error))
@@ -174,8 +219,8 @@ roll_back (const ClothParts * parts, const GPtrArray * names)
   return !cloth_parts_has_folder (parts, "old") || put_back (parts, NULL);
 }
 
-/* What others, who are gone, left of files of these names is older than these. What can be
- * recovered stays, unless some of its files had their names, which are these now. */
+/* What others, who are gone, left of files of these names goes if nothing can be recovered
+ * of it. */
 static void
 clear_older (const ClothParts * parts)
 {
@@ -184,56 +229,36 @@ clear_older (const ClothParts * parts)
 
   for (guint i = 0; found && i < found->len; i++) {
     const gchar *path = found->pdata[i];
-    g_autofree gchar *old = g_build_filename (path, "old", NULL);
-    g_autofree gchar *placing = g_build_filename (path, "placing", NULL);
-    gint fd = cloth_is_folder (path) ? cloth_parts_open_lock (path) : -1;
+    gint fd = cloth_parts_open_lock (path);
     gboolean has_frame;
 
     if (fd < 0)
       continue;
     /* One's own may be without a lock, where the system has none. */
-    if (!g_str_equal (path, parts->path) && !cloth_file_lock_old (fd)
-        && cloth_parts_read_lock (fd, NULL, &has_frame)) {
-      if (!has_frame || g_file_test (placing, G_FILE_TEST_IS_DIR)) {
-        cloth_remove_parts (path, fd);
-        continue;
-      }
-      cloth_remove_folder (old);
-    }
-    close (fd);
+    if (!g_str_equal (path, parts->path) && !cloth_parts_is_foreign (path) &&
+        !cloth_file_lock_old (fd) && cloth_parts_read_lock (fd, NULL,
+            &has_frame) && !has_frame)
+      cloth_remove_parts (path, fd);
+    else
+      close (fd);
   }
 }
 
-/* Whether nothing is where these shall be, but for what is the parts' own. */
-static gboolean
-check_free (const ClothParts * parts, const GPtrArray * names, GError ** error)
-{
-  for (guint i = 0; i < names->len; i++) {
-    g_autofree gchar *path = cloth_parts_target (parts, names->pdata[i]);
-    g_autofree gchar *shown = g_filename_display_name (path);
-
-    if (cloth_parts_is_own (names->pdata[i]) || !cloth_is_there (path))
-      continue;
-    g_set_error (error, G_IO_ERROR, G_IO_ERROR_EXISTS,
-        "“%s” is there and would be overwritten", shown);
-    return FALSE;
-  }
-  return TRUE;
-}
-
-/* Readers wait for this. */
+/* What is left of a commit. Readers wait until it is gone, but for the last two names. */
 gboolean
 cloth_parts_remove (ClothParts * parts, GError ** error)
 {
-  const gboolean removed = cloth_remove_parts (parts->path, parts->lock);
+  const gboolean removed = cloth_remove_parts (parts->path, parts->lock)
+      || !cloth_parts_is_committing (parts->path);
   g_autofree gchar *shown = g_filename_display_name (parts->path);
 
   parts->lock = -1;
   parts->keep = TRUE;
+  parts->has_frame = FALSE;
   if (!removed)
     g_set_error (error, G_IO_ERROR, G_IO_ERROR_FAILED,
-        "all files are in place, but “%s” can't be removed: remove it",
-        shown);
+        "all files are in place, but readers will not take them until “%s” "
+        "is removed, which can't be done", shown);
   return removed;
 }
 
@@ -253,16 +278,16 @@ cloth_parts_commit (ClothParts * parts, GError ** error)
   g_autofree gchar *whole = cloth_parts_inside (parts, "new", NULL);
   g_autoptr (GPtrArray) names = cloth_parts_list_names (parts, "new", error);
 
-  if (!names || (parts->reopened && !parts->overwrite
-          && !check_free (parts, parts->replaced, error))
-      || (parts->unsynced && !sync_files (whole, error)) ||
+  if (!names || (parts->unsynced && !sync_files (whole, error)) ||
       !cloth_folder_sync (whole, error))
     return FALSE;
   if (!move_all_away (parts, names, error) || !begin_placing (parts, error) ||
       !place (parts, names, error)) {
     if (!roll_back (parts, names)) {
       parts->keep = TRUE;
-      g_prefix_error (error, "what was there waits in “%s”: ", parts->path);
+      g_prefix_error (error,
+          "some files have their names and others not, which "
+          "“gst-cloth-take-1.0 recover” ends: ");
     }
     return FALSE;
   }
@@ -278,10 +303,12 @@ check_all_free (const ClothParts * parts, GError ** error)
   static const gchar *const subs[] = { "new", "." };
 
   for (guint i = 0; i < G_N_ELEMENTS (subs); i++) {
-    g_autoptr (GPtrArray) names = cloth_parts_has_folder (parts, subs[i]) ?
-        cloth_parts_list_names (parts, subs[i], error) : NULL;
+    g_autoptr (GPtrArray) names = NULL;
 
-    if (names && !check_free (parts, names, error))
+    if (!cloth_parts_has_folder (parts, subs[i]))
+      continue;
+    names = cloth_parts_list_names (parts, subs[i], error);
+    if (!names || !check_free (parts, names, error))
       return FALSE;
   }
   return TRUE;
@@ -300,6 +327,12 @@ cloth_parts_resume (ClothParts * parts, gboolean overwrite,
   if (!placing && !cloth_parts_has_folder (parts, "old"))
     return overwrite || check_all_free (parts, error);
   names = cloth_parts_list_names (parts, placing ? "placing" : "old", error);
+  if (names && (placing || names->len > 0) && is_another_committing (parts)) {
+    g_set_error (error, G_IO_ERROR, G_IO_ERROR_BUSY,
+        "another program is giving its files the same names, or was killed "
+        "doing so");
+    return FALSE;
+  }
   if (!names || (!overwrite && !check_free (parts, names, error)))
     return FALSE;
   if (!placing)

@@ -659,6 +659,29 @@ cloth_npy_part_count (const ClothParts * parts, const gchar * name,
 }
 
 /* @parts: what a killed program left
+ * @name: of an array that cloth_npy_part_count() could read
+ * @error: #ClothFileError, #GIOErrorEnum
+ *
+ * Returns: (transfer full): a reader of its whole rows, whatever its header says of their
+ *   number; or %NULL
+ */
+ClothNpyReader *
+cloth_npy_part_open (const ClothParts * parts, const gchar * name,
+    GError ** error)
+{
+  g_autofree gchar *path = cloth_parts_get_path (parts, name);
+  ClothNpyReader *reader = cloth_npy_reader_open (path, error);
+  guint64 n_rows;
+
+  if (!reader)
+    return NULL;
+  n_rows = (cloth_input_get_size (reader->input) - reader->info.data_offset) /
+      (reader->info.row_items * reader->info.item_size);
+  reader->info.n_rows = reader->info.shape[0] = n_rows;
+  return reader;
+}
+
+/* @parts: what a killed program left
  * @name: of an array that has at least @n_rows
  * @n_rows: how many are kept
  * @error: #ClothFileError, #GIOErrorEnum

@@ -74,6 +74,8 @@ ClothNpyWriter *cloth_npy_writer_new (ClothOutput * output, ClothNpyType type,
     guint rank, const guint64 * row_shape, GError ** error);
 gboolean cloth_npy_part_count (const ClothParts * parts, const gchar * name,
     guint64 * n_rows, GError ** error);
+ClothNpyReader *cloth_npy_part_open (const ClothParts * parts,
+    const gchar * name, GError ** error);
 gboolean cloth_npy_part_finish (ClothParts * parts, const gchar * name,
     guint64 n_rows, GError ** error);
 gboolean cloth_npy_writer_append (ClothNpyWriter * writer,

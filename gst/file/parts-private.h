@@ -50,5 +50,7 @@ gboolean cloth_parts_resume (ClothParts * parts, gboolean overwrite,
 gint cloth_parts_open_lock (const gchar * path);
 gboolean cloth_parts_read_lock (gint fd, gchar ** note, gboolean * has_frame);
 gboolean cloth_parts_is_committing (const gchar * path);
+gboolean cloth_parts_check_ended (const gchar * folder, const gchar * head,
+    GError ** error);
 
 G_END_DECLS

@@ -75,7 +75,13 @@ cloth_is_there (const gchar * path)
 static gint
 compare_names (gconstpointer a, gconstpointer b)
 {
-  return strcmp (*(const gchar * const *) a, *(const gchar * const *) b);
+  const gchar *one = *(const gchar * const *) a;
+  const gchar *other = *(const gchar * const *) b;
+
+  /* Numbers of more digits come later. */
+  if (strlen (one) != strlen (other))
+    return strlen (one) < strlen (other) ? -1 : 1;
+  return strcmp (one, other);
 }
 
 /* The names in a sub-folder, sorted, but the head last. */
@@ -213,7 +219,8 @@ make_folder (const gchar * path, const gchar * head, const gchar * note,
 /* @head: the file that readers open first; its folder must exist. Or, of numbered files,
  *   their stem with the ending
  * @note: what is to be known for going on after a kill; at most 63 bytes
- * @error: #GIOErrorEnum
+ * @error: #GIOErrorEnum; %CLOTH_FILE_ERROR_INVALID: another program was killed while its
+ *   files got these names
  *
  * Starts files that get their names together.
  *
@@ -229,6 +236,8 @@ cloth_parts_new (const gchar * head, const gchar * note, GError ** error)
   ClothParts *parts = NULL;
   gint code = 0;
 
+  if (!cloth_parts_check_ended (folder, base, error))
+    return NULL;
   for (guint i = 0; i < CLOTH_MOST_TRIES; i++) {
     code = make_folder (path, base, note, &parts);
     /* Without its parent, no folder can be made however often. */

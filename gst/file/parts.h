@@ -45,7 +45,11 @@ typedef struct {
 GPtrArray *cloth_parts_find (const gchar * folder, const gchar * head,
     GError ** error);
 gboolean cloth_parts_is_dead (const gchar * path);
+gboolean cloth_parts_is_foreign (const gchar * path);
 gboolean cloth_parts_has_frame (const gchar * path);
+ClothPlaced cloth_parts_look_at (const gchar * path);
+gboolean cloth_parts_check_same (const gchar * path,
+    const ClothPlaced * placed, GError ** error);
 gboolean cloth_parts_begin_reading (const gchar * head, ClothPlaced * placed,
     GError ** error);
 gboolean cloth_parts_end_reading (const gchar * head,

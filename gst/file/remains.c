@@ -54,10 +54,28 @@ cloth_parts_read_lock (gint fd, gchar ** note, gboolean * has_frame)
 gboolean
 cloth_parts_is_committing (const gchar * path)
 {
+  g_autofree gchar *folder = g_path_get_dirname (path);
   g_autofree gchar *old = g_build_filename (path, "old", NULL);
   g_autofree gchar *placing = g_build_filename (path, "placing", NULL);
+  GStatBuf info;
 
+  /* Where nobody may replace another's files, as in /tmp, nobody shall be hindered either. */
+  if (g_stat (folder, &info) == 0 && (info.st_mode & S_ISVTX)
+      && cloth_parts_is_foreign (path))
+    return FALSE;
   return cloth_is_folder (old) || cloth_is_folder (placing);
+}
+
+/* @path: one that cloth_parts_find() found
+ *
+ * Returns: whether it is another user's
+ */
+gboolean
+cloth_parts_is_foreign (const gchar * path)
+{
+  GStatBuf info;
+
+  return g_lstat (path, &info) == 0 && info.st_uid != geteuid ();
 }
 
 /* @path: a path
@@ -125,7 +143,7 @@ compare_ages (gconstpointer a, gconstpointer b)
  * @head: (nullable): for what, or all
  * @error: #GFileError
  *
- * Finds parts, whether their writers live or not. A lone file is a part of its own.
+ * Finds parts, whether their writers live or not, and whose ever they are.
  *
  * Returns: (transfer full) (element-type filename) (nullable): their paths, the one that
  *   was written to last first
@@ -142,15 +160,13 @@ cloth_parts_find (const gchar * folder, const gchar * head, GError ** error)
     return NULL;
   while ((name = g_dir_read_name (dir))) {
     g_autofree gchar *base = cloth_parts_get_head (name);
-    GStatBuf info = { 0 };
     Found item;
 
     if (!base || (head && !g_str_equal (base, head)))
       continue;
     item.path = g_build_filename (folder, name, NULL);
-    /* Links lead elsewhere, and others' files are not ours to end or remove. */
-    if (g_lstat (item.path, &info) == 0 && (S_ISLNK (info.st_mode)
-            || info.st_uid != geteuid ())) {
+    /* Links lead elsewhere, and files are of one write each. */
+    if (!cloth_is_folder (item.path)) {
       g_free (item.path);
       continue;
     }
@@ -187,7 +203,7 @@ cloth_parts_is_dead (const gchar * path)
 gboolean
 cloth_parts_has_frame (const gchar * path)
 {
-  gint fd = cloth_is_folder (path) ? cloth_parts_open_lock (path) : -1;
+  gint fd = cloth_parts_open_lock (path);
   gboolean has_frame = FALSE;
 
   if (fd >= 0) {
@@ -197,13 +213,39 @@ cloth_parts_has_frame (const gchar * path)
   return has_frame;
 }
 
-static ClothPlaced
-look_at (const gchar * head)
+/* @folder: where files shall be
+ * @head: the one that readers open first
+ * @error: %CLOTH_FILE_ERROR_INVALID
+ *
+ * Returns: %FALSE when a program was killed while its files got these names: what it had
+ *   placed must not be mixed with others
+ */
+gboolean
+cloth_parts_check_ended (const gchar * folder, const gchar * head,
+    GError ** error)
+{
+  g_autoptr (GPtrArray) found = cloth_parts_find (folder, head, NULL);
+
+  for (guint i = 0; found && i < found->len; i++)
+    if (cloth_parts_is_committing (found->pdata[i]) &&
+        cloth_parts_is_dead (found->pdata[i]))
+      return cloth_file_invalid (error,
+          "a program was killed while its files got the name “%s”: "
+          "“gst-cloth-take-1.0 recover” ends that first", head);
+  return TRUE;
+}
+
+/* @path: a file that others may replace
+ *
+ * Returns: what is there; of nothing, zeros
+ */
+ClothPlaced
+cloth_parts_look_at (const gchar * path)
 {
   GStatBuf info;
   ClothPlaced placed = { 0 };
 
-  if (g_stat (head, &info) == 0) {
+  if (g_stat (path, &info) == 0) {
     placed.device = info.st_dev;
     placed.inode = info.st_ino;
     placed.changed_ns = changed_ns (&info);
@@ -226,7 +268,7 @@ cloth_parts_begin_reading (const gchar * head, ClothPlaced * placed,
   g_autofree gchar *base = g_path_get_basename (head);
   g_autoptr (GPtrArray) found = NULL;
 
-  *placed = look_at (head);
+  *placed = cloth_parts_look_at (head);
   found = cloth_parts_find (folder, base, NULL);
   for (guint i = 0; found && i < found->len; i++) {
     g_autofree gchar *shown = g_filename_display_name (head);
@@ -250,15 +292,29 @@ gboolean
 cloth_parts_end_reading (const gchar * head, const ClothPlaced * placed,
     GError ** error)
 {
-  g_autofree gchar *shown = g_filename_display_name (head);
   ClothPlaced now;
 
-  if (!cloth_parts_begin_reading (head, &now, error))
-    return FALSE;
+  return cloth_parts_begin_reading (head, &now, error) &&
+      cloth_parts_check_same (head, placed, error);
+}
+
+/* @path: a file that others may replace
+ * @placed: what cloth_parts_look_at() saw
+ * @error: %CLOTH_FILE_ERROR_INVALID
+ *
+ * Returns: whether it is still that
+ */
+gboolean
+cloth_parts_check_same (const gchar * path, const ClothPlaced * placed,
+    GError ** error)
+{
+  const ClothPlaced now = cloth_parts_look_at (path);
+  g_autofree gchar *shown = g_filename_display_name (path);
+
   if (memcmp (&now, placed, sizeof now) == 0)
     return TRUE;
   return cloth_file_invalid (error,
-      "“%s” was replaced while it was opened: try again", shown);
+      "“%s” was replaced while it was read: try again", shown);
 }
 
 /* Why what a writer made can't be had. */
@@ -267,7 +323,7 @@ fail_locked (gint code, const gchar * path, GError ** error)
 {
   if (code == EWOULDBLOCK)
     g_set_error (error, G_IO_ERROR, G_IO_ERROR_BUSY,
-        "it is being written: end that program first");
+        "another program is writing or finishing it: wait for it, or end it");
   else if (code == ENOENT)
     g_set_error (error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND,
         "another program has just finished or removed it");
@@ -452,6 +508,28 @@ cloth_parts_has_unfinished (const ClothParts * parts)
   return FALSE;
 }
 
+/* Frames behind one that is not whole would be lost with it. */
+static gboolean
+check_last (const ClothParts * parts, const gchar * stem, guint64 number,
+    const gchar * ending, GError ** error)
+{
+  g_autofree gchar *broken = cloth_parts_number (stem, number, ending);
+
+  for (guint64 i = number + 1;; i++) {
+    g_autofree gchar *name = cloth_parts_number (stem, i, ending);
+    g_autofree gchar *path = cloth_parts_inside (parts, "new", name);
+    GStatBuf info;
+
+    if (g_lstat (path, &info) < 0)
+      return TRUE;
+    if (S_ISREG (info.st_mode) && info.st_size > 0)
+      return cloth_file_invalid (error,
+          "%s is not whole, but %s is: put the frame before it in the place of "
+          "the broken one, or remove it with all later ones, and call again",
+          broken, name);
+  }
+}
+
 /* @parts: parts
  * @stem: what the names begin with, without the folder
  * @ending: what the names end with
@@ -476,7 +554,7 @@ cloth_parts_count_numbered (const ClothParts * parts, const gchar * stem,
     if (!there)
       return cloth_file_fail (error, errno, "read", path);
     if (!S_ISREG (info.st_mode) || info.st_size == 0)
-      return TRUE;
+      return check_last (parts, stem, *n, ending, error);
   }
 }
 

@@ -69,6 +69,44 @@ name_one (const gchar * path)
   return paths;
 }
 
+/* What is in a folder, and what takes in it have. */
+static GPtrArray *
+find_below (const gchar * folder, GError ** error)
+{
+  GPtrArray *found = cloth_parts_find (folder, NULL, error);
+  GDir *dir = found ? g_dir_open (folder, 0, NULL) : NULL;
+  const gchar *name;
+
+  while (dir && (name = g_dir_read_name (dir))) {
+    g_autofree gchar *take = g_build_filename (folder, name, NULL);
+    g_autoptr (GPtrArray) more = NULL;
+
+    if (*name != '.' && g_file_test (take, G_FILE_TEST_IS_DIR)
+        && !g_file_test (take, G_FILE_TEST_IS_SYMLINK))
+      more = cloth_parts_find (take, "take.json", NULL);
+    for (guint i = 0; more && i < more->len; i++)
+      g_ptr_array_add (found, g_strdup (more->pdata[i]));
+  }
+  g_clear_pointer (&dir, g_dir_close);
+  return found;
+}
+
+/* @location: where a recording is, or was to be
+ * @format: its format
+ *
+ * Returns: (transfer full): what cloth_recover_find() is to be told
+ */
+gchar *
+cloth_recover_get_name (const gchar * location, ClothMeshFormat format)
+{
+  gchar *head = cloth_mesh_format_head (location, format);
+
+  if (!g_str_has_suffix (head, "/take.json"))
+    return head;
+  g_free (head);
+  return g_strdup (location);
+}
+
 /* @location: a folder, or a recording as it was to be called, or what is left of it
  * @error: #GFileError
  *
@@ -88,7 +126,7 @@ cloth_recover_find (const gchar * location, GError ** error)
   if (part && g_file_test (location, G_FILE_TEST_EXISTS))
     return name_one (location);
   if (g_file_test (location, G_FILE_TEST_IS_DIR))
-    return cloth_parts_find (location, NULL, error);
+    return find_below (location, error);
   head = cloth_mesh_format_head (location, CLOTH_MESH_FORMAT_AUTO);
   folder = g_path_get_dirname (head);
   base = g_path_get_basename (head);
@@ -123,6 +161,11 @@ finish (ClothParts * parts, const gchar * path, const gchar * head,
         "it is no recording, and is left alone");
     return FALSE;
   }
+  /* These are of one file: only its name was missing. */
+  if (!formats[i].recover && cloth_parts_is_whole (parts, head)) {
+    recovered->placed = TRUE;
+    return cloth_parts_commit (parts, error);
+  }
   if (!formats[i].recover) {
     g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_UNSUPPORTED,
         "a file of this format can't be finished: its frames are lost. Record a "
@@ -147,8 +190,8 @@ finish (ClothParts * parts, const gchar * path, const gchar * head,
  * @error: #ClothFileError, #GIOErrorEnum; %G_IO_ERROR_BUSY: the program lives;
  *   %G_IO_ERROR_EXISTS: a recording would be replaced
  *
- * Finishes a recording; one without a whole frame is removed. After an error all stays as
- * it is.
+ * Finishes a recording; one without a whole frame is removed. After an error no whole frame
+ * is lost.
  *
  * Returns: %TRUE when nothing is left of it but the recording
  */

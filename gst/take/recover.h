@@ -22,6 +22,7 @@ typedef enum {
 
 ClothLeft cloth_recover_look (const gchar * location, ClothMeshFormat format);
 GPtrArray *cloth_recover_find (const gchar * location, GError ** error);
+gchar *cloth_recover_get_name (const gchar * location, ClothMeshFormat format);
 gchar *cloth_recover_get_target (const gchar * path);
 gboolean cloth_recover (const gchar * path, gboolean overwrite,
     ClothRecovered * recovered, GError ** error);

@@ -28,6 +28,7 @@ struct _ClothMeshReader
   guint n_seam_vertices;
   /* PLY */
   ClothPly *ply;
+  ClothPlaced placed;           /* its first file */
   gchar *stem;
   gboolean single;              /* one file without a number */
   guint first;                  /* number of the first file */
@@ -206,14 +207,17 @@ static gboolean
 read_ply (ClothMeshReader * reader, guint frame, GError ** error)
 {
   g_autofree gchar *path = ply_path (reader, frame);
+  g_autofree gchar *first = ply_path (reader, 0);
 
-  return cloth_ply_read (reader->ply, path, error);
+  return cloth_ply_read (reader->ply, path, error) &&
+      cloth_parts_check_same (first, &reader->placed, error);
 }
 
 static gboolean
 open_ply (ClothMeshReader * reader, const gchar * stem, GError ** error)
 {
   g_autofree gchar *head = g_strconcat (stem, ".ply", NULL);
+  g_autofree gchar *first = NULL;
   ClothPlaced placed;
   ClothPly *ply;
   ClothTopology *topology;
@@ -228,10 +232,13 @@ open_ply (ClothMeshReader * reader, const gchar * stem, GError ** error)
     if (!ply_exists (reader, 0))
       reader->single = TRUE;
   }
+  first = ply_path (reader, 0);
+  reader->placed = cloth_parts_look_at (first);
   reader->n_frames = 1;
   while (!reader->single && ply_exists (reader, reader->n_frames))
     reader->n_frames++;
-  if (!read_ply (reader, 0, error))
+  if (!read_ply (reader, 0, error) ||
+      !cloth_parts_end_reading (head, &placed, error))
     return FALSE;
   topology = cloth_topology_new (ply->n_vertices, ply->n_faces);
   memcpy (topology->uv, ply->uv, 2 * (gsize) ply->n_vertices * sizeof (gfloat));

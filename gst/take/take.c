@@ -791,6 +791,28 @@ cloth_take_writer_free (ClothTakeWriter * writer)
   g_free (writer);
 }
 
+/* Where a computer loses its power, the end of a file may be zeros. */
+static gboolean
+count_rising_times (ClothParts * parts, guint64 * n_frames, GError ** error)
+{
+  g_autoptr (ClothNpyReader) reader = NULL;
+  gdouble before = 0, time = 0;
+
+  if (*n_frames == 0)
+    return TRUE;
+  reader = cloth_npy_part_open (parts, array_names[TIMES], error);
+  if (!reader)
+    return FALSE;
+  for (guint64 i = 0; i < *n_frames; i++) {
+    if (!cloth_npy_reader_read_double (reader, i, 1, &time, error))
+      return FALSE;
+    if (!isfinite (time) || (i > 0 && time <= before))
+      *n_frames = i;
+    before = time;
+  }
+  return TRUE;
+}
+
 /* Counts the rows of all arrays. One that begins later has too few when it was caught
  * being filled up: it is left out. */
 static gboolean
@@ -820,7 +842,9 @@ count_rows (ClothParts * parts, guint64 n_rows[N_ARRAYS],
   }
   for (guint i = COVARIANCES; i < N_ARRAYS; i++)
     recovered->n_frames = MIN (recovered->n_frames, n_rows[i]);
-  recovered->cut = recovered->n_frames != most;
+  if (!count_rising_times (parts, &recovered->n_frames, error))
+    return FALSE;
+  recovered->n_left_out = most - recovered->n_frames;
   return TRUE;
 }
 

@@ -298,10 +298,9 @@ test_vtp_left (void)
 {
   static const struct
   {
-    guint n_files, n_listed, n_frames;
-    gboolean cut;
-  } cases[] = { {3, 4, 3, TRUE}, {4, 3, 3, TRUE}, {3, 3, 3, FALSE},
-  {0, 3, 0, TRUE}, {0, 0, 0, FALSE}
+    guint n_files, n_listed, n_frames, n_left_out;
+  } cases[] = { {3, 4, 3, 1}, {4, 3, 3, 1}, {3, 3, 3, 0}, {0, 3, 0, 3},
+  {0, 0, 0, 0}
   };
 
   for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
@@ -331,7 +330,7 @@ test_vtp_left (void)
     g_assert_true (cloth_vtp_recover (parts, "c", &recovered, &error));
     g_assert_no_error (error);
     g_assert_cmpuint (recovered.n_frames, ==, cases[i].n_frames);
-    g_assert_cmpint (recovered.cut, ==, cases[i].cut);
+    g_assert_cmpuint (recovered.n_left_out, ==, cases[i].n_left_out);
     g_assert_true (cloth_parts_count_numbered (parts, "c", ".vtp", &n_files,
             &error));
     g_assert_cmpuint (n_files, ==, cases[i].n_frames);

@@ -157,7 +157,7 @@ test_kept (void)
     g_assert_true (cloth_recover (left, FALSE, &recovered, &error));
     g_assert_no_error (error);
     g_assert_cmpuint (recovered.n_frames, ==, 7);
-    g_assert_false (recovered.cut);
+    g_assert_cmpuint (recovered.n_left_out, ==, 0);
     g_assert_false (recovered.placed);
     g_assert_null (recovered.dropped);
     assert_frames (path, 1, 7);
@@ -233,7 +233,7 @@ test_last_frame_cut (void)
     g_assert_true (cloth_recover (left, FALSE, &recovered, &error));
     g_assert_no_error (error);
     g_assert_cmpuint (recovered.n_frames, ==, cases[i].n_frames);
-    g_assert_true (recovered.cut);
+    g_assert_cmpuint (recovered.n_left_out, >, 0);
     assert_frames (path, 2, cases[i].n_frames);
     assert_nothing_left (path);
     scratch_end ();
@@ -259,7 +259,7 @@ test_csv (void)
     g_assert_true (cloth_recover (left, FALSE, &recovered, NULL));
     /* one frame alone, then without the last one */
     g_assert_cmpuint (recovered.n_frames, ==, bytes == 0 ? 1 : bytes);
-    g_assert_cmpint (recovered.cut, ==, bytes > 0);
+    g_assert_cmpuint (recovered.n_left_out, ==, bytes > 0);
     g_assert_true (g_file_get_contents (path, &text, NULL, NULL));
     lines = g_strsplit (text, "\n", -1);
     g_assert_cmpuint (g_strv_length (lines), ==, 1 + N * recovered.n_frames +
@@ -424,9 +424,20 @@ test_living (void)
   scratch_end ();
 }
 
+static gchar *
+find_lone (const gchar * folder)
+{
+  g_autoptr (GDir) dir = g_dir_open (folder, 0, NULL);
+  const gchar *name = g_dir_read_name (dir);
+
+  g_assert_nonnull (name);
+  return g_build_filename (folder, name, NULL);
+}
+
 static void
 test_living_lone_file (void)
 {
+  g_autoptr (GPtrArray) named = NULL;
   g_autofree gchar *path = NULL;
   g_autofree gchar *left = NULL;
   g_autofree gchar *dead = NULL;
@@ -438,7 +449,12 @@ test_living_lone_file (void)
   path = scratch_path ("rig.json");
   output = cloth_output_new (path, &error);
   g_assert_no_error (error);
-  left = find_one (scratch);
+  /* It is found when it is named itself. */
+  assert_nothing_left (scratch);
+  left = find_lone (scratch);
+  named = cloth_recover_find (left, &error);
+  g_assert_cmpuint (named->len, ==, 1);
+  g_assert_cmpstr (named->pdata[0], ==, left);
   g_assert_false (cloth_recover (left, TRUE, &recovered, &error));
   g_assert_error (error, G_IO_ERROR, G_IO_ERROR_BUSY);
   g_clear_error (&error);
@@ -539,7 +555,7 @@ test_left (void)
     g_assert_true (cloth_recover (left, FALSE, &recovered, &error));
     g_assert_no_error (error);
     g_assert_cmpuint (recovered.n_frames, ==, cases[i].n_frames);
-    g_assert_false (recovered.cut);
+    g_assert_cmpuint (recovered.n_left_out, ==, 0);
     assert_nothing_left (path);
     if (i < G_N_ELEMENTS (readable))
       assert_frames (path, 1, cases[i].n_frames);
@@ -619,6 +635,7 @@ test_power (void)
     g_autofree gchar *path = NULL;
     g_autofree gchar *left = NULL;
     g_autofree gchar *empty = NULL;
+    g_autofree gchar *last = NULL;
     g_autofree gchar *next = NULL;
     g_autoptr (GError) error = NULL;
     ClothRecovered recovered;
@@ -628,7 +645,14 @@ test_power (void)
     be_killed (path, 1, 5, G_MAXUINT);
     left = find_one (path);
     empty = g_strconcat (left, "/new/c_00003", ending, NULL);
+    last = g_strconcat (left, "/new/c_00004", ending, NULL);
     g_assert_cmpint (truncate (empty, 0), ==, 0);
+    /* a whole one behind it is not thrown away */
+    g_assert_false (cloth_recover (left, FALSE, &recovered, &error));
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+    g_assert_nonnull (strstr (error->message, "c_00003"));
+    g_clear_error (&error);
+    g_assert_cmpint (truncate (last, 0), ==, 0);
     /* nor is a pipe whole */
     if (i == 2) {
       g_assert_cmpint (g_unlink (empty), ==, 0);
@@ -723,7 +747,7 @@ test_several (void)
   g_assert_true (g_file_test (found->pdata[1], G_FILE_TEST_IS_DIR));
   /* of the same age: by their names */
   lone = scratch_path (".c.obj.part-000000");
-  g_assert_true (g_file_set_contents (lone, "", 0, NULL));
+  g_assert_cmpint (g_mkdir (lone, 0777), ==, 0);
   g_assert_cmpint (utimensat (AT_FDCWD, lone, times, 0), ==, 0);
   set_age (found->pdata[1], times);
   g_ptr_array_unref (found);
@@ -734,14 +758,14 @@ test_several (void)
       CLOTH_LEFT_FRAMES);
   g_assert_true (cloth_recover (found->pdata[1], TRUE, &recovered, &error));
   g_assert_cmpint (cloth_recover_look (path, CLOTH_MESH_FORMAT_AUTO), ==,
-      CLOTH_LEFT_LOST);
+      CLOTH_LEFT_NOTHING);
   /* of many ages: the newest first */
   for (guint i = 0; i < 10; i++) {
     g_autofree gchar *path_i = g_strdup_printf ("%s/.d.obj.part-00000%u",
         scratch, i);
 
     times[1].tv_sec = 2000 + (i * 7) % 10;
-    g_assert_true (g_file_set_contents (path_i, "", 0, NULL));
+    g_assert_cmpint (g_mkdir (path_i, 0777), ==, 0);
     g_assert_cmpint (utimensat (AT_FDCWD, path_i, times, 0), ==, 0);
   }
   g_ptr_array_unref (found);
@@ -905,7 +929,8 @@ test_left_alone (void)
     if (geteuid () == 0 && chown (hidden, 1, 1) == 0) {
       g_autoptr (GPtrArray) found = cloth_recover_find (scratch, NULL);
 
-      g_assert_cmpuint (found->len, ==, 0);
+      g_assert_cmpuint (found->len, ==, 1);
+      g_assert_true (cloth_parts_is_foreign (found->pdata[0]));
     }
     {
       g_autofree gchar *link = scratch_path (".d.obj.part-abcdef");
@@ -920,11 +945,12 @@ test_left_alone (void)
   }
 }
 
-/* Programs were killed while their files got their names; then somebody records anew. */
+/* A program was killed while its files got their names: that is ended first. */
 static void
 test_committing (void)
 {
   static const gchar *const subs[] = { "old", "placing" };
+  g_autoptr (ClothTopology) topology = make_topology ();
 
   for (guint k = 0; k < G_N_ELEMENTS (subs); k++) {
     g_autofree gchar *path = NULL;
@@ -938,18 +964,212 @@ test_committing (void)
     be_killed (path, 1, 4, G_MAXUINT);
     left = find_one (path);
     sub = g_build_filename (left, subs[k], NULL);
-    g_assert_cmpint (g_mkdir (sub, 0777), ==, 0);
-    record (path, 2, 3);
-    /* What had its names is overwritten; what had not can be recovered still. */
-    assert_frames (path, 2, 3);
-    g_assert_true (g_file_test (left, G_FILE_TEST_IS_DIR) == (k == 0));
-    if (k == 0) {
-      g_assert_true (cloth_recover (left, TRUE, &recovered, &error));
-      g_assert_no_error (error);
-      assert_frames (path, 1, 4);
+    if (k == 1) {
+      g_autofree gchar *whole = g_build_filename (left, "new", NULL);
+
+      g_assert_cmpint (g_rename (whole, sub), ==, 0);
+    } else {
+      g_assert_cmpint (g_mkdir (sub, 0777), ==, 0);
     }
+    g_assert_null (cloth_mesh_writer_new (path, CLOTH_MESH_FORMAT_AUTO, NULL,
+            topology, 25, 1, &error));
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+    g_assert_nonnull (strstr (error->message, "gst-cloth-take-1.0 recover"));
+    g_clear_error (&error);
+    g_assert_true (cloth_recover (left, FALSE, &recovered, &error));
+    g_assert_no_error (error);
+    g_assert_true (recovered.placed == (k == 1));
+    if (k == 0)
+      assert_frames (path, 1, 4);
+    record (path, 2, 3);
+    assert_frames (path, 2, 3);
+    assert_nothing_left (path);
     scratch_end ();
   }
+}
+
+/* Another program gives its files the names while a commit that was cut off is ended. */
+static void
+test_resume_alone (void)
+{
+  g_autofree gchar *path = NULL;
+  g_autofree gchar *left = NULL;
+  g_autofree gchar *whole = NULL;
+  g_autofree gchar *placing = NULL;
+  g_autofree gchar *other = NULL;
+  g_autoptr (GError) error = NULL;
+  ClothRecovered recovered;
+
+  scratch_begin ();
+  path = scratch_path ("c.obj");
+  be_killed (path, 1, 4, G_MAXUINT);
+  left = find_one (path);
+  whole = g_build_filename (left, "new", NULL);
+  placing = g_build_filename (left, "placing", NULL);
+  other = scratch_path (".c.obj.part-other0/old");
+  g_assert_cmpint (g_rename (whole, placing), ==, 0);
+  g_assert_cmpint (g_mkdir_with_parents (other, 0777), ==, 0);
+  g_assert_false (cloth_recover (left, TRUE, &recovered, &error));
+  g_assert_error (error, G_IO_ERROR, G_IO_ERROR_BUSY);
+  g_assert_true (g_file_test (placing, G_FILE_TEST_IS_DIR));
+  g_assert_false (g_file_test (path, G_FILE_TEST_EXISTS));
+  scratch_end ();
+}
+
+/* What a take has below a folder is found from there. */
+static void
+test_below (void)
+{
+  g_autofree gchar *path = NULL;
+  g_autofree gchar *link = NULL;
+  g_autoptr (GPtrArray) found = NULL;
+  g_autoptr (GError) error = NULL;
+  ClothRecovered recovered;
+
+  scratch_begin ();
+  path = scratch_path ("t.take");
+  link = scratch_path ("link");
+  be_killed (path, 1, 4, G_MAXUINT);
+  g_assert_cmpint (symlink ("t.take", link), ==, 0);
+  found = cloth_recover_find (scratch, &error);
+  g_assert_no_error (error);
+  g_assert_cmpuint (found->len, ==, 1);
+  g_assert_true (cloth_recover (found->pdata[0], FALSE, &recovered, &error));
+  assert_frames (path, 1, 4);
+  scratch_end ();
+}
+
+/* What can only be read whole, and is whole but for its name. */
+static void
+test_whole (void)
+{
+  static const gchar *const names[] = { "c.glb", "c.usda", "c.c3d" };
+
+  for (guint i = 0; i < G_N_ELEMENTS (names); i++) {
+    g_autofree gchar *path = NULL;
+    g_autofree gchar *left = NULL;
+    g_autofree gchar *whole = NULL;
+    g_autofree gchar *begun = NULL;
+    g_autoptr (GError) error = NULL;
+    ClothRecovered recovered;
+
+    scratch_begin ();
+    path = scratch_path (names[i]);
+    be_killed (path, 1, 1, G_MAXUINT);
+    left = find_one (path);
+    begun = g_build_filename (left, names[i], NULL);
+    whole = g_build_filename (left, "new", names[i], NULL);
+    g_assert_cmpint (g_rename (begun, whole), ==, 0);
+    g_assert_true (cloth_recover (left, FALSE, &recovered, &error));
+    g_assert_no_error (error);
+    g_assert_true (recovered.placed);
+    g_assert_true (g_file_test (path, G_FILE_TEST_IS_REGULAR));
+    assert_nothing_left (path);
+    scratch_end ();
+  }
+}
+
+/* Numbers of six digits come after those of five. */
+static void
+test_many_numbers (void)
+{
+  g_autofree gchar *path = NULL;
+  g_autoptr (ClothParts) parts = NULL;
+  g_autoptr (GError) error = NULL;
+
+  scratch_begin ();
+  path = scratch_path ("c.ply");
+  parts = cloth_parts_new (path, "", &error);
+  for (guint i = 99998; i < 100002; i++) {
+    g_autoptr (ClothOutput) output =
+        cloth_parts_open_numbered (parts, "c", i, ".ply", &error);
+
+    g_assert_true (cloth_output_commit (output, &error));
+  }
+  g_assert_true (cloth_parts_commit (parts, &error));
+  g_assert_no_error (error);
+  g_assert_cmpuint (scratch_count (), ==, 4);
+  scratch_end ();
+}
+
+/* A reader of numbered files reads them one by one: they may be replaced meanwhile. */
+static void
+test_ply_replaced (void)
+{
+  g_autofree gchar *path = NULL;
+  g_autoptr (ClothMeshReader) reader = NULL;
+  g_autoptr (GError) error = NULL;
+  ClothMeshFrame frame;
+
+  scratch_begin ();
+  path = scratch_path ("c.ply");
+  record (path, 0, 4);
+  reader = cloth_mesh_reader_open (path, CLOTH_MESH_FORMAT_AUTO, &error);
+  g_assert_no_error (error);
+  g_assert_true (cloth_mesh_reader_read (reader, 1, &frame, &error));
+  record (path, 1, 4);
+  g_assert_false (cloth_mesh_reader_read (reader, 2, &frame, &error));
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+  g_assert_nonnull (strstr (error->message, "try again"));
+  scratch_end ();
+}
+
+/* The end of a take is zeros, as after a loss of power. */
+static void
+test_zeros (void)
+{
+  g_autofree gchar *path = NULL;
+  g_autofree gchar *left = NULL;
+  g_autofree gchar *times = NULL;
+  g_autofree gchar *bytes = NULL;
+  g_autoptr (GError) error = NULL;
+  ClothRecovered recovered;
+  gsize size;
+
+  scratch_begin ();
+  path = scratch_path ("c.take");
+  be_killed (path, 1, 9, G_MAXUINT);
+  left = find_one (path);
+  times = g_build_filename (left, "times.npy", NULL);
+  g_assert_true (g_file_get_contents (times, &bytes, &size, NULL));
+  memset (bytes + size - 4 * 8, 0, 4 * 8);
+  g_assert_true (g_file_set_contents (times, bytes, (gssize) size, NULL));
+  g_assert_true (cloth_recover (left, FALSE, &recovered, &error));
+  g_assert_no_error (error);
+  g_assert_cmpuint (recovered.n_frames, ==, 5);
+  g_assert_cmpuint (recovered.n_left_out, ==, 4);
+  assert_frames (path, 1, 5);
+  scratch_end ();
+}
+
+/* Somebody records while an older one is recovered: between the first look whether its
+ * names are free, and the commit. */
+static void
+test_taken_meanwhile (void)
+{
+  g_autofree gchar *path = NULL;
+  g_autofree gchar *left = NULL;
+  g_autoptr (ClothParts) parts = NULL;
+  g_autoptr (GError) error = NULL;
+  ClothRecovered recovered = { 0 };
+  ClothRemains remains;
+
+  scratch_begin ();
+  path = scratch_path ("c.obj");
+  be_killed (path, 1, 4, G_MAXUINT);
+  left = find_one (path);
+  parts = cloth_parts_reopen (left, FALSE, &remains, &error);
+  g_assert_no_error (error);
+  g_assert_true (cloth_obj_pc2_recover (parts, "c", &recovered, &error));
+  record (path, 2, 3);
+  g_assert_false (cloth_parts_commit (parts, &error));
+  g_assert_error (error, G_IO_ERROR, G_IO_ERROR_EXISTS);
+  assert_frames (path, 2, 3);
+  g_clear_pointer (&parts, cloth_parts_free);
+  g_clear_error (&error);
+  g_assert_true (cloth_recover (left, TRUE, &recovered, &error));
+  assert_frames (path, 1, 4);
+  scratch_end ();
 }
 
 /* What is left can be named itself. */
@@ -1288,6 +1508,13 @@ main (int argc, char **argv)
   g_test_add_func ("/recover/half-placed-taken", test_half_placed_taken);
   g_test_add_func ("/recover/left-alone", test_left_alone);
   g_test_add_func ("/recover/committing", test_committing);
+  g_test_add_func ("/recover/resume-alone", test_resume_alone);
+  g_test_add_func ("/recover/below", test_below);
+  g_test_add_func ("/recover/whole", test_whole);
+  g_test_add_func ("/recover/many-numbers", test_many_numbers);
+  g_test_add_func ("/recover/ply-replaced", test_ply_replaced);
+  g_test_add_func ("/recover/zeros", test_zeros);
+  g_test_add_func ("/recover/taken-meanwhile", test_taken_meanwhile);
   g_test_add_func ("/recover/by-its-path", test_by_its_path);
   g_test_add_func ("/recover/hostile", test_hostile);
   g_test_add_func ("/recover/no-regular-file", test_no_regular_file);

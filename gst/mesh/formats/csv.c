@@ -129,7 +129,7 @@ cloth_csv_recover (ClothParts * parts, const gchar * base,
     return cloth_file_invalid (error, "how many vertices it has is not noted");
   if (!count_frames (input, n_vertices, &recovered->n_frames, &end, error))
     return FALSE;
-  recovered->cut = end < cloth_input_get_size (input);
+  recovered->n_left_out = end < cloth_input_get_size (input);
   if (recovered->n_frames == 0)
     return TRUE;
   output = cloth_parts_continue (parts, name, end, error);

@@ -51,7 +51,7 @@ typedef struct {
 
 /* @placed: all frames were whole, and only had to get their names
  * @n_frames: else how many are kept
- * @cut: whether the beginning of one more is left out
+ * @n_left_out: how many more, whole or not, are left out; 0 when that is none
  * @dropped: (nullable): a file that had fewer frames and is left out
  *
  * What could be finished of a recording that was interrupted.
@@ -59,7 +59,7 @@ typedef struct {
 typedef struct {
   gboolean placed;
   guint64 n_frames;
-  gboolean cut;
+  guint64 n_left_out;
   const gchar *dropped;
 } ClothRecovered;
 

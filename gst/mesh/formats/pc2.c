@@ -335,7 +335,8 @@ cloth_obj_pc2_recover (ClothParts * parts, const gchar * base,
       !cloth_npy_part_count (parts, states, &n_states, error))
     return FALSE;
   recovered->n_frames = MIN (n_samples, n_states);
-  recovered->cut = rest > 0 || n_samples != n_states;
+  recovered->n_left_out =
+      MAX (n_samples + (rest > 0), n_states) - recovered->n_frames;
   if (recovered->n_frames == 0)
     return TRUE;
   output = cloth_parts_continue (parts, pc2, HEADER_SIZE +

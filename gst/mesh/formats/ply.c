@@ -749,7 +749,7 @@ cloth_ply_recover (ClothParts * parts, const gchar * base,
   if (!cloth_parts_count_numbered (parts, base, ".ply", &recovered->n_frames,
           error))
     return FALSE;
-  recovered->cut = cloth_parts_has_unfinished (parts);
+  recovered->n_left_out = cloth_parts_has_unfinished (parts);
   return *n == 0 || (cloth_parts_drop_numbered (parts, base, *n, ".ply", error)
       && cloth_parts_replace_numbered (parts, base, *n, ".ply", error));
 }

@@ -247,7 +247,7 @@ cloth_vtp_recover (ClothParts * parts, const gchar * base,
   if (!cloth_parts_count_numbered (parts, base, ".vtp", &n_files, error))
     return FALSE;
   n = recovered->n_frames = MIN (n_files, ends->len);
-  recovered->cut = n_files != n || ends->len != n;
+  recovered->n_left_out = MAX (n_files, ends->len) - n;
   if (n == 0)
     return TRUE;
   if (!cloth_parts_drop_numbered (parts, base, n, ".vtp", error) ||
