@@ -313,19 +313,6 @@ gst_cloth_sync_sink_event (GstAggregator * agg, GstAggregatorPad * aggpad,
       return FALSE;
     }
     gst_pad_mark_reconfigure (GST_AGGREGATOR_SRC_PAD (self));
-  } else if (GST_EVENT_TYPE (event) == GST_EVENT_SEGMENT) {
-    const GstSegment *segment;
-
-    gst_event_parse_segment (event, &segment);
-    if (segment->format != GST_FORMAT_TIME) {
-      GST_ELEMENT_ERROR (self, STREAM, FORMAT,
-          ("Pad %s has a segment in %s, not in time.", GST_PAD_NAME (pad),
-              gst_format_get_name (segment->format)),
-          ("Streams are joined by running time. Put a parser or decoder that gives "
-              "times before this element, or a source with format=time."));
-      gst_event_unref (event);
-      return FALSE;
-    }
   }
   return GST_AGGREGATOR_CLASS (gst_cloth_sync_parent_class)->sink_event (agg,
       aggpad, event);
@@ -336,18 +323,11 @@ static GstFlowReturn
 gst_cloth_sync_sink_event_pre_queue (GstAggregator * agg,
     GstAggregatorPad * aggpad, GstEvent * event)
 {
-  const GstSegment *segment;
-
-  if (GST_EVENT_TYPE (event) == GST_EVENT_SEGMENT) {
-    gst_event_parse_segment (event, &segment);
-    if (segment->rate < 0 && !GST_CLOCK_TIME_IS_VALID (segment->stop)) {
-      GST_ELEMENT_ERROR (agg, STREAM, FORMAT,
-          ("Pad %s has a segment that is played backwards from no end.",
-              GST_PAD_NAME (aggpad)),
-          ("Seek with a stop position, or play forwards."));
-      gst_event_unref (event);
-      return GST_FLOW_ERROR;
-    }
+  if (GST_EVENT_TYPE (event) == GST_EVENT_SEGMENT &&
+      !gst_cloth_sync_pad_check_segment (GST_CLOTH_SYNC_PAD (aggpad),
+          GST_ELEMENT (agg), event)) {
+    gst_event_unref (event);
+    return GST_FLOW_ERROR;
   }
   return GST_AGGREGATOR_CLASS
       (gst_cloth_sync_parent_class)->sink_event_pre_queue (agg, aggpad, event);

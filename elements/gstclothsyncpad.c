@@ -132,6 +132,31 @@ gst_cloth_sync_pad_hold (GstClothSyncPad * pad, GstBuffer * buffer,
   GST_OBJECT_UNLOCK (pad);
 }
 
+gboolean
+gst_cloth_sync_pad_check_segment (GstClothSyncPad * pad, GstElement * element,
+    GstEvent * event)
+{
+  const GstSegment *segment;
+
+  gst_event_parse_segment (event, &segment);
+  if (segment->format != GST_FORMAT_TIME) {
+    GST_ELEMENT_ERROR (element, STREAM, FORMAT,
+        ("Pad %s has a segment in %s, not in time.", GST_PAD_NAME (pad),
+            gst_format_get_name (segment->format)),
+        ("Streams are joined by running time. Put a parser or decoder that gives "
+            "times before this element, or a source with format=time."));
+    return FALSE;
+  }
+  if (segment->rate < 0 && !GST_CLOCK_TIME_IS_VALID (segment->stop)) {
+    GST_ELEMENT_ERROR (element, STREAM, FORMAT,
+        ("Pad %s has a segment that is played backwards from no end.",
+            GST_PAD_NAME (pad)),
+        ("Seek with a stop position, or play forwards."));
+    return FALSE;
+  }
+  return TRUE;
+}
+
 guint
 gst_cloth_sync_pad_count_flushes (GstClothSyncPad * pad)
 {

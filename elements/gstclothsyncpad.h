@@ -101,6 +101,11 @@ GstClothSyncVerdict gst_cloth_sync_pad_judge (GstClothSyncPad * pad,
 void gst_cloth_sync_pad_note (GstClothSyncPad * pad, GstClockTimeDiff time,
     GstClockTimeDiff end);
 
+/* Returns: whether times can be told by the segment of @event; else @element has posted the
+ * error */
+gboolean gst_cloth_sync_pad_check_segment (GstClothSyncPad * pad,
+    GstElement * element, GstEvent * event);
+
 /* Returns: how often the pad was flushed */
 guint gst_cloth_sync_pad_count_flushes (GstClothSyncPad * pad);
 

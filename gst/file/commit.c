@@ -1,4 +1,4 @@
-/* Parts get their names, all or none.
+/* Parts are begun, and get their names, all or none.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/file/parts-private.h"
@@ -14,6 +14,70 @@
 /* Two seconds or so, in which any other commit has ended. */
 #define MOST_WAITS 200
 #define LONGEST_WAIT_US 20000
+
+/* Makes the hidden folder with its lock. 0, or what the system says. ENOENT, EWOULDBLOCK: a
+ * cleaner was quicker. */
+static gint
+make_folder (const gchar * path, const gchar * head, const gchar * note,
+    ClothParts ** made)
+{
+  g_autofree gchar *text = g_strconcat (CLOTH_PARTS_MAGIC, note, "\n", NULL);
+  g_autofree gchar *template = g_strdup (path);
+  g_autofree gchar *lock = NULL, *whole = NULL;
+  gint fd, code;
+
+  if (!g_mkdtemp_full (template, 0777))
+    return errno;
+  lock = g_build_filename (template, CLOTH_PARTS_LOCK, NULL);
+  whole = g_build_filename (template, "new", NULL);
+  do
+    fd = g_open (lock, O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
+  while (fd < 0 && errno == EINTR);
+  code = fd < 0 ? errno : cloth_file_lock_new (fd);
+  if (!code)
+    code = cloth_file_append (fd, text, strlen (text));
+  if (!code && g_mkdir (whole, 0777) < 0)
+    code = errno;
+  if (code)
+    cloth_remove_parts (template, fd);
+  else
+    *made = cloth_parts_wrap (template, head, fd);
+  return code;
+}
+
+/* @head: the file that readers open first; its folder must exist. Or, of numbered files,
+ *   their stem with the ending
+ * @note: what is to be known for going on after a kill; at most 63 bytes
+ * @error: #GIOErrorEnum; %CLOTH_FILE_ERROR_INVALID: another program was killed while its
+ *   files got these names
+ *
+ * Starts files that get their names together.
+ *
+ * Returns: (transfer full): the parts, or %NULL
+ */
+ClothParts *
+cloth_parts_new (const gchar * head, const gchar * note, GError ** error)
+{
+  g_autofree gchar *folder = g_path_get_dirname (head);
+  g_autofree gchar *base = g_path_get_basename (head);
+  g_autofree gchar *hidden = g_strconcat (".", base, CLOTH_PART_MARK, NULL);
+  g_autofree gchar *path = g_build_filename (folder, hidden, NULL);
+  ClothParts *parts = NULL;
+  gint code = 0;
+
+  if (!cloth_parts_check_ended (folder, base, error))
+    return NULL;
+  for (guint i = 0; i < CLOTH_MOST_TRIES; i++) {
+    code = make_folder (path, base, note, &parts);
+    /* Without its parent, no folder can be made however often. */
+    if (!code || (code != EWOULDBLOCK && (code != ENOENT
+                || !cloth_is_folder (folder))))
+      break;
+  }
+  if (code)
+    cloth_file_fail (error, code, "write", folder);
+  return parts;
+}
 
 /* All files of a folder to the disk at once, where the system can. */
 static gboolean
