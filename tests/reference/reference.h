@@ -1,6 +1,6 @@
 /* OpenCV's functions for the tasks of this project, as plain C functions: the peer that the
  * benchmarks and some tests are held against. Pictures may have any stride; what OpenCV
- * throws becomes FALSE. The product links nothing of OpenCV.
+ * throws becomes FALSE. What the product has of OpenCV is in gst/cv.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
