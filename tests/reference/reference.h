@@ -27,4 +27,12 @@ gboolean cloth_cv_triangulate_points (const gdouble projections[24], guint n,
     const gdouble * x0, const gdouble * y0, const gdouble * x1,
     const gdouble * y1, gdouble * points);
 
+typedef struct _ClothCvMatcher ClothCvMatcher;
+
+ClothCvMatcher *cloth_cv_matcher_new (const guint8 * descriptors, guint n,
+    gboolean flann);
+void cloth_cv_matcher_free (ClothCvMatcher * self);
+gboolean cloth_cv_matcher_run (ClothCvMatcher * self, const guint8 * queries,
+    guint n, guint32 * nearest);
+
 G_END_DECLS
