@@ -252,7 +252,7 @@ gst_dot_label_reset (GstClothFilter * filter)
 
 /* The view of a picture in colour, luma and chroma in planes. */
 static void
-view (const GstVideoFrame * frame, ClothDotImage * image)
+view (const GstVideoFrame * frame, ClothPlanarImage * image)
 {
   image->luma.data = GST_VIDEO_FRAME_COMP_DATA (frame, 0);
   image->luma.stride = GST_VIDEO_FRAME_COMP_STRIDE (frame, 0);
@@ -313,7 +313,7 @@ learn_chart (GstDotLabel * self, const GstVideoInfo * film,
   g_autoptr (ClothDotDetector) detector = cloth_dot_detector_new ();
   g_autofree gchar *reason = NULL;
   GstVideoFrame frame;
-  ClothDotImage image;
+  ClothPlanarImage image;
   const ClothDot *dots;
   guint n;
 
@@ -458,7 +458,7 @@ gst_dot_label_analyse (GstClothFilter * filter,
   const guint n_colours = (guint) self->array->n_colours;
   ClothDotParams dot_params;
   ClothFilmLabelParams film_params;
-  ClothDotImage image;
+  ClothPlanarImage image;
   const ClothDot *dots;
   const ClothDotLabel *labels;
   const gfloat *likelihoods;

@@ -59,7 +59,7 @@ check (const guint8 * references, guint n, const guint8 * queries, guint m)
 {
   g_autoptr (ClothNearest) nearest = cloth_nearest_new (references, n);
   g_autofree ClothNeighbours *truth = g_new0 (ClothNeighbours, m);
-  g_autofree ClothNeighbours *found = g_new0 (ClothNeighbours, m);
+  g_autofree ClothNeighbours *found = g_new0 (ClothNeighbours, m + 1);
 
   for (guint i = 0; i < m; i++) {
     const guint8 *query = queries + i * BYTES;
