@@ -40,7 +40,7 @@ typedef struct {
   gdouble shadow, glow, significance;
   gint thin;
   guint least, hole;
-  guint8 low[3], high[3];
+  gint low[3], high[3];
 } ClothMaskParams;
 
 typedef struct _ClothMask ClothMask;
