@@ -177,6 +177,27 @@ gst_cloth_filter_transform_ip (GstBaseTransform * trans, GstBuffer * buffer)
   return flow;
 }
 
+void
+gst_cloth_filter_view_planes (const GstVideoFrame * frame,
+    ClothPlanarImage * image)
+{
+  *image = (ClothPlanarImage) { {
+      GST_VIDEO_FRAME_COMP_DATA (frame, 0), GST_VIDEO_FRAME_WIDTH (frame),
+          GST_VIDEO_FRAME_HEIGHT (frame), GST_VIDEO_FRAME_COMP_STRIDE (frame, 0)
+  }
+  };
+  if (GST_VIDEO_FRAME_N_COMPONENTS (frame) < 3)
+    return;
+  for (guint k = 0; k < 2; k++)
+    image->chroma[k] = GST_VIDEO_FRAME_COMP_DATA (frame, k + 1);
+  image->chroma_stride = GST_VIDEO_FRAME_COMP_STRIDE (frame, 1);
+  image->chroma_step = GST_VIDEO_FRAME_COMP_PSTRIDE (frame, 1);
+  image->chroma_shift[0] =
+      (gint) GST_VIDEO_FORMAT_INFO_W_SUB (frame->info.finfo, 1);
+  image->chroma_shift[1] =
+      (gint) GST_VIDEO_FORMAT_INFO_H_SUB (frame->info.finfo, 1);
+}
+
 static void
 gst_cloth_filter_finalize (GObject * object)
 {

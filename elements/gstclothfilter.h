@@ -52,4 +52,8 @@ struct _GstClothFilterClass {
       const GstClothFilterFrame * frame);
 };
 
+/* The planes of a picture in GST_CLOTH_FILTER_FORMATS, as long as it is mapped. */
+void gst_cloth_filter_view_planes (const GstVideoFrame * frame,
+    ClothPlanarImage * image);
+
 G_END_DECLS

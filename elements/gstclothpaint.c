@@ -79,6 +79,40 @@ gst_cloth_load_picture (const gchar * path, const gchar * formats,
   return sample;
 }
 
+GstBuffer *
+gst_cloth_convert_picture (GstSample * picture, const GstVideoInfo * film,
+    GstVideoFormat format, GstVideoInfo * info)
+{
+  GstVideoInfo from;
+  GstVideoFrame in, out;
+  GstVideoConverter *converter;
+  GstBuffer *buffer;
+
+  if (!gst_video_info_from_caps (&from, gst_sample_get_caps (picture))
+      || !gst_video_frame_map (&in, &from, gst_sample_get_buffer (picture),
+          GST_MAP_READ))
+    return NULL;
+  gst_video_info_set_format (info, format, (guint) from.width,
+      (guint) from.height);
+  info->colorimetry = film->colorimetry;
+  info->fps_n = from.fps_n;
+  info->fps_d = from.fps_d;
+  info->interlace_mode = from.interlace_mode;
+  converter = gst_video_converter_new (&from, info, gst_structure_new
+      ("options", GST_VIDEO_CONVERTER_OPT_DITHER_METHOD,
+          GST_TYPE_VIDEO_DITHER_METHOD, GST_VIDEO_DITHER_NONE, NULL));
+  buffer = gst_buffer_new_allocate (NULL, GST_VIDEO_INFO_SIZE (info), NULL);
+  if (converter && gst_video_frame_map (&out, info, buffer, GST_MAP_WRITE)) {
+    gst_video_converter_frame (converter, &in, &out);
+    gst_video_frame_unmap (&out);
+  } else {
+    gst_clear_buffer (&buffer);
+  }
+  g_clear_pointer (&converter, gst_video_converter_free);
+  gst_video_frame_unmap (&in);
+  return buffer;
+}
+
 static gdouble
 pattern_scale (const gdouble cloth_m[2])
 {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <gst/gst.h>
+#include <gst/video/video.h>
 
 #include "gst/render/paint.h"
 
@@ -13,6 +14,11 @@ G_BEGIN_DECLS
  * them. */
 GstSample *gst_cloth_load_picture (const gchar * path, const gchar * formats,
     gint max_px, GError ** error);
+
+/* That picture in @format, with the colours as @film has them. NULL: it can't be. @info: (out):
+ * of the buffer. */
+GstBuffer *gst_cloth_convert_picture (GstSample * picture,
+    const GstVideoInfo * film, GstVideoFormat format, GstVideoInfo * info);
 
 ClothPaint *gst_cloth_paint_pattern (const gchar * path, GError ** error);
 /* A picture over the whole of the flat cloth. */

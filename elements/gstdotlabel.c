@@ -250,77 +250,25 @@ gst_dot_label_reset (GstClothFilter * filter)
     cloth_film_labeller_reset (self->labeller);
 }
 
-/* The view of a picture in colour, luma and chroma in planes. */
-static void
-view (const GstVideoFrame * frame, ClothDotImage * image)
-{
-  image->luma.data = GST_VIDEO_FRAME_COMP_DATA (frame, 0);
-  image->luma.stride = GST_VIDEO_FRAME_COMP_STRIDE (frame, 0);
-  image->luma.width = GST_VIDEO_FRAME_WIDTH (frame);
-  image->luma.height = GST_VIDEO_FRAME_HEIGHT (frame);
-  for (guint k = 0; k < 2; k++)
-    image->chroma[k] = GST_VIDEO_FRAME_COMP_DATA (frame, k + 1);
-  image->chroma_stride = GST_VIDEO_FRAME_COMP_STRIDE (frame, 1);
-  image->chroma_step = GST_VIDEO_FRAME_COMP_PSTRIDE (frame, 1);
-  image->chroma_shift[0] =
-      (gint) GST_VIDEO_FORMAT_INFO_W_SUB (frame->info.finfo, 1);
-  image->chroma_shift[1] =
-      (gint) GST_VIDEO_FORMAT_INFO_H_SUB (frame->info.finfo, 1);
-}
-
-/* The chart with luma and chroma as the film has them. NULL: it can't be. */
-static GstBuffer *
-convert_chart (GstSample * chart, const GstVideoInfo * film,
-    GstVideoInfo * info)
-{
-  GstVideoInfo from;
-  GstVideoFrame in, out;
-  GstVideoConverter *converter;
-  GstBuffer *buffer;
-
-  if (!gst_video_info_from_caps (&from, gst_sample_get_caps (chart))
-      || !gst_video_frame_map (&in, &from, gst_sample_get_buffer (chart),
-          GST_MAP_READ))
-    return NULL;
-  gst_video_info_set_format (info, GST_VIDEO_FORMAT_Y444, (guint) from.width,
-      (guint) from.height);
-  info->colorimetry = film->colorimetry;
-  info->fps_n = from.fps_n;
-  info->fps_d = from.fps_d;
-  info->interlace_mode = from.interlace_mode;
-  converter = gst_video_converter_new (&from, info, gst_structure_new
-      ("options", GST_VIDEO_CONVERTER_OPT_DITHER_METHOD,
-          GST_TYPE_VIDEO_DITHER_METHOD, GST_VIDEO_DITHER_NONE, NULL));
-  buffer = gst_buffer_new_allocate (NULL, GST_VIDEO_INFO_SIZE (info), NULL);
-  if (converter && gst_video_frame_map (&out, info, buffer, GST_MAP_WRITE)) {
-    gst_video_converter_frame (converter, &in, &out);
-    gst_video_frame_unmap (&out);
-  } else {
-    gst_clear_buffer (&buffer);
-  }
-  g_clear_pointer (&converter, gst_video_converter_free);
-  gst_video_frame_unmap (&in);
-  return buffer;
-}
-
 /* FALSE: the chart teaches no colours, and an error was posted. */
 static gboolean
 learn_chart (GstDotLabel * self, const GstVideoInfo * film,
     const ClothDotParams * dot_params, const ClothDotLabelParams * label_params)
 {
   GstVideoInfo info;
-  g_autoptr (GstBuffer) buffer = convert_chart (self->chart, film, &info);
+  g_autoptr (GstBuffer) buffer = gst_cloth_convert_picture (self->chart, film,
+      GST_VIDEO_FORMAT_Y444, &info);
   g_autoptr (ClothDotDetector) detector = cloth_dot_detector_new ();
   g_autofree gchar *reason = NULL;
   GstVideoFrame frame;
-  ClothDotImage image;
+  ClothPlanarImage image;
   const ClothDot *dots;
   guint n;
 
   if (!buffer || !gst_video_frame_map (&frame, &info, buffer, GST_MAP_READ)) {
     reason = g_strdup ("the picture can't be converted to the film's colours");
   } else {
-    view (&frame, &image);
+    gst_cloth_filter_view_planes (&frame, &image);
     cloth_dot_detector_run (detector, dot_params, &image, CLOTH_SIMD_BEST);
     gst_video_frame_unmap (&frame);
     dots = cloth_dot_detector_get_dots (detector, &n);
@@ -458,7 +406,7 @@ gst_dot_label_analyse (GstClothFilter * filter,
   const guint n_colours = (guint) self->array->n_colours;
   ClothDotParams dot_params;
   ClothFilmLabelParams film_params;
-  ClothDotImage image;
+  ClothPlanarImage image;
   const ClothDot *dots;
   const ClothDotLabel *labels;
   const gfloat *likelihoods;
@@ -468,7 +416,7 @@ gst_dot_label_analyse (GstClothFilter * filter,
     gst_dot_label_refuse_grey (self, frame->video);
     return GST_FLOW_ERROR;
   }
-  view (frame->video, &image);
+  gst_cloth_filter_view_planes (frame->video, &image);
   GST_OBJECT_LOCK (self);
   dot_params = self->settings.dots;
   film_params = self->settings.film;

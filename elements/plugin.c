@@ -20,6 +20,7 @@
 #include "elements/gstquadtrack.h"
 #include "elements/gsttriangulate.h"
 #include "elements/gstsaddledetect.h"
+#include "elements/gstsilhouette.h"
 
 static gboolean
 plugin_init (GstPlugin * plugin)
@@ -40,6 +41,7 @@ plugin_init (GstPlugin * plugin)
   registered &= GST_ELEMENT_REGISTER (triangulate, plugin);
 
   registered &= GST_ELEMENT_REGISTER (saddledetect, plugin);
+  registered &= GST_ELEMENT_REGISTER (silhouette, plugin);
   return registered;
 }
 

@@ -13,7 +13,7 @@ export LC_ALL=C.UTF-8
 build=build-coverage
 
 [ -f $build/build.ninja ] ||
-  CC=gcc CXX=g++ meson setup $build -Db_coverage=true -Doptimization=1 -Dbenchmarks=disabled \
+  CC=gcc CXX=g++ meson setup $build -Db_coverage=true -Doptimization=1 \
       -Dwerror=false || exit 1
 ninja -C $build || exit 1
 # Counts of an earlier run are not those of this one.

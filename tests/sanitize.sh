@@ -42,7 +42,7 @@ cloth_build_sanitized ()
   # variables.
   [ -f "$1/build.ninja" ] ||
     CC=$2 CXX=${2/gcc/g}++ meson setup "$1" "-Db_sanitize=$3" -Db_lundef=false \
-        -Doptimization=1 -Dintrospection=disabled -Dbenchmarks=disabled -Dwerror=false ||
+        -Doptimization=1 -Dintrospection=disabled -Dwerror=false ||
     return 1
   ninja -C "$1" "${@:4}"
 }

@@ -7,6 +7,7 @@
 #include <gst/cloth/gstclothsaddles.h>
 #include <gst/cloth/gstclothquads.h>
 #include <gst/cloth/gstclothdots.h>
+#include <gst/cloth/gstclothsilhouette.h>
 #include <gst/cloth/gstclothmesh.h>
 #include <gst/cloth/gstclothobservations.h>
 #include <gst/cloth/gstclothgap.h>

@@ -10,6 +10,7 @@
 #include "gst/cloth/gstclothprivate.h"
 #include "gst/cloth/gstclothquads.h"
 #include "gst/cloth/gstclothsaddles.h"
+#include "gst/cloth/gstclothsilhouette.h"
 
 /* docs/streams.md holds the layout, byte by byte. */
 #define OBSERVATIONS_MAGIC "GCOB"
@@ -26,28 +27,39 @@
 /* A section of features begins with the frame's number (64 bits), @n_counts numbers of 32
  * bits, two of 16 bits (the length of the camera's name, and the colours of dots), and the
  * name. Of what count i counts, each takes @item_bytes[i] bytes, a dot 4 more a colour.
- * @too_many says what is wrong when a count is over #GST_CLOTH_MAX_FEATURES. */
+ * @too_many says what is wrong when count i is over @most[i]. */
 typedef struct
 {
   const gchar *tag;
   guint n_counts;
   guint item_bytes[3];
+  guint most[3];
   const gchar *too_many;
 } FeatureKind;
 
 /* counts: refined saddles, candidates */
 static const FeatureKind saddles_kind = { "SADL", 2, {28, 12},
+{GST_CLOTH_MAX_FEATURES, GST_CLOTH_MAX_FEATURES},
 "there are more than 65536 features"
 };
 
 /* counts: columns, rows, quads */
 static const FeatureKind quads_kind = { "QUAD", 3, {0, 0, 96},
+{GST_CLOTH_MAX_FEATURES, GST_CLOTH_MAX_FEATURES, GST_CLOTH_MAX_FEATURES},
 "there are more than 65536 quads, columns or rows"
 };
 
 /* counts: columns, rows, dots */
 static const FeatureKind dots_kind = { "DOTS", 3, {0, 0, 36},
+{GST_CLOTH_MAX_FEATURES, GST_CLOTH_MAX_FEATURES, GST_CLOTH_MAX_FEATURES},
 "there are more than 65536 dots, columns or rows"
+};
+
+/* counts: columns, rows, runs */
+static const FeatureKind silhouette_kind = { "SILH", 3, {0, 0, 6},
+{GST_CLOTH_MAX_SILHOUETTE_SIZE, GST_CLOTH_MAX_SILHOUETTE_SIZE,
+    GST_CLOTH_MAX_RUNS},
+"there are more than 16384 columns or rows, or more than 1048576 runs"
 };
 
 static gsize
@@ -304,6 +316,29 @@ put_dots (GByteArray * bytes, const GstClothDots * dots, guint * n_sections)
   end_section (bytes, start, n_sections);
 }
 
+static void
+put_silhouette (GByteArray * bytes, const GstClothSilhouette * silhouette,
+    guint * n_sections)
+{
+  guint n, start;
+  const GstClothRun *run = gst_cloth_silhouette_get_runs (silhouette, &n);
+
+  start = begin_features (bytes, &silhouette_kind,
+      gst_cloth_silhouette_get_sequence (silhouette),
+      gst_cloth_silhouette_get_camera (silhouette),
+      gst_cloth_silhouette_get_width (silhouette),
+      gst_cloth_silhouette_get_height (silhouette), 0);
+  for (guint i = 0; i < n; i++, run++) {
+    put_u16 (bytes, run->row);
+    put_u16 (bytes, run->begin);
+    put_u16 (bytes, run->end);
+  }
+  if (n % 2)
+    put_u16 (bytes, 0);
+  set_count (bytes, start, 2, n);
+  end_section (bytes, start, n_sections);
+}
+
 /* A reference is written as the text of its caps: these are the characters that such
  * caps need (timestamp/x-ntp; timestamp/x-ptp, version=(string)IEEE1588-2008). */
 static gboolean
@@ -358,8 +393,9 @@ put_times (GByteArray * bytes, GstBuffer * buffer, guint * n_sections)
  * gst_cloth_observations_pack:
  * @buffer: a buffer with cloth metas
  *
- * Writes what was seen in a picture, without the picture: the saddles, the quads and the dots
- * on @buffer, with camera and sequence number, and its #GstReferenceTimestampMeta. A
+ * Writes what was seen in a picture, without the picture: the saddles, the quads, the dots
+ * and the silhouette on @buffer, with camera and sequence number, and its
+ * #GstReferenceTimestampMeta. A
  * feature with a float that isn't finite, a quad or dot outside its pattern or at the place of
  * an earlier one, and a reference clock that isn't one of GStreamer's own are left out. @buffer
  * without any such meta gives a buffer without sections.
@@ -375,6 +411,7 @@ gst_cloth_observations_pack (GstBuffer * buffer)
   GstClothSaddles *saddles;
   GstClothQuads *quads;
   GstClothDots *dots;
+  GstClothSilhouette *silhouette;
   GByteArray *bytes;
   GstBuffer *observation;
   guint n_sections = 0;
@@ -385,6 +422,7 @@ gst_cloth_observations_pack (GstBuffer * buffer)
   saddles = gst_buffer_get_cloth_saddles (buffer);
   quads = gst_buffer_get_cloth_quads (buffer);
   dots = gst_buffer_get_cloth_dots (buffer);
+  silhouette = gst_buffer_get_cloth_silhouette (buffer);
   if (saddles)
     size += sizeof (GstClothSaddle) * gst_cloth_saddles_get_n_refined (saddles)
         + sizeof (GstClothCandidate)
@@ -393,6 +431,8 @@ gst_cloth_observations_pack (GstBuffer * buffer)
     size += sizeof (GstClothQuad) * gst_cloth_quads_get_n_quads (quads);
   if (dots)
     size += sizeof (GstClothDot) * gst_cloth_dots_get_n_dots (dots);
+  if (silhouette)
+    size += sizeof (GstClothRun) * gst_cloth_silhouette_get_n_runs (silhouette);
 
   bytes = g_byte_array_sized_new ((guint) size);
   g_byte_array_append (bytes, (const guint8 *) OBSERVATIONS_MAGIC, 4);
@@ -409,6 +449,8 @@ gst_cloth_observations_pack (GstBuffer * buffer)
     put_quads (bytes, quads, &n_sections);
   if (dots)
     put_dots (bytes, dots, &n_sections);
+  if (silhouette)
+    put_silhouette (bytes, silhouette, &n_sections);
   GST_WRITE_UINT32_LE (bytes->data + 8, bytes->len);
   GST_WRITE_UINT32_LE (bytes->data + 12, n_sections);
 
@@ -432,6 +474,7 @@ typedef struct
   GstClothSaddles *saddles;
   GstClothQuads *quads;
   GstClothDots *dots;
+  GstClothSilhouette *silhouette;
   GstCaps *references[MAX_TIMES];
   guint64 timestamps[MAX_TIMES];
   guint64 durations[MAX_TIMES];
@@ -444,6 +487,7 @@ observed_clear (Observed * observed)
   g_clear_pointer (&observed->saddles, gst_cloth_saddles_unref);
   g_clear_pointer (&observed->quads, gst_cloth_quads_unref);
   g_clear_pointer (&observed->dots, gst_cloth_dots_unref);
+  g_clear_pointer (&observed->silhouette, gst_cloth_silhouette_unref);
   while (observed->n_times)
     gst_caps_unref (observed->references[--observed->n_times]);
 }
@@ -486,7 +530,7 @@ read_features (const Section * section, const FeatureKind * kind,
   features->sequence = gst_cloth_read_u64 (at);
   for (guint i = 0; i < kind->n_counts; i++) {
     features->counts[i] = gst_cloth_read_u32 (at + 8 + 4 * i);
-    if (features->counts[i] > GST_CLOTH_MAX_FEATURES)
+    if (features->counts[i] > kind->most[i])
       return fail (error, GST_CLOTH_ERROR_LIMIT, tag, kind->too_many);
   }
   length = gst_cloth_read_u16 (at + header - 4);
@@ -507,8 +551,8 @@ read_features (const Section * section, const FeatureKind * kind,
         "the camera's name is not UTF-8");
   memcpy (features->camera, name, length);
 
-  size = header + padded (length) + items_size (kind, features->counts,
-      features->n_colours);
+  size = header + padded (length) + padded (items_size (kind,
+          features->counts, features->n_colours));
   if (section->size != size)
     return fail (error, section->size < size ? GST_CLOTH_ERROR_TRUNCATED :
         GST_CLOTH_ERROR_VALUE, tag,
@@ -657,6 +701,36 @@ read_dots (const Section * section, Observed * observed, GError ** error)
 }
 
 static gboolean
+read_silhouette (const Section * section, Observed * observed, GError ** error)
+{
+  Features features = { 0 };
+  g_autofree GstClothRun *runs = NULL;
+  const guint8 *at;
+  guint width, height, n_runs;
+
+  if (!read_features (section, &silhouette_kind, observed->silhouette != NULL,
+          &features, error))
+    return FALSE;
+  width = features.counts[0];
+  height = features.counts[1];
+  n_runs = features.counts[2];
+
+  at = features.items;
+  runs = g_new (GstClothRun, n_runs);
+  for (guint i = 0; i < n_runs; i++, at += silhouette_kind.item_bytes[2])
+    runs[i] = (GstClothRun) {
+    gst_cloth_read_u16 (at), gst_cloth_read_u16 (at + 2),
+        gst_cloth_read_u16 (at + 4)};
+  if (!gst_cloth_silhouette_runs_are_valid (width, height, runs, n_runs))
+    return fail (error, GST_CLOTH_ERROR_VALUE, silhouette_kind.tag,
+        "a run is empty, lies outside the picture or is not after the one before "
+        "it, or there is no picture");
+  observed->silhouette = gst_cloth_silhouette_new (features.camera,
+      features.sequence, width, height, runs, n_runs);
+  return TRUE;
+}
+
+static gboolean
 read_time (const Section * section, Observed * observed, GError ** error)
 {
   const gchar *text;
@@ -702,6 +776,8 @@ read_section (const guint8 * tag, const Section * section,
     return read_quads (section, observed, error);
   if (memcmp (tag, dots_kind.tag, 4) == 0)
     return read_dots (section, observed, error);
+  if (memcmp (tag, silhouette_kind.tag, 4) == 0)
+    return read_silhouette (section, observed, error);
   if (memcmp (tag, SECTION_TIME, 4) == 0)
     return read_time (section, observed, error);
   return TRUE;                  /* of a later library */
@@ -753,8 +829,8 @@ read_observation (const guint8 * bytes, gsize size, Observed * observed,
  * @target: a writable buffer, which may be @observation itself
  * @error: return location for a #GST_CLOTH_ERROR
  *
- * Puts on @target the metas that @observation holds: saddles, quads, dots and reference
- * time stamps. Sections of a kind that this library doesn't know are passed over, and so are
+ * Puts on @target the metas that @observation holds: saddles, quads, dots, a silhouette and
+ * reference time stamps. Sections of a kind that this library doesn't know are passed over, and so are
  * times of a clock that it doesn't know. Time stamps and flags of @target stay.
  *
  * Returns: %FALSE with @error set, and @target as it was, when the bytes are no valid
@@ -791,5 +867,8 @@ gst_cloth_observations_unpack (GstBuffer * observation, GstBuffer * target,
     gst_buffer_add_cloth_quads_meta (target, g_steal_pointer (&observed.quads));
   if (observed.dots)
     gst_buffer_add_cloth_dots_meta (target, g_steal_pointer (&observed.dots));
+  if (observed.silhouette)
+    gst_buffer_add_cloth_silhouette_meta (target,
+        g_steal_pointer (&observed.silhouette));
   return TRUE;
 }

@@ -1,4 +1,4 @@
-/* A view of an 8-bit grey picture; owns nothing.
+/* Views of 8-bit pictures, grey and in colour; they own nothing.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -20,5 +20,22 @@ typedef struct {
   gint height;
   gint stride;
 } ClothImage;
+
+/* @luma: the picture's luma, or a grey picture
+ * @chroma: (nullable): top-left Cb and Cr sample; %NULL for a grey picture
+ * @chroma_stride: bytes from one chroma row to the next
+ * @chroma_step: bytes from one chroma sample to the next in a row: 1 for planes of their
+ *   own, 2 for NV12
+ * @chroma_shift: chroma is halved this many times across and down: 1, 1 for 4:2:0
+ *
+ * A view of a planar picture; owns nothing.
+ */
+typedef struct {
+  ClothImage luma;
+  const guint8 *chroma[2];
+  gint chroma_stride;
+  gint chroma_step;
+  gint chroma_shift[2];
+} ClothPlanarImage;
 
 G_END_DECLS

@@ -100,7 +100,7 @@ main (void)
 
       total = 0;
       for (gint k = 0; k < CAMERAS; k++) {
-        const ClothDotImage image = { {pictures[k], SIZE, SIZE, SIZE} };
+        const ClothPlanarImage image = { {pictures[k], SIZE, SIZE, SIZE} };
         guint n;
 
         cloth_dot_detector_run (detector, &params, &image, levels[level]);

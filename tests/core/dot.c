@@ -84,7 +84,7 @@ gaussian (GRand * rand)
       * cos (2 * G_PI * g_rand_double (rand));
 }
 
-static ClothDotImage
+static ClothPlanarImage
 expose (Canvas * canvas, gdouble noise, guint32 seed)
 {
   g_autoptr (GRand) rand = g_rand_new_with_seed (seed);
@@ -95,7 +95,7 @@ expose (Canvas * canvas, gdouble noise, guint32 seed)
 
     canvas->data[i] = (guint8) CLAMP (floor (grey + 0.5), 0, 255);
   }
-  return (ClothDotImage) {
+  return (ClothPlanarImage) {
     {
     canvas->data, canvas->width, canvas->height, canvas->width}
   };
@@ -136,7 +136,7 @@ score_lattice (gdouble a, gdouble b, gdouble angle, gdouble contrast,
     g_autoptr (Canvas) canvas = canvas_new (301, 303, 20);
     const gint side = (gint) ((300 - 2 * pitch) / pitch);
     g_autofree Drawn *truth = g_new (Drawn, side * side);
-    ClothDotImage image;
+    ClothPlanarImage image;
     const ClothDot *dots;
     guint n;
 
@@ -224,7 +224,7 @@ test_shading (void)
   const ClothDotParams params = cloth_dot_default_params ();
   g_autoptr (ClothDotDetector) detector = cloth_dot_detector_new ();
   g_autoptr (Canvas) canvas = canvas_new (400, 200, 0);
-  ClothDotImage image;
+  ClothPlanarImage image;
   const ClothDot *dots;
   gdouble sum = 0;
   guint n;
@@ -265,7 +265,7 @@ test_shape_and_colour (void)
   g_autoptr (ClothDotDetector) detector = cloth_dot_detector_new ();
   g_autoptr (Canvas) canvas = canvas_new (63, 47, 25);
   guint8 cb[32 * 24], cr[32 * 24], both[2 * 32 * 24];
-  ClothDotImage image;
+  ClothPlanarImage image;
   const ClothDot *dots;
   guint n;
 
@@ -320,7 +320,7 @@ test_touching (void)
   for (gdouble gap = 1; gap < 4; gap += 0.25) {
     g_autoptr (Canvas) canvas = canvas_new (80, 60, 20);
     const gdouble x[3] = { 20.3, 20.3 + 12 + gap, 20.3 + 24 + 2 * gap };
-    ClothDotImage image;
+    ClothPlanarImage image;
     const ClothDot *dots;
     guint n;
 
@@ -352,7 +352,7 @@ test_border (void)
 
   for (gdouble x = -7; x < 44; x += 0.5) {
     g_autoptr (Canvas) canvas = canvas_new (37, 29, 20);
-    ClothDotImage image;
+    ClothPlanarImage image;
     const ClothDot *dots;
     guint n;
 
@@ -384,7 +384,7 @@ test_levels (void)
     const gint width = k < 20 ? 1 + (gint) k : g_rand_int_range (rand, 1, 200);
     const gint height = k < 20 ? 20 - (gint) k : g_rand_int_range (rand, 1, 90);
     g_autoptr (Canvas) canvas = canvas_new (width, height, 20);
-    ClothDotImage image;
+    ClothPlanarImage image;
     const ClothDot *dots[2];
     guint n[2];
 
@@ -428,7 +428,7 @@ test_no_dots (void)
 
   for (gsize k = 0; k < G_N_ELEMENTS (what); k++) {
     g_autoptr (Canvas) canvas = canvas_new (201, 199, 20);
-    ClothDotImage image;
+    ClothPlanarImage image;
     guint n;
 
     for (gint i = 0; i < 201 * 199; i++) {
@@ -473,7 +473,7 @@ test_wild_parameters (void)
   const gfloat wild[] = { NAN, -INFINITY, INFINITY, 0, -1, 1e30f };
   g_autoptr (ClothDotDetector) detector = cloth_dot_detector_new ();
   g_autoptr (Canvas) canvas = canvas_new (120, 60, 20);
-  ClothDotImage image;
+  ClothPlanarImage image;
 
   for (gint i = 0; i < 5; i++)
     draw (canvas, (Drawn) {

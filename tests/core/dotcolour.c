@@ -201,7 +201,7 @@ test_vote (void)
   { SIZE = 40 };
   guint8 luma[SIZE * SIZE] = { 0 }, cb[SIZE * SIZE / 4], cr[SIZE * SIZE / 4];
   ClothDot dot = {.x = 20,.y = 20,.shape = {9, 0, 9} };
-  const ClothDotImage image = {
+  const ClothPlanarImage image = {
     .luma = {luma, SIZE, SIZE, SIZE},.chroma = {cb, cr},.chroma_stride =
         SIZE / 2,.chroma_step = 1,.chroma_shift = {1, 1}
   };
@@ -304,8 +304,8 @@ static void
 test_no_votes (void)
 {
   guint8 luma[400] = { 0 }, chroma[400] = { 0 };
-  const ClothDotImage grey = {.luma = {luma, 20, 20, 20} };
-  const ClothDotImage small = {
+  const ClothPlanarImage grey = {.luma = {luma, 20, 20, 20} };
+  const ClothPlanarImage small = {
     .luma = {luma, 20, 20, 20},.chroma = {chroma, chroma},.chroma_stride =
         20,.chroma_step = 1
   };

@@ -361,7 +361,7 @@ limits_of (const ClothCamera * camera)
 
 /* Where the dots of a picture lie, and their labels. */
 static void
-check_picture (const ClothCamera * camera, const ClothDotImage * image,
+check_picture (const ClothCamera * camera, const ClothPlanarImage * image,
     ClothDotDetector * detector, gboolean last, Labels * labels)
 {
   const ClothDotParams params = cloth_dot_default_params ();
@@ -449,14 +449,14 @@ test_camera (gconstpointer data)
         gst_app_sink_try_pull_sample (sink, 60 * GST_SECOND);
     GstVideoFrame frame;
     GstVideoInfo info;
-    ClothDotImage image;
+    ClothPlanarImage image;
 
     g_assert_nonnull (sample);
     g_assert_true (gst_video_info_from_caps (&info,
             gst_sample_get_caps (sample)));
     g_assert_true (gst_video_frame_map (&frame, &info,
             gst_sample_get_buffer (sample), GST_MAP_READ));
-    image = (ClothDotImage) {
+    image = (ClothPlanarImage) {
       .luma = {
         GST_VIDEO_FRAME_PLANE_DATA (&frame, 0), info.width, info.height,
         GST_VIDEO_FRAME_PLANE_STRIDE (&frame, 0)

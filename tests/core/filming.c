@@ -11,9 +11,7 @@
 #include "gst/vision/corner/saddle.h"
 #include "tests/common/captureeffects.h"
 #include "tests/common/picture.h"
-#ifdef HAVE_CLOTH_CV
 #include "tests/reference/reference.h"
-#endif
 
 #define WIDTH 640
 #define HEIGHT 480
@@ -229,11 +227,8 @@ check_corners (const gchar * what, const guint8 * data, const Plane * plane,
   ClothSaddleParams params = cloth_saddle_default_params ();
   const ClothImage image = { data, WIDTH, HEIGHT, WIDTH };
   const ClothSaddle *saddles;
-  Errors ours = { 0 };
+  Errors ours = { 0 }, theirs = { 0 };
   guint n;
-#ifdef HAVE_CLOTH_CV
-  Errors theirs = { 0 };
-#endif
 
   params.refine = refine;
   params.radius = 6;
@@ -242,6 +237,7 @@ check_corners (const gchar * what, const guint8 * data, const Plane * plane,
   for (gint row = 1; row < pattern->rows; row++) {
     for (gint column = 1; column < pattern->columns; column++) {
       gdouble X[3], px[2], near = 2;
+      gfloat xy[2];
       gint best = -1;
 
       plane_at (plane, pattern->origin_uv_m[0] + column * pattern->square_m,
@@ -259,28 +255,20 @@ check_corners (const gchar * what, const guint8 * data, const Plane * plane,
       }
       g_assert_cmpint (best, >=, 0);
       error_add (&ours, saddles[best].x - px[0], saddles[best].y - px[1]);
-#ifdef HAVE_CLOTH_CV
-      {
-        gfloat xy[2] = { (gfloat) floor (px[0] + 0.5),
-          (gfloat) floor (px[1] + 0.5)
-        };
-
-        g_assert_true (cloth_cv_corner_sub_pix (data, WIDTH, HEIGHT, WIDTH, 5,
-                xy, 1));
-        error_add (&theirs, xy[0] - px[0], xy[1] - px[1]);
-      }
-#endif
+      xy[0] = (gfloat) floor (px[0] + 0.5);
+      xy[1] = (gfloat) floor (px[1] + 0.5);
+      g_assert_true (cloth_cv_corner_sub_pix (data, WIDTH, HEIGHT, WIDTH, 5, xy,
+              1));
+      error_add (&theirs, xy[0] - px[0], xy[1] - px[1]);
     }
   }
   error_end (&ours, what);
   g_assert_cmpuint (ours.n, >, 20);
   g_assert_cmpfloat (ours.rms, <, 0.02);
   g_assert_cmpfloat (hypot (ours.mean[0], ours.mean[1]), <, 0.01);
-#ifdef HAVE_CLOTH_CV
   error_end (&theirs, "  cornerSubPix");
   g_assert_cmpfloat (theirs.rms, <, 0.05);
   g_assert_cmpfloat (hypot (theirs.mean[0], theirs.mean[1]), <, 0.02);
-#endif
 }
 
 static void

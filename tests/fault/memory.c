@@ -7,6 +7,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "gst/cv/cv.h"
+
 #define OBSERVATIONS "application/x-cloth-observations, version=(int)1, " \
     "width=(int)%u, height=(int)%u, framerate=(fraction)25/1"
 
@@ -61,6 +63,28 @@ GST_START_TEST (test_depay)
 
 GST_END_TEST;
 
+/* What OpenCV throws becomes an error; the next picture is searched again. */
+GST_START_TEST (test_sift)
+{
+  enum
+  { SIZE = 4096 };
+  g_autoptr (ClothCvSift) sift = cloth_cv_sift_new (NULL, NULL);
+  g_autofree guint8 *data = g_malloc0 (SIZE * SIZE);
+  const ClothCvPicture large = { data, SIZE, SIZE, SIZE };
+  const ClothCvPicture small = { data, 64, 64, SIZE };
+  ClothCvFeatures found;
+  g_autoptr (GError) error = NULL;
+
+  limit_memory (64u << 20);
+  fail_if (cloth_cv_sift_run (sift, &large, NULL, &found, &error));
+  limit_memory (0);
+  fail_unless (g_error_matches (error, CLOTH_CV_ERROR, CLOTH_CV_ERROR_FAILED));
+  GST_INFO ("%s", error->message);
+  fail_unless (cloth_cv_sift_run (sift, &small, NULL, &found, NULL));
+}
+
+GST_END_TEST;
+
 static Suite *
 memory_suite (void)
 {
@@ -69,6 +93,7 @@ memory_suite (void)
 
   suite_add_tcase (suite, tests);
   tcase_add_test (tests, test_depay);
+  tcase_add_test (tests, test_sift);
   return suite;
 }
 

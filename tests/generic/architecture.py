@@ -15,7 +15,7 @@ from xml.sax.saxutils import escape
 sys.dont_write_bytecode = True
 import floors
 
-WIDTH, MARGIN, BOX, HEIGHT, BETWEEN = 1000, 20, 218, 86, 58
+WIDTH, MARGIN, BOX, HEIGHT, BETWEEN = 1220, 20, 218, 86, 58
 GAP, LANE = 22, 26
 # Ink and paper that are read on a bright page as on a dark one.
 ARROW, INK, FAINT = '#7d8795', '#1d2733', '#51606f'
@@ -86,8 +86,10 @@ def untangle(rows, links):
         for i in range(1, len(rows)) if down else range(len(rows) - 2, -1, -1):
             beside = rows[i - 1 if down else i + 1]
             key = {id(node): middle(node, links, beside) for node in rows[i]}
-            rows[i].sort(key=lambda node: (rows[i].index(node) / len(rows[i]) * len(beside)
-                                           if key[id(node)] is None else key[id(node)]))
+            # What has no neighbours stays where it is.
+            key = {id(node): k / len(rows[i]) * len(beside) if key[id(node)] is None
+                   else key[id(node)] for k, node in enumerate(rows[i])}
+            rows[i].sort(key=lambda node: key[id(node)])
         if crossings(rows, links) < crossings(best, links):
             best = [list(row) for row in rows]
     better = True

@@ -144,6 +144,23 @@ class Dots(unittest.TestCase):
         self.assertEqual(len(dots.get_dots()), 2)
 
 
+class Silhouettes(unittest.TestCase):
+    def test_runs_and_mask(self):
+        run = GstCloth.Run()
+        run.row, run.begin, run.end = 1, 2, 5
+        picture = Gst.Buffer.new()
+        self.assertIsNone(GstCloth.buffer_get_cloth_silhouette(picture))
+        GstCloth.buffer_add_cloth_silhouette_meta(picture, GstCloth.Silhouette.new(
+            'cam1', 9, 7, 3, [run]))
+        silhouette = GstCloth.buffer_get_cloth_silhouette(picture)
+        self.assertEqual((silhouette.get_width(), silhouette.get_height(),
+                          silhouette.get_area()), (7, 3, 3))
+        self.assertEqual([(run.row, run.begin, run.end) for run in silhouette.get_runs()],
+                         [(1, 2, 5)])
+        mask = numpy.frombuffer(silhouette.get_mask().get_data(), numpy.uint8).reshape(3, 7)
+        self.assertEqual(numpy.argwhere(mask == 255).tolist(), [[1, 2], [1, 3], [1, 4]])
+
+
 class Streams(unittest.TestCase):
     """The layouts of docs/streams.md, written here by struct."""
 

@@ -1,14 +1,16 @@
 /* OpenCV's functions for the tasks of this project, as plain C functions: the peer that the
  * benchmarks and some tests are held against. Pictures may have any stride; what OpenCV
- * throws becomes FALSE. The product links nothing of OpenCV.
+ * throws becomes FALSE. What the product has of OpenCV is in gst/cv.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "tests/reference/reference.h"
 
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
+#include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include <memory>
 #include <vector>
 
 struct _ClothCvSaddle {
@@ -175,6 +177,79 @@ cloth_cv_triangulate_points (const gdouble projections[24], guint n,
     return TRUE;
   }
   catch (...) {
+    return FALSE;
+  }
+}
+
+#define BYTES 128
+
+struct _ClothCvMatcher {
+  cv::Ptr < cv::DescriptorMatcher > matcher;
+  int type;
+};
+
+/* @descriptors: @n times 128 bytes
+ * @n: how many
+ * @flann: whether to build randomised k-d trees, as OpenCV does by default: four of them,
+ *   32 leaves looked at; else all descriptors are compared
+ *
+ * Returns: %NULL when OpenCV threw
+ */
+ClothCvMatcher *
+cloth_cv_matcher_new (const guint8 * descriptors, guint n, gboolean flann)
+{
+  try {
+    std::unique_ptr < ClothCvMatcher > self (new ClothCvMatcher ());
+    const cv::Mat bytes ((int) n, BYTES, CV_8UC1,
+        const_cast < guint8 * >(descriptors));
+    cv::Mat reference;
+
+    cv::setNumThreads (1);
+    self->type = flann ? CV_32F : CV_8U;
+    if (flann)
+      self->matcher = cv::makePtr < cv::FlannBasedMatcher > ();
+    else
+      self->matcher = cv::makePtr < cv::BFMatcher > (cv::NORM_L2);
+    bytes.convertTo (reference, self->type);
+    self->matcher->add (std::vector < cv::Mat > (1, reference));
+    self->matcher->train ();
+    return self.release ();
+  } catch (...) {
+    return NULL;
+  }
+}
+
+void
+cloth_cv_matcher_free (ClothCvMatcher * self)
+{
+  delete self;
+}
+
+/* @queries: @n times 128 bytes
+ * @n: how many
+ * @nearest: (out caller-allocates) (array length=n): the nearest of each, or what is taken
+ *   for it
+ *
+ * Returns: FALSE when OpenCV threw.
+ */
+gboolean
+cloth_cv_matcher_run (ClothCvMatcher * self, const guint8 * queries, guint n,
+    guint32 * nearest)
+{
+  try {
+    const cv::Mat bytes ((int) n, BYTES, CV_8UC1,
+        const_cast < guint8 * >(queries));
+    std::vector < std::vector < cv::DMatch > >found;
+    cv::Mat query;
+
+    bytes.convertTo (query, self->type);
+    /* two of each, as ours gives */
+    self->matcher->knnMatch (query, found, 2);
+    for (guint i = 0; i < n; i++)
+      nearest[i] = found[i].empty ()? G_MAXUINT32 :
+          (guint32) found[i][0].trainIdx;
+    return TRUE;
+  } catch (...) {
     return FALSE;
   }
 }

@@ -1,6 +1,6 @@
 /* OpenCV's functions for the tasks of this project, as plain C functions: the peer that the
  * benchmarks and some tests are held against. Pictures may have any stride; what OpenCV
- * throws becomes FALSE. The product links nothing of OpenCV.
+ * throws becomes FALSE. What the product has of OpenCV is in gst/cv.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -26,5 +26,13 @@ gboolean cloth_cv_dots (const guint8 * bgr, gint width, gint height,
 gboolean cloth_cv_triangulate_points (const gdouble projections[24], guint n,
     const gdouble * x0, const gdouble * y0, const gdouble * x1,
     const gdouble * y1, gdouble * points);
+
+typedef struct _ClothCvMatcher ClothCvMatcher;
+
+ClothCvMatcher *cloth_cv_matcher_new (const guint8 * descriptors, guint n,
+    gboolean flann);
+void cloth_cv_matcher_free (ClothCvMatcher * self);
+gboolean cloth_cv_matcher_run (ClothCvMatcher * self, const guint8 * queries,
+    guint n, guint32 * nearest);
 
 G_END_DECLS

@@ -232,7 +232,7 @@ is_apart (const ClothDotDetector * detector, const ClothDotCandidate * spot,
 }
 
 static gint64
-sum_chroma (const ClothDotImage * image, const ClothDotRows * rows, gint k)
+sum_chroma (const ClothPlanarImage * image, const ClothDotRows * rows, gint k)
 {
   gint64 sum = 0;
 
@@ -254,7 +254,7 @@ look_around (const ClothDotDetector * detector,
     const ClothDotCandidate * spot, const ClothDotRows * rows, ClothDot * dot,
     ClothDotBends * bends)
 {
-  const ClothDotImage *image = detector->image;
+  const ClothPlanarImage *image = detector->image;
   ClothDotTally ground, bright = { 0 };
 
   detector->kernels->add_inside (&image->luma, rows, &bright, bends);

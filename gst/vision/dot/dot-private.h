@@ -142,7 +142,7 @@ struct _ClothDotDetector
   gdouble widest;               /* half-axis of all candidates, px */
   gsize n_tiles;
   /* Of the picture at hand. */
-  const ClothDotImage *image;
+  const ClothPlanarImage *image;
   ClothDotParams params;
   gint columns, rows;           /* of tiles */
   guint8 *least, *most, *low, *threshold;

@@ -69,7 +69,7 @@ within (gfloat value, gfloat least, gfloat most)
 
 static void
 start (ClothDotDetector * detector, const ClothDotParams * params,
-    const ClothDotImage * image)
+    const ClothPlanarImage * image)
 {
   gsize n;
 
@@ -336,9 +336,10 @@ find_candidates (ClothDotDetector * detector)
  */
 void
 cloth_dot_detector_run (ClothDotDetector * detector,
-    const ClothDotParams * params, const ClothDotImage * image, ClothSimd level)
+    const ClothDotParams * params, const ClothPlanarImage * image,
+    ClothSimd level)
 {
-  ClothDotImage within_reach = *image;
+  ClothPlanarImage within_reach = *image;
 
   within_reach.luma.width = MIN (image->luma.width, MAX_EDGE);
   within_reach.luma.height = MIN (image->luma.height, MAX_EDGE);

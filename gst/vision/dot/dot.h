@@ -16,23 +16,6 @@ G_BEGIN_DECLS
  */
 #define CLOTH_DOT_MAX_DIAMETER 200
 
-/* @luma: the picture's luma, or a grey picture
- * @chroma: (nullable): top-left Cb and Cr sample; %NULL for a grey picture
- * @chroma_stride: bytes from one chroma row to the next
- * @chroma_step: bytes from one chroma sample to the next in a row: 1 for planes of their
- *   own, 2 for NV12
- * @chroma_shift: chroma is halved this many times across and down: 1, 1 for 4:2:0
- *
- * A view of a planar picture; owns nothing.
- */
-typedef struct {
-  ClothImage luma;
-  const guint8 *chroma[2];
-  gint chroma_stride;
-  gint chroma_step;
-  gint chroma_shift[2];
-} ClothDotImage;
-
 /* @x: column of the centre, px, centre of the top-left pixel at 0
  * @y: row of the centre, px
  * @cov: covariance xx, xy, yy of (@x, @y), px²: the picture's noise, taken for white, and
@@ -81,7 +64,7 @@ ClothDotDetector *cloth_dot_detector_new (void);
 void cloth_dot_detector_free (ClothDotDetector * detector);
 
 void cloth_dot_detector_run (ClothDotDetector * detector,
-    const ClothDotParams * params, const ClothDotImage * image,
+    const ClothDotParams * params, const ClothPlanarImage * image,
     ClothSimd level);
 
 const ClothDot *cloth_dot_detector_get_dots (const ClothDotDetector *

@@ -467,7 +467,7 @@ nearest_hue (const gfloat * hues, gint n, gfloat hue)
  */
 void
 cloth_dot_colour_model_vote (const ClothDotColourModel * model,
-    const ClothDotImage * image, const ClothDot * dots, guint n_dots,
+    const ClothPlanarImage * image, const ClothDot * dots, guint n_dots,
     gfloat * log_likelihoods)
 {
   const gint width = image->luma.width, height = image->luma.height;

@@ -50,7 +50,7 @@ gboolean cloth_dot_colour_model_adapt (ClothDotColourModel * model,
 void cloth_dot_colour_model_learn (ClothDotColourModel * model,
     const ClothDot * dots, guint n_dots, const gint8 * colours);
 void cloth_dot_colour_model_vote (const ClothDotColourModel * model,
-    const ClothDotImage * image, const ClothDot * dots, guint n_dots,
+    const ClothPlanarImage * image, const ClothDot * dots, guint n_dots,
     gfloat * log_likelihoods);
 
 G_END_DECLS

@@ -144,7 +144,7 @@ label (ClothFilmLabeller * labeller, ClothDotLabeller * with,
 
 static guint
 classify_and_label (ClothFilmLabeller * labeller,
-    const ClothFilmLabelParams * params, const ClothDotImage * image,
+    const ClothFilmLabelParams * params, const ClothPlanarImage * image,
     const ClothDot * dots, guint n)
 {
   if (params->colours == CLOTH_LABEL_BY_HUE)
@@ -159,7 +159,7 @@ classify_and_label (ClothFilmLabeller * labeller,
 /* Looks at the picture once more, in the light that makes its dots likeliest. */
 static guint
 adapt (ClothFilmLabeller * labeller, const ClothFilmLabelParams * params,
-    const ClothDotImage * image, const ClothDot * dots, guint n)
+    const ClothPlanarImage * image, const ClothDot * dots, guint n)
 {
   const ClothDotColourModel before = labeller->colours;
   guint n_labelled;
@@ -188,7 +188,7 @@ adapt (ClothFilmLabeller * labeller, const ClothFilmLabelParams * params,
  */
 guint
 cloth_film_labeller_run (ClothFilmLabeller * labeller,
-    const ClothFilmLabelParams * params, const ClothDotImage * image,
+    const ClothFilmLabelParams * params, const ClothPlanarImage * image,
     const ClothDot * dots, guint n_dots)
 {
   guint n_labelled;

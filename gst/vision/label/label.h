@@ -45,7 +45,7 @@ gboolean cloth_film_labeller_learn_chart (ClothFilmLabeller * labeller,
     const ClothDotLabelParams * params, const ClothDot * dots, guint n_dots);
 
 guint cloth_film_labeller_run (ClothFilmLabeller * labeller,
-    const ClothFilmLabelParams * params, const ClothDotImage * image,
+    const ClothFilmLabelParams * params, const ClothPlanarImage * image,
     const ClothDot * dots, guint n_dots);
 const ClothDotLabel *cloth_film_labeller_get_labels (const ClothFilmLabeller *
     labeller, guint * n_labels);

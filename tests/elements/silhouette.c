@@ -1,0 +1,457 @@
+/* silhouette: backgrounds from files and from the film, formats, strides, events, refusals.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <gst/check/check.h>
+#include <gst/check/gstharness.h>
+#include <gst/cloth/cloth.h>
+#include <gst/video/video.h>
+#include <glib/gstdio.h>
+#include <string.h>
+
+#define WIDTH 201
+#define HEIGHT 121
+#define CLOTH_WIDTH 80
+#define CLOTH_HEIGHT 60
+
+static gchar *folder;
+
+static void
+setup (void)
+{
+  folder = g_dir_make_tmp ("silhouette-XXXXXX", NULL);
+}
+
+static void
+teardown (void)
+{
+  g_autofree gchar *path = g_build_filename (folder, "background.png", NULL);
+
+  g_remove (path);
+  g_rmdir (folder);
+  g_clear_pointer (&folder, g_free);
+}
+
+/* A wall with a weak pattern; with @cloth_x from 0 on a printed cloth at that column, row 30. */
+static guint8
+luma (gint x, gint y, gint cloth_x)
+{
+  if (cloth_x >= 0 && x >= cloth_x && x < cloth_x + CLOTH_WIDTH && y >= 30
+      && y < 30 + CLOTH_HEIGHT)
+    return (x / 2 + y / 2) % 2 ? 200 : 50;
+  return (guint8) (100 + x / 10 + (x / 7 + y / 9) % 3);
+}
+
+static GstVideoInfo
+info_of (const gchar * format, gint width, gint height)
+{
+  GstVideoInfo info;
+
+  gst_video_info_set_format (&info, gst_video_format_from_string (format),
+      (guint) width, (guint) height);
+  info.fps_n = 25;
+  info.fps_d = 1;
+  return info;
+}
+
+/* @padding: bytes that each plane's rows have too many, told by a video meta */
+static GstBuffer *
+picture (const GstVideoInfo * info, gint cloth_x, gint padding)
+{
+  gsize offset[GST_VIDEO_MAX_PLANES] = { 0 }, size = 0;
+  gint stride[GST_VIDEO_MAX_PLANES] = { 0 };
+  GstBuffer *buffer;
+  GstMapInfo map;
+
+  for (guint p = 0; p < GST_VIDEO_INFO_N_PLANES (info); p++) {
+    stride[p] = GST_VIDEO_INFO_PLANE_STRIDE (info, p) + padding;
+    offset[p] = padding ? size : GST_VIDEO_INFO_PLANE_OFFSET (info, p);
+    size += (gsize) stride[p] * (gsize) (GST_VIDEO_INFO_HEIGHT (info) + 1);
+  }
+  if (padding == 0)
+    size = GST_VIDEO_INFO_SIZE (info);
+  buffer = gst_buffer_new_allocate (NULL, size, NULL);
+  gst_buffer_map (buffer, &map, GST_MAP_WRITE);
+  memset (map.data, 128, map.size);
+  for (gint y = 0; y < GST_VIDEO_INFO_HEIGHT (info); y++)
+    for (gint x = 0; x < GST_VIDEO_INFO_WIDTH (info); x++)
+      map.data[offset[0] + (gsize) (y * stride[0] + x)] = luma (x, y, cloth_x);
+  gst_buffer_unmap (buffer, &map);
+  if (padding)
+    gst_buffer_add_video_meta_full (buffer, GST_VIDEO_FRAME_FLAG_NONE,
+        GST_VIDEO_INFO_FORMAT (info), (guint) GST_VIDEO_INFO_WIDTH (info),
+        (guint) GST_VIDEO_INFO_HEIGHT (info), GST_VIDEO_INFO_N_PLANES (info),
+        offset, stride);
+  GST_BUFFER_PTS (buffer) = 0;
+  GST_BUFFER_DURATION (buffer) = 40 * GST_MSECOND;
+  return buffer;
+}
+
+/* Writes the empty scene to a file. */
+static gchar *
+write_background (const gchar * format, gint width, gint height)
+{
+  const GstVideoInfo info = info_of (format, width, height);
+  g_autoptr (GstCaps) caps = gst_video_info_to_caps (&info);
+  g_autofree gchar *path = g_build_filename (folder, "background.png", NULL);
+  GstHarness *h = gst_harness_new_parse ("videoconvert dither=none ! pngenc");
+  GstBuffer *out;
+  GstMapInfo map;
+
+  gst_harness_set_src_caps (h, g_steal_pointer (&caps));
+  out = gst_harness_push_and_pull (h, picture (&info, -1, 0));
+  fail_unless (out != NULL);
+  gst_buffer_map (out, &map, GST_MAP_READ);
+  fail_unless (g_file_set_contents (path, (const gchar *) map.data,
+          (gssize) map.size, NULL));
+  gst_buffer_unmap (out, &map);
+  gst_buffer_unref (out);
+  gst_harness_teardown (h);
+  return g_steal_pointer (&path);
+}
+
+static void
+assert_most_of_cloth (GstBuffer * buffer, gint cloth_x, guint most_wrong)
+{
+  GstClothSilhouette *silhouette = gst_buffer_get_cloth_silhouette (buffer);
+  g_autoptr (GBytes) mask = NULL;
+  const guint8 *bytes;
+  guint n_wrong = 0;
+
+  fail_unless (silhouette != NULL);
+  fail_unless_equals_int (gst_cloth_silhouette_get_width (silhouette), WIDTH);
+  fail_unless_equals_int (gst_cloth_silhouette_get_height (silhouette), HEIGHT);
+  mask = gst_cloth_silhouette_get_mask (silhouette);
+  bytes = g_bytes_get_data (mask, NULL);
+  for (gint y = 0; y < HEIGHT; y++)
+    for (gint x = 0; x < WIDTH; x++)
+      n_wrong += (bytes[y * WIDTH + x] == 255) != (cloth_x >= 0 && x >= cloth_x
+          && x < cloth_x + CLOTH_WIDTH && y >= 30 && y < 30 + CLOTH_HEIGHT);
+  fail_unless (n_wrong <= most_wrong, "%u pixels are wrong", n_wrong);
+}
+
+static void
+assert_cloth (GstBuffer * buffer, gint cloth_x)
+{
+  assert_most_of_cloth (buffer, cloth_x, 100);
+}
+
+/* The background is loaded as soon as the harness has the element. */
+static GstHarness *
+harness (const gchar * background)
+{
+  g_autofree gchar *line = g_strdup_printf ("silhouette camera=left "
+      "background=\"%s\"", background);
+
+  return gst_harness_new_parse (line);
+}
+
+static void
+set_caps (GstHarness * h, const GstVideoInfo * info)
+{
+  gst_harness_set_src_caps (h, gst_video_info_to_caps (info));
+}
+
+GST_START_TEST (test_formats)
+{
+  static const gchar *const formats[] = { "GRAY8", "I420", "YV12", "NV12",
+    "NV21", "Y42B", "NV16", "NV61", "Y444", "NV24", "Y41B", "YUV9", "YVU9",
+    "A420"
+  };
+
+  for (guint f = 0; f < G_N_ELEMENTS (formats); f++)
+    for (gint padding = 0; padding < 60; padding += 29) {
+      g_autofree gchar *path = write_background (f ? "I420" : "GRAY8", WIDTH,
+          HEIGHT);
+      GstHarness *h = harness (path);
+      const GstVideoInfo info = info_of (formats[f], WIDTH, HEIGHT);
+      GstBuffer *out;
+
+      GST_INFO ("%s, padding %d", formats[f], padding);
+      set_caps (h, &info);
+      for (gint x = -1; x < 110; x += 37) {
+        out = gst_harness_push_and_pull (h, picture (&info, x, padding));
+        fail_unless (out != NULL);
+        assert_cloth (out, x);
+        fail_unless_equals_string (gst_cloth_silhouette_get_camera
+            (gst_buffer_get_cloth_silhouette (out)), "left");
+        gst_buffer_unref (out);
+      }
+      gst_harness_teardown (h);
+    }
+}
+
+GST_END_TEST;
+
+/* Every second picture is a sample; from the third place of the cloth on the wall is known. */
+GST_START_TEST (test_learn)
+{
+  GstHarness *h = gst_harness_new_parse ("silhouette learn=2 threads=2");
+  const GstVideoInfo info = info_of ("NV12", WIDTH, HEIGHT);
+
+  set_caps (h, &info);
+  for (gint i = 0; i < 12; i++) {
+    const gint x = i / 2 % 3 == 0 ? 0 : i / 2 % 3 == 1 ? 120 : -1;
+    g_autoptr (GstBuffer) out = gst_harness_push_and_pull (h, picture (&info,
+            x, 0));
+
+    fail_unless (out != NULL);
+    if (i >= 6)
+      assert_cloth (out, x);
+  }
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_ranges)
+{
+  GstHarness *h = gst_harness_new_parse ("silhouette luma-min=150 thin=0");
+  const GstVideoInfo info = info_of ("I420", WIDTH, HEIGHT);
+  g_autoptr (GstBuffer) out = NULL;
+  g_autoptr (GstBuffer) next = NULL;
+
+  set_caps (h, &info);
+  out = gst_harness_push_and_pull (h, picture (&info, 40, 0));
+  /* what is dark of the print is holes, but for what lies at the cloth's border */
+  assert_most_of_cloth (out, 40, 2 * (CLOTH_WIDTH + CLOTH_HEIGHT));
+  gst_harness_set (h, "silhouette", "luma-max", 160, NULL);
+  next = gst_harness_push_and_pull (h, picture (&info, 40, 0));
+  assert_cloth (next, -1);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+/* The background is converted anew for each format; another size is refused. */
+GST_START_TEST (test_renegotiation)
+{
+  static const gchar *const formats[] = { "I420", "GRAY8", "NV12", "I420" };
+  g_autofree gchar *path = write_background ("I420", WIDTH, HEIGHT);
+  GstHarness *h = harness (path);
+  GstVideoInfo info;
+  g_autoptr (GstBus) bus = gst_bus_new ();
+  g_autoptr (GstMessage) message = NULL;
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *remedy = NULL;
+
+  gst_element_set_bus (h->element, bus);
+  for (guint i = 0; i < G_N_ELEMENTS (formats); i++) {
+    g_autoptr (GstBuffer) out = NULL;
+
+    info = info_of (formats[i], WIDTH, HEIGHT);
+    set_caps (h, &info);
+    out = gst_harness_push_and_pull (h, picture (&info, 20, 0));
+    assert_cloth (out, 20);
+  }
+  info = info_of ("I420", WIDTH + 1, HEIGHT);
+  set_caps (h, &info);
+  fail_unless_equals_int (gst_harness_push (h, picture (&info, 20, 0)),
+      GST_FLOW_ERROR);
+  message = gst_bus_pop_filtered (bus, GST_MESSAGE_ERROR);
+  fail_unless (message != NULL);
+  gst_message_parse_error (message, &error, &remedy);
+  fail_unless (strstr (error->message,
+          "201 × 121 pixels, the film 202 × 121"));
+  fail_unless (strstr (remedy, "this very camera"));
+  gst_element_set_bus (h->element, NULL);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_flush_and_eos)
+{
+  g_autofree gchar *path = write_background ("I420", WIDTH, HEIGHT);
+  GstHarness *h = harness (path);
+  const GstVideoInfo info = info_of ("I420", WIDTH, HEIGHT);
+  GstSegment segment;
+  GstBuffer *out;
+  GstEvent *event;
+  gboolean eos = FALSE;
+
+  set_caps (h, &info);
+  gst_buffer_unref (gst_harness_push_and_pull (h, picture (&info, 3, 0)));
+  fail_unless (gst_harness_push_event (h, gst_event_new_flush_start ()));
+  fail_unless (gst_harness_push_event (h, gst_event_new_flush_stop (TRUE)));
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  fail_unless (gst_harness_push_event (h, gst_event_new_segment (&segment)));
+  out = gst_harness_push_and_pull (h, picture (&info, 90, 0));
+  assert_cloth (out, 90);
+  gst_buffer_unref (out);
+  fail_unless (gst_harness_push_event (h, gst_event_new_eos ()));
+  while ((event = gst_harness_try_pull_event (h))) {
+    eos |= GST_EVENT_TYPE (event) == GST_EVENT_EOS;
+    gst_event_unref (event);
+  }
+  fail_unless (eos);
+  fail_unless (gst_harness_push (h, picture (&info, 3, 0)) == GST_FLOW_EOS);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_sizes)
+{
+  static const gint sizes[][2] =
+      { {1, 1}, {1, 50}, {321, 1}, {2, 2}, {96, 65} };
+  GstHarness *h = gst_harness_new_parse ("silhouette learn=1");
+
+  for (guint i = 0; i < G_N_ELEMENTS (sizes); i++) {
+    const GstVideoInfo info = info_of (i % 2 ? "YUV9" : "GRAY8", sizes[i][0],
+        sizes[i][1]);
+    g_autoptr (GstBuffer) out = NULL;
+    GstClothSilhouette *silhouette;
+
+    set_caps (h, &info);
+    out = gst_harness_push_and_pull (h, picture (&info, 0, 0));
+    silhouette = gst_buffer_get_cloth_silhouette (out);
+    fail_unless_equals_int (gst_cloth_silhouette_get_width (silhouette),
+        sizes[i][0]);
+    fail_unless_equals_int (gst_cloth_silhouette_get_n_runs (silhouette), 0);
+  }
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_properties)
+{
+  static const gchar *const values[][3] = {
+    {"learn", "7", "0"}, {"significance", "3", "14"}, {"shadow", "0.5", "0.4"},
+    {"glow", "2", "1.15"}, {"radius", "7", "1"}, {"thin", "0", "2"},
+    {"least", "9", "400"}, {"hole", "8", "400"}, {"luma-min", "1", "0"},
+    {"luma-max", "2", "255"}, {"u-min", "3", "0"}, {"u-max", "4", "255"},
+    {"v-min", "5", "0"}, {"v-max", "6", "255"}, {"threads", "3", "0"},
+    {"background", "there.png", NULL}
+  };
+  GstElement *element = gst_element_factory_make ("silhouette", NULL);
+
+  for (guint i = 0; i < G_N_ELEMENTS (values); i++) {
+    GParamSpec *spec = g_object_class_find_property
+        (G_OBJECT_GET_CLASS (element), values[i][0]);
+    g_auto (GValue) value = G_VALUE_INIT, expected = G_VALUE_INIT;
+
+    fail_unless (spec != NULL, "%s", values[i][0]);
+    g_value_init (&value, spec->value_type);
+    g_value_init (&expected, spec->value_type);
+    g_object_get_property (G_OBJECT (element), values[i][0], &value);
+    if (values[i][2]) {
+      fail_unless (gst_value_deserialize (&expected, values[i][2]));
+      fail_unless_equals_int (gst_value_compare (&value, &expected),
+          GST_VALUE_EQUAL);
+    } else {
+      fail_unless (g_value_get_string (&value) == NULL);
+    }
+    gst_util_set_object_arg (G_OBJECT (element), values[i][0], values[i][1]);
+    fail_unless (gst_value_deserialize (&expected, values[i][1]));
+    g_object_get_property (G_OBJECT (element), values[i][0], &value);
+    fail_unless_equals_int (gst_value_compare (&value, &expected),
+        GST_VALUE_EQUAL);
+  }
+  gst_object_unref (element);
+}
+
+GST_END_TEST;
+
+/* A file that can't be read keeps the element from starting; nothing set at all ends the
+ * stream. Both say what to do. */
+GST_START_TEST (test_refused)
+{
+  static const gchar *const files[] = { "/nowhere/background.png", "/" };
+  g_autofree gchar *text = g_build_filename (folder, "background.png", NULL);
+
+  fail_unless (g_file_set_contents (text, "no picture", -1, NULL));
+  for (guint i = 0; i < 3; i++) {
+    GstElement *element = gst_element_factory_make ("silhouette", NULL);
+    g_autoptr (GstBus) bus = gst_bus_new ();
+    g_autoptr (GstMessage) message = NULL;
+    g_autoptr (GError) error = NULL;
+
+    g_object_set (element, "background", i < 2 ? files[i] : text, NULL);
+    gst_element_set_bus (element, bus);
+    fail_unless_equals_int (gst_element_set_state (element, GST_STATE_PAUSED),
+        GST_STATE_CHANGE_FAILURE);
+    message = gst_bus_pop_filtered (bus, GST_MESSAGE_ERROR);
+    fail_unless (message != NULL);
+    gst_message_parse_error (message, &error, NULL);
+    fail_unless (g_str_has_prefix (error->message, "Can't read the background"),
+        "%s", error->message);
+    gst_element_set_state (element, GST_STATE_NULL);
+    gst_element_set_bus (element, NULL);
+    gst_object_unref (element);
+  }
+}
+
+GST_END_TEST;
+
+GST_START_TEST (test_nothing_set)
+{
+  GstHarness *h = gst_harness_new ("silhouette");
+  const GstVideoInfo info = info_of ("I420", WIDTH, HEIGHT);
+  g_autoptr (GstBus) bus = gst_bus_new ();
+  g_autoptr (GstMessage) message = NULL;
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *remedy = NULL;
+
+  gst_element_set_bus (h->element, bus);
+  set_caps (h, &info);
+  fail_unless_equals_int (gst_harness_push (h, picture (&info, 3, 0)),
+      GST_FLOW_ERROR);
+  message = gst_bus_pop_filtered (bus, GST_MESSAGE_ERROR);
+  gst_message_parse_error (message, &error, &remedy);
+  fail_unless (strstr (remedy, "luma-min"));
+  gst_element_set_bus (h->element, NULL);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+/* The memory of a picture that others hold stays theirs and as it is. */
+GST_START_TEST (test_shared)
+{
+  GstHarness *h = gst_harness_new_parse ("silhouette learn=1");
+  const GstVideoInfo info = info_of ("I420", WIDTH, HEIGHT);
+  GstBuffer *in = picture (&info, 50, 0);
+  g_autoptr (GstBuffer) copy = gst_buffer_copy_deep (in);
+  g_autoptr (GstBuffer) out = NULL;
+  GstMapInfo a, b;
+
+  set_caps (h, &info);
+  out = gst_harness_push_and_pull (h, gst_buffer_ref (in));
+  fail_unless (gst_buffer_get_cloth_silhouette (in) == NULL);
+  fail_unless (gst_buffer_get_cloth_silhouette (out) != NULL);
+  fail_unless (gst_buffer_peek_memory (in, 0) == gst_buffer_peek_memory (out,
+          0));
+  gst_buffer_map (copy, &a, GST_MAP_READ);
+  gst_buffer_map (out, &b, GST_MAP_READ);
+  fail_unless (a.size == b.size && memcmp (a.data, b.data, a.size) == 0);
+  gst_buffer_unmap (copy, &a);
+  gst_buffer_unmap (out, &b);
+  gst_buffer_unref (in);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+static Suite *
+silhouette_suite (void)
+{
+  Suite *suite = suite_create ("silhouette");
+  TCase *tc = tcase_create ("general");
+
+  suite_add_tcase (suite, tc);
+  tcase_add_checked_fixture (tc, setup, teardown);
+  tcase_add_test (tc, test_formats);
+  tcase_add_test (tc, test_learn);
+  tcase_add_test (tc, test_ranges);
+  tcase_add_test (tc, test_renegotiation);
+  tcase_add_test (tc, test_flush_and_eos);
+  tcase_add_test (tc, test_sizes);
+  tcase_add_test (tc, test_properties);
+  tcase_add_test (tc, test_refused);
+  tcase_add_test (tc, test_nothing_set);
+  tcase_add_test (tc, test_shared);
+  return suite;
+}
+
+GST_CHECK_MAIN (silhouette);
