@@ -147,10 +147,11 @@ gst_cloth_sync_pad_check_segment (GstClothSyncPad * pad, GstElement * element,
             "times before this element, or a source with format=time."));
     return FALSE;
   }
-  if (segment->rate < 0 && !GST_CLOCK_TIME_IS_VALID (segment->stop)) {
+  if (segment->rate < 0 && (!GST_CLOCK_TIME_IS_VALID (segment->stop)
+          || segment->stop < segment->offset)) {
     GST_ELEMENT_ERROR (element, STREAM, FORMAT,
-        ("Pad %s has a segment that is played backwards from no end.",
-            GST_PAD_NAME (pad)),
+        ("Pad %s has a segment that is played backwards from no end, or from "
+            "before its beginning.", GST_PAD_NAME (pad)),
         ("Seek with a stop position, or play forwards."));
     return FALSE;
   }

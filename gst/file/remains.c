@@ -57,11 +57,11 @@ cloth_parts_is_committing (const gchar * path)
   g_autofree gchar *folder = g_path_get_dirname (path);
   g_autofree gchar *old = g_build_filename (path, "old", NULL);
   g_autofree gchar *placing = g_build_filename (path, "placing", NULL);
-  GStatBuf info;
+  GStatBuf info = { 0 };
 
   /* Where nobody may replace another's files, as in /tmp, nobody shall be hindered either. */
-  if (g_stat (folder, &info) == 0 && (info.st_mode & S_ISVTX)
-      && cloth_parts_is_foreign (path))
+  g_stat (folder, &info);
+  if ((info.st_mode & S_ISVTX) && cloth_parts_is_foreign (path))
     return FALSE;
   return cloth_is_folder (old) || cloth_is_folder (placing);
 }
@@ -114,8 +114,7 @@ changed_ns (const GStatBuf * info)
 static gint64
 last_change (const gchar * path, gboolean deeper)
 {
-  GDir *dir = deeper
-      && cloth_is_folder (path) ? g_dir_open (path, 0, NULL) : NULL;
+  GDir *dir = deeper ? g_dir_open (path, 0, NULL) : NULL;
   const gchar *name;
   GStatBuf info;
   gint64 last_ns = g_lstat (path, &info) == 0 ? changed_ns (&info) : 0;

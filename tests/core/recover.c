@@ -653,6 +653,10 @@ test_power (void)
     g_assert_nonnull (strstr (error->message, "c_00003"));
     g_clear_error (&error);
     g_assert_cmpint (truncate (last, 0), ==, 0);
+    if (i == 2) {
+      g_assert_cmpint (g_unlink (last), ==, 0);
+      g_assert_cmpint (mkfifo (last, 0600), ==, 0);
+    }
     /* nor is a pipe whole */
     if (i == 2) {
       g_assert_cmpint (g_unlink (empty), ==, 0);
@@ -1014,6 +1018,68 @@ test_resume_alone (void)
   g_assert_true (g_file_test (placing, G_FILE_TEST_IS_DIR));
   g_assert_false (g_file_test (path, G_FILE_TEST_EXISTS));
   scratch_end ();
+}
+
+/* A program is killed while its files get the names, when another one records already. */
+static void
+test_ended_first (void)
+{
+  g_autofree gchar *path = NULL;
+  g_autofree gchar *other = NULL;
+  g_autofree gchar *lock = NULL;
+  g_autofree gchar *placing = NULL;
+  g_autoptr (ClothMeshWriter) writer = NULL;
+  g_autoptr (GError) error = NULL;
+
+  scratch_begin ();
+  path = scratch_path ("c.obj");
+  writer = start (path);
+  g_assert_true (append (writer, 1, 0, FALSE));
+  other = scratch_path (".c.obj.part-other0");
+  lock = g_build_filename (other, "recording", NULL);
+  placing = g_build_filename (other, "placing", NULL);
+  g_assert_cmpint (g_mkdir_with_parents (placing, 0777), ==, 0);
+  g_assert_true (g_file_set_contents (lock, "gst-cloth recording 1\n12\n", -1,
+          NULL));
+  g_assert_false (cloth_mesh_writer_close (writer, &error));
+  g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+  g_assert_nonnull (strstr (error->message, "gst-cloth-take-1.0 recover"));
+  g_assert_true (cloth_mesh_writer_leave (writer));
+  scratch_end ();
+}
+
+/* Where nobody may replace another's files nobody is hindered by another's remains; where
+ * they may, these count. */
+static void
+test_other_user (void)
+{
+  for (guint sticky = 0; geteuid () == 0 && sticky < 2; sticky++) {
+    g_autofree gchar *path = NULL;
+    g_autofree gchar *other = NULL;
+    g_autofree gchar *old = NULL;
+    g_autofree gchar *lock = NULL;
+    g_autoptr (GError) error = NULL;
+    g_autoptr (ClothMeshReader) reader = NULL;
+
+    scratch_begin ();
+    path = scratch_path ("c.obj");
+    record (path, 1, 2);
+    other = scratch_path (".c.obj.part-other0");
+    old = g_build_filename (other, "old", NULL);
+    lock = g_build_filename (other, "recording", NULL);
+    g_assert_cmpint (g_mkdir_with_parents (old, 0777), ==, 0);
+    g_assert_true (g_file_set_contents (lock, "gst-cloth recording 1\n12\n", -1,
+            NULL));
+    g_assert_cmpint (chown (other, 1, 1), ==, 0);
+    g_assert_cmpint (g_chmod (scratch, sticky ? 01777 : 0777), ==, 0);
+    reader = cloth_mesh_reader_open (path, CLOTH_MESH_FORMAT_AUTO, &error);
+    g_assert_true ((reader != NULL) == sticky);
+    if (sticky)
+      record (path, 2, 3);
+    /* and they are not ours to remove */
+    g_assert_true (g_file_test (other, G_FILE_TEST_IS_DIR));
+    scratch_end ();
+  }
 }
 
 /* What a take has below a folder is found from there. */
@@ -1509,6 +1575,8 @@ main (int argc, char **argv)
   g_test_add_func ("/recover/left-alone", test_left_alone);
   g_test_add_func ("/recover/committing", test_committing);
   g_test_add_func ("/recover/resume-alone", test_resume_alone);
+  g_test_add_func ("/recover/ended-first", test_ended_first);
+  g_test_add_func ("/recover/other-user", test_other_user);
   g_test_add_func ("/recover/below", test_below);
   g_test_add_func ("/recover/whole", test_whole);
   g_test_add_func ("/recover/many-numbers", test_many_numbers);

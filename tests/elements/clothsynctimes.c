@@ -527,10 +527,11 @@ GST_START_TEST (test_flush)
 
 GST_END_TEST;
 
-/* Running times backwards count from the end: a segment without one is refused before the
- * base class computes with it. */
+/* Running times backwards count from the end: a segment without one, or whose end is before
+ * where it is to begin, is refused before the base class computes with it. */
 GST_START_TEST (test_backwards_from_no_end)
 {
+  static const GstClockTime stops[] = { GST_CLOCK_TIME_NONE, GST_SECOND - 1 };
   g_autoptr (GstMessage) message = NULL;
   g_autoptr (GError) error = NULL;
   GstSegment segment;
@@ -542,6 +543,8 @@ GST_START_TEST (test_backwards_from_no_end)
   expect (&b, 0, 3);
   gst_segment_init (&segment, GST_FORMAT_TIME);
   segment.rate = -1;
+  segment.stop = stops[__i__];
+  segment.offset = GST_SECOND;
   give (&b, 0, gst_event_new_segment (&segment));
   push (&b, 0, FRAME);
   settle (&b, 0);
@@ -653,7 +656,7 @@ clothsynctimes_suite (void)
   tcase_add_test (tc, test_gaps);
   tcase_add_test (tc, test_duration);
   tcase_add_test (tc, test_flush);
-  tcase_add_test (tc, test_backwards_from_no_end);
+  tcase_add_loop_test (tc, test_backwards_from_no_end, 0, 2);
   tcase_add_test (tc, test_offset);
   tcase_add_test (tc, test_live_start);
   tcase_add_test (tc, test_live);

@@ -732,6 +732,49 @@ test_look (void)
   scratch_end ();
 }
 
+/* What is older can't be looked at: it stays, or goes, and the new ones are there. */
+static void
+test_clear (void)
+{
+  static const gchar *const calls[] = { "lstat", "open", "opendir", "pread",
+    "flock", "unlink", "rmdir"
+  };
+  g_autofree gchar *path = NULL;
+  g_autofree gchar *older = NULL;
+  g_autofree gchar *whole = NULL;
+  g_autofree gchar *lock = NULL;
+
+  scratch_begin ();
+  path = scratch_path ("c.obj");
+  older = scratch_path (".c.obj.part-older0");
+  whole = g_build_filename (older, "new", NULL);
+  lock = g_build_filename (older, "recording", NULL);
+  for (guint i = 0; i < G_N_ELEMENTS (calls); i++) {
+    gboolean struck = TRUE;
+
+    for (guint nth = 1; struck; nth++) {
+      g_autoptr (GError) error = NULL;
+      gboolean done;
+      guint n;
+
+      arm ("", 0, 0, FALSE);
+      empty_scratch ();
+      g_assert_cmpint (g_mkdir_with_parents (whole, 0777), ==, 0);
+      g_assert_true (g_file_set_contents (lock, "gst-cloth recording 1\n6\n",
+              -1, NULL));
+      arm (calls[i], nth, EIO, FALSE);
+      done = write_mesh (path, 1, &error);
+      struck = fired ();
+      n_faults += struck;
+      g_assert_true (done == !error);
+      if (done)
+        g_assert_cmpint (read_round (path, &n), ==, 1);
+      g_assert_true (struck || !g_file_test (older, G_FILE_TEST_IS_DIR));
+    }
+  }
+  scratch_end ();
+}
+
 /* However often a cleaner is quicker, it ends. */
 static void
 test_cleaner (void)
@@ -864,6 +907,7 @@ main (int argc, char **argv)
   }
   g_test_add_func ("/lone", test_lone);
   g_test_add_func ("/look", test_look);
+  g_test_add_func ("/clear", test_clear);
   g_test_add_func ("/cleaner", test_cleaner);
   rigs[0] = cloth_rig_load (TEST_DATA "/checker_pair/rig.json", &error);
   g_assert_no_error (error);
