@@ -1070,8 +1070,9 @@ test_other_user (void)
     g_assert_cmpint (g_mkdir_with_parents (old, 0777), ==, 0);
     g_assert_true (g_file_set_contents (lock, "gst-cloth recording 1\n12\n", -1,
             NULL));
-    g_assert_cmpint (chown (other, 1, 1), ==, 0);
     g_assert_cmpint (g_chmod (scratch, sticky ? 01777 : 0777), ==, 0);
+    g_assert_null (cloth_mesh_reader_open (path, CLOTH_MESH_FORMAT_AUTO, NULL));
+    g_assert_cmpint (chown (other, 1, 1), ==, 0);
     reader = cloth_mesh_reader_open (path, CLOTH_MESH_FORMAT_AUTO, &error);
     g_assert_true ((reader != NULL) == sticky);
     if (sticky)
