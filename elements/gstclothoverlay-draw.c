@@ -1,4 +1,4 @@
-/* clothoverlay: squares, saddles and dots from their metadata into a video frame.
+/* clothoverlay: silhouettes, squares, saddles and dots from their metadata into a video frame.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #ifdef HAVE_CONFIG_H
@@ -17,6 +17,7 @@
 #define LEAST_SIZE_FOR_INDEX 14.0f
 
 static const ClothColour saddle_colour = { 0.10f, 0.90f, 0.95f, 1 };
+static const ClothColour silhouette_colour = { 0.20f, 0.95f, 0.35f, 1 };
 static const ClothColour text_on_black = { 1, 1, 1, 0.95f };
 static const ClothColour text_on_white = { 0.05f, 0.05f, 0.15f, 0.95f };
 
@@ -25,6 +26,112 @@ with_opacity (ClothColour colour, gfloat opacity)
 {
   colour.a *= opacity;
   return colour;
+}
+
+/* ---- silhouettes ---- */
+
+/* The runs of one row. */
+typedef struct
+{
+  const GstClothRun *runs;
+  guint n;
+} Row;
+
+static const Row no_row = { NULL, 0 };
+
+static void
+draw_box (const ClothCanvas * canvas, const gdouble scale[2], gdouble x0,
+    gdouble y0, gdouble x1, gdouble y1, const ClothColour * colour)
+{
+  const gfloat left = (gfloat) (x0 * scale[0] - 0.5);
+  const gfloat right = (gfloat) (x1 * scale[0] - 0.5);
+  const gfloat top = (gfloat) (y0 * scale[1] - 0.5);
+  const gfloat bottom = (gfloat) (y1 * scale[1] - 0.5);
+  const gfloat x[4] = { left, right, right, left };
+  const gfloat y[4] = { top, top, bottom, bottom };
+
+  cloth_draw_quad (canvas, x, y, colour);
+}
+
+static gint
+end_of_run (const Row * row, guint i)
+{
+  if (i >= 2 * row->n) {
+    return G_MAXINT;
+  }
+  return i % 2 ? row->runs[i / 2].end : row->runs[i / 2].begin;
+}
+
+/* Where just one of two rows is cloth is the border between them. */
+static void
+draw_between (const ClothCanvas * canvas, const gdouble scale[2],
+    const Row * above, const Row * below, gdouble y, gdouble half,
+    const ClothColour * colour)
+{
+  gboolean differs = FALSE;
+  gint from = 0;
+  guint i = 0, k = 0;
+
+  while (i < 2 * above->n || k < 2 * below->n) {
+    const gint a = end_of_run (above, i), b = end_of_run (below, k);
+    const gint at = MIN (a, b);
+
+    if (differs && at > from) {
+      draw_box (canvas, scale, from, y - half, at, y + half, colour);
+    }
+    differs ^= (a == at) != (b == at);
+    from = at;
+    i += a == at;
+    k += b == at;
+  }
+}
+
+void
+gst_cloth_overlay_draw_silhouette (const ClothCanvas * canvas, gint width,
+    gint height, const GstClothSilhouette * silhouette,
+    const GstClothOverlayStyle * style)
+{
+  const gdouble scale[2] =
+      { (gdouble) width / gst_cloth_silhouette_get_width (silhouette),
+    (gdouble) height / gst_cloth_silhouette_get_height (silhouette)
+  };
+  const gdouble half_x = 0.5 * style->line_width / scale[0];
+  const gdouble half_y = 0.5 * style->line_width / scale[1];
+  const ClothColour fill =
+      with_opacity (silhouette_colour, style->fill_opacity * style->opacity);
+  const ClothColour border = with_opacity (silhouette_colour, style->opacity);
+  Row above = no_row, below;
+  guint n, i;
+  gint row_above = -1;
+  const GstClothRun *runs = gst_cloth_silhouette_get_runs (silhouette, &n);
+
+  for (i = 0; i < n; i += below.n) {
+    const gint row = runs[i].row;
+    guint k;
+
+    below.runs = runs + i;
+    for (below.n = 1; i + below.n < n && runs[i + below.n].row == row;) {
+      below.n++;
+    }
+    if (row > row_above + 1) {
+      draw_between (canvas, scale, &above, &no_row, row_above + 1, half_y,
+          &border);
+      above = no_row;
+    }
+    draw_between (canvas, scale, &above, &below, row, half_y, &border);
+    for (k = 0; k < below.n; k++) {
+      const GstClothRun *run = &below.runs[k];
+
+      draw_box (canvas, scale, run->begin, row, run->end, row + 1, &fill);
+      draw_box (canvas, scale, run->begin - half_x, row, run->begin + half_x,
+          row + 1, &border);
+      draw_box (canvas, scale, run->end - half_x, row, run->end + half_x,
+          row + 1, &border);
+    }
+    above = below;
+    row_above = row;
+  }
+  draw_between (canvas, scale, &above, &no_row, row_above + 1, half_y, &border);
 }
 
 /* ---- squares ---- */

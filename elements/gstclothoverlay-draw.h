@@ -1,4 +1,4 @@
-/* clothoverlay: squares, saddles and dots from their metadata into a video frame.
+/* clothoverlay: silhouettes, squares, saddles and dots from their metadata into a video frame.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -17,11 +17,17 @@ typedef enum {
 
 /* The properties of the element that say how things look. */
 typedef struct {
-  gboolean draw_saddles, draw_quads, draw_dots, draw_indices, draw_mesh, draw_gap;
+  gboolean draw_silhouette, draw_saddles, draw_quads, draw_dots, draw_indices, draw_mesh, draw_gap;
   gfloat line_width, opacity, fill_opacity, c_low, ellipse_scale;
   guint gap_scale;              /* mm */
   GstClothOverlayMeshStyle mesh_style;
 } GstClothOverlayStyle;
+
+/* What is cloth in @silhouette, tinted and with its border, on a picture of @width by
+ * @height px. */
+void gst_cloth_overlay_draw_silhouette (const ClothCanvas * canvas, gint width,
+    gint height, const GstClothSilhouette * silhouette,
+    const GstClothOverlayStyle * style);
 
 /* A canvas on the mapped frame, colours by its colorimetry. */
 void gst_cloth_overlay_canvas (GstVideoFrame * frame, ClothCanvas * canvas);

@@ -6,7 +6,7 @@
  * SECTION:element-clothoverlay
  * @title: clothoverlay
  *
- * Draws the saddles, squares and dots that a picture carries as metadata, and, when its
+ * Draws the silhouette, saddles, squares and dots that a picture carries as metadata, and, when its
  * `mesh` pad is linked, a mesh as the camera `camera` of `rig` sees it. The picture is
  * drawn on in place; one with nothing to draw passes untouched. The mesh is drawn as lines or
  * as a surface with any picture on it (`mesh-style`, `texture`). A mesh that `clothgap`
@@ -144,6 +144,9 @@ static const GEnumValue mesh_styles[] = {
 
 /* *INDENT-OFF* */
 static const GstClothProperty properties[] = {
+  {"draw-silhouette", "draw-silhouette",
+    "Tint what is cloth by the silhouette, and draw its border",
+    G_TYPE_BOOLEAN, SETTING (style.draw_silhouette), ANIMATED},
   {"draw-saddles", "draw-saddles",
     "Draw the saddle points as crosses; the raw candidates as dots when none "
     "was refined",
@@ -209,7 +212,7 @@ static const GstClothProperty properties[] = {
 
 static const Settings defaults = {
   .style = {
-    .draw_saddles = TRUE, .draw_quads = TRUE, .draw_dots = TRUE,
+    .draw_silhouette = TRUE, .draw_saddles = TRUE, .draw_quads = TRUE, .draw_dots = TRUE,
     .draw_mesh = TRUE, .draw_gap = TRUE, .gap_scale = 10,
     .line_width = 1.5f, .opacity = 1, .fill_opacity = 0.3f, .c_low = 0.62f,
     .mesh_style = GST_CLOTH_OVERLAY_MESH_WIREFRAME
@@ -559,7 +562,7 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   GstClothOverlay *self = GST_CLOTH_OVERLAY (sync);
   GstFlowReturn ret = GST_FLOW_OK;
   GstBuffer *mesh = n > MESH ? views[MESH] : NULL;
-  gboolean has_quads, has_dots, has_saddles;
+  gboolean has_silhouette, has_quads, has_dots, has_saddles;
   GstVideoFrame frame;
   ClothCanvas canvas;
   ClothWork work = gst_cloth_overlay_allow (self);
@@ -582,6 +585,8 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   if (!style.draw_mesh || !self->mesh) {
     mesh = NULL;
   }
+  has_silhouette = style.draw_silhouette
+      && gst_buffer_get_cloth_silhouette (views[VIDEO]);
   has_quads = (style.draw_quads || style.draw_indices)
       && gst_buffer_get_cloth_quads (views[VIDEO]);
   has_dots = (style.draw_dots || style.draw_indices)
@@ -602,7 +607,7 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
       return GST_FLOW_ERROR;
     }
   }
-  if (!mesh && !has_quads && !has_dots && !has_saddles) {
+  if (!mesh && !has_silhouette && !has_quads && !has_dots && !has_saddles) {
     return GST_FLOW_OK;
   }
 
@@ -612,6 +617,11 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   }
   gst_cloth_overlay_canvas (&frame, &canvas);
   canvas.work = &work;
+  if (has_silhouette) {
+    gst_cloth_overlay_draw_silhouette (&canvas, GST_VIDEO_FRAME_WIDTH (&frame),
+        GST_VIDEO_FRAME_HEIGHT (&frame),
+        gst_buffer_get_cloth_silhouette (*out), &style);
+  }
   if (has_quads) {
     guint n_quads;
     const GstClothQuad *quads =
@@ -813,7 +823,7 @@ gst_cloth_overlay_class_init (GstClothOverlayClass * klass)
       &src_template, GST_TYPE_AGGREGATOR_PAD);
   gst_element_class_set_static_metadata (element_class, "Cloth overlay",
       "Filter/Effect/Video",
-      "Draws saddles, squares, labelled dots, meshes and their distance from a simulation",
+      "Draws silhouettes, saddles, squares, labelled dots, meshes and their distance from a simulation",
       "The gst-cloth developers");
 }
 
