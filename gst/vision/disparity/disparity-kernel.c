@@ -16,6 +16,7 @@
 #define CHUNK CLOTH_DISPARITY_CHUNK
 
 typedef gfloat F16 __attribute__((vector_size (64)));
+typedef gint32 I16 __attribute__((vector_size (64)));
 
 /* What there is to know of a phase: how far the pixels beside are. */
 typedef struct
@@ -27,6 +28,13 @@ typedef struct
     F16 value_; \
     memcpy (&value_, (plane) + (offset), sizeof (value_)); \
     value_; })
+
+/* Bit by bit @a where the mask is set, else @b. */
+INLINE F16
+choose (I16 mask, F16 a, F16 b)
+{
+  return (F16) ((mask & (I16) a) | (~mask & (I16) b));
+}
 
 static gint
 offset (const ClothDisparityPlanes * planes, gint phase, gint columns)
@@ -40,7 +48,7 @@ static Way
 get_way (const ClothDisparityPlanes * planes, gint phase)
 {
   return (Way) {
-    3 * planes->phase, offset (planes, phase, 1), offset (planes, phase, -1),
+    3 *planes->phase, offset (planes, phase, 1), offset (planes, phase, -1),
         offset (planes, phase, 2), offset (planes, phase, -2)
   };
 }
@@ -113,24 +121,29 @@ unpack (const ClothDisparityPlanes * planes, const gfloat * plane, gint width,
     to[x] = from[x / 3 + x % 3 * planes->phase];
 }
 
-/* The chunks of a row that have something to find: @at is the first pixel of each. */
+/* The busy chunks of a row: @at is the first pixel of each. */
 #define EACH_CHUNK(planes, y, ...) \
-  for (gint p = 0; p < 3; p++) { \
-    const Way way = get_way (planes, p); \
-    const gssize line = (gssize) 3 * (y) + p; \
-    const guint8 *kinds = (planes)->kinds + line * (planes)->chunks; \
+  const Way ways[3] = { get_way (planes, 0), get_way (planes, 1), \
+    get_way (planes, 2) \
+  }; \
+  const guint16 *busy = (planes)->busy + (gssize) 3 * (y) * (planes)->chunks; \
+  for (gint b = 0; b < (planes)->n_busy[y]; b++) { \
+    const gint number = busy[b] / 2, p = number / (planes)->chunks; \
+    const gboolean whole = busy[b] % 2; \
+    const Way way = ways[p]; \
+    const gssize at = ((gssize) 3 * (y) + p) * (planes)->phase \
+        + CHUNK * (number - p * (planes)->chunks); \
     (void) way; \
-    for (gint c = 0; c < (planes)->chunks; c++) { \
-      const gssize at = line * (planes)->phase + CHUNK * c; \
-      const guint8 kind = kinds[c]; \
-      if (kind != CLOTH_DISPARITY_IDLE) \
-        __VA_ARGS__ \
-    } \
+    (void) whole; \
+    __VA_ARGS__ \
   }
 
 static void
 prepare (const ClothDisparityPlanes * planes, gint y)
 {
+  guint16 *busy = planes->busy + (gssize) 3 * y * planes->chunks;
+  gint n = 0;
+
   for (gint p = 0; p < 3; p++) {
     const Way way = get_way (planes, p);
     const gint s = way.south;
@@ -154,31 +167,28 @@ prepare (const ClothDisparityPlanes * planes, gint y)
         idle &= *gain == 0;
         whole &= all[i] == 10;
       }
-      planes->kinds[line * planes->chunks + c] = idle ? CLOTH_DISPARITY_IDLE :
-          whole ? CLOTH_DISPARITY_WHOLE : CLOTH_DISPARITY_MIXED;
+      if (!idle)
+        busy[n++] = (guint16) (2 * (p * planes->chunks + c) + whole);
     }
   }
+  planes->n_busy[y] = n;
 }
 
 static void
 relax (const ClothDisparityPlanes * planes, gint y, gfloat relaxation)
 {
   EACH_CHUNK (planes, y, {
-        const gboolean whole = kind == CLOTH_DISPARITY_WHOLE;
-        gfloat *x = planes->x + at;
+        gfloat * x = planes->x + at;
         const F16 low = AT (planes->low, at), high = AT (planes->high, at);
         F16 slope, to;
-
         if (whole)
-          differentiate (x, planes->h + at, planes->v + at, &way, TRUE, &slope);
+        differentiate (x, planes->h + at, planes->v + at, &way, TRUE, &slope);
         else
-          differentiate (x, planes->h + at, planes->v + at, &way, FALSE,
-              &slope);
+      differentiate (x, planes->h + at, planes->v + at, &way, FALSE,
+            &slope);
         to = AT (x, 0) - relaxation * AT (planes->gain, at) * slope;
-        to = to < low ? low : to;
-        to = to > high ? high : to;
-        memcpy (x, &to, sizeof (to));
-      }
+        to = choose (to < low, low, to);
+        to = choose (to > high, high, to); memcpy (x, &to, sizeof (to));}
   );
 }
 
@@ -200,10 +210,9 @@ residual (const ClothDisparityPlanes * planes, gint y)
   EACH_CHUNK (planes, y, {
         const F16 gain = AT (planes->gain, at);
         F16 slope;
-
         differentiate (planes->x + at, planes->h + at, planes->v + at, &way,
             FALSE, &slope);
-        slope = gain > 0 ? -slope : (F16) { 0};
+        slope = (F16) ((gain > 0) & (I16) (-slope));
         sums += slope * slope * gain;
         memcpy (planes->residual + at, &slope, sizeof (slope));
       }
@@ -218,12 +227,11 @@ apply (const ClothDisparityPlanes * planes, gint y)
 
   EACH_CHUNK (planes, y, {
         const F16 gain = AT (planes->gain, at);
-        const gfloat *from = planes->direction + at;
+        const gfloat * from = planes->direction + at;
         F16 slope;
-
         differentiate (from, planes->h + at, planes->v + at, &way, FALSE,
             &slope);
-        slope = gain > 0 ? slope : (F16) { 0};
+        slope = (F16) ((gain > 0) & (I16) slope);
         sums += slope * AT (from, 0);
         memcpy (planes->product + at, &slope, sizeof (slope));
       }
@@ -237,11 +245,10 @@ step (const ClothDisparityPlanes * planes, gint y, gfloat length)
   F16 sums = { 0 };
 
   EACH_CHUNK (planes, y, {
-        gfloat *x = planes->x + at;
-        gfloat *r = planes->residual + at;
+        gfloat * x = planes->x + at;
+        gfloat * r = planes->residual + at;
         const F16 moved = AT (x, 0) + length * AT (planes->direction, at);
         const F16 left = AT (r, 0) - length * AT (planes->product, at);
-
         sums += left * left * AT (planes->gain, at);
         memcpy (x, &moved, sizeof (moved));
         memcpy (r, &left, sizeof (left));
@@ -254,10 +261,9 @@ static void
 turn (const ClothDisparityPlanes * planes, gint y, gfloat share)
 {
   EACH_CHUNK (planes, y, {
-        gfloat *to = planes->direction + at;
+        gfloat * to = planes->direction + at;
         const F16 next = AT (planes->gain, at) * AT (planes->residual, at)
         + share * AT (to, 0);
-
         memcpy (to, &next, sizeof (next));
       }
   );

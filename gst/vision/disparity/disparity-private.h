@@ -14,16 +14,6 @@ G_BEGIN_DECLS
 /* Beyond any disparity. */
 #define CLOTH_DISPARITY_FAR 1e9f
 
-/* @CLOTH_DISPARITY_IDLE: nothing to find in a chunk
- * @CLOTH_DISPARITY_MIXED: some second differences are missing
- * @CLOTH_DISPARITY_WHOLE: all are there
- */
-typedef enum {
-  CLOTH_DISPARITY_IDLE,
-  CLOTH_DISPARITY_MIXED,
-  CLOTH_DISPARITY_WHOLE
-} ClothDisparityKind;
-
 /* @phase: elements of a phase of a row: of the columns 3·k + phase by k
  * @chunks: chunks of a phase
  * @x: disparities
@@ -33,7 +23,10 @@ typedef enum {
  * @h: 1 where the second difference across counts, else 0
  * @v: that down
  * @residual, @direction, @product: of conjugate gradients
- * @kinds: ClothDisparityKind by row, phase, chunk
+ * @busy: the chunks of each row in which there is something to find: twice the number of the
+ *   chunk, which counts on from phase to phase; plus 1 if all second differences that these
+ *   pixels are in are there
+ * @n_busy: how many they are, by row
  *
  * Planes of one level. A row is three phases, so that pixels that don't touch each other's
  * equations are neighbours in memory: the stencil of the squared Laplacian reaches 2 px.
@@ -43,12 +36,13 @@ typedef struct {
   gint phase, chunks;
   gfloat *x, *low, *high, *gain, *h, *v;
   gfloat *residual, *direction, *product;
-  guint8 *kinds;
+  guint16 *busy;
+  gint *n_busy;
 } ClothDisparityPlanes;
 
 /* @pack: a row of pixels into the phases of row @y of a plane
  * @unpack: back
- * @prepare: gains and kinds of a row; gains are 1 where there is something to find
+ * @prepare: gains and busy chunks of a row; gains are 1 where there is something to find
  * @relax: a sweep of projected Gauss–Seidel over a row, which touches no row that is a
  *   multiple of 3 away
  * @residual: of the equations, in a row; Returns: the sum of residual²·gain

@@ -43,14 +43,14 @@ cloth_disparity_error_quark (void)
   return g_quark_from_static_string ("cloth-disparity-error-quark");
 }
 
-/* Returns: steps of 1.5 px, holes of 2000 px, a tolerance of 1e-4, a half-width of 0.5 px,
- *   30 sweeps with corrections 1.5 times as large
+/* Returns: steps of 1.5 px, holes of 2000 px, a tolerance of 1e-4, a half-width of 0.5 px
+ *   on all levels, 30 sweeps with corrections 1.5 times as large
  */
 ClothDisparityParams
 cloth_disparity_default_params (void)
 {
   return (ClothDisparityParams) {
-  1.5, 2000, 1e-4, 0.5, 30, 1.5};
+  1.5, 2000, 1e-4, 0.5, 1, 30, 1.5};
 }
 
 /* Returns: (transfer full): memory that is used again for each map of one size
@@ -97,6 +97,7 @@ begin (ClothDisparity * self, const ClothDisparityParams * params,
       || !check_range ("step", params->step, 1e-6, CLOTH_DISPARITY_MOST, error)
       || !check_range ("tolerance", params->tolerance, 1e-7, 1, error)
       || !check_range ("half_width", params->half_width, 0, 64, error)
+      || !check_range ("narrowing", params->narrowing, 0.1, 1, error)
       || !check_range ("sweeps", params->sweeps, 0, 10000, error)
       || !check_range ("relaxation", params->relaxation, 0.01, 1.99, error))
     return FALSE;
@@ -124,8 +125,7 @@ classify (ClothDisparity * self)
 
       if (*state == CLOTH_DISPARITY_OUTSIDE)
         continue;
-      if (*state != CLOTH_DISPARITY_HOLE
-          && fabsf (d) <= CLOTH_DISPARITY_MOST) {
+      if (*state != CLOTH_DISPARITY_HOLE && fabsf (d) <= CLOTH_DISPARITY_MOST) {
         if (*state != CLOTH_DISPARITY_FILLED)
           *state = CLOTH_DISPARITY_MEASURED;
         sum += (gdouble) d;
@@ -362,7 +362,7 @@ cloth_disparity_fill (ClothDisparity * self,
     const ClothDisparityParams * params, ClothDisparityMap * map,
     ClothPool * pool, ClothSimd level, GError ** error)
 {
-  const ClothPyramidParams how = { 0, 0, 1, params->tolerance };
+  const ClothPyramidParams how = { 0, 1, 0, 1, params->tolerance };
   gboolean any;
 
   if (!begin (self, params, map, pool, error))
@@ -408,8 +408,8 @@ cloth_disparity_smooth (ClothDisparity * self,
     const ClothDisparityParams * params, ClothDisparityMap * map,
     ClothPool * pool, ClothSimd level, GError ** error)
 {
-  const ClothPyramidParams how = { params->half_width, params->sweeps,
-    params->relaxation, params->tolerance
+  const ClothPyramidParams how = { params->half_width, params->narrowing,
+    params->sweeps, params->relaxation, params->tolerance
   };
 
   if (!begin (self, params, map, pool, error))

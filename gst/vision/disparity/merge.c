@@ -28,7 +28,7 @@ cloth_disparity_pair (const gint16 * disparities, gint width, gint height)
     1, 0, 0, 0, 1, 0, 0, 0, 1}
     , {
     0, 0, 1}
-    , 0};
+  , 0};
 }
 
 static gboolean

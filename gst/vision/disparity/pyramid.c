@@ -13,8 +13,10 @@
 
 /* The smallest edge that is halved. */
 #define LEAST_EDGE 16
-/* Rows that are shared out, below which one thread does it all: waking others takes longer. */
-#define FEW_ROWS 128
+/* Work is shared out from so many pixels on, and of equations from so many busy chunks on:
+ * else waking other threads takes longer. */
+#define FEW_PIXELS 16384
+#define FEW_CHUNKS 4096
 /* Planes of a level in phases. */
 #define N_PLANES 9
 /* The most steps of conjugate gradients on a level. */
@@ -44,14 +46,15 @@ get_plane_size (gint width, gint height)
 }
 
 static gsize
-get_n_kinds (gint width, gint height)
+get_n_chunks (gint width, gint height)
 {
   return (gsize) height *3 * (gsize) (get_phase (width)
       / CLOTH_DISPARITY_CHUNK - 1);
 }
 
 static void
-lay_out (ClothPyramidLevel * level, gfloat ** floats, guint8 ** bytes)
+lay_out (ClothPyramidLevel * level, gfloat ** floats, guint8 ** flags,
+    guint16 ** busy, gint ** n_busy)
 {
   ClothDisparityPlanes *planes = &level->planes;
   gfloat **all[N_PLANES] = { &planes->x, &planes->low, &planes->high,
@@ -70,9 +73,12 @@ lay_out (ClothPyramidLevel * level, gfloat ** floats, guint8 ** bytes)
   level->given = *floats;
   level->found = *floats + area;
   *floats += 2 * area;
-  level->flags = *bytes;
-  planes->kinds = *bytes + area;
-  *bytes += area + get_n_kinds (level->width, level->height);
+  level->flags = *flags;
+  *flags += area;
+  planes->busy = *busy;
+  *busy += get_n_chunks (level->width, level->height);
+  planes->n_busy = *n_busy;
+  *n_busy += level->height;
 }
 
 /* @self: pyramid, all 0 before its first use
@@ -86,9 +92,11 @@ void
 cloth_pyramid_resize (ClothPyramid * self, gint width, gint height,
     guint n_workers)
 {
-  gsize n_floats = 0, n_bytes = 0;
+  gsize n_floats = 0, n_flags = 0, n_chunks = 0, n_rows = 0;
   gfloat *floats;
-  guint8 *bytes;
+  guint8 *flags;
+  guint16 *busy;
+  gint *n_busy;
 
   if (self->width == width && self->height == height
       && self->n_workers >= n_workers)
@@ -104,16 +112,20 @@ cloth_pyramid_resize (ClothPyramid * self, gint width, gint height,
     level->width = w;
     level->height = h;
     n_floats += N_PLANES * get_plane_size (w, h) + 2 * area;
-    n_bytes += area + get_n_kinds (w, h);
+    n_flags += area;
+    n_chunks += get_n_chunks (w, h);
+    n_rows += (gsize) h;
     if (MIN (w, h) < LEAST_EDGE || self->n_levels == CLOTH_PYRAMID_LEVELS)
       break;
   }
   self->memory = floats = g_new0 (gfloat, n_floats);
-  self->bytes = bytes = g_malloc0 (n_bytes);
+  self->flags = flags = g_new0 (guint8, n_flags);
+  self->busy = busy = g_new0 (guint16, n_chunks);
+  self->n_busy = n_busy = g_new0 (gint, n_rows);
   self->sums = g_new (gdouble, height);
   self->rows = g_new (gfloat, (gsize) n_workers * 5 * (gsize) width);
   for (gint i = 0; i < self->n_levels; i++)
-    lay_out (&self->levels[i], &floats, &bytes);
+    lay_out (&self->levels[i], &floats, &flags, &busy, &n_busy);
 }
 
 /* @self: pyramid; it is all 0 again
@@ -122,7 +134,9 @@ void
 cloth_pyramid_clear (ClothPyramid * self)
 {
   g_free (self->memory);
-  g_free (self->bytes);
+  g_free (self->flags);
+  g_free (self->busy);
+  g_free (self->n_busy);
   g_free (self->sums);
   g_free (self->rows);
   memset (self, 0, sizeof (*self));
@@ -137,7 +151,8 @@ typedef struct
   const ClothDisparityKernels *kernels;
   ClothPool *pool;
   ClothPyramidLevel *level, *other;
-  gint colour;                  /* rows 3·i + colour, or 2·i + colour */
+  gboolean is_little;
+  gint colour;                  /* rows 3·i + colour */
   gfloat factor;
 } Work;
 
@@ -145,8 +160,7 @@ static void
 share_out (Work * work, ClothPoolFunc func, gint n)
 {
   if (n > 0)
-    cloth_pool_run (n * work->level->width < FEW_ROWS * FEW_ROWS ? NULL :
-        work->pool, func, work, (guint) n);
+    cloth_pool_run (work->is_little ? NULL : work->pool, func, work, (guint) n);
 }
 
 static gdouble
@@ -216,8 +230,7 @@ coarsen (gpointer data, guint begin, guint end, guint worker)
 
       if (x + 1 < level->width && flags[0] & RIGHT && flags[1] & RIGHT)
         to |= RIGHT;
-      if (y + 1 < level->height && flags[0] & DOWN
-          && flags[fine->width] & DOWN)
+      if (y + 1 < level->height && flags[0] & DOWN && flags[fine->width] & DOWN)
         to |= DOWN;
       level->flags[at] = to;
       level->given[at] = blur (fine, 2 * x, 2 * y);
@@ -314,7 +327,8 @@ pack_rows (gpointer data, guint begin, guint end, guint worker)
   ClothPyramidLevel *level = work->level;
   ClothDisparityPlanes *planes = &level->planes;
   const ClothDisparityKernels *kernels = work->kernels;
-  const gfloat b = (gfloat) work->params->half_width;
+  const gfloat b = (gfloat) (work->params->half_width
+      * pow (work->params->narrowing, (gdouble) (level - work->self->levels)));
   const gint width = level->width;
   gfloat *low = work->self->rows + (gsize) worker * 5 * (gsize) width;
   gfloat *high = low + width, *gain = high + width;
@@ -408,8 +422,7 @@ apply_rows (gpointer data, guint begin, guint end, guint worker)
   const Work *work = data;
 
   for (guint y = begin; y < end; y++)
-    work->self->sums[y] = work->kernels->apply (&work->level->planes,
-        (gint) y);
+    work->self->sums[y] = work->kernels->apply (&work->level->planes, (gint) y);
 }
 
 static void
@@ -480,16 +493,29 @@ descend (Work * work)
   }
 }
 
+static gboolean
+is_little (const ClothPyramidLevel * level)
+{
+  return level->width * level->height < FEW_PIXELS;
+}
+
 static void
 solve_level (Work * work)
 {
-  share_out (work, pack_rows, work->level->height);
-  share_out (work, prepare_rows, work->level->height);
+  const gint height = work->level->height;
+  gint n = 0;
+
+  share_out (work, pack_rows, height);
+  share_out (work, prepare_rows, height);
+  for (gint y = 0; y < height; y++)
+    n += work->level->planes.n_busy[y];
+  work->is_little |= n < FEW_CHUNKS;
   if (work->params->half_width > 0)
     relax (work);
   else
     descend (work);
-  share_out (work, unpack_rows, work->level->height);
+  work->is_little = is_little (work->level);
+  share_out (work, unpack_rows, height);
 }
 
 /* @self: pyramid with flags and given disparities on its largest level; of free pixels they
@@ -505,7 +531,7 @@ cloth_pyramid_solve (ClothPyramid * self, const ClothPyramidParams * params,
     ClothPool * pool, ClothSimd level)
 {
   Work work = { self, params, CLOTH_SIMD_TABLE (cloth_disparity_kernels,
-        level), pool, NULL, NULL, 0, 0
+        level), pool, NULL, NULL, FALSE, 0, 0
   };
   ClothPyramidLevel *levels = self->levels;
   ClothPyramidLevel *last = &levels[self->n_levels - 1];
@@ -513,12 +539,14 @@ cloth_pyramid_solve (ClothPyramid * self, const ClothPyramidParams * params,
   for (gint i = 1; i < self->n_levels; i++) {
     work.level = &levels[i];
     work.other = &levels[i - 1];
+    work.is_little = is_little (work.level);
     share_out (&work, coarsen, work.level->height);
   }
   memcpy (last->found, last->given, sizeof (*last->found)
       * (gsize) last->width * (gsize) last->height);
   for (gint i = self->n_levels - 1; i >= 0; i--) {
     work.level = &levels[i];
+    work.is_little = is_little (work.level);
     if (work.level != last) {
       work.other = &levels[i + 1];
       share_out (&work, refine_across, (work.level->height + 1) / 2);

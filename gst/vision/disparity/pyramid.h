@@ -42,18 +42,21 @@ typedef struct {
   gint width, height, n_levels;
   ClothPyramidLevel levels[CLOTH_PYRAMID_LEVELS];
   gfloat *memory;
-  guint8 *bytes;
+  guint8 *flags;
+  guint16 *busy;
+  gint *n_busy;
   gdouble *sums;                /* of each row */
   gfloat *rows;                 /* of each worker, for packing */
   guint n_workers;
 } ClothPyramid;
 
 /* @half_width: how far what isn't free may go from what was given, px; 0: not at all
+ * @narrowing: factor of it from one level to the next smaller one
  * @sweeps: of projected Gauss–Seidel on each level, with this @relaxation
  * @tolerance: of conjugate gradients, which are used if @half_width is 0
  */
 typedef struct {
-  gdouble half_width;
+  gdouble half_width, narrowing;
   guint sweeps;
   gdouble relaxation, tolerance;
 } ClothPyramidParams;

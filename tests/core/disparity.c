@@ -1,0 +1,724 @@
+/* Surfaces of disparities whose truth is a formula: planes, paraboloids and steps, with
+ * holes, in odd outlines; baselines that see the same scene mirrored and turned; what can't
+ * be.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/vision/disparity/disparity.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/math/random.h"
+
+#define OUTSIDE CLOTH_DISPARITY_OUTSIDE
+#define HOLE CLOTH_DISPARITY_HOLE
+#define MEASURED CLOTH_DISPARITY_MEASURED
+#define FILLED CLOTH_DISPARITY_FILLED
+
+typedef gdouble (*Formula) (gdouble x, gdouble y);
+
+static gdouble
+plane (gdouble x, gdouble y)
+{
+  return 80 + 0.071 * x - 0.043 * y;
+}
+
+static gdouble
+paraboloid (gdouble x, gdouble y)
+{
+  return 90 - 0.002 * (x - 70) * (x - 70) - 0.0013 * (y - 50) * (y - 50);
+}
+
+/* Two planes that pass by each other. */
+static gdouble
+cliff (gdouble x, gdouble y)
+{
+  return x < 60 + 0.3 * y ? 60 + 0.05 * x : 66 + 0.03 * y;
+}
+
+/* A map with a margin of its own beside each row. */
+static ClothDisparityMap
+make_map (gint width, gint height, Formula formula)
+{
+  const gint stride = width + 5;
+  ClothDisparityMap map = { g_new (gfloat, stride * height),
+    g_malloc (stride * height), width, height, stride
+  };
+
+  for (gint y = 0; y < height; y++)
+    for (gint x = 0; x < stride; x++) {
+      map.disparities[y * stride + x] =
+          x < width ? (gfloat) formula (x, y) : -7;
+      map.states[y * stride + x] = x < width ? MEASURED : 99;
+    }
+  return map;
+}
+
+static void
+free_map (ClothDisparityMap * map)
+{
+  for (gint y = 0; y < map->height; y++)
+    for (gint x = map->width; x < map->stride; x++) {
+      g_assert_cmpint (map->states[y * map->stride + x], ==, 99);
+      g_assert_cmpfloat (map->disparities[y * map->stride + x], ==, -7);
+    }
+  g_free (map->disparities);
+  g_free (map->states);
+}
+
+static void
+quantise (ClothDisparityMap * map)
+{
+  for (gint y = 0; y < map->height; y++)
+    for (gint x = 0; x < map->width; x++)
+      map->disparities[y * map->stride + x] =
+          rintf (map->disparities[y * map->stride + x]);
+}
+
+static void
+punch (ClothDisparityMap * map, gint left, gint top, gint width, gint height)
+{
+  for (gint y = top; y < top + height; y++)
+    for (gint x = left; x < left + width; x++)
+      map->disparities[y * map->stride + x] = NAN;
+}
+
+/* The greatest and the mean square error of what is known. */
+static void
+measure (const ClothDisparityMap * map, Formula formula, gdouble * most,
+    gdouble * rms)
+{
+  gdouble sum = 0;
+  guint n = 0;
+
+  *most = 0;
+  for (gint y = 0; y < map->height; y++)
+    for (gint x = 0; x < map->width; x++) {
+      const gint at = y * map->stride + x;
+      gdouble error;
+
+      if (map->states[at] < MEASURED)
+        continue;
+      error = fabs ((gdouble) map->disparities[at] - formula (x, y));
+      g_assert_true (isfinite (error));
+      *most = MAX (*most, error);
+      sum += error * error;
+      n++;
+    }
+  *rms = sqrt (sum / MAX (n, 1));
+  g_test_message ("%u disparities: greatest error %.5f px, RMS %.5f", n, *most,
+      *rms);
+}
+
+static void
+smooth (ClothDisparityMap * map, guint sweeps)
+{
+  ClothDisparityParams params = cloth_disparity_default_params ();
+  g_autoptr (ClothDisparity) self = cloth_disparity_new ();
+  g_autoptr (GError) error = NULL;
+
+  params.sweeps = sweeps;
+  g_assert_true (cloth_disparity_smooth (self, &params, map, NULL,
+          CLOTH_SIMD_BEST, &error));
+  g_assert_no_error (error);
+}
+
+static void
+fill (ClothDisparityMap * map, gdouble step, guint area)
+{
+  ClothDisparityParams params = cloth_disparity_default_params ();
+  g_autoptr (ClothDisparity) self = cloth_disparity_new ();
+  g_autoptr (GError) error = NULL;
+
+  params.step = step;
+  params.hole = area;
+  params.tolerance = 1e-7;
+  g_assert_true (cloth_disparity_fill (self, &params, map, NULL,
+          CLOTH_SIMD_BEST, &error));
+  g_assert_no_error (error);
+}
+
+static guint
+count (const ClothDisparityMap * map, guint8 state)
+{
+  guint n = 0;
+
+  for (gint y = 0; y < map->height; y++)
+    for (gint x = 0; x < map->width; x++) {
+      const gint at = y * map->stride + x;
+
+      n += map->states[at] == state;
+      g_assert_true (map->states[at] == OUTSIDE
+          || isnan (map->disparities[at]) == (map->states[at] == HOLE));
+    }
+  return n;
+}
+
+/* ---- fractions ---- */
+
+static void
+test_plane (void)
+{
+  ClothDisparityMap map = make_map (170, 131, plane);
+  gdouble most, rms;
+
+  quantise (&map);
+  measure (&map, plane, &most, &rms);
+  g_assert_cmpfloat (rms, >, 0.25);
+  smooth (&map, 30);
+  measure (&map, plane, &most, &rms);
+  g_assert_cmpfloat (most, <, 0.05);
+  free_map (&map);
+}
+
+static void
+test_paraboloid (void)
+{
+  ClothDisparityMap map = make_map (150, 117, paraboloid);
+  gdouble before, most, rms;
+
+  quantise (&map);
+  measure (&map, paraboloid, &most, &before);
+  smooth (&map, 30);
+  measure (&map, paraboloid, &most, &rms);
+  g_assert_cmpfloat (rms, <, 0.4 * before);
+  free_map (&map);
+}
+
+/* Neither the border of an L nor its inner corner bends a plane. */
+static void
+test_outline (void)
+{
+  ClothDisparityMap map = make_map (150, 140, plane);
+  gdouble most, rms;
+
+  for (gint y = 0; y < 140; y++)
+    for (gint x = 0; x < 150; x++)
+      if ((x > 60 && y > 50) || x < 3 || y < 4 || x > 140)
+        map.states[y * map.stride + x] = OUTSIDE;
+  smooth (&map, 30);
+  measure (&map, plane, &most, &rms);
+  g_assert_cmpfloat (most, <, 1e-3);
+  quantise (&map);
+  smooth (&map, 30);
+  measure (&map, plane, &most, &rms);
+  g_assert_cmpfloat (most, <, 0.08);
+  g_assert_cmpfloat (rms, <, 0.02);
+  /* what lies outside stays as it was */
+  g_assert_cmpfloat (map.disparities[100 * map.stride + 100], ==,
+      rintf ((gfloat) plane (100, 100)));
+  free_map (&map);
+}
+
+static void
+test_step (void)
+{
+  ClothDisparityMap map = make_map (160, 120, cliff);
+  gdouble most, rms;
+
+  smooth (&map, 30);
+  measure (&map, cliff, &most, &rms);
+  g_assert_cmpfloat (most, <, 1e-3);
+  quantise (&map);
+  smooth (&map, 30);
+  measure (&map, cliff, &most, &rms);
+  /* the last stair before the cliff is any part of one: its slope is not known */
+  g_assert_cmpfloat (most, <, 1.001);
+  g_assert_cmpfloat (rms, <, 0.12);
+  free_map (&map);
+}
+
+/* ---- holes ---- */
+
+static void
+test_fill (void)
+{
+  static const Formula formulas[] = { plane, paraboloid };
+
+  for (guint i = 0; i < 2; i++) {
+    ClothDisparityMap map = make_map (150, 117, formulas[i]);
+    gdouble most, rms;
+
+    punch (&map, 20, 15, 1, 1);
+    punch (&map, 40, 20, 31, 37);
+    punch (&map, 90, 60, 40, 12);
+    punch (&map, 101, 20, 3, 60);
+    fill (&map, 1.5, 2000);
+    g_assert_cmpuint (count (&map, HOLE), ==, 0);
+    g_assert_cmpuint (count (&map, FILLED), ==, 1 + 31 * 37 + 40 * 12 + 3 * 48);
+    measure (&map, formulas[i], &most, &rms);
+    g_assert_cmpfloat (most, <, 1e-3);
+    free_map (&map);
+  }
+}
+
+static void
+test_unfilled (void)
+{
+  ClothDisparityMap map = make_map (160, 120, cliff);
+  gdouble most, rms;
+
+  punch (&map, 10, 10, 10, 10);
+  punch (&map, 70, 60, 20, 20); /* at the cliff */
+  punch (&map, 120, 20, 20, 20);        /* too large */
+  punch (&map, 130, 90, 1, 1);
+  fill (&map, 1.5, 399);
+  g_assert_cmpuint (count (&map, FILLED), ==, 101);
+  g_assert_cmpuint (count (&map, HOLE), ==, 800);
+  measure (&map, cliff, &most, &rms);
+  g_assert_cmpfloat (most, <, 1e-3);
+  /* and holes stay away from what is smoothed */
+  smooth (&map, 30);
+  g_assert_cmpuint (count (&map, HOLE), ==, 800);
+  measure (&map, cliff, &most, &rms);
+  g_assert_cmpfloat (most, <, 1e-3);
+  free_map (&map);
+
+  /* nothing around the hole tells of the cliff in it */
+  map = make_map (160, 120, cliff);
+  for (gint y = 0; y < 120; y++)
+    punch (&map, 55 + 3 * y / 10, y, 10, 1);
+  fill (&map, 0.4, 20000);
+  g_assert_cmpuint (count (&map, FILLED), ==, 0);
+  g_assert_cmpuint (count (&map, HOLE), ==, 1200);
+  free_map (&map);
+}
+
+/* ---- the same bits ---- */
+
+static gdouble
+noisy (gdouble x, gdouble y)
+{
+  const guint hash = ((guint) x * 73856093u ^ (guint) y * 19349663u)
+      * 1274126177u;
+
+  return (hash >> 28) == 0 ? NAN : 70 + 6 * sin (x / 23) * cos (y / 31)
+      + (hash >> 20 & 255) / 400. + (x > 150 ? 9 : 0);
+}
+
+static void
+test_levels (void)
+{
+  static const ClothSimd levels[] = { CLOTH_SIMD_SCALAR, CLOTH_SIMD_AVX2,
+    CLOTH_SIMD_AVX512
+  };
+  static const gint sizes[][2] = { {1, 1}, {1, 40}, {40, 1}, {2, 3}, {17, 16},
+  {48, 50}, {333, 211}
+  };
+  g_autoptr (ClothDisparity) self = cloth_disparity_new ();
+  const ClothDisparityParams params = cloth_disparity_default_params ();
+
+  for (guint s = 0; s < G_N_ELEMENTS (sizes); s++) {
+    ClothDisparityMap first = make_map (sizes[s][0], sizes[s][1], noisy);
+    const gsize n = (gsize) first.stride * (gsize) first.height;
+
+    for (guint i = 0; i < 9; i++) {
+      ClothDisparityMap map = make_map (sizes[s][0], sizes[s][1], noisy);
+      g_autoptr (ClothPool) pool = i < 3 ? NULL : cloth_pool_new (i - 1);
+
+      g_assert_true (cloth_disparity_fill (self, &params, &map, pool,
+              levels[i % 3], NULL));
+      g_assert_true (cloth_disparity_smooth (self, &params, &map, pool,
+              levels[i % 3], NULL));
+      if (i == 0) {
+        memcpy (first.disparities, map.disparities, n * sizeof (gfloat));
+        memcpy (first.states, map.states, n);
+      }
+      g_assert_cmpmem (map.disparities, n * sizeof (gfloat), first.disparities,
+          n * sizeof (gfloat));
+      g_assert_cmpmem (map.states, n, first.states, n);
+      free_map (&map);
+    }
+    free_map (&first);
+  }
+}
+
+/* Memory that has served other maps gives the same as new memory. */
+static void
+test_again (void)
+{
+  g_autoptr (ClothDisparity) self = cloth_disparity_new ();
+  const ClothDisparityParams params = cloth_disparity_default_params ();
+  ClothDisparityMap first = make_map (120, 90, noisy);
+
+  for (guint i = 0; i < 3; i++) {
+    ClothDisparityMap map = make_map (120, 90, noisy);
+    ClothDisparityMap other = make_map (120, 90, paraboloid);
+
+    punch (&other, 10, 10, 30, 30);
+    g_assert_true (cloth_disparity_fill (self, &params, &map, NULL,
+            CLOTH_SIMD_BEST, NULL));
+    g_assert_true (cloth_disparity_smooth (self, &params, &map, NULL,
+            CLOTH_SIMD_BEST, NULL));
+    if (i == 0)
+      memcpy (first.disparities, map.disparities, sizeof (gfloat) * 125 * 90);
+    g_assert_cmpmem (map.disparities, sizeof (gfloat) * 125 * 90,
+        first.disparities, sizeof (gfloat) * 125 * 90);
+    g_assert_true (cloth_disparity_fill (self, &params, &other, NULL,
+            CLOTH_SIMD_BEST, NULL));
+    free_map (&map);
+    free_map (&other);
+  }
+  free_map (&first);
+}
+
+/* ---- what is hardly there ---- */
+
+static void
+test_little (void)
+{
+  static const gint sizes[][2] = { {1, 1}, {1, 9}, {9, 1}, {2, 2}, {3, 40} };
+
+  for (guint i = 0; i < G_N_ELEMENTS (sizes); i++) {
+    ClothDisparityMap map = make_map (sizes[i][0], sizes[i][1], plane);
+    const guint n = (guint) (map.width * map.height);
+    gdouble most, rms;
+
+    smooth (&map, 30);
+    measure (&map, plane, &most, &rms);
+    g_assert_cmpfloat (most, <, 1e-3);
+    map.disparities[0] = INFINITY;
+    fill (&map, 1.5, 10);
+    g_assert_cmpuint (count (&map, n > 1 ? FILLED : HOLE), ==, 1);
+    /* nothing known, and nothing asked for */
+    punch (&map, 0, 0, map.width, map.height);
+    fill (&map, 1.5, 1000);
+    smooth (&map, 30);
+    g_assert_cmpuint (count (&map, HOLE), ==, n);
+    for (gint y = 0; y < map.height; y++)
+      memset (map.states + y * map.stride, OUTSIDE, (gsize) map.width);
+    fill (&map, 1.5, 1000);
+    smooth (&map, 30);
+    g_assert_cmpuint (count (&map, OUTSIDE), ==, n);
+    free_map (&map);
+  }
+}
+
+/* No number stays what it isn't, however wild it is. */
+static void
+test_wild (void)
+{
+  static const gfloat wild[] = { NAN, INFINITY, -INFINITY, 1e30f, -1e30f,
+    32768, -32767, 1e-40f, 32767
+  };
+  ClothDisparityMap map = make_map (64, 64, plane);
+  ClothRandom random;
+
+  cloth_random_init (&random, 3);
+  for (guint i = 0; i < 2000; i++) {
+    const guint at = cloth_random_below (&random, 64) * (guint) map.stride
+        + cloth_random_below (&random, 64);
+
+    map.disparities[at] = wild[i % G_N_ELEMENTS (wild)];
+    map.states[at] = (guint8) cloth_random_below (&random, 256);
+  }
+  fill (&map, 1.5, 100000);
+  smooth (&map, 30);
+  for (gint y = 0; y < 64; y++)
+    for (gint x = 0; x < 64; x++) {
+      const gint at = y * map.stride + x;
+
+      g_assert_cmpint (map.states[at], <=, FILLED);
+      if (map.states[at] >= MEASURED)
+        g_assert_cmpfloat (fabsf (map.disparities[at]), <, 1e6);
+    }
+  free_map (&map);
+}
+
+/* ---- baselines ---- */
+
+#define WIDTH 60
+#define HEIGHT 40
+
+/* Pairs to the right, to the left (mirrored), and below (rows as columns) with a baseline of
+ * three quarters. */
+static void
+make_pairs (gint16 * right, gint16 * left, gint16 * below,
+    ClothDisparityPair * pairs)
+{
+  static const gdouble mirrored[9] = { -1, 0, WIDTH - 1, 0, 1, 0, 0, 0, 1 };
+  static const gdouble turned[9] = { 0, 1, 0, 1, 0, 0, 0, 0, 1 };
+
+  for (gint y = 0; y < HEIGHT; y++)
+    for (gint x = 0; x < WIDTH; x++) {
+      const gdouble d = 32 + 0.25 * x + 0.5 * y;
+
+      right[y * WIDTH + x] = (gint16) (16 * d);
+      left[y * WIDTH + WIDTH - 1 - x] = (gint16) (16 * d);
+      below[x * HEIGHT + y] = (gint16) (12 * d);
+    }
+  pairs[0] = cloth_disparity_pair (right, WIDTH, HEIGHT);
+  pairs[1] = cloth_disparity_pair (left, WIDTH, HEIGHT);
+  pairs[2] = cloth_disparity_pair (below, HEIGHT, WIDTH);
+  memcpy (pairs[1].place, mirrored, sizeof (mirrored));
+  memcpy (pairs[2].place, turned, sizeof (turned));
+  pairs[2].unit[2] = 4 / 3.;
+}
+
+static gdouble
+ramp (gdouble x, gdouble y)
+{
+  return 32 + 0.25 * x + 0.5 * y;
+}
+
+static void
+test_merge (void)
+{
+  g_autofree gint16 *right = g_new (gint16, WIDTH * HEIGHT);
+  g_autofree gint16 *left = g_new (gint16, WIDTH * HEIGHT);
+  g_autofree gint16 *below = g_new (gint16, WIDTH * HEIGHT);
+  ClothDisparityMap map = make_map (WIDTH, HEIGHT, plane);
+  ClothDisparityPair pairs[3];
+  gdouble most, rms;
+
+  make_pairs (right, left, below, pairs);
+  map.states[0] = OUTSIDE;
+  right[5] = -16;               /* hidden from one, then from all */
+  right[6] = left[WIDTH - 1 - 6] = below[6 * HEIGHT] = -16;
+  left[WIDTH - 1 - 7] += 20;    /* another surface */
+  left[WIDTH - 1 - 8] += 6;     /* a bit off */
+  g_assert_true (cloth_disparity_merge (pairs, 3, 1, &map, NULL));
+  g_assert_cmpuint (count (&map, OUTSIDE), ==, 1);
+  g_assert_cmpint (map.states[6], ==, HOLE);
+  g_assert_cmpint (map.states[7], ==, HOLE);
+  g_assert_cmpuint (count (&map, HOLE), ==, 2);
+  /* weights 1, 1 and 9/16 */
+  g_assert_cmpfloat_with_epsilon (map.disparities[8], 34 + 6 / 16. / 2.5625,
+      1e-5);
+  map.disparities[8] = 34;
+  measure (&map, ramp, &most, &rms);
+  g_assert_cmpfloat (most, <, 1e-5);
+  free_map (&map);
+}
+
+/* Of a pair that is turned about its own axes places lie between pixels, and the depth is
+ * another one: the disparity of a plane of the first stays linear. */
+static void
+test_merge_turned (void)
+{
+  g_autofree gint16 *found = g_new (gint16, WIDTH * HEIGHT);
+  ClothDisparityPair pair = cloth_disparity_pair (found, WIDTH, HEIGHT);
+  ClothDisparityMap map = make_map (WIDTH, HEIGHT, plane);
+  gdouble most, rms;
+
+  pair.place[2] = 0.5;
+  pair.place[5] = -0.25;
+  pair.unit[0] = 0.001;
+  pair.offset = 2;
+  for (gint y = 0; y < HEIGHT; y++)
+    for (gint x = 0; x < WIDTH; x++)
+      found[y * WIDTH + x] = (gint16) lrint (16 * (ramp (x - 0.5, y + 0.25)
+              / (1 + 0.001 * (x - 0.5)) - 2));
+  g_assert_true (cloth_disparity_merge (&pair, 1, 1, &map, NULL));
+  g_assert_cmpuint (count (&map, HOLE), ==, HEIGHT);
+  measure (&map, ramp, &most, &rms);
+  g_assert_cmpfloat (most, <, 0.5);
+  g_assert_cmpfloat (rms, <, 0.05);
+  free_map (&map);
+}
+
+static void
+test_check (void)
+{
+  gint16 left[2 * 10] = { 0 }, right[2 * 10] = { 0 };
+
+  for (gint i = 0; i < 20; i++) {
+    left[i] = 3 * 16 + 7;
+    right[i] = 3 * 16;
+  }
+  left[8] = -16;
+  right[9 - 6] = 5 * 16;        /* seen from column 9 */
+  right[9 - 4] = -16;           /* from column 7 */
+  g_assert_true (cloth_disparity_check (left, right, 10, 2, -16, 16, NULL));
+  for (gint x = 0; x < 10; x++) {
+    g_assert_cmpint (left[x], ==, x < 3 || x > 6 ? -16 : 55);
+    g_assert_cmpint (left[10 + x], ==, x < 3 ? -16 : 55);
+  }
+}
+
+static void
+test_border (void)
+{
+  gint16 found[100] = { 0 };
+  ClothDisparityPair pair = cloth_disparity_pair (found, 10, 10);
+  ClothDisparityBorder border;
+
+  for (gint i = 0; i < 100; i++)
+    found[i] = (gint16) (i < 20 ? -16 : 16 * (10 + i / 5) + i % 16);
+  g_assert_true (cloth_disparity_border (&pair, 14, 16, &border, NULL));
+  g_assert_cmpfloat_with_epsilon (border.least, 5 / 80., 1e-9);
+  g_assert_cmpfloat_with_epsilon (border.most, 10 / 80., 1e-9);
+  for (gint i = 0; i < 100; i++)
+    found[i] = -16;
+  g_assert_true (cloth_disparity_border (&pair, 14, 16, &border, NULL));
+  g_assert_cmpfloat (border.least, ==, 0);
+  g_assert_cmpfloat (border.most, ==, 0);
+}
+
+/* ---- what can't be ---- */
+
+static void
+refuse_map (gint width, gint height, gint stride)
+{
+  static gfloat disparities[64];
+  static guint8 states[64];
+  static gint16 found[64];
+  g_autoptr (ClothDisparity) self = cloth_disparity_new ();
+  const ClothDisparityParams params = cloth_disparity_default_params ();
+  const ClothDisparityPair good = cloth_disparity_pair (found, 8, 8);
+  ClothDisparityPair pair = good;
+  ClothDisparityBorder border;
+  ClothDisparityMap map = { disparities, states, width, height, stride };
+  GError *error = NULL;
+
+#define REFUSED(call) G_STMT_START { \
+    g_assert_false (call); \
+    g_assert_error (error, CLOTH_DISPARITY_ERROR, CLOTH_DISPARITY_ERROR_MAP); \
+    g_clear_error (&error); \
+  } G_STMT_END
+
+  REFUSED (cloth_disparity_fill (self, &params, &map, NULL, CLOTH_SIMD_BEST,
+          &error));
+  REFUSED (cloth_disparity_smooth (self, &params, &map, NULL, CLOTH_SIMD_BEST,
+          &error));
+  REFUSED (cloth_disparity_merge (&good, 1, 1, &map, &error));
+  map = (ClothDisparityMap) {
+  disparities, states, 8, 8, 8};
+  pair.width = width;
+  pair.height = height;
+  pair.stride = stride;
+  REFUSED (cloth_disparity_merge (&pair, 1, 1, &map, &error));
+  REFUSED (cloth_disparity_border (&pair, 0, 16, &border, &error));
+  if (stride >= width)
+    REFUSED (cloth_disparity_check (found, found, width, height, -16, 16,
+            &error));
+#undef REFUSED
+}
+
+static void
+test_refused_maps (void)
+{
+  refuse_map (8, 8, 7);
+  refuse_map (8, 8, -8);
+  refuse_map (0, 8, 8);
+  refuse_map (8, 0, 8);
+  refuse_map (-1, 8, 8);
+  refuse_map (16385, 1, 16385);
+  refuse_map (1, G_MAXINT, 1);
+}
+
+static void
+refuse_params (const ClothDisparityParams * params, const gchar * name)
+{
+  g_autoptr (ClothDisparity) self = cloth_disparity_new ();
+  ClothDisparityMap map = make_map (8, 8, plane);
+  GError *error = NULL;
+
+  for (gint i = 0; i < 2; i++) {
+    g_assert_false (i ? cloth_disparity_fill (self, params, &map, NULL,
+            CLOTH_SIMD_BEST, &error) : cloth_disparity_smooth (self, params,
+            &map, NULL, CLOTH_SIMD_BEST, &error));
+    g_assert_error (error, CLOTH_DISPARITY_ERROR,
+        CLOTH_DISPARITY_ERROR_PARAMETER);
+    g_assert_nonnull (strstr (error->message, name));
+    g_clear_error (&error);
+  }
+  free_map (&map);
+}
+
+static void
+test_refused_params (void)
+{
+  const ClothDisparityParams good = cloth_disparity_default_params ();
+  ClothDisparityParams params;
+
+#define REFUSED(field, value) G_STMT_START { \
+    params = good; \
+    params.field = value; \
+    refuse_params (&params, #field); \
+  } G_STMT_END
+
+  REFUSED (step, 0);
+  REFUSED (step, NAN);
+  REFUSED (step, INFINITY);
+  REFUSED (tolerance, 0);
+  REFUSED (tolerance, NAN);
+  REFUSED (half_width, -0.1);
+  REFUSED (half_width, NAN);
+  REFUSED (half_width, 65);
+  REFUSED (narrowing, 0);
+  REFUSED (narrowing, 1.01);
+  REFUSED (sweeps, 10001);
+  REFUSED (relaxation, 0);
+  REFUSED (relaxation, 2);
+#undef REFUSED
+}
+
+static void
+test_refused_pairs (void)
+{
+  gint16 found[64] = { 0 };
+  const ClothDisparityPair good = cloth_disparity_pair (found, 8, 8);
+  ClothDisparityPair pairs[9];
+  ClothDisparityMap map = make_map (8, 8, plane);
+  GError *error = NULL;
+
+#define REFUSED(call) G_STMT_START { \
+    g_assert_false (call); \
+    g_assert_error (error, CLOTH_DISPARITY_ERROR, \
+        CLOTH_DISPARITY_ERROR_PARAMETER); \
+    g_clear_error (&error); \
+  } G_STMT_END
+
+  for (gint i = 0; i < 9; i++)
+    pairs[i] = good;
+  REFUSED (cloth_disparity_merge (pairs, 0, 1, &map, &error));
+  REFUSED (cloth_disparity_merge (pairs, 9, 1, &map, &error));
+  REFUSED (cloth_disparity_merge (pairs, 1, 0, &map, &error));
+  REFUSED (cloth_disparity_merge (pairs, 1, NAN, &map, &error));
+  REFUSED (cloth_disparity_check (found, found, 8, 8, -16, -1, &error));
+  pairs[1].steps = 0;
+  REFUSED (cloth_disparity_merge (pairs, 2, 1, &map, &error));
+  pairs[1] = good;
+  pairs[1].place[4] = NAN;
+  REFUSED (cloth_disparity_merge (pairs, 2, 1, &map, &error));
+  pairs[1] = good;
+  pairs[1].unit[2] = INFINITY;
+  REFUSED (cloth_disparity_merge (pairs, 2, 1, &map, &error));
+  pairs[1] = good;
+  pairs[1].offset = NAN;
+  REFUSED (cloth_disparity_merge (pairs, 2, 1, &map, &error));
+#undef REFUSED
+  /* places beyond numbers, and behind the camera, are outside */
+  for (gint i = 0; i < 3; i++) {
+    pairs[0] = good;
+    pairs[0].place[i == 0 ? 2 : i == 1 ? 8 : 6] = i == 0 ? 1e300 : -1e300;
+    g_assert_true (cloth_disparity_merge (pairs, 1, 1, &map, NULL));
+    g_assert_cmpuint (count (&map, MEASURED), <=, 8);
+  }
+  free_map (&map);
+}
+
+int
+main (int argc, char **argv)
+{
+  g_test_init (&argc, &argv, NULL);
+  g_test_add_func ("/disparity/plane", test_plane);
+  g_test_add_func ("/disparity/paraboloid", test_paraboloid);
+  g_test_add_func ("/disparity/outline", test_outline);
+  g_test_add_func ("/disparity/step", test_step);
+  g_test_add_func ("/disparity/fill", test_fill);
+  g_test_add_func ("/disparity/unfilled", test_unfilled);
+  g_test_add_func ("/disparity/levels", test_levels);
+  g_test_add_func ("/disparity/again", test_again);
+  g_test_add_func ("/disparity/little", test_little);
+  g_test_add_func ("/disparity/wild", test_wild);
+  g_test_add_func ("/disparity/merge", test_merge);
+  g_test_add_func ("/disparity/merge-turned", test_merge_turned);
+  g_test_add_func ("/disparity/check", test_check);
+  g_test_add_func ("/disparity/border", test_border);
+  g_test_add_func ("/disparity/refused-maps", test_refused_maps);
+  g_test_add_func ("/disparity/refused-params", test_refused_params);
+  g_test_add_func ("/disparity/refused-pairs", test_refused_pairs);
+  return g_test_run ();
+}
