@@ -1,12 +1,10 @@
 /* Disparities of one or two baselines on the pixels of one picture.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/vision/disparity/disparity.h"
+#include "gst/vision/disparity/merge.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-#include "gst/vision/disparity/disparity-check.h"
 
 /* The most baselines of a map. */
 #define MOST_PAIRS 8

@@ -8,12 +8,11 @@
  * Gauss–Seidel. Both go from coarse to fine.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/vision/disparity/disparity.h"
+#include "gst/vision/disparity/surface.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "gst/vision/disparity/disparity-check.h"
 #include "gst/vision/disparity/pyramid.h"
 
 /* Pixels without a disparity that hang together across and down. */
@@ -36,12 +35,6 @@ struct _ClothDisparity
   ClothDisparityMap *map;
   gdouble mean;
 };
-
-GQuark
-cloth_disparity_error_quark (void)
-{
-  return g_quark_from_static_string ("cloth-disparity-error-quark");
-}
 
 /* Returns: steps of 1.5 px, holes of 2000 px, a tolerance of 1e-4, a half-width of 0.5 px
  *   on all levels, 30 sweeps with corrections 1.5 times as large

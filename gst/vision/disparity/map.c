@@ -1,13 +1,22 @@
-/* Sizes that can be.
+/* Maps that can be.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#pragma once
+#include "gst/vision/disparity/map.h"
 
-#include "gst/vision/disparity/disparity.h"
+GQuark
+cloth_disparity_error_quark (void)
+{
+  return g_quark_from_static_string ("cloth-disparity-error-quark");
+}
 
-G_BEGIN_DECLS
-
-static inline gboolean
+/* @width: pixels a row
+ * @height: rows
+ * @stride: elements from row to row
+ * @error: (out): set to %CLOTH_DISPARITY_ERROR_MAP
+ *
+ * Returns: %FALSE if there is no such map
+ */
+gboolean
 cloth_disparity_check_size (gint width, gint height, gint stride,
     GError ** error)
 {
@@ -20,5 +29,3 @@ cloth_disparity_check_size (gint width, gint height, gint stride,
       CLOTH_DISPARITY_MAX_SIZE, CLOTH_DISPARITY_MAX_SIZE);
   return FALSE;
 }
-
-G_END_DECLS
