@@ -1,6 +1,6 @@
 /* Surfaces of disparities whose truth is a formula: planes, paraboloids and steps, with
- * holes, in odd outlines; baselines that see the same scene mirrored and turned; what can't
- * be.
+ * holes, in odd outlines; a real scene whose truth was measured; baselines that see the same
+ * scene mirrored and turned; what can't be.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/vision/disparity/disparity.h"
@@ -8,7 +8,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/cv/cv.h"
 #include "gst/math/random.h"
+#include "tests/common/picture.h"
 
 #define OUTSIDE CLOTH_DISPARITY_OUTSIDE
 #define HOLE CLOTH_DISPARITY_HOLE
@@ -282,6 +284,120 @@ test_unfilled (void)
   g_assert_cmpuint (count (&map, FILLED), ==, 0);
   g_assert_cmpuint (count (&map, HOLE), ==, 1200);
   free_map (&map);
+}
+
+/* ---- a real scene ---- */
+
+static TestPicture *
+load_half (const gchar * name)
+{
+  g_autofree gchar *path = g_build_filename (TEST_DATA, "aloe", name, NULL);
+  g_autoptr (TestPicture) whole = test_picture_load (path);
+  const ClothImage *from = &whole->image;
+  TestPicture *half = test_picture_new (from->width / 2, from->height / 2, 0);
+  const ClothCvPicture picture = { from->data, from->width, from->height,
+    from->stride
+  };
+
+  g_assert_true (cloth_cv_squeeze (&picture, half->image.width,
+          half->image.height, half->data, half->image.width, NULL));
+  return half;
+}
+
+/* The truth at half the size, in whole and half pixels; NaN where it is unknown or has an
+ * edge. */
+static gfloat *
+load_truth (gint width, gint height)
+{
+  g_autoptr (TestPicture) whole = test_picture_load (TEST_DATA
+      "/aloe/aloeGT.png");
+  const gint stride = whole->image.stride;
+  gfloat *truth = g_new (gfloat, width * height);
+
+  for (gint y = 0; y < height; y++)
+    for (gint x = 0; x < width; x++) {
+      const guint8 *at = whole->data + 2 * y * stride + 2 * x;
+      const guint8 most = MAX (MAX (at[0], at[1]), MAX (at[stride],
+              at[stride + 1]));
+      const guint8 least = MIN (MIN (at[0], at[1]), MIN (at[stride],
+              at[stride + 1]));
+
+      truth[y * width + x] = least == 0 || most - least > 2 ? NAN :
+          (gfloat) (at[0] + at[1] + at[stride] + at[stride + 1]) / 8;
+    }
+  return truth;
+}
+
+/* Of what has @state: the share that is more than a pixel off, and the RMS of the rest. */
+static gdouble
+measure_scene (const ClothDisparityMap * map, const gfloat * truth,
+    guint8 state, gdouble * rms)
+{
+  guint n = 0, n_bad = 0;
+  gdouble sum = 0;
+
+  for (gint i = 0; i < map->width * map->height; i++)
+    if (map->states[i] == state && !isnan (truth[i])) {
+      const gdouble off = fabs ((gdouble) map->disparities[i]
+          - (gdouble) truth[i]);
+
+      n++;
+      n_bad += off > 1;
+      sum += off > 1 ? 0 : off * off;
+    }
+  g_assert_cmpuint (n, >, 0);
+  *rms = sqrt (sum / (n - n_bad));
+  g_test_message ("state %d: %u disparities, %.2f%% are off by more than a "
+      "pixel, RMS of the others %.3f", state, n, 100. * n_bad / n, *rms);
+  return n_bad / (gdouble) n;
+}
+
+static void
+test_scene (void)
+{
+  g_autoptr (TestPicture) left = load_half ("aloeL.jpg");
+  g_autoptr (TestPicture) right = load_half ("aloeR.jpg");
+  const gint width = left->image.width, height = left->image.height;
+  const gsize n = (gsize) width * (gsize) height;
+  g_autofree gfloat *truth = load_truth (width, height);
+  g_autofree gfloat *disparities = g_new (gfloat, n);
+  g_autofree guint8 *states = g_malloc (n);
+  g_autofree gint16 *found = g_new (gint16, n);
+  ClothCvStereoParams stereo = cloth_cv_stereo_default_params ();
+  g_autoptr (ClothCvStereo) matcher = NULL;
+  const ClothCvPicture a = { left->data, width, height, width };
+  const ClothCvPicture b = { right->data, width, height, width };
+  const ClothDisparityPair pair = cloth_disparity_pair (found, width, height);
+  ClothDisparityMap map = { disparities, states, width, height, width };
+  ClothDisparityBorder border;
+  gdouble bad, rms, bad_filled, rms_filled, bad_after, rms_after;
+
+  stereo.least = 16;
+  stereo.range = 96;
+  matcher = cloth_cv_stereo_new (&stereo, NULL);
+  g_assert_true (cloth_cv_stereo_run (matcher, &a, &b, found, NULL));
+  g_assert_true (cloth_disparity_border (&pair, 16, 96, &border, NULL));
+  g_assert_cmpfloat (MAX (border.least, border.most), <, 0.01);
+  memset (states, MEASURED, n);
+  g_assert_true (cloth_disparity_merge (&pair, 1, 1, &map, NULL));
+  for (gsize i = 0; i < n; i++)
+    disparities[i] = rintf (disparities[i]);
+  bad = measure_scene (&map, truth, MEASURED, &rms);
+  fill (&map, 1.5, 300);
+  bad_filled = measure_scene (&map, truth, FILLED, &rms_filled);
+  g_assert_cmpfloat (bad_filled, <, 0.25);
+  smooth (&map, 30);
+  bad_after = measure_scene (&map, truth, MEASURED, &rms_after);
+  g_assert_cmpfloat (bad_after, <, 1.05 * bad);
+  g_assert_cmpfloat (rms_after, <, 0.95 * rms);
+
+  /* half of the range: much lies at its end */
+  stereo.range = 16;
+  cloth_cv_stereo_free (matcher);
+  matcher = cloth_cv_stereo_new (&stereo, NULL);
+  g_assert_true (cloth_cv_stereo_run (matcher, &a, &b, found, NULL));
+  g_assert_true (cloth_disparity_border (&pair, 16, 16, &border, NULL));
+  g_assert_cmpfloat (border.most, >, 0.05);
 }
 
 /* ---- the same bits ---- */
@@ -702,6 +818,7 @@ test_refused_pairs (void)
 int
 main (int argc, char **argv)
 {
+  test_picture_init (&argc, &argv);
   g_test_init (&argc, &argv, NULL);
   g_test_add_func ("/disparity/plane", test_plane);
   g_test_add_func ("/disparity/paraboloid", test_paraboloid);
@@ -709,6 +826,7 @@ main (int argc, char **argv)
   g_test_add_func ("/disparity/step", test_step);
   g_test_add_func ("/disparity/fill", test_fill);
   g_test_add_func ("/disparity/unfilled", test_unfilled);
+  g_test_add_func ("/disparity/scene", test_scene);
   g_test_add_func ("/disparity/levels", test_levels);
   g_test_add_func ("/disparity/again", test_again);
   g_test_add_func ("/disparity/little", test_little);
