@@ -28,12 +28,13 @@
 typedef enum
 {
   INTEGER, INTEGER_FILLED, INTEGER_SMOOTH, MERGED, MERGED_FILLED,
-  MERGED_SMOOTH, N_STAGES
+  MERGED_SMOOTH, REFINED, N_STAGES
 } Stage;
 
 static const gchar *const names[] = { "whole px of one baseline",
   "the same, holes filled", "the same, fractions", "two baselines, 1/16 px",
-  "the same, holes filled", "the same, smoothed"
+  "the same, holes filled", "the same, smoothed",
+  "refined by the pictures"
 };
 
 /* Of the pixels of the mask: how many there are, have a depth, have a wild one; and the sum
@@ -48,6 +49,7 @@ typedef struct
   TestStereo *film;
   ClothCvStereo *stereo;
   ClothDisparity *surface;
+  ClothRefine *refine;
   ClothPool *pool;
   gint16 *found[2];
   guint8 *mirrored[2];
@@ -182,6 +184,30 @@ smooth (Bench * bench, const ClothDisparityParams * params)
     g_error ("not smoothed");
 }
 
+static ClothImage
+view (const Bench * bench, guint camera, guint frame)
+{
+  const TestStereo *film = bench->film;
+
+  return (ClothImage) {
+  test_stereo_picture (film, camera, frame), film->width, film->height,
+        film->width};
+}
+
+static void
+refine (Bench * bench, guint frame)
+{
+  const ClothRefineParams params = cloth_refine_default_params ();
+  const ClothImage image = view (bench, 0, frame);
+  const ClothRefineView views[2] = { {view (bench, 1, frame), {-1, 0}},
+  {view (bench, 2, frame), {1, 0}}
+  };
+
+  if (!cloth_refine_run (bench->refine, &params, &image, views, 2, &bench->map,
+          bench->pool, NULL))
+    g_error ("not refined");
+}
+
 /* What the paper has: whole numbers, within half a pixel. */
 static void
 do_integers (Bench * bench, guint frame)
@@ -212,7 +238,7 @@ get_sixteenths (void)
 static void
 do_sixteenths (Bench * bench, guint frame)
 {
-  const ClothDisparityParams params = get_sixteenths ();
+  ClothDisparityParams params = get_sixteenths ();
 
   merge (bench, 2);
   score (bench, MERGED);
@@ -222,31 +248,41 @@ do_sixteenths (Bench * bench, guint frame)
   smooth (bench, &params);
   score (bench, MERGED_SMOOTH);
   keep (bench, "smooth", frame);
+  refine (bench, frame);
+  params.half_width = 0.05;
+  params.narrowing = 1;
+  smooth (bench, &params);
+  score (bench, REFINED);
+  keep (bench, "refined", frame);
 }
 
 static void
-time_steps (Bench * bench)
+time_steps (Bench * bench, guint frame)
 {
-  static const gchar *const steps[] = { "merging", "filling", "fractions" };
+  static const gchar *const steps[] = { "merging", "filling", "fractions",
+    "refining"
+  };
   const ClothDisparityParams params = get_sixteenths ();
-  gdouble wall[3], processor[3], both = 0;
+  gdouble wall[4], processor[4], both = 0;
 
-  for (gint i = 0; i < 3; i++)
+  for (gint i = 0; i < 4; i++)
     wall[i] = processor[i] = G_MAXDOUBLE;
   for (gint round = 0; round < ROUNDS; round++)
-    for (gint i = 0; i < 3; i++) {
+    for (gint i = 0; i < 4; i++) {
       const gdouble start = wall_ms (), began = processor_ms ();
 
       if (i == 0)
         merge (bench, 2);
       else if (i == 1)
         fill (bench, &params);
-      else
+      else if (i == 2)
         smooth (bench, &params);
+      else
+        refine (bench, frame);
       wall[i] = MIN (wall[i], wall_ms () - start);
       processor[i] = MIN (processor[i], processor_ms () - began);
     }
-  for (gint i = 0; i < 3; i++)
+  for (gint i = 0; i < 4; i++)
     g_print ("%s: %.1f ms by the wall's clock with %u threads, %.1f ms of "
         "processors\n", steps[i], wall[i],
         i ? cloth_pool_get_n_threads (bench->pool) : 1, processor[i]);
@@ -270,6 +306,7 @@ main (int argc, char **argv)
   bench.film = test_stereo_load (TEST_DATA "/lineart_stereo3");
   bench.stereo = cloth_cv_stereo_new (&params, NULL);
   bench.surface = cloth_disparity_new ();
+  bench.refine = cloth_refine_new ();
   bench.pool = cloth_pool_new (2);
   bench.n = (gsize) bench.film->width * (gsize) bench.film->height;
   for (gint k = 0; k < 2; k++) {
@@ -286,9 +323,9 @@ main (int argc, char **argv)
     do_integers (&bench, frame);
     do_sixteenths (&bench, frame);
     if (frame == 5)
-      time_steps (&bench);
+      time_steps (&bench, frame);
   }
-  g_print ("%u pictures of %d × %d\n", bench.film->n_frames,
+  g_print ("%u pictures of %d x %d\n", bench.film->n_frames,
       bench.film->width, bench.film->height);
   for (guint i = 0; i < N_STAGES; i++) {
     const Score *s = &bench.scores[i];
@@ -300,6 +337,7 @@ main (int argc, char **argv)
   }
   cloth_cv_stereo_free (bench.stereo);
   cloth_disparity_free (bench.surface);
+  cloth_refine_free (bench.refine);
   cloth_pool_free (bench.pool);
   test_stereo_free (bench.film);
   for (gint k = 0; k < 2; k++) {

@@ -671,6 +671,178 @@ test_border (void)
   g_assert_cmpfloat (border.most, ==, 0);
 }
 
+/* ---- pictures ---- */
+
+/* A picture of many waves, of any place. */
+static gdouble
+waves (gdouble x, gdouble y)
+{
+  return 128 + 25 * sin (0.7 * x + 0.2 * y) + 25 * sin (0.31 * x - 0.83 * y)
+      + 20 * sin (-0.47 * x + 0.5 * y + 1) + 15 * sin (1.1 * x + 0.4 * y + 2);
+}
+
+/* What a camera sees there of which the middle camera sees waves () and which sees p at
+ * p + plane (p)·shift: one of the two components of @shift is 0. */
+static void
+draw_waves (guint8 * data, gint width, gint height, gdouble across,
+    gdouble down)
+{
+  for (gint y = 0; y < height; y++)
+    for (gint x = 0; x < width; x++) {
+      const gdouble u = (x - across * plane (0, y)) / (1 + across * 0.071);
+      const gdouble v = (y - down * plane (x, 0)) / (1 - down * 0.043);
+
+      data[y * width + x] = (guint8) lrint (waves (across == 0 ? x : u,
+              down == 0 ? y : v));
+    }
+}
+
+static void
+test_refine (void)
+{
+  static const gdouble shifts[][2] = { {-1, 0}, {1, 0}, {0, 0.75}, {0, -1} };
+  const gint w = 300, h = 280;
+  const gsize n = (gsize) (w * h);
+  g_autofree guint8 *middle = g_malloc (n);
+  const ClothImage image = { middle, w, h, w };
+  const ClothRefineParams params = cloth_refine_default_params ();
+  g_autoptr (ClothRefine) self = cloth_refine_new ();
+  guint8 *data[4];
+  ClothRefineView views[4];
+
+  draw_waves (middle, w, h, 0, 0);
+  for (guint k = 0; k < 4; k++) {
+    data[k] = g_malloc (n);
+    draw_waves (data[k], w, h, shifts[k][0], shifts[k][1]);
+    views[k] = (ClothRefineView) { {
+    data[k], w, h, w}
+    , {
+    shifts[k][0], shifts[k][1]}
+    };
+  }
+  for (guint k = 0; k < 4; k++)
+    for (guint both = 0; both < 2; both++) {
+      ClothDisparityMap map = make_map (w, h, plane), again;
+      g_autoptr (ClothPool) pool = cloth_pool_new (3);
+      gdouble most, rms;
+
+      /* only what the others see, and not up to the border of a window */
+      for (gint y = 0; y < h; y++)
+        for (gint x = 0; x < w; x++)
+          if (x < 125 || x > w - 125 || y < 125 || y > h - 125)
+            map.states[y * map.stride + x] = OUTSIDE;
+          else
+            map.disparities[y * map.stride + x] += (gfloat) (0.45 * cos (x
+                    / 20.));
+      again = map;
+      again.disparities = g_memdup2 (map.disparities, sizeof (gfloat)
+          * (gsize) (map.stride * h));
+      measure (&map, plane, &most, &rms);
+      g_assert_cmpfloat (rms, >, 0.2);
+      g_assert_true (cloth_refine_run (self, &params, &image, &views[both ? 0 :
+                  k], both ? 4 : 1, &map, NULL, NULL));
+      measure (&map, plane, &most, &rms);
+      g_assert_cmpfloat (rms, <, 0.05);
+      g_assert_true (cloth_refine_run (self, &params, &image, &views[both ? 0 :
+                  k], both ? 4 : 1, &again, pool, NULL));
+      g_assert_cmpmem (again.disparities, sizeof (gfloat) * (gsize) (map.stride
+              * h), map.disparities, sizeof (gfloat) * (gsize) (map.stride
+              * h));
+      g_free (again.disparities);
+      free_map (&map);
+    }
+  for (guint k = 0; k < 4; k++)
+    g_free (data[k]);
+}
+
+/* A window without texture moves nothing; nor do pictures of a pixel, or maps of nothing. */
+static void
+test_refine_little (void)
+{
+  static const gint sizes[][2] = { {1, 1}, {1, 9}, {9, 1}, {30, 20} };
+  g_autofree guint8 *grey = g_malloc0 (1000);
+  const ClothRefineParams params = cloth_refine_default_params ();
+  g_autoptr (ClothRefine) self = cloth_refine_new ();
+
+  for (guint i = 0; i < G_N_ELEMENTS (sizes); i++) {
+    const gint w = sizes[i][0], h = sizes[i][1];
+    const ClothImage image = { grey, w, h, w };
+    const ClothRefineView view = { image, {-0.125, 0} };
+    ClothDisparityMap map = make_map (w, h, plane);
+    gdouble most, rms;
+
+    g_assert_true (cloth_refine_run (self, &params, &image, &view, 1, &map,
+            NULL, NULL));
+    measure (&map, plane, &most, &rms);
+    g_assert_cmpfloat (most, <, 1e-5);
+    /* disparities that aren't numbers are seen nowhere */
+    for (gint x = 0; x < w; x++)
+      map.disparities[x] = x % 2 ? NAN : INFINITY;
+    g_assert_true (cloth_refine_run (self, &params, &image, &view, 1, &map,
+            NULL, NULL));
+    g_assert_false (isfinite (map.disparities[0]));
+    for (gint y = 0; y < h; y++)
+      memset (map.states + y * map.stride, OUTSIDE, (gsize) w);
+    g_assert_true (cloth_refine_run (self, &params, &image, &view, 1, &map,
+            NULL, NULL));
+    free_map (&map);
+  }
+}
+
+static void
+refuse_refine (const ClothRefineParams * params, gint width, gint stride,
+    guint n_views, gdouble shift)
+{
+  static guint8 grey[64];
+  const ClothImage good = { grey, 8, 8, 8 };
+  const ClothImage bad = { grey, width, 8, stride };
+  const ClothRefineView view = { good, {-1, shift} }, odd = { bad, {-1, 0} };
+  g_autoptr (ClothRefine) self = cloth_refine_new ();
+  ClothDisparityMap map = make_map (8, 8, plane);
+  GError *error = NULL;
+
+  g_assert_false (cloth_refine_run (self, params, &bad, &view, n_views, &map,
+          NULL, &error));
+  g_assert_true (error && error->domain == CLOTH_DISPARITY_ERROR);
+  g_clear_error (&error);
+  if (stride < width) {
+    g_assert_false (cloth_refine_run (self, params, &good, &odd, 1, &map,
+            NULL, &error));
+    g_assert_error (error, CLOTH_DISPARITY_ERROR, CLOTH_DISPARITY_ERROR_MAP);
+    g_clear_error (&error);
+  }
+  free_map (&map);
+}
+
+static void
+test_refused_pictures (void)
+{
+  const ClothRefineParams good = cloth_refine_default_params ();
+  ClothRefineParams params;
+
+  refuse_refine (&good, 8, 7, 1, 0);
+  refuse_refine (&good, 7, 8, 1, 0);
+  refuse_refine (&good, 0, 8, 1, 0);
+  refuse_refine (&good, 8, 8, 0, 0);
+  refuse_refine (&good, 8, 8, 8, 0);
+  refuse_refine (&good, 8, 8, 1, NAN);
+#define REFUSED(field, value) G_STMT_START { \
+    params = good; \
+    params.field = value; \
+    refuse_refine (&params, 8, 8, 1, 0); \
+  } G_STMT_END
+  REFUSED (radius, 0);
+  REFUSED (radius, 65);
+  REFUSED (rounds, 101);
+  REFUSED (outlier, 0);
+  REFUSED (outlier, NAN);
+  REFUSED (damping, -1);
+  REFUSED (damping, NAN);
+  REFUSED (most, -1);
+  REFUSED (most, 5);
+#undef REFUSED
+}
+
 /* ---- what can't be ---- */
 
 static void
@@ -835,6 +1007,9 @@ main (int argc, char **argv)
   g_test_add_func ("/disparity/merge-turned", test_merge_turned);
   g_test_add_func ("/disparity/check", test_check);
   g_test_add_func ("/disparity/border", test_border);
+  g_test_add_func ("/disparity/refine", test_refine);
+  g_test_add_func ("/disparity/refine-little", test_refine_little);
+  g_test_add_func ("/disparity/refused-pictures", test_refused_pictures);
   g_test_add_func ("/disparity/refused-maps", test_refused_maps);
   g_test_add_func ("/disparity/refused-params", test_refused_params);
   g_test_add_func ("/disparity/refused-pairs", test_refused_pairs);
