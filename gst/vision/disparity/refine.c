@@ -8,7 +8,8 @@
  *   Δd = Σ w·g·e / (damping + Σ w·g²) ,  w = 1 / (1 + (e / outlier)²)
  *
  * over a window about the pixel and all cameras (B. Lucas and T. Kanade, “An Iterative Image
- * Registration Technique”, 1981). Each pixel of the window is looked up with the disparity of
+ * Registration Technique”, 1981). The window is one of windows, so that weights fall off
+ * towards its rim: of equal weights some waves would grow from round to round. Each pixel of the window is looked up with the disparity of
  * its own, so that slanted and bent windows fit as well as flat ones (A. Stein et al.,
  * “Attenuating Stereo Pixel-Locking via Affine Window Adaptation”, 2006).
  *
@@ -39,12 +40,12 @@ struct _ClothRefine
   gfloat *summed;
 };
 
-/* Returns: windows of 21 × 21 px, 4 rounds, 20 grey levels, 50 grey levels², half a pixel */
+/* Returns: windows of 15 × 15 windows of 15 × 15 px, 4 rounds, 20 grey levels, 50 grey levels², half a pixel */
 ClothRefineParams
 cloth_refine_default_params (void)
 {
   return (ClothRefineParams) {
-  10, 4, 20, 50, 0.5};
+  7, 4, 20, 50, 0.5};
 }
 
 /* Returns: (transfer full): memory that is used again for each map of one size */
@@ -174,20 +175,17 @@ sum_down (gpointer data, guint begin, guint end, guint worker)
     gdouble sum[COLUMNS] = { 0 };
 
     for (gint y = self->top - radius; y < self->bottom; y++) {
-      const gdouble *in = self->sums + (gssize) (y + radius) * width + left;
-      const gdouble *out = self->sums + (gssize) (y - radius - 1) * width
-          + left;
-      gfloat *to = self->summed + (gssize) y * width + left;
+      const gssize at = (gssize) y * width + left, reach = radius * width;
 
       if (y + radius < self->bottom)
         for (gint x = 0; x < n; x++)
-          sum[x] += in[x];
+          sum[x] += self->sums[at + reach + x];
       if (y - radius > self->top)
         for (gint x = 0; x < n; x++)
-          sum[x] -= out[x];
+          sum[x] -= self->sums[at - reach - width + x];
       if (y >= self->top)
         for (gint x = 0; x < n; x++)
-          to[x] = (gfloat) sum[x];
+          self->summed[at + x] = (gfloat) sum[x];
     }
   }
 }
@@ -225,11 +223,9 @@ compare_rows (gpointer data, guint begin, guint end, guint worker)
           &slope);
 
       self->count[at] = seen ? 1 : 0;
-      self->gradient[at] = seen ? (gfloat) slope : 0;
+      self->gradient[at] = seen ? (gfloat) slope : NAN;
       self->mean[at] = self->difference[at] = seen ? (gfloat) (self->image->data
           [(gssize) y * self->image->stride + x] - value) : 0;
-      if (!seen)
-        self->gradient[at] = NAN;
     }
   }
 }
@@ -298,8 +294,10 @@ do_round (ClothRefine * self, const ClothRefineView * views, guint n_views,
     sum_windows (self, self->count, pool);
     cloth_pool_run (pool, weigh_rows, self, n);
   }
-  sum_windows (self, self->square, pool);
-  sum_windows (self, self->product, pool);
+  for (gint i = 0; i < 2; i++) {
+    sum_windows (self, self->square, pool);
+    sum_windows (self, self->product, pool);
+  }
   cloth_pool_run (pool, move_rows, self, n);
 }
 

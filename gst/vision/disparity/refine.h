@@ -22,7 +22,7 @@ typedef struct {
   gdouble shift[2];
 } ClothRefineView;
 
-/* @radius: of the windows, px, 1 to 64
+/* @radius: of the windows and of the windows of windows, px, 1 to 64
  * @rounds: how often disparities are bettered, 0 to 100
  * @outlier: difference of two pictures at which it counts half, grey levels, 1e-3 to 1e6
  * @damping: what is added to a window's sum of squared gradients, grey levels², 0 to 1e9:
