@@ -900,6 +900,7 @@ test_refused_maps (void)
   refuse_map (8, 0, 8);
   refuse_map (-1, 8, 8);
   refuse_map (16385, 1, 16385);
+  refuse_map (16384, 1025, 16384);
   refuse_map (1, G_MAXINT, 1);
 }
 

@@ -61,13 +61,13 @@ differentiate (const gfloat * x, const gfloat * h, const gfloat * v,
   const gint s = way->south, e = way->east, w = way->west;
   const F16 here = AT (x, 0), north = AT (x, -s), south = AT (x, s);
   const F16 west = AT (x, w), east = AT (x, e);
-  const F16 far_x = AT (x, way->west2), far_e = AT (x, way->east2);
+  const F16 far_w = AT (x, way->west2), far_e = AT (x, way->east2);
   const F16 far_n = AT (x, -2 * s), far_s = AT (x, 2 * s);
   const F16 nw = AT (x, w - s), ne = AT (x, e - s), sw = AT (x, w + s),
       se = AT (x, e + s);
 
   if (whole) {
-    *result = (far_x + far_e) + (far_n + far_s)
+    *result = (far_w + far_e) + (far_n + far_s)
         + 2 * ((nw + ne) + (sw + se))
         - 8 * ((west + east) + (north + south)) + 20 * here;
   } else {
@@ -75,7 +75,7 @@ differentiate (const gfloat * x, const gfloat * h, const gfloat * v,
     const F16 vn = AT (v, -s), vs = AT (v, s);
     const F16 own = hh * ((west + east) - 2 * here)
         + vv * ((north + south) - 2 * here);
-    const F16 of_w = ((far_x + here) - 2 * west)
+    const F16 of_w = ((far_w + here) - 2 * west)
         + AT (v, w) * ((nw + sw) - 2 * west);
     const F16 of_e = ((far_e + here) - 2 * east)
         + AT (v, e) * ((ne + se) - 2 * east);
@@ -121,22 +121,32 @@ unpack (const ClothDisparityPlanes * planes, const gfloat * plane, gint width,
     to[x] = from[x / 3 + x % 3 * planes->phase];
 }
 
-/* The busy chunks of a row: @at is the first pixel of each. */
-#define EACH_CHUNK(planes, y, ...) \
-  const Way ways[3] = { get_way (planes, 0), get_way (planes, 1), \
-    get_way (planes, 2) \
-  }; \
-  const guint16 *busy = (planes)->busy + (gssize) 3 * (y) * (planes)->chunks; \
-  for (gint b = 0; b < (planes)->n_busy[y]; b++) { \
-    const gint number = busy[b] / 2, p = number / (planes)->chunks; \
-    const gboolean whole = busy[b] % 2; \
-    const Way way = ways[p]; \
-    const gssize at = ((gssize) 3 * (y) + p) * (planes)->phase \
-        + CHUNK * (number - p * (planes)->chunks); \
-    (void) way; \
-    (void) whole; \
-    __VA_ARGS__ \
-  }
+/* A busy chunk: its first pixel, and whether all second differences about it count. */
+typedef struct
+{
+  gssize at;
+  const Way *way;
+  gboolean whole;
+} Chunk;
+
+INLINE Chunk
+get_chunk (const ClothDisparityPlanes * planes, const Way * ways, gint y,
+    gint i)
+{
+  const guint16 busy = planes->busy[(gssize) 3 * y * planes->chunks + i];
+  const gint number = busy / 2, phase = number / planes->chunks;
+
+  return (Chunk) {
+  ((gssize) 3 * y + phase) * planes->phase
+        + CHUNK * (number - phase * planes->chunks), &ways[phase], busy % 2};
+}
+
+static void
+get_ways (const ClothDisparityPlanes * planes, Way * ways)
+{
+  for (gint phase = 0; phase < 3; phase++)
+    ways[phase] = get_way (planes, phase);
+}
 
 static void
 prepare (const ClothDisparityPlanes * planes, gint y)
@@ -177,19 +187,25 @@ prepare (const ClothDisparityPlanes * planes, gint y)
 static void
 relax (const ClothDisparityPlanes * planes, gint y, gfloat relaxation)
 {
-  EACH_CHUNK (planes, y, {
-        gfloat * x = planes->x + at;
-        const F16 low = AT (planes->low, at), high = AT (planes->high, at);
-        F16 slope, to;
-        if (whole)
-        differentiate (x, planes->h + at, planes->v + at, &way, TRUE, &slope);
-        else
-      differentiate (x, planes->h + at, planes->v + at, &way, FALSE,
-            &slope);
-        to = AT (x, 0) - relaxation * AT (planes->gain, at) * slope;
-        to = choose (to < low, low, to);
-        to = choose (to > high, high, to); memcpy (x, &to, sizeof (to));}
-  );
+  Way ways[3];
+
+  get_ways (planes, ways);
+  for (gint i = 0; i < planes->n_busy[y]; i++) {
+    const Chunk c = get_chunk (planes, ways, y, i);
+    const gfloat *h = planes->h + c.at, *v = planes->v + c.at;
+    const F16 low = AT (planes->low, c.at), high = AT (planes->high, c.at);
+    gfloat *x = planes->x + c.at;
+    F16 slope, to;
+
+    if (c.whole)
+      differentiate (x, h, v, c.way, TRUE, &slope);
+    else
+      differentiate (x, h, v, c.way, FALSE, &slope);
+    to = AT (x, 0) - relaxation * AT (planes->gain, c.at) * slope;
+    to = choose (to < low, low, to);
+    to = choose (to > high, high, to);
+    memcpy (x, &to, sizeof (to));
+  }
 }
 
 INLINE gdouble
@@ -202,21 +218,32 @@ total (const F16 * sums)
   return sum;
 }
 
+/* The derivative by what is to be found; 0 by the rest. */
+INLINE F16
+differentiate_busy (const ClothDisparityPlanes * planes, const gfloat * plane,
+    const Chunk * c)
+{
+  F16 slope;
+
+  differentiate (plane + c->at, planes->h + c->at, planes->v + c->at, c->way,
+      FALSE, &slope);
+  return (F16) ((AT (planes->gain, c->at) > 0) & (I16) slope);
+}
+
 static gdouble
 residual (const ClothDisparityPlanes * planes, gint y)
 {
   F16 sums = { 0 };
+  Way ways[3];
 
-  EACH_CHUNK (planes, y, {
-        const F16 gain = AT (planes->gain, at);
-        F16 slope;
-        differentiate (planes->x + at, planes->h + at, planes->v + at, &way,
-            FALSE, &slope);
-        slope = (F16) ((gain > 0) & (I16) (-slope));
-        sums += slope * slope * gain;
-        memcpy (planes->residual + at, &slope, sizeof (slope));
-      }
-  );
+  get_ways (planes, ways);
+  for (gint i = 0; i < planes->n_busy[y]; i++) {
+    const Chunk c = get_chunk (planes, ways, y, i);
+    const F16 left = -differentiate_busy (planes, planes->x, &c);
+
+    sums += left * left * AT (planes->gain, c.at);
+    memcpy (planes->residual + c.at, &left, sizeof (left));
+  }
   return total (&sums);
 }
 
@@ -224,18 +251,16 @@ static gdouble
 apply (const ClothDisparityPlanes * planes, gint y)
 {
   F16 sums = { 0 };
+  Way ways[3];
 
-  EACH_CHUNK (planes, y, {
-        const F16 gain = AT (planes->gain, at);
-        const gfloat * from = planes->direction + at;
-        F16 slope;
-        differentiate (from, planes->h + at, planes->v + at, &way, FALSE,
-            &slope);
-        slope = (F16) ((gain > 0) & (I16) slope);
-        sums += slope * AT (from, 0);
-        memcpy (planes->product + at, &slope, sizeof (slope));
-      }
-  );
+  get_ways (planes, ways);
+  for (gint i = 0; i < planes->n_busy[y]; i++) {
+    const Chunk c = get_chunk (planes, ways, y, i);
+    const F16 product = differentiate_busy (planes, planes->direction, &c);
+
+    sums += product * AT (planes->direction, c.at);
+    memcpy (planes->product + c.at, &product, sizeof (product));
+  }
   return total (&sums);
 }
 
@@ -243,30 +268,36 @@ static gdouble
 step (const ClothDisparityPlanes * planes, gint y, gfloat length)
 {
   F16 sums = { 0 };
+  Way ways[3];
 
-  EACH_CHUNK (planes, y, {
-        gfloat * x = planes->x + at;
-        gfloat * r = planes->residual + at;
-        const F16 moved = AT (x, 0) + length * AT (planes->direction, at);
-        const F16 left = AT (r, 0) - length * AT (planes->product, at);
-        sums += left * left * AT (planes->gain, at);
-        memcpy (x, &moved, sizeof (moved));
-        memcpy (r, &left, sizeof (left));
-      }
-  );
+  get_ways (planes, ways);
+  for (gint i = 0; i < planes->n_busy[y]; i++) {
+    const gssize at = get_chunk (planes, ways, y, i).at;
+    gfloat *x = planes->x + at, *r = planes->residual + at;
+    const F16 moved = AT (x, 0) + length * AT (planes->direction, at);
+    const F16 left = AT (r, 0) - length * AT (planes->product, at);
+
+    sums += left * left * AT (planes->gain, at);
+    memcpy (x, &moved, sizeof (moved));
+    memcpy (r, &left, sizeof (left));
+  }
   return total (&sums);
 }
 
 static void
 turn (const ClothDisparityPlanes * planes, gint y, gfloat share)
 {
-  EACH_CHUNK (planes, y, {
-        gfloat * to = planes->direction + at;
-        const F16 next = AT (planes->gain, at) * AT (planes->residual, at)
+  Way ways[3];
+
+  get_ways (planes, ways);
+  for (gint i = 0; i < planes->n_busy[y]; i++) {
+    const gssize at = get_chunk (planes, ways, y, i).at;
+    gfloat *to = planes->direction + at;
+    const F16 next = AT (planes->gain, at) * AT (planes->residual, at)
         + share * AT (to, 0);
-        memcpy (to, &next, sizeof (next));
-      }
-  );
+
+    memcpy (to, &next, sizeof (next));
+  }
 }
 
 const ClothDisparityKernels CLOTH_SIMD_NAME (cloth_disparity_kernels) = {

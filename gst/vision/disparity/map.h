@@ -7,9 +7,12 @@
 
 G_BEGIN_DECLS
 
-/* Largest width and height of a map, px, and the greatest disparity: what is beyond counts
- * as unknown. */
+/* Largest width and height of a map, px, and the most pixels of it: each takes about 70 bytes
+ * of memory. */
 #define CLOTH_DISPARITY_MAX_SIZE 16384
+#define CLOTH_DISPARITY_MAX_AREA (4096 * 4096)
+
+/* The greatest disparity, px: what is beyond counts as unknown. */
 #define CLOTH_DISPARITY_MOST 32767
 
 /* @CLOTH_DISPARITY_ERROR_MAP: sizes or strides that can't be
@@ -39,7 +42,7 @@ typedef enum {
  * @states: (not nullable): a ClothDisparityState of each; any other number counts as
  *   %CLOTH_DISPARITY_MEASURED, so that a mask will do
  * @width: pixels a row, 1 to %CLOTH_DISPARITY_MAX_SIZE
- * @height: rows, 1 to %CLOTH_DISPARITY_MAX_SIZE
+ * @height: rows, 1 to %CLOTH_DISPARITY_MAX_SIZE; at most %CLOTH_DISPARITY_MAX_AREA pixels
  * @stride: elements from one row to the next of either, >= @width
  *
  * A view of a map; owns nothing.
