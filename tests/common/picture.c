@@ -1,4 +1,4 @@
-/* Grey pictures out of JPEG files, decoded by GStreamer.
+/* Grey pictures out of JPEG and PNG files, decoded by GStreamer.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "tests/common/picture.h"
@@ -32,9 +32,10 @@ TestPicture *
 test_picture_load (const gchar * path)
 {
   g_autoptr (GError) error = NULL;
-  g_autofree gchar *line = g_strdup_printf ("filesrc location=\"%s\" ! jpegdec "
+  g_autofree gchar *line = g_strdup_printf ("filesrc location=\"%s\" ! %s "
       "! videoconvert ! video/x-raw,format=GRAY8 ! fakesink name=sink "
-      "sync=false", path);
+      "sync=false", path,
+      g_str_has_suffix (path, ".png") ? "pngdec" : "jpegdec");
   GstElement *pipeline = gst_parse_launch (line, &error), *sink;
   GstSample *sample = NULL;
   GstMessage *message;

@@ -1,4 +1,4 @@
-/* Grey pictures out of JPEG files, decoded by GStreamer.
+/* Grey pictures out of JPEG and PNG files, decoded by GStreamer.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once

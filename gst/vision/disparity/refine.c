@@ -1,0 +1,401 @@
+/* Disparities from the pictures themselves.
+ *
+ * Block matching draws disparities towards whole pixels. Here each pixel of the map is looked
+ * up where its disparity says that another camera sees it, and the differences e of the two
+ * pictures, less their mean over the window, are explained by an error of the disparity: with
+ * g, the gradient along the shift,
+ *
+ *   Δd = Σ w·g·e / (damping + Σ w·g²) ,  w = 1 / (1 + (e / outlier)²)
+ *
+ * over a window about the pixel and all cameras (B. Lucas and T. Kanade, “An Iterative Image
+ * Registration Technique”, 1981). The window is one of windows, so that weights fall off
+ * towards its rim: of equal weights some waves would grow from round to round. Each pixel of the window is looked up with the disparity of
+ * its own, so that slanted and bent windows fit as well as flat ones (A. Stein et al.,
+ * “Attenuating Stereo Pixel-Locking via Affine Window Adaptation”, 2006).
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/vision/disparity/refine.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Columns that one thread sums down together. */
+#define COLUMNS 64
+
+struct _ClothRefine
+{
+  gint width, height;           /* that there is room for, exactly */
+  gfloat *planes;
+  gfloat *difference, *gradient;        /* of the view at hand; NaN: none */
+  gfloat *mean, *count;
+  gfloat *square, *product;     /* Σ w·g², Σ w·g·e */
+  gdouble *sums;                /* of each row's windows */
+
+  /* of the run at hand */
+  const ClothRefineParams *params;
+  const ClothImage *image;
+  const ClothRefineView *view;
+  ClothDisparityMap *map;
+  gint top, bottom;             /* rows that have disparities */
+  gfloat *summed;
+};
+
+/* Returns: windows of 15 × 15 windows of 15 × 15 px, 4 rounds, 20 grey levels, 50 grey levels², half a pixel */
+ClothRefineParams
+cloth_refine_default_params (void)
+{
+  return (ClothRefineParams) {
+  7, 4, 20, 50, 0.5};
+}
+
+/* Returns: (transfer full): memory that is used again for each map of one size */
+ClothRefine *
+cloth_refine_new (void)
+{
+  return g_new0 (ClothRefine, 1);
+}
+
+/* @self: (nullable) (transfer full): memory
+ */
+void
+cloth_refine_free (ClothRefine * self)
+{
+  if (!self)
+    return;
+  g_free (self->planes);
+  g_free (self->sums);
+  g_free (self);
+}
+
+static void
+make_room (ClothRefine * self, gint width, gint height)
+{
+  const gsize n = (gsize) width * (gsize) height;
+
+  if (self->width == width && self->height == height)
+    return;
+  g_free (self->planes);
+  g_free (self->sums);
+  self->width = width;
+  self->height = height;
+  self->planes = g_new0 (gfloat, 6 * n);
+  self->difference = self->planes;
+  self->gradient = self->planes + n;
+  self->mean = self->planes + 2 * n;
+  self->count = self->planes + 3 * n;
+  self->square = self->planes + 4 * n;
+  self->product = self->planes + 5 * n;
+  self->sums = g_new (gdouble, n);
+}
+
+/* ---- pictures between their pixels ---- */
+
+/* Cubic through four samples (Catmull and Rom), @t of the way from b to c. */
+static inline gdouble
+cubic (const gdouble s[4], gdouble t, gdouble * slope)
+{
+  const gdouble first = 0.5 * (s[2] - s[0]);
+  const gdouble second = s[0] - 2.5 * s[1] + 2 * s[2] - 0.5 * s[3];
+  const gdouble third = 0.5 * (s[3] - s[0]) + 1.5 * (s[1] - s[2]);
+
+  *slope = first + t * (2 * second + t * 3 * third);
+  return s[1] + t * (first + t * (second + t * third));
+}
+
+/* @value: (out): of the picture at (@x, @y)
+ * @slope: (out): there, along the shift
+ *
+ * Returns: whether it is in the picture
+ */
+static gboolean
+look_up (const ClothRefineView * view, gdouble x, gdouble y, gdouble * value,
+    gdouble * slope)
+{
+  const ClothImage *image = &view->image;
+  const gdouble left = floor (x), top = floor (y);
+  const gboolean is_row = y == top && view->shift[1] == 0;
+  gdouble rows[4], slopes[4], down, unused;
+
+  /* also false for what is no number */
+  if (!(left >= 1 && left + 2 < image->width && top >= 0
+          && y <= image->height - 1))
+    return FALSE;
+  for (gint i = 0; i < 4; i++) {
+    const gint row = is_row ? (gint) top :
+        CLAMP ((gint) top + i - 1, 0, image->height - 1);
+    const guint8 *from = image->data + (gssize) row * image->stride
+        + (gint) left - 1;
+    const gdouble samples[4] = { from[0], from[1], from[2], from[3] };
+
+    rows[i] = cubic (samples, x - left, &slopes[i]);
+    if (is_row) {
+      *value = rows[0];
+      *slope = view->shift[0] * slopes[0];
+      return TRUE;
+    }
+  }
+  *value = cubic (rows, y - top, &down);
+  *slope = view->shift[0] * cubic (slopes, y - top, &unused)
+      + view->shift[1] * down;
+  return TRUE;
+}
+
+/* ---- windows ---- */
+
+static void
+sum_across (gpointer data, guint begin, guint end, guint worker)
+{
+  ClothRefine *self = data;
+  const gint radius = self->params->radius, width = self->width;
+
+  for (guint i = begin; i < end; i++) {
+    const gsize at = (gsize) (self->top + (gint) i) * (gsize) width;
+    const gfloat *from = self->summed + at;
+    gdouble *to = self->sums + at, sum = 0;
+
+    for (gint x = -radius; x < width; x++) {
+      if (x + radius < width)
+        sum += (gdouble) from[x + radius];
+      if (x > radius)
+        sum -= (gdouble) from[x - radius - 1];
+      if (x >= 0)
+        to[x] = sum;
+    }
+  }
+}
+
+static void
+sum_down (gpointer data, guint begin, guint end, guint worker)
+{
+  ClothRefine *self = data;
+  const gint radius = self->params->radius, width = self->width;
+
+  for (guint i = begin; i < end; i++) {
+    const gint left = (gint) i * COLUMNS, n = MIN (COLUMNS, width - left);
+    gdouble sum[COLUMNS] = { 0 };
+
+    for (gint y = self->top - radius; y < self->bottom; y++) {
+      const gssize at = (gssize) y * width + left, reach = radius * width;
+
+      if (y + radius < self->bottom)
+        for (gint x = 0; x < n; x++)
+          sum[x] += self->sums[at + reach + x];
+      if (y - radius > self->top)
+        for (gint x = 0; x < n; x++)
+          sum[x] -= self->sums[at - reach - width + x];
+      if (y >= self->top)
+        for (gint x = 0; x < n; x++)
+          self->summed[at + x] = (gfloat) sum[x];
+    }
+  }
+}
+
+/* Each pixel of the plane becomes the sum of its window. */
+static void
+sum_windows (ClothRefine * self, gfloat * plane, ClothPool * pool)
+{
+  self->summed = plane;
+  cloth_pool_run (pool, sum_across, self, (guint) (self->bottom - self->top));
+  cloth_pool_run (pool, sum_down, self,
+      (guint) ((self->width + COLUMNS - 1) / COLUMNS));
+}
+
+/* ---- a round ---- */
+
+static void
+compare_rows (gpointer data, guint begin, guint end, guint worker)
+{
+  ClothRefine *self = data;
+  const ClothDisparityMap *map = self->map;
+  const gdouble *shift = self->view->shift;
+
+  for (guint i = begin; i < end; i++) {
+    const gint y = self->top + (gint) i;
+    const gsize row = (gsize) y * (gsize) map->stride;
+    const gsize to = (gsize) y * (gsize) map->width;
+
+    for (gint x = 0; x < map->width; x++) {
+      const gsize at = to + (gsize) x;
+      const gdouble d = (gdouble) map->disparities[row + (gsize) x];
+      gdouble value, slope;
+      gboolean seen = map->states[row + (gsize) x] >= CLOTH_DISPARITY_MEASURED
+          && look_up (self->view, x + d * shift[0], y + d * shift[1], &value,
+          &slope);
+
+      self->count[at] = seen ? 1 : 0;
+      self->gradient[at] = seen ? (gfloat) slope : NAN;
+      self->mean[at] = self->difference[at] = seen ? (gfloat) (self->image->data
+          [(gssize) y * self->image->stride + x] - value) : 0;
+    }
+  }
+}
+
+static void
+weigh_rows (gpointer data, guint begin, guint end, guint worker)
+{
+  ClothRefine *self = data;
+  const gfloat scale = (gfloat) (1 / (self->params->outlier
+          * self->params->outlier));
+  const gsize width = (gsize) self->width;
+  const gsize first = (gsize) (self->top + (gint) begin) * width;
+  const gsize last = (gsize) (self->top + (gint) end) * width;
+
+  for (gsize at = first; at < last; at++) {
+    const gfloat g = self->gradient[at];
+
+    if (!isnan (g)) {
+      const gfloat e = self->difference[at] - self->mean[at] / self->count[at];
+      const gfloat weighted = g / (1 + e * e * scale);
+
+      self->square[at] += weighted * g;
+      self->product[at] += weighted * e;
+    }
+  }
+}
+
+static void
+move_rows (gpointer data, guint begin, guint end, guint worker)
+{
+  ClothRefine *self = data;
+  const ClothDisparityMap *map = self->map;
+  const gfloat damping = (gfloat) self->params->damping;
+  const gfloat most = (gfloat) self->params->most;
+
+  for (guint i = begin; i < end; i++)
+    for (gint x = 0; x < map->width; x++) {
+      const gsize y = (gsize) (self->top + (gint) i);
+      const gsize at = y * (gsize) map->width + (gsize) x;
+      const gsize to = y * (gsize) map->stride + (gsize) x;
+      const gfloat below = self->square[at] + damping;
+      gfloat by;
+
+      if (map->states[to] < CLOTH_DISPARITY_MEASURED || !(below > 1e-6f))
+        continue;
+      by = self->product[at] / below;
+      map->disparities[to] += CLAMP (by, -most, most);
+    }
+}
+
+static void
+do_round (ClothRefine * self, const ClothRefineView * views, guint n_views,
+    ClothPool * pool)
+{
+  const gsize begin = (gsize) self->top * (gsize) self->width;
+  const gsize size = (gsize) (self->bottom - self->top) * (gsize) self->width
+      * sizeof (gfloat);
+  const guint n = (guint) (self->bottom - self->top);
+
+  memset (self->square + begin, 0, size);
+  memset (self->product + begin, 0, size);
+  for (guint k = 0; k < n_views; k++) {
+    self->view = &views[k];
+    cloth_pool_run (pool, compare_rows, self, n);
+    sum_windows (self, self->mean, pool);
+    sum_windows (self, self->count, pool);
+    cloth_pool_run (pool, weigh_rows, self, n);
+  }
+  for (gint i = 0; i < 2; i++) {
+    sum_windows (self, self->square, pool);
+    sum_windows (self, self->product, pool);
+  }
+  cloth_pool_run (pool, move_rows, self, n);
+}
+
+/* ---- what can be ---- */
+
+static gboolean
+check_params (const ClothRefineParams * p, const ClothRefineView * views,
+    guint n_views, GError ** error)
+{
+  if (n_views < 1 || n_views > CLOTH_REFINE_MAX_VIEWS || p->radius < 1
+      || p->radius > 64 || p->rounds > 100 || !(p->outlier >= 1e-3
+          && p->outlier <= 1e6) || !(p->damping >= 0 && p->damping <= 1e9)
+      || !(p->most >= 0 && p->most <= 4)) {
+    g_set_error (error, CLOTH_DISPARITY_ERROR, CLOTH_DISPARITY_ERROR_PARAMETER,
+        "%u views, radius %d, %u rounds, outlier %g, damping %g, most %g: make "
+        "them 1 to %d, 1 to 64, 0 to 100, 0.001 to 1e6, 0 to 1e9, 0 to 4",
+        n_views, p->radius, p->rounds, p->outlier, p->damping, p->most,
+        CLOTH_REFINE_MAX_VIEWS);
+    return FALSE;
+  }
+  for (guint k = 0; k < n_views; k++)
+    if (!isfinite (views[k].shift[0]) || !isfinite (views[k].shift[1])) {
+      g_set_error (error, CLOTH_DISPARITY_ERROR,
+          CLOTH_DISPARITY_ERROR_PARAMETER, "The shift of view %u is no number",
+          k);
+      return FALSE;
+    }
+  return TRUE;
+}
+
+static gboolean
+check_pictures (const ClothImage * image, const ClothRefineView * views,
+    guint n_views, const ClothDisparityMap * map, GError ** error)
+{
+  if (!cloth_disparity_check_size (map->width, map->height, map->stride, error)
+      || !cloth_disparity_check_size (image->width, image->height,
+          image->stride, error))
+    return FALSE;
+  for (guint k = 0; k < n_views; k++)
+    if (!cloth_disparity_check_size (views[k].image.width,
+            views[k].image.height, views[k].image.stride, error))
+      return FALSE;
+  if (image->width == map->width && image->height == map->height)
+    return TRUE;
+  g_set_error (error, CLOTH_DISPARITY_ERROR, CLOTH_DISPARITY_ERROR_MAP,
+      "A picture of %d × %d pixels and a map of %d × %d: make them alike",
+      image->width, image->height, map->width, map->height);
+  return FALSE;
+}
+
+/* The rows that have disparities. */
+static void
+find_rows (ClothRefine * self)
+{
+  const ClothDisparityMap *map = self->map;
+
+  self->top = map->height;
+  self->bottom = 0;
+  for (gint y = 0; y < map->height; y++)
+    for (gint x = 0; x < map->width; x++)
+      if (map->states[(gsize) y * (gsize) map->stride + (gsize) x] >=
+          CLOTH_DISPARITY_MEASURED) {
+        self->top = MIN (self->top, y);
+        self->bottom = y + 1;
+        break;
+      }
+}
+
+/* @self: memory
+ * @params: how
+ * @image: the picture whose pixels the map has
+ * @views: (array length=n_views): the other cameras
+ * @n_views: 1 to %CLOTH_REFINE_MAX_VIEWS
+ * @map: (inout): disparities, less than about a pixel off and without stairs, which windows
+ *   average away; measured and filled ones are moved
+ * @pool: (nullable): threads
+ * @error: (out): set on failure
+ *
+ * In the film of a rendered cloth (18 mm a pixel) the RMS after cloth_disparity_smooth ()
+ * falls from 3.3 to 2.3 mm; once more with a half-width of 0.05 to 0.1 px that takes the
+ * roughness away.
+ *
+ * Returns: %FALSE on error
+ */
+gboolean
+cloth_refine_run (ClothRefine * self, const ClothRefineParams * params,
+    const ClothImage * image, const ClothRefineView * views, guint n_views,
+    ClothDisparityMap * map, ClothPool * pool, GError ** error)
+{
+  if (!check_params (params, views, n_views, error)
+      || !check_pictures (image, views, n_views, map, error))
+    return FALSE;
+  make_room (self, map->width, map->height);
+  self->params = params;
+  self->image = image;
+  self->map = map;
+  find_rows (self);
+  for (guint i = 0; i < params->rounds && self->top < self->bottom; i++)
+    do_round (self, views, n_views, pool);
+  return TRUE;
+}
