@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/vision/match/match-private.h"
 #include "gst/vision/match/reference-private.h"
 
 #define BYTES CLOTH_CV_SIFT_BYTES
@@ -27,6 +28,11 @@ typedef struct
   guint feature;
 } Seed;
 
+typedef struct
+{
+  guint seed, n;
+} Tries;
+
 struct _ClothGrower
 {
   /* by bins of the radius */
@@ -37,6 +43,7 @@ struct _ClothGrower
   GArray *heap;                 /* Entry */
   GArray *grown;                /* guint: features of the group */
   GArray *order;                /* guint: by falling scale */
+  GArray *tries;                /* Tries: of each feature */
   GArray *seeds;                /* Seed: by distance */
   GArray *queries, *found;
 };
@@ -47,6 +54,7 @@ typedef struct
   ClothGrower *self;
   ClothGrowParams params;
   guint32 most;                 /* squared distance */
+  const ClothMatchKernel *kernel;
   const ClothReference *reference;
   const ClothCvFeatures *features;
   const ClothMatchSurface *surface;
@@ -60,7 +68,7 @@ cloth_grow_default_params (void)
 {
   return (ClothGrowParams) {
   .radius = 20,.distance = 280,.seed_distance = 280,.first = 32,.least_scale =
-        1.5,.least = 4,.turn = G_PI / 4,.zoom = 2,.stretch =
+        1.5,.least = 4,.tries = 4,.turn = G_PI / 4,.zoom = 2,.stretch =
         cloth_stretch_default_params ()};
 }
 
@@ -76,6 +84,7 @@ cloth_grower_new (void)
   self->heap = g_array_new (FALSE, FALSE, sizeof (Entry));
   self->grown = g_array_new (FALSE, FALSE, sizeof (guint));
   self->order = g_array_new (FALSE, FALSE, sizeof (guint));
+  self->tries = g_array_new (FALSE, FALSE, sizeof (Tries));
   self->seeds = g_array_new (FALSE, FALSE, sizeof (Seed));
   self->queries = g_array_new (FALSE, FALSE, BYTES);
   self->found = g_array_new (FALSE, FALSE, sizeof (ClothNeighbours));
@@ -94,6 +103,7 @@ cloth_grower_free (ClothGrower * grower)
   g_array_unref (grower->heap);
   g_array_unref (grower->grown);
   g_array_unref (grower->order);
+  g_array_unref (grower->tries);
   g_array_unref (grower->seeds);
   g_array_unref (grower->queries);
   g_array_unref (grower->found);
@@ -194,19 +204,6 @@ sort_into_bins (Run * run)
 
 /* ---- candidates in the flat picture ---- */
 
-static guint32
-measure (const guint8 * a, const guint8 * b)
-{
-  gint32 sum = 0;
-
-  for (gint k = 0; k < BYTES; k++) {
-    const gint16 d = (gint16) (a[k] - b[k]);
-
-    sum += d * d;
-  }
-  return (guint32) sum;
-}
-
 /* By how much the picture is turned against the flat one at a match, as the side shows it. */
 static gdouble
 find_turn (const Run * run, guint feature, guint32 of)
@@ -221,54 +218,6 @@ find_zoom (const Run * run, guint feature, guint32 of)
   return run->features->scale[feature] / run->reference->scale[of];
 }
 
-typedef struct
-{
-  const Run *run;
-  guint feature;                /* whose match is looked for */
-  guint32 source;               /* reference feature of its neighbour */
-  gdouble least2, most2;        /* px² */
-  gboolean alike;
-  gdouble turn, low, high;      /* of the source; of the candidate's scale */
-  guint32 best, distance;
-} Search;
-
-static void
-search_row (Search * search, gint side, gint row, gint from, gint to)
-{
-  const Run *run = search->run;
-  const ClothReference *r = run->reference;
-  const guint *starts = r->starts + (side * r->rows + row) * r->columns;
-  const guint8 *bytes = run->features->descriptors
-      + (gsize) search->feature * BYTES;
-  const gfloat x = r->x[search->source], y = r->y[search->source];
-
-  for (guint i = starts[from]; i < starts[to + 1]; i++) {
-    const gdouble dx = r->x[i] - x, dy = r->y[i] - y;
-    const gdouble square = dx * dx + dy * dy;
-    guint32 distance;
-
-    if (square < search->least2 || square > search->most2)
-      continue;
-    if (search->alike && (r->scale[i] < search->low
-            || r->scale[i] > search->high))
-      continue;
-    if (search->alike && run->params.turn < G_PI) {
-      const gdouble turn = run->features->angle[search->feature] - r->seen[i]
-          - search->turn;
-      /* into [−π, π], without a division */
-      const gdouble wrapped = turn - 2 * G_PI * rint (turn / (2 * G_PI));
-
-      if (fabs (wrapped) > run->params.turn)
-        continue;
-    }
-    distance = measure (bytes, r->descriptors + (gsize) i * BYTES);
-    if (distance < search->distance) {
-      search->distance = distance;
-      search->best = i;
-    }
-  }
-}
-
 /* The match of @feature next to @source, whose match is known. */
 static gboolean
 find_match (const Run * run, guint source, guint feature)
@@ -280,24 +229,31 @@ find_match (const Run * run, guint source, guint feature)
   const gfloat to[2] = { f->x[feature], f->y[feature] };
   const gdouble zoom = find_zoom (run, source, of);
   ClothStretchRange range;
-  Search search = { run, feature, of, 0, 0, FALSE, 0, 0, INFINITY,
-    CLOTH_MATCH_NONE, run->most
+  ClothMatchRing ring = {
+    .x = r->x,.y = r->y,.scale = r->scale,.seen = r->seen,.descriptors =
+        r->descriptors,.centre = {
+        r->x[of], r->y[of]},.high = INFINITY,.turn_range = INFINITY,.query =
+        f->descriptors + (gsize) feature * BYTES
   };
-  gdouble reach;
+  guint32 best = CLOTH_MATCH_NONE, distance = run->most;
+  gdouble least, reach;
   gint left, right, top, bottom;
 
   if (!cloth_stretch_get_range (&run->params.stretch, run->surface, from, to,
           r->metres_per_pixel / zoom, &range))
     return FALSE;
+  least = range.least / r->metres_per_pixel;
   reach = range.most / r->metres_per_pixel;
-  search.least2 = range.least * range.least / (r->metres_per_pixel
-      * r->metres_per_pixel);
-  search.most2 = reach * reach;
-  search.alike = !range.broken;
-  search.turn = find_turn (run, source, of);
-  if (run->params.zoom >= 1) {
-    search.low = f->scale[feature] / zoom / run->params.zoom;
-    search.high = f->scale[feature] / zoom * run->params.zoom;
+  ring.least = (gfloat) (least * least);
+  ring.most = (gfloat) (reach * reach);
+  if (!range.broken) {
+    if (run->params.zoom >= 1) {
+      ring.low = (gfloat) (f->scale[feature] / zoom / run->params.zoom);
+      ring.high = (gfloat) (f->scale[feature] / zoom * run->params.zoom);
+    }
+    ring.turn = (gfloat) (f->angle[feature] - find_turn (run, source, of));
+    if (run->params.turn < G_PI)
+      ring.turn_range = (gfloat) MAX (run->params.turn, 0);
   }
   left = cloth_reference_bin (r->x[of] - reach, r->columns);
   right = cloth_reference_bin (r->x[of] + reach, r->columns);
@@ -305,12 +261,16 @@ find_match (const Run * run, guint source, guint feature)
   bottom = cloth_reference_bin (r->y[of] + reach, r->rows);
   for (gint side = 0; side < 2; side++)
     if (range.broken || side == r->side[of])
-      for (gint row = top; row <= bottom; row++)
-        search_row (&search, side, row, left, right);
-  if (search.best == CLOTH_MATCH_NONE)
+      for (gint row = top; row <= bottom; row++) {
+        const guint *starts = r->starts + (side * r->rows + row) * r->columns;
+
+        run->kernel->search (&ring, starts[left], starts[right + 1], &best,
+            &distance);
+      }
+  if (best == CLOTH_MATCH_NONE)
     return FALSE;
-  run->matches[feature].reference = search.best;
-  run->matches[feature].distance = search.distance;
+  run->matches[feature].reference = best;
+  run->matches[feature].distance = distance;
   return TRUE;
 }
 
@@ -339,6 +299,7 @@ grow_from (Run * run, guint source, guint seed, guint group)
   const gint row = find_bin (self, 1, f->y[source], radius);
   const guint *starts = (const guint *) self->starts->data;
   const guint *sorted = (const guint *) self->sorted->data;
+  Tries *tries = (Tries *) self->tries->data;
 
   for (gint y = MAX (row - 1, 0); y <= MIN (row + 1, self->rows - 1); y++) {
     const gint left = y * self->columns + MAX (column - 1, 0);
@@ -348,9 +309,13 @@ grow_from (Run * run, guint source, guint seed, guint group)
       const guint i = sorted[k];
       const gdouble dx = f->x[i] - f->x[source], dy = f->y[i] - f->y[source];
 
-      if (run->matches[i].state == CLOTH_MATCH_UNKNOWN
-          && dx * dx + dy * dy <= radius * radius
-          && find_match (run, source, i))
+      if (run->matches[i].state != CLOTH_MATCH_UNKNOWN
+          || dx * dx + dy * dy > radius * radius)
+        continue;
+      if (tries[i].seed != seed)
+        tries[i] = (Tries) {
+        seed, 0};
+      if (tries[i].n++ < run->params.tries && find_match (run, source, i))
         add (run, i, seed, group);
     }
   }
@@ -424,7 +389,7 @@ find_seeds (Run * run, guint n, guint * at, ClothPool * pool, ClothSimd level)
   g_array_set_size (self->seeds, 0);
   g_array_set_size (self->queries, 0);
   for (; *at < self->order->len && self->seeds->len < n; ++*at) {
-    const Seed seed = { 0, 0, order[*at] };
+    const Seed seed = { 0, CLOTH_MATCH_NONE, order[*at] };
 
     if (run->matches[seed.feature].state != CLOTH_MATCH_UNKNOWN)
       continue;
@@ -441,7 +406,8 @@ find_seeds (Run * run, guint n, guint * at, ClothPool * pool, ClothSimd level)
   for (guint k = 0; k < self->seeds->len; k++) {
     Seed *seed = &g_array_index (self->seeds, Seed, k);
 
-    seed->reference = found[k].index;
+    if (found[k].index != CLOTH_NEAREST_NONE)
+      seed->reference = run->reference->of_nearest[found[k].index];
     seed->distance = found[k].distance;
   }
   if (self->seeds->len)
@@ -471,7 +437,7 @@ grow_seeds (Run * run, guint32 most, guint * n_settled, ClothGrowth * growth)
     if (match->state != CLOTH_MATCH_UNKNOWN)
       continue;
     growth->n_seeds++;
-    if (seed->reference != CLOTH_NEAREST_NONE && seed->distance < most
+    if (seed->reference != CLOTH_MATCH_NONE && seed->distance < most
         && grow (run, seed, growth->n_groups)) {
       growth->n_groups++;
       growth->n_matched += run->self->grown->len;
@@ -503,7 +469,8 @@ cloth_grower_run (ClothGrower * grower, const ClothGrowParams * params,
     const ClothMatchSurface * surface, ClothMatch * matches,
     ClothGrowth * growth, ClothPool * pool, ClothSimd level)
 {
-  Run run = { grower, *params, 0, reference, features, surface, matches
+  Run run = { grower, *params, 0, CLOTH_SIMD_TABLE (cloth_match_kernel, level),
+    reference, features, surface, matches
   };
   const gdouble far = CLAMP (params->distance, 0, 2000);
   const gdouble seed_far = CLAMP (params->seed_distance, 0, 2000);
@@ -519,6 +486,9 @@ cloth_grower_run (ClothGrower * grower, const ClothGrowParams * params,
   run.params.radius = CLAMP (params->radius, 1, MAX_RADIUS);
   run.params.stretch = cloth_stretch_clamp_params (&params->stretch);
   run.most = (guint32) (far * far);
+  g_array_set_size (grower->tries, features->n);
+  for (guint i = 0; i < features->n; i++)
+    g_array_index (grower->tries, Tries, i).seed = G_MAXUINT;
   sort_into_bins (&run);
   sort_by_scale (&run);
   for (guint n = MAX (params->first, 1); at < grower->order->len;

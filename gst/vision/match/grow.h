@@ -41,6 +41,8 @@ typedef struct {
  * @first: seeds of the first group; each group is twice as large as the one before
  * @least_scale: features of smaller scale are no seeds, px
  * @least: a seed from which fewer grow is no match
+ * @tries: neighbours from which a feature is looked for, those nearest to the seed first:
+ *   whom so many don't find the rest won't
  * @turn: by how much neighbours may be turned against each other in the picture, radians;
  *   π and more: not looked at
  * @zoom: by which factor their scales may differ, from 1 on; 0: not looked at
@@ -51,7 +53,7 @@ typedef struct {
   gdouble distance, seed_distance;
   guint first;
   gdouble least_scale;
-  guint least;
+  guint least, tries;
   gdouble turn, zoom;
   ClothStretchParams stretch;
 } ClothGrowParams;

@@ -15,6 +15,8 @@ G_BEGIN_DECLS
  * @columns: of bins
  * @rows: of bins
  * @starts: (array): first feature of each bin, and one past the last of all
+ * @nearest: those that are compared with seeds
+ * @of_nearest: (array): which they are
  */
 struct _ClothReference
 {
@@ -24,6 +26,7 @@ struct _ClothReference
   gint columns, rows;
   guint *starts;
   ClothNearest *nearest;
+  guint *of_nearest;
   gdouble metres_per_pixel, repeated;
 };
 

@@ -43,14 +43,15 @@ static const struct
   {1, 0, 4}, {0, 1, 4}, {1, 1, 4}, {1, -1, 4}
 };
 
-/* Returns: two sides, the views of half, noise of two grey levels; the cloth's size is to
- *   be given
+/* Returns: two sides, the views of half, noise of two grey levels, scales as measured on
+ *   films of 0.6 times the flat picture's resolution; the cloth's size is to be given
  */
 ClothReferenceParams
 cloth_reference_default_params (void)
 {
   return (ClothReferenceParams) {
-  .sides = 2,.oblique = 1,.sift = cloth_cv_sift_default_params (),.noise = 2};
+  .sides = 2,.oblique = 1,.least_scale = 1.4,.seed_scale = 2.5,.sift =
+        cloth_cv_sift_default_params (),.noise = 2};
 }
 
 static gfloat
@@ -85,7 +86,7 @@ blur (const guint8 * from, gint width, gint height, gint dx, gint dy,
 /* The features of one view of @flat, which is @side of the cloth, back in its pixels. */
 static gboolean
 add_view (GArray * items, ClothCvSift * sift, const ClothCvPicture * flat,
-    guint view, guint side, GError ** error)
+    guint view, guint side, gdouble least_scale, GError ** error)
 {
   const gint width = flat->width, height = flat->height;
   const gint factor = views[view].factor;
@@ -141,7 +142,8 @@ add_view (GArray * items, ClothCvSift * sift, const ClothCvPicture * flat,
       (guint8) view, (guint8) side, {0}
     };
 
-    if (item.x < 0 || item.x > width - 1 || item.y < 0 || item.y > height - 1)
+    if (item.scale < least_scale || item.x < 0 || item.x > width - 1
+        || item.y < 0 || item.y > height - 1)
       continue;
     if (side) {
       item.x = (gfloat) (width - 1) - item.x;
@@ -153,9 +155,25 @@ add_view (GArray * items, ClothCvSift * sift, const ClothCvPicture * flat,
   return TRUE;
 }
 
+/* The index of those that are large enough. */
+static void
+add_nearest (ClothReference * self, gdouble seed_scale)
+{
+  g_autoptr (GByteArray) bytes = g_byte_array_new ();
+  guint n = 0;
+
+  self->of_nearest = g_new (guint, MAX (self->features.n, 1));
+  for (guint i = 0; i < self->features.n; i++)
+    if (self->scale[i] >= seed_scale) {
+      self->of_nearest[n++] = i;
+      g_byte_array_append (bytes, self->descriptors + (gsize) i * BYTES, BYTES);
+    }
+  self->nearest = cloth_nearest_new (bytes->data, n);
+}
+
 static ClothReference *
 build (const Item * items, guint n, gint width, gint height,
-    const gdouble cloth_m[2])
+    const gdouble cloth_m[2], gdouble seed_scale)
 {
   ClothReference *self = g_new0 (ClothReference, 1);
   const gsize room = MAX (n, 1);
@@ -205,7 +223,7 @@ build (const Item * items, guint n, gint width, gint height,
   self->features = (ClothReferenceFeatures) {
   n, width, height, self->x, self->y, self->scale, self->angle, self->view,
         self->side, self->descriptors};
-  self->nearest = cloth_nearest_new (self->descriptors, n);
+  add_nearest (self, seed_scale);
   self->metres_per_pixel = sqrt (cloth_m[0] / width * (cloth_m[1] / height));
   return self;
 }
@@ -340,7 +358,7 @@ cloth_reference_new (const ClothReferenceParams * params,
         flat[y * width + x] = picture->data[(gsize) y * picture->stride
             + (side ? width - 1 - x : x)];
     for (gint v = 0; v <= 4 * params->oblique; v++)
-      if (!add_view (items, sift, &view, v, side, error))
+      if (!add_view (items, sift, &view, v, side, params->least_scale, error))
         return NULL;
   }
   if (!items->len) {
@@ -349,7 +367,7 @@ cloth_reference_new (const ClothReferenceParams * params,
     return NULL;
   }
   self = build (&g_array_index (items, Item, 0), items->len, width, height,
-      params->cloth_m);
+      params->cloth_m, params->seed_scale);
   if (!measure_noise (self, sift, picture, params->noise, &far, error))
     return NULL;
   self->repeated = cloth_reference_find_repeated (self, far, pool);
@@ -358,13 +376,14 @@ cloth_reference_new (const ClothReferenceParams * params,
 
 /* @features: in any order, which are copied
  * @cloth_m: width and height of the picture on the cloth, metres
+ * @seed_scale: features of smaller scale are not compared with seeds
  * @error: (out): set when there is no size
  *
  * Returns: (transfer full): the features; %NULL with @error set
  */
 ClothReference *
 cloth_reference_new_from_features (const ClothReferenceFeatures * features,
-    const gdouble cloth_m[2], GError ** error)
+    const gdouble cloth_m[2], gdouble seed_scale, GError ** error)
 {
   g_autofree Item *items = g_new (Item, MAX (features->n, 1));
 
@@ -384,7 +403,8 @@ cloth_reference_new_from_features (const ClothReferenceFeatures * features,
     };
     memcpy (items[i].bytes, features->descriptors + (gsize) i * BYTES, BYTES);
   }
-  return build (items, features->n, features->width, features->height, cloth_m);
+  return build (items, features->n, features->width, features->height, cloth_m,
+      seed_scale);
 }
 
 /* @reference: (nullable) (transfer full): what to free
@@ -395,6 +415,7 @@ cloth_reference_free (ClothReference * reference)
   if (!reference)
     return;
   cloth_nearest_free (reference->nearest);
+  g_free (reference->of_nearest);
   g_free (reference->starts);
   g_free (reference->x);
   g_free (reference->y);

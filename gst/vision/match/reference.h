@@ -21,6 +21,9 @@ G_BEGIN_DECLS
 /* @sides: 1, or 2 where the print shows through or is on both: the back shows it mirrored
  * @oblique: 0: the flat view alone, 1: also the views of half, 2: also those of a quarter
  * @cloth_m: width and height of the picture on the cloth, metres, > 0
+ * @least_scale: features of smaller scale are left out, px of the flat picture: a film that
+ *   is coarser than the flat picture doesn't show them
+ * @seed_scale: features of smaller scale are not compared with seeds, which are large
  * @sift: how features are found
  * @noise: of a film, standard deviation in grey levels, 0 to 64: what is as near to another
  *   place as to itself under this noise is repeated
@@ -29,6 +32,7 @@ typedef struct {
   gint sides;
   gint oblique;
   gdouble cloth_m[2];
+  gdouble least_scale, seed_scale;
   ClothCvSiftParams sift;
   gdouble noise;
 } ClothReferenceParams;
@@ -61,7 +65,7 @@ ClothReference *cloth_reference_new (const ClothReferenceParams * params,
     const ClothCvPicture * picture, ClothPool * pool, GError ** error);
 ClothReference *cloth_reference_new_from_features (const
     ClothReferenceFeatures * features, const gdouble cloth_m[2],
-    GError ** error);
+    gdouble seed_scale, GError ** error);
 void cloth_reference_free (ClothReference * reference);
 
 const ClothReferenceFeatures *cloth_reference_get_features (const

@@ -69,8 +69,10 @@ typedef struct
 ClothVerifyParams
 cloth_verify_default_params (void)
 {
-  return (ClothVerifyParams) {
-  0.66, 3, 60, cloth_stretch_default_params ()};
+  ClothVerifyParams params = { 0.66, 3, 60, cloth_stretch_default_params () };
+
+  params.stretch.slack = 0.5;
+  return params;
 }
 
 static GArray *
