@@ -11,7 +11,7 @@ G_BEGIN_DECLS
 #define CLOTH_REFERENCE_BIN 8
 
 /* @features: sorted by side, row of bins, column of bins
- * @seen: (array): angles as the side shows them: those of the back are mirrored
+ * @seen: (array): angles in the views themselves
  * @columns: of bins
  * @rows: of bins
  * @starts: (array): first feature of each bin, and one past the last of all

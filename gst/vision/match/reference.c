@@ -30,7 +30,7 @@
 
 typedef struct
 {
-  gfloat x, y, scale, angle;
+  gfloat x, y, scale, angle, seen;
   guint8 view, side, bytes[BYTES];
 } Item;
 
@@ -139,6 +139,7 @@ add_view (GArray * items, ClothCvSift * sift, const ClothCvPicture * flat,
       (gfloat) (cy + back[1] * dx + back[2] * dy),
       (gfloat) (found.scale[i] * sqrt (factor)),
       wrap (atan2 (back[1] * ax + back[2] * ay, back[0] * ax + back[1] * ay)),
+      found.angle[i],
       (guint8) view, (guint8) side, {0}
     };
 
@@ -209,7 +210,7 @@ build (const Item * items, guint n, gint width, gint height,
       self->y[to] = item->y;
       self->scale[to] = item->scale;
       self->angle[to] = item->angle;
-      self->seen[to] = item->side ? wrap (G_PI - item->angle) : item->angle;
+      self->seen[to] = item->seen;
       self->view[to] = item->view;
       self->side[to] = item->side;
       memcpy (self->descriptors + (gsize) to * BYTES, item->bytes, BYTES);
@@ -285,10 +286,12 @@ measure_noise (const ClothReference * self, ClothCvSift * sift,
   *far = 0;
   cloth_random_init (&random, 1);
   for (gint y = 0; y < height; y++)
-    for (gint x = 0; x < width; x++)
-      noisy[y * width + x] =
-          (guint8) lrint (CLAMP (picture->data[(gsize) y * picture->stride
-                  + x] + noise * cloth_random_gaussian (&random), 0, 255));
+    for (gint x = 0; x < width; x++) {
+      const gdouble value = picture->data[(gsize) y * picture->stride + x]
+          + noise * cloth_random_gaussian (&random);
+
+      noisy[y * width + x] = (guint8) lrint (CLAMP (value, 0, 255));
+    }
   if (!cloth_cv_sift_run (sift, &view, NULL, &found, error))
     return FALSE;
   for (guint i = 0; i < found.n; i++) {
@@ -398,7 +401,9 @@ cloth_reference_new_from_features (const ClothReferenceFeatures * features,
   for (guint i = 0; i < features->n; i++) {
     items[i] = (Item) {
       features->x[i], features->y[i], features->scale[i],
-          features->angle[i], features->view[i], features->side[i] != 0, {
+          features->angle[i],
+          features->side[i] ? wrap (G_PI - features->angle[i])
+          : features->angle[i], features->view[i], features->side[i] != 0, {
       0}
     };
     memcpy (items[i].bytes, features->descriptors + (gsize) i * BYTES, BYTES);

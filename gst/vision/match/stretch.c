@@ -50,6 +50,21 @@ cloth_surface_get_point (const ClothMatchSurface * surface, gdouble x,
   gdouble weights[4], low = INFINITY, high = -INFINITY, best = -1;
   gboolean whole = TRUE;
 
+  if (x >= 0 && y >= 0 && x0 < surface->width - 1 && y0 < surface->height - 1) {
+    const gfloat *p = surface->points + 3 * ((gsize) y0 * surface->stride + x0);
+    const gfloat *q = p + 3 * surface->stride;
+    const gdouble s = x - x0, t = y - y0;
+
+    /* as below, where all four are of one surface; NaN is not */
+    if (MAX (MAX (p[2], p[5]), MAX (q[2], q[5])) - MIN (MIN (p[2], p[5]),
+            MIN (q[2], q[5])) <= depth_step
+        && isfinite (p[2] + p[5] + q[2] + q[5])) {
+      for (gint c = 0; c < 3; c++)
+        point[c] = (1 - t) * ((1 - s) * p[c] + s * p[c + 3])
+            + t * ((1 - s) * q[c] + s * q[c + 3]);
+      return TRUE;
+    }
+  }
   if (!(x > -1 && y > -1 && x < surface->width && y < surface->height))
     return FALSE;
   for (gint k = 0; k < 4; k++) {

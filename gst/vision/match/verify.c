@@ -39,6 +39,13 @@ typedef struct
   gboolean out;
 } Node;
 
+/* What has been asked: later triangulations have mostly the same edges. */
+typedef struct
+{
+  guint64 key;                  /* 0: empty */
+  Vote vote;
+} Asked;
+
 struct _ClothVerifier
 {
   ClothDelaunay *delaunay;
@@ -49,6 +56,7 @@ struct _ClothVerifier
   GArray *points;               /* gdouble */
   GArray *pairs, *starts;       /* guint: neighbouring places by the lower one */
   GArray *edges;                /* Edge: between features */
+  GArray *asked;                /* Asked: by a hash of the two features */
   GArray *nodes;                /* Node */
   GArray *of_node, *links;      /* guint: edges of each node */
 };
@@ -64,13 +72,15 @@ typedef struct
   ClothMatch *matches;
 } Run;
 
-/* Returns: a feature stays with two thirds of the votes; measured on rendered cloth
+/* Returns: a feature stays with three quarters of the votes; as measured on rendered cloth,
+ *   where k_s = 0.08 with half a pixel of slack leaves more that are right than 0.1
  */
 ClothVerifyParams
 cloth_verify_default_params (void)
 {
-  ClothVerifyParams params = { 0.66, 3, 60, cloth_stretch_default_params () };
+  ClothVerifyParams params = { 0.75, 3, 60, cloth_stretch_default_params () };
 
+  params.stretch.stretch = 0.08;
   params.stretch.slack = 0.5;
   return params;
 }
@@ -97,6 +107,7 @@ cloth_verifier_new (void)
   self->pairs = numbers ();
   self->starts = numbers ();
   self->edges = g_array_new (FALSE, FALSE, sizeof (Edge));
+  self->asked = g_array_new (FALSE, FALSE, sizeof (Asked));
   self->nodes = g_array_new (FALSE, FALSE, sizeof (Node));
   self->of_node = numbers ();
   self->links = numbers ();
@@ -119,6 +130,7 @@ cloth_verifier_free (ClothVerifier * verifier)
   g_array_unref (verifier->pairs);
   g_array_unref (verifier->starts);
   g_array_unref (verifier->edges);
+  g_array_unref (verifier->asked);
   g_array_unref (verifier->nodes);
   g_array_unref (verifier->of_node);
   g_array_unref (verifier->links);
@@ -148,10 +160,44 @@ ask (const Run * run, guint a, guint b)
       && distance <= range.most ? IN_FAVOUR : AGAINST;
 }
 
+/* A table with room for what a few triangulations ask; what comes later isn't kept. */
+static void
+forget (Run * run, guint n)
+{
+  guint size = 64;
+
+  while (size < 16 * n)
+    size *= 2;
+  g_array_set_size (run->self->asked, size);
+  memset (run->self->asked->data, 0, size * sizeof (Asked));
+}
+
+static Vote
+ask_once (Run * run, guint a, guint b)
+{
+  const guint64 key = ((guint64) MIN (a, b) << 32 | MAX (a, b)) + 1;
+  const guint mask = run->self->asked->len - 1;
+  Asked *asked = (Asked *) run->self->asked->data;
+  guint at = (guint) ((key * G_GUINT64_CONSTANT (0x9e3779b97f4a7c15)) >> 32);
+
+  for (gint tries = 0; tries < 8; tries++, at++) {
+    Asked *here = &asked[at & mask];
+
+    if (here->key == key)
+      return here->vote;
+    if (here->key == 0) {
+      *here = (Asked) {
+      key, ask (run, MIN (a, b), MAX (a, b))};
+      return here->vote;
+    }
+  }
+  return ask (run, MIN (a, b), MAX (a, b));
+}
+
 static void
 connect (Run * run, guint a, guint b)
 {
-  const Edge edge = { a, b, ask (run, a, b) };
+  const Edge edge = { a, b, ask_once (run, a, b) };
 
   if (edge.vote != ABSTAINS)
     g_array_append_val (run->self->edges, edge);
@@ -506,6 +552,7 @@ cloth_verifier_run (ClothVerifier * verifier, const ClothVerifyParams * params,
   *verification = (ClothVerification) {
   0};
   run.params.stretch = cloth_stretch_clamp_params (&params->stretch);
+  forget (&run, n);
   for (guint first = 0, end; first < n; first = end) {
     const guint group = matches[members[first]].group;
 
