@@ -145,7 +145,7 @@ tell (const Sums * s, guint n_references)
 static void
 run_film (const gchar * folder, const ClothReferenceParams * params,
     const ClothCvSiftParams * film_sift, const ClothGrowParams * grow_params,
-    const ClothVerifyParams * verify_params, gint step)
+    const ClothVerifyParams * verify_params, gint from, gint step)
 {
   ClothReferenceParams with_size = *params;
   MatchFilm film;
@@ -176,7 +176,7 @@ run_film (const gchar * folder, const ClothReferenceParams * params,
   g_print ("frame  initial  matched (right)   verified           right  "
       "  50%%  80%%  seeds  oblique  back  match ms  verify ms\n");
   match_truth_init (&truth, film.film.width, film.film.height);
-  for (guint frame = 0; frame < film.n_frames; frame += step)
+  for (guint frame = from; frame < film.n_frames; frame += step)
     run_frame (&film, frame, reference, sift, grow_params, verify_params,
         grower, verifier, pool, &truth, &sums);
   tell (&sums, cloth_reference_get_features (reference)->n);
@@ -191,7 +191,7 @@ main (int argc, char **argv)
   ClothGrowParams grow = cloth_grow_default_params ();
   ClothVerifyParams verify = cloth_verify_default_params ();
   ClothCvSiftParams film = params.sift;
-  gint first = (gint) grow.first, least = (gint) grow.least, step = 1;
+  gint first = (gint) grow.first, least = (gint) grow.least, step = 1, from = 0;
   gint tries = (gint) grow.tries, support = (gint) verify.support;
   const GOptionEntry entries[] = {
     {"no-surface", 0, 0, G_OPTION_ARG_STRING, &surface_kind, "distances in "
@@ -219,6 +219,8 @@ main (int argc, char **argv)
         NULL},
     {"hidden", 0, 0, G_OPTION_ARG_DOUBLE, &grow.stretch.hidden, NULL, NULL},
     {"vote", 0, 0, G_OPTION_ARG_DOUBLE, &verify.vote, NULL, NULL},
+    {"group-vote", 0, 0, G_OPTION_ARG_DOUBLE, &verify.group_vote, NULL, NULL},
+    {"from", 0, 0, G_OPTION_ARG_INT, &from, "first frame", "N"},
     {"support", 0, 0, G_OPTION_ARG_INT, &support, NULL, NULL},
     {"reach", 0, 0, G_OPTION_ARG_DOUBLE, &verify.reach, NULL, NULL},
     {"verify-stretch", 0, 0, G_OPTION_ARG_DOUBLE, &verify.stretch.stretch,
@@ -240,6 +242,6 @@ main (int argc, char **argv)
   verify.stretch.depth_step = grow.stretch.depth_step;
   gst_init (&argc, &argv);
   if (argc > 1)
-    run_film (argv[1], &params, &film, &grow, &verify, MAX (step, 1));
+    run_film (argv[1], &params, &film, &grow, &verify, MAX (from, 0), MAX (step, 1));
   return 0;
 }

@@ -58,7 +58,7 @@ struct _ClothVerifier
   GArray *edges;                /* Edge: between features */
   GArray *asked;                /* Asked: by a hash of the two features */
   GArray *nodes;                /* Node */
-  GArray *of_node, *links;      /* guint: edges of each node */
+  GArray *of_node, *links;      /* guint: edges of each node that vote on others */
 };
 
 typedef struct
@@ -78,7 +78,7 @@ typedef struct
 ClothVerifyParams
 cloth_verify_default_params (void)
 {
-  ClothVerifyParams params = { 0.75, 3, 60, cloth_stretch_default_params () };
+  ClothVerifyParams params = { 0.75, 0.5, 3, 60, cloth_stretch_default_params () };
 
   params.stretch.stretch = 0.08;
   params.stretch.slack = 0.5;
@@ -321,6 +321,15 @@ find_node (const Run * run, guint feature, gboolean groups)
       : g_array_index (run->self->ranks, guint, feature);
 }
 
+/* Whether the edges between two groups vote on @group: on the smaller one only, or a few
+ * features of wrong seeds would outvote a large group, which has few edges outwards. */
+static gboolean
+is_judged (const Node * nodes, guint group, guint other)
+{
+  return nodes[group].size != nodes[other].size
+      ? nodes[group].size < nodes[other].size : group > other;
+}
+
 /* Edges between nodes, and their votes. */
 static void
 count (Run * run, gboolean groups, guint n_nodes)
@@ -352,9 +361,11 @@ count (Run * run, gboolean groups, guint n_nodes)
     if (ends[0] == ends[1])
       continue;
     for (gint k = 0; k < 2; k++) {
+      if (groups && !is_judged (nodes, ends[k], ends[1 - k]))
+        continue;
       nodes[ends[k]].n++;
       nodes[ends[k]].n_for += edges[e].vote == IN_FAVOUR;
-      of_node[ends[k]]++;
+      of_node[ends[1 - k]]++;
     }
   }
   for (guint i = 0, sum = 0; i <= n_nodes; i++) {
@@ -369,8 +380,10 @@ count (Run * run, gboolean groups, guint n_nodes)
 
     if (a == b)
       continue;
-    links[of_node[a]++] = e;
-    links[of_node[b]++] = e;
+    if (!groups || is_judged (nodes, b, a))
+      links[of_node[a]++] = e;
+    if (!groups || is_judged (nodes, a, b))
+      links[of_node[b]++] = e;
   }
   memmove (of_node + 1, of_node, n_nodes * sizeof *of_node);
   of_node[0] = 0;
@@ -389,7 +402,7 @@ is_poorer (const Node * a, const Node * b)
 
 /* The node with the poorest mean vote below the least; @n_nodes when all pass. */
 static guint
-find_poorest (const Run * run, guint n_nodes)
+find_poorest (const Run * run, gdouble vote, guint n_nodes)
 {
   const Node *nodes = (const Node *) run->self->nodes->data;
   guint poorest = n_nodes;
@@ -397,7 +410,7 @@ find_poorest (const Run * run, guint n_nodes)
   for (guint i = 0; i < n_nodes; i++) {
     const Node *node = &nodes[i];
 
-    if (!node->out && node->n && node->n_for < run->params.vote * node->n
+    if (!node->out && node->n && node->n_for < vote * node->n
         && (poorest == n_nodes || is_poorer (node, &nodes[poorest])))
       poorest = i;
   }
@@ -442,7 +455,7 @@ refuse_features (Run * run, const guint * members, guint n)
     triangulate (run, members, n);
     n_nodes = run->self->live->len;
     count (run, FALSE, n_nodes);
-    while ((poorest = find_poorest (run, n_nodes)) < n_nodes) {
+    while ((poorest = find_poorest (run, run->params.vote, n_nodes)) < n_nodes) {
       withdraw (run, poorest, FALSE);
       run->matches[g_array_index (run->self->live, guint, poorest)].state =
           CLOTH_MATCH_REFUSED;
@@ -465,7 +478,7 @@ refuse_groups (Run * run, const guint * members, guint n, guint n_groups)
 
     triangulate (run, members, n);
     count (run, TRUE, n_groups);
-    while ((poorest = find_poorest (run, n_groups)) < n_groups)
+    while ((poorest = find_poorest (run, run->params.group_vote, n_groups)) < n_groups)
       withdraw (run, poorest, TRUE);
     for (guint k = 0; k < n; k++) {
       ClothMatch *match = &run->matches[members[k]];

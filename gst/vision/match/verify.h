@@ -7,13 +7,15 @@
 
 G_BEGIN_DECLS
 
-/* @vote: least mean vote of a feature or group that is kept, 0 to 1
+/* @vote: least mean vote of a feature that is kept, 0 to 1
+ * @group_vote: of a group: its edges to others lie along folds, where distances are the
+ *   least sure
  * @support: a feature with fewer votes is refused in the end
  * @reach: longest edge that votes, px
  * @stretch: the bounds of distances
  */
 typedef struct {
-  gdouble vote;
+  gdouble vote, group_vote;
   guint support;
   gdouble reach;
   ClothStretchParams stretch;
