@@ -242,6 +242,7 @@ main (int argc, char **argv)
   verify.stretch.depth_step = grow.stretch.depth_step;
   gst_init (&argc, &argv);
   if (argc > 1)
-    run_film (argv[1], &params, &film, &grow, &verify, MAX (from, 0), MAX (step, 1));
+    run_film (argv[1], &params, &film, &grow, &verify, MAX (from, 0), MAX (step,
+            1));
   return 0;
 }

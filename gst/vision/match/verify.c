@@ -78,7 +78,8 @@ typedef struct
 ClothVerifyParams
 cloth_verify_default_params (void)
 {
-  ClothVerifyParams params = { 0.75, 0.5, 3, 60, cloth_stretch_default_params () };
+  ClothVerifyParams params =
+      { 0.75, 0.5, 3, 60, cloth_stretch_default_params () };
 
   params.stretch.stretch = 0.08;
   params.stretch.slack = 0.5;
@@ -156,7 +157,8 @@ ask (const Run * run, guint a, guint b)
           to, alpha * sqrt (r->scale[ra] / f->scale[a] * r->scale[rb]
               / f->scale[b]), &range) || range.broken)
     return ABSTAINS;
-  return r->side[ra] == r->side[rb] && distance >= range.least
+  /* whichever sides they show: over the crease of a fold the surface goes on */
+  return distance >= range.least
       && distance <= range.most ? IN_FAVOUR : AGAINST;
 }
 
@@ -478,7 +480,8 @@ refuse_groups (Run * run, const guint * members, guint n, guint n_groups)
 
     triangulate (run, members, n);
     count (run, TRUE, n_groups);
-    while ((poorest = find_poorest (run, run->params.group_vote, n_groups)) < n_groups)
+    while ((poorest =
+            find_poorest (run, run->params.group_vote, n_groups)) < n_groups)
       withdraw (run, poorest, TRUE);
     for (guint k = 0; k < n; k++) {
       ClothMatch *match = &run->matches[members[k]];
