@@ -67,7 +67,7 @@ ClothGrowParams
 cloth_grow_default_params (void)
 {
   return (ClothGrowParams) {
-  .radius = 20,.distance = 300,.seed_distance = 280,.first = 32,.least_scale =
+  .radius = 20,.distance = 320,.seed_distance = 280,.first = 32,.least_scale =
         2,.least = 4,.tries = 4,.turn = G_PI / 4,.zoom = 2,.stretch =
         cloth_stretch_default_params ()};
 }
