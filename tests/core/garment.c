@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/mesh/garment/delaunay.h"
+#include "gst/math/delaunay.h"
 #include "gst/mesh/fill/fill.h"
 #include "gst/mesh/formats/obj.h"
 #include "gst/mesh/garment/svgpath.h"
@@ -120,16 +120,18 @@ static void
 test_delaunay (void)
 {
   gdouble points[2 * 30 * 20];
-  g_autoptr (GArray) found = NULL, fan = NULL;
+  g_autoptr (ClothDelaunay) delaunay = cloth_delaunay_new ();
+  const guint *found;
+  guint n_found;
   gdouble area = 0;
 
   for (guint i = 0; i < 30 * 20; i++) {
     points[2 * i] = 0.02 * (i % 30);
     points[2 * i + 1] = 0.02 * (i / 30);
   }
-  found = cloth_delaunay (30 * 20, points, 0.02);
-  for (guint k = 0; k < found->len; k += 3) {
-    const guint *t = &g_array_index (found, guint, k);
+  found = cloth_delaunay_run (delaunay, 30 * 20, points, 0.02, &n_found);
+  for (guint k = 0; k < n_found; k++) {
+    const guint *t = found + 3 * k;
     const gdouble *a = points + 2 * t[0], *b = points + 2 * t[1];
     const gdouble *c = points + 2 * t[2];
     gdouble twice = (b[0] - a[0]) * (c[1] - a[1])
@@ -147,8 +149,10 @@ test_delaunay (void)
     points[2 * i + 1] = sin (i * G_PI / 6);
   }
   points[24] = points[25] = 0;
-  fan = cloth_delaunay (13, points, 0.5);
-  g_assert_cmpuint (fan->len, ==, 3 * 12);
+  cloth_delaunay_run (delaunay, 13, points, 0.5, &n_found);
+  g_assert_cmpuint (n_found, ==, 12);
+  cloth_delaunay_run (delaunay, 2, points, 0.5, &n_found);
+  g_assert_cmpuint (n_found, ==, 0);
 }
 
 /* ---- panels ---- */

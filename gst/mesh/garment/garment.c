@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/mesh/garment/delaunay.h"
+#include "gst/math/delaunay.h"
 #include "gst/mesh/garment/panel.h"
 
 /* By how much the lengths of the edges of a seam may differ, as in a simulation's scene. */
@@ -415,8 +415,10 @@ static gboolean
 add_faces (Builder * self, const ClothPanel * panel, GError ** error)
 {
   gdouble pitch = self->grid->pitch_m;
-  g_autoptr (GArray) found = cloth_delaunay (panel->n_vertices,
-      place (self, panel->first), pitch);
+  g_autoptr (ClothDelaunay) delaunay = cloth_delaunay_new ();
+  guint n_found;
+  guint *found = cloth_delaunay_run (delaunay, panel->n_vertices,
+      place (self, panel->first), pitch, &n_found);
   g_autoptr (GHashTable) halves = g_hash_table_new (NULL, NULL);
   g_autoptr (GHashTable) vertex_of = g_hash_table_new (NULL, NULL);
   g_autoptr (GArray) sides = g_array_new (FALSE, FALSE, sizeof (guint64));
@@ -426,8 +428,8 @@ add_faces (Builder * self, const ClothPanel * panel, GError ** error)
   for (guint i = panel->n_border; i < panel->n_vertices; i++)
     g_hash_table_insert (vertex_of, GINT_TO_POINTER (g_array_index (self->dots,
                 gint, panel->first + i)), GUINT_TO_POINTER (panel->first + i));
-  for (guint k = 0; k < found->len; k += 3) {
-    const guint *t = &g_array_index (found, guint, k);
+  for (guint k = 0; k < n_found; k++) {
+    const guint *t = found + 3 * k;
     const gdouble *p[3];
     gdouble middle[2];
     gint cell;
@@ -439,8 +441,7 @@ add_faces (Builder * self, const ClothPanel * panel, GError ** error)
     if (fabs (cross (p[0], p[1], p[2])) < SLIVER * pitch * pitch
         || !is_inside (self, panel, middle))
       continue;
-    memmove (&g_array_index (found, guint, kept), t, 3 * sizeof *t);
-    t = &g_array_index (found, guint, kept);
+    t = memmove (found + kept, t, 3 * sizeof *t);
     kept += 3;
     for (guint i = 0; i < 3; i++) {
       guint64 a = t[i], b = t[(i + 1) % 3];
@@ -467,7 +468,7 @@ add_faces (Builder * self, const ClothPanel * panel, GError ** error)
               panel->first + i)[1], 1000 * pitch);
   }
   for (guint k = 0; k < kept; k += 3) {
-    const guint *t = &g_array_index (found, guint, k);
+    const guint *t = found + k;
     gint cell = find_cell (self, panel, t);
     gint n = cell < 0 ? 0 : GPOINTER_TO_INT (g_hash_table_lookup (halves,
             GINT_TO_POINTER (cell + 1)));

@@ -6,7 +6,7 @@
  * anybody draws, by a hash of its number, which decides every tie in the same way always.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/mesh/garment/delaunay.h"
+#include "gst/math/delaunay.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -32,6 +32,11 @@ typedef struct
   gdouble x;
   guint number;
 } Place;
+
+struct _ClothDelaunay
+{
+  GArray *places, *order, *open, *edges, *found;
+};
 
 static gdouble
 hash (guint number)
@@ -82,25 +87,62 @@ circle (const gdouble * p, guint a, guint b, guint c)
   return t;
 }
 
-/* @n: number of points, at least 3
+/* Returns: (transfer full): room for triangles that is used again and again
+ */
+ClothDelaunay *
+cloth_delaunay_new (void)
+{
+  ClothDelaunay *self = g_new (ClothDelaunay, 1);
+
+  self->places = g_array_new (FALSE, FALSE, sizeof (gdouble));
+  self->order = g_array_new (FALSE, FALSE, sizeof (Place));
+  self->open = g_array_new (FALSE, FALSE, sizeof (Triangle));
+  self->edges = g_array_new (FALSE, FALSE, sizeof (Edge));
+  self->found = g_array_new (FALSE, FALSE, sizeof (guint));
+  return self;
+}
+
+/* @delaunay: (nullable) (transfer full): what to free
+ */
+void
+cloth_delaunay_free (ClothDelaunay * delaunay)
+{
+  if (!delaunay)
+    return;
+  g_array_unref (delaunay->places);
+  g_array_unref (delaunay->order);
+  g_array_unref (delaunay->open);
+  g_array_unref (delaunay->edges);
+  g_array_unref (delaunay->found);
+  g_free (delaunay);
+}
+
+/* @delaunay: room to work in
+ * @n: number of points; fewer than 3 have no triangle
  * @points: (array): x and y of each, no two the same
  * @scale: their usual distance
+ * @n_triangles: (out): number of triangles
  *
- * Returns: (transfer full) (element-type guint): three points a triangle; those of a
- *   positive area x·y′ − y·x′
+ * Returns: (transfer none): three points a triangle, the caller's until the next call;
+ *   those of a positive area x·y′ − y·x′
  */
-GArray *
-cloth_delaunay (guint n, const gdouble * points, gdouble scale)
+guint *
+cloth_delaunay_run (ClothDelaunay * delaunay, guint n, const gdouble * points,
+    gdouble scale, guint * n_triangles)
 {
-  gdouble *p = g_new (gdouble, 2 * (n + 3));
-  Place *order = g_new (Place, n);
-  GArray *open = g_array_new (FALSE, FALSE, sizeof (Triangle));
-  GArray *edges = g_array_new (FALSE, FALSE, sizeof (Edge));
-  GArray *found = g_array_new (FALSE, FALSE, sizeof (guint));
+  GArray *open = g_array_set_size (delaunay->open, 0);
+  GArray *edges = delaunay->edges;
+  GArray *found = g_array_set_size (delaunay->found, 0);
+  gdouble *p = (gdouble *) g_array_set_size (delaunay->places,
+      2 * (n + 3))->data;
+  Place *order = (Place *) g_array_set_size (delaunay->order, n)->data;
   gdouble low[2] = { INFINITY, INFINITY }, high[2] = { -INFINITY, -INFINITY };
   gdouble middle[2], extent;
   Triangle first;
 
+  *n_triangles = 0;
+  if (n < 3)
+    return NULL;
   for (guint i = 0; i < 2 * n; i++) {
     p[i] = points[i] + MOVE * scale * hash (i);
     low[i % 2] = MIN (low[i % 2], p[i]);
@@ -176,9 +218,6 @@ cloth_delaunay (guint n, const gdouble * points, gdouble scale)
       t[2] = swap;
     }
   }
-  g_free (p);
-  g_free (order);
-  g_array_unref (open);
-  g_array_unref (edges);
-  return found;
+  *n_triangles = found->len / 3;
+  return (guint *) found->data;
 }
