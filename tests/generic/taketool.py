@@ -9,6 +9,7 @@ import glob
 import os
 import re
 import resource
+import shutil
 import signal
 import stat
 import subprocess
@@ -73,7 +74,8 @@ def killed(folder):
         expect(not os.path.exists(head), 'nothing is there')
         again = run('gst-launch-1.0', 'meshsrc', 'location=' + name, '!', 'fakesink', cwd=folder)
         expect(again.returncode != 0, 'it is not read')
-        done = run(tool, 'recover', name, cwd=folder)
+        # a take is found from the folder that it lies in
+        done = run(tool, 'recover', '.' if name == 'c.take' else name, cwd=folder)
         expect(done.returncode == 0 and 'frames kept' in done.stdout, done.stdout.strip())
         kept = int(done.stdout.split(': ')[1].split()[0])
         got = (numpy.load(os.path.join(folder, 'c.take/positions.npy')) if name == 'c.take'
@@ -112,6 +114,25 @@ def finished(folder):
     expect(done.returncode == 0 and 'frames kept' in done.stdout, done.stdout.strip())
 
 
+def hidden(folder):
+    """Remains without a frame don't hide older ones; another user's are named, not touched."""
+    record(folder, 'n.obj')
+    newer = os.path.join(folder, '.n.obj.part-newer0')
+    os.makedirs(os.path.join(newer, 'new'))
+    with open(os.path.join(newer, 'recording'), 'w', encoding='ascii') as file:
+        file.write('gst-cloth recording 1\n6\n')
+    done = run(tool, 'recover', '.', cwd=folder)
+    expect(done.returncode == 0 and 'no whole frame' in done.stdout and 'frames kept' in done.stdout,
+           done.stdout.strip())
+    if os.geteuid() == 0:
+        os.makedirs(os.path.join(newer, 'new'))
+        os.chown(newer, 1, 1)
+        done = run(tool, 'recover', '.', cwd=folder)
+        expect(done.returncode == 1 and "another user's" in done.stderr and os.path.isdir(newer),
+               done.stderr.strip())
+        shutil.rmtree(newer)
+
+
 def full(folder):
     """A disk that becomes full, here a limit of the file's size: what was recorded is kept."""
     size = 128 + 14 * 12 * positions.shape[1]
@@ -130,9 +151,11 @@ def full(folder):
 
 
 def usage(folder):
-    for words in ['recover'], ['import'], ['recover', '--bogus', '.']:
+    for words in ['recover'], ['import'], ['recover', '--bogus', '.'], ['recover', '']:
         done = run(tool, *words, cwd=folder)
         expect(done.returncode == 2 and '--help' in done.stderr, ' '.join(words))
+    done = run(tool, 'recover', 'nosuch.obj', cwd=folder)
+    expect(done.returncode == 1 and 'nothing of that name' in done.stderr, done.stderr.strip())
     done = run(tool, 'recover', 'nowhere/c.obj', cwd=folder)
     expect(done.returncode == 1 and 'nowhere' in done.stderr, done.stderr.strip())
     done = run(tool, 'recover', folder, cwd=folder)
@@ -168,6 +191,7 @@ def devices(folder):
 with tempfile.TemporaryDirectory(prefix='cloth-taketool-') as scratch:
     killed(scratch)
     finished(scratch)
+    hidden(scratch)
     full(scratch)
     usage(scratch)
     devices(scratch)
