@@ -74,8 +74,10 @@ cloth_parts_new (const gchar * head, const gchar * note, GError ** error)
                 || !cloth_is_folder (folder))))
       break;
   }
+  /* The hidden name is some bytes longer than the file's. */
   if (code)
-    cloth_file_fail (error, code, "write", folder);
+    cloth_file_fail (error, code, "write",
+        code == ENAMETOOLONG ? head : folder);
   return parts;
 }
 

@@ -1485,6 +1485,8 @@ test_wrong_kind (void)
   g_autoptr (GError) error = NULL;
   g_autofree gchar *folder = NULL;
   g_autofree gchar *file = NULL;
+  g_autofree gchar *long_name = NULL;
+  gchar name[247] = "";
 
   scratch_begin ();
   folder = scratch_path ("f.csv");
@@ -1501,6 +1503,14 @@ test_wrong_kind (void)
   g_assert_null (cloth_mesh_writer_new (file, CLOTH_MESH_FORMAT_TAKE, NULL,
           topology, 25, 1, &error));
   g_assert_error (error, G_IO_ERROR, G_IO_ERROR_NOT_DIRECTORY);
+  g_clear_error (&error);
+  /* a name that the hidden one has no room for is named itself */
+  memset (name, 'n', sizeof name - 1);
+  long_name = g_strconcat (scratch, "/", name, ".csv", NULL);
+  g_assert_null (cloth_mesh_writer_new (long_name, CLOTH_MESH_FORMAT_AUTO, NULL,
+          topology, 25, 1, &error));
+  g_assert_error (error, G_IO_ERROR, G_IO_ERROR_FILENAME_TOO_LONG);
+  g_assert_nonnull (strstr (error->message, long_name));
   g_assert_cmpuint (scratch_count (), ==, 2);
   scratch_end ();
 }
