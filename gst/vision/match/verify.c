@@ -345,7 +345,8 @@ count (Run * run, gboolean groups, guint n_nodes)
   guint *links = (guint *) g_array_set_size (self->links,
       2 * self->edges->len)->data;
 
-  memset (nodes, 0, n_nodes * sizeof *nodes);
+  if (n_nodes > 0)
+    memset (nodes, 0, n_nodes * sizeof *nodes);
   memset (of_node, 0, (n_nodes + 1) * sizeof *of_node);
   for (guint k = 0; k < self->live->len; k++) {
     const ClothMatch *match = &run->matches[live[k]];
