@@ -9,6 +9,19 @@
 #include "gst/take/recover.h"
 
 static void
+tell_frames (const gchar * shown, const ClothRecovered * recovered)
+{
+  const guint64 n = recovered->n_frames, n_left_out = recovered->n_left_out;
+  g_autofree gchar *left_out = n_left_out == 0 ? g_strdup ("") :
+      n_left_out == 1 ? g_strdup ("; one more was not whole and is left out") :
+      g_strdup_printf ("; %" G_GUINT64_FORMAT
+      " more were not whole and are left out", n_left_out);
+
+  g_print ("%s: %" G_GUINT64_FORMAT " frame%s kept%s\n", shown, n,
+      n == 1 ? "" : "s", left_out);
+}
+
+static void
 tell (const gchar * shown, const ClothRecovered * recovered)
 {
   if (recovered->placed)
@@ -16,15 +29,7 @@ tell (const gchar * shown, const ClothRecovered * recovered)
   else if (recovered->n_frames == 0)
     g_print ("%s: there was no whole frame; the remains are removed\n", shown);
   else
-    g_print ("%s: %" G_GUINT64_FORMAT " frame%s kept", shown,
-        recovered->n_frames, recovered->n_frames == 1 ? "" : "s");
-  if (recovered->n_frames > 0 && recovered->n_left_out == 1)
-    g_print ("; one more was not whole and is left out");
-  else if (recovered->n_frames > 0 && recovered->n_left_out > 1)
-    g_print ("; %" G_GUINT64_FORMAT " more were not whole and are left out",
-        recovered->n_left_out);
-  if (recovered->n_frames > 0)
-    g_print ("\n");
+    tell_frames (shown, recovered);
   if (recovered->dropped)
     g_print ("%s: %s was not whole and is left out\n", shown,
         recovered->dropped);
@@ -108,7 +113,7 @@ recover_all (const gchar * location, gboolean overwrite)
 
     if (cloth_parts_is_foreign (path) && !is_named (path, location)) {
       complain (FAILED,
-          "%s: “%s” is another user's; name that itself to finish " "it",
+          "%s: “%s” is another user's; name that itself to finish it",
           target, path);
       done = FALSE;
     } else if (!g_hash_table_contains (seen, target)) {

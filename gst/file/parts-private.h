@@ -35,7 +35,6 @@ gboolean cloth_is_there (const gchar * path);
 GPtrArray *cloth_parts_list_names (const ClothParts * parts, const gchar *
     sub, GError ** error);
 gboolean cloth_parts_is_own (const gchar * name);
-gboolean cloth_remove_folder (const gchar * path);
 gboolean cloth_remove_parts (const gchar * path, gint lock);
 ClothParts *cloth_parts_wrap (const gchar * path, const gchar * head, gint
     lock);

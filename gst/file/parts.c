@@ -18,7 +18,6 @@
 #include "gst/file/parts-private.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <gio/gio.h>
 #include <glib/gstdio.h>
 #include <string.h>
@@ -135,16 +134,6 @@ empty_folder (const gchar * path)
   return empty && (g_unlink (lock) == 0 || errno == ENOENT);
 }
 
-/* @path: a folder
- *
- * Returns: whether it was there, and is removed with its files
- */
-gboolean
-cloth_remove_folder (const gchar * path)
-{
-  return empty_folder (path) && g_rmdir (path) == 0;
-}
-
 /* `placing` goes after `old`: alone, the old ones would be put back over the new. */
 static gboolean
 remove_subs (const gchar * path)
@@ -154,7 +143,7 @@ remove_subs (const gchar * path)
   for (guint i = 0; i < G_N_ELEMENTS (subs); i++) {
     g_autofree gchar *sub = g_build_filename (path, subs[i], NULL);
 
-    if (!cloth_remove_folder (sub) && cloth_is_folder (sub))
+    if (!(empty_folder (sub) && g_rmdir (sub) == 0) && cloth_is_folder (sub))
       return FALSE;
   }
   return TRUE;

@@ -44,6 +44,7 @@ typedef struct {
 
 GPtrArray *cloth_parts_find (const gchar * folder, const gchar * head,
     GError ** error);
+GPtrArray *cloth_parts_find_for (const gchar * head, GError ** error);
 gboolean cloth_parts_is_dead (const gchar * path);
 gboolean cloth_parts_is_foreign (const gchar * path);
 gboolean cloth_parts_has_frame (const gchar * path);
@@ -59,6 +60,7 @@ ClothParts *cloth_parts_reopen (const gchar * path, gboolean overwrite,
     ClothRemains * remains, GError ** error);
 gboolean cloth_parts_remove_lone (const gchar * path, GError ** error);
 gboolean cloth_parts_discard (ClothParts * parts, GError ** error);
+gboolean cloth_parts_had_frame (const ClothParts * parts);
 const gchar *cloth_parts_get_note (const ClothParts * parts);
 gchar *cloth_parts_get_path (const ClothParts * parts, const gchar * name);
 gboolean cloth_parts_is_whole (const ClothParts * parts, const gchar * name);

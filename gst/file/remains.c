@@ -5,7 +5,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <gio/gio.h>
 #include <glib/gstdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -180,6 +179,20 @@ cloth_parts_find (const gchar * folder, const gchar * head, GError ** error)
   return paths;
 }
 
+/* @head: a file that readers open first
+ * @error: #GFileError
+ *
+ * Returns: (transfer full) (element-type filename) (nullable): as cloth_parts_find()
+ */
+GPtrArray *
+cloth_parts_find_for (const gchar * head, GError ** error)
+{
+  g_autofree gchar *folder = g_path_get_dirname (head);
+  g_autofree gchar *base = g_path_get_basename (head);
+
+  return cloth_parts_find (folder, base, error);
+}
+
 /* @path: one that cloth_parts_find() found
  *
  * Returns: whether its writer is gone
@@ -263,12 +276,10 @@ gboolean
 cloth_parts_begin_reading (const gchar * head, ClothPlaced * placed,
     GError ** error)
 {
-  g_autofree gchar *folder = g_path_get_dirname (head);
-  g_autofree gchar *base = g_path_get_basename (head);
   g_autoptr (GPtrArray) found = NULL;
 
   *placed = cloth_parts_look_at (head);
-  found = cloth_parts_find (folder, base, NULL);
+  found = cloth_parts_find_for (head, NULL);
   for (guint i = 0; found && i < found->len; i++) {
     g_autofree gchar *shown = g_filename_display_name (head);
 

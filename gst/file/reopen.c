@@ -4,7 +4,6 @@
 #include "gst/file/parts-private.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <gio/gio.h>
 #include <glib/gstdio.h>
 #include <string.h>
@@ -29,7 +28,7 @@ fail_locked (gint code, const gchar * path, GError ** error)
   return FALSE;
 }
 
-/* @path: a lone file that cloth_parts_find() found
+/* @path: a lone file with the name of a part
  * @error: #GIOErrorEnum; %G_IO_ERROR_BUSY: its writer lives
  *
  * Removes it when its writer is gone.
@@ -150,6 +149,16 @@ cloth_parts_discard (ClothParts * parts, GError ** error)
     g_set_error (error, G_IO_ERROR, G_IO_ERROR_FAILED,
         "not all of it can be removed");
   return removed;
+}
+
+/* @parts: parts that were reopened
+ *
+ * Returns: whether their writer had something to recover
+ */
+gboolean
+cloth_parts_had_frame (const ClothParts * parts)
+{
+  return parts->has_frame;
 }
 
 /* @parts: parts that were reopened

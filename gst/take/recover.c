@@ -41,9 +41,7 @@ ClothLeft
 cloth_recover_look (const gchar * location, ClothMeshFormat format)
 {
   g_autofree gchar *head = cloth_mesh_format_head (location, format);
-  g_autofree gchar *folder = g_path_get_dirname (head);
-  g_autofree gchar *base = g_path_get_basename (head);
-  g_autoptr (GPtrArray) found = cloth_parts_find (folder, base, NULL);
+  g_autoptr (GPtrArray) found = cloth_parts_find_for (head, NULL);
   ClothLeft left = CLOTH_LEFT_NOTHING;
 
   for (guint i = 0; found && i < found->len; i++) {
@@ -120,17 +118,13 @@ cloth_recover_find (const gchar * location, GError ** error)
 {
   g_autofree gchar *part = cloth_parts_get_head (location);
   g_autofree gchar *head = NULL;
-  g_autofree gchar *folder = NULL;
-  g_autofree gchar *base = NULL;
 
   if (part && g_file_test (location, G_FILE_TEST_EXISTS))
     return name_one (location);
   if (g_file_test (location, G_FILE_TEST_IS_DIR))
     return find_below (location, error);
   head = cloth_mesh_format_head (location, CLOTH_MESH_FORMAT_AUTO);
-  folder = g_path_get_dirname (head);
-  base = g_path_get_basename (head);
-  return cloth_parts_find (folder, base, error);
+  return cloth_parts_find_for (head, error);
 }
 
 /* @path: one that cloth_recover_find() found
@@ -150,8 +144,8 @@ cloth_recover_get_target (const gchar * path)
 }
 
 static gboolean
-finish (ClothParts * parts, const gchar * path, const gchar * head,
-    ClothRecovered * recovered, GError ** error)
+finish (ClothParts * parts, const gchar * head, ClothRecovered * recovered,
+    GError ** error)
 {
   const guint i = find_format (head);
   g_autofree gchar *base = NULL;
@@ -161,12 +155,11 @@ finish (ClothParts * parts, const gchar * path, const gchar * head,
         "it is no recording, and is left alone");
     return FALSE;
   }
-  /* These are of one file: only its name was missing. */
-  if (!formats[i].recover && cloth_parts_is_whole (parts, head)) {
-    recovered->placed = TRUE;
-    return cloth_parts_commit (parts, error);
-  }
   if (!formats[i].recover) {
+    /* These are of one file: maybe only its name is missing. */
+    recovered->placed = cloth_parts_is_whole (parts, head);
+    if (recovered->placed)
+      return cloth_parts_commit (parts, error);
     g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_UNSUPPORTED,
         "a file of this format can't be finished: its frames are lost. Record a "
         "take, OBJ + PC2, PLY, VTP or CSV where that matters");
@@ -178,7 +171,7 @@ finish (ClothParts * parts, const gchar * path, const gchar * head,
   if (recovered->n_frames > 0)
     return cloth_parts_commit (parts, error);
   /* Somebody may know what to do with it. */
-  if (cloth_parts_has_frame (path))
+  if (cloth_parts_had_frame (parts))
     return cloth_file_invalid (error,
         "no whole frame is found, though there was one: it is left as it is");
   return cloth_parts_discard (parts, error);
@@ -217,6 +210,6 @@ cloth_recover (const gchar * path, gboolean overwrite,
     case CLOTH_REMAINS_NOTHING:
       return cloth_parts_discard (parts, error);
     default:
-      return finish (parts, path, head, recovered, error);
+      return finish (parts, head, recovered, error);
   }
 }
