@@ -339,6 +339,15 @@ begin (const Writer * writer, gboolean with_old, guint round)
   g_assert_no_error (error);
 }
 
+/* What is there when nothing fails. */
+static GHashTable *
+write_well (const Writer * writer, gboolean with_old, guint round)
+{
+  arm ("", 0, 0, FALSE);
+  begin (writer, with_old, round);
+  return look (TRUE);
+}
+
 /* ---- what readers and recovery see ---- */
 
 /* The frames that a reader sees: all of one round, in their order. −1: it refuses. */
@@ -553,14 +562,9 @@ test_writer (gconstpointer data)
   scratch_begin ();
   for (guint with_old = 0; with_old < 2; with_old++) {
     g_autofree gchar *path = scratch_path (writer->name);
-    g_autoptr (GHashTable) old = NULL;
-    g_autoptr (GHashTable) new = NULL;
+    g_autoptr (GHashTable) old = write_well (writer, with_old, 0);
+    g_autoptr (GHashTable) new = write_well (writer, with_old, 1);
 
-    arm ("", 0, 0, FALSE);
-    begin (writer, with_old, 0);
-    old = look (TRUE);
-    begin (writer, with_old, 1);
-    new = look (TRUE);
     for (guint i = 0; i < G_N_ELEMENTS (faults); i++) {
       for (guint nth = 1;; nth++) {
         g_autoptr (GError) error = NULL;
@@ -598,15 +602,10 @@ test_kill (gconstpointer data)
   scratch_begin ();
   for (guint with_old = 0; with_old < 2; with_old++) {
     g_autofree gchar *path = scratch_path (writer->name);
-    g_autoptr (GHashTable) old = NULL;
-    g_autoptr (GHashTable) new = NULL;
+    g_autoptr (GHashTable) old = write_well (writer, with_old, 0);
+    g_autoptr (GHashTable) new = write_well (writer, with_old, 1);
     gint status = 0;
 
-    arm ("", 0, 0, FALSE);
-    begin (writer, with_old, 0);
-    old = look (TRUE);
-    begin (writer, with_old, 1);
-    new = look (TRUE);
     for (guint nth = 1; nth == 1 || WIFSIGNALED (status); nth++) {
       pid_t child;
 
@@ -643,14 +642,9 @@ test_dead (gconstpointer data)
   scratch_begin ();
   for (guint with_old = 0; with_old < 2; with_old++) {
     g_autofree gchar *path = scratch_path (writer->name);
-    g_autoptr (GHashTable) old = NULL;
-    g_autoptr (GHashTable) new = NULL;
+    g_autoptr (GHashTable) old = write_well (writer, with_old, 0);
+    g_autoptr (GHashTable) new = write_well (writer, with_old, 1);
 
-    arm ("", 0, 0, FALSE);
-    begin (writer, with_old, 0);
-    old = look (TRUE);
-    begin (writer, with_old, 1);
-    new = look (TRUE);
     for (guint i = 0; i < G_N_ELEMENTS (calls); i++) {
       for (guint nth = 1;; nth++) {
         g_autoptr (GError) error = NULL;
