@@ -7,6 +7,7 @@
 #include <math.h>
 
 #include "gst/vision/dot/dot-private.h"
+#include "gst/vision/pieces.h"
 
 /* Room for @n more runs, as far as there may be that many; the first of them. */
 static ClothDotRun *
@@ -102,30 +103,11 @@ cloth_dot_runs_of_spot (GArray * runs, const ClothDotSpot * spot,
   }
 }
 
-static gint32
-find_root (ClothDotRun * runs, gint32 k)
-{
-  while (runs[k].parent != k) {
-    runs[k].parent = runs[runs[k].parent].parent;
-    k = runs[k].parent;
-  }
-  return k;
-}
-
-static void
-join_runs (ClothDotRun * runs, gint32 a, gint32 b)
-{
-  a = find_root (runs, a);
-  b = find_root (runs, b);
-  if (a < b)
-    runs[b].parent = a;
-  else
-    runs[a].parent = b;
-}
-
+CLOTH_DEFINE_PIECES (ClothDotRun)
 /* Sums of x and x² over a run, x from @x0. */
-static void
-add_moments (ClothDotSpot * spot, const ClothDotRun * run, gint x0, gint y0)
+     static void
+         add_moments (ClothDotSpot * spot, const ClothDotRun * run, gint x0,
+    gint y0)
 {
   const gint64 n = run->end - run->start, dy = run->y - y0;
   const gint64 a = run->start - x0, b = a + n - 1;
@@ -162,7 +144,7 @@ cloth_dot_spots (GArray * runs, guint first_run, GArray * spots)
       if (r[k].parent == k)
         r[k].parent = find_root (r, j);
       else
-        join_runs (r, j, k);
+        join (r, j, k);
     }
   }
   /* From here on a run's parent is its spot, all bits turned: what it points to, if not to

@@ -3,13 +3,16 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/vision/mask/runs.h"
 
+#include "gst/vision/pieces.h"
+
 #define RUN(runs, i) g_array_index (runs, ClothRun, i)
 
 /* One for each run: an earlier run of its piece or itself, and the pixels of the piece that
  * it is the first run of. */
 typedef struct
 {
-  guint32 parent, area;
+  gint32 parent;
+  guint32 area;
 } Piece;
 
 /* Returns: (transfer full): scratch memory
@@ -94,31 +97,11 @@ cloth_runs_complement (const GArray * runs, GArray * others, gint width,
   }
 }
 
-static guint32
-find_root (Piece * pieces, guint32 i)
-{
-  while (pieces[i].parent != i) {
-    pieces[i].parent = pieces[pieces[i].parent].parent;
-    i = pieces[i].parent;
-  }
-  return i;
-}
-
-static void
-join (Piece * pieces, guint32 a, guint32 b)
-{
-  a = find_root (pieces, a);
-  b = find_root (pieces, b);
-  if (a < b)
-    pieces[b].parent = a;
-  else
-    pieces[a].parent = b;
-}
-
+CLOTH_DEFINE_PIECES (Piece)
 /* Finds the piece of each run; runs of neighbouring rows touch when they overlap, or with
  * @diagonal 1 when their corners meet. */
-static void
-find_pieces (const GArray * runs, GArray * array, guint diagonal)
+     static void
+         find_pieces (const GArray * runs, GArray * array, guint diagonal)
 {
   Piece *pieces;
   guint above = 0;
@@ -129,17 +112,17 @@ find_pieces (const GArray * runs, GArray * array, guint diagonal)
     const ClothRun run = RUN (runs, i);
 
     pieces[i] = (Piece) {
-    i, 0};
+    (gint32) i, 0};
     while (above < i && (RUN (runs, above).row + 1 < run.row
             || (RUN (runs, above).row + 1 == run.row
                 && RUN (runs, above).end + diagonal <= run.begin)))
       above++;
     for (guint j = above; j < i && RUN (runs, j).row + 1 == run.row
         && RUN (runs, j).begin < run.end + diagonal; j++)
-      join (pieces, j, i);
+      join (pieces, (gint32) j, (gint32) i);
   }
   for (guint32 i = 0; i < runs->len; i++)
-    pieces[find_root (pieces, i)].area +=
+    pieces[find_root (pieces, (gint32) i)].area +=
         (guint32) (RUN (runs, i).end - RUN (runs, i).begin);
 }
 
@@ -151,7 +134,7 @@ keep (GArray * runs, GArray * array, guint least)
   guint n = 0;
 
   for (guint32 i = 0; i < runs->len; i++)
-    if (pieces[find_root (pieces, i)].area >= least)
+    if (pieces[find_root (pieces, (gint32) i)].area >= least)
       RUN (runs, n++) = RUN (runs, i);
   g_array_set_size (runs, n);
 }
@@ -190,7 +173,7 @@ cloth_runs_fill (GArray * runs, GArray * gaps, GArray * pieces, guint most,
 
     if (gap.row == 0 || gap.row == height - 1 || gap.begin == 0
         || gap.end == width)
-      piece[find_root (piece, i)].area = G_MAXUINT32;
+      piece[find_root (piece, (gint32) i)].area = G_MAXUINT32;
   }
   keep (gaps, pieces, most == G_MAXUINT32 ? most : most + 1);
   cloth_runs_complement (gaps, runs, width, height);
