@@ -7,6 +7,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "tests/elements/padded.h"
+
 #define SIDE 16
 
 /* Squares of SIDE px whose corners lie between pixels: SIDE·k − 0.5. */
@@ -18,36 +20,18 @@ paint (guint8 * luma, gint width, gint height, gint stride)
       luma[y * stride + x] = (x / SIDE + y / SIDE) % 2 ? 200 : 40;
 }
 
-/* @padding: bytes that each plane's rows have too many, told by a video meta */
 static GstBuffer *
 board (const GstVideoInfo * info, gint padding)
 {
-  gsize offset[GST_VIDEO_MAX_PLANES] = { 0 }, size = 0;
-  gint stride[GST_VIDEO_MAX_PLANES] = { 0 };
-  GstBuffer *buffer;
+  Luma luma;
+  GstBuffer *buffer = padded_picture (info, padding, 0xcc, &luma);
   GstMapInfo map;
 
-  for (guint p = 0; p < GST_VIDEO_INFO_N_PLANES (info); p++) {
-    stride[p] = GST_VIDEO_INFO_PLANE_STRIDE (info, p) + padding;
-    offset[p] = size;
-    size += (gsize) stride[p] * (gsize) (GST_VIDEO_INFO_HEIGHT (info) + 1);
-  }
-  if (padding == 0)
-    size = GST_VIDEO_INFO_SIZE (info);
-  buffer = gst_buffer_new_allocate (NULL, size, NULL);
   gst_buffer_map (buffer, &map, GST_MAP_WRITE);
-  memset (map.data, 0xcc, map.size);
-  paint (map.data + (padding ? offset[0] : GST_VIDEO_INFO_PLANE_OFFSET (info,
-              0)), GST_VIDEO_INFO_WIDTH (info), GST_VIDEO_INFO_HEIGHT (info),
-      stride[0]);
+  paint (map.data + luma.offset, GST_VIDEO_INFO_WIDTH (info),
+      GST_VIDEO_INFO_HEIGHT (info), luma.stride);
   gst_buffer_unmap (buffer, &map);
-  if (padding)
-    gst_buffer_add_video_meta_full (buffer, GST_VIDEO_FRAME_FLAG_NONE,
-        GST_VIDEO_INFO_FORMAT (info), (guint) GST_VIDEO_INFO_WIDTH (info),
-        (guint) GST_VIDEO_INFO_HEIGHT (info), GST_VIDEO_INFO_N_PLANES (info),
-        offset, stride);
   GST_BUFFER_PTS (buffer) = 0;
-  GST_BUFFER_DURATION (buffer) = 40 * GST_MSECOND;
   return buffer;
 }
 

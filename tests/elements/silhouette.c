@@ -8,6 +8,8 @@
 #include <glib/gstdio.h>
 #include <string.h>
 
+#include "tests/elements/padded.h"
+
 #define WIDTH 201
 #define HEIGHT 121
 #define CLOTH_WIDTH 80
@@ -53,36 +55,20 @@ info_of (const gchar * format, gint width, gint height)
   return info;
 }
 
-/* @padding: bytes that each plane's rows have too many, told by a video meta */
 static GstBuffer *
 picture (const GstVideoInfo * info, gint cloth_x, gint padding)
 {
-  gsize offset[GST_VIDEO_MAX_PLANES] = { 0 }, size = 0;
-  gint stride[GST_VIDEO_MAX_PLANES] = { 0 };
-  GstBuffer *buffer;
+  Luma place;
+  GstBuffer *buffer = padded_picture (info, padding, 128, &place);
   GstMapInfo map;
 
-  for (guint p = 0; p < GST_VIDEO_INFO_N_PLANES (info); p++) {
-    stride[p] = GST_VIDEO_INFO_PLANE_STRIDE (info, p) + padding;
-    offset[p] = padding ? size : GST_VIDEO_INFO_PLANE_OFFSET (info, p);
-    size += (gsize) stride[p] * (gsize) (GST_VIDEO_INFO_HEIGHT (info) + 1);
-  }
-  if (padding == 0)
-    size = GST_VIDEO_INFO_SIZE (info);
-  buffer = gst_buffer_new_allocate (NULL, size, NULL);
   gst_buffer_map (buffer, &map, GST_MAP_WRITE);
-  memset (map.data, 128, map.size);
   for (gint y = 0; y < GST_VIDEO_INFO_HEIGHT (info); y++)
     for (gint x = 0; x < GST_VIDEO_INFO_WIDTH (info); x++)
-      map.data[offset[0] + (gsize) (y * stride[0] + x)] = luma (x, y, cloth_x);
+      map.data[place.offset + (gsize) (y * place.stride + x)] =
+          luma (x, y, cloth_x);
   gst_buffer_unmap (buffer, &map);
-  if (padding)
-    gst_buffer_add_video_meta_full (buffer, GST_VIDEO_FRAME_FLAG_NONE,
-        GST_VIDEO_INFO_FORMAT (info), (guint) GST_VIDEO_INFO_WIDTH (info),
-        (guint) GST_VIDEO_INFO_HEIGHT (info), GST_VIDEO_INFO_N_PLANES (info),
-        offset, stride);
   GST_BUFFER_PTS (buffer) = 0;
-  GST_BUFFER_DURATION (buffer) = 40 * GST_MSECOND;
   return buffer;
 }
 
