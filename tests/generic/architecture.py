@@ -15,7 +15,7 @@ from xml.sax.saxutils import escape
 sys.dont_write_bytecode = True
 import floors
 
-WIDTH, MARGIN, BOX, HEIGHT, BETWEEN = 1220, 20, 218, 86, 58
+WIDTH, MARGIN, BOX, HEIGHT, BETWEEN = 1220, 20, 218, 98, 58
 GAP, LANE = 22, 26
 # Ink and paper that are read on a bright page as on a dark one.
 ARROW, INK, FAINT = '#7d8795', '#1d2733', '#51606f'
