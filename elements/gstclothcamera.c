@@ -85,7 +85,8 @@ static const GstClothProperty properties[] = {
     "one camera",
     G_TYPE_STRING, SETTING (camera), GST_PARAM_MUTABLE_READY},
   {"pattern", "Pattern",
-    "Pattern file (pattern.json) that is printed on the cloth: squares or coloured dots",
+    "Pattern file (pattern.json) that is printed on the cloth: squares, coloured "
+    "dots or any picture",
     G_TYPE_STRING, SETTING (pattern), GST_PARAM_MUTABLE_READY},
   {"texture", "Texture",
     "Picture file that is printed over the whole cloth, instead of a pattern",
