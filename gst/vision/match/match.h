@@ -9,6 +9,7 @@
 #include "gst/vision/match/grid.h"
 #include "gst/vision/match/grow.h"
 #include "gst/vision/match/reference.h"
+#include "gst/vision/match/steady.h"
 #include "gst/vision/match/stretch.h"
 #include "gst/vision/match/verify.h"
 #include "gst/vision/match/warp.h"
