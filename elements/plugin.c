@@ -8,6 +8,7 @@
 #include <gst/gst.h>
 
 #include "elements/gstclothcamera.h"
+#include "elements/gstclothdisparity.h"
 #include "elements/gstclothgap.h"
 #include "elements/gstclothmetadepay.h"
 #include "elements/gstclothmetapay.h"
@@ -29,6 +30,7 @@ plugin_init (GstPlugin * plugin)
   gboolean registered = TRUE;
 
   registered &= GST_ELEMENT_REGISTER (clothcamera, plugin);
+  registered &= GST_ELEMENT_REGISTER (clothdisparity, plugin);
   registered &= GST_ELEMENT_REGISTER (clothgap, plugin);
   registered &= GST_ELEMENT_REGISTER (clothmetadepay, plugin);
   registered &= GST_ELEMENT_REGISTER (clothmetapay, plugin);
