@@ -20,9 +20,11 @@
 #define SHEET_OPACITY 0.6f
 /* Edge of the heat map's cells, px: each match counts in the four around it, by how near their
  * centres are. */
-#define CELL 8
-/* Matches a pixel that have the last colour: one in an 8 by 8 px. */
-#define DENSE (1.0f / (CELL * CELL))
+#define CELL 16
+/* Matches a pixel that have the last colour. */
+#define DENSE (1.0f / (8 * 8))
+/* Colours from none to many: the one after them is of what isn't known. */
+#define HEATS (CLOTH_DRAW_HEATS - 1)
 
 static const ClothColour vertex_colour = { 1, 1, 1, 1 };
 static const ClothColour behind_colour = { 0.30f, 0.65f, 1, 1 };
@@ -110,7 +112,7 @@ draw_density (const ClothCanvas * canvas, gint width, gint height,
     const gfloat top = (gfloat) (k / columns * CELL) - 0.5f;
     const gfloat x[4] = { left, left + CELL, left + CELL, left };
     const gfloat y[4] = { top, top, top + CELL, top + CELL };
-    const gfloat heat = MIN (cell[k] / DENSE, 1) * (CLOTH_DRAW_HEATS - 1);
+    const gfloat heat = MIN (cell[k] / DENSE, 1) * (HEATS - 1);
     ClothColour colour = colours[(gint) heat];
 
     if (cell[k] > 0) {

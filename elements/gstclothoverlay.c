@@ -175,7 +175,7 @@ static const GstClothProperty properties[] = {
     "How matches with a print are drawn: none, groups (crosses, a colour for each seed "
     "that they grew from; faint dashes where not verified; rings on the grid's vertices, "
     "linked with their neighbours, blue where seen from behind) or density (heat map of "
-    "the verified ones, pale to dark red for one in 8 by 8 px; each counts 8 px around it)",
+    "the verified ones, pale to dark red for one in 8 by 8 px; each counts up to 16 px away)",
     G_TYPE_ENUM, SETTING (style.draw_matches), ANIMATED, 0, 0,
     "GstClothOverlayMatches", matches_styles},
   {"draw-uv", "draw-uv",
