@@ -324,12 +324,7 @@ gst_sift_match_judge_print (GstSiftMatch * self)
 
   GST_INFO_OBJECT (self, "%u features of the print, %.1f%% repeated",
       cloth_reference_get_features (self->reference)->n, 100 * repeated);
-  if (cloth_reference_get_features (self->reference)->n == 0)
-    GST_ELEMENT_WARNING (self, RESOURCE, SETTINGS,
-        ("The picture of the print has no features: nothing of it will be found."),
-        ("Use a print with detail everywhere, or lower reference-contrast or "
-            "reference-scale."));
-  else if (repeated >= CLOTH_REFERENCE_REPEATED)
+  if (repeated >= CLOTH_REFERENCE_REPEATED)
     GST_ELEMENT_WARNING (self, RESOURCE, SETTINGS,
         ("%.0f%% of the print's features repeat themselves elsewhere on it: cloth will be "
             "taken for other places of itself.", 100 * repeated),
