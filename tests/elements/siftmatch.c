@@ -576,8 +576,7 @@ GST_START_TEST (test_steady)
     } else if (how == 2) {
       info = info_of ("NV12", WIDTH, HEIGHT);
     } else if (how == 3) {
-      g_object_set (gst_harness_find_element (h, "siftmatch"), "steady", 4,
-          NULL);
+      g_object_set (h->element, "steady", 4, NULL);
     }
     if (how != 1 && how != 3)
       set_caps (h, &info);
