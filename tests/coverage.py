@@ -21,6 +21,7 @@ import sys
 # What reads bytes that nobody vouches for, and what gives files their names.
 PARSERS = [
     'gst/file/json.c', 'gst/file/npy.c', 'gst/pattern/pattern.c', 'gst/pattern/marray.c',
+    'gst/pattern/picture.c',
     'gst/rig/rigfile.c', 'gst/rig/rigyaml.c', 'gst/rig/yamltree.c', 'gst/mesh/formats/obj.c',
     'gst/mesh/formats/pc2.c', 'gst/mesh/formats/ply.c', 'gst/take/take-info.c', 'gst/take/take.c',
     'gst/take/obstacle.c', 'gst/take/sequence.c', 'gst/sim/model.c', 'gst/cloth/gstclothmesh.c',
@@ -44,6 +45,8 @@ UNREACHED = [
     ('gst/pattern/marray.c', *FOLDED),
     ('gst/pattern/marray.c', 'a search that goes back beyond the first dot',
      'it would have tried each colour of all the others'),
+    ('gst/pattern/picture.c', *FREES),
+    ('gst/pattern/picture.c', *FOLDED),
     ('gst/rig/yamltree.c', *FREES),
     ('gst/rig/yamltree.c', 'no memory for libyaml', 'GLib has ended the program by then'),
     ('gst/mesh/formats/obj.c', '8,000,000 uv', '56 MB of text'),

@@ -16,7 +16,7 @@ G_BEGIN_DECLS
 /**
  * GST_CLOTH_MAX_FEATURES:
  *
- * Most saddles, candidates, quads or dots that one picture's payload may hold.
+ * Most saddles, candidates, quads, dots or matches that one picture's payload may hold.
  *
  * Since: 0.1
  */

@@ -8,6 +8,9 @@
 #include <gst/cloth/gstclothquads.h>
 #include <gst/cloth/gstclothdots.h>
 #include <gst/cloth/gstclothsilhouette.h>
+#include <gst/cloth/gstclothmatches.h>
+#include <gst/cloth/gstclothdisparity.h>
 #include <gst/cloth/gstclothmesh.h>
 #include <gst/cloth/gstclothobservations.h>
 #include <gst/cloth/gstclothgap.h>
+#include <gst/cloth/gstclothuv.h>

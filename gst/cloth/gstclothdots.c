@@ -172,7 +172,7 @@ gst_cloth_dots_ref (GstClothDots * dots)
 void
 gst_cloth_dots_unref (GstClothDots * dots)
 {
-  g_atomic_rc_box_release (dots);
+  gst_cloth_payload_release (dots);
 }
 
 /**

@@ -126,7 +126,7 @@ gst_cloth_gap_ref (GstClothGap * gap)
 void
 gst_cloth_gap_unref (GstClothGap * gap)
 {
-  g_atomic_rc_box_release (gap);
+  gst_cloth_payload_release (gap);
 }
 
 /**

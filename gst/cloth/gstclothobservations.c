@@ -5,6 +5,7 @@
 
 #include "gst/cloth/gstclothclock.h"
 #include "gst/cloth/gstclothdots.h"
+#include "gst/cloth/gstclothmatches.h"
 #include "gst/cloth/gstclothobservations.h"
 #include "gst/cloth/gstclothplaces.h"
 #include "gst/cloth/gstclothprivate.h"
@@ -20,20 +21,22 @@
 #define MAX_TIMES 16
 #define MAX_REFERENCE 255
 
+#define MAX_COUNTS 5
+
 #define SECTION_HEADER 8
 #define SECTION_TIME "TIME"
 #define TIME_HEADER 20
 
 /* A section of features begins with the frame's number (64 bits), @n_counts numbers of 32
- * bits, two of 16 bits (the length of the camera's name, and the colours of dots), and the
- * name. Of what count i counts, each takes @item_bytes[i] bytes, a dot 4 more a colour.
+ * bits, two of 16 bits (the length of the camera's name, and one that only some have: the
+ * colours of dots, whether matches were found along a surface), and the name. Of what count i counts, each takes @item_bytes[i] bytes, a dot 4 more a colour.
  * @too_many says what is wrong when count i is over @most[i]. */
 typedef struct
 {
   const gchar *tag;
   guint n_counts;
-  guint item_bytes[3];
-  guint most[3];
+  guint item_bytes[MAX_COUNTS];
+  guint most[MAX_COUNTS];
   const gchar *too_many;
 } FeatureKind;
 
@@ -62,8 +65,16 @@ static const FeatureKind silhouette_kind = { "SILH", 3, {0, 0, 6},
 "there are more than 16384 columns or rows, or more than 1048576 runs"
 };
 
+/* counts: columns, rows, features, matches, vertices */
+static const FeatureKind matches_kind = { "MTCH", 5, {0, 0, 0, 32, 32},
+{GST_CLOTH_MAX_FEATURES, GST_CLOTH_MAX_FEATURES, GST_CLOTH_MAX_FEATURES,
+    GST_CLOTH_MAX_FEATURES, GST_CLOTH_MAX_FEATURES},
+"there are more than 65536 features, matches, vertices, columns or rows"
+};
+
 static gsize
-items_size (const FeatureKind * kind, const guint counts[3], guint n_colours)
+items_size (const FeatureKind * kind, const guint counts[MAX_COUNTS],
+    guint n_colours)
 {
   gsize size = 0;
 
@@ -110,6 +121,27 @@ dot_is_valid (const GstClothDot * dot, guint columns, guint rows,
 
   return (inside || (dot->column == -1 && dot->row == -1))
       && all_finite (floats, 6) && all_finite (dot->log_likelihood, n_colours);
+}
+
+static gboolean
+match_is_valid (const GstClothMatch * match)
+{
+  const gfloat floats[6] = { match->x, match->y, match->u, match->v,
+    match->scale, match->distance
+  };
+
+  return all_finite (floats, 6);
+}
+
+static gboolean
+grid_point_is_valid (const GstClothGridPoint * point, guint columns, guint rows)
+{
+  const gfloat floats[5] = { point->x, point->y, point->cov_xx, point->cov_xy,
+    point->cov_yy
+  };
+
+  return point->column >= 0 && (guint) point->column < columns
+      && point->row >= 0 && (guint) point->row < rows && all_finite (floats, 5);
 }
 
 /* Writing */
@@ -177,16 +209,16 @@ end_section (GByteArray * bytes, guint start, guint * n_sections)
 static guint
 begin_features (GByteArray * bytes, const FeatureKind * kind,
     guint64 sequence, const gchar * camera, guint columns, guint rows,
-    guint n_colours)
+    guint extra)
 {
-  const guint counts[3] = { columns, rows, 0 };
+  const guint counts[MAX_COUNTS] = { columns, rows };
   guint start = begin_section (bytes, kind->tag);
 
   put_u64 (bytes, sequence);
   for (guint i = 0; i < kind->n_counts; i++)
     put_u32 (bytes, counts[i]);
   put_u16 (bytes, (guint) strlen (camera));
-  put_u16 (bytes, n_colours);
+  put_u16 (bytes, extra);
   put_string (bytes, camera);
   return start;
 }
@@ -339,6 +371,68 @@ put_silhouette (GByteArray * bytes, const GstClothSilhouette * silhouette,
   end_section (bytes, start, n_sections);
 }
 
+static void
+put_matches (GByteArray * bytes, const GstClothMatches * matches,
+    guint * n_sections)
+{
+  guint columns = gst_cloth_matches_get_columns (matches);
+  guint rows = gst_cloth_matches_get_rows (matches);
+  guint n_matches, n_points, start, n_places = 0, n = 0;
+  const GstClothMatch *match = gst_cloth_matches_get_matches (matches,
+      &n_matches);
+  const GstClothGridPoint *point = gst_cloth_matches_get_points (matches,
+      &n_points);
+  g_autofree guint64 *places = g_new (guint64, n_points);
+  g_autofree guint8 *left_out = g_new0 (guint8, n_points);
+
+  start = begin_features (bytes, &matches_kind,
+      gst_cloth_matches_get_sequence (matches),
+      gst_cloth_matches_get_camera (matches), columns, rows,
+      gst_cloth_matches_get_on_surface (matches));
+  for (guint i = 0; i < n_matches; i++, match++) {
+    const guint8 flags[4] = { match->oblique ? 1 : 0, match->mirrored ? 1 : 0,
+      match->verified ? 1 : 0, 0
+    };
+    const gfloat floats[6] = { match->x, match->y, match->u, match->v,
+      match->scale, match->distance
+    };
+
+    if (!match_is_valid (match))
+      continue;
+    put_floats (bytes, floats, 6);
+    put_u32 (bytes, match->group);
+    g_byte_array_append (bytes, flags, 4);
+    n++;
+  }
+  set_count (bytes, start, 2, gst_cloth_matches_get_n_features (matches));
+  set_count (bytes, start, 3, n);
+
+  for (guint i = 0; i < n_points; i++) {
+    left_out[i] = !grid_point_is_valid (&point[i], columns, rows);
+    if (!left_out[i])
+      places[n_places++] =
+          gst_cloth_place (point[i].column, point[i].row, columns, i);
+  }
+  gst_cloth_places_mark_repeated (places, n_places, left_out);
+  n = 0;
+  for (guint i = 0; i < n_points; i++, point++) {
+    const guint8 flags[4] = { point->mirrored ? 1 : 0, 0, 0, 0 };
+    const gfloat floats[5] = { point->x, point->y, point->cov_xx,
+      point->cov_xy, point->cov_yy
+    };
+
+    if (left_out[i])
+      continue;
+    put_u32 (bytes, (guint32) point->column);
+    put_u32 (bytes, (guint32) point->row);
+    g_byte_array_append (bytes, flags, 4);
+    put_floats (bytes, floats, 5);
+    n++;
+  }
+  set_count (bytes, start, 4, n);
+  end_section (bytes, start, n_sections);
+}
+
 /* A reference is written as the text of its caps: these are the characters that such
  * caps need (timestamp/x-ntp; timestamp/x-ptp, version=(string)IEEE1588-2008). */
 static gboolean
@@ -393,12 +487,11 @@ put_times (GByteArray * bytes, GstBuffer * buffer, guint * n_sections)
  * gst_cloth_observations_pack:
  * @buffer: a buffer with cloth metas
  *
- * Writes what was seen in a picture, without the picture: the saddles, the quads, the dots
- * and the silhouette on @buffer, with camera and sequence number, and its
- * #GstReferenceTimestampMeta. A
- * feature with a float that isn't finite, a quad or dot outside its pattern or at the place of
- * an earlier one, and a reference clock that isn't one of GStreamer's own are left out. @buffer
- * without any such meta gives a buffer without sections.
+ * Writes what was seen in a picture, without the picture: the saddles, the quads, the dots,
+ * the silhouette and the matches on @buffer, with camera and sequence number, and its
+ * #GstReferenceTimestampMeta. A feature with a float that isn't finite, a quad, dot or vertex
+ * outside its pattern or at the place of an earlier one, and a reference clock that isn't one
+ * of GStreamer's own are left out. Disparities are no part of a stream. @buffer without any such meta gives a buffer without sections.
  *
  * Returns: (transfer full): a new buffer in the layout of the observation stream, with
  *   the time stamps and the flags of @buffer
@@ -412,6 +505,7 @@ gst_cloth_observations_pack (GstBuffer * buffer)
   GstClothQuads *quads;
   GstClothDots *dots;
   GstClothSilhouette *silhouette;
+  GstClothMatches *matches;
   GByteArray *bytes;
   GstBuffer *observation;
   guint n_sections = 0;
@@ -423,6 +517,7 @@ gst_cloth_observations_pack (GstBuffer * buffer)
   quads = gst_buffer_get_cloth_quads (buffer);
   dots = gst_buffer_get_cloth_dots (buffer);
   silhouette = gst_buffer_get_cloth_silhouette (buffer);
+  matches = gst_buffer_get_cloth_matches (buffer);
   if (saddles)
     size += sizeof (GstClothSaddle) * gst_cloth_saddles_get_n_refined (saddles)
         + sizeof (GstClothCandidate)
@@ -433,6 +528,9 @@ gst_cloth_observations_pack (GstBuffer * buffer)
     size += sizeof (GstClothDot) * gst_cloth_dots_get_n_dots (dots);
   if (silhouette)
     size += sizeof (GstClothRun) * gst_cloth_silhouette_get_n_runs (silhouette);
+  if (matches)
+    size += sizeof (GstClothMatch) * gst_cloth_matches_get_n_matches (matches)
+        + sizeof (GstClothGridPoint) * gst_cloth_matches_get_n_points (matches);
 
   bytes = g_byte_array_sized_new ((guint) size);
   g_byte_array_append (bytes, (const guint8 *) OBSERVATIONS_MAGIC, 4);
@@ -451,6 +549,8 @@ gst_cloth_observations_pack (GstBuffer * buffer)
     put_dots (bytes, dots, &n_sections);
   if (silhouette)
     put_silhouette (bytes, silhouette, &n_sections);
+  if (matches)
+    put_matches (bytes, matches, &n_sections);
   GST_WRITE_UINT32_LE (bytes->data + 8, bytes->len);
   GST_WRITE_UINT32_LE (bytes->data + 12, n_sections);
 
@@ -475,6 +575,7 @@ typedef struct
   GstClothQuads *quads;
   GstClothDots *dots;
   GstClothSilhouette *silhouette;
+  GstClothMatches *matches;
   GstCaps *references[MAX_TIMES];
   guint64 timestamps[MAX_TIMES];
   guint64 durations[MAX_TIMES];
@@ -488,6 +589,7 @@ observed_clear (Observed * observed)
   g_clear_pointer (&observed->quads, gst_cloth_quads_unref);
   g_clear_pointer (&observed->dots, gst_cloth_dots_unref);
   g_clear_pointer (&observed->silhouette, gst_cloth_silhouette_unref);
+  g_clear_pointer (&observed->matches, gst_cloth_matches_unref);
   while (observed->n_times)
     gst_caps_unref (observed->references[--observed->n_times]);
 }
@@ -506,8 +608,8 @@ fail (GError ** error, GstClothError code, const gchar * what,
 typedef struct
 {
   guint64 sequence;
-  guint counts[3];
-  guint n_colours;
+  guint counts[MAX_COUNTS];
+  guint extra;
   gchar camera[GST_CLOTH_MAX_CAMERA_NAME + 1];
   const guint8 *items;
 } Features;
@@ -534,8 +636,8 @@ read_features (const Section * section, const FeatureKind * kind,
       return fail (error, GST_CLOTH_ERROR_LIMIT, tag, kind->too_many);
   }
   length = gst_cloth_read_u16 (at + header - 4);
-  features->n_colours = gst_cloth_read_u16 (at + header - 2);
-  if (kind == &dots_kind && features->n_colours > GST_CLOTH_DOT_MAX_COLOURS)
+  features->extra = gst_cloth_read_u16 (at + header - 2);
+  if (kind == &dots_kind && features->extra > GST_CLOTH_DOT_MAX_COLOURS)
     return fail (error, GST_CLOTH_ERROR_LIMIT, tag,
         "there are more than 8 colours");
 
@@ -552,7 +654,7 @@ read_features (const Section * section, const FeatureKind * kind,
   memcpy (features->camera, name, length);
 
   size = header + padded (length) + padded (items_size (kind,
-          features->counts, features->n_colours));
+          features->counts, features->extra));
   if (section->size != size)
     return fail (error, section->size < size ? GST_CLOTH_ERROR_TRUNCATED :
         GST_CLOTH_ERROR_VALUE, tag,
@@ -662,7 +764,7 @@ read_dots (const Section * section, Observed * observed, GError ** error)
   columns = features.counts[0];
   rows = features.counts[1];
   n_dots = features.counts[2];
-  n_colours = features.n_colours;
+  n_colours = features.extra;
 
   at = features.items;
   dots = g_new0 (GstClothDot, n_dots);
@@ -731,6 +833,80 @@ read_silhouette (const Section * section, Observed * observed, GError ** error)
 }
 
 static gboolean
+read_matches (const Section * section, Observed * observed, GError ** error)
+{
+  const gchar *tag = matches_kind.tag;
+  Features features = { 0 };
+  g_autofree GstClothMatch *matches = NULL;
+  g_autofree GstClothGridPoint *points = NULL;
+  g_autofree guint64 *places = NULL;
+  const guint8 *at;
+  guint columns, rows, n_matches, n_points;
+
+  if (!read_features (section, &matches_kind, observed->matches != NULL,
+          &features, error))
+    return FALSE;
+  columns = features.counts[0];
+  rows = features.counts[1];
+  n_matches = features.counts[3];
+  n_points = features.counts[4];
+  if (features.extra > 1)
+    return fail (error, GST_CLOTH_ERROR_VALUE, tag,
+        "it is neither along a surface nor by the picture only");
+
+  at = features.items;
+  matches = g_new0 (GstClothMatch, n_matches);
+  for (guint i = 0; i < n_matches; i++, at += matches_kind.item_bytes[3]) {
+    GstClothMatch *match = &matches[i];
+    gfloat floats[6];
+
+    gst_cloth_copy_le32 (floats, at, 6);
+    match->x = floats[0];
+    match->y = floats[1];
+    match->u = floats[2];
+    match->v = floats[3];
+    match->scale = floats[4];
+    match->distance = floats[5];
+    match->group = gst_cloth_read_u32 (at + 24);
+    match->oblique = at[28];
+    match->mirrored = at[29];
+    match->verified = at[30];
+    if (!match_is_valid (match) || at[28] > 1 || at[29] > 1 || at[30] > 1)
+      return fail (error, GST_CLOTH_ERROR_VALUE, tag,
+          "a match has an unknown flag or a float that is not finite");
+  }
+
+  points = g_new0 (GstClothGridPoint, n_points);
+  places = g_new (guint64, n_points);
+  for (guint i = 0; i < n_points; i++, at += matches_kind.item_bytes[4]) {
+    GstClothGridPoint *point = &points[i];
+    gfloat floats[5];
+
+    point->column = (gint) MIN (gst_cloth_read_u32 (at), (guint) G_MAXINT);
+    point->row = (gint) MIN (gst_cloth_read_u32 (at + 4), (guint) G_MAXINT);
+    point->mirrored = at[8];
+    gst_cloth_copy_le32 (floats, at + 12, 5);
+    point->x = floats[0];
+    point->y = floats[1];
+    point->cov_xx = floats[2];
+    point->cov_xy = floats[3];
+    point->cov_yy = floats[4];
+    if (!grid_point_is_valid (point, columns, rows) || at[8] > 1)
+      return fail (error, GST_CLOTH_ERROR_VALUE, tag,
+          "a vertex lies outside the pattern, has an unknown flag or a float "
+          "that is not finite");
+    places[i] = gst_cloth_place (point->column, point->row, columns, i);
+  }
+  if (!gst_cloth_places_sort (places, n_points))
+    return fail (error, GST_CLOTH_ERROR_VALUE, tag,
+        "two vertices have the same column and row");
+  observed->matches = gst_cloth_matches_new (features.camera,
+      features.sequence, columns, rows, features.counts[2],
+      features.extra != 0, matches, n_matches, points, n_points);
+  return TRUE;
+}
+
+static gboolean
 read_time (const Section * section, Observed * observed, GError ** error)
 {
   const gchar *text;
@@ -778,6 +954,8 @@ read_section (const guint8 * tag, const Section * section,
     return read_dots (section, observed, error);
   if (memcmp (tag, silhouette_kind.tag, 4) == 0)
     return read_silhouette (section, observed, error);
+  if (memcmp (tag, matches_kind.tag, 4) == 0)
+    return read_matches (section, observed, error);
   if (memcmp (tag, SECTION_TIME, 4) == 0)
     return read_time (section, observed, error);
   return TRUE;                  /* of a later library */
@@ -829,8 +1007,8 @@ read_observation (const guint8 * bytes, gsize size, Observed * observed,
  * @target: a writable buffer, which may be @observation itself
  * @error: return location for a #GST_CLOTH_ERROR
  *
- * Puts on @target the metas that @observation holds: saddles, quads, dots, a silhouette and
- * reference time stamps. Sections of a kind that this library doesn't know are passed over, and so are
+ * Puts on @target the metas that @observation holds: saddles, quads, dots, a silhouette,
+ * matches and reference time stamps. Sections of a kind that this library doesn't know are passed over, and so are
  * times of a clock that it doesn't know. Time stamps and flags of @target stay.
  *
  * Returns: %FALSE with @error set, and @target as it was, when the bytes are no valid
@@ -870,5 +1048,8 @@ gst_cloth_observations_unpack (GstBuffer * observation, GstBuffer * target,
   if (observed.silhouette)
     gst_buffer_add_cloth_silhouette_meta (target,
         g_steal_pointer (&observed.silhouette));
+  if (observed.matches)
+    gst_buffer_add_cloth_matches_meta (target,
+        g_steal_pointer (&observed.matches));
   return TRUE;
 }

@@ -22,8 +22,36 @@ gst_cloth_payload_new (gsize size, const gchar * camera, guint64 sequence,
 
   payload->sequence = sequence;
   payload->scale = scale;
+  payload->clear = NULL;
+  payload->per_camera = FALSE;
   g_strlcpy (payload->camera, camera ? camera : "", sizeof payload->camera);
   return payload;
+}
+
+static void
+payload_clear (gpointer payload)
+{
+  GstClothPayload *cleared = payload;
+
+  if (cleared->clear)
+    cleared->clear (cleared);
+}
+
+/* @payload: (transfer full): gives a reference back; the last one frees
+ */
+void
+gst_cloth_payload_release (gpointer payload)
+{
+  g_atomic_rc_box_release_full (payload, payload_clear);
+}
+
+/* The scale of a payload that has a size of its own: nothing changes, so that one payload
+ * serves every size of the picture.
+ */
+void
+gst_cloth_payload_keep_size (GstClothPayload * payload, gdouble scale_x,
+    gdouble scale_y)
+{
 }
 
 /* Returns: (transfer full): the payload of the same picture at another size
@@ -38,6 +66,8 @@ gst_cloth_payload_scale (const GstClothPayload * payload, gdouble scale_x,
   g_return_val_if_fail (payload != NULL, NULL);
   g_return_val_if_fail (scale_x > 0 && scale_y > 0, NULL);
 
+  if (source->scale == gst_cloth_payload_keep_size)
+    return g_atomic_rc_box_acquire (source);
   scaled = g_atomic_rc_box_dup (g_atomic_rc_box_get_size (source), source);
   scaled->scale (scaled, scale_x, scale_y);
   return scaled;
@@ -54,7 +84,7 @@ static void
 meta_free (GstMeta * meta, GstBuffer * buffer)
 {
   g_clear_pointer (&((GstClothPayloadMeta *) meta)->payload,
-      g_atomic_rc_box_release);
+      gst_cloth_payload_release);
 }
 
 /* TRUE when a meta's transformation is a change of the picture's size */
@@ -134,11 +164,30 @@ gst_cloth_payload_register_meta (const GstMetaInfo ** info, GType api,
   return *info;
 }
 
+/* Returns: (transfer none) (nullable): the meta of @buffer under @api; of @camera, unless
+ *   that is %NULL
+ */
+static GstMeta *
+find_meta (GstBuffer * buffer, GType api, const gchar * camera)
+{
+  gpointer iterator = NULL;
+  GstMeta *meta;
+
+  while ((meta = gst_buffer_iterate_meta_filtered (buffer, &iterator, api))) {
+    const GstClothPayload *payload = ((GstClothPayloadMeta *) meta)->payload;
+
+    if (!camera || (payload && strcmp (payload->camera, camera) == 0))
+      return meta;
+  }
+  return NULL;
+}
+
 /* @payload: (transfer full): what to put on @buffer
  * @buffer: a writable buffer
  * @info: of the meta that holds it
  *
- * Puts @payload on @buffer, in place of the one it may have had.
+ * Puts @payload on @buffer, in place of the one it may have had; of a kind that is there for
+ * each camera, in place of the one of its camera.
  *
  * Returns: (transfer none): the meta that now holds @payload
  */
@@ -146,17 +195,19 @@ gpointer
 gst_cloth_payload_attach (gpointer payload, GstBuffer * buffer,
     const GstMetaInfo * info)
 {
+  const GstClothPayload *added = payload;
   GstMeta *meta;
 
   g_return_val_if_fail (GST_IS_BUFFER (buffer), NULL);
   g_return_val_if_fail (gst_buffer_is_writable (buffer), NULL);
   g_return_val_if_fail (payload != NULL, NULL);
 
-  meta = gst_buffer_get_meta (buffer, info->api);
+  meta = find_meta (buffer, info->api, added->per_camera ? added->camera :
+      NULL);
   if (!meta)
     meta = gst_buffer_add_meta (buffer, info, NULL);
   if (!meta) {
-    g_atomic_rc_box_release (payload);
+    gst_cloth_payload_release (payload);
     return NULL;
   }
   meta_free (meta, buffer);
@@ -169,10 +220,37 @@ gst_cloth_payload_attach (gpointer payload, GstBuffer * buffer,
 gpointer
 gst_cloth_payload_find (GstBuffer * buffer, GType api)
 {
+  return gst_cloth_payload_find_of_camera (buffer, api, NULL);
+}
+
+/* Returns: (transfer none) (nullable): the payload of @camera that @buffer has under @api;
+ *   the first one when @camera is %NULL
+ */
+gpointer
+gst_cloth_payload_find_of_camera (GstBuffer * buffer, GType api,
+    const gchar * camera)
+{
   GstMeta *meta;
 
   g_return_val_if_fail (GST_IS_BUFFER (buffer), NULL);
 
-  meta = gst_buffer_get_meta (buffer, api);
+  meta = find_meta (buffer, api, camera);
   return meta ? ((GstClothPayloadMeta *) meta)->payload : NULL;
+}
+
+/* Returns: (transfer none) (nullable): the payload number @index that @buffer has under
+ *   @api, in the order in which they were put there
+ */
+gpointer
+gst_cloth_payload_find_nth (GstBuffer * buffer, GType api, guint index)
+{
+  gpointer iterator = NULL;
+  GstMeta *meta;
+
+  g_return_val_if_fail (GST_IS_BUFFER (buffer), NULL);
+
+  while ((meta = gst_buffer_iterate_meta_filtered (buffer, &iterator, api)))
+    if (index-- == 0)
+      return ((GstClothPayloadMeta *) meta)->payload;
+  return NULL;
 }

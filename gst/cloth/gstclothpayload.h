@@ -14,12 +14,17 @@ typedef struct _GstClothPayload GstClothPayload;
 typedef void (*GstClothPayloadScale) (GstClothPayload * payload,
     gdouble scale_x, gdouble scale_y);
 
+/* Gives back what a payload shares with others, before its memory goes. */
+typedef void (*GstClothPayloadClear) (GstClothPayload * payload);
+
 /* What every payload begins with. A payload is one allocation of GLib's atomically counted
  * boxes; its items follow its struct. It never changes once it has been handed out. */
 struct _GstClothPayload
 {
   guint64 sequence;
   GstClothPayloadScale scale;   /* NULL: not of a picture, so it has no scale */
+  GstClothPayloadClear clear;   /* NULL: it shares nothing; else it must keep its size */
+  gboolean per_camera;          /* a buffer has one of each camera, not one in all */
   gchar camera[GST_CLOTH_MAX_CAMERA_NAME + 1];
 };
 
@@ -40,6 +45,9 @@ gst_cloth_camera_is_valid (const gchar * camera)
 
 gpointer gst_cloth_payload_new (gsize size, const gchar * camera,
     guint64 sequence, GstClothPayloadScale scale);
+void gst_cloth_payload_release (gpointer payload);
+void gst_cloth_payload_keep_size (GstClothPayload * payload, gdouble scale_x,
+    gdouble scale_y);
 gpointer gst_cloth_payload_scale (const GstClothPayload * payload,
     gdouble scale_x, gdouble scale_y);
 
@@ -50,6 +58,10 @@ const GstMetaInfo *gst_cloth_payload_register_meta (const GstMetaInfo ** info,
 gpointer gst_cloth_payload_attach (gpointer payload, GstBuffer * buffer,
     const GstMetaInfo * info);
 gpointer gst_cloth_payload_find (GstBuffer * buffer, GType api);
+gpointer gst_cloth_payload_find_of_camera (GstBuffer * buffer, GType api,
+    const gchar * camera);
+gpointer gst_cloth_payload_find_nth (GstBuffer * buffer, GType api,
+    guint index);
 
 /* Places keep to pixel centres, so the picture's edge stays its edge. */
 static inline void

@@ -192,7 +192,7 @@ gst_cloth_quads_ref (GstClothQuads * quads)
 void
 gst_cloth_quads_unref (GstClothQuads * quads)
 {
-  g_atomic_rc_box_release (quads);
+  gst_cloth_payload_release (quads);
 }
 
 /**

@@ -194,7 +194,7 @@ gst_cloth_saddles_ref (GstClothSaddles * saddles)
 void
 gst_cloth_saddles_unref (GstClothSaddles * saddles)
 {
-  g_atomic_rc_box_release (saddles);
+  gst_cloth_payload_release (saddles);
 }
 
 /**

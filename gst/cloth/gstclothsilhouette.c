@@ -45,12 +45,6 @@ gst_cloth_run_free (GstClothRun * run)
   g_free (run);
 }
 
-/* It has a size of its own. */
-static void
-silhouette_scale (GstClothPayload * payload, gdouble scale_x, gdouble scale_y)
-{
-}
-
 /**
  * gst_cloth_silhouette_runs_are_valid:
  * @width: columns
@@ -109,7 +103,7 @@ gst_cloth_silhouette_new (const gchar * camera, guint64 sequence, guint width,
           runs, n_runs), NULL);
 
   silhouette = gst_cloth_payload_new (sizeof *silhouette
-      + n_runs * sizeof *runs, camera, sequence, silhouette_scale);
+      + n_runs * sizeof *runs, camera, sequence, gst_cloth_payload_keep_size);
   if (!silhouette)
     return NULL;
   silhouette->width = width;
@@ -145,7 +139,7 @@ gst_cloth_silhouette_ref (GstClothSilhouette * silhouette)
 void
 gst_cloth_silhouette_unref (GstClothSilhouette * silhouette)
 {
-  g_atomic_rc_box_release (silhouette);
+  gst_cloth_payload_release (silhouette);
 }
 
 /**

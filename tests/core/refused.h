@@ -21,6 +21,7 @@ assert_refused (const guint8 * bytes, gsize size, gint code, const gchar * name)
   g_assert_null (gst_buffer_get_cloth_quads (target));
   g_assert_null (gst_buffer_get_cloth_dots (target));
   g_assert_null (gst_buffer_get_cloth_silhouette (target));
+  g_assert_null (gst_buffer_get_cloth_matches (target));
   g_assert_null (gst_buffer_get_reference_timestamp_meta (target, NULL));
 }
 

@@ -42,6 +42,19 @@ make_picture (guint number)
       {20.5f, 20.5f, 40, 40}
   };
   GstClothDot dot = {.column = -1,.row = -1,.x = place,.y = 20.5f };
+  GstClothRun run = {.row = 1,.begin = 2,.end = 5 };
+  GstClothMatch match = {.x = place,.y = 20.5f,.u = 0.25f,.v = 0.5f,.scale = 2,
+    .verified = TRUE
+  };
+  GstClothGridPoint point = {.column = 1,.row = 2,.x = place,.y = 20.5f,
+    .cov_xx = 0.01f,.cov_yy = 0.04f
+  };
+  const gfloat ray[2] = { 0.5f, 0.25f }, disparity = place;
+  const gdouble normal[3] = { 0, 0, 1 }, none[3] = { 0 };
+  const gdouble turn[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
+  const guint8 measured = GST_CLOTH_DISPARITY_MEASURED;
+  g_autoptr (GstClothStereo) stereo = gst_cloth_stereo_new (1, 1, ray, 2,
+      normal, 1, turn, none, 2);
   GstBuffer *picture = gst_buffer_new_allocate (NULL, WIDTH * HEIGHT * 3 / 2,
       NULL);
   g_autoptr (GstCaps) clock = gst_caps_from_string ("timestamp/x-unix");
@@ -53,11 +66,33 @@ make_picture (guint number)
           8, 8, &quad, 1));
   gst_buffer_add_cloth_dots_meta (picture, gst_cloth_dots_new ("cam0", number,
           8, 8, 5, &dot, 1));
+  gst_buffer_add_cloth_silhouette_meta (picture,
+      gst_cloth_silhouette_new ("cam0", number, WIDTH, HEIGHT, &run, 1));
+  gst_buffer_add_cloth_matches_meta (picture, gst_cloth_matches_new ("cam0",
+          number, 8, 8, 1, TRUE, &match, 1, &point, 1));
+  gst_buffer_add_cloth_disparity_meta (picture, gst_cloth_disparity_new ("cam0",
+          number, stereo, 0.5f, &disparity, 1, &measured, 1));
   gst_buffer_add_reference_timestamp_meta (picture, clock,
       GST_SECOND + number, GST_CLOCK_TIME_NONE);
   GST_BUFFER_PTS (picture) = gst_util_uint64_scale (number, GST_SECOND, 25);
   GST_BUFFER_DURATION (picture) = GST_SECOND / 25;
   return picture;
+}
+
+/* Silhouettes and disparities have a size of their own: they stay as they are. */
+static gboolean
+maps_are_kept (GstClothSilhouette * silhouette, GstClothDisparity * disparity,
+    guint64 number)
+{
+  GstClothRun run;
+
+  return gst_cloth_silhouette_get_sequence (silhouette) == number
+      && gst_cloth_silhouette_get_width (silhouette) == WIDTH
+      && gst_cloth_silhouette_get_run (silhouette, 0, &run) && run.end == 5
+      && gst_cloth_disparity_get_sequence (disparity) == number
+      && gst_cloth_disparity_get_width (disparity) == 1
+      && gst_cloth_disparity_get_disparities (disparity, NULL)[0] ==
+      10.25f + (gfloat) number;
 }
 
 /* What became of the places on @picture: kept, scaled to its size, lost, or wrong. */
@@ -67,22 +102,34 @@ judge_places (GstBuffer * picture, const GstVideoInfo * info)
   GstClothSaddles *saddles = gst_buffer_get_cloth_saddles (picture);
   GstClothQuads *quads = gst_buffer_get_cloth_quads (picture);
   GstClothDots *dots = gst_buffer_get_cloth_dots (picture);
+  GstClothSilhouette *silhouette = gst_buffer_get_cloth_silhouette (picture);
+  GstClothMatches *matches = gst_buffer_get_cloth_matches (picture);
+  GstClothDisparity *disparity = gst_buffer_get_cloth_disparity (picture);
   gfloat sx = (gfloat) GST_VIDEO_INFO_WIDTH (info) / WIDTH;
   gfloat sy = (gfloat) GST_VIDEO_INFO_HEIGHT (info) / HEIGHT;
   GstClothSaddle saddle;
   GstClothQuad quad;
   GstClothDot dot;
+  GstClothMatch match;
+  GstClothGridPoint point;
   gfloat x, most = sx == 1 && sy == 1 ? G_MINFLOAT : 1e-4f;
 
-  if (!saddles && !quads && !dots)
+  if (!saddles && !quads && !dots && !silhouette && !matches && !disparity)
     return "lost";
-  if (!saddles || !quads || !dots || !gst_cloth_dots_get_dot (dots, 0, &dot)
+  if (!saddles || !quads || !dots || !silhouette || !matches || !disparity
+      || !gst_cloth_dots_get_dot (dots, 0, &dot)
+      || !gst_cloth_matches_get_match (matches, 0, &match)
+      || !gst_cloth_matches_get_point (matches, 0, &point)
       || !gst_cloth_saddles_get_saddle (saddles, 0, &saddle)
       || !gst_cloth_quads_get_quad (quads, 0, &quad)
       || g_strcmp0 (gst_cloth_saddles_get_camera (saddles), "cam0") != 0
       || gst_cloth_saddles_get_sequence (saddles) >= FRAMES
       || gst_cloth_quads_get_sequence (quads) !=
-      gst_cloth_saddles_get_sequence (saddles))
+      gst_cloth_saddles_get_sequence (saddles)
+      || gst_cloth_matches_get_sequence (matches) !=
+      gst_cloth_saddles_get_sequence (saddles)
+      || !maps_are_kept (silhouette, disparity,
+          gst_cloth_saddles_get_sequence (saddles)))
     return "wrong";
   x = 10.25f + (gfloat) gst_cloth_saddles_get_sequence (saddles);
   if (!G_APPROX_VALUE (saddle.x, (x + 0.5f) * sx - 0.5f, most)
@@ -91,6 +138,11 @@ judge_places (GstBuffer * picture, const GstVideoInfo * info)
       || !G_APPROX_VALUE (saddle.cov_yy, 0.04f * sy * sy, most)
       || !G_APPROX_VALUE (dot.x, saddle.x, most)
       || !G_APPROX_VALUE (dot.y, saddle.y, most)
+      || !G_APPROX_VALUE (match.x, saddle.x, most)
+      || !G_APPROX_VALUE (match.y, saddle.y, most) || match.u != 0.25f
+      || !G_APPROX_VALUE (point.x, saddle.x, most)
+      || !G_APPROX_VALUE (point.y, saddle.y, most)
+      || !G_APPROX_VALUE (point.cov_xx, saddle.cov_xx, most)
       || !G_APPROX_VALUE (quad.x[3], (x + 0.5f) * sx - 0.5f, most)
       || !G_APPROX_VALUE (quad.y[2], 40.5f * sy - 0.5f, most))
     return "wrong";
@@ -210,6 +262,7 @@ make_mesh (guint number)
 {
   const gfloat places[12] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0 };
   const guint8 states[4] = { 1, 1, 1, 1 };
+  const gfloat uv[2] = { 0.5f, 0.25f };
   gfloat residuals[12] = { 0.001f * (gfloat) number };
   g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_new (number, 4, places, states,
       NULL);
@@ -217,25 +270,38 @@ make_mesh (guint number)
 
   gst_buffer_add_cloth_gap_meta (buffer, gst_cloth_gap_new (number, 4,
           residuals, NULL));
+  gst_buffer_add_cloth_uv_meta (buffer, gst_cloth_uv_new ("cam0", number, 1, 1,
+          uv, 2));
+  gst_buffer_add_cloth_uv_meta (buffer, gst_cloth_uv_new ("cam1", number, 1, 1,
+          uv, 2));
   GST_BUFFER_PTS (buffer) = gst_util_uint64_scale (number, GST_SECOND, 25);
   GST_BUFFER_DURATION (buffer) = GST_SECOND / 25;
   return buffer;
 }
 
-/* The gap must still be that of the mesh it lies on. */
+/* The gap and the maps must still be those of the mesh they lie on. */
 static void
 judge_gap (GstSample * sample, const gchar * verdicts[])
 {
   GstBuffer *buffer = gst_sample_get_buffer (sample);
   GstClothGap *gap = gst_buffer_get_cloth_gap (buffer);
+  GstClothUV *uvs[2] = { gst_buffer_get_nth_cloth_uv (buffer, 0),
+    gst_buffer_get_cloth_uv (buffer, "cam1")
+  };
   g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_from_buffer (buffer, NULL);
 
   if (!mesh)
     verdicts[0] = "wrong";
-  else if (!gap)
+  else if (!gap && !uvs[0] && !uvs[1])
     verdicts[0] = "lost";
+  else if (!gap || !uvs[0] || !uvs[1] || uvs[0] == uvs[1])
+    verdicts[0] = "wrong";
   else
     verdicts[0] = gst_cloth_gap_get_sequence (gap) ==
+        gst_cloth_mesh_get_sequence (mesh)
+        && gst_cloth_uv_get_sequence (uvs[0]) ==
+        gst_cloth_mesh_get_sequence (mesh)
+        && gst_cloth_uv_get_sequence (uvs[1]) ==
         gst_cloth_mesh_get_sequence (mesh)
         && gst_cloth_gap_get_residuals (gap, NULL)[0] ==
         0.001f * (gfloat) gst_cloth_mesh_get_sequence (mesh) ? "kept" : "wrong";
@@ -267,9 +333,10 @@ GST_END_TEST;
 GST_START_TEST (test_page)
 {
   g_autoptr (GString) table =
-      g_string_new ("| chain | saddles, quads, dots | capture "
+      g_string_new ("| chain | of a picture | capture "
       "time |\n|---|---|---|\n");
-  g_autoptr (GString) gaps = g_string_new ("| chain | gap |\n|---|---|\n");
+  g_autoptr (GString) gaps =
+      g_string_new ("| chain | gap, maps |\n|---|---|\n");
   g_autofree gchar *text = NULL;
   g_autoptr (GError) error = NULL;
 

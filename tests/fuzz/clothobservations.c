@@ -28,6 +28,7 @@ LLVMFuzzerTestOneInput (const guint8 * data, gsize size)
     g_assert_null (gst_buffer_get_cloth_saddles (target));
     g_assert_null (gst_buffer_get_cloth_dots (target));
     g_assert_null (gst_buffer_get_cloth_silhouette (target));
+    g_assert_null (gst_buffer_get_cloth_matches (target));
   }
   return 0;
 }

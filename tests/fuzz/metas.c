@@ -114,6 +114,45 @@ add_dots (GstBuffer * buffer, FuzzBytes * bytes)
 }
 
 static void
+add_matches (GstBuffer * buffer, FuzzBytes * bytes)
+{
+  GstClothMatch matches[32];
+  GstClothGridPoint points[32];
+  guint n = fuzz_take_byte (bytes) % 33, n_points = fuzz_take_byte (bytes) % 33;
+  guint columns = take_count (bytes), rows = take_count (bytes);
+
+  for (guint i = 0; i < n; i++) {
+    GstClothMatch *m = &matches[i];
+    guint8 flags = fuzz_take_byte (bytes);
+
+    m->x = fuzz_take_place (bytes, WIDTH);
+    m->y = fuzz_take_place (bytes, HEIGHT);
+    m->u = fuzz_take_place (bytes, 1);
+    m->v = fuzz_take_place (bytes, 1);
+    m->scale = fuzz_take_place (bytes, 8);
+    m->distance = fuzz_take_place (bytes, 300);
+    m->group = (guint) take_index (bytes);
+    m->oblique = flags & 1;
+    m->mirrored = flags & 2;
+    m->verified = flags & 4;
+  }
+  for (guint i = 0; i < n_points; i++) {
+    GstClothGridPoint *p = &points[i];
+
+    p->column = take_index (bytes);
+    p->row = take_index (bytes);
+    p->mirrored = fuzz_take_byte (bytes) % 2;
+    p->x = fuzz_take_place (bytes, WIDTH);
+    p->y = fuzz_take_place (bytes, HEIGHT);
+    p->cov_xx = p->cov_yy = fuzz_take_place (bytes, 1);
+    p->cov_xy = fuzz_take_place (bytes, 1);
+  }
+  gst_buffer_add_cloth_matches_meta (buffer, gst_cloth_matches_new ("cam0",
+          fuzz_take_byte (bytes), columns, rows, n, FALSE, matches, n, points,
+          n_points));
+}
+
+static void
 add_metas (GstBuffer * buffer, FuzzBytes * bytes)
 {
   guint which = fuzz_take_byte (bytes);
@@ -124,6 +163,8 @@ add_metas (GstBuffer * buffer, FuzzBytes * bytes)
     add_quads (buffer, bytes);
   if (which & 4)
     add_dots (buffer, bytes);
+  if (which & 8)
+    add_matches (buffer, bytes);
 }
 
 static GstBuffer *

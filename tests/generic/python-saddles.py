@@ -161,6 +161,54 @@ class Silhouettes(unittest.TestCase):
         self.assertEqual(numpy.argwhere(mask == 255).tolist(), [[1, 2], [1, 3], [1, 4]])
 
 
+class Prints(unittest.TestCase):
+    def test_matches(self):
+        match, point = GstCloth.Match(), GstCloth.GridPoint()
+        match.x, match.y, match.u, match.v, match.scale = 1.5, 2.5, 0.25, 0.5, 2
+        match.distance, match.group, match.verified = 100, 7, True
+        point.column, point.row, point.x, point.y, point.cov_xx = 34, 32, 3, 4, 0.25
+        picture = Gst.Buffer.new()
+        self.assertIsNone(GstCloth.buffer_get_cloth_matches(picture))
+        GstCloth.buffer_add_cloth_matches_meta(picture, GstCloth.Matches.new(
+            'cam1', 9, 35, 33, 4, True, [match], [point]))
+        matches = GstCloth.buffer_get_cloth_matches(picture)
+        self.assertEqual((matches.get_columns(), matches.get_rows(), matches.get_n_features(),
+                          matches.get_on_surface()), (35, 33, 4, True))
+        self.assertEqual([m.group for m in matches.get_matches()], [7])
+        self.assertEqual([(p.column, p.row, p.y) for p in matches.get_points()], [(34, 32, 4)])
+        self.assertFalse(matches.get_point(1)[0])
+        table = numpy.frombuffer(matches.get_table().get_data(), numpy.float32)
+        self.assertEqual(table.tolist(), [1.5, 2.5, 0.25, 0.5, 2, 100, 1])
+
+    def test_disparity(self):
+        stereo = GstCloth.Stereo.new(2, 1, [0.5, -0.25, 0, 0], [0, 0, 1], 100,
+                                     [1, 0, 0, 0, 1, 0, 0, 0, 1], [0, 0, 0.5], 3)
+        self.assertEqual(stereo.get_rays(), [0.5, -0.25, 0, 0])
+        self.assertEqual(list(stereo.get_translation()), [0, 0, 0.5])
+        picture = Gst.Buffer.new()
+        GstCloth.buffer_add_cloth_disparity_meta(picture, GstCloth.Disparity.new(
+            'cam1', 9, stereo, 0.5, [50, math.nan],
+            [GstCloth.DisparityState.MEASURED, GstCloth.DisparityState.HOLE]))
+        disparity = GstCloth.buffer_get_cloth_disparity(picture)
+        self.assertEqual(list(disparity.get_states()), [2, 1])
+        points = numpy.frombuffer(disparity.get_points().get_data(), numpy.float32)
+        self.assertEqual(points[:3].tolist(), [1, -0.5, 2])
+        self.assertTrue(numpy.isnan(points[3:]).all())
+
+    def test_uv(self):
+        mesh = Gst.Buffer.new()
+        for camera, u in (('left', 0.25), ('right', 0.5)):
+            GstCloth.buffer_add_cloth_uv_meta(
+                mesh, GstCloth.UV.new(camera, 3, 1, 2, [u, 0.125, math.nan, 0]))
+        uv = GstCloth.buffer_get_cloth_uv(mesh.copy(), 'right')
+        self.assertEqual(uv.get_uv()[:2], [0.5, 0.125])
+        places = numpy.frombuffer(uv.get_map().get_data(), numpy.float32).reshape(2, 1, 2)
+        self.assertTrue(numpy.isnan(places[1, 0]).all())
+        self.assertEqual(GstCloth.buffer_get_nth_cloth_uv(mesh, 0).get_camera(), 'left')
+        self.assertIsNone(GstCloth.buffer_get_nth_cloth_uv(mesh, 2))
+        self.assertIsNone(GstCloth.buffer_get_cloth_uv(mesh, 'middle'))
+
+
 class Streams(unittest.TestCase):
     """The layouts of docs/streams.md, written here by struct."""
 

@@ -42,6 +42,9 @@ def jobs(tool, data, threads):
         '! clothcamera threads=%d rig=%s/rig.json camera=cam1 pattern=%s/pattern.json '
         'effects=noise,sigma=3;motion_blur,exposure=0.01 seed=3 ! filesink location=film.yuv'
         % (threads, pair, pair),
+        'gst-launch-1.0 -q filesrc location=%s/cam0.mp4 ! qtdemux ! h264parse '
+        '! avdec_h264 max-threads=1 ! identity eos-after=4 ! silhouette luma-max=150 threads=%d '
+        '! clothmetapay ! filesink location=silhouette.obs' % (pair, threads),
         '%s simulate %s/model-knit.json --scene %s --threads %d --output simulated'
         % (tool, models, drag, threads),
         '%s diagnose %s --model %s/model-knit.json --effects wind,air_drag,stretch --threads %d '

@@ -6,7 +6,9 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
+#include "gst/vision/match/grid.h"
 #include "gst/vision/match/grow.h"
 #include "gst/vision/match/reference.h"
 #include "gst/vision/match/stretch.h"
 #include "gst/vision/match/verify.h"
+#include "gst/vision/match/warp.h"

@@ -6,3 +6,4 @@
 #pragma once
 
 #include "gst/vision/uv/dense.h"
+#include "gst/vision/uv/vertex.h"
