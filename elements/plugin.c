@@ -20,6 +20,7 @@
 #include "elements/gstquadtrack.h"
 #include "elements/gsttriangulate.h"
 #include "elements/gstsaddledetect.h"
+#include "elements/gstsiftmatch.h"
 #include "elements/gstsilhouette.h"
 
 static gboolean
@@ -41,6 +42,7 @@ plugin_init (GstPlugin * plugin)
   registered &= GST_ELEMENT_REGISTER (triangulate, plugin);
 
   registered &= GST_ELEMENT_REGISTER (saddledetect, plugin);
+  registered &= GST_ELEMENT_REGISTER (siftmatch, plugin);
   registered &= GST_ELEMENT_REGISTER (silhouette, plugin);
   return registered;
 }

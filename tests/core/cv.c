@@ -207,6 +207,44 @@ test_sift_mask (void)
   }
 }
 
+/* Of too many features the strongest are kept: those that a detector that asks for more
+ * contrast would have found by itself, in the same order. */
+static void
+test_sift_keep (void)
+{
+  ClothCvSiftParams params = cloth_cv_sift_default_params ();
+  g_autoptr (ClothCvSift) sift = cloth_cv_sift_new (&params, NULL);
+  g_autoptr (ClothCvSift) strict = NULL;
+  g_autofree guint8 *data = g_malloc (STRIDE * HEIGHT);
+  const ClothCvPicture picture = { data, WIDTH, HEIGHT, STRIDE };
+  ClothCvFeatures strong, kept;
+  guint n;
+
+  draw_noise (data, WIDTH, HEIGHT, STRIDE, 3);
+  g_assert_true (cloth_cv_sift_run (sift, &picture, NULL, &kept, NULL));
+  g_assert_cmpuint (cloth_cv_sift_get_n_dropped (sift), ==, 0);
+  n = kept.n;
+  params.contrast = 0.2;
+  strict = cloth_cv_sift_new (&params, NULL);
+  g_assert_true (cloth_cv_sift_run (strict, &picture, NULL, &strong, NULL));
+  g_assert_cmpuint (strong.n, >, 20);
+  g_assert_cmpuint (strong.n, <, n - 20);
+
+  cloth_cv_sift_keep (sift, strong.n);
+  g_assert_true (cloth_cv_sift_run (sift, &picture, NULL, &kept, NULL));
+  g_assert_cmpuint (kept.n, ==, strong.n);
+  g_assert_cmpuint (cloth_cv_sift_get_n_dropped (sift), ==, n - strong.n);
+  g_assert_cmpmem (kept.x, kept.n * sizeof (gfloat), strong.x,
+      strong.n * sizeof (gfloat));
+  g_assert_cmpmem (kept.descriptors, kept.n * CLOTH_CV_SIFT_BYTES,
+      strong.descriptors, strong.n * CLOTH_CV_SIFT_BYTES);
+
+  cloth_cv_sift_keep (sift, n);
+  g_assert_true (cloth_cv_sift_run (sift, &picture, NULL, &kept, NULL));
+  g_assert_cmpuint (kept.n, ==, n);
+  g_assert_cmpuint (cloth_cv_sift_get_n_dropped (sift), ==, 0);
+}
+
 /* Pictures in which nothing can be. */
 static void
 test_sift_nothing (void)
@@ -524,6 +562,7 @@ main (int argc, char **argv)
   g_test_add_func ("/cv/sift/angles", test_sift_angles);
   g_test_add_func ("/cv/sift/order", test_sift_order);
   g_test_add_func ("/cv/sift/mask", test_sift_mask);
+  g_test_add_func ("/cv/sift/keep", test_sift_keep);
   g_test_add_func ("/cv/sift/nothing", test_sift_nothing);
   g_test_add_func ("/cv/sift/refused", test_sift_refused);
   g_test_add_func ("/cv/stereo/shift", test_stereo_shift);
