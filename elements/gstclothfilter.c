@@ -108,24 +108,6 @@ gst_cloth_filter_sink_event (GstBaseTransform * trans, GstEvent * event)
       (trans, event);
 }
 
-/* Numbers pictures alike in all cameras: by the buffer's own number, else by its time. */
-static guint64
-gst_cloth_filter_number (GstClothFilter * self, GstBuffer * buffer)
-{
-  GstClothFilterPrivate *priv = gst_cloth_filter_get_instance_private (self);
-  gint fps_n = GST_VIDEO_INFO_FPS_N (&priv->info);
-  gint fps_d = GST_VIDEO_INFO_FPS_D (&priv->info);
-  GstClockTime time =
-      gst_cloth_stream_time (&GST_BASE_TRANSFORM (self)->segment, buffer);
-
-  if (GST_BUFFER_OFFSET_IS_VALID (buffer))
-    return GST_BUFFER_OFFSET (buffer);
-  if (fps_n <= 0 || fps_d <= 0 || !GST_CLOCK_TIME_IS_VALID (time))
-    return priv->count;
-  return gst_util_uint64_scale_round (time, (guint64) fps_n,
-      (guint64) fps_d * GST_SECOND);
-}
-
 static GstFlowReturn
 gst_cloth_filter_transform_ip (GstBaseTransform * trans, GstBuffer * buffer)
 {
@@ -168,7 +150,9 @@ gst_cloth_filter_transform_ip (GstBaseTransform * trans, GstBuffer * buffer)
   frame.luma.height = GST_VIDEO_FRAME_HEIGHT (&video);
   frame.luma.stride = GST_VIDEO_FRAME_COMP_STRIDE (&video, 0);
   frame.video = &video;
-  frame.sequence = gst_cloth_filter_number (self, buffer);
+  frame.sequence = gst_cloth_number_picture (&trans->segment,
+      GST_VIDEO_INFO_FPS_N (&priv->info), GST_VIDEO_INFO_FPS_D (&priv->info),
+      buffer, priv->count);
   frame.camera = camera;
   frame.buffer = buffer;
   flow = GST_CLOTH_FILTER_GET_CLASS (self)->analyse (self, &frame);

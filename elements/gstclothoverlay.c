@@ -57,6 +57,7 @@
 #include "elements/gstclothdamage.h"
 #include "elements/gstclothoverlay-draw.h"
 #include "elements/gstclothpaint.h"
+#include "elements/gstclothpicture.h"
 #include "elements/gstclothproperties.h"
 #include "elements/gstclothutil.h"
 #include "gst/render/surface.h"
@@ -479,56 +480,6 @@ gst_cloth_overlay_decide_allocation (GstAggregator * agg, GstQuery * query)
   return TRUE;
 }
 
-static gboolean
-gst_cloth_overlay_map (GstClothOverlay * self, GstBuffer * buffer,
-    GstMapFlags flags, GstVideoFrame * frame)
-{
-  if (gst_video_frame_map (frame, &self->info, buffer, flags)) {
-    return TRUE;
-  }
-  GST_ELEMENT_ERROR (self, STREAM, FORMAT,
-      ("The picture does not fit its caps."),
-      ("%" GST_PTR_FORMAT " in %" GST_PTR_FORMAT, buffer, self->video_caps));
-  return FALSE;
-}
-
-static gboolean
-gst_cloth_overlay_is_plain (GstClothOverlay * self, GstBuffer * buffer)
-{
-  const GstVideoMeta *meta = gst_buffer_get_video_meta (buffer);
-  guint i;
-
-  for (i = 0; meta && i < GST_VIDEO_INFO_N_PLANES (&self->info); i++) {
-    if (meta->stride[i] != GST_VIDEO_INFO_PLANE_STRIDE (&self->info, i)
-        || meta->offset[i] != GST_VIDEO_INFO_PLANE_OFFSET (&self->info, i)) {
-      return FALSE;
-    }
-  }
-  return TRUE;
-}
-
-/* The picture in the layout that the caps mean; NULL when an error was posted. */
-static GstBuffer *
-gst_cloth_overlay_make_plain (GstClothOverlay * self, GstBuffer * buffer)
-{
-  g_autoptr (GstBuffer) plain = gst_buffer_new_allocate (NULL,
-      GST_VIDEO_INFO_SIZE (&self->info), NULL);
-  GstVideoFrame from, to;
-
-  if (!gst_cloth_overlay_map (self, buffer, GST_MAP_READ, &from)) {
-    return NULL;
-  }
-  if (!gst_cloth_overlay_map (self, plain, GST_MAP_WRITE, &to)) {
-    gst_video_frame_unmap (&from);
-    return NULL;
-  }
-  gst_video_frame_copy (&to, &from);
-  gst_video_frame_unmap (&to);
-  gst_video_frame_unmap (&from);
-  gst_buffer_copy_into (plain, buffer, GST_BUFFER_COPY_METADATA, 0, -1);
-  return g_steal_pointer (&plain);
-}
-
 /* What a picture may cost. */
 static ClothWork
 gst_cloth_overlay_allow (GstClothOverlay * self)
@@ -599,20 +550,17 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
     return GST_FLOW_ERROR;
   }
   *out = g_steal_pointer (&views[VIDEO]);
-  if (!self->knows_strides && !gst_cloth_overlay_is_plain (self, *out)) {
-    g_autoptr (GstBuffer) padded = *out;
-
-    *out = gst_cloth_overlay_make_plain (self, padded);
-    if (!*out) {
-      return GST_FLOW_ERROR;
-    }
+  if (!self->knows_strides
+      && !gst_cloth_picture_make_plain (GST_ELEMENT (self), &self->info, out)) {
+    return GST_FLOW_ERROR;
   }
   if (!mesh && !has_silhouette && !has_quads && !has_dots && !has_saddles) {
     return GST_FLOW_OK;
   }
 
   *out = gst_buffer_make_writable (*out);
-  if (!gst_cloth_overlay_map (self, *out, GST_MAP_READWRITE, &frame)) {
+  if (!gst_cloth_picture_map (GST_ELEMENT (self), &self->info, *out,
+          GST_MAP_READWRITE, &frame)) {
     return GST_FLOW_ERROR;
   }
   gst_cloth_overlay_canvas (&frame, &canvas);
@@ -645,32 +593,13 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   return ret;
 }
 
-/* What one side of the video path takes is what the other takes. */
-static void
-gst_cloth_overlay_proxy_caps (GstPad * pad, GstPad * other, GstQuery * query)
-{
-  g_autoptr (GstCaps) templ = gst_pad_get_pad_template_caps (pad);
-  g_autoptr (GstCaps) peer = NULL;
-  g_autoptr (GstCaps) result = NULL;
-  GstCaps *filter;
-
-  gst_query_parse_caps (query, &filter);
-  peer = gst_pad_peer_query_caps (other, templ);
-  if (filter) {
-    result = gst_caps_intersect_full (filter, peer, GST_CAPS_INTERSECT_FIRST);
-  } else {
-    result = gst_caps_ref (peer);
-  }
-  gst_query_set_caps_result (query, result);
-}
-
 static gboolean
 gst_cloth_overlay_sink_query (GstAggregator * agg, GstAggregatorPad * pad,
     GstQuery * query)
 {
   if (GST_QUERY_TYPE (query) == GST_QUERY_CAPS
       && !g_strcmp0 (GST_PAD_NAME (pad), "sink")) {
-    gst_cloth_overlay_proxy_caps (GST_PAD (pad), GST_AGGREGATOR_SRC_PAD (agg),
+    gst_cloth_picture_proxy_caps (GST_PAD (pad), GST_AGGREGATOR_SRC_PAD (agg),
         query);
     return TRUE;
   }
@@ -685,7 +614,7 @@ gst_cloth_overlay_src_query (GstAggregator * agg, GstQuery * query)
     g_autoptr (GstPad) sink =
         gst_element_get_static_pad (GST_ELEMENT (agg), "sink");
 
-    gst_cloth_overlay_proxy_caps (GST_AGGREGATOR_SRC_PAD (agg), sink, query);
+    gst_cloth_picture_proxy_caps (GST_AGGREGATOR_SRC_PAD (agg), sink, query);
     return TRUE;
   }
   return GST_AGGREGATOR_CLASS (gst_cloth_overlay_parent_class)->src_query (agg,

@@ -58,6 +58,22 @@ gst_cloth_stream_time (const GstSegment * segment, GstBuffer * buffer)
       GST_BUFFER_PTS (buffer));
 }
 
+/* Numbers pictures alike in all cameras: by the buffer's own number, else by its time, else by
+ * @count, how many came before. */
+guint64
+gst_cloth_number_picture (const GstSegment * segment, gint fps_n, gint fps_d,
+    GstBuffer * buffer, guint64 count)
+{
+  const GstClockTime time = gst_cloth_stream_time (segment, buffer);
+
+  if (GST_BUFFER_OFFSET_IS_VALID (buffer))
+    return GST_BUFFER_OFFSET (buffer);
+  if (fps_n <= 0 || fps_d <= 0 || !GST_CLOCK_TIME_IS_VALID (time))
+    return count;
+  return gst_util_uint64_scale_round (time, (guint64) fps_n,
+      (guint64) fps_d * GST_SECOND);
+}
+
 /* To what upstream has answered to a latency query. */
 void
 gst_cloth_add_latency (GstQuery * query, GstClockTime own)

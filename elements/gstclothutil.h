@@ -15,6 +15,8 @@ GstCaps *gst_cloth_carry_caps (const GstCaps * caps,
     const gchar * const * fields, GstCaps * other, GstCaps * filter);
 GstClockTime gst_cloth_stream_time (const GstSegment * segment,
     GstBuffer * buffer);
+guint64 gst_cloth_number_picture (const GstSegment * segment, gint fps_n,
+    gint fps_d, GstBuffer * buffer, guint64 count);
 void gst_cloth_add_latency (GstQuery * query, GstClockTime own);
 ClothRig *gst_cloth_open_rig (GstElement * element, const gchar * path,
     const gchar * name, const ClothCamera ** camera);

@@ -8,6 +8,7 @@
 #include <gst/gst.h>
 
 #include "elements/gstclothcamera.h"
+#include "elements/gstclothdisparity.h"
 #include "elements/gstclothgap.h"
 #include "elements/gstclothmetadepay.h"
 #include "elements/gstclothmetapay.h"
@@ -22,6 +23,7 @@
 #include "elements/gstsaddledetect.h"
 #include "elements/gstsiftmatch.h"
 #include "elements/gstsilhouette.h"
+#include "elements/gstuvmap.h"
 
 static gboolean
 plugin_init (GstPlugin * plugin)
@@ -29,6 +31,7 @@ plugin_init (GstPlugin * plugin)
   gboolean registered = TRUE;
 
   registered &= GST_ELEMENT_REGISTER (clothcamera, plugin);
+  registered &= GST_ELEMENT_REGISTER (clothdisparity, plugin);
   registered &= GST_ELEMENT_REGISTER (clothgap, plugin);
   registered &= GST_ELEMENT_REGISTER (clothmetadepay, plugin);
   registered &= GST_ELEMENT_REGISTER (clothmetapay, plugin);
@@ -44,6 +47,7 @@ plugin_init (GstPlugin * plugin)
   registered &= GST_ELEMENT_REGISTER (saddledetect, plugin);
   registered &= GST_ELEMENT_REGISTER (siftmatch, plugin);
   registered &= GST_ELEMENT_REGISTER (silhouette, plugin);
+  registered &= GST_ELEMENT_REGISTER (uvmap, plugin);
   return registered;
 }
 

@@ -8,6 +8,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 #include <opencv2/features2d.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <memory>
@@ -182,6 +183,97 @@ cloth_cv_triangulate_points (const gdouble projections[24], guint n,
 }
 
 #define BYTES 128
+
+/* @K: camera matrix, by rows
+ * @k: (array length=n_k): coefficients of the lens
+ * @fisheye: whether they are those of a fisheye
+ * @R: rotation to the rectified frame, by rows
+ * @focal: of the rectified picture
+ * @centre: of it
+ * @x: (out caller-allocates): width·height
+ * @y: (out caller-allocates): width·height
+ *
+ * initUndistortRectifyMap of either lens.
+ *
+ * Returns: FALSE when OpenCV threw.
+ */
+gboolean
+cloth_cv_undistort_rectify_map (const gdouble K[9], const gdouble * k,
+    guint n_k, gboolean fisheye, const gdouble R[9], gdouble focal,
+    const gdouble centre[2], gint width, gint height, gfloat * x, gfloat * y)
+{
+  try {
+    const cv::Matx33d from (K), turn (R);
+    const cv::Matx33d to (focal, 0, centre[0], 0, focal, centre[1], 0, 0, 1);
+    const cv::Mat lens = n_k ? cv::Mat (1, (int) n_k, CV_64F,
+        const_cast < gdouble * >(k)) : cv::Mat ();
+    cv::Mat across, down;
+
+    if (fisheye)
+      cv::fisheye::initUndistortRectifyMap (from, lens, turn, to,
+          cv::Size (width, height), CV_32FC1, across, down);
+    else
+      cv::initUndistortRectifyMap (from, lens, turn, to,
+          cv::Size (width, height), CV_32FC1, across, down);
+    across.copyTo (cv::Mat (height, width, CV_32FC1, x));
+    down.copyTo (cv::Mat (height, width, CV_32FC1, y));
+    return TRUE;
+  } catch (...) {
+    return FALSE;
+  }
+}
+
+/* @K: camera matrix of both cameras, by rows
+ * @R: rotation from the first camera's frame to the second's, by rows
+ * @t: translation
+ * @R1: (out): rotation of the first camera, by rows
+ * @R2: (out): of the second
+ *
+ * stereoRectify of two cameras without lens distortion.
+ *
+ * Returns: FALSE when OpenCV threw.
+ */
+gboolean
+cloth_cv_stereo_rectify (const gdouble K[9], gint width, gint height,
+    const gdouble R[9], const gdouble t[3], gdouble R1[9], gdouble R2[9])
+{
+  try {
+    const cv::Matx33d matrix (K), turn (R);
+    const cv::Vec3d move (t[0], t[1], t[2]);
+    cv::Mat one, two, p1, p2, q;
+
+    cv::stereoRectify (matrix, cv::noArray (), matrix, cv::noArray (),
+        cv::Size (width, height), turn, move, one, two, p1, p2, q);
+    one.copyTo (cv::Mat (3, 3, CV_64F, R1));
+    two.copyTo (cv::Mat (3, 3, CV_64F, R2));
+    return TRUE;
+  } catch (...) {
+    return FALSE;
+  }
+}
+
+/* @path: a picture of one float a pixel
+ * @width: columns that it must have
+ * @height: rows
+ * @floats: (out caller-allocates): width·height, top row first
+ *
+ * Returns: FALSE when OpenCV can't read it or it is of another size or kind.
+ */
+gboolean
+cloth_cv_read_floats (const gchar * path, gint width, gint height,
+    gfloat * floats)
+{
+  try {
+    const cv::Mat read = cv::imread (path, cv::IMREAD_UNCHANGED);
+
+    if (read.type () != CV_32FC1 || read.cols != width || read.rows != height)
+      return FALSE;
+    read.copyTo (cv::Mat (height, width, CV_32FC1, floats));
+    return TRUE;
+  } catch (...) {
+    return FALSE;
+  }
+}
 
 struct _ClothCvMatcher {
   cv::Ptr < cv::DescriptorMatcher > matcher;

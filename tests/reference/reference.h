@@ -27,6 +27,15 @@ gboolean cloth_cv_triangulate_points (const gdouble projections[24], guint n,
     const gdouble * x0, const gdouble * y0, const gdouble * x1,
     const gdouble * y1, gdouble * points);
 
+gboolean cloth_cv_undistort_rectify_map (const gdouble K[9],
+    const gdouble * k, guint n_k, gboolean fisheye, const gdouble R[9],
+    gdouble focal, const gdouble centre[2], gint width, gint height,
+    gfloat * x, gfloat * y);
+gboolean cloth_cv_stereo_rectify (const gdouble K[9], gint width, gint height,
+    const gdouble R[9], const gdouble t[3], gdouble R1[9], gdouble R2[9]);
+gboolean cloth_cv_read_floats (const gchar * path, gint width, gint height,
+    gfloat * floats);
+
 typedef struct _ClothCvMatcher ClothCvMatcher;
 
 ClothCvMatcher *cloth_cv_matcher_new (const guint8 * descriptors, guint n,

@@ -102,23 +102,50 @@ cubic (const gdouble s[4], gdouble t, gdouble * slope)
   return s[1] + t * (first + t * (second + t * third));
 }
 
+/* Where a camera sees pixel @p of the map with disparity @d.
+ * @at: (out): there
+ * @along: (out): by how much that moves for each pixel of disparity */
+static inline void
+see (const ClothRefineView * view, const gdouble p[2], gdouble d, gdouble at[2],
+    gdouble along[2])
+{
+  const gdouble below = 1 + d * view->forward;
+  /* what lies behind it is nowhere */
+  const gdouble scale = below > 0 ? 1 / below : NAN;
+
+  for (gint i = 0; i < 2; i++) {
+    if (view->forward == 0) {
+      at[i] = p[i] + d * view->shift[i];
+      along[i] = view->shift[i];
+      continue;
+    }
+    at[i] = view->centre[i]
+        + (p[i] - view->centre[i] + d * view->shift[i]) * scale;
+    along[i] = (view->shift[i] - (at[i] - view->centre[i]) * view->forward)
+        * scale;
+  }
+}
+
 /* @value: (out): of the picture at (@x, @y)
  * @slope: (out): there, along the shift
  *
  * Returns: whether it is in the picture
  */
 static gboolean
-look_up (const ClothRefineView * view, gdouble x, gdouble y, gdouble * value,
-    gdouble * slope)
+look_up (const ClothRefineView * view, gdouble x, gdouble y,
+    const gdouble along[2], gdouble * value, gdouble * slope)
 {
   const ClothImage *image = &view->image;
   const gdouble left = floor (x), top = floor (y);
-  const gboolean is_row = y == top && view->shift[1] == 0;
+  const gboolean is_row = y == top && along[1] == 0;
   gdouble rows[4], slopes[4], down, unused;
 
   /* also false for what is no number */
   if (!(left >= 1 && left + 2 < image->width && top >= 0
           && y <= image->height - 1))
+    return FALSE;
+  if (view->shown && !view->shown[(gssize) (y + 0.5) * image->stride
+          + (gssize) (x + 0.5)])
     return FALSE;
   for (gint i = 0; i < 4; i++) {
     const gint row = is_row ? (gint) top :
@@ -130,13 +157,12 @@ look_up (const ClothRefineView * view, gdouble x, gdouble y, gdouble * value,
     rows[i] = cubic (samples, x - left, &slopes[i]);
     if (is_row) {
       *value = rows[0];
-      *slope = view->shift[0] * slopes[0];
+      *slope = along[0] * slopes[0];
       return TRUE;
     }
   }
   *value = cubic (rows, y - top, &down);
-  *slope = view->shift[0] * cubic (slopes, y - top, &unused)
-      + view->shift[1] * down;
+  *slope = along[0] * cubic (slopes, y - top, &unused) + along[1] * down;
   return TRUE;
 }
 
@@ -207,7 +233,6 @@ compare_rows (gpointer data, guint begin, guint end, guint worker)
 {
   ClothRefine *self = data;
   const ClothDisparityMap *map = self->map;
-  const gdouble *shift = self->view->shift;
 
   for (guint i = begin; i < end; i++) {
     const gint y = self->top + (gint) i;
@@ -217,11 +242,15 @@ compare_rows (gpointer data, guint begin, guint end, guint worker)
     for (gint x = 0; x < map->width; x++) {
       const gsize at = to + (gsize) x;
       const gdouble d = (gdouble) map->disparities[row + (gsize) x];
-      gdouble value, slope;
-      gboolean seen = map->states[row + (gsize) x] >= CLOTH_DISPARITY_MEASURED
-          && look_up (self->view, x + d * shift[0], y + d * shift[1], &value,
-          &slope);
+      const gdouble p[2] = { x, y };
+      gdouble at_view[2], along[2], value, slope;
+      gboolean seen = map->states[row + (gsize) x] >= CLOTH_DISPARITY_MEASURED;
 
+      if (seen) {
+        see (self->view, p, d, at_view, along);
+        seen = look_up (self->view, at_view[0], at_view[1], along, &value,
+            &slope);
+      }
       self->count[at] = seen ? 1 : 0;
       self->gradient[at] = seen ? (gfloat) slope : NAN;
       self->mean[at] = self->difference[at] = seen ? (gfloat) (self->image->data
@@ -319,7 +348,9 @@ check_params (const ClothRefineParams * p, const ClothRefineView * views,
     return FALSE;
   }
   for (guint k = 0; k < n_views; k++)
-    if (!isfinite (views[k].shift[0]) || !isfinite (views[k].shift[1])) {
+    if (!isfinite (views[k].shift[0]) || !isfinite (views[k].shift[1])
+        || !isfinite (views[k].forward) || !isfinite (views[k].centre[0])
+        || !isfinite (views[k].centre[1])) {
       g_set_error (error, CLOTH_DISPARITY_ERROR,
           CLOTH_DISPARITY_ERROR_PARAMETER, "The shift of view %u is no number",
           k);

@@ -16,10 +16,17 @@ G_BEGIN_DECLS
  * @shift: what the map's pixel p with disparity d is seen at there is p + d·@shift: −1, 0 of
  *   a camera to the right by the first baseline, 1, 0 of one to the left, 0, −0.75 of one
  *   three quarters of it below
+ * @forward: of a camera that isn't in one plane with the map's: it sees the pixel at
+ *   c + (p − c + d·@shift) / (1 + d·@forward), c being @centre; 0 of one that is
+ * @centre: principal point, px
+ * @shown: (nullable): bytes with the rows of @image: 0 where that shows nothing, 2 px around
+ *   it included
  */
 typedef struct {
   ClothImage image;
   gdouble shift[2];
+  gdouble forward, centre[2];
+  const guint8 *shown;
 } ClothRefineView;
 
 /* @radius: of the windows and of the windows of windows, px, 1 to 64
