@@ -23,6 +23,7 @@
 #include "elements/gstsaddledetect.h"
 #include "elements/gstsiftmatch.h"
 #include "elements/gstsilhouette.h"
+#include "elements/gstuvmap.h"
 
 static gboolean
 plugin_init (GstPlugin * plugin)
@@ -46,6 +47,7 @@ plugin_init (GstPlugin * plugin)
   registered &= GST_ELEMENT_REGISTER (saddledetect, plugin);
   registered &= GST_ELEMENT_REGISTER (siftmatch, plugin);
   registered &= GST_ELEMENT_REGISTER (silhouette, plugin);
+  registered &= GST_ELEMENT_REGISTER (uvmap, plugin);
   return registered;
 }
 

@@ -15,6 +15,7 @@
 #include <stdlib.h>
 #include <time.h>
 
+#include "gst/math/linalg.h"
 #include "gst/math/random.h"
 #include "gst/math/statistics.h"
 #include "gst/vision/match/match.h"
@@ -47,8 +48,11 @@ typedef struct
   GArray *errors[N_WAYS][N_PARTS];
   gdouble ms, share, between;
   guint n_frames;
+  GArray *vertex_errors, *vertex_squares;
+  guint n_visible;
 } Sums;
 
+static ClothUVVertexParams vertex_params;
 static gboolean true_uv;
 static gdouble noise;
 
@@ -153,6 +157,56 @@ judge (const MatchTruth * truth, gfloat * const uv[N_WAYS],
   }
 }
 
+/* Vertices of the cloth's grid held against the film's. */
+static void
+judge_vertices (const MatchFilm * film, guint frame, const MatchTruth * truth,
+    const ClothMatchSurface * surface, const gfloat * uv, const ClothUV * dense,
+    Sums * sums)
+{
+  const ClothGridShape shape = { 33, 35, {film->cloth_m[0], film->cloth_m[1]}
+  };
+  const ClothUVDepth depth = { MAX (noise, 0.02), 142.2, {0, 0, 1}
+  };
+  g_autoptr (ClothUVVertices) self = cloth_uv_vertices_new ();
+  g_autofree ClothUVVertex *vertices = g_new (ClothUVVertex, 33 * 35);
+  const gfloat *p = film->vertices + 3 * (gsize) frame * 33 * 35;
+
+  cloth_uv_vertices_run (self, &vertex_params, &shape, surface, uv, dense,
+      &depth, NULL, 0, vertices);
+  for (guint i = 0; i < 33 * 35; i++, p += 3) {
+    const gint x = (gint) rint (film->centre[0] + film->focal * p[0] / p[2]);
+    const gint y = (gint) rint (film->centre[1] + film->focal * p[1] / p[2]);
+    gboolean visible = FALSE;
+
+    /* in sight where the surface is, or beside it: the cloth's edge */
+    for (gint k = 0; k < 25; k++) {
+      const gint nx = x + k % 5 - 2, ny = y + k / 5 - 2;
+
+      if (nx >= 0 && ny >= 0 && nx < truth->width && ny < truth->height)
+        visible |= fabsf (truth->points[3 * ((gsize) ny * truth->width + nx)
+                + 2] - p[2]) < 0.004f;
+    }
+    sums->n_visible += visible;
+    if (vertices[i].seen) {
+      const gdouble *c = vertices[i].covariance;
+      const gdouble matrix[9] = { c[0], c[1], c[2], c[1], c[3], c[4], c[2],
+        c[4], c[5]
+      };
+      gdouble d[3], inverse[9], id[3];
+      gfloat error, square;
+
+      for (gint k = 0; k < 3; k++)
+        d[k] = vertices[i].point[k] - p[k];
+      error = (gfloat) (1e3 * sqrt (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
+      cloth_mat3_inverse (matrix, inverse);
+      cloth_mat3_vec (inverse, d, id);
+      square = (gfloat) (d[0] * id[0] + d[1] * id[1] + d[2] * id[2]);
+      g_array_append_val (sums->vertex_errors, error);
+      g_array_append_val (sums->vertex_squares, square);
+    }
+  }
+}
+
 static void
 run_frame (const MatchFilm * film, guint frame,
     const ClothReference * reference, ClothCvSift * sift,
@@ -235,13 +289,14 @@ run_frame (const MatchFilm * film, guint frame,
         believed->len, &seen, pool, uv[SURFACE], &counts);
     ms = MIN (ms, milliseconds () - start);
   }
+  judge_vertices (film, frame, truth, &seen, uv[SURFACE], dense, sums);
   without.reach = 0;
   cloth_uv_run (dense, &without, (const ClothUVMatch *) believed->data,
       believed->len, &seen, pool, within, &other);
   /* the picture as a surface: the same triangles as far as the surface has them */
   without.stretch.stretch = 0.9;
   without.stretch.slack = 1e9;
-  without.outlier = 0;
+  without.outlier = without.smooth = 0;
   cloth_uv_run (dense, &without, (const ClothUVMatch *) believed->data,
       believed->len, &paper, pool, uv[PICTURE], &other);
   for (gsize i = 0; i < 2 * n; i++)
@@ -276,6 +331,31 @@ compare_floats (gconstpointer a, gconstpointer b)
 }
 
 static void
+tell_vertices (Sums * sums)
+{
+  GArray *e = sums->vertex_errors, *s = sums->vertex_squares;
+  gdouble mean = 0;
+  guint wrong = 0;
+
+  if (!e->len)
+    return;
+  qsort (e->data, e->len, sizeof (gfloat), compare_floats);
+  qsort (s->data, s->len, sizeof (gfloat), compare_floats);
+  for (guint i = 0; i < e->len; i++) {
+    mean += g_array_index (e, gfloat, i) / e->len;
+    wrong += g_array_index (e, gfloat, i) > 10;
+  }
+  g_print ("vertices: %u of %u in sight, error mean %.3f, median %.3f, 95%% "
+      "%.3f, 99%% %.3f mm, %u over 10 mm; chi² median %.2f (2.37 of 3), 95%% "
+      "%.2f (7.81)\n", e->len, sums->n_visible, mean,
+      g_array_index (e, gfloat, e->len / 2),
+      g_array_index (e, gfloat, (gsize) e->len * 95 / 100),
+      g_array_index (e, gfloat, (gsize) e->len * 99 / 100), wrong,
+      g_array_index (s, gfloat, s->len / 2),
+      g_array_index (s, gfloat, (gsize) s->len * 95 / 100));
+}
+
+static void
 tell (Sums * sums)
 {
   const gdouble n = MAX (sums->n_frames, 1);
@@ -297,6 +377,7 @@ tell (Sums * sums)
           g_array_index (e, gfloat, (gsize) e->len * 95 / 100),
           g_array_index (e, gfloat, (gsize) e->len * 99 / 100));
     }
+  tell_vertices (sums);
   g_print ("mean share of the surface with uv: %.1f%%, in triangles %.1f%%; "
       "%.1f ms\n", 100 * sums->share / n, 100 * sums->between / n,
       sums->ms / n);
@@ -332,6 +413,8 @@ run_film (const gchar * folder, const ClothUVParams * params, gint from,
   for (gint way = 0; way < N_WAYS; way++)
     for (gint part = 0; part < N_PARTS; part++)
       sums.errors[way][part] = g_array_new (FALSE, FALSE, sizeof (gfloat));
+  sums.vertex_errors = g_array_new (FALSE, FALSE, sizeof (gfloat));
+  sums.vertex_squares = g_array_new (FALSE, FALSE, sizeof (gfloat));
   g_print ("frame  match   places  wrong  triang  surface  between   with   "
       "sigma   worst   ms\n");
   match_truth_init (&truth, film.film.width, film.film.height);
@@ -359,6 +442,7 @@ main (int argc, char **argv)
         "white noise of disparities", "PX"},
     {"together", 0, 0, G_OPTION_ARG_DOUBLE, &params.together, NULL, NULL},
     {"outlier", 0, 0, G_OPTION_ARG_DOUBLE, &params.outlier, NULL, NULL},
+    {"smooth", 0, 0, G_OPTION_ARG_DOUBLE, &params.smooth, NULL, NULL},
     {"longest", 0, 0, G_OPTION_ARG_DOUBLE, &params.longest, NULL, NULL},
     {"reach", 0, 0, G_OPTION_ARG_DOUBLE, &params.reach, NULL, NULL},
     {"stretch", 0, 0, G_OPTION_ARG_DOUBLE, &params.stretch.stretch, NULL,
@@ -366,11 +450,17 @@ main (int argc, char **argv)
     {"slack", 0, 0, G_OPTION_ARG_DOUBLE, &params.stretch.slack, NULL, NULL},
     {"depth-step", 0, 0, G_OPTION_ARG_DOUBLE, &params.stretch.depth_step, NULL,
         NULL},
+    {"radius", 0, 0, G_OPTION_ARG_DOUBLE, &vertex_params.radius, NULL, NULL},
+    {"edge", 0, 0, G_OPTION_ARG_DOUBLE, &vertex_params.edge, NULL, NULL},
+    {"rival", 0, 0, G_OPTION_ARG_DOUBLE, &vertex_params.rival, NULL, NULL},
+    {"correlation", 0, 0, G_OPTION_ARG_DOUBLE, &vertex_params.correlation, NULL,
+        NULL},
     {NULL}
   };
   g_autoptr (GOptionContext) context = g_option_context_new ("FOLDER");
   g_autoptr (GError) error = NULL;
 
+  vertex_params = cloth_uv_vertex_default_params ();
   g_option_context_add_main_entries (context, entries, NULL);
   if (!g_option_context_parse (context, &argc, &argv, &error))
     g_error ("%s", error->message);

@@ -24,8 +24,10 @@ typedef struct {
 } ClothUVMatch;
 
 /* @together: matches nearer to each other than this become one, their mean, px, 0 to 100
- * @outlier: a match is left out when it is farther from where its neighbours say than this
- *   many times what is usual, >= 1; 0: none is
+ * @outlier: a match doesn't count when it is farther from where its neighbours say than this
+ *   many standard deviations, >= 1; 0: all count
+ * @smooth: by which share of the way a match is moved to where its neighbours say, 0 to 1;
+ *   0: the paper's, which keeps matches as they are
  * @longest: longest edge of a triangle, px, >= 1
  * @reach: how far uv goes on beyond the triangles, px, 0 to 1000
  * @stretch: of the edges of triangles; what is beyond is no surface between its ends. Its
@@ -36,6 +38,7 @@ typedef struct {
 typedef struct {
   gdouble together;
   gdouble outlier;
+  gdouble smooth;
   gdouble longest;
   gdouble reach;
   ClothStretchParams stretch;
@@ -64,6 +67,7 @@ void cloth_uv_run (ClothUV * self, const ClothUVParams * params,
     const ClothUVMatch * matches, guint n_matches,
     const ClothMatchSurface * surface, ClothPool * pool, gfloat * uv,
     ClothUVCounts * counts);
+gdouble cloth_uv_get_sigma (const ClothUV * self, guint32 pixel);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothUV, cloth_uv_free)
 G_END_DECLS

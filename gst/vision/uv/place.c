@@ -1,10 +1,11 @@
 /* Matched places and the triangles between them.
  *
- * The paper keeps each match as it is (section 5). Two things are done before, both measured
- * to be better (docs/uvmap.md): matches that lie almost on each other become one, since the
- * slope between them would be all noise; and a place that lies far from where the places
- * around it say is left out, since verification lets one in a hundred wrong ones pass and
- * each spoils all its triangles.
+ * The paper keeps each match as it is (section 5). Here matches that lie almost on each other
+ * become one, since the slope between them would be all noise; a place far from where those
+ * around it say is put there, since verification lets one in a hundred wrong ones pass and
+ * each spoils all its triangles; and what is left of the matches' noise is smoothed. A plane
+ * is fitted to the neighbours' uv over steps as long as the surface, so that a fold is no
+ * error.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/vision/uv/place.h"
@@ -24,6 +25,13 @@
 /* Fewest neighbours that can contradict a place, and of how many the scale is told. */
 #define NEIGHBOURS 4
 #define SCALED 30
+/* A place lies within its neighbours when their mean is not farther from it than this share
+ * of their extent. */
+#define WITHIN 0.6
+/* Variance of a difference from the mean of six neighbours, each as unsure as oneself. */
+#define MEAN_OF_SIX (7 / 6.)
+/* Rounds of smoothing. */
+#define SMOOTHINGS 2
 /* Share of a neighbourhood's extent that keeps the direction which it doesn't span, the
  * normal, at a slope of 0. */
 #define RIDGE 1e-3
@@ -205,13 +213,18 @@ measure (const Run * run, const ClothUVPlace * a, const ClothUVPlace * b)
   return length;
 }
 
-static gint
-compare_neighbours (gconstpointer pa, gconstpointer pb)
+/* A few only. */
+static void
+sort_neighbours (Neighbour * of, guint n)
 {
-  const guint a = ((const Neighbour *) pa)->other;
-  const guint b = ((const Neighbour *) pb)->other;
+  for (guint i = 1; i < n; i++) {
+    const Neighbour moved = of[i];
+    guint k;
 
-  return a < b ? -1 : a > b;
+    for (k = i; k && of[k - 1].other > moved.other; k--)
+      of[k] = of[k - 1];
+    of[k] = moved;
+  }
 }
 
 static Neighbour *
@@ -256,7 +269,7 @@ make_neighbours (const Run * run, const guint * triangles, guint n_triangles)
     const guint first = starts[i], last = starts[i + 1];
 
     starts[i] = end;
-    qsort (of + first, last - first, sizeof *of, compare_neighbours);
+    sort_neighbours (of + first, last - first);
     for (guint k = first; k < last; k++)
       if (k == first || of[k].other != of[k - 1].other)
         of[end++] = of[k];
@@ -331,16 +344,17 @@ sums_solve (const Sums * sums, gdouble slope[6])
 
 /* ---- outliers ---- */
 
-/* How far place @i lies from where its neighbours that are not out say, m; < 0: too few say.
- * They are fitted by a plane around their mean, without the place itself. */
+/* How far place @i lies from where its neighbours that are not out say, m, and by how much
+ * along u and v; < 0: too few say. They are fitted by a plane around their mean, without the
+ * place itself. */
 static gdouble
-get_error (const ClothUVPlaces * self, guint i)
+get_error (const ClothUVPlaces * self, guint i, gdouble e[2], gboolean * within)
 {
   const ClothUVPlace *places = (const ClothUVPlace *) self->places->data;
   const guint *starts = (const guint *) self->starts->data;
   const Neighbour *of = (const Neighbour *) self->neighbours->data;
   const guint8 *out = (const guint8 *) self->out->data;
-  gdouble mean[3] = { 0 }, mean_uv[2] = { 0 }, slope[6], e[2];
+  gdouble mean[3] = { 0 }, mean_uv[2] = { 0 }, slope[6];
   Sums sums = { {0} };
   guint n = 0;
 
@@ -375,7 +389,9 @@ get_error (const ClothUVPlaces * self, guint i)
   for (gint r = 0; r < 2; r++)
     e[r] = (mean_uv[r] - slope[3 * r] * mean[0] - slope[3 * r + 1] * mean[1]
         - slope[3 * r + 2] * mean[2]) / n;
-  return hypot (e[0], e[1]);
+  *within = mean[0] * mean[0] + mean[1] * mean[1] + mean[2] * mean[2]
+      <= WITHIN * WITHIN * n * (sums.dd[0] + sums.dd[4] + sums.dd[8]);
+  return sqrt (e[0] * e[0] + e[1] * e[1]);
 }
 
 /* Marks those that lie too far from where their neighbours say; of neighbours the worst
@@ -391,20 +407,20 @@ mark_outliers (const Run * run, gdouble * sigma)
   gdouble *errors = (gdouble *) g_array_set_size (self->errors, n)->data;
   gdouble *scales = (gdouble *) g_array_set_size (self->scales, n)->data;
   guint n_out = 0, n_scaled = 0, before = G_MAXUINT;
-  gdouble bound;
+  gdouble bound, e[2];
+  gboolean within;
 
   *sigma = 0;
   memset (out, 0, n);
   for (guint i = 0; i < n; i++) {
-    errors[i] = get_error (self, i);
+    errors[i] = get_error (self, i, e, &within);
     if (errors[i] >= 0)
       scales[n_scaled++] = errors[i];
   }
   if (n_scaled < SCALED)
     return 0;
-  /* half of the lengths of two normal errors are below 1.18 σ; a mean of six neighbours
-   * errs as well */
-  *sigma = cloth_median (scales, n_scaled) / (1.18 * sqrt (1 + 1. / 6));
+  /* half of the lengths of two normal errors are below 1.18 σ */
+  *sigma = cloth_median (scales, n_scaled) / (1.18 * sqrt (MEAN_OF_SIX));
   bound = run->params->outlier * *sigma;
   for (gint round = 0; round < ROUNDS && bound > 0 && n_out != before; round++) {
     before = n_out;
@@ -425,29 +441,77 @@ mark_outliers (const Run * run, gdouble * sigma)
         out[i] = 1;
         for (guint k = starts[i]; k < starts[i + 1]; k++)
           if (!out[of[k].other])
-            errors[of[k].other] = get_error (self, of[k].other);
+            errors[of[k].other] = get_error (self, of[k].other, e, &within);
       }
   }
   return n_out;
 }
 
+/* Puts them where their neighbours say: without them their triangles would be holes. What
+ * has too few neighbours stays out. */
 static void
-drop_outliers (ClothUVPlaces * self)
+mend_outliers (ClothUVPlaces * self)
 {
-  const guint8 *out = (const guint8 *) self->out->data;
+  guint8 *out = (guint8 *) self->out->data;
   ClothUVPlace *places = (ClothUVPlace *) self->places->data;
-  gdouble *points = (gdouble *) self->points->data;
-  guint n = 0;
+  gdouble e[2];
+  gboolean within;
 
   for (guint i = 0; i < self->places->len; i++)
-    if (!out[i]) {
-      places[n] = places[i];
-      points[2 * n] = places[i].at[0];
-      points[2 * n + 1] = places[i].at[1];
+    if (out[i] && get_error (self, i, e, &within) >= 0 && within) {
+      places[i].uv[0] += e[0];
+      places[i].uv[1] += e[1];
+      out[i] = 2;
+    }
+  for (guint i = 0; i < self->places->len; i++)
+    out[i] = out[i] == 1;
+}
+
+/* How sure each place is, by the errors around it: near folds they are larger. */
+static void
+set_sigmas (ClothUVPlaces * self, gdouble usual)
+{
+  ClothUVPlace *places = (ClothUVPlace *) self->places->data;
+  const guint *starts = (const guint *) self->starts->data;
+  const Neighbour *of = (const Neighbour *) self->neighbours->data;
+  const gdouble *errors = (const gdouble *) self->errors->data;
+
+  for (guint i = 0; i < self->places->len; i++) {
+    /* two more as usual, so that one error alone says little */
+    gdouble sum = 4 * usual * usual, n = 2;
+
+    for (guint k = starts[i]; k <= starts[i + 1]; k++) {
+      const guint j = k < starts[i + 1] ? of[k].other : i;
+
+      if (errors[j] < 0 || (k < starts[i + 1] && of[k].length < 0))
+        continue;
+      sum += errors[j] * errors[j] / MEAN_OF_SIX;
       n++;
     }
-  g_array_set_size (self->places, n);
-  g_array_set_size (self->points, 2 * n);
+    places[i].sigma = sqrt (sum / 2 / n);
+  }
+}
+
+/* Moves each place towards where those around it say: matches err by half a pixel, which the
+ * mean of seven doesn't. */
+static void
+smooth (const Run * run)
+{
+  ClothUVPlaces *self = run->self;
+  const guint n = self->places->len;
+  const guint8 *out = (const guint8 *) self->out->data;
+  ClothUVPlace *places = (ClothUVPlace *) self->places->data;
+  gdouble *moves = (gdouble *) g_array_set_size (self->scales, 2 * n)->data;
+  gboolean within;
+
+  for (guint round = 0; round < SMOOTHINGS && run->params->smooth > 0; round++) {
+    for (guint i = 0; i < n; i++)
+      if (out[i] || get_error (self, i, moves + 2 * i, &within) < 0 || !within)
+        moves[2 * i] = moves[2 * i + 1] = 0;
+    for (guint i = 0; i < n; i++)
+      for (gint c = 0; c < 2; c++)
+        places[i].uv[c] += run->params->smooth * moves[2 * i + c];
+  }
 }
 
 /* ---- the net ---- */
@@ -495,9 +559,10 @@ is_edge (const Run * run, guint a, guint b)
   const ClothUVPlace *places = (const ClothUVPlace *) run->self->places->data;
   const Neighbour *edge = find_neighbour (run->self, a, b);
   const ClothStretchParams *s = &run->params->stretch;
+  const guint8 *out = (const guint8 *) run->self->out->data;
   gdouble flat, pixels, slack;
 
-  if (edge->length < 0)
+  if (edge->length < 0 || out[a] || out[b])
     return FALSE;
   flat = hypot (places[a].uv[0] - places[b].uv[0],
       places[a].uv[1] - places[b].uv[1]);
@@ -531,12 +596,9 @@ cloth_uv_places_run (ClothUVPlaces * self, const ClothUVParams * params,
       (const gdouble *) self->points->data, USUAL, &n_found);
   make_neighbours (&run, found, n_found);
   counts->n_outliers = mark_outliers (&run, &counts->sigma);
-  if (counts->n_outliers) {
-    drop_outliers (self);
-    found = cloth_delaunay_run (self->delaunay, self->places->len,
-        (const gdouble *) self->points->data, USUAL, &n_found);
-    make_neighbours (&run, found, n_found);
-  }
+  set_sigmas (self, counts->sigma);
+  mend_outliers (self);
+  smooth (&run);
   make_slopes (self);
   g_array_set_size (self->triangles, 0);
   for (guint k = 0; k < 3 * n_found; k += 3)

@@ -11,11 +11,13 @@ G_BEGIN_DECLS
 /* @at: column and row, px
  * @uv: on the flat cloth, m
  * @point: on the surface, m
+ * @sigma: standard deviation of uv along u or v, by how well the places around fit, m
  * @slope: du and dv of a step on the surface, by rows; 0 where too few neighbours say
  */
 typedef struct {
   gdouble at[2], uv[2];
   gdouble point[3];
+  gdouble sigma;
   gdouble slope[6];
 } ClothUVPlace;
 

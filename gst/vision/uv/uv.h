@@ -6,3 +6,5 @@
 #pragma once
 
 #include "gst/vision/uv/dense.h"
+#include "gst/vision/uv/join.h"
+#include "gst/vision/uv/vertex.h"
