@@ -203,13 +203,12 @@ static GstStaticPadTemplate src_template =
 GST_STATIC_PAD_TEMPLATE ("src", GST_PAD_SRC, GST_PAD_ALWAYS,
     GST_STATIC_CAPS (GST_VIDEO_CAPS_MAKE (GST_CLOTH_FILTER_FORMATS)));
 
-G_DEFINE_TYPE_WITH_CODE (GstStereoMatch, gst_stereo_match, GST_TYPE_CLOTH_SYNC,
-    G_IMPLEMENT_INTERFACE (GST_TYPE_CHILD_PROXY,
-        gst_triangulate_pad_child_proxy_init)
+GST_ELEMENT_REGISTER_DEFINE_WITH_CODE (clothdisparity, "clothdisparity",
+    GST_RANK_NONE, GST_TYPE_STEREO_MATCH,
     GST_DEBUG_CATEGORY_INIT (cloth_disparity_debug, "clothdisparity", 0,
         "disparities of cloth"));
-GST_ELEMENT_REGISTER_DEFINE (clothdisparity, "clothdisparity", GST_RANK_NONE,
-    GST_TYPE_STEREO_MATCH);
+
+static gpointer gst_stereo_match_parent_class;
 
 /* ---- files ---- */
 
@@ -861,7 +860,7 @@ default_settings (void)
 }
 
 static void
-gst_stereo_match_class_init (GstStereoMatchClass * klass)
+gst_stereo_match_class_init (gpointer klass, gpointer data)
 {
   GObjectClass *object_class = G_OBJECT_CLASS (klass);
   GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
@@ -869,6 +868,7 @@ gst_stereo_match_class_init (GstStereoMatchClass * klass)
   GstClothSyncClass *sync_class = GST_CLOTH_SYNC_CLASS (klass);
   const Settings defaults = default_settings ();
 
+  gst_stereo_match_parent_class = g_type_class_peek_parent (klass);
   gst_cloth_install_properties (object_class, properties,
       G_N_ELEMENTS (properties), &defaults, G_STRUCT_OFFSET (GstStereoMatch,
           settings));
@@ -898,12 +898,36 @@ gst_stereo_match_class_init (GstStereoMatchClass * klass)
 }
 
 static void
-gst_stereo_match_init (GstStereoMatch * self)
+gst_stereo_match_init (GTypeInstance * instance, gpointer klass)
 {
+  GstStereoMatch *self = GST_STEREO_MATCH (instance);
+
   self->settings = default_settings ();
   gst_pad_add_probe (GST_AGGREGATOR_SRC_PAD (self),
       GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM, sum_up, self, NULL);
   for (guint i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
     self->view[i].camera = -1;
   }
+}
+
+/* In C the type has another name than GstClothDisparity, the payload that it puts on pictures.
+ * What users see of it, also in the names of its instances, is the element's name. */
+GType
+gst_stereo_match_get_type (void)
+{
+  static const GInterfaceInfo proxy = { gst_triangulate_pad_child_proxy_init,
+    NULL, NULL
+  };
+  static gsize once;
+
+  if (g_once_init_enter (&once)) {
+    const GType type = g_type_register_static_simple (GST_TYPE_CLOTH_SYNC,
+        "GstClothdisparity", sizeof (GstStereoMatchClass),
+        gst_stereo_match_class_init, sizeof (GstStereoMatch),
+        gst_stereo_match_init, 0);
+
+    g_type_add_interface_static (type, GST_TYPE_CHILD_PROXY, &proxy);
+    g_once_init_leave (&once, type);
+  }
+  return once;
 }

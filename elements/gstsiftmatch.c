@@ -34,6 +34,7 @@
 #include <math.h>
 
 #include "elements/gstclothpaint.h"
+#include "elements/gstclothprint.h"
 #include "elements/gstclothproperties.h"
 #include "gst/pattern/picture.h"
 #include "gst/vision/match/match.h"
@@ -76,7 +77,7 @@ struct _GstSiftMatch
   /* streaming thread */
   ClothPicturePattern *pattern;
   ClothPool *pool;
-  ClothReference *reference;
+  const ClothReference *reference;
   ClothCvSift *sift;
   ClothGrower *grower;
   ClothVerifier *verifier;
@@ -236,7 +237,7 @@ gst_sift_match_stop (GstClothFilter * filter)
   g_clear_pointer (&self->verifier, cloth_verifier_free);
   g_clear_pointer (&self->grower, cloth_grower_free);
   g_clear_pointer (&self->sift, cloth_cv_sift_free);
-  g_clear_pointer (&self->reference, cloth_reference_free);
+  g_clear_pointer (&self->reference, gst_cloth_print_release);
   g_clear_pointer (&self->pool, cloth_pool_free);
   g_clear_pointer (&self->pattern, cloth_picture_pattern_free);
 }
@@ -302,7 +303,7 @@ gst_sift_match_load_print (GstSiftMatch * self,
       image.stride
     };
 
-    self->reference = cloth_reference_new (&params, &picture, self->pool,
+    self->reference = gst_cloth_print_acquire (&params, &picture, self->pool,
         &error);
     if (self->reference)
       self->gridder = cloth_gridder_new (&shape, &image, &error);
@@ -324,12 +325,7 @@ gst_sift_match_judge_print (GstSiftMatch * self)
 
   GST_INFO_OBJECT (self, "%u features of the print, %.1f%% repeated",
       cloth_reference_get_features (self->reference)->n, 100 * repeated);
-  if (cloth_reference_get_features (self->reference)->n == 0)
-    GST_ELEMENT_WARNING (self, RESOURCE, SETTINGS,
-        ("The picture of the print has no features: nothing of it will be found."),
-        ("Use a print with detail everywhere, or lower reference-contrast or "
-            "reference-scale."));
-  else if (repeated >= CLOTH_REFERENCE_REPEATED)
+  if (repeated >= CLOTH_REFERENCE_REPEATED)
     GST_ELEMENT_WARNING (self, RESOURCE, SETTINGS,
         ("%.0f%% of the print's features repeat themselves elsewhere on it: cloth will be "
             "taken for other places of itself.", 100 * repeated),

@@ -8,7 +8,8 @@
  *
  * Finds the pixels of the cloth before a background that stands still: one that a picture
  * shows, or the median of the film's own. Shadows on the background are background. Ranges of
- * luma and chroma narrow the cloth down, or find it by themselves. The silhouette goes along
+ * luma and chroma narrow the cloth down, or find it by themselves; so does one of disparities,
+ * on pictures that `clothdisparity` has been over. The silhouette goes along
  * with the picture as #GstClothSilhouette; the picture itself stays as it is and where it is.
  *
  * ## A film's silhouettes as a stream
@@ -63,6 +64,7 @@ struct _GstSilhouette
   ClothPool *pool;
   guint until_sample;           /* pictures until the next one to learn from */
   gboolean warned;
+  gboolean told;                /* that a picture has no disparities */
 };
 
 #define SETTING(member) GST_CLOTH_SETTING (Settings, member)
@@ -109,6 +111,12 @@ static const GstClothProperty properties[] = {
     G_TYPE_INT, SETTING (mask.low[2]), ANY_TIME, 0, 255},
   {"v-max", "Greatest Cr", "Greatest Cr of the cloth",
     G_TYPE_INT, SETTING (mask.high[2]), ANY_TIME, 0, 255},
+  {"disparity-min", "Least disparity",
+    "Least disparity of the cloth, px, where the picture carries GstClothDisparity; "
+    "what has none isn't cloth either",
+    G_TYPE_DOUBLE, SETTING (mask.least_disparity), ANY_TIME, 0, G_MAXFLOAT},
+  {"disparity-max", "Greatest disparity", "Greatest disparity of the cloth, px",
+    G_TYPE_DOUBLE, SETTING (mask.most_disparity), ANY_TIME, 0, G_MAXFLOAT},
   {"threads", "Threads", "Threads that look; 0: one a processor",
     G_TYPE_UINT, SETTING (threads), GST_PARAM_MUTABLE_READY, 0, 1024},
 };
@@ -156,7 +164,7 @@ gst_silhouette_start (GstClothFilter * filter)
   self->mask = cloth_mask_new ();
   self->pool = cloth_pool_new (threads);
   self->until_sample = 0;
-  self->warned = FALSE;
+  self->warned = self->told = FALSE;
   return TRUE;
 }
 
@@ -207,7 +215,14 @@ gst_silhouette_prepare_background (GstSilhouette * self,
 }
 
 static gboolean
-has_ranges (const ClothMaskParams * params)
+has_disparities (const ClothMaskParams * params)
+{
+  return params->least_disparity > 0
+      || params->most_disparity < (gdouble) G_MAXFLOAT;
+}
+
+static gboolean
+has_colours (const ClothMaskParams * params)
 {
   for (guint c = 0; c < 3; c++)
     if (params->low[c] > 0 || params->high[c] < 255)
@@ -234,12 +249,47 @@ gst_silhouette_update_background (GstSilhouette * self,
     return TRUE;
   }
   if (cloth_mask_has_background (self->mask, image)
-      || has_ranges (&settings->mask))
+      || has_colours (&settings->mask) || has_disparities (&settings->mask))
     return TRUE;
   GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
       ("Nothing tells the cloth from what is behind it."),
       ("Set background to a picture of the scene without the cloth; or learn, "
-          "to have it learnt from the film; or a range, as luma-min."));
+          "to have it learnt from the film; or a range, as luma-min or, behind clothdisparity, disparity-min."));
+  return FALSE;
+}
+
+/* Gives @params the disparities that the picture carries, if they are asked for. FALSE: an error
+ * was posted. */
+static gboolean
+gst_silhouette_take_disparities (GstSilhouette * self, GstBuffer * buffer,
+    const ClothImage * luma, ClothMaskParams * params)
+{
+  const GstClothDisparity *disparity = gst_buffer_get_cloth_disparity (buffer);
+
+  if (!has_disparities (params))
+    return TRUE;
+  if (disparity && gst_cloth_disparity_get_width (disparity) ==
+      (guint) luma->width && gst_cloth_disparity_get_height (disparity) ==
+      (guint) luma->height) {
+    params->disparities = gst_cloth_disparity_get_disparities (disparity, NULL);
+    return TRUE;
+  }
+  if (!disparity) {
+    if (!self->told)
+      GST_ELEMENT_WARNING (self, STREAM, FAILED,
+          ("A picture carries no disparities, which disparity-min and "
+              "disparity-max are of: they don't count for it."),
+          ("Of others like it you are not told. If none does, put "
+              "clothdisparity before %s.", GST_OBJECT_NAME (self)));
+    self->told = TRUE;
+    return TRUE;
+  }
+  GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+      ("The disparities are of %u × %u pixels, the picture of %d × %d.",
+          gst_cloth_disparity_get_width (disparity),
+          gst_cloth_disparity_get_height (disparity), luma->width,
+          luma->height),
+      ("Put %s before what scales the picture.", GST_OBJECT_NAME (self)));
   return FALSE;
 }
 
@@ -257,7 +307,9 @@ gst_silhouette_analyse (GstClothFilter * filter,
   settings = self->settings;
   GST_OBJECT_UNLOCK (self);
   gst_cloth_filter_view_planes (frame->video, &image);
-  if (!gst_silhouette_update_background (self, frame->video, &image, &settings))
+  if (!gst_silhouette_update_background (self, frame->video, &image, &settings)
+      || !gst_silhouette_take_disparities (self, frame->buffer, &image.luma,
+          &settings.mask))
     return GST_FLOW_ERROR;
 
   cloth_mask_run (self->mask, &settings.mask, &image, self->pool,
@@ -268,6 +320,10 @@ gst_silhouette_analyse (GstClothFilter * filter,
     self->warned = TRUE;
   }
   runs = cloth_mask_get_runs (self->mask, &n);
+  /* where nothing else tells it, the cloth isn't the whole picture */
+  if (!settings.mask.disparities && !has_colours (&settings.mask)
+      && !cloth_mask_has_background (self->mask, &image))
+    n = 0;
   gst_buffer_add_cloth_silhouette_meta (frame->buffer,
       gst_cloth_silhouette_new (frame->camera, frame->sequence,
           (guint) image.luma.width, (guint) image.luma.height,

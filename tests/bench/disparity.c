@@ -15,6 +15,8 @@
 #include <time.h>
 
 #include "gst/cv/cv.h"
+#include "gst/rig/rigfile.h"
+#include "gst/vision/stereo/stereo.h"
 #include "tests/common/picture.h"
 #include "tests/common/stereo.h"
 
@@ -30,13 +32,13 @@
 typedef enum
 {
   INTEGER, INTEGER_FILLED, INTEGER_SMOOTH, MERGED, MERGED_FILLED,
-  MERGED_SMOOTH, REFINED, N_STAGES
+  MERGED_SMOOTH, REFINED, HEAD, N_STAGES
 } Stage;
 
 static const gchar *const names[] = { "whole px of one baseline",
   "the same, holes filled", "the same, fractions", "two baselines, 1/16 px",
   "the same, holes filled", "the same, smoothed",
-  "refined by the pictures"
+  "refined by the pictures", "the head as a whole"
 };
 
 /* Of the pixels of the mask: how many there are, have a depth, have a wild one; and the sum
@@ -52,6 +54,9 @@ typedef struct
   ClothCvStereo *stereo;
   ClothDisparity *surface;
   ClothRefine *refine;
+  ClothRig *rig;
+  ClothStereo *head;
+  guint8 *mask;
   ClothPool *pool;
   gint16 *found[2];
   guint8 *mirrored[2];
@@ -232,7 +237,7 @@ get_sixteenths (void)
 {
   ClothDisparityParams params = cloth_disparity_default_params ();
 
-  params.half_width = 0.4;
+  params.half_width = 0.3;
   params.narrowing = 0.7;
   return params;
 }
@@ -251,26 +256,57 @@ do_sixteenths (Bench * bench, guint frame)
   score (bench, frame, MERGED_SMOOTH);
   keep (bench, "smooth", frame);
   refine (bench, frame);
-  params.half_width = 0.05;
+  params.half_width = 0.02;
   params.narrowing = 1;
   smooth (bench, &params);
   score (bench, frame, REFINED);
   keep (bench, "refined", frame);
 }
 
+/* All of it, as clothdisparity does: with the check from left to right and back. */
+static ClothStereoResult
+run_head (Bench * bench, guint frame)
+{
+  const ClothImage images[3] = { view (bench, 0, frame), view (bench, 1, frame),
+    view (bench, 2, frame)
+  };
+  const ClothImage mask = { bench->mask, bench->film->width,
+    bench->film->height, bench->film->width
+  };
+  ClothStereoResult result;
+
+  for (gsize i = 0; i < bench->n; i++)
+    bench->mask[i] = isnan (bench->truth[i]) ? 0 : 255;
+  if (!cloth_stereo_run (bench->head, images, &mask, bench->pool, &result,
+          NULL))
+    g_error ("no disparities of the head");
+  return result;
+}
+
+static void
+do_head (Bench * bench, guint frame)
+{
+  const ClothDisparityMap own = bench->map;
+
+  bench->map = run_head (bench, frame).map;
+  score (bench, frame, HEAD);
+  keep (bench, "head", frame);
+  bench->map = own;
+}
+
 static void
 time_steps (Bench * bench, guint frame)
 {
   static const gchar *const steps[] = { "merging", "filling", "fractions",
-    "refining"
+    "refining", "all of a head"
   };
   const ClothDisparityParams params = get_sixteenths ();
-  gdouble wall[4], processor[4], both = 0;
+  gdouble wall[5], processor[5], both = 0;
 
-  for (gint i = 0; i < 4; i++)
+  for (gint i = 0; i < 5; i++)
     wall[i] = processor[i] = G_MAXDOUBLE;
   for (gint round = 0; round < ROUNDS; round++)
-    for (gint i = 0; i < 4; i++) {
+    for (gint i = 0; i < 5; i++) {
       const gdouble start = wall_ms (), began = processor_ms ();
 
       if (i == 0)
@@ -279,12 +315,14 @@ time_steps (Bench * bench, guint frame)
         fill (bench, &params);
       else if (i == 2)
         smooth (bench, &params);
-      else
+      else if (i == 3)
         refine (bench, frame);
+      else
+        run_head (bench, frame);
       wall[i] = MIN (wall[i], wall_ms () - start);
       processor[i] = MIN (processor[i], processor_ms () - began);
     }
-  for (gint i = 0; i < 4; i++)
+  for (gint i = 0; i < 5; i++)
     g_print ("%s: %.1f ms by the wall's clock with %u threads, %.1f ms of "
         "processors\n", steps[i], wall[i],
         i ? cloth_pool_get_n_threads (bench->pool) : 1, processor[i]);
@@ -310,6 +348,8 @@ int
 main (int argc, char **argv)
 {
   ClothCvStereoParams params = cloth_cv_stereo_default_params ();
+  const ClothStereoParams of_head = cloth_stereo_default_params ();
+  const ClothCamera *cameras[3];
   Bench bench = { 0 };
 
   gst_init (&argc, &argv);
@@ -322,6 +362,10 @@ main (int argc, char **argv)
   bench.stereo = cloth_cv_stereo_new (&params, NULL);
   bench.surface = cloth_disparity_new ();
   bench.refine = cloth_refine_new ();
+  bench.rig = cloth_rig_load (TEST_DATA "/lineart_stereo3/rig.json", NULL);
+  for (guint i = 0; i < 3; i++)
+    cameras[i] = &bench.rig->cameras[i];
+  bench.head = cloth_stereo_new (cameras, 3, &of_head, NULL);
   bench.pool = cloth_pool_new (2);
   bench.n = (gsize) bench.film->width * (gsize) bench.film->height;
   for (gint k = 0; k < 2; k++) {
@@ -329,6 +373,7 @@ main (int argc, char **argv)
     bench.mirrored[k] = g_malloc (bench.n);
   }
   bench.truth = g_new (gfloat, bench.n);
+  bench.mask = g_malloc (bench.n);
   bench.map = (ClothDisparityMap) {
   g_new (gfloat, bench.n), g_malloc (bench.n), bench.film->width,
         bench.film->height, bench.film->width};
@@ -337,6 +382,7 @@ main (int argc, char **argv)
     match (&bench, frame);
     do_integers (&bench, frame);
     do_sixteenths (&bench, frame);
+    do_head (&bench, frame);
     if (frame == 5)
       time_steps (&bench, frame);
   }
@@ -348,6 +394,9 @@ main (int argc, char **argv)
   cloth_cv_stereo_free (bench.stereo);
   cloth_disparity_free (bench.surface);
   cloth_refine_free (bench.refine);
+  cloth_stereo_free (bench.head);
+  cloth_rig_free (bench.rig);
+  g_free (bench.mask);
   cloth_pool_free (bench.pool);
   test_stereo_free (bench.film);
   for (gint k = 0; k < 2; k++) {

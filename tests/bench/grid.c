@@ -172,7 +172,7 @@ run_film (const gchar * folder, const ClothGridParams * params, guint from,
   g_autoptr (ClothVerifier) verifier = cloth_verifier_new ();
   g_autoptr (GError) error = NULL;
 
-  match_film_load (&film, folder);
+  match_film_load (&film, folder, NULL, FALSE);
   {
     const ClothGridShape shape = { COLUMNS, ROWS,
       {film.cloth_m[0], film.cloth_m[1]}

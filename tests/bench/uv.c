@@ -401,7 +401,7 @@ run_film (const gchar * folder, const ClothUVParams * params, gint from,
   MatchTruth truth;
   Sums sums = { 0 };
 
-  match_film_load (&film, folder);
+  match_film_load (&film, folder, NULL, FALSE);
   reference_params.cloth_m[0] = film.cloth_m[0];
   reference_params.cloth_m[1] = film.cloth_m[1];
   picture = (ClothCvPicture) {

@@ -8,6 +8,7 @@
 #include <gst/cloth/cloth.h>
 #include <gst/video/video.h>
 #include <glib/gstdio.h>
+#include <malloc.h>
 #include <math.h>
 #include <string.h>
 
@@ -214,8 +215,8 @@ count_warnings (GstBus * bus, const gchar * part)
   return n;
 }
 
-/* How many matches are verified, all of which must be within 1 mm of the truth; all vertices
- * must be within 0.3 px. */
+/* How many matches are verified, of which 98%, but for two, must be within 3 mm of the truth; all
+ * vertices must be within 0.3 px. */
 static guint
 check_matches (GstBuffer * buffer, gint left, gboolean behind)
 {
@@ -239,9 +240,9 @@ check_matches (GstBuffer * buffer, gint left, gboolean behind)
     n_verified++;
     fail_unless_equals_int (match[i].mirrored, behind);
     n_wrong += hypot (match[i].u - u, match[i].v - 0.001 * (match[i].y + 0.5
-            - TOP)) > 0.001;
+            - TOP)) > 0.003;
   }
-  fail_unless (n_wrong * 50 <= n_verified, "%u of %u are wrong", n_wrong,
+  fail_unless (n_wrong <= 2 + n_verified / 50, "%u of %u are wrong", n_wrong,
       n_verified);
   for (guint i = 0; i < n_points; i++) {
     const gdouble across = (gdouble) point[i].column * PRINT / (GRID - 1);
@@ -284,9 +285,10 @@ GST_START_TEST (test_film)
 {
   g_autoptr (GError) error = NULL;
   g_autoptr (GstElement) pipeline = gst_parse_launch ("filesrc location=\""
-      FILM "/cam0.mp4\" ! qtdemux ! h264parse ! avdec_h264 ! identity "
-      "eos-after=4 ! siftmatch camera=cam0 pattern=\"" FILM "/pattern.json\" ! "
-      "appsink name=sink sync=false", &error);
+      FILM "/cam0.mp4\" ! qtdemux ! h264parse ! avdec_h264 max-threads=1 ! "
+      "siftmatch camera=cam0 pattern=\"" FILM
+      "/pattern.json\" ! " "appsink name=sink sync=false max-buffers=1",
+      &error);
   g_autoptr (GstElement) sink = NULL;
   g_autoptr (GstBus) bus = NULL;
   g_autofree gfloat *vertices = NULL;
@@ -299,7 +301,7 @@ GST_START_TEST (test_film)
   sink = gst_bin_get_by_name (GST_BIN (pipeline), "sink");
   bus = gst_element_get_bus (pipeline);
   gst_element_set_state (pipeline, GST_STATE_PLAYING);
-  while (TRUE) {
+  for (; frame < 4; frame++) {
     g_autoptr (GstSample) sample =
         gst_app_sink_try_pull_sample (GST_APP_SINK (sink), 100 * GST_SECOND);
     const gfloat *of = vertices + (gsize) frame * 3 * COLUMNS * ROWS;
@@ -309,8 +311,7 @@ GST_START_TEST (test_film)
     GstClothMatches *matches;
     gdouble at[2], metres;
 
-    if (!sample)
-      break;
+    fail_unless (sample != NULL);
     matches = gst_buffer_get_cloth_matches (gst_sample_get_buffer (sample));
     fail_unless (matches != NULL);
     fail_unless_equals_uint64 (gst_cloth_matches_get_sequence (matches), frame);
@@ -333,13 +334,11 @@ GST_START_TEST (test_film)
         "within 1 px\n", frame, gst_cloth_matches_get_n_features (matches),
         n_verified, n_right, n_near, n_points);
     fail_unless (n_verified * 2 > gst_cloth_matches_get_n_features (matches));
-    fail_unless (n_right >= 0.99 * n_verified);
+    fail_unless (n_right >= 0.97 * n_verified);
     fail_unless (n_points >= 1050);
-    fail_unless (n_near >= 0.97 * n_points);
-    frame++;
+    fail_unless (n_near >= 0.95 * n_points);
   }
   gst_element_set_state (pipeline, GST_STATE_NULL);
-  fail_unless_equals_int (frame, 4);
   fail_unless_equals_int (count_warnings (bus, ""), 0);
 }
 
@@ -692,6 +691,30 @@ GST_START_TEST (test_same_bytes)
 
 GST_END_TEST;
 
+/* Once pictures have come, more of them take no more memory. */
+GST_START_TEST (test_memory)
+{
+  GstHarness *h = harness ("threads=1 steady=3");
+  const GstVideoInfo info = info_of ("I420", WIDTH, HEIGHT);
+  gsize before = 0;
+
+  set_caps (h, &info);
+  for (guint k = 0; k < 30; k++) {
+    GstBuffer *in = picture_of (&info, LEFT + (gint) k % 5, k % 2, 0);
+
+    gst_buffer_add_cloth_disparity_meta (in, flat (k % 3 ? 1 : 2, TRUE));
+    gst_buffer_unref (gst_harness_push_and_pull (h, in));
+    if (k == 9)
+      before = mallinfo2 ().uordblks;
+  }
+  g_print ("%" G_GSSIZE_FORMAT " bytes more\n",
+      (gssize) (mallinfo2 ().uordblks - before));
+  fail_unless (mallinfo2 ().uordblks < before + 100000);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
 /* ---- what it says ---- */
 
 /* The right print, and pictures in which there is nothing, give no warning. */
@@ -739,7 +762,7 @@ GST_START_TEST (test_wrong_print)
     }
     h = harness_on ("", path, bus);
     set_caps (h, &info);
-    for (guint k = 0; k < (brief ? 3 : 24); k++)
+    for (guint k = 0; k < (brief ? 2 : 24); k++)
       gst_buffer_unref (gst_harness_push_and_pull (h, picture_of (&info, LEFT,
                   !other, 0)));
     fail_unless_equals_int (count_warnings (bus, "Hardly"), 0);
@@ -747,7 +770,7 @@ GST_START_TEST (test_wrong_print)
       gst_harness_push_event (h, gst_event_new_eos ());
       fail_unless_equals_int (count_warnings (bus, "Hardly"), 1);
     } else {
-      for (guint k = 0; k < 30; k++)
+      for (guint k = 0; k < 3; k++)
         gst_buffer_unref (gst_harness_push_and_pull (h, picture_of (&info, LEFT,
                     !other, 0)));
       gst_harness_push_event (h, gst_event_new_eos ());
@@ -760,28 +783,51 @@ GST_START_TEST (test_wrong_print)
 
 GST_END_TEST;
 
-/* A print that repeats itself is said at the start, and so is one without features. */
-GST_START_TEST (test_bad_print)
+/* A print that repeats itself is said at the start. */
+GST_START_TEST (test_repeated_print)
 {
-  for (guint how = 0; how < 2; how++) {
-    g_autofree gchar *path = write_pattern (1);
-    g_autoptr (GstBus) bus = gst_bus_new ();
-    g_autofree guint8 *tiles = g_malloc (PRINT * PRINT);
-    const GstVideoInfo info = info_of ("I420", WIDTH, HEIGHT);
-    GstHarness *h;
+  g_autofree gchar *path = write_pattern (1);
+  g_autoptr (GstBus) bus = gst_bus_new ();
+  g_autofree guint8 *tiles = g_malloc (PRINT * PRINT);
+  const GstVideoInfo info = info_of ("I420", WIDTH, HEIGHT);
+  GstHarness *h;
 
-    for (guint y = 0; y < PRINT; y++)
-      for (guint x = 0; x < PRINT; x++)
-        tiles[y * PRINT + x] = how ? 99 : print[y % 50 * PRINT + x % 50];
-    write_picture (tiles, PRINT, PRINT);
-    h = harness_on ("", path, bus);
-    fail_unless_equals_int (count_warnings (bus, how ? "no features" :
-            "repeat themselves"), 1);
-    set_caps (h, &info);
-    gst_buffer_unref (gst_harness_push_and_pull (h, picture (&info)));
-    gst_element_set_bus (h->element, NULL);
-    gst_harness_teardown (h);
-  }
+  for (guint y = 0; y < PRINT; y++)
+    for (guint x = 0; x < PRINT; x++)
+      tiles[y * PRINT + x] = print[y % 50 * PRINT + x % 50];
+  write_picture (tiles, PRINT, PRINT);
+  h = harness_on ("", path, bus);
+  fail_unless_equals_int (count_warnings (bus, "repeat themselves"), 1);
+  set_caps (h, &info);
+  gst_buffer_unref (gst_harness_push_and_pull (h, picture (&info)));
+  gst_element_set_bus (h->element, NULL);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
+/* A print on which there is nothing keeps the element from starting. */
+GST_START_TEST (test_blank_print)
+{
+  GstElement *element = gst_element_factory_make ("siftmatch", NULL);
+  g_autofree gchar *path = write_pattern (1);
+  g_autofree guint8 *blank = g_malloc0 (PRINT * PRINT);
+  g_autoptr (GstBus) bus = gst_bus_new ();
+  g_autoptr (GstMessage) message = NULL;
+  g_autoptr (GError) error = NULL;
+
+  write_picture (blank, PRINT, PRINT);
+  g_object_set (element, "pattern", path, NULL);
+  gst_element_set_bus (element, bus);
+  fail_unless_equals_int (gst_element_set_state (element, GST_STATE_PAUSED),
+      GST_STATE_CHANGE_FAILURE);
+  message = gst_bus_pop_filtered (bus, GST_MESSAGE_ERROR);
+  fail_unless (message != NULL);
+  gst_message_parse_error (message, &error, NULL);
+  fail_unless (strstr (error->message, "no feature"), "%s", error->message);
+  gst_element_set_state (element, GST_STATE_NULL);
+  gst_element_set_bus (element, NULL);
+  gst_object_unref (element);
 }
 
 GST_END_TEST;
@@ -843,8 +889,8 @@ GST_END_TEST;
 GST_START_TEST (test_effects)
 {
   static const gchar *const tighter[] = { "radius=2", "distance=20",
-    "seed-distance=5", "seed-scale=50", "least=1000", "vote=1 support=100",
-    "reference-scale=20", "contrast=0.5", "reference-contrast=0.5"
+    "seed-distance=0", "seed-scale=50", "least=1000", "vote=1 support=100",
+    "reference-scale=4", "contrast=0.1", "reference-contrast=0.1"
   };
   const GstVideoInfo info = info_of ("I420", WIDTH, HEIGHT);
   guint as_is = 0;
@@ -968,9 +1014,11 @@ siftmatch_suite (void)
   tcase_add_test (tc, test_flush_and_eos);
   tcase_add_test (tc, test_shared);
   tcase_add_test (tc, test_same_bytes);
+  tcase_add_test (tc, test_memory);
   tcase_add_test (tc, test_silent);
   tcase_add_test (tc, test_wrong_print);
-  tcase_add_test (tc, test_bad_print);
+  tcase_add_test (tc, test_repeated_print);
+  tcase_add_test (tc, test_blank_print);
   tcase_add_test (tc, test_properties);
   tcase_add_test (tc, test_effects);
   tcase_add_test (tc, test_refused);

@@ -6,6 +6,7 @@
 #include <gst/cloth/cloth.h>
 #include <gst/video/video.h>
 #include <glib/gstdio.h>
+#include <math.h>
 #include <string.h>
 
 #include "tests/elements/padded.h"
@@ -419,6 +420,90 @@ GST_START_TEST (test_shared)
 
 GST_END_TEST;
 
+/* Disparities of a box of 10 px before a wall of 5, with a hole in the box. */
+static GstClothDisparity *
+disparities (guint width, guint height)
+{
+  static const gdouble normal[3] = { 0, 0, 1 }, move[3];
+  static const gdouble turn[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
+  const guint n = width * height;
+  g_autofree gfloat *rays = g_new0 (gfloat, 2 * n);
+  g_autofree gfloat *d = g_new (gfloat, n);
+  g_autofree guint8 *states = g_malloc (n);
+  g_autoptr (GstClothStereo) stereo = gst_cloth_stereo_new (width, height, rays,
+      2 * n, normal, 100, turn, move, 2);
+
+  for (guint i = 0; i < n; i++) {
+    const guint x = i % width, y = i / width;
+    const gboolean box = x >= 50 && x < 130 && y >= 30 && y < 90;
+    const gboolean hole = x >= 70 && x < 100 && y >= 40 && y < 70;
+
+    d[i] = hole ? NAN : box ? 10 : 5;
+    states[i] = hole ? GST_CLOTH_DISPARITY_HOLE : GST_CLOTH_DISPARITY_MEASURED;
+  }
+  return gst_cloth_disparity_new ("", 0, stereo, 0.1f, d, n, states, n);
+}
+
+/* @carries: whether the picture has disparities. Returns: pixels of the silhouette. */
+static guint
+area_by_disparity (const gchar * properties, gboolean carries)
+{
+  g_autofree gchar *launch = g_strdup_printf ("silhouette %s", properties);
+  const GstVideoInfo info = info_of ("GRAY8", WIDTH, HEIGHT);
+  GstHarness *h = gst_harness_new_parse (launch);
+  GstBuffer *buffer = picture (&info, -1, 0), *out;
+  guint area;
+
+  gst_harness_set_src_caps (h, gst_video_info_to_caps (&info));
+  if (carries)
+    gst_buffer_add_cloth_disparity_meta (buffer, disparities (WIDTH, HEIGHT));
+  out = gst_harness_push_and_pull (h, buffer);
+  fail_unless (out != NULL);
+  area = gst_cloth_silhouette_get_area (gst_buffer_get_cloth_silhouette (out));
+  gst_buffer_unref (out);
+  gst_harness_teardown (h);
+  return area;
+}
+
+GST_START_TEST (test_disparity)
+{
+  const guint box = 80 * 60, hole = 30 * 30;
+
+  fail_unless_equals_int (area_by_disparity ("disparity-min=8 thin=0 hole=0",
+          TRUE), box - hole);
+  fail_unless_equals_int (area_by_disparity
+      ("disparity-min=8 disparity-max=12 thin=0 hole=900", TRUE), box);
+  fail_unless_equals_int (area_by_disparity ("disparity-max=7 thin=0 hole=0",
+          TRUE), WIDTH * HEIGHT - box);
+  fail_unless_equals_int (area_by_disparity ("disparity-min=11 thin=0", TRUE),
+      0);
+  /* luma and disparities both */
+  fail_unless_equals_int (area_by_disparity
+      ("disparity-min=8 thin=0 luma-min=255", TRUE), 0);
+  /* a picture without: nothing tells the cloth, or the luma alone */
+  fail_unless_equals_int (area_by_disparity ("disparity-min=8 thin=0", FALSE),
+      0);
+  fail_unless_equals_int (area_by_disparity
+      ("disparity-min=8 thin=0 luma-min=1", FALSE), WIDTH * HEIGHT);
+}
+
+GST_END_TEST;
+
+/* Disparities of another size than the picture's. */
+GST_START_TEST (test_disparity_of_other_size)
+{
+  const GstVideoInfo info = info_of ("GRAY8", WIDTH, HEIGHT);
+  GstHarness *h = gst_harness_new_parse ("silhouette disparity-min=8");
+  GstBuffer *buffer = picture (&info, -1, 0);
+
+  gst_harness_set_src_caps (h, gst_video_info_to_caps (&info));
+  gst_buffer_add_cloth_disparity_meta (buffer, disparities (WIDTH / 2, HEIGHT));
+  fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_ERROR);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
+
 static Suite *
 silhouette_suite (void)
 {
@@ -427,6 +512,8 @@ silhouette_suite (void)
 
   suite_add_tcase (suite, tc);
   tcase_add_checked_fixture (tc, setup, teardown);
+  tcase_add_test (tc, test_disparity);
+  tcase_add_test (tc, test_disparity_of_other_size);
   tcase_add_test (tc, test_formats);
   tcase_add_test (tc, test_learn);
   tcase_add_test (tc, test_ranges);

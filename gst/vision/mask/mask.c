@@ -83,7 +83,7 @@ cloth_mask_default_params (void)
     0, 0, 0}
     , {
     255, 255, 255}
-  };
+  , NULL, 0, G_MAXFLOAT};
 }
 
 /* Returns: (transfer full): a mask without a background; its memory is used again for each
@@ -597,6 +597,29 @@ clear_other_colours (ClothMask * mask)
   }
 }
 
+/* Clears what has no disparity, or one out of range. */
+static void
+clear_other_depths (ClothMask * mask)
+{
+  const ClothMaskParams *p = &mask->params;
+  const gint width = mask->image->luma.width;
+  guint8 *inside = mask->scratch->hits;
+  guint64 *row = mask->spare;
+
+  for (gint y = 0; y < mask->image->luma.height; y++) {
+    const gfloat *d = p->disparities + (gsize) y * (gsize) width;
+    guint64 *bits = mask->bits + (gsize) y * (gsize) mask->n_words;
+
+    /* false for what is no number */
+    for (gint x = 0; x < width; x++)
+      inside[x] = (gdouble) d[x] >= p->least_disparity
+          && (gdouble) d[x] <= p->most_disparity;
+    cloth_bits_pack (inside, width, row);
+    for (gint k = 0; k < mask->n_words; k++)
+      bits[k] &= row[k];
+  }
+}
+
 /* @mask: a mask
  * @params: parameters
  * @image: the picture
@@ -624,9 +647,13 @@ cloth_mask_run (ClothMask * mask, const ClothMaskParams * params,
     cloth_bits_erode (mask->bits, mask->spare, width, height, p->radius);
     if (has_ranges (p))
       clear_other_colours (mask);
+    if (p->disparities)
+      clear_other_depths (mask);
   } else {
     memset (mask->bits, 0xff, (gsize) mask->n_words * (gsize) height * 8);
     clear_other_colours (mask);
+    if (p->disparities)
+      clear_other_depths (mask);
     cloth_bits_open (mask->bits, mask->spare, width, height, p->thin);
   }
   mask->cut = !cloth_runs_of_bits (mask->runs, mask->bits, width, height);

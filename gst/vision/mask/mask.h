@@ -31,9 +31,13 @@ G_BEGIN_DECLS
  * @hole: holes of at most so many pixels are filled
  * @low: least luma, Cb and Cr of the cloth
  * @high: greatest
+ * @disparities: (nullable): of each pixel, rows without gaps, px; NaN where there is none
+ * @least_disparity: least of the cloth
+ * @most_disparity: greatest
  *
  * Values out of range are brought into it. What is below @low or above @high is not cloth,
- * whatever the background; Cb and Cr of grey pictures are not looked at.
+ * whatever the background; Cb and Cr of grey pictures are not looked at. With @disparities
+ * what has none or one beyond the two isn't either.
  */
 typedef struct {
   gint radius;
@@ -41,6 +45,8 @@ typedef struct {
   gint thin;
   guint least, hole;
   gint low[3], high[3];
+  const gfloat *disparities;
+  gdouble least_disparity, most_disparity;
 } ClothMaskParams;
 
 typedef struct _ClothMask ClothMask;

@@ -40,7 +40,8 @@ typedef struct
 
 /* @head, @partner, @mask: warps
  * @refined: the partner's picture, turned as the first pair's are
- * @inside: what that shows, without its rim */
+ * @inside: what that shows, without its rim
+ * @whole: where a block of the partner's matched picture is shown whole */
 typedef struct
 {
   ClothRectification frame;
@@ -51,7 +52,7 @@ typedef struct
   ClothCvStereo *matcher[2];
   guint8 *mirrored[2];
   gint16 *found[2];
-  guint8 *inside;
+  guint8 *inside, *whole;
 } Pair;
 
 struct _ClothStereo
@@ -74,16 +75,16 @@ struct _ClothStereo
 
 /* Returns: 1 to 3 m; blocks of 11 × 11 pixels, penalties 8 and 32 a pixel of them, 10%
  *   uniqueness, pieces of 100 px, 1 px from left to right and back, 0.7 px between baselines;
- *   sixteenths smoothed within 0.4 px, which narrow to 0.7, and refined ones within 0.05 px
+ *   sixteenths smoothed within 0.3 px, which narrow to 0.7, and refined ones within 0.02 px
  */
 ClothStereoParams
 cloth_stereo_default_params (void)
 {
   ClothStereoParams params = { 1, 3, 11, 8, 32, 10, 100, 1, 0.7,
-    cloth_disparity_default_params (), cloth_refine_default_params (), 0.05
+    cloth_disparity_default_params (), cloth_refine_default_params (), 0.02
   };
 
-  params.surface.half_width = 0.4;
+  params.surface.half_width = 0.3;
   params.surface.narrowing = 0.7;
   return params;
 }
@@ -202,6 +203,9 @@ add_pair (ClothStereo * self, const ClothCamera * const *cameras, guint k,
   pair->head = add_warp (self, 0, FALSE, frame, cameras[0], frame->head);
   pair->partner = add_warp (self, k + 1, FALSE, frame, partner, frame->partner);
   pair->mask = add_mask (self, pair->head);
+  warp = &self->warps[pair->partner];
+  pair->whole = shrink (warp->shown, warp->width, warp->height,
+      params->window / 2);
   cloth_rectify_relate (base, frame, pair->place, pair->unit);
   cloth_rectify_view (base, cameras[0], partner, rotation,
       pair->refined.shift, &pair->refined.forward);
@@ -304,6 +308,7 @@ cloth_stereo_free (ClothStereo * self)
   }
   for (guint k = 0; k < self->n_pairs; k++) {
     g_free (self->pairs[k].inside);
+    g_free (self->pairs[k].whole);
     for (guint i = 0; i < 2; i++) {
       cloth_cv_stereo_free (self->pairs[k].matcher[i]);
       g_free (self->pairs[k].mirrored[i]);
@@ -405,12 +410,12 @@ succeeded (ClothStereo * self, GError ** error)
   return good;
 }
 
-/* Drops what lies beside the cloth's mask or either picture. */
+/* Drops what lies beside the cloth's mask or its picture, and what was compared with more than
+ * the partner's picture shows. */
 static void
 confine (ClothStereo * self, Pair * pair)
 {
   const Warp *head = &self->warps[pair->head];
-  const Warp *partner = &self->warps[pair->partner];
   const guint8 *mask = self->mask ? self->warps[pair->mask].picture : NULL;
   const gint width = pair->frame.width;
 
@@ -423,7 +428,7 @@ confine (ClothStereo * self, Pair * pair)
       if (*d == CLOTH_CV_NO_DISPARITY)
         continue;
       if (!head->shown[at] || (mask && mask[at] < HALF) || to < 0
-          || to >= width || !partner->shown[row + (gsize) to])
+          || to >= width || !pair->whole[row + (gsize) to])
         *d = CLOTH_CV_NO_DISPARITY;
     }
 }
@@ -649,8 +654,8 @@ check_images (const ClothStereo * self, const ClothImage * images,
 /* @self: a head
  * @images: (array): the cameras' pictures of one instant, in the order and the sizes that
  *   they were given in
- * @mask: (nullable): of the first picture's size: not 0 where the cloth is. Without one it is
- *   all that has a disparity in range
+ * @mask: (nullable): of the first picture's size: 255 where the cloth is, else 0. Without one it
+ *   is all that has a disparity in range
  * @pool: (nullable): threads
  * @result: (out caller-allocates): what was found
  * @error: (out): set on failure
