@@ -49,6 +49,8 @@ GST_DEBUG_CATEGORY_STATIC (uv_map_debug);
 #define GST_CAT_DEFAULT uv_map_debug
 
 #define MAX_THREADS 1024
+/* Every so many sets it is looked whether the heads fit together. */
+#define CHECKED_SETS 25
 #define SINK_CAPS "video/x-raw(ANY), width=(int)[ 1, 16384 ], " \
     "height=(int)[ 1, 16384 ]"
 
@@ -95,7 +97,12 @@ struct _GstUVMap
   Head head[GST_CLOTH_SYNC_MAX_PADS];
   GArray *positions, *covariances;      /* gfloat */
   GByteArray *states;
-  guint64 sequence, n_contradicted;
+  guint64 sequence;
+
+  /* of the sets since the last judgement */
+  guint n_sets;
+  guint64 n_compared, n_contradicted;
+  gboolean warned_contradiction;
 };
 
 #define SETTING(member) GST_CLOTH_SETTING (Settings, member)
@@ -142,10 +149,14 @@ static const GstClothProperty properties[] = {
     "A vertex is unseen when more than this share of the pixels that show it lie elsewhere "
     "in space",
     G_TYPE_DOUBLE, SETTING (vertex.rival), GST_PARAM_MUTABLE_PLAYING, 0, 1},
-  {"correlation", "Correlation", "Over how many px disparities err alike",
-    G_TYPE_DOUBLE, SETTING (vertex.correlation), GST_PARAM_MUTABLE_PLAYING, 1, 100},
   {"noise", "Noise", "Least standard deviation of uv along u or v, m",
     G_TYPE_DOUBLE, SETTING (vertex.noise), GST_PARAM_MUTABLE_PLAYING, 0, 1},
+  {"doubt", "Doubt",
+    "Share of the standard deviation of uv that is added to that of a vertex whose place "
+    "siftmatch tells, which knows nothing of folds",
+    G_TYPE_DOUBLE, SETTING (vertex.doubt), GST_PARAM_MUTABLE_PLAYING, 0, 100},
+  {"depth-noise", "Noise of depth", "Least standard deviation of a disparity, px",
+    G_TYPE_DOUBLE, SETTING (vertex.depth_noise), GST_PARAM_MUTABLE_PLAYING, 0, 100},
   {"significance", "Significance",
     "Heads that agree are as far apart as this rarely by their covariances; what is "
     "farther contradicts",
@@ -435,6 +446,30 @@ gst_uv_map_do_head (GstUVMap * self, guint index, const Settings * settings,
       counts.n_between, counts.n_beyond, counts.n_surface, n_seen);
 }
 
+/* Tells once when heads contradict each other on most of what two or more see. */
+static void
+gst_uv_map_check (GstUVMap * self, const ClothUVJoined * joined)
+{
+  const guint64 lost = joined->n_contradicted + joined->n_left_out;
+
+  self->n_compared += joined->n_joined + lost;
+  self->n_contradicted += lost;
+  if (++self->n_sets < CHECKED_SETS || self->warned_contradiction)
+    return;
+  if (2 * self->n_contradicted > self->n_compared) {
+    self->warned_contradiction = TRUE;
+    GST_ELEMENT_WARNING (self, STREAM, FAILED,
+        ("Heads contradict each other on %.0f%% of the vertices that two or "
+            "more see.", 100. * (gdouble) self->n_contradicted
+            / (gdouble) self->n_compared),
+        ("See that all heads are of one rig.json and that the cameras stand "
+            "as when it was made; else calibrate again, or lower "
+            "significance."));
+  }
+  self->n_sets = 0;
+  self->n_compared = self->n_contradicted = 0;
+}
+
 static GstFlowReturn
 gst_uv_map_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
     guint64 mask, GstClockTime pts, GstClockTime duration, GstBuffer ** out)
@@ -492,6 +527,7 @@ gst_uv_map_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   cloth_uv_join (heads, n_heads, n_vertices, settings.significance,
       (gfloat *) self->positions->data, self->states->data,
       (gfloat *) self->covariances->data, &joined);
+  gst_uv_map_check (self, &joined);
   GST_LOG_OBJECT (self, "frame %" G_GUINT64_FORMAT ": %u vertices, %u of "
       "several heads, %u contradicted, %u views left out", self->sequence,
       joined.n_seen, joined.n_joined, joined.n_contradicted, joined.n_left_out);
@@ -499,10 +535,8 @@ gst_uv_map_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
       (const gfloat *) self->positions->data, self->states->data,
       (const gfloat *) self->covariances->data);
   *out = gst_cloth_mesh_to_buffer (mesh);
-  for (guint h = 0; h < n_heads; h++) {
+  for (guint h = 0; h < n_heads; h++)
     gst_buffer_add_cloth_uv_meta (*out, maps[h]);
-    gst_cloth_uv_unref (maps[h]);
-  }
   if (stamp)
     gst_buffer_add_reference_timestamp_meta (*out, stamp->reference,
         stamp->timestamp, stamp->duration);
@@ -517,7 +551,12 @@ fail:
 static void
 gst_uv_map_reset (GstClothSync * sync)
 {
-  GST_UV_MAP (sync)->sequence = G_MAXUINT64;    /* the first set's is 0 */
+  GstUVMap *self = GST_UV_MAP (sync);
+
+  self->sequence = G_MAXUINT64; /* the first set's is 0 */
+  self->n_sets = 0;
+  self->n_compared = self->n_contradicted = 0;
+  self->warned_contradiction = FALSE;
 }
 
 static GstPad *

@@ -453,8 +453,6 @@ main (int argc, char **argv)
     {"radius", 0, 0, G_OPTION_ARG_DOUBLE, &vertex_params.radius, NULL, NULL},
     {"edge", 0, 0, G_OPTION_ARG_DOUBLE, &vertex_params.edge, NULL, NULL},
     {"rival", 0, 0, G_OPTION_ARG_DOUBLE, &vertex_params.rival, NULL, NULL},
-    {"correlation", 0, 0, G_OPTION_ARG_DOUBLE, &vertex_params.correlation, NULL,
-        NULL},
     {NULL}
   };
   g_autoptr (GOptionContext) context = g_option_context_new ("FOLDER");

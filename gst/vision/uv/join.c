@@ -64,22 +64,22 @@ fuse (const View * views, guint n, guint without, View * mean)
   return TRUE;
 }
 
-/* Probability that two places of one vertex are so far apart. */
+/* Squared distance of two places of one vertex in their standard deviations. */
 static gdouble
-get_agreement (const View * a, const View * b)
+get_square (const View * a, const View * b)
 {
   gdouble both[9], inverse[9], d[3], id[3], square = 0;
 
   for (gint c = 0; c < 9; c++)
     both[c] = a->covariance[c] + b->covariance[c];
   if (!cloth_mat3_inverse (both, inverse))
-    return 0;
+    return INFINITY;
   for (gint c = 0; c < 3; c++)
     d[c] = a->point[c] - b->point[c];
   cloth_mat3_vec (inverse, d, id);
   for (gint c = 0; c < 3; c++)
     square += d[c] * id[c];
-  return isfinite (square) ? cloth_chi_square_tail (MAX (square, 0), 3) : 0;
+  return isfinite (square) ? MAX (square, 0) : INFINITY;
 }
 
 /* Leaves out views that the others contradict, the worst first; returns how many are left,
@@ -88,20 +88,20 @@ static guint
 refuse (View * views, guint n, gdouble significance, guint * n_left_out)
 {
   while (n >= 2) {
-    gdouble worst = INFINITY;
+    gdouble worst = -1;
     guint at = 0;
 
     for (guint k = 0; k < n; k++) {
       View others;
-      const gdouble agreement = fuse (views, n, k, &others) ?
-          get_agreement (&views[k], &others) : 0;
+      const gdouble square = fuse (views, n, k, &others) ?
+          get_square (&views[k], &others) : INFINITY;
 
-      if (agreement < worst) {
-        worst = agreement;
+      if (square > worst) {
+        worst = square;
         at = k;
       }
     }
-    if (worst >= significance)
+    if (isfinite (worst) && cloth_chi_square_tail (worst, 3) >= significance)
       return n;
     if (n == 2)
       return 0;

@@ -25,11 +25,8 @@
 /* Fewest neighbours that can contradict a place, and of how many the scale is told. */
 #define NEIGHBOURS 4
 #define SCALED 30
-/* A place lies within its neighbours when their mean is not farther from it than this share
- * of their extent. */
-#define WITHIN 0.6
-/* Variance of a difference from the mean of six neighbours, each as unsure as oneself. */
-#define MEAN_OF_SIX (7 / 6.)
+/* Where its neighbours say that a place is, their variance may be this share of one's own. */
+#define WITHIN 0.5
 /* Rounds of smoothing. */
 #define SMOOTHINGS 2
 /* Share of a neighbourhood's extent that keeps the direction which it doesn't span, the
@@ -324,10 +321,10 @@ sums_add_sums (Sums * sums, const Sums * more)
 
 /* The slope that fits best; FALSE where the steps span no plane. */
 static gboolean
-sums_solve (const Sums * sums, gdouble slope[6])
+sums_solve (const Sums * sums, gdouble slope[6], gdouble inverse[9])
 {
   const gdouble trace = sums->dd[0] + sums->dd[4] + sums->dd[8];
-  gdouble a[9], inverse[9];
+  gdouble a[9];
 
   memcpy (a, sums->dd, sizeof a);
   for (gint i = 0; i < 3; i++)
@@ -344,9 +341,10 @@ sums_solve (const Sums * sums, gdouble slope[6])
 
 /* ---- outliers ---- */
 
-/* How far place @i lies from where its neighbours that are not out say, m, and by how much
- * along u and v; < 0: too few say. They are fitted by a plane around their mean, without the
- * place itself. */
+/* How far place @i lies from where its neighbours that are not out say, in metres of a place
+ * whose neighbours were exact, and by how much along u and v; < 0: too few say. They are
+ * fitted by a plane around their mean, without the place itself; the farther that mean lies
+ * off, the less sure is what it says. @within: whether it is sure enough to go by. */
 static gdouble
 get_error (const ClothUVPlaces * self, guint i, gdouble e[2], gboolean * within)
 {
@@ -355,6 +353,7 @@ get_error (const ClothUVPlaces * self, guint i, gdouble e[2], gboolean * within)
   const Neighbour *of = (const Neighbour *) self->neighbours->data;
   const guint8 *out = (const guint8 *) self->out->data;
   gdouble mean[3] = { 0 }, mean_uv[2] = { 0 }, slope[6];
+  gdouble inverse[9], leverage[3], unsure;
   Sums sums = { {0} };
   guint n = 0;
 
@@ -384,14 +383,18 @@ get_error (const ClothUVPlaces * self, guint i, gdouble e[2], gboolean * within)
       du[c] = places[of[k].other].uv[c] - places[i].uv[c] - mean_uv[c] / n;
     sums_add (&sums, d, du);
   }
-  if (!sums_solve (&sums, slope))
+  if (!sums_solve (&sums, slope, inverse))
     return -1;
+  for (gint c = 0; c < 3; c++)
+    mean[c] /= n;
   for (gint r = 0; r < 2; r++)
-    e[r] = (mean_uv[r] - slope[3 * r] * mean[0] - slope[3 * r + 1] * mean[1]
-        - slope[3 * r + 2] * mean[2]) / n;
-  *within = mean[0] * mean[0] + mean[1] * mean[1] + mean[2] * mean[2]
-      <= WITHIN * WITHIN * n * (sums.dd[0] + sums.dd[4] + sums.dd[8]);
-  return sqrt (e[0] * e[0] + e[1] * e[1]);
+    e[r] = mean_uv[r] / n - slope[3 * r] * mean[0] - slope[3 * r + 1] * mean[1]
+        - slope[3 * r + 2] * mean[2];
+  cloth_mat3_vec (inverse, mean, leverage);
+  unsure = 1. / n + leverage[0] * mean[0] + leverage[1] * mean[1]
+      + leverage[2] * mean[2];
+  *within = unsure <= WITHIN;
+  return sqrt ((e[0] * e[0] + e[1] * e[1]) / (1 + MAX (unsure, 0)));
 }
 
 /* Marks those that lie too far from where their neighbours say; of neighbours the worst
@@ -420,7 +423,7 @@ mark_outliers (const Run * run, gdouble * sigma)
   if (n_scaled < SCALED)
     return 0;
   /* half of the lengths of two normal errors are below 1.18 σ */
-  *sigma = cloth_median (scales, n_scaled) / (1.18 * sqrt (MEAN_OF_SIX));
+  *sigma = cloth_median (scales, n_scaled) / 1.18;
   bound = run->params->outlier * *sigma;
   for (gint round = 0; round < ROUNDS && bound > 0 && n_out != before; round++) {
     before = n_out;
@@ -485,7 +488,7 @@ set_sigmas (ClothUVPlaces * self, gdouble usual)
 
       if (errors[j] < 0 || (k < starts[i + 1] && of[k].length < 0))
         continue;
-      sum += errors[j] * errors[j] / MEAN_OF_SIX;
+      sum += errors[j] * errors[j];
       n++;
     }
     places[i].sigma = sqrt (sum / 2 / n);
@@ -543,11 +546,13 @@ make_slopes (ClothUVPlaces * self)
     }
   for (guint i = 0; i < n; i++) {
     Sums around = sums[i];
+    gdouble inverse[9];
 
     for (guint k = starts[i]; k < starts[i + 1]; k++)
       if (of[k].length >= 0)
         sums_add_sums (&around, &sums[of[k].other]);
-    if (around.n < 2 * NEIGHBOURS || !sums_solve (&around, places[i].slope))
+    if (around.n < 2 * NEIGHBOURS
+        || !sums_solve (&around, places[i].slope, inverse))
       memset (places[i].slope, 0, sizeof places[i].slope);
   }
 }

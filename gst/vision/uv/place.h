@@ -4,7 +4,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/vision/uv/dense.h"
+#include "gst/vision/uv/params.h"
 
 G_BEGIN_DECLS
 

@@ -26,8 +26,6 @@
 /* A parabola's middle lies within its pixels when their mean is not farther from it than
  * this share of their extent: else it would turn away, and a plane is fitted. */
 #define WITHIN 0.5
-/* By how much the variance of a parabola's middle is larger than that of a mean. */
-#define PARABOLA_VARIANCE 2.25
 /* Pixels of a surface are at most this many times as far apart as on the flat cloth. */
 #define APART 1.5
 
@@ -50,14 +48,12 @@ typedef struct
 typedef struct
 {
   gdouble value[3], slope_a[3], slope_b[3];
-  gdouble n;                    /* as many pixels of equal weight */
-  gboolean parabola;
 } Fit;
 
 typedef struct
 {
   gdouble ata[PARABOLA * PARABOLA], atb[3][PARABOLA];
-  gdouble weights, squares, mean[2], extent;
+  gdouble weights, mean[2], extent;
   guint n;
 } Sums;
 
@@ -78,7 +74,7 @@ ClothUVVertexParams
 cloth_uv_vertex_default_params (void)
 {
   return (ClothUVVertexParams) {
-  0.008, 0.004, 0.3, 5, 0.0002};
+  0.008, 0.004, 0.3, 0.0002, 0.5, 0.08};
 }
 
 /* Returns: (transfer full): room for the vertices of one picture at a time
@@ -220,7 +216,6 @@ sums_add (Sums * sums, const Sample * s)
       sums->atb[c][i] += s->weight * terms[i] * s->values[c];
   }
   sums->weights += s->weight;
-  sums->squares += s->weight * s->weight;
   sums->mean[0] += s->weight * s->a;
   sums->mean[1] += s->weight * s->b;
   sums->extent += s->weight * (s->a * s->a + s->b * s->b);
@@ -244,8 +239,6 @@ sums_solve (const Sums * sums, guint n_terms, Fit * fit)
     fit->slope_a[c] = b[1];
     fit->slope_b[c] = b[2];
   }
-  fit->n = sums->weights * sums->weights / sums->squares;
-  fit->parabola = n_terms == PARABOLA;
   return TRUE;
 }
 
@@ -347,9 +340,10 @@ find_point (const Run * run, const ClothUVSpot * spot, const guint32 * pixels,
   axis = depth->normal[0] * ray[0] + depth->normal[1] * ray[1]
       + depth->normal[2];
   /* of the inverse depth */
-  along = depth->sigma * axis / depth->focal_baseline;
-  along *= along * MIN ((fit.parabola ? PARABOLA_VARIANCE : 1)
-      * run->params.correlation * run->params.correlation / fit.n, 1);
+  /* neighbouring disparities err alike: their mean is no better than one */
+  along = MAX (isfinite (depth->sigma) ? depth->sigma : 0,
+      run->params.depth_noise) * axis / depth->focal_baseline;
+  along *= along;
   for (gint c = 0; c < 3; c++) {
     vertex->point[c] = z * ray[c];
     step[0][c] = z * ((c < 2 ? fit.slope_a[c] : 0)
@@ -396,8 +390,9 @@ cloth_uv_vertices_run (ClothUVVertices * self,
   const guint n = (guint) shape->columns * shape->rows;
   const Run run = { self, {
           MAX (params->radius, 1e-6), MAX (params->edge, 0),
-          CLAMP (params->rival, 0, 1), MAX (params->correlation, 1),
-      MAX (params->noise, 0)}, shape, surface, uv, depth, dense
+          CLAMP (params->rival, 0, 1), MAX (params->noise, 0),
+      MAX (params->doubt, 0), MAX (params->depth_noise, 0)}, shape, surface, uv,
+  depth, dense
   };
   guint32 *of = (guint32 *) g_array_set_size (self->spots, n)->data;
   guint n_seen = 0;
@@ -420,8 +415,15 @@ cloth_uv_vertices_run (ClothUVVertices * self,
     n_pixels = n_pixels ? keep_one_part (&run, pixels, n_pixels) : 0;
     if (!n_pixels || !find_place (&run, i, pixels, n_pixels, &spot))
       continue;
-    n_seen += find_point (&run, of[i] == NONE ? &spot : &spots[of[i]], pixels,
-        n_pixels, &vertices[i]);
+    if (of[i] != NONE) {
+      const ClothUVSpot *known = &spots[of[i]];
+      const gdouble share = run.params.doubt * run.params.doubt;
+
+      spot = (ClothUVSpot) {
+      i, known->x, known->y, known->xx + share * spot.xx,
+            known->xy + share * spot.xy, known->yy + share * spot.yy};
+    }
+    n_seen += find_point (&run, &spot, pixels, n_pixels, &vertices[i]);
   }
   return n_seen;
 }

@@ -3,7 +3,6 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/vision/match/grid.h"
 #include "gst/vision/uv/dense.h"
 
 G_BEGIN_DECLS
@@ -12,13 +11,15 @@ G_BEGIN_DECLS
  * @edge: a vertex is as far beyond the pixels with a uv at most, m, >= 0
  * @rival: a vertex is unseen when this share of the pixels that show it lie elsewhere in
  *   space, 0 to 1
- * @correlation: over how many px disparities err alike, >= 1
  * @noise: least standard deviation of uv along u or v, m
+ * @doubt: share of uv's standard deviation that is added to a place known otherwise, whose
+ *   own knows nothing of folds, >= 0
+ * @depth_noise: least standard deviation of a disparity, px
  *
  * Values out of range are brought into it.
  */
 typedef struct {
-  gdouble radius, edge, rival, correlation, noise;
+  gdouble radius, edge, rival, noise, doubt, depth_noise;
 } ClothUVVertexParams;
 
 /* @sigma: standard deviation of a disparity, px
