@@ -68,7 +68,7 @@ typedef struct
   gchar *rig, *camera, *pattern, *texture, *effects;
   gdouble azimuth, elevation, distance;
   guint64 seed;
-  guint threads;
+  guint sides, threads;
   GstClothDamage damage;
 } Settings;
 
@@ -85,11 +85,16 @@ static const GstClothProperty properties[] = {
     "one camera",
     G_TYPE_STRING, SETTING (camera), GST_PARAM_MUTABLE_READY},
   {"pattern", "Pattern",
-    "Pattern file (pattern.json) that is printed on the cloth: squares or coloured dots",
+    "Pattern file (pattern.json) that is printed on the cloth: squares, coloured "
+    "dots or any picture",
     G_TYPE_STRING, SETTING (pattern), GST_PARAM_MUTABLE_READY},
   {"texture", "Texture",
     "Picture file that is printed over the whole cloth, instead of a pattern",
     G_TYPE_STRING, SETTING (texture), GST_PARAM_MUTABLE_READY},
+  {"sides", "Sides",
+    "Sides of the cloth that show the print; 2: the back shows it mirrored, as "
+    "where it soaks through",
+    G_TYPE_UINT, SETTING (sides), GST_PARAM_MUTABLE_READY, 1, 2},
   {"effects", "Effects",
     "Camera and image effects, as “noise,sigma=3; "
     "rolling_shutter,seconds=0.01”",
@@ -113,7 +118,7 @@ static const GstClothProperty properties[] = {
 };
 /* *INDENT-ON* */
 
-static const Settings default_settings = {.elevation = 15 };
+static const Settings default_settings = {.elevation = 15,.sides = 1 };
 
 /* The format of the pictures, and the RGB that those of luma and chroma come from. */
 typedef struct
@@ -718,6 +723,7 @@ gst_cloth_camera_start (GstBaseTransform * trans)
         ("Leave out pattern= or texture=."));
     return FALSE;
   }
+  self->style.two_sided = self->settings.sides > 1;
   gst_cloth_damage_reset (&self->settings.damage, GST_ELEMENT (self));
   return gst_cloth_camera_load (self);
 }

@@ -126,7 +126,7 @@ struct _GstGapView
   GstClothIoPoints *points;
   ClothRays *rays;
   guint64 sequence;             /* of the next picture */
-  gboolean seen;                /* whether any picture had squares or dots */
+  gboolean seen;                /* whether any picture had squares, dots or matches */
 };
 
 static gboolean
@@ -218,8 +218,7 @@ gst_gap_view_read (GstGapView * view, GstElement * element,
   g_autoptr (GError) error = NULL;
   const gchar *name;
 
-  if (!gst_buffer_get_cloth_quads (picture)
-      && !gst_buffer_get_cloth_dots (picture)) {
+  if (!gst_cloth_io_points_has_any (picture)) {
     cloth_rays_clear (view->rays);
   } else {
     if (!gst_cloth_io_points_find (points, picture, &error)) {
@@ -267,8 +266,9 @@ gst_gap_view_check_seen (const GstGapView * view, GstElement * element)
   if (view->seen)
     return TRUE;
   GST_ELEMENT_ERROR (element, STREAM, FAILED,
-      ("No picture showed squares or dots of the cloth."),
-      ("Put “saddledetect ! quadtrack” or “dotlabel” before clothmetapay."));
+      ("No picture showed squares, dots or matches of the cloth."),
+      ("Put “saddledetect ! quadtrack”, “dotlabel” or “siftmatch” before "
+          "clothmetapay."));
   return FALSE;
 }
 

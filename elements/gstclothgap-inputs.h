@@ -54,7 +54,7 @@ gboolean gst_gap_view_set_caps (GstGapView * view,
 const ClothRays *gst_gap_view_read (GstGapView * view,
     GstElement * element, GstBuffer * picture, guint64 * sequence,
     gdouble * offset_s, GError ** damage);
-/* Posts an error when no picture so far showed squares or dots. */
+/* Posts an error when no picture so far showed squares, dots or matches. */
 gboolean gst_gap_view_check_seen (const GstGapView * view,
     GstElement * element);
 void gst_gap_view_free (GstGapView * view);

@@ -167,7 +167,8 @@ gst_cloth_meta_depay_class_init (GstClothMetaDepayClass * klass)
   gst_element_class_set_static_metadata (element_class,
       "Cloth metadata depayloader", "Codec/Depayloader",
       "Turns an observation stream into black pictures with the saddles, "
-      "quads, dots and silhouettes on them", "The gst-cloth developers");
+      "quads, dots, silhouettes and matches on them",
+      "The gst-cloth developers");
   GST_DEBUG_CATEGORY_INIT (cloth_meta_depay_debug, "clothmetadepay", 0,
       "metadata without pixels, back on pictures");
 }

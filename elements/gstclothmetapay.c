@@ -152,8 +152,8 @@ gst_cloth_meta_pay_class_init (GstClothMetaPayClass * klass)
   gst_element_class_add_static_pad_template (element_class, &src_template);
   gst_element_class_set_static_metadata (element_class,
       "Cloth metadata payloader", "Codec/Payloader",
-      "Turns the saddles, quads, dots and silhouettes on pictures into an observation stream "
-      "without pixels", "The gst-cloth developers");
+      "Turns the saddles, quads, dots, silhouettes and matches on pictures into an observation "
+      "stream without pixels", "The gst-cloth developers");
   GST_DEBUG_CATEGORY_INIT (cloth_meta_pay_debug, "clothmetapay", 0,
       "metadata without pixels");
 }

@@ -318,9 +318,8 @@ has_label (const GstClothDot * dot, guint columns, guint rows)
       && (guint) dot->row < rows;
 }
 
-/* Where a dot belongs in the pattern, and in the low half which dot it is. */
-static guint64
-place_of_dot (guint columns, gint column, gint row, guint index)
+guint64
+gst_cloth_overlay_place (guint columns, gint column, gint row, guint index)
 {
   return ((guint64) (guint) row * columns + (guint) column) << 32 | index;
 }
@@ -333,18 +332,23 @@ compare_places (gconstpointer a, gconstpointer b)
   return (x > y) - (x < y);
 }
 
-/* The first dot at a place of @places, which are in order. Labels may be a stranger's: no
- * table is hashed by them. */
-static const GstClothDot *
-find_dot (const GArray * places, guint columns, guint rows,
-    const GstClothDot * dots, gint column, gint row)
+void
+gst_cloth_overlay_sort_places (GArray * places)
 {
-  const guint64 key = place_of_dot (columns, column, row, 0);
+  g_array_sort (places, compare_places);
+}
+
+/* Places may be a stranger's: no table is hashed by them. */
+guint
+gst_cloth_overlay_find_place (const GArray * places, guint columns, guint rows,
+    gint column, gint row)
+{
+  const guint64 key = gst_cloth_overlay_place (columns, column, row, 0);
   guint low = 0, high = places->len;
   guint64 found;
 
   if ((guint) column >= columns || (guint) row >= rows) {
-    return NULL;
+    return G_MAXUINT;
   }
   while (low < high) {
     const guint middle = (low + high) / 2;
@@ -356,10 +360,20 @@ find_dot (const GArray * places, guint columns, guint rows,
     }
   }
   if (low == places->len) {
-    return NULL;
+    return G_MAXUINT;
   }
   found = g_array_index (places, guint64, low);
-  return found >> 32 == key >> 32 ? &dots[found & G_MAXUINT32] : NULL;
+  return found >> 32 == key >> 32 ? (guint) (found & G_MAXUINT32) : G_MAXUINT;
+}
+
+static const GstClothDot *
+find_dot (const GArray * places, guint columns, guint rows,
+    const GstClothDot * dots, gint column, gint row)
+{
+  const guint index = gst_cloth_overlay_find_place (places, columns, rows,
+      column, row);
+
+  return index == G_MAXUINT ? NULL : &dots[index];
 }
 
 void
@@ -375,12 +389,12 @@ gst_cloth_overlay_draw_dots (const ClothCanvas * canvas, GstClothDots * dots,
   for (guint i = 0; i < n; i++) {
     if (has_label (&dot[i], columns, rows)) {
       const guint64 place =
-          place_of_dot (columns, dot[i].column, dot[i].row, i);
+          gst_cloth_overlay_place (columns, dot[i].column, dot[i].row, i);
 
       g_array_append_val (places, place);
     }
   }
-  g_array_sort (places, compare_places);
+  gst_cloth_overlay_sort_places (places);
   for (guint i = 0; i < n; i++) {
     const GstClothDot *d = &dot[i];
     const GstClothDot *right, *below;

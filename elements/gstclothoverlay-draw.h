@@ -1,4 +1,5 @@
-/* clothoverlay: silhouettes, squares, saddles and dots from their metadata into a video frame.
+/* clothoverlay: silhouettes, squares, saddles, dots, matches and maps of places from their
+ * metadata into a video frame.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -15,11 +16,18 @@ typedef enum {
   GST_CLOTH_OVERLAY_MESH_SHADED
 } GstClothOverlayMeshStyle;
 
+typedef enum {
+  GST_CLOTH_OVERLAY_MATCHES_NONE,
+  GST_CLOTH_OVERLAY_MATCHES_GROUPS,
+  GST_CLOTH_OVERLAY_MATCHES_DENSITY
+} GstClothOverlayMatches;
+
 /* The properties of the element that say how things look. */
 typedef struct {
-  gboolean draw_silhouette, draw_saddles, draw_quads, draw_dots, draw_indices, draw_mesh, draw_gap;
+  gboolean draw_silhouette, draw_saddles, draw_quads, draw_dots, draw_indices, draw_mesh, draw_gap, draw_uv;
+  GstClothOverlayMatches draw_matches;
   gfloat line_width, opacity, fill_opacity, c_low, ellipse_scale;
-  guint gap_scale;              /* mm */
+  guint gap_scale, check;       /* mm */
   GstClothOverlayMeshStyle mesh_style;
 } GstClothOverlayStyle;
 
@@ -41,5 +49,24 @@ void gst_cloth_overlay_draw_saddles (const ClothCanvas * canvas,
 void gst_cloth_overlay_draw_dots (const ClothCanvas * canvas,
     GstClothDots * dots, GArray * places,
     const GstClothOverlayStyle * style);
+
+/* Verified matches, coloured by the seed that they grew from or as a heat map of how many there
+ * are, and the vertices of the grid, with links between neighbours of the pattern. On a picture
+ * of @width by @height px. @places and @cells are room, kept over the pictures of a film. */
+void gst_cloth_overlay_draw_matches (const ClothCanvas * canvas, gint width,
+    gint height, GstClothMatches * matches, GArray * places, GArray * cells,
+    const GstClothOverlayStyle * style);
+
+/* Checks on the flat cloth, where @uv says that its pixels show it; of the picture's size. */
+void gst_cloth_overlay_draw_uv (const ClothCanvas * canvas,
+    const GstClothUV * uv, const GstClothOverlayStyle * style);
+
+/* Where something belongs in the pattern, and in the low half which it is. */
+guint64 gst_cloth_overlay_place (guint columns, gint column, gint row,
+    guint index);
+void gst_cloth_overlay_sort_places (GArray * places);
+/* The first that is at a place of @places, which are in order; %G_MAXUINT: none. */
+guint gst_cloth_overlay_find_place (const GArray * places, guint columns,
+    guint rows, gint column, gint row);
 
 G_END_DECLS

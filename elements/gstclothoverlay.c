@@ -6,8 +6,9 @@
  * SECTION:element-clothoverlay
  * @title: clothoverlay
  *
- * Draws the silhouette, saddles, squares and dots that a picture carries as metadata, and, when its
- * `mesh` pad is linked, a mesh as the camera `camera` of `rig` sees it. The picture is
+ * Draws the silhouette, saddles, squares, dots and matches that a picture carries as metadata, and,
+ * when its `mesh` pad is linked, a mesh as the camera `camera` of `rig` sees it; where the mesh
+ * has a map of which place of the cloth each pixel of that camera shows, checks are drawn there. The picture is
  * drawn on in place; one with nothing to draw passes untouched. The mesh is drawn as lines or
  * as a surface with any picture on it (`mesh-style`, `texture`). A mesh that `clothgap`
  * has been over is drawn as a heat map of its distance from the simulation.
@@ -118,7 +119,8 @@ struct _GstClothOverlay
   GstVideoInfo info;
   GstCaps *video_caps;
   gboolean knows_strides;       /* downstream, of GstVideoMeta */
-  GArray *dot_places;
+  GArray *places;               /* of dots, of vertices */
+  GArray *cells;                /* gfloat: of the heat map of matches */
   Mesh *mesh;
   ClothRig *rig;
   const ClothCamera *camera;    /* of @rig */
@@ -130,6 +132,15 @@ GST_ELEMENT_REGISTER_DEFINE_WITH_CODE (clothoverlay, "clothoverlay",
     GST_RANK_NONE, GST_TYPE_CLOTH_OVERLAY,
     GST_DEBUG_CATEGORY_INIT (cloth_overlay_debug, "clothoverlay", 0,
         "drawing of cloth metadata and meshes"));
+
+static const GEnumValue matches_styles[] = {
+  {GST_CLOTH_OVERLAY_MATCHES_NONE, "Not at all", "none"},
+  {GST_CLOTH_OVERLAY_MATCHES_GROUPS, "Each match, coloured by the seed that it "
+        "grew from, and the vertices of the grid", "groups"},
+  {GST_CLOTH_OVERLAY_MATCHES_DENSITY, "Heat map of how many verified matches "
+        "there are", "density"},
+  {0, NULL, NULL}
+};
 
 static const GEnumValue mesh_styles[] = {
   {GST_CLOTH_OVERLAY_MESH_WIREFRAME, "Lines, coloured by what is known of "
@@ -161,6 +172,19 @@ static const GstClothProperty properties[] = {
     "for sure labels to purple, blue where seen from behind; a red cross on dots "
     "without a label",
     G_TYPE_BOOLEAN, SETTING (style.draw_dots), ANIMATED},
+  {"draw-matches", "draw-matches",
+    "How matches with a print are drawn: none, groups (crosses, a colour for each seed "
+    "that they grew from; faint dashes where not verified; rings on the grid's vertices, "
+    "linked with their neighbours, blue where seen from behind) or density (heat map of "
+    "the verified ones, pale to dark red for one in 8 by 8 px; each counts up to 16 px away)",
+    G_TYPE_ENUM, SETTING (style.draw_matches), ANIMATED, 0, 0,
+    "GstClothOverlayMatches", matches_styles},
+  {"draw-uv", "draw-uv",
+    "Where the mesh carries a map of the places that this camera's pixels show, of the "
+    "picture's size, draw black and white checks on the cloth by it",
+    G_TYPE_BOOLEAN, SETTING (style.draw_uv), ANIMATED},
+  {"check", "check", "Edge of these checks on the cloth, mm",
+    G_TYPE_UINT, SETTING (style.check), ANIMATED, 1, 99999},
   {"draw-indices", "draw-indices",
     "Write column (above) and row (below) into the squares and onto the dots",
     G_TYPE_BOOLEAN, SETTING (style.draw_indices), ANIMATED},
@@ -214,7 +238,8 @@ static const GstClothProperty properties[] = {
 static const Settings defaults = {
   .style = {
     .draw_silhouette = TRUE, .draw_saddles = TRUE, .draw_quads = TRUE, .draw_dots = TRUE,
-    .draw_mesh = TRUE, .draw_gap = TRUE, .gap_scale = 10,
+    .draw_mesh = TRUE, .draw_gap = TRUE, .gap_scale = 10, .draw_uv = TRUE, .check = 20,
+    .draw_matches = GST_CLOTH_OVERLAY_MATCHES_GROUPS,
     .line_width = 1.5f, .opacity = 1, .fill_opacity = 0.3f, .c_low = 0.62f,
     .mesh_style = GST_CLOTH_OVERLAY_MESH_WIREFRAME
   }
@@ -426,6 +451,19 @@ gst_cloth_overlay_draw_mesh (GstClothOverlay * self, const ClothCanvas * canvas,
   return GST_FLOW_OK;
 }
 
+/* The map of this camera's pixels on @mesh, when it is of the picture's size. */
+static GstClothUV *
+gst_cloth_overlay_find_uv (GstClothOverlay * self, GstBuffer * mesh)
+{
+  const gchar *name = self->camera->name;
+  GstClothUV *uv = gst_buffer_get_cloth_uv (mesh, name && *name ? name : NULL);
+
+  return uv && gst_cloth_uv_get_width (uv) ==
+      (guint) GST_VIDEO_INFO_WIDTH (&self->info)
+      && gst_cloth_uv_get_height (uv) ==
+      (guint) GST_VIDEO_INFO_HEIGHT (&self->info) ? uv : NULL;
+}
+
 /* ---- GstClothSync ---- */
 
 static gboolean
@@ -513,7 +551,9 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   GstClothOverlay *self = GST_CLOTH_OVERLAY (sync);
   GstFlowReturn ret = GST_FLOW_OK;
   GstBuffer *mesh = n > MESH ? views[MESH] : NULL;
-  gboolean has_silhouette, has_quads, has_dots, has_saddles;
+  GstBuffer *mapped = mesh;
+  GstClothUV *uv = NULL;
+  gboolean has_silhouette, has_quads, has_dots, has_matches, has_saddles;
   GstVideoFrame frame;
   ClothCanvas canvas;
   ClothWork work = gst_cloth_overlay_allow (self);
@@ -536,25 +576,35 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   if (!style.draw_mesh || !self->mesh) {
     mesh = NULL;
   }
+  if (!style.draw_uv || !self->mesh || !mapped
+      || !gst_buffer_get_cloth_uv (mapped, NULL)) {
+    mapped = NULL;
+  }
   has_silhouette = style.draw_silhouette
       && gst_buffer_get_cloth_silhouette (views[VIDEO]);
   has_quads = (style.draw_quads || style.draw_indices)
       && gst_buffer_get_cloth_quads (views[VIDEO]);
   has_dots = (style.draw_dots || style.draw_indices)
       && gst_buffer_get_cloth_dots (views[VIDEO]);
+  has_matches = style.draw_matches != GST_CLOTH_OVERLAY_MATCHES_NONE
+      && gst_buffer_get_cloth_matches (views[VIDEO]);
   has_saddles = style.draw_saddles
       && gst_buffer_get_cloth_saddles (views[VIDEO]);
 
-  if (mesh && (!gst_cloth_overlay_load_rig (self)
+  if ((mesh || mapped) && (!gst_cloth_overlay_load_rig (self)
           || !gst_cloth_overlay_check_size (self))) {
     return GST_FLOW_ERROR;
+  }
+  if (mapped) {
+    uv = gst_cloth_overlay_find_uv (self, mapped);
   }
   *out = g_steal_pointer (&views[VIDEO]);
   if (!self->knows_strides
       && !gst_cloth_picture_make_plain (GST_ELEMENT (self), &self->info, out)) {
     return GST_FLOW_ERROR;
   }
-  if (!mesh && !has_silhouette && !has_quads && !has_dots && !has_saddles) {
+  if (!mesh && !uv && !has_silhouette && !has_quads && !has_dots && !has_matches
+      && !has_saddles) {
     return GST_FLOW_OK;
   }
 
@@ -579,7 +629,15 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   }
   if (has_dots) {
     gst_cloth_overlay_draw_dots (&canvas, gst_buffer_get_cloth_dots (*out),
-        self->dot_places, &style);
+        self->places, &style);
+  }
+  if (uv) {
+    gst_cloth_overlay_draw_uv (&canvas, uv, &style);
+  }
+  if (has_matches) {
+    gst_cloth_overlay_draw_matches (&canvas, GST_VIDEO_FRAME_WIDTH (&frame),
+        GST_VIDEO_FRAME_HEIGHT (&frame), gst_buffer_get_cloth_matches (*out),
+        self->places, self->cells, &style);
   }
   if (mesh) {
     ret = gst_cloth_overlay_draw_mesh (self, &canvas, mesh, &style);
@@ -711,7 +769,8 @@ gst_cloth_overlay_finalize (GObject * object)
   GstClothOverlay *self = GST_CLOTH_OVERLAY (object);
 
   gst_caps_replace (&self->video_caps, NULL);
-  g_array_unref (self->dot_places);
+  g_array_unref (self->places);
+  g_array_unref (self->cells);
   g_clear_pointer (&self->mesh, mesh_free);
   g_clear_pointer (&self->rig, cloth_rig_free);
   gst_cloth_clear_settings (properties, G_N_ELEMENTS (properties),
@@ -752,15 +811,16 @@ gst_cloth_overlay_class_init (GstClothOverlayClass * klass)
       &src_template, GST_TYPE_AGGREGATOR_PAD);
   gst_element_class_set_static_metadata (element_class, "Cloth overlay",
       "Filter/Effect/Video",
-      "Draws silhouettes, saddles, squares, labelled dots, meshes and their distance from a simulation",
-      "The gst-cloth developers");
+      "Draws silhouettes, saddles, squares, labelled dots, matches, meshes and their distance from a "
+      "simulation", "The gst-cloth developers");
 }
 
 static void
 gst_cloth_overlay_init (GstClothOverlay * self)
 {
   self->settings = defaults;
-  self->dot_places = g_array_new (FALSE, FALSE, sizeof (guint64));
+  self->places = g_array_new (FALSE, FALSE, sizeof (guint64));
+  self->cells = g_array_new (FALSE, FALSE, sizeof (gfloat));
   gst_cloth_damage_watch (&self->settings.damage, GST_ELEMENT (self),
       GST_AGGREGATOR_SRC_PAD (self));
   gst_cloth_sync_add_always_pad (GST_CLOTH_SYNC (self), "sink");

@@ -6,6 +6,7 @@
 #include <gio/gio.h>
 #include <gst/video/video.h>
 
+#include "gst/pattern/any.h"
 #include "gst/pattern/texture.h"
 
 /* Ink and cloth: shares of the light that they reflect. */
@@ -144,44 +145,6 @@ draw_squares (const ClothPattern * pattern, gfloat light[256], GError ** error)
       255, error);
 }
 
-ClothPaint *
-gst_cloth_paint_pattern (const gchar * path, GError ** error)
-{
-  g_autoptr (GError) fault = NULL;
-  g_autoptr (ClothMArray) array = cloth_m_array_load (path, &fault);
-  g_autoptr (ClothPattern) pattern = NULL;
-  g_autoptr (ClothTexture) texture = NULL;
-  const gdouble origin[2] = { 0, 0 };
-  gdouble size[2];
-  gfloat light[256];
-
-  if (array)
-    texture = draw_dots (array, light, error);
-  else if (!g_error_matches (fault, CLOTH_PATTERN_ERROR,
-          CLOTH_PATTERN_ERROR_UNSUPPORTED))
-    g_propagate_error (error, g_steal_pointer (&fault));
-  else if ((pattern = cloth_pattern_load (path, error)))
-    texture = draw_squares (pattern, light, error);
-  if (!texture)
-    return NULL;
-  size[0] = texture->width / texture->px_per_m;
-  size[1] = texture->height / texture->px_per_m;
-  return cloth_paint_new (texture->data, texture->width, texture->height,
-      texture->n_channels * texture->width, (guint) texture->n_channels, light,
-      origin, size);
-}
-
-ClothPaint *
-gst_cloth_paint_white (void)
-{
-  const gdouble origin[2] = { 0, 0 }, size[2] = { 1, 1 };
-  const guint8 level = 255;
-  gfloat light[256];
-
-  light[255] = WHITE;
-  return cloth_paint_new (&level, 1, 1, 1, 1, light, origin, size);
-}
-
 /* The first picture of any file that GStreamer decodes. */
 static ClothPaint *
 paint_picture (const gchar * path,
@@ -207,6 +170,42 @@ paint_picture (const gchar * path,
       GST_VIDEO_INFO_IS_GRAY (&info) ? 1 : 3, NULL, origin_uv_m, size_m);
   gst_video_frame_unmap (&frame);
   return paint;
+}
+
+ClothPaint *
+gst_cloth_paint_pattern (const gchar * path, GError ** error)
+{
+  g_autoptr (ClothAnyPattern) pattern = cloth_any_pattern_load (path, error);
+  g_autoptr (ClothTexture) texture = NULL;
+  const gdouble origin[2] = { 0, 0 };
+  gdouble size[2];
+  gfloat light[256];
+
+  if (!pattern)
+    return NULL;
+  if (pattern->picture)
+    return paint_picture (pattern->picture->reference, origin,
+        pattern->picture->cloth_m, error);
+  texture = pattern->dots ? draw_dots (pattern->dots, light, error) :
+      draw_squares (pattern->checker, light, error);
+  if (!texture)
+    return NULL;
+  size[0] = texture->width / texture->px_per_m;
+  size[1] = texture->height / texture->px_per_m;
+  return cloth_paint_new (texture->data, texture->width, texture->height,
+      texture->n_channels * texture->width, (guint) texture->n_channels, light,
+      origin, size);
+}
+
+ClothPaint *
+gst_cloth_paint_white (void)
+{
+  const gdouble origin[2] = { 0, 0 }, size[2] = { 1, 1 };
+  const guint8 level = 255;
+  gfloat light[256];
+
+  light[255] = WHITE;
+  return cloth_paint_new (&level, 1, 1, 1, 1, light, origin, size);
 }
 
 ClothPaint *

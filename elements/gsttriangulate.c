@@ -7,10 +7,11 @@
  * @title: triangulate
  *
  * Joins the pictures of a rig's cameras by time and triangulates the corners of the
- * squares that they carry as #GstClothQuads, or the dots of #GstClothDots. Each frame of
- * the mesh has a vertex for every corner of the board, or every dot of the array: its
- * place, its 3×3 covariance, and whether three or more views agree on it, only two saw
- * it, or it is unseen. A vertex seen by one camera, or contradicted, is unseen; nothing is
+ * squares that they carry as #GstClothQuads, the dots of #GstClothDots, or the points of any
+ * print's grid of #GstClothMatches. Each frame of the mesh has a vertex for every corner of
+ * the board, every dot of the array, or every vertex of the print's grid: its place, its 3×3
+ * covariance, and whether three or more views agree on it, only two saw it, or it is
+ * unseen. A vertex seen by one camera, or contradicted, is unseen; nothing is
  * carried over from earlier frames. Clocks that the rig knows to differ (`offset_s`) are
  * known from the first pictures on, which make no mesh then.
  *
@@ -43,9 +44,8 @@
 
 #include "elements/gstclothdamage.h"
 #include "elements/gstclothproperties.h"
+#include "elements/gsttriangulateboard.h"
 #include "elements/gsttriangulatepad.h"
-#include "gst/cloth-io/points.h"
-#include "gst/pattern/marray.h"
 #include "gst/rig/merge.h"
 #include "gst/rig/reconstruct.h"
 #include "gst/rig/rigfile.h"
@@ -63,25 +63,6 @@ GST_DEBUG_CATEGORY_STATIC (triangulate_debug);
 G_STATIC_ASSERT ((gint) CLOTH_POINT_UNSEEN == GST_CLOTH_VERTEX_UNSEEN);
 G_STATIC_ASSERT ((gint) CLOTH_POINT_MEASURED == GST_CLOTH_VERTEX_MEASURED);
 G_STATIC_ASSERT ((gint) CLOTH_POINT_TWO_VIEWS == GST_CLOTH_VERTEX_TWO_VIEWS);
-
-/* The printed pattern: squares or dots in, a grid of vertices out. */
-typedef struct
-{
-  ClothPattern *checker;        /* one of these two */
-  ClothMArray *dots;
-  GstClothTopology *topology;
-  ClothReconstructionGrid grid;
-  guint8 *seen;                 /* whether a picture shows a dot */
-  const gchar *features;        /* what is seen of it: squares or dots */
-  const gchar *detector;        /* elements that find them */
-} Board;
-
-/* What one picture carries: one of the two, or neither. */
-typedef struct
-{
-  GstClothQuads *quads;
-  GstClothDots *dots;
-} Seen;
 
 /* Whether the cameras fit together, over some sets; all 0 at the start. */
 typedef struct
@@ -111,7 +92,7 @@ struct _GstTriangulate
 
   /* streaming thread */
   ClothRig *rig;
-  Board *board;
+  GstTriangulateBoard *board;
   gint fps_n, fps_d;            /* as sent downstream; fps_n -1: not yet */
   ClothPool *pool;
   ClothReconstruction *reconstruction;
@@ -132,7 +113,8 @@ static const GstClothProperty properties[] = {
     G_TYPE_STRING, SETTING (rig), GST_PARAM_MUTABLE_PLAYING},
   {"pattern", "Pattern",
     "File pattern.json of what is filmed: the mesh has a vertex for each corner "
-    "of a checkerboard's squares, or for each dot of an M-array",
+    "of a checkerboard's squares, for each dot of an M-array, or for each vertex "
+    "of the grid on any print",
     G_TYPE_STRING, SETTING (pattern), GST_PARAM_MUTABLE_PLAYING},
   {"threshold", "Threshold",
     "A view is left out when it is further from what the others say than "
@@ -194,178 +176,15 @@ static GstStaticPadTemplate src_template =
 GST_STATIC_PAD_TEMPLATE ("src", GST_PAD_SRC, GST_PAD_ALWAYS,
     GST_STATIC_CAPS (GST_CLOTH_MESH_CAPS));
 
-/* ---- the pattern ---- */
-
-static GstClothTopology *
-make_topology (const Board * board, const gdouble origin_m[2], GError ** error)
-{
-  guint columns = board->grid.columns, rows = board->grid.rows;
-  g_autofree gfloat *uv = g_new (gfloat, 2 * (gsize) columns * rows);
-  g_autoptr (GstClothTopology) grid = NULL;
-  const guint32 *faces;
-  guint n_indices, i;
-
-  for (i = 0; i < columns * rows; i++) {
-    uv[2 * i] = (gfloat) (origin_m[0] + (i % columns) * board->grid.edge_m);
-    uv[2 * i + 1] = (gfloat) (origin_m[1] + (i / columns) * board->grid.edge_m);
-  }
-  /* its faces, at another place */
-  grid = gst_cloth_topology_new_grid (columns, rows, 1.0f, 1.0f, error);
-  if (!grid) {
-    return NULL;
-  }
-  faces = gst_cloth_topology_get_faces (grid, &n_indices);
-  return gst_cloth_topology_new (columns * rows, columns, rows, uv, faces,
-      n_indices / 4, error);
-}
-
-static void
-board_free (Board * board)
-{
-  if (!board) {
-    return;
-  }
-  g_clear_pointer (&board->checker, cloth_pattern_free);
-  g_clear_pointer (&board->dots, cloth_m_array_free);
-  g_clear_pointer (&board->topology, gst_cloth_topology_unref);
-  g_free (board->seen);
-  g_free (board);
-}
-
-/* Reads a pattern.json. A checkerboard has a vertex for each corner of its squares, an
- * M-array one for each dot; uv is their place on the cloth. */
-static Board *
-board_load (const gchar * path, GError ** error)
-{
-  Board *board = g_new0 (Board, 1);
-  g_autoptr (GError) other = NULL;
-  const gdouble *origin_m = NULL;
-
-  board->dots = cloth_m_array_load (path, &other);
-  if (board->dots) {
-    board->grid.columns = (guint) board->dots->columns;
-    board->grid.rows = (guint) board->dots->rows;
-    board->grid.edge_m = board->dots->pitch_m;
-    board->grid.dot_m = board->dots->diameter_m;
-    board->features = "dots";
-    board->detector = "dotlabel";
-    board->seen = g_malloc (board->grid.columns * board->grid.rows);
-    origin_m = board->dots->origin_uv_m;
-  } else if (g_error_matches (other, CLOTH_PATTERN_ERROR,
-          CLOTH_PATTERN_ERROR_UNSUPPORTED)) {
-    board->checker = cloth_pattern_load (path, error);
-    if (board->checker) {
-      board->grid.columns = (guint) board->checker->columns + 1;
-      board->grid.rows = (guint) board->checker->rows + 1;
-      board->grid.edge_m = board->checker->square_m;
-      board->features = "squares";
-      board->detector = "saddledetect ! quadtrack";
-      origin_m = board->checker->origin_uv_m;
-    }
-  } else {
-    g_propagate_error (error, g_steal_pointer (&other));
-  }
-  if (origin_m) {
-    board->topology = make_topology (board, origin_m, error);
-  }
-  if (!board->topology) {
-    g_clear_pointer (&board, board_free);
-  }
-  return board;
-}
-
-/* What of @buffer is of this kind of board, else of the other; FALSE: none of both. */
-static gboolean
-board_see (const Board * board, GstBuffer * buffer, Seen * seen)
-{
-  seen->quads = gst_buffer_get_cloth_quads (buffer);
-  seen->dots = gst_buffer_get_cloth_dots (buffer);
-  if (board->dots && seen->dots) {
-    seen->quads = NULL;
-  } else if (board->checker && seen->quads) {
-    seen->dots = NULL;
-  }
-  return seen->quads || seen->dots;
-}
-
-static const gchar *
-seen_camera (const Seen * seen)
-{
-  return seen->dots ? gst_cloth_dots_get_camera (seen->dots) :
-      gst_cloth_quads_get_camera (seen->quads);
-}
-
-static guint64
-seen_sequence (const Seen * seen)
-{
-  return seen->dots ? gst_cloth_dots_get_sequence (seen->dots) :
-      gst_cloth_quads_get_sequence (seen->quads);
-}
-
-/* Whether what is seen is of the pattern's kind and size. */
-static gboolean
-board_fits (const Board * board, const Seen * seen)
-{
-  const guint squares = board->checker ? 1 : 0; /* corners are one more */
-
-  return seen->dots ? board->dots
-      && gst_cloth_dots_get_columns (seen->dots) == board->grid.columns
-      && gst_cloth_dots_get_rows (seen->dots) == board->grid.rows :
-      board->checker
-      && gst_cloth_quads_get_columns (seen->quads) + squares ==
-      board->grid.columns
-      && gst_cloth_quads_get_rows (seen->quads) + squares == board->grid.rows;
-}
-
-/* Adds the places that pad @index measures to @merge; FALSE, after an element error, when
- * they are of another pattern. */
-static gboolean
-board_take (Board * board, GstElement * self, guint index, const Seen * seen,
-    ClothMerge * merge)
-{
-  guint squares = board->checker ? 1 : 0;       /* corners are one more */
-  guint columns = board->grid.columns - squares;
-  guint rows = board->grid.rows - squares;
-  guint seen_columns, seen_rows;
-
-  if (seen->dots ? !board->dots : !board->checker) {
-    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
-        ("The pictures on sink_%u carry %s, but pattern has %s.", index,
-            seen->dots ? "dots" : "squares", board->features),
-        ("Set pattern to the pattern.json of what is filmed, or put %s before "
-            "the pad.", board->detector));
-    return FALSE;
-  }
-  seen_columns = seen->dots ? gst_cloth_dots_get_columns (seen->dots) :
-      gst_cloth_quads_get_columns (seen->quads);
-  seen_rows = seen->dots ? gst_cloth_dots_get_rows (seen->dots) :
-      gst_cloth_quads_get_rows (seen->quads);
-  if (seen_columns != columns || seen_rows != rows) {
-    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
-        ("The %s on sink_%u are of a pattern of %u×%u, but pattern has %u×%u.",
-            board->features, index, seen_columns, seen_rows, columns, rows),
-        ("Give the detector and this element the same pattern."));
-    return FALSE;
-  }
-  if (seen->dots) {
-    gst_cloth_io_points_add_dots (seen->dots, board->grid.columns,
-        board->grid.rows, board->seen, merge);
-  } else {
-    gst_cloth_io_points_add_quads (seen->quads, board->grid.columns,
-        board->grid.rows, merge);
-  }
-  return TRUE;
-}
-
 /* ---- whether the cameras fit together ---- */
 
 /* Counts one set. Every 25 sets posts, once, a warning if fewer than two cameras have
- * carried squares or dots yet, or if a camera contradicts the others on more than half of
+ * carried any yet, or if a camera contradicts the others on more than half of
  * what it sees; the message's details name it as "camera". */
 static void
-check_add (Check * check, GstElement * element, const Board * board,
-    const ClothRig * rig, const ClothTriangulateView * views,
-    const ClothReconstructed * result)
+check_add (Check * check, GstElement * element,
+    const GstTriangulateBoard * board, const ClothRig * rig,
+    const ClothTriangulateView * views, const ClothReconstructed * result)
 {
   guint c, worst = 0, n_seeing = 0;
   const gchar *seeing = NULL;
@@ -487,7 +306,7 @@ gst_triangulate_load_pattern (GstTriangulate * self)
 {
   g_autofree gchar *location = NULL;
   g_autoptr (GError) error = NULL;
-  Board *board;
+  GstTriangulateBoard *board;
 
   GST_OBJECT_LOCK (self);
   location = g_strdup (self->settings.pattern);
@@ -501,14 +320,14 @@ gst_triangulate_load_pattern (GstTriangulate * self)
             "written beside the print."));
     return FALSE;
   }
-  board = board_load (location, &error);
+  board = gst_triangulate_board_load (location, &error);
   if (!board) {
     GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ,
         ("The pattern could not be read: %s", error->message),
         ("Set pattern to a pattern.json; it is now \"%s\".", location));
     return FALSE;
   }
-  board_free (self->board);
+  gst_triangulate_board_free (self->board);
   self->board = board;
   gst_triangulate_clear_merges (self);
   cloth_reconstruction_set_grid (self->reconstruction, &board->grid);
@@ -555,7 +374,7 @@ gst_triangulate_forget (GstTriangulate * self)
 
   g_clear_pointer (&self->reconstruction, cloth_reconstruction_free);
   g_clear_pointer (&self->rig, cloth_rig_free);
-  g_clear_pointer (&self->board, board_free);
+  g_clear_pointer (&self->board, gst_triangulate_board_free);
   g_clear_pointer (&self->pool, cloth_pool_free);
   gst_triangulate_clear_merges (self);
   self->fps_n = -1;
@@ -666,13 +485,13 @@ gst_triangulate_make_mesh (GstTriangulate * self,
  * good as none. */
 static GstFlowReturn
 gst_triangulate_look (GstTriangulate * self, guint index, GstBuffer * view,
-    GstBuffer ** unpacked, Seen * seen, gboolean * carries)
+    GstBuffer ** unpacked, GstTriangulateSeen * seen, gboolean * carries)
 {
   g_autoptr (GError) error = NULL;
 
   *carries = FALSE;
   if (!self->view[index].observations) {
-    *carries = board_see (self->board, view, seen);
+    *carries = gst_triangulate_board_see (self->board, view, seen);
     return GST_FLOW_OK;
   }
   *unpacked = gst_buffer_new ();
@@ -681,11 +500,11 @@ gst_triangulate_look (GstTriangulate * self, guint index, GstBuffer * view,
     return gst_cloth_damage_add (&self->settings.damage, GST_ELEMENT (self),
         error);
   }
-  *carries = board_see (self->board, *unpacked, seen);
+  *carries = gst_triangulate_board_see (self->board, *unpacked, seen);
   if (!*carries || !self->view[index].trusted
-      || (board_fits (self->board, seen) && (seen_camera (seen)[0] == '\0'
-              || !self->view[index].meta || g_str_equal (seen_camera (seen),
-                  self->view[index].meta))))
+      || (gst_triangulate_board_fits (self->board, seen)
+          && (seen->camera[0] == '\0' || !self->view[index].meta
+              || g_str_equal (seen->camera, self->view[index].meta))))
     return GST_FLOW_OK;
   /* those before it were right, so it is this one that isn't */
   *carries = FALSE;
@@ -703,7 +522,7 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   GstTriangulate *self = GST_TRIANGULATE (sync);
   ClothTriangulateView seen[CLOTH_RIG_MAX_CAMERAS] = { {NULL} };
   GstBuffer *unpacked[GST_CLOTH_SYNC_MAX_PADS] = { NULL };
-  Seen carried[GST_CLOTH_SYNC_MAX_PADS];
+  GstTriangulateSeen carried[GST_CLOTH_SYNC_MAX_PADS];
   GstReferenceTimestampMeta *stamp = NULL;
   GstFlowReturn ret = GST_FLOW_ERROR;
   gboolean moved;
@@ -733,9 +552,9 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
       continue;
     }
     if (n_carried++ == 0) {
-      self->sequence = seen_sequence (&carried[i]);
+      self->sequence = carried[i].sequence;
     }
-    name = seen_camera (&carried[i]);
+    name = carried[i].camera;
     if (name[0] != '\0' && g_strcmp0 (name, self->view[i].meta) != 0) {
       g_free (self->view[i].meta);
       self->view[i].meta = g_strdup (name);
@@ -762,7 +581,7 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
           * self->board->grid.rows);
     }
     cloth_merge_clear (self->merge[camera]);
-    if (!board_take (self->board, GST_ELEMENT (self), i,
+    if (!gst_triangulate_board_take (self->board, GST_ELEMENT (self), i,
             &carried[i], self->merge[camera])) {
       goto done;
     }

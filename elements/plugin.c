@@ -21,7 +21,9 @@
 #include "elements/gstquadtrack.h"
 #include "elements/gsttriangulate.h"
 #include "elements/gstsaddledetect.h"
+#include "elements/gstsiftmatch.h"
 #include "elements/gstsilhouette.h"
+#include "elements/gstuvmap.h"
 
 static gboolean
 plugin_init (GstPlugin * plugin)
@@ -43,7 +45,9 @@ plugin_init (GstPlugin * plugin)
   registered &= GST_ELEMENT_REGISTER (triangulate, plugin);
 
   registered &= GST_ELEMENT_REGISTER (saddledetect, plugin);
+  registered &= GST_ELEMENT_REGISTER (siftmatch, plugin);
   registered &= GST_ELEMENT_REGISTER (silhouette, plugin);
+  registered &= GST_ELEMENT_REGISTER (uvmap, plugin);
   return registered;
 }
 

@@ -21,19 +21,24 @@ MEASURED = (1, 2)
 
 
 def pitch_of(pattern):
-    return pattern['pitch_m' if pattern['pattern'] == 'm-array' else 'square_m']
+    """Distances of neighbouring vertices, m: in a row and in a column."""
+    if pattern['pattern'] == 'picture':
+        return [pattern['cloth_m'][0] / (pattern['columns'] - 1),
+                pattern['cloth_m'][1] / (pattern['rows'] - 1)]
+    return 2 * [pattern['pitch_m' if pattern['pattern'] == 'm-array' else 'square_m']]
 
 
 def true_corners(truth, columns, rows, pattern):
-    """[frames][vertices][3]: where each corner of a board, each dot of an M-array, truly is."""
-    dots = pattern['pattern'] == 'm-array'
+    """[frames][vertices][3]: where each corner of a board, dot of an M-array, vertex of a picture is."""
+    outer = pattern['pattern'] == 'checker'
+    origin = pattern.get('origin_uv_m', [0, 0])
     pitch = pitch_of(pattern)
     frames = truth.shape[0]
     grid = truth.reshape(frames, rows, columns, 3).astype(float)
-    across, down = numpy.meshgrid(numpy.arange(pattern['columns'] + (not dots)),
-                                  numpy.arange(pattern['rows'] + (not dots)))
-    u = pattern['origin_uv_m'][0] + across.ravel() * pitch
-    v = pattern['origin_uv_m'][1] + down.ravel() * pitch
+    across, down = numpy.meshgrid(numpy.arange(pattern['columns'] + outer),
+                                  numpy.arange(pattern['rows'] + outer))
+    u = origin[0] + across.ravel() * pitch[0]
+    v = origin[1] + down.ravel() * pitch[1]
     x = u / pattern['cloth_m'][0] * (columns - 1)
     y = v / pattern['cloth_m'][1] * (rows - 1)
     left = numpy.clip(x.astype(int), 0, columns - 2)
@@ -99,7 +104,7 @@ def main():
                           '%.3f mm RMS, largest %.3f mm'
                           % (numpy.sqrt((distance[which] ** 2).mean()), distance[which].max())))
     # Half a square off is no noise: a corner was taken for another one.
-    wrong = (distance[measured] > 500 * pitch_of(pattern)).sum()
+    wrong = (distance[measured] > 500 * min(pitch_of(pattern))).sum()
     table.append(('corners mistaken for others', '%d' % wrong))
     width = max(len(name) for name, _ in table)
     for name, value in table:

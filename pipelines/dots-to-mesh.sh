@@ -13,19 +13,9 @@ if [ $# -lt 5 ]; then
   exit 2
 fi
 . "$(dirname "$0")/environment.sh"
+. "$(dirname "$0")/films.sh" # pipelines/films.sh
 rig=$1 pattern=$2 out=$3
 shift 3
-
-heading () { printf '\n== %s\n' "$*"; }
-
-# With -q gst-launch would keep warnings to itself, and they say which camera is off or that
-# the print is another one.
-launch () {
-  gst-launch-1.0 "$@" | sed -u -e '/^Setting pipeline/d' -e '/^Pipeline is/d' \
-      -e '/^New clock/d' -e '/^Redistribute latency/d' -e '/^Got EOS/d' \
-      -e '/^Execution ended/d' -e '/^Freeing pipeline/d' -e '/^Use Windows/d' \
-      -e '/^Additional debug info/d' -e '/^\.\..*\.c([0-9]*):/d'
-}
 
 # The first film tells how far all are.
 films=()
@@ -46,8 +36,7 @@ mkdir -p "$out"
 heading "Films to a mesh"
 launch triangulate name=join "rig=$rig" "pattern=$pattern" ! meshfill \
     ! meshsink "location=$out/cloth.take" "${films[@]}"
-# Of each vertex in each frame one byte, 0 for unseen, after a header of 128.
-if [ "$(tail -c +129 "$out/cloth.take/states.npy" | tr -d '\0' | wc -c)" = 0 ]; then
+if ! any_located "$out/cloth.take"; then
   echo "no dot was located: see the warnings above, and that $pattern is the print" \
       "that was filmed and $rig the cameras as they stood" >&2
   exit 1

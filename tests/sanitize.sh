@@ -10,7 +10,7 @@ CLOTH_CHAINS="film-mesh film-observations film-paper film-take"
 CLOTH_PROGRAMS="gaptool patterntool states"
 # What has threads: the pool and who uses it, elements that join streams, the observer.
 CLOTH_THREADED_CORE="pool triangulator nearest reconstruct fill siminvariance simcontact gaplinear"
-CLOTH_THREADED_ELEMENTS="clothsync clothsynclive triangulate triangulateinput triangulatedots
+CLOTH_THREADED_ELEMENTS="clothsync clothsynclive triangulate triangulateinput triangulatedots triangulatematches
     triangulatestream clothoverlay clothoverlaymesh clothoverlayinput clothgap clothsim meshfill"
 
 # cloth_select_plugins FOLDER: some of GStreamer's plugins bring libraries that the sanitizers

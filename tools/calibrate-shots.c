@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "calibrate-frames.h"
+#include "frames.h"
 #include "gst/rig/planar.h"
 #include "gst/vision/checker/checker.h"
 #include "gst/vision/corner/saddle.h"

@@ -7,9 +7,11 @@
 #include "gst/pattern/marray.h"
 #include "gst/pattern/pattern.h"
 #include "gst/pattern/print.h"
+#include "tools/pattern-picture.h"
 #include "tools/tool.h"
 
 #include <glib/gstdio.h>
+#include <gst/gst.h>
 #include <math.h>
 #include <string.h>
 
@@ -23,7 +25,8 @@
 
 /* Kinds of pattern. */
 enum
-{ CHECKER = 1, CODED = 2, DOTS = 4, GARMENT = 8 };
+{ CHECKER = 1, CODED = 2, DOTS = 4, GARMENT = 8, SHEET = 16, SCAN = 32 };
+#define PICTURE (SHEET | SCAN)
 
 /* A number that was not given: its default depends on the kind of pattern. */
 #define NOT_GIVEN G_MININT
@@ -31,9 +34,9 @@ enum
 typedef struct
 {
   gboolean two_sided;
-  gint columns, rows, colours, distance;
+  gint columns, rows, colours, distance, sides;
   gchar *square, *margin, *first, *paper, *page_margin, *overlap, *output;
-  gchar *pitch, *diameter, *pattern;
+  gchar *pitch, *diameter, *pattern, *width, *height;
   gdouble dot_ratio;
   gint64 seed;
   gchar **kinds;
@@ -76,9 +79,10 @@ lay_out (const Arguments * arguments, const ClothArtwork * artwork,
   return DONE;
 }
 
+/* @picture: (nullable): what a sheet is to its users */
 static gint
 print (const Arguments * arguments, const ClothArtwork * artwork,
-    const ClothPrintOptions * options)
+    const ClothPrintOptions * options, ClothPicturePattern * picture)
 {
   g_autoptr (GError) error = NULL;
   g_autofree gchar *folder = g_path_get_dirname (arguments->output);
@@ -90,11 +94,14 @@ print (const Arguments * arguments, const ClothArtwork * artwork,
 
   if (!names)
     return fail (FAILED, error);
-  if (!(artwork->checker ? cloth_pattern_save (artwork->checker, json, &error)
-          : cloth_m_array_save (artwork->dots, json, &error)))
+  if (artwork->checker && !cloth_pattern_save (artwork->checker, json, &error))
+    return fail (FAILED, error);
+  if (artwork->dots && !cloth_m_array_save (artwork->dots, json, &error))
     return fail (FAILED, error);
   for (gchar ** name = names; *name; name++)
     g_print ("%s\n", *name);
+  if (artwork->sheet)
+    return pattern_from_sheet (picture, artwork->sheet, json);
   g_print ("%s\n", json);
   return DONE;
 }
@@ -109,8 +116,11 @@ check_options (const Arguments * a, guint kind)
     gboolean given;
     guint kinds;
   } options[] = {
-    {"columns", a->columns != NOT_GIVEN, CHECKER | CODED | DOTS},
-    {"rows", a->rows != NOT_GIVEN, CHECKER | CODED | DOTS},
+    {"columns", a->columns != NOT_GIVEN, CHECKER | CODED | DOTS | PICTURE},
+    {"rows", a->rows != NOT_GIVEN, CHECKER | CODED | DOTS | PICTURE},
+    {"width", a->width != NULL, PICTURE},
+    {"height", a->height != NULL, PICTURE},
+    {"sides", a->sides != 1, PICTURE},
     {"square", a->square != NULL, CHECKER | CODED},
     {"margin", a->margin != NULL, CHECKER | CODED | DOTS},
     {"first", a->first != NULL, CHECKER | CODED},
@@ -120,10 +130,10 @@ check_options (const Arguments * a, guint kind)
     {"colours", a->colours != NOT_GIVEN, DOTS},
     {"distance", a->distance != DOTS_DISTANCE, DOTS},
     {"two-sided", a->two_sided, DOTS},
-    {"seed", a->seed != SEED, CODED | DOTS},
-    {"paper", a->paper != NULL, CHECKER | CODED | DOTS},
-    {"page-margin", a->page_margin != NULL, CHECKER | CODED | DOTS},
-    {"overlap", a->overlap != NULL, CHECKER | CODED | DOTS},
+    {"seed", a->seed != SEED, CODED | DOTS | SHEET},
+    {"paper", a->paper != NULL, CHECKER | CODED | DOTS | SHEET},
+    {"page-margin", a->page_margin != NULL, CHECKER | CODED | DOTS | SHEET},
+    {"overlap", a->overlap != NULL, CHECKER | CODED | DOTS | SHEET},
     {"pattern", a->pattern != NULL, GARMENT},
   };
 
@@ -131,8 +141,8 @@ check_options (const Arguments * a, guint kind)
 
     if (!options[i].given || options[i].kinds & kind)
       continue;
-    return complain (BAD_USAGE, "--%s is not for a pattern of kind %s",
-        options[i].name, a->kinds[0]);
+    return complain (BAD_USAGE, "--%s is not for a pattern of kind %s%s",
+        options[i].name, a->kinds[0], kind == SCAN ? " from a scan" : "");
   }
   return DONE;
 }
@@ -183,7 +193,7 @@ run_m_array (const Arguments * arguments)
   options.notes = notes = g_strdup_printf ("seed %" G_GINT64_FORMAT ", any "
       "3 × 3 tell their place%s", arguments->seed,
       code.two_sided ? " from both sides" : "");
-  return print (arguments, &artwork, &options);
+  return print (arguments, &artwork, &options, NULL);
 }
 
 static gint
@@ -226,7 +236,48 @@ run_checker (const Arguments * arguments, gboolean coded)
         g_strdup_printf ("seed %" G_GINT64_FORMAT ", any %d × %d tell their "
         "place", arguments->seed, window, window);
   }
-  return print (arguments, &artwork, &options);
+  return print (arguments, &artwork, &options, NULL);
+}
+
+/* Any print: a scan of it, or a sheet that is drawn. */
+static gint
+run_picture (const Arguments * arguments, const gchar * scan)
+{
+  PrintedPicture printed = { {0, 0}, given (arguments->columns, 0),
+  given (arguments->rows, 0), arguments->sides, arguments->output
+  };
+  ClothPrintOptions options = CLOTH_PRINT_OPTIONS_INIT;
+  g_autoptr (ClothPicturePattern) pattern = NULL;
+  g_autoptr (ClothSheet) sheet = NULL;
+  ClothArtwork artwork = { NULL };
+  g_autoptr (GError) error = NULL;
+  gint exit_code;
+
+  if (!arguments->width)
+    return complain (BAD_USAGE, "give the width of the cloth that the picture "
+        "shows, from edge to edge: --width 630mm");
+  if (!parse_length ("width", arguments->width, &printed.cloth_m[0], &error)
+      || (arguments->height && !parse_length ("height", arguments->height,
+              &printed.cloth_m[1], &error)))
+    return complain (BAD_USAGE, "%s", error->message);
+  if (arguments->height && printed.cloth_m[1] == 0)
+    return complain (BAD_USAGE, "--height %s: leave it out, or give the height "
+        "of the cloth", arguments->height);
+  if (scan)
+    return pattern_from_scan (&printed, scan);
+  if (!arguments->height)
+    printed.cloth_m[1] = printed.cloth_m[0];
+  sheet = cloth_sheet_new (printed.cloth_m, (guint64) arguments->seed, &error);
+  if (sheet)
+    pattern = cloth_picture_pattern_new ("reference.png", printed.cloth_m,
+        printed.columns, printed.rows, printed.sides, &error);
+  if (!pattern)
+    return fail (BAD_USAGE, error);
+  artwork.sheet = sheet;
+  exit_code = lay_out (arguments, &artwork, &options);
+  if (exit_code != DONE)
+    return exit_code;
+  return print (arguments, &artwork, &options, pattern);
 }
 
 /* The panels of a drawing, cut from a print of dots. */
@@ -282,25 +333,29 @@ run (gconstpointer data)
 {
   const Arguments *arguments = data;
   static const gchar *const names[] = {
-    "checker", "coded-checker", "m-array", "garment"
+    "checker", "coded-checker", "m-array", "garment", "picture"
   };
+  const gchar *scan = NULL;
   guint kind = 0;
   gint exit_code;
 
   if (!arguments->kinds)
     return complain (BAD_USAGE,
-        "name one kind of pattern: checker, coded-checker or m-array; or "
-        "garment and a drawing");
+        "name one kind of pattern: checker, coded-checker, m-array or "
+        "picture; or garment and a drawing");
   for (guint i = 0; i < G_N_ELEMENTS (names) && !kind; i++)
     if (!strcmp (arguments->kinds[0], names[i]))
       kind = 1u << i;
   if (!kind) {
     return complain (BAD_USAGE, "no pattern \"%s\": there are checker, "
-        "coded-checker, m-array and garment", arguments->kinds[0]);
+        "coded-checker, m-array, picture and garment", arguments->kinds[0]);
   }
-  if (g_strv_length (arguments->kinds) != (kind == GARMENT ? 2 : 1))
+  if (kind == SHEET && (scan = arguments->kinds[1]))
+    kind = SCAN;
+  if (g_strv_length (arguments->kinds) != (kind & (GARMENT | SCAN) ? 2 : 1))
     return complain (BAD_USAGE, kind == GARMENT ?
-        "name the drawing: garment panels.svg" :
+        "name the drawing: garment panels.svg" : kind == SCAN ?
+        "name one scan of the whole cloth: picture scan.png" :
         "name one kind of pattern at a time");
   exit_code = check_options (arguments, kind);
   if (exit_code != DONE)
@@ -308,13 +363,21 @@ run (gconstpointer data)
   if (kind == GARMENT)
     return run_garment (arguments);
   if (!arguments->output)
-    return complain (BAD_USAGE, "name the file to write: --output board.pdf");
+    return complain (BAD_USAGE, "name the file to write: --output %s",
+        kind == SCAN ? "pattern.json" : "board.pdf");
+  if (kind == SCAN) {
+    if (!g_str_has_suffix (arguments->output, ".json"))
+      return complain (BAD_USAGE, "--output %s: the name must end with .json",
+          arguments->output);
+    return run_picture (arguments, scan);
+  }
   if (!g_str_has_suffix (arguments->output, ".pdf")
       && !g_str_has_suffix (arguments->output, ".svg")) {
     return complain (BAD_USAGE, "--output %s: the name must end with .pdf or "
         ".svg", arguments->output);
   }
   return kind == DOTS ? run_m_array (arguments)
+      : kind == SHEET ? run_picture (arguments, NULL)
       : run_checker (arguments, kind == CODED);
 }
 
@@ -322,14 +385,22 @@ int
 main (int argc, char **argv)
 {
   Arguments arguments = {.columns = NOT_GIVEN,.rows = NOT_GIVEN,.colours =
-        NOT_GIVEN,.distance = DOTS_DISTANCE,.dot_ratio =
+        NOT_GIVEN,.distance = DOTS_DISTANCE,.sides = 1,.dot_ratio =
         CLOTH_CODE_DOT_RATIO,.seed = SEED
   };
   const GOptionEntry entries[] = {
     {"columns", 0, 0, G_OPTION_ARG_INT, &arguments.columns,
-        "Squares in a row (8); dots (76)", "N"},
+        "Squares in a row (8); dots (76); of a picture vertices of the mesh (as "
+          "make cells of about 20mm)", "N"},
     {"rows", 0, 0, G_OPTION_ARG_INT, &arguments.rows,
-        "Squares in a column (8); dots (251)", "N"},
+        "Squares in a column (8); dots (251); of a picture vertices", "N"},
+    {"width", 0, 0, G_OPTION_ARG_STRING, &arguments.width,
+        "Width of the cloth that a picture shows", "LENGTH"},
+    {"height", 0, 0, G_OPTION_ARG_STRING, &arguments.height,
+          "Height of it (by the shape of the scan; of a sheet as its width)",
+        "LENGTH"},
+    {"sides", 0, 0, G_OPTION_ARG_INT, &arguments.sides,
+        "2 for a picture that is seen from both sides of the cloth (1)", "N"},
     {"square", 0, 0, G_OPTION_ARG_STRING, &arguments.square,
         "Edge of a square (50mm)", "LENGTH"},
     {"margin", 0, 0, G_OPTION_ARG_STRING, &arguments.margin,
@@ -363,17 +434,22 @@ main (int argc, char **argv)
         "pattern.json of the dots that a garment is cut from", "FILE"},
     {"output", 'o', 0, G_OPTION_ARG_FILENAME, &arguments.output,
         "File to write, .pdf or .svg; pattern.json is put beside it. Of a "
-          "garment the folder", "FILE"},
+          "scan the pattern.json, of a garment the folder", "FILE"},
     {G_OPTION_REMAINING, 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &arguments.kinds,
-        NULL, "checker|coded-checker|m-array|garment DRAWING"},
+        NULL, "checker|coded-checker|m-array|picture [SCAN]|garment DRAWING"},
     {NULL}
   };
-  gint code = tool_main ("gst-cloth-pattern-1.0",
+  gint code;
+
+  gst_init (NULL, NULL);
+  code = tool_main ("gst-cloth-pattern-1.0",
       "- print patterns at true size", entries, g_strdupv (argv), run,
       &arguments);
 
   g_free (arguments.square);
   g_free (arguments.pattern);
+  g_free (arguments.width);
+  g_free (arguments.height);
   g_free (arguments.pitch);
   g_free (arguments.diameter);
   g_free (arguments.margin);

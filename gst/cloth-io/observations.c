@@ -30,7 +30,7 @@ typedef struct
 {
   ClothObservations *observations;
   guint camera;
-  gboolean labelled;            /* whether any picture had squares or dots */
+  gboolean labelled;            /* whether any picture had squares, dots or matches */
   GstClothIoPoints *points;
   guint32 *vertices;
   gdouble *px, *covariances;
@@ -98,8 +98,7 @@ find_points (Reader * self, GstBuffer * buffer, GError ** error)
   guint n_vertices = self->points->columns * self->points->rows;
   gint n = 0;
 
-  if (!gst_buffer_get_cloth_quads (buffer)
-      && !gst_buffer_get_cloth_dots (buffer))
+  if (!gst_cloth_io_points_has_any (buffer))
     return 0;                   /* of a picture that shows nothing */
   self->labelled = TRUE;
   if (!gst_cloth_io_points_find (self->points, buffer, error)
@@ -203,8 +202,10 @@ read_all (Reader * self, ClothInput * input, GError ** error)
   if (at == 0)
     return fail (error, "it is empty: nothing was recorded");
   if (!self->labelled)
-    return fail (error, "no picture has squares or dots: put “saddledetect ! "
-        "quadtrack” or “dotlabel” before clothmetapay, or leave the file out");
+    return fail (error,
+        "no picture has squares, dots or matches: put “saddledetect "
+        "! quadtrack”, “dotlabel” or “siftmatch” before clothmetapay, or leave the "
+        "file out");
   return TRUE;
 }
 
@@ -215,8 +216,8 @@ read_all (Reader * self, ClothInput * input, GError ** error)
  * @input: a row of observations, as docs/streams.md has them
  * @error: #ClothFitError, #GST_CLOTH_ERROR; it says which picture is wrong, and why
  *
- * Reads the pictures of one camera. The squares or dots of each become one point a vertex
- * just as triangulate makes them. GStreamer must have been initialised.
+ * Reads the pictures of one camera. The squares, dots or matches of each become one point a
+ * vertex just as triangulate makes them. GStreamer must have been initialised.
  *
  * Returns: %FALSE when a picture can't be one of this take; those before it are in @observations
  */

@@ -1,4 +1,4 @@
-/* From the squares or dots of a picture to the places of a grid's vertices in it, px.
+/* From the squares, dots or matches of a picture to the places of a grid's vertices in it, px.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #ifdef HAVE_CONFIG_H
@@ -96,6 +96,26 @@ gst_cloth_io_points_add_dots (const GstClothDots * dots, guint columns,
   }
 }
 
+/* What is seen from behind is the same vertex: cloth is thin. */
+void
+gst_cloth_io_points_add_matches (const GstClothMatches * matches,
+    guint columns, guint rows, ClothMerge * merge)
+{
+  const GstClothGridPoint *point;
+  guint n, i;
+
+  point = gst_cloth_matches_get_points (matches, &n);
+  for (i = 0; i < n; i++, point++) {
+    gdouble cov[3] = { point->cov_xx, point->cov_xy, point->cov_yy };
+
+    if (point->column >= 0 && point->row >= 0
+        && (guint) point->column < columns && (guint) point->row < rows) {
+      cloth_merge_add (merge, (guint) point->row * columns
+          + (guint) point->column, point->x, point->y, cov);
+    }
+  }
+}
+
 GstClothIoPoints *
 gst_cloth_io_points_new (guint columns, guint rows)
 {
@@ -108,12 +128,14 @@ gst_cloth_io_points_new (guint columns, guint rows)
   return points;
 }
 
-/* Takes the squares or the dots, whichever are of the grid; a picture may carry both. */
+/* Takes the squares, the dots or the matches, whichever are of the grid; a picture may carry
+ * several. */
 static gboolean
 merge_metas (GstClothIoPoints * self, GstBuffer * picture, GError ** error)
 {
   const GstClothQuads *quads = gst_buffer_get_cloth_quads (picture);
   const GstClothDots *dots = gst_buffer_get_cloth_dots (picture);
+  const GstClothMatches *matches = gst_buffer_get_cloth_matches (picture);
   guint columns = 0, rows = 0;
 
   if (quads) {
@@ -137,11 +159,29 @@ merge_metas (GstClothIoPoints * self, GstBuffer * picture, GError ** error)
       return TRUE;
     }
   }
+  if (matches) {
+    columns = gst_cloth_matches_get_columns (matches);
+    rows = gst_cloth_matches_get_rows (matches);
+    if (columns == self->columns && rows == self->rows) {
+      gst_cloth_io_points_add_matches (matches, columns, rows, self->merge);
+      self->camera = gst_cloth_matches_get_camera (matches);
+      self->sequence = gst_cloth_matches_get_sequence (matches);
+      return TRUE;
+    }
+  }
   g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING,
       "it is of a pattern with %u×%u vertices, but the take's "
       "grid has %u×%u: both must come from one pattern.json", columns, rows,
       self->columns, self->rows);
   return FALSE;
+}
+
+gboolean
+gst_cloth_io_points_has_any (GstBuffer * picture)
+{
+  return gst_buffer_get_cloth_quads (picture)
+      || gst_buffer_get_cloth_dots (picture)
+      || gst_buffer_get_cloth_matches (picture);
 }
 
 gboolean

@@ -1,4 +1,4 @@
-/* From the squares or dots of a picture to the places of a grid's vertices in it, px.
+/* From the squares, dots or matches of a picture to the places of a grid's vertices in it, px.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -22,7 +22,9 @@ typedef struct {
 } GstClothIoPoints;
 
 GstClothIoPoints *gst_cloth_io_points_new (guint columns, guint rows);
-/* Merges the squares or dots of a picture, which must have some: FALSE when they are of
+/* Whether a picture carries squares, dots or matches. */
+gboolean gst_cloth_io_points_has_any (GstBuffer * picture);
+/* Merges the squares, dots or matches of a picture, which must have some: FALSE when they are of
  * another grid (CLOTH_FIT_ERROR). What is found belongs to the picture and to @points. */
 gboolean gst_cloth_io_points_find (GstClothIoPoints * points, GstBuffer * picture,
     GError ** error);
@@ -38,6 +40,9 @@ void gst_cloth_io_points_add_quads (const GstClothQuads * quads, guint columns,
 /* @seen: memory for columns * rows bytes. */
 void gst_cloth_io_points_add_dots (const GstClothDots * dots, guint columns,
     guint rows, guint8 * seen, ClothMerge * merge);
+/* Of matches the grid's points. */
+void gst_cloth_io_points_add_matches (const GstClothMatches * matches,
+    guint columns, guint rows, ClothMerge * merge);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (GstClothIoPoints, gst_cloth_io_points_free)
 G_END_DECLS

@@ -112,6 +112,7 @@ struct _ClothCvSift
   std::vector < int >order;
   std::vector < gfloat > x, y, scale, angle;
   std::vector < guint8 > descriptors;
+  guint most = 0, n_dropped = 0;
 };
 
 /* Returns: OpenCV's parameters: 3 layers, contrast 0.04, edge 10, sigma 1.6
@@ -167,14 +168,35 @@ comes_before (const cv::KeyPoint & a, const cv::KeyPoint & b)
   return a.size != b.size ? a.size < b.size : a.angle < b.angle;
 }
 
+/* Leaves the most features that may be in order, the strongest. */
 static void
-arrange (ClothCvSift * self)
+drop_weak (ClothCvSift * self)
 {
   const size_t n = self->points.size ();
 
   self->order.resize (n);
   for (size_t i = 0; i < n; i++)
     self->order[i] = (int) i;
+  self->n_dropped = 0;
+  if (self->most == 0 || n <= self->most)
+    return;
+  self->n_dropped = (guint) (n - self->most);
+  std::sort (self->order.begin (), self->order.end (),[&](int a, int b) {
+        const cv::KeyPoint & p = self->points[a], &q = self->points[b];
+
+        if (p.response != q.response)
+          return p.response > q.response;
+        return comes_before (p, q) || (!comes_before (q, p) && a < b);
+      });
+  self->order.resize (self->most);
+}
+
+static void
+arrange (ClothCvSift * self)
+{
+  drop_weak (self);
+  const size_t n = self->order.size ();
+
   std::sort (self->order.begin (), self->order.end (),[&](int a, int b) {
         const cv::KeyPoint & p = self->points[a], &q = self->points[b];
 
@@ -196,6 +218,26 @@ arrange (ClothCvSift * self)
     std::copy (bytes, bytes + CLOTH_CV_SIFT_BYTES,
         &self->descriptors[i * CLOTH_CV_SIFT_BYTES]);
   }
+}
+
+/* @sift: a detector
+ * @most: how many features of a picture are kept, the strongest: those of most contrast; 0:
+ *   all
+ */
+void
+cloth_cv_sift_keep (ClothCvSift * sift, guint most)
+{
+  sift->most = most;
+}
+
+/* @sift: a detector
+ *
+ * Returns: how many features of the last picture were too many
+ */
+guint
+cloth_cv_sift_get_n_dropped (const ClothCvSift * sift)
+{
+  return sift->n_dropped;
 }
 
 /* @sift: detector, whose memory is used again for each picture
@@ -236,7 +278,7 @@ cloth_cv_sift_run (ClothCvSift * sift, const ClothCvPicture * picture,
             arrange (sift);
           }))
     return FALSE;
-  features->n = (guint) sift->points.size ();
+  features->n = (guint) sift->order.size ();
   features->x = sift->x.data ();
   features->y = sift->y.data ();
   features->scale = sift->scale.data ();

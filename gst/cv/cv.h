@@ -79,6 +79,8 @@ ClothCvSiftParams cloth_cv_sift_default_params (void);
 ClothCvSift *cloth_cv_sift_new (const ClothCvSiftParams * params,
     GError ** error);
 void cloth_cv_sift_free (ClothCvSift * sift);
+void cloth_cv_sift_keep (ClothCvSift * sift, guint most);
+guint cloth_cv_sift_get_n_dropped (const ClothCvSift * sift);
 gboolean cloth_cv_sift_run (ClothCvSift * sift,
     const ClothCvPicture * picture, const ClothCvPicture * mask,
     ClothCvFeatures * features, GError ** error);

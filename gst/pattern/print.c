@@ -140,12 +140,12 @@ cloth_print_layout (const ClothArtwork * artwork,
     const ClothPrintOptions * options, ClothPrintLayout * layout,
     GError ** error)
 {
-  const gdouble *cloth_m = artwork->checker ? artwork->checker->cloth_m
-      : artwork->dots->cloth_m;
+  const gdouble *cloth_m = artwork->sheet ? artwork->sheet->cloth_m
+      : artwork->checker ? artwork->checker->cloth_m : artwork->dots->cloth_m;
   const gdouble margin = options->margin_mm;
 
-  if (!(artwork->checker ? cloth_pattern_check (artwork->checker, error)
-          : cloth_m_array_check (artwork->dots, error)))
+  if ((artwork->checker && !cloth_pattern_check (artwork->checker, error))
+      || (artwork->dots && !cloth_m_array_check (artwork->dots, error)))
     return FALSE;
   if (!(margin >= 0 && margin <= 100))
     return refuse (error, "the paper's margin must be 0 to 100 mm");
@@ -390,10 +390,22 @@ dots_caption (const ClothMArray * array)
 }
 
 static gchar *
+sheet_caption (const ClothSheet * sheet)
+{
+  gchar width[G_ASCII_DTOSTR_BUF_SIZE], height[G_ASCII_DTOSTR_BUF_SIZE];
+
+  g_ascii_formatd (width, sizeof width, "%.6g", sheet->cloth_m[0] * 1000);
+  g_ascii_formatd (height, sizeof height, "%.6g", sheet->cloth_m[1] * 1000);
+  return g_strdup_printf ("picture of %s × %s mm, seed %" G_GUINT64_FORMAT,
+      width, height, sheet->seed);
+}
+
+static gchar *
 caption (const ClothArtwork * artwork, const ClothPrintOptions * options)
 {
-  g_autofree gchar *what = artwork->checker
-      ? checker_caption (artwork->checker) : dots_caption (artwork->dots);
+  g_autofree gchar *what = artwork->sheet ? sheet_caption (artwork->sheet)
+      : artwork->checker ? checker_caption (artwork->checker)
+      : dots_caption (artwork->dots);
 
   return g_strdup_printf ("%s %s: %s%s%s", PACKAGE, PACKAGE_VERSION, what,
       options->notes ? ", " : "", options->notes ? options->notes : "");
@@ -461,8 +473,10 @@ draw_sheet (cairo_t * cr, const ClothArtwork * artwork,
   cairo_translate (cr, tile[0] - start[0], tile[1] - start[1]);
   if (artwork->checker)
     draw_board (cr, artwork->checker, view);
-  else
+  else if (artwork->dots)
     draw_dots (cr, artwork->dots, view);
+  else
+    cloth_sheet_draw (artwork->sheet, cr, view);
   cairo_restore (cr);
   draw_marks (cr, layout, tile, column, row);
   draw_strip (cr, artwork, options, layout, column, row);

@@ -5,17 +5,20 @@
 
 #include "gst/pattern/marray.h"
 #include "gst/pattern/pattern.h"
+#include "gst/pattern/sheet.h"
 
 G_BEGIN_DECLS
 
 /* @checker: (nullable): a checkerboard, plain or coded
  * @dots: (nullable): an M-array
+ * @sheet: (nullable): random shapes
  *
  * What is printed: exactly one of them.
  */
 typedef struct {
   const ClothPattern *checker;
   const ClothMArray *dots;
+  const ClothSheet *sheet;
 } ClothArtwork;
 
 /* @paper_mm: width and height of the paper, mm, either way round; 0, 0 for one sheet as

@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/pattern/texture.h"
 
+#include <cairo.h>
 #include <math.h>
 #include <string.h>
 
@@ -208,4 +209,51 @@ cloth_texture_free (ClothTexture * texture)
     return;
   g_free (texture->data);
   g_free (texture);
+}
+
+static cairo_status_t
+append_bytes (void *closure, const unsigned char *data, unsigned int length)
+{
+  g_byte_array_append (closure, data, length);
+  return CAIRO_STATUS_SUCCESS;
+}
+
+/* @texture: a texture
+ * @error: return location
+ *
+ * Returns: (transfer full): the texture as a PNG file, or %NULL with
+ *   %CLOTH_PATTERN_ERROR_PRINT
+ */
+GBytes *
+cloth_texture_to_png (const ClothTexture * texture, GError ** error)
+{
+  g_autoptr (GByteArray) bytes = g_byte_array_new ();
+  cairo_surface_t *surface = cairo_image_surface_create (CAIRO_FORMAT_RGB24,
+      texture->width, texture->height);
+  cairo_status_t status = cairo_surface_status (surface);
+
+  if (status == CAIRO_STATUS_SUCCESS) {
+    const gint stride = cairo_image_surface_get_stride (surface);
+    const guint8 *from = texture->data;
+    guint8 *data;
+
+    cairo_surface_flush (surface);
+    data = cairo_image_surface_get_data (surface);
+    for (gint y = 0; y < texture->height; y++) {
+      guint32 *row = (guint32 *) (data + (gsize) y * stride);
+
+      for (gint x = 0; x < texture->width; x++, from += texture->n_channels)
+        row[x] = texture->n_channels == 1 ? from[0] * 0x010101u
+            : (guint32) from[0] << 16 | (guint32) from[1] << 8 | from[2];
+    }
+    cairo_surface_mark_dirty (surface);
+    status = cairo_surface_write_to_png_stream (surface, append_bytes, bytes);
+  }
+  cairo_surface_destroy (surface);
+  if (status == CAIRO_STATUS_SUCCESS)
+    return g_byte_array_free_to_bytes (g_steal_pointer (&bytes));
+  g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_PRINT,
+      "the picture could not be written as PNG: %s",
+      cairo_status_to_string (status));
+  return NULL;
 }

@@ -29,6 +29,7 @@ ClothTexture *cloth_pattern_texture (const ClothPattern * pattern,
     gdouble px_per_m, guint8 black, guint8 white, GError ** error);
 ClothTexture *cloth_m_array_texture (const ClothMArray * array,
     gdouble px_per_m, guint8 ground, const guint8 (*inks)[3], GError ** error);
+GBytes *cloth_texture_to_png (const ClothTexture * texture, GError ** error);
 void cloth_texture_free (ClothTexture * texture);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothTexture, cloth_texture_free)

@@ -46,6 +46,7 @@ typedef struct {
 typedef struct {
   const ClothPaint *paint;
   const ClothRenderTriangle *triangles;
+  gboolean two_sided;
   gfloat back;
   gfloat weight;                /* of this instant in the exposure */
   gfloat background[2];         /* at row 0, and change per row */

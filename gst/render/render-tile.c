@@ -183,7 +183,7 @@ add_light (const ClothRenderJob * job, const ClothRenderTriangle * t,
   const gfloat *value;
 
   light = MAX (light, 0);
-  if (!t->front) {
+  if (!t->front && !job->two_sided) {
     for (guint c = 0; c < job->light->n_channels; c++)
       sum[c] += (gfloat) count *light * job->back;
     return;

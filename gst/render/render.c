@@ -593,9 +593,9 @@ cloth_renderer_draw (ClothRenderer * renderer, const ClothPaint * paint,
   level = choose_level (self, time_s);
   instants = count_instants (self, time_s);
   self->job = (ClothRenderJob) {
-    .paint = paint,.triangles = self->triangles,.back =
-        (gfloat) style->back,.weight = 1 / (gfloat) instants,.background =
-        { (gfloat) style->background[0],
+    .paint = paint,.triangles = self->triangles,.two_sided =
+        style->two_sided,.back = (gfloat) style->back,.weight =
+        1 / (gfloat) instants,.background = { (gfloat) style->background[0],
       (gfloat) ((style->background[1] - style->background[0])
           / MAX (1, self->light.height - 1))
   },.light = &self->light,.work = work};

@@ -16,7 +16,8 @@ typedef struct _ClothRenderer ClothRenderer;
  * @lamp_light: light of the lamp on a cloth that faces it
  * @ambient_light: light from everywhere
  * @through: share of the lamp's light that passes through the cloth to its other side
- * @back: what the back of the cloth, which carries no print, reflects
+ * @two_sided: whether the back shows the print, too: mirrored, as where it soaks through
+ * @back: what the back of the cloth reflects where it carries no print
  * @background: light of the background at the top and at the bottom of the picture
  *
  * How the cloth is lit (Lambert's law). A light of 1 on a white cloth is the brightest
@@ -27,6 +28,7 @@ typedef struct {
   gdouble lamp_light;
   gdouble ambient_light;
   gdouble through;
+  gboolean two_sided;
   gdouble back;
   gdouble background[2];
 } ClothRenderStyle;

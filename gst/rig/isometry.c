@@ -20,6 +20,9 @@ excess (const ClothIsometry * isometry, const gfloat * positions,
 {
   /* xx, xy, xz, yy, yz, zz */
   static const gint at[3][3] = { {0, 1, 2}, {1, 3, 4}, {2, 4, 5} };
+  const guint apart = a > b ? a - b : b - a;
+  /* neighbours in a column are as many vertices apart as a row has */
+  const gdouble edge_m = isometry->edge_m[apart == isometry->columns];
   gdouble d[3], length = 0, variance = 0, least, most, out = 0;
 
   for (gint i = 0; i < 3; i++) {
@@ -28,15 +31,15 @@ excess (const ClothIsometry * isometry, const gfloat * positions,
   }
   length = sqrt (length);
   if (!(length > 0))
-    return isometry->shortest > 0 ? isometry->edge_m : 0;
+    return isometry->shortest > 0 ? edge_m : 0;
   if (covariances)
     for (gint i = 0; i < 3; i++)
       for (gint j = 0; j < 3; j++)
         variance += d[i] * d[j] / (length * length)
             * ((gdouble) covariances[6 * a + at[i][j]]
             + covariances[6 * b + at[i][j]]);
-  least = isometry->shortest * isometry->edge_m;
-  most = isometry->longest * isometry->edge_m;
+  least = isometry->shortest * edge_m;
+  most = isometry->longest * edge_m;
   if (isometry->longest > 0 && length > most)
     out = length - most;
   else if (length < least)

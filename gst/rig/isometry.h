@@ -10,7 +10,7 @@ G_BEGIN_DECLS
 
 /* @columns: vertices in a row of the grid
  * @rows: vertices in a column
- * @edge_m: distance of neighbours on the flat cloth, metres
+ * @edge_m: distance of neighbours in a row and in a column on the flat cloth, metres
  * @shortest: least distance of neighbours in space over @edge_m; less than 1 since a chord
  *   is shorter than the bent cloth below it; 0: no limit
  * @longest: largest distance over @edge_m; more than 1 by what the cloth stretches; 0: no
@@ -18,7 +18,7 @@ G_BEGIN_DECLS
  */
 typedef struct {
   guint columns, rows;
-  gdouble edge_m;
+  gdouble edge_m[2];
   gdouble shortest, longest;
 } ClothIsometry;
 

@@ -105,7 +105,7 @@ cloth_reconstruction_set_grid (ClothReconstruction * self,
   self->denials = g_renew (gdouble, self->denials, n + grid->rows);
   g_clear_pointer (&self->bend, cloth_dot_bend_free);
   if (grid->dot_m > 0)
-    self->bend = cloth_dot_bend_new (grid->columns, grid->rows, grid->edge_m,
+    self->bend = cloth_dot_bend_new (grid->columns, grid->rows, grid->edge_m[0],
         grid->dot_m);
 }
 
@@ -161,7 +161,8 @@ static void
 read_pass (ClothReconstruction * self)
 {
   const ClothIsometry isometry = { self->grid.columns, self->grid.rows,
-    self->grid.edge_m, self->parameters.shortest, self->parameters.longest
+    {self->grid.edge_m[0], self->grid.edge_m[1]},
+    self->parameters.shortest, self->parameters.longest
   };
   const ClothTriangulation *t = self->triangulation;
   ClothReconstructed *result = &self->result;

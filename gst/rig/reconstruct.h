@@ -10,15 +10,16 @@ G_BEGIN_DECLS
 
 /* @columns: vertices in a row of the grid; vertex = row·columns + column
  * @rows: vertices in a column
- * @edge_m: distance of neighbours on the flat cloth, metres
+ * @edge_m: distance of neighbours in a row and in a column on the flat cloth, metres
  * @dot_m: diameter of the dots whose centres of gravity are seen, metres; 0: what is seen
- *   are corners
+ *   are corners, or any points of a print; dots are as far apart in a row as in a column
  *
  * The grid of vertices that is printed on the cloth.
  */
 typedef struct {
   guint columns, rows;
-  gdouble edge_m, dot_m;
+  gdouble edge_m[2];
+  gdouble dot_m;
 } ClothReconstructionGrid;
 
 /* @triangulate: of each vertex alone; an error floor below 0 stands for the one that the

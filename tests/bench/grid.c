@@ -172,7 +172,7 @@ run_film (const gchar * folder, const ClothGridParams * params, guint from,
   g_autoptr (ClothVerifier) verifier = cloth_verifier_new ();
   g_autoptr (GError) error = NULL;
 
-  match_film_load (&film, folder);
+  match_film_load (&film, folder, NULL, FALSE);
   {
     const ClothGridShape shape = { COLUMNS, ROWS,
       {film.cloth_m[0], film.cloth_m[1]}
@@ -250,7 +250,7 @@ main (int argc, char **argv)
 {
   ClothGridParams params = cloth_grid_default_params ();
   gint from = 0, step = 1, most = (gint) params.most, least =
-      (gint) params.least;
+      (gint) params.least, rounds = (gint) params.align.rounds;
   const GOptionEntry entries[] = {
     {"no-surface", 0, 0, G_OPTION_ARG_NONE, &no_surface,
         "distances in the picture bound those on the cloth", NULL},
@@ -269,6 +269,26 @@ main (int argc, char **argv)
     {"outlier", 0, 0, G_OPTION_ARG_DOUBLE, &params.outlier, NULL, NULL},
     {"rival", 0, 0, G_OPTION_ARG_DOUBLE, &params.rival, NULL, NULL},
     {"uncertain", 0, 0, G_OPTION_ARG_DOUBLE, &params.uncertain, NULL, NULL},
+    {"window", 0, 0, G_OPTION_ARG_INT, &params.align.radius, NULL, NULL},
+    {"align-bend", 0, 0, G_OPTION_ARG_DOUBLE, &params.align.bend, NULL, NULL},
+    {"blur", 0, 0, G_OPTION_ARG_DOUBLE, &params.align.blur, NULL, NULL},
+    {"reference-blur", 0, 0, G_OPTION_ARG_DOUBLE,
+        &params.align.reference_blur, NULL, NULL},
+    {"align-outlier", 0, 0, G_OPTION_ARG_DOUBLE, &params.align.outlier, NULL,
+        NULL},
+    {"done", 0, 0, G_OPTION_ARG_DOUBLE, &params.align.done, NULL, NULL},
+    {"rounds", 0, 0, G_OPTION_ARG_INT, &rounds, NULL, NULL},
+    {"shift", 0, 0, G_OPTION_ARG_DOUBLE, &params.align.shift, NULL, NULL},
+    {"likeness", 0, 0, G_OPTION_ARG_DOUBLE, &params.align.likeness, NULL,
+        NULL},
+    {"contrast", 0, 0, G_OPTION_ARG_DOUBLE, &params.align.contrast, NULL,
+        NULL},
+    {"share", 0, 0, G_OPTION_ARG_DOUBLE, &params.align.share, NULL, NULL},
+    {"centre", 0, 0, G_OPTION_ARG_DOUBLE, &params.align.centre, NULL, NULL},
+    {"correlation", 0, 0, G_OPTION_ARG_DOUBLE, &params.align.correlation, NULL,
+        NULL},
+    {"model", 0, 0, G_OPTION_ARG_DOUBLE, &params.align.model, NULL, NULL},
+    {"floor", 0, 0, G_OPTION_ARG_DOUBLE, &params.align.floor, NULL, NULL},
     {NULL}
   };
   g_autoptr (GOptionContext) context = g_option_context_new ("FOLDER");
@@ -279,6 +299,7 @@ main (int argc, char **argv)
     g_error ("%s", error->message);
   params.most = (guint) most;
   params.least = (guint) least;
+  params.align.rounds = (guint) rounds;
   gst_init (&argc, &argv);
   if (argc > 1)
     run_film (argv[1], &params, (guint) MAX (from, 0), (guint) MAX (step, 1));

@@ -9,24 +9,43 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/vision/match/match.h"
 
+#include <cairo.h>
 #include <gst/gst.h>
 #include <math.h>
+#include <string.h>
 #include <time.h>
 
+#include "gst/vision/mask/mask.h"
+#include "tests/bench/filmdepth.h"
 #include "tests/bench/matchfilm.h"
 
 /* What counts as right, m in uv. */
 #define RIGHT 0.003
 #define ROUNDS 3
+/* From pictures to their surface. */
+#define N_STEPS 7
+static const gchar *const steps[N_STEPS] = { "silhouette", "block matching",
+  "merging", "filling", "fractions", "refining", "smoothing again"
+};
 
 typedef struct
 {
   guint initial, matched, verified, right, right_matched;
   guint oblique, quarter, back, n_frames;
-  gdouble sift_ms, match_ms, verify_ms;
+  gdouble sift_ms, match_ms, verify_ms, depth_ms[N_STEPS];
 } Sums;
 
-static gboolean no_surface;
+static gboolean no_surface, by_pictures;
+static gchar *still, *pictures;
+
+/* What is known of a frame without the truth. */
+typedef struct
+{
+  ClothMask *mask;
+  FilmDepth depth;
+  guint8 *inside;
+  gfloat *points;
+} Look;
 
 /* Of all threads on all processors: other programs that run meanwhile count less. */
 static gdouble
@@ -36,6 +55,76 @@ milliseconds (void)
 
   clock_gettime (CLOCK_PROCESS_CPUTIME_ID, &t);
   return 1e3 * (gdouble) t.tv_sec + 1e-6 * (gdouble) t.tv_nsec;
+}
+
+/* Runs of the mask as bytes, and as states of the map. */
+static void
+take_mask (Look * look, const MatchFilm * film, guint frame)
+{
+  const gint w = film->film.width, h = film->film.height;
+  const ClothMaskParams params = cloth_mask_default_params ();
+  const gsize n = (gsize) w * (gsize) h;
+  const ClothPlanarImage image = { {film->film.pixels->data + frame * n, w, h,
+      w}, {NULL, NULL}, 0, 0, {0, 0}
+  };
+  const ClothRun *runs;
+  guint n_runs;
+
+  cloth_mask_run (look->mask, &params, &image, look->depth.pool,
+      CLOTH_SIMD_BEST);
+  runs = cloth_mask_get_runs (look->mask, &n_runs);
+  memset (look->inside, 0, n);
+  for (guint k = 0; k < n_runs; k++)
+    memset (look->inside + runs[k].row * w + runs[k].begin, 1,
+        runs[k].end - runs[k].begin);
+  memcpy (look->depth.map.states, look->inside, n);
+}
+
+/* The surface out of the pictures. */
+static void
+look_at_depth (Look * look, const MatchFilm * film, guint frame, Sums * sums)
+{
+  const gint w = film->film.width;
+  const gsize n = (gsize) w * (gsize) film->film.height;
+  const ClothDisparityParams params = film_depth_sixteenths ();
+  const ClothDisparityParams polish = film_depth_polish ();
+  const guint8 *const views[3] = { film->film.pixels->data + frame * n,
+    film->sides[0].pixels->data + frame * n,
+    film->sides[1].pixels->data + frame * n
+  };
+  FilmDepth *depth = &look->depth;
+
+  for (gint step = 0; step < N_STEPS; step++) {
+    const gdouble start = milliseconds ();
+
+    if (step == 0)
+      take_mask (look, film, frame);
+    else if (step == 1)
+      film_depth_match (depth, views);
+    else if (step == 2)
+      film_depth_merge (depth, 2);
+    else if (step == 3)
+      film_depth_fill (depth, &params);
+    else if (step == 4)
+      film_depth_smooth (depth, &params);
+    else if (step == 5)
+      film_depth_refine (depth, views);
+    else
+      film_depth_smooth (depth, &polish);
+    sums->depth_ms[step] += milliseconds () - start;
+  }
+  for (gsize i = 0; i < n; i++) {
+    const gdouble z = film->focal * film->baseline
+        / (gdouble) depth->map.disparities[i];
+    gfloat *to = look->points + 3 * i;
+
+    to[0] = to[1] = to[2] = NAN;
+    if (depth->map.states[i] < CLOTH_DISPARITY_MEASURED)
+      continue;
+    to[0] = (gfloat) (((gdouble) (i % w) - film->centre[0]) / film->focal * z);
+    to[1] = (gfloat) (((gdouble) (i / w) - film->centre[1]) / film->focal * z);
+    to[2] = (gfloat) z;
+  }
 }
 
 static gboolean
@@ -51,19 +140,86 @@ is_right (const ClothReferenceFeatures * r, const MatchFilm * film,
 }
 
 static void
+dot (cairo_t * cr, gdouble x, gdouble y, guint colour)
+{
+  cairo_set_source_rgb (cr, (colour >> 16) / 255., (colour >> 8 & 255) / 255.,
+      (colour & 255) / 255.);
+  cairo_arc (cr, x + 0.5, y + 0.5, 1.8, 0, 2 * G_PI);
+  cairo_fill (cr);
+}
+
+/* Features over the picture: verified and right in green, wrong in red; refused ones that
+ * were right in blue, wrong in orange; those without a match in grey. What has no depth is
+ * dark. */
+static void
+draw_frame (const MatchFilm * film, guint frame, const ClothCvFeatures * f,
+    const ClothMatch * matches, const ClothReferenceFeatures * r,
+    const MatchTruth * truth, const Look * look)
+{
+  static const guint colours[2][2] = { {0xff9000, 0x3060ff},
+  {0xff0000, 0x00c000}
+  };
+  const gint w = film->film.width, h = film->film.height;
+  g_autofree gchar *path = g_strdup_printf ("%s/match-%02u.png", pictures,
+      frame);
+  cairo_surface_t *surface = cairo_image_surface_create (CAIRO_FORMAT_RGB24, w,
+      h);
+  guint8 *data = cairo_image_surface_get_data (surface);
+  cairo_t *cr;
+
+  for (gint y = 0; y < h; y++)
+    for (gint x = 0; x < w; x++) {
+      const gsize at = (gsize) y * (gsize) w + (gsize) x;
+      const guint grey = film->film.pixels->data[frame * (gsize) w * h + at];
+      const guint tone = by_pictures && look->inside[at]
+          && look->depth.map.states[at] < CLOTH_DISPARITY_MEASURED ?
+          grey / 4 : 128 + grey / 2;
+      guint32 *to = (guint32 *) (data + y * cairo_image_surface_get_stride
+          (surface)) + x;
+
+      *to = tone << 16 | tone << 8 | tone;
+      if (by_pictures && !look->inside[at])
+        *to = grey << 15 & 0x7f0000;
+    }
+  cairo_surface_mark_dirty (surface);
+  cr = cairo_create (surface);
+  for (gint pass = 0; pass < 3; pass++)
+    for (guint i = 0; i < f->n; i++) {
+      const ClothMatch *m = &matches[i];
+      const gboolean verified = m->state == CLOTH_MATCH_MATCHED;
+      const gboolean known = verified || m->state == CLOTH_MATCH_REFUSED;
+      const gboolean right = known && is_right (r, film, truth, f->x[i],
+          f->y[i], m->reference);
+
+      if (pass != (known ? right || !verified ? 1 : 2 : 0))
+        continue;
+      dot (cr, f->x[i], f->y[i], known ? colours[verified][right] : 0x909090);
+    }
+  cairo_destroy (cr);
+  if (cairo_surface_write_to_png (surface, path) != CAIRO_STATUS_SUCCESS)
+    g_error ("%s: can't be written", path);
+  cairo_surface_destroy (surface);
+}
+
+static void
 run_frame (const MatchFilm * film, guint frame,
     const ClothReference * reference, ClothCvSift * sift,
     const ClothGrowParams * grow_params,
     const ClothVerifyParams * verify_params, ClothGrower * grower,
-    ClothVerifier * verifier, ClothPool * pool, MatchTruth * truth, Sums * sums)
+    ClothVerifier * verifier, ClothPool * pool, MatchTruth * truth,
+    Look * look, Sums * sums)
 {
   const ClothReferenceFeatures *r = cloth_reference_get_features (reference);
   const gint width = film->film.width, height = film->film.height;
   const ClothCvPicture picture = { film->film.pixels->data
         + (gsize) frame * width * height, width, height, width
   };
-  const ClothCvPicture mask = { truth->mask, width, height, width };
-  const ClothMatchSurface surface = { truth->points, width, height, width };
+  const ClothCvPicture mask = { by_pictures ? look->inside : truth->mask,
+    width, height, width
+  };
+  const ClothMatchSurface surface = { by_pictures ? look->points :
+        truth->points, width, height, width
+  };
   const ClothMatchSurface *under = no_surface ? NULL : &surface;
   g_autofree ClothMatch *matches = NULL;
   gdouble sift_ms, match_ms = G_MAXDOUBLE, verify_ms = G_MAXDOUBLE, start;
@@ -73,6 +229,8 @@ run_frame (const MatchFilm * film, guint frame,
   ClothVerification verification;
 
   match_film_look (film, frame, truth);
+  if (by_pictures)
+    look_at_depth (look, film, frame, sums);
   start = milliseconds ();
   if (!cloth_cv_sift_run (sift, &picture, &mask, &f, NULL))
     g_error ("no features");
@@ -102,6 +260,8 @@ run_frame (const MatchFilm * film, guint frame,
     quarter += r->view[m->reference] > 4;
     back += r->side[m->reference];
   }
+  if (pictures)
+    draw_frame (film, frame, &f, matches, r, truth, look);
   g_print ("%5u  %7u  %7u (%4.1f%%)  %8u (%4.1f%%)  %6.2f%%  %4u %4u %5u  "
       "%4.0f%%  %5.0f%%  %5.1f  %5.1f\n", frame, f.n, growth.n_matched,
       100. * right_matched / MAX (growth.n_matched, 1),
@@ -140,6 +300,34 @@ tell (const Sums * s, guint n_references)
   g_print ("features %.0f ms; matching %.1f ms among %u (the paper 145 s); "
       "verification %.1f ms (the paper 26 s with the parameters)\n",
       s->sift_ms / n, s->match_ms / n, n_references, s->verify_ms / n);
+  for (gint i = 0; i < N_STEPS && by_pictures; i++)
+    g_print ("%s %.1f ms%s", steps[i], s->depth_ms[i] / n,
+        i < N_STEPS - 1 ? "; " : "\n");
+}
+
+static void
+look_init (Look * look, const MatchFilm * film)
+{
+  const gint w = film->film.width, h = film->film.height;
+  const gsize n = (gsize) w * (gsize) h;
+  const ClothPlanarImage background = { {film->background.pixels->data, w, h,
+      w}, {NULL, NULL}, 0, 0, {0, 0}
+  };
+
+  look->mask = cloth_mask_new ();
+  cloth_mask_set_background (look->mask, &background);
+  film_depth_init (&look->depth, w, h);
+  look->inside = g_malloc (n);
+  look->points = g_new (gfloat, 3 * n);
+}
+
+static void
+look_clear (Look * look)
+{
+  cloth_mask_free (look->mask);
+  film_depth_clear (&look->depth);
+  g_free (look->inside);
+  g_free (look->points);
 }
 
 static void
@@ -157,10 +345,11 @@ run_film (const gchar * folder, const ClothReferenceParams * params,
   g_autoptr (ClothVerifier) verifier = cloth_verifier_new ();
   g_autoptr (GError) error = NULL;
   MatchTruth truth;
+  Look look = { 0 };
   Sums sums = { 0 };
   gdouble start = milliseconds ();
 
-  match_film_load (&film, folder);
+  match_film_load (&film, folder, still, by_pictures);
   with_size.cloth_m[0] = film.cloth_m[0];
   with_size.cloth_m[1] = film.cloth_m[1];
   picture = (ClothCvPicture) {
@@ -176,11 +365,15 @@ run_film (const gchar * folder, const ClothReferenceParams * params,
   g_print ("frame  initial  matched (right)   verified           right  "
       "  50%%  80%%  seeds  oblique  back  match ms  verify ms\n");
   match_truth_init (&truth, film.film.width, film.film.height);
+  if (by_pictures)
+    look_init (&look, &film);
   for (guint frame = from; frame < film.n_frames; frame += step)
     run_frame (&film, frame, reference, sift, grow_params, verify_params,
-        grower, verifier, pool, &truth, &sums);
+        grower, verifier, pool, &truth, &look, &sums);
   tell (&sums, cloth_reference_get_features (reference)->n);
   match_truth_clear (&truth);
+  if (by_pictures)
+    look_clear (&look);
   match_film_clear (&film);
 }
 
@@ -194,6 +387,13 @@ main (int argc, char **argv)
   gint first = (gint) grow.first, least = (gint) grow.least, step = 1, from = 0;
   gint tries = (gint) grow.tries, support = (gint) verify.support;
   const GOptionEntry entries[] = {
+    {"disparity", 0, 0, G_OPTION_ARG_NONE, &by_pictures,
+        "surface and silhouette out of the pictures of three cameras, not of "
+          "the truth", NULL},
+    {"still", 0, 0, G_OPTION_ARG_FILENAME, &still,
+        "where reference.png and background0.png are, if elsewhere", "FOLDER"},
+    {"pictures", 0, 0, G_OPTION_ARG_FILENAME, &pictures,
+        "draws what is right and wrong in each frame", "FOLDER"},
     {"no-surface", 0, 0, G_OPTION_ARG_NONE, &no_surface,
         "distances in the picture bound those on the cloth", NULL},
     {"step", 0, 0, G_OPTION_ARG_INT, &step, "every so many frames", "N"},

@@ -1,7 +1,8 @@
 /* A rendered film of a printed cloth with the truth of every pixel.
  *
  * The folder has reference.png, cam0.mp4 and vertices.npy of 35 × 33 vertices a frame, world
- * z up; the camera is the one that all such films share.
+ * z up; for disparities also cam1.mp4, cam2.mp4 and background0.png. The cameras are those
+ * that all such films share.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "tests/bench/matchfilm.h"
@@ -59,21 +60,31 @@ load_pictures (const gchar * folder, const gchar * name, MatchPictures * to)
   gst_object_unref (pipeline);
 }
 
+/* @still: (nullable): folder of reference.png and background0.png, if it is another one
+ * @sides: whether the other cameras and the background are loaded
+ */
 void
-match_film_load (MatchFilm * film, const gchar * folder)
+match_film_load (MatchFilm * film, const gchar * folder, const gchar * still,
+    gboolean sides)
 {
   g_autofree gchar *path = g_build_filename (folder, "vertices.npy", NULL);
   g_autoptr (GError) error = NULL;
   ClothNpyInfo info;
 
   *film = (MatchFilm) {
-    .focal = 12800 / 9.0,.centre = {
+    .focal = 12800 / 9.0,.baseline = 0.1,.centre = {
       511.5, 383.5
     },.cloth_m = {
       0.63, 0.67
   }};
-  load_pictures (folder, "reference.png", &film->reference);
+  load_pictures (still ? still : folder, "reference.png", &film->reference);
   load_pictures (folder, "cam0.mp4", &film->film);
+  if (sides) {
+    load_pictures (still ? still : folder, "background0.png",
+        &film->background);
+    load_pictures (folder, "cam1.mp4", &film->sides[0]);
+    load_pictures (folder, "cam2.mp4", &film->sides[1]);
+  }
   film->vertices = load_npy_floats (path, &info, &error);
   if (!film->vertices || info.row_items != 3 * ROWS * COLUMNS)
     g_error ("%s: %s", path, error ? error->message : "not a cloth");
@@ -94,6 +105,9 @@ match_film_clear (MatchFilm * film)
 {
   g_byte_array_unref (film->reference.pixels);
   g_byte_array_unref (film->film.pixels);
+  g_clear_pointer (&film->background.pixels, g_byte_array_unref);
+  for (gint k = 0; k < 2; k++)
+    g_clear_pointer (&film->sides[k].pixels, g_byte_array_unref);
   g_free (film->vertices);
 }
 

@@ -17,14 +17,17 @@ typedef struct
 
 /* @reference: the flat print
  * @film: of the camera cam0
+ * @sides: of cam1 to its right and cam2 to its left, as loaded on demand
+ * @background: of cam0: the scene without the cloth, as loaded on demand
+ * @baseline: from cam0 to either side, m
  * @vertices: (array): xyz, camera frame, z away from the camera; frame by frame
  * @cloth_m: width and height
  */
 typedef struct
 {
-  MatchPictures reference, film;
+  MatchPictures reference, film, sides[2], background;
   guint n_frames;
-  gdouble focal, centre[2];
+  gdouble focal, centre[2], baseline;
   gfloat *vertices;
   gdouble cloth_m[2];
 } MatchFilm;
@@ -37,7 +40,8 @@ typedef struct
   guint8 *mask, *back;
 } MatchTruth;
 
-void match_film_load (MatchFilm * film, const gchar * folder);
+void match_film_load (MatchFilm * film, const gchar * folder,
+    const gchar * still, gboolean sides);
 void match_film_clear (MatchFilm * film);
 void match_truth_init (MatchTruth * truth, gint width, gint height);
 void match_truth_clear (MatchTruth * truth);

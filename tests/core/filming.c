@@ -73,6 +73,7 @@ typedef struct
   ClothSimd simd;
   guint64 frame, seed;
   guint n_planes;
+  gboolean two_sided;
   gfloat *light;                /* what the levels were made of, not rounded */
 } Options;
 
@@ -154,6 +155,7 @@ film (const Mesh * mesh, const ClothPaint * paint, const Options * options)
   style.ambient_light = 1;
   style.lamp_light = 0;
   style.background[0] = style.background[1] = 0;
+  style.two_sided = options->two_sided;
   light =
       cloth_renderer_draw (renderer, paint, &capture, &style, &motion, 1, NULL);
   cloth_renderer_develop (renderer, &capture, options->frame, options->seed,
@@ -512,6 +514,35 @@ test_occlusion (void)
       }
     }
   }
+}
+
+/* A print on both sides: from behind the film is that of the front in a mirror, here one whose
+ * plane is the picture's middle column. The board is not its own mirror image. */
+static void
+test_two_sided (void)
+{
+  g_autoptr (ClothPattern) pattern =
+      cloth_pattern_new_checker (7, 8, 0.05, 0.025, TRUE, NULL);
+  g_autoptr (ClothPaint) paint = board_paint (pattern, 2000);
+  const Plane behind = { {0.2, 0, 0.225}, {-1, 0, 0}, {0, 0, -1} };
+  const Plane front = { {-0.2, 0, 0.225}, {1, 0, 0}, {0, 0, -1} };
+  const Options one = { NULL }, both = {.two_sided = TRUE };
+  g_autoptr (Mesh) turned = mesh_new (&behind, 10, 10, 0.4, 0.45);
+  g_autoptr (Mesh) straight = mesh_new (&front, 10, 10, 0.4, 0.45);
+  g_autofree guint8 *back = film (turned, paint, &both);
+  g_autofree guint8 *from_front = film (straight, paint, &one);
+  const gint twice = (gint) lrint (2 * camera.K[2]);
+  guint n_dark = 0;
+
+  for (gint y = 0; y < HEIGHT; y++)
+    for (gint x = MAX (0, twice - WIDTH + 1); x < MIN (WIDTH, twice + 1); x++) {
+      const gint level = from_front[y * WIDTH + twice - x];
+
+      g_assert_cmpint (ABS (back[y * WIDTH + x] - level), <=, 3);
+      n_dark += back[y * WIDTH + x] < 100 && x > 240 && x < 400 && y > 160
+          && y < 320;
+    }
+  g_assert_cmpuint (n_dark, >, 160 * 160 / 3);
 }
 
 /* Seen from behind there is no print; unknown vertices and what is behind the camera are
@@ -952,6 +983,7 @@ main (int argc, char **argv)
   g_test_add_func ("/filming/no-gaps", test_no_gaps);
   g_test_add_func ("/filming/occlusion", test_occlusion);
   g_test_add_func ("/filming/back-and-unknown", test_back_and_unknown);
+  g_test_add_func ("/filming/two-sided", test_two_sided);
   g_test_add_func ("/filming/shutter", test_shutter);
   g_test_add_func ("/filming/defocus", test_defocus);
   g_test_add_func ("/filming/shading-shift", test_shading_shift);

@@ -13,7 +13,8 @@
 
 static gdouble denials[(COLUMNS + 1) * ROWS];
 
-static const ClothIsometry standard = { COLUMNS, ROWS, EDGE, 0.8, 1.05 };
+static const ClothIsometry standard =
+    { COLUMNS, ROWS, {EDGE, EDGE}, 0.8, 1.05 };
 
 /* A sheet rolled around a cylinder of radius r: distances along it stay, chords are
  * 2 r sin (s / 2 r). */
@@ -76,6 +77,43 @@ test_wrong (void)
   g_assert_true (wrong[10] && wrong[50]);
 }
 
+/* Cells of 50 mm by 40 mm: right where rows are that near to each other, wrong when the two
+ * are taken for one another or both for the larger. */
+static void
+test_unequal (void)
+{
+  static const gdouble edges[][2] = { {EDGE, 0.8 * EDGE}, {0.8 * EDGE, EDGE},
+  {EDGE, EDGE}
+  };
+  gfloat positions[3 * N];
+  gboolean wrong[N];
+
+  roll (positions, 100);
+  for (gint k = 0; k < N; k++)
+    positions[3 * k + 1] *= 0.8f;
+  for (guint i = 0; i < G_N_ELEMENTS (edges); i++) {
+    const ClothIsometry unequal = { COLUMNS, ROWS, {edges[i][0], edges[i][1]},
+    0.9, 1.05
+    };
+    const guint n = cloth_isometry_check (&unequal, positions, NULL, wrong,
+        denials);
+
+    g_assert_true ((n == 0) == (i == 0));
+  }
+  /* a strip one vertex wide has edges along its columns only */
+  for (guint i = 0; i < 2; i++) {
+    const ClothIsometry strip = { 1, ROWS, {edges[i][0], edges[i][1]}, 0.9,
+    1.05
+    };
+
+    for (gint k = 0; k < ROWS; k++)
+      positions[3 * k + 1] = (gfloat) (k * 0.8 * EDGE),
+          positions[3 * k] = positions[3 * k + 2] = 0;
+    g_assert_true ((cloth_isometry_check (&strip, positions, NULL, wrong,
+                denials) == 0) == (i == 0));
+  }
+}
+
 static void
 test_covariance (void)
 {
@@ -105,8 +143,8 @@ test_covariance (void)
 static void
 test_limits (void)
 {
-  ClothIsometry none = { COLUMNS, ROWS, EDGE, 0, 0 };
-  ClothIsometry one = { 1, 1, EDGE, 0.8, 1.05 };
+  ClothIsometry none = { COLUMNS, ROWS, {EDGE, EDGE}, 0, 0 };
+  ClothIsometry one = { 1, 1, {EDGE, EDGE}, 0.8, 1.05 };
   gfloat positions[3 * N];
   gboolean wrong[N];
 
@@ -137,6 +175,7 @@ main (int argc, char **argv)
   g_test_init (&argc, &argv, NULL);
   g_test_add_func ("/isometry/bent", test_bent);
   g_test_add_func ("/isometry/wrong", test_wrong);
+  g_test_add_func ("/isometry/unequal", test_unequal);
   g_test_add_func ("/isometry/covariance", test_covariance);
   g_test_add_func ("/isometry/limits", test_limits);
   return g_test_run ();

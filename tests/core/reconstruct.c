@@ -25,7 +25,8 @@ typedef struct
   gdouble truth[N][3];
 } Film;
 
-static const ClothReconstructionGrid corners = { COLUMNS, ROWS, EDGE, 0 };
+static const ClothReconstructionGrid corners =
+    { COLUMNS, ROWS, {EDGE, EDGE}, 0 };
 
 /* Pinholes on a circle around the z axis that look at the origin: camera c stands at the
  * angle c·90°/(n − 1). */
@@ -267,8 +268,8 @@ test_dots (void)
       look_at_dot (&film, c, i, s, z, radius);
   }
   for (guint k = 0; k < 2; k++) {
-    const ClothReconstructionGrid grid = { COLUMNS, ROWS, pitch,
-      k == 0 ? 0 : 2 * radius
+    const ClothReconstructionGrid grid = { COLUMNS, ROWS, {pitch, pitch},
+    k == 0 ? 0 : 2 * radius
     };
     g_autoptr (ClothReconstruction) self = make (&film, &grid);
     const ClothReconstructed *result = run (self, &film);
@@ -453,7 +454,7 @@ test_unusable_cameras (void)
 static void
 test_too_many_vertices (void)
 {
-  const ClothReconstructionGrid huge = { 1001, 1000, EDGE, 0 };
+  const ClothReconstructionGrid huge = { 1001, 1000, {EDGE, EDGE}, 0 };
   g_autoptr (ClothReconstruction) self = NULL;
   g_autoptr (GError) error = NULL;
   g_auto (Film) film = { 0 };

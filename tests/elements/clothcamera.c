@@ -636,6 +636,63 @@ assert_refused (const gchar * launch, const gchar * says)
   gst_object_unref (element);
 }
 
+/* The film's first picture. */
+static gchar *
+film_of (const gchar * settings)
+{
+  GstHarness *h = harness (settings, "RGB");
+  g_autoptr (GstBuffer) out = NULL;
+  gchar *sum;
+
+  fail_unless_equals_int (gst_harness_push (h, mesh_buffer (0, 4, 3, 0)),
+      GST_FLOW_OK);
+  out = gst_harness_pull (h);
+  sum = checksum (out);
+  gst_harness_teardown (h);
+  return sum;
+}
+
+/* A printed picture lies where its pattern says: as large as the cloth it is what texture= lays
+ * over the whole of it, twice as wide it isn't. */
+GST_START_TEST (test_picture_pattern)
+{
+  g_autofree gchar *scan = g_build_filename (folder, "scan.png", NULL);
+  g_autofree gchar *json = g_build_filename (folder, "pattern.json", NULL);
+  g_autofree gchar *line = g_strdup_printf ("videotestsrc num-buffers=1 ! "
+      "video/x-raw,format=RGB,width=120,height=80 ! pngenc ! filesink "
+      "location=%s", scan);
+  g_autofree gchar *texture = g_strdup_printf ("camera=a texture=%s", scan);
+  g_autofree gchar *pattern = g_strdup_printf ("camera=a pattern=%s", json);
+  g_autofree gchar *expected = NULL;
+  g_autoptr (GError) error = NULL;
+  g_autoptr (GstElement) pipeline = gst_parse_launch (line, &error);
+  g_autoptr (GstBus) bus = NULL;
+  g_autoptr (GstMessage) message = NULL;
+
+  g_assert_no_error (error);
+  bus = gst_element_get_bus (pipeline);
+  gst_element_set_state (pipeline, GST_STATE_PLAYING);
+  message = gst_bus_timed_pop_filtered (bus, GST_CLOCK_TIME_NONE,
+      GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
+  fail_unless_equals_int (GST_MESSAGE_TYPE (message), GST_MESSAGE_EOS);
+  gst_element_set_state (pipeline, GST_STATE_NULL);
+  expected = film_of (texture);
+  for (guint wide = 0; wide < 2; wide++) {
+    g_autofree gchar *text = g_strdup_printf ("{\"pattern\":\"picture\","
+        "\"reference\":\"scan.png\",\"cloth_m\":[%s,0.4],\"columns\":31,"
+        "\"rows\":21}", wide ? "1.2" : "0.6");
+    g_autofree gchar *sum = NULL;
+
+    g_assert_true (g_file_set_contents (json, text, -1, NULL));
+    sum = film_of (pattern);
+    fail_unless (g_str_equal (sum, expected) == !wide);
+  }
+  g_remove (json);
+  g_remove (scan);
+}
+
+GST_END_TEST;
+
 GST_START_TEST (test_refused)
 {
   static const struct
@@ -675,6 +732,7 @@ clothcamera_suite (void)
   suite_add_tcase (s, tc);
   tcase_add_unchecked_fixture (tc, make_rig, remove_rig);
   tcase_add_test (tc, test_formats);
+  tcase_add_test (tc, test_picture_pattern);
   tcase_add_test (tc, test_luma_and_chroma);
   tcase_add_test (tc, test_same_bytes);
   tcase_add_test (tc, test_window);

@@ -278,6 +278,46 @@ test_dots (Fixture * f, gconstpointer data)
   g_assert_cmpuint (observation->vertices[1], ==, 3);
 }
 
+/* Points of a print's grid, whichever side of the cloth they are seen from; what is of no
+ * vertex says nothing, and matches alone neither. */
+static void
+test_matches (Fixture * f, gconstpointer data)
+{
+  g_autoptr (ClothObservations) observations = NULL;
+  const GstClothMatch match = {.x = 50,.y = 40,.u = 0.1f,.v = 0.05f };
+  const GstClothGridPoint points[] = {
+    {2, 1, TRUE, 30, 5.5f, 0.5f, 0.125f, 0.25f},
+    {0, 0, FALSE, 10, 8, 1, 0, 2}, {3, 0, FALSE, 1, 1, 1, 0, 1},
+    {0, -1, FALSE, 1, 1, 1, 0, 1}
+  };
+  const ClothObservation *observation;
+
+  for (guint k = 0; k < 2; k++) {
+    GstBuffer *picture = new_picture (k);
+
+    gst_buffer_add_cloth_matches_meta (picture, gst_cloth_matches_new ("left",
+            k, COLUMNS, ROWS, 12, FALSE, &match, 1, points, k ? 0 : 4));
+    append (f, picture);
+  }
+  end_file (f, "left");
+  observations = load_well (f);
+  g_assert_cmpuint (observations->list->len, ==, 2);
+  observation = &g_array_index (observations->list, ClothObservation, 0);
+  g_assert_cmpuint (observation->n, ==, 2);
+  g_assert_cmpuint (observation->vertices[0], ==, 0);
+  g_assert_cmpfloat (observation->px[0], ==, 10);
+  g_assert_cmpfloat (observation->px[1], ==, 8);
+  g_assert_cmpfloat (observation->covariances[2], ==, 2);
+  g_assert_cmpuint (observation->vertices[1], ==, COLUMNS + 2);
+  g_assert_cmpfloat (observation->px[2], ==, 30);
+  g_assert_cmpfloat (observation->px[3], ==, 5.5);
+  g_assert_cmpfloat (observation->covariances[3], ==, 0.5);
+  g_assert_cmpfloat (observation->covariances[4], ==, 0.125);
+  g_assert_cmpfloat (observation->covariances[5], ==, 0.25);
+  g_assert_cmpuint (g_array_index (observations->list, ClothObservation, 1).n,
+      ==, 0);
+}
+
 /* Squares of another board in the same pictures do no harm, nor what a later version
  * writes, nor files of the system. */
 static void
@@ -552,11 +592,17 @@ test_other_pattern (Fixture * f, gconstpointer data)
 {
   const GstClothQuad quad = new_quad (0, 0, 20, 30, 1);
   const GstClothDot dot = { 0 };
+  GstBuffer *picture;
 
   append (f, see_quads (2, "left", 3, 2, &quad, 1));
   refuse_second (f, "4×3 vertices", "3×2");
   append (f, see_dots (2, 2, 1, &dot, 1));
   refuse_second (f, "2×1 vertices", "3×2");
+  picture = new_picture (2);
+  gst_buffer_add_cloth_matches_meta (picture, gst_cloth_matches_new ("left", 2,
+          2, 3, 0, FALSE, NULL, 0, NULL, 0));
+  append (f, picture);
+  refuse_second (f, "2×3 vertices", "3×2");
 }
 
 static void
@@ -620,6 +666,7 @@ main (int argc, char **argv)
     void (*test) (Fixture *, gconstpointer);
   } tests[] = {
     {"none", test_none}, {"squares", test_squares}, {"dots", test_dots},
+    {"matches", test_matches},
     {"others", test_others}, {"no-rig", test_no_rig},
     {"names", test_names}, {"no-grid", test_no_grid},
     {"of-take", test_of_take}, {"shrinking", test_shrinking},

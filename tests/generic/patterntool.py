@@ -8,9 +8,11 @@ SPDX-License-Identifier: LGPL-2.1-or-later
 import json
 import os
 import re
+import struct
 import subprocess
 import sys
 import tempfile
+import zlib
 
 tool, version, manpage = os.path.abspath(sys.argv[1]), sys.argv[2], os.path.abspath(sys.argv[3])
 faults = []
@@ -70,6 +72,90 @@ def good_calls(folder):
                        'pitch_m': 0.02, 'diameter_m': 0.013, 'origin_uv_m': [0.01, 0.01],
                        'cloth_m': [0.28, 0.22], 'columns': 14, 'rows': 11}, 'its pattern.json: %s' % pattern)
     expect(len(matrix) == 11 and all(len(row) == 14 for row in matrix), 'its matrix')
+
+
+def pictures(folder):
+    calls = []
+    for name in ('three', 'four'):
+        os.mkdir(os.path.join(folder, name))
+        done = run(folder, 'picture', '--width', '20cm', '--height', '15cm', '--seed', '4', '--sides', '2',
+                   '--output', name + '/sheet.svg', SOURCE_DATE_EPOCH='1')
+        names = done.stdout.split()
+        expect(done.returncode == 0 and names == [name + '/sheet.svg', name + '/reference.png',
+                                                  name + '/pattern.json'], 'a sheet %s' % names)
+        expect(re.fullmatch(r'[0-9]{3,4} features, [0-4]% of them repeated elsewhere on the print\n',
+                            done.stderr), 'its features: %r' % done.stderr)
+        calls.append([open(os.path.join(folder, at), 'rb').read() for at in names])
+    expect(calls[0] == calls[1], 'equal calls give equal bytes')
+    expect(re.search(rb'width="220mm" height="195mm"', calls[0][0]), 'at true size, with margins')
+    pattern = json.loads(calls[0][2])
+    expect(pattern == {'version': 1, 'pattern': 'picture', 'reference': 'reference.png',
+                       'cloth_m': [0.2, 0.15], 'columns': 11, 'rows': 9, 'sides': 2},
+           'its pattern.json: %s' % pattern)
+    expect(struct.unpack('>II', calls[0][1][16:24]) == (300, 225), 'its picture, 1.5 px a mm')
+
+    done = run(folder, 'picture', 'three/reference.png', '--width', '400mm', '--columns', '9',
+               '--output', 'three/other.json')
+    expect(done.returncode == 0 and done.stdout == 'three/other.json\n', 'a scan beside it: %r' % done.stdout)
+    with open(os.path.join(folder, 'three/other.json'), encoding='utf-8') as file:
+        pattern = json.load(file)
+    expect(pattern == {'version': 1, 'pattern': 'picture', 'reference': 'reference.png',
+                       'cloth_m': [0.4, 0.3], 'columns': 9, 'rows': 16, 'sides': 1},
+           'height and rows by the shape: %s' % pattern)
+    os.rename(os.path.join(folder, 'three/reference.png'), os.path.join(folder, 'three/scan.png'))
+    os.mkdir(os.path.join(folder, 'five'))
+    done = run(folder, 'picture', 'three/scan.png', '--width', '20cm', '--height', '15cm',
+               '--output', 'five/pattern.json')
+    expect(done.returncode == 0 and done.stdout == 'five/reference.png\nfive/pattern.json\n',
+           'a scan from elsewhere: %r' % done.stdout)
+    with open(os.path.join(folder, 'five/reference.png'), 'rb') as file:
+        expect(file.read() == calls[0][1], 'is copied')
+
+    # A tile of 50 by 45 mm, four times across and down, on a plain ground.
+    pixels = zlib.decompress(b''.join(chunks(calls[0][1], b'IDAT')))
+    rows = unfilter(pixels, 225, 3 * 300, 3)
+    tile = [bytes(row[3 * x] for x in range(75)) * 4 for row in rows[:67]] * 4
+    with open(os.path.join(folder, 'repeats.pgm'), 'wb') as file:
+        file.write(b'P5 300 268 255\n' + b''.join(tile))
+    with open(os.path.join(folder, 'plain.pgm'), 'wb') as file:
+        file.write(b'P5 300 268 255\n' + bytes([200]) * 300 * 268)
+    done = run(folder, 'picture', 'repeats.pgm', '--width', '20cm', '--output', 'repeats.json')
+    expect(done.returncode == 0 and 'Warning: most of this print is repeated' in done.stderr,
+           'a print that repeats: %r' % done.stderr)
+    for scan, width, output, says in ((
+            'plain.pgm', '20cm', 'plain.json', 'no feature'), (
+            'nowhere.png', '20cm', 'plain.json', 'no such file'), (
+            'repeats.json', '20cm', 'plain.json', 'repeats.json'), (
+            'repeats.pgm', '20cm', 'nowhere/pattern.json', 'nowhere')):
+        done = run(folder, 'picture', scan, '--width', width, '--output', output)
+        expect(done.returncode == 1 and says in done.stderr
+               and not os.path.exists(os.path.join(folder, output)), '%s: %r' % (scan, done.stderr))
+    done = run(folder, 'picture', 'repeats.pgm', '--width', '20cm', '--height', '30cm', '--output', 'x.json')
+    expect(done.returncode == 1 and 'no picture of 0.2' in done.stderr, 'another shape: %r' % done.stderr)
+
+
+def chunks(png, kind):
+    at = 8
+    while at < len(png):
+        length = struct.unpack('>I', png[at:at + 4])[0]
+        if png[at + 4:at + 8] == kind:
+            yield png[at + 8:at + 8 + length]
+        at += 12 + length
+
+
+def unfilter(pixels, height, stride, step):
+    """The rows of a PNG without its five kinds of prediction."""
+    rows, above = [], bytearray(stride)
+    for y in range(height):
+        kind, row = pixels[y * (stride + 1)], bytearray(pixels[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        for x in range(stride):
+            left, up = row[x - step] if x >= step else 0, above[x]
+            corner = above[x - step] if x >= step else 0
+            near = min((left, up, corner), key=lambda v: abs(left + up - corner - v))
+            row[x] = (row[x] + (0, left, up, (left + up) // 2, near)[kind]) % 256
+        rows.append(row)
+        above = row
+    return rows
 
 
 def told(folder):
@@ -140,6 +226,25 @@ BAD_USAGE = [
     (['m-array', '--output', 'x.pdf', '--colours', '3'], 'at most 2460'),
     (['m-array', '--output', 'x.pdf', '--pitch', '3cm'], 'paper'),
     (['m-array', '--output', 'x.pdf', '--paper', 'A5'], 'sheets'),
+    (['picture', '--output', 'x.pdf'], '--width 630mm'),
+    (['picture', 'scan.png', '--output', 'x.json'], '--width 630mm'),
+    (['picture', 'scan.png', '--width', '1m'], '--output pattern.json'),
+    (['picture', 'scan.png', '--width', '1m', '--output', 'x.pdf'], '.json'),
+    (['picture', 'a.png', 'b.png', '--width', '1m', '--output', 'x.json'], 'one scan'),
+    (['picture', 'scan.png', '--width', '1m', '--seed', '3', '--output', 'x.json'], 'from a scan'),
+    (['picture', 'scan.png', '--width', '1m', '--paper', 'A4', '--output', 'x.json'], 'from a scan'),
+    (['picture', '--width', '1m', '--output', 'x.json'], '.pdf or .svg'),
+    (['picture', '--width', '1', '--output', 'x.pdf'], 'with its unit'),
+    (['picture', '--width', '1m', '--height', 'tall', '--output', 'x.pdf'], 'with its unit'),
+    (['picture', '--width', '1m', '--height', '0mm', '--output', 'x.pdf'], 'leave it out'),
+    (['picture', '--width', '4m', '--output', 'x.pdf'], '0.05 to 3 m'),
+    (['picture', '--width', '1m', '--height', '1mm', '--output', 'x.pdf'], '0.05 to 3 m'),
+    (['picture', '--width', '1m', '--square', '1cm', '--output', 'x.pdf'], '--square is not for'),
+    (['picture', '--width', '1m', '--two-sided', '--output', 'x.pdf'], '--two-sided is not for'),
+    (['picture', '--width', '10cm', '--sides', '3', '--output', 'x.pdf'], '3 sides'),
+    (['picture', '--width', '10cm', '--columns', '1', '--output', 'x.pdf'], '2 to 500'),
+    (['checker', '--width', '10cm', '--output', 'x.pdf'], '--width is not for'),
+    (['m-array', '--sides', '2', '--output', 'x.pdf'], '--sides is not for'),
 ]
 
 
@@ -202,7 +307,7 @@ def bad_calls(folder):
     expect(left == ['board.svg'], 'nothing half-written is left: %s' % left)
 
 
-for calls in (good_calls, told, garments, bad_calls):
+for calls in (good_calls, pictures, told, garments, bad_calls):
     with tempfile.TemporaryDirectory(prefix='cloth-pattern-') as place:
         calls(place)
 print('%d faults' % len(faults))

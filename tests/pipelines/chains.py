@@ -12,6 +12,7 @@ SPDX-License-Identifier: LGPL-2.1-or-later
 import importlib.util
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -324,6 +325,35 @@ def dots_to_mesh(data, folder, pattern):
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
     print(done.stdout.decode())
     return done.returncode, done.stdout.decode()
+
+
+def case_print_script(data):
+    """print-to-mesh.sh calls no empty mesh done: with the picture of another print, a photograph of a
+    plant, it says that it isn't the one filmed."""
+    films = os.path.join(data, 'lineart_stereo3')
+    with open(os.path.join(films, 'pattern.json'), encoding='utf-8') as file:
+        pattern = json.load(file)
+    pattern.update(reference='aloeL.jpg', cloth_m=[0.641, 0.555])
+    with tempfile.TemporaryDirectory() as folder:
+        with open(folder + '/pattern.json', 'w', encoding='utf-8') as file:
+            json.dump(pattern, file)
+        shutil.copy(os.path.join(data, 'aloe/aloeL.jpg'), folder)
+        done = subprocess.run([os.path.join(ROOT, 'pipelines/print-to-mesh.sh'), films + '/rig.json',
+                               folder + '/pattern.json', folder + '/cloth',
+                               'cam0=%s/cam0.mp4' % films, 'cam1=%s/cam1.mp4' % films],
+                              timeout=TIMEOUT_S, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              check=False)
+        text = done.stdout.decode()
+        print(text)
+        check(done.returncode == 1, 'exit code %d' % done.returncode)
+        check('Hardly anything of the film is found in the print' in text, 'the warning is passed on')
+        check('nothing of the print was located' in text, 'it says so')
+        check(not os.path.exists(folder + '/cloth/cloth.obj'), 'no file to import of an empty mesh')
+        done = subprocess.run([os.path.join(ROOT, 'pipelines/print-to-mesh.sh'), films + '/rig.json',
+                               films + '/pattern.json', folder + '/cloth', 'cam0=/nowhere.mp4',
+                               'cam1=%s/cam1.mp4' % films], timeout=TIMEOUT_S, check=False,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        check(done.returncode == 2 and b'write CAMERA=FILE' in done.stdout, 'a film that is not there')
 
 
 def case_dots_script(data):

@@ -21,6 +21,8 @@
 
 /* Columns that one thread sums down together. */
 #define COLUMNS 64
+/* Rows that one thread sums across together. */
+#define ROWS 4
 
 struct _ClothRefine
 {
@@ -37,6 +39,7 @@ struct _ClothRefine
   const ClothRefineView *view;
   ClothDisparityMap *map;
   gint top, bottom;             /* rows that have disparities */
+  gint left, right;             /* columns, and those whose windows reach them */
   gfloat *summed;
 };
 
@@ -168,24 +171,36 @@ look_up (const ClothRefineView * view, gdouble x, gdouble y,
 
 /* ---- windows ---- */
 
+/* Four rows at a time: a sum waits for the one before it, those of other rows don't. */
 static void
 sum_across (gpointer data, guint begin, guint end, guint worker)
 {
   ClothRefine *self = data;
   const gint radius = self->params->radius, width = self->width;
+  const gint left = self->left, right = self->right;
 
   for (guint i = begin; i < end; i++) {
-    const gsize at = (gsize) (self->top + (gint) i) * (gsize) width;
-    const gfloat *from = self->summed + at;
-    gdouble *to = self->sums + at, sum = 0;
+    const gint first = self->top + (gint) i * ROWS;
+    const gfloat *from[ROWS];
+    gdouble *to[ROWS], sum[ROWS] = { 0 };
 
-    for (gint x = -radius; x < width; x++) {
-      if (x + radius < width)
-        sum += (gdouble) from[x + radius];
-      if (x > radius)
-        sum -= (gdouble) from[x - radius - 1];
-      if (x >= 0)
-        to[x] = sum;
+    for (gint k = 0; k < ROWS; k++) {
+      const gsize at = (gsize) MIN (first + k, self->bottom - 1)
+          * (gsize) width;
+
+      from[k] = self->summed + at;
+      to[k] = self->sums + at;
+    }
+    for (gint x = left - radius; x < right; x++) {
+      if (x + radius < right)
+        for (gint k = 0; k < ROWS; k++)
+          sum[k] += (gdouble) from[k][x + radius];
+      if (x - radius > left)
+        for (gint k = 0; k < ROWS; k++)
+          sum[k] -= (gdouble) from[k][x - radius - 1];
+      if (x >= left)
+        for (gint k = 0; k < ROWS; k++)
+          to[k][x] = sum[k];
     }
   }
 }
@@ -197,7 +212,8 @@ sum_down (gpointer data, guint begin, guint end, guint worker)
   const gint radius = self->params->radius, width = self->width;
 
   for (guint i = begin; i < end; i++) {
-    const gint left = (gint) i * COLUMNS, n = MIN (COLUMNS, width - left);
+    const gint left = self->left + (gint) i * COLUMNS;
+    const gint n = MIN (COLUMNS, self->right - left);
     gdouble sum[COLUMNS] = { 0 };
 
     for (gint y = self->top - radius; y < self->bottom; y++) {
@@ -221,9 +237,10 @@ static void
 sum_windows (ClothRefine * self, gfloat * plane, ClothPool * pool)
 {
   self->summed = plane;
-  cloth_pool_run (pool, sum_across, self, (guint) (self->bottom - self->top));
+  cloth_pool_run (pool, sum_across, self,
+      (guint) ((self->bottom - self->top + ROWS - 1) / ROWS));
   cloth_pool_run (pool, sum_down, self,
-      (guint) ((self->width + COLUMNS - 1) / COLUMNS));
+      (guint) ((self->right - self->left + COLUMNS - 1) / COLUMNS));
 }
 
 /* ---- a round ---- */
@@ -239,7 +256,7 @@ compare_rows (gpointer data, guint begin, guint end, guint worker)
     const gsize row = (gsize) y * (gsize) map->stride;
     const gsize to = (gsize) y * (gsize) map->width;
 
-    for (gint x = 0; x < map->width; x++) {
+    for (gint x = self->left; x < self->right; x++) {
       const gsize at = to + (gsize) x;
       const gdouble d = (gdouble) map->disparities[row + (gsize) x];
       const gdouble p[2] = { x, y };
@@ -266,18 +283,20 @@ weigh_rows (gpointer data, guint begin, guint end, guint worker)
   const gfloat scale = (gfloat) (1 / (self->params->outlier
           * self->params->outlier));
   const gsize width = (gsize) self->width;
-  const gsize first = (gsize) (self->top + (gint) begin) * width;
-  const gsize last = (gsize) (self->top + (gint) end) * width;
 
-  for (gsize at = first; at < last; at++) {
-    const gfloat g = self->gradient[at];
+  for (guint i = begin; i < end; i++) {
+    const gsize row = (gsize) (self->top + (gint) i) * width;
 
-    if (!isnan (g)) {
+    for (gsize at = row + (gsize) self->left; at < row + (gsize) self->right;
+        at++) {
+      const gfloat g = self->gradient[at];
       const gfloat e = self->difference[at] - self->mean[at] / self->count[at];
       const gfloat weighted = g / (1 + e * e * scale);
 
-      self->square[at] += weighted * g;
-      self->product[at] += weighted * e;
+      if (!isnan (g)) {
+        self->square[at] += weighted * g;
+        self->product[at] += weighted * e;
+      }
     }
   }
 }
@@ -291,7 +310,7 @@ move_rows (gpointer data, guint begin, guint end, guint worker)
   const gfloat most = (gfloat) self->params->most;
 
   for (guint i = begin; i < end; i++)
-    for (gint x = 0; x < map->width; x++) {
+    for (gint x = self->left; x < self->right; x++) {
       const gsize y = (gsize) (self->top + (gint) i);
       const gsize at = y * (gsize) map->width + (gsize) x;
       const gsize to = y * (gsize) map->stride + (gsize) x;
@@ -379,22 +398,33 @@ check_pictures (const ClothImage * image, const ClothRefineView * views,
   return FALSE;
 }
 
-/* The rows that have disparities. */
+/* The rows that have disparities, and the columns up to which their windows reach. */
 static void
-find_rows (ClothRefine * self)
+find_bounds (ClothRefine * self)
 {
   const ClothDisparityMap *map = self->map;
+  const gint radius = self->params->radius;
 
   self->top = map->height;
-  self->bottom = 0;
-  for (gint y = 0; y < map->height; y++)
-    for (gint x = 0; x < map->width; x++)
-      if (map->states[(gsize) y * (gsize) map->stride + (gsize) x] >=
-          CLOTH_DISPARITY_MEASURED) {
-        self->top = MIN (self->top, y);
-        self->bottom = y + 1;
-        break;
-      }
+  self->left = map->width;
+  self->bottom = self->right = 0;
+  for (gint y = 0; y < map->height; y++) {
+    const guint8 *row = map->states + (gsize) y * (gsize) map->stride;
+    gint first = 0, last = map->width;
+
+    while (first < last && row[first] < CLOTH_DISPARITY_MEASURED)
+      first++;
+    if (first == last)
+      continue;
+    while (row[last - 1] < CLOTH_DISPARITY_MEASURED)
+      last--;
+    self->top = MIN (self->top, y);
+    self->bottom = y + 1;
+    self->left = MIN (self->left, first);
+    self->right = MAX (self->right, last);
+  }
+  self->left = MAX (self->left - radius, 0);
+  self->right = MIN (self->right + radius, map->width);
 }
 
 /* @self: memory
@@ -424,7 +454,7 @@ cloth_refine_run (ClothRefine * self, const ClothRefineParams * params,
   self->params = params;
   self->image = image;
   self->map = map;
-  find_rows (self);
+  find_bounds (self);
   for (guint i = 0; i < params->rounds && self->top < self->bottom; i++)
     do_round (self, views, n_views, pool);
   return TRUE;

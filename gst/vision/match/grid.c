@@ -59,7 +59,12 @@ typedef struct
 struct _ClothGridder
 {
   ClothGridShape shape;
+  ClothPlanes *print;
   gint width, height;           /* of the flat picture */
+  GPtrArray *aligners;          /* one a thread */
+  GArray *warps;                /* ClothWarp: of aligned vertices */
+  GArray *open, *next;          /* guint: vertices that are still looked for; that may be found */
+  GByteArray *aligned;          /* 1: aligned when the round began */
   ClothDelaunay *delaunay;
   GArray *order;                /* guint: matches by place */
   GArray *points;               /* gdouble: of the places */
@@ -80,6 +85,7 @@ typedef struct
   ClothGridVertex *results;
   gint cells[2];                /* across and down */
   gdouble cell;                 /* edge of one, px */
+  ClothSimd level;
   gint *contradicted;
 } Run;
 
@@ -89,7 +95,7 @@ ClothGridParams
 cloth_grid_default_params (void)
 {
   ClothGridParams params = { 60, cloth_stretch_default_params (), 20, 30, 24, 5,
-    0.4, 0.004, 1, 0.5, 2
+    0.4, 0.004, 1, 0.5, 2, cloth_align_default_params ()
   };
 
   return params;
@@ -133,6 +139,13 @@ cloth_gridder_new (const ClothGridShape * shape, const ClothImage * reference,
   self->shape = *shape;
   self->width = reference->width;
   self->height = reference->height;
+  self->print = cloth_planes_new (reference);
+  self->aligners =
+      g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_aligner_free);
+  self->warps = g_array_new (FALSE, FALSE, sizeof (ClothWarp));
+  self->open = numbers ();
+  self->next = numbers ();
+  self->aligned = g_byte_array_new ();
   self->delaunay = cloth_delaunay_new ();
   self->order = numbers ();
   self->points = g_array_new (FALSE, FALSE, sizeof (gdouble));
@@ -152,6 +165,12 @@ cloth_gridder_free (ClothGridder * gridder)
 {
   if (!gridder)
     return;
+  cloth_planes_free (gridder->print);
+  g_ptr_array_unref (gridder->aligners);
+  g_array_unref (gridder->warps);
+  g_array_unref (gridder->open);
+  g_array_unref (gridder->next);
+  g_byte_array_unref (gridder->aligned);
   cloth_delaunay_free (gridder->delaunay);
   g_array_unref (gridder->order);
   g_array_unref (gridder->points);
@@ -677,6 +696,36 @@ choose_place (const Run * run, guint vertex, Fit * best,
   return !*contradicted;
 }
 
+/* Looks for a vertex by the print, from what @first says is about it. */
+static ClothAlignResult
+align (const Run * run, guint vertex, guint worker, const ClothWarp * first,
+    gboolean mirrored)
+{
+  const ClothAlignView view = { run->film, run->mask, run->surface };
+  const gdouble most = run->params.uncertain * run->params.uncertain;
+  ClothWarp warp = *first;
+  ClothAlignment alignment;
+  ClothAlignResult result;
+  gdouble place[2];
+
+  find_vertex (run->self, vertex, place);
+  result = cloth_align_run (g_ptr_array_index (run->self->aligners, worker),
+      &run->params.align, run->self->print, &view, place, &warp, &alignment,
+      run->level);
+  if (result != CLOTH_ALIGN_FOUND)
+    return result;
+  if (!is_inside (run->film, alignment.at))
+    return CLOTH_ALIGN_UNLIKE;
+  if (alignment.xx + alignment.yy > 2 * most)
+    return CLOTH_ALIGN_PLAIN;
+  g_array_index (run->self->warps, ClothWarp, vertex) = warp;
+  run->results[vertex] = (ClothGridVertex) {
+  CLOTH_GRID_ALIGNED, mirrored, alignment.at[0], alignment.at[1],
+        alignment.xx, alignment.xy, alignment.yy};
+  return CLOTH_ALIGN_FOUND;
+}
+
+/* By the matches, then by the print; the matches' place stays where there is no print. */
 static void
 place_vertices (gpointer data, guint begin, guint end, guint worker)
 {
@@ -690,15 +739,85 @@ place_vertices (gpointer data, guint begin, guint end, guint worker)
 
     *result = (ClothGridVertex) {
     CLOTH_GRID_UNSEEN, FALSE, NAN, NAN, NAN, NAN, NAN};
-    if (!choose_place (run, v, &fit, &contradicted)) {
+    if (!choose_place (run, v, &fit, &contradicted))
       n_contradicted += contradicted;
-      continue;
-    }
-    *result = (ClothGridVertex) {
-    CLOTH_GRID_MATCHED, fit.mirrored, fit.at[0], fit.at[1], fit.variance, 0,
+    else if (align (run, v, worker, &fit.warp, fit.mirrored)
+        == CLOTH_ALIGN_PLAIN)
+      *result = (ClothGridVertex) {
+      CLOTH_GRID_MATCHED, fit.mirrored, fit.at[0], fit.at[1], fit.variance, 0,
           fit.variance};
   }
   g_atomic_int_add (run->contradicted, n_contradicted);
+}
+
+/* The k-th neighbour of a vertex in the grid. Returns: FALSE at the border */
+static gboolean
+get_neighbour (const ClothGridder * self, guint vertex, gint k,
+    guint * neighbour)
+{
+  static const gint steps[4][2] = { {-1, 0}, {1, 0}, {0, -1}, {0, 1} };
+  const gint column = (gint) (vertex % (guint) self->shape.columns)
+      + steps[k][0];
+  const gint row = (gint) (vertex / (guint) self->shape.columns) + steps[k][1];
+
+  *neighbour = (guint) (row * self->shape.columns + column);
+  return column >= 0 && row >= 0 && column < self->shape.columns
+      && row < self->shape.rows;
+}
+
+/* Vertices beside aligned ones, from what these say. */
+static void
+extend_vertices (gpointer data, guint begin, guint end, guint worker)
+{
+  const Run *run = data;
+
+  for (guint i = begin; i < end; i++) {
+    const guint v = g_array_index (run->self->next, guint, i);
+    guint from;
+
+    for (gint k = 0; k < 4; k++)
+      if (get_neighbour (run->self, v, k, &from)
+          && run->self->aligned->data[from]
+          && align (run, v, worker, &g_array_index (run->self->warps,
+                  ClothWarp, from), run->results[from].mirrored)
+          == CLOTH_ALIGN_FOUND)
+        break;
+  }
+}
+
+/* Goes on from aligned vertices to their neighbours, until no more are found. */
+static void
+extend (Run * run, guint n, ClothPool * pool)
+{
+  ClothGridder *self = run->self;
+  guint8 *aligned;
+
+  g_byte_array_set_size (self->aligned, n);
+  aligned = self->aligned->data;
+  memset (aligned, 0, n);
+  do {
+    g_array_set_size (self->next, 0);
+    g_array_set_size (self->open, 0);
+    for (guint v = 0; v < n; v++)
+      if (!aligned[v] && run->results[v].state == CLOTH_GRID_ALIGNED)
+        g_array_append_val (self->open, v);
+    for (guint i = 0; i < self->open->len; i++)
+      aligned[g_array_index (self->open, guint, i)] = 1;
+    /* beside those that are new */
+    for (guint i = 0; i < self->open->len; i++)
+      for (gint k = 0; k < 4; k++) {
+        guint v;
+
+        if (get_neighbour (self, g_array_index (self->open, guint, i), k, &v)
+            && run->results[v].state == CLOTH_GRID_UNSEEN && !aligned[v]) {
+          aligned[v] = 2;
+          g_array_append_val (self->next, v);
+        }
+      }
+    for (guint i = 0; i < self->next->len; i++)
+      aligned[g_array_index (self->next, guint, i)] = 0;
+    cloth_pool_run_one_by_one (pool, extend_vertices, run, self->next->len);
+  } while (self->next->len > 0);
 }
 
 static ClothGridParams
@@ -717,6 +836,7 @@ clamp_params (const ClothGridParams * params)
   p.outlier = MAX (p.outlier, 1e-3);
   p.rival = CLAMP (p.rival, 0, 1);
   p.uncertain = MAX (p.uncertain, 0);
+  p.align = cloth_align_clamp_params (&params->align);
   return p;
 }
 
@@ -744,13 +864,17 @@ cloth_gridder_run (ClothGridder * gridder, const ClothGridParams * params,
   const guint n = (guint) (gridder->shape.columns * gridder->shape.rows);
   gint contradicted = 0;
   Run run = { gridder, clamp_params (params), matches, film, mask, surface,
-    vertices,.contradicted = &contradicted
+    vertices,.level = level,.contradicted = &contradicted
   };
 
+  while (gridder->aligners->len < cloth_pool_get_n_threads (pool))
+    g_ptr_array_add (gridder->aligners, cloth_aligner_new ());
   collect (&run, n_matches);
   triangulate (&run);
   sort_into_cells (&run);
-  cloth_pool_run (pool, place_vertices, &run, n);
+  g_array_set_size (gridder->warps, n);
+  cloth_pool_run_one_by_one (pool, place_vertices, &run, n);
+  extend (&run, n, pool);
   *gridding = (ClothGridding) {
   .n_contradicted = (guint) contradicted};
   for (guint v = 0; v < n; v++) {

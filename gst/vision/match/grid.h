@@ -7,6 +7,7 @@
 #include "gst/math/pool.h"
 #include "gst/math/simd.h"
 #include "gst/vision/image.h"
+#include "gst/vision/match/align.h"
 #include "gst/vision/match/grow.h"
 #include "gst/vision/match/reference.h"
 #include "gst/vision/match/stretch.h"
@@ -53,7 +54,8 @@ typedef struct {
  *   cloth's bending and perspective show, 1/px
  * @outlier: a match so far off counts half, px
  * @rival: a place with as large a share of the support of another contradicts it, 0 to 1
- * @uncertain: matches that leave a vertex a greater standard deviation don't tell it, px
+ * @uncertain: what leaves a vertex a greater standard deviation doesn't tell it, px
+ * @align: how a place is found by the print
  */
 typedef struct {
   gdouble reach;
@@ -61,6 +63,7 @@ typedef struct {
   gdouble beyond, radius;
   guint most, least;
   gdouble noise, bend, outlier, rival, uncertain;
+  ClothAlignParams align;
 } ClothGridParams;
 
 /* @CLOTH_GRID_UNSEEN: the picture doesn't show it, or not clearly

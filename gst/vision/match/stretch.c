@@ -180,3 +180,39 @@ cloth_stretch_get_range (const ClothStretchParams * params,
       : (most + slack) / (1 - params->stretch);
   return TRUE;
 }
+
+/* @params: the bounds, in their ranges
+ * @surface: (nullable): what the two places lie on
+ * @from: column and row
+ * @to: column and row
+ * @by_scale: metres of a pixel by the scales of the features there, > 0
+ * @least: (out): of their distance on the flat cloth, m
+ *
+ * The cloth between them may be folded or hidden: it is no shorter than the straight line.
+ *
+ * Returns: %FALSE where the surface isn't known
+ */
+gboolean
+cloth_stretch_get_least (const ClothStretchParams * params,
+    const ClothMatchSurface * surface, const gfloat from[2],
+    const gfloat to[2], gdouble by_scale, gdouble * least)
+{
+  gdouble a[3], b[3], pixels, length;
+  ClothStretchRange range;
+
+  if (!surface) {
+    cloth_stretch_get_range (params, NULL, from, to, by_scale, &range);
+    *least = range.least;
+    return TRUE;
+  }
+  if (!cloth_surface_get_point (surface, from[0], from[1], params->depth_step,
+          a) || !cloth_surface_get_point (surface, to[0], to[1],
+          params->depth_step, b))
+    return FALSE;
+  pixels = hypot (to[0] - from[0], to[1] - from[1]);
+  length = sqrt ((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1])
+      + (a[2] - b[2]) * (a[2] - b[2]));
+  *least = MAX (length - params->slack * (pixels > 1 ? length / pixels :
+          by_scale), 0) / (1 + params->stretch);
+  return TRUE;
+}

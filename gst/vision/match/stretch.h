@@ -57,5 +57,8 @@ gboolean cloth_surface_measure (const ClothMatchSurface * surface,
 gboolean cloth_stretch_get_range (const ClothStretchParams * params,
     const ClothMatchSurface * surface, const gfloat from[2],
     const gfloat to[2], gdouble by_scale, ClothStretchRange * range);
+gboolean cloth_stretch_get_least (const ClothStretchParams * params,
+    const ClothMatchSurface * surface, const gfloat from[2],
+    const gfloat to[2], gdouble by_scale, gdouble * least);
 
 G_END_DECLS

@@ -6,6 +6,12 @@
  * groups, by the edges between groups; then features among all. Edges over which the surface
  * is broken don't vote: what a fold hides isn't known.
  *
+ * What is added: groups are also held against each other by the triangulation of their
+ * places on the flat cloth. No two places are farther apart in space than along the cloth,
+ * whatever is folded or hidden between them, and each place is seen once. So a group of a
+ * repeated print that has no neighbour in the picture still contradicts the one that shows
+ * its place.
+ *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/vision/match/verify.h"
 
@@ -51,8 +57,9 @@ struct _ClothVerifier
   ClothDelaunay *delaunay;
   GArray *members;              /* guint: features, by group */
   GArray *live;                 /* guint: those that are triangulated, by place */
+  GArray *flat;                 /* guint: the same, by place on the flat cloth */
   GArray *ranks;                /* guint: where in live a feature is */
-  GArray *places;               /* guint: first of live of each place, and the end */
+  GArray *places;               /* guint: first of either of each place, and the end */
   GArray *points;               /* gdouble */
   GArray *pairs, *starts;       /* guint: neighbouring places by the lower one */
   GArray *edges;                /* Edge: between features */
@@ -102,6 +109,7 @@ cloth_verifier_new (void)
   self->delaunay = cloth_delaunay_new ();
   self->members = numbers ();
   self->live = numbers ();
+  self->flat = numbers ();
   self->ranks = numbers ();
   self->places = numbers ();
   self->points = g_array_new (FALSE, FALSE, sizeof (gdouble));
@@ -125,6 +133,7 @@ cloth_verifier_free (ClothVerifier * verifier)
   cloth_delaunay_free (verifier->delaunay);
   g_array_unref (verifier->members);
   g_array_unref (verifier->live);
+  g_array_unref (verifier->flat);
   g_array_unref (verifier->ranks);
   g_array_unref (verifier->places);
   g_array_unref (verifier->points);
@@ -162,6 +171,26 @@ ask (const Run * run, guint a, guint b)
       && distance <= range.most ? IN_FAVOUR : AGAINST;
 }
 
+/* An edge of the flat cloth: the straight line between its ends is no longer. */
+static Vote
+ask_flat (const Run * run, guint a, guint b)
+{
+  const ClothCvFeatures *f = run->features;
+  const ClothReferenceFeatures *r = run->reference;
+  const guint ra = run->matches[a].reference, rb = run->matches[b].reference;
+  const gfloat from[2] = { f->x[a], f->y[a] }, to[2] = { f->x[b], f->y[b] };
+  const gdouble alpha = run->metres_per_pixel;
+  const gdouble distance = alpha * hypot (r->x[ra] - r->x[rb],
+      r->y[ra] - r->y[rb]);
+  gdouble least;
+
+  if (!cloth_stretch_get_least (&run->params.stretch, run->surface, from, to,
+          alpha * sqrt (r->scale[ra] / f->scale[a] * r->scale[rb]
+              / f->scale[b]), &least))
+    return ABSTAINS;
+  return distance >= least ? IN_FAVOUR : AGAINST;
+}
+
 /* A table with room for what a few triangulations ask; what comes later isn't kept. */
 static void
 forget (Run * run, guint n)
@@ -197,9 +226,11 @@ ask_once (Run * run, guint a, guint b)
 }
 
 static void
-connect (Run * run, guint a, guint b)
+connect (Run * run, guint a, guint b, gboolean flat)
 {
-  const Edge edge = { a, b, ask_once (run, a, b) };
+  const Edge edge = { a, b, flat ? ask_flat (run, a, b) : ask_once (run, a,
+        b)
+  };
 
   if (edge.vote != ABSTAINS)
     g_array_append_val (run->self->edges, edge);
@@ -218,22 +249,38 @@ compare_places (gconstpointer pa, gconstpointer pb, gpointer data)
   return a < b ? -1 : a > b;
 }
 
+static gint
+compare_flat_places (gconstpointer pa, gconstpointer pb, gpointer data)
+{
+  const Run *run = data;
+  const ClothReferenceFeatures *r = run->reference;
+  const guint a = *(const guint *) pa, b = *(const guint *) pb;
+  const guint ra = run->matches[a].reference, rb = run->matches[b].reference;
+
+  if (r->x[ra] != r->x[rb])
+    return r->x[ra] < r->x[rb] ? -1 : 1;
+  if (r->y[ra] != r->y[rb])
+    return r->y[ra] < r->y[rb] ? -1 : 1;
+  return a < b ? -1 : a > b;
+}
+
 /* Features of two neighbouring places, or of one. */
 static void
-connect_places (Run * run, guint p, guint q)
+connect_places (Run * run, guint p, guint q, gboolean flat)
 {
-  const guint *live = (const guint *) run->self->live->data;
+  const GArray *from = flat ? run->self->flat : run->self->live;
+  const guint *sorted = (const guint *) from->data;
   const guint *places = (const guint *) run->self->places->data;
 
   for (guint i = places[p]; i < places[p + 1]; i++)
     for (guint j = p == q ? i + 1 : places[q]; j < places[q + 1]; j++)
-      connect (run, live[i], live[j]);
+      connect (run, sorted[i], sorted[j], flat);
 }
 
 /* The edges of the triangles, each once. */
 static void
 connect_triangles (Run * run, const guint * triangles, guint n_triangles,
-    guint n_places)
+    guint n_places, gboolean flat)
 {
   ClothVerifier *self = run->self;
   guint *starts = (guint *) g_array_set_size (self->starts, n_places + 1)->data;
@@ -261,56 +308,77 @@ connect_triangles (Run * run, const guint * triangles, guint n_triangles,
       for (guint j = first; j < i; j++)
         again |= pairs[j] == pairs[i];
       if (!again)
-        connect_places (run, p, pairs[i]);
+        connect_places (run, p, pairs[i], flat);
     }
 }
 
-/* Makes the edges of the matched ones of @n @members. */
+/* Adds the edges of the live ones, in the picture or on the flat cloth. */
 static void
-triangulate (Run * run, const guint * members, guint n)
+add_edges (Run * run, gboolean flat)
 {
   ClothVerifier *self = run->self;
   const ClothCvFeatures *f = run->features;
+  const ClothReferenceFeatures *r = run->reference;
+  const GArray *from = flat ? self->flat : self->live;
   const guint *triangles;
-  guint n_places, n_triangles, *live;
+  gdouble last[2] = { 0, 0 };
+  guint n_places, n_triangles;
 
-  g_array_set_size (self->live, 0);
   g_array_set_size (self->places, 0);
   g_array_set_size (self->points, 0);
+  for (guint k = 0; k < from->len; k++) {
+    const guint i = g_array_index (from, guint, k);
+    const guint of = run->matches[i].reference;
+    const gdouble point[2] = { flat ? r->x[of] : f->x[i],
+      flat ? r->y[of] : f->y[i]
+    };
+
+    if (k && point[0] == last[0] && point[1] == last[1])
+      continue;
+    g_array_append_val (self->places, k);
+    g_array_append_vals (self->points, point, 2);
+    memcpy (last, point, sizeof last);
+  }
+  n_places = self->places->len;
+  g_array_append_val (self->places, from->len);
+  triangles = cloth_delaunay_run (self->delaunay, n_places,
+      (const gdouble *) self->points->data, USUAL, &n_triangles);
+  for (guint p = 0; p < n_places; p++)
+    connect_places (run, p, p, flat);
+  if (n_triangles)
+    connect_triangles (run, triangles, n_triangles, n_places, flat);
+  else                          /* all on a line */
+    for (guint p = 0; p + 1 < n_places; p++)
+      connect_places (run, p, p + 1, flat);
+}
+
+/* Makes the edges of the matched ones of @n @members, with @flat also those on the flat
+ * cloth. */
+static void
+triangulate (Run * run, const guint * members, guint n, gboolean flat)
+{
+  ClothVerifier *self = run->self;
+  guint *live;
+
+  g_array_set_size (self->live, 0);
   g_array_set_size (self->edges, 0);
   for (guint k = 0; k < n; k++)
     if (run->matches[members[k]].state == CLOTH_MATCH_MATCHED)
       g_array_append_val (self->live, members[k]);
   if (!self->live->len)
     return;
-  g_array_sort_with_data (self->live, compare_places, (gpointer) f);
+  g_array_sort_with_data (self->live, compare_places, (gpointer) run->features);
   live = (guint *) self->live->data;
-  g_array_set_size (self->ranks, f->n);
+  g_array_set_size (self->ranks, run->features->n);
   for (guint k = 0; k < self->live->len; k++)
     g_array_index (self->ranks, guint, live[k]) = k;
-  for (guint k = 0; k <= self->live->len; k++) {
-    gdouble point[2];
-
-    if (k && k < self->live->len && f->x[live[k]] == f->x[live[k - 1]]
-        && f->y[live[k]] == f->y[live[k - 1]])
-      continue;
-    g_array_append_val (self->places, k);
-    if (k == self->live->len)
-      break;
-    point[0] = f->x[live[k]];
-    point[1] = f->y[live[k]];
-    g_array_append_vals (self->points, point, 2);
-  }
-  n_places = self->places->len - 1;
-  triangles = cloth_delaunay_run (self->delaunay, n_places,
-      (const gdouble *) self->points->data, USUAL, &n_triangles);
-  for (guint p = 0; p < n_places; p++)
-    connect_places (run, p, p);
-  if (n_triangles)
-    connect_triangles (run, triangles, n_triangles, n_places);
-  else                          /* all on a line */
-    for (guint p = 0; p + 1 < n_places; p++)
-      connect_places (run, p, p + 1);
+  add_edges (run, FALSE);
+  if (!flat)
+    return;
+  g_array_set_size (self->flat, 0);
+  g_array_append_vals (self->flat, live, self->live->len);
+  g_array_sort_with_data (self->flat, compare_flat_places, run);
+  add_edges (run, TRUE);
 }
 
 /* ---- votes ---- */
@@ -447,7 +515,7 @@ withdraw (Run * run, guint out, gboolean groups)
  * Returns: how many
  */
 static guint
-refuse_features (Run * run, const guint * members, guint n)
+refuse_features (Run * run, const guint * members, guint n, gboolean flat)
 {
   guint n_refused = 0;
 
@@ -455,7 +523,7 @@ refuse_features (Run * run, const guint * members, guint n)
     const guint before = n_refused;
     guint n_nodes, poorest;
 
-    triangulate (run, members, n);
+    triangulate (run, members, n, flat);
     n_nodes = run->self->live->len;
     count (run, FALSE, n_nodes);
     while ((poorest = find_poorest (run, run->params.vote, n_nodes)) < n_nodes) {
@@ -479,7 +547,7 @@ refuse_groups (Run * run, const guint * members, guint n, guint n_groups)
     const guint before = n_refused;
     guint poorest;
 
-    triangulate (run, members, n);
+    triangulate (run, members, n, TRUE);
     count (run, TRUE, n_groups);
     while ((poorest =
             find_poorest (run, run->params.group_vote, n_groups)) < n_groups)
@@ -506,7 +574,7 @@ refuse_lonely (Run * run, const guint * members, guint n)
   const GArray *live = run->self->live;
   guint n_refused = 0;
 
-  triangulate (run, members, n);
+  triangulate (run, members, n, FALSE);
   count (run, FALSE, live->len);
   for (guint k = 0; k < live->len; k++)
     if (g_array_index (run->self->nodes, Node, k).n < run->params.support) {
@@ -576,10 +644,10 @@ cloth_verifier_run (ClothVerifier * verifier, const ClothVerifyParams * params,
     for (end = first + 1; end < n && matches[members[end]].group == group;)
       end++;
     verification->n_refused_within += refuse_features (&run, members + first,
-        end - first);
+        end - first, FALSE);
   }
   verification->n_refused_groups = refuse_groups (&run, members, n, n_groups);
-  verification->n_refused_among = refuse_features (&run, members, n);
+  verification->n_refused_among = refuse_features (&run, members, n, TRUE);
   verification->n_refused_among += refuse_lonely (&run, members, n);
   for (guint k = 0; k < n; k++)
     verification->n_verified += matches[members[k]].state

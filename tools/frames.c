@@ -1,7 +1,7 @@
 /* Grey pictures out of any file that GStreamer decodes.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "calibrate-frames.h"
+#include "frames.h"
 
 #include <gio/gio.h>
 #include <gst/app/gstappsink.h>
