@@ -216,6 +216,21 @@ match_film_look (const MatchFilm * film, guint frame, MatchTruth * truth)
     }
 }
 
+/* Where a place of the cloth is in the picture, hidden or not. */
+void
+match_film_place (const MatchFilm * film, guint frame, const gdouble uv[2],
+    gdouble at[2])
+{
+  const gdouble i = uv[0] / film->cloth_m[0] * (COLUMNS - 1) * PARTS;
+  const gdouble j = uv[1] / film->cloth_m[1] * (ROWS - 1) * PARTS;
+  const Corner corner = look (film, frame,
+      (gint) CLAMP (rint (i), 0, (COLUMNS - 1) * PARTS),
+      (gint) CLAMP (rint (j), 0, (ROWS - 1) * PARTS));
+
+  at[0] = corner.x;
+  at[1] = corner.y;
+}
+
 /* Between the pixels around, as far as they are of the nearest one's surface. */
 gboolean
 match_truth_get_uv (const MatchTruth * truth, gdouble x, gdouble y,
