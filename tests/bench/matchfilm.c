@@ -20,8 +20,9 @@
 /* Between pixels of one surface, m in uv. */
 #define SAME 0.02
 
-static void
-load_pictures (const gchar * folder, const gchar * name, MatchPictures * to)
+void
+match_pictures_load (const gchar * folder, const gchar * name,
+    MatchPictures * to)
 {
   g_autofree gchar *line = g_strdup_printf ("filesrc location=\"%s/%s\" ! "
       "decodebin ! videoconvert ! video/x-raw,format=GRAY8 ! "
@@ -72,8 +73,8 @@ match_film_load (MatchFilm * film, const gchar * folder)
     },.cloth_m = {
       0.63, 0.67
   }};
-  load_pictures (folder, "reference.png", &film->reference);
-  load_pictures (folder, "cam0.mp4", &film->film);
+  match_pictures_load (folder, "reference.png", &film->reference);
+  match_pictures_load (folder, "cam0.mp4", &film->film);
   film->vertices = load_npy_floats (path, &info, &error);
   if (!film->vertices || info.row_items != 3 * ROWS * COLUMNS)
     g_error ("%s: %s", path, error ? error->message : "not a cloth");

@@ -37,6 +37,8 @@ typedef struct
   guint8 *mask, *back;
 } MatchTruth;
 
+void match_pictures_load (const gchar * folder, const gchar * name,
+    MatchPictures * to);
 void match_film_load (MatchFilm * film, const gchar * folder);
 void match_film_clear (MatchFilm * film);
 void match_truth_init (MatchTruth * truth, gint width, gint height);
