@@ -40,6 +40,8 @@ typedef struct
   guint8 *mask, *back;
 } MatchTruth;
 
+void match_pictures_load (const gchar * folder, const gchar * name,
+    MatchPictures * to);
 void match_film_load (MatchFilm * film, const gchar * folder,
     const gchar * still, gboolean sides);
 void match_film_clear (MatchFilm * film);
