@@ -52,8 +52,8 @@ G_STATIC_ASSERT (CLOTH_PICTURE_PATTERN_MAX <= CLOTH_GRID_MAX);
 #define PATIENCE 25
 #define LEAST_FEATURES 50
 /* Share of the features that is verified: of the print that is filmed 9% in the worst picture
- * of a falling cloth; over that film 0.1% to 0.6% of four other prints, and 1.5% to 2.5% of the
- * print itself where it is seen from behind and only known from the front. */
+ * of a falling cloth; over that film at most 0.6% of four other prints, and 1.4% of the print
+ * itself where it is seen from behind and only known from the front. */
 #define LEAST_SHARE 0.03
 
 typedef struct

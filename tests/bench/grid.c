@@ -281,6 +281,7 @@ main (int argc, char **argv)
     {"shift", 0, 0, G_OPTION_ARG_DOUBLE, &params.align.shift, NULL, NULL},
     {"likeness", 0, 0, G_OPTION_ARG_DOUBLE, &params.align.likeness, NULL,
         NULL},
+    {"all", 0, 0, G_OPTION_ARG_DOUBLE, &params.align.all, NULL, NULL},
     {"contrast", 0, 0, G_OPTION_ARG_DOUBLE, &params.align.contrast, NULL,
         NULL},
     {"share", 0, 0, G_OPTION_ARG_DOUBLE, &params.align.share, NULL, NULL},

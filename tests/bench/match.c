@@ -21,7 +21,13 @@
 
 /* What counts as right, m in uv. */
 #define RIGHT 0.003
+/* What shows the right part, but is seen a little beside its place. */
+#define BESIDE 0.006
 #define ROUNDS 3
+/* Motion in the picture, px from frame to frame: up to here. */
+#define N_SPEEDS 6
+static const gdouble speeds[N_SPEEDS] = { 2, 5, 10, 20, 40, INFINITY };
+
 /* From pictures to their surface. */
 #define N_STEPS 7
 static const gchar *const steps[N_STEPS] = { "silhouette", "block matching",
@@ -30,8 +36,9 @@ static const gchar *const steps[N_STEPS] = { "silhouette", "block matching",
 
 typedef struct
 {
-  guint initial, matched, verified, right, right_matched;
+  guint initial, matched, verified, right, beside, right_matched;
   guint oblique, quarter, back, n_frames;
+  guint moving[N_SPEEDS], moving_verified[N_SPEEDS], moving_right[N_SPEEDS];
   gdouble sift_ms, match_ms, verify_ms, depth_ms[N_STEPS];
 } Sums;
 
@@ -44,7 +51,7 @@ typedef struct
   ClothMask *mask;
   FilmDepth depth;
   guint8 *inside;
-  gfloat *points;
+  gfloat *points, *merged;
 } Look;
 
 /* Of all threads on all processors: other programs that run meanwhile count less. */
@@ -112,6 +119,8 @@ look_at_depth (Look * look, const MatchFilm * film, guint frame, Sums * sums)
     else
       film_depth_smooth (depth, &polish);
     sums->depth_ms[step] += milliseconds () - start;
+    if (step == 2)
+      memcpy (look->merged, depth->map.disparities, n * sizeof *look->merged);
   }
   for (gsize i = 0; i < n; i++) {
     const gdouble z = film->focal * film->baseline
@@ -129,14 +138,36 @@ look_at_depth (Look * look, const MatchFilm * film, guint frame, Sums * sums)
 
 static gboolean
 is_right (const ClothReferenceFeatures * r, const MatchFilm * film,
-    const MatchTruth * truth, gfloat x, gfloat y, guint32 match)
+    const MatchTruth * truth, gfloat x, gfloat y, guint32 match, gdouble far)
 {
   gdouble uv[2];
   const gdouble u = (r->x[match] + 0.5) / r->width * film->cloth_m[0];
   const gdouble v = (r->y[match] + 0.5) / r->height * film->cloth_m[1];
 
   return match_truth_get_uv (truth, x, y, uv)
-      && hypot (u - uv[0], v - uv[1]) <= RIGHT;
+      && hypot (u - uv[0], v - uv[1]) <= far;
+}
+
+/* By how fast what a feature shows moves in the picture. */
+static void
+count_speed (const MatchFilm * film, guint frame, const MatchTruth * truth,
+    gfloat x, gfloat y, gboolean verified, gboolean right, Sums * sums)
+{
+  const guint last = frame > 0 ? frame - 1 : 0;
+  const guint next = MIN (frame + 1, film->n_frames - 1);
+  gdouble uv[2], from[2], to[2], speed;
+  gint bin = 0;
+
+  if (next == last || !match_truth_get_uv (truth, x, y, uv))
+    return;
+  match_film_place (film, last, uv, from);
+  match_film_place (film, next, uv, to);
+  speed = hypot (to[0] - from[0], to[1] - from[1]) / (next - last);
+  while (speed > speeds[bin])
+    bin++;
+  sums->moving[bin]++;
+  sums->moving_verified[bin] += verified;
+  sums->moving_right[bin] += right;
 }
 
 static void
@@ -189,7 +220,7 @@ draw_frame (const MatchFilm * film, guint frame, const ClothCvFeatures * f,
       const gboolean verified = m->state == CLOTH_MATCH_MATCHED;
       const gboolean known = verified || m->state == CLOTH_MATCH_REFUSED;
       const gboolean right = known && is_right (r, film, truth, f->x[i],
-          f->y[i], m->reference);
+          f->y[i], m->reference, RIGHT);
 
       if (pass != (known ? right || !verified ? 1 : 2 : 0))
         continue;
@@ -198,6 +229,117 @@ draw_frame (const MatchFilm * film, guint frame, const ClothCvFeatures * f,
   cairo_destroy (cr);
   if (cairo_surface_write_to_png (surface, path) != CAIRO_STATUS_SUCCESS)
     g_error ("%s: can't be written", path);
+  cairo_surface_destroy (surface);
+}
+
+/* Two pictures beside each other, for documents. */
+#define PART_WIDTH 300
+#define PART_HEIGHT 226
+
+static cairo_surface_t *
+grey_surface (const guint8 * grey, gint width, gint height)
+{
+  cairo_surface_t *surface = cairo_image_surface_create (CAIRO_FORMAT_RGB24,
+      width, height);
+  guint8 *data = cairo_image_surface_get_data (surface);
+
+  for (gint y = 0; y < height; y++)
+    for (gint x = 0; x < width; x++)
+      ((guint32 *) (data + y * cairo_image_surface_get_stride (surface)))[x] =
+          grey[y * width + x] * 0x10101u;
+  cairo_surface_mark_dirty (surface);
+  return surface;
+}
+
+/* One of two, with features as circles of their scale, and only every @every-th of them. */
+static void
+draw_part (cairo_t * cr, gint part, const guint8 * grey, gint width,
+    gint height, guint n, const gfloat * x, const gfloat * y,
+    const gfloat * scale, guint every)
+{
+  const gdouble zoom = MIN ((gdouble) PART_WIDTH / width,
+      (gdouble) PART_HEIGHT / height);
+  cairo_surface_t *surface = grey_surface (grey, width, height);
+
+  cairo_save (cr);
+  cairo_translate (cr, part * PART_WIDTH + 0.5 * (PART_WIDTH - zoom * width),
+      0);
+  cairo_scale (cr, zoom, zoom);
+  cairo_set_source_surface (cr, surface, 0, 0);
+  cairo_paint (cr);
+  cairo_set_source_rgb (cr, 0.9, 0.1, 0.1);
+  cairo_set_line_width (cr, 2);
+  for (guint i = 0; i < n; i += every) {
+    cairo_new_sub_path (cr);
+    cairo_arc (cr, x[i] + 0.5, y[i] + 0.5, scale[i], 0, 2 * G_PI);
+  }
+  cairo_stroke (cr);
+  cairo_restore (cr);
+  cairo_surface_destroy (surface);
+}
+
+/* Depth as light from the left shows it. */
+static guint8 *
+shade (const gfloat * disparities, gint width, gint height)
+{
+  guint8 *grey = g_malloc0 ((gsize) width * (gsize) height);
+
+  for (gint i = width; i < width * height; i++) {
+    const gfloat tone = 128 + 300 * (2 * disparities[i] - disparities[i - 1]
+        - disparities[i - width]);
+
+    if (isfinite (tone))
+      grey[i] = (guint8) CLAMP (tone, 1, 255);
+  }
+  return grey;
+}
+
+static void
+keep (cairo_surface_t * surface, const gchar * name, guint frame)
+{
+  g_autofree gchar *path = g_strdup_printf ("%s/%s-%02u.png", pictures, name,
+      frame);
+
+  if (cairo_surface_write_to_png (surface, path) != CAIRO_STATUS_SUCCESS)
+    g_error ("%s: can't be written", path);
+}
+
+/* Disparities as two baselines agree on them and in the end; features of the print's flat
+ * view and of the film. */
+static void
+draw_parts (const MatchFilm * film, guint frame, const ClothCvFeatures * f,
+    const ClothReferenceFeatures * r, const Look * look)
+{
+  const gint w = film->film.width, h = film->film.height;
+  const guint8 *luma = film->film.pixels->data + frame * (gsize) w * h;
+  g_autofree gfloat *x = g_new (gfloat, r->n), *y = g_new (gfloat, r->n);
+  g_autofree gfloat *scale = g_new (gfloat, r->n);
+  cairo_surface_t *surface = cairo_image_surface_create (CAIRO_FORMAT_RGB24,
+      2 * PART_WIDTH, PART_HEIGHT);
+  cairo_t *cr = cairo_create (surface);
+  guint n = 0;
+
+  for (guint i = 0; i < r->n; i++)
+    if (r->view[i] == 0 && r->side[i] == 0) {
+      x[n] = r->x[i];
+      y[n] = r->y[i];
+      scale[n++] = r->scale[i];
+    }
+  draw_part (cr, 0, film->reference.pixels->data, film->reference.width,
+      film->reference.height, n, x, y, scale, 16);
+  draw_part (cr, 1, luma, w, h, f->n, f->x, f->y, f->scale, 4);
+  keep (surface, "features", frame);
+  if (by_pictures) {
+    g_autofree guint8 *before = shade (look->merged, w, h);
+    g_autofree guint8 *after = shade (look->depth.map.disparities, w, h);
+
+    cairo_set_source_rgb (cr, 0, 0, 0);
+    cairo_paint (cr);
+    draw_part (cr, 0, before, w, h, 0, NULL, NULL, NULL, 1);
+    draw_part (cr, 1, after, w, h, 0, NULL, NULL, NULL, 1);
+    keep (surface, "depth", frame);
+  }
+  cairo_destroy (cr);
   cairo_surface_destroy (surface);
 }
 
@@ -223,7 +365,8 @@ run_frame (const MatchFilm * film, guint frame,
   const ClothMatchSurface *under = no_surface ? NULL : &surface;
   g_autofree ClothMatch *matches = NULL;
   gdouble sift_ms, match_ms = G_MAXDOUBLE, verify_ms = G_MAXDOUBLE, start;
-  guint right = 0, right_matched = 0, oblique = 0, back = 0, quarter = 0;
+  guint right = 0, beside = 0, right_matched = 0, oblique = 0, back =
+      0, quarter = 0;
   ClothCvFeatures f;
   ClothGrowth growth;
   ClothVerification verification;
@@ -244,7 +387,8 @@ run_frame (const MatchFilm * film, guint frame,
     if (round == 0)
       for (guint i = 0; i < f.n; i++)
         right_matched += matches[i].state == CLOTH_MATCH_MATCHED
-            && is_right (r, film, truth, f.x[i], f.y[i], matches[i].reference);
+            && is_right (r, film, truth, f.x[i], f.y[i], matches[i].reference,
+            RIGHT);
     start = milliseconds ();
     cloth_verifier_run (verifier, verify_params, reference, &f, under, matches,
         &verification);
@@ -252,16 +396,23 @@ run_frame (const MatchFilm * film, guint frame,
   }
   for (guint i = 0; i < f.n; i++) {
     const ClothMatch *m = &matches[i];
+    const gboolean verified = m->state == CLOTH_MATCH_MATCHED;
 
-    if (m->state != CLOTH_MATCH_MATCHED)
+    count_speed (film, frame, truth, f.x[i], f.y[i], verified, verified
+        && is_right (r, film, truth, f.x[i], f.y[i], m->reference, RIGHT),
+        sums);
+    if (!verified)
       continue;
-    right += is_right (r, film, truth, f.x[i], f.y[i], m->reference);
+    right += is_right (r, film, truth, f.x[i], f.y[i], m->reference, RIGHT);
+    beside += is_right (r, film, truth, f.x[i], f.y[i], m->reference, BESIDE);
     oblique += r->view[m->reference] > 0;
     quarter += r->view[m->reference] > 4;
     back += r->side[m->reference];
   }
-  if (pictures)
+  if (pictures) {
     draw_frame (film, frame, &f, matches, r, truth, look);
+    draw_parts (film, frame, &f, r, look);
+  }
   g_print ("%5u  %7u  %7u (%4.1f%%)  %8u (%4.1f%%)  %6.2f%%  %4u %4u %5u  "
       "%4.0f%%  %5.0f%%  %5.1f  %5.1f\n", frame, f.n, growth.n_matched,
       100. * right_matched / MAX (growth.n_matched, 1),
@@ -274,6 +425,7 @@ run_frame (const MatchFilm * film, guint frame,
   sums->matched += growth.n_matched;
   sums->verified += verification.n_verified;
   sums->right += right;
+  sums->beside += beside;
   sums->right_matched += right_matched;
   sums->oblique += oblique;
   sums->quarter += quarter;
@@ -290,16 +442,22 @@ tell (const Sums * s, guint n_references)
   const gdouble n = MAX (s->n_frames, 1), v = MAX (s->verified, 1);
 
   g_print ("mean: %.0f features, %.0f matched (%.2f%% right), %.0f verified: "
-      "%.1f%% (the paper 37%%), %.2f%% right within %.0f mm\n", s->initial / n,
+      "%.1f%% (the paper 37%%), %.2f%% right within %.0f mm, %.2f%% within %.0f mm\n",
+      s->initial / n,
       s->matched / n, 100. * s->right_matched / MAX (s->matched, 1),
       s->verified / n, 100. * s->verified / MAX (s->initial, 1),
-      100 * s->right / v, 1e3 * RIGHT);
+      100 * s->right / v, 1e3 * RIGHT, 100 * s->beside / v, 1e3 * BESIDE);
   g_print ("verified from oblique views %.0f%% (the paper over half), from "
       "quarter views %.1f%%, from the back %.0f%%\n", 100 * s->oblique / v,
       100 * s->quarter / v, 100 * s->back / v);
   g_print ("features %.0f ms; matching %.1f ms among %u (the paper 145 s); "
       "verification %.1f ms (the paper 26 s with the parameters)\n",
       s->sift_ms / n, s->match_ms / n, n_references, s->verify_ms / n);
+  for (gint i = 0; i < N_SPEEDS; i++)
+    g_print ("up to %.0f px a frame: %u features, %.1f%% verified, of these "
+        "%.2f%% right\n", speeds[i], s->moving[i],
+        100. * s->moving_verified[i] / MAX (s->moving[i], 1),
+        100. * s->moving_right[i] / MAX (s->moving_verified[i], 1));
   for (gint i = 0; i < N_STEPS && by_pictures; i++)
     g_print ("%s %.1f ms%s", steps[i], s->depth_ms[i] / n,
         i < N_STEPS - 1 ? "; " : "\n");
@@ -319,6 +477,7 @@ look_init (Look * look, const MatchFilm * film)
   film_depth_init (&look->depth, w, h);
   look->inside = g_malloc (n);
   look->points = g_new (gfloat, 3 * n);
+  look->merged = g_new (gfloat, n);
 }
 
 static void
@@ -328,6 +487,7 @@ look_clear (Look * look)
   film_depth_clear (&look->depth);
   g_free (look->inside);
   g_free (look->points);
+  g_free (look->merged);
 }
 
 static void

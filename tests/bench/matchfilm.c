@@ -21,8 +21,9 @@
 /* Between pixels of one surface, m in uv. */
 #define SAME 0.02
 
-static void
-load_pictures (const gchar * folder, const gchar * name, MatchPictures * to)
+void
+match_pictures_load (const gchar * folder, const gchar * name,
+    MatchPictures * to)
 {
   g_autofree gchar *line = g_strdup_printf ("filesrc location=\"%s/%s\" ! "
       "decodebin ! videoconvert ! video/x-raw,format=GRAY8 ! "
@@ -77,13 +78,14 @@ match_film_load (MatchFilm * film, const gchar * folder, const gchar * still,
     },.cloth_m = {
       0.63, 0.67
   }};
-  load_pictures (still ? still : folder, "reference.png", &film->reference);
-  load_pictures (folder, "cam0.mp4", &film->film);
+  match_pictures_load (still ? still : folder, "reference.png",
+      &film->reference);
+  match_pictures_load (folder, "cam0.mp4", &film->film);
   if (sides) {
-    load_pictures (still ? still : folder, "background0.png",
+    match_pictures_load (still ? still : folder, "background0.png",
         &film->background);
-    load_pictures (folder, "cam1.mp4", &film->sides[0]);
-    load_pictures (folder, "cam2.mp4", &film->sides[1]);
+    match_pictures_load (folder, "cam1.mp4", &film->sides[0]);
+    match_pictures_load (folder, "cam2.mp4", &film->sides[1]);
   }
   film->vertices = load_npy_floats (path, &info, &error);
   if (!film->vertices || info.row_items != 3 * ROWS * COLUMNS)
@@ -214,6 +216,21 @@ match_film_look (const MatchFilm * film, guint frame, MatchTruth * truth)
       fill (film, truth, &a, &b, &c);
       fill (film, truth, &b, &d, &c);
     }
+}
+
+/* Where a place of the cloth is in the picture, hidden or not. */
+void
+match_film_place (const MatchFilm * film, guint frame, const gdouble uv[2],
+    gdouble at[2])
+{
+  const gdouble i = uv[0] / film->cloth_m[0] * (COLUMNS - 1) * PARTS;
+  const gdouble j = uv[1] / film->cloth_m[1] * (ROWS - 1) * PARTS;
+  const Corner corner = look (film, frame,
+      (gint) CLAMP (rint (i), 0, (COLUMNS - 1) * PARTS),
+      (gint) CLAMP (rint (j), 0, (ROWS - 1) * PARTS));
+
+  at[0] = corner.x;
+  at[1] = corner.y;
 }
 
 /* Between the pixels around, as far as they are of the nearest one's surface. */

@@ -40,12 +40,16 @@ typedef struct
   guint8 *mask, *back;
 } MatchTruth;
 
+void match_pictures_load (const gchar * folder, const gchar * name,
+    MatchPictures * to);
 void match_film_load (MatchFilm * film, const gchar * folder,
     const gchar * still, gboolean sides);
 void match_film_clear (MatchFilm * film);
 void match_truth_init (MatchTruth * truth, gint width, gint height);
 void match_truth_clear (MatchTruth * truth);
 void match_film_look (const MatchFilm * film, guint frame, MatchTruth * truth);
+void match_film_place (const MatchFilm * film, guint frame,
+    const gdouble uv[2], gdouble at[2]);
 gboolean match_truth_get_uv (const MatchTruth * truth, gdouble x, gdouble y,
     gdouble uv[2]);
 

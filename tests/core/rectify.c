@@ -259,6 +259,22 @@ test_parallel (void)
   }
 }
 
+/* Far apart, turned to one place: each sees what the other does, at the right side. */
+static void
+test_converging (void)
+{
+  static const gdouble places[2][3] = { {0, 0, 0}, {1, 0, 0} };
+  static const gdouble turns[2][3] = { {0, -0.45, 0}, {0, 0.45, 0} };
+  const ClothCamera head = make_camera ("one", places[0], turns[0]);
+  const ClothCamera partner = make_camera ("two", places[1], turns[1]);
+  ClothRectification pair;
+  g_autoptr (GError) error = NULL;
+
+  g_assert_true (cloth_rectify_pair (&head, &partner, NEAR, FAR, &pair,
+          &error));
+  g_assert_no_error (error);
+}
+
 /* ---- pairs among each other ---- */
 
 static void
@@ -381,6 +397,7 @@ main (int argc, char **argv)
   g_test_add_func ("/rectify/rows", test_rows);
   g_test_add_func ("/rectify/opencv", test_opencv);
   g_test_add_func ("/rectify/parallel", test_parallel);
+  g_test_add_func ("/rectify/converging", test_converging);
   g_test_add_func ("/rectify/relations", test_relations);
   g_test_add_func ("/rectify/refused", test_refused);
   return g_test_run ();

@@ -4,6 +4,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/vision/stereo/stereo.h"
 
+#include <malloc.h>
 #include <math.h>
 #include <string.h>
 
@@ -312,6 +313,36 @@ test_same (void)
   }
 }
 
+/* Memory stays as it is from one set to the next. */
+static void
+test_steady (void)
+{
+  const ClothStereoParams params = params_of_plane ();
+  Plane plane = { scene_rig () };
+  const ClothCamera *of[3];
+  ClothImage images[3];
+  g_autoptr (ClothStereo) stereo = NULL;
+  gsize before = 0;
+
+  film_plane (&plane, SCENE_WIDTH);
+  for (guint k = 0; k < 3; k++) {
+    of[k] = &plane.rig->cameras[k];
+    images[k] = (ClothImage) {
+    plane.pictures[k], SCENE_WIDTH, SCENE_HEIGHT, SCENE_WIDTH};
+  }
+  stereo = cloth_stereo_new (of, 3, &params, NULL);
+  for (guint i = 0; i < 6; i++) {
+    ClothStereoResult result;
+
+    g_assert_true (cloth_stereo_run (stereo, images, NULL, NULL, &result,
+            NULL));
+    if (i == 1)
+      before = mallinfo2 ().uordblks;
+  }
+  g_assert_cmpuint (mallinfo2 ().uordblks, <=, before + 4096);
+  clear_plane (&plane);
+}
+
 /* What the range leaves out is told, and what the mask does has no disparity. */
 static void
 test_range (void)
@@ -461,6 +492,7 @@ main (int argc, char **argv)
   g_test_add_func ("/stereo/directions", test_directions);
   g_test_add_func ("/stereo/lenses", test_lenses);
   g_test_add_func ("/stereo/same", test_same);
+  g_test_add_func ("/stereo/steady", test_steady);
   g_test_add_func ("/stereo/range", test_range);
   g_test_add_func ("/stereo/nothing", test_nothing);
   g_test_add_func ("/stereo/refused", test_refused);

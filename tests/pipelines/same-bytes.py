@@ -22,8 +22,8 @@ THREADS = [1, 3]
 
 def jobs(tool, data, threads):
     """Command lines that write into the folder they run in."""
-    pair, dots, drag = (os.path.join(data, name)
-                        for name in ('checker_pair', 'dots_ring8', 'take_drag'))
+    pair, dots, drag, lines = (os.path.join(data, name) for name in
+                               ('checker_pair', 'dots_ring8', 'take_drag', 'lineart_stereo3'))
     models = os.path.join(data, '../../pipelines')
     film = ('filesrc location=%s/%s.mp4 ! qtdemux ! h264parse ! avdec_h264 max-threads=1 '
             '! identity eos-after=%d ! saddledetect ! quadtrack pattern=%s/pattern.json camera=%s ')
@@ -45,6 +45,10 @@ def jobs(tool, data, threads):
         'gst-launch-1.0 -q filesrc location=%s/cam0.mp4 ! qtdemux ! h264parse '
         '! avdec_h264 max-threads=1 ! identity eos-after=4 ! silhouette luma-max=150 threads=%d '
         '! clothmetapay ! filesink location=silhouette.obs' % (pair, threads),
+        'gst-launch-1.0 -q filesrc location=%s/cam0.mp4 ! qtdemux ! h264parse '
+        '! avdec_h264 max-threads=1 ! identity eos-after=1 ! siftmatch pattern=%s/pattern.json '
+        'oblique=0 threads=%d ! clothmetapay ! filesink location=matches.obs'
+        % (lines, lines, threads),
         '%s simulate %s/model-knit.json --scene %s --threads %d --output simulated'
         % (tool, models, drag, threads),
         '%s diagnose %s --model %s/model-knit.json --effects wind,air_drag,stretch --threads %d '

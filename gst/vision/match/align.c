@@ -37,6 +37,8 @@
 #define TAPS 9
 /* The middle of a window: this share of its radius. */
 #define MIDDLE 0.3
+/* After so many steps the film has to look like the print. */
+#define SOON 2
 /* How far the flat picture's edge reaches into the film, in blurs. */
 #define EDGE 2.0
 
@@ -80,10 +82,10 @@ ClothAlignParams
 cloth_align_default_params (void)
 {
   return (ClothAlignParams) {
-  .radius = 12,.bend = 0.004,.blur = 0.5,.reference_blur = 0,.outlier =
-        3,.rounds = 8,.done = 0.03,.shift = 3,.likeness = 0.6,.contrast =
-        4,.share = 0.3,.centre = 6,.model = 0.2,.correlation = 1,.floor =
-        0.01,.depth_step = 0.01};
+  .radius = 12,.bend = 0.01,.blur = 0.5,.reference_blur = 0,.outlier =
+        3,.rounds = 8,.done = 0.03,.shift = 3,.likeness = 0.6,.all =
+        0.45,.contrast = 4,.share = 0.3,.centre = 6,.model =
+        0.4,.correlation = 2,.floor = 0.01,.depth_step = 0.01};
 }
 
 /* Returns: @params with all values in their ranges
@@ -102,6 +104,7 @@ cloth_align_clamp_params (const ClothAlignParams * params)
   p.done = MAX (p.done, 0);
   p.shift = MAX (p.shift, 0);
   p.likeness = CLAMP (p.likeness, 0, 1);
+  p.all = CLAMP (p.all, 0, 1);
   p.contrast = MAX (p.contrast, 0);
   p.share = CLAMP (p.share, 0, 1);
   p.centre = MAX (p.centre, 0);
@@ -347,6 +350,7 @@ typedef struct
   gdouble gain, offset;
   gdouble weight, rms;          /* pixels that count, and their differences */
   gdouble likeness, contrast;
+  gdouble all;                  /* likeness of all pixels, outliers too */
 } Light;
 
 /* Gain and offset that explain the film best. */
@@ -556,8 +560,12 @@ look (Run * run, Light * light)
         (gfloat) light->offset, (gfloat) (1 / (scale * scale)),
         self->differences, self->robust);
     run->window.weights = self->robust;
-    if (pass == 0)
+    if (pass == 0) {
+      const gdouble all = light->likeness;
+
       find_light (run, light);
+      light->all = all;
+    }
   }
   return CLOTH_ALIGN_FOUND;
 }
@@ -610,6 +618,8 @@ cloth_align_run (ClothAligner * aligner, const ClothAlignParams * params,
     result = look (&run, &light);
     if (result != CLOTH_ALIGN_FOUND)
       return result;
+    if (round >= SOON && light.all < params->all)
+      return CLOTH_ALIGN_UNLIKE;
     collect (&run, &light, a, b, &square);
     variance = MAX (square / MAX (a[UNKNOWNS * OFFSET + OFFSET] - UNKNOWNS, 1),
         0.1);
@@ -626,7 +636,7 @@ cloth_align_run (ClothAligner * aligner, const ClothAlignParams * params,
       return CLOTH_ALIGN_UNLIKE;
     if (hypot (at[0] - from[0], at[1] - from[1]) > params->done)
       continue;
-    if (light.likeness < params->likeness
+    if (light.likeness < params->likeness || light.all < params->all
         || !is_middle_seen (&run, from, variance))
       return CLOTH_ALIGN_UNLIKE;
     cloth_cholesky_inverse (UNKNOWNS, a, inverse);

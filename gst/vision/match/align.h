@@ -23,7 +23,9 @@ G_BEGIN_DECLS
  * @rounds: most steps towards the place
  * @done: a step so short is the last one, px
  * @shift: farther from where it was looked for it isn't taken, px
- * @likeness: least share of the window's variance that the print explains, 0 to 1
+ * @likeness: least share of the window's variance that the print explains, outliers aside,
+ *   0 to 1
+ * @all: the same of all pixels
  * @contrast: least standard deviation of a window, grey levels
  * @share: least share of the window that counts, 0 to 1
  * @centre: by which factor the variance of the differences in the middle may be above that
@@ -40,7 +42,7 @@ typedef struct {
   gdouble bend, blur, reference_blur, outlier;
   guint rounds;
   gdouble done, shift;
-  gdouble likeness, contrast, share, centre;
+  gdouble likeness, all, contrast, share, centre;
   gdouble model, correlation, floor, depth_step;
 } ClothAlignParams;
 
