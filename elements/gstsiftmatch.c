@@ -44,9 +44,8 @@ GST_DEBUG_CATEGORY_STATIC (sift_match_debug);
 #define GST_CAT_DEFAULT sift_match_debug
 
 G_STATIC_ASSERT (CLOTH_PICTURE_PATTERN_MAX <= CLOTH_GRID_MAX);
-
-/* Points of a grid are at most as many as the metadata holds. */
-#define MAX_POINTS GST_CLOTH_MAX_FEATURES
+/* The metadata holds all points of a grid. */
+G_STATIC_ASSERT (CLOTH_PICTURE_PATTERN_MAX_VERTICES <= GST_CLOTH_MAX_FEATURES);
 
 /* Pictures until a print is said to be another one, and the features that such a picture must
  * have. */
@@ -266,13 +265,6 @@ gst_sift_match_load_pattern (GstSiftMatch * self, const gchar * path)
         ("Can't read the pattern: %s", error->message),
         ("Set pattern to a pattern.json of kind \"picture\"; it is now \"%s\". Dots are "
             "found by dotlabel, checkerboards by quadtrack.", path));
-    return FALSE;
-  }
-  if (self->pattern->columns * self->pattern->rows > MAX_POINTS) {
-    GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
-        ("The pattern's grid has %d × %d vertices; at most %d go along with a picture.",
-            self->pattern->columns, self->pattern->rows, MAX_POINTS),
-        ("Lower columns and rows in %s.", path));
     return FALSE;
   }
   return TRUE;
