@@ -347,18 +347,18 @@ gst_stereo_match_map (GstStereoMatch * self, gint * cameras, guint * n,
     if (!self->view[i].present) {
       continue;
     }
-    if (i >= CLOTH_STEREO_MAX_CAMERAS) {
-      *n = G_MAXUINT;
+    if (i >= CLOTH_STEREO_MAX_CAMERAS || i != *n) {
+      *n = G_MAXUINT;           /* too many, or a pad is left out */
       break;
     }
     cameras[(*n)++] = self->view[i].camera;
   }
-  if (*n < 2 || *n > CLOTH_STEREO_MAX_CAMERAS || !self->view[HEAD].present) {
+  if (*n < 2 || *n > CLOTH_STEREO_MAX_CAMERAS) {
     GST_ELEMENT_ERROR (self, STREAM, FAILED,
         ("A stereo head has two or three cameras, on the pads sink_0, sink_1 and "
             "sink_2."),
-        ("Link the camera whose pictures shall go on to sink_0, and one or two "
-            "partners of it to the others."));
+        ("Link the camera whose pictures shall go on to sink_0, its partner to "
+            "sink_1, and a second partner, if there is one, to sink_2."));
     return FALSE;
   }
   return TRUE;

@@ -24,7 +24,8 @@ typedef enum {
 
 /* The properties of the element that say how things look. */
 typedef struct {
-  gboolean draw_silhouette, draw_saddles, draw_quads, draw_dots, draw_indices, draw_mesh, draw_gap, draw_uv;
+  gboolean draw_silhouette, draw_saddles, draw_quads, draw_dots, draw_indices;
+  gboolean draw_mesh, draw_gap, draw_uv;
   GstClothOverlayMatches draw_matches;
   gfloat line_width, opacity, fill_opacity, c_low, ellipse_scale;
   guint gap_scale, check;       /* mm */
@@ -57,9 +58,10 @@ void gst_cloth_overlay_draw_matches (const ClothCanvas * canvas, gint width,
     gint height, GstClothMatches * matches, GArray * places, GArray * cells,
     const GstClothOverlayStyle * style);
 
-/* Checks on the flat cloth, where @uv says that its pixels show it; of the picture's size. */
-void gst_cloth_overlay_draw_uv (const ClothCanvas * canvas,
-    const GstClothUV * uv, const GstClothOverlayStyle * style);
+/* Checks on the flat cloth, where @uv says that its pixels show it. They are scaled to a
+ * picture of @width by @height px. */
+void gst_cloth_overlay_draw_uv (const ClothCanvas * canvas, gint width,
+    gint height, const GstClothUV * uv, const GstClothOverlayStyle * style);
 
 /* Where something belongs in the pattern, and in the low half which it is. */
 guint64 gst_cloth_overlay_place (guint columns, gint column, gint row,

@@ -199,30 +199,33 @@ check_at (const gfloat * uv, gfloat edge)
 }
 
 void
-gst_cloth_overlay_draw_uv (const ClothCanvas * canvas, const GstClothUV * uv,
-    const GstClothOverlayStyle * style)
+gst_cloth_overlay_draw_uv (const ClothCanvas * canvas, gint width, gint height,
+    const GstClothUV * uv, const GstClothOverlayStyle * style)
 {
-  const gint width = (gint) gst_cloth_uv_get_width (uv);
-  const gint height = (gint) gst_cloth_uv_get_height (uv);
+  const gint columns = (gint) gst_cloth_uv_get_width (uv);
+  const gint rows = (gint) gst_cloth_uv_get_height (uv);
+  const gfloat wide = (gfloat) width / (gfloat) columns;
+  const gfloat tall = (gfloat) height / (gfloat) rows;
   const gfloat edge = 0.001f * (gfloat) style->check;
   const gfloat *place = gst_cloth_uv_get_uv (uv, NULL);
 
-  for (gint row = 0; row < height && !cloth_work_is_over (canvas->work); row++) {
+  for (gint row = 0; row < rows && !cloth_work_is_over (canvas->work); row++) {
     gint begin = 0, colour = -1;
 
-    for (gint column = 0; column <= width; column++) {
-      const gint next = column < width ? check_at (place
-          + 2 * ((gsize) row * width + column), edge) : -1;
+    for (gint column = 0; column <= columns; column++) {
+      const gint next = column < columns ? check_at (place
+          + 2 * ((gsize) row * columns + column), edge) : -1;
 
       if (next == colour) {
         continue;
       }
       if (colour >= 0) {
-        const gfloat left = (gfloat) begin - 0.5f;
-        const gfloat right = (gfloat) column - 0.5f;
-        const gfloat top = (gfloat) row - 0.5f;
+        const gfloat left = wide * (gfloat) begin - 0.5f;
+        const gfloat right = wide * (gfloat) column - 0.5f;
+        const gfloat top = tall * (gfloat) row - 0.5f;
+        const gfloat bottom = tall * (gfloat) (row + 1) - 0.5f;
         const gfloat x[4] = { left, right, right, left };
-        const gfloat y[4] = { top, top, top + 1, top + 1 };
+        const gfloat y[4] = { top, top, bottom, bottom };
         ClothColour fill = check_colours[colour];
 
         fill.a = SHEET_OPACITY * style->opacity;

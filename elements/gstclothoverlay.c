@@ -6,10 +6,10 @@
  * SECTION:element-clothoverlay
  * @title: clothoverlay
  *
- * Draws the silhouette, saddles, squares, dots and matches that a picture carries as metadata, and,
- * when its `mesh` pad is linked, a mesh as the camera `camera` of `rig` sees it; where the mesh
- * has a map of which place of the cloth each pixel of that camera shows, checks are drawn there. The picture is
- * drawn on in place; one with nothing to draw passes untouched. The mesh is drawn as lines or
+ * Draws the silhouette, saddles, squares, dots and matches that a picture carries as metadata,
+ * and, when its `mesh` pad is linked, a mesh as the camera `camera` of `rig` sees it; where the
+ * mesh has a map of which place of the cloth each pixel of that camera shows, checks are drawn
+ * there. The picture is drawn on in place; one with nothing to draw passes untouched. The mesh is drawn as lines or
  * as a surface with any picture on it (`mesh-style`, `texture`). A mesh that `clothgap`
  * has been over is drawn as a heat map of its distance from the simulation.
  *
@@ -180,8 +180,8 @@ static const GstClothProperty properties[] = {
     G_TYPE_ENUM, SETTING (style.draw_matches), ANIMATED, 0, 0,
     "GstClothOverlayMatches", matches_styles},
   {"draw-uv", "draw-uv",
-    "Where the mesh carries a map of the places that this camera's pixels show, of the "
-    "picture's size, draw black and white checks on the cloth by it",
+    "Where the mesh carries a map of the places that this camera's pixels show, draw "
+    "black and white checks on the cloth by it",
     G_TYPE_BOOLEAN, SETTING (style.draw_uv), ANIMATED},
   {"check", "check", "Edge of these checks on the cloth, mm",
     G_TYPE_UINT, SETTING (style.check), ANIMATED, 1, 99999},
@@ -451,17 +451,16 @@ gst_cloth_overlay_draw_mesh (GstClothOverlay * self, const ClothCanvas * canvas,
   return GST_FLOW_OK;
 }
 
-/* The map of this camera's pixels on @mesh, when it is of the picture's size. */
+/* The map of this camera's pixels on @mesh, when it is of the size that they were filmed at. */
 static GstClothUV *
 gst_cloth_overlay_find_uv (GstClothOverlay * self, GstBuffer * mesh)
 {
   const gchar *name = self->camera->name;
   GstClothUV *uv = gst_buffer_get_cloth_uv (mesh, name && *name ? name : NULL);
 
-  return uv && gst_cloth_uv_get_width (uv) ==
-      (guint) GST_VIDEO_INFO_WIDTH (&self->info)
-      && gst_cloth_uv_get_height (uv) ==
-      (guint) GST_VIDEO_INFO_HEIGHT (&self->info) ? uv : NULL;
+  return uv && gst_cloth_uv_get_width (uv) == (guint) self->camera->width
+      && gst_cloth_uv_get_height (uv) == (guint) self->camera->height ? uv :
+      NULL;
 }
 
 /* ---- GstClothSync ---- */
@@ -632,7 +631,8 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
         self->places, &style);
   }
   if (uv) {
-    gst_cloth_overlay_draw_uv (&canvas, uv, &style);
+    gst_cloth_overlay_draw_uv (&canvas, GST_VIDEO_FRAME_WIDTH (&frame),
+        GST_VIDEO_FRAME_HEIGHT (&frame), uv, &style);
   }
   if (has_matches) {
     gst_cloth_overlay_draw_matches (&canvas, GST_VIDEO_FRAME_WIDTH (&frame),
@@ -811,8 +811,8 @@ gst_cloth_overlay_class_init (GstClothOverlayClass * klass)
       &src_template, GST_TYPE_AGGREGATOR_PAD);
   gst_element_class_set_static_metadata (element_class, "Cloth overlay",
       "Filter/Effect/Video",
-      "Draws silhouettes, saddles, squares, labelled dots, matches, meshes and their distance from a "
-      "simulation", "The gst-cloth developers");
+      "Draws silhouettes, saddles, squares, labelled dots, matches, meshes and "
+      "their distance from a simulation", "The gst-cloth developers");
 }
 
 static void

@@ -16,7 +16,8 @@
  * the surface, else in the picture: folds then cost more of the matches.
  *
  * The print is looked at when the element starts, which takes seconds. Where most of it
- * repeats itself, or nothing of the film is found in it, a warning says so.
+ * repeats itself, nothing of the film is found in it, or the film has no features, a warning
+ * says so.
  *
  * ## Matches over a film
  * |[
@@ -43,9 +44,8 @@ GST_DEBUG_CATEGORY_STATIC (sift_match_debug);
 #define GST_CAT_DEFAULT sift_match_debug
 
 G_STATIC_ASSERT (CLOTH_PICTURE_PATTERN_MAX <= CLOTH_GRID_MAX);
-
-/* Points of a grid are at most as many as the metadata holds. */
-#define MAX_POINTS GST_CLOTH_MAX_FEATURES
+/* The metadata holds all points of a grid. */
+G_STATIC_ASSERT (CLOTH_PICTURE_PATTERN_MAX_VERTICES <= GST_CLOTH_MAX_FEATURES);
 
 /* Pictures until a print is said to be another one, and the features that such a picture must
  * have. */
@@ -97,7 +97,11 @@ struct _GstSiftMatch
   guint n_pictures;
   guint64 n_features, n_verified;
   gboolean fits;                /* the print has once been recognised */
-  gboolean warned_of_print, warned_of_features;
+  gboolean warned_of_print, warned_of_features, warned_of_lack;
+
+  /* since the start */
+  gboolean looked;              /* at a picture */
+  guint richest;                /* most features of a picture */
 };
 
 #define SETTING(member) GST_CLOTH_SETTING (Settings, member)
@@ -263,13 +267,6 @@ gst_sift_match_load_pattern (GstSiftMatch * self, const gchar * path)
             "found by dotlabel, checkerboards by quadtrack.", path));
     return FALSE;
   }
-  if (self->pattern->columns * self->pattern->rows > MAX_POINTS) {
-    GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
-        ("The pattern's grid has %d × %d vertices; at most %d go along with a picture.",
-            self->pattern->columns, self->pattern->rows, MAX_POINTS),
-        ("Lower columns and rows in %s.", path));
-    return FALSE;
-  }
   return TRUE;
 }
 
@@ -375,6 +372,9 @@ gst_sift_match_start (GstClothFilter * filter)
   self->n_pictures = 0;
   self->n_features = self->n_verified = 0;
   self->fits = self->warned_of_print = self->warned_of_features = FALSE;
+  self->warned_of_lack = FALSE;
+  self->looked = FALSE;
+  self->richest = 0;
   gst_sift_match_judge_print (self);
   return TRUE;
 }
@@ -578,9 +578,25 @@ gst_sift_match_judge_pictures (GstSiftMatch * self)
   self->n_features = self->n_verified = 0;
 }
 
+/* A film without features; pictures without cloth before and after others are no matter. */
+static void
+gst_sift_match_judge_film (GstSiftMatch * self)
+{
+  if (!self->looked || self->richest >= LEAST_FEATURES || self->warned_of_lack)
+    return;
+  self->warned_of_lack = TRUE;
+  GST_ELEMENT_WARNING (self, STREAM, FAILED,
+      ("No picture of the film has more than %u features: too few to find the print.",
+          self->richest),
+      ("See that the print is sharp and large in the picture, and that what silhouette or "
+          "clothdisparity takes for cloth is cloth; else lower contrast."));
+}
+
 static void
 gst_sift_match_count (GstSiftMatch * self, guint n_features, guint n_verified)
 {
+  self->looked = TRUE;
+  self->richest = MAX (self->richest, n_features);
   if (n_features < LEAST_FEATURES)
     return;
   self->n_pictures++;
@@ -596,8 +612,11 @@ gst_sift_match_sink_event (GstBaseTransform * trans, GstEvent * event)
 {
   GstSiftMatch *self = GST_SIFT_MATCH (trans);
 
-  if (GST_EVENT_TYPE (event) == GST_EVENT_EOS && self->n_pictures > 0)
-    gst_sift_match_judge_pictures (self);
+  if (GST_EVENT_TYPE (event) == GST_EVENT_EOS) {
+    if (self->n_pictures > 0)
+      gst_sift_match_judge_pictures (self);
+    gst_sift_match_judge_film (self);
+  }
   return GST_BASE_TRANSFORM_CLASS (gst_sift_match_parent_class)->sink_event
       (trans, event);
 }

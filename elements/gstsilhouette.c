@@ -254,7 +254,8 @@ gst_silhouette_update_background (GstSilhouette * self,
   GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
       ("Nothing tells the cloth from what is behind it."),
       ("Set background to a picture of the scene without the cloth; or learn, "
-          "to have it learnt from the film; or a range, as luma-min or, behind clothdisparity, disparity-min."));
+          "to have it learnt from the film; or a range, as luma-min or, behind "
+          "clothdisparity, disparity-min."));
   return FALSE;
 }
 

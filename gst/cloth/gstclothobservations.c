@@ -29,7 +29,8 @@
 
 /* A section of features begins with the frame's number (64 bits), @n_counts numbers of 32
  * bits, two of 16 bits (the length of the camera's name, and one that only some have: the
- * colours of dots, whether matches were found along a surface), and the name. Of what count i counts, each takes @item_bytes[i] bytes, a dot 4 more a colour.
+ * colours of dots, whether matches were found along a surface), and the name. Of what count i
+ * counts, each takes @item_bytes[i] bytes, a dot 4 more a colour.
  * @too_many says what is wrong when count i is over @most[i]. */
 typedef struct
 {
@@ -491,7 +492,8 @@ put_times (GByteArray * bytes, GstBuffer * buffer, guint * n_sections)
  * the silhouette and the matches on @buffer, with camera and sequence number, and its
  * #GstReferenceTimestampMeta. A feature with a float that isn't finite, a quad, dot or vertex
  * outside its pattern or at the place of an earlier one, and a reference clock that isn't one
- * of GStreamer's own are left out. Disparities are no part of a stream. @buffer without any such meta gives a buffer without sections.
+ * of GStreamer's own are left out. Disparities are no part of a stream. @buffer without any
+ * such meta gives a buffer without sections.
  *
  * Returns: (transfer full): a new buffer in the layout of the observation stream, with
  *   the time stamps and the flags of @buffer
@@ -1008,8 +1010,8 @@ read_observation (const guint8 * bytes, gsize size, Observed * observed,
  * @error: return location for a #GST_CLOTH_ERROR
  *
  * Puts on @target the metas that @observation holds: saddles, quads, dots, a silhouette,
- * matches and reference time stamps. Sections of a kind that this library doesn't know are passed over, and so are
- * times of a clock that it doesn't know. Time stamps and flags of @target stay.
+ * matches and reference time stamps. Sections of a kind that this library doesn't know are
+ * passed over, and so are times of a clock that it doesn't know. Time stamps and flags of @target stay.
  *
  * Returns: %FALSE with @error set, and @target as it was, when the bytes are no valid
  *   observation

@@ -40,8 +40,9 @@ refuse (GError ** error, const gchar * format, ...)
  * @error: return location
  *
  * Checks every limit: a name of a picture, sizes from a micrometre to a kilometre,
- * %CLOTH_PICTURE_PATTERN_MIN to %CLOTH_PICTURE_PATTERN_MAX vertices each way, one side or
- * two. The picture itself is not looked at.
+ * %CLOTH_PICTURE_PATTERN_MIN to %CLOTH_PICTURE_PATTERN_MAX vertices each way and
+ * %CLOTH_PICTURE_PATTERN_MAX_VERTICES in all, one side or two. The picture itself is not
+ * looked at.
  *
  * Returns: %TRUE when @pattern is sound, else %FALSE with %CLOTH_PATTERN_ERROR_VALUE
  */
@@ -66,6 +67,9 @@ cloth_picture_pattern_check (const ClothPicturePattern * pattern,
     return refuse (error, "a grid of %d by %d vertices: use %d to %d each way",
         pattern->columns, pattern->rows, CLOTH_PICTURE_PATTERN_MIN,
         CLOTH_PICTURE_PATTERN_MAX);
+  if (pattern->columns * pattern->rows > CLOTH_PICTURE_PATTERN_MAX_VERTICES)
+    return refuse (error, "a grid of %d by %d vertices: use at most %d in all",
+        pattern->columns, pattern->rows, CLOTH_PICTURE_PATTERN_MAX_VERTICES);
   if (pattern->sides != 1 && pattern->sides != 2)
     return refuse (error, "%d sides: give 1, or 2 where the print shows "
         "through or is on both sides", pattern->sides);

@@ -12,6 +12,10 @@ G_BEGIN_DECLS
 #define CLOTH_PICTURE_PATTERN_MIN 2
 #define CLOTH_PICTURE_PATTERN_MAX 500
 
+/* Most vertices in all: as many as go along with a picture.
+ */
+#define CLOTH_PICTURE_PATTERN_MAX_VERTICES 65536
+
 /* Edge of the cells of a grid that nobody has asked for otherwise, metres: as dense as the
  * paper's dots.
  */

@@ -104,6 +104,7 @@ test_new_refused (void)
     {"a.png", {1, 1}, 9, 1, 1, "9 by 1 vertices"},
     {"a.png", {1, 1}, 501, 9, 1, "2 to 500"},
     {"a.png", {1, 1}, 9, 501, 1, "2 to 500"},
+    {"a.png", {1, 1}, 257, 256, 1, "65536 in all"},
     {"a.png", {1, 1}, G_MININT, 9, 1, "vertices"},
     {"a.png", {1, 1}, 9, G_MAXINT, 1, "vertices"},
     {"a.png", {1, 1}, 9, 9, 0, "0 sides"},

@@ -803,6 +803,29 @@ fail_with_pads (ClothRig * rig, guint n_pads, const gchar * text)
   bench_clear (&b);
 }
 
+/* A head and a partner, but no pad between them. */
+GST_START_TEST (test_left_out_pad)
+{
+  static const gchar *const names[] = { "sink_0", "sink_2" };
+  ClothRig *rig = scene_rig ();
+  Bench b;
+
+  cloth_camera_clear (&rig->cameras[--rig->n_cameras]);
+  bench_open (&b, rig, "");
+  bench_link (&b, 0, "GRAY8", SCENE_WIDTH, SCENE_HEIGHT);
+  for (; b.n_pads < G_N_ELEMENTS (names); b.n_pads++) {
+    b.in[b.n_pads] = gst_harness_new_with_element (b.element, names[b.n_pads],
+        NULL);
+    gst_harness_set_src_caps (b.in[b.n_pads], gst_video_info_to_caps (&b.info));
+  }
+  for (guint i = 0; i < b.n_pads; i++)
+    gst_harness_push (b.in[i], picture (&b, i, 0, 0));
+  expect (&b, GST_MESSAGE_ERROR, "its partner to sink_1");
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
 GST_START_TEST (test_bad_heads)
 {
   ClothRig *rig = scene_rig (), *four = cloth_rig_new (4), *one;
@@ -876,6 +899,7 @@ clothdisparity_suite (void)
   tcase_add_test (tc, test_told);
   tcase_add_test (tc, test_wrong_silhouette);
   tcase_add_test (tc, test_small_buffer);
+  tcase_add_test (tc, test_left_out_pad);
   tcase_add_test (tc, test_bad_heads);
   tcase_add_test (tc, test_bad_rig);
   return s;

@@ -239,15 +239,16 @@ place_at (gint x, gint y, gfloat uv[2])
   uv[1] = known ? 0.001f * ((gfloat) y - 5 + 0.5f) : NAN;
 }
 
+/* On a picture @times as large as that of the camera. */
 static GstBuffer *
 draw_uv (const gchar * more, const gchar * camera, gint width, gint height,
-    GstVideoInfo * info)
+    gint times, GstVideoInfo * info)
 {
   g_autofree gchar *rig = write_rig ("", "");
   g_autofree gchar *properties = g_strdup_printf ("rig=%s draw-mesh=false %s",
       rig, more);
   g_autofree gfloat *uv = g_new (gfloat, 2 * width * height);
-  GstBuffer *buffer = picture ("RGB", 80, 60, 3, info), *out;
+  GstBuffer *buffer = picture ("RGB", 80 * times, 60 * times, 3, info), *out;
   GstHarness *h = overlay (properties, info), *m = mesh_pad (h);
   GstBuffer *mesh = mesh_buffer (COLUMNS * ROWS, -1);
 
@@ -265,7 +266,8 @@ draw_uv (const gchar * more, const gchar * camera, gint width, gint height,
   return out;
 }
 
-/* Each pixel is lighter or darker by the check that its place lies in. */
+/* Each pixel is lighter or darker by the check that its place lies in, also on a larger
+ * picture. */
 GST_START_TEST (test_checks)
 {
   static const gint edges[] = { 20, 10, 7 };
@@ -273,25 +275,27 @@ GST_START_TEST (test_checks)
   for (guint i = 0; i < G_N_ELEMENTS (edges); i++) {
     g_autofree gchar *properties = i ? g_strdup_printf ("check=%d", edges[i]) :
         g_strdup ("");
+    const gint times = 1 + (gint) i;
     GstVideoInfo info;
     GstVideoFrame frame;
-    GstBuffer *out = draw_uv (properties, "left", 80, 60, &info);
+    GstBuffer *out = draw_uv (properties, "left", 80, 60, times, &info);
 
     fail_unless (gst_video_frame_map (&frame, &info, out, GST_MAP_READ));
-    for (gint y = 0; y < 60; y++)
-      for (gint x = 0; x < 80; x++) {
-        const gint value = *pixel (&frame, 1, x, y);
-        const gint column = x < 5 ? -1 : (x - 5) / edges[i];
-        const gint row = y < 5 ? -1 : (y - 5) / edges[i];
+    for (gint k = 0; k < 80 * 60 * times * times; k++) {
+      const gint at[2] = { k % (80 * times), k / (80 * times) };
+      const gint x = at[0] / times, y = at[1] / times;
+      const gint value = *pixel (&frame, 1, at[0], at[1]);
+      const gint column = x < 5 ? -1 : (x - 5) / edges[i];
+      const gint row = y < 5 ? -1 : (y - 5) / edges[i];
 
-        if (x >= 60 && y >= 40) {
-          fail_unless_equals_int (value, FILL);
-        } else if ((column + row) % 2) {
-          fail_unless (value > FILL + 40, "(%d, %d): %d", x, y, value);
-        } else {
-          fail_unless (value < FILL - 40, "(%d, %d): %d", x, y, value);
-        }
+      if (x >= 60 && y >= 40) {
+        fail_unless_equals_int (value, FILL);
+      } else if ((column + row) % 2) {
+        fail_unless (value > FILL + 40, "(%d, %d): %d", x, y, value);
+      } else {
+        fail_unless (value < FILL - 40, "(%d, %d): %d", x, y, value);
       }
+    }
     gst_video_frame_unmap (&frame);
     check_padding (out, &info, 3);
     gst_buffer_unref (out);
@@ -305,11 +309,11 @@ GST_START_TEST (test_no_checks)
 {
   GstVideoInfo info;
 
-  check_untouched (draw_uv ("", "right", 80, 60, &info));
-  check_untouched (draw_uv ("", "left", 40, 30, &info));
-  check_untouched (draw_uv ("", "left", 60, 80, &info));
-  check_untouched (draw_uv ("", NULL, 80, 60, &info));
-  check_untouched (draw_uv ("draw-uv=false", "left", 80, 60, &info));
+  check_untouched (draw_uv ("", "right", 80, 60, 1, &info));
+  check_untouched (draw_uv ("", "left", 40, 30, 1, &info));
+  check_untouched (draw_uv ("", "left", 60, 80, 1, &info));
+  check_untouched (draw_uv ("", NULL, 80, 60, 1, &info));
+  check_untouched (draw_uv ("draw-uv=false", "left", 80, 60, 1, &info));
 }
 
 GST_END_TEST;
