@@ -424,6 +424,35 @@ test_memory (void)
   g_assert_cmpuint (mallinfo2 ().uordblks, ==, before);
 }
 
+/* All features of the film claim one place of the print. At most one of those that are farther
+ * apart than the slack can be right, and memory doesn't grow with their square. */
+static void
+test_crowd (void)
+{
+  g_autofree Print *print = print_new (1, 1);
+  g_autoptr (ClothReference) reference = reference_new (print);
+  g_autofree Film *film = film_new (print, plane, FALSE);
+  const ClothVerifyParams params = cloth_verify_default_params ();
+  g_autoptr (ClothVerifier) verifier = cloth_verifier_new ();
+  g_autofree ClothMatch *matches = g_new0 (ClothMatch, film->features.n);
+  const struct mallinfo2 before = mallinfo2 ();
+  ClothVerification verification;
+  struct mallinfo2 after;
+
+  for (guint i = 0; i < film->features.n; i++)
+    matches[i] = (ClothMatch) {
+    CLOTH_MATCH_MATCHED, 0, 10, i / 50};
+  cloth_verifier_run (verifier, &params, reference, &film->features, NULL,
+      matches, &verification);
+  after = mallinfo2 ();
+  g_test_message ("%u of %u left, %zu bytes", verification.n_verified,
+      film->features.n, after.uordblks + after.hblkhd - before.uordblks
+      - before.hblkhd);
+  g_assert_cmpuint (verification.n_verified, <=, film->features.n / 100);
+  g_assert_cmpuint (after.uordblks + after.hblkhd, <,
+      before.uordblks + before.hblkhd + 1000 * film->features.n);
+}
+
 /* The back matches with features of the back, and not without them. */
 static void
 test_back (void)
@@ -725,6 +754,7 @@ main (int argc, char **argv)
   g_test_add_func ("/match/refuse-group", test_refuse_group);
   g_test_add_func ("/match/refuse-alone", test_refuse_alone);
   g_test_add_func ("/match/memory", test_memory);
+  g_test_add_func ("/match/crowd", test_crowd);
   g_test_add_func ("/match/back", test_back);
   g_test_add_func ("/match/same", test_same);
   g_test_add_func ("/match/views", test_views);
