@@ -285,6 +285,33 @@ test_length (void)
   g_assert_true (broken);
 }
 
+/* Places outside of the picture, also beyond what a whole number holds, have no surface. */
+static void
+test_outside (void)
+{
+  static const gdouble far[] = { 1e6, 3e9, 1e30, INFINITY, -1.5, -3e9, -1e30,
+    -INFINITY, NAN
+  };
+  g_autofree Print *print = print_new (1, 1);
+  g_autofree Film *film = film_new (print, plane, FALSE);
+  const gfloat inside[2] = { 240, 240 };
+  gdouble length, point[3];
+  gboolean broken;
+
+  for (guint i = 0; i < G_N_ELEMENTS (far); i++)
+    for (guint c = 0; c < 2; c++) {
+      const gdouble x = c ? 240 : far[i], y = c ? far[i] : 240;
+      const gfloat outside[2] = { (gfloat) x, (gfloat) y };
+
+      g_assert_false (cloth_surface_get_point (&film->surface, x, y, 0.01,
+              point));
+      g_assert_false (cloth_surface_measure (&film->surface, inside, outside,
+              0.01, &length, &broken));
+    }
+  g_assert_true (cloth_surface_get_point (&film->surface, 240, 240, 0.01,
+          point));
+}
+
 /* Every tenth match is put elsewhere; every wrong one is refused, few right ones are. */
 static void
 test_refuse (void)
@@ -750,6 +777,7 @@ main (int argc, char **argv)
   g_test_add_func ("/match/cylinder", test_cylinder);
   g_test_add_func ("/match/fold", test_fold);
   g_test_add_func ("/match/length", test_length);
+  g_test_add_func ("/match/outside", test_outside);
   g_test_add_func ("/match/refuse", test_refuse);
   g_test_add_func ("/match/refuse-group", test_refuse_group);
   g_test_add_func ("/match/refuse-alone", test_refuse_alone);
