@@ -8,6 +8,7 @@
 #include "elements/gsttriangulateboard.h"
 
 #include "gst/cloth-io/points.h"
+#include "gst/vision/match/match.h"
 
 static const struct
 {
@@ -90,6 +91,7 @@ board_set_picture (GstTriangulateBoard * board,
   board->grid.columns = (guint) picture->columns;
   board->grid.rows = (guint) picture->rows;
   cloth_picture_pattern_get_edges (picture, board->grid.edge_m);
+  board->grid.window_px = cloth_align_default_params ().radius;
   return origin_m;
 }
 

@@ -21,6 +21,7 @@
 #include "gst/rig/dotbend.h"
 #include "gst/rig/errorfloor.h"
 #include "gst/rig/isometry.h"
+#include "gst/rig/windowbend.h"
 
 /* (0.1 px)²: a first guess of what a good calibration and a film's compression leave. */
 #define FIRST_FLOOR 0.01
@@ -38,6 +39,7 @@ struct _ClothReconstruction
   ClothErrorFloor floor;        /* of no weight before the first set */
   gboolean *wrong;              /* whether the isometry check denies a vertex */
   gdouble *denials;             /* room for it */
+  gdouble *creases;             /* room for windows on bent cloth */
   ClothTriangulateView flat[CLOTH_RIG_MAX_CAMERAS];     /* views without the bend */
   const ClothTriangulation *triangulation;      /* of the last pass */
   ClothReconstructed result;
@@ -77,6 +79,7 @@ cloth_reconstruction_free (ClothReconstruction * self)
   cloth_dot_bend_free (self->bend);
   g_free (self->wrong);
   g_free (self->denials);
+  g_free (self->creases);
   g_free (self->result.positions);
   g_free (self->result.covariances);
   g_free (self->result.states);
@@ -103,6 +106,7 @@ cloth_reconstruction_set_grid (ClothReconstruction * self,
   self->wrong = g_renew (gboolean, self->wrong, n);
   /* a number for each row as well */
   self->denials = g_renew (gdouble, self->denials, n + grid->rows);
+  self->creases = g_renew (gdouble, self->creases, 3 * n);
   g_clear_pointer (&self->bend, cloth_dot_bend_free);
   if (grid->dot_m > 0)
     self->bend = cloth_dot_bend_new (grid->columns, grid->rows, grid->edge_m[0],
@@ -277,6 +281,10 @@ cloth_reconstruction_run (ClothReconstruction * self,
         result->positions[3 * i + k] = NAN;
     }
   }
+  if (self->grid.window_px > 0)
+    cloth_window_bend_correct (self->grid.columns, self->grid.rows,
+        self->grid.window_px, self->rig, views, result->positions,
+        result->covariances, self->creases);
   compare_cameras (self, views);
   result->error_floor = cloth_reconstruction_get_error_floor (self);
   return result;

@@ -13,6 +13,8 @@ G_BEGIN_DECLS
  * @edge_m: distance of neighbours in a row and in a column on the flat cloth, metres
  * @dot_m: diameter of the dots whose centres of gravity are seen, metres; 0: what is seen
  *   are corners, or any points of a print; dots are as far apart in a row as in a column
+ * @window_px: half the edge of the windows by which places of a print were found, px of the
+ *   film; 0: they are points
  *
  * The grid of vertices that is printed on the cloth.
  */
@@ -20,6 +22,7 @@ typedef struct {
   guint columns, rows;
   gdouble edge_m[2];
   gdouble dot_m;
+  gdouble window_px;
 } ClothReconstructionGrid;
 
 /* @triangulate: of each vertex alone; an error floor below 0 stands for the one that the

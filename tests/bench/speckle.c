@@ -23,7 +23,7 @@
 
 #define POSES 5
 /* Between vertices, px of the first picture. */
-#define STEP 24
+#define STEP 20
 /* Of a pixel on the cylinder, m. */
 #define PIXEL 0.00011
 /* What is farther off than so many RMS is left out, once. */

@@ -1,15 +1,17 @@
 /* uv of each pixel of a rendered film, held against the truth: the paper's section 5.
  *
  *   bench-uv FOLDER [--NAME=VALUE…]
+ *   bench-uv FOLDER --from=8 --to=9 --picture=docs/images/uvmap.png
  *
  * The folder is one of matchfilm.h; without it there is nothing to do. Features of the film
  * are matched with its print on the true surface; along the surface stands beside the
- * interpolation in the picture on the same triangles. Times are those of all threads
+ * interpolation in the picture on the same triangles, without smoothing. Times are of all threads
  * together, the best of three rounds.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/vision/uv/uv.h"
 
+#include <gst/app/gstappsrc.h>
 #include <gst/gst.h>
 #include <math.h>
 #include <stdlib.h>
@@ -22,6 +24,9 @@
 #include "tests/bench/matchfilm.h"
 
 #define ROUNDS 3
+/* Of the checks laid over a picture, m, and what is white in a picture of errors, mm. */
+#define CHECK 0.02
+#define WHITE 4.0
 
 typedef enum
 {
@@ -54,6 +59,7 @@ typedef struct
 
 static ClothUVVertexParams vertex_params;
 static gboolean true_uv;
+static gchar *picture_file;
 static gdouble noise;
 
 static gdouble
@@ -207,6 +213,92 @@ judge_vertices (const MatchFilm * film, guint frame, const MatchTruth * truth,
   }
 }
 
+/* Writes a grey picture without padding as PNG. */
+static void
+write_png (const gchar * path, const guint8 * pixels, gint width, gint height)
+{
+  g_autofree gchar *line = g_strdup_printf ("appsrc name=source caps="
+      "video/x-raw,format=GRAY8,width=%d,height=%d,framerate=1/1 "
+      "format=time ! pngenc compression-level=9 ! filesink location=\"%s\"",
+      width, height, path);
+  g_autoptr (GError) error = NULL;
+  GstElement *pipeline = gst_parse_launch (line, &error), *source;
+  const gsize stride = ((gsize) width + 3) / 4 * 4;
+  GstBuffer *buffer = gst_buffer_new_allocate (NULL, stride * (gsize) height,
+      NULL);
+  GstMessage *message;
+
+  if (error)
+    g_error ("%s", error->message);
+  for (gint y = 0; y < height; y++)
+    gst_buffer_fill (buffer, stride * (gsize) y, pixels + (gsize) y * width,
+        (gsize) width);
+  source = gst_bin_get_by_name (GST_BIN (pipeline), "source");
+  gst_element_set_state (pipeline, GST_STATE_PLAYING);
+  gst_app_src_push_buffer (GST_APP_SRC (source), buffer);
+  gst_app_src_end_of_stream (GST_APP_SRC (source));
+  message = gst_bus_timed_pop_filtered (GST_ELEMENT_BUS (pipeline),
+      GST_CLOCK_TIME_NONE, GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
+  if (GST_MESSAGE_TYPE (message) == GST_MESSAGE_ERROR)
+    g_error ("%s can't be written", path);
+  gst_message_unref (message);
+  gst_element_set_state (pipeline, GST_STATE_NULL);
+  gst_object_unref (source);
+  gst_object_unref (pipeline);
+}
+
+/* The paper's figure 9: the film; checks of uv along the surface; and its figure 8 as errors,
+ * in the picture and along the surface. All four side by side, cut to the cloth and halved. */
+static void
+draw (const MatchFilm * film, guint frame, const MatchTruth * truth,
+    gfloat * const uv[N_WAYS])
+{
+  const guint8 *grey = film->film.pixels->data
+      + (gsize) frame * truth->width * truth->height;
+  gint box[4] = { truth->width, truth->height, 0, 0 }, width, height;
+  g_autofree guint8 *to = NULL;
+
+  for (gint y = 0; y < truth->height; y++)
+    for (gint x = 0; x < truth->width; x++)
+      if (truth->mask[(gsize) y * truth->width + x]) {
+        box[0] = MIN (box[0], x);
+        box[1] = MIN (box[1], y);
+        box[2] = MAX (box[2], x);
+        box[3] = MAX (box[3], y);
+      }
+  width = box[2] - box[0] + 1;
+  height = box[3] - box[1] + 1;
+  to = g_malloc0 (4 * (gsize) width * height);
+  for (gint y = 0; y < height; y++)
+    for (gint x = 0; x < width; x++) {
+      const gsize i = (gsize) (y + box[1]) * truth->width + x + box[0];
+      guint8 *at = to + 4 * (gsize) width * y + x;
+      const gfloat *p = uv[SURFACE] + 2 * i;
+
+      at[0] = grey[i];
+      if (!truth->mask[i])
+        continue;
+      at[width] = isnan (p[0]) ? 40 : (gint) (floor (p[0] / CHECK)
+          + floor (p[1] / CHECK)) % 2 ? 110 : 235;
+      for (gint k = 0; k < 2; k++) {
+        const gfloat *q = uv[k ? SURFACE : PICTURE] + 2 * i;
+        const gdouble e = 1e3 * hypot (q[0] - truth->uv[2 * i],
+            q[1] - truth->uv[2 * i + 1]);
+
+        at[(2 + k) * width] = isnan (e) ? 40 : (guint8) (80
+            + 175 * MIN (e / WHITE, 1));
+      }
+    }
+  for (gint y = 0; y < height / 2; y++)
+    for (gint x = 0; x < 2 * width; x++) {
+      const guint8 *from = to + 8 * (gsize) width * y + 2 * x;
+
+      to[2 * (gsize) width * y + x] = (guint8) ((from[0] + from[1]
+              + from[4 * width] + from[4 * width + 1] + 2) / 4);
+    }
+  write_png (picture_file, to, 2 * width, height / 2);
+}
+
 static void
 run_frame (const MatchFilm * film, guint frame,
     const ClothReference * reference, ClothCvSift * sift,
@@ -303,6 +395,8 @@ run_frame (const MatchFilm * film, guint frame,
     if (isnan (within[i]))
       uv[PICTURE][i] = NAN;
   judge (truth, uv, within, sums);
+  if (picture_file)
+    draw (film, frame, truth, uv);
   for (gsize i = 0; i < n; i++)
     if (!isnan (uv[SURFACE][2 * i]))
       worst = MAX (worst, hypot (uv[SURFACE][2 * i] - truth->uv[2 * i],
@@ -440,6 +534,9 @@ main (int argc, char **argv)
         "what the matched places truly show", NULL},
     {"noise", 0, 0, G_OPTION_ARG_DOUBLE, &noise,
         "white noise of disparities", "PX"},
+    {"picture", 0, 0, G_OPTION_ARG_FILENAME, &picture_file,
+          "film, checks, and errors in the picture and along the surface of the last frame",
+        "FILE.png"},
     {"together", 0, 0, G_OPTION_ARG_DOUBLE, &params.together, NULL, NULL},
     {"outlier", 0, 0, G_OPTION_ARG_DOUBLE, &params.outlier, NULL, NULL},
     {"smooth", 0, 0, G_OPTION_ARG_DOUBLE, &params.smooth, NULL, NULL},

@@ -79,7 +79,7 @@ typedef struct
 ClothUVParams
 cloth_uv_default_params (void)
 {
-  ClothUVParams params = { 2, 5, 0.6, 80, 12, cloth_stretch_default_params () };
+  ClothUVParams params = { 2, 5, 0.6, 80, 8, cloth_stretch_default_params () };
 
   params.stretch.stretch = 0.3;
   params.stretch.slack = 2;
@@ -469,7 +469,7 @@ name_places (const Run * run)
 static gboolean
 is_step (const Run * run, const gfloat * from, const gfloat * to)
 {
-  return fabsf (from[2] - to[2]) <= 0.5 * run->params.stretch.depth_step;
+  return fabsf (from[2] - to[2]) <= 0.25 * run->params.stretch.depth_step;
 }
 
 /* What the neighbours that have a uv say of a pixel; FALSE where none is on its surface. */
