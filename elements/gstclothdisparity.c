@@ -135,7 +135,8 @@ static const GstClothProperty properties[] = {
     "block",
     G_TYPE_INT, SETTING (stereo.small_step), ANY_TIME, 0, 99},
   {"large-step", "Large step",
-    "Penalty of a greater step; above small-step",
+    "Penalty of a greater step; above small-step. With windows above 15 px at "
+    "most 28000 / window² − 16, so that OpenCV's sums hold it",
     G_TYPE_INT, SETTING (stereo.large_step), ANY_TIME, 1, 100},
   {"uniqueness", "Uniqueness",
     "By how many percent the best disparity must beat the second",

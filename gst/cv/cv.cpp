@@ -289,6 +289,10 @@ cloth_cv_sift_run (ClothCvSift * sift, const ClothCvPicture * picture,
 
 /* ---- block matching ---- */
 
+/* Room in 16 bits for the greater penalty: less for larger blocks, by so much a pixel. */
+#define MOST_STEP 28000
+#define BLOCK_COST 16
+
 struct _ClothCvStereo
 {
   ClothCvStereoParams params;
@@ -306,15 +310,34 @@ cloth_cv_stereo_default_params (void)
   return ClothCvStereoParams { 0, 128, 7, 8 * 7 * 7, 32 * 7 * 7, 1, 10, 100, 2 };
 }
 
+/* OpenCV adds a path's costs in 16 bits and lets them overflow, which gives wrong disparities
+ * or none. To the greater penalty come the costs of a block that nothing matches: where both
+ * pictures are noise of black and white 10 to 17 a pixel, of small blocks sometimes more. */
+static gboolean
+check_sums (const ClothCvStereoParams * p, GError ** error)
+{
+  const gint area = p->window * p->window;
+  const gint most = MOST_STEP - BLOCK_COST * area;
+
+  if (p->large_step <= most)
+    return TRUE;
+  g_set_error (error, CLOTH_CV_ERROR, CLOTH_CV_ERROR_PARAMETER,
+      "large_step is %d, which is %g for each pixel of a block of %d × %d: "
+      "OpenCV's sums hold at most %d. Make the step or the window smaller",
+      p->large_step, p->large_step / (gdouble) area, p->window, p->window,
+      most / area);
+  return FALSE;
+}
+
 static gboolean
 check_stereo (const ClothCvStereoParams * p, GError ** error)
 {
   if (!check_range ("least", p->least, 0, 4096, error)
       || !check_range ("range", p->range, 16, 1024, error)
       || !check_range ("window", p->window, 1, 31, error)
-      || !check_range ("small_step", p->small_step, 0, 100000, error)
-      || !check_range ("large_step", p->large_step, p->small_step + 1, 100001,
-          error)
+      || !check_range ("small_step", p->small_step, 0, MOST_STEP - 1, error)
+      || !check_range ("large_step", p->large_step, p->small_step + 1.,
+          MOST_STEP, error) || !check_sums (p, error)
       || !check_range ("left_right", p->left_right, -1, 255, error)
       || !check_range ("uniqueness", p->uniqueness, 0, 100, error)
       || !check_range ("speckle_area", p->speckle_area, 0, 100000, error)

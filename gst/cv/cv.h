@@ -94,8 +94,8 @@ gboolean cloth_cv_sift_run (ClothCvSift * sift,
 /* @least: least disparity, px, 0 to 4096
  * @range: how many disparities are looked at from @least on, a multiple of 16, 16 to 1024
  * @window: edge of the blocks that are compared, px, odd, 1 to 31
- * @small_step: penalty of a step of 1 px between neighbours, 0 to 100000
- * @large_step: penalty of a greater step, above @small_step
+ * @small_step: penalty of a step of 1 px between neighbours, 0 or more
+ * @large_step: penalty of a greater step, above @small_step; at most 28000 − 16·@window²
  * @left_right: greatest difference of the disparities from left to right and back, px;
  *   negative: not checked
  * @uniqueness: by how many percent the best disparity must beat the second, 0 to 100

@@ -561,6 +561,53 @@ test_stereo_refused (void)
       CLOTH_CV_ERROR_PICTURE, "bytes apart");
 }
 
+/* OpenCV's sums have 16 bits: what is let through keeps below them, whatever the window. Black
+ * and white noise of a known shift beside noise that nothing matches; more is refused. */
+static void
+test_stereo_sums (void)
+{
+  enum
+  { LEFT = 500, ROWS = 80, SHIFT = 20, STRIPE = 100 };
+  static const gint windows[] = { 3, 7, 19, 25, 31 };
+  g_autofree guint8 *left = g_malloc (LEFT * ROWS);
+  g_autofree guint8 *right = g_malloc (LEFT * ROWS);
+  g_autofree gint16 *found = g_new (gint16, LEFT * ROWS);
+  const ClothCvPicture a = { left, LEFT, ROWS, LEFT };
+  const ClothCvPicture b = { right, LEFT, ROWS, LEFT };
+  ClothRandom random;
+
+  cloth_random_init (&random, 4);
+  for (gint i = 0; i < LEFT * ROWS; i++)
+    right[i] = (guint8) (255 * cloth_random_below (&random, 2));
+  for (gint i = 0; i < LEFT * ROWS; i++)
+    left[i] = i % LEFT >= SHIFT && i % LEFT / STRIPE % 2 == 0 ?
+        right[i - SHIFT] : (guint8) (255 * cloth_random_below (&random, 2));
+  for (guint k = 0; k < G_N_ELEMENTS (windows); k++) {
+    const gint area = windows[k] * windows[k];
+    ClothCvStereoParams params = cloth_cv_stereo_default_params ();
+    g_autoptr (ClothCvStereo) stereo = NULL;
+    guint n = 0, n_right = 0;
+
+    params.range = 64;
+    params.window = windows[k];
+    params.large_step = 28000 - 16 * area;
+    params.speckle_area = 0;
+    stereo = cloth_cv_stereo_new (&params, NULL);
+    g_assert_true (cloth_cv_stereo_run (stereo, &a, &b, found, NULL));
+    for (gint y = 20; y < ROWS - 20; y++)
+      for (gint x = 2 * STRIPE; x < 5 * STRIPE; x++)
+        if (x / STRIPE % 2 == 0 && x % STRIPE > 40 && x % STRIPE < 80) {
+          n++;
+          n_right += ABS (found[y * LEFT + x] - CLOTH_CV_STEPS * SHIFT) <= 8;
+        }
+    g_test_message ("blocks of %d px: %u of %u right", windows[k], n_right, n);
+    g_assert_cmpuint (n_right, ==, n);
+    params.large_step++;
+    ASSERT_REFUSED (cloth_cv_stereo_new (&params, &error),
+        CLOTH_CV_ERROR_PARAMETER, "large_step");
+  }
+}
+
 /* The smallest pictures that are let through, for the sanitizers to see. */
 static void
 test_stereo_smallest (void)
@@ -683,6 +730,7 @@ main (int argc, char **argv)
   g_test_add_func ("/cv/stereo/nothing", test_stereo_nothing);
   g_test_add_func ("/cv/stereo/refused", test_stereo_refused);
   g_test_add_func ("/cv/stereo/smallest", test_stereo_smallest);
+  g_test_add_func ("/cv/stereo/sums", test_stereo_sums);
   g_test_add_func ("/cv/remap", test_remap);
   g_test_add_func ("/cv/squeeze", test_squeeze);
   g_test_add_func ("/cv/resampling-refused", test_resampling_refused);

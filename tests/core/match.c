@@ -285,6 +285,33 @@ test_length (void)
   g_assert_true (broken);
 }
 
+/* Places outside of the picture, also beyond what a whole number holds, have no surface. */
+static void
+test_outside (void)
+{
+  static const gdouble far[] = { 1e6, 3e9, 1e30, INFINITY, -1.5, -3e9, -1e30,
+    -INFINITY, NAN
+  };
+  g_autofree Print *print = print_new (1, 1);
+  g_autofree Film *film = film_new (print, plane, FALSE);
+  const gfloat inside[2] = { 240, 240 };
+  gdouble length, point[3];
+  gboolean broken;
+
+  for (guint i = 0; i < G_N_ELEMENTS (far); i++)
+    for (guint c = 0; c < 2; c++) {
+      const gdouble x = c ? 240 : far[i], y = c ? far[i] : 240;
+      const gfloat outside[2] = { (gfloat) x, (gfloat) y };
+
+      g_assert_false (cloth_surface_get_point (&film->surface, x, y, 0.01,
+              point));
+      g_assert_false (cloth_surface_measure (&film->surface, inside, outside,
+              0.01, &length, &broken));
+    }
+  g_assert_true (cloth_surface_get_point (&film->surface, 240, 240, 0.01,
+          point));
+}
+
 /* Every tenth match is put elsewhere; every wrong one is refused, few right ones are. */
 static void
 test_refuse (void)
@@ -422,6 +449,35 @@ test_memory (void)
       before = mallinfo2 ().uordblks;
   }
   g_assert_cmpuint (mallinfo2 ().uordblks, ==, before);
+}
+
+/* All features of the film claim one place of the print. At most one of those that are farther
+ * apart than the slack can be right, and memory doesn't grow with their square. */
+static void
+test_crowd (void)
+{
+  g_autofree Print *print = print_new (1, 1);
+  g_autoptr (ClothReference) reference = reference_new (print);
+  g_autofree Film *film = film_new (print, plane, FALSE);
+  const ClothVerifyParams params = cloth_verify_default_params ();
+  g_autoptr (ClothVerifier) verifier = cloth_verifier_new ();
+  g_autofree ClothMatch *matches = g_new0 (ClothMatch, film->features.n);
+  const struct mallinfo2 before = mallinfo2 ();
+  ClothVerification verification;
+  struct mallinfo2 after;
+
+  for (guint i = 0; i < film->features.n; i++)
+    matches[i] = (ClothMatch) {
+    CLOTH_MATCH_MATCHED, 0, 10, i / 50};
+  cloth_verifier_run (verifier, &params, reference, &film->features, NULL,
+      matches, &verification);
+  after = mallinfo2 ();
+  g_test_message ("%u of %u left, %zu bytes", verification.n_verified,
+      film->features.n, after.uordblks + after.hblkhd - before.uordblks
+      - before.hblkhd);
+  g_assert_cmpuint (verification.n_verified, <=, film->features.n / 100);
+  g_assert_cmpuint (after.uordblks + after.hblkhd, <,
+      before.uordblks + before.hblkhd + 1000 * film->features.n);
 }
 
 /* The back matches with features of the back, and not without them. */
@@ -721,10 +777,12 @@ main (int argc, char **argv)
   g_test_add_func ("/match/cylinder", test_cylinder);
   g_test_add_func ("/match/fold", test_fold);
   g_test_add_func ("/match/length", test_length);
+  g_test_add_func ("/match/outside", test_outside);
   g_test_add_func ("/match/refuse", test_refuse);
   g_test_add_func ("/match/refuse-group", test_refuse_group);
   g_test_add_func ("/match/refuse-alone", test_refuse_alone);
   g_test_add_func ("/match/memory", test_memory);
+  g_test_add_func ("/match/crowd", test_crowd);
   g_test_add_func ("/match/back", test_back);
   g_test_add_func ("/match/same", test_same);
   g_test_add_func ("/match/views", test_views);

@@ -478,7 +478,7 @@ test_vertices (void)
   scene_clear (&s);
 }
 
-/* A place that is known better counts instead of uv's. */
+/* A place that is known better counts instead of uv's, unless they contradict each other. */
 static void
 test_spots (void)
 {
@@ -508,6 +508,16 @@ test_spots (void)
   for (guint c = 0; c < 3; c++)
     g_assert_cmpfloat (fabs (w[middle].point[c] - p[c]), <, 0.0003);
   g_assert_cmpmem (&w[middle + 1], sizeof *w, &v[middle + 1], sizeof *w);
+  /* 20 px are some 60 mm: one of the two is wrong */
+  spots[0].x += 20;
+  g_assert_true (cylinder (spots[0].x, spots[0].y, p, uv));
+  find_vertices (&s, spots, 1, w);
+  g_assert_false (w[middle].seen);
+  spots[0].x = 1e30;
+  find_vertices (&s, spots, 1, w);
+  g_assert_false (w[middle].seen);
+  w[middle] = v[middle];
+  g_assert_cmpmem (w, sizeof w, v, sizeof v);
   scene_clear (&s);
 }
 

@@ -472,8 +472,9 @@ cloth_grower_run (ClothGrower * grower, const ClothGrowParams * params,
   Run run = { grower, *params, 0, CLOTH_SIMD_TABLE (cloth_match_kernel, level),
     reference, features, surface, matches
   };
-  const gdouble far = CLAMP (params->distance, 0, 2000);
-  const gdouble seed_far = CLAMP (params->seed_distance, 0, 2000);
+  /* fmax () also takes what is no number to the least */
+  const gdouble far = fmin (fmax (params->distance, 0), 2000);
+  const gdouble seed_far = fmin (fmax (params->seed_distance, 0), 2000);
   guint at = 0, n_settled = 0;
 
   *growth = (ClothGrowth) {
@@ -483,7 +484,7 @@ cloth_grower_run (ClothGrower * grower, const ClothGrowParams * params,
     CLOTH_MATCH_UNKNOWN, CLOTH_MATCH_NONE, 0, 0};
   if (!features->n)
     return;
-  run.params.radius = CLAMP (params->radius, 1, MAX_RADIUS);
+  run.params.radius = fmin (fmax (params->radius, 1), MAX_RADIUS);
   run.params.stretch = cloth_stretch_clamp_params (&params->stretch);
   run.most = (guint32) (far * far);
   g_array_set_size (grower->tries, features->n);

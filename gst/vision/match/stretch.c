@@ -45,11 +45,16 @@ gboolean
 cloth_surface_get_point (const ClothMatchSurface * surface, gdouble x,
     gdouble y, gdouble depth_step, gdouble point[3])
 {
-  const gint x0 = (gint) floor (x), y0 = (gint) floor (y);
   const gfloat *corners[4], *nearest = NULL;
   gdouble weights[4], low = INFINITY, high = -INFINITY, best = -1;
   gboolean whole = TRUE;
+  gint x0, y0;
 
+  /* before they become whole numbers, which have no room for what is far outside */
+  if (!(x > -1 && y > -1 && x < surface->width && y < surface->height))
+    return FALSE;
+  x0 = (gint) floor (x);
+  y0 = (gint) floor (y);
   if (x >= 0 && y >= 0 && x0 < surface->width - 1 && y0 < surface->height - 1) {
     const gfloat *p = surface->points + 3 * ((gsize) y0 * surface->stride + x0);
     const gfloat *q = p + 3 * surface->stride;
@@ -65,8 +70,6 @@ cloth_surface_get_point (const ClothMatchSurface * surface, gdouble x,
       return TRUE;
     }
   }
-  if (!(x > -1 && y > -1 && x < surface->width && y < surface->height))
-    return FALSE;
   for (gint k = 0; k < 4; k++) {
     const gint cx = CLAMP (x0 + (k & 1), 0, surface->width - 1);
     const gint cy = CLAMP (y0 + (k >> 1), 0, surface->height - 1);
@@ -110,14 +113,15 @@ cloth_surface_measure (const ClothMatchSurface * surface,
     gdouble * length, gboolean * broken)
 {
   const gdouble dx = to[0] - from[0], dy = to[1] - from[1];
-  const gint n = MAX ((gint) ceil (sqrt (dx * dx + dy * dy) / STEP), 1);
   gdouble last[3], end[3];
+  gint n;
 
   *length = 0;
   *broken = FALSE;
   if (!cloth_surface_get_point (surface, from[0], from[1], depth_step, last)
       || !cloth_surface_get_point (surface, to[0], to[1], depth_step, end))
     return FALSE;
+  n = MAX ((gint) ceil (sqrt (dx * dx + dy * dy) / STEP), 1);
   for (gint k = 1; k <= n; k++) {
     gdouble now[3] = { end[0], end[1], end[2] };
     gdouble d[3];

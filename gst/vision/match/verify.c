@@ -24,6 +24,9 @@
 #define ROUNDS 8
 /* Usual distance of features, px. */
 #define USUAL 10.0
+/* Features of a place that another one is asked about at most. Where thousands of a film claim
+ * one place of the print, as of a print that repeats, all pairs would take gigabytes. */
+#define CROWD 16
 
 typedef enum
 {
@@ -264,17 +267,25 @@ compare_flat_places (gconstpointer pa, gconstpointer pb, gpointer data)
   return a < b ? -1 : a > b;
 }
 
-/* Features of two neighbouring places, or of one. */
+/* Features of two neighbouring places, or of one; each with @CROWD of a place at most. */
 static void
 connect_places (Run * run, guint p, guint q, gboolean flat)
 {
   const GArray *from = flat ? run->self->flat : run->self->live;
-  const guint *sorted = (const guint *) from->data;
   const guint *places = (const guint *) run->self->places->data;
+  const guint *a = (const guint *) from->data + places[p];
+  const guint *b = (const guint *) from->data + places[q];
+  const guint n_a = places[p + 1] - places[p];
+  const guint n_b = places[q + 1] - places[q];
 
-  for (guint i = places[p]; i < places[p + 1]; i++)
-    for (guint j = p == q ? i + 1 : places[q]; j < places[q + 1]; j++)
-      connect (run, sorted[i], sorted[j], flat);
+  for (guint i = 0; i < n_a; i++) {
+    /* evenly spread, so that those of the other place are all asked about as often */
+    const guint first = p == q ? i + 1 : (guint) ((guint64) i * n_b / n_a);
+    const guint n = MIN (p == q ? n_a - first : n_b, CROWD);
+
+    for (guint k = 0; k < n; k++)
+      connect (run, a[i], b[(first + k) % n_b], flat);
+  }
 }
 
 /* The edges of the triangles, each once. */

@@ -166,7 +166,9 @@ make_places (const Run * run, const ClothUVMatch * matches, guint n)
       g_array_append_val (self->order, matches[i]);
   n = self->order->len;
   m = (const ClothUVMatch *) self->order->data;
-  qsort (self->order->data, n, sizeof *m, compare_matches);
+  /* an empty array has no data */
+  if (n)
+    qsort (self->order->data, n, sizeof *m, compare_matches);
   used = (guint8 *) g_array_set_size (self->used, n)->data;
   if (n)
     memset (used, 0, n);
@@ -414,7 +416,8 @@ mark_outliers (const Run * run, gdouble * sigma)
   gboolean within;
 
   *sigma = 0;
-  memset (out, 0, n);
+  if (n)
+    memset (out, 0, n);
   for (guint i = 0; i < n; i++) {
     errors[i] = get_error (self, i, e, &within);
     if (errors[i] >= 0)

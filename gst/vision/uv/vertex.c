@@ -26,7 +26,8 @@
 /* A parabola's middle lies within its pixels when their mean is not farther from it than
  * this share of their extent: else it would turn away, and a plane is fitted. */
 #define WITHIN 0.5
-/* Pixels of a surface are at most this many times as far apart as on the flat cloth. */
+/* Pixels of a surface are at most this many times as far apart as on the flat cloth; and a
+ * place known otherwise is at most so many radii from where uv has the vertex. */
 #define APART 1.5
 
 struct _ClothUVVertices
@@ -261,10 +262,11 @@ weigh (gdouble square)
   return square < 1 ? (1 - square) * (1 - square) : 0;
 }
 
-/* Where the picture shows a vertex, by uv; in units of the radius on the cloth. */
+/* Where the picture shows a vertex, by uv. @step: (out): xx, xy and yy of what the place's
+ * covariance would be if uv's standard deviation were a radius */
 static gboolean
 find_place (const Run * run, guint vertex, const guint32 * pixels, guint n,
-    ClothUVSpot * spot)
+    ClothUVSpot * spot, gdouble step[3])
 {
   const gdouble radius = run->params.radius;
   gdouble at[2], nearest = INFINITY, sigma;
@@ -291,16 +293,27 @@ find_place (const Run * run, guint vertex, const guint32 * pixels, guint n,
   sigma = run->params.noise;
   if (run->dense)
     sigma = MAX (sigma, cloth_uv_get_sigma (run->dense, middle));
-  sigma /= radius;
+  sigma *= sigma / (radius * radius);
+  step[0] = fit.slope_a[0] * fit.slope_a[0] + fit.slope_b[0] * fit.slope_b[0];
+  step[1] = fit.slope_a[0] * fit.slope_a[1] + fit.slope_b[0] * fit.slope_b[1];
+  step[2] = fit.slope_a[1] * fit.slope_a[1] + fit.slope_b[1] * fit.slope_b[1];
   *spot = (ClothUVSpot) {
-    vertex, fit.value[0], fit.value[1],
-        sigma * sigma * (fit.slope_a[0] * fit.slope_a[0]
-        + fit.slope_b[0] * fit.slope_b[0]),
-        sigma * sigma * (fit.slope_a[0] * fit.slope_a[1]
-        + fit.slope_b[0] * fit.slope_b[1]),
-        sigma * sigma * (fit.slope_a[1] * fit.slope_a[1]
-      + fit.slope_b[1] * fit.slope_b[1])};
+  vertex, fit.value[0], fit.value[1], sigma * step[0], sigma * step[1],
+        sigma * step[2]};
   return TRUE;
+}
+
+/* Whether a place that is known otherwise lies where uv has the vertex, as far as the fits
+ * reach. @step: covariance of the place for a radius on the flat cloth */
+static gboolean
+is_near (const ClothUVSpot * spot, const gdouble step[3],
+    const ClothUVSpot * known)
+{
+  const gdouble dx = known->x - spot->x, dy = known->y - spot->y;
+  const gdouble det = step[0] * step[2] - step[1] * step[1];
+
+  return det > 0 && step[2] * dx * dx - 2 * step[1] * dx * dy
+      + step[0] * dy * dy <= APART * APART * det;
 }
 
 /* The point of a place in the picture. */
@@ -375,8 +388,8 @@ find_point (const Run * run, const ClothUVSpot * spot, const guint32 * pixels,
  * @n_spots: how many
  * @vertices: (out): (array): columns·rows of @shape
  *
- * A vertex is unseen where no pixel is near it on the flat cloth, and where its pixels
- * contradict each other.
+ * A vertex is unseen where no pixel is near it on the flat cloth, where its pixels contradict
+ * each other, and where a spot lies elsewhere than they do.
  *
  * Returns: how many are seen
  */
@@ -409,16 +422,19 @@ cloth_uv_vertices_run (ClothUVVertices * self,
     guint32 *pixels = (guint32 *) self->pixels->data + starts[i];
     guint n_pixels = starts[i + 1] - starts[i];
     ClothUVSpot spot;
+    gdouble step[3];
 
     vertices[i] = (ClothUVVertex) {
     FALSE};
     n_pixels = n_pixels ? keep_one_part (&run, pixels, n_pixels) : 0;
-    if (!n_pixels || !find_place (&run, i, pixels, n_pixels, &spot))
+    if (!n_pixels || !find_place (&run, i, pixels, n_pixels, &spot, step))
       continue;
     if (of[i] != NONE) {
       const ClothUVSpot *known = &spots[of[i]];
       const gdouble share = run.params.doubt * run.params.doubt;
 
+      if (!is_near (&spot, step, known))
+        continue;
       spot = (ClothUVSpot) {
       i, known->x, known->y, known->xx + share * spot.xx,
             known->xy + share * spot.xy, known->yy + share * spot.yy};
