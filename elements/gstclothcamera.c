@@ -93,7 +93,7 @@ static const GstClothProperty properties[] = {
     G_TYPE_STRING, SETTING (texture), GST_PARAM_MUTABLE_READY},
   {"sides", "Sides",
     "Sides of the cloth that show the print; 2: the back shows it mirrored, as "
-    "where it soaks through",
+    "where it soaks through. A pattern of kind picture that says 2 has both",
     G_TYPE_UINT, SETTING (sides), GST_PARAM_MUTABLE_READY, 1, 2},
   {"effects", "Effects",
     "Camera and image effects, as “noise,sigma=3; "
@@ -723,7 +723,6 @@ gst_cloth_camera_start (GstBaseTransform * trans)
         ("Leave out pattern= or texture=."));
     return FALSE;
   }
-  self->style.two_sided = self->settings.sides > 1;
   gst_cloth_damage_reset (&self->settings.damage, GST_ELEMENT (self));
   return gst_cloth_camera_load (self);
 }
@@ -763,6 +762,7 @@ gst_cloth_camera_set_caps (GstBaseTransform * trans, GstCaps * in,
   g_autoptr (GstClothTopology) topology = NULL;
   const gfloat *uv;
   const guint32 *faces;
+  guint sides = settings->sides;
 
   if (!output_set (&self->output, out)) {
     GST_ERROR_OBJECT (self, "can't make pictures of %" GST_PTR_FORMAT, out);
@@ -789,7 +789,7 @@ gst_cloth_camera_set_caps (GstBaseTransform * trans, GstCaps * in,
   uv = gst_cloth_topology_get_uv (topology, NULL);
   faces = gst_cloth_topology_get_faces (topology, NULL);
   if (settings->pattern)
-    self->paint = gst_cloth_paint_pattern (settings->pattern, &error);
+    self->paint = gst_cloth_paint_pattern (settings->pattern, &sides, &error);
   else if (settings->texture)
     self->paint = gst_cloth_paint_texture (settings->texture, uv,
         self->n_vertices, &error);
@@ -801,6 +801,7 @@ gst_cloth_camera_set_caps (GstBaseTransform * trans, GstCaps * in,
             settings->pattern : settings->texture, error->message), (NULL));
     return FALSE;
   }
+  self->style.two_sided = sides > 1;
   self->renderer = cloth_renderer_new (self->n_vertices, uv, faces,
       gst_cloth_topology_get_n_faces (topology), settings->threads,
       CLOTH_SIMD_BEST);

@@ -173,7 +173,7 @@ paint_picture (const gchar * path,
 }
 
 ClothPaint *
-gst_cloth_paint_pattern (const gchar * path, GError ** error)
+gst_cloth_paint_pattern (const gchar * path, guint * sides, GError ** error)
 {
   g_autoptr (ClothAnyPattern) pattern = cloth_any_pattern_load (path, error);
   g_autoptr (ClothTexture) texture = NULL;
@@ -183,9 +183,11 @@ gst_cloth_paint_pattern (const gchar * path, GError ** error)
 
   if (!pattern)
     return NULL;
-  if (pattern->picture)
+  if (pattern->picture) {
+    *sides = MAX (*sides, (guint) pattern->picture->sides);
     return paint_picture (pattern->picture->reference, origin,
         pattern->picture->cloth_m, error);
+  }
   texture = pattern->dots ? draw_dots (pattern->dots, light, error) :
       draw_squares (pattern->checker, light, error);
   if (!texture)

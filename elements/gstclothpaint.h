@@ -20,7 +20,9 @@ GstSample *gst_cloth_load_picture (const gchar * path, const gchar * formats,
 GstBuffer *gst_cloth_convert_picture (GstSample * picture,
     const GstVideoInfo * film, GstVideoFormat format, GstVideoInfo * info);
 
-ClothPaint *gst_cloth_paint_pattern (const gchar * path, GError ** error);
+/* What a pattern.json shows. @sides: (inout): raised to what a pattern of kind picture says. */
+ClothPaint *gst_cloth_paint_pattern (const gchar * path, guint * sides,
+    GError ** error);
 /* A picture over the whole of the flat cloth. */
 ClothPaint *gst_cloth_paint_texture (const gchar * path, const gfloat * uv,
     guint n_vertices, GError ** error);

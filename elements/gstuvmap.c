@@ -446,17 +446,13 @@ gst_uv_map_do_head (GstUVMap * self, guint index, const Settings * settings,
       counts.n_between, counts.n_beyond, counts.n_surface, n_seen);
 }
 
-/* Tells once when heads contradict each other on most of what two or more see. */
+/* Tells once when heads contradict each other on most of what two or more have seen since the
+ * last judgement. */
 static void
-gst_uv_map_check (GstUVMap * self, const ClothUVJoined * joined)
+gst_uv_map_judge_heads (GstUVMap * self)
 {
-  const guint64 lost = joined->n_contradicted + joined->n_left_out;
-
-  self->n_compared += joined->n_joined + lost;
-  self->n_contradicted += lost;
-  if (++self->n_sets < CHECKED_SETS || self->warned_contradiction)
-    return;
-  if (2 * self->n_contradicted > self->n_compared) {
+  if (2 * self->n_contradicted > self->n_compared
+      && !self->warned_contradiction) {
     self->warned_contradiction = TRUE;
     GST_ELEMENT_WARNING (self, STREAM, FAILED,
         ("Heads contradict each other on %.0f%% of the vertices that two or "
@@ -468,6 +464,27 @@ gst_uv_map_check (GstUVMap * self, const ClothUVJoined * joined)
   }
   self->n_sets = 0;
   self->n_compared = self->n_contradicted = 0;
+}
+
+static void
+gst_uv_map_check (GstUVMap * self, const ClothUVJoined * joined)
+{
+  const guint64 lost = joined->n_contradicted + joined->n_left_out;
+
+  self->n_compared += joined->n_joined + lost;
+  self->n_contradicted += lost;
+  if (++self->n_sets >= CHECKED_SETS)
+    gst_uv_map_judge_heads (self);
+}
+
+/* A film may end before the next judgement is due. Seen on the source pad, in the thread that
+ * makes the meshes. */
+static GstPadProbeReturn
+gst_uv_map_sum_up (GstPad * pad, GstPadProbeInfo * info, gpointer data)
+{
+  if (GST_EVENT_TYPE (GST_PAD_PROBE_INFO_EVENT (info)) == GST_EVENT_EOS)
+    gst_uv_map_judge_heads (data);
+  return GST_PAD_PROBE_OK;
 }
 
 static GstFlowReturn
@@ -643,4 +660,6 @@ gst_uv_map_init (GstUVMap * self)
   self->states = g_byte_array_new ();
   for (guint i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++)
     self->view[i].camera = -1;
+  gst_pad_add_probe (GST_AGGREGATOR_SRC_PAD (self),
+      GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM, gst_uv_map_sum_up, self, NULL);
 }

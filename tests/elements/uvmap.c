@@ -404,6 +404,34 @@ GST_START_TEST (test_contradiction)
 
 GST_END_TEST;
 
+/* A film that ends before the 25th set is judged, too. */
+GST_START_TEST (test_short_contradiction)
+{
+  View wrong = usual;
+  Bench b;
+
+  wrong.aside = 0.05;
+  bench_init (&b, 2, &usual, 1);
+  push (&b, 0, &usual, 0);
+  push (&b, 1, &wrong, 0);
+  gst_buffer_unref (gst_harness_pull (b.src));
+  fail_unless_equals_int (count_messages (&b, GST_MESSAGE_WARNING,
+          "contradict"), 0);
+  gst_harness_push_event (b.in[0], gst_event_new_eos ());
+  gst_harness_push_event (b.in[1], gst_event_new_eos ());
+  while (TRUE) {
+    g_autoptr (GstEvent) event = gst_harness_pull_event (b.src);
+
+    if (GST_EVENT_TYPE (event) == GST_EVENT_EOS)
+      break;
+  }
+  fail_unless_equals_int (count_messages (&b, GST_MESSAGE_WARNING,
+          "contradict"), 1);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
 /* The third tells which of two is wrong. */
 GST_START_TEST (test_three_heads)
 {
@@ -779,6 +807,7 @@ uvmap_suite (void)
   tcase_add_test (tc, test_one_head);
   tcase_add_test (tc, test_two_heads);
   tcase_add_test (tc, test_contradiction);
+  tcase_add_test (tc, test_short_contradiction);
   tcase_add_test (tc, test_three_heads);
   tcase_add_test (tc, test_three_cameras);
   tcase_add_test (tc, test_missing);
