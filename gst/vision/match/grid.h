@@ -93,7 +93,8 @@ typedef struct {
 
 /* @n_aligned: vertices placed by the print
  * @n_matched: by matches only
- * @n_contradicted: that seem to be at two places at once, and are left out
+ * @n_contradicted: that seem to be at two places at once by the matches; they are left out
+ *   unless the print beside an aligned neighbour shows them
  */
 typedef struct {
   guint n_aligned, n_matched, n_contradicted;
