@@ -288,7 +288,7 @@ test_scene (void)
   g_assert_true (cloth_disparity_border (&pair, 16, 96, &border, NULL));
   g_assert_cmpfloat (MAX (border.least, border.most), <, 0.01);
   memset (states, MEASURED, n);
-  g_assert_true (cloth_disparity_merge (&pair, 1, 1, &map, NULL));
+  g_assert_true (cloth_disparity_merge (&pair, 1, 1, &map, NULL, NULL));
   for (gsize i = 0; i < n; i++)
     disparities[i] = rintf (disparities[i]);
   bad = measure_scene (&map, truth, MEASURED, &rms);
@@ -476,13 +476,13 @@ refuse_map (gint width, gint height, gint stride)
           &error));
   REFUSED (cloth_disparity_smooth (self, &params, &map, NULL, CLOTH_SIMD_BEST,
           &error));
-  REFUSED (cloth_disparity_merge (&good, 1, 1, &map, &error));
+  REFUSED (cloth_disparity_merge (&good, 1, 1, &map, NULL, &error));
   map = (ClothDisparityMap) {
   disparities, states, 8, 8, 8};
   pair.width = width;
   pair.height = height;
   pair.stride = stride;
-  REFUSED (cloth_disparity_merge (&pair, 1, 1, &map, &error));
+  REFUSED (cloth_disparity_merge (&pair, 1, 1, &map, NULL, &error));
   REFUSED (cloth_disparity_border (&pair, 0, 16, &border, &error));
   if (stride >= width)
     REFUSED (cloth_disparity_check (found, found, width, height, -16, 16,
