@@ -46,14 +46,14 @@ struct _ClothDisparity
   gboolean filling;
 };
 
-/* Returns: steps of 1.5 px, holes of 2000 px, a tolerance of 1e-4, a half-width of 0.5 px
+/* Returns: steps of 1.5 px, holes of 2000 px, a tolerance of 1e-3, a half-width of 0.5 px
  *   on all levels, 30 sweeps with corrections 1.5 times as large
  */
 ClothDisparityParams
 cloth_disparity_default_params (void)
 {
   return (ClothDisparityParams) {
-  1.5, 2000, 1e-4, 0.5, 1, 30, 1.5};
+  1.5, 2000, 1e-3, 0.5, 1, 30, 1.5};
 }
 
 /* Returns: (transfer full): memory that is used again for each map of one size
