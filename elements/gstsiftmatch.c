@@ -697,7 +697,7 @@ gst_sift_match_analyse (GstClothFilter * filter,
   cloth_grower_run (self->grower, &grow, self->reference, &features, surface,
       matches, &growth, self->pool, CLOTH_SIMD_BEST);
   cloth_verifier_run (self->verifier, &verify, self->reference, &features,
-      surface, matches, &verification);
+      surface, matches, &verification, self->pool);
 
   grid_matches = (ClothGridMatch *) g_array_set_size (self->grid_matches,
       features.n)->data;

@@ -11,6 +11,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "gst/math/delaunay-private.h"
+
 /* By how much of the scale a point is moved, and how far out of all points the first
  * triangle reaches, in their extents. */
 #define MOVE 1e-6
@@ -21,11 +23,11 @@
 typedef struct
 {
   guint a, b, c;
-  gdouble x, y, square;         /* the circle */
 } Triangle;
 
 typedef struct
 {
+  guint64 key;                  /* of the two points, in either order */
   guint a, b;
 } Edge;
 
@@ -37,7 +39,11 @@ typedef struct
 
 struct _ClothDelaunay
 {
-  GArray *places, *order, *open, *edges, *found;
+  GArray *places, *order, *edges, *found;
+  /* not yet done, with their circles */
+  Triangle *open;
+  ClothDelaunayCircles circles;
+  guint n_open, most;
 };
 
 static gdouble
@@ -65,12 +71,8 @@ static gint
 compare_edges (gconstpointer pa, gconstpointer pb)
 {
   const Edge *a = pa, *b = pb;
-  guint a0 = MIN (a->a, a->b), b0 = MIN (b->a, b->b);
-  guint a1 = MAX (a->a, a->b), b1 = MAX (b->a, b->b);
 
-  if (a0 != b0)
-    return a0 < b0 ? -1 : 1;
-  return a1 < b1 ? -1 : a1 > b1;
+  return a->key < b->key ? -1 : a->key > b->key;
 }
 
 /* A point has some six edges around it: fewer steps than a call each. */
@@ -87,26 +89,124 @@ sort_edges (GArray * edges)
     const Edge edge = e[i];
     guint k = i;
 
-    for (; k > 0 && compare_edges (&e[k - 1], &edge) > 0; k--)
+    for (; k > 0 && e[k - 1].key > edge.key; k--)
       e[k] = e[k - 1];
     e[k] = edge;
   }
 }
 
-static Triangle
-circle (const gdouble * p, guint a, guint b, guint c)
+/* An edge of two triangles lies within the hole that they leave. */
+static void
+add_edge (GArray * edges, guint a, guint b)
 {
-  Triangle t = { a, b, c, 0, 0, 0 };
-  gdouble bx = p[2 * b] - p[2 * a], by = p[2 * b + 1] - p[2 * a + 1];
-  gdouble cx = p[2 * c] - p[2 * a], cy = p[2 * c + 1] - p[2 * a + 1];
-  gdouble d = 2 * (bx * cy - by * cx);
-  gdouble b2 = bx * bx + by * by, c2 = cx * cx + cy * cy;
-  gdouble x = (cy * b2 - by * c2) / d, y = (bx * c2 - cx * b2) / d;
+  const Edge edge = { (guint64) MIN (a, b) << 32 | MAX (a, b), a, b };
+  const Edge *e = (const Edge *) edges->data;
 
-  t.x = p[2 * a] + x;
-  t.y = p[2 * a + 1] + y;
-  t.square = x * x + y * y;
-  return t;
+  for (guint k = 0; k < edges->len; k++)
+    if (e[k].key == edge.key) {
+      g_array_remove_index_fast (edges, k);
+      return;
+    }
+  g_array_append_val (edges, edge);
+}
+
+/* ---- triangles that are not done ---- */
+
+static void
+reserve (ClothDelaunay * self, guint n)
+{
+  ClothDelaunayCircles *c = &self->circles;
+  const guint before = self->most + CLOTH_DELAUNAY_LANES;
+
+  if (n <= self->most)
+    return;
+  self->most = MAX (n, 2 * self->most);
+  self->open = g_renew (Triangle, self->open, self->most);
+  c->x = g_renew (gdouble, c->x, self->most + CLOTH_DELAUNAY_LANES);
+  c->y = g_renew (gdouble, c->y, self->most + CLOTH_DELAUNAY_LANES);
+  c->square = g_renew (gdouble, c->square, self->most + CLOTH_DELAUNAY_LANES);
+  for (guint i = before; i < self->most + CLOTH_DELAUNAY_LANES; i++) {
+    c->x[i] = INFINITY;
+    c->y[i] = c->square[i] = 0;
+  }
+}
+
+/* Adds the triangle of three points, for which there is room. */
+static void
+open_triangle (ClothDelaunay * self, guint a, guint b, guint c)
+{
+  const gdouble *p = (const gdouble *) self->places->data;
+  const gdouble bx = p[2 * b] - p[2 * a], by = p[2 * b + 1] - p[2 * a + 1];
+  const gdouble cx = p[2 * c] - p[2 * a], cy = p[2 * c + 1] - p[2 * a + 1];
+  const gdouble d = 2 * (bx * cy - by * cx);
+  const gdouble b2 = bx * bx + by * by, c2 = cx * cx + cy * cy;
+  const gdouble x = (cy * b2 - by * c2) / d, y = (bx * c2 - cx * b2) / d;
+  const guint at = self->n_open++;
+
+  self->open[at] = (Triangle) {
+  a, b, c};
+  self->circles.x[at] = p[2 * a] + x;
+  self->circles.y[at] = p[2 * a + 1] + y;
+  self->circles.square[at] = x * x + y * y;
+}
+
+/* The last one takes its place. */
+static void
+close_triangle (ClothDelaunay * self, guint at)
+{
+  const ClothDelaunayCircles *c = &self->circles;
+  const guint last = --self->n_open;
+
+  self->open[at] = self->open[last];
+  c->x[at] = c->x[last];
+  c->y[at] = c->y[last];
+  c->square[at] = c->square[last];
+  c->x[last] = INFINITY;
+  c->y[last] = c->square[last] = 0;
+}
+
+static void
+close_all (ClothDelaunay * self)
+{
+  while (self->n_open)
+    close_triangle (self, self->n_open - 1);
+}
+
+/* Closes those whose circles hold the point, which leaves a hole with edges; and those that
+ * are done. */
+static void
+make_hole (ClothDelaunay * self, const ClothDelaunayKernel * kernel,
+    const gdouble at[2], guint n)
+{
+  const ClothDelaunayCircles *c = &self->circles;
+
+  g_array_set_size (self->edges, 0);
+  for (guint k = 0; (k = kernel->find (c, k, self->n_open, at[0],
+              at[1])) < self->n_open;) {
+    const Triangle t = self->open[k];
+    const gdouble dx = at[0] - c->x[k], dy = at[1] - c->y[k];
+
+    if (dx * dx + dy * dy < c->square[k]) {
+      add_edge (self->edges, t.a, t.b);
+      add_edge (self->edges, t.b, t.c);
+      add_edge (self->edges, t.c, t.a);
+    } else if (t.a < n && t.b < n && t.c < n)
+      g_array_append_vals (self->found, &t, 3);
+    close_triangle (self, k);
+  }
+  sort_edges (self->edges);
+}
+
+/* Triangles of the hole's edges and point @number. */
+static void
+fill_hole (ClothDelaunay * self, guint number)
+{
+  const Edge *edges = (const Edge *) self->edges->data;
+  const guint n = self->edges->len;
+
+  reserve (self, self->n_open + n);
+  for (guint k = 0; k < n; k++)
+    open_triangle (self, edges[k].a, edges[k].b, number);
 }
 
 /* Returns: (transfer full): room for triangles that is used again and again
@@ -114,11 +214,10 @@ circle (const gdouble * p, guint a, guint b, guint c)
 ClothDelaunay *
 cloth_delaunay_new (void)
 {
-  ClothDelaunay *self = g_new (ClothDelaunay, 1);
+  ClothDelaunay *self = g_new0 (ClothDelaunay, 1);
 
   self->places = g_array_new (FALSE, FALSE, sizeof (gdouble));
   self->order = g_array_new (FALSE, FALSE, sizeof (Place));
-  self->open = g_array_new (FALSE, FALSE, sizeof (Triangle));
   self->edges = g_array_new (FALSE, FALSE, sizeof (Edge));
   self->found = g_array_new (FALSE, FALSE, sizeof (guint));
   return self;
@@ -133,7 +232,10 @@ cloth_delaunay_free (ClothDelaunay * delaunay)
     return;
   g_array_unref (delaunay->places);
   g_array_unref (delaunay->order);
-  g_array_unref (delaunay->open);
+  g_free (delaunay->open);
+  g_free (delaunay->circles.x);
+  g_free (delaunay->circles.y);
+  g_free (delaunay->circles.square);
   g_array_unref (delaunay->edges);
   g_array_unref (delaunay->found);
   g_free (delaunay);
@@ -152,15 +254,14 @@ guint *
 cloth_delaunay_run (ClothDelaunay * delaunay, guint n, const gdouble * points,
     gdouble scale, guint * n_triangles)
 {
-  GArray *open = g_array_set_size (delaunay->open, 0);
-  GArray *edges = delaunay->edges;
+  const ClothDelaunayKernel *kernel = CLOTH_SIMD_TABLE (cloth_delaunay_kernel,
+      CLOTH_SIMD_BEST);
   GArray *found = g_array_set_size (delaunay->found, 0);
   gdouble *p = (gdouble *) g_array_set_size (delaunay->places,
       2 * (n + 3))->data;
   Place *order = (Place *) g_array_set_size (delaunay->order, n)->data;
   gdouble low[2] = { INFINITY, INFINITY }, high[2] = { -INFINITY, -INFINITY };
   gdouble middle[2], extent;
-  Triangle first;
 
   *n_triangles = 0;
   if (n < 3)
@@ -179,52 +280,22 @@ cloth_delaunay_run (ClothDelaunay * delaunay, guint n, const gdouble * points,
     p[2 * (n + i)] = middle[0] + FAR * extent * cos (angle);
     p[2 * (n + i) + 1] = middle[1] + FAR * extent * sin (angle);
   }
-  first = circle (p, n, n + 1, n + 2);
-  g_array_append_val (open, first);
+  close_all (delaunay);
+  reserve (delaunay, 2 * n);
+  open_triangle (delaunay, n, n + 1, n + 2);
   for (guint i = 0; i < n; i++)
     order[i] = (Place) {
     p[2 * i], i};
   qsort (order, n, sizeof *order, compare_places);
 
   for (guint i = 0; i < n; i++) {
-    guint number = order[i].number;
-    const gdouble *at = p + 2 * number;
+    const guint number = order[i].number;
 
-    g_array_set_size (edges, 0);
-    for (guint k = 0; k < open->len;) {
-      Triangle t = g_array_index (open, Triangle, k);
-      gdouble dx = at[0] - t.x, dy = at[1] - t.y;
-
-      if (dx * dx + dy * dy < t.square) {
-        Edge three[3] = { {t.a, t.b}, {t.b, t.c}, {t.c, t.a}
-        };
-
-        g_array_append_vals (edges, three, 3);
-      } else if (dx > 0 && dx * dx > t.square) {
-        if (t.a < n && t.b < n && t.c < n)
-          g_array_append_vals (found, &t, 3);
-      } else {
-        k++;
-        continue;
-      }
-      g_array_remove_index_fast (open, k);
-    }
-    sort_edges (edges);
-    for (guint k = 0; k < edges->len; k++) {
-      const Edge *edge = &g_array_index (edges, Edge, k);
-      Triangle t;
-
-      /* an edge of two of them lies within */
-      if (k + 1 < edges->len && compare_edges (edge, edge + 1) == 0) {
-        k++;
-        continue;
-      }
-      t = circle (p, edge->a, edge->b, number);
-      g_array_append_val (open, t);
-    }
+    make_hole (delaunay, kernel, p + 2 * number, n);
+    fill_hole (delaunay, number);
   }
-  for (guint k = 0; k < open->len; k++) {
-    const Triangle *t = &g_array_index (open, Triangle, k);
+  for (guint k = 0; k < delaunay->n_open; k++) {
+    const Triangle *t = &delaunay->open[k];
 
     if (t->a < n && t->b < n && t->c < n)
       g_array_append_vals (found, t, 3);

@@ -130,7 +130,8 @@ merge (Bench * bench, guint n_pairs)
     pairs[k] = cloth_disparity_pair (bench->found[k], w, h);
   memcpy (pairs[1].place, place, sizeof (place));
   set_mask (bench);
-  if (!cloth_disparity_merge (pairs, n_pairs, 0.7, &bench->map, NULL))
+  if (!cloth_disparity_merge (pairs, n_pairs, 0.7, &bench->map, bench->pool,
+          NULL))
     g_error ("not merged");
 }
 
@@ -325,7 +326,7 @@ time_steps (Bench * bench, guint frame)
   for (gint i = 0; i < 5; i++)
     g_print ("%s: %.1f ms by the wall's clock with %u threads, %.1f ms of "
         "processors\n", steps[i], wall[i],
-        i ? cloth_pool_get_n_threads (bench->pool) : 1, processor[i]);
+        cloth_pool_get_n_threads (bench->pool), processor[i]);
   both = wall[1] + wall[2];
   g_print ("filling and fractions: %.1f ms; the paper's %.0f s, ratio %.0f\n",
       both, 1e-3 * PAPER_MS, PAPER_MS / both);

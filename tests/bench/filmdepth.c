@@ -109,7 +109,8 @@ film_depth_merge (FilmDepth * depth, guint n_pairs)
   for (gint k = 0; k < 2; k++)
     pairs[k] = cloth_disparity_pair (depth->found[k], w, h);
   memcpy (pairs[1].place, place, sizeof (place));
-  if (!cloth_disparity_merge (pairs, n_pairs, 0.7, &depth->map, NULL))
+  if (!cloth_disparity_merge (pairs, n_pairs, 0.7, &depth->map, depth->pool,
+          NULL))
     g_error ("not merged");
 }
 

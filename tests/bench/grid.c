@@ -222,7 +222,7 @@ run_film (const gchar * folder, const ClothGridParams * params, guint from,
     cloth_grower_run (grower, &grow, reference, &features, under, matches,
         &growth, pool, CLOTH_SIMD_BEST);
     cloth_verifier_run (verifier, &verify, reference, &features, under,
-        matches, &verification);
+        matches, &verification, pool);
     n = cloth_grid_get_matches (reference, film.cloth_m, &features, matches,
         verified);
     for (gint round = 0; round < ROUNDS; round++) {

@@ -3,8 +3,8 @@
  *
  *   bench-match FOLDER [--NAME=VALUE…]
  *
- * The folder is one of matchfilm.h; without it there is nothing to do. Times are those of all
- * threads together, the best of three rounds.
+ * The folder is one of matchfilm.h; without it there is nothing to do. Times of matching and
+ * verification are the best of three rounds; those of frames are of all threads together.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/vision/match/match.h"
@@ -34,12 +34,20 @@ static const gchar *const steps[N_STEPS] = { "silhouette", "block matching",
   "merging", "filling", "fractions", "refining", "smoothing again"
 };
 
+/* Of all threads on all processors, which other programs that run meanwhile change little; and
+ * by the wall's clock. */
+typedef struct
+{
+  gdouble processors, wall;
+} Times;
+
 typedef struct
 {
   guint initial, matched, verified, right, beside, right_matched;
   guint oblique, quarter, back, n_frames;
   guint moving[N_SPEEDS], moving_verified[N_SPEEDS], moving_right[N_SPEEDS];
-  gdouble sift_ms, match_ms, verify_ms, depth_ms[N_STEPS];
+  Times sift, match, verify, depth[N_STEPS];
+  guint64 depth_sum, match_sum; /* of all bytes found */
 } Sums;
 
 static gboolean no_surface, by_pictures;
@@ -54,14 +62,55 @@ typedef struct
   gfloat *points, *merged;
 } Look;
 
-/* Of all threads on all processors: other programs that run meanwhile count less. */
-static gdouble
-milliseconds (void)
+static Times
+now (void)
 {
   struct timespec t;
 
   clock_gettime (CLOCK_PROCESS_CPUTIME_ID, &t);
-  return 1e3 * (gdouble) t.tv_sec + 1e-6 * (gdouble) t.tv_nsec;
+  return (Times) {
+  1e3 *(gdouble) t.tv_sec + 1e-6 * (gdouble) t.tv_nsec,
+        1e-3 * (gdouble) g_get_monotonic_time ()};
+}
+
+static Times
+since (Times start)
+{
+  const Times end = now ();
+
+  return (Times) {
+  end.processors - start.processors, end.wall - start.wall};
+}
+
+static void
+add_times (Times * sum, Times times)
+{
+  sum->processors += times.processors;
+  sum->wall += times.wall;
+}
+
+static void
+keep_best (Times * best, Times times)
+{
+  best->processors = MIN (best->processors, times.processors);
+  best->wall = MIN (best->wall, times.wall);
+}
+
+static void
+print_times (const gchar * name, Times sum, gdouble n)
+{
+  g_print ("%s: %.1f ms of processors, %.1f ms of the wall\n", name,
+      sum.processors / n, sum.wall / n);
+}
+
+/* A sum that tells whether another build gives the same bytes (G. Fowler, L. Noll, K. Vo). */
+static void
+add_bytes (guint64 * sum, gconstpointer data, gsize n)
+{
+  const guint8 *bytes = data;
+
+  for (gsize i = 0; i < n; i++)
+    *sum = (*sum ^ bytes[i]) * G_GUINT64_CONSTANT (0x100000001b3);
 }
 
 /* Runs of the mask as bytes, and as states of the map. */
@@ -102,7 +151,7 @@ look_at_depth (Look * look, const MatchFilm * film, guint frame, Sums * sums)
   FilmDepth *depth = &look->depth;
 
   for (gint step = 0; step < N_STEPS; step++) {
-    const gdouble start = milliseconds ();
+    const Times start = now ();
 
     if (step == 0)
       take_mask (look, film, frame);
@@ -118,10 +167,12 @@ look_at_depth (Look * look, const MatchFilm * film, guint frame, Sums * sums)
       film_depth_refine (depth, views);
     else
       film_depth_smooth (depth, &polish);
-    sums->depth_ms[step] += milliseconds () - start;
+    add_times (&sums->depth[step], since (start));
     if (step == 2)
       memcpy (look->merged, depth->map.disparities, n * sizeof *look->merged);
   }
+  add_bytes (&sums->depth_sum, depth->map.disparities,
+      n * sizeof *depth->map.disparities);
   for (gsize i = 0; i < n; i++) {
     const gdouble z = film->focal * film->baseline
         / (gdouble) depth->map.disparities[i];
@@ -364,7 +415,7 @@ run_frame (const MatchFilm * film, guint frame,
   };
   const ClothMatchSurface *under = no_surface ? NULL : &surface;
   g_autofree ClothMatch *matches = NULL;
-  gdouble sift_ms, match_ms = G_MAXDOUBLE, verify_ms = G_MAXDOUBLE, start;
+  Times match = { G_MAXDOUBLE, G_MAXDOUBLE }, verify = match, start;
   guint right = 0, beside = 0, right_matched = 0, oblique = 0, back =
       0, quarter = 0;
   ClothCvFeatures f;
@@ -374,25 +425,25 @@ run_frame (const MatchFilm * film, guint frame,
   match_film_look (film, frame, truth);
   if (by_pictures)
     look_at_depth (look, film, frame, sums);
-  start = milliseconds ();
+  start = now ();
   if (!cloth_cv_sift_run (sift, &picture, &mask, &f, NULL))
     g_error ("no features");
-  sift_ms = milliseconds () - start;
+  add_times (&sums->sift, since (start));
   matches = g_new (ClothMatch, f.n);
   for (gint round = 0; round < ROUNDS; round++) {
-    start = milliseconds ();
+    start = now ();
     cloth_grower_run (grower, grow_params, reference, &f, under, matches,
         &growth, pool, CLOTH_SIMD_BEST);
-    match_ms = MIN (match_ms, milliseconds () - start);
+    keep_best (&match, since (start));
     if (round == 0)
       for (guint i = 0; i < f.n; i++)
         right_matched += matches[i].state == CLOTH_MATCH_MATCHED
             && is_right (r, film, truth, f.x[i], f.y[i], matches[i].reference,
             RIGHT);
-    start = milliseconds ();
+    start = now ();
     cloth_verifier_run (verifier, verify_params, reference, &f, under, matches,
-        &verification);
-    verify_ms = MIN (verify_ms, milliseconds () - start);
+        &verification, pool);
+    keep_best (&verify, since (start));
   }
   for (guint i = 0; i < f.n; i++) {
     const ClothMatch *m = &matches[i];
@@ -420,7 +471,8 @@ run_frame (const MatchFilm * film, guint frame,
       100. * right / MAX (verification.n_verified, 1), growth.seeds_half,
       growth.seeds_most, growth.n_seeds,
       100. * oblique / MAX (verification.n_verified, 1),
-      100. * back / MAX (verification.n_verified, 1), match_ms, verify_ms);
+      100. * back / MAX (verification.n_verified, 1), match.processors,
+      verify.processors);
   sums->initial += f.n;
   sums->matched += growth.n_matched;
   sums->verified += verification.n_verified;
@@ -430,9 +482,9 @@ run_frame (const MatchFilm * film, guint frame,
   sums->oblique += oblique;
   sums->quarter += quarter;
   sums->back += back;
-  sums->sift_ms += sift_ms;
-  sums->match_ms += match_ms;
-  sums->verify_ms += verify_ms;
+  add_times (&sums->match, match);
+  add_times (&sums->verify, verify);
+  add_bytes (&sums->match_sum, matches, f.n * sizeof *matches);
   sums->n_frames++;
 }
 
@@ -450,17 +502,20 @@ tell (const Sums * s, guint n_references)
   g_print ("verified from oblique views %.0f%% (the paper over half), from "
       "quarter views %.1f%%, from the back %.0f%%\n", 100 * s->oblique / v,
       100 * s->quarter / v, 100 * s->back / v);
-  g_print ("features %.0f ms; matching %.1f ms among %u (the paper 145 s); "
-      "verification %.1f ms (the paper 26 s with the parameters)\n",
-      s->sift_ms / n, s->match_ms / n, n_references, s->verify_ms / n);
+  g_print ("among %u reference features\n", n_references);
+  print_times ("features", s->sift, n);
+  print_times ("matching (the paper 145 s)", s->match, n);
+  print_times ("verification (the paper 26 s with the parameters)", s->verify,
+      n);
   for (gint i = 0; i < N_SPEEDS; i++)
     g_print ("up to %.0f px a frame: %u features, %.1f%% verified, of these "
         "%.2f%% right\n", speeds[i], s->moving[i],
         100. * s->moving_verified[i] / MAX (s->moving[i], 1),
         100. * s->moving_right[i] / MAX (s->moving_verified[i], 1));
   for (gint i = 0; i < N_STEPS && by_pictures; i++)
-    g_print ("%s %.1f ms%s", steps[i], s->depth_ms[i] / n,
-        i < N_STEPS - 1 ? "; " : "\n");
+    print_times (steps[i], s->depth[i], n);
+  g_print ("bytes: disparities %016" G_GINT64_MODIFIER "x, matches %016"
+      G_GINT64_MODIFIER "x\n", s->depth_sum, s->match_sum);
 }
 
 static void
@@ -507,7 +562,7 @@ run_film (const gchar * folder, const ClothReferenceParams * params,
   MatchTruth truth;
   Look look = { 0 };
   Sums sums = { 0 };
-  gdouble start = milliseconds ();
+  const Times start = now ();
 
   match_film_load (&film, folder, still, by_pictures);
   with_size.cloth_m[0] = film.cloth_m[0];
@@ -520,7 +575,7 @@ run_film (const gchar * folder, const ClothReferenceParams * params,
     g_error ("%s", error->message);
   g_print ("%u reference features in %.1f s, %.2f%% repeated\n",
       cloth_reference_get_features (reference)->n,
-      1e-3 * (milliseconds () - start),
+      1e-3 * since (start).processors,
       100 * cloth_reference_get_repeated (reference));
   g_print ("frame  initial  matched (right)   verified           right  "
       "  50%%  80%%  seeds  oblique  back  match ms  verify ms\n");

@@ -104,7 +104,7 @@ look (const Bench * bench, const MatchPictures * film, guint camera,
   cloth_grower_run (grower, &grow, bench->reference, &features, NULL, matches,
       &growth, pool, CLOTH_SIMD_BEST);
   cloth_verifier_run (verifier, &verify, bench->reference, &features, NULL,
-      matches, &verification);
+      matches, &verification, NULL);
   n = cloth_grid_get_matches (bench->reference, bench->cloth_m, &features,
       matches, verified);
   cloth_gridder_run (bench->gridder, &bench->params, verified, n, &image,

@@ -340,7 +340,7 @@ run_frame (const MatchFilm * film, guint frame,
   cloth_grower_run (grower, &grow, reference, &f, &surface, matches, &growth,
       pool, CLOTH_SIMD_BEST);
   cloth_verifier_run (verifier, &verify, reference, &f, &surface, matches,
-      &verification);
+      &verification, NULL);
   for (guint i = 0; i < f.n; i++) {
     const guint32 at = matches[i].reference;
     ClothUVMatch m;

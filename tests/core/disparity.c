@@ -4,6 +4,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/cv/cv.h"
 #include "gst/math/random.h"
+#include "gst/vision/disparity/refine-private.h"
 #include "tests/common/picture.h"
 #include "tests/core/disparitymap.h"
 
@@ -288,7 +289,7 @@ test_scene (void)
   g_assert_true (cloth_disparity_border (&pair, 16, 96, &border, NULL));
   g_assert_cmpfloat (MAX (border.least, border.most), <, 0.01);
   memset (states, MEASURED, n);
-  g_assert_true (cloth_disparity_merge (&pair, 1, 1, &map, NULL));
+  g_assert_true (cloth_disparity_merge (&pair, 1, 1, &map, NULL, NULL));
   for (gsize i = 0; i < n; i++)
     disparities[i] = rintf (disparities[i]);
   bad = measure_scene (&map, truth, MEASURED, &rms);
@@ -476,13 +477,13 @@ refuse_map (gint width, gint height, gint stride)
           &error));
   REFUSED (cloth_disparity_smooth (self, &params, &map, NULL, CLOTH_SIMD_BEST,
           &error));
-  REFUSED (cloth_disparity_merge (&good, 1, 1, &map, &error));
+  REFUSED (cloth_disparity_merge (&good, 1, 1, &map, NULL, &error));
   map = (ClothDisparityMap) {
   disparities, states, 8, 8, 8};
   pair.width = width;
   pair.height = height;
   pair.stride = stride;
-  REFUSED (cloth_disparity_merge (&pair, 1, 1, &map, &error));
+  REFUSED (cloth_disparity_merge (&pair, 1, 1, &map, NULL, &error));
   REFUSED (cloth_disparity_border (&pair, 0, 16, &border, &error));
   if (stride >= width)
     REFUSED (cloth_disparity_check (found, found, width, height, -16, 16,
@@ -550,6 +551,67 @@ test_refused_params (void)
 #undef REFUSED
 }
 
+/* ---- rows of two pictures ---- */
+
+/* A ramp of two grey levels a pixel beside a flat picture: what is seen of it has a formula;
+ * the rest isn't seen. Each level gives the same bytes. */
+static void
+check_rows (guint64 seed)
+{
+  enum
+  { WIDTH = 121 };
+  guint8 here[WIDTH], there[WIDTH], shown[WIDTH], states[WIDTH];
+  gfloat disparities[WIDTH], first[3][WIDTH], found[3][WIDTH];
+  ClothRandom random;
+
+  cloth_random_init (&random, seed);
+  for (gint x = 0; x < WIDTH; x++) {
+    here[x] = 100;
+    there[x] = (guint8) (2 * x + 3);
+    shown[x] = x / 10 != 5;
+    states[x] = x % 17 ? CLOTH_DISPARITY_MEASURED : CLOTH_DISPARITY_HOLE;
+    disparities[x] = (gfloat) (60 * cloth_random_uniform (&random) - 20);
+  }
+  disparities[7] = NAN;
+  disparities[8] = INFINITY;
+  disparities[9] = -1e30f;
+  for (gint level = CLOTH_SIMD_SCALAR; level <= CLOTH_SIMD_AVX512; level++)
+    for (gint hidden = 0; hidden < 2; hidden++) {
+      const ClothRefineRow row = { here, there, hidden ? shown : NULL, WIDTH,
+        -0.75, disparities, states, CLOTH_DISPARITY_MEASURED, found[0],
+        found[1], found[2]
+      };
+
+      memset (found, 0xff, sizeof found);
+      CLOTH_SIMD_TABLE (cloth_refine_kernel,
+          (ClothSimd) level)->compare (&row, 2, WIDTH - 1);
+      for (gint x = 2; x < WIDTH - 1; x++) {
+        const gdouble at = x - 0.75 * (gdouble) disparities[x];
+        const gboolean seen = states[x] == CLOTH_DISPARITY_MEASURED && at >= 1
+            && at < WIDTH - 2 && (!hidden || shown[(gint) (at + 0.5)]);
+
+        g_assert_cmpfloat (found[0][x], ==, seen);
+        g_assert_cmpint (isnan (found[1][x]), ==, !seen);
+        if (seen)
+          g_assert_cmpfloat_with_epsilon (found[1][x], -1.5, 1e-6);
+        g_assert_cmpfloat_with_epsilon (found[2][x],
+            seen ? 97 - 2 * at : 0, 1e-4);
+      }
+      g_assert_true (isnan (found[0][1]) && isnan (found[0][WIDTH - 1]));
+      if (level == CLOTH_SIMD_SCALAR && hidden)
+        memcpy (first, found, sizeof first);
+      else if (hidden)
+        g_assert_cmpmem (found, sizeof found, first, sizeof first);
+    }
+}
+
+static void
+test_rows (void)
+{
+  for (guint64 seed = 0; seed < 50; seed++)
+    check_rows (seed);
+}
+
 int
 main (int argc, char **argv)
 {
@@ -566,6 +628,7 @@ main (int argc, char **argv)
   g_test_add_func ("/disparity/again", test_again);
   g_test_add_func ("/disparity/little", test_little);
   g_test_add_func ("/disparity/wild", test_wild);
+  g_test_add_func ("/disparity/rows", test_rows);
   g_test_add_func ("/disparity/refused-maps", test_refused_maps);
   g_test_add_func ("/disparity/refused-params", test_refused_params);
   return g_test_run ();

@@ -56,7 +56,7 @@ test_merge (void)
   right[6] = left[WIDTH - 1 - 6] = below[6 * HEIGHT] = -16;
   left[WIDTH - 1 - 7] += 20;    /* another surface */
   left[WIDTH - 1 - 8] += 6;     /* a bit off */
-  g_assert_true (cloth_disparity_merge (pairs, 3, 1, &map, NULL));
+  g_assert_true (cloth_disparity_merge (pairs, 3, 1, &map, NULL, NULL));
   g_assert_cmpuint (count (&map, OUTSIDE), ==, 1);
   g_assert_cmpint (map.states[6], ==, HOLE);
   g_assert_cmpint (map.states[7], ==, HOLE);
@@ -88,7 +88,7 @@ test_merge_turned (void)
     for (gint x = 0; x < WIDTH; x++)
       found[y * WIDTH + x] = (gint16) lrint (16 * (ramp (x - 0.5, y + 0.25)
               / (1 + 0.001 * (x - 0.5)) - 2));
-  g_assert_true (cloth_disparity_merge (&pair, 1, 1, &map, NULL));
+  g_assert_true (cloth_disparity_merge (&pair, 1, 1, &map, NULL, NULL));
   g_assert_cmpuint (count (&map, HOLE), ==, HEIGHT);
   measure (&map, ramp, &most, &rms);
   g_assert_cmpfloat (most, <, 0.5);
@@ -332,28 +332,28 @@ test_refused_pairs (void)
 
   for (gint i = 0; i < 9; i++)
     pairs[i] = good;
-  REFUSED (cloth_disparity_merge (pairs, 0, 1, &map, &error));
-  REFUSED (cloth_disparity_merge (pairs, 9, 1, &map, &error));
-  REFUSED (cloth_disparity_merge (pairs, 1, 0, &map, &error));
-  REFUSED (cloth_disparity_merge (pairs, 1, NAN, &map, &error));
+  REFUSED (cloth_disparity_merge (pairs, 0, 1, &map, NULL, &error));
+  REFUSED (cloth_disparity_merge (pairs, 9, 1, &map, NULL, &error));
+  REFUSED (cloth_disparity_merge (pairs, 1, 0, &map, NULL, &error));
+  REFUSED (cloth_disparity_merge (pairs, 1, NAN, &map, NULL, &error));
   REFUSED (cloth_disparity_check (found, found, 8, 8, -16, -1, &error));
   pairs[1].steps = 0;
-  REFUSED (cloth_disparity_merge (pairs, 2, 1, &map, &error));
+  REFUSED (cloth_disparity_merge (pairs, 2, 1, &map, NULL, &error));
   pairs[1] = good;
   pairs[1].place[4] = NAN;
-  REFUSED (cloth_disparity_merge (pairs, 2, 1, &map, &error));
+  REFUSED (cloth_disparity_merge (pairs, 2, 1, &map, NULL, &error));
   pairs[1] = good;
   pairs[1].unit[2] = INFINITY;
-  REFUSED (cloth_disparity_merge (pairs, 2, 1, &map, &error));
+  REFUSED (cloth_disparity_merge (pairs, 2, 1, &map, NULL, &error));
   pairs[1] = good;
   pairs[1].offset = NAN;
-  REFUSED (cloth_disparity_merge (pairs, 2, 1, &map, &error));
+  REFUSED (cloth_disparity_merge (pairs, 2, 1, &map, NULL, &error));
 #undef REFUSED
   /* places beyond numbers, and behind the camera, are outside */
   for (gint i = 0; i < 3; i++) {
     pairs[0] = good;
     pairs[0].place[i == 0 ? 2 : i == 1 ? 8 : 6] = i == 0 ? 1e300 : -1e300;
-    g_assert_true (cloth_disparity_merge (pairs, 1, 1, &map, NULL));
+    g_assert_true (cloth_disparity_merge (pairs, 1, 1, &map, NULL, NULL));
     g_assert_cmpuint (count (&map, MEASURED), <=, 8);
   }
   free_map (&map);

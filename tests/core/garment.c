@@ -6,7 +6,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/math/delaunay-private.h"
 #include "gst/math/delaunay.h"
+#include "gst/math/random.h"
 #include "gst/mesh/fill/fill.h"
 #include "gst/mesh/formats/obj.h"
 #include "gst/mesh/garment/svgpath.h"
@@ -153,6 +155,43 @@ test_delaunay (void)
   g_assert_cmpuint (n_found, ==, 12);
   cloth_delaunay_run (delaunay, 2, points, 0.5, &n_found);
   g_assert_cmpuint (n_found, ==, 0);
+}
+
+/* Circles that hold a point or lie left of it, at each level. */
+static void
+test_circles (void)
+{
+  enum
+  { N = 37, ROOM = N + CLOTH_DELAUNAY_LANES };
+  gdouble x[ROOM], y[ROOM], square[ROOM];
+  const ClothDelaunayCircles circles = { x, y, square };
+  ClothRandom random;
+
+  cloth_random_init (&random, 7);
+  for (guint round = 0; round < 100; round++) {
+    for (guint i = 0; i < ROOM; i++) {
+      x[i] = i < N ? cloth_random_uniform (&random) : INFINITY;
+      y[i] = i < N ? cloth_random_uniform (&random) : 0;
+      square[i] = i < N ? 0.01 * cloth_random_uniform (&random) : 0;
+    }
+    for (gint level = CLOTH_SIMD_SCALAR; level <= CLOTH_SIMD_AVX512; level++) {
+      const ClothDelaunayKernel *kernel =
+          CLOTH_SIMD_TABLE (cloth_delaunay_kernel, (ClothSimd) level);
+
+      for (guint from = 0; from < N; from++) {
+        guint expected = from;
+
+        while (expected < N && !(hypot (0.3 - x[expected], 0.5 - y[expected])
+                < sqrt (square[expected]))
+            && !(0.3 - x[expected] > sqrt (square[expected])))
+          expected++;
+        g_assert_cmpuint (kernel->find (&circles, from, N, 0.3, 0.5), ==,
+            expected);
+        g_assert_cmpuint (kernel->find (&circles, from, N, NAN, 0.5), ==, N);
+      }
+      g_assert_cmpuint (kernel->find (&circles, N, N, 2, 2), ==, N);
+    }
+  }
 }
 
 /* ---- panels ---- */
@@ -635,6 +674,7 @@ main (int argc, char **argv)
   g_test_add_func ("/garment/path/curves", test_path_curves);
   g_test_add_func ("/garment/path/errors", test_path_errors);
   g_test_add_func ("/garment/delaunay", test_delaunay);
+  g_test_add_func ("/garment/circles", test_circles);
   g_test_add_func ("/garment/rectangle", test_rectangle);
   g_test_add_func ("/garment/disc", test_disc);
   g_test_add_func ("/garment/units", test_units);

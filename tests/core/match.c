@@ -212,7 +212,8 @@ match (const ClothReference * reference, const Print * print,
       surface ? &film->surface : NULL, result->matches, &result->growth, NULL,
       CLOTH_SIMD_BEST);
   cloth_verifier_run (verifier, &verify, reference, &film->features,
-      surface ? &film->surface : NULL, result->matches, &result->verification);
+      surface ? &film->surface : NULL, result->matches, &result->verification,
+      NULL);
   for (guint i = 0; i < film->features.n; i++)
     result->n_right += result->matches[i].state == CLOTH_MATCH_MATCHED
         && is_right (reference, print, film, i, &result->matches[i]);
@@ -332,7 +333,7 @@ test_refuse (void)
     n_wrong++;
   }
   cloth_verifier_run (verifier, &params, reference, &film->features,
-      &film->surface, result->matches, &again);
+      &film->surface, result->matches, &again, NULL);
   for (guint i = 0; i < film->features.n; i++)
     if (result->matches[i].state == CLOTH_MATCH_MATCHED)
       g_assert_true (is_right (reference, print, film, i, &result->matches[i]));
@@ -375,7 +376,7 @@ verify_disc (const Print * print, const Film * film, gfloat shift,
         };
   }
   cloth_verifier_run (verifier, &params, moved, &film->features,
-      &film->surface, matches, &verification);
+      &film->surface, matches, &verification, NULL);
   *n_disc = *n_kept = 0;
   for (guint i = 0; i < film->features.n; i++) {
     *n_disc += inside[film->of[i]];
@@ -443,7 +444,7 @@ test_memory (void)
     cloth_grower_run (grower, &grow, reference, &film->features,
         &film->surface, matches, &growth, NULL, CLOTH_SIMD_BEST);
     cloth_verifier_run (verifier, &verify, reference, &film->features,
-        &film->surface, matches, &verification);
+        &film->surface, matches, &verification, NULL);
     g_assert_cmpuint (verification.n_verified, >, 1000);
     if (round == 1)
       before = mallinfo2 ().uordblks;
@@ -533,12 +534,54 @@ test_same (void)
       cloth_grower_run (grower, &grow, reference, &film->features,
           &film->surface, again->matches, &again->growth, pool, levels[l]);
       cloth_verifier_run (verifier, &verify, reference, &film->features,
-          &film->surface, again->matches, &again->verification);
+          &film->surface, again->matches, &again->verification, pool);
       g_assert_cmpmem (again->matches, sizeof again->matches, result->matches,
           sizeof result->matches);
       g_assert_cmpmem (&again->growth, sizeof again->growth, &result->growth,
           sizeof result->growth);
     }
+}
+
+/* Wrong matches of many groups: as many threads as may be refuse the same ones. */
+static void
+test_same_refused (void)
+{
+  g_autofree Print *print = print_new (1, 1);
+  g_autoptr (ClothReference) reference = reference_new (print);
+  g_autofree Film *film = film_new (print, fold, FALSE);
+  g_autofree Result *grown = match (reference, print, film, TRUE);
+  const guint n_references = cloth_reference_get_features (reference)->n;
+  const ClothVerifyParams verify = cloth_verify_default_params ();
+  g_autoptr (ClothVerifier) verifier = cloth_verifier_new ();
+  g_autofree ClothMatch *wrong = g_memdup2 (grown->matches,
+      sizeof grown->matches);
+  g_autofree ClothMatch *first = NULL;
+  ClothVerification expected;
+  ClothRandom random;
+
+  cloth_random_init (&random, 3);
+  for (guint i = 0; i < film->features.n; i++) {
+    wrong[i].group = (guint) film->features.x[i] / 40;
+    if (i % 4 == 0)
+      wrong[i].reference = (guint) (cloth_random_uniform (&random)
+          * n_references);
+  }
+  first = g_memdup2 (wrong, sizeof grown->matches);
+  cloth_verifier_run (verifier, &verify, reference, &film->features,
+      &film->surface, first, &expected, NULL);
+  g_assert_cmpuint (expected.n_verified, >, 1000);
+  g_assert_cmpuint (expected.n_refused_within, >, 100);
+  for (guint threads = 2; threads < 5; threads++) {
+    g_autoptr (ClothPool) pool = cloth_pool_new (threads);
+    g_autofree ClothMatch *again = g_memdup2 (wrong, sizeof grown->matches);
+    ClothVerification counts;
+
+    cloth_verifier_run (verifier, &verify, reference, &film->features,
+        &film->surface, again, &counts, pool);
+    g_assert_cmpmem (again, sizeof grown->matches, first,
+        sizeof grown->matches);
+    g_assert_cmpmem (&counts, sizeof counts, &expected, sizeof expected);
+  }
 }
 
 /* ---- references from pictures ---- */
@@ -739,12 +782,12 @@ test_line (void)
   }
   params.support = 1;
   cloth_verifier_run (verifier, &params, reference, &film->features,
-      &film->surface, matches, &verification);
+      &film->surface, matches, &verification, NULL);
   g_assert_cmpuint (verification.n_verified, ==, 3);
   /* where its neighbour is */
   matches[2].reference = matches[1].reference;
   cloth_verifier_run (verifier, &params, reference, &film->features,
-      &film->surface, matches, &verification);
+      &film->surface, matches, &verification, NULL);
   g_assert_cmpuint (verification.n_verified, <, 3);
 }
 
@@ -785,6 +828,7 @@ main (int argc, char **argv)
   g_test_add_func ("/match/crowd", test_crowd);
   g_test_add_func ("/match/back", test_back);
   g_test_add_func ("/match/same", test_same);
+  g_test_add_func ("/match/same-refused", test_same_refused);
   g_test_add_func ("/match/views", test_views);
   g_test_add_func ("/match/repeated", test_repeated);
   g_test_add_func ("/match/bad-reference", test_bad_reference);

@@ -210,10 +210,39 @@ agree (const ClothDisparityPair * pairs, guint n_pairs, gint x, gint y,
   return greatest - least <= most ? sum / weights : NAN;
 }
 
+typedef struct
+{
+  const ClothDisparityPair *pairs;
+  guint n_pairs;
+  gdouble most;
+  const ClothDisparityMap *map;
+} Merging;
+
+static void
+merge_rows (gpointer data, guint begin, guint end, guint worker)
+{
+  const Merging *m = data;
+  const ClothDisparityMap *map = m->map;
+
+  for (guint y = begin; y < end; y++)
+    for (gint x = 0; x < map->width; x++) {
+      const gsize at = (gsize) y * (gsize) map->stride + (gsize) x;
+      gdouble d = NAN;
+
+      if (map->states[at] != CLOTH_DISPARITY_OUTSIDE) {
+        d = agree (m->pairs, m->n_pairs, x, (gint) y, m->most);
+        map->states[at] = isnan (d) ? CLOTH_DISPARITY_HOLE :
+            CLOTH_DISPARITY_MEASURED;
+      }
+      map->disparities[at] = (gfloat) d;
+    }
+}
+
 /* @pairs: (array length=n_pairs): the disparities of each baseline
  * @n_pairs: 1 to 8
  * @most: greatest difference of two baselines that are both taken, in px of the first, > 0
  * @map: (inout): states in, those of the mask; disparities and states out
+ * @pool: (nullable): threads
  * @error: (out): set on failure
  *
  * Of baselines that agree a pixel has the mean, weighted by their lengths squared; where only
@@ -223,8 +252,10 @@ agree (const ClothDisparityPair * pairs, guint n_pairs, gint x, gint y,
  */
 gboolean
 cloth_disparity_merge (const ClothDisparityPair * pairs, guint n_pairs,
-    gdouble most, ClothDisparityMap * map, GError ** error)
+    gdouble most, ClothDisparityMap * map, ClothPool * pool, GError ** error)
 {
+  Merging merging = { pairs, n_pairs, most, map };
+
   if (!cloth_disparity_check_size (map->width, map->height, map->stride, error))
     return FALSE;
   if (n_pairs < 1 || n_pairs > MOST_PAIRS || !(most > 0)) {
@@ -236,17 +267,6 @@ cloth_disparity_merge (const ClothDisparityPair * pairs, guint n_pairs,
   for (guint i = 0; i < n_pairs; i++)
     if (!check_pair (&pairs[i], error))
       return FALSE;
-  for (gint y = 0; y < map->height; y++)
-    for (gint x = 0; x < map->width; x++) {
-      const gsize at = (gsize) y * (gsize) map->stride + (gsize) x;
-      gdouble d = NAN;
-
-      if (map->states[at] != CLOTH_DISPARITY_OUTSIDE) {
-        d = agree (pairs, n_pairs, x, y, most);
-        map->states[at] = isnan (d) ? CLOTH_DISPARITY_HOLE :
-            CLOTH_DISPARITY_MEASURED;
-      }
-      map->disparities[at] = (gfloat) d;
-    }
+  cloth_pool_run (pool, merge_rows, &merging, (guint) map->height);
   return TRUE;
 }

@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
+#include "gst/math/pool.h"
 #include "gst/vision/disparity/map.h"
 
 G_BEGIN_DECLS
@@ -48,6 +49,7 @@ gboolean cloth_disparity_check (gint16 * left, const gint16 * right,
 gboolean cloth_disparity_border (const ClothDisparityPair * pair, gint least,
     gint range, ClothDisparityBorder * border, GError ** error);
 gboolean cloth_disparity_merge (const ClothDisparityPair * pairs,
-    guint n_pairs, gdouble most, ClothDisparityMap * map, GError ** error);
+    guint n_pairs, gdouble most, ClothDisparityMap * map, ClothPool * pool,
+    GError ** error);
 
 G_END_DECLS

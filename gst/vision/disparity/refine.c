@@ -19,6 +19,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/vision/disparity/refine-private.h"
+
 /* Columns that one thread sums down together. */
 #define COLUMNS 64
 /* Rows that one thread sums across together. */
@@ -41,6 +43,7 @@ struct _ClothRefine
   gint top, bottom;             /* rows that have disparities */
   gint left, right;             /* columns, and those whose windows reach them */
   gfloat *summed;
+  const ClothRefineKernel *kernel;
 };
 
 /* Returns: windows of 15 × 15 windows of 15 × 15 px, 4 rounds, 20 grey levels, 50 grey levels², half a pixel */
@@ -92,18 +95,6 @@ make_room (ClothRefine * self, gint width, gint height)
 }
 
 /* ---- pictures between their pixels ---- */
-
-/* Cubic through four samples (Catmull and Rom), @t of the way from b to c. */
-static inline gdouble
-cubic (const gdouble s[4], gdouble t, gdouble * slope)
-{
-  const gdouble first = 0.5 * (s[2] - s[0]);
-  const gdouble second = s[0] - 2.5 * s[1] + 2 * s[2] - 0.5 * s[3];
-  const gdouble third = 0.5 * (s[3] - s[0]) + 1.5 * (s[1] - s[2]);
-
-  *slope = first + t * (2 * second + t * 3 * third);
-  return s[1] + t * (first + t * (second + t * third));
-}
 
 /* Where a camera sees pixel @p of the map with disparity @d.
  * @at: (out): there
@@ -157,15 +148,17 @@ look_up (const ClothRefineView * view, gdouble x, gdouble y,
         + (gint) left - 1;
     const gdouble samples[4] = { from[0], from[1], from[2], from[3] };
 
-    rows[i] = cubic (samples, x - left, &slopes[i]);
+    rows[i] = cloth_refine_cubic (samples, x - left, &slopes[i]);
     if (is_row) {
       *value = rows[0];
       *slope = along[0] * slopes[0];
       return TRUE;
     }
   }
-  *value = cubic (rows, y - top, &down);
-  *slope = along[0] * cubic (slopes, y - top, &unused) + along[1] * down;
+  *value = cloth_refine_cubic (rows, y - top, &down);
+  *slope =
+      along[0] * cloth_refine_cubic (slopes, y - top,
+      &unused) + along[1] * down;
   return TRUE;
 }
 
@@ -244,6 +237,34 @@ sum_windows (ClothRefine * self, gfloat * plane, ClothPool * pool)
 }
 
 /* ---- a round ---- */
+
+/* Of a view whose rows are those of the map. */
+static void
+compare_alike (gpointer data, guint begin, guint end, guint worker)
+{
+  ClothRefine *self = data;
+  const ClothDisparityMap *map = self->map;
+  const ClothRefineView *view = self->view;
+
+  for (guint i = begin; i < end; i++) {
+    const gsize y = (gsize) (self->top + (gint) i);
+    const gsize to = y * (gsize) map->width;
+    const gsize there = y * (gsize) view->image.stride;
+    /* below the other picture nothing is seen */
+    const ClothRefineRow row = {
+      self->image->data + y * (gsize) self->image->stride,
+      view->image.data + there, view->shown ? view->shown + there : NULL,
+      (gint) y < view->image.height ? view->image.width : 0, view->shift[0],
+      map->disparities + y * (gsize) map->stride,
+      map->states + y * (gsize) map->stride, CLOTH_DISPARITY_MEASURED,
+      self->count + to, self->gradient + to, self->difference + to
+    };
+
+    self->kernel->compare (&row, self->left, self->right);
+    memcpy (self->mean + to + self->left, self->difference + to + self->left,
+        (gsize) (self->right - self->left) * sizeof (gfloat));
+  }
+}
 
 static void
 compare_rows (gpointer data, guint begin, guint end, guint worker)
@@ -337,7 +358,8 @@ do_round (ClothRefine * self, const ClothRefineView * views, guint n_views,
   memset (self->product + begin, 0, size);
   for (guint k = 0; k < n_views; k++) {
     self->view = &views[k];
-    cloth_pool_run (pool, compare_rows, self, n);
+    cloth_pool_run (pool, views[k].forward == 0 && views[k].shift[1] == 0 ?
+        compare_alike : compare_rows, self, n);
     sum_windows (self, self->mean, pool);
     sum_windows (self, self->count, pool);
     cloth_pool_run (pool, weigh_rows, self, n);
@@ -454,6 +476,7 @@ cloth_refine_run (ClothRefine * self, const ClothRefineParams * params,
   self->params = params;
   self->image = image;
   self->map = map;
+  self->kernel = CLOTH_SIMD_TABLE (cloth_refine_kernel, CLOTH_SIMD_BEST);
   find_bounds (self);
   for (guint i = 0; i < params->rounds && self->top < self->bottom; i++)
     do_round (self, views, n_views, pool);

@@ -22,6 +22,13 @@ typedef struct
   gboolean is_filled, has_rim;
 } Hole;
 
+/* What a row of the map has. */
+typedef struct
+{
+  gdouble sum;                  /* of its disparities */
+  gsize n, n_holes;             /* pixels with one, without one */
+} Row;
+
 struct _ClothDisparity
 {
   ClothPyramid pyramid;
@@ -29,21 +36,24 @@ struct _ClothDisparity
   gint32 *stack;
   gsize area;
   GArray *holes;
+  GArray *rows;                 /* Row */
 
   /* of the map at hand */
   const ClothDisparityParams *params;
   ClothDisparityMap *map;
+  ClothPool *pool;
   gdouble mean;
+  gboolean filling;
 };
 
-/* Returns: steps of 1.5 px, holes of 2000 px, a tolerance of 1e-4, a half-width of 0.5 px
+/* Returns: steps of 1.5 px, holes of 2000 px, a tolerance of 1e-3, a half-width of 0.5 px
  *   on all levels, 30 sweeps with corrections 1.5 times as large
  */
 ClothDisparityParams
 cloth_disparity_default_params (void)
 {
   return (ClothDisparityParams) {
-  1.5, 2000, 1e-4, 0.5, 1, 30, 1.5};
+  1.5, 2000, 1e-3, 0.5, 1, 30, 1.5};
 }
 
 /* Returns: (transfer full): memory that is used again for each map of one size
@@ -54,6 +64,7 @@ cloth_disparity_new (void)
   ClothDisparity *self = g_new0 (ClothDisparity, 1);
 
   self->holes = g_array_new (FALSE, FALSE, sizeof (Hole));
+  self->rows = g_array_new (FALSE, FALSE, sizeof (Row));
   return self;
 }
 
@@ -68,6 +79,7 @@ cloth_disparity_free (ClothDisparity * self)
   g_free (self->labels);
   g_free (self->stack);
   g_array_unref (self->holes);
+  g_array_unref (self->rows);
   g_free (self);
 }
 
@@ -96,21 +108,21 @@ begin (ClothDisparity * self, const ClothDisparityParams * params,
     return FALSE;
   self->params = params;
   self->map = map;
+  self->pool = pool;
   cloth_pyramid_resize (&self->pyramid, map->width, map->height,
       cloth_pool_get_n_threads (pool));
   return TRUE;
 }
 
-/* Says of each pixel what it is, and takes the mean of the disparities: numbers about 0 have
- * more digits. Returns: how many have none. */
-static gsize
-classify (ClothDisparity * self)
+static void
+classify_rows (gpointer data, guint begin, guint end, guint worker)
 {
+  const ClothDisparity *self = data;
   const ClothDisparityMap *map = self->map;
-  gsize n_holes = 0, n = 0;
-  gdouble sum = 0;
 
-  for (gint y = 0; y < map->height; y++)
+  for (guint y = begin; y < end; y++) {
+    Row row = { 0, 0, 0 };
+
     for (gint x = 0; x < map->width; x++) {
       const gsize at = (gsize) y * (gsize) map->stride + (gsize) x;
       guint8 *state = &map->states[at];
@@ -121,13 +133,34 @@ classify (ClothDisparity * self)
       if (*state != CLOTH_DISPARITY_HOLE && fabsf (d) <= CLOTH_DISPARITY_MOST) {
         if (*state != CLOTH_DISPARITY_FILLED)
           *state = CLOTH_DISPARITY_MEASURED;
-        sum += (gdouble) d;
-        n++;
+        row.sum += (gdouble) d;
+        row.n++;
       } else {
         *state = CLOTH_DISPARITY_HOLE;
-        n_holes++;
+        row.n_holes++;
       }
     }
+    g_array_index (self->rows, Row, y) = row;
+  }
+}
+
+/* Says of each pixel what it is, and takes the mean of the disparities: numbers about 0 have
+ * more digits. Returns: how many have none. */
+static gsize
+classify (ClothDisparity * self)
+{
+  gsize n_holes = 0, n = 0;
+  gdouble sum = 0;
+
+  g_array_set_size (self->rows, (guint) self->map->height);
+  cloth_pool_run (self->pool, classify_rows, self, self->rows->len);
+  for (guint y = 0; y < self->rows->len; y++) {
+    const Row *row = &g_array_index (self->rows, Row, y);
+
+    sum += row->sum;
+    n += row->n;
+    n_holes += row->n_holes;
+  }
   /* a whole number keeps those of the map */
   self->mean = n > 0 ? floor (sum / (gdouble) n) : 0;
   return n_holes;
@@ -272,44 +305,85 @@ get_flags (const ClothDisparity * self, gboolean filling, gsize from, gsize at)
   }
 }
 
+/* What the pyramid is given of a pixel. */
+typedef struct
+{
+  guint8 flags;
+  gfloat given;
+} Pixel;
+
+static Pixel
+get_pixel (const ClothDisparity * self, gsize x, gsize y)
+{
+  const ClothDisparityMap *map = self->map;
+  const gsize from = y * (gsize) map->stride + x;
+
+  return (Pixel) {
+  get_flags (self, self->filling, from, y * (gsize) map->width + x),
+        map->states[from] >= CLOTH_DISPARITY_MEASURED ?
+        map->disparities[from] - (gfloat) self->mean : 0};
+}
+
 /* Whether two neighbours are of one surface. What is to be filled has no disparity yet. */
 static gboolean
-is_linked (const ClothPyramidLevel * level, gsize a, gsize b, gboolean filling,
-    gfloat step)
+is_linked (const ClothDisparity * self, Pixel a, Pixel b)
 {
-  const guint8 both = level->flags[a] & level->flags[b];
-  const guint8 either = level->flags[a] | level->flags[b];
+  return a.flags & b.flags & CLOTH_PYRAMID_SURFACE && ((self->filling
+          && (a.flags | b.flags) & CLOTH_PYRAMID_FREE)
+      || fabsf (a.given - b.given) <= (gfloat) self->params->step);
+}
 
-  return both & CLOTH_PYRAMID_SURFACE && ((filling
-          && either & CLOTH_PYRAMID_FREE)
-      || fabsf (level->given[a] - level->given[b]) <= step);
+static void
+load_rows (gpointer data, guint begin, guint end, guint worker)
+{
+  const ClothDisparity *self = data;
+  const ClothPyramidLevel *level = &self->pyramid.levels[0];
+  const gsize width = (gsize) level->width, height = (gsize) level->height;
+
+  for (gsize y = begin; y < end; y++) {
+    Pixel here = get_pixel (self, 0, y);
+
+    for (gsize x = 0; x < width; x++) {
+      const gsize at = y * width + x;
+      Pixel right = { 0, 0 };
+
+      level->given[at] = here.given;
+      level->flags[at] = here.flags;
+      if (x + 1 < width) {
+        right = get_pixel (self, x + 1, y);
+        if (is_linked (self, here, right))
+          level->flags[at] |= CLOTH_PYRAMID_RIGHT;
+      }
+      if (here.flags && y + 1 < height && is_linked (self, here,
+              get_pixel (self, x, y + 1)))
+        level->flags[at] |= CLOTH_PYRAMID_DOWN;
+      here = right;
+    }
+  }
 }
 
 static void
 load (ClothDisparity * self, gboolean filling)
 {
+  self->filling = filling;
+  cloth_pool_run (self->pool, load_rows, self, (guint) self->map->height);
+}
+
+/* Surfaces that were found, back to the map. */
+static void
+unload_rows (gpointer data, guint begin, guint end, guint worker)
+{
+  const ClothDisparity *self = data;
   const ClothDisparityMap *map = self->map;
-  const gfloat step = (gfloat) self->params->step, mean = (gfloat) self->mean;
-  ClothPyramidLevel *level = &self->pyramid.levels[0];
-  const gsize width = (gsize) map->width, height = (gsize) map->height;
 
-  for (gsize y = 0; y < height; y++)
-    for (gsize x = 0; x < width; x++) {
-      const gsize at = y * width + x, from = y * (gsize) map->stride + x;
+  for (gsize y = begin; y < end; y++)
+    for (gsize x = 0; x < (gsize) map->width; x++) {
+      const gsize to = y * (gsize) map->stride + x;
 
-      level->flags[at] = get_flags (self, filling, from, at);
-      level->given[at] =
-          map->states[from] >= CLOTH_DISPARITY_MEASURED ?
-          map->disparities[from] - mean : 0;
-    }
-  for (gsize y = 0; y < height; y++)
-    for (gsize x = 0; x < width; x++) {
-      const gsize at = y * width + x;
-
-      if (x + 1 < width && is_linked (level, at, at + 1, filling, step))
-        level->flags[at] |= CLOTH_PYRAMID_RIGHT;
-      if (y + 1 < height && is_linked (level, at, at + width, filling, step))
-        level->flags[at] |= CLOTH_PYRAMID_DOWN;
+      if (map->states[to] >= CLOTH_DISPARITY_MEASURED)
+        map->disparities[to] =
+            self->pyramid.levels[0].found[y * (gsize) map->width + x]
+            + (gfloat) self->mean;
     }
 }
 
@@ -410,13 +484,6 @@ cloth_disparity_smooth (ClothDisparity * self,
   classify (self);
   load (self, FALSE);
   cloth_pyramid_solve (&self->pyramid, &how, pool, level);
-  for (gint y = 0; y < map->height; y++)
-    for (gint x = 0; x < map->width; x++) {
-      const gsize to = (gsize) y * (gsize) map->stride + (gsize) x;
-
-      if (map->states[to] >= CLOTH_DISPARITY_MEASURED)
-        map->disparities[to] = self->pyramid.levels[0].found[(gsize) y
-            * (gsize) map->width + (gsize) x] + (gfloat) self->mean;
-    }
+  cloth_pool_run (pool, unload_rows, self, (guint) map->height);
   return TRUE;
 }

@@ -27,6 +27,9 @@
 /* Features of a place that another one is asked about at most. Where thousands of a film claim
  * one place of the print, as of a print that repeats, all pairs would take gigabytes. */
 #define CROWD 16
+/* Nodes of which the poorest is known together, unless it is stale. */
+#define BLOCK 64
+#define STALE G_MAXUINT
 
 typedef enum
 {
@@ -55,25 +58,55 @@ typedef struct
   Vote vote;
 } Asked;
 
-struct _ClothVerifier
+/* Features that are neighbours in one plane, the picture or the flat cloth. */
+typedef struct
 {
   ClothDelaunay *delaunay;
-  GArray *members;              /* guint: features, by group */
-  GArray *live;                 /* guint: those that are triangulated, by place */
-  GArray *flat;                 /* guint: the same, by place on the flat cloth */
-  GArray *ranks;                /* guint: where in live a feature is */
-  GArray *places;               /* guint: first of either of each place, and the end */
+  GArray *sorted;               /* guint: live features, by place */
+  GArray *places;               /* guint: first of sorted of each place, and the end */
   GArray *points;               /* gdouble */
   GArray *pairs, *starts;       /* guint: neighbouring places by the lower one */
   GArray *edges;                /* Edge: between features */
+} Net;
+
+enum
+{
+  PICTURE,
+  FLAT,
+  N_NETS
+};
+
+/* Of one thread. */
+typedef struct
+{
+  Net nets[N_NETS];             /* with all that vote in the edges of the first one */
+  guint n_picture;              /* edges of these that are of the picture */
+  GArray *ranks;                /* guint: where a feature is in the picture's order */
   GArray *asked;                /* Asked: by a hash of the two features */
   GArray *nodes;                /* Node */
+  GArray *poorest;              /* guint: of each block of nodes, or STALE */
   GArray *of_node, *links;      /* guint: edges of each node that vote on others */
+  gboolean flat, fresh;         /* whether nothing was refused since the edges were made */
+} Room;
+
+/* Features of one group in members. */
+typedef struct
+{
+  guint begin, end, n_refused;
+} Span;
+
+struct _ClothVerifier
+{
+  GArray *members;              /* guint: features, by group */
+  GArray *starts;               /* guint */
+  GArray *spans;                /* Span: the largest first */
+  GArray *rooms;                /* Room */
 };
 
 typedef struct
 {
   ClothVerifier *self;
+  Room *room;
   ClothVerifyParams params;
   const ClothReferenceFeatures *reference;
   gdouble metres_per_pixel;
@@ -102,28 +135,61 @@ numbers (void)
   return g_array_new (FALSE, FALSE, sizeof (guint));
 }
 
-/* Returns: (transfer full): room to verify in, for one thread at a time
+/* Returns: (transfer full): room to verify in
  */
 ClothVerifier *
 cloth_verifier_new (void)
 {
   ClothVerifier *self = g_new (ClothVerifier, 1);
 
-  self->delaunay = cloth_delaunay_new ();
   self->members = numbers ();
-  self->live = numbers ();
-  self->flat = numbers ();
-  self->ranks = numbers ();
-  self->places = numbers ();
-  self->points = g_array_new (FALSE, FALSE, sizeof (gdouble));
-  self->pairs = numbers ();
   self->starts = numbers ();
-  self->edges = g_array_new (FALSE, FALSE, sizeof (Edge));
-  self->asked = g_array_new (FALSE, FALSE, sizeof (Asked));
-  self->nodes = g_array_new (FALSE, FALSE, sizeof (Node));
-  self->of_node = numbers ();
-  self->links = numbers ();
+  self->spans = g_array_new (FALSE, FALSE, sizeof (Span));
+  self->rooms = g_array_new (FALSE, FALSE, sizeof (Room));
   return self;
+}
+
+static void
+make_rooms (ClothVerifier * self, guint n)
+{
+  while (self->rooms->len < n) {
+    Room room = { 0 };
+
+    for (gint k = 0; k < N_NETS; k++)
+      room.nets[k] = (Net) {
+      cloth_delaunay_new (), numbers (), numbers (),
+          g_array_new (FALSE, FALSE, sizeof (gdouble)), numbers (),
+          numbers (), g_array_new (FALSE, FALSE, sizeof (Edge))};
+    room.ranks = numbers ();
+    room.asked = g_array_new (FALSE, FALSE, sizeof (Asked));
+    room.nodes = g_array_new (FALSE, FALSE, sizeof (Node));
+    room.poorest = numbers ();
+    room.of_node = numbers ();
+    room.links = numbers ();
+    g_array_append_val (self->rooms, room);
+  }
+}
+
+static void
+clear_room (Room * room)
+{
+  for (gint k = 0; k < N_NETS; k++) {
+    const Net *net = &room->nets[k];
+
+    cloth_delaunay_free (net->delaunay);
+    g_array_unref (net->sorted);
+    g_array_unref (net->places);
+    g_array_unref (net->points);
+    g_array_unref (net->pairs);
+    g_array_unref (net->starts);
+    g_array_unref (net->edges);
+  }
+  g_array_unref (room->ranks);
+  g_array_unref (room->asked);
+  g_array_unref (room->nodes);
+  g_array_unref (room->poorest);
+  g_array_unref (room->of_node);
+  g_array_unref (room->links);
 }
 
 /* @verifier: (nullable) (transfer full): what to free
@@ -133,20 +199,12 @@ cloth_verifier_free (ClothVerifier * verifier)
 {
   if (!verifier)
     return;
-  cloth_delaunay_free (verifier->delaunay);
+  for (guint i = 0; i < verifier->rooms->len; i++)
+    clear_room (&g_array_index (verifier->rooms, Room, i));
   g_array_unref (verifier->members);
-  g_array_unref (verifier->live);
-  g_array_unref (verifier->flat);
-  g_array_unref (verifier->ranks);
-  g_array_unref (verifier->places);
-  g_array_unref (verifier->points);
-  g_array_unref (verifier->pairs);
   g_array_unref (verifier->starts);
-  g_array_unref (verifier->edges);
-  g_array_unref (verifier->asked);
-  g_array_unref (verifier->nodes);
-  g_array_unref (verifier->of_node);
-  g_array_unref (verifier->links);
+  g_array_unref (verifier->spans);
+  g_array_unref (verifier->rooms);
   g_free (verifier);
 }
 
@@ -194,7 +252,7 @@ ask_flat (const Run * run, guint a, guint b)
   return distance >= least ? IN_FAVOUR : AGAINST;
 }
 
-/* A table with room for what a few triangulations ask; what comes later isn't kept. */
+/* Tables with room for what a few triangulations ask; what comes later isn't kept. */
 static void
 forget (Run * run, guint n)
 {
@@ -202,41 +260,70 @@ forget (Run * run, guint n)
 
   while (size < 16 * n)
     size *= 2;
-  g_array_set_size (run->self->asked, size);
-  memset (run->self->asked->data, 0, size * sizeof (Asked));
+  for (guint i = 0; i < run->self->rooms->len; i++) {
+    GArray *asked = g_array_index (run->self->rooms, Room, i).asked;
+
+    g_array_set_size (asked, size);
+    memset (asked->data, 0, size * sizeof (Asked));
+  }
+}
+
+/* Where the answer is, or could be kept; %NULL if there is no room for it. */
+static Asked *
+look_up (const GArray * table, guint64 key)
+{
+  const guint mask = table->len - 1;
+  Asked *asked = (Asked *) table->data;
+  guint at = (guint) ((key * G_GUINT64_CONSTANT (0x9e3779b97f4a7c15)) >> 32);
+
+  for (gint tries = 0; tries < 8; tries++, at++)
+    if (asked[at & mask].key == key || asked[at & mask].key == 0)
+      return &asked[at & mask];
+  return NULL;
 }
 
 static Vote
-ask_once (Run * run, guint a, guint b)
+ask_once (const Run * run, guint a, guint b)
 {
   const guint64 key = ((guint64) MIN (a, b) << 32 | MAX (a, b)) + 1;
-  const guint mask = run->self->asked->len - 1;
-  Asked *asked = (Asked *) run->self->asked->data;
-  guint at = (guint) ((key * G_GUINT64_CONSTANT (0x9e3779b97f4a7c15)) >> 32);
+  Asked *here = look_up (run->room->asked, key);
+  Vote vote;
 
-  for (gint tries = 0; tries < 8; tries++, at++) {
-    Asked *here = &asked[at & mask];
+  if (here && here->key == key)
+    return here->vote;
+  vote = ask (run, MIN (a, b), MAX (a, b));
+  if (here)
+    *here = (Asked) {
+    key, vote};
+  return vote;
+}
 
-    if (here->key == key)
-      return here->vote;
-    if (here->key == 0) {
-      *here = (Asked) {
-      key, ask (run, MIN (a, b), MAX (a, b))};
-      return here->vote;
+/* The first thread learns what the others have asked. */
+static void
+tell (const Run * run)
+{
+  for (guint i = 1; i < run->self->rooms->len; i++) {
+    const GArray *from = g_array_index (run->self->rooms, Room, i).asked;
+
+    for (guint k = 0; k < from->len; k++) {
+      const Asked *asked = &g_array_index (from, Asked, k);
+      Asked *to = asked->key ? look_up (run->room->asked, asked->key) : NULL;
+
+      if (to)
+        *to = *asked;
     }
   }
-  return ask (run, MIN (a, b), MAX (a, b));
 }
 
 static void
-connect (Run * run, guint a, guint b, gboolean flat)
+connect (const Run * run, guint a, guint b, gboolean flat)
 {
   const Edge edge = { a, b, flat ? ask_flat (run, a, b) : ask_once (run, a,
         b)
   };
 
   if (edge.vote != ABSTAINS)
-    g_array_append_val (run->self->edges, edge);
+    g_array_append_val (run->room->nets[flat].edges, edge);
 }
 
 static gint
@@ -269,12 +356,12 @@ compare_flat_places (gconstpointer pa, gconstpointer pb, gpointer data)
 
 /* Features of two neighbouring places, or of one; each with @CROWD of a place at most. */
 static void
-connect_places (Run * run, guint p, guint q, gboolean flat)
+connect_places (const Run * run, guint p, guint q, gboolean flat)
 {
-  const GArray *from = flat ? run->self->flat : run->self->live;
-  const guint *places = (const guint *) run->self->places->data;
-  const guint *a = (const guint *) from->data + places[p];
-  const guint *b = (const guint *) from->data + places[q];
+  const Net *net = &run->room->nets[flat];
+  const guint *places = (const guint *) net->places->data;
+  const guint *a = (const guint *) net->sorted->data + places[p];
+  const guint *b = (const guint *) net->sorted->data + places[q];
   const guint n_a = places[p + 1] - places[p];
   const guint n_b = places[q + 1] - places[q];
 
@@ -290,13 +377,12 @@ connect_places (Run * run, guint p, guint q, gboolean flat)
 
 /* The edges of the triangles, each once. */
 static void
-connect_triangles (Run * run, const guint * triangles, guint n_triangles,
-    guint n_places, gboolean flat)
+connect_triangles (const Run * run, const guint * triangles,
+    guint n_triangles, guint n_places, gboolean flat)
 {
-  ClothVerifier *self = run->self;
-  guint *starts = (guint *) g_array_set_size (self->starts, n_places + 1)->data;
-  guint *pairs = (guint *) g_array_set_size (self->pairs,
-      3 * n_triangles)->data;
+  const Net *net = &run->room->nets[flat];
+  guint *starts = (guint *) g_array_set_size (net->starts, n_places + 1)->data;
+  guint *pairs = (guint *) g_array_set_size (net->pairs, 3 * n_triangles)->data;
 
   memset (starts, 0, (n_places + 1) * sizeof *starts);
   for (guint k = 0; k < 3 * n_triangles; k++) {
@@ -323,22 +409,22 @@ connect_triangles (Run * run, const guint * triangles, guint n_triangles,
     }
 }
 
-/* Adds the edges of the live ones, in the picture or on the flat cloth. */
+/* Makes the edges of the live ones, in the picture or on the flat cloth. */
 static void
-add_edges (Run * run, gboolean flat)
+make_net (const Run * run, gboolean flat)
 {
-  ClothVerifier *self = run->self;
+  const Net *net = &run->room->nets[flat];
   const ClothCvFeatures *f = run->features;
   const ClothReferenceFeatures *r = run->reference;
-  const GArray *from = flat ? self->flat : self->live;
   const guint *triangles;
   gdouble last[2] = { 0, 0 };
   guint n_places, n_triangles;
 
-  g_array_set_size (self->places, 0);
-  g_array_set_size (self->points, 0);
-  for (guint k = 0; k < from->len; k++) {
-    const guint i = g_array_index (from, guint, k);
+  g_array_set_size (net->places, 0);
+  g_array_set_size (net->points, 0);
+  g_array_set_size (net->edges, 0);
+  for (guint k = 0; k < net->sorted->len; k++) {
+    const guint i = g_array_index (net->sorted, guint, k);
     const guint of = run->matches[i].reference;
     const gdouble point[2] = { flat ? r->x[of] : f->x[i],
       flat ? r->y[of] : f->y[i]
@@ -346,14 +432,14 @@ add_edges (Run * run, gboolean flat)
 
     if (k && point[0] == last[0] && point[1] == last[1])
       continue;
-    g_array_append_val (self->places, k);
-    g_array_append_vals (self->points, point, 2);
+    g_array_append_val (net->places, k);
+    g_array_append_vals (net->points, point, 2);
     memcpy (last, point, sizeof last);
   }
-  n_places = self->places->len;
-  g_array_append_val (self->places, from->len);
-  triangles = cloth_delaunay_run (self->delaunay, n_places,
-      (const gdouble *) self->points->data, USUAL, &n_triangles);
+  n_places = net->places->len;
+  g_array_append_val (net->places, net->sorted->len);
+  triangles = cloth_delaunay_run (net->delaunay, n_places,
+      (const gdouble *) net->points->data, USUAL, &n_triangles);
   for (guint p = 0; p < n_places; p++)
     connect_places (run, p, p, flat);
   if (n_triangles)
@@ -363,33 +449,64 @@ add_edges (Run * run, gboolean flat)
       connect_places (run, p, p + 1, flat);
 }
 
-/* Makes the edges of the matched ones of @n @members, with @flat also those on the flat
- * cloth. */
 static void
-triangulate (Run * run, const guint * members, guint n, gboolean flat)
+make_nets (gpointer data, guint begin, guint end, guint worker)
 {
-  ClothVerifier *self = run->self;
-  guint *live;
+  for (guint k = begin; k < end; k++)
+    make_net (data, k == FLAT);
+}
 
-  g_array_set_size (self->live, 0);
-  g_array_set_size (self->edges, 0);
-  for (guint k = 0; k < n; k++)
-    if (run->matches[members[k]].state == CLOTH_MATCH_MATCHED)
-      g_array_append_val (self->live, members[k]);
-  if (!self->live->len)
+/* Begins with @n @members that are matched, with @flat also on the flat cloth. */
+static void
+take (Run * run, const guint * members, guint n, gboolean flat)
+{
+  Room *room = run->room;
+
+  room->flat = flat;
+  room->fresh = FALSE;
+  for (gint k = 0; k <= flat; k++) {
+    GArray *sorted = g_array_set_size (room->nets[k].sorted, 0);
+
+    g_array_append_vals (sorted, members, n);
+    if (k == FLAT)
+      g_array_sort_with_data (sorted, compare_flat_places, run);
+    else
+      g_array_sort_with_data (sorted, compare_places, (gpointer) run->features);
+  }
+}
+
+static void
+drop_refused (const Run * run, GArray * features)
+{
+  guint *f = (guint *) features->data, n = 0;
+
+  for (guint k = 0; k < features->len; k++)
+    if (run->matches[f[k]].state == CLOTH_MATCH_MATCHED)
+      f[n++] = f[k];
+  g_array_set_size (features, n);
+}
+
+/* Makes the edges of those that were taken and aren't refused, unless they are there. */
+static void
+triangulate (Run * run, ClothPool * pool)
+{
+  Room *room = run->room;
+  GArray *live = room->nets[PICTURE].sorted, *edges = room->nets[PICTURE].edges;
+  guint *ranks;
+
+  if (room->fresh)
     return;
-  g_array_sort_with_data (self->live, compare_places, (gpointer) run->features);
-  live = (guint *) self->live->data;
-  g_array_set_size (self->ranks, run->features->n);
-  for (guint k = 0; k < self->live->len; k++)
-    g_array_index (self->ranks, guint, live[k]) = k;
-  add_edges (run, FALSE);
-  if (!flat)
-    return;
-  g_array_set_size (self->flat, 0);
-  g_array_append_vals (self->flat, live, self->live->len);
-  g_array_sort_with_data (self->flat, compare_flat_places, run);
-  add_edges (run, TRUE);
+  room->fresh = TRUE;
+  for (gint k = 0; k <= room->flat; k++)
+    drop_refused (run, room->nets[k].sorted);
+  ranks = (guint *) g_array_set_size (room->ranks, run->features->n)->data;
+  for (guint k = 0; k < live->len; k++)
+    ranks[g_array_index (live, guint, k)] = k;
+  cloth_pool_run (pool, make_nets, run, room->flat ? 2 : 1);
+  room->n_picture = edges->len;
+  if (room->flat)
+    g_array_append_vals (edges, room->nets[FLAT].edges->data,
+        room->nets[FLAT].edges->len);
 }
 
 /* ---- votes ---- */
@@ -399,7 +516,7 @@ static guint
 find_node (const Run * run, guint feature, gboolean groups)
 {
   return groups ? run->matches[feature].group
-      : g_array_index (run->self->ranks, guint, feature);
+      : g_array_index (run->room->ranks, guint, feature);
 }
 
 /* Whether the edges between two groups vote on @group: on the smaller one only, or a few
@@ -415,27 +532,32 @@ is_judged (const Node * nodes, guint group, guint other)
 static void
 count (Run * run, gboolean groups, guint n_nodes)
 {
-  ClothVerifier *self = run->self;
-  const Edge *edges = (const Edge *) self->edges->data;
-  const guint *live = (const guint *) self->live->data;
-  Node *nodes = (Node *) g_array_set_size (self->nodes, n_nodes)->data;
-  guint *of_node = (guint *) g_array_set_size (self->of_node,
+  Room *room = run->room;
+  const GArray *voting = room->nets[PICTURE].edges;
+  const Edge *edges = (const Edge *) voting->data;
+  const GArray *live = room->nets[PICTURE].sorted;
+  Node *nodes = (Node *) g_array_set_size (room->nodes, n_nodes)->data;
+  guint *of_node = (guint *) g_array_set_size (room->of_node,
       n_nodes + 1)->data;
-  guint *links = (guint *) g_array_set_size (self->links,
-      2 * self->edges->len)->data;
+  guint *links = (guint *) g_array_set_size (room->links,
+      2 * voting->len)->data;
+  const guint n_blocks = (n_nodes + BLOCK - 1) / BLOCK;
 
   if (n_nodes > 0)
     memset (nodes, 0, n_nodes * sizeof *nodes);
   memset (of_node, 0, (n_nodes + 1) * sizeof *of_node);
-  for (guint k = 0; k < self->live->len; k++) {
-    const ClothMatch *match = &run->matches[live[k]];
+  g_array_set_size (room->poorest, n_blocks);
+  for (guint b = 0; b < n_blocks; b++)
+    g_array_index (room->poorest, guint, b) = STALE;
+  for (guint k = 0; k < live->len; k++) {
+    const ClothMatch *match = &run->matches[g_array_index (live, guint, k)];
 
     if (groups)
       nodes[match->group].size++;
     else
       nodes[k].size = G_MAXUINT32 - match->distance;
   }
-  for (guint e = 0; e < self->edges->len; e++) {
+  for (guint e = 0; e < voting->len; e++) {
     const guint ends[2] = { find_node (run, edges[e].a, groups),
       find_node (run, edges[e].b, groups)
     };
@@ -456,7 +578,7 @@ count (Run * run, gboolean groups, guint n_nodes)
     of_node[i] = sum;
     sum += here;
   }
-  for (guint e = 0; e < self->edges->len; e++) {
+  for (guint e = 0; e < voting->len; e++) {
     const guint a = find_node (run, edges[e].a, groups);
     const guint b = find_node (run, edges[e].b, groups);
 
@@ -482,19 +604,38 @@ is_poorer (const Node * a, const Node * b)
   return left != right ? left < right : a->size < b->size;
 }
 
-/* The node with the poorest mean vote below the least; @n_nodes when all pass. */
 static guint
-find_poorest (const Run * run, gdouble vote, guint n_nodes)
+find_poorest_of (const Node * nodes, gdouble vote, guint begin, guint end,
+    guint none)
 {
-  const Node *nodes = (const Node *) run->self->nodes->data;
-  guint poorest = n_nodes;
+  guint poorest = none;
 
-  for (guint i = 0; i < n_nodes; i++) {
+  for (guint i = begin; i < end; i++) {
     const Node *node = &nodes[i];
 
     if (!node->out && node->n && node->n_for < vote * node->n
-        && (poorest == n_nodes || is_poorer (node, &nodes[poorest])))
+        && (poorest == none || is_poorer (node, &nodes[poorest])))
       poorest = i;
+  }
+  return poorest;
+}
+
+/* The node with the poorest mean vote below the least; @n_nodes when all pass. Only blocks
+ * that votes were taken from are looked at again. */
+static guint
+find_poorest (const Run * run, gdouble vote, guint n_nodes)
+{
+  const Node *nodes = (const Node *) run->room->nodes->data;
+  guint *of_block = (guint *) run->room->poorest->data;
+  guint poorest = n_nodes;
+
+  for (guint b = 0; b < run->room->poorest->len; b++) {
+    if (of_block[b] == STALE)
+      of_block[b] = find_poorest_of (nodes, vote, b * BLOCK,
+          MIN ((b + 1) * BLOCK, n_nodes), n_nodes);
+    if (of_block[b] != n_nodes && (poorest == n_nodes
+            || is_poorer (&nodes[of_block[b]], &nodes[poorest])))
+      poorest = of_block[b];
   }
   return poorest;
 }
@@ -503,44 +644,54 @@ find_poorest (const Run * run, gdouble vote, guint n_nodes)
 static void
 withdraw (Run * run, guint out, gboolean groups)
 {
-  const ClothVerifier *self = run->self;
-  const Edge *edges = (const Edge *) self->edges->data;
-  const guint *of_node = (const guint *) self->of_node->data;
-  const guint *links = (const guint *) self->links->data;
-  Node *nodes = (Node *) self->nodes->data;
+  const Room *room = run->room;
+  const Edge *edges = (const Edge *) room->nets[PICTURE].edges->data;
+  const guint *of_node = (const guint *) room->of_node->data;
+  const guint *links = (const guint *) room->links->data;
+  Node *nodes = (Node *) room->nodes->data;
+  guint *of_block = (guint *) room->poorest->data;
 
   nodes[out].out = TRUE;
+  of_block[out / BLOCK] = STALE;
   for (guint k = of_node[out]; k < of_node[out + 1]; k++) {
     const Edge *edge = &edges[links[k]];
     const guint a = find_node (run, edge->a, groups);
     const guint b = find_node (run, edge->b, groups);
-    Node *other = &nodes[a == out ? b : a];
+    const guint other = a == out ? b : a;
 
-    other->n--;
-    other->n_for -= edge->vote == IN_FAVOUR;
+    nodes[other].n--;
+    nodes[other].n_for -= edge->vote == IN_FAVOUR;
+    of_block[other / BLOCK] = STALE;
   }
 }
 
-/* Refuses features of @members until all that are left pass.
+static void
+refuse (Run * run, guint feature)
+{
+  run->matches[feature].state = CLOTH_MATCH_REFUSED;
+  run->room->fresh = FALSE;
+}
+
+/* Refuses features of those that were taken until all that are left pass.
  *
  * Returns: how many
  */
 static guint
-refuse_features (Run * run, const guint * members, guint n, gboolean flat)
+refuse_features (Run * run, ClothPool * pool)
 {
+  const GArray *live = run->room->nets[PICTURE].sorted;
   guint n_refused = 0;
 
   for (gint round = 0; round < ROUNDS; round++) {
     const guint before = n_refused;
-    guint n_nodes, poorest;
+    guint poorest;
 
-    triangulate (run, members, n, flat);
-    n_nodes = run->self->live->len;
-    count (run, FALSE, n_nodes);
-    while ((poorest = find_poorest (run, run->params.vote, n_nodes)) < n_nodes) {
+    triangulate (run, pool);
+    count (run, FALSE, live->len);
+    while ((poorest = find_poorest (run, run->params.vote,
+                live->len)) < live->len) {
       withdraw (run, poorest, FALSE);
-      run->matches[g_array_index (run->self->live, guint, poorest)].state =
-          CLOTH_MATCH_REFUSED;
+      refuse (run, g_array_index (live, guint, poorest));
       n_refused++;
     }
     if (n_refused == before)
@@ -550,25 +701,25 @@ refuse_features (Run * run, const guint * members, guint n, gboolean flat)
 }
 
 static guint
-refuse_groups (Run * run, const guint * members, guint n, guint n_groups)
+refuse_groups (Run * run, guint n_groups, ClothPool * pool)
 {
+  const GArray *live = run->room->nets[PICTURE].sorted;
   guint n_refused = 0;
 
   for (gint round = 0; round < ROUNDS; round++) {
     const guint before = n_refused;
     guint poorest;
 
-    triangulate (run, members, n, TRUE);
+    triangulate (run, pool);
     count (run, TRUE, n_groups);
     while ((poorest =
             find_poorest (run, run->params.group_vote, n_groups)) < n_groups)
       withdraw (run, poorest, TRUE);
-    for (guint k = 0; k < n; k++) {
-      ClothMatch *match = &run->matches[members[k]];
+    for (guint k = 0; k < live->len; k++) {
+      const guint i = g_array_index (live, guint, k);
 
-      if (match->state == CLOTH_MATCH_MATCHED
-          && g_array_index (run->self->nodes, Node, match->group).out) {
-        match->state = CLOTH_MATCH_REFUSED;
+      if (g_array_index (run->room->nodes, Node, run->matches[i].group).out) {
+        refuse (run, i);
         n_refused++;
       }
     }
@@ -578,21 +729,39 @@ refuse_groups (Run * run, const guint * members, guint n, guint n_groups)
   return n_refused;
 }
 
-/* Those that too few neighbours vote on. */
+/* Those that too few neighbours in the picture vote on. */
 static guint
-refuse_lonely (Run * run, const guint * members, guint n)
+refuse_lonely (Run * run, ClothPool * pool)
 {
-  const GArray *live = run->self->live;
+  const Room *room = run->room;
+  const GArray *live = room->nets[PICTURE].sorted;
   guint n_refused = 0;
 
-  triangulate (run, members, n, FALSE);
+  triangulate (run, pool);
+  g_array_set_size (room->nets[PICTURE].edges, room->n_picture);
   count (run, FALSE, live->len);
   for (guint k = 0; k < live->len; k++)
-    if (g_array_index (run->self->nodes, Node, k).n < run->params.support) {
-      run->matches[g_array_index (live, guint, k)].state = CLOTH_MATCH_REFUSED;
+    if (g_array_index (room->nodes, Node, k).n < run->params.support) {
+      refuse (run, g_array_index (live, guint, k));
       n_refused++;
     }
   return n_refused;
+}
+
+/* Groups by themselves. */
+static void
+refuse_within (gpointer data, guint begin, guint end, guint worker)
+{
+  Run run = *(const Run *) data;
+
+  run.room = &g_array_index (run.self->rooms, Room, worker);
+  for (guint k = begin; k < end; k++) {
+    Span *span = &g_array_index (run.self->spans, Span, k);
+
+    take (&run, (const guint *) run.self->members->data + span->begin,
+        span->end - span->begin, FALSE);
+    span->n_refused = refuse_features (&run, NULL);
+  }
 }
 
 /* Fills members with all that are matched, by group.
@@ -624,6 +793,39 @@ sort_by_group (Run * run)
   return n_groups;
 }
 
+static gint
+compare_spans (gconstpointer pa, gconstpointer pb)
+{
+  const Span *a = pa, *b = pb;
+  const guint na = a->end - a->begin, nb = b->end - b->begin;
+
+  if (na != nb)
+    return na > nb ? -1 : 1;
+  return a->begin < b->begin ? -1 : 1;
+}
+
+/* Returns: (transfer none): where each group is in members, the largest first. */
+static const GArray *
+sort_spans (Run * run)
+{
+  const GArray *members = run->self->members;
+  GArray *spans = g_array_set_size (run->self->spans, 0);
+
+  for (guint k = 0; k < members->len; k++) {
+    const Span span = { k, k + 1, 0 };
+    Span *last = spans->len ? &g_array_index (spans, Span,
+        spans->len - 1) : NULL;
+
+    if (last && run->matches[g_array_index (members, guint, k)].group
+        == run->matches[g_array_index (members, guint, last->begin)].group)
+      last->end++;
+    else
+      g_array_append_val (spans, span);
+  }
+  g_array_sort (spans, compare_spans);
+  return spans;
+}
+
 /* @verifier: room to work in
  * @params: which votes pass
  * @reference: what was matched with
@@ -631,36 +833,37 @@ sort_by_group (Run * run)
  * @surface: (nullable): the cloth's surface in that picture
  * @matches: (inout) (array): one a feature; it only refuses
  * @verification: (out): counts
+ * @pool: (nullable): threads; the result doesn't depend on it
  */
 void
 cloth_verifier_run (ClothVerifier * verifier, const ClothVerifyParams * params,
     const ClothReference * reference, const ClothCvFeatures * features,
     const ClothMatchSurface * surface, ClothMatch * matches,
-    ClothVerification * verification)
+    ClothVerification * verification, ClothPool * pool)
 {
-  Run run = { verifier, *params, cloth_reference_get_features (reference),
+  Run run = { verifier, NULL, *params,
+    cloth_reference_get_features (reference),
     cloth_reference_get_metres_per_pixel (reference), features, surface,
     matches
   };
   const guint n_groups = sort_by_group (&run), n = verifier->members->len;
   const guint *members = (const guint *) verifier->members->data;
+  const GArray *spans = sort_spans (&run);
 
   *verification = (ClothVerification) {
   0};
   run.params.stretch = cloth_stretch_clamp_params (&params->stretch);
+  make_rooms (verifier, cloth_pool_get_n_threads (pool));
+  run.room = (Room *) verifier->rooms->data;
   forget (&run, n);
-  for (guint first = 0, end; first < n; first = end) {
-    const guint group = matches[members[first]].group;
-
-    for (end = first + 1; end < n && matches[members[end]].group == group;)
-      end++;
-    verification->n_refused_within += refuse_features (&run, members + first,
-        end - first, FALSE);
-  }
-  verification->n_refused_groups = refuse_groups (&run, members, n, n_groups);
-  verification->n_refused_among = refuse_features (&run, members, n, TRUE);
-  verification->n_refused_among += refuse_lonely (&run, members, n);
-  for (guint k = 0; k < n; k++)
-    verification->n_verified += matches[members[k]].state
-        == CLOTH_MATCH_MATCHED;
+  cloth_pool_run_one_by_one (pool, refuse_within, &run, spans->len);
+  for (guint k = 0; k < spans->len; k++)
+    verification->n_refused_within += g_array_index (spans, Span, k).n_refused;
+  tell (&run);
+  take (&run, members, n, TRUE);
+  verification->n_refused_groups = refuse_groups (&run, n_groups, pool);
+  verification->n_refused_among = refuse_features (&run, pool);
+  verification->n_refused_among += refuse_lonely (&run, pool);
+  verification->n_verified = n - verification->n_refused_within
+      - verification->n_refused_groups - verification->n_refused_among;
 }

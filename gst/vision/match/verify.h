@@ -39,7 +39,7 @@ void cloth_verifier_free (ClothVerifier * verifier);
 void cloth_verifier_run (ClothVerifier * verifier,
     const ClothVerifyParams * params, const ClothReference * reference,
     const ClothCvFeatures * features, const ClothMatchSurface * surface,
-    ClothMatch * matches, ClothVerification * verification);
+    ClothMatch * matches, ClothVerification * verification, ClothPool * pool);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothVerifier, cloth_verifier_free)
 G_END_DECLS

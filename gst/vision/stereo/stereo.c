@@ -518,7 +518,7 @@ do_checks (ClothStereo * self, ClothStereoResult * result, GError ** error)
 }
 
 static gboolean
-merge (ClothStereo * self, GError ** error)
+merge (ClothStereo * self, ClothPool * pool, GError ** error)
 {
   const Warp *head = &self->warps[self->pairs[0].head];
   const guint8 *mask = self->mask ?
@@ -538,7 +538,7 @@ merge (ClothStereo * self, GError ** error)
     memcpy (pairs[k].unit, pair->unit, sizeof (pair->unit));
   }
   return cloth_disparity_merge (pairs, self->n_pairs, self->params.agree,
-      &self->base, error);
+      &self->base, pool, error);
 }
 
 /* Holes, fractions, and what the pictures themselves say. */
@@ -681,7 +681,7 @@ cloth_stereo_run (ClothStereo * self, const ClothImage * images,
     return FALSE;
   cloth_pool_run_one_by_one (pool, do_matches, self, 2 * self->n_pairs);
   if (!succeeded (self, error) || !do_checks (self, result, error)
-      || !merge (self, error) || !better (self, pool, error))
+      || !merge (self, pool, error) || !better (self, pool, error))
     return FALSE;
   cloth_pool_run (pool, do_rows, self, (guint) self->filmed.height);
   for (gsize i = 0; i < n; i++) {
