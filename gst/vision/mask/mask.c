@@ -548,8 +548,9 @@ sample_rows (gpointer data, guint begin, guint end, guint worker)
 }
 
 /* How far the background's chroma is off, and by what variance in each component: coding and
- * conversion shift the colours of whole walls by a level or two. At least a quarter of what luma takes for background is: a shift that not three quarters agree on in its
- * sign is none, and of two quartiles the lesser counts. */
+ * conversion shift the colours of whole walls by a level or two. At least a quarter of what
+ * luma takes for background is: a shift that not three quarters agree on in its sign is none,
+ * and of two quartiles the lesser counts. */
 static void
 measure_chroma (ClothMask * mask, ClothPool * pool)
 {
