@@ -393,6 +393,70 @@ test_scenes (void)
     }
 }
 
+/* What coding does to a background's chroma. */
+static void
+shift_chroma (Picture * picture, gint cb, gint cr)
+{
+  guint8 *chroma = picture->data + STRIDE * HEIGHT;
+
+  for (gint i = 0; i < STRIDE * CHROMA_HEIGHT; i++) {
+    chroma[i] = (guint8) (chroma[i] + cb);
+    chroma[STRIDE * CHROMA_HEIGHT + i] =
+        (guint8) (chroma[STRIDE * CHROMA_HEIGHT + i] + cr);
+  }
+}
+
+static Errors
+run_coded (const Scene * ground, const Scene * scene, gint cb, gint cr)
+{
+  const ClothMaskParams params = cloth_mask_default_params ();
+  g_autoptr (ClothMask) mask = cloth_mask_new ();
+  g_autoptr (Picture) background = draw (ground, 1);
+  g_autoptr (Picture) film = draw (scene, 1);
+
+  shift_chroma (background, cb, cr);
+  cloth_mask_set_background (mask, &background->view);
+  cloth_mask_run (mask, &params, &film->view, NULL, CLOTH_SIMD_BEST);
+  return compare (scene, mask);
+}
+
+/* A background that has lost its noise, and whose colour is off, of a film that has both. */
+static void
+test_coded (void)
+{
+  /* of the film and of the background */
+  static const gdouble noises[][2] = { {0.3, 0}, {1, 0}, {1.5, 0.5}, {4, 1.3} };
+  static const gint shifts[][2] = { {0, 0}, {3, 0}, {-2, 3}, {-3, -3} };
+  Scene ground = empty, plain = { 1, 0, 10, 0, 1, 170, 3 };
+
+  ground.texture = 0;
+  for (guint i = 0; i < G_N_ELEMENTS (noises); i++)
+    for (guint j = 0; j < G_N_ELEMENTS (shifts); j++) {
+      Scene scene = usual;
+      Errors errors;
+
+      scene.texture = 0;
+      scene.noise = noises[i][0];
+      ground.noise = noises[i][1];
+      g_test_message ("noise %g, %g, colour off by %d, %d", noises[i][0],
+          noises[i][1], shifts[j][0], shifts[j][1]);
+      errors = run_coded (&ground, &scene, shifts[j][0], shifts[j][1]);
+      g_assert_cmpfloat (errors.missed, <, EDGE);
+      g_assert_cmpfloat (errors.wrong, <, EDGE);
+
+      scene.cloth = -1;
+      errors = run_coded (&ground, &scene, shifts[j][0], shifts[j][1]);
+      g_assert_cmpfloat (errors.wrong, ==, 0);
+
+      /* a cloth that its colour alone tells: that is not taken for an error of the ground */
+      if (ground.noise > plain.noise)
+        continue;
+      errors = run_coded (&ground, &plain, shifts[j][0], shifts[j][1]);
+      g_assert_cmpfloat (errors.missed, <, EDGE);
+      g_assert_cmpfloat (errors.wrong, <, EDGE);
+    }
+}
+
 /* Light beyond the bounds is something else. */
 static void
 test_bounds (void)
@@ -668,6 +732,7 @@ main (int argc, char **argv)
   g_test_add_func ("/mask/pieces", test_pieces);
   g_test_add_func ("/mask/runs-cut", test_runs_cut);
   g_test_add_func ("/mask/scenes", test_scenes);
+  g_test_add_func ("/mask/coded", test_coded);
   g_test_add_func ("/mask/bounds", test_bounds);
   g_test_add_func ("/mask/plain", test_plain);
   g_test_add_func ("/mask/ranges", test_ranges);

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "tests/common/npyfloats.h"
 #include "tests/elements/padded.h"
 
 #define WIDTH 201
@@ -27,9 +28,13 @@ setup (void)
 static void
 teardown (void)
 {
-  g_autofree gchar *path = g_build_filename (folder, "background.png", NULL);
+  static const gchar *const names[] = { "background.png", "background.jpg" };
 
-  g_remove (path);
+  for (guint i = 0; i < G_N_ELEMENTS (names); i++) {
+    g_autofree gchar *path = g_build_filename (folder, names[i], NULL);
+
+    g_remove (path);
+  }
   g_rmdir (folder);
   g_clear_pointer (&folder, g_free);
 }
@@ -504,6 +509,140 @@ GST_START_TEST (test_disparity_of_other_size)
 
 GST_END_TEST;
 
+/* ---- a path-traced film ---- */
+
+#define FILM TEST_DATA "/lineart_stereo3"
+#define FILM_WIDTH 1024
+#define FILM_HEIGHT 768
+#define COLUMNS 33
+#define ROWS 35
+/* Of a cell's edge, which is some 20 px long: lines and columns that are walked. */
+#define STEPS 40
+#define N_FRAMES 4
+
+/* The pixels that a cloth's cells cover: @vertices are those of one frame, world z up. The
+ * camera is that of rig.json. */
+static guint8 *
+draw_truth (const gfloat * vertices)
+{
+  guint8 *mask = g_malloc0 (FILM_WIDTH * FILM_HEIGHT);
+
+  for (gint j = 0; j < (ROWS - 1) * STEPS; j++)
+    for (gint i = 0; i < (COLUMNS - 1) * STEPS; i++) {
+      const gfloat *a = vertices + 3 * (j / STEPS * COLUMNS + i / STEPS);
+      const gfloat *b = a + 3 * COLUMNS;
+      const gdouble s = (i % STEPS + 0.5) / STEPS;
+      const gdouble t = (j % STEPS + 0.5) / STEPS;
+      gdouble p[3], x, y;
+
+      for (gint c = 0; c < 3; c++)
+        p[c] = (1 - t) * ((1 - s) * a[c] + s * a[3 + c])
+            + t * ((1 - s) * b[c] + s * b[3 + c]);
+      x = floor (512 + 12800 / 9.0 * p[0] / (1.6 + p[1]));
+      y = floor (384 + 12800 / 9.0 * (0.85 - p[2]) / (1.6 + p[1]));
+      if (x >= 0 && y >= 0 && x < FILM_WIDTH && y < FILM_HEIGHT)
+        mask[(gint) y * FILM_WIDTH + (gint) x] = 255;
+    }
+  return mask;
+}
+
+/* Pixels that are both, as a share of those that are either. */
+static gdouble
+get_overlap (GstClothSilhouette * silhouette, const guint8 * truth)
+{
+  g_autoptr (GBytes) bytes = gst_cloth_silhouette_get_mask (silhouette);
+  const guint8 *mask = g_bytes_get_data (bytes, NULL);
+  guint n_both = 0, n_either = 0;
+
+  fail_unless_equals_int (g_bytes_get_size (bytes), FILM_WIDTH * FILM_HEIGHT);
+  for (guint i = 0; i < FILM_WIDTH * FILM_HEIGHT; i++) {
+    n_both += mask[i] && truth[i];
+    n_either += mask[i] || truth[i];
+  }
+  return (gdouble) n_both / n_either;
+}
+
+/* Codes the scene's picture as a camera would. */
+static gchar *
+write_coded_background (gint quality)
+{
+  g_autofree gchar *path = g_build_filename (folder, "background.jpg", NULL);
+  g_autofree gchar *line = g_strdup_printf ("filesrc location=\"%s\" ! pngdec "
+      "! videoconvert ! video/x-raw,format=I420,colorimetry=1:4:0:0 "
+      "! jpegenc quality=%d ! filesink location=\"%s\"",
+      FILM "/background0.png", quality, path);
+  g_autoptr (GError) error = NULL;
+  GstElement *pipeline = gst_parse_launch (line, &error);
+  g_autoptr (GstBus) bus = NULL;
+  g_autoptr (GstMessage) message = NULL;
+
+  fail_unless (error == NULL, "%s", error ? error->message : "");
+  bus = gst_element_get_bus (pipeline);
+  gst_element_set_state (pipeline, GST_STATE_PLAYING);
+  message = gst_bus_timed_pop_filtered (bus, GST_CLOCK_TIME_NONE,
+      GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
+  fail_unless_equals_int (GST_MESSAGE_TYPE (message), GST_MESSAGE_EOS);
+  gst_element_set_state (pipeline, GST_STATE_NULL);
+  gst_object_unref (pipeline);
+  return g_steal_pointer (&path);
+}
+
+/* Overlaps of the first frames with the truth. */
+static void
+assert_film (const gchar * background, guint8 * const *truths, gdouble least)
+{
+  g_autofree gchar *line = g_strdup_printf ("filesrc location=\"" FILM
+      "/cam0.mp4\" ! decodebin ! videoconvert ! video/x-raw,format=I420 "
+      "! silhouette background=\"%s\" ! appsink name=sink sync=false",
+      background);
+  g_autoptr (GError) error = NULL;
+  GstElement *pipeline = gst_parse_launch (line, &error), *sink;
+
+  fail_unless (error == NULL, "%s", error ? error->message : "");
+  sink = gst_bin_get_by_name (GST_BIN (pipeline), "sink");
+  gst_element_set_state (pipeline, GST_STATE_PLAYING);
+  for (guint frame = 0; frame < N_FRAMES; frame++) {
+    GstSample *sample = NULL;
+    gdouble overlap;
+
+    g_signal_emit_by_name (sink, "pull-sample", &sample);
+    fail_unless (sample != NULL);
+    overlap = get_overlap (gst_buffer_get_cloth_silhouette
+        (gst_sample_get_buffer (sample)), truths[frame]);
+    GST_INFO ("%s, frame %u: %.4f", background, frame, overlap);
+    fail_unless (overlap >= least, "%s, frame %u: %g", background, frame,
+        overlap);
+    gst_sample_unref (sample);
+  }
+  gst_element_set_state (pipeline, GST_STATE_NULL);
+  gst_object_unref (sink);
+  gst_object_unref (pipeline);
+}
+
+/* Coding takes the background's noise and fine texture and shifts its colours. */
+GST_START_TEST (test_coded_background)
+{
+  guint8 *truths[N_FRAMES];
+  ClothNpyInfo info;
+  g_autoptr (GError) error = NULL;
+  g_autofree gfloat *vertices = load_npy_floats (FILM "/vertices.npy", &info,
+      &error);
+
+  fail_unless (vertices != NULL, "%s", error ? error->message : "");
+  for (guint k = 0; k < N_FRAMES; k++)
+    truths[k] = draw_truth (vertices + k * 3 * ROWS * COLUMNS);
+  assert_film (FILM "/background0.png", truths, 0.985);
+  for (gint quality = 50; quality <= 95; quality += 15) {
+    g_autofree gchar *path = write_coded_background (quality);
+
+    assert_film (path, truths, 0.985);
+  }
+  for (guint k = 0; k < N_FRAMES; k++)
+    g_free (truths[k]);
+}
+
+GST_END_TEST;
+
 static Suite *
 silhouette_suite (void)
 {
@@ -512,6 +651,7 @@ silhouette_suite (void)
 
   suite_add_tcase (suite, tc);
   tcase_add_checked_fixture (tc, setup, teardown);
+  tcase_add_test (tc, test_coded_background);
   tcase_add_test (tc, test_disparity);
   tcase_add_test (tc, test_disparity_of_other_size);
   tcase_add_test (tc, test_formats);

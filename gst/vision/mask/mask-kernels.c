@@ -81,12 +81,13 @@ test_chroma (const ClothMaskTest * test, gint32 * const sums[4], gint width,
     gfloat off[CHUNK] = { 0 };
 
     for (gint c = 0; c < 4; c += 2) {
+      const gfloat bias = test->bias[c / 2];
       gfloat film[CHUNK], ground[CHUNK];
 
       window (sums[c] + x, test->radius, n, film);
       window (sums[c + 1] + x, test->radius, n, ground);
       for (gint i = 0; i < n; i++) {
-        const gfloat d = film[i] - gains[x + i] * ground[i];
+        const gfloat d = film[i] - gains[x + i] * ground[i] - bias;
 
         off[i] += d * d;
       }

@@ -11,12 +11,14 @@ G_BEGIN_DECLS
  * @radius: of the windows
  * @shadow: least gain
  * @glow: greatest gain
- * @limits: greatest residual of each column's window */
+ * @limits: greatest residual of each column's window
+ * @bias: of the film's sums of Cb and Cr */
 typedef struct
 {
   gint radius;
   gfloat shadow, glow;
   const gfloat *limits;
+  gfloat bias[2];
 } ClothMaskTest;
 
 /* @add_row: adds the products film², film·ground, ground² of a row to the sums of each

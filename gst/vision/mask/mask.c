@@ -6,7 +6,8 @@
  * else. Mean chroma over the window must be a times the background's too. The noise is that
  * of the film around, measured by differences of neighbouring pixels; where the cloth is,
  * the background's own differences bound it, and the noise of where it isn't: of the
- * quietest quarter of the picture.
+ * quietest quarter of the picture. What the background's picture has lost or shifts by its
+ * coding is measured, see bound_noise () and measure_chroma ().
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/vision/mask/mask.h"
@@ -14,6 +15,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/math/statistics.h"
 #include "gst/vision/mask/bits.h"
 #include "gst/vision/mask/mask-private.h"
 
@@ -28,6 +30,9 @@
 #define LEAST_NOISE 0.41f
 /* Greatest noise, as a multiple of that which a quarter of the blocks are below. */
 #define MOST_NOISE 3
+/* A quarter of |d|², of two components with noise of standard deviation 1 each, is below this:
+ * −2·ln(¾). */
+#define QUARTER 0.5754f
 /* Steps of a grey level in which it is counted, and the most of it: of steps of 510. */
 #define STEPS 8
 #define MOST_STEPS (STEPS * 540)
@@ -52,7 +57,7 @@ struct _ClothMask
   gboolean known;
   guint8 *samples[CLOTH_MASK_SAMPLES];
   guint n_samples, next_sample;
-  gfloat *ground_noise;
+  gfloat *ground_noise, *ground_power;  /* of each block */
 
   /* Of the picture at hand. */
   const ClothPlanarImage *image;
@@ -60,8 +65,11 @@ struct _ClothMask
   const ClothMaskKernels *kernels;
   gboolean in_colour;           /* the film and the background */
   gint columns, rows;           /* of blocks */
-  gfloat *noise, most_noise;
+  gfloat *noise, *power, most_noise;
+  gfloat *chroma_off[2];        /* of each block; NaN where luma sees no background */
+  gdouble *sorted;
   gsize n_blocks;
+  gfloat chroma_bias[2], chroma_variance;
   gint n_words;
   gsize n_bits;                 /* words that there is room for */
   guint64 *bits, *spare;
@@ -121,6 +129,10 @@ cloth_mask_free (ClothMask * mask)
   cloth_mask_forget (mask);
   free_scratch (mask);
   g_free (mask->noise);
+  g_free (mask->power);
+  g_free (mask->chroma_off[0]);
+  g_free (mask->chroma_off[1]);
+  g_free (mask->sorted);
   g_free (mask->bits);
   g_free (mask->spare);
   g_array_unref (mask->runs);
@@ -142,6 +154,7 @@ cloth_mask_forget (ClothMask * mask)
     g_clear_pointer (&mask->samples[i], g_free);
   g_clear_pointer (&mask->ground, g_free);
   g_clear_pointer (&mask->ground_noise, g_free);
+  g_clear_pointer (&mask->ground_power, g_free);
   mask->width = mask->height = 0;
   mask->n_samples = mask->next_sample = 0;
   mask->known = FALSE;
@@ -167,6 +180,7 @@ static void
 prepare_ground (ClothMask * mask, const ClothPlanarImage * image)
 {
   const gint width = image->luma.width, height = image->luma.height;
+  gsize n_blocks;
 
   if (is_alike (mask, image))
     return;
@@ -180,8 +194,9 @@ prepare_ground (ClothMask * mask, const ClothPlanarImage * image)
   mask->size = (gsize) width *(gsize) height +
       2 * (gsize) mask->chroma_width * (gsize) mask->chroma_height;
   mask->ground = g_malloc (mask->size);
-  mask->ground_noise = g_new (gfloat, (gsize) halved (width, 5) *
-      (gsize) halved (height, 5));
+  n_blocks = (gsize) halved (width, 5) * (gsize) halved (height, 5);
+  mask->ground_noise = g_new (gfloat, n_blocks);
+  mask->ground_power = g_new (gfloat, n_blocks);
 }
 
 /* Top-left sample of the background's Cb or Cr. */
@@ -227,23 +242,28 @@ median_of (const guint32 * counts, guint32 n)
 }
 
 /* Median of |Δ(film − ground)| over neighbours in the rows of a block; of the ground alone
- * when @film is %NULL. */
+ * when @film is %NULL. @power: (out): sum of the film's squared differences, or the ground's */
 static gfloat
 median_step (const ClothMask * mask, const ClothImage * film, gint column,
-    gint row)
+    gint row, gfloat * power)
 {
   const gint x0 = column * BLOCK, x1 = MIN (x0 + BLOCK, mask->width);
   const gint y0 = row * BLOCK, y1 = MIN (y0 + BLOCK, mask->height);
-  guint32 counts[2 * 255 + 1] = { 0 }, n = 0;
+  guint32 counts[2 * 255 + 1] = { 0 }, n = 0, squares = 0;
 
   for (gint y = y0; y < y1; y += ROW_STEP) {
     const guint8 *g = mask->ground + (gsize) y * (gsize) mask->width;
     const guint8 *f = film ? film->data + (gsize) y * (gsize) film->stride : g;
     const gint own = film ? 1 : 0;
 
-    for (gint x = x0; x + 1 < x1; x++, n++)
-      counts[ABS (own * (f[x + 1] - f[x]) - (g[x + 1] - g[x]))]++;
+    for (gint x = x0; x + 1 < x1; x++, n++) {
+      const gint step = f[x + 1] - f[x];
+
+      counts[ABS (own * step - (g[x + 1] - g[x]))]++;
+      squares += (guint32) (step * step);
+    }
   }
+  *power = (gfloat) squares;
   return median_of (counts, n);
 }
 
@@ -255,7 +275,8 @@ measure_ground (ClothMask * mask)
   for (gint j = 0; j < rows; j++)
     for (gint i = 0; i < columns; i++)
       mask->ground_noise[j * columns + i] =
-          (gfloat) G_SQRT2 *median_step (mask, NULL, i, j) / MEDIAN;
+          (gfloat) G_SQRT2 *median_step (mask, NULL, i, j,
+      &mask->ground_power[j * columns + i]) / MEDIAN;
   mask->known = TRUE;
 }
 
@@ -367,6 +388,10 @@ prepare (ClothMask * mask, const ClothMaskParams * p,
   n_bits = (gsize) mask->n_words * (gsize) height;
   if (n_blocks > mask->n_blocks) {
     mask->noise = g_renew (gfloat, mask->noise, n_blocks);
+    mask->power = g_renew (gfloat, mask->power, n_blocks);
+    for (guint c = 0; c < 2; c++)
+      mask->chroma_off[c] = g_renew (gfloat, mask->chroma_off[c], n_blocks);
+    mask->sorted = g_renew (gdouble, mask->sorted, n_blocks);
     mask->n_blocks = n_blocks;
   }
   if (n_bits > mask->n_bits) {
@@ -385,23 +410,36 @@ measure_rows (gpointer data, guint begin, guint end, guint worker)
   for (gint j = (gint) begin; j < (gint) end; j++)
     for (gint i = 0; i < mask->columns; i++) {
       const gsize at = (gsize) j * (gsize) mask->columns + (gsize) i;
-      const gfloat film = median_step (mask, &mask->image->luma, i, j) / MEDIAN;
 
-      mask->noise[at] = MIN (film, mask->ground_noise[at]);
+      mask->noise[at] = median_step (mask, &mask->image->luma, i, j,
+          &mask->power[at]) / MEDIAN;
     }
 }
 
-/* Bounds the noise by that of the quietest quarter of the blocks. */
+/* Bounds the noise by that of the quietest quarter of the blocks, and by the background's own.
+ * A background that was coded, or is a median, has lost noise and fine texture and bounds
+ * nothing: the share that it lacks of the film's own differences, in what is quiet enough for
+ * background, tells. */
 static void
 bound_noise (ClothMask * mask)
 {
   const guint n = (guint) (mask->columns * mask->rows);
-  guint counts[MOST_STEPS] = { 0 }, below = 0, k = 0;
+  guint counts[MOST_STEPS] = { 0 }, below = 0, k = 0, n_quiet = 0;
+  gfloat lost;
 
   for (guint i = 0; i < n; i++)
-    counts[(gint) (STEPS * mask->noise[i])]++;
+    counts[(gint) (STEPS * MIN (mask->noise[i], mask->ground_noise[i]))]++;
   while (4 * (below += counts[k++]) < n);
   mask->most_noise = MOST_NOISE * MAX ((gfloat) k / STEPS, LEAST_NOISE);
+  for (guint i = 0; i < n; i++)
+    if (mask->noise[i] <= mask->most_noise && mask->power[i] > 0)
+      mask->sorted[n_quiet++] = (gdouble) (mask->ground_power[i]
+          / mask->power[i]);
+  lost = n_quiet == 0 ? 0 : (gfloat) fmax (0, 1 -
+      cloth_median (mask->sorted, n_quiet));
+  for (guint i = 0; i < n; i++)
+    mask->noise[i] = MIN (mask->noise[i], MAX (mask->ground_noise[i],
+            lost * mask->most_noise));
 }
 
 /* Variance in each column of a row of blocks: the most of the blocks around. */
@@ -418,6 +456,132 @@ spread_noise (const ClothMask * mask, gint row, gfloat * variances)
     for (gint x = i * BLOCK; x < MIN ((i + 1) * BLOCK, mask->width); x++)
       variances[x] = most * most;
   }
+}
+
+/* Greatest Σ(f − a·g)² of a window of background whose noise has variance 1. */
+static gfloat
+most_residual (const ClothMaskParams * p)
+{
+  const gint edge = 2 * p->radius + 1, n = edge * edge;
+
+  return (gfloat) (n + p->significance * sqrt (2. * n));
+}
+
+/* Sets @gain to that of the window about a pixel. Returns: whether luma takes it for
+ * background */
+static gboolean
+is_background (const ClothMask * mask, gint x, gint y, gfloat variance,
+    gfloat * gain)
+{
+  const ClothMaskParams *p = &mask->params;
+  const ClothImage *film = &mask->image->luma;
+  gint32 ff = 0, fg = 0, gg = 0;
+  gfloat residual;
+
+  for (gint v = y - p->radius; v <= y + p->radius; v++)
+    for (gint u = x - p->radius; u <= x + p->radius; u++) {
+      const gint row = CLAMP (v, 0, mask->height - 1);
+      const gint column = CLAMP (u, 0, mask->width - 1);
+      const gint32 f = film->data[(gsize) row * (gsize) film->stride +
+          (gsize) column];
+      const gint32 g = mask->ground[(gsize) row * (gsize) mask->width +
+          (gsize) column];
+
+      ff += f * f;
+      fg += f * g;
+      gg += g * g;
+    }
+  *gain = CLAMP ((gfloat) fg / (gfloat) MAX (gg, 1), (gfloat) p->shadow,
+      (gfloat) p->glow);
+  residual = (gfloat) ff - *gain * (2 * (gfloat) fg - *gain * (gfloat) gg);
+  return residual <= most_residual (p) * variance;
+}
+
+/* Mean of film − gain · ground over the window about a sample of Cb or Cr. */
+static gfloat
+chroma_difference (const ClothMask * mask, gint plane, gint x, gint y,
+    gfloat gain)
+{
+  const ClothPlanarImage *film = mask->image;
+  const gint radius = mask->params.radius, edge = 2 * radius + 1;
+  const guint8 *ground = ground_chroma (mask, plane);
+  gint32 f = -128 * edge * edge, g = f;
+
+  for (gint v = y - radius; v <= y + radius; v++)
+    for (gint u = x - radius; u <= x + radius; u++) {
+      const gint row = CLAMP (v, 0, mask->chroma_height - 1);
+      const gint column = CLAMP (u, 0, mask->chroma_width - 1);
+
+      f += film->chroma[plane][(gsize) row * (gsize) film->chroma_stride +
+          (gsize) (column * film->chroma_step)];
+      g += ground[(gsize) row * (gsize) mask->chroma_width + (gsize) column];
+    }
+  return ((gfloat) f - gain * (gfloat) g) / (gfloat) (edge * edge);
+}
+
+/* One window of each block, at another place in each, so that they don't lie alike in the
+ * blocks of a picture's coding. */
+static void
+sample_rows (gpointer data, guint begin, guint end, guint worker)
+{
+  ClothMask *mask = data;
+  gfloat *variances = mask->scratch[worker].variances;
+
+  for (gint j = (gint) begin; j < (gint) end; j++) {
+    spread_noise (mask, j, variances);
+    for (gint i = 0; i < mask->columns; i++) {
+      const gsize at = (gsize) j * (gsize) mask->columns + (gsize) i;
+      const gint x = MIN (i * BLOCK + (11 * i + 7 * j) % BLOCK,
+          mask->width - 1);
+      const gint y = MIN (j * BLOCK + (5 * i + 13 * j) % BLOCK,
+          mask->height - 1);
+      gfloat gain;
+
+      mask->chroma_off[0][at] = mask->chroma_off[1][at] = NAN;
+      if (!is_background (mask, x, y, variances[x], &gain))
+        continue;
+      for (gint c = 0; c < 2; c++)
+        mask->chroma_off[c][at] = chroma_difference (mask, c,
+            x >> mask->shift[0], y >> mask->shift[1], gain);
+    }
+  }
+}
+
+/* How far the background's chroma is off, and by what variance in each component: coding and
+ * conversion shift the colours of whole walls by a level or two. At least a quarter of what
+ * luma takes for background is: a shift that not three quarters agree on in its sign is none,
+ * and of two quartiles the lesser counts. */
+static void
+measure_chroma (ClothMask * mask, ClothPool * pool)
+{
+  const guint n_blocks = (guint) (mask->columns * mask->rows);
+  guint n = 0;
+
+  mask->chroma_bias[0] = mask->chroma_bias[1] = mask->chroma_variance = 0;
+  cloth_pool_run (pool, sample_rows, mask, (guint) mask->rows);
+  for (gint c = 0; c < 2; c++) {
+    n = 0;
+    for (guint i = 0; i < n_blocks; i++)
+      if (!isnan (mask->chroma_off[c][i]))
+        mask->sorted[n++] = (gdouble) mask->chroma_off[c][i];
+    if (n == 0)
+      return;
+    qsort (mask->sorted, n, sizeof (gdouble), cloth_compare_doubles);
+    if (mask->sorted[n / 4] > 0)
+      mask->chroma_bias[c] = (gfloat) mask->sorted[n / 4];
+    else if (mask->sorted[n - 1 - n / 4] < 0)
+      mask->chroma_bias[c] = (gfloat) mask->sorted[n - 1 - n / 4];
+  }
+  n = 0;
+  for (guint i = 0; i < n_blocks; i++)
+    if (!isnan (mask->chroma_off[0][i])) {
+      const gfloat u = mask->chroma_off[0][i] - mask->chroma_bias[0];
+      const gfloat v = mask->chroma_off[1][i] - mask->chroma_bias[1];
+
+      mask->sorted[n++] = (gdouble) (u * u + v * v);
+    }
+  qsort (mask->sorted, n, sizeof (gdouble), cloth_compare_doubles);
+  mask->chroma_variance = (gfloat) mask->sorted[n / 4] / QUARTER;
 }
 
 /* Repeats the first and the last column of @sums beside the row. */
@@ -483,14 +647,17 @@ test_chroma (const ClothMask * mask, gint y, Scratch * scratch)
   const gint edge = 2 * mask->params.radius + 1, n = edge * edge;
   const gfloat most = (gfloat) (n * n) *
       (2 + (gfloat) mask->params.significance * 2);
-  ClothMaskTest test = { mask->params.radius, 0, 0, scratch->limits };
+  ClothMaskTest test = { mask->params.radius, 0, 0, scratch->limits, {
+      (gfloat) n * mask->chroma_bias[0], (gfloat) n * mask->chroma_bias[1]}
+  };
 
   add_chroma (mask, y, scratch);
   for (gint x = 0; x < mask->chroma_width; x++) {
     const gint at = MIN (x << mask->shift[0], mask->width - 1);
 
     scratch->gains[x] = scratch->gains[at];
-    scratch->limits[x] = most * scratch->variances[at];
+    scratch->limits[x] = most * MAX (scratch->variances[at],
+        mask->chroma_variance);
   }
   mask->kernels->test_chroma (&test, scratch->chroma, mask->chroma_width,
       scratch->gains, scratch->chroma_hits);
@@ -521,15 +688,14 @@ test_rows (gpointer data, guint begin, guint end, guint worker)
 {
   ClothMask *mask = data;
   const ClothMaskParams *p = &mask->params;
-  const gint edge = 2 * p->radius + 1, n = edge * edge;
-  const gfloat most = (gfloat) (n + p->significance * sqrt (2. * n));
+  const gfloat most = most_residual (p);
   const gint y0 = (gint) begin * BLOCK;
   const gint y1 = MIN ((gint) end * BLOCK, mask->height);
   Scratch *scratch = &mask->scratch[worker];
 
   for (gint y = y0; y < y1; y++) {
     ClothMaskTest test = { p->radius, (gfloat) p->shadow, (gfloat) p->glow,
-      scratch->limits
+      scratch->limits, {0, 0}
     };
     guint64 *bits = mask->bits + (gsize) y * (gsize) mask->n_words;
 
@@ -641,6 +807,8 @@ cloth_mask_run (ClothMask * mask, const ClothMaskParams * params,
   if (cloth_mask_has_background (mask, image)) {
     cloth_pool_run (pool, measure_rows, mask, (guint) mask->rows);
     bound_noise (mask);
+    if (mask->in_colour)
+      measure_chroma (mask, pool);
     cloth_pool_run (pool, test_rows, mask, (guint) mask->rows);
     cloth_bits_open (mask->bits, mask->spare, width, height, p->thin);
     /* a window that touches the cloth is none of the background */
