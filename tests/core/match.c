@@ -471,7 +471,7 @@ test_crowd (void)
     matches[i] = (ClothMatch) {
     CLOTH_MATCH_MATCHED, 0, 10, i / 50};
   cloth_verifier_run (verifier, &params, reference, &film->features, NULL,
-      matches, &verification);
+      matches, &verification, NULL);
   after = mallinfo2 ();
   g_test_message ("%u of %u left, %zu bytes", verification.n_verified,
       film->features.n, after.uordblks + after.hblkhd - before.uordblks

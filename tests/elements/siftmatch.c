@@ -287,7 +287,7 @@ GST_START_TEST (test_film)
   g_autoptr (GError) error = NULL;
   g_autoptr (GstElement) pipeline = gst_parse_launch ("filesrc location=\""
       FILM "/cam0.mp4\" ! qtdemux ! h264parse ! avdec_h264 max-threads=1 ! "
-      "siftmatch camera=cam0 oblique=0 pattern=\"" FILM
+      "siftmatch camera=cam0 pattern=\"" FILM
       "/pattern.json\" ! " "appsink name=sink sync=false max-buffers=1",
       &error);
   g_autoptr (GstElement) sink = NULL;
