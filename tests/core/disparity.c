@@ -286,7 +286,7 @@ test_scene (void)
   stereo.range = 96;
   matcher = cloth_cv_stereo_new (&stereo, NULL);
   g_assert_true (cloth_cv_stereo_run (matcher, &a, &b, found, NULL));
-  g_assert_true (cloth_disparity_border (&pair, 16, 96, &border, NULL));
+  g_assert_true (cloth_disparity_border (&pair, 16, 111, &border, NULL));
   g_assert_cmpfloat (MAX (border.least, border.most), <, 0.01);
   memset (states, MEASURED, n);
   g_assert_true (cloth_disparity_merge (&pair, 1, 1, &map, NULL, NULL));
@@ -306,7 +306,7 @@ test_scene (void)
   cloth_cv_stereo_free (matcher);
   matcher = cloth_cv_stereo_new (&stereo, NULL);
   g_assert_true (cloth_cv_stereo_run (matcher, &a, &b, found, NULL));
-  g_assert_true (cloth_disparity_border (&pair, 16, 16, &border, NULL));
+  g_assert_true (cloth_disparity_border (&pair, 16, 31, &border, NULL));
   g_assert_cmpfloat (border.most, >, 0.05);
 }
 
@@ -484,7 +484,7 @@ refuse_map (gint width, gint height, gint stride)
   pair.height = height;
   pair.stride = stride;
   REFUSED (cloth_disparity_merge (&pair, 1, 1, &map, NULL, &error));
-  REFUSED (cloth_disparity_border (&pair, 0, 16, &border, &error));
+  REFUSED (cloth_disparity_border (&pair, 0, 15, &border, &error));
   if (stride >= width)
     REFUSED (cloth_disparity_check (found, found, width, height, -16, 16,
             &error));

@@ -124,12 +124,12 @@ test_border (void)
 
   for (gint i = 0; i < 100; i++)
     found[i] = (gint16) (i < 20 ? -16 : 16 * (10 + i / 5) + i % 16);
-  g_assert_true (cloth_disparity_border (&pair, 14, 16, &border, NULL));
+  g_assert_true (cloth_disparity_border (&pair, 14, 29, &border, NULL));
   g_assert_cmpfloat_with_epsilon (border.least, 5 / 80., 1e-9);
   g_assert_cmpfloat_with_epsilon (border.most, 10 / 80., 1e-9);
   for (gint i = 0; i < 100; i++)
     found[i] = -16;
-  g_assert_true (cloth_disparity_border (&pair, 14, 16, &border, NULL));
+  g_assert_true (cloth_disparity_border (&pair, 14, 29, &border, NULL));
   g_assert_cmpfloat (border.least, ==, 0);
   g_assert_cmpfloat (border.most, ==, 0);
 }

@@ -98,7 +98,7 @@ cloth_disparity_check (gint16 * left, const gint16 * right, gint width,
 
 /* @pair: disparities
  * @least: least disparity that was looked for, px
- * @range: how many disparities were, px, from @least on
+ * @most: greatest
  * @border: (out): how much of what was found lies at the ends of the range; 0 where nothing
  *   was found
  * @error: (out): set on failure
@@ -106,8 +106,8 @@ cloth_disparity_check (gint16 * left, const gint16 * right, gint width,
  * Returns: %FALSE on error
  */
 gboolean
-cloth_disparity_border (const ClothDisparityPair * pair, gint least, gint range,
-    ClothDisparityBorder * border, GError ** error)
+cloth_disparity_border (const ClothDisparityPair * pair, gdouble least,
+    gdouble most, ClothDisparityBorder * border, GError ** error)
 {
   guint n = 0, n_least = 0, n_most = 0;
 
@@ -124,7 +124,7 @@ cloth_disparity_border (const ClothDisparityPair * pair, gint least, gint range,
         continue;
       n++;
       n_least += d < (least + 1) * pair->steps;
-      n_most += d >= (least + range - 2) * pair->steps;
+      n_most += d > (most - 1) * pair->steps;
     }
   if (n > 0)
     *border = (ClothDisparityBorder) {

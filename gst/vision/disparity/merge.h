@@ -33,8 +33,8 @@ typedef struct {
 } ClothDisparityPair;
 
 /* @least: share of the disparities of a pair that lie within a pixel of the least that was
- *   looked for
- * @most: of the greatest
+ *   looked for, or below it
+ * @most: of the greatest, or above it
  *
  * Much of either says that the range is too small.
  */
@@ -46,8 +46,8 @@ ClothDisparityPair cloth_disparity_pair (const gint16 * disparities,
     gint width, gint height);
 gboolean cloth_disparity_check (gint16 * left, const gint16 * right,
     gint width, gint height, gint16 none, gint most, GError ** error);
-gboolean cloth_disparity_border (const ClothDisparityPair * pair, gint least,
-    gint range, ClothDisparityBorder * border, GError ** error);
+gboolean cloth_disparity_border (const ClothDisparityPair * pair, gdouble least,
+    gdouble most, ClothDisparityBorder * border, GError ** error);
 gboolean cloth_disparity_merge (const ClothDisparityPair * pairs,
     guint n_pairs, gdouble most, ClothDisparityMap * map, ClothPool * pool,
     GError ** error);

@@ -471,30 +471,28 @@ find_sigma (const Pair * pair)
 
 /* How much lies at the ends of the range; what lies beyond them is dropped. Without a mask what
  * lies behind it need not be cloth. */
-static ClothStereoBorder
-find_border (ClothStereo * self, Pair * pair)
+static gboolean
+cut_at_border (ClothStereo * self, Pair * pair, ClothStereoBorder * border,
+    GError ** error)
 {
   const gsize size = (gsize) pair->frame.width * (gsize) pair->frame.height;
-  /* a disparity at the end of the range may be one beyond it */
-  const gdouble least = CLOTH_CV_STEPS * pair->least;
-  const gdouble most = CLOTH_CV_STEPS * pair->most;
-  gsize n = 0, n_near = 0, n_far = 0;
+  const ClothDisparityPair all = cloth_disparity_pair (pair->found[0],
+      pair->frame.width, pair->frame.height);
+  ClothDisparityBorder ends;
 
+  if (!cloth_disparity_border (&all, pair->least, pair->most, &ends, error))
+    return FALSE;
   for (gsize i = 0; i < size; i++) {
     gint16 *d = &pair->found[0][i];
 
-    if (*d == CLOTH_CV_NO_DISPARITY)
-      continue;
-    n++;
-    n_near += *d > most - CLOTH_CV_STEPS;
-    n_far += *d < least + CLOTH_CV_STEPS;
-    if (*d < least || *d > most)
+    if (*d < CLOTH_CV_STEPS * pair->least || *d > CLOTH_CV_STEPS * pair->most)
       *d = CLOTH_CV_NO_DISPARITY;
   }
-  return (ClothStereoBorder) {
-    n_near / fmax (1, n), self->mask ? n_far / fmax (1, n) : 0, 1 / fmax (1,
+  *border = (ClothStereoBorder) {
+    ends.most, self->mask ? ends.least : 0, 1 / fmax (1,
         pair->most - pair->least)
   };
+  return TRUE;
 }
 
 static gboolean
@@ -510,9 +508,9 @@ do_checks (ClothStereo * self, ClothStereoResult * result, GError ** error)
       result->sigma = find_sigma (pair);
     if (!cloth_disparity_check (pair->found[0], pair->found[1],
             pair->frame.width, pair->frame.height, CLOTH_CV_NO_DISPARITY, most,
-            error))
+            error)
+        || !cut_at_border (self, pair, &result->border[k], error))
       return FALSE;
-    result->border[k] = find_border (self, pair);
   }
   return TRUE;
 }
@@ -686,8 +684,7 @@ cloth_stereo_run (ClothStereo * self, const ClothImage * images,
   cloth_pool_run (pool, do_rows, self, (guint) self->filmed.height);
   for (gsize i = 0; i < n; i++) {
     result->n_mask += !mask
-        || mask->data[(i / (gsize) mask->width) * (gsize) mask->stride
-        + i % (gsize) mask->width];
+        || self->filmed.states[i] != CLOTH_DISPARITY_OUTSIDE;
     result->n_measured += self->filmed.states[i] == CLOTH_DISPARITY_MEASURED;
   }
   return TRUE;
