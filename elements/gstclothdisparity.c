@@ -643,28 +643,20 @@ static gboolean
 gst_stereo_match_set_pad_caps (GstClothSync * sync, guint index, GstCaps * caps)
 {
   GstStereoMatch *self = GST_STEREO_MATCH (sync);
-  GstTriangulateView *view = &self->view[index];
-  GstVideoInfo info;
 
-  gst_triangulate_view_forget (view);
   if (index == HEAD) {
     gst_caps_replace (&self->caps, caps);
   }
-  if (!caps || index >= CLOTH_STEREO_MAX_CAMERAS) {
-    return TRUE;                /* too many pads are told of when they are mapped */
+  if (index >= CLOTH_STEREO_MAX_CAMERAS) {
+    caps = NULL;                /* too many pads are told of when they are mapped */
   }
-  if (!gst_video_info_from_caps (&info, caps)) {
+  if (caps && !gst_video_info_from_caps (&self->info[index], caps)) {
     GST_ELEMENT_ERROR (self, STREAM, FORMAT, ("Bad video caps."),
         ("%" GST_PTR_FORMAT, caps));
     return FALSE;
   }
-  self->info[index] = info;
-  view->width = info.width;
-  view->height = info.height;
-  view->fps_n = info.fps_n;
-  view->fps_d = info.fps_d;
-  view->has_caps = TRUE;
-  return TRUE;
+  return gst_triangulate_view_set_caps (&self->view[index], GST_ELEMENT (self),
+      index, caps);
 }
 
 static GstFlowReturn
@@ -829,29 +821,6 @@ gst_stereo_match_finalize (GObject * object)
   G_OBJECT_CLASS (gst_stereo_match_parent_class)->finalize (object);
 }
 
-static GstPad *
-gst_stereo_match_request_new_pad (GstElement * element, GstPadTemplate * templ,
-    const gchar * name, const GstCaps * caps)
-{
-  GstPad *pad =
-      GST_ELEMENT_CLASS (gst_stereo_match_parent_class)->request_new_pad
-      (element, templ, name, caps);
-
-  if (pad) {
-    gst_child_proxy_child_added (GST_CHILD_PROXY (element), G_OBJECT (pad),
-        GST_OBJECT_NAME (pad));
-  }
-  return pad;
-}
-
-static void
-gst_stereo_match_release_pad (GstElement * element, GstPad * pad)
-{
-  gst_child_proxy_child_removed (GST_CHILD_PROXY (element), G_OBJECT (pad),
-      GST_OBJECT_NAME (pad));
-  GST_ELEMENT_CLASS (gst_stereo_match_parent_class)->release_pad (element, pad);
-}
-
 static Settings
 default_settings (void)
 {
@@ -875,8 +844,8 @@ gst_stereo_match_class_init (gpointer klass, gpointer data)
           settings));
   object_class->set_property = gst_stereo_match_set_property;
   object_class->finalize = gst_stereo_match_finalize;
-  element_class->request_new_pad = gst_stereo_match_request_new_pad;
-  element_class->release_pad = gst_stereo_match_release_pad;
+  element_class->request_new_pad = gst_triangulate_pad_request_new;
+  element_class->release_pad = gst_triangulate_pad_release;
   agg_class->decide_allocation = gst_stereo_match_decide_allocation;
   agg_class->sink_query = gst_stereo_match_sink_query;
   agg_class->src_query = gst_stereo_match_src_query;

@@ -410,30 +410,8 @@ gst_triangulate_stop (GstAggregator * agg)
 static gboolean
 gst_triangulate_set_pad_caps (GstClothSync * sync, guint index, GstCaps * caps)
 {
-  GstTriangulate *self = GST_TRIANGULATE (sync);
-  GstTriangulateView *view = &self->view[index];
-  const GstStructure *s;
-
-  gst_triangulate_view_forget (view);
-  if (!caps) {
-    return TRUE;
-  }
-  s = gst_caps_get_structure (caps, 0);
-  view->observations =
-      gst_structure_has_name (s, GST_CLOTH_OBSERVATIONS_MEDIA_TYPE);
-  if (!gst_structure_get_int (s, "width", &view->width)
-      || !gst_structure_get_int (s, "height", &view->height)) {
-    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
-        ("Caps on sink_%u do not give the size of the picture.", index),
-        ("They are %" GST_PTR_FORMAT, caps));
-    return FALSE;
-  }
-  if (!gst_structure_get_fraction (s, "framerate", &view->fps_n, &view->fps_d)) {
-    view->fps_n = 0;
-    view->fps_d = 1;
-  }
-  view->has_caps = TRUE;
-  return TRUE;
+  return gst_triangulate_view_set_caps (&GST_TRIANGULATE (sync)->view[index],
+      GST_ELEMENT (sync), index, caps);
 }
 
 static GstFlowReturn
@@ -652,29 +630,6 @@ gst_triangulate_finalize (GObject * object)
   G_OBJECT_CLASS (gst_triangulate_parent_class)->finalize (object);
 }
 
-static GstPad *
-gst_triangulate_request_new_pad (GstElement * element, GstPadTemplate * templ,
-    const gchar * name, const GstCaps * caps)
-{
-  GstPad *pad =
-      GST_ELEMENT_CLASS (gst_triangulate_parent_class)->request_new_pad
-      (element, templ, name, caps);
-
-  if (pad) {
-    gst_child_proxy_child_added (GST_CHILD_PROXY (element), G_OBJECT (pad),
-        GST_OBJECT_NAME (pad));
-  }
-  return pad;
-}
-
-static void
-gst_triangulate_release_pad (GstElement * element, GstPad * pad)
-{
-  gst_child_proxy_child_removed (GST_CHILD_PROXY (element), G_OBJECT (pad),
-      GST_OBJECT_NAME (pad));
-  GST_ELEMENT_CLASS (gst_triangulate_parent_class)->release_pad (element, pad);
-}
-
 static void
 gst_triangulate_class_init (GstTriangulateClass * klass)
 {
@@ -688,8 +643,8 @@ gst_triangulate_class_init (GstTriangulateClass * klass)
           settings));
   object_class->set_property = gst_triangulate_set_property;
   object_class->finalize = gst_triangulate_finalize;
-  element_class->request_new_pad = gst_triangulate_request_new_pad;
-  element_class->release_pad = gst_triangulate_release_pad;
+  element_class->request_new_pad = gst_triangulate_pad_request_new;
+  element_class->release_pad = gst_triangulate_pad_release;
   agg_class->start = gst_triangulate_start;
   agg_class->stop = gst_triangulate_stop;
   sync_class->set_pad_caps = gst_triangulate_set_pad_caps;

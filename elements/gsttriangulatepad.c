@@ -7,6 +7,8 @@
 
 #include "elements/gsttriangulatepad.h"
 
+#include <gst/cloth/cloth.h>
+
 #include "elements/gstclothproperties.h"
 
 struct _GstTriangulatePad
@@ -87,6 +89,32 @@ gst_triangulate_pad_child_proxy_init (gpointer iface, gpointer data)
 
 /* ---- which camera each pad belongs to ---- */
 
+GstPad *
+gst_triangulate_pad_request_new (GstElement * element, GstPadTemplate * templ,
+    const gchar * name, const GstCaps * caps)
+{
+  GstElementClass *parent =
+      g_type_class_peek_parent (GST_ELEMENT_GET_CLASS (element));
+  GstPad *pad = parent->request_new_pad (element, templ, name, caps);
+
+  if (pad) {
+    gst_child_proxy_child_added (GST_CHILD_PROXY (element), G_OBJECT (pad),
+        GST_OBJECT_NAME (pad));
+  }
+  return pad;
+}
+
+void
+gst_triangulate_pad_release (GstElement * element, GstPad * pad)
+{
+  GstElementClass *parent =
+      g_type_class_peek_parent (GST_ELEMENT_GET_CLASS (element));
+
+  gst_child_proxy_child_removed (GST_CHILD_PROXY (element), G_OBJECT (pad),
+      GST_OBJECT_NAME (pad));
+  parent->release_pad (element, pad);
+}
+
 void
 gst_triangulate_view_forget (GstTriangulateView * view)
 {
@@ -97,6 +125,34 @@ gst_triangulate_view_forget (GstTriangulateView * view)
   memset (view, 0, sizeof (*view));
   view->camera = -1;
   view->offset = offset;
+}
+
+gboolean
+gst_triangulate_view_set_caps (GstTriangulateView * view, GstElement * element,
+    guint index, const GstCaps * caps)
+{
+  const GstStructure *s;
+
+  gst_triangulate_view_forget (view);
+  if (!caps) {
+    return TRUE;
+  }
+  s = gst_caps_get_structure (caps, 0);
+  view->observations =
+      gst_structure_has_name (s, GST_CLOTH_OBSERVATIONS_MEDIA_TYPE);
+  if (!gst_structure_get_int (s, "width", &view->width)
+      || !gst_structure_get_int (s, "height", &view->height)) {
+    GST_ELEMENT_ERROR (element, STREAM, FORMAT,
+        ("Caps on sink_%u do not give the size of the picture.", index),
+        ("They are %" GST_PTR_FORMAT, caps));
+    return FALSE;
+  }
+  if (!gst_structure_get_fraction (s, "framerate", &view->fps_n, &view->fps_d)) {
+    view->fps_n = 0;
+    view->fps_d = 1;
+  }
+  view->has_caps = TRUE;
+  return TRUE;
 }
 
 /* Notes which pads there are and the cameras that their properties name. */

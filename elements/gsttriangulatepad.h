@@ -1,4 +1,4 @@
-/* Sink pads of triangulate, and which camera of the rig each belongs to.
+/* Sink pads of elements that join the cameras of a rig, and which camera each belongs to.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -15,6 +15,12 @@ G_DECLARE_FINAL_TYPE (GstTriangulatePad, gst_triangulate_pad, GST,
 /* Makes sink_0::camera work on a gst-launch line: the interface of the element. */
 void gst_triangulate_pad_child_proxy_init (gpointer iface, gpointer data);
 
+/* request_new_pad and release_pad of these elements: as the parent class has them, with the
+ * pad a child of the element. The element's class must have none that is derived from it. */
+GstPad *gst_triangulate_pad_request_new (GstElement * element,
+    GstPadTemplate * templ, const gchar * name, const GstCaps * caps);
+void gst_triangulate_pad_release (GstElement * element, GstPad * pad);
+
 /* What is known of a pad; streaming thread. */
 typedef struct {
   gboolean has_caps, observations;
@@ -29,6 +35,10 @@ typedef struct {
 } GstTriangulateView;
 
 void gst_triangulate_view_forget (GstTriangulateView * view);
+/* Takes over the size and rate of pad @index, and whether it brings observations; FALSE after an
+ * element error. @caps: (nullable): %NULL forgets the pad. */
+gboolean gst_triangulate_view_set_caps (GstTriangulateView * view,
+    GstElement * element, guint index, const GstCaps * caps);
 /* Finds each pad its camera: by its property, by the name in the metadata, by the order
  * of pads; %FALSE after an element error. @views: one for every pad index. @moved: a
  * camera's clock turned out to be another than the set was joined by. */

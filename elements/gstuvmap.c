@@ -256,27 +256,8 @@ gst_uv_map_stop (GstAggregator * agg)
 static gboolean
 gst_uv_map_set_pad_caps (GstClothSync * sync, guint index, GstCaps * caps)
 {
-  GstUVMap *self = GST_UV_MAP (sync);
-  GstTriangulateView *view = &self->view[index];
-  const GstStructure *s;
-
-  gst_triangulate_view_forget (view);
-  if (!caps)
-    return TRUE;
-  s = gst_caps_get_structure (caps, 0);
-  if (!gst_structure_get_int (s, "width", &view->width)
-      || !gst_structure_get_int (s, "height", &view->height)) {
-    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
-        ("Caps on sink_%u do not give the size of the picture.", index),
-        ("They are %" GST_PTR_FORMAT, caps));
-    return FALSE;
-  }
-  if (!gst_structure_get_fraction (s, "framerate", &view->fps_n, &view->fps_d)) {
-    view->fps_n = 0;
-    view->fps_d = 1;
-  }
-  view->has_caps = TRUE;
-  return TRUE;
+  return gst_triangulate_view_set_caps (&GST_UV_MAP (sync)->view[index],
+      GST_ELEMENT (sync), index, caps);
 }
 
 static GstFlowReturn
