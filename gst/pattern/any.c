@@ -5,10 +5,7 @@
 
 #include <string.h>
 
-#include "gst/file/json.h"
-
-static const ClothJsonFile pattern_json =
-    { "pattern.json", cloth_pattern_error_quark, CLOTH_PATTERN_ERROR_FORMAT };
+#include "gst/pattern/patternjson.h"
 
 /* What the file says that it is of; %NULL where it doesn't. */
 static gchar *
@@ -29,7 +26,8 @@ find_kind (const gchar * path, GError ** error)
     return NULL;
   }
   object = json_node_get_object (json_parser_get_root (parser));
-  if (!cloth_json_get_string (&pattern_json, object, "pattern", &kind, error))
+  if (!cloth_json_get_string (&cloth_pattern_json, object, "pattern", &kind,
+          error))
     g_prefix_error (error, "%s: ", path);
   else if (!kind)
     g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_FORMAT,

@@ -11,10 +11,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/file/json.h"
 #include "gst/file/jsonwriter.h"
 #include "gst/file/output.h"
 #include "gst/math/random.h"
+#include "gst/pattern/patternjson.h"
 
 /* Sizes of cloth beyond these are a mistake of the unit. */
 #define MIN_METRES 1e-6
@@ -35,9 +35,6 @@
 #define TRIES_PER_DOT 64
 /* Words looked at in all before the search is given up: about a second. */
 #define MAX_LOOK_UPS 60000000
-
-static const ClothJsonFile pattern_json =
-    { "pattern.json", cloth_pattern_error_quark, CLOTH_PATTERN_ERROR_FORMAT };
 
 /* The paper's five as they were printed for the project's own films, then those that
  * lie farthest from them. */
@@ -449,7 +446,7 @@ read_bytes (JsonArray * list, guint i, const gchar * key, guint n, guint most,
       ? json_node_get_array (item) : NULL;
 
   if (!row || json_array_get_length (row) != n)
-    return cloth_json_invalid (&pattern_json, error,
+    return cloth_json_invalid (&cloth_pattern_json, error,
         "item %u of “%s” must be a list of %u whole numbers from 0 to %u",
         i, key, n, most);
   for (guint k = 0; k < n; k++) {
@@ -457,7 +454,7 @@ read_bytes (JsonArray * list, guint i, const gchar * key, guint n, guint most,
 
     if (!cloth_json_number (json_array_get_element (row, k), &number)
         || number != floor (number) || number < 0 || number > most)
-      return cloth_json_invalid (&pattern_json, error,
+      return cloth_json_invalid (&cloth_pattern_json, error,
           "item %u of “%s” must be a list of %u whole numbers from 0 to %u",
           i, key, n, most);
     values[k] = (guint8) number;
@@ -470,20 +467,20 @@ static JsonArray *
 read_list (JsonObject * object, const gchar * key, guint n, GError ** error)
 {
   gboolean bad;
-  JsonArray *list = cloth_json_get_list (&pattern_json, object, key,
+  JsonArray *list = cloth_json_get_list (&cloth_pattern_json, object, key,
       CLOTH_M_ARRAY_MAX, &bad, error);
   guint length = list ? json_array_get_length (list) : 0;
 
   if (bad)
     return NULL;
   if (n == 0 && (length < 2 || length > CLOTH_M_ARRAY_MAX_COLOURS)) {
-    cloth_json_invalid (&pattern_json, error,
+    cloth_json_invalid (&cloth_pattern_json, error,
         "“%s” must be a list of 2 to %d names", key,
         CLOTH_M_ARRAY_MAX_COLOURS);
     return NULL;
   }
   if (n > 0 && length != n) {
-    cloth_json_invalid (&pattern_json, error,
+    cloth_json_invalid (&cloth_pattern_json, error,
         "“%s” must be a list of %u items, not %u", key, n, length);
     return NULL;
   }
@@ -508,7 +505,7 @@ read_colours (JsonObject * object, ClothMArray * array, GError ** error)
         && json_node_get_value_type (item) == G_TYPE_STRING)
       name = json_node_get_string (item);
     if (!name || !*name || strlen (name) >= sizeof array->colours[i].name)
-      return cloth_json_invalid (&pattern_json, error,
+      return cloth_json_invalid (&cloth_pattern_json, error,
           "item %u of “colours” must be a name of 1 to %u bytes", i,
           (guint) sizeof array->colours[i].name - 1);
     g_strlcpy (array->colours[i].name, name, sizeof array->colours[i].name);
@@ -528,7 +525,7 @@ read_pair (JsonObject * object, const gchar * key, gdouble pair[2],
     return FALSE;
   if (!cloth_json_number (json_array_get_element (list, 0), &pair[0])
       || !cloth_json_number (json_array_get_element (list, 1), &pair[1]))
-    return cloth_json_invalid (&pattern_json, error,
+    return cloth_json_invalid (&cloth_pattern_json, error,
         "“%s” must be a list of two numbers, metres", key);
   return TRUE;
 }
@@ -540,13 +537,13 @@ read_array (JsonObject * object, ClothMArray * array, GError ** error)
   JsonArray *matrix;
 
   if (!read_colours (object, array, error)
-      || !cloth_json_get_count (&pattern_json, object, "columns",
+      || !cloth_json_get_count (&cloth_pattern_json, object, "columns",
           CLOTH_M_ARRAY_MIN, CLOTH_M_ARRAY_MAX, &columns, error)
-      || !cloth_json_get_count (&pattern_json, object, "rows",
+      || !cloth_json_get_count (&cloth_pattern_json, object, "rows",
           CLOTH_M_ARRAY_MIN, CLOTH_M_ARRAY_MAX, &rows, error)
-      || !cloth_json_get_number (&pattern_json, object, "pitch_m", 0,
+      || !cloth_json_get_number (&cloth_pattern_json, object, "pitch_m", 0,
           MAX_METRES, &array->pitch_m, error)
-      || !cloth_json_get_number (&pattern_json, object, "diameter_m", 0,
+      || !cloth_json_get_number (&cloth_pattern_json, object, "diameter_m", 0,
           MAX_METRES, &array->diameter_m, error)
       || !read_pair (object, "origin_uv_m", array->origin_uv_m, error)
       || !read_pair (object, "cloth_m", array->cloth_m, error)
@@ -581,37 +578,17 @@ cloth_m_array_load_data (const gchar * data, gsize size, GError ** error)
     "pitch_m", "diameter_m", "origin_uv_m", "cloth_m", "columns", "rows",
     "matrix", NULL
   };
-  g_autoptr (GError) fault = NULL;
-  g_autoptr (JsonParser) parser = cloth_json_parse (data, size, &fault);
-  g_autoptr (ClothMArray) array = g_new0 (ClothMArray, 1);
-  g_autofree gchar *kind = NULL;
-  gdouble version = 1;
+  static const ClothPatternKind kind =
+      { "m-array", "dots are", "an M-array", keys };
+  g_autoptr (JsonParser) parser = NULL;
+  g_autoptr (ClothMArray) array = NULL;
   JsonObject *object;
 
-  if (!parser) {
-    g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_FORMAT,
-        "no pattern.json: %s", fault->message);
+  parser = cloth_pattern_json_open (&kind, data, size, &object, error);
+  if (!parser)
     return NULL;
-  }
-  object = json_node_get_object (json_parser_get_root (parser));
-  if (!cloth_json_get_number (&pattern_json, object, "version", 0, 1e9,
-          &version, error)
-      || !cloth_json_get_string (&pattern_json, object, "pattern", &kind,
-          error))
-    return NULL;
-  if (version != 1) {
-    g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_UNSUPPORTED,
-        "version %g of pattern.json: this build reads version 1", version);
-    return NULL;
-  }
-  if (g_strcmp0 (kind, "m-array")) {
-    g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_UNSUPPORTED,
-        "a pattern of kind \"%.40s\": dots are read from one of kind "
-        "\"m-array\"", kind ? kind : "");
-    return NULL;
-  }
-  if (!cloth_json_check_keys (&pattern_json, object, "an M-array", keys, error)
-      || !read_array (object, array, error))
+  array = g_new0 (ClothMArray, 1);
+  if (!read_array (object, array, error))
     return NULL;
   return g_steal_pointer (&array);
 }

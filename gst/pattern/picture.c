@@ -7,16 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "gst/file/json.h"
 #include "gst/file/jsonwriter.h"
 #include "gst/file/output.h"
+#include "gst/pattern/patternjson.h"
 
 /* Sizes of cloth beyond these are a mistake of the unit. */
 #define MIN_METRES 1e-6
 #define MAX_METRES 1000.0
-
-static const ClothJsonFile pattern_json =
-    { "pattern.json", cloth_pattern_error_quark, CLOTH_PATTERN_ERROR_FORMAT };
 
 /* *INDENT-OFF* */
 static gboolean refuse (GError ** error, const gchar * format, ...)
@@ -142,19 +139,20 @@ static gboolean
 read_size (JsonObject * object, gdouble cloth_m[2], GError ** error)
 {
   gboolean bad;
-  JsonArray *list = cloth_json_get_list (&pattern_json, object, "cloth_m", 2,
+  JsonArray *list =
+      cloth_json_get_list (&cloth_pattern_json, object, "cloth_m", 2,
       &bad, error);
 
   if (bad)
     return FALSE;
   if (!list)
-    return cloth_json_invalid (&pattern_json, error,
+    return cloth_json_invalid (&cloth_pattern_json, error,
         "a picture without a size: give “cloth_m”, the width and height of "
         "the cloth that it shows, in metres");
   if (json_array_get_length (list) != 2
       || !cloth_json_number (json_array_get_element (list, 0), &cloth_m[0])
       || !cloth_json_number (json_array_get_element (list, 1), &cloth_m[1]))
-    return cloth_json_invalid (&pattern_json, error,
+    return cloth_json_invalid (&cloth_pattern_json, error,
         "“cloth_m” must be a list of two numbers, metres");
   return TRUE;
 }
@@ -165,19 +163,19 @@ read_picture (JsonObject * object, ClothPicturePattern * pattern,
 {
   guint columns, rows, sides = 1;
 
-  if (!cloth_json_get_string (&pattern_json, object, "reference",
+  if (!cloth_json_get_string (&cloth_pattern_json, object, "reference",
           &pattern->reference, error))
     return FALSE;
   if (!pattern->reference || !*pattern->reference)
-    return cloth_json_invalid (&pattern_json, error, "there is no "
+    return cloth_json_invalid (&cloth_pattern_json, error, "there is no "
         "“reference”: name the picture file that shows the cloth flat");
   if (!read_size (object, pattern->cloth_m, error)
-      || !cloth_json_get_count (&pattern_json, object, "columns",
+      || !cloth_json_get_count (&cloth_pattern_json, object, "columns",
           CLOTH_PICTURE_PATTERN_MIN, CLOTH_PICTURE_PATTERN_MAX, &columns, error)
-      || !cloth_json_get_count (&pattern_json, object, "rows",
+      || !cloth_json_get_count (&cloth_pattern_json, object, "rows",
           CLOTH_PICTURE_PATTERN_MIN, CLOTH_PICTURE_PATTERN_MAX, &rows, error)
       || (cloth_json_find (object, "sides")
-          && !cloth_json_get_count (&pattern_json, object, "sides", 1, 2,
+          && !cloth_json_get_count (&cloth_pattern_json, object, "sides", 1, 2,
               &sides, error)))
     return FALSE;
   pattern->columns = (gint) columns;
@@ -204,37 +202,17 @@ cloth_picture_pattern_load_data (const gchar * data, gsize size,
   static const gchar *const keys[] = { "version", "pattern", "reference",
     "cloth_m", "columns", "rows", "sides", NULL
   };
-  g_autoptr (GError) fault = NULL;
-  g_autoptr (JsonParser) parser = cloth_json_parse (data, size, &fault);
-  g_autoptr (ClothPicturePattern) pattern = g_new0 (ClothPicturePattern, 1);
-  g_autofree gchar *kind = NULL;
-  gdouble version = 1;
+  static const ClothPatternKind kind =
+      { "picture", "a printed picture is", "a printed picture", keys };
+  g_autoptr (JsonParser) parser = NULL;
+  g_autoptr (ClothPicturePattern) pattern = NULL;
   JsonObject *object;
 
-  if (!parser) {
-    g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_FORMAT,
-        "no pattern.json: %s", fault->message);
+  parser = cloth_pattern_json_open (&kind, data, size, &object, error);
+  if (!parser)
     return NULL;
-  }
-  object = json_node_get_object (json_parser_get_root (parser));
-  if (!cloth_json_get_number (&pattern_json, object, "version", 0, 1e9,
-          &version, error)
-      || !cloth_json_get_string (&pattern_json, object, "pattern", &kind,
-          error))
-    return NULL;
-  if (version != 1) {
-    g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_UNSUPPORTED,
-        "version %g of pattern.json: this build reads version 1", version);
-    return NULL;
-  }
-  if (g_strcmp0 (kind, "picture")) {
-    g_set_error (error, CLOTH_PATTERN_ERROR, CLOTH_PATTERN_ERROR_UNSUPPORTED,
-        "a pattern of kind \"%.40s\": a printed picture is read from one of "
-        "kind \"picture\"", kind ? kind : "");
-    return NULL;
-  }
-  if (!cloth_json_check_keys (&pattern_json, object, "a printed picture", keys,
-          error) || !read_picture (object, pattern, error))
+  pattern = g_new0 (ClothPicturePattern, 1);
+  if (!read_picture (object, pattern, error))
     return NULL;
   return g_steal_pointer (&pattern);
 }
