@@ -210,46 +210,61 @@ cloth_verifier_free (ClothVerifier * verifier)
 
 /* ---- edges ---- */
 
-static Vote
-ask (const Run * run, guint a, guint b)
+/* @from, @to: in the picture, px
+ * @distance: on the flat cloth, m
+ * @by_scale: metres a pixel of the picture, as the features' scales tell */
+typedef struct
+{
+  gfloat from[2], to[2];
+  gdouble distance, by_scale;
+} Line;
+
+static Line
+line_between (const Run * run, guint a, guint b)
 {
   const ClothCvFeatures *f = run->features;
   const ClothReferenceFeatures *r = run->reference;
   const guint ra = run->matches[a].reference, rb = run->matches[b].reference;
-  const gfloat from[2] = { f->x[a], f->y[a] }, to[2] = { f->x[b], f->y[b] };
   const gdouble alpha = run->metres_per_pixel;
-  const gdouble distance = alpha * hypot (r->x[ra] - r->x[rb],
-      r->y[ra] - r->y[rb]);
+
+  return (Line) {
+    {
+    f->x[a], f->y[a]}
+    , {
+    f->x[b], f->y[b]}
+    , alpha * hypot (r->x[ra]
+        - r->x[rb], r->y[ra] - r->y[rb]),
+        alpha * sqrt (r->scale[ra] / f->scale[a] * r->scale[rb] / f->scale[b])
+  };
+}
+
+static Vote
+ask (const Run * run, guint a, guint b)
+{
+  const Line line = line_between (run, a, b);
   ClothStretchRange range;
 
-  if (hypot (to[0] - from[0], to[1] - from[1]) > run->params.reach
-      || !cloth_stretch_get_range (&run->params.stretch, run->surface, from,
-          to, alpha * sqrt (r->scale[ra] / f->scale[a] * r->scale[rb]
-              / f->scale[b]), &range) || range.broken)
+  if (hypot (line.to[0] - line.from[0],
+          line.to[1] - line.from[1]) > run->params.reach
+      || !cloth_stretch_get_range (&run->params.stretch, run->surface,
+          line.from, line.to, line.by_scale, &range) || range.broken)
     return ABSTAINS;
   /* whichever sides they show: over the crease of a fold the surface goes on */
-  return distance >= range.least
-      && distance <= range.most ? IN_FAVOUR : AGAINST;
+  return line.distance >= range.least
+      && line.distance <= range.most ? IN_FAVOUR : AGAINST;
 }
 
 /* An edge of the flat cloth: the straight line between its ends is no longer. */
 static Vote
 ask_flat (const Run * run, guint a, guint b)
 {
-  const ClothCvFeatures *f = run->features;
-  const ClothReferenceFeatures *r = run->reference;
-  const guint ra = run->matches[a].reference, rb = run->matches[b].reference;
-  const gfloat from[2] = { f->x[a], f->y[a] }, to[2] = { f->x[b], f->y[b] };
-  const gdouble alpha = run->metres_per_pixel;
-  const gdouble distance = alpha * hypot (r->x[ra] - r->x[rb],
-      r->y[ra] - r->y[rb]);
+  const Line line = line_between (run, a, b);
   gdouble least;
 
-  if (!cloth_stretch_get_least (&run->params.stretch, run->surface, from, to,
-          alpha * sqrt (r->scale[ra] / f->scale[a] * r->scale[rb]
-              / f->scale[b]), &least))
+  if (!cloth_stretch_get_least (&run->params.stretch, run->surface, line.from,
+          line.to, line.by_scale, &least))
     return ABSTAINS;
-  return distance >= least ? IN_FAVOUR : AGAINST;
+  return line.distance >= least ? IN_FAVOUR : AGAINST;
 }
 
 /* Tables with room for what a few triangulations ask; what comes later isn't kept. */
