@@ -11,6 +11,7 @@
 
 #include "tests/common/npyfloats.h"
 #include "tests/elements/padded.h"
+#include "tests/elements/values.h"
 
 #define WIDTH 201
 #define HEIGHT 121
@@ -316,31 +317,8 @@ GST_START_TEST (test_properties)
     {"v-min", "5", "0"}, {"v-max", "6", "255"}, {"threads", "3", "0"},
     {"background", "there.png", NULL}
   };
-  GstElement *element = gst_element_factory_make ("silhouette", NULL);
 
-  for (guint i = 0; i < G_N_ELEMENTS (values); i++) {
-    GParamSpec *spec = g_object_class_find_property
-        (G_OBJECT_GET_CLASS (element), values[i][0]);
-    g_auto (GValue) value = G_VALUE_INIT, expected = G_VALUE_INIT;
-
-    fail_unless (spec != NULL, "%s", values[i][0]);
-    g_value_init (&value, spec->value_type);
-    g_value_init (&expected, spec->value_type);
-    g_object_get_property (G_OBJECT (element), values[i][0], &value);
-    if (values[i][2]) {
-      fail_unless (gst_value_deserialize (&expected, values[i][2]));
-      fail_unless_equals_int (gst_value_compare (&value, &expected),
-          GST_VALUE_EQUAL);
-    } else {
-      fail_unless (g_value_get_string (&value) == NULL);
-    }
-    gst_util_set_object_arg (G_OBJECT (element), values[i][0], values[i][1]);
-    fail_unless (gst_value_deserialize (&expected, values[i][1]));
-    g_object_get_property (G_OBJECT (element), values[i][0], &value);
-    fail_unless_equals_int (gst_value_compare (&value, &expected),
-        GST_VALUE_EQUAL);
-  }
-  gst_object_unref (element);
+  check_values ("silhouette", values, G_N_ELEMENTS (values));
 }
 
 GST_END_TEST;

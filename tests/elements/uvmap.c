@@ -264,6 +264,17 @@ expect (GstClothMesh * mesh, guint8 state, gdouble worst)
   return n;
 }
 
+/* The same of the next mesh. */
+static guint
+expect_next (Bench * b, guint8 state, gdouble worst)
+{
+  GstBuffer *buffer = gst_harness_pull (b->src);
+  g_autoptr (GstClothMesh) mesh = parse (buffer);
+
+  gst_buffer_unref (buffer);
+  return expect (mesh, state, worst);
+}
+
 static guint
 count_messages (Bench * b, GstMessageType type, const gchar * part)
 {
@@ -387,15 +398,9 @@ GST_START_TEST (test_contradiction)
   wrong.aside = 0.05;
   bench_init (&b, 2, &usual, 1);
   for (guint frame = 0; frame < 26; frame++) {
-    g_autoptr (GstClothMesh) mesh = NULL;
-    GstBuffer *buffer;
-
     push (&b, 0, &usual, frame);
     push (&b, 1, &wrong, frame);
-    buffer = gst_harness_pull (b.src);
-    mesh = parse (buffer);
-    fail_unless (expect (mesh, GST_CLOTH_VERTEX_TWO_VIEWS, 0.06) < 10);
-    gst_buffer_unref (buffer);
+    fail_unless (expect_next (&b, GST_CLOTH_VERTEX_TWO_VIEWS, 0.06) < 10);
   }
   fail_unless_equals_int (count_messages (&b, GST_MESSAGE_WARNING,
           "contradict"), 1);
@@ -436,8 +441,6 @@ GST_END_TEST;
 GST_START_TEST (test_three_heads)
 {
   View wrong = usual;
-  g_autoptr (GstClothMesh) mesh = NULL;
-  GstBuffer *buffer;
   Bench b;
 
   wrong.aside = 0.05;
@@ -445,10 +448,7 @@ GST_START_TEST (test_three_heads)
   push (&b, 0, &usual, 0);
   push (&b, 1, &wrong, 0);
   push (&b, 2, &usual, 0);
-  buffer = gst_harness_pull (b.src);
-  mesh = parse (buffer);
-  fail_unless (expect (mesh, GST_CLOTH_VERTEX_MEASURED, 0.002) > 45);
-  gst_buffer_unref (buffer);
+  fail_unless (expect_next (&b, GST_CLOTH_VERTEX_MEASURED, 0.002) > 45);
   bench_clear (&b);
 }
 
@@ -457,17 +457,12 @@ GST_END_TEST;
 GST_START_TEST (test_three_cameras)
 {
   View view = usual;
-  g_autoptr (GstClothMesh) mesh = NULL;
-  GstBuffer *buffer;
   Bench b;
 
   view.n_cameras = 3;
   bench_init (&b, 1, &view, 1);
   push (&b, 0, &view, 0);
-  buffer = gst_harness_pull (b.src);
-  mesh = parse (buffer);
-  fail_unless (expect (mesh, GST_CLOTH_VERTEX_MEASURED, 0.002) > 45);
-  gst_buffer_unref (buffer);
+  fail_unless (expect_next (&b, GST_CLOTH_VERTEX_MEASURED, 0.002) > 45);
   bench_clear (&b);
 }
 
@@ -583,8 +578,6 @@ GST_END_TEST;
 GST_START_TEST (test_scaled)
 {
   View view = usual;
-  g_autoptr (GstClothMesh) mesh = NULL;
-  GstBuffer *buffer;
   Bench b;
 
   view.width = 200;
@@ -592,10 +585,7 @@ GST_START_TEST (test_scaled)
   view.scaled = 2;
   bench_init (&b, 1, &view, 1);
   push (&b, 0, &view, 0);
-  buffer = gst_harness_pull (b.src);
-  mesh = parse (buffer);
-  fail_unless (expect (mesh, GST_CLOTH_VERTEX_TWO_VIEWS, 0.004) > 45);
-  gst_buffer_unref (buffer);
+  fail_unless (expect_next (&b, GST_CLOTH_VERTEX_TWO_VIEWS, 0.004) > 45);
   bench_clear (&b);
 }
 
