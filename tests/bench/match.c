@@ -15,8 +15,9 @@
 #include <string.h>
 #include <time.h>
 
+#include "gst/rig/rigfile.h"
 #include "gst/vision/mask/mask.h"
-#include "tests/bench/filmdepth.h"
+#include "gst/vision/stereo/stereo.h"
 #include "tests/bench/matchfilm.h"
 
 /* What counts as right, m in uv. */
@@ -29,10 +30,8 @@
 static const gdouble speeds[N_SPEEDS] = { 2, 5, 10, 20, 40, INFINITY };
 
 /* From pictures to their surface. */
-#define N_STEPS 7
-static const gchar *const steps[N_STEPS] = { "silhouette", "block matching",
-  "merging", "filling", "fractions", "refining", "smoothing again"
-};
+#define N_STEPS 2
+static const gchar *const steps[N_STEPS] = { "silhouette", "disparities" };
 
 /* Of all threads on all processors, which other programs that run meanwhile change little; and
  * by the wall's clock. */
@@ -57,9 +56,11 @@ static gchar *still, *pictures;
 typedef struct
 {
   ClothMask *mask;
-  FilmDepth depth;
+  ClothRig *rig;
+  ClothStereo *head;
+  ClothDisparityMap map;        /* of the head */
   guint8 *inside;
-  gfloat *points, *merged;
+  gfloat *points;
 } Look;
 
 static Times
@@ -113,9 +114,9 @@ add_bytes (guint64 * sum, gconstpointer data, gsize n)
     *sum = (*sum ^ bytes[i]) * G_GUINT64_CONSTANT (0x100000001b3);
 }
 
-/* Runs of the mask as bytes, and as states of the map. */
+/* Runs of the mask as bytes. */
 static void
-take_mask (Look * look, const MatchFilm * film, guint frame)
+take_mask (Look * look, const MatchFilm * film, guint frame, ClothPool * pool)
 {
   const gint w = film->film.width, h = film->film.height;
   const ClothMaskParams params = cloth_mask_default_params ();
@@ -126,64 +127,52 @@ take_mask (Look * look, const MatchFilm * film, guint frame)
   const ClothRun *runs;
   guint n_runs;
 
-  cloth_mask_run (look->mask, &params, &image, look->depth.pool,
-      CLOTH_SIMD_BEST);
+  cloth_mask_run (look->mask, &params, &image, pool, CLOTH_SIMD_BEST);
   runs = cloth_mask_get_runs (look->mask, &n_runs);
   memset (look->inside, 0, n);
   for (guint k = 0; k < n_runs; k++)
-    memset (look->inside + runs[k].row * w + runs[k].begin, 1,
+    memset (look->inside + runs[k].row * w + runs[k].begin, 255,
         runs[k].end - runs[k].begin);
-  memcpy (look->depth.map.states, look->inside, n);
 }
 
-/* The surface out of the pictures. */
+/* The surface out of the pictures, as clothdisparity finds it. */
 static void
-look_at_depth (Look * look, const MatchFilm * film, guint frame, Sums * sums)
+look_at_depth (Look * look, const MatchFilm * film, guint frame,
+    ClothPool * pool, Sums * sums)
 {
-  const gint w = film->film.width;
-  const gsize n = (gsize) w * (gsize) film->film.height;
-  const ClothDisparityParams params = film_depth_sixteenths ();
-  const ClothDisparityParams polish = film_depth_polish ();
-  const guint8 *const views[3] = { film->film.pixels->data + frame * n,
-    film->sides[0].pixels->data + frame * n,
-    film->sides[1].pixels->data + frame * n
+  const gint w = film->film.width, h = film->film.height;
+  const gsize n = (gsize) w * (gsize) h;
+  const ClothStereoGeometry g = cloth_stereo_get_geometry (look->head);
+  const ClothImage images[3] = { {film->film.pixels->data + frame * n, w, h,
+      w}, {film->sides[0].pixels->data + frame * n, w, h, w},
+  {film->sides[1].pixels->data + frame * n, w, h, w}
   };
-  FilmDepth *depth = &look->depth;
+  const ClothImage mask = { look->inside, w, h, w };
+  ClothStereoResult result;
+  Times start = now ();
 
-  for (gint step = 0; step < N_STEPS; step++) {
-    const Times start = now ();
-
-    if (step == 0)
-      take_mask (look, film, frame);
-    else if (step == 1)
-      film_depth_match (depth, views);
-    else if (step == 2)
-      film_depth_merge (depth, 2);
-    else if (step == 3)
-      film_depth_fill (depth, &params);
-    else if (step == 4)
-      film_depth_smooth (depth, &params);
-    else if (step == 5)
-      film_depth_refine (depth, views);
-    else
-      film_depth_smooth (depth, &polish);
-    add_times (&sums->depth[step], since (start));
-    if (step == 2)
-      memcpy (look->merged, depth->map.disparities, n * sizeof *look->merged);
-  }
-  add_bytes (&sums->depth_sum, depth->map.disparities,
-      n * sizeof *depth->map.disparities);
+  take_mask (look, film, frame, pool);
+  add_times (&sums->depth[0], since (start));
+  start = now ();
+  if (!cloth_stereo_run (look->head, images, &mask, pool, &result, NULL))
+    g_error ("no disparities");
+  add_times (&sums->depth[1], since (start));
+  look->map = result.map;
+  add_bytes (&sums->depth_sum, look->map.disparities,
+      n * sizeof *look->map.disparities);
   for (gsize i = 0; i < n; i++) {
-    const gdouble z = film->focal * film->baseline
-        / (gdouble) depth->map.disparities[i];
+    const gfloat *ray = g.rays + 2 * i;
     gfloat *to = look->points + 3 * i;
+    gdouble scale;
 
     to[0] = to[1] = to[2] = NAN;
-    if (depth->map.states[i] < CLOTH_DISPARITY_MEASURED)
+    if (look->map.states[i] < CLOTH_DISPARITY_MEASURED)
       continue;
-    to[0] = (gfloat) (((gdouble) (i % w) - film->centre[0]) / film->focal * z);
-    to[1] = (gfloat) (((gdouble) (i / w) - film->centre[1]) / film->focal * z);
-    to[2] = (gfloat) z;
+    scale = g.focal_baseline / ((gdouble) look->map.disparities[i]
+        * (g.normal[0] * ray[0] + g.normal[1] * ray[1] + g.normal[2]));
+    to[0] = (gfloat) (scale * ray[0]);
+    to[1] = (gfloat) (scale * ray[1]);
+    to[2] = (gfloat) scale;
   }
 }
 
@@ -254,7 +243,7 @@ draw_frame (const MatchFilm * film, guint frame, const ClothCvFeatures * f,
       const gsize at = (gsize) y * (gsize) w + (gsize) x;
       const guint grey = film->film.pixels->data[frame * (gsize) w * h + at];
       const guint tone = by_pictures && look->inside[at]
-          && look->depth.map.states[at] < CLOTH_DISPARITY_MEASURED ?
+          && look->map.states[at] < CLOTH_DISPARITY_MEASURED ?
           grey / 4 : 128 + grey / 2;
       guint32 *to = (guint32 *) (data + y * cairo_image_surface_get_stride
           (surface)) + x;
@@ -329,22 +318,6 @@ draw_part (cairo_t * cr, gint part, const guint8 * grey, gint width,
   cairo_surface_destroy (surface);
 }
 
-/* Depth as light from the left shows it. */
-static guint8 *
-shade (const gfloat * disparities, gint width, gint height)
-{
-  guint8 *grey = g_malloc0 ((gsize) width * (gsize) height);
-
-  for (gint i = width; i < width * height; i++) {
-    const gfloat tone = 128 + 300 * (2 * disparities[i] - disparities[i - 1]
-        - disparities[i - width]);
-
-    if (isfinite (tone))
-      grey[i] = (guint8) CLAMP (tone, 1, 255);
-  }
-  return grey;
-}
-
 static void
 keep (cairo_surface_t * surface, const gchar * name, guint frame)
 {
@@ -355,11 +328,10 @@ keep (cairo_surface_t * surface, const gchar * name, guint frame)
     g_error ("%s: can't be written", path);
 }
 
-/* Disparities as two baselines agree on them and in the end; features of the print's flat
- * view and of the film. */
+/* Features of the print's flat view and of the film. */
 static void
 draw_parts (const MatchFilm * film, guint frame, const ClothCvFeatures * f,
-    const ClothReferenceFeatures * r, const Look * look)
+    const ClothReferenceFeatures * r)
 {
   const gint w = film->film.width, h = film->film.height;
   const guint8 *luma = film->film.pixels->data + frame * (gsize) w * h;
@@ -380,16 +352,6 @@ draw_parts (const MatchFilm * film, guint frame, const ClothCvFeatures * f,
       film->reference.height, n, x, y, scale, 16);
   draw_part (cr, 1, luma, w, h, f->n, f->x, f->y, f->scale, 4);
   keep (surface, "features", frame);
-  if (by_pictures) {
-    g_autofree guint8 *before = shade (look->merged, w, h);
-    g_autofree guint8 *after = shade (look->depth.map.disparities, w, h);
-
-    cairo_set_source_rgb (cr, 0, 0, 0);
-    cairo_paint (cr);
-    draw_part (cr, 0, before, w, h, 0, NULL, NULL, NULL, 1);
-    draw_part (cr, 1, after, w, h, 0, NULL, NULL, NULL, 1);
-    keep (surface, "depth", frame);
-  }
   cairo_destroy (cr);
   cairo_surface_destroy (surface);
 }
@@ -424,7 +386,7 @@ run_frame (const MatchFilm * film, guint frame,
 
   match_film_look (film, frame, truth);
   if (by_pictures)
-    look_at_depth (look, film, frame, sums);
+    look_at_depth (look, film, frame, pool, sums);
   start = now ();
   if (!cloth_cv_sift_run (sift, &picture, &mask, &f, NULL))
     g_error ("no features");
@@ -462,7 +424,7 @@ run_frame (const MatchFilm * film, guint frame,
   }
   if (pictures) {
     draw_frame (film, frame, &f, matches, r, truth, look);
-    draw_parts (film, frame, &f, r, look);
+    draw_parts (film, frame, &f, r);
   }
   g_print ("%5u  %7u  %7u (%4.1f%%)  %8u (%4.1f%%)  %6.2f%%  %4u %4u %5u  "
       "%4.0f%%  %5.0f%%  %5.1f  %5.1f\n", frame, f.n, growth.n_matched,
@@ -521,6 +483,8 @@ tell (const Sums * s, guint n_references)
 static void
 look_init (Look * look, const MatchFilm * film)
 {
+  const ClothStereoParams params = cloth_stereo_default_params ();
+  const ClothCamera *cameras[3];
   const gint w = film->film.width, h = film->film.height;
   const gsize n = (gsize) w * (gsize) h;
   const ClothPlanarImage background = { {film->background.pixels->data, w, h,
@@ -529,20 +493,22 @@ look_init (Look * look, const MatchFilm * film)
 
   look->mask = cloth_mask_new ();
   cloth_mask_set_background (look->mask, &background);
-  film_depth_init (&look->depth, w, h);
+  look->rig = cloth_rig_load (TEST_DATA "/lineart_stereo3/rig.json", NULL);
+  for (guint i = 0; i < 3; i++)
+    cameras[i] = &look->rig->cameras[i];
+  look->head = cloth_stereo_new (cameras, 3, &params, NULL);
   look->inside = g_malloc (n);
   look->points = g_new (gfloat, 3 * n);
-  look->merged = g_new (gfloat, n);
 }
 
 static void
 look_clear (Look * look)
 {
   cloth_mask_free (look->mask);
-  film_depth_clear (&look->depth);
+  cloth_stereo_free (look->head);
+  cloth_rig_free (look->rig);
   g_free (look->inside);
   g_free (look->points);
-  g_free (look->merged);
 }
 
 static void
