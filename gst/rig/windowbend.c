@@ -9,6 +9,11 @@
  * 3/16 R · D / 2h = 3/32 (R/h) D there. The middle of both is taken, and half their
  * distance as its uncertainty, which all cameras share.
  *
+ * What is known of D is noisy, the more the closer the cameras stand together, and to move a
+ * vertex away from its neighbours by noise makes it noisier. So D counts by the share
+ * 1 − trace (Σ₊ + Σ₋ + 4 Σ) / |D|², or not at all (W. James and C. Stein, “Estimation with
+ * quadratic loss”, 1961).
+ *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/rig/windowbend.h"
 
@@ -46,19 +51,30 @@ get_reach (const ClothRig * rig, const ClothTriangulateView * views,
  * known. */
 static gboolean
 add_crease (const ClothRig * rig, const ClothTriangulateView * views,
-    const gfloat * positions, guint vertex, guint step, gdouble radius_px,
-    gdouble crease[3])
+    const gfloat * positions, const gfloat * covariances, guint vertex,
+    guint step, gdouble radius_px, gdouble crease[3])
 {
-  gdouble p[3][3], reach;
+  static const gdouble weights[3] = { 1, 4, 1 };
+  gdouble p[3][3], second[3], noise = 0, reach, share;
 
   for (guint i = 0; i < 3; i++)
     for (guint k = 0; k < 3; k++)
       p[i][k] = positions[3 * (vertex + i * step - step) + k];
   if (!isfinite (p[0][0] + p[1][0] + p[2][0]))
     return FALSE;
+  for (guint i = 0; i < 3; i++) {
+    const gfloat *c = covariances + 6 * (vertex + i * step - step);
+
+    noise += weights[i] * (c[0] + c[3] + c[5]);
+  }
+  for (guint k = 0; k < 3; k++)
+    second[k] = p[0][k] + p[2][k] - 2 * p[1][k];
+  share = 1 - noise / cloth_vec3_dot (second, second);
+  if (!(share > 0))
+    return TRUE;
   reach = get_reach (rig, views, vertex, radius_px, p[0], p[2]);
   for (guint k = 0; k < 3; k++)
-    crease[k] += CREASE * reach * (p[0][k] + p[2][k] - 2 * p[1][k]);
+    crease[k] += CREASE * reach * share * second[k];
   return TRUE;
 }
 
@@ -92,8 +108,10 @@ cloth_window_bend_correct (guint columns, guint rows, gdouble radius_px,
 
     half[0] = half[1] = half[2] = 0;
     if (column == 0 || row == 0 || column + 1 == columns || row + 1 == rows
-        || !add_crease (rig, views, positions, i, 1, radius_px, half)
-        || !add_crease (rig, views, positions, i, columns, radius_px, half)) {
+        || !add_crease (rig, views, positions, covariances, i, 1, radius_px,
+            half)
+        || !add_crease (rig, views, positions, covariances, i, columns,
+            radius_px, half)) {
       half[0] = NAN;
       continue;
     }
