@@ -16,6 +16,7 @@
 #include "gst/gap/verdict/failure.h"
 #include "gst/gap/verdict/implausible.h"
 #include "gst/gap/verdict/judge.h"
+#include "gst/gap/verdict/measure.h"
 #include "gst/gap/verdict/unexplained.h"
 
 /* Version of the priors and thresholds: a change of either changes probabilities. */
@@ -27,7 +28,7 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
 {
   gchar *implausible;
 
-  /* Reads the takes, baselines and hold-outs; writes the recordings and the studies. */
+  /* Reads the takes, baselines, hold-outs and their twins; writes the recordings and the studies. */
   if (!cloth_diagnosis_load (d, model, error))
     return FALSE;
   /* Reads the recordings; writes the reason why nothing can be decided, if there is one. */
@@ -39,21 +40,24 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
   /* Reads the model and the wanted effects; writes the directions that are fitted and tested. */
   if (!cloth_diagnosis_list_candidates (d, model, error))
     return FALSE;
-  /* Reads the studies of the baselines, without any those of the takes; writes the fitted model
-   * and the precisions of its free numbers. */
+  /* Reads the studies of the baselines and the twins, without any those of the takes; writes the
+   * fitted model and the precisions of its free numbers. */
   if (!cloth_diagnosis_fit_free (d, model, error))
     return FALSE;
-  /* Reads the recordings; writes each study's discrepancy, the baseline that moves alike. */
+  /* Reads the recordings; writes each study's discrepancy: its twin, or the baseline that moves
+   * alike. */
   cloth_diagnosis_find_discrepancies (d);
-  /* Reads the studies of the baselines at the fitted model; writes what the log Bayes factor of
-   * each effect must exceed. */
-  if (d->options->n_baselines && !cloth_diagnosis_study_baselines (d, error))
+  /* Reads the studies of the baselines and the twins at the fitted model; writes what the log
+   * Bayes factor of each effect must exceed. */
+  if (cloth_diagnosis_n_references (d)
+      && !cloth_diagnosis_study_baselines (d, error))
     return FALSE;
   /* Reads the studies of the takes; writes their residuals and derivatives at the model. */
   if (!cloth_diagnosis_linearise (d, 0, d->n_takes, d->model, 0.3, 0.4, error))
     return FALSE;
-  /* Without a baseline: reads the takes with the other force model; writes the same bounds. */
-  if (!d->options->n_baselines && !cloth_diagnosis_study_other_model (d, error))
+  /* Without these: reads the takes with the other force model; writes the same bounds. */
+  if (!cloth_diagnosis_n_references (d)
+      && !cloth_diagnosis_study_other_model (d, error))
     return FALSE;
   /* Reads the residuals of takes and baselines; writes a sign of something unknown. */
   d->unexplained = cloth_diagnosis_find_unexplained (d);
