@@ -88,6 +88,20 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
   return cloth_diagnosis_propose (d, error);
 }
 
+/* A model that diverges, even without an effect, decides nothing; a report says so. Other failures,
+ * and a model that could not be simulated at all, make none. */
+static gboolean
+is_undecidable (ClothDiagnosis * d, const GError * failed)
+{
+  if (!d->candidates || !g_error_matches (failed, CLOTH_FIT_ERROR,
+          CLOTH_FIT_ERROR_MODEL))
+    return FALSE;
+  d->result->verdict = CLOTH_GAP_UNDECIDABLE;
+  g_free (d->result->reason);
+  d->result->reason = g_strdup_printf ("%s.", failed->message);
+  return TRUE;
+}
+
 /* What was decided by, and with what. */
 static void
 fill_provenance (const ClothDiagnosis * d, gint64 start)
@@ -129,12 +143,15 @@ cloth_gap_diagnose (ClothTake ** takes, guint n_takes,
     const ClothModel * model, const ClothGapOptions * options, GError ** error)
 {
   g_auto (ClothDiagnosis) d = { NULL };
+  g_autoptr (GError) failed = NULL;
   gint64 start = g_get_monotonic_time ();
 
   cloth_diagnosis_init (&d, takes, n_takes, options);
   d.study.rollout.failed = cloth_diagnosis_note_failure;
-  if (!diagnose (&d, model, error))
+  if (!diagnose (&d, model, &failed) && !is_undecidable (&d, failed)) {
+    g_propagate_error (error, g_steal_pointer (&failed));
     return NULL;
+  }
   if (d.model)
     d.result->model =
         d.n_accepted ? g_steal_pointer (&d.with[d.n_accepted -

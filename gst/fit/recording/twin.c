@@ -76,6 +76,7 @@ typedef struct
   gdouble side;                 /* the cloth's longest, m */
   gdouble noise;                /* that its positions are said to have, m */
   ClothScene *scene;            /* of the simulation */
+  gboolean begins_torn;
   ClothFlatPlace *places;       /* of the recorded vertices */
   Moment *moments;              /* of the recorded frames */
   gfloat *samples;              /* of its own frames, [n_frames][recorded->n][3], m */
@@ -205,13 +206,15 @@ find_moments (Twin * t, GError ** error)
   const ClothRecording *r = t->recorded;
   const guint last = t->n_frames - 1;
   const gdouble frame = frame_length (t->times, t->n_frames);
+  const gdouble most = (1. + ROUNDING) * fmax (frame,
+      frame_length (r->times, r->n_frames));
   const gdouble early = t->times[0] - r->times[0];
   const gdouble short_by = r->times[r->n_frames - 1] - t->times[last];
 
-  if (early > frame)
+  if (early > most)
     return refuse (t, error, "it begins at %g s, %.3g s after the recording; "
         "simulate from its first frame on, with its times", t->times[0], early);
-  if (short_by > frame)
+  if (short_by > most)
     return refuse (t, error, "it ends at %g s, %.3g s before the recording; "
         "simulate all of it", t->times[last], short_by);
   t->moments = g_new0 (Moment, r->n_frames);
@@ -242,8 +245,7 @@ is_finite (const gfloat * p)
 
 /* Whether a cloth can be where a frame has it: its neighbours are not torn apart. */
 static gboolean
-check_frame (const Twin * t, guint frame, const gfloat * positions,
-    GError ** error)
+check_frame (Twin * t, guint frame, const gfloat * positions, GError ** error)
 {
   const ClothTopology *cloth = t->scene->topology;
   gboolean any = FALSE;
@@ -255,7 +257,7 @@ check_frame (const Twin * t, guint frame, const gfloat * positions,
         "let it not diverge: smaller steps, more damping, softer cloth",
         frame, t->times[frame]);
   /* what is torn from the beginning has other units or vertices, which is told later */
-  for (guint f = 0; f < cloth->n_faces && frame; f++) {
+  for (guint f = 0; f < cloth->n_faces && !t->begins_torn; f++) {
     const guint32 *face = cloth->faces + 4 * (gsize) f;
     guint n = cloth_face_corners (face);
 
@@ -265,7 +267,10 @@ check_frame (const Twin * t, guint frame, const gfloat * positions,
       gdouble apart = sqrt (pow ((gdouble) a[0] - b[0], 2.) +
           pow ((gdouble) a[1] - b[1], 2.) + pow ((gdouble) a[2] - b[2], 2.));
 
-      if (is_finite (a) && is_finite (b) && !(apart < FAR * t->side))
+      if (!is_finite (a) || !is_finite (b) || apart < FAR * t->side)
+        continue;
+      t->begins_torn = frame == 0;
+      if (frame)
         return refuse (t, error, "it diverges: in frame %u, at %g s, its "
             "vertices %u and %u, neighbours, are %.3g m apart; smaller steps, "
             "more damping or softer cloth help", frame, t->times[frame],
@@ -439,6 +444,28 @@ is_moved (gdouble a, gdouble b, gdouble frame)
   return !(a == b || fabs (a - b) <= frame);
 }
 
+static gchar *
+describe_span (const ClothHeld * held)
+{
+  g_autofree gchar *until = isfinite (held->until_s) ?
+      g_strdup_printf ("until %g s", held->until_s) : g_strdup ("to the end");
+
+  return isfinite (held->from_s) ? g_strdup_printf ("from %g s %s",
+      held->from_s, until) : g_steal_pointer (&until);
+}
+
+static gboolean
+refuse_span (const Twin * t, const ClothHeld * own, const ClothHeld * held,
+    GError ** error)
+{
+  g_autofree gchar *span = describe_span (own);
+  g_autofree gchar *recorded = describe_span (held);
+
+  return refuse (t, error, "it holds vertex %u %s, and the recording vertex %u "
+      "%s; hold and let go as recorded", own->vertex, span, held->vertex,
+      recorded);
+}
+
 /* The clamps' paths are those of the recording's log while it holds. Clamps of other vertices may
  * be as far from each other as these are on the flat cloth. */
 static gboolean
@@ -462,10 +489,7 @@ check_paths (const Twin * t, GError ** error)
     other = &g_array_index (own->held, ClothHeld, k);
     if (is_moved (held->from_s, other->from_s, frame)
         || is_moved (held->until_s, other->until_s, frame))
-      return refuse (t, error, "it holds vertex %u from %g s until %g s, and "
-          "the recording vertex %u from %g s until %g s (infinite: all the "
-          "time); hold and let go as recorded", other->vertex, other->from_s,
-          other->until_s, held->vertex, held->from_s, held->until_s);
+      return refuse_span (t, other, held, error);
     for (guint f = 0; f < r->n_frames; f++) {
       const Moment *m = &t->moments[f];
       const gdouble *at = s->clamps + 3 * ((gsize) f * n + i);
@@ -602,12 +626,12 @@ cloth_recording_new_twin (ClothTake * simulated,
   twin->y = g_new (gdouble, 3 * all);
   twin->velocity = g_new (gdouble, 3 * all);
   fill_positions (&t, twin);
-  if (!cloth_recording_check (twin, TRUE, error)
+  if (!cloth_recording_check (twin, TRUE, error) || !check_rate (&t, error)
       || !check_held (&t, recorded->scene, t.scene, "the recording", "it",
           error)
       || !check_held (&t, t.scene, recorded->scene, "it", "the recording",
           error)
-      || !check_paths (&t, error) || !check_rate (&t, error)) {
+      || !check_paths (&t, error)) {
     cloth_recording_free (twin);
     return NULL;
   }

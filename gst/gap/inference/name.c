@@ -287,7 +287,7 @@ cloth_diagnosis_linearise (ClothDiagnosis * d, guint first, guint end,
 {
   for (guint i = first; i < end; i++) {
     g_autofree gchar *what = g_strdup_printf ("effects on %s",
-        cloth_diagnosis_recording (d, i)->name);
+        cloth_diagnosis_study (d, i)->recording->name);
     gdouble part = (to - from) / (end - first);
 
     cloth_diagnosis_begin_part (d, from + part * (i - first),

@@ -22,6 +22,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/fit/error.h"
 #include "gst/fit/recording/recording.h"
 #include "gst/gap/localise/where.h"
 #include "gst/math/random.h"
@@ -257,7 +258,7 @@ measure_twin_floor (const Work * w, Kind kind, guint i, ClothWindowedGap * own,
 
   if (floor) {
     cloth_windowed_gap_replace (floor[0], &noisy, own, twin);
-    find_squares (d, floor, 1, windows, &w->all[i].floor[kind]);
+    find_squares (d, i, floor, 1, windows, &w->all[i].floor[kind]);
     if (i == 0 && kind == WINDOWS && floor[0]->sound) {
       d->floor = g_steal_pointer (&floor[0]->energy);
       keep_null (d, g_steal_pointer (&floor[0]), i);
@@ -400,6 +401,19 @@ measure_after (const Work * w, Kind kind, guint i, const gboolean * windows,
   return gaps != NULL;
 }
 
+/* Windows are too short for sound models to diverge in; what runs on from the start may. */
+static gboolean
+check_sound (const ClothRecording * r, Kind kind, const ClothWindowedGap * gap,
+    GError ** error)
+{
+  if (kind == FREE || gap->sound)
+    return TRUE;
+  g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL, "%s: the "
+      "simulation diverges; give the model softer cloth, more damping or a "
+      "smaller time_step", r->name);
+  return FALSE;
+}
+
 /* All that is measured of a recording in windows, or in the free run. */
 static gboolean
 measure_kind (Work * w, Kind kind, guint i, GError ** error)
@@ -424,9 +438,10 @@ measure_kind (Work * w, Kind kind, guint i, GError ** error)
   for (gsize k = gaps[0]->n; k < (gsize) gaps[0]->n * gaps[0]->n_frames; k++)
     w->all[i].seen += kind == WINDOWS && !isnan (gaps[0]->squares[k])
         && windows[gaps[0]->window[k / gaps[0]->n]];
-  done = twin ? measure_twin_floor (w, kind, i, own[0], windows, error) :
-      measure_floor (w, kind, i, gaps[0], error);
-  done = done && measure_after (w, kind, i, windows, error);
+  done = check_sound (cloth_diagnosis_recording (d, i), kind, gaps[0], error)
+      && (twin ? measure_twin_floor (w, kind, i, own[0], windows, error) :
+      measure_floor (w, kind, i, gaps[0], error))
+      && measure_after (w, kind, i, windows, error);
   cloth_windowed_gaps_free (own, 1);
   if (i == 0 && kind == WINDOWS)
     w->first = gaps;
