@@ -96,11 +96,15 @@ fill_provenance (const ClothDiagnosis * d, gint64 start)
   cloth_gap_result_add_version (result, PACKAGE, PACKAGE_VERSION);
   cloth_gap_result_add_version (result, "priors", PRIORS);
   cloth_gap_result_add_threshold (result, "least evidence (logarithm of the "
-      "Bayes factor)", d->least_log_bayes_factor, "1");
+      "Bayes factor)", d->least_log_bayes_factor, "1",
+      CLOTH_GAP_ORIGIN_PARAMETER, "Chosen on the benchmark; what the baseline "
+      "supports that nobody told is taken off.");
   cloth_gap_result_add_threshold (result, "least share of the gap's variance",
-      CLOTH_DIAGNOSIS_LEAST_SHRINK, "1");
+      CLOTH_DIAGNOSIS_LEAST_SHRINK, "1", CLOTH_GAP_ORIGIN_PARAMETER,
+      "Chosen on the benchmark.");
   cloth_gap_result_add_threshold (result,
-      "largest rest over the floor, of variance", CLOTH_DIAGNOSIS_BAND, "1");
+      "largest rest over the floor, of variance", CLOTH_DIAGNOSIS_BAND, "1",
+      CLOTH_GAP_ORIGIN_PARAMETER, "Chosen on the benchmark.");
 }
 
 /* @takes: (array length=n_takes): what was recorded
