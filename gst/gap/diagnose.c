@@ -5,6 +5,8 @@
 
 #include "config.h"
 
+#include <math.h>
+
 #include "gst/gap/camera/faults.h"
 #include "gst/gap/design/propose.h"
 #include "gst/gap/inference/baseline.h"
@@ -13,6 +15,7 @@
 #include "gst/gap/load.h"
 #include "gst/gap/localise/null-distribution.h"
 #include "gst/gap/localise/where.h"
+#include "gst/gap/verdict/agreement.h"
 #include "gst/gap/verdict/failure.h"
 #include "gst/gap/verdict/implausible.h"
 #include "gst/gap/verdict/judge.h"
@@ -67,8 +70,11 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
     return FALSE;
   /* Reads the candidates and the ranked effects; writes those that could not be tested. */
   cloth_diagnosis_note_untested (d);
-  /* Reads the models with and without effects; writes the gap, its floor and its shrink. */
+  /* Reads the models with and without effects; writes the gap of each take, its floor, its shrink. */
   if (!cloth_diagnosis_measure (d, error))
+    return FALSE;
+  /* Reads all takes and hold-outs with the accepted effects; writes whether they agree on them. */
+  if (!cloth_diagnosis_test_agreement (d, error))
     return FALSE;
   /* Reads the energies of residuals and the camera errors; writes frequencies, waves, stages. */
   cloth_diagnosis_locate (d);
@@ -123,6 +129,11 @@ fill_provenance (const ClothDiagnosis * d, gint64 start)
   cloth_gap_result_add_threshold (result,
       "largest rest over the floor, of variance", CLOTH_DIAGNOSIS_BAND, "1",
       CLOTH_GAP_ORIGIN_PARAMETER, "Chosen on the benchmark.");
+  if (d->twins->len)
+    cloth_gap_result_add_threshold (result, "what the foretold change by the "
+        "accepted effects is off by, RMS", sqrt (d->prediction_square), "m",
+        CLOTH_GAP_ORIGIN_SIMULATED, "It is what the two force models differ by "
+        "in it; with the floor it bounds the rest.");
 }
 
 /* @takes: (array length=n_takes): what was recorded

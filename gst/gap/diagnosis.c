@@ -181,14 +181,14 @@ cloth_diagnosis_count_faults (const ClothDiagnosis * d)
   return n;
 }
 
-/* @d: a diagnosis whose model is fitted
+/* @model: a model
  *
  * Returns: (transfer full): the model with the other force model
  */
 ClothModel *
-cloth_diagnosis_other_model (const ClothDiagnosis * d)
+cloth_diagnosis_other_model (const ClothModel * model)
 {
-  ClothModel *other = cloth_model_copy (d->model);
+  ClothModel *other = cloth_model_copy (model);
 
   other->force_model = other->force_model == CLOTH_FORCE_MEMBRANE ?
       CLOTH_FORCE_MASS_SPRING : CLOTH_FORCE_MEMBRANE;

@@ -121,6 +121,10 @@ typedef struct
   gchar *unexplained;
   gdouble clamps_off;
 
+  /* Mean square by which two force models differ in what they foretell of the accepted effects, m²:
+   * with twins the gap after holds it. 0 without; made by measure.c, read by judge.c. */
+  gdouble prediction_square;
+
   /* Energies of the nudged residuals of the first take before and after, and of the first
    * baseline, NULL where there is none; made by measure.c, read by where.c. The nudged residual
    * of the first take, as ClothWindowedGap has it, or NULL; read by null-distribution.c. */
@@ -190,7 +194,7 @@ ClothRecording *cloth_diagnosis_twin (const ClothDiagnosis * d,
 ClothRecording *cloth_diagnosis_after (const ClothDiagnosis * d,
     guint recording);
 guint cloth_diagnosis_count_faults (const ClothDiagnosis * d);
-ClothModel *cloth_diagnosis_other_model (const ClothDiagnosis * d);
+ClothModel *cloth_diagnosis_other_model (const ClothModel * model);
 gboolean cloth_diagnosis_is_decided (const ClothDiagnosis * d,
     const ClothEffect * effect);
 gboolean cloth_diagnosis_has_discrepancies (const ClothDiagnosis * d);

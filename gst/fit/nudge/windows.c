@@ -179,13 +179,12 @@ cloth_windowed_gaps_new_free (const ClothRecording * recording,
 {
   ClothWindowedGap **gaps = g_new (ClothWindowedGap *, n_models);
   g_autofree gboolean *sound = g_new (gboolean, n_models);
-  g_autofree gdouble *gains = g_new0 (gdouble, n_models);
   Gather g = { recording, gaps, n_models };
 
   for (guint m = 0; m < n_models; m++)
     gaps[m] = gap_new (recording, window_s);
-  if (!cloth_rollout_nudged (recording, models, gains, n_models, options,
-          add_frame, &g, sound, error)) {
+  if (!cloth_rollout_free (recording, models, n_models, options, add_frame, &g,
+          sound, error)) {
     cloth_windowed_gaps_free (gaps, n_models);
     return NULL;
   }

@@ -70,7 +70,7 @@ typedef struct
 {
   const ClothRecording *recorded;
   ClothTake *take;
-  const gchar *name;
+  gchar *name;                  /* of its folder */
   const gdouble *times;
   guint n_frames;
   gdouble side;                 /* the cloth's longest, m */
@@ -85,6 +85,7 @@ typedef struct
 static void
 twin_clear (Twin * t)
 {
+  g_free (t->name);
   cloth_scene_free (t->scene);
   g_free (t->places);
   g_free (t->moments);
@@ -572,7 +573,9 @@ twin_init (Twin * t, ClothTake * take, const ClothRecording * recorded,
     GError ** error)
 {
   *t = (Twin) {
-  recorded, take, cloth_take_get_info (take)->name};
+  recorded, take};
+  /* its take.json is often a copy of the recording's */
+  t->name = g_path_get_basename (cloth_take_get_folder (take));
   t->side = cloth_recording_longest_side (recorded);
   t->noise = fmax (cloth_take_get_info (take)->noise_sigma_m, 0.);
   t->n_frames = cloth_take_get_n_frames (take);

@@ -221,7 +221,7 @@ cloth_diagnosis_study_baselines (ClothDiagnosis * d, GError ** error)
 gboolean
 cloth_diagnosis_study_other_model (ClothDiagnosis * d, GError ** error)
 {
-  g_autoptr (ClothModel) other = cloth_diagnosis_other_model (d);
+  g_autoptr (ClothModel) other = cloth_diagnosis_other_model (d->model);
   g_autoptr (GPtrArray) studies = g_ptr_array_new_with_free_func (
       (GDestroyNotify) cloth_sensitivities_free);
   g_autoptr (GArray) scores = NULL;

@@ -1,12 +1,14 @@
 /* Decides the verdict.
  *
  * The rest is explained when it is below 2.25 floors in variance, and when takes agree on what
- * explains it.
+ * explains it. With a twin the floor is that and what the foretold change by the effects is off by.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/verdict/judge.h"
 
 #include <math.h>
+
+#include "gst/gap/verdict/agreement.h"
 
 /* What parts faults of cameras that look alike. */
 static const gchar *const capture_sentence =
@@ -112,18 +114,20 @@ void
 cloth_diagnosis_decide (ClothDiagnosis * d)
 {
   ClothGapResult *r = d->result;
-  gdouble floor2 = r->noise_floor.value * r->noise_floor.value;
+  gdouble floor2 = r->noise_floor.value * r->noise_floor.value +
+      d->prediction_square;
   guint accepted = d->n_accepted + cloth_diagnosis_count_faults (d);
   gdouble rest = accepted ? r->gap_after.value : r->gap_before.value;
   gboolean above = rest * rest > CLOTH_DIAGNOSIS_BAND * floor2;
   /* an effect that was supported and did not help stands for another */
   gboolean other = d->supported && rest * rest > floor2;
   gboolean clamps = are_clamps_off (d, floor2);
+  gboolean contradict = r->takes_agree_p_value < CLOTH_DIAGNOSIS_CONTRADICTION;
 
   if (d->n_accepted)
     accept_effects (d);
   add_camera_effects (d);
-  if (above || clamps || (!accepted && (d->unexplained || other)))
+  if (above || clamps || contradict || (!accepted && (d->unexplained || other)))
     r->verdict = CLOTH_GAP_UNEXPLAINED;
   else if (!accepted)
     r->verdict = CLOTH_GAP_NO_GAP;
@@ -131,6 +135,9 @@ cloth_diagnosis_decide (ClothDiagnosis * d)
     r->verdict = is_ambiguous (r) ? CLOTH_GAP_AMBIGUOUS : CLOTH_GAP_EXPLAINED;
   if (clamps || (!accepted && d->unexplained))
     r->reason = g_steal_pointer (&d->unexplained);
+  else if (contradict)
+    r->reason = g_strdup ("The takes contradict each other on the accepted "
+        "effects, so these are not all of it.");
   else if (!accepted && other && !above)
     r->reason = g_strdup ("An effect was asked for, but with it unseen data "
         "came no nearer.");
