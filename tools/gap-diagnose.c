@@ -241,7 +241,7 @@ diagnose (const Arguments * arguments)
 
 /* The short form of diagnose: one recording and what was simulated of it. */
 gint
-compare (const Arguments * arguments)
+compare_takes (const Arguments * arguments)
 {
   gchar **words = arguments->rest;
   gchar *rest[] = { words[0], words[1], NULL };
