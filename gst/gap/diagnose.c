@@ -130,10 +130,11 @@ fill_provenance (const ClothDiagnosis * d, gint64 start)
       "largest rest over the floor, of variance", CLOTH_DIAGNOSIS_BAND, "1",
       CLOTH_GAP_ORIGIN_PARAMETER, "Chosen on the benchmark.");
   if (d->twins->len)
-    cloth_gap_result_add_threshold (result, "what the foretold change by the "
-        "accepted effects is off by, RMS", sqrt (d->prediction_square), "m",
-        CLOTH_GAP_ORIGIN_SIMULATED, "It is what the two force models differ by "
-        "in it; with the floor it bounds the rest.");
+    cloth_gap_result_add_threshold (result, "what the foretold gap after is "
+        "off by, RMS", sqrt (d->prediction_square), "m",
+        CLOTH_GAP_ORIGIN_SIMULATED, "The other force model with the accepted "
+        "effects was the recording, without them the simulation; with the "
+        "floor it bounds the rest.");
 }
 
 /* @takes: (array length=n_takes): what was recorded

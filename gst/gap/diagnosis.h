@@ -121,8 +121,8 @@ typedef struct
   gchar *unexplained;
   gdouble clamps_off;
 
-  /* Mean square by which two force models differ in what they foretell of the accepted effects, m²:
-   * with twins the gap after holds it. 0 without; made by measure.c, read by judge.c. */
+  /* With twins, how much more than the floor the gap after would be if the accepted effects were all
+   * that is missing, mean square, m²; 0 without. Made by measure.c, read by judge.c. */
   gdouble prediction_square;
 
   /* Energies of the nudged residuals of the first take before and after, and of the first

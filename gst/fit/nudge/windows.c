@@ -164,32 +164,56 @@ cloth_windowed_gaps_new (const ClothRecording * recording,
 /* @recording: what is compared with
  * @models: (array length=n_models): the models
  * @n_models: how many
+ * @gain: of the observer that leads up to the run, 1/s²
+ * @lead_s: how long it does, s; these frames don't count. 0: the run begins as the recording does
  * @window_s: length of the windows that the frames are told by, s; nothing starts anew there
  * @options: how to simulate
  * @error: #ClothSimError
  *
- * Lets the models run from how the recording begins to its end.
+ * Lets the models run freely to the end. Noise at the start would shake the cloth as nothing real
+ * does: the observer leads them past it.
  *
  * Returns: (transfer full) (nullable) (array length=n_models): each model's distances
  */
 ClothWindowedGap **
 cloth_windowed_gaps_new_free (const ClothRecording * recording,
-    const ClothModel * const *models, guint n_models, gdouble window_s,
-    const ClothRolloutOptions * options, GError ** error)
+    const ClothModel * const *models, guint n_models, gdouble gain,
+    gdouble lead_s, gdouble window_s, const ClothRolloutOptions * options,
+    GError ** error)
 {
   ClothWindowedGap **gaps = g_new (ClothWindowedGap *, n_models);
+  const gsize all = (gsize) recording->n * recording->n_frames;
   g_autofree gboolean *sound = g_new (gboolean, n_models);
+  g_autofree gdouble *gains = g_new (gdouble, n_models);
+  g_autofree gdouble *seen = g_memdup2 (recording->seen, all * sizeof *seen);
+  g_autofree const ClothRecording **targets = g_new (const ClothRecording *,
+      n_models);
+  ClothRecording led = *recording;
   Gather g = { recording, gaps, n_models };
+  gsize begin = 0;
 
-  for (guint m = 0; m < n_models; m++)
+  while (begin < all && recording->times[begin / recording->n] <
+      recording->times[0] + lead_s)
+    begin += recording->n;
+  /* from then on nothing draws the models */
+  for (gsize i = begin; i < all; i++)
+    seen[i] = 0.;
+  led.seen = seen;
+  for (guint m = 0; m < n_models; m++) {
     gaps[m] = gap_new (recording, window_s);
-  if (!cloth_rollout_free (recording, models, n_models, options, add_frame, &g,
-          sound, error)) {
+    gains[m] = gain;
+    targets[m] = &led;
+  }
+  if (!cloth_rollout_nudged (targets, models, gains, n_models, options,
+          add_frame, &g, sound, error)) {
     cloth_windowed_gaps_free (gaps, n_models);
     return NULL;
   }
-  for (guint m = 0; m < n_models; m++)
+  for (guint m = 0; m < n_models; m++) {
     gaps[m]->sound = sound[m];
+    for (gsize i = 0; i < begin; i++)
+      gaps[m]->squares[i] = NAN;
+  }
   return gaps;
 }
 

@@ -39,8 +39,9 @@ ClothWindowedGap **cloth_windowed_gaps_new (const ClothRecording * recording,
     const ClothModel * const *models, guint n_models, gdouble gain,
     gdouble window_s, const ClothRolloutOptions * options, GError ** error);
 ClothWindowedGap **cloth_windowed_gaps_new_free (const ClothRecording * recording,
-    const ClothModel * const *models, guint n_models, gdouble window_s,
-    const ClothRolloutOptions * options, GError ** error);
+    const ClothModel * const *models, guint n_models, gdouble gain,
+    gdouble lead_s, gdouble window_s, const ClothRolloutOptions * options,
+    GError ** error);
 void cloth_windowed_gaps_free (ClothWindowedGap ** gaps, guint n);
 void cloth_windowed_gap_free (ClothWindowedGap * gap);
 void cloth_windowed_gap_subtract (ClothWindowedGap * gap,

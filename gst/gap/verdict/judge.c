@@ -1,7 +1,7 @@
 /* Decides the verdict.
  *
  * The rest is explained when it is below 2.25 floors in variance, and when takes agree on what
- * explains it. With a twin the floor is that and what the foretold change by the effects is off by.
+ * explains it. With a twin the floor is that and what the foretold gap after is off by.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/verdict/judge.h"

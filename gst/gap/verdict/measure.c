@@ -6,8 +6,8 @@
  *     from the start of s. In windows (y − ours on y) − (s − ours on s), ours let go from the
  *     observer on each: what ours can't do is in both and cancels;
  *   - with a twin a that the effect was added to: a in place of s.
- * What a twin would do with the effects is foretold by ours only, and the gap after holds what that
- * is off by: (with − without) of one force model less that of the other, in mean square.
+ * What a twin would do with the effects is foretold by ours only. What that is off by is V after
+ * where the other force model with the effects is the recording and without them is the twin.
  * Floor: what V would be if the simulation lacked nothing. With a twin it is V of s plus noise in
  *   place of the recording: noise, and what simulations from starts that differ by it differ by.
  *   Without, of a baseline that moves alike, else what the two force models differ by, with noise.
@@ -150,15 +150,24 @@ find_squares (const ClothDiagnosis * d, Kind kind, guint recording,
   }
 }
 
+/* A free run begins as @r does, or, if that has noise, where an observer has come in a window. */
 static ClothWindowedGap **
 simulate (ClothDiagnosis * d, Kind kind, const ClothRecording * r,
-    const ClothModel * const *models, guint n, GError ** error)
+    gboolean noisy, const ClothModel * const *models, guint n, GError ** error)
 {
   if (kind == WINDOWS)
     return cloth_diagnosis_measure_windows (d, r, models, n, error);
   d->study.simulations += n;
-  return cloth_windowed_gaps_new_free (r, models, n, CLOTH_DIAGNOSIS_WINDOW_S,
-      &d->study.rollout, error);
+  return cloth_windowed_gaps_new_free (r, models, n,
+      CLOTH_DIAGNOSIS_WINDOW_GAIN, noisy ? CLOTH_DIAGNOSIS_WINDOW_S : 0.,
+      CLOTH_DIAGNOSIS_WINDOW_S, &d->study.rollout, error);
+}
+
+/* What a simulator wrote has noise only if its take says so. */
+static gboolean
+has_noise (const ClothRecording * r, const ClothRecording * twin)
+{
+  return twin->sigma > r->sigma;
 }
 
 /* Distances of models from a recording: with a twin those of the twin with what each model has
@@ -170,7 +179,7 @@ compare (ClothDiagnosis * d, Kind kind, const ClothRecording * r,
 {
   /* with a twin free runs begin as it does */
   ClothWindowedGap **gaps = simulate (d, kind, twin && kind == FREE ? twin : r,
-      models, n, error);
+      !twin || has_noise (r, twin), models, n, error);
 
   for (guint k = 0; gaps && twin && k < n; k++)
     cloth_windowed_gap_replace (gaps[k], r, own, twin);
@@ -228,48 +237,58 @@ keep_null (ClothDiagnosis * d, ClothWindowedGap * null, guint recording)
   d->null_recordings[d->n_nulls++] = recording;
 }
 
-/* The twin as it would be recorded. Its scene, name and times are the twin's. */
+/* Positions with noise as they would be recorded; scene, name and times are those of @like, and so is
+ * what was seen. */
 static ClothRecording
-add_noise (const ClothDiagnosis * d, const ClothRecording * twin)
+record (const ClothDiagnosis * d, const ClothRecording * like,
+    const gdouble * y, gdouble sigma)
 {
-  ClothRecording r = *twin;
+  ClothRecording r = *like;
   const gsize all = (gsize) r.n * r.n_frames;
   ClothRandom random;
 
   cloth_random_init (&random, d->options->seed);
-  r.y = g_memdup2 (twin->y, 3 * all * sizeof *r.y);
+  r.y = g_new (gdouble, 3 * all);
   r.velocity = g_new (gdouble, 3 * all);
   for (gsize i = 0; i < 3 * all; i++)
-    r.y[i] += twin->sigma * cloth_random_gaussian (&random);
+    r.y[i] = y[i] + sigma * cloth_random_gaussian (&random);
   cloth_recording_interpolate (&r);
   cloth_recording_differentiate (&r);
   return r;
 }
 
-/* The floor with a twin: of the twin as it would be recorded. Of free runs, one begins as the twin
- * does and one as that. */
+static void
+erase (ClothRecording * r)
+{
+  g_free (r->y);
+  g_free (r->velocity);
+}
+
+/* The floor with a twin: of the twin as it would be recorded. */
 static gboolean
-measure_twin_floor (const Work * w, Kind kind, guint i, ClothWindowedGap * own,
+measure_twin_floor (const Work * w, Kind kind, guint i,
     const gboolean * windows, GError ** error)
 {
   ClothDiagnosis *d = w->d;
   const ClothModel *models[1] = { d->model };
   const ClothRecording *twin = cloth_diagnosis_twin (d, i);
-  ClothRecording noisy = add_noise (d, twin);
-  ClothWindowedGap **floor = simulate (d, kind, &noisy, models, 1, error);
+  ClothRecording noisy = record (d, twin, twin->y, twin->sigma);
+  ClothWindowedGap **own = simulate (d, kind, twin, TRUE, models, 1, error);
+  ClothWindowedGap **floor = own ? compare (d, kind, &noisy, NULL, NULL, models,
+      1, error) : NULL;
 
   if (floor) {
-    cloth_windowed_gap_replace (floor[0], &noisy, own, twin);
+    cloth_windowed_gap_replace (floor[0], &noisy, own[0], twin);
     find_squares (d, kind, i, floor, 1, windows, &w->all[i].floor[kind]);
     if (i == 0 && kind == WINDOWS && floor[0]->sound) {
       d->floor = g_steal_pointer (&floor[0]->energy);
       keep_null (d, g_steal_pointer (&floor[0]), i);
       d->null_alike = TRUE;
     }
-    cloth_windowed_gaps_free (floor, 1);
   }
-  g_free (noisy.y);
-  g_free (noisy.velocity);
+  cloth_windowed_gaps_free (own, 1);
+  cloth_windowed_gaps_free (floor, 1);
+  erase (&noisy);
   return floor != NULL;
 }
 
@@ -304,7 +323,7 @@ measure_other_model (const Work * w, Kind kind, guint i,
   const ClothRecording *r = cloth_diagnosis_recording (d, i);
   g_autoptr (ClothModel) other = cloth_diagnosis_other_model (d->model);
   const ClothModel *models[1] = { other };
-  ClothWindowedGap **gaps = simulate (d, kind, r, models, 1, error);
+  ClothWindowedGap **gaps = simulate (d, kind, r, TRUE, models, 1, error);
   gdouble sum = 0.;
   gsize all = (gsize) r->n * r->n_frames, seen = 0;
 
@@ -367,8 +386,9 @@ measure_baseline (Work * w, Kind kind, GError ** error)
   for (guint i = d->n_takes; discrepancy && i < d->studies->len; i++)
     if (cloth_diagnosis_study (d, i) == discrepancy)
       baseline = i;
-  gaps = simulate (d, kind, cloth_diagnosis_recording (d, baseline), models, 1,
-      error);
+  gaps =
+      simulate (d, kind, cloth_diagnosis_recording (d, baseline), TRUE, models,
+      1, error);
   if (!gaps)
     return FALSE;
   find_squares (d, kind, 0, gaps, 1, NULL, &w->baseline[kind]);
@@ -392,7 +412,8 @@ measure_after (const Work * w, Kind kind, guint i, const gboolean * windows,
 
   if (!after)
     return TRUE;
-  own = simulate (d, kind, after, w->models, 1, error);
+  own = simulate (d, kind, after, has_noise (cloth_diagnosis_recording (d, i),
+          after), w->models, 1, error);
   if (own)
     gaps = compare (d, kind, cloth_diagnosis_recording (d, i), after, own[0],
         w->models, 1, error);
@@ -414,7 +435,9 @@ measure_kind (Work * w, Kind kind, guint i, GError ** error)
   g_autofree gboolean *windows = NULL;
   gboolean done;
 
-  if (twin && !(own = simulate (d, kind, twin, models, 1, error)))
+  if (twin && !(own = simulate (d, kind, twin,
+              has_noise (cloth_diagnosis_recording (d, i), twin), models, 1,
+              error)))
     return FALSE;
   gaps = measure_models (w, kind, i, own ? own[0] : NULL, error);
   if (!gaps) {
@@ -427,7 +450,7 @@ measure_kind (Work * w, Kind kind, guint i, GError ** error)
   for (gsize k = gaps[0]->n; k < (gsize) gaps[0]->n * gaps[0]->n_frames; k++)
     w->all[i].seen += kind == WINDOWS && !isnan (gaps[0]->squares[k])
         && windows[gaps[0]->window[k / gaps[0]->n]];
-  done = twin ? measure_twin_floor (w, kind, i, own[0], windows, error) :
+  done = twin ? measure_twin_floor (w, kind, i, windows, error) :
       measure_floor (w, kind, i, gaps[0], error);
   done = done && measure_after (w, kind, i, windows, error);
   cloth_windowed_gaps_free (own, 1);
@@ -571,42 +594,69 @@ choose_model (Work * w, guint faults)
   return best;
 }
 
-/* Of what judges, by what two force models differ in what they foretell of the effects, in windows. */
+/* As a recording and its twin, with the noise of both: what the gap after is although the effects
+ * are all that is missing, in mean square; NaN when the other model diverges. */
+static gboolean
+measure_known (const Work * w, guint i, guint best, gdouble * square,
+    GError ** error)
+{
+  ClothDiagnosis *d = w->d;
+  const ClothRecording *r = cloth_diagnosis_recording (d, i);
+  const ClothRecording *twin = cloth_diagnosis_twin (d, i);
+  g_autoptr (ClothModel) before = cloth_diagnosis_other_model (w->models[0]);
+  g_autoptr (ClothModel) after = cloth_diagnosis_other_model (w->models[best]);
+  const ClothModel *models[] = { before, after };
+  const gsize all = 3 * (gsize) r->n * r->n_frames;
+  g_autofree gdouble *y = g_new (gdouble, all);
+  ClothRecording real, simulated;
+  ClothWindowedGap **other, **own, **gaps = NULL;
+
+  *square = NAN;
+  other = simulate (d, FREE, twin, has_noise (r, twin), models, 2, error);
+  if (!other)
+    return FALSE;
+  for (gsize k = 0; k < all; k++)
+    y[k] = other[0]->positions[k];
+  simulated = record (d, twin, y, 0.);
+  for (gsize k = 0; k < all; k++)
+    y[k] = other[1]->positions[k];
+  real = record (d, r, y, twin->sigma);
+  own = simulate (d, WINDOWS, &simulated, FALSE, w->models, 1, error);
+  if (own)
+    gaps = compare (d, WINDOWS, &real, &simulated, own[0], w->models + best, 1,
+        error);
+  if (gaps && other[0]->sound && other[1]->sound)
+    *square = cloth_windowed_gap_square (gaps[0], NULL);
+  cloth_windowed_gaps_free (other, 2);
+  cloth_windowed_gaps_free (own, 1);
+  cloth_windowed_gaps_free (gaps, 1);
+  erase (&real);
+  erase (&simulated);
+  return gaps != NULL;
+}
+
+/* What the gap after is more than the floor although the effects are all that is missing. */
 static gboolean
 measure_prediction (const Work * w, guint best, GError ** error)
 {
   ClothDiagnosis *d = w->d;
-  g_autoptr (ClothModel) before = cloth_diagnosis_other_model (w->models[0]);
-  g_autoptr (ClothModel) after = cloth_diagnosis_other_model (w->models[best]);
-  const ClothModel *models[] = { w->models[0], w->models[best], before, after };
-  gdouble sum = 0.;
-  guint64 seen = 0;
+  gdouble sum = 0., seen = 0.;
 
   for (guint i = 0; i < d->recordings->len; i++) {
-    ClothWindowedGap **gaps;
-    gboolean sound = TRUE;
+    gdouble square;
 
     if (!is_judge (d, i))
       continue;
-    gaps = simulate (d, WINDOWS, cloth_diagnosis_recording (d, i), models,
-        G_N_ELEMENTS (models), error);
-    if (!gaps)
+    if (!measure_known (w, i, best, &square, error))
       return FALSE;
-    for (guint k = 0; k < G_N_ELEMENTS (models); k++)
-      sound = sound && gaps[k]->sound;
-    for (gsize k = 0; sound && k < 3 * (gsize) gaps[0]->n * gaps[0]->n_frames;
-        k++) {
-      gdouble off = gaps[1]->positions[k] - gaps[0]->positions[k] -
-          gaps[3]->positions[k] + gaps[2]->positions[k];
-
-      if (isnan (gaps[0]->squares[k / 3]))
-        continue;
-      sum += off * off;
-      seen += k % 3 == 0;
-    }
-    cloth_windowed_gaps_free (gaps, G_N_ELEMENTS (models));
+    if (isnan (square))
+      continue;
+    sum += w->all[i].seen * square;
+    seen += w->all[i].seen;
   }
-  d->prediction_square = sum / MAX (seen, 1);
+  if (seen > 0.)
+    d->prediction_square = fmax (sum / seen -
+        w->judges.floor[WINDOWS].square, 0.);
   return TRUE;
 }
 
