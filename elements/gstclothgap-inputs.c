@@ -77,6 +77,10 @@ gst_gap_inputs_load (GstGapInputs * inputs, GstElement * element,
     return fail (element, "location", settings->location, error);
   if (!load_baseline (self, settings->baseline, &error))
     return fail (element, "baseline", settings->baseline, error);
+  /* what it is of can be checked once there is a recording */
+  if (settings->simulated
+      && !(self->simulated = cloth_take_open (settings->simulated, &error)))
+    return fail (element, "simulated", settings->simulated, error);
   self->effects = cloth_gap_effects_parse (settings->effects, &error);
   return !error || fail (element, "effects", settings->effects, error);
 }
@@ -107,6 +111,7 @@ gst_gap_inputs_clear (GstGapInputs * inputs)
   g_clear_pointer (&inputs->scene, cloth_scene_free);
   g_clear_pointer (&inputs->take, cloth_take_free);
   g_clear_pointer (&inputs->baseline, cloth_take_free);
+  g_clear_pointer (&inputs->simulated, cloth_take_free);
   g_clear_pointer (&inputs->observations, cloth_observations_free);
   g_clear_pointer (&inputs->baseline_observations, cloth_observations_free);
   g_clear_pointer (&inputs->model, cloth_model_free);

@@ -18,7 +18,7 @@ G_BEGIN_DECLS
 
 /* The properties; a text is NULL when it is not given. */
 typedef struct {
-  gchar *model, *location, *rig, *camera, *baseline, *effects, *output;
+  gchar *model, *location, *rig, *camera, *baseline, *simulated, *effects, *output;
   guint64 seed;
   guint threads;
   gdouble window;               /* seconds */
@@ -27,7 +27,7 @@ typedef struct {
 
 typedef struct {
   ClothModel *model;
-  ClothTake *take, *baseline;
+  ClothTake *take, *baseline, *simulated;
   ClothObservations *observations, *baseline_observations;        /* NULL: the take doesn't say */
   gchar **effects;
   ClothScene *scene;

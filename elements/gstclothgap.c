@@ -32,6 +32,8 @@
  * of gap.json; strings) and, with `output`, `report` (string: path of report.html). The
  * whole recording is diagnosed then, which takes its time. Where the folders of `location`
  * and `baseline` say what the cameras saw (rig.json, observations), it is read at the start.
+ * With `simulated` the verdict is on what your simulator made of the scene; scores and
+ * residuals are still those of ours.
  *
  * After a flush, or when a new segment goes back in time, it starts anew.
  *
@@ -139,6 +141,11 @@ static const GstClothProperty properties[] = {
     "Folder of a take the model is accepted on: its free "
     "parameters are fitted there",
     G_TYPE_STRING, SETTING (baseline), GST_PARAM_MUTABLE_READY},
+  {"simulated", "Simulated",
+    "Folder of a take with what your simulator made of the same scene: the gap "
+    "is recorded minus simulated, and the model's free parameters are fitted to "
+    "it",
+    G_TYPE_STRING, SETTING (simulated), GST_PARAM_MUTABLE_READY},
   {"effects", "Effects",
     "Effects to consider, with commas between them; by default all",
     G_TYPE_STRING, SETTING (effects), GST_PARAM_MUTABLE_READY},
@@ -539,6 +546,8 @@ finish (GstGapDiagnose * self)
   const ClothGapOptions options = {
     .baselines = &self->inputs.baseline,
     .n_baselines = self->inputs.baseline ? 1 : 0,
+    .simulated = &self->inputs.simulated,
+    .n_simulated = self->inputs.simulated ? 1 : 0,
     .observations = self->view ? NULL : &self->inputs.observations,
     .baseline_observations =
         self->view ? NULL : &self->inputs.baseline_observations,

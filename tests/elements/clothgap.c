@@ -266,6 +266,35 @@ GST_START_TEST (test_verdict)
 
 GST_END_TEST;
 
+/* What another simulator made of the scene is compared with at the end, and must be of it. */
+GST_START_TEST (test_simulated)
+{
+  static const gchar *const folders[] = { "simulated", "other", "take" };
+
+  for (guint i = 0; i < G_N_ELEMENTS (folders); i++) {
+    g_autofree gchar *more = g_strdup_printf ("effects=wind simulated=%s/%s",
+        folder, folders[i]);
+    Setup setup = set_up_good (more);
+    g_autoptr (GstMessage) message = NULL;
+
+    push (&setup, 0, N_FRAMES);
+    gst_harness_push_event (setup.h, gst_event_new_eos ());
+    if (i == 0) {
+      message = find_message (&setup, GST_MESSAGE_ELEMENT, "clothgap/verdict");
+      fail_unless (message != NULL);
+      fail_unless (strstr (gst_structure_get_string (gst_message_get_structure
+                  (message), "json"), "\"has_simulated\": true") != NULL);
+    } else {
+      expect (&setup, GST_MESSAGE_ERROR, i == 1 ? "is no simulation of" :
+          "the same positions");
+    }
+    pull_events (&setup, NULL);
+    tear_down (&setup);
+  }
+}
+
+GST_END_TEST;
+
 /* After a flush it starts anew; so it does, without one, when a segment goes back. */
 GST_START_TEST (test_again)
 {
@@ -371,6 +400,7 @@ GST_START_TEST (test_cannot_start)
         "“air_drag”, “air_drag_linear”"},
     {"/model.json", "/take", "effects=qqqq", "lists them all"},
     {"/model.json", "/take", "baseline=/none", "baseline"},
+    {"/model.json", "/take", "simulated=/none", "simulated"},
   };
 
   /* takes that do as location, but not as baseline */
@@ -558,6 +588,7 @@ clothgap_suite (void)
   tcase_add_test (tc, test_event_order);
   tcase_add_test (tc, test_tags_survive_flush);
   tcase_add_test (tc, test_verdict);
+  tcase_add_test (tc, test_simulated);
   tcase_add_test (tc, test_again);
   tcase_add_test (tc, test_times);
   tcase_add_test (tc, test_outside_scene);

@@ -57,7 +57,8 @@ find_places (guint frame, gdouble acceleration, gfloat * places)
 }
 
 static inline void
-put_take (const gchar * name, guint columns, guint rows, gboolean held)
+put_take (const gchar * name, guint columns, guint rows, gboolean held,
+    gdouble acceleration)
 {
   g_autofree gchar *path = in_folder (name);
   g_autoptr (ClothTakeInfo) info = cloth_take_info_new (name);
@@ -82,7 +83,7 @@ put_take (const gchar * name, guint columns, guint rows, gboolean held)
   writer = cloth_take_writer_new (path, info, topology, &error);
   g_assert_no_error (error);
   for (guint frame = 0; frame < N_FRAMES; frame++) {
-    find_places (frame, ACCELERATION, places);
+    find_places (frame, acceleration, places);
     cloth_take_writer_append (writer, (gdouble) frame / FPS, places, states,
         NULL, held ? places : NULL, &error);
     g_assert_no_error (error);
@@ -103,10 +104,11 @@ make_files (void)
   put_model ("wild.json", ", \"time_step\": 0.02, \"stretch\": "
       "{\"warp\": 100000, \"weft\": 100000}");
   put_model ("bad.json", ", \"shear\": -4");
-  put_take ("take", COLUMNS, ROWS, FALSE);
-  put_take ("held", COLUMNS, ROWS, TRUE);
-  put_take ("other", COLUMNS + 1, ROWS, FALSE);
-  put_take ("blind", COLUMNS, ROWS, FALSE);
+  put_take ("take", COLUMNS, ROWS, FALSE, ACCELERATION);
+  put_take ("held", COLUMNS, ROWS, TRUE, ACCELERATION);
+  put_take ("other", COLUMNS + 1, ROWS, FALSE, ACCELERATION);
+  put_take ("blind", COLUMNS, ROWS, FALSE, ACCELERATION);
+  put_take ("simulated", COLUMNS, ROWS, FALSE, 0.);
   observations = in_folder ("/blind/observations");
   g_assert_cmpint (g_mkdir (observations, 0777), ==, 0);
 }

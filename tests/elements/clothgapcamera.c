@@ -38,7 +38,7 @@ put_file (const gchar * name, const gchar * text)
 static void
 make_rigs (void)
 {
-  put_take ("seen", COLUMNS, ROWS, FALSE);
+  put_take ("seen", COLUMNS, ROWS, FALSE, ACCELERATION);
   put_file ("seen/rig.json", RIG (FRONT ("front", "") ", " ABOVE));
   put_file ("one.json", RIG (FRONT ("only", "")));
   put_file ("late.json", RIG (FRONT ("front", ", \"offset_s\": 0.01")));
