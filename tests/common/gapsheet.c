@@ -60,6 +60,9 @@ typedef struct
   gdouble values[3], sigmas[3];
 } Row;
 
+/* Posterior odds over prior odds of one in ten, logarithm. */
+#define PRIOR 0.1
+
 static const Row rows_of_table[] = {
   {0, 0.93, 3e-12, -1, {1.14}, {0.06}},
   {1, 0.05, 2e-7, 0, {0.83}, {0.07}},
@@ -243,6 +246,48 @@ fill_gap (ClothGapResult * result)
   g_array_index (result->effects, ClothGapEffect, 0).shrink = result->shrink;
 }
 
+/* The free run is worse than windows, and worse after the effect than they say. */
+static void
+fill_takes (ClothGapResult * result)
+{
+  static const struct
+  {
+    ClothGapRole role;
+    const gchar *name;
+    gdouble size;
+  } takes[] = {
+    {CLOTH_GAP_TAKE, "waving sheet", 1}, {CLOTH_GAP_HOLD_OUT,
+        "waving sheet, fast", 1.4}, {CLOTH_GAP_BASELINE, "hanging sheet", 0.3}
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (takes); i++) {
+    ClothGapMeasuredTake *take = cloth_gap_result_add_take (result,
+        takes[i].role, takes[i].name);
+
+    take->gap_before = around (takes[i].size * result->gap_before.value);
+    take->gap_after = around (takes[i].size * result->gap_after.value);
+    take->noise_floor = result->noise_floor;
+    take->shrink = result->shrink;
+    take->free_before = around (6 * take->gap_before.value);
+    take->free_after = around (9 * take->gap_after.value);
+    take->free_floor = around (2 * result->noise_floor.value);
+  }
+  result->takes_agree_p_value = 0.42;
+  result->has_simulated = TRUE;
+  result->predicted_shrink = (ClothGapShrink) {
+    {
+    0.91, 0.84, 0.96}
+    , {
+    0.78, 0.6, 0.88}
+  };
+  result->measured_shrink = (ClothGapShrink) {
+    {
+    0.88, 0.8, 0.93}
+    , {
+    0.71, 0.58, 0.81}
+  };
+}
+
 static void
 fill_series (ClothGapResult * result)
 {
@@ -293,6 +338,66 @@ fill_spectrum (ClothGapResult * result)
   }
 }
 
+/* Explanations whose sums are the probabilities of the table. */
+static void
+add_sets (ClothGapResult * result)
+{
+  g_ptr_array_add (cloth_gap_result_add_set (result, CLOTH_GAP_RIVAL_NONE,
+          0.904)->effects, (gpointer) & effects[0]);
+  g_ptr_array_add (cloth_gap_result_add_set (result, CLOTH_GAP_RIVAL_NONE,
+          0.048)->effects, (gpointer) & effects[1]);
+  result->rivals = (ClothGapRivals) {
+  0.0001, 0.019, 0.002};
+}
+
+static void
+add_patch (ClothGapResult * result)
+{
+  cloth_gap_result_add_patch (result, "effects.air_drag.coefficient",
+      "air drag 1.14", NAN, 1.14, "1");
+  cloth_gap_result_add_patch (result, "areal_density", "areal density × 0.61",
+      0.2, 0.122, "kg/m²");
+}
+
+static void
+add_free_number (ClothGapResult * result, const gchar * name,
+    const gchar * unit, gdouble value, gdouble sigma, gdouble high)
+{
+  ClothGapFreeNumber *item = cloth_gap_result_add_free_number (result, name,
+      unit);
+
+  item->value = value;
+  item->sigma = sigma;
+  item->low = high / 10;
+  item->high = high;
+  item->at_end = value >= high;
+}
+
+static void
+fill_free_numbers (ClothGapResult * result)
+{
+  static const gdouble correlation[] = {
+    1, 0.31, -0.06, 0.31, 1, -0.94, -0.06, -0.94, 1
+  };
+
+  add_free_number (result, "areal_density", "kg/m²", 0.122, 0.004, 0.4);
+  add_free_number (result, "bending.warp", "N·m", 2.1e-5, 3e-6, 1e-4);
+  add_free_number (result, "damping.mass", "1/s", 0.8, 0.1, 0.8);
+  result->free_correlation = g_memdup2 (correlation, sizeof correlation);
+}
+
+static void
+fill_limits (ClothGapResult * result)
+{
+  cloth_gap_result_add_limit (result, &effects[0], 0, 0.09);
+  cloth_gap_result_add_limit (result, &effects[2], 0, 0.14);
+  cloth_gap_result_add_limit (result, &effects[2], 1, 0.16);
+  cloth_gap_result_add_limit (result, &effects[2], 2, 0.35);
+  cloth_gap_result_add_limit (result, &effects[4], 0, 0.0052);
+  cloth_gap_result_add_limit (result, &effects[5], 0, 1.4);
+  cloth_gap_result_add_limit (result, &effects[7], 0, NAN);
+}
+
 static void
 fill_table (ClothGapResult * result)
 {
@@ -302,6 +407,8 @@ fill_table (ClothGapResult * result)
         &effects[row->effect]);
 
     item->probability = row->probability;
+    item->log_bayes_factor = log (row->probability / (1 - row->probability) *
+        (1 - PRIOR) / PRIOR);
     item->p_value = row->p_value;
     item->constancy_p_value = row->effect == 2 ? 0.012 : 0.5;
     item->group = row->group;
@@ -311,6 +418,7 @@ fill_table (ClothGapResult * result)
       item->sigmas[k] = row->sigmas[k];
     }
   }
+  add_sets (result);
   cloth_gap_result_add_group (result,
       "Shake the upper edge at 2 Hz for 3 s, then let the sheet hang still.",
       7.4);
@@ -332,9 +440,16 @@ fill_provenance (ClothGapResult * result)
   cloth_gap_result_add_input (result, CLOTH_GAP_BASELINE, "hanging sheet",
       "fd61a03af4f77d870fc21e05e7e80678095c92d808cfb3b5c279ee04c74aca13");
   cloth_gap_result_add_input (result, CLOTH_GAP_MODEL, "model.json", NULL);
-  cloth_gap_result_add_threshold (result, "least shrink", 0.1, "1");
-  cloth_gap_result_add_threshold (result, "least gap", 0.0005, "m");
-  cloth_gap_result_add_threshold (result, "ambiguous within", 0.1, "1");
+  cloth_gap_result_add_threshold (result, "evidence to accept", 3.4, "1",
+      CLOTH_GAP_ORIGIN_SIMULATED,
+      "19 of 20 simulations of this take that lack nothing stay below it.");
+  cloth_gap_result_add_threshold (result, "least gap", 0.0011, "m",
+      CLOTH_GAP_ORIGIN_SIMULATED,
+      "19 of 20 simulations of this take that lack nothing stay below it.");
+  cloth_gap_result_add_threshold (result, "window", 0.3, "s",
+      CLOTH_GAP_ORIGIN_DEFINITION, "The gap is that over windows of 0.3 s.");
+  cloth_gap_result_add_threshold (result, "posterior of the sets", 0.95, "1",
+      CLOTH_GAP_ORIGIN_DEFINITION, "Sets are listed up to it.");
   cloth_gap_result_add_failure (result, "null 17, stretch × 1.31",
       "diverged at 1.34 s");
   result->seconds = 41.7;
@@ -374,6 +489,10 @@ gap_sheet_new (guint columns, guint rows, guint n_frames)
   fill_playback (result, columns, rows, n_frames);
   fill_shares (result);
   fill_gap (result);
+  fill_takes (result);
+  add_patch (result);
+  fill_free_numbers (result);
+  fill_limits (result);
   fill_series (result);
   fill_spectrum (result);
   return result;
@@ -408,7 +527,13 @@ gap_sheet_new_spare (void)
   g_clear_pointer (&result->spectrum.after, g_free);
   g_clear_pointer (&result->spectrum.null, g_free);
   g_array_set_size (result->effects, 0);
+  g_array_set_size (result->sets, 0);
   g_array_set_size (result->groups, 0);
+  g_array_set_size (result->takes, 0);
+  g_array_set_size (result->detection_limits, 0);
+  g_array_set_size (result->patch, 0);
+  g_array_set_size (result->free_numbers, 0);
+  g_clear_pointer (&result->free_correlation, g_free);
   g_array_set_size (result->stages, 0);
   g_array_set_size (result->inputs, 0);
   result->verdict = CLOTH_GAP_UNEXPLAINED;
@@ -440,7 +565,16 @@ gap_sheet_new_hostile (const gchar * text)
   cloth_gap_result_add_stage (result, text, 0.5, text);
   cloth_gap_result_add_version (result, text, text);
   cloth_gap_result_add_input (result, CLOTH_GAP_TAKE, text, NULL);
-  cloth_gap_result_add_threshold (result, text, 1, text);
+  cloth_gap_result_add_threshold (result, text, 1, text,
+      CLOTH_GAP_ORIGIN_PAPER, text);
+  cloth_gap_result_add_take (result, CLOTH_GAP_TAKE, text);
+  g_ptr_array_add (cloth_gap_result_add_set (result,
+          CLOTH_GAP_RIVAL_FORCE_FIELD, 0.01)->effects, &strange);
+  cloth_gap_result_add_limit (result, &strange, 0, 1);
+  cloth_gap_result_add_patch (result, text, text, 1, 2, text);
+  result->patch_simulator = g_strdup (text);
+  g_clear_pointer (&result->free_correlation, g_free);
+  cloth_gap_result_add_free_number (result, text, text);
   cloth_gap_result_add_failure (result, text, text);
   return result;
 }

@@ -106,6 +106,13 @@ assert_null (JsonObject * object, const gchar * key)
   g_assert_true (json_object_get_null_member (object, key));
 }
 
+static JsonObject *
+first_of (JsonObject * object, const gchar * list)
+{
+  return json_array_get_object_element (json_object_get_array_member (object,
+          list), 0);
+}
+
 /* Nothing known: every key is there, and none claims a number. */
 static void
 test_empty (void)
@@ -114,6 +121,9 @@ test_empty (void)
   g_autofree gchar *json = cloth_gap_result_to_json (result);
   g_autoptr (JsonParser) parser = NULL;
   JsonObject *root = parse (json, &parser), *where;
+  static const gchar *const lists[] = { "effects", "sets", "takes",
+    "detection_limits", "patch", "free_numbers"
+  };
 
   g_assert_cmpstr (json_object_get_string_member (root, "verdict"), ==,
       "undecidable");
@@ -126,8 +136,60 @@ test_empty (void)
   assert_null (where, "onset_s");
   assert_null (where, "region");
   assert_null (json_object_get_object_member (where, "directions"), "warp");
-  g_assert_cmpuint (json_array_get_length (json_object_get_array_member (root,
-              "effects")), ==, 0);
+  for (guint i = 0; i < G_N_ELEMENTS (lists); i++)
+    g_assert_cmpuint (json_array_get_length (json_object_get_array_member
+            (root, lists[i])), ==, 0);
+  assert_null (root, "takes_agree_p_value");
+  assert_null (root, "patch_simulator");
+  assert_null (root, "free_correlation");
+  assert_null (json_object_get_object_member (root, "rivals"), "none_acts");
+  assert_null (json_object_get_object_member (json_object_get_object_member
+          (root, "measured_shrink"), "free"), "value");
+  g_assert_false (json_object_get_boolean_member (root, "has_simulated"));
+}
+
+/* All that can be unknown of what is there is null, and nothing else is wrong with it. */
+static void
+test_unknown (void)
+{
+  g_autoptr (ClothGapResult) result = cloth_gap_result_new ();
+  g_autofree gchar *json = NULL;
+  g_autoptr (JsonParser) parser = NULL;
+  JsonObject *root, *item;
+
+  cloth_gap_result_add_take (result, CLOTH_GAP_HOLD_OUT, "");
+  cloth_gap_result_add_set (result, CLOTH_GAP_RIVAL_DISPLACEMENT_FIELD, NAN);
+  cloth_gap_result_add_limit (result, &air_drag, 0, NAN);
+  cloth_gap_result_add_patch (result, "pressure", "pressure 3 Pa", 0, 3, "Pa");
+  cloth_gap_result_add_patch (result, "wind", "add a wind", NAN, NAN, "m/s");
+  cloth_gap_result_add_patch (result, "mass", "mass × −0.5", -2, 1, "kg");
+  cloth_gap_result_add_free_number (result, "shear", "N/m")->low = 1;
+  json = cloth_gap_result_to_json (result);
+  root = parse (json, &parser);
+  item = first_of (root, "takes");
+  g_assert_cmpstr (json_object_get_string_member (item, "role"), ==,
+      "hold_out");
+  assert_null (json_object_get_object_member (item, "free_floor"), "value");
+  item = first_of (root, "sets");
+  g_assert_cmpstr (json_object_get_string_member (item, "rival"), ==,
+      "displacement_field");
+  assert_null (item, "probability");
+  assert_null (first_of (root, "detection_limits"), "value");
+  item = first_of (root, "patch");
+  g_assert_cmpfloat (json_object_get_double_member (item, "before"), ==, 0);
+  assert_null (item, "factor");
+  item =
+      json_array_get_object_element (json_object_get_array_member (root,
+          "patch"), 1);
+  assert_null (item, "after");
+  assert_null (item, "factor");
+  item =
+      json_array_get_object_element (json_object_get_array_member (root,
+          "patch"), 2);
+  g_assert_cmpfloat (json_object_get_double_member (item, "factor"), ==, -0.5);
+  item = first_of (root, "free_numbers");
+  assert_null (item, "range");
+  assert_null (item, "sigma");
 }
 
 /* Half an interval is none; infinities are not numbers of JSON. */
@@ -239,6 +301,7 @@ main (int argc, char **argv)
   g_test_init (&argc, &argv, NULL);
   g_test_add_func ("/gapresult/summary", test_summary);
   g_test_add_func ("/gapresult/empty", test_empty);
+  g_test_add_func ("/gapresult/unknown", test_unknown);
   g_test_add_func ("/gapresult/numbers", test_numbers);
   g_test_add_func ("/gapresult/strings", test_strings);
   g_test_add_func ("/gapresult/layout", test_layout);

@@ -72,14 +72,43 @@ def check_json(program, root):
     assert sheet['groups'][0]['effects'] == ['air_drag_linear', 'damping_mass']
     assert sheet['where']['stages'][0] == {'name': 'camera', 'share': None, 'reason': 'The take has no rig.json.'}
     assert sheet['where']['waves'][3] == {'from_per_m': 2.3, 'to_per_m': None, 'share': 0.08, 'after': 0.04, 'over_floor': 1.3}
+    assert sheet['effects'][0]['log_bayes_factor'] == 4.783914, sheet['effects'][0]
+    assert sheet['sets'] == [{'effects': ['air_drag'], 'rival': None, 'probability': 0.904},
+                             {'effects': ['air_drag_linear'], 'rival': None, 'probability': 0.048}]
+    assert sheet['rivals'] == {'none_acts': 0.0001, 'force_field': 0.019, 'displacement_field': 0.002}
+    assert [take['role'] for take in sheet['takes']] == ['take', 'hold_out', 'baseline']
+    assert sheet['takes'][0]['gap_before'] == sheet['gap_before']
+    assert sheet['predicted_shrink']['free'] == {'value': 0.78, 'interval': [0.6, 0.88]}
+    assert sheet['detection_limits'][0] == {'effect': 'air_drag', 'side': 'physics', 'parameter': 'coefficient', 'value': 0.09,
+                                            'unit': '1'}
+    assert sheet['detection_limits'][-1]['value'] is None
+    assert sheet['patch'] == [
+        {'name': 'effects.air_drag.coefficient', 'text': 'air drag 1.14', 'before': None, 'after': 1.14, 'unit': '1', 'factor': None},
+        {'name': 'areal_density', 'text': 'areal density × 0.61', 'before': 0.2, 'after': 0.122, 'unit': 'kg/m²', 'factor': 0.61}]
+    assert sheet['free_numbers'][2] == {'name': 'damping.mass', 'unit': '1/s', 'value': 0.8, 'sigma': 0.1, 'range': [0.08, 0.8],
+                                        'at_end': True}
+    assert sheet['free_correlation'][1] == [0.31, 1, -0.94]
+    assert sheet['thresholds'][0]['origin'] == 'simulated'
+    assert kinds['hostile']['free_correlation'] is None and kinds['hostile']['sets'][2]['rival'] == 'force_field'
     gained = (sheet['gap_before']['value'] ** 2 - sheet['gap_after']['value'] ** 2) / sheet['gap_before']['value'] ** 2
     assert abs(sum(sheet['where']['gained']) - gained) < 0.01, (sum(sheet['where']['gained']), gained)
     assert kinds['hostile']['reason'] == HOSTILE
-    for path, value in ((['verdict'], 'perhaps'), (['verdict'], KeyError), (['version'], 2), (['extra'], 1),
+    for path, value in ((['verdict'], 'perhaps'), (['verdict'], KeyError), (['version'], 1), (['extra'], 1),
                         (['gap_before', 'value'], -1), (['gap_before', 'interval'], [1]),
                         (['effects', 0, 'probability'], 1.01), (['effects', 0, 'side'], 'moon'),
                         (['effects', 0, 'parameters', 0, 'unit'], KeyError), (['effects', 0, 'group'], -1),
-                        (['effects'], []), (['where', 'vertices'], 'all'), (['where', 'directions', 'up'], 0.1),
+                        (['effects'], []), (['effects', 0, 'refitted'], False), (['effects', 0, 'log_bayes_factor'], 'much'),
+                        (['takes', 0, 'role'], 'model'), (['takes', 1, 'free_before'], KeyError),
+                        (['takes', 0, 'free_floor', 'value'], -1), (['takes_agree_p_value'], 2), (['has_simulated'], None),
+                        (['predicted_shrink', 'free'], KeyError), (['measured_shrink', 'windows', 'value'], 'half'),
+                        (['sets', 0, 'rival'], 'none'), (['sets', 0, 'probability'], 1.1), (['sets', 0, 'effects', 0], ''),
+                        (['rivals', 'none_acts'], KeyError), (['rivals', 'force_field'], -0.1),
+                        (['detection_limits', 0, 'parameter'], ''), (['detection_limits', 0, 'side'], 'left'),
+                        (['patch', 0, 'text'], ''), (['patch', 0, 'after'], KeyError), (['patch_simulator'], 7),
+                        (['free_numbers', 0, 'sigma'], -1), (['free_numbers', 0, 'range'], [0]),
+                        (['free_numbers', 0, 'at_end'], 1), (['free_correlation', 0, 1], 1.2),
+                        (['thresholds', 0, 'origin'], 'hearsay'), (['thresholds', 0, 'reason'], KeyError),
+                        (['where', 'vertices'], 'all'), (['where', 'directions', 'up'], 0.1),
                         (['where', 'static'], 1.5), (['where', 'waves'], KeyError), (['where', 'gained', 0], 1.5),
                         (['where', 'bands', 0, 'over_floor'], -1), (['where', 'bands', 0, 'to_hz'], None),
                         (['where', 'stages', 0, 'reason'], KeyError), (['where', 'waves', 0, 'after'], KeyError),

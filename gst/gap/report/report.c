@@ -18,7 +18,16 @@
 #include "web-resource.h"
 
 static const gchar *const role_names[] = {
-  "take", "baseline", "hold_out", "model"
+  "take", "baseline", "hold_out", "simulated", "simulated_after", "model"
+};
+
+/* No rival has no name. */
+static const gchar *const rival_names[] = {
+  NULL, "force_field", "displacement_field"
+};
+
+static const gchar *const origin_names[] = {
+  "simulated", "parameter", "paper", "definition"
 };
 
 static const ClothGapEffect *
@@ -233,19 +242,60 @@ cloth_gap_result_summary (const ClothGapResult * result)
   return g_string_free (text, FALSE);
 }
 
+/* Half an interval is none. */
+static void
+put_interval (ClothJsonWriter * writer, const gchar * key, gdouble low,
+    gdouble high)
+{
+  const gdouble interval[] = { low, high };
+
+  cloth_json_writer_numbers (writer, key,
+      isfinite (low) && isfinite (high) ? interval : NULL, 2);
+}
+
 static void
 put_estimate (ClothJsonWriter * writer, const gchar * key,
     const ClothGapEstimate * estimate)
 {
-  const gdouble interval[] = { estimate->low, estimate->high };
-
   cloth_json_writer_begin_object (writer, key);
   cloth_json_writer_number (writer, "value", estimate->value);
-  if (isfinite (interval[0]) && isfinite (interval[1]))
-    cloth_json_writer_numbers (writer, "interval", interval, 2);
-  else
-    cloth_json_writer_numbers (writer, "interval", NULL, 0);
+  put_interval (writer, "interval", estimate->low, estimate->high);
   cloth_json_writer_end_object (writer);
+}
+
+static void
+put_shrink (ClothJsonWriter * writer, const gchar * key,
+    const ClothGapShrink * shrink)
+{
+  cloth_json_writer_begin_object (writer, key);
+  put_estimate (writer, "windows", &shrink->windows);
+  put_estimate (writer, "free", &shrink->free);
+  cloth_json_writer_end_object (writer);
+}
+
+static void
+put_takes (ClothJsonWriter * writer, const ClothGapResult * result)
+{
+  cloth_json_writer_begin_array (writer, "takes");
+  for (guint i = 0; i < result->takes->len; i++) {
+    const ClothGapMeasuredTake *take = &g_array_index (result->takes,
+        ClothGapMeasuredTake, i);
+
+    cloth_json_writer_begin_object (writer, NULL);
+    cloth_json_writer_string (writer, "role", role_names[take->role]);
+    cloth_json_writer_string (writer, "name", take->name);
+    put_estimate (writer, "gap_before", &take->gap_before);
+    put_estimate (writer, "gap_after", &take->gap_after);
+    put_estimate (writer, "noise_floor", &take->noise_floor);
+    put_estimate (writer, "shrink", &take->shrink);
+    put_estimate (writer, "free_before", &take->free_before);
+    put_estimate (writer, "free_after", &take->free_after);
+    put_estimate (writer, "free_floor", &take->free_floor);
+    cloth_json_writer_end_object (writer);
+  }
+  cloth_json_writer_end_array (writer);
+  cloth_json_writer_number (writer, "takes_agree_p_value",
+      result->takes_agree_p_value);
 }
 
 static void
@@ -259,6 +309,7 @@ put_effect (ClothJsonWriter * writer, const ClothGapEffect * item)
       cloth_effect_side_name (effect->side));
   cloth_json_writer_string (writer, "camera", item->camera);
   cloth_json_writer_number (writer, "probability", item->probability);
+  cloth_json_writer_number (writer, "log_bayes_factor", item->log_bayes_factor);
   cloth_json_writer_boolean (writer, "accepted", item->accepted);
   cloth_json_writer_begin_array (writer, "parameters");
   for (guint i = 0; i < effect->n_parameters; i++) {
@@ -278,7 +329,34 @@ put_effect (ClothJsonWriter * writer, const ClothGapEffect * item)
     cloth_json_writer_count (writer, "group", (guint64) item->group);
   else
     cloth_json_writer_string (writer, "group", NULL);
-  cloth_json_writer_boolean (writer, "refitted", item->refitted);
+  cloth_json_writer_end_object (writer);
+}
+
+static void
+put_sets (ClothJsonWriter * writer, const ClothGapResult * result)
+{
+  cloth_json_writer_begin_array (writer, "sets");
+  for (guint i = 0; i < result->sets->len; i++) {
+    const ClothGapSet *set = &g_array_index (result->sets, ClothGapSet, i);
+
+    cloth_json_writer_begin_object (writer, NULL);
+    cloth_json_writer_begin_array (writer, "effects");
+    for (guint k = 0; k < set->effects->len; k++) {
+      const ClothEffect *effect = set->effects->pdata[k];
+
+      cloth_json_writer_string (writer, NULL, effect->id);
+    }
+    cloth_json_writer_end_array (writer);
+    cloth_json_writer_string (writer, "rival", rival_names[set->rival]);
+    cloth_json_writer_number (writer, "probability", set->probability);
+    cloth_json_writer_end_object (writer);
+  }
+  cloth_json_writer_end_array (writer);
+  cloth_json_writer_begin_object (writer, "rivals");
+  cloth_json_writer_number (writer, "none_acts", result->rivals.none_acts);
+  cloth_json_writer_number (writer, "force_field", result->rivals.force_field);
+  cloth_json_writer_number (writer, "displacement_field",
+      result->rivals.displacement_field);
   cloth_json_writer_end_object (writer);
 }
 
@@ -320,6 +398,80 @@ put_untested (ClothJsonWriter * writer, const ClothGapResult * result)
     cloth_json_writer_string (writer, "reason", item->reason);
     cloth_json_writer_end_object (writer);
   }
+  cloth_json_writer_end_array (writer);
+}
+
+static void
+put_limits (ClothJsonWriter * writer, const ClothGapResult * result)
+{
+  cloth_json_writer_begin_array (writer, "detection_limits");
+  for (guint i = 0; i < result->detection_limits->len; i++) {
+    const ClothGapLimit *limit = &g_array_index (result->detection_limits,
+        ClothGapLimit, i);
+    const ClothEffectParameter *parameter =
+        &limit->effect->parameters[limit->parameter];
+
+    cloth_json_writer_begin_object (writer, NULL);
+    cloth_json_writer_string (writer, "effect", limit->effect->id);
+    cloth_json_writer_string (writer, "side",
+        cloth_effect_side_name (limit->effect->side));
+    cloth_json_writer_string (writer, "parameter", parameter->name);
+    cloth_json_writer_number (writer, "value", limit->value);
+    cloth_json_writer_string (writer, "unit", parameter->unit);
+    cloth_json_writer_end_object (writer);
+  }
+  cloth_json_writer_end_array (writer);
+}
+
+static void
+put_patch (ClothJsonWriter * writer, const ClothGapResult * result)
+{
+  cloth_json_writer_begin_array (writer, "patch");
+  for (guint i = 0; i < result->patch->len; i++) {
+    const ClothGapPatch *item = &g_array_index (result->patch, ClothGapPatch,
+        i);
+
+    cloth_json_writer_begin_object (writer, NULL);
+    cloth_json_writer_string (writer, "name", item->name);
+    cloth_json_writer_string (writer, "text", item->text);
+    cloth_json_writer_number (writer, "before", item->before);
+    cloth_json_writer_number (writer, "after", item->after);
+    cloth_json_writer_string (writer, "unit", item->unit);
+    cloth_json_writer_number (writer, "factor", item->factor);
+    cloth_json_writer_end_object (writer);
+  }
+  cloth_json_writer_end_array (writer);
+  cloth_json_writer_string (writer, "patch_simulator", result->patch_simulator);
+}
+
+static void
+put_free_numbers (ClothJsonWriter * writer, const ClothGapResult * result)
+{
+  const gsize n = result->free_numbers->len;
+
+  cloth_json_writer_begin_array (writer, "free_numbers");
+  for (guint i = 0; i < n; i++) {
+    const ClothGapFreeNumber *item = &g_array_index (result->free_numbers,
+        ClothGapFreeNumber, i);
+
+    cloth_json_writer_begin_object (writer, NULL);
+    cloth_json_writer_string (writer, "name", item->name);
+    cloth_json_writer_string (writer, "unit", item->unit);
+    cloth_json_writer_number (writer, "value", item->value);
+    cloth_json_writer_number (writer, "sigma", item->sigma);
+    put_interval (writer, "range", item->low, item->high);
+    cloth_json_writer_boolean (writer, "at_end", item->at_end);
+    cloth_json_writer_end_object (writer);
+  }
+  cloth_json_writer_end_array (writer);
+  if (!result->free_correlation) {
+    cloth_json_writer_string (writer, "free_correlation", NULL);
+    return;
+  }
+  cloth_json_writer_begin_array (writer, "free_correlation");
+  for (gsize i = 0; i < n; i++)
+    cloth_json_writer_numbers (writer, NULL, result->free_correlation + i * n,
+        n);
   cloth_json_writer_end_array (writer);
 }
 
@@ -416,6 +568,8 @@ put_provenance (ClothJsonWriter * writer, const ClothGapResult * result)
     cloth_json_writer_string (writer, "name", item->name);
     cloth_json_writer_number (writer, "value", item->value);
     cloth_json_writer_string (writer, "unit", item->unit);
+    cloth_json_writer_string (writer, "origin", origin_names[item->origin]);
+    cloth_json_writer_string (writer, "reason", item->reason);
     cloth_json_writer_end_object (writer);
   }
   cloth_json_writer_end_array (writer);
@@ -459,7 +613,7 @@ cloth_gap_result_to_json (const ClothGapResult * result)
   g_autofree gchar *summary = cloth_gap_result_summary (result);
 
   cloth_json_writer_begin_object (writer, NULL);
-  cloth_json_writer_count (writer, "version", 1);
+  cloth_json_writer_count (writer, "version", 2);
   cloth_json_writer_string (writer, "verdict",
       cloth_gap_verdict_name (result->verdict));
   cloth_json_writer_string (writer, "summary", summary);
@@ -475,12 +629,20 @@ cloth_gap_result_to_json (const ClothGapResult * result)
   cloth_json_writer_number (writer, "rest_p_value", result->rest_p_value);
   cloth_json_writer_string (writer, "held_out",
       result->held_out_takes ? "takes" : "blocks");
+  put_takes (writer, result);
+  cloth_json_writer_boolean (writer, "has_simulated", result->has_simulated);
+  put_shrink (writer, "predicted_shrink", &result->predicted_shrink);
+  put_shrink (writer, "measured_shrink", &result->measured_shrink);
   cloth_json_writer_begin_array (writer, "effects");
   for (guint i = 0; i < result->effects->len; i++)
     put_effect (writer, effect_at (result, i));
   cloth_json_writer_end_array (writer);
+  put_sets (writer, result);
   put_groups (writer, result);
   put_untested (writer, result);
+  put_limits (writer, result);
+  put_patch (writer, result);
+  put_free_numbers (writer, result);
   put_where (writer, result);
   put_provenance (writer, result);
   cloth_json_writer_end_object (writer);

@@ -12,6 +12,33 @@ static const gchar *const verdict_names[] = {
 };
 
 static void
+clear_take (gpointer item)
+{
+  g_free (((ClothGapMeasuredTake *) item)->name);
+}
+
+static void
+clear_set (gpointer item)
+{
+  g_ptr_array_unref (((ClothGapSet *) item)->effects);
+}
+
+static void
+clear_patch (gpointer item)
+{
+  g_free (((ClothGapPatch *) item)->name);
+  g_free (((ClothGapPatch *) item)->text);
+  g_free (((ClothGapPatch *) item)->unit);
+}
+
+static void
+clear_free_number (gpointer item)
+{
+  g_free (((ClothGapFreeNumber *) item)->name);
+  g_free (((ClothGapFreeNumber *) item)->unit);
+}
+
+static void
 clear_group (gpointer item)
 {
   g_free (((ClothGapGroup *) item)->experiment);
@@ -49,6 +76,7 @@ clear_threshold (gpointer item)
 {
   g_free (((ClothGapThreshold *) item)->name);
   g_free (((ClothGapThreshold *) item)->unit);
+  g_free (((ClothGapThreshold *) item)->reason);
 }
 
 static GArray *
@@ -70,12 +98,23 @@ cloth_gap_result_new (void)
 
   result->gap_before = result->gap_after = result->noise_floor = unknown;
   result->shrink = unknown;
-  result->rest_p_value = result->onset_s = result->still = NAN;
+  result->predicted_shrink = result->measured_shrink = (ClothGapShrink) {
+  unknown, unknown};
+  result->rest_p_value = result->takes_agree_p_value = NAN;
+  result->onset_s = result->still = NAN;
+  result->rivals = (ClothGapRivals) {
+  NAN, NAN, NAN};
   for (guint i = 0; i < 3; i++)
     result->directions[i] = NAN;
+  result->takes = new_list (sizeof (ClothGapMeasuredTake), clear_take);
   result->effects = new_list (sizeof (ClothGapEffect), NULL);
+  result->sets = new_list (sizeof (ClothGapSet), clear_set);
   result->groups = new_list (sizeof (ClothGapGroup), clear_group);
   result->untested = new_list (sizeof (ClothGapUntested), clear_untested);
+  result->detection_limits = new_list (sizeof (ClothGapLimit), NULL);
+  result->patch = new_list (sizeof (ClothGapPatch), clear_patch);
+  result->free_numbers = new_list (sizeof (ClothGapFreeNumber),
+      clear_free_number);
   result->bands = new_list (sizeof (ClothGapBand), NULL);
   result->waves = new_list (sizeof (ClothGapBand), NULL);
   result->stages = new_list (sizeof (ClothGapStage), clear_stage);
@@ -97,6 +136,28 @@ cloth_gap_result_add_note (ClothGapResult * result, const gchar * note)
 }
 
 /* @result: a result
+ * @role: take, baseline or hold-out
+ * @name: its name
+ *
+ * Returns: (transfer none): what was measured on it, all unknown yet; valid until the next
+ *   take is added
+ */
+ClothGapMeasuredTake *
+cloth_gap_result_add_take (ClothGapResult * result, ClothGapRole role,
+    const gchar * name)
+{
+  ClothGapMeasuredTake item = {.role = role,.name = g_strdup (name),
+    .gap_before = unknown,.gap_after = unknown,.noise_floor = unknown,
+    .shrink = unknown,.free_before = unknown,.free_after = unknown,
+    .free_floor = unknown
+  };
+
+  g_array_append_val (result->takes, item);
+  return &g_array_index (result->takes, ClothGapMeasuredTake,
+      result->takes->len - 1);
+}
+
+/* @result: a result
  * @effect: an effect that was tested
  *
  * Effects are added in the order of their rank.
@@ -108,8 +169,9 @@ ClothGapEffect *
 cloth_gap_result_add_effect (ClothGapResult * result,
     const ClothEffect * effect)
 {
-  ClothGapEffect item = {.effect = effect,.probability = NAN,.p_value = NAN,
-    .constancy_p_value = NAN,.shrink = unknown,.group = -1
+  ClothGapEffect item = {.effect = effect,.probability = NAN,
+    .log_bayes_factor = NAN,.p_value = NAN,.constancy_p_value = NAN,.shrink =
+        unknown,.group = -1
   };
 
   for (guint i = 0; i < CLOTH_EFFECT_MAX_PARAMETERS; i++)
@@ -117,6 +179,24 @@ cloth_gap_result_add_effect (ClothGapResult * result,
   g_array_append_val (result->effects, item);
   return &g_array_index (result->effects, ClothGapEffect,
       result->effects->len - 1);
+}
+
+/* @result: a result
+ * @rival: what acts besides its effects
+ * @probability: that these act and nothing else
+ *
+ * Sets are added in the order of their probability.
+ *
+ * Returns: (transfer none): it, without effects yet; valid until the next one is added
+ */
+ClothGapSet *
+cloth_gap_result_add_set (ClothGapResult * result, ClothGapRival rival,
+    gdouble probability)
+{
+  ClothGapSet item = { g_ptr_array_new (), rival, probability };
+
+  g_array_append_val (result->sets, item);
+  return &g_array_index (result->sets, ClothGapSet, result->sets->len - 1);
 }
 
 /* @result: a result
@@ -145,6 +225,60 @@ cloth_gap_result_add_untested (ClothGapResult * result,
   ClothGapUntested item = { effect, g_strdup (reason) };
 
   g_array_append_val (result->untested, item);
+}
+
+/* @result: a result
+ * @effect: an effect
+ * @parameter: which of its parameters
+ * @value: its smallest value that would have shown with a probability of 95%; NaN: none
+ */
+void
+cloth_gap_result_add_limit (ClothGapResult * result,
+    const ClothEffect * effect, guint parameter, gdouble value)
+{
+  ClothGapLimit item = { effect, parameter, value };
+
+  g_return_if_fail (parameter < effect->n_parameters);
+  g_array_append_val (result->detection_limits, item);
+}
+
+/* @result: a result
+ * @name: what is changed, as whom the patch is for calls it
+ * @text: the change in plain words
+ * @before: its value; NaN: it was not there
+ * @after: its value to set; NaN: the simulator can't express it
+ * @unit: of both
+ */
+void
+cloth_gap_result_add_patch (ClothGapResult * result, const gchar * name,
+    const gchar * text, gdouble before, gdouble after, const gchar * unit)
+{
+  const gdouble factor = after / before;
+  ClothGapPatch item = { g_strdup (name), g_strdup (text), before, after,
+    g_strdup (unit), isfinite (factor) ? factor : NAN
+  };
+
+  g_array_append_val (result->patch, item);
+}
+
+/* @result: a result
+ * @name: of a free number of the model
+ * @unit: its unit
+ *
+ * Returns: (transfer none): what was found of it, all unknown yet; valid until the next
+ *   one is added
+ */
+ClothGapFreeNumber *
+cloth_gap_result_add_free_number (ClothGapResult * result, const gchar * name,
+    const gchar * unit)
+{
+  ClothGapFreeNumber item = { g_strdup (name), g_strdup (unit), NAN, NAN, NAN,
+    NAN, FALSE
+  };
+
+  g_array_append_val (result->free_numbers, item);
+  return &g_array_index (result->free_numbers, ClothGapFreeNumber,
+      result->free_numbers->len - 1);
 }
 
 /* @result: a result
@@ -192,12 +326,17 @@ cloth_gap_result_add_input (ClothGapResult * result, ClothGapRole role,
  * @name: of the threshold
  * @value: its value
  * @unit: in the notation of the SI, "1" for a ratio
+ * @origin: where it comes from
+ * @reason: why it is so, a sentence
  */
 void
 cloth_gap_result_add_threshold (ClothGapResult * result, const gchar * name,
-    gdouble value, const gchar * unit)
+    gdouble value, const gchar * unit, ClothGapOrigin origin,
+    const gchar * reason)
 {
-  ClothGapThreshold item = { g_strdup (name), value, g_strdup (unit) };
+  ClothGapThreshold item = { g_strdup (name), value, g_strdup (unit), origin,
+    g_strdup (reason)
+  };
 
   g_array_append_val (result->thresholds, item);
 }
@@ -235,9 +374,16 @@ cloth_gap_result_free (ClothGapResult * result)
     return;
   g_free (result->reason);
   g_ptr_array_unref (result->notes);
+  g_array_unref (result->takes);
   g_array_unref (result->effects);
+  g_array_unref (result->sets);
   g_array_unref (result->groups);
   g_array_unref (result->untested);
+  g_array_unref (result->detection_limits);
+  g_array_unref (result->patch);
+  g_free (result->patch_simulator);
+  g_array_unref (result->free_numbers);
+  g_free (result->free_correlation);
   g_free (result->vertices);
   g_free (result->gained);
   g_free (result->frames);

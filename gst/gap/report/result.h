@@ -35,10 +35,22 @@ typedef struct {
   gdouble high;
 } ClothGapEstimate;
 
+/* @windows: of the squared gap over windows of 0.3 s
+ * @free: of that of the run from the start that nothing restarts
+ *
+ * A shrink, (V_before − V_after) ÷ (V_before − V_floor), both ways that it is measured.
+ */
+typedef struct {
+  ClothGapEstimate windows;
+  ClothGapEstimate free;
+} ClothGapShrink;
+
 /* @effect: which one: its names, units and side are taken from here
  * @camera: (nullable): name of the camera it is of, interned; %NULL: of no camera, or
  *   of all alike
- * @probability: that it acts, calibrated, 0 to 1
+ * @probability: that it acts, whatever else does: posterior over all subsets, 0 to 1
+ * @log_bayes_factor: what these data say for it, whatever it was thought before: log of
+ *   its posterior odds over its prior odds
  * @values: its fitted parameters, in the order of @effect; NaN: not fitted
  * @sigmas: their standard deviations
  * @p_value: of its score test
@@ -46,8 +58,6 @@ typedef struct {
  * @shrink: by how much the held-out gap shrinks when all accepted effects are added, of variance
  * @group: index into `groups`, or -1 when nothing is confused with it
  * @accepted: whether it is part of the model that `gap_after` is measured with
- * @refitted: always %FALSE: an effect that equals a free parameter of the model can't be
- *   told from it, so it is among the untested ones. Part of the file's format.
  *
  * What was found of one effect.
  */
@@ -55,6 +65,7 @@ typedef struct {
   const ClothEffect *effect;
   const gchar *camera;
   gdouble probability;
+  gdouble log_bayes_factor;
   gdouble values[CLOTH_EFFECT_MAX_PARAMETERS];
   gdouble sigmas[CLOTH_EFFECT_MAX_PARAMETERS];
   gdouble p_value;
@@ -62,8 +73,97 @@ typedef struct {
   ClothGapEstimate shrink;
   gint group;
   gboolean accepted;
-  gboolean refitted;
 } ClothGapEffect;
+
+/* @CLOTH_GAP_RIVAL_NONE: effects of the library are all that acts
+ * @CLOTH_GAP_RIVAL_FORCE_FIELD: a force acts that no effect of the library makes
+ * @CLOTH_GAP_RIVAL_DISPLACEMENT_FIELD: places were measured wrong in a way that no effect
+ *   of the library makes
+ *
+ * What no effect of the library says, and yet may be the cause.
+ */
+typedef enum {
+  CLOTH_GAP_RIVAL_NONE,
+  CLOTH_GAP_RIVAL_FORCE_FIELD,
+  CLOTH_GAP_RIVAL_DISPLACEMENT_FIELD
+} ClothGapRival;
+
+/* @effects: (element-type ClothEffect) (transfer none): effects that act together; none:
+ *   nothing of the library acts
+ * @rival: what acts besides them
+ * @probability: that these act and nothing else
+ *
+ * One explanation.
+ */
+typedef struct {
+  GPtrArray *effects;
+  ClothGapRival rival;
+  gdouble probability;
+} ClothGapSet;
+
+/* @none_acts: that nothing acts that the model lacks
+ * @force_field: that an unknown force acts, alone or beside effects
+ * @displacement_field: that places were measured wrong in an unknown way, alone or beside
+ *   effects
+ *
+ * Posterior probabilities of what is no effect of the library; NaN: not known.
+ */
+typedef struct {
+  gdouble none_acts;
+  gdouble force_field;
+  gdouble displacement_field;
+} ClothGapRivals;
+
+/* @effect: an effect
+ * @parameter: which of its parameters
+ * @value: its smallest value that would have shown with a probability of 95%, in the
+ *   parameter's own unit and as far from 0; NaN: no value that makes sense would have
+ *
+ * How much of an effect may be there unseen.
+ */
+typedef struct {
+  const ClothEffect *effect;
+  guint parameter;
+  gdouble value;
+} ClothGapLimit;
+
+/* @name: of a free number of the model, as cloth_model_get () names it
+ * @unit: its unit
+ * @value: as it was fitted
+ * @sigma: standard deviation of that
+ * @low: least value that it was allowed
+ * @high: greatest value that it was allowed
+ * @at_end: whether the fit ended at one of them: the range or the model is wrong
+ */
+typedef struct {
+  gchar *name;
+  gchar *unit;
+  gdouble value;
+  gdouble sigma;
+  gdouble low;
+  gdouble high;
+  gboolean at_end;
+} ClothGapFreeNumber;
+
+/* @name: what is changed, as whom the patch is for calls it: a key of model.json, a
+ *   setting of the user's simulator
+ * @text: the change in plain words: "areal density × 0.61"
+ * @before: its value; NaN: it was not there
+ * @after: its value to set; NaN: the simulator can't express it, and @text says what to
+ *   add instead
+ * @unit: of both
+ * @factor: @after ÷ @before; NaN: there is none, as from 0
+ *
+ * One change that takes the gap away.
+ */
+typedef struct {
+  gchar *name;
+  gchar *text;
+  gdouble before;
+  gdouble after;
+  gchar *unit;
+  gdouble factor;
+} ClothGapPatch;
 
 /* @experiment: (nullable): the capture that would tell them apart, a sentence; %NULL:
  *   none of those tried would
@@ -114,14 +214,42 @@ typedef struct {
 /* @CLOTH_GAP_TAKE: it is diagnosed
  * @CLOTH_GAP_BASELINE: the model is accepted on it
  * @CLOTH_GAP_HOLD_OUT: it judges, and nothing was fitted on it
+ * @CLOTH_GAP_SIMULATED: what the user's simulator made of one of them
+ * @CLOTH_GAP_SIMULATED_AFTER: the same once the accepted effects were added there
  * @CLOTH_GAP_MODEL: the model's file
  */
 typedef enum {
   CLOTH_GAP_TAKE,
   CLOTH_GAP_BASELINE,
   CLOTH_GAP_HOLD_OUT,
+  CLOTH_GAP_SIMULATED,
+  CLOTH_GAP_SIMULATED_AFTER,
   CLOTH_GAP_MODEL
 } ClothGapRole;
+
+/* @role: take, baseline or hold-out
+ * @name: its name
+ * @gap_before: recorded minus simulated over windows of 0.3 s, RMS in metres
+ * @gap_after: the same with the accepted effects
+ * @noise_floor: what it would be if the simulation lacked nothing
+ * @shrink: (V_before − V_after) ÷ (V_before − V_floor), V = squared gap
+ * @free_before: recorded minus simulated from the start, not restarted, RMS in metres
+ * @free_after: the same with the accepted effects
+ * @free_floor: what it would be if the simulation lacked nothing
+ *
+ * What was measured on one take.
+ */
+typedef struct {
+  ClothGapRole role;
+  gchar *name;
+  ClothGapEstimate gap_before;
+  ClothGapEstimate gap_after;
+  ClothGapEstimate noise_floor;
+  ClothGapEstimate shrink;
+  ClothGapEstimate free_before;
+  ClothGapEstimate free_after;
+  ClothGapEstimate free_floor;
+} ClothGapMeasuredTake;
 
 /* @role: what it was used for
  * @name: its name
@@ -134,14 +262,32 @@ typedef struct {
   gchar *sha256;
 } ClothGapInput;
 
+/* @CLOTH_GAP_ORIGIN_SIMULATED: a quantile of what was simulated for this take
+ * @CLOTH_GAP_ORIGIN_PARAMETER: chosen, and the user may choose otherwise
+ * @CLOTH_GAP_ORIGIN_PAPER: from the literature
+ * @CLOTH_GAP_ORIGIN_DEFINITION: what the words mean
+ *
+ * Where a threshold comes from.
+ */
+typedef enum {
+  CLOTH_GAP_ORIGIN_SIMULATED,
+  CLOTH_GAP_ORIGIN_PARAMETER,
+  CLOTH_GAP_ORIGIN_PAPER,
+  CLOTH_GAP_ORIGIN_DEFINITION
+} ClothGapOrigin;
+
 /* @name: which one
  * @value: its value
  * @unit: in the notation of the SI, "1" for a ratio
+ * @origin: where it comes from
+ * @reason: why it is so, a sentence
  */
 typedef struct {
   gchar *name;
   gdouble value;
   gchar *unit;
+  ClothGapOrigin origin;
+  gchar *reason;
 } ClothGapThreshold;
 
 /* @name: of what
@@ -201,6 +347,8 @@ typedef struct {
  * @after: (nullable): simulated with them
  * @sigma: (nullable): what the distance of recorded and simulated would be without a
  *   gap, RMS, [n_frames][n_vertices], metres
+ * @free_run: whether the simulations run from the start, else they start anew with each
+ *   window of 0.3 s
  *
  * The cloth as it moved.
  */
@@ -213,6 +361,7 @@ typedef struct {
   gfloat *before;
   gfloat *after;
   gfloat *sigma;
+  gboolean free_run;
 } ClothGapPlayback;
 
 /* @verdict: the outcome
@@ -225,9 +374,23 @@ typedef struct {
  * @shrink: (V_before − V_after) ÷ (V_before − V_floor), V = squared gap
  * @rest_p_value: that what remains is no more than the noise floor
  * @held_out_takes: whether "held-out" means takes of their own, else blocks of time
+ * @takes: (element-type ClothGapMeasuredTake): what was measured on each take
+ * @takes_agree_p_value: that all takes are explained by the same numbers; NaN: one take
+ * @has_simulated: whether a twin was given: the gap is to what the user's simulator made
+ * @predicted_shrink: what the accepted effects would take off the twin's gap: twin + (ours
+ *   with them − ours without)
+ * @measured_shrink: what they took off in the user's simulator
  * @effects: (element-type ClothGapEffect): the tested effects, the likeliest first
+ * @sets: (element-type ClothGapSet): explanations, the likeliest first, up to 95% of the
+ *   posterior
+ * @rivals: how likely it is that no effect of the library is all of it
  * @groups: (element-type ClothGapGroup): what can't be told apart
  * @untested: (element-type ClothGapUntested): what could not be tested
+ * @detection_limits: (element-type ClothGapLimit): what would have shown
+ * @patch: (element-type ClothGapPatch): what to change
+ * @patch_simulator: (nullable): the user's simulator that @patch is for; %NULL: model.json
+ * @free_numbers: (element-type ClothGapFreeNumber): the model's fitted numbers
+ * @free_correlation: (nullable): their correlations, [n][n] row by row
  * @n_vertices: number of vertices of the cloth
  * @vertices: (nullable): share of the gap per vertex; NaN: never seen
  * @gained: (nullable): what of the gap the accepted effects take off at each vertex;
@@ -271,9 +434,21 @@ typedef struct {
   ClothGapEstimate shrink;
   gdouble rest_p_value;
   gboolean held_out_takes;
+  GArray *takes;
+  gdouble takes_agree_p_value;
+  gboolean has_simulated;
+  ClothGapShrink predicted_shrink;
+  ClothGapShrink measured_shrink;
   GArray *effects;
+  GArray *sets;
+  ClothGapRivals rivals;
   GArray *groups;
   GArray *untested;
+  GArray *detection_limits;
+  GArray *patch;
+  gchar *patch_simulator;
+  GArray *free_numbers;
+  gdouble *free_correlation;
   guint n_vertices;
   gdouble *vertices;
   gdouble *gained;
@@ -301,12 +476,22 @@ typedef struct {
 
 ClothGapResult *cloth_gap_result_new (void);
 void cloth_gap_result_add_note (ClothGapResult * result, const gchar * note);
+ClothGapMeasuredTake *cloth_gap_result_add_take (ClothGapResult * result,
+    ClothGapRole role, const gchar * name);
 ClothGapEffect *cloth_gap_result_add_effect (ClothGapResult * result,
     const ClothEffect * effect);
+ClothGapSet *cloth_gap_result_add_set (ClothGapResult * result,
+    ClothGapRival rival, gdouble probability);
 void cloth_gap_result_add_group (ClothGapResult * result,
     const gchar * experiment, gdouble log_bayes_factor);
 void cloth_gap_result_add_untested (ClothGapResult * result,
     const ClothEffect * effect, const gchar * reason);
+void cloth_gap_result_add_limit (ClothGapResult * result,
+    const ClothEffect * effect, guint parameter, gdouble value);
+void cloth_gap_result_add_patch (ClothGapResult * result, const gchar * name,
+    const gchar * text, gdouble before, gdouble after, const gchar * unit);
+ClothGapFreeNumber *cloth_gap_result_add_free_number (ClothGapResult * result,
+    const gchar * name, const gchar * unit);
 void cloth_gap_result_add_stage (ClothGapResult * result, const gchar * name,
     gdouble share, const gchar * reason);
 void cloth_gap_result_add_version (ClothGapResult * result,
@@ -314,7 +499,8 @@ void cloth_gap_result_add_version (ClothGapResult * result,
 void cloth_gap_result_add_input (ClothGapResult * result, ClothGapRole role,
     const gchar * name, const gchar * sha256);
 void cloth_gap_result_add_threshold (ClothGapResult * result,
-    const gchar * name, gdouble value, const gchar * unit);
+    const gchar * name, gdouble value, const gchar * unit,
+    ClothGapOrigin origin, const gchar * reason);
 void cloth_gap_result_add_failure (ClothGapResult * result,
     const gchar * run, const gchar * what);
 const gchar *cloth_gap_verdict_name (ClothGapVerdict verdict);

@@ -50,7 +50,6 @@ function confused(gap, effect) {
     : gap.groups[effect.group].effects.filter((name) => name !== effect.name);
   const notes = [];
   if (names.length) notes.push(names.map(spoken).join(', '));
-  if (effect.refitted) notes.push('a free parameter, re-fitted');
   if (known(effect.constancy_p_value) && effect.constancy_p_value < 0.05) {
     notes.push(`changes over time (p ${chance(effect.constancy_p_value)})`);
   }
