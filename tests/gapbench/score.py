@@ -145,8 +145,9 @@ def strangeness(gap):
     """Orders diagnoses by how little the library accounts for: by the probability of the two
     generic rivals; of the first design by the verdict, then by what remains as a multiple of the
     noise floor."""
-    if gap.get('rivals'):
-        return gap['rivals']['force_field'] + gap['rivals']['displacement_field']
+    rivals = gap.get('rivals') or {}
+    if rivals.get('force_field') is not None:
+        return rivals['force_field'] + rivals['displacement_field']
     rest = gap['gap_after']['value'] or gap['gap_before']['value']
     floor = gap['noise_floor']['value']
     return gap['verdict'] == 'unexplained', rest / floor if rest and floor else 0.
