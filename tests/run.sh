@@ -1,8 +1,9 @@
 #!/bin/bash
 # Installs what is missing, builds and tests; the last line is "N passed, N failed".
 #
-#   tests/run.sh                every test but the long ones (suites soak and fuzz) and those
-#                               that need a network (suite registry), in ./build
+#   tests/run.sh                every test but the long ones (suites soak and fuzz), those
+#                               that need a network (suite registry) and those of other
+#                               programs (suites blender and bullet), in ./build
 #   tests/run.sh --sanitize     a share of them under the address and undefined-behaviour
 #                               sanitizers, in ./build-asan-gcc and ./build-asan-clang
 #   tests/run.sh --tsan         what has threads under the thread sanitizer, in ./build-tsan
@@ -32,7 +33,8 @@ test_everything ()
   ninja -C build || fail "the build is broken"
   rm -f "$log"
   meson test -C build --no-rebuild --logbase run --print-errorlogs \
-      --no-suite soak --no-suite fuzz --no-suite registry
+      --no-suite soak --no-suite fuzz --no-suite registry \
+      --no-suite blender --no-suite bullet
   /usr/bin/python3 tests/count.py $? "$log"
 }
 

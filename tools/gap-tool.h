@@ -12,10 +12,11 @@ typedef struct
   gchar *format, *scene, *output, *model, *effects;
   gchar **baselines, **hold_outs;
   gint64 seed;
-  gint threads;
+  gint threads, run_seconds;
   gchar **rest;                 /* the command and what belongs to it */
 } Arguments;
 
 gint list_effects (const Arguments * arguments);
 gint simulate (const Arguments * arguments);
 gint diagnose (const Arguments * arguments);
+gint check_simulator (const Arguments * arguments);

@@ -6,6 +6,8 @@
 
 #include <string.h>
 
+#include "tools/gap-simulator.h"
+
 static gint
 run (gconstpointer data)
 {
@@ -15,7 +17,7 @@ run (gconstpointer data)
 
   if (!command)
     return complain (BAD_USAGE,
-        "name a command: diagnose, effects or simulate");
+        "name a command: diagnose, simulate, check-simulator or effects");
   if (!is_diagnose && (arguments->model || arguments->effects ||
           arguments->baselines || arguments->hold_outs))
     return complain (BAD_USAGE, "%s takes no --model, --effects, --baseline or "
@@ -29,8 +31,10 @@ run (gconstpointer data)
   }
   if (!strcmp (command, "simulate"))
     return simulate (arguments);
-  return complain (BAD_USAGE,
-      "no command \"%s\": there are diagnose, effects and simulate", command);
+  if (!strcmp (command, "check-simulator"))
+    return check_simulator (arguments);
+  return complain (BAD_USAGE, "no command \"%s\": there are diagnose, "
+      "simulate, check-simulator and effects", command);
 }
 
 /* "--baseline a b" becomes "--baseline a --baseline b": these lists end where the next
@@ -63,7 +67,7 @@ spread_lists (char **argv)
 int
 main (int argc, char **argv)
 {
-  Arguments arguments = { 0 };
+  Arguments arguments = {.run_seconds = GAP_SIMULATOR_SECONDS };
   const GOptionEntry entries[] = {
     {"model", 'm', 0, G_OPTION_ARG_FILENAME, &arguments.model,
         "diagnose: model.json that the takes are held against", "MODEL"},
@@ -77,7 +81,10 @@ main (int argc, char **argv)
     {"format", 0, 0, G_OPTION_ARG_STRING, &arguments.format,
         "effects: text, json or markdown (text)", "FORMAT"},
     {"scene", 0, 0, G_OPTION_ARG_FILENAME, &arguments.scene,
-        "simulate: take that gives mesh, clamps, obstacles and times", "TAKE"},
+        "simulate, check-simulator: take that gives mesh, clamps, obstacles "
+          "and times", "TAKE"},
+    {"run-seconds", 0, 0, G_OPTION_ARG_INT, &arguments.run_seconds,
+        "check-simulator: seconds that one simulation may take (600)", "N"},
     {"output", 'o', 0, G_OPTION_ARG_FILENAME, &arguments.output,
         "diagnose: folder of the report; simulate: take to write", "DIR"},
     {"seed", 0, 0, G_OPTION_ARG_INT64, &arguments.seed,
@@ -85,7 +92,8 @@ main (int argc, char **argv)
     {"threads", 0, 0, G_OPTION_ARG_INT, &arguments.threads,
         "Threads, 0 for all processors (0)", "N"},
     {G_OPTION_REMAINING, 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &arguments.rest,
-        NULL, "diagnose TAKE… | effects | simulate MODEL"},
+          NULL,
+        "diagnose TAKE… | simulate MODEL | check-simulator COMMAND | effects"},
     {NULL}
   };
   gint code = tool_main (PROGRAM,

@@ -22,6 +22,25 @@ value_of (const ClothModel * model, const ClothEffect * effect)
   return effect->parameters[0].null_value;
 }
 
+/* @a: a model
+ * @b: another
+ *
+ * Returns: whether they have the same numerics effects
+ */
+gboolean
+cloth_numerics_agree (const ClothModel * a, const ClothModel * b)
+{
+  static const ClothEffect *const effects[] = {
+#define SCENE(name) &cloth_effect_##name,
+#include "gst/effect/list.h"
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (effects); i++)
+    if (value_of (a, effects[i]) != value_of (b, effects[i]))
+      return FALSE;
+  return TRUE;
+}
+
 /* The value that all models share. */
 static gboolean
 shared_value (const ClothModel * const *models, guint n_models,

@@ -22,6 +22,7 @@ typedef struct
   gdouble *values[CLOTH_MAX_HALVINGS];  /* three of each vertex of a halving */
 } ClothNumerics;
 
+gboolean cloth_numerics_agree (const ClothModel * a, const ClothModel * b);
 ClothNumerics *cloth_numerics_new (const ClothScene * scene,
     const ClothModel * const *models, guint n_models, GError ** error);
 const gdouble *cloth_numerics_spread (ClothNumerics * numerics, guint stride,

@@ -185,6 +185,19 @@ check_time_step (const ClothSim * sim, const ClothModel * const *models,
   return FALSE;
 }
 
+/* @a: a model
+ * @b: another
+ *
+ * Returns: whether one simulation can have both: they agree in force_model, integrator,
+ *   time_step and the numerics effects
+ */
+gboolean
+cloth_sim_can_share (const ClothModel * a, const ClothModel * b)
+{
+  return a->force_model == b->force_model && a->integrator == b->integrator
+      && a->time_step == b->time_step && cloth_numerics_agree (a, b);
+}
+
 /* @scene: what to simulate; nothing of it is kept
  * @models: the models to simulate it with; nothing of them is kept
  * @n_models: how many, at least 1; they must agree in force_model, integrator,

@@ -20,6 +20,7 @@ typedef enum {
   CLOTH_SIM_DIVERGED
 } ClothSimState;
 
+gboolean cloth_sim_can_share (const ClothModel * a, const ClothModel * b);
 ClothSim *cloth_sim_new (const ClothScene * scene,
     const ClothModel * const *models, guint n_models,
     const ClothSimOptions * options, GError ** error);

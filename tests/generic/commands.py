@@ -151,7 +151,10 @@ def reached(root, run_pages):
                 with open(os.path.join(root, folder, name), encoding='utf-8') as file:
                     text += ''.join(block for kind, block in FENCE.findall(file.read())
                                     if kind.strip() == 'sh')
-    waiting = set(os.listdir(os.path.join(root, 'pipelines'))) - {'README.md', '__pycache__'}
+    top = os.path.join(root, 'pipelines')
+    waiting = {os.path.relpath(os.path.join(folder, name), top)
+               for folder, _, names in os.walk(top) for name in names
+               if name != 'README.md' and not folder.endswith('__pycache__')}
     print('%d files in pipelines/' % len(waiting))
     while True:
         now = {name for name in waiting if 'pipelines/' + name in text}

@@ -80,8 +80,9 @@ ROOMS = [
           'nudge': ['nudge.h'], 'estimate': ['estimate.h']},
          [[''], ['recording'], ['features'], ['nudge'], ['estimate']]),
     Room('gst/gap', 'why a simulation is wrong',
-         {'': ['diagnose.h', 'inputs.h'], 'report': ['result.h', 'words.h', 'patch.h', 'report.h']},
-         [['inputs', 'report'], ['camera'], ['diagnosis'], ['load', 'inference', 'localise'],
+         {'': ['diagnose.h', 'inputs.h'], 'report': ['result.h', 'words.h', 'patch.h', 'report.h'],
+          'simulator': ['simulator.h', 'capabilities.h']},
+         [['inputs', 'report'], ['simulator'], ['camera'], ['diagnosis'], ['load', 'inference', 'localise'],
           ['camera/faults', 'verdict', 'design'], ['diagnose']]),
 ]
 # Stands apart: it knows GStreamer and none of the algorithm rooms.

@@ -333,7 +333,7 @@ def contradictions(folder):
 
 def usage(folder):
     for arguments, text in [
-            ((), 'effects or simulate'), (('diagnoze',), 'no command'),
+            ((), 'check-simulator or effects'), (('diagnoze',), 'no command'),
             (('effects', 'wind'), 'no names'), (('effects', '--format', 'xml'), '--format xml'),
             (('effects', '--output', 'x'), '--output'),
             (('simulate',), 'model.json'), (('simulate', knit), '--scene'),

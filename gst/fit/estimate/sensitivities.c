@@ -221,12 +221,15 @@ cloth_sensitivities_run (const ClothSensitivities * sensitivities,
     gboolean * sound, GError ** error)
 {
   g_autofree gdouble *gains = g_new (gdouble, n);
+  g_autofree const ClothRecording **targets = g_new (const ClothRecording *, n);
   Collect c = { sensitivities, z };
 
-  for (guint i = 0; i < n; i++)
+  for (guint i = 0; i < n; i++) {
     gains[i] = options->gain;
+    targets[i] = sensitivities->recording;
+  }
   options->simulations += n;
-  return cloth_rollout_nudged (sensitivities->recording,
+  return cloth_rollout_nudged (targets,
       (const ClothModel * const *) models, gains, n, &options->rollout,
       collect, &c, sound, error);
 }

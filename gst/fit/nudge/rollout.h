@@ -48,8 +48,12 @@ typedef struct {
 typedef void (*ClothRolloutFrame) (gpointer data, guint model, guint frame,
     const gdouble * positions);
 
-gboolean cloth_rollout_nudged (const ClothRecording * recording,
+gboolean cloth_rollout_nudged (const ClothRecording * const *targets,
     const ClothModel * const *models, const gdouble * gains, guint n_models,
+    const ClothRolloutOptions * options, ClothRolloutFrame on_frame,
+    gpointer data, gboolean * sound, GError ** error);
+gboolean cloth_rollout_free (const ClothRecording * recording,
+    const ClothModel * const *models, guint n_models,
     const ClothRolloutOptions * options, ClothRolloutFrame on_frame,
     gpointer data, gboolean * sound, GError ** error);
 gboolean cloth_rollout_windows (const ClothRecording * recording,

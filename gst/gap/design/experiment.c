@@ -55,14 +55,13 @@ write_frame (gpointer data, guint model, guint frame, const gdouble * positions)
       3 * (gsize) r->n * sizeof (gdouble));
 }
 
-/* The recording that the model would make of a scene: an observer without springs. NULL
- * without an error when it diverges. */
+/* The recording that the model would make of a scene. NULL without an error when it
+ * diverges. */
 static ClothRecording *
 record (Search * s, ClothScene * scene, const ClothModel * model,
     GError ** error)
 {
   g_autoptr (ClothRecording) r = g_new0 (ClothRecording, 1);
-  const gdouble gain = 0.;
   gboolean sound;
   gsize all;
 
@@ -80,8 +79,8 @@ record (Search * s, ClothScene * scene, const ClothModel * model,
     r->seen[i] = 1.;
   memcpy (r->y, scene->positions, 3 * (gsize) r->n * sizeof (gdouble));
   s->options->simulations++;
-  if (!cloth_rollout_nudged (r, &model, &gain, 1, &s->options->rollout,
-          write_frame, r, &sound, error) || !sound)
+  if (!cloth_rollout_free (r, &model, 1, &s->options->rollout, write_frame,
+          r, &sound, error) || !sound)
     return NULL;
   cloth_recording_differentiate (r);
   return g_steal_pointer (&r);
@@ -148,6 +147,8 @@ follow (Search * s, const ClothSensitivities * study, ClothStageMotion motion,
   g_autoptr (GPtrArray) models = g_ptr_array_new_with_free_func (
       (GDestroyNotify) cloth_model_free);
   g_autofree gdouble *gains = g_new (gdouble, s->n_members);
+  g_autofree const ClothRecording **targets =
+      g_new (const ClothRecording *, s->n_members);
   g_autofree gboolean *sound = g_new (gboolean, s->n_members);
   Collect c = { study->recording, study->features, z };
 
@@ -161,9 +162,10 @@ follow (Search * s, const ClothSensitivities * study, ClothStageMotion motion,
     if (motion == CLOTH_MOTION_FAN_ON)
       blow (s->stage, model);
     gains[i] = s->options->gain;
+    targets[i] = study->recording;
   }
   s->options->simulations += s->n_members;
-  if (!cloth_rollout_nudged (study->recording,
+  if (!cloth_rollout_nudged (targets,
           (const ClothModel * const *) models->pdata, gains, s->n_members,
           &s->options->rollout, collect, &c, sound, error))
     return FALSE;
