@@ -82,6 +82,8 @@ run_diagnosis (const Arguments * arguments, gchar ** effects, GError ** error)
   g_autoptr (GPtrArray) takes = NULL;
   g_autoptr (GPtrArray) baselines = NULL;
   g_autoptr (GPtrArray) hold_outs = NULL;
+  g_autoptr (GPtrArray) simulated = NULL;
+  g_autoptr (GPtrArray) after = NULL;
   g_autoptr (GPtrArray) observations = NULL;
   g_autoptr (GPtrArray) baseline_observations = NULL;
   g_autoptr (GPtrArray) hold_out_observations = NULL;
@@ -94,7 +96,9 @@ run_diagnosis (const Arguments * arguments, gchar ** effects, GError ** error)
   }
   if (!(takes = open_takes (folders, error)) ||
       !(baselines = open_takes (arguments->baselines, error)) ||
-      !(hold_outs = open_takes (arguments->hold_outs, error)))
+      !(hold_outs = open_takes (arguments->hold_outs, error)) ||
+      !(simulated = open_takes (arguments->simulated, error)) ||
+      !(after = open_takes (arguments->after, error)))
     return NULL;
   first = g_ptr_array_index (takes, 0);
   if (!check_cloths (folders, takes, folders[0], first, error) ||
@@ -117,6 +121,10 @@ run_diagnosis (const Arguments * arguments, gchar ** effects, GError ** error)
   options.n_baselines = baselines->len;
   options.hold_outs = (ClothTake **) hold_outs->pdata;
   options.n_hold_outs = hold_outs->len;
+  options.simulated = (ClothTake **) simulated->pdata;
+  options.n_simulated = simulated->len;
+  options.after = (ClothTake **) after->pdata;
+  options.n_after = after->len;
   options.model_file = arguments->model;
   options.effects = (const gchar * const *) effects;
   options.seed = (guint64) arguments->seed;
@@ -126,23 +134,29 @@ run_diagnosis (const Arguments * arguments, gchar ** effects, GError ** error)
       &options, error);
 }
 
-/* The folder that the three lists share, or NULL: what judges must not be judged. */
+/* The folder that two of the lists share, or one has twice, or NULL: what judges must not be
+ * judged. Only a simulation may serve several recordings of one motion. */
 static gchar *
 find_shared (const Arguments * arguments)
 {
-  gchar **lists[3] = { arguments->rest + 1, arguments->baselines,
-    arguments->hold_outs
+  gchar **lists[] = { arguments->rest + 1, arguments->baselines,
+    arguments->hold_outs, arguments->simulated, arguments->after
   };
   g_autoptr (GHashTable) seen =
       g_hash_table_new_full (g_str_hash, g_str_equal, free, NULL);
 
-  for (guint k = 0; k < 3; k++) {
+  for (guint k = 0; k < G_N_ELEMENTS (lists); k++) {
     for (guint i = 0; lists[k] && lists[k][i]; i++) {
       gchar *path = realpath (lists[k][i], NULL);
+      gpointer list = path ? g_hash_table_lookup (seen, path) : NULL;
 
-      /* One that is not there is told of when it is opened. */
-      if (path && !g_hash_table_add (seen, path))
+      if (list && (k < 3 || list != lists[k])) {
+        free (path);
         return g_strdup (lists[k][i]);
+      }
+      /* One that is not there is told of when it is opened. */
+      if (path)
+        g_hash_table_insert (seen, path, lists[k]);
     }
   }
   return NULL;
@@ -171,7 +185,7 @@ check_usage (const Arguments * arguments, gchar *** effects)
   if (shared)
     return complain (BAD_USAGE,
         "“%s” is given twice: a take can't be its own "
-        "baseline or hold-out; leave one out", shared);
+        "baseline, hold-out or simulation; leave one out", shared);
   *effects = cloth_gap_effects_parse (arguments->effects, &error);
   if (error)
     return complain (BAD_USAGE, "--effects: %s", error->message);
@@ -223,4 +237,26 @@ diagnose (const Arguments * arguments)
   if (g_error_matches (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_CANCELLED))
     return complain (FAILED, "stopped; nothing was written");
   return complain (FAILED, "%s", error->message);
+}
+
+/* The short form of diagnose: one recording and what was simulated of it. */
+gint
+compare_takes (const Arguments * arguments)
+{
+  gchar **words = arguments->rest;
+  gchar *rest[] = { words[0], words[1], NULL };
+  gchar *simulated[] = { words[1] ? words[2] : NULL, NULL };
+  Arguments one = *arguments;
+
+  if (!words[1] || !words[2] || words[3])
+    return complain (BAD_USAGE,
+        "compare takes one recording and its simulation: compare RECORDED "
+        "SIMULATED --model MODEL --output DIR; give several to diagnose "
+        "TAKE… --simulated TAKE…");
+  if (arguments->simulated || arguments->hold_outs)
+    return complain (BAD_USAGE, "compare takes no --simulated and no "
+        "--hold-out; give these to diagnose");
+  one.rest = rest;
+  one.simulated = simulated;
+  return diagnose (&one);
 }

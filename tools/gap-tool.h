@@ -10,7 +10,7 @@
 typedef struct
 {
   gchar *format, *scene, *output, *model, *effects;
-  gchar **baselines, **hold_outs;
+  gchar **baselines, **hold_outs, **simulated, **after;
   gint64 seed;
   gint threads, run_seconds;
   gchar **rest;                 /* the command and what belongs to it */
@@ -19,4 +19,5 @@ typedef struct
 gint list_effects (const Arguments * arguments);
 gint simulate (const Arguments * arguments);
 gint diagnose (const Arguments * arguments);
+gint compare_takes (const Arguments * arguments);
 gint check_simulator (const Arguments * arguments);

@@ -1,4 +1,4 @@
-/* gst-cloth-gap-1.0: diagnoses takes, simulates takes, lists the effects that may part a
+/* gst-cloth-gap-1.0: diagnoses takes, compares them with simulations, simulates takes, lists the effects that may part a
  * simulation from what was filmed.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
@@ -13,15 +13,19 @@ run (gconstpointer data)
 {
   const Arguments *arguments = data;
   const gchar *command = arguments->rest ? arguments->rest[0] : NULL;
-  gboolean is_diagnose = !g_strcmp0 (command, "diagnose");
+  gboolean is_compare = !g_strcmp0 (command, "compare");
+  gboolean is_diagnose = is_compare || !g_strcmp0 (command, "diagnose");
 
   if (!command)
     return complain (BAD_USAGE,
-        "name a command: diagnose, simulate, check-simulator or effects");
+        "name a command: diagnose, compare, simulate, check-simulator or effects");
   if (!is_diagnose && (arguments->model || arguments->effects ||
-          arguments->baselines || arguments->hold_outs))
-    return complain (BAD_USAGE, "%s takes no --model, --effects, --baseline or "
-        "--hold-out; they are diagnose's", command);
+          arguments->baselines || arguments->hold_outs || arguments->simulated
+          || arguments->after))
+    return complain (BAD_USAGE, "%s takes no --model, --effects, --baseline, "
+        "--hold-out, --simulated or --after; they are diagnose's", command);
+  if (is_compare)
+    return compare_takes (arguments);
   if (is_diagnose)
     return diagnose (arguments);
   if (!strcmp (command, "effects")) {
@@ -34,7 +38,7 @@ run (gconstpointer data)
   if (!strcmp (command, "check-simulator"))
     return check_simulator (arguments);
   return complain (BAD_USAGE, "no command \"%s\": there are diagnose, "
-      "simulate, check-simulator and effects", command);
+      "compare, simulate, check-simulator and effects", command);
 }
 
 /* "--baseline a b" becomes "--baseline a --baseline b": these lists end where the next
@@ -42,6 +46,9 @@ run (gconstpointer data)
 static gchar **
 spread_lists (char **argv)
 {
+  static const gchar *const lists[] = {
+    "--baseline", "--hold-out", "--simulated", "--after", NULL
+  };
   g_autoptr (GPtrArray) words = g_ptr_array_new ();
   const gchar *list = NULL;
   guint n = 0;
@@ -50,8 +57,7 @@ spread_lists (char **argv)
     if (!strcmp (*argv, "--"))
       break;
     if (**argv == '-') {
-      list = !strcmp (*argv, "--baseline") || !strcmp (*argv, "--hold-out") ?
-          *argv : NULL;
+      list = g_strv_contains (lists, *argv) ? *argv : NULL;
       n = 0;
     } else if (list && n++ > 0) {
       g_ptr_array_add (words, g_strdup (list));
@@ -75,6 +81,12 @@ main (int argc, char **argv)
         "diagnose: takes the model is accepted on", "TAKE…"},
     {"hold-out", 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &arguments.hold_outs,
         "diagnose: takes that judge, on which nothing is fitted", "TAKE…"},
+    {"simulated", 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &arguments.simulated,
+        "diagnose: what your simulator made of each take, then of each "
+          "hold-out", "TAKE…"},
+    {"after", 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &arguments.after,
+          "diagnose, compare: the same with the effect added, of what judges",
+        "TAKE…"},
     {"effects", 0, 0, G_OPTION_ARG_STRING, &arguments.effects,
           "diagnose: effects to consider, with commas between them (all)",
         "LIST"},
@@ -93,7 +105,8 @@ main (int argc, char **argv)
         "Threads, 0 for all processors (0)", "N"},
     {G_OPTION_REMAINING, 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &arguments.rest,
           NULL,
-        "diagnose TAKE… | simulate MODEL | check-simulator COMMAND | effects"},
+        "diagnose TAKE… | compare RECORDED SIMULATED | simulate MODEL | "
+          "check-simulator COMMAND | effects"},
     {NULL}
   };
   gint code = tool_main (PROGRAM,
@@ -107,6 +120,8 @@ main (int argc, char **argv)
   g_free (arguments.output);
   g_strfreev (arguments.baselines);
   g_strfreev (arguments.hold_outs);
+  g_strfreev (arguments.simulated);
+  g_strfreev (arguments.after);
   g_strfreev (arguments.rest);
   return code;
 }

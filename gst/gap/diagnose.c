@@ -5,6 +5,8 @@
 
 #include "config.h"
 
+#include <math.h>
+
 #include "gst/gap/camera/faults.h"
 #include "gst/gap/design/propose.h"
 #include "gst/gap/inference/baseline.h"
@@ -14,9 +16,11 @@
 #include "gst/gap/localise/null-distribution.h"
 #include "gst/gap/localise/where.h"
 #include "gst/gap/report/patch.h"
+#include "gst/gap/verdict/agreement.h"
 #include "gst/gap/verdict/failure.h"
 #include "gst/gap/verdict/implausible.h"
 #include "gst/gap/verdict/judge.h"
+#include "gst/gap/verdict/measure.h"
 #include "gst/gap/verdict/unexplained.h"
 
 /* Version of the priors and thresholds: a change of either changes probabilities. */
@@ -28,7 +32,7 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
 {
   gchar *implausible;
 
-  /* Reads the takes, baselines and hold-outs; writes the recordings and the studies. */
+  /* Reads the takes, baselines, hold-outs and their twins; writes the recordings and the studies. */
   if (!cloth_diagnosis_load (d, model, error))
     return FALSE;
   /* Reads the recordings; writes the reason why nothing can be decided, if there is one. */
@@ -40,21 +44,24 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
   /* Reads the model and the wanted effects; writes the directions that are fitted and tested. */
   if (!cloth_diagnosis_list_candidates (d, model, error))
     return FALSE;
-  /* Reads the studies of the baselines, without any those of the takes; writes the fitted model
-   * and the precisions of its free numbers. */
+  /* Reads the studies of the baselines and the twins, without any those of the takes; writes the
+   * fitted model and the precisions of its free numbers. */
   if (!cloth_diagnosis_fit_free (d, model, error))
     return FALSE;
-  /* Reads the recordings; writes each study's discrepancy, the baseline that moves alike. */
+  /* Reads the recordings; writes each study's discrepancy: its twin, or the baseline that moves
+   * alike. */
   cloth_diagnosis_find_discrepancies (d);
-  /* Reads the studies of the baselines at the fitted model; writes what the log Bayes factor of
-   * each effect must exceed. */
-  if (d->options->n_baselines && !cloth_diagnosis_study_baselines (d, error))
+  /* Reads the studies of the baselines and the twins at the fitted model; writes what the log
+   * Bayes factor of each effect must exceed. */
+  if (cloth_diagnosis_n_references (d)
+      && !cloth_diagnosis_study_baselines (d, error))
     return FALSE;
   /* Reads the studies of the takes; writes their residuals and derivatives at the model. */
   if (!cloth_diagnosis_linearise (d, 0, d->n_takes, d->model, 0.3, 0.4, error))
     return FALSE;
-  /* Without a baseline: reads the takes with the other force model; writes the same bounds. */
-  if (!d->options->n_baselines && !cloth_diagnosis_study_other_model (d, error))
+  /* Without these: reads the takes with the other force model; writes the same bounds. */
+  if (!cloth_diagnosis_n_references (d)
+      && !cloth_diagnosis_study_other_model (d, error))
     return FALSE;
   /* Reads the residuals of takes and baselines; writes a sign of something unknown. */
   d->unexplained = cloth_diagnosis_find_unexplained (d);
@@ -64,8 +71,11 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
     return FALSE;
   /* Reads the candidates and the ranked effects; writes those that could not be tested. */
   cloth_diagnosis_note_untested (d);
-  /* Reads the models with and without effects; writes the gap, its floor and its shrink. */
+  /* Reads the models with and without effects; writes the gap of each take, its floor, its shrink. */
   if (!cloth_diagnosis_measure (d, error))
+    return FALSE;
+  /* Reads all takes and hold-outs with the accepted effects; writes whether they agree on them. */
+  if (!cloth_diagnosis_test_agreement (d, error))
     return FALSE;
   /* Reads the energies of residuals and the camera errors; writes frequencies, waves, stages. */
   cloth_diagnosis_locate (d);
@@ -83,6 +93,20 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
   cloth_diagnosis_fill_null_distribution (d);
   /* Reads the groups of effects that can't be told apart; writes what to film next. */
   return cloth_diagnosis_propose (d, error);
+}
+
+/* A model that diverges, even without an effect, decides nothing; a report says so. Other failures,
+ * and a model that could not be simulated at all, make none. */
+static gboolean
+is_undecidable (ClothDiagnosis * d, const GError * failed)
+{
+  if (!d->candidates || !g_error_matches (failed, CLOTH_FIT_ERROR,
+          CLOTH_FIT_ERROR_MODEL))
+    return FALSE;
+  d->result->verdict = CLOTH_GAP_UNDECIDABLE;
+  g_free (d->result->reason);
+  d->result->reason = g_strdup_printf ("%s.", failed->message);
+  return TRUE;
 }
 
 /* What was decided by, and with what. */
@@ -106,6 +130,11 @@ fill_provenance (const ClothDiagnosis * d, gint64 start)
   cloth_gap_result_add_threshold (result,
       "largest rest over the floor, of variance", CLOTH_DIAGNOSIS_BAND, "1",
       CLOTH_GAP_ORIGIN_PARAMETER, "Chosen on the benchmark.");
+  if (d->twins->len)
+    cloth_gap_result_add_threshold (result, "what the foretold change by the "
+        "accepted effects is off by, RMS", sqrt (d->prediction_square), "m",
+        CLOTH_GAP_ORIGIN_SIMULATED, "It is what the two force models differ by "
+        "in it; with the floor it bounds the rest.");
 }
 
 /* @takes: (array length=n_takes): what was recorded
@@ -126,12 +155,15 @@ cloth_gap_diagnose (ClothTake ** takes, guint n_takes,
     const ClothModel * model, const ClothGapOptions * options, GError ** error)
 {
   g_auto (ClothDiagnosis) d = { NULL };
+  g_autoptr (GError) failed = NULL;
   gint64 start = g_get_monotonic_time ();
 
   cloth_diagnosis_init (&d, takes, n_takes, options);
   d.study.rollout.failed = cloth_diagnosis_note_failure;
-  if (!diagnose (&d, model, error))
+  if (!diagnose (&d, model, &failed) && !is_undecidable (&d, failed)) {
+    g_propagate_error (error, g_steal_pointer (&failed));
     return NULL;
+  }
   if (d.model)
     d.result->model =
         d.n_accepted ? g_steal_pointer (&d.with[d.n_accepted -

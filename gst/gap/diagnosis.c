@@ -36,6 +36,10 @@ cloth_diagnosis_init (ClothDiagnosis * d, ClothTake ** takes, guint n_takes,
   d->result = cloth_gap_result_new ();
   d->recordings = g_ptr_array_new_with_free_func (
       (GDestroyNotify) cloth_recording_free);
+  d->twins = g_ptr_array_new_with_free_func (
+      (GDestroyNotify) cloth_recording_free);
+  d->afters = g_ptr_array_new_with_free_func (
+      (GDestroyNotify) cloth_recording_free);
   d->studies = g_ptr_array_new_with_free_func (
       (GDestroyNotify) cloth_sensitivities_free);
 }
@@ -75,6 +79,8 @@ cloth_diagnosis_clear (ClothDiagnosis * d)
   g_free (d->uncorrected);
   g_clear_pointer (&d->camera_effects, g_array_unref);
   g_clear_pointer (&d->recordings, g_ptr_array_unref);
+  g_clear_pointer (&d->twins, g_ptr_array_unref);
+  g_clear_pointer (&d->afters, g_ptr_array_unref);
 }
 
 /* @d: a diagnosis
@@ -131,6 +137,37 @@ cloth_diagnosis_has_observations (const ClothDiagnosis * d)
 }
 
 /* @d: a diagnosis
+ * @recording: which recording
+ *
+ * Returns: (nullable): what the user's simulator made of it, at its vertices and times
+ */
+ClothRecording *
+cloth_diagnosis_twin (const ClothDiagnosis * d, guint recording)
+{
+  const guint end = d->n_takes + d->options->n_baselines;
+
+  if (!d->twins->len || (recording >= d->n_takes && recording < end))
+    return NULL;
+  return g_ptr_array_index (d->twins, recording < end ? recording :
+      recording - d->options->n_baselines);
+}
+
+/* @d: a diagnosis
+ * @recording: which recording
+ *
+ * Returns: (nullable): what the user's simulator made of it with the effect added
+ */
+ClothRecording *
+cloth_diagnosis_after (const ClothDiagnosis * d, guint recording)
+{
+  const guint begin = d->options->n_hold_outs ?
+      d->n_takes + d->options->n_baselines : 0;
+
+  return recording >= begin && recording - begin < d->afters->len ?
+      g_ptr_array_index (d->afters, recording - begin) : NULL;
+}
+
+/* @d: a diagnosis
  *
  * Returns: how many of the camera faults are large enough to matter
  */
@@ -144,14 +181,14 @@ cloth_diagnosis_count_faults (const ClothDiagnosis * d)
   return n;
 }
 
-/* @d: a diagnosis whose model is fitted
+/* @model: a model
  *
  * Returns: (transfer full): the model with the other force model
  */
 ClothModel *
-cloth_diagnosis_other_model (const ClothDiagnosis * d)
+cloth_diagnosis_other_model (const ClothModel * model)
 {
-  ClothModel *other = cloth_model_copy (d->model);
+  ClothModel *other = cloth_model_copy (model);
 
   other->force_model = other->force_model == CLOTH_FORCE_MEMBRANE ?
       CLOTH_FORCE_MASS_SPRING : CLOTH_FORCE_MEMBRANE;

@@ -52,16 +52,20 @@ typedef struct
   ClothGapResult *result;
 
   /* Made by load.c. The recordings are those of the takes, the baselines and the hold-outs,
-   * in this order; faults.c corrects them. The studies are those of the takes and the
-   * baselines; read and linearised by inference/, read by verdict/. */
+   * in this order; faults.c corrects them. The twins are those of the takes and the hold-outs,
+   * those after are of what judges; each list is empty where none were given. The studies are
+   * those of the takes, and of what the model must agree with: the baselines, and the twins
+   * of the takes; read and linearised by inference/, read by verdict/. */
   GPtrArray *recordings;
+  GPtrArray *twins;
+  GPtrArray *afters;
   GPtrArray *studies;
 
   /* Camera faults, made by faults.c, read by judge.c and where.c: those that were accepted; the
    * positions with them, as the cameras gave them, of each recording that was corrected; the
    * mean square of their displacement by the faults, m²; what else is wrong with the points in
    * the pictures; and the effects that were tested, for the result. The shrink by the faults is
-   * made by judge.c. */
+   * made by measure.c. */
   ClothCameraFault faults[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
   guint n_faults;
   gdouble **uncorrected;
@@ -97,7 +101,7 @@ typedef struct
   gdouble least_log_bayes_factor;
   gdouble *null_log_bayes_factors;
 
-  /* Accepted effects one by one, made by select.c, shortened and read by judge.c: candidates,
+  /* Accepted effects one by one, made by select.c, shortened by measure.c, read by judge.c: candidates,
    * their probabilities when they were accepted, the models with them and those before, and in
    * each of these models the standard deviations of their directions. */
   guint accepted[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
@@ -117,15 +121,19 @@ typedef struct
   gchar *unexplained;
   gdouble clamps_off;
 
+  /* Mean square by which two force models differ in what they foretell of the accepted effects, m²:
+   * with twins the gap after holds it. 0 without; made by measure.c, read by judge.c. */
+  gdouble prediction_square;
+
   /* Energies of the nudged residuals of the first take before and after, and of the first
-   * baseline, NULL where there is none; made by judge.c, read by where.c. The nudged residual
+   * baseline, NULL where there is none; made by measure.c, read by where.c. The nudged residual
    * of the first take, as ClothWindowedGap has it, or NULL; read by null-distribution.c. */
   ClothEnergySpectrum *before, *after, *floor;
   gfloat *nudged;
 
   /* Gaps of simulations that lack nothing, and the recordings that they are of: the model on a
    * baseline, the other force model on a take; which of them is the floor; whether the first
-   * is of a baseline that moves as the first take does. Made by judge.c, read by
+   * is of a twin or a baseline that moves as the first take does. Made by measure.c, read by
    * null-distribution.c. */
   ClothWindowedGap *nulls[2];
   guint null_recordings[2];
@@ -152,6 +160,13 @@ cloth_diagnosis_study (const ClothDiagnosis * d, guint i)
   return g_ptr_array_index (d->studies, i);
 }
 
+/* How many studies there are of what the model must agree with, behind those of the takes. */
+static inline guint
+cloth_diagnosis_n_references (const ClothDiagnosis * d)
+{
+  return d->studies->len - d->n_takes;
+}
+
 static inline const ClothCandidate *
 cloth_diagnosis_accepted (const ClothDiagnosis * d, guint i)
 {
@@ -174,8 +189,12 @@ void cloth_diagnosis_begin_part (ClothDiagnosis * d, gdouble from, gdouble to,
 ClothObservations *cloth_diagnosis_observations (const ClothDiagnosis * d,
     guint recording);
 gboolean cloth_diagnosis_has_observations (const ClothDiagnosis * d);
+ClothRecording *cloth_diagnosis_twin (const ClothDiagnosis * d,
+    guint recording);
+ClothRecording *cloth_diagnosis_after (const ClothDiagnosis * d,
+    guint recording);
 guint cloth_diagnosis_count_faults (const ClothDiagnosis * d);
-ClothModel *cloth_diagnosis_other_model (const ClothDiagnosis * d);
+ClothModel *cloth_diagnosis_other_model (const ClothModel * model);
 gboolean cloth_diagnosis_is_decided (const ClothDiagnosis * d,
     const ClothEffect * effect);
 gboolean cloth_diagnosis_has_discrepancies (const ClothDiagnosis * d);

@@ -28,6 +28,12 @@ typedef gboolean (*ClothGapProgress) (gpointer data, gdouble share,
  * @hold_outs: (array length=n_hold_outs) (nullable): takes that judge, and on which
  *   nothing is fitted
  * @n_hold_outs: how many
+ * @simulated: (array length=n_simulated) (nullable): what the user's simulator made of each take,
+ *   then of each hold-out, its twins: the gap is recorded less simulated
+ * @n_simulated: how many: of all or of none
+ * @after: (array length=n_after) (nullable): the same with the effect added, of each hold-out,
+ *   without any of each take
+ * @n_after: how many: of all or of none; none without twins
  * @observations: (nullable) (array): what the cameras saw of each take; %NULL: of none, or
  *   not of that one
  * @baseline_observations: (nullable) (array): the same of each baseline
@@ -45,6 +51,10 @@ typedef struct {
   guint n_baselines;
   ClothTake **hold_outs;
   guint n_hold_outs;
+  ClothTake **simulated;
+  guint n_simulated;
+  ClothTake **after;
+  guint n_after;
   ClothObservations *const *observations;
   ClothObservations *const *baseline_observations;
   ClothObservations *const *hold_out_observations;

@@ -38,6 +38,97 @@ load_one (ClothDiagnosis * d, ClothTake * take, ClothGapRole role,
   return TRUE;
 }
 
+/* What one of them has no position of counts in none. */
+static void
+see_alike (ClothRecording * a, ClothRecording * b)
+{
+  for (gsize i = 0; i < (gsize) a->n_frames * a->n; i++)
+    a->seen[i] = b->seen[i] = a->seen[i] * b->seen[i];
+}
+
+/* What was simulated of one recording. */
+static gboolean
+load_twin (ClothDiagnosis * d, ClothTake * take, ClothRecording * recorded,
+    ClothGapRole role, GPtrArray * twins, GError ** error)
+{
+  g_autoptr (ClothRecording) twin = cloth_recording_new_twin (take, recorded,
+      error);
+  g_autofree gchar *sha256 = NULL;
+  const guint n = cloth_take_get_n_frames (take);
+  gdouble more_s;
+
+  if (!twin || !cloth_recording_check_other (twin, recorded, error)
+      || !(sha256 = cloth_take_sha256 (take, error)))
+    return FALSE;
+  see_alike (recorded, twin);
+  more_s = cloth_take_get_time (take, n - 1) -
+      recorded->times[recorded->n_frames - 1] + recorded->times[0] -
+      cloth_take_get_time (take, 0);
+  if (more_s > 1.5 * (cloth_take_get_time (take, n - 1) -
+          cloth_take_get_time (take, 0)) / (n - 1)) {
+    g_autofree gchar *note = g_strdup_printf ("%s is %.3g s longer than %s; "
+        "what is before and after was cut.", twin->name, more_s,
+        recorded->name);
+
+    cloth_gap_result_add_note (d->result, note);
+  }
+  cloth_gap_result_add_input (d->result, role, twin->name, sha256);
+  g_ptr_array_add (twins, g_steal_pointer (&twin));
+  return TRUE;
+}
+
+static gboolean
+check_count (guint n, guint wanted, const gchar * what, const gchar * of,
+    GError ** error)
+{
+  if (n == 0 || n == wanted)
+    return TRUE;
+  g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING, "there are "
+      "%u %s for %u recordings; give one for each %s, in their order, or none",
+      n, what, wanted, of);
+  return FALSE;
+}
+
+/* The twins, which are seen where their recordings are, and those of what judges with the effect
+ * added; those of the takes are what the model must agree with. */
+static gboolean
+load_twins (ClothDiagnosis * d, GError ** error)
+{
+  const ClothGapOptions *o = d->options;
+  const guint judges = o->n_hold_outs ? d->n_takes + o->n_baselines : 0;
+
+  if (!check_count (o->n_simulated, d->n_takes + o->n_hold_outs, "simulations",
+          "take and then each hold-out", error)
+      || !check_count (o->n_after,
+          o->n_hold_outs ? o->n_hold_outs : d->n_takes,
+          "simulations with the effect added",
+          o->n_hold_outs ? "hold-out" : "take", error))
+    return FALSE;
+  if (o->n_after && !o->n_simulated) {
+    g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING,
+        "simulations with the effect added say nothing without those before; "
+        "give these too");
+    return FALSE;
+  }
+  for (guint i = 0; i < o->n_simulated; i++)
+    if (!load_twin (d, o->simulated[i], cloth_diagnosis_recording (d,
+                i < d->n_takes ? i : o->n_baselines + i), CLOTH_GAP_SIMULATED,
+            d->twins, error))
+      return FALSE;
+  for (guint i = 0; i < o->n_after; i++) {
+    if (!load_twin (d, o->after[i], cloth_diagnosis_recording (d, judges + i),
+            CLOTH_GAP_SIMULATED_AFTER, d->afters, error))
+      return FALSE;
+    see_alike (cloth_diagnosis_recording (d, judges + i),
+        cloth_diagnosis_twin (d, judges + i));
+  }
+  for (guint i = 0; o->n_simulated && i < d->n_takes; i++)
+    g_ptr_array_add (d->studies,
+        cloth_sensitivities_new (cloth_diagnosis_twin (d, i), &d->study));
+  d->result->has_simulated = o->n_simulated > 0;
+  return TRUE;
+}
+
 /* A stream may outlive its model's file: then there is no hash. */
 static void
 note_model (ClothDiagnosis * d)
@@ -79,8 +170,8 @@ check_steps (ClothDiagnosis * d, const ClothModel * model, GError ** error)
  * @model: what the simulator knows
  * @error: #ClothFitError, #ClothSimError, or what reading a take says
  *
- * Reads the takes, the baselines and the hold-outs, which must be of the same cloth, and notes
- * their names and hashes.
+ * Reads the takes, the baselines and the hold-outs, which must be of the same cloth, and what was
+ * simulated of them, and notes their names and hashes.
  *
  * Returns: whether they and the model can be used
  */
@@ -99,6 +190,8 @@ cloth_diagnosis_load (ClothDiagnosis * d, const ClothModel * model,
   for (guint i = 0; i < o->n_hold_outs; i++)
     if (!load_one (d, o->hold_outs[i], CLOTH_GAP_HOLD_OUT, error))
       return FALSE;
+  if (!load_twins (d, error))
+    return FALSE;
   note_model (d);
   return check_steps (d, model, error);
 }

@@ -147,6 +147,65 @@ def diagnose(folder):
     expect(done.returncode == 0, 'with a baseline and a hold-out ' + done.stderr[-200:])
 
 
+def compare(folder):
+    """With what was simulated of the take; simulate stands for another simulator."""
+    good = ('--model', knit, '--effects', 'air_drag,wind', '--seed', '5')
+    done = run(folder, 'compare', drag, 'base', *good, '--output', 'twin')
+    expect(done.returncode == 0, 'compare ' + done.stderr[-200:])
+    with open(os.path.join(folder, 'twin/gap.json'), encoding='utf-8') as file:
+        gap = json.load(file)
+    expect(gap['has_simulated'] and gap['effects'][0]['name'] == 'air_drag' and
+           gap['effects'][0]['accepted'], gap['summary'])
+    expect([(i['role'], i['name']) for i in gap['inputs']] == [
+        ('take', 'take_drag'), ('simulated', 'base'), ('model', 'model-knit.json')],
+           str(gap['inputs']))
+    # in the free run the gap is recorded minus simulated, whatever the model is
+    off = (numpy.load(os.path.join(drag, 'positions.npy')) -
+           numpy.load(os.path.join(folder, 'base/positions.npy')))[1:]
+    free = numpy.sqrt(numpy.nanmean(numpy.square(off).sum(axis=2)))
+    expect(abs(gap['takes'][0]['free_before']['value'] - free) < 1e-6, 'the free run: %g m' % free)
+    expect(gap['predicted_shrink']['free']['value'] > 0.3 and
+           gap['measured_shrink']['free']['value'] is None, 'foretold, not measured')
+    run(folder, 'simulate', 'twin/fitted.json', '--scene', drag, '--output', 'fixed')
+    done = run(folder, 'diagnose', drag, '--simulated', 'base', '--after', 'fixed', *good,
+               '--output', 'after')
+    expect(done.returncode == 0, 'with --after ' + done.stderr[-200:])
+    with open(os.path.join(folder, 'after/gap.json'), encoding='utf-8') as file:
+        after = json.load(file)
+    expect(after['measured_shrink']['free']['value'] > 0.8 and
+           after['takes'] == gap['takes'], 'measured: %s' % after['measured_shrink'])
+    run(folder, 'simulate', knit, '--scene', drop, '--output', 'other')
+    positions = numpy.load(os.path.join(folder, 'base/positions.npy'))
+    variant(folder, 'stopped', positions=positions[:40], clamps=numpy.load(
+        os.path.join(drag, 'clamps.npy'))[:40])
+    variant(folder, 'shifted', positions=positions + 0.1, clamps=numpy.load(
+        os.path.join(drag, 'clamps.npy')) + 0.1)
+    for arguments, code, text in [
+            (('compare',), 2, 'one recording and its simulation'),
+            (('compare', drag), 2, 'one recording and its simulation'),
+            (('compare', drag, 'base', 'fixed'), 2, 'give several to diagnose'),
+            (('compare', drag, 'base', '--simulated', 'fixed'), 2, 'no --simulated'),
+            (('compare', drag, 'base', '--hold-out', drop), 2, 'no --hold-out'),
+            (('compare', drag, drag), 2, 'given twice'),
+            (('compare', drag, 'base', '--after', 'base'), 2, 'given twice'),
+            (('compare', drag, 'nowhere'), 1, '“nowhere” is no take'),
+            (('compare', drag, 'other'), 1, 'its cloth is'),
+            (('compare', drag, 'stopped'), 1, 'it ends at 0.78 s'),
+            (('compare', drag, 'shifted'), 1, 'up to 0.17 m from the recorded path of vertex 0'),
+            (('diagnose', drag, '--simulated', 'base', 'fixed'), 1, '2 simulations for 1'),
+            (('diagnose', drag, '--after', 'fixed'), 1, 'without those before'),
+            (('diagnose', drag, '--simulated', 'base', '--hold-out', 'fixed'), 1,
+             '1 simulations for 2')]:
+        done = run(folder, *arguments, '--model', knit, '--output', 'x')
+        expect(done.returncode == code and text in done.stderr and not os.path.exists(
+            os.path.join(folder, 'x')), '%s: %d %s' % (
+                ' '.join(arguments), done.returncode, done.stderr.split('\n')[0]))
+    done = run(folder, 'effects', '--simulated', 'base')
+    expect(done.returncode == 2 and "diagnose's" in done.stderr, 'effects --simulated')
+    for name in 'stopped', 'shifted':
+        shutil.rmtree(os.path.join(folder, name))
+
+
 def interrupt(folder):
     child = subprocess.Popen([tool, 'diagnose', drop, '--model', knit, '--effects', 'wind',
                               '--output', 'stopped'], cwd=folder,
@@ -386,6 +445,7 @@ with tempfile.TemporaryDirectory(prefix='cloth-gaptool-') as scratch:
     effects(scratch)
     simulate(scratch)
     diagnose(scratch)
+    compare(scratch)
     interrupt(scratch)
     refusals(scratch)
     contradictions(scratch)

@@ -260,7 +260,7 @@ def check_numbers(browser):
     assert table_of(browser, 'changes') == [
         ['effects.air_drag.coefficient', 'not there', '1.14', 'air drag coefficient 1.14'],
         ['areal_density', '0.2 kg/m²', '0.122 kg/m²', 'areal density × 0.61']]
-    assert 'fitted.json' in browser.text('#patch')
+    assert 'add to your simulation' in browser.text('#patch')
     assert table_of(browser, 'brings') == [['windows of 0.3 s', '91% [84, 96]', '88% [80, 93]'],
                                            ['the free run', '78% [60, 88]', '71% [58, 81]']]
     assert table_of(browser, 'numbers') == [

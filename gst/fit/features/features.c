@@ -284,6 +284,27 @@ cloth_energy_spectrum_add (ClothEnergySpectrum * energy, guint frame,
   }
 }
 
+/* @energy: (inout): the energy of a residual
+ * @other: that of another one at the same vertices and times
+ * @rest: their difference, [n_frames][n][3], m
+ *
+ * Makes it the energy of the difference.
+ */
+void
+cloth_energy_spectrum_subtract (ClothEnergySpectrum * energy,
+    const ClothEnergySpectrum * other, const gfloat * rest)
+{
+  const ClothFeatures *f = energy->features;
+  const gsize row = 3 * (gsize) f->n;
+  const gdouble scale = other->features->sigma / f->sigma;
+
+  for (gsize i = 0; i < f->size; i++)
+    energy->z[i] -= scale * other->z[i];
+  energy->square = 0.;
+  for (gsize i = f->first[0] * row; i < f->first[f->n_blocks] * row; i++)
+    energy->square += (gdouble) rest[i] * rest[i];
+}
+
 static gdouble
 count (const ClothEnergySpectrum * e)
 {

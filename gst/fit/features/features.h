@@ -73,6 +73,8 @@ typedef struct {
 ClothEnergySpectrum *cloth_energy_spectrum_new (const ClothRecording * recording);
 void cloth_energy_spectrum_add (ClothEnergySpectrum * energy, guint frame,
     const gdouble * positions);
+void cloth_energy_spectrum_subtract (ClothEnergySpectrum * energy,
+    const ClothEnergySpectrum * other, const gfloat * rest);
 gdouble cloth_energy_spectrum_total (const ClothEnergySpectrum * energy);
 gdouble cloth_energy_spectrum_static (const ClothEnergySpectrum * energy);
 void cloth_energy_spectrum_bin (const ClothEnergySpectrum * energy, const gdouble * hz,

@@ -65,18 +65,11 @@ keep_nudged (const ClothRecording * r, guint frame, const gdouble * positions,
       nudged[3 * begin + i] = (gfloat) (positions[i] - r->y[3 * begin + i]);
 }
 
+/* Also where the simulation is. */
 static void
-add_frame (gpointer data, guint model, guint frame, const gdouble * positions)
+add_distances (ClothWindowedGap * e, const ClothRecording * r, guint frame,
+    const gdouble * positions)
 {
-  Gather *g = data;
-  const ClothRecording *r = g->recording;
-  ClothWindowedGap *e = g->gaps[model % g->n];
-
-  if (model >= g->n) {
-    cloth_energy_spectrum_add (e->energy, frame, positions);
-    keep_nudged (r, frame, positions, e->nudged);
-    return;
-  }
   for (guint v = 0; v < r->n; v++) {
     gsize at = (gsize) frame * r->n + v;
     gdouble axes[3][3], d[3], square = 0.;
@@ -99,6 +92,21 @@ add_frame (gpointer data, guint model, guint frame, const gdouble * positions)
   }
 }
 
+static void
+add_frame (gpointer data, guint model, guint frame, const gdouble * positions)
+{
+  Gather *g = data;
+  const ClothRecording *r = g->recording;
+  ClothWindowedGap *e = g->gaps[model % g->n];
+
+  if (model >= g->n) {
+    cloth_energy_spectrum_add (e->energy, frame, positions);
+    keep_nudged (r, frame, positions, e->nudged);
+    return;
+  }
+  add_distances (e, r, frame, positions);
+}
+
 static ClothWindowedGap *
 gap_new (const ClothRecording * r, gdouble window_s)
 {
@@ -109,14 +117,12 @@ gap_new (const ClothRecording * r, gdouble window_s)
   e->n_frames = r->n_frames;
   e->squares = g_new (gdouble, all);
   e->positions = g_new (gfloat, 3 * all);
-  e->nudged = g_new0 (gfloat, 3 * all);
   for (gsize i = 0; i < all; i++)
     e->squares[i] = NAN;
   for (gsize i = 0; i < 3 * all; i++)
     e->positions[i] = (gfloat) r->y[i];
   e->window = cloth_rollout_list_windows (r, window_s);
   e->n_windows = e->window[r->n_frames - 1] + 1;
-  e->energy = cloth_energy_spectrum_new (r);
   return e;
 }
 
@@ -139,10 +145,46 @@ cloth_windowed_gaps_new (const ClothRecording * recording,
   g_autofree gboolean *sound = g_new (gboolean, n_models);
   Gather g = { recording, gaps, n_models };
 
-  for (guint m = 0; m < n_models; m++)
+  for (guint m = 0; m < n_models; m++) {
     gaps[m] = gap_new (recording, window_s);
+    gaps[m]->nudged = g_new0 (gfloat, 3 * (gsize) recording->n *
+        recording->n_frames);
+    gaps[m]->energy = cloth_energy_spectrum_new (recording);
+  }
   if (!cloth_rollout_windows (recording, models, n_models, gain, window_s,
           options, add_frame, &g, sound, error)) {
+    cloth_windowed_gaps_free (gaps, n_models);
+    return NULL;
+  }
+  for (guint m = 0; m < n_models; m++)
+    gaps[m]->sound = sound[m];
+  return gaps;
+}
+
+/* @recording: what is compared with
+ * @models: (array length=n_models): the models
+ * @n_models: how many
+ * @window_s: length of the windows that the frames are told by, s; nothing starts anew there
+ * @options: how to simulate
+ * @error: #ClothSimError
+ *
+ * Lets the models run from how the recording begins to its end.
+ *
+ * Returns: (transfer full) (nullable) (array length=n_models): each model's distances
+ */
+ClothWindowedGap **
+cloth_windowed_gaps_new_free (const ClothRecording * recording,
+    const ClothModel * const *models, guint n_models, gdouble window_s,
+    const ClothRolloutOptions * options, GError ** error)
+{
+  ClothWindowedGap **gaps = g_new (ClothWindowedGap *, n_models);
+  g_autofree gboolean *sound = g_new (gboolean, n_models);
+  Gather g = { recording, gaps, n_models };
+
+  for (guint m = 0; m < n_models; m++)
+    gaps[m] = gap_new (recording, window_s);
+  if (!cloth_rollout_free (recording, models, n_models, options, add_frame, &g,
+          sound, error)) {
     cloth_windowed_gaps_free (gaps, n_models);
     return NULL;
   }
@@ -199,6 +241,39 @@ cloth_windowed_gap_subtract (ClothWindowedGap * gap,
       gap->nudged[3 * i + k] -= other->nudged[3 * i + k];
     }
   }
+}
+
+/* @gap: (inout): one model's distances from a recording
+ * @recording: the recording
+ * @own: our model's distances from @twin; may be @gap
+ * @twin: what another simulator made of the recorded scene
+ *
+ * Makes them the distances of the other simulator with what @gap has more than @own:
+ * x = twin + (x_gap − x_own), vertex by vertex, so that what our simulator can't do cancels.
+ */
+void
+cloth_windowed_gap_replace (ClothWindowedGap * gap,
+    const ClothRecording * recording, const ClothWindowedGap * own,
+    const ClothRecording * twin)
+{
+  const gsize row = 3 * (gsize) gap->n;
+  g_autofree gdouble *positions = g_new (gdouble, row);
+  const gboolean sound = gap->sound && own->sound;
+
+  memset (gap->directions, 0, sizeof gap->directions);
+  for (guint frame = 0; frame < gap->n_frames; frame++) {
+    const gsize begin = frame * row;
+
+    for (gsize i = 0; i < row; i++)
+      positions[i] = twin->y[begin + i] + gap->positions[begin + i] -
+          own->positions[begin + i];
+    add_distances (gap, recording, frame, positions);
+    for (gsize i = begin; gap->nudged && i < begin + row; i++)
+      gap->nudged[i] -= own->nudged[i];
+  }
+  gap->sound = sound;
+  if (gap->energy)
+    cloth_energy_spectrum_subtract (gap->energy, own->energy, gap->nudged);
 }
 
 /* @gap: distances

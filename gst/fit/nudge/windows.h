@@ -15,9 +15,9 @@ G_BEGIN_DECLS
  * @squares: squared distance, [n_frames][n], m²; NaN where nothing was seen
  * @positions: simulated, [n_frames][n][3], m
  * @directions: mean square along warp, weft and normal, m²
- * @nudged: off the recording while it was nudged to it all along, [n_frames][n][3], m; 0
- *   where nothing was seen and in the first frame
- * @energy: of its distances while it was nudged to the recording all along
+ * @nudged: (nullable): off the recording while it was nudged to it all along,
+ *   [n_frames][n][3], m; 0 where nothing was seen and in the first frame; %NULL: of a free run
+ * @energy: (nullable): of its distances while it was nudged to the recording all along
  * @sound: whether the simulation held
  *
  * One model's distances from a recording.
@@ -38,10 +38,16 @@ typedef struct {
 ClothWindowedGap **cloth_windowed_gaps_new (const ClothRecording * recording,
     const ClothModel * const *models, guint n_models, gdouble gain,
     gdouble window_s, const ClothRolloutOptions * options, GError ** error);
+ClothWindowedGap **cloth_windowed_gaps_new_free (const ClothRecording * recording,
+    const ClothModel * const *models, guint n_models, gdouble window_s,
+    const ClothRolloutOptions * options, GError ** error);
 void cloth_windowed_gaps_free (ClothWindowedGap ** gaps, guint n);
 void cloth_windowed_gap_free (ClothWindowedGap * gap);
 void cloth_windowed_gap_subtract (ClothWindowedGap * gap,
     const ClothWindowedGap * other, const ClothRecording * recording);
+void cloth_windowed_gap_replace (ClothWindowedGap * gap,
+    const ClothRecording * recording, const ClothWindowedGap * own,
+    const ClothRecording * twin);
 gdouble cloth_windowed_gap_square (const ClothWindowedGap * gap,
     const gboolean * windows);
 void cloth_windowed_gaps_interval (ClothWindowedGap ** gaps, guint n,

@@ -29,4 +29,8 @@ typedef struct {
   gdouble *seen;
 } ClothRecording;
 
+void cloth_recording_free (ClothRecording * recording);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothRecording, cloth_recording_free)
+
 G_END_DECLS

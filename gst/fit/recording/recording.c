@@ -227,19 +227,3 @@ cloth_recording_resample (const ClothRecording * recording, guint most)
   interpolate (recording, r);
   return r;
 }
-
-/* @recording: (nullable) (transfer full): a recording
- */
-void
-cloth_recording_free (ClothRecording * recording)
-{
-  if (!recording)
-    return;
-  g_free (recording->name);
-  cloth_scene_free (recording->scene);
-  g_free (recording->times);
-  g_free (recording->y);
-  g_free (recording->velocity);
-  g_free (recording->seen);
-  g_free (recording);
-}

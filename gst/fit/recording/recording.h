@@ -11,6 +11,7 @@
 #include "gst/fit/recording/rays.h"
 #include "gst/fit/recording/recording-type.h"
 #include "gst/fit/recording/signal.h"
+#include "gst/fit/recording/twin.h"
 #include "gst/take/take.h"
 
 G_BEGIN_DECLS
@@ -18,7 +19,5 @@ G_BEGIN_DECLS
 ClothRecording *cloth_recording_new (ClothTake * take, GError ** error);
 ClothRecording *cloth_recording_resample (const ClothRecording * recording,
     guint most);
-void cloth_recording_free (ClothRecording * recording);
 
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothRecording, cloth_recording_free)
 G_END_DECLS

@@ -44,8 +44,8 @@ find_gaps (ClothDiagnosis * d, guint begin, guint end,
   memset (squares, 0, n * sizeof *squares);
   for (guint i = begin; i < end; i++) {
     ClothWindowedGap **extents =
-        cloth_diagnosis_measure_windows (d, cloth_diagnosis_recording (d, i),
-        models, n, error);
+        cloth_diagnosis_measure_windows (d, cloth_diagnosis_study (d,
+            i)->recording, models, n, error);
 
     if (!extents)
       return FALSE;
@@ -93,7 +93,7 @@ note_ends (ClothDiagnosis * d)
  * @model: what the simulator knows
  * @error: #ClothSimError or #ClothFitError
  *
- * Fits the model's free numbers on the baselines, else on the takes. Where the simulator can't
+ * Fits the model's free numbers on the baselines and the twins, else on the takes. Where the simulator can't
  * make the cloth's wrinkles, the likeliest numbers may stretch the cloth instead; then those
  * that bring it nearest are taken.
  *
@@ -103,8 +103,9 @@ gboolean
 cloth_diagnosis_fit_free (ClothDiagnosis * d, const ClothModel * model,
     GError ** error)
 {
-  guint begin = d->options->n_baselines ? d->n_takes : 0;
-  guint n = d->options->n_baselines ? d->options->n_baselines : d->n_takes;
+  guint references = cloth_diagnosis_n_references (d);
+  guint begin = references ? d->n_takes : 0;
+  guint n = references ? references : d->n_takes;
   guint m = d->candidates->n_free;
   g_autofree gdouble *precisions = g_new (gdouble, m + 1);
   g_autofree gdouble *sigmas = g_new0 (gdouble, 2 * m + 1);
@@ -154,7 +155,7 @@ cloth_diagnosis_fit_free (ClothDiagnosis * d, const ClothModel * model,
     gdouble sigma = FROZEN_SHARE * sigmas[even * m + i];
 
     d->precisions[i] = precisions[i];
-    if (!d->options->n_baselines)
+    if (!references)
       continue;
     if (sigma > 0.)
       d->precisions[i] = MAX (precisions[i], 1. / (sigma * sigma));
@@ -220,7 +221,7 @@ cloth_diagnosis_study_baselines (ClothDiagnosis * d, GError ** error)
 gboolean
 cloth_diagnosis_study_other_model (ClothDiagnosis * d, GError ** error)
 {
-  g_autoptr (ClothModel) other = cloth_diagnosis_other_model (d);
+  g_autoptr (ClothModel) other = cloth_diagnosis_other_model (d->model);
   g_autoptr (GPtrArray) studies = g_ptr_array_new_with_free_func (
       (GDestroyNotify) cloth_sensitivities_free);
   g_autoptr (GArray) scores = NULL;

@@ -76,7 +76,8 @@ cloth_diagnosis_list_candidates (ClothDiagnosis * d, const ClothModel * model,
 
   d->candidates =
       cloth_candidates_new (model, cloth_diagnosis_recording (d, 0),
-      d->options->effects, d->options->n_baselines > 0, skip, d, error);
+      d->options->effects, cloth_diagnosis_n_references (d) > 0, skip, d,
+      error);
   if (!d->candidates)
     return FALSE;
   n = d->candidates->directions->len;
@@ -121,26 +122,30 @@ see_alike (ClothRecording * a, ClothRecording * b)
     a->seen[i] = b->seen[i] = a->seen[i] * b->seen[i];
 }
 
-/* Each study's discrepancy: that of the baseline that moves alike, if there is one. */
+/* Each study's discrepancy: that of its twin, else that of the baseline that moves alike, if
+ * there is one. A twin is what it is. */
 void
 cloth_diagnosis_find_discrepancies (ClothDiagnosis * d)
 {
-  for (guint i = 0; i < d->studies->len; i++) {
+  const guint end = d->n_takes + d->options->n_baselines;
+
+  for (guint i = 0; i < end; i++) {
     ClothSensitivities *study = cloth_diagnosis_study (d, i);
 
-    for (guint k = d->n_takes; k < d->studies->len && !study->discrepancy; k++)
+    if (cloth_diagnosis_twin (d, i))
+      study->discrepancy = cloth_diagnosis_study (d, end + i);
+    for (guint k = d->n_takes; k < end && !study->discrepancy; k++)
       if (i != k && moves_alike (study->recording,
               cloth_diagnosis_study (d, k)->recording))
         study->discrepancy = cloth_diagnosis_study (d, k);
   }
   /* twice, for those that share a baseline */
-  for (guint i = 0; i < 2 * d->studies->len; i++) {
-    const ClothSensitivities *study =
-        cloth_diagnosis_study (d, i % d->studies->len);
+  for (guint i = 0; i < 2 * end; i++) {
+    const ClothSensitivities *study = cloth_diagnosis_study (d, i % end);
 
-    for (guint k = d->n_takes; study->discrepancy && k < d->studies->len; k++)
+    for (guint k = d->n_takes; study->discrepancy && k < end; k++)
       if (cloth_diagnosis_study (d, k) == study->discrepancy)
-        see_alike (cloth_diagnosis_recording (d, i % d->studies->len),
+        see_alike (cloth_diagnosis_recording (d, i % end),
             cloth_diagnosis_recording (d, k));
   }
 }
@@ -151,8 +156,9 @@ ClothPowerSpectrum *
 cloth_diagnosis_find_discrepancy_variance (const ClothDiagnosis * d, guint take)
 {
   gdouble unit = cloth_diagnosis_study (d, take)->features->sigma;
-  guint begin = d->options->n_baselines ? d->n_takes : 0;
-  guint n = d->options->n_baselines ? d->options->n_baselines : d->n_takes;
+  guint references = cloth_diagnosis_n_references (d);
+  guint begin = references ? d->n_takes : 0;
+  guint n = references ? references : d->n_takes;
   ClothPowerSpectrum *mean = NULL;
 
   for (guint i = begin; i < begin + n; i++) {
@@ -281,7 +287,7 @@ cloth_diagnosis_linearise (ClothDiagnosis * d, guint first, guint end,
 {
   for (guint i = first; i < end; i++) {
     g_autofree gchar *what = g_strdup_printf ("effects on %s",
-        cloth_diagnosis_recording (d, i)->name);
+        cloth_diagnosis_study (d, i)->recording->name);
     gdouble part = (to - from) / (end - first);
 
     cloth_diagnosis_begin_part (d, from + part * (i - first),

@@ -39,7 +39,8 @@ add_change (ClothGapResult * result, const ClothModel * given,
 /* @result: a result with its model
  * @given: the model that the user gave
  *
- * Adds what to change in @given to make it the result's: effects first, then free numbers.
+ * Adds what to change in @given to make it the result's: effects first, then free numbers;
+ * with a twin effects only, as the free numbers are not those of the user's simulator.
  */
 void
 cloth_gap_result_fill_patch (ClothGapResult * result, const ClothModel * given)
@@ -57,7 +58,7 @@ cloth_gap_result_fill_patch (ClothGapResult * result, const ClothModel * given)
       add_change (result, given, name, !has_effect (given, effect));
     }
   }
-  for (guint i = 0; i < free->len; i++) {
+  for (guint i = 0; i < free->len && !result->has_simulated; i++) {
     const gchar *name = g_array_index (free, ClothModelFree, i).name;
 
     if (!g_str_has_prefix (name, "effects."))

@@ -1,4 +1,4 @@
-/* How large the gap is, and the verdict.
+/* The verdict.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -7,7 +7,6 @@
 
 G_BEGIN_DECLS
 
-gboolean cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error);
 void cloth_diagnosis_decide (ClothDiagnosis * d);
 
 G_END_DECLS

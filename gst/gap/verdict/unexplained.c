@@ -184,7 +184,7 @@ find_clamps_off (ClothDiagnosis * d)
   gdouble usual = 0.;
 
   for (guint i = d->n_takes; i < d->studies->len; i++)
-    usual = fmax (usual, find_off (cloth_diagnosis_recording (d, i)));
+    usual = fmax (usual, find_off (cloth_diagnosis_study (d, i)->recording));
   for (guint i = 0; i < d->n_takes && usual > 0.; i++) {
     const ClothRecording *r = cloth_diagnosis_recording (d, i);
     const gdouble off = find_off (r), noise = 3. * r->sigma * r->sigma;
@@ -193,7 +193,8 @@ find_clamps_off (ClothDiagnosis * d)
         && off > LEAST_OFF_M * LEAST_OFF_M) {
       d->clamps_off = off - MAX (usual, noise);
       return g_strdup_printf ("The clamps of %s are seen %.1f mm off their "
-          "logged paths, on the baseline %.1f mm.", r->name, 1e3 * sqrt (off),
+          "logged paths, %s %.1f mm.", r->name, 1e3 * sqrt (off),
+          d->twins->len ? "in the simulation" : "on the baseline",
           1e3 * sqrt (usual));
     }
   }
@@ -212,15 +213,17 @@ find_clamps_off (ClothDiagnosis * d)
 gchar *
 cloth_diagnosis_find_unexplained (ClothDiagnosis * d)
 {
-  gchar *clamps = d->options->n_baselines ? find_clamps_off (d) : NULL;
+  gchar *clamps = find_clamps_off (d);
 
   if (clamps)
     return clamps;
   if (cloth_diagnosis_has_discrepancies (d) && is_moved_slowly (d))
-    return g_strdup ("Against the baseline the cloth as a whole is slowly led "
+    return
+        g_strdup
+        ("Against the baseline or its simulation the cloth as a whole is slowly led "
         "elsewhere, which its wrinkles don't account for.");
   if (cloth_diagnosis_has_discrepancies (d) && is_much (d))
     return g_strdup ("What is left differs from what is left of the baseline "
-        "by far more than noise.");
+        "or the simulation by far more than noise.");
   return NULL;
 }

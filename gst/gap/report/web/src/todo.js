@@ -38,9 +38,10 @@ function patch(gap) {
     told.textContent = done ? 'Copied.' : 'This browser does not let pages copy: mark the table by hand.';
   });
   const where = gap.patch_simulator ? `In the names and units of ${gap.patch_simulator}.`
-    : 'In the names and units of model.json. The file fitted.json beside this page is the whole model with these changes.';
+    : gap.has_simulated ? 'What to add to your simulation, in the names and units of model.json.'
+      : 'In the names and units of model.json. The file fitted.json beside this page is the whole model with these changes.';
   return element('div', { id: 'patch' },
-    element('h3', {}, `What to change in ${gap.patch_simulator ?? 'the model'}`),
+    element('h3', {}, `What to change in ${gap.patch_simulator ?? (gap.has_simulated ? 'your simulation' : 'the model')}`),
     element('p', { class: 'note' }, where),
     table('changes', 'What to change', ['Setting', 'Now', 'Set to', 'In words'], gap.patch.map((item) => [
       element('code', { class: 'setting' }, item.name),
