@@ -29,8 +29,10 @@
  * free), `coverage` (double: the share of the vertices that were seen).
  *
  * `clothgap/verdict`, at the end and before EOS goes on: `verdict`, `summary`, `json` (all
- * of gap.json; strings) and, with `output`, `report` (string: path of report.html). The
- * whole recording is diagnosed then, which takes its time. Where the folders of `location`
+ * of gap.json; strings), `detection-limits` (array of structures with `effect`, `parameter`,
+ * `unit`, `text` (strings) and `value` (double: how far from where the effect is not there it
+ * would have shown with a probability of 95%; lacking where it would not at all)) and, with
+ * `output`, `report` (string: path of report.html). The whole recording is diagnosed then, which takes its time. Where the folders of `location`
  * and `baseline` say what the cameras saw (rig.json, observations), it is read at the start.
  * With `simulated` the verdict is on what your simulator made of the scene; scores and
  * residuals are still those of ours.
@@ -511,6 +513,34 @@ go_on (gpointer data, gdouble share, const gchar * what)
   return !g_atomic_int_get (&self->cancelled);
 }
 
+/* An array of structures, as GStreamer's own statistics have it. Without a value where no
+ * size would have shown. */
+static void
+set_limits (GstStructure * verdict, const ClothGapResult * result)
+{
+  GValue limits = G_VALUE_INIT;
+
+  g_value_init (&limits, GST_TYPE_ARRAY);
+  for (guint i = 0; i < result->detection_limits->len; i++) {
+    const ClothGapLimit *limit = &g_array_index (result->detection_limits,
+        ClothGapLimit, i);
+    const ClothEffectParameter *parameter =
+        &limit->effect->parameters[limit->parameter];
+    g_autofree gchar *text = cloth_gap_limit_text (limit);
+    GValue value = G_VALUE_INIT;
+    GstStructure *s = gst_structure_new ("limit", "effect", G_TYPE_STRING,
+        limit->effect->id, "parameter", G_TYPE_STRING, parameter->name, "unit",
+        G_TYPE_STRING, parameter->unit, "text", G_TYPE_STRING, text, NULL);
+
+    if (isfinite (limit->value))
+      gst_structure_set (s, "value", G_TYPE_DOUBLE, limit->value, NULL);
+    g_value_init (&value, GST_TYPE_STRUCTURE);
+    g_value_take_boxed (&value, s);
+    gst_value_array_append_and_take_value (&limits, &value);
+  }
+  gst_structure_take_value (verdict, "detection-limits", &limits);
+}
+
 /* Writes the report first when there is an @output. */
 static gboolean
 post_verdict (GstElement * element, const ClothGapResult * result,
@@ -523,6 +553,7 @@ post_verdict (GstElement * element, const ClothGapResult * result,
       "verdict", G_TYPE_STRING, verdict, "summary", G_TYPE_STRING, summary,
       "json", G_TYPE_STRING, json, NULL);
 
+  set_limits (structure, result);
   GST_INFO_OBJECT (element, "%s: %s", verdict, summary);
   if (output) {
     g_autofree gchar *report = g_build_filename (output, "report.html", NULL);

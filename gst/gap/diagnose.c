@@ -15,6 +15,7 @@
 #include "gst/gap/load.h"
 #include "gst/gap/localise/null-distribution.h"
 #include "gst/gap/localise/where.h"
+#include "gst/gap/report/patch.h"
 #include "gst/gap/verdict/agreement.h"
 #include "gst/gap/verdict/failure.h"
 #include "gst/gap/verdict/implausible.h"
@@ -168,6 +169,8 @@ cloth_gap_diagnose (ClothTake ** takes, guint n_takes,
     d.result->model =
         d.n_accepted ? g_steal_pointer (&d.with[d.n_accepted -
             1]) : g_steal_pointer (&d.model);
+  if (d.result->model && d.result->verdict != CLOTH_GAP_UNDECIDABLE)
+    cloth_gap_result_fill_patch (d.result, model);
   fill_provenance (&d, start);
   return g_steal_pointer (&d.result);
 }

@@ -18,25 +18,30 @@ cloth_model_error_quark (void)
 static const struct
 {
   const gchar *name;
+  const gchar *unit;
   gsize offset;
   gdouble least, most;
 } keys[] = {
-  {"areal_density", G_STRUCT_OFFSET (ClothModel, areal_density), 1e-4, 1e3},
-  {"stretch.warp", G_STRUCT_OFFSET (ClothModel, stretch_warp), 0, 1e7},
-  {"stretch.weft", G_STRUCT_OFFSET (ClothModel, stretch_weft), 0, 1e7},
-  {"shear", G_STRUCT_OFFSET (ClothModel, shear), 0, 1e7},
-  {"bending.warp", G_STRUCT_OFFSET (ClothModel, bending_warp), 0, 1e3},
-  {"bending.weft", G_STRUCT_OFFSET (ClothModel, bending_weft), 0, 1e3},
-  {"damping.mass", G_STRUCT_OFFSET (ClothModel, damping_mass), 0, 1e4},
-  {"damping.stiffness", G_STRUCT_OFFSET (ClothModel, damping_stiffness), 0, 1},
-  {"compression_ratio", G_STRUCT_OFFSET (ClothModel, compression_ratio), 0, 1},
-  {"air_density", G_STRUCT_OFFSET (ClothModel, air_density), 0, 2e3},
-  {"time_step", G_STRUCT_OFFSET (ClothModel, time_step), 0, 1},
+  {"areal_density", "kg/m²", G_STRUCT_OFFSET (ClothModel, areal_density), 1e-4,
+      1e3},
+  {"stretch.warp", "N/m", G_STRUCT_OFFSET (ClothModel, stretch_warp), 0, 1e7},
+  {"stretch.weft", "N/m", G_STRUCT_OFFSET (ClothModel, stretch_weft), 0, 1e7},
+  {"shear", "N/m", G_STRUCT_OFFSET (ClothModel, shear), 0, 1e7},
+  {"bending.warp", "N·m", G_STRUCT_OFFSET (ClothModel, bending_warp), 0, 1e3},
+  {"bending.weft", "N·m", G_STRUCT_OFFSET (ClothModel, bending_weft), 0, 1e3},
+  {"damping.mass", "1/s", G_STRUCT_OFFSET (ClothModel, damping_mass), 0, 1e4},
+  {"damping.stiffness", "s", G_STRUCT_OFFSET (ClothModel, damping_stiffness), 0,
+      1},
+  {"compression_ratio", "1", G_STRUCT_OFFSET (ClothModel, compression_ratio), 0,
+      1},
+  {"air_density", "kg/m³", G_STRUCT_OFFSET (ClothModel, air_density), 0, 2e3},
+  {"time_step", "s", G_STRUCT_OFFSET (ClothModel, time_step), 0, 1},
 };
 
 /* What a dotted name stands for: a key, or a parameter of an effect. */
 typedef struct
 {
+  const gchar *unit;
   gsize offset;
   const ClothEffect *effect;    /* NULL: the number at offset */
   guint parameter;
@@ -153,6 +158,7 @@ find_parameter (const gchar * name, Place * place, GError ** error)
     g_string_append_printf (list, "%s %s", i ? "," : "", parameter->name);
     if (!dot || strcmp (dot + 1, parameter->name) != 0)
       continue;
+    place->unit = parameter->unit;
     place->parameter = i;
     place->least = parameter->min;
     place->most = parameter->max;
@@ -174,6 +180,7 @@ find_place (const gchar * name, Place * place, GError ** error)
     g_string_append_printf (list, " %s,", keys[i].name);
     if (strcmp (name, keys[i].name) != 0)
       continue;
+    place->unit = keys[i].unit;
     place->offset = keys[i].offset;
     place->least = keys[i].least;
     place->most = keys[i].most;
@@ -266,6 +273,19 @@ cloth_model_get_range (const gchar * name, gdouble range[2], GError ** error)
   range[0] = place.least;
   range[1] = place.most;
   return TRUE;
+}
+
+/* @name: as for cloth_model_get ()
+ *
+ * Returns: (transfer none) (nullable): its unit in the notation of the SI, "1" for a ratio;
+ *   %NULL: there is no such number
+ */
+const gchar *
+cloth_model_get_unit (const gchar * name)
+{
+  Place place;
+
+  return find_place (name, &place, NULL) ? place.unit : NULL;
 }
 
 static gboolean

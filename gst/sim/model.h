@@ -104,6 +104,7 @@ gboolean cloth_model_set (ClothModel * model, const gchar * name,
     gdouble value, GError ** error);
 gboolean cloth_model_get_range (const gchar * name, gdouble range[2],
     GError ** error);
+const gchar *cloth_model_get_unit (const gchar * name);
 gboolean cloth_model_check (const ClothModel * model, GError ** error);
 void cloth_model_free (ClothModel * model);
 

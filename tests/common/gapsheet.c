@@ -20,23 +20,24 @@
 static const ClothEffect effects[] = {
   {.id = "air_drag",.side = CLOTH_EFFECT_PHYSICS,
         .blurb = "Air resists with the square of the speed.",.n_parameters = 1,
-      .parameters = {{.name = "coefficient",.unit = "1"}}},
+      .parameters = {{.name = "coefficient",.unit = "1",.one_sided = TRUE}}},
   {.id = "air_drag_linear",.side = CLOTH_EFFECT_PHYSICS,
         .blurb = "Air resists in proportion to the speed.",.n_parameters = 1,
-      .parameters = {{.name = "rate",.unit = "1/s"}}},
+      .parameters = {{.name = "rate",.unit = "1/s",.one_sided = TRUE}}},
   {.id = "wind",.side = CLOTH_EFFECT_PHYSICS,
         .blurb = "The air itself moves, always the same way.",.n_parameters =
         3,.parameters = {{.name = "x",.unit = "m/s"},
           {.name = "y",.unit = "m/s"}, {.name = "z",.unit = "m/s"}}},
   {.id = "damping_mass",.side = CLOTH_EFFECT_PHYSICS,
         .blurb = "Speed is lost at a steady rate.",.n_parameters = 1,
-      .parameters = {{.name = "rate",.unit = "1/s"}}},
+      .parameters = {{.name = "rate",.unit = "1/s",.one_sided = TRUE}}},
   {.id = "clamp_delay",.side = CLOTH_EFFECT_CLAMP,
       .blurb = "The clamps moved later than their log says.",.n_parameters =
         1,.parameters = {{.name = "delay",.unit = "s"}}},
   {.id = "bending",.side = CLOTH_EFFECT_PHYSICS,
         .blurb = "The cloth bends harder or softer than the model says.",
-      .n_parameters = 1,.parameters = {{.name = "factor",.unit = "1"}}},
+      .n_parameters = 1,.parameters = {{.name = "factor",.unit =
+                    "1",.null_value = 1}}},
   {.id = "time_step",.side = CLOTH_EFFECT_NUMERICS,
         .blurb = "The simulator's step is too long.",.n_parameters = 1,
       .parameters = {{.name = "step",.unit = "s"}}},
@@ -354,7 +355,7 @@ static void
 add_patch (ClothGapResult * result)
 {
   cloth_gap_result_add_patch (result, "effects.air_drag.coefficient",
-      "air drag 1.14", NAN, 1.14, "1");
+      "air drag coefficient 1.14", NAN, 1.14, "1");
   cloth_gap_result_add_patch (result, "areal_density", "areal density × 0.61",
       0.2, 0.122, "kg/m²");
 }
@@ -394,7 +395,7 @@ fill_limits (ClothGapResult * result)
   cloth_gap_result_add_limit (result, &effects[2], 1, 0.16);
   cloth_gap_result_add_limit (result, &effects[2], 2, 0.35);
   cloth_gap_result_add_limit (result, &effects[4], 0, 0.0052);
-  cloth_gap_result_add_limit (result, &effects[5], 0, 1.4);
+  cloth_gap_result_add_limit (result, &effects[5], 0, 0.4);
   cloth_gap_result_add_limit (result, &effects[7], 0, NAN);
 }
 
@@ -540,6 +541,86 @@ gap_sheet_new_spare (void)
   result->gap_after = result->noise_floor = result->shrink = (ClothGapEstimate) {
   NAN, NAN, NAN};
   result->onset_s = NAN;
+  return result;
+}
+
+/* All is there, and no number of it is known. */
+ClothGapResult *
+gap_sheet_new_unknown (void)
+{
+  ClothGapResult *result = gap_sheet_new (4, 3, 5);
+  const ClothGapEstimate unknown = { NAN, NAN, NAN };
+
+  result->verdict = CLOTH_GAP_UNEXPLAINED;
+  result->gap_before = result->gap_after = result->noise_floor = unknown;
+  result->shrink = unknown;
+  result->predicted_shrink = result->measured_shrink = (ClothGapShrink) {
+  unknown, unknown};
+  result->rest_p_value = result->takes_agree_p_value = NAN;
+  result->rivals = (ClothGapRivals) {
+  NAN, NAN, NAN};
+  for (guint i = 0; i < result->takes->len; i++) {
+    ClothGapMeasuredTake *take = &g_array_index (result->takes,
+        ClothGapMeasuredTake, i);
+
+    take->gap_before = take->gap_after = take->noise_floor = unknown;
+    take->shrink = take->free_before = take->free_after = unknown;
+    take->free_floor = unknown;
+  }
+  for (guint i = 0; i < result->effects->len; i++) {
+    ClothGapEffect *item = &g_array_index (result->effects, ClothGapEffect, i);
+
+    item->probability = item->log_bayes_factor = item->p_value = NAN;
+    item->constancy_p_value = NAN;
+    item->shrink = unknown;
+    for (guint k = 0; k < CLOTH_EFFECT_MAX_PARAMETERS; k++)
+      item->values[k] = item->sigmas[k] = NAN;
+  }
+  for (guint i = 0; i < result->sets->len; i++)
+    g_array_index (result->sets, ClothGapSet, i).probability = NAN;
+  g_array_index (result->groups, ClothGapGroup, 0).log_bayes_factor = NAN;
+  for (guint i = 0; i < result->detection_limits->len; i++)
+    g_array_index (result->detection_limits, ClothGapLimit, i).value = NAN;
+  for (guint i = 0; i < result->patch->len; i++) {
+    ClothGapPatch *item = &g_array_index (result->patch, ClothGapPatch, i);
+
+    item->before = item->after = item->factor = NAN;
+  }
+  for (guint i = 0; i < result->free_numbers->len; i++) {
+    ClothGapFreeNumber *item = &g_array_index (result->free_numbers,
+        ClothGapFreeNumber, i);
+
+    item->value = item->sigma = item->low = item->high = NAN;
+    for (guint k = 0; k < result->free_numbers->len; k++)
+      result->free_correlation[i * result->free_numbers->len + k] = NAN;
+  }
+  for (guint i = 0; i < result->thresholds->len; i++)
+    g_array_index (result->thresholds, ClothGapThreshold, i).value = NAN;
+  for (guint i = 0; i < result->n_vertices; i++)
+    result->vertices[i] = result->gained[i] = NAN;
+  for (gsize i = 0; i < 3 * (gsize) result->n_vertices * result->n_frames; i++)
+    result->playback.recorded[i] = NAN;
+  return result;
+}
+
+/* Nothing was found, and the patch has nothing to change. */
+ClothGapResult *
+gap_sheet_new_calm (void)
+{
+  ClothGapResult *result = gap_sheet_new (4, 3, 5);
+
+  result->verdict = CLOTH_GAP_NO_GAP;
+  result->gap_after = result->shrink = (ClothGapEstimate) {
+  NAN, NAN, NAN};
+  g_array_index (result->effects, ClothGapEffect, 0).accepted = FALSE;
+  g_array_set_size (result->patch, 0);
+  g_ptr_array_set_size (g_array_index (result->sets, ClothGapSet, 0).effects,
+      0);
+  g_array_index (result->sets, ClothGapSet, 1).rival =
+      CLOTH_GAP_RIVAL_DISPLACEMENT_FIELD;
+  result->rivals.none_acts = 0.904;
+  result->has_simulated = FALSE;
+  result->playback.free_run = TRUE;
   return result;
 }
 

@@ -7,4 +7,6 @@
 
 ClothGapResult *gap_sheet_new (guint columns, guint rows, guint n_frames);
 ClothGapResult *gap_sheet_new_spare (void);
+ClothGapResult *gap_sheet_new_unknown (void);
+ClothGapResult *gap_sheet_new_calm (void);
 ClothGapResult *gap_sheet_new_hostile (const gchar * text);

@@ -1,6 +1,7 @@
 /* What a diagnosis says: its sentence, its JSON, and bytes that nobody vouches for.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/report/patch.h"
 #include "gst/gap/report/report.h"
 
 #include <math.h>
@@ -295,6 +296,145 @@ test_layout (void)
       "  \"rows\": [\n    [],\n    null\n  ]\n}\n");
 }
 
+static void
+assert_change (const gchar * name, gdouble before, gdouble after,
+    const gchar * unit, const gchar * expected)
+{
+  g_autofree gchar *text = cloth_gap_change_text (name, before, after, unit);
+
+  g_assert_cmpstr (text, ==, expected);
+}
+
+/* Plain numbers, and no ratio where there is none. */
+static void
+test_changes (void)
+{
+  assert_change ("areal_density", 0.2, 0.122, "kg/m²",
+      "areal density × 0.61");
+  assert_change ("stretch.warp", 100, 2000, "N/m", "stretch warp × 20");
+  assert_change ("damping.mass", 0, 0.3, "1/s", "damping mass 0 → 0.3 1/s");
+  assert_change ("damping.mass", 0.3, 0, "1/s", "damping mass 0.3 → 0 1/s");
+  assert_change ("effects.air_drag.coefficient", NAN, 1.14, "1",
+      "air drag coefficient 1.14");
+  assert_change ("effects.wind.x", -0.5, -1, "m/s", "wind x -0.5 → -1 m/s");
+  assert_change ("effects.extrinsic_drift.tilt", NAN, G_PI / 90, "rad",
+      "extrinsic drift tilt 2°");
+  assert_change ("effects.self_contact.thickness", NAN, 0.0015, "m",
+      "self contact thickness 1.5 mm");
+}
+
+static void
+assert_limit (ClothEffectParameter parameter, gdouble value,
+    const gchar * expected)
+{
+  ClothEffect effect = {.id = "clamp_slip",.n_parameters = 1,
+    .parameters = {parameter}
+  };
+  const ClothGapLimit limit = { &effect, 0, value };
+  g_autofree gchar *text = cloth_gap_limit_text (&limit);
+
+  g_assert_cmpstr (text, ==, expected);
+}
+
+/* On both sides of what an effect is nothing at, or on the one that nature has. */
+static void
+test_limits (void)
+{
+  assert_limit ((ClothEffectParameter) {
+      .name = "z",.unit = "m"}, 0.0021, "clamp slip: z beyond ±2.1 mm");
+  assert_limit ((ClothEffectParameter) {
+      .name = "z",.unit = "m"}, 0.21, "clamp slip: z beyond ±0.21 m");
+  assert_limit ((ClothEffectParameter) {
+      .name = "rate",.unit = "1/s",.one_sided =
+        TRUE}, 0.4, "clamp slip: rate above 0.4 1/s");
+  assert_limit ((ClothEffectParameter) {
+      .name = "factor",.unit = "1",.null_value = 1,.one_sided = TRUE}, 0.4,
+      "clamp slip: factor above 1.4");
+  assert_limit ((ClothEffectParameter) {
+      .name = "factor",.unit = "1",.null_value =
+        1}, 0.4, "clamp slip: factor below 0.6 or above 1.4");
+  assert_limit ((ClothEffectParameter) {
+      .name = "own_way",.unit = "1"}, NAN,
+      "clamp slip: unseen, whatever its own way");
+  assert_limit ((ClothEffectParameter) {
+      .name = "own_way",.unit = "1"},
+      INFINITY, "clamp slip: unseen, whatever its own way");
+}
+
+static const ClothGapPatch *
+patch_at (const ClothGapResult * result, guint i)
+{
+  g_assert_cmpuint (i, <, result->patch->len);
+  return &g_array_index (result->patch, ClothGapPatch, i);
+}
+
+static void
+assert_patch (const ClothGapResult * result, guint i, const gchar * name,
+    gdouble before, gdouble after, const gchar * text)
+{
+  const ClothGapPatch *patch = patch_at (result, i);
+
+  g_assert_cmpstr (patch->name, ==, name);
+  g_assert_cmpstr (patch->text, ==, text);
+  g_assert_cmpint (isnan (patch->before), ==, isnan (before));
+  if (!isnan (before))
+    g_assert_cmpfloat (patch->before, ==, before);
+  g_assert_cmpfloat (patch->after, ==, after);
+}
+
+/* The given model with the patch is the fitted one. */
+static void
+test_patch (void)
+{
+  g_autoptr (ClothGapResult) result = cloth_gap_result_new ();
+  g_autoptr (ClothModel) given = cloth_model_new ();
+  g_autofree gchar *patched = NULL, *fitted = NULL;
+  static const gchar *const names[] = { "shear", "bending.warp",
+    "damping.mass"
+  };
+  const gdouble wind[] = { 0, 2, 0, 1.5 };
+
+  for (guint i = 0; i < G_N_ELEMENTS (names); i++) {
+    ClothModelFree entry = { g_strdup (names[i]), {1e-6, 1000}
+    };
+
+    g_array_append_val (given->free, entry);
+  }
+  given->damping_mass = 0;
+  cloth_model_set_effect (given, cloth_effect_find ("wind"), wind);
+  result->model = cloth_model_copy (given);
+  cloth_gap_result_fill_patch (result, given);
+  g_assert_cmpuint (result->patch->len, ==, 0);
+
+  cloth_model_set (result->model, "effects.wind.y", 1, NULL);
+  cloth_model_set (result->model, "effects.air_drag.coefficient", 0.8, NULL);
+  cloth_model_set (result->model, "shear", 60, NULL);
+  cloth_model_set (result->model, "damping.mass", 0.25, NULL);
+  cloth_gap_result_fill_patch (result, given);
+  g_assert_cmpuint (result->patch->len, ==, 4);
+  assert_patch (result, 0, "effects.wind.y", 2, 1, "wind y × 0.5");
+  assert_patch (result, 1, "effects.air_drag.coefficient", NAN, 0.8,
+      "air drag coefficient 0.8");
+  assert_patch (result, 2, "shear", 40, 60, "shear × 1.5");
+  assert_patch (result, 3, "damping.mass", 0, 0.25,
+      "damping mass 0 → 0.25 1/s");
+  g_assert_cmpfloat (patch_at (result, 2)->factor, ==, 1.5);
+  g_assert_true (isnan (patch_at (result, 1)->factor));
+  g_assert_cmpstr (patch_at (result, 2)->unit, ==, "N/m");
+  /* the user's simulator has no numbers of ours */
+  result->has_simulated = TRUE;
+  cloth_gap_result_fill_patch (result, given);
+  g_assert_cmpuint (result->patch->len, ==, 6);
+  assert_patch (result, 5, "effects.air_drag.coefficient", NAN, 0.8,
+      "air drag coefficient 0.8");
+  for (guint i = 0; i < 4; i++)
+    g_assert_true (cloth_model_set (given, patch_at (result, i)->name,
+            patch_at (result, i)->after, NULL));
+  patched = cloth_model_to_json (given);
+  fitted = cloth_model_to_json (result->model);
+  g_assert_cmpstr (patched, ==, fitted);
+}
+
 int
 main (int argc, char **argv)
 {
@@ -305,5 +445,8 @@ main (int argc, char **argv)
   g_test_add_func ("/gapresult/numbers", test_numbers);
   g_test_add_func ("/gapresult/strings", test_strings);
   g_test_add_func ("/gapresult/layout", test_layout);
+  g_test_add_func ("/gapresult/changes", test_changes);
+  g_test_add_func ("/gapresult/limits", test_limits);
+  g_test_add_func ("/gapresult/patch", test_patch);
   return g_test_run ();
 }

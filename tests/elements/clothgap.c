@@ -229,6 +229,34 @@ GST_START_TEST (test_tags_survive_flush)
 
 GST_END_TEST;
 
+/* What the message says of detection limits is what the JSON says. */
+static void
+check_limits (const GstStructure * s, JsonArray * expected)
+{
+  const GValue *limits = gst_structure_get_value (s, "detection-limits");
+
+  fail_unless (GST_VALUE_HOLDS_ARRAY (limits));
+  fail_unless_equals_int (gst_value_array_get_size (limits),
+      json_array_get_length (expected));
+  for (guint i = 0; i < gst_value_array_get_size (limits); i++) {
+    const GstStructure *limit =
+        gst_value_get_structure (gst_value_array_get_value (limits, i));
+    JsonObject *item = json_array_get_object_element (expected, i);
+    gdouble value;
+
+    fail_unless_equals_string (gst_structure_get_string (limit, "effect"),
+        json_object_get_string_member (item, "effect"));
+    fail_unless_equals_string (gst_structure_get_string (limit, "parameter"),
+        json_object_get_string_member (item, "parameter"));
+    fail_unless_equals_string (gst_structure_get_string (limit, "unit"),
+        json_object_get_string_member (item, "unit"));
+    fail_unless_equals_string (gst_structure_get_string (limit, "text"),
+        json_object_get_string_member (item, "text"));
+    fail_unless_equals_int (gst_structure_get_double (limit, "value", &value),
+        !json_object_get_null_member (item, "value"));
+  }
+}
+
 /* The verdict comes before EOS, as the same JSON in message and file. */
 GST_START_TEST (test_verdict)
 {
@@ -255,6 +283,7 @@ GST_START_TEST (test_verdict)
   root = json_node_get_object (json_parser_get_root (parser));
   fail_unless_equals_string (json_object_get_string_member (root, "verdict"),
       gst_structure_get_string (s, "verdict"));
+  check_limits (s, json_object_get_array_member (root, "detection_limits"));
   fail_unless (strlen (gst_structure_get_string (s, "summary")) > 10);
   fail_unless_equals_string (gst_structure_get_string (s, "report"), report);
   fail_unless (g_file_test (report, G_FILE_TEST_IS_REGULAR));

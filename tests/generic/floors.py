@@ -80,7 +80,7 @@ ROOMS = [
           'nudge': ['nudge.h'], 'estimate': ['estimate.h']},
          [[''], ['recording'], ['features'], ['nudge'], ['estimate']]),
     Room('gst/gap', 'why a simulation is wrong',
-         {'': ['diagnose.h', 'inputs.h'], 'report': ['result.h', 'report.h'],
+         {'': ['diagnose.h', 'inputs.h'], 'report': ['result.h', 'words.h', 'patch.h', 'report.h'],
           'simulator': ['simulator.h', 'capabilities.h']},
          [['inputs', 'report'], ['simulator'], ['camera'], ['diagnosis'], ['load', 'inference', 'localise'],
           ['camera/faults', 'verdict', 'design'], ['diagnose']]),
@@ -103,7 +103,7 @@ PRY = ('tests/core/', 'tests/fuzz/', 'tests/bench/')
 PENDING = ()
 
 # C++ and OpenCV are here only.
-CPLUSPLUS = ('gst/cv/', 'tests/reference/')
+CPLUSPLUS = ('gst/cv/', 'tests/reference/', 'tests/gapbench/bullet.cc')
 
 LICENCE = 'SPDX-License-Identifier: LGPL-2.1-or-later'
 WARN_LINES, MAX_LINES, README_LINES = 800, 1200, 15

@@ -2,7 +2,8 @@
 """gap.json against its schema, and the report in a browser.
 
   gapreport.py json PROGRAM ROOT              gap.json, by tests/report/gapsheet.c
-  gapreport.py page PROGRAM [PICTURE]         report.html; PICTURE: writes docs' picture
+  gapreport.py page PROGRAM                   report.html
+  gapreport.py picture GAP PICTURE ARGUMENT…  docs' picture, of what GAP says with ARGUMENTs
 
 SPDX-License-Identifier: LGPL-2.1-or-later
 """
@@ -51,7 +52,8 @@ def check_json(program, root):
     jsonschema.Draft202012Validator.check_schema(text)
     schema = jsonschema.Draft202012Validator(text)
     with tempfile.TemporaryDirectory() as folder:
-        kinds = {kind: written(program, kind, folder) for kind in ('sheet', 'example', 'spare', 'empty', 'hostile')}
+        kinds = {kind: written(program, kind, folder) for kind in
+                 ('sheet', 'example', 'spare', 'empty', 'unknown', 'calm', 'wordy', 'hostile')}
         assert sorted(os.listdir(folder)) == ['gap.json', 'report.html'], os.listdir(folder)
         with open(os.path.join(folder, 'gap.json'), 'rb') as file:
             assert b'<' not in file.read(), 'gap.json can end a script'
@@ -80,16 +82,21 @@ def check_json(program, root):
     assert sheet['takes'][0]['gap_before'] == sheet['gap_before']
     assert sheet['predicted_shrink']['free'] == {'value': 0.78, 'interval': [0.6, 0.88]}
     assert sheet['detection_limits'][0] == {'effect': 'air_drag', 'side': 'physics', 'parameter': 'coefficient', 'value': 0.09,
-                                            'unit': '1'}
+                                            'unit': '1', 'text': 'air drag: coefficient above 0.09'}
+    assert [limit['text'] for limit in sheet['detection_limits'][3:]] == ['wind: z beyond ±0.35 m/s',
+        'clamp delay: delay beyond ±0.0052 s', 'bending: factor below 0.6 or above 1.4', 'grain angle: unseen, whatever its angle']
     assert sheet['detection_limits'][-1]['value'] is None
     assert sheet['patch'] == [
-        {'name': 'effects.air_drag.coefficient', 'text': 'air drag 1.14', 'before': None, 'after': 1.14, 'unit': '1', 'factor': None},
+        {'name': 'effects.air_drag.coefficient', 'text': 'air drag coefficient 1.14', 'before': None, 'after': 1.14, 'unit': '1', 'factor': None},
         {'name': 'areal_density', 'text': 'areal density × 0.61', 'before': 0.2, 'after': 0.122, 'unit': 'kg/m²', 'factor': 0.61}]
     assert sheet['free_numbers'][2] == {'name': 'damping.mass', 'unit': '1/s', 'value': 0.8, 'sigma': 0.1, 'range': [0.08, 0.8],
                                         'at_end': True}
     assert sheet['free_correlation'][1] == [0.31, 1, -0.94]
     assert sheet['thresholds'][0]['origin'] == 'simulated'
     assert kinds['hostile']['free_correlation'] is None and kinds['hostile']['sets'][2]['rival'] == 'force_field'
+    assert kinds['unknown']['takes'][0]['free_before'] == {'value': None, 'interval': None}
+    assert kinds['unknown']['free_correlation'] == 3 * [3 * [None]]
+    assert kinds['calm']['sets'][0]['effects'] == [] and kinds['calm']['sets'][1]['rival'] == 'displacement_field'
     gained = (sheet['gap_before']['value'] ** 2 - sheet['gap_after']['value'] ** 2) / sheet['gap_before']['value'] ** 2
     assert abs(sum(sheet['where']['gained']) - gained) < 0.01, (sum(sheet['where']['gained']), gained)
     assert kinds['hostile']['reason'] == HOSTILE
@@ -177,18 +184,22 @@ def check_arrays(program):
         assert numpy.abs(play['sigma'] / expected - 1).max() < 0.031
 
 
-def show(browser, program, kind, folder, complaint=None):
-    written(program, kind, folder)
-    path = os.path.join(folder, 'report.html')
-    started = time.monotonic()
-    browser.open(path)
+def open_report(browser, folder):
+    browser.open(os.path.join(folder, 'report.html'))
     for _ in range(200):
         if browser.run('return document.documentElement.dataset.ready') == 'yes':
             break
         browser.settle()
     else:
-        raise AssertionError('%s does not get ready: %s' % (kind, browser.log()))
+        raise AssertionError('%s does not get ready: %s' % (folder, browser.log()))
     browser.settle()
+
+
+def show(browser, program, kind, folder, complaint=None):
+    written(program, kind, folder)
+    path = os.path.join(folder, 'report.html')
+    started = time.monotonic()
+    open_report(browser, folder)
     log = browser.log()
     assert all(complaint and complaint in line for line in log), log
     assert browser.run('return performance.getEntriesByType("resource").length') == 0
@@ -217,7 +228,7 @@ def check_table(browser):
                         r'coefficient 1\.14 \[1\.02, 1\.26\] 9\d% \[\d+, \d+\]', first), first
     wind = ' '.join(' '.join(rows[3]).split())
     assert 'y −0.21 m/s [−0.37, −0.05]' in wind and 'changes over time' in wind, wind
-    assert rows[1][5].strip() == 'damping mass', rows[1]
+    assert rows[1][4].strip() == 'damping mass', rows[1]
     hidden = 'return [...document.querySelectorAll("#ranking tr")].filter(row => row.hidden).length'
     assert browser.run(hidden) == 2
     browser.click('#effects > button')
@@ -237,6 +248,76 @@ def check_table(browser):
     assert 'Shake the upper edge' in browser.text('#next')
     assert 'diverged at 1.34 s' in browser.text('#failures')
     assert '352 simulations, of which 1 failed, in 41.7 s; seed 1.' in browser.text('#provenance')
+
+
+def table_of(browser, name):
+    return browser.run('return [...document.querySelectorAll(arguments[0] + " tbody tr")].map(row => '
+                       '[...row.children].map(cell => cell.innerText.split(/\\s+/).join(" ").trim()))', '#' + name)
+
+
+def check_numbers(browser):
+    """What there is to do and to know, as gapsheet.c has it."""
+    assert table_of(browser, 'changes') == [
+        ['effects.air_drag.coefficient', 'not there', '1.14', 'air drag coefficient 1.14'],
+        ['areal_density', '0.2 kg/m²', '0.122 kg/m²', 'areal density × 0.61']]
+    assert 'add to your simulation' in browser.text('#patch')
+    assert table_of(browser, 'brings') == [['windows of 0.3 s', '91% [84, 96]', '88% [80, 93]'],
+                                           ['the free run', '78% [60, 88]', '71% [58, 81]']]
+    assert table_of(browser, 'numbers') == [
+        ['Areal density', '0.122 kg/m² [0.114, 0.130]', '0.04 to 0.4 kg/m²', 'bending warp (r 0.31)'],
+        ['Bending warp', '0.000021 N·m [0.000015, 0.000027]', '1·10⁻⁵ to 1·10⁻⁴ N·m', 'damping mass (r −0.94)'],
+        ['Damping mass', '0.80 1/s [0.60, 1.00]', '0.08 to 0.8 1/s At the end: the range, or the model, may be too narrow.',
+         'bending warp (r −0.94)']]
+    takes = table_of(browser, 'per-take')
+    assert [row[0] for row in takes] == ['waving sheet diagnosed take', 'waving sheet, fast unseen take', 'hanging sheet baseline take']
+    assert takes[0][1:3] == ['3.5 mm → 1.1 mm', '0.8 mm'] and takes[0][4:] == ['20.7 mm → 9.5 mm', '1.6 mm'], takes[0]
+    assert '42% (p 0.42)' in browser.text('#agree')
+    limits = browser.run('return [...document.querySelectorAll("#limits li")].map(node => node.textContent)')
+    assert len(limits) == 6 and limits[0] == 'Air drag: coefficient above 0.09' and limits[5] == 'Bending: factor below 0.6 or above 1.4'
+    assert browser.text('#limits').endswith('Not seen here, however large: grain angle.')
+    assert browser.run('return [...document.querySelectorAll("#sets li")].map(node => node.textContent)') == [
+        'Air drag alone 90%', 'Air drag linear alone 5%']
+    assert 'that an unknown force acts is 2%' in browser.text('#rivals'), browser.text('#rivals')
+    assert table_of(browser, 'thresholds')[2] == ['Window', '0.3 s', 'What the word means The gap is that over windows of 0.3 s.']
+    assert not browser.run('return document.getElementById("unseen")')
+
+
+def check_copy(browser):
+    browser.devtools('Browser.grantPermissions', permissions=['clipboardReadWrite', 'clipboardSanitizedWrite'])
+    browser.click('#copy')
+    for _ in range(100):
+        browser.settle()
+        if browser.text('#copied'):
+            break
+    assert browser.text('#copied') == 'Copied.', browser.text('#copied')
+    assert browser.run('return document.activeElement.id') == 'copy'
+    assert browser.run('return navigator.clipboard.readText()') == (
+        'effects.air_drag.coefficient = 1.14  # new; air drag coefficient 1.14\n'
+        'areal_density = 0.122  # kg/m²; was 0.2; areal density × 0.61\n')
+
+
+def check_points(browser, play):
+    """Which points are shown, against the page's own arrays."""
+    captions = browser.run('return [...document.querySelectorAll(".point figcaption")].map(node => node.innerText)')
+    squares = numpy.nansum((play['before'] - play['recorded']) ** 2, axis=(0, 2))
+    worst = int(squares.argmax())
+    rms = [1000 * math.sqrt(numpy.nanmean(((play[name] - play['recorded'])[:, worst] ** 2).sum(axis=1))) for name in ('before', 'after')]
+    u, v = play['uv'][worst]
+    assert captions[0].split('\n') == ['Point 1: u %.3g m, v %.3g m on the flat cloth' % (u, v),
+                                       'Before %.1f mm and after %.1f mm' % tuple(rms)], captions
+    # The gap grows to the lower edge, whose ends are furthest from one another.
+    assert [caption.split('\n')[0] for caption in captions[1:]] == [
+        'Point %d: u %s m, v 0.67 m on the flat cloth' % (i, end) for i, end in ((2, '0.63'), (3, '0'))], captions
+    assert browser.run('return document.getElementById("way-y").checked'), 'the sheet waves along y'
+    for way in ('distance', 'x', 'y'):
+        assert differs(browser, '#points canvas', lambda: browser.click('#way-' + way)), way
+    assert 'start anew' in browser.text('#points .note')
+    move(browser, 0)
+    browser.run('const over = document.querySelector("#points .u-over"), box = over.getBoundingClientRect();'
+                'for (const type of ["mousemove", "mousedown", "mouseup", "click"]) over.dispatchEvent('
+                'new MouseEvent(type, {bubbles: true, clientX: box.left + box.width / 2, clientY: box.top + 20}))')
+    browser.settle()
+    assert abs(float(browser.text('#readout').split(' ')[0]) - 2.49) < 0.15, browser.text('#readout')
 
 
 def check_playback(browser):
@@ -326,30 +407,63 @@ def check_without_webgl(browser, program, folder):
     assert differs(browser, '.map canvas', lambda: move(browser, 3))
 
 
-def check_page(program, picture):
+def fits(browser, width):
+    """Whether a window so narrow needs no sideways scrolling, nor any table in it."""
+    browser.devtools('Emulation.setDeviceMetricsOverride', width=width, height=800, deviceScaleFactor=1, mobile=False)
+    browser.settle()
+    wide = browser.run('return [...document.querySelectorAll(".wide, body")].filter('
+                       'node => node.scrollWidth > node.clientWidth).map(node => node.outerHTML.slice(0, 200))')
+    return browser.run('return document.documentElement.scrollWidth') == width and not wide
+
+
+def take_picture(program, picture, *arguments):
+    with tempfile.TemporaryDirectory() as folder, Browser(1240, 2150) as browser:
+        subprocess.run([program, *arguments, '--output', folder], check=True)
+        open_report(browser, folder)
+        with open(picture, 'wb') as file:
+            file.write(browser.picture())
+
+
+def check_page(program):
     # The processor draws every pixel: a small window is tested faster.
-    size = (1240, 2150) if picture else (820, 600)
-    with tempfile.TemporaryDirectory() as folder, Browser(*size) as browser:
+    with tempfile.TemporaryDirectory() as folder, Browser(820, 600) as browser:
+        play = arrays_of(program, 'sheet', folder)
         show(browser, program, 'sheet', folder)
         light = browser.run('return getComputedStyle(document.body).backgroundColor')
-        if picture:
-            with open(picture, 'wb') as file:
-                file.write(browser.picture())
-            return
         check_table(browser)
+        check_numbers(browser)
+        check_copy(browser)
+        check_points(browser, play)
         check_playback(browser)
         check_keyboard(browser)
         assert not browser.log()
         browser.devtools('Emulation.setEmulatedMedia', features=[{'name': 'prefers-color-scheme', 'value': 'dark'}])
         assert browser.run('return getComputedStyle(document.body).backgroundColor') != light
-        # Narrow windows need no sideways scrolling.
-        browser.devtools('Emulation.setDeviceMetricsOverride', width=400, height=800, deviceScaleFactor=1, mobile=False)
-        browser.settle()
-        assert browser.run('return document.documentElement.scrollWidth') == 400
+        assert fits(browser, 360)
         check_policy(browser)
         browser.devtools('Emulation.clearDeviceMetricsOverride')
         show(browser, program, 'hostile', folder)
         check_hostile(browser)
+        show(browser, program, 'wordy', folder)
+        assert fits(browser, 360)
+        browser.devtools('Emulation.clearDeviceMetricsOverride')
+        show(browser, program, 'unknown', folder)
+        text = browser.run('return document.querySelector("main").innerText')
+        assert not re.search(r'NaN|undefined|Infinity|\bnull\b(?! 17)|– \w', text), text
+        assert table_of(browser, 'changes')[1][1:3] == ['not there', 'not possible there']
+        assert not browser.run('return document.getElementById("points")'), 'no point was ever seen'
+        show(browser, program, 'calm', folder)
+        assert browser.text('#unseen') == ('This would have shown: air drag: coefficient above 0.09; wind: x beyond ±0.14 m/s; '
+                                           'wind: y beyond ±0.16 m/s; and 3 more.')
+        assert browser.run('return [...document.querySelectorAll("#sets li")].map(node => node.textContent)') == [
+            'Nothing: the model lacks nothing that shows 90%',
+            'Air drag linear and an unknown error of the measured positions together 5%']
+        assert not browser.run('return document.getElementById("patch")')
+        take = browser.run('return JSON.parse(document.getElementById("gap").textContent)')['takes'][1]
+        before, after, floor = (take['free_' + when]['value'] ** 2 for when in ('before', 'after', 'floor'))
+        share = ('%.0f%%' % (100 * (before - after) / (before - floor))).replace('-', '−')
+        assert table_of(browser, 'brings') == [['windows of 0.3 s', 'not measured'], ['the free run', share]], share
+        assert 'never put right' in browser.text('#points .note')
         show(browser, program, 'empty', folder)
         assert browser.text('#verdict .pill') == 'Undecidable'
         assert not browser.run('return document.getElementById("where")')
@@ -365,5 +479,7 @@ if sys.argv[1] == 'json':
     check_json(*sys.argv[2:4])
     check_failures(sys.argv[2])
     check_arrays(sys.argv[2])
+elif sys.argv[1] == 'page':
+    check_page(sys.argv[2])
 else:
-    check_page(sys.argv[2], sys.argv[3] if len(sys.argv) > 3 else None)
+    take_picture(*sys.argv[2:])

@@ -11,6 +11,9 @@
 
 #include "tests/common/gapsheet.h"
 
+/* A name of 3,000 characters without a place to break it. */
+static gchar wordy[3001];
+
 static ClothGapResult *
 make (const gchar * kind)
 {
@@ -26,6 +29,12 @@ make (const gchar * kind)
     return gap_sheet_new_spare ();
   if (strcmp (kind, "empty") == 0)
     return cloth_gap_result_new ();
+  if (strcmp (kind, "unknown") == 0)
+    return gap_sheet_new_unknown ();
+  if (strcmp (kind, "calm") == 0)
+    return gap_sheet_new_calm ();
+  if (strcmp (kind, "wordy") == 0)
+    return gap_sheet_new_hostile (wordy);
   if (strcmp (kind, "hostile") == 0)
     return gap_sheet_new_hostile ("</script><script>window.hacked=1</script>"
         "<img src=x onerror=window.hacked=1>\"'&\xff\n\xe2\x80\xa8<!--");
@@ -35,14 +44,16 @@ make (const gchar * kind)
 int
 main (int argc, char **argv)
 {
-  g_autoptr (ClothGapResult) result = argc == 3 ? make (argv[1]) : NULL;
+  g_autoptr (ClothGapResult) result = NULL;
   g_autoptr (GError) error = NULL;
   g_autofree gchar *json = NULL, *report = NULL;
 
+  memset (wordy, 'w', sizeof wordy - 1);
+  result = argc == 3 ? make (argv[1]) : NULL;
   if (!result) {
     fprintf (stderr,
-        "usage: %s sheet|example|long|fine|spare|empty|hostile FOLDER\n",
-        argv[0]);
+        "usage: %s sheet|example|long|fine|spare|empty|unknown|calm|wordy|"
+        "hostile FOLDER\n", argv[0]);
     return 2;
   }
   json = g_build_filename (argv[2], "gap.json", NULL);

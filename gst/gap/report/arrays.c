@@ -257,6 +257,7 @@ put_playback (ClothJsonWriter * writer, const ClothGapResult * result)
   cloth_json_writer_numbers (writer, "times", times, thinned.n_frames);
   cloth_json_writer_numbers (writer, "origin", origin, 3);
   cloth_json_writer_number (writer, "step", thinned.step);
+  cloth_json_writer_boolean (writer, "free_run", play->free_run);
   put_topology (writer, thinned.topology);
   put_positions (writer, "recorded", &thinned, play->recorded);
   put_positions (writer, "before", &thinned, play->before);

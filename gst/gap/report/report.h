@@ -1,14 +1,14 @@
-/* What a diagnosis writes: its verdict in one sentence, gap.json, and the page that shows it,
- * which is one file and works without a network.
+/* What a diagnosis writes: gap.json, and the page that shows it, which is one file and works
+ * without a network.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
 #include "gst/gap/report/result.h"
+#include "gst/gap/report/words.h"
 
 G_BEGIN_DECLS
 
-gchar *cloth_gap_result_summary (const ClothGapResult * result);
 gchar *cloth_gap_result_to_json (const ClothGapResult * result);
 gboolean cloth_gap_result_write_json (const ClothGapResult * result,
     const gchar * path, GError ** error);

@@ -230,7 +230,7 @@ cloth_gap_result_add_untested (ClothGapResult * result,
 /* @result: a result
  * @effect: an effect
  * @parameter: which of its parameters
- * @value: its smallest value that would have shown with a probability of 95%; NaN: none
+ * @value: how far from its null it would have shown with a probability of 95%; NaN: none
  */
 void
 cloth_gap_result_add_limit (ClothGapResult * result,

@@ -116,8 +116,8 @@ typedef struct {
 
 /* @effect: an effect
  * @parameter: which of its parameters
- * @value: its smallest value that would have shown with a probability of 95%, in the
- *   parameter's own unit and as far from 0; NaN: no value that makes sense would have
+ * @value: how far it must be from the parameter's null to have shown with a probability
+ *   of 95%, in its unit; NaN: no value that makes sense would have
  *
  * How much of an effect may be there unseen.
  */

@@ -7,13 +7,13 @@ import { capital, known, number, percent, spoken } from './words.js';
 
 const HEIGHT = 240;
 
-function axis(label) {
+export function axis(label) {
   return { label, labelSize: 22, stroke: colour('soft'), font: '11px system-ui, sans-serif',
     labelFont: '12px system-ui, sans-serif', grid: { stroke: colour('line'), width: 1 },
     ticks: { stroke: colour('line'), width: 1, size: 5 } };
 }
 
-function line(label, name, more = {}) {
+export function line(label, name, more = {}) {
   return { label, stroke: colour(name), width: 2, points: { show: false },
     value: (_, value) => known(value) ? number(value) : '–', ...more };
 }
@@ -21,7 +21,7 @@ function line(label, name, more = {}) {
 const edge = (label) => ({ label, stroke: 'transparent', width: 0, points: { show: false },
   value: (_, value) => known(value) ? number(value) : '–' });
 
-const column = (values, scale = 1) => values?.map((value) => known(value) ? value * scale : null);
+export const column = (values, scale = 1) => values?.map((value) => known(value) ? value * scale : null);
 
 // Draws now and again when width or theme change.
 function chart(id, label, make) {
@@ -64,7 +64,7 @@ export function overTime(series, onset, now, seek) {
   }));
 }
 
-function upright(plot, time, stroke, dash, text) {
+export function upright(plot, time, stroke, dash, text) {
   const x = Math.round(plot.valToPos(time, 'x', true));
   const { left, top, width, height } = plot.bbox;
   if (!(x >= left && x <= left + width)) return;

@@ -22,6 +22,7 @@ export class Playback {
     this.vertexStep = data.vertex_step;
     this.origin = data.origin;
     this.step = data.step;
+    this.freeRun = data.free_run;
     this.uv = new Float32Array(bytes(data.uv));
     this.faces = new Uint32Array(bytes(data.faces));
     this.vertices = this.uv.length / 2;
@@ -54,6 +55,15 @@ export class Playback {
       into[i] = value === 0xffff ? NaN : this.origin[i % 3] + this.step * value;
     }
     return into;
+  }
+
+  // Of one vertex in one frame.
+  point(name, frame, vertex) {
+    const start = 3 * (frame * this.vertices + vertex);
+    return [0, 1, 2].map((k) => {
+      const value = this.packed[name][start + k];
+      return value === 0xffff ? NaN : this.origin[k] + this.step * value;
+    });
   }
 
   // Distance from the recording of each vertex, metres; `relative`: in expected distances.

@@ -19,6 +19,19 @@ export function section(id, title, note, ...children) {
     ...children);
 }
 
+// Rows of cells. On narrow screens each row becomes a block in which cells carry their titles;
+// the roles keep it a table for those who listen to it.
+export function table(id, caption, titles, rows, attributes = []) {
+  const cell = (content, i) => element(i === 0 ? 'th' : 'td', i === 0 ? { scope: 'row', role: 'rowheader' }
+    : { role: 'cell', 'data-title': titles[i] }, ...[content].flat());
+  return element('div', { class: 'wide' },
+    element('table', { id, role: 'table', 'aria-label': caption },
+      element('thead', { role: 'rowgroup' }, element('tr', { role: 'row' }, ...titles.map(
+        (title) => element('th', { scope: 'col', role: 'columnheader' }, title)))),
+      element('tbody', { role: 'rowgroup' }, ...rows.map((row, i) =>
+        element('tr', { role: 'row', ...attributes[i] }, ...row.map(cell))))));
+}
+
 // A bar as long as a share of 0 to 1, with the interval as a whisker.
 export function bar(share, kind = '', interval = null) {
   const fill = element('span', { class: 'fill' });

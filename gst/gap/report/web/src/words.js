@@ -27,7 +27,7 @@ export const percent = (share) =>
 
 // A fitted value and its 95% interval, with no more digits than are sure.
 export function fitted(value, sigma) {
-  if (!known(sigma) || sigma <= 0) return [number(value), ''];
+  if (!known(value) || !known(sigma) || sigma <= 0) return [number(value), ''];
   const power = Math.floor(Math.log10(sigma));
   const places = (sigma < 3 * 10 ** power ? 1 : 0) - power;
   if (places < 0 || places > 6) return [number(value), range([value - 1.96 * sigma, value + 1.96 * sigma])];
@@ -45,11 +45,20 @@ export function range(interval, scale = 1, digits = null) {
 
 export const spoken = (name) => String(name).replaceAll('_', ' ');
 
+// Plain digits that any program reads, of no more than four that count.
+export const digits = (value) => known(value) ? String(Number(value.toPrecision(4))) : '';
+
+// [a], [a, b], [a, b, c] as "a", "a and b", "a, b and c".
+export const listed = (items, last = ' and ') => items.length < 2 ? items.join('')
+  : items.slice(0, -1).join(', ') + last + items[items.length - 1];
+
 export const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
 // A length of less than a decimetre in millimetres.
-export const quantity = (value, symbol) => symbol === 'm' && Math.abs(value) < 0.1
-  ? number(1000 * value) + ' mm' : number(value) + unit(symbol);
+export const quantity = (value, symbol) => {
+  if (!known(value)) return '–';
+  return symbol === 'm' && Math.abs(value) < 0.1 ? number(1000 * value) + ' mm' : number(value) + unit(symbol);
+};
 
 export const unit = (symbol) => symbol === '1' || symbol === '' ? '' : ' ' + symbol;
 
@@ -64,6 +73,9 @@ export function chance(value) {
   if (!known(value)) return '–';
   return value < 1e-4 ? '< 0.0001' : value.toFixed(value < 0.01 ? 4 : 2);
 }
+
+export const roles = { take: 'diagnosed take', baseline: 'baseline take', hold_out: 'unseen take', model: 'model',
+  simulated: 'your simulation', simulated_after: 'your simulation with the effects' };
 
 export const verdicts = {
   no_gap: 'No gap',
