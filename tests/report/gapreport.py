@@ -408,10 +408,10 @@ def check_without_webgl(browser, program, folder):
 
 
 def fits(browser, width):
-    """Whether a window so narrow needs no sideways scrolling, nor any table in it."""
+    """Whether a window so wide needs no sideways scrolling, nor any table in it."""
     browser.devtools('Emulation.setDeviceMetricsOverride', width=width, height=800, deviceScaleFactor=1, mobile=False)
     browser.settle()
-    wide = browser.run('return [...document.querySelectorAll(".wide, body")].filter('
+    wide = browser.run('return [...document.querySelectorAll(".wide, .shares, body")].filter('
                        'node => node.scrollWidth > node.clientWidth).map(node => node.outerHTML.slice(0, 200))')
     return browser.run('return document.documentElement.scrollWidth') == width and not wide
 
@@ -439,7 +439,7 @@ def check_page(program):
         assert not browser.log()
         browser.devtools('Emulation.setEmulatedMedia', features=[{'name': 'prefers-color-scheme', 'value': 'dark'}])
         assert browser.run('return getComputedStyle(document.body).backgroundColor') != light
-        assert fits(browser, 360)
+        assert fits(browser, 1240) and fits(browser, 360)
         check_policy(browser)
         browser.devtools('Emulation.clearDeviceMetricsOverride')
         show(browser, program, 'hostile', folder)
