@@ -9,10 +9,11 @@
   gapbench.py all DIR        all three
 
 What is there already is not made again, so that a run that was stopped goes on.
---few takes a handful of easy cases, --local those whose place or time is known, --cases N
-that many drawn by chance instead of all, none of the local ones;
---seed N makes other cases (1), --tool PATH names another gst-cloth-gap-1.0 than the
-shell's.
+--set NAME says which cases (own): few, own, outside, pairs, nulls, unknown, strangers, local;
+--cases N takes that many of them by chance; --seed N makes other cases (1); --reserved takes
+those unknown kinds that nothing may be tuned on; --tool PATH names another gst-cloth-gap-1.0
+than the shell's, --programs DIR where the benchmark's own simulators are (beside the tool's
+folder: ../tests/gapbench); --jobs N runs at a time (one a core).
 
 SPDX-License-Identifier: LGPL-2.1-or-later
 """
@@ -29,6 +30,7 @@ import time
 import numpy
 
 import cases
+import families
 import reality
 import score
 import seal
@@ -44,25 +46,24 @@ def effect_table(tool):
     return {effect['id']: effect for effect in json.loads(done.stdout)['effects']}
 
 
-def in_parallel(function, arguments):
-    """What a function returns for each tuple of arguments, one run a core."""
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+def in_parallel(function, arguments, jobs):
+    """What a function returns for each tuple of arguments, some runs at a time."""
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         yield from pool.map(lambda given: function(*given), arguments)
 
 
-def generate(tool, folder, few, count, seed, only_local=False):
+def generate(realities, folder, chosen, count, seed, reserved=False, jobs=1):
     """Takes and commitments to folder/takes, labels to folder/sealed; all or nothing."""
     if os.path.exists(os.path.join(folder, 'sealed')):
         return
     random = numpy.random.default_rng(seed)
-    listed = (cases.list_few if few else cases.list_all)(effect_table(tool), random)
-    # The number of a case says nothing about it, but that the last are local ones.
-    numbers = [int(number) for number in random.permutation(len(listed)) + 1]
-    if not few:
-        local = cases.list_local(numpy.random.default_rng([seed, len(listed)]))
-        numbers += range(len(listed) + 1, len(listed) + len(local) + 1)
-        listed = local if only_local else listed + local
-        numbers = numbers[-len(listed):]
+    listed = cases.list_set(chosen, effect_table(realities.tool), random, reserved)
+    # The number of a case says nothing about it. Twins in jitter stay together.
+    order = random.permutation(len(listed))
+    if count < len(listed):
+        order = order[:count]
+        drawn = {listed[k]['draw'] for k in order}
+        order = [k for k in random.permutation(len(listed)) if listed[k]['draw'] in drawn]
     takes = os.path.join(folder, 'takes')
     shutil.rmtree(takes, ignore_errors=True)
     os.makedirs(takes)
@@ -70,18 +71,16 @@ def generate(tool, folder, few, count, seed, only_local=False):
     def make(number, case):
         name = 'case%03d' % number
         path = os.path.join(takes, name)
-        with tempfile.TemporaryDirectory(prefix='cloth-gapbench-') as scratch:
-            try:
-                extra = reality.record(tool, case, path, name, scratch,
-                                       numpy.random.default_rng([seed, number]))
-            except RuntimeError as error:
-                print('%s left out, it can\'t be recorded: %s' % (name, error))
-                shutil.rmtree(path, ignore_errors=True)
-                return None
+        try:
+            extra = reality.record(realities, case, path, name, seed)
+        except families.CannotSimulate as error:
+            print('%s left out, it can\'t be recorded: %s' % (name, error))
+            shutil.rmtree(path, ignore_errors=True)
+            return None
         return seal.seal(dict(case, case=name, **extra), path)
 
-    chosen = ((number, case) for number, case in zip(numbers, listed) if number <= count)
-    labels = {label['case']: label for label in in_parallel(make, chosen) if label}
+    made = in_parallel(make, ((number, listed[k]) for number, k in enumerate(order, 1)), jobs)
+    labels = {label['case']: label for label in made if label}
     with open(os.path.join(takes, 'model.json'), 'w', encoding='utf-8') as file:
         json.dump(reality.diagnosed_model(), file, indent=1)
     seal.write_labels(os.path.join(folder, 'sealed'), labels)
@@ -89,17 +88,28 @@ def generate(tool, folder, few, count, seed, only_local=False):
                                                   os.path.join(folder, 'sealed')))
 
 
-def diagnose(tool, takes, gaps):
+def knows_twins(tool):
+    done = subprocess.run([tool, 'diagnose', '--help'], capture_output=True, text=True,
+                          check=False)
+    return '--simulated' in done.stdout
+
+
+def diagnose(tool, takes, gaps, jobs=1):
     """Diagnoses every case in @takes that has no gap.json in @gaps; returns how many failed."""
     names = sorted(name for name in os.listdir(takes) if os.path.isdir(os.path.join(takes, name)))
     left = [name for name in names if not os.path.exists(os.path.join(gaps, name, 'gap.json'))]
+    # The first design has only baselines to hold a simulation against.
+    twins = '--simulated' if left and knows_twins(tool) else '--baseline'
 
     def run(name):
         output = os.path.join(gaps, name)
+        given = []
+        for option, beside in (('--baseline', 'baseline'), (twins, 'simulated')):
+            if os.path.isdir(os.path.join(takes, name, beside)):
+                given += [option, os.path.join(takes, name, beside)]
         done = subprocess.run(
             [tool, 'diagnose', os.path.join(takes, name, 'take'), '--model',
-             os.path.join(takes, 'model.json'), '--baseline',
-             os.path.join(takes, name, 'baseline'), '--seed', '1', '--threads', '1',
+             os.path.join(takes, 'model.json'), *given, '--seed', '1', '--threads', '1',
              '--output', output],
             capture_output=True, text=True, stdin=subprocess.DEVNULL, check=False)
         if done.returncode:
@@ -110,7 +120,7 @@ def diagnose(tool, takes, gaps):
 
     failed = 0
     begin = time.monotonic()
-    for count, fault in enumerate(in_parallel(run, ((name,) for name in left)), 1):
+    for count, fault in enumerate(in_parallel(run, ((name,) for name in left), jobs), 1):
         if fault:
             print(fault)
             failed += 1
@@ -148,7 +158,7 @@ def measure_oracle(tool, folder, name, label):
     return None if gap is None else gap ** 2
 
 
-def open_and_score(tool, folders):
+def open_and_score(tool, folders, jobs=1):
     every, gaps, oracles, left = {}, {}, {}, []
     for folder in folders:
         labels = seal.open_labels(os.path.join(folder, 'sealed'), os.path.join(folder, 'takes'))
@@ -156,14 +166,15 @@ def open_and_score(tool, folders):
         here = {}
         for name in sorted(labels):
             path = os.path.join(folder, 'gaps', name, 'gap.json')
-            every[before + name] = dict(labels[name], case=before + name)
+            every[before + name] = dict(labels[name], case=before + name, folder=folder)
             if os.path.exists(path):
                 here[name] = read_json(path)
             else:
                 left.append(before + name)
-        named = [name for name in here if score.is_right(here[name], labels[name])]
+        named = [name for name in here if score.is_right(here[name], labels[name]) and
+                 labels[name]['evidence'] in ('same', 'other')]
         measured = in_parallel(measure_oracle,
-                               ((tool, folder, name, labels[name]) for name in named))
+                               ((tool, folder, name, labels[name]) for name in named), jobs)
         oracles.update({before + name: square for name, square in zip(named, measured)})
         gaps.update({before + name: gap for name, gap in here.items()})
     text = score.report(every, gaps, left, effect_table(tool), oracles)
@@ -178,25 +189,31 @@ def main():
     parser = argparse.ArgumentParser(description='The blind benchmark of the diagnosis.')
     parser.add_argument('step', choices=('generate', 'diagnose', 'score', 'all'))
     parser.add_argument('folder', nargs='+')
-    parser.add_argument('--few', action='store_true')
-    parser.add_argument('--local', action='store_true')
+    parser.add_argument('--set', choices=('few',) + cases.SETS, default='own', dest='chosen')
     parser.add_argument('--cases', type=int, default=1000)
     parser.add_argument('--seed', type=int, default=1)
+    parser.add_argument('--reserved', action='store_true')
     parser.add_argument('--tool', default='gst-cloth-gap-1.0')
+    parser.add_argument('--programs')
+    parser.add_argument('--jobs', type=int, default=os.cpu_count())
     given = parser.parse_args()
     folder, failed = given.folder[0], 0
     if len(given.folder) > 1 and given.step != 'score':
         parser.error('only score takes several folders')
+    if given.reserved and given.chosen != 'unknown':
+        parser.error('only the set unknown has reserved kinds')
+    programs = given.programs or os.path.join(os.path.dirname(shutil.which(given.tool) or ''),
+                                              '../tests/gapbench')
     os.makedirs(folder, exist_ok=True)
     try:
         if given.step in ('generate', 'all'):
-            generate(given.tool, folder, given.few, given.cases, given.seed,
-                     given.local)
+            generate(families.Realities(given.tool, programs), folder, given.chosen, given.cases,
+                     given.seed, given.reserved, given.jobs)
         if given.step in ('diagnose', 'all'):
             failed = diagnose(given.tool, os.path.join(folder, 'takes'),
-                              os.path.join(folder, 'gaps'))
+                              os.path.join(folder, 'gaps'), given.jobs)
         if given.step in ('score', 'all'):
-            open_and_score(given.tool, given.folder)
+            open_and_score(given.tool, given.folder, given.jobs)
     except (OSError, RuntimeError, seal.BrokenSeal) as error:
         sys.exit('gapbench: %s' % error)
     sys.exit(1 if failed else 0)

@@ -1,28 +1,25 @@
-"""Makes recordings of a small cloth: simulated otherwise than the diagnosis does, noisy,
-in part unseen.
+"""Makes recordings of small cloths: simulated otherwise than the diagnosis does, noisy, in part
+unseen; and what a user has beside them.
 
 SPDX-License-Identifier: LGPL-2.1-or-later
 """
 import copy
-import json
 import os
-import subprocess
 
 import numpy
 
-from cases import FAMILIES
+import families
+from cases import OUTSIDE, OWN
+from families import HZ, MODEL
 
-COLUMNS, ROWS = 9, 10
-WIDTH, HEIGHT = 0.22, 0.24
-FPS = 50.
+CLOTH = {'columns': 9, 'rows': 10, 'width_m': 0.22, 'height_m': 0.24}
 # Before the recording begins the clamps close and the cloth comes to hang.
-N_BEFORE, N_FRAMES = 25, 75
-HELD = (0, COLUMNS - 1)
-MODEL = {
-    'version': 1, 'force_model': 'membrane', 'areal_density': 0.15,
-    'stretch': {'warp': 40., 'weft': 40.}, 'shear': 12.,
-    'bending': {'warp': 3e-5, 'weft': 3e-5}, 'damping': {'mass': 0.3, 'stiffness': 5e-4},
-}
+BEFORE = 0.5
+USUAL = {'motion': 'sway', 'held': 'corners', 'fps': 50., 'seconds': 1.5, 'noise_m': None,
+         'jitter_s': 0., 'dropped': 0., 'origin_m': [0., 0., 0.]}
+HELD = {'corners': [(0., 0.), (1., 0.)], 'edge': [(0., 0.), (1., 0.)],
+        'four': [(0., 0.), (1., 0.), (0., 1.), (1., 1.)],
+        'middle': [(0., 0.), (1., 0.), (0.5, 0.)]}
 
 
 def diagnosed_model():
@@ -38,244 +35,413 @@ def diagnosed_model():
     return model
 
 
-def real_model(family, random):
-    """What really hangs there: other numbers, another simulator."""
-    model = dict(copy.deepcopy(MODEL), **copy.deepcopy(FAMILIES[family]))
-    for key, value in MODEL.items():
-        scale = numpy.exp(0.15 * random.normal(size=2))
-        if key in ('stretch', 'bending'):
-            model[key] = {'warp': value['warp'] * scale[0], 'weft': value['weft'] * scale[1]}
-        elif key == 'shear':
-            model[key] = value * scale[0]
-        elif key == 'damping':
-            model[key] = {'mass': value['mass'] * scale[0],
-                          'stiffness': value['stiffness'] * scale[1]}
-    return model
+def choose_motion(name, random):
+    """How the clamps go: kind, amplitudes, frequencies and phases."""
+    return {'name': name, 'close': random.uniform(0.03, 0.05),
+            'across': random.uniform(0.03, 0.05, 2), 'along': random.uniform(0.005, 0.02),
+            'up': random.uniform(0.005, 0.02), 'hz': random.uniform(0.9, 1.7, 3),
+            'phase': random.uniform(0., 6.28, 3), 'share': random.uniform(0.5, 1.)}
 
 
-def choose_motion(random):
-    """How the clamps go: they close, then sway; amplitudes, frequencies and phases."""
-    return {'close': random.uniform(0.03, 0.05), 'across': random.uniform(0.03, 0.05, 2),
-            'along': random.uniform(0.005, 0.02), 'up': random.uniform(0.005, 0.02),
-            'hz': random.uniform(0.9, 1.7, 3), 'phase': random.uniform(0, 6.28, 3)}
+def wave(hz, t, phase=0.):
+    return numpy.sin(6.2832 * hz * t + phase) - numpy.sin(phase)
 
 
-def clamps_of(motion, random):
-    """Paths of the clamps; each time the same motion is repeated it is so to 0.3 mm."""
-    t = (numpy.arange(N_BEFORE + N_FRAMES) - N_BEFORE) / FPS
-    ramp = numpy.clip((t + N_BEFORE / FPS) / 0.4, 0., 1.)
+def place_ends(motion, t, width):
+    """What the left and the right end are moved by, [time][2][3], over the closing."""
+    out = numpy.zeros((len(t), 2, 3))
+    hz, phase, share = motion['hz'], motion['phase'], motion['share']
+    after = numpy.clip(t, 0., None)
+    if motion['name'] == 'sway':
+        for end in range(2):
+            out[:, end, 0] = motion['along'] * wave(hz[1], t, phase[1])
+            out[:, end, 1] = motion['across'][end] * wave(hz[0], t, phase[0])
+            out[:, end, 2] = motion['up'] * wave(hz[2], t, phase[2])
+    elif motion['name'] == 'swing':
+        # As a robot does: one axis, far and slow.
+        out[:, :, 1] = (0.15 * share * wave(0.5 * hz[0] - 0.1, t))[:, None]
+    elif motion['name'] == 'lift':
+        out[:, :, 2] = (0.06 * share * (1. - numpy.cos(6.2832 * 0.7 * hz[0] * after)))[:, None]
+    elif motion['name'] == 'shake':
+        out[:, :, 1] = (0.015 * share * wave(2.5 * hz[0], after))[:, None]
+    elif motion['name'] == 'twist':
+        angle = 0.8 * share * wave(0.6 * hz[0], t)
+        for end, side in enumerate((-0.5, 0.5)):
+            out[:, end, 0] = side * width * (numpy.cos(angle) - 1.)
+            out[:, end, 1] = side * width * numpy.sin(angle)
+    elif motion['name'] == 'one-sided':
+        out[:, 1, 1] = 0.08 * share * wave(0.7 * hz[0], t)
+        out[:, 1, 0] = -0.02 * (1. - numpy.cos(6.2832 * 0.7 * hz[0] * after))
+    elif motion['name'] == 'hang':
+        out[:, :, 1] = (0.004 * share * wave(hz[0], t, phase[0]))[:, None]
+    elif motion['name'] == 'release':
+        out[:, :, 1] = (0.03 * share * wave(0.8 * hz[0], t))[:, None]
+    return out
+
+
+def choose_setup(case, random):
+    """The cloth, how it is held and for how long; not yet how it moves."""
+    how = dict(USUAL, **(case['stranger'] or {}))
+    cloth = CLOTH
+    if 'columns' in how:
+        cloth = {'columns': how['columns'], 'rows': how['rows'], 'width_m': how['width_m'],
+                 'height_m': how['width_m'] * how['aspect']}
+    return {'cloth': cloth, 'held': HELD[how['held']], 'edge': how['held'] == 'edge',
+            'bulge_m': 0., 'how': how, 'until_s': {}, 'motion': choose_motion(
+                how['motion'], random)}
+
+
+def move(setup, random):
+    """Gives a setup its paths; each time the same motion is repeated it is so to 0.3 mm."""
+    how, cloth = setup['how'], setup['cloth']
+    t = numpy.arange(int((BEFORE + how['seconds'] + 0.2) * HZ)) / HZ - BEFORE
+    ramp = numpy.clip((t + BEFORE) / 0.4, 0., 1.)
     ramp = ramp ** 2 * (3. - 2. * ramp)
-    wave = [numpy.sin(6.2832 * hz * t + phase) - numpy.sin(phase)
-            for hz, phase in zip(motion['hz'], motion['phase'])]
-    paths = numpy.zeros((len(t), 2, 3))
-    for held in range(2):
-        paths[:, held, 0] = held * WIDTH + ramp * (
-            (0.5 - held) * motion['close'] + motion['along'] * wave[1])
-        paths[:, held, 1] = ramp * motion['across'][held] * wave[0]
-        paths[:, held, 2] = ramp * motion['up'] * wave[2]
+    ends = place_ends(setup['motion'], t, cloth['width_m'])
+    # A bar doesn't close.
+    close = 0. if setup['edge'] else setup['motion']['close'] * cloth['width_m'] / 0.22
+    paths = numpy.zeros((len(t), len(setup['held']), 3))
+    for held, (across, down) in enumerate(setup['held']):
+        paths[:, held] = (1. - across) * ends[:, 0] + across * ends[:, 1]
+        paths[:, held, 0] += (0.5 - across) * close
+        paths[:, held] += down * numpy.array([0., 0.03, 0.15 * cloth['height_m']])
         for axis in range(3):
-            paths[:, held, axis] += ramp * 2e-4 * random.normal() * numpy.sin(
+            paths[:, held, axis] += 2e-4 * random.normal() * numpy.sin(
                 6.2832 * random.uniform(0.5, 2.) * t)
-    return paths
+        paths[:, held] *= ramp[:, None]
+        paths[:, held] += numpy.array([across * cloth['width_m'], 0., -down * cloth['height_m']])
+    setup = dict(setup, paths=paths + how['origin_m'])
+    if setup['motion']['name'] == 'release':
+        setup['until_s'] = {1: BEFORE + 0.4 * how['seconds']}
+    return setup
+
+
+def times_of(how, random):
+    """When pictures were taken, from the recording's beginning on."""
+    times = numpy.arange(int(round(how['seconds'] * how['fps']))) / how['fps']
+    times = times[random.random(len(times)) >= how['dropped']]
+    if how['jitter_s']:
+        times = times + how['jitter_s'] * random.normal(size=len(times))
+        times = numpy.maximum.accumulate(times - times[0] + 1e-4 * numpy.arange(len(times)))
+    return times - times[0]
+
+
+def take_of(setup, grid, name, fps):
+    vertices, _, until = families.holds_of(setup, grid)
+    return {'name': name, 'fps': fps, 'grid': dict(setup['cloth'], columns=grid[0], rows=grid[1]),
+            'held': [dict({'vertex': vertex}, **({'until_s': end - BEFORE} if numpy.isfinite(end)
+                                                 else {}))
+                     for vertex, end in zip(vertices, until)], 'obstacles': setup.get('obstacles', [])}
+
+
+def film(folder, name, setup, positions, random, clock=None, change=None):
+    """Records what @positions do: noise and what is hidden; the stated noise is what a rig would
+    state. Of pictures at t the cloth is that of clock(t); change spoils the points."""
+    how, cloth = setup['how'], setup['cloth']
+    grid = cloth['columns'], cloth['rows']
+    # so that jitter alone changes no other number
+    times = times_of(how, numpy.random.default_rng(random.integers(2 ** 32)))
+    noise = how['noise_m'] or random.uniform(3e-4, 5e-4)
+    seen = families.interpolate(positions, BEFORE + (clock(times) if clock else times))
+    if change:
+        seen = change(seen, times)
+    seen = seen + noise * random.normal(size=(4096,) + seen.shape[1:])[:len(seen)]
+    row, column = numpy.divmod(numpy.arange(grid[0] * grid[1]), grid[0])
+    for _ in range(3):
+        # Something passes before the cloth.
+        length = random.uniform(0.12, 0.24)
+        first = random.uniform(0., how['seconds'] - 0.25)
+        at = random.uniform(0, (grid[1], grid[0]))
+        way = random.normal(size=2) * 10.
+        for frame in numpy.flatnonzero((times >= first) & (times < first + length)):
+            y, x = at + way * (times[frame] - first)
+            seen[frame, (row - y) ** 2 + (column - x) ** 2 < 2.5] = numpy.nan
+    seen[(random.random((4096, seen.shape[1])) < 0.01)[:len(seen)]] = numpy.nan
+    _, paths, _ = families.holds_of(setup, grid)
+    exact = not how['jitter_s'] and not how['dropped']
+    families.write_take(folder, dict(take_of(setup, grid, name, how['fps']), noise_sigma_m=noise),
+                        seen, families.interpolate(paths, BEFORE + times),
+                        None if exact else times)
+    return noise
+
+
+def write_twin(folder, name, setup, positions, grid, random):
+    """A simulation as it is written: no noise, nothing hidden, frame times of its own."""
+    how = setup['how']
+    fps = float(random.choice([how['fps'], 60., 100.]))
+    times = numpy.arange(int(numpy.ceil((how['seconds'] + 0.01) * fps)) + 1) / fps
+    _, paths, _ = families.holds_of(setup, grid)
+    families.write_take(folder, take_of(setup, grid, name, fps),
+                        families.interpolate(positions, BEFORE + times),
+                        families.interpolate(paths, BEFORE + times))
+
+
+def shape_outside(case, setup, random):
+    """What is done to a recording alone: clock and change of film()."""
+    name, size = case['outside'], case['severity']
+    cloth = setup['cloth']
+    grid = cloth['rows'], cloth['columns']
+    way = random.normal(size=3)
+    way /= numpy.linalg.norm(way)
+    sign = random.choice((-1., 1.))
+    clock = change = None
+
+    def drift(seen, times):
+        # The calibration drifts: the lower and the right part bulge towards the camera.
+        flat = families.flat_points(setup, (grid[1], grid[0]))
+        bulge = (flat[:, 2] / cloth['height_m']) ** 2 * flat[:, 0] / cloth['width_m']
+        seen = seen.copy()
+        seen[:, :, 1] += 1.5e-3 * size * times[:, None] * bulge
+        return seen
+
+    def smooth(seen, times):
+        weight = numpy.exp(-0.5 * ((times[:, None] - times) / (0.01 * size)) ** 2)
+        return numpy.einsum('ij,jkl->ikl', weight / weight.sum(axis=1, keepdims=True), seen)
+
+    def exchange(seen, times):
+        first, second = random.choice(numpy.arange(1, grid[0]), 2, replace=False)
+        out = seen.reshape(len(seen), *grid, 3).copy()
+        out[:, [first, second]] = out[:, [second, first]]
+        return out.reshape(seen.shape)
+
+    def turn(seen, axis, angle):
+        middle = setup['paths'][0].mean(axis=0)
+        x = seen - middle
+        return middle + x * numpy.cos(angle) + numpy.cross(axis, x) * numpy.sin(angle) + \
+            axis * (x @ axis)[..., None] * (1. - numpy.cos(angle))
+
+    if name == 'drift':
+        change = drift
+    elif name == 'wobble':
+        # The recorder's clock wobbles.
+        clock = lambda t: t + 2e-3 * size * numpy.sin(6.2832 * 1.3 * t)
+    elif name == 'scale':
+        change = lambda seen, times: seen * (1. + sign * 0.006 * size)
+    elif name == 'smoothed':
+        change = smooth
+    elif name == 'labels':
+        change = exchange
+    elif name == 'turned':
+        change = lambda seen, times: turn(seen, way, sign * numpy.radians(4. * size))
+    elif name == 'frame-rate':
+        clock = lambda t: t * (1. + sign * 0.016 * size)
+    elif name == 'late':
+        clock = lambda t: t - 0.012 * size
+    elif name == 'mirrored':
+        change = lambda seen, times: seen * [1., -1., 1.] if size < 3. else seen * [-1., 1., 1.] \
+            + [cloth['width_m'], 0., 0.]
+    return clock, change
+
+
+def strange_forces(case, setup, random):
+    """What acts that the library has no name for: what the finite elements are told beside."""
+    name, size, cloth = case['outside'], case['severity'], setup['cloth']
+    fine = 2 * (cloth['columns'] - 1) + 1, 2 * (cloth['rows'] - 1) + 1
+    seconds = setup['how']['seconds']
+    where = numpy.array([random.uniform(0.2, 0.8) * fine[0], random.uniform(0.4, 0.9) * fine[1]])
+    if name == 'thread':
+        point = int(where[1]) * fine[0] + int(where[0])
+        hook = families.flat_points(setup, fine)[point] + setup['paths'][0, 0]
+        hook += random.normal(size=3) * 0.05
+        return {'thread': [point, *hook, 0.05 / size, 0.3 * size]}
+    if name == 'rain':
+        drops = []
+        for _ in range(int(10 * size)):
+            drops += [BEFORE + random.uniform(0., seconds), int(random.integers(
+                fine[0], fine[0] * fine[1])), 2e-4 * random.exponential()]
+        return {'rain': drops}
+    if name == 'creep':
+        return {'creep': [0.01 * size]}
+    if name == 'seam':
+        first = int(random.integers(4, fine[1] - 4))
+        return {'seam': [first, first + 2, 1. + 3. * size]}
+    if name == 'attraction':
+        return {'attraction': [0., 1., 0., 0.06 * random.choice((-1., 1.)), 0.15 * size, 0.04]}
+    if name == 'wet':
+        return {'wet': [*where, 4., 1. + size / 2., BEFORE + 1.2 * seconds]}
+    if name == 'tape':
+        return {'wet': [*where, 2.5, 1. + size, 1e9]}
+    return {}
+
+
+def simulate_outside(realities, family, numbers, case, setup, random):
+    """Reality with something in it that the library has no name for; and the paths of the
+    clamps that were."""
+    name, size = case['outside'], case['severity']
+    t = numpy.arange(len(setup['paths'])) / HZ - BEFORE
+    on = numpy.clip(t / 0.1, 0., 1.)
+    real = dict(setup, paths=setup['paths'].copy())
+    if name == 'clamp-shake':
+        # A clamp trembles, and the log doesn't know.
+        real['paths'][:, 1, 2] += 1.5e-3 * size * on * numpy.sin(6.2832 * 4. * t)
+    elif name == 'shaken-frame':
+        # Clamps, cloth and cameras ride on a platform: a periodic force on all.
+        ride = 1.5e-3 * size * on * numpy.sin(6.2832 * 3. * t)
+        real['paths'][:, :, 1] += ride[:, None]
+        positions = realities.simulate(family, real, numbers)
+        positions[:, :, 1] -= ride[:, None]
+        return positions
+    elif name == 'obstacle':
+        # A ball that the cloth swings against.
+        ball = [setup['cloth']['width_m'] / 2, 0.05, -0.75 * setup['cloth']['height_m'],
+                0.03 + 0.003 * size]
+        return realities.simulate(family, setup, numbers, strange={'balls': [ball]})
+    elif name == 'pitched':
+        # World and clamps' log lean alike.
+        return realities.simulate(family, setup, numbers, {'gravity_tilt': dict(zip(
+            'xy', (4. * size * unit_circle(random)).tolist()))})
+    elif name == 'caught':
+        # The lower corner hangs on a thread that gives slowly.
+        free = realities.simulate(family, setup, numbers)
+        corner = free.shape[1] - 1
+        path = free[:, corner].copy()
+        slow = path[int(BEFORE * HZ)] + (path - path[int(BEFORE * HZ)]) * (1. - 0.1 * size)
+        path = numpy.where(t[:, None] > 0., slow, path)
+        return realities.simulate(family, setup, numbers,
+                                  strange={'led': [(corner, path, 0.)]})
+    return realities.simulate(family, real, numbers, strange=strange_forces(case, setup, random))
+
+
+def unit_circle(random):
+    way = random.normal(size=2)
+    return way / numpy.linalg.norm(way)
+
+
+def touch_with_ball(realities, family, numbers, setup, free, size, random):
+    """A ball in the way of a vertex, where it comes first at a time by chance."""
+    radius = 0.04 + 0.002 * size
+    columns, rows = setup['cloth']['columns'], setup['cloth']['rows']
+    begin = int(BEFORE * HZ)
+    for _ in range(200):
+        first = begin + int(random.integers(0.4 * HZ, HZ))
+        vertex = int(random.integers(3 * columns, rows * columns))
+        way = free[first + 1, vertex] - free[first - 1, vertex]
+        speed = numpy.linalg.norm(way) * HZ / 2.
+        centre = free[first, vertex] + way / max(numpy.linalg.norm(way), 1e-9) * radius
+        apart = numpy.linalg.norm(free - centre, axis=2)
+        if speed > 0.1 and apart[:first].min() > radius + 1e-3:
+            real = realities.simulate(family, setup, numbers,
+                                      strange={'balls': [[*centre, radius]]})
+            apart = numpy.linalg.norm(real[begin:] - centre, axis=2).min(axis=0)
+            return real, numpy.flatnonzero(apart < radius + 2e-3)
+    raise families.CannotSimulate('the cloth is too slow to touch a ball')
+
+
+def lead_with_finger(realities, family, numbers, setup, free, size, random):
+    """A patch that is taken hold of, and led off the way it would go."""
+    begin = int(BEFORE * HZ)
+    columns, rows = setup['cloth']['columns'], setup['cloth']['rows']
+    first = begin + int(random.integers(0.4 * HZ, HZ))
+    high, wide = random.integers(2, 5, 2)
+    row, column = random.integers(2, rows - high + 1), random.integers(0, columns - wide + 1)
+    patch = ((row + numpy.arange(high))[:, None] * columns + column + numpy.arange(wide)).ravel()
+    way = random.normal(size=3) * (0.3, 1., 0.3)
+    on = numpy.clip((numpy.arange(len(free)) - first) / (0.2 * HZ), 0., 1.)
+    on = on ** 2 * (3. - 2. * on)
+    path = free[:, patch] + 0.003 * size * on[:, None, None] * way / numpy.linalg.norm(way)
+    real = realities.simulate(family, setup, numbers, strange={
+        'led': [(int(vertex), path[:, k], first / HZ) for k, vertex in enumerate(patch)]})
+    return real, patch
+
+
+def act_locally(realities, case, numbers, setup, free, random):
+    """The cloth with a local case, and where its force acts (None: no place of its own)."""
+    family, size = case['family'], case['severity']
+    if case['outside'] == 'ball':
+        return touch_with_ball(realities, family, numbers, setup, free, size, random)
+    if case['outside'] == 'finger':
+        return lead_with_finger(realities, family, numbers, setup, free, size, random)
+    real = realities.simulate(family, setup, numbers, case['effects'])
+    if case['outside'] == 'slip':
+        return real, None
+    # Vertices that stand for more of the hem than of what is above it.
+    height, cloth = case['effects']['mass_distribution']['height'], setup['cloth']
+    row = numpy.arange(free.shape[1]) // cloth['columns']
+    above = (cloth['rows'] - 1.5 - row) * cloth['height_m'] / (cloth['rows'] - 1)
+    return real, numpy.flatnonzero(above < height)
+
+
+def add_evidence(realities, evidence, folder, name, case, numbers, setup, quiet, random):
+    """Writes what is given beside a take to a folder; twins are of what didn't act."""
+    family, cloth = case['family'], setup['cloth']
+    grid = cloth['columns'], cloth['rows']
+    if evidence in ('twin', 'cousin'):
+        if evidence == 'cousin':
+            others = [other for other in tuple(OWN) + OUTSIDE
+                      if other != family and realities.has(other)]
+            kin = bool(random.integers(2))
+            family = family if kin else str(random.choice(others))
+            numbers = families.draw_numbers(random) if kin else MODEL
+        finer = random.integers(2)
+        if finer:
+            grid = grid[0] + 2, grid[1] + 1
+        made = quiet if evidence == 'twin' and not finer else \
+            realities.simulate(family, setup, numbers, grid=grid)
+        write_twin(folder, name, setup, made, grid, random)
+        return {'twin_family': family, 'twin_mesh': 'other' if finer else 'same'}
+    motion = setup['motion']
+    if evidence == 'other':
+        # A stranger moves in another way, too.
+        kind = motion['name'] if case['stranger'] is None else 'sway'
+        motion = choose_motion(kind, random)
+    setup = move(dict(setup, motion=motion, until_s={}, bulge_m=0.), random)
+    film(folder, name, setup, realities.simulate(family, setup, numbers), random)
+    return {}
+
+
+def root_mean_square(change):
+    return float(numpy.sqrt((change ** 2).sum(axis=2).mean()))
 
 
 def effects_in_take(effects):
     """Effects as a model has them that starts when the recording does, not before."""
     effects = copy.deepcopy(effects)
     if 'clamp_slip' in effects:
-        effects['clamp_slip']['time'] -= N_BEFORE / FPS
+        effects['clamp_slip']['time'] -= BEFORE
     return effects
 
 
-def write_take(folder, name, positions, clamps, noise=None, held=HELD, obstacles=(), from_s=None):
-    os.makedirs(folder)
-    take = {'version': 1, 'name': name, 'fps': FPS,
-            'grid': {'columns': COLUMNS, 'rows': ROWS, 'width_m': WIDTH, 'height_m': HEIGHT},
-            'held': [dict({'vertex': vertex}, **({} if from_s is None or vertex in HELD else
-                                                 {'from_s': from_s})) for vertex in held],
-            'obstacles': list(obstacles)}
-    if noise is not None:
-        take['noise_sigma_m'] = noise
-    with open(os.path.join(folder, 'take.json'), 'w', encoding='utf-8') as file:
-        json.dump(take, file)
-    numpy.save(os.path.join(folder, 'positions.npy'), positions.astype('float32'))
-    numpy.save(os.path.join(folder, 'clamps.npy'), clamps.astype('float32'))
-
-
-def simulate(tool, model, clamps, scratch, held=HELD, obstacles=(), from_s=None, bulge_m=0.):
-    """What the cloth does, from half a second before the recording on; what is held besides
-    the corners is so from a time on; its lower edge may bulge at first."""
-    start = numpy.full((len(clamps), ROWS * COLUMNS, 3), numpy.nan)
-    v, u = numpy.divmod(numpy.arange(ROWS * COLUMNS), COLUMNS)
-    start[0, :, 0] = u * WIDTH / (COLUMNS - 1)
-    start[0, :, 1] = bulge_m * numpy.sin(numpy.pi * u / (COLUMNS - 1)) * v / (ROWS - 1)
-    start[0, :, 2] = -v * HEIGHT / (ROWS - 1)
-    write_take(os.path.join(scratch, 'scene'), 'scene', start, clamps, None, held, obstacles,
-               from_s)
-    with open(os.path.join(scratch, 'model.json'), 'w', encoding='utf-8') as file:
-        json.dump(model, file)
-    done = subprocess.run([tool, 'simulate', os.path.join(scratch, 'model.json'), '--scene',
-                           os.path.join(scratch, 'scene'), '--output',
-                           os.path.join(scratch, 'made'), '--threads', '1'],
-                          capture_output=True, text=True, stdin=subprocess.DEVNULL, check=False)
-    if done.returncode:
-        raise RuntimeError(done.stderr.strip().split('\n')[-1])
-    positions = numpy.load(os.path.join(scratch, 'made/positions.npy')).astype(float)
-    for name in ('scene', 'made'):
-        for file in os.listdir(os.path.join(scratch, name)):
-            os.remove(os.path.join(scratch, name, file))
-        os.rmdir(os.path.join(scratch, name))
-    return positions
-
-
-def shape_outside(name, size, positions, clamps):
-    """What no effect of the library is, of what is done to the positions alone."""
-    t = (numpy.arange(len(positions)) - N_BEFORE) / FPS
-    if name == 'drift':
-        # The calibration drifts: the lower and the right part bulge towards the camera.
-        middle = positions - clamps[:, :1]
-        bulge = (middle[:, :, 2] / HEIGHT) ** 2 * (middle[:, :, 0] / WIDTH)
-        positions = positions.copy()
-        positions[:, :, 1] += 1.5e-3 * size * numpy.clip(t, 0., None)[:, None] * bulge
-    elif name == 'wobble':
-        # The recorder's clock wobbles.
-        at = numpy.clip(t + 2e-3 * size * numpy.sin(6.2832 * 1.3 * t), t[0], t[-1])
-        flat = positions.reshape(len(t), -1)
-        positions = numpy.stack([numpy.interp(at, t, column) for column in flat.T],
-                                axis=1).reshape(positions.shape)
-    return positions
-
-
-def simulate_outside(tool, model, clamps, outside, size, scratch):
-    """Reality with something in it that the library has no name for."""
-    t = (numpy.arange(len(clamps)) - N_BEFORE) / FPS
-    on = numpy.clip(t / 0.1, 0., 1.)
-    if outside == 'clamp-shake':
-        # A clamp trembles, and the log doesn't know.
-        real = clamps.copy()
-        real[:, 1, 2] += 1.5e-3 * size * on * numpy.sin(6.2832 * 4. * t)
-        return simulate(tool, model, real, scratch)
-    if outside == 'shaken-frame':
-        # Clamps, cloth and cameras ride on a platform: a periodic force on all.
-        ride = 1.5e-3 * size * on * numpy.sin(6.2832 * 3. * t)
-        real = clamps.copy()
-        real[:, :, 1] += ride[:, None]
-        positions = simulate(tool, model, real, scratch)
-        positions[:, :, 1] -= ride[:, None]
-        return positions
-    if outside == 'obstacle':
-        # A ball that the cloth swings against.
-        ball = {'type': 'sphere', 'centre': [WIDTH / 2, 0.05, -0.75 * HEIGHT],
-                'radius_m': 0.03 + 0.003 * size}
-        return simulate(tool, model, clamps, scratch, obstacles=[ball])
-    if outside == 'caught':
-        # The lower corner hangs on a thread that gives slowly.
-        free = simulate(tool, model, clamps, scratch)
-        corner = ROWS * COLUMNS - 1
-        path = free[:, corner].copy()
-        slow = path[N_BEFORE] + (path - path[N_BEFORE]) * (1. - 0.1 * size)
-        path = numpy.where(t[:, None] > 0., slow, path)
-        caught = numpy.concatenate([clamps, path[:, None]], axis=1)
-        return simulate(tool, model, caught, scratch, held=HELD + (corner,))
-    return shape_outside(outside, size, simulate(tool, model, clamps, scratch), clamps)
-
-
-def touch_with_ball(tool, model, clamps, free, size, scratch, random):
-    """A ball in the way of a vertex, where it comes first at a time by chance."""
-    radius = 0.04 + 0.002 * size
-    for _ in range(200):
-        first = N_BEFORE + int(random.integers(20, 50))
-        vertex = int(random.integers(3 * COLUMNS, ROWS * COLUMNS))
-        way = free[first + 1, vertex] - free[first - 1, vertex]
-        speed = numpy.linalg.norm(way) * FPS / 2.
-        centre = free[first, vertex] + way / max(numpy.linalg.norm(way), 1e-9) * radius
-        apart = numpy.linalg.norm(free - centre, axis=2)
-        if speed > 0.1 and apart[:first].min() > radius + 1e-3:
-            ball = {'type': 'sphere', 'centre': centre.tolist(), 'radius_m': radius}
-            real = simulate(tool, model, clamps, scratch, obstacles=[ball])
-            apart = numpy.linalg.norm(real[N_BEFORE:] - centre, axis=2).min(axis=0)
-            return real, numpy.flatnonzero(apart < radius + 2e-3)
-    raise RuntimeError('the cloth is too slow to touch a ball')
-
-
-def lead_with_finger(tool, model, clamps, free, size, scratch, random):
-    """A patch that is taken hold of, and led off the way it would go."""
-    first = N_BEFORE + int(random.integers(20, 50))
-    rows, columns = random.integers(2, 5, 2)
-    row, column = random.integers(2, ROWS - rows + 1), random.integers(0, COLUMNS - columns + 1)
-    patch = ((row + numpy.arange(rows))[:, None] * COLUMNS + column +
-             numpy.arange(columns)).ravel()
-    way = random.normal(size=3) * (0.3, 1., 0.3)
-    on = numpy.clip((numpy.arange(len(clamps)) - first) / (0.2 * FPS), 0., 1.)
-    on = on ** 2 * (3. - 2. * on)
-    path = free[:, patch] + 0.003 * size * on[:, None, None] * way / numpy.linalg.norm(way)
-    real = simulate(tool, model, numpy.concatenate([clamps, path], axis=1), scratch,
-                    held=HELD + tuple(int(vertex) for vertex in patch), from_s=first / FPS)
-    return real, patch
-
-
-def act_locally(tool, model, clamps, case, free, scratch, random):
-    """The cloth with a local case, and where its force acts (None: no place of its own)."""
-    if case['outside'] == 'ball':
-        return touch_with_ball(tool, model, clamps, free, case['severity'], scratch, random)
-    if case['outside'] == 'finger':
-        return lead_with_finger(tool, model, clamps, free, case['severity'], scratch, random)
-    real = simulate(tool, model, clamps, scratch)
-    if case['outside'] == 'slip':
-        return real, None
-    # Vertices that stand for more of the hem than of what is above it.
-    height = case['effects']['mass_distribution']['height']
-    row = numpy.arange(ROWS * COLUMNS) // COLUMNS
-    return real, numpy.flatnonzero((ROWS - 1.5 - row) * HEIGHT / (ROWS - 1) < height)
-
-
-def film(folder, name, positions, clamps, random):
-    """Noise and what is hidden; the stated noise is what a rig would state."""
-    noise = random.uniform(3e-4, 5e-4)
-    seen = positions[N_BEFORE:] + noise * random.normal(size=positions[N_BEFORE:].shape)
-    row, column = numpy.divmod(numpy.arange(ROWS * COLUMNS), COLUMNS)
-    for _ in range(3):
-        # Something passes before the cloth.
-        first = random.integers(0, N_FRAMES - 12)
-        at = random.uniform(0, (ROWS, COLUMNS))
-        way = random.normal(size=2) * 0.2
-        for frame in range(first, first + random.integers(6, 12)):
-            y, x = at + way * (frame - first)
-            seen[frame, (row - y) ** 2 + (column - x) ** 2 < 2.5] = numpy.nan
-    lost = random.random(seen.shape[:2]) < 0.01
-    seen[lost] = numpy.nan
-    write_take(folder, name, seen, clamps[N_BEFORE:], noise)
-    return noise
-
-
-def record(tool, case, folder, name, scratch, random):
-    """Records a case and its baseline; returns what the label needs beyond the case."""
-    plain = real_model(case['family'], random)
-    model = copy.deepcopy(plain)
-    model['effects'].update(copy.deepcopy(case['effects']))
-    # Effects count from when the simulation starts, half a second before the recording.
-    motion = choose_motion(random)
-    clamps = clamps_of(motion, random)
-    quiet = simulate(tool, plain, clamps, scratch)
-    region = None
+def record(realities, case, folder, name, seed, every=False):
+    """Records a case and what is given beside it (every: all that could be); returns what the
+    label needs beyond the case."""
+    random = numpy.random.default_rng([seed, case['draw']])
+    numbers = families.draw_numbers(random)
+    setup = move(choose_setup(case, random), random)
+    family = case['family']
+    quiet = realities.simulate(family, setup, numbers)
+    region, clock, change = None, None, None
     if case['kind'] == 'local':
-        real, region = act_locally(tool, model, clamps, case, quiet, scratch, random)
+        real, region = act_locally(realities, case, numbers, setup, quiet, random)
     elif case['outside']:
-        real = simulate_outside(tool, model, clamps, case['outside'], case['severity'], scratch)
+        real = simulate_outside(realities, family, numbers, case, setup, random)
+        clock, change = shape_outside(case, setup, random)
     elif case['effects']:
-        real = simulate(tool, model, clamps, scratch)
+        real = realities.simulate(family, setup, numbers, case['effects'])
     elif case.get('bulge_m'):
-        real = simulate(tool, plain, clamps, scratch, bulge_m=case['bulge_m'])
+        real = realities.simulate(family, dict(setup, bulge_m=case['bulge_m']), numbers)
     else:
         real = quiet
-    noise = film(os.path.join(folder, 'take'), name, real, clamps, random)
-    other = motion if case['baseline'] == 'same' else choose_motion(random)
-    clamps = clamps_of(other, random)
-    film(os.path.join(folder, 'baseline'), name + '-baseline',
-         simulate(tool, plain, clamps, scratch), clamps, random)
-    change = (real - quiet)[N_BEFORE:]
+    noise = film(os.path.join(folder, 'take'), name, setup, real, random, clock, change)
+    label = {'noise_m': noise, 'region': None if region is None else [int(k) for k in region],
+             'fps': setup['how']['fps'], 'family_is': 'own' if family in OWN else 'outside'}
+    times = numpy.arange(0., setup['how']['seconds'], 1. / setup['how']['fps'])
+    before = families.interpolate(quiet, BEFORE + times)
+    after = families.interpolate(real, BEFORE + (clock(times) if clock else times))
+    moved = (change(after, times) if change else after) - before
+    if case['kind'] == 'pair':
+        # How far the weaker one of the two moves the cloth beyond the other.
+        label['second_m'] = min(root_mean_square(real - realities.simulate(
+            family, setup, numbers, {name: case['effects'][name]})) for name in case['effects'])
     # What begins later leaves the cloth as it was until then, to the last bit but one.
-    moved = numpy.flatnonzero(numpy.abs(change).max(axis=(1, 2)) > 1e-5)
-    return {'size_m': float(numpy.sqrt((change ** 2).sum(axis=2).mean())), 'noise_m': noise,
-            'region': None if region is None else [int(vertex) for vertex in region],
-            'onset_s': float(moved[0] / FPS) if len(moved) and moved[0] else None}
+    begun = numpy.flatnonzero(numpy.abs(moved).max(axis=(1, 2)) > 1e-5)
+    label['size_m'] = root_mean_square(moved)
+    label['onset_s'] = float(times[begun[0]]) if len(begun) and begun[0] else None
+    given = {'twin': 'twin', 'cousin': 'cousin', 'same': 'baseline_same',
+             'other': 'baseline_other'} if every else \
+        {case['evidence']: 'simulated' if case['evidence'] in ('twin', 'cousin') else 'baseline'}
+    for evidence, beside in given.items():
+        if evidence != 'none':
+            label.update(add_evidence(
+                realities, evidence, os.path.join(folder, beside), '%s-%s' % (name, beside.replace(
+                    '_', '-')), case, numbers, setup, quiet, random))
+    return label

@@ -12,7 +12,7 @@ import os
 import secrets
 
 COMMITMENT = 'commitment.txt'
-TAKES = ('baseline', 'take')
+TAKES = ('baseline', 'simulated', 'take')
 
 
 class BrokenSeal(Exception):
@@ -23,6 +23,8 @@ def hash_takes(folder):
     """The hash of what a diagnosis reads of the case in a folder."""
     digest = hashlib.sha256()
     for take in TAKES:
+        if not os.path.isdir(os.path.join(folder, take)):
+            continue
         for name in sorted(os.listdir(os.path.join(folder, take))):
             with open(os.path.join(folder, take, name), 'rb') as file:
                 content = file.read()

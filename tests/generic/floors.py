@@ -103,7 +103,7 @@ PRY = ('tests/core/', 'tests/fuzz/', 'tests/bench/')
 PENDING = ()
 
 # C++ and OpenCV are here only.
-CPLUSPLUS = ('gst/cv/', 'tests/reference/')
+CPLUSPLUS = ('gst/cv/', 'tests/reference/', 'tests/gapbench/bullet.cc')
 
 LICENCE = 'SPDX-License-Identifier: LGPL-2.1-or-later'
 WARN_LINES, MAX_LINES, README_LINES = 800, 1200, 15

@@ -18,13 +18,15 @@ import numpy
 
 tool, gapbench = (os.path.abspath(path) for path in sys.argv[1:])
 sys.path.insert(0, gapbench)
+import families  # pylint: disable=wrong-import-position,import-error
 import reality  # pylint: disable=wrong-import-position,import-error
 
-COLUMNS, ROWS = reality.COLUMNS, reality.ROWS
-SQUARE = reality.WIDTH / (COLUMNS - 1)
+CLOTH = reality.CLOTH
+COLUMNS, ROWS, WIDTH = CLOTH['columns'], CLOTH['rows'], CLOTH['width_m']
+SQUARE = WIDTH / (COLUMNS - 1)
 # Squares are square; the sheet of the benchmark is not quite made of them.
-reality.HEIGHT = SQUARE * (ROWS - 1)
-reality.N_FRAMES = 50
+HEIGHT = CLOTH['height_m'] = SQUARE * (ROWS - 1)
+FPS, N_FRAMES = 50., 50
 # Faces between two vertices, so that the filmed cloth is smooth; the print has a margin.
 FINE = 3
 CAMERAS = ('left', 'middle', 'right')
@@ -55,7 +57,7 @@ def save(path, value):
 
 def make_rig():
     """Cameras at 0.95 m around the cloth's middle, one of them low, one high."""
-    middle = numpy.array([reality.WIDTH / 2, 0, -reality.HEIGHT / 2])
+    middle = numpy.array([WIDTH / 2, 0, -HEIGHT / 2])
     cameras = []
     for name, around, up in zip(CAMERAS, (-28, 2, 27), (8, -12, 14)):
         a, b = numpy.radians([around, up])
@@ -97,7 +99,7 @@ def write_cloth(folder, positions):
     assert abs(inside - positions).max() < 1e-12
     os.mkdir(folder)
     save(folder + '/take.json', {
-        'version': 1, 'name': 'cloth', 'fps': reality.FPS,
+        'version': 1, 'name': 'cloth', 'fps': FPS,
         'grid': {'columns': fine.shape[2], 'rows': fine.shape[1],
                  'width_m': SQUARE * (COLUMNS + 1), 'height_m': SQUARE * (ROWS + 1)}})
     numpy.save(folder + '/positions.npy',
@@ -128,10 +130,8 @@ def film(cloth, take, clamps, seed, case):
     if os.path.exists(take + '/mesh.obj'):
         os.remove(take + '/mesh.obj')
     save(take + '/take.json', {
-        'version': 1, 'name': take, 'fps': reality.FPS,
-        'grid': {'columns': COLUMNS, 'rows': ROWS, 'width_m': reality.WIDTH,
-                 'height_m': reality.HEIGHT},
-        'held': [{'vertex': vertex} for vertex in reality.HELD]})
+        'version': 1, 'name': take, 'fps': FPS,
+        'grid': CLOTH, 'held': [{'vertex': 0}, {'vertex': COLUMNS - 1}]})
     numpy.save(take + '/clamps.npy', clamps.astype('float32'))
 
 
@@ -199,14 +199,16 @@ def main():
         'square_m': SQUARE, 'origin_uv_m': [SQUARE, SQUARE],
         'cloth_m': [SQUARE * (COLUMNS + 1), SQUARE * (ROWS + 1)], 'first_square': 'black'})
     save('model.json', reality.diagnosed_model())
-    random = numpy.random.default_rng(7)
-    real = reality.real_model('membrane-implicit-fine', random)
+    random = numpy.random.default_rng(8)
+    real = families.draw_numbers(random)
+    realities = families.Realities(tool, '.')
+    times = reality.BEFORE + numpy.arange(N_FRAMES) / FPS
     clamps = {}
-    for seed, name in enumerate(('filmed', 'accepted')):
-        paths = reality.clamps_of(reality.choose_motion(random), random)
-        positions = reality.simulate(tool, real, paths, '.')
-        write_cloth(name, positions[reality.N_BEFORE:])
-        clamps[name] = paths[reality.N_BEFORE:]
+    for name in ('filmed', 'accepted'):
+        setup = reality.move(reality.choose_setup({'stranger': None}, random), random)
+        positions = realities.simulate('membrane-implicit-fine', setup, real)
+        write_cloth(name, families.interpolate(positions, times))
+        clamps[name] = families.interpolate(setup['paths'], times)
     film('accepted', 'baseline', clamps['accepted'], 9, None)
     for seed, (name, case) in enumerate(CASES.items()):
         film('filmed', name, clamps['filmed'], seed, case)
