@@ -296,6 +296,17 @@ def check_copy(browser):
         'areal_density = 0.122  # kg/m²; was 0.2; areal density × 0.61\n')
 
 
+def check_refused_copy(browser):
+    """Where pages may not copy, they say so."""
+    for allowed, said in (('true', 'Copied.'), ('false', 'This browser does not let pages copy')):
+        browser.run('navigator.clipboard.writeText = () => Promise.reject(new Error("no"));'
+                    'document.execCommand = () => %s; document.getElementById("copied").textContent = ""' % allowed)
+        browser.click('#copy')
+        browser.settle()
+        assert browser.text('#copied').startswith(said), browser.text('#copied')
+        assert browser.run('return document.activeElement.id + document.querySelectorAll("textarea").length') == 'copy0'
+
+
 def check_points(browser, play):
     """Which points are shown, against the page's own arrays."""
     captions = browser.run('return [...document.querySelectorAll(".point figcaption")].map(node => node.innerText)')
@@ -434,6 +445,7 @@ def check_page(program):
         check_numbers(browser)
         check_copy(browser)
         check_points(browser, play)
+        check_refused_copy(browser)
         check_playback(browser)
         check_keyboard(browser)
         assert not browser.log()
