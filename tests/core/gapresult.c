@@ -316,7 +316,8 @@ test_changes (void)
   assert_change ("damping.mass", 0.3, 0, "1/s", "damping mass 0.3 → 0 1/s");
   assert_change ("effects.air_drag.coefficient", NAN, 1.14, "1",
       "air drag coefficient 1.14");
-  assert_change ("effects.wind.x", -0.5, -1, "m/s", "wind x -0.5 → -1 m/s");
+  assert_change ("effects.wind.x", -0.5, -1, "m/s",
+      "wind x −0.5 → −1 m/s");
   assert_change ("effects.extrinsic_drift.tilt", NAN, G_PI / 90, "rad",
       "extrinsic drift tilt 2°");
   assert_change ("effects.self_contact.thickness", NAN, 0.0015, "m",

@@ -296,6 +296,17 @@ def check_copy(browser):
         'areal_density = 0.122  # kg/m²; was 0.2; areal density × 0.61\n')
 
 
+def check_refused_copy(browser):
+    """Where pages may not copy, they say so."""
+    for allowed, said in (('true', 'Copied.'), ('false', 'This browser does not let pages copy')):
+        browser.run('navigator.clipboard.writeText = () => Promise.reject(new Error("no"));'
+                    'document.execCommand = () => %s; document.getElementById("copied").textContent = ""' % allowed)
+        browser.click('#copy')
+        browser.settle()
+        assert browser.text('#copied').startswith(said), browser.text('#copied')
+        assert browser.run('return document.activeElement.id + document.querySelectorAll("textarea").length') == 'copy0'
+
+
 def check_points(browser, play):
     """Which points are shown, against the page's own arrays."""
     captions = browser.run('return [...document.querySelectorAll(".point figcaption")].map(node => node.innerText)')
@@ -408,10 +419,10 @@ def check_without_webgl(browser, program, folder):
 
 
 def fits(browser, width):
-    """Whether a window so narrow needs no sideways scrolling, nor any table in it."""
+    """Whether a window so wide needs no sideways scrolling, nor any table in it."""
     browser.devtools('Emulation.setDeviceMetricsOverride', width=width, height=800, deviceScaleFactor=1, mobile=False)
     browser.settle()
-    wide = browser.run('return [...document.querySelectorAll(".wide, body")].filter('
+    wide = browser.run('return [...document.querySelectorAll(".wide, .shares, body")].filter('
                        'node => node.scrollWidth > node.clientWidth).map(node => node.outerHTML.slice(0, 200))')
     return browser.run('return document.documentElement.scrollWidth') == width and not wide
 
@@ -434,12 +445,13 @@ def check_page(program):
         check_numbers(browser)
         check_copy(browser)
         check_points(browser, play)
+        check_refused_copy(browser)
         check_playback(browser)
         check_keyboard(browser)
         assert not browser.log()
         browser.devtools('Emulation.setEmulatedMedia', features=[{'name': 'prefers-color-scheme', 'value': 'dark'}])
         assert browser.run('return getComputedStyle(document.body).backgroundColor') != light
-        assert fits(browser, 360)
+        assert fits(browser, 1240) and fits(browser, 360)
         check_policy(browser)
         browser.devtools('Emulation.clearDeviceMetricsOverride')
         show(browser, program, 'hostile', folder)

@@ -220,6 +220,15 @@ cloth_gap_result_summary (const ClothGapResult * result)
   return g_string_free (text, FALSE);
 }
 
+/* Three digits, with the sign that is as wide as a digit. */
+static void
+say_signed (GString * text, gdouble value)
+{
+  if (value < 0.)
+    g_string_append (text, "−");
+  say_number (text, "%.3g", fabs (value));
+}
+
 /* A number with its unit, as people say it: angles in degrees, short lengths in mm. */
 static void
 say_quantity (GString * text, gdouble value, const gchar * unit)
@@ -231,7 +240,7 @@ say_quantity (GString * text, gdouble value, const gchar * unit)
     value *= 1000.;
     unit = "mm";
   }
-  say_number (text, "%.3g", value);
+  say_signed (text, value);
   if (strcmp (unit, "1") == 0 || *unit == '\0')
     return;
   if (strcmp (unit, "°") != 0)
@@ -294,7 +303,7 @@ cloth_gap_change_text (const gchar * name, gdouble before, gdouble after,
     return g_string_free (text, FALSE);
   }
   if (!isnan (before)) {
-    say_number (text, "%.3g", before);
+    say_signed (text, before);
     g_string_append (text, " → ");
   }
   say_quantity (text, after, unit);

@@ -213,5 +213,5 @@ export function charts(gap, arrays, time) {
   return section('when', 'When and in which way', time ? (arrays.series.null_low
     ? 'The band is where 95% of simulations lie that lack nothing. ' : '') + 'Click to go to a moment.' : null,
   cells.length ? element('div', { class: 'charts' }, ...cells) : null,
-  tables.length ? element('div', { class: 'columns three' }, ...tables) : null);
+  tables.length ? element('div', { class: 'columns' }, ...tables) : null);
 }

@@ -35,8 +35,8 @@ function row(gap, effect, index, about) {
     [bar(effect.probability, 'probability'), element('span', {}, probability(effect.probability)),
       element('small', {}, `p ${chance(effect.p_value)}`)],
     parameters(effect),
-    [bar(share.value, 'shrink', share.interval), element('span', {}, percent(share.value)), ' ',
-      element('span', { class: 'interval' }, range(share.interval, 100, 0))],
+    known(share.value) ? [bar(share.value, 'shrink', share.interval), element('span', {}, percent(share.value)), ' ',
+      element('span', { class: 'interval' }, range(share.interval, 100, 0))] : [],
     confused(gap, effect),
   ];
 }

@@ -31,7 +31,7 @@ async function copy(text) {
 function patch(gap) {
   if (!gap.patch.length) return null;
   const told = element('span', { id: 'copied', role: 'status' });
-  const button = element('button', { type: 'button', id: 'copy' }, 'Copy');
+  const button = element('button', { type: 'button', id: 'copy' }, 'Copy as text');
   button.addEventListener('click', async () => {
     const done = await copy(lines(gap));
     button.focus();

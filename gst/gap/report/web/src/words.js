@@ -60,7 +60,7 @@ export const quantity = (value, symbol) => {
   return symbol === 'm' && Math.abs(value) < 0.1 ? number(1000 * value) + ' mm' : number(value) + unit(symbol);
 };
 
-export const unit = (symbol) => symbol === '1' || symbol === '' ? '' : ' ' + symbol;
+export const unit = (symbol) => symbol === '1' || symbol === '' ? '' : (symbol === '°' ? '' : ' ') + symbol;
 
 export function probability(value) {
   if (!known(value)) return '–';
