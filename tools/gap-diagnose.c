@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "tools/gap-tool.h"
 
+#include <gio/gio.h>
 #include <glib/gstdio.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -10,6 +11,7 @@
 #include "gst/cloth-io/observations.h"
 #include "gst/gap/diagnose.h"
 #include "gst/gap/report/report.h"
+#include "tools/gap-simulator.h"
 
 static gboolean
 go_on (gpointer data, gdouble share, const gchar * what)
@@ -75,7 +77,8 @@ load_observations (gchar ** folders, const GPtrArray * takes, GError ** error)
 }
 
 static ClothGapResult *
-run_diagnosis (const Arguments * arguments, gchar ** effects, GError ** error)
+run_diagnosis (const Arguments * arguments, gchar ** effects,
+    GapSimulator * simulator, GError ** error)
 {
   gchar **folders = arguments->rest + 1;
   g_autoptr (ClothModel) model = cloth_model_load (arguments->model, error);
@@ -125,6 +128,8 @@ run_diagnosis (const Arguments * arguments, gchar ** effects, GError ** error)
   options.n_simulated = simulated->len;
   options.after = (ClothTake **) after->pdata;
   options.n_after = after->len;
+  options.simulator = simulator ? gap_simulator_get (simulator) : NULL;
+  options.simulator_runs = (guint) arguments->simulator_runs;
   options.model_file = arguments->model;
   options.effects = (const gchar * const *) effects;
   options.seed = (guint64) arguments->seed;
@@ -181,6 +186,14 @@ check_usage (const Arguments * arguments, gchar *** effects)
     return complain (BAD_USAGE, "name the folder of the report: --output DIR");
   if (arguments->threads < 0)
     return complain (BAD_USAGE, "--threads: give 0 for all, or a number");
+  if (arguments->simulator && (arguments->simulated || arguments->after))
+    return complain (BAD_USAGE,
+        "--simulator makes what --simulated and --after "
+        "give; leave these out");
+  if (arguments->simulator_runs < 0)
+    return complain (BAD_USAGE, "--simulator-runs: give a number, 0 for none");
+  if (arguments->run_seconds < 1)
+    return complain (BAD_USAGE, "--run-seconds: give a number of 1 or more");
   shared = find_shared (arguments);
   if (shared)
     return complain (BAD_USAGE,
@@ -209,6 +222,7 @@ diagnose (const Arguments * arguments)
 {
   g_auto (GStrv) effects = NULL;
   g_autoptr (GError) error = NULL;
+  g_autoptr (GapSimulator) simulator = NULL;
   g_autoptr (ClothGapResult) result = NULL;
   gboolean made;
   gint code = check_usage (arguments, &effects);
@@ -220,7 +234,11 @@ diagnose (const Arguments * arguments)
         "cannot write into the folder “%s”: give another --output",
         arguments->output);
   catch_interrupts ();
-  result = run_diagnosis (arguments, effects, &error);
+  if (arguments->simulator)
+    simulator = gap_simulator_new (arguments->simulator,
+        (guint) arguments->run_seconds, &error);
+  if (!error)
+    result = run_diagnosis (arguments, effects, simulator, &error);
   if (result && cloth_gap_result_write (result, arguments->output, &error)) {
     g_autofree gchar *summary = cloth_gap_result_summary (result);
 
@@ -234,7 +252,8 @@ diagnose (const Arguments * arguments)
   /* Only an empty folder goes. */
   if (made)
     g_rmdir (arguments->output);
-  if (g_error_matches (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_CANCELLED))
+  if (g_error_matches (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_CANCELLED)
+      || g_error_matches (error, G_IO_ERROR, G_IO_ERROR_CANCELLED))
     return complain (FAILED, "stopped; nothing was written");
   return complain (FAILED, "%s", error->message);
 }
@@ -253,9 +272,10 @@ compare_takes (const Arguments * arguments)
         "compare takes one recording and its simulation: compare RECORDED "
         "SIMULATED --model MODEL --output DIR; give several to diagnose "
         "TAKE… --simulated TAKE…");
-  if (arguments->simulated || arguments->hold_outs)
-    return complain (BAD_USAGE, "compare takes no --simulated and no "
-        "--hold-out; give these to diagnose");
+  if (arguments->simulated || arguments->hold_outs || arguments->simulator)
+    return complain (BAD_USAGE,
+        "compare takes no --simulated, no --hold-out and "
+        "no --simulator; give these to diagnose");
   one.rest = rest;
   one.simulated = simulated;
   return diagnose (&one);

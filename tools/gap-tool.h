@@ -9,10 +9,10 @@
 
 typedef struct
 {
-  gchar *format, *scene, *output, *model, *effects;
+  gchar *format, *scene, *output, *model, *effects, *simulator;
   gchar **baselines, **hold_outs, **simulated, **after;
   gint64 seed;
-  gint threads, run_seconds;
+  gint threads, run_seconds, simulator_runs;
   gchar **rest;                 /* the command and what belongs to it */
 } Arguments;
 

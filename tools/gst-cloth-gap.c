@@ -21,9 +21,10 @@ run (gconstpointer data)
         "name a command: diagnose, compare, simulate, check-simulator or effects");
   if (!is_diagnose && (arguments->model || arguments->effects ||
           arguments->baselines || arguments->hold_outs || arguments->simulated
-          || arguments->after))
+          || arguments->after || arguments->simulator))
     return complain (BAD_USAGE, "%s takes no --model, --effects, --baseline, "
-        "--hold-out, --simulated or --after; they are diagnose's", command);
+        "--hold-out, --simulated, --after or --simulator; they are diagnose's",
+        command);
   if (is_compare)
     return compare_takes (arguments);
   if (is_diagnose)
@@ -73,7 +74,9 @@ spread_lists (char **argv)
 int
 main (int argc, char **argv)
 {
-  Arguments arguments = {.run_seconds = GAP_SIMULATOR_SECONDS };
+  Arguments arguments = {.run_seconds = GAP_SIMULATOR_SECONDS,
+    .simulator_runs = CLOTH_GAP_SIMULATOR_RUNS
+  };
   const GOptionEntry entries[] = {
     {"model", 'm', 0, G_OPTION_ARG_FILENAME, &arguments.model,
         "diagnose: model.json that the takes are held against", "MODEL"},
@@ -87,6 +90,12 @@ main (int argc, char **argv)
     {"after", 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &arguments.after,
           "diagnose, compare: the same with the effect added, of what judges",
         "TAKE…"},
+    {"simulator", 0, 0, G_OPTION_ARG_STRING, &arguments.simulator,
+        "diagnose: command that runs your simulator, instead of --simulated "
+          "and --after", "COMMAND"},
+    {"simulator-runs", 0, 0, G_OPTION_ARG_INT, &arguments.simulator_runs,
+          "diagnose: most runs of it for each take, to find its numbers (20)",
+        "N"},
     {"effects", 0, 0, G_OPTION_ARG_STRING, &arguments.effects,
           "diagnose: effects to consider, with commas between them (all)",
         "LIST"},
@@ -96,7 +105,8 @@ main (int argc, char **argv)
         "simulate, check-simulator: take that gives mesh, clamps, obstacles "
           "and times", "TAKE"},
     {"run-seconds", 0, 0, G_OPTION_ARG_INT, &arguments.run_seconds,
-        "check-simulator: seconds that one simulation may take (600)", "N"},
+        "diagnose, check-simulator: seconds that one run of your simulator may "
+          "take (600)", "N"},
     {"output", 'o', 0, G_OPTION_ARG_FILENAME, &arguments.output,
         "diagnose: folder of the report; simulate: take to write", "DIR"},
     {"seed", 0, 0, G_OPTION_ARG_INT64, &arguments.seed,
@@ -115,6 +125,7 @@ main (int argc, char **argv)
 
   g_free (arguments.model);
   g_free (arguments.effects);
+  g_free (arguments.simulator);
   g_free (arguments.format);
   g_free (arguments.scene);
   g_free (arguments.output);

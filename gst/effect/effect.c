@@ -8,19 +8,21 @@
 #define LANES(name) extern const ClothEffect cloth_effect_##name;
 #define SCENE(name) LANES (name)
 #define CAPTURE(name) LANES (name)
+#define RECORDING(name) LANES (name)
 #include "gst/effect/list.h"
 
 static const ClothEffect *const table[] = {
 #define LANES(name) &cloth_effect_##name,
 #define SCENE(name) LANES (name)
 #define CAPTURE(name) LANES (name)
+#define RECORDING(name) LANES (name)
 #include "gst/effect/list.h"
 };
 
 /* @n_effects: (out): how many there are
  *
  * Returns: (transfer none) (array length=n_effects): every effect once, by side:
- *   physics, clamp, numerics, camera, image
+ *   physics, clamp, numerics, camera, image, measurement
  */
 const ClothEffect *const *
 cloth_effect_table (guint * n_effects)
@@ -61,7 +63,9 @@ const gchar *
 cloth_effect_side_name (ClothEffectSide side)
 {
   static const gchar *const names[] =
-      { "physics", "clamp", "numerics", "camera", "image" };
+      { "physics", "clamp", "numerics", "camera", "image",
+    "measurement"
+  };
 
   return names[side];
 }

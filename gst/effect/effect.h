@@ -8,13 +8,16 @@
 G_BEGIN_DECLS
 
 /* No effect has more parameters. */
-#define CLOTH_EFFECT_MAX_PARAMETERS 5
+#define CLOTH_EFFECT_MAX_PARAMETERS 6
+/* No parameter is tried at more values. */
+#define CLOTH_EFFECT_MAX_TRIED 11
 
 /* @CLOTH_EFFECT_PHYSICS: a force, a mass or a rest shape of the cloth
  * @CLOTH_EFFECT_CLAMP: where the clamps really were
  * @CLOTH_EFFECT_NUMERICS: how the simulator computes
  * @CLOTH_EFFECT_CAMERA: where and when the cameras say a point was
  * @CLOTH_EFFECT_IMAGE: what the picture does to a point found in it
+ * @CLOTH_EFFECT_MEASUREMENT: what was done to the positions of all vertices alike
  *
  * On which side of the comparison an effect acts.
  */
@@ -23,7 +26,8 @@ typedef enum {
   CLOTH_EFFECT_CLAMP,
   CLOTH_EFFECT_NUMERICS,
   CLOTH_EFFECT_CAMERA,
-  CLOTH_EFFECT_IMAGE
+  CLOTH_EFFECT_IMAGE,
+  CLOTH_EFFECT_MEASUREMENT
 } ClothEffectSide;
 
 /* @CLOTH_EFFECT_TEST_SCORE: by derivatives of what is simulated, or seen, along its parameters
@@ -34,16 +38,18 @@ typedef enum {
  *   accepted, as what it did follows from nothing
  * @CLOTH_EFFECT_TEST_REPEAT: by the share of pictures that show the one before once more;
  *   one effect of one parameter
+ * @CLOTH_EFFECT_TEST_TRIAL: it is there or it is not: by what changes when it is there with the
+ *   values that are tried, one trial each; where no trial is made, not at all
  * @CLOTH_EFFECT_TEST_NONE: not at all
  *
- * How a diagnosis tests an effect. Those of numerics are never tested: they are part of
- * the simulator's own error, which is projected out.
+ * How a diagnosis tests an effect.
  */
 typedef enum {
   CLOTH_EFFECT_TEST_SCORE,
   CLOTH_EFFECT_TEST_JUMP,
   CLOTH_EFFECT_TEST_STOCHASTIC,
   CLOTH_EFFECT_TEST_REPEAT,
+  CLOTH_EFFECT_TEST_TRIAL,
   CLOTH_EFFECT_TEST_NONE
 } ClothEffectTest;
 
@@ -58,7 +64,8 @@ typedef enum {
  * @shapes: it only shapes the effect and means nothing at the null of the others: a
  *   diagnosis leaves it where it is
  * @n_tried: number of @tried
- * @tried: where to leave it, one trial each; none: at @null_value
+ * @tried: where to leave it, one trial each; none: at @null_value. Parameters of one effect that
+ *   are tried have as many, which belong together
  * @blurb: one plain sentence
  *
  * One number of an effect.
@@ -73,7 +80,7 @@ typedef struct {
   gboolean one_sided;
   gboolean shapes;
   guint n_tried;
-  gdouble tried[2];
+  gdouble tried[CLOTH_EFFECT_MAX_TRIED];
   const gchar *blurb;
 } ClothEffectParameter;
 
@@ -84,12 +91,14 @@ typedef struct {
  * @regressor: how a residual force would show it, one sentence
  * @confusions: (nullable) (array zero-terminated=1): ids of effects that look alike
  * @test: how a diagnosis tests it
- * @untested: of %CLOTH_EFFECT_TEST_NONE: why not; of %CLOTH_EFFECT_TEST_STOCHASTIC: why
- *   not where @varies isn't tested either; one sentence
+ * @untested: of %CLOTH_EFFECT_TEST_NONE: why not; of %CLOTH_EFFECT_TEST_TRIAL: why not where no
+ *   trial is made; of %CLOTH_EFFECT_TEST_STOCHASTIC: why not where @varies isn't tested
+ *   either; one sentence
  * @varies: of %CLOTH_EFFECT_TEST_STOCHASTIC: id of the effect whose parameters change
  * @same_as: (nullable): the model's own number that it changes too: where that one is
  *   fitted to a take, the effect can't be tested on it
- * @needs_obstacles: without obstacles it does nothing
+ * @needs_obstacles: without obstacles it does nothing, but for a parameter “floor”, the height of
+ *   one that the scene doesn't state
  * @is_moving_air: it is not there where the air is still
  * @shared: of cameras: a value may hold for all of them
  * @n_parameters: number of @parameters

@@ -7,7 +7,8 @@
  *   LANES: gst/sim/effects/, acts in the lanes of the simulator;
  *   SCENE: gst/sim/effects/, changes the scene or the step before they are loaded, in
  *     gst/sim/numerics.c;
- *   CAPTURE: gst/rig/effects/, changes how a camera takes its pictures.
+ *   CAPTURE: gst/rig/effects/, changes how a camera takes its pictures;
+ *   RECORDING: gst/take/effects/, changes what is recorded of the positions.
  *
  * An includer defines the macros that it needs.
  *
@@ -20,6 +21,9 @@
 #endif
 #ifndef CAPTURE
 #define CAPTURE(name)
+#endif
+#ifndef RECORDING
+#define RECORDING(name)
 #endif
 
 LANES (air_drag)
@@ -65,7 +69,15 @@ CAPTURE (defocus)
 CAPTURE (shading_shift)
 CAPTURE (colour_crosstalk)
 CAPTURE (noise)
+RECORDING (position_scale)
+RECORDING (misalignment)
+RECORDING (axes_exchange)
+RECORDING (label_exchange)
+RECORDING (time_scale)
+RECORDING (recording_delay)
+RECORDING (smoothing)
 
 #undef LANES
 #undef SCENE
 #undef CAPTURE
+#undef RECORDING

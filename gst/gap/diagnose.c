@@ -9,22 +9,23 @@
 
 #include "gst/gap/camera/faults.h"
 #include "gst/gap/design/propose.h"
-#include "gst/gap/inference/baseline.h"
-#include "gst/gap/inference/name.h"
-#include "gst/gap/inference/select.h"
+#include "gst/gap/inference/candidates.h"
+#include "gst/gap/inference/free-numbers.h"
+#include "gst/gap/inference/infer.h"
 #include "gst/gap/load.h"
 #include "gst/gap/localise/null-distribution.h"
 #include "gst/gap/localise/where.h"
+#include "gst/gap/loop/refit.h"
 #include "gst/gap/report/patch.h"
 #include "gst/gap/verdict/agreement.h"
+#include "gst/gap/verdict/confirm.h"
 #include "gst/gap/verdict/failure.h"
 #include "gst/gap/verdict/implausible.h"
 #include "gst/gap/verdict/judge.h"
 #include "gst/gap/verdict/measure.h"
-#include "gst/gap/verdict/unexplained.h"
 
 /* Version of the priors and thresholds: a change of either changes probabilities. */
-#define PRIORS "4"
+#define PRIORS "5"
 
 /* The stages. Each reads what those before it wrote into the diagnosis. */
 static gboolean
@@ -48,30 +49,13 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
    * fitted model and the precisions of its free numbers. */
   if (!cloth_diagnosis_fit_free (d, model, error))
     return FALSE;
-  /* Reads the recordings; writes each study's discrepancy: its twin, or the baseline that moves
-   * alike. */
-  cloth_diagnosis_find_discrepancies (d);
-  /* Reads the studies of the baselines and the twins at the fitted model; writes what the log
-   * Bayes factor of each effect must exceed. */
-  if (cloth_diagnosis_n_references (d)
-      && !cloth_diagnosis_study_baselines (d, error))
-    return FALSE;
-  /* Reads the studies of the takes; writes their residuals and derivatives at the model. */
-  if (!cloth_diagnosis_linearise (d, 0, d->n_takes, d->model, 0.3, 0.4, error))
-    return FALSE;
-  /* Without these: reads the takes with the other force model; writes the same bounds. */
-  if (!cloth_diagnosis_n_references (d)
-      && !cloth_diagnosis_study_other_model (d, error))
-    return FALSE;
-  /* Reads the residuals of takes and baselines; writes a sign of something unknown. */
-  d->unexplained = cloth_diagnosis_find_unexplained (d);
-  /* Reads the residuals and derivatives; writes the ranked effects, and the models with those
-   * that are accepted one by one. */
-  if (!cloth_diagnosis_select (d, error))
+  /* Reads the studies of takes, baselines and twins; writes the posterior over effects, those that
+   * are accepted and the model with them. */
+  if (!cloth_diagnosis_infer (d, error))
     return FALSE;
   /* Reads the candidates and the ranked effects; writes those that could not be tested. */
   cloth_diagnosis_note_untested (d);
-  /* Reads the models with and without effects; writes the gap of each take, its floor, its shrink. */
+  /* Reads the models with and without the effects; writes the gap of each take, its floor, its shrink. */
   if (!cloth_diagnosis_measure (d, error))
     return FALSE;
   /* Reads all takes and hold-outs with the accepted effects; writes whether they agree on them. */
@@ -92,7 +76,18 @@ diagnose (ClothDiagnosis * d, const ClothModel * model, GError ** error)
    * the onset. */
   cloth_diagnosis_fill_null_distribution (d);
   /* Reads the groups of effects that can't be told apart; writes what to film next. */
-  return cloth_diagnosis_propose (d, error);
+  if (!cloth_diagnosis_propose (d, error))
+    return FALSE;
+  /* Reads the accepted effects and the takes; lets the user's simulator run, if there is a command
+   * for it; writes what to change there, and what it makes with that of what judges. */
+  if (!cloth_diagnosis_refit (d, error))
+    return FALSE;
+  /* Reads what the user's simulator made with the effects; writes the measured shrink. */
+  if (!cloth_diagnosis_measure_after (d, error))
+    return FALSE;
+  /* Reads that; corrects the verdict. */
+  cloth_diagnosis_confirm (d);
+  return TRUE;
 }
 
 /* A model that diverges, even without an effect, decides nothing; a report says so. Other failures,
@@ -120,22 +115,23 @@ fill_provenance (const ClothDiagnosis * d, gint64 start)
   result->seconds = (g_get_monotonic_time () - start) * 1e-6;
   cloth_gap_result_add_version (result, PACKAGE, PACKAGE_VERSION);
   cloth_gap_result_add_version (result, "priors", PRIORS);
-  cloth_gap_result_add_threshold (result, "least evidence (logarithm of the "
-      "Bayes factor)", d->least_log_bayes_factor, "1",
-      CLOTH_GAP_ORIGIN_PARAMETER, "Chosen on the benchmark; what the baseline "
-      "supports that nobody told is taken off.");
-  cloth_gap_result_add_threshold (result, "least share of the gap's variance",
-      CLOTH_DIAGNOSIS_LEAST_SHRINK, "1", CLOTH_GAP_ORIGIN_PARAMETER,
-      "Chosen on the benchmark.");
-  cloth_gap_result_add_threshold (result,
-      "largest rest over the floor, of variance", CLOTH_DIAGNOSIS_BAND, "1",
-      CLOTH_GAP_ORIGIN_PARAMETER, "Chosen on the benchmark.");
-  if (d->twins->len)
-    cloth_gap_result_add_threshold (result, "what the foretold gap after is "
-        "off by, RMS", sqrt (d->prediction_square), "m",
-        CLOTH_GAP_ORIGIN_SIMULATED, "The other force model with the accepted "
-        "effects was the recording, without them the simulation; with the "
-        "floor it bounds the rest.");
+  cloth_gap_result_add_threshold (result, "least probability of an accepted "
+      "effect", 0.5, "1", CLOTH_GAP_ORIGIN_DEFINITION, "It is likelier than "
+      "not.");
+  cloth_gap_result_add_threshold (result, "least probability of something "
+      "unknown", 0.5, "1", CLOTH_GAP_ORIGIN_DEFINITION, "It is likelier than "
+      "not.");
+  cloth_gap_result_add_threshold (result, "least share of the gap that is "
+      "unknown", CLOTH_DIAGNOSIS_LEAST_SHARE, "1",
+      CLOTH_GAP_ORIGIN_PARAMETER, "Less is not worth a word.");
+  if (d->options->simulator)
+    cloth_gap_result_add_threshold (result, "most runs of your simulator of "
+        "each take, to find its numbers", d->options->simulator_runs, "1",
+        CLOTH_GAP_ORIGIN_PARAMETER, "--simulator-runs.");
+  if (d->afters->len)
+    cloth_gap_result_add_threshold (result, "largest rest in your simulator "
+        "over the floor, of variance", CLOTH_DIAGNOSIS_LARGEST_REST, "1",
+        CLOTH_GAP_ORIGIN_PARAMETER, "One and a half floors, RMS.");
 }
 
 /* @takes: (array length=n_takes): what was recorded
@@ -144,10 +140,9 @@ fill_provenance (const ClothDiagnosis * d, gint64 start)
  * @options: what else is given
  * @error: #ClothFitError, #ClothSimError, or what reading a take says
  *
- * Runs the simulation with weak springs to what was recorded, tests by its score which
- * effect the residual supports once the model's free numbers and the simulator's own
- * error are taken off, adds those that are supported one by one, and measures the gap
- * without and with them.
+ * Runs the simulation with weak springs to what was recorded, finds the posterior over all
+ * sets of effects given the residual, what simulators differ by when nothing acts, and what the
+ * model must agree with, and measures the gap without and with those that are likelier than not.
  *
  * Returns: (transfer full) (nullable): what was found
  */
@@ -167,9 +162,9 @@ cloth_gap_diagnose (ClothTake ** takes, guint n_takes,
   }
   if (d.model)
     d.result->model =
-        d.n_accepted ? g_steal_pointer (&d.with[d.n_accepted -
-            1]) : g_steal_pointer (&d.model);
-  if (d.result->model && d.result->verdict != CLOTH_GAP_UNDECIDABLE)
+        d.with ? g_steal_pointer (&d.with) : g_steal_pointer (&d.model);
+  if (d.result->model && d.result->verdict != CLOTH_GAP_UNDECIDABLE
+      && !options->simulator)
     cloth_gap_result_fill_patch (d.result, model);
   fill_provenance (&d, start);
   return g_steal_pointer (&d.result);

@@ -3,6 +3,8 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/diagnosis.h"
 
+#include <string.h>
+
 /* Tells the caller how far the diagnosis is, after each frame of each simulation. */
 static gboolean
 frame_done (gpointer data, gdouble share)
@@ -27,7 +29,6 @@ cloth_diagnosis_init (ClothDiagnosis * d, ClothTake ** takes, guint n_takes,
 {
   *d = (ClothDiagnosis) {
   takes, n_takes, options};
-  d->least_log_bayes_factor = CLOTH_DIAGNOSIS_LEAST_LOG_BAYES_FACTOR;
   cloth_estimate_options_init (&d->study);
   d->study.rollout.seed = options->seed;
   d->study.rollout.threads = options->threads;
@@ -56,14 +57,9 @@ cloth_diagnosis_clear (ClothDiagnosis * d)
   cloth_candidates_free (d->candidates);
   g_free (d->precisions);
   g_free (d->all);
-  cloth_normal_equations_free (d->normal);
-  g_free (d->variability_precisions);
-  g_free (d->nuisances);
-  g_free (d->nuisance_precisions);
-  g_free (d->sound);
-  g_free (d->blocks);
-  for (guint i = 0; i < d->n_accepted; i++)
-    cloth_model_free (d->with[i]);
+  cloth_power_spectrum_free (d->discrepancy_variance);
+  g_free (d->clamps_off);
+  cloth_model_free (d->with);
   cloth_energy_spectrum_free (d->before);
   cloth_energy_spectrum_free (d->after);
   cloth_energy_spectrum_free (d->floor);
@@ -72,12 +68,11 @@ cloth_diagnosis_clear (ClothDiagnosis * d)
   for (guint i = 0; i < d->n_nulls; i++)
     cloth_windowed_gap_free (d->nulls[i]);
   g_free (d->what);
-  g_free (d->unexplained);
-  g_free (d->null_log_bayes_factors);
   for (guint i = 0; d->uncorrected && i < d->recordings->len; i++)
     g_free (d->uncorrected[i]);
   g_free (d->uncorrected);
   g_clear_pointer (&d->camera_effects, g_array_unref);
+  g_clear_pointer (&d->measured, g_array_unref);
   g_clear_pointer (&d->recordings, g_ptr_array_unref);
   g_clear_pointer (&d->twins, g_ptr_array_unref);
   g_clear_pointer (&d->afters, g_ptr_array_unref);
@@ -196,35 +191,32 @@ cloth_diagnosis_other_model (const ClothModel * model)
 }
 
 /* @d: a diagnosis
- * @effect: an effect
+ * @directions: (out) (array): the free numbers and the directions of what is accepted, but those of
+ *   what is there or not
+ * @precisions: (out) (array): of their priors
  *
- * Returns: whether it is accepted, or was and went again
+ * Returns: how many there are
  */
-gboolean
-cloth_diagnosis_is_decided (const ClothDiagnosis * d,
-    const ClothEffect * effect)
+guint
+cloth_diagnosis_list_accepted (const ClothDiagnosis * d, guint * directions,
+    gdouble * precisions)
 {
-  for (guint i = 0; i < d->n_accepted; i++)
-    if (cloth_diagnosis_accepted (d, i)->effect == effect)
-      return TRUE;
-  for (guint i = 0; i < d->n_dropped; i++)
-    if (g_array_index (d->candidates->list, ClothCandidate,
-            d->dropped[i]).effect == effect)
-      return TRUE;
-  return FALSE;
-}
+  guint m = d->candidates->n_free;
 
-/* @d: a diagnosis
- *
- * Returns: whether every take has a baseline that moves alike, whose discrepancy is taken off
- */
-gboolean
-cloth_diagnosis_has_discrepancies (const ClothDiagnosis * d)
-{
-  for (guint i = 0; i < d->n_takes; i++)
-    if (!cloth_diagnosis_study (d, i)->discrepancy)
-      return FALSE;
-  return TRUE;
+  memcpy (directions, d->all, m * sizeof *directions);
+  memcpy (precisions, d->precisions, m * sizeof *precisions);
+  for (guint c = 0; c < d->n_accepted; c++)
+    for (guint k = 0; k < cloth_diagnosis_accepted (d, c)->n; k++) {
+      const guint direction = cloth_diagnosis_accepted (d, c)->first + k;
+      const ClothDirection *of =
+          cloth_candidates_direction (d->candidates, direction);
+
+      if (of->present)
+        continue;
+      directions[m] = direction;
+      precisions[m++] = 1. / (of->prior * of->prior);
+    }
+  return m;
 }
 
 /* @d: a diagnosis

@@ -11,15 +11,11 @@
 
 G_BEGIN_DECLS
 
-/* An effect is accepted when its evidence is this at least, when it makes blocks better
- * that it was not estimated on, and when it removes this share of the gap's variance. Of the
- * first where a discrepancy is taken off it is enough that the gap, in which the simulator's
- * own error is too, is hardly larger. */
+/* A fault of a camera is accepted when its evidence is this at least. */
 #define CLOTH_DIAGNOSIS_LEAST_LOG_BAYES_FACTOR 10.
-#define CLOTH_DIAGNOSIS_LEAST_SHRINK 0.1
-/* What remains is no more than noise when it is below this many floors (variance). */
-#define CLOTH_DIAGNOSIS_BAND 2.25
-/* Standard deviations of parameters are given so many times as wide as the fit finds them, which
+/* Something unknown must be this share of the gap to be worth a word. */
+#define CLOTH_DIAGNOSIS_LEAST_SHARE 0.1
+/* Standard deviations of cameras' faults are given so many times as wide as the fit finds them, which
  * knows nothing of the simulator's own error: then about nine of ten of the blind benchmark's
  * intervals of 95% hold the truth. */
 #define CLOTH_DIAGNOSIS_SIGMA_WIDTH 3.6
@@ -74,56 +70,34 @@ typedef struct
   ClothCameraErrors camera_errors;
   GArray *camera_effects;       /* ClothGapEffect */
 
-  /* What is fitted and tested, made by name.c: the directions, and the numbers of all of them.
-   * The model with its free numbers fitted and the precisions of these are made by baseline.c.
-   * Read by all stages after it. */
+  /* What is fitted and tested, made by candidates.c: the directions, and the numbers of all of
+   * them. The model with its free numbers fitted and the precisions of these are made by
+   * free-numbers.c. Read by all stages after it. */
   ClothCandidates *candidates;
   guint *all;
   ClothModel *model;
   gdouble *precisions;
 
-  /* The test at hand, made by name.c, read by select.c and trial.c: the normal equations of the
-   * takes; the precisions of their columns of variability, which stand behind those of the
-   * directions; the columns that are fitted along in each test, and their precisions; the
-   * directions that could be simulated; the blocks of time that count. */
-  ClothNormalEquations *normal;
-  guint n_variability;
-  gdouble *variability_precisions;
-  guint *nuisances;
-  gdouble *nuisance_precisions;
-  gboolean *sound;
-  gboolean *blocks;
-  guint n_blocks;
+  /* The posterior, made by infer.c, read by verdict/: that something acts which no effect of the
+   * library is, and its share of the gap; a sentence on clamps that were elsewhere than logged,
+   * or NULL; whether the takes' references tell most of what
+   * the simulator itself is off by; the variance of the rest of that in the first take. */
+  gdouble unknown_probability, unknown_share;
+  gchar *clamps_off;
+  gboolean is_alike;
+  ClothPowerSpectrum *discrepancy_variance;
 
-  /* What an effect must exceed, made by baseline.c, read by name.c, trial.c and select.c: the
-   * least log Bayes factor of any, and for each candidate that of simulations which lack
-   * nothing. */
-  gdouble least_log_bayes_factor;
-  gdouble *null_log_bayes_factors;
-
-  /* Accepted effects one by one, made by select.c, shortened by measure.c, read by judge.c: candidates,
-   * their probabilities when they were accepted, the models with them and those before, and in
-   * each of these models the standard deviations of their directions. */
+  /* Accepted effects, made by conclude.c, read by verdict/: candidates, and the model with all of
+   * them, fitted on what doesn't judge; NULL without any. And an effect of chance that is likelier
+   * than not, or NULL. */
   guint accepted[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
-  gdouble probabilities[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
-  ClothModel *with[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
-  gdouble sigmas[CLOTH_DIAGNOSIS_MAX_ACCEPTED][CLOTH_DIAGNOSIS_MAX_ACCEPTED][CLOTH_EFFECT_MAX_PARAMETERS];
   guint n_accepted;
+  ClothModel *with;
+  const ClothEffect *chance;
 
-  /* Candidates that later ones made needless, made and read by select.c, and whether any effect
-   * was supported, read by judge.c. */
-  guint dropped[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
-  guint n_dropped;
-  gboolean supported;
-
-  /* A sign of something unknown, a sentence or NULL, and the mean square by which clamps are
-   * further off their paths than usual, m², or 0; made by unexplained.c, read by judge.c. */
-  gchar *unexplained;
-  gdouble clamps_off;
-
-  /* With twins, how much more than the floor the gap after would be if the accepted effects were all
-   * that is missing, mean square, m²; 0 without. Made by measure.c, read by judge.c. */
-  gdouble prediction_square;
+  /* What was measured of each recording, and behind them of all that judge; made and read by
+   * measure.c. */
+  GArray *measured;
 
   /* Energies of the nudged residuals of the first take before and after, and of the first
    * baseline, NULL where there is none; made by measure.c, read by where.c. The nudged residual
@@ -195,9 +169,8 @@ ClothRecording *cloth_diagnosis_after (const ClothDiagnosis * d,
     guint recording);
 guint cloth_diagnosis_count_faults (const ClothDiagnosis * d);
 ClothModel *cloth_diagnosis_other_model (const ClothModel * model);
-gboolean cloth_diagnosis_is_decided (const ClothDiagnosis * d,
-    const ClothEffect * effect);
-gboolean cloth_diagnosis_has_discrepancies (const ClothDiagnosis * d);
+guint cloth_diagnosis_list_accepted (const ClothDiagnosis * d,
+    guint * directions, gdouble * precisions);
 ClothWindowedGap **cloth_diagnosis_measure_windows (ClothDiagnosis * d,
     const ClothRecording * recording, const ClothModel * const *models,
     guint n, GError ** error);

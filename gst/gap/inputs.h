@@ -11,6 +11,13 @@
 
 G_BEGIN_DECLS
 
+/* A user's own simulator: gst/gap/simulator/simulator.h. */
+typedef struct _ClothGapSimulator ClothGapSimulator;
+
+/* Most runs of a user's simulator of each take, after the first, that find its numbers: for one
+ * effect of one number two or three do, the others are for the base numbers. */
+#define CLOTH_GAP_SIMULATOR_RUNS 20
+
 /* @data: what cloth_gap_diagnose () was given
  * @share: of the work that is done, 0 to 1, growing
  * @what: what is being done, a few words
@@ -34,6 +41,9 @@ typedef gboolean (*ClothGapProgress) (gpointer data, gdouble share,
  * @after: (array length=n_after) (nullable): the same with the effect added, of each hold-out,
  *   without any of each take
  * @n_after: how many: of all or of none; none without twins
+ * @simulator: (nullable): the user's simulator, to make @simulated and @after itself and to find
+ *   its numbers; then neither is given
+ * @simulator_runs: at most so many runs of each take to find these
  * @observations: (nullable) (array): what the cameras saw of each take; %NULL: of none, or
  *   not of that one
  * @baseline_observations: (nullable) (array): the same of each baseline
@@ -55,6 +65,8 @@ typedef struct {
   guint n_simulated;
   ClothTake **after;
   guint n_after;
+  ClothGapSimulator *simulator;
+  guint simulator_runs;
   ClothObservations *const *observations;
   ClothObservations *const *baseline_observations;
   ClothObservations *const *hold_out_observations;

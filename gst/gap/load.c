@@ -7,6 +7,7 @@
 
 #include "gst/file/hash.h"
 #include "gst/fit/error.h"
+#include "gst/gap/simulator/simulator.h"
 
 /* Most steps of a simulation for each frame. */
 #define MOST_STEPS 2e4
@@ -57,6 +58,10 @@ load_twin (ClothDiagnosis * d, ClothTake * take, ClothRecording * recorded,
   const guint n = cloth_take_get_n_frames (take);
   gdouble more_s;
 
+  if (twin && d->options->simulator) {
+    g_free (twin->name);
+    twin->name = g_strdup (d->options->simulator->capabilities->simulator);
+  }
   if (!twin || !cloth_recording_check_other (twin, recorded, error)
       || !(sha256 = cloth_take_sha256 (take, error)))
     return FALSE;
@@ -87,6 +92,74 @@ check_count (guint n, guint wanted, const gchar * what, const gchar * of,
       "%u %s for %u recordings; give one for each %s, in their order, or none",
       n, what, wanted, of);
   return FALSE;
+}
+
+/* @d: a diagnosis whose recordings are loaded
+ * @recording: a take or a hold-out
+ * @values: the numbers of the user's simulator
+ * @error: #ClothSimulatorError, and what reading a take says
+ *
+ * Lets the user's simulator run.
+ *
+ * Returns: (transfer full) (nullable): what it made of the recording
+ */
+ClothTake *
+cloth_diagnosis_run_simulator (ClothDiagnosis * d, guint recording,
+    const gdouble * values, GError ** error)
+{
+  const guint end = d->n_takes + d->options->n_baselines;
+
+  return cloth_gap_simulator_run (d->options->simulator, recording < end ?
+      d->takes[recording] : d->options->hold_outs[recording - end], values,
+      error);
+}
+
+/* As those that are given, made here. */
+static gboolean
+simulate_twins (ClothDiagnosis * d, GError ** error)
+{
+  const ClothGapOptions *o = d->options;
+  g_autofree gdouble *values =
+      cloth_gap_simulator_defaults (o->simulator->capabilities);
+
+  for (guint i = 0; i < d->recordings->len; i++) {
+    g_autoptr (ClothTake) twin = NULL;
+
+    if (i >= d->n_takes && i < d->n_takes + o->n_baselines)
+      continue;
+    cloth_diagnosis_begin_part (d, 0., 0., 1., "your simulator");
+    if (o->progress && !o->progress (o->progress_data, 0., d->what)) {
+      g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_CANCELLED,
+          "stopped");
+      return FALSE;
+    }
+    twin = cloth_diagnosis_run_simulator (d, i, values, error);
+    if (!twin || !load_twin (d, twin, cloth_diagnosis_recording (d, i),
+            CLOTH_GAP_SIMULATED, d->twins, error))
+      return FALSE;
+  }
+  return TRUE;
+}
+
+/* @d: a diagnosis
+ * @recording: a take or a hold-out
+ * @values: the numbers of the user's simulator
+ * @error: #ClothSimulatorError, #ClothFitError, and what reading a take says
+ *
+ * Lets the user's simulator run with the accepted effects added, and keeps what it made among those
+ * after.
+ *
+ * Returns: whether it can be used
+ */
+gboolean
+cloth_diagnosis_add_after (ClothDiagnosis * d, guint recording,
+    const gdouble * values, GError ** error)
+{
+  g_autoptr (ClothTake) after = cloth_diagnosis_run_simulator (d, recording,
+      values, error);
+
+  return after && load_twin (d, after, cloth_diagnosis_recording (d,
+          recording), CLOTH_GAP_SIMULATED_AFTER, d->afters, error);
 }
 
 /* The twins, which are seen where their recordings are, and those of what judges with the effect
@@ -122,10 +195,12 @@ load_twins (ClothDiagnosis * d, GError ** error)
     see_alike (cloth_diagnosis_recording (d, judges + i),
         cloth_diagnosis_twin (d, judges + i));
   }
-  for (guint i = 0; o->n_simulated && i < d->n_takes; i++)
+  if (o->simulator && !simulate_twins (d, error))
+    return FALSE;
+  for (guint i = 0; d->twins->len && i < d->n_takes; i++)
     g_ptr_array_add (d->studies,
         cloth_sensitivities_new (cloth_diagnosis_twin (d, i), &d->study));
-  d->result->has_simulated = o->n_simulated > 0;
+  d->result->has_simulated = d->twins->len > 0;
   return TRUE;
 }
 

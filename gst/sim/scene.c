@@ -77,6 +77,32 @@ cloth_scene_hold (ClothScene * scene, guint vertex)
   return n;
 }
 
+/* @scene: a scene
+ *
+ * Returns: (transfer full): a deep copy
+ */
+ClothScene *
+cloth_scene_copy (const ClothScene * scene)
+{
+  const gsize all = 3 * (gsize) scene->topology->n_vertices;
+  ClothScene *copy = cloth_scene_new (cloth_topology_copy (scene->topology),
+      scene->fps, scene->n_frames);
+
+  memcpy (copy->times, scene->times, scene->n_frames * sizeof *scene->times);
+  memcpy (copy->positions, scene->positions, all * sizeof *scene->positions);
+  if (scene->velocities)
+    copy->velocities =
+        g_memdup2 (scene->velocities, all * sizeof *scene->velocities);
+  memcpy (copy->gravity, scene->gravity, sizeof scene->gravity);
+  g_array_append_vals (copy->held, scene->held->data, scene->held->len);
+  copy->clamps = g_memdup2 (scene->clamps,
+      3 * (gsize) scene->n_frames * scene->held->len * sizeof *scene->clamps);
+  g_array_unref (copy->obstacles);
+  copy->obstacles = cloth_obstacles_copy (scene->obstacles);
+  g_array_append_vals (copy->seams, scene->seams->data, scene->seams->len);
+  return copy;
+}
+
 /* @scene: (nullable) (transfer full): a scene
  */
 void

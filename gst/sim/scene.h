@@ -54,6 +54,7 @@ gboolean cloth_scene_sew (ClothScene * scene, const ClothSeamLine * line,
     GError ** error);
 gboolean cloth_scene_check (const ClothScene * scene, GError ** error);
 gboolean cloth_scene_check_paths (const ClothScene * scene, GError ** error);
+ClothScene *cloth_scene_copy (const ClothScene * scene);
 void cloth_scene_free (ClothScene * scene);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothScene, cloth_scene_free)

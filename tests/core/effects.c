@@ -57,6 +57,13 @@ static const struct
   {"shading_shift", CLOTH_EFFECT_IMAGE},
   {"colour_crosstalk", CLOTH_EFFECT_IMAGE},
   {"noise", CLOTH_EFFECT_IMAGE},
+  {"position_scale", CLOTH_EFFECT_MEASUREMENT},
+  {"misalignment", CLOTH_EFFECT_MEASUREMENT},
+  {"axes_exchange", CLOTH_EFFECT_MEASUREMENT},
+  {"label_exchange", CLOTH_EFFECT_MEASUREMENT},
+  {"time_scale", CLOTH_EFFECT_MEASUREMENT},
+  {"recording_delay", CLOTH_EFFECT_MEASUREMENT},
+  {"smoothing", CLOTH_EFFECT_MEASUREMENT},
 };
 
 static void
@@ -101,7 +108,8 @@ check_parameter (const ClothEffect * effect, const ClothEffectParameter * p)
   g_assert_cmpfloat (p->prior, >, 0);
   g_assert_cmpfloat (p->prior, <=, p->max - p->min);
   g_assert_cmpuint (p->n_tried, <=, G_N_ELEMENTS (p->tried));
-  g_assert_true (p->shapes || p->n_tried == 0);
+  g_assert_true (p->shapes || p->n_tried == 0
+      || effect->test == CLOTH_EFFECT_TEST_TRIAL);
   for (guint i = 0; i < p->n_tried; i++) {
     g_assert_cmpfloat (p->min, <=, p->tried[i]);
     g_assert_cmpfloat (p->tried[i], <=, p->max);
@@ -128,10 +136,17 @@ check_test (const ClothEffect * effect)
     n_own += !effect->parameters[k].shapes;
   g_assert_cmpuint (n_own, >, 0);
   if (effect->test == CLOTH_EFFECT_TEST_NONE
+      || effect->test == CLOTH_EFFECT_TEST_TRIAL
       || effect->test == CLOTH_EFFECT_TEST_STOCHASTIC)
     check_sentence (effect->untested);
   else
     g_assert_null (effect->untested);
+  for (guint k = 0; k < effect->n_parameters
+      && effect->test == CLOTH_EFFECT_TEST_TRIAL; k++) {
+    g_assert_cmpuint (effect->parameters[k].n_tried, >, 0);
+    g_assert_cmpuint (effect->parameters[k].n_tried, ==,
+        effect->parameters[0].n_tried);
+  }
   if (effect->test == CLOTH_EFFECT_TEST_JUMP) {
     g_assert_cmpint (effect->side, ==, CLOTH_EFFECT_CLAMP);
     g_assert_true (find_parameter (effect, "held")->shapes);
@@ -199,6 +214,8 @@ test_sides (void)
       "numerics");
   g_assert_cmpstr (cloth_effect_side_name (CLOTH_EFFECT_CAMERA), ==, "camera");
   g_assert_cmpstr (cloth_effect_side_name (CLOTH_EFFECT_IMAGE), ==, "image");
+  g_assert_cmpstr (cloth_effect_side_name (CLOTH_EFFECT_MEASUREMENT), ==,
+      "measurement");
 }
 
 int

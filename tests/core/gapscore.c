@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/gap/inference/score.h"
+#include "gst/gap/camera/score.h"
 #include "gst/math/linalg.h"
 #include "gst/math/random.h"
 

@@ -258,7 +258,7 @@ test_momentum (void)
 
     touch (model, THICKNESS);
     if (c > 1)
-      cloth_model_set_effect (model, &cloth_effect_friction, &friction);
+      cloth_model_set (model, "effects.friction.coefficient", friction, NULL);
     sim = run_new (scene, model);
     momenta (sim, before);
     e = cloth_sim_get_energy (sim, 0);
@@ -414,7 +414,7 @@ test_slope (void)
       cloth_scene_hold (scene, i);
     touch (model, THICKNESS);
     model->damping_stiffness = 1e-4;
-    cloth_model_set_effect (model, &cloth_effect_friction, &frictions[f]);
+    cloth_model_set (model, "effects.friction.coefficient", frictions[f], NULL);
     sim = run_new (scene, model);
     run_for (sim, 0.25);
     x = positions_of (sim, 0);

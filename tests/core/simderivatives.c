@@ -208,7 +208,7 @@ test_friction (void)
 
     model->damping_mass = 0.;
     model->time_step = 1e-4;
-    cloth_model_set_effect (model, &cloth_effect_friction, &friction);
+    cloth_model_set (model, "effects.friction.coefficient", friction, NULL);
     sim = run_new (scene, model);
     run_for (sim, WINDOW);
     x = positions_of (sim, 0);

@@ -159,7 +159,7 @@ slide (gdouble angle, gdouble own, gdouble added, gdouble seconds,
   add_plane (scene, angle, own);
   lay (scene, angle, 0.);
   if (added > 0.)
-    cloth_model_set_effect (model, &cloth_effect_friction, &added);
+    cloth_model_set (model, "effects.friction.coefficient", added, NULL);
   model->integrator = integrator;
   if (integrator == CLOTH_INTEGRATOR_IMPLICIT)
     model->time_step = 2.5e-3;
@@ -293,7 +293,7 @@ soft (guint i)
   model->damping_mass = 1.;
   model->damping_stiffness = 2e-4;
   model->time_step = 4e-4;
-  cloth_model_set_effect (model, &cloth_effect_friction, &friction);
+  cloth_model_set (model, "effects.friction.coefficient", friction, NULL);
   return model;
 }
 
@@ -437,6 +437,44 @@ test_untouched (void)
   }
 }
 
+/* A floor that a model has does what a plane of the scene does, at its height, and nothing to its
+ * neighbours, which fall past it. */
+static void
+test_floor (void)
+{
+  const ClothSimOptions options = { FALSE, 1, CLOTH_SIMD_BEST, 0 };
+  const gdouble height = 0.125;
+  gsize n = 3 * N * N;
+  g_autoptr (ClothScene) stated = drop (1, NAN);
+  g_autoptr (ClothScene) empty = drop (1, NAN);
+  g_autofree gdouble *a = g_new (gdouble, 3 * n);
+  g_autofree gdouble *b = g_new (gdouble, 3 * n);
+  ClothModel *models[3];
+
+  g_array_set_size (empty->obstacles, 0);
+  g_array_index (stated->obstacles, ClothObstacle, 0).point[2] = height;
+  for (guint i = 0; i < N * N; i++) {
+    stated->positions[3 * i + 2] += height;
+    empty->positions[3 * i + 2] += height;
+  }
+  for (guint i = 0; i < 3; i++)
+    models[i] = soft (i);
+  run_models (stated, models, 3, options, a);
+  cloth_model_set (models[0], "effects.friction.floor", height, NULL);
+  cloth_model_set (models[2], "effects.friction.floor", height, NULL);
+  run_models (empty, models, 3, options, b);
+  for (gsize i = 0; i < n; i++) {
+    assert_within (b[i], a[i], 1e-12);
+    assert_within (b[2 * n + i], a[2 * n + i], 1e-12);
+  }
+  for (guint i = 0; i < N * N; i++) {
+    g_assert_cmpfloat (b[3 * i + 2], >, height - 1e-9);
+    g_assert_cmpfloat (b[n + 3 * i + 2], <, height - 0.2);
+  }
+  for (guint i = 0; i < 3; i++)
+    cloth_model_free (models[i]);
+}
+
 int
 main (int argc, char **argv)
 {
@@ -451,5 +489,6 @@ main (int argc, char **argv)
   g_test_add_func ("/sim/obstacles/momentum", test_momentum);
   g_test_add_func ("/sim/obstacles/lanes", test_lanes);
   g_test_add_func ("/sim/obstacles/untouched", test_untouched);
+  g_test_add_func ("/sim/obstacles/floor", test_floor);
   return g_test_run ();
 }

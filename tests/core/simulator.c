@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "gst/fit/error.h"
+#include "gst/gap/simulator/mapping.h"
 #include "tests/common/gaprecord.h"
 
 #define TEXT "{\"version\": 1, \"simulator\": \"mine\", \"parameters\": [" \
@@ -74,6 +75,80 @@ test_move (void)
   some = cloth_gap_simulator_describe (c, values);
   g_assert_cmpstr (some, ==,
       "tension = 7.86628 N/m, drag = 0.8, stickiness = 1.8");
+}
+
+/* ---- what its numbers do to ours ---- */
+
+/* Of the tension, along its logarithm in steps of 0.24, ours goes in proportion; of the drag a step
+ * is 0.3, twice that of ours. */
+static void
+test_slopes (void)
+{
+  static const ClothSimulatorTarget targets[] = {
+    {"stretch.warp", TRUE, 30.}, {"stretch.weft", TRUE, 50.},
+    {"effects.air_drag.coefficient", FALSE, 0.},
+    {"effects.stretch.log_ratio", FALSE, 0.},
+    {"effects.stretch_anisotropy.log_ratio", FALSE, 0.}
+  };
+  g_autoptr (ClothSimulatorCapabilities) c = parse ();
+  const ClothSimulatorParameter *tension =
+      cloth_simulator_capabilities_get (c, 0);
+  const ClothSimulatorParameter *drag = cloth_simulator_capabilities_get (c, 1);
+  gdouble slopes[5];
+
+  g_assert_true (cloth_simulator_parameter_slopes (tension, targets, 3,
+          slopes));
+  g_assert_cmpfloat_with_epsilon (slopes[0], 0.24, 1e-12);
+  g_assert_cmpfloat_with_epsilon (slopes[1], 0.24, 1e-12);
+  g_assert_cmpfloat (slopes[2], ==, 0.);
+  /* of numbers that are no targets through the effect that changes both */
+  g_assert_true (cloth_simulator_parameter_slopes (tension, targets + 2, 2,
+          slopes));
+  g_assert_cmpfloat_with_epsilon (slopes[1], 0.24, 1e-12);
+  /* half of it is known only, or nothing */
+  g_assert_false (cloth_simulator_parameter_slopes (tension, targets, 1,
+          slopes));
+  g_assert_false (cloth_simulator_parameter_slopes (tension, targets + 2, 1,
+          slopes));
+  g_assert_true (cloth_simulator_parameter_slopes (drag, targets, 3, slopes));
+  g_assert_cmpfloat_with_epsilon (slopes[2], 2. * 0.3, 1e-12);
+  /* what is nothing of ours, and what has no unit */
+  g_assert_false (cloth_simulator_parameter_slopes
+      (cloth_simulator_capabilities_get (c, 2), targets, 5, slopes));
+  ((ClothSimulatorParameter *) drag)->scale = NAN;
+  g_assert_false (cloth_simulator_parameter_slopes (drag, targets, 3, slopes));
+  g_assert_true (cloth_simulator_parameter_does (tension,
+          "effects.stretch.log_ratio"));
+  /* both alike: their ratio stays */
+  g_assert_false (cloth_simulator_parameter_does (tension,
+          "effects.stretch_anisotropy.log_ratio"));
+  g_assert_false (cloth_simulator_parameter_does (tension,
+          "effects.bending.log_ratio"));
+  g_assert_true (cloth_simulator_parameter_does (drag,
+          "effects.air_drag.coefficient"));
+  /* settings do nothing */
+  g_assert_false (cloth_simulator_parameter_does
+      (cloth_simulator_capabilities_get (c, 3), "effects.shear.log_ratio"));
+}
+
+/* Places are steps from the own value, there and back, and end with the range. */
+static void
+test_places (void)
+{
+  g_autoptr (ClothSimulatorCapabilities) c = parse ();
+  const ClothSimulatorParameter *tension =
+      cloth_simulator_capabilities_get (c, 0);
+  const ClothSimulatorParameter *drag = cloth_simulator_capabilities_get (c, 1);
+
+  g_assert_cmpfloat (cloth_simulator_parameter_value (tension, 0.), ==, 10.);
+  g_assert_cmpfloat_with_epsilon (cloth_simulator_parameter_value (tension,
+          -2.), 10. * exp (-0.48), 1e-12);
+  g_assert_cmpfloat_with_epsilon (cloth_simulator_parameter_place (tension,
+          10. * exp (-0.48)), -2., 1e-12);
+  g_assert_cmpfloat (cloth_simulator_parameter_value (tension, 9.), ==, 12.);
+  g_assert_cmpfloat_with_epsilon (cloth_simulator_parameter_value (drag, 3.),
+      0.5 + 0.9, 1e-12);
+  g_assert_cmpfloat (cloth_simulator_parameter_value (drag, -9.), ==, 0.);
 }
 
 /* ---- answers ---- */
@@ -152,6 +227,8 @@ main (int argc, char **argv)
   g_assert_nonnull (parent);
   g_test_add_func ("/simulator/capabilities", test_capabilities);
   g_test_add_func ("/simulator/move", test_move);
+  g_test_add_func ("/simulator/slopes", test_slopes);
+  g_test_add_func ("/simulator/places", test_places);
   g_test_add_func ("/simulator/answers", test_answers);
   result = g_test_run ();
   test_gap_remove (parent);

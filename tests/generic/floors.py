@@ -62,7 +62,7 @@ ROOMS = [
          {'': ['topology.h', 'hold.h', 'side.h'], 'formats': ['formats.h'],
           'fill': ['fill.h'], 'garment': ['garment.h']},
          [[''], ['formats'], ['fill', 'garment']]),
-    Room('gst/take', 'recordings on disk', ['take.h', 'sequence.h', 'recover.h']),
+    Room('gst/take', 'recordings on disk', ['take.h', 'sequence.h', 'recover.h', 'measurement.h']),
     Room('gst/render', 'pictures of a known cloth',
          ['render.h', 'surface.h', 'wireframe.h', 'paint.h', 'draw.h', 'work.h']),
     Room('gst/cv', 'what OpenCV does', ['cv.h']),
@@ -81,9 +81,9 @@ ROOMS = [
          [[''], ['recording'], ['features'], ['nudge'], ['estimate']]),
     Room('gst/gap', 'why a simulation is wrong',
          {'': ['diagnose.h', 'inputs.h'], 'report': ['result.h', 'words.h', 'patch.h', 'report.h'],
-          'simulator': ['simulator.h', 'capabilities.h']},
+          'simulator': ['simulator.h', 'capabilities.h', 'mapping.h']},
          [['inputs', 'report'], ['simulator'], ['camera'], ['diagnosis'], ['load', 'inference', 'localise'],
-          ['camera/faults', 'verdict', 'design'], ['diagnose']]),
+          ['camera/faults', 'verdict', 'design', 'loop'], ['diagnose']]),
 ]
 # Stands apart: it knows GStreamer and none of the algorithm rooms.
 LIBRARY = Room('gst/cloth', 'metadata, streams; installed', ['cloth.h'])

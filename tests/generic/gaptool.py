@@ -53,7 +53,7 @@ def effects(folder):
     done = run(folder, 'effects', '--format', 'json')
     table = json.loads(done.stdout)['effects']
     ids = [effect['id'] for effect in table]
-    expect(done.returncode == 0 and len(ids) == len(set(ids)) == 43, '%d effects' % len(ids))
+    expect(done.returncode == 0 and len(ids) == len(set(ids)) == 50, '%d effects' % len(ids))
     drag = table[ids.index('air_drag')]
     expect(drag['side'] == 'physics' and 'air_drag_linear' in drag['confusions'] and
            drag['parameters'][0]['name'] == 'coefficient' and

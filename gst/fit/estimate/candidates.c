@@ -7,6 +7,9 @@
  *   height of a knee, are fixed at values to try, one candidate each. A clamp slips when its
  *   vertex jumps most against the clamp's path: the largest χ² of two means of five frames,
  *   if beyond 6².
+ *   What is there or not has no derivative: its column is what it changes when it is there. A trial
+ *   of axes or labels must bring what is held nearer to its clamps, or not further off than noise.
+ *   A floor that nobody stated lies where the cloth comes lowest.
  * Formula: finite differences are 0.4 priors of an effect, 0.2 of a free number to each side.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
@@ -15,8 +18,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/fit/error.h"
 #include "gst/effect/effect.h"
+#include "gst/fit/error.h"
+#include "gst/math/vec3.h"
 
 /* Finite differences are this share of a prior: variability adds the same to every step, so a
  * short one would drown in it. */
@@ -27,6 +31,10 @@
 /* A clamp that is off its path by this many standard deviations of a mean of frames. */
 #define SLIP_SIGMAS 6.
 #define SLIP_FRAMES 5
+/* A trial of axes or labels may put what is held so much further off its clamps. */
+#define TRIAL_SIGMAS 6.
+/* The lowest place of the cloth is a mean over so many frames. */
+#define FLOOR_FRAMES 5
 
 static void
 clear_direction (gpointer item)
@@ -103,7 +111,8 @@ add_direction (ClothCandidates * c, ClothCandidate * candidate, guint k)
   ClothDirection d = { NULL };
 
   d.name = g_strdup_printf ("effects.%s.%s", candidate->effect->id, p->name);
-  d.centre = p->null_value;
+  d.centre = candidate->values[k];
+  d.shapes = p->shapes;
   d.prior = p->prior;
   d.step = STEP * p->prior;
   d.one_sided = p->one_sided;
@@ -132,8 +141,145 @@ add_plain (ClothCandidates * c, const ClothEffect * effect)
       else if (p->n_tried)
         candidate.values[k] = p->tried[MIN (i, p->n_tried - 1)];
     }
+    for (guint k = 0; k < effect->n_parameters; k++)
+      if (effect->parameters[k].shapes)
+        add_direction (c, &candidate, k);
     g_array_append_val (c->list, candidate);
   }
+}
+
+/* One candidate for the effect as it is tried. */
+static void
+add_present (ClothCandidates * c, ClothCandidate * candidate)
+{
+  ClothDirection d = {.present = TRUE,.step = 1.,.prior = 1.,.one_sided =
+        TRUE,.high = 1.,.fit_high = 1.
+  };
+
+  d.name = g_strdup_printf ("effects.%s", candidate->effect->id);
+  g_array_append_val (c->directions, d);
+  candidate->n = 1;
+  g_array_append_val (c->list, *candidate);
+}
+
+/* Mean square of what is held from its clamps, m²; NaN when nothing was seen. */
+static gdouble
+find_clamps_square (const ClothRecording * r)
+{
+  const GArray *held = r->scene->held;
+  gdouble sum = 0., n = 0.;
+
+  for (guint i = 0; i < held->len; i++) {
+    const ClothHeld *h = &g_array_index (held, ClothHeld, i);
+
+    for (guint f = 0; f < r->n_frames; f++) {
+      const gsize at = (gsize) f * r->n + h->vertex;
+      gdouble off[3];
+
+      if (r->seen[at] == 0. || r->times[f] < h->from_s
+          || r->times[f] >= h->until_s)
+        continue;
+      cloth_vec3_subtract (r->y + 3 * at, r->scene->clamps +
+          3 * ((gsize) f * held->len + i), off);
+      sum += cloth_vec3_dot (off, off);
+      n++;
+    }
+  }
+  return sum / n;
+}
+
+/* NULL when the recording may be wrong as the candidate has it, else why not. */
+static const gchar *
+why_not_wrong (const ClothCandidate * candidate, const ClothRecording * r)
+{
+  g_autoptr (ClothRecording) corrected = NULL;
+  g_autofree gchar *fault = NULL;
+  const gdouble furthest = TRIAL_SIGMAS * r->sigma;
+  gdouble off, then;
+  ClothMeasurement m;
+
+  cloth_measurement_init (&m);
+  cloth_measurement_add_effect (&m, candidate->effect, candidate->values);
+  fault = cloth_measurement_find_fault (&m, r->scene->topology);
+  if (fault)
+    return "The cloth is no grid on which labels could be exchanged.";
+  corrected = cloth_recording_correct (r, &m);
+  off = sqrt (find_clamps_square (r));
+  then = sqrt (find_clamps_square (corrected));
+  if (isnan (then) ? off <= furthest : then > off + furthest)
+    return "What is held is at its clamps as it was recorded.";
+  return NULL;
+}
+
+/* Returns NULL when there are some, else why there are none. */
+static const gchar *
+add_trials (ClothCandidates * c, const ClothEffect * effect,
+    const ClothRecording * r)
+{
+  const guint before = c->list->len;
+  const gchar *reason = NULL;
+
+  for (guint i = 0; i < effect->parameters[0].n_tried; i++) {
+    ClothCandidate candidate = start (c, effect);
+
+    for (guint k = 0; k < effect->n_parameters; k++)
+      candidate.values[k] = effect->parameters[k].tried[i];
+    if (effect->side == CLOTH_EFFECT_MEASUREMENT)
+      reason = why_not_wrong (&candidate, r);
+    if (!reason)
+      add_present (c, &candidate);
+  }
+  return c->list->len > before ? NULL : reason;
+}
+
+static guint
+parameter_of (const ClothEffect * effect, const gchar * name)
+{
+  guint k = 0;
+
+  while (strcmp (effect->parameters[k].name, name) != 0)
+    k++;
+  return k;
+}
+
+/* The lowest place that a vertex is at over some frames in a row, m; NaN when none was seen. */
+static gdouble
+find_lowest (const ClothRecording * r)
+{
+  gdouble lowest = INFINITY;
+
+  for (guint v = 0; v < r->n; v++)
+    for (guint f = 0; f + FLOOR_FRAMES <= r->n_frames; f++) {
+      gdouble z = 0., seen = 1.;
+
+      for (guint i = f; i < f + FLOOR_FRAMES; i++) {
+        z += r->y[3 * ((gsize) i * r->n + v) + 2] / FLOOR_FRAMES;
+        seen *= r->seen[(gsize) i * r->n + v];
+      }
+      if (seen > 0.)
+        lowest = MIN (lowest, z);
+    }
+  return isfinite (lowest) ? lowest : NAN;
+}
+
+/* Returns NULL when there is one, else why there is none. */
+static const gchar *
+add_floor (ClothCandidates * c, const ClothEffect * effect,
+    const ClothRecording * r)
+{
+  ClothCandidate candidate = start (c, effect);
+  const guint floor = parameter_of (effect, "floor");
+
+  for (guint k = 0; k < effect->n_parameters; k++)
+    if (!effect->parameters[k].shapes)
+      candidate.values[k] =
+          effect->parameters[k].null_value + effect->parameters[k].prior;
+  candidate.values[floor] = find_lowest (r);
+  if (!(candidate.values[floor] > effect->parameters[floor].min
+          && candidate.values[floor] <= effect->parameters[floor].max))
+    return "Nobody saw the cloth long enough to say where a floor may be.";
+  add_present (c, &candidate);
+  return NULL;
 }
 
 static gdouble
@@ -190,16 +336,6 @@ find_slip (const ClothRecording * r, guint held)
   return when;
 }
 
-static guint
-parameter_of (const ClothEffect * effect, const gchar * name)
-{
-  guint k = 0;
-
-  while (strcmp (effect->parameters[k].name, name) != 0)
-    k++;
-  return k;
-}
-
 static void
 add_jumps (ClothCandidates * c, const ClothEffect * effect,
     const ClothRecording * r)
@@ -239,24 +375,61 @@ add_stochastic (ClothCandidates * c, const ClothEffect * effect)
   return FALSE;
 }
 
+static gboolean
+has_squares (const ClothTopology * t)
+{
+  for (guint f = 0; f < t->n_faces; f++)
+    if (cloth_face_corners (t->faces + 4 * (gsize) f) == 4)
+      return TRUE;
+  return FALSE;
+}
+
+/* NULL when a trial can be simulated, else why not. */
+static const gchar *
+why_no_trial (const ClothEffect * effect, const ClothRecording * r,
+    ClothCandidatesFlags flags)
+{
+  const ClothTopology *t = r->scene->topology;
+
+  if (!(flags & CLOTH_CANDIDATES_TRIALS))
+    return effect->untested;
+  if (strcmp (effect->id, "mesh_diagonals") == 0 && !has_squares (t))
+    return "The mesh has no squares.";
+  /* a face brings no more than five vertices */
+  if (strcmp (effect->id, "mesh_resolution") == 0
+      && t->n_vertices + 5 * (guint64) t->n_faces > CLOTH_MAX_VERTICES)
+    return "The mesh is too fine to be made finer.";
+  return NULL;
+}
+
+static gboolean
+needs_floor (const ClothEffect * effect, const ClothRecording * r)
+{
+  return effect->needs_obstacles && !r->scene->obstacles->len;
+}
+
 /* NULL when the effect can be a candidate, else why not. */
 static const gchar *
 why_not (const ClothEffect * effect, const ClothModel * model,
-    const ClothRecording * r, gboolean frozen)
+    const ClothRecording * r, ClothCandidatesFlags flags)
 {
+  const gboolean frozen = flags & CLOTH_CANDIDATES_FROZEN;
+  const gchar *reason;
+
   if (effect->side == CLOTH_EFFECT_CAMERA || effect->side == CLOTH_EFFECT_IMAGE)
     return
         "The take has positions only: record what the cameras saw to test it "
         "(rig.json, and observations/NAME.obs of each camera by detector ! "
         "clothmetapay ! filesink; docs/formats.md).";
-  if (effect->side == CLOTH_EFFECT_NUMERICS)
-    return "It is part of the simulator's own error, which is projected out.";
   if (effect->side == CLOTH_EFFECT_CLAMP && !r->scene->held->len)
     return "Nothing is held in this take.";
-  if (effect->needs_obstacles && !r->scene->obstacles->len)
+  if (needs_floor (effect, r) && !(flags & CLOTH_CANDIDATES_TRIALS))
     return "There is no obstacle in this take.";
   if (effect->test == CLOTH_EFFECT_TEST_NONE)
     return effect->untested;
+  if (effect->test == CLOTH_EFFECT_TEST_TRIAL
+      && (reason = why_no_trial (effect, r, flags)))
+    return reason;
   if (effect->same_as && !frozen && is_free (model, effect->same_as))
     return "The model's own number is free and was fitted on this take: give "
         "a baseline to freeze it.";
@@ -266,10 +439,27 @@ why_not (const ClothEffect * effect, const ClothModel * model,
   return NULL;
 }
 
+/* Returns NULL when there are some, else why there are none. */
+static const gchar *
+add (ClothCandidates * c, const ClothEffect * effect, const ClothRecording * r)
+{
+  if (needs_floor (effect, r))
+    return add_floor (c, effect, r);
+  if (effect->test == CLOTH_EFFECT_TEST_TRIAL)
+    return add_trials (c, effect, r);
+  if (effect->test == CLOTH_EFFECT_TEST_STOCHASTIC)
+    return add_stochastic (c, effect) ? NULL : effect->untested;
+  if (effect->test == CLOTH_EFFECT_TEST_JUMP)
+    add_jumps (c, effect, r);
+  else
+    add_plain (c, effect);
+  return NULL;
+}
+
 /* @model: the model that is looked at
  * @recording: what it is to explain
  * @effects: (nullable) (array zero-terminated=1): ids of those to consider
- * @frozen: whether the model's free numbers were fitted elsewhere
+ * @flags: what is known and considered
  * @skip: called for those that are not considered
  * @data: for @skip
  * @error: #ClothFitError
@@ -279,7 +469,8 @@ why_not (const ClothEffect * effect, const ClothModel * model,
 ClothCandidates *
 cloth_candidates_new (const ClothModel * model,
     const ClothRecording * recording, const gchar * const *effects,
-    gboolean frozen, ClothCandidateSkip skip, gpointer data, GError ** error)
+    ClothCandidatesFlags flags, ClothCandidateSkip skip, gpointer data,
+    GError ** error)
 {
   g_autoptr (ClothCandidates) c = cloth_candidates_new_empty ();
   guint n_effects;
@@ -297,48 +488,63 @@ cloth_candidates_new (const ClothModel * model,
   for (guint i = 0; i < n_effects; i++) {
     const gchar *reason;
 
-    if (!cloth_effect_is_among (effects, table[i]->id))
+    if (!cloth_effect_is_among (effects, table[i]->id)
+        || (table[i]->side == CLOTH_EFFECT_MEASUREMENT
+            && !(flags & CLOTH_CANDIDATES_MEASUREMENT)))
       continue;
-    reason = why_not (table[i], model, recording, frozen);
-    if (reason) {
-      if (skip)
-        skip (data, table[i], reason);
-    } else if (table[i]->test == CLOTH_EFFECT_TEST_JUMP) {
-      add_jumps (c, table[i], recording);
-    } else if (table[i]->test == CLOTH_EFFECT_TEST_STOCHASTIC) {
-      if (!add_stochastic (c, table[i]) && skip)
-        skip (data, table[i], table[i]->untested);
-    } else {
-      add_plain (c, table[i]);
-    }
+    reason = why_not (table[i], model, recording, flags);
+    if (!reason)
+      reason = add (c, table[i], recording);
+    if (reason && skip)
+      skip (data, table[i], reason);
   }
   return g_steal_pointer (&c);
 }
 
-static void
-set_effect (const ClothCandidates * c, ClothModel * model, guint direction)
+static const ClothCandidate *
+find_candidate (const ClothCandidates * c, guint direction)
 {
   for (guint i = 0; i < c->list->len; i++) {
     const ClothCandidate *candidate =
         &g_array_index (c->list, ClothCandidate, i);
-    gboolean there = FALSE;
 
-    if (direction < candidate->first
-        || direction >= candidate->first + candidate->n)
-      continue;
-    for (guint k = 0; k < model->effects->len; k++)
-      there |= g_array_index (model->effects, ClothModelEffect, k).effect ==
-          candidate->effect;
-    if (!there)
-      cloth_model_set_effect (model, candidate->effect, candidate->values);
+    if (direction >= candidate->first
+        && direction < candidate->first + candidate->n)
+      return candidate;
   }
+  return NULL;
+}
+
+/* Which of the model's effects it is, −1: none. */
+static gint
+find_effect (const ClothModel * model, const ClothEffect * effect)
+{
+  for (guint i = 0; i < model->effects->len; i++)
+    if (g_array_index (model->effects, ClothModelEffect, i).effect == effect)
+      return (gint) i;
+  return -1;
+}
+
+/* Whether the model has the effect as the candidate does. */
+static gboolean
+is_present (const ClothModel * model, const ClothCandidate * candidate)
+{
+  const ClothEffect *effect = candidate->effect;
+  const gint at = find_effect (model, effect);
+
+  for (guint k = 0; at >= 0 && k < effect->n_parameters; k++)
+    if (g_array_index (model->effects, ClothModelEffect, at).values[k] !=
+        candidate->values[k])
+      return FALSE;
+  return at >= 0;
 }
 
 /* @candidates: the candidates
  * @model: a model
  * @direction: a direction
  *
- * Returns: where the model is along it: the number, or its logarithm
+ * Returns: where the model is along it: the number, or its logarithm; 1 where an effect is
+ *   present, else 0
  */
 gdouble
 cloth_candidates_place (const ClothCandidates * candidates,
@@ -348,9 +554,22 @@ cloth_candidates_place (const ClothCandidates * candidates,
       direction);
   gdouble value = d->centre;
 
+  if (d->present)
+    return is_present (model, find_candidate (candidates, direction));
   if (cloth_model_get (model, d->name, &value, NULL) && d->logarithmic)
     value = log (value);
   return value;
+}
+
+static void
+set_present (ClothModel * model, const ClothCandidate * candidate,
+    gboolean present)
+{
+  if (present)
+    cloth_model_set_effect (model, candidate->effect, candidate->values);
+  else if (is_present (model, candidate))
+    g_array_remove_index (model->effects,
+        (guint) find_effect (model, candidate->effect));
 }
 
 /* @candidates: the candidates
@@ -358,6 +577,8 @@ cloth_candidates_place (const ClothCandidates * candidates,
  * @directions: (array length=n): along which
  * @changes: (array length=n): how far: added to the number, or to its logarithm
  * @n: how many
+ *
+ * An effect that is present or not becomes whichever is nearer.
  *
  * Returns: (transfer full): the model so changed, kept within each number's range
  */
@@ -371,13 +592,19 @@ cloth_candidates_move (const ClothCandidates * candidates,
   for (guint i = 0; i < n; i++) {
     const ClothDirection *d = cloth_candidates_direction (candidates,
         directions[i]);
+    const ClothCandidate *candidate = find_candidate (candidates,
+        directions[i]);
     gdouble value;
 
-    set_effect (candidates, moved, directions[i]);
+    if (candidate && !d->present && find_effect (moved, candidate->effect) < 0)
+      cloth_model_set_effect (moved, candidate->effect, candidate->values);
     value = cloth_candidates_place (candidates, moved, directions[i]);
     value = CLAMP (value + changes[i], d->low, d->high);
-    cloth_model_set (moved, d->name, d->logarithmic ? exp (value) : value,
-        NULL);
+    if (d->present)
+      set_present (moved, candidate, value >= 0.5);
+    else
+      cloth_model_set (moved, d->name, d->logarithmic ? exp (value) : value,
+          NULL);
   }
   return moved;
 }

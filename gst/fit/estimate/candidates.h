@@ -8,7 +8,10 @@
 
 G_BEGIN_DECLS
 
-/* @name: of the model's number, as cloth_model_set () takes it
+/* @name: of the model's number, as cloth_model_set () takes it; of an effect that is @present, of
+ *   the effect alone
+ * @present: the effect is there at 1 and not at 0; nothing lies between
+ * @shapes: it shapes an effect, and changes nothing where the effect is at its null
  * @logarithmic: the logarithm of the number is changed
  * @centre: where it starts: the null value, or the model's
  * @step: of the finite difference
@@ -21,6 +24,8 @@ G_BEGIN_DECLS
  */
 typedef struct {
   gchar *name;
+  gboolean present;
+  gboolean shapes;
   gboolean logarithmic;
   gdouble centre;
   gdouble step;
@@ -33,7 +38,8 @@ typedef struct {
 } ClothDirection;
 
 /* @effect: the effect
- * @values: its parameters where the directions leave them
+ * @values: its parameters where the directions leave them; with a direction that is present,
+ *   where the effect is there
  * @first: of its directions
  * @n: number of its directions
  * @parameters: which parameter each of them is
@@ -76,6 +82,17 @@ cloth_candidates_direction (const ClothCandidates * candidates, guint i)
   return &g_array_index (candidates->directions, ClothDirection, i);
 }
 
+/* CLOTH_CANDIDATES_FROZEN: the model's free numbers were fitted elsewhere
+ * CLOTH_CANDIDATES_MEASUREMENT: what may be wrong with the whole recording is considered too
+ * CLOTH_CANDIDATES_TRIALS: so is what is there or not, without derivative, that of numerics too
+ */
+typedef enum {
+  CLOTH_CANDIDATES_DEFAULT = 0,
+  CLOTH_CANDIDATES_FROZEN = 1 << 0,
+  CLOTH_CANDIDATES_MEASUREMENT = 1 << 1,
+  CLOTH_CANDIDATES_TRIALS = 1 << 2,
+} ClothCandidatesFlags;
+
 /* @data: the caller's
  * @effect: an effect that is no candidate
  * @reason: why
@@ -86,7 +103,8 @@ typedef void (*ClothCandidateSkip) (gpointer data, const ClothEffect * effect,
 ClothCandidates *cloth_candidates_new_empty (void);
 ClothCandidates *cloth_candidates_new (const ClothModel * model,
     const ClothRecording * recording, const gchar * const *effects,
-    gboolean frozen, ClothCandidateSkip skip, gpointer data, GError ** error);
+    ClothCandidatesFlags flags, ClothCandidateSkip skip, gpointer data,
+    GError ** error);
 ClothModel *cloth_candidates_move (const ClothCandidates * candidates,
     const ClothModel * model, const guint * directions,
     const gdouble * changes, guint n);

@@ -4,6 +4,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
+#include "gst/fit/estimate/broyden.h"
 #include "gst/fit/estimate/candidates.h"
 #include "gst/fit/estimate/gauss-newton.h"
 #include "gst/fit/estimate/normal.h"

@@ -36,6 +36,31 @@ class_of (const ClothFeatures * f, guint cosine, guint wave, guint k)
   return 3 * (cosine_band (cosine) * f->n_bands + f->bands[wave]) + k;
 }
 
+static guint
+count_classes (const ClothFeatures * f)
+{
+  return 3 * (cosine_band (f->n_cosines - 1) + 1) * f->n_bands;
+}
+
+/* @features: features
+ * @n_classes: (out): how many classes there are
+ *
+ * Returns: (transfer full) (array): which class each feature is of
+ */
+guint *
+cloth_features_list_classes (const ClothFeatures * features, guint * n_classes)
+{
+  guint *classes = g_new (guint, features->size), *to = classes;
+
+  for (guint b = 0; b < features->n_blocks; b++)
+    for (guint c = 0; c < features->n_cosines; c++)
+      for (guint w = 0; w < features->n_waves; w++)
+        for (guint k = 0; k < 3; k++)
+          *to++ = class_of (features, c, w, k);
+  *n_classes = count_classes (features);
+  return classes;
+}
+
 /* @features: what @z is of
  * @z: features
  *
@@ -47,8 +72,7 @@ cloth_power_spectrum_new (const ClothFeatures * features, const gdouble * z)
   ClothPowerSpectrum *power = g_new0 (ClothPowerSpectrum, 1);
   g_autofree guint *counts = NULL;
 
-  power->n = 3 * (cosine_band (features->n_cosines - 1) + 1) *
-      features->n_bands;
+  power->n = count_classes (features);
   power->values = g_new0 (gdouble, power->n);
   counts = g_new0 (guint, power->n);
   for (guint b = 0; b < features->n_blocks; b++)
@@ -77,6 +101,20 @@ cloth_power_spectrum_copy (const ClothPowerSpectrum * power)
 
   copy->values = g_memdup2 (power->values, power->n * sizeof (gdouble));
   return copy;
+}
+
+/* @power: variance beside that of noise, class by class
+ * @features: features
+ * @weights: (out) (array): 1 / (1 + @power) of each feature of a block
+ */
+void
+cloth_power_spectrum_get_weights (const ClothPowerSpectrum * power,
+    const ClothFeatures * features, gdouble * weights)
+{
+  for (guint c = 0; c < features->n_cosines; c++)
+    for (guint w = 0; w < features->n_waves; w++)
+      for (guint k = 0; k < 3; k++)
+        *weights++ = 1. / (1. + power->values[class_of (features, c, w, k)]);
 }
 
 /* @power: (nullable) (transfer full): mean squares
@@ -109,7 +147,7 @@ cloth_normal_equations_new (const ClothFeatures * features,
   gsize size = features->size / features->n_blocks;
   g_autofree gdouble *weighted = g_new (gdouble, size);
   g_autofree gdouble *weights = g_new (gdouble, size);
-  gsize i = 0;
+  gsize i;
 
   n->m = m;
   n->n_blocks = features->n_blocks;
@@ -117,11 +155,7 @@ cloth_normal_equations_new (const ClothFeatures * features,
   n->g = g_new0 (gdouble, (gsize) n->n_blocks * m * m);
   n->s = g_new0 (gdouble, (gsize) n->n_blocks * m);
   n->r = g_new0 (gdouble, n->n_blocks);
-  for (guint c = 0; c < features->n_cosines; c++)
-    for (guint w = 0; w < features->n_waves; w++)
-      for (guint k = 0; k < 3; k++)
-        weights[i++] =
-            1. / (1. + discrepancy->values[class_of (features, c, w, k)]);
+  cloth_power_spectrum_get_weights (discrepancy, features, weights);
   for (guint b = 0; b < n->n_blocks; b++) {
     const gdouble *zb = z + b * size;
 

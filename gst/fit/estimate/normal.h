@@ -46,9 +46,13 @@ typedef struct {
   gdouble r;
 } ClothReducedEquations;
 
+guint *cloth_features_list_classes (const ClothFeatures * features,
+    guint * n_classes);
 ClothPowerSpectrum *cloth_power_spectrum_new (const ClothFeatures * features,
     const gdouble * z);
 ClothPowerSpectrum *cloth_power_spectrum_copy (const ClothPowerSpectrum * power);
+void cloth_power_spectrum_get_weights (const ClothPowerSpectrum * power,
+    const ClothFeatures * features, gdouble * weights);
 void cloth_power_spectrum_free (ClothPowerSpectrum * power);
 ClothNormalEquations *cloth_normal_equations_new (const ClothFeatures * features,
     const ClothPowerSpectrum * discrepancy, const gdouble * z,

@@ -5,6 +5,8 @@
  * Assumption: z is linear in θ over a step of a finite difference. The rest is run-to-run
  *   variability: tiny changes that grow, as wrinkles fall one way or the other. Its directions
  *   are few samples; along each it counts with ten times their variance.
+ *   A fault of the recording is in θ as physics is: x is drawn to the recording without it and then
+ *   compared with the recording as it would have it.
  * Formula: Bᵢ = (z (θ + hᵢeᵢ) − z (θ − hᵢeᵢ)) / 2hᵢ for free numbers; for effects, which lie at their
  *   null, (z (θ + hᵢeᵢ) − z̄) / hᵢ, where z̄ is the mean of the midpoints of those pairs. How the
  *   midpoints and z (θ) scatter about their mean shows the variability.
@@ -187,19 +189,107 @@ cloth_sensitivities_residual (const ClothSensitivities * sensitivities)
   return z;
 }
 
+/* Models that are simulated side by side, each drawn to the recording without what the model says
+ * was wrong with it. */
 typedef struct
 {
   const ClothSensitivities *sensitivities;
   gdouble **z;                  /* of each model */
-} Collect;
+  ClothMeasurement *measurements;       /* of each model */
+  const ClothRecording **targets;       /* of each model */
+  GPtrArray *corrected;         /* recordings */
+  gdouble *recorded;            /* of each model: a frame, as it would be recorded */
+  gdouble **paths;              /* of each model: all frames so, where one hangs on others */
+  guint n;
+} Batch;
+
+static void
+batch_clear (Batch * b)
+{
+  for (guint i = 0; b->paths && i < b->n; i++)
+    g_free (b->paths[i]);
+  g_free (b->paths);
+  g_free (b->measurements);
+  g_free (b->targets);
+  g_free (b->recorded);
+  g_clear_pointer (&b->corrected, g_ptr_array_unref);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Batch, batch_clear);
+
+/* What draws a model: the recording itself, or one that was corrected for another model, too. */
+static const ClothRecording *
+find_target (const Batch * b, guint model)
+{
+  const ClothRecording *recording = b->sensitivities->recording;
+  const ClothMeasurement *m = &b->measurements[model];
+
+  if (cloth_measurement_is_null (m))
+    return recording;
+  for (guint i = 0; i < model; i++)
+    if (cloth_measurement_is_equal (m, &b->measurements[i]))
+      return b->targets[i];
+  g_ptr_array_add (b->corrected, cloth_recording_correct (recording, m));
+  return g_ptr_array_index (b->corrected, b->corrected->len - 1);
+}
+
+static gboolean
+batch_init (Batch * b, const ClothSensitivities * sensitivities,
+    ClothModel ** models, guint n, gdouble ** z, GError ** error)
+{
+  const ClothRecording *r = sensitivities->recording;
+
+  *b = (Batch) {
+  sensitivities, z,.n = n};
+  b->measurements = g_new (ClothMeasurement, n);
+  b->targets = g_new (const ClothRecording *, n);
+  b->corrected =
+      g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_recording_free);
+  b->recorded = g_new (gdouble, 3 * (gsize) r->n * n);
+  b->paths = g_new0 (gdouble *, n);
+  for (guint i = 0; i < n; i++) {
+    if (!cloth_recording_find_measurement (r, models[i], &b->measurements[i],
+            error))
+      return FALSE;
+    b->targets[i] = find_target (b, i);
+    if (cloth_measurement_takes_time (&b->measurements[i]))
+      b->paths[i] = g_new (gdouble, 3 * (gsize) r->n * r->n_frames);
+  }
+  return TRUE;
+}
 
 static void
 collect (gpointer data, guint model, guint frame, const gdouble * positions)
 {
-  Collect *c = data;
+  const Batch *b = data;
+  const ClothRecording *r = b->sensitivities->recording;
+  const ClothMeasurement *m = &b->measurements[model];
+  const gsize row = 3 * (gsize) r->n;
+  gdouble *recorded = b->paths[model] ? b->paths[model] + frame * row :
+      b->recorded + model * row;
 
-  cloth_features_add (c->sensitivities->features, c->sensitivities->recording,
-      frame, positions, c->z[model]);
+  if (!cloth_measurement_is_null (m)) {
+    cloth_measurement_apply (m, r->scene->topology, positions, recorded);
+    positions = recorded;
+  }
+  if (!b->paths[model])
+    cloth_features_add (b->sensitivities->features, r, frame, positions,
+        b->z[model]);
+}
+
+static void
+collect_paths (const Batch * b)
+{
+  const ClothRecording *r = b->sensitivities->recording;
+
+  for (guint i = 0; i < b->n; i++) {
+    if (!b->paths[i])
+      continue;
+    cloth_recording_measure (r, b->paths[i], &b->measurements[i]);
+    for (guint frame = 0; frame < r->n_frames; frame++)
+      cloth_features_add (b->sensitivities->features, r, frame,
+          b->paths[i] + 3 * (gsize) frame * r->n, b->z[i]);
+  }
 }
 
 /* @sensitivities: sensitivities
@@ -209,9 +299,12 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
  * @z: (inout) (array length=n): of each model, the features of the residual, each
  *   features->size; start with zeros
  * @sound: (out) (array length=n): which models did not diverge
- * @error: #ClothSimError, or #ClothFitError when it was stopped
+ * @error: #ClothSimError, or #ClothFitError when it was stopped or a model says that something
+ *   was wrong with the recording that can't have been
  *
- * Simulates models drawn to the recording, side by side.
+ * Simulates models side by side, each drawn to the recording without what the model says was wrong
+ * with it. The residual is what would be recorded of them, with it, less the recording as it is:
+ * its noise is the same for all.
  *
  * Returns: whether that could be done
  */
@@ -221,17 +314,18 @@ cloth_sensitivities_run (const ClothSensitivities * sensitivities,
     gboolean * sound, GError ** error)
 {
   g_autofree gdouble *gains = g_new (gdouble, n);
-  g_autofree const ClothRecording **targets = g_new (const ClothRecording *, n);
-  Collect c = { sensitivities, z };
+  g_auto (Batch) b = { NULL };
 
-  for (guint i = 0; i < n; i++) {
+  if (!batch_init (&b, sensitivities, models, n, z, error))
+    return FALSE;
+  for (guint i = 0; i < n; i++)
     gains[i] = options->gain;
-    targets[i] = sensitivities->recording;
-  }
   options->simulations += n;
-  return cloth_rollout_nudged (targets,
-      (const ClothModel * const *) models, gains, n, &options->rollout,
-      collect, &c, sound, error);
+  if (!cloth_rollout_nudged (b.targets, (const ClothModel * const *) models,
+          gains, n, &options->rollout, collect, &b, sound, error))
+    return FALSE;
+  collect_paths (&b);
+  return TRUE;
 }
 
 /* Features of one linearisation: of the model, of it moved along each direction, and of
@@ -348,7 +442,7 @@ find_reference (Moved * moved, ClothSensitivities * sensitivities)
  *
  * Fills @sensitivities's z, columns, sound and variability. Directions along which the simulation fails
  * have columns of zeros. Free numbers are moved to both sides; the others' columns are
- * differences from the mean of these.
+ * differences from the mean of these. That of an effect which is there or not is what it changes.
  */
 gboolean
 cloth_sensitivities_linearise (ClothSensitivities * sensitivities,

@@ -4,6 +4,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
+#include "gst/fit/recording/correction.h"
 #include "gst/fit/recording/interpolation.h"
 #include "gst/fit/recording/observations.h"
 #include "gst/fit/recording/outliers.h"

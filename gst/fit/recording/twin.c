@@ -520,26 +520,6 @@ check_paths (const Twin * t, GError ** error)
   return TRUE;
 }
 
-/* The recording's scene, in which the observer runs on both alike. */
-static ClothScene *
-copy_scene (const ClothScene * scene)
-{
-  ClothScene *copy = cloth_scene_new (cloth_topology_copy (scene->topology),
-      scene->fps, scene->n_frames);
-
-  memcpy (copy->times, scene->times, scene->n_frames * sizeof *scene->times);
-  memcpy (copy->positions, scene->positions,
-      3 * (gsize) scene->topology->n_vertices * sizeof *scene->positions);
-  memcpy (copy->gravity, scene->gravity, sizeof scene->gravity);
-  g_array_append_vals (copy->held, scene->held->data, scene->held->len);
-  copy->clamps = g_memdup2 (scene->clamps,
-      3 * (gsize) scene->n_frames * scene->held->len * sizeof *scene->clamps);
-  g_array_unref (copy->obstacles);
-  copy->obstacles = cloth_obstacles_copy (scene->obstacles);
-  g_array_append_vals (copy->seams, scene->seams->data, scene->seams->len);
-  return copy;
-}
-
 static void
 fill_positions (const Twin * t, ClothRecording * twin)
 {
@@ -619,7 +599,8 @@ cloth_recording_new_twin (ClothTake * simulated,
     return NULL;
   twin = g_new0 (ClothRecording, 1);
   twin->name = g_strdup (t.name);
-  twin->scene = copy_scene (recorded->scene);
+  /* the observer runs on both alike in it */
+  twin->scene = cloth_scene_copy (recorded->scene);
   twin->n = recorded->n;
   twin->n_frames = recorded->n_frames;
   twin->times = g_memdup2 (recorded->times,

@@ -3,7 +3,7 @@
  * The points in the pictures are held against each other only, never against a simulation: what is
  * found here says nothing of the cloth, and the other way round.
  * Model: the normal equations of solve.c are linear in the faults. Each fault is tested by the score
- * test of ../inference/score.c, the likeliest is accepted and fitted by Gauss–Newton together with
+ * test of score.c, the likeliest is accepted and fitted by Gauss–Newton together with
  * those before it, and all are tested anew.
  * Assumption: detectors err alike in picture after picture, so that squares count a twentieth.
  *
@@ -15,7 +15,7 @@
 
 #include "gst/fit/recording/recording.h"
 #include "gst/gap/camera/candidates.h"
-#include "gst/gap/inference/score.h"
+#include "gst/gap/camera/score.h"
 
 /* Overdispersion: squares of the residual count so much less. */
 #define OVERDISPERSION 20.

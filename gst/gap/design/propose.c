@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "gst/gap/design/experiment.h"
-#include "gst/gap/inference/name.h"
 
 /* Of a larger group the likeliest are to be parted. */
 #define MOST_MEMBERS 4
@@ -79,11 +78,9 @@ propose_one (ClothDiagnosis * d, guint group, GError ** error)
 {
   ClothGapGroup *g = &g_array_index (d->result->groups, ClothGapGroup, group);
   g_autoptr (ClothModel) model = cloth_model_copy (d->model);
-  g_autoptr (ClothPowerSpectrum) discrepancy_variance =
-      cloth_diagnosis_find_discrepancy_variance (d, 0);
   const ClothExperiment experiment = {
     cloth_diagnosis_recording (d, 0), model, d->candidates, d->precisions,
-    discrepancy_variance
+    d->discrepancy_variance
   };
   g_autoptr (ClothStage) stage = cloth_stage_new (experiment.recording);
   ClothModelEffect members[MOST_MEMBERS];

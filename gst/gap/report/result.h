@@ -369,7 +369,8 @@ typedef struct {
  *   is of something unknown: a sentence
  * @notes: (element-type utf8): what else one should know of it, sentences
  * @gap_before: recorded minus simulated on held-out data, RMS in metres
- * @gap_after: the same with the accepted effects; NaN without any
+ * @gap_after: the same with the accepted effects, of the user's simulator where it was run with
+ *   them; NaN without any
  * @noise_floor: what it would be if the simulation lacked nothing
  * @shrink: (V_before − V_after) ÷ (V_before − V_floor), V = squared gap
  * @rest_p_value: that what remains is no more than the noise floor

@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
+#include "gst/gap/inputs.h"
 #include "gst/gap/simulator/capabilities.h"
 #include "gst/take/take.h"
 
@@ -25,12 +26,13 @@ typedef ClothTake *(*ClothSimulatorRun) (gpointer data, ClothTake * scene,
  * @data: of @run
  * @n_runs: (inout): counts the runs, those that failed too
  */
-typedef struct {
+struct _ClothGapSimulator
+{
   const ClothSimulatorCapabilities *capabilities;
   ClothSimulatorRun run;
   gpointer data;
   guint n_runs;
-} ClothGapSimulator;
+};
 
 gdouble *cloth_gap_simulator_defaults (const ClothSimulatorCapabilities *
     capabilities);

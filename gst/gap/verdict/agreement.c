@@ -17,7 +17,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/gap/inference/name.h"
 #include "gst/math/statistics.h"
 
 /* Of the mean curvature: what a take says nothing of stays where it is. */
@@ -92,7 +91,7 @@ add_recording (ClothDiagnosis * d, Agreement * a, guint i, guint row,
           a->directions, 0, &d->study, error))
     return FALSE;
   if (!cloth_sensitivities_linearise (study, d->candidates,
-          d->with[d->n_accepted - 1], a->directions,
+          d->with, a->directions,
           d->candidates->n_free + a->n, &d->study, error))
     return FALSE;
   study->discrepancy = own ? own : i < d->n_takes ?
@@ -134,7 +133,7 @@ static gchar *
 describe (const ClothDiagnosis * d, const Agreement * a, guint n_takes)
 {
   g_autoptr (GString) text = g_string_new ("The takes contradict each other: ");
-  const ClothModel *model = d->with[d->n_accepted - 1];
+  const ClothModel *model = d->with;
   gdouble most = -1.;
   guint worst = 0;
 
@@ -192,7 +191,7 @@ cloth_diagnosis_test_agreement (ClothDiagnosis * d, GError ** error)
     return TRUE;
   a.directions = g_new (guint, most);
   a.precisions = g_new (gdouble, most);
-  a.n = cloth_diagnosis_list_accepted (d, 1., a.directions, a.precisions) -
+  a.n = cloth_diagnosis_list_accepted (d, a.directions, a.precisions) -
       d->candidates->n_free;
   a.g = g_new0 (gdouble, (gsize) (n_takes + 1) * a.n * a.n);
   a.s = g_new0 (gdouble, (gsize) (n_takes + 1) * a.n);

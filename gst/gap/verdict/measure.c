@@ -6,8 +6,6 @@
  *     from the start of s. In windows (y − ours on y) − (s − ours on s), ours let go from the
  *     observer on each: what ours can't do is in both and cancels;
  *   - with a twin a that the effect was added to: a in place of s.
- * What a twin would do with the effects is foretold by ours only. What that is off by is V after
- * where the other force model with the effects is the recording and without them is the twin.
  * Floor: what V would be if the simulation lacked nothing. With a twin it is V of s plus noise in
  *   place of the recording: noise, and what simulations from starts that differ by it differ by.
  *   Without, of a baseline that moves alike, else what the two force models differ by, with noise.
@@ -16,7 +14,7 @@
  *   p-value of the rest = share of pairs of draws in which V_after is no larger than V_floor
  * Intervals are the middle 95% of a bootstrap over windows and tiles of the cloth, with the same
  * draws for all models (Davison and Hinkley 1997). Of several recordings sums are weighted by what
- * was seen. An effect stays accepted when it takes a tenth of V away on what judges.
+ * was seen.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/verdict/measure.h"
@@ -29,14 +27,12 @@
 #include "gst/math/random.h"
 #include "gst/math/statistics.h"
 
-/* Variance of a gap that is hardly larger, over that before. */
-#define HARDLY_LARGER 1.05
 /* A shrink is given when what is above the floor is this share of all, in variance. */
 #define LEAST_ABOVE_SHARE 0.1
 /* Of the bootstrap. */
 #define N_DRAWS 1000
-/* Most models that are compared: without effects, without faults of cameras, with each effect. */
-#define MAX_MODELS (2 + CLOTH_DIAGNOSIS_MAX_ACCEPTED)
+/* Most models that are compared: without effects, without faults of cameras, with all effects. */
+#define MAX_MODELS 3
 
 /* In windows, and in the free run. */
 typedef enum
@@ -70,7 +66,7 @@ typedef struct
   const ClothModel *models[MAX_MODELS];
   guint n;                      /* models */
   Measured *all;                /* of each recording; of baselines nothing */
-  Measured judges;
+  Measured *judges;             /* behind them */
   Square baseline[N_KINDS];     /* what a baseline shows of the model; none: NaN */
   ClothWindowedGap **first;     /* of the first take */
 } Work;
@@ -82,8 +78,10 @@ square_clear (Square * s)
 }
 
 static void
-measured_clear (Measured * m)
+measured_clear (gpointer item)
 {
+  Measured *m = item;
+
   for (guint kind = 0; kind < N_KINDS; kind++) {
     for (guint k = 0; k < MAX_MODELS; k++)
       square_clear (&m->models[kind][k]);
@@ -93,12 +91,15 @@ measured_clear (Measured * m)
 }
 
 static void
+find_measured (Work * w)
+{
+  w->all = &g_array_index (w->d->measured, Measured, 0);
+  w->judges = w->all + w->d->recordings->len;
+}
+
+static void
 work_clear (Work * w)
 {
-  for (guint i = 0; w->all && i < w->d->recordings->len; i++)
-    measured_clear (&w->all[i]);
-  g_free (w->all);
-  measured_clear (&w->judges);
   for (guint kind = 0; kind < N_KINDS; kind++)
     square_clear (&w->baseline[kind]);
   cloth_windowed_gaps_free (w->first, w->n);
@@ -181,8 +182,9 @@ compare (ClothDiagnosis * d, Kind kind, const ClothRecording * r,
   ClothWindowedGap **gaps = simulate (d, kind, twin && kind == FREE ? twin : r,
       !twin || has_noise (r, twin), models, n, error);
 
-  for (guint k = 0; gaps && twin && k < n; k++)
-    cloth_windowed_gap_replace (gaps[k], r, own, twin);
+  /* in a free run the first one is ours on the twin: the last to be replaced */
+  for (guint k = n; gaps && twin && k-- > 0;)
+    cloth_windowed_gap_replace (gaps[k], r, kind == FREE ? gaps[0] : own, twin);
   return gaps;
 }
 
@@ -358,7 +360,7 @@ measure_floor (const Work * w, Kind kind, guint i,
   const guint own = d->n_nulls;
   Square other = { NAN };
 
-  if (!d->options->n_baselines || !cloth_diagnosis_has_discrepancies (d))
+  if (!d->options->n_baselines || !d->is_alike)
     if (!measure_other_model (w, kind, i, gap, &other, error))
       return FALSE;
   if (!(other.square <= baseline->square) && !isnan (other.square)) {
@@ -401,29 +403,6 @@ measure_baseline (Work * w, Kind kind, GError ** error)
   return TRUE;
 }
 
-/* What is left in the user's simulator with the effect added. */
-static gboolean
-measure_after (const Work * w, Kind kind, guint i, const gboolean * windows,
-    GError ** error)
-{
-  ClothDiagnosis *d = w->d;
-  const ClothRecording *after = cloth_diagnosis_after (d, i);
-  ClothWindowedGap **own, **gaps = NULL;
-
-  if (!after)
-    return TRUE;
-  own = simulate (d, kind, after, has_noise (cloth_diagnosis_recording (d, i),
-          after), w->models, 1, error);
-  if (own)
-    gaps = compare (d, kind, cloth_diagnosis_recording (d, i), after, own[0],
-        w->models, 1, error);
-  if (gaps)
-    find_squares (d, kind, i, gaps, 1, windows, &w->all[i].after[kind]);
-  cloth_windowed_gaps_free (own, 1);
-  cloth_windowed_gaps_free (gaps, 1);
-  return gaps != NULL;
-}
-
 /* All that is measured of a recording in windows, or in the free run. */
 static gboolean
 measure_kind (Work * w, Kind kind, guint i, GError ** error)
@@ -452,7 +431,6 @@ measure_kind (Work * w, Kind kind, guint i, GError ** error)
         && windows[gaps[0]->window[k / gaps[0]->n]];
   done = twin ? measure_twin_floor (w, kind, i, windows, error) :
       measure_floor (w, kind, i, gaps[0], error);
-  done = done && measure_after (w, kind, i, windows, error);
   cloth_windowed_gaps_free (own, 1);
   if (i == 0 && kind == WINDOWS)
     w->first = gaps;
@@ -493,13 +471,12 @@ sum_judges (Work * w)
       continue;
     for (guint kind = 0; kind < N_KINDS; kind++) {
       for (guint k = 0; k < w->n; k++)
-        add_judge (&w->judges.models[kind][k], &one->models[kind][k],
+        add_judge (&w->judges->models[kind][k], &one->models[kind][k],
             one->seen / seen);
-      add_judge (&w->judges.floor[kind], &one->floor[kind], one->seen / seen);
-      add_judge (&w->judges.after[kind], &one->after[kind], one->seen / seen);
+      add_judge (&w->judges->floor[kind], &one->floor[kind], one->seen / seen);
     }
   }
-  w->judges.seen = seen;
+  w->judges->seen = seen;
 }
 
 /* The middle 95% of draws. */
@@ -565,101 +542,6 @@ find_rest_p_value (const Square * rest, const Square * floor)
   return (1. + count) / (1. + (gdouble) N_DRAWS * N_DRAWS);
 }
 
-/* Whether an effect is large enough to be accepted. Where a discrepancy is taken off, the
- * evidence has said so of the first: the gap holds the simulator's own error too, which
- * hides it where it is no larger. */
-static gboolean
-is_improved (const Work * w, gboolean first, gdouble before, gdouble after)
-{
-  return after < (1. - CLOTH_DIAGNOSIS_LEAST_SHRINK) * before
-      || (first && cloth_diagnosis_has_discrepancies (w->d)
-      && after < HARDLY_LARGER * before
-      && after < CLOTH_DIAGNOSIS_BAND * w->judges.floor[WINDOWS].square);
-}
-
-/* Of the accepted effects those stay that shrink the gap enough, one after the other; returns the
- * model with them. Faults of cameras stay. */
-static guint
-choose_model (Work * w, guint faults)
-{
-  ClothDiagnosis *d = w->d;
-  const Square *v = w->judges.models[WINDOWS];
-  guint best = faults;
-
-  for (guint k = best + 1; k < w->n; k++)
-    if (is_improved (w, best == faults, v[best].square, v[k].square))
-      best = k;
-  while (d->n_accepted > best - faults)
-    cloth_model_free (d->with[--d->n_accepted]);
-  return best;
-}
-
-/* As a recording and its twin, with the noise of both: what the gap after is although the effects
- * are all that is missing, in mean square; NaN when the other model diverges. */
-static gboolean
-measure_known (const Work * w, guint i, guint best, gdouble * square,
-    GError ** error)
-{
-  ClothDiagnosis *d = w->d;
-  const ClothRecording *r = cloth_diagnosis_recording (d, i);
-  const ClothRecording *twin = cloth_diagnosis_twin (d, i);
-  g_autoptr (ClothModel) before = cloth_diagnosis_other_model (w->models[0]);
-  g_autoptr (ClothModel) after = cloth_diagnosis_other_model (w->models[best]);
-  const ClothModel *models[] = { before, after };
-  const gsize all = 3 * (gsize) r->n * r->n_frames;
-  g_autofree gdouble *y = g_new (gdouble, all);
-  ClothRecording real, simulated;
-  ClothWindowedGap **other, **own, **gaps = NULL;
-
-  *square = NAN;
-  other = simulate (d, FREE, twin, has_noise (r, twin), models, 2, error);
-  if (!other)
-    return FALSE;
-  for (gsize k = 0; k < all; k++)
-    y[k] = other[0]->positions[k];
-  simulated = record (d, twin, y, 0.);
-  for (gsize k = 0; k < all; k++)
-    y[k] = other[1]->positions[k];
-  real = record (d, r, y, twin->sigma);
-  own = simulate (d, WINDOWS, &simulated, FALSE, w->models, 1, error);
-  if (own)
-    gaps = compare (d, WINDOWS, &real, &simulated, own[0], w->models + best, 1,
-        error);
-  if (gaps && other[0]->sound && other[1]->sound)
-    *square = cloth_windowed_gap_square (gaps[0], NULL);
-  cloth_windowed_gaps_free (other, 2);
-  cloth_windowed_gaps_free (own, 1);
-  cloth_windowed_gaps_free (gaps, 1);
-  erase (&real);
-  erase (&simulated);
-  return gaps != NULL;
-}
-
-/* What the gap after is more than the floor although the effects are all that is missing. */
-static gboolean
-measure_prediction (const Work * w, guint best, GError ** error)
-{
-  ClothDiagnosis *d = w->d;
-  gdouble sum = 0., seen = 0.;
-
-  for (guint i = 0; i < d->recordings->len; i++) {
-    gdouble square;
-
-    if (!is_judge (d, i))
-      continue;
-    if (!measure_known (w, i, best, &square, error))
-      return FALSE;
-    if (isnan (square))
-      continue;
-    sum += w->all[i].seen * square;
-    seen += w->all[i].seen;
-  }
-  if (seen > 0.)
-    d->prediction_square = fmax (sum / seen -
-        w->judges.floor[WINDOWS].square, 0.);
-  return TRUE;
-}
-
 static void
 fill_takes (const Work * w, guint best)
 {
@@ -700,7 +582,7 @@ fill_result (Work * w, guint faults, guint best)
 {
   ClothDiagnosis *d = w->d;
   ClothGapResult *result = d->result;
-  const Measured *m = &w->judges;
+  const Measured *m = w->judges;
   const Square *v = m->models[WINDOWS];
 
   result->held_out_takes = d->options->n_hold_outs > 0;
@@ -713,9 +595,6 @@ fill_result (Work * w, guint faults, guint best)
   if (best && d->twins->len)
     result->predicted_shrink =
         find_shrinks (m, &v[best], &m->models[FREE][best]);
-  if (d->afters->len)
-    result->measured_shrink = find_shrinks (m, &m->after[WINDOWS],
-        &m->after[FREE]);
   result->rest_p_value = find_rest_p_value (&v[best], &m->floor[WINDOWS]);
   if (faults)
     d->shrink_of_faults = find_shrink (&v[0], &v[1], &m->floor[WINDOWS]).value;
@@ -737,11 +616,11 @@ keep_first (ClothDiagnosis * d, ClothWindowedGap * before,
     d->after = g_steal_pointer (&after->energy);
 }
 
-/* @d: a diagnosis whose effects are selected
+/* @d: a diagnosis whose effects are known
  * @error: #ClothSimError or #ClothFitError
  *
- * Measures all takes and hold-outs, in windows and in the free run, and lets those accepted
- * effects go that don't shrink the gap on what judges: the hold-outs, without any the takes.
+ * Measures all takes and hold-outs, in windows and in the free run; the hold-outs judge, without any
+ * the takes.
  *
  * Returns: whether they could be simulated
  */
@@ -749,12 +628,15 @@ gboolean
 cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
 {
   const guint faults = cloth_diagnosis_count_faults (d) > 0;
-  g_auto (Work) w = { d, {d->model, d->model}, 1 + faults + d->n_accepted };
-  guint best;
+  const guint best = faults + (d->with != NULL);
+  g_auto (Work) w = { d, {d->model, d->model}, 1 + best };
 
-  for (guint k = 0; k < d->n_accepted; k++)
-    w.models[1 + faults + k] = d->with[k];
-  w.all = g_new0 (Measured, d->recordings->len);
+  if (d->with)
+    w.models[best] = d->with;
+  d->measured = g_array_new (FALSE, TRUE, sizeof (Measured));
+  g_array_set_clear_func (d->measured, measured_clear);
+  g_array_set_size (d->measured, d->recordings->len + 1);
+  find_measured (&w);
   cloth_diagnosis_begin_part (d, 0.85, 1., 0.2, "the gap");
   for (guint kind = 0; kind < N_KINDS; kind++) {
     w.baseline[kind].square = NAN;
@@ -766,9 +648,98 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
         return FALSE;
   }
   sum_judges (&w);
-  best = choose_model (&w, faults);
   fill_result (&w, faults, best);
   keep_first (d, w.first[0], best ? w.first[best] : NULL);
-  return !d->twins->len || !d->n_accepted
-      || measure_prediction (&w, best, error);
+  return TRUE;
+}
+
+/* What is left in the user's simulator with the effect added. */
+static gboolean
+measure_after (const Work * w, Kind kind, guint i, GError ** error)
+{
+  ClothDiagnosis *d = w->d;
+  const ClothRecording *r = cloth_diagnosis_recording (d, i);
+  const ClothRecording *after = cloth_diagnosis_after (d, i);
+  ClothWindowedGap **own = simulate (d, kind, after, has_noise (r, after),
+      w->models, 1, error);
+  ClothWindowedGap **gaps = own ? compare (d, kind, r, after, own[0],
+      w->models, 1, error) : NULL;
+  g_autofree gboolean *windows = gaps && kind == WINDOWS ? list_judging (d, i,
+      gaps[0]) : NULL;
+
+  if (gaps)
+    find_squares (d, kind, i, gaps, 1, windows, &w->all[i].after[kind]);
+  cloth_windowed_gaps_free (own, 1);
+  cloth_windowed_gaps_free (gaps, 1);
+  return gaps != NULL;
+}
+
+/* What was measured takes the place of what was foretold. */
+static void
+fill_after (Work * w)
+{
+  ClothDiagnosis *d = w->d;
+  ClothGapResult *result = d->result;
+  const Measured *m = w->judges;
+  guint row = 0;
+
+  result->measured_shrink = find_shrinks (m, &m->after[WINDOWS],
+      &m->after[FREE]);
+  if (!d->n_accepted)
+    return;
+  result->gap_after = estimate (&m->after[WINDOWS]);
+  result->shrink = result->measured_shrink.windows;
+  result->rest_p_value = find_rest_p_value (&m->after[WINDOWS],
+      &m->floor[WINDOWS]);
+  for (guint i = 0; i < result->effects->len; i++) {
+    ClothGapEffect *e = &g_array_index (result->effects, ClothGapEffect, i);
+
+    if (e->accepted && e->effect->side != CLOTH_EFFECT_CAMERA
+        && e->effect->side != CLOTH_EFFECT_IMAGE)
+      e->shrink = result->shrink;
+  }
+  for (guint i = 0; i < d->recordings->len; i++) {
+    ClothGapMeasuredTake *take;
+
+    if (is_baseline (d, i))
+      continue;
+    take = &g_array_index (result->takes, ClothGapMeasuredTake, row++);
+    if (!is_judge (d, i))
+      continue;
+    take->gap_after = estimate (&w->all[i].after[WINDOWS]);
+    take->free_after = estimate (&w->all[i].after[FREE]);
+    take->shrink = find_shrink (&w->all[i].models[WINDOWS][0],
+        &w->all[i].after[WINDOWS], &w->all[i].floor[WINDOWS]);
+  }
+}
+
+/* @d: a diagnosis that is measured
+ * @error: #ClothSimError or #ClothFitError
+ *
+ * Measures what the effects took off the gap in the user's simulator, if it was run with them on
+ * what judges; what ours foretold of it stays in the predicted shrink only.
+ *
+ * Returns: whether it could be compared
+ */
+gboolean
+cloth_diagnosis_measure_after (ClothDiagnosis * d, GError ** error)
+{
+  g_auto (Work) w = { d, {d->model}
+  };
+
+  if (!d->afters->len)
+    return TRUE;
+  find_measured (&w);
+  for (guint kind = 0; kind < N_KINDS; kind++)
+    for (guint i = 0; i < d->recordings->len; i++) {
+      if (!is_judge (d, i))
+        continue;
+      if (!measure_after (&w, kind, i, error))
+        return FALSE;
+      if (w.all[i].seen > 0.)
+        add_judge (&w.judges->after[kind], &w.all[i].after[kind],
+            w.all[i].seen / w.judges->seen);
+    }
+  fill_after (&w);
+  return TRUE;
 }

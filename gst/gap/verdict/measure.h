@@ -8,5 +8,6 @@
 G_BEGIN_DECLS
 
 gboolean cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error);
+gboolean cloth_diagnosis_measure_after (ClothDiagnosis * d, GError ** error);
 
 G_END_DECLS

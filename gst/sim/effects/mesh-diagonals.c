@@ -22,10 +22,13 @@ const ClothEffect cloth_effect_mesh_diagonals = {
       "Forces within the plane in proportion to shear, of a sign that "
       "the direction of the diagonals sets.",
   .confusions = confusions,
+  .test = CLOTH_EFFECT_TEST_TRIAL,
+  .untested =
+      "It is part of the simulator’s own error, which is projected out.",
   .n_parameters = 1,
   .parameters = {
     {.name = "pattern", .unit = "1", .null_value = 0, .min = 0, .max = 2,
-        .prior = 1, .one_sided = TRUE,
+        .prior = 1, .one_sided = TRUE, .n_tried = 1, .tried = {1},
         .blurb = "0, 1 or 2"},
   }
 };

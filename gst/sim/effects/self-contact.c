@@ -24,13 +24,13 @@ const ClothEffect cloth_effect_self_contact = {
       "Pairs of equal and opposite forces along the normal where two "
       "parts of the cloth are as near as its thickness.",
   .confusions = confusions,
-  .test = CLOTH_EFFECT_TEST_NONE,
+  .test = CLOTH_EFFECT_TEST_TRIAL,
   .untested =
       "Contact switches on and off: it has no derivative to test by.",
   .n_parameters = 1,
   .parameters = {
     {.name = "thickness", .unit = "m", .null_value = 0, .min = 0, .max = 0.01,
-        .prior = 0.001, .one_sided = TRUE,
+        .prior = 0.001, .one_sided = TRUE, .n_tried = 1, .tried = {0.001},
         .blurb = "Distance that parts keep, at most half the height of the "
             "triangles about; 0 lets them pass through each other"},
   }

@@ -21,10 +21,13 @@ const ClothEffect cloth_effect_time_step = {
       "Damping of high modes that changes with the step, unlike "
       "damping_stiffness.",
   .confusions = confusions,
+  .test = CLOTH_EFFECT_TEST_TRIAL,
+  .untested =
+      "It is part of the simulator’s own error, which is projected out.",
   .n_parameters = 1,
   .parameters = {
     {.name = "factor", .unit = "1", .null_value = 1, .min = 1. / 64, .max = 64,
-        .prior = 0.5,
+        .prior = 0.5, .n_tried = 1, .tried = {0.5},
         .blurb = "What the time step is multiplied with; an explicit step beyond "
             "the stable one is cut back to it, an automatic one to a frame"},
   }

@@ -217,6 +217,20 @@ particles (ClothLaneState * state, guint index, ClothObstacleKind kind)
   }
 }
 
+/* A floor that the models have and the scene has not. */
+static void
+stand_on_floor (ClothLaneState * state)
+{
+  ClothLane zero = cloth_lane_set (0.);
+  Touch touch = {.normal = {zero, zero, cloth_lane_set (1.)} };
+
+  for (guint i = 0; i < state->n; i++) {
+    touch.gap = state->x[i][2] - state->floor;
+    if (cloth_lane_any (cloth_lane_less (touch.gap, zero)))
+      respond (state, i, &touch, state->obstacle_friction);
+  }
+}
+
 /* Takes the particles out of the obstacles. */
 void CLOTH_LANE_NAME (cloth_lane_obstacles) (ClothLaneState * state)
 {
@@ -235,4 +249,6 @@ void CLOTH_LANE_NAME (cloth_lane_obstacles) (ClothLaneState * state)
         break;
     }
   }
+  if (state->has_floor)
+    stand_on_floor (state);
 }

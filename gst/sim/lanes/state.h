@@ -98,6 +98,8 @@ typedef struct
   ClothLane gravity[3];
   ClothLane compliance;         /* of the clamps, m/N */
   ClothLane obstacle_friction;  /* on top of each obstacle's own */
+  ClothLane floor;              /* height of one that the scene doesn't have, m */
+  gboolean has_floor;
   /* ∂x/∂(u, v) is multiplied by this from the right: [0] [1]; [2] [3]. It turns the grain
    * and changes the size of the cloth at rest. */
   ClothLane rest[4];

@@ -17,8 +17,6 @@ G_BEGIN_DECLS
  *   variability
  * @overdispersion: see #ClothEstimateOptions
  * @block_s: length of a block, s
- * @gusts: first column of the wind in the parts of a block, x and y of each; 0: there are
- *   none
  * @sound: (array): columns that could be simulated
  */
 typedef struct {
@@ -31,7 +29,6 @@ typedef struct {
   guint n_numbers;
   gdouble overdispersion;
   gdouble block_s;
-  guint gusts;
   const gboolean *sound;
 } ClothGapTest;
 

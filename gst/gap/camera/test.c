@@ -8,7 +8,7 @@
  *   φ = φ₀ · max (r / number of features, 0.1).
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/gap/inference/test.h"
+#include "gst/gap/camera/test.h"
 
 /* Features never count as less noisy than this share of what is expected of them. */
 #define LEAST_DISPERSION 0.1

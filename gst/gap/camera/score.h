@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/gap/inference/test.h"
+#include "gst/gap/camera/test.h"
 
 G_BEGIN_DECLS
 
@@ -11,7 +11,7 @@ G_BEGIN_DECLS
  * @log_bayes_factor: logarithm of the Bayes factor for it
  * @improvement: share of the residual's square that it removes from blocks of time that
  *   it was not estimated on
- * @changes: expected changes of its directions; of gusts their intensity and azimuth
+ * @changes: expected changes of its directions
  * @sigmas: their standard deviations
  * @p_value: of no effect
  * @constancy_p_value: of the same effect in every block

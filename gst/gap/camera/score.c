@@ -14,17 +14,12 @@
  * A one-sided effect has η̂ ≥ 0.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/gap/inference/score.h"
+#include "gst/gap/camera/score.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "gst/gap/inference/gust.h"
 #include "gst/math/statistics.h"
-
-/* Gusts must be likelier by so much: a steady wind whose law is another than the model's
- * seems to change, too. */
-#define GUST_MARGIN 10.
 
 #define MOST CLOTH_EFFECT_MAX_PARAMETERS
 
@@ -256,37 +251,6 @@ run_trial (const Trial * trial, ClothGapScore * score)
   return TRUE;
 }
 
-static gboolean
-run_gusts (const ClothGapTest * test, const ClothCandidate * candidate,
-    ClothGapScore * score)
-{
-  const ClothEffectParameter *p = candidate->effect->parameters;
-  ClothGapGusts gusts;
-
-  /* the prior is that of the first parameter, the correlation time the second */
-  if (!cloth_gap_test_gusts (test, p[0].prior, exp (-test->block_s /
-              CLOTH_GAP_GUST_PARTS / p[1].null_value), &gusts))
-    return FALSE;
-  score->log_bayes_factor = gusts.log_bayes_factor - GUST_MARGIN;
-  score->kept = 1.;
-  score->changes[0] = gusts.intensity;
-  score->changes[1] = gusts.azimuth;
-  score->p_value = score->constancy_p_value = NAN;
-  return TRUE;
-}
-
-static gboolean
-run_candidate (const ClothGapTest * test, guint i, ClothGapScore * score)
-{
-  const ClothCandidate *candidate =
-      &g_array_index (test->candidates->list, ClothCandidate, i);
-  Trial trial;
-
-  if (cloth_candidate_is_stochastic (candidate))
-    return run_gusts (test, candidate, score);
-  return trial_init (&trial, test, i) && run_trial (&trial, score);
-}
-
 /* @a: a #ClothGapScore
  * @b: another
  *
@@ -323,7 +287,9 @@ cloth_gap_test_run (const ClothGapTest * test)
         && g_array_index (list, ClothCandidate, i).effect == effect; i++) {
       ClothGapScore score = {.candidate = i };
 
-      if (!run_candidate (test, i, &score))
+      Trial trial;
+
+      if (!trial_init (&trial, test, i) || !run_trial (&trial, &score))
         continue;
       n++;
       if (score.log_bayes_factor > most.log_bayes_factor)

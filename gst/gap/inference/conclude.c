@@ -1,0 +1,437 @@
+/* What the posterior over all explanations says of each effect.
+ *
+ * Formulas, with p the posterior of an explanation among those of the library:
+ *   inclusion probability of an effect = Σ p of the explanations that it is part of;
+ *   log Bayes factor of an effect = its posterior log odds − its prior log odds;
+ *   P(unknown) = o/(1 + o), o = Σ over the rivals of exp (log BF − log (number of effects − 1)): an
+ *     unknown field is taken to be as likely as any one effect;
+ *   of all explanations the likeliest that have 95% together are listed, with p (1 − P(unknown)).
+ * Detection limit of a number: an effect of that size shows with a probability of 95%. Along its
+ * whitened derivative J an effect θ moves the scores by θ|J|, chance by one; it is likelier than
+ * nothing when (ν + n)/2 log (1 + x²/(ν + n)) > ½ log (1 + prior²J²) + log (number of effects − 1), so
+ *   θ|J| = 1.645 + √((ν + n)(exp (2 (…)/(ν + n)) − 1)).
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/inference/conclude.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/gap/inference/clamps.h"
+#include "gst/gap/inference/free-numbers.h"
+#include "gst/gap/inference/rivals.h"
+#include "gst/math/statistics.h"
+
+/* Share of the posterior that the listed explanations have. */
+#define LISTED 0.95
+/* Normal quantile of 95% on one side. */
+#define QUANTILE 1.645
+/* Most explanations that are listed. */
+#define MOST_SETS 12
+
+/* What is known of one effect. */
+typedef struct
+{
+  const ClothEffect *effect;
+  gdouble log_in, log_out;      /* of the posterior with and without it */
+  const ClothGapHypothesis *best;       /* the likeliest with it */
+  const ClothGapHypothesis *alone;
+} Known;
+
+static const ClothCandidate *
+candidate_of (const ClothDiagnosis * d, guint i)
+{
+  return &g_array_index (d->candidates->list, ClothCandidate, i);
+}
+
+static gdouble
+log_add (gdouble a, gdouble b)
+{
+  const gdouble most = MAX (a, b);
+
+  return isfinite (most) ? most + log (exp (a - most) + exp (b - most)) : most;
+}
+
+static gboolean
+includes (const ClothDiagnosis * d, const ClothGapHypothesis * h,
+    const ClothEffect * effect)
+{
+  for (guint c = 0; c < h->n; c++)
+    if (candidate_of (d, h->candidates[c])->effect == effect)
+      return TRUE;
+  return FALSE;
+}
+
+static Known
+find_known (const ClothDiagnosis * d, const GArray * hypotheses,
+    const ClothEffect * effect)
+{
+  Known known = { effect, -INFINITY, -INFINITY };
+
+  for (guint i = 0; i < hypotheses->len; i++) {
+    const ClothGapHypothesis *h = &g_array_index (hypotheses,
+        ClothGapHypothesis, i);
+
+    if (!isfinite (h->behind))
+      continue;
+    if (!includes (d, h, effect)) {
+      known.log_out = log_add (known.log_out, -h->behind);
+      continue;
+    }
+    known.log_in = log_add (known.log_in, -h->behind);
+    if (!known.best)
+      known.best = h;
+    if (h->n == 1 && !known.alone)
+      known.alone = h;
+  }
+  return known;
+}
+
+static guint
+count_effects (const ClothDiagnosis * d)
+{
+  guint n = 0;
+
+  for (guint i = 0; i < d->candidates->list->len; i++)
+    n += i == 0
+        || candidate_of (d, i)->effect != candidate_of (d, i - 1)->effect;
+  return MAX (n, 2);
+}
+
+/* The null, where nothing acts. */
+static const ClothGapHypothesis *
+find_none (const GArray * hypotheses)
+{
+  for (guint i = 0; i < hypotheses->len; i++)
+    if (!g_array_index (hypotheses, ClothGapHypothesis, i).n)
+      return &g_array_index (hypotheses, ClothGapHypothesis, i);
+  return NULL;
+}
+
+/* Of gusts: the root of the winds' mean square, and the axis along which most of it blew. */
+static void
+fill_gusts (const ClothGapHypothesis * h, const ClothEffect * effect,
+    ClothGapEffect * e)
+{
+  const gdouble *winds = h->evidence.values + h->n_directions - h->n_winds;
+  gdouble along[3] = { 0. };
+
+  for (guint k = 0; k < effect->n_parameters; k++) {
+    e->values[k] = effect->parameters[k].null_value;
+    e->sigmas[k] = NAN;
+  }
+  for (guint k = 0; k + 1 < h->n_winds; k += 2) {
+    along[0] += winds[k] * winds[k];
+    along[1] += winds[k + 1] * winds[k + 1];
+    along[2] += 2. * winds[k] * winds[k + 1];
+  }
+  e->values[0] = sqrt (2. * (along[0] + along[1]) / h->n_winds);
+  e->values[2] = 90. / G_PI * atan2 (along[2], along[0] - along[1]);
+}
+
+/* The numbers of an effect in the likeliest explanation with it. */
+static void
+fill_values (const ClothDiagnosis * d, const Known * known, ClothGapEffect * e)
+{
+  const ClothGapHypothesis *h = known->best;
+
+  for (guint c = 0, at = 0; c < h->n; c++) {
+    const ClothCandidate *candidate = candidate_of (d, h->candidates[c]);
+
+    if (candidate->effect != known->effect) {
+      at += candidate->n;
+      continue;
+    }
+    if (cloth_candidate_is_stochastic (candidate)) {
+      fill_gusts (h, candidate->effect, e);
+      return;
+    }
+    for (guint k = 0; k < candidate->effect->n_parameters; k++) {
+      e->values[k] = candidate->values[k];
+      e->sigmas[k] = NAN;
+    }
+    for (guint k = 0; k < candidate->n; k++, at++) {
+      const guint p = candidate->parameters[k];
+      const ClothEffectParameter *parameter = &candidate->effect->parameters[p];
+
+      if (cloth_candidates_direction (d->candidates,
+              candidate->first + k)->present)
+        continue;
+      e->values[p] = CLAMP (cloth_candidates_direction (d->candidates,
+              candidate->first + k)->centre + h->evidence.values[at],
+          parameter->min, parameter->max);
+      e->sigmas[p] = sqrt (h->evidence.covariance[at * h->n_directions + at]);
+    }
+    return;
+  }
+}
+
+static gint
+compare_known (gconstpointer a, gconstpointer b)
+{
+  const Known *x = a, *y = b;
+
+  return x->log_in > y->log_in ? -1 : x->log_in < y->log_in;
+}
+
+/* The effects, the likeliest first. */
+static void
+fill_effects (ClothDiagnosis * d, const GArray * hypotheses)
+{
+  g_autoptr (GArray) all = g_array_new (FALSE, FALSE, sizeof (Known));
+  const ClothGapHypothesis *none = find_none (hypotheses);
+  const gdouble prior = -log (count_effects (d) - 1.);
+
+  for (guint i = 0; i < d->candidates->list->len; i++) {
+    Known known;
+
+    if (i && candidate_of (d, i)->effect == candidate_of (d, i - 1)->effect)
+      continue;
+    known = find_known (d, hypotheses, candidate_of (d, i)->effect);
+    if (known.best)
+      g_array_append_val (all, known);
+  }
+  g_array_sort (all, compare_known);
+  for (guint i = 0; i < all->len; i++) {
+    const Known *known = &g_array_index (all, Known, i);
+    ClothGapEffect *e = cloth_gap_result_add_effect (d->result,
+        known->effect);
+    const gdouble odds = known->log_in - known->log_out;
+
+    e->probability = 1. / (1. + exp (-odds));
+    e->log_bayes_factor = odds - prior;
+    e->p_value = e->constancy_p_value = NAN;
+    e->group = -1;
+    if (known->alone && none)
+      e->p_value = cloth_chi_square_tail (2. * fmax (known->alone->objective -
+              none->objective, 0.), known->alone->n_directions);
+    fill_values (d, known, e);
+  }
+}
+
+/* Explanations that have 95% together. */
+static void
+fill_sets (ClothDiagnosis * d, const GArray * hypotheses, gdouble unknown)
+{
+  gdouble all = -INFINITY, listed = 0.;
+
+  for (guint i = 0; i < hypotheses->len; i++)
+    all = log_add (all, -g_array_index (hypotheses, ClothGapHypothesis,
+            i).behind);
+  for (guint i = 0; i < MIN (hypotheses->len, MOST_SETS) && listed < LISTED;
+      i++) {
+    const ClothGapHypothesis *h = &g_array_index (hypotheses,
+        ClothGapHypothesis, i);
+    const gdouble p = exp (-h->behind - all);
+    ClothGapSet *set = cloth_gap_result_add_set (d->result,
+        CLOTH_GAP_RIVAL_NONE, p * (1. - unknown));
+
+    for (guint c = 0; c < h->n; c++)
+      g_ptr_array_add (set->effects,
+          (gpointer) candidate_of (d, h->candidates[c])->effect);
+    if (!h->n)
+      d->result->rivals.none_acts = p * (1. - unknown);
+    listed += p;
+  }
+}
+
+static ClothGapEffect *
+find_effect (ClothGapResult * result, const ClothEffect * effect)
+{
+  for (guint i = 0; i < result->effects->len; i++) {
+    ClothGapEffect *e = &g_array_index (result->effects, ClothGapEffect, i);
+
+    if (e->effect == effect)
+      return e;
+  }
+  return NULL;
+}
+
+/* Effects that the listed explanations don't agree on can't be told apart. */
+static void
+fill_group (ClothDiagnosis * d)
+{
+  GArray *sets = d->result->sets, *effects = d->result->effects;
+  guint n = 0;
+
+  for (guint pass = 0; pass < 2; pass++) {
+    for (guint i = 0; i < effects->len; i++) {
+      ClothGapEffect *e = &g_array_index (effects, ClothGapEffect, i);
+      guint in = 0;
+
+      for (guint k = 0; k < sets->len; k++)
+        in += g_ptr_array_find (g_array_index (sets, ClothGapSet, k).effects,
+            e->effect, NULL);
+      if (!in || in == sets->len)
+        continue;
+      n++;
+      if (pass)
+        e->group = 0;
+    }
+    if (pass == 0 && n < 2)
+      return;
+  }
+  cloth_gap_result_add_group (d->result, NULL, NAN);
+}
+
+/* Those of the likeliest explanation that are likelier than not. */
+static void
+accept (ClothDiagnosis * d, const ClothGapHypothesis * best)
+{
+  for (guint c = 0; c < best->n; c++) {
+    ClothGapEffect *e = find_effect (d->result, candidate_of (d,
+            best->candidates[c])->effect);
+
+    if (!e || !(e->probability > 0.5))
+      continue;
+    /* what it did follows from nothing */
+    if (cloth_candidate_is_stochastic (candidate_of (d, best->candidates[c]))) {
+      d->chance = e->effect;
+      continue;
+    }
+    e->accepted = TRUE;
+    d->accepted[d->n_accepted++] = best->candidates[c];
+  }
+}
+
+/* @d: a diagnosis
+ * @basis: what the posterior is found with
+ * @z: (array): the residual with the likeliest explanation
+ *
+ * Fills the result's rivals but that nothing acts.
+ *
+ * Returns: the probability that something unknown acts
+ */
+gdouble
+cloth_diagnosis_find_unknown (ClothDiagnosis * d, const ClothGapBasis * basis,
+    const gdouble * z)
+{
+  const ClothGapStack *s = basis->stack;
+  const gdouble prior = -log (count_effects (d) - 1.);
+  g_autofree gdouble *rest = g_new (gdouble, s->size);
+  g_autofree gboolean *is_force = g_new0 (gboolean, s->n + 1);
+  ClothGapUnknown unknown = { 0. };
+  ClothGapRivals *rivals = &d->result->rivals;
+  gdouble force, displacement, odds;
+
+  rivals->force_field = rivals->displacement_field = 0.;
+  for (guint i = 0; i < d->candidates->list->len; i++)
+    for (guint k = 0; k < candidate_of (d, i)->n; k++)
+      is_force[candidate_of (d, i)->first + k - s->n_free] =
+          candidate_of (d, i)->effect->side == CLOTH_EFFECT_PHYSICS;
+  cloth_gap_scores_find_rest (basis->scores, z, rest);
+  cloth_gap_find_unknown (basis->scores, s, basis->discrepancy->variances,
+      is_force, rest, &unknown);
+  force = exp (MIN (unknown.force_field + prior, 300.));
+  displacement = exp (MIN (unknown.displacement_field + prior, 300.));
+  odds = force + displacement;
+  rivals->force_field = force / (1. + odds);
+  rivals->displacement_field = displacement / (1. + odds);
+  cloth_gap_scores_find_rest (basis->scores, basis->null, rest);
+  d->unknown_share =
+      MIN (unknown.power / cloth_gap_dot (rest, rest, s->size), 1.);
+  d->unknown_probability = odds / (1. + odds);
+  return d->unknown_probability;
+}
+
+/* How large each number must be to show. */
+static void
+fill_limits (ClothDiagnosis * d, const ClothGapBasis * basis)
+{
+  const guint n = basis->scores->n, n_free = d->candidates->n_free;
+  const gdouble nu = CLOTH_GAP_FREEDOM + n;
+
+  for (guint i = 0; i < d->candidates->list->len; i++) {
+    const ClothCandidate *c = candidate_of (d, i);
+
+    if (cloth_candidate_is_stochastic (c)
+        || (i && c->effect == candidate_of (d, i - 1)->effect))
+      continue;
+    for (guint k = 0; k < c->n; k++) {
+      const ClothDirection *direction =
+          cloth_candidates_direction (d->candidates, c->first + k);
+      const gdouble *j = basis->scores->derivatives +
+          (gsize) (c->first + k - n_free) * n;
+      const gdouble square = cloth_gap_dot (j, j, n);
+      const gdouble needed = 0.5 * log1p (direction->prior *
+          direction->prior * square) + log (count_effects (d) - 1.);
+      const gdouble most = MAX (direction->high - direction->centre,
+          direction->centre - direction->low);
+      gdouble value;
+
+      if (direction->present || direction->shapes)
+        continue;
+      value = (QUANTILE + sqrt (nu * expm1 (2. * needed / nu))) / sqrt (square);
+
+      cloth_gap_result_add_limit (d->result, c->effect, c->parameters[k],
+          value <= most ? value : NAN);
+    }
+  }
+}
+
+/* The model's own numbers as they were fitted, and how sure they are. */
+static void
+fill_free_numbers (ClothDiagnosis * d, const ClothGapBasis * basis)
+{
+  const guint n = d->candidates->n_free;
+  const gdouble *covariance = basis->scores->free_covariance;
+
+  if (!n)
+    return;
+  d->result->free_correlation = g_new (gdouble, n * n);
+  for (guint i = 0; i < n; i++) {
+    const ClothDirection *direction = cloth_candidates_direction
+        (d->candidates, i);
+    ClothGapFreeNumber *f = cloth_gap_result_add_free_number (d->result,
+        direction->name, cloth_model_get_unit (direction->name));
+    const gdouble sigma = sqrt (covariance[i * n + i]);
+
+    cloth_model_get (d->model, direction->name, &f->value, NULL);
+    /* to first order where it is the logarithm that is known */
+    f->sigma = direction->logarithmic ? f->value * sigma : sigma;
+    f->low = direction->logarithmic ? exp (direction->low) : direction->low;
+    f->high = direction->logarithmic ? exp (direction->high) : direction->high;
+    f->at_end = cloth_diagnosis_is_at_end (d, i);
+    for (guint k = 0; k < n; k++)
+      d->result->free_correlation[i * n + k] = covariance[i * n + k] /
+          sqrt (covariance[i * n + i] * covariance[k * n + k]);
+  }
+}
+
+/* Clamps that were elsewhere than logged, unless an effect that acts on clamps says so: something
+ * unknown has moved them. */
+static void
+find_clamps (ClothDiagnosis * d, const ClothGapHypothesis * best)
+{
+  gdouble log_bayes_factor, p;
+
+  for (guint c = 0; c < best->n; c++)
+    if (candidate_of (d, best->candidates[c])->effect->side ==
+        CLOTH_EFFECT_CLAMP)
+      return;
+  d->clamps_off = cloth_diagnosis_find_clamps_off (d, &log_bayes_factor);
+  p = 1. / (1. + exp (log (count_effects (d) - 1.) - log_bayes_factor));
+  d->unknown_probability = 1. - (1. - d->unknown_probability) * (1. - p);
+  if (p <= 0.5)
+    g_clear_pointer (&d->clamps_off, g_free);
+}
+
+/* @d: a diagnosis
+ * @basis: what the posterior was found with
+ * @hypotheses: (element-type ClothGapHypothesis): all that were compared, the likeliest first
+ *
+ * Fills the result's effects, explanations, rivals, groups and limits, and accepts effects.
+ */
+void
+cloth_diagnosis_conclude (ClothDiagnosis * d, const ClothGapBasis * basis,
+    const GArray * hypotheses)
+{
+  find_clamps (d, &g_array_index (hypotheses, ClothGapHypothesis, 0));
+  d->result->rivals.none_acts = 0.;
+  fill_effects (d, hypotheses);
+  fill_sets (d, hypotheses, d->unknown_probability);
+  fill_group (d);
+  accept (d, &g_array_index (hypotheses, ClothGapHypothesis, 0));
+  fill_limits (d, basis);
+  fill_free_numbers (d, basis);
+}

@@ -1,0 +1,51 @@
+/* Simulators that the recording might have come from if nothing acted that the model lacks.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/fit/estimate/estimate.h"
+
+G_BEGIN_DECLS
+
+/* Draws of the free numbers for each way to compute. */
+#define CLOTH_ENSEMBLE_DRAWS 4
+/* With fewer members nothing is known of chance. */
+#define CLOTH_ENSEMBLE_LEAST 8u
+
+/* @n: how many members
+ * @models: (array length=n): what each of them is
+ * @families: (array length=n): 1 for those with another force model than the first one, else 0
+ *
+ * Other ways to compute the same cloth.
+ */
+typedef struct {
+  guint n;
+  ClothModel **models;
+  guint *families;
+} ClothEnsemble;
+
+/* @CLOTH_KIN_SAME: what a reference is of is computed as the recording is: the same cloth, the same
+ *   simulator
+ * @CLOTH_KIN_OTHER_MESH: by the same laws and numbers, on another mesh or with another step
+ * @CLOTH_KIN_OTHER_SIMULATOR: by other laws and numbers
+ *
+ * How a reference is related to the recording.
+ */
+typedef enum {
+  CLOTH_KIN_SAME,
+  CLOTH_KIN_OTHER_MESH,
+  CLOTH_KIN_OTHER_SIMULATOR
+} ClothEnsembleKin;
+
+ClothEnsemble *cloth_ensemble_new (const ClothModel * model,
+    const ClothCandidates * candidates, guint64 seed);
+guint cloth_ensemble_find_kin (const ClothEnsemble * ensemble, guint member,
+    ClothEnsembleKin kin);
+void cloth_ensemble_free (ClothEnsemble * ensemble);
+gboolean cloth_ensemble_run (const ClothEnsemble * ensemble,
+    const ClothSensitivities * study, const ClothModel * model,
+    ClothEstimateOptions * options, gdouble * z, gboolean * sound,
+    GError ** error);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothEnsemble, cloth_ensemble_free)
+G_END_DECLS

@@ -1,0 +1,801 @@
+/* Explanations: sets of effects, each simulated where the data ask it to be.
+ *
+ * All sets of up to three effects are compared by the derivatives of one linearisation. Every single
+ * effect and the best of the larger sets get simulations of their own: each moves to its most
+ * probable values by Gauss–Newton steps, with derivatives that follow what was simulated (Broyden
+ * 1965). An effect of one number may turn over far from its null, so in the first round it is
+ * also tried at one and two priors to either side.
+ * Formula: posterior ∝ evidence (evidence.c) × Π 1/number of effects, and of an effect with several
+ *   candidates 1/number of these.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/inference/hypotheses.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Sets of two and of three effects that are simulated. */
+#define N_PAIRS 16
+#define N_TRIPLES 8
+/* Steps of each at most, and the share of a prior at which it has arrived. */
+#define N_STEPS 6
+#define ARRIVED 0.1
+/* No step is longer than this many priors. */
+#define LONGEST_STEP 1.5
+/* What is less likely by this much (logarithm) won't be the likeliest. */
+#define HOPELESS 20.
+
+/* What is there or not is there as it is tried, up to this share. */
+#define PRESENT_PRIOR 0.1
+/* Gusts may be so many times as strong as they are expected to be. */
+#define STRONG_GUSTS 3.
+
+static const gdouble probes[] = { -2., -1., 1., 2. };
+
+static void
+clear (gpointer item)
+{
+  cloth_gap_hypothesis_clear (item);
+}
+
+/* Returns: (transfer full) (element-type ClothGapHypothesis): none yet */
+GArray *
+cloth_gap_hypotheses_new (void)
+{
+  GArray *hypotheses = g_array_new (FALSE, TRUE, sizeof (ClothGapHypothesis));
+
+  g_array_set_clear_func (hypotheses, clear);
+  return hypotheses;
+}
+
+/* @hypothesis: an explanation
+ *
+ * Frees what it holds.
+ */
+void
+cloth_gap_hypothesis_clear (ClothGapHypothesis * hypothesis)
+{
+  g_clear_pointer (&hypothesis->e, g_free);
+  g_clear_pointer (&hypothesis->derivatives, g_free);
+}
+
+/* @hypothesis: (out caller-allocates): an explanation that was not simulated yet
+ * @candidates: all candidates
+ * @stack: (nullable): features; %NULL: none of the candidates are gusts
+ * @list: (array length=n): which of them act, growing
+ * @n: how many
+ *
+ * Returns: whether they have no more numbers together than an explanation can have
+ */
+gboolean
+cloth_gap_hypothesis_init (ClothGapHypothesis * hypothesis,
+    const ClothCandidates * candidates, const ClothGapStack * stack,
+    const guint * list, guint n)
+{
+  ClothGapHypothesis *h = hypothesis;
+
+  *h = (ClothGapHypothesis) {
+  n,.objective = -INFINITY,.behind = INFINITY};
+  for (guint c = 0; c < n; c++) {
+    const ClothCandidate *candidate =
+        &g_array_index (candidates->list, ClothCandidate, list[c]);
+
+    h->candidates[c] = list[c];
+    if (cloth_candidate_is_stochastic (candidate))
+      h->n_winds = stack->n_winds;
+    if (h->n_directions + h->n_winds + candidate->n > CLOTH_GAP_MAX_DIRECTIONS)
+      return FALSE;
+    for (guint k = 0; k < candidate->n; k++) {
+      const ClothDirection *d = cloth_candidates_direction (candidates,
+          candidate->first + k);
+
+      h->directions[h->n_directions] = candidate->first + k;
+      h->priors[h->n_directions++] = d->present ? (ClothGapPrior) {
+      PRESENT_PRIOR, 1., FALSE} : (ClothGapPrior) {
+      d->prior, 0., d->one_sided};
+    }
+  }
+  for (guint k = 0; k < h->n_winds; k++) {
+    const guint direction = stack->n - stack->n_winds + k;
+
+    h->directions[h->n_directions] = stack->n_free + direction;
+    h->priors[h->n_directions++] = (ClothGapPrior) {
+    stack->priors[direction], 0., FALSE};
+  }
+  return TRUE;
+}
+
+/* @to: (out caller-allocates): a copy
+ * @from: an explanation
+ */
+void
+cloth_gap_hypothesis_copy (ClothGapHypothesis * to,
+    const ClothGapHypothesis * from)
+{
+  *to = *from;
+  to->e = NULL;
+  to->derivatives = NULL;
+}
+
+/* @hypothesis: an explanation
+ * @candidate: a candidate
+ *
+ * Returns: whether it is part of it
+ */
+gboolean
+cloth_gap_hypothesis_has (const ClothGapHypothesis * hypothesis,
+    guint candidate)
+{
+  for (guint c = 0; c < hypothesis->n; c++)
+    if (hypothesis->candidates[c] == candidate)
+      return TRUE;
+  return FALSE;
+}
+
+/* @a: an explanation
+ * @b: another
+ *
+ * Returns: whether the same candidates act
+ */
+gboolean
+cloth_gap_hypothesis_is_same (const ClothGapHypothesis * a,
+    const ClothGapHypothesis * b)
+{
+  return a->n == b->n && memcmp (a->candidates, b->candidates,
+      a->n * sizeof *a->candidates) == 0;
+}
+
+static ClothModel *
+make_model_at (const ClothDiagnosis * d, const ClothGapHypothesis * h,
+    const gdouble * at)
+{
+  return cloth_candidates_move (d->candidates, d->model, h->directions, at,
+      h->n_directions - h->n_winds);
+}
+
+/* @d: a diagnosis
+ * @hypothesis: an explanation
+ *
+ * Returns: (transfer full): the model with it
+ */
+ClothModel *
+cloth_gap_hypothesis_make_model (const ClothDiagnosis * d,
+    const ClothGapHypothesis * hypothesis)
+{
+  return make_model_at (d, hypothesis, hypothesis->at);
+}
+
+static const ClothCandidate *
+candidate_of (const ClothDiagnosis * d, guint i)
+{
+  return &g_array_index (d->candidates->list, ClothCandidate, i);
+}
+
+/* Whether all directions of a candidate could be simulated. */
+static gboolean
+can_act (const ClothDiagnosis * d, const ClothGapStack * stack, guint i)
+{
+  const ClothCandidate *c = candidate_of (d, i);
+
+  if (!c->n)
+    return stack->n_winds > 0;
+  for (guint t = 0; t < d->n_takes; t++)
+    for (guint k = 0; k < c->n; k++)
+      if (!cloth_diagnosis_study (d, t)->sound[c->first + k])
+        return FALSE;
+  return TRUE;
+}
+
+/* How many effects there are, of which each is as likely as another. */
+static guint
+count_effects (const ClothDiagnosis * d)
+{
+  guint n = 0;
+
+  for (guint i = 0; i < d->candidates->list->len; i++)
+    n += i == 0
+        || candidate_of (d, i)->effect != candidate_of (d, i - 1)->effect;
+  return MAX (n, 2);
+}
+
+static guint
+count_alternatives (const ClothDiagnosis * d, guint candidate)
+{
+  guint n = 0;
+
+  for (guint i = 0; i < d->candidates->list->len; i++)
+    n += candidate_of (d, i)->effect == candidate_of (d, candidate)->effect;
+  return n;
+}
+
+/* Logarithm of its odds against nothing, before anything is seen. */
+static gdouble
+log_odds (const ClothDiagnosis * d, const ClothGapHypothesis * h)
+{
+  gdouble sum = 0.;
+
+  for (guint c = 0; c < h->n; c++)
+    sum -= log ((count_effects (d) - 1.) * count_alternatives (d,
+            h->candidates[c]));
+  return sum;
+}
+
+/* Within the range of each number, and not too far from where it is. */
+static void
+keep_in_range (const ClothDiagnosis * d, ClothGapHypothesis * h)
+{
+  for (guint k = 0; k < h->n_directions - h->n_winds; k++) {
+    const ClothDirection *direction =
+        cloth_candidates_direction (d->candidates, h->directions[k]);
+    const gdouble step = LONGEST_STEP * direction->prior;
+
+    if (direction->present) {
+      h->next[k] = 1.;
+      continue;
+    }
+    if (h->e)
+      h->next[k] = CLAMP (h->next[k], h->at[k] - step, h->at[k] + step);
+    h->next[k] = CLAMP (h->next[k], direction->low - direction->centre,
+        direction->high - direction->centre);
+  }
+}
+
+/* The evidence of gusts that are as strong as expected, or so many times as strong, each as likely. */
+static gboolean
+find_gust_evidence (guint n, const gdouble * e, const gdouble * derivatives,
+    const gdouble * at, ClothGapHypothesis * h)
+{
+  const guint n_simulated = h->n_directions - h->n_winds;
+  ClothGapPrior priors[CLOTH_GAP_MAX_DIRECTIONS];
+  ClothGapEvidence strong;
+  gdouble most;
+
+  memcpy (priors, h->priors, sizeof priors);
+  for (guint k = n_simulated; k < h->n_directions; k++)
+    priors[k].prior *= STRONG_GUSTS;
+  if (!cloth_gap_evidence_find (n, e, derivatives, at, h->priors,
+          h->n_directions, &h->evidence)
+      || !cloth_gap_evidence_find (n, e, derivatives, at, priors,
+          h->n_directions, &strong))
+    return FALSE;
+  most = MAX (h->evidence.log_evidence, strong.log_evidence);
+  most += log (0.5 * (exp (h->evidence.log_evidence - most) +
+          exp (strong.log_evidence - most)));
+  if (strong.log_evidence > h->evidence.log_evidence)
+    h->evidence = strong;
+  h->evidence.log_evidence = most;
+  return TRUE;
+}
+
+/* A hypothesis by the derivatives of the linearisation: from where the base is. */
+static gboolean
+screen (const ClothDiagnosis * d, const ClothGapLinearisation * l,
+    ClothGapHypothesis * h)
+{
+  const guint n = l->scores->n, n_free = d->candidates->n_free;
+  g_autofree gdouble *derivatives =
+      g_new (gdouble, (gsize) h->n_directions * n + 1);
+  gdouble at[CLOTH_GAP_MAX_DIRECTIONS] = { 0. };
+
+  for (guint k = 0; k < h->n_directions; k++) {
+    for (guint b = 0; b < l->base->n_directions - l->base->n_winds; b++)
+      if (l->base->directions[b] == h->directions[k])
+        at[k] = l->base->at[b];
+    memcpy (derivatives + (gsize) k * n,
+        l->scores->derivatives + (gsize) (h->directions[k] - n_free) * n,
+        n * sizeof (gdouble));
+  }
+  if (h->n_winds ? !find_gust_evidence (n, l->e, derivatives, at, h) :
+      !cloth_gap_evidence_find (n, l->e, derivatives, at, h->priors,
+          h->n_directions, &h->evidence))
+    return FALSE;
+  h->behind = -h->evidence.log_evidence - log_odds (d, h);
+  memcpy (h->next, h->evidence.values, sizeof h->next);
+  keep_in_range (d, h);
+  h->is_compared = TRUE;
+  h->is_settled = h->n_winds > 0;
+  return TRUE;
+}
+
+static gint
+compare_behind (gconstpointer a, gconstpointer b)
+{
+  const ClothGapHypothesis *x = a, *y = b;
+
+  return x->behind < y->behind ? -1 : x->behind > y->behind;
+}
+
+static gboolean
+is_listed (const GArray * hypotheses, const ClothGapHypothesis * h)
+{
+  for (guint i = 0; i < hypotheses->len; i++)
+    if (cloth_gap_hypothesis_is_same (&g_array_index (hypotheses,
+                ClothGapHypothesis, i), h))
+      return TRUE;
+  return FALSE;
+}
+
+/* A set and one more; FALSE when that can't be. */
+static gboolean
+add_one (const ClothDiagnosis * d, const ClothGapStack * stack,
+    const ClothGapHypothesis * set, guint one, ClothGapHypothesis * h)
+{
+  guint list[CLOTH_GAP_MAX_EFFECTS], n = 0;
+
+  if (set->n == CLOTH_GAP_MAX_EFFECTS || !can_act (d, stack, one))
+    return FALSE;
+  for (guint c = 0; c < set->n; c++) {
+    if (candidate_of (d, set->candidates[c])->effect ==
+        candidate_of (d, one)->effect)
+      return FALSE;
+    if (n == c && one < set->candidates[c])
+      list[n++] = one;
+    list[n++] = set->candidates[c];
+  }
+  if (n == set->n)
+    list[n++] = one;
+  return cloth_gap_hypothesis_init (h, d->candidates, stack, list, n);
+}
+
+/* What @sets become by one more effect, the likeliest first. */
+static GArray *
+grow (const ClothDiagnosis * d, const ClothGapLinearisation * l,
+    const GArray * sets)
+{
+  GArray *grown = cloth_gap_hypotheses_new ();
+
+  for (guint i = 0; i < sets->len; i++) {
+    const ClothGapHypothesis *set = &g_array_index (sets, ClothGapHypothesis,
+        i);
+    /* each set once: with what comes after all that is not of the base */
+    guint from = 0;
+
+    for (guint c = 0; c < set->n; c++)
+      if (!cloth_gap_hypothesis_has (l->base, set->candidates[c]))
+        from = set->candidates[c] + 1;
+    for (guint one = from; one < d->candidates->list->len; one++) {
+      ClothGapHypothesis h;
+
+      if (add_one (d, l->stack, set, one, &h) && screen (d, l, &h))
+        g_array_append_val (grown, h);
+    }
+  }
+  g_array_sort (grown, compare_behind);
+  return grown;
+}
+
+static void
+append_best (GArray * hypotheses, const GArray * from, guint most)
+{
+  for (guint i = 0; i < MIN (most, from->len); i++)
+    if (!is_listed (hypotheses, &g_array_index (from, ClothGapHypothesis, i)))
+      g_array_append_vals (hypotheses, &g_array_index (from,
+              ClothGapHypothesis, i), 1);
+}
+
+/* All hypotheses of a linearisation: those that were compared before and are not hopeless, and the
+ * likeliest of those that the base grows to. */
+static void
+list_hypotheses (const ClothDiagnosis * d, const ClothGapLinearisation * l,
+    GArray * hypotheses)
+{
+  g_autoptr (GArray) base = cloth_gap_hypotheses_new ();
+  ClothGapHypothesis none, start;
+  const guint most[] = { G_MAXUINT, N_PAIRS, N_TRIPLES };
+
+  for (guint i = 0; i < hypotheses->len; i++) {
+    ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
+        i);
+
+    h->is_compared = h->behind <= HOPELESS;
+    h->is_settled = !h->is_compared || h->n_winds;
+    if (!h->is_compared)
+      continue;
+    /* other scores: it begins where it was, and must be simulated anew */
+    if (h->e)
+      memcpy (h->next, h->at, sizeof h->next);
+    cloth_gap_hypothesis_clear (h);
+    h->objective = -INFINITY;
+  }
+  cloth_gap_hypothesis_init (&none, d->candidates, l->stack, NULL, 0);
+  none.is_compared = TRUE;
+  if (!is_listed (hypotheses, &none))
+    g_array_append_val (hypotheses, none);
+  cloth_gap_hypothesis_init (&start, d->candidates, l->stack,
+      l->base->candidates, l->base->n);
+  g_array_append_val (base, start);
+  for (guint size = 0; size < CLOTH_GAP_MAX_EFFECTS - l->base->n; size++) {
+    GArray *grown = grow (d, l, base);
+
+    append_best (hypotheses, grown, most[size]);
+    g_array_unref (base);
+    base = grown;
+  }
+}
+
+/* Residuals of models on all takes, [n][size]. */
+static gboolean
+simulate_all (ClothDiagnosis * d, ClothModel ** models, guint n, gsize size,
+    gdouble * z, gboolean * sound, GError ** error)
+{
+  g_autofree gdouble **to = g_new (gdouble *, n + 1);
+  g_autofree gboolean *here = g_new (gboolean, n + 1);
+  gsize begin = 0;
+
+  for (guint i = 0; i < n; i++)
+    sound[i] = TRUE;
+  for (guint t = 0; t < d->n_takes && n; t++) {
+    const ClothSensitivities *study = cloth_diagnosis_study (d, t);
+
+    for (guint i = 0; i < n; i++)
+      to[i] = z + i * size + begin;
+    if (!cloth_sensitivities_run (study, models, n, &d->study, to, here, error))
+      return FALSE;
+    for (guint i = 0; i < n; i++)
+      sound[i] = sound[i] && here[i];
+    begin += study->features->size;
+  }
+  return TRUE;
+}
+
+/* Whitened scores of models on all takes, [n][scores]. */
+static gboolean
+simulate (ClothDiagnosis * d, const ClothGapLinearisation * l,
+    GPtrArray * models, gdouble * e, gboolean * sound, GError ** error)
+{
+  const gsize size = l->stack->size;
+  g_autofree gdouble *z = g_new0 (gdouble, models->len * size + 1);
+
+  if (!simulate_all (d, (ClothModel **) models->pdata, models->len, size, z,
+          sound, error))
+    return FALSE;
+  for (guint i = 0; i < models->len; i++)
+    cloth_gap_scores_find (l->scores, z + i * size,
+        e + (gsize) i * l->scores->n);
+  return TRUE;
+}
+
+/* @d: a diagnosis
+ * @hypothesis: an explanation
+ * @z: (inout) (array): the residual with it, of all takes; start with zeros
+ * @error: #ClothSimError, or #ClothFitError when it was stopped
+ *
+ * Returns: whether it could be simulated
+ */
+gboolean
+cloth_gap_hypothesis_simulate (ClothDiagnosis * d,
+    const ClothGapHypothesis * hypothesis, gdouble * z, GError ** error)
+{
+  g_autoptr (ClothModel) model =
+      cloth_gap_hypothesis_make_model (d, hypothesis);
+  gboolean sound;
+
+  return simulate_all (d, &model, 1, 0, z, &sound, error);
+}
+
+static gdouble
+objective_at (const ClothGapLinearisation * l, const ClothGapHypothesis * h,
+    const gdouble * at, const gdouble * e)
+{
+  return cloth_gap_log_likelihood (l->scores->n, cloth_gap_dot (e, e,
+          l->scores->n)) + cloth_gap_log_prior (h->priors, at, h->n_directions);
+}
+
+/* Broyden: the derivatives change as little as makes them true to what was simulated. */
+static void
+update_derivatives (ClothGapHypothesis * h, guint n, const gdouble * to,
+    const gdouble * e)
+{
+  g_autofree gdouble *off = g_new (gdouble, n);
+  gdouble square = 0.;
+
+  for (guint i = 0; i < n; i++)
+    off[i] = e[i] - h->e[i];
+  for (guint k = 0; k < h->n_directions; k++) {
+    const gdouble step = to[k] - h->at[k];
+
+    square += pow (step / h->priors[k].prior, 2.);
+    for (guint i = 0; i < n; i++)
+      off[i] -= h->derivatives[(gsize) k * n + i] * step;
+  }
+  for (guint k = 0; k < h->n_directions && square > 0.; k++)
+    for (guint i = 0; i < n; i++)
+      h->derivatives[(gsize) k * n + i] += off[i] * (to[k] - h->at[k]) /
+          (h->priors[k].prior * h->priors[k].prior * square);
+}
+
+/* What follows from the simulation at a hypothesis, and where it is simulated next. */
+static void
+look_ahead (const ClothDiagnosis * d, const ClothGapLinearisation * l,
+    ClothGapHypothesis * h)
+{
+  gdouble farthest = 0.;
+
+  if (!cloth_gap_evidence_find (l->scores->n, h->e, h->derivatives, h->at,
+          h->priors, h->n_directions, &h->evidence)) {
+    h->is_settled = TRUE;
+    return;
+  }
+  memcpy (h->next, h->evidence.values, sizeof h->next);
+  keep_in_range (d, h);
+  for (guint k = 0; k < h->n_directions; k++)
+    farthest = MAX (farthest, fabs (h->next[k] - h->at[k]) /
+        h->priors[k].prior);
+  h->is_settled = farthest < ARRIVED;
+  /* evidence is of what was simulated, unless it has arrived */
+  if (!h->is_settled)
+    h->evidence.log_evidence = h->objective + h->evidence.log_volume;
+}
+
+/* Takes a simulation at the next place in: it becomes the place if it is better, else the next one
+ * is half as far. */
+static void
+take_step (const ClothDiagnosis * d, const ClothGapLinearisation * l,
+    ClothGapHypothesis * h, const gdouble * e, gboolean sound)
+{
+  const guint n = l->scores->n;
+  const gdouble objective = sound ? objective_at (l, h, h->next, e) : -INFINITY;
+  gboolean is_better;
+
+  if (!h->e) {
+    if (!sound) {
+      /* it may be sound nearer to its null */
+      for (guint k = 0; k < h->n_directions; k++)
+        h->next[k] *= 0.5;
+      keep_in_range (d, h);
+      h->is_settled = !h->n_directions;
+      return;
+    }
+    h->e = g_memdup2 (e, n * sizeof *e);
+    h->derivatives = g_new (gdouble, (gsize) h->n_directions * n + 1);
+    for (guint k = 0; k < h->n_directions; k++)
+      memcpy (h->derivatives + (gsize) k * n, l->scores->derivatives +
+          (gsize) (h->directions[k] - d->candidates->n_free) * n,
+          n * sizeof *e);
+    memcpy (h->at, h->next, sizeof h->at);
+    h->objective = objective;
+    look_ahead (d, l, h);
+    return;
+  }
+  if (sound)
+    update_derivatives (h, n, h->next, e);
+  is_better = objective > h->objective;
+  if (is_better) {
+    memcpy (h->e, e, n * sizeof *e);
+    memcpy (h->at, h->next, sizeof h->at);
+    h->objective = objective;
+    look_ahead (d, l, h);
+    return;
+  }
+  for (guint k = 0; k < h->n_directions; k++)
+    h->next[k] = 0.5 * (h->at[k] + h->next[k]);
+}
+
+/* One simulation of each that has not arrived. */
+static gboolean
+step_all (ClothDiagnosis * d, const ClothGapLinearisation * l,
+    GArray * hypotheses, guint * n_left, GError ** error)
+{
+  const guint n = l->scores->n;
+  g_autoptr (GPtrArray) models =
+      g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_model_free);
+  g_autofree gdouble *e = g_new (gdouble, (gsize) hypotheses->len * n + 1);
+  g_autofree gboolean *sound = g_new (gboolean, hypotheses->len + 1);
+  guint at = 0;
+
+  for (guint i = 0; i < hypotheses->len; i++) {
+    const ClothGapHypothesis *h = &g_array_index (hypotheses,
+        ClothGapHypothesis, i);
+
+    if (!h->is_settled)
+      g_ptr_array_add (models, make_model_at (d, h, h->next));
+  }
+  *n_left = models->len;
+  if (!simulate (d, l, models, e, sound, error))
+    return FALSE;
+  for (guint i = 0; i < hypotheses->len; i++) {
+    ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
+        i);
+
+    if (h->is_settled)
+      continue;
+    take_step (d, l, h, e + (gsize) at * n, sound[at]);
+    at++;
+  }
+  return TRUE;
+}
+
+/* Whether it is a single effect of one number, but for those that shape it. */
+static gboolean
+has_one_number (const ClothDiagnosis * d, const ClothGapHypothesis * h)
+{
+  guint n = 0;
+
+  if (h->n != 1 || h->n_winds)
+    return FALSE;
+  for (guint k = 0; k < h->n_directions; k++) {
+    const ClothDirection *direction =
+        cloth_candidates_direction (d->candidates, h->directions[k]);
+
+    if (direction->present)
+      return FALSE;
+    n += !direction->shapes;
+  }
+  return n == 1;
+}
+
+/* Single effects of one number begin at the best of some places along it. */
+static gboolean
+probe (ClothDiagnosis * d, const ClothGapLinearisation * l,
+    GArray * hypotheses, GError ** error)
+{
+  const guint n = l->scores->n;
+  g_autoptr (GPtrArray) models =
+      g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_model_free);
+  g_autoptr (GArray) owners = g_array_new (FALSE, FALSE, sizeof (guint));
+  g_autoptr (GArray) places = g_array_new (FALSE, FALSE, sizeof (gdouble));
+  g_autofree gdouble *e = NULL;
+  g_autofree gboolean *sound = NULL;
+
+  for (guint i = 0; i < hypotheses->len; i++) {
+    const ClothGapHypothesis *h = &g_array_index (hypotheses,
+        ClothGapHypothesis, i);
+    const ClothDirection *direction;
+    gdouble places_of[CLOTH_GAP_MAX_DIRECTIONS] = { 0. };
+
+    if (!has_one_number (d, h))
+      continue;
+    direction = cloth_candidates_direction (d->candidates, h->directions[0]);
+    for (guint p = 0; p < G_N_ELEMENTS (probes); p++) {
+      const gdouble at = probes[p] * direction->prior;
+
+      if (direction->centre + at < direction->low
+          || direction->centre + at > direction->high
+          || (direction->one_sided && at < 0.))
+        continue;
+      places_of[0] = at;
+      g_ptr_array_add (models, make_model_at (d, h, places_of));
+      g_array_append_val (owners, i);
+      g_array_append_val (places, at);
+    }
+  }
+  e = g_new (gdouble, (gsize) models->len * n + 1);
+  sound = g_new (gboolean, models->len + 1);
+  if (!simulate (d, l, models, e, sound, error))
+    return FALSE;
+  for (guint p = 0; p < models->len; p++) {
+    ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
+        g_array_index (owners, guint, p));
+    const gdouble at[CLOTH_GAP_MAX_DIRECTIONS] = {
+      g_array_index (places, gdouble, p)
+    };
+    gdouble objective;
+
+    if (!sound[p])
+      continue;
+    objective = objective_at (l, h, at, e + (gsize) p * n);
+    if (!(objective > h->objective))
+      continue;
+    if (!h->e) {
+      h->e = g_new (gdouble, n);
+      h->derivatives = g_new0 (gdouble, (gsize) h->n_directions * n);
+    }
+    /* from here on the way back to the null is known */
+    memcpy (h->e, e + (gsize) p * n, n * sizeof *e);
+    for (guint i = 0; i < n; i++)
+      h->derivatives[i] = (h->e[i] - l->e[i]) / at[0];
+    h->at[0] = at[0];
+    h->objective = objective;
+  }
+  return TRUE;
+}
+
+/* Gusts beside what was simulated: their winds by the derivatives there. */
+static void
+blow (const ClothDiagnosis * d, const ClothGapLinearisation * l,
+    GArray * hypotheses, ClothGapHypothesis * h)
+{
+  const guint n = l->scores->n, n_simulated = h->n_directions - h->n_winds;
+  guint list[CLOTH_GAP_MAX_EFFECTS], n_list = 0;
+  ClothGapHypothesis without;
+
+  for (guint c = 0; c < h->n; c++)
+    if (!cloth_candidate_is_stochastic (candidate_of (d, h->candidates[c])))
+      list[n_list++] = h->candidates[c];
+  cloth_gap_hypothesis_init (&without, d->candidates, l->stack, list, n_list);
+  for (guint i = 0; i < hypotheses->len; i++) {
+    const ClothGapHypothesis *other = &g_array_index (hypotheses,
+        ClothGapHypothesis, i);
+
+    if (!cloth_gap_hypothesis_is_same (other, &without) || !other->e)
+      continue;
+    h->e = g_memdup2 (other->e, n * sizeof *h->e);
+    h->derivatives = g_new (gdouble, (gsize) h->n_directions * n);
+    memcpy (h->derivatives, other->derivatives,
+        (gsize) n_simulated * n * sizeof *h->e);
+    memcpy (h->at, other->at, sizeof h->at);
+    for (guint k = n_simulated; k < h->n_directions; k++) {
+      h->at[k] = 0.;
+      memcpy (h->derivatives + (gsize) k * n, l->scores->derivatives +
+          (gsize) (h->directions[k] - d->candidates->n_free) * n,
+          n * sizeof *h->e);
+    }
+    if (find_gust_evidence (n, h->e, h->derivatives, h->at, h))
+      h->objective = h->evidence.log_evidence - h->evidence.log_volume;
+    else
+      cloth_gap_hypothesis_clear (h);
+    return;
+  }
+}
+
+/* How much less likely than the likeliest each is; those that could not be simulated are out. Of
+ * those that were hopeless before it is what it was. */
+static void
+rank (const ClothDiagnosis * d, GArray * hypotheses)
+{
+  gdouble best = -INFINITY;
+
+  for (guint i = 0; i < hypotheses->len; i++) {
+    ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
+        i);
+
+    if (!h->is_compared)
+      continue;
+    h->behind = h->e ? -h->evidence.log_evidence - log_odds (d, h) : INFINITY;
+    best = MAX (best, -h->behind);
+  }
+  for (guint i = 0; i < hypotheses->len; i++) {
+    ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
+        i);
+
+    if (h->is_compared)
+      h->behind += best;
+  }
+  g_array_sort (hypotheses, compare_behind);
+}
+
+/* @d: a diagnosis
+ * @linearisation: where hypotheses are compared
+ * @hypotheses: (inout) (element-type ClothGapHypothesis): those that were compared before; then all
+ *   that were, the likeliest first
+ * @error: #ClothSimError, or #ClothFitError when it was stopped
+ *
+ * Returns: whether they could be simulated
+ */
+gboolean
+cloth_gap_hypotheses_compare (ClothDiagnosis * d,
+    const ClothGapLinearisation * linearisation, GArray * hypotheses,
+    GError ** error)
+{
+  const ClothGapLinearisation *l = linearisation;
+  guint left = 1;
+
+  list_hypotheses (d, l, hypotheses);
+  if (l->is_first && !probe (d, l, hypotheses, error))
+    return FALSE;
+  for (guint i = 0; i < hypotheses->len; i++) {
+    ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
+        i);
+    gdouble screened[CLOTH_GAP_MAX_DIRECTIONS];
+
+    if (!h->e || !h->is_compared)
+      continue;
+    /* the screening's place is tried before the probes are followed */
+    memcpy (screened, h->next, sizeof screened);
+    look_ahead (d, l, h);
+    h->is_settled = FALSE;
+    memcpy (h->next, screened, sizeof screened);
+  }
+  for (guint step = 0; step <= N_STEPS && left; step++)
+    if (!step_all (d, l, hypotheses, &left, error))
+      return FALSE;
+  for (guint i = 0; i < hypotheses->len; i++) {
+    ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
+        i);
+
+    if (h->is_compared && h->n_winds)
+      blow (d, l, hypotheses, h);
+  }
+  rank (d, hypotheses);
+  return TRUE;
+}

@@ -1,0 +1,273 @@
+/* Which effects act: the posterior over all sets of them.
+ *
+ * Rounds: the takes are linearised at the likeliest set so far, first at none, the ensemble runs there,
+ * and all sets are compared by the scores that follow (hypotheses.c). When the likeliest set is
+ * the one at which they were linearised, or after three rounds, the posterior stands.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/inference/infer.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/fit/error.h"
+#include "gst/gap/inference/conclude.h"
+#include "gst/gap/inference/gather.h"
+
+/* Rounds at most. */
+#define N_ROUNDS 3
+/* Simulations of the fit that measures the gap. */
+#define N_REFIT 3
+/* The reference's residual is taken off where the take has this share of it: then the rest is
+ * smaller than it would be otherwise. */
+#define TAKEN_OFF 0.5
+
+/* One round. */
+typedef struct
+{
+  ClothGapMade made;
+  ClothGapStack *stack;
+  ClothGapDiscrepancy *discrepancy;
+  ClothGapScores *scores;
+  gdouble *e;
+} Round;
+
+/* What the scores are made of, for one kin of the references. */
+static void
+forget_scores (Round * r)
+{
+  g_clear_pointer (&r->scores, cloth_gap_scores_free);
+  g_clear_pointer (&r->discrepancy, cloth_gap_discrepancy_free);
+  g_clear_pointer (&r->stack, cloth_gap_stack_free);
+  g_clear_pointer (&r->e, g_free);
+}
+
+static void
+round_clear (Round * r)
+{
+  forget_scores (r);
+  cloth_gap_made_clear (&r->made);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Round, round_clear);
+
+/* @null: (nullable): the residual without effects. FALSE without an error: there is no effect to
+ * look for. */
+static gboolean
+find_scores (const ClothDiagnosis * d, const ClothGapGathered * gathered,
+    ClothEnsembleKin kin, const gdouble * null, Round * r, GError ** error)
+{
+  g_autofree gdouble *response = NULL;
+
+  forget_scores (r);
+  r->stack = cloth_gap_stack_new (d, gathered, &r->made, kin, error);
+  if (!r->stack)
+    return FALSE;
+  if (null) {
+    response = g_new (gdouble, r->stack->size);
+    for (gsize i = 0; i < r->stack->size; i++)
+      response[i] = r->stack->z[i] - null[i];
+  }
+  r->discrepancy = cloth_gap_discrepancy_new (r->stack, response);
+  r->scores = cloth_gap_scores_new (r->stack, r->discrepancy);
+  if (!r->scores)
+    return FALSE;
+  r->e = g_new (gdouble, r->stack->n);
+  cloth_gap_scores_find (r->scores, r->stack->z, r->e);
+  return TRUE;
+}
+
+/* Compares all sets where the takes were linearised. */
+static gboolean
+compare (ClothDiagnosis * d, const Round * r, const ClothGapHypothesis * base,
+    gboolean is_first, GArray * hypotheses, GError ** error)
+{
+  const ClothGapLinearisation l = { r->scores, r->stack, base, r->e, is_first };
+
+  return cloth_gap_hypotheses_compare (d, &l, hypotheses, error);
+}
+
+/* The probability that the likeliest set is not all. */
+static gboolean
+find_unknown (ClothDiagnosis * d, const Round * r, const gdouble * null,
+    const GArray * hypotheses, gdouble * unknown, GError ** error)
+{
+  const ClothGapBasis basis = { r->stack, r->discrepancy, r->scores, null };
+  g_autofree gdouble *z = g_new0 (gdouble, r->stack->size);
+
+  if (!cloth_gap_hypothesis_simulate (d, &g_array_index (hypotheses,
+              ClothGapHypothesis, 0), z, error))
+    return FALSE;
+  *unknown = cloth_diagnosis_find_unknown (d, &basis, z);
+  return TRUE;
+}
+
+/* What is taken off the takes' residuals in fits to come: that of the reference, where it is alike. */
+static void
+note_discrepancies (ClothDiagnosis * d, const ClothGapGathered * gathered,
+    const Round * r)
+{
+  d->is_alike = r->discrepancy->shared > TAKEN_OFF;
+  for (guint t = 0; t < d->n_takes && d->is_alike; t++) {
+    ClothSensitivities *study = cloth_diagnosis_study (d, t), *reference;
+
+    if (gathered->references[t] == G_MAXUINT)
+      continue;
+    reference = cloth_diagnosis_study (d, gathered->references[t]);
+    if (reference->features->size == study->features->size)
+      study->discrepancy = reference;
+  }
+  d->discrepancy_variance = cloth_power_spectrum_new (cloth_diagnosis_study (d,
+          0)->features, r->stack->z);
+  memcpy (d->discrepancy_variance->values, r->discrepancy->variances,
+      d->discrepancy_variance->n * sizeof (gdouble));
+}
+
+/* The free numbers and the directions of what is accepted, with the precisions of their priors. */
+static gboolean
+refit (ClothDiagnosis * d, const ClothModel * start, GError ** error)
+{
+  const guint most = d->candidates->directions->len;
+  g_autofree guint *directions = g_new (guint, most + 1);
+  g_autofree gdouble *precisions = g_new (gdouble, most + 1);
+  g_autofree gboolean *blocks = NULL;
+  const guint m = cloth_diagnosis_list_accepted (d, directions, precisions);
+  guint n = 0;
+
+  for (guint t = 0; t < d->n_takes; t++)
+    n += cloth_diagnosis_study (d, t)->features->n_blocks;
+  blocks = g_new (gboolean, n);
+  n = 0;
+  for (guint t = 0; t < d->n_takes; t++)
+    for (guint b = 0; b < cloth_diagnosis_study (d, t)->features->n_blocks; b++)
+      blocks[n++] = !cloth_diagnosis_is_held_out (d, b);
+  d->with = cloth_gauss_newton_fit ((ClothSensitivities **) d->studies->pdata,
+      d->n_takes, d->candidates, start, directions, precisions, m, blocks,
+      CLOTH_FIT_DEFAULT, N_REFIT, &d->study, NULL, error);
+  return d->with != NULL;
+}
+
+/* The first round: with twins also finds how these are related to the recordings, as nearly as what
+ * is left allows. Another simulator than the one that a user has is what reality is. */
+static gboolean
+run_first (ClothDiagnosis * d, const ClothGapGathered * gathered,
+    const ClothGapHypothesis * none, GArray * hypotheses, Round * first,
+    ClothEnsembleKin * kin, GError ** error)
+{
+  const ClothEnsembleKin farthest = d->twins->len ?
+      CLOTH_KIN_OTHER_SIMULATOR : CLOTH_KIN_SAME;
+
+  if (!cloth_gap_gather_takes (d, gathered, d->model, &first->made, error))
+    return FALSE;
+  for (*kin = CLOTH_KIN_SAME;; (*kin)++) {
+    gdouble unknown;
+
+    if (!find_scores (d, gathered, *kin, NULL, first, error))
+      return FALSE;
+    g_array_set_size (hypotheses, 0);
+    if (!compare (d, first, none, TRUE, hypotheses, error)
+        || !find_unknown (d, first, first->stack->z, hypotheses, &unknown,
+            error))
+      return FALSE;
+    if (unknown <= 0.5 || *kin == farthest)
+      return TRUE;
+  }
+}
+
+/* The rounds; the last one that could be simulated is left in @last, the residual without effects in
+ * @null. FALSE without an error: there
+ * is no effect to look for. */
+static gboolean
+run_rounds (ClothDiagnosis * d, const ClothGapGathered * gathered,
+    GArray * hypotheses, Round * last, gdouble ** null, GError ** error)
+{
+  ClothGapHypothesis base;
+  ClothEnsembleKin kin;
+
+  cloth_gap_hypothesis_init (&base, d->candidates, NULL, NULL, 0);
+  cloth_diagnosis_begin_part (d, 0.3, 0.45, 0.1, "effects");
+  if (!run_first (d, gathered, &base, hypotheses, last, &kin, error))
+    return FALSE;
+  *null = g_memdup2 (last->stack->z, last->stack->size * sizeof (gdouble));
+  for (guint i = 1; i < N_ROUNDS; i++) {
+    g_auto (Round) next = { {NULL}
+    };
+    g_autoptr (GError) failed = NULL;
+    g_autoptr (ClothModel) model = NULL;
+    const ClothGapHypothesis *best = &g_array_index (hypotheses,
+        ClothGapHypothesis, 0);
+    Round done;
+
+    if (cloth_gap_hypothesis_is_same (best, &base))
+      break;
+    cloth_gap_hypothesis_copy (&base, best);
+    model = cloth_gap_hypothesis_make_model (d, &base);
+    cloth_diagnosis_begin_part (d, 0.3 + 0.15 * i, 0.45 + 0.15 * i, 0.1,
+        "effects");
+    /* where the likeliest set can't be linearised, what is known of it stands */
+    if (!cloth_gap_gather_takes (d, gathered, model, &next.made, &failed)
+        || !find_scores (d, gathered, kin, *null, &next, &failed)) {
+      if (failed && !g_error_matches (failed, CLOTH_FIT_ERROR,
+              CLOTH_FIT_ERROR_MODEL)) {
+        g_propagate_error (error, g_steal_pointer (&failed));
+        return FALSE;
+      }
+      break;
+    }
+    done = *last;
+    *last = next;
+    next = done;
+    if (!compare (d, last, &base, FALSE, hypotheses, error))
+      return FALSE;
+  }
+  return TRUE;
+}
+
+/* @d: a diagnosis whose model is fitted
+ * @error: #ClothSimError or #ClothFitError
+ *
+ * Finds the probabilities of all explanations, accepts the effects of the likeliest that are more likely
+ * than not, and fits the model with them on what doesn't judge.
+ *
+ * Returns: whether that could be simulated
+ */
+gboolean
+cloth_diagnosis_infer (ClothDiagnosis * d, GError ** error)
+{
+  ClothGapGathered gathered = { NULL };
+  g_autoptr (GArray) hypotheses = cloth_gap_hypotheses_new ();
+  g_autoptr (GError) failed = NULL;
+  g_auto (Round) last = { {NULL}
+  };
+  g_autofree gdouble *null = NULL;
+  gdouble unknown;
+
+  cloth_diagnosis_begin_part (d, 0.2, 0.3, 0.2,
+      "what the model must agree with");
+  if (cloth_gap_gather_references (d, &gathered, &failed)
+      && run_rounds (d, &gathered, hypotheses, &last, &null, &failed)
+      && find_unknown (d, &last, null, hypotheses, &unknown, &failed)) {
+    const ClothGapBasis basis = { last.stack, last.discrepancy, last.scores,
+      null
+    };
+
+    note_discrepancies (d, &gathered, &last);
+    cloth_diagnosis_conclude (d, &basis, hypotheses);
+  }
+  cloth_gap_gathered_clear (&gathered, d->n_takes);
+  if (!failed && d->n_accepted) {
+    g_autoptr (ClothModel) start = cloth_gap_hypothesis_make_model (d,
+        &g_array_index (hypotheses, ClothGapHypothesis, 0));
+
+    cloth_diagnosis_begin_part (d, 0.75, 0.85, 0.3, "the fit of what acts");
+    if (!refit (d, start, &failed)
+        && g_error_matches (failed, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL)) {
+      g_clear_error (&failed);
+      d->with = g_steal_pointer (&start);
+    }
+  }
+  if (!failed)
+    return TRUE;
+  g_propagate_error (error, g_steal_pointer (&failed));
+  return FALSE;
+}

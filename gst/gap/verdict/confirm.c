@@ -1,0 +1,41 @@
+/* Decides whether the user's simulator with the accepted effects agrees with what judges.
+ *
+ * Before it is run, ours foretells what the effects bring there, which may be far off. Once it was
+ * run, its rest is what counts: it is explained when it is below 2.25 floors in variance.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/verdict/confirm.h"
+
+static gboolean
+is_ambiguous (const ClothGapResult * r)
+{
+  for (guint i = 0; i < r->effects->len; i++) {
+    const ClothGapEffect *e = &g_array_index (r->effects, ClothGapEffect, i);
+
+    if (e->accepted && e->group >= 0)
+      return TRUE;
+  }
+  return FALSE;
+}
+
+/* @d: a diagnosis whose verdict is decided, and measured with the effects in the user's simulator
+ *
+ * Corrects the verdict by what was measured. What is unexplained for another reason than the size
+ * of the rest stays so.
+ */
+void
+cloth_diagnosis_confirm (ClothDiagnosis * d)
+{
+  ClothGapResult *r = d->result;
+  const gdouble rest = r->gap_after.value, floor = r->noise_floor.value;
+  gboolean explained;
+
+  if (!d->afters->len || !d->n_accepted || r->reason
+      || r->verdict < CLOTH_GAP_EXPLAINED)
+    return;
+  explained = rest * rest <= CLOTH_DIAGNOSIS_LARGEST_REST * floor * floor;
+  if (!explained)
+    r->verdict = CLOTH_GAP_UNEXPLAINED;
+  else
+    r->verdict = is_ambiguous (r) ? CLOTH_GAP_AMBIGUOUS : CLOTH_GAP_EXPLAINED;
+}
