@@ -100,7 +100,9 @@ is_undecidable (ClothDiagnosis * d, const GError * failed)
     return FALSE;
   d->result->verdict = CLOTH_GAP_UNDECIDABLE;
   g_free (d->result->reason);
-  d->result->reason = g_strdup_printf ("%s.", failed->message);
+  d->result->reason = cloth_diagnosis_find_noise (d);
+  if (!d->result->reason)
+    d->result->reason = g_strdup_printf ("%s.", failed->message);
   return TRUE;
 }
 

@@ -612,8 +612,11 @@ GST_START_TEST (test_drag)
     verdict = gst_structure_get_string (gst_message_get_structure (message),
         "verdict");
     GST_INFO ("%.1f mm, %s", 1000 * sums[i], verdict);
-    fail_unless_equals_int (g_str_equal (verdict, "no_gap"), i == 2);
-    fail_if (g_str_equal (verdict, "undecidable"));
+    /* nobody says what the simulation would be off by without a gap */
+    fail_if (g_str_equal (verdict, "no_gap")
+        || g_str_equal (verdict, "unexplained"));
+    if (i == 2)
+      fail_unless_equals_string (verdict, "undecidable");
     tear_down (&setup);
   }
   fail_unless (sums[0] > 1.5 * sums[1], "%.1f mm and %.1f mm", 1000 * sums[0],

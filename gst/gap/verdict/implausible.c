@@ -288,6 +288,16 @@ check_noise (const ClothRecording * r)
       r->sigma);
 }
 
+/* @d: a diagnosis whose recordings are loaded
+ *
+ * Returns: (transfer full) (nullable): that the first take is noisier than it is said to be, a sentence
+ */
+gchar *
+cloth_diagnosis_find_noise (ClothDiagnosis * d)
+{
+  return check_noise (cloth_diagnosis_recording (d, 0));
+}
+
 /* Agreement says nothing where the floor is so high that everything agrees. */
 static gchar *
 check_floor (ClothDiagnosis * d, const ClothRecording * r)

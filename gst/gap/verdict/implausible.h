@@ -9,6 +9,7 @@ G_BEGIN_DECLS
 
 gchar *cloth_diagnosis_find_implausible_input (ClothDiagnosis * d,
     const ClothModel * model);
+gchar *cloth_diagnosis_find_noise (ClothDiagnosis * d);
 gchar *cloth_diagnosis_find_implausible_result (ClothDiagnosis * d,
     const ClothModel * model);
 

@@ -1,7 +1,8 @@
 /* Decides the verdict from the posterior.
  *
  *   unexplained: chance acts that can't be simulated again, or clamps were elsewhere than logged, or an
- *     unknown field is likelier than not and has a tenth of the gap's power at least, or
+ *     unknown field is likelier than not and has a tenth of the gap's power at least, or of the
+ *     floor's where that is more, or
  *     takes contradict each other on what acts;
  *   explained: effects act, and no other explanation is among those that have 95% together;
  *   ambiguous: effects act, and others would do as well;
@@ -67,12 +68,23 @@ is_ambiguous (const ClothGapResult * r)
   return FALSE;
 }
 
+/* The power of what is unknown, as a share of the gap's or of the floor's, whichever is larger: below
+ * the floor there is no gap to explain. */
+static gdouble
+find_unknown_power (const ClothDiagnosis * d)
+{
+  const gdouble gap = d->result->gap_before.value;
+  const gdouble floor = d->result->noise_floor.value;
+
+  return d->unknown_share * (gap < floor ? gap * gap / (floor * floor) : 1.);
+}
+
 void
 cloth_diagnosis_decide (ClothDiagnosis * d)
 {
   ClothGapResult *r = d->result;
   const gboolean unknown = d->clamps_off || (d->unknown_probability > 0.5
-      && d->unknown_share > CLOTH_DIAGNOSIS_LEAST_SHARE);
+      && find_unknown_power (d) > CLOTH_DIAGNOSIS_LEAST_SHARE);
   const gboolean contradict =
       r->takes_agree_p_value < CLOTH_DIAGNOSIS_CONTRADICTION;
 
