@@ -75,7 +75,7 @@ cloth_gap_hypothesis_init (ClothGapHypothesis * hypothesis,
   ClothGapHypothesis *h = hypothesis;
 
   *h = (ClothGapHypothesis) {
-  n,.objective = -INFINITY,.behind = INFINITY};
+  n,.objective = -INFINITY,.by_scores = INFINITY,.behind = INFINITY};
   for (guint c = 0; c < n; c++) {
     const ClothCandidate *candidate =
         &g_array_index (candidates->list, ClothCandidate, list[c]);
@@ -289,7 +289,7 @@ screen (const ClothDiagnosis * d, const ClothGapLinearisation * l,
       !cloth_gap_evidence_find (n, l->e, derivatives, at, h->priors,
           h->n_directions, &h->evidence))
     return FALSE;
-  h->behind = -h->evidence.log_evidence - log_odds (d, h);
+  h->by_scores = -h->evidence.log_evidence - log_odds (d, h);
   memcpy (h->next, h->evidence.values, sizeof h->next);
   keep_in_range (d, h);
   h->is_compared = TRUE;
@@ -298,11 +298,11 @@ screen (const ClothDiagnosis * d, const ClothGapLinearisation * l,
 }
 
 static gint
-compare_behind (gconstpointer a, gconstpointer b)
+compare_by_scores (gconstpointer a, gconstpointer b)
 {
   const ClothGapHypothesis *x = a, *y = b;
 
-  return x->behind < y->behind ? -1 : x->behind > y->behind;
+  return x->by_scores < y->by_scores ? -1 : x->by_scores > y->by_scores;
 }
 
 static gboolean
@@ -360,7 +360,7 @@ grow (const ClothDiagnosis * d, const ClothGapLinearisation * l,
         g_array_append_val (grown, h);
     }
   }
-  g_array_sort (grown, compare_behind);
+  g_array_sort (grown, compare_by_scores);
   return grown;
 }
 
@@ -373,8 +373,19 @@ append_best (GArray * hypotheses, const GArray * from, guint most)
               ClothGapHypothesis, i), 1);
 }
 
-/* All hypotheses of a linearisation: those that were compared before and are not hopeless, and the
- * likeliest of those that the base grows to. */
+static gboolean
+contains (const ClothGapHypothesis * h, const ClothGapHypothesis * part)
+{
+  for (guint c = 0; c < part->n; c++)
+    if (!cloth_gap_hypothesis_has (h, part->candidates[c]))
+      return FALSE;
+  return TRUE;
+}
+
+/* All hypotheses of a linearisation: those that contain the base, were compared before and are not
+ * hopeless, and the likeliest of those that the base grows to. How the base compares with others was
+ * found where nothing was taken to act, and stands: at the base the reference says less, and so
+ * does what it is compared with. */
 static void
 list_hypotheses (const ClothDiagnosis * d, const ClothGapLinearisation * l,
     GArray * hypotheses)
@@ -387,7 +398,7 @@ list_hypotheses (const ClothDiagnosis * d, const ClothGapLinearisation * l,
     ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
         i);
 
-    h->is_compared = h->behind <= HOPELESS;
+    h->is_compared = h->by_scores <= HOPELESS && contains (h, l->base);
     h->is_settled = !h->is_compared || h->n_winds;
     if (!h->is_compared)
       continue;
@@ -398,7 +409,7 @@ list_hypotheses (const ClothDiagnosis * d, const ClothGapLinearisation * l,
     h->objective = -INFINITY;
   }
   cloth_gap_hypothesis_init (&none, d->candidates, l->stack, NULL, 0);
-  none.is_compared = TRUE;
+  none.is_compared = l->base->n == 0;
   if (!is_listed (hypotheses, &none))
     g_array_append_val (hypotheses, none);
   cloth_gap_hypothesis_init (&start, d->candidates, l->stack,
@@ -729,35 +740,42 @@ blow (const ClothDiagnosis * d, const ClothGapLinearisation * l,
 }
 
 /* How much less likely than the likeliest each is; those that could not be simulated are out. Of
- * those that were hopeless before it is what it was. */
+ * those that are not compared in this round it is what it was before, held against the base. */
 static void
-rank (const ClothDiagnosis * d, GArray * hypotheses)
+rank (const ClothDiagnosis * d, const ClothGapHypothesis * base,
+    GArray * hypotheses)
 {
-  gdouble best = -INFINITY;
+  gdouble before = 0., after = 0., best = INFINITY;
 
+  for (guint i = 0; i < hypotheses->len; i++) {
+    ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
+        i);
+    const gboolean is_base = cloth_gap_hypothesis_is_same (h, base);
+
+    if (is_base && isfinite (h->by_scores))
+      before = h->by_scores;
+    if (h->is_compared)
+      h->by_scores = h->e ? -h->evidence.log_evidence - log_odds (d, h) :
+          INFINITY;
+    if (is_base)
+      after = h->by_scores;
+  }
   for (guint i = 0; i < hypotheses->len; i++) {
     ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
         i);
 
     if (!h->is_compared)
-      continue;
-    h->behind = h->e ? -h->evidence.log_evidence - log_odds (d, h) : INFINITY;
-    best = MAX (best, -h->behind);
+      h->by_scores += after - before;
+    best = MIN (best, h->by_scores);
   }
-  for (guint i = 0; i < hypotheses->len; i++) {
-    ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
-        i);
-
-    if (h->is_compared)
-      h->behind += best;
-  }
-  g_array_sort (hypotheses, compare_behind);
+  for (guint i = 0; i < hypotheses->len; i++)
+    g_array_index (hypotheses, ClothGapHypothesis, i).by_scores -= best;
 }
 
 /* @d: a diagnosis
  * @linearisation: where hypotheses are compared
  * @hypotheses: (inout) (element-type ClothGapHypothesis): those that were compared before; then all
- *   that were, the likeliest first
+ *   that were
  * @error: #ClothSimError, or #ClothFitError when it was stopped
  *
  * Returns: whether they could be simulated
@@ -796,6 +814,6 @@ cloth_gap_hypotheses_compare (ClothDiagnosis * d,
     if (h->is_compared && h->n_winds)
       blow (d, l, hypotheses, h);
   }
-  rank (d, hypotheses);
+  rank (d, l->base, hypotheses);
   return TRUE;
 }

@@ -24,7 +24,8 @@ G_BEGIN_DECLS
  * @derivatives: (array): of these, [n_directions][scores]
  * @objective: log likelihood and log prior there
  * @evidence: what follows
- * @behind: how much less likely it is than the likeliest, posterior, logarithm
+ * @by_scores: how much less likely it is by its scores than the likeliest, logarithm
+ * @behind: how much less likely it is by all that is known, posterior, logarithm
  *
  * That these effects act and no other of the library.
  */
@@ -41,6 +42,7 @@ typedef struct {
   gdouble *derivatives;
   gdouble objective;
   ClothGapEvidence evidence;
+  gdouble by_scores;
   gdouble behind;
 
   /*< private >*/

@@ -1,0 +1,200 @@
+/* How well explanations foretell what happens next: an explanation with which the simulation moves away
+ * from the cloth is none, however well it follows the residual of a simulation that is drawn to it.
+ *
+ * Model: let go in short windows, the simulation with an explanation comes to be off the cloth by a field
+ *   whose mean square in window w is V_w + V₀. It has n = 3 numbers: those of cloth that moves as a whole.
+ *   V₀ is the floor, what it is off by if nothing is lacking. How large the field is nobody knows
+ *   before, and what has grown by chance in one window says nothing of another, so that the size of each
+ *   is integrated out:
+ *     log p = Σ −n/2 log ((V_w + V₀)/V₀) + constant.
+ *   V₀ is the gap of the baseline that the model was fitted on; of a twin, whose share in it cancels, that
+ *   of the noise; with neither what the two force models differ by.
+ * Reference: Dawid, Statistical theory: the prequential approach, 1984.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/gap/inference/prediction.h"
+
+#include <math.h>
+#include <string.h>
+
+/* So many explanations are let go. */
+#define N_PREDICTED 24
+/* Of cloth that moves as a whole. */
+#define N_NUMBERS 3.
+
+/* @squares: (array length=n): mean square gap of each window, m²; NaN where nothing was seen
+ * @n: how many windows
+ * @floor: what it would be if nothing were lacking, m²
+ *
+ * Returns: the logarithm of their likelihood, but for a constant
+ */
+gdouble
+cloth_gap_find_prediction_evidence (const gdouble * squares, guint n,
+    gdouble floor)
+{
+  gdouble sum = 0.;
+
+  for (guint w = 0; w < n; w++)
+    if (!isnan (squares[w]))
+      sum -= 0.5 * N_NUMBERS * log1p (squares[w] / floor);
+  return sum;
+}
+
+/* Mean square distance of two simulations, m². */
+static gdouble
+find_distance (const ClothWindowedGap * a, const ClothWindowedGap * b)
+{
+  const gsize all = 3 * (gsize) a->n * a->n_frames;
+  gdouble sum = 0.;
+
+  for (gsize i = 3 * (gsize) a->n; i < all; i++)
+    sum += pow ((gdouble) a->positions[i] - b->positions[i], 2.);
+  return 3. * sum / MAX (all - 3 * (gsize) a->n, 1);
+}
+
+/* What a take would be off by if nothing were lacking, m². */
+static gboolean
+find_floor (ClothDiagnosis * d, const ClothRecording * r, gdouble * floor,
+    GError ** error)
+{
+  const guint n_baselines = d->options->n_baselines;
+  ClothWindowedGap **gaps;
+
+  *floor = 0.;
+  for (guint i = d->n_takes; i < d->n_takes + n_baselines; i++) {
+    const ClothModel *models[] = { d->model };
+
+    gaps = cloth_diagnosis_measure_windows (d, cloth_diagnosis_recording (d,
+            i), models, 1, error);
+    if (!gaps)
+      return FALSE;
+    *floor += cloth_windowed_gap_square (gaps[0], NULL) / n_baselines;
+    cloth_windowed_gaps_free (gaps, 1);
+  }
+  if (!n_baselines) {
+    g_autoptr (ClothModel) other = cloth_diagnosis_other_model (d->model);
+    const ClothModel *models[] = { d->model, other };
+
+    gaps = cloth_diagnosis_measure_windows (d, r, models, 2, error);
+    if (!gaps)
+      return FALSE;
+    *floor = find_distance (gaps[0], gaps[1]);
+    cloth_windowed_gaps_free (gaps, 2);
+  }
+  return TRUE;
+}
+
+/* Adds what a take says. */
+static gboolean
+add_take (ClothDiagnosis * d, guint t, GPtrArray * models, gdouble * evidence,
+    GError ** error)
+{
+  const ClothRecording *r = cloth_diagnosis_recording (d, t);
+  const ClothRecording *twin = cloth_diagnosis_twin (d, t);
+  const ClothModel *const *all = (const ClothModel * const *) models->pdata;
+  const gdouble noise = 3. * r->sigma * r->sigma;
+  ClothWindowedGap **own = NULL, **gaps;
+  g_autofree gdouble *squares = NULL;
+  g_autofree gboolean *one = NULL;
+  gdouble floor = 0.;
+
+  if (!twin && !find_floor (d, r, &floor, error))
+    return FALSE;
+  if (twin) {
+    const ClothModel *base[] = { d->model };
+
+    own = cloth_diagnosis_measure_windows (d, twin, base, 1, error);
+    if (!own)
+      return FALSE;
+  }
+  gaps = cloth_diagnosis_measure_windows (d, r, all, models->len, error);
+  if (!gaps) {
+    cloth_windowed_gaps_free (own, twin != NULL);
+    return FALSE;
+  }
+  squares = g_new (gdouble, gaps[0]->n_windows);
+  one = g_new0 (gboolean, gaps[0]->n_windows);
+  for (guint k = 0; k < models->len; k++) {
+    if (twin)
+      cloth_windowed_gap_replace (gaps[k], r, own[0], twin);
+    for (guint w = 0; w < gaps[k]->n_windows; w++) {
+      one[w] = TRUE;
+      squares[w] = cloth_windowed_gap_square (gaps[k], one);
+      one[w] = FALSE;
+    }
+    evidence[k] += gaps[k]->sound ? cloth_gap_find_prediction_evidence (squares,
+        gaps[k]->n_windows, floor + noise) : -INFINITY;
+  }
+  cloth_windowed_gaps_free (gaps, models->len);
+  cloth_windowed_gaps_free (own, twin != NULL);
+  return TRUE;
+}
+
+static gint
+compare_behind (gconstpointer a, gconstpointer b)
+{
+  const ClothGapHypothesis *x = a, *y = b;
+
+  return x->behind < y->behind ? -1 : x->behind > y->behind;
+}
+
+static gint
+compare_by_scores (gconstpointer a, gconstpointer b)
+{
+  const ClothGapHypothesis *x = a, *y = b;
+
+  return x->by_scores < y->by_scores ? -1 : x->by_scores > y->by_scores;
+}
+
+/* @d: a diagnosis
+ * @hypotheses: (inout) (element-type ClothGapHypothesis): all that were compared; then the likeliest
+ *   first
+ * @error: #ClothSimError, or #ClothFitError when it was stopped
+ *
+ * Takes into account how well the likeliest foretell. Gusts, which can't be repeated, foretell as well as
+ * the best. Those that are not looked at are as much less likely than the last one that is.
+ *
+ * Returns: whether they could be simulated
+ */
+gboolean
+cloth_gap_hypotheses_predict (ClothDiagnosis * d, GArray * hypotheses,
+    GError ** error)
+{
+  const guint n = MIN (hypotheses->len, N_PREDICTED);
+  g_autoptr (GPtrArray) models =
+      g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_model_free);
+  g_autofree gdouble *evidence = g_new0 (gdouble, n + 1);
+  gdouble most = -INFINITY, best = INFINITY, last = 0.;
+
+  g_array_sort (hypotheses, compare_by_scores);
+  for (guint i = 0; i < n; i++)
+    g_ptr_array_add (models, cloth_gap_hypothesis_make_model (d,
+            &g_array_index (hypotheses, ClothGapHypothesis, i)));
+  for (guint t = 0; t < d->n_takes; t++)
+    if (!add_take (d, t, models, evidence, error))
+      return FALSE;
+  for (guint i = 0; i < n; i++)
+    most = MAX (most, evidence[i]);
+  for (guint i = 0; i < hypotheses->len; i++) {
+    ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
+        i);
+
+    if (i < n)
+      last = h->n_winds ? most : evidence[i];
+    h->behind = isfinite (most) ? h->by_scores - last : h->by_scores;
+    if (g_getenv ("DBGP") && i < 8) {   /* XXX */
+      g_printerr ("PRED %u scores %.2f  pred %.2f:", i, h->by_scores, last);
+      for (guint c = 0; c < h->n; c++)
+        g_printerr (" %s", g_array_index (d->candidates->list, ClothCandidate,
+                h->candidates[c]).effect->id);
+      for (guint c = 0; c < h->n_directions; c++)
+        g_printerr (" %.3g/%.3g", h->at[c], h->priors[c].prior);
+      g_printerr ("\n");
+    }
+    best = MIN (best, h->behind);
+  }
+  for (guint i = 0; i < hypotheses->len; i++)
+    g_array_index (hypotheses, ClothGapHypothesis, i).behind -= best;
+  g_array_sort (hypotheses, compare_behind);
+  return TRUE;
+}
