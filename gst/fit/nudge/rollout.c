@@ -18,6 +18,7 @@
 #include <string.h>
 
 #include "gst/fit/error.h"
+#include "gst/fit/recording/start.h"
 #include "gst/math/pool.h"
 
 /* Models that one ClothSim can step together: those that agree in what it shares. */
@@ -107,6 +108,8 @@ start_batch (Run * run, Batch * batch, const gdouble * gains, guint threads,
     TRUE, threads, CLOTH_SIMD_BEST, run->options->seed
   };
   g_autofree const ClothModel **models = g_new (const ClothModel *, batch->n);
+  g_autofree gdouble *start = g_new (gdouble, run->row);
+  g_autofree gdouble *speeds = g_new (gdouble, run->row);
 
   for (guint i = 0; i < batch->n; i++)
     models[i] = run->models[batch->of[i]];
@@ -122,7 +125,8 @@ start_batch (Run * run, Batch * batch, const gdouble * gains, guint threads,
     batch->gains[i] = gains ? gains[batch->of[i]] : 0.;
     batch->dampings[i] = 2. * CLOTH_ROLLOUT_ZETA * sqrt (batch->gains[i]);
     /* it moves from the first frame as it was seen to move */
-    cloth_sim_set_state (batch->sim, i, r->y, r->velocity, r->times[0]);
+    cloth_recording_find_start (r, start, speeds);
+    cloth_sim_set_state (batch->sim, i, start, speeds, r->times[0]);
   }
   return TRUE;
 }

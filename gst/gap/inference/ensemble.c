@@ -16,6 +16,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/fit/recording/start.h"
 #include "gst/math/random.h"
 
 /* Standard deviation of a free number's logarithm, and of others in priors. */
@@ -215,14 +216,16 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
       g->z + model * g->features->size);
 }
 
-/* Noise, and velocities as a recording has them. What was not seen stays hidden. */
+/* Noise, and velocities as a recording has them. What was not seen stays hidden. Where the first frame
+ * could not be freed of its noise it has it already. */
 static void
-record (ClothRecording * r, guint64 seed)
+record (ClothRecording * r, gboolean is_smooth, guint64 seed)
 {
+  const gsize row = 3 * (gsize) r->n;
   ClothRandom random;
 
   cloth_random_init (&random, seed);
-  for (gsize i = 0; i < 3 * (gsize) r->n * r->n_frames; i++)
+  for (gsize i = is_smooth ? 0 : row; i < row * r->n_frames; i++)
     r->y[i] += r->sigma * cloth_random_gaussian (&random);
   cloth_recording_interpolate (r);
   cloth_recording_differentiate (r);
@@ -257,7 +260,8 @@ run_group (const ClothEnsemble * e, guint first, const ClothRecording * r,
     return FALSE;
   for (guint i = 0; i < g.n; i++)
     if (sound[i])
-      record (g.made[i], options->rollout.seed + first + i + 1);
+      record (g.made[i], cloth_recording_find_start (r, g.made[i]->y, NULL),
+          options->rollout.seed + first + i + 1);
     else
       memcpy (g.made[i]->y, r->y, all * sizeof (gdouble));
   if (!cloth_rollout_nudged ((const ClothRecording * const *) g.made, models,

@@ -1,0 +1,164 @@
+/* Where the cloth of a recording was in its first frame, without the noise of that frame: a simulation that
+ * begins with it has folds as sharp as its mesh, and bursts.
+ *
+ * Model: the cloth lies along a polynomial x (u, v) of its flat coordinates, with noise N(0, σ²).
+ * Formula: least squares in Legendre polynomials, of the least degree whose rest
+ *   Σ|y − x|²/3(n − terms) is no more than σ² but by chance. Cloth with wrinkles higher than the noise has
+ *   none, and begins as it was seen.
+ * Reference: Morozov, On the solution of functional equations by the method of regularization,
+ *   1966 (discrepancy principle).
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/fit/recording/start.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/fit/recording/flat-map.h"
+#include "gst/math/linalg.h"
+
+/* Highest degree, and the least number of vertices of each term. */
+#define MAX_DEGREE 10
+#define PER_TERM 3
+#define MAX_TERMS ((MAX_DEGREE + 1) * (MAX_DEGREE + 2) / 2)
+/* Chance: so many standard deviations of a rest. */
+#define CHANCE 2.
+
+/* P₀ … P_n of x in [-1, 1]. */
+static void
+find_legendre (guint n, gdouble x, gdouble * p)
+{
+  p[0] = 1.;
+  p[1] = x;
+  for (guint k = 1; k < n; k++)
+    p[k + 1] = ((2. * k + 1.) * x * p[k] - k * p[k - 1]) / (k + 1.);
+}
+
+/* All terms up to the highest degree, degree by degree, of every vertex. */
+static gdouble *
+make_terms (const ClothTopology * t)
+{
+  gdouble *terms = g_new (gdouble, (gsize) t->n_vertices * MAX_TERMS);
+  gdouble low[2], high[2];
+
+  cloth_flat_map_find_extent (t, low, high);
+  for (guint v = 0; v < t->n_vertices; v++) {
+    gdouble along[2][MAX_DEGREE + 1], *to = terms + (gsize) v * MAX_TERMS;
+
+    for (guint k = 0; k < 2; k++)
+      find_legendre (MAX_DEGREE, high[k] > low[k] ?
+          (2. * t->uv[2 * v + k] - low[k] - high[k]) / (high[k] - low[k]) : 0.,
+          along[k]);
+    for (guint degree = 0; degree <= MAX_DEGREE; degree++)
+      for (guint i = 0; i <= degree; i++)
+        *to++ = along[0][degree - i] * along[1][i];
+  }
+  return terms;
+}
+
+/* The polynomial of some terms along the first frame's @values, [m][3]; FALSE when the terms can't be told
+ * apart. */
+static gboolean
+fit (const ClothRecording * r, const gdouble * terms, guint m,
+    const gdouble * values, gdouble * coefficients)
+{
+  g_autofree gdouble *normal = g_new0 (gdouble, m * m);
+  gdouble right[3][MAX_TERMS] = { {0.} };
+
+  for (guint v = 0; v < r->n; v++) {
+    const gdouble *t = terms + (gsize) v * MAX_TERMS;
+
+    if (r->seen[v] == 0.)
+      continue;
+    for (guint i = 0; i < m; i++) {
+      for (guint k = 0; k < m; k++)
+        normal[i * m + k] += t[i] * t[k];
+      for (guint k = 0; k < 3; k++)
+        right[k][i] += t[i] * values[3 * v + k];
+    }
+  }
+  if (!cloth_cholesky_factor (m, normal))
+    return FALSE;
+  for (guint k = 0; k < 3; k++) {
+    cloth_cholesky_solve (m, normal, right[k]);
+    for (guint i = 0; i < m; i++)
+      coefficients[3 * i + k] = right[k][i];
+  }
+  return TRUE;
+}
+
+static void
+evaluate (const gdouble * terms, guint m, const gdouble * coefficients,
+    gdouble place[3])
+{
+  for (guint k = 0; k < 3; k++) {
+    place[k] = 0.;
+    for (guint i = 0; i < m; i++)
+      place[k] += terms[i] * coefficients[3 * i + k];
+  }
+}
+
+/* Σ|y − x|² of what was seen. */
+static gdouble
+find_rest (const ClothRecording * r, const gdouble * terms, guint m,
+    const gdouble * coefficients)
+{
+  gdouble sum = 0.;
+
+  for (guint v = 0; v < r->n; v++) {
+    gdouble place[3];
+
+    if (r->seen[v] == 0.)
+      continue;
+    evaluate (terms + (gsize) v * MAX_TERMS, m, coefficients, place);
+    for (guint k = 0; k < 3; k++)
+      sum += pow (r->y[3 * v + k] - place[k], 2.);
+  }
+  return sum;
+}
+
+/* @recording: a recording
+ * @positions: (out) (array): of its first frame, [n][3], m
+ * @velocities: (out) (optional) (array): in it, [n][3], m/s
+ *
+ * Returns: whether they are smoother than what was seen
+ */
+gboolean
+cloth_recording_find_start (const ClothRecording * recording,
+    gdouble * positions, gdouble * velocities)
+{
+  const ClothRecording *r = recording;
+  g_autofree gdouble *terms = NULL;
+  gdouble coefficients[3 * MAX_TERMS];
+  guint n = 0;
+
+  memcpy (positions, r->y, 3 * (gsize) r->n * sizeof *positions);
+  if (velocities)
+    memcpy (velocities, r->velocity, 3 * (gsize) r->n * sizeof *velocities);
+  for (guint v = 0; v < r->n; v++)
+    n += r->seen[v] != 0.;
+  if (!(r->sigma > 0.) || !r->scene->topology->uv)
+    return FALSE;
+  terms = make_terms (r->scene->topology);
+  for (guint degree = 1; degree <= MAX_DEGREE; degree++) {
+    const guint m = (degree + 1) * (degree + 2) / 2;
+    gdouble count;
+
+    if (m * PER_TERM > n || !fit (r, terms, m, r->y, coefficients))
+      return FALSE;
+    count = 3. * (n - m);
+    if (find_rest (r, terms, m, coefficients) > count * r->sigma * r->sigma *
+        (1. + CHANCE * sqrt (2. / count)))
+      continue;
+    for (guint v = 0; v < r->n; v++)
+      evaluate (terms + (gsize) v * MAX_TERMS, m, coefficients,
+          positions + 3 * v);
+    if (!velocities || !fit (r, terms, m, r->velocity, coefficients))
+      return TRUE;
+    for (guint v = 0; v < r->n; v++)
+      evaluate (terms + (gsize) v * MAX_TERMS, m, coefficients,
+          velocities + 3 * v);
+    return TRUE;
+  }
+  return FALSE;
+}
