@@ -3,6 +3,8 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/diagnosis.h"
 
+#include "gst/fit/recording/correction.h"
+
 #include <string.h>
 
 /* Tells the caller how far the diagnosis is, after each frame of each simulation. */
@@ -219,14 +221,41 @@ cloth_diagnosis_list_accepted (const ClothDiagnosis * d, guint * directions,
   return m;
 }
 
+static gboolean
+has_fault (const ClothRecording * recording, const ClothModel * model)
+{
+  ClothMeasurement m;
+
+  return cloth_recording_find_measurement (recording, model, &m, NULL)
+      && !cloth_measurement_is_null (&m);
+}
+
+/* @recording: a recording
+ * @model: a model
+ *
+ * Returns: (transfer full) (nullable): the recording without what the model says was wrong with it;
+ *   %NULL: nothing was
+ */
+ClothRecording *
+cloth_diagnosis_correct (const ClothRecording * recording,
+    const ClothModel * model)
+{
+  ClothMeasurement m;
+
+  if (!has_fault (recording, model)
+      || !cloth_recording_find_measurement (recording, model, &m, NULL))
+    return NULL;
+  return cloth_recording_correct (recording, &m);
+}
+
 /* @d: a diagnosis
  * @recording: what the models are held against
  * @models: (array length=n): models
  * @n: how many
  * @error: #ClothSimError
  *
- * Simulates each model twice: nudged to the recording all along, and from there let go at the
- * start of each window.
+ * Simulates each model twice: nudged to the recording all along, without what the model says was wrong
+ * with it, and from there let go at the start of each window.
  *
  * Returns: (transfer full) (nullable) (array length=n): their distances from the recording
  */
@@ -235,8 +264,39 @@ cloth_diagnosis_measure_windows (ClothDiagnosis * d,
     const ClothRecording * recording, const ClothModel * const *models,
     guint n, GError ** error)
 {
+  ClothWindowedGap **gaps = g_new0 (ClothWindowedGap *, n);
+  g_autofree const ClothModel **some = g_new (const ClothModel *, n);
+  g_autofree gboolean *done = g_new0 (gboolean, n);
+
   d->study.simulations += 2 * n;
-  return cloth_windowed_gaps_new (recording, models, n,
-      CLOTH_DIAGNOSIS_WINDOW_GAIN, CLOTH_DIAGNOSIS_WINDOW_S,
-      &d->study.rollout, error);
+  /* those that are held against the same recording run side by side */
+  for (guint i = 0; i < n; i++) {
+    g_autoptr (ClothRecording) corrected = NULL;
+    ClothWindowedGap **here = NULL;
+    guint n_some = 0;
+
+    if (done[i])
+      continue;
+    corrected = cloth_diagnosis_correct (recording, models[i]);
+    some[n_some++] = models[i];
+    for (guint k = i + 1; k < n && !corrected; k++)
+      if (!done[k] && !has_fault (recording, models[k]))
+        some[n_some++] = models[k];
+    here = cloth_windowed_gaps_new (corrected ? corrected : recording, some,
+        n_some, CLOTH_DIAGNOSIS_WINDOW_GAIN, CLOTH_DIAGNOSIS_WINDOW_S,
+        &d->study.rollout, error);
+    if (!here) {
+      for (guint k = 0; k < n; k++)
+        cloth_windowed_gap_free (gaps[k]);
+      g_free (gaps);
+      return NULL;
+    }
+    for (guint k = i, at = 0; at < n_some; k++)
+      if (models[k] == some[at] && !done[k]) {
+        gaps[k] = here[at++];
+        done[k] = TRUE;
+      }
+    g_free (here);
+  }
+  return gaps;
 }

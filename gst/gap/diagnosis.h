@@ -171,6 +171,8 @@ guint cloth_diagnosis_count_faults (const ClothDiagnosis * d);
 ClothModel *cloth_diagnosis_other_model (const ClothModel * model);
 guint cloth_diagnosis_list_accepted (const ClothDiagnosis * d,
     guint * directions, gdouble * precisions);
+ClothRecording *cloth_diagnosis_correct (const ClothRecording * recording,
+    const ClothModel * model);
 ClothWindowedGap **cloth_diagnosis_measure_windows (ClothDiagnosis * d,
     const ClothRecording * recording, const ClothModel * const *models,
     guint n, GError ** error);

@@ -37,8 +37,8 @@ cloth_diagnosis_list_candidates (ClothDiagnosis * d, const ClothModel * model,
   d->candidates =
       cloth_candidates_new (model, cloth_diagnosis_recording (d, 0),
       d->options->effects,
-      cloth_diagnosis_n_references (d) ? CLOTH_CANDIDATES_FROZEN :
-      CLOTH_CANDIDATES_DEFAULT, skip, d, error);
+      CLOTH_CANDIDATES_MEASUREMENT | (cloth_diagnosis_n_references (d) ?
+          CLOTH_CANDIDATES_FROZEN : CLOTH_CANDIDATES_DEFAULT), skip, d, error);
   if (!d->candidates)
     return FALSE;
   n = d->candidates->directions->len;

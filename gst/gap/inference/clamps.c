@@ -27,35 +27,54 @@ cloth_gap_find_clamps_evidence (gdouble square, gdouble usual, gdouble n)
   return 0.5 * n * (ratio - 1. - log (ratio)) - 0.5 * log (n);
 }
 
-/* Mean square by which the held vertices are seen off their clamps' paths, by coordinate, m², and how
- * many coordinates these are. */
-static gdouble
-find_off (const ClothRecording * r, gdouble * n)
+/* @recording: a recording
+ * @held: what is held in it
+ * @frame: a frame
+ *
+ * Returns: whether it was held then: simulators and people let go a little earlier or later than the
+ *   log has it
+ */
+gboolean
+cloth_gap_is_surely_held (const ClothRecording * recording,
+    const ClothHeld * held, gsize frame)
 {
-  const guint n_held = r->scene->held->len;
-  /* simulators and people let go a little earlier or later than the log has it */
+  const ClothRecording *r = recording;
   const gdouble margin = 1.5 * (r->times[r->n_frames - 1] - r->times[0]) /
       (r->n_frames - 1);
-  gdouble sum = 0.;
 
-  *n = 0.;
+  return r->times[frame] >= held->from_s + margin
+      && r->times[frame] <= held->until_s - margin;
+}
+
+/* @recording: a recording
+ * @n: (out) (optional): how many coordinates were seen
+ *
+ * Returns: mean square by which the held vertices are seen off their clamps' paths, by coordinate, m²
+ */
+gdouble
+cloth_gap_find_clamps_off (const ClothRecording * recording, gdouble * n)
+{
+  const ClothRecording *r = recording;
+  const guint n_held = r->scene->held->len;
+  gdouble sum = 0., count = 0.;
+
   for (gsize k = 0; k < (gsize) r->n_frames * n_held; k++) {
     const ClothHeld *held = &g_array_index (r->scene->held, ClothHeld,
         k % n_held);
     const gsize at = k / n_held * r->n + held->vertex;
-    const gdouble time_s = r->times[k / n_held];
 
-    if (r->seen[at] == 0. || time_s < held->from_s + margin
-        || time_s > held->until_s - margin)
+    if (r->seen[at] == 0. || !cloth_gap_is_surely_held (r, held, k / n_held))
       continue;
     for (guint c = 0; c < 3; c++) {
       const gdouble off = r->y[3 * at + c] - r->scene->clamps[3 * k + c];
 
       sum += off * off;
     }
-    *n += 3.;
+    count += 3.;
   }
-  return *n > 0. ? sum / *n : 0.;
+  if (n)
+    *n = count;
+  return count > 0. ? sum / count : 0.;
 }
 
 /* @d: a diagnosis
@@ -74,11 +93,11 @@ cloth_diagnosis_find_clamps_off (const ClothDiagnosis * d,
 
   *log_bayes_factor = -INFINITY;
   for (guint i = d->n_takes; i < d->studies->len; i++)
-    usual = fmax (usual, find_off (cloth_diagnosis_study (d, i)->recording,
-            &n));
+    usual = fmax (usual, cloth_gap_find_clamps_off (cloth_diagnosis_study (d,
+                i)->recording, &n));
   for (guint i = 0; i < d->n_takes && d->studies->len > d->n_takes; i++) {
     const ClothRecording *r = cloth_diagnosis_recording (d, i);
-    const gdouble off = find_off (r, &n);
+    const gdouble off = cloth_gap_find_clamps_off (r, &n);
     const gdouble least = fmax (usual, r->sigma * r->sigma);
     const gdouble evidence = cloth_gap_find_clamps_evidence (off, least,
         n / d->study.overdispersion);

@@ -9,6 +9,10 @@ G_BEGIN_DECLS
 
 gdouble cloth_gap_find_clamps_evidence (gdouble square, gdouble usual,
     gdouble n);
+gboolean cloth_gap_is_surely_held (const ClothRecording * recording,
+    const ClothHeld * held, gsize frame);
+gdouble cloth_gap_find_clamps_off (const ClothRecording * recording,
+    gdouble * n);
 gchar *cloth_diagnosis_find_clamps_off (const ClothDiagnosis * d,
     gdouble * log_bayes_factor);
 

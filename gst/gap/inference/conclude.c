@@ -398,7 +398,7 @@ fill_free_numbers (ClothDiagnosis * d, const ClothGapBasis * basis)
   }
 }
 
-/* Clamps that were elsewhere than logged, unless an effect that acts on clamps says so: something
+/* Clamps that were elsewhere than logged, unless an effect that acts on clamps or on the recording says so: something
  * unknown has moved them. */
 static void
 find_clamps (ClothDiagnosis * d, const ClothGapHypothesis * best)
@@ -407,7 +407,9 @@ find_clamps (ClothDiagnosis * d, const ClothGapHypothesis * best)
 
   for (guint c = 0; c < best->n; c++)
     if (candidate_of (d, best->candidates[c])->effect->side ==
-        CLOTH_EFFECT_CLAMP)
+        CLOTH_EFFECT_CLAMP
+        || candidate_of (d, best->candidates[c])->effect->side ==
+        CLOTH_EFFECT_MEASUREMENT)
       return;
   d->clamps_off = cloth_diagnosis_find_clamps_off (d, &log_bayes_factor);
   p = 1. / (1. + exp (log (count_effects (d) - 1.) - log_bayes_factor));

@@ -1,8 +1,8 @@
 /* Simulators that the recording might have come from if nothing acted that the model lacks.
  *
  * Model: a real cloth differs from the simulated one as simulators differ from each other. A member
- *   has one of the two force models; the mesh as it is with explicit steps, with half of them, or
- *   with implicit ones, or a mesh twice as fine with implicit steps; and free numbers
+ *   has one of the two force models; the mesh as it is with explicit steps, or a mesh twice as fine
+ *   with implicit ones; and free numbers
  *   θ exp (0.3 N(0, 1)) (of those that may be negative: θ + a quarter of a prior), and a little of
  *   some laws that the model has not: 0.2 N(0, 1) priors.
  * Formula: a member moves freely in the recorded scene from the recorded start; with the
@@ -37,8 +37,6 @@ typedef struct
 
 static const Way ways[] = {
   {NULL, 1., CLOTH_INTEGRATOR_EXPLICIT},
-  {"time_step", 0.5, CLOTH_INTEGRATOR_EXPLICIT},
-  {NULL, 1., CLOTH_INTEGRATOR_IMPLICIT},
   {"mesh_resolution", 2., CLOTH_INTEGRATOR_IMPLICIT},
 };
 
@@ -176,32 +174,34 @@ cloth_ensemble_free (ClothEnsemble * ensemble)
   g_free (ensemble);
 }
 
-/* What the members of one way make of the scene, and the model drawn to it. */
+/* What members make of the scene, and the model drawn to it. */
 typedef struct
 {
   const ClothFeatures *features;
-  ClothRecording *made[CLOTH_ENSEMBLE_DRAWS];
+  ClothRecording **made;
   guint n;
+  guint first;                  /* of the running way */
   gdouble *z;
-} Group;
+} Made;
 
 static void
-group_clear (Group * g)
+made_clear (Made * m)
 {
-  for (guint i = 0; i < g->n; i++) {
-    g_free (g->made[i]->y);
-    g_free (g->made[i]->velocity);
-    g_free (g->made[i]);
+  for (guint i = 0; i < m->n; i++) {
+    g_free (m->made[i]->y);
+    g_free (m->made[i]->velocity);
+    g_free (m->made[i]);
   }
+  g_free (m->made);
 }
 
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Group, group_clear);
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Made, made_clear);
 
 static void
 keep (gpointer data, guint model, guint frame, const gdouble * positions)
 {
-  Group *g = data;
-  ClothRecording *r = g->made[model];
+  const Made *m = data;
+  ClothRecording *r = m->made[m->first + model];
 
   memcpy (r->y + 3 * (gsize) frame * r->n, positions,
       3 * r->n * sizeof (gdouble));
@@ -210,10 +210,10 @@ keep (gpointer data, guint model, guint frame, const gdouble * positions)
 static void
 collect (gpointer data, guint model, guint frame, const gdouble * positions)
 {
-  Group *g = data;
+  const Made *m = data;
 
-  cloth_features_add (g->features, g->made[model], frame, positions,
-      g->z + model * g->features->size);
+  cloth_features_add (m->features, m->made[model], frame, positions,
+      m->z + model * m->features->size);
 }
 
 /* Noise, and velocities as a recording has them. What was not seen stays hidden. Where the first frame
@@ -229,47 +229,6 @@ record (ClothRecording * r, gboolean is_smooth, guint64 seed)
     r->y[i] += r->sigma * cloth_random_gaussian (&random);
   cloth_recording_interpolate (r);
   cloth_recording_differentiate (r);
-}
-
-/* One way's members: simulated, recorded, and followed by the model. */
-static gboolean
-run_group (const ClothEnsemble * e, guint first, const ClothRecording * r,
-    const ClothFeatures * features, const ClothModel * model,
-    ClothEstimateOptions * options, gdouble * z, gboolean * sound,
-    GError ** error)
-{
-  g_auto (Group) g = { features,.n = CLOTH_ENSEMBLE_DRAWS,.z = z };
-  const gsize all = 3 * (gsize) r->n * r->n_frames;
-  const ClothModel *models[CLOTH_ENSEMBLE_DRAWS];
-  gdouble gains[CLOTH_ENSEMBLE_DRAWS];
-  gboolean followed[CLOTH_ENSEMBLE_DRAWS];
-  /* a member that diverges is no failure of the model's */
-  ClothRolloutOptions quiet = options->rollout;
-
-  quiet.failed = NULL;
-  for (guint i = 0; i < g.n; i++) {
-    g.made[i] = g_memdup2 (r, sizeof *r);
-    g.made[i]->y = g_new0 (gdouble, all);
-    g.made[i]->velocity = g_new0 (gdouble, all);
-    models[i] = model;
-    gains[i] = options->gain;
-  }
-  options->simulations += 2 * g.n;
-  if (!cloth_rollout_free (r, (const ClothModel * const *) e->models + first,
-          g.n, &quiet, keep, &g, sound, error))
-    return FALSE;
-  for (guint i = 0; i < g.n; i++)
-    if (sound[i])
-      record (g.made[i], cloth_recording_find_start (r, g.made[i]->y, NULL),
-          options->rollout.seed + first + i + 1);
-    else
-      memcpy (g.made[i]->y, r->y, all * sizeof (gdouble));
-  if (!cloth_rollout_nudged ((const ClothRecording * const *) g.made, models,
-          gains, g.n, &quiet, collect, &g, followed, error))
-    return FALSE;
-  for (guint i = 0; i < g.n; i++)
-    sound[i] = sound[i] && followed[i];
-  return TRUE;
 }
 
 /* @ensemble: an ensemble
@@ -288,9 +247,42 @@ cloth_ensemble_run (const ClothEnsemble * ensemble,
     ClothEstimateOptions * options, gdouble * z, gboolean * sound,
     GError ** error)
 {
-  for (guint first = 0; first < ensemble->n; first += CLOTH_ENSEMBLE_DRAWS)
-    if (!run_group (ensemble, first, study->recording, study->features, model,
-            options, z + first * study->features->size, sound + first, error))
+  const ClothEnsemble *e = ensemble;
+  const ClothRecording *r = study->recording;
+  const gsize all = 3 * (gsize) r->n * r->n_frames;
+  g_auto (Made) m = { study->features, g_new (ClothRecording *, e->n),
+    .n = e->n,.z = z
+  };
+  g_autofree const ClothModel **models = g_new (const ClothModel *, e->n);
+  g_autofree gdouble *gains = g_new (gdouble, e->n);
+  g_autofree gboolean *followed = g_new (gboolean, e->n);
+  /* a member that diverges is no failure of the model's */
+  ClothRolloutOptions quiet = options->rollout;
+
+  quiet.failed = NULL;
+  for (guint i = 0; i < e->n; i++) {
+    m.made[i] = g_memdup2 (r, sizeof *r);
+    m.made[i]->y = g_new0 (gdouble, all);
+    m.made[i]->velocity = g_new0 (gdouble, all);
+    models[i] = model;
+    gains[i] = options->gain;
+  }
+  options->simulations += 2 * e->n;
+  for (; m.first < e->n; m.first += CLOTH_ENSEMBLE_DRAWS)
+    if (!cloth_rollout_free (r, (const ClothModel * const *) e->models +
+            m.first, CLOTH_ENSEMBLE_DRAWS, &quiet, keep, &m, sound + m.first,
+            error))
       return FALSE;
+  for (guint i = 0; i < e->n; i++)
+    if (sound[i])
+      record (m.made[i], cloth_recording_find_start (r, m.made[i]->y, NULL),
+          options->rollout.seed + i + 1);
+    else
+      memcpy (m.made[i]->y, r->y, all * sizeof (gdouble));
+  if (!cloth_rollout_nudged ((const ClothRecording * const *) m.made, models,
+          gains, e->n, &quiet, collect, &m, followed, error))
+    return FALSE;
+  for (guint i = 0; i < e->n; i++)
+    sound[i] = sound[i] && followed[i];
   return TRUE;
 }

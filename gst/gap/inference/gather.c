@@ -339,6 +339,8 @@ put_take (const ClothDiagnosis * d, const ClothGapGathered * gathered,
 /* @d: a diagnosis
  * @gathered: its references
  * @model: where the takes are linearised
+ * @before: (nullable): what the ensemble made of them before: what simulators are off by if nothing acts
+ *   does not change with where the takes are linearised; %NULL: it runs
  * @made: (out caller-allocates): what the ensemble makes of them
  * @error: #ClothSimError, or #ClothFitError when @model can't be simulated
  *
@@ -346,13 +348,23 @@ put_take (const ClothDiagnosis * d, const ClothGapGathered * gathered,
  */
 gboolean
 cloth_gap_gather_takes (ClothDiagnosis * d, const ClothGapGathered * gathered,
-    const ClothModel * model, ClothGapMade * made, GError ** error)
+    const ClothModel * model, const ClothGapMade * before,
+    ClothGapMade * made, GError ** error)
 {
-  g_autoptr (ClothEnsemble) ensemble = cloth_ensemble_new (model,
-      d->candidates, d->options->seed);
+  const ClothEnsemble *ensemble = gathered->ensemble;
   g_autofree gboolean *here = g_new (gboolean, ensemble->n);
 
   made->model = cloth_model_copy (model);
+  if (before) {
+    made->made = g_ptr_array_ref (before->made);
+    made->sound = g_memdup2 (before->sound, ensemble->n * sizeof *made->sound);
+    for (guint t = 0; t < d->n_takes; t++)
+      if (!cloth_sensitivities_linearise (cloth_diagnosis_study (d, t),
+              d->candidates, model, d->all, d->candidates->directions->len,
+              &d->study, error))
+        return FALSE;
+    return TRUE;
+  }
   made->made = g_ptr_array_new_with_free_func (g_free);
   made->sound = g_memdup2 (gathered->sound, ensemble->n * sizeof *made->sound);
   for (guint t = 0; t < d->n_takes; t++) {

@@ -39,7 +39,7 @@ gboolean cloth_gap_gather_references (ClothDiagnosis * d,
     ClothGapGathered * gathered, GError ** error);
 gboolean cloth_gap_gather_takes (ClothDiagnosis * d,
     const ClothGapGathered * gathered, const ClothModel * model,
-    ClothGapMade * made, GError ** error);
+    const ClothGapMade * before, ClothGapMade * made, GError ** error);
 ClothGapStack *cloth_gap_stack_new (const ClothDiagnosis * d,
     const ClothGapGathered * gathered, const ClothGapMade * made,
     ClothEnsembleKin kin, GError ** error);

@@ -18,12 +18,12 @@
 #define N_PAIRS 16
 #define N_TRIPLES 8
 /* Steps of each at most, and the share of a prior at which it has arrived. */
-#define N_STEPS 6
-#define ARRIVED 0.1
+#define N_STEPS 4
+#define ARRIVED 0.2
 /* No step is longer than this many priors. */
 #define LONGEST_STEP 1.5
 /* What is less likely by this much (logarithm) won't be the likeliest. */
-#define HOPELESS 20.
+#define HOPELESS 12.
 
 /* What is there or not is there as it is tried, up to this share. */
 #define PRESENT_PRIOR 0.1
@@ -267,6 +267,14 @@ find_gust_evidence (guint n, const gdouble * e, const gdouble * derivatives,
   return TRUE;
 }
 
+/* Less its posterior by the scores, logarithm. */
+static gdouble
+find_behind (const ClothDiagnosis * d, const ClothGapLinearisation * l,
+    const ClothGapHypothesis * h)
+{
+  return -h->evidence.log_evidence / l->scores->temperature - log_odds (d, h);
+}
+
 /* A hypothesis by the derivatives of the linearisation: from where the base is. */
 static gboolean
 screen (const ClothDiagnosis * d, const ClothGapLinearisation * l,
@@ -289,7 +297,7 @@ screen (const ClothDiagnosis * d, const ClothGapLinearisation * l,
       !cloth_gap_evidence_find (n, l->e, derivatives, at, h->priors,
           h->n_directions, &h->evidence))
     return FALSE;
-  h->by_scores = -h->evidence.log_evidence - log_odds (d, h);
+  h->by_scores = find_behind (d, l, h);
   memcpy (h->next, h->evidence.values, sizeof h->next);
   keep_in_range (d, h);
   h->is_compared = TRUE;
@@ -616,6 +624,27 @@ step_all (ClothDiagnosis * d, const ClothGapLinearisation * l,
   return TRUE;
 }
 
+/* What is hopeless where it has come to is simulated no further. */
+static void
+give_up (const ClothDiagnosis * d, const ClothGapLinearisation * l,
+    GArray * hypotheses)
+{
+  gdouble best = INFINITY;
+
+  for (guint pass = 0; pass < 2; pass++)
+    for (guint i = 0; i < hypotheses->len; i++) {
+      ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
+          i);
+
+      if (!h->e || !h->is_compared)
+        continue;
+      if (pass == 0)
+        best = MIN (best, find_behind (d, l, h));
+      else if (find_behind (d, l, h) > best + HOPELESS)
+        h->is_settled = TRUE;
+    }
+}
+
 /* Whether it is a single effect of one number, but for those that shape it. */
 static gboolean
 has_one_number (const ClothDiagnosis * d, const ClothGapHypothesis * h)
@@ -742,7 +771,7 @@ blow (const ClothDiagnosis * d, const ClothGapLinearisation * l,
 /* How much less likely than the likeliest each is; those that could not be simulated are out. Of
  * those that are not compared in this round it is what it was before, held against the base. */
 static void
-rank (const ClothDiagnosis * d, const ClothGapHypothesis * base,
+rank (const ClothDiagnosis * d, const ClothGapLinearisation * l,
     GArray * hypotheses)
 {
   gdouble before = 0., after = 0., best = INFINITY;
@@ -750,13 +779,12 @@ rank (const ClothDiagnosis * d, const ClothGapHypothesis * base,
   for (guint i = 0; i < hypotheses->len; i++) {
     ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
         i);
-    const gboolean is_base = cloth_gap_hypothesis_is_same (h, base);
+    const gboolean is_base = cloth_gap_hypothesis_is_same (h, l->base);
 
     if (is_base && isfinite (h->by_scores))
       before = h->by_scores;
     if (h->is_compared)
-      h->by_scores = h->e ? -h->evidence.log_evidence - log_odds (d, h) :
-          INFINITY;
+      h->by_scores = h->e ? find_behind (d, l, h) : INFINITY;
     if (is_base)
       after = h->by_scores;
   }
@@ -804,9 +832,12 @@ cloth_gap_hypotheses_compare (ClothDiagnosis * d,
     h->is_settled = FALSE;
     memcpy (h->next, screened, sizeof screened);
   }
-  for (guint step = 0; step <= N_STEPS && left; step++)
+  for (guint step = 0; step <= N_STEPS && left; step++) {
     if (!step_all (d, l, hypotheses, &left, error))
       return FALSE;
+    if (step)
+      give_up (d, l, hypotheses);
+  }
   for (guint i = 0; i < hypotheses->len; i++) {
     ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
         i);
@@ -814,6 +845,6 @@ cloth_gap_hypotheses_compare (ClothDiagnosis * d,
     if (h->is_compared && h->n_winds)
       blow (d, l, hypotheses, h);
   }
-  rank (d, l->base, hypotheses);
+  rank (d, l, hypotheses);
   return TRUE;
 }

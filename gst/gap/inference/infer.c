@@ -159,9 +159,10 @@ run_first (ClothDiagnosis * d, const ClothGapGathered * gathered,
   const ClothEnsembleKin farthest = d->twins->len ?
       CLOTH_KIN_OTHER_SIMULATOR : CLOTH_KIN_SAME;
 
-  if (!cloth_gap_gather_takes (d, gathered, d->model, &first->made, error))
+  if (!cloth_gap_gather_takes (d, gathered, d->model, NULL, &first->made,
+          error))
     return FALSE;
-  for (*kin = g_getenv ("DBGK") ? farthest : CLOTH_KIN_SAME;; (*kin)++) {       /* XXX */
+  for (*kin = CLOTH_KIN_SAME;; (*kin)++) {
     gdouble unknown;
 
     if (!find_scores (d, gathered, *kin, NULL, first, error))
@@ -207,7 +208,8 @@ run_rounds (ClothDiagnosis * d, const ClothGapGathered * gathered,
     cloth_diagnosis_begin_part (d, 0.3 + 0.15 * i, 0.45 + 0.15 * i, 0.1,
         "effects");
     /* where the likeliest set can't be linearised, what is known of it stands */
-    if (!cloth_gap_gather_takes (d, gathered, model, &next.made, &failed)
+    if (!cloth_gap_gather_takes (d, gathered, model, &last->made, &next.made,
+            &failed)
         || !find_scores (d, gathered, kin, *null, &next, &failed)) {
       if (failed && !g_error_matches (failed, CLOTH_FIT_ERROR,
               CLOTH_FIT_ERROR_MODEL)) {

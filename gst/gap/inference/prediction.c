@@ -9,6 +9,10 @@
  *     log p = Σ −n/2 log ((V_w + V₀)/V₀) + constant.
  *   V₀ is the gap of the baseline that the model was fitted on; of a twin, whose share in it cancels, that
  *   of the noise; with neither what the two force models differ by.
+ *   The held vertices, of which a number counts φ times less, are seen where the explanation has the
+ *   clamps, but for the noise and what they are off by on the reference, U:
+ *     log p = −3n/2φ log (1 + V/U).
+ *   So a fault of the clock or of the scale has to be seen on them, too.
  * Reference: Dawid, Statistical theory: the prequential approach, 1984.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
@@ -16,6 +20,8 @@
 
 #include <math.h>
 #include <string.h>
+
+#include "gst/gap/inference/clamps.h"
 
 /* So many explanations are let go. */
 #define N_PREDICTED 24
@@ -84,6 +90,28 @@ find_floor (ClothDiagnosis * d, const ClothRecording * r, gdouble * floor,
   return TRUE;
 }
 
+/* How well an explanation foretells where the held vertices are seen: where simulated clamps are. */
+static gdouble
+find_clamps_evidence (const ClothDiagnosis * d, const ClothWindowedGap * gap,
+    const ClothRecording * r, gdouble usual)
+{
+  const guint n_held = r->scene->held->len;
+  gdouble sum = 0., n = 0.;
+
+  for (gsize k = n_held; k < (gsize) r->n_frames * n_held; k++) {
+    const ClothHeld *held = &g_array_index (r->scene->held, ClothHeld,
+        k % n_held);
+    const gdouble square = gap->squares[k / n_held * gap->n + held->vertex];
+
+    if (isnan (square) || !cloth_gap_is_surely_held (r, held, k / n_held))
+      continue;
+    sum += square;
+    n++;
+  }
+  return n > 0. ? -0.5 * N_NUMBERS * n / d->study.overdispersion *
+      log1p (sum / n / usual) : 0.;
+}
+
 /* Adds what a take says. */
 static gboolean
 add_take (ClothDiagnosis * d, guint t, GPtrArray * models, gdouble * evidence,
@@ -96,8 +124,11 @@ add_take (ClothDiagnosis * d, guint t, GPtrArray * models, gdouble * evidence,
   ClothWindowedGap **own = NULL, **gaps;
   g_autofree gdouble *squares = NULL;
   g_autofree gboolean *one = NULL;
-  gdouble floor = 0.;
+  gdouble floor = 0., usual = 0.;
 
+  for (guint i = d->n_takes; i < d->studies->len; i++)
+    usual = fmax (usual, 3. * cloth_gap_find_clamps_off
+        (cloth_diagnosis_study (d, i)->recording, NULL));
   if (!twin && !find_floor (d, r, &floor, error))
     return FALSE;
   if (twin) {
@@ -115,8 +146,13 @@ add_take (ClothDiagnosis * d, guint t, GPtrArray * models, gdouble * evidence,
   squares = g_new (gdouble, gaps[0]->n_windows);
   one = g_new0 (gboolean, gaps[0]->n_windows);
   for (guint k = 0; k < models->len; k++) {
+    g_autoptr (ClothRecording) corrected = cloth_diagnosis_correct (r, all[k]);
+
     if (twin)
-      cloth_windowed_gap_replace (gaps[k], r, own[0], twin);
+      cloth_windowed_gap_replace (gaps[k], corrected ? corrected : r, own[0],
+          twin);
+    evidence[k] += find_clamps_evidence (d, gaps[k],
+        corrected ? corrected : r, usual + noise);
     for (guint w = 0; w < gaps[k]->n_windows; w++) {
       one[w] = TRUE;
       squares[w] = cloth_windowed_gap_square (gaps[k], one);
@@ -182,15 +218,6 @@ cloth_gap_hypotheses_predict (ClothDiagnosis * d, GArray * hypotheses,
     if (i < n)
       last = h->n_winds ? most : evidence[i];
     h->behind = isfinite (most) ? h->by_scores - last : h->by_scores;
-    if (g_getenv ("DBGP") && i < 8) {   /* XXX */
-      g_printerr ("PRED %u scores %.2f  pred %.2f:", i, h->by_scores, last);
-      for (guint c = 0; c < h->n; c++)
-        g_printerr (" %s", g_array_index (d->candidates->list, ClothCandidate,
-                h->candidates[c]).effect->id);
-      for (guint c = 0; c < h->n_directions; c++)
-        g_printerr (" %.3g/%.3g", h->at[c], h->priors[c].prior);
-      g_printerr ("\n");
-    }
     best = MIN (best, h->behind);
   }
   for (guint i = 0; i < hypotheses->len; i++)

@@ -20,6 +20,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/gap/inference/evidence.h"
 #include "gst/math/linalg.h"
 
 /* Directions are told apart down to this share of their variance. */
@@ -251,12 +252,11 @@ find_covariance (guint n_members, guint n, const gdouble * scores,
           (i == k ? share * mean : 0.);
 }
 
-/* L of the covariance of scores, from their derivatives G. */
+/* L of the covariance of scores, from their derivatives G; @member_scores become L₀⁻¹ of them. */
 static gboolean
-make_whitener (ClothGapScores * s, const gdouble * g, guint n_members,
-    gdouble * member_scores)
+make_whitener (guint n, const gdouble * g, guint n_members,
+    gdouble * member_scores, gdouble * whitener)
 {
-  const guint n = s->n;
   g_autofree gdouble *inner = g_memdup2 (g, n * n * sizeof *g);
   g_autofree gdouble *covariance = g_new (gdouble, n * n);
 
@@ -272,11 +272,97 @@ make_whitener (ClothGapScores * s, const gdouble * g, guint n_members,
   if (!cloth_cholesky_factor (n, covariance))
     return FALSE;
   /* (L₀L₁)(L₀L₁)ᵀ = L₀ (1 + C) L₀ᵀ */
+  memset (whitener, 0, n * n * sizeof *whitener);
   for (guint i = 0; i < n; i++)
     for (guint k = 0; k <= i; k++)
       for (guint j = k; j <= i; j++)
-        s->whitener[i * n + k] += inner[i * n + j] * covariance[j * n + k];
+        whitener[i * n + k] += inner[i * n + j] * covariance[j * n + k];
   return TRUE;
+}
+
+/* G of templates, in units of priors. */
+static gdouble *
+make_gram (const ClothGapStack * stack, const gdouble * templates)
+{
+  const guint n = stack->n;
+  gdouble *g = g_new (gdouble, n * n + 1);
+
+  for (guint k = 0; k < n; k++)
+    for (guint i = 0; i < n; i++)
+      g[k * n + i] = stack->priors[k] * cloth_gap_dot (templates +
+          i * stack->size, stack->columns + k * stack->size, stack->size);
+  return g;
+}
+
+/* Logarithm of the mean Bayes factor of all single directions, against none, of a member's whitened
+ * scores. */
+static gdouble
+find_chance_evidence (guint n, const gdouble * e, const gdouble * derivatives,
+    const gdouble * priors)
+{
+  const gdouble at = 0.;
+  ClothGapEvidence evidence;
+  gdouble none, sum = 0.;
+
+  if (!cloth_gap_evidence_find (n, e, NULL, NULL, NULL, 0, &evidence))
+    return 0.;
+  none = evidence.log_evidence;
+  for (guint k = 0; k < n; k++) {
+    const ClothGapPrior prior = { priors[k], 0., FALSE };
+
+    if (cloth_gap_evidence_find (n, e, derivatives + k * n, &at, &prior, 1,
+            &evidence))
+      sum += exp (MIN (evidence.log_evidence - none, 300.)) / n;
+  }
+  return log (sum);
+}
+
+/* How far evidence goes by chance: each member is held against what the members of the other family
+ * say chance is. */
+static gdouble
+find_temperature (const ClothGapStack * stack, const ClothGapDiscrepancy * d,
+    const gdouble * member_scores)
+{
+  const guint n = stack->n;
+  gdouble sum = 0., count = 0.;
+
+  for (guint family = 0; family < 2; family++) {
+    g_autoptr (ClothGapProjector) p = projector_new (stack, d, family);
+    g_autofree gdouble *templates = p ? make_templates (stack, p) : NULL;
+    g_autofree gdouble *g = p ? make_gram (stack, templates) : NULL;
+    g_autofree gdouble *others = g_new (gdouble, stack->n_members * n + 1);
+    g_autofree gdouble *whitener = g_new (gdouble, n * n + 1);
+    g_autofree gdouble *derivatives = NULL;
+    guint n_others = 0;
+
+    for (guint m = 0; m < stack->n_members; m++)
+      if (stack->families[m] != family)
+        memcpy (others + n_others++ * n, member_scores + m * n,
+            n * sizeof *others);
+    if (!p || !n_others || !make_whitener (n, g, n_others, others, whitener))
+      continue;
+    derivatives = g_memdup2 (g, n * n * sizeof *g);
+    for (guint k = 0; k < n; k++) {
+      for (guint i = 0; i < n; i++)
+        derivatives[k * n + i] /= stack->priors[k];
+      solve_lower (n, whitener, derivatives + k * n);
+    }
+    for (guint m = 0; m < stack->n_members; m++) {
+      g_autofree gdouble *e = NULL;
+      gdouble evidence;
+
+      if (stack->families[m] != family)
+        continue;
+      e = g_memdup2 (member_scores + m * n, n * sizeof *e);
+      solve_lower (n, whitener, e);
+      evidence = find_chance_evidence (n, e, derivatives, stack->priors);
+      if (evidence > 0.) {
+        sum += evidence;
+        count++;
+      }
+    }
+  }
+  return MAX ((1. + sum) / (1. + count), 1.);
 }
 
 /* What the reference says of the residual. */
@@ -319,8 +405,7 @@ cloth_gap_scores_new (const ClothGapStack * stack,
 {
   const guint n = stack->n;
   g_autoptr (ClothGapScores) s = g_new0 (ClothGapScores, 1);
-  g_autofree gdouble *g = g_new0 (gdouble, n * n + 1);
-  g_autofree gdouble *member_scores = NULL;
+  g_autofree gdouble *g = NULL, *member_scores = NULL;
 
   s->n = n;
   s->size = stack->size;
@@ -333,12 +418,10 @@ cloth_gap_scores_new (const ClothGapStack * stack,
   s->offset = make_offset (stack, discrepancy, s->projector);
   s->free_covariance = make_free_covariance (stack, s->projector);
   s->templates = make_templates (stack, s->projector);
-  for (guint k = 0; k < n; k++)
-    for (guint i = 0; i < n; i++)
-      g[k * n + i] = stack->priors[k] * cloth_gap_dot (s->templates +
-          i * stack->size, stack->columns + k * stack->size, stack->size);
+  g = make_gram (stack, s->templates);
   member_scores = find_member_scores (stack, discrepancy, s->member_rests);
-  if (!make_whitener (s, g, stack->n_members, member_scores))
+  s->temperature = find_temperature (stack, discrepancy, member_scores);
+  if (!make_whitener (n, g, stack->n_members, member_scores, s->whitener))
     return NULL;
   for (guint k = 0; k < n; k++) {
     for (guint i = 0; i < n; i++)

@@ -19,6 +19,7 @@ typedef struct _ClothGapProjector ClothGapProjector;
  * @member_rests: powers, class by class, of what the nuisances leave of each member, those of its
  *   own family not among them, in units of the variances, [n_members][n_classes]
  * @free_covariance: of the free numbers once the residual is known, [n_free][n_free]
+ * @temperature: how many times more logarithm of evidence members show by chance than they should
  */
 typedef struct {
   guint n;
@@ -30,6 +31,7 @@ typedef struct {
   ClothGapProjector *projector;
   gdouble *member_rests;
   gdouble *free_covariance;
+  gdouble temperature;
 } ClothGapScores;
 
 ClothGapScores *cloth_gap_scores_new (const ClothGapStack * stack,

@@ -6,6 +6,8 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/verdict/confirm.h"
 
+#include "gst/gap/verdict/agreement.h"
+
 static gboolean
 is_ambiguous (const ClothGapResult * r)
 {
@@ -20,8 +22,8 @@ is_ambiguous (const ClothGapResult * r)
 
 /* @d: a diagnosis whose verdict is decided, and measured with the effects in the user's simulator
  *
- * Corrects the verdict by what was measured. What is unexplained for another reason than the size
- * of the rest stays so.
+ * Corrects the verdict by what was measured. What is unexplained for another reason than the rest,
+ * like clamps that were elsewhere, stays so.
  */
 void
 cloth_diagnosis_confirm (ClothDiagnosis * d)
@@ -30,10 +32,12 @@ cloth_diagnosis_confirm (ClothDiagnosis * d)
   const gdouble rest = r->gap_after.value, floor = r->noise_floor.value;
   gboolean explained;
 
-  if (!d->afters->len || !d->n_accepted || r->reason
+  if (!d->afters->len || !d->n_accepted || d->clamps_off || d->chance
+      || r->takes_agree_p_value < CLOTH_DIAGNOSIS_CONTRADICTION
       || r->verdict < CLOTH_GAP_EXPLAINED)
     return;
   explained = rest * rest <= CLOTH_DIAGNOSIS_LARGEST_REST * floor * floor;
+  g_clear_pointer (&r->reason, g_free);
   if (!explained)
     r->verdict = CLOTH_GAP_UNEXPLAINED;
   else

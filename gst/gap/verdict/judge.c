@@ -1,13 +1,14 @@
 /* Decides the verdict from the posterior.
  *
  *   unexplained: chance acts that can't be simulated again, or clamps were elsewhere than logged, or an
- *     unknown field is likelier than not and has a tenth of the gap's power at least, or of the
+ *     unknown field is likelier than not, beside a baseline or a twin, and has a tenth of the gap's power at least, or of the
  *     floor's where that is more, or
  *     takes contradict each other on what acts;
  *   explained: effects act, and no other explanation is among those that have 95% together;
  *   ambiguous: effects act, and others would do as well;
  *   no_gap: nothing acts, and there is a baseline or a twin to say so;
- *   undecidable: nothing acts that could be seen, and there is neither.
+ *   undecidable: there is neither, and nothing acts that could be seen, or something unknown does,
+ *     which may be what any simulation of this cloth is off by.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/verdict/judge.h"
@@ -69,13 +70,15 @@ is_ambiguous (const ClothGapResult * r)
 }
 
 /* The power of what is unknown, as a share of the gap's or of the floor's, whichever is larger: below
- * the floor there is no gap to explain. */
+ * the floor there is no gap to explain, and with accepted effects no rest. */
 static gdouble
 find_unknown_power (const ClothDiagnosis * d)
 {
   const gdouble gap = d->result->gap_before.value;
   const gdouble floor = d->result->noise_floor.value;
 
+  if (d->n_accepted && d->result->gap_after.value < floor)
+    return 0.;
   return d->unknown_share * (gap < floor ? gap * gap / (floor * floor) : 1.);
 }
 
@@ -83,8 +86,10 @@ void
 cloth_diagnosis_decide (ClothDiagnosis * d)
 {
   ClothGapResult *r = d->result;
-  const gboolean unknown = d->clamps_off || (d->unknown_probability > 0.5
-      && find_unknown_power (d) > CLOTH_DIAGNOSIS_LEAST_SHARE);
+  const gboolean is_unlike = d->unknown_probability > 0.5
+      && find_unknown_power (d) > CLOTH_DIAGNOSIS_LEAST_SHARE;
+  const gboolean unknown = d->clamps_off
+      || (is_unlike && cloth_diagnosis_n_references (d));
   const gboolean contradict =
       r->takes_agree_p_value < CLOTH_DIAGNOSIS_CONTRADICTION;
 
@@ -99,7 +104,7 @@ cloth_diagnosis_decide (ClothDiagnosis * d)
     r->verdict = CLOTH_GAP_UNEXPLAINED;
     r->reason = contradict ? g_strdup ("The takes contradict each other on the "
         "accepted effects, so these are not all of it.") : d->clamps_off ?
-        g_steal_pointer (&d->clamps_off) : d->chance ?
+        g_strdup (d->clamps_off) : d->chance ?
         g_strdup_printf ("It is likely that %s acts, which changes by chance: "
         "no simulation can repeat it.",
         d->chance->id) :
@@ -110,6 +115,13 @@ cloth_diagnosis_decide (ClothDiagnosis * d)
         r->rivals.force_field >
         r->rivals.displacement_field ? "it spreads as an unknown force would" :
         "it spreads as places that were measured wrong would");
+  } else if (is_unlike) {
+    r->verdict = CLOTH_GAP_UNDECIDABLE;
+    r->reason = g_strdup_printf ("%.0f%% of the gap is more than our "
+        "simulators differ by and like no effect of the library, but without a "
+        "baseline or what your simulator made of the scene nobody knows what "
+        "a simulation of this cloth is off by when nothing acts.",
+        100. * d->unknown_share);
   } else if (d->n_accepted || cloth_diagnosis_count_faults (d)) {
     r->verdict = is_ambiguous (r) ? CLOTH_GAP_AMBIGUOUS : CLOTH_GAP_EXPLAINED;
   } else if (cloth_diagnosis_n_references (d)) {

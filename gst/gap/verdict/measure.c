@@ -156,12 +156,34 @@ static ClothWindowedGap **
 simulate (ClothDiagnosis * d, Kind kind, const ClothRecording * r,
     gboolean noisy, const ClothModel * const *models, guint n, GError ** error)
 {
+  ClothWindowedGap **gaps;
+
   if (kind == WINDOWS)
     return cloth_diagnosis_measure_windows (d, r, models, n, error);
   d->study.simulations += n;
-  return cloth_windowed_gaps_new_free (r, models, n,
+  gaps = cloth_windowed_gaps_new_free (r, models, n,
       CLOTH_DIAGNOSIS_WINDOW_GAIN, noisy ? CLOTH_DIAGNOSIS_WINDOW_S : 0.,
       CLOTH_DIAGNOSIS_WINDOW_S, &d->study.rollout, error);
+  /* a model that says what was wrong with the recording is held against it without that */
+  for (guint k = 0; gaps && k < n; k++) {
+    g_autoptr (ClothRecording) corrected =
+        cloth_diagnosis_correct (r, models[k]);
+    ClothWindowedGap **one = !corrected ? NULL :
+        cloth_windowed_gaps_new_free (corrected, models + k, 1,
+        CLOTH_DIAGNOSIS_WINDOW_GAIN, noisy ? CLOTH_DIAGNOSIS_WINDOW_S : 0.,
+        CLOTH_DIAGNOSIS_WINDOW_S, &d->study.rollout, error);
+
+    if (corrected && !one) {
+      cloth_windowed_gaps_free (gaps, n);
+      return NULL;
+    }
+    if (corrected) {
+      cloth_windowed_gap_free (gaps[k]);
+      gaps[k] = one[0];
+      g_free (one);
+    }
+  }
+  return gaps;
 }
 
 /* What a simulator wrote has noise only if its take says so. */
@@ -183,8 +205,13 @@ compare (ClothDiagnosis * d, Kind kind, const ClothRecording * r,
       !twin || has_noise (r, twin), models, n, error);
 
   /* in a free run the first one is ours on the twin: the last to be replaced */
-  for (guint k = n; gaps && twin && k-- > 0;)
-    cloth_windowed_gap_replace (gaps[k], r, kind == FREE ? gaps[0] : own, twin);
+  for (guint k = n; gaps && twin && k-- > 0;) {
+    g_autoptr (ClothRecording) corrected =
+        cloth_diagnosis_correct (r, models[k]);
+
+    cloth_windowed_gap_replace (gaps[k], corrected ? corrected : r,
+        kind == FREE ? gaps[0] : own, twin);
+  }
   return gaps;
 }
 
