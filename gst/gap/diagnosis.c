@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/diagnosis.h"
 
-#include "gst/fit/recording/correction.h"
+#include "gst/fit/recording/recording.h"
 
 #include <string.h>
 

@@ -319,8 +319,9 @@ GST_START_TEST (test_noise)
       sum);
   message = find_message (&setup, GST_MESSAGE_ELEMENT, "clothgap/verdict");
   fail_unless (message != NULL);
+  /* without a baseline nobody knows how much could be seen */
   fail_unless_equals_string (gst_structure_get_string
-      (gst_message_get_structure (message), "verdict"), "no_gap");
+      (gst_message_get_structure (message), "verdict"), "undecidable");
   tear_down (&setup);
 }
 
@@ -427,8 +428,9 @@ GST_START_TEST (test_wrong)
   }
   message = find_message (&setup, GST_MESSAGE_ELEMENT, "clothgap/verdict");
   fail_unless (message != NULL);
+  /* without a baseline nobody knows how much could be seen */
   fail_unless_equals_string (gst_structure_get_string
-      (gst_message_get_structure (message), "verdict"), "no_gap");
+      (gst_message_get_structure (message), "verdict"), "undecidable");
   tear_down (&setup);
 }
 

@@ -18,7 +18,7 @@
 #include <string.h>
 
 #include "gst/fit/error.h"
-#include "gst/fit/recording/start.h"
+#include "gst/fit/recording/recording.h"
 #include "gst/math/pool.h"
 
 /* Models that one ClothSim can step together: those that agree in what it shares. */

@@ -13,6 +13,7 @@
 #include "gst/fit/recording/recording-type.h"
 #include "gst/fit/recording/signal.h"
 #include "gst/fit/recording/twin.h"
+#include "gst/fit/recording/start.h"
 #include "gst/take/take.h"
 
 G_BEGIN_DECLS

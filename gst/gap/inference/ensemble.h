@@ -8,7 +8,7 @@
 G_BEGIN_DECLS
 
 /* Draws of the free numbers for each way to compute. */
-#define CLOTH_ENSEMBLE_DRAWS 8
+#define CLOTH_ENSEMBLE_DRAWS 4
 /* With fewer members nothing is known of chance. */
 #define CLOTH_ENSEMBLE_LEAST 8u
 
@@ -38,7 +38,8 @@ typedef enum {
 } ClothEnsembleKin;
 
 ClothEnsemble *cloth_ensemble_new (const ClothModel * model,
-    const ClothCandidates * candidates, guint64 seed);
+    const ClothTopology * topology, const ClothCandidates * candidates,
+    guint64 seed);
 guint cloth_ensemble_find_kin (const ClothEnsemble * ensemble, guint member,
     ClothEnsembleKin kin);
 void cloth_ensemble_free (ClothEnsemble * ensemble);

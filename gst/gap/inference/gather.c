@@ -68,7 +68,8 @@ cloth_gap_gather_references (ClothDiagnosis * d, ClothGapGathered * gathered,
     GError ** error)
 {
   ClothEnsemble *ensemble = gathered->ensemble =
-      cloth_ensemble_new (d->model, d->candidates, d->options->seed);
+      cloth_ensemble_new (d->model, cloth_diagnosis_recording (d,
+          0)->scene->topology, d->candidates, d->options->seed);
   g_autofree gboolean *sound = g_new (gboolean, ensemble->n);
 
   gathered->references = g_new (guint, d->n_takes);

@@ -9,10 +9,9 @@
  *     log p = Σ −n/2 log ((V_w + V₀)/V₀) + constant.
  *   V₀ is the gap of the baseline that the model was fitted on; of a twin, whose share in it cancels, that
  *   of the noise; with neither what the two force models differ by.
- *   The held vertices, of which a number counts φ times less, are seen where the explanation has the
- *   clamps, but for the noise and what they are off by on the reference, U:
- *     log p = −3n/2φ log (1 + V/U).
- *   So a fault of the clock or of the scale has to be seen on them, too.
+ *   The held vertices are seen where the explanation has the clamps, but for the noise and what they are
+ *   off by on the reference: the same with these for V and V₀. So a fault of the clock or of the scale
+ *   has to be seen on them, too.
  * Reference: Dawid, Statistical theory: the prequential approach, 1984.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
@@ -90,26 +89,29 @@ find_floor (ClothDiagnosis * d, const ClothRecording * r, gdouble * floor,
   return TRUE;
 }
 
-/* How well an explanation foretells where the held vertices are seen: where simulated clamps are. */
-static gdouble
-find_clamps_evidence (const ClothDiagnosis * d, const ClothWindowedGap * gap,
-    const ClothRecording * r, gdouble usual)
+/* Mean square by which held vertices are seen off the simulated clamps, in each window, m²; NaN where
+ * none is seen. */
+static void
+find_clamps_off (const ClothWindowedGap * gap, const ClothRecording * r,
+    gdouble * squares)
 {
   const guint n_held = r->scene->held->len;
-  gdouble sum = 0., n = 0.;
+  g_autofree gdouble *counts = g_new0 (gdouble, gap->n_windows);
 
+  memset (squares, 0, gap->n_windows * sizeof *squares);
   for (gsize k = n_held; k < (gsize) r->n_frames * n_held; k++) {
     const ClothHeld *held = &g_array_index (r->scene->held, ClothHeld,
         k % n_held);
+    const guint window = gap->window[k / n_held];
     const gdouble square = gap->squares[k / n_held * gap->n + held->vertex];
 
     if (isnan (square) || !cloth_gap_is_surely_held (r, held, k / n_held))
       continue;
-    sum += square;
-    n++;
+    squares[window] += square;
+    counts[window]++;
   }
-  return n > 0. ? -0.5 * N_NUMBERS * n / d->study.overdispersion *
-      log1p (sum / n / usual) : 0.;
+  for (guint w = 0; w < gap->n_windows; w++)
+    squares[w] = counts[w] > 0. ? squares[w] / counts[w] : NAN;
 }
 
 /* Adds what a take says. */
@@ -151,8 +153,9 @@ add_take (ClothDiagnosis * d, guint t, GPtrArray * models, gdouble * evidence,
     if (twin)
       cloth_windowed_gap_replace (gaps[k], corrected ? corrected : r, own[0],
           twin);
-    evidence[k] += find_clamps_evidence (d, gaps[k],
-        corrected ? corrected : r, usual + noise);
+    find_clamps_off (gaps[k], corrected ? corrected : r, squares);
+    evidence[k] += cloth_gap_find_prediction_evidence (squares,
+        gaps[k]->n_windows, usual + noise);
     for (guint w = 0; w < gaps[k]->n_windows; w++) {
       one[w] = TRUE;
       squares[w] = cloth_windowed_gap_square (gaps[k], one);

@@ -375,13 +375,16 @@ cloth_diagnosis_find_implausible_result (ClothDiagnosis * d,
   if (!isfinite (d->result->gap_before.value))
     return g_strdup ("Nothing was seen in the parts that judge; give a take of "
         "its own as --hold-out.");
-  if (verdict != CLOTH_GAP_NO_GAP && (verdict != CLOTH_GAP_UNEXPLAINED
-          || cloth_diagnosis_count_faults (d)))
+  if (verdict == CLOTH_GAP_EXPLAINED || verdict == CLOTH_GAP_AMBIGUOUS
+      || (verdict == CLOTH_GAP_UNEXPLAINED && cloth_diagnosis_count_faults (d)))
     return NULL;
   if ((reason = check_noise (r)))
     return reason;
-  if (verdict == CLOTH_GAP_NO_GAP)
-    return check_floor (d, r);
+  if (verdict != CLOTH_GAP_UNEXPLAINED && (reason = check_floor (d, r)))
+    return reason;
+  /* agreement, or nothing that could be seen */
+  if (!(d->unknown_probability > 0.5))
+    return NULL;
   if ((reason = check_size (r)))
     return reason;
   if (cloth_diagnosis_has_observations (d) && (reason = check_scene (d, model)))

@@ -1,8 +1,8 @@
 /* Decides the verdict from the posterior.
  *
  *   unexplained: chance acts that can't be simulated again, or clamps were elsewhere than logged, or an
- *     unknown field is likelier than not, beside a baseline or a twin, and has a tenth of the gap's power at least, or of the
- *     floor's where that is more, or
+ *     unknown field is likelier than not, beside a baseline or a twin, has a tenth of the gap's power at least, and the accepted
+ *     effects leave more than the floor, or
  *     takes contradict each other on what acts;
  *   explained: effects act, and no other explanation is among those that have 95% together;
  *   ambiguous: effects act, and others would do as well;
@@ -69,25 +69,22 @@ is_ambiguous (const ClothGapResult * r)
   return FALSE;
 }
 
-/* The power of what is unknown, as a share of the gap's or of the floor's, whichever is larger: below
- * the floor there is no gap to explain, and with accepted effects no rest. */
-static gdouble
-find_unknown_power (const ClothDiagnosis * d)
+/* Whether something unknown acts that is worth a word. With accepted effects that leave no more than
+ * the floor there is no rest to explain. */
+static gboolean
+is_unlike_all (const ClothDiagnosis * d)
 {
-  const gdouble gap = d->result->gap_before.value;
-  const gdouble floor = d->result->noise_floor.value;
-
-  if (d->n_accepted && d->result->gap_after.value < floor)
-    return 0.;
-  return d->unknown_share * (gap < floor ? gap * gap / (floor * floor) : 1.);
+  return d->unknown_probability > 0.5
+      && d->unknown_share > CLOTH_DIAGNOSIS_LEAST_SHARE
+      && !(d->n_accepted
+      && d->result->gap_after.value < d->result->noise_floor.value);
 }
 
 void
 cloth_diagnosis_decide (ClothDiagnosis * d)
 {
   ClothGapResult *r = d->result;
-  const gboolean is_unlike = d->unknown_probability > 0.5
-      && find_unknown_power (d) > CLOTH_DIAGNOSIS_LEAST_SHARE;
+  const gboolean is_unlike = is_unlike_all (d);
   const gboolean unknown = d->clamps_off
       || (is_unlike && cloth_diagnosis_n_references (d));
   const gboolean contradict =
