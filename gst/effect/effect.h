@@ -93,7 +93,7 @@ typedef struct {
  * @test: how a diagnosis tests it
  * @untested: of %CLOTH_EFFECT_TEST_NONE: why not; of %CLOTH_EFFECT_TEST_TRIAL: why not where no
  *   trial is made; of %CLOTH_EFFECT_TEST_STOCHASTIC: why not where @varies isn't tested
- *   either; one sentence
+ *   either; of a fault of the measurement: why only where it is asked for by name; one sentence
  * @varies: of %CLOTH_EFFECT_TEST_STOCHASTIC: id of the effect whose parameters change
  * @same_as: (nullable): the model's own number that it changes too: where that one is
  *   fitted to a take, the effect can't be tested on it

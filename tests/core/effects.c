@@ -139,6 +139,8 @@ check_test (const ClothEffect * effect)
       || effect->test == CLOTH_EFFECT_TEST_TRIAL
       || effect->test == CLOTH_EFFECT_TEST_STOCHASTIC)
     check_sentence (effect->untested);
+  else if (effect->side == CLOTH_EFFECT_MEASUREMENT && effect->untested)
+    check_sentence (effect->untested);
   else
     g_assert_null (effect->untested);
   for (guint k = 0; k < effect->n_parameters

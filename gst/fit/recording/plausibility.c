@@ -72,12 +72,14 @@ typical_edge (const ClothTopology * t)
 /* @recording: a recording; what was not seen is left out
  * @corner: 0: edges from each face's first corner to the second, along one way of a grid; 1:
  *   from the second to the third, along the other
+ * @sigma: noise of a coordinate that is taken off, m
  *
  * Returns: how many times as long as on the flat cloth such edges are, the median; NaN: none
  *   was seen
  */
 gdouble
-cloth_recording_find_scale (const ClothRecording * recording, guint corner)
+cloth_recording_find_scale (const ClothRecording * recording, guint corner,
+    gdouble sigma)
 {
   const ClothRecording *r = recording;
   const ClothTopology *t = r->scene->topology;
@@ -93,7 +95,9 @@ cloth_recording_find_scale (const ClothRecording * recording, guint corner)
 
       if (!(flat > 0.) || !is_seen (r, frame, a) || !is_seen (r, frame, b))
         continue;
-      ratio = distance (place (r, frame, a), place (r, frame, b)) / flat;
+      ratio = distance (place (r, frame, a), place (r, frame, b));
+      /* noise makes edges longer: by the variance of six coordinates */
+      ratio = sqrt (fmax (ratio * ratio - 6. * sigma * sigma, 0.)) / flat;
       g_array_append_val (ratios, ratio);
     }
   return cloth_median ((gdouble *) ratios->data, ratios->len);
@@ -126,7 +130,7 @@ static gboolean
 check_scale (const ClothRecording * r, GError ** error)
 {
   for (guint corner = 0; corner < 2; corner++) {
-    gdouble ratio = cloth_recording_find_scale (r, corner);
+    gdouble ratio = cloth_recording_find_scale (r, corner, 0.);
 
     if (isnan (ratio) || (ratio > 0.5 && ratio < 2.))
       continue;

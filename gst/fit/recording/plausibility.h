@@ -9,7 +9,7 @@ G_BEGIN_DECLS
 
 gdouble cloth_recording_longest_side (const ClothRecording * recording);
 gdouble cloth_recording_find_scale (const ClothRecording * recording,
-    guint corner);
+    guint corner, gdouble sigma);
 gboolean cloth_recording_check (const ClothRecording * recording,
     gboolean given, GError ** error);
 gboolean cloth_recording_check_other (const ClothRecording * recording,

@@ -315,7 +315,7 @@ static gchar *
 check_size (const ClothRecording * r)
 {
   for (guint corner = 0; corner < 2; corner++) {
-    gdouble scale = cloth_recording_find_scale (r, corner);
+    gdouble scale = cloth_recording_find_scale (r, corner, r->sigma);
 
     if (scale > MOST_STRETCH)
       return

@@ -28,6 +28,9 @@ const ClothEffect cloth_effect_recording_delay = {
       "A displacement along the velocity of every point, the held ones "
       "included; nothing shows at rest.",
   .confusions = confusions,
+  .untested =
+      "Beside clamps that may be late, too, a clock fits what others leave: "
+      "it is tested where it is asked for by name.",
   .n_parameters = 1,
   .parameters = {
     {.name = "seconds", .unit = "s", .null_value = 0, .min = -1, .max = 1,

@@ -29,6 +29,9 @@ const ClothEffect cloth_effect_time_scale = {
   .regressor =
       "A delay that grows with time, from the first frame on.",
   .confusions = confusions,
+  .untested =
+      "Beside clamps that may be late, too, a clock fits what others leave: "
+      "it is tested where it is asked for by name.",
   .n_parameters = 1,
   .parameters = {
     {.name = "factor", .unit = "1", .null_value = 1, .min = 0.5, .max = 2,
