@@ -462,7 +462,9 @@ test_diverging (void)
   guint stiff = 0;
 
   g_array_set_size (model->free, 0);
+  /* steps are whole fractions of a frame: the weight decides which are stable */
   model->time_step = SHORT_STEP;
+  model->areal_density *= 1.05;
   result = cloth_gap_diagnose (takes, 1, model, &options, &error);
   g_assert_no_error (error);
   for (guint i = 0; i < result->failures->len; i++) {

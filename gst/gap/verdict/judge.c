@@ -1,7 +1,7 @@
 /* Decides the verdict from the posterior.
  *
  *   unexplained: chance acts that can't be simulated again, or clamps were elsewhere than logged, or an
- *     unknown field is likelier than not, beside a baseline or a twin, has a tenth of the gap's power at least, and the accepted
+ *     unknown field is likelier than not, beside a baseline or a twin, has a tenth of the gap's or the floor's power at least, and the accepted
  *     effects leave more than the floor, or
  *     takes contradict each other on what acts;
  *   explained: effects act, and no other explanation is among those that have 95% together;
@@ -69,15 +69,19 @@ is_ambiguous (const ClothGapResult * r)
   return FALSE;
 }
 
-/* Whether something unknown acts that is worth a word. With accepted effects that leave no more than
- * the floor there is no rest to explain. */
+/* Whether something unknown acts that is worth a word: its power is held against the gap's, or the
+ * floor's where that is more. With accepted effects that leave no more than the floor there is no rest to
+ * explain. */
 static gboolean
 is_unlike_all (const ClothDiagnosis * d)
 {
-  return d->unknown_probability > 0.5
-      && d->unknown_share > CLOTH_DIAGNOSIS_LEAST_SHARE
-      && !(d->n_accepted
-      && d->result->gap_after.value < d->result->noise_floor.value);
+  const gdouble gap = d->result->gap_before.value;
+  const gdouble floor = d->result->noise_floor.value;
+  const gdouble share = d->unknown_share *
+      (gap < floor ? gap * gap / (floor * floor) : 1.);
+
+  return d->unknown_probability > 0.5 && share > CLOTH_DIAGNOSIS_LEAST_SHARE
+      && !(d->n_accepted && d->result->gap_after.value < floor);
 }
 
 void
