@@ -493,7 +493,8 @@ cloth_candidates_new (const ClothModel * model,
             && !(flags & CLOTH_CANDIDATES_MEASUREMENT)))
       continue;
     reason = why_not (table[i], model, recording, flags);
-    if (!reason && !effects && table[i]->side == CLOTH_EFFECT_MEASUREMENT)
+    if (!reason && !effects && table[i]->side == CLOTH_EFFECT_MEASUREMENT
+        && table[i]->test != CLOTH_EFFECT_TEST_TRIAL)
       reason = table[i]->untested;
     if (!reason)
       reason = add (c, table[i], recording);
