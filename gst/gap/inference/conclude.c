@@ -6,10 +6,11 @@
  *   P(unknown) = o/(1 + o), o = Σ over the rivals of exp (log BF − log (number of effects − 1)): an
  *     unknown field is taken to be as likely as any one effect;
  *   of all explanations the likeliest that have 95% together are listed, with p (1 − P(unknown)).
- * Detection limit of a number: an effect of that size shows with a probability of 95%. Along its
- * whitened derivative J an effect θ moves the scores by θ|J|, chance by one; it is likelier than
- * nothing when (ν + n)/2 log (1 + x²/(ν + n)) > ½ log (1 + prior²J²) + log (number of effects − 1), so
- *   θ|J| = 1.645 + √((ν + n)(exp (2 (…)/(ν + n)) − 1)).
+ * Detection limit of a number: an effect of that size shows with a probability of 95%. With I the
+ * information on it beside the nuisances an effect θ moves its score by θ√I, chance by one; raised to the
+ * power ζ it is likelier than nothing when ζ/2 x² > ½ log (1 + ζ prior² I) + log (number of effects − 1),
+ * so
+ *   θ√I = 1.645 + √(2/ζ (…)).
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/inference/conclude.h"
@@ -294,6 +295,18 @@ accept (ClothDiagnosis * d, const ClothGapHypothesis * best)
   }
 }
 
+/* Sum of squares of a residual of these powers. */
+static gdouble
+find_power (const ClothGapBasis * basis, const gdouble * powers)
+{
+  gdouble sum = 0.;
+
+  for (gsize i = 0; i < basis->stack->size; i++)
+    sum += powers[basis->stack->classes[i]] *
+        basis->discrepancy->variances[basis->stack->classes[i]];
+  return sum;
+}
+
 /* @d: a diagnosis
  * @basis: what the posterior is found with
  * @z: (array): the residual with the likeliest explanation
@@ -308,7 +321,8 @@ cloth_diagnosis_find_unknown (ClothDiagnosis * d, const ClothGapBasis * basis,
 {
   const ClothGapStack *s = basis->stack;
   const gdouble prior = -log (count_effects (d) - 1.);
-  g_autofree gdouble *rest = g_new (gdouble, s->size);
+  g_autofree gdouble *left = g_new (gdouble, s->size);
+  g_autofree gdouble *powers = g_new (gdouble, s->n_classes + 1);
   g_autofree gboolean *is_force = g_new0 (gboolean, s->n + 1);
   ClothGapUnknown unknown = { 0. };
   ClothGapRivals *rivals = &d->result->rivals;
@@ -319,17 +333,18 @@ cloth_diagnosis_find_unknown (ClothDiagnosis * d, const ClothGapBasis * basis,
     for (guint k = 0; k < candidate_of (d, i)->n; k++)
       is_force[candidate_of (d, i)->first + k - s->n_free] =
           candidate_of (d, i)->effect->side == CLOTH_EFFECT_PHYSICS;
-  cloth_gap_scores_find_rest (basis->scores, z, rest);
-  cloth_gap_find_unknown (basis->scores, s, basis->discrepancy->variances,
-      is_force, rest, &unknown);
+  cloth_gap_discrepancy_take_reference_off (basis->discrepancy, s, z, left);
+  cloth_gap_likelihood_find_rest (basis->likelihood, left, powers);
+  cloth_gap_find_unknown (s, basis->discrepancy, is_force, powers, &unknown);
   force = exp (MIN (unknown.force_field + prior, 300.));
   displacement = exp (MIN (unknown.displacement_field + prior, 300.));
   odds = force + displacement;
   rivals->force_field = force / (1. + odds);
   rivals->displacement_field = displacement / (1. + odds);
-  cloth_gap_scores_find_rest (basis->scores, basis->null, rest);
-  d->unknown_share =
-      MIN (unknown.power / cloth_gap_dot (rest, rest, s->size), 1.);
+  cloth_gap_discrepancy_take_reference_off (basis->discrepancy, s,
+      basis->null, left);
+  cloth_gap_likelihood_find_rest (basis->likelihood, left, powers);
+  d->unknown_share = MIN (unknown.power / find_power (basis, powers), 1.);
   d->unknown_probability = odds / (1. + odds);
   return d->unknown_probability;
 }
@@ -338,8 +353,7 @@ cloth_diagnosis_find_unknown (ClothDiagnosis * d, const ClothGapBasis * basis,
 static void
 fill_limits (ClothDiagnosis * d, const ClothGapBasis * basis)
 {
-  const guint n = basis->scores->n, n_free = d->candidates->n_free;
-  const gdouble nu = CLOTH_GAP_FREEDOM + n;
+  const gdouble coarsening = cloth_gap_likelihood_get_coarsening ();
 
   for (guint i = 0; i < d->candidates->list->len; i++) {
     const ClothCandidate *c = candidate_of (d, i);
@@ -350,19 +364,17 @@ fill_limits (ClothDiagnosis * d, const ClothGapBasis * basis)
     for (guint k = 0; k < c->n; k++) {
       const ClothDirection *direction =
           cloth_candidates_direction (d->candidates, c->first + k);
-      const gdouble *j = basis->scores->derivatives +
-          (gsize) (c->first + k - n_free) * n;
-      const gdouble square = cloth_gap_dot (j, j, n);
-      const gdouble needed = 0.5 * log1p (direction->prior *
-          direction->prior * square) + log (count_effects (d) - 1.);
       const gdouble most = MAX (direction->high - direction->centre,
           direction->centre - direction->low);
-      gdouble value;
+      gdouble information, needed, value;
 
       if (direction->present || direction->shapes)
         continue;
-      value = (QUANTILE + sqrt (nu * expm1 (2. * needed / nu))) / sqrt (square);
-
+      information = cloth_gap_gram_find_information (basis->gram,
+          c->first + k - d->candidates->n_free);
+      needed = 0.5 * log1p (coarsening * direction->prior *
+          direction->prior * information) + log (count_effects (d) - 1.);
+      value = (QUANTILE + sqrt (2. * needed / coarsening)) / sqrt (information);
       cloth_gap_result_add_limit (d->result, c->effect, c->parameters[k],
           value <= most ? value : NAN);
     }
@@ -374,10 +386,11 @@ static void
 fill_free_numbers (ClothDiagnosis * d, const ClothGapBasis * basis)
 {
   const guint n = d->candidates->n_free;
-  const gdouble *covariance = basis->scores->free_covariance;
+  g_autofree gdouble *covariance = g_new (gdouble, n * n + 1);
 
   if (!n)
     return;
+  cloth_gap_likelihood_find_free_covariance (basis->likelihood, covariance);
   d->result->free_correlation = g_new (gdouble, n * n);
   for (guint i = 0; i < n; i++) {
     const ClothDirection *direction = cloth_candidates_direction

@@ -9,7 +9,8 @@ G_BEGIN_DECLS
 
 /* @stack: features of the last round
  * @discrepancy: what they are off by if nothing acts
- * @scores: what hypotheses were compared by
+ * @likelihood: what hypotheses were compared by
+ * @gram: of the residual that was linearised last and of all directions
  * @null: (array): the residual without any effect
  *
  * What the posterior was found with.
@@ -17,7 +18,8 @@ G_BEGIN_DECLS
 typedef struct {
   const ClothGapStack *stack;
   const ClothGapDiscrepancy *discrepancy;
-  const ClothGapScores *scores;
+  const ClothGapLikelihood *likelihood;
+  const ClothGapGram *gram;
   const gdouble *null;
 } ClothGapBasis;
 

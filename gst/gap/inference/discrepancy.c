@@ -6,13 +6,10 @@
  * Formulas, with Z the members' features on the take and Y those on the reference:
  *   the model's free numbers were fitted on the reference, so each member's are, to first order:
  *     δ = −(FᵀWF/φ + Λ)⁻¹ FᵀWY/φ,  Y ← Y + F δ,  Z ← Z + F_take δ
- *   β = Σ ZY / Σ Y²,  V = s² mean of (Z − βY)² + (r/10)²,  class by class;
- *   s² = (ν S + Σ y²/Ȳ²/φ)/(ν + n/φ), at least 1: a simulator may be further off than the members are. n
- *     features of the class count φ times less, S is the same of all classes, at least 1, and
- *     counts as ν of them;
+ *   β = Σ ZY / Σ Y²,  V = mean of (Z − βY)² + (r/10)²,  class by class;
  *   r: what the effects change at which the take is linearised. Their laws hold to a tenth.
- * A reference of the same motion has β near 1 and tells all. What another motion says class by class is
- * little; what it says by way of the members is in scores.c.
+ * A reference of the same motion has β near 1 and tells all; another motion says little. That a cloth
+ * may be further off than the members are is in the likelihood (likelihood.c).
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/inference/discrepancy.h"
@@ -22,8 +19,6 @@
 
 #include "gst/math/linalg.h"
 
-/* Degrees of freedom of what is known of one class from all. */
-#define SIZE_FREEDOM 10.
 /* No law of an effect holds better than by this share. */
 #define LAW_ERROR 0.1
 
@@ -124,58 +119,23 @@ find_slopes (const ClothGapStack * stack, const gdouble * members,
     slopes[c] = squares[c] > 0. ? slopes[c] / squares[c] : 0.;
 }
 
-/* s of each class. */
-static void
-find_sizes (const ClothGapStack * stack, const gdouble * on_reference,
-    gdouble * sizes)
-{
-  g_autofree gdouble *powers = g_new (gdouble, stack->n_classes);
-  g_autofree gdouble *counts = g_new0 (gdouble, stack->n_classes);
-  gdouble sum = 0., n = 0., all;
-
-  find_mean_powers (stack, on_reference, powers);
-  memset (sizes, 0, stack->n_classes * sizeof *sizes);
-  for (gsize i = 0; i < stack->size; i++) {
-    const guint c = stack->classes[i];
-
-    if (!(powers[c] > 0.))
-      continue;
-    sizes[c] += stack->reference[i] * stack->reference[i] / powers[c];
-    counts[c] += 1.;
-  }
-  for (guint c = 0; c < stack->n_classes; c++) {
-    sum += sizes[c];
-    n += counts[c];
-  }
-  all = n > 0. ? MAX (1., sum / n) : 1.;
-  for (guint c = 0; c < stack->n_classes; c++)
-    sizes[c] = sqrt (MAX (1., (SIZE_FREEDOM * all + sizes[c] /
-                stack->overdispersion) / (SIZE_FREEDOM + counts[c] /
-                stack->overdispersion)));
-}
-
 static void
 take_reference_off (const ClothGapStack * stack, ClothGapDiscrepancy * d)
 {
   const gsize size = stack->size;
-  g_autofree gdouble *sizes = g_new (gdouble, stack->n_classes);
   gdouble before = 0., after = 0.;
 
   d->on_reference = g_memdup2 (stack->reference_members,
       stack->n_members * size * sizeof (gdouble));
   refit_members (stack, d->members, d->on_reference);
   find_slopes (stack, d->members, d->on_reference, d->slopes);
-  find_sizes (stack, d->on_reference, sizes);
   for (guint m = 0; m < stack->n_members; m++)
     for (gsize i = 0; i < size; i++) {
       gdouble *z = &d->members[m * size + i];
-      gdouble *y = &d->on_reference[m * size + i];
 
       before += *z * *z;
-      *z -= d->slopes[stack->classes[i]] * *y;
+      *z -= d->slopes[stack->classes[i]] * d->on_reference[m * size + i];
       after += *z * *z;
-      *z *= sizes[stack->classes[i]];
-      *y *= sizes[stack->classes[i]];
     }
   d->shared = before > 0. ? 1. - after / before : 0.;
   for (guint k = 0; k < stack->n_free; k++)
@@ -213,6 +173,20 @@ cloth_gap_discrepancy_new (const ClothGapStack * stack,
       d->variances[c] += LAW_ERROR * LAW_ERROR * powers[c];
   }
   return d;
+}
+
+/* @discrepancy: a discrepancy
+ * @stack: what it was made of
+ * @z: (array): a residual
+ * @left: (out) (array): z − βy
+ */
+void
+cloth_gap_discrepancy_take_reference_off (const ClothGapDiscrepancy *
+    discrepancy, const ClothGapStack * stack, const gdouble * z, gdouble * left)
+{
+  for (gsize i = 0; i < stack->size; i++)
+    left[i] = z[i] - (stack->reference ?
+        discrepancy->slopes[stack->classes[i]] * stack->reference[i] : 0.);
 }
 
 /* @discrepancy: (nullable) (transfer full): a discrepancy

@@ -28,6 +28,8 @@ typedef struct {
 ClothGapDiscrepancy *cloth_gap_discrepancy_new (const ClothGapStack * stack,
     const gdouble * response);
 void cloth_gap_discrepancy_free (ClothGapDiscrepancy * discrepancy);
+void cloth_gap_discrepancy_take_reference_off (const ClothGapDiscrepancy *
+    discrepancy, const ClothGapStack * stack, const gdouble * z, gdouble * left);
 void cloth_gap_find_powers (const ClothGapStack * stack, const gdouble * z,
     gdouble * powers);
 

@@ -164,9 +164,8 @@ cloth_ensemble_find_kin (const ClothEnsemble * ensemble, guint member,
   guint way = member / CLOTH_ENSEMBLE_DRAWS % N_WAYS;
   guint family = member / (CLOTH_ENSEMBLE_DRAWS * N_WAYS);
 
-  if (kin != CLOTH_KIN_SAME)
-    way = (way + 1) % N_WAYS;
   if (kin == CLOTH_KIN_OTHER_SIMULATOR) {
+    way = (way + 1) % N_WAYS;
     family = !family;
     draw = (draw + 1) % CLOTH_ENSEMBLE_DRAWS;
   }

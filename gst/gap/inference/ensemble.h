@@ -26,14 +26,12 @@ typedef struct {
 
 /* @CLOTH_KIN_SAME: what a reference is of is computed as the recording is: the same cloth, the same
  *   simulator
- * @CLOTH_KIN_OTHER_MESH: by the same laws and numbers, on another mesh or with another step
  * @CLOTH_KIN_OTHER_SIMULATOR: by other laws and numbers
  *
  * How a reference is related to the recording.
  */
 typedef enum {
   CLOTH_KIN_SAME,
-  CLOTH_KIN_OTHER_MESH,
   CLOTH_KIN_OTHER_SIMULATOR
 } ClothEnsembleKin;
 

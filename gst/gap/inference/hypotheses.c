@@ -1,11 +1,11 @@
 /* Explanations: sets of effects, each simulated where the data ask it to be.
  *
- * All sets of up to three effects are compared by the derivatives of one linearisation. Every single
+ * Sets of up to three effects are compared by the derivatives of one linearisation. Every single
  * effect and the best of the larger sets get simulations of their own: each moves to its most
  * probable values by Gauss–Newton steps, with derivatives that follow what was simulated (Broyden
  * 1965). An effect of one number may turn over far from its null, so in the first round it is
  * also tried at one and two priors to either side.
- * Formula: posterior ∝ evidence (evidence.c) × Π 1/number of effects, and of an effect with several
+ * Formula: posterior ∝ evidence (likelihood.c) × Π 1/number of effects, and of an effect with several
  *   candidates 1/number of these.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
@@ -55,7 +55,7 @@ cloth_gap_hypotheses_new (void)
 void
 cloth_gap_hypothesis_clear (ClothGapHypothesis * hypothesis)
 {
-  g_clear_pointer (&hypothesis->e, g_free);
+  g_clear_pointer (&hypothesis->z, g_free);
   g_clear_pointer (&hypothesis->derivatives, g_free);
 }
 
@@ -75,7 +75,7 @@ cloth_gap_hypothesis_init (ClothGapHypothesis * hypothesis,
   ClothGapHypothesis *h = hypothesis;
 
   *h = (ClothGapHypothesis) {
-  n,.objective = -INFINITY,.by_scores = INFINITY,.behind = INFINITY};
+  n,.objective = -INFINITY,.by_residual = INFINITY,.behind = INFINITY};
   for (guint c = 0; c < n; c++) {
     const ClothCandidate *candidate =
         &g_array_index (candidates->list, ClothCandidate, list[c]);
@@ -113,7 +113,7 @@ cloth_gap_hypothesis_copy (ClothGapHypothesis * to,
     const ClothGapHypothesis * from)
 {
   *to = *from;
-  to->e = NULL;
+  to->z = NULL;
   to->derivatives = NULL;
 }
 
@@ -233,7 +233,7 @@ keep_in_range (const ClothDiagnosis * d, ClothGapHypothesis * h)
       h->next[k] = 1.;
       continue;
     }
-    if (h->e)
+    if (h->z)
       h->next[k] = CLAMP (h->next[k], h->at[k] - step, h->at[k] + step);
     h->next[k] = CLAMP (h->next[k], direction->low - direction->centre,
         direction->high - direction->centre);
@@ -242,7 +242,7 @@ keep_in_range (const ClothDiagnosis * d, ClothGapHypothesis * h)
 
 /* The evidence of gusts that are as strong as expected, or so many times as strong, each as likely. */
 static gboolean
-find_gust_evidence (guint n, const gdouble * e, const gdouble * derivatives,
+find_gust_evidence (const ClothGapGram * gram, const guint * list,
     const gdouble * at, ClothGapHypothesis * h)
 {
   const guint n_simulated = h->n_directions - h->n_winds;
@@ -253,9 +253,9 @@ find_gust_evidence (guint n, const gdouble * e, const gdouble * derivatives,
   memcpy (priors, h->priors, sizeof priors);
   for (guint k = n_simulated; k < h->n_directions; k++)
     priors[k].prior *= STRONG_GUSTS;
-  if (!cloth_gap_evidence_find (n, e, derivatives, at, h->priors,
+  if (!cloth_gap_gram_find_evidence (gram, list, at, h->priors,
           h->n_directions, &h->evidence)
-      || !cloth_gap_evidence_find (n, e, derivatives, at, priors,
+      || !cloth_gap_gram_find_evidence (gram, list, at, priors,
           h->n_directions, &strong))
     return FALSE;
   most = MAX (h->evidence.log_evidence, strong.log_evidence);
@@ -267,12 +267,11 @@ find_gust_evidence (guint n, const gdouble * e, const gdouble * derivatives,
   return TRUE;
 }
 
-/* Less its posterior by the scores, logarithm. */
+/* Less its posterior by the residual, logarithm. */
 static gdouble
-find_behind (const ClothDiagnosis * d, const ClothGapLinearisation * l,
-    const ClothGapHypothesis * h)
+find_behind (const ClothDiagnosis * d, const ClothGapHypothesis * h)
 {
-  return -h->evidence.log_evidence / l->scores->temperature - log_odds (d, h);
+  return -h->evidence.log_evidence - log_odds (d, h);
 }
 
 /* A hypothesis by the derivatives of the linearisation: from where the base is. */
@@ -280,24 +279,20 @@ static gboolean
 screen (const ClothDiagnosis * d, const ClothGapLinearisation * l,
     ClothGapHypothesis * h)
 {
-  const guint n = l->scores->n, n_free = d->candidates->n_free;
-  g_autofree gdouble *derivatives =
-      g_new (gdouble, (gsize) h->n_directions * n + 1);
+  guint list[CLOTH_GAP_MAX_DIRECTIONS];
   gdouble at[CLOTH_GAP_MAX_DIRECTIONS] = { 0. };
 
   for (guint k = 0; k < h->n_directions; k++) {
     for (guint b = 0; b < l->base->n_directions - l->base->n_winds; b++)
       if (l->base->directions[b] == h->directions[k])
         at[k] = l->base->at[b];
-    memcpy (derivatives + (gsize) k * n,
-        l->scores->derivatives + (gsize) (h->directions[k] - n_free) * n,
-        n * sizeof (gdouble));
+    list[k] = h->directions[k] - d->candidates->n_free;
   }
-  if (h->n_winds ? !find_gust_evidence (n, l->e, derivatives, at, h) :
-      !cloth_gap_evidence_find (n, l->e, derivatives, at, h->priors,
+  if (h->n_winds ? !find_gust_evidence (l->gram, list, at, h) :
+      !cloth_gap_gram_find_evidence (l->gram, list, at, h->priors,
           h->n_directions, &h->evidence))
     return FALSE;
-  h->by_scores = find_behind (d, l, h);
+  h->by_residual = find_behind (d, h);
   memcpy (h->next, h->evidence.values, sizeof h->next);
   keep_in_range (d, h);
   h->is_compared = TRUE;
@@ -306,11 +301,11 @@ screen (const ClothDiagnosis * d, const ClothGapLinearisation * l,
 }
 
 static gint
-compare_by_scores (gconstpointer a, gconstpointer b)
+compare_by_residual (gconstpointer a, gconstpointer b)
 {
   const ClothGapHypothesis *x = a, *y = b;
 
-  return x->by_scores < y->by_scores ? -1 : x->by_scores > y->by_scores;
+  return x->by_residual < y->by_residual ? -1 : x->by_residual > y->by_residual;
 }
 
 static gboolean
@@ -368,7 +363,7 @@ grow (const ClothDiagnosis * d, const ClothGapLinearisation * l,
         g_array_append_val (grown, h);
     }
   }
-  g_array_sort (grown, compare_by_scores);
+  g_array_sort (grown, compare_by_residual);
   return grown;
 }
 
@@ -406,12 +401,12 @@ list_hypotheses (const ClothDiagnosis * d, const ClothGapLinearisation * l,
     ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
         i);
 
-    h->is_compared = h->by_scores <= HOPELESS && contains (h, l->base);
+    h->is_compared = h->by_residual <= HOPELESS && contains (h, l->base);
     h->is_settled = !h->is_compared || h->n_winds;
     if (!h->is_compared)
       continue;
-    /* other scores: it begins where it was, and must be simulated anew */
-    if (h->e)
+    /* other derivatives: it begins where it was, and must be simulated anew */
+    if (h->z)
       memcpy (h->next, h->at, sizeof h->next);
     cloth_gap_hypothesis_clear (h);
     h->objective = -INFINITY;
@@ -427,6 +422,9 @@ list_hypotheses (const ClothDiagnosis * d, const ClothGapLinearisation * l,
     GArray *grown = grow (d, l, base);
 
     append_best (hypotheses, grown, most[size]);
+    /* larger sets grow from the best */
+    if (grown->len > most[size])
+      g_array_set_size (grown, most[size]);
     g_array_unref (base);
     base = grown;
   }
@@ -457,23 +455,6 @@ simulate_all (ClothDiagnosis * d, ClothModel ** models, guint n, gsize size,
   return TRUE;
 }
 
-/* Whitened scores of models on all takes, [n][scores]. */
-static gboolean
-simulate (ClothDiagnosis * d, const ClothGapLinearisation * l,
-    GPtrArray * models, gdouble * e, gboolean * sound, GError ** error)
-{
-  const gsize size = l->stack->size;
-  g_autofree gdouble *z = g_new0 (gdouble, models->len * size + 1);
-
-  if (!simulate_all (d, (ClothModel **) models->pdata, models->len, size, z,
-          sound, error))
-    return FALSE;
-  for (guint i = 0; i < models->len; i++)
-    cloth_gap_scores_find (l->scores, z + i * size,
-        e + (gsize) i * l->scores->n);
-  return TRUE;
-}
-
 /* @d: a diagnosis
  * @hypothesis: an explanation
  * @z: (inout) (array): the residual with it, of all takes; start with zeros
@@ -492,46 +473,59 @@ cloth_gap_hypothesis_simulate (ClothDiagnosis * d,
   return simulate_all (d, &model, 1, 0, z, &sound, error);
 }
 
+/* Log likelihood of a residual, nuisances integrated out, and log prior. */
 static gdouble
 objective_at (const ClothGapLinearisation * l, const ClothGapHypothesis * h,
-    const gdouble * at, const gdouble * e)
+    const gdouble * at, const gdouble * z)
 {
-  return cloth_gap_log_likelihood (l->scores->n, cloth_gap_dot (e, e,
-          l->scores->n)) + cloth_gap_log_prior (h->priors, at, h->n_directions);
+  g_autoptr (ClothGapGram) gram = cloth_gap_gram_new (l->likelihood, z, NULL,
+      0);
+  ClothGapEvidence evidence;
+
+  if (!cloth_gap_gram_find_evidence (gram, NULL, NULL, NULL, 0, &evidence))
+    return -INFINITY;
+  return evidence.log_evidence + cloth_gap_log_prior (h->priors, at,
+      h->n_directions);
 }
 
 /* Broyden: the derivatives change as little as makes them true to what was simulated. */
 static void
-update_derivatives (ClothGapHypothesis * h, guint n, const gdouble * to,
-    const gdouble * e)
+update_derivatives (ClothGapHypothesis * h, gsize size, const gdouble * to,
+    const gdouble * z)
 {
-  g_autofree gdouble *off = g_new (gdouble, n);
+  g_autofree gdouble *off = g_new (gdouble, size);
   gdouble square = 0.;
 
-  for (guint i = 0; i < n; i++)
-    off[i] = e[i] - h->e[i];
+  for (gsize i = 0; i < size; i++)
+    off[i] = z[i] - h->z[i];
   for (guint k = 0; k < h->n_directions; k++) {
     const gdouble step = to[k] - h->at[k];
 
     square += pow (step / h->priors[k].prior, 2.);
-    for (guint i = 0; i < n; i++)
-      off[i] -= h->derivatives[(gsize) k * n + i] * step;
+    for (gsize i = 0; i < size; i++)
+      off[i] -= h->derivatives[k * size + i] * step;
   }
   for (guint k = 0; k < h->n_directions && square > 0.; k++)
-    for (guint i = 0; i < n; i++)
-      h->derivatives[(gsize) k * n + i] += off[i] * (to[k] - h->at[k]) /
+    for (gsize i = 0; i < size; i++)
+      h->derivatives[k * size + i] += off[i] * (to[k] - h->at[k]) /
           (h->priors[k].prior * h->priors[k].prior * square);
 }
+
+static const guint all_directions[CLOTH_GAP_MAX_DIRECTIONS] = {
+  0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17
+};
 
 /* What follows from the simulation at a hypothesis, and where it is simulated next. */
 static void
 look_ahead (const ClothDiagnosis * d, const ClothGapLinearisation * l,
     ClothGapHypothesis * h)
 {
+  g_autoptr (ClothGapGram) gram = cloth_gap_gram_new (l->likelihood, h->z,
+      h->derivatives, h->n_directions);
   gdouble farthest = 0.;
 
-  if (!cloth_gap_evidence_find (l->scores->n, h->e, h->derivatives, h->at,
-          h->priors, h->n_directions, &h->evidence)) {
+  if (!cloth_gap_gram_find_evidence (gram, all_directions, h->at, h->priors,
+          h->n_directions, &h->evidence)) {
     h->is_settled = TRUE;
     return;
   }
@@ -546,17 +540,30 @@ look_ahead (const ClothDiagnosis * d, const ClothGapLinearisation * l,
     h->evidence.log_evidence = h->objective + h->evidence.log_volume;
 }
 
+/* Derivatives of the linearisation, of directions from @from on. */
+static void
+put_derivatives (const ClothDiagnosis * d, const ClothGapLinearisation * l,
+    ClothGapHypothesis * h, guint from)
+{
+  const gsize size = l->stack->size;
+
+  for (guint k = from; k < h->n_directions; k++)
+    memcpy (h->derivatives + k * size, l->stack->columns +
+        (h->directions[k] - d->candidates->n_free) * size,
+        size * sizeof (gdouble));
+}
+
 /* Takes a simulation at the next place in: it becomes the place if it is better, else the next one
  * is half as far. */
 static void
 take_step (const ClothDiagnosis * d, const ClothGapLinearisation * l,
-    ClothGapHypothesis * h, const gdouble * e, gboolean sound)
+    ClothGapHypothesis * h, const gdouble * z, gboolean sound)
 {
-  const guint n = l->scores->n;
-  const gdouble objective = sound ? objective_at (l, h, h->next, e) : -INFINITY;
+  const gsize size = l->stack->size;
+  const gdouble objective = sound ? objective_at (l, h, h->next, z) : -INFINITY;
   gboolean is_better;
 
-  if (!h->e) {
+  if (!h->z) {
     if (!sound) {
       /* it may be sound nearer to its null */
       for (guint k = 0; k < h->n_directions; k++)
@@ -565,22 +572,19 @@ take_step (const ClothDiagnosis * d, const ClothGapLinearisation * l,
       h->is_settled = !h->n_directions;
       return;
     }
-    h->e = g_memdup2 (e, n * sizeof *e);
-    h->derivatives = g_new (gdouble, (gsize) h->n_directions * n + 1);
-    for (guint k = 0; k < h->n_directions; k++)
-      memcpy (h->derivatives + (gsize) k * n, l->scores->derivatives +
-          (gsize) (h->directions[k] - d->candidates->n_free) * n,
-          n * sizeof *e);
+    h->z = g_memdup2 (z, size * sizeof *z);
+    h->derivatives = g_new (gdouble, h->n_directions * size + 1);
+    put_derivatives (d, l, h, 0);
     memcpy (h->at, h->next, sizeof h->at);
     h->objective = objective;
     look_ahead (d, l, h);
     return;
   }
   if (sound)
-    update_derivatives (h, n, h->next, e);
+    update_derivatives (h, size, h->next, z);
   is_better = objective > h->objective;
   if (is_better) {
-    memcpy (h->e, e, n * sizeof *e);
+    memcpy (h->z, z, size * sizeof *z);
     memcpy (h->at, h->next, sizeof h->at);
     h->objective = objective;
     look_ahead (d, l, h);
@@ -595,10 +599,10 @@ static gboolean
 step_all (ClothDiagnosis * d, const ClothGapLinearisation * l,
     GArray * hypotheses, guint * n_left, GError ** error)
 {
-  const guint n = l->scores->n;
+  const gsize size = l->stack->size;
   g_autoptr (GPtrArray) models =
       g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_model_free);
-  g_autofree gdouble *e = g_new (gdouble, (gsize) hypotheses->len * n + 1);
+  g_autofree gdouble *z = NULL;
   g_autofree gboolean *sound = g_new (gboolean, hypotheses->len + 1);
   guint at = 0;
 
@@ -610,7 +614,9 @@ step_all (ClothDiagnosis * d, const ClothGapLinearisation * l,
       g_ptr_array_add (models, make_model_at (d, h, h->next));
   }
   *n_left = models->len;
-  if (!simulate (d, l, models, e, sound, error))
+  z = g_new0 (gdouble, models->len * size + 1);
+  if (!simulate_all (d, (ClothModel **) models->pdata, models->len, size, z,
+          sound, error))
     return FALSE;
   for (guint i = 0; i < hypotheses->len; i++) {
     ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
@@ -618,7 +624,7 @@ step_all (ClothDiagnosis * d, const ClothGapLinearisation * l,
 
     if (h->is_settled)
       continue;
-    take_step (d, l, h, e + (gsize) at * n, sound[at]);
+    take_step (d, l, h, z + at * size, sound[at]);
     at++;
   }
   return TRUE;
@@ -626,8 +632,7 @@ step_all (ClothDiagnosis * d, const ClothGapLinearisation * l,
 
 /* What is hopeless where it has come to is simulated no further. */
 static void
-give_up (const ClothDiagnosis * d, const ClothGapLinearisation * l,
-    GArray * hypotheses)
+give_up (const ClothDiagnosis * d, GArray * hypotheses)
 {
   gdouble best = INFINITY;
 
@@ -636,11 +641,11 @@ give_up (const ClothDiagnosis * d, const ClothGapLinearisation * l,
       ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
           i);
 
-      if (!h->e || !h->is_compared)
+      if (!h->z || !h->is_compared)
         continue;
       if (pass == 0)
-        best = MIN (best, find_behind (d, l, h));
-      else if (find_behind (d, l, h) > best + HOPELESS)
+        best = MIN (best, find_behind (d, h));
+      else if (find_behind (d, h) > best + HOPELESS)
         h->is_settled = TRUE;
     }
 }
@@ -669,12 +674,12 @@ static gboolean
 probe (ClothDiagnosis * d, const ClothGapLinearisation * l,
     GArray * hypotheses, GError ** error)
 {
-  const guint n = l->scores->n;
+  const gsize size = l->stack->size;
   g_autoptr (GPtrArray) models =
       g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_model_free);
   g_autoptr (GArray) owners = g_array_new (FALSE, FALSE, sizeof (guint));
   g_autoptr (GArray) places = g_array_new (FALSE, FALSE, sizeof (gdouble));
-  g_autofree gdouble *e = NULL;
+  g_autofree gdouble *z = NULL;
   g_autofree gboolean *sound = NULL;
 
   for (guint i = 0; i < hypotheses->len; i++) {
@@ -699,9 +704,10 @@ probe (ClothDiagnosis * d, const ClothGapLinearisation * l,
       g_array_append_val (places, at);
     }
   }
-  e = g_new (gdouble, (gsize) models->len * n + 1);
+  z = g_new0 (gdouble, models->len * size + 1);
   sound = g_new (gboolean, models->len + 1);
-  if (!simulate (d, l, models, e, sound, error))
+  if (!simulate_all (d, (ClothModel **) models->pdata, models->len, size, z,
+          sound, error))
     return FALSE;
   for (guint p = 0; p < models->len; p++) {
     ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
@@ -713,17 +719,17 @@ probe (ClothDiagnosis * d, const ClothGapLinearisation * l,
 
     if (!sound[p])
       continue;
-    objective = objective_at (l, h, at, e + (gsize) p * n);
+    objective = objective_at (l, h, at, z + p * size);
     if (!(objective > h->objective))
       continue;
-    if (!h->e) {
-      h->e = g_new (gdouble, n);
-      h->derivatives = g_new0 (gdouble, (gsize) h->n_directions * n);
+    if (!h->z) {
+      h->z = g_new (gdouble, size);
+      h->derivatives = g_new0 (gdouble, h->n_directions * size);
     }
     /* from here on the way back to the null is known */
-    memcpy (h->e, e + (gsize) p * n, n * sizeof *e);
-    for (guint i = 0; i < n; i++)
-      h->derivatives[i] = (h->e[i] - l->e[i]) / at[0];
+    memcpy (h->z, z + p * size, size * sizeof *z);
+    for (gsize i = 0; i < size; i++)
+      h->derivatives[i] = (h->z[i] - l->stack->z[i]) / at[0];
     h->at[0] = at[0];
     h->objective = objective;
   }
@@ -735,7 +741,8 @@ static void
 blow (const ClothDiagnosis * d, const ClothGapLinearisation * l,
     GArray * hypotheses, ClothGapHypothesis * h)
 {
-  const guint n = l->scores->n, n_simulated = h->n_directions - h->n_winds;
+  const gsize size = l->stack->size;
+  const guint n_simulated = h->n_directions - h->n_winds;
   guint list[CLOTH_GAP_MAX_EFFECTS], n_list = 0;
   ClothGapHypothesis without;
 
@@ -746,21 +753,21 @@ blow (const ClothDiagnosis * d, const ClothGapLinearisation * l,
   for (guint i = 0; i < hypotheses->len; i++) {
     const ClothGapHypothesis *other = &g_array_index (hypotheses,
         ClothGapHypothesis, i);
+    g_autoptr (ClothGapGram) gram = NULL;
 
-    if (!cloth_gap_hypothesis_is_same (other, &without) || !other->e)
+    if (!cloth_gap_hypothesis_is_same (other, &without) || !other->z)
       continue;
-    h->e = g_memdup2 (other->e, n * sizeof *h->e);
-    h->derivatives = g_new (gdouble, (gsize) h->n_directions * n);
+    h->z = g_memdup2 (other->z, size * sizeof *h->z);
+    h->derivatives = g_new (gdouble, h->n_directions * size);
     memcpy (h->derivatives, other->derivatives,
-        (gsize) n_simulated * n * sizeof *h->e);
+        n_simulated * size * sizeof *h->z);
     memcpy (h->at, other->at, sizeof h->at);
-    for (guint k = n_simulated; k < h->n_directions; k++) {
+    for (guint k = n_simulated; k < h->n_directions; k++)
       h->at[k] = 0.;
-      memcpy (h->derivatives + (gsize) k * n, l->scores->derivatives +
-          (gsize) (h->directions[k] - d->candidates->n_free) * n,
-          n * sizeof *h->e);
-    }
-    if (find_gust_evidence (n, h->e, h->derivatives, h->at, h))
+    put_derivatives (d, l, h, n_simulated);
+    gram = cloth_gap_gram_new (l->likelihood, h->z, h->derivatives,
+        h->n_directions);
+    if (find_gust_evidence (gram, all_directions, h->at, h))
       h->objective = h->evidence.log_evidence - h->evidence.log_volume;
     else
       cloth_gap_hypothesis_clear (h);
@@ -781,23 +788,54 @@ rank (const ClothDiagnosis * d, const ClothGapLinearisation * l,
         i);
     const gboolean is_base = cloth_gap_hypothesis_is_same (h, l->base);
 
-    if (is_base && isfinite (h->by_scores))
-      before = h->by_scores;
+    if (is_base && isfinite (h->by_residual))
+      before = h->by_residual;
     if (h->is_compared)
-      h->by_scores = h->e ? find_behind (d, l, h) : INFINITY;
+      h->by_residual = h->z ? find_behind (d, h) : INFINITY;
     if (is_base)
-      after = h->by_scores;
+      after = h->by_residual;
   }
   for (guint i = 0; i < hypotheses->len; i++) {
     ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
         i);
 
     if (!h->is_compared)
-      h->by_scores += after - before;
-    best = MIN (best, h->by_scores);
+      h->by_residual += after - before;
+    best = MIN (best, h->by_residual);
   }
   for (guint i = 0; i < hypotheses->len; i++)
-    g_array_index (hypotheses, ClothGapHypothesis, i).by_scores -= best;
+    g_array_index (hypotheses, ClothGapHypothesis, i).by_residual -= best;
+}
+
+/* @d: a diagnosis
+ * @linearisation: where nothing is taken to act
+ * @best: (out caller-allocates): evidence of the likeliest set of at most two effects, by the
+ *   derivatives only
+ *
+ * Returns: whether there is any
+ */
+gboolean
+cloth_gap_hypotheses_screen (const ClothDiagnosis * d,
+    const ClothGapLinearisation * linearisation, ClothGapEvidence * best)
+{
+  g_autoptr (GArray) sets = cloth_gap_hypotheses_new ();
+  gdouble behind = INFINITY;
+
+  g_array_append_vals (sets, linearisation->base, 1);
+  for (guint size = 0; size < 2; size++) {
+    GArray *grown = grow (d, linearisation, sets);
+
+    g_array_unref (sets);
+    sets = grown;
+    if (sets->len && g_array_index (sets, ClothGapHypothesis,
+            0).by_residual < behind) {
+      behind = g_array_index (sets, ClothGapHypothesis, 0).by_residual;
+      *best = g_array_index (sets, ClothGapHypothesis, 0).evidence;
+    }
+    if (sets->len > N_PAIRS)
+      g_array_set_size (sets, N_PAIRS);
+  }
+  return isfinite (behind);
 }
 
 /* @d: a diagnosis
@@ -824,7 +862,7 @@ cloth_gap_hypotheses_compare (ClothDiagnosis * d,
         i);
     gdouble screened[CLOTH_GAP_MAX_DIRECTIONS];
 
-    if (!h->e || !h->is_compared)
+    if (!h->z || !h->is_compared)
       continue;
     /* the screening's place is tried before the probes are followed */
     memcpy (screened, h->next, sizeof screened);
@@ -836,7 +874,7 @@ cloth_gap_hypotheses_compare (ClothDiagnosis * d,
     if (!step_all (d, l, hypotheses, &left, error))
       return FALSE;
     if (step)
-      give_up (d, l, hypotheses);
+      give_up (d, hypotheses);
   }
   for (guint i = 0; i < hypotheses->len; i++) {
     ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,

@@ -4,8 +4,7 @@
 #pragma once
 
 #include "gst/gap/diagnosis.h"
-#include "gst/gap/inference/evidence.h"
-#include "gst/gap/inference/scores.h"
+#include "gst/gap/inference/likelihood.h"
 
 G_BEGIN_DECLS
 
@@ -20,11 +19,11 @@ G_BEGIN_DECLS
  * @priors: (array length=n_directions): of these
  * @at: (array length=n_directions): how far each is from its null where it was simulated
  * @next: (array length=n_directions): where it is simulated next
- * @e: (nullable) (array): whitened scores of the simulation there
- * @derivatives: (array): of these, [n_directions][scores]
+ * @z: (nullable) (array): residual of the simulation there
+ * @derivatives: (array): of it, [n_directions][size]
  * @objective: log likelihood and log prior there
  * @evidence: what follows
- * @by_scores: how much less likely it is by its scores than the likeliest, logarithm
+ * @by_residual: how much less likely it is by its residual than the likeliest, logarithm
  * @behind: how much less likely it is by all that is known, posterior, logarithm
  *
  * That these effects act and no other of the library.
@@ -38,11 +37,11 @@ typedef struct {
   ClothGapPrior priors[CLOTH_GAP_MAX_DIRECTIONS];
   gdouble at[CLOTH_GAP_MAX_DIRECTIONS];
   gdouble next[CLOTH_GAP_MAX_DIRECTIONS];
-  gdouble *e;
+  gdouble *z;
   gdouble *derivatives;
   gdouble objective;
   ClothGapEvidence evidence;
-  gdouble by_scores;
+  gdouble by_residual;
   gdouble behind;
 
   /*< private >*/
@@ -50,19 +49,19 @@ typedef struct {
   gboolean is_settled;          /* it has arrived, or can't be simulated */
 } ClothGapHypothesis;
 
-/* @scores: the scores that evidence is drawn from
+/* @likelihood: of residuals
  * @stack: what they are of
+ * @gram: of the residual at @base and of all directions, behind the free numbers
  * @base: what they were linearised at: none, or the likeliest set so far
- * @e: (array): whitened scores there
  * @is_first: nothing was simulated before
  *
  * Where hypotheses are compared.
  */
 typedef struct {
-  const ClothGapScores *scores;
+  const ClothGapLikelihood *likelihood;
   const ClothGapStack *stack;
+  const ClothGapGram *gram;
   const ClothGapHypothesis *base;
-  const gdouble *e;
   gboolean is_first;
 } ClothGapLinearisation;
 
@@ -81,6 +80,8 @@ ClothModel *cloth_gap_hypothesis_make_model (const ClothDiagnosis * d,
     const ClothGapHypothesis * hypothesis);
 gboolean cloth_gap_hypothesis_simulate (ClothDiagnosis * d,
     const ClothGapHypothesis * hypothesis, gdouble * z, GError ** error);
+gboolean cloth_gap_hypotheses_screen (const ClothDiagnosis * d,
+    const ClothGapLinearisation * linearisation, ClothGapEvidence * best);
 gboolean cloth_gap_hypotheses_compare (ClothDiagnosis * d,
     const ClothGapLinearisation * linearisation, GArray * hypotheses,
     GError ** error);

@@ -1,7 +1,7 @@
 /* Which effects act: the posterior over all sets of them.
  *
- * Rounds: the takes are linearised at the likeliest set so far, first at none, the ensemble runs there,
- * and all sets are compared by the scores that follow (hypotheses.c). When the likeliest set is
+ * Rounds: the takes are linearised at the likeliest set so far, first at none, where the ensemble runs,
+ * and all sets are compared there (hypotheses.c). When the likeliest set is
  * the one at which they were linearised, or after three rounds, the posterior stands.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
@@ -29,24 +29,24 @@ typedef struct
   ClothGapMade made;
   ClothGapStack *stack;
   ClothGapDiscrepancy *discrepancy;
-  ClothGapScores *scores;
-  gdouble *e;
+  ClothGapLikelihood *likelihood;
+  ClothGapGram *gram;
 } Round;
 
-/* What the scores are made of, for one kin of the references. */
+/* All but what was made by simulations. */
 static void
-forget_scores (Round * r)
+forget_likelihood (Round * r)
 {
-  g_clear_pointer (&r->scores, cloth_gap_scores_free);
+  g_clear_pointer (&r->gram, cloth_gap_gram_free);
+  g_clear_pointer (&r->likelihood, cloth_gap_likelihood_free);
   g_clear_pointer (&r->discrepancy, cloth_gap_discrepancy_free);
   g_clear_pointer (&r->stack, cloth_gap_stack_free);
-  g_clear_pointer (&r->e, g_free);
 }
 
 static void
 round_clear (Round * r)
 {
-  forget_scores (r);
+  forget_likelihood (r);
   cloth_gap_made_clear (&r->made);
 }
 
@@ -55,12 +55,12 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Round, round_clear);
 /* @null: (nullable): the residual without effects. FALSE without an error: there is no effect to
  * look for. */
 static gboolean
-find_scores (const ClothDiagnosis * d, const ClothGapGathered * gathered,
+find_likelihood (const ClothDiagnosis * d, const ClothGapGathered * gathered,
     ClothEnsembleKin kin, const gdouble * null, Round * r, GError ** error)
 {
   g_autofree gdouble *response = NULL;
 
-  forget_scores (r);
+  forget_likelihood (r);
   r->stack = cloth_gap_stack_new (d, gathered, &r->made, kin, error);
   if (!r->stack)
     return FALSE;
@@ -70,12 +70,11 @@ find_scores (const ClothDiagnosis * d, const ClothGapGathered * gathered,
       response[i] = r->stack->z[i] - null[i];
   }
   r->discrepancy = cloth_gap_discrepancy_new (r->stack, response);
-  r->scores = cloth_gap_scores_new (r->stack, r->discrepancy);
-  if (!r->scores)
-    return FALSE;
-  r->e = g_new (gdouble, r->stack->n);
-  cloth_gap_scores_find (r->scores, r->stack->z, r->e);
-  return TRUE;
+  r->likelihood = cloth_gap_likelihood_new (r->stack, r->discrepancy,
+      CLOTH_GAP_ALL_FAMILIES);
+  r->gram = cloth_gap_gram_new (r->likelihood, r->stack->z, r->stack->columns,
+      r->stack->n);
+  return r->stack->n > 0;
 }
 
 /* Compares all sets where the takes were linearised. */
@@ -83,7 +82,9 @@ static gboolean
 compare (ClothDiagnosis * d, const Round * r, const ClothGapHypothesis * base,
     gboolean is_first, GArray * hypotheses, GError ** error)
 {
-  const ClothGapLinearisation l = { r->scores, r->stack, base, r->e, is_first };
+  const ClothGapLinearisation l = { r->likelihood, r->stack, r->gram, base,
+    is_first
+  };
 
   return cloth_gap_hypotheses_compare (d, &l, hypotheses, error)
       && cloth_gap_hypotheses_predict (d, hypotheses, error);
@@ -94,7 +95,9 @@ static gboolean
 find_unknown (ClothDiagnosis * d, const Round * r, const gdouble * null,
     const GArray * hypotheses, gdouble * unknown, GError ** error)
 {
-  const ClothGapBasis basis = { r->stack, r->discrepancy, r->scores, null };
+  const ClothGapBasis basis = { r->stack, r->discrepancy, r->likelihood,
+    r->gram, null
+  };
   g_autofree gdouble *z = g_new0 (gdouble, r->stack->size);
 
   if (!cloth_gap_hypothesis_simulate (d, &g_array_index (hypotheses,
@@ -149,32 +152,32 @@ refit (ClothDiagnosis * d, const ClothModel * start, GError ** error)
   return d->with != NULL;
 }
 
-/* The first round: with twins also finds how these are related to the recordings, as nearly as what
- * is left allows. Another simulator than the one that a user has is what reality is. */
+/* The first round. What reality is, is what the user's simulator makes if nothing acts: taken at its
+ * word, a twin is of the same simulator as the recording. Where that leaves more than the members differ
+ * by on average, it is another one. */
 static gboolean
 run_first (ClothDiagnosis * d, const ClothGapGathered * gathered,
     const ClothGapHypothesis * none, GArray * hypotheses, Round * first,
     ClothEnsembleKin * kin, GError ** error)
 {
-  const ClothEnsembleKin farthest = d->twins->len ?
-      CLOTH_KIN_OTHER_SIMULATOR : CLOTH_KIN_SAME;
+  ClothGapEvidence best;
 
-  if (!cloth_gap_gather_takes (d, gathered, d->model, NULL, &first->made,
-          error))
+  *kin = CLOTH_KIN_SAME;
+  if (!cloth_gap_gather_takes (d, gathered, d->model, NULL, &first->made, error)
+      || !find_likelihood (d, gathered, *kin, NULL, first, error))
     return FALSE;
-  for (*kin = CLOTH_KIN_SAME;; (*kin)++) {
-    gdouble unknown;
+  if (d->twins->len) {
+    const ClothGapLinearisation l = { first->likelihood, first->stack,
+      first->gram, none, TRUE
+    };
 
-    if (!find_scores (d, gathered, *kin, NULL, first, error))
+    if (cloth_gap_hypotheses_screen (d, &l, &best) && best.misfit > 1.)
+      *kin = CLOTH_KIN_OTHER_SIMULATOR;
+    if (*kin != CLOTH_KIN_SAME
+        && !find_likelihood (d, gathered, *kin, NULL, first, error))
       return FALSE;
-    g_array_set_size (hypotheses, 0);
-    if (!compare (d, first, none, TRUE, hypotheses, error)
-        || !find_unknown (d, first, first->stack->z, hypotheses, &unknown,
-            error))
-      return FALSE;
-    if (unknown <= 0.5 || *kin == farthest)
-      return TRUE;
   }
+  return compare (d, first, none, TRUE, hypotheses, error);
 }
 
 /* The rounds; the last one that could be simulated is left in @last, the residual without effects in
@@ -210,7 +213,7 @@ run_rounds (ClothDiagnosis * d, const ClothGapGathered * gathered,
     /* where the likeliest set can't be linearised, what is known of it stands */
     if (!cloth_gap_gather_takes (d, gathered, model, &last->made, &next.made,
             &failed)
-        || !find_scores (d, gathered, kin, *null, &next, &failed)) {
+        || !find_likelihood (d, gathered, kin, *null, &next, &failed)) {
       if (failed && !g_error_matches (failed, CLOTH_FIT_ERROR,
               CLOTH_FIT_ERROR_MODEL)) {
         g_propagate_error (error, g_steal_pointer (&failed));
@@ -251,8 +254,8 @@ cloth_diagnosis_infer (ClothDiagnosis * d, GError ** error)
   if (cloth_gap_gather_references (d, &gathered, &failed)
       && run_rounds (d, &gathered, hypotheses, &last, &null, &failed)
       && find_unknown (d, &last, null, hypotheses, &unknown, &failed)) {
-    const ClothGapBasis basis = { last.stack, last.discrepancy, last.scores,
-      null
+    const ClothGapBasis basis = { last.stack, last.discrepancy, last.likelihood,
+      last.gram, null
     };
 
     note_discrepancies (d, &gathered, &last);

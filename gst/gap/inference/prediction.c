@@ -178,11 +178,11 @@ compare_behind (gconstpointer a, gconstpointer b)
 }
 
 static gint
-compare_by_scores (gconstpointer a, gconstpointer b)
+compare_by_residual (gconstpointer a, gconstpointer b)
 {
   const ClothGapHypothesis *x = a, *y = b;
 
-  return x->by_scores < y->by_scores ? -1 : x->by_scores > y->by_scores;
+  return x->by_residual < y->by_residual ? -1 : x->by_residual > y->by_residual;
 }
 
 /* @d: a diagnosis
@@ -205,7 +205,7 @@ cloth_gap_hypotheses_predict (ClothDiagnosis * d, GArray * hypotheses,
   g_autofree gdouble *evidence = g_new0 (gdouble, n + 1);
   gdouble most = -INFINITY, best = INFINITY, last = 0.;
 
-  g_array_sort (hypotheses, compare_by_scores);
+  g_array_sort (hypotheses, compare_by_residual);
   for (guint i = 0; i < n; i++)
     g_ptr_array_add (models, cloth_gap_hypothesis_make_model (d,
             &g_array_index (hypotheses, ClothGapHypothesis, i)));
@@ -220,7 +220,7 @@ cloth_gap_hypotheses_predict (ClothDiagnosis * d, GArray * hypotheses,
 
     if (i < n)
       last = h->n_winds ? most : evidence[i];
-    h->behind = isfinite (most) ? h->by_scores - last : h->by_scores;
+    h->behind = isfinite (most) ? h->by_residual - last : h->by_residual;
     best = MIN (best, h->behind);
   }
   for (guint i = 0; i < hypotheses->len; i++)

@@ -57,8 +57,8 @@ log_power (const gdouble * powers, const Chance * c, guint k)
 
 /* From all members but @left_out. */
 static void
-find_chance (const ClothGapScores * scores, const ClothGapStack * stack,
-    const gdouble * variances, guint left_out, Chance * c)
+find_chance (const ClothGapStack * stack, const gdouble * variances,
+    const gdouble * rests, guint left_out, Chance * c)
 {
   const guint n = stack->n_classes;
   gdouble count = 0.;
@@ -72,18 +72,17 @@ find_chance (const ClothGapScores * scores, const ClothGapStack * stack,
     count += m != left_out;
   for (guint m = 0; m < stack->n_members; m++)
     for (guint k = 0; k < c->n && m != left_out; k++)
-      c->mean[k] += log_power (scores->member_rests + m * n, c, k) / count;
+      c->mean[k] += log_power (rests + m * n, c, k) / count;
   for (guint m = 0; m < stack->n_members; m++) {
     gdouble common = 0.;
 
     if (m == left_out)
       continue;
     for (guint k = 0; k < c->n; k++)
-      common += (log_power (scores->member_rests + m * n, c, k) -
-          c->mean[k]) / c->n;
+      common += (log_power (rests + m * n, c, k) - c->mean[k]) / c->n;
     c->common += common * common / count;
     for (guint k = 0; k < c->n; k++)
-      c->variance[k] += pow (log_power (scores->member_rests + m * n, c, k) -
+      c->variance[k] += pow (log_power (rests + m * n, c, k) -
           c->mean[k] - common, 2.) / count;
   }
   for (guint k = 0; k < c->n; k++)
@@ -128,8 +127,8 @@ find_log_bayes_factor (const Chance * c, const gdouble * powers,
 
 /* The same, as far as it is more than chance. */
 static gdouble
-calibrate (const ClothGapScores * scores, const ClothGapStack * stack,
-    const gdouble * variances, const gdouble * powers, const gdouble * shape)
+calibrate (const ClothGapStack * stack, const gdouble * variances,
+    const gdouble * rests, const gdouble * powers, const gdouble * shape)
 {
   g_autofree gdouble *by_chance = g_new (gdouble, stack->n_members + 1);
   g_auto (Chance) all = { 0 };
@@ -139,9 +138,9 @@ calibrate (const ClothGapScores * scores, const ClothGapStack * stack,
   for (guint m = 0; m < stack->n_members; m++) {
     g_auto (Chance) others = { 0 };
 
-    find_chance (scores, stack, variances, m, &others);
+    find_chance (stack, variances, rests, m, &others);
     by_chance[m] = find_log_bayes_factor (&others,
-        scores->member_rests + m * stack->n_classes, shape);
+        rests + m * stack->n_classes, shape);
   }
   median = cloth_median (by_chance, stack->n_members);
   for (guint m = 0; m < stack->n_members; m++)
@@ -149,7 +148,7 @@ calibrate (const ClothGapScores * scores, const ClothGapStack * stack,
       excess += by_chance[m] - median;
       above++;
     }
-  find_chance (scores, stack, variances, G_MAXUINT, &all);
+  find_chance (stack, variances, rests, G_MAXUINT, &all);
   return (find_log_bayes_factor (&all, powers, shape) - median) /
       MAX (1., excess / MAX (above, 1));
 }
@@ -165,20 +164,40 @@ normalise (const ClothGapStack * stack, gdouble * shape)
     shape[k] /= sum > 0. ? sum : 1.;
 }
 
-/* @scores: scores
- * @stack: what they are of
- * @variances: (array): by class, those that @scores were made with
+/* What the nuisances leave of each member, those of its own family not among them: so they tell what
+ * a simulator does that nobody has tried yet; [n_members][n_classes]. */
+static gdouble *
+find_member_rests (const ClothGapStack * stack, const ClothGapDiscrepancy * d)
+{
+  gdouble *rests = g_new0 (gdouble, stack->n_members * stack->n_classes + 1);
+
+  for (guint family = 0; family < 2; family++) {
+    g_autoptr (ClothGapLikelihood) l = cloth_gap_likelihood_new (stack, d,
+        family);
+
+    for (guint m = 0; m < stack->n_members; m++)
+      if (stack->families[m] == family)
+        cloth_gap_likelihood_find_rest (l, d->members + m * stack->size,
+            rests + m * stack->n_classes);
+  }
+  return rests;
+}
+
+/* @stack: features
+ * @discrepancy: what they are off by if nothing acts
  * @is_force: (array): which directions are forces of the library
- * @rest: (array): what the explanation, the reference and the nuisances leave of the residual
+ * @powers: (array): by class, what the explanation, the reference and the nuisances leave of the
+ *   residual, in units of the variances
  * @unknown: (out caller-allocates): how likely something else is
  */
 void
-cloth_gap_find_unknown (const ClothGapScores * scores,
-    const ClothGapStack * stack, const gdouble * variances,
-    const gboolean * is_force, const gdouble * rest, ClothGapUnknown * unknown)
+cloth_gap_find_unknown (const ClothGapStack * stack,
+    const ClothGapDiscrepancy * discrepancy, const gboolean * is_force,
+    const gdouble * powers, ClothGapUnknown * unknown)
 {
   const guint n = stack->n_classes;
-  g_autofree gdouble *powers = g_new (gdouble, n + 1);
+  const gdouble *variances = discrepancy->variances;
+  g_autofree gdouble *rests = find_member_rests (stack, discrepancy);
   g_autofree gdouble *column = g_new (gdouble, n + 1);
   g_autofree gdouble *force = g_new0 (gdouble, n + 1);
   g_autofree gdouble *displacement = g_new0 (gdouble, n + 1);
@@ -186,12 +205,9 @@ cloth_gap_find_unknown (const ClothGapScores * scores,
   g_auto (Chance) chance = { 0 };
   gdouble more = 0.;
 
-  cloth_gap_find_powers (stack, rest, powers);
   for (guint k = 0; k < n; k++)
-    if (variances[k] > 0.) {
+    if (variances[k] > 0.)
       displacement[k] = 1. / variances[k];
-      powers[k] /= variances[k];
-    }
   for (guint i = 0; i < stack->n; i++) {
     if (!is_force[i])
       continue;
@@ -204,10 +220,10 @@ cloth_gap_find_unknown (const ClothGapScores * scores,
   }
   normalise (stack, force);
   normalise (stack, displacement);
-  unknown->force_field = calibrate (scores, stack, variances, powers, force);
+  unknown->force_field = calibrate (stack, variances, rests, powers, force);
   unknown->displacement_field =
-      calibrate (scores, stack, variances, powers, displacement);
-  find_chance (scores, stack, variances, G_MAXUINT, &chance);
+      calibrate (stack, variances, rests, powers, displacement);
+  find_chance (stack, variances, rests, G_MAXUINT, &chance);
   for (gsize i = 0; i < stack->size; i++)
     counts[stack->classes[i]]++;
   for (guint k = 0; k < chance.n; k++) {

@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/gap/inference/scores.h"
+#include "gst/gap/inference/likelihood.h"
 
 G_BEGIN_DECLS
 
@@ -17,9 +17,8 @@ typedef struct {
   gdouble power;
 } ClothGapUnknown;
 
-void cloth_gap_find_unknown (const ClothGapScores * scores,
-    const ClothGapStack * stack, const gdouble * variances,
-    const gboolean * is_force,
-    const gdouble * rest, ClothGapUnknown * unknown);
+void cloth_gap_find_unknown (const ClothGapStack * stack,
+    const ClothGapDiscrepancy * discrepancy, const gboolean * is_force,
+    const gdouble * powers, ClothGapUnknown * unknown);
 
 G_END_DECLS
