@@ -20,7 +20,7 @@
 #include "gst/math/linalg.h"
 
 /* No law of an effect holds better than by this share. */
-#define LAW_ERROR 0.1
+#define LAW_ERROR 0.2
 
 /* @stack: features
  * @z: (array): a residual

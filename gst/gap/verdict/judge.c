@@ -17,6 +17,9 @@
 
 #include "gst/gap/verdict/agreement.h"
 
+/* A rest is more than the floor when this share of draws at most says otherwise. */
+#define NO_REST 0.05
+
 /* What parts faults of cameras that look alike. */
 static const gchar *const capture_sentence =
     "Film a board that moves with all cameras, once more with half the "
@@ -70,8 +73,8 @@ is_ambiguous (const ClothGapResult * r)
 }
 
 /* Whether something unknown acts that is worth a word: its power is held against the gap's, or the
- * floor's where that is more. With accepted effects that leave no more than the floor there is no rest to
- * explain. */
+ * floor's where that is more. With accepted effects whose rest is not surely more than the floor there is
+ * nothing left to explain. */
 static gboolean
 is_unlike_all (const ClothDiagnosis * d)
 {
@@ -81,7 +84,7 @@ is_unlike_all (const ClothDiagnosis * d)
       (gap < floor ? gap * gap / (floor * floor) : 1.);
 
   return d->unknown_probability > 0.5 && share > CLOTH_DIAGNOSIS_LEAST_SHARE
-      && !(d->n_accepted && d->result->gap_after.value < floor);
+      && !(d->n_accepted && d->result->rest_p_value > NO_REST);
 }
 
 void
