@@ -73,6 +73,34 @@ add_reach (GString * s, const ClothCamera * camera)
 }
 
 static void
+add_uncertainty (GString * s, const ClothUncertaintyMap * map)
+{
+  static const guint nodes[] = { CLOTH_UNCERTAINTY_NODES / 2, 0,
+    CLOTH_UNCERTAINTY_COLUMNS - 1,
+    CLOTH_UNCERTAINTY_NODES - CLOTH_UNCERTAINTY_COLUMNS,
+    CLOTH_UNCERTAINTY_NODES - 1
+  };
+
+  g_string_append (s, "  projection ± px, 1σ  centre   top left  top right "
+      "bottom left  bottom right\n");
+  for (guint far = 0; far < 2; far++) {
+    g_autofree gchar *where = far ? g_strdup ("at infinity")
+        : g_strdup_printf ("at %.2f m", map->distance);
+
+    g_string_append_printf (s, "    %-16s", where);
+    for (guint i = 0; i < G_N_ELEMENTS (nodes); i++) {
+      gdouble sigma = (far ? map->far : map->near)[nodes[i]];
+
+      if (isnan (sigma))
+        g_string_append_printf (s, "%11s", "unknown");
+      else
+        g_string_append_printf (s, "%11.*f", sigma < 1 ? 3 : 2, sigma);
+    }
+    g_string_append_c (s, '\n');
+  }
+}
+
+static void
 add_camera (GString * s, const ClothCalibration * result, guint c,
     const ClothShotCamera * shots)
 {
@@ -102,6 +130,7 @@ add_camera (GString * s, const ClothCalibration * result, guint c,
   for (guint i = 0; i < cloth_lens_n_coefficients (camera->lens); i++)
     g_string_append_printf (s, "    %s  %12.6f ± %.2g\n",
         coefficient_name (camera->lens, i), camera->k[i], camera->k_sd[i]);
+  add_uncertainty (s, &quality->map);
   add_reach (s, camera);
   if (result->placed && c > 0)
     add_place (s, &result->rig->cameras[0], camera);

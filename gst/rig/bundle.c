@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "gst/math/linalg.h"
+#include "gst/math/vec3.h"
 #include "gst/rig/rig.h"
 #include "gst/rig/rotation.h"
 
@@ -515,28 +516,30 @@ cloth_bundle_solve (ClothBundle * bundle, gdouble * cost, GError ** error)
   return ok;
 }
 
-/* @bundle: a problem at its minimum
- * @covariance: (out caller-allocates): 18×18 a camera, columns as in
- *   #CLOTH_CAMERA_N_PARAMETERS but for the rotation, which is a small one about the
- *   camera's own axes; zeros for what is not free
- * @variance: (out): variance of the standardised residuals, by which @covariance is scaled
- * @error: #ClothRigError when the data leave a direction undetermined
- *
- * Inverse of the information matrix, board poses marginalised, times the residual variance.
- *
- * Returns: whether the matrix could be inverted.
- */
-gboolean
-cloth_bundle_covariance (const ClothBundle * bundle, gdouble * covariance,
-    gdouble * variance, GError ** error)
+struct _ClothBundleSpread
 {
   Normal s;
+  gdouble variance;
+};
+
+/* @bundle: a problem at its minimum, kept unchanged while the result is in use
+ * @error: #ClothRigError when the data leave a direction undetermined
+ *
+ * The information matrix of all parameters, factored, and the variance of the standardised
+ * residuals, by which its inverse is scaled.
+ *
+ * Returns: (transfer full): how certain the parameters are, or %NULL.
+ */
+ClothBundleSpread *
+cloth_bundle_spread_new (const ClothBundle * bundle, GError ** error)
+{
+  g_autoptr (ClothBundleSpread) spread = g_new0 (ClothBundleSpread, 1);
+  Normal *s = &spread->s;
   gdouble sum = 0, dof;
   guint n_points = 0, n_poses = 0;
-  gboolean ok;
 
-  normal_init (&s, bundle);
-  build (bundle, &s);
+  normal_init (s, bundle);
+  build (bundle, s);
   for (guint v = 0; v < bundle->n_views; v++) {
     const ClothBundleView *view = &bundle->views[v];
     gdouble excess = bundle->excess[view->camera];
@@ -554,30 +557,182 @@ cloth_bundle_covariance (const ClothBundle * bundle, gdouble * covariance,
     }
   }
   for (guint p = 0; p < bundle->n_poses; p++)
-    n_poses += pose_used (&s, p);
-  dof = 2. * n_points - s.n - 6. * n_poses;
-  *variance = dof > 0 ? sum / dof : NAN;
-  ok = dof > 0 && reduce (&s, 0);
-  if (ok) {
-    gdouble *inverse = s.A;
-
-    cloth_cholesky_inverse (s.n, s.S, inverse);
-    for (guint c = 0; c < bundle->n_cameras; c++) {
-      const gint *map = s.map + c * N_CAMERA;
-
-      for (guint i = 0; i < N_CAMERA; i++) {
-        for (guint j = 0; j < N_CAMERA; j++)
-          covariance[(c * N_CAMERA + i) * N_CAMERA + j] =
-              map[i] < 0 || map[j] < 0 ? 0
-              : *variance * inverse[(gsize) map[i] * s.n + map[j]];
-      }
-    }
-  } else {
+    n_poses += pose_used (s, p);
+  dof = 2. * n_points - s->n - 6. * n_poses;
+  spread->variance = dof > 0 ? sum / dof : NAN;
+  if (!(dof > 0) || !reduce (s, 0)) {
     g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_VALUE,
         "the views don't determine all parameters");
+    return NULL;
   }
-  normal_clear (&s);
-  return ok;
+  return g_steal_pointer (&spread);
+}
+
+/* @spread: (transfer full) (nullable): what cloth_bundle_spread_new() returned
+ */
+void
+cloth_bundle_spread_free (ClothBundleSpread * spread)
+{
+  if (!spread)
+    return;
+  normal_clear (&spread->s);
+  g_free (spread);
+}
+
+/* @spread: a problem's
+ *
+ * Returns: variance of the standardised residuals.
+ */
+gdouble
+cloth_bundle_spread_variance (const ClothBundleSpread * spread)
+{
+  return spread->variance;
+}
+
+/* @spread: a problem's
+ * @covariance: (out caller-allocates): 18×18 a camera, columns as in
+ *   #CLOTH_CAMERA_N_PARAMETERS but for the rotation, which is a small one about the
+ *   camera's own axes; zeros for what is not free
+ *
+ * Inverse of the information matrix, board poses marginalised, times the residual variance.
+ */
+void
+cloth_bundle_spread_cameras (const ClothBundleSpread * spread,
+    gdouble * covariance)
+{
+  const Normal *s = &spread->s;
+  g_autofree gdouble *inverse = g_new (gdouble, (gsize) s->n * s->n + 1);
+
+  cloth_cholesky_inverse (s->n, s->S, inverse);
+  for (guint c = 0; c < s->bundle->n_cameras; c++) {
+    const gint *map = s->map + c * N_CAMERA;
+
+    for (guint i = 0; i < N_CAMERA; i++) {
+      for (guint j = 0; j < N_CAMERA; j++)
+        covariance[(c * N_CAMERA + i) * N_CAMERA + j] =
+            map[i] < 0 || map[j] < 0 ? 0
+            : spread->variance * inverse[(gsize) map[i] * s->n + map[j]];
+    }
+  }
+}
+
+/* Both rows of the derivative of where a camera sees a point that moves with the mean of
+ * the boards it saw, poses eliminated: r = g_C − W B⁻¹ g_P, and what the poses leave over,
+ * g_P' B⁻¹ g_P. */
+static void
+reduce_gradient (const Normal * s, guint camera, const gdouble * X,
+    gboolean at_infinity, const gdouble * own, const gdouble aR[2][3],
+    gdouble * r, gdouble rest[3])
+{
+  const ClothBundle *b = s->bundle;
+  const gint *map = s->map + camera * N_CAMERA;
+  guint n_seen = 0;
+
+  memset (r, 0, 2 * (gsize) s->n * sizeof (gdouble));
+  memset (rest, 0, 3 * sizeof (gdouble));
+  for (guint i = 0; i < 2; i++) {
+    for (guint j = 0; j < N_CAMERA; j++) {
+      if (map[j] >= 0)
+        r[i * s->n + map[j]] += own[i * N_CAMERA + j];
+    }
+  }
+  for (guint v = 0; v < b->n_views; v++)
+    n_seen += b->views[v].use && b->views[v].camera == camera;
+  for (guint v = 0; v < b->n_views; v++) {
+    guint p = b->views[v].pose;
+    const gdouble *t = b->poses + 12 * (gsize) p + 9;
+    const gdouble *inverse = s->B_inverse + 36 * (gsize) p;
+    gdouble g[2][6], Bg[2][6] = { {0,}, };
+
+    if (!b->views[v].use || b->views[v].camera != camera)
+      continue;
+    for (guint i = 0; i < 2; i++) {
+      gdouble arm[3];
+
+      for (guint j = 0; j < 3; j++)
+        arm[j] = at_infinity ? X[j] : X[j] - t[j];
+      cloth_vec3_cross (arm, aR[i], g[i]);
+      for (guint j = 0; j < 3; j++) {
+        g[i][j] /= n_seen;
+        g[i][3 + j] = at_infinity ? 0 : aR[i][j] / n_seen;
+      }
+      for (guint j = 0; j < 6; j++) {
+        for (guint k = 0; k < 6; k++)
+          Bg[i][j] += inverse[6 * j + k] * g[i][k];
+      }
+    }
+    for (guint j = 0; j < 6; j++) {
+      rest[0] += g[0][j] * Bg[0][j];
+      rest[1] += g[0][j] * Bg[1][j];
+      rest[2] += g[1][j] * Bg[1][j];
+    }
+    for (guint o = s->first[p]; o < s->first[p + 1]; o++) {
+      guint u = s->order[o];
+      const gint *other = s->map + b->views[u].camera * N_CAMERA;
+
+      for (guint j = 0; b->views[u].use && j < N_CAMERA; j++) {
+        const gdouble *w = s->W + ((gsize) u * N_CAMERA + j) * 6;
+
+        for (guint k = 0; other[j] >= 0 && k < 6; k++) {
+          r[other[j]] -= w[k] * Bg[0][k];
+          r[s->n + other[j]] -= w[k] * Bg[1][k];
+        }
+      }
+    }
+  }
+}
+
+/* @spread: a problem's
+ * @camera: which camera
+ * @Z: a point in the camera's frame, m; at infinity only its direction counts
+ * @at_infinity: whether the point is infinitely far
+ * @cov: (out): covariance xx, xy, yy of where the camera sees it, px²
+ *
+ * How certain a projection is. Errors of lens, camera and board poses compensate each
+ * other, so where a point appears has a meaning only beside what was seen: the point is
+ * held fixed to each board pose this camera saw, and is where the mean of them says
+ * (“mean-pcam” of mrcal.secretsauce.net/uncertainty.html, there over all poses).
+ *
+ * Returns: %FALSE when the point is not in front of the camera.
+ */
+gboolean
+cloth_bundle_spread_project (const ClothBundleSpread * spread, guint camera,
+    const gdouble Z[3], gboolean at_infinity, gdouble cov[3])
+{
+  const Normal *s = &spread->s;
+  static const gdouble identity[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
+  ClothCamera own = s->bundle->cameras[camera];
+  gdouble R[9], t[3], X[3], d[3], px[2], a[6], J[2 * N_CAMERA], aR[2][3];
+  g_autofree gdouble *r = g_new (gdouble, 2 * (gsize) s->n + 1);
+  g_autofree gdouble *solved = NULL;
+
+  memcpy (R, own.R, sizeof R);
+  memcpy (t, own.t, sizeof t);
+  memcpy (own.R, identity, sizeof identity);
+  memset (own.t, 0, sizeof own.t);
+  if (!cloth_camera_project (&own, Z, px, a, J))
+    return FALSE;
+  for (guint j = 0; j < 3; j++)
+    d[j] = at_infinity ? Z[j] : Z[j] - t[j];
+  cloth_mat3_vec_t (R, d, X);
+  for (guint i = 0; i < 2; i++) {
+    cloth_vec3_cross (d, a + 3 * i, J + i * N_CAMERA + 12);
+    for (guint j = 0; j < 3; j++)
+      J[i * N_CAMERA + 15 + j] = at_infinity ? 0 : a[3 * i + j];
+    cloth_mat3_vec_t (R, a + 3 * i, aR[i]);
+  }
+  reduce_gradient (s, camera, X, at_infinity, J, aR, r, cov);
+  solved = g_memdup2 (r, 2 * (gsize) s->n * sizeof (gdouble));
+  for (guint i = 0; s->n > 0 && i < 2; i++)
+    cloth_cholesky_solve (s->n, s->S, solved + i * s->n);
+  for (guint j = 0; j < s->n; j++) {
+    cov[0] += r[j] * solved[j];
+    cov[1] += r[j] * solved[s->n + j];
+    cov[2] += r[s->n + j] * solved[s->n + j];
+  }
+  for (guint i = 0; i < 3; i++)
+    cov[i] *= spread->variance;
+  return TRUE;
 }
 
 /* @bundle: a problem

@@ -70,10 +70,22 @@ typedef struct {
 
 gboolean cloth_bundle_solve (ClothBundle * bundle, gdouble * cost,
     GError ** error);
-gboolean cloth_bundle_covariance (const ClothBundle * bundle,
-    gdouble * covariance, gdouble * variance, GError ** error);
 void cloth_bundle_residuals (const ClothBundle * bundle, guint view,
     gdouble * dx, gdouble * dy);
 gdouble cloth_bundle_excess (const ClothBundle * bundle, guint camera);
+
+/* How certain the parameters of a solved problem are. */
+typedef struct _ClothBundleSpread ClothBundleSpread;
+
+ClothBundleSpread *cloth_bundle_spread_new (const ClothBundle * bundle,
+    GError ** error);
+void cloth_bundle_spread_free (ClothBundleSpread * spread);
+gdouble cloth_bundle_spread_variance (const ClothBundleSpread * spread);
+void cloth_bundle_spread_cameras (const ClothBundleSpread * spread,
+    gdouble * covariance);
+gboolean cloth_bundle_spread_project (const ClothBundleSpread * spread,
+    guint camera, const gdouble Z[3], gboolean at_infinity, gdouble cov[3]);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothBundleSpread, cloth_bundle_spread_free)
 
 G_END_DECLS

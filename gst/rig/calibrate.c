@@ -555,8 +555,7 @@ leave_out (Work * w, ClothCalibration * result, GError ** error)
   g_autofree gdouble *poses = g_memdup2 (b->poses,
       12 * b->n_poses * sizeof (gdouble));
   g_autoptr (GError) undetermined = NULL;
-  g_autofree gdouble *C = g_new (gdouble, N * N * b->n_cameras);
-  gdouble variance, total = 0;
+  gdouble total = 0;
   guint n = 0, all = 0;
   gboolean ok = TRUE, enough = TRUE;
 
@@ -585,7 +584,13 @@ leave_out (Work * w, ClothCalibration * result, GError ** error)
   }
   if (enough)
     ok = cloth_bundle_solve (b, NULL, error);
-  if (enough && ok && cloth_bundle_covariance (b, C, &variance, &undetermined)) {
+  if (enough && ok) {
+    g_autoptr (ClothBundleSpread) spread =
+        cloth_bundle_spread_new (b, &undetermined);
+
+    enough = spread != NULL;
+  }
+  if (enough && ok) {
     for (guint v = 0; v < b->n_views; v++)
       w->views[v].use = use[v] && out[v];
     memset (w->free_bits, 0, b->n_cameras * sizeof (guint));
@@ -640,6 +645,7 @@ cloth_calibrate (const ClothCalibrateInput * input,
 {
   g_auto (Work) w = { input, params };
   g_autoptr (ClothCalibration) result = NULL;
+  g_autoptr (ClothBundleSpread) spread = NULL;
   g_autofree gdouble *C = NULL;
   guint n_poses = MAX (input->n_poses, input->n_views);
 
@@ -693,13 +699,19 @@ cloth_calibrate (const ClothCalibrateInput * input,
   }
   sum_up (&w, result);
   C = g_new0 (gdouble, N * N * input->n_cameras);
-  if (!cloth_bundle_covariance (&w.bundle, C, &result->variance, error)) {
+  spread = cloth_bundle_spread_new (&w.bundle, error);
+  if (!spread) {
     g_prefix_error (error, "add views, or take a lens model of fewer "
         "coefficients: ");
     return NULL;
   }
+  result->variance = cloth_bundle_spread_variance (spread);
+  cloth_bundle_spread_cameras (spread, C);
   if (!check_focal (&w, C, error))
     return NULL;
+  for (guint c = 0; c < input->n_cameras; c++)
+    cloth_uncertainty_map (&w.bundle, spread, c, &result->cameras[c].map);
+  g_clear_pointer (&spread, cloth_bundle_spread_free);
   if (params->leave_out > 1 && !leave_out (&w, result, error))
     return NULL;
   place_world (&w, result, C);

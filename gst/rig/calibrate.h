@@ -5,6 +5,7 @@
 
 #include "gst/rig/bundle.h"
 #include "gst/rig/rig.h"
+#include "gst/rig/uncertainty.h"
 
 G_BEGIN_DECLS
 
@@ -69,12 +70,14 @@ typedef struct {
  * @left_out_rms: the same on views that took no part in the fit but for their own pose; NaN
  *   without the check
  * @excess: what the corners scatter beyond their own covariances, px, one axis
+ * @map: how certain its projections are
  */
 typedef struct {
   guint n_views, n_shared, n_points;
   gdouble rms;
   gdouble left_out_rms;
   gdouble excess;
+  ClothUncertaintyMap map;
 } ClothCalibrateCamera;
 
 /* @rig: the cameras, with standard deviations

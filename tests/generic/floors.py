@@ -57,7 +57,7 @@ ROOMS = [
     Room('gst/pattern', 'what is printed on the cloth', EACH),
     Room('gst/rig', 'cameras and triangulation',
          ['rig.h', 'rigfile.h', 'rigyaml.h', 'camera.h', 'capture.h', 'orbit.h', 'rotation.h',
-          'planar.h', 'rectify.h', 'calibrate.h', 'merge.h', 'triangulate.h', 'reconstruct.h']),
+          'planar.h', 'rectify.h', 'calibrate.h', 'uncertainty.h', 'merge.h', 'triangulate.h', 'reconstruct.h']),
     Room('gst/mesh', 'meshes and their files',
          {'': ['topology.h', 'hold.h', 'side.h'], 'formats': ['formats.h'],
           'fill': ['fill.h'], 'garment': ['garment.h']},

@@ -1,0 +1,280 @@
+/* The uncertainty of projections: mrcal's on the same corners, and the scatter of many
+ * calibrations of known cameras.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "tests/core/calibrateproblem.h"
+
+#define COLUMNS CLOTH_UNCERTAINTY_COLUMNS
+#define ROWS CLOTH_UNCERTAINTY_ROWS
+#define NODES CLOTH_UNCERTAINTY_NODES
+
+static ClothCalibration *
+calibrate (const Problem * p)
+{
+  g_autoptr (GError) error = NULL;
+  ClothCalibrateParams params;
+  ClothCalibration *result;
+
+  cloth_calibrate_params_init (&params);
+  params.huber = 1e9;           /* nor has mrcal outliers in these files */
+  params.leave_out = 0;
+  result = cloth_calibrate (&p->input, &params, NULL, NULL, NULL, &error);
+  g_assert_no_error (error);
+  return result;
+}
+
+/* mrcal.txt holds what mrcal says of the same corners. It divides the squares of residuals
+ * by their number, we by the degrees of freedom. */
+static void
+compare_with_mrcal (gint n, const gint * use, gdouble limit)
+{
+  g_autofree gchar *text = NULL;
+  g_auto (Problem) p;
+  g_autoptr (ClothCalibration) result = NULL;
+  gdouble worst = 0, centre = 0, corner = 0, measured = n * 2 * 702;
+  gdouble dof = measured - n * 9 - (n - 1) * 6 - 13 * 6;
+  guint n_lines = 0;
+
+  problem_init (&p, (guint) n, 9, 6, 0.025, 13);
+  load_corners (&p, use);
+  result = calibrate (&p);
+  g_assert_true (g_file_get_contents (TEST_DATA "/opencv_boards/mrcal.txt",
+          &text, NULL, NULL));
+  for (gchar * line = text; line && *line; line = strchr (line, '\n') + 1) {
+    gint count, side, column, row;
+    gdouble k[10], x, y, near, far, got[2];
+    const ClothUncertaintyMap *map;
+
+    if (sscanf (line, "lens %d %d %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf",
+            &count, &side, k, k + 1, k + 2, k + 3, k + 4, k + 5, k + 6, k + 7,
+            k + 8, k + 9) == 12) {
+      if (count == n && use[side] >= 0)
+        g_assert_cmpfloat (fabs (result->cameras[use[side]].map.distance / k[9]
+                - 1), <, 1e-3);
+      continue;
+    }
+    if (sscanf (line, "px %d %d %lf %lf %lf %lf", &count, &side, &x, &y, &near,
+            &far) != 6 || count != n || use[side] < 0)
+      continue;
+    map = &result->cameras[use[side]].map;
+    column = (gint) lround (x / 639 * (COLUMNS - 1));
+    row = (gint) lround (y / 479 * (ROWS - 1));
+    got[0] = map->near[row * COLUMNS + column] * sqrt (dof / measured);
+    got[1] = map->far[row * COLUMNS + column] * sqrt (dof / measured);
+    worst = fmax (worst, fabs (got[0] / near - 1));
+    worst = fmax (worst, fabs (got[1] / far - 1));
+    if (column == COLUMNS / 2 && row == ROWS / 2)
+      centre = got[1] / far;
+    else if (column == 0 && row == 0)
+      corner = got[1] / far;
+    n_lines++;
+  }
+  g_test_message ("%d cameras, %u places: within %.2f%% of mrcal's (centre "
+      "%.4f, corner %.4f times)", n, n_lines, 100 * worst, centre, corner);
+  g_assert_cmpuint (n_lines, ==, (guint) n * 25);
+  g_assert_cmpfloat (worst, <, limit);
+}
+
+static void
+test_mrcal_one (void)
+{
+  const gint left[2] = { 0, -1 }, right[2] = { -1, 0 };
+
+  compare_with_mrcal (1, left, 0.001);
+  compare_with_mrcal (1, right, 0.001);
+}
+
+/* mrcal weighs both cameras alike, we by their scatter. */
+static void
+test_mrcal_pair (void)
+{
+  const gint both[2] = { 0, 1 };
+
+  compare_with_mrcal (2, both, 0.1);
+}
+
+#define RUNS 100
+#define PLACES 5
+
+/* Where cameras see points that are known beside the boards: the scatter of many
+ * calibrations against the map. The second camera misses some poses. */
+static void
+test_scatter (void)
+{
+  static const guint places[PLACES] = { 0, COLUMNS - 1, NODES / 2,
+    NODES - COLUMNS, NODES - 1 - 6 * COLUMNS - 8
+  };
+  static gdouble seen[RUNS][2][PLACES][2][2];
+  static ClothUncertaintyMap predicted[2];
+  ClothCamera truth[2];
+  gdouble poses[12][12], worst = 0;
+  ClothRandom random;
+
+  cloth_random_init (&random, 11);
+  for (guint v = 0; v < 12; v++)
+    true_pose (&random, 0.7, poses[v]);
+  for (guint run = 0; run < RUNS; run++) {
+    g_auto (Problem) p;
+    g_autoptr (ClothCalibration) result = NULL;
+
+    problem_init (&p, 2, 9, 7, 0.03, 12);
+    true_rig (p.cameras);
+    memcpy (truth, p.cameras, sizeof truth);
+    for (guint v = 0; v < 12; v++) {
+      for (guint c = 0; c < 2; c++) {
+        if (c == 0 || v % 3)
+          see (&p, &truth[c], c, v, poses[v], &random, 0.1, TRUE);
+      }
+    }
+    result = calibrate (&p);
+    for (guint c = 0; c < 2; c++) {
+      const ClothUncertaintyMap *map = &result->cameras[c].map;
+
+      for (guint i = 0; i < NODES; i++) {
+        predicted[c].near[i] += map->near[i] * map->near[i] / RUNS;
+        predicted[c].far[i] += map->far[i] * map->far[i] / RUNS;
+      }
+      for (guint i = 0; i < 2 * PLACES; i++) {
+        gboolean far = i & 1;
+        gdouble px[2], ray[3] = { 0, 0, 1 }, d[3], X[3], Y[3] = { 0, 0, 0 };
+        ClothCamera camera = result->rig->cameras[c];
+        guint n = 0;
+
+        /* In the true world, then beside each board, then in the world of the result. */
+        cloth_uncertainty_node (&truth[c], places[i / 2], px);
+        g_assert_cmpuint (cloth_camera_undistort_points (&truth[c], 1, px,
+                px + 1, ray, ray + 1, NULL), ==, 1);
+        for (guint j = 0; j < 3; j++)
+          d[j] = far ? ray[j] : 0.6 * ray[j]
+              / sqrt (ray[0] * ray[0] + ray[1] * ray[1] + 1) - truth[c].t[j];
+        cloth_mat3_vec_t (truth[c].R, d, X);
+        for (guint v = 0; v < 12; v++) {
+          const gdouble *P = result->poses + 12 * v;
+          gdouble a[3], b[3];
+
+          if (c == 1 && v % 3 == 0)
+            continue;
+          for (guint j = 0; j < 3; j++)
+            a[j] = far ? X[j] : X[j] - poses[v][9 + j];
+          cloth_mat3_vec_t (poses[v], a, b);
+          cloth_mat3_vec (P, b, a);
+          for (guint j = 0; j < 3; j++)
+            Y[j] += far ? a[j] : a[j] + P[9 + j];
+          n++;
+        }
+        for (guint j = 0; j < 3; j++)
+          Y[j] /= n;
+        if (far)
+          memset (camera.t, 0, sizeof camera.t);
+        g_assert_true (cloth_camera_project (&camera, Y, px, NULL, NULL));
+        memcpy (seen[run][c][i / 2][far], px, sizeof px);
+      }
+      predicted[c].distance += map->distance / RUNS;
+    }
+  }
+  for (guint i = 0; i < 4 * PLACES; i++) {
+    guint c = i & 1, far = i >> 1 & 1, place = i / 4;
+    gdouble mean[2] = { 0, 0 }, V[3] = { 0, 0, 0 }, largest, sd;
+
+    for (guint run = 0; run < RUNS; run++) {
+      for (guint j = 0; j < 2; j++)
+        mean[j] += seen[run][c][place][far][j] / RUNS;
+    }
+    for (guint run = 0; run < RUNS; run++) {
+      const gdouble *px = seen[run][c][place][far];
+
+      V[0] += (px[0] - mean[0]) * (px[0] - mean[0]) / (RUNS - 1);
+      V[1] += (px[0] - mean[0]) * (px[1] - mean[1]) / (RUNS - 1);
+      V[2] += (px[1] - mean[1]) * (px[1] - mean[1]) / (RUNS - 1);
+    }
+    largest = sqrt (0.5 * (V[0] + V[2]) + hypot (0.5 * (V[0] - V[2]), V[1]));
+    sd = sqrt ((far ? predicted[c].far : predicted[c].near)[places[place]]);
+    g_test_message ("camera %u, node %3u, %s: scatter %.4f, predicted %.4f px, "
+        "ratio %.3f", c, places[place], far ? "far " : "near", largest, sd,
+        largest / sd);
+    worst = fmax (worst, fabs (largest / sd - 1));
+  }
+  g_test_message ("boards %.2f and %.2f m away; worst ratio off by %.0f%%",
+      predicted[0].distance, predicted[1].distance, 100 * worst);
+  g_assert_cmpfloat (worst, <, 0.25);
+}
+
+/* A camera whose boards stay in the left half knows its right half less. */
+static void
+test_coverage (void)
+{
+  ClothRandom random;
+  ClothCamera truth[4] = { 0, };
+  g_auto (Problem) p;
+  g_autoptr (ClothCalibration) result = NULL;
+  const ClothUncertaintyMap *map;
+  guint left = (ROWS / 2) * COLUMNS, right = left + COLUMNS - 1;
+
+  cloth_random_init (&random, 5);
+  problem_init (&p, 1, 9, 7, 0.03, 12);
+  true_rig (p.cameras);
+  truth[0] = p.cameras[0];
+  for (guint v = 0; v < 12; v++) {
+    gdouble P[12];
+
+    true_pose (&random, 0.7, P);
+    P[9] -= 0.28;
+    see (&p, &truth[0], 0, v, P, &random, 0.1, FALSE);
+  }
+  result = calibrate (&p);
+  map = &result->cameras[0].map;
+  g_test_message ("left %.3f px, right %.3f px", map->near[left],
+      map->near[right]);
+  g_assert_cmpfloat (map->near[right], >, 3 * map->near[left]);
+}
+
+/* Where the lens folds back there is no projection to be certain of, nor behind it. */
+static void
+test_unknown (void)
+{
+  static gdouble board[12] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0 };
+  static const guint vertex[4] = { 0, 1, 2, 3 };
+  static const gdouble x[4] = { 100, 150, 100, 151 }, y[4] = { 10, 11, 61, 60 };
+  static const gdouble behind[3] = { 0, 0, -1 }, ahead[3] = { 0, 0, 1 };
+  gdouble pose[12] = { 1, 0, 0, 0, 1, 0, 0, 0, 1, -2, -2, 10 }, cov[3];
+  gdouble excess = 0.1;
+  guint none = 0, all = CLOTH_BUNDLE_FOCAL | CLOTH_BUNDLE_CENTRE;
+  ClothCamera camera = { NULL, 640, 480, {500, 0, 200, 0, 500, 110, 0, 0, 1},
+  CLOTH_LENS_BROWN5, {-0.5,}, {1, 0, 0, 0, 1, 0, 0, 0, 1}
+  };
+  const ClothBundleView view = { 0, 0, TRUE, 4, vertex, x, y, NULL };
+  ClothBundle bundle = { 1, &camera, &none, FALSE, 1, pose, 1, &view, board,
+    &excess, 3, 10, NULL
+  };
+  g_autoptr (ClothBundleSpread) spread = NULL;
+  g_autoptr (GError) error = NULL;
+  static ClothUncertaintyMap map;
+
+  spread = cloth_bundle_spread_new (&bundle, &error);
+  g_assert_no_error (error);
+  g_assert_true (cloth_bundle_spread_project (spread, 0, ahead, TRUE, cov));
+  g_assert_false (cloth_bundle_spread_project (spread, 0, behind, TRUE, cov));
+  g_assert_false (cloth_bundle_spread_project (spread, 0, behind, FALSE, cov));
+  cloth_uncertainty_map (&bundle, spread, 0, &map);
+  g_assert_false (isnan (map.near[NODES / 4]));
+  g_assert_true (isnan (map.near[NODES - 1]) && isnan (map.far[NODES - 1]));
+  g_clear_pointer (&spread, cloth_bundle_spread_free);
+
+  /* One board does not determine a camera. */
+  bundle.free = &all;
+  spread = cloth_bundle_spread_new (&bundle, &error);
+  g_assert_null (spread);
+  g_assert_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_VALUE);
+}
+
+int
+main (int argc, char **argv)
+{
+  g_test_init (&argc, &argv, NULL);
+  g_test_add_func ("/uncertainty/mrcal-one", test_mrcal_one);
+  g_test_add_func ("/uncertainty/mrcal-pair", test_mrcal_pair);
+  g_test_add_func ("/uncertainty/scatter", test_scatter);
+  g_test_add_func ("/uncertainty/coverage", test_coverage);
+  g_test_add_func ("/uncertainty/unknown", test_unknown);
+  return g_test_run ();
+}
