@@ -100,6 +100,51 @@ add_uncertainty (GString * s, const ClothUncertaintyMap * map)
   }
 }
 
+/* Where the picture is known badly, in words. */
+static const gchar *
+side (const gdouble away[2])
+{
+  gboolean across = fabs (away[0]) >= fabs (away[1]);
+
+  if (hypot (away[0], away[1]) < 0.1)
+    return "all around";
+  return across ? away[0] < 0 ? "mostly at the left" : "mostly at the right"
+      : away[1] < 0 ? "mostly at the top" : "mostly at the bottom";
+}
+
+/* @result: a calibration
+ * @camera: one of its cameras
+ *
+ * Returns: (transfer full) (element-type utf8): why its numbers are not to be trusted, and
+ *   what to do about it; empty when there is no reason
+ */
+GPtrArray *
+cloth_calibrate_warnings (const ClothCalibration * result, guint camera)
+{
+  GPtrArray *warnings = g_ptr_array_new_with_free_func (g_free);
+  const ClothCalibrateCamera *c = &result->cameras[camera];
+  guint least = cloth_uncertainty_least_views ();
+  gdouble noise = c->rms / sqrt (2), away[2], share;
+
+  if (c->n_views < least)
+    g_ptr_array_add (warnings, g_strdup_printf ("%u views are too few to show "
+            "whether errors are %d times the ± here; take %u at least, better "
+            "ten or more", c->n_views, CLOTH_UNCERTAINTY_MISSED, least));
+  if (cloth_uncertainty_disagrees (&c->map, c->n_views))
+    g_ptr_array_add (warnings, g_strdup_printf ("the views disagree: leave one "
+            "out, and the camera moves %.1f times as far as the ± here allow; "
+            "take them times that, see that the board is flat and held still, "
+            "or add views", c->map.disagreement));
+  share = cloth_uncertainty_thin (&c->map, noise, away);
+  /* A single node is a corner pixel. */
+  if (share * CLOTH_UNCERTAINTY_NODES >= 2)
+    g_ptr_array_add (warnings, g_strdup_printf ("over %.*f%% of the picture, "
+            "%s, a projection is less certain than a corner is seen (%.2f px): "
+            "bring the board there", share < 0.01, 100 * share, side (away),
+            noise));
+  return warnings;
+}
+
 static void
 add_camera (GString * s, const ClothCalibration * result, guint c,
     const ClothShotCamera * shots)
@@ -108,6 +153,7 @@ add_camera (GString * s, const ClothCalibration * result, guint c,
   static const guint k_index[] = { 0, 4, 2, 5 };
   const ClothCamera *camera = &result->rig->cameras[c];
   const ClothCalibrateCamera *quality = &result->cameras[c];
+  g_autoptr (GPtrArray) warnings = NULL;
 
   g_string_append_printf (s,
       "\ncamera %s: %d×%d, %s lens; board found in %u of "
@@ -132,6 +178,10 @@ add_camera (GString * s, const ClothCalibration * result, guint c,
         coefficient_name (camera->lens, i), camera->k[i], camera->k_sd[i]);
   add_uncertainty (s, &quality->map);
   add_reach (s, camera);
+  warnings = cloth_calibrate_warnings (result, c);
+  for (guint i = 0; i < warnings->len; i++)
+    g_string_append_printf (s, "  warning: %s\n",
+        (const gchar *) g_ptr_array_index (warnings, i));
   if (result->placed && c > 0)
     add_place (s, &result->rig->cameras[0], camera);
 }

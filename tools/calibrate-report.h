@@ -11,4 +11,7 @@ G_BEGIN_DECLS
 gchar *cloth_calibrate_report (const ClothCalibrateInput * input,
     const ClothCalibration * result, GPtrArray * cameras);
 
+GPtrArray *cloth_calibrate_warnings (const ClothCalibration * result,
+    guint camera);
+
 G_END_DECLS

@@ -276,7 +276,7 @@ pose_used (const Normal * s, guint p)
 
 /* S = A − W B⁻¹ W', dc = g − W B⁻¹ h, both damped by @lambda times the diagonal. */
 static gboolean
-reduce (Normal * s, gdouble lambda)
+eliminate (Normal * s, gdouble lambda)
 {
   const ClothBundle *b = s->bundle;
   guint n = s->n;
@@ -336,7 +336,15 @@ reduce (Normal * s, gdouble lambda)
       }
     }
   }
-  return n == 0 || cloth_cholesky_factor (n, s->S);
+  return TRUE;
+}
+
+/* The same with S factored. */
+static gboolean
+reduce (Normal * s, gdouble lambda)
+{
+  return eliminate (s, lambda)
+      && (s->n == 0 || cloth_cholesky_factor (s->n, s->S));
 }
 
 static void
@@ -520,7 +528,69 @@ struct _ClothBundleSpread
 {
   Normal s;
   gdouble variance;
+  gdouble *observed, *expected; /* n×n; NULL: too few views to leave one out */
 };
+
+/* How the cameras' parameters move when one pose is left out, summed over poses. One step
+ * of Gauss and Newton from the minimum is
+ *   δ_p = (S − S_p)⁻¹ (g − g_p),  S = Σ S_p, g = Σ g_p,
+ * and independent corners of the variance 1 let Σ δ_p δ_p' be Σ (S − S_p)⁻¹ − S⁻¹ on
+ * average. Poses not in use move nothing. */
+static void
+leave_each_out (ClothBundleSpread * spread)
+{
+  const ClothBundle *b = spread->s.bundle;
+  guint n = spread->s.n;
+  gsize n2 = (gsize) n * n;
+  g_autofree ClothBundleView *views =
+      g_memdup2 (b->views, b->n_views * sizeof (ClothBundleView));
+  g_autofree gdouble *S = g_new (gdouble, n2 + 1);
+  g_autofree gdouble *inverse = g_new (gdouble, n2 + 1);
+  g_autofree gdouble *d = g_new (gdouble, n + 1), *g = g_new (gdouble, n + 1);
+  g_autofree gdouble *observed = g_new0 (gdouble, n2 + 1);
+  g_autofree gdouble *expected = g_new0 (gdouble, n2 + 1);
+  ClothBundle one = *b;
+  gboolean ok;
+  Normal s;
+
+  one.views = views;
+  normal_init (&s, &one);
+  build (&one, &s);
+  ok = eliminate (&s, 0);
+  memcpy (S, s.S, n2 * sizeof (gdouble));
+  memcpy (g, s.dc, n * sizeof (gdouble));
+  for (guint p = 0; ok && p < b->n_poses; p++) {
+    if (!pose_used (&spread->s, p))
+      continue;
+    for (guint v = 0; v < b->n_views; v++)
+      views[v].use = b->views[v].use && b->views[v].pose == p;
+    build (&one, &s);
+    ok = eliminate (&s, 0);
+    for (gsize i = 0; i < n2; i++)
+      s.S[i] = S[i] - s.S[i];
+    for (guint i = 0; i < n; i++)
+      d[i] = g[i] - s.dc[i];
+    ok = ok && cloth_cholesky_factor (n, s.S);
+    if (!ok)
+      break;
+    cloth_cholesky_solve (n, s.S, d);
+    cloth_cholesky_inverse (n, s.S, inverse);
+    for (guint i = 0; i < n; i++) {
+      for (guint j = 0; j < n; j++)
+        observed[(gsize) i * n + j] += d[i] * d[j];
+    }
+    for (gsize i = 0; i < n2; i++)
+      expected[i] += inverse[i];
+    cloth_cholesky_inverse (n, spread->s.S, inverse);
+    for (gsize i = 0; i < n2; i++)
+      expected[i] -= inverse[i];
+  }
+  normal_clear (&s);
+  if (!ok)
+    return;
+  spread->observed = g_steal_pointer (&observed);
+  spread->expected = g_steal_pointer (&expected);
+}
 
 /* @bundle: a problem at its minimum, kept unchanged while the result is in use
  * @error: #ClothRigError when the data leave a direction undetermined
@@ -565,6 +635,8 @@ cloth_bundle_spread_new (const ClothBundle * bundle, GError ** error)
         "the views don't determine all parameters");
     return NULL;
   }
+  if (s->n > 0)
+    leave_each_out (spread);
   return g_steal_pointer (&spread);
 }
 
@@ -576,6 +648,8 @@ cloth_bundle_spread_free (ClothBundleSpread * spread)
   if (!spread)
     return;
   normal_clear (&spread->s);
+  g_free (spread->observed);
+  g_free (spread->expected);
   g_free (spread);
 }
 
@@ -682,11 +756,27 @@ reduce_gradient (const Normal * s, guint camera, const gdouble * X,
   }
 }
 
+/* Σ over both rows of r' M r. */
+static gdouble
+quadratic (guint n, const gdouble * M, const gdouble * r)
+{
+  gdouble sum = 0;
+
+  for (guint i = 0; i < n; i++) {
+    for (guint j = 0; j < n; j++)
+      sum += M[(gsize) i * n + j] * (r[i] * r[j] + r[n + i] * r[n + j]);
+  }
+  return sum;
+}
+
 /* @spread: a problem's
  * @camera: which camera
  * @Z: a point in the camera's frame, m; at infinity only its direction counts
  * @at_infinity: whether the point is infinitely far
  * @cov: (out): covariance xx, xy, yy of where the camera sees it, px²
+ * @disagreement: (out): its variance when poses are left out one by one, over that which
+ *   independent errors of the corners would give: greater than 1 where those of a view are
+ *   not, as on a bent board; NaN when there are too few views to leave one out
  *
  * How certain a projection is. Errors of lens, camera and board poses compensate each
  * other, so where a point appears has a meaning only beside what was seen: the point is
@@ -697,7 +787,8 @@ reduce_gradient (const Normal * s, guint camera, const gdouble * X,
  */
 gboolean
 cloth_bundle_spread_project (const ClothBundleSpread * spread, guint camera,
-    const gdouble Z[3], gboolean at_infinity, gdouble cov[3])
+    const gdouble Z[3], gboolean at_infinity, gdouble cov[3],
+    gdouble * disagreement)
 {
   const Normal *s = &spread->s;
   static const gdouble identity[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
@@ -722,6 +813,8 @@ cloth_bundle_spread_project (const ClothBundleSpread * spread, guint camera,
     cloth_mat3_vec_t (R, a + 3 * i, aR[i]);
   }
   reduce_gradient (s, camera, X, at_infinity, J, aR, r, cov);
+  *disagreement = spread->observed ? quadratic (s->n, spread->observed, r)
+      / (spread->variance * quadratic (s->n, spread->expected, r)) : NAN;
   solved = g_memdup2 (r, 2 * (gsize) s->n * sizeof (gdouble));
   for (guint i = 0; s->n > 0 && i < 2; i++)
     cloth_cholesky_solve (s->n, s->S, solved + i * s->n);

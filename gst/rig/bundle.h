@@ -84,7 +84,8 @@ gdouble cloth_bundle_spread_variance (const ClothBundleSpread * spread);
 void cloth_bundle_spread_cameras (const ClothBundleSpread * spread,
     gdouble * covariance);
 gboolean cloth_bundle_spread_project (const ClothBundleSpread * spread,
-    guint camera, const gdouble Z[3], gboolean at_infinity, gdouble cov[3]);
+    guint camera, const gdouble Z[3], gboolean at_infinity, gdouble cov[3],
+    gdouble * disagreement);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothBundleSpread, cloth_bundle_spread_free)
 

@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "gst/math/linalg.h"
+#include "gst/math/statistics.h"
 #include "gst/math/vec3.h"
 
 #define N_NODES CLOTH_UNCERTAINTY_NODES
@@ -69,10 +70,12 @@ cloth_uncertainty_map (const ClothBundle * bundle,
     const ClothBundleSpread * spread, guint camera, ClothUncertaintyMap * map)
 {
   const ClothCamera *c = &bundle->cameras[camera];
+  g_autofree gdouble *ratios = g_new (gdouble, 2 * N_NODES);
+  guint n = 0;
 
   map->distance = mean_distance (bundle, camera);
   for (guint i = 0; i < N_NODES; i++) {
-    gdouble px[2], Z[3] = { 0, 0, 1 }, cov[3], length;
+    gdouble px[2], Z[3] = { 0, 0, 1 }, cov[3], ratio, length;
 
     map->near[i] = map->far[i] = NAN;
     cloth_uncertainty_node (c, i, px);
@@ -81,11 +84,91 @@ cloth_uncertainty_map (const ClothBundle * bundle,
     length = cloth_vec3_length (Z);
     for (guint j = 0; j < 3; j++)
       Z[j] /= length;
-    if (cloth_bundle_spread_project (spread, camera, Z, TRUE, cov))
+    if (cloth_bundle_spread_project (spread, camera, Z, TRUE, cov, &ratio)) {
       map->far[i] = worst_direction (cov);
+      if (isfinite (ratio))
+        ratios[n++] = ratio;
+    }
     for (guint j = 0; j < 3; j++)
       Z[j] *= map->distance;
-    if (cloth_bundle_spread_project (spread, camera, Z, FALSE, cov))
+    if (cloth_bundle_spread_project (spread, camera, Z, FALSE, cov, &ratio)) {
       map->near[i] = worst_direction (cov);
+      if (isfinite (ratio))
+        ratios[n++] = ratio;
+    }
   }
+  map->disagreement = n ? sqrt (cloth_median (ratios, n)) : NAN;
+}
+
+/* @map: a camera's map
+ * @noise: standard deviation with which a corner is seen, px
+ * @away: (out): where these places are on average, in halves of the picture from its centre
+ *
+ * Returns: share of the picture where a point as far as the boards is predicted less
+ *   certainly than one corner is seen; what is not known counts.
+ */
+gdouble
+cloth_uncertainty_thin (const ClothUncertaintyMap * map, gdouble noise,
+    gdouble away[2])
+{
+  guint n = 0;
+
+  away[0] = away[1] = 0;
+  for (guint i = 0; i < N_NODES; i++) {
+    if (map->near[i] <= noise)
+      continue;
+    away[0] += 2. * (i % CLOTH_UNCERTAINTY_COLUMNS)
+        / (CLOTH_UNCERTAINTY_COLUMNS - 1) - 1;
+    away[1] += 2. * (i / CLOTH_UNCERTAINTY_COLUMNS)
+        / (CLOTH_UNCERTAINTY_ROWS - 1) - 1;
+    n++;
+  }
+  for (guint j = 0; j < 2; j++)
+    away[j] /= MAX (n, 1);
+  return (gdouble) n / N_NODES;
+}
+
+/* The quantile @p of a variance estimated from @n views, over the true one. */
+static gdouble
+scatter_quantile (guint n, gdouble p)
+{
+  gdouble low = 0, high = 1;
+
+  while (1 - cloth_chi_square_tail (high, n - 1) < p)
+    high *= 2;
+  for (gint i = 0; i < 50; i++) {
+    gdouble middle = 0.5 * (low + high);
+
+    if (1 - cloth_chi_square_tail (middle, n - 1) < p)
+      low = middle;
+    else
+      high = middle;
+  }
+  return high / (n - 1);
+}
+
+/* @map: a camera's map
+ * @n_views: views the camera was calibrated from
+ *
+ * Returns: whether views disagree more than noise alone lets them in one case of twenty.
+ */
+gboolean
+cloth_uncertainty_disagrees (const ClothUncertaintyMap * map, guint n_views)
+{
+  return n_views > 1 && map->disagreement * map->disagreement
+      > scatter_quantile (n_views, 0.95);
+}
+
+/* Returns: the least number of views that in nineteen cases of twenty show it when errors
+ * are %CLOTH_UNCERTAINTY_MISSED times as large as noise makes them.
+ */
+guint
+cloth_uncertainty_least_views (void)
+{
+  guint n = 2;
+
+  while (CLOTH_UNCERTAINTY_MISSED * CLOTH_UNCERTAINTY_MISSED
+      * scatter_quantile (n, 0.05) < scatter_quantile (n, 0.95))
+    n++;
+  return n;
 }

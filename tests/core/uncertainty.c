@@ -228,6 +228,98 @@ test_coverage (void)
   g_assert_cmpfloat (map->near[right], >, 3 * map->near[left]);
 }
 
+#define TRIALS 24
+
+/* Views that only noise tells apart agree. Those of a board that bulges by a sixtieth of its
+ * length, taken for flat, do not: their parameters are off by more than they say. */
+static void
+test_disagreement (void)
+{
+  const gdouble bulges[2] = { 0, 0.004 };
+  ClothRandom random;
+  gdouble middle[2] = { 0, 0 }, missed[2] = { 0, 0 };
+  guint n_disagree[2] = { 0, 0 };
+
+  cloth_random_init (&random, 17);
+  for (guint run = 0; run < 2 * TRIALS; run++) {
+    guint bent = run & 1;
+    g_auto (Problem) p;
+    g_autoptr (ClothCalibration) result = NULL;
+    const ClothUncertaintyMap *map;
+    ClothCamera truth;
+
+    problem_init (&p, 1, 9, 7, 0.03, 10);
+    true_rig (p.cameras);
+    truth = p.cameras[0];
+    for (guint i = 0; i < p.input.n_vertices; i++) {
+      gdouble u = 2 * (i % 9) / 8. - 1, v = 2 * (i / 9) / 6. - 1;
+
+      p.board[3 * i + 2] = bulges[bent] * (1 - u * u) * (1 - v * v);
+    }
+    for (guint v = 0; v < 10; v++) {
+      gdouble P[12];
+
+      true_pose (&random, 0.7, P);
+      see (&p, &truth, 0, v, P, &random, 0.1, FALSE);
+    }
+    for (guint i = 0; i < p.input.n_vertices; i++)
+      p.board[3 * i + 2] = 0;
+    result = calibrate (&p);
+    map = &result->cameras[0].map;
+    middle[bent] += map->disagreement / TRIALS;
+    missed[bent] += worst_deviation (result->rig, &truth, 4) / TRIALS;
+    n_disagree[bent] += cloth_uncertainty_disagrees (map, 10);
+  }
+  g_test_message ("flat: %.2f, %u of %d disagree, off by %.1f σ at the worst; "
+      "bent: %.2f, %u, %.1f σ", middle[0], n_disagree[0], TRIALS, missed[0],
+      middle[1], n_disagree[1], missed[1]);
+  g_assert_cmpfloat (middle[0], >, 0.8);
+  g_assert_cmpfloat (middle[0], <, 1.25);
+  g_assert_cmpuint (n_disagree[0], <=, TRIALS / 6);
+  g_assert_cmpfloat (missed[1], >, 4);
+  g_assert_cmpuint (n_disagree[1], >=, TRIALS - TRIALS / 6);
+}
+
+/* Three views of the shipped boards put the centre 5 px beside that of all of them. */
+static void
+test_three_views (void)
+{
+  const gint left[2] = { 0, -1 };
+  gdouble centre[2], sd;
+  guint least = cloth_uncertainty_least_views ();
+
+  for (guint few = 0; few < 2; few++) {
+    g_auto (Problem) p;
+    g_autoptr (ClothCalibration) result = NULL;
+    const ClothCalibrateCamera *camera;
+    gdouble away[2], share;
+
+    problem_init (&p, 1, 9, 6, 0.025, 13);
+    load_corners (&p, left);
+    if (few)
+      p.input.n_views = 3;
+    result = calibrate (&p);
+    camera = &result->cameras[0];
+    centre[few] = result->rig->cameras[0].K[2];
+    sd = result->rig->cameras[0].K_sd[2];
+    share = cloth_uncertainty_thin (&camera->map, camera->rms / G_SQRT2, away);
+    g_test_message
+        ("%u views: cx %.2f ± %.2f, %.1f times more scatter, %.0f%% "
+        "less certain than a corner, around %.2f %.2f", camera->n_views,
+        centre[few], sd, camera->map.disagreement, 100 * share, away[0],
+        away[1]);
+    /* The boards were at the right of the left camera's pictures. */
+    g_assert_cmpfloat (away[0], <, -0.1);
+    g_assert_cmpfloat (share, >, few ? 0.4 : 0.2);
+    g_assert_cmpfloat (share, <, few ? 0.7 : 0.4);
+    if (few)
+      g_assert_true (cloth_uncertainty_disagrees (&camera->map, 3));
+  }
+  g_assert_cmpfloat (fabs (centre[1] - centre[0]), >, 3 * sd);
+  /* Quantiles of the tables: 9 · 1.635 / 6 > 12.59 / 6, 9 · 1.145 / 5 < 11.07 / 5. */
+  g_assert_cmpuint (least, ==, 7);
+}
+
 /* Where the lens folds back there is no projection to be certain of, nor behind it. */
 static void
 test_unknown (void)
@@ -237,6 +329,7 @@ test_unknown (void)
   static const gdouble x[4] = { 100, 150, 100, 151 }, y[4] = { 10, 11, 61, 60 };
   static const gdouble behind[3] = { 0, 0, -1 }, ahead[3] = { 0, 0, 1 };
   gdouble pose[12] = { 1, 0, 0, 0, 1, 0, 0, 0, 1, -2, -2, 10 }, cov[3];
+  gdouble disagreement;
   gdouble excess = 0.1;
   guint none = 0, all = CLOTH_BUNDLE_FOCAL | CLOTH_BUNDLE_CENTRE;
   ClothCamera camera = { NULL, 640, 480, {500, 0, 200, 0, 500, 110, 0, 0, 1},
@@ -252,9 +345,12 @@ test_unknown (void)
 
   spread = cloth_bundle_spread_new (&bundle, &error);
   g_assert_no_error (error);
-  g_assert_true (cloth_bundle_spread_project (spread, 0, ahead, TRUE, cov));
-  g_assert_false (cloth_bundle_spread_project (spread, 0, behind, TRUE, cov));
-  g_assert_false (cloth_bundle_spread_project (spread, 0, behind, FALSE, cov));
+  g_assert_true (cloth_bundle_spread_project (spread, 0, ahead, TRUE, cov,
+          &disagreement));
+  g_assert_false (cloth_bundle_spread_project (spread, 0, behind, TRUE, cov,
+          &disagreement));
+  g_assert_false (cloth_bundle_spread_project (spread, 0, behind, FALSE, cov,
+          &disagreement));
   cloth_uncertainty_map (&bundle, spread, 0, &map);
   g_assert_false (isnan (map.near[NODES / 4]));
   g_assert_true (isnan (map.near[NODES - 1]) && isnan (map.far[NODES - 1]));
@@ -275,6 +371,8 @@ main (int argc, char **argv)
   g_test_add_func ("/uncertainty/mrcal-pair", test_mrcal_pair);
   g_test_add_func ("/uncertainty/scatter", test_scatter);
   g_test_add_func ("/uncertainty/coverage", test_coverage);
+  g_test_add_func ("/uncertainty/disagreement", test_disagreement);
+  g_test_add_func ("/uncertainty/three-views", test_three_views);
   g_test_add_func ("/uncertainty/unknown", test_unknown);
   return g_test_run ();
 }

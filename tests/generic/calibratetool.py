@@ -84,6 +84,16 @@ for side, limit, subpix in (('left', 0.165, 0.195), ('right', 0.163, 0.207)):
     check(cameras[0]['standard_deviations']['K'][0] < 0.6, '%s: fx ± %.2f px'
           % (side, cameras[0]['standard_deviations']['K'][0]))
 
+# Three pictures put the centre 5 px beside that of all of them, and say that they may.
+report, few = calibrate('--pattern', pattern, *('left=%s/left0%d.jpg' % (boards, i) for i in (1, 2, 3)))
+_, cameras = calibrate('--pattern', pattern, 'left=%s/left*.jpg' % boards)
+off = few[0]['K'][0][2] - cameras[0]['K'][0][2]
+check(abs(off) > 3 and '3 views are too few' in report and 'mostly at the left' in report,
+      'three pictures: cx off by %.1f ± %.2f px, with a warning' % (off, few[0]['standard_deviations']['K'][2]))
+report, _ = calibrate('--pattern', pattern, 'left=%s/left*.jpg' % boards)
+check('too few' not in report and 'the views disagree' in report
+      and re.search(r'at infinity +0\.\d+ +\d+\.\d+ ', report), 'all pictures: projections and their warning')
+
 # OpenCV's own calibration of the left camera, published with the pictures; one of its views
 # is off by 1.2 px (RMS 0.393 px).
 _, cameras = calibrate('--pattern', pattern, 'left=%s/left*.jpg' % boards)
