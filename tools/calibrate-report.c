@@ -170,6 +170,9 @@ add_camera (GString * s, const ClothCalibration * result, guint c,
   add_rms (s, ", on views left out of the fit", quality->left_out_rms);
   g_string_append_printf (s, ", scatter beyond that of the corners %.3f px\n",
       quality->excess);
+  if (quality->n_outliers)
+    g_string_append_printf (s, "  outliers: %u corner%s, of little weight in "
+        "the fit\n", quality->n_outliers, quality->n_outliers > 1 ? "s" : "");
   for (guint i = 0; i < 4; i++)
     g_string_append_printf (s, "    %s  %12.4f ± %-8.2g px\n", k_names[i],
         camera->K[k_index[i]], camera->K_sd[i]);
@@ -186,19 +189,44 @@ add_camera (GString * s, const ClothCalibration * result, guint c,
     add_place (s, &result->rig->cameras[0], camera);
 }
 
+/* @input: what was calibrated
+ * @result: what came of it
+ * @view: which view
+ *
+ * Returns: how many of its corners are outliers.
+ */
+guint
+cloth_calibrate_view_outliers (const ClothCalibrateInput * input,
+    const ClothCalibration * result, guint view)
+{
+  guint first = 0, n = 0;
+
+  for (guint v = 0; v < view; v++)
+    first += input->views[v].n;
+  for (guint i = 0; i < input->views[view].n; i++)
+    n += result->outlier[first + i];
+  return n;
+}
+
 static void
 add_view (GString * s, const ClothCalibrateInput * in,
     const ClothCalibration * result, const ClothShotCamera * camera, guint v,
     guint shot)
 {
+  guint n_outliers = cloth_calibrate_view_outliers (in, result, v);
   const ClothShot *picture = g_ptr_array_index (camera->shots, shot);
 
   if (isnan (result->view_rms[v]))
     g_string_append_printf (s, "  %-12s %-24s unused, %u corners\n",
         camera->name, picture->label, in->views[v].n);
   else
-    g_string_append_printf (s, "  %-12s %-24s %.3f of %u\n", camera->name,
+    g_string_append_printf (s, "  %-12s %-24s %.3f of %u", camera->name,
         picture->label, result->view_rms[v], in->views[v].n);
+  if (n_outliers)
+    g_string_append_printf (s, ", %u outlier%s", n_outliers,
+        n_outliers > 1 ? "s" : "");
+  if (!isnan (result->view_rms[v]))
+    g_string_append_c (s, '\n');
 }
 
 /* Together what was seen together. */

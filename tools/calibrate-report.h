@@ -11,6 +11,8 @@ G_BEGIN_DECLS
 gchar *cloth_calibrate_report (const ClothCalibrateInput * input,
     const ClothCalibration * result, GPtrArray * cameras);
 
+guint cloth_calibrate_view_outliers (const ClothCalibrateInput * input,
+    const ClothCalibration * result, guint view);
 GPtrArray *cloth_calibrate_warnings (const ClothCalibration * result,
     guint camera);
 

@@ -833,20 +833,27 @@ cloth_bundle_spread_project (const ClothBundleSpread * spread, guint camera,
  * @dx: (out caller-allocates): seen minus predicted, px, a number a point; NaN where the
  *   point is not in front of the camera
  * @dy: (out caller-allocates): likewise
+ * @distance: (out caller-allocates) (nullable): the same in standard deviations
  */
 void
 cloth_bundle_residuals (const ClothBundle * bundle, guint view, gdouble * dx,
-    gdouble * dy)
+    gdouble * dy, gdouble * distance)
 {
   const ClothBundleView *v = &bundle->views[view];
+  gdouble excess = bundle->excess[v->camera];
 
   for (guint i = 0; i < v->n; i++) {
-    gdouble e[2];
+    gdouble e[2], M[3];
 
     if (!point (bundle, v, i, e, NULL))
       e[0] = e[1] = NAN;
     dx[i] = e[0];
     dy[i] = e[1];
+    if (distance) {
+      information (v, i, excess * excess, M);
+      distance[i] = sqrt (M[0] * e[0] * e[0] + 2 * M[1] * e[0] * e[1]
+          + M[2] * e[1] * e[1]);
+    }
   }
 }
 

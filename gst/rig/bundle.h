@@ -71,7 +71,7 @@ typedef struct {
 gboolean cloth_bundle_solve (ClothBundle * bundle, gdouble * cost,
     GError ** error);
 void cloth_bundle_residuals (const ClothBundle * bundle, guint view,
-    gdouble * dx, gdouble * dy);
+    gdouble * dx, gdouble * dy, gdouble * distance);
 gdouble cloth_bundle_excess (const ClothBundle * bundle, guint camera);
 
 /* How certain the parameters of a solved problem are. */

@@ -70,10 +70,11 @@ typedef struct {
  * @left_out_rms: the same on views that took no part in the fit but for their own pose; NaN
  *   without the check
  * @excess: what the corners scatter beyond their own covariances, px, one axis
+ * @n_outliers: corners farther off than chance takes any of them, in 19 calibrations of 20
  * @map: how certain its projections are
  */
 typedef struct {
-  guint n_views, n_shared, n_points;
+  guint n_views, n_shared, n_points, n_outliers;
   gdouble rms;
   gdouble left_out_rms;
   gdouble excess;
@@ -87,6 +88,10 @@ typedef struct {
  * @variance: variance of the standardised residuals, by which the deviations are scaled
  * @cameras: (array): one a camera
  * @view_rms: (array): one a view of the input, px; NaN: unused, too few corners
+ * @dx: (array): one a corner of the input, view after view: seen minus predicted, px; NaN:
+ *   unused
+ * @dy: (array): likewise
+ * @outlier: (array): likewise, whether it is one
  * @n_poses: poses below
  * @poses: (array): 12 numbers a pose of the input: R and t, board to world; NaN: unused,
  *   all NaN when not @placed
@@ -98,6 +103,8 @@ typedef struct {
   gdouble variance;
   ClothCalibrateCamera *cameras;
   gdouble *view_rms;
+  gdouble *dx, *dy;
+  gboolean *outlier;
   guint n_poses;
   gdouble *poses;
 } ClothCalibration;
