@@ -10,11 +10,13 @@
 #include "gst/math/vec3.h"
 #include "gst/rig/rotation.h"
 
-/* Good views give about 1, a board of other squares than said 6. */
-#define MAX_VARIANCE 2.5
-
-static const gchar *
-coefficient_name (ClothLens lens, guint i)
+/* @lens: a lens model
+ * @i: one of its coefficients
+ *
+ * Returns: its name.
+ */
+const gchar *
+cloth_calibrate_coefficient_name (ClothLens lens, guint i)
 {
   static const gchar *const brown[] = { "k1", "k2", "p1", "p2", "k3", "k4",
     "k5", "k6"
@@ -178,7 +180,8 @@ add_camera (GString * s, const ClothCalibration * result, guint c,
         camera->K[k_index[i]], camera->K_sd[i]);
   for (guint i = 0; i < cloth_lens_n_coefficients (camera->lens); i++)
     g_string_append_printf (s, "    %s  %12.6f ± %.2g\n",
-        coefficient_name (camera->lens, i), camera->k[i], camera->k_sd[i]);
+        cloth_calibrate_coefficient_name (camera->lens, i), camera->k[i],
+        camera->k_sd[i]);
   add_uncertainty (s, &quality->map);
   add_reach (s, camera);
   warnings = cloth_calibrate_warnings (result, c);
@@ -264,7 +267,7 @@ cloth_calibrate_report (const ClothCalibrateInput * input,
   g_string_append_printf (s,
       "; variance of the residuals %.2f times the expected one\n",
       result->variance);
-  if (result->variance > MAX_VARIANCE)
+  if (result->variance > CLOTH_CALIBRATE_MAX_VARIANCE)
     g_string_append (s, "The views contradict each other: don't use this rig. "
         "Check that the board has these squares, first one included, and is "
         "flat; take out pictures of great RMS below.\n");

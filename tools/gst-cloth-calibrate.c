@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "calibrate-page.h"
 #include "calibrate-report.h"
 #include "calibrate-shots.h"
 #include "gst/pattern/pattern.h"
@@ -18,7 +19,7 @@ typedef struct
 {
   gboolean share_lens, intrinsics_only;
   gint columns, rows, every, max_views, leave_out;
-  gchar *pattern, *square, *first, *lens, *world, *size, *output;
+  gchar *pattern, *square, *first, *lens, *world, *size, *output, *report;
   gchar **opencv, *kalibr;
   gchar **cameras;
 } Arguments;
@@ -221,7 +222,7 @@ calibrate (const Arguments * a, GPtrArray * cameras,
   g_autoptr (ClothRig) rig = cloth_rig_new (cameras->len);
   g_autoptr (ClothCalibration) result = NULL;
   g_autoptr (GError) error = NULL;
-  g_autofree gchar *report = NULL;
+  g_autofree gchar *report = NULL, *folder = NULL, *page = NULL;
   ClothCalibrateInput in;
   ClothCalibrateParams params;
 
@@ -236,11 +237,17 @@ calibrate (const Arguments * a, GPtrArray * cameras,
   result = cloth_calibrate (&in, &params, show_fit, NULL, NULL, &error);
   if (isatty (2))
     g_printerr ("\r\033[K");
-  if (!result || !cloth_rig_save (result->rig, a->output, &error))
+  folder = g_path_get_dirname (a->output);
+  page = a->report ? g_strdup (a->report)
+      : g_build_filename (folder, "calibration.html", NULL);
+  if (!result || !cloth_rig_check (result->rig, &error)
+      || !cloth_calibrate_page_write (&in, result, pattern, cameras,
+          page, &error) || !cloth_rig_save (result->rig, a->output, &error))
     return complain (FAILED, "%s", error->message);
   report = cloth_calibrate_report (&in, result, cameras);
-  g_print ("board: %d × %d squares of %g mm\n%s\nwrote %s\n", pattern->columns,
-      pattern->rows, 1e3 * pattern->square_m, report, a->output);
+  g_print ("board: %d × %d squares of %g mm\n%s\nwrote %s and %s\n",
+      pattern->columns, pattern->rows, 1e3 * pattern->square_m, report,
+      a->output, page);
   return DONE;
 }
 
@@ -364,6 +371,9 @@ main (int argc, char **argv)
         "WIDTHxHEIGHT"},
     {"output", 'o', 0, G_OPTION_ARG_FILENAME, &a.output,
         "The rig.json to write", "FILE"},
+    {"report", 0, 0, G_OPTION_ARG_FILENAME, &a.report,
+          "The page that shows it (calibration.html beside the rig.json)",
+        "FILE"},
     {G_OPTION_REMAINING, 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &a.cameras, NULL,
         "CAMERA=FILE…"},
     {NULL}
@@ -382,6 +392,7 @@ main (int argc, char **argv)
   g_free (a.world);
   g_free (a.size);
   g_free (a.output);
+  g_free (a.report);
   g_strfreev (a.opencv);
   g_free (a.kalibr);
   g_strfreev (a.cameras);
