@@ -15,6 +15,9 @@
 #include "gst/rig/rigyaml.h"
 #include "tools/tool.h"
 
+/* Pictures that tell how squares were counted. */
+#define N_PROBED 5
+
 typedef struct
 {
   gboolean share_lens, intrinsics_only;
@@ -251,6 +254,27 @@ calibrate (const Arguments * a, GPtrArray * cameras,
   return DONE;
 }
 
+/* Whether a camera's first pictures show the board that has so many corners inside as it was
+ * said to have squares: what other programs ask for. */
+static gboolean
+corners_counted (const ClothShotCamera * camera, const ClothPattern * pattern,
+    guint every)
+{
+  g_autoptr (GPtrArray) one =
+      g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_shot_camera_free);
+  g_autoptr (ClothPattern) larger = cloth_pattern_new_checker
+      (pattern->columns + 1, pattern->rows + 1, pattern->square_m,
+      pattern->square_m / 2, pattern->first_black, NULL);
+  ClothShotCamera *probe = cloth_shot_camera_new (camera->name);
+
+  g_ptr_array_add (one, probe);
+  for (guint i = 0; i < MIN (camera->files->len, N_PROBED); i++)
+    cloth_shot_camera_add (probe, g_ptr_array_index (camera->files, i), NULL);
+  cloth_shot_cameras_number (one);
+  return larger && cloth_shot_camera_read (probe, larger, every, NULL, NULL,
+      NULL) && probe->shots->len > 0;
+}
+
 static gint
 import (const Arguments * a)
 {
@@ -326,6 +350,14 @@ run (gconstpointer data)
     }
     if (isatty (2) && camera->film)
       g_printerr ("\n");
+    if (a->columns && camera->shots->len == 0
+        && corners_counted (camera, pattern, (guint) a->every))
+      return complain (FAILED,
+          "camera %s: its board has %d × %d corners inside, "
+          "and so %d × %d squares, which is what to give: --columns %d "
+          "--rows %d", camera->name, pattern->columns, pattern->rows,
+          pattern->columns + 1, pattern->rows + 1, pattern->columns + 1,
+          pattern->rows + 1);
   }
   cloth_shot_cameras_choose (cameras, (guint) a->max_views);
   return calibrate (a, cameras, pattern, lens);

@@ -126,6 +126,12 @@ check('contradict' not in report, 'pair: views agree')
 refused(1, 'found in 0 views', '--output', output, '--columns', '11', '--rows', '7',
         '--square', '25mm', 'left=%s/left*.jpg' % boards)
 
+# Inner corners, as other programs count, in place of squares; a board that is neither.
+refused(1, 'so 10 × 7 squares, which is what to give: --columns 10 --rows 7', '--output', output,
+        '--columns', '9', '--rows', '6', '--square', '25mm', 'left=%s/left*.jpg' % boards)
+refused(1, 'found in 0 views', '--output', output, '--columns', '8', '--rows', '5',
+        '--square', '25mm', 'left=%s/left*.jpg' % boards)
+
 # Boards of 14×19 corners that the cameras saw one after the other; two numbers are equal.
 apart = ['--columns', '20', '--rows', '15', '--square', '10mm',
          '201=%s/board_201_*.jpg' % multidic, '202=%s/board_202_*.jpg' % multidic]

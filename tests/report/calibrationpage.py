@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """The page of a calibration in a browser.
 
-  calibrationpage.py TOOL TEST_DATA
+  calibrationpage.py TOOL TEST_DATA             tests it
+  calibrationpage.py TOOL TEST_DATA PICTURE     takes the picture of docs/calibration.md
 
 SPDX-License-Identifier: LGPL-2.1-or-later
 """
@@ -17,7 +18,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from webdriver import Browser
 
-tool, boards = sys.argv[1], os.path.join(sys.argv[2], 'opencv_boards')
+tool, picture, boards = sys.argv[1], sys.argv[3:], os.path.join(sys.argv[2], 'opencv_boards')
 # A file's name may be anything but a folder's.
 HOSTILE = '<img src=x onerror="window.hacked = 1">'
 
@@ -144,6 +145,18 @@ def check_refused(folder):
     assert os.listdir(folder) == [], os.listdir(folder)
 
 
+def take_picture(path):
+    with tempfile.TemporaryDirectory() as folder, Browser(1240, 1570) as browser:
+        done = calibrate(folder, *('%s=%s/%s*.jpg' % (side, boards, side) for side in ('left', 'right')))
+        assert done.returncode == 0, done.stderr
+        show(browser, os.path.join(folder, 'calibration.html'))
+        with open(path, 'wb') as file:
+            file.write(browser.picture())
+
+
+if picture:
+    take_picture(picture[0])
+    sys.exit()
 with Browser(820, 600) as window:
     for check in (check_hostile, check_pair):
         with tempfile.TemporaryDirectory() as place:
