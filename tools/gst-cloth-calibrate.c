@@ -11,6 +11,7 @@
 #include "calibrate-shots.h"
 #include "gst/pattern/pattern.h"
 #include "gst/rig/calibrate.h"
+#include "gst/rig/cameramodel.h"
 #include "gst/rig/rigfile.h"
 #include "gst/rig/rigyaml.h"
 #include "tools/tool.h"
@@ -23,7 +24,7 @@ typedef struct
   gboolean share_lens, intrinsics_only;
   gint columns, rows, every, max_views, leave_out;
   gchar *pattern, *square, *first, *lens, *world, *size, *output, *report;
-  gchar **opencv, *kalibr;
+  gchar **opencv, *kalibr, **mrcal, *export_mrcal;
   gchar **cameras;
 } Arguments;
 
@@ -213,6 +214,13 @@ fill_input (GPtrArray * cameras, const ClothPattern * pattern, ClothLens lens,
   in->symmetries = (const guint *) symmetries->data;
 }
 
+static gboolean
+write_models (const Arguments * a, const ClothRig * rig, GError ** error)
+{
+  return !a->export_mrcal
+      || cloth_rig_export_mrcal (rig, a->export_mrcal, error);
+}
+
 static gint
 calibrate (const Arguments * a, GPtrArray * cameras,
     const ClothPattern * pattern, ClothLens lens)
@@ -244,6 +252,7 @@ calibrate (const Arguments * a, GPtrArray * cameras,
   page = a->report ? g_strdup (a->report)
       : g_build_filename (folder, "calibration.html", NULL);
   if (!result || !cloth_rig_check (result->rig, &error)
+      || !write_models (a, result->rig, &error)
       || !cloth_calibrate_page_write (&in, result, pattern, cameras,
           page, &error) || !cloth_rig_save (result->rig, a->output, &error))
     return complain (FAILED, "%s", error->message);
@@ -282,18 +291,20 @@ import (const Arguments * a)
   g_autoptr (ClothRig) rig = NULL;
   gint width = 0, height = 0;
 
-  if ((a->opencv && a->kalibr) || a->cameras)
-    return complain (BAD_USAGE, "--import-opencv and --import-kalibr stand "
-        "alone, without each other and without pictures");
+  if (!!a->opencv + !!a->kalibr + !!a->mrcal > 1 || a->cameras)
+    return complain (BAD_USAGE, "--import-opencv, --import-kalibr and "
+        "--import-mrcal stand alone, without each other and without pictures");
   if (a->size && !parse_size (a->size, &width, &height))
     return complain (BAD_USAGE, "--size: give WIDTHxHEIGHT, for instance "
         "640x480");
   rig = a->opencv ? cloth_rig_import_opencv ((const gchar * const *) a->opencv,
       width, height, &error)
-      : cloth_rig_import_kalibr (a->kalibr, &error);
+      : a->mrcal ? cloth_rig_import_mrcal ((const gchar * const *) a->mrcal,
+      &error) : cloth_rig_import_kalibr (a->kalibr, &error);
   if (!rig && width == 0 && strstr (error->message, "no picture size"))
     g_prefix_error (&error, "give --size: ");
-  if (!rig || !cloth_rig_save (rig, a->output, &error))
+  if (!rig || !write_models (a, rig, &error)
+      || !cloth_rig_save (rig, a->output, &error))
     return complain (FAILED, "%s", error->message);
   for (guint c = 0; c < rig->n_cameras; c++)
     g_print ("camera %s: %d×%d, %s lens\n", rig->cameras[c].name,
@@ -317,7 +328,7 @@ run (gconstpointer data)
   gst_init (NULL, NULL);
   if (!a->output)
     return complain (BAD_USAGE, "name the file to write: --output rig.json");
-  if (a->opencv || a->kalibr)
+  if (a->opencv || a->kalibr || a->mrcal)
     return import (a);
   if (!cloth_lens_from_string (a->lens, &lens))
     return complain (BAD_USAGE, "--lens: give none, brown5, brown8 or fisheye");
@@ -398,6 +409,11 @@ main (int argc, char **argv)
           "in files of their own, or for several cameras", "FILE"},
     {"import-kalibr", 0, 0, G_OPTION_ARG_FILENAME, &a.kalibr,
         "Take over Kalibr's camera chain", "FILE"},
+    {"import-mrcal", 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &a.mrcal,
+          "Take over mrcal's .cameramodel; several times for several cameras",
+        "FILE"},
+    {"export-mrcal", 0, 0, G_OPTION_ARG_FILENAME, &a.export_mrcal,
+        "Also write each camera as .cameramodel", "FOLDER"},
     {"size", 0, 0, G_OPTION_ARG_STRING, &a.size,
           "Picture size of an OpenCV calibration that doesn't say it",
         "WIDTHxHEIGHT"},
@@ -427,6 +443,8 @@ main (int argc, char **argv)
   g_free (a.report);
   g_strfreev (a.opencv);
   g_free (a.kalibr);
+  g_strfreev (a.mrcal);
+  g_free (a.export_mrcal);
   g_strfreev (a.cameras);
   return code;
 }

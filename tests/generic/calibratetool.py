@@ -179,6 +179,9 @@ _, cameras = calibrate('--size', '641x479', '--import-opencv', unsized)
 check(cameras[0]['size'] == [641, 479] and cameras[0]['name'] == 'unsized', '--size')
 refused(1, 'no Kalibr camera chain', '--output', output, '--import-kalibr',
         os.path.join(boards, 'left_intrinsics.yml'))
+refused(1, 'LENSMODEL', '--output', output, '--import-mrcal', os.path.join(boards, 'left_intrinsics.yml'))
+refused(2, 'stand alone', '--output', output, '--import-mrcal', os.path.join(boards, 'left.cameramodel'),
+        '--import-kalibr', unsized)
 hang = os.path.join(folder, 'hang.yml')
 with open(hang, 'w', encoding='utf-8') as file:
     file.write('%YAML:1.0\n---a: 1\nb<!--\nc: 2\n')

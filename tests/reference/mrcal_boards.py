@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""What mrcal says of the shipped boards: tests/data/opencv_boards/mrcal.txt.
+"""What mrcal says of the shipped boards: mrcal.txt, left.cameramodel and right.cameramodel in
+tests/data/opencv_boards.
 
-  mrcal_boards.py TEST_DATA            writes the file
+  mrcal_boards.py TEST_DATA            writes the files
   mrcal_boards.py --check TEST_DATA    whether mrcal still says the same; 77: there is no mrcal
 
 Each camera alone, then both together, from the corners of corners_cv2.txt, every corner of
@@ -11,7 +12,6 @@ SPDX-License-Identifier: LGPL-2.1-or-later
 """
 import os
 import sys
-import tempfile
 
 try:
     import mrcal
@@ -74,6 +74,8 @@ for sides in ([0], [1], [0, 1]):
     for camera, side in enumerate(sides):
         model = mrcal.cameramodel(optimization_inputs=inputs, icam_intrinsics=camera)
         away = distance(model, inputs)
+        if not check and len(sides) == 2:
+            model.write(os.path.join(boards, ('left', 'right')[side] + '.cameramodel'))
         lines.append('lens %d %d ' % (len(sides), side)
                      + ' '.join('%.9g' % value for value in (*model.intrinsics()[1], away)))
         pixels = np.array([[(SIZE[0] - 1) * i / 4, (SIZE[1] - 1) * j / 4] for j in range(5) for i in range(5)])
