@@ -187,6 +187,44 @@ with open(hang, 'w', encoding='utf-8') as file:
     file.write('%YAML:1.0\n---a: 1\nb<!--\nc: 2\n')
 refused(1, 'not YAML', '--output', output, '--import-opencv', hang)
 
+# Which way is up: a rig whose y is down, one with the board on the floor, one with a plumb line.
+down = os.path.join(folder, 'down.json')
+models = [x for side in ('left', 'right') for x in ('--import-mrcal', os.path.join(boards, side + '.cameramodel'))]
+check(run('--output', down, *models).returncode == 0, '--import-mrcal')
+_, cameras = calibrate('upright', down)
+check(all(abs(a - b) < 1e-9 for x, y in zip(cameras[0]['R'], ([1, 0, 0], [0, 0, -1], [0, 1, 0])) for a, b in zip(x, y)),
+      'upright: z up in the first picture')
+pair = ['--pattern', pattern, 'left=%s/left*.jpg' % boards, 'right=%s/right*.jpg' % boards]
+_, floor = calibrate('--world', 'board', *pair)
+_, cameras = calibrate('upright', down, '--world', 'board', '--pattern', pattern,
+                       'left=%s/left01.jpg' % boards, 'right=%s/right01.jpg' % boards)
+off = max(math.dist(a, b) for x, y in zip(floor, cameras) for a, b in zip(matrix(x), matrix(y)))
+check(off < 0.01, 'upright on the board: %.4f beside a calibration there' % off)
+plumb = os.path.join(folder, 'plumb.csv')
+with open(plumb, 'w', encoding='utf-8') as file:
+    file.write('# a line that leans by 45° in the pictures\nleft,300,200,0,0,1\nright,240,210,0,0,1\n'
+               'left,400,300,0,0,0\nright,340,310,0,0,0\n')
+report, cameras = calibrate('upright', down, '--world', 'points', '--points', plumb)
+up = [row[2] for row in cameras[0]['R']]
+check('(RMS)' in report and up[0] < -0.6 and up[1] < -0.6, 'upright by a plumb line: up is %.2f %.2f %.2f in the camera'
+      % tuple(up))
+report, cameras = calibrate('--world', 'points', '--points', plumb, *pair)
+up = [row[2] for row in cameras[0]['R']]
+check('(RMS)' in report and up[0] < -0.6 and up[1] < -0.6, 'calibrated by a plumb line')
+refused(2, 'go together', '--output', output, 'upright', down, '--world', 'points')
+refused(2, 'go together', '--output', output, 'upright', down, '--points', plumb)
+refused(2, 'have no world', '--output', output, '--world', 'points', '--points', plumb, '--intrinsics-only', *pair)
+refused(2, 'upright RIG', '--output', output, 'upright')
+refused(2, 'upright RIG CAMERA', '--output', output, '--world', 'board', 'upright', down)
+refused(2, 'nothing to report', '--output', output, '--report', output, 'upright', down)
+refused(1, 'no camera "other"', '--output', output, '--world', 'board', 'upright', down, '--pattern', pattern,
+        'other=%s/left01.jpg' % boards)
+refused(1, 'in none of the pictures', '--output', output, '--world', 'board', 'upright', down, '--columns', '8',
+        '--rows', '5', '--square', '1cm', 'left=%s/left01.jpg' % boards)
+with open(plumb, 'a', encoding='utf-8') as file:
+    file.write('left,1,2,3\n')
+refused(1, 'line 6: give camera,x,y,X,Y,Z', '--output', output, 'upright', down, '--world', 'points', '--points', plumb)
+
 # What can go wrong.
 given = ['--output', output, '--pattern', pattern]
 left = os.path.join(boards, 'left*.jpg')

@@ -56,7 +56,7 @@ ROOMS = [
     Room('gst/effect', 'the one list of effects', ['effect.h', 'list.h']),
     Room('gst/pattern', 'what is printed on the cloth', EACH),
     Room('gst/rig', 'cameras and triangulation',
-         ['rig.h', 'rigfile.h', 'rigyaml.h', 'cameramodel.h', 'camera.h', 'capture.h', 'orbit.h', 'rotation.h',
+         ['rig.h', 'rigfile.h', 'rigyaml.h', 'cameramodel.h', 'world.h', 'camera.h', 'capture.h', 'orbit.h', 'rotation.h',
           'planar.h', 'rectify.h', 'calibrate.h', 'uncertainty.h', 'merge.h', 'triangulate.h', 'reconstruct.h']),
     Room('gst/mesh', 'meshes and their files',
          {'': ['topology.h', 'hold.h', 'side.h'], 'formats': ['formats.h'],
