@@ -146,6 +146,10 @@ to_json (const ClothCalibrateInput * in, const ClothCalibration * result,
   cloth_json_writer_number (w, "rms", result->rms);
   cloth_json_writer_number (w, "left_out_rms", result->left_out_rms);
   cloth_json_writer_number (w, "variance", result->variance);
+  if (result->warp_sd[0] > 0) {
+    cloth_json_writer_numbers (w, "warp", result->warp, 2);
+    cloth_json_writer_numbers (w, "warp_sd", result->warp_sd, 2);
+  }
   cloth_json_writer_boolean (w, "contradict",
       result->variance > CLOTH_CALIBRATE_MAX_VARIANCE);
   cloth_json_writer_boolean (w, "placed", result->placed);

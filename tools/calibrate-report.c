@@ -135,8 +135,9 @@ cloth_calibrate_warnings (const ClothCalibration * result, guint camera)
   if (cloth_uncertainty_disagrees (&c->map, c->n_views))
     g_ptr_array_add (warnings, g_strdup_printf ("the views disagree: leave one "
             "out, and the camera moves %.1f times as far as the ± here allow; "
-            "take them times that, see that the board is flat and held still, "
-            "or add views", c->map.disagreement));
+            "take them times that, see that the board is flat%s and held still, "
+            "or add views", c->map.disagreement,
+            result->warp_sd[0] > 0 ? "" : " (else give --warp)"));
   share = cloth_uncertainty_thin (&c->map, noise, away);
   /* A single node is a corner pixel. */
   if (share * CLOTH_UNCERTAINTY_NODES >= 2)
@@ -271,6 +272,11 @@ cloth_calibrate_report (const ClothCalibrateInput * input,
     g_string_append (s, "The views contradict each other: don't use this rig. "
         "Check that the board has these squares, first one included, and is "
         "flat; take out pictures of great RMS below.\n");
+  if (result->warp_sd[0] > 0)
+    g_string_append_printf (s, "the board's middle is %.3f ± %.2g mm off the "
+        "plane of its rim by a bend along the rows, %.3f ± %.2g mm by one along "
+        "the columns\n", 1e3 * result->warp[0], 1e3 * result->warp_sd[0],
+        1e3 * result->warp[1], 1e3 * result->warp_sd[1]);
   if (!result->placed)
     g_string_append (s, "Intrinsics only: the cameras were not placed; all "
         "stand at the origin.\n");

@@ -25,7 +25,7 @@
 
 typedef struct
 {
-  gboolean share_lens, intrinsics_only;
+  gboolean share_lens, intrinsics_only, warp;
   gint columns, rows, every, max_views, leave_out;
   gchar *pattern, *square, *first, *lens, *world, *size, *output, *report;
   gchar **opencv, *kalibr, **mrcal, *export_mrcal, *points;
@@ -290,6 +290,7 @@ calibrate (const Arguments * a, GPtrArray * cameras,
       symmetries);
   cloth_calibrate_params_init (&params);
   params.share_lens = a->share_lens;
+  params.warp = a->warp;
   params.intrinsics_only = a->intrinsics_only;
   params.leave_out = (guint) a->leave_out;
   params.world = !strcmp (a->world, "board") ? CLOTH_CALIBRATE_WORLD_BOARD
@@ -564,6 +565,8 @@ main (int argc, char **argv)
         "All cameras have the same distortion", NULL},
     {"intrinsics-only", 0, 0, G_OPTION_ARG_NONE, &a.intrinsics_only,
         "The cameras' pictures were not taken at the same moments", NULL},
+    {"warp", 0, 0, G_OPTION_ARG_NONE, &a.warp,
+        "The board may be bent: find how", NULL},
     {"world", 0, 0, G_OPTION_ARG_STRING, &a.world,
           "World's origin: the first camera, z up in its picture; the board "
           "in the first picture, z off it; or as --points have it (camera)",

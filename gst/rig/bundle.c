@@ -11,7 +11,9 @@
 #include "gst/rig/rig.h"
 #include "gst/rig/rotation.h"
 
-#define N_CAMERA CLOTH_CAMERA_N_PARAMETERS
+#define N_OWN CLOTH_CAMERA_N_PARAMETERS
+/* With the board's warp, which all cameras share. */
+#define N_CAMERA (N_OWN + 2)
 #define N_ALL (N_CAMERA + 6)
 
 /* Bounds of the rational lens model's denominator, over the picture and a rim. */
@@ -21,7 +23,8 @@
 /* Poses are eliminated first: with C the cameras' parameters and P those of poses,
  *   [ A   W ] [dC]   [g]
  *   [ W'  B ] [dP] = [h],  B block-diagonal (6×6 a pose),
- * so (A − W B⁻¹ W') dC = g − W B⁻¹ h. W has one block (18×6) a view. */
+ * so (A − W B⁻¹ W') dC = g − W B⁻¹ h. W has one block (20×6) a view; the board's warp counts
+ * among the parameters of each camera. */
 typedef struct
 {
   const ClothBundle *bundle;
@@ -39,7 +42,7 @@ static void
 normal_init (Normal * s, const ClothBundle * b)
 {
   guint *fill = g_new0 (guint, b->n_poses + 1);
-  gint shared[8];
+  gint shared[8], warp[2] = { -1, -1 };
 
   memset (s, 0, sizeof *s);
   s->bundle = b;
@@ -51,6 +54,12 @@ normal_init (Normal * s, const ClothBundle * b)
       gboolean lens = j >= 4 && j < 12;
       gint *column = &s->map[c * N_CAMERA + j];
 
+      if (j >= N_OWN) {
+        if (b->free_warp && warp[j - N_OWN] < 0)
+          warp[j - N_OWN] = (gint) s->n++;
+        *column = warp[j - N_OWN];
+        continue;
+      }
       if (!(b->free[c] & (1u << j)))
         *column = -1;
       else if (lens && b->share_lens && shared[j - 4] >= 0)
@@ -120,19 +129,24 @@ information (const ClothBundleView * view, guint i, gdouble e, gdouble M[3])
 
 /* One point: residual (seen − predicted), and with J its derivative of the prediction:
  * row-major 2×N_ALL, columns of the camera (rotation: a small one about the camera's axes,
- * on the left), then of the pose (rotation on the left, translation). */
+ * on the left), of the warp, then of the pose (rotation on the left, translation). */
 static gboolean
 point (const ClothBundle * b, const ClothBundleView * view, guint i,
     gdouble e[2], gdouble * J)
 {
   ClothCamera camera = b->cameras[view->camera];
   const gdouble *P = b->poses + 12 * (gsize) view->pose;
-  const gdouble *X = b->board + 3 * (gsize) view->vertex[i];
+  const gdouble *vertex = b->board + 3 * (gsize) view->vertex[i];
+  const gdouble *bulge = b->bulge ? b->bulge + 2 * (gsize) view->vertex[i]
+      : NULL;
+  gdouble X[3] = { vertex[0], vertex[1], vertex[2] };
   const gdouble *R = b->cameras[view->camera].R;
   const gdouble *t = b->cameras[view->camera].t;
   static const gdouble identity[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
-  gdouble PX[3], Y[3], RY[3], Z[3], px[2], a[6], d[2 * N_CAMERA];
+  gdouble PX[3], Y[3], RY[3], Z[3], px[2], a[6], d[2 * N_OWN];
 
+  if (bulge)
+    X[2] += bulge[0] * b->warp[0] + bulge[1] * b->warp[1];
   cloth_mat3_vec (P, X, PX);
   for (gint j = 0; j < 3; j++)
     Y[j] = PX[j] + P[9 + j];
@@ -151,7 +165,7 @@ point (const ClothBundle * b, const ClothBundleView * view, guint i,
     gdouble *row = J + r * N_ALL, aR[3];
     const gdouble *ar = a + 3 * r;
 
-    memcpy (row, d + r * N_CAMERA, 12 * sizeof (gdouble));
+    memcpy (row, d + r * N_OWN, 12 * sizeof (gdouble));
     for (gint j = 0; j < 3; j++) {
       gint k = (j + 1) % 3, l = (j + 2) % 3;
 
@@ -163,9 +177,12 @@ point (const ClothBundle * b, const ClothBundleView * view, guint i,
     for (gint j = 0; j < 3; j++) {
       gint k = (j + 1) % 3, l = (j + 2) % 3;
 
-      row[18 + j] = PX[k] * aR[l] - PX[l] * aR[k];
-      row[21 + j] = aR[j];
+      row[N_CAMERA + j] = PX[k] * aR[l] - PX[l] * aR[k];
+      row[N_CAMERA + 3 + j] = aR[j];
     }
+    for (gint j = 0; j < 2; j++)
+      row[N_OWN + j] = bulge
+          ? bulge[j] * (aR[0] * P[2] + aR[1] * P[5] + aR[2] * P[8]) : 0;
   }
   return TRUE;
 }
@@ -417,6 +434,8 @@ apply (ClothBundle * b, const Normal * s)
     for (guint j = 0; j < 3; j++)
       camera->t[j] += d[15 + j];
   }
+  for (guint j = 0; j < 2; j++)
+    b->warp[j] += b->free_warp ? s->dc[s->map[N_OWN + j]] : 0;
   for (guint p = 0; p < b->n_poses; p++) {
     gdouble *P = b->poses + 12 * (gsize) p;
 
@@ -477,7 +496,7 @@ cloth_bundle_solve (ClothBundle * bundle, gdouble * cost, GError ** error)
       g_memdup2 (bundle->cameras, bundle->n_cameras * sizeof (ClothCamera));
   g_autofree gdouble *poses = g_memdup2 (bundle->poses,
       12 * bundle->n_poses * sizeof (gdouble));
-  gdouble lambda = 1e-4, now;
+  gdouble lambda = 1e-4, now, warp[2] = { bundle->warp[0], bundle->warp[1] };
   gboolean ok = TRUE;
   guint settled = 0;
 
@@ -507,12 +526,14 @@ cloth_bundle_solve (ClothBundle * bundle, gdouble * cost, GError ** error)
       memcpy (cameras, bundle->cameras,
           bundle->n_cameras * sizeof (ClothCamera));
       memcpy (poses, bundle->poses, 12 * bundle->n_poses * sizeof (gdouble));
+      memcpy (warp, bundle->warp, sizeof warp);
       lambda = fmax (lambda / 10, 1e-12);
       now = build (bundle, &s);
     } else {
       memcpy (bundle->cameras, cameras,
           bundle->n_cameras * sizeof (ClothCamera));
       memcpy (bundle->poses, poses, 12 * bundle->n_poses * sizeof (gdouble));
+      memcpy (bundle->warp, warp, sizeof warp);
       lambda *= 10;
       if (lambda > 1e10)
         break;
@@ -681,12 +702,33 @@ cloth_bundle_spread_cameras (const ClothBundleSpread * spread,
   for (guint c = 0; c < s->bundle->n_cameras; c++) {
     const gint *map = s->map + c * N_CAMERA;
 
-    for (guint i = 0; i < N_CAMERA; i++) {
-      for (guint j = 0; j < N_CAMERA; j++)
-        covariance[(c * N_CAMERA + i) * N_CAMERA + j] =
+    for (guint i = 0; i < N_OWN; i++) {
+      for (guint j = 0; j < N_OWN; j++)
+        covariance[(c * N_OWN + i) * N_OWN + j] =
             map[i] < 0 || map[j] < 0 ? 0
             : spread->variance * inverse[(gsize) map[i] * s->n + map[j]];
     }
+  }
+}
+
+/* @spread: a problem's
+ * @sd: (out): standard deviations of the board's warp, m; 0 when that is not free
+ */
+void
+cloth_bundle_spread_warp (const ClothBundleSpread * spread, gdouble sd[2])
+{
+  const Normal *s = &spread->s;
+
+  for (guint j = 0; j < 2; j++) {
+    g_autofree gdouble *unit = g_new0 (gdouble, s->n + 1);
+    gint column = s->map[N_OWN + j];
+
+    sd[j] = 0;
+    if (column < 0)
+      continue;
+    unit[column] = 1;
+    cloth_cholesky_solve (s->n, s->S, unit);
+    sd[j] = sqrt (spread->variance * unit[column]);
   }
 }
 
@@ -705,9 +747,9 @@ reduce_gradient (const Normal * s, guint camera, const gdouble * X,
   memset (r, 0, 2 * (gsize) s->n * sizeof (gdouble));
   memset (rest, 0, 3 * sizeof (gdouble));
   for (guint i = 0; i < 2; i++) {
-    for (guint j = 0; j < N_CAMERA; j++) {
+    for (guint j = 0; j < N_OWN; j++) {
       if (map[j] >= 0)
-        r[i * s->n + map[j]] += own[i * N_CAMERA + j];
+        r[i * s->n + map[j]] += own[i * N_OWN + j];
     }
   }
   for (guint v = 0; v < b->n_views; v++)
@@ -793,7 +835,7 @@ cloth_bundle_spread_project (const ClothBundleSpread * spread, guint camera,
   const Normal *s = &spread->s;
   static const gdouble identity[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
   ClothCamera own = s->bundle->cameras[camera];
-  gdouble R[9], t[3], X[3], d[3], px[2], a[6], J[2 * N_CAMERA], aR[2][3];
+  gdouble R[9], t[3], X[3], d[3], px[2], a[6], J[2 * N_OWN], aR[2][3];
   g_autofree gdouble *r = g_new (gdouble, 2 * (gsize) s->n + 1);
   g_autofree gdouble *solved = NULL;
 
@@ -807,9 +849,9 @@ cloth_bundle_spread_project (const ClothBundleSpread * spread, guint camera,
     d[j] = at_infinity ? Z[j] : Z[j] - t[j];
   cloth_mat3_vec_t (R, d, X);
   for (guint i = 0; i < 2; i++) {
-    cloth_vec3_cross (d, a + 3 * i, J + i * N_CAMERA + 12);
+    cloth_vec3_cross (d, a + 3 * i, J + i * N_OWN + 12);
     for (guint j = 0; j < 3; j++)
-      J[i * N_CAMERA + 15 + j] = at_infinity ? 0 : a[3 * i + j];
+      J[i * N_OWN + 15 + j] = at_infinity ? 0 : a[3 * i + j];
     cloth_mat3_vec_t (R, a + 3 * i, aR[i]);
   }
   reduce_gradient (s, camera, X, at_infinity, J, aR, r, cov);

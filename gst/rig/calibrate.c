@@ -33,6 +33,7 @@ typedef struct
   gdouble *poses;
   gdouble *excess;
   guint *free_bits;
+  gdouble *bulge;
   GPtrArray *renumbered;        /* vertices of views, owned */
   ClothRig *rig;
   ClothBundle bundle;
@@ -76,6 +77,7 @@ work_clear (Work * w)
   g_free (w->poses);
   g_free (w->excess);
   g_free (w->free_bits);
+  g_free (w->bulge);
   g_clear_pointer (&w->renumbered, g_ptr_array_unref);
   cloth_rig_free (w->rig);
 }
@@ -400,6 +402,31 @@ place (Work * w, GError ** error)
   return TRUE;
 }
 
+/* A board that is bent is a parabola both ways, as mrcal has it: 1 in the middle, 0 at the
+ * rim. */
+static void
+bend (Work * w)
+{
+  const ClothCalibrateInput *in = w->in;
+  gdouble low[2] = { HUGE_VAL, HUGE_VAL }, high[2] = { -HUGE_VAL, -HUGE_VAL };
+
+  for (guint i = 0; i < 2 * in->n_vertices; i++) {
+    gdouble x = in->board[3 * (i / 2) + i % 2];
+
+    low[i % 2] = fmin (low[i % 2], x);
+    high[i % 2] = fmax (high[i % 2], x);
+  }
+  w->bulge = g_new (gdouble, 2 * in->n_vertices + 1);
+  for (guint i = 0; i < 2 * in->n_vertices; i++) {
+    gdouble u = (in->board[3 * (i / 2) + i % 2] - low[i % 2])
+        / (high[i % 2] - low[i % 2]);
+
+    w->bulge[i] = 4 * u * (1 - u);
+  }
+  w->bundle.bulge = w->bulge;
+  w->bundle.free_warp = TRUE;
+}
+
 static gboolean
 fit (Work * w, GError ** error)
 {
@@ -415,6 +442,8 @@ fit (Work * w, GError ** error)
     if (w->params->share_lens)
       share_lens (w);
     separate (w);
+    if (w->params->warp)
+      bend (w);
     return settle (w, "intrinsics", error);
   }
   if (!place (w, error))
@@ -422,6 +451,8 @@ fit (Work * w, GError ** error)
   alone = median_alone (w, shared);
   if (w->params->share_lens)
     share_lens (w);
+  if (w->params->warp)
+    bend (w);
   if (one)
     return settle (w, "refinement", error);
 
@@ -592,7 +623,7 @@ leave_out (Work * w, ClothCalibration * result, GError ** error)
   g_autofree gdouble *poses = g_memdup2 (b->poses,
       12 * b->n_poses * sizeof (gdouble));
   g_autoptr (GError) undetermined = NULL;
-  gdouble total = 0;
+  gdouble total = 0, warp[2] = { b->warp[0], b->warp[1] };
   guint n = 0, all = 0;
   gboolean ok = TRUE, enough = TRUE;
 
@@ -631,6 +662,7 @@ leave_out (Work * w, ClothCalibration * result, GError ** error)
     for (guint v = 0; v < b->n_views; v++)
       w->views[v].use = use[v] && out[v];
     memset (w->free_bits, 0, b->n_cameras * sizeof (guint));
+    b->free_warp = FALSE;
     tell (w, "leave-out check", 0.5);
     ok = cloth_bundle_solve (b, NULL, error);
     for (guint c = 0; ok && c < b->n_cameras; c++) {
@@ -657,6 +689,7 @@ leave_out (Work * w, ClothCalibration * result, GError ** error)
     w->views[v].use = use[v];
   memcpy (b->cameras, cameras, b->n_cameras * sizeof (ClothCamera));
   memcpy (b->poses, poses, 12 * b->n_poses * sizeof (gdouble));
+  memcpy (b->warp, warp, sizeof warp);
   return ok;
 }
 
@@ -745,6 +778,8 @@ cloth_calibrate (const ClothCalibrateInput * input,
   }
   result->variance = cloth_bundle_spread_variance (spread);
   cloth_bundle_spread_cameras (spread, C);
+  cloth_bundle_spread_warp (spread, result->warp_sd);
+  memcpy (result->warp, w.bundle.warp, sizeof result->warp);
   if (!check_focal (&w, C, error))
     return NULL;
   for (guint c = 0; c < input->n_cameras; c++)

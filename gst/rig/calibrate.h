@@ -49,6 +49,7 @@ typedef enum {
 /* @intrinsics_only: views of different cameras were not taken at the same moments: don't
  *   place the cameras
  * @share_lens: all cameras have the same distortion coefficients
+ * @warp: the board may be bent: how is estimated, too
  * @world: where the world lies
  * @huber: corners farther off than this many standard deviations get less weight
  * @leave_out: every so many poses one is left out for the check; 0: no check
@@ -57,6 +58,7 @@ typedef enum {
 typedef struct {
   gboolean intrinsics_only;
   gboolean share_lens;
+  gboolean warp;
   ClothCalibrateWorld world;
   gdouble huber;
   guint leave_out;
@@ -85,6 +87,9 @@ typedef struct {
  * @placed: whether the cameras' places were determined
  * @rms: root mean square reprojection error, px
  * @left_out_rms: as in #ClothCalibrateCamera, over all cameras
+ * @warp: how far the board's middle is lifted off the plane of its rim, by a bend along its
+ *   rows and by one along its columns, m; 0 when it was taken for flat
+ * @warp_sd: standard deviations of @warp
  * @variance: variance of the standardised residuals, by which the deviations are scaled
  * @cameras: (array): one a camera
  * @view_rms: (array): one a view of the input, px; NaN: unused, too few corners
@@ -100,6 +105,7 @@ typedef struct {
   ClothRig *rig;
   gboolean placed;
   gdouble rms, left_out_rms;
+  gdouble warp[2], warp_sd[2];
   gdouble variance;
   ClothCalibrateCamera *cameras;
   gdouble *view_rms;

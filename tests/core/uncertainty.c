@@ -9,7 +9,7 @@
 #define NODES CLOTH_UNCERTAINTY_NODES
 
 static ClothCalibration *
-calibrate (const Problem * p)
+calibrate_board (const Problem * p, gboolean warp)
 {
   g_autoptr (GError) error = NULL;
   ClothCalibrateParams params;
@@ -18,9 +18,16 @@ calibrate (const Problem * p)
   cloth_calibrate_params_init (&params);
   params.huber = 1e9;           /* nor has mrcal outliers in these files */
   params.leave_out = 0;
+  params.warp = warp;
   result = cloth_calibrate (&p->input, &params, NULL, NULL, NULL, &error);
   g_assert_no_error (error);
   return result;
+}
+
+static ClothCalibration *
+calibrate (const Problem * p)
+{
+  return calibrate_board (p, FALSE);
 }
 
 /* mrcal.txt holds what mrcal says of the same corners. It divides the squares of residuals
@@ -91,6 +98,56 @@ test_mrcal_pair (void)
   const gint both[2] = { 0, 1 };
 
   compare_with_mrcal (2, both, 0.1);
+}
+
+static void
+compare_bent (gint side, const gdouble k[9], const gdouble warp[2], gdouble far)
+{
+  const gint use[2] = { side ? -1 : 0, side ? 0 : -1 };
+  gdouble dof = 2 * 702 - 9 - 13 * 6 - 2, worst = 0, sd;
+  g_auto (Problem) p;
+  g_autoptr (ClothCalibration) result = NULL;
+
+  problem_init (&p, 1, 9, 6, 0.025, 13);
+  load_corners (&p, use);
+  result = calibrate_board (&p, TRUE);
+  for (guint i = 0; i < 9; i++) {
+    gdouble value = parameter (&result->rig->cameras[0], i, &sd);
+
+    worst = fmax (worst, fabs (value - k[i]) / sd);
+  }
+  for (guint i = 0; i < 2; i++)
+    worst = fmax (worst, fabs (result->warp[i] - warp[i])
+        / result->warp_sd[i]);
+  g_test_message ("warp %.4f ± %.4f, %.4f ± %.4f mm; all within %.1e σ of "
+      "mrcal's", 1e3 * result->warp[0], 1e3 * result->warp_sd[0],
+      1e3 * result->warp[1], 1e3 * result->warp_sd[1], worst);
+  g_assert_cmpfloat (worst, <, 0.01);
+  g_assert_cmpfloat (fabs (result->cameras[0].map.far[NODES / 2]
+          * sqrt (dof / (2 * 702)) / far - 1), <, 0.001);
+}
+
+/* The same where the board may be bent. */
+static void
+test_mrcal_bent (void)
+{
+  g_autofree gchar *text = NULL;
+  guint n_lines = 0;
+
+  g_assert_true (g_file_get_contents (TEST_DATA "/opencv_boards/mrcal.txt",
+          &text, NULL, NULL));
+  for (gchar * line = text; line && *line; line = strchr (line, '\n') + 1) {
+    gint count, side;
+    gdouble k[9], warp[2], far;
+
+    if (sscanf (line, "bent %d %d %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf "
+            "%lf", &count, &side, k, k + 1, k + 2, k + 3, k + 4, k + 5, k + 6,
+            k + 7, k + 8, warp, warp + 1, &far) != 14 || count != 1)
+      continue;
+    compare_bent (side, k, warp, far);
+    n_lines++;
+  }
+  g_assert_cmpuint (n_lines, ==, 2);
 }
 
 #define RUNS 100
@@ -280,6 +337,57 @@ test_disagreement (void)
   g_assert_cmpuint (n_disagree[1], >=, TRIALS - TRIALS / 6);
 }
 
+/* How a board is bent is found with two cameras, and what the views say then agrees. */
+static void
+test_bent (void)
+{
+  const gdouble warp[2] = { 0.004, -0.0015 };
+  ClothRandom random;
+  ClothCamera truth[4] = { 0, };
+  g_auto (Problem) p;
+  g_autoptr (ClothCalibration) flat = NULL, bent = NULL;
+  gdouble worst = 0;
+
+  cloth_random_init (&random, 23);
+  problem_init (&p, 2, 9, 7, 0.03, 12);
+  true_rig (p.cameras);
+  memcpy (truth, p.cameras, 2 * sizeof *truth);
+  for (guint i = 0; i < p.input.n_vertices; i++) {
+    gdouble u = 2 * (i % 9) / 8. - 1, v = 2 * (i / 9) / 6. - 1;
+
+    p.board[3 * i + 2] = warp[0] * (1 - u * u) + warp[1] * (1 - v * v);
+  }
+  for (guint v = 0; v < 12; v++) {
+    gdouble P[12];
+
+    true_pose (&random, 0.7, P);
+    for (guint c = 0; c < 2; c++)
+      see (&p, &truth[c], c, v, P, &random, 0.1, FALSE);
+  }
+  for (guint i = 0; i < p.input.n_vertices; i++)
+    p.board[3 * i + 2] = 0;
+  flat = calibrate (&p);
+  bent = calibrate_board (&p, TRUE);
+  for (guint i = 0; i < 2; i++) {
+    worst = fmax (worst, fabs (bent->warp[i] - warp[i]) / bent->warp_sd[i]);
+    g_assert_cmpfloat (bent->warp_sd[i], <, 1e-4);
+    g_assert_cmpfloat (flat->warp[i], ==, 0);
+    g_assert_cmpfloat (flat->warp_sd[i], ==, 0);
+  }
+  g_test_message
+      ("warp within %.1f σ; disagreement %.2f, flat %.2f; parameters "
+      "within %.1f σ, flat %.1f", worst, bent->cameras[0].map.disagreement,
+      flat->cameras[0].map.disagreement, worst_deviation (bent->rig, truth, 12),
+      worst_deviation (flat->rig, truth, 12));
+  g_assert_cmpfloat (worst, <, 4);
+  g_assert_cmpfloat (worst_deviation (bent->rig, truth, 12), <, 4);
+  g_assert_cmpfloat (worst_deviation (flat->rig, truth, 12), >, 4);
+  for (guint c = 0; c < 2; c++) {
+    g_assert_false (cloth_uncertainty_disagrees (&bent->cameras[c].map, 12));
+    g_assert_true (cloth_uncertainty_disagrees (&flat->cameras[c].map, 12));
+  }
+}
+
 /* Three views of the shipped boards put the centre 5 px beside that of all of them. */
 static void
 test_three_views (void)
@@ -369,9 +477,11 @@ main (int argc, char **argv)
   g_test_init (&argc, &argv, NULL);
   g_test_add_func ("/uncertainty/mrcal-one", test_mrcal_one);
   g_test_add_func ("/uncertainty/mrcal-pair", test_mrcal_pair);
+  g_test_add_func ("/uncertainty/mrcal-bent", test_mrcal_bent);
   g_test_add_func ("/uncertainty/scatter", test_scatter);
   g_test_add_func ("/uncertainty/coverage", test_coverage);
   g_test_add_func ("/uncertainty/disagreement", test_disagreement);
+  g_test_add_func ("/uncertainty/bent", test_bent);
   g_test_add_func ("/uncertainty/three-views", test_three_views);
   g_test_add_func ("/uncertainty/unknown", test_unknown);
   return g_test_run ();

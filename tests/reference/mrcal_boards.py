@@ -27,7 +27,7 @@ SIZE = (640, 480)
 SEED = np.array([535, 535, 319.5, 239.5])
 
 
-def optimised(sides):
+def optimised(sides, bent=False):
     table = np.loadtxt(os.path.join(boards, 'corners_cv2.txt'))
     frames = 1 + int(table[:, 1].max())
     corners = np.ones((len(sides), frames, ROWS, COLUMNS, 3))
@@ -49,10 +49,11 @@ def optimised(sides):
         extrinsics_rt_fromref=np.array(extrinsics).reshape(-1, 6), frames_rt_toref=mrcal.rt_from_Rt(poses[0]),
         points=None, observations_board=np.ascontiguousarray(np.array([corners[c, f] for f, c in seen])),
         indices_frame_camintrinsics_camextrinsics=np.array([[f, c, c - 1] for f, c in seen], dtype=np.int32),
-        observations_point=None, indices_point_camintrinsics_camextrinsics=None, calobject_warp=None,
+        observations_point=None, indices_point_camintrinsics_camextrinsics=None,
+        calobject_warp=np.zeros(2) if bent else None,
         imagersizes=np.array([SIZE] * len(sides), dtype=np.int32), calibration_object_spacing=SQUARE,
         do_optimize_intrinsics_core=True, do_optimize_intrinsics_distortions=True, do_optimize_extrinsics=True,
-        do_optimize_frames=True, do_optimize_calobject_warp=False, do_apply_regularization=False,
+        do_optimize_frames=True, do_optimize_calobject_warp=bent, do_apply_regularization=False,
         do_apply_outlier_rejection=False, verbose=False)
     for _ in range(3):
         mrcal.optimize(**inputs)
@@ -68,6 +69,7 @@ def distance(model, inputs):
 
 lines = ['# made by tests/reference/mrcal_boards.py with mrcal 2.2 of Debian 12',
          '# cameras in the fit, camera: fx fy cx cy k1 k2 p1 p2 k3, distance (m)',
+         '# bent: the same parameters where the board may be, its warp (m), 1σ in the centre, at infinity (px)',
          '# cameras in the fit, camera, x, y: 1σ in the worst direction (px) at that distance, at infinity']
 for sides in ([0], [1], [0, 1]):
     inputs = optimised(sides)
@@ -84,6 +86,13 @@ for sides in ([0], [1], [0, 1]):
         far = mrcal.projection_uncertainty(rays, model, what='worstdirection-stdev', atinfinity=True)
         for pixel, a, b in zip(pixels, near, far):
             lines.append('px %d %d %g %g %.5g %.5g' % (len(sides), side, *pixel, a, b))
+    inputs = optimised(sides, True)
+    for camera, side in enumerate(sides):
+        model = mrcal.cameramodel(optimization_inputs=inputs, icam_intrinsics=camera)
+        ray = mrcal.unproject(np.array([(SIZE[0] - 1) / 2, (SIZE[1] - 1) / 2]), *model.intrinsics(), normalize=True)
+        far = mrcal.projection_uncertainty(ray, model, what='worstdirection-stdev', atinfinity=True)
+        lines.append('bent %d %d ' % (len(sides), side) + ' '.join(
+            '%.9g' % value for value in (*model.intrinsics()[1], *inputs['calobject_warp'], far)))
 text = '\n'.join(lines) + '\n'
 path = os.path.join(boards, 'mrcal.txt')
 if not check:

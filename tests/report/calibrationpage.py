@@ -116,13 +116,14 @@ def check_hostile(browser, folder):
     for i in range(1, 8):
         shutil.copy('%s/left0%d.jpg' % (boards, i), os.path.join(folder, '%s%d.jpg' % (HOSTILE, i)))
     path = os.path.join(folder, 'named.html')
-    done = calibrate(folder, '--intrinsics-only', '--report', path, '<b>bold=%s/*.jpg' % folder)
+    done = calibrate(folder, '--intrinsics-only', '--warp', '--report', path, '<b>bold=%s/*.jpg' % folder)
     assert done.returncode == 0 and path in done.stdout, done.stderr
     assert not os.path.exists(os.path.join(folder, 'calibration.html'))
     show(browser, path)
     seen = browser.run('return document.querySelector("main").textContent')
     assert seen.count(HOSTILE) > 7 and '<b>bold' in seen
     assert browser.run('return window.hacked') is None and count(browser, 'main img, main b') == 0
+    assert 'bent along rows and columns' in seen
     assert count(browser, '#rig') == 0 and count(browser, '#certainty canvas') == 1
 
 

@@ -1,5 +1,5 @@
 /*! Made by gst/gap/report/web/build.mjs: do not edit.
-sources sha256 19865bce1fa891e06fd2899ef58cc10bebcc291f73cc909544cdf4da59aa94c4
+sources sha256 a8b079226465e74cb521ed30c608432c9d9567d2f54dd0001d800911165b5b88
 below sha256 277fa7abfca8306501c1654c29ca5cd8271cbec6fe73ec04d2f514956691957a
 
 Our own part: SPDX-License-Identifier: LGPL-2.1-or-later. With it come

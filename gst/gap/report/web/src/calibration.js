@@ -42,6 +42,8 @@ function head() {
       figure('RMS', px(data.rms), '', 'distance between corners seen and predicted'),
       figure('RMS left out', px(data.left_out_rms), '', 'on views that took no part in the fit'),
       figure('Variance', number(data.variance), '', 'of the residuals, over the expected one'),
+      data.warp ? figure('Board', data.warp.map((warp) => number(1000 * warp, 2)).join(', ') + ' mm', '',
+        `bent along rows and columns, ± ${data.warp_sd.map((sd) => number(1000 * sd, 1)).join(', ')} mm`) : null,
       figure('Corners', String(total('corners')), '', `${total('outliers')} of them outliers`)));
 }
 
