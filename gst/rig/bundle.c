@@ -567,6 +567,7 @@ leave_each_out (ClothBundleSpread * spread)
       g_memdup2 (b->views, b->n_views * sizeof (ClothBundleView));
   g_autofree gdouble *S = g_new (gdouble, n2 + 1);
   g_autofree gdouble *inverse = g_new (gdouble, n2 + 1);
+  g_autofree gdouble *with_all = g_new (gdouble, n2 + 1);
   g_autofree gdouble *d = g_new (gdouble, n + 1), *g = g_new (gdouble, n + 1);
   g_autofree gdouble *observed = g_new0 (gdouble, n2 + 1);
   g_autofree gdouble *expected = g_new0 (gdouble, n2 + 1);
@@ -580,6 +581,7 @@ leave_each_out (ClothBundleSpread * spread)
   ok = eliminate (&s, 0);
   memcpy (S, s.S, n2 * sizeof (gdouble));
   memcpy (g, s.dc, n * sizeof (gdouble));
+  cloth_cholesky_inverse (n, spread->s.S, with_all);
   for (guint p = 0; ok && p < b->n_poses; p++) {
     if (!pose_used (&spread->s, p))
       continue;
@@ -601,10 +603,7 @@ leave_each_out (ClothBundleSpread * spread)
         observed[(gsize) i * n + j] += d[i] * d[j];
     }
     for (gsize i = 0; i < n2; i++)
-      expected[i] += inverse[i];
-    cloth_cholesky_inverse (n, spread->s.S, inverse);
-    for (gsize i = 0; i < n2; i++)
-      expected[i] -= inverse[i];
+      expected[i] += inverse[i] - with_all[i];
   }
   normal_clear (&s);
   if (!ok)
