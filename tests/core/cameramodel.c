@@ -115,7 +115,8 @@ test_round (void)
 static void
 test_good (void)
 {
-  static const gchar text[] = "# it's\n{ 'x': b'{#,\"[', 'lensmodel': "
+  static const gchar text[] =
+      "# it's\n{ 'n': 'no # comment b', 'x': b'{#,\"[', 'lensmodel': "
       "'LENSMODEL_OPENCV4', 'intrinsics': [500, 501, 320, 240, -.1, .02, 1e-3, "
       "-2e-3], " PLACE ", 'y': b\"'\" }";
   g_autoptr (GError) error = NULL;

@@ -337,6 +337,48 @@ test_disagreement (void)
   g_assert_cmpuint (n_disagree[1], >=, TRIALS - TRIALS / 6);
 }
 
+/* What the warp is known to, against the scatter of many calibrations. */
+static void
+test_warp_scatter (void)
+{
+  enum
+  { N = 48 };
+  gdouble warp[N][2], predicted[2] = { 0, 0 };
+  gdouble poses[8][12];
+  ClothRandom random;
+
+  cloth_random_init (&random, 29);
+  for (guint v = 0; v < 8; v++)
+    true_pose (&random, 0.7, poses[v]);
+  for (guint run = 0; run < N; run++) {
+    g_auto (Problem) p;
+    g_autoptr (ClothCalibration) result = NULL;
+    ClothCamera truth;
+
+    problem_init (&p, 1, 9, 7, 0.03, 8);
+    true_rig (p.cameras);
+    truth = p.cameras[0];
+    for (guint v = 0; v < 8; v++)
+      see (&p, &truth, 0, v, poses[v], &random, 0.1, FALSE);
+    result = calibrate_board (&p, TRUE);
+    for (guint i = 0; i < 2; i++) {
+      warp[run][i] = result->warp[i];
+      predicted[i] += result->warp_sd[i] * result->warp_sd[i] / N;
+    }
+  }
+  for (guint i = 0; i < 2; i++) {
+    gdouble sum = 0, ratio;
+
+    /* The true board is flat. */
+    for (guint run = 0; run < N; run++)
+      sum += warp[run][i] * warp[run][i] / N;
+    ratio = sqrt (sum / predicted[i]);
+    g_test_message ("warp %u: scatter %.4f mm, ratio %.2f", i, 1e3 * sqrt (sum),
+        ratio);
+    g_assert_cmpfloat (fabs (log (ratio)), <, 0.3);
+  }
+}
+
 /* How a board is bent is found with two cameras, and what the views say then agrees. */
 static void
 test_bent (void)
@@ -481,6 +523,7 @@ main (int argc, char **argv)
   g_test_add_func ("/uncertainty/scatter", test_scatter);
   g_test_add_func ("/uncertainty/coverage", test_coverage);
   g_test_add_func ("/uncertainty/disagreement", test_disagreement);
+  g_test_add_func ("/uncertainty/warp-scatter", test_warp_scatter);
   g_test_add_func ("/uncertainty/bent", test_bent);
   g_test_add_func ("/uncertainty/three-views", test_three_views);
   g_test_add_func ("/uncertainty/unknown", test_unknown);
