@@ -207,23 +207,23 @@ turn (const gdouble from[3], const gdouble to[3], gdouble R[9])
 
 /* The first point and the one farthest from it; returns how far others are off their line. */
 static gdouble
-widest (guint n, const gdouble * X, guint index[2])
+widest (guint n, const gdouble * X, guint * farthest)
 {
   gdouble best = 0, off = 0;
 
-  index[0] = index[1] = 0;
+  *farthest = 0;
   for (guint i = 1; i < n; i++) {
     gdouble d = distance (X, X + 3 * i);
 
     if (d > best) {
       best = d;
-      index[1] = i;
+      *farthest = i;
     }
   }
   for (guint i = 0; i < n; i++) {
     gdouble a[3], b[3], c[3];
 
-    cloth_vec3_subtract (X + 3 * index[1], X, a);
+    cloth_vec3_subtract (X + 3 * *farthest, X, a);
     cloth_vec3_subtract (X + 3 * i, X, b);
     cloth_vec3_cross (a, b, c);
     if (best > 0)
@@ -239,18 +239,18 @@ align (guint n, const gdouble * W, const gdouble * X, gdouble R[9],
     GError ** error)
 {
   gdouble M[9] = { 0, }, size;
-  guint index[2];
-  gdouble off = widest (n, W, index);
+  guint far = 0;
+  gdouble off = n > 0 ? widest (n, W, &far) : 0;
 
-  size = distance (W + 3 * index[0], W + 3 * index[1]);
-  if (!(size > 0) || !(distance (X + 3 * index[0], X + 3 * index[1]) > 0))
+  size = n > 0 ? distance (W, W + 3 * far) : 0;
+  if (!(size > 0) || !(distance (X, X + 3 * far) > 0))
     return cloth_rig_invalid (error, "points", "",
         "two at different places are needed at least");
   if (off < 1e-3 * size) {
     gdouble w[3], x[3], length;
 
-    cloth_vec3_subtract (W + 3 * index[1], W + 3 * index[0], w);
-    cloth_vec3_subtract (X + 3 * index[1], X + 3 * index[0], x);
+    cloth_vec3_subtract (W + 3 * far, W, w);
+    cloth_vec3_subtract (X + 3 * far, X, x);
     length = cloth_vec3_length (x);
     for (gint i = 0; i < 3; i++) {
       w[i] /= size;
