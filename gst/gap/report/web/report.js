@@ -1,5 +1,5 @@
 /*! Made by gst/gap/report/web/build.mjs: do not edit.
-sources sha256 a8b079226465e74cb521ed30c608432c9d9567d2f54dd0001d800911165b5b88
+sources sha256 7c68ce448ba042aecfe37b6e64cefaab0d35f7c177f516c88a6d0620701c5d3b
 below sha256 277fa7abfca8306501c1654c29ca5cd8271cbec6fe73ec04d2f514956691957a
 
 Our own part: SPDX-License-Identifier: LGPL-2.1-or-later. With it come

@@ -11,6 +11,7 @@ import { figure } from './verdict.js';
 import { fitted, known, number } from './words.js';
 
 const FIRST = 6;
+const HISTOGRAM = { width: 640, height: 480 };
 
 const data = read('calibration-data');
 const page = document.getElementById('calibration');
@@ -96,7 +97,7 @@ function residuals() {
           const ink = getComputedStyle(document.documentElement).getPropertyValue('--mark').trim();
           views.forEach((view) => drawCorners(context, view, scale, times(camera), ink));
         }),
-      plane(camera, `${camera.name}: residuals of both axes, and a Gaussian of ${px(noise(camera))}`,
+      plane(HISTOGRAM, `${camera.name}: residuals of both axes, and a Gaussian of ${px(noise(camera))}`,
         `Distribution of the residuals of ${camera.name}`,
         (context, scale, width, height) => drawHistogram(context, values, noise(camera), width, height))];
   });
