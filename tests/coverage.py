@@ -22,7 +22,7 @@ import sys
 PARSERS = [
     'gst/file/json.c', 'gst/file/npy.c', 'gst/pattern/pattern.c', 'gst/pattern/marray.c',
     'gst/pattern/picture.c', 'gst/pattern/patternjson.c',
-    'gst/rig/rigfile.c', 'gst/rig/rigyaml.c', 'gst/rig/yamltree.c', 'gst/mesh/formats/obj.c',
+    'gst/rig/rigfile.c', 'gst/rig/rigyaml.c', 'gst/rig/cameramodel.c', 'gst/rig/world.c', 'gst/rig/yamltree.c', 'gst/mesh/formats/obj.c',
     'gst/mesh/formats/pc2.c', 'gst/mesh/formats/ply.c', 'gst/take/take-info.c', 'gst/take/take.c',
     'gst/take/obstacle.c', 'gst/take/sequence.c', 'gst/sim/model.c', 'gst/cloth/gstclothmesh.c',
     'gst/cloth/gstclothobservations.c', 'gst/cloth/gstclothtopology.c',

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "calibrate-picture.h"
 #include "frames.h"
 #include "gst/rig/planar.h"
 #include "gst/vision/checker/checker.h"
@@ -29,6 +30,7 @@ shot_free (gpointer data)
   g_free (shot->x);
   g_free (shot->y);
   g_free (shot->cov);
+  g_clear_pointer (&shot->picture, g_bytes_unref);
   g_free (shot);
 }
 
@@ -174,6 +176,7 @@ typedef struct
   const ClothPattern *pattern;
   ClothSaddleDetector *detector;
   ClothBoardFinder *finder;
+  ClothPictureMaker *maker;
   ClothShot *shot;              /* of a picture; NULL in a film */
   const gchar *file;
   ClothShotProgress progress;
@@ -251,6 +254,7 @@ look (const ClothImage * image, guint number, gpointer user_data,
 
     if (!fill_shot (shot, view, camera)) {
       shot_free (shot);
+      shot = NULL;
     } else if (r->shot) {
       shot->number = r->shot->number;
       shot->label = g_strdup (r->shot->label);
@@ -260,6 +264,8 @@ look (const ClothImage * image, guint number, gpointer user_data,
       shot->label = g_strdup_printf ("frame %u", number);
       g_ptr_array_add (camera->shots, shot);
     }
+    if (shot && r->maker)
+      shot->picture = cloth_picture_maker_make (r->maker, image);
   }
   if (camera->film && r->progress)
     r->progress (camera, 0, r->user_data);
@@ -285,8 +291,9 @@ cloth_shot_camera_read (ClothShotCamera * camera, const ClothPattern * pattern,
   g_autoptr (ClothSaddleDetector) detector = cloth_saddle_detector_new ();
   g_autoptr (ClothBoardFinder) finder = cloth_board_finder_new (pattern);
   g_autoptr (GPtrArray) planned = camera->shots;
-  Reader reader = { camera, pattern, detector, finder, NULL, NULL, progress,
-    user_data
+  g_autoptr (ClothPictureMaker) maker = cloth_picture_maker_new ();
+  Reader reader = { camera, pattern, detector, finder, maker, NULL, NULL,
+    progress, user_data
   };
 
   camera->shots = g_ptr_array_new_with_free_func (shot_free);

@@ -17,6 +17,7 @@ typedef struct {
   guint *vertex;
   gdouble *x, *y, *cov;
   gdouble outline[8];           /* the board's four corners over the picture's size */
+  GBytes *picture;              /* JPEG; NULL where none can be made */
 } ClothShot;
 
 typedef struct {

@@ -11,6 +11,8 @@
 #include "gst/cloth-io/observations.h"
 #include "gst/gap/diagnose.h"
 #include "gst/gap/report/report.h"
+#include "gst/rig/rigfile.h"
+#include "gst/rig/world.h"
 #include "tools/gap-simulator.h"
 
 static gboolean
@@ -74,6 +76,29 @@ load_observations (gchar ** folders, const GPtrArray * takes, GError ** error)
     g_ptr_array_add (list, observations);
   }
   return g_steal_pointer (&list);
+}
+
+/* A world that is a camera's has its z along the picture, not against gravity. */
+static void
+note_worlds (gchar ** folders, ClothGapResult * result)
+{
+  for (guint i = 0; folders[i]; i++) {
+    g_autofree gchar *path = g_build_filename (folders[i], "rig.json", NULL);
+    g_autoptr (ClothRig) rig = g_file_test (path, G_FILE_TEST_EXISTS)
+        ? cloth_rig_load (path, NULL) : NULL;
+    const ClothCamera *camera = rig ? cloth_world_camera (rig) : NULL;
+
+    if (camera) {
+      g_autofree gchar *note =
+          g_strdup_printf ("The world of “%s” is that of "
+          "its camera %s, whose z is up in the picture: if that was not level, "
+          "gravity is off by as much, and a perfect simulation differs. Turn "
+          "the rig with “gst-cloth-calibrate-1.0 upright”, and record with "
+          "that.", folders[i], camera->name);
+
+      cloth_gap_result_add_note (result, note);
+    }
+  }
 }
 
 static ClothGapResult *
@@ -239,6 +264,8 @@ diagnose (const Arguments * arguments)
         (guint) arguments->run_seconds, &error);
   if (!error)
     result = run_diagnosis (arguments, effects, simulator, &error);
+  if (result)
+    note_worlds (arguments->rest + 1, result);
   if (result && cloth_gap_result_write (result, arguments->output, &error)) {
     g_autofree gchar *summary = cloth_gap_result_summary (result);
 

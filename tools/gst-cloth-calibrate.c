@@ -6,20 +6,29 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "calibrate-page.h"
 #include "calibrate-report.h"
 #include "calibrate-shots.h"
+#include "gst/file/file.h"
+#include "gst/math/vec3.h"
 #include "gst/pattern/pattern.h"
 #include "gst/rig/calibrate.h"
+#include "gst/rig/cameramodel.h"
 #include "gst/rig/rigfile.h"
 #include "gst/rig/rigyaml.h"
+#include "gst/rig/rotation.h"
+#include "gst/rig/world.h"
 #include "tools/tool.h"
+
+/* Pictures that tell how squares were counted. */
+#define N_PROBED 5
 
 typedef struct
 {
-  gboolean share_lens, intrinsics_only;
+  gboolean share_lens, intrinsics_only, warp;
   gint columns, rows, every, max_views, leave_out;
-  gchar *pattern, *square, *first, *lens, *world, *size, *output;
-  gchar **opencv, *kalibr;
+  gchar *pattern, *square, *first, *lens, *world, *size, *output, *report;
+  gchar **opencv, *kalibr, **mrcal, *export_mrcal, *points;
   gchar **cameras;
 } Arguments;
 
@@ -145,11 +154,8 @@ add_symmetries (const ClothPattern * pattern, GArray * symmetries)
   }
 }
 
-/* The input of a calibration, over the shots' own arrays. */
 static void
-fill_input (GPtrArray * cameras, const ClothPattern * pattern, ClothLens lens,
-    ClothCalibrateInput * in, GArray * views, GArray * numbers, ClothRig * rig,
-    GArray * board, GArray * symmetries)
+add_board (const ClothPattern * pattern, GArray * board)
 {
   for (gint i = 0; i < (pattern->columns + 1) * (pattern->rows + 1); i++) {
     gdouble X[3] = { i % (pattern->columns + 1) * pattern->square_m,
@@ -158,6 +164,15 @@ fill_input (GPtrArray * cameras, const ClothPattern * pattern, ClothLens lens,
 
     g_array_append_vals (board, X, 3);
   }
+}
+
+/* The input of a calibration, over the shots' own arrays. */
+static void
+fill_input (GPtrArray * cameras, const ClothPattern * pattern, ClothLens lens,
+    ClothCalibrateInput * in, GArray * views, GArray * numbers, ClothRig * rig,
+    GArray * board, GArray * symmetries)
+{
+  add_board (pattern, board);
   /* Numbers in order, each once, are the poses. */
   for (;;) {
     gint64 least = G_MAXINT64;
@@ -209,6 +224,52 @@ fill_input (GPtrArray * cameras, const ClothPattern * pattern, ClothLens lens,
   in->symmetries = (const guint *) symmetries->data;
 }
 
+static gboolean
+write_models (const Arguments * a, const ClothRig * rig, GError ** error)
+{
+  return !a->export_mrcal
+      || cloth_rig_export_mrcal (rig, a->export_mrcal, error);
+}
+
+/* Where --points say the world is; says how well they fit. */
+static gboolean
+world_of_points (const Arguments * a, const ClothRig * rig, ClothWorld * world,
+    GError ** error)
+{
+  gsize length;
+  g_autofree gchar *text = cloth_text_file_load (a->points, &length, error);
+  g_autoptr (GArray) points = NULL;
+  gdouble rms, scale;
+
+  if (!text)
+    return FALSE;
+  points = cloth_world_points_parse (rig, text, length, error);
+  if (!points || !cloth_world_of_points (rig, points->len,
+          (const ClothWorldPoint *) points->data, world, &rms, &scale, error)) {
+    g_prefix_error (error, "%s: ", a->points);
+    return FALSE;
+  }
+  g_print ("points: %.1f mm from where they are said to be (RMS), %.4f times "
+      "as large\n", 1e3 * rms, scale);
+  return TRUE;
+}
+
+static gboolean
+move_calibration (const Arguments * a, ClothCalibration * result,
+    GError ** error)
+{
+  ClothWorld world;
+
+  if (strcmp (a->world, "points"))
+    return TRUE;
+  if (!world_of_points (a, result->rig, &world, error))
+    return FALSE;
+  cloth_world_move_rig (&world, result->rig);
+  for (guint p = 0; p < result->n_poses; p++)
+    cloth_world_move_pose (&world, result->poses + 12 * (gsize) p);
+  return TRUE;
+}
+
 static gint
 calibrate (const Arguments * a, GPtrArray * cameras,
     const ClothPattern * pattern, ClothLens lens)
@@ -221,7 +282,7 @@ calibrate (const Arguments * a, GPtrArray * cameras,
   g_autoptr (ClothRig) rig = cloth_rig_new (cameras->len);
   g_autoptr (ClothCalibration) result = NULL;
   g_autoptr (GError) error = NULL;
-  g_autofree gchar *report = NULL;
+  g_autofree gchar *report = NULL, *folder = NULL, *page = NULL;
   ClothCalibrateInput in;
   ClothCalibrateParams params;
 
@@ -229,6 +290,7 @@ calibrate (const Arguments * a, GPtrArray * cameras,
       symmetries);
   cloth_calibrate_params_init (&params);
   params.share_lens = a->share_lens;
+  params.warp = a->warp;
   params.intrinsics_only = a->intrinsics_only;
   params.leave_out = (guint) a->leave_out;
   params.world = !strcmp (a->world, "board") ? CLOTH_CALIBRATE_WORLD_BOARD
@@ -236,12 +298,41 @@ calibrate (const Arguments * a, GPtrArray * cameras,
   result = cloth_calibrate (&in, &params, show_fit, NULL, NULL, &error);
   if (isatty (2))
     g_printerr ("\r\033[K");
-  if (!result || !cloth_rig_save (result->rig, a->output, &error))
+  folder = g_path_get_dirname (a->output);
+  page = a->report ? g_strdup (a->report)
+      : g_build_filename (folder, "calibration.html", NULL);
+  if (!result || !move_calibration (a, result, &error)
+      || !cloth_rig_check (result->rig, &error)
+      || !write_models (a, result->rig, &error)
+      || !cloth_calibrate_page_write (&in, result, pattern, cameras,
+          page, &error) || !cloth_rig_save (result->rig, a->output, &error))
     return complain (FAILED, "%s", error->message);
   report = cloth_calibrate_report (&in, result, cameras);
-  g_print ("board: %d × %d squares of %g mm\n%s\nwrote %s\n", pattern->columns,
-      pattern->rows, 1e3 * pattern->square_m, report, a->output);
+  g_print ("board: %d × %d squares of %g mm\n%s\nwrote %s and %s\n",
+      pattern->columns, pattern->rows, 1e3 * pattern->square_m, report,
+      a->output, page);
   return DONE;
+}
+
+/* Whether a camera's first pictures show the board that has so many corners inside as it was
+ * said to have squares: what other programs ask for. */
+static gboolean
+corners_counted (const ClothShotCamera * camera, const ClothPattern * pattern,
+    guint every)
+{
+  g_autoptr (GPtrArray) one =
+      g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_shot_camera_free);
+  g_autoptr (ClothPattern) larger = cloth_pattern_new_checker
+      (pattern->columns + 1, pattern->rows + 1, pattern->square_m,
+      pattern->square_m / 2, pattern->first_black, NULL);
+  ClothShotCamera *probe = cloth_shot_camera_new (camera->name);
+
+  g_ptr_array_add (one, probe);
+  for (guint i = 0; i < MIN (camera->files->len, N_PROBED); i++)
+    cloth_shot_camera_add (probe, g_ptr_array_index (camera->files, i), NULL);
+  cloth_shot_cameras_number (one);
+  return larger && cloth_shot_camera_read (probe, larger, every, NULL, NULL,
+      NULL) && probe->shots->len > 0;
 }
 
 static gint
@@ -251,18 +342,20 @@ import (const Arguments * a)
   g_autoptr (ClothRig) rig = NULL;
   gint width = 0, height = 0;
 
-  if ((a->opencv && a->kalibr) || a->cameras)
-    return complain (BAD_USAGE, "--import-opencv and --import-kalibr stand "
-        "alone, without each other and without pictures");
+  if (!!a->opencv + !!a->kalibr + !!a->mrcal > 1 || a->cameras)
+    return complain (BAD_USAGE, "--import-opencv, --import-kalibr and "
+        "--import-mrcal stand alone, without each other and without pictures");
   if (a->size && !parse_size (a->size, &width, &height))
     return complain (BAD_USAGE, "--size: give WIDTHxHEIGHT, for instance "
         "640x480");
   rig = a->opencv ? cloth_rig_import_opencv ((const gchar * const *) a->opencv,
       width, height, &error)
-      : cloth_rig_import_kalibr (a->kalibr, &error);
+      : a->mrcal ? cloth_rig_import_mrcal ((const gchar * const *) a->mrcal,
+      &error) : cloth_rig_import_kalibr (a->kalibr, &error);
   if (!rig && width == 0 && strstr (error->message, "no picture size"))
     g_prefix_error (&error, "give --size: ");
-  if (!rig || !cloth_rig_save (rig, a->output, &error))
+  if (!rig || !write_models (a, rig, &error)
+      || !cloth_rig_save (rig, a->output, &error))
     return complain (FAILED, "%s", error->message);
   for (guint c = 0; c < rig->n_cameras; c++)
     g_print ("camera %s: %d×%d, %s lens\n", rig->cameras[c].name,
@@ -270,6 +363,122 @@ import (const Arguments * a)
         cloth_lens_to_string (rig->cameras[c].lens));
   g_print ("wrote %s\n", a->output);
   return DONE;
+}
+
+/* The board where the first picture shows it, or several cameras at the same moment. */
+static gboolean
+world_of_board (const Arguments * a, const ClothRig * rig, ClothWorld * world,
+    gint * code, GError ** error)
+{
+  g_autoptr (ClothPattern) pattern = make_pattern (a, code, error);
+  g_autoptr (GPtrArray) cameras = NULL;
+  g_autoptr (GArray) views =
+      g_array_new (FALSE, TRUE, sizeof (ClothBundleView));
+  g_autoptr (GArray) board = g_array_new (FALSE, FALSE, sizeof (gdouble));
+  g_autoptr (GArray) symmetries = g_array_new (FALSE, FALSE, sizeof (guint));
+  gint64 number = 0;
+
+  if (!pattern || !(cameras = sort_arguments (a->cameras + 2, code, error)))
+    return FALSE;
+  *code = FAILED;
+  add_symmetries (pattern, symmetries);
+  add_board (pattern, board);
+  cloth_shot_cameras_number (cameras);
+  for (guint c = 0; c < cameras->len; c++) {
+    ClothShotCamera *camera = g_ptr_array_index (cameras, c);
+    const ClothCamera *known = cloth_rig_find (rig, camera->name);
+
+    if (!known)
+      return cloth_rig_invalid (error, a->cameras[1], "",
+          "has no camera \"%s\"", camera->name);
+    if (!cloth_shot_camera_read (camera, pattern, (guint) a->every,
+            show_reading, NULL, error))
+      return FALSE;
+    if (camera->width != known->width || camera->height != known->height)
+      return cloth_rig_invalid (error, camera->name, "", "its pictures have "
+          "%d×%d pixels, not %d×%d", camera->width, camera->height,
+          known->width, known->height);
+    for (guint i = 0; i < camera->shots->len; i++) {
+      const ClothShot *shot = g_ptr_array_index (camera->shots, i);
+      ClothBundleView view = { (guint) (known - rig->cameras), 0, TRUE, shot->n,
+        shot->vertex, shot->x, shot->y, shot->cov
+      };
+
+      if (views->len == 0)
+        number = shot->number;
+      /* A board that looks the same turned may be numbered from another end. */
+      if (shot->number != number || (views->len > 0 && symmetries->len > 0))
+        continue;
+      g_array_append_val (views, view);
+      g_print ("board: seen in %s of camera %s\n", shot->label, camera->name);
+      break;
+    }
+  }
+  if (views->len == 0)
+    return cloth_rig_invalid (error, "", "board",
+        "it was found in none of the pictures");
+  return cloth_world_of_board (rig, views->len,
+      (const ClothBundleView *) views->data, (const gdouble *) board->data,
+      world, error);
+}
+
+/* upright RIG: a finished rig in another world. */
+static gint
+upright (const Arguments * a)
+{
+  guint n = g_strv_length (a->cameras);
+  gboolean board = !strcmp (a->world, "board");
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRig) rig = NULL;
+  const ClothCamera *first;
+  ClothWorld world;
+  gdouble turn[3];
+  gint code = FAILED;
+
+  if (n < 2 || (board ? n < 3 : n > 2))
+    return complain (BAD_USAGE, board ? "give the rig, and pictures of the "
+        "board that lies level: upright RIG CAMERA=FILE…"
+        : "give the rig to turn: upright RIG");
+  rig = cloth_rig_load (a->cameras[1], &error);
+  if (!rig)
+    return complain (FAILED, "%s", error->message);
+  first = &rig->cameras[0];
+  if (board ? !world_of_board (a, rig, &world, &code, &error)
+      : !strcmp (a->world, "points")
+      && !world_of_points (a, rig, &world, &error))
+    return complain (code, "%s", error->message);
+  if (!strcmp (a->world, "camera"))
+    cloth_world_of_camera (first, &world);
+  cloth_world_move_rig (&world, rig);
+  if (!write_models (a, rig, &error) || !cloth_rig_save (rig, a->output,
+          &error))
+    return complain (FAILED, "%s", error->message);
+  cloth_rotation_to_vector (world.R, turn);
+  g_print ("the world was turned by %.2f°; up is now %s\nwrote %s\n",
+      cloth_vec3_length (turn) * 180 / G_PI, board ? "off the board"
+      : !strcmp (a->world, "points") ? "where the points have it"
+      : "up in the first camera's picture", a->output);
+  return DONE;
+}
+
+/* What to do with the world, or why not. */
+static gboolean
+check_world (const Arguments * a, gboolean finished)
+{
+  gboolean points = !strcmp (a->world, "points");
+
+  if (!points && strcmp (a->world, "camera") && strcmp (a->world, "board"))
+    complain (BAD_USAGE, "--world: give camera, board or points");
+  else if (points != (a->points != NULL))
+    complain (BAD_USAGE, "--world points and --points FILE go together");
+  else if (points && a->intrinsics_only)
+    complain (BAD_USAGE, "--world points: cameras that are not placed, with "
+        "--intrinsics-only, have no world");
+  else if (finished && a->report)
+    complain (BAD_USAGE, "--report: a finished rig has nothing to report");
+  else
+    return TRUE;
+  return FALSE;
 }
 
 static gint
@@ -280,18 +489,22 @@ run (gconstpointer data)
   g_autoptr (GPtrArray) cameras = NULL;
   g_autoptr (GError) error = NULL;
   g_autofree gchar *folder = NULL;
+  gboolean finished = a->cameras && a->cameras[0]
+      && !strcmp (a->cameras[0], "upright");
   ClothLens lens;
   gint code;
 
   gst_init (NULL, NULL);
   if (!a->output)
     return complain (BAD_USAGE, "name the file to write: --output rig.json");
-  if (a->opencv || a->kalibr)
+  if (a->opencv || a->kalibr || a->mrcal)
     return import (a);
   if (!cloth_lens_from_string (a->lens, &lens))
     return complain (BAD_USAGE, "--lens: give none, brown5, brown8 or fisheye");
-  if (strcmp (a->world, "camera") && strcmp (a->world, "board"))
-    return complain (BAD_USAGE, "--world: give camera or board");
+  if (!check_world (a, finished))
+    return BAD_USAGE;
+  if (finished)
+    return upright (a);
   if (a->every < 1 || a->max_views < 3 || a->leave_out < 0 || a->leave_out == 1)
     return complain (BAD_USAGE, "--every takes 1 or more, --max-views 3 or "
         "more, --leave-out 0 or 2 or more");
@@ -319,6 +532,14 @@ run (gconstpointer data)
     }
     if (isatty (2) && camera->film)
       g_printerr ("\n");
+    if (a->columns && camera->shots->len == 0
+        && corners_counted (camera, pattern, (guint) a->every))
+      return complain (FAILED,
+          "camera %s: its board has %d × %d corners inside, "
+          "and so %d × %d squares, which is what to give: --columns %d "
+          "--rows %d", camera->name, pattern->columns, pattern->rows,
+          pattern->columns + 1, pattern->rows + 1, pattern->columns + 1,
+          pattern->rows + 1);
   }
   cloth_shot_cameras_choose (cameras, (guint) a->max_views);
   return calibrate (a, cameras, pattern, lens);
@@ -344,9 +565,15 @@ main (int argc, char **argv)
         "All cameras have the same distortion", NULL},
     {"intrinsics-only", 0, 0, G_OPTION_ARG_NONE, &a.intrinsics_only,
         "The cameras' pictures were not taken at the same moments", NULL},
+    {"warp", 0, 0, G_OPTION_ARG_NONE, &a.warp,
+        "The board may be bent: find how", NULL},
     {"world", 0, 0, G_OPTION_ARG_STRING, &a.world,
-        "World's origin: the first camera, z up in its picture, or the board "
-          "in the first picture, z off it (camera)", "camera|board"},
+          "World's origin: the first camera, z up in its picture; the board "
+          "in the first picture, z off it; or as --points have it (camera)",
+        "camera|board|points"},
+    {"points", 0, 0, G_OPTION_ARG_FILENAME, &a.points,
+        "Lines camera,x,y,X,Y,Z: pixels of points whose places in the world "
+          "are known, in metres", "FILE"},
     {"every", 0, 0, G_OPTION_ARG_INT, &a.every,
         "Look at every so many-th frame of films (10)", "N"},
     {"max-views", 0, 0, G_OPTION_ARG_INT, &a.max_views,
@@ -359,13 +586,21 @@ main (int argc, char **argv)
           "in files of their own, or for several cameras", "FILE"},
     {"import-kalibr", 0, 0, G_OPTION_ARG_FILENAME, &a.kalibr,
         "Take over Kalibr's camera chain", "FILE"},
+    {"import-mrcal", 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &a.mrcal,
+          "Take over mrcal's .cameramodel; several times for several cameras",
+        "FILE"},
+    {"export-mrcal", 0, 0, G_OPTION_ARG_FILENAME, &a.export_mrcal,
+        "Also write each camera as .cameramodel", "FOLDER"},
     {"size", 0, 0, G_OPTION_ARG_STRING, &a.size,
           "Picture size of an OpenCV calibration that doesn't say it",
         "WIDTHxHEIGHT"},
     {"output", 'o', 0, G_OPTION_ARG_FILENAME, &a.output,
         "The rig.json to write", "FILE"},
+    {"report", 0, 0, G_OPTION_ARG_FILENAME, &a.report,
+          "The page that shows it (calibration.html beside the rig.json)",
+        "FILE"},
     {G_OPTION_REMAINING, 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &a.cameras, NULL,
-        "CAMERA=FILE…"},
+        "CAMERA=FILE… | upright RIG [CAMERA=FILE…]"},
     {NULL}
   };
   gint code;
@@ -382,8 +617,12 @@ main (int argc, char **argv)
   g_free (a.world);
   g_free (a.size);
   g_free (a.output);
+  g_free (a.report);
   g_strfreev (a.opencv);
   g_free (a.kalibr);
+  g_strfreev (a.mrcal);
+  g_free (a.export_mrcal);
+  g_free (a.points);
   g_strfreev (a.cameras);
   return code;
 }

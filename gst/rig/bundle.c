@@ -7,10 +7,13 @@
 #include <string.h>
 
 #include "gst/math/linalg.h"
+#include "gst/math/vec3.h"
 #include "gst/rig/rig.h"
 #include "gst/rig/rotation.h"
 
-#define N_CAMERA CLOTH_CAMERA_N_PARAMETERS
+#define N_OWN CLOTH_CAMERA_N_PARAMETERS
+/* With the board's warp, which all cameras share. */
+#define N_CAMERA (N_OWN + 2)
 #define N_ALL (N_CAMERA + 6)
 
 /* Bounds of the rational lens model's denominator, over the picture and a rim. */
@@ -20,7 +23,8 @@
 /* Poses are eliminated first: with C the cameras' parameters and P those of poses,
  *   [ A   W ] [dC]   [g]
  *   [ W'  B ] [dP] = [h],  B block-diagonal (6×6 a pose),
- * so (A − W B⁻¹ W') dC = g − W B⁻¹ h. W has one block (18×6) a view. */
+ * so (A − W B⁻¹ W') dC = g − W B⁻¹ h. W has one block (20×6) a view; the board's warp counts
+ * among the parameters of each camera. */
 typedef struct
 {
   const ClothBundle *bundle;
@@ -38,7 +42,7 @@ static void
 normal_init (Normal * s, const ClothBundle * b)
 {
   guint *fill = g_new0 (guint, b->n_poses + 1);
-  gint shared[8];
+  gint shared[8], warp[2] = { -1, -1 };
 
   memset (s, 0, sizeof *s);
   s->bundle = b;
@@ -50,6 +54,12 @@ normal_init (Normal * s, const ClothBundle * b)
       gboolean lens = j >= 4 && j < 12;
       gint *column = &s->map[c * N_CAMERA + j];
 
+      if (j >= N_OWN) {
+        if (b->free_warp && warp[j - N_OWN] < 0)
+          warp[j - N_OWN] = (gint) s->n++;
+        *column = warp[j - N_OWN];
+        continue;
+      }
       if (!(b->free[c] & (1u << j)))
         *column = -1;
       else if (lens && b->share_lens && shared[j - 4] >= 0)
@@ -119,19 +129,24 @@ information (const ClothBundleView * view, guint i, gdouble e, gdouble M[3])
 
 /* One point: residual (seen − predicted), and with J its derivative of the prediction:
  * row-major 2×N_ALL, columns of the camera (rotation: a small one about the camera's axes,
- * on the left), then of the pose (rotation on the left, translation). */
+ * on the left), of the warp, then of the pose (rotation on the left, translation). */
 static gboolean
 point (const ClothBundle * b, const ClothBundleView * view, guint i,
     gdouble e[2], gdouble * J)
 {
   ClothCamera camera = b->cameras[view->camera];
   const gdouble *P = b->poses + 12 * (gsize) view->pose;
-  const gdouble *X = b->board + 3 * (gsize) view->vertex[i];
+  const gdouble *vertex = b->board + 3 * (gsize) view->vertex[i];
+  const gdouble *bulge = b->bulge ? b->bulge + 2 * (gsize) view->vertex[i]
+      : NULL;
+  gdouble X[3] = { vertex[0], vertex[1], vertex[2] };
   const gdouble *R = b->cameras[view->camera].R;
   const gdouble *t = b->cameras[view->camera].t;
   static const gdouble identity[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
-  gdouble PX[3], Y[3], RY[3], Z[3], px[2], a[6], d[2 * N_CAMERA];
+  gdouble PX[3], Y[3], RY[3], Z[3], px[2], a[6], d[2 * N_OWN];
 
+  if (bulge)
+    X[2] += bulge[0] * b->warp[0] + bulge[1] * b->warp[1];
   cloth_mat3_vec (P, X, PX);
   for (gint j = 0; j < 3; j++)
     Y[j] = PX[j] + P[9 + j];
@@ -150,7 +165,7 @@ point (const ClothBundle * b, const ClothBundleView * view, guint i,
     gdouble *row = J + r * N_ALL, aR[3];
     const gdouble *ar = a + 3 * r;
 
-    memcpy (row, d + r * N_CAMERA, 12 * sizeof (gdouble));
+    memcpy (row, d + r * N_OWN, 12 * sizeof (gdouble));
     for (gint j = 0; j < 3; j++) {
       gint k = (j + 1) % 3, l = (j + 2) % 3;
 
@@ -162,9 +177,12 @@ point (const ClothBundle * b, const ClothBundleView * view, guint i,
     for (gint j = 0; j < 3; j++) {
       gint k = (j + 1) % 3, l = (j + 2) % 3;
 
-      row[18 + j] = PX[k] * aR[l] - PX[l] * aR[k];
-      row[21 + j] = aR[j];
+      row[N_CAMERA + j] = PX[k] * aR[l] - PX[l] * aR[k];
+      row[N_CAMERA + 3 + j] = aR[j];
     }
+    for (gint j = 0; j < 2; j++)
+      row[N_OWN + j] = bulge
+          ? bulge[j] * (aR[0] * P[2] + aR[1] * P[5] + aR[2] * P[8]) : 0;
   }
   return TRUE;
 }
@@ -275,7 +293,7 @@ pose_used (const Normal * s, guint p)
 
 /* S = A − W B⁻¹ W', dc = g − W B⁻¹ h, both damped by @lambda times the diagonal. */
 static gboolean
-reduce (Normal * s, gdouble lambda)
+eliminate (Normal * s, gdouble lambda)
 {
   const ClothBundle *b = s->bundle;
   guint n = s->n;
@@ -335,7 +353,15 @@ reduce (Normal * s, gdouble lambda)
       }
     }
   }
-  return n == 0 || cloth_cholesky_factor (n, s->S);
+  return TRUE;
+}
+
+/* The same with S factored. */
+static gboolean
+reduce (Normal * s, gdouble lambda)
+{
+  return eliminate (s, lambda)
+      && (s->n == 0 || cloth_cholesky_factor (s->n, s->S));
 }
 
 static void
@@ -408,6 +434,8 @@ apply (ClothBundle * b, const Normal * s)
     for (guint j = 0; j < 3; j++)
       camera->t[j] += d[15 + j];
   }
+  for (guint j = 0; j < 2; j++)
+    b->warp[j] += b->free_warp ? s->dc[s->map[N_OWN + j]] : 0;
   for (guint p = 0; p < b->n_poses; p++) {
     gdouble *P = b->poses + 12 * (gsize) p;
 
@@ -468,7 +496,7 @@ cloth_bundle_solve (ClothBundle * bundle, gdouble * cost, GError ** error)
       g_memdup2 (bundle->cameras, bundle->n_cameras * sizeof (ClothCamera));
   g_autofree gdouble *poses = g_memdup2 (bundle->poses,
       12 * bundle->n_poses * sizeof (gdouble));
-  gdouble lambda = 1e-4, now;
+  gdouble lambda = 1e-4, now, warp[2] = { bundle->warp[0], bundle->warp[1] };
   gboolean ok = TRUE;
   guint settled = 0;
 
@@ -498,12 +526,14 @@ cloth_bundle_solve (ClothBundle * bundle, gdouble * cost, GError ** error)
       memcpy (cameras, bundle->cameras,
           bundle->n_cameras * sizeof (ClothCamera));
       memcpy (poses, bundle->poses, 12 * bundle->n_poses * sizeof (gdouble));
+      memcpy (warp, bundle->warp, sizeof warp);
       lambda = fmax (lambda / 10, 1e-12);
       now = build (bundle, &s);
     } else {
       memcpy (bundle->cameras, cameras,
           bundle->n_cameras * sizeof (ClothCamera));
       memcpy (bundle->poses, poses, 12 * bundle->n_poses * sizeof (gdouble));
+      memcpy (bundle->warp, warp, sizeof warp);
       lambda *= 10;
       if (lambda > 1e10)
         break;
@@ -515,28 +545,91 @@ cloth_bundle_solve (ClothBundle * bundle, gdouble * cost, GError ** error)
   return ok;
 }
 
-/* @bundle: a problem at its minimum
- * @covariance: (out caller-allocates): 18×18 a camera, columns as in
- *   #CLOTH_CAMERA_N_PARAMETERS but for the rotation, which is a small one about the
- *   camera's own axes; zeros for what is not free
- * @variance: (out): variance of the standardised residuals, by which @covariance is scaled
- * @error: #ClothRigError when the data leave a direction undetermined
- *
- * Inverse of the information matrix, board poses marginalised, times the residual variance.
- *
- * Returns: whether the matrix could be inverted.
- */
-gboolean
-cloth_bundle_covariance (const ClothBundle * bundle, gdouble * covariance,
-    gdouble * variance, GError ** error)
+struct _ClothBundleSpread
 {
   Normal s;
+  gdouble variance;
+  gdouble *observed, *expected; /* n×n; NULL: too few views to leave one out */
+};
+
+/* How the cameras' parameters move when one pose is left out, summed over poses. One step
+ * of Gauss and Newton from the minimum is
+ *   δ_p = (S − S_p)⁻¹ (g − g_p),  S = Σ S_p, g = Σ g_p,
+ * and independent corners of the variance 1 let Σ δ_p δ_p' be Σ (S − S_p)⁻¹ − S⁻¹ on
+ * average. Poses not in use move nothing. */
+static void
+leave_each_out (ClothBundleSpread * spread)
+{
+  const ClothBundle *b = spread->s.bundle;
+  guint n = spread->s.n;
+  gsize n2 = (gsize) n * n;
+  g_autofree ClothBundleView *views =
+      g_memdup2 (b->views, b->n_views * sizeof (ClothBundleView));
+  g_autofree gdouble *S = g_new (gdouble, n2 + 1);
+  g_autofree gdouble *inverse = g_new (gdouble, n2 + 1);
+  g_autofree gdouble *with_all = g_new (gdouble, n2 + 1);
+  g_autofree gdouble *d = g_new (gdouble, n + 1), *g = g_new (gdouble, n + 1);
+  g_autofree gdouble *observed = g_new0 (gdouble, n2 + 1);
+  g_autofree gdouble *expected = g_new0 (gdouble, n2 + 1);
+  ClothBundle one = *b;
+  gboolean ok;
+  Normal s;
+
+  one.views = views;
+  normal_init (&s, &one);
+  build (&one, &s);
+  ok = eliminate (&s, 0);
+  memcpy (S, s.S, n2 * sizeof (gdouble));
+  memcpy (g, s.dc, n * sizeof (gdouble));
+  cloth_cholesky_inverse (n, spread->s.S, with_all);
+  for (guint p = 0; ok && p < b->n_poses; p++) {
+    if (!pose_used (&spread->s, p))
+      continue;
+    for (guint v = 0; v < b->n_views; v++)
+      views[v].use = b->views[v].use && b->views[v].pose == p;
+    build (&one, &s);
+    ok = eliminate (&s, 0);
+    for (gsize i = 0; i < n2; i++)
+      s.S[i] = S[i] - s.S[i];
+    for (guint i = 0; i < n; i++)
+      d[i] = g[i] - s.dc[i];
+    ok = ok && cloth_cholesky_factor (n, s.S);
+    if (!ok)
+      break;
+    cloth_cholesky_solve (n, s.S, d);
+    cloth_cholesky_inverse (n, s.S, inverse);
+    for (guint i = 0; i < n; i++) {
+      for (guint j = 0; j < n; j++)
+        observed[(gsize) i * n + j] += d[i] * d[j];
+    }
+    for (gsize i = 0; i < n2; i++)
+      expected[i] += inverse[i] - with_all[i];
+  }
+  normal_clear (&s);
+  if (!ok)
+    return;
+  spread->observed = g_steal_pointer (&observed);
+  spread->expected = g_steal_pointer (&expected);
+}
+
+/* @bundle: a problem at its minimum, kept unchanged while the result is in use
+ * @error: #ClothRigError when the data leave a direction undetermined
+ *
+ * The information matrix of all parameters, factored, and the variance of the standardised
+ * residuals, by which its inverse is scaled.
+ *
+ * Returns: (transfer full): how certain the parameters are, or %NULL.
+ */
+ClothBundleSpread *
+cloth_bundle_spread_new (const ClothBundle * bundle, GError ** error)
+{
+  g_autoptr (ClothBundleSpread) spread = g_new0 (ClothBundleSpread, 1);
+  Normal *s = &spread->s;
   gdouble sum = 0, dof;
   guint n_points = 0, n_poses = 0;
-  gboolean ok;
 
-  normal_init (&s, bundle);
-  build (bundle, &s);
+  normal_init (s, bundle);
+  build (bundle, s);
   for (guint v = 0; v < bundle->n_views; v++) {
     const ClothBundleView *view = &bundle->views[v];
     gdouble excess = bundle->excess[view->camera];
@@ -554,30 +647,226 @@ cloth_bundle_covariance (const ClothBundle * bundle, gdouble * covariance,
     }
   }
   for (guint p = 0; p < bundle->n_poses; p++)
-    n_poses += pose_used (&s, p);
-  dof = 2. * n_points - s.n - 6. * n_poses;
-  *variance = dof > 0 ? sum / dof : NAN;
-  ok = dof > 0 && reduce (&s, 0);
-  if (ok) {
-    gdouble *inverse = s.A;
-
-    cloth_cholesky_inverse (s.n, s.S, inverse);
-    for (guint c = 0; c < bundle->n_cameras; c++) {
-      const gint *map = s.map + c * N_CAMERA;
-
-      for (guint i = 0; i < N_CAMERA; i++) {
-        for (guint j = 0; j < N_CAMERA; j++)
-          covariance[(c * N_CAMERA + i) * N_CAMERA + j] =
-              map[i] < 0 || map[j] < 0 ? 0
-              : *variance * inverse[(gsize) map[i] * s.n + map[j]];
-      }
-    }
-  } else {
+    n_poses += pose_used (s, p);
+  dof = 2. * n_points - s->n - 6. * n_poses;
+  spread->variance = dof > 0 ? sum / dof : NAN;
+  if (!(dof > 0) || !reduce (s, 0)) {
     g_set_error (error, CLOTH_RIG_ERROR, CLOTH_RIG_ERROR_VALUE,
         "the views don't determine all parameters");
+    return NULL;
   }
-  normal_clear (&s);
-  return ok;
+  if (s->n > 0)
+    leave_each_out (spread);
+  return g_steal_pointer (&spread);
+}
+
+/* @spread: (transfer full) (nullable): what cloth_bundle_spread_new() returned
+ */
+void
+cloth_bundle_spread_free (ClothBundleSpread * spread)
+{
+  if (!spread)
+    return;
+  normal_clear (&spread->s);
+  g_free (spread->observed);
+  g_free (spread->expected);
+  g_free (spread);
+}
+
+/* @spread: a problem's
+ *
+ * Returns: variance of the standardised residuals.
+ */
+gdouble
+cloth_bundle_spread_variance (const ClothBundleSpread * spread)
+{
+  return spread->variance;
+}
+
+/* @spread: a problem's
+ * @covariance: (out caller-allocates): 18×18 a camera, columns as in
+ *   #CLOTH_CAMERA_N_PARAMETERS but for the rotation, which is a small one about the
+ *   camera's own axes; zeros for what is not free
+ *
+ * Inverse of the information matrix, board poses marginalised, times the residual variance.
+ */
+void
+cloth_bundle_spread_cameras (const ClothBundleSpread * spread,
+    gdouble * covariance)
+{
+  const Normal *s = &spread->s;
+  g_autofree gdouble *inverse = g_new (gdouble, (gsize) s->n * s->n + 1);
+
+  cloth_cholesky_inverse (s->n, s->S, inverse);
+  for (guint c = 0; c < s->bundle->n_cameras; c++) {
+    const gint *map = s->map + c * N_CAMERA;
+
+    for (guint i = 0; i < N_OWN; i++) {
+      for (guint j = 0; j < N_OWN; j++)
+        covariance[(c * N_OWN + i) * N_OWN + j] =
+            map[i] < 0 || map[j] < 0 ? 0
+            : spread->variance * inverse[(gsize) map[i] * s->n + map[j]];
+    }
+  }
+}
+
+/* @spread: a problem's
+ * @sd: (out): standard deviations of the board's warp, m; 0 when that is not free
+ */
+void
+cloth_bundle_spread_warp (const ClothBundleSpread * spread, gdouble sd[2])
+{
+  const Normal *s = &spread->s;
+
+  for (guint j = 0; j < 2; j++) {
+    g_autofree gdouble *unit = g_new0 (gdouble, s->n + 1);
+    gint column = s->map[N_OWN + j];
+
+    sd[j] = 0;
+    if (column < 0)
+      continue;
+    unit[column] = 1;
+    cloth_cholesky_solve (s->n, s->S, unit);
+    sd[j] = sqrt (spread->variance * unit[column]);
+  }
+}
+
+/* Both rows of the derivative of where a camera sees a point that moves with the mean of
+ * the boards it saw, poses eliminated: r = g_C − W B⁻¹ g_P, and what the poses leave over,
+ * g_P' B⁻¹ g_P. */
+static void
+reduce_gradient (const Normal * s, guint camera, const gdouble * X,
+    gboolean at_infinity, const gdouble * own, const gdouble aR[2][3],
+    gdouble * r, gdouble rest[3])
+{
+  const ClothBundle *b = s->bundle;
+  const gint *map = s->map + camera * N_CAMERA;
+  guint n_seen = 0;
+
+  memset (r, 0, 2 * (gsize) s->n * sizeof (gdouble));
+  memset (rest, 0, 3 * sizeof (gdouble));
+  for (guint i = 0; i < 2; i++) {
+    for (guint j = 0; j < N_OWN; j++) {
+      if (map[j] >= 0)
+        r[i * s->n + map[j]] += own[i * N_OWN + j];
+    }
+  }
+  for (guint v = 0; v < b->n_views; v++)
+    n_seen += b->views[v].use && b->views[v].camera == camera;
+  for (guint v = 0; v < b->n_views; v++) {
+    guint p = b->views[v].pose;
+    const gdouble *t = b->poses + 12 * (gsize) p + 9;
+    const gdouble *inverse = s->B_inverse + 36 * (gsize) p;
+    gdouble g[2][6], Bg[2][6] = { {0,}, };
+
+    if (!b->views[v].use || b->views[v].camera != camera)
+      continue;
+    for (guint i = 0; i < 2; i++) {
+      gdouble arm[3];
+
+      for (guint j = 0; j < 3; j++)
+        arm[j] = at_infinity ? X[j] : X[j] - t[j];
+      cloth_vec3_cross (arm, aR[i], g[i]);
+      for (guint j = 0; j < 3; j++) {
+        g[i][j] /= n_seen;
+        g[i][3 + j] = at_infinity ? 0 : aR[i][j] / n_seen;
+      }
+      for (guint j = 0; j < 6; j++) {
+        for (guint k = 0; k < 6; k++)
+          Bg[i][j] += inverse[6 * j + k] * g[i][k];
+      }
+    }
+    for (guint j = 0; j < 6; j++) {
+      rest[0] += g[0][j] * Bg[0][j];
+      rest[1] += g[0][j] * Bg[1][j];
+      rest[2] += g[1][j] * Bg[1][j];
+    }
+    for (guint o = s->first[p]; o < s->first[p + 1]; o++) {
+      guint u = s->order[o];
+      const gint *other = s->map + b->views[u].camera * N_CAMERA;
+
+      for (guint j = 0; b->views[u].use && j < N_CAMERA; j++) {
+        const gdouble *w = s->W + ((gsize) u * N_CAMERA + j) * 6;
+
+        for (guint k = 0; other[j] >= 0 && k < 6; k++) {
+          r[other[j]] -= w[k] * Bg[0][k];
+          r[s->n + other[j]] -= w[k] * Bg[1][k];
+        }
+      }
+    }
+  }
+}
+
+/* Σ over both rows of r' M r. */
+static gdouble
+quadratic (guint n, const gdouble * M, const gdouble * r)
+{
+  gdouble sum = 0;
+
+  for (guint i = 0; i < n; i++) {
+    for (guint j = 0; j < n; j++)
+      sum += M[(gsize) i * n + j] * (r[i] * r[j] + r[n + i] * r[n + j]);
+  }
+  return sum;
+}
+
+/* @spread: a problem's
+ * @camera: which camera
+ * @Z: a point in the camera's frame, m; at infinity only its direction counts
+ * @at_infinity: whether the point is infinitely far
+ * @cov: (out): covariance xx, xy, yy of where the camera sees it, px²
+ * @disagreement: (out): its variance when poses are left out one by one, over that which
+ *   independent errors of the corners would give: greater than 1 where those of a view are
+ *   not, as on a bent board; NaN when there are too few views to leave one out
+ *
+ * How certain a projection is. Errors of lens, camera and board poses compensate each
+ * other, so where a point appears has a meaning only beside what was seen: the point is
+ * held fixed to each board pose this camera saw, and is where the mean of them says
+ * (“mean-pcam” of mrcal.secretsauce.net/uncertainty.html, there over all poses).
+ *
+ * Returns: %FALSE when the point is not in front of the camera.
+ */
+gboolean
+cloth_bundle_spread_project (const ClothBundleSpread * spread, guint camera,
+    const gdouble Z[3], gboolean at_infinity, gdouble cov[3],
+    gdouble * disagreement)
+{
+  const Normal *s = &spread->s;
+  static const gdouble identity[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
+  ClothCamera own = s->bundle->cameras[camera];
+  gdouble R[9], t[3], X[3], d[3], px[2], a[6], J[2 * N_OWN], aR[2][3];
+  g_autofree gdouble *r = g_new (gdouble, 2 * (gsize) s->n + 1);
+  g_autofree gdouble *solved = NULL;
+
+  memcpy (R, own.R, sizeof R);
+  memcpy (t, own.t, sizeof t);
+  memcpy (own.R, identity, sizeof identity);
+  memset (own.t, 0, sizeof own.t);
+  if (!cloth_camera_project (&own, Z, px, a, J))
+    return FALSE;
+  for (guint j = 0; j < 3; j++)
+    d[j] = at_infinity ? Z[j] : Z[j] - t[j];
+  cloth_mat3_vec_t (R, d, X);
+  for (guint i = 0; i < 2; i++) {
+    cloth_vec3_cross (d, a + 3 * i, J + i * N_OWN + 12);
+    for (guint j = 0; j < 3; j++)
+      J[i * N_OWN + 15 + j] = at_infinity ? 0 : a[3 * i + j];
+    cloth_mat3_vec_t (R, a + 3 * i, aR[i]);
+  }
+  reduce_gradient (s, camera, X, at_infinity, J, aR, r, cov);
+  *disagreement = spread->observed ? quadratic (s->n, spread->observed, r)
+      / (spread->variance * quadratic (s->n, spread->expected, r)) : NAN;
+  solved = g_memdup2 (r, 2 * (gsize) s->n * sizeof (gdouble));
+  for (guint i = 0; s->n > 0 && i < 2; i++)
+    cloth_cholesky_solve (s->n, s->S, solved + i * s->n);
+  for (guint j = 0; j < s->n; j++) {
+    cov[0] += r[j] * solved[j];
+    cov[1] += r[j] * solved[s->n + j];
+    cov[2] += r[s->n + j] * solved[s->n + j];
+  }
+  for (guint i = 0; i < 3; i++)
+    cov[i] *= spread->variance;
+  return TRUE;
 }
 
 /* @bundle: a problem
@@ -585,20 +874,27 @@ cloth_bundle_covariance (const ClothBundle * bundle, gdouble * covariance,
  * @dx: (out caller-allocates): seen minus predicted, px, a number a point; NaN where the
  *   point is not in front of the camera
  * @dy: (out caller-allocates): likewise
+ * @distance: (out caller-allocates) (nullable): the same in standard deviations
  */
 void
 cloth_bundle_residuals (const ClothBundle * bundle, guint view, gdouble * dx,
-    gdouble * dy)
+    gdouble * dy, gdouble * distance)
 {
   const ClothBundleView *v = &bundle->views[view];
+  gdouble excess = bundle->excess[v->camera];
 
   for (guint i = 0; i < v->n; i++) {
-    gdouble e[2];
+    gdouble e[2], M[3];
 
     if (!point (bundle, v, i, e, NULL))
       e[0] = e[1] = NAN;
     dx[i] = e[0];
     dy[i] = e[1];
+    if (distance) {
+      information (v, i, excess * excess, M);
+      distance[i] = sqrt (M[0] * e[0] * e[0] + 2 * M[1] * e[0] * e[1]
+          + M[2] * e[1] * e[1]);
+    }
   }
 }
 

@@ -49,6 +49,11 @@ typedef struct {
  * @huber: points farther off than this many standard deviations get less weight
  * @max_iterations: of Levenberg and Marquardt's method
  * @cancellable: (nullable): stops it
+ * @bulge: (array) (nullable): 2 numbers a vertex: how high each @warp lifts it; %NULL: the
+ *   board is flat
+ * @free_warp: whether @warp may change
+ * @warp: how far the board's middle is lifted by a bend along its rows, and along its
+ *   columns, m; in and out
  *
  * A problem of bundle adjustment.
  */
@@ -66,14 +71,32 @@ typedef struct {
   gdouble huber;
   guint max_iterations;
   GCancellable *cancellable;
+  const gdouble *bulge;
+  gboolean free_warp;
+  gdouble warp[2];
 } ClothBundle;
 
 gboolean cloth_bundle_solve (ClothBundle * bundle, gdouble * cost,
     GError ** error);
-gboolean cloth_bundle_covariance (const ClothBundle * bundle,
-    gdouble * covariance, gdouble * variance, GError ** error);
 void cloth_bundle_residuals (const ClothBundle * bundle, guint view,
-    gdouble * dx, gdouble * dy);
+    gdouble * dx, gdouble * dy, gdouble * distance);
 gdouble cloth_bundle_excess (const ClothBundle * bundle, guint camera);
+
+/* How certain the parameters of a solved problem are. */
+typedef struct _ClothBundleSpread ClothBundleSpread;
+
+ClothBundleSpread *cloth_bundle_spread_new (const ClothBundle * bundle,
+    GError ** error);
+void cloth_bundle_spread_free (ClothBundleSpread * spread);
+gdouble cloth_bundle_spread_variance (const ClothBundleSpread * spread);
+void cloth_bundle_spread_cameras (const ClothBundleSpread * spread,
+    gdouble * covariance);
+void cloth_bundle_spread_warp (const ClothBundleSpread * spread,
+    gdouble sd[2]);
+gboolean cloth_bundle_spread_project (const ClothBundleSpread * spread,
+    guint camera, const gdouble Z[3], gboolean at_infinity, gdouble cov[3],
+    gdouble * disagreement);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothBundleSpread, cloth_bundle_spread_free)
 
 G_END_DECLS

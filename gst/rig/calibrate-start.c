@@ -110,7 +110,7 @@ rms_of_view (const ClothBundle * b, guint v)
   g_autofree gdouble *e = g_new (gdouble, 2 * n);
   gdouble sum = 0;
 
-  cloth_bundle_residuals (b, v, e, e + n);
+  cloth_bundle_residuals (b, v, e, e + n, NULL);
   for (guint i = 0; i < 2 * n; i++)
     sum += e[i] * e[i];
   return isnan (sum) ? HUGE_VAL : sqrt (sum / n);

@@ -5,6 +5,7 @@
 
 #include "gst/rig/bundle.h"
 #include "gst/rig/rig.h"
+#include "gst/rig/uncertainty.h"
 
 G_BEGIN_DECLS
 
@@ -48,6 +49,7 @@ typedef enum {
 /* @intrinsics_only: views of different cameras were not taken at the same moments: don't
  *   place the cameras
  * @share_lens: all cameras have the same distortion coefficients
+ * @warp: the board may be bent: how is estimated, too
  * @world: where the world lies
  * @huber: corners farther off than this many standard deviations get less weight
  * @leave_out: every so many poses one is left out for the check; 0: no check
@@ -56,6 +58,7 @@ typedef enum {
 typedef struct {
   gboolean intrinsics_only;
   gboolean share_lens;
+  gboolean warp;
   ClothCalibrateWorld world;
   gdouble huber;
   guint leave_out;
@@ -69,21 +72,31 @@ typedef struct {
  * @left_out_rms: the same on views that took no part in the fit but for their own pose; NaN
  *   without the check
  * @excess: what the corners scatter beyond their own covariances, px, one axis
+ * @n_outliers: corners farther off than chance takes any of them, in 19 calibrations of 20
+ * @map: how certain its projections are
  */
 typedef struct {
-  guint n_views, n_shared, n_points;
+  guint n_views, n_shared, n_points, n_outliers;
   gdouble rms;
   gdouble left_out_rms;
   gdouble excess;
+  ClothUncertaintyMap map;
 } ClothCalibrateCamera;
 
 /* @rig: the cameras, with standard deviations
  * @placed: whether the cameras' places were determined
  * @rms: root mean square reprojection error, px
  * @left_out_rms: as in #ClothCalibrateCamera, over all cameras
+ * @warp: how far the board's middle is lifted off the plane of its rim, by a bend along its
+ *   rows and by one along its columns, m; 0 when it was taken for flat
+ * @warp_sd: standard deviations of @warp
  * @variance: variance of the standardised residuals, by which the deviations are scaled
  * @cameras: (array): one a camera
  * @view_rms: (array): one a view of the input, px; NaN: unused, too few corners
+ * @dx: (array): one a corner of the input, view after view: seen minus predicted, px; NaN:
+ *   unused
+ * @dy: (array): likewise
+ * @outlier: (array): likewise, whether it is one
  * @n_poses: poses below
  * @poses: (array): 12 numbers a pose of the input: R and t, board to world; NaN: unused,
  *   all NaN when not @placed
@@ -92,9 +105,12 @@ typedef struct {
   ClothRig *rig;
   gboolean placed;
   gdouble rms, left_out_rms;
+  gdouble warp[2], warp_sd[2];
   gdouble variance;
   ClothCalibrateCamera *cameras;
   gdouble *view_rms;
+  gdouble *dx, *dy;
+  gboolean *outlier;
   guint n_poses;
   gdouble *poses;
 } ClothCalibration;

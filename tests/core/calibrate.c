@@ -283,6 +283,8 @@ test_outliers (void)
   g_autoptr (ClothCalibration) result = NULL, again = NULL;
   ClothCalibrateParams params;
   gdouble worst;
+  g_autoptr (GArray) bad = g_array_new (FALSE, FALSE, sizeof (gboolean));
+  guint n_bad = 0, n_found = 0, n_false = 0;
 
   cloth_random_init (&random, 3);
   problem_init (&p, 2, 9, 7, 0.03, 15);
@@ -298,8 +300,11 @@ test_outliers (void)
       see (&p, &truth[c], c, v, P, &random, 0.1, FALSE);
       view = &g_array_index (p.views, ClothBundleView, p.views->len - 1);
       for (guint i = 0; i < view->n; i++) {
-        if (cloth_random_uniform (&random) < 1. / 30)
+        gboolean off = cloth_random_uniform (&random) < 1. / 30;
+
+        if (off)
           ((gdouble *) view->x)[i] += 10 + 20 * cloth_random_uniform (&random);
+        g_array_append_val (bad, off);
       }
     }
   }
@@ -312,6 +317,21 @@ test_outliers (void)
       worst);
   g_assert_cmpfloat (worst, <, 4);
   g_assert_cmpfloat (fabs (result->cameras[0].excess - 0.11), <, 0.02);
+
+  /* Those that are off are found, and no others. */
+  for (guint i = 0; i < bad->len; i++) {
+    gboolean off = g_array_index (bad, gboolean, i);
+
+    n_bad += off;
+    n_found += off && result->outlier[i];
+    n_false += !off && result->outlier[i];
+  }
+  g_test_message ("%u of %u outliers found, %u false", n_found, n_bad, n_false);
+  g_assert_cmpuint (n_bad, >, 30);
+  g_assert_cmpuint (n_found, ==, n_bad);
+  g_assert_cmpuint (n_false, ==, 0);
+  g_assert_cmpuint (result->cameras[0].n_outliers
+      + result->cameras[1].n_outliers, ==, n_bad);
 
   /* Equal input, equal bytes. */
   again = cloth_calibrate (&p.input, &params, NULL, NULL, NULL, &error);

@@ -81,7 +81,8 @@ problem_clear (Problem * p)
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Problem, problem_clear)
 /* Corners that OpenCV found, camera by camera. */
-     static void load_corners (Problem * p, const gint * cameras)
+static inline void
+load_corners (Problem * p, const gint * cameras)
 {
   g_autofree gchar *text = NULL;
   gchar *line;

@@ -84,6 +84,24 @@ for side, limit, subpix in (('left', 0.165, 0.195), ('right', 0.163, 0.207)):
     check(cameras[0]['standard_deviations']['K'][0] < 0.6, '%s: fx ± %.2f px'
           % (side, cameras[0]['standard_deviations']['K'][0]))
 
+# Three pictures put the centre 5 px beside that of all of them, and say that they may.
+report, few = calibrate('--pattern', pattern, *('left=%s/left0%d.jpg' % (boards, i) for i in (1, 2, 3)))
+_, cameras = calibrate('--pattern', pattern, 'left=%s/left*.jpg' % boards)
+off = few[0]['K'][0][2] - cameras[0]['K'][0][2]
+check(abs(off) > 3 and '3 views are too few' in report and 'mostly at the left' in report,
+      'three pictures: cx off by %.1f ± %.2f px, with a warning' % (off, few[0]['standard_deviations']['K'][2]))
+report, _ = calibrate('--pattern', pattern, 'left=%s/left*.jpg' % boards)
+check('too few' not in report and 'the views disagree' in report
+      and re.search(r'at infinity +0\.\d+ +\d+\.\d+ ', report), 'all pictures: projections and their warning')
+
+# The one board is bent the same, whichever camera sees it.
+bends = []
+for side in ('left', 'right'):
+    report, _ = calibrate('--pattern', pattern, '--warp', '%s=%s/%s*.jpg' % (side, boards, side))
+    bends.append([float(x) for x in re.findall(r'(-?[\d.]+) ± [\d.]+ mm', report)[:2]])
+    check(rms(report)[0] < 0.155, '%s: RMS %.3f px where the board may be bent' % (side, rms(report)[0]))
+check(math.dist(*bends) < 0.04 and bends[0][1] < -0.3, 'bent by %s mm, and by %s mm' % tuple(bends))
+
 # OpenCV's own calibration of the left camera, published with the pictures; one of its views
 # is off by 1.2 px (RMS 0.393 px).
 _, cameras = calibrate('--pattern', pattern, 'left=%s/left*.jpg' % boards)
@@ -114,6 +132,12 @@ check(cameras[0]['distortion'] == cameras[1]['distortion'], 'one lens for both')
 # The same pictures said to be of a board with another column: no board is found in them.
 check('contradict' not in report, 'pair: views agree')
 refused(1, 'found in 0 views', '--output', output, '--columns', '11', '--rows', '7',
+        '--square', '25mm', 'left=%s/left*.jpg' % boards)
+
+# Inner corners, as other programs count, in place of squares; a board that is neither.
+refused(1, 'so 10 × 7 squares, which is what to give: --columns 10 --rows 7', '--output', output,
+        '--columns', '9', '--rows', '6', '--square', '25mm', 'left=%s/left*.jpg' % boards)
+refused(1, 'found in 0 views', '--output', output, '--columns', '8', '--rows', '5',
         '--square', '25mm', 'left=%s/left*.jpg' % boards)
 
 # Boards of 14×19 corners that the cameras saw one after the other; two numbers are equal.
@@ -163,10 +187,51 @@ _, cameras = calibrate('--size', '641x479', '--import-opencv', unsized)
 check(cameras[0]['size'] == [641, 479] and cameras[0]['name'] == 'unsized', '--size')
 refused(1, 'no Kalibr camera chain', '--output', output, '--import-kalibr',
         os.path.join(boards, 'left_intrinsics.yml'))
+refused(1, 'LENSMODEL', '--output', output, '--import-mrcal', os.path.join(boards, 'left_intrinsics.yml'))
+refused(2, 'stand alone', '--output', output, '--import-mrcal', os.path.join(boards, 'left.cameramodel'),
+        '--import-kalibr', unsized)
 hang = os.path.join(folder, 'hang.yml')
 with open(hang, 'w', encoding='utf-8') as file:
     file.write('%YAML:1.0\n---a: 1\nb<!--\nc: 2\n')
 refused(1, 'not YAML', '--output', output, '--import-opencv', hang)
+
+# Which way is up: a rig whose y is down, one with the board on the floor, one with a plumb line.
+down = os.path.join(folder, 'down.json')
+models = [x for side in ('left', 'right') for x in ('--import-mrcal', os.path.join(boards, side + '.cameramodel'))]
+check(run('--output', down, *models).returncode == 0, '--import-mrcal')
+_, cameras = calibrate('upright', down)
+check(all(abs(a - b) < 1e-9 for x, y in zip(cameras[0]['R'], ([1, 0, 0], [0, 0, -1], [0, 1, 0])) for a, b in zip(x, y)),
+      'upright: z up in the first picture')
+pair = ['--pattern', pattern, 'left=%s/left*.jpg' % boards, 'right=%s/right*.jpg' % boards]
+_, floor = calibrate('--world', 'board', *pair)
+_, cameras = calibrate('upright', down, '--world', 'board', '--pattern', pattern,
+                       'left=%s/left01.jpg' % boards, 'right=%s/right01.jpg' % boards)
+off = max(math.dist(a, b) for x, y in zip(floor, cameras) for a, b in zip(matrix(x), matrix(y)))
+check(off < 0.01, 'upright on the board: %.4f beside a calibration there' % off)
+plumb = os.path.join(folder, 'plumb.csv')
+with open(plumb, 'w', encoding='utf-8') as file:
+    file.write('# a line that leans by 45° in the pictures\nleft,300,200,0,0,1\nright,240,210,0,0,1\n'
+               'left,400,300,0,0,0\nright,340,310,0,0,0\n')
+report, cameras = calibrate('upright', down, '--world', 'points', '--points', plumb)
+up = [row[2] for row in cameras[0]['R']]
+check('(RMS)' in report and up[0] < -0.6 and up[1] < -0.6, 'upright by a plumb line: up is %.2f %.2f %.2f in the camera'
+      % tuple(up))
+report, cameras = calibrate('--world', 'points', '--points', plumb, *pair)
+up = [row[2] for row in cameras[0]['R']]
+check('(RMS)' in report and up[0] < -0.6 and up[1] < -0.6, 'calibrated by a plumb line')
+refused(2, 'go together', '--output', output, 'upright', down, '--world', 'points')
+refused(2, 'go together', '--output', output, 'upright', down, '--points', plumb)
+refused(2, 'have no world', '--output', output, '--world', 'points', '--points', plumb, '--intrinsics-only', *pair)
+refused(2, 'upright RIG', '--output', output, 'upright')
+refused(2, 'upright RIG CAMERA', '--output', output, '--world', 'board', 'upright', down)
+refused(2, 'nothing to report', '--output', output, '--report', output, 'upright', down)
+refused(1, 'no camera "other"', '--output', output, '--world', 'board', 'upright', down, '--pattern', pattern,
+        'other=%s/left01.jpg' % boards)
+refused(1, 'in none of the pictures', '--output', output, '--world', 'board', 'upright', down, '--columns', '8',
+        '--rows', '5', '--square', '1cm', 'left=%s/left01.jpg' % boards)
+with open(plumb, 'a', encoding='utf-8') as file:
+    file.write('left,1,2,3\n')
+refused(1, 'line 6: give camera,x,y,X,Y,Z', '--output', output, 'upright', down, '--world', 'points', '--points', plumb)
 
 # What can go wrong.
 given = ['--output', output, '--pattern', pattern]

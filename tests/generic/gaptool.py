@@ -396,6 +396,23 @@ def contradictions(folder):
         expect(done.returncode == 0 and 'undecidable' not in done.stdout, done.stdout)
 
 
+def worlds(folder):
+    """A world that is a camera's is no level one: said, unless the rig was turned upright."""
+    camera = {'name': 'front', 'size': [640, 480], 'K': [[500, 0, 320], [0, 500, 240], [0, 0, 1]],
+              'distortion': {'model': 'none', 'coefficients': []}, 'R': [[1, 0, 0], [0, 0, -1], [0, 1, 0]], 't': [0, 0, 0]}
+    pitched = dict(camera, R=[[1, 0, 0], [0, 0.1736482, -0.9848078], [0, 0.9848078, 0.1736482]])
+    opencv = dict(camera, R=[[1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    for rig, warned in ((camera, True), (opencv, True), (pitched, False), (dict(camera, t=[0, 0, 1]), False), (None, False)):
+        with open(os.path.join(folder, 'tipped/rig.json'), 'w', encoding='utf-8') as file:
+            file.write(json.dumps({'version': 1, 'cameras': [rig]}) if rig else 'no rig')
+        done = run(folder, 'diagnose', 'tipped', '--model', knit, '--effects', 'wind', '--output', 'worlds')
+        with open(os.path.join(folder, 'worlds/gap.json'), encoding='utf-8') as file:
+            notes = [note for note in json.load(file)['notes'] if 'of its camera front' in note]
+        expect(done.returncode == 0 and len(notes) == warned and ('calibrate-1.0 upright' in done.stdout) == warned,
+               'the world of a camera: %s %s' % (rig and rig['R'], done.stdout + done.stderr[-200:]))
+    os.unlink(os.path.join(folder, 'tipped/rig.json'))
+
+
 def usage(folder):
     for arguments, text in [
             ((), 'check-simulator or effects'), (('diagnoze',), 'no command'),
@@ -455,6 +472,7 @@ with tempfile.TemporaryDirectory(prefix='cloth-gaptool-') as scratch:
     interrupt(scratch)
     refusals(scratch)
     contradictions(scratch)
+    worlds(scratch)
     usage(scratch)
     failures(scratch)
 sys.exit(1 if faults else 0)

@@ -16,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 
-MADE = ('report.js', 'report.css')
+MADE = ('report.js', 'report.css', 'calibration.js', 'calibration.css')
 HEAD = re.compile(rb'/\*! Made by [^\n]*\nsources sha256 ([0-9a-f]{64})\nbelow sha256 ([0-9a-f]{64})\n.*?\*/\n', re.S)
 
 

@@ -1,5 +1,6 @@
 // The cloth in 3D: recorded, simulated before and after, one camera for all.
 // SPDX-License-Identifier: LGPL-2.1-or-later
+import { turn } from './turn.js';
 import {
   BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, DynamicDrawUsage, GridHelper,
   HemisphereLight, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial, PerspectiveCamera, Scene,
@@ -104,7 +105,7 @@ export class View {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('change', () => this.redraw());
     this.#frameCloth();
-    canvas.addEventListener('keydown', (event) => this.#key(event));
+    canvas.addEventListener('keydown', (event) => turn(event, this));
     this.panels = [];
     this.pending = false;
   }
@@ -162,32 +163,6 @@ export class View {
   reset() {
     this.camera.position.copy(this.home);
     this.controls.target.copy(this.centre);
-    this.controls.update();
-    this.redraw();
-  }
-
-  // Turning and zooming without a mouse.
-  #key(event) {
-    const turns = { ArrowLeft: [-0.12, 0], ArrowRight: [0.12, 0], ArrowUp: [0, -0.12], ArrowDown: [0, 0.12] };
-    const zooms = { '+': 0.85, '=': 0.85, '-': 1 / 0.85 };
-    const arm = this.camera.position.clone().sub(this.controls.target);
-    if (event.key in turns) {
-      const [turn, tilt] = turns[event.key];
-      const polar = Math.min(3.1, Math.max(0.05, Math.acos(arm.z / arm.length()) + tilt));
-      const azimuth = Math.atan2(arm.y, arm.x) + turn;
-      const r = arm.length();
-      arm.set(r * Math.sin(polar) * Math.cos(azimuth), r * Math.sin(polar) * Math.sin(azimuth), r * Math.cos(polar));
-    } else if (event.key in zooms) {
-      arm.multiplyScalar(zooms[event.key]);
-    } else if (event.key === 'Home') {
-      this.reset();
-      event.preventDefault();
-      return;
-    } else {
-      return;
-    }
-    event.preventDefault();
-    this.camera.position.copy(this.controls.target).add(arm);
     this.controls.update();
     this.redraw();
   }

@@ -5,7 +5,7 @@ import { known, mm, percent, range, verdicts } from './words.js';
 
 const LIMITS = 3;
 
-function figure(name, value, interval, note) {
+export function figure(name, value, interval, note) {
   return element('div', { class: 'figure' },
     element('dt', {}, name),
     element('dd', {}, element('strong', {}, value), ' ',
