@@ -6,8 +6,8 @@
  * Formulas, with Z the members' features on the take and Y those on the reference:
  *   the model's free numbers were fitted on the reference, so each member's are, to first order:
  *     δ = −(FᵀWF/φ + Λ)⁻¹ FᵀWY/φ,  Y ← Y + F δ,  Z ← Z + F_take δ
- *   β = Σ ZY / Σ Y²,  V = mean of (Z − βY)² + (r/10)²,  class by class;
- *   r: what the effects change at which the take is linearised. Their laws hold to a tenth.
+ *   β = Σ ZY / Σ Y²,  V = mean of (Z − βY)² + (r/5)²,  class by class;
+ *   r: what the effects change at which the take is linearised. Their laws hold to a fifth.
  * A reference of the same motion has β near 1 and tells all; another motion says little. That a cloth
  * may be further off than the members are is in the likelihood (likelihood.c).
  *

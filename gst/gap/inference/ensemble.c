@@ -192,7 +192,6 @@ typedef struct
   const ClothFeatures *features;
   ClothRecording **made;
   guint n;
-  guint first;                  /* of the running way */
   gdouble *z;
 } Made;
 
@@ -213,7 +212,7 @@ static void
 keep (gpointer data, guint model, guint frame, const gdouble * positions)
 {
   const Made *m = data;
-  ClothRecording *r = m->made[m->first + model];
+  ClothRecording *r = m->made[model];
 
   memcpy (r->y + 3 * (gsize) frame * r->n, positions,
       3 * r->n * sizeof (gdouble));
@@ -280,11 +279,9 @@ cloth_ensemble_run (const ClothEnsemble * ensemble,
     gains[i] = options->gain;
   }
   options->simulations += 2 * e->n;
-  for (; m.first < e->n; m.first += CLOTH_ENSEMBLE_DRAWS)
-    if (!cloth_rollout_free (r, (const ClothModel * const *) e->models +
-            m.first, CLOTH_ENSEMBLE_DRAWS, &quiet, keep, &m, sound + m.first,
-            error))
-      return FALSE;
+  if (!cloth_rollout_free (r, (const ClothModel * const *) e->models, e->n,
+          &quiet, keep, &m, sound, error))
+    return FALSE;
   for (guint i = 0; i < e->n; i++)
     if (sound[i])
       record (m.made[i], cloth_recording_find_start (r, m.made[i]->y, NULL),
