@@ -13,7 +13,11 @@ G_BEGIN_DECLS
 
 typedef enum {
   GST_CLOTH_OVERLAY_MESH_WIREFRAME,
-  GST_CLOTH_OVERLAY_MESH_SHADED
+  GST_CLOTH_OVERLAY_MESH_SHADED,
+  /* in the order of ClothStrainComponent */
+  GST_CLOTH_OVERLAY_MESH_STRAIN_WARP,
+  GST_CLOTH_OVERLAY_MESH_STRAIN_WEFT,
+  GST_CLOTH_OVERLAY_MESH_STRAIN_SHEAR
 } GstClothOverlayMeshStyle;
 
 typedef enum {
@@ -29,6 +33,7 @@ typedef struct {
   GstClothOverlayMatches draw_matches;
   gfloat line_width, opacity, fill_opacity, c_low, ellipse_scale;
   guint gap_scale, check;       /* mm */
+  guint strain_scale;           /* % */
   GstClothOverlayMeshStyle mesh_style;
 } GstClothOverlayStyle;
 

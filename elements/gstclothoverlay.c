@@ -11,7 +11,10 @@
  * mesh has a map of which place of the cloth each pixel of that camera shows, checks are drawn
  * there. The picture is drawn on in place; one with nothing to draw passes untouched. The mesh is drawn as lines or
  * as a surface with any picture on it (`mesh-style`, `texture`). A mesh that `clothgap`
- * has been over is drawn as a heat map of its distance from the simulation.
+ * has been over is drawn as a heat map of its distance from the simulation. `strain-warp`,
+ * `strain-weft` and `strain-shear` colour the cloth by how far its threads are longer (red) or
+ * shorter (blue) than on the flat cloth, and how far the angle between them has closed (red) or
+ * opened.
  *
  * What a stranger's packets say is drawn as far as it covers the picture at most 64 times
  * (at least 300 million pixels); what comes after that is left out, with one warning.
@@ -40,6 +43,13 @@
  *     autovideosink  meshsrc location=take ! o.mesh
  * ]|
  *
+ * ## Where the cloth is stretched along its warp
+ * |[
+ * gst-launch-1.0 filesrc location=cam0.mp4 ! decodebin ! clothoverlay name=o \
+ *     rig=rig.json camera=cam0 mesh-style=strain-warp strain-scale=5 ! videoconvert ! \
+ *     autovideosink  meshsrc location=take ! o.mesh
+ * ]|
+ *
  * ## Where a simulation departs from the film
  * |[
  * gst-launch-1.0 filesrc location=cam0.mp4 ! decodebin ! clothoverlay name=o \
@@ -61,6 +71,8 @@
 #include "elements/gstclothpicture.h"
 #include "elements/gstclothproperties.h"
 #include "elements/gstclothutil.h"
+#include "elements/gstmeshformat.h"
+#include "gst/mesh/strain.h"
 #include "gst/render/surface.h"
 #include "gst/render/wireframe.h"
 
@@ -102,6 +114,7 @@ typedef struct
   GstClothTopology *topology;
   ClothWireframe *wire;
   ClothSurface *surface;        /* NULL until something is printed on it */
+  ClothStrains *strains;        /* NULL when uv is not known */
   guint8 *heats;                /* one a vertex */
 } Mesh;
 
@@ -125,6 +138,7 @@ struct _GstClothOverlay
   ClothRig *rig;
   const ClothCamera *camera;    /* of @rig */
   gboolean warned;              /* that not all was drawn */
+  gboolean told_no_uv;          /* that strain is not known */
 };
 
 G_DEFINE_TYPE (GstClothOverlay, gst_cloth_overlay, GST_TYPE_CLOTH_SYNC);
@@ -147,6 +161,12 @@ static const GEnumValue mesh_styles[] = {
         "each vertex", "wireframe"},
   {GST_CLOTH_OVERLAY_MESH_SHADED, "Surface in light and shade, with texture "
         "if there is one", "shaded"},
+  {GST_CLOTH_OVERLAY_MESH_STRAIN_WARP, "Faces coloured by the strain along u",
+      "strain-warp"},
+  {GST_CLOTH_OVERLAY_MESH_STRAIN_WEFT, "Faces coloured by the strain along v",
+      "strain-weft"},
+  {GST_CLOTH_OVERLAY_MESH_STRAIN_SHEAR, "Faces coloured by the shear strain",
+      "strain-shear"},
   {0, NULL, NULL}
 };
 
@@ -193,8 +213,9 @@ static const GstClothProperty properties[] = {
     G_TYPE_BOOLEAN, SETTING (style.draw_mesh), ANIMATED},
   {"mesh-style", "mesh-style",
     "How the mesh is drawn: wireframe (green measured, amber from two views, "
-    "blue filled, violet predicted; faint where hidden) or shaded (a surface, "
-    "its hidden parts hidden)",
+    "blue filled, violet predicted; faint where hidden), shaded (a surface, "
+    "its hidden parts hidden) or strain-warp, strain-weft, strain-shear (Green–Lagrange "
+    "strain against the flat cloth: blue shorter, pale none, red longer, grey where not known)",
     G_TYPE_ENUM, SETTING (style.mesh_style), ANIMATED, 0, 0,
     "GstClothOverlayMeshStyle", mesh_styles},
   {"texture", "texture",
@@ -208,6 +229,9 @@ static const GstClothProperty properties[] = {
   {"gap-scale", "gap-scale",
     "Distance from the simulation that has the last colour, mm",
     G_TYPE_UINT, SETTING (style.gap_scale), ANIMATED, 1, 99999},
+  {"strain-scale", "strain-scale",
+    "Strain that has the last colour, %: 1 is a thread that is 1% longer",
+    G_TYPE_UINT, SETTING (style.strain_scale), ANIMATED, 1, 1000},
   {"line-width", "line-width",
     "Width of all lines, px",
     G_TYPE_DOUBLE, SETTING (style.line_width), ANIMATED, 0.25, 100},
@@ -238,7 +262,7 @@ static const GstClothProperty properties[] = {
 static const Settings defaults = {
   .style = {
     .draw_silhouette = TRUE, .draw_saddles = TRUE, .draw_quads = TRUE, .draw_dots = TRUE,
-    .draw_mesh = TRUE, .draw_gap = TRUE, .gap_scale = 10, .draw_uv = TRUE, .check = 20,
+    .draw_mesh = TRUE, .draw_gap = TRUE, .gap_scale = 10, .strain_scale = 10, .draw_uv = TRUE, .check = 20,
     .draw_matches = GST_CLOTH_OVERLAY_MATCHES_GROUPS,
     .line_width = 1.5f, .opacity = 1, .fill_opacity = 0.3f, .c_low = 0.62f,
     .mesh_style = GST_CLOTH_OVERLAY_MESH_WIREFRAME
@@ -273,8 +297,10 @@ mesh_new (GstClothTopology * topology)
   guint n_indices;
   const guint32 *faces = gst_cloth_topology_get_faces (topology, &n_indices);
   const guint n_vertices = gst_cloth_topology_get_n_vertices (topology);
+  g_autoptr (ClothTopology) copy = gst_mesh_copy_topology (topology);
 
   self->topology = gst_cloth_topology_ref (topology);
+  self->strains = cloth_strains_new (copy);
   self->heats = g_malloc (n_vertices);
   self->wire = cloth_wireframe_new (n_vertices,
       gst_cloth_topology_get_columns (topology),
@@ -291,6 +317,7 @@ mesh_free (Mesh * self)
   gst_cloth_topology_unref (self->topology);
   cloth_wireframe_free (self->wire);
   cloth_surface_free (self->surface);
+  cloth_strains_free (self->strains);
   g_free (self->heats);
   g_free (self);
 }
@@ -316,6 +343,41 @@ mesh_print (Mesh * self, const gchar * texture, GError ** error)
   return TRUE;
 }
 
+static gboolean
+is_strain (GstClothOverlayMeshStyle style)
+{
+  return style >= GST_CLOTH_OVERLAY_MESH_STRAIN_WARP;
+}
+
+static void
+mesh_draw_strain (Mesh * self, const ClothCanvas * canvas, gint width,
+    gint height, const ClothCamera * camera, const gfloat * positions,
+    const GstClothOverlayStyle * style)
+{
+  const guint n_vertices = gst_cloth_topology_get_n_vertices (self->topology);
+  const guint component = style->mesh_style -
+      GST_CLOTH_OVERLAY_MESH_STRAIN_WARP;
+  const gint scale = (gint) style->strain_scale;
+  ClothColour colours[CLOTH_DRAW_STRAINS];
+  const ClothWireStyle wire_style = {
+    CLOTH_DRAW_STRAINS, colours, style->line_width, style->opacity,
+    HIDDEN_OPACITY, HEAT_OPACITY * style->opacity
+  };
+
+  cloth_draw_strain_colours (colours);
+  if (self->strains) {
+    cloth_strains_measure (self->strains, positions, NULL);
+    cloth_draw_strains (cloth_strains_get_vertices (self->strains) + component,
+        n_vertices, CLOTH_STRAIN_SIZE, style->strain_scale, self->heats);
+  } else {
+    memset (self->heats, CLOTH_DRAW_STRAINS - 1, n_vertices);
+  }
+  cloth_wireframe_draw (self->wire, canvas, width, height, camera, positions,
+      self->heats, &wire_style);
+  cloth_draw_scale (canvas, width, height, colours, CLOTH_DRAW_STRAINS - 1,
+      -scale, scale, style->opacity);
+}
+
 static void
 mesh_draw (Mesh * self,
     const ClothCanvas * canvas, gint width, gint height,
@@ -332,6 +394,10 @@ mesh_draw (Mesh * self,
   const gboolean hot = gap && gst_cloth_gap_get_n_vertices (gap) ==
       gst_cloth_topology_get_n_vertices (self->topology);
 
+  if (is_strain (style->mesh_style)) {
+    mesh_draw_strain (self, canvas, width, height, camera, positions, style);
+    return;
+  }
   if (hot) {
     cloth_draw_heats (gst_cloth_gap_get_residuals (gap, NULL),
         gst_cloth_gap_get_n_vertices (gap), style->gap_scale, self->heats);
@@ -351,8 +417,8 @@ mesh_draw (Mesh * self,
   cloth_wireframe_draw (self->wire, canvas, width, height, camera, positions,
       states, &wire_style);
   if (hot) {
-    cloth_draw_heat_scale (canvas, width, height, style->gap_scale,
-        style->opacity);
+    cloth_draw_scale (canvas, width, height, heat_colours,
+        CLOTH_DRAW_HEATS - 1, 0, (gint) style->gap_scale, style->opacity);
   }
 }
 
@@ -427,6 +493,20 @@ gst_cloth_overlay_print (GstClothOverlay * self)
   return FALSE;
 }
 
+static void
+gst_cloth_overlay_tell_no_uv (GstClothOverlay * self)
+{
+  if (self->told_no_uv) {
+    return;
+  }
+  self->told_no_uv = TRUE;
+  GST_ELEMENT_WARNING (self, STREAM, FAILED,
+      ("The mesh doesn't say where its vertices lie on the flat cloth, so its "
+          "strain is not known."),
+      ("It is drawn grey. Give a mesh with uv in metres (vt of an OBJ file, "
+          "s and t of a PLY file), or another mesh-style."));
+}
+
 /* A picture whose mesh is damaged goes on without it. */
 static GstFlowReturn
 gst_cloth_overlay_draw_mesh (GstClothOverlay * self, const ClothCanvas * canvas,
@@ -444,6 +524,9 @@ gst_cloth_overlay_draw_mesh (GstClothOverlay * self, const ClothCanvas * canvas,
   if (style->mesh_style == GST_CLOTH_OVERLAY_MESH_SHADED
       && !gst_cloth_overlay_print (self)) {
     return GST_FLOW_ERROR;
+  }
+  if (is_strain (style->mesh_style) && !self->mesh->strains) {
+    gst_cloth_overlay_tell_no_uv (self);
   }
   mesh_draw (self->mesh, canvas,
       GST_VIDEO_INFO_WIDTH (&self->info), GST_VIDEO_INFO_HEIGHT (&self->info),
@@ -730,6 +813,7 @@ static gboolean
 gst_cloth_overlay_start (GstAggregator * agg)
 {
   GST_CLOTH_OVERLAY (agg)->warned = FALSE;
+  GST_CLOTH_OVERLAY (agg)->told_no_uv = FALSE;
   gst_cloth_damage_reset (&GST_CLOTH_OVERLAY (agg)->settings.damage,
       GST_ELEMENT (agg));
   return GST_AGGREGATOR_CLASS (gst_cloth_overlay_parent_class)->start (agg);

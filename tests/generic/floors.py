@@ -59,7 +59,7 @@ ROOMS = [
          ['rig.h', 'rigfile.h', 'rigyaml.h', 'camera.h', 'capture.h', 'orbit.h', 'rotation.h',
           'planar.h', 'rectify.h', 'calibrate.h', 'merge.h', 'triangulate.h', 'reconstruct.h']),
     Room('gst/mesh', 'meshes and their files',
-         {'': ['topology.h', 'hold.h', 'side.h'], 'formats': ['formats.h'],
+         {'': ['topology.h', 'hold.h', 'side.h', 'strain.h'], 'formats': ['formats.h'],
           'fill': ['fill.h'], 'garment': ['garment.h']},
          [[''], ['formats'], ['fill', 'garment']]),
     Room('gst/take', 'recordings on disk', ['take.h', 'sequence.h', 'recover.h', 'measurement.h']),
