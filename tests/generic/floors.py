@@ -80,7 +80,7 @@ ROOMS = [
           'nudge': ['nudge.h'], 'estimate': ['estimate.h']},
          [[''], ['recording'], ['features'], ['nudge'], ['estimate']]),
     Room('gst/gap', 'why a simulation is wrong',
-         {'': ['diagnose.h', 'inputs.h'], 'report': ['result.h', 'words.h', 'patch.h', 'report.h'],
+         {'': ['diagnose.h', 'inputs.h'], 'report': ['result.h', 'words.h', 'patch.h', 'report.h', 'view.h'],
           'simulator': ['simulator.h', 'capabilities.h', 'mapping.h']},
          [['inputs', 'report'], ['simulator'], ['camera'], ['diagnosis'], ['load', 'inference', 'localise'],
           ['camera/faults', 'verdict', 'design', 'loop'], ['diagnose']]),

@@ -1,4 +1,5 @@
-// Makes report.js and report.css: `npm ci && npm run build`, or with `--out FOLDER` there.
+// Makes the scripts and styles of the pages, report and view: `npm ci && npm run build`, or with
+// `--out FOLDER` there.
 // SPDX-License-Identifier: LGPL-2.1-or-later
 import { createHash } from 'node:crypto';
 import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
@@ -28,7 +29,7 @@ const sources_sha256 = hash.digest('hex');
 
 const result = await build({
   absWorkingDir: here,
-  entryPoints: { report: 'src/main.js' },
+  entryPoints: { report: 'src/main.js', view: 'src/view.js' },
   outdir: out,
   bundle: true,
   minify: true,
