@@ -85,7 +85,7 @@ GST_DEBUG_CATEGORY_STATIC (cloth_overlay_debug);
 
 /* So many times the picture's area is drawn over it, what is transparent or hidden included,
  * and in small pictures at least so many samples, which take some tenths of a second.
- * 65,536 squares with outlines and numbers need less than a fifth of it. */
+ * 65,536 squares with outlines and numbers need less than half of it. */
 #define MOST_LAYERS 64
 #define LEAST_SAMPLES 3e8
 
@@ -261,7 +261,7 @@ static const GstClothProperty properties[] = {
 
 static const Settings defaults = {
   .style = {
-    .draw_silhouette = TRUE, .draw_saddles = TRUE, .draw_quads = TRUE, .draw_dots = TRUE,
+    .draw_silhouette = TRUE, .draw_quads = TRUE, .draw_dots = TRUE,
     .draw_mesh = TRUE, .draw_gap = TRUE, .gap_scale = 10, .strain_scale = 10, .draw_uv = TRUE, .check = 20,
     .draw_matches = GST_CLOTH_OVERLAY_MATCHES_GROUPS,
     .line_width = 1.5f, .opacity = 1, .fill_opacity = 0.3f, .c_low = 0.62f,
