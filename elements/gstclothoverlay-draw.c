@@ -18,6 +18,14 @@
 /* Indices on squares smaller or dots closer than this could not be read, px. */
 #define LEAST_SIZE_FOR_INDEX 14.0f
 
+const ClothColour gst_cloth_overlay_vertex_colours[GST_CLOTH_OVERLAY_STATES] = {
+  {0.55f, 0.55f, 0.55f, 1},     /* unseen */
+  {0.20f, 0.85f, 0.45f, 1},     /* measured: green */
+  {1.00f, 0.72f, 0.15f, 1},     /* two views: amber */
+  {0.25f, 0.60f, 1.00f, 1},     /* filled: blue */
+  {0.75f, 0.45f, 1.00f, 1}      /* predicted: violet */
+};
+
 static const ClothColour saddle_colour = { 0.10f, 0.90f, 0.95f, 1 };
 static const ClothColour silhouette_colour = { 0.20f, 0.95f, 0.35f, 1 };
 static const ClothColour edge_colour = { 0.05f, 0.05f, 0.15f, 0.75f };
@@ -293,8 +301,8 @@ gst_cloth_overlay_draw_saddles (const ClothCanvas * canvas,
 /* Share of a link that is left free at each end: the dots stay visible. */
 #define FREE 0.2f
 
-static const ClothColour unlabelled_colour = { 1, 0.15f, 0.15f, 1 };
-static const ClothColour behind_colour = { 0.30f, 0.65f, 1, 1 };
+const ClothColour gst_cloth_overlay_unlabelled_colour = { 1, 0.15f, 0.15f, 1 };
+const ClothColour gst_cloth_overlay_behind_colour = { 0.30f, 0.65f, 1, 1 };
 
 static ClothColour
 dot_colour (const GstClothDot * dot)
@@ -307,7 +315,8 @@ draw_link (const ClothCanvas * canvas, const GstClothDot * a,
     const GstClothDot * b, Pass pass, const GstClothOverlayStyle * style)
 {
   gfloat dx = b->x - a->x, dy = b->y - a->y;
-  ClothColour colour = colour_in (pass, a->mirrored ? behind_colour :
+  ClothColour colour = colour_in (pass, a->mirrored ?
+      gst_cloth_overlay_behind_colour :
       dot_colour (a->confidence < b->confidence ? a : b), style);
 
   cloth_draw_line (canvas, a->x + FREE * dx, a->y + FREE * dy, b->x - FREE * dx,
@@ -424,7 +433,8 @@ gst_cloth_overlay_draw_dots (const ClothCanvas * canvas, GstClothDots * dots,
 
     if (!has_label (d, columns, rows)) {
       if (style->draw_dots) {
-        const ClothColour cross = colour_in (pass, unlabelled_colour, style);
+        const ClothColour cross = colour_in (pass,
+            gst_cloth_overlay_unlabelled_colour, style);
 
         cloth_draw_line (canvas, d->x - DOT_ARM, d->y - DOT_ARM,
             d->x + DOT_ARM, d->y + DOT_ARM, width, &cross);

@@ -16,6 +16,10 @@
  * shorter (blue) than on the flat cloth, and how far the angle between them has closed (red) or
  * opened.
  *
+ * `draw-legend` writes the camera, the picture's number and time, how many squares, dots or
+ * vertices there are and what their colours mean; `draw-speed`, for live cameras, how many
+ * pictures a second come by and how many are missing by their time stamps.
+ *
  * What a stranger's packets say is drawn as far as it covers the picture at most 64 times
  * (at least 300 million pixels); what comes after that is left out, with one warning.
  *
@@ -139,6 +143,12 @@ struct _GstClothOverlay
   const ClothCamera *camera;    /* of @rig */
   gboolean warned;              /* that not all was drawn */
   gboolean told_no_uv;          /* that strain is not known */
+  guint64 n_pictures, n_lost;
+  GstClockTime last_pts;
+  GstClockTime counted_from;    /* by the element's clock */
+  guint n_counted;              /* pictures since then */
+  gdouble speed;                /* pictures a second; 0: not known yet */
+  GstClothOverlayFacts facts;   /* of the picture that is drawn on */
 };
 
 G_DEFINE_TYPE (GstClothOverlay, gst_cloth_overlay, GST_TYPE_CLOTH_SYNC);
@@ -211,6 +221,14 @@ static const GstClothProperty properties[] = {
   {"draw-mesh", "draw-mesh",
     "Draw the mesh of the mesh pad",
     G_TYPE_BOOLEAN, SETTING (style.draw_mesh), ANIMATED},
+  {"draw-legend", "draw-legend",
+    "Write camera, number and time of the picture, how many of what was found, and what "
+    "the colours mean",
+    G_TYPE_BOOLEAN, SETTING (style.draw_legend), ANIMATED},
+  {"draw-speed", "draw-speed",
+    "Write how many pictures a second come by, by the clock of the pipeline, and how many "
+    "are missing by their time stamps",
+    G_TYPE_BOOLEAN, SETTING (style.draw_speed), ANIMATED},
   {"mesh-style", "mesh-style",
     "How the mesh is drawn: wireframe (green measured, amber from two views, "
     "blue filled, violet predicted; faint where hidden), shaded (a surface, "
@@ -280,15 +298,6 @@ static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE ("src",
     GST_STATIC_CAPS (GST_VIDEO_CAPS_MAKE (FORMATS)));
 
 /* ---- the mesh ---- */
-
-/* by GstClothVertexState */
-static const ClothColour vertex_colours[] = {
-  {0.55f, 0.55f, 0.55f, 1},     /* unseen */
-  {0.20f, 0.85f, 0.45f, 1},     /* measured: green */
-  {1.00f, 0.72f, 0.15f, 1},     /* two views: amber */
-  {0.25f, 0.60f, 1.00f, 1},     /* filled: blue */
-  {0.75f, 0.45f, 1.00f, 1}      /* predicted: violet */
-};
 
 static Mesh *
 mesh_new (GstClothTopology * topology)
@@ -382,10 +391,11 @@ static void
 mesh_draw (Mesh * self,
     const ClothCanvas * canvas, gint width, gint height,
     const ClothCamera * camera, GstClothMesh * mesh, GstClothGap * gap,
-    const GstClothOverlayStyle * style)
+    const GstClothOverlayStyle * style, GstClothOverlayFacts * facts)
 {
   ClothWireStyle wire_style = {
-    G_N_ELEMENTS (vertex_colours), vertex_colours, style->line_width,
+    GST_CLOTH_OVERLAY_STATES, gst_cloth_overlay_vertex_colours,
+    style->line_width,
     style->opacity, HIDDEN_OPACITY, 0
   };
   ClothColour heat_colours[CLOTH_DRAW_HEATS];
@@ -394,11 +404,17 @@ mesh_draw (Mesh * self,
   const gboolean hot = gap && gst_cloth_gap_get_n_vertices (gap) ==
       gst_cloth_topology_get_n_vertices (self->topology);
 
+  for (guint i = 0; i < gst_cloth_topology_get_n_vertices (self->topology); i++) {
+    facts->n_of_state[MIN (states[i], GST_CLOTH_OVERLAY_STATES - 1)]++;
+  }
   if (is_strain (style->mesh_style)) {
+    facts->mesh_colours = GST_CLOTH_OVERLAY_COLOURS_STRAIN;
     mesh_draw_strain (self, canvas, width, height, camera, positions, style);
     return;
   }
+  facts->mesh_colours = GST_CLOTH_OVERLAY_COLOURS_STATE;
   if (hot) {
+    facts->mesh_colours = GST_CLOTH_OVERLAY_COLOURS_GAP;
     cloth_draw_heats (gst_cloth_gap_get_residuals (gap, NULL),
         gst_cloth_gap_get_n_vertices (gap), style->gap_scale, self->heats);
     cloth_draw_heat_colours (heat_colours);
@@ -409,6 +425,7 @@ mesh_draw (Mesh * self,
   } else if (style->mesh_style == GST_CLOTH_OVERLAY_MESH_SHADED) {
     ClothRenderStyle light;
 
+    facts->mesh_colours = GST_CLOTH_OVERLAY_COLOURS_PLAIN;
     cloth_render_style_init (&light);
     cloth_surface_draw (self->surface, canvas, width, height, camera,
         positions, &light, style->opacity);
@@ -530,7 +547,7 @@ gst_cloth_overlay_draw_mesh (GstClothOverlay * self, const ClothCanvas * canvas,
   }
   mesh_draw (self->mesh, canvas,
       GST_VIDEO_INFO_WIDTH (&self->info), GST_VIDEO_INFO_HEIGHT (&self->info),
-      self->camera, mesh, gap, style);
+      self->camera, mesh, gap, style, &self->facts);
   return GST_FLOW_OK;
 }
 
@@ -598,6 +615,62 @@ gst_cloth_overlay_decide_allocation (GstAggregator * agg, GstQuery * query)
   GST_CLOTH_OVERLAY (agg)->knows_strides =
       gst_query_find_allocation_meta (query, GST_VIDEO_META_API_TYPE, NULL);
   return TRUE;
+}
+
+/* Counts the picture, and what is missing before it. */
+static void
+gst_cloth_overlay_count (GstClothOverlay * self, GstClockTime pts)
+{
+  g_autoptr (GstClock) clock = gst_element_get_clock (GST_ELEMENT (self));
+  const gint fps_n = GST_VIDEO_INFO_FPS_N (&self->info);
+  const gint fps_d = GST_VIDEO_INFO_FPS_D (&self->info);
+
+  if (GST_CLOCK_TIME_IS_VALID (pts) && GST_CLOCK_TIME_IS_VALID (self->last_pts)
+      && pts > self->last_pts && fps_n > 0) {
+    const guint64 n_periods = gst_util_uint64_scale_round (pts - self->last_pts,
+        (guint64) fps_n, (guint64) fps_d * GST_SECOND);
+
+    self->n_lost += n_periods > 1 ? n_periods - 1 : 0;
+  }
+  self->last_pts = pts;
+  if (clock) {
+    const GstClockTime now = gst_clock_get_time (clock);
+
+    if (!GST_CLOCK_TIME_IS_VALID (self->counted_from)
+        || now < self->counted_from) {
+      self->counted_from = now;
+      self->n_counted = 0;
+    } else if (now - self->counted_from >= GST_SECOND) {
+      self->speed = (gdouble) (self->n_counted + 1) * GST_SECOND /
+          (gdouble) (now - self->counted_from);
+      self->counted_from = now;
+      self->n_counted = 0;
+    } else {
+      self->n_counted++;
+    }
+  }
+}
+
+/* What is told of the picture; the mesh adds its own when it is drawn. */
+static void
+gst_cloth_overlay_start_facts (GstClothOverlay * self, GstClockTime pts)
+{
+  const GstClothOverlayFacts facts = {
+    self->camera ? self->camera->name : NULL, self->n_pictures, pts,
+    GST_CLOTH_OVERLAY_COLOURS_NONE, {0}, self->speed, self->n_lost
+  };
+
+  self->facts = facts;
+  self->n_pictures++;
+}
+
+static void
+gst_cloth_overlay_reset_count (GstClothOverlay * self)
+{
+  self->n_pictures = self->n_lost = 0;
+  self->n_counted = 0;
+  self->speed = 0;
+  self->last_pts = self->counted_from = GST_CLOCK_TIME_NONE;
 }
 
 /* What a picture may cost. */
@@ -680,13 +753,15 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   if (mapped) {
     uv = gst_cloth_overlay_find_uv (self, mapped);
   }
+  gst_cloth_overlay_count (self, pts);
+  gst_cloth_overlay_start_facts (self, pts);
   *out = g_steal_pointer (&views[VIDEO]);
   if (!self->knows_strides
       && !gst_cloth_picture_make_plain (GST_ELEMENT (self), &self->info, out)) {
     return GST_FLOW_ERROR;
   }
   if (!mesh && !uv && !has_silhouette && !has_quads && !has_dots && !has_matches
-      && !has_saddles) {
+      && !has_saddles && !style.draw_legend && !style.draw_speed) {
     return GST_FLOW_OK;
   }
 
@@ -729,6 +804,8 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
     gst_cloth_overlay_draw_saddles (&canvas,
         gst_buffer_get_cloth_saddles (*out), &style);
   }
+  gst_cloth_overlay_draw_legend (&canvas, GST_VIDEO_FRAME_WIDTH (&frame),
+      GST_VIDEO_FRAME_HEIGHT (&frame), *out, &self->facts, &style);
   gst_video_frame_unmap (&frame);
   gst_cloth_overlay_tell (self, &work);
   return ret;
@@ -814,6 +891,7 @@ gst_cloth_overlay_start (GstAggregator * agg)
 {
   GST_CLOTH_OVERLAY (agg)->warned = FALSE;
   GST_CLOTH_OVERLAY (agg)->told_no_uv = FALSE;
+  gst_cloth_overlay_reset_count (GST_CLOTH_OVERLAY (agg));
   gst_cloth_damage_reset (&GST_CLOTH_OVERLAY (agg)->settings.damage,
       GST_ELEMENT (agg));
   return GST_AGGREGATOR_CLASS (gst_cloth_overlay_parent_class)->start (agg);
