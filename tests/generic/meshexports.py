@@ -150,6 +150,16 @@ def accessor(tree, binary, index):
     return values
 
 
+def normals(places, faces):
+    """Of the vertices: the mean of their triangles by area."""
+    sums = np.zeros((N, 3))
+    for face in faces:
+        for triangle in ([face] if len(face) == 3 else [face[:3], [face[0], face[2], face[3]]]):
+            a, b, c = places[triangle].astype('f8')
+            sums[face] += np.cross(b - a, c - a)
+    return sums / np.linalg.norm(sums, axis=1)[:, None]
+
+
 def check_gltf(path, truth):
     tree, binary = read_glb(path)
     expect(tree['asset']['version'] == '2.0', 'glTF 2.0')
@@ -157,6 +167,8 @@ def check_gltf(path, truth):
     node = tree['nodes'][tree['scenes'][tree['scene']]['nodes'][0]]
     mesh = tree['meshes'][node['mesh']]
     primitive, = mesh['primitives']
+    base_normals = accessor(tree, binary, primitive['attributes']['NORMAL'])
+    bends = np.array([accessor(tree, binary, t['NORMAL']) for t in primitive['targets']])
     for index in [primitive['attributes']['POSITION']] + [
             t['POSITION'] for t in primitive['targets']]:
         assert {'min', 'max'} <= set(tree['accessors'][index])
@@ -177,6 +189,9 @@ def check_gltf(path, truth):
         return base + np.tensordot(row, targets, 1)
     for f, time in enumerate(times):
         expect(near(pose(time), truth['held'][f], 3e-7), 'glTF frame %d' % f)
+        weight = np.array([np.interp(time, times, weights[:, k]) for k in range(len(bends))])
+        expect(np.allclose(base_normals + np.tensordot(weight, bends, 1), normals(pose(time), truth['faces']),
+                           atol=2e-4), 'glTF normals %d' % f)
     expect(near(pose((times[5] + times[6]) / 2), (truth['held'][5] + truth['held'][6]) / 2, 1e-6),
            'glTF between frames 5 and 6')
     triangles = accessor(tree, binary, primitive['indices']).reshape(-1, 3)
