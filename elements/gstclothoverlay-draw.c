@@ -12,20 +12,52 @@
 /* px: the arms of a saddle's cross, the dashes of a predicted square */
 #define CROSS_ARM 4.0f
 #define DASH 4.0f
+/* px: the dark edge on each side of a line, so that any film leaves it visible */
+#define EDGE 1.0f
 
 /* Indices on squares smaller or dots closer than this could not be read, px. */
 #define LEAST_SIZE_FOR_INDEX 14.0f
 
+const ClothColour gst_cloth_overlay_vertex_colours[GST_CLOTH_OVERLAY_STATES] = {
+  {0.55f, 0.55f, 0.55f, 1},     /* unseen */
+  {0.20f, 0.85f, 0.45f, 1},     /* measured: green */
+  {1.00f, 0.72f, 0.15f, 1},     /* two views: amber */
+  {0.25f, 0.60f, 1.00f, 1},     /* filled: blue */
+  {0.75f, 0.45f, 1.00f, 1}      /* predicted: violet */
+};
+
 static const ClothColour saddle_colour = { 0.10f, 0.90f, 0.95f, 1 };
 static const ClothColour silhouette_colour = { 0.20f, 0.95f, 0.35f, 1 };
-static const ClothColour text_on_black = { 1, 1, 1, 0.95f };
-static const ClothColour text_on_white = { 0.05f, 0.05f, 0.15f, 0.95f };
+static const ClothColour edge_colour = { 0.05f, 0.05f, 0.15f, 0.75f };
+static const ClothColour text_colour = { 1, 1, 1, 0.95f };
 
 static ClothColour
 with_opacity (ClothColour colour, gfloat opacity)
 {
   colour.a *= opacity;
   return colour;
+}
+
+/* Everything is drawn twice: first the edges of all lines, which would else lie over other
+ * lines, then the lines. */
+typedef enum
+{
+  PASS_EDGES,
+  PASS_LINES,
+  N_PASSES
+} Pass;
+
+static gfloat
+width_in (Pass pass, gfloat width)
+{
+  return pass == PASS_EDGES ? width + 2 * EDGE : width;
+}
+
+static ClothColour
+colour_in (Pass pass, ClothColour colour, const GstClothOverlayStyle * style)
+{
+  return with_opacity (pass == PASS_EDGES ? edge_colour : colour,
+      style->opacity);
 }
 
 /* ---- silhouettes ---- */
@@ -138,8 +170,9 @@ gst_cloth_overlay_draw_silhouette (const ClothCanvas * canvas, gint width,
 
 static void
 draw_quad_index (const ClothCanvas * canvas, const GstClothQuad * quad,
-    const ClothColour * colour)
+    Pass pass, const GstClothOverlayStyle * style)
 {
+  const ClothColour colour = colour_in (pass, text_colour, style);
   const gfloat *x = quad->x, *y = quad->y;
   /* edges of the square as it lies in the picture */
   gfloat right[2] = { 0.5f * (x[1] - x[0] + x[2] - x[3]),
@@ -166,7 +199,7 @@ draw_quad_index (const ClothCanvas * canvas, const GstClothQuad * quad,
     gfloat d[2] = { 0.28f * down[0], 0.28f * down[1] };
 
     cloth_draw_number (canvas, numbers[line], origin, r, d,
-        MAX (1.0f, 0.04f * size), colour);
+        width_in (pass, MAX (1.0f, 0.04f * size)), &colour);
   }
 }
 
@@ -189,31 +222,29 @@ gst_cloth_overlay_draw_quads (const ClothCanvas * canvas,
       cloth_draw_quad (canvas, q->x, q->y, &fill);
     }
   }
-  for (i = 0; i < n && style->draw_quads; i++) {
-    const GstClothQuad *q = &quads[i];
-    ClothColour colour =
-        with_opacity (cloth_draw_confidence_colour (q->confidence,
-            style->c_low), style->opacity);
+  for (i = 0; i < N_PASSES * n && style->draw_quads; i++) {
+    const Pass pass = i / n;
+    const GstClothQuad *q = &quads[i % n];
+    const gfloat width = width_in (pass, style->line_width);
+    ClothColour colour = colour_in (pass,
+        cloth_draw_confidence_colour (q->confidence, style->c_low), style);
 
     for (k = 0; k < 4; k++) {
       gint l = (k + 1) & 3;
 
       if (q->state == GST_CLOTH_QUAD_TRACKED) {
-        cloth_draw_line (canvas, q->x[k], q->y[k], q->x[l], q->y[l],
-            style->line_width, &colour);
+        cloth_draw_line (canvas, q->x[k], q->y[k], q->x[l], q->y[l], width,
+            &colour);
       } else if (q->state == GST_CLOTH_QUAD_PREDICTED) {
-        cloth_draw_dashes (canvas, q->x[k], q->y[k], q->x[l], q->y[l],
-            style->line_width, DASH, &colour);
+        cloth_draw_dashes (canvas, q->x[k], q->y[k], q->x[l], q->y[l], width,
+            DASH, &colour);
       }
     }
   }
   for (i = 0; i < n && style->draw_indices; i++) {
-    ClothColour colour =
-        with_opacity (quads[i].black ? text_on_black : text_on_white,
-        style->opacity);
-
     if (quads[i].state != GST_CLOTH_QUAD_LOST) {
-      draw_quad_index (canvas, &quads[i], &colour);
+      draw_quad_index (canvas, &quads[i], PASS_EDGES, style);
+      draw_quad_index (canvas, &quads[i], PASS_LINES, style);
     }
   }
 }
@@ -233,26 +264,30 @@ void
 gst_cloth_overlay_draw_saddles (const ClothCanvas * canvas,
     GstClothSaddles * saddles, const GstClothOverlayStyle * style)
 {
-  ClothColour colour = with_opacity (saddle_colour, style->opacity);
   guint i, n_refined, n_candidates;
   const GstClothSaddle *refined =
       gst_cloth_saddles_get_refined (saddles, &n_refined);
   const GstClothCandidate *candidates =
       gst_cloth_saddles_get_candidates (saddles, &n_candidates);
 
-  for (i = 0; i < n_refined; i++) {
-    const GstClothSaddle *s = &refined[i];
-    gfloat scale2 = style->ellipse_scale * style->ellipse_scale;
+  for (Pass pass = 0; pass < N_PASSES; pass++) {
+    const ClothColour colour = colour_in (pass, saddle_colour, style);
+    const gfloat width = width_in (pass, style->line_width);
 
-    draw_cross (canvas, s->x, s->y, CROSS_ARM, style->line_width, &colour);
-    if (scale2 > 0) {
-      cloth_draw_ellipse (canvas, s->x, s->y, scale2 * s->cov_xx,
-          scale2 * s->cov_xy, scale2 * s->cov_yy, style->line_width, &colour);
+    for (i = 0; i < n_refined; i++) {
+      const GstClothSaddle *s = &refined[i];
+      gfloat scale2 = style->ellipse_scale * style->ellipse_scale;
+
+      draw_cross (canvas, s->x, s->y, CROSS_ARM, width, &colour);
+      if (scale2 > 0) {
+        cloth_draw_ellipse (canvas, s->x, s->y, scale2 * s->cov_xx,
+            scale2 * s->cov_xy, scale2 * s->cov_yy, width, &colour);
+      }
     }
-  }
-  for (i = 0; i < n_candidates && n_refined == 0; i++) {
-    cloth_draw_line (canvas, candidates[i].x, candidates[i].y, candidates[i].x,
-        candidates[i].y, style->line_width, &colour);
+    for (i = 0; i < n_candidates && n_refined == 0; i++) {
+      cloth_draw_line (canvas, candidates[i].x, candidates[i].y,
+          candidates[i].x, candidates[i].y, width, &colour);
+    }
   }
 }
 
@@ -266,38 +301,34 @@ gst_cloth_overlay_draw_saddles (const ClothCanvas * canvas,
 /* Share of a link that is left free at each end: the dots stay visible. */
 #define FREE 0.2f
 
-static const ClothColour unlabelled_colour = { 1, 0.15f, 0.15f, 1 };
-static const ClothColour behind_colour = { 0.30f, 0.65f, 1, 1 };
-static const ClothColour text_on_dot = { 1, 1, 1, 0.95f };
+const ClothColour gst_cloth_overlay_unlabelled_colour = { 1, 0.15f, 0.15f, 1 };
+const ClothColour gst_cloth_overlay_behind_colour = { 0.30f, 0.65f, 1, 1 };
 
 static ClothColour
-dot_colour (const GstClothDot * dot, const GstClothOverlayStyle * style)
+dot_colour (const GstClothDot * dot)
 {
-  return with_opacity (cloth_draw_confidence_colour (MIN (dot->confidence
-              / SURE, 1), 0), style->opacity);
+  return cloth_draw_confidence_colour (MIN (dot->confidence / SURE, 1), 0);
 }
 
 static void
 draw_link (const ClothCanvas * canvas, const GstClothDot * a,
-    const GstClothDot * b, const GstClothOverlayStyle * style)
+    const GstClothDot * b, Pass pass, const GstClothOverlayStyle * style)
 {
   gfloat dx = b->x - a->x, dy = b->y - a->y;
-  ClothColour colour =
-      dot_colour (a->confidence < b->confidence ? a : b, style);
+  ClothColour colour = colour_in (pass, a->mirrored ?
+      gst_cloth_overlay_behind_colour :
+      dot_colour (a->confidence < b->confidence ? a : b), style);
 
-  if (a->mirrored) {
-    colour = with_opacity (behind_colour, style->opacity);
-  }
   cloth_draw_line (canvas, a->x + FREE * dx, a->y + FREE * dy, b->x - FREE * dx,
-      b->y - FREE * dy, style->line_width, &colour);
+      b->y - FREE * dy, width_in (pass, style->line_width), &colour);
 }
 
 /* Column above, row below, upright in the picture. */
 static void
 draw_dot_index (const ClothCanvas * canvas, const GstClothDot * dot,
-    gfloat size, const GstClothOverlayStyle * style)
+    gfloat size, Pass pass, const GstClothOverlayStyle * style)
 {
-  ClothColour colour = with_opacity (text_on_dot, style->opacity);
+  const ClothColour colour = colour_in (pass, text_colour, style);
   const gint numbers[2] = { dot->column, dot->row };
   const gfloat right[2] = { 0.16f * size, 0 }, down[2] = { 0, 0.28f * size };
 
@@ -307,7 +338,7 @@ draw_dot_index (const ClothCanvas * canvas, const GstClothDot * dot,
     };
 
     cloth_draw_number (canvas, numbers[line], origin, right, down,
-        MAX (1.0f, 0.04f * size), &colour);
+        width_in (pass, MAX (1.0f, 0.04f * size)), &colour);
   }
 }
 
@@ -383,7 +414,6 @@ gst_cloth_overlay_draw_dots (const ClothCanvas * canvas, GstClothDots * dots,
   guint n, columns = gst_cloth_dots_get_columns (dots);
   guint rows = gst_cloth_dots_get_rows (dots);
   const GstClothDot *dot = gst_cloth_dots_get_dots (dots, &n);
-  ClothColour cross = with_opacity (unlabelled_colour, style->opacity);
 
   g_array_set_size (places, 0);
   for (guint i = 0; i < n; i++) {
@@ -395,39 +425,44 @@ gst_cloth_overlay_draw_dots (const ClothCanvas * canvas, GstClothDots * dots,
     }
   }
   gst_cloth_overlay_sort_places (places);
-  for (guint i = 0; i < n; i++) {
-    const GstClothDot *d = &dot[i];
+  for (guint i = 0; i < N_PASSES * n; i++) {
+    const Pass pass = i / n;
+    const GstClothDot *d = &dot[i % n];
+    const gfloat width = width_in (pass, style->line_width);
     const GstClothDot *right, *below;
 
     if (!has_label (d, columns, rows)) {
       if (style->draw_dots) {
+        const ClothColour cross = colour_in (pass,
+            gst_cloth_overlay_unlabelled_colour, style);
+
         cloth_draw_line (canvas, d->x - DOT_ARM, d->y - DOT_ARM,
-            d->x + DOT_ARM, d->y + DOT_ARM, style->line_width, &cross);
+            d->x + DOT_ARM, d->y + DOT_ARM, width, &cross);
         cloth_draw_line (canvas, d->x - DOT_ARM, d->y + DOT_ARM,
-            d->x + DOT_ARM, d->y - DOT_ARM, style->line_width, &cross);
+            d->x + DOT_ARM, d->y - DOT_ARM, width, &cross);
       }
       continue;
     }
     right = find_dot (places, columns, rows, dot, d->column + 1, d->row);
     below = find_dot (places, columns, rows, dot, d->column, d->row + 1);
     if (style->draw_dots) {
-      ClothColour colour = dot_colour (d, style);
+      const ClothColour colour = colour_in (pass, dot_colour (d), style);
 
       if (right) {
-        draw_link (canvas, d, right, style);
+        draw_link (canvas, d, right, pass, style);
       }
       if (below) {
-        draw_link (canvas, d, below, style);
+        draw_link (canvas, d, below, pass, style);
       }
       cloth_draw_ellipse (canvas, d->x, d->y, MARK * MARK, 0, MARK * MARK,
-          style->line_width, &colour);
+          width, &colour);
     }
     if (style->draw_indices && (right || below)) {
       const GstClothDot *other = right ? right : below;
       gfloat size = hypotf (other->x - d->x, other->y - d->y);
 
       if (size >= LEAST_SIZE_FOR_INDEX) {
-        draw_dot_index (canvas, d, size, style);
+        draw_dot_index (canvas, d, size, pass, style);
       }
     }
   }

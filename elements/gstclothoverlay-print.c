@@ -27,7 +27,6 @@
 #define HEATS (CLOTH_DRAW_HEATS - 1)
 
 static const ClothColour vertex_colour = { 1, 1, 1, 1 };
-static const ClothColour behind_colour = { 0.30f, 0.65f, 1, 1 };
 
 static const ClothColour check_colours[2] = {
   {0.05f, 0.05f, 0.05f, 1}, {0.95f, 0.95f, 0.95f, 1}
@@ -156,7 +155,8 @@ draw_points (const ClothCanvas * canvas, GstClothMatches * matches,
   for (guint i = 0; i < places->len; i++) {
     const GstClothGridPoint *p =
         &point[g_array_index (places, guint64, i) & G_MAXUINT32];
-    ClothColour colour = p->mirrored ? behind_colour : vertex_colour;
+    ClothColour colour =
+        p->mirrored ? gst_cloth_overlay_behind_colour : vertex_colour;
 
     colour.a *= style->opacity;
     for (gint k = 0; k < 2; k++) {

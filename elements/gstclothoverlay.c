@@ -11,7 +11,14 @@
  * mesh has a map of which place of the cloth each pixel of that camera shows, checks are drawn
  * there. The picture is drawn on in place; one with nothing to draw passes untouched. The mesh is drawn as lines or
  * as a surface with any picture on it (`mesh-style`, `texture`). A mesh that `clothgap`
- * has been over is drawn as a heat map of its distance from the simulation.
+ * has been over is drawn as a heat map of its distance from the simulation. `strain-warp`,
+ * `strain-weft` and `strain-shear` colour the cloth by how far its threads are longer (red) or
+ * shorter (blue) than on the flat cloth, and how far the angle between them has closed (red) or
+ * opened.
+ *
+ * `draw-legend` writes the camera, the picture's number and time, how many squares, dots or
+ * vertices there are and what their colours mean; `draw-speed`, for live cameras, how many
+ * pictures a second come by and how many are missing by their time stamps.
  *
  * What a stranger's packets say is drawn as far as it covers the picture at most 64 times
  * (at least 300 million pixels); what comes after that is left out, with one warning.
@@ -40,6 +47,13 @@
  *     autovideosink  meshsrc location=take ! o.mesh
  * ]|
  *
+ * ## Where the cloth is stretched along its warp
+ * |[
+ * gst-launch-1.0 filesrc location=cam0.mp4 ! decodebin ! clothoverlay name=o \
+ *     rig=rig.json camera=cam0 mesh-style=strain-warp strain-scale=5 ! videoconvert ! \
+ *     autovideosink  meshsrc location=take ! o.mesh
+ * ]|
+ *
  * ## Where a simulation departs from the film
  * |[
  * gst-launch-1.0 filesrc location=cam0.mp4 ! decodebin ! clothoverlay name=o \
@@ -61,6 +75,8 @@
 #include "elements/gstclothpicture.h"
 #include "elements/gstclothproperties.h"
 #include "elements/gstclothutil.h"
+#include "elements/gstmeshformat.h"
+#include "gst/mesh/strain.h"
 #include "gst/render/surface.h"
 #include "gst/render/wireframe.h"
 
@@ -73,7 +89,7 @@ GST_DEBUG_CATEGORY_STATIC (cloth_overlay_debug);
 
 /* So many times the picture's area is drawn over it, what is transparent or hidden included,
  * and in small pictures at least so many samples, which take some tenths of a second.
- * 65,536 squares with outlines and numbers need less than a fifth of it. */
+ * 65,536 squares with outlines and numbers need less than half of it. */
 #define MOST_LAYERS 64
 #define LEAST_SAMPLES 3e8
 
@@ -102,6 +118,7 @@ typedef struct
   GstClothTopology *topology;
   ClothWireframe *wire;
   ClothSurface *surface;        /* NULL until something is printed on it */
+  ClothStrains *strains;        /* NULL when uv is not known */
   guint8 *heats;                /* one a vertex */
 } Mesh;
 
@@ -125,6 +142,13 @@ struct _GstClothOverlay
   ClothRig *rig;
   const ClothCamera *camera;    /* of @rig */
   gboolean warned;              /* that not all was drawn */
+  gboolean told_no_uv;          /* that strain is not known */
+  guint64 n_pictures, n_lost;
+  GstClockTime last_pts;
+  GstClockTime counted_from;    /* by the element's clock */
+  guint n_counted;              /* pictures since then */
+  gdouble speed;                /* pictures a second; 0: not known yet */
+  GstClothOverlayFacts facts;   /* of the picture that is drawn on */
 };
 
 G_DEFINE_TYPE (GstClothOverlay, gst_cloth_overlay, GST_TYPE_CLOTH_SYNC);
@@ -147,6 +171,12 @@ static const GEnumValue mesh_styles[] = {
         "each vertex", "wireframe"},
   {GST_CLOTH_OVERLAY_MESH_SHADED, "Surface in light and shade, with texture "
         "if there is one", "shaded"},
+  {GST_CLOTH_OVERLAY_MESH_STRAIN_WARP, "Faces coloured by the strain along u",
+      "strain-warp"},
+  {GST_CLOTH_OVERLAY_MESH_STRAIN_WEFT, "Faces coloured by the strain along v",
+      "strain-weft"},
+  {GST_CLOTH_OVERLAY_MESH_STRAIN_SHEAR, "Faces coloured by the shear strain",
+      "strain-shear"},
   {0, NULL, NULL}
 };
 
@@ -191,10 +221,19 @@ static const GstClothProperty properties[] = {
   {"draw-mesh", "draw-mesh",
     "Draw the mesh of the mesh pad",
     G_TYPE_BOOLEAN, SETTING (style.draw_mesh), ANIMATED},
+  {"draw-legend", "draw-legend",
+    "Write camera, number and time of the picture, how many of what was found, and what "
+    "the colours mean",
+    G_TYPE_BOOLEAN, SETTING (style.draw_legend), ANIMATED},
+  {"draw-speed", "draw-speed",
+    "Write how many pictures a second come by, by the clock of the pipeline, and how many "
+    "are missing by their time stamps",
+    G_TYPE_BOOLEAN, SETTING (style.draw_speed), ANIMATED},
   {"mesh-style", "mesh-style",
     "How the mesh is drawn: wireframe (green measured, amber from two views, "
-    "blue filled, violet predicted; faint where hidden) or shaded (a surface, "
-    "its hidden parts hidden)",
+    "blue filled, violet predicted; faint where hidden), shaded (a surface, "
+    "its hidden parts hidden) or strain-warp, strain-weft, strain-shear (Green–Lagrange "
+    "strain against the flat cloth: blue shorter, pale none, red longer, grey where not known)",
     G_TYPE_ENUM, SETTING (style.mesh_style), ANIMATED, 0, 0,
     "GstClothOverlayMeshStyle", mesh_styles},
   {"texture", "texture",
@@ -208,6 +247,9 @@ static const GstClothProperty properties[] = {
   {"gap-scale", "gap-scale",
     "Distance from the simulation that has the last colour, mm",
     G_TYPE_UINT, SETTING (style.gap_scale), ANIMATED, 1, 99999},
+  {"strain-scale", "strain-scale",
+    "Strain that has the last colour, %: 1 is a thread that is 1% longer",
+    G_TYPE_UINT, SETTING (style.strain_scale), ANIMATED, 1, 1000},
   {"line-width", "line-width",
     "Width of all lines, px",
     G_TYPE_DOUBLE, SETTING (style.line_width), ANIMATED, 0.25, 100},
@@ -237,8 +279,8 @@ static const GstClothProperty properties[] = {
 
 static const Settings defaults = {
   .style = {
-    .draw_silhouette = TRUE, .draw_saddles = TRUE, .draw_quads = TRUE, .draw_dots = TRUE,
-    .draw_mesh = TRUE, .draw_gap = TRUE, .gap_scale = 10, .draw_uv = TRUE, .check = 20,
+    .draw_silhouette = TRUE, .draw_quads = TRUE, .draw_dots = TRUE,
+    .draw_mesh = TRUE, .draw_gap = TRUE, .gap_scale = 10, .strain_scale = 10, .draw_uv = TRUE, .check = 20,
     .draw_matches = GST_CLOTH_OVERLAY_MATCHES_GROUPS,
     .line_width = 1.5f, .opacity = 1, .fill_opacity = 0.3f, .c_low = 0.62f,
     .mesh_style = GST_CLOTH_OVERLAY_MESH_WIREFRAME
@@ -257,15 +299,6 @@ static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE ("src",
 
 /* ---- the mesh ---- */
 
-/* by GstClothVertexState */
-static const ClothColour vertex_colours[] = {
-  {0.55f, 0.55f, 0.55f, 1},     /* unseen */
-  {0.20f, 0.85f, 0.45f, 1},     /* measured: green */
-  {1.00f, 0.72f, 0.15f, 1},     /* two views: amber */
-  {0.25f, 0.60f, 1.00f, 1},     /* filled: blue */
-  {0.75f, 0.45f, 1.00f, 1}      /* predicted: violet */
-};
-
 static Mesh *
 mesh_new (GstClothTopology * topology)
 {
@@ -273,8 +306,10 @@ mesh_new (GstClothTopology * topology)
   guint n_indices;
   const guint32 *faces = gst_cloth_topology_get_faces (topology, &n_indices);
   const guint n_vertices = gst_cloth_topology_get_n_vertices (topology);
+  g_autoptr (ClothTopology) copy = gst_mesh_copy_topology (topology);
 
   self->topology = gst_cloth_topology_ref (topology);
+  self->strains = cloth_strains_new (copy);
   self->heats = g_malloc (n_vertices);
   self->wire = cloth_wireframe_new (n_vertices,
       gst_cloth_topology_get_columns (topology),
@@ -291,6 +326,7 @@ mesh_free (Mesh * self)
   gst_cloth_topology_unref (self->topology);
   cloth_wireframe_free (self->wire);
   cloth_surface_free (self->surface);
+  cloth_strains_free (self->strains);
   g_free (self->heats);
   g_free (self);
 }
@@ -316,14 +352,50 @@ mesh_print (Mesh * self, const gchar * texture, GError ** error)
   return TRUE;
 }
 
+static gboolean
+is_strain (GstClothOverlayMeshStyle style)
+{
+  return style >= GST_CLOTH_OVERLAY_MESH_STRAIN_WARP;
+}
+
+static void
+mesh_draw_strain (Mesh * self, const ClothCanvas * canvas, gint width,
+    gint height, const ClothCamera * camera, const gfloat * positions,
+    const GstClothOverlayStyle * style)
+{
+  const guint n_vertices = gst_cloth_topology_get_n_vertices (self->topology);
+  const guint component = style->mesh_style -
+      GST_CLOTH_OVERLAY_MESH_STRAIN_WARP;
+  const gint scale = (gint) style->strain_scale;
+  ClothColour colours[CLOTH_DRAW_STRAINS];
+  const ClothWireStyle wire_style = {
+    CLOTH_DRAW_STRAINS, colours, style->line_width, style->opacity,
+    HIDDEN_OPACITY, HEAT_OPACITY * style->opacity
+  };
+
+  cloth_draw_strain_colours (colours);
+  if (self->strains) {
+    cloth_strains_measure (self->strains, positions, NULL);
+    cloth_draw_strains (cloth_strains_get_vertices (self->strains) + component,
+        n_vertices, CLOTH_STRAIN_SIZE, style->strain_scale, self->heats);
+  } else {
+    memset (self->heats, CLOTH_DRAW_STRAINS - 1, n_vertices);
+  }
+  cloth_wireframe_draw (self->wire, canvas, width, height, camera, positions,
+      self->heats, &wire_style);
+  cloth_draw_scale (canvas, width, height, colours, CLOTH_DRAW_STRAINS - 1,
+      -scale, scale, style->opacity);
+}
+
 static void
 mesh_draw (Mesh * self,
     const ClothCanvas * canvas, gint width, gint height,
     const ClothCamera * camera, GstClothMesh * mesh, GstClothGap * gap,
-    const GstClothOverlayStyle * style)
+    const GstClothOverlayStyle * style, GstClothOverlayFacts * facts)
 {
   ClothWireStyle wire_style = {
-    G_N_ELEMENTS (vertex_colours), vertex_colours, style->line_width,
+    GST_CLOTH_OVERLAY_STATES, gst_cloth_overlay_vertex_colours,
+    style->line_width,
     style->opacity, HIDDEN_OPACITY, 0
   };
   ClothColour heat_colours[CLOTH_DRAW_HEATS];
@@ -332,7 +404,17 @@ mesh_draw (Mesh * self,
   const gboolean hot = gap && gst_cloth_gap_get_n_vertices (gap) ==
       gst_cloth_topology_get_n_vertices (self->topology);
 
+  for (guint i = 0; i < gst_cloth_topology_get_n_vertices (self->topology); i++) {
+    facts->n_of_state[MIN (states[i], GST_CLOTH_OVERLAY_STATES - 1)]++;
+  }
+  if (is_strain (style->mesh_style)) {
+    facts->mesh_colours = GST_CLOTH_OVERLAY_COLOURS_STRAIN;
+    mesh_draw_strain (self, canvas, width, height, camera, positions, style);
+    return;
+  }
+  facts->mesh_colours = GST_CLOTH_OVERLAY_COLOURS_STATE;
   if (hot) {
+    facts->mesh_colours = GST_CLOTH_OVERLAY_COLOURS_GAP;
     cloth_draw_heats (gst_cloth_gap_get_residuals (gap, NULL),
         gst_cloth_gap_get_n_vertices (gap), style->gap_scale, self->heats);
     cloth_draw_heat_colours (heat_colours);
@@ -343,6 +425,7 @@ mesh_draw (Mesh * self,
   } else if (style->mesh_style == GST_CLOTH_OVERLAY_MESH_SHADED) {
     ClothRenderStyle light;
 
+    facts->mesh_colours = GST_CLOTH_OVERLAY_COLOURS_PLAIN;
     cloth_render_style_init (&light);
     cloth_surface_draw (self->surface, canvas, width, height, camera,
         positions, &light, style->opacity);
@@ -351,8 +434,8 @@ mesh_draw (Mesh * self,
   cloth_wireframe_draw (self->wire, canvas, width, height, camera, positions,
       states, &wire_style);
   if (hot) {
-    cloth_draw_heat_scale (canvas, width, height, style->gap_scale,
-        style->opacity);
+    cloth_draw_scale (canvas, width, height, heat_colours,
+        CLOTH_DRAW_HEATS - 1, 0, (gint) style->gap_scale, style->opacity);
   }
 }
 
@@ -427,6 +510,20 @@ gst_cloth_overlay_print (GstClothOverlay * self)
   return FALSE;
 }
 
+static void
+gst_cloth_overlay_tell_no_uv (GstClothOverlay * self)
+{
+  if (self->told_no_uv) {
+    return;
+  }
+  self->told_no_uv = TRUE;
+  GST_ELEMENT_WARNING (self, STREAM, FAILED,
+      ("The mesh doesn't say where its vertices lie on the flat cloth, so its "
+          "strain is not known."),
+      ("It is drawn grey. Give a mesh with uv in metres (vt of an OBJ file, "
+          "s and t of a PLY file), or another mesh-style."));
+}
+
 /* A picture whose mesh is damaged goes on without it. */
 static GstFlowReturn
 gst_cloth_overlay_draw_mesh (GstClothOverlay * self, const ClothCanvas * canvas,
@@ -445,9 +542,12 @@ gst_cloth_overlay_draw_mesh (GstClothOverlay * self, const ClothCanvas * canvas,
       && !gst_cloth_overlay_print (self)) {
     return GST_FLOW_ERROR;
   }
+  if (is_strain (style->mesh_style) && !self->mesh->strains) {
+    gst_cloth_overlay_tell_no_uv (self);
+  }
   mesh_draw (self->mesh, canvas,
       GST_VIDEO_INFO_WIDTH (&self->info), GST_VIDEO_INFO_HEIGHT (&self->info),
-      self->camera, mesh, gap, style);
+      self->camera, mesh, gap, style, &self->facts);
   return GST_FLOW_OK;
 }
 
@@ -515,6 +615,62 @@ gst_cloth_overlay_decide_allocation (GstAggregator * agg, GstQuery * query)
   GST_CLOTH_OVERLAY (agg)->knows_strides =
       gst_query_find_allocation_meta (query, GST_VIDEO_META_API_TYPE, NULL);
   return TRUE;
+}
+
+/* Counts the picture, and what is missing before it. */
+static void
+gst_cloth_overlay_count (GstClothOverlay * self, GstClockTime pts)
+{
+  g_autoptr (GstClock) clock = gst_element_get_clock (GST_ELEMENT (self));
+  const gint fps_n = GST_VIDEO_INFO_FPS_N (&self->info);
+  const gint fps_d = GST_VIDEO_INFO_FPS_D (&self->info);
+
+  if (GST_CLOCK_TIME_IS_VALID (pts) && GST_CLOCK_TIME_IS_VALID (self->last_pts)
+      && pts > self->last_pts && fps_n > 0) {
+    const guint64 n_periods = gst_util_uint64_scale_round (pts - self->last_pts,
+        (guint64) fps_n, (guint64) fps_d * GST_SECOND);
+
+    self->n_lost += n_periods > 1 ? n_periods - 1 : 0;
+  }
+  self->last_pts = pts;
+  if (clock) {
+    const GstClockTime now = gst_clock_get_time (clock);
+
+    if (!GST_CLOCK_TIME_IS_VALID (self->counted_from)
+        || now < self->counted_from) {
+      self->counted_from = now;
+      self->n_counted = 0;
+    } else if (now - self->counted_from >= GST_SECOND) {
+      self->speed = (gdouble) (self->n_counted + 1) * GST_SECOND /
+          (gdouble) (now - self->counted_from);
+      self->counted_from = now;
+      self->n_counted = 0;
+    } else {
+      self->n_counted++;
+    }
+  }
+}
+
+/* What is told of the picture; the mesh adds its own when it is drawn. */
+static void
+gst_cloth_overlay_start_facts (GstClothOverlay * self, GstClockTime pts)
+{
+  const GstClothOverlayFacts facts = {
+    self->camera ? self->camera->name : NULL, self->n_pictures, pts,
+    GST_CLOTH_OVERLAY_COLOURS_NONE, {0}, self->speed, self->n_lost
+  };
+
+  self->facts = facts;
+  self->n_pictures++;
+}
+
+static void
+gst_cloth_overlay_reset_count (GstClothOverlay * self)
+{
+  self->n_pictures = self->n_lost = 0;
+  self->n_counted = 0;
+  self->speed = 0;
+  self->last_pts = self->counted_from = GST_CLOCK_TIME_NONE;
 }
 
 /* What a picture may cost. */
@@ -597,13 +753,15 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   if (mapped) {
     uv = gst_cloth_overlay_find_uv (self, mapped);
   }
+  gst_cloth_overlay_count (self, pts);
+  gst_cloth_overlay_start_facts (self, pts);
   *out = g_steal_pointer (&views[VIDEO]);
   if (!self->knows_strides
       && !gst_cloth_picture_make_plain (GST_ELEMENT (self), &self->info, out)) {
     return GST_FLOW_ERROR;
   }
   if (!mesh && !uv && !has_silhouette && !has_quads && !has_dots && !has_matches
-      && !has_saddles) {
+      && !has_saddles && !style.draw_legend && !style.draw_speed) {
     return GST_FLOW_OK;
   }
 
@@ -646,6 +804,8 @@ gst_cloth_overlay_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
     gst_cloth_overlay_draw_saddles (&canvas,
         gst_buffer_get_cloth_saddles (*out), &style);
   }
+  gst_cloth_overlay_draw_legend (&canvas, GST_VIDEO_FRAME_WIDTH (&frame),
+      GST_VIDEO_FRAME_HEIGHT (&frame), *out, &self->facts, &style);
   gst_video_frame_unmap (&frame);
   gst_cloth_overlay_tell (self, &work);
   return ret;
@@ -730,6 +890,8 @@ static gboolean
 gst_cloth_overlay_start (GstAggregator * agg)
 {
   GST_CLOTH_OVERLAY (agg)->warned = FALSE;
+  GST_CLOTH_OVERLAY (agg)->told_no_uv = FALSE;
+  gst_cloth_overlay_reset_count (GST_CLOTH_OVERLAY (agg));
   gst_cloth_damage_reset (&GST_CLOTH_OVERLAY (agg)->settings.damage,
       GST_ELEMENT (agg));
   return GST_AGGREGATOR_CLASS (gst_cloth_overlay_parent_class)->start (agg);

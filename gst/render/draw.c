@@ -401,6 +401,42 @@ cloth_draw_confidence_colour (gfloat confidence, gfloat low)
 #define BAR_MARGIN 12.0f
 #define DIGIT_HEIGHT 11.0f
 
+/* From the plain cloth to the end of a scale: at, and red, green, blue there. */
+typedef struct
+{
+  gfloat at, rgb[3];
+} Stop;
+
+#define N_STOPS 5
+
+static const Stop warm[N_STOPS] = {
+  {0.00f, {240, 234, 222}}, {0.20f, {248, 214, 150}}, {0.45f, {244, 150, 70}},
+  {0.70f, {214, 62, 52}}, {1.00f, {104, 10, 62}}
+};
+
+static const Stop cold[N_STOPS] = {
+  {0.00f, {240, 234, 222}}, {0.20f, {178, 216, 232}}, {0.45f, {92, 164, 220}},
+  {0.70f, {44, 100, 190}}, {1.00f, {22, 32, 110}}
+};
+
+static const ClothColour unknown = { 0.502f, 0.525f, 0.569f, 1 };
+
+static ClothColour
+mix (const Stop stops[N_STOPS], gfloat at)
+{
+  ClothColour colour = { 0, 0, 0, 1 };
+  gfloat *to[3] = { &colour.r, &colour.g, &colour.b }, f;
+  guint k = 0;
+
+  while (k < N_STOPS - 2 && stops[k + 1].at < at)
+    k++;
+  f = (at - stops[k].at) / (stops[k + 1].at - stops[k].at);
+  for (guint j = 0; j < 3; j++)
+    *to[j] = (stops[k].rgb[j] + f * (stops[k + 1].rgb[j] -
+            stops[k].rgb[j])) / 255;
+  return colour;
+}
+
 /* @colours: (out) (array): colours of a heat map, those of the report: plain cloth for
  *   nothing to a dark red for the scale's end and all beyond, then a grey for what isn't
  *   known
@@ -408,29 +444,10 @@ cloth_draw_confidence_colour (gfloat confidence, gfloat low)
 void
 cloth_draw_heat_colours (ClothColour colours[CLOTH_DRAW_HEATS])
 {
-  static const struct
-  {
-    gfloat at, rgb[3];
-  } stops[5] = {
-    {0.00f, {240, 234, 222}}, {0.20f, {248, 214, 150}}, {0.45f, {244, 150, 70}},
-    {0.70f, {214, 62, 52}}, {1.00f, {104, 10, 62}}
-  };
-  static const ClothColour unknown = { 0.502f, 0.525f, 0.569f, 1 };
   const guint n = CLOTH_DRAW_HEATS - 1;
-  guint k = 0;
 
-  for (guint i = 0; i < n; i++) {
-    const gfloat at = (gfloat) i / (gfloat) (n - 1);
-    gfloat *to[3] = { &colours[i].r, &colours[i].g, &colours[i].b }, f;
-
-    while (k < 3 && stops[k + 1].at < at)
-      k++;
-    f = (at - stops[k].at) / (stops[k + 1].at - stops[k].at);
-    for (guint j = 0; j < 3; j++)
-      *to[j] = (stops[k].rgb[j] + f * (stops[k + 1].rgb[j] -
-              stops[k].rgb[j])) / 255;
-    colours[i].a = 1;
-  }
+  for (guint i = 0; i < n; i++)
+    colours[i] = mix (warm, (gfloat) i / (gfloat) (n - 1));
   colours[n] = unknown;
 }
 
@@ -469,40 +486,80 @@ draw_label (const ClothCanvas * canvas, gint number, gfloat x, gfloat y,
   cloth_draw_number (canvas, number, origin, right, down, 0.14f * size, &text);
 }
 
+/* @colours: (out caller-allocates): blue where threads are shorter, plain where nothing is
+ *   strained, in the middle, to red; the last one where it is not known
+ */
+void
+cloth_draw_strain_colours (ClothColour colours[CLOTH_DRAW_STRAINS])
+{
+  const guint n = CLOTH_DRAW_STRAINS - 1, middle = n / 2;
+
+  for (guint i = 0; i <= middle; i++) {
+    const gfloat at = (gfloat) i / (gfloat) middle;
+
+    colours[middle + i] = mix (warm, at);
+    colours[middle - i] = mix (cold, at);
+  }
+  colours[n] = unknown;
+}
+
+/* @strains: (array): one of the @step numbers of each vertex, the first one's; NaN where
+ *   not known
+ * @n: number of vertices
+ * @step: numbers from one vertex to the next
+ * @scale_percent: strain that has the first or last colour, %
+ * @colours: (out) (array): index of each vertex's colour in cloth_draw_strain_colours ()
+ */
+void
+cloth_draw_strains (const gfloat * strains, guint n, guint step,
+    guint scale_percent, guint8 * colours)
+{
+  const gfloat middle = (CLOTH_DRAW_STRAINS - 1) / 2;
+  const gfloat scale = 100 * middle / (gfloat) scale_percent;
+
+  for (gsize i = 0; i < n; i++) {
+    const gfloat at = middle + scale * strains[i * step];
+
+    colours[i] = (guint8) (isnan (at) ? CLOTH_DRAW_STRAINS - 1 :
+        CLAMP (at, 0, 2 * middle) + 0.5f);
+  }
+}
+
 /* @canvas: picture to draw on
  * @width: of the picture, px
  * @height: of the picture, px
- * @scale_mm: the scale's end, mm
+ * @colours: those of the scale, from its lower end
+ * @n: how many
+ * @low: what its lower end means
+ * @high: and its upper
  * @opacity: 0 … 1
  *
- * Draws the scale of a heat map at the lower left, 0 and its end beside it. In a thumbnail
- * there is no place for it.
+ * Draws a scale of colours at the lower left, with its ends beside it. In a thumbnail there
+ * is no place for it.
  */
 void
-cloth_draw_heat_scale (const ClothCanvas * canvas, gint width, gint height,
-    guint scale_mm, gfloat opacity)
+cloth_draw_scale (const ClothCanvas * canvas, gint width, gint height,
+    const ClothColour * colours, guint n, gint low, gint high, gfloat opacity)
 {
-  const guint n = CLOTH_DRAW_HEATS - 1;
   const gfloat grow = MAX (1.0f, (gfloat) height / 480);
   const gfloat tall = grow * BAR_HEIGHT, wide = grow * BAR_WIDTH;
   const gfloat left = grow * BAR_MARGIN;
   const gfloat bottom = (gfloat) height - grow * BAR_MARGIN;
   const gfloat size = grow * DIGIT_HEIGHT;
-  ClothColour colours[CLOTH_DRAW_HEATS];
 
   if ((gfloat) height < 2 * tall || (gfloat) width < 2 * tall)
     return;
-  cloth_draw_heat_colours (colours);
   for (guint i = 0; i < n; i++) {
     const gfloat y0 = bottom - tall * (gfloat) (i + 1) / (gfloat) n;
     const gfloat y1 = bottom - tall * (gfloat) i / (gfloat) n;
     const gfloat x[4] = { left, left + wide, left + wide, left };
     const gfloat y[4] = { y0, y0, y1, y1 };
 
-    colours[i].a *= opacity;
-    cloth_draw_quad (canvas, x, y, &colours[i]);
+    ClothColour colour = colours[i];
+
+    colour.a *= opacity;
+    cloth_draw_quad (canvas, x, y, &colour);
   }
-  draw_label (canvas, 0, left + 1.6f * wide, bottom - size, size, opacity);
-  draw_label (canvas, (gint) scale_mm, left + 1.6f * wide, bottom - tall, size,
-      opacity);
+  draw_label (canvas, low, left + 1.6f * wide, bottom - size, size, opacity);
+  draw_label (canvas, high, left + 1.6f * wide, bottom - tall, size, opacity);
 }

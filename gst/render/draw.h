@@ -72,7 +72,14 @@ ClothColour cloth_draw_confidence_colour (gfloat confidence, gfloat low);
 void cloth_draw_heat_colours (ClothColour colours[CLOTH_DRAW_HEATS]);
 void cloth_draw_heats (const gfloat * residuals, guint n, guint scale_mm,
     guint8 * heats);
-void cloth_draw_heat_scale (const ClothCanvas * canvas, gint width,
-    gint height, guint scale_mm, gfloat opacity);
+
+/* Colours of strain. */
+#define CLOTH_DRAW_STRAINS 64
+
+void cloth_draw_strain_colours (ClothColour colours[CLOTH_DRAW_STRAINS]);
+void cloth_draw_strains (const gfloat * strains, guint n, guint step,
+    guint scale_percent, guint8 * colours);
+void cloth_draw_scale (const ClothCanvas * canvas, gint width, gint height,
+    const ClothColour * colours, guint n, gint low, gint high, gfloat opacity);
 
 G_END_DECLS

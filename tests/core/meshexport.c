@@ -240,6 +240,27 @@ test_gltf_still (void)
   scratch_end ();
 }
 
+/* A mesh that doesn't know its uv has no strain: none is made up. */
+static void
+test_no_strain (void)
+{
+  g_autoptr (ClothTopology) topology =
+      cloth_topology_new_grid (COLUMNS, ROWS, 0.5f, 0.25f);
+
+  memset (topology->uv, 0, 2 * N * sizeof *topology->uv);
+  scratch_begin ();
+  write_two ("c.ply", topology);
+  write_two ("c.pvd", topology);
+  write_two ("c.csv", topology);
+  peer_run ("assert b'strain' not in open('c_00000.ply','rb').read()\n"
+      "d=open('c_00000.vtp','rb').read()\n"
+      "assert b'strain' not in d and b'CellData' not in d\n"
+      "l=open('c.csv').read().splitlines()\n"
+      "assert l[0].endswith(',state,strain_warp,strain_weft,strain_shear')\n"
+      "assert all(x.endswith(',1,,,') for x in l[1:])\n");
+  scratch_end ();
+}
+
 static void
 test_c3d_limits (void)
 {
@@ -434,6 +455,7 @@ main (int argc, char **argv)
   g_test_add_func ("/meshexport/not-read", test_not_read);
   g_test_add_func ("/meshexport/gltf-too-long", test_gltf_too_long);
   g_test_add_func ("/meshexport/gltf-still", test_gltf_still);
+  g_test_add_func ("/meshexport/no-strain", test_no_strain);
   g_test_add_func ("/meshexport/c3d-limits", test_c3d_limits);
   g_test_add_func ("/meshexport/vtp-stale", test_vtp_stale);
   return g_test_run ();

@@ -69,7 +69,7 @@ GST_START_TEST (test_links)
   67, 57, 73, 63};
   lines[n++] = (Line) {
   67, 63, 73, 57};
-  fail_unless (check_lines (out, &info, lines, n, 2) > 150);
+  fail_unless (check_lines (out, &info, lines, n, 2 + EDGES) > 150);
   check_padding (out, &info, 5);
   gst_buffer_unref (out);
 }

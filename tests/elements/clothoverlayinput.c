@@ -31,7 +31,7 @@ GST_START_TEST (test_caps_change)
     gst_harness_set_src_caps (h, gst_video_info_to_caps (&info));
     gst_harness_push (h, buffer);
     out = gst_harness_pull (h);
-    check_lines (out, &info, lines, 4, 1.5);
+    check_lines (out, &info, lines, 4, 1.5 + EDGES);
     caps = gst_pad_get_current_caps (h->sinkpad);
     fail_unless_equals_string (gst_structure_get_string (gst_caps_get_structure
             (caps, 0), "format"), of[i]);
@@ -142,7 +142,8 @@ GST_START_TEST (test_bad_coordinates)
       s.cov_xx = s.cov_xy = bad[i];
       add_quads (buffer, &q, 1);
       add_saddles (buffer, &s, 1, NULL, 0);
-      out = draw ("draw-indices=true ellipse-scale=10", &info, buffer);
+      out = draw ("draw-saddles=true draw-indices=true ellipse-scale=10", &info,
+          buffer);
       check_padding (out, &info, 7);
       gst_buffer_unref (out);
     }
@@ -196,7 +197,7 @@ GST_START_TEST (test_degenerate_squares)
   q[0].x[3] = 30;
   add_quads (buffer, q, 2);
   out = draw ("line-width=2", &info, buffer);
-  check_lines (out, &info, lines, 5, 2);
+  check_lines (out, &info, lines, 5, 2 + EDGES);
   gst_buffer_unref (out);
 }
 
@@ -385,7 +386,8 @@ GST_START_TEST (test_crowd)
   g_autoptr (GstBus) bus = gst_bus_new ();
   g_autoptr (GstMessage) message = NULL;
   g_autoptr (GError) error = NULL;
-  GstHarness *h = overlay ("ellipse-scale=1000 line-width=20", &info);
+  GstHarness *h = overlay ("draw-saddles=true ellipse-scale=1000 "
+      "line-width=20", &info);
   guint n_changed[2];
 
   gst_element_set_bus (h->element, bus);
@@ -414,8 +416,10 @@ GST_START_TEST (test_crowd)
       n_changed[round] += map.data[i] != FILL;
     gst_buffer_unmap (out, &map);
   }
-  /* all marks are at the same place; the dashes are outside */
-  fail_unless_equals_int (n_changed[0], n_changed[1]);
+  /* all marks are at the same place, where the faintest samples of an edge add up; the
+   * dashes are outside */
+  fail_unless (n_changed[0] >= n_changed[1]);
+  fail_unless (n_changed[0] <= n_changed[1] + n_changed[1] / 500);
   fail_unless_equals_int (n_changed[0] > 1000, __i__ != 1);
   message = gst_bus_pop_filtered (bus, GST_MESSAGE_WARNING);
   fail_unless (message != NULL);

@@ -293,6 +293,165 @@ GST_START_TEST (test_camera_offset)
 
 GST_END_TEST;
 
+/* ---- strain ---- */
+
+/* The flat grid, every vertex moved to F (x, y). */
+static GstBuffer *
+strained_buffer (const gdouble F[4], gint missing)
+{
+  GstBuffer *buffer = mesh_buffer (COLUMNS * ROWS, missing);
+  g_autoptr (GstClothMesh) flat = gst_cloth_mesh_from_buffer (buffer, NULL);
+  g_autoptr (GstClothMesh) mesh = NULL;
+  const gfloat *positions = gst_cloth_mesh_get_positions (flat, NULL);
+  gfloat moved[3 * COLUMNS * ROWS];
+  guint i;
+
+  memcpy (moved, positions, sizeof moved);
+  for (i = 0; i < COLUMNS * ROWS; i++) {
+    moved[3 * i] = (gfloat) (F[0] * positions[3 * i] +
+        F[1] * positions[3 * i + 1]);
+    moved[3 * i + 1] = (gfloat) (F[2] * positions[3 * i] +
+        F[3] * positions[3 * i + 1]);
+  }
+  mesh = gst_cloth_mesh_new (0, COLUMNS * ROWS, moved,
+      gst_cloth_mesh_get_states (flat, NULL), NULL);
+  gst_buffer_unref (buffer);
+  buffer = gst_cloth_mesh_to_buffer (mesh);
+  GST_BUFFER_PTS (buffer) = 0;
+  GST_BUFFER_DURATION (buffer) = GST_SECOND / 30;
+  return buffer;
+}
+
+/* The face in the middle of the picture in the colour of its strain, 60% over the film. */
+GST_START_TEST (test_strain)
+{
+  static const gdouble none[3] = { 240, 234, 222 }, red[3] = { 104, 10, 62 };
+  static const gdouble blue[3] = { 22, 32, 110 }, pink[3] = { 214, 62, 52 };
+  /* sqrt (1 + 2 E) times as long has the strain E */
+  static const struct
+  {
+    gdouble F[4];
+    const gchar *properties;
+    const gdouble *rgb;
+  } cases[] = {
+    {{1, 0, 0, 1}, "mesh-style=strain-warp", none},
+    {{1, 0, 0, 1}, "mesh-style=strain-shear strain-scale=1", none},
+    {{1.4, 0, 0, 1}, "mesh-style=strain-warp", red},
+    {{1.4, 0, 0, 1}, "mesh-style=strain-weft", none},
+    {{1.4, 0, 0, 1}, "mesh-style=strain-shear", none},
+    /* 0.07 and 0.28 */
+    {{1.0677078, 0, 0, 1}, "mesh-style=strain-warp", pink},
+    {{1, 0, 0, 1.2489996}, "mesh-style=strain-weft strain-scale=40", pink},
+    {{1, 0, 0, 0.8}, "mesh-style=strain-weft", blue},
+    /* shear 0.07, without stretch */
+    {{1, 0.14, 0, 0.9901515}, "mesh-style=strain-shear", pink},
+    {{1, -0.3, 0, 0.9539392}, "mesh-style=strain-shear", blue},
+    {{1, 0.14, 0, 0.9901515}, "mesh-style=strain-weft", none},
+    /* a turn of 0.3 */
+    {{0.9553365, -0.2955202, 0.2955202, 0.9553365}, "mesh-style=strain-warp",
+        none},
+  };
+  guint i, c;
+
+  for (i = 0; i < G_N_ELEMENTS (cases); i++) {
+    GstVideoInfo info;
+    GstBuffer *out = draw_gap (cases[i].properties, 80, 60, &info,
+        strained_buffer (cases[i].F, -1));
+    gdouble face[3];
+
+    for (c = 0; c < 3; c++) {
+      face[c] = FILL + 0.6 * (cases[i].rgb[c] - FILL);
+    }
+    check_rgb (out, &info, 37, 24, face, 4, cases[i].properties);
+    gst_buffer_unref (out);
+  }
+}
+
+GST_END_TEST;
+
+/* It is drawn instead of the gap, and not where a corner is unseen; its scale has both
+ * ends. */
+GST_START_TEST (test_strain_drawn)
+{
+  static const gdouble same[4] = { 1, 0, 0, 1 }, film[3] = { FILL, FILL, FILL };
+  static const gdouble low[3] = { 22, 32, 110 }, high[3] = { 104, 10, 62 };
+  static const gdouble none[3] = { FILL + 0.6 * (240 - FILL),
+    FILL + 0.6 * (234 - FILL), FILL + 0.6 * (222 - FILL)
+  };
+  GstVideoInfo info;
+  GstBuffer *out;
+
+  out = draw_gap ("mesh-style=strain-warp", 80, 60, &info,
+      gap_buffer (10, COLUMNS * ROWS, -1));
+  check_rgb (out, &info, 22, 22, none, 4, "instead of the gap");
+  gst_buffer_unref (out);
+  out = draw_gap ("mesh-style=strain-warp", 80, 60, &info,
+      strained_buffer (same, 5));
+  check_rgb (out, &info, 22, 22, film, 1, "unseen corner");
+  gst_buffer_unref (out);
+  out = draw_gap ("mesh-style=strain-weft", 640, 480, &info,
+      strained_buffer (same, -1));
+  check_rgb (out, &info, 17, 467, low, 1, "low end");
+  check_rgb (out, &info, 17, 373, high, 1, "high end");
+  gst_buffer_unref (out);
+}
+
+GST_END_TEST;
+
+/* A mesh that doesn't know its uv is grey, and that is said once. */
+GST_START_TEST (test_strain_without_uv)
+{
+  static const gdouble grey[3] = { 128, 134, 145 };
+  static const gfloat no_uv[2 * COLUMNS * ROWS] = { 0 };
+  static const guint32 faces[] = { 0, 4, 5, 1, 1, 5, 6, 2, 2, 6, 7, 3 };
+  g_autofree gchar *rig = write_rig ("", "");
+  g_autofree gchar *properties =
+      g_strdup_printf ("rig=%s mesh-style=strain-warp", rig);
+  g_autoptr (GstClothTopology) topology = NULL;
+  g_autoptr (GstBus) bus = gst_bus_new ();
+  GstVideoInfo info;
+  GstBuffer *buffer = picture ("RGB", 80, 60, 3, &info), *out;
+  GstHarness *h = overlay (properties, &info), *m;
+  guint k, n_warnings = 0;
+
+  topology = gst_cloth_topology_new (COLUMNS * ROWS, COLUMNS, ROWS, no_uv,
+      faces, G_N_ELEMENTS (faces) / 4, NULL);
+  fail_unless (topology != NULL);
+  m = gst_harness_new_with_element (h->element, "mesh", NULL);
+  gst_harness_set_src_caps (m, gst_cloth_topology_to_caps (topology, 30, 1));
+  gst_element_set_bus (h->element, bus);
+  for (k = 0; k < 2; k++) {
+    if (k) {
+      buffer = picture ("RGB", 80, 60, 3, &info);
+      GST_BUFFER_PTS (buffer) = GST_SECOND / 30;
+    }
+    gst_harness_push (h, buffer);
+    buffer = mesh_buffer (COLUMNS * ROWS, -1);
+    GST_BUFFER_PTS (buffer) = k * GST_SECOND / 30;
+    gst_harness_push (m, buffer);
+    out = gst_harness_pull (h);
+    check_rgb (out, &info, 22, 30, grey, 3, "line");
+    gst_buffer_unref (out);
+  }
+  for (;;) {
+    g_autoptr (GstMessage) message = gst_bus_pop_filtered (bus,
+        GST_MESSAGE_WARNING | GST_MESSAGE_ERROR);
+
+    if (!message) {
+      break;
+    }
+    fail_unless_equals_int (GST_MESSAGE_TYPE (message), GST_MESSAGE_WARNING);
+    n_warnings++;
+  }
+  fail_unless_equals_int (n_warnings, 1);
+  gst_element_set_bus (h->element, NULL);
+  gst_harness_teardown (m);
+  gst_harness_teardown (h);
+  g_unlink (rig);
+}
+
+GST_END_TEST;
+
 /* ---- surface ---- */
 
 /* A picture that is red all over, by stock elements. */
@@ -395,6 +554,9 @@ clothoverlaymesh_suite (void)
   tcase_add_test (tc, test_gap_colours);
   tcase_add_test (tc, test_gap_not_drawn);
   tcase_add_test (tc, test_gap_scale);
+  tcase_add_test (tc, test_strain);
+  tcase_add_test (tc, test_strain_drawn);
+  tcase_add_test (tc, test_strain_without_uv);
   tcase_add_test (tc, test_surface);
   tcase_add_test (tc, test_surface_formats);
   tcase_add_test (tc, test_mesh_pairing);

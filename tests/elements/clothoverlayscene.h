@@ -12,6 +12,8 @@
 #include <math.h>
 
 #define FILL 128
+/* px: what the dark edges of a line add to its width */
+#define EDGES 2
 
 static const gchar *const formats[] = {
   "GRAY8", "I420", "YV12", "NV12", "NV21", "Y42B", "NV16", "NV61", "Y444",

@@ -276,7 +276,8 @@ LLVMFuzzerTestOneInput (const guint8 * data, gsize size)
   fuzz_elements_init ();
   switch (fuzz_take_byte (&bytes) % 5) {
     case 0:
-      feed_pictures ("clothoverlay draw-indices=true ellipse-scale=10", &bytes);
+      feed_pictures ("clothoverlay draw-saddles=true draw-indices=true "
+          "ellipse-scale=10", &bytes);
       break;
     case 1:
       feed_pictures ("quadtrack columns=6 rows=4", &bytes);

@@ -76,8 +76,33 @@ def make_take(folder):
         held[f, 30] = held[1, 30]
     sigma = np.where(states == 0, np.nan, sigma[None, :]).astype('f4')
     sigma[:, 50] = np.nan
+    strain = [strains(uv.astype('f8'), faces, frame.astype('f8')) for frame in positions]
     return {'uv': uv, 'faces': faces, 'times': times, 'positions': positions, 'states': states,
-            'held': held, 'sigma': sigma}
+            'held': held, 'sigma': sigma, 'face_strain': np.array([s[0] for s in strain]),
+            'strain': np.array([s[1] for s in strain])}
+
+
+def strains(uv, faces, places):
+    """Green–Lagrange strain of faces and vertices. The quads are rectangles along u and v, so that
+    warp and weft follow from the lengths of their edges, and shear from the angles between."""
+    of_faces, sums = np.full((len(faces), 3), np.nan), np.zeros((N, 4))
+    for f, face in enumerate(faces):
+        x, flat = places[face], uv[face]
+        if len(face) == 3:
+            gradient = np.linalg.solve(flat[1:] - flat[0], x[1:] - x[0]).T
+            e = (gradient.T @ gradient - np.eye(2)) / 2
+            of_faces[f], area = (e[0, 0], e[1, 1], e[0, 1]), abs(np.linalg.det(flat[1:] - flat[0])) / 2
+        else:                           # down, right, up, left around the square
+            edges, widths = np.roll(x, -1, 0) - x, np.linalg.norm(np.roll(flat, -1, 0) - flat, axis=1)
+            stretch = ((edges ** 2).sum(1) / widths ** 2 - 1) / 2
+            unit = edges / widths[:, None]
+            shear = (unit[0] - unit[2]) @ (unit[1] - unit[3]) / 8
+            of_faces[f], area = ((stretch[1] + stretch[3]) / 2, (stretch[0] + stretch[2]) / 2, shear), \
+                widths[0] * widths[1]
+        if np.isfinite(of_faces[f]).all():
+            sums[face] += np.append(of_faces[f], 1) * area
+    with np.errstate(invalid='ignore'):
+        return of_faces, sums[:, :3] / sums[:, 3:]
 
 
 def launch(text):
@@ -125,6 +150,16 @@ def accessor(tree, binary, index):
     return values
 
 
+def normals(places, faces):
+    """Of the vertices: the mean of their triangles by area."""
+    sums = np.zeros((N, 3))
+    for face in faces:
+        for triangle in ([face] if len(face) == 3 else [face[:3], [face[0], face[2], face[3]]]):
+            a, b, c = places[triangle].astype('f8')
+            sums[face] += np.cross(b - a, c - a)
+    return sums / np.linalg.norm(sums, axis=1)[:, None]
+
+
 def check_gltf(path, truth):
     tree, binary = read_glb(path)
     expect(tree['asset']['version'] == '2.0', 'glTF 2.0')
@@ -132,6 +167,8 @@ def check_gltf(path, truth):
     node = tree['nodes'][tree['scenes'][tree['scene']]['nodes'][0]]
     mesh = tree['meshes'][node['mesh']]
     primitive, = mesh['primitives']
+    base_normals = accessor(tree, binary, primitive['attributes']['NORMAL'])
+    bends = np.array([accessor(tree, binary, t['NORMAL']) for t in primitive['targets']])
     for index in [primitive['attributes']['POSITION']] + [
             t['POSITION'] for t in primitive['targets']]:
         assert {'min', 'max'} <= set(tree['accessors'][index])
@@ -152,6 +189,9 @@ def check_gltf(path, truth):
         return base + np.tensordot(row, targets, 1)
     for f, time in enumerate(times):
         expect(near(pose(time), truth['held'][f], 3e-7), 'glTF frame %d' % f)
+        weight = np.array([np.interp(time, times, weights[:, k]) for k in range(len(bends))])
+        expect(np.allclose(base_normals + np.tensordot(weight, bends, 1), normals(pose(time), truth['faces']),
+                           atol=2e-4), 'glTF normals %d' % f)
     expect(near(pose((times[5] + times[6]) / 2), (truth['held'][5] + truth['held'][6]) / 2, 1e-6),
            'glTF between frames 5 and 6')
     triangles = accessor(tree, binary, primitive['indices']).reshape(-1, 3)
@@ -220,7 +260,7 @@ def check_vtp(path, truth):
         root = xml.etree.ElementTree.fromstring(head + b'</VTKFile>')
         assert root.get('header_type') == 'UInt64' and root.get('byte_order') == 'LittleEndian'
         piece = root.find('PolyData/Piece')
-        arrays = {}
+        arrays, cells = {}, {}
         for part in piece:
             for a in part:
                 at = int(a.get('offset'))
@@ -228,7 +268,10 @@ def check_vtp(path, truth):
                 kind = {'UInt8': 'u1', 'Float32': '<f4', 'Int32': '<i4'}[a.get('type')]
                 values = np.frombuffer(rest[at + 8:at + 8 + size], kind)
                 width = int(a.get('NumberOfComponents'))
-                arrays[a.get('Name')] = values.reshape(-1, width) if width > 1 else values
+                into = cells if part.tag == 'CellData' else arrays
+                into[a.get('Name')] = values.reshape(-1, width) if width > 1 else values
+                if a.get('Name') == 'strain':
+                    assert [a.get('ComponentName%d' % k) for k in range(3)] == ['warp', 'weft', 'shear']
                 end = at + 8 + size
         assert rest[end:] == b'\n</AppendedData>\n</VTKFile>\n'
         assert (int(piece.get('NumberOfPoints')), int(piece.get('NumberOfPolys'))) == (
@@ -241,6 +284,43 @@ def check_vtp(path, truth):
                np.array_equal(arrays['state'], truth['states'][f]) and
                np.allclose(arrays['sigma'], truth['sigma'][f], rtol=1e-5, equal_nan=True),
                'VTP frame %d' % f)
+        expect(same_strain(arrays['strain'], truth['strain'][f]) and
+               same_strain(cells['strain'], truth['face_strain'][f]), 'VTP strain %d' % f)
+
+
+def same_strain(got, wanted):
+    return got.shape == wanted.shape and np.allclose(got, wanted, atol=2e-6, equal_nan=True)
+
+
+# ---- PLY (Turk, The PLY Polygon File Format)
+
+def check_ply(stem, truth):
+    kinds = {'float': '<f4', 'uchar': 'u1', 'uint': '<u4'}
+    for f in range(FRAMES):
+        data = open('%s_%05d.ply' % (stem, f), 'rb').read()
+        head, body = data.split(b'end_header\n', 1)
+        elements = []
+        for words in (line.split() for line in head.decode().splitlines()):
+            if words[0] == 'element':
+                elements.append((words[1], int(words[2]), []))
+            elif words[0] == 'property':
+                elements[-1][2].append(words[1:])
+        (vertex, n, properties), (face, n_faces, others) = elements
+        assert (vertex, n, face, n_faces) == ('vertex', N, 'face', len(truth['faces']))
+        kind = np.dtype([(name, kinds[word]) for word, name in properties])
+        rows = np.frombuffer(body, kind, N)
+        assert others == [['list', 'uchar', 'uint', 'vertex_indices']]
+        faces, at = [], N * kind.itemsize
+        for _ in range(n_faces):
+            size = body[at]
+            faces.append(list(np.frombuffer(body, '<u4', size, at + 1)))
+            at += 1 + 4 * size
+        names = ['strain_warp', 'strain_weft', 'strain_shear']
+        expect(at == len(body) and faces == truth['faces'] and
+               near(np.stack([rows[c] for c in 'xyz'], 1), truth['held'][f], 0) and
+               np.array_equal(rows['state'], truth['states'][f]), 'PLY frame %d' % f)
+        expect(same_strain(np.stack([rows[c] for c in names], 1), truth['strain'][f]),
+               'PLY strain %d' % f)
 
 
 # ---- C3D (The C3D File Format User Guide)
@@ -317,7 +397,8 @@ def check_c3d(path, truth):
 
 def check_csv(path, truth):
     rows = list(csv.DictReader(open(path, encoding='ascii')))
-    expect(list(rows[0]) == ['frame', 'time_s', 'vertex', 'x_m', 'y_m', 'z_m', 'sigma_m', 'state'],
+    expect(list(rows[0]) == ['frame', 'time_s', 'vertex', 'x_m', 'y_m', 'z_m', 'sigma_m', 'state',
+                             'strain_warp', 'strain_weft', 'strain_shear'],
            'CSV columns')
 
     def column(name):
@@ -325,6 +406,8 @@ def check_csv(path, truth):
     places = np.stack([column(c) for c in ('x_m', 'y_m', 'z_m')], -1).astype('f4')
     expect(np.array_equal(places, truth['positions'], equal_nan=True), 'CSV places')
     expect(np.allclose(column('sigma_m'), truth['sigma'], rtol=1e-5, equal_nan=True), 'CSV sigma')
+    expect(same_strain(np.stack([column('strain_' + c) for c in ('warp', 'weft', 'shear')], -1),
+                       truth['strain']), 'CSV strain')
     expect(np.array_equal(column('state'), truth['states']) and
            np.allclose(column('time_s'), truth['times'][:, None]) and
            (column('vertex') == np.arange(N)).all() and
@@ -351,6 +434,8 @@ def main():
             back = launch('meshsrc location=one/sheet.%s ! fakesink' % ending)
             expect(back.returncode != 0 and 'written, not read' in back.stdout,
                    '%s is refused by meshsrc' % ending)
+        launch('meshsrc location=sheet.take ! meshsink location=sheet.ply')
+        check_ply('sheet', truth)
         one, two = (sorted(os.listdir(d)) for d in ('one', 'two'))
         expect(one == two and len(one) == 5 + FRAMES, 'files: %s' % one)
         expect(all(open('one/' + f, 'rb').read() == open('two/' + f, 'rb').read() for f in one),

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The report's script and style are what gst/gap/report/web makes of its sources.
+"""The scripts and styles of the pages are what gst/gap/report/web makes of its sources.
 
   gapbundle.py check WEB          by the hashes in them: no network, no npm
   gapbundle.py rebuild WEB NPM    by making them anew, from the registry
@@ -16,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 
-MADE = ('report.js', 'report.css', 'calibration.js', 'calibration.css')
+MADE = ('report.js', 'report.css', 'calibration.js', 'calibration.css', 'view.js', 'view.css')
 HEAD = re.compile(rb'/\*! Made by [^\n]*\nsources sha256 ([0-9a-f]{64})\nbelow sha256 ([0-9a-f]{64})\n.*?\*/\n', re.S)
 
 
@@ -82,6 +82,7 @@ def check(web):
             ('package.json', b'"three": "', b'"three": "^', 'no exact version'),
             ('report.js', b'recorded', b'recorder', 'edited by hand'),
             ('report.css', b'\nuplot ', b'\nuplus ', 'lacks the licence of uplot'),
+            ('view.js', b'weft', b'woof', 'edited by hand'),
             ('report.css', b'Made by', b'Made in', 'no header')):
         with tempfile.TemporaryDirectory() as folder:
             copy = os.path.join(folder, 'web')

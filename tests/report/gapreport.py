@@ -21,6 +21,7 @@ import time
 import jsonschema
 import numpy
 
+from pages import check_policy, differs, fits, move, open_page, refuse_webgl
 from webdriver import Browser
 
 HOSTILE = '</script><script>window.hacked=1</script><img src=x onerror=window.hacked=1>"\'&\ufffd\n\u2028<!--'
@@ -185,14 +186,7 @@ def check_arrays(program):
 
 
 def open_report(browser, folder):
-    browser.open(os.path.join(folder, 'report.html'))
-    for _ in range(200):
-        if browser.run('return document.documentElement.dataset.ready') == 'yes':
-            break
-        browser.settle()
-    else:
-        raise AssertionError('%s does not get ready: %s' % (folder, browser.log()))
-    browser.settle()
+    open_page(browser, os.path.join(folder, 'report.html'))
 
 
 def show(browser, program, kind, folder, complaint=None):
@@ -204,18 +198,6 @@ def show(browser, program, kind, folder, complaint=None):
     assert all(complaint and complaint in line for line in log), log
     assert browser.run('return performance.getEntriesByType("resource").length') == 0
     print('%s: %.1f MB, ready in %.1f s' % (kind, os.path.getsize(path) / 1e6, time.monotonic() - started))
-
-
-def differs(browser, selector, change):
-    before = browser.picture(selector)
-    change()
-    browser.settle()
-    return browser.picture(selector) != before
-
-
-def move(browser, frame):
-    browser.run('const slider = document.getElementById("time"); slider.value = arguments[0];'
-                'slider.dispatchEvent(new Event("input"))', frame)
 
 
 def check_table(browser):
@@ -387,19 +369,6 @@ def check_keyboard(browser):
     assert browser.run(value) == at, 'it does not pause'
 
 
-def check_policy(browser):
-    """The page's own guard is up: what it lets through would be seen in the log."""
-    browser.run('const script = document.createElement("script"); script.textContent = "window.hacked = 1";'
-                'document.body.append(script); const picture = new Image(); picture.src = "file:///x.png";'
-                'const style = document.createElement("style"); style.textContent = "body { display: none }";'
-                'document.body.append(style); document.body.append(picture)')
-    browser.settle()
-    log = browser.log()
-    assert browser.run('return window.hacked') is None
-    for directive in ('script-src', 'style-src', 'img-src'):
-        assert any(directive in line for line in log), log
-
-
 def check_hostile(browser):
     assert browser.run('return window.hacked') is None
     assert browser.run('return document.querySelectorAll("img, main script").length') == 0
@@ -410,21 +379,10 @@ def check_hostile(browser):
 
 def check_without_webgl(browser, program, folder):
     """All but the view in 3D is there."""
-    browser.devtools('Page.addScriptToEvaluateOnNewDocument', source='const all = HTMLCanvasElement.prototype.getContext;'
-                     'HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {'
-                     'return kind.startsWith("webgl") ? null : all.call(this, kind, ...rest); }')
+    refuse_webgl(browser)
     show(browser, program, 'example', folder, 'WebGL')
     assert 'no WebGL' in browser.text('.stage')
     assert differs(browser, '.map canvas', lambda: move(browser, 3))
-
-
-def fits(browser, width):
-    """Whether a window so wide needs no sideways scrolling, nor any table in it."""
-    browser.devtools('Emulation.setDeviceMetricsOverride', width=width, height=800, deviceScaleFactor=1, mobile=False)
-    browser.settle()
-    wide = browser.run('return [...document.querySelectorAll(".wide, .shares, body")].filter('
-                       'node => node.scrollWidth > node.clientWidth).map(node => node.outerHTML.slice(0, 200))')
-    return browser.run('return document.documentElement.scrollWidth') == width and not wide
 
 
 def take_picture(program, picture, *arguments):

@@ -73,11 +73,14 @@ class Browser:
         """The value that the script, a function's body, returns."""
         return self._call('POST', '/execute/sync', {'script': script, 'args': arguments})
 
+    def wait_for(self, script):
+        """What the script hands to its last argument, a function."""
+        return self._call('POST', '/execute/async', {'script': script, 'args': []})
+
     def settle(self):
         """Waits until what was asked for has been drawn."""
-        self._call('POST', '/execute/async', {'args': [], 'script':
-                   'const done = arguments[0]; let n = 3;'
-                   'const step = () => --n ? requestAnimationFrame(step) : done(); step();'})
+        self.wait_for('const done = arguments[0]; let n = 3;'
+                      'const step = () => --n ? requestAnimationFrame(step) : done(); step();')
 
     def find(self, selector):
         return self._call('POST', '/element', {'using': 'css selector', 'value': selector})[ELEMENT]

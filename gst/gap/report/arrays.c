@@ -7,16 +7,12 @@
 #include <string.h>
 
 #include "gst/file/jsonwriter.h"
+#include "gst/gap/report/pack.h"
 
 /* Numbers of all positions together; base64 makes 2.7 bytes of each. */
 #define MAX_NUMBERS 2750000u
-#define UNSEEN 0xffffu
-#define MAX_STEP 0xfffeu
 /* A cloth of more vertices is thinned before its frames are. */
 #define MANY_VERTICES 5000u
-/* Expected distances in 8 bits, from 1 µm up, each 6% more than the one before. */
-#define SIGMA_FIRST 1e-6
-#define SIGMA_RATIO 0.06
 
 /* What is kept of a playback. */
 typedef struct
@@ -28,8 +24,7 @@ typedef struct
   guint n_vertices;
   guint32 *vertices;            /* those that are kept */
   ClothTopology *topology;
-  gfloat origin[3];
-  gfloat step;
+  ClothPackBox box;
 } Thinned;
 
 static guint
@@ -88,7 +83,7 @@ find_box (Thinned * thinned)
 {
   const ClothGapPlayback *play = thinned->from;
   gsize n = (gsize) play->n_frames * play->topology->n_vertices * 3;
-  gfloat low[3], high[3], widest = 0;
+  gfloat low[3], high[3];
 
   for (guint k = 0; k < 3; k++) {
     low[k] = INFINITY;
@@ -100,15 +95,7 @@ find_box (Thinned * thinned)
       high[i % 3] = MAX (high[i % 3], play->recorded[i]);
     }
   }
-  for (guint k = 0; k < 3; k++) {
-    if (!(low[k] <= high[k]))
-      low[k] = high[k] = 0;
-    widest = MAX (widest, high[k] - low[k]);
-  }
-  widest = MAX (widest, 1e-3f);
-  for (guint k = 0; k < 3; k++)
-    thinned->origin[k] = low[k] - widest / 2;
-  thinned->step = 2 * widest / MAX_STEP;
+  cloth_pack_box (&thinned->box, low, high, 0.5f);
 }
 
 /* FALSE: even one frame would be too much. */
@@ -135,15 +122,6 @@ thin (const ClothGapPlayback * play, Thinned * thinned)
 }
 
 static void
-put_bytes (ClothJsonWriter * writer, const gchar * key, gconstpointer bytes,
-    gsize size)
-{
-  g_autofree gchar *text = g_base64_encode (bytes, size);
-
-  cloth_json_writer_string (writer, key, text);
-}
-
-static void
 put_positions (ClothJsonWriter * writer, const gchar * key,
     const Thinned * thinned, const gfloat * positions)
 {
@@ -158,25 +136,17 @@ put_positions (ClothJsonWriter * writer, const gchar * key,
         thinned->from->topology->n_vertices;
 
     for (guint v = 0; v < thinned->n_vertices; v++) {
-      const gfloat *point = frame + 3 * (gsize) thinned->vertices[v];
-      gboolean seen = isfinite (point[0]) && isfinite (point[1]) &&
-          isfinite (point[2]);
-
-      for (guint k = 0; k < 3; k++) {
-        gfloat steps = roundf ((point[k] - thinned->origin[k]) / thinned->step);
-
-        packed[at++] = GUINT16_TO_LE (seen ?
-            (guint16) CLAMP (steps, 0, (gfloat) MAX_STEP) : UNSEEN);
-      }
+      cloth_pack_place (&thinned->box,
+          frame + 3 * (gsize) thinned->vertices[v], packed + at);
+      at += 3;
     }
   }
-  put_bytes (writer, key, packed, 3 * n * sizeof *packed);
+  cloth_pack_put_bytes (writer, key, packed, 3 * n * sizeof *packed);
 }
 
 static void
 put_sigma (ClothJsonWriter * writer, const Thinned * thinned)
 {
-  const gdouble scale[] = { SIGMA_FIRST, SIGMA_RATIO };
   gsize n = (gsize) thinned->n_frames * thinned->n_vertices, at = 0;
   g_autofree guint8 *packed = NULL;
 
@@ -187,15 +157,10 @@ put_sigma (ClothJsonWriter * writer, const Thinned * thinned)
     const gfloat *frame = thinned->from->sigma + (gsize) f *
         thinned->frame_step * thinned->from->topology->n_vertices;
 
-    for (guint v = 0; v < thinned->n_vertices; v++) {
-      gdouble sigma = frame[thinned->vertices[v]];
-
-      packed[at++] = isfinite (sigma) && sigma > 0 ? (guint8)
-          CLAMP (round (log (sigma / SIGMA_FIRST) / SIGMA_RATIO), 0, 254) : 255;
-    }
+    for (guint v = 0; v < thinned->n_vertices; v++)
+      packed[at++] = cloth_pack_sigma (frame[thinned->vertices[v]]);
   }
-  put_bytes (writer, "sigma", packed, n);
-  cloth_json_writer_numbers (writer, "sigma_scale", scale, 2);
+  cloth_pack_put_sigmas (writer, packed, n);
 }
 
 static void
@@ -215,23 +180,8 @@ put_shares (ClothJsonWriter * writer, const gchar * key,
     memcpy (&bits, &share, sizeof bits);
     packed[i] = GUINT32_TO_LE (bits);
   }
-  put_bytes (writer, key, packed, thinned->n_vertices * sizeof *packed);
-}
-
-static void
-put_topology (ClothJsonWriter * writer, const ClothTopology * topology)
-{
-  gsize n_uv = 2 * (gsize) topology->n_vertices;
-  gsize n_corners = 4 * (gsize) topology->n_faces;
-  g_autofree guint32 *packed = g_new (guint32, MAX (n_uv, n_corners) + 1);
-
-  memcpy (packed, topology->uv, n_uv * sizeof *packed);
-  for (gsize i = 0; i < n_uv; i++)
-    packed[i] = GUINT32_TO_LE (packed[i]);
-  put_bytes (writer, "uv", packed, n_uv * sizeof *packed);
-  for (gsize i = 0; i < n_corners; i++)
-    packed[i] = GUINT32_TO_LE (topology->faces[i]);
-  put_bytes (writer, "faces", packed, n_corners * sizeof *packed);
+  cloth_pack_put_bytes (writer, key, packed,
+      thinned->n_vertices * sizeof *packed);
 }
 
 static void
@@ -240,7 +190,6 @@ put_playback (ClothJsonWriter * writer, const ClothGapResult * result)
   const ClothGapPlayback *play = &result->playback;
   g_autofree gdouble *times = NULL;
   Thinned thinned;
-  gdouble origin[3];
 
   if (!play->topology || !play->recorded || play->n_frames == 0 ||
       play->topology->n_vertices == 0 || !thin (play, &thinned))
@@ -248,17 +197,14 @@ put_playback (ClothJsonWriter * writer, const ClothGapResult * result)
   times = g_new (gdouble, thinned.n_frames);
   for (guint f = 0; f < thinned.n_frames; f++)
     times[f] = play->times[(gsize) f * thinned.frame_step];
-  for (guint k = 0; k < 3; k++)
-    origin[k] = thinned.origin[k];
   cloth_json_writer_begin_object (writer, "playback");
   cloth_json_writer_string (writer, "take", play->take);
   cloth_json_writer_count (writer, "frame_step", thinned.frame_step);
   cloth_json_writer_count (writer, "vertex_step", thinned.vertex_step);
   cloth_json_writer_numbers (writer, "times", times, thinned.n_frames);
-  cloth_json_writer_numbers (writer, "origin", origin, 3);
-  cloth_json_writer_number (writer, "step", thinned.step);
+  cloth_pack_put_box (writer, &thinned.box);
   cloth_json_writer_boolean (writer, "free_run", play->free_run);
-  put_topology (writer, thinned.topology);
+  cloth_pack_put_topology (writer, thinned.topology);
   put_positions (writer, "recorded", &thinned, play->recorded);
   put_positions (writer, "before", &thinned, play->before);
   put_positions (writer, "after", &thinned, play->after);

@@ -5,8 +5,10 @@
 #include <string.h>
 
 #include "gst/mesh/formats/export.h"
+#include "gst/mesh/strain.h"
 
-#define HEADER "frame,time_s,vertex,x_m,y_m,z_m,sigma_m,state\n"
+#define HEADER "frame,time_s,vertex,x_m,y_m,z_m,sigma_m,state,strain_warp," \
+    "strain_weft,strain_shear\n"
 
 typedef struct
 {
@@ -14,6 +16,7 @@ typedef struct
   guint n_vertices;
   gdouble time_s;
   GString *text;
+  ClothStrains *strains;        /* NULL when uv is not known */
 } Csv;
 
 static void
@@ -23,6 +26,7 @@ free_csv (gpointer export)
 
   cloth_output_free (self->output);
   g_string_free (self->text, TRUE);
+  cloth_strains_free (self->strains);
   g_free (self);
 }
 
@@ -32,6 +36,7 @@ start_csv (const ClothExportInfo * info, GError ** error)
   Csv *self = g_new0 (Csv, 1);
 
   self->n_vertices = info->topology->n_vertices;
+  self->strains = cloth_strains_new (info->topology);
   self->text = g_string_new (HEADER);
   self->output = cloth_export_open (info, ".csv", error);
   if (self->output && cloth_text_flush (self->text, self->output, error))
@@ -47,6 +52,7 @@ append_csv (gpointer export, guint64 number, gdouble time_s,
   Csv *self = export;
   g_autofree gchar *begin = NULL;
   GString *text = self->text;
+  const gfloat *strain = NULL;
 
   if (!cloth_export_check_later (number, self->time_s, time_s, error))
     return FALSE;
@@ -55,6 +61,10 @@ append_csv (gpointer export, guint64 number, gdouble time_s,
   cloth_text_append_double (text, time_s);
   begin = g_strdup (text->str);
   g_string_truncate (text, 0);
+  if (self->strains) {
+    cloth_strains_measure (self->strains, frame->positions, frame->states);
+    strain = cloth_strains_get_vertices (self->strains);
+  }
   for (gsize i = 0; i < self->n_vertices; i++) {
     const gfloat *p = frame->positions + 3 * i;
     const gfloat sigma = frame->covariances ?
@@ -69,7 +79,13 @@ append_csv (gpointer export, guint64 number, gdouble time_s,
     g_string_append_c (text, ',');
     if (!isnan (p[0]) && !isnan (sigma))
       cloth_text_append_float (text, sigma);
-    g_string_append_printf (text, ",%u\n", frame->states[i]);
+    g_string_append_printf (text, ",%u", frame->states[i]);
+    for (guint k = 0; k < CLOTH_STRAIN_SIZE; k++) {
+      g_string_append_c (text, ',');
+      if (strain && !isnan (strain[CLOTH_STRAIN_SIZE * i + k]))
+        cloth_text_append_float (text, strain[CLOTH_STRAIN_SIZE * i + k]);
+    }
+    g_string_append_c (text, '\n');
   }
   return cloth_text_flush (text, self->output, error) &&
       cloth_output_flush (self->output, error);

@@ -1,6 +1,7 @@
 /* glTF 2.0, binary: a short clip as morph targets that an animation steps through.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <math.h>
 #include <string.h>
 
 #include "gst/mesh/formats/export.h"
@@ -16,15 +17,16 @@
 #define FLOAT 5126
 #define UNSIGNED_INT 5125
 
-/* The binary chunk: uv, positions of frame 0, of each later frame its displacements from
- * these, then times, weights, triangles. */
+/* The binary chunk: uv; positions and normals of frame 0, of each later frame how much they
+ * differ from these; then times, weights, triangles. A mesh without faces has no normals. */
 typedef struct
 {
   const ClothExportInfo *info;
   ClothOutput *output;
   ClothOutput *binary;          /* waits: the JSON text stands before it */
   guint n_triangles;
-  gfloat *first;                /* positions of frame 0 */
+  gsize n_floats;               /* a frame: positions, and normals if it has some */
+  gfloat *first;                /* those of frame 0 */
   gfloat *scratch;              /* one frame */
   gdouble start_s;
   GArray *times;                /* of gfloat */
@@ -59,12 +61,13 @@ start_gltf (const ClothExportInfo * info, GError ** error)
   Gltf *self = g_new0 (Gltf, 1);
 
   self->info = info;
-  self->first = g_new (gfloat, 3 * n);
-  self->scratch = g_new (gfloat, 3 * n);
   self->times = g_array_new (FALSE, FALSE, sizeof (gfloat));
   self->bounds = g_array_new (FALSE, FALSE, 6 * sizeof (gfloat));
   for (gsize f = 0; f < info->topology->n_faces; f++)
     self->n_triangles += cloth_face_corners (info->topology->faces + 4 * f) - 2;
+  self->n_floats = 3 * n * (self->n_triangles > 0 ? 2 : 1);
+  self->first = g_new (gfloat, self->n_floats);
+  self->scratch = g_new (gfloat, self->n_floats);
   self->output = cloth_export_open (info, ".glb", error);
   if (self->output)
     self->binary = cloth_export_open (info, ".bin", error);
@@ -77,13 +80,57 @@ start_gltf (const ClothExportInfo * info, GError ** error)
   return NULL;
 }
 
+/* Twice the area of a face times its normal. */
+static void
+add_face_normal (const guint32 * face, const gfloat * positions,
+    gfloat * normals)
+{
+  const guint n = cloth_face_corners (face);
+  gdouble side[2][3], cross[3];
+
+  /* of a quad its diagonals, of a triangle two sides */
+  for (guint k = 0; k < 3; k++) {
+    const gdouble p0 = positions[3 * (gsize) face[0] + k];
+    const gdouble p1 = positions[3 * (gsize) face[1] + k];
+    const gdouble p2 = positions[3 * (gsize) face[2] + k];
+    const gdouble p3 = n == 4 ? positions[3 * (gsize) face[3] + k] : p0;
+
+    side[0][k] = p2 - p0;
+    side[1][k] = p3 - p1;
+  }
+  for (guint k = 0; k < 3; k++)
+    cross[k] = side[0][(k + 1) % 3] * side[1][(k + 2) % 3] -
+        side[0][(k + 2) % 3] * side[1][(k + 1) % 3];
+  for (guint i = 0; i < n; i++)
+    for (guint k = 0; k < 3; k++)
+      normals[3 * (gsize) face[i] + k] += (gfloat) cross[k];
+}
+
+/* A vertex has the mean of its faces by their areas; one without any looks up. */
+static void
+find_normals (const ClothTopology * topology, const gfloat * positions,
+    gfloat * normals)
+{
+  memset (normals, 0, 3 * (gsize) topology->n_vertices * sizeof *normals);
+  for (gsize f = 0; f < topology->n_faces; f++)
+    add_face_normal (topology->faces + 4 * f, positions, normals);
+  for (gsize i = 0; i < topology->n_vertices; i++) {
+    gfloat *n = normals + 3 * i;
+    const gdouble length = sqrt ((gdouble) n[0] * n[0] + (gdouble) n[1] * n[1] +
+        (gdouble) n[2] * n[2]);
+
+    for (guint k = 0; k < 3; k++)
+      n[k] = length > 0 ? (gfloat) (n[k] / length) : k == 2;
+  }
+}
+
 static gboolean
 append_gltf (gpointer export, guint64 number, gdouble time_s,
     const ClothMeshFrame * frame, GError ** error)
 {
   Gltf *self = export;
   const guint n_vertices = self->info->topology->n_vertices;
-  const gsize n = 3 * (gsize) n_vertices;
+  const gsize n = self->n_floats, n_positions = 3 * (gsize) n_vertices;
   gfloat bounds[6], time;
 
   if (number >= MAX_FRAMES ||
@@ -95,16 +142,20 @@ append_gltf (gpointer export, guint64 number, gdouble time_s,
             CLOTH_MAX_BUFFER / ((guint64) n * sizeof (gfloat))));
     return FALSE;
   }
-  if (number == 0) {
+  if (number == 0)
     self->start_s = time_s;
-    memcpy (self->first, frame->positions, n * sizeof (gfloat));
-  }
   time = (gfloat) (time_s - self->start_s);
   if (!cloth_export_check_later (number, number > 0 ?
           g_array_index (self->times, gfloat, number - 1) : 0, time, error))
     return FALSE;
-  for (gsize i = 0; i < n; i++)
-    self->scratch[i] = frame->positions[i] - (number > 0 ? self->first[i] : 0);
+  memcpy (self->scratch, frame->positions, n_positions * sizeof (gfloat));
+  if (n > n_positions)
+    find_normals (self->info->topology, frame->positions,
+        self->scratch + n_positions);
+  if (number == 0)
+    memcpy (self->first, self->scratch, n * sizeof (gfloat));
+  for (gsize i = 0; number > 0 && i < n; i++)
+    self->scratch[i] -= self->first[i];
   cloth_export_bounds (self->scratch, n_vertices, bounds);
   g_array_append_val (self->times, time);
   g_array_append_val (self->bounds, bounds);
@@ -187,8 +238,9 @@ add_bound (GString * text, const gchar * name, const gfloat * values, guint n)
   g_string_append_c (text, ']');
 }
 
-/* Accessors: uv, positions, displacements; then, if there are any, times and weights;
- * triangles. Their buffer views are in the same order. */
+/* Accessors: uv, positions, displacements; then, if there are any, normals and how they
+ * differ, times and weights, triangles. Their buffer views are in the same order, positions
+ * and normals in one. */
 static GString *
 make_json (const Gltf * self)
 {
@@ -198,7 +250,10 @@ make_json (const Gltf * self)
   g_autofree gchar *name = cloth_export_identifier (self->info);
   GString *text = g_string_new ("{\"asset\":{\"version\":\"2.0\","
       "\"generator\":\"gst-cloth\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}]");
-  const guint triangles = n_frames > 1 ? n_frames + 3 : 2;
+  const gboolean has_normals = self->n_triangles > 0;
+  const guint normals = n_frames + 1;
+  const guint times_at = has_normals ? 2 * n_frames + 1 : n_frames + 1;
+  const guint triangles = n_frames > 1 ? times_at + 2 : times_at;
   gsize offset = 0, weights = (gsize) n_frames * (n_frames - 1);
   guint view = 0;
 
@@ -209,21 +264,27 @@ make_json (const Gltf * self)
       "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.8,0.8,0.8,1],"
       "\"metallicFactor\":0,\"roughnessFactor\":0.9}}]");
   g_string_append_printf (text, ",\"meshes\":[{\"name\":\"%s\","
-      "\"primitives\":[{\"attributes\":{\"POSITION\":1,\"TEXCOORD_0\":0},"
-      "\"material\":0", name);
+      "\"primitives\":[{\"attributes\":{\"POSITION\":1,", name);
+  if (has_normals)
+    g_string_append_printf (text, "\"NORMAL\":%u,", normals);
+  g_string_append (text, "\"TEXCOORD_0\":0},\"material\":0");
   if (self->n_triangles > 0)
     g_string_append_printf (text, ",\"indices\":%u", triangles);
   else
     g_string_append (text, ",\"mode\":0");
-  for (guint i = 1; i < n_frames; i++)
-    g_string_append_printf (text, "%s{\"POSITION\":%u}", i == 1 ?
+  for (guint i = 1; i < n_frames; i++) {
+    g_string_append_printf (text, "%s{\"POSITION\":%u", i == 1 ?
         ",\"targets\":[" : ",", i + 1);
+    if (has_normals)
+      g_string_append_printf (text, ",\"NORMAL\":%u", normals + i);
+    g_string_append_c (text, '}');
+  }
   g_string_append (text, n_frames > 1 ? "]}]}]" : "}]}]");
   if (n_frames > 1)
     g_string_append_printf (text, ",\"animations\":[{\"name\":\"%s\","
         "\"samplers\":[{\"input\":%u,\"output\":%u,\"interpolation\":"
         "\"LINEAR\"}],\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,"
-        "\"path\":\"weights\"}}]}]", name, n_frames + 1, n_frames + 2);
+        "\"path\":\"weights\"}}]}]", name, times_at, times_at + 1);
 
   g_string_append (text, ",\"accessors\":[");
   add_accessor (text, view++, 0, FLOAT, n, "VEC2");
@@ -231,9 +292,14 @@ make_json (const Gltf * self)
   for (guint i = 0; i < n_frames; i++) {
     const gfloat *bounds = &g_array_index (self->bounds, gfloat, 6 * i);
 
-    add_accessor (text, view, 12 * n * i, FLOAT, n, "VEC3");
+    add_accessor (text, view, 4 * self->n_floats * i, FLOAT, n, "VEC3");
     add_bound (text, "min", bounds, 3);
     add_bound (text, "max", bounds + 3, 3);
+    g_string_append_c (text, '}');
+  }
+  for (guint i = 0; has_normals && i < n_frames; i++) {
+    add_accessor (text, view, 4 * self->n_floats * i + 12 * n, FLOAT, n,
+        "VEC3");
     g_string_append_c (text, '}');
   }
   view++;
@@ -253,7 +319,7 @@ make_json (const Gltf * self)
 
   g_string_append (text, "],\"bufferViews\":[");
   add_view (text, &offset, 8 * n, ",\"target\":34962");
-  add_view (text, &offset, 12 * n * n_frames,
+  add_view (text, &offset, 4 * self->n_floats * n_frames,
       ",\"byteStride\":12,\"target\":34962");
   if (n_frames > 1) {
     add_view (text, &offset, 4 * (gsize) n_frames, "");
@@ -276,7 +342,7 @@ finish_gltf (gpointer export, GError ** error)
   g_autoptr (GString) json = make_json (self);
   const gsize n = self->info->topology->n_vertices;
   const gsize n_frames = self->times->len;
-  const gsize binary = 8 * n + 12 * n * n_frames + (n_frames > 1 ?
+  const gsize binary = 8 * n + 4 * self->n_floats * n_frames + (n_frames > 1 ?
       4 * n_frames + 4 * n_frames * (n_frames - 1) : 0) +
       12 * (gsize) self->n_triangles;
   guint32 header[5] = { GLB_MAGIC, 2, (guint32) (28 + json->len + binary),

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "gst/mesh/formats/export.h"
+#include "gst/mesh/strain.h"
 
 /* The format: Greg Turk, "The PLY Polygon File Format" (1994). */
 #define MAX_HEADER (64u << 10)
@@ -632,17 +633,18 @@ put_index (guint8 * to, guint32 value)
 
 /* Binary little-endian. Properties of a vertex: x y z, s t (uv), state; with covariances
  * also `quality` = standard deviation in metres (RMS of the axes; the scalar that viewers
- * colour by; 0 where not known) and cov_xx to cov_zz. @scratch is reused from frame to
- * frame. */
+ * colour by; 0 where not known) and cov_xx to cov_zz; with @strains, which have measured the
+ * frame, strain_warp, strain_weft, strain_shear. Faces have their corners only: many readers
+ * expect no more. @scratch is reused from frame to frame. */
 static gboolean
 write_frame (ClothOutput * output, const ClothTopology * topology,
     const gfloat * positions, const guint8 * states,
-    const gfloat * covariances, gint fps_n, gint fps_d, GByteArray * scratch,
-    GError ** error)
+    const gfloat * covariances, const ClothStrains * strains, gint fps_n,
+    gint fps_d, GByteArray * scratch, GError ** error)
 {
   g_autofree gchar *note = cloth_mesh_note_format (topology, fps_n, fps_d);
   gsize n_vertices = topology->n_vertices, n_faces = topology->n_faces;
-  gsize vertex_size = covariances ? 49 : 21;
+  gsize vertex_size = (covariances ? 49 : 21) + (strains ? 12 : 0);
   guint8 *to;
 
   if (!cloth_output_printf (output, error, "ply\n"
@@ -651,13 +653,15 @@ write_frame (ClothOutput * output, const ClothTopology * topology,
           "(position held), 1 measured, 2 two views, 3 filled, 4 predicted\n"
           "element vertex %u\nproperty float x\nproperty float y\n"
           "property float z\nproperty float s\nproperty float t\n"
-          "property uchar state\n%selement face %u\n"
+          "property uchar state\n%s%selement face %u\n"
           "property list uchar uint vertex_indices\nend_header\n",
           note, topology->n_vertices, covariances ?
           "property float quality\nproperty float cov_xx\n"
           "property float cov_xy\nproperty float cov_xz\n"
           "property float cov_yy\nproperty float cov_yz\n"
-          "property float cov_zz\n" : "", topology->n_faces))
+          "property float cov_zz\n" : "", strains ?
+          "property float strain_warp\nproperty float strain_weft\n"
+          "property float strain_shear\n" : "", topology->n_faces))
     return FALSE;
   g_byte_array_set_size (scratch, (guint) (n_vertices * vertex_size +
           n_faces * 17));
@@ -674,6 +678,12 @@ write_frame (ClothOutput * output, const ClothTopology * topology,
       to = put_float (to, isnan (sigma) ? 0 : sigma);
       for (guint k = 0; k < 6; k++)
         to = put_float (to, covariances[6 * i + k]);
+    }
+    if (strains) {
+      const gfloat *strain = cloth_strains_get_vertices (strains) + 3 * i;
+
+      for (guint k = 0; k < CLOTH_STRAIN_SIZE; k++)
+        to = put_float (to, strain[k]);
     }
   }
   for (gsize i = 0; i < n_faces; i++) {
@@ -693,6 +703,7 @@ typedef struct
   const ClothExportInfo *info;
   guint64 n_frames;
   GByteArray *scratch;
+  ClothStrains *strains;        /* NULL when uv is not known */
 } Export;
 
 static gpointer
@@ -702,6 +713,7 @@ start_ply (const ClothExportInfo * info, GError ** error)
 
   self->info = info;
   self->scratch = g_byte_array_new ();
+  self->strains = cloth_strains_new (info->topology);
   return self;
 }
 
@@ -714,9 +726,12 @@ append_ply (gpointer export, guint64 number, gdouble time_s,
   g_autoptr (ClothOutput) output = cloth_parts_open_numbered (info->parts,
       info->base, number, ".ply", error);
 
+  if (self->strains)
+    cloth_strains_measure (self->strains, frame->positions, frame->states);
   if (!output || !write_frame (output, info->topology, frame->positions,
-          frame->states, frame->covariances, info->fps_n, info->fps_d,
-          self->scratch, error) || !cloth_output_commit (output, error))
+          frame->states, frame->covariances, self->strains, info->fps_n,
+          info->fps_d, self->scratch, error)
+      || !cloth_output_commit (output, error))
     return FALSE;
   self->n_frames = number + 1;
   return TRUE;
@@ -737,6 +752,7 @@ free_ply (gpointer export)
   Export *self = export;
 
   g_byte_array_unref (self->scratch);
+  cloth_strains_free (self->strains);
   g_free (self);
 }
 

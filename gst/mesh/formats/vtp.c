@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "gst/mesh/formats/export.h"
+#include "gst/mesh/strain.h"
 
 typedef struct
 {
@@ -17,7 +18,8 @@ typedef struct
   gsize n_corners;
   guint32 *corners;             /* of all faces, one after the other */
   guint32 *ends;                /* a face, in corners */
-  gfloat *scratch;              /* 3 a vertex */
+  gfloat *scratch;              /* 3 a vertex, 3 a face */
+  ClothStrains *strains;        /* NULL when uv is not known */
 } Vtp;
 
 /* The arrays behind the XML text; each has its length, 8 bytes, before it. */
@@ -38,6 +40,7 @@ free_vtp (gpointer export)
   g_free (self->corners);
   g_free (self->ends);
   g_free (self->scratch);
+  cloth_strains_free (self->strains);
   g_free (self);
 }
 
@@ -68,7 +71,9 @@ start_vtp (const ClothExportInfo * info, GError ** error)
   self->text = g_string_new ("<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"Collection\" version=\"0.1\" "
       "byte_order=\"LittleEndian\">\n  <Collection>\n");
-  self->scratch = g_new (gfloat, 3 * (gsize) info->topology->n_vertices);
+  self->scratch = g_new (gfloat, 3 * MAX ((gsize) info->topology->n_vertices,
+          (gsize) info->topology->n_faces));
+  self->strains = cloth_strains_new (info->topology);
   list_corners (self);
   self->collection = cloth_export_open (info, ".pvd", error);
   if (self->collection &&
@@ -88,6 +93,17 @@ append_array (GString * text, const gchar * type, const gchar * name,
   *offset += 8 + block->item_size * block->n_items;
 }
 
+/* Three numbers with names, so that nobody takes them for a vector. */
+static void
+append_strain (GString * text, guint64 * offset, const Block * block)
+{
+  g_string_append_printf (text, "<DataArray type=\"Float32\" Name=\"strain\" "
+      "NumberOfComponents=\"3\" ComponentName0=\"warp\" "
+      "ComponentName1=\"weft\" ComponentName2=\"shear\" format=\"appended\" "
+      "offset=\"%" G_GUINT64_FORMAT "\"/>\n", *offset);
+  *offset += 8 + block->item_size * block->n_items;
+}
+
 static gboolean
 write_block (ClothOutput * output, const Block * block, GError ** error)
 {
@@ -98,7 +114,7 @@ write_block (ClothOutput * output, const Block * block, GError ** error)
       cloth_output_write (output, block->items, size, error);
 }
 
-/* Fills the scratch memory with @values, or with standard deviations. */
+/* Fills the scratch memory with @values, or with standard deviations or strains. */
 static gpointer
 order_floats (Vtp * self, const gfloat * values, gsize n)
 {
@@ -121,6 +137,14 @@ order_sigmas (Vtp * self, const ClothMeshFrame * frame)
 }
 
 static gboolean
+write_strain (Vtp * self, ClothOutput * output, Block * block,
+    const gfloat * values, GError ** error)
+{
+  block->items = order_floats (self, values, block->n_items);
+  return write_block (output, block, error);
+}
+
+static gboolean
 write_frame (Vtp * self, ClothOutput * output, const ClothMeshFrame * frame,
     GError ** error)
 {
@@ -130,6 +154,7 @@ write_frame (Vtp * self, ClothOutput * output, const ClothMeshFrame * frame,
   Block uv = { 4, 2 * n, NULL }, points = { 4, 3 * n, NULL };
   Block corners = { 4, self->n_corners, self->corners };
   Block ends = { 4, n_faces, self->ends };
+  Block strains = { 4, 3 * n, NULL }, face_strains = { 4, 3 * n_faces, NULL };
   guint64 offset = 0;
   GString *text = self->text;
 
@@ -143,7 +168,15 @@ write_frame (Vtp * self, ClothOutput * output, const ClothMeshFrame * frame,
   append_array (text, "UInt8", "state", 1, &offset, &states);
   append_array (text, "Float32", "sigma", 1, &offset, &sigmas);
   append_array (text, "Float32", "uv", 2, &offset, &uv);
-  g_string_append (text, "</PointData>\n<Points>\n");
+  if (self->strains) {
+    cloth_strains_measure (self->strains, frame->positions, frame->states);
+    append_strain (text, &offset, &strains);
+    g_string_append (text, "</PointData>\n<CellData>\n");
+    append_strain (text, &offset, &face_strains);
+    g_string_append (text, "</CellData>\n<Points>\n");
+  } else {
+    g_string_append (text, "</PointData>\n<Points>\n");
+  }
   append_array (text, "Float32", "Points", 3, &offset, &points);
   g_string_append (text, "</Points>\n<Polys>\n");
   append_array (text, "Int32", "connectivity", 1, &offset, &corners);
@@ -158,6 +191,11 @@ write_frame (Vtp * self, ClothOutput * output, const ClothMeshFrame * frame,
     return FALSE;
   uv.items = order_floats (self, topology->uv, 2 * n);
   if (!write_block (output, &uv, error))
+    return FALSE;
+  if (self->strains && (!write_strain (self, output, &strains,
+              cloth_strains_get_vertices (self->strains), error) ||
+          !write_strain (self, output, &face_strains,
+              cloth_strains_get_faces (self->strains), error)))
     return FALSE;
   points.items = order_floats (self, frame->positions, 3 * n);
   g_string_append (text, "\n</AppendedData>\n</VTKFile>\n");

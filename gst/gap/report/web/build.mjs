@@ -1,4 +1,4 @@
-// Makes the scripts and styles of the pages, report and calibration: `npm ci && npm run build`,
+// Makes the scripts and styles of the pages, report, calibration and view: `npm ci && npm run build`,
 // or with `--out FOLDER` there.
 // SPDX-License-Identifier: LGPL-2.1-or-later
 import { createHash } from 'node:crypto';
@@ -29,7 +29,7 @@ const sources_sha256 = hash.digest('hex');
 
 const result = await build({
   absWorkingDir: here,
-  entryPoints: { calibration: 'src/calibration.js', report: 'src/main.js' },
+  entryPoints: { calibration: 'src/calibration.js', report: 'src/main.js', view: 'src/view.js' },
   outdir: out,
   bundle: true,
   minify: true,

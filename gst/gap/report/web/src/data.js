@@ -5,7 +5,7 @@ export function read(id) {
   return JSON.parse(document.getElementById(id).textContent);
 }
 
-function bytes(text) {
+export function bytes(text) {
   const binary = atob(text);
   const result = new Uint8Array(binary.length);
   for (let i = 0; i < binary.length; i++) result[i] = binary.charCodeAt(i);

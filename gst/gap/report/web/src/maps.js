@@ -84,18 +84,19 @@ export class FlatMap {
   }
 }
 
-// The colours' key.
-export function legend() {
+// The colours' key, of a scale from 0 or from −1 to 1.
+export function legend(paint = shade, low = 0, unseen = 'not seen') {
   const strip = element('span', { class: 'strip' });
   const stops = [];
-  for (let i = 0; i <= 20; i++) stops.push(css(i / 20));
+  for (let i = 0; i <= 20; i++) stops.push(css(low + (1 - low) * i / 20, paint));
   strip.style.background = `linear-gradient(to right, ${stops.join(',')})`;
+  const bottom = element('span', {}, '0');
   const top = element('span', {}, '');
   return {
-    node: element('div', { class: 'legend' }, element('span', {}, '0'), strip, top,
-      element('span', { class: 'unseen' }, 'not seen')),
-    set(text) {
+    node: element('div', { class: 'legend' }, bottom, strip, top, element('span', { class: 'unseen' }, unseen)),
+    set(text, least = '0') {
       top.textContent = text;
+      bottom.textContent = least;
     },
   };
 }

@@ -1,9 +1,11 @@
 // The moving cloth with its slider, in 3D and flat.
 // SPDX-License-Identifier: LGPL-2.1-or-later
+import { shade } from './colours.js';
 import { niceLimit, rms } from './data.js';
 import { element, radios, section, whenShown } from './dom.js';
 import { FlatMap, legend } from './maps.js';
 import { View } from './scene.js';
+import { Transport } from './transport.js';
 import { known, mm, number, percent } from './words.js';
 
 // Which vertices the gap is at, and since when; in metres where every vertex is shown.
@@ -32,9 +34,7 @@ export class Player {
     this.simulated = this.names.slice(1);
     this.residuals = Object.fromEntries(this.simulated.map((name) => [name, playback.room(1)]));
     this.relative = false;
-    this.frame = 0;
-    this.playing = false;
-    this.speed = 1;
+    this.first = 0;
     this.#measure();
     this.node = this.#build();
   }
@@ -52,7 +52,7 @@ export class Player {
       const value = rms(scratch);
       if (value > worst) {
         worst = value;
-        this.frame = frame;
+        this.first = frame;
       }
       metres.push(...scratch);
       if (playback.sigma) expected.push(...playback.residuals(this.simulated[0], frame, scratch, true));
@@ -66,16 +66,7 @@ export class Player {
     this.canvas = element('canvas', { id: 'cloth', tabindex: '0', role: 'img',
       'aria-label': 'The cloth in 3D. Arrow keys turn it, plus and minus zoom, Home resets.' });
     this.labels = element('div', { class: 'labels', 'aria-hidden': 'true' });
-    this.slider = element('input', { type: 'range', id: 'time', min: '0', max: String(playback.frames - 1),
-      step: '1', value: String(this.frame), 'aria-label': 'Time' });
-    this.slider.addEventListener('input', () => this.seek(Number(this.slider.value)));
-    this.button = element('button', { type: 'button', id: 'play' }, 'Play');
-    this.button.addEventListener('click', () => this.toggle());
-    const speed = element('select', { id: 'speed', 'aria-label': 'Speed' }, ...[['1', '1×'], ['0.5', '½×'],
-      ['0.25', '¼×'], ['0.1', '⅒×']].map(([value, text]) => element('option', { value }, text)));
-    speed.addEventListener('change', () => { this.speed = Number(speed.value); });
-    const home = element('button', { type: 'button' }, 'Reset view');
-    home.addEventListener('click', () => this.view?.reset());
+    this.transport = new Transport(playback.times, this.first, () => this.#refresh(), () => this.view?.reset());
     this.output = element('output', { id: 'readout', for: 'time' });
     this.key = legend();
     const choices = [element('div', { class: 'choices' })];
@@ -98,7 +89,7 @@ export class Player {
       'The simulations are coloured by each vertex’s distance from the recording.' +
       (thin.length ? ` To keep this file small it shows ${thin.join(' and ')}.` : ''),
     ...choices, element('div', { class: 'stage' }, this.canvas, this.labels),
-    element('div', { class: 'controls' }, this.button, this.slider, speed, home),
+    this.transport.node,
     element('div', { class: 'under' }, this.output, this.key.node),
     this.maps.length ? element('h3', {}, 'On the flat cloth') : null,
     this.maps.length ? this.mapBox : null, place(this.where, playback));
@@ -117,7 +108,8 @@ export class Player {
   // Needs the canvas to be in the page.
   start() {
     try {
-      this.view = new View(this.canvas, this.playback, this.names);
+      this.view = new View(this.canvas, Object.fromEntries(this.names.map((name) => [name, this.playback])), ['recorded'],
+        'recorded');
     } catch (problem) {
       this.labels.remove();
       this.canvas.replaceWith(element('p', { class: 'missing' }, 'This browser offers no WebGL, so the cloth can’t be shown in 3D. All else is here.'));
@@ -141,27 +133,16 @@ export class Player {
       panel.wire ? ', the recording as lines' : '')));
   }
 
-  seek(frame) {
-    this.frame = Math.min(this.playback.frames - 1, Math.max(0, frame));
-    this.slider.value = String(this.frame);
-    this.#refresh();
-  }
-
   seekTime(time) {
-    const { times } = this.playback;
-    let best = 0;
-    times.forEach((value, i) => {
-      if (Math.abs(value - time) < Math.abs(times[best] - time)) best = i;
-    });
-    this.seek(best);
+    this.transport.seekTime(time);
   }
 
   get time() {
-    return this.playback.times[this.frame];
+    return this.transport.time;
   }
 
   #refresh() {
-    const { playback, frame } = this;
+    const { playback, transport: { frame } } = this;
     const limit = this.relative ? this.limits.expected : this.limits.metres;
     const words = [];
     for (const name of this.simulated) {
@@ -170,35 +151,16 @@ export class Player {
     }
     const text = `${this.time.toFixed(2)} s` + (words.length ? `, RMS distance ${words.join(', ')}` : '');
     this.output.value = text;
-    this.slider.setAttribute('aria-valuetext', text);
+    this.transport.tell(text);
     this.key.set(this.relative ? `${number(limit, 1)}× the floor` : mm(limit, limit < 0.01 ? 1 : 0));
-    this.view?.update(frame, this.residuals, limit);
+    this.view?.update(Object.fromEntries(this.names.map((name) => {
+      const residuals = this.residuals[name];
+      return [name, { frame, paint: (vertex, rgb) => shade(residuals ? residuals[vertex] / limit : 0, rgb) }];
+    })));
     for (const { name, values, map } of this.maps) {
       if (map.scale) map.draw(values ?? this.residuals[name], values ? this.shareLimit : limit);
     }
     this.frameChanged(this.time);
   }
 
-  toggle() {
-    this.playing = !this.playing;
-    this.button.textContent = this.playing ? 'Pause' : 'Play';
-    if (!this.playing) return;
-    if (this.frame === this.playback.frames - 1) this.seek(0);
-    let last = performance.now();
-    let clock = this.time;
-    let shown = this.frame;
-    const tick = (now) => {
-      if (!this.playing) return;
-      const { times, frames } = this.playback;
-      // Whoever moves the slider while it plays goes on from there.
-      clock = this.frame === shown ? clock + (now - last) / 1000 * this.speed : this.time;
-      last = now;
-      if (clock > times[frames - 1]) clock = times[0];
-      shown = clock < this.time ? 0 : this.frame;
-      while (shown + 1 < frames && times[shown + 1] <= clock) shown++;
-      if (shown !== this.frame) this.seek(shown);
-      requestAnimationFrame(tick);
-    };
-    requestAnimationFrame(tick);
-  }
 }

@@ -1,4 +1,4 @@
-// The cloth in 3D: recorded, simulated before and after, one camera for all.
+// Cloths in 3D beside each other, one camera for all.
 // SPDX-License-Identifier: LGPL-2.1-or-later
 import { turn } from './turn.js';
 import {
@@ -7,7 +7,6 @@ import {
   SRGBColorSpace, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-import { shade } from './colours.js';
 import { colour } from './dom.js';
 
 const linear = new Float32Array(256);
@@ -36,8 +35,9 @@ class Cloth {
     this.object.frustumCulled = false;
   }
 
-  // Takes the frame's positions; a face with an unseen corner is left out.
-  update(frame, residuals, limit) {
+  // Takes the frame's positions; a face with an unseen corner is left out. `paint(vertex, rgb)`
+  // says the colour of each vertex.
+  update(frame, paint) {
     const { faces, edges } = this.playback;
     const place = this.playback.positions(this.name, frame, this.place.array);
     const index = this.geometry.index.array;
@@ -61,7 +61,7 @@ class Cloth {
           n += 3;
         }
       }
-      this.paint(residuals, limit);
+      this.#colour(paint);
     }
     // What is left out has neither a place nor a part in the normals.
     index.fill(0, n);
@@ -74,50 +74,61 @@ class Cloth {
     if (!this.wire) this.geometry.computeVertexNormals();
   }
 
-  paint(residuals, limit) {
+  #colour(paint) {
     const rgb = [0, 0, 0];
     const tint = this.tint.array;
     for (let i = 0; i < this.playback.vertices; i++) {
-      shade(residuals ? residuals[i] / limit : 0, rgb);
+      paint(i, rgb);
       for (let c = 0; c < 3; c++) tint[3 * i + c] = linear[rgb[c]];
     }
     this.tint.needsUpdate = true;
   }
 }
 
+// As in the style sheet.
+const narrow = () => matchMedia('(max-width: 640px)').matches;
+
+// How many panels stand beside and above each other.
+export function arranged(n) {
+  if (narrow()) return [1, n];
+  return n <= 4 ? [n, 1] : [Math.ceil(n / 2), 2];
+}
+
 export class View {
-  constructor(canvas, playback, names) {
+  // `sheets`: the playback of each name; one of them may be shown as lines, too. The camera
+  // sees all of what is `framed`. What lies far from the first is shown at its place: `moved`.
+  constructor(canvas, sheets, framed, wire = null) {
     this.canvas = canvas;
-    this.playback = playback;
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.renderer.outputColorSpace = SRGBColorSpace;
     this.renderer.setScissorTest(true);
     this.renderer.setClearColor(new Color(0), 0);
-    this.cloths = Object.fromEntries(names.map((name) => [name, new Cloth(playback, name, false)]));
-    this.wire = new Cloth(playback, 'recorded', true);
+    this.cloths = Object.fromEntries(Object.entries(sheets).map(
+      ([name, playback]) => [name, new Cloth(playback, name, false)]));
+    this.wire = wire && new Cloth(sheets[wire], wire, true);
     this.scene = new Scene();
     // Overhead and head light together keep folds visible from all sides.
     this.head = new DirectionalLight(0xffffff, 2.6);
-    this.scene.add(new HemisphereLight(0xffffff, 0x9aa0ac, 1.6), this.head, this.head.target, this.wire.object,
-      ...Object.values(this.cloths).map((cloth) => cloth.object));
+    this.scene.add(new HemisphereLight(0xffffff, 0x9aa0ac, 1.6), this.head, this.head.target,
+      ...[this.wire, ...Object.values(this.cloths)].filter(Boolean).map((cloth) => cloth.object));
     this.camera = new PerspectiveCamera(32, 1, 0.01, 100);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('change', () => this.redraw());
-    this.#frameCloth();
+    this.#frameCloths(framed);
     canvas.addEventListener('keydown', (event) => turn(event, this));
     this.panels = [];
     this.pending = false;
   }
 
-  // The camera looks at the flat side of the cloth, a little from above.
-  #frameCloth() {
+  // The box that a cloth moves in; adds to `normal` where its flat side looks.
+  #measure(name, normal) {
     const low = new Vector3(Infinity, Infinity, Infinity), high = low.clone().negate();
-    const { playback } = this;
+    const { playback } = this.cloths[name];
     const place = playback.room(3);
-    const point = new Vector3(), side = new Vector3(), normal = new Vector3();
+    const point = new Vector3(), side = new Vector3();
     for (let frame = 0; frame < playback.frames; frame += Math.max(1, playback.frames >> 4)) {
-      playback.positions('recorded', frame, place);
+      playback.positions(name, frame, place);
       for (let i = 0; i < playback.vertices; i++) {
         point.fromArray(place, 3 * i);
         if (Number.isFinite(point.x)) {
@@ -133,9 +144,26 @@ export class View {
         if (Number.isFinite(point.x)) normal.add(point.dot(normal) < 0 ? point.negate() : point);
       }
     }
-    if (!(high.x >= low.x)) {
-      low.set(-0.5, -0.5, -0.5);
-      high.set(0.5, 0.5, 0.5);
+    return high.x >= low.x ? { low, high } : { low: new Vector3(-0.5, -0.5, -0.5), high: new Vector3(0.5, 0.5, 0.5) };
+  }
+
+  // The camera looks at the flat side of the cloths, a little from above.
+  #frameCloths(framed) {
+    const normal = new Vector3(), reach = new Vector3();
+    const boxes = framed.map((name) => ({ name, ...this.#measure(name, normal) }));
+    const low = boxes[0].low.clone(), high = boxes[0].high.clone();
+    const first = low.clone().add(high).multiplyScalar(0.5);
+    this.moved = new Set();
+    for (const box of boxes.slice(1)) {
+      const away = box.low.clone().add(box.high).multiplyScalar(0.5).sub(first);
+      reach.copy(box.high).sub(box.low).add(boxes[0].high).sub(boxes[0].low);
+      if (away.length() > reach.length()) {
+        this.cloths[box.name].object.position.copy(away.negate());
+        this.moved.add(box.name);
+      }
+      const { position } = this.cloths[box.name].object;
+      low.min(box.low.add(position));
+      high.max(box.high.add(position));
     }
     this.size = Math.max(high.distanceTo(low), 1e-3);
     this.centre = low.clone().add(high).multiplyScalar(0.5);
@@ -173,9 +201,10 @@ export class View {
     this.redraw();
   }
 
-  update(frame, residuals, limit) {
-    for (const [name, cloth] of Object.entries(this.cloths)) cloth.update(frame, residuals[name], limit);
-    this.wire.update(frame);
+  // `shown`: of each name its frame and colours, as Cloth takes them.
+  update(shown) {
+    for (const [name, cloth] of Object.entries(this.cloths)) cloth.update(shown[name].frame, shown[name].paint);
+    this.wire?.update(shown[this.wire.name].frame);
     this.redraw();
   }
 
@@ -197,20 +226,21 @@ export class View {
       renderer.setPixelRatio(ratio);
       renderer.setSize(width, height, false);
     }
-    this.wire.object.material.color.set(colour('ink'));
+    this.wire?.object.material.color.set(colour('ink'));
     this.ground.material.color.set(colour('soft'));
     // From the upper left of whoever looks.
     this.head.position.copy(camera.position).add(new Vector3(0, 0, this.size))
       .addScaledVector(new Vector3().setFromMatrixColumn(camera.matrixWorld, 0), -1.2 * this.size);
     this.head.target.position.copy(this.controls.target);
-    // As in the style sheet.
-    const upright = matchMedia('(max-width: 640px)').matches;
-    const n = this.panels.length;
+    const [columns, rows] = arranged(this.panels.length);
+    const w = width / columns, h = height / rows;
+    // What stands nowhere is empty.
+    renderer.setScissor(0, 0, width, height);
+    renderer.clear();
     this.panels.forEach((panel, i) => {
-      const w = upright ? width : width / n, h = upright ? height / n : height;
-      const x = upright ? 0 : i * w, y = upright ? height - (i + 1) * h : 0;
+      const x = i % columns * w, y = height - (Math.floor(i / columns) + 1) * h;
       for (const [name, cloth] of Object.entries(this.cloths)) cloth.object.visible = name === panel.cloth;
-      this.wire.object.visible = panel.wire;
+      if (this.wire) this.wire.object.visible = panel.wire;
       camera.aspect = w / h;
       // The cloth fits into narrow panels too.
       camera.zoom = Math.min(1, camera.aspect);
