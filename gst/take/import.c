@@ -841,8 +841,7 @@ understand (Import * self, GError ** error)
   const ClothImport *import = self->import;
   g_autoptr (GHashTable) apart = NULL;
 
-  if (!parse_axes (self, error) ||
-      !cloth_import_source_read (&self->source, import->source, error))
+  if (!cloth_import_source_read (&self->source, import->source, error))
     return FALSE;
   if (import->clamp_file &&
       !(self->log = cloth_markers_read (import->clamp_file, error)))
@@ -853,6 +852,8 @@ understand (Import * self, GError ** error)
   if (self->source.markers->ignored)
     cloth_summary_add (self->told, "not used", "columns %s",
         self->source.markers->ignored);
+  if (!parse_axes (self, error))
+    return FALSE;
   choose_unit (self);
   apart = find_apart (self);
   return find_times (self, error) && find_mesh (self, error) &&

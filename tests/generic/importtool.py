@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Imports recordings of other programs, made here with NumPy, by gst-cloth-take-1.0.
 
-  importtool.py TAKETOOL TESTDATA
+  importtool.py TAKETOOL TESTDATA PAGE
 
 What is read back by NumPy must be what was written, in metres and with z up; what is surely
 wrong must be refused with an error that names the mend.
@@ -10,6 +10,7 @@ SPDX-License-Identifier: LGPL-2.1-or-later
 """
 import json
 import os
+import re
 import struct
 import subprocess
 import sys
@@ -17,7 +18,7 @@ import tempfile
 
 import numpy
 
-tool, data = (os.path.abspath(path) for path in sys.argv[1:])
+tool, data, page = (os.path.abspath(path) for path in sys.argv[1:])
 drag = os.path.join(data, 'take_drag')
 positions = numpy.load(os.path.join(drag, 'positions.npy')).astype(float)
 clamps = numpy.load(os.path.join(drag, 'clamps.npy')).astype(float)
@@ -352,6 +353,22 @@ def c3d():
         bad(what, 'b.c3d', says=[says])
 
 
+def shown():
+    """What the page says that is printed."""
+    with open(page, encoding='utf-8') as file:
+        text = file.read()
+    os.symlink(os.path.dirname(data), 'tests')
+    robot = 'tests/data/robot_cloth/'
+    options = re.search(r'cloth\.csv --output robot\.take \\\n(.*?)```', text, re.S).group(1)
+    options = options.replace('\\\n', ' ').replace('$data/', robot).split()
+    done = run('import', robot + 'cloth.csv', '--output', 'robot.take', *options)
+    expect(done.returncode == 0 and '```text\n%s```' % done.stdout in text, 'the page shows it')
+    options.remove('--units')
+    options.remove('mm')
+    done = run('import', robot + 'cloth.csv', '--output', 'bad.take', *options)
+    expect(done.returncode == 1 and done.stderr.partition(': ')[2] in text, 'and its error')
+
+
 with tempfile.TemporaryDirectory(prefix='cloth-import-') as scratch:
     os.chdir(scratch)
     tables()
@@ -359,6 +376,7 @@ with tempfile.TemporaryDirectory(prefix='cloth-import-') as scratch:
     held_by_clamps()
     meshes()
     c3d()
+    shown()
     os.chdir('/')
 print('%d faults' % len(faults))
 for fault in faults:
