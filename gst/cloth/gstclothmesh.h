@@ -94,6 +94,7 @@ GST_CLOTH_API void gst_cloth_mesh_unref (GstClothMesh * mesh);
 GST_CLOTH_API guint64 gst_cloth_mesh_get_sequence (const GstClothMesh * mesh);
 GST_CLOTH_API guint gst_cloth_mesh_get_n_vertices (const GstClothMesh * mesh);
 GST_CLOTH_API const gfloat *gst_cloth_mesh_get_positions (const GstClothMesh * mesh, guint * n_floats);
+GST_CLOTH_API GBytes *gst_cloth_mesh_get_points (GstClothMesh * mesh);
 GST_CLOTH_API const guint8 *gst_cloth_mesh_get_states (const GstClothMesh * mesh, guint * n_states);
 GST_CLOTH_API const gfloat *gst_cloth_mesh_get_covariances (const GstClothMesh * mesh, guint * n_floats);
 GST_CLOTH_API GstBuffer *gst_cloth_mesh_to_buffer (const GstClothMesh * mesh);
