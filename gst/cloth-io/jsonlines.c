@@ -12,7 +12,7 @@ start_line (void)
 {
   ClothJsonWriter *writer = cloth_json_writer_new ();
 
-  cloth_json_writer_set_one_line (writer);
+  cloth_json_writer_set_one_line (writer, TRUE);
   cloth_json_writer_begin_object (writer, NULL);
   return writer;
 }

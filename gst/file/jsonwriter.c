@@ -71,13 +71,13 @@ static void
 start_item (ClothJsonWriter * writer, const gchar * key)
 {
   if (!writer->first)
-    g_string_append_c (writer->text, ',');
+    g_string_append (writer->text, writer->one_line ? ", " : ",");
   if (writer->text->len > 0)
     break_line (writer);
   writer->first = FALSE;
   if (key) {
     add_quoted (writer->text, key);
-    g_string_append (writer->text, writer->one_line ? ":" : ": ");
+    g_string_append (writer->text, ": ");
   }
 }
 
@@ -122,14 +122,14 @@ cloth_json_writer_set_exact (ClothJsonWriter * writer)
   writer->exact = TRUE;
 }
 
-/* @writer: a writer, empty
- *
- * All is written on one line.
+/* @writer: a writer
+ * @one_line: whether what is begun from now on stays on one line; what is ended with it must
+ *   have been begun with it
  */
 void
-cloth_json_writer_set_one_line (ClothJsonWriter * writer)
+cloth_json_writer_set_one_line (ClothJsonWriter * writer, gboolean one_line)
 {
-  writer->one_line = TRUE;
+  writer->one_line = one_line;
 }
 
 /* @writer: a writer

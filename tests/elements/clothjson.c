@@ -60,10 +60,11 @@ GST_START_TEST (test_squares)
   /* A name is text, whatever stands in it. */
   gst_buffer_add_cloth_quads_meta (picture,
       gst_cloth_quads_new ("a\"\n", 9, 8, 8, &quad, 1));
-  assert_line (picture, "{\"frame\":9,\"time_s\":0.12,\"camera\":\"a\\\"\\n\","
-      "\"squares\":[{\"column\":7,\"row\":3,\"state\":\"lost\",\"black\":true,"
-      "\"confidence\":0.5,\"corners_px\":[[1, 5],[2, 6],[3, 7],[4, null]],"
-      "\"covariances_px2\":[[0.25, 0, 0],[0, 0, 0],[0, 0, 0],[0, 0, 0]]}]}\n");
+  assert_line (picture,
+      "{\"frame\": 9, \"time_s\": 0.12, \"camera\": \"a\\\"\\n\", "
+      "\"squares\": [{\"column\": 7, \"row\": 3, \"state\": \"lost\", \"black\": true, "
+      "\"confidence\": 0.5, \"corners_px\": [[1, 5], [2, 6], [3, 7], [4, null]], "
+      "\"covariances_px2\": [[0.25, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0]]}]}\n");
 }
 
 GST_END_TEST;
@@ -83,14 +84,14 @@ GST_START_TEST (test_dots_and_matches)
           2, &dot, 1));
   gst_buffer_add_cloth_matches_meta (picture, gst_cloth_matches_new (NULL, 4,
           5, 5, 9, FALSE, &match, 1, &point, 1));
-  assert_line (picture, "{\"frame\":4,\"time_s\":0.12,\"camera\":null,"
-      "\"dots\":[{\"column\":null,\"row\":null,\"mirrored\":false,"
-      "\"touches\":false,\"confidence\":0,\"centre_px\":[1.5, 2],"
-      "\"covariance_px2\":[0, 0, 4],\"log_likelihoods\":[-0.5, -2]}],"
-      "\"matches\":[{\"place_px\":[1, 2],\"uv_m\":[0.25, 0.5],\"scale_px\":2,"
-      "\"distance\":3,\"mirrored\":false,\"verified\":true}],"
-      "\"vertices\":[{\"column\":2,\"row\":1,\"mirrored\":true,"
-      "\"place_px\":[3, 0],\"covariance_px2\":[0, 0, 0]}]}\n");
+  assert_line (picture, "{\"frame\": 4, \"time_s\": 0.12, \"camera\": null, "
+      "\"dots\": [{\"column\": null, \"row\": null, \"mirrored\": false, "
+      "\"touches\": false, \"confidence\": 0, \"centre_px\": [1.5, 2], "
+      "\"covariance_px2\": [0, 0, 4], \"log_likelihoods\": [-0.5, -2]}], "
+      "\"matches\": [{\"place_px\": [1, 2], \"uv_m\": [0.25, 0.5], \"scale_px\": 2, "
+      "\"distance\": 3, \"mirrored\": false, \"verified\": true}], "
+      "\"vertices\": [{\"column\": 2, \"row\": 1, \"mirrored\": true, "
+      "\"place_px\": [3, 0], \"covariance_px2\": [0, 0, 0]}]}\n");
 }
 
 GST_END_TEST;
@@ -103,10 +104,11 @@ GST_START_TEST (test_nothing)
   gst_buffer_add_cloth_quads_meta (picture, gst_cloth_quads_new ("c", 0, 8, 8,
           NULL, 0));
   assert_line (picture,
-      "{\"frame\":0,\"time_s\":0.12,\"camera\":\"c\",\"squares\":[]}\n");
+      "{\"frame\": 0, \"time_s\": 0.12, \"camera\": \"c\", \"squares\": []}\n");
   picture = make_picture ();
   GST_BUFFER_PTS (picture) = GST_CLOCK_TIME_NONE;
-  assert_line (picture, "{\"frame\":null,\"time_s\":null,\"camera\":null}\n");
+  assert_line (picture,
+      "{\"frame\": null, \"time_s\": null, \"camera\": null}\n");
 }
 
 GST_END_TEST;
@@ -138,10 +140,11 @@ GST_START_TEST (test_mesh)
   GST_BUFFER_PTS (buffer) = GST_SECOND;
   fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_OK);
   text = text_of (gst_harness_pull (h));
-  fail_unless_equals_string (text, "{\"frame\":5,\"time_s\":1,\"columns\":2,"
-      "\"rows\":2,\"positions_m\":[[0, 1, 2],null,[0.1, 0, 0],[1, 1, 1]],"
-      "\"states\":[\"measured\",\"unseen\",\"filled\",\"predicted\"],"
-      "\"covariances_m2\":[[1, 0, 0, 1, 0, 1],null,[2, 0, 0, 2, 0, 2],null]}\n");
+  fail_unless_equals_string (text,
+      "{\"frame\": 5, \"time_s\": 1, \"columns\": 2, "
+      "\"rows\": 2, \"positions_m\": [[0, 1, 2], null, [0.1, 0, 0], [1, 1, 1]], "
+      "\"states\": [\"measured\", \"unseen\", \"filled\", \"predicted\"], "
+      "\"covariances_m2\": [[1, 0, 0, 1, 0, 1], null, [2, 0, 0, 2, 0, 2], null]}\n");
   gst_harness_teardown (h);
 }
 
