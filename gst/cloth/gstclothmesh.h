@@ -10,6 +10,8 @@ G_BEGIN_DECLS
 /**
  * GST_CLOTH_MESH_MEDIA_TYPE:
  *
+ * Media type of a mesh stream, in its caps.
+ *
  * Since: 0.1
  */
 #define GST_CLOTH_MESH_MEDIA_TYPE "application/x-cloth-mesh"
@@ -33,7 +35,24 @@ G_BEGIN_DECLS
  */
 #define GST_CLOTH_NO_VERTEX ((guint32) 0xffffffff)
 
+/**
+ * GstClothTopology:
+ *
+ * What stays the same over a mesh stream: faces, and where each vertex lies on the flat cloth.
+ * Counted by reference, immutable.
+ *
+ * Since: 0.1
+ */
 typedef struct _GstClothTopology GstClothTopology;
+
+/**
+ * GstClothMesh:
+ *
+ * One frame of a mesh stream: a position, a state and perhaps a covariance of each vertex of a
+ * #GstClothTopology. Counted by reference, immutable.
+ *
+ * Since: 0.1
+ */
 typedef struct _GstClothMesh GstClothMesh;
 
 /**
