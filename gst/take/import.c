@@ -204,9 +204,9 @@ load_mesh (Import * self, GError ** error)
 
   if (!obj)
     return FALSE;
-  if (!obj->has_uv)
+  if (!obj->has_uv || obj->topology->n_faces == 0)
     return cloth_file_invalid (error,
-        "%s has no uv (vt): where each vertex lies "
+        "%s has no faces with uv (vt): where each vertex lies "
         "on the flat cloth, in metres", self->import->mesh);
   self->topology = g_steal_pointer (&obj->topology);
   return TRUE;

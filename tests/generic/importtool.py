@@ -146,6 +146,25 @@ def tables():
          + '\n' + '\n'.join('%d,0,' % (i + 1) + ','.join(word(1000 * x) for x in p.ravel())
                             for i, p in enumerate(positions)) + '\n'), '--rate', '50',
          says=['0.001 m, as the file says', 'body:101'], tolerance=1e-6)
+    motive = [',Type' + ',Marker' * 243 + ',Rigid Body' * 7,
+              ',Name,' + ','.join('velvet %d' % (k + 1) for k in range(81) for _ in 'xyz')
+              + ',Hand' * 7,
+              ',ID' + ',"4D00"' * 250,
+              ',,' + ','.join(['Position'] * 243 + ['Rotation'] * 4 + ['Position'] * 3),
+              'Frame,Time (Seconds),' + ','.join(['X,Y,Z'] * 81 + ['X,Y,Z,W,X,Y,Z'])]
+    good('names and a rigid body, as OptiTrack writes them', write('motive.csv', (
+        'Format Version,1.23,Take Name,hung,Length Units,Meters\n\n' + '\n'.join(motive) + '\n'
+        + '\n'.join('%d,%.6f,' % (i, times[i]) + ','.join(
+            [word(x) for x in p.ravel()] + ['0', '0', '0', '1'] + [word(x) for x in clamps[i, 0]])
+            for i, p in enumerate(positions)) + '\n').replace('velvet 1,', 'velvet 1,')),
+         '--clamp', 'velvet 1=Hand', says=['60 frames of 82 markers', 'follows “Hand”'])
+    bag = wide_table('field.m%d.position').split('\n')
+    good('of a ROS bag', write('bag.csv', '\n'.join(
+        ['%time,' + bag[0].replace('_x', '.x').replace('_y', '.y').replace('_z', '.z')
+         .partition(',')[2].replace('.position.x', '.position.x', 1)]
+        + ['%d,%s' % (1e9 * t, row.partition(',')[2]) for t, row in zip(times, bag[1:])])),
+         '--rate', '50', says=['own times are not used'])
+    bad('nanoseconds without a name', 'bag.csv', says=['time_ns'])
     lost = [i for i in range(60) if i not in (20, 21)]
     frames = long_table('frame,vertex,x,y,z', at=numpy.arange(60)).split('\n')
     good('lost frames, by number', write('lost.csv', '\n'.join(
@@ -158,6 +177,35 @@ def tables():
     hidden = positions.copy()
     hidden[:, 17] = numpy.nan
     good('a vertex that is never seen', write('few.csv', few), truth=hidden)
+
+
+def told():
+    """The numbers of the table, by NumPy."""
+    drop = os.path.join(data, 'take_drop')
+    places = numpy.load(os.path.join(drop, 'positions.npy')).astype(float)
+    paths = numpy.load(os.path.join(drop, 'clamps.npy')).astype(float)
+    seen = numpy.isfinite(places[..., 0])
+    least = seen.mean(1)
+    lengths = numpy.nansum(numpy.linalg.norm(numpy.diff(paths, axis=0), axis=2), 0)
+    done = run('info', drop)
+    lines = dict(line.split(None, 1) for line in done.stdout.splitlines())
+    expect(done.returncode == 0 and lines['frames'] == '%d' % len(places), 'frames')
+    expect(lines['extent'] == 'x %.3f to %.3f m, y %.3f to %.3f m, z %.3f to %.3f m' % tuple(
+        numpy.transpose([numpy.nanmin(places, (0, 1)), numpy.nanmax(places, (0, 1))]).ravel()),
+        'extent: ' + lines['extent'])
+    expect(lines['seen'] == '%.1f %%, the least %.1f %% in frame %d' % (
+        100 * seen.mean(), 100 * least.min(), least.argmin()), 'seen: ' + lines['seen'])
+    away = numpy.linalg.norm(paths[:, 0] - places[:, 0], axis=1)
+    expect(lines['clamps'] == 'vertex 0, path %.3f m long, %.1f mm from its vertex in the median' % (
+        lengths[0], 1000 * numpy.nanmedian(away)), 'clamps: ' + lines['clamps'])
+    grid = places.reshape(len(places), 35, 33, 3)
+    sides = numpy.concatenate([
+        (numpy.linalg.norm(numpy.diff(grid, axis=2), axis=3) / (0.63 / 32)).reshape(len(grid), -1),
+        (numpy.linalg.norm(numpy.diff(grid, axis=1), axis=3) / (0.67 / 34)).reshape(len(grid), -1)],
+        axis=1)
+    stretch = float(lines['stretch'].split()[2])
+    expect(abs(stretch - numpy.nanmedian(sides)) < 2e-3, 'stretch: %g' % stretch)
+    expect('let go at 0.32 s' in done.stdout, 'let go')
 
 
 def refused():
@@ -199,6 +247,10 @@ def refused():
     bad('units', 'long.csv', '--units', 'miles', says=['mm'])
     bad('a rate', 'long.csv', '--rate', '-3', says=['--rate'])
     bad('a take that is there', 'long.csv', says=['--overwrite'], output='take1.take')
+    write('bare.obj', obj_text(0).partition('f ')[0])
+    bad('a mesh without faces', 'long.csv', '--mesh', 'bare.obj', grid=[], says=['faces'])
+    done = run('import', 'long.csv', *GRID, '--rate', '25', '--output', 'take1.take', '--overwrite')
+    expect(done.returncode == 0 and '25 a second, even' in done.stdout, 'it is replaced when asked')
     done = run('import', 'long.csv', *GRID)
     expect(done.returncode == 2 and '--output' in done.stderr, 'no output')
     done = run('info', 'take1.take', '--units', 'mm')
@@ -372,6 +424,7 @@ def shown():
 with tempfile.TemporaryDirectory(prefix='cloth-import-') as scratch:
     os.chdir(scratch)
     tables()
+    told()
     refused()
     held_by_clamps()
     meshes()

@@ -229,18 +229,26 @@ is_one_of (const gchar * name, const gchar * const *words)
   return FALSE;
 }
 
-/* Coordinates of something that is no place. */
+/* Coordinates of something that is no place: a word of the name says so. */
 static gboolean
 is_no_place (const gchar * name)
 {
-  static const gchar *const words[] = { "rot", "orient", "quat", "vel", "acc",
-    "force", "torque", "twist", "angular", NULL
+  static const gchar *const words[] = { "rot", "rotation", "orientation",
+    "quat", "quaternion", "vel", "velocity", "acc", "acceleration", "force",
+    "torque", "twist", "linear", "angular", NULL
   };
-  g_autofree gchar *lower = g_ascii_strdown (name, -1);
 
-  for (guint i = 0; words[i]; i++)
-    if (strstr (lower, words[i]))
-      return TRUE;
+  while (*name) {
+    gsize n = 0;
+
+    while (g_ascii_isalpha (name[n]))
+      n++;
+    for (guint i = 0; n > 0 && words[i]; i++)
+      if (strlen (words[i]) == n
+          && g_ascii_strncasecmp (name, words[i], n) == 0)
+        return TRUE;
+    name += MAX (n, 1);
+  }
   return FALSE;
 }
 
@@ -288,10 +296,14 @@ parse_column (const gchar * cell)
     "marker_id", "marker_name", "point", "point_id", "id", "name", "label",
     "node", NULL
   };
-  g_autofree gchar *name = g_strdup (cell);
+  /* ROS marks a comment and names the message's fields: %time, field.header.stamp. */
+  g_autofree gchar *name = g_strdup (cell + (*cell == '%'));
+  const gchar *dot = strrchr (name, '.');
   Column column = { COLUMN_OTHER };
 
-  if (is_one_of (name, frames)) {
+  if (dot && is_one_of (dot + 1, times)) {
+    column.kind = COLUMN_TIME;
+  } else if (is_one_of (name, frames)) {
     column.kind = COLUMN_FRAME;
   } else if (is_one_of (name, markers)) {
     column.kind = COLUMN_MARKER;
