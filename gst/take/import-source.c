@@ -14,29 +14,6 @@
 #define MAX_FILES 100000u
 
 static gboolean
-read_npy (ClothImportSource * source, const gchar * path, GError ** error)
-{
-  g_autoptr (ClothNpyReader) reader = cloth_npy_reader_open (path, error);
-  const ClothNpyInfo *info;
-
-  if (!reader)
-    return FALSE;
-  info = cloth_npy_reader_get_info (reader);
-  if ((info->type != CLOTH_NPY_FLOAT32 && info->type != CLOTH_NPY_FLOAT64) ||
-      info->rank < 2 || info->rank > 3 || info->row_items % 3 != 0 ||
-      (info->rank == 3 && info->shape[2] != 3))
-    return cloth_file_invalid (error, "%s: positions are expected as floats of "
-        "the shape [frames][vertices][3]", path);
-  source->markers = cloth_markers_new (info->n_rows, info->row_items / 3,
-      error);
-  if (!source->markers)
-    return FALSE;
-  source->markers->layout = "NumPy";
-  return cloth_npy_reader_read_float (reader, 0, info->n_rows,
-      source->markers->positions, error);
-}
-
-static gboolean
 read_pc2 (ClothImportSource * source, const gchar * path, GError ** error)
 {
   g_autoptr (ClothPc2Reader) reader = cloth_pc2_reader_open (path, error);
@@ -282,6 +259,72 @@ read_ply_files (ClothImportSource * source, const GArray * files,
     source->markers->layout = files->len > 1 ? "numbered PLY files" : "PLY";
   cloth_ply_free (ply);
   return done;
+}
+
+static gboolean
+is_of_floats (const ClothNpyInfo * info)
+{
+  return info->type == CLOTH_NPY_FLOAT32 || info->type == CLOTH_NPY_FLOAT64;
+}
+
+/* @frame: of @n_frames, whose files hold an array of places each */
+static gboolean
+read_npy_frame (ClothImportSource * source, const gchar * path, guint frame,
+    guint n_frames, GError ** error)
+{
+  g_autoptr (ClothNpyReader) reader = cloth_npy_reader_open (path, error);
+  const ClothNpyInfo *info;
+
+  if (!reader)
+    return FALSE;
+  info = cloth_npy_reader_get_info (reader);
+  if (!source->markers) {
+    source->markers = cloth_markers_new (n_frames, info->n_rows, error);
+    if (!source->markers)
+      return FALSE;
+  }
+  if (!is_of_floats (info) || info->rank != 2 || info->row_items != 3 ||
+      info->n_rows != source->markers->n_markers)
+    return cloth_file_invalid (error,
+        "%s: another shape than that of the first "
+        "file; all frames need the same vertices", path);
+  return cloth_npy_reader_read_float (reader, 0, info->n_rows,
+      source->markers->positions + 3 * (gsize) frame * info->n_rows, error);
+}
+
+/* One array of all frames, or numbered ones of a frame each. */
+static gboolean
+read_npy (ClothImportSource * source, const gchar * path, GError ** error)
+{
+  g_autoptr (ClothNpyReader) reader = cloth_npy_reader_open (path, error);
+  g_autoptr (GArray) files = NULL;
+  const ClothNpyInfo *info;
+
+  if (!reader)
+    return FALSE;
+  info = cloth_npy_reader_get_info (reader);
+  if (!is_of_floats (info) || info->rank < 2 || info->rank > 3 ||
+      info->row_items % 3 != 0 || (info->rank == 3 && info->shape[2] != 3))
+    return cloth_file_invalid (error, "%s: positions are expected as floats of "
+        "the shape [frames][vertices][3], or [vertices][3] in numbered files",
+        path);
+  if (info->rank == 2 && info->row_items == 3) {
+    files = find_series (path, error);
+    for (guint i = 0; files && i < files->len; i++)
+      if (!read_npy_frame (source, g_array_index (files, Numbered, i).path, i,
+              files->len, error))
+        return FALSE;
+    if (files)
+      source->markers->layout = "numbered NumPy files";
+    return files != NULL;
+  }
+  source->markers = cloth_markers_new (info->n_rows, info->row_items / 3,
+      error);
+  if (!source->markers)
+    return FALSE;
+  source->markers->layout = "NumPy";
+  return cloth_npy_reader_read_float (reader, 0, info->n_rows,
+      source->markers->positions, error);
 }
 
 /* The name of the file beside @path with another ending. */

@@ -111,6 +111,12 @@ parse_axes (Import * self, GError ** error)
   return TRUE;
 }
 
+static const struct
+{
+  const gchar *name;
+  gdouble unit_m;
+} units[] = { {"mm", 0.001}, {"cm", 0.01}, {"in", 0.0254}, {"m", 1} };
+
 static void
 choose_unit (Import * self)
 {
@@ -118,9 +124,11 @@ choose_unit (Import * self)
 
   self->unit_m = self->import->unit_m > 0 ? self->import->unit_m :
       said > 0 ? said : 1;
-  if (self->unit_m != 1 || said > 0)
-    cloth_summary_add (self->told, "unit", "%g m%s", self->unit_m,
-        self->import->unit_m > 0 ? "" : ", as the file says");
+  for (guint i = 0; i < G_N_ELEMENTS (units); i++)
+    if (self->unit_m == units[i].unit_m)
+      cloth_summary_add (self->told, "unit", "%s, %s; metres in the take",
+          units[i].name, self->import->unit_m > 0 ? "as given" : said > 0 ?
+          "as the file says" : "as nothing else is said");
 }
 
 static void
@@ -430,12 +438,6 @@ fits_turned (const Import * self)
 static const gchar *
 better_unit (gdouble unit_m, gdouble stretch)
 {
-  static const struct
-  {
-    const gchar *name;
-    gdouble unit_m;
-  } units[] = { {"mm", 0.001}, {"cm", 0.01}, {"in", 0.0254}, {"m", 1} };
-
   for (guint i = 0; i < G_N_ELEMENTS (units); i++) {
     const gdouble then = stretch / unit_m * units[i].unit_m;
 

@@ -121,7 +121,7 @@ def tables():
         names=lambda k: str(k + 1), order=list(range(80, -1, -1)))), says=['counted from 1'])
     good('milliseconds and millimetres in the header', write('mm.csv', long_table(
         'Time (ms),Marker,X (mm),Y (mm),Z (mm)', 1000, at=1000 * times)),
-        says=['0.001 m, as the file says'], tolerance=1e-6)
+        says=['mm, as the file says; metres in the take'], tolerance=1e-6)
     good('millimetres by option, y up', write('yup.csv', long_table(
         'time,vertex,x,y,z', 1000, map=lambda p: (p[0], p[2], -p[1]))),
         '--units', 'mm', '--axes', 'y-up', tolerance=1e-6, says=["source's x,-z,y"])
@@ -145,7 +145,7 @@ def tables():
          + '\nFrame,Sub Frame,' + ','.join(['X,Y,Z'] * 81) + '\n,,' + ','.join(['mm,mm,mm'] * 81)
          + '\n' + '\n'.join('%d,0,' % (i + 1) + ','.join(word(1000 * x) for x in p.ravel())
                             for i, p in enumerate(positions)) + '\n'), '--rate', '50',
-         says=['0.001 m, as the file says', 'body:101'], tolerance=1e-6)
+         says=['mm, as the file says; metres in the take', 'body:101'], tolerance=1e-6)
     motive = [',Type' + ',Marker' * 243 + ',Rigid Body' * 7,
               ',Name,' + ','.join('velvet %d' % (k + 1) for k in range(81) for _ in 'xyz')
               + ',Hand' * 7,
@@ -331,6 +331,14 @@ def meshes():
     good('NumPy', 'a.npy', '--rate', '50')
     numpy.save('b.npy', positions.astype('f4').reshape(60, 243))
     good('NumPy, flat', 'b.npy', '--rate', '50')
+    for i in range(5):
+        numpy.save('f_%02d.npy' % (i + 8), positions[i])
+    good('numbered NumPy files', 'f_08.npy', '--rate', '50', truth=positions[:5], at=times[:5],
+         says=['numbered NumPy files, 5 frames'])
+    numpy.save('f_12.npy', positions[4, :80])
+    bad('one of another shape', 'f_08.npy', '--rate', '50', says=['f_12.npy', 'another shape'])
+    numpy.save('f_12.npy', positions[4].astype(int))
+    bad('one of whole numbers', 'f_08.npy', '--rate', '50', says=['f_12.npy', 'another shape'])
     with open('c.pc2', 'wb') as file:
         file.write(struct.pack('<12siiffi', b'POINTCACHE2\0', 1, 81, 0, 1, 60)
                    + solid.astype('<f4').tobytes())
@@ -388,7 +396,7 @@ def c3d():
         with open('r.c3d', 'wb') as file:
             file.write(c3d_bytes(integer))
         good('C3D of %s' % ('whole numbers' if integer else 'floats'), 'r.c3d',
-             says=['C3D, 60 frames of 81', '0.001 m, as the file says', 'rate        50', 'c0'],
+             says=['C3D, 60 frames of 81', 'mm, as the file says; metres in the take', 'rate        50', 'c0'],
              tolerance=4e-5 if integer else 1e-6)
     with open('r.c3d', 'wb') as file:
         file.write(c3d_bytes(False, labels=False))
