@@ -59,6 +59,8 @@ def squares(film, pattern):
 
 
 def meshes(take):
+    if not hasattr(Gst.MapInfo, '__enter__'):
+        sys.exit('Mapped memory needs the package python3-gst-1.0')
     print('frame,seen,x_m,y_m,z_m')
     for sample in samples('meshsrc name=take', take_location=take):
         mesh = GstCloth.Mesh.from_buffer(sample.get_buffer())
