@@ -24,7 +24,7 @@ while IFS= read -r file; do
     diff -u --label "$file" --label "$file, laid out" "$file" "$laid_out" | head -20
     status=1
   fi
-done < <(find -H gst elements tools tests -name '*.c' | sort)
+done < <(find -H gst elements examples tools tests -name '*.c' | sort)
 
 [ "$status" -eq 0 ] || echo "Run tests/style.sh --fix."
 # Without its semicolon indent takes such a macro for the head of what follows.

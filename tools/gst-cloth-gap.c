@@ -71,6 +71,32 @@ spread_lists (char **argv)
   return (gchar **) g_ptr_array_free (g_steal_pointer (&words), FALSE);
 }
 
+static const ToolCommand commands[] = {
+  {"diagnose", "TAKE… --model MODEL --output DIR",
+        "Says how large the gap between recordings and a simulation is, where, and "
+        "which effect\nthe simulation lacks. The report is DIR/report.html, the "
+        "numbers are in DIR/gap.json.",
+      "gst-cloth-gap-1.0 diagnose film.take --model model.json --effects "
+        "wind,gravity_tilt \\\n    --output gap"},
+  {"compare", "RECORDED SIMULATED --output DIR",
+        "Says how far a simulation of your own is from a recording, without a "
+        "model.",
+      "gst-cloth-gap-1.0 compare film.take simulated.take --output gap"},
+  {"simulate", "MODEL --scene TAKE --output TAKE",
+        "Simulates a cloth in the scene of a take: its mesh, clamps, obstacles "
+        "and times.",
+      "gst-cloth-gap-1.0 simulate model.json --scene film.take --output "
+        "simulated.take"},
+  {"check-simulator", "COMMAND --scene TAKE",
+        "Runs your own simulator as a diagnosis would, and says whether it keeps "
+        "to what is\nagreed.",
+      "gst-cloth-gap-1.0 check-simulator ./my-simulator --scene film.take"},
+  {"effects", "",
+        "Lists the effects that a simulation may lack, with their parameters.",
+      "gst-cloth-gap-1.0 effects --format markdown"},
+  {NULL}
+};
+
 int
 main (int argc, char **argv)
 {
@@ -108,7 +134,8 @@ main (int argc, char **argv)
         "diagnose, check-simulator: seconds that one run of your simulator may "
           "take (600)", "N"},
     {"output", 'o', 0, G_OPTION_ARG_FILENAME, &arguments.output,
-        "diagnose: folder of the report; simulate: take to write", "DIR"},
+          "diagnose, compare, simulate: folder of the report, or take to write",
+        "DIR"},
     {"seed", 0, 0, G_OPTION_ARG_INT64, &arguments.seed,
         "Of all random numbers (0)", "N"},
     {"threads", 0, 0, G_OPTION_ARG_INT, &arguments.threads,
@@ -119,9 +146,9 @@ main (int argc, char **argv)
           "check-simulator COMMAND | effects"},
     {NULL}
   };
-  gint code = tool_main (PROGRAM,
-      "- say where a simulation of cloth departs from recordings", entries,
-      spread_lists (argv), run, &arguments);
+  gint code = tool_main_commands (PROGRAM,
+      "- say where a simulation of cloth departs from recordings", commands,
+      entries, spread_lists (argv), run, &arguments);
 
   g_free (arguments.model);
   g_free (arguments.effects);

@@ -9,8 +9,14 @@
 
 typedef struct
 {
-  gboolean overwrite;
+  gboolean overwrite, zero_is_missing;
+  gchar *output, *units, *axes, *width, *height, *mesh, *clamp_file;
+  gchar **clamps;
+  gdouble rate;
+  gint columns, rows;
   gchar **rest;                 /* the command and what belongs to it */
 } Arguments;
 
 gint recover_takes (const Arguments * arguments);
+gint import_take (const Arguments * arguments);
+gint inform_of_takes (const Arguments * arguments);

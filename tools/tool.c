@@ -16,8 +16,104 @@ static const gchar *program;
 static gboolean in_line;
 static volatile sig_atomic_t interrupted;
 
+/* Descriptions of options begin with the commands that take them: "diagnose, compare: …". Those
+ * of no command's are everyone's.
+ *
+ * Returns: the rest; NULL when @command doesn't take the option */
+static const gchar *
+description_for (const gchar * text, const gchar * command,
+    const ToolCommand * commands)
+{
+  const gchar *rest = text;
+  gboolean its = FALSE;
+
+  for (;;) {
+    const gsize n = strcspn (rest, ":, ");
+    const ToolCommand *item = commands;
+
+    while (item->name && (strlen (item->name) != n ||
+            strncmp (item->name, rest, n) != 0))
+      item++;
+    if (!item->name || !rest[n] || rest[n] == ' ')
+      return text;
+    its |= g_str_equal (item->name, command);
+    rest += n + strspn (rest + n, ":, ");
+    if (rest[-2] == ':')
+      return its ? rest : NULL;
+  }
+}
+
+static void
+print_command_help (const gchar * name, const ToolCommand * command,
+    const ToolCommand * commands, const GOptionEntry * entries)
+{
+  g_autofree gchar *usage =
+      g_strconcat (command->name, " ", command->arguments, NULL);
+  g_autoptr (GOptionContext) context = g_option_context_new (usage);
+  g_autoptr (GArray) its = g_array_new (TRUE, TRUE, sizeof (GOptionEntry));
+  g_autofree gchar *examples = NULL, *help = NULL;
+  g_auto (GStrv) lines = g_strsplit (command->example, "\n", -1);
+
+  for (; entries->long_name; entries++) {
+    GOptionEntry entry = *entries;
+
+    entry.description = entry.description ?
+        description_for (entry.description, command->name, commands) : NULL;
+    if (*entry.long_name && entry.description)
+      g_array_append_val (its, entry);
+  }
+  examples = g_strjoinv ("\n  ", lines);
+  g_option_context_set_summary (context, command->what);
+  help = g_strconcat ("Example:\n  ", examples, NULL);
+  g_option_context_set_description (context, help);
+  g_option_context_add_main_entries (context,
+      (const GOptionEntry *) (gpointer) its->data, NULL);
+  g_set_prgname (name);
+  g_free (help);
+  help = g_option_context_get_help (context, TRUE, NULL);
+  g_print ("%s", help);
+}
+
+/* Whether the words ask for the help of a command, which is printed then. */
+static gboolean
+help_of_command (const gchar * name, const ToolCommand * commands,
+    const GOptionEntry * entries, gchar ** words)
+{
+  const gchar *first = NULL;
+  gboolean asked = FALSE;
+
+  if (!commands)
+    return FALSE;
+  for (guint i = 1; words[i] && !g_str_equal (words[i], "--"); i++) {
+    asked |= g_str_equal (words[i], "--help") || g_str_equal (words[i], "-h");
+    if (!first && *words[i] != '-')
+      first = words[i];
+  }
+  for (const ToolCommand * item = commands; asked && first && item->name;
+      item++)
+    if (g_str_equal (item->name, first)) {
+      print_command_help (name, item, commands, entries);
+      return TRUE;
+    }
+  return FALSE;
+}
+
+static void
+describe_commands (GOptionContext * context, const gchar * name,
+    const ToolCommand * commands)
+{
+  g_autoptr (GString) text = g_string_new ("Commands:\n");
+
+  for (const ToolCommand * item = commands; item->name; item++)
+    g_string_append_printf (text, "  %s %s\n", item->name, item->arguments);
+  g_string_append_printf (text, "\n\"%s COMMAND --help\" tells what one does, "
+      "with an example.", name);
+  g_option_context_set_description (context, text->str);
+}
+
 /* @name: of the program
  * @summary: what it does, for --help
+ * @commands: (nullable): what it can do
  * @entries: its options, but for --version
  * @words: (transfer full): the command line
  * @run: what it does with @arguments, which the options have filled
@@ -25,9 +121,10 @@ static volatile sig_atomic_t interrupted;
  * Returns: the exit code
  */
 gint
-tool_main (const gchar * name, const gchar * summary,
-    const GOptionEntry * entries, gchar ** words,
-    gint (*run) (gconstpointer arguments), gconstpointer arguments)
+tool_main_commands (const gchar * name, const gchar * summary,
+    const ToolCommand * commands, const GOptionEntry * entries,
+    gchar ** words, gint (*run) (gconstpointer arguments),
+    gconstpointer arguments)
 {
   gboolean version = FALSE;
   const GOptionEntry common[] = {
@@ -42,8 +139,12 @@ tool_main (const gchar * name, const gchar * summary,
   program = name;
   /* Only the characters: numbers stay with the decimal point. */
   setlocale (LC_CTYPE, "");
+  if (help_of_command (name, commands, entries, words))
+    return DONE;
   g_option_context_add_main_entries (context, entries, NULL);
   g_option_context_add_main_entries (context, common, NULL);
+  if (commands)
+    describe_commands (context, name, commands);
   if (!g_option_context_parse_strv (context, &owned, &error))
     return complain (BAD_USAGE, "%s", error->message);
   if (version) {
@@ -51,6 +152,16 @@ tool_main (const gchar * name, const gchar * summary,
     return DONE;
   }
   return run (arguments);
+}
+
+/* A program of one command: see tool_main_commands(). */
+gint
+tool_main (const gchar * name, const gchar * summary,
+    const GOptionEntry * entries, gchar ** words,
+    gint (*run) (gconstpointer arguments), gconstpointer arguments)
+{
+  return tool_main_commands (name, summary, NULL, entries, words, run,
+      arguments);
 }
 
 /* Says on the error stream what is wrong. Returns @code. */

@@ -11,6 +11,20 @@ G_BEGIN_DECLS
 enum
 { DONE = 0, FAILED = 1, BAD_USAGE = 2 };
 
+/* @name: of the command; a table ends with %NULL
+ * @arguments: what follows it, for people
+ * @what: what it does, some sentences
+ * @example: command lines, each on a line of its own
+ */
+typedef struct
+{
+  const gchar *name, *arguments, *what, *example;
+} ToolCommand;
+
+gint tool_main_commands (const gchar * name, const gchar * summary,
+    const ToolCommand * commands, const GOptionEntry * entries,
+    gchar ** words, gint (*run) (gconstpointer arguments),
+    gconstpointer arguments);
 gint tool_main (const gchar * name, const gchar * summary,
     const GOptionEntry * entries, gchar ** words,
     gint (*run) (gconstpointer arguments), gconstpointer arguments);

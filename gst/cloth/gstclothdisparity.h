@@ -25,7 +25,24 @@ G_BEGIN_DECLS
  */
 #define GST_CLOTH_MAX_DISPARITY_AREA (4096 * 4096)
 
+/**
+ * GstClothDisparity:
+ *
+ * Of each pixel of a stereo head's picture its disparity, and how it came to it. Counted by
+ * reference, immutable.
+ *
+ * Since: 0.1
+ */
 typedef struct _GstClothDisparity GstClothDisparity;
+
+/**
+ * GstClothStereo:
+ *
+ * What turns the disparities of a stereo head into points: its cameras' places and rays. All
+ * pictures of a head share one. Counted by reference, immutable.
+ *
+ * Since: 0.1
+ */
 typedef struct _GstClothStereo GstClothStereo;
 typedef struct _GstClothDisparityMeta GstClothDisparityMeta;
 

@@ -38,6 +38,8 @@ gst_cloth_dot_copy (const GstClothDot * dot)
  * gst_cloth_dot_free:
  * @dot: (transfer full): a dot
  *
+ * Frees a copy.
+ *
  * Since: 0.1
  */
 void

@@ -16,6 +16,13 @@ G_BEGIN_DECLS
  */
 #define GST_CLOTH_DOT_MAX_COLOURS 8
 
+/**
+ * GstClothDots:
+ *
+ * The coloured dots of one picture. Counted by reference, immutable.
+ *
+ * Since: 0.1
+ */
 typedef struct _GstClothDots GstClothDots;
 typedef struct _GstClothDot GstClothDot;
 typedef struct _GstClothDotsMeta GstClothDotsMeta;

@@ -7,6 +7,14 @@
 
 G_BEGIN_DECLS
 
+/**
+ * GstClothGap:
+ *
+ * Of each vertex of a mesh recorded minus simulated position, and the standard deviation of
+ * what was recorded. Counted by reference, immutable.
+ *
+ * Since: 0.1
+ */
 typedef struct _GstClothGap GstClothGap;
 typedef struct _GstClothGapMeta GstClothGapMeta;
 

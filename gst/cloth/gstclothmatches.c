@@ -45,6 +45,8 @@ gst_cloth_match_copy (const GstClothMatch * match)
  * gst_cloth_match_free:
  * @match: (transfer full): a match
  *
+ * Frees a copy.
+ *
  * Since: 0.1
  */
 void
@@ -70,6 +72,8 @@ gst_cloth_grid_point_copy (const GstClothGridPoint * point)
 /**
  * gst_cloth_grid_point_free:
  * @point: (transfer full): a point
+ *
+ * Frees a copy.
  *
  * Since: 0.1
  */

@@ -7,6 +7,14 @@
 
 G_BEGIN_DECLS
 
+/**
+ * GstClothMatches:
+ *
+ * The features of one picture and the places of the print that they show, and the vertices of
+ * the pattern's grid. Counted by reference, immutable.
+ *
+ * Since: 0.1
+ */
 typedef struct _GstClothMatches GstClothMatches;
 typedef struct _GstClothMatch GstClothMatch;
 typedef struct _GstClothGridPoint GstClothGridPoint;

@@ -246,6 +246,32 @@ gst_cloth_mesh_get_positions (const GstClothMesh * mesh, guint * n_floats)
   return mesh->positions;
 }
 
+static void
+mesh_release (gpointer mesh)
+{
+  gst_cloth_mesh_unref (mesh);
+}
+
+/**
+ * gst_cloth_mesh_get_points:
+ * @mesh: a mesh
+ *
+ * The positions for languages whose lists of numbers are slow. Nothing is copied: the bytes are
+ * those of @mesh, which they keep alive.
+ *
+ * Returns: (transfer full): float32 [vertices][3]: x, y, z of each vertex, metres, world
+ *   frame; all three NaN when unseen
+ *
+ * Since: 0.2
+ */
+GBytes *
+gst_cloth_mesh_get_points (GstClothMesh * mesh)
+{
+  return g_bytes_new_with_free_func (mesh->positions,
+      3 * sizeof (gfloat) * (gsize) mesh->n_vertices, mesh_release,
+      gst_cloth_mesh_ref (mesh));
+}
+
 /**
  * gst_cloth_mesh_get_states:
  * @mesh: a mesh
@@ -283,13 +309,7 @@ gst_cloth_mesh_get_covariances (const GstClothMesh * mesh, guint * n_floats)
   return mesh->covariances;
 }
 
-#if G_BYTE_ORDER == G_LITTLE_ENDIAN
-static void
-mesh_release (gpointer mesh)
-{
-  gst_cloth_mesh_unref (mesh);
-}
-#else
+#if G_BYTE_ORDER != G_LITTLE_ENDIAN
 static GstBuffer *
 mesh_to_swapped_buffer (const GstClothMesh * mesh)
 {

@@ -10,6 +10,8 @@ G_BEGIN_DECLS
 /**
  * GST_CLOTH_MESH_MEDIA_TYPE:
  *
+ * Media type of a mesh stream, in its caps.
+ *
  * Since: 0.1
  */
 #define GST_CLOTH_MESH_MEDIA_TYPE "application/x-cloth-mesh"
@@ -33,7 +35,24 @@ G_BEGIN_DECLS
  */
 #define GST_CLOTH_NO_VERTEX ((guint32) 0xffffffff)
 
+/**
+ * GstClothTopology:
+ *
+ * What stays the same over a mesh stream: faces, and where each vertex lies on the flat cloth.
+ * Counted by reference, immutable.
+ *
+ * Since: 0.1
+ */
 typedef struct _GstClothTopology GstClothTopology;
+
+/**
+ * GstClothMesh:
+ *
+ * One frame of a mesh stream: a position, a state and perhaps a covariance of each vertex of a
+ * #GstClothTopology. Counted by reference, immutable.
+ *
+ * Since: 0.1
+ */
 typedef struct _GstClothMesh GstClothMesh;
 
 /**
@@ -94,6 +113,7 @@ GST_CLOTH_API void gst_cloth_mesh_unref (GstClothMesh * mesh);
 GST_CLOTH_API guint64 gst_cloth_mesh_get_sequence (const GstClothMesh * mesh);
 GST_CLOTH_API guint gst_cloth_mesh_get_n_vertices (const GstClothMesh * mesh);
 GST_CLOTH_API const gfloat *gst_cloth_mesh_get_positions (const GstClothMesh * mesh, guint * n_floats);
+GST_CLOTH_API GBytes *gst_cloth_mesh_get_points (GstClothMesh * mesh);
 GST_CLOTH_API const guint8 *gst_cloth_mesh_get_states (const GstClothMesh * mesh, guint * n_states);
 GST_CLOTH_API const gfloat *gst_cloth_mesh_get_covariances (const GstClothMesh * mesh, guint * n_floats);
 GST_CLOTH_API GstBuffer *gst_cloth_mesh_to_buffer (const GstClothMesh * mesh);

@@ -11,6 +11,8 @@ G_BEGIN_DECLS
 /**
  * GST_CLOTH_OBSERVATIONS_MEDIA_TYPE:
  *
+ * Media type of an observation stream, in its caps.
+ *
  * Since: 0.1
  */
 #define GST_CLOTH_OBSERVATIONS_MEDIA_TYPE "application/x-cloth-observations"

@@ -37,6 +37,8 @@ gst_cloth_quad_copy (const GstClothQuad * quad)
  * gst_cloth_quad_free:
  * @quad: (transfer full): a quad
  *
+ * Frees a copy.
+ *
  * Since: 0.1
  */
 void

@@ -7,6 +7,13 @@
 
 G_BEGIN_DECLS
 
+/**
+ * GstClothQuads:
+ *
+ * The squares of a board in one picture. Counted by reference, immutable.
+ *
+ * Since: 0.1
+ */
 typedef struct _GstClothQuads GstClothQuads;
 typedef struct _GstClothQuad GstClothQuad;
 typedef struct _GstClothQuadsMeta GstClothQuadsMeta;

@@ -44,6 +44,8 @@ gst_cloth_saddle_copy (const GstClothSaddle * saddle)
  * gst_cloth_saddle_free:
  * @saddle: (transfer full): a saddle
  *
+ * Frees a copy.
+ *
  * Since: 0.1
  */
 void
@@ -69,6 +71,8 @@ gst_cloth_candidate_copy (const GstClothCandidate * candidate)
 /**
  * gst_cloth_candidate_free:
  * @candidate: (transfer full): a candidate
+ *
+ * Frees a copy.
  *
  * Since: 0.1
  */

@@ -7,6 +7,14 @@
 
 G_BEGIN_DECLS
 
+/**
+ * GstClothSaddles:
+ *
+ * The corners of checkerboards in one picture, and the candidates for them. Counted by
+ * reference, immutable.
+ *
+ * Since: 0.1
+ */
 typedef struct _GstClothSaddles GstClothSaddles;
 typedef struct _GstClothSaddle GstClothSaddle;
 typedef struct _GstClothCandidate GstClothCandidate;

@@ -37,6 +37,8 @@ gst_cloth_run_copy (const GstClothRun * run)
  * gst_cloth_run_free:
  * @run: (transfer full): a run
  *
+ * Frees a copy.
+ *
  * Since: 0.1
  */
 void

@@ -7,6 +7,13 @@
 
 G_BEGIN_DECLS
 
+/**
+ * GstClothSilhouette:
+ *
+ * Which pixels of one picture are cloth, as runs of its rows. Counted by reference, immutable.
+ *
+ * Since: 0.1
+ */
 typedef struct _GstClothSilhouette GstClothSilhouette;
 typedef struct _GstClothRun GstClothRun;
 typedef struct _GstClothSilhouetteMeta GstClothSilhouetteMeta;

@@ -25,6 +25,14 @@ G_BEGIN_DECLS
  */
 #define GST_CLOTH_MAX_UV_AREA (4096 * 4096)
 
+/**
+ * GstClothUV:
+ *
+ * Of each pixel of a camera's picture which place of the flat cloth it shows. Counted by
+ * reference, immutable.
+ *
+ * Since: 0.1
+ */
 typedef struct _GstClothUV GstClothUV;
 typedef struct _GstClothUVMeta GstClothUVMeta;
 

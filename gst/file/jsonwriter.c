@@ -12,6 +12,7 @@ struct _ClothJsonWriter
   guint depth;
   gboolean first;               /* nothing yet in this object or list */
   gboolean exact;
+  gboolean one_line;
 };
 
 static void
@@ -57,14 +58,22 @@ add_number (ClothJsonWriter * writer, gdouble value)
 }
 
 static void
+break_line (ClothJsonWriter * writer)
+{
+  if (writer->one_line)
+    return;
+  g_string_append_c (writer->text, '\n');
+  for (guint i = 0; i < writer->depth; i++)
+    g_string_append (writer->text, "  ");
+}
+
+static void
 start_item (ClothJsonWriter * writer, const gchar * key)
 {
   if (!writer->first)
-    g_string_append_c (writer->text, ',');
+    g_string_append (writer->text, writer->one_line ? ", " : ",");
   if (writer->text->len > 0)
-    g_string_append_c (writer->text, '\n');
-  for (guint i = 0; i < writer->depth; i++)
-    g_string_append (writer->text, "  ");
+    break_line (writer);
   writer->first = FALSE;
   if (key) {
     add_quoted (writer->text, key);
@@ -85,11 +94,8 @@ static void
 end (ClothJsonWriter * writer, gchar bracket)
 {
   writer->depth--;
-  if (!writer->first) {
-    g_string_append_c (writer->text, '\n');
-    for (guint i = 0; i < writer->depth; i++)
-      g_string_append (writer->text, "  ");
-  }
+  if (!writer->first)
+    break_line (writer);
   g_string_append_c (writer->text, bracket);
   writer->first = FALSE;
 }
@@ -114,6 +120,16 @@ void
 cloth_json_writer_set_exact (ClothJsonWriter * writer)
 {
   writer->exact = TRUE;
+}
+
+/* @writer: a writer
+ * @one_line: whether what is begun from now on stays on one line; what is ended with it must
+ *   have been begun with it
+ */
+void
+cloth_json_writer_set_one_line (ClothJsonWriter * writer, gboolean one_line)
+{
+  writer->one_line = one_line;
 }
 
 /* @writer: a writer

@@ -15,6 +15,8 @@ typedef struct _ClothJsonWriter ClothJsonWriter;
 
 ClothJsonWriter *cloth_json_writer_new (void);
 void cloth_json_writer_set_exact (ClothJsonWriter * writer);
+void cloth_json_writer_set_one_line (ClothJsonWriter * writer,
+    gboolean one_line);
 void cloth_json_writer_begin_object (ClothJsonWriter * writer,
     const gchar * key);
 void cloth_json_writer_end_object (ClothJsonWriter * writer);

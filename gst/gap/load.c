@@ -127,7 +127,7 @@ simulate_twins (ClothDiagnosis * d, GError ** error)
 
     if (i >= d->n_takes && i < d->n_takes + o->n_baselines)
       continue;
-    cloth_diagnosis_begin_part (d, 0., 0., 1., "your simulator");
+    cloth_diagnosis_begin_part (d, 0., 0., 1., "running your simulator");
     if (o->progress && !o->progress (o->progress_data, 0., d->what)) {
       g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_CANCELLED,
           "stopped");

@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "gst/file/json.h"
+#include "gst/file/jsonwriter.h"
 #include "gst/file/output.h"
 
 static gboolean
@@ -307,25 +308,16 @@ cloth_rig_load (const gchar * path, GError ** error)
   return rig;
 }
 
+/* On one line, as people write it. */
 static void
-add_list (JsonBuilder * b, const gchar * key, const gdouble * values, guint n)
+add_matrix (ClothJsonWriter * w, const gchar * key, const gdouble M[9])
 {
-  if (key)
-    json_builder_set_member_name (b, key);
-  json_builder_begin_array (b);
-  for (guint i = 0; i < n; i++)
-    json_builder_add_double_value (b, values[i]);
-  json_builder_end_array (b);
-}
-
-static void
-add_matrix (JsonBuilder * b, const gchar * key, const gdouble M[9])
-{
-  json_builder_set_member_name (b, key);
-  json_builder_begin_array (b);
+  cloth_json_writer_begin_array (w, key);
+  cloth_json_writer_set_one_line (w, TRUE);
   for (guint i = 0; i < 3; i++)
-    add_list (b, NULL, M + 3 * i, 3);
-  json_builder_end_array (b);
+    cloth_json_writer_numbers (w, NULL, M + 3 * i, 3);
+  cloth_json_writer_end_array (w);
+  cloth_json_writer_set_one_line (w, FALSE);
 }
 
 static gboolean
@@ -339,50 +331,39 @@ any_set (const gdouble * values, guint n)
 }
 
 static void
-add_camera (JsonBuilder * b, const ClothCamera * c)
+add_camera (ClothJsonWriter * w, const ClothCamera * c)
 {
-  guint n = cloth_lens_n_coefficients (c->lens);
+  const guint n = cloth_lens_n_coefficients (c->lens);
+  const gdouble size[2] = { c->width, c->height };
 
-  json_builder_begin_object (b);
-  json_builder_set_member_name (b, "name");
-  json_builder_add_string_value (b, c->name);
-  json_builder_set_member_name (b, "size");
-  json_builder_begin_array (b);
-  json_builder_add_int_value (b, c->width);
-  json_builder_add_int_value (b, c->height);
-  json_builder_end_array (b);
-  add_matrix (b, "K", c->K);
-  json_builder_set_member_name (b, "distortion");
-  json_builder_begin_object (b);
-  json_builder_set_member_name (b, "model");
-  json_builder_add_string_value (b, cloth_lens_to_string (c->lens));
-  add_list (b, "coefficients", c->k, n);
-  json_builder_end_object (b);
-  add_matrix (b, "R", c->R);
-  add_list (b, "t", c->t, 3);
-  if (c->device) {
-    json_builder_set_member_name (b, "device");
-    json_builder_add_string_value (b, c->device);
-  }
-  if (c->rolling_shutter_s != 0) {
-    json_builder_set_member_name (b, "rolling_shutter_s");
-    json_builder_add_double_value (b, c->rolling_shutter_s);
-  }
-  if (c->offset_s != 0) {
-    json_builder_set_member_name (b, "offset_s");
-    json_builder_add_double_value (b, c->offset_s);
-  }
+  cloth_json_writer_begin_object (w, NULL);
+  cloth_json_writer_string (w, "name", c->name);
+  cloth_json_writer_numbers (w, "size", size, 2);
+  add_matrix (w, "K", c->K);
+  cloth_json_writer_begin_object (w, "distortion");
+  cloth_json_writer_set_one_line (w, TRUE);
+  cloth_json_writer_string (w, "model", cloth_lens_to_string (c->lens));
+  cloth_json_writer_numbers (w, "coefficients", c->k, n);
+  cloth_json_writer_end_object (w);
+  cloth_json_writer_set_one_line (w, FALSE);
+  add_matrix (w, "R", c->R);
+  cloth_json_writer_numbers (w, "t", c->t, 3);
+  if (c->device)
+    cloth_json_writer_string (w, "device", c->device);
+  if (c->rolling_shutter_s != 0)
+    cloth_json_writer_number (w, "rolling_shutter_s", c->rolling_shutter_s);
+  if (c->offset_s != 0)
+    cloth_json_writer_number (w, "offset_s", c->offset_s);
   if (any_set (c->K_sd, 4) || any_set (c->k_sd, n) || any_set (c->r_sd, 3)
       || any_set (c->t_sd, 3)) {
-    json_builder_set_member_name (b, "standard_deviations");
-    json_builder_begin_object (b);
-    add_list (b, "K", c->K_sd, 4);
-    add_list (b, "distortion", c->k_sd, n);
-    add_list (b, "rotation", c->r_sd, 3);
-    add_list (b, "t", c->t_sd, 3);
-    json_builder_end_object (b);
+    cloth_json_writer_begin_object (w, "standard_deviations");
+    cloth_json_writer_numbers (w, "K", c->K_sd, 4);
+    cloth_json_writer_numbers (w, "distortion", c->k_sd, n);
+    cloth_json_writer_numbers (w, "rotation", c->r_sd, 3);
+    cloth_json_writer_numbers (w, "t", c->t_sd, 3);
+    cloth_json_writer_end_object (w);
   }
-  json_builder_end_object (b);
+  cloth_json_writer_end_object (w);
 }
 
 /* @rig: a rig that passes cloth_rig_check()
@@ -396,30 +377,23 @@ add_camera (JsonBuilder * b, const ClothCamera * c)
 gboolean
 cloth_rig_save (const ClothRig * rig, const gchar * path, GError ** error)
 {
-  g_autoptr (JsonBuilder) b = NULL;
-  g_autoptr (JsonGenerator) generator = NULL;
-  g_autoptr (JsonNode) root = NULL;
-  g_autofree gchar *text = NULL, *line = NULL;
+  ClothJsonWriter *w;
+  g_autofree gchar *text = NULL;
 
   if (!cloth_rig_check (rig, error)) {
     g_prefix_error (error, "%s: not written: ", path);
     return FALSE;
   }
-  b = json_builder_new ();
-  json_builder_begin_object (b);
-  json_builder_set_member_name (b, "version");
-  json_builder_add_int_value (b, 1);
-  json_builder_set_member_name (b, "cameras");
-  json_builder_begin_array (b);
+  w = cloth_json_writer_new ();
+  cloth_json_writer_set_exact (w);
+  cloth_json_writer_begin_object (w, NULL);
+  cloth_json_writer_count (w, "version", 1);
+  cloth_json_writer_begin_array (w, "cameras");
   for (guint i = 0; i < rig->n_cameras; i++)
-    add_camera (b, &rig->cameras[i]);
-  json_builder_end_array (b);
-  json_builder_end_object (b);
-  root = json_builder_get_root (b);
-  generator = json_generator_new ();
-  json_generator_set_pretty (generator, TRUE);
-  json_generator_set_root (generator, root);
-  text = json_generator_to_data (generator, NULL);
-  line = g_strconcat (text, "\n", NULL);
-  return cloth_file_write_text (path, line, error);
+    add_camera (w, &rig->cameras[i]);
+  cloth_json_writer_end_array (w);
+  cloth_json_writer_end_object (w);
+  text = cloth_json_writer_finish (w);
+  cloth_json_writer_free (w);
+  return cloth_file_write_text (path, text, error);
 }

@@ -478,60 +478,14 @@ cloth_mesh_reader_free (ClothMeshReader * reader)
 
 /* Writing */
 
-/* A grid is told by its sizes, if take.json may have them and they give the very same uv and
- * faces. */
-static gboolean
-is_grid (const ClothTopology * topology)
-{
-  g_autoptr (ClothTopology) grid = NULL;
-  const gfloat *last = topology->uv + 2 * (gsize) (topology->n_vertices - 1);
-
-  if (topology->columns < 2 || topology->rows < 2 ||
-      MIN (last[0], last[1]) < 1e-6f || MAX (last[0], last[1]) > 1e6f)
-    return FALSE;
-  grid = cloth_topology_new_grid (topology->columns, topology->rows, last[0],
-      last[1]);
-  return cloth_topology_equal (grid, topology);
-}
-
-/* The shortest number that is this float32: 0.63, not 0.629999995. */
-static gdouble
-shortest (gfloat value)
-{
-  gdouble number;
-  volatile gfloat narrowed;
-  gint digits = 0;
-
-  /* Nine digits are enough for any. */
-  do {
-    gchar format[8], text[G_ASCII_DTOSTR_BUF_SIZE];
-
-    g_snprintf (format, sizeof format, "%%.%dg", ++digits);
-    number = g_ascii_strtod (g_ascii_formatd (text, sizeof text, format, value),
-        NULL);
-    narrowed = (gfloat) number;
-  } while (narrowed != value);
-  return number;
-}
-
 static gpointer
 start_take (const ClothExportInfo * export, GError ** error)
 {
   g_autoptr (ClothTakeInfo) info = cloth_take_info_new (export->name);
-  const ClothTopology *topology = export->topology;
 
   info->fps = export->fps_n > 0 ? (gdouble) export->fps_n / export->fps_d : 0;
-  if (is_grid (topology)) {
-    const gfloat *last = topology->uv + 2 * (gsize) (topology->n_vertices - 1);
-
-    info->columns = topology->columns;
-    info->rows = topology->rows;
-    info->width_m = shortest (last[0]);
-    info->height_m = shortest (last[1]);
-  } else {
-    info->mesh = g_strdup ("mesh.obj");
-  }
-  return cloth_take_writer_new (export->stem, info, topology, error);
+  cloth_take_info_set_mesh (info, export->topology);
+  return cloth_take_writer_new (export->stem, info, export->topology, error);
 }
 
 static gboolean

@@ -365,6 +365,62 @@ cloth_take_info_parse (const gchar * json, gsize size, GError ** error)
   return g_steal_pointer (&info);
 }
 
+/* A grid is told by its sizes, if take.json may have them and they give the very same uv and
+ * faces. */
+static gboolean
+is_grid (const ClothTopology * topology)
+{
+  g_autoptr (ClothTopology) grid = NULL;
+  const gfloat *last = topology->uv + 2 * (gsize) (topology->n_vertices - 1);
+
+  if (topology->columns < 2 || topology->rows < 2 ||
+      MIN (last[0], last[1]) < 1e-6f || MAX (last[0], last[1]) > 1e6f)
+    return FALSE;
+  grid = cloth_topology_new_grid (topology->columns, topology->rows, last[0],
+      last[1]);
+  return cloth_topology_equal (grid, topology);
+}
+
+/* The shortest number that is this float32: 0.63, not 0.629999995. */
+static gdouble
+shortest (gfloat value)
+{
+  gdouble number;
+  volatile gfloat narrowed;
+  gint digits = 0;
+
+  /* Nine digits are enough for any. */
+  do {
+    gchar format[8], text[G_ASCII_DTOSTR_BUF_SIZE];
+
+    g_snprintf (format, sizeof format, "%%.%dg", ++digits);
+    number = g_ascii_strtod (g_ascii_formatd (text, sizeof text, format, value),
+        NULL);
+    narrowed = (gfloat) number;
+  } while (narrowed != value);
+  return number;
+}
+
+/* @info: a description
+ * @topology: the mesh of the take
+ *
+ * Sets the grid, or, where the mesh is none, the name of the file that shall hold it.
+ */
+void
+cloth_take_info_set_mesh (ClothTakeInfo * info, const ClothTopology * topology)
+{
+  if (is_grid (topology)) {
+    const gfloat *last = topology->uv + 2 * (gsize) (topology->n_vertices - 1);
+
+    info->columns = topology->columns;
+    info->rows = topology->rows;
+    info->width_m = shortest (last[0]);
+    info->height_m = shortest (last[1]);
+  } else {
+    info->mesh = g_strdup ("mesh.obj");
+  }
+}
+
 static void
 add_obstacles (JsonBuilder * builder, const GArray * obstacles)
 {

@@ -53,6 +53,8 @@ typedef struct {
 ClothTakeInfo *cloth_take_info_new (const gchar * name);
 ClothTakeInfo *cloth_take_info_parse (const gchar * json, gsize size,
     GError ** error);
+void cloth_take_info_set_mesh (ClothTakeInfo * info,
+    const ClothTopology * topology);
 gchar *cloth_take_info_to_json (const ClothTakeInfo * info);
 ClothTakeInfo *cloth_take_info_copy (const ClothTakeInfo * info);
 void cloth_take_info_free (ClothTakeInfo * info);

@@ -460,6 +460,22 @@ test_mesh_zero_copy (void)
   gst_cloth_mesh_unref (read);
 }
 
+/* The bytes are those of the mesh, and keep it alive. */
+static void
+test_mesh_points (void)
+{
+  g_autoptr (GRand) rand = g_rand_new_with_seed (7);
+  GstClothMesh *mesh = random_mesh (rand, 100, TRUE);
+  const gfloat *positions = gst_cloth_mesh_get_positions (mesh, NULL);
+  g_autofree gfloat *copy = g_memdup2 (positions, 1200);
+  g_autoptr (GBytes) points = gst_cloth_mesh_get_points (mesh);
+  gsize size;
+
+  gst_cloth_mesh_unref (mesh);
+  g_assert_true (g_bytes_get_data (points, &size) == (gconstpointer) positions);
+  g_assert_cmpmem (g_bytes_get_data (points, NULL), size, copy, 1200);
+}
+
 /* A vertex is known in full or unseen. */
 static void
 test_mesh_settles_states (void)
@@ -567,6 +583,7 @@ main (int argc, char **argv)
   g_test_add_func ("/cloth/topology/caps", test_caps);
   g_test_add_func ("/cloth/topology/bad-caps", test_bad_caps);
   g_test_add_func ("/cloth/unreadable", test_unreadable);
+  g_test_add_func ("/cloth/mesh/points", test_mesh_points);
   g_test_add_func ("/cloth/topology/hostile", test_hostile_topology);
   g_test_add_func ("/cloth/topology/bad-values", test_bad_topology);
   g_test_add_func ("/cloth/mesh/bytes", test_mesh_bytes);

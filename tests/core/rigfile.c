@@ -116,6 +116,44 @@ test_save (void)
 }
 
 /* What only some cameras have is written when there is any of it. */
+/* The example of docs/formats.md is what the writer writes, and where it says the cameras are. */
+static void
+test_example (void)
+{
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *folder = g_dir_make_tmp ("cloth-rig-XXXXXX", NULL);
+  g_autofree gchar *path = g_build_filename (folder, "rig.json", NULL);
+  g_autofree gchar *page = NULL, *text = NULL;
+  g_autoptr (ClothRig) rig = NULL;
+  gchar *begin, *end;
+
+  g_assert_true (g_file_get_contents (TEST_DATA "/../../docs/formats.md", &page,
+          NULL, &error));
+  begin = strstr (strstr (page, "## rig.json"), "```json\n") + 8;
+  end = strstr (begin, "```");
+  *end = 0;
+  rig = cloth_rig_load_data (begin, strlen (begin), &error);
+  g_assert_no_error (error);
+  g_assert_true (cloth_rig_save (rig, path, &error));
+  g_assert_true (g_file_get_contents (path, &text, NULL, &error));
+  g_assert_cmpstr (text, ==, begin);
+  for (guint i = 0; i < 2; i++) {
+    const ClothCamera *c = &rig->cameras[i];
+    gdouble centre[3];
+
+    for (guint k = 0; k < 3; k++)
+      centre[k] = -(c->R[k] * c->t[0] + c->R[3 + k] * c->t[1] +
+          c->R[6 + k] * c->t[2]);
+    g_assert_cmpfloat_with_epsilon (centre[0], i == 0 ? -0.15 : 0.15, 1e-12);
+    g_assert_cmpfloat_with_epsilon (centre[1], -2, 1e-12);
+    g_assert_cmpfloat_with_epsilon (centre[2], 1.2, 1e-12);
+    /* the third row is where it looks */
+    g_assert_cmpfloat (c->R[7], ==, 1);
+  }
+  g_remove (path);
+  g_rmdir (folder);
+}
+
 static void
 test_save_some (void)
 {
@@ -394,6 +432,7 @@ main (int argc, char **argv)
   g_test_add_func ("/rigfile/load", test_load);
   g_test_add_func ("/rigfile/rendered", test_rendered);
   g_test_add_func ("/rigfile/save", test_save);
+  g_test_add_func ("/rigfile/example", test_example);
   g_test_add_func ("/rigfile/save-some", test_save_some);
   g_test_add_func ("/rigfile/no-lens", test_no_lens);
   g_test_add_func ("/rigfile/mend", test_mend);

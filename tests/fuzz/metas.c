@@ -274,7 +274,7 @@ LLVMFuzzerTestOneInput (const guint8 * data, gsize size)
   FuzzBytes bytes = { data, size };
 
   fuzz_elements_init ();
-  switch (fuzz_take_byte (&bytes) % 5) {
+  switch (fuzz_take_byte (&bytes) % 6) {
     case 0:
       feed_pictures ("clothoverlay draw-saddles=true draw-indices=true "
           "ellipse-scale=10", &bytes);
@@ -288,6 +288,9 @@ LLVMFuzzerTestOneInput (const guint8 * data, gsize size)
       break;
     case 3:
       feed_triangulate (&bytes);
+      break;
+    case 5:
+      feed_pictures ("clothjson", &bytes);
       break;
     default:
       feed_meshes (&bytes);

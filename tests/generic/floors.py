@@ -62,7 +62,7 @@ ROOMS = [
          {'': ['topology.h', 'hold.h', 'side.h', 'strain.h'], 'formats': ['formats.h'],
           'fill': ['fill.h'], 'garment': ['garment.h']},
          [[''], ['formats'], ['fill', 'garment']]),
-    Room('gst/take', 'recordings on disk', ['take.h', 'sequence.h', 'recover.h', 'measurement.h']),
+    Room('gst/take', 'recordings on disk', ['take.h', 'sequence.h', 'recover.h', 'measurement.h', 'import.h', 'summary.h']),
     Room('gst/render', 'pictures of a known cloth',
          ['render.h', 'surface.h', 'wireframe.h', 'paint.h', 'draw.h', 'caption.h', 'work.h']),
     Room('gst/cv', 'what OpenCV does', ['cv.h']),

@@ -137,6 +137,10 @@ def diagnose(folder):
         {'role': 'take', 'name': 'take_drag', 'sha256': sha256(drag)},
         {'role': 'model', 'name': 'model-knit.json', 'sha256': sha256(knit)}], str(gap['inputs']))
     told = [int(line.split('%')[0]) for line in done.stderr.splitlines() if '%' in line]
+    # in words that need no knowledge of how it works
+    for line in done.stderr.splitlines():
+        expect(re.fullmatch(r"\d+%( (checking|fitting|comparing|measuring|running|looking) [a-z' ]+)?",
+                            line), line)
     expect(told == sorted(told) and told[0] == 0 and len(told) <= 11 and '\r' not in done.stderr,
            'sparse progress: %s' % told)
     done = run(folder, 'simulate', 'deep/gap/fitted.json', '--scene', drag, '--output', 'better')

@@ -224,6 +224,17 @@ class Streams(unittest.TestCase):
         self.assertEqual(mesh.get_covariances()[:6], [1, 2, 3, 4, 5, 6])
         self.assertEqual(list(mesh.get_states()), [GstCloth.VertexState.MEASURED,
                                                    GstCloth.VertexState.UNSEEN])
+        points = numpy.frombuffer(mesh.get_points().get_data(), numpy.float32).reshape(2, 3)
+        self.assertEqual(points[0].tolist(), [1, 2, 3])
+        self.assertTrue(numpy.isnan(points[1]).all())
+        # Mapped, the array is in the mesh's own memory, which the bytes keep.
+        wrapped = [Gst.Buffer.new_wrapped_bytes(mesh.get_points()) for _ in range(2)]
+        with wrapped[0].map(Gst.MapFlags.READ) as one, wrapped[1].map(Gst.MapFlags.READ) as two:
+            views = [numpy.frombuffer(memory.data, numpy.float32) for memory in (one, two)]
+            self.assertEqual(views[0].ctypes.data, views[1].ctypes.data)
+            self.assertFalse(views[0].flags.writeable)
+            self.assertEqual(views[0][:3].tolist(), [1, 2, 3])
+            del views
         again = GstCloth.Mesh.new(77, mesh.get_positions(), mesh.get_states(),
                                   mesh.get_covariances()).to_buffer()
         # NaN may differ in its bits.

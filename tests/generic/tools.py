@@ -33,6 +33,21 @@ for tool in tools:
     done = run(tool, '--help')
     check(done.returncode == 0 and 'Usage:' in done.stdout, name + ' --help')
     options = sorted(set(re.findall(r'(?<![\w-])--[a-z][a-z-]+', done.stdout)))
+    # each command has a help of its own, with an example that it takes
+    commands = re.search(r'^Commands:\n((?:  .*\n)+)', done.stdout, re.M)
+    for command in [row.split()[0] for row in commands.group(1).splitlines()] if commands else []:
+        for asked in ([command, '--help'], ['-h', command, 'x']):
+            told = run(tool, *asked)
+            check(told.returncode == 0 and 'Usage:\n  %s [OPTION…] %s' % (name, command)
+                  in told.stdout, '%s %s' % (name, ' '.join(asked)))
+        example = told.stdout.partition('Example:\n')[2]
+        check('%s %s' % (name, command) in example, '%s %s: no example' % (name, command))
+        its = set(re.findall(r'(?<![\w-])--[a-z][a-z-]+', told.stdout.partition('Example:')[0]))
+        check(its <= set(options) | {'--help'}, '%s %s: %s' % (name, command, its - set(options)))
+        used = set(re.findall(r'(?<![\w-])--[a-z][a-z-]+', example))
+        check(used <= its, '%s %s: the example has %s' % (name, command, used - its))
+        check(not re.search(r'^ +(-\w, )?--\S+ +[a-z, -]+: ', told.stdout, re.M),
+              '%s %s: a description names commands' % (name, command))
     done = run(tool, '--version')
     check(done.returncode == 0 and version in done.stdout, name + ' --version')
     for wrong in (['--no-such-option'], []):

@@ -127,7 +127,8 @@ cloth_diagnosis_propose (ClothDiagnosis * d, GError ** error)
     /* cameras have theirs already */
     if (g_array_index (d->result->groups, ClothGapGroup, i).experiment)
       continue;
-    cloth_diagnosis_begin_part (d, d->from, 1., EACH, "what to film next");
+    cloth_diagnosis_begin_part (d, d->from, 1., EACH,
+        "looking what to film next");
     /* of a capture one sentence says it, however many simulations it took */
     d->study.rollout.failed = NULL;
     if (!propose_one (d, i, error))

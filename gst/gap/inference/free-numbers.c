@@ -120,7 +120,7 @@ cloth_diagnosis_fit_free (ClothDiagnosis * d, const ClothModel * model,
   gdouble squares[2];
   gboolean even;
 
-  cloth_diagnosis_begin_part (d, 0., 0.2, 0.2, "the model's free numbers");
+  cloth_diagnosis_begin_part (d, 0., 0.2, 0.2, "fitting the fabric's numbers");
   if (!m) {
     d->model = cloth_model_copy (model);
     return TRUE;

@@ -191,7 +191,7 @@ run_rounds (ClothDiagnosis * d, const ClothGapGathered * gathered,
   ClothEnsembleKin kin;
 
   cloth_gap_hypothesis_init (&base, d->candidates, NULL, NULL, 0);
-  cloth_diagnosis_begin_part (d, 0.3, 0.45, 0.1, "effects");
+  cloth_diagnosis_begin_part (d, 0.3, 0.45, 0.1, "comparing effects");
   if (!run_first (d, gathered, &base, hypotheses, last, &kin, error))
     return FALSE;
   *null = g_memdup2 (last->stack->z, last->stack->size * sizeof (gdouble));
@@ -209,7 +209,7 @@ run_rounds (ClothDiagnosis * d, const ClothGapGathered * gathered,
     cloth_gap_hypothesis_copy (&base, best);
     model = cloth_gap_hypothesis_make_model (d, &base);
     cloth_diagnosis_begin_part (d, 0.3 + 0.15 * i, 0.45 + 0.15 * i, 0.1,
-        "effects");
+        "comparing effects");
     /* where the likeliest set can't be linearised, what is known of it stands */
     if (!cloth_gap_gather_takes (d, gathered, model, &last->made, &next.made,
             &failed)
@@ -250,7 +250,7 @@ cloth_diagnosis_infer (ClothDiagnosis * d, GError ** error)
   gdouble unknown;
 
   cloth_diagnosis_begin_part (d, 0.2, 0.3, 0.2,
-      "what the model must agree with");
+      "comparing with the references");
   if (cloth_gap_gather_references (d, &gathered, &failed)
       && run_rounds (d, &gathered, hypotheses, &last, &null, &failed)
       && find_unknown (d, &last, null, hypotheses, &unknown, &failed)) {
@@ -266,7 +266,8 @@ cloth_diagnosis_infer (ClothDiagnosis * d, GError ** error)
     g_autoptr (ClothModel) start = cloth_gap_hypothesis_make_model (d,
         &g_array_index (hypotheses, ClothGapHypothesis, 0));
 
-    cloth_diagnosis_begin_part (d, 0.75, 0.85, 0.3, "the fit of what acts");
+    cloth_diagnosis_begin_part (d, 0.75, 0.85, 0.3,
+        "fitting the likeliest effects");
     if (!refit (d, start, &failed)
         && g_error_matches (failed, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL)) {
       g_clear_error (&failed);

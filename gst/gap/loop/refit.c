@@ -156,7 +156,7 @@ find_residual (Refit * r, guint i, const ClothRecording * twin,
   ClothModel *models[] = { d->with };
   gboolean sound;
 
-  cloth_diagnosis_begin_part (d, d->from, 1., 0.02, "your simulator");
+  cloth_diagnosis_begin_part (d, d->from, 1., 0.02, "running your simulator");
   if (!cloth_sensitivities_run (study, models, 1, &d->study, &own, &sound,
           error))
     return FALSE;
@@ -189,7 +189,7 @@ begin (Refit * r, GError ** error)
         cloth_sensitivities_new (cloth_diagnosis_recording (d, i), &d->study);
     const gsize size = study->features->size;
 
-    cloth_diagnosis_begin_part (d, d->from, 1., 0.1, "your simulator");
+    cloth_diagnosis_begin_part (d, d->from, 1., 0.1, "running your simulator");
     if (!cloth_sensitivities_linearise (study, d->candidates,
             d->with, r->directions, r->n_targets, &d->study, error))
       return FALSE;

@@ -197,7 +197,8 @@ cloth_diagnosis_test_agreement (ClothDiagnosis * d, GError ** error)
   a.s = g_new0 (gdouble, (gsize) (n_takes + 1) * a.n);
   a.changes = g_new0 (gdouble, (gsize) (n_takes + 1) * a.n);
   a.sigmas = g_new0 (gdouble, (gsize) (n_takes + 1) * a.n);
-  cloth_diagnosis_begin_part (d, 0.97, 0.99, 0.5, "whether the takes agree");
+  cloth_diagnosis_begin_part (d, 0.97, 0.99, 0.5,
+      "checking whether takes agree");
   for (guint i = 0; i < d->recordings->len; i++) {
     if (i >= d->n_takes && i < d->n_takes + d->options->n_baselines)
       continue;

@@ -104,8 +104,10 @@ measure_alternative (ClothDiagnosis * d, const Alternative * t,
   gdouble square = NAN;
 
   options.progress = may_continue;
-  cloth_diagnosis_begin_part (d, d->from, d->to, d->each, "another world");
-  gaps = cloth_windowed_gaps_new (&t->r, &model, 1,
+  cloth_diagnosis_begin_part (d, d->from, d->to, d->each,
+      "checking axes and units");
+  gaps =
+      cloth_windowed_gaps_new (&t->r, &model, 1,
       CLOTH_DIAGNOSIS_WINDOW_GAIN * faster * faster,
       CLOTH_DIAGNOSIS_WINDOW_S / faster, &options, NULL);
   d->study.simulations += 2;

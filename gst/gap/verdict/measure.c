@@ -664,7 +664,7 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
   g_array_set_clear_func (d->measured, measured_clear);
   g_array_set_size (d->measured, d->recordings->len + 1);
   find_measured (&w);
-  cloth_diagnosis_begin_part (d, 0.85, 1., 0.2, "the gap");
+  cloth_diagnosis_begin_part (d, 0.85, 1., 0.2, "measuring the gap");
   for (guint kind = 0; kind < N_KINDS; kind++) {
     w.baseline[kind].square = NAN;
     if (d->options->n_baselines && !d->twins->len

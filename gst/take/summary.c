@@ -1,0 +1,307 @@
+/* What a take holds, in a few lines for people.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/take/summary.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/math/statistics.h"
+
+/* Frame intervals that differ by less count as even. */
+#define EVEN 0.01
+
+/* What one pass over the frames tells.
+ *
+ * @n_measured, @n_estimated: vertices, filled or predicted ones apart
+ * @least, @least_frame: the frame in which the fewest were measured
+ * @lowest, @highest: of what was seen
+ * @stretches: (element-type gdouble): of each frame
+ * @clamps: of the last frame
+ * @lengths: of each clamp's path
+ * @distances: (element-type GArray): of each clamp, how far from its vertex it was
+ */
+typedef struct
+{
+  guint64 n_measured, n_estimated;
+  guint least, least_frame;
+  gdouble lowest[3], highest[3];
+  GArray *stretches;
+  gfloat *clamps, *before;
+  gdouble *lengths;
+  GPtrArray *distances;
+} Pass;
+
+/* Adds a line to a table: a label, and what @format says. */
+void
+cloth_summary_add (GString * table, const gchar * label,
+    const gchar * format, ...)
+{
+  va_list arguments;
+
+  g_string_append_printf (table, "%-10s  ", label);
+  va_start (arguments, format);
+  g_string_append_vprintf (table, format, arguments);
+  va_end (arguments);
+  g_string_append_c (table, '\n');
+}
+
+/* @topology: a mesh
+ * @positions: 3 numbers a vertex, NaN when not seen
+ * @scratch: (element-type gdouble): reused
+ *
+ * Returns: how long the sides of the faces are over their length on the flat cloth, in the
+ *   median; NaN when no side is seen or the mesh has no uv
+ */
+gdouble
+cloth_summary_stretch (const ClothTopology * topology,
+    const gfloat * positions, GArray * scratch)
+{
+  g_array_set_size (scratch, 0);
+  for (gsize i = 0; i < topology->n_faces; i++) {
+    const guint32 *face = topology->faces + 4 * i;
+    const guint n = cloth_face_corners (face);
+
+    for (guint k = 0; k < n; k++) {
+      const gsize a = face[k], b = face[(k + 1) % n];
+      const gfloat *p = positions + 3 * a, *q = positions + 3 * b;
+      const gfloat *u = topology->uv + 2 * a, *v = topology->uv + 2 * b;
+      const gdouble flat = hypot ((gdouble) u[0] - v[0], (gdouble) u[1] - v[1]);
+      const gdouble stretch = hypot (hypot ((gdouble) p[0] - q[0],
+              (gdouble) p[1] - q[1]), (gdouble) p[2] - q[2]) / flat;
+
+      if (isfinite (stretch))
+        g_array_append_val (scratch, stretch);
+    }
+  }
+  return scratch->len == 0 ? NAN :
+      cloth_median ((gdouble *) (gpointer) scratch->data, scratch->len);
+}
+
+/* ---- one pass over the frames ---- */
+
+static void
+look_at_vertices (Pass * pass, guint frame, const gfloat * positions,
+    const guint8 * states, guint n_vertices)
+{
+  guint n = 0;
+
+  for (gsize i = 0; i < n_vertices; i++) {
+    if (isnan (positions[3 * i]))
+      continue;
+    if (states[i] == CLOTH_VERTEX_FILLED || states[i] == CLOTH_VERTEX_PREDICTED)
+      pass->n_estimated++;
+    else
+      n++;
+    for (guint k = 0; k < 3; k++) {
+      pass->lowest[k] = MIN (pass->lowest[k], positions[3 * i + k]);
+      pass->highest[k] = MAX (pass->highest[k], positions[3 * i + k]);
+    }
+  }
+  if (frame == 0 || n < pass->least) {
+    pass->least = n;
+    pass->least_frame = frame;
+  }
+  pass->n_measured += n;
+}
+
+static gdouble
+distance (const gfloat * a, const gfloat * b)
+{
+  return hypot (hypot ((gdouble) a[0] - b[0], (gdouble) a[1] - b[1]),
+      (gdouble) a[2] - b[2]);
+}
+
+static void
+look_at_clamps (Pass * pass, const ClothTakeInfo * info,
+    const gfloat * positions)
+{
+  for (guint i = 0; i < info->held->len; i++) {
+    const gfloat *vertex = positions +
+        3 * (gsize) g_array_index (info->held, ClothHeld, i).vertex;
+    const gdouble moved = distance (pass->clamps + 3 * i, pass->before + 3 * i);
+    const gdouble away = distance (pass->clamps + 3 * i, vertex);
+
+    if (isfinite (moved))
+      pass->lengths[i] += moved;
+    if (isfinite (away))
+      g_array_append_val ((GArray *) pass->distances->pdata[i], away);
+  }
+  memcpy (pass->before, pass->clamps,
+      3 * (gsize) info->held->len * sizeof *pass->before);
+}
+
+static gboolean
+look (ClothTake * take, Pass * pass, GError ** error)
+{
+  const ClothTopology *topology = cloth_take_get_topology (take);
+  const ClothTakeInfo *info = cloth_take_get_info (take);
+  const gsize n = topology->n_vertices;
+  g_autofree gfloat *positions = g_new (gfloat, 3 * n);
+  g_autofree guint8 *states = g_new (guint8, n);
+  g_autoptr (GArray) scratch = g_array_new (FALSE, FALSE, sizeof (gdouble));
+
+  for (guint i = 0; i < cloth_take_get_n_frames (take); i++) {
+    gdouble stretch;
+
+    if (!cloth_take_read_positions (take, i, positions, error) ||
+        !cloth_take_read_states (take, i, positions, states, error))
+      return FALSE;
+    look_at_vertices (pass, i, positions, states, (guint) n);
+    stretch = cloth_summary_stretch (topology, positions, scratch);
+    if (isfinite (stretch))
+      g_array_append_val (pass->stretches, stretch);
+    if (!cloth_take_has_clamps (take))
+      continue;
+    if (!cloth_take_read_clamps (take, i, pass->clamps, error))
+      return FALSE;
+    if (i == 0)
+      memcpy (pass->before, pass->clamps,
+          3 * (gsize) info->held->len * sizeof *pass->before);
+    look_at_clamps (pass, info, positions);
+  }
+  return TRUE;
+}
+
+/* ---- the lines ---- */
+
+static void
+add_rate (GString * table, const ClothTake * take)
+{
+  const guint n = cloth_take_get_n_frames (take);
+  const gdouble first = cloth_take_get_time (take, 0);
+  const gdouble last = cloth_take_get_time (take, n - 1);
+  g_autofree gdouble *steps = g_new (gdouble, n);
+  gdouble least = INFINITY, most = 0, median;
+
+  cloth_summary_add (table, "frames", "%u", n);
+  if (n < 2) {
+    cloth_summary_add (table, "time", "%.6g s", first);
+    return;
+  }
+  for (guint i = 0; i + 1 < n; i++) {
+    steps[i] = cloth_take_get_time (take, i + 1) - cloth_take_get_time (take,
+        i);
+    least = MIN (least, steps[i]);
+    most = MAX (most, steps[i]);
+  }
+  median = cloth_median (steps, n - 1);
+  if (most - least < EVEN * median)
+    cloth_summary_add (table, "rate", "%.4g a second, even",
+        (n - 1) / (last - first));
+  else
+    cloth_summary_add (table, "rate",
+        "%.4g a second in the median; frames are %.3g to %.3g s apart",
+        1 / median, least, most);
+  cloth_summary_add (table, "duration", "%.6g s, from %.6g to %.6g s",
+      last - first, first, last);
+}
+
+static void
+add_mesh (GString * table, const ClothTake * take)
+{
+  const ClothTakeInfo *info = cloth_take_get_info (take);
+  const ClothTopology *topology = cloth_take_get_topology (take);
+
+  if (info->mesh)
+    cloth_summary_add (table, "vertices", "%u, a mesh of %u faces (%s)",
+        topology->n_vertices, topology->n_faces, info->mesh);
+  else
+    cloth_summary_add (table, "vertices",
+        "%u, a grid of %u columns and %u rows, %.4g m wide and %.4g m high",
+        topology->n_vertices, info->columns, info->rows, info->width_m,
+        info->height_m);
+}
+
+static void
+add_seen (GString * table, const ClothTake * take, const Pass * pass)
+{
+  const guint n_vertices = cloth_take_get_topology (take)->n_vertices;
+  const gdouble n = (gdouble) n_vertices * cloth_take_get_n_frames (take);
+
+  if (pass->lowest[0] <= pass->highest[0])
+    cloth_summary_add (table, "extent",
+        "x %.3f to %.3f m, y %.3f to %.3f m, z %.3f to %.3f m",
+        pass->lowest[0], pass->highest[0], pass->lowest[1], pass->highest[1],
+        pass->lowest[2], pass->highest[2]);
+  cloth_summary_add (table, "seen", "%.1f %%, the least %.1f %% in frame %u",
+      100 * (gdouble) pass->n_measured / n, 100. * pass->least / n_vertices,
+      pass->least_frame);
+  if (pass->n_estimated > 0)
+    cloth_summary_add (table, "filled", "%.1f %%, estimated and not seen",
+        100 * (gdouble) pass->n_estimated / n);
+  if (pass->stretches->len > 0)
+    cloth_summary_add (table, "stretch",
+        "neighbours are %.3f times as far apart as on the flat cloth, in the "
+        "median", cloth_median ((gdouble *) (gpointer) pass->stretches->data,
+            pass->stretches->len));
+}
+
+static void
+add_clamps (GString * table, const ClothTake * take, const Pass * pass)
+{
+  const GArray *held = cloth_take_get_info (take)->held;
+
+  if (held->len == 0)
+    cloth_summary_add (table, "clamps", "none");
+  for (guint i = 0; i < held->len; i++) {
+    const ClothHeld *item = &g_array_index (held, ClothHeld, i);
+    const GArray *away = pass->distances->pdata[i];
+    g_autoptr (GString) text = g_string_new (NULL);
+
+    g_string_append_printf (text, "vertex %u", item->vertex);
+    if (isfinite (item->from_s))
+      g_string_append_printf (text, ", held from %.4g s", item->from_s);
+    if (isfinite (item->until_s))
+      g_string_append_printf (text, ", let go at %.4g s", item->until_s);
+    if (cloth_take_has_clamps (take))
+      g_string_append_printf (text, ", path %.3f m long", pass->lengths[i]);
+    if (away->len > 0)
+      g_string_append_printf (text, ", %.1f mm from its vertex in the median",
+          1000 * cloth_median ((gdouble *) (gpointer) away->data, away->len));
+    cloth_summary_add (table, i == 0 ? "clamps" : "", "%s", text->str);
+  }
+}
+
+static void
+free_distances (gpointer data)
+{
+  g_array_unref (data);
+}
+
+/* @take: a take
+ * @error: #ClothFileError, #GIOErrorEnum
+ *
+ * Reads every frame once.
+ *
+ * Returns: (transfer full): a table of frames, rate, vertices, extent, what was seen and what
+ *   clamps hold, or %NULL
+ */
+gchar *
+cloth_take_summarise (ClothTake * take, GError ** error)
+{
+  const gsize n_held = cloth_take_get_info (take)->held->len;
+  g_autoptr (GString) table = g_string_new (NULL);
+  g_autoptr (GArray) stretches = g_array_new (FALSE, FALSE, sizeof (gdouble));
+  g_autoptr (GPtrArray) distances =
+      g_ptr_array_new_with_free_func (free_distances);
+  g_autofree gfloat *clamps = g_new0 (gfloat, 6 * n_held);
+  g_autofree gdouble *lengths = g_new0 (gdouble, n_held);
+  Pass pass = {
+    .lowest = {INFINITY, INFINITY, INFINITY},
+    .highest = {-INFINITY, -INFINITY, -INFINITY},
+    .stretches = stretches,.distances = distances,.lengths = lengths,
+    .clamps = clamps,.before = clamps + 3 * n_held
+  };
+
+  for (gsize i = 0; i < n_held; i++)
+    g_ptr_array_add (distances, g_array_new (FALSE, FALSE, sizeof (gdouble)));
+  if (!look (take, &pass, error))
+    return NULL;
+  cloth_summary_add (table, "take", "%s", cloth_take_get_folder (take));
+  add_rate (table, take);
+  add_mesh (table, take);
+  add_seen (table, take, &pass);
+  add_clamps (table, take, &pass);
+  return g_string_free (g_steal_pointer (&table), FALSE);
+}

@@ -1,0 +1,16 @@
+/* What a take holds, in a few lines for people.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/take/take.h"
+
+G_BEGIN_DECLS
+
+void cloth_summary_add (GString * table, const gchar * label,
+    const gchar * format, ...) G_GNUC_PRINTF (3, 4);
+gdouble cloth_summary_stretch (const ClothTopology * topology,
+    const gfloat * positions, GArray * scratch);
+gchar *cloth_take_summarise (ClothTake * take, GError ** error);
+
+G_END_DECLS
