@@ -57,7 +57,7 @@ with tempfile.TemporaryDirectory() as dest:
     program = os.path.join(dest, 'program')
     compiler = shlex.split(os.environ.get('CC', 'cc'))
     run(compiler + ['-Wall', '-Wextra', '-Werror', PROGRAM, '-o', program] + flags, env=env)
-    for name in ('calibrate', 'gap', 'pattern', 'take'):
+    for name in ('calibrate', 'gap', 'pattern', 'take', 'view'):
         only(dest + '/**/bash-completion/completions/gst-cloth-%s-1.0' % name)
     if 'meshsrc' not in run(['gst-inspect-1.0', plugin], env=env):
         sys.exit('the installed plugin has no elements')

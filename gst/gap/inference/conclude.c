@@ -248,22 +248,44 @@ find_effect (ClothGapResult * result, const ClothEffect * effect)
   return NULL;
 }
 
-/* Effects that the listed explanations don't agree on can't be told apart. */
+/* Whether a listed set has all effects of another. */
+static gboolean
+has_all (const ClothGapSet * set, const ClothGapSet * part)
+{
+  for (guint i = 0; i < part->effects->len; i++)
+    if (!g_ptr_array_find (set->effects, g_ptr_array_index (part->effects, i),
+            NULL))
+      return FALSE;
+  return TRUE;
+}
+
+/* Effects that can't be told apart: those of the likeliest set that other listed ones do without, and what
+ * these have instead. A set that only adds to the likeliest one contradicts nothing. */
 static void
 fill_group (ClothDiagnosis * d)
 {
   GArray *sets = d->result->sets, *effects = d->result->effects;
+  const ClothGapSet *best;
   guint n = 0;
 
+  if (!sets->len)
+    return;
+  best = &g_array_index (sets, ClothGapSet, 0);
   for (guint pass = 0; pass < 2; pass++) {
     for (guint i = 0; i < effects->len; i++) {
       ClothGapEffect *e = &g_array_index (effects, ClothGapEffect, i);
-      guint in = 0;
+      const gboolean is_in_best =
+          g_ptr_array_find (best->effects, (gpointer) e->effect, NULL);
+      gboolean is_exchanged = FALSE;
 
-      for (guint k = 0; k < sets->len; k++)
-        in += g_ptr_array_find (g_array_index (sets, ClothGapSet, k).effects,
-            e->effect, NULL);
-      if (!in || in == sets->len)
+      for (guint k = 1; k < sets->len; k++) {
+        const ClothGapSet *set = &g_array_index (sets, ClothGapSet, k);
+
+        if (!has_all (set, best))
+          is_exchanged |= is_in_best != g_ptr_array_find (set->effects,
+              (gpointer) e->effect, NULL);
+      }
+      if (!is_exchanged)
         continue;
       n++;
       if (pass)

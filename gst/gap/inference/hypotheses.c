@@ -14,6 +14,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/math/linalg.h"
+
 /* Sets of two and of three effects that are simulated. */
 #define N_PAIRS 16
 #define N_TRIPLES 8
@@ -775,6 +777,80 @@ blow (const ClothDiagnosis * d, const ClothGapLinearisation * l,
   }
 }
 
+/* Logarithm of the Bayes factor for candidate @c of an explanation by its own posterior: the prior density
+ * at the candidate's null over the posterior one there (Dickey 1971). Two simulations never differ by
+ * what an effect does only; this one is of one simulation. Infinite where it has no such null. */
+static gdouble
+find_nested_evidence (const ClothDiagnosis * d, const ClothGapHypothesis * h,
+    guint c)
+{
+  gdouble sigma[CLOTH_GAP_MAX_DIRECTIONS * CLOTH_GAP_MAX_DIRECTIONS];
+  gdouble off[CLOTH_GAP_MAX_DIRECTIONS], way[CLOTH_GAP_MAX_DIRECTIONS];
+  guint list[CLOTH_GAP_MAX_DIRECTIONS], n = 0, first = 0;
+  gdouble sum = 0.;
+
+  for (guint i = 0; i < c; i++)
+    first += candidate_of (d, h->candidates[i])->n;
+  for (guint k = 0; k < candidate_of (d, h->candidates[c])->n; k++) {
+    const ClothDirection *direction =
+        cloth_candidates_direction (d->candidates, h->directions[first + k]);
+
+    if (direction->present)
+      return INFINITY;
+    if (!direction->shapes)
+      list[n++] = first + k;
+  }
+  for (guint i = 0; i < n; i++) {
+    off[i] = way[i] = h->evidence.values[list[i]];
+    sum -= 0.5 * pow (h->priors[list[i]].mean / h->priors[list[i]].prior, 2.) +
+        log (h->priors[list[i]].prior);
+    for (guint k = 0; k < n; k++)
+      sigma[i * n + k] = h->evidence.covariance[list[i] * h->n_directions +
+          list[k]];
+  }
+  if (!n || !cloth_cholesky_factor (n, sigma))
+    return INFINITY;
+  cloth_cholesky_solve (n, sigma, way);
+  for (guint i = 0; i < n; i++)
+    sum += log (sigma[i * n + i]) + 0.5 * off[i] * way[i];
+  return sum;
+}
+
+/* No effect adds more to an explanation than its own posterior says: what more there is, chance made, as
+ * the explanation was simulated at several places and the best was kept. */
+static void
+bound_by_parts (const ClothDiagnosis * d, GArray * hypotheses)
+{
+  for (guint size = 1; size <= CLOTH_GAP_MAX_EFFECTS; size++)
+    for (guint i = 0; i < hypotheses->len; i++) {
+      ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
+          i);
+
+      if (h->n != size || !h->is_compared || !h->z || h->n_winds)
+        continue;
+      for (guint c = 0; c < h->n; c++) {
+        guint list[CLOTH_GAP_MAX_EFFECTS], n = 0;
+        ClothGapHypothesis part, one;
+
+        for (guint k = 0; k < h->n; k++)
+          if (k != c)
+            list[n++] = h->candidates[k];
+        cloth_gap_hypothesis_init (&part, d->candidates, NULL, list, n);
+        cloth_gap_hypothesis_init (&one, d->candidates, NULL,
+            &h->candidates[c], 1);
+        for (guint k = 0; k < hypotheses->len; k++) {
+          const ClothGapHypothesis *other = &g_array_index (hypotheses,
+              ClothGapHypothesis, k);
+
+          if (cloth_gap_hypothesis_is_same (other, &part)
+              && isfinite (other->by_residual))
+            h->by_residual = MAX (h->by_residual, other->by_residual -
+                find_nested_evidence (d, h, c) - log_odds (d, &one));
+        }
+      }
+    }
+}
+
 /* How much less likely than the likeliest each is; those that could not be simulated are out. Of
  * those that are not compared in this round it is what it was before, held against the base. */
 static void
@@ -801,8 +877,11 @@ rank (const ClothDiagnosis * d, const ClothGapLinearisation * l,
 
     if (!h->is_compared)
       h->by_residual += after - before;
-    best = MIN (best, h->by_residual);
   }
+  bound_by_parts (d, hypotheses);
+  for (guint i = 0; i < hypotheses->len; i++)
+    best = MIN (best, g_array_index (hypotheses, ClothGapHypothesis,
+            i).by_residual);
   for (guint i = 0; i < hypotheses->len; i++)
     g_array_index (hypotheses, ClothGapHypothesis, i).by_residual -= best;
 }
