@@ -590,14 +590,13 @@ gst_triangulate_reset (GstClothSync * sync)
   self->sequence = G_MAXUINT64; /* the first set's is 0 */
 }
 
-static gchar *
+static const gchar *
 gst_triangulate_get_camera (GstClothSync * sync, guint index)
 {
   GstTriangulate *self = GST_TRIANGULATE (sync);
   const gint camera = self->view[index].camera;
 
-  return self->rig && camera >= 0 ? g_strdup (self->rig->cameras[camera].name) :
-      NULL;
+  return self->rig && camera >= 0 ? self->rig->cameras[camera].name : NULL;
 }
 
 /* ---- GObject ---- */
@@ -652,6 +651,7 @@ gst_triangulate_class_init (GstTriangulateClass * klass)
   sync_class->process_set = gst_triangulate_process_set;
   sync_class->reset = gst_triangulate_reset;
   sync_class->get_camera = gst_triangulate_get_camera;
+  sync_class->prefix = "triangulate";
 
   gst_element_class_add_static_pad_template_with_gtype (element_class,
       &sink_template, GST_TYPE_TRIANGULATE_PAD);
