@@ -19,6 +19,8 @@ typedef struct
   gchar *camera;                /* protected by the object lock */
   GstVideoInfo info;
   guint64 count;
+  guint8 *planes[3];            /* of a packed film: what a picture is taken apart to */
+  gboolean told_encoded;        /* that upstream has nothing but encoded pictures */
 } GstClothFilterPrivate;
 
 /* *INDENT-OFF* */
@@ -30,8 +32,9 @@ static const GstClothProperty properties[] = {
 };
 /* *INDENT-ON* */
 
-#define FILTER_CAPS GST_VIDEO_CAPS_MAKE (GST_CLOTH_FILTER_FORMATS) \
-    ", width=(int)[ 1, 16384 ], height=(int)[ 1, 16384 ]"
+#define SIZES ", width=(int)[ 1, 16384 ], height=(int)[ 1, 16384 ]"
+#define FILTER_CAPS GST_VIDEO_CAPS_MAKE (GST_CLOTH_FILTER_FORMATS) SIZES "; " \
+    GST_VIDEO_CAPS_MAKE (GST_CLOTH_FILTER_PACKED_FORMATS) SIZES
 
 static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE ("sink",
     GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS (FILTER_CAPS));
@@ -40,6 +43,62 @@ static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE ("src",
 
 G_DEFINE_ABSTRACT_TYPE_WITH_PRIVATE (GstClothFilter, gst_cloth_filter,
     GST_TYPE_BASE_TRANSFORM);
+
+static gboolean
+is_packed (const GstVideoInfo * info)
+{
+  return GST_VIDEO_INFO_COMP_PSTRIDE (info, 0) > 1;
+}
+
+GstVideoFormat
+gst_cloth_filter_get_planar_format (const GstVideoInfo * info)
+{
+  return is_packed (info) ? GST_VIDEO_FORMAT_Y42B :
+      GST_VIDEO_INFO_FORMAT (info);
+}
+
+/* Room for the planes of a packed film, none for others. */
+static void
+gst_cloth_filter_prepare_planes (GstClothFilterPrivate * priv)
+{
+  for (guint k = 0; k < 3; k++) {
+    g_clear_pointer (&priv->planes[k], g_free);
+    if (priv->info.finfo && is_packed (&priv->info))
+      priv->planes[k] =
+          g_malloc_n ((gsize) GST_VIDEO_INFO_COMP_WIDTH (&priv->info, k),
+          (gsize) GST_VIDEO_INFO_COMP_HEIGHT (&priv->info, k));
+  }
+}
+
+/* The picture itself stays as it is. */
+static void
+take_apart (const GstVideoFrame * video, guint8 * const *planes,
+    ClothPlanarImage * image)
+{
+  for (guint k = 0; k < 3; k++) {
+    const gint width = GST_VIDEO_FRAME_COMP_WIDTH (video, k);
+    const gint height = GST_VIDEO_FRAME_COMP_HEIGHT (video, k);
+    const gint step = GST_VIDEO_FRAME_COMP_PSTRIDE (video, k);
+    const gint stride = GST_VIDEO_FRAME_COMP_STRIDE (video, k);
+    const guint8 *from = GST_VIDEO_FRAME_COMP_DATA (video, k);
+
+    for (gint y = 0; y < height; y++) {
+      guint8 *to = planes[k] + (gsize) y * (gsize) width;
+      const guint8 *row = from + (gssize) y * stride;
+
+      for (gint x = 0; x < width; x++)
+        to[x] = row[step * x];
+    }
+  }
+  *image = (ClothPlanarImage) {
+    .luma = { planes[0], GST_VIDEO_FRAME_WIDTH (video),
+      GST_VIDEO_FRAME_HEIGHT (video), GST_VIDEO_FRAME_WIDTH (video)
+    }
+    ,.chroma = { planes[1], planes[2] }
+    ,.chroma_stride = GST_VIDEO_FRAME_COMP_WIDTH (video, 1),.chroma_step =
+        1,.chroma_shift = { 1, 0 }
+  };
+}
 
 static void
 gst_cloth_filter_reset (GstClothFilter * self)
@@ -58,6 +117,7 @@ gst_cloth_filter_start (GstBaseTransform * trans)
   GstClothFilterClass *klass = GST_CLOTH_FILTER_GET_CLASS (self);
 
   priv->count = 0;
+  priv->told_encoded = FALSE;
   return klass->start ? klass->start (self) : TRUE;
 }
 
@@ -85,6 +145,7 @@ gst_cloth_filter_set_caps (GstBaseTransform * trans, GstCaps * in,
     return FALSE;
   }
   priv->info = info;
+  gst_cloth_filter_prepare_planes (priv);
   gst_cloth_filter_reset (self);
   return TRUE;
 }
@@ -145,10 +206,11 @@ gst_cloth_filter_transform_ip (GstBaseTransform * trans, GstBuffer * buffer)
             GST_VIDEO_INFO_HEIGHT (&priv->info), GST_OBJECT_NAME (self)));
     return GST_FLOW_ERROR;
   }
-  frame.luma.data = GST_VIDEO_FRAME_COMP_DATA (&video, 0);
-  frame.luma.width = GST_VIDEO_FRAME_WIDTH (&video);
-  frame.luma.height = GST_VIDEO_FRAME_HEIGHT (&video);
-  frame.luma.stride = GST_VIDEO_FRAME_COMP_STRIDE (&video, 0);
+  if (is_packed (&priv->info))
+    take_apart (&video, priv->planes, &frame.planes);
+  else
+    gst_cloth_filter_view_planes (&video, &frame.planes);
+  frame.luma = frame.planes.luma;
   frame.video = &video;
   frame.sequence = gst_cloth_number_picture (&trans->segment,
       GST_VIDEO_INFO_FPS_N (&priv->info), GST_VIDEO_INFO_FPS_D (&priv->info),
@@ -182,12 +244,62 @@ gst_cloth_filter_view_planes (const GstVideoFrame * frame,
       (gint) GST_VIDEO_FORMAT_INFO_H_SUB (frame->info.finfo, 1);
 }
 
+/* What decodes pictures of these caps; NULL when they are no such pictures. */
+static const gchar *
+find_decoder (const GstCaps * caps)
+{
+  static const gchar *const decoders[][2] = {
+    {"image/jpeg", "jpegdec"}, {"video/x-h264", "h264parse ! avdec_h264"},
+    {"video/x-h265", "h265parse ! avdec_h265"}
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (decoders) && !gst_caps_is_any (caps)
+      && !gst_caps_is_empty (caps); i++)
+    if (gst_structure_has_name (gst_caps_get_structure (caps, 0),
+            decoders[i][0]))
+      return decoders[i][1];
+  return NULL;
+}
+
+/* A camera that sends nothing but encoded pictures asks in vain what is taken, and says no
+ * more than that it could not negotiate. */
+static gboolean
+gst_cloth_filter_query (GstBaseTransform * trans, GstPadDirection direction,
+    GstQuery * query)
+{
+  GstClothFilter *self = GST_CLOTH_FILTER (trans);
+  GstClothFilterPrivate *priv = gst_cloth_filter_get_instance_private (self);
+  const gboolean answered =
+      GST_BASE_TRANSFORM_CLASS (gst_cloth_filter_parent_class)->query (trans,
+      direction, query);
+  g_autoptr (GstCaps) taken = NULL;
+  const gchar *decoder;
+  GstCaps *offered;
+
+  if (GST_QUERY_TYPE (query) != GST_QUERY_CAPS || direction != GST_PAD_SINK
+      || priv->told_encoded || !GST_PAD_IS_ACTIVE (trans->sinkpad))
+    return answered;
+  gst_query_parse_caps (query, &offered);
+  decoder = offered ? find_decoder (offered) : NULL;
+  taken = gst_pad_get_pad_template_caps (trans->sinkpad);
+  if (!decoder || gst_caps_can_intersect (offered, taken))
+    return answered;
+  priv->told_encoded = TRUE;
+  GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+      ("What comes is %s, which has to be decoded first.",
+          gst_structure_get_name (gst_caps_get_structure (offered, 0))),
+      ("Put %s before %s.", decoder, GST_OBJECT_NAME (self)));
+  return answered;
+}
+
 static void
 gst_cloth_filter_finalize (GObject * object)
 {
   GstClothFilterPrivate *priv =
       gst_cloth_filter_get_instance_private (GST_CLOTH_FILTER (object));
 
+  for (guint k = 0; k < 3; k++)
+    g_free (priv->planes[k]);
   gst_cloth_clear_settings (properties, G_N_ELEMENTS (properties), priv);
   G_OBJECT_CLASS (gst_cloth_filter_parent_class)->finalize (object);
 }
@@ -212,6 +324,7 @@ gst_cloth_filter_class_init (GstClothFilterClass * klass)
   trans_class->stop = gst_cloth_filter_stop;
   trans_class->set_caps = gst_cloth_filter_set_caps;
   trans_class->sink_event = gst_cloth_filter_sink_event;
+  trans_class->query = gst_cloth_filter_query;
   trans_class->transform_ip = gst_cloth_filter_transform_ip;
   trans_class->transform_ip_on_passthrough = FALSE;
   gst_type_mark_as_plugin_api (GST_TYPE_CLOTH_FILTER, 0);
