@@ -1,7 +1,8 @@
 /* Base of elements that look at pictures and leave what they see as metas.
  *
  * Pictures go through as they are: their memory is mapped for reading only, so that
- * buffers shared after a tee stay shared. QoS is off: a late picture is late, not lost.
+ * buffers shared after a tee stay shared. QoS is off: a late picture is late, not lost. What a
+ * live picture takes is told to the latency query, so that those downstream wait for it.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "elements/gstclothfilter.h"
@@ -21,6 +22,11 @@ typedef struct
   guint64 count;
   guint8 *planes[3];            /* of a packed film: what a picture is taken apart to */
   gboolean told_encoded;        /* that upstream has nothing but encoded pictures */
+  GstClockTime last_span;       /* how long the last picture took */
+
+  /* object lock */
+  gboolean is_live;
+  GstClockTime latency;         /* what pictures take, as was said to the latency query */
 } GstClothFilterPrivate;
 
 /* *INDENT-OFF* */
@@ -32,6 +38,8 @@ static const GstClothProperty properties[] = {
 };
 /* *INDENT-ON* */
 
+/* So finely what pictures take is told: each change makes the pipeline ask anew. */
+#define LATENCY_STEP (5 * GST_MSECOND)
 #define SIZES ", width=(int)[ 1, 16384 ], height=(int)[ 1, 16384 ]"
 #define FILTER_CAPS GST_VIDEO_CAPS_MAKE (GST_CLOTH_FILTER_FORMATS) SIZES "; " \
     GST_VIDEO_CAPS_MAKE (GST_CLOTH_FILTER_PACKED_FORMATS) SIZES
@@ -118,6 +126,11 @@ gst_cloth_filter_start (GstBaseTransform * trans)
 
   priv->count = 0;
   priv->told_encoded = FALSE;
+  priv->last_span = 0;
+  GST_OBJECT_LOCK (self);
+  priv->is_live = FALSE;
+  priv->latency = 0;
+  GST_OBJECT_UNLOCK (self);
   return klass->start ? klass->start (self) : TRUE;
 }
 
@@ -169,6 +182,39 @@ gst_cloth_filter_sink_event (GstBaseTransform * trans, GstEvent * event)
       (trans, event);
 }
 
+static GstClockTime
+get_clock_time (GstElement * element)
+{
+  g_autoptr (GstClock) clock = gst_element_get_clock (element);
+
+  return clock ? gst_clock_get_time (clock) : GST_CLOCK_TIME_NONE;
+}
+
+/* A live picture took from @start until now. Two in a row count: one may be an accident. */
+static void
+gst_cloth_filter_note_span (GstClothFilter * self, GstClockTime start)
+{
+  GstClothFilterPrivate *priv = gst_cloth_filter_get_instance_private (self);
+  const GstClockTime end = get_clock_time (GST_ELEMENT (self));
+  GstClockTime span, both;
+  gboolean rises;
+
+  if (!GST_CLOCK_TIME_IS_VALID (start) || !GST_CLOCK_TIME_IS_VALID (end)
+      || end < start)
+    return;
+  span = end - start;
+  both = MIN (span, priv->last_span);
+  priv->last_span = span;
+  GST_OBJECT_LOCK (self);
+  rises = priv->is_live && both > priv->latency;
+  if (rises)
+    priv->latency = (both / LATENCY_STEP + 1) * LATENCY_STEP;
+  GST_OBJECT_UNLOCK (self);
+  if (rises)
+    gst_element_post_message (GST_ELEMENT (self),
+        gst_message_new_latency (GST_OBJECT (self)));
+}
+
 static GstFlowReturn
 gst_cloth_filter_transform_ip (GstBaseTransform * trans, GstBuffer * buffer)
 {
@@ -178,6 +224,7 @@ gst_cloth_filter_transform_ip (GstBaseTransform * trans, GstBuffer * buffer)
   GstVideoFrame video;
   GstFlowReturn flow;
   GstClockTime time;
+  const GstClockTime start = get_clock_time (GST_ELEMENT (self));
   g_autofree gchar *camera = NULL;
 
   GST_OBJECT_LOCK (self);
@@ -220,6 +267,7 @@ gst_cloth_filter_transform_ip (GstBaseTransform * trans, GstBuffer * buffer)
   flow = GST_CLOTH_FILTER_GET_CLASS (self)->analyse (self, &frame);
   priv->count++;
   gst_video_frame_unmap (&video);
+  gst_cloth_filter_note_span (self, start);
   return flow;
 }
 
@@ -261,6 +309,21 @@ find_decoder (const GstCaps * caps)
   return NULL;
 }
 
+static void
+gst_cloth_filter_tell_latency (GstClothFilter * self, GstQuery * query)
+{
+  GstClothFilterPrivate *priv = gst_cloth_filter_get_instance_private (self);
+  GstClockTime own;
+  gboolean is_live;
+
+  gst_query_parse_latency (query, &is_live, NULL, NULL);
+  GST_OBJECT_LOCK (self);
+  priv->is_live = is_live;
+  own = is_live ? priv->latency : 0;
+  GST_OBJECT_UNLOCK (self);
+  gst_cloth_add_latency (query, own);
+}
+
 /* A camera that sends nothing but encoded pictures asks in vain what is taken, and says no
  * more than that it could not negotiate. */
 static gboolean
@@ -276,6 +339,9 @@ gst_cloth_filter_query (GstBaseTransform * trans, GstPadDirection direction,
   const gchar *decoder;
   GstCaps *offered;
 
+  if (answered && GST_QUERY_TYPE (query) == GST_QUERY_LATENCY
+      && direction == GST_PAD_SRC)
+    gst_cloth_filter_tell_latency (self, query);
   if (GST_QUERY_TYPE (query) != GST_QUERY_CAPS || direction != GST_PAD_SINK
       || priv->told_encoded || !GST_PAD_IS_ACTIVE (trans->sinkpad))
     return answered;
