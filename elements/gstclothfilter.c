@@ -324,37 +324,46 @@ gst_cloth_filter_tell_latency (GstClothFilter * self, GstQuery * query)
   gst_cloth_add_latency (query, own);
 }
 
-/* A camera that sends nothing but encoded pictures asks in vain what is taken, and says no
- * more than that it could not negotiate. */
-static gboolean
-gst_cloth_filter_query (GstBaseTransform * trans, GstPadDirection direction,
-    GstQuery * query)
+/* What sends nothing but encoded pictures asks in vain what is taken, or whether they are, and
+ * says no more than that it could not negotiate. */
+static void
+gst_cloth_filter_look_for_encoded (GstClothFilter * self, GstQuery * query)
 {
-  GstClothFilter *self = GST_CLOTH_FILTER (trans);
   GstClothFilterPrivate *priv = gst_cloth_filter_get_instance_private (self);
-  const gboolean answered =
-      GST_BASE_TRANSFORM_CLASS (gst_cloth_filter_parent_class)->query (trans,
-      direction, query);
-  g_autoptr (GstCaps) taken = NULL;
+  GstPad *sinkpad = GST_BASE_TRANSFORM_SINK_PAD (self);
+  g_autoptr (GstCaps) taken = gst_pad_get_pad_template_caps (sinkpad);
+  GstCaps *offered = NULL;
   const gchar *decoder;
-  GstCaps *offered;
 
-  if (answered && GST_QUERY_TYPE (query) == GST_QUERY_LATENCY
-      && direction == GST_PAD_SRC)
-    gst_cloth_filter_tell_latency (self, query);
-  if (GST_QUERY_TYPE (query) != GST_QUERY_CAPS || direction != GST_PAD_SINK
-      || priv->told_encoded || !GST_PAD_IS_ACTIVE (trans->sinkpad))
-    return answered;
-  gst_query_parse_caps (query, &offered);
+  if (GST_QUERY_TYPE (query) == GST_QUERY_CAPS)
+    gst_query_parse_caps (query, &offered);
+  else if (GST_QUERY_TYPE (query) == GST_QUERY_ACCEPT_CAPS)
+    gst_query_parse_accept_caps (query, &offered);
   decoder = offered ? find_decoder (offered) : NULL;
-  taken = gst_pad_get_pad_template_caps (trans->sinkpad);
-  if (!decoder || gst_caps_can_intersect (offered, taken))
-    return answered;
+  if (!decoder || gst_caps_can_intersect (offered, taken)
+      || priv->told_encoded)
+    return;
   priv->told_encoded = TRUE;
   GST_ELEMENT_ERROR (self, STREAM, FORMAT,
       ("What comes is %s, which has to be decoded first.",
           gst_structure_get_name (gst_caps_get_structure (offered, 0))),
       ("Put %s before %s.", decoder, GST_OBJECT_NAME (self)));
+}
+
+static gboolean
+gst_cloth_filter_query (GstBaseTransform * trans, GstPadDirection direction,
+    GstQuery * query)
+{
+  GstClothFilter *self = GST_CLOTH_FILTER (trans);
+  const gboolean answered =
+      GST_BASE_TRANSFORM_CLASS (gst_cloth_filter_parent_class)->query (trans,
+      direction, query);
+
+  if (answered && GST_QUERY_TYPE (query) == GST_QUERY_LATENCY
+      && direction == GST_PAD_SRC)
+    gst_cloth_filter_tell_latency (self, query);
+  if (direction == GST_PAD_SINK && GST_PAD_IS_ACTIVE (trans->sinkpad))
+    gst_cloth_filter_look_for_encoded (self, query);
   return answered;
 }
 
