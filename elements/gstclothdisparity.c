@@ -683,14 +683,13 @@ gst_stereo_match_reset (GstClothSync * sync)
   GST_STEREO_MATCH (sync)->count = 0;
 }
 
-static gchar *
+static const gchar *
 gst_stereo_match_get_camera (GstClothSync * sync, guint index)
 {
   GstStereoMatch *self = GST_STEREO_MATCH (sync);
   const gint camera = self->view[index].camera;
 
-  return self->rig && camera >= 0 ? g_strdup (self->rig->cameras[camera].name) :
-      NULL;
+  return self->rig && camera >= 0 ? self->rig->cameras[camera].name : NULL;
 }
 
 /* ---- GstAggregator ---- */
@@ -856,6 +855,7 @@ gst_stereo_match_class_init (gpointer klass, gpointer data)
   sync_class->process_set = gst_stereo_match_process_set;
   sync_class->reset = gst_stereo_match_reset;
   sync_class->get_camera = gst_stereo_match_get_camera;
+  sync_class->prefix = "clothdisparity";
 
   gst_element_class_add_static_pad_template_with_gtype (element_class,
       &sink_template, GST_TYPE_TRIANGULATE_PAD);

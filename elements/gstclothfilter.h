@@ -18,7 +18,12 @@ G_DECLARE_DERIVABLE_TYPE (GstClothFilter, gst_cloth_filter, GST, CLOTH_FILTER,
 #define GST_CLOTH_FILTER_FORMATS "{ GRAY8, I420, YV12, NV12, NV21, Y42B, " \
     "NV16, NV61, Y444, NV24, Y41B, YUV9, YVU9, A420 }"
 
+/* Formats whose luma and chroma take turns in a row, as webcams send them: they are taken
+ * apart. */
+#define GST_CLOTH_FILTER_PACKED_FORMATS "{ YUY2, UYVY, YVYU }"
+
 /* @luma: the picture's luma, mapped for reading
+ * @planes: the picture's luma and, of one in colour, its chroma; @luma is that of it
  * @video: the whole picture, mapped for reading
  * @sequence: number of the picture: the buffer's offset where it has one, else its stream
  *   time in pictures, else counted from the start of the stream
@@ -27,6 +32,7 @@ G_DECLARE_DERIVABLE_TYPE (GstClothFilter, gst_cloth_filter, GST, CLOTH_FILTER,
  */
 typedef struct {
   ClothImage luma;
+  ClothPlanarImage planes;
   const GstVideoFrame *video;
   guint64 sequence;
   const gchar *camera;
@@ -51,6 +57,9 @@ struct _GstClothFilterClass {
   GstFlowReturn (*analyse) (GstClothFilter * filter,
       const GstClothFilterFrame * frame);
 };
+
+/* Returns: the format with planes of a film in @info: its own, or what it is taken apart to */
+GstVideoFormat gst_cloth_filter_get_planar_format (const GstVideoInfo * info);
 
 /* The planes of a picture in GST_CLOTH_FILTER_FORMATS, as long as it is mapped. */
 void gst_cloth_filter_view_planes (const GstVideoFrame * frame,

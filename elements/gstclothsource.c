@@ -99,7 +99,7 @@ check_times (GstClothSource * self, const GstClothSourceStream * stream)
               " in “%s” cannot be played: "
               "times must start at 0 or later, rise by a nanosecond at least and "
               "stay below %g s%s", i, stream->location, MAX_TIME_S,
-              stream->advice), (NULL));
+              stream->advice), ("Mend times.npy of the take."));
       return FALSE;
     }
   }
@@ -136,7 +136,8 @@ gst_cloth_source_publish (GstClothSource * source,
   if (!sent) {
     GST_ELEMENT_ERROR (source, STREAM, FORMAT,
         ("The mesh of “%s” is not valid: %s", stream->location,
-            error->message), (NULL));
+            error->message),
+        ("Write it anew from the program that it comes from."));
     return FALSE;
   }
   caps = gst_cloth_topology_to_caps (sent, priv->fps_n, priv->fps_d);

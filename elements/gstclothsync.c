@@ -11,6 +11,8 @@
 #include <gst/video/video.h>
 
 #include "elements/gstclothproperties.h"
+#include "elements/gstclothsyncheads.h"
+#include "elements/gstclothsyncmessages.h"
 
 GST_DEBUG_CATEGORY_STATIC (cloth_sync_debug);
 #define GST_CAT_DEFAULT cloth_sync_debug
@@ -20,6 +22,9 @@ GST_DEBUG_CATEGORY_STATIC (cloth_sync_debug);
 /* Keeps sums of times far from overflow. */
 #define MAX_TOLERANCE (3600 * GST_SECOND)
 #define MAX_JUMP (10 * GST_SECOND)
+/* What detectors before this element take for a picture, on a machine that does much else:
+ * frames that are all there don't wait for it. */
+#define LATENCY (200 * GST_MSECOND)
 
 typedef struct
 {
@@ -35,12 +40,12 @@ typedef struct
   GstClockTime effective;       /* the tolerance in force */
   guint64 taken;                /* indices in use */
   guint64 released;             /* of pads that the subclass still believes in */
-  guint64 n_sets, n_incomplete, n_dropped, n_implausible;
+  guint64 n_sets, n_incomplete, n_skipped, n_dropped, n_implausible;
 
   /* streaming thread */
   gboolean is_live;
   gboolean has_last;
-  GstClockTimeDiff last_time;
+  GstClockTimeDiff first_time, last_time;
   GstClockTime last_tolerance;
   guint64 last_mask;
 } GstClothSyncPrivate;
@@ -423,6 +428,9 @@ gst_cloth_sync_restart (GstClothSync * self)
   GST_OBJECT_UNLOCK (self);
   for (GList * l = pads; l; l = l->next) {
     gst_cloth_sync_pad_reset (GST_CLOTH_SYNC_PAD (l->data));
+    GST_OBJECT_LOCK (self);
+    GST_CLOTH_SYNC_PAD (l->data)->silent = FALSE;
+    GST_OBJECT_UNLOCK (self);
     gst_object_unref (l->data);
   }
   if (klass->reset) {
@@ -444,13 +452,14 @@ gst_cloth_sync_start (GstAggregator * agg)
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
 
   GST_OBJECT_LOCK (self);
-  priv->n_sets = priv->n_incomplete = priv->n_dropped = 0;
-  priv->n_implausible = 0;
+  priv->n_sets = priv->n_incomplete = priv->n_skipped = 0;
+  priv->n_dropped = priv->n_implausible = 0;
   for (GList * l = GST_ELEMENT (self)->sinkpads; l; l = l->next) {
     GstClothSyncPad *pad = GST_CLOTH_SYNC_PAD (l->data);
 
-    pad->warned_ahead = pad->warned_back = pad->warned_untimed = FALSE;
-    pad->used = pad->dropped = pad->implausible = 0;
+    pad->warned_ahead = pad->warned_back = FALSE;
+    pad->warned_untimed = pad->warned_late = FALSE;
+    pad->used = pad->missing = pad->dropped = pad->implausible = 0;
   }
   GST_OBJECT_UNLOCK (self);
   priv->is_live = FALSE;
@@ -475,123 +484,11 @@ gst_cloth_sync_stop (GstAggregator * agg)
  * latency property) and goes on with what is there. A GAP says that a pad has nothing
  * for a while: it is never a view, but it spares the wait. */
 
-/* The heads of all pads, by index. */
-typedef struct
-{
-  GstClothSyncPad *pad[GST_CLOTH_SYNC_MAX_PADS];
-  GstBuffer *head[GST_CLOTH_SYNC_MAX_PADS];
-  GstClockTimeDiff time[GST_CLOTH_SYNC_MAX_PADS];
-  gboolean gap[GST_CLOTH_SYNC_MAX_PADS];
-  guint n, n_pads, n_eos, n_waiting;
-} Heads;
-
-/* Whether @time is at most @span after @since; nothing overflows. */
-static gboolean
-is_within (GstClockTimeDiff time, GstClockTimeDiff since, guint64 span)
-{
-  return time <= since || (guint64) time - (guint64) since <= span;
-}
-
-/* Time of a frame on the common clock, the largest one where it is beyond all that 64 bits
- * hold; GST_CLOCK_STIME_NONE when it has none. */
-static GstClockTimeDiff
-gst_cloth_sync_time (GstClothSync * self, GstClothSyncPad * pad,
-    GstBuffer * buffer)
-{
-  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
-  GstSegment *segment = &GST_AGGREGATOR_PAD_CAST (pad)->segment;
-  guint64 running = GST_CLOCK_TIME_NONE;
-  GstClockTimeDiff offset;
-
-  GST_OBJECT_LOCK (self);
-  offset = priv->offset[pad->index];
-  GST_OBJECT_UNLOCK (self);
-  GST_OBJECT_LOCK (pad);
-  if (GST_BUFFER_PTS_IS_VALID (buffer) && segment->format == GST_FORMAT_TIME) {
-    running = gst_segment_to_running_time (segment, GST_FORMAT_TIME,
-        GST_BUFFER_PTS (buffer));
-  }
-  GST_OBJECT_UNLOCK (pad);
-  if (!GST_CLOCK_TIME_IS_VALID (running)) {
-    return GST_CLOCK_STIME_NONE;
-  }
-  running = MIN (running, (guint64) G_MAXINT64);
-  if (offset < 0 && running > (guint64) (G_MAXINT64 + offset)) {
-    return G_MAXINT64;
-  }
-  return (GstClockTimeDiff) running - offset;
-}
-
-static void
-gst_cloth_sync_gather (GstClothSync * self, Heads * heads)
-{
-  GList *l;
-  guint i;
-
-  memset (heads, 0, sizeof (*heads));
-  GST_OBJECT_LOCK (self);
-  for (l = GST_ELEMENT (self)->sinkpads; l; l = l->next) {
-    i = GST_CLOTH_SYNC_PAD (l->data)->index;
-    heads->pad[i] = gst_object_ref (l->data);
-    heads->n = MAX (heads->n, i + 1);
-    heads->n_pads++;
-  }
-  GST_OBJECT_UNLOCK (self);
-
-  for (i = 0; i < heads->n; i++) {
-    GstAggregatorPad *pad = GST_AGGREGATOR_PAD_CAST (heads->pad[i]);
-    GstBuffer *head;
-
-    if (!pad) {
-      continue;
-    }
-    head = heads->head[i] =
-        gst_cloth_sync_pad_look (heads->pad[i], &heads->time[i]);
-    if (!head) {
-      if (gst_aggregator_pad_is_eos (pad)) {
-        heads->n_eos++;
-      } else {
-        heads->n_waiting++;
-      }
-      continue;
-    }
-    heads->gap[i] = GST_BUFFER_FLAG_IS_SET (head, GST_BUFFER_FLAG_GAP);
-    if (!GST_CLOCK_STIME_IS_VALID (heads->time[i])) {
-      heads->time[i] = gst_cloth_sync_time (self, heads->pad[i], head);
-    }
-  }
-}
-
-/* When what the head says ends: of a gap, not before its frames may come. */
-static GstClockTimeDiff
-gst_cloth_sync_end_of_head (const Heads * heads, guint i)
-{
-  const GstClockTimeDiff time = heads->time[i];
-  const guint64 room = (guint64) G_MAXINT64 - (guint64) time;
-
-  if (!heads->gap[i] || !GST_BUFFER_DURATION_IS_VALID (heads->head[i])) {
-    return time;
-  }
-  return time + (GstClockTimeDiff) MIN (GST_BUFFER_DURATION (heads->head[i]),
-      MIN (room, (guint64) G_MAXINT64));
-}
-
-static void
-gst_cloth_sync_release_heads (Heads * heads)
-{
-  guint i;
-
-  for (i = 0; i < heads->n; i++) {
-    gst_clear_buffer (&heads->head[i]);
-    gst_clear_object (&heads->pad[i]);
-  }
-}
-
 /* What to do about the time of the head of pad @i. A live stream may have been silent until
  * now, and its frames come when they are made. */
 static GstClothSyncVerdict
-gst_cloth_sync_judge (GstClothSync * self, const Heads * heads, guint i,
-    gboolean is_live)
+gst_cloth_sync_judge (GstClothSync * self, const GstClothSyncHeads * heads,
+    guint i, gboolean is_live)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
   GstClockTimeDiff start = priv->has_last ? priv->last_time : 0;
@@ -610,20 +507,67 @@ gst_cloth_sync_judge (GstClothSync * self, const Heads * heads, guint i,
       heads->head[i] ? heads->time[i] : GST_CLOCK_STIME_NONE, start, max_jump);
 }
 
-/* The running time from which the live deadline counts: the next set's. NONE makes the
- * aggregator wait without a deadline, right while there is no frame at all. It matters for
- * live streams only. */
+static gboolean
+gst_cloth_sync_minds_silence (GstClothSync * self)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+
+  return priv->is_live && priv->has_last
+      && GST_CLOTH_SYNC_GET_CLASS (self)->prefix;
+}
+
+static void
+gst_cloth_sync_set_silent (GstClothSync * self, GstClothSyncPad * pad,
+    gboolean silent, GstClockTimeDiff now)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+
+  gst_cloth_sync_pad_set_silent (pad, GST_ELEMENT (self),
+      GST_CLOTH_SYNC_GET_CLASS (self)->prefix, silent, priv->first_time, now);
+}
+
+/* Tells of the pads of a live stream that have given nothing for long at the common time
+ * @now; NONE: by the clock, no set says what time it is. */
+static void
+gst_cloth_sync_look_for_silence (GstClothSync * self,
+    const GstClothSyncHeads * heads, GstClockTimeDiff now)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  guint i;
+
+  if (!GST_CLOCK_STIME_IS_VALID (now)) {
+    const GstClockTime clock =
+        gst_element_get_current_running_time (GST_ELEMENT (self));
+
+    /* none is before all times */
+    now = GST_CLOCK_TIME_IS_VALID (clock) ?
+        (GstClockTimeDiff) MIN (clock, (guint64) G_MAXINT64) : now;
+  }
+  for (i = 0; i < heads->n && gst_cloth_sync_minds_silence (self); i++) {
+    const GstClockTimeDiff time =
+        gst_cloth_sync_heads_silent_at (heads, i, priv->first_time);
+
+    if (GST_CLOCK_STIME_IS_VALID (time) && time <= now) {
+      gst_cloth_sync_set_silent (self, heads->pad[i], TRUE, now);
+    }
+  }
+}
+
+/* The running time from which the live deadline counts: the next set's, or, while there is no
+ * frame at all, that at which silence has lasted long. NONE makes the aggregator wait without
+ * a deadline. It matters for live streams only. */
 static GstClockTime
 gst_cloth_sync_get_next_time (GstAggregator * agg)
 {
   GstClothSync *self = GST_CLOTH_SYNC (agg);
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
   GstClockTimeDiff first = 0;
   gboolean has_first = FALSE;
-  Heads heads;
+  GstClothSyncHeads heads;
   guint i;
 
   /* the aggregator calls us with the lock that releasing a pad takes */
-  gst_cloth_sync_gather (self, &heads);
+  gst_cloth_sync_heads_gather (&heads, GST_ELEMENT (self), priv->offset);
   for (i = 0; i < heads.n; i++) {
     if (heads.head[i]) {
       /* a frame without a time, and one that is doubted, is dealt with at once */
@@ -635,7 +579,17 @@ gst_cloth_sync_get_next_time (GstAggregator * agg)
       has_first = TRUE;
     }
   }
-  gst_cloth_sync_release_heads (&heads);
+  for (i = 0; i < heads.n && heads.n_heads == 0
+      && gst_cloth_sync_minds_silence (self); i++) {
+    const GstClockTimeDiff time =
+        gst_cloth_sync_heads_silent_at (&heads, i, priv->first_time);
+
+    if (GST_CLOCK_STIME_IS_VALID (time)) {
+      first = has_first ? MIN (first, time) : time;
+      has_first = TRUE;
+    }
+  }
+  gst_cloth_sync_heads_release (&heads);
   return has_first ? (GstClockTime) first : GST_CLOCK_TIME_NONE;
 }
 
@@ -650,18 +604,6 @@ gst_cloth_sync_pop (GstClothSync * self, GstClothSyncPad * pad)
   buffer = gst_cloth_sync_pad_take (pad);
   g_mutex_unlock (&priv->release_lock);
   return buffer;
-}
-
-/* What a message calls the stream of a pad. */
-static gchar *
-gst_cloth_sync_name_stream (GstClothSync * self, GstClothSyncPad * pad)
-{
-  GstClothSyncClass *klass = GST_CLOTH_SYNC_GET_CLASS (self);
-  g_autofree gchar *camera =
-      klass->get_camera ? klass->get_camera (self, pad->index) : NULL;
-
-  return camera ? g_strdup_printf ("camera \"%s\" (pad %s)", camera,
-      GST_PAD_NAME (pad)) : g_strdup_printf ("pad %s", GST_PAD_NAME (pad));
 }
 
 static void
@@ -680,18 +622,8 @@ static void
 gst_cloth_sync_refuse (GstClothSync * self, GstClothSyncPad * pad,
     gboolean is_last)
 {
-  g_autofree gchar *stream = gst_cloth_sync_name_stream (self, pad);
-
   gst_cloth_sync_count_implausible (self, pad);
-  if (!pad->warned_ahead) {
-    GST_ELEMENT_WARNING (self, STREAM, FORMAT,
-        ("A frame of %s was dropped: its time stamp, %.3f s, is far ahead and "
-            "%s.", stream, (gdouble) pad->held_time / GST_SECOND, is_last ?
-            "none comes after it" : "the next frame's is not"),
-        ("Later ones are only counted, as \"implausible\" in stats. If such "
-            "jumps are real, raise max-jump."));
-    pad->warned_ahead = TRUE;
-  }
+  gst_cloth_sync_say_refused (GST_ELEMENT (self), pad, is_last);
   gst_cloth_sync_pad_refuse (pad);
 }
 
@@ -699,23 +631,17 @@ gst_cloth_sync_refuse (GstClothSync * self, GstClothSyncPad * pad,
 static void
 gst_cloth_sync_refuse_untimed (GstClothSync * self, GstClothSyncPad * pad)
 {
-  g_autofree gchar *stream = gst_cloth_sync_name_stream (self, pad);
   GstBuffer *buffer = gst_cloth_sync_pop (self, pad);
 
   gst_clear_buffer (&buffer);
   gst_cloth_sync_count_implausible (self, pad);
-  if (!pad->warned_untimed) {
-    GST_ELEMENT_WARNING (self, STREAM, FORMAT,
-        ("A frame of %s was dropped: it has no time stamp.", stream),
-        ("Streams are joined by running time. Later ones are only counted, as "
-            "\"implausible\" in stats."));
-    pad->warned_untimed = TRUE;
-  }
+  gst_cloth_sync_say_untimed (GST_ELEMENT (self), pad);
 }
 
 /* Believes in a jump, and says so where the others have not jumped: they go on without. */
 static void
-gst_cloth_sync_believe (GstClothSync * self, const Heads * heads, guint i)
+gst_cloth_sync_believe (GstClothSync * self, const GstClothSyncHeads * heads,
+    guint i)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
   GstClothSyncPad *pad = heads->pad[i];
@@ -728,17 +654,10 @@ gst_cloth_sync_believe (GstClothSync * self, const Heads * heads, guint i)
   for (guint k = 0; k < heads->n; k++) {
     alone |= k != i && heads->head[k] && !heads->gap[k]
         && !gst_cloth_sync_pad_is_holding (heads->pad[k])
-        && !is_within (pad->held_time, heads->time[k], max_jump);
+        && !gst_cloth_sync_is_within (pad->held_time, heads->time[k], max_jump);
   }
-  if (alone && GST_CLOCK_STIME_IS_VALID (pad->last) && !pad->warned_ahead) {
-    g_autofree gchar *stream = gst_cloth_sync_name_stream (self, pad);
-
-    GST_ELEMENT_WARNING (self, STREAM, FORMAT,
-        ("The time stamps of %s jump to %.3f s; the others go on without it "
-            "until they come there.", stream,
-            (gdouble) pad->held_time / GST_SECOND),
-        ("See what stamps these frames."));
-    pad->warned_ahead = TRUE;
+  if (alone && GST_CLOCK_STIME_IS_VALID (pad->last)) {
+    gst_cloth_sync_say_jump (GST_ELEMENT (self), pad);
   }
   gst_cloth_sync_pad_believe (pad);
 }
@@ -746,7 +665,7 @@ gst_cloth_sync_believe (GstClothSync * self, const Heads * heads, guint i)
 /* Looks whether the heads' times can be believed. TRUE when a head has changed: they have
  * to be looked at anew. */
 static gboolean
-gst_cloth_sync_settle_times (GstClothSync * self, Heads * heads)
+gst_cloth_sync_settle_times (GstClothSync * self, GstClothSyncHeads * heads)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
   gboolean changed = FALSE;
@@ -772,8 +691,11 @@ gst_cloth_sync_settle_times (GstClothSync * self, Heads * heads)
     switch (gst_cloth_sync_judge (self, heads, i, priv->is_live)) {
       case GST_CLOTH_SYNC_KEEP:
         if (heads->head[i]) {
+          if (pad->silent) {
+            gst_cloth_sync_set_silent (self, pad, FALSE, time);
+          }
           gst_cloth_sync_pad_note (pad, time,
-              gst_cloth_sync_end_of_head (heads, i));
+              gst_cloth_sync_heads_get_end (heads, i));
         }
         continue;
       case GST_CLOTH_SYNC_HOLD:
@@ -785,7 +707,8 @@ gst_cloth_sync_settle_times (GstClothSync * self, Heads * heads)
         }
         if (buffer) {
           gst_cloth_sync_pad_hold (pad, buffer,
-              gst_cloth_sync_time (self, pad, buffer), n_flushes);
+              gst_cloth_sync_pad_get_time (pad, GST_ELEMENT (self),
+                  priv->offset, buffer), n_flushes);
         }
         break;
       case GST_CLOTH_SYNC_BELIEVE:
@@ -808,50 +731,46 @@ gst_cloth_sync_discard_head (GstClothSync * self, GstClothSyncPad * pad)
   GST_LOG_OBJECT (pad, "discarded %" GST_PTR_FORMAT, buffer);
 }
 
+/* How long after the deadline of its set a frame of @time comes; 0 when it doesn't. */
+static GstClockTime
+gst_cloth_sync_get_lateness (GstClothSync * self, GstClockTimeDiff time)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  const GstClockTime latency =
+      gst_aggregator_get_latency (GST_AGGREGATOR (self));
+  const GstClockTime now =
+      gst_element_get_current_running_time (GST_ELEMENT (self));
+  GstClockTime set;
+
+  if (!GST_CLOCK_TIME_IS_VALID (latency) || !GST_CLOCK_TIME_IS_VALID (now)
+      || !priv->has_last || time < 0) {
+    return 0;
+  }
+  set = (GstClockTime) MIN (time, MAX (priv->last_time, 0));
+  return now > set && now - set > latency ? now - set - latency : 0;
+}
+
 static void
 gst_cloth_sync_drop (GstClothSync * self, GstClothSyncPad * pad,
     GstBuffer * buffer, GstClockTimeDiff time)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
-  GstAggregatorPad *aggpad = GST_AGGREGATOR_PAD (pad);
-  GstClockTime pts = GST_BUFFER_PTS (buffer);
-  GstClockTime max_jump;
-  GstMessage *message;
+  const GstClockTime late = gst_cloth_sync_get_lateness (self, time);
+  GstClockTime max_jump, latency;
 
+  g_object_get (self, "latency", &latency, NULL);
   GST_OBJECT_LOCK (self);
   max_jump = priv->max_jump;
   priv->n_dropped++;
   pad->dropped++;
   GST_OBJECT_UNLOCK (self);
-  GST_DEBUG_OBJECT (pad, "late frame dropped: %" GST_PTR_FORMAT, buffer);
-  message = gst_message_new_qos (GST_OBJECT (self), TRUE,
-      gst_segment_to_running_time (&aggpad->segment, GST_FORMAT_TIME, pts),
-      gst_segment_to_stream_time (&aggpad->segment, GST_FORMAT_TIME, pts), pts,
-      GST_BUFFER_DURATION (buffer));
-  gst_message_set_qos_stats (message, GST_FORMAT_BUFFERS, pad->used,
-      pad->dropped);
-  gst_element_post_message (GST_ELEMENT (self), message);
-  if (priv->has_last && !pad->warned_back
-      && !is_within (priv->last_time, time, max_jump)) {
-    g_autofree gchar *stream = gst_cloth_sync_name_stream (self, pad);
-
-    if (time < pad->last) {
-      GST_ELEMENT_WARNING (self, STREAM, FORMAT,
-          ("Frames of %s are dropped: their time stamps went back to %.3f s, "
-              "but %.3f s has gone by.", stream, (gdouble) time / GST_SECOND,
-              (gdouble) priv->last_time / GST_SECOND),
-          ("Streams are joined by running time, which never goes back. See "
-              "what stamps these frames."));
-    } else {
-      GST_ELEMENT_WARNING (self, STREAM, FORMAT,
-          ("Frames of %s are dropped: they come when the set of %.3f s has "
-              "gone, and are of %.3f s.", stream,
-              (gdouble) priv->last_time / GST_SECOND,
-              (gdouble) time / GST_SECOND),
-          ("Raise latency, or see whether another stream's time stamps run "
-              "ahead."));
-    }
-    pad->warned_back = TRUE;
+  gst_cloth_sync_say_dropped (GST_ELEMENT (self), pad, buffer);
+  if (priv->has_last
+      && !gst_cloth_sync_is_within (priv->last_time, time, max_jump)) {
+    gst_cloth_sync_say_far_back (GST_ELEMENT (self), pad, time,
+        priv->last_time);
+  } else if (late > 0) {
+    gst_cloth_sync_say_late (GST_ELEMENT (self), pad, late, latency);
   }
   gst_cloth_sync_discard_head (self, pad);
 }
@@ -860,7 +779,7 @@ gst_cloth_sync_drop (GstClothSync * self, GstClothSyncPad * pad,
  * gaps that end before the set at @first closes, or with @first %NULL all of them. TRUE
  * when one was taken: what follows it has to be looked at first. */
 static gboolean
-gst_cloth_sync_discard (GstClothSync * self, Heads * heads,
+gst_cloth_sync_discard (GstClothSync * self, GstClothSyncHeads * heads,
     const GstClockTimeDiff * first, GstClockTime tolerance)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
@@ -875,8 +794,9 @@ gst_cloth_sync_discard (GstClothSync * self, Heads * heads,
       continue;
     }
     if (heads->gap[i]) {
-      if (!first || is_within (gst_cloth_sync_end_of_head (heads, i), *first,
-              tolerance)) {
+      if (!first
+          || gst_cloth_sync_is_within (gst_cloth_sync_heads_get_end (heads, i),
+              *first, tolerance)) {
         gst_cloth_sync_discard_head (self, heads->pad[i]);
         discarded = TRUE;
       }
@@ -886,7 +806,8 @@ gst_cloth_sync_discard (GstClothSync * self, Heads * heads,
     if (priv->has_last) {
       late |= time <= priv->last_time;
       late |= !(priv->last_mask >> i & 1)
-          && is_within (time, priv->last_time, priv->last_tolerance);
+          && gst_cloth_sync_is_within (time, priv->last_time,
+          priv->last_tolerance);
     }
     if (late) {
       gst_cloth_sync_drop (self, heads->pad[i], heads->head[i], time);
@@ -917,10 +838,44 @@ gst_cloth_sync_push_gap (GstClothSync * self, GstClockTime pts,
   gst_pad_push_event (srcpad, gst_event_new_gap (pts, duration));
 }
 
+/* Returns: 1 for a set that lacks @pad, 0 when there is no pad */
+static guint
+gst_cloth_sync_count_missing (GstClothSync * self, GstClothSyncPad * pad)
+{
+  if (!pad) {
+    return 0;
+  }
+  GST_OBJECT_LOCK (self);
+  pad->missing++;
+  GST_OBJECT_UNLOCK (self);
+  return 1;
+}
+
+/* Notes which cameras the pads' frames are of, as the subclass knows by now. */
+static void
+gst_cloth_sync_name_cameras (GstClothSync * self,
+    const GstClothSyncHeads * heads)
+{
+  GstClothSyncClass *klass = GST_CLOTH_SYNC_GET_CLASS (self);
+  guint i;
+
+  for (i = 0; i < heads->n && klass->get_camera; i++) {
+    GstClothSyncPad *pad = heads->pad[i];
+    const gchar *name = pad ? klass->get_camera (self, i) : NULL;
+
+    if (pad && g_strcmp0 (pad->camera_name, name) != 0) {
+      GST_OBJECT_LOCK (self);
+      g_free (pad->camera_name);
+      pad->camera_name = g_strdup (name);
+      GST_OBJECT_UNLOCK (self);
+    }
+  }
+}
+
 /* Pops the heads of the set and hands them to the subclass. */
 static GstFlowReturn
-gst_cloth_sync_emit (GstClothSync * self, Heads * heads, guint64 mask,
-    GstClockTimeDiff time)
+gst_cloth_sync_emit (GstClothSync * self, GstClothSyncHeads * heads,
+    guint64 mask, GstClockTimeDiff time)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
   GstAggregator *agg = GST_AGGREGATOR (self);
@@ -930,10 +885,11 @@ gst_cloth_sync_emit (GstClothSync * self, Heads * heads, guint64 mask,
   GstClockTime duration = GST_CLOCK_TIME_NONE, pts = GST_CLOCK_TIME_NONE;
   GstFlowReturn ret = GST_FLOW_OK;
   gboolean enough, inside = TRUE;
-  guint i, n_views = 0;
+  guint i, n_views = 0, n_missing = 0;
 
   for (i = 0; i < heads->n; i++) {
     if (!(mask >> i & 1)) {
+      n_missing += gst_cloth_sync_count_missing (self, heads->pad[i]);
       continue;
     }
     /* only one reference must be left, so that the subclass can write in place */
@@ -941,6 +897,7 @@ gst_cloth_sync_emit (GstClothSync * self, Heads * heads, guint64 mask,
     views[i] = gst_cloth_sync_pop (self, heads->pad[i]);
     if (!views[i]) {
       mask &= ~(G_GUINT64_CONSTANT (1) << i);   /* flushed meanwhile */
+      n_missing += gst_cloth_sync_count_missing (self, heads->pad[i]);
       continue;
     }
     n_views++;
@@ -965,8 +922,9 @@ gst_cloth_sync_emit (GstClothSync * self, Heads * heads, guint64 mask,
 
   GST_OBJECT_LOCK (self);
   enough = n_views > 0 && n_views >= priv->min_views;
+  priv->n_incomplete += n_missing > 0;
   if (!enough || !inside) {
-    priv->n_incomplete++;
+    priv->n_skipped++;
   } else {
     priv->n_sets++;
   }
@@ -980,6 +938,7 @@ gst_cloth_sync_emit (GstClothSync * self, Heads * heads, guint64 mask,
     ret =
         GST_CLOTH_SYNC_GET_CLASS (self)->process_set (self, views, heads->n,
         mask, pts, duration, &out);
+    gst_cloth_sync_name_cameras (self, heads);
   }
   for (i = 0; i < heads->n; i++) {
     gst_clear_buffer (&views[i]);
@@ -1003,14 +962,14 @@ static GstFlowReturn
 gst_cloth_sync_end (GstClothSync * self)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
-  gboolean all_incomplete;
+  gboolean all_skipped;
   guint min_views;
 
   GST_OBJECT_LOCK (self);
-  all_incomplete = priv->n_sets == 0 && priv->n_incomplete > 0;
+  all_skipped = priv->n_sets == 0 && priv->n_skipped > 0;
   min_views = priv->min_views;
   GST_OBJECT_UNLOCK (self);
-  if (all_incomplete) {
+  if (all_skipped) {
     GST_ELEMENT_WARNING (self, STREAM, FAILED,
         ("No instant had frames from %u pads, so nothing was sent.", min_views),
         ("Lower min-views, raise tolerance, or check that the streams' times "
@@ -1030,7 +989,7 @@ gst_cloth_sync_aggregate (GstAggregator * agg, gboolean timeout)
   GstClockTime tolerance;
   guint64 mask = 0;
   gint untimed = -1;
-  Heads heads;
+  GstClothSyncHeads heads;
   guint i;
 
   gst_cloth_sync_forget_released (self);
@@ -1043,7 +1002,7 @@ gst_cloth_sync_aggregate (GstAggregator * agg, gboolean timeout)
   priv->is_live = GST_CLOCK_TIME_IS_VALID (gst_aggregator_get_latency (agg));
 
   g_mutex_lock (&priv->release_lock);
-  gst_cloth_sync_gather (self, &heads);
+  gst_cloth_sync_heads_gather (&heads, GST_ELEMENT (self), priv->offset);
   g_mutex_unlock (&priv->release_lock);
   if (gst_cloth_sync_settle_times (self, &heads)) {
     goto done;
@@ -1054,6 +1013,9 @@ gst_cloth_sync_aggregate (GstAggregator * agg, gboolean timeout)
   }
   if (heads.n_waiting > 0 && !timeout) {
     goto done;                  /* what came was clipped away, or the pad is new */
+  }
+  if (heads.n_heads == 0) {
+    gst_cloth_sync_look_for_silence (self, &heads, GST_CLOCK_STIME_NONE);
   }
   for (i = 0; i < heads.n; i++) {
     if (!heads.head[i]) {
@@ -1089,11 +1051,15 @@ gst_cloth_sync_aggregate (GstAggregator * agg, gboolean timeout)
 
   for (i = 0; i < heads.n; i++) {
     if (heads.head[i] && !heads.gap[i]
-        && is_within (heads.time[i], first, tolerance)) {
+        && gst_cloth_sync_is_within (heads.time[i], first, tolerance)) {
       mask |= G_GUINT64_CONSTANT (1) << i;
     }
   }
-  priv->has_last = TRUE;
+  if (!priv->has_last) {
+    priv->has_last = TRUE;
+    priv->first_time = first;
+  }
+  gst_cloth_sync_look_for_silence (self, &heads, first);
   priv->last_time = first;
   priv->last_tolerance = tolerance;
   priv->last_mask = mask;
@@ -1104,7 +1070,7 @@ gst_cloth_sync_aggregate (GstAggregator * agg, gboolean timeout)
   ret = gst_cloth_sync_emit (self, &heads, mask, first);
 
 done:
-  gst_cloth_sync_release_heads (&heads);
+  gst_cloth_sync_heads_release (&heads);
   return ret;
 }
 
@@ -1126,18 +1092,28 @@ gst_cloth_sync_get_property (GObject * object, guint id, GValue * value,
 {
   GstClothSyncPrivate *priv =
       gst_cloth_sync_get_instance_private (GST_CLOTH_SYNC (object));
+  GstStructure *stats;
+  GList *l;
 
   if (id != PROP_STATS) {
     gst_cloth_get_property (object, id, value, pspec);
     return;
   }
   GST_OBJECT_LOCK (object);
-  g_value_take_boxed (value, gst_structure_new ("stats",
-          "sets", G_TYPE_UINT64, priv->n_sets,
-          "incomplete", G_TYPE_UINT64, priv->n_incomplete,
-          "dropped", G_TYPE_UINT64, priv->n_dropped,
-          "implausible", G_TYPE_UINT64, priv->n_implausible, NULL));
+  stats = gst_structure_new ("stats",
+      "sets", G_TYPE_UINT64, priv->n_sets,
+      "incomplete", G_TYPE_UINT64, priv->n_incomplete,
+      "skipped", G_TYPE_UINT64, priv->n_skipped,
+      "dropped", G_TYPE_UINT64, priv->n_dropped,
+      "implausible", G_TYPE_UINT64, priv->n_implausible, NULL);
+  for (l = GST_ELEMENT (object)->sinkpads; l; l = l->next) {
+    g_autoptr (GstStructure) pad = gst_cloth_sync_pad_get_stats (l->data);
+
+    gst_structure_set (stats, gst_structure_get_name (pad), GST_TYPE_STRUCTURE,
+        pad, NULL);
+  }
   GST_OBJECT_UNLOCK (object);
+  g_value_take_boxed (value, stats);
 }
 
 static void
@@ -1178,9 +1154,11 @@ gst_cloth_sync_class_init (GstClothSyncClass * klass)
 
   g_object_class_install_property (object_class, PROP_STATS,
       g_param_spec_boxed ("stats", "Statistics",
-          "Counts since the start: sets processed, sets dropped as incomplete "
-          "(fewer than min-views frames), frames dropped as late, and as "
-          "implausible (max-jump)",
+          "Counts since the start: sets processed, sets that lacked the frame "
+          "of a pad (incomplete), sets dropped for fewer than min-views frames "
+          "(skipped), frames dropped as late, and as implausible (max-jump); "
+          "under each pad's name its camera, the frames used, missing, dropped "
+          "and implausible, and whether it is silent",
           GST_TYPE_STRUCTURE, G_PARAM_READABLE | G_PARAM_STATIC_STRINGS));
 
   gst_type_mark_as_plugin_api (GST_TYPE_CLOTH_SYNC, 0);
@@ -1194,4 +1172,5 @@ gst_cloth_sync_init (GstClothSync * self)
 
   *priv = defaults;
   g_mutex_init (&priv->release_lock);
+  g_object_set (self, "latency", (guint64) LATENCY, NULL);
 }

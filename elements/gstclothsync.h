@@ -7,8 +7,6 @@
 
 G_BEGIN_DECLS
 
-#define GST_CLOTH_SYNC_MAX_PADS 64
-
 #define GST_TYPE_CLOTH_SYNC (gst_cloth_sync_get_type ())
 G_DECLARE_DERIVABLE_TYPE (GstClothSync, gst_cloth_sync, GST, CLOTH_SYNC,
     GstAggregator)
@@ -28,10 +26,13 @@ G_DECLARE_DERIVABLE_TYPE (GstClothSync, gst_cloth_sync, GST, CLOTH_SYNC,
  *   it without a copy take it and put %NULL in its place. @out takes the result; left
  *   %NULL a GAP event is sent for this set. The base sets its time stamps.
  * @reset: forgets what earlier frames have left (flush, stop). Optional.
- * @get_camera: (transfer full) (nullable): name of the camera whose frames come to pad
- *   @index, for messages. Optional.
+ * @get_camera: (nullable): name of the camera whose frames come to pad @index, for messages.
+ *   Optional.
+ * @prefix: of the element messages "<prefix>/silent" and "<prefix>/back", which say that a
+ *   pad of a live pipeline gives nothing for a while, and that it gives again; both have
+ *   camera, pad and seconds. %NULL: they are not posted.
  *
- * All of them are called from the streaming thread, with no lock held.
+ * All methods are called from the streaming thread, with no lock held.
  */
 struct _GstClothSyncClass {
   GstAggregatorClass parent_class;
@@ -42,9 +43,10 @@ struct _GstClothSyncClass {
   GstFlowReturn (*process_set) (GstClothSync * sync, GstBuffer ** views, guint n,
       guint64 mask, GstClockTime pts, GstClockTime duration, GstBuffer ** out);
   void (*reset) (GstClothSync * sync);
-  gchar *(*get_camera) (GstClothSync * sync, guint index);
+  const gchar *(*get_camera) (GstClothSync * sync, guint index);
+  const gchar *prefix;
 
-  gpointer _reserved[4];
+  gpointer _reserved[3];
 };
 
 /* @sync: the element, in its instance init

@@ -9,6 +9,10 @@
 
 /* Pauses of a film are shorter, and one damaged time stamp of 200,000 is. */
 #define LONGEST_PAUSE (24 * 3600 * GST_SECOND)
+/* A camera that gives nothing for so long, and for so many of its frames, is silent: longer
+ * than a stutter, and soon enough that an operator can act. */
+#define PATIENCE GST_SECOND
+#define PATIENT_FRAMES 5
 
 G_DEFINE_TYPE (GstClothSyncPad, gst_cloth_sync_pad, GST_TYPE_AGGREGATOR_PAD);
 
@@ -118,6 +122,24 @@ gst_cloth_sync_pad_note (GstClothSyncPad * pad, GstClockTimeDiff time,
   GST_OBJECT_UNLOCK (pad);
 }
 
+GstClockTimeDiff
+gst_cloth_sync_pad_silent_since (GstClothSyncPad * pad, GstClockTimeDiff since)
+{
+  GST_OBJECT_LOCK (pad);
+  if (GST_CLOCK_STIME_IS_VALID (pad->last)) {
+    since = MAX (since, pad->last);
+  }
+  GST_OBJECT_UNLOCK (pad);
+  return since;
+}
+
+GstClockTime
+gst_cloth_sync_pad_patience (const GstClothSyncPad * pad)
+{
+  return pad->period < G_MAXUINT64 / PATIENT_FRAMES ?
+      MAX (PATIENCE, PATIENT_FRAMES * pad->period) : PATIENCE;
+}
+
 void
 gst_cloth_sync_pad_hold (GstClothSyncPad * pad, GstBuffer * buffer,
     GstClockTimeDiff time, guint n_flushes)
@@ -216,6 +238,7 @@ gst_cloth_sync_pad_finalize (GObject * object)
 {
   gst_cloth_sync_pad_reset (GST_CLOTH_SYNC_PAD (object));
   gst_clear_event (&GST_CLOTH_SYNC_PAD (object)->caps);
+  g_free (GST_CLOTH_SYNC_PAD (object)->camera_name);
   G_OBJECT_CLASS (gst_cloth_sync_pad_parent_class)->finalize (object);
 }
 

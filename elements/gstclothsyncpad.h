@@ -9,6 +9,8 @@
 
 G_BEGIN_DECLS
 
+#define GST_CLOTH_SYNC_MAX_PADS 64
+
 #define GST_TYPE_CLOTH_SYNC_PAD (gst_cloth_sync_pad_get_type ())
 #define GST_CLOTH_SYNC_PAD(obj) (G_TYPE_CHECK_INSTANCE_CAST ((obj), \
     GST_TYPE_CLOTH_SYNC_PAD, GstClothSyncPad))
@@ -19,8 +21,11 @@ typedef struct _GstClothSyncPadClass GstClothSyncPadClass;
  * @index: what the pad is known by in the methods of #GstClothSyncClass
  * @period: of a frame, by the caps; %GST_CLOCK_TIME_NONE when they don't say
  * @used: frames that came into sets
+ * @missing: sets that went without the pad
  * @dropped: frames that came too late
  * @implausible: frames whose time the next one did not bear out
+ * @camera_name: of the camera that its frames are of, %NULL while that isn't known
+ * @silent: nothing has come for a while; with the counts under the element's object lock
  *
  * A sink pad. A subclass of #GstClothSync that gives its pads properties derives them from
  * this type and names its own in the pad template; all fields are the base's.
@@ -30,7 +35,9 @@ struct _GstClothSyncPad {
 
   guint index;
   GstClockTime period;
-  guint64 used, dropped, implausible;
+  guint64 used, missing, dropped, implausible;
+  gchar *camera_name;
+  gboolean silent;
 
   /*< private > */
   /* object lock of the pad */
@@ -43,7 +50,7 @@ struct _GstClothSyncPad {
 
   /* streaming thread of the element */
   GstEvent *caps;               /* came after @held, and counts once that one is gone */
-  gboolean warned_ahead, warned_back, warned_untimed;
+  gboolean warned_ahead, warned_back, warned_untimed, warned_late;
 };
 
 struct _GstClothSyncPadClass {
@@ -100,6 +107,16 @@ GstClothSyncVerdict gst_cloth_sync_pad_judge (GstClothSyncPad * pad,
  * as well. */
 void gst_cloth_sync_pad_note (GstClothSyncPad * pad, GstClockTimeDiff time,
     GstClockTimeDiff end);
+
+/* @since: the earliest that silence is counted from
+ *
+ * Returns: from when on the pad has given nothing
+ */
+GstClockTimeDiff gst_cloth_sync_pad_silent_since (GstClothSyncPad * pad,
+    GstClockTimeDiff since);
+
+/* Returns: how long a pad gives nothing before that is said */
+GstClockTime gst_cloth_sync_pad_patience (const GstClothSyncPad * pad);
 
 /* Returns: whether times can be told by the segment of @event; else @element has posted the
  * error */

@@ -164,6 +164,8 @@ gst_cloth_read_mesh (GstElement * element, GstBuffer * buffer, guint n_vertices)
 
   if (!mesh)
     GST_ELEMENT_ERROR (element, STREAM, DECODE,
-        ("A buffer holds no valid mesh: %s", error->message), (NULL));
+        ("A buffer holds no valid mesh: %s", error->message),
+        ("See what makes these meshes, and what lies between it and this "
+            "element."));
   return mesh;
 }

@@ -51,10 +51,10 @@ G_STATIC_ASSERT (GST_CLOTH_MAX_FEATURES >= CLOTH_DOT_MAX);
  * are let in, to be refused with a word on what to do. */
 #define COLOUR_FORMATS "{ I420, YV12, NV12, NV21, Y42B, NV16, NV61, Y444, " \
     "NV24, Y41B, YUV9, YVU9, A420 }"
-#define DOT_LABEL_CAPS GST_VIDEO_CAPS_MAKE (COLOUR_FORMATS) \
-    ", width=(int)[ 1, 16384 ], height=(int)[ 1, 16384 ]; " \
-    GST_VIDEO_CAPS_MAKE ("GRAY8") \
-    ", width=(int)[ 1, 16384 ], height=(int)[ 1, 16384 ]"
+#define SIZES ", width=(int)[ 1, 16384 ], height=(int)[ 1, 16384 ]"
+#define DOT_LABEL_CAPS GST_VIDEO_CAPS_MAKE (COLOUR_FORMATS) SIZES "; " \
+    GST_VIDEO_CAPS_MAKE (GST_CLOTH_FILTER_PACKED_FORMATS) SIZES "; " \
+    GST_VIDEO_CAPS_MAKE ("GRAY8") SIZES
 
 typedef struct
 {
@@ -416,7 +416,7 @@ gst_dot_label_analyse (GstClothFilter * filter,
     gst_dot_label_refuse_grey (self, frame->video);
     return GST_FLOW_ERROR;
   }
-  gst_cloth_filter_view_planes (frame->video, &image);
+  image = frame->planes;
   GST_OBJECT_LOCK (self);
   dot_params = self->settings.dots;
   film_params = self->settings.film;

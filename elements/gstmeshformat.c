@@ -43,6 +43,26 @@ says_where (const gchar * message, const gchar * location)
       || g_str_has_prefix (message, first);
 }
 
+/* What to do about an error. */
+static const gchar *
+find_remedy (const GError * error, gboolean writing)
+{
+  if (error->domain == CLOTH_FILE_ERROR)
+    return writing ? "Change location or format, or what is sent here." :
+        "See that location is a file or folder that meshsink wrote, or an OBJ, "
+        "PC2 or PLY file that keeps to its format.";
+  if (g_error_matches (error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND))
+    return writing ? "Make the folder first, or change location." :
+        "See that location is spelled as the file is, and from which folder the "
+        "program was started.";
+  if (g_error_matches (error, G_IO_ERROR, G_IO_ERROR_NO_SPACE))
+    return "Make room, or record to another disk.";
+  if (g_error_matches (error, G_IO_ERROR, G_IO_ERROR_PERMISSION_DENIED))
+    return writing ? "Choose a folder that you may write to." :
+        "Choose a file that you may read.";
+  return "See whether the disk works, or choose another location.";
+}
+
 /* The system's failures are of the resource, wrong contents of the stream. */
 void
 gst_mesh_post_error (GstElement * element, const gchar * doing,
@@ -65,7 +85,8 @@ gst_mesh_post_error (GstElement * element, const gchar * doing,
   gst_element_message_full (element, GST_MESSAGE_ERROR, domain, code,
       says_where (error->message, location) ? g_strdup (error->message) :
       g_strdup_printf ("Cannot %s “%s”: %s", doing, location,
-          error->message), NULL, __FILE__, GST_FUNCTION, __LINE__);
+          error->message), g_strdup (find_remedy (error, writing)), __FILE__,
+      GST_FUNCTION, __LINE__);
 }
 
 /* What the rooms work with, from what came with the caps. */

@@ -148,7 +148,8 @@ stop_and_tell (GstMeshSink * self)
   g_autofree gchar *kept = stop_recording (self);
 
   if (kept)
-    GST_ELEMENT_WARNING (self, RESOURCE, FAILED, ("%s", kept), (NULL));
+    GST_ELEMENT_WARNING (self, RESOURCE, FAILED, ("%s", kept),
+        ("What ended the recording is in the error before this."));
 }
 
 static gboolean
@@ -285,8 +286,9 @@ gst_mesh_sink_event (GstBaseSink * sink, GstEvent * event)
       if (!self->writer && !self->failed) {
         self->failed = TRUE;
         GST_ELEMENT_ERROR (self, STREAM, FAILED,
-            ("The stream ended without a single mesh: nothing was written"),
-            (NULL));
+            ("The stream ended without a single mesh: nothing was written."),
+            ("See the warnings before this one: what makes the meshes says there "
+                "what it lacks."));
       }
       if (self->failed || !finish (self)) {
         gst_event_unref (event);
@@ -314,12 +316,15 @@ warn_of_remains (GstMeshSink * self)
     case CLOTH_LEFT_FRAMES:
       GST_ELEMENT_WARNING (self, RESOURCE, FAILED,
           ("A recording to “%s” was interrupted: “%s” finishes it, when this "
-              "one is moved away", location, command), (NULL));
+              "one is moved away", location, command),
+          ("Or record to another location, and finish that one first."));
       break;
     case CLOTH_LEFT_LOST:
       GST_ELEMENT_WARNING (self, RESOURCE, FAILED,
           ("A recording to “%s” was interrupted and can't be finished: its "
-              "remains go when this one is whole", location), (NULL));
+              "remains go when this one is whole", location),
+          ("Takes, OBJ, PLY, VTP and CSV can be finished after a crash: record "
+              "to one of these."));
       break;
     default:
       break;
@@ -330,11 +335,18 @@ static gboolean
 gst_mesh_sink_start (GstBaseSink * sink)
 {
   GstMeshSink *self = GST_MESH_SINK (sink);
+  g_autoptr (GError) error = NULL;
 
   if (!self->settings.location || !*self->settings.location) {
     GST_ELEMENT_ERROR (self, RESOURCE, NOT_FOUND,
-        ("No location given: set the property “location” to a file or folder"),
-        (NULL));
+        ("No location given: nothing can be written."),
+        ("Set the property location to a file or folder, as cloth.obj."));
+    return FALSE;
+  }
+  if (!cloth_mesh_format_check (self->settings.location, self->settings.format,
+          &error)) {
+    gst_mesh_post_error (GST_ELEMENT (self), "write", self->settings.location,
+        TRUE, error);
     return FALSE;
   }
   warn_of_remains (self);

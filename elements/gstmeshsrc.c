@@ -107,8 +107,8 @@ gst_mesh_src_open (GstClothSource * source)
 
   if (!self->settings.location || !*self->settings.location) {
     GST_ELEMENT_ERROR (self, RESOURCE, NOT_FOUND,
-        ("No location given: set the property “location” to a file or folder"),
-        (NULL));
+        ("No location given: nothing can be read."),
+        ("Set the property location to a file or folder, as cloth.obj."));
     return FALSE;
   }
   self->reader =
@@ -122,9 +122,9 @@ gst_mesh_src_open (GstClothSource * source)
   n_seam_vertices = cloth_mesh_reader_get_n_seam_vertices (self->reader);
   if (n_seam_vertices > 0)
     GST_ELEMENT_WARNING (self, STREAM, FORMAT,
-        ("%u vertices of “%s” have more than one uv, the first is kept; split "
-            "the mesh at its uv seams to keep all", n_seam_vertices,
-            self->settings.location), (NULL));
+        ("%u vertices of “%s” have more than one uv, the first is kept.",
+            n_seam_vertices, self->settings.location),
+        ("Split the mesh at its uv seams to keep all."));
   stream.topology = cloth_mesh_reader_get_topology (self->reader);
   stream.n_frames = cloth_mesh_reader_get_n_frames (self->reader);
   choose_rate (self, &stream);

@@ -189,7 +189,7 @@ gst_silhouette_prepare_background (GstSilhouette * self,
   if (gst_video_info_is_equal (&self->film, film))
     return TRUE;
   buffer = gst_cloth_convert_picture (self->background, film,
-      GST_VIDEO_INFO_FORMAT (film), &info);
+      gst_cloth_filter_get_planar_format (film), &info);
   if (!buffer || !gst_video_frame_map (&frame, &info, buffer, GST_MAP_READ)) {
     GST_ELEMENT_ERROR (self, STREAM, FORMAT,
         ("The background can't be converted to the film's %s.",
@@ -307,7 +307,7 @@ gst_silhouette_analyse (GstClothFilter * filter,
   GST_OBJECT_LOCK (self);
   settings = self->settings;
   GST_OBJECT_UNLOCK (self);
-  gst_cloth_filter_view_planes (frame->video, &image);
+  image = frame->planes;
   if (!gst_silhouette_update_background (self, frame->video, &image, &settings)
       || !gst_silhouette_take_disparities (self, frame->buffer, &image.luma,
           &settings.mask))

@@ -41,6 +41,7 @@
 #include "elements/gsttriangulate.h"
 
 #include <gst/cloth/cloth.h>
+#include <math.h>
 
 #include "elements/gstclothdamage.h"
 #include "elements/gstclothproperties.h"
@@ -56,6 +57,8 @@ GST_DEBUG_CATEGORY_STATIC (triangulate_debug);
 #define MAX_THREADS 1024
 /* Every so many sets it is looked whether the cameras fit together. */
 #define CHECKED_SETS 25
+/* A film of fewer sets is judged at its end, by no fewer vertices than this. */
+#define CHECKED_VERTICES 20
 #define SINK_CAPS "video/x-raw(ANY), width=(int)[ 1, 16384 ], " \
     "height=(int)[ 1, 16384 ]; " GST_CLOTH_OBSERVATIONS_CAPS
 
@@ -79,6 +82,7 @@ typedef struct
   gchar *rig, *pattern;
   ClothReconstructionParameters parameters;
   guint threads;
+  gboolean allow_one_camera;
   GstClothDamage damage;
 } Settings;
 
@@ -100,6 +104,7 @@ struct _GstTriangulate
   ClothMerge *merge[CLOTH_RIG_MAX_CAMERAS];
   GstTriangulateView view[GST_CLOTH_SYNC_MAX_PADS];
   guint64 sequence;
+  gboolean had_others;          /* more than one camera has been linked */
   Check check;
 };
 
@@ -153,6 +158,10 @@ static const GstClothProperty properties[] = {
     "Threads that triangulate; 0: as many as there are processors. The "
     "result is the same",
     G_TYPE_UINT, SETTING (threads), GST_PARAM_MUTABLE_PLAYING, 0, MAX_THREADS},
+  {"allow-one-camera", "Allow one camera",
+    "Go on while a single camera is linked, which sees no vertex in space; else "
+    "that is an error, unless others were linked before",
+    G_TYPE_BOOLEAN, SETTING (allow_one_camera), GST_PARAM_MUTABLE_PLAYING},
   GST_CLOTH_DAMAGE_PROPERTIES (Settings, damage),
 };
 /* *INDENT-ON* */
@@ -178,29 +187,59 @@ GST_STATIC_PAD_TEMPLATE ("src", GST_PAD_SRC, GST_PAD_ALWAYS,
 
 /* ---- whether the cameras fit together ---- */
 
-/* Counts one set. Every 25 sets posts, once, a warning if fewer than two cameras have
- * carried any yet, or if a camera contradicts the others on more than half of
- * what it sees; the message's details name it as "camera". */
+/* Two cameras that see the same to the last bit are one film, given twice. */
 static void
-check_add (Check * check, GstElement * element,
+check_same_film (Check * check, GstElement * element,
     const GstTriangulateBoard * board, const ClothRig * rig,
+    const ClothTriangulateView * views)
+{
+  const guint n = board->grid.columns * board->grid.rows;
+
+  for (guint c = 1; c < rig->n_cameras; c++) {
+    for (guint other = 0; other < c && views[c].x; other++) {
+      guint n_seen = 0, n_same = 0;
+
+      for (guint i = 0; i < n && views[other].x; i++) {
+        n_seen += isfinite (views[c].x[i]);
+        n_same += views[c].x[i] == views[other].x[i]
+            && views[c].y[i] == views[other].y[i];
+      }
+      if (n_same < CHECKED_VERTICES || n_same < n_seen) {
+        continue;
+      }
+      check->warned = TRUE;
+      GST_ELEMENT_WARNING_WITH_DETAILS (element, STREAM, FAILED,
+          ("Cameras \"%s\" and \"%s\" show the very same picture.",
+              rig->cameras[other].name, rig->cameras[c].name),
+          ("Give each pad the film of its own camera."),
+          ("camera", G_TYPE_STRING, rig->cameras[c].name, NULL));
+      return;
+    }
+  }
+}
+
+static void
+check_count (Check * check, const ClothRig * rig,
     const ClothTriangulateView * views, const ClothReconstructed * result)
+{
+  for (guint c = 0; c < rig->n_cameras; c++) {
+    check->seen[c] |= views[c].x != NULL;
+    check->n_compared[c] += result->n_compared[c];
+    check->n_left_out[c] += result->n_left_out[c];
+  }
+}
+
+/* Posts, once, a warning if fewer than two cameras have carried any yet, or if a camera
+ * contradicts the others on more than half of what it sees; the message's details name it as
+ * "camera". */
+static void
+check_judge (Check * check, GstElement * element,
+    const GstTriangulateBoard * board, const ClothRig * rig)
 {
   guint c, worst = 0, n_seeing = 0;
   const gchar *seeing = NULL;
   gdouble share = 0.;
 
-  if (check->warned) {
-    return;
-  }
-  for (c = 0; c < rig->n_cameras; c++) {
-    check->seen[c] |= views[c].x != NULL;
-    check->n_compared[c] += result->n_compared[c];
-    check->n_left_out[c] += result->n_left_out[c];
-  }
-  if (++check->n_sets % CHECKED_SETS) {
-    return;
-  }
   for (c = 0; c < rig->n_cameras; c++) {
     if (check->seen[c]) {
       seeing = rig->cameras[c].name;
@@ -227,7 +266,7 @@ check_add (Check * check, GstElement * element,
   }
   for (c = 0; c < rig->n_cameras; c++) {
     gdouble s = (gdouble) check->n_left_out[c] /
-        (gdouble) MAX (check->n_compared[c], 1);
+        (gdouble) MAX (check->n_compared[c], CHECKED_VERTICES);
 
     if (s > share) {
       share = s;
@@ -243,6 +282,32 @@ check_add (Check * check, GstElement * element,
         ("See that each pad has its own camera and that the cameras stand as when "
             "rig was made; else calibrate again, or raise error-floor."),
         ("camera", G_TYPE_STRING, rig->cameras[worst].name, NULL));
+  }
+}
+
+/* Counts one set and judges every 25th time. */
+static void
+check_add (Check * check, GstElement * element,
+    const GstTriangulateBoard * board, const ClothRig * rig,
+    const ClothTriangulateView * views, const ClothReconstructed * result)
+{
+  if (check->warned) {
+    return;
+  }
+  check_same_film (check, element, board, rig, views);
+  check_count (check, rig, views, result);
+  if (++check->n_sets % CHECKED_SETS == 0 && !check->warned) {
+    check_judge (check, element, board, rig);
+  }
+}
+
+/* At the end: a film that is too short to be judged before. */
+static void
+check_end (Check * check, GstElement * element,
+    const GstTriangulateBoard * board, const ClothRig * rig)
+{
+  if (check->n_sets > 0 && check->n_sets < CHECKED_SETS && !check->warned) {
+    check_judge (check, element, board, rig);
   }
 }
 
@@ -378,6 +443,7 @@ gst_triangulate_forget (GstTriangulate * self)
   g_clear_pointer (&self->pool, cloth_pool_free);
   gst_triangulate_clear_merges (self);
   self->fps_n = -1;
+  self->had_others = FALSE;
   for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
     gst_triangulate_view_forget (&self->view[i]);
   }
@@ -493,6 +559,28 @@ gst_triangulate_look (GstTriangulate * self, guint index, GstBuffer * view,
       error);
 }
 
+/* One camera makes no vertex: FALSE after an element error. */
+static gboolean
+gst_triangulate_has_cameras (GstTriangulate * self)
+{
+  gboolean allowed;
+  guint n_pads;
+
+  GST_OBJECT_LOCK (self);
+  n_pads = GST_ELEMENT (self)->numsinkpads;
+  allowed = self->settings.allow_one_camera;
+  GST_OBJECT_UNLOCK (self);
+  self->had_others |= n_pads > 1;
+  if (self->had_others || allowed) {
+    return TRUE;
+  }
+  GST_ELEMENT_ERROR (self, RESOURCE, SETTINGS,
+      ("Only one camera is linked, and a place in space takes two."),
+      ("Link another camera to sink_%%u, or set allow-one-camera=true when it "
+          "comes later."));
+  return FALSE;
+}
+
 static GstFlowReturn
 gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
     guint64 mask, GstClockTime pts, GstClockTime duration, GstBuffer ** out)
@@ -506,7 +594,8 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   gboolean moved;
   guint i, n_carried = 0;
 
-  if (!gst_triangulate_apply_parameters (self)) {
+  if (!gst_triangulate_has_cameras (self)
+      || !gst_triangulate_apply_parameters (self)) {
     return GST_FLOW_ERROR;
   }
   self->sequence++;
@@ -581,6 +670,20 @@ done:
   return ret;
 }
 
+static GstFlowReturn
+gst_triangulate_aggregate (GstAggregator * agg, gboolean timeout)
+{
+  GstTriangulate *self = GST_TRIANGULATE (agg);
+  const GstFlowReturn ret =
+      GST_AGGREGATOR_CLASS (gst_triangulate_parent_class)->aggregate (agg,
+      timeout);
+
+  if (ret == GST_FLOW_EOS && self->board) {
+    check_end (&self->check, GST_ELEMENT (self), self->board, self->rig);
+  }
+  return ret;
+}
+
 static void
 gst_triangulate_reset (GstClothSync * sync)
 {
@@ -590,14 +693,13 @@ gst_triangulate_reset (GstClothSync * sync)
   self->sequence = G_MAXUINT64; /* the first set's is 0 */
 }
 
-static gchar *
+static const gchar *
 gst_triangulate_get_camera (GstClothSync * sync, guint index)
 {
   GstTriangulate *self = GST_TRIANGULATE (sync);
   const gint camera = self->view[index].camera;
 
-  return self->rig && camera >= 0 ? g_strdup (self->rig->cameras[camera].name) :
-      NULL;
+  return self->rig && camera >= 0 ? self->rig->cameras[camera].name : NULL;
 }
 
 /* ---- GObject ---- */
@@ -647,11 +749,13 @@ gst_triangulate_class_init (GstTriangulateClass * klass)
   element_class->release_pad = gst_triangulate_pad_release;
   agg_class->start = gst_triangulate_start;
   agg_class->stop = gst_triangulate_stop;
+  agg_class->aggregate = gst_triangulate_aggregate;
   sync_class->set_pad_caps = gst_triangulate_set_pad_caps;
   sync_class->negotiate_src = gst_triangulate_negotiate_src;
   sync_class->process_set = gst_triangulate_process_set;
   sync_class->reset = gst_triangulate_reset;
   sync_class->get_camera = gst_triangulate_get_camera;
+  sync_class->prefix = "triangulate";
 
   gst_element_class_add_static_pad_template_with_gtype (element_class,
       &sink_template, GST_TYPE_TRIANGULATE_PAD);

@@ -620,6 +620,7 @@ gst_uv_map_class_init (GstUVMapClass * klass)
   sync_class->negotiate_src = gst_uv_map_negotiate_src;
   sync_class->process_set = gst_uv_map_process_set;
   sync_class->reset = gst_uv_map_reset;
+  sync_class->prefix = "uvmap";
 
   gst_element_class_add_static_pad_template_with_gtype (element_class,
       &sink_template, GST_TYPE_CLOTH_SYNC_PAD);

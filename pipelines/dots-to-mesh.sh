@@ -18,7 +18,7 @@ rig=$1 pattern=$2 out=$3
 shift 3
 
 # The first film tells how far all are.
-films=()
+films=() n=0
 progress=(! progressreport name=filmed update-freq=2)
 for film in "$@"; do
   camera=${film%%=*} file=${film#*=}
@@ -28,11 +28,15 @@ for film in "$@"; do
   fi
   films+=(filesrc "location=$file" ! decodebin "${progress[@]}" ! videoconvert
       ! video/x-raw,format=I420 ! dotlabel "pattern=$pattern" "camera=$camera"
-      ! queue ! join.)
-  progress=()
+      ! tee "name=saw$n" "saw$n." ! queue ! join. "saw$n." ! queue ! clothmetapay
+      ! filesink "location=$out/cloth.take/observations/$camera.obs")
+  progress=() n=$((n + 1))
 done
 
-mkdir -p "$out"
+# What the cameras saw stays in the take.
+mkdir -p "$out/cloth.take/observations"
+rm -f "$out/cloth.take/observations/"*.obs
+cp "$rig" "$out/cloth.take/rig.json"
 heading "Films to a mesh"
 launch triangulate name=join "rig=$rig" "pattern=$pattern" ! meshfill \
     ! meshsink "location=$out/cloth.take" "${films[@]}"
@@ -53,7 +57,10 @@ launch meshsrc "location=$out/cloth.take" ! progressreport name=written \
 launch meshsrc "location=$out/cloth.take" ! meshsink "location=$out/cloth.glb" ||
     echo "cloth.glb was not written, the rest was"
 
-heading "Done"
+heading "What was found"
+"$(dirname "$0")/dots-summary.py" "$out/cloth.take"
+
+heading "Files"
 cat <<END
   take (NumPy, meshsrc)    $out/cloth.take
   Blender and most others  $out/cloth.obj with cloth.pc2; $out/cloth_00000.ply and so on

@@ -5,6 +5,7 @@
 
 #include <gio/gio.h>
 #include <glib/gstdio.h>
+#include <string.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -267,9 +268,15 @@ diagnose (const Arguments * arguments)
   if (result)
     note_worlds (arguments->rest + 1, result);
   if (result && cloth_gap_result_write (result, arguments->output, &error)) {
+    const gchar *verdict = cloth_gap_verdict_name (result->verdict);
     g_autofree gchar *summary = cloth_gap_result_summary (result);
+    const gsize n = strlen (verdict);
 
-    g_print ("%s: %s\n", cloth_gap_verdict_name (result->verdict), summary);
+    /* a summary may begin with the verdict, which is said once */
+    if (!g_ascii_strncasecmp (summary, verdict, n) && summary[n] == ':')
+      g_print ("%s%s\n", verdict, summary + n);
+    else
+      g_print ("%s: %s\n", verdict, summary);
     for (guint i = 0; i < result->notes->len; i++)
       g_print ("%s\n", (const gchar *) result->notes->pdata[i]);
     g_print ("%s%sreport.html\n", arguments->output,

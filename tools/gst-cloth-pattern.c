@@ -79,6 +79,37 @@ lay_out (const Arguments * arguments, const ClothArtwork * artwork,
   return DONE;
 }
 
+/* Whether the print, or the first of its sheets, is there: then it is made anew, and
+ * pattern.json with it. */
+static gboolean
+is_printed (const gchar * output)
+{
+  g_autofree gchar *stem = g_strndup (output, strlen (output) - 4);
+  g_autofree gchar *sheet = g_strconcat (stem, "-1-1.svg", NULL);
+
+  return g_file_test (output, G_FILE_TEST_EXISTS)
+      || (g_str_has_suffix (output, ".svg")
+      && g_file_test (sheet, G_FILE_TEST_EXISTS));
+}
+
+/* The file that goes with a print already made is worth as much as the print.
+ *
+ * @text: (nullable): what is to be written; %NULL: more than the file tells it apart */
+static gint
+keep_other_prints (const gchar * output, const gchar * json, const gchar * text)
+{
+  g_autofree gchar *present = NULL;
+
+  if (!g_file_test (json, G_FILE_TEST_IS_REGULAR) || is_printed (output)
+      || (text && g_file_get_contents (json, &present, NULL, NULL)
+          && !strcmp (present, text)))
+    return DONE;
+  return complain (FAILED, "%s is of another print and would be overwritten: "
+      "name a file in another folder, as --output NEW/%s, or move it away",
+      json, output + (strrchr (output, '/') ?
+          strrchr (output, '/') + 1 - output : 0));
+}
+
 /* @picture: (nullable): what a sheet is to its users */
 static gint
 print (const Arguments * arguments, const ClothArtwork * artwork,
@@ -89,9 +120,14 @@ print (const Arguments * arguments, const ClothArtwork * artwork,
   g_autofree gchar *json = strcmp (folder, ".")
       ? g_build_filename (folder, "pattern.json", NULL)
       : g_strdup ("pattern.json");
-  g_auto (GStrv) names =
-      cloth_print_save (artwork, options, arguments->output, &error);
+  g_autofree gchar *text =
+      artwork->checker ? cloth_pattern_to_json (artwork->checker) :
+      artwork->dots ? cloth_m_array_to_json (artwork->dots) : NULL;
+  g_auto (GStrv) names = NULL;
 
+  if (keep_other_prints (arguments->output, json, text) != DONE)
+    return FAILED;
+  names = cloth_print_save (artwork, options, arguments->output, &error);
   if (!names)
     return fail (FAILED, error);
   if (artwork->checker && !cloth_pattern_save (artwork->checker, json, &error))

@@ -193,8 +193,10 @@ read_clamps (ClothScene * scene, ClothTake * take, GError ** error)
     return TRUE;
   if (!cloth_take_has_clamps (take))
     return cloth_file_invalid (error,
-        "take.json says that %u vertices are held, but "
-        "there is no clamps.npy with their paths", scene->held->len);
+        "%s: take.json says that %u vertices are held, but there is no clamps.npy "
+        "with their paths: float32 of the shape [%u][%u][3], or [1][%u][3] when "
+        "the clamps stand still", cloth_take_get_folder (take),
+        scene->held->len, scene->n_frames, scene->held->len, scene->held->len);
   if (n * scene->n_frames > CLOTH_MAX_BUFFER / sizeof (gdouble))
     return cloth_file_invalid (error,
         "clamps.npy: %u held vertices in %u frames are "

@@ -88,6 +88,51 @@ cloth_mesh_format_guess (const gchar * location)
   return CLOTH_MESH_FORMAT_OBJ_PC2;
 }
 
+/* A name's ending, dot included: a short word that begins with a letter, unlike the number of
+ * a trial. NULL when it has none. */
+static const gchar *
+find_ending (const gchar * location)
+{
+  const gchar *slash = strrchr (location, G_DIR_SEPARATOR);
+  const gchar *base = slash ? slash + 1 : location;
+  const gchar *dot = strrchr (base, '.');
+
+  if (!dot || dot == base || !g_ascii_isalpha (dot[1]) || strlen (dot) > 6)
+    return NULL;
+  for (guint i = 1; dot[i]; i++)
+    if (!g_ascii_isalnum (dot[i]))
+      return NULL;
+  return dot;
+}
+
+/* @location: file or folder to write, as the user gave it
+ * @format: its format
+ * @error: #ClothFileError
+ *
+ * A name that ends as another format's files do would get files of another name than was
+ * asked for, and one with an unknown ending OBJ + PC2.
+ *
+ * Returns: whether the location's ending, if it has one, is of the format
+ */
+gboolean
+cloth_mesh_format_check (const gchar * location, ClothMeshFormat format,
+    GError ** error)
+{
+  const gchar *ending = find_ending (location);
+  const ClothMeshFormat guess = cloth_mesh_format_guess (location);
+  gboolean known = guess != CLOTH_MESH_FORMAT_OBJ_PC2
+      || has_ending (location, ".obj") || has_ending (location, ".pc2");
+
+  if (!ending || (known && format == CLOTH_MESH_FORMAT_AUTO) || (known
+          && format == guess) || (format == CLOTH_MESH_FORMAT_TAKE && !known))
+    return TRUE;
+  return cloth_file_invalid (error,
+      "“%s”: the ending %s is not %s; give .obj (with .pc2 beside it), .ply, "
+      ".glb (glTF), .usda (USD), .pvd (VTK), .c3d, .csv, or .take for a folder of "
+      "NumPy arrays", location, ending,
+      known ? "of the format that is set" : "known");
+}
+
 /* @location: file or folder as the user gave it
  * @format: a format, not %CLOTH_MESH_FORMAT_AUTO
  *
@@ -285,8 +330,13 @@ cloth_mesh_reader_open (const gchar * location, ClothMeshFormat format,
 {
   g_autoptr (ClothMeshReader) reader = g_new0 (ClothMeshReader, 1);
   g_autofree gchar *stem = NULL;
+  g_autofree gchar *obj = g_strconcat (location, ".obj", NULL);
   gboolean opened = FALSE;
 
+  /* a name with a dot in it may be there */
+  if (!g_file_test (obj, G_FILE_TEST_EXISTS)
+      && !cloth_mesh_format_check (location, format, error))
+    return NULL;
   if (format == CLOTH_MESH_FORMAT_AUTO)
     format = cloth_mesh_format_guess (location);
   reader->format = format;
@@ -560,6 +610,8 @@ cloth_mesh_writer_new (const gchar * location, ClothMeshFormat format,
   g_autofree gchar *note = NULL;
   g_autofree gchar *head = NULL;
 
+  if (!cloth_mesh_format_check (location, format, error))
+    return NULL;
   if (format == CLOTH_MESH_FORMAT_AUTO)
     format = cloth_mesh_format_guess (location);
   g_return_val_if_fail (format < G_N_ELEMENTS (exporters), NULL);

@@ -35,6 +35,8 @@ typedef struct _ClothMeshReader ClothMeshReader;
 typedef struct _ClothMeshWriter ClothMeshWriter;
 
 ClothMeshFormat cloth_mesh_format_guess (const gchar * location);
+gboolean cloth_mesh_format_check (const gchar * location,
+    ClothMeshFormat format, GError ** error);
 gchar *cloth_mesh_format_stem (const gchar * location, ClothMeshFormat format);
 gchar *cloth_mesh_format_head (const gchar * location, ClothMeshFormat format);
 

@@ -255,7 +255,7 @@ load_arrays (ClothTake * take, GError ** error)
   take->n_frames = (guint) n_frames;
   {
     const guint64 covariances[] = { n_frames, n_vertices, 6 };
-    const guint64 clamps[] = { n_frames, n_held, 3 };
+    const guint64 clamps[] = { 0, n_held, 3 };
     const guint64 states[] = { n_frames, n_vertices };
 
     if (!open_array (take, "covariance.npy", TRUE, 3, covariances,
@@ -270,6 +270,15 @@ load_arrays (ClothTake * take, GError ** error)
   if (take->clamps && n_held == 0)
     return cloth_file_invalid (error,
         "clamps.npy is there but take.json says of no vertex that it is held");
+  if (take->clamps) {
+    const guint64 n_rows = cloth_npy_reader_get_info (take->clamps)->n_rows;
+
+    if (n_rows != 1 && n_rows != n_frames)
+      return cloth_file_invalid (error, "clamps.npy has %" G_GUINT64_FORMAT
+          " rows; the take needs %" G_GUINT64_FORMAT
+          ", one a frame, or one for " "clamps that stand still", n_rows,
+          n_frames);
+  }
   return load_times (take, error);
 }
 
@@ -484,7 +493,8 @@ cloth_take_read_covariances (ClothTake * take, guint frame,
 
 /* @take: a take that has clamps
  * @frame: which frame
- * @clamps: (out caller-allocates): room for 3 numbers a held vertex, metres
+ * @clamps: (out caller-allocates): room for 3 numbers a held vertex, metres; of clamps that
+ *   stand still the only row
  * @error: #ClothFileError, #GIOErrorEnum
  *
  * Returns: %TRUE when they were read and are finite for as long as they hold
@@ -494,8 +504,11 @@ cloth_take_read_clamps (ClothTake * take, guint frame, gfloat * clamps,
     GError ** error)
 {
   gdouble time = cloth_take_get_time (take, frame);
+  const gboolean is_still =
+      cloth_npy_reader_get_info (take->clamps)->n_rows == 1;
 
-  if (!cloth_npy_reader_read_float (take->clamps, frame, 1, clamps, error))
+  if (!cloth_npy_reader_read_float (take->clamps, is_still ? 0 : frame, 1,
+          clamps, error))
     return FALSE;
   for (gsize i = 0; i < take->info->held->len; i++) {
     const ClothHeld *held = &g_array_index (take->info->held, ClothHeld, i);

@@ -103,6 +103,27 @@ test_start (void)
   }
 }
 
+/* Clamps that stand still may be written once. */
+static void
+test_still_clamps (void)
+{
+  g_autofree gchar *path = write_take ("c=c[:1]");
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothScene) scene = load (path, &error);
+
+  g_assert_no_error (error);
+  for (guint frame = 0; frame < 4; frame++) {
+    const gdouble *row = scene->clamps + 6 * (gsize) frame;
+
+    for (guint i = 0; i < 2; i++) {
+      g_assert_cmpfloat (row[3 * i], ==, 1 + 2 * i);
+      g_assert_cmpfloat (row[3 * i + 1], ==, 2);
+      g_assert_cmpfloat (row[3 * i + 2], ==, 3);
+    }
+  }
+  scratch_end ();
+}
+
 static void
 test_refused_takes (void)
 {
@@ -110,7 +131,11 @@ test_refused_takes (void)
   {
     const gchar *change, *text;
   } cases[] = {
-    {"c=None", "clamps.npy"},
+    {"c=None", "/t: take.json says that 2 vertices are held"},
+    {"c=None", "[4][2][3], or [1][2][3]"},
+    {"c=c[:2]", "clamps.npy has 2 rows; the take needs 4"},
+    {"c=c[:0]", "clamps.npy"},
+    {"c=c[:1]; c[0,1]=np.nan", "vertex 2"},
     {"c[1,1]=np.nan", "vertex 2"},
     {"j['held'].append({'vertex':2}); c=c[:,[0,1,1]]",
         "vertex 2 is held twice"},
@@ -419,6 +444,7 @@ main (int argc, char **argv)
   g_test_init (&argc, &argv, NULL);
   g_test_add_func ("/scene/real-take", test_real_take);
   g_test_add_func ("/scene/start", test_start);
+  g_test_add_func ("/scene/still-clamps", test_still_clamps);
   g_test_add_func ("/scene/refused-takes", test_refused_takes);
   g_test_add_func ("/scene/paths", test_paths);
   g_test_add_func ("/scene/sewn", test_sewn);

@@ -267,7 +267,13 @@ GST_START_TEST (test_min_views)
   eos (&b, 1);
   eos (&b, 2);
   expect_eos (&b);
-  fail_unless_equals_uint64 (stat_of (&b, "incomplete"), 2);
+  fail_unless_equals_uint64 (stat_of (&b, "sets"), 1);
+  fail_unless_equals_uint64 (stat_of (&b, "skipped"), 2);
+  /* the one that was sent lacked a pad too */
+  fail_unless_equals_uint64 (stat_of (&b, "incomplete"), 3);
+  fail_unless_equals_uint64 (stat_of_pad (&b, 0, "used"), 2);
+  fail_unless_equals_uint64 (stat_of_pad (&b, 0, "missing"), 1);
+  fail_unless_equals_uint64 (stat_of_pad (&b, 2, "missing"), 2);
   warning = message_of (&b, GST_MESSAGE_WARNING);
   fail_unless (warning == NULL);
   bench_clear (&b);

@@ -100,6 +100,7 @@ test_sync_class_init (TestSyncClass * klass)
   sync_class->negotiate_src = test_sync_negotiate_src;
   sync_class->process_set = test_sync_process_set;
   sync_class->reset = test_sync_reset;
+  sync_class->prefix = "sync";
 }
 
 static inline void
@@ -235,6 +236,8 @@ bench_init (Bench * b, guint n_pads, gboolean live)
 
   memset (b, 0, sizeof (*b));
   b->sync = gst_object_ref_sink (g_object_new (TEST_TYPE_SYNC, NULL));
+  /* deadlines are the tolerance's alone */
+  g_object_set (b->sync, "latency", G_GUINT64_CONSTANT (0), NULL);
   b->bus = gst_bus_new ();
   gst_element_set_bus (b->sync, b->bus);
   b->src = gst_harness_new_with_element (b->sync, NULL, "src");
@@ -345,6 +348,23 @@ stat_of (Bench * b, const gchar * name)
   g_object_get (b->sync, "stats", &stats, NULL);
   fail_unless (gst_structure_get_uint64 (stats, name, &value));
   return value;
+}
+
+/* A count of one pad. */
+static inline guint64
+stat_of_pad (Bench * b, guint i, const gchar * name)
+{
+  g_autoptr (GstStructure) stats = NULL;
+  g_autofree gchar *pad = g_strdup_printf ("sink_%u", i);
+  const GValue *value;
+  guint64 count = G_MAXUINT64;
+
+  g_object_get (b->sync, "stats", &stats, NULL);
+  value = gst_structure_get_value (stats, pad);
+  fail_unless (value && GST_VALUE_HOLDS_STRUCTURE (value));
+  fail_unless (gst_structure_get_uint64 (gst_value_get_structure (value), name,
+          &count));
+  return count;
 }
 
 static inline GstMessage *

@@ -11,6 +11,21 @@ bench_clock (Bench * b)
   return gst_harness_get_testclock (b->src);
 }
 
+/* Until then the element waits for silence, at another time. */
+static void
+wait_for_deadline (GstTestClock * clock, GstClockTime time)
+{
+  GstClockTime pending = GST_CLOCK_TIME_NONE;
+
+  while (pending != time) {
+    GstClockID id;
+
+    gst_test_clock_wait_for_next_pending_id (clock, &id);
+    pending = gst_clock_id_get_time (id);
+    gst_clock_id_unref (id);
+  }
+}
+
 GST_START_TEST (test_live_deadline)
 {
   Bench b;
@@ -28,14 +43,8 @@ GST_START_TEST (test_live_deadline)
 
   /* one camera is silent: the deadline is the set's time plus the tolerance */
   push (&b, 0, 33 * MS);
-  {
-    GstClockID id;
-
-    gst_test_clock_wait_for_next_pending_id (clock, &id);
-    fail_unless_equals_uint64 (gst_clock_id_get_time (id),
-        33 * MS + gst_util_uint64_scale (GST_SECOND, 1, 30) / 2);
-    gst_clock_id_unref (id);
-  }
+  wait_for_deadline (clock,
+      33 * MS + gst_util_uint64_scale (GST_SECOND, 1, 30) / 2);
   fail_unless (gst_harness_try_pull (b.src) == NULL);
   fail_unless (gst_test_clock_crank (clock));
   expect (&b, 33 * MS, 1);
@@ -59,7 +68,134 @@ GST_START_TEST (test_live_deadline)
 
 GST_END_TEST;
 
-/* No camera sends: nothing comes out, and nothing spins. */
+/* The message says which pad fell silent or is back, and how long it was silent. */
+static void
+expect_silence (Bench * b, const gchar * name, guint pad, gdouble seconds)
+{
+  g_autoptr (GstMessage) message =
+      gst_bus_timed_pop_filtered (b->bus, 10 * GST_SECOND, GST_MESSAGE_ELEMENT);
+  g_autofree gchar *expected = g_strdup_printf ("sink_%u", pad);
+  const GstStructure *s;
+  gdouble said;
+
+  fail_unless (message != NULL, "no %s", name);
+  s = gst_message_get_structure (message);
+  fail_unless (gst_structure_has_name (s, name), "%s",
+      gst_structure_get_name (s));
+  fail_unless_equals_string (gst_structure_get_string (s, "pad"), expected);
+  fail_unless_equals_string (gst_structure_get_string (s, "camera"), "");
+  fail_unless (gst_structure_get_double (s, "seconds", &said));
+  fail_unless_equals_float (said, seconds);
+}
+
+static void
+expect_no_silence (Bench * b)
+{
+  g_autoptr (GstMessage) message = message_of (b, GST_MESSAGE_ELEMENT);
+
+  fail_unless (message == NULL);
+}
+
+/* One pad gives, so each set ends at its deadline. */
+static void
+push_alone (Bench * b, GstTestClock * clock, guint pad, GstClockTime pts)
+{
+  GstClockTime tolerance, latency;
+
+  g_object_get (b->sync, "tolerance", &tolerance, "latency", &latency, NULL);
+  push (b, pad, pts);
+  wait_for_deadline (clock, pts + latency +
+      (GST_CLOCK_TIME_IS_VALID (tolerance) ? tolerance : GST_SECOND / 60));
+  fail_unless (gst_test_clock_crank (clock));
+  expect (b, pts, 1 << pad);
+}
+
+GST_START_TEST (test_live_silent_pad)
+{
+  GstTestClock *clock;
+  GstClockTime pts;
+  Bench b;
+
+  bench_init (&b, 2, TRUE);
+  clock = bench_clock (&b);
+  push (&b, 0, 0);
+  push (&b, 1, 0);
+  expect (&b, 0, 3);
+  for (pts = 110 * MS; pts < 1000 * MS; pts += 110 * MS) {
+    push_alone (&b, clock, 0, pts);
+  }
+  expect_no_silence (&b);
+  push_alone (&b, clock, 0, 1100 * MS);
+  expect_silence (&b, "sync/silent", 1, 1.1);
+  push_alone (&b, clock, 0, 1150 * MS); /* once is enough */
+  expect_no_silence (&b);
+  fail_unless_equals_uint64 (stat_of (&b, "incomplete"), 11);
+  fail_unless_equals_uint64 (stat_of (&b, "sets"), 12);
+  fail_unless_equals_uint64 (stat_of_pad (&b, 0, "missing"), 0);
+  fail_unless_equals_uint64 (stat_of_pad (&b, 1, "missing"), 11);
+  fail_unless_equals_uint64 (stat_of_pad (&b, 1, "used"), 1);
+
+  push (&b, 0, 1200 * MS);
+  push (&b, 1, 1200 * MS);
+  expect (&b, 1200 * MS, 3);
+  expect_silence (&b, "sync/back", 1, 1.2);
+  fail_unless_equals_uint64 (stat_of (&b, "incomplete"), 11);
+  gst_object_unref (clock);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* A slow camera is given five of its frames. */
+GST_START_TEST (test_live_not_silent)
+{
+  GstTestClock *clock;
+  GstClockTime pts;
+  Bench b;
+
+  bench_init (&b, 2, TRUE);
+  clock = bench_clock (&b);
+  caps (&b, 1, "test/x-frames,framerate=2/1");
+  push (&b, 0, 0);
+  push (&b, 1, 0);
+  expect (&b, 0, 3);
+  for (pts = 490 * MS; pts < 2500 * MS; pts += 490 * MS) {
+    push_alone (&b, clock, 0, pts);
+  }
+  expect_no_silence (&b);
+  push_alone (&b, clock, 0, pts);
+  expect_silence (&b, "sync/silent", 1, 2.94);
+  expect_no_silence (&b);
+  gst_object_unref (clock);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* Films that end are not silent, but sets lack them. */
+GST_START_TEST (test_film_ends)
+{
+  guint i;
+  Bench b;
+
+  bench_init (&b, 2, FALSE);
+  push (&b, 0, 0);
+  push (&b, 1, 0);
+  expect (&b, 0, 3);
+  eos (&b, 1);
+  for (i = 1; i < 4; i++) {
+    push (&b, 0, i * GST_SECOND);
+    expect (&b, i * GST_SECOND, 1);
+  }
+  expect_no_silence (&b);
+  fail_unless_equals_uint64 (stat_of (&b, "incomplete"), 3);
+  fail_unless_equals_uint64 (stat_of (&b, "skipped"), 0);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* No camera sends: that is said once, nothing comes out, and nothing spins. */
 GST_START_TEST (test_live_silence)
 {
   Bench b;
@@ -70,7 +206,12 @@ GST_START_TEST (test_live_silence)
   push (&b, 0, 0);
   push (&b, 1, 0);
   expect (&b, 0, 3);
+  wait_for_deadline (clock, GST_SECOND + GST_SECOND / 60);
+  expect_no_silence (&b);
   gst_test_clock_set_time (clock, 10 * GST_SECOND);
+  fail_unless (gst_test_clock_crank (clock));
+  expect_silence (&b, "sync/silent", 0, 10.);
+  expect_silence (&b, "sync/silent", 1, 10.);
   fail_unless (gst_harness_try_pull (b.src) == NULL);
   fail_unless_equals_int (gst_test_clock_peek_id_count (clock), 0);
   push (&b, 0, 10 * GST_SECOND);
@@ -78,6 +219,96 @@ GST_START_TEST (test_live_silence)
   expect (&b, 10 * GST_SECOND, 3);
   gst_object_unref (clock);
   bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* The first frame that misses its deadline is told of, with the time that it lacked. */
+GST_START_TEST (test_live_late)
+{
+  g_autoptr (GstMessage) warning = NULL, more = NULL;
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *debug = NULL;
+  const GstStructure *details;
+  GstTestClock *clock;
+  gdouble seconds;
+  Bench b;
+
+  bench_init (&b, 2, TRUE);
+  clock = bench_clock (&b);
+  g_object_set (b.sync, "tolerance", (guint64) 10 * MS, "latency",
+      (guint64) 20 * MS, NULL);
+  push (&b, 0, 0);
+  push (&b, 1, 0);
+  expect (&b, 0, 3);
+  push_alone (&b, clock, 0, 100 * MS);  /* it is 130 ms now */
+  warning = message_of (&b, GST_MESSAGE_WARNING);
+  fail_unless (warning == NULL);
+  gst_test_clock_set_time (clock, 187 * MS);
+  push (&b, 1, 105 * MS);       /* of the set of 100 ms */
+  push (&b, 0, 200 * MS);
+  push (&b, 1, 200 * MS);
+  expect (&b, 200 * MS, 3);
+  warning = message_of (&b, GST_MESSAGE_WARNING);
+  fail_unless (warning != NULL);
+  gst_message_parse_warning (warning, &error, &debug);
+  fail_unless (strstr (error->message, "pad sink_1") != NULL, "%s",
+      error->message);
+  fail_unless (strstr (error->message, " 57 ms too late") != NULL, "%s",
+      error->message);
+  fail_unless (strstr (debug, "latency, now 20 ms") != NULL, "%s", debug);
+  gst_message_parse_warning_details (warning, &details);
+  fail_unless (gst_structure_get_double (details, "seconds", &seconds));
+  fail_unless_equals_float (seconds, 0.057);
+  fail_unless_equals_string (gst_structure_get_string (details, "pad"),
+      "sink_1");
+
+  push_alone (&b, clock, 0, 300 * MS);
+  gst_test_clock_set_time (clock, 400 * MS);
+  push (&b, 1, 300 * MS);
+  push (&b, 0, 400 * MS);
+  push (&b, 1, 400 * MS);
+  expect (&b, 400 * MS, 3);
+  more = message_of (&b, GST_MESSAGE_WARNING);
+  fail_unless (more == NULL);
+  fail_unless_equals_uint64 (stat_of_pad (&b, 1, "dropped"), 2);
+  gst_object_unref (clock);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* Out of order is not late: a film has no deadline. */
+GST_START_TEST (test_film_not_late)
+{
+  g_autoptr (GstMessage) warning = NULL;
+  Bench b;
+
+  bench_init (&b, 2, FALSE);
+  push (&b, 0, 100 * MS);
+  push (&b, 1, 100 * MS);
+  expect (&b, 100 * MS, 3);
+  push (&b, 0, 50 * MS);
+  push (&b, 0, 133 * MS);
+  push (&b, 1, 133 * MS);
+  expect (&b, 133 * MS, 3);
+  fail_unless_equals_uint64 (stat_of (&b, "dropped"), 1);
+  warning = message_of (&b, GST_MESSAGE_WARNING);
+  fail_unless (warning == NULL);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* What detectors take is waited for unless the user says otherwise. */
+GST_START_TEST (test_live_latency_default)
+{
+  GstElement *sync = gst_object_ref_sink (g_object_new (TEST_TYPE_SYNC, NULL));
+  guint64 latency;
+
+  g_object_get (sync, "latency", &latency, NULL);
+  fail_unless_equals_uint64 (latency, 200 * MS);
+  gst_object_unref (sync);
 }
 
 GST_END_TEST;
@@ -341,7 +572,13 @@ clothsynclive_suite (void)
   suite_add_tcase (s, tc);
   tcase_add_test (tc, test_live_deadline);
   tcase_add_test (tc, test_live_silence);
+  tcase_add_test (tc, test_live_silent_pad);
+  tcase_add_test (tc, test_live_not_silent);
+  tcase_add_test (tc, test_film_ends);
+  tcase_add_test (tc, test_live_late);
+  tcase_add_test (tc, test_film_not_late);
   tcase_add_test (tc, test_live_latency);
+  tcase_add_test (tc, test_live_latency_default);
   tcase_add_test (tc, test_flush);
   tcase_add_test (tc, test_caps_change);
   tcase_add_test (tc, test_pads_come_and_go);

@@ -97,9 +97,12 @@ expect_error (Sink * sink, GQuark domain, gint code, const gchar * text)
   g_autoptr (GstMessage) message = gst_bus_pop_filtered (sink->bus,
       GST_MESSAGE_ERROR);
   g_autoptr (GError) error = NULL;
+  g_autofree gchar *debug = NULL;
 
   fail_unless (message != NULL, "no error was posted");
-  gst_message_parse_error (message, &error, NULL);
+  gst_message_parse_error (message, &error, &debug);
+  /* what to do stands on a line of its own */
+  fail_unless (strstr (debug, ":\n") != NULL, "%s: %s", error->message, debug);
   GST_INFO ("%s", error->message);
   fail_unless (g_error_matches (error, domain, code), "%s", error->message);
   fail_unless (strstr (error->message, text) != NULL, "%s", error->message);
@@ -183,12 +186,12 @@ expect_kept (const gchar * name, guint first, guint n_frames)
 
 static const gchar *const names[] = { "c.obj", "c.ply", "c.take" };
 
-/* The property wins over the ending; there is nothing before EOS. */
+/* The property says what an ending would; there is nothing before EOS. */
 GST_START_TEST (test_writes_at_eos)
 {
-  static const gchar *const odd[] = { "a.dat", "b.obj", "d" };
+  static const gchar *const odd[] = { "a", "b", "d" };
   static const gchar *const formats[] = { "obj-pc2", "ply", "take" };
-  static const gchar *const read_as[] = { "a.dat.obj", "b.obj.ply", "d" };
+  static const gchar *const read_as[] = { "a.obj", "b.ply", "d" };
 
   for (guint i = 0; i < 6; i++) {
     const gchar *name = i < 3 ? names[i] : odd[i - 3];
@@ -479,7 +482,7 @@ GST_START_TEST (test_no_remains)
   first = open_sink ("c.obj", "auto");
   push_frames (&first, 0, 1);
   second = open_sink ("c.obj", "auto");
-  other = open_sink ("c.obj", "ply");
+  other = open_sink ("c", "ply");
   expect_warning (&first, NULL);
   expect_warning (&second, NULL);
   expect_warning (&other, NULL);
@@ -510,6 +513,74 @@ GST_START_TEST (test_no_location)
   gst_element_set_bus (element, NULL);
   gst_element_set_state (element, GST_STATE_NULL);
   gst_object_unref (bus);
+}
+
+GST_END_TEST;
+
+/* Names whose ending is of no format, or of another one, make no files of other names; the
+ * error lists the endings that there are. */
+GST_START_TEST (test_wrong_endings)
+{
+  static const struct
+  {
+    const gchar *location, *format, *text;
+  } cases[] = {
+    {"m.usd", "auto", "the ending .usd is not known; give .obj"},
+    {"m.gltf", "auto", ".glb (glTF)"},
+    {"m.fbx", "auto", ".usda (USD)"},
+    {"m.abc", "auto", ".pvd (VTK)"},
+    {"m.npy", "auto", ".take for a folder of NumPy arrays"},
+    {"m.npy", "ply", "the ending .npy is not known"},
+    {"m.ply", "obj-pc2", "not of the format that is set; give .obj"},
+    {"m.obj", "take", "the ending .obj is not of the format"},
+    {"m.glb", "usd", "the ending .glb is not of the format"},
+  };
+
+  scratch_begin ();
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autofree gchar *path = scratch_path (cases[i].location);
+    g_autoptr (GstElement) element =
+        gst_object_ref_sink (gst_element_factory_make ("meshsink", NULL));
+    g_autoptr (GstBus) bus = gst_bus_new ();
+    Sink sink = { NULL, bus };
+
+    g_object_set (element, "location", path, NULL);
+    gst_util_set_object_arg (G_OBJECT (element), "format", cases[i].format);
+    gst_element_set_bus (element, bus);
+    fail_unless_equals_int (gst_element_set_state (element, GST_STATE_PAUSED),
+        GST_STATE_CHANGE_FAILURE);
+    expect_error (&sink, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT,
+        cases[i].text);
+    gst_element_set_bus (element, NULL);
+    gst_element_set_state (element, GST_STATE_NULL);
+  }
+  fail_unless_equals_int (scratch_count (), 0);
+  scratch_end ();
+}
+
+GST_END_TEST;
+
+/* A dot need not begin an ending, and a format set by name needs none. */
+GST_START_TEST (test_names_without_ending)
+{
+  static const gchar *const cases[][3] = {
+    {"trial.1", "auto", "trial.1.obj"}, {"bare", "ply", "bare_00000.ply"},
+    {"day.monday", "take", "day.monday/take.json"},
+    {"M.OBJ", "auto", "M.obj"},
+  };
+
+  scratch_begin ();
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autofree gchar *path = scratch_path (cases[i][2]);
+    Sink sink = open_sink (cases[i][0], cases[i][1]);
+
+    push_frames (&sink, 0, 1);
+    fail_unless (gst_harness_push_event (sink.harness, gst_event_new_eos ()));
+    expect_no_error (&sink);
+    close_sink (&sink);
+    fail_unless (g_file_test (path, G_FILE_TEST_IS_REGULAR), "%s", path);
+  }
+  scratch_end ();
 }
 
 GST_END_TEST;
@@ -554,6 +625,8 @@ meshsink_suite (void)
   tcase_add_test (tests, test_remains);
   tcase_add_test (tests, test_no_remains);
   tcase_add_test (tests, test_no_location);
+  tcase_add_test (tests, test_wrong_endings);
+  tcase_add_test (tests, test_names_without_ending);
   tcase_add_test (tests, test_bad_caps);
   return suite;
 }

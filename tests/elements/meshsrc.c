@@ -103,13 +103,16 @@ expect_error (const gchar * location, const gchar * more, GQuark domain,
   Player player;
   g_autoptr (GstMessage) message = NULL;
   g_autoptr (GError) error = NULL;
+  g_autofree gchar *debug = NULL;
 
   player_init (&player, location, more);
   gst_element_set_state (player.pipeline, GST_STATE_PLAYING);
   message = gst_bus_timed_pop_filtered (player.bus, GST_CLOCK_TIME_NONE,
       GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
   fail_unless_equals_int (GST_MESSAGE_TYPE (message), GST_MESSAGE_ERROR);
-  gst_message_parse_error (message, &error, NULL);
+  gst_message_parse_error (message, &error, &debug);
+  /* what to do stands on a line of its own */
+  fail_unless (strstr (debug, ":\n") != NULL, "%s: %s", error->message, debug);
   fail_unless (g_error_matches (error, domain, code), "%s %d: %s",
       g_quark_to_string (error->domain), error->code, error->message);
   fail_unless (strstr (error->message, text) != NULL, "%s", error->message);

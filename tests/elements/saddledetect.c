@@ -13,11 +13,11 @@
 
 /* Squares of SIDE px whose corners lie between pixels: SIDE·k − 0.5. */
 static void
-paint (guint8 * luma, gint width, gint height, gint stride)
+paint (guint8 * luma, gint width, gint height, gint stride, gint step)
 {
   for (gint y = 0; y < height; y++)
     for (gint x = 0; x < width; x++)
-      luma[y * stride + x] = (x / SIDE + y / SIDE) % 2 ? 200 : 40;
+      luma[y * stride + x * step] = (x / SIDE + y / SIDE) % 2 ? 200 : 40;
 }
 
 static GstBuffer *
@@ -28,8 +28,9 @@ board (const GstVideoInfo * info, gint padding)
   GstMapInfo map;
 
   gst_buffer_map (buffer, &map, GST_MAP_WRITE);
-  paint (map.data + luma.offset, GST_VIDEO_INFO_WIDTH (info),
-      GST_VIDEO_INFO_HEIGHT (info), luma.stride);
+  paint (map.data + luma.offset + GST_VIDEO_INFO_COMP_POFFSET (info, 0),
+      GST_VIDEO_INFO_WIDTH (info), GST_VIDEO_INFO_HEIGHT (info), luma.stride,
+      GST_VIDEO_INFO_COMP_PSTRIDE (info, 0));
   gst_buffer_unmap (buffer, &map);
   GST_BUFFER_PTS (buffer) = 0;
   return buffer;
@@ -77,7 +78,7 @@ GST_START_TEST (test_formats)
 {
   static const gchar *const formats[] = { "GRAY8", "I420", "YV12", "NV12",
     "NV21", "Y42B", "NV16", "NV61", "Y444", "NV24", "Y41B", "YUV9", "YVU9",
-    "A420"
+    "A420", "YUY2", "UYVY", "YVYU"
   };
   static const gint sizes[][3] = { {96, 64, 0}, {97, 65, 0}, {97, 65, 7},
   {131, 83, 64}
@@ -99,6 +100,68 @@ GST_START_TEST (test_formats)
       gst_buffer_unref (out);
       gst_harness_teardown (h);
     }
+  }
+}
+
+GST_END_TEST;
+
+static void
+expect_message_of_encoded (GstBus * bus, const gchar * text)
+{
+  g_autoptr (GstMessage) message = gst_bus_pop_filtered (bus,
+      GST_MESSAGE_ERROR);
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *debug = NULL;
+
+  fail_unless ((message != NULL) == (text != NULL));
+  if (!text) {
+    return;
+  }
+  gst_message_parse_error (message, &error, &debug);
+  fail_unless (strstr (error->message, "has to be decoded first") != NULL);
+  fail_unless (strstr (debug, text) != NULL, "%s", debug);
+}
+
+/* A camera that sends nothing but encoded pictures is told what decodes them; one that can
+ * send others as well is not, and sends them. */
+GST_START_TEST (test_encoded)
+{
+  static const struct
+  {
+    const gchar *offered, *text;
+  } cases[] = {
+    {"image/jpeg, width=640, height=480, framerate=30/1",
+        "Put jpegdec before saddles"},
+    {"video/x-h264, width=640, height=480",
+        "Put h264parse ! avdec_h264 before"},
+    {"image/jpeg; video/x-raw, format=YUY2, width=640, height=480", NULL},
+    {"video/x-raw, format=RGB, width=640, height=480", NULL},
+  };
+
+  for (guint k = 0; k < 2 * G_N_ELEMENTS (cases); k++) {
+    const guint i = k / 2, asks = k % 2;
+    GstElement *element = gst_element_factory_make ("saddledetect", "saddles");
+    GstHarness *h = gst_harness_new_with_element (element, "sink", "src");
+    g_autoptr (GstPad) pad = NULL;
+    g_autoptr (GstBus) bus = gst_bus_new ();
+    g_autoptr (GstCaps) offered = gst_caps_from_string (cases[i].offered);
+
+    gst_element_set_bus (element, bus);
+    gst_harness_play (h);
+    pad = gst_element_get_static_pad (element, "sink");
+    if (asks) {
+      g_autoptr (GstCaps) taken = gst_pad_query_caps (pad, offered);
+
+      fail_unless (cases[i].text == NULL || gst_caps_is_empty (taken));
+    } else if (gst_caps_is_fixed (offered)) {
+      fail_if (gst_pad_query_accept_caps (pad, offered));
+    }
+    expect_message_of_encoded (bus, cases[i].text);
+    gst_caps_unref (gst_pad_query_caps (pad, offered));
+    expect_message_of_encoded (bus, NULL);      /* once is enough */
+    gst_element_set_bus (element, NULL);
+    gst_harness_teardown (h);
+    gst_object_unref (element);
   }
 }
 
@@ -366,12 +429,12 @@ GST_START_TEST (test_refine_none)
 
 GST_END_TEST;
 
-/* Neither 16-bit grey nor packed nor huge pictures are taken. */
+/* Neither 16-bit grey nor RGB nor huge pictures are taken. */
 GST_START_TEST (test_refused_caps)
 {
   static const gchar *const bad[] = {
     "video/x-raw,format=GRAY16_LE,width=16,height=16,framerate=25/1",
-    "video/x-raw,format=YUY2,width=16,height=16,framerate=25/1",
+    "video/x-raw,format=AYUV,width=16,height=16,framerate=25/1",
     "video/x-raw,format=RGB,width=16,height=16,framerate=25/1",
     "video/x-raw,format=GRAY8,width=16385,height=16,framerate=25/1",
     "video/x-raw,format=GRAY8,width=0,height=16,framerate=25/1",
@@ -420,6 +483,7 @@ saddledetect_suite (void)
 
   suite_add_tcase (suite, tc);
   tcase_add_test (tc, test_formats);
+  tcase_add_test (tc, test_encoded);
   tcase_add_test (tc, test_shared);
   tcase_add_test (tc, test_after_tee);
   tcase_add_test (tc, test_renegotiation);

@@ -139,6 +139,7 @@ GST_START_TEST (test_one_detector)
     Bench b;
 
     bench_open (&b, 2);
+    g_object_set (b.element, "allow-one-camera", n == 1, NULL);
     bench_link (&b, n, FALSE, VIDEO);
     for (frame = 0; frame < 30; frame++) {
       push_seen (&b, 0, 0, frame, ALL, "cam0");
@@ -170,6 +171,101 @@ GST_START_TEST (test_cameras_do_not_fit)
     gst_buffer_unref (gst_harness_pull (b.src));
   }
   expect_message (&b, GST_MESSAGE_WARNING, "Camera \"cam2\"");
+  fail_unless (gst_bus_pop_filtered (b.bus, GST_MESSAGE_WARNING) == NULL);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* One camera makes no vertex: an error unless it is asked for, or others are gone. */
+GST_START_TEST (test_one_camera)
+{
+  GstPad *pad;
+  Bench b;
+
+  bench_open (&b, 2);
+  bench_link (&b, 1, FALSE, VIDEO);
+  gst_harness_push (b.in[0], picture (NULL, 0));
+  expect_error (&b, "allow-one-camera");
+  bench_clear (&b);
+
+  bench_init (&b, 2);
+  push_all (&b, 0);
+  expect_all (&b, 0, GST_CLOTH_VERTEX_TWO_VIEWS);
+  pad = gst_element_get_static_pad (b.element, "sink_1");
+  gst_harness_teardown (b.in[1]);
+  if (GST_OBJECT_PARENT (pad)) {
+    gst_element_release_request_pad (b.element, pad);
+  }
+  gst_object_unref (pad);
+  b.n_pads = 1;
+  push_seen (&b, 0, 0, 1, ALL, "cam0");
+  expect_all (&b, 1, GST_CLOTH_VERTEX_UNSEEN);
+  fail_unless (gst_bus_pop_filtered (b.bus, GST_MESSAGE_ERROR) == NULL);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+static void
+end_all (Bench * b)
+{
+  for (guint i = 0; i < b->n_pads; i++) {
+    fail_unless (gst_harness_push_event (b->in[i], gst_event_new_eos ()));
+  }
+  while (TRUE) {
+    g_autoptr (GstEvent) event = gst_harness_pull_event (b->src);
+
+    fail_unless (event != NULL);
+    if (GST_EVENT_TYPE (event) == GST_EVENT_EOS) {
+      return;
+    }
+  }
+}
+
+/* Of a short film it is said at its end whether the cameras fit, and of a good one nothing. */
+GST_START_TEST (test_short_films)
+{
+  guint mixed, frame, i;
+
+  for (mixed = 0; mixed < 2; mixed++) {
+    Bench b;
+
+    bench_init (&b, 2);
+    for (frame = 0; frame < 3; frame++) {
+      for (i = 0; i < 2; i++) {
+        push_seen (&b, i, mixed ? 1 - i : i, frame, ALL, NULL);
+      }
+      gst_buffer_unref (gst_harness_pull (b.src));
+    }
+    fail_unless (gst_bus_pop_filtered (b.bus, GST_MESSAGE_WARNING) == NULL);
+    end_all (&b);
+    if (mixed) {
+      expect_message (&b, GST_MESSAGE_WARNING, "contradicts the others");
+    }
+    fail_unless (gst_bus_pop_filtered (b.bus, GST_MESSAGE_WARNING) == NULL);
+    bench_clear (&b);
+  }
+}
+
+GST_END_TEST;
+
+/* One film given as two cameras': said at its first picture, once. */
+GST_START_TEST (test_same_film)
+{
+  guint frame, i;
+  Bench b;
+
+  bench_init (&b, 3);
+  for (frame = 0; frame < 2; frame++) {
+    for (i = 0; i < 3; i++) {
+      push_seen (&b, i, i < 2 ? i : 1, frame, ALL, NULL);
+    }
+    gst_buffer_unref (gst_harness_pull (b.src));
+  }
+  expect_message (&b, GST_MESSAGE_WARNING,
+      "Cameras \"cam1\" and \"cam2\" show the very same picture");
+  end_all (&b);
   fail_unless (gst_bus_pop_filtered (b.bus, GST_MESSAGE_WARNING) == NULL);
   bench_clear (&b);
 }
@@ -399,6 +495,9 @@ triangulate_suite (void)
   tcase_add_test (tc, test_no_detector);
   tcase_add_test (tc, test_one_detector);
   tcase_add_test (tc, test_cameras_do_not_fit);
+  tcase_add_test (tc, test_one_camera);
+  tcase_add_test (tc, test_short_films);
+  tcase_add_test (tc, test_same_film);
   tcase_add_test (tc, test_missing_camera);
   tcase_add_test (tc, test_offset);
   tcase_add_test (tc, test_names_in_metadata);

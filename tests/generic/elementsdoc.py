@@ -27,13 +27,30 @@ def number(value):
         if abs(value) > 1e300:
             return '∞' if value > 0 else '−∞'
         return '%.7g' % value
-    return {2 ** 64 - 1: '2⁶⁴−1', 2 ** 63 - 1: '2⁶³−1', 2 ** 32 - 1: '2³²−1',
+    return {-2 ** 63: '−2⁶³', 2 ** 64 - 1: '2⁶⁴−1', 2 ** 63 - 1: '2⁶³−1', 2 ** 32 - 1: '2³²−1',
             2 ** 31 - 1: '2³¹−1'}.get(value, str(value))
 
 
-def describe(spec):
-    """Type with range, default."""
+# What GStreamer's own words leave open.
+EXPLAINED = {
+    'latency': 'How much longer than upstream says a live set waits for frames that are missing, '
+               'in ns: see [latency](streams.md#live-cameras)',
+}
+
+# Of the bases' own properties those that a user of these elements sets or reads.
+INHERITED = {
+    'GstAggregator': ('latency', 'start-time-selection', 'start-time'),
+    'GstBaseTransform': ('qos',),
+    'GstBaseSink': ('sync', 'async', 'max-lateness', 'qos', 'ts-offset', 'processing-deadline'),
+    'GstBaseSrc': ('num-buffers', 'do-timestamp'),
+}
+
+
+def describe(spec, element):
+    """Type with range, default: that of a new element, which may differ from its base's."""
     default = spec.default_value
+    if spec.owner_type.name in FOREIGN:
+        default = element.get_property(spec.name)
     kind = spec.value_type
     if GObject.type_is_a(kind, GObject.TYPE_ENUM):
         nicks = ['`%s`' % v.value_nick for v in kind.pytype.__enum_values__.values()] \
@@ -85,11 +102,17 @@ def table(factory):
     rows = []
     # The element's own before those of its base.
     for spec in sorted(element.list_properties(),
-                       key=lambda spec: spec.owner_type != element.__gtype__):
-        if spec.owner_type.name in FOREIGN:
+                       key=lambda spec: (spec.owner_type.name in FOREIGN,
+                                         spec.owner_type != element.__gtype__)):
+        owner = spec.owner_type.name
+        if owner in FOREIGN and spec.name not in INHERITED.get(owner, ()):
             continue
-        kind, default = describe(spec)
+        kind, default = describe(spec, element)
         blurb = (spec.blurb or '').replace('|', '\\|')
+        if spec.name in EXPLAINED:
+            blurb = EXPLAINED[spec.name]
+        if owner in FOREIGN:
+            blurb += ' (of %s)' % owner
         rows.append('| `%s` | %s | %s | %s |' % (spec.name, kind, default, blurb))
     if rows:
         lines += ['', '| property | values | default | meaning |', '|---|---|---|---|'] + rows

@@ -61,10 +61,12 @@ def good_calls(folder):
     left = sorted(os.listdir(os.path.join(folder, 'one')))
     expect(left == sorted(os.path.basename(name) for name in names), 'nothing else is left: %s' % left)
 
+    os.mkdir(os.path.join(folder, 'dots'))
     done = run(folder, 'm-array', '--columns', '14', '--rows', '11', '--pitch', '2cm', '--colours', '4',
-               '--two-sided', '--paper', 'A4', '--output', 'dots.pdf')
-    expect(done.returncode == 0 and done.stdout == 'dots.pdf\npattern.json\n', 'an M-array ' + done.stderr)
-    with open(os.path.join(folder, 'pattern.json'), encoding='utf-8') as file:
+               '--two-sided', '--paper', 'A4', '--output', 'dots/dots.pdf')
+    expect(done.returncode == 0 and done.stdout == 'dots/dots.pdf\ndots/pattern.json\n',
+           'an M-array ' + done.stderr)
+    with open(os.path.join(folder, 'dots/pattern.json'), encoding='utf-8') as file:
         pattern = json.load(file)
     matrix = pattern.pop('matrix')
     expect(pattern == {'version': 1, 'pattern': 'm-array', 'colours': ['cyan', 'magenta', 'yellow', 'orange'],
@@ -72,6 +74,35 @@ def good_calls(folder):
                        'pitch_m': 0.02, 'diameter_m': 0.013, 'origin_uv_m': [0.01, 0.01],
                        'cloth_m': [0.28, 0.22], 'columns': 14, 'rows': 11}, 'its pattern.json: %s' % pattern)
     expect(len(matrix) == 11 and all(len(row) == 14 for row in matrix), 'its matrix')
+
+
+def other_prints(folder):
+    folder = os.path.join(folder, 'prints')
+    os.mkdir(folder)
+
+    def content():
+        with open(os.path.join(folder, 'pattern.json'), 'rb') as file:
+            return file.read()
+
+    board = ['checker', '--columns', '9', '--rows', '6']
+    expect(run(folder, *board, '--output', 'board.pdf').returncode == 0, 'a first print')
+    first = content()
+    for call in (['coded-checker', '--columns', '9', '--rows', '6', '--output', 'cloth.pdf'],
+                 ['checker', '--columns', '9', '--rows', '7', '--output', 'cloth.svg'],
+                 ['m-array', '--columns', '9', '--rows', '6', '--output', 'cloth.pdf'],
+                 ['picture', '--width', '20cm', '--output', 'cloth.pdf']):
+        done = run(folder, *call)
+        expect(done.returncode == 1 and done.stderr.count('\n') == 1
+               and 'pattern.json is of another print' in done.stderr and '--output NEW/cloth' in done.stderr,
+               'another print beside it: ' + done.stderr)
+        expect(content() == first and sorted(os.listdir(folder)) == ['board.pdf', 'pattern.json'],
+               'the first one stays, alone')
+    done = run(folder, *board, '--output', 'board.svg', '--paper', 'A5')
+    expect(done.returncode == 0 and content() == first, 'the same pattern on other paper')
+    for columns in ('8', '7'):
+        done = run(folder, 'checker', '--columns', columns, '--rows', '6', '--output', 'board.svg')
+        expect(done.returncode == 0 and json.loads(content())['columns'] == int(columns),
+               'the same print anew ' + done.stderr)
 
 
 def pictures(folder):
@@ -307,7 +338,7 @@ def bad_calls(folder):
     expect(left == ['board.svg'], 'nothing half-written is left: %s' % left)
 
 
-for calls in (good_calls, pictures, told, garments, bad_calls):
+for calls in (good_calls, other_prints, pictures, told, garments, bad_calls):
     with tempfile.TemporaryDirectory(prefix='cloth-pattern-') as place:
         calls(place)
 print('%d faults' % len(faults))

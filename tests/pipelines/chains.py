@@ -378,6 +378,33 @@ def case_dots_script(data):
                   'no files to import of an empty mesh')
 
 
+def case_dots_summary(data):
+    """dots-to-mesh.sh ends with what was found, by camera and of the mesh, and it is what the take says."""
+    ring = os.path.join(data, 'dots_ring8')
+    with tempfile.TemporaryDirectory() as folder:
+        code, text = dots_to_mesh(data, folder, ring + '/pattern.json')
+        check(code == 0, 'exit code %d' % code)
+        table = text.split('== What was found')[1].split('== Files')[0]
+        rows = {line.split('  ')[0]: line.split() for line in table.splitlines() if line}
+        # the cloth has 1,023 dots; a front sees nearly all of them
+        for name in ('cam0', 'cam3', 'cam4'):
+            check(900 < float(rows[name][2]) < 1100, '%s: %s dots' % (name, rows[name][2]))
+            check(float(rows[name][3].rstrip('%')) > 90, '%s: %s labelled' % (name, rows[name][3]))
+        take = folder + '/garment/cloth.take'
+        with open(take + '/states.npy', 'rb') as file:
+            states = file.read()[128:]
+        for word, state in (('three views', 1), ('two views', 2), ('filled', 3), ('unseen', 0)):
+            share = '%.1f%%' % (100 * states.count(state) / len(states))
+            check(share in rows[word], '%s: %s in %s' % (word, share, rows[word]))
+        with open(take + '/observations/cam3.obs', 'r+b') as file:
+            file.truncate(1000)
+        script = os.path.join(ROOT, 'pipelines/dots-summary.py')
+        for words in ('cam3.obs: byte 0 begins no observation', 'no observations/CAMERA.obs'):
+            done = subprocess.run([script, take], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+            check(done.returncode == 1 and words in done.stdout.decode(), words)
+            shutil.rmtree(take + '/observations', ignore_errors=True)
+
+
 def main():
     Gst.init(None)
     try:

@@ -816,6 +816,17 @@ find_nested_evidence (const ClothDiagnosis * d, const ClothGapHypothesis * h,
   return sum;
 }
 
+/* What a candidate of an explanation adds to its other part. Gusts are not simulated: with them and without
+ * it is one simulation. */
+static gdouble
+find_added_evidence (const ClothDiagnosis * d, const ClothGapHypothesis * h,
+    guint c, const ClothGapHypothesis * part)
+{
+  if (cloth_candidate_is_stochastic (candidate_of (d, h->candidates[c])))
+    return h->evidence.log_evidence - part->evidence.log_evidence;
+  return h->n_winds ? INFINITY : find_nested_evidence (d, h, c);
+}
+
 /* No effect adds more to an explanation than its own posterior says: what more there is, chance made, as
  * the explanation was simulated at several places and the best was kept. */
 static void
@@ -826,18 +837,16 @@ bound_by_parts (const ClothDiagnosis * d, GArray * hypotheses)
       ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
           i);
 
-      if (h->n != size || !h->is_compared || !h->z || h->n_winds)
+      if (h->n != size || !h->is_compared || !h->z)
         continue;
       for (guint c = 0; c < h->n; c++) {
-        guint list[CLOTH_GAP_MAX_EFFECTS], n = 0;
-        ClothGapHypothesis part, one;
+        const ClothGapHypothesis one = {.n = 1,.candidates = {h->candidates[c]}
+        };
+        ClothGapHypothesis part = { 0 };
 
         for (guint k = 0; k < h->n; k++)
           if (k != c)
-            list[n++] = h->candidates[k];
-        cloth_gap_hypothesis_init (&part, d->candidates, NULL, list, n);
-        cloth_gap_hypothesis_init (&one, d->candidates, NULL,
-            &h->candidates[c], 1);
+            part.candidates[part.n++] = h->candidates[k];
         for (guint k = 0; k < hypotheses->len; k++) {
           const ClothGapHypothesis *other = &g_array_index (hypotheses,
               ClothGapHypothesis, k);
@@ -845,7 +854,7 @@ bound_by_parts (const ClothDiagnosis * d, GArray * hypotheses)
           if (cloth_gap_hypothesis_is_same (other, &part)
               && isfinite (other->by_residual))
             h->by_residual = MAX (h->by_residual, other->by_residual -
-                find_nested_evidence (d, h, c) - log_odds (d, &one));
+                find_added_evidence (d, h, c, other) - log_odds (d, &one));
         }
       }
     }

@@ -72,9 +72,15 @@ is_ambiguous (const ClothGapResult * r)
   return FALSE;
 }
 
+/* Whether the accepted effects leave no more than the floor: then there is nothing left to explain. */
+static gboolean
+leaves_nothing (const ClothDiagnosis * d)
+{
+  return d->n_accepted && d->result->rest_p_value > NO_REST;
+}
+
 /* Whether something unknown acts that is worth a word: its power is held against the gap's, or the
- * floor's where that is more. With accepted effects whose rest is not surely more than the floor there is
- * nothing left to explain. */
+ * floor's where that is more. */
 static gboolean
 is_unlike_all (const ClothDiagnosis * d)
 {
@@ -84,7 +90,7 @@ is_unlike_all (const ClothDiagnosis * d)
       (gap < floor ? gap * gap / (floor * floor) : 1.);
 
   return d->unknown_probability > 0.5 && share > CLOTH_DIAGNOSIS_LEAST_SHARE
-      && !(d->n_accepted && d->result->rest_p_value > NO_REST);
+      && !leaves_nothing (d);
 }
 
 void
@@ -94,6 +100,7 @@ cloth_diagnosis_decide (ClothDiagnosis * d)
   const gboolean is_unlike = is_unlike_all (d);
   const gboolean unknown = d->clamps_off
       || (is_unlike && cloth_diagnosis_n_references (d));
+  const gboolean by_chance = d->chance && !leaves_nothing (d);
   const gboolean contradict =
       r->takes_agree_p_value < CLOTH_DIAGNOSIS_CONTRADICTION;
 
@@ -104,11 +111,11 @@ cloth_diagnosis_decide (ClothDiagnosis * d)
       e->shrink = r->shrink;
   }
   add_camera_effects (d);
-  if (unknown || contradict || d->chance) {
+  if (unknown || contradict || by_chance) {
     r->verdict = CLOTH_GAP_UNEXPLAINED;
     r->reason = contradict ? g_strdup ("The takes contradict each other on the "
         "accepted effects, so these are not all of it.") : d->clamps_off ?
-        g_strdup (d->clamps_off) : d->chance ?
+        g_strdup (d->clamps_off) : by_chance ?
         g_strdup_printf ("It is likely that %s acts, which changes by chance: "
         "no simulation can repeat it.",
         d->chance->id) :

@@ -1,0 +1,49 @@
+/* The frames at the heads of all pads of an element that joins several streams.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "elements/gstclothsyncpad.h"
+
+G_BEGIN_DECLS
+
+/* By the pads' index. @n: the highest in use + 1; @n_pads: pads there are; @n_heads: pads with a
+ * head, a frame or a gap; @n_eos: without one for ever; @n_waiting: without one as yet. */
+typedef struct {
+  GstClothSyncPad *pad[GST_CLOTH_SYNC_MAX_PADS];
+  GstBuffer *head[GST_CLOTH_SYNC_MAX_PADS];
+  GstClockTimeDiff time[GST_CLOTH_SYNC_MAX_PADS];
+  gboolean gap[GST_CLOTH_SYNC_MAX_PADS];
+  guint n, n_pads, n_heads, n_eos, n_waiting;
+} GstClothSyncHeads;
+
+/* Whether @time is at most @span after @since; nothing overflows. */
+gboolean gst_cloth_sync_is_within (GstClockTimeDiff time,
+    GstClockTimeDiff since, guint64 span);
+
+/* @offset: of every pad index, with the object lock of @element
+ *
+ * Returns: time of a frame on the common clock, the largest one where it is beyond all that
+ * 64 bits hold; GST_CLOCK_STIME_NONE when it has none
+ */
+GstClockTimeDiff gst_cloth_sync_pad_get_time (GstClothSyncPad * pad,
+    GstElement * element, const GstClockTimeDiff * offset, GstBuffer * buffer);
+
+/* @heads: (out caller-allocates): the heads as they are now; release them */
+void gst_cloth_sync_heads_gather (GstClothSyncHeads * heads,
+    GstElement * element, const GstClockTimeDiff * offset);
+void gst_cloth_sync_heads_release (GstClothSyncHeads * heads);
+
+/* Returns: when what head @i says ends: of a gap, not before its frames may come */
+GstClockTimeDiff gst_cloth_sync_heads_get_end (const GstClothSyncHeads * heads,
+    guint i);
+
+/* @since: the earliest that silence is counted from
+ *
+ * Returns: when pad @i will have been silent for long; GST_CLOCK_STIME_NONE: there is none, or
+ * it has a head, or its silence is said already
+ */
+GstClockTimeDiff gst_cloth_sync_heads_silent_at (const GstClothSyncHeads *
+    heads, guint i, GstClockTimeDiff since);
+
+G_END_DECLS

@@ -1,0 +1,174 @@
+/* What the joining of streams says: on the bus, and in the counts of each stream.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#ifdef HAVE_CONFIG_H
+#include "config.h"
+#endif
+
+#include "elements/gstclothsyncmessages.h"
+
+/* What a message calls the stream of a pad. The streaming thread alone changes the
+ * camera's name. */
+static gchar *
+name_stream (GstClothSyncPad * pad)
+{
+  return pad->camera_name ? g_strdup_printf ("camera \"%s\" (pad %s)",
+      pad->camera_name, GST_PAD_NAME (pad)) :
+      g_strdup_printf ("pad %s", GST_PAD_NAME (pad));
+}
+
+static gdouble
+seconds (GstClockTimeDiff time)
+{
+  return (gdouble) time / GST_SECOND;
+}
+
+static gdouble
+milliseconds (GstClockTime time)
+{
+  return (gdouble) time / GST_MSECOND;
+}
+
+void
+gst_cloth_sync_say_refused (GstElement * element, GstClothSyncPad * pad,
+    gboolean is_last)
+{
+  g_autofree gchar *stream = name_stream (pad);
+
+  if (pad->warned_ahead) {
+    return;
+  }
+  pad->warned_ahead = TRUE;
+  GST_ELEMENT_WARNING (element, STREAM, FORMAT,
+      ("A frame of %s was dropped: its time stamp, %.3f s, is far ahead and "
+          "%s.", stream, seconds (pad->held_time), is_last ?
+          "none comes after it" : "the next frame's is not"),
+      ("Later ones are only counted, as \"implausible\" in stats. If such "
+          "jumps are real, raise max-jump."));
+}
+
+void
+gst_cloth_sync_say_untimed (GstElement * element, GstClothSyncPad * pad)
+{
+  g_autofree gchar *stream = name_stream (pad);
+
+  if (pad->warned_untimed) {
+    return;
+  }
+  pad->warned_untimed = TRUE;
+  GST_ELEMENT_WARNING (element, STREAM, FORMAT,
+      ("A frame of %s was dropped: it has no time stamp.", stream),
+      ("Streams are joined by running time. Later ones are only counted, as "
+          "\"implausible\" in stats."));
+}
+
+void
+gst_cloth_sync_say_jump (GstElement * element, GstClothSyncPad * pad)
+{
+  g_autofree gchar *stream = name_stream (pad);
+
+  if (pad->warned_ahead) {
+    return;
+  }
+  pad->warned_ahead = TRUE;
+  GST_ELEMENT_WARNING (element, STREAM, FORMAT,
+      ("The time stamps of %s jump to %.3f s; the others go on without it "
+          "until they come there.", stream, seconds (pad->held_time)),
+      ("See what stamps these frames."));
+}
+
+void
+gst_cloth_sync_say_dropped (GstElement * element, GstClothSyncPad * pad,
+    GstBuffer * buffer)
+{
+  const GstSegment *segment = &GST_AGGREGATOR_PAD (pad)->segment;
+  const GstClockTime pts = GST_BUFFER_PTS (buffer);
+  GstMessage *message = gst_message_new_qos (GST_OBJECT (element), TRUE,
+      gst_segment_to_running_time (segment, GST_FORMAT_TIME, pts),
+      gst_segment_to_stream_time (segment, GST_FORMAT_TIME, pts), pts,
+      GST_BUFFER_DURATION (buffer));
+
+  GST_DEBUG_OBJECT (pad, "late frame dropped: %" GST_PTR_FORMAT, buffer);
+  gst_message_set_qos_stats (message, GST_FORMAT_BUFFERS, pad->used,
+      pad->dropped);
+  gst_element_post_message (element, message);
+}
+
+void
+gst_cloth_sync_say_far_back (GstElement * element, GstClothSyncPad * pad,
+    GstClockTimeDiff time, GstClockTimeDiff last_time)
+{
+  g_autofree gchar *stream = name_stream (pad);
+
+  if (pad->warned_back) {
+    return;
+  }
+  pad->warned_back = TRUE;
+  if (time < pad->last) {
+    GST_ELEMENT_WARNING (element, STREAM, FORMAT,
+        ("Frames of %s are dropped: their time stamps went back to %.3f s, "
+            "but %.3f s has gone by.", stream, seconds (time),
+            seconds (last_time)),
+        ("Streams are joined by running time, which never goes back. See "
+            "what stamps these frames."));
+  } else {
+    GST_ELEMENT_WARNING (element, STREAM, FORMAT,
+        ("Frames of %s are dropped: they come when the set of %.3f s has "
+            "gone, and are of %.3f s.", stream, seconds (last_time),
+            seconds (time)),
+        ("Raise latency, or see whether another stream's time stamps run "
+            "ahead."));
+  }
+}
+
+void
+gst_cloth_sync_say_late (GstElement * element, GstClothSyncPad * pad,
+    GstClockTime late, GstClockTime latency)
+{
+  g_autofree gchar *stream = name_stream (pad);
+
+  if (pad->warned_late) {
+    return;
+  }
+  pad->warned_late = TRUE;
+  GST_ELEMENT_WARNING_WITH_DETAILS (element, STREAM, FAILED,
+      ("A frame of %s came %.0f ms too late, and was left out of its set.",
+          stream, milliseconds (late)),
+      ("Raise latency, now %.0f ms, by as much or more, or make what is before "
+          "this element quicker. Later ones are only counted, as \"dropped\" "
+          "in stats.", milliseconds (latency)),
+      ("camera", G_TYPE_STRING, pad->camera_name ? pad->camera_name : "",
+          "pad", G_TYPE_STRING, GST_PAD_NAME (pad),
+          "seconds", G_TYPE_DOUBLE, (gdouble) late / GST_SECOND, NULL));
+}
+
+void
+gst_cloth_sync_pad_set_silent (GstClothSyncPad * pad, GstElement * element,
+    const gchar * prefix, gboolean silent, GstClockTimeDiff since,
+    GstClockTimeDiff now)
+{
+  g_autofree gchar *name =
+      g_strconcat (prefix, silent ? "/silent" : "/back", NULL);
+
+  since = gst_cloth_sync_pad_silent_since (pad, since);
+  GST_OBJECT_LOCK (element);
+  pad->silent = silent;
+  GST_OBJECT_UNLOCK (element);
+  gst_element_post_message (element,
+      gst_message_new_element (GST_OBJECT (element), gst_structure_new (name,
+              "camera", G_TYPE_STRING, pad->camera_name ? pad->camera_name : "",
+              "pad", G_TYPE_STRING, GST_PAD_NAME (pad),
+              "seconds", G_TYPE_DOUBLE, seconds (MAX (now - since, 0)), NULL)));
+}
+
+GstStructure *
+gst_cloth_sync_pad_get_stats (GstClothSyncPad * pad)
+{
+  return gst_structure_new (GST_PAD_NAME (pad),
+      "camera", G_TYPE_STRING, pad->camera_name ? pad->camera_name : "",
+      "used", G_TYPE_UINT64, pad->used,
+      "missing", G_TYPE_UINT64, pad->missing,
+      "dropped", G_TYPE_UINT64, pad->dropped,
+      "implausible", G_TYPE_UINT64, pad->implausible,
+      "silent", G_TYPE_BOOLEAN, pad->silent, NULL);
+}
