@@ -119,7 +119,7 @@ def diagnose(folder):
     for name, model in ('base', 'model-knit.json'), ('judge', 'model-windy.json'):
         run(folder, 'simulate', os.path.join(pipelines, model), '--scene', drag, '--output', name)
     done = run(folder, 'diagnose', drag, '--model', knit, '--effects', 'air_drag,wind',
-               '--seed', '5', '--threads', '2', '--output', 'deep/gap')
+               '--baseline', 'base', '--seed', '5', '--threads', '2', '--output', 'deep/gap')
     expect(done.returncode == 0, 'diagnose ' + done.stderr[-200:])
     lines = done.stdout.splitlines()
     with open(os.path.join(folder, 'deep/gap/gap.json'), encoding='utf-8') as file:
@@ -135,6 +135,7 @@ def diagnose(folder):
            sorted(e['name'] for e in gap['effects'] if e['accepted']), str(fitted['effects']))
     expect(gap['inputs'] == [
         {'role': 'take', 'name': 'take_drag', 'sha256': sha256(drag)},
+        {'role': 'baseline', 'name': 'take_drag', 'sha256': sha256(os.path.join(folder, 'base'))},
         {'role': 'model', 'name': 'model-knit.json', 'sha256': sha256(knit)}], str(gap['inputs']))
     told = [int(line.split('%')[0]) for line in done.stderr.splitlines() if '%' in line]
     # in words that need no knowledge of how it works
@@ -397,7 +398,7 @@ def contradictions(folder):
     # holes that can be lived with
     for name, positions in ('late', first), ('gone', last):
         done = run(folder, 'diagnose', variant(folder, name, positions), '--model', knit,
-                   '--effects', 'air_drag,wind', '--output', name + '-gap')
+                   '--effects', 'air_drag,wind', '--baseline', 'base', '--output', name + '-gap')
         expect(done.returncode == 0 and 'undecidable' not in done.stdout, done.stdout)
 
 

@@ -172,7 +172,10 @@ compare_known (gconstpointer a, gconstpointer b)
 {
   const Known *x = a, *y = b;
 
-  return x->log_in > y->log_in ? -1 : x->log_in < y->log_in;
+  const gdouble a_odds = x->log_in - x->log_out, b_odds =
+      y->log_in - y->log_out;
+
+  return a_odds > b_odds ? -1 : a_odds < b_odds;
 }
 
 /* The effects, the likeliest first. */

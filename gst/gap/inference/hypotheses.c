@@ -828,9 +828,11 @@ find_added_evidence (const ClothDiagnosis * d, const ClothGapHypothesis * h,
 }
 
 /* No effect adds more to an explanation than its own posterior says: what more there is, chance made, as
- * the explanation was simulated at several places and the best was kept. */
+ * the explanation was simulated at several places and the best was kept. What the base adds was found where
+ * nothing was taken to act, and stands. */
 static void
-bound_by_parts (const ClothDiagnosis * d, GArray * hypotheses)
+bound_by_parts (const ClothDiagnosis * d, const ClothGapHypothesis * base,
+    GArray * hypotheses)
 {
   for (guint size = 1; size <= CLOTH_GAP_MAX_EFFECTS; size++)
     for (guint i = 0; i < hypotheses->len; i++) {
@@ -844,6 +846,8 @@ bound_by_parts (const ClothDiagnosis * d, GArray * hypotheses)
         };
         ClothGapHypothesis part = { 0 };
 
+        if (cloth_gap_hypothesis_has (base, h->candidates[c]))
+          continue;
         for (guint k = 0; k < h->n; k++)
           if (k != c)
             part.candidates[part.n++] = h->candidates[k];
@@ -887,7 +891,7 @@ rank (const ClothDiagnosis * d, const ClothGapLinearisation * l,
     if (!h->is_compared)
       h->by_residual += after - before;
   }
-  bound_by_parts (d, hypotheses);
+  bound_by_parts (d, l->base, hypotheses);
   for (guint i = 0; i < hypotheses->len; i++)
     best = MIN (best, g_array_index (hypotheses, ClothGapHypothesis,
             i).by_residual);

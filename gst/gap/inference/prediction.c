@@ -7,6 +7,7 @@
  *   before, and what has grown by chance in one window says nothing of another, so that the size of each
  *   is integrated out:
  *     log p = Σ −n/2 log ((V_w + V₀)/V₀) + constant.
+ *   An explanation of several effects has no more of it than the best of its parts has.
  *   V₀ is the gap of the baseline that the model was fitted on; of a twin, whose share in it cancels, that
  *   of the noise; with neither what the two force models differ by.
  *   The held vertices are seen where the explanation has the clamps, but for the noise and what they are
@@ -185,13 +186,53 @@ compare_by_residual (gconstpointer a, gconstpointer b)
   return x->by_residual < y->by_residual ? -1 : x->by_residual > y->by_residual;
 }
 
+/* Whether one explanation is a part of another, or this one itself. */
+static gboolean
+is_part (const ClothGapHypothesis * part, const ClothGapHypothesis * h)
+{
+  for (guint c = 0; c < part->n; c++)
+    if (!cloth_gap_hypothesis_has (h, part->candidates[c]))
+      return FALSE;
+  return TRUE;
+}
+
+/* What prediction says for each of @n explanations. Of several effects it says no more than for the best of
+ * their parts: that the whole predicts better is no merit, as of many some do by chance. Gusts, which can't
+ * be repeated, predict as the part without them, and alone as well as the best. */
+static void
+bound_by_parts (const GArray * hypotheses, guint n, gdouble * evidence)
+{
+  g_autofree gdouble *own = g_memdup2 (evidence, n * sizeof *evidence);
+  gdouble most = -INFINITY;
+
+  for (guint i = 0; i < n; i++)
+    most = fmax (most, own[i]);
+  for (guint i = 0; i < n; i++) {
+    const ClothGapHypothesis *h = &g_array_index (hypotheses,
+        ClothGapHypothesis, i);
+    gdouble best = -INFINITY;
+
+    for (guint k = 0; k < n; k++) {
+      const ClothGapHypothesis *other = &g_array_index (hypotheses,
+          ClothGapHypothesis, k);
+
+      if (other->n && other->n < h->n && !other->n_winds && is_part (other, h))
+        best = fmax (best, own[k]);
+    }
+    if (h->n_winds && h->n == 1)
+      evidence[i] = most;
+    else if (isfinite (best))
+      evidence[i] = h->n_winds ? best : fmin (own[i], best);
+  }
+}
+
 /* @d: a diagnosis
  * @hypotheses: (inout) (element-type ClothGapHypothesis): all that were compared; then the likeliest
  *   first
  * @error: #ClothSimError, or #ClothFitError when it was stopped
  *
- * Takes into account how well the likeliest foretell. Gusts, which can't be repeated, foretell as well as
- * the best. Those that are not looked at are as much less likely than the last one that is.
+ * Takes into account how well the likeliest predict. Those that are not looked at are as much less likely
+ * as the last one that is.
  *
  * Returns: whether they could be simulated
  */
@@ -203,7 +244,7 @@ cloth_gap_hypotheses_predict (ClothDiagnosis * d, GArray * hypotheses,
   g_autoptr (GPtrArray) models =
       g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_model_free);
   g_autofree gdouble *evidence = g_new0 (gdouble, n + 1);
-  gdouble most = -INFINITY, best = INFINITY, last = 0.;
+  gdouble best = INFINITY;
 
   g_array_sort (hypotheses, compare_by_residual);
   for (guint i = 0; i < n; i++)
@@ -212,15 +253,12 @@ cloth_gap_hypotheses_predict (ClothDiagnosis * d, GArray * hypotheses,
   for (guint t = 0; t < d->n_takes; t++)
     if (!add_take (d, t, models, evidence, error))
       return FALSE;
-  for (guint i = 0; i < n; i++)
-    most = MAX (most, evidence[i]);
+  bound_by_parts (hypotheses, n, evidence);
   for (guint i = 0; i < hypotheses->len; i++) {
     ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
         i);
 
-    if (i < n)
-      last = h->n_winds ? most : evidence[i];
-    h->behind = isfinite (most) ? h->by_residual - last : h->by_residual;
+    h->behind = h->by_residual - evidence[MIN (i + 1, n) - 1];
     best = MIN (best, h->behind);
   }
   for (guint i = 0; i < hypotheses->len; i++)

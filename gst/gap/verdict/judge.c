@@ -15,6 +15,7 @@
 
 #include <math.h>
 
+#include "gst/gap/inference/clamps.h"
 #include "gst/gap/verdict/agreement.h"
 
 /* A rest is more than the floor when this share of draws at most says otherwise. */
@@ -93,12 +94,27 @@ is_unlike_all (const ClothDiagnosis * d)
       && !leaves_nothing (d);
 }
 
+/* Whether clamps that were elsewhere than logged are worth a word: beside accepted effects their power is
+ * held against the gap's, too. */
+static gboolean
+are_clamps_off (const ClothDiagnosis * d)
+{
+  gdouble most = 0.;
+
+  for (guint t = 0; t < d->n_takes; t++)
+    most = fmax (most, 3. * cloth_gap_find_clamps_off
+        (cloth_diagnosis_recording (d, t), NULL));
+  return d->clamps_off && !(d->n_accepted && most <
+      CLOTH_DIAGNOSIS_LEAST_SHARE * pow (d->result->gap_before.value, 2.));
+}
+
 void
 cloth_diagnosis_decide (ClothDiagnosis * d)
 {
   ClothGapResult *r = d->result;
   const gboolean is_unlike = is_unlike_all (d);
-  const gboolean unknown = d->clamps_off
+  const gboolean clamps_off = are_clamps_off (d);
+  const gboolean unknown = clamps_off
       || (is_unlike && cloth_diagnosis_n_references (d));
   const gboolean by_chance = d->chance && !leaves_nothing (d);
   const gboolean contradict =
@@ -114,7 +130,7 @@ cloth_diagnosis_decide (ClothDiagnosis * d)
   if (unknown || contradict || by_chance) {
     r->verdict = CLOTH_GAP_UNEXPLAINED;
     r->reason = contradict ? g_strdup ("The takes contradict each other on the "
-        "accepted effects, so these are not all of it.") : d->clamps_off ?
+        "accepted effects, so these are not all of it.") : clamps_off ?
         g_strdup (d->clamps_off) : by_chance ?
         g_strdup_printf ("It is likely that %s acts, which changes by chance: "
         "no simulation can repeat it.",
