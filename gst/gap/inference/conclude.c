@@ -130,7 +130,8 @@ fill_gusts (const ClothGapHypothesis * h, const ClothEffect * effect,
   e->values[2] = 90. / G_PI * atan2 (along[2], along[0] - along[1]);
 }
 
-/* The numbers of an effect in the likeliest explanation with it. */
+/* The numbers of an effect in the likeliest explanation with it. A number of the cloth's is known no better
+ * than its law holds. */
 static void
 fill_values (const ClothDiagnosis * d, const Known * known, ClothGapEffect * e)
 {
@@ -161,7 +162,9 @@ fill_values (const ClothDiagnosis * d, const Known * known, ClothGapEffect * e)
       e->values[p] = CLAMP (cloth_candidates_direction (d->candidates,
               candidate->first + k)->centre + h->evidence.values[at],
           parameter->min, parameter->max);
-      e->sigmas[p] = sqrt (h->evidence.covariance[at * h->n_directions + at]);
+      e->sigmas[p] = sqrt (h->evidence.covariance[at * h->n_directions + at] +
+          (candidate->effect->side == CLOTH_EFFECT_PHYSICS ?
+              pow (CLOTH_GAP_LAW_ERROR * h->evidence.values[at], 2.) : 0.));
     }
     return;
   }

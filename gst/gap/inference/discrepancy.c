@@ -19,8 +19,6 @@
 
 #include "gst/math/linalg.h"
 
-/* No law of an effect holds better than by this share. */
-#define LAW_ERROR 0.2
 
 /* @stack: features
  * @z: (array): a residual
@@ -170,7 +168,7 @@ cloth_gap_discrepancy_new (const ClothGapStack * stack,
   if (response) {
     cloth_gap_find_powers (stack, response, powers);
     for (guint c = 0; c < stack->n_classes; c++)
-      d->variances[c] += LAW_ERROR * LAW_ERROR * powers[c];
+      d->variances[c] += CLOTH_GAP_LAW_ERROR * CLOTH_GAP_LAW_ERROR * powers[c];
   }
   return d;
 }

@@ -7,6 +7,9 @@
 
 G_BEGIN_DECLS
 
+/* No law of an effect holds better than to this share of what it changes. */
+#define CLOTH_GAP_LAW_ERROR 0.2
+
 /* @slopes: (array): how much of the reference's residual the take's has by class, [n_classes]
  * @free: derivatives by the free numbers less what the reference's say of them, [n_free][size]
  * @members: what each member of the ensemble is off by beyond the reference, [n_members][size]
