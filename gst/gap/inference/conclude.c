@@ -36,7 +36,6 @@ typedef struct
   const ClothEffect *effect;
   gdouble log_in, log_out;      /* of the posterior with and without it */
   const ClothGapHypothesis *best;       /* the likeliest with it */
-  const ClothGapHypothesis *alone;
 } Known;
 
 static const ClothCandidate *
@@ -82,8 +81,6 @@ find_known (const ClothDiagnosis * d, const GArray * hypotheses,
     known.log_in = log_add (known.log_in, -h->behind);
     if (!known.best)
       known.best = h;
-    if (h->n == 1 && !known.alone)
-      known.alone = h;
   }
   return known;
 }
@@ -97,16 +94,6 @@ count_effects (const ClothDiagnosis * d)
     n += i == 0
         || candidate_of (d, i)->effect != candidate_of (d, i - 1)->effect;
   return MAX (n, 2);
-}
-
-/* The null, where nothing acts. */
-static const ClothGapHypothesis *
-find_none (const GArray * hypotheses)
-{
-  for (guint i = 0; i < hypotheses->len; i++)
-    if (!g_array_index (hypotheses, ClothGapHypothesis, i).n)
-      return &g_array_index (hypotheses, ClothGapHypothesis, i);
-  return NULL;
 }
 
 /* Of gusts: the root of the winds' mean square, and the axis along which most of it blew. */
@@ -186,7 +173,6 @@ static void
 fill_effects (ClothDiagnosis * d, const GArray * hypotheses)
 {
   g_autoptr (GArray) all = g_array_new (FALSE, FALSE, sizeof (Known));
-  const ClothGapHypothesis *none = find_none (hypotheses);
   const gdouble prior = -log (count_effects (d) - 1.);
 
   for (guint i = 0; i < d->candidates->list->len; i++) {
@@ -209,9 +195,10 @@ fill_effects (ClothDiagnosis * d, const GArray * hypotheses)
     e->log_bayes_factor = odds - prior;
     e->p_value = e->constancy_p_value = NAN;
     e->group = -1;
-    if (known->alone && none)
-      e->p_value = cloth_chi_square_tail (2. * fmax (known->alone->objective -
-              none->objective, 0.), known->alone->n_directions);
+    for (guint c = 0; c < known->best->n; c++)
+      if (candidate_of (d, known->best->candidates[c])->effect == known->effect)
+        e->p_value = cloth_gap_hypothesis_find_p_value (d, known->best,
+            known->best->candidates[c]);
     fill_values (d, known, e);
   }
 }
@@ -354,7 +341,7 @@ cloth_diagnosis_find_unknown (ClothDiagnosis * d, const ClothGapBasis * basis,
   g_autofree gboolean *is_force = g_new0 (gboolean, s->n + 1);
   ClothGapUnknown unknown = { 0. };
   ClothGapRivals *rivals = &d->result->rivals;
-  gdouble force, displacement, odds;
+  gdouble force, displacement, odds, power;
 
   rivals->force_field = rivals->displacement_field = 0.;
   for (guint i = 0; i < d->candidates->list->len; i++)
@@ -372,7 +359,8 @@ cloth_diagnosis_find_unknown (ClothDiagnosis * d, const ClothGapBasis * basis,
   cloth_gap_discrepancy_take_reference_off (basis->discrepancy, s,
       basis->null, left);
   cloth_gap_likelihood_find_rest (basis->likelihood, left, powers);
-  d->unknown_share = MIN (unknown.power / find_power (basis, powers), 1.);
+  power = find_power (basis, powers);
+  d->unknown_share = power > 0. ? MIN (unknown.power / power, 1.) : 0.;
   d->unknown_probability = odds / (1. + odds);
   return d->unknown_probability;
 }

@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "gst/math/linalg.h"
+#include "gst/math/statistics.h"
 
 /* Sets of two and of three effects that are simulated. */
 #define N_PAIRS 16
@@ -352,16 +353,13 @@ grow (const ClothDiagnosis * d, const ClothGapLinearisation * l,
   for (guint i = 0; i < sets->len; i++) {
     const ClothGapHypothesis *set = &g_array_index (sets, ClothGapHypothesis,
         i);
-    /* each set once: with what comes after all that is not of the base */
-    guint from = 0;
 
-    for (guint c = 0; c < set->n; c++)
-      if (!cloth_gap_hypothesis_has (l->base, set->candidates[c]))
-        from = set->candidates[c] + 1;
-    for (guint one = from; one < d->candidates->list->len; one++) {
+    for (guint one = 0; one < d->candidates->list->len; one++) {
       ClothGapHypothesis h;
 
-      if (add_one (d, l->stack, set, one, &h) && screen (d, l, &h))
+      if (!cloth_gap_hypothesis_has (set, one)
+          && add_one (d, l->stack, set, one, &h) && !is_listed (grown, &h)
+          && screen (d, l, &h))
         g_array_append_val (grown, h);
     }
   }
@@ -403,7 +401,8 @@ list_hypotheses (const ClothDiagnosis * d, const ClothGapLinearisation * l,
     ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
         i);
 
-    h->is_compared = h->by_residual <= HOPELESS && contains (h, l->base);
+    h->is_compared = contains (h, l->base) && (h->by_residual <= HOPELESS
+        || cloth_gap_hypothesis_is_same (h, l->base));
     h->is_settled = !h->is_compared || h->n_winds;
     if (!h->is_compared)
       continue;
@@ -528,6 +527,7 @@ look_ahead (const ClothDiagnosis * d, const ClothGapLinearisation * l,
 
   if (!cloth_gap_gram_find_evidence (gram, all_directions, h->at, h->priors,
           h->n_directions, &h->evidence)) {
+    h->evidence.log_evidence = -INFINITY;
     h->is_settled = TRUE;
     return;
   }
@@ -777,17 +777,17 @@ blow (const ClothDiagnosis * d, const ClothGapLinearisation * l,
   }
 }
 
-/* Logarithm of the Bayes factor for candidate @c of an explanation by its own posterior: the prior density
- * at the candidate's null over the posterior one there (Dickey 1971). Two simulations never differ by
- * what an effect does only; this one is of one simulation. Infinite where it has no such null. */
-static gdouble
-find_nested_evidence (const ClothDiagnosis * d, const ClothGapHypothesis * h,
-    guint c)
+/* How far a candidate of an explanation is from its null by the explanation's own posterior: the numbers that
+ * are 0 there (not those that only shape it), how many they are, their square in units of their covariance,
+ * and the logarithm of the density of their priors over that of the posterior where each is largest. FALSE
+ * where there is no such null. */
+static gboolean
+find_nested (const ClothDiagnosis * d, const ClothGapHypothesis * h, guint c,
+    guint * n_numbers, gdouble * square, gdouble * volume)
 {
   gdouble sigma[CLOTH_GAP_MAX_DIRECTIONS * CLOTH_GAP_MAX_DIRECTIONS];
   gdouble off[CLOTH_GAP_MAX_DIRECTIONS], way[CLOTH_GAP_MAX_DIRECTIONS];
   guint list[CLOTH_GAP_MAX_DIRECTIONS], n = 0, first = 0;
-  gdouble sum = 0.;
 
   for (guint i = 0; i < c; i++)
     first += candidate_of (d, h->candidates[i])->n;
@@ -796,24 +796,68 @@ find_nested_evidence (const ClothDiagnosis * d, const ClothGapHypothesis * h,
         cloth_candidates_direction (d->candidates, h->directions[first + k]);
 
     if (direction->present)
-      return INFINITY;
+      return FALSE;
     if (!direction->shapes)
       list[n++] = first + k;
   }
+  *volume = 0.;
   for (guint i = 0; i < n; i++) {
-    off[i] = way[i] = h->evidence.values[list[i]];
-    sum -= 0.5 * pow (h->priors[list[i]].mean / h->priors[list[i]].prior, 2.) +
-        log (h->priors[list[i]].prior);
+    off[i] = way[i] = h->evidence.modes[list[i]];
+    *volume -= log (h->priors[list[i]].prior);
     for (guint k = 0; k < n; k++)
       sigma[i * n + k] = h->evidence.covariance[list[i] * h->n_directions +
           list[k]];
+    /* both densities are of the half that is not negative */
+    if (h->priors[list[i]].one_sided)
+      *volume += G_LN2 + cloth_gap_log_normal_cdf (off[i] / sqrt (sigma[i * n +
+                  i]));
   }
   if (!n || !cloth_cholesky_factor (n, sigma))
-    return INFINITY;
+    return FALSE;
   cloth_cholesky_solve (n, sigma, way);
-  for (guint i = 0; i < n; i++)
-    sum += log (sigma[i * n + i]) + 0.5 * off[i] * way[i];
-  return sum;
+  *square = 0.;
+  for (guint i = 0; i < n; i++) {
+    *volume += log (sigma[i * n + i]);
+    *square += off[i] * way[i];
+  }
+  *n_numbers = n;
+  return TRUE;
+}
+
+/* Logarithm of the Bayes factor for candidate @c of an explanation by its own posterior: the prior density
+ * at the candidate's null over the posterior one there (Dickey 1971). Two simulations never differ by
+ * what an effect does only; this one is of one simulation. Infinite where it has no such null. */
+static gdouble
+find_nested_evidence (const ClothDiagnosis * d, const ClothGapHypothesis * h,
+    guint c)
+{
+  gdouble square, volume;
+  guint n;
+
+  return find_nested (d, h, c, &n, &square, &volume) ? volume + 0.5 * square :
+      INFINITY;
+}
+
+/* @d: a diagnosis
+ * @hypothesis: an explanation that was simulated
+ * @candidate: one that is part of it
+ *
+ * Returns: how often the candidate would be found as far from its null if it didn't act (Wald's test), at
+ *   most, as the likelihood is coarsened; NaN where it has no null or was not tested
+ */
+gdouble
+cloth_gap_hypothesis_find_p_value (const ClothDiagnosis * d,
+    const ClothGapHypothesis * hypothesis, guint candidate)
+{
+  const ClothGapHypothesis *h = hypothesis;
+  gdouble square, volume;
+  guint n;
+
+  for (guint c = 0; c < h->n; c++)
+    if (h->candidates[c] == candidate && h->z && !h->n_winds
+        && find_nested (d, h, c, &n, &square, &volume))
+      return cloth_chi_square_tail (square, n);
+  return NAN;
 }
 
 /* What a candidate of an explanation adds to its other part. Gusts are not simulated: with them and without
@@ -823,7 +867,9 @@ find_added_evidence (const ClothDiagnosis * d, const ClothGapHypothesis * h,
     guint c, const ClothGapHypothesis * part)
 {
   if (cloth_candidate_is_stochastic (candidate_of (d, h->candidates[c])))
-    return h->evidence.log_evidence - part->evidence.log_evidence;
+    return part->is_compared && part->z
+        && isfinite (part->evidence.log_evidence) ?
+        h->evidence.log_evidence - part->evidence.log_evidence : INFINITY;
   return h->n_winds ? INFINITY : find_nested_evidence (d, h, c);
 }
 
@@ -888,7 +934,7 @@ rank (const ClothDiagnosis * d, const ClothGapLinearisation * l,
     ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
         i);
 
-    if (!h->is_compared)
+    if (!h->is_compared && isfinite (after))
       h->by_residual += after - before;
   }
   bound_by_parts (d, l->base, hypotheses);

@@ -80,6 +80,8 @@ ClothModel *cloth_gap_hypothesis_make_model (const ClothDiagnosis * d,
     const ClothGapHypothesis * hypothesis);
 gboolean cloth_gap_hypothesis_simulate (ClothDiagnosis * d,
     const ClothGapHypothesis * hypothesis, gdouble * z, GError ** error);
+gdouble cloth_gap_hypothesis_find_p_value (const ClothDiagnosis * d,
+    const ClothGapHypothesis * hypothesis, guint candidate);
 gboolean cloth_gap_hypotheses_screen (const ClothDiagnosis * d,
     const ClothGapLinearisation * linearisation, ClothGapEvidence * best);
 gboolean cloth_gap_hypotheses_compare (ClothDiagnosis * d,

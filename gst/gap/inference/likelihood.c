@@ -1,4 +1,5 @@
 /* How likely a residual is: class by class of features, with nuisances integrated out.
+ * SPDX-License-Identifier: LGPL-2.1-or-later
  *
  * Model: z = β y + N c + J (θ − θ₀) + ε. y is the reference's residual. The nuisances N are F, the
  *   derivatives by the model's free numbers, and the members D of the ensemble: simulators differ in
@@ -16,13 +17,14 @@
  *     log p (z | θ, c) = −½ Σ_k (ν + ζ d_k) log (1 + q_k/ν) + constant  (multivariate t),
  *   whose mode is found by reweighted least squares, w_k = (ν + ζ d_k)/(ν + q_k),
  *     A = Σ_k w_k X_kᵀX_k + Λ,  X = (N J), Λ the precisions of all priors;
- *   log evidence = log p at the mode + log prior − ½ log det (A Λ⁻¹)  (Laplace)
- *     + log 2Φ(θ/σ) of each direction that can't be negative; its value is then the mean of that half.
+ *   log evidence = log p at the mode + log prior − ½ log det (A Λ⁻¹)  (Laplace's method, with A for the
+ *     Hessian)
+ *     + log 2Φ(θ/σ) of each direction that can't be negative; its value is then the mean of that half. Of
+ *     several such directions this is an approximation, as if they were independent.
  * References: Lange, Little and Taylor, Robust statistical modeling using the t distribution, 1989;
  *   Miller and Dunson, Robust Bayesian inference via coarsening, 2019; MacKay, Bayesian interpolation,
  *   1992 (evidence); Kennedy and O'Hagan 2001 (discrepancy).
- *
- * SPDX-License-Identifier: LGPL-2.1-or-later */
+ */
 #include "gst/gap/inference/likelihood.h"
 
 #include <math.h>
@@ -406,7 +408,8 @@ square_at (const Problem * p, guint class, const gdouble * x)
   for (guint i = 0; i < p->n; i++)
     square += x[i] * (2. * slope[i] + cloth_gap_dot (curvature + i * p->n, x,
             p->n));
-  return MAX (square, 0.);
+  /* not MAX, which takes NaN for 0 */
+  return square < 0. ? 0. : square;
 }
 
 /* A, and the step's right-hand side, with the weights at x. */
@@ -459,9 +462,12 @@ find_mode (const Problem * p, const gdouble * freedoms, gdouble * x,
   return TRUE;
 }
 
-/* log Φ(x), accurate far below 0 too. */
-static gdouble
-log_normal_cdf (gdouble x)
+/* @x: a number
+ *
+ * Returns: log Φ(x), accurate far below 0 too
+ */
+gdouble
+cloth_gap_log_normal_cdf (gdouble x)
 {
   if (x > -20.)
     return log (0.5 * erfc (-x / G_SQRT2));
@@ -475,7 +481,7 @@ mean_above_zero (gdouble mean, gdouble sigma)
   const gdouble x = mean / sigma;
 
   return mean + sigma * exp (-0.5 * x * x - 0.5 * log (2. * G_PI) -
-      log_normal_cdf (x));
+      cloth_gap_log_normal_cdf (x));
 }
 
 /* log det of the factor's matrix, from row @from on: of what is left when the rows before are
@@ -545,9 +551,10 @@ cloth_gap_gram_find_evidence (const ClothGapGram * gram, const guint * list,
     for (guint j = 0; j < n; j++)
       evidence->covariance[k * n + j] = covariance[(l->n + k) * p.n + l->n + j];
     sigma = sqrt (evidence->covariance[k * n + k]);
-    evidence->values[k] = x[l->n + k];
+    evidence->modes[k] = evidence->values[k] = x[l->n + k];
     if (priors[k].one_sided) {
-      const gdouble half = G_LN2 + log_normal_cdf (x[l->n + k] / sigma);
+      const gdouble half =
+          G_LN2 + cloth_gap_log_normal_cdf (x[l->n + k] / sigma);
 
       evidence->log_evidence += half;
       evidence->log_volume += half;
@@ -579,7 +586,7 @@ cloth_gap_gram_find_information (const ClothGapGram * gram, guint direction)
       a[i] += p.curvature[(gsize) c * p.n * p.n + i];
   if (!cloth_cholesky_factor (p.n, a))
     return 0.;
-  return (exp (log_determinant (a, p.n, l->n)) - 1.) / COARSENING;
+  return MAX (expm1 (log_determinant (a, p.n, l->n)), 0.) / COARSENING;
 }
 
 /* @likelihood: a likelihood

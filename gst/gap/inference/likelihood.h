@@ -27,13 +27,15 @@ typedef struct {
 /* @log_evidence: logarithm of the marginal likelihood, up to a constant of the likelihood
  * @log_volume: the part of it that the directions' uncertainty contributes (Occam factor)
  * @misfit: squared residual over its expected value, over all classes
- * @values: most probable values of the directions
+ * @modes: most probable values of the directions
+ * @values: the same, but of those that can't be negative the mean of that half
  * @covariance: of these, [n][n]
  */
 typedef struct {
   gdouble log_evidence;
   gdouble log_volume;
   gdouble misfit;
+  gdouble modes[CLOTH_GAP_MAX_DIRECTIONS];
   gdouble values[CLOTH_GAP_MAX_DIRECTIONS];
   gdouble covariance[CLOTH_GAP_MAX_DIRECTIONS * CLOTH_GAP_MAX_DIRECTIONS];
 } ClothGapEvidence;
@@ -59,6 +61,7 @@ gdouble cloth_gap_gram_find_information (const ClothGapGram * gram,
     guint direction);
 void cloth_gap_gram_free (ClothGapGram * gram);
 
+gdouble cloth_gap_log_normal_cdf (gdouble x);
 gdouble cloth_gap_log_prior (const ClothGapPrior * priors,
     const gdouble * values, guint n);
 

@@ -134,6 +134,9 @@ add_take (ClothDiagnosis * d, guint t, GPtrArray * models, gdouble * evidence,
         (cloth_diagnosis_study (d, i)->recording, NULL));
   if (!twin && !find_floor (d, r, &floor, error))
     return FALSE;
+  /* what diverges has no floor */
+  if (!isfinite (floor))
+    floor = 0.;
   if (twin) {
     const ClothModel *base[] = { d->model };
 
@@ -202,27 +205,47 @@ is_part (const ClothGapHypothesis * part, const ClothGapHypothesis * h)
 static void
 bound_by_parts (const GArray * hypotheses, guint n, gdouble * evidence)
 {
-  g_autofree gdouble *own = g_memdup2 (evidence, n * sizeof *evidence);
   gdouble most = -INFINITY;
 
+  for (guint size = 2; size <= CLOTH_GAP_MAX_EFFECTS; size++)
+    for (guint i = 0; i < n; i++) {
+      const ClothGapHypothesis *h = &g_array_index (hypotheses,
+          ClothGapHypothesis, i);
+      gdouble best = -INFINITY;
+      gboolean has_part = FALSE;
+
+      if (h->n != size || h->n_winds)
+        continue;
+      for (guint k = 0; k < n; k++) {
+        const ClothGapHypothesis *other = &g_array_index (hypotheses,
+            ClothGapHypothesis, k);
+
+        if (!other->n || other->n >= h->n || other->n_winds
+            || !is_part (other, h))
+          continue;
+        best = fmax (best, evidence[k]);
+        has_part = TRUE;
+      }
+      if (has_part)
+        evidence[i] = fmin (evidence[i], best);
+    }
   for (guint i = 0; i < n; i++)
-    most = fmax (most, own[i]);
+    if (!g_array_index (hypotheses, ClothGapHypothesis, i).n_winds)
+      most = fmax (most, evidence[i]);
   for (guint i = 0; i < n; i++) {
     const ClothGapHypothesis *h = &g_array_index (hypotheses,
         ClothGapHypothesis, i);
-    gdouble best = -INFINITY;
 
-    for (guint k = 0; k < n; k++) {
+    if (!h->n_winds)
+      continue;
+    evidence[i] = most;
+    for (guint k = 0; k < n && h->n > 1; k++) {
       const ClothGapHypothesis *other = &g_array_index (hypotheses,
           ClothGapHypothesis, k);
 
-      if (other->n && other->n < h->n && !other->n_winds && is_part (other, h))
-        best = fmax (best, own[k]);
+      if (!other->n_winds && other->n + 1 == h->n && is_part (other, h))
+        evidence[i] = evidence[k];
     }
-    if (h->n_winds && h->n == 1)
-      evidence[i] = most;
-    else if (isfinite (best))
-      evidence[i] = h->n_winds ? best : fmin (own[i], best);
   }
 }
 
@@ -231,8 +254,8 @@ bound_by_parts (const GArray * hypotheses, guint n, gdouble * evidence)
  *   first
  * @error: #ClothSimError, or #ClothFitError when it was stopped
  *
- * Takes into account how well the likeliest predict. Those that are not looked at are as much less likely
- * as the last one that is.
+ * Takes into account how well the likeliest predict. Those that are not looked at predict no
+ * better than any that is.
  *
  * Returns: whether they could be simulated
  */
@@ -244,7 +267,7 @@ cloth_gap_hypotheses_predict (ClothDiagnosis * d, GArray * hypotheses,
   g_autoptr (GPtrArray) models =
       g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_model_free);
   g_autofree gdouble *evidence = g_new0 (gdouble, n + 1);
-  gdouble best = INFINITY;
+  gdouble best = INFINITY, least = INFINITY;
 
   g_array_sort (hypotheses, compare_by_residual);
   for (guint i = 0; i < n; i++)
@@ -254,11 +277,16 @@ cloth_gap_hypotheses_predict (ClothDiagnosis * d, GArray * hypotheses,
     if (!add_take (d, t, models, evidence, error))
       return FALSE;
   bound_by_parts (hypotheses, n, evidence);
+  for (guint i = 0; i < n; i++)
+    if (isfinite (evidence[i]))
+      least = MIN (least, evidence[i]);
+  if (!isfinite (least))
+    least = 0.;
   for (guint i = 0; i < hypotheses->len; i++) {
     ClothGapHypothesis *h = &g_array_index (hypotheses, ClothGapHypothesis,
         i);
 
-    h->behind = h->by_residual - evidence[MIN (i + 1, n) - 1];
+    h->behind = h->by_residual - (i < n ? evidence[i] : least);
     best = MIN (best, h->behind);
   }
   for (guint i = 0; i < hypotheses->len; i++)

@@ -1,9 +1,10 @@
 /* Decides the verdict from the posterior.
  *
- *   unexplained: chance acts that can't be simulated again, or clamps were elsewhere than logged, or an
- *     unknown field is likelier than not, beside a baseline or a twin, has a tenth of the gap's or the floor's power at least, and the accepted
- *     effects leave more than the floor, or
- *     takes contradict each other on what acts;
+ *   unexplained: takes contradict each other on what acts; or chance acts that can't be simulated again, and the
+ *     accepted effects leave more than the floor; or clamps were elsewhere than logged, beside accepted
+ *     effects by a tenth of the gap's power at least; or an unknown field is likelier than not, beside a
+ *     baseline or a twin, has a tenth of the gap's or the floor's power at least, and the accepted effects
+ *     leave more than the floor;
  *   explained: effects act, and no other explanation is among those that have 95% together;
  *   ambiguous: effects act, and others would do as well;
  *   no_gap: nothing acts, and there is a baseline or a twin to say so;
@@ -90,8 +91,9 @@ is_unlike_all (const ClothDiagnosis * d)
   const gdouble share = d->unknown_share *
       (gap < floor ? gap * gap / (floor * floor) : 1.);
 
-  return d->unknown_probability > 0.5 && share > CLOTH_DIAGNOSIS_LEAST_SHARE
-      && !leaves_nothing (d);
+  return d->result->rivals.force_field +
+      d->result->rivals.displacement_field > 0.5
+      && share > CLOTH_DIAGNOSIS_LEAST_SHARE && !leaves_nothing (d);
 }
 
 /* Whether clamps that were elsewhere than logged are worth a word: beside accepted effects their power is
@@ -127,6 +129,11 @@ cloth_diagnosis_decide (ClothDiagnosis * d)
       e->shrink = r->shrink;
   }
   add_camera_effects (d);
+  /* what is not worth a word has none to say later */
+  if (!clamps_off)
+    g_clear_pointer (&d->clamps_off, g_free);
+  if (!by_chance)
+    d->chance = NULL;
   if (unknown || contradict || by_chance) {
     r->verdict = CLOTH_GAP_UNEXPLAINED;
     r->reason = contradict ? g_strdup ("The takes contradict each other on the "
