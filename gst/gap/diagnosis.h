@@ -14,7 +14,7 @@ G_BEGIN_DECLS
 /* A fault of a camera is accepted when its evidence is this at least. */
 #define CLOTH_DIAGNOSIS_LEAST_LOG_BAYES_FACTOR 10.
 /* Something unknown must be this share of the gap to be worth a word. */
-#define CLOTH_DIAGNOSIS_LEAST_SHARE 0.1
+#define CLOTH_DIAGNOSIS_LEAST_SHARE 0.2
 /* Standard deviations of cameras' faults are given so many times as wide as the fit finds them, which
  * knows nothing of the simulator's own error: then about nine of ten of the blind benchmark's
  * intervals of 95% hold the truth. */

@@ -30,6 +30,8 @@
 
 /* Standard deviations of priors, in steps: about that of an effect in a refit of ours, and of a
  * base number that of a factor of 1.4. */
+/* Base numbers must take so much off the square of the residual to be changed. */
+#define LEAST_FALL 0.1
 #define EFFECT_PRIOR 5.
 #define BASE_PRIOR 1.5
 /* Longest step of a fit: a factor of 2.6. */
@@ -635,7 +637,7 @@ fit_all (Refit * r, gboolean has_all, GError ** error)
   if (!has_all || !r->n_sound || r->left < LEAST_RUNS)
     return TRUE;
   return add_base (r, error)
-      && run_stage (r, FALSE, r->left, CLOTH_DIAGNOSIS_LEAST_SHARE, error);
+      && run_stage (r, FALSE, r->left, LEAST_FALL, error);
 }
 
 /* ---- what to change ---- */

@@ -2,8 +2,8 @@
  *
  *   unexplained: takes contradict each other on what acts; or chance acts that can't be simulated again, and the
  *     accepted effects leave more than the floor; or clamps were elsewhere than logged, beside accepted
- *     effects by a tenth of the gap's power at least; or an unknown field is likelier than not, beside a
- *     baseline or a twin, has a tenth of the gap's or the floor's power at least, and the accepted effects
+ *     effects by a fifth of the gap's power at least; or an unknown field is likelier than not, beside a
+ *     baseline or a twin, has a fifth of the gap's or the floor's power at least, and the accepted effects
  *     leave more than the floor;
  *   explained: effects act, and no other explanation is among those that have 95% together;
  *   ambiguous: effects act, and others would do as well;
