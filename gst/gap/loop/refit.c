@@ -28,10 +28,10 @@
 #include "gst/gap/simulator/mapping.h"
 #include "gst/gap/simulator/simulator.h"
 
-/* Standard deviations of priors, in steps: about that of an effect in a refit of ours, and of a
- * base number that of a factor of 1.4. */
 /* Base numbers must take so much off the square of the residual to be changed. */
 #define LEAST_FALL 0.1
+/* Standard deviations of priors, in steps: about that of an effect in a refit of ours, and of a
+ * base number that of a factor of 1.4. */
 #define EFFECT_PRIOR 5.
 #define BASE_PRIOR 1.5
 /* Longest step of a fit: a factor of 2.6. */
