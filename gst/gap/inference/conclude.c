@@ -157,15 +157,20 @@ fill_values (const ClothDiagnosis * d, const Known * known, ClothGapEffect * e)
   }
 }
 
+/* Posterior. */
+static gdouble
+log_odds (const Known * known)
+{
+  return known->log_in - known->log_out;
+}
+
 static gint
 compare_known (gconstpointer a, gconstpointer b)
 {
   const Known *x = a, *y = b;
+  const gdouble first = log_odds (x), second = log_odds (y);
 
-  const gdouble a_odds = x->log_in - x->log_out, b_odds =
-      y->log_in - y->log_out;
-
-  return a_odds > b_odds ? -1 : a_odds < b_odds;
+  return first > second ? -1 : first < second;
 }
 
 /* The effects, the likeliest first. */
@@ -189,7 +194,7 @@ fill_effects (ClothDiagnosis * d, const GArray * hypotheses)
     const Known *known = &g_array_index (all, Known, i);
     ClothGapEffect *e = cloth_gap_result_add_effect (d->result,
         known->effect);
-    const gdouble odds = known->log_in - known->log_out;
+    const gdouble odds = log_odds (known);
 
     e->probability = 1. / (1. + exp (-odds));
     e->log_bayes_factor = odds - prior;
@@ -326,11 +331,9 @@ find_power (const ClothGapBasis * basis, const gdouble * powers)
  * @basis: what the posterior is found with
  * @z: (array): the residual with the likeliest explanation
  *
- * Fills the result's rivals but that nothing acts.
- *
- * Returns: the probability that something unknown acts
+ * Fills the result's rivals but that nothing acts, and the probability that something unknown acts.
  */
-gdouble
+void
 cloth_diagnosis_find_unknown (ClothDiagnosis * d, const ClothGapBasis * basis,
     const gdouble * z)
 {
@@ -362,7 +365,6 @@ cloth_diagnosis_find_unknown (ClothDiagnosis * d, const ClothGapBasis * basis,
   power = find_power (basis, powers);
   d->unknown_share = power > 0. ? MIN (unknown.power / power, 1.) : 0.;
   d->unknown_probability = odds / (1. + odds);
-  return d->unknown_probability;
 }
 
 /* How large each number must be to show. */

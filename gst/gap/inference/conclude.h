@@ -23,7 +23,7 @@ typedef struct {
   const gdouble *null;
 } ClothGapBasis;
 
-gdouble cloth_diagnosis_find_unknown (ClothDiagnosis * d,
+void cloth_diagnosis_find_unknown (ClothDiagnosis * d,
     const ClothGapBasis * basis, const gdouble * z);
 void cloth_diagnosis_conclude (ClothDiagnosis * d, const ClothGapBasis * basis,
     const GArray * hypotheses);

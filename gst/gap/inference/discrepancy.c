@@ -19,7 +19,6 @@
 
 #include "gst/math/linalg.h"
 
-
 /* @stack: features
  * @z: (array): a residual
  * @powers: (out) (array): its mean square in each class

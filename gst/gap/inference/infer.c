@@ -92,18 +92,15 @@ compare (ClothDiagnosis * d, const Round * r, const ClothGapHypothesis * base,
 
 /* The probability that the likeliest set is not all. */
 static gboolean
-find_unknown (ClothDiagnosis * d, const Round * r, const gdouble * null,
-    const GArray * hypotheses, gdouble * unknown, GError ** error)
+find_unknown (ClothDiagnosis * d, const ClothGapBasis * basis,
+    const GArray * hypotheses, GError ** error)
 {
-  const ClothGapBasis basis = { r->stack, r->discrepancy, r->likelihood,
-    r->gram, null
-  };
-  g_autofree gdouble *z = g_new0 (gdouble, r->stack->size);
+  g_autofree gdouble *z = g_new0 (gdouble, basis->stack->size);
 
   if (!cloth_gap_hypothesis_simulate (d, &g_array_index (hypotheses,
               ClothGapHypothesis, 0), z, error))
     return FALSE;
-  *unknown = cloth_diagnosis_find_unknown (d, &basis, z);
+  cloth_diagnosis_find_unknown (d, basis, z);
   return TRUE;
 }
 
@@ -247,19 +244,19 @@ cloth_diagnosis_infer (ClothDiagnosis * d, GError ** error)
   g_auto (Round) last = { {NULL}
   };
   g_autofree gdouble *null = NULL;
-  gdouble unknown;
 
   cloth_diagnosis_begin_part (d, 0.2, 0.3, 0.2,
       "comparing with the references");
   if (cloth_gap_gather_references (d, &gathered, &failed)
-      && run_rounds (d, &gathered, hypotheses, &last, &null, &failed)
-      && find_unknown (d, &last, null, hypotheses, &unknown, &failed)) {
+      && run_rounds (d, &gathered, hypotheses, &last, &null, &failed)) {
     const ClothGapBasis basis = { last.stack, last.discrepancy, last.likelihood,
       last.gram, null
     };
 
-    note_discrepancies (d, &gathered, &last);
-    cloth_diagnosis_conclude (d, &basis, hypotheses);
+    if (find_unknown (d, &basis, hypotheses, &failed)) {
+      note_discrepancies (d, &gathered, &last);
+      cloth_diagnosis_conclude (d, &basis, hypotheses);
+    }
   }
   cloth_gap_gathered_clear (&gathered, d->n_takes);
   if (!failed && d->n_accepted) {
