@@ -1,6 +1,7 @@
 /* GstClothSync: deadlines of live streams, pads that come and go, what no stream should send.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "tests/elements/clockwait.h"
 #include "tests/elements/clothsyncbench.h"
 
 /* ---- live ---- */
@@ -9,21 +10,6 @@ static GstTestClock *
 bench_clock (Bench * b)
 {
   return gst_harness_get_testclock (b->src);
-}
-
-/* Until then the element waits for silence, at another time. */
-static void
-wait_for_deadline (GstTestClock * clock, GstClockTime time)
-{
-  GstClockTime pending = GST_CLOCK_TIME_NONE;
-
-  while (pending != time) {
-    GstClockID id;
-
-    gst_test_clock_wait_for_next_pending_id (clock, &id);
-    pending = gst_clock_id_get_time (id);
-    gst_clock_id_unref (id);
-  }
 }
 
 GST_START_TEST (test_live_deadline)

@@ -1,6 +1,7 @@
 /* triangulate: changes, live cameras, rates and times.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "tests/elements/clockwait.h"
 #include "tests/elements/triangulatebench.h"
 
 /* In mid-stream: another frame rate, a moved camera with a new rig.json, a rig.json that
@@ -86,21 +87,6 @@ GST_START_TEST (test_other_pattern)
 }
 
 GST_END_TEST;
-
-/* Until then the element waits for silence, at another time. */
-static void
-wait_for_deadline (GstTestClock * clock, GstClockTime time)
-{
-  GstClockTime pending = GST_CLOCK_TIME_NONE;
-
-  while (pending != time) {
-    GstClockID id;
-
-    gst_test_clock_wait_for_next_pending_id (clock, &id);
-    pending = gst_clock_id_get_time (id);
-    gst_clock_id_unref (id);
-  }
-}
 
 /* A camera that falls silent is named, and so is its return; sets without it count as
  * incomplete though min-views lets them go. */

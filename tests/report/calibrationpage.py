@@ -16,6 +16,7 @@ import tempfile
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from pages import differs, open_page, refuse_webgl
 from webdriver import Browser
 
 tool, picture, boards = sys.argv[1], sys.argv[3:], os.path.join(sys.argv[2], 'opencv_boards')
@@ -36,14 +37,7 @@ def carried(path):
 
 
 def show(browser, path, complaint=None):
-    browser.open(path)
-    for _ in range(200):
-        if browser.run('return document.documentElement.dataset.ready') == 'yes':
-            break
-        browser.settle()
-    else:
-        raise AssertionError('%s does not get ready: %s' % (path, browser.log()))
-    browser.settle()
+    open_page(browser, path)
     log = browser.log()
     assert all(complaint and complaint in line for line in log), log
     assert browser.run('return performance.getEntriesByType("resource").length') == 0
@@ -51,13 +45,6 @@ def show(browser, path, complaint=None):
 
 def count(browser, selector):
     return browser.run('return document.querySelectorAll(arguments[0]).length', selector)
-
-
-def differs(browser, selector, change):
-    before = browser.picture(selector)
-    change()
-    browser.settle()
-    return browser.picture(selector) != before
 
 
 def check_pair(browser, folder):
@@ -128,9 +115,7 @@ def check_hostile(browser, folder):
 
 
 def check_without_webgl(browser, folder):
-    browser.devtools('Page.addScriptToEvaluateOnNewDocument', source='const all = HTMLCanvasElement.prototype.getContext;'
-                     'HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {'
-                     'return kind.startsWith("webgl") ? null : all.call(this, kind, ...rest); }')
+    refuse_webgl(browser)
     show(browser, os.path.join(folder, 'calibration.html'), 'WebGL')
     assert 'no 3D' in browser.text('.stage') and count(browser, '#certainty canvas') == 2
 

@@ -546,6 +546,23 @@ is_units (const Parser * parser, gdouble * unit_m)
   return any;
 }
 
+/* The coordinates of a line, those of each marker @stride numbers behind those of the one before. */
+static gboolean
+parse_places (Parser * parser, gfloat * places, gsize stride, GError ** error)
+{
+  for (guint i = 0; i < parser->columns->len; i++) {
+    const Column *column = &g_array_index (parser->columns, Column, i);
+    gdouble value;
+
+    if (column->kind != COLUMN_AXIS)
+      continue;
+    if (!parse_cell (parser, i, &value, error))
+      return FALSE;
+    places[stride * column->marker + column->axis] = (gfloat) value;
+  }
+  return TRUE;
+}
+
 static gboolean
 read_wide_row (Parser * parser, guint n_markers, gdouble before[2],
     GArray * values[3], GError ** error)
@@ -575,18 +592,8 @@ read_wide_row (Parser * parser, guint n_markers, gdouble before[2],
     return FALSE;
   }
   g_array_set_size (values[2], (guint) at + 3 * n_markers);
-  for (guint i = 0; i < parser->columns->len; i++) {
-    const Column *column = &g_array_index (parser->columns, Column, i);
-    gdouble value;
-
-    if (column->kind != COLUMN_AXIS)
-      continue;
-    if (!parse_cell (parser, i, &value, error))
-      return FALSE;
-    g_array_index (values[2], gfloat,
-        at + 3 * column->marker + column->axis) = (gfloat) value;
-  }
-  return TRUE;
+  return parse_places (parser, &g_array_index (values[2], gfloat, at), 3,
+      error);
 }
 
 static ClothMarkers *
@@ -667,16 +674,8 @@ read_long_row (Parser * parser, GHashTable * known, GPtrArray * names,
     return FALSE;
   }
   g_array_index (last, gdouble, row.marker) = row.key;
-  for (guint i = 0; i < parser->columns->len; i++) {
-    const Column *column = &g_array_index (parser->columns, Column, i);
-    gdouble value;
-
-    if (column->kind != COLUMN_AXIS)
-      continue;
-    if (!parse_cell (parser, i, &value, error))
-      return FALSE;
-    row.position[column->axis] = (gfloat) value;
-  }
+  if (!parse_places (parser, row.position, 0, error))
+    return FALSE;
   if (rows->len == MAX_ROWS) {
     g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT,
         "more than %u lines: import the recording in parts", MAX_ROWS);
