@@ -3,16 +3,17 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/sim/body.h"
 
-/* @held: index of what is held
+/* @paths: the clamps' places, [frame][held][3], m: the body's own or others
+ * @held: index of what is held
  *
- * The place of a clamp on its logged path: a cubic through the frames' places whose slope
+ * The place of a clamp on its path: a cubic through the frames' places whose slope
  * at a frame is that between its neighbours (Catmull and Rom 1974), so that the clamp's
  * speed has no jumps, which would shake the cloth at the frame rate. Straight on beyond
  * the ends.
  */
 void
-cloth_body_path (const ClothBody * body, guint held, gdouble time_s,
-    gdouble position[3])
+cloth_body_path (const ClothBody * body, const gdouble * paths, guint held,
+    gdouble time_s, gdouble position[3])
 {
   const ClothBodyHeld *h = &body->held[held];
   const gdouble *t = body->times;
@@ -27,7 +28,7 @@ cloth_body_path (const ClothBody * body, guint held, gdouble time_s,
       high = middle;
   }
   for (guint k = 0; k < 3; k++) {
-#define AT(frame) body->clamps[3 * ((gsize) (frame) * body->n_held + held) + k]
+#define AT(frame) paths[3 * ((gsize) (frame) * body->n_held + held) + k]
     gdouble span = t[high] - t[low], s, slope[2], rise;
 
     if (high == low) {

@@ -104,8 +104,8 @@ typedef struct
 } ClothBody;
 
 void cloth_body_free (ClothBody * body);
-void cloth_body_path (const ClothBody * body, guint held, gdouble time_s,
-    gdouble position[3]);
+void cloth_body_path (const ClothBody * body, const gdouble * paths,
+    guint held, gdouble time_s, gdouble position[3]);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothBody, cloth_body_free)
 G_END_DECLS

@@ -27,6 +27,8 @@
 #define MAX_STAGES 8
 #define OTHER_COSTS 0.6
 #define LONGEST_STAGED 64.
+/* What rounding may make of the information in a direction of which nothing is known, of all. */
+#define ROUNDING 1e-9
 
 struct _ClothSim
 {
@@ -52,6 +54,9 @@ struct _ClothSim
   gdouble *scratch[5];          /* by particle */
   gdouble *weights;             /* by vertex of the body */
   gdouble *gains, *dampings;    /* of the observer, by rank */
+  GArray *pulls;                /* the last ones, by particle */
+  gdouble lighter;              /* the scene's vertices are than the cloth on a finer mesh */
+  gdouble *pull_gains, *pull_dampings;  /* by rank */
   /* of the running advance */
   gdouble until;
   guint n_steps;
@@ -198,6 +203,21 @@ cloth_sim_can_share (const ClothModel * a, const ClothModel * b)
       && a->time_step == b->time_step && cloth_numerics_agree (a, b);
 }
 
+/* The cloth's area over that of the scene's own vertices, which share it with those of a finer
+ * mesh. */
+static gdouble
+find_lighter (const ClothSim * sim)
+{
+  const guint32 *kept = sim->numerics->kept;
+  gdouble all = 0., own = 0.;
+
+  for (guint i = 0; i < sim->body->n_particles; i++)
+    all += sim->body->area[i];
+  for (guint i = 0; kept && i < sim->n_vertices; i++)
+    own += sim->body->area[sim->body->particle[kept[i]]];
+  return kept ? all / own : 1.;
+}
+
 /* @scene: what to simulate; nothing of it is kept
  * @models: the models to simulate it with; nothing of them is kept
  * @n_models: how many, at least 1; they must agree in force_model, integrator,
@@ -252,6 +272,10 @@ cloth_sim_new (const ClothScene * scene, const ClothModel * const *models,
     sim->scratch[i] = g_new0 (gdouble, 3 * (gsize) sim->body->n_particles);
   sim->gains = g_new0 (gdouble, n_models);
   sim->dampings = g_new0 (gdouble, n_models);
+  sim->lighter = find_lighter (sim);
+  sim->pulls = g_array_new (FALSE, FALSE, sizeof (ClothPull));
+  sim->pull_gains = g_new0 (gdouble, n_models);
+  sim->pull_dampings = g_new0 (gdouble, n_models);
   sim->weights = g_new (gdouble, sim->body->n_vertices);
   sim->pool = cloth_pool_new (options->threads);
   sim->group_of = g_new (guint, n_models);
@@ -282,6 +306,9 @@ cloth_sim_free (ClothSim * sim)
   g_free (sim->weights);
   g_free (sim->gains);
   g_free (sim->dampings);
+  g_clear_pointer (&sim->pulls, g_array_unref);
+  g_free (sim->pull_gains);
+  g_free (sim->pull_dampings);
   g_clear_pointer (&sim->pool, cloth_pool_free);
   g_clear_pointer (&sim->body, cloth_body_free);
   g_clear_pointer (&sim->numerics, cloth_numerics_free);
@@ -659,4 +686,137 @@ cloth_sim_set_all_targets (ClothSim * sim, const gdouble * now,
     set_gain (sim, model, gains[model], dampings[model]);
   for (guint i = 0; i < sim->n_groups; i++)
     draw (sim, &sim->groups[i], 0, sim->groups[i].n, t_now, t_next);
+}
+
+/* NULL: it is a covariance's inverse, or nothing. */
+static const gchar *
+find_fault_of_end (const ClothPullEnd * end)
+{
+  const gdouble *s = end->information;
+  gdouble sum = s[0] + s[1] + s[2] + s[3] + s[4] + s[5], minors[3], det;
+  gdouble trace = s[0] + s[1] + s[2];
+
+  for (guint k = 0; k < 3; k++)
+    sum += end->target[k] + end->velocity[k];
+  if (!isfinite (sum))
+    return "has a number that is not finite";
+  minors[0] = s[1] * s[2] - s[3] * s[3];
+  minors[1] = s[0] * s[2] - s[4] * s[4];
+  minors[2] = s[0] * s[1] - s[5] * s[5];
+  det = s[0] * minors[0] + s[5] * (s[3] * s[4] - s[5] * s[2]) +
+      s[4] * (s[5] * s[3] - s[1] * s[4]);
+  for (guint k = 0; k < 3; k++)
+    if (s[k] < 0. || minors[k] < -ROUNDING * trace * trace)
+      return "has an information that is negative in a direction";
+  if (det < -ROUNDING * trace * trace * trace)
+    return "has an information that is negative in a direction";
+  return NULL;
+}
+
+static gboolean
+add_pull (ClothSim * sim, const ClothPull * pull, guint index, GError ** error)
+{
+  const guint32 *kept = sim->numerics->kept;
+  const gchar *fault = find_fault_of_end (&pull->now);
+  gdouble sum = pull->weight[0] + pull->weight[1] + pull->weight[2];
+  ClothPull own = *pull;
+
+  if (!fault)
+    fault = find_fault_of_end (&pull->next);
+  if (!fault && !(fabs (sum - 1.) < 1e-6))
+    fault = "has weights whose sum is not 1";
+  for (guint i = 0; i < 3 && !fault; i++) {
+    if (pull->corner[i] >= sim->n_vertices)
+      fault = "is at a vertex that the cloth has not";
+    else
+      own.corner[i] = sim->body->particle[kept ? kept[pull->corner[i]] :
+          pull->corner[i]];
+  }
+  if (fault) {
+    g_set_error (error, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_PULL,
+        "pull %u %s", index, fault);
+    return FALSE;
+  }
+  g_array_append_val (sim->pulls, own);
+  return TRUE;
+}
+
+/* @sim: a simulation
+ * @pulls: (array length=n): what draws the cloth in an interval; all of them replace those
+ *   before
+ * @n: how many; 0: nothing draws it any more
+ * @options: how they draw
+ * @gains: (array): of each model, 1/s²; a model of gain and damping 0 is drawn by nothing
+ * @dampings: (array): of each model, 1/s
+ * @t_now: when the interval begins, s
+ * @t_next: when it ends, s
+ * @error: #ClothSimError
+ *
+ * The same pulls for every model, each with a strength of its own; beside
+ * cloth_sim_set_targets (). On a mesh that a numerics effect made finer their points have the
+ * mass of the scene's vertices. Pulls take part in the time step.
+ *
+ * Returns: %FALSE when a pull is impossible, or a strength asks for steps that are too short:
+ *   then nothing draws the cloth
+ */
+gboolean
+cloth_sim_set_pulls (ClothSim * sim, const ClothPull * pulls, guint n,
+    const ClothPullOptions * options, const gdouble * gains,
+    const gdouble * dampings, gdouble t_now, gdouble t_next, GError ** error)
+{
+  ClothPullOptions own = *options;
+  gboolean sound = options->softening > 0. && isfinite (options->softening)
+      && options->sigma > 0. && isfinite (options->sigma) && t_next > t_now;
+
+  own.sigma *= sqrt (sim->lighter);
+  g_array_set_size (sim->pulls, 0);
+  if (!sound)
+    g_set_error (error, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_PULL, "pulls need a "
+        "softening and a sigma above 0, and an interval that is not empty; "
+        "they are %g, %g m and %g to %g s", options->softening, options->sigma,
+        t_now, t_next);
+  for (guint i = 0; i < n && sound; i++)
+    sound = add_pull (sim, &pulls[i], i, error);
+  if (!sound)
+    g_array_set_size (sim->pulls, 0);
+  for (guint model = 0; model < sim->n_models; model++) {
+    guint rank = sim->rank_of[model];
+
+    sim->pull_gains[rank] = gains[model];
+    sim->pull_dampings[rank] = dampings[model];
+  }
+  for (guint i = 0; i < sim->n_groups; i++)
+    if (sim->groups[i].backend->set_pulls (sim->groups[i].lanes,
+            (const ClothPull *) sim->pulls->data, sim->pulls->len, &own,
+            sim->pull_gains + sim->groups[i].first,
+            sim->pull_dampings + sim->groups[i].first, t_now, t_next))
+      sim->stale = TRUE;
+  if (!sound || n == 0)
+    return sound;
+  if (sim->stale)
+    find_time_step (sim);
+  if (sim->time_step >= SHORTEST_STEP)
+    return TRUE;
+  g_set_error (error, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_PULL,
+      "pulls of this strength ask for steps of %.2g s; lower the gain or the "
+      "damping, or soften the law", sim->time_step);
+  return cloth_sim_set_pulls (sim, NULL, 0, options, gains, dampings, t_now,
+      t_next, NULL) && FALSE;
+}
+
+/* @sim: a simulation
+ * @model: index of a model
+ * @paths: (nullable): where its clamps go, [n_frames][held][3] as in the scene, m; %NULL:
+ *   where the scene has them
+ *
+ * Moves a model's clamps along other paths than its neighbours': for paths that nobody
+ * logged and a fit has to find.
+ */
+void
+cloth_sim_set_clamps (ClothSim * sim, guint model, const gdouble * paths)
+{
+  guint lane;
+  const ClothSimGroup *group = group_of (sim, model, &lane);
+
+  group->backend->set_paths (group->lanes, lane, paths);
 }

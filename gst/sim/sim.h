@@ -4,6 +4,7 @@
 #pragma once
 
 #include "gst/sim/model.h"
+#include "gst/sim/pull.h"
 #include "gst/sim/scene.h"
 #include "gst/sim/types.h"
 
@@ -48,6 +49,10 @@ void cloth_sim_set_all_targets (ClothSim * sim, const gdouble * now,
     const gdouble * velocity_next, const gdouble * weights,
     const gdouble * gains, const gdouble * dampings, gdouble t_now,
     gdouble t_next);
+gboolean cloth_sim_set_pulls (ClothSim * sim, const ClothPull * pulls, guint n,
+    const ClothPullOptions * options, const gdouble * gains,
+    const gdouble * dampings, gdouble t_now, gdouble t_next, GError ** error);
+void cloth_sim_set_clamps (ClothSim * sim, guint model, const gdouble * paths);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothSim, cloth_sim_free)
 G_END_DECLS

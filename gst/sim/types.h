@@ -9,10 +9,12 @@ G_BEGIN_DECLS
 
 /* @CLOTH_SIM_ERROR_SCENE: the scene can't be simulated
  * @CLOTH_SIM_ERROR_MODEL: a model is impossible
+ * @CLOTH_SIM_ERROR_PULL: what draws the cloth is impossible, or too strong
  */
 typedef enum {
   CLOTH_SIM_ERROR_SCENE,
-  CLOTH_SIM_ERROR_MODEL
+  CLOTH_SIM_ERROR_MODEL,
+  CLOTH_SIM_ERROR_PULL
 } ClothSimError;
 
 #define CLOTH_SIM_ERROR (cloth_sim_error_quark ())

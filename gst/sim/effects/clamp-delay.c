@@ -41,9 +41,9 @@ clamp (const ClothLaneState * state, const ClothLaneEffect * effect,
 {
   gdouble now[3], then[3];
 
-  cloth_body_path (state->body, held, time_s, now);
   for (guint l = 0; l < CLOTH_N_LANES; l++) {
-    cloth_body_path (state->body, held,
+    cloth_lane_path (state, held, l, time_s, now);
+    cloth_lane_path (state, held, l,
         time_s - CLOTH_LANE_AT (&effect->p[0], l), then);
     for (guint k = 0; k < 3; k++)
       CLOTH_LANE_AT (&position[k], l) += (ClothReal) (then[k] - now[k]);

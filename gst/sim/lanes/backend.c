@@ -7,6 +7,8 @@
 
 /* No cloth is as fast as this, m/s. */
 #define MAX_SPEED 1000.
+/* A pull that bounds nothing still has a logarithm. */
+#define LEAST_BOUND 1e-6
 
 static gpointer
 lanes_new (gsize n, gsize size)
@@ -230,6 +232,12 @@ group_free (gpointer group)
   g_aligned_free (state->targets.pull);
   g_aligned_free (state->targets.change);
   g_aligned_free (state->targets.weight);
+  g_aligned_free (state->pulls.list);
+  g_aligned_free (state->pulls.stiffness);
+  g_aligned_free (state->pulls.rows);
+  for (guint l = 0; l < CLOTH_N_LANES; l++)
+    if (l == 0 || state->paths[l] != state->paths[0])
+      g_free (state->paths[l]);
   g_aligned_free (state->x);
   g_aligned_free (state->v);
   g_aligned_free (state->f);
@@ -521,6 +529,134 @@ group_set_targets (gpointer group, guint lane, guint n,
   }
 }
 
+static void
+load_end (ClothLanePull * to, const ClothPull * from, gdouble square)
+{
+  for (guint k = 0; k < 3; k++) {
+    to->target[0][k] = (ClothReal) from->now.target[k];
+    to->target[1][k] = (ClothReal) (from->next.target[k] - from->now.target[k]);
+    to->velocity[0][k] = (ClothReal) from->now.velocity[k];
+    to->velocity[1][k] = (ClothReal) (from->next.velocity[k] -
+        from->now.velocity[k]);
+  }
+  to->strongest = 0.;
+  for (guint k = 0; k < 6; k++) {
+    gdouble now = square * from->now.information[k];
+    gdouble next = square * from->next.information[k];
+
+    to->information[0][k] = (ClothReal) now;
+    to->information[1][k] = (ClothReal) (next - now);
+  }
+  /* the trace is no less than the largest eigenvalue */
+  to->strongest = square * MAX (from->now.information[0] +
+      from->now.information[1] + from->now.information[2],
+      from->next.information[0] + from->next.information[1] +
+      from->next.information[2]);
+}
+
+static guint
+count_corners (const ClothPull * pull)
+{
+  return pull->corner[0] == pull->corner[1]
+      && pull->corner[0] == pull->corner[2] ? 1 : 3;
+}
+
+static void
+load_pull (ClothLanePull * to, const ClothPull * from,
+    const ClothPullOptions * options)
+{
+  gdouble squares = 1., factor = 1.;
+
+  to->n = count_corners (from);
+  for (guint i = 0; i < to->n && to->n == 3; i++)
+    squares += from->weight[i] * from->weight[i];
+  if (options->shares == CLOTH_PULL_PRINTED && to->n == 3)
+    factor = 2. / squares;
+  for (guint i = 0; i < to->n; i++) {
+    gdouble weight = to->n == 1 ? 1. : from->weight[i];
+
+    to->particle[i] = from->corner[i];
+    to->at[i] = (ClothReal) weight;
+    to->share[i] = (ClothReal) (factor * weight);
+  }
+  load_end (to, from, options->sigma * options->sigma);
+}
+
+static void
+reserve_pulls (ClothLaneState * state, guint n)
+{
+  ClothLanePulls *p = &state->pulls;
+
+  if (!p->rows)
+    p->rows = lanes_new (state->n, sizeof *p->rows);
+  if (n <= p->size)
+    return;
+  g_aligned_free (p->list);
+  g_aligned_free (p->stiffness);
+  p->list = lanes_new (n, sizeof *p->list);
+  p->stiffness = lanes_new (n, sizeof *p->stiffness);
+  p->size = n;
+}
+
+static gboolean
+group_set_pulls (gpointer group, const ClothPull * pulls, guint n,
+    const ClothPullOptions * options, const gdouble * gains,
+    const gdouble * dampings, gdouble t_now, gdouble t_next)
+{
+  ClothLaneState *state = group;
+  ClothLanePulls *p = &state->pulls;
+  gboolean changed = FALSE;
+  ClothLane bound;
+
+  reserve_pulls (state, n);
+  p->n = p->n_single = 0;
+  for (guint corners = 1; corners <= 3; corners += 2) {
+    for (guint i = 0; i < n; i++)
+      if (count_corners (&pulls[i]) == corners)
+        load_pull (&p->list[p->n++], &pulls[i], options);
+    if (corners == 1)
+      p->n_single = p->n;
+  }
+  p->law = options->law;
+  p->softening = options->softening;
+  p->per_square = 1. / (options->sigma * options->sigma);
+  p->now = t_now;
+  p->per_span = 1. / (t_next - t_now);
+  bound = CLOTH_LANE_NAME (cloth_lane_pulls_bound) (state, p->rows);
+  for (guint l = 0; l < CLOTH_N_LANES; l++) {
+    guint of = l < state->n_models ? l : 0;
+    ClothReal gain = (ClothReal) gains[of], damping = (ClothReal) dampings[of];
+    /* in half octaves, so that it seldom changes from interval to interval */
+    ClothReal most = (ClothReal) (n ? exp2 (ceil (2. * log2 (CLOTH_LANE_AT
+                    (&bound, l) + LEAST_BOUND)) / 2.) : 0.);
+
+    changed |= CLOTH_LANE_AT (&p->gain, l) != gain
+        || CLOTH_LANE_AT (&p->damping, l) != damping
+        || CLOTH_LANE_AT (&p->bound, l) != most;
+    CLOTH_LANE_AT (&p->gain, l) = gain;
+    CLOTH_LANE_AT (&p->damping, l) = damping;
+    CLOTH_LANE_AT (&p->bound, l) = most;
+  }
+  return changed;
+}
+
+static void
+group_set_paths (gpointer group, guint lane, const gdouble * paths)
+{
+  ClothLaneState *state = group;
+  gsize size = 3 * sizeof (gdouble) * state->body->n_frames *
+      state->body->n_held;
+  gdouble *copy = paths ? g_memdup2 (paths, size) : NULL;
+
+  for (guint l = CLOTH_N_LANES; l-- > 0;) {
+    if (!repeats (state, l, lane))
+      continue;
+    if (l == lane)
+      g_free (state->paths[l]);
+    state->paths[l] = copy;
+  }
+}
+
 static gdouble
 group_diverged (gpointer group, guint lane)
 {
@@ -576,6 +712,6 @@ const ClothLaneBackend CLOTH_LANE_NAME (cloth_lane_backend) = {
   CLOTH_N_LANES, cost, group_new, group_free, group_time_step,
   group_staged_time_step, group_advance,
   group_try_step, group_take_step,
-  group_get, group_set, group_set_time, group_set_targets, group_diverged,
-  group_energy
+  group_get, group_set, group_set_time, group_set_targets, group_set_pulls,
+  group_set_paths, group_diverged, group_energy
 };

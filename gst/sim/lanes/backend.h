@@ -5,6 +5,7 @@
 
 #include "gst/sim/body.h"
 #include "gst/sim/model.h"
+#include "gst/sim/pull.h"
 #include "gst/sim/types.h"
 
 G_BEGIN_DECLS
@@ -48,6 +49,14 @@ typedef struct
       const gdouble * const y[4], const gdouble * weights,
       const gdouble * gains, const gdouble * dampings, gdouble t_now,
       gdouble t_next);
+  /* the same pulls in all lanes; their corners are particles, all alike of a pull at one.
+   * The gains and dampings are of the group's models. Returns whether the bound of the time
+   * step may be another one */
+  gboolean (*set_pulls) (gpointer group, const ClothPull * pulls, guint n,
+      const ClothPullOptions * options, const gdouble * gains,
+      const gdouble * dampings, gdouble t_now, gdouble t_next);
+  /* where a lane's clamps go, [frame][held][3]; NULL: where the body says */
+  void (*set_paths) (gpointer group, guint lane, const gdouble * paths);
   /* since when the lane stands still, NaN when it moves */
   gdouble (*diverged) (gpointer group, guint lane);
   ClothSimEnergy (*energy) (gpointer group, guint lane);

@@ -16,9 +16,12 @@ clamp_place (const ClothLaneState * state, guint held, gdouble time,
 {
   gdouble path[3];
 
-  cloth_body_path (state->body, held, time, path);
-  for (guint k = 0; k < 3; k++)
-    place[k] = cloth_lane_set (path[k]);
+  for (guint l = 0; l < CLOTH_N_LANES; l++) {
+    if (l == 0 || state->paths[l] != state->paths[l - 1])
+      cloth_lane_path (state, held, l, time, path);
+    for (guint k = 0; k < 3; k++)
+      CLOTH_LANE_AT (&place[k], l) = (ClothReal) path[k];
+  }
   for (guint i = 0; i < state->n_effects; i++)
     if (state->effects[i].hooks->clamp)
       state->effects[i].hooks->clamp (state, &state->effects[i], held, time,

@@ -62,11 +62,18 @@ move (ClothLaneState * state, gboolean nudged)
 /* One step of state->dt. */
 void CLOTH_LANE_NAME (cloth_lane_explicit) (ClothLaneState * state)
 {
+  if (state->pulls.n) {
+    memset (state->others, 0, state->n * sizeof *state->others);
+    CLOTH_LANE_NAME (cloth_lane_pulls) (state, state->time, state->others);
+  }
   if (state->grid_alone && !state->has_forces) {
     CLOTH_LANE_NAME (cloth_lane_grid_step) (state);
     return;
   }
   CLOTH_LANE_NAME (cloth_lane_forces) (state);
+  for (guint i = 0; state->pulls.n && i < state->n; i++)
+    for (guint k = 0; k < 3; k++)
+      state->f[i][k] += state->others[i][k];
   if (state->has_targets)
     move (state, TRUE);
   else
@@ -108,8 +115,11 @@ CLOTH_LANE_NAME (cloth_lane_explicit_time_step) (const ClothLaneState * state)
 {
   ClothLane four = cloth_lane_set (4.), least = cloth_lane_set (1e-6);
   /* even when nothing is stiff there is a step */
-  ClothLane omega2 = state->omega2 + state->targets.gain;
-  ClothLane friction = state->friction + state->targets.damping;
+  const ClothLanePulls *pulls = &state->pulls;
+  ClothLane omega2 = state->omega2 + state->targets.gain +
+      pulls->gain * pulls->bound;
+  ClothLane friction = state->friction + state->targets.damping +
+      pulls->damping * pulls->bound;
   ClothLane stiff;
 
   /* of an implicit step effects alone are explicit */

@@ -49,6 +49,8 @@ typedef enum
   STORE,                        /* into f */
   MOVE,                         /* a step */
   MOVE_NUDGED,
+  MOVE_OTHERS,                  /* with other forces */
+  MOVE_NUDGED_OTHERS,
   STAGE,                        /* a stage of a step */
   STAGE_OTHERS                  /* with other forces */
 } Mode;
@@ -245,19 +247,22 @@ CLOTH_LANE_INLINE void
 finish (ClothLaneState * state, const ClothLaneStage * stage, guint particle,
     const ClothLane force[3], Mode mode)
 {
+  ClothLane all[3];
+
   if (mode == STORE) {
     for (guint k = 0; k < 3; k++)
       state->f[particle][k] = force[k];
-  } else if (mode == MOVE || mode == MOVE_NUDGED) {
-    cloth_lane_move (state, &stage->motion, particle, force,
-        mode == MOVE_NUDGED);
-  } else {
-    ClothLane all[3];
-
-    for (guint k = 0; k < 3; k++)
-      all[k] = mode == STAGE ? force[k] : force[k] + state->others[particle][k];
-    cloth_lane_stage (state, stage, particle, all);
+    return;
   }
+  for (guint k = 0; k < 3; k++)
+    all[k] = mode == MOVE_OTHERS || mode == MOVE_NUDGED_OTHERS
+        || mode == STAGE_OTHERS ? force[k] + state->others[particle][k] :
+        force[k];
+  if (mode == STAGE || mode == STAGE_OTHERS)
+    cloth_lane_stage (state, stage, particle, all);
+  else
+    cloth_lane_move (state, &stage->motion, particle, all,
+        mode == MOVE_NUDGED || mode == MOVE_NUDGED_OTHERS);
 }
 
 CLOTH_LANE_INLINE void
@@ -429,14 +434,19 @@ void CLOTH_LANE_NAME (cloth_lane_grid_forces) (ClothLaneState * state)
   sweep (state, NULL, STORE);
 }
 
-/* A step by the forces of membrane, bending and observer alone. */
+/* A step by the forces of membrane and bending, by the observer and by pulls, which are in the
+ * others. */
 void CLOTH_LANE_NAME (cloth_lane_grid_step) (ClothLaneState * state)
 {
   ClothLaneStage stage;
 
   cloth_lane_stage_init (state, state->dt, 1., 0., &stage);
-  if (state->has_targets)
+  if (state->has_targets && state->pulls.n)
+    sweep (state, &stage, MOVE_NUDGED_OTHERS);
+  else if (state->has_targets)
     sweep (state, &stage, MOVE_NUDGED);
+  else if (state->pulls.n)
+    sweep (state, &stage, MOVE_OTHERS);
   else
     sweep (state, &stage, MOVE);
 }

@@ -154,6 +154,8 @@ linearise (ClothLaneState * state)
   if (state->has_targets)
     CLOTH_LANE_NAME (cloth_lane_targets) (state, state->time + state->dt,
         state->f);
+  CLOTH_LANE_NAME (cloth_lane_pulls) (state, state->time + state->dt, state->f);
+  CLOTH_LANE_NAME (cloth_lane_pulls_update) (state, state->time + state->dt);
   for (guint i = 0; i < state->n; i++)
     for (guint k = 0; k < 3; k++)
       implicit->r[i][k] = state->f[i][k] + state->mass[i] *

@@ -41,13 +41,15 @@ find_others (ClothLaneState * state)
 {
   ClothLane3 *f = state->f;
 
-  state->has_others = state->has_forces || state->has_targets;
+  state->has_others = state->has_forces || state->has_targets
+      || state->pulls.n > 0;
   if (!state->has_others)
     return;
   memset (f, 0, state->n * sizeof *f);
   CLOTH_LANE_NAME (cloth_lane_effect_forces) (state);
   if (state->has_targets)
     CLOTH_LANE_NAME (cloth_lane_targets) (state, state->time, f);
+  CLOTH_LANE_NAME (cloth_lane_pulls) (state, state->time, f);
   state->f = state->others;
   state->others = f;
 }
@@ -129,13 +131,17 @@ gdouble
 CLOTH_LANE_NAME (cloth_lane_staged_time_step) (const ClothLaneState * state,
     guint stages, gdouble longest)
 {
+  ClothLane pulled = state->pulls.gain * state->pulls.bound;
+  ClothLane dragged = state->pulls.damping * state->pulls.bound;
+
   for (guint l = 0; l < CLOTH_N_LANES; l++) {
     gdouble own = CLOTH_LANE_AT (&state->own_omega2, l);
     gdouble damped = CLOTH_LANE_AT (&state->beta, l) * own;
     gdouble omega2 = CLOTH_LANE_AT (&state->omega2, l) +
-        CLOTH_LANE_AT (&state->targets.gain, l);
+        CLOTH_LANE_AT (&state->targets.gain, l) + CLOTH_LANE_AT (&pulled, l);
     gdouble c = CLOTH_LANE_AT (&state->friction, l) +
-        CLOTH_LANE_AT (&state->targets.damping, l) - damped;
+        CLOTH_LANE_AT (&state->targets.damping, l) +
+        CLOTH_LANE_AT (&dragged, l) - damped;
 
     while (longest > LEAST_STEP
         && !is_stable (stages, longest, omega2 / (MARGIN * MARGIN),

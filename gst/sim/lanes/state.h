@@ -6,6 +6,7 @@
 #include "gst/sim/body.h"
 #include "gst/sim/lanes/lane.h"
 #include "gst/sim/model.h"
+#include "gst/sim/pull.h"
 
 typedef struct _ClothLaneHooks ClothLaneHooks;
 typedef struct _ClothLaneObstacles ClothLaneObstacles;
@@ -33,6 +34,32 @@ typedef struct
   ClothLane gain, damping;
   ClothLane now, next;
 } ClothLaneTargets;
+
+/* A pull, whose numbers all lanes share: where it is on the cloth, what its corners feel of a
+ * force, and at the start of the interval and their change over it target, its velocity and
+ * σ²Λ; the most that Λ draws with in any direction. */
+typedef struct
+{
+  guint n;                      /* corners: 1 or 3 */
+  guint32 particle[3];
+  ClothReal at[3], share[3];
+  ClothReal target[2][3], velocity[2][3], information[2][6];
+  gdouble strongest;
+} ClothLanePull;
+
+typedef struct
+{
+  guint n, size;
+  guint n_single;               /* the first ones are at one particle */
+  ClothLanePull *list;
+  ClothLane (*stiffness)[6];    /* of each in an implicit step */
+  ClothLane *rows;              /* of each particle, for the bound */
+  ClothPullLaw law;
+  gdouble softening, per_square;        /* 1/σ² */
+  gdouble now, per_span;        /* s, 1/s */
+  ClothLane gain, damping;
+  ClothLane bound;              /* of stiffness over mass for a gain of 1 */
+} ClothLanePulls;
 
 /* Rest geometry in the lanes' precision. */
 typedef struct
@@ -117,6 +144,7 @@ typedef struct
   gboolean grid_alone;          /* the grid's pass has all that changes with velocities */
   ClothLaneTargets targets;
   gboolean has_targets;
+  ClothLanePulls pulls;
 
   /* Clamps: whether each holds, since when, how far off its path its particle was then,
    * and where the particle is now. */
@@ -124,6 +152,8 @@ typedef struct
   gdouble *held_since;
   ClothLane3 *held_offset;
   ClothLane3 *held_x;
+  /* of each lane, [frame][held][3]: where the clamps go instead; NULL: where the scene says */
+  gdouble *paths[CLOTH_N_LANES];
 
   /* Of steps in stages: velocities a stage ago, forces that don't change meanwhile. */
   guint stages;
@@ -220,6 +250,10 @@ ClothLane CLOTH_LANE_NAME (cloth_lane_bending_energy) (const ClothLaneState *
     state);
 void CLOTH_LANE_NAME (cloth_lane_targets) (const ClothLaneState * state,
     gdouble time_s, ClothLane3 * f);
+void CLOTH_LANE_NAME (cloth_lane_pulls) (const ClothLaneState * state,
+    gdouble time_s, ClothLane3 * f);
+ClothLane CLOTH_LANE_NAME (cloth_lane_pulls_bound) (const ClothLaneState *
+    state, ClothLane * rows);
 void CLOTH_LANE_NAME (cloth_lane_clamps) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_clamps_reset) (ClothLaneState * state);
 gboolean CLOTH_LANE_NAME (cloth_lane_clamp_grips) (ClothLaneState * state,
@@ -283,6 +317,15 @@ cloth_lane_push_face (ClothLaneState * state, const ClothLaneTriangle * t,
     for (guint corner = 0; corner < 3; corner++)
       state->f[t->particle[corner]][k] += third;
   }
+}
+
+/* Where the path of a clamp is in a lane. */
+CLOTH_LANE_INLINE void
+cloth_lane_path (const ClothLaneState * state, guint held, guint lane,
+    gdouble time_s, gdouble place[3])
+{
+  cloth_body_path (state->body, state->paths[lane] ? state->paths[lane] :
+      state->body->clamps, held, time_s, place);
 }
 
 /* Where a time is on the observer's way from now to next. */
