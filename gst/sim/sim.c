@@ -54,6 +54,7 @@ struct _ClothSim
   gdouble *scratch[5];          /* by particle */
   gdouble *weights;             /* by vertex of the body */
   gdouble *gains, *dampings;    /* of the observer, by rank */
+  gdouble *matrices;            /* of the observer's springs, by particle, and scratch */
   GArray *pulls;                /* the last ones, by particle */
   gdouble lighter;              /* the scene's vertices are than the cloth on a finer mesh */
   gdouble *pull_gains, *pull_dampings;  /* by rank */
@@ -306,6 +307,7 @@ cloth_sim_free (ClothSim * sim)
   g_free (sim->weights);
   g_free (sim->gains);
   g_free (sim->dampings);
+  g_free (sim->matrices);
   g_clear_pointer (&sim->pulls, g_array_unref);
   g_free (sim->pull_gains);
   g_free (sim->pull_dampings);
@@ -567,11 +569,35 @@ cloth_sim_get_energy (const ClothSim * sim, guint model)
   return group->backend->energy (group->lanes, lane);
 }
 
+/* The same of matrices, three numbers of each at a time. */
+static void
+spread_matrices (ClothSim * sim, const gdouble * matrices)
+{
+  const gsize n = 6 * (gsize) sim->body->n_particles;
+  gdouble *half;
+
+  if (!sim->matrices)
+    sim->matrices = g_new (gdouble, n + 3 * (gsize) sim->n_vertices);
+  half = sim->matrices + n;
+  memset (sim->matrices, 0, n * sizeof *sim->matrices);
+  for (guint part = 0; part < 6; part += 3) {
+    const gdouble *spread;
+
+    for (guint i = 0; i < sim->n_vertices; i++)
+      memcpy (half + 3 * i, matrices + 6 * (gsize) i + part, 3 * sizeof *half);
+    spread = cloth_numerics_spread (sim->numerics, 3, half);
+    for (guint i = 0; i < sim->body->n_vertices; i++)
+      for (guint k = 0; sim->weights[i] > 0. && k < 3; k++)
+        sim->matrices[6 * (gsize) sim->body->particle[i] + part + k] +=
+            sim->weights[i] * spread[3 * i + k];
+  }
+}
+
 /* What is to draw the particles, into the scratch: of sewn vertices the mean. */
 static void
 spread_targets (ClothSim * sim, const gdouble * now, const gdouble * next,
     const gdouble * velocity_now, const gdouble * velocity_next,
-    const gdouble * weights)
+    const gdouble * weights, const gdouble * matrices)
 {
   const gdouble *from[4] = { now, next, velocity_now, velocity_next };
   gdouble *total = sim->scratch[4];
@@ -605,6 +631,8 @@ spread_targets (ClothSim * sim, const gdouble * now, const gdouble * next,
             sim->scratch[k][3 * p + c]) * (weight / total[p]);
     }
   }
+  if (matrices)
+    spread_matrices (sim, matrices);
 }
 
 static void
@@ -621,10 +649,11 @@ set_gain (ClothSim * sim, guint model, gdouble gain, gdouble damping)
 /* Draws @n lanes of a group to what is in the scratch. */
 static void
 draw (ClothSim * sim, const ClothSimGroup * group, guint lane, guint n,
-    gdouble t_now, gdouble t_next)
+    gboolean matrices, gdouble t_now, gdouble t_next)
 {
   group->backend->set_targets (group->lanes, lane, n,
       (const gdouble * const *) sim->scratch, sim->scratch[4],
+      matrices ? sim->matrices : NULL,
       sim->gains + group->first + lane, sim->dampings + group->first + lane,
       t_now, t_next);
 }
@@ -636,6 +665,9 @@ draw (ClothSim * sim, const ClothSimGroup * group, guint lane, guint n,
  * @velocity_now: their velocities at @t_now, m/s
  * @velocity_next: their velocities at @t_next
  * @weights: one number of each vertex, 0 for those not observed
+ * @matrices: (nullable): six numbers of each vertex, instead of its weight: a symmetric matrix
+ *   xx, yy, zz, yz, xz, xy with no eigenvalue below 0 or above 1, for those of which some
+ *   directions are known better than others; where the weight is 0 there is none
  * @gain: 1/s²
  * @damping: 1/s
  * @t_now: seconds
@@ -650,15 +682,17 @@ draw (ClothSim * sim, const ClothSimGroup * group, guint lane, guint n,
 void
 cloth_sim_set_targets (ClothSim * sim, guint model, const gdouble * now,
     const gdouble * next, const gdouble * velocity_now,
-    const gdouble * velocity_next, const gdouble * weights, gdouble gain,
-    gdouble damping, gdouble t_now, gdouble t_next)
+    const gdouble * velocity_next, const gdouble * weights,
+    const gdouble * matrices, gdouble gain, gdouble damping, gdouble t_now,
+    gdouble t_next)
 {
   guint lane;
   const ClothSimGroup *group = group_of (sim, model, &lane);
 
-  spread_targets (sim, now, next, velocity_now, velocity_next, weights);
+  spread_targets (sim, now, next, velocity_now, velocity_next, weights,
+      matrices);
   set_gain (sim, model, gain, damping);
-  draw (sim, group, lane, 1, t_now, t_next);
+  draw (sim, group, lane, 1, matrices != NULL, t_now, t_next);
 }
 
 /* @sim: a simulation
@@ -667,6 +701,7 @@ cloth_sim_set_targets (ClothSim * sim, guint model, const gdouble * now,
  * @velocity_now: their velocities at @t_now, m/s
  * @velocity_next: their velocities at @t_next
  * @weights: one number of each vertex, 0 for those not observed
+ * @matrices: (nullable): as there
  * @gains: (array): of each model, 1/s²
  * @dampings: (array): of each model, 1/s
  * @t_now: seconds
@@ -678,14 +713,16 @@ void
 cloth_sim_set_all_targets (ClothSim * sim, const gdouble * now,
     const gdouble * next, const gdouble * velocity_now,
     const gdouble * velocity_next, const gdouble * weights,
-    const gdouble * gains, const gdouble * dampings, gdouble t_now,
-    gdouble t_next)
+    const gdouble * matrices, const gdouble * gains, const gdouble * dampings,
+    gdouble t_now, gdouble t_next)
 {
-  spread_targets (sim, now, next, velocity_now, velocity_next, weights);
+  spread_targets (sim, now, next, velocity_now, velocity_next, weights,
+      matrices);
   for (guint model = 0; model < sim->n_models; model++)
     set_gain (sim, model, gains[model], dampings[model]);
   for (guint i = 0; i < sim->n_groups; i++)
-    draw (sim, &sim->groups[i], 0, sim->groups[i].n, t_now, t_next);
+    draw (sim, &sim->groups[i], 0, sim->groups[i].n, matrices != NULL, t_now,
+        t_next);
 }
 
 /* NULL: it is a covariance's inverse, or nothing. */

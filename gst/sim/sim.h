@@ -42,12 +42,13 @@ ClothSimState cloth_sim_get_state (const ClothSim * sim, guint model,
 ClothSimEnergy cloth_sim_get_energy (const ClothSim * sim, guint model);
 void cloth_sim_set_targets (ClothSim * sim, guint model, const gdouble * now,
     const gdouble * next, const gdouble * velocity_now,
-    const gdouble * velocity_next, const gdouble * weights, gdouble gain,
-    gdouble damping, gdouble t_now, gdouble t_next);
+    const gdouble * velocity_next, const gdouble * weights,
+    const gdouble * matrices, gdouble gain, gdouble damping, gdouble t_now,
+    gdouble t_next);
 void cloth_sim_set_all_targets (ClothSim * sim, const gdouble * now,
     const gdouble * next, const gdouble * velocity_now,
     const gdouble * velocity_next, const gdouble * weights,
-    const gdouble * gains, const gdouble * dampings, gdouble t_now,
+    const gdouble * matrices, const gdouble * gains, const gdouble * dampings, gdouble t_now,
     gdouble t_next);
 gboolean cloth_sim_set_pulls (ClothSim * sim, const ClothPull * pulls, guint n,
     const ClothPullOptions * options, const gdouble * gains,

@@ -86,7 +86,7 @@ run (Kind kind, guint columns, guint rows, guint n_models, gdouble step)
 
       if (kind == TARGETS)
         cloth_sim_set_all_targets (sim, scene->positions, scene->positions, u,
-            u, weights, gains, dampings, now, next);
+            u, weights, NULL, gains, dampings, now, next);
       else if (kind != FREE)
         cloth_sim_set_pulls (sim, pulls, n, &pull_options, gains, dampings,
             now, next, NULL);

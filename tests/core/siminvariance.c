@@ -427,11 +427,11 @@ test_targets (gconstpointer data)
   for (guint k = 0; k < 2; k++) {
     for (guint i = 0; i < N; i++)
       weights[i] = weight[k];
-    cloth_sim_set_targets (sim, k, now, next, velocity, velocity, weights,
+    cloth_sim_set_targets (sim, k, now, next, velocity, velocity, weights, NULL,
         gain[k], sqrt (gain[k]), 0., t);
   }
-  cloth_sim_set_targets (sim, 2, nan, next, velocity, velocity, weights, 100.,
-      10., 0., t);
+  cloth_sim_set_targets (sim, 2, nan, next, velocity, velocity, weights, NULL,
+      100., 10., 0., t);
   run_for (sim, t);
   for (guint k = 0; k < 3; k++) {
     g_autofree gdouble *x = positions_of (sim, k);
@@ -482,10 +482,10 @@ test_all_targets (void)
     weights[i / 3] = i / 3 % 7 ? 1. : 0.;
   }
   for (guint m = 0; m < 5; m++)
-    cloth_sim_set_targets (one, m, now, next, velocity, velocity, weights,
+    cloth_sim_set_targets (one, m, now, next, velocity, velocity, weights, NULL,
         gains[m], dampings[m], 0., 0.1);
-  cloth_sim_set_all_targets (all, now, next, velocity, velocity, weights, gains,
-      dampings, 0., 0.1);
+  cloth_sim_set_all_targets (all, now, next, velocity, velocity, weights, NULL,
+      gains, dampings, 0., 0.1);
   run_for (one, 0.1);
   run_for (all, 0.1);
   for (guint m = 0; m < 5; m++) {

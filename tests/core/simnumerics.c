@@ -154,8 +154,8 @@ test_state (void)
         weights[i] = column == 3. ? NAN : 0.;
     }
     cloth_sim_set_state (sim, 0, at->positions, v, 0.);
-    cloth_sim_set_targets (sim, 0, target, target, v, v, weights, 1600., 40.,
-        0., 1.);
+    cloth_sim_set_targets (sim, 0, target, target, v, v, weights, NULL, 1600.,
+        40., 0., 1.);
     run_for (sim, 0.06);
   }
   x = positions_of (one, 0);

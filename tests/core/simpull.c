@@ -294,8 +294,8 @@ follow (const ClothModel * const *models, guint n, gboolean pulled,
       g_assert_true (cloth_sim_set_pulls (sim, pulls, n_vertices, &options,
               gains, dampings, 0.02 * frame, 0.02 * (frame + 1), &error));
     else
-      cloth_sim_set_all_targets (sim, y, next, u, u, weights, gains, dampings,
-          0.02 * frame, 0.02 * (frame + 1));
+      cloth_sim_set_all_targets (sim, y, next, u, u, weights, NULL, gains,
+          dampings, 0.02 * frame, 0.02 * (frame + 1));
     g_assert_no_error (error);
     cloth_sim_advance (sim, 0.02 * (frame + 1));
   }

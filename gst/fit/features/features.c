@@ -4,7 +4,7 @@
  *   cos π k (i + ½) / n, one factor for each of u, v and t: a discrete cosine transform.
  * Assumption: what an effect does is in long waves and low frequencies; only these are kept.
  *   What was not seen counts as equal to the recording.
- * Formula: feature = Σ residual · cosines / σ, with the cosines orthonormal on the vertices, so
+ * Formula: feature = Σ Λ^½ residual · cosines, with Λ^½ = I/σ where the noise is the same everywhere, and the cosines orthonormal on the vertices, so
  *   that noise has the variance 1 in each feature and energies add up (Parseval). On cloth
  *   that is no grid the waves are made orthonormal one after the other (Gram and Schmidt).
  *   The first cosine over time is what stands still.
@@ -132,6 +132,7 @@ cloth_features_new (const ClothRecording * recording, guint n_waves_each,
 
   f->n = recording->n;
   f->sigma = recording->sigma;
+  f->whitened = recording->noise != NULL;
   make_waves (f, recording->scene->topology, MIN (n_waves_each,
           CLOTH_FEATURES_MAX_WAVES_EACH));
   f->block_frames = CLAMP ((guint) round (block_s / frame_s), 4,
@@ -254,6 +255,8 @@ cloth_energy_spectrum_new (const ClothRecording * recording)
   e->highest_hz = 0.5 / frame_s;
   e->features = cloth_features_new (recording, CLOTH_FEATURES_MAX_WAVES_EACH,
       n / n_blocks * frame_s, e->highest_hz);
+  /* lengths, however well they are known */
+  e->features->whitened = FALSE;
   e->resolution_hz = 0.5 / (e->features->block_frames * frame_s);
   e->z = g_new0 (gdouble, e->features->size);
   return e;

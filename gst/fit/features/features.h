@@ -23,6 +23,8 @@ G_BEGIN_DECLS
  * @first: first frame of each block and one past the last, [n_blocks + 1]
  * @size: number of features: [n_blocks][n_cosines][n_waves][3]
  * @sigma: of a coordinate, m: features of pure noise have the variance 1
+ * @whitened: the recording's noise differs from place to place, and residuals are divided by it
+ *   before waves are made of them
  *
  * Discrete cosine transform over (u, v) and, block by block, over time; of cloths that
  * are no grid the same waves made orthonormal on its vertices.
@@ -41,6 +43,7 @@ typedef struct {
   guint *first;
   gsize size;
   gdouble sigma;
+  gboolean whitened;
 } ClothFeatures;
 
 ClothFeatures *cloth_features_new (const ClothRecording * recording,

@@ -22,8 +22,18 @@ project (const ClothFeatures * features,
     if (recording->seen[begin + v] == 0.)
       continue;
     for (guint k = 0; k < 3; k++)
-      off[k] = (positions[3 * v + k] - recording->y[3 * (begin + v) + k]) /
-          features->sigma;
+      off[k] = positions[3 * v + k] - recording->y[3 * (begin + v) + k];
+    if (features->whitened) {
+      const gdouble *s = recording->noise->white + 6 * (begin + v);
+      const gdouble a[3] = { off[0], off[1], off[2] };
+
+      off[0] = s[0] * a[0] + s[5] * a[1] + s[4] * a[2];
+      off[1] = s[5] * a[0] + s[1] * a[1] + s[3] * a[2];
+      off[2] = s[4] * a[0] + s[3] * a[1] + s[2] * a[2];
+    } else {
+      for (guint k = 0; k < 3; k++)
+        off[k] /= features->sigma;
+    }
     for (guint k = 0; k < 3; k++)
       for (guint w = 0; w < n_waves; w++)
         sums[k][w] += wave[w] * off[k];

@@ -396,8 +396,8 @@ cloth_observer_pop (ClothObserver * observer, gfloat * residuals,
 
     cloth_sim_set_targets (self->sim, NUDGED, last->positions,
         frame->positions, self->velocity[(self->n_popped - 1) % 2], velocity,
-        self->weights, gain, 2 * self->options.damping_ratio * sqrt (gain),
-        last->time, frame->time);
+        self->weights, NULL, gain,
+        2 * self->options.damping_ratio * sqrt (gain), last->time, frame->time);
     cloth_sim_advance (self->sim, frame->time);
     if (!check_state (self, error))
       return FALSE;

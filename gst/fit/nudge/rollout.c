@@ -1,7 +1,8 @@
 /* Simulations of a whole recording, nudged to it or let go in windows.
  *
  * Model: M x″ = F (x, x′; θ) + M g W (y − x) + M 2ζ√g W (y′ − x′), with y the recorded positions,
- *   g the gain of the observer, ζ its damping ratio and W 1 where a vertex was seen, else 0.
+ *   g the gain of the observer, ζ its damping ratio and W 1 where a vertex was seen, else 0; where
+ *   the noise differs from direction to direction W is a matrix, ClothRecordingNoise's draw.
  * Assumption: between two frames y and y′ lie on straight lines. The springs are so weak
  *   that forces which the model lacks show as a distance, and so strong that run-to-run
  *   variability does not grow.
@@ -173,18 +174,20 @@ set_targets (Run * run, Batch * batch)
   for (guint i = 0; i < (batch->shared ? 1 : batch->n); i++) {
     const ClothRecording *r = run->targets[batch->of[i]];
     gdouble *weights = run->weights + (gsize) batch->of[i] * r->n;
+    const gdouble *matrices = r->noise ?
+        r->noise->draw + 2 * run->frame * run->row : NULL;
     const gdouble *y = r->y + run->frame * run->row;
     const gdouble *velocity = r->velocity + run->frame * run->row;
 
     find_weights (r, run->frame, weights);
     if (batch->shared)
       cloth_sim_set_all_targets (batch->sim, y, y + run->row, velocity,
-          velocity + run->row, weights, batch->gains, batch->dampings,
-          r->times[run->frame], r->times[run->frame + 1]);
+          velocity + run->row, weights, matrices, batch->gains,
+          batch->dampings, r->times[run->frame], r->times[run->frame + 1]);
     else
       cloth_sim_set_targets (batch->sim, i, y, y + run->row, velocity,
-          velocity + run->row, weights, batch->gains[i], batch->dampings[i],
-          r->times[run->frame], r->times[run->frame + 1]);
+          velocity + run->row, weights, matrices, batch->gains[i],
+          batch->dampings[i], r->times[run->frame], r->times[run->frame + 1]);
   }
 }
 

@@ -72,13 +72,14 @@ add_distances (ClothWindowedGap * e, const ClothRecording * r, guint frame,
 {
   for (guint v = 0; v < r->n; v++) {
     gsize at = (gsize) frame * r->n + v;
-    gdouble axes[3][3], d[3], square = 0.;
+    gdouble axes[3][3], d[3], square;
 
     for (guint k = 0; k < 3; k++) {
       e->positions[3 * at + k] = (gfloat) positions[3 * v + k];
       d[k] = positions[3 * v + k] - r->y[3 * at + k];
-      square += d[k] * d[k];
     }
+    cloth_recording_cut_blind (r, at, d);
+    square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
     if (r->seen[at] == 0.)
       continue;
     e->squares[at] = square;
@@ -254,16 +255,19 @@ void
 cloth_windowed_gap_subtract (ClothWindowedGap * gap,
     const ClothWindowedGap * other, const ClothRecording * recording)
 {
+  const gdouble noise = cloth_recording_noise_square (recording);
   gsize all = (gsize) gap->n * gap->n_frames;
 
   for (gsize i = 0; i < all; i++) {
-    gap->squares[i] = 3. * recording->sigma * recording->sigma;
-    for (guint k = 0; k < 3; k++) {
-      gdouble off = gap->positions[3 * i + k] - other->positions[3 * i + k];
+    gdouble off[3];
 
-      gap->squares[i] += off * off;
+    for (guint k = 0; k < 3; k++) {
+      off[k] = gap->positions[3 * i + k] - other->positions[3 * i + k];
       gap->nudged[3 * i + k] -= other->nudged[3 * i + k];
     }
+    cloth_recording_cut_blind (recording, i, off);
+    gap->squares[i] = noise + off[0] * off[0] + off[1] * off[1] +
+        off[2] * off[2];
   }
 }
 

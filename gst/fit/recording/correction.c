@@ -14,11 +14,13 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/fit/recording/correction.h"
 
+
 #include <math.h>
 #include <string.h>
 
 #include "gst/fit/error.h"
 #include "gst/fit/recording/interpolation.h"
+#include "gst/fit/recording/noise.h"
 #include "gst/fit/recording/signal.h"
 
 #define N_NODES 7
@@ -156,6 +158,7 @@ copy (const ClothRecording * r)
   c->y = g_memdup2 (r->y, 3 * all * sizeof *r->y);
   c->velocity = g_memdup2 (r->velocity, 3 * all * sizeof *r->velocity);
   c->seen = g_memdup2 (r->seen, all * sizeof *r->seen);
+  c->noise = cloth_recording_noise_ref (r->noise);
   return c;
 }
 

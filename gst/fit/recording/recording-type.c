@@ -1,7 +1,7 @@
 /* What a recording is made of.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/fit/recording/recording-type.h"
+#include "gst/fit/recording/noise.h"
 
 /* @recording: (nullable) (transfer full): a recording
  */
@@ -16,5 +16,6 @@ cloth_recording_free (ClothRecording * recording)
   g_free (recording->y);
   g_free (recording->velocity);
   g_free (recording->seen);
+  cloth_recording_noise_unref (recording->noise);
   g_free (recording);
 }

@@ -3,16 +3,35 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
+#include "gst/math/random.h"
 #include "gst/sim/scene.h"
 
 G_BEGIN_DECLS
+
+/* @n: number of places, vertices of all frames
+ * @white: root of the inverse covariance of each, xx, yy, zz, yz, xz, xy, 1/m
+ * @draw: share of the observer's gain that it gets, likewise, no eigenvalue above 1
+ * @blind: unit vector along which nothing is known of it; 0 where all directions are known
+ * @square: mean square of the error, m²
+ *
+ * Noise that differs from place to place and from direction to direction; shared by all recordings
+ * that are made of one.
+ */
+typedef struct {
+  gsize n;
+  gdouble *white;
+  gdouble *draw;
+  gfloat *blind;
+  gdouble square;
+} ClothRecordingNoise;
 
 /* @name: of the take
  * @scene: what a simulation of it needs
  * @n: number of vertices
  * @n_frames: number of frames
  * @times: their times, s
- * @sigma: standard deviation of a coordinate, m
+ * @sigma: usual standard deviation of a coordinate, m
+ * @noise: (nullable): when it differs from place to place
  * @y: positions, [n_frames][n][3], m; bridged where nothing was seen
  * @velocity: their derivative, m/s
  * @seen: 1 where a vertex was seen, else 0, [n_frames][n]
@@ -24,6 +43,7 @@ typedef struct {
   guint n_frames;
   gdouble *times;
   gdouble sigma;
+  ClothRecordingNoise *noise;
   gdouble *y;
   gdouble *velocity;
   gdouble *seen;

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "gst/fit/error.h"
+#include "gst/math/linalg.h"
 
 /* Noise puts two vertices no further apart than this many standard deviations of one
  * coordinate. */
@@ -18,12 +19,50 @@ place (const ClothRecording * r, gdouble * of, guint frame, guint vertex)
   return of + 3 * ((gsize) frame * r->n + vertex);
 }
 
+/* What a take's covariances say of a frame. Where a place was seen and its covariance is not told,
+ * it is left out. */
+static gboolean
+load_covariances (ClothRecording * r, ClothTake * take, guint frame,
+    gfloat * covariances, GError ** error)
+{
+  if (!cloth_take_read_covariances (take, frame, covariances, error))
+    return FALSE;
+  for (guint v = 0; v < r->n; v++) {
+    const gfloat *c = covariances + 6 * (gsize) v;
+    const gsize at = (gsize) frame * r->n + v;
+    const gdouble full[9] =
+        { c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5] };
+    gdouble i[9];
+
+    if (r->seen[at] == 0.)
+      continue;
+    if (isnan (c[0])) {
+      r->seen[at] = 0.;
+      continue;
+    }
+    if (c[0] > 0. && cloth_mat3_inverse (full, i)
+        && cloth_recording_noise_set (r->noise, at,
+            (const gdouble[6]) { i[0], i[4], i[8], i[5], i[2], i[1] }))
+      continue;
+    g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING, "%s: the "
+        "covariance of vertex %u in frame %u is not positive; give NaN where "
+        "it is not known, or a take without covariance.npy", r->name, v, frame);
+    return FALSE;
+  }
+  return TRUE;
+}
+
 static gboolean
 load (ClothRecording * r, ClothTake * take, GError ** error)
 {
   gsize row = 3 * (gsize) r->n;
   g_autofree gfloat *positions = g_new (gfloat, row);
+  g_autofree gfloat *covariances = NULL;
 
+  if (cloth_take_has_covariances (take)) {
+    covariances = g_new (gfloat, 2 * row);
+    r->noise = cloth_recording_noise_new ((gsize) r->n * r->n_frames);
+  }
   for (guint frame = 0; frame < r->n_frames; frame++) {
     if (!cloth_take_read_positions (take, frame, positions, error))
       return FALSE;
@@ -36,6 +75,8 @@ load (ClothRecording * r, ClothTake * take, GError ** error)
       for (guint k = 0; k < 3; k++)
         place (r, r->y, frame, v)[k] = seen ? p[k] : 0.;
     }
+    if (covariances && !load_covariances (r, take, frame, covariances, error))
+      return FALSE;
   }
   return TRUE;
 }
@@ -108,7 +149,8 @@ cloth_recording_new (ClothTake * take, GError ** error)
   r->seen = g_new (gdouble, all);
   if (!load (r, take, error))
     return NULL;
-  r->sigma = info->noise_sigma_m;
+  r->sigma = r->noise ? cloth_recording_noise_finish (r->noise, r->seen) :
+      info->noise_sigma_m;
   told = r->sigma > 0.;
   if (!told)
     r->sigma = cloth_recording_estimate_sigma (r);

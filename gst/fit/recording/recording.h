@@ -6,6 +6,7 @@
 
 #include "gst/fit/recording/correction.h"
 #include "gst/fit/recording/interpolation.h"
+#include "gst/fit/recording/noise.h"
 #include "gst/fit/recording/observations.h"
 #include "gst/fit/recording/outliers.h"
 #include "gst/fit/recording/plausibility.h"

@@ -18,6 +18,7 @@
 #include "gst/fit/error.h"
 #include "gst/fit/recording/flat-map.h"
 #include "gst/fit/recording/interpolation.h"
+#include "gst/fit/recording/noise.h"
 #include "gst/fit/recording/plausibility.h"
 #include "gst/fit/recording/signal.h"
 #include "gst/math/statistics.h"
@@ -607,6 +608,7 @@ cloth_recording_new_twin (ClothTake * simulated,
       recorded->n_frames * sizeof *recorded->times);
   twin->sigma = hypot (recorded->sigma, t.noise);
   twin->seen = g_memdup2 (recorded->seen, all * sizeof *recorded->seen);
+  twin->noise = cloth_recording_noise_ref (recorded->noise);
   twin->y = g_new (gdouble, 3 * all);
   twin->velocity = g_new (gdouble, 3 * all);
   fill_positions (&t, twin);

@@ -232,12 +232,11 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
 static void
 record (ClothRecording * r, gboolean is_smooth, guint64 seed)
 {
-  const gsize row = 3 * (gsize) r->n;
   ClothRandom random;
 
   cloth_random_init (&random, seed);
-  for (gsize i = is_smooth ? 0 : row; i < row * r->n_frames; i++)
-    r->y[i] += r->sigma * cloth_random_gaussian (&random);
+  for (gsize i = is_smooth ? 0 : r->n; i < (gsize) r->n * r->n_frames; i++)
+    cloth_recording_add_noise (r, i, 1., &random, r->y + 3 * i);
   cloth_recording_interpolate (r);
   cloth_recording_differentiate (r);
 }

@@ -123,7 +123,7 @@ add_take (ClothDiagnosis * d, guint t, GPtrArray * models, gdouble * evidence,
   const ClothRecording *r = cloth_diagnosis_recording (d, t);
   const ClothRecording *twin = cloth_diagnosis_twin (d, t);
   const ClothModel *const *all = (const ClothModel * const *) models->pdata;
-  const gdouble noise = 3. * r->sigma * r->sigma;
+  const gdouble noise = cloth_recording_noise_square (r);
   ClothWindowedGap **own = NULL, **gaps;
   g_autofree gdouble *squares = NULL;
   g_autofree gboolean *one = NULL;

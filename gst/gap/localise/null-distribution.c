@@ -87,7 +87,7 @@ fill_sigma (const ClothWindowedGap * null, gboolean same_motion,
 {
   guint n_phases;
   g_autofree gdouble *pooled = pool (null, &n_phases);
-  gdouble noise = isfinite (r->sigma) ? 3. * r->sigma * r->sigma : 0.;
+  gdouble noise = isfinite (r->sigma) ? cloth_recording_noise_square (r) : 0.;
 
   p->sigma = g_new (gfloat, (gsize) r->n_frames * r->n);
   for (guint frame = 0; frame < r->n_frames; frame++) {

@@ -295,7 +295,7 @@ fill_stages (const ClothDiagnosis * d, const ClothRecording * r)
   };
   const ClothCameraErrors *e = &d->camera_errors;
   gdouble shares[] = { d->camera_mean_square, e->detection, e->labels,
-    e->triangulation, 3. * r->sigma * r->sigma, 0.
+    e->triangulation, cloth_recording_noise_square (r), 0.
   };
   const guint physics = G_N_ELEMENTS (names) - 1, noise = physics - 1;
   gdouble all = windowed_square (&d->result->playback), sum = 0.;

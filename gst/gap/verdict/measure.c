@@ -279,8 +279,10 @@ record (const ClothDiagnosis * d, const ClothRecording * like,
   cloth_random_init (&random, d->options->seed);
   r.y = g_new (gdouble, 3 * all);
   r.velocity = g_new (gdouble, 3 * all);
-  for (gsize i = 0; i < 3 * all; i++)
-    r.y[i] = y[i] + sigma * cloth_random_gaussian (&random);
+  memcpy (r.y, y, 3 * all * sizeof *y);
+  for (gsize i = 0; i < all; i++)
+    cloth_recording_add_noise (like, i, sigma / like->sigma, &random,
+        r.y + 3 * i);
   cloth_recording_interpolate (&r);
   cloth_recording_differentiate (&r);
   return r;
@@ -366,7 +368,7 @@ measure_other_model (const Work * w, Kind kind, guint i,
     sum += off * off;
     seen += k % 3 == 0;
   }
-  floor->square = 3. * r->sigma * r->sigma + sum / MAX (seen, 1);
+  floor->square = cloth_recording_noise_square (r) + sum / MAX (seen, 1);
   if (gaps[0]->sound && kind == WINDOWS && i == first_judge (d)) {
     cloth_windowed_gap_subtract (gaps[0], gap, r);
     keep_null (d, g_steal_pointer (&gaps[0]), i);

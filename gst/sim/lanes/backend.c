@@ -232,6 +232,7 @@ group_free (gpointer group)
   g_aligned_free (state->targets.pull);
   g_aligned_free (state->targets.change);
   g_aligned_free (state->targets.weight);
+  g_aligned_free (state->targets.matrix);
   g_aligned_free (state->pulls.list);
   g_aligned_free (state->pulls.stiffness);
   g_aligned_free (state->pulls.rows);
@@ -478,15 +479,31 @@ group_set_time (gpointer group, gdouble time_s)
   ((ClothLaneState *) group)->time = time_s;
 }
 
+/* What draws a particle in a lane: its weight times, or its matrix times, now and next. */
 static void
-group_set_targets (gpointer group, guint lane, guint n,
-    const gdouble * const y[4], const gdouble * weights,
-    const gdouble * gains, const gdouble * dampings, gdouble t_now,
-    gdouble t_next)
+set_target (ClothLaneTargets * t, guint i, guint lane,
+    const gdouble matrix[6], const gdouble now[3], const gdouble next[3])
 {
-  ClothLaneState *state = group;
+  static const guint at[3][3] = { {0, 5, 4}, {5, 1, 3}, {4, 3, 2} };
+
+  for (guint k = 0; k < 6; k++)
+    CLOTH_LANE_AT (&t->matrix[i][k], lane) = (ClothReal) matrix[k];
+  for (guint k = 0; k < 3; k++) {
+    gdouble pull = 0., change = 0.;
+
+    for (guint l = 0; l < 3; l++) {
+      pull += matrix[at[k][l]] * now[l];
+      change += matrix[at[k][l]] * (next[l] - now[l]);
+    }
+    CLOTH_LANE_AT (&t->pull[i][k], lane) = (ClothReal) pull;
+    CLOTH_LANE_AT (&t->change[i][k], lane) = (ClothReal) change;
+  }
+}
+
+static void
+reserve_targets (ClothLaneState * state, gboolean matrices)
+{
   ClothLaneTargets *t = &state->targets;
-  gint of[CLOTH_N_LANES];       /* whose targets each lane gets; -1: none */
 
   if (!t->weight) {
     t->pull = lanes_new (state->n, sizeof *t->pull);
@@ -494,6 +511,25 @@ group_set_targets (gpointer group, guint lane, guint n,
     t->weight = lanes_new (state->n, sizeof *t->weight);
     state->has_targets = TRUE;
   }
+  if (t->matrix || !matrices)
+    return;
+  t->matrix = lanes_new (state->n, sizeof *t->matrix);
+  for (guint i = 0; i < state->n; i++)
+    for (guint k = 0; k < 3; k++)
+      t->matrix[i][k] = t->weight[i];
+}
+
+static void
+group_set_targets (gpointer group, guint lane, guint n,
+    const gdouble * const y[4], const gdouble * weights,
+    const gdouble * matrices, const gdouble * gains, const gdouble * dampings,
+    gdouble t_now, gdouble t_next)
+{
+  ClothLaneState *state = group;
+  ClothLaneTargets *t = &state->targets;
+  gint of[CLOTH_N_LANES];       /* whose targets each lane gets; -1: none */
+
+  reserve_targets (state, matrices != NULL);
   for (guint l = 0; l < CLOTH_N_LANES; l++) {
     of[l] = -1;
     for (guint i = 0; i < n; i++)
@@ -502,7 +538,7 @@ group_set_targets (gpointer group, guint lane, guint n,
   }
   for (guint i = 0; i < state->n; i++)
     for (guint l = 0; l < CLOTH_N_LANES; l++) {
-      gdouble gain, damping;
+      gdouble gain, damping, now[3], next[3];
 
       if (of[l] < 0)
         continue;
@@ -511,13 +547,19 @@ group_set_targets (gpointer group, guint lane, guint n,
       CLOTH_LANE_AT (&t->weight[i], l) = (ClothReal) weights[i];
       for (guint k = 0; k < 3; k++) {
         guint at = 3 * i + k;
-        gdouble now = gain * y[0][at] + damping * y[2][at];
-        gdouble next = gain * y[1][at] + damping * y[3][at];
 
-        CLOTH_LANE_AT (&t->pull[i][k], l) = (ClothReal) (weights[i] * now);
+        now[k] = gain * y[0][at] + damping * y[2][at];
+        next[k] = gain * y[1][at] + damping * y[3][at];
+        CLOTH_LANE_AT (&t->pull[i][k], l) = (ClothReal) (weights[i] * now[k]);
         CLOTH_LANE_AT (&t->change[i][k], l) =
-            (ClothReal) (weights[i] * (next - now));
+            (ClothReal) (weights[i] * (next[k] - now[k]));
       }
+      if (matrices)
+        set_target (t, i, l, matrices + 6 * (gsize) i, now, next);
+      else if (t->matrix)
+        set_target (t, i, l, (const gdouble[6]) { weights[i], weights[i],
+            weights[i]
+            }, now, next);
     }
   for (guint l = 0; l < CLOTH_N_LANES; l++) {
     if (of[l] < 0)

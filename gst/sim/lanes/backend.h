@@ -44,9 +44,11 @@ typedef struct
   void (*set) (gpointer group, guint lane, const gdouble * x,
       const gdouble * v);
   void (*set_time) (gpointer group, gdouble time_s);
-  /* of @n lanes from @lane on; y: now, next, velocity now, velocity next */
+  /* of @n lanes from @lane on; y: now, next, velocity now, velocity next; @matrices:
+   * (nullable): instead of weights */
   void (*set_targets) (gpointer group, guint lane, guint n,
       const gdouble * const y[4], const gdouble * weights,
+      const gdouble * matrices,
       const gdouble * gains, const gdouble * dampings, gdouble t_now,
       gdouble t_next);
   /* the same pulls in all lanes; their corners are particles, all alike of a pull at one.

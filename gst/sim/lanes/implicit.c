@@ -209,14 +209,6 @@ filter (const ClothLaneState * state, ClothLane3 * a)
   }
 }
 
-CLOTH_LANE_INLINE void
-precondition (const ClothLane b[6], const ClothLane r[3], ClothLane z[3])
-{
-  z[0] = b[0] * r[0] + b[5] * r[1] + b[4] * r[2];
-  z[1] = b[5] * r[0] + b[1] * r[1] + b[3] * r[2];
-  z[2] = b[4] * r[0] + b[3] * r[1] + b[2] * r[2];
-}
-
 /* q = P⁻¹ r; returns r · q. */
 static ClothLane
 residual (ClothLaneState * state)
@@ -225,7 +217,7 @@ residual (ClothLaneState * state)
   ClothLane rho = cloth_lane_set (0.);
 
   for (guint i = 0; i < state->n; i++) {
-    precondition (implicit->inverse[i], implicit->r[i], implicit->q[i]);
+    cloth_lane_symmetric (implicit->inverse[i], implicit->r[i], implicit->q[i]);
     rho += cloth_lane_dot (implicit->r[i], implicit->q[i]);
   }
   return rho;

@@ -195,3 +195,13 @@ cloth_lane_cross (const ClothLane a[3], const ClothLane b[3],
   cross[1] = a[2] * b[0] - a[0] * b[2];
   cross[2] = a[0] * b[1] - a[1] * b[0];
 }
+
+/* b = S a with S symmetric: xx, yy, zz, yz, xz, xy. */
+CLOTH_LANE_INLINE void
+cloth_lane_symmetric (const ClothLane s[6], const ClothLane a[3],
+    ClothLane b[3])
+{
+  b[0] = s[0] * a[0] + s[5] * a[1] + s[4] * a[2];
+  b[1] = s[5] * a[0] + s[1] * a[1] + s[3] * a[2];
+  b[2] = s[4] * a[0] + s[3] * a[1] + s[2] * a[2];
+}

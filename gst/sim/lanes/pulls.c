@@ -3,14 +3,6 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/sim/lanes/stiffness.h"
 
-CLOTH_LANE_INLINE void
-multiply (const ClothLane s[6], const ClothLane a[3], ClothLane b[3])
-{
-  b[0] = s[0] * a[0] + s[5] * a[1] + s[4] * a[2];
-  b[1] = s[5] * a[0] + s[1] * a[1] + s[3] * a[2];
-  b[2] = s[4] * a[0] + s[3] * a[1] + s[2] * a[2];
-}
-
 /* Where the point is among its @n corners, of a vector of each. */
 CLOTH_LANE_INLINE void
 gather (const ClothLanePull * pull, guint n, const ClothLane3 * of,
@@ -63,7 +55,7 @@ fall_off (const ClothLanePulls * pulls, ClothPullLaw law,
 {
   ClothLane one = cloth_lane_set (1.), drawn[3], square;
 
-  multiply (information, away, drawn);
+  cloth_lane_symmetric (information, away, drawn);
   square = cloth_lane_dot (away, drawn) * cloth_lane_set (pulls->per_square) +
       cloth_lane_set (pulls->softening * pulls->softening);
   if (law == CLOTH_PULL_RECIPROCAL)
@@ -103,7 +95,7 @@ draw (const ClothLaneState * state, guint begin, guint end, guint n,
     for (guint k = 0; k < 3; k++)
       pushed[k] = pulls->gain * away[k] + pulls->damping *
           (velocity[k] - along[k]);
-    multiply (information, pushed, force);
+    cloth_lane_symmetric (information, pushed, force);
     for (guint k = 0; k < 3; k++)
       force[k] *= scale;
     scatter (pull, n, force, f);
@@ -167,7 +159,7 @@ CLOTH_LANE_NAME (cloth_lane_pulls_apply) (const ClothLaneState * state,
     gather (pull, pull->n, d, moved);
     for (guint k = 0; k < 3; k++)
       moved[k] *= scale;
-    multiply (pulls->stiffness[i], moved, force);
+    cloth_lane_symmetric (pulls->stiffness[i], moved, force);
     scatter (pull, pull->n, force, q);
   }
 }

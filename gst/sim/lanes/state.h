@@ -26,11 +26,13 @@ typedef struct
 } ClothLaneEffect;
 
 /* Springs that draw the cloth to what was observed: an acceleration of
- * pull + share·change − weight (gain x + damping v), @share of the way from now to next. */
+ * pull + share·change − weight (gain x + damping v), @share of the way from now to next. Where
+ * directions are known unequally well the weight is a symmetric matrix: xx, yy, zz, yz, xz, xy. */
 typedef struct
 {
   ClothLane3 *pull, *change;
   ClothLane *weight;
+  ClothLane (*matrix)[6];       /* NULL: none has one */
   ClothLane gain, damping;
   ClothLane now, next;
 } ClothLaneTargets;
@@ -348,6 +350,18 @@ cloth_lane_target (const ClothLaneState * state, guint particle,
   ClothLane gain = t->weight[particle] * t->gain;
   ClothLane damping = t->weight[particle] * t->damping;
 
+  if (t->matrix) {
+    ClothLane off[3], drawn[3];
+
+    for (guint k = 0; k < 3; k++)
+      off[k] = t->gain * state->x[particle][k] +
+          t->damping * state->v[particle][k];
+    cloth_lane_symmetric (t->matrix[particle], off, drawn);
+    for (guint k = 0; k < 3; k++)
+      acceleration[k] = t->pull[particle][k] +
+          share * t->change[particle][k] - drawn[k];
+    return;
+  }
   for (guint k = 0; k < 3; k++)
     acceleration[k] = t->pull[particle][k] + share * t->change[particle][k] -
         gain * state->x[particle][k] - damping * state->v[particle][k];

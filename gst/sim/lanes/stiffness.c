@@ -175,10 +175,19 @@ own (const ClothLaneState * state, const ClothLaneStiffness * matrix, guint i)
   const ClothLaneTargets *t = &state->targets;
   ClothLane mass = state->mass[i] * matrix->mass;
 
-  if (state->has_targets)
+  if (state->has_targets && !t->matrix)
     mass += state->mass[i] * t->weight[i] *
         (matrix->h2 * t->gain + matrix->h * t->damping);
   return mass;
+}
+
+/* The same of springs whose weights are matrices. */
+CLOTH_LANE_INLINE ClothLane
+drawn (const ClothLaneState * state, const ClothLaneStiffness * matrix, guint i)
+{
+  const ClothLaneTargets *t = &state->targets;
+
+  return state->mass[i] * (matrix->h2 * t->gain + matrix->h * t->damping);
 }
 
 /* q = the matrix times d. */
@@ -194,6 +203,13 @@ CLOTH_LANE_NAME (cloth_lane_stiffness_apply) (const ClothLaneState * state,
 
     for (guint k = 0; k < 3; k++)
       q[i][k] = mass * d[i][k];
+  }
+  for (guint i = 0; state->targets.matrix && i < state->n; i++) {
+    ClothLane pull[3], mass = drawn (state, matrix, i);
+
+    cloth_lane_symmetric (state->targets.matrix[i], d[i], pull);
+    for (guint k = 0; k < 3; k++)
+      q[i][k] += mass * pull[k];
   }
   for (guint i = 0; i < state->body->n_held; i++) {
     guint p = state->body->held[i].particle;
@@ -318,6 +334,9 @@ CLOTH_LANE_NAME (cloth_lane_stiffness_diagonal) (const ClothLaneState * state,
     memset (inverse[i], 0, sizeof inverse[i]);
     add_unit (inverse[i], own (state, matrix, i));
   }
+  for (guint i = 0; state->targets.matrix && i < state->n; i++)
+    for (guint k = 0; k < 6; k++)
+      inverse[i][k] += drawn (state, matrix, i) * state->targets.matrix[i][k];
   for (guint i = 0; i < state->body->n_held; i++)
     add_unit (inverse[state->body->held[i].particle],
         matrix->h2 * matrix->grip[i]);

@@ -1,0 +1,262 @@
+/* Noise of a recording that differs from place to place and from direction to direction.
+ *
+ * Model: a place is recorded with an error N (0, Λ⁻¹), Λ = Σ of what each camera adds to the
+ *   inverse covariance; along a direction that no camera tells of Λ is 0.
+ * Formula: Λ = Σ λ_k e_k e_kᵀ. White: Λ^½ (x − y), which is N (0, I) on what is known. Of the
+ *   observer's gain a direction gets min (1, λ σ²), σ the recording's: what is seen less well
+ *   than usual draws less.
+ * Reference: Strang, Introduction to Applied Mathematics, 1986, section 2.5 (weighted least
+ *   squares).
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/fit/recording/noise.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/math/linalg.h"
+#include "gst/math/statistics.h"
+#include "gst/math/vec3.h"
+
+/* Of a direction with less than this part of the best one's information nothing is known: it is
+ * rounding. */
+#define NOTHING 1e-9
+
+/* @n: number of places: vertices of all frames
+ *
+ * Returns: (transfer full): noise of places of which nothing is known
+ */
+ClothRecordingNoise *
+cloth_recording_noise_new (gsize n)
+{
+  ClothRecordingNoise *noise = g_atomic_rc_box_new0 (ClothRecordingNoise);
+
+  noise->n = n;
+  noise->white = g_new0 (gdouble, 6 * n);
+  noise->draw = g_new0 (gdouble, 6 * n);
+  noise->blind = g_new0 (gfloat, 3 * n);
+  return noise;
+}
+
+/* @noise: (nullable): noise
+ *
+ * Returns: (transfer full) (nullable): the same
+ */
+ClothRecordingNoise *
+cloth_recording_noise_ref (ClothRecordingNoise * noise)
+{
+  return noise ? g_atomic_rc_box_acquire (noise) : NULL;
+}
+
+static void
+clear (gpointer data)
+{
+  ClothRecordingNoise *noise = data;
+
+  g_free (noise->white);
+  g_free (noise->draw);
+  g_free (noise->blind);
+}
+
+/* @noise: (nullable) (transfer full): noise
+ */
+void
+cloth_recording_noise_unref (ClothRecordingNoise * noise)
+{
+  if (noise)
+    g_atomic_rc_box_release_full (noise, clear);
+}
+
+static void
+unpack (const gdouble s[6], gdouble m[9])
+{
+  const gdouble full[9] =
+      { s[0], s[5], s[4], s[5], s[1], s[3], s[4], s[3], s[2] };
+
+  memcpy (m, full, sizeof full);
+}
+
+/* Σ f_k e_k e_kᵀ of the rows e_k: xx, yy, zz, yz, xz, xy. */
+static void
+compose (const gdouble f[3], const gdouble e[9], gdouble s[6])
+{
+  memset (s, 0, 6 * sizeof *s);
+  for (guint k = 0; k < 3; k++)
+    for (guint i = 0; i < 3; i++) {
+      s[i] += f[k] * e[3 * k + i] * e[3 * k + i];
+      s[3 + i] += f[k] * e[3 * k + (i + 1) % 3] * e[3 * k + (i + 2) % 3];
+    }
+}
+
+/* @noise: noise
+ * @at: which place
+ * @information: its inverse covariance: xx, yy, zz, yz, xz, xy, 1/m²; of rank 3, or 2 when
+ *   nothing is known along one direction
+ *
+ * Returns: %FALSE when it is none
+ */
+gboolean
+cloth_recording_noise_set (ClothRecordingNoise * noise, gsize at,
+    const gdouble information[6])
+{
+  gdouble m[9], values[3], vectors[9], roots[3], sum = 0.;
+
+  for (guint k = 0; k < 6; k++)
+    sum += information[k];
+  unpack (information, m);
+  if (!isfinite (sum) || !cloth_sym_eigen (3, m, values, vectors))
+    return FALSE;
+  /* they ascend */
+  sum = values[2];
+  for (guint k = 0; k < 3; k++) {
+    if (values[k] < -NOTHING * sum)
+      return FALSE;
+    if (values[k] <= NOTHING * sum) {
+      if (noise->blind[3 * at] || noise->blind[3 * at + 1]
+          || noise->blind[3 * at + 2])
+        return FALSE;
+      for (guint i = 0; i < 3; i++)
+        noise->blind[3 * at + i] = (gfloat) vectors[3 * k + i];
+      values[k] = 0.;
+    }
+    roots[k] = sqrt (values[k]);
+  }
+  compose (roots, vectors, noise->white + 6 * at);
+  return sum > 0.;
+}
+
+/* Eigenvalues of the root of an information, and its vectors. */
+static void
+take_apart (const ClothRecordingNoise * noise, gsize at, gdouble roots[3],
+    gdouble vectors[9])
+{
+  gdouble m[9];
+
+  unpack (noise->white + 6 * at, m);
+  if (!cloth_sym_eigen (3, m, roots, vectors))
+    memset (roots, 0, 3 * sizeof *roots);
+  /* they ascend */
+  for (guint k = 0; k < 3; k++)
+    if (roots[k] * roots[k] <= NOTHING * roots[2] * roots[2])
+      roots[k] = 0.;
+}
+
+/* @noise: noise of which every place that was seen is set
+ * @seen: (array): not 0 where
+ *
+ * Works out what follows from it.
+ *
+ * Returns: the usual standard deviation of a coordinate, m: that of the median information; NaN
+ *   when nothing was seen
+ */
+gdouble
+cloth_recording_noise_finish (ClothRecordingNoise * noise, const gdouble * seen)
+{
+  g_autoptr (GArray) all = g_array_new (FALSE, FALSE, sizeof (gdouble));
+  gdouble sum = 0., sigma;
+
+  for (gsize at = 0; at < noise->n; at++) {
+    gdouble roots[3], vectors[9], information = 0., known = 0.;
+
+    if (seen[at] == 0.)
+      continue;
+    take_apart (noise, at, roots, vectors);
+    for (guint k = 0; k < 3; k++) {
+      if (!(roots[k] > 0.))
+        continue;
+      information += roots[k] * roots[k];
+      sum += 1. / (roots[k] * roots[k]);
+      known += 1.;
+    }
+    information /= fmax (known, 1.);
+    g_array_append_val (all, information);
+  }
+  if (all->len == 0)
+    return NAN;
+  noise->square = sum / all->len;
+  sigma = 1. / sqrt (cloth_median ((gdouble *) all->data, all->len));
+  for (gsize at = 0; at < noise->n; at++) {
+    gdouble roots[3], vectors[9], shares[3];
+
+    if (seen[at] == 0.)
+      continue;
+    take_apart (noise, at, roots, vectors);
+    for (guint k = 0; k < 3; k++)
+      shares[k] = fmin (1., roots[k] * roots[k] * sigma * sigma);
+    compose (shares, vectors, noise->draw + 6 * at);
+  }
+  return sigma;
+}
+
+/* @recording: a recording
+ *
+ * Returns: mean square of the error of a place along what is known of it, m²
+ */
+gdouble
+cloth_recording_noise_square (const ClothRecording * recording)
+{
+  return recording->noise ? recording->noise->square :
+      3. * recording->sigma * recording->sigma;
+}
+
+/* @recording: a recording
+ * @at: which place: frame times vertices plus vertex
+ * @off: a distance from it, m
+ * @white: (out): in standard deviations; may be @off
+ */
+void
+cloth_recording_whiten (const ClothRecording * recording, gsize at,
+    const gdouble off[3], gdouble white[3])
+{
+  const gdouble *s = recording->noise->white + 6 * at;
+  const gdouble a[3] = { off[0], off[1], off[2] };
+
+  white[0] = s[0] * a[0] + s[5] * a[1] + s[4] * a[2];
+  white[1] = s[5] * a[0] + s[1] * a[1] + s[3] * a[2];
+  white[2] = s[4] * a[0] + s[3] * a[1] + s[2] * a[2];
+}
+
+/* @recording: a recording
+ * @at: which place
+ * @off: (inout): a distance from it, m: what of it lies along a direction of which nothing is known
+ *   is taken away
+ */
+void
+cloth_recording_cut_blind (const ClothRecording * recording, gsize at,
+    gdouble off[3])
+{
+  const gfloat *blind = recording->noise ?
+      recording->noise->blind + 3 * at : NULL;
+  gdouble along = 0.;
+
+  for (guint k = 0; blind && k < 3; k++)
+    along += off[k] * blind[k];
+  for (guint k = 0; blind && k < 3; k++)
+    off[k] -= along * blind[k];
+}
+
+/* @recording: a recording
+ * @at: which place
+ * @scale: of the noise
+ * @random: where chance comes from
+ * @place: (inout): gets an error like the recording's there, m; one that was not seen none that
+ *   differs from place to place
+ */
+void
+cloth_recording_add_noise (const ClothRecording * recording, gsize at,
+    gdouble scale, ClothRandom * random, gdouble place[3])
+{
+  gdouble roots[3], vectors[9], error[3];
+
+  for (guint k = 0; k < 3; k++)
+    error[k] = scale * cloth_random_gaussian (random);
+  if (!recording->noise || recording->seen[at] == 0.) {
+    for (guint k = 0; k < 3; k++)
+      place[k] += recording->sigma * error[k];
+    return;
+  }
+  take_apart (recording->noise, at, roots, vectors);
+  for (guint k = 0; k < 3; k++)
+    for (guint i = 0; i < 3; i++)
+      place[i] += roots[k] > 0. ? error[k] / roots[k] * vectors[3 * k + i] : 0.;
+}

@@ -1,0 +1,25 @@
+/* Noise of a recording that differs from place to place and from direction to direction.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/fit/recording/recording-type.h"
+
+G_BEGIN_DECLS
+
+ClothRecordingNoise *cloth_recording_noise_new (gsize n);
+ClothRecordingNoise *cloth_recording_noise_ref (ClothRecordingNoise * noise);
+void cloth_recording_noise_unref (ClothRecordingNoise * noise);
+gboolean cloth_recording_noise_set (ClothRecordingNoise * noise, gsize at,
+    const gdouble information[6]);
+gdouble cloth_recording_noise_finish (ClothRecordingNoise * noise,
+    const gdouble * seen);
+gdouble cloth_recording_noise_square (const ClothRecording * recording);
+void cloth_recording_whiten (const ClothRecording * recording, gsize at,
+    const gdouble off[3], gdouble white[3]);
+void cloth_recording_cut_blind (const ClothRecording * recording, gsize at,
+    gdouble off[3]);
+void cloth_recording_add_noise (const ClothRecording * recording, gsize at,
+    gdouble scale, ClothRandom * random, gdouble place[3]);
+
+G_END_DECLS
