@@ -12,11 +12,52 @@
 /* Most steps of a simulation for each frame. */
 #define MOST_STEPS 2e4
 
-static gboolean
-load_one (ClothDiagnosis * d, ClothTake * take, ClothGapRole role,
-    GError ** error)
+/* What is known of places that one camera saw, and of those that it can't be. */
+static void
+note_observed (ClothDiagnosis * d, const gchar * name,
+    const ClothObservedCounts * c)
 {
-  ClothRecording *r = cloth_recording_new (take, error), *first;
+  g_autoptr (GString) note = g_string_new (NULL);
+
+  g_string_printf (note, "%s has no positions: %.0f%% of its places are where "
+      "rays meet", name, 100. * c->triangulated / c->places);
+  if (c->single)
+    g_string_append_printf (note, ", %.0f%% lie on one camera's ray, along "
+        "which nothing is known: %.0f%% of their motion is the model's own "
+        "there, and a gap along it is not seen", 100. * c->single / c->places,
+        100. * c->along);
+  if (c->contradicted)
+    g_string_append_printf (note, ", and of %.1f%% the cameras contradict each "
+        "other", 100. * c->contradicted / c->places);
+  g_string_append_c (note, '.');
+  cloth_gap_result_add_note (d->result, note->str);
+}
+
+/* From its positions, or from what cameras saw. */
+static ClothRecording *
+make_recording (ClothDiagnosis * d, ClothTake * take,
+    const ClothModel * model, GError ** error)
+{
+  const ClothObservations *observations = cloth_diagnosis_observations (d,
+      d->recordings->len);
+  ClothObservedCounts counts;
+  ClothRecording *r;
+
+  if (!observations
+      || cloth_take_get_n_positions (take) == cloth_take_get_n_frames (take))
+    return cloth_recording_new (take, error);
+  r = cloth_recording_new_observed (take, observations, model, d->study.gain,
+      &d->study.rollout, &counts, error);
+  if (r)
+    note_observed (d, r->name, &counts);
+  return r;
+}
+
+static gboolean
+load_one (ClothDiagnosis * d, ClothTake * take, const ClothModel * model,
+    ClothGapRole role, GError ** error)
+{
+  ClothRecording *r = make_recording (d, take, model, error), *first;
   g_autofree gchar *sha256 = NULL;
 
   if (!r)
@@ -257,13 +298,13 @@ cloth_diagnosis_load (ClothDiagnosis * d, const ClothModel * model,
   const ClothGapOptions *o = d->options;
 
   for (guint i = 0; i < d->n_takes; i++)
-    if (!load_one (d, d->takes[i], CLOTH_GAP_TAKE, error))
+    if (!load_one (d, d->takes[i], model, CLOTH_GAP_TAKE, error))
       return FALSE;
   for (guint i = 0; i < o->n_baselines; i++)
-    if (!load_one (d, o->baselines[i], CLOTH_GAP_BASELINE, error))
+    if (!load_one (d, o->baselines[i], model, CLOTH_GAP_BASELINE, error))
       return FALSE;
   for (guint i = 0; i < o->n_hold_outs; i++)
-    if (!load_one (d, o->hold_outs[i], CLOTH_GAP_HOLD_OUT, error))
+    if (!load_one (d, o->hold_outs[i], model, CLOTH_GAP_HOLD_OUT, error))
       return FALSE;
   if (!load_twins (d, error))
     return FALSE;

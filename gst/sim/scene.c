@@ -242,9 +242,10 @@ read_start (ClothScene * scene, ClothTake * take, GError ** error)
   const gfloat *filled;
   gboolean any = FALSE;
 
-  if (!cloth_take_read_positions (take, 0, seen, error))
+  if (cloth_take_get_n_positions (take) > 0
+      && !cloth_take_read_positions (take, 0, seen, error))
     return FALSE;
-  for (gsize i = 0; i < n && !any; i++)
+  for (gsize i = 0; i < n && cloth_take_get_n_positions (take) > 0 && !any; i++)
     any = isfinite (seen[3 * i]);
   if (!any) {
     hang_flat (scene);

@@ -14,6 +14,7 @@
 #include "gst/mesh/formats/formats.h"
 
 #define JSON "take.json"
+#define OBSERVATIONS "observations"
 #define MAX_FRAMES (CLOTH_MAX_BUFFER / sizeof (gdouble))
 
 struct _ClothTake
@@ -22,9 +23,9 @@ struct _ClothTake
   GPtrArray *files;             /* names of those that are read, below the folder */
   ClothTakeInfo *info;
   ClothTopology *topology;
-  guint n_frames;
+  guint n_frames, n_positions;
   gdouble *times;               /* NULL: info->fps says */
-  ClothNpyReader *positions;
+  ClothNpyReader *positions;    /* NULL: cameras saw it, and that is all that is known */
   ClothNpyReader *covariances;  /* these may be NULL */
   ClothNpyReader *clamps;
   ClothNpyReader *states;
@@ -233,6 +234,39 @@ load_times (ClothTake * take, GError ** error)
   return TRUE;
 }
 
+/* Whether what cameras saw is in the folder, too. */
+static gboolean
+is_observed (const ClothTake * take)
+{
+  g_autofree gchar *path = g_build_filename (take->folder, OBSERVATIONS, NULL);
+
+  return g_file_test (path, G_FILE_TEST_IS_DIR);
+}
+
+/* Of a take whose positions are where it starts, or none: times or clamps say how many frames it
+ * has. */
+static gboolean
+count_frames (ClothTake * take, guint64 * n_frames, GError ** error)
+{
+  static const Array arrays[] = { TIMES, CLAMPS };
+
+  for (guint i = 0; i < G_N_ELEMENTS (arrays); i++) {
+    const gchar *name = array_names[arrays[i]];
+    g_autofree gchar *path = g_build_filename (take->folder, name, NULL);
+    g_autoptr (ClothNpyReader) reader = NULL;
+
+    if (!g_file_test (path, G_FILE_TEST_EXISTS))
+      continue;
+    if (!(reader = cloth_npy_reader_open (path, error)))
+      return FALSE;
+    *n_frames = MAX (*n_frames, cloth_npy_reader_get_info (reader)->n_rows);
+    if (*n_frames > 1)
+      return TRUE;
+  }
+  return *n_frames == 1 || cloth_file_invalid (error, "without positions.npy "
+      "the take needs times.npy, with the time of each frame in seconds");
+}
+
 static gboolean
 load_arrays (ClothTake * take, GError ** error)
 {
@@ -241,11 +275,17 @@ load_arrays (ClothTake * take, GError ** error)
   const guint64 positions[] = { 0, n_vertices, 3 };
   guint64 n_frames;
 
-  if (!open_array (take, "positions.npy", FALSE, 3, positions,
+  const gboolean observed = is_observed (take);
+
+  if (!open_array (take, "positions.npy", observed, 3, positions,
           &take->positions, error) ||
       !check_type (take->positions, "positions.npy", FALSE, error))
     return FALSE;
-  n_frames = cloth_npy_reader_get_info (take->positions)->n_rows;
+  n_frames = take->positions ?
+      cloth_npy_reader_get_info (take->positions)->n_rows : 0;
+  take->n_positions = (guint) MIN (n_frames, MAX_FRAMES + 1);
+  if (observed && n_frames <= 1 && !count_frames (take, &n_frames, error))
+    return FALSE;
   if (n_frames == 0 || n_frames > MAX_FRAMES) {
     g_set_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_LIMIT,
         "positions.npy: %" G_GUINT64_FORMAT " frames; between 1 and %"
@@ -376,6 +416,17 @@ cloth_take_get_n_frames (const ClothTake * take)
 
 /* @take: a take
  *
+ * Returns: how many of its frames, the first ones, have positions: all, or of a take that cameras
+ *   saw and nothing else the one where it starts, or none
+ */
+guint
+cloth_take_get_n_positions (const ClothTake * take)
+{
+  return take->n_positions;
+}
+
+/* @take: a take
+ *
  * Returns: (transfer none) (nullable): times.npy, seconds, rising; %NULL when frames
  *   follow each other at the take's fps
  */
@@ -428,6 +479,10 @@ gboolean
 cloth_take_read_positions (ClothTake * take, guint frame, gfloat * positions,
     GError ** error)
 {
+  if (frame >= take->n_positions)
+    return cloth_file_invalid (error, "“%s” has no positions, only what "
+        "cameras saw (folder " OBSERVATIONS "): a diagnosis reads that; for a "
+        "mesh play it through triangulate", take->folder);
   if (cloth_npy_reader_read_float (take->positions, frame, 1, positions, error)
       && cloth_positions_check (positions, take->topology->n_vertices, error))
     return TRUE;

@@ -17,6 +17,7 @@ const gchar *cloth_take_get_folder (const ClothTake * take);
 const ClothTakeInfo *cloth_take_get_info (const ClothTake * take);
 const ClothTopology *cloth_take_get_topology (const ClothTake * take);
 guint cloth_take_get_n_frames (const ClothTake * take);
+guint cloth_take_get_n_positions (const ClothTake * take);
 const gdouble *cloth_take_get_times (const ClothTake * take);
 gdouble cloth_take_get_time (const ClothTake * take, guint frame);
 gboolean cloth_take_has_covariances (const ClothTake * take);

@@ -4,6 +4,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
+#include "gst/fit/nudge/observed.h"
 #include "gst/fit/nudge/observer.h"
 #include "gst/fit/nudge/rollout.h"
 #include "gst/fit/nudge/windows.h"

@@ -1,0 +1,553 @@
+/* A recording made of what cameras saw, without a mesh: places where rays meet, and rays.
+ *
+ * Model: a camera sees a vertex in a direction with an error N (0, s²) all round. Rays that meet
+ *   give a place with its covariance; one ray alone gives the inverse covariance
+ *   (I − d dᵀ) / (s r)² at the distance r, of rank 2.
+ * Assumption: along a lone ray the cloth is where a simulation is that all rays draw.
+ * Formula: places on lone rays and the simulation are found in turn, until a turn moves no place by
+ *   as much as the recording's noise, RMS: y = c + d dᵀ (x − c), x = simulation drawn to y with the
+ *   weights of ClothRecordingNoise, which draw across the rays only.
+ * Reference: Hasler, Asbach, Rosenhahn, Ohm and Seidel, Physically based tracking of cloth, 2006,
+ *   section 3.2 (rays as targets).
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/fit/nudge/observed.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/fit/error.h"
+#include "gst/fit/recording/recording.h"
+#include "gst/math/linalg.h"
+#include "gst/math/vec3.h"
+#include "gst/rig/errorfloor.h"
+
+/* Most turns of places and simulation. */
+#define MOST_TURNS 8
+/* A picture this part of a frame away was taken in it. */
+#define SAME_TIME 1e-3
+/* Pictures further apart than this many frames say nothing of what was between them. */
+#define MOST_BETWEEN 1.5
+
+/* A ray that is all that is known of a place. */
+typedef struct
+{
+  guint32 frame, vertex;
+  gdouble centre[3], direction[3], spread;
+} Lone;
+
+typedef struct
+{
+  const ClothObservations *observations;
+  ClothRecording *r;
+  ClothTriangulator *triangulator;
+  ClothErrorFloor floor;
+  guint n_cameras;
+  gdouble *seen;                /* of each camera x, y, xx, xy, yy of each vertex */
+  gdouble *between;             /* as @seen, of one camera */
+  ClothTriangulateView *views;
+  ClothRays *rays;
+  guint *first;                 /* of each camera in @order */
+  guint *order;                 /* pictures of camera after camera, by time */
+  GArray *lone;
+  ClothObservedCounts *counts;
+} Maker;
+
+static void
+maker_clear (Maker * m)
+{
+  g_clear_pointer (&m->triangulator, cloth_triangulator_free);
+  g_free (m->seen);
+  g_free (m->between);
+  g_free (m->views);
+  cloth_rays_free (m->rays);
+  g_free (m->first);
+  g_free (m->order);
+  g_clear_pointer (&m->lone, g_array_unref);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Maker, maker_clear);
+
+static const ClothObservation *
+picture (const Maker * m, guint i)
+{
+  return &g_array_index (m->observations->list, ClothObservation, i);
+}
+
+static void
+sort_pictures (Maker * m)
+{
+  guint n = 0;
+
+  m->first = g_new (guint, m->n_cameras + 1);
+  m->order = g_new (guint, m->observations->list->len + 1);
+  /* of each camera they are in the order of time already */
+  for (guint c = 0; c < m->n_cameras; c++) {
+    m->first[c] = n;
+    for (guint i = 0; i < m->observations->list->len; i++)
+      if (picture (m, i)->camera == c)
+        m->order[n++] = i;
+  }
+  m->first[m->n_cameras] = n;
+}
+
+static gboolean
+maker_init (Maker * m, ClothRecording * r,
+    const ClothObservations * observations, ClothObservedCounts * counts,
+    GError ** error)
+{
+  const ClothRig *rig = observations->rig;
+
+  *m = (Maker) {
+  observations, r,.n_cameras = rig->n_cameras,.counts = counts};
+  m->seen = g_new (gdouble, 5 * (gsize) rig->n_cameras * r->n);
+  m->between = g_new (gdouble, 5 * (gsize) r->n);
+  m->views = g_new (ClothTriangulateView, rig->n_cameras);
+  for (guint c = 0; c < rig->n_cameras; c++) {
+    gdouble *at = m->seen + 5 * (gsize) c * r->n;
+
+    m->views[c] = (ClothTriangulateView) {
+    at, at + r->n, at + 2 * r->n, at + 3 * r->n, at + 4 * r->n};
+  }
+  m->rays = cloth_rays_new (r->n);
+  m->lone = g_array_new (FALSE, FALSE, sizeof (Lone));
+  sort_pictures (m);
+  if (rig->n_cameras == 1)
+    return TRUE;
+  m->triangulator = cloth_triangulator_new (rig->n_cameras, rig->cameras,
+      error);
+  return m->triangulator != NULL;
+}
+
+/* Adds a picture's points with a weight; points that another picture must have, too, and has not
+ * are NaN. */
+static void
+add_picture (const ClothObservation * from, gdouble weight, gboolean first,
+    guint n, gdouble * to)
+{
+  guint next = 0;
+
+  for (guint v = 0; v < n; v++) {
+    const gboolean there = next < from->n && from->vertices[next] == v;
+
+    for (guint k = 0; k < 2; k++) {
+      gdouble *p = to + k * n + v;
+
+      *p = (first ? 0. : *p) + (there ? weight * from->px[2 * next + k] : NAN);
+    }
+    for (guint k = 0; k < 3; k++) {
+      gdouble *c = to + (2 + k) * n + v;
+
+      *c = (first ? 0. : *c) + (there ? weight * weight *
+          from->covariances[3 * next + k] : NAN);
+    }
+    next += there;
+  }
+}
+
+/* Adds what the polynomial through @n pictures, from the @first of a camera's on, has at a time. */
+static void
+interpolate (const Maker * m, guint first, guint n, gdouble time, gdouble * to)
+{
+  for (guint i = first; i < first + n; i++) {
+    gdouble weight = 1.;
+
+    /* Lagrange's */
+    for (guint k = first; k < first + n; k++)
+      if (k != i)
+        weight *= (time - picture (m, m->order[k])->time_s) /
+            (picture (m, m->order[i])->time_s -
+            picture (m, m->order[k])->time_s);
+    add_picture (picture (m, m->order[i]), weight, i == first, m->r->n, to);
+  }
+}
+
+/* Whether @n pictures follow each other without a hole. */
+static gboolean
+are_near (const Maker * m, guint first, guint n, gdouble frame_s)
+{
+  for (guint i = first; i + 1 < first + n; i++)
+    if (picture (m, m->order[i + 1])->time_s -
+        picture (m, m->order[i])->time_s > MOST_BETWEEN * frame_s)
+      return FALSE;
+  return TRUE;
+}
+
+/* What a camera saw at a frame's time: its picture of then, or between pictures, of four where
+ * all of them have a vertex, else of two. */
+static void
+find_view (const Maker * m, guint camera, guint frame)
+{
+  const ClothRecording *r = m->r;
+  const gdouble frame_s = (r->times[r->n_frames - 1] - r->times[0]) /
+      (r->n_frames - 1);
+  const gdouble time = r->times[frame] +
+      m->observations->rig->cameras[camera].offset_s;
+  gdouble *to = m->seen + 5 * (gsize) camera * r->n;
+  const gsize size = 5 * (gsize) r->n;
+  guint low = m->first[camera], high = m->first[camera + 1];
+  const guint begin = low, end = high;
+
+  for (gsize i = 0; i < size; i++)
+    to[i] = NAN;
+  if (low == high)
+    return;
+  while (high - low > 1) {
+    guint middle = (low + high) / 2;
+
+    if (picture (m, m->order[middle])->time_s <= time)
+      low = middle;
+    else
+      high = middle;
+  }
+  for (guint i = low; i < MIN (low + 2, end); i++)
+    if (fabs (picture (m, m->order[i])->time_s - time) < SAME_TIME * frame_s) {
+      add_picture (picture (m, m->order[i]), 1., TRUE, r->n, to);
+      return;
+    }
+  if (high == end || time < picture (m, m->order[low])->time_s
+      || !are_near (m, low, 2, frame_s))
+    return;
+  interpolate (m, low, 2, time, to);
+  if (low == begin || high + 1 == end || !are_near (m, low - 1, 4, frame_s))
+    return;
+  interpolate (m, low - 1, 4, time, m->between);
+  for (gsize i = 0; i < size; i++)
+    if (isfinite (m->between[i]))
+      to[i] = m->between[i];
+}
+
+static gboolean
+triangulate (Maker * m, guint frame, const ClothTriangulation ** result,
+    GError ** error)
+{
+  ClothTriangulateParameters parameters = CLOTH_TRIANGULATE_PARAMETERS_DEFAULT;
+
+  for (guint c = 0; c < m->n_cameras; c++)
+    find_view (m, c, frame);
+  *result = NULL;
+  if (!m->triangulator)
+    return TRUE;
+  parameters.error_floor = m->floor.floor;
+  cloth_triangulator_set_parameters (m->triangulator, &parameters);
+  return cloth_triangulator_run (m->triangulator, m->n_cameras, m->views,
+      m->r->n, result, error);
+}
+
+/* How well the cameras agree, beside what their covariances say. */
+static gboolean
+find_floor (Maker * m, GError ** error)
+{
+  for (guint f = 0; m->triangulator && f < m->r->n_frames; f++) {
+    const ClothTriangulation *t;
+
+    if (!triangulate (m, f, &t, error))
+      return FALSE;
+    cloth_error_floor_add (&m->floor, m->n_cameras, m->views, t);
+  }
+  m->counts->error_floor = m->floor.floor;
+  return TRUE;
+}
+
+static void
+keep_point (Maker * m, guint frame, guint v, const ClothTriangulation * t)
+{
+  const gsize at = (gsize) frame * m->r->n + v;
+  const gdouble *const *c = (const gdouble * const *) t->covariance;
+  const gdouble full[9] = { c[0][v], c[1][v], c[2][v], c[1][v], c[3][v],
+    c[4][v], c[2][v], c[4][v], c[5][v]
+  };
+  gdouble i[9];
+
+  if (!cloth_mat3_inverse (full, i)
+      || !cloth_recording_noise_set (m->r->noise, at,
+          (const gdouble[6]) { i[0], i[4], i[8], i[5], i[2], i[1] }))
+    return;
+  for (guint k = 0; k < 3; k++)
+    m->r->y[3 * at + k] = t->position[k][v];
+  m->r->seen[at] = 1.;
+  m->counts->triangulated++;
+}
+
+/* The rays of one camera to vertices that no other one helps with; of several the sharpest counts. */
+static void
+keep_rays (Maker * m, guint frame, guint camera, const ClothTriangulation * t,
+    Lone * lone)
+{
+  gdouble *variance[2];
+
+  for (guint k = 0; k < 2; k++)
+    variance[k] = m->seen + (5 * (gsize) camera + (k ? 4 : 2)) * m->r->n;
+  for (guint v = 0; v < m->r->n; v++)
+    for (guint k = 0; k < 2; k++)
+      variance[k][v] += m->floor.floor;
+  cloth_rays_cast (m->rays, &m->observations->rig->cameras[camera],
+      &m->views[camera]);
+  for (guint v = 0; v < m->r->n; v++) {
+    const gsize at = (gsize) frame * m->r->n + v;
+    const gdouble spread = m->rays->spreads[v];
+
+    if (m->r->seen[at] > 0. || !(spread > 0.) || (t
+            && t->reason[v] == CLOTH_POINT_DISAGREE)
+        || (lone[v].spread > 0. && spread >= lone[v].spread))
+      continue;
+    lone[v] = (Lone) {
+    frame, v,.spread = spread};
+    memcpy (lone[v].centre, m->rays->centre, sizeof lone[v].centre);
+    memcpy (lone[v].direction, m->rays->directions + 3 * (gsize) v,
+        sizeof lone[v].direction);
+  }
+}
+
+static gboolean
+find_places (Maker * m, GError ** error)
+{
+  g_autofree Lone *lone = g_new (Lone, m->r->n);
+
+  for (guint f = 0; f < m->r->n_frames; f++) {
+    const ClothTriangulation *t;
+
+    if (!triangulate (m, f, &t, error))
+      return FALSE;
+    for (guint v = 0; t && v < m->r->n; v++) {
+      if (t->reason[v] == CLOTH_POINT_FINE)
+        keep_point (m, f, v, t);
+      m->counts->contradicted += t->reason[v] == CLOTH_POINT_DISAGREE;
+    }
+    memset (lone, 0, m->r->n * sizeof *lone);
+    for (guint c = 0; c < m->n_cameras; c++)
+      keep_rays (m, f, c, t, lone);
+    for (guint v = 0; v < m->r->n; v++)
+      if (lone[v].spread > 0.)
+        g_array_append_val (m->lone, lone[v]);
+  }
+  m->counts->places = (gsize) m->r->n * m->r->n_frames;
+  m->counts->single = m->lone->len;
+  return TRUE;
+}
+
+/* What is known across a ray at the place that it has now. */
+static void
+weigh (ClothRecording * r, const Lone * lone)
+{
+  const gsize at = (gsize) lone->frame * r->n + lone->vertex;
+  const gdouble *d = lone->direction;
+  gdouble along[3], distance, square, information[6];
+
+  cloth_vec3_subtract (r->y + 3 * at, lone->centre, along);
+  distance = sqrt (cloth_vec3_dot (along, along));
+  square = 1. / (lone->spread * lone->spread * distance * distance);
+  for (guint k = 0; k < 3; k++) {
+    information[k] = square * (1. - d[k] * d[k]);
+    information[3 + k] = -square * d[(k + 1) % 3] * d[(k + 2) % 3];
+    r->noise->blind[3 * at + k] = 0;
+  }
+  r->seen[at] = cloth_recording_noise_set (r->noise, at, information);
+}
+
+/* To the foot of the perpendicular from where it is. Returns its squared way. Behind the camera
+ * nothing was seen. */
+static gdouble
+put_on_ray (ClothRecording * r, const Lone * lone, const gdouble from[3])
+{
+  const gsize at = (gsize) lone->frame * r->n + lone->vertex;
+  gdouble v[3], along, way = 0.;
+
+  cloth_vec3_subtract (from, lone->centre, v);
+  along = cloth_vec3_dot (v, lone->direction);
+  if (!(along > 0.)) {
+    r->seen[at] = 0.;
+    return 0.;
+  }
+  for (guint k = 0; k < 3; k++) {
+    gdouble to = lone->centre[k] + along * lone->direction[k];
+
+    way += (to - r->y[3 * at + k]) * (to - r->y[3 * at + k]);
+    r->y[3 * at + k] = to;
+  }
+  r->seen[at] = 1.;
+  weigh (r, lone);
+  return way;
+}
+
+/* The first guess of all that was not triangulated: between those that were, else where the cloth
+ * starts. */
+static gboolean
+guess (Maker * m, gboolean has_start, GError ** error)
+{
+  ClothRecording *r = m->r;
+  const gsize row = 3 * (gsize) r->n;
+
+  if (m->counts->triangulated == 0 && !has_start) {
+    g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING, "%s: no "
+        "two cameras see the same vertex at a time, so nothing says where the "
+        "cloth starts; give its places in the first frame as positions.npy "
+        "[1][vertices][3]", r->name);
+    return FALSE;
+  }
+  if (m->counts->triangulated + m->counts->single == 0) {
+    g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING, "%s: no "
+        "camera saw a vertex in any of its %u frames; do their times agree "
+        "with times.npy?", r->name, r->n_frames);
+    return FALSE;
+  }
+  if (m->counts->triangulated == 0)
+    for (guint f = 0; f < r->n_frames; f++)
+      memcpy (r->y + f * row, r->scene->positions, row * sizeof *r->y);
+  else
+    cloth_recording_interpolate (r);
+  for (guint i = 0; i < m->lone->len; i++) {
+    const Lone *lone = &g_array_index (m->lone, Lone, i);
+
+    put_on_ray (r, lone, r->y + 3 * ((gsize) lone->frame * r->n +
+            lone->vertex));
+  }
+  return TRUE;
+}
+
+static void
+finish (ClothRecording * r)
+{
+  r->sigma = cloth_recording_noise_finish (r->noise, r->seen);
+  cloth_recording_interpolate (r);
+  cloth_recording_differentiate (r);
+}
+
+typedef struct
+{
+  gdouble *x;                   /* [n_frames][n][3] */
+  gsize row;
+} Simulated;
+
+static void
+keep_simulated (gpointer data, guint model, guint frame,
+    const gdouble * positions)
+{
+  Simulated *s = data;
+
+  memcpy (s->x + frame * s->row, positions, s->row * sizeof *positions);
+}
+
+/* Simulates the cloth drawn to all that is known, and moves places along their rays there. Returns
+ * how far, RMS; NaN: it diverged. */
+static gdouble
+turn (Maker * m, const ClothModel * model, gdouble gain,
+    const ClothRolloutOptions * options, Simulated * s, GError ** error)
+{
+  const ClothRecording *r = m->r;
+  gdouble sum = 0.;
+  gboolean sound;
+
+  if (!cloth_rollout_nudged (&r, &model, &gain, 1, options, keep_simulated, s,
+          &sound, error))
+    return NAN;
+  if (!sound) {
+    g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL, "%s: the "
+        "simulation that follows the cameras diverged; lower “time_step” of "
+        "the model, or its stiffnesses", r->name);
+    return NAN;
+  }
+  for (guint i = 0; i < m->lone->len; i++) {
+    const Lone *lone = &g_array_index (m->lone, Lone, i);
+
+    sum += put_on_ray (m->r, lone, s->x + lone->frame * s->row +
+        3 * (gsize) lone->vertex);
+  }
+  finish (m->r);
+  return sqrt (sum / MAX (m->lone->len, 1));
+}
+
+/* Of the motion at lone rays the share along them. */
+static gdouble
+find_share_along (const Maker * m)
+{
+  gdouble along = 0., all = 0.;
+
+  for (guint i = 0; i < m->lone->len; i++) {
+    const Lone *lone = &g_array_index (m->lone, Lone, i);
+    const gdouble *v = m->r->velocity + 3 * ((gsize) lone->frame * m->r->n +
+        lone->vertex);
+    const gdouble part = cloth_vec3_dot (v, lone->direction);
+
+    along += part * part;
+    all += cloth_vec3_dot (v, v);
+  }
+  return all > 0. ? along / all : 0.;
+}
+
+static ClothRecording *
+recording_new (ClothTake * take, GError ** error)
+{
+  g_autoptr (ClothRecording) r = g_new0 (ClothRecording, 1);
+  gsize all;
+
+  r->name = g_strdup (cloth_take_get_info (take)->name);
+  r->n = cloth_take_get_topology (take)->n_vertices;
+  r->n_frames = cloth_take_get_n_frames (take);
+  if (r->n_frames < CLOTH_RECORDING_WINDOW) {
+    g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING, "%s has %u "
+        "frames; a diagnosis needs motion, at least %u", r->name, r->n_frames,
+        CLOTH_RECORDING_WINDOW);
+    return NULL;
+  }
+  r->scene = cloth_scene_new_from_take (take, error);
+  if (!r->scene)
+    return NULL;
+  all = (gsize) r->n_frames * r->n;
+  r->times = g_new (gdouble, r->n_frames);
+  for (guint f = 0; f < r->n_frames; f++)
+    r->times[f] = cloth_take_get_time (take, f);
+  r->y = g_new0 (gdouble, 3 * all);
+  r->velocity = g_new0 (gdouble, 3 * all);
+  r->seen = g_new0 (gdouble, all);
+  r->noise = cloth_recording_noise_new (all);
+  return g_steal_pointer (&r);
+}
+
+/* @take: mesh, clamps and times; its positions, if it has any, are where the cloth starts
+ * @observations: what cameras saw of it, any number of them
+ * @model: what the simulator knows of the cloth
+ * @gain: of the observer, 1/s²
+ * @options: how to simulate
+ * @counts: (out): what was seen
+ * @error: #ClothFitError, #ClothSimError, or what reading the take says
+ *
+ * Pictures between two frames are interpolated, so cameras need not run in step. The clock of the
+ * frames is the rig's: that of cameras whose offset is 0.
+ *
+ * Returns: (transfer full) (nullable): the recording, with the covariance of each place
+ */
+ClothRecording *
+cloth_recording_new_observed (ClothTake * take,
+    const ClothObservations * observations, const ClothModel * model,
+    gdouble gain, const ClothRolloutOptions * options,
+    ClothObservedCounts * counts, GError ** error)
+{
+  g_autoptr (ClothRecording) r = recording_new (take, error);
+  g_auto (Maker) m = { NULL };
+  g_autofree gdouble *x = NULL;
+  Simulated s;
+
+  *counts = (ClothObservedCounts) {
+  0};
+  if (!r || !maker_init (&m, r, observations, counts, error)
+      || !find_floor (&m, error) || !find_places (&m, error)
+      || !guess (&m, cloth_take_get_n_positions (take) > 0, error))
+    return NULL;
+  finish (r);
+  if (!cloth_recording_check (r, TRUE, error))
+    return NULL;
+  x = g_new (gdouble, 3 * (gsize) r->n * r->n_frames);
+  s = (Simulated) {
+  x, 3 * (gsize) r->n};
+  for (guint k = 0; m.lone->len && k < MOST_TURNS; k++) {
+    const gdouble moved = turn (&m, model, gain, options, &s, error);
+
+    if (isnan (moved))
+      return NULL;
+    if (moved < r->sigma)
+      break;
+  }
+  counts->along = find_share_along (&m);
+  return g_steal_pointer (&r);
+}

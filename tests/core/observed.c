@@ -1,0 +1,357 @@
+/* Recordings made of what cameras saw alone: a simulated sheet of another force model, filmed by
+ * one camera to eight.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <math.h>
+#include <string.h>
+
+#include "gst/fit/nudge/nudge.h"
+#include "gst/gap/diagnose.h"
+#include "tests/common/gapfilm.h"
+#include "tests/common/gaprecord.h"
+
+#define LANES(name) extern const ClothEffect cloth_effect_##name;
+#include "gst/effect/list.h"
+
+#define COLUMNS 9
+#define ROWS 10
+#define N (COLUMNS * ROWS)
+#define N_FRAMES 60
+#define FPS 50.
+#define NOISE_PX 0.3
+#define GAIN 100.
+
+static const gdouble middle[3] = { 0.15, 0., -0.2 };
+
+static void
+sway (guint held, gdouble t, gfloat p[3])
+{
+  p[0] = (gfloat) (held ? 0.3 : 0.);
+  p[1] = (gfloat) (0.06 * (1. - cos (7. * t)));
+  p[2] = (gfloat) (held ? 0.02 * sin (9. * t) : 0.);
+}
+
+static ClothModel *
+model_new (gboolean other)
+{
+  ClothModel *model = cloth_model_new ();
+
+  model->areal_density = 0.2;
+  model->stretch_warp = model->stretch_weft = 120.;
+  model->shear = 30.;
+  model->bending_warp = model->bending_weft = 2e-5;
+  model->damping_stiffness = 1e-3;
+  if (other)
+    model->force_model = CLOTH_FORCE_MASS_SPRING;
+  return model;
+}
+
+/* Each camera sees another tenth of the cloth not, for ten frames. */
+static gboolean
+hide_some (guint camera, guint vertex, guint frame)
+{
+  return (vertex / 9 + 3 * camera + frame / 10) % 5 < 2;
+}
+
+/* The first camera sees one half, the second the other. */
+static gboolean
+hide_halves (guint camera, guint vertex, guint frame)
+{
+  return (vertex % COLUMNS < COLUMNS / 2) != (camera == 0);
+}
+
+static gboolean
+hide_all (guint camera, guint vertex, guint frame)
+{
+  return TRUE;
+}
+
+typedef struct
+{
+  gchar *parent;
+  ClothTake *take;
+  gdouble *truth;
+  gdouble times[N_FRAMES];
+} Scene;
+
+static void
+scene_init (Scene * s, const ClothModel * model, gboolean keep_start)
+{
+  const TestGapSheet sheet = { COLUMNS, ROWS, N_FRAMES, 0.3, 0.34, FPS };
+  ClothTake *whole;
+
+  s->parent = g_dir_make_tmp ("cloth-observed-XXXXXX", NULL);
+  whole = test_gap_record (&sheet, model, sway, s->parent, "take", 1);
+  s->truth = test_gap_positions (whole);
+  s->take = test_gap_forget_positions (whole, keep_start);
+  cloth_take_free (whole);
+  for (guint f = 0; f < N_FRAMES; f++)
+    s->times[f] = f / FPS;
+}
+
+static void
+scene_clear (Scene * s)
+{
+  cloth_take_free (s->take);
+  g_free (s->truth);
+  test_gap_remove (s->parent);
+  g_free (s->parent);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Scene, scene_clear);
+
+static ClothObservations *
+film (const Scene * s, const TestGapFilming * filming)
+{
+  g_autoptr (ClothRig) rig = test_gap_ring (filming->n_cameras, middle);
+
+  return test_gap_film (rig, rig, s->truth, s->times, N_FRAMES, N, filming, 5);
+}
+
+static ClothRecording *
+observe (const Scene * s, const ClothObservations * observations,
+    ClothObservedCounts * counts, GError ** error)
+{
+  g_autoptr (ClothModel) model = model_new (FALSE);
+  const ClothRolloutOptions options = {.threads = 1 };
+
+  return cloth_recording_new_observed (s->take, observations, model, GAIN,
+      &options, counts, error);
+}
+
+/* Mean square of the errors over their deviations, of what is known; RMS of the errors along lone
+ * rays. */
+static void
+compare (const Scene * s, const ClothRecording * r, gdouble * chi_square,
+    gdouble * along)
+{
+  gdouble sum = 0., blind = 0., n = 0., n_blind = 0.;
+
+  for (gsize at = 0; at < N * N_FRAMES; at++) {
+    const gfloat *b = r->noise->blind + 3 * at;
+    gdouble off[3], white[3], part = 0.;
+    gboolean lone = b[0] != 0 || b[1] != 0 || b[2] != 0;
+
+    if (r->seen[at] == 0.)
+      continue;
+    for (guint k = 0; k < 3; k++) {
+      off[k] = s->truth[3 * at + k] - r->y[3 * at + k];
+      part += b[k] * off[k];
+    }
+    cloth_recording_whiten (r, at, off, white);
+    sum += white[0] * white[0] + white[1] * white[1] + white[2] * white[2];
+    n += lone ? 2. : 3.;
+    blind += part * part;
+    n_blind += lone;
+  }
+  *chi_square = sum / n;
+  *along = sqrt (blind / fmax (n_blind, 1.));
+}
+
+/* The errors are what the covariances say, across rays and where they meet, by however many
+ * cameras. Along lone rays they are the simulation's. */
+static void
+test_places (void)
+{
+  g_autoptr (ClothModel) reality = model_new (TRUE);
+  const guint numbers[] = { 1, 2, 3, 8 };
+  g_auto (Scene) s = { NULL };
+
+  scene_init (&s, reality, TRUE);
+  for (guint i = 0; i < G_N_ELEMENTS (numbers); i++) {
+    const TestGapFilming filming = { numbers[i], NOISE_PX, hide_some };
+    g_autoptr (ClothObservations) observations = film (&s, &filming);
+    g_autoptr (GError) error = NULL;
+    ClothObservedCounts counts;
+    g_autoptr (ClothRecording) r = observe (&s, observations, &counts, &error);
+    gdouble chi_square, along;
+
+    g_assert_no_error (error);
+    compare (&s, r, &chi_square, &along);
+    g_test_message ("%u cameras: %.0f%% triangulated, %.0f%% on lone rays, "
+        "chi² %.3f, along rays %.2f mm RMS, sigma %.2f mm", numbers[i],
+        100. * counts.triangulated / counts.places,
+        100. * counts.single / counts.places, chi_square, 1e3 * along,
+        1e3 * r->sigma);
+    g_assert_cmpuint (counts.places, ==, N * N_FRAMES);
+    g_assert_cmpfloat_with_epsilon (chi_square, 1., 0.06);
+    if (numbers[i] == 1) {
+      g_assert_cmpuint (counts.triangulated, ==, 0);
+      g_assert_cmpfloat_with_epsilon ((gdouble) counts.single / counts.places,
+          0.6, 0.01);
+      g_assert_cmpfloat (counts.along, >, 0.02);
+      g_assert_cmpfloat (counts.along, <, 0.98);
+      /* with no ray at all it is off as much as a free run of another force model */
+      g_assert_cmpfloat (along, <, 0.02);
+    } else if (counts.single) {
+      g_assert_cmpfloat (along, <, 0.006);
+    }
+  }
+}
+
+/* Cameras that do not run in step: between their pictures places move on lines. */
+static void
+test_out_of_step (void)
+{
+  const gdouble late[] = { 0., 0.007, 0.013 };
+  const TestGapFilming filming = { 3, 0.05, NULL, late };
+  g_autoptr (ClothModel) reality = model_new (TRUE);
+  g_auto (Scene) s = { NULL };
+  g_autoptr (ClothObservations) observations = NULL;
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRecording) r = NULL;
+  ClothObservedCounts counts;
+  gdouble square = 0.;
+
+  scene_init (&s, reality, FALSE);
+  observations = film (&s, &filming);
+  r = observe (&s, observations, &counts, &error);
+  g_assert_no_error (error);
+  for (gsize i = 3 * N * 5; i < 3 * N * (N_FRAMES - 5); i++)
+    square += pow (s.truth[i] - r->y[i], 2.);
+  square /= N * (N_FRAMES - 10);
+  g_test_message ("%.3f mm RMS", 1e3 * sqrt (square));
+  /* it moves by up to 1 m/s: 7 mm in 7 ms */
+  g_assert_cmpfloat (sqrt (square), <, 4e-4);
+  g_assert_cmpfloat ((gdouble) counts.triangulated / counts.places, >, 0.95);
+}
+
+/* No two cameras see the same vertex: without a start nothing says how far away the cloth is, with
+ * one the rays do. */
+static void
+test_start (void)
+{
+  g_autoptr (ClothModel) reality = model_new (TRUE);
+  const TestGapFilming filming = { 2, NOISE_PX, hide_halves };
+
+  for (guint keep = 0; keep < 2; keep++) {
+    g_auto (Scene) s = { NULL };
+    g_autoptr (ClothObservations) observations = NULL;
+    g_autoptr (GError) error = NULL;
+    g_autoptr (ClothRecording) r = NULL;
+    ClothObservedCounts counts;
+
+    scene_init (&s, reality, keep);
+    observations = film (&s, &filming);
+    r = observe (&s, observations, &counts, &error);
+    g_assert_cmpuint (counts.triangulated, ==, 0);
+    if (keep) {
+      g_assert_no_error (error);
+      g_assert_cmpuint (counts.single, ==, N * N_FRAMES);
+      continue;
+    }
+    g_assert_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING);
+    g_assert_nonnull (strstr (error->message, "give its places in the first"));
+  }
+}
+
+/* Two cameras in one place: their rays never meet, and one of them counts. */
+static void
+test_parallel (void)
+{
+  const TestGapFilming filming = { 2, NOISE_PX };
+  g_autoptr (ClothModel) reality = model_new (TRUE);
+  g_autoptr (ClothRig) rig = test_gap_ring (2, middle);
+  g_auto (Scene) s = { NULL };
+  g_autoptr (ClothObservations) observations = NULL;
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRecording) r = NULL;
+  ClothObservedCounts counts;
+  gdouble chi_square, along;
+
+  scene_init (&s, reality, TRUE);
+  memcpy (rig->cameras[1].R, rig->cameras[0].R, sizeof rig->cameras[0].R);
+  memcpy (rig->cameras[1].t, rig->cameras[0].t, sizeof rig->cameras[0].t);
+  observations = test_gap_film (rig, rig, s.truth, s.times, N_FRAMES, N,
+      &filming, 5);
+  r = observe (&s, observations, &counts, &error);
+  g_assert_no_error (error);
+  g_assert_cmpuint (counts.triangulated, ==, 0);
+  g_assert_cmpuint (counts.single, ==, N * N_FRAMES);
+  compare (&s, r, &chi_square, &along);
+  g_assert_cmpfloat_with_epsilon (chi_square, 1., 0.06);
+}
+
+static void
+test_nothing (void)
+{
+  g_autoptr (ClothModel) reality = model_new (TRUE);
+  const TestGapFilming filming = { 2, NOISE_PX, hide_all };
+  g_auto (Scene) s = { NULL };
+  g_autoptr (ClothObservations) observations = NULL;
+  g_autoptr (GError) error = NULL;
+  ClothObservedCounts counts;
+  gfloat row[3 * N];
+
+  scene_init (&s, reality, TRUE);
+  observations = film (&s, &filming);
+  g_assert_null (observe (&s, observations, &counts, &error));
+  g_assert_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING);
+  g_assert_nonnull (strstr (error->message, "no camera saw"));
+  g_clear_error (&error);
+
+  /* who asks for positions is told where they went */
+  g_assert_cmpuint (cloth_take_get_n_positions (s.take), ==, 1);
+  g_assert_cmpuint (cloth_take_get_n_frames (s.take), ==, N_FRAMES);
+  g_assert_true (cloth_take_read_positions (s.take, 0, row, &error));
+  g_assert_false (cloth_take_read_positions (s.take, 1, row, &error));
+  g_assert_nonnull (strstr (error->message, "only what cameras saw"));
+}
+
+/* Drag that the model lacks is named from rays alone. */
+static void
+test_diagnosis (void)
+{
+  static const gchar *const effects[] = { "air_drag", "wind", "gravity_tilt",
+    "bending", "areal_mass", "damping_mass", NULL
+  };
+  const gdouble drag = 1.5;
+  const guint numbers[] = { 1, 3 };
+  g_autoptr (ClothModel) model = model_new (FALSE);
+
+  for (guint i = 0; i < G_N_ELEMENTS (numbers); i++) {
+    const TestGapFilming filming = { numbers[i], NOISE_PX, hide_some };
+    g_autoptr (ClothModel) reality = model_new (TRUE);
+    g_auto (Scene) s = { NULL }, alone = { NULL };
+    g_autoptr (ClothObservations) observations = NULL, baseline = NULL;
+    g_autoptr (ClothGapResult) result = NULL;
+    g_autoptr (GError) error = NULL;
+    ClothGapOptions options = {.effects = effects,.threads = 2 };
+
+    scene_init (&alone, reality, TRUE);
+    baseline = film (&alone, &filming);
+    cloth_model_set_effect (reality, &cloth_effect_air_drag, &drag);
+    scene_init (&s, reality, TRUE);
+    observations = film (&s, &filming);
+    options.observations = &observations;
+    options.baselines = &alone.take;
+    options.n_baselines = 1;
+    options.baseline_observations = &baseline;
+    result = cloth_gap_diagnose (&s.take, 1, model, &options, &error);
+    g_assert_no_error (error);
+    for (guint k = 0; k < 3; k++) {
+      const ClothGapEffect *e = &g_array_index (result->effects,
+          ClothGapEffect, k);
+
+      g_test_message ("%u cameras: %s p %.3g, %.3g ± %.2g %s", numbers[i],
+          e->effect->id, e->probability, e->values[0], e->sigmas[0],
+          e->accepted ? "accepted" : "");
+    }
+    g_assert_cmpstr (g_array_index (result->effects, ClothGapEffect,
+            0).effect->id, ==, "air_drag");
+    g_assert_true (g_array_index (result->effects, ClothGapEffect, 0).accepted);
+  }
+}
+
+int
+main (int argc, char **argv)
+{
+  g_test_init (&argc, &argv, NULL);
+  g_test_add_func ("/observed/places", test_places);
+  g_test_add_func ("/observed/out-of-step", test_out_of_step);
+  g_test_add_func ("/observed/start", test_start);
+  g_test_add_func ("/observed/parallel", test_parallel);
+  g_test_add_func ("/observed/nothing", test_nothing);
+  g_test_add_func ("/observed/diagnosis", test_diagnosis);
+  return g_test_run ();
+}
