@@ -24,11 +24,6 @@
 
 /* Most turns of places and simulation. */
 #define MOST_TURNS 8
-/* A picture this part of a frame away was taken in it. */
-#define SAME_TIME 1e-3
-/* Pictures further apart than this many frames say nothing of what was between them. */
-#define MOST_BETWEEN 1.5
-
 /* A ray that is all that is known of a place. */
 typedef struct
 {
@@ -43,12 +38,8 @@ typedef struct
   ClothTriangulator *triangulator;
   ClothErrorFloor floor;
   guint n_cameras;
-  gdouble *seen;                /* of each camera x, y, xx, xy, yy of each vertex */
-  gdouble *between;             /* as @seen, of one camera */
-  ClothTriangulateView *views;
+  ClothViews *views;
   ClothRays *rays;
-  guint *first;                 /* of each camera in @order */
-  guint *order;                 /* pictures of camera after camera, by time */
   GArray *lone;
   ClothObservedCounts *counts;
 } Maker;
@@ -57,39 +48,12 @@ static void
 maker_clear (Maker * m)
 {
   g_clear_pointer (&m->triangulator, cloth_triangulator_free);
-  g_free (m->seen);
-  g_free (m->between);
-  g_free (m->views);
+  cloth_views_free (m->views);
   cloth_rays_free (m->rays);
-  g_free (m->first);
-  g_free (m->order);
   g_clear_pointer (&m->lone, g_array_unref);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Maker, maker_clear);
-
-static const ClothObservation *
-picture (const Maker * m, guint i)
-{
-  return &g_array_index (m->observations->list, ClothObservation, i);
-}
-
-static void
-sort_pictures (Maker * m)
-{
-  guint n = 0;
-
-  m->first = g_new (guint, m->n_cameras + 1);
-  m->order = g_new (guint, m->observations->list->len + 1);
-  /* of each camera they are in the order of time already */
-  for (guint c = 0; c < m->n_cameras; c++) {
-    m->first[c] = n;
-    for (guint i = 0; i < m->observations->list->len; i++)
-      if (picture (m, i)->camera == c)
-        m->order[n++] = i;
-  }
-  m->first[m->n_cameras] = n;
-}
 
 static gboolean
 maker_init (Maker * m, ClothRecording * r,
@@ -100,121 +64,15 @@ maker_init (Maker * m, ClothRecording * r,
 
   *m = (Maker) {
   observations, r,.n_cameras = rig->n_cameras,.counts = counts};
-  m->seen = g_new (gdouble, 5 * (gsize) rig->n_cameras * r->n);
-  m->between = g_new (gdouble, 5 * (gsize) r->n);
-  m->views = g_new (ClothTriangulateView, rig->n_cameras);
-  for (guint c = 0; c < rig->n_cameras; c++) {
-    gdouble *at = m->seen + 5 * (gsize) c * r->n;
-
-    m->views[c] = (ClothTriangulateView) {
-    at, at + r->n, at + 2 * r->n, at + 3 * r->n, at + 4 * r->n};
-  }
+  m->views = cloth_views_new (observations, (r->times[r->n_frames - 1] -
+          r->times[0]) / (r->n_frames - 1));
   m->rays = cloth_rays_new (r->n);
   m->lone = g_array_new (FALSE, FALSE, sizeof (Lone));
-  sort_pictures (m);
   if (rig->n_cameras == 1)
     return TRUE;
   m->triangulator = cloth_triangulator_new (rig->n_cameras, rig->cameras,
       error);
   return m->triangulator != NULL;
-}
-
-/* Adds a picture's points with a weight; points that another picture must have, too, and has not
- * are NaN. */
-static void
-add_picture (const ClothObservation * from, gdouble weight, gboolean first,
-    guint n, gdouble * to)
-{
-  guint next = 0;
-
-  for (guint v = 0; v < n; v++) {
-    const gboolean there = next < from->n && from->vertices[next] == v;
-
-    for (guint k = 0; k < 2; k++) {
-      gdouble *p = to + k * n + v;
-
-      *p = (first ? 0. : *p) + (there ? weight * from->px[2 * next + k] : NAN);
-    }
-    for (guint k = 0; k < 3; k++) {
-      gdouble *c = to + (2 + k) * n + v;
-
-      *c = (first ? 0. : *c) + (there ? weight * weight *
-          from->covariances[3 * next + k] : NAN);
-    }
-    next += there;
-  }
-}
-
-/* Adds what the polynomial through @n pictures, from the @first of a camera's on, has at a time. */
-static void
-interpolate (const Maker * m, guint first, guint n, gdouble time, gdouble * to)
-{
-  for (guint i = first; i < first + n; i++) {
-    gdouble weight = 1.;
-
-    /* Lagrange's */
-    for (guint k = first; k < first + n; k++)
-      if (k != i)
-        weight *= (time - picture (m, m->order[k])->time_s) /
-            (picture (m, m->order[i])->time_s -
-            picture (m, m->order[k])->time_s);
-    add_picture (picture (m, m->order[i]), weight, i == first, m->r->n, to);
-  }
-}
-
-/* Whether @n pictures follow each other without a hole. */
-static gboolean
-are_near (const Maker * m, guint first, guint n, gdouble frame_s)
-{
-  for (guint i = first; i + 1 < first + n; i++)
-    if (picture (m, m->order[i + 1])->time_s -
-        picture (m, m->order[i])->time_s > MOST_BETWEEN * frame_s)
-      return FALSE;
-  return TRUE;
-}
-
-/* What a camera saw at a frame's time: its picture of then, or between pictures, of four where
- * all of them have a vertex, else of two. */
-static void
-find_view (const Maker * m, guint camera, guint frame)
-{
-  const ClothRecording *r = m->r;
-  const gdouble frame_s = (r->times[r->n_frames - 1] - r->times[0]) /
-      (r->n_frames - 1);
-  const gdouble time = r->times[frame] +
-      m->observations->rig->cameras[camera].offset_s;
-  gdouble *to = m->seen + 5 * (gsize) camera * r->n;
-  const gsize size = 5 * (gsize) r->n;
-  guint low = m->first[camera], high = m->first[camera + 1];
-  const guint begin = low, end = high;
-
-  for (gsize i = 0; i < size; i++)
-    to[i] = NAN;
-  if (low == high)
-    return;
-  while (high - low > 1) {
-    guint middle = (low + high) / 2;
-
-    if (picture (m, m->order[middle])->time_s <= time)
-      low = middle;
-    else
-      high = middle;
-  }
-  for (guint i = low; i < MIN (low + 2, end); i++)
-    if (fabs (picture (m, m->order[i])->time_s - time) < SAME_TIME * frame_s) {
-      add_picture (picture (m, m->order[i]), 1., TRUE, r->n, to);
-      return;
-    }
-  if (high == end || time < picture (m, m->order[low])->time_s
-      || !are_near (m, low, 2, frame_s))
-    return;
-  interpolate (m, low, 2, time, to);
-  if (low == begin || high + 1 == end || !are_near (m, low - 1, 4, frame_s))
-    return;
-  interpolate (m, low - 1, 4, time, m->between);
-  for (gsize i = 0; i < size; i++)
-    if (isfinite (m->between[i]))
-      to[i] = m->between[i];
 }
 
 static gboolean
@@ -224,13 +82,14 @@ triangulate (Maker * m, guint frame, const ClothTriangulation ** result,
   ClothTriangulateParameters parameters = CLOTH_TRIANGULATE_PARAMETERS_DEFAULT;
 
   for (guint c = 0; c < m->n_cameras; c++)
-    find_view (m, c, frame);
+    cloth_views_find (m->views, c, m->r->times[frame] +
+        m->observations->rig->cameras[c].offset_s);
   *result = NULL;
   if (!m->triangulator)
     return TRUE;
   parameters.error_floor = m->floor.floor;
   cloth_triangulator_set_parameters (m->triangulator, &parameters);
-  return cloth_triangulator_run (m->triangulator, m->n_cameras, m->views,
+  return cloth_triangulator_run (m->triangulator, m->n_cameras, m->views->views,
       m->r->n, result, error);
 }
 
@@ -243,7 +102,7 @@ find_floor (Maker * m, GError ** error)
 
     if (!triangulate (m, f, &t, error))
       return FALSE;
-    cloth_error_floor_add (&m->floor, m->n_cameras, m->views, t);
+    cloth_error_floor_add (&m->floor, m->n_cameras, m->views->views, t);
   }
   m->counts->error_floor = m->floor.floor;
   return TRUE;
@@ -274,15 +133,14 @@ static void
 keep_rays (Maker * m, guint frame, guint camera, const ClothTriangulation * t,
     Lone * lone)
 {
-  gdouble *variance[2];
+  for (guint axis = 0; axis < 2; axis++) {
+    gdouble *variance = cloth_views_variance (m->views, camera, axis);
 
-  for (guint k = 0; k < 2; k++)
-    variance[k] = m->seen + (5 * (gsize) camera + (k ? 4 : 2)) * m->r->n;
-  for (guint v = 0; v < m->r->n; v++)
-    for (guint k = 0; k < 2; k++)
-      variance[k][v] += m->floor.floor;
+    for (guint v = 0; v < m->r->n; v++)
+      variance[v] += m->floor.floor;
+  }
   cloth_rays_cast (m->rays, &m->observations->rig->cameras[camera],
-      &m->views[camera]);
+      &m->views->views[camera]);
   for (guint v = 0; v < m->r->n; v++) {
     const gsize at = (gsize) frame * m->r->n + v;
     const gdouble spread = m->rays->spreads[v];

@@ -15,6 +15,7 @@
 #include "gst/fit/recording/signal.h"
 #include "gst/fit/recording/twin.h"
 #include "gst/fit/recording/start.h"
+#include "gst/fit/recording/views.h"
 #include "gst/take/take.h"
 
 G_BEGIN_DECLS
