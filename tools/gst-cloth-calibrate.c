@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "calibrate-page.h"
+#include "calibrate-refine.h"
 #include "calibrate-report.h"
 #include "calibrate-shots.h"
 #include "gst/file/file.h"
@@ -505,6 +506,11 @@ run (gconstpointer data)
     return BAD_USAGE;
   if (finished)
     return upright (a);
+  if (a->cameras && a->cameras[0] && !strcmp (a->cameras[0], "refine"))
+    return g_strv_length (a->cameras) == 3 ?
+        calibrate_refine (a->cameras[1], a->cameras[2], a->output) :
+        complain (BAD_USAGE, "give the rig, and the folder of a take that has "
+        "observations: refine RIG TAKE");
   if (a->every < 1 || a->max_views < 3 || a->leave_out < 0 || a->leave_out == 1)
     return complain (BAD_USAGE, "--every takes 1 or more, --max-views 3 or "
         "more, --leave-out 0 or 2 or more");
@@ -600,7 +606,7 @@ main (int argc, char **argv)
           "The page that shows it (calibration.html beside the rig.json)",
         "FILE"},
     {G_OPTION_REMAINING, 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &a.cameras, NULL,
-        "CAMERA=FILE… | upright RIG [CAMERA=FILE…]"},
+        "CAMERA=FILE… | upright RIG [CAMERA=FILE…] | refine RIG TAKE"},
     {NULL}
   };
   gint code;

@@ -93,8 +93,7 @@ find_error (const ClothRig * rig, const ClothObservations * observations,
       cloth_triangulator_new (rig->n_cameras, rig->cameras, NULL);
   gdouble seen[N_CAMERAS][2][N], sum = 0.;
   ClothTriangulateView views[N_CAMERAS];
-  ClothTriangulateParameters parameters =
-      CLOTH_TRIANGULATE_PARAMETERS_DEFAULT;
+  ClothTriangulateParameters parameters = CLOTH_TRIANGULATE_PARAMETERS_DEFAULT;
   guint n = 0;
 
   /* every view counts: what is wrong with a camera must show */
@@ -156,8 +155,7 @@ show (const ClothRefinement * result)
         "ms", c, 1e3 * r->turned_rad[0], 1e3 * r->turned_rad[1],
         1e3 * r->turned_rad[2], 1e3 * r->turned_sd[0], 1e3 * r->moved_m[0],
         1e3 * r->moved_m[1], 1e3 * r->moved_m[2], 1e3 * r->moved_sd[0],
-        100. * r->focal, 100. * r->focal_sd, 1e3 * r->late_s,
-        1e3 * r->late_sd);
+        100. * r->focal, 100. * r->focal_sd, 1e3 * r->late_s, 1e3 * r->late_sd);
   }
   g_test_message ("floor %.4f px², χ² %.3f, was %.3f", result->error_floor,
       result->chi_square, result->chi_square_before);

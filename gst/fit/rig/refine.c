@@ -33,8 +33,10 @@
 #define LARGEST_DAMPING 1e8
 /* It ends when the cost falls by less than this part. */
 #define SETTLED 1e-7
-/* Fits of the cameras and of the error floor, in turn. */
-#define TURNS 4
+/* Most fits of the cameras and of the error floor, in turn, and by which part of its scale a number
+ * may still move at the end. */
+#define MOST_TURNS 12
+#define SETTLED_SHARE 0.02
 /* Fewer places with two rays tell nothing of a rig. */
 #define LEAST_POINTS 50
 /* A rate in a picture is a difference over this part of a frame. */
@@ -734,6 +736,25 @@ find_t_sd (const gdouble * covariance, guint m, guint first,
   return sqrt (scale * variance);
 }
 
+/* Whether no number moved since the turn before, whose numbers become these. */
+static gboolean
+has_settled (const Refine * r, gdouble * before)
+{
+  gboolean settled = TRUE;
+
+  for (guint c = 0; c < r->n_cameras; c++)
+    for (guint part = 0; part < 4; part++) {
+      guint begin, end;
+      gdouble scale = find_part (r->options, part, &begin, &end);
+
+      for (guint k = begin; k < end; k++)
+        settled = settled && fabs (r->theta[EACH * c + k] -
+            before[EACH * c + k]) < SETTLED_SHARE * scale;
+    }
+  memcpy (before, r->theta, EACH * (gsize) r->n_cameras * sizeof *before);
+  return settled;
+}
+
 static ClothRefinement *
 refinement_new (Refine * r, GError ** error)
 {
@@ -816,20 +837,23 @@ cloth_refine_rig (const ClothObservations * observations,
     const ClothRefineOptions * options, GError ** error)
 {
   g_auto (Refine) r = { NULL };
+  g_autofree gdouble *before = NULL;
 
   if (!refine_init (&r, observations, options, error))
     return NULL;
-  for (guint turn = 0; turn < TURNS; turn++) {
+  before = g_new0 (gdouble, EACH * (gsize) r.n_cameras);
+  for (guint turn = 0; turn < MOST_TURNS; turn++) {
     if (!gather (&r, error))
       return NULL;
     solve (&r);
     set_clocks (&r);
     if (!find_floor (&r, r.cameras, &r.floor, error))
       return NULL;
+    if (has_settled (&r, before))
+      break;
   }
   if (!gather (&r, error))
     return NULL;
-  solve (&r);
   return refinement_new (&r, error);
 }
 

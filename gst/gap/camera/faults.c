@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "gst/fit/recording/recording.h"
+#include "gst/fit/rig/refine.h"
 #include "gst/gap/camera/candidates.h"
 #include "gst/gap/camera/score.h"
 
@@ -521,6 +522,26 @@ correct (ClothDiagnosis * d, const Search * s)
   }
 }
 
+/* The rig as the first film of the take has it, for whoever films on. */
+static void
+refine_rig (ClothDiagnosis * d)
+{
+  const ClothRefineOptions options = CLOTH_REFINE_OPTIONS_DEFAULT;
+  g_autoptr (ClothRefinement) refinement = NULL;
+  guint i = 0;
+
+  while (!cloth_diagnosis_observations (d, i))
+    i++;
+  refinement = cloth_refine_rig (cloth_diagnosis_observations (d, i), &options,
+      NULL);
+  if (!refinement)
+    return;
+  d->result->rig = g_steal_pointer (&refinement->rig);
+  cloth_gap_result_add_note (d->result, "rig-refined.json is the rig as the "
+      "film has it, with standard deviations; “gst-cloth-calibrate-1.0 "
+      "refine” says what it changes.");
+}
+
 /* @d: a diagnosis whose recordings are loaded
  *
  * Looks for what is wrong with the cameras and takes it off the recordings.
@@ -557,6 +578,8 @@ cloth_diagnosis_find_faults (ClothDiagnosis * d)
   find_small (&s);
   list_effects (&s, first, last);
   list_faults (&s);
-  if (cloth_diagnosis_count_faults (d))
-    correct (d, &s);
+  if (!cloth_diagnosis_count_faults (d))
+    return;
+  correct (d, &s);
+  refine_rig (d);
 }

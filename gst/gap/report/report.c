@@ -13,6 +13,7 @@
 #include "gst/file/jsonwriter.h"
 #include "gst/gap/report/arrays.h"
 #include "gst/gap/report/page.h"
+#include "gst/rig/rigfile.h"
 
 static const gchar *const role_names[] = {
   "take", "baseline", "hold_out", "simulated", "simulated_after", "model"
@@ -494,12 +495,25 @@ write_model (const ClothModel * model, const gchar * folder, GError ** error)
   return TRUE;
 }
 
+/* Beside the take's own rig.json, which stays, should this be its folder. */
+static gboolean
+write_rig (const ClothRig * rig, const gchar * folder, GError ** error)
+{
+  g_autofree gchar *path = g_build_filename (folder, "rig-refined.json", NULL);
+
+  if (rig)
+    return cloth_rig_save (rig, path, error);
+  g_unlink (path);
+  return TRUE;
+}
+
 /* @result: what was found
  * @folder: where to; made with its parents when it is not there
  * @error: #GIOErrorEnum
  *
  * Writes gap.json and report.html, and, where something was fitted, fitted.json: the model
- * with it. Each is written whole or not at all.
+ * with it; where cameras had faults rig-refined.json, the rig without them. Each is written whole
+ * or not at all.
  *
  * Returns: %TRUE when all are there
  */
@@ -518,6 +532,7 @@ cloth_gap_result_write (const ClothGapResult * result, const gchar * folder,
     return FALSE;
   }
   return write_model (result->model, folder, error) &&
+      write_rig (result->rig, folder, error) &&
       cloth_gap_report_write (result, report, error) &&
       cloth_gap_result_write_json (result, json, error);
 }

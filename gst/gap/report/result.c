@@ -413,5 +413,6 @@ cloth_gap_result_free (ClothGapResult * result)
   g_free (result->playback.after);
   g_free (result->playback.sigma);
   cloth_model_free (result->model);
+  cloth_rig_free (result->rig);
   g_free (result);
 }

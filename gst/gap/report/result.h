@@ -5,6 +5,7 @@
 
 #include "gst/mesh/topology.h"
 #include "gst/effect/effect.h"
+#include "gst/rig/rig.h"
 #include "gst/sim/model.h"
 
 G_BEGIN_DECLS
@@ -420,6 +421,7 @@ typedef struct {
  * @playback: the cloth, for the report
  * @model: (nullable): the model with its free numbers as they were fitted and the accepted
  *   effects but those of cameras; %NULL: nothing was fitted
+ * @rig: (nullable): where cameras had faults, the rig as the cloth has it
  *
  * All that a diagnosis has to say. Everything is owned by the result, but the effects'
  * constant descriptions. A number that is not known is NaN, a list without entries is
@@ -473,6 +475,7 @@ typedef struct {
   ClothGapSpectrum spectrum;
   ClothGapPlayback playback;
   ClothModel *model;
+  ClothRig *rig;
 } ClothGapResult;
 
 ClothGapResult *cloth_gap_result_new (void);
