@@ -74,8 +74,10 @@ show (const ClothRefinement * r)
   }
   g_print ("%u places of the cloth, %u observations. They disagree by %.2f px "
       "beside what the pictures' noise makes.\nReprojection χ² over the "
-      "degrees of freedom: %.3f, was %.3f\n", r->n_points, r->n_observations,
-      sqrt (r->error_floor), r->chi_square, r->chi_square_before);
+      "degrees of freedom: %.3f, was %.3f; observations that contradict the "
+      "others: %.1f%%, were %.1f%%\n", r->n_points, r->n_observations,
+      sqrt (r->error_floor), r->after.chi_square, r->before.chi_square,
+      100. * r->after.contradicted, 100. * r->before.contradicted);
 }
 
 gint

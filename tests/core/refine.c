@@ -157,8 +157,11 @@ show (const ClothRefinement * result)
         1e3 * r->moved_m[1], 1e3 * r->moved_m[2], 1e3 * r->moved_sd[0],
         100. * r->focal, 100. * r->focal_sd, 1e3 * r->late_s, 1e3 * r->late_sd);
   }
-  g_test_message ("floor %.4f px², χ² %.3f, was %.3f", result->error_floor,
-      result->chi_square, result->chi_square_before);
+  g_test_message
+      ("floor %.4f px², χ² %.3f, was %.3f; %.2f%% contradict, were "
+      "%.1f%%", result->error_floor, result->after.chi_square,
+      result->before.chi_square, 100. * result->after.contradicted,
+      100. * result->before.contradicted);
 }
 
 #define WITHIN(value, truth, sd) \
@@ -203,8 +206,9 @@ test_faults (void)
   g_assert_cmpfloat (result->cameras[1].turned_sd[0], <, 4e-4);
   g_assert_cmpfloat (result->cameras[3].focal_sd, <, 2e-3);
   g_assert_cmpfloat (result->cameras[5].late_sd, <, 2e-3);
-  g_assert_cmpfloat_with_epsilon (result->chi_square, 1., 0.2);
-  g_assert_cmpfloat (result->chi_square_before, >, 3.);
+  g_assert_cmpfloat_with_epsilon (result->after.chi_square, 1., 0.2);
+  g_assert_cmpfloat (result->after.contradicted, <, 0.01);
+  g_assert_cmpfloat (result->before.contradicted, >, 0.2);
   errors[0] = find_error (rig, observations, &m);
   errors[1] = find_error (result->rig, observations, &m);
   errors[2] = find_error (truth, observations, &m);
@@ -239,7 +243,7 @@ test_right (void)
     WITHIN (r->focal, 0., r->focal_sd);
     WITHIN (r->late_s, 0., r->late_sd);
   }
-  g_assert_cmpfloat_with_epsilon (result->chi_square, 1., 0.1);
+  g_assert_cmpfloat_with_epsilon (result->after.chi_square, 1., 0.1);
 }
 
 static void

@@ -687,19 +687,19 @@ find_floor (Refine * r, const ClothCamera * cameras, gdouble * floor,
   return TRUE;
 }
 
-/* χ² over its degrees of freedom, of all that was seen, with some cameras. */
+/* How well some cameras agree: χ² over its degrees of freedom of what agrees, and the share of the
+ * observations that contradict the others. */
 static gboolean
-find_chi_square (Refine * r, const ClothCamera * cameras, gdouble * chi_square,
-    GError ** error)
+find_agreement (Refine * r, const ClothCamera * cameras,
+    ClothRefineAgreement * agreement, GError ** error)
 {
   g_autoptr (ClothTriangulator) triangulator =
       cloth_triangulator_new (r->n_cameras, cameras, error);
   ClothTriangulateParameters parameters = CLOTH_TRIANGULATE_PARAMETERS_DEFAULT;
-  gdouble sum = 0., n = 0.;
+  gdouble sum = 0., n = 0., used = 0., rejected = 0.;
 
   if (!triangulator)
     return FALSE;
-  parameters.threshold = NO_THRESHOLD;
   parameters.error_floor = r->floor;
   cloth_triangulator_set_parameters (triangulator, &parameters);
   for (guint f = 0; f < r->n_frames; f++) {
@@ -710,13 +710,17 @@ find_chi_square (Refine * r, const ClothCamera * cameras, gdouble * chi_square,
     if (!cloth_triangulator_run (triangulator, r->n_cameras, r->views->views,
             r->views->n, &t, error))
       return FALSE;
-    for (guint v = 0; v < r->views->n; v++)
-      if (t->reason[v] == CLOTH_POINT_FINE) {
+    for (guint v = 0; v < r->views->n; v++) {
+      rejected += t->n_rejected[v];
+      used += t->n_views[v];
+      if (t->reason[v] == CLOTH_POINT_FINE && t->n_views[v] > 2) {
         sum += t->chi2[v];
         n += 2. * t->n_views[v] - 3.;
       }
+    }
   }
-  *chi_square = sum / fmax (n, 1.);
+  agreement->chi_square = n > 0. ? sum / n : NAN;
+  agreement->contradicted = rejected / fmax (used + rejected, 1.);
   return TRUE;
 }
 
@@ -767,8 +771,8 @@ refinement_new (Refine * r, GError ** error)
   result->n_points = r->points->len;
   result->n_observations = r->seen->len;
   result->error_floor = r->floor;
-  if (!find_chi_square (r, r->rig->cameras, &result->chi_square_before, error)
-      || !find_chi_square (r, r->cameras, &result->chi_square, error))
+  if (!find_agreement (r, r->rig->cameras, &result->before, error)
+      || !find_agreement (r, r->cameras, &result->after, error))
     return NULL;
   normal_init (&n, r);
   if (!make_normal (r, r->theta, 0., &n)) {

@@ -44,22 +44,29 @@ typedef struct {
   guint n;
 } ClothRefineCamera;
 
+/* @chi_square: mean square of the reprojection errors over their variance, error floor included,
+ *   over the degrees of freedom, of all observations that agree with others to 4 deviations
+ * @contradicted: share of the observations that don't
+ */
+typedef struct {
+  gdouble chi_square, contradicted;
+} ClothRefineAgreement;
+
 /* @rig: the cameras as the cloth has them, with standard deviations
  * @cameras: (array): what changed of each
  * @n_points: places used
  * @n_observations: observations of them
  * @error_floor: variance that was added to each observation, px²: what the refined cameras still
  *   disagree by
- * @chi_square_before: mean square of the reprojection errors over their variance, @error_floor
- *   included, over the degrees of freedom, with the cameras as they were
- * @chi_square: the same with the refined ones
+ * @before: how the cameras agreed as they were
+ * @after: how the refined ones do
  */
 typedef struct {
   ClothRig *rig;
   ClothRefineCamera *cameras;
   guint n_points, n_observations;
   gdouble error_floor;
-  gdouble chi_square_before, chi_square;
+  ClothRefineAgreement before, after;
 } ClothRefinement;
 
 ClothRefinement *cloth_refine_rig (const ClothObservations * observations,
