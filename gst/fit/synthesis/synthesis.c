@@ -1,0 +1,322 @@
+/* Analysis by synthesis: a simulated cloth fitted to what cameras saw.
+ *
+ * Model: the simulation is drawn to what was seen by weak springs (ClothRecordingNoise says along
+ *   which directions); what it is off by, as waves, is linear in small changes of its numbers.
+ * Formula: Gauss–Newton on those features, each class weighing by the power that the model at hand
+ *   leaves in it, with the priors of the numbers' ranges. Films without a mesh are looked at anew with
+ *   the fitted numbers, as places on lone rays hang on the simulation.
+ * Assumption: springs always lower the residual, so nothing is judged by it: every gap is also told
+ *   without springs, in windows and from the start.
+ * Reference: Hasler, Asbach, Rosenhahn, Ohm and Seidel, Physically based tracking of cloth, 2006.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/fit/synthesis/synthesis.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/fit/error.h"
+
+/* A number is at the end of its range when it is this share of it away. */
+#define AT_END 1e-3
+
+/* @options: (out): the usual ones
+ */
+void
+cloth_synthesis_options_init (ClothSynthesisOptions * options)
+{
+  *options = (ClothSynthesisOptions) {
+    1600., 0.3, 8, 2, {
+  0}};
+}
+
+static ClothRecording *
+record (const ClothSynthesisInput * input, const ClothModel * model,
+    const ClothSynthesisOptions * o, ClothObservedCounts * counts,
+    GError ** error)
+{
+  if (!input->observations || cloth_take_get_n_positions (input->take) ==
+      cloth_take_get_n_frames (input->take))
+    return cloth_recording_new (input->take, error);
+  return cloth_recording_new_observed (input->take, input->observations, model,
+      o->gain, &o->rollout, counts, error);
+}
+
+static gdouble
+root_of (const ClothWindowedGap * gap)
+{
+  return gap->sound ? sqrt (cloth_windowed_gap_square (gap, NULL)) : INFINITY;
+}
+
+/* RMS of what springs leave between the cloth and what was seen. */
+static gdouble
+find_drawn (const ClothWindowedGap * gap, const ClothRecording * r)
+{
+  gdouble sum = 0.;
+  gsize n = 0;
+
+  for (gsize i = r->n; i < (gsize) r->n * r->n_frames; i++) {
+    gdouble off[3];
+
+    if (r->seen[i] == 0.)
+      continue;
+    for (guint k = 0; k < 3; k++)
+      off[k] = gap->nudged[3 * i + k];
+    cloth_recording_cut_blind (r, i, off);
+    sum += off[0] * off[0] + off[1] * off[1] + off[2] * off[2];
+    n++;
+  }
+  return sqrt (sum / MAX (n, 1));
+}
+
+/* How far two models are off what was seen, and where the second one lets the cloth go. */
+static gboolean
+measure (ClothSynthesisTake * take, const ClothModel * before,
+    const ClothModel * after, const ClothSynthesisOptions * o, GError ** error)
+{
+  const ClothModel *models[2] = { before, after };
+  ClothSynthesisGap *gaps[2] = { &take->before, &take->after };
+  const ClothRecording *r = take->recording;
+  const gsize all = 3 * (gsize) r->n * r->n_frames;
+  ClothWindowedGap **windows = cloth_windowed_gaps_new (r, models, 2, o->gain,
+      o->window_s, &o->rollout, error);
+  ClothWindowedGap **runs = windows ? cloth_windowed_gaps_new_free (r, models,
+      2, o->gain, 0., o->window_s, &o->rollout, error) : NULL;
+
+  for (guint k = 0; runs && k < 2; k++) {
+    gaps[k]->windows = root_of (windows[k]);
+    gaps[k]->drawn = find_drawn (windows[k], r);
+    gaps[k]->free = root_of (runs[k]);
+  }
+  if (runs) {
+    take->let_go = g_memdup2 (windows[1]->positions, all * sizeof (gfloat));
+    take->positions = g_new (gfloat, all);
+  }
+  cloth_windowed_gaps_free (windows, 2);
+  cloth_windowed_gaps_free (runs, 2);
+  return runs != NULL;
+}
+
+typedef struct
+{
+  gfloat *x;
+  gsize row;
+} Drawn;
+
+static void
+keep_drawn (gpointer data, guint model, guint frame, const gdouble * positions)
+{
+  const Drawn *d = data;
+
+  for (gsize i = 0; i < d->row; i++)
+    d->x[frame * d->row + i] = (gfloat) positions[i];
+}
+
+/* Where the springs have the cloth, what nobody saw of it too. */
+static gboolean
+draw (ClothSynthesisTake * take, const ClothModel * model,
+    const ClothSynthesisOptions * o, GError ** error)
+{
+  const ClothRecording *r = take->recording;
+  Drawn drawn = { take->positions, 3 * (gsize) r->n };
+  gboolean sound;
+
+  if (!cloth_rollout_nudged (&r, &model, &o->gain, 1, &o->rollout, keep_drawn,
+          &drawn, &sound, error))
+    return FALSE;
+  if (sound)
+    return TRUE;
+  g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL, "%s: the fitted "
+      "cloth diverges; narrow the ranges of the model's free numbers", r->name);
+  return FALSE;
+}
+
+static void
+clear_number (gpointer item)
+{
+  g_free (((ClothSynthesisNumber *) item)->name);
+}
+
+static void
+list_numbers (ClothSynthesis * s, const ClothCandidates * candidates,
+    const ClothModel * before, const gdouble * sigmas)
+{
+  for (guint i = 0; i < candidates->n_free; i++) {
+    const ClothDirection *d = cloth_candidates_direction (candidates, i);
+    const gdouble place = cloth_candidates_place (candidates, s->model, i);
+    const gdouble slack = AT_END * (d->high - d->low);
+    ClothSynthesisNumber number = { g_strdup (d->name) };
+
+    cloth_model_get (before, d->name, &number.before, NULL);
+    cloth_model_get (s->model, d->name, &number.value, NULL);
+    number.sigma = d->logarithmic ? number.value * sigmas[i] : sigmas[i];
+    number.at_end = place - d->low < slack || d->high - place < slack;
+    g_array_append_val (s->numbers, number);
+  }
+}
+
+/* One fit of all recordings. Returns the model. */
+static ClothModel *
+fit (const ClothSynthesis * s, ClothCandidates * candidates,
+    const ClothModel * model, const ClothSynthesisOptions * o, gdouble * sigmas,
+    GError ** error)
+{
+  const guint m = candidates->n_free;
+  g_autoptr (GPtrArray) studies =
+      g_ptr_array_new_with_free_func ((GDestroyNotify)
+      cloth_sensitivities_free);
+  g_autofree guint *directions = g_new (guint, m);
+  g_autofree gdouble *precisions = g_new (gdouble, m);
+  ClothEstimateOptions options;
+
+  cloth_estimate_options_init (&options);
+  options.gain = o->gain;
+  options.rollout = o->rollout;
+  for (guint i = 0; i < m; i++) {
+    const gdouble prior = cloth_candidates_direction (candidates, i)->prior;
+
+    directions[i] = i;
+    precisions[i] = 1. / (prior * prior);
+  }
+  for (guint i = 0; i < s->n_takes; i++)
+    g_ptr_array_add (studies, cloth_sensitivities_new (s->takes[i].recording,
+            &options));
+  return cloth_gauss_newton_fit ((ClothSensitivities **) studies->pdata,
+      s->n_takes, candidates, model, directions, precisions, m, NULL,
+      CLOTH_FIT_DEFAULT, o->n_passes, &options, sigmas, error);
+}
+
+/* What was seen, of films without a mesh as the model at hand has it. */
+static gboolean
+look (ClothSynthesis * s, const ClothSynthesisInput * inputs,
+    const ClothModel * model, const ClothSynthesisOptions * o, GError ** error)
+{
+  for (guint i = 0; i < s->n_takes; i++) {
+    ClothSynthesisTake *take = &s->takes[i];
+
+    if (take->recording && !take->counts.places)
+      continue;
+    cloth_recording_free (take->recording);
+    take->recording = record (&inputs[i], model, o, &take->counts, error);
+    if (!take->recording)
+      return FALSE;
+  }
+  return TRUE;
+}
+
+/* @inputs: (array length=n_inputs): what was filmed, of one cloth
+ * @n_inputs: how many, at least 1
+ * @model: what is known of the cloth; its free numbers are fitted
+ * @options: how
+ * @error: #ClothFitError, #ClothSimError, or what reading a take says
+ *
+ * Returns: (transfer full) (nullable): the fitted cloth
+ */
+ClothSynthesis *
+cloth_synthesis_fit (const ClothSynthesisInput * inputs, guint n_inputs,
+    const ClothModel * model, const ClothSynthesisOptions * options,
+    GError ** error)
+{
+  static const gchar *const no_effects[] = { NULL };
+  g_autoptr (ClothSynthesis) s = g_new0 (ClothSynthesis, 1);
+  g_autoptr (ClothCandidates) candidates = NULL;
+  g_autofree gdouble *sigmas = NULL;
+  gboolean has_films = FALSE;
+
+  s->numbers = g_array_new (FALSE, FALSE, sizeof (ClothSynthesisNumber));
+  g_array_set_clear_func (s->numbers, clear_number);
+  s->takes = g_new0 (ClothSynthesisTake, n_inputs);
+  s->n_takes = n_inputs;
+  if (!look (s, inputs, model, options, error))
+    return NULL;
+  candidates = cloth_candidates_new (model, s->takes[0].recording, no_effects,
+      CLOTH_CANDIDATES_DEFAULT, NULL, NULL, error);
+  if (!candidates)
+    return NULL;
+  if (candidates->n_free == 0) {
+    g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL,
+        "the model has no free numbers; list what to fit under “free”, for "
+        "instance {\"name\": \"stretch.warp\", \"range\": [10, 1000]}");
+    return NULL;
+  }
+  sigmas = g_new0 (gdouble, candidates->n_free);
+  for (guint i = 0; i < n_inputs; i++)
+    has_films |= s->takes[i].counts.places > 0;
+  s->model = cloth_model_copy (model);
+  for (guint turn = 0; turn < (has_films ? MAX (options->turns, 1) : 1); turn++) {
+    ClothModel *fitted;
+
+    if (turn && !look (s, inputs, s->model, options, error))
+      return NULL;
+    fitted = fit (s, candidates, s->model, options, sigmas, error);
+    if (!fitted)
+      return NULL;
+    cloth_model_free (s->model);
+    s->model = fitted;
+  }
+  list_numbers (s, candidates, model, sigmas);
+  for (guint i = 0; i < n_inputs; i++)
+    if (!measure (&s->takes[i], model, s->model, options, error)
+        || !draw (&s->takes[i], s->model, options, error))
+      return NULL;
+  return g_steal_pointer (&s);
+}
+
+/* @take: a fitted take
+ * @positions: (array): where its cloth is, [n_frames][n][3], m
+ * @observations: what cameras saw of it
+ * @errors: (out) (array): RMS distance of what a camera saw in a frame to where it would see that,
+ *   px, [n_cameras][n_frames]; NaN where it saw nothing
+ *
+ * How far the cloth is off in each picture.
+ */
+void
+cloth_synthesis_reproject (const ClothSynthesisTake * take,
+    const gfloat * positions, const ClothObservations * observations,
+    gdouble * errors)
+{
+  const ClothRecording *r = take->recording;
+  const gdouble frame_s = (r->times[r->n_frames - 1] - r->times[0]) /
+      (r->n_frames - 1);
+  g_autoptr (ClothViews) views = cloth_views_new (observations, frame_s);
+  const ClothRig *rig = observations->rig;
+
+  for (guint c = 0; c < rig->n_cameras; c++)
+    for (guint f = 0; f < r->n_frames; f++) {
+      gdouble sum = 0.;
+      guint n = 0;
+
+      cloth_views_find (views, c, r->times[f] + rig->cameras[c].offset_s);
+      for (guint v = 0; v < r->n; v++) {
+        const gfloat *p = positions + 3 * ((gsize) f * r->n + v);
+        const gdouble X[3] = { p[0], p[1], p[2] };
+        const gdouble x = views->views[c].x[v], y = views->views[c].y[v];
+        gdouble px[2];
+
+        if (!isfinite (x + y)
+            || !cloth_camera_project (&rig->cameras[c], X, px, NULL, NULL))
+          continue;
+        sum += (px[0] - x) * (px[0] - x) + (px[1] - y) * (px[1] - y);
+        n++;
+      }
+      errors[(gsize) c * r->n_frames + f] = n ? sqrt (sum / n) : NAN;
+    }
+}
+
+/* @synthesis: (nullable) (transfer full): a fitted cloth
+ */
+void
+cloth_synthesis_free (ClothSynthesis * synthesis)
+{
+  if (!synthesis)
+    return;
+  cloth_model_free (synthesis->model);
+  g_array_unref (synthesis->numbers);
+  for (guint i = 0; i < synthesis->n_takes; i++) {
+    cloth_recording_free (synthesis->takes[i].recording);
+    g_free (synthesis->takes[i].positions);
+    g_free (synthesis->takes[i].let_go);
+  }
+  g_free (synthesis->takes);
+  g_free (synthesis);
+}

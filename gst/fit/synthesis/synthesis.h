@@ -1,0 +1,90 @@
+/* Analysis by synthesis: a simulated cloth fitted to what cameras saw.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include "gst/fit/estimate/estimate.h"
+#include "gst/fit/nudge/nudge.h"
+
+G_BEGIN_DECLS
+
+/* @gain: of the springs that draw the cloth while it is fitted, 1/s² (1600)
+ * @window_s: length of the windows in which it is let go to be measured, s (0.3)
+ * @n_passes: most linearisations of a fit (8)
+ * @turns: how often films without a mesh are looked at anew with the fitted numbers (2)
+ * @rollout: how to simulate
+ */
+typedef struct {
+  gdouble gain;
+  gdouble window_s;
+  guint n_passes;
+  guint turns;
+  ClothRolloutOptions rollout;
+} ClothSynthesisOptions;
+
+/* @take: mesh, clamps and times
+ * @observations: (nullable): what cameras saw of it; %NULL: it has positions
+ */
+typedef struct {
+  ClothTake *take;
+  const ClothObservations *observations;
+} ClothSynthesisInput;
+
+/* @name: of the model's number
+ * @before: where it started
+ * @value: where it is
+ * @sigma: its standard deviation, in its unit
+ * @at_end: it came to an end of its range, where the cloth may be beyond
+ */
+typedef struct {
+  gchar *name;
+  gdouble before, value, sigma;
+  gboolean at_end;
+} ClothSynthesisNumber;
+
+/* @drawn: distance of what was seen to the cloth that the springs draw to it, RMS, m
+ * @windows: to the cloth let go in windows, drawn by nothing
+ * @free: to the cloth let go from the start
+ */
+typedef struct {
+  gdouble drawn, windows, free;
+} ClothSynthesisGap;
+
+/* @recording: what was seen
+ * @counts: how, of a film without a mesh
+ * @before: with the model as it was
+ * @after: with the fitted one
+ * @positions: (array): the fitted cloth, drawn to what was seen, [n_frames][n][3], m
+ * @let_go: (array): the same let go in windows
+ */
+typedef struct {
+  ClothRecording *recording;
+  ClothObservedCounts counts;
+  ClothSynthesisGap before, after;
+  gfloat *positions;
+  gfloat *let_go;
+} ClothSynthesisTake;
+
+/* @model: with the fitted numbers
+ * @numbers: (element-type ClothSynthesisNumber): they
+ * @takes: (array length=n_takes): of each input
+ * @n_takes: how many
+ */
+typedef struct {
+  ClothModel *model;
+  GArray *numbers;
+  ClothSynthesisTake *takes;
+  guint n_takes;
+} ClothSynthesis;
+
+void cloth_synthesis_options_init (ClothSynthesisOptions * options);
+ClothSynthesis *cloth_synthesis_fit (const ClothSynthesisInput * inputs,
+    guint n_inputs, const ClothModel * model,
+    const ClothSynthesisOptions * options, GError ** error);
+void cloth_synthesis_reproject (const ClothSynthesisTake * take,
+    const gfloat * positions, const ClothObservations * observations,
+    gdouble * errors);
+void cloth_synthesis_free (ClothSynthesis * synthesis);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothSynthesis, cloth_synthesis_free)
+G_END_DECLS
