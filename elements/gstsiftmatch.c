@@ -39,6 +39,7 @@
 #include "elements/gstclothproperties.h"
 #include "gst/pattern/picture.h"
 #include "gst/vision/match/match.h"
+#include "gst/vision/track/follow.h"
 
 GST_DEBUG_CATEGORY_STATIC (sift_match_debug);
 #define GST_CAT_DEFAULT sift_match_debug
@@ -65,6 +66,8 @@ typedef struct
   ClothGrowParams grow;
   ClothVerifyParams verify;
   ClothGridParams grid;
+  gboolean follow;
+  ClothFollowParams following;
 } Settings;
 
 struct _GstSiftMatch
@@ -82,6 +85,7 @@ struct _GstSiftMatch
   ClothGrower *grower;
   ClothVerifier *verifier;
   ClothGridder *gridder;
+  ClothFollower *follower;
   ClothSteady *steady;          /* NULL: nothing is averaged */
   guint steady_most;
   GByteArray *mask;
@@ -224,6 +228,25 @@ static const GstClothProperty properties[] = {
   {"grid-uncertain", "Uncertain",
     "Matches that leave a vertex a greater standard deviation don't tell it, px",
     G_TYPE_DOUBLE, SETTING (grid.uncertain), ANY_TIME, 0, 1000},
+  {"follow", "Follow",
+        "Carry vertices that the print doesn't tell any more from picture to picture by "
+        "optical flow",
+    G_TYPE_BOOLEAN, SETTING (follow), ANY_TIME},
+  {"follow-window", "Window of the flow", "Side of the window that is followed, px",
+    G_TYPE_INT, SETTING (following.window), ANY_TIME, 3, 255},
+  {"follow-levels", "Levels of the flow", "How often pictures are halved for it",
+    G_TYPE_INT, SETTING (following.levels), ANY_TIME, 0, 10},
+  {"follow-back", "Way back",
+        "A vertex that the flow does not lead back to where it was, so near, is lost, px",
+    G_TYPE_DOUBLE, SETTING (following.back), ANY_TIME, 0.01, 100},
+  {"follow-crowding", "Crowding",
+        "One that comes nearer to a neighbour than this share of the usual is at a fold's "
+        "crest, and is lost",
+    G_TYPE_DOUBLE, SETTING (following.crowding), ANY_TIME, 0, 1},
+  {"follow-drift", "Drift", "Standard deviation that each picture adds to a followed place, px",
+    G_TYPE_DOUBLE, SETTING (following.drift), ANY_TIME, 0, 10},
+  {"follow-uncertain", "Uncertain", "A followed place of a greater standard deviation is lost, px",
+    G_TYPE_DOUBLE, SETTING (following.uncertain), ANY_TIME, 0, 1000},
 };
 /* *INDENT-ON* */
 
@@ -238,6 +261,7 @@ gst_sift_match_stop (GstClothFilter * filter)
 
   g_clear_pointer (&self->steady, cloth_steady_free);
   g_clear_pointer (&self->gridder, cloth_gridder_free);
+  g_clear_pointer (&self->follower, cloth_follower_free);
   g_clear_pointer (&self->verifier, cloth_verifier_free);
   g_clear_pointer (&self->grower, cloth_grower_free);
   g_clear_pointer (&self->sift, cloth_cv_sift_free);
@@ -366,6 +390,8 @@ gst_sift_match_start (GstClothFilter * filter)
   }
   cloth_cv_sift_keep (self->sift, GST_CLOTH_MAX_FEATURES);
   self->grower = cloth_grower_new ();
+  self->follower = cloth_follower_new ((guint) self->pattern->columns,
+      (guint) self->pattern->rows);
   self->verifier = cloth_verifier_new ();
   g_array_set_size (self->vertices,
       (guint) (self->pattern->columns * self->pattern->rows));
@@ -386,6 +412,8 @@ gst_sift_match_reset (GstClothFilter * filter)
 
   if (self->steady)
     cloth_steady_reset (self->steady);
+  if (self->follower)
+    cloth_follower_reset (self->follower);
 }
 
 /* ---- what is looked at ---- */
@@ -555,6 +583,24 @@ gst_sift_match_average (GstSiftMatch * self, guint most)
     cloth_steady_run (self->steady, (ClothGridVertex *) self->vertices->data);
 }
 
+/* Adds vertices that the print doesn't tell any more. */
+static gboolean
+gst_sift_match_follow (GstSiftMatch * self, const ClothFollowParams * params,
+    const ClothImage * luma)
+{
+  g_autoptr (GError) error = NULL;
+  guint n;
+
+  if (cloth_follower_run (self->follower, params, luma,
+          (ClothGridVertex *) self->vertices->data, &n, &error)) {
+    GST_LOG_OBJECT (self, "%u vertices followed", n);
+    return TRUE;
+  }
+  GST_ELEMENT_ERROR (self, STREAM, FAILED,
+      ("Vertices can't be followed: %s", error->message), (NULL));
+  return FALSE;
+}
+
 /* Whether the pictures since the last judgement show the print; one warning when none has. */
 static void
 gst_sift_match_judge_pictures (GstSiftMatch * self)
@@ -672,6 +718,8 @@ gst_sift_match_analyse (GstClothFilter * filter,
   ClothGridding gridding;
   ClothMatch *matches;
   ClothGridMatch *grid_matches;
+  ClothFollowParams following;
+  gboolean follow;
   guint steady, n;
 
   GST_OBJECT_LOCK (self);
@@ -679,6 +727,8 @@ gst_sift_match_analyse (GstClothFilter * filter,
   verify = self->settings.verify;
   grid = self->settings.grid;
   steady = self->settings.steady;
+  follow = self->settings.follow;
+  following = self->settings.following;
   GST_OBJECT_UNLOCK (self);
   verify.stretch.depth_step = grow.stretch.depth_step;
   verify.stretch.hidden = grow.stretch.hidden;
@@ -708,6 +758,8 @@ gst_sift_match_analyse (GstClothFilter * filter,
       mask ? &where : NULL, surface, (ClothGridVertex *) self->vertices->data,
       &gridding, self->pool, CLOTH_SIMD_BEST);
   gst_sift_match_average (self, steady);
+  if (follow && !gst_sift_match_follow (self, &following, &frame->luma))
+    return GST_FLOW_ERROR;
 
   gst_sift_match_collect (self, &features);
   gst_buffer_add_cloth_matches_meta (frame->buffer,
@@ -750,7 +802,8 @@ default_settings (void)
     .reference = cloth_reference_default_params (),
     .grow = cloth_grow_default_params (),
     .verify = cloth_verify_default_params (),
-    .grid = cloth_grid_default_params ()
+    .grid = cloth_grid_default_params (),
+    .following = cloth_follow_default_params ()
   };
 
   return defaults;

@@ -203,6 +203,7 @@ write_numbers (const ClothSynthesis * s, const Inputs * inputs,
 
     cloth_json_writer_begin_object (w, NULL);
     cloth_json_writer_string (w, "name", t->recording->name);
+    cloth_json_writer_number (w, "gain", t->gain);
     add_gap (w, "before", &t->before);
     add_gap (w, "after", &t->after);
     if (input->observations)
@@ -270,10 +271,12 @@ show (const Arguments * a, const ClothSynthesis * s)
     if (t->counts.places)
       g_print ("  %.0f%% of its places are where rays meet, %.0f%% on one "
           "camera's ray, along which %.0f%% of their motion is the model's "
-          "own; of %.1f%% the cameras contradict each other\n",
+          "own; of %.1f%% the cameras contradict each other, %.1f%% are where no "
+          "cloth can be\n",
           100. * t->counts.triangulated / t->counts.places,
           100. * t->counts.single / t->counts.places, 100. * t->counts.along,
-          100. * t->counts.contradicted / t->counts.places);
+          100. * t->counts.contradicted / t->counts.places,
+          100. * t->counts.torn / t->counts.places);
   }
   g_print ("drawn: with springs to what was seen, which always lower it; "
       "windows: let go for 0.3 s; free: from the start\n%s/fit.html\n",

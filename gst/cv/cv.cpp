@@ -7,8 +7,10 @@
 #include <opencv2/core.hpp>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp>
 
 #include <algorithm>
+#include <cstring>
 #include <exception>
 #include <memory>
 #include <new>
@@ -499,5 +501,58 @@ cloth_cv_squeeze (const ClothCvPicture * from, gint width, gint height,
         cv::Mat made = as_mat (to, width, height, to_stride);
 
         cv::resize (view (from), made, made.size (), 0, 0, cv::INTER_AREA);
+      });
+}
+
+/* @from: a picture
+ * @to: the next one, of the same size
+ * @params: how
+ * @n: number of points
+ * @points: (array): x, y of each in @from, px, centre of the top-left pixel at 0
+ * @moved: (out) (array): where each is in @to
+ * @found: (out) (array): whether it was found
+ * @error: #ClothCvError
+ *
+ * Pyramidal flow of Lucas and Kanade (Bouguet 2001).
+ *
+ * Returns: %FALSE when the pictures or parameters can't be
+ */
+gboolean
+cloth_cv_flow (const ClothCvPicture * from, const ClothCvPicture * to,
+    const ClothCvFlowParams * params, guint n, const gfloat * points,
+    gfloat * moved, guint8 * found, GError ** error)
+{
+  if (!check_picture (from->data, from->width, from->height, from->stride,
+          error)
+      || !check_picture (to->data, to->width, to->height, to->stride, error))
+    return FALSE;
+  if (from->width != to->width || from->height != to->height) {
+    g_set_error (error, CLOTH_CV_ERROR, CLOTH_CV_ERROR_PICTURE,
+        "pictures of %d × %d and %d × %d pixels are not of one film",
+        from->width, from->height, to->width, to->height);
+    return FALSE;
+  }
+  if (params->window < 3 || params->window > 255 || params->levels < 0
+      || params->levels > 10) {
+    g_set_error (error, CLOTH_CV_ERROR, CLOTH_CV_ERROR_PARAMETER,
+        "a window of %d px and %d levels: 3 to 255 and 0 to 10 are possible",
+        params->window, params->levels);
+    return FALSE;
+  }
+  if (n == 0)
+    return TRUE;
+  return guard (error, [&]() {
+        cv::Mat a (from->height, from->width, CV_8UC1,
+            const_cast < guint8 * >(from->data), from->stride);
+        cv::Mat b (to->height, to->width, CV_8UC1,
+            const_cast < guint8 * >(to->data), to->stride);
+        cv::Mat begin (static_cast < int >(n), 1, CV_32FC2,
+            const_cast < gfloat * >(points));
+        cv::Mat end, status, unused;
+
+        cv::calcOpticalFlowPyrLK (a, b, begin, end, status, unused,
+            cv::Size (params->window, params->window), params->levels);
+        memcpy (moved, end.ptr < gfloat > (), 2 * n * sizeof *moved);
+        memcpy (found, status.ptr (), n);
       });
 }

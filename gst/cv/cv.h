@@ -131,4 +131,17 @@ gboolean cloth_cv_squeeze (const ClothCvPicture * from, gint width,
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothCvSift, cloth_cv_sift_free)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothCvStereo, cloth_cv_stereo_free)
+/* ---- optical flow ---- */
+
+/* @window: side of the window that is looked at about each point, px, 3 to 255
+ * @levels: halvings of the picture beyond the first level, 0 to 10
+ */
+typedef struct {
+  gint window, levels;
+} ClothCvFlowParams;
+
+gboolean cloth_cv_flow (const ClothCvPicture * from, const ClothCvPicture * to,
+    const ClothCvFlowParams * params, guint n, const gfloat * points,
+    gfloat * moved, guint8 * found, GError ** error);
+
 G_END_DECLS

@@ -29,6 +29,9 @@ note_observed (ClothDiagnosis * d, const gchar * name,
   if (c->contradicted)
     g_string_append_printf (note, ", and of %.1f%% the cameras contradict each "
         "other", 100. * c->contradicted / c->places);
+  if (c->torn)
+    g_string_append_printf (note, "; %.1f%% are where no cloth can be, and "
+        "count as not seen", 100. * c->torn / c->places);
   g_string_append_c (note, '.');
   cloth_gap_result_add_note (d->result, note->str);
 }

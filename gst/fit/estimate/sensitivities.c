@@ -277,6 +277,17 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
         b->z[model]);
 }
 
+/* Of models let go in windows; those nudged beside them only lead up to these. */
+static void
+collect_windows (gpointer data, guint model, guint frame,
+    const gdouble * positions)
+{
+  const Batch *b = data;
+
+  if (model < b->n)
+    collect (data, model, frame, positions);
+}
+
 static void
 collect_paths (const Batch * b)
 {
@@ -321,7 +332,12 @@ cloth_sensitivities_run (const ClothSensitivities * sensitivities,
   for (guint i = 0; i < n; i++)
     gains[i] = options->gain;
   options->simulations += n;
-  if (!cloth_rollout_nudged (b.targets, (const ClothModel * const *) models,
+  if (options->window_s > 0. ?
+      !cloth_rollout_windows (sensitivities->recording,
+          (const ClothModel * const *) models, n, options->gain,
+          options->window_s, &options->rollout, collect_windows, &b, sound,
+          error) :
+      !cloth_rollout_nudged (b.targets, (const ClothModel * const *) models,
           gains, n, &options->rollout, collect, &b, sound, error))
     return FALSE;
   collect_paths (&b);

@@ -11,6 +11,8 @@ G_BEGIN_DECLS
 
 /* @gain: of the observer, 1/s². Of 100, 400, 1600 and 6400 /s² on cloth of 33 × 35 vertices
  *   weak ones drown in run-to-run variability, strong ones in noise
+ * @window_s: 0: the residual is that of a simulation that is nudged all along; else of one that is
+ *   let go in windows of this length, s, for which nothing may be wrong with the recording
  * @n_waves: waves along u and v
  * @block_s: length of blocks of time, s
  * @highest_hz: of the features
@@ -20,6 +22,7 @@ G_BEGIN_DECLS
  */
 typedef struct {
   gdouble gain;
+  gdouble window_s;
   guint n_waves;
   gdouble block_s;
   gdouble highest_hz;

@@ -263,10 +263,14 @@ guess (Maker * m, gboolean has_start, GError ** error)
   return TRUE;
 }
 
+/* Without places that no cloth can be at. */
 static void
-finish (ClothRecording * r)
+finish (Maker * m)
 {
+  ClothRecording *r = m->r;
+
   r->sigma = cloth_recording_noise_finish (r->noise, r->seen);
+  m->counts->torn = cloth_recording_remove_torn (r);
   cloth_recording_interpolate (r);
   cloth_recording_differentiate (r);
 }
@@ -311,7 +315,7 @@ turn (Maker * m, const ClothModel * model, gdouble gain,
     sum += put_on_ray (m->r, lone, s->x + lone->frame * s->row +
         3 * (gsize) lone->vertex);
   }
-  finish (m->r);
+  finish (m);
   return sqrt (sum / MAX (m->lone->len, 1));
 }
 
@@ -392,7 +396,7 @@ cloth_recording_new_observed (ClothTake * take,
       || !find_floor (&m, error) || !find_places (&m, error)
       || !guess (&m, cloth_take_get_n_positions (take) > 0, error))
     return NULL;
-  finish (r);
+  finish (&m);
   if (!cloth_recording_check (r, TRUE, error))
     return NULL;
   x = g_new (gdouble, 3 * (gsize) r->n * r->n_frames);

@@ -13,6 +13,7 @@ G_BEGIN_DECLS
  * @single: those of which only the place across one camera's ray is known: others did not see
  *   them, or along nearly the same line
  * @contradicted: those that the cameras contradict each other about; they count as not seen
+ * @torn: those that no cloth can be at, with the others where they are; they count as not seen
  * @along: of the motion of the single ones the share, of its mean square, that lies along their
  *   rays and is the model's own
  * @error_floor: variance that was added to each observation, px², as the cameras agree
@@ -22,6 +23,7 @@ typedef struct {
   gsize triangulated;
   gsize single;
   gsize contradicted;
+  gsize torn;
   gdouble along;
   gdouble error_floor;
 } ClothObservedCounts;

@@ -176,7 +176,7 @@ set_targets (Run * run, Batch * batch)
     gdouble *weights = run->weights + (gsize) batch->of[i] * r->n;
     const gdouble *matrices = r->noise ?
         r->noise->draw + 2 * run->frame * run->row : NULL;
-    const gdouble *y = r->y + run->frame * run->row;
+    const gdouble *y = (r->targets ? r->targets : r->y) + run->frame * run->row;
     const gdouble *velocity = r->velocity + run->frame * run->row;
 
     find_weights (r, run->frame, weights);

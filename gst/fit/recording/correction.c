@@ -159,6 +159,7 @@ copy (const ClothRecording * r)
   c->velocity = g_memdup2 (r->velocity, 3 * all * sizeof *r->velocity);
   c->seen = g_memdup2 (r->seen, all * sizeof *r->seen);
   c->noise = cloth_recording_noise_ref (r->noise);
+  c->targets = NULL;
   return c;
 }
 

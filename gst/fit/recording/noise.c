@@ -2,9 +2,9 @@
  *
  * Model: a place is recorded with an error N (0, Λ⁻¹), Λ = Σ of what each camera adds to the
  *   inverse covariance; along a direction that no camera tells of Λ is 0.
- * Formula: Λ = Σ λ_k e_k e_kᵀ. White: Λ^½ (x − y), which is N (0, I) on what is known. Of the
- *   observer's gain a direction gets min (1, λ σ²), σ the recording's: what is seen less well
- *   than usual draws less.
+ * Formula: Λ = Σ λ_k e_k e_kᵀ. White: Λ^½ (x − y), which is N (0, I) on what is known. The
+ *   observer draws along all that is known, W = I − d dᵀ on a ray d, else I: weaker springs along what is
+ *   known less well let the cloth be chaotic there, and effects are named worse.
  * Reference: Strang, Introduction to Applied Mathematics, 1986, section 2.5 (weighted least
  *   squares).
  *
@@ -182,7 +182,7 @@ cloth_recording_noise_finish (ClothRecordingNoise * noise, const gdouble * seen)
       continue;
     take_apart (noise, at, roots, vectors);
     for (guint k = 0; k < 3; k++)
-      shares[k] = fmin (1., roots[k] * roots[k] * sigma * sigma);
+      shares[k] = roots[k] > 0. ? 1. : 0.;
     compose (shares, vectors, noise->draw + 6 * at);
   }
   return sigma;

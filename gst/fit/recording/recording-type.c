@@ -15,6 +15,7 @@ cloth_recording_free (ClothRecording * recording)
   g_free (recording->times);
   g_free (recording->y);
   g_free (recording->velocity);
+  g_free (recording->targets);
   g_free (recording->seen);
   cloth_recording_noise_unref (recording->noise);
   g_free (recording);

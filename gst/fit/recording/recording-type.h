@@ -10,7 +10,7 @@ G_BEGIN_DECLS
 
 /* @n: number of places, vertices of all frames
  * @white: root of the inverse covariance of each, xx, yy, zz, yz, xz, xy, 1/m
- * @draw: share of the observer's gain that it gets, likewise, no eigenvalue above 1
+ * @draw: along which directions the observer draws it, likewise: a projector
  * @blind: unit vector along which nothing is known of it; 0 where all directions are known
  * @square: mean square of the error, m²
  *
@@ -34,6 +34,7 @@ typedef struct {
  * @noise: (nullable): when it differs from place to place
  * @y: positions, [n_frames][n][3], m; bridged where nothing was seen
  * @velocity: their derivative, m/s
+ * @targets: (nullable): what draws a simulation in place of @y, on straight lines from frame to frame
  * @seen: 1 where a vertex was seen, else 0, [n_frames][n]
  */
 typedef struct {
@@ -46,6 +47,7 @@ typedef struct {
   ClothRecordingNoise *noise;
   gdouble *y;
   gdouble *velocity;
+  gdouble *targets;
   gdouble *seen;
 } ClothRecording;
 

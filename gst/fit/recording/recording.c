@@ -92,11 +92,19 @@ read_seen (ClothRecording * r, guint frame, gdouble * row)
     row[i] = seen[i / 3] > 0. ? y[i] : NAN;
 }
 
-/* What no cloth can be at was not seen there. Where there is more noise than was told, noise
- * is no tear: it is estimated when there seem to be any. */
-static void
-remove_torn (ClothRecording * r)
+/* @recording: a recording
+ *
+ * What no cloth can be at was not seen there. Where there is more noise than was told, noise
+ * is no tear: it is estimated when there seem to be any.
+ *
+ * Returns: how many places that were
+ */
+gsize
+cloth_recording_remove_torn (ClothRecording * recording)
 {
+  ClothRecording *r = recording;
+  gsize n = 0;
+
   g_autoptr (ClothOutliers) outliers = cloth_outliers_new (r->scene->topology);
   g_autofree gdouble *row = g_new (gdouble, 3 * (gsize) r->n);
   gdouble sigma = r->sigma > 0. ? r->sigma : 0.;
@@ -112,9 +120,14 @@ remove_torn (ClothRecording * r)
       read_seen (r, frame, row);
       cloth_outliers_remove (outliers, FAR_APART * sigma, row);
     }
-    for (guint v = 0; v < r->n; v++)
-      r->seen[(gsize) frame * r->n + v] = isnan (row[3 * (gsize) v]) ? 0. : 1.;
+    for (guint v = 0; v < r->n; v++) {
+      const gsize at = (gsize) frame * r->n + v;
+
+      n += r->seen[at] > 0. && isnan (row[3 * (gsize) v]);
+      r->seen[at] = isnan (row[3 * (gsize) v]) ? 0. : 1.;
+    }
   }
+  return n;
 }
 
 /* @take: a take
@@ -156,7 +169,7 @@ cloth_recording_new (ClothTake * take, GError ** error)
     r->sigma = cloth_recording_estimate_sigma (r);
   if (!cloth_recording_check (r, told, error))
     return NULL;
-  remove_torn (r);
+  cloth_recording_remove_torn (r);
   cloth_recording_interpolate (r);
   cloth_recording_differentiate (r);
   return g_steal_pointer (&r);

@@ -21,6 +21,7 @@
 G_BEGIN_DECLS
 
 ClothRecording *cloth_recording_new (ClothTake * take, GError ** error);
+gsize cloth_recording_remove_torn (ClothRecording * recording);
 ClothRecording *cloth_recording_resample (const ClothRecording * recording,
     guint most);
 

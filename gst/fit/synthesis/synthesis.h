@@ -54,13 +54,15 @@ typedef struct {
  * @counts: how, of a film without a mesh
  * @before: with the model as it was
  * @after: with the fitted one
- * @positions: (array): the fitted cloth, drawn to what was seen, [n_frames][n][3], m
+ * @gain: of the springs that foretell what they are not shown best, 1/s²
+ * @positions: (array): the fitted cloth, drawn to what was seen by these, [n_frames][n][3], m
  * @let_go: (array): the same let go in windows
  */
 typedef struct {
   ClothRecording *recording;
   ClothObservedCounts counts;
   ClothSynthesisGap before, after;
+  gdouble gain;
   gfloat *positions;
   gfloat *let_go;
 } ClothSynthesisTake;

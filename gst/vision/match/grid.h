@@ -69,11 +69,13 @@ typedef struct {
 /* @CLOTH_GRID_UNSEEN: the picture doesn't show it, or not clearly
  * @CLOTH_GRID_MATCHED: placed by the matches around it
  * @CLOTH_GRID_ALIGNED: placed by the print around it
+ * @CLOTH_GRID_FOLLOWED: placed by the flow from the picture before
  */
 typedef enum {
   CLOTH_GRID_UNSEEN,
   CLOTH_GRID_MATCHED,
-  CLOTH_GRID_ALIGNED
+  CLOTH_GRID_ALIGNED,
+  CLOTH_GRID_FOLLOWED
 } ClothGridState;
 
 /* @state: how it was found
