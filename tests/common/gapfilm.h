@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include "gst/fit/recording/observations.h"
+#include "gst/fit/recording/recording.h"
 #include "gst/take/take.h"
 
 G_BEGIN_DECLS

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "gst/fit/nudge/rollout.h"
-#include "gst/fit/recording/observations.h"
+#include "gst/fit/recording/recording.h"
 
 G_BEGIN_DECLS
 

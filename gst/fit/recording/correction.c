@@ -20,7 +20,6 @@
 
 #include "gst/fit/error.h"
 #include "gst/fit/recording/interpolation.h"
-#include "gst/fit/recording/noise.h"
 #include "gst/fit/recording/signal.h"
 
 #define N_NODES 7

@@ -22,51 +22,6 @@
  * rounding. */
 #define NOTHING 1e-9
 
-/* @n: number of places: vertices of all frames
- *
- * Returns: (transfer full): noise of places of which nothing is known
- */
-ClothRecordingNoise *
-cloth_recording_noise_new (gsize n)
-{
-  ClothRecordingNoise *noise = g_atomic_rc_box_new0 (ClothRecordingNoise);
-
-  noise->n = n;
-  noise->white = g_new0 (gdouble, 6 * n);
-  noise->draw = g_new0 (gdouble, 6 * n);
-  noise->blind = g_new0 (gfloat, 3 * n);
-  return noise;
-}
-
-/* @noise: (nullable): noise
- *
- * Returns: (transfer full) (nullable): the same
- */
-ClothRecordingNoise *
-cloth_recording_noise_ref (ClothRecordingNoise * noise)
-{
-  return noise ? g_atomic_rc_box_acquire (noise) : NULL;
-}
-
-static void
-clear (gpointer data)
-{
-  ClothRecordingNoise *noise = data;
-
-  g_free (noise->white);
-  g_free (noise->draw);
-  g_free (noise->blind);
-}
-
-/* @noise: (nullable) (transfer full): noise
- */
-void
-cloth_recording_noise_unref (ClothRecordingNoise * noise)
-{
-  if (noise)
-    g_atomic_rc_box_release_full (noise, clear);
-}
-
 static void
 unpack (const gdouble s[6], gdouble m[9])
 {

@@ -7,9 +7,6 @@
 
 G_BEGIN_DECLS
 
-ClothRecordingNoise *cloth_recording_noise_new (gsize n);
-ClothRecordingNoise *cloth_recording_noise_ref (ClothRecordingNoise * noise);
-void cloth_recording_noise_unref (ClothRecordingNoise * noise);
 gboolean cloth_recording_noise_set (ClothRecordingNoise * noise, gsize at,
     const gdouble information[6]);
 gdouble cloth_recording_noise_finish (ClothRecordingNoise * noise,

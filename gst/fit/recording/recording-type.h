@@ -51,6 +51,9 @@ typedef struct {
   gdouble *seen;
 } ClothRecording;
 
+ClothRecordingNoise *cloth_recording_noise_new (gsize n);
+ClothRecordingNoise *cloth_recording_noise_ref (ClothRecordingNoise * noise);
+void cloth_recording_noise_unref (ClothRecordingNoise * noise);
 void cloth_recording_free (ClothRecording * recording);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothRecording, cloth_recording_free)

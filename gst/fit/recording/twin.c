@@ -18,7 +18,6 @@
 #include "gst/fit/error.h"
 #include "gst/fit/recording/flat-map.h"
 #include "gst/fit/recording/interpolation.h"
-#include "gst/fit/recording/noise.h"
 #include "gst/fit/recording/plausibility.h"
 #include "gst/fit/recording/signal.h"
 #include "gst/math/statistics.h"

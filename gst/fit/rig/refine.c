@@ -17,7 +17,6 @@
 #include <string.h>
 
 #include "gst/fit/error.h"
-#include "gst/fit/recording/views.h"
 #include "gst/math/linalg.h"
 #include "gst/math/statistics.h"
 #include "gst/math/vec3.h"

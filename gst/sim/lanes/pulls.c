@@ -1,7 +1,7 @@
 /* The forces of pulls at points of the cloth, and their part of an implicit step.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/lanes/stiffness.h"
+#include "gst/sim/lanes/state.h"
 
 /* Where the point is among its @n corners, of a vector of each. */
 CLOTH_LANE_INLINE void
@@ -144,13 +144,13 @@ CLOTH_LANE_NAME (cloth_lane_pulls_update) (const ClothLaneState * state,
   }
 }
 
-/* Adds their part of the matrix times d to q. */
+/* Adds their part of the matrix of a step, of length h and h² = @h2, times d to q. */
 void
 CLOTH_LANE_NAME (cloth_lane_pulls_apply) (const ClothLaneState * state,
-    const ClothLaneStiffness * matrix, const ClothLane3 * d, ClothLane3 * q)
+    ClothLane h, ClothLane h2, const ClothLane3 * d, ClothLane3 * q)
 {
   const ClothLanePulls * pulls = &state->pulls;
-  ClothLane scale = matrix->h2 * pulls->gain + matrix->h * pulls->damping;
+  ClothLane scale = h2 * pulls->gain + h * pulls->damping;
 
   for (guint i = 0; i < pulls->n; i++) {
     const ClothLanePull *pull = &pulls->list[i];
@@ -167,10 +167,10 @@ CLOTH_LANE_NAME (cloth_lane_pulls_apply) (const ClothLaneState * state,
 /* Adds it to the blocks of the particles: xx, yy, zz, yz, xz, xy. */
 void
 CLOTH_LANE_NAME (cloth_lane_pulls_diagonal) (const ClothLaneState * state,
-    const ClothLaneStiffness * matrix, ClothLane (*block)[6])
+    ClothLane h, ClothLane h2, ClothLane (*block)[6])
 {
   const ClothLanePulls * pulls = &state->pulls;
-  ClothLane scale = matrix->h2 * pulls->gain + matrix->h * pulls->damping;
+  ClothLane scale = h2 * pulls->gain + h * pulls->damping;
 
   for (guint i = 0; i < pulls->n; i++) {
     const ClothLanePull *pull = &pulls->list[i];

@@ -256,6 +256,12 @@ void CLOTH_LANE_NAME (cloth_lane_pulls) (const ClothLaneState * state,
     gdouble time_s, ClothLane3 * f);
 ClothLane CLOTH_LANE_NAME (cloth_lane_pulls_bound) (const ClothLaneState *
     state, ClothLane * rows);
+void CLOTH_LANE_NAME (cloth_lane_pulls_update) (const ClothLaneState * state,
+    gdouble time_s);
+void CLOTH_LANE_NAME (cloth_lane_pulls_apply) (const ClothLaneState * state,
+    ClothLane h, ClothLane h2, const ClothLane3 * d, ClothLane3 * q);
+void CLOTH_LANE_NAME (cloth_lane_pulls_diagonal) (const ClothLaneState * state,
+    ClothLane h, ClothLane h2, ClothLane (*block)[6]);
 void CLOTH_LANE_NAME (cloth_lane_clamps) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_clamps_reset) (ClothLaneState * state);
 gboolean CLOTH_LANE_NAME (cloth_lane_clamp_grips) (ClothLaneState * state,

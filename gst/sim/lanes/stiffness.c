@@ -227,7 +227,7 @@ CLOTH_LANE_NAME (cloth_lane_stiffness_apply) (const ClothLaneState * state,
   }
   CLOTH_LANE_NAME (cloth_lane_bends) (state, scale * state->bending_warp,
       scale * state->bending_weft, d, q);
-  CLOTH_LANE_NAME (cloth_lane_pulls_apply) (state, matrix, d, q);
+  CLOTH_LANE_NAME (cloth_lane_pulls_apply) (state, matrix->h, matrix->h2, d, q);
 }
 
 /* Adds s w wᵀ to a symmetric block: xx, yy, zz, yz, xz, xy. */
@@ -364,7 +364,8 @@ CLOTH_LANE_NAME (cloth_lane_stiffness_diagonal) (const ClothLaneState * state,
       add_unit (inverse[hinge->particle[corner]],
           stiffness * (hinge->c[corner] * hinge->c[corner]));
   }
-  CLOTH_LANE_NAME (cloth_lane_pulls_diagonal) (state, matrix, inverse);
+  CLOTH_LANE_NAME (cloth_lane_pulls_diagonal) (state, matrix->h, matrix->h2,
+      inverse);
   for (guint i = 0; i < state->n; i++)
     invert (inverse[i]);
 }

@@ -34,11 +34,3 @@ void CLOTH_LANE_NAME (cloth_lane_stiffness_diagonal) (const ClothLaneState *
     state, const ClothLaneStiffness * matrix, ClothLane (*inverse)[6]);
 ClothLane CLOTH_LANE_NAME (cloth_lane_stiffness_change) (const ClothLaneState *
     state, const ClothLaneStiffness * matrix, const ClothLane3 * dx);
-
-/* What pulls add to it. */
-void CLOTH_LANE_NAME (cloth_lane_pulls_update) (const ClothLaneState * state,
-    gdouble time_s);
-void CLOTH_LANE_NAME (cloth_lane_pulls_apply) (const ClothLaneState * state,
-    const ClothLaneStiffness * matrix, const ClothLane3 * d, ClothLane3 * q);
-void CLOTH_LANE_NAME (cloth_lane_pulls_diagonal) (const ClothLaneState * state,
-    const ClothLaneStiffness * matrix, ClothLane (*block)[6]);

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "gst/vision/image.h"
-#include "gst/vision/match/grid.h"
+#include "gst/vision/match/match.h"
 
 G_BEGIN_DECLS
 
