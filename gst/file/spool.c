@@ -856,7 +856,7 @@ cloth_spool_close (ClothSpool * spool, GError ** error)
 {
   g_autofree gchar *path = g_build_filename (spool->folder, "closed", NULL);
 
-  return cloth_file_write_text (path, "", error);
+  return cloth_file_write_text (path, "no more jobs\n", error);
 }
 
 /* ---- a worker ---- */
