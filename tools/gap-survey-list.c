@@ -5,7 +5,7 @@
  *   'takes/robot 2' --baseline takes/calm --simulated mine/robot2
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "tools/gap-survey.h"
+#include "tools/gap-survey-list.h"
 
 #include <stdarg.h>
 #include <string.h>

@@ -23,7 +23,7 @@
 #include "gst/file/spool.h"
 #include "gst/gap/inputs.h"
 #include "gst/gap/survey/survey.h"
-#include "tools/gap-survey.h"
+#include "tools/gap-survey-list.h"
 
 /* Seconds that a worker waits for its manager, who may start later. */
 #define JOIN_S 120.

@@ -83,8 +83,8 @@ ROOMS = [
     Room('gst/gap', 'why a simulation is wrong',
          {'': ['diagnose.h', 'inputs.h'],
           'report': ['result.h', 'words.h', 'patch.h', 'report.h', 'page.h', 'view.h'],
-          'simulator': ['simulator.h', 'capabilities.h', 'mapping.h']},
-         [['inputs', 'report'], ['simulator'], ['camera'], ['diagnosis'], ['load', 'inference', 'localise'],
+          'simulator': ['simulator.h', 'capabilities.h', 'mapping.h'], 'survey': ['survey.h']},
+         [['inputs', 'report', 'survey'], ['simulator'], ['camera'], ['diagnosis'], ['load', 'inference', 'localise'],
           ['camera/faults', 'verdict', 'design', 'loop'], ['diagnose']]),
 ]
 # Stands apart: it knows GStreamer and none of the algorithm rooms.
