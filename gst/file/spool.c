@@ -12,6 +12,8 @@
  * Times of files and clocks of hosts are never compared. Who watches another notes by its own
  * monotonic clock when it last saw that one's number change. A name begins with the identity of
  * the running kernel: of those on the same one the lock tells at once whether they live.
+ * Jobs and results are not brought to the disk one by one, which takes longer than a claim: what a
+ * computer that loses its power leaves half is none, and is done again by who resumes.
  * A job whose worker is lost is put back. When that worker lives all the same, it ends the job too:
  * the first result stays, and equal jobs give equal bytes.
  *
@@ -158,6 +160,26 @@ list_names (const ClothSpool * s, const gchar * folder, GError ** error)
       g_ptr_array_add (names, g_strdup (name));
   g_ptr_array_sort (names, compare_names);
   return names;
+}
+
+/* A file that appears whole or not at all to whoever looks, though it may not outlive the computer. */
+static gboolean
+write_quickly (const ClothSpool * s, const gchar * folder, const gchar * id,
+    const gchar * text, GError ** error)
+{
+  g_autofree gchar *path = path_of (s, folder, id);
+  g_autofree gchar *name = g_strconcat (".", id, "@", s->name, NULL);
+  g_autofree gchar *temporary = g_build_filename (s->folder, folder, name,
+      NULL);
+  g_autoptr (ClothOutput) output = NULL;
+
+  g_unlink (temporary);         /* of an attempt that failed */
+  output = cloth_output_new_at (temporary, path, path, FALSE, error);
+  if (output && cloth_output_write (output, text, strlen (text), error) &&
+      cloth_output_commit (output, error))
+    return TRUE;
+  g_unlink (temporary);
+  return FALSE;
 }
 
 /* ---- signs of life ---- */
@@ -642,6 +664,21 @@ is_running (const ClothSpool * s, const gchar * id, gboolean * running,
   return names != NULL;
 }
 
+/* Whether a file is there; one that was left half goes. */
+static gboolean
+has_whole (const ClothSpool * s, const gchar * folder, const gchar * id)
+{
+  g_autofree gchar *path = path_of (s, folder, id);
+  g_autoptr (JsonParser) parser = NULL;
+
+  if (!g_file_test (path, G_FILE_TEST_EXISTS))
+    return FALSE;
+  parser = load_json (path, NULL);
+  if (!parser)
+    g_unlink (path);
+  return parser != NULL;
+}
+
 /* @spool: a manager's
  * @id: of the job: up to 64 letters, digits, - and _. They are claimed in the order of these
  * @json: what is to be done, an object
@@ -649,7 +686,7 @@ is_running (const ClothSpool * s, const gchar * id, gboolean * running,
  * @error: #GIOErrorEnum
  *
  * A job that is there, runs or is done already stays as it is: so a resumed manager puts all
- * jobs once more.
+ * jobs once more. A result that nobody can read is none.
  *
  * Returns: whether it is there
  */
@@ -657,8 +694,6 @@ gboolean
 cloth_spool_put (ClothSpool * spool, const gchar * id, const gchar * json,
     gboolean again, GError ** error)
 {
-  g_autofree gchar *todo = path_of (spool, "todo", id);
-  g_autofree gchar *done = path_of (spool, "done", id);
   g_autofree gchar *failed = path_of (spool, "failed", id);
   gboolean there;
   gchar *copy;
@@ -667,12 +702,11 @@ cloth_spool_put (ClothSpool * spool, const gchar * id, const gchar * json,
   g_return_val_if_fail (!g_hash_table_contains (spool->put, id), FALSE);
   if (again)
     g_unlink (failed);
-  there = g_file_test (done, G_FILE_TEST_EXISTS) ||
-      g_file_test (failed, G_FILE_TEST_EXISTS) ||
-      g_file_test (todo, G_FILE_TEST_EXISTS);
+  there = has_whole (spool, "done", id) || has_whole (spool, "failed", id) ||
+      has_whole (spool, "todo", id);
   if (!there && !is_running (spool, id, &there, error))
     return FALSE;
-  if (!there && !cloth_file_write_text (todo, json, error))
+  if (!there && !write_quickly (spool, "todo", id, json, error))
     return FALSE;
   copy = g_strdup (id);
   g_ptr_array_add (spool->waiting, copy);
@@ -763,12 +797,11 @@ cloth_spool_take (ClothSpool * spool, GError ** error)
 static gboolean
 fail_job (const ClothSpool * s, const gchar * id, GError ** error)
 {
-  g_autofree gchar *path = path_of (s, "failed", id);
   g_autofree gchar *text = g_strdup_printf ("{\"error\": \"%d workers were "
       "lost at it: killed, out of memory, or on hosts that went away\"}\n",
       CLOTH_SPOOL_MOST_LOST);
 
-  return cloth_file_write_text (path, text, error);
+  return write_quickly (s, "failed", id, text, error);
 }
 
 /* Puts a job back whose worker is lost. */
@@ -995,11 +1028,9 @@ cloth_spool_finish (ClothSpool * spool, const ClothSpoolJob * job,
 {
   g_autofree gchar *running = path_of_running (spool, job->id, spool->name);
   g_autofree gchar *done = path_of (spool, "done", job->id);
-  g_autofree gchar *path = path_of (spool, failed ? "failed" : "done",
-      job->id);
 
   if (!g_file_test (done, G_FILE_TEST_EXISTS) &&
-      !cloth_file_write_text (path, json, error))
+      !write_quickly (spool, failed ? "failed" : "done", job->id, json, error))
     return FALSE;
   g_unlink (running);
   note_work (spool);

@@ -563,6 +563,13 @@ test_hostile_files (Fixture * f, gconstpointer data)
   }
   got = take (spool);
   g_assert_cmpstr (got, ==, "2");
+  /* left half by a computer that lost its power: the job is there again */
+  write_file (f, "done/4.json", "");
+  put (spool, "4");
+  g_assert_cmpuint (count (f, "done"), ==, 1);
+  g_clear_pointer (&job, cloth_spool_job_free);
+  g_assert_cmpstr (claim (worker, &job), ==, "4");
+  g_assert_cmpstr (job->json, ==, "{\"do\": \"4\"}");
   put (spool, "3");
   write_file (f, "done/3.json", "[]");
   g_assert_null (cloth_spool_take (spool, &error));
