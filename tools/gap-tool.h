@@ -12,7 +12,9 @@ typedef struct
   gchar *format, *scene, *output, *model, *effects, *simulator;
   gchar **baselines, **hold_outs, **simulated, **after;
   gint64 seed;
-  gint threads, run_seconds, simulator_runs;
+  gchar *spool;
+  gint threads, run_seconds, simulator_runs, workers;
+  gboolean worker, resume;
   gchar **rest;                 /* the command and what belongs to it */
 } Arguments;
 
@@ -21,3 +23,4 @@ gint simulate (const Arguments * arguments);
 gint diagnose (const Arguments * arguments);
 gint compare_takes (const Arguments * arguments);
 gint check_simulator (const Arguments * arguments);
+gint survey (const Arguments * arguments);

@@ -1,5 +1,5 @@
-/* gst-cloth-gap-1.0: diagnoses takes, compares them with simulations, simulates takes, lists the effects that may part a
- * simulation from what was filmed.
+/* gst-cloth-gap-1.0: diagnoses takes, one or many, compares them with simulations, simulates takes, lists the effects that
+ * may part a simulation from what was filmed.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "tools/gap-tool.h"
@@ -15,10 +15,18 @@ run (gconstpointer data)
   const gchar *command = arguments->rest ? arguments->rest[0] : NULL;
   gboolean is_compare = !g_strcmp0 (command, "compare");
   gboolean is_diagnose = is_compare || !g_strcmp0 (command, "diagnose");
+  gboolean is_survey = !g_strcmp0 (command, "survey");
 
   if (!command)
     return complain (BAD_USAGE,
-        "name a command: diagnose, compare, simulate, check-simulator or effects");
+        "name a command: diagnose, compare, survey, simulate, check-simulator or "
+        "effects");
+  if (is_survey)
+    return survey (arguments);
+  if (arguments->spool || arguments->worker || arguments->resume ||
+      arguments->workers >= 0)
+    return complain (BAD_USAGE, "%s takes no --spool, --workers, --worker or "
+        "--resume; they are survey's", command);
   if (!is_diagnose && (arguments->model || arguments->effects ||
           arguments->baselines || arguments->hold_outs || arguments->simulated
           || arguments->after || arguments->simulator))
@@ -39,7 +47,7 @@ run (gconstpointer data)
   if (!strcmp (command, "check-simulator"))
     return check_simulator (arguments);
   return complain (BAD_USAGE, "no command \"%s\": there are diagnose, "
-      "compare, simulate, check-simulator and effects", command);
+      "compare, survey, simulate, check-simulator and effects", command);
 }
 
 /* "--baseline a b" becomes "--baseline a --baseline b": these lists end where the next
@@ -82,6 +90,12 @@ static const ToolCommand commands[] = {
         "Says how far a simulation of your own is from a recording, without a "
         "model.",
       "gst-cloth-gap-1.0 compare film.take simulated.take --output gap"},
+  {"survey", "LIST --model MODEL --output DIR",
+        "Diagnoses many takes, a line of LIST each, by several processes on one "
+        "host or on many,\nand makes one table of the effects over them: "
+        "DIR/survey.json.",
+      "gst-cloth-gap-1.0 survey takes.txt --model model.json --output survey"
+        "\ngst-cloth-gap-1.0 survey --worker --spool survey/spool"},
   {"simulate", "MODEL --scene TAKE --output TAKE",
         "Simulates a cloth in the scene of a take: its mesh, clamps, obstacles "
         "and times.",
@@ -101,11 +115,13 @@ int
 main (int argc, char **argv)
 {
   Arguments arguments = {.run_seconds = GAP_SIMULATOR_SECONDS,
-    .simulator_runs = CLOTH_GAP_SIMULATOR_RUNS
+    .simulator_runs = CLOTH_GAP_SIMULATOR_RUNS,
+    .workers = -1
   };
   const GOptionEntry entries[] = {
     {"model", 'm', 0, G_OPTION_ARG_FILENAME, &arguments.model,
-        "diagnose: model.json that the takes are held against", "MODEL"},
+          "diagnose, survey: model.json that the takes are held against",
+        "MODEL"},
     {"baseline", 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &arguments.baselines,
         "diagnose: takes the model is accepted on", "TAKE…"},
     {"hold-out", 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &arguments.hold_outs,
@@ -123,7 +139,8 @@ main (int argc, char **argv)
           "diagnose: most runs of it for each take, to find its numbers (20)",
         "N"},
     {"effects", 0, 0, G_OPTION_ARG_STRING, &arguments.effects,
-          "diagnose: effects to consider, with commas between them (all)",
+          "diagnose, survey: effects to consider, with commas between them "
+          "(all)",
         "LIST"},
     {"format", 0, 0, G_OPTION_ARG_STRING, &arguments.format,
         "effects: text, json or markdown (text)", "FORMAT"},
@@ -134,16 +151,27 @@ main (int argc, char **argv)
         "diagnose, check-simulator: seconds that one run of your simulator may "
           "take (600)", "N"},
     {"output", 'o', 0, G_OPTION_ARG_FILENAME, &arguments.output,
-          "diagnose, compare, simulate: folder of the report, or take to write",
+          "diagnose, compare, survey, simulate: folder of the report, or take "
+          "to write",
         "DIR"},
+    {"spool", 0, 0, G_OPTION_ARG_FILENAME, &arguments.spool,
+        "survey: folder of the jobs, which all hosts can write "
+          "(DIR/spool)", "DIR"},
+    {"workers", 0, 0, G_OPTION_ARG_INT, &arguments.workers,
+          "survey: processes to start here, 0 for none (all processors)",
+        "N"},
+    {"worker", 0, 0, G_OPTION_ARG_NONE, &arguments.worker,
+        "survey: do jobs of a spool that is there or will be", NULL},
+    {"resume", 0, 0, G_OPTION_ARG_NONE, &arguments.resume,
+        "survey: go on with a spool; what failed is tried again", NULL},
     {"seed", 0, 0, G_OPTION_ARG_INT64, &arguments.seed,
         "Of all random numbers (0)", "N"},
     {"threads", 0, 0, G_OPTION_ARG_INT, &arguments.threads,
         "Threads, 0 for all processors (0)", "N"},
     {G_OPTION_REMAINING, 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &arguments.rest,
           NULL,
-        "diagnose TAKE… | compare RECORDED SIMULATED | simulate MODEL | "
-          "check-simulator COMMAND | effects"},
+        "diagnose TAKE… | compare RECORDED SIMULATED | survey LIST | "
+          "simulate MODEL | " "check-simulator COMMAND | effects"},
     {NULL}
   };
   gint code = tool_main_commands (PROGRAM,
@@ -156,6 +184,7 @@ main (int argc, char **argv)
   g_free (arguments.format);
   g_free (arguments.scene);
   g_free (arguments.output);
+  g_free (arguments.spool);
   g_strfreev (arguments.baselines);
   g_strfreev (arguments.hold_outs);
   g_strfreev (arguments.simulated);

@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "gst/file/spool.h"
 #include "gst/gap/report/report.h"
 #include "gst/mesh/garment/garment.h"
 #include "gst/pattern/marray.h"
@@ -871,6 +872,117 @@ test_recover (gconstpointer data)
   scratch_end ();
 }
 
+/* ---- spools ---- */
+
+static const ClothSpoolOptions spool_options = { "test", "0", 60. };
+
+/* A manager puts two jobs, a worker does them, the manager takes the results. Two rounds over the
+ * results are enough. */
+static gboolean
+run_spool (const gchar * path, gboolean resume, guint * n_results,
+    GError ** error)
+{
+  g_autoptr (ClothSpool) manager = cloth_spool_manage (path, &spool_options,
+      "p", resume, error);
+  g_autoptr (ClothSpool) worker = NULL;
+  GError *fault = NULL;
+
+  *n_results = 0;
+  if (!manager || !cloth_spool_put (manager, "1", "{\"n\": 1}", TRUE, error) ||
+      !cloth_spool_put (manager, "2", "{\"n\": 2}", TRUE, error) ||
+      !(worker = cloth_spool_join (path, &spool_options, 0., error)) ||
+      !cloth_spool_look_after (manager, error))
+    return FALSE;
+  for (;;) {
+    g_autoptr (ClothSpoolJob) job = cloth_spool_claim (worker, &fault);
+
+    if (!job)
+      break;
+    if (!cloth_spool_finish (worker, job, job->json, FALSE, error)) {
+      cloth_spool_give_back (worker, job, NULL);
+      return FALSE;
+    }
+  }
+  for (guint i = 0; !fault && i < 6; i++) {
+    g_autoptr (ClothSpoolJob) result = cloth_spool_take (manager, &fault);
+    g_autofree gchar *expected = result ?
+        g_strdup_printf ("{\"n\": %s}", result->id) : NULL;
+
+    *n_results += result && !result->failed &&
+        g_str_equal (result->json, expected);
+  }
+  if (!fault && *n_results == 2)
+    return cloth_spool_close (manager, error);
+  if (fault)
+    g_propagate_error (error, fault);
+  return FALSE;
+}
+
+/* Whatever failed, a resumed manager gets every result. A job that could not be read has failed,
+ * and is tried again. */
+static void
+check_spool (const gchar * path, const gchar * what, guint nth)
+{
+  g_autoptr (GError) error = NULL;
+  guint n = 0;
+
+  if (!run_spool (path, TRUE, &n, &error) || n != 2)
+    g_error ("spool: %s, call %u: %u of 2 results, %s", what, nth, n,
+        error ? error->message : "no error");
+}
+
+static void
+test_spool (void)
+{
+  const guint before = n_faults, kills_before = n_kills;
+  g_autofree gchar *path = NULL;
+  gint status = 0;
+
+  scratch_begin ();
+  path = scratch_path ("spool");
+  for (guint i = 0; i < G_N_ELEMENTS (faults); i++) {
+    for (guint nth = 1;; nth++) {
+      g_autoptr (GError) error = NULL;
+      gboolean done;
+      guint n;
+
+      empty_scratch ();
+      arm (faults[i].call, nth, faults[i].code, FALSE);
+      done = run_spool (path, FALSE, &n, &error);
+      if (!fired ()) {
+        g_assert_no_error (error);
+        g_assert_true (done);
+        break;
+      }
+      n_faults++;
+      check_spool (path, faults[i].call, nth);
+    }
+  }
+  for (guint nth = 1; nth == 1 || WIFSIGNALED (status); nth++) {
+    pid_t child;
+    guint n;
+
+    empty_scratch ();
+    child = fork ();
+    g_assert_cmpint (child, >=, 0);
+    if (child == 0) {
+      arm ("*", nth, CLOTH_FAULT_KILL, FALSE);
+      run_spool (path, FALSE, &n, NULL);
+      _exit (0);
+    }
+    g_assert_cmpint (waitpid (child, &status, 0), ==, child);
+    if (!WIFSIGNALED (status))
+      break;
+    n_kills++;
+    check_spool (path, "killed", nth);
+  }
+  g_assert_cmpuint (n_faults, >, before + 100);
+  g_assert_cmpuint (n_kills, >, kills_before + 50);
+  g_test_message ("spool: %u faults, %u kills", n_faults - before,
+      n_kills - kills_before);
+  scratch_end ();
+}
+
 int
 main (int argc, char **argv)
 {
@@ -899,6 +1011,7 @@ main (int argc, char **argv)
     if (i < 3)
       g_test_add_data_func (again, &writers[i], test_recover);
   }
+  g_test_add_func ("/spool", test_spool);
   g_test_add_func ("/lone", test_lone);
   g_test_add_func ("/look", test_look);
   g_test_add_func ("/clear", test_clear);

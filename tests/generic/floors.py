@@ -79,13 +79,13 @@ ROOMS = [
     Room('gst/fit', 'which numbers fit a recording',
          {'': ['error.h'], 'recording': ['recording.h'], 'features': ['features.h'],
           'rig': ['refine.h'], 'nudge': ['nudge.h'], 'estimate': ['estimate.h'],
-          'synthesis': ['synthesis.h']},
-         [[''], ['recording'], ['features', 'rig'], ['nudge'], ['estimate'], ['synthesis']]),
+          'synthesis': ['synthesis.h'], 'search': ['search.h', 'evaluate.h']},
+         [[''], ['recording', 'search'], ['features', 'rig'], ['nudge'], ['estimate'], ['synthesis']]),
     Room('gst/gap', 'why a simulation is wrong',
          {'': ['diagnose.h', 'inputs.h'],
           'report': ['result.h', 'words.h', 'patch.h', 'report.h', 'page.h', 'view.h'],
-          'simulator': ['simulator.h', 'capabilities.h', 'mapping.h']},
-         [['inputs', 'report'], ['simulator'], ['camera'], ['diagnosis'], ['load', 'inference', 'localise'],
+          'simulator': ['simulator.h', 'capabilities.h', 'mapping.h'], 'survey': ['survey.h']},
+         [['inputs', 'report', 'survey'], ['simulator'], ['camera'], ['diagnosis'], ['load', 'inference', 'localise'],
           ['camera/faults', 'verdict', 'design', 'loop'], ['diagnose']]),
 ]
 # Stands apart: it knows GStreamer and none of the algorithm rooms.
