@@ -15,7 +15,7 @@ folder, output, *cases = sys.argv[sys.argv.index('--') + 1:]
 WIDE, HIGH = 0.62, 0.6
 # From no distance to LIMIT, m: paper, amber, red.
 LIMIT = 0.03
-COLOURS = numpy.array([[0.78, 0.8, 0.83], [0.93, 0.62, 0.12], [0.6, 0.02, 0.05]])
+COLOURS = numpy.array([[0.45, 0.5, 0.57], [0.93, 0.55, 0.1], [0.6, 0.02, 0.05]])
 
 
 def find_colours(distance):
@@ -50,7 +50,7 @@ def add_cloth(x, distance, at):
     # seen from the side, so that what is before and behind shows
     turned = x @ numpy.array([[0.8, 0.6, 0.], [-0.6, 0.8, 0.], [0., 0., 1.]]).T
     mesh = bpy.data.meshes.new('cloth')
-    mesh.from_pydata((turned + [at[0] - 0.16, 0., at[1]]).tolist(), [], faces.tolist())
+    mesh.from_pydata((turned + [at[0] - 0.11, 0., at[1]]).tolist(), [], faces.tolist())
     for polygon in mesh.polygons:
         polygon.use_smooth = True
     layer = mesh.attributes.new('colour', 'FLOAT_COLOR', 'POINT')
@@ -89,10 +89,13 @@ world = bpy.data.worlds.new('paper')
 scene.world = world
 world.use_nodes = True
 world.node_tree.nodes['Background'].inputs[0].default_value = (1., 1., 1., 1.)
-world.node_tree.nodes['Background'].inputs[1].default_value = 0.75
-sun = bpy.data.objects.new('sun', bpy.data.lights.new('sun', 'SUN'))
-sun.data.energy, sun.rotation_euler = 2., (0.9, 0.5, 0.4)
-scene.collection.objects.link(sun)
+# Paper is seen and lights nothing; suns are points, so that nothing is grainy, and cast no shadows.
+world.cycles_visibility.diffuse = world.cycles_visibility.glossy = False
+for energy, direction in (2.2, (1.1, 0.5, 0.5)), (1.2, (1.2, 0., -0.9)):
+    sun = bpy.data.objects.new('sun', bpy.data.lights.new('sun', 'SUN'))
+    sun.data.energy, sun.data.angle, sun.rotation_euler = energy, 0., direction
+    sun.data.cycles.cast_shadow = False
+    scene.collection.objects.link(sun)
 camera = bpy.data.objects.new('camera', bpy.data.cameras.new('camera'))
 camera.data.type, camera.data.ortho_scale = 'ORTHO', 3. * WIDE
 camera.location = (WIDE, -5., -0.5 * HIGH * len(cases) + 0.16)
@@ -100,10 +103,11 @@ camera.rotation_euler = (numpy.pi / 2., 0., 0.)
 scene.collection.objects.link(camera)
 scene.camera = camera
 scene.render.engine = 'CYCLES'
-scene.cycles.samples = 24
+scene.cycles.samples, scene.cycles.max_bounces = 16, 0
 scene.cycles.use_denoising = False
 scene.view_settings.view_transform = 'Standard'
-scene.render.resolution_x = 1000
-scene.render.resolution_y = int(1000 * HIGH * len(cases) / (3. * WIDE))
+scene.render.resolution_x = 900
+scene.render.resolution_y = int(900 * HIGH * len(cases) / (3. * WIDE))
+scene.render.image_settings.color_mode, scene.render.image_settings.compression = 'RGB', 100
 scene.render.filepath = os.path.abspath(output)
 bpy.ops.render.render(write_still=True)
