@@ -55,8 +55,9 @@ def print_row(name, kind):
     take = next(take for take in gap['takes'] if take['role'] == 'take')
     first = gap['effects'][0]
     print('| %s | %s, %s | %s | %s | %s | `%s` %.0f%% | %s | %s, %s (%s) | %s, %s (%s) |' % (
-        name, labels[name]['simulator'].split()[0], labels[name]['scene'], labels[name]['described'],
-        kind, gap['verdict'], first['name'], 100. * first['probability'],
+        name, labels[name]['simulator'].split()[0], labels[name]['scene'],
+        labels[name]['described'].replace('|', '\\|'), kind, gap['verdict'], first['name'],
+        100. * first['probability'],
         ', '.join('`%s`' % e['name'] for e in gap['effects'] if e['accepted']) or '–',
         *(millimetres(gap[key]) for key in ('gap_before', 'gap_after', 'noise_floor')),
         *(millimetres(take[key]) for key in ('free_before', 'free_after', 'free_floor'))))
