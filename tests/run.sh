@@ -3,7 +3,7 @@
 #
 #   tests/run.sh                every test but the long ones (suites soak and fuzz), those
 #                               that need a network (suite registry) and those of other
-#                               programs (suites blender and bullet), in ./build
+#                               programs (suites blender, bullet and cluster), in ./build
 #   tests/run.sh --sanitize     a share of them under the address and undefined-behaviour
 #                               sanitizers, in ./build-asan-gcc and ./build-asan-clang
 #   tests/run.sh --tsan         what has threads under the thread sanitizer, in ./build-tsan
@@ -34,7 +34,7 @@ test_everything ()
   rm -f "$log"
   meson test -C build --no-rebuild --logbase run --print-errorlogs \
       --no-suite soak --no-suite fuzz --no-suite registry \
-      --no-suite blender --no-suite bullet
+      --no-suite blender --no-suite bullet --no-suite cluster
   /usr/bin/python3 tests/count.py $? "$log"
 }
 

@@ -2,7 +2,7 @@
  * evaluations that compute, and of such that only last, as on processors of their own.
  *
  *   bench-search                     all of these
- *   bench-search manage SPOOL KIND   a manager whose workers are started elsewhere
+ *   bench-search manage SPOOL N      a manager whose N workers are started elsewhere
  *   bench-search work SPOOL KIND     such a worker; KIND is computes or lasts
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
@@ -120,9 +120,9 @@ fail (const GError * error)
     g_error ("%s", error->message);
 }
 
-/* The time counts from the first claim on: starting processes is no part of a search. */
+/* The time counts once all workers are there: starting processes is no part of a search. */
 static void
-manage (const gchar * folder, const gchar * what, gdouble one)
+manage (const gchar * folder, guint workers, const gchar * what, gdouble one)
 {
   g_autoptr (GError) error = NULL;
   g_autoptr (ClothSearch) search = new_search (FALSE);
@@ -133,7 +133,7 @@ manage (const gchar * folder, const gchar * what, gdouble one)
   gint64 begin_us;
 
   fail (error);
-  while (n < 3) {               /* the manager's own, and of two workers */
+  while (n < 1 + workers) {     /* the manager's own is among them */
     g_autoptr (GDir) dir = g_dir_open (beats, 0, NULL);
 
     for (n = 0; g_dir_read_name (dir);)
@@ -183,7 +183,7 @@ run_spool (const gchar * const *prefix, const gchar * what, gboolean computes,
         G_SUBPROCESS_FLAGS_NONE, &error);
     fail (error);
   }
-  manage (folder, what, one);
+  manage (folder, 2, what, one);
   for (guint i = 0; i < 2 && processes[i]; i++) {
     g_subprocess_wait (processes[i], NULL, NULL);
     g_object_unref (processes[i]);
@@ -202,7 +202,8 @@ main (int argc, char **argv)
   if (argc == 4 && !strcmp (argv[1], "work"))
     return work (argv[2], !strcmp (argv[3], "computes"));
   if (argc == 4 && !strcmp (argv[1], "manage")) {
-    manage (argv[2], "2 workers from elsewhere", 0.);
+    manage (argv[2], (guint) g_ascii_strtoull (argv[3], NULL, 10),
+        "workers from elsewhere", 0.);
     return 0;
   }
   g_setenv ("OMPI_ALLOW_RUN_AS_ROOT", "1", FALSE);
