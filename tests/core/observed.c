@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/fit/error.h"
 #include "gst/fit/nudge/nudge.h"
 #include "gst/gap/diagnose.h"
 #include "tests/common/gapfilm.h"
@@ -298,6 +299,64 @@ test_nothing (void)
   g_assert_nonnull (strstr (error->message, "only what cameras saw"));
 }
 
+/* A take's covariances: alike everywhere they are one deviation; where one is not known nothing was
+ * seen; one that is none is an error that names the place. */
+static void
+test_covariances (void)
+{
+  const TestGapSheet sheet = { COLUMNS, ROWS, N_FRAMES, 0.3, 0.34, FPS };
+  const gfloat square = 4e-6f;
+  g_autoptr (ClothModel) reality = model_new (TRUE);
+
+  for (guint fault = 0; fault < 3; fault++) {
+    g_autofree gchar *parent = g_dir_make_tmp ("cloth-covariance-XXXXXX", NULL);
+    g_autofree gchar *folder = g_build_filename (parent, "with", NULL);
+    g_autoptr (ClothTake) from = test_gap_record (&sheet, reality, sway, parent,
+        "take", 1);
+    g_autoptr (ClothTake) take = NULL;
+    g_autoptr (ClothTakeWriter) writer = NULL;
+    g_autoptr (ClothRecording) r = NULL;
+    g_autoptr (GError) error = NULL;
+    gfloat positions[3 * N], covariances[6 * N], clamps[6];
+    guint8 states[N];
+
+    writer = cloth_take_writer_new (folder, cloth_take_get_info (from),
+        cloth_take_get_topology (from), &error);
+    g_assert_no_error (error);
+    memset (states, CLOTH_VERTEX_MEASURED, N);
+    for (guint f = 0; f < N_FRAMES; f++) {
+      cloth_take_read_positions (from, f, positions, NULL);
+      cloth_take_read_clamps (from, f, clamps, NULL);
+      for (guint i = 0; i < 6 * N; i++)
+        covariances[i] = i % 6 == 0 || i % 6 == 3 || i % 6 == 5 ? square : 0;
+      if (f == 7 && fault == 1)
+        for (guint k = 0; k < 6; k++)
+          covariances[6 * 20 + k] = NAN;
+      if (f == 7 && fault == 2)
+        covariances[6 * 20 + 1] = 2 * square;
+      cloth_take_writer_append (writer, f / FPS, positions, states,
+          covariances, clamps, &error);
+      g_assert_no_error (error);
+    }
+    cloth_take_writer_close (writer, &error);
+    g_assert_no_error (error);
+    take = cloth_take_open (folder, &error);
+    r = cloth_recording_new (take, &error);
+    test_gap_remove (parent);
+    if (fault == 2) {
+      g_assert_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING);
+      g_assert_nonnull (strstr (error->message, "vertex 20 in frame 7"));
+      continue;
+    }
+    g_assert_no_error (error);
+    g_assert_cmpfloat_with_epsilon (r->sigma, 0.002, 1e-8);
+    g_assert_cmpfloat_with_epsilon (cloth_recording_noise_square (r), 1.2e-5,
+        1e-10);
+    g_assert_cmpfloat (r->seen[7 * N + 20], ==, fault == 0 ? 1. : 0.);
+    g_assert_cmpfloat (r->seen[7 * N + 21], ==, 1.);
+  }
+}
+
 /* Drag that the model lacks is named from rays alone. */
 static void
 test_diagnosis (void)
@@ -352,6 +411,7 @@ main (int argc, char **argv)
   g_test_add_func ("/observed/start", test_start);
   g_test_add_func ("/observed/parallel", test_parallel);
   g_test_add_func ("/observed/nothing", test_nothing);
+  g_test_add_func ("/observed/covariances", test_covariances);
   g_test_add_func ("/observed/diagnosis", test_diagnosis);
   return g_test_run ();
 }
