@@ -9,7 +9,7 @@ CLOTH_SLOW="board calibrate dot filming gapdiagnose gapexperiment link print qua
 CLOTH_CHAINS="film-mesh film-observations film-paper film-take"
 CLOTH_PROGRAMS="gaptool patterntool states"
 # What has threads: the pool and who uses it, elements that join streams, the observer.
-CLOTH_THREADED_CORE="pool triangulator nearest reconstruct fill siminvariance simcontact gaplinear"
+CLOTH_THREADED_CORE="pool triangulator nearest reconstruct fill siminvariance simcontact gaplinear search"
 CLOTH_THREADED_ELEMENTS="clothsync clothsynclive triangulate triangulateinput triangulatedots triangulatematches
     triangulatestream clothoverlay clothoverlaymesh clothoverlayinput clothgap clothsim meshfill"
 
