@@ -6,12 +6,9 @@
  *   running/ID@WORKER   the same, claimed by a rename, which one worker only brings about
  *   done/ID.json        what came of it, written under a temporary name, then renamed
  *   failed/ID.json      the same when it did not work
- *   beats/NAME          a number that a manager or worker keeps changing, locked while it lives
+ *   beats/NAME          signs of life of a manager or worker
  *   closed              no more jobs
  *
- * Times of files and clocks of hosts are never compared. Who watches another notes by its own
- * monotonic clock when it last saw that one's number change. A name begins with the identity of
- * the running kernel: of those on the same one the lock tells at once whether they live.
  * Jobs and results are not brought to the disk one by one, which takes longer than a claim: what a
  * computer that loses its power leaves half is none, and is done again by who resumes.
  * A job whose worker is lost is put back. When that worker lives all the same, it ends the job too:
@@ -21,48 +18,34 @@
 #include "gst/file/spool.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <gio/gio.h>
 #include <glib/gstdio.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "gst/file/json.h"
 #include "gst/file/jsonwriter.h"
+#include "gst/file/life.h"
 #include "gst/file/output.h"
 
 #define SPOOL_VERSION 1
-#define BEAT_US G_USEC_PER_SEC
+/* How often a manager looks after workers, and a worker after its manager. */
+#define LOOK_US G_USEC_PER_SEC
 #define LEAST_WAIT_US 1000
 #define MOST_WAIT_US 250000
 /* Lengths of names, and most names of a folder that are looked at: limits on what others
  * wrote. */
 #define MAX_ID 64
-#define MAX_WORKER 100
 #define MAX_NAMES 1000000u
-#define MAX_BEAT 64
-
-/* What was seen of another's number. */
-typedef struct
-{
-  gchar *beat;
-  gint64 changed_us;
-} Watch;
 
 struct _ClothSpool
 {
   gchar *folder;
-  gchar *name;                  /* of this end: its file in beats/ */
+  ClothLife *life;
+  const gchar *name;            /* of this end */
   gchar *host;
   gdouble lost_s;
-  gboolean manages, closed;
-  gint beat;                    /* the file of its number */
-  GThread *thread;              /* that changes it */
-  GMutex mutex;
-  GCond cond;
-  gboolean ends;
-  GHashTable *watches;          /* name → Watch */
+  gboolean manages;
   GPtrArray *waiting;           /* ids put, whose results were not taken */
   GHashTable *put;              /* the same as a set */
   GHashTable *lost;             /* id → how many workers it lost */
@@ -127,7 +110,7 @@ parse_running (const gchar * name, gchar ** id, gchar ** worker)
   const gchar *at = strchr (name, '@');
 
   *id = *worker = NULL;
-  if (!at || !is_name (at + 1, MAX_WORKER))
+  if (!at || !is_name (at + 1, CLOTH_LIFE_MAX_NAME))
     return FALSE;
   *id = g_strndup (name, (gsize) (at - name));
   if (is_name (*id, MAX_ID)) {
@@ -184,135 +167,21 @@ write_quickly (const ClothSpool * s, const gchar * folder, const gchar * id,
 
 /* ---- signs of life ---- */
 
-/* The running kernel, which those share of whom a lock can be trusted. */
-static gchar *
-find_kernel (void)
-{
-  g_autofree gchar *text = NULL;
-
-  if (!g_file_get_contents ("/proc/sys/kernel/random/boot_id", &text, NULL,
-          NULL) || strlen (text) < 8)
-    return g_strdup ("unknown0");
-  text[8] = 0;
-  return is_name (text, 8) ? g_steal_pointer (&text) : g_strdup ("unknown0");
-}
-
-static gpointer
-keep_beating (gpointer data)
-{
-  ClothSpool *s = data;
-
-  g_mutex_lock (&s->mutex);
-  for (guint64 i = 1; !s->ends; i++) {
-    gchar text[MAX_BEAT];
-    const gint n = g_snprintf (text, sizeof text, "%020" G_GUINT64_FORMAT "\n",
-        i);
-
-    /* It was as long before, so there is room; and a missed beat is no fault. */
-    if (pwrite (s->beat, text, (gsize) n, 0) < 0 && errno == EBADF)
-      break;
-    g_cond_wait_until (&s->cond, &s->mutex, g_get_monotonic_time () + BEAT_US);
-  }
-  g_mutex_unlock (&s->mutex);
-  return NULL;
-}
-
 static gboolean
-begin_beating (ClothSpool * s, GError ** error)
+begin_life (ClothSpool * s, GError ** error)
 {
-  g_autofree gchar *kernel = find_kernel ();
-  g_autofree gchar *path = NULL;
-  static const gchar first[] = "00000000000000000000\n";
-  gint code;
+  g_autofree gchar *beats = g_build_filename (s->folder, "beats", NULL);
 
-  s->name = g_strdup_printf ("%s-%d-%08x", kernel, (gint) getpid (),
-      g_random_int ());
-  path = g_build_filename (s->folder, "beats", s->name, NULL);
-  s->beat = g_open (path, O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
-  if (s->beat < 0)
-    return cloth_file_fail (error, errno, "write", path);
-  cloth_file_lock_new (s->beat);
-  code = cloth_file_append (s->beat, first, sizeof first - 1);
-  if (code)
-    return cloth_file_fail (error, code, "write", path);
-  s->thread = g_thread_new ("beat", keep_beating, s);
-  return TRUE;
+  s->life = cloth_life_new (beats, error);
+  if (s->life)
+    s->name = cloth_life_get_name (s->life);
+  return s->life != NULL;
 }
 
-static void
-end_beating (ClothSpool * s)
-{
-  if (s->thread) {
-    g_mutex_lock (&s->mutex);
-    s->ends = TRUE;
-    g_cond_signal (&s->cond);
-    g_mutex_unlock (&s->mutex);
-    g_thread_join (s->thread);
-  }
-  if (s->beat >= 0) {
-    g_autofree gchar *path = g_build_filename (s->folder, "beats", s->name,
-        NULL);
-
-    g_unlink (path);
-    close (s->beat);
-  }
-}
-
-static void
-free_watch (gpointer data)
-{
-  Watch *watch = data;
-
-  g_free (watch->beat);
-  g_free (watch);
-}
-
-/* Whether the number in @text is another one than at the last look, or it is the first. */
-static gboolean
-has_changed (ClothSpool * s, const gchar * name, const gchar * text)
-{
-  Watch *watch = g_hash_table_lookup (s->watches, name);
-
-  if (watch && g_str_equal (watch->beat, text))
-    return FALSE;
-  watch = g_new0 (Watch, 1);
-  watch->beat = g_strdup (text);
-  watch->changed_us = g_get_monotonic_time ();
-  g_hash_table_insert (s->watches, g_strdup (name), watch);
-  return TRUE;
-}
-
-/* Whether a manager or worker gives no sign of life. */
 static gboolean
 is_lost (ClothSpool * s, const gchar * name)
 {
-  g_autofree gchar *path = g_build_filename (s->folder, "beats", name, NULL);
-  const gint fd = g_open (path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK,
-      0);
-  gboolean near = strncmp (name, s->name, 8) == 0;
-  gchar text[MAX_BEAT + 1] = "";
-  const Watch *watch;
-  gssize n;
-
-  if (g_str_equal (name, s->name)) {
-    if (fd >= 0)
-      close (fd);
-    return FALSE;
-  }
-  n = fd < 0 ? 0 : read (fd, text, MAX_BEAT);
-  text[MAX (n, 0)] = 0;
-  if (near && (fd < 0 || !cloth_file_lock_old (fd))) {
-    if (fd >= 0)
-      close (fd);
-    return TRUE;
-  }
-  if (fd >= 0)
-    close (fd);
-  if (has_changed (s, name, text))
-    return FALSE;
-  watch = g_hash_table_lookup (s->watches, name);
-  return (gdouble) (g_get_monotonic_time () - watch->changed_us) >
-      s->lost_s * G_USEC_PER_SEC;
+  return cloth_life_look (s->life, name, s->lost_s) == CLOTH_LIFE_LOST;
 }
 
 /* ---- spool.json, manager.json ---- */
@@ -409,7 +278,8 @@ read_manager (const ClothSpool * s, const gchar * path, gchar ** name, gchar
   g_autoptr (JsonParser) parser = load_json (path, NULL);
   gboolean good = parser && cloth_json_get_string (&manager_file,
       get_object (parser), "name", name, NULL) && *name &&
-      is_name (*name, MAX_WORKER) && cloth_json_get_string (&manager_file,
+      is_name (*name, CLOTH_LIFE_MAX_NAME)
+      && cloth_json_get_string (&manager_file,
       get_object (parser), "holder", shown, NULL) && *shown;
 
   if (good)
@@ -435,23 +305,19 @@ outlive (ClothSpool * s, const gchar * path, GError ** error)
 
   if (!read_manager (s, path, &name, &shown))
     return TRUE;
-  is_lost (s, name);            /* notes its number */
-  while (!is_lost (s, name)) {
-    g_autofree gchar *beat = g_build_filename (s->folder, "beats", name, NULL);
-    g_autofree gchar *before =
-        g_strdup (((Watch *) g_hash_table_lookup (s->watches, name))->beat);
+  for (;;) {
+    const ClothLifeSign sign = cloth_life_look (s->life, name, s->lost_s);
 
-    g_usleep (BEAT_US / 4);
-    is_lost (s, name);
-    if (!g_str_equal (before, ((Watch *) g_hash_table_lookup (s->watches,
-                    name))->beat)) {
+    if (sign == CLOTH_LIFE_LOST)
+      return TRUE;
+    if (sign == CLOTH_LIFE_CHANGED) {
       g_set_error (error, G_IO_ERROR, G_IO_ERROR_BUSY,
           "“%s” is managed by %s "
           "already: let it end, or name another folder", s->folder, shown);
       return FALSE;
     }
+    g_usleep (LOOK_US / 4);
   }
-  return TRUE;
 }
 
 /* Takes the place of a manager that is gone. Of several that try, one gets its file away;
@@ -509,12 +375,7 @@ spool_new (const gchar * folder, const ClothSpoolOptions * options)
   s->folder = g_strdup (folder);
   s->host = g_strdup (g_get_host_name ());
   s->lost_s = options->lost_s > 0. ? options->lost_s : CLOTH_SPOOL_LOST_S;
-  s->beat = -1;
   s->wait_us = LEAST_WAIT_US;
-  g_mutex_init (&s->mutex);
-  g_cond_init (&s->cond);
-  s->watches = g_hash_table_new_full (g_str_hash, g_str_equal, g_free,
-      free_watch);
   s->waiting = g_ptr_array_new_with_free_func (g_free);
   s->put = g_hash_table_new (g_str_hash, g_str_equal);
   s->lost = g_hash_table_new_full (g_str_hash, g_str_equal, g_free, NULL);
@@ -555,15 +416,11 @@ cloth_spool_free (ClothSpool * spool)
     if (is_mine (spool, path))
       g_unlink (path);
   }
-  end_beating (spool);
-  g_mutex_clear (&spool->mutex);
-  g_cond_clear (&spool->cond);
-  g_hash_table_unref (spool->watches);
+  cloth_life_free (spool->life);
   g_hash_table_unref (spool->put);
   g_hash_table_unref (spool->lost);
   g_ptr_array_unref (spool->waiting);
   g_free (spool->folder);
-  g_free (spool->name);
   g_free (spool->host);
   g_free (spool);
 }
@@ -638,7 +495,7 @@ cloth_spool_manage (const gchar * folder, const ClothSpoolOptions * options,
   if (g_file_test (path, G_FILE_TEST_EXISTS) &&
       !describe (s, options, problem, resume, error))
     return NULL;
-  if (!make_folders (s, error) || !begin_beating (s, error) ||
+  if (!make_folders (s, error) || !begin_life (s, error) ||
       !become_manager (s, error))
     return NULL;
   s->manages = TRUE;
@@ -847,7 +704,7 @@ cloth_spool_look_after (ClothSpool * spool, GError ** error)
   g_autoptr (GPtrArray) names = NULL;
   g_autofree gchar *path = NULL;
 
-  if (spool->looked_us && now_us - spool->looked_us < BEAT_US)
+  if (spool->looked_us && now_us - spool->looked_us < LOOK_US)
     return TRUE;
   spool->looked_us = now_us;
   path = g_build_filename (spool->folder, "manager.json", NULL);
@@ -920,7 +777,7 @@ cloth_spool_join (const gchar * folder, const ClothSpoolOptions * options,
     cloth_spool_wait (s);
   }
   note_work (s);
-  if (!load_description (s, options, NULL, error) || !begin_beating (s, error))
+  if (!load_description (s, options, NULL, error) || !begin_life (s, error))
     return NULL;
   return g_steal_pointer (&s);
 }
@@ -1074,7 +931,7 @@ cloth_spool_get_state (ClothSpool * spool)
 
   if (g_file_test (closed, G_FILE_TEST_EXISTS))
     return CLOTH_SPOOL_CLOSED;
-  if (spool->looked_us && now_us - spool->looked_us < BEAT_US)
+  if (spool->looked_us && now_us - spool->looked_us < LOOK_US)
     return CLOTH_SPOOL_OPEN;
   spool->looked_us = now_us;
   if (read_manager (spool, path, &name, &shown) && !is_lost (spool, name))
