@@ -2,6 +2,7 @@
  * one camera to eight.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <glib/gstdio.h>
 #include <math.h>
 #include <string.h>
 
@@ -290,6 +291,30 @@ test_nothing (void)
   g_assert_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING);
   g_assert_nonnull (strstr (error->message, "no camera saw"));
   g_clear_error (&error);
+
+  /* a file of times that promises more than memory holds */
+  {
+    g_autofree gchar *path = g_build_filename (cloth_take_get_folder (s.take),
+        "take.json", NULL);
+    g_autofree gchar *start = g_build_filename (cloth_take_get_folder (s.take),
+        "positions.npy", NULL);
+    g_autoptr (ClothTake) large = NULL;
+    g_autoptr (ClothModel) model = model_new (FALSE);
+    const ClothRolloutOptions options = {.threads = 1 };
+
+    g_assert_true (g_file_set_contents (path, "{\"version\": 1, \"name\": "
+            "\"large\", \"fps\": 50, \"grid\": {\"columns\": 1000, \"rows\": "
+            "900, \"width_m\": 1, \"height_m\": 1}, \"held\": [{\"vertex\": 0}, "
+            "{\"vertex\": 8}]}", -1, NULL));
+    g_remove (start);
+    large = cloth_take_open (cloth_take_get_folder (s.take), &error);
+    g_assert_no_error (error);
+    g_assert_null (cloth_recording_new_observed (large, observations, model,
+            GAIN, &options, &counts, &error));
+    g_assert_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING);
+    g_assert_nonnull (strstr (error->message, "shorter ones"));
+    g_clear_error (&error);
+  }
 
   /* who asks for positions is told where they went */
   g_assert_cmpuint (cloth_take_get_n_positions (s.take), ==, 1);

@@ -22,6 +22,8 @@
 #include "gst/math/vec3.h"
 #include "gst/rig/errorfloor.h"
 
+/* Most vertices times frames: 7 GB of memory. Nothing of a file's size bounds them. */
+#define MOST_PLACES (1u << 25)
 /* Most turns of places and simulation. */
 #define MOST_TURNS 8
 /* A ray that is all that is known of a place. */
@@ -352,10 +354,17 @@ recording_new (ClothTake * take, GError ** error)
         CLOTH_RECORDING_WINDOW);
     return NULL;
   }
+  all = (gsize) r->n_frames * r->n;
+  if (all > MOST_PLACES) {
+    g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING, "%s has %u "
+        "frames of %u vertices; without positions at most %u places are "
+        "found: cut the take into shorter ones", r->name, r->n_frames, r->n,
+        MOST_PLACES);
+    return NULL;
+  }
   r->scene = cloth_scene_new_from_take (take, error);
   if (!r->scene)
     return NULL;
-  all = (gsize) r->n_frames * r->n;
   r->times = g_new (gdouble, r->n_frames);
   for (guint f = 0; f < r->n_frames; f++)
     r->times[f] = cloth_take_get_time (take, f);
