@@ -14,7 +14,8 @@ G_BEGIN_DECLS
 void cloth_recording_find_weights (const gdouble * times, guint mask,
     gdouble at, gdouble * weights);
 void cloth_recording_differentiate (ClothRecording * recording);
-void cloth_recording_straighten (ClothRecording * recording);
+void cloth_recording_straighten (ClothRecording * recording,
+    const gdouble * drawn);
 gdouble cloth_recording_estimate_sigma (const ClothRecording * recording);
 
 G_END_DECLS

@@ -272,6 +272,42 @@ fit (const ClothSynthesis * s, ClothCandidates * candidates,
       CLOTH_FIT_DEFAULT, o->n_passes, &options, sigmas, error);
 }
 
+typedef struct
+{
+  gsize row;
+  gdouble *path;
+} Path;
+
+static void
+keep_path (gpointer data, guint model, guint frame, const gdouble * positions)
+{
+  const Path *p = data;
+
+  memcpy (p->path + frame * p->row, positions, p->row * sizeof *p->path);
+}
+
+/* What draws the cloth: first as smoothing has it, then without what smoothing takes off the motion of the
+ * model at hand. */
+static gboolean
+straighten (ClothRecording * r, const ClothModel * model,
+    const ClothSynthesisOptions * o, GError ** error)
+{
+  const gsize row = 3 * (gsize) r->n;
+  g_autofree gdouble *path = g_new (gdouble, row * r->n_frames);
+  const ClothRecording *target = r;
+  Path keep = { row, path };
+  gboolean sound;
+
+  cloth_recording_straighten (r, NULL);
+  if (!cloth_rollout_nudged (&target, &model, &o->gain, 1, &o->rollout,
+          keep_path, &keep, &sound, error))
+    return FALSE;
+  /* one that diverges is told by the fit */
+  if (sound)
+    cloth_recording_straighten (r, path);
+  return TRUE;
+}
+
 /* What was seen, of films without a mesh as the model at hand has it. */
 static gboolean
 look (ClothSynthesis * s, const ClothSynthesisInput * inputs,
@@ -280,13 +316,12 @@ look (ClothSynthesis * s, const ClothSynthesisInput * inputs,
   for (guint i = 0; i < s->n_takes; i++) {
     ClothSynthesisTake *take = &s->takes[i];
 
-    if (take->recording && !take->counts.places)
-      continue;
-    cloth_recording_free (take->recording);
-    take->recording = record (&inputs[i], model, o, &take->counts, error);
-    if (!take->recording)
+    if (!take->recording || take->counts.places) {
+      cloth_recording_free (take->recording);
+      take->recording = record (&inputs[i], model, o, &take->counts, error);
+    }
+    if (!take->recording || !straighten (take->recording, model, o, error))
       return FALSE;
-    cloth_recording_straighten (take->recording);
   }
   return TRUE;
 }
@@ -308,7 +343,6 @@ cloth_synthesis_fit (const ClothSynthesisInput * inputs, guint n_inputs,
   g_autoptr (ClothSynthesis) s = g_new0 (ClothSynthesis, 1);
   g_autoptr (ClothCandidates) candidates = NULL;
   g_autofree gdouble *sigmas = NULL;
-  gboolean has_films = FALSE;
 
   s->numbers = g_array_new (FALSE, FALSE, sizeof (ClothSynthesisNumber));
   g_array_set_clear_func (s->numbers, clear_number);
@@ -327,10 +361,8 @@ cloth_synthesis_fit (const ClothSynthesisInput * inputs, guint n_inputs,
     return NULL;
   }
   sigmas = g_new0 (gdouble, candidates->n_free);
-  for (guint i = 0; i < n_inputs; i++)
-    has_films |= s->takes[i].counts.places > 0;
   s->model = cloth_model_copy (model);
-  for (guint turn = 0; turn < (has_films ? MAX (options->turns, 1) : 1); turn++) {
+  for (guint turn = 0; turn < MAX (options->turns, 1); turn++) {
     ClothModel *fitted;
 
     if (turn && !look (s, inputs, s->model, options, error))
