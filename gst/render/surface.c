@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/render/scan.h"
 #include "gst/render/surface-private.h"
 
 /* Farther off than any picture: such triangles aren't drawn. */
@@ -378,35 +379,6 @@ fill_row (ClothSurface * self, const Plane * plane, gint y, gint begin,
   }
 }
 
-/* An edge from the lower to the higher of its two vertices' numbers: the places where it
- * crosses a row are the same for both of its triangles. */
-typedef struct
-{
-  gdouble x, y, slope, low, high;
-} Edge;
-
-static void
-set_edge (const ClothSurface * self, guint32 i, guint32 j, Edge * edge)
-{
-  const Vertex *a = &self->vertices[MIN (i, j)];
-  const Vertex *b = &self->vertices[MAX (i, j)];
-
-  edge->x = a->x;
-  edge->y = a->y;
-  edge->slope = (b->x - a->x) / (b->y - a->y);
-  edge->low = MIN (a->y, b->y);
-  edge->high = MAX (a->y, b->y);
-}
-
-/* Of what is below FAR_PX; plain SSE2 lacks it. */
-static inline gint
-ceiling (gdouble value)
-{
-  const gint whole = (gint) value;
-
-  return whole + (whole < value);
-}
-
 /* Pixels of a triangle in so many rows of the picture: not more than lie around it there, and
  * in a narrow one a chunk in each row. */
 static gdouble
@@ -420,7 +392,6 @@ count_pixels (const ClothSurface * self, const Vertex * const *p, gdouble area,
   return MIN (rows * MAX (right - left, CHUNK), fabs (area) / 2 + rows * CHUNK);
 }
 
-/* A centre on a border belongs to the triangle to its right or below. */
 static void
 fill_triangle (ClothSurface * self, const guint32 * t, ClothWork * work)
 {
@@ -431,10 +402,10 @@ fill_triangle (ClothSurface * self, const guint32 * t, ClothWork * work)
       (p[1]->y - p[0]->y) * (p[2]->x - p[0]->x);
   const gdouble low = MIN (p[0]->y, MIN (p[1]->y, p[2]->y));
   const gdouble high = MAX (p[0]->y, MAX (p[1]->y, p[2]->y));
-  const gint top = MAX (ceiling (low), 0);
-  const gint end = MIN (ceiling (high), self->height);
+  const gint top = MAX (cloth_scan_ceiling (low), 0);
+  const gint end = MIN (cloth_scan_ceiling (high), self->height);
   Plane plane;
-  Edge edges[3];
+  ClothScanEdge edges[3];
 
   if (!(fabs (area) > 1e-9) || top >= end
       || MAX (p[0]->x, MAX (p[1]->x, p[2]->x)) < 0
@@ -443,23 +414,12 @@ fill_triangle (ClothSurface * self, const guint32 * t, ClothWork * work)
     return;
   set_plane (self, t, p, area, &plane);
   for (guint k = 0; k < 3; k++)
-    set_edge (self, t[k], t[(k + 1) % 3], &edges[k]);
+    cloth_scan_edge_init (&edges[k], p[k]->x, p[k]->y, p[(k + 1) % 3]->x,
+        p[(k + 1) % 3]->y);
   for (gint y = top; y < end; y++) {
-    gdouble left = FAR_PX, right = -FAR_PX;
     gint from, to;
 
-    for (guint k = 0; k < 3; k++) {
-      const Edge *e = &edges[k];
-
-      if (e->low <= y && y < e->high) {
-        const gdouble x = e->x + (y - e->y) * e->slope;
-
-        left = MIN (left, x);
-        right = MAX (right, x);
-      }
-    }
-    from = CLAMP (ceiling (left), 0, self->width);
-    to = CLAMP (ceiling (right), 0, self->width);
+    cloth_scan_row (edges, y, self->width, &from, &to);
     if (from < to)
       fill_row (self, &plane, y, from, to);
   }
