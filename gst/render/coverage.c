@@ -15,8 +15,6 @@
 
 #include "gst/render/scan.h"
 
-/* Farther off than any picture: such triangles aren't drawn. */
-#define FAR_PX 1e6
 /* Rows that a thread has at a time. */
 #define BAND 32
 
@@ -53,24 +51,13 @@ ClothCoverage *
 cloth_coverage_new (guint n_vertices, const guint32 * faces, guint n_faces)
 {
   Coverage *self = g_new0 (Coverage, 1);
-  guint n = 0;
 
   self->n_vertices = n_vertices;
   self->vertices = g_new (Point, MAX (n_vertices, 1));
   self->public.triangles = g_malloc (2 * (gsize) n_faces *
       sizeof *self->public.triangles + 1);
-  for (gsize f = 0; f < n_faces; f++) {
-    const guint32 *face = faces + 4 * f;
-
-    for (guint k = 2; k < (face[3] == G_MAXUINT32 ? 3 : 4); k++) {
-      guint32 *t = self->public.triangles[n++];
-
-      t[0] = face[0];
-      t[1] = face[k - 1];
-      t[2] = face[k];
-    }
-  }
-  self->public.n_triangles = n;
+  self->public.n_triangles = cloth_scan_list_triangles (faces, n_faces,
+      self->public.triangles[0]);
   return &self->public;
 }
 
@@ -106,7 +93,7 @@ see (const ClothCamera * camera, const gdouble X[3], Point * point)
     return;
   point->x = px[0];
   point->y = px[1];
-  if (fabs (px[0]) < FAR_PX && fabs (px[1]) < FAR_PX)
+  if (fabs (px[0]) < CLOTH_SCAN_FAR_PX && fabs (px[1]) < CLOTH_SCAN_FAR_PX)
     point->w = 1. / (R[6] * X[0] + R[7] * X[1] + R[8] * X[2] + camera->t[2]);
 }
 
@@ -225,17 +212,6 @@ typedef struct
 } Plane;
 
 static void
-set_slopes (gdouble plane[3], const Point * const p[3], gdouble area,
-    const gdouble values[3])
-{
-  const gdouble q = values[1] - values[0], r = values[2] - values[0];
-
-  plane[0] = values[0];
-  plane[1] = (q * (p[2]->y - p[0]->y) - r * (p[1]->y - p[0]->y)) / area;
-  plane[2] = (r * (p[1]->x - p[0]->x) - q * (p[2]->x - p[0]->x)) / area;
-}
-
-static void
 fill_row (Coverage * self, const Plane * plane, guint32 triangle, gint y,
     gint from, gint to)
 {
@@ -268,7 +244,7 @@ fill_piece (Coverage * self, guint32 triangle, const Point * const p[3],
       (p[1]->y - p[0]->y) * (p[2]->x - p[0]->x);
   const gdouble low = MIN (p[0]->y, MIN (p[1]->y, p[2]->y));
   const gdouble high = MAX (p[0]->y, MAX (p[1]->y, p[2]->y));
-  gdouble w[3], a[3], b[3];
+  gdouble x[3], y[3], w[3], a[3], b[3];
   ClothScanEdge edges[3];
   Plane plane;
 
@@ -279,22 +255,24 @@ fill_piece (Coverage * self, guint32 triangle, const Point * const p[3],
   if (top >= bottom)
     return;
   for (guint k = 0; k < 3; k++) {
+    x[k] = p[k]->x;
+    y[k] = p[k]->y;
     w[k] = p[k]->w;
     a[k] = weights[k][0] * w[k];
     b[k] = weights[k][1] * w[k];
     cloth_scan_edge_init (&edges[k], p[k]->x, p[k]->y, p[(k + 1) % 3]->x,
         p[(k + 1) % 3]->y);
   }
-  plane.x = p[0]->x;
-  plane.y = p[0]->y;
-  set_slopes (plane.w, p, area, w);
-  set_slopes (plane.a, p, area, a);
-  set_slopes (plane.b, p, area, b);
-  for (gint y = top; y < bottom; y++) {
+  plane.x = x[0];
+  plane.y = y[0];
+  cloth_scan_set_plane (plane.w, x, y, area, w);
+  cloth_scan_set_plane (plane.a, x, y, area, a);
+  cloth_scan_set_plane (plane.b, x, y, area, b);
+  for (gint row = top; row < bottom; row++) {
     gint from, to;
 
-    cloth_scan_row (edges, y, self->public.width, &from, &to);
-    fill_row (self, &plane, triangle, y, from, to);
+    cloth_scan_row (edges, row, self->public.width, &from, &to);
+    fill_row (self, &plane, triangle, row, from, to);
   }
 }
 
@@ -369,15 +347,6 @@ prepare_points (Coverage * self)
   self->points = g_renew (Point, self->points, n);
 }
 
-static void
-share_out (ClothPool * pool, ClothPoolFunc func, gpointer data, guint n)
-{
-  if (pool)
-    cloth_pool_run (pool, func, data, n);
-  else if (n > 0)
-    func (data, 0, n, 0);
-}
-
 /* @coverage: where to
  * @camera: whose picture
  * @positions: (array): 3 numbers a vertex, m, world; NaN where unknown
@@ -396,10 +365,10 @@ cloth_coverage_draw (ClothCoverage * coverage, const ClothCamera * camera,
   self->camera = camera;
   self->positions = positions;
   prepare (self);
-  share_out (pool, see_vertices, self, self->n_vertices);
+  cloth_pool_run (pool, see_vertices, self, self->n_vertices);
   choose_cuts (self);
   prepare_points (self);
-  share_out (pool, see_points, self, coverage->n_triangles);
-  share_out (pool, fill_bands, self, (guint) (coverage->height + BAND - 1) /
-      BAND);
+  cloth_pool_run (pool, see_points, self, coverage->n_triangles);
+  cloth_pool_run (pool, fill_bands, self,
+      (guint) (coverage->height + BAND - 1) / BAND);
 }

@@ -1,4 +1,4 @@
-/* The pixels of a triangle, row by row, without gaps or overlaps between neighbours.
+/* Triangles in a picture: their pixels, row by row, without gaps or overlaps between neighbours, and what is linear over them.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -18,7 +18,10 @@ typedef struct {
   gdouble x, y, slope, low, high;
 } ClothScanEdge;
 
-/* Of what an int holds; plain SSE2 lacks it. */
+/* Farther off than any picture: triangles with such corners can't be drawn. */
+#define CLOTH_SCAN_FAR_PX 1e6
+
+/* Of what is below %CLOTH_SCAN_FAR_PX; plain SSE2 lacks it. */
 static inline gint
 cloth_scan_ceiling (gdouble value)
 {
@@ -66,6 +69,50 @@ cloth_scan_row (const ClothScanEdge edges[3], gint y, gint width, gint * from,
   }
   *from = cloth_scan_ceiling (MAX (left, 0));
   *to = cloth_scan_ceiling (MIN (right, width));
+}
+
+/* @plane: (out): value at the first corner, slopes along x and y
+ * @x, @y: of a triangle's corners, px
+ * @area: twice its area, signed
+ * @values: at its corners
+ *
+ * The plane through three values over the picture.
+ */
+static inline void
+cloth_scan_set_plane (gdouble plane[3], const gdouble x[3], const gdouble y[3],
+    gdouble area, const gdouble values[3])
+{
+  const gdouble q = values[1] - values[0], r = values[2] - values[0];
+
+  plane[0] = values[0];
+  plane[1] = (q * (y[2] - y[0]) - r * (y[1] - y[0])) / area;
+  plane[2] = (r * (x[1] - x[0]) - q * (x[2] - x[0])) / area;
+}
+
+/* @faces: (array): 4 indices a face, the last 0xffffffff for a triangle
+ * @n_faces: how many
+ * @triangles: (out) (array): 3 indices a triangle, room for two a face
+ *
+ * Returns: number of triangles; a face of four corners makes two
+ */
+static inline guint
+cloth_scan_list_triangles (const guint32 * faces, guint n_faces,
+    guint32 * triangles)
+{
+  guint n = 0;
+
+  for (gsize f = 0; f < n_faces; f++) {
+    const guint32 *face = faces + 4 * f;
+
+    for (guint k = 2; k < (face[3] == G_MAXUINT32 ? 3 : 4); k++) {
+      guint32 *t = triangles + 3 * (gsize) n++;
+
+      t[0] = face[0];
+      t[1] = face[k - 1];
+      t[2] = face[k];
+    }
+  }
+  return n;
 }
 
 G_END_DECLS

@@ -25,10 +25,18 @@
 /* Order of the polynomial through the frames of a path without noise. */
 #define EXACT (CLOTH_RECORDING_WINDOW - 1)
 
-/* cloth_recording_find_weights () with a polynomial of any order up to EXACT. */
-static void
-find_weights (const gdouble * times, guint mask, gdouble at, guint order,
-    gdouble * weights)
+/* @times: (array): of %CLOTH_RECORDING_WINDOW frames, s
+ * @mask: which of them count, the first in the lowest bit
+ * @at: a time, s
+ * @order: of the polynomial, below %CLOTH_RECORDING_WINDOW
+ * @weights: (out) (array): of each frame, 1/s; 0 of those that don't count
+ *
+ * Weights whose sum with the frames' values is the derivative at @at of the polynomial
+ * that fits them. One frame alone has none: NaN.
+ */
+void
+cloth_recording_find_weights (const gdouble * times, guint mask, gdouble at,
+    guint order, gdouble * weights)
 {
   const guint all = CLOTH_RECORDING_WINDOW;
   gdouble normal[(EXACT + 1) * (EXACT + 1)];
@@ -67,21 +75,6 @@ find_weights (const gdouble * times, guint mask, gdouble at, guint order,
       weights[i] += slope[k] * powers[i][k] / scale;
 }
 
-/* @times: (array): of %CLOTH_RECORDING_WINDOW frames, s
- * @mask: which of them count, the first in the lowest bit
- * @at: a time, s
- * @weights: (out) (array): of each frame, 1/s; 0 of those that don't count
- *
- * Weights whose sum with the frames' values is the derivative at @at of the polynomial
- * that fits them. One frame alone has none: NaN.
- */
-void
-cloth_recording_find_weights (const gdouble * times, guint mask, gdouble at,
-    gdouble * weights)
-{
-  find_weights (times, mask, at, CLOTH_RECORDING_ORDER, weights);
-}
-
 static void
 differentiate (const ClothRecording * r, const gdouble * path, guint order,
     gdouble * velocity)
@@ -94,8 +87,8 @@ differentiate (const ClothRecording * r, const gdouble * path, guint order,
     gdouble *to = velocity + frame * row;
 
     begin = CLAMP (begin, 0, (gint) r->n_frames - CLOTH_RECORDING_WINDOW);
-    find_weights (r->times + begin, (1u << CLOTH_RECORDING_WINDOW) - 1,
-        r->times[frame], order, weights);
+    cloth_recording_find_weights (r->times + begin,
+        (1u << CLOTH_RECORDING_WINDOW) - 1, r->times[frame], order, weights);
     memset (to, 0, row * sizeof *to);
     for (guint i = 0; i < CLOTH_RECORDING_WINDOW; i++) {
       const gdouble *from = path + ((guint) begin + i) * row;

@@ -113,18 +113,7 @@ typedef struct
   const ClothRecording *recording;
   const gdouble *left_out;      /* 1 where a place was seen and left out */
   gdouble sums[N_STRENGTHS];
-  gfloat *x;
 } Drawn;
-
-static void
-keep_drawn (gpointer data, guint model, guint frame, const gdouble * positions)
-{
-  Drawn *d = data;
-  const gsize row = 3 * (gsize) d->recording->n;
-
-  for (gsize i = 0; i < row; i++)
-    d->x[frame * row + i] = (gfloat) positions[i];
-}
 
 /* How far each strength is off what was left out. */
 static void
@@ -202,13 +191,16 @@ draw (ClothSynthesisTake * take, const ClothModel * model,
     const ClothSynthesisOptions * o, GError ** error)
 {
   const ClothRecording *r = take->recording;
-  Drawn drawn = { r,.x = take->positions };
+  const gsize all = 3 * (gsize) r->n * r->n_frames;
+  g_autofree gdouble *path = g_new (gdouble, all);
   gboolean sound;
 
   if (!choose_gain (take, model, o, error)
-      || !cloth_rollout_nudged (&r, &model, &take->gain, 1, &o->rollout,
-          keep_drawn, &drawn, &sound, error))
+      || !cloth_rollout_follow (r, model, take->gain, &o->rollout, path, &sound,
+          error))
     return FALSE;
+  for (gsize i = 0; i < all; i++)
+    take->positions[i] = (gfloat) path[i];
   if (sound)
     return TRUE;
   g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL, "%s: the fitted "
@@ -272,35 +264,18 @@ fit (const ClothSynthesis * s, ClothCandidates * candidates,
       CLOTH_FIT_DEFAULT, o->n_passes, &options, sigmas, error);
 }
 
-typedef struct
-{
-  gsize row;
-  gdouble *path;
-} Path;
-
-static void
-keep_path (gpointer data, guint model, guint frame, const gdouble * positions)
-{
-  const Path *p = data;
-
-  memcpy (p->path + frame * p->row, positions, p->row * sizeof *p->path);
-}
-
 /* What draws the cloth: first as smoothing has it, then without what smoothing takes off the motion of the
  * model at hand. */
 static gboolean
 straighten (ClothRecording * r, const ClothModel * model,
     const ClothSynthesisOptions * o, GError ** error)
 {
-  const gsize row = 3 * (gsize) r->n;
-  g_autofree gdouble *path = g_new (gdouble, row * r->n_frames);
-  const ClothRecording *target = r;
-  Path keep = { row, path };
+  g_autofree gdouble *path = g_new (gdouble, 3 * (gsize) r->n * r->n_frames);
   gboolean sound;
 
   cloth_recording_straighten (r, NULL);
-  if (!cloth_rollout_nudged (&target, &model, &o->gain, 1, &o->rollout,
-          keep_path, &keep, &sound, error))
+  if (!cloth_rollout_follow (r, model, o->gain, &o->rollout, path, &sound,
+          error))
     return FALSE;
   /* one that diverges is told by the fit */
   if (sound)
