@@ -1,4 +1,5 @@
-/* Triangles in a picture: their pixels, row by row, without gaps or overlaps between neighbours, and what is linear over them.
+/* Triangles in a picture: their pixels, row by row, without gaps or overlaps between neighbours, and
+ * what is linear over them.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
