@@ -32,7 +32,7 @@ typedef enum {
   CLOTH_FORCE_MASS_SPRING
 } ClothForceModel;
 
-/* @CLOTH_INTEGRATOR_EXPLICIT: symplectic Euler, the reference
+/* @CLOTH_INTEGRATOR_EXPLICIT: leapfrog, the reference
  * @CLOTH_INTEGRATOR_IMPLICIT: linearly implicit, for stiff cloth
  *
  * How time passes.

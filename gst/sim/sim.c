@@ -51,7 +51,7 @@ struct _ClothSim
   gdouble longest_step;
   gdouble patience;             /* how much more than usual a step may be wrong */
   guint good_steps;             /* in a row */
-  gdouble *scratch[5];          /* by particle */
+  gdouble *scratch[5];          /* by particle or by vertex */
   gdouble *weights;             /* by vertex of the body */
   gdouble *gains, *dampings;    /* of the observer, by rank */
   gdouble *matrices;            /* of the observer's springs, by particle, and scratch */
@@ -270,7 +270,8 @@ cloth_sim_new (const ClothScene * scene, const ClothModel * const *models,
   sim->patience = sim->numerics->step_factor * sim->numerics->step_factor;
   sim->time = sim->body->times[0];
   for (guint i = 0; i < G_N_ELEMENTS (sim->scratch); i++)
-    sim->scratch[i] = g_new0 (gdouble, 3 * (gsize) sim->body->n_particles);
+    sim->scratch[i] = g_new0 (gdouble, 3 * (gsize) MAX (sim->n_vertices,
+            sim->body->n_particles));
   sim->gains = g_new0 (gdouble, n_models);
   sim->dampings = g_new0 (gdouble, n_models);
   sim->lighter = find_lighter (sim);
@@ -494,6 +495,8 @@ cloth_sim_get_positions (const ClothSim * sim, guint model, gdouble * positions)
 /* @sim: a simulation
  * @model: index of a model
  * @velocities: (out caller-allocates): how fast its vertices are, n_vertices · 3, m/s
+ *
+ * Of explicit steps it is the velocity in the middle of the last one, from place to place.
  */
 void
 cloth_sim_get_velocities (const ClothSim * sim, guint model,
@@ -504,6 +507,22 @@ cloth_sim_get_velocities (const ClothSim * sim, guint model,
 
   group->backend->get (group->lanes, lane, NULL, sim->scratch[0]);
   from_particles (sim, sim->scratch[0], velocities);
+}
+
+/* What is in the scratch becomes the state of a model. */
+static void
+set_particles (ClothSim * sim, guint model, gdouble lag_s, gdouble time_s)
+{
+  guint lane;
+  const ClothSimGroup *group = group_of (sim, model, &lane);
+
+  group->backend->set (group->lanes, lane, sim->scratch[0], sim->scratch[1],
+      lag_s);
+  if (time_s == sim->time)
+    return;
+  for (guint i = 0; i < sim->n_groups; i++)
+    sim->groups[i].backend->set_time (sim->groups[i].lanes, time_s);
+  sim->time = time_s;
 }
 
 /* @sim: a simulation
@@ -520,21 +539,38 @@ void
 cloth_sim_set_state (ClothSim * sim, guint model, const gdouble * positions,
     const gdouble * velocities, gdouble time_s)
 {
-  guint lane;
-  const ClothSimGroup *group = group_of (sim, model, &lane);
-
   to_particles (sim, positions, sim->scratch[0]);
   if (velocities)
     to_particles (sim, velocities, sim->scratch[1]);
   else
     memset (sim->scratch[1], 0,
         3 * (gsize) sim->body->n_particles * sizeof (gdouble));
-  group->backend->set (group->lanes, lane, sim->scratch[0], sim->scratch[1]);
-  if (time_s != sim->time) {
-    for (guint i = 0; i < sim->n_groups; i++)
-      sim->groups[i].backend->set_time (sim->groups[i].lanes, time_s);
-    sim->time = time_s;
-  }
+  set_particles (sim, model, 0., time_s);
+}
+
+/* @sim: a simulation
+ * @model: index of a model
+ * @from: a simulation of the same cloth, @sim itself or another one
+ * @of: index of one of its models
+ *
+ * Puts a model where another one is now, with its velocities as they are: those of explicit steps
+ * are half a step behind the places, and go on from there. Else as cloth_sim_set_state () at the
+ * time of that other simulation.
+ */
+void
+cloth_sim_copy_state (ClothSim * sim, guint model, const ClothSim * from,
+    guint of)
+{
+  guint lane;
+  const ClothSimGroup *group = group_of (from, of, &lane);
+
+  group->backend->get (group->lanes, lane, from->scratch[0], from->scratch[1]);
+  from_particles (from, from->scratch[0], from->scratch[2]);
+  from_particles (from, from->scratch[1], from->scratch[3]);
+  to_particles (sim, from->scratch[2], sim->scratch[0]);
+  to_particles (sim, from->scratch[3], sim->scratch[1]);
+  set_particles (sim, model, group->backend->lag (group->lanes, lane),
+      from->time);
 }
 
 /* @sim: a simulation

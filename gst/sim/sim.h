@@ -37,6 +37,8 @@ void cloth_sim_get_velocities (const ClothSim * sim, guint model,
     gdouble * velocities);
 void cloth_sim_set_state (ClothSim * sim, guint model,
     const gdouble * positions, const gdouble * velocities, gdouble time_s);
+void cloth_sim_copy_state (ClothSim * sim, guint model,
+    const ClothSim * from, guint of);
 ClothSimState cloth_sim_get_state (const ClothSim * sim, guint model,
     gdouble * since_s);
 ClothSimEnergy cloth_sim_get_energy (const ClothSim * sim, guint model);

@@ -172,6 +172,7 @@ test_added_mass (void)
     g_autoptr (ClothModel) model = model_new (m, k);
     g_autoptr (ClothSim) sim = NULL;
     g_autofree gdouble *v = NULL;
+    gdouble middle;             /* of the last step: velocities are its */
 
     memcpy (scene->gravity, gravity, sizeof gravity);
     model->damping_stiffness = staged ? 1e-2 : 1e-5;
@@ -182,9 +183,10 @@ test_added_mass (void)
         2. / (model->damping_stiffness * 4. * k / (m * h * h)), ==, staged);
     cloth_sim_advance (sim, t);
     v = velocities_of (sim, 0);
+    middle = t - t / ceil (t / cloth_sim_get_time_step (sim) - 1e-9) / 2.;
     for (guint i = 0; i < 3 * 9 * 17; i++)
-      assert_within (v[i], gravity[i % 3] * t * (i % 3 == 1 ? m / (m + added) :
-              1.), 1e-9);
+      assert_within (v[i],
+          gravity[i % 3] * middle * (i % 3 == 1 ? m / (m + added) : 1.), 1e-9);
   }
 }
 

@@ -240,7 +240,7 @@ look_ahead (ClothObserver * self, gdouble time)
   last = self->ring[(self->n_popped - 1) % WINDOW].time;
   dt = time - last;
   cloth_sim_get_velocities (self->sim, NUDGED, self->speeds);
-  cloth_sim_set_state (self->forecast, 0, self->state, self->speeds, last);
+  cloth_sim_copy_state (self->forecast, 0, self->sim, NUDGED);
   cloth_sim_advance (self->forecast, time);
   cloth_sim_get_positions (self->forecast, 0, self->ahead);
   cloth_sim_get_velocities (self->forecast, 0, self->ahead_speeds);
@@ -326,8 +326,7 @@ check_state (ClothObserver * self, GError ** error)
 static void
 open_window (ClothObserver * self, gdouble time)
 {
-  cloth_sim_get_velocities (self->sim, NUDGED, self->speeds);
-  cloth_sim_set_state (self->sim, FREE, self->state, self->speeds, time);
+  cloth_sim_copy_state (self->sim, FREE, self->sim, NUDGED);
   self->window_from = time;
   self->sum = 0;
   self->n_seen = self->n_all = 0;

@@ -22,12 +22,19 @@
 #include "gst/fit/recording/recording.h"
 #include "gst/math/pool.h"
 
-/* Models that one ClothSim can step together: those that agree in what it shares. */
+/* Models that are computed side by side, as narrow lanes have them. */
+#define MODELS_A_GROUP 8.
+
+/* Models that one ClothSim can step together: those that agree in what it shares, and need steps of
+ * about the same length, as it takes the shortest for all. */
 typedef struct
 {
   ClothSim *sim;
   guint n;
   guint *of;                    /* which of all models each is */
+  guint first;                  /* of all models */
+  guint octave;                 /* how often their steps halve the longest of all models */
+  gdouble step;                 /* the shortest that one of them needs, s */
   const ClothRecording *shared; /* what all of them are drawn to; NULL: they differ */
   gdouble *gains;
   gdouble *dampings;
@@ -47,7 +54,7 @@ typedef struct
   gsize row;                    /* numbers of a model */
   gdouble *weights;             /* [model][vertex], of the running frame */
   gdouble *x;                   /* [model][vertex][3] */
-  gdouble *v;                   /* of one model */
+  gdouble *steps;               /* of each model, s */
   guint frame;                  /* that is running */
   gboolean nudged;
   /* of the running call of report_frame () */
@@ -70,43 +77,128 @@ run_clear (Run * run)
   g_clear_pointer (&run->pool, cloth_pool_free);
   g_free (run->weights);
   g_free (run->x);
-  g_free (run->v);
+  g_free (run->steps);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Run, run_clear);
 
-/* The batch that a model can join, a new one if there is none. */
-static Batch *
-find_batch (Run * run, guint model)
+/* The longest step that each model could take by itself, s; of one that can't be simulated none. */
+static void
+find_steps (gpointer data, guint begin, guint end, guint worker)
 {
-  Batch *batch;
-  guint b = 0;
+  Run *run = data;
+  const ClothSimOptions options = {
+    TRUE, 1, CLOTH_SIMD_BEST, run->options->seed
+  };
 
-  while (b < run->n_batches
-      && !cloth_sim_can_share (run->models[run->batches[b].of[0]],
-          run->models[model]))
-    b++;
-  batch = &run->batches[b];
-  if (b == run->n_batches) {
-    run->n_batches++;
-    batch->of = g_new (guint, run->n_models);
-    batch->shared = run->targets[model];
+  for (guint m = begin; m < end; m++) {
+    g_autoptr (ClothSim) sim = cloth_sim_new (run->targets[0]->scene,
+        &run->models[m], 1, &options, NULL);
+
+    run->steps[m] = sim ? cloth_sim_get_time_step (sim) : 0.;
   }
-  if (batch->shared != run->targets[model])
-    batch->shared = NULL;
-  run->batch_of[model] = b;
-  run->rank_of[model] = batch->n;
-  batch->of[batch->n++] = model;
-  return batch;
+}
+
+/* What a batch costs: so many groups of models step side by side, so often a second. */
+static gdouble
+cost_of (guint n_models, gdouble step)
+{
+  return step > 0. ? ceil (n_models / MODELS_A_GROUP) / step : 0.;
+}
+
+/* Models that need steps much shorter than the others' would bind these too: they are by themselves
+ * where that costs less. How models are parted is a matter of the models alone, not of the machine. */
+static void
+merge_batches (Run * run)
+{
+  for (guint a = 0; a < run->n_batches; a++)
+    for (guint b = a + 1; b < run->n_batches; b++) {
+      Batch *one = &run->batches[a], *other = &run->batches[b];
+      const gdouble step = MIN (one->step, other->step);
+
+      if (!cloth_sim_can_share (run->models[one->first],
+              run->models[other->first])
+          || cost_of (one->n + other->n, step) > cost_of (one->n, one->step) +
+          cost_of (other->n, other->step))
+        continue;
+      one->n += other->n;
+      one->step = step;
+      for (guint m = 0; m < run->n_models; m++)
+        run->batch_of[m] = run->batch_of[m] == b ? a : run->batch_of[m] > b ?
+            run->batch_of[m] - 1 : run->batch_of[m];
+      memmove (other, other + 1, (--run->n_batches - b) * sizeof *other);
+      b = a;
+    }
+}
+
+/* The batch that each model is in: those that can share a simulation, and need steps within an
+ * octave of each other. */
+static void
+list_batches (Run * run, const gdouble * steps)
+{
+  gdouble longest = 0.;
+
+  for (guint m = 0; m < run->n_models; m++)
+    longest = MAX (longest, steps[m]);
+  for (guint m = 0; m < run->n_models; m++) {
+    const guint octave = steps[m] > 0. ?
+        (guint) floor (log2 (longest / steps[m])) : 0;
+    guint b = 0;
+    Batch *batch;
+
+    while (b < run->n_batches && (run->batches[b].octave != octave
+            || !cloth_sim_can_share (run->models[run->batches[b].first],
+                run->models[m])))
+      b++;
+    batch = &run->batches[b];
+    if (b == run->n_batches) {
+      run->n_batches++;
+      *batch = (Batch) {
+        .first = m,.octave = octave,.step = steps[m]
+      };
+    }
+    batch->n++;
+    batch->step = MIN (batch->step, steps[m]);
+    run->batch_of[m] = b;
+  }
+  merge_batches (run);
+}
+
+/* Which of all models each batch has, and what all of these are drawn to. */
+static void
+fill_batches (Run * run)
+{
+  for (guint b = 0; b < run->n_batches; b++) {
+    Batch *batch = &run->batches[b];
+
+    batch->of = g_new (guint, batch->n);
+    batch->shared = run->targets[batch->first];
+    batch->n = 0;
+  }
+  for (guint m = 0; m < run->n_models; m++) {
+    Batch *batch = &run->batches[run->batch_of[m]];
+
+    if (batch->shared != run->targets[m])
+      batch->shared = NULL;
+    run->rank_of[m] = batch->n;
+    batch->of[batch->n++] = m;
+  }
+}
+
+/* Those that do are stepped one after the other by all threads, the others side by side. */
+static gboolean
+has_several_groups (const Batch * batch)
+{
+  return batch->n > MODELS_A_GROUP;
 }
 
 static gboolean
-start_batch (Run * run, Batch * batch, const gdouble * gains, guint threads,
-    GError ** error)
+start_batch (Run * run, Batch * batch, const gdouble * gains, GError ** error)
 {
   /* single numbers: steps of derivatives are far above their rounding */
   const ClothSimOptions options = {
-    TRUE, threads, CLOTH_SIMD_BEST, run->options->seed
+    TRUE, has_several_groups (batch) ? run->options->threads : 1,
+    CLOTH_SIMD_BEST, run->options->seed
   };
   g_autofree const ClothModel **models = g_new (const ClothModel *, batch->n);
   g_autofree gdouble *start = g_new (gdouble, run->row);
@@ -138,7 +230,7 @@ run_init (Run * run, const ClothRecording * const *targets,
     const ClothModel * const *models, const gdouble * gains, guint n_models,
     const ClothRolloutOptions * options, GError ** error)
 {
-  guint n = targets[0]->n, threads;
+  guint n = targets[0]->n;
 
   *run = (Run) {
   targets, models, n_models, options,.row = 3 * (gsize) n,.nudged =
@@ -149,12 +241,12 @@ run_init (Run * run, const ClothRecording * const *targets,
   run->rank_of = g_new (guint, n_models);
   run->weights = g_new (gdouble, (gsize) n * n_models);
   run->x = g_new (gdouble, run->row * n_models);
-  run->v = g_new (gdouble, run->row);
-  for (guint m = 0; m < n_models; m++)
-    find_batch (run, m);
-  threads = MAX (1, cloth_pool_get_n_threads (run->pool) / run->n_batches);
+  run->steps = g_new (gdouble, n_models);
+  cloth_pool_run_one_by_one (run->pool, find_steps, run, n_models);
+  list_batches (run, run->steps);
+  fill_batches (run);
   for (guint b = 0; b < run->n_batches; b++)
-    if (!start_batch (run, &run->batches[b], gains, threads, error))
+    if (!start_batch (run, &run->batches[b], gains, error))
       return FALSE;
   return TRUE;
 }
@@ -192,16 +284,21 @@ set_targets (Run * run, Batch * batch)
 }
 
 static void
-advance_batches (gpointer data, guint begin, guint end, guint worker)
+advance_batch (Run * run, Batch * batch)
+{
+  if (run->nudged)
+    set_targets (run, batch);
+  cloth_sim_advance (batch->sim, run->targets[0]->times[run->frame + 1]);
+}
+
+static void
+advance_small_batches (gpointer data, guint begin, guint end, guint worker)
 {
   Run *run = data;
 
-  for (guint b = begin; b < end; b++) {
-    if (run->nudged)
-      set_targets (run, &run->batches[b]);
-    cloth_sim_advance (run->batches[b].sim,
-        run->targets[0]->times[run->frame + 1]);
-  }
+  for (guint b = begin; b < end; b++)
+    if (!has_several_groups (&run->batches[b]))
+      advance_batch (run, &run->batches[b]);
 }
 
 /* To the next frame. */
@@ -209,7 +306,11 @@ static void
 advance (Run * run, guint frame)
 {
   run->frame = frame;
-  cloth_pool_run_one_by_one (run->pool, advance_batches, run, run->n_batches);
+  for (guint b = 0; b < run->n_batches; b++)
+    if (has_several_groups (&run->batches[b]))
+      advance_batch (run, &run->batches[b]);
+  cloth_pool_run_one_by_one (run->pool, advance_small_batches, run,
+      run->n_batches);
 }
 
 static ClothSim *
@@ -424,12 +525,8 @@ cloth_rollout_windows (const ClothRecording * recording,
       for (guint m = 0; m < n_models; m++) {
         guint nudged = n_models + m;
 
-        cloth_sim_get_positions (sim_of (&run, nudged), run.rank_of[nudged],
-            run.x);
-        cloth_sim_get_velocities (sim_of (&run, nudged), run.rank_of[nudged],
-            run.v);
-        cloth_sim_set_state (sim_of (&run, m), run.rank_of[m], run.x, run.v,
-            recording->times[frame]);
+        cloth_sim_copy_state (sim_of (&run, m), run.rank_of[m],
+            sim_of (&run, nudged), run.rank_of[nudged]);
       }
     }
     advance (&run, frame);

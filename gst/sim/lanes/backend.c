@@ -246,6 +246,7 @@ group_free (gpointer group)
   g_aligned_free (state->mass);
   g_aligned_free (state->inverse_mass);
   g_aligned_free (state->last_v);
+  g_aligned_free (state->before_v);
   g_aligned_free (state->others);
   g_aligned_free (state->sound_x);
   g_aligned_free (state->sound_v);
@@ -287,6 +288,7 @@ group_new (const ClothBody * body, const ClothModel * const *models,
   state->f = lanes_new (n, sizeof *state->f);
   state->z = lanes_new (n, sizeof *state->z);
   state->last_v = lanes_new (n, sizeof *state->v);
+  state->before_v = lanes_new (n, sizeof *state->v);
   state->others = lanes_new (n, sizeof *state->f);
   state->sound_x = lanes_new (n, sizeof *state->x);
   state->sound_v = lanes_new (n, sizeof *state->v);
@@ -409,19 +411,25 @@ group_advance (gpointer group, gdouble until_s, guint n_steps, guint stages)
 {
   ClothLaneState *state = group;
   gdouble start = state->time;
+  ClothLane half;
 
   state->dt = (until_s - start) / n_steps;
   state->reach = cloth_lane_set (state->dt);
+  half = cloth_lane_set (state->dt / 2.);
   state->stages = stages;
   for (guint step = 1; step <= n_steps; step++) {
     state->steps_left = n_steps - step;
     if (state->implicit) {
       CLOTH_LANE_NAME (cloth_lane_implicit_solve) (state);
       CLOTH_LANE_NAME (cloth_lane_implicit_take) (state);
-    } else if (stages > 1) {
-      CLOTH_LANE_NAME (cloth_lane_staged) (state);
     } else {
-      CLOTH_LANE_NAME (cloth_lane_explicit) (state);
+      state->kick = state->lag + half;
+      if (stages > 1)
+        CLOTH_LANE_NAME (cloth_lane_staged) (state);
+      else
+        CLOTH_LANE_NAME (cloth_lane_explicit) (state);
+      state->lag = half;
+      state->ahead = half / state->kick;
     }
     finish_step (state, step == n_steps ? until_s :
         start + (until_s - start) * step / n_steps);
@@ -453,7 +461,8 @@ repeats (const ClothLaneState * state, guint lane, guint of)
 }
 
 static void
-group_set (gpointer group, guint lane, const gdouble * x, const gdouble * v)
+group_set (gpointer group, guint lane, const gdouble * x, const gdouble * v,
+    gdouble lag_s)
 {
   ClothLaneState *state = group;
   ClothMask lanes = state->diverged ^ state->diverged;
@@ -464,6 +473,8 @@ group_set (gpointer group, guint lane, const gdouble * x, const gdouble * v)
     set_lane (state->x, l, state->n, x);
     set_lane (state->v, l, state->n, v);
     CLOTH_LANE_AT (&lanes, l) = -1;
+    set_lane (state->before_v, l, state->n, v);
+    CLOTH_LANE_AT (&state->lag, l) = (ClothReal) lag_s;
   }
   state->diverged &= ~lanes;
   CLOTH_LANE_NAME (cloth_lane_clamps_reset) (state);
@@ -471,6 +482,12 @@ group_set (gpointer group, guint lane, const gdouble * x, const gdouble * v)
     CLOTH_LANE_NAME (cloth_lane_implicit_reset) (state, lanes);
   reset_effects (state, lanes);
   keep_sound (state);
+}
+
+static gdouble
+group_lag (gpointer group, guint lane)
+{
+  return CLOTH_LANE_AT (&((ClothLaneState *) group)->lag, lane);
 }
 
 static void
@@ -754,6 +771,7 @@ const ClothLaneBackend CLOTH_LANE_NAME (cloth_lane_backend) = {
   CLOTH_N_LANES, cost, group_new, group_free, group_time_step,
   group_staged_time_step, group_advance,
   group_try_step, group_take_step,
-  group_get, group_set, group_set_time, group_set_targets, group_set_pulls,
+  group_get, group_lag, group_set, group_set_time, group_set_targets,
+  group_set_pulls,
   group_set_paths, group_diverged, group_energy
 };

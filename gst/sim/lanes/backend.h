@@ -41,8 +41,10 @@ typedef struct
   gdouble (*try_step) (gpointer group, gdouble until_s);
   void (*take_step) (gpointer group, gdouble until_s);
   void (*get) (gpointer group, guint lane, gdouble * x, gdouble * v);
+  /* how long before the places the velocities are, s */
+  gdouble (*lag) (gpointer group, guint lane);
   void (*set) (gpointer group, guint lane, const gdouble * x,
-      const gdouble * v);
+      const gdouble * v, gdouble lag_s);
   void (*set_time) (gpointer group, gdouble time_s);
   /* of @n lanes from @lane on; y: now, next, velocity now, velocity next; @matrices:
    * (nullable): instead of weights */

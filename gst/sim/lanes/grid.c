@@ -440,7 +440,7 @@ void CLOTH_LANE_NAME (cloth_lane_grid_step) (ClothLaneState * state)
 {
   ClothLaneStage stage;
 
-  cloth_lane_stage_init (state, state->dt, 1., 0., &stage);
+  cloth_lane_stage_init (state, state->kick, 1., 0., &stage);
   if (state->has_targets && state->pulls.n)
     sweep (state, &stage, MOVE_NUDGED_OTHERS);
   else if (state->has_targets)
@@ -453,7 +453,7 @@ void CLOTH_LANE_NAME (cloth_lane_grid_step) (ClothLaneState * state)
 
 /* A stage of a step by these and by the others that don't change in it. */
 void CLOTH_LANE_NAME (cloth_lane_grid_stage) (ClothLaneState * state,
-    gdouble h, gdouble mu, gdouble nu)
+    ClothLane h, gdouble mu, gdouble nu)
 {
   ClothLaneStage stage;
 

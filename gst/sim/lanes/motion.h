@@ -8,29 +8,30 @@
 /* What all particles share in a step. */
 typedef struct
 {
-  ClothLane h;                  /* s */
-  ClothLane alpha, g[3];        /* times h */
+  ClothLane h;                  /* s: so long the particles move */
+  ClothLane kick;               /* s: so long forces act on them */
+  ClothLane alpha, g[3];        /* times kick */
   ClothLane share;              /* of the observer's way from now to next */
 } ClothLaneMotion;
 
 CLOTH_LANE_INLINE void
-cloth_lane_motion_init (const ClothLaneState * state, gdouble h,
+cloth_lane_motion_init (const ClothLaneState * state, ClothLane kick,
     ClothLaneMotion * motion)
 {
-  motion->h = cloth_lane_set (h);
-  motion->alpha = motion->h * state->alpha;
+  motion->h = cloth_lane_set (state->dt);
+  motion->kick = kick;
+  motion->alpha = kick * state->alpha;
   for (guint k = 0; k < 3; k++)
-    motion->g[k] = motion->h * state->gravity[k];
+    motion->g[k] = kick * state->gravity[k];
   motion->share = cloth_lane_targets_share (state, state->time);
 }
 
-/* Symplectic Euler: the velocity by the force at the old place, the place by the new
- * velocity. */
+/* Leapfrog: the velocity by the force at the old place, the place by the new velocity. */
 CLOTH_LANE_INLINE void
 cloth_lane_move (ClothLaneState * state, const ClothLaneMotion * motion,
     guint particle, const ClothLane force[3], gboolean nudged)
 {
-  ClothLane w = motion->h * state->inverse_mass[particle], pull[3];
+  ClothLane w = motion->kick * state->inverse_mass[particle], pull[3];
 
   if (nudged)
     cloth_lane_target (state, particle, motion->share, pull);
@@ -39,7 +40,8 @@ cloth_lane_move (ClothLaneState * state, const ClothLaneMotion * motion,
     ClothLane dv = force[k] * w + (motion->g[k] - motion->alpha * v);
 
     if (nudged)
-      dv += motion->h * pull[k];
+      dv += motion->kick * pull[k];
+    state->before_v[particle][k] = v;
     v += dv;
     state->v[particle][k] = v;
     state->x[particle][k] += motion->h * v;
@@ -54,7 +56,7 @@ typedef struct
 } ClothLaneStage;
 
 CLOTH_LANE_INLINE void
-cloth_lane_stage_init (const ClothLaneState * state, gdouble h, gdouble mu,
+cloth_lane_stage_init (const ClothLaneState * state, ClothLane h, gdouble mu,
     gdouble nu, ClothLaneStage * stage)
 {
   cloth_lane_motion_init (state, h, &stage->motion);
@@ -67,7 +69,7 @@ cloth_lane_stage (ClothLaneState * state, const ClothLaneStage * stage,
     guint particle, const ClothLane force[3])
 {
   const ClothLaneMotion *motion = &stage->motion;
-  ClothLane w = motion->h * state->inverse_mass[particle];
+  ClothLane w = motion->kick * state->inverse_mass[particle];
 
   for (guint k = 0; k < 3; k++) {
     ClothLane v = state->v[particle][k];

@@ -39,7 +39,7 @@ find_mass (const ClothLaneState * state, const ClothLanePull * pull, guint n)
       state->mass[p[2]] * cloth_lane_set (pull->at[2]);
 }
 
-/* Of @n numbers that lie on straight lines, as all lanes share them. */
+/* Of @n numbers that lie on straight lines, which all lanes share. */
 CLOTH_LANE_INLINE void
 interpolate (guint n, const ClothReal * now, const ClothReal * change,
     ClothReal share, ClothLane * to)
@@ -79,7 +79,7 @@ draw (const ClothLaneState * state, guint begin, guint end, guint n,
   for (guint i = begin; i < end; i++) {
     const ClothLanePull *pull = &pulls->list[i];
     ClothLane away[3], along[3], information[6], pushed[3], force[3], scale;
-    ClothLane velocity[3];
+    ClothLane velocity[3], before[3];
 
     gather (pull, n, (const ClothLane3 *) state->x, along);
     interpolate (3, pull->target[0], pull->target[1], share, away);
@@ -91,7 +91,10 @@ draw (const ClothLaneState * state, guint begin, guint end, guint n,
     if (law != CLOTH_PULL_LINEAR)
       scale *= fall_off (pulls, law, information, away);
     gather (pull, n, (const ClothLane3 *) state->v, along);
+    gather (pull, n, (const ClothLane3 *) state->before_v, before);
     interpolate (3, pull->velocity[0], pull->velocity[1], share, velocity);
+    for (guint k = 0; k < 3; k++)
+      along[k] += state->ahead * (along[k] - before[k]);
     for (guint k = 0; k < 3; k++)
       pushed[k] = pulls->gain * away[k] + pulls->damping *
           (velocity[k] - along[k]);

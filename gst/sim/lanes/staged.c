@@ -1,13 +1,13 @@
 /* Steps whose velocities are found in stages. Damping that grows with stiffness binds an
  * explicit step far below what the stiffness itself allows. Runge and Kutta's method of
  * Legendre polynomials (RKL1: Meyer, Balsara and Aslam 2014) stays stable with s stages
- * for steps (s² + s)/2 times as long. The places wait meanwhile; with one stage it is
- * symplectic Euler.
+ * for steps (s² + s)/2 times as long. The places wait meanwhile; with one stage it is the
+ * step of explicit.c.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/sim/lanes/motion.h"
 
-/* Shares of the bounds that are used, as in symplectic Euler: of the frequency, and of
+/* Shares of the bounds that are used, as in explicit.c: of the frequency, and of
  * the damping. */
 #define MARGIN 0.7
 /* Modes are looked at in so many steps of stiffness. */
@@ -55,7 +55,7 @@ find_others (ClothLaneState * state)
 }
 
 static void
-stage (ClothLaneState * state, gdouble h, gdouble mu, gdouble nu)
+stage (ClothLaneState * state, ClothLane h, gdouble mu, gdouble nu)
 {
   ClothLaneStage stage;
 
@@ -77,9 +77,11 @@ void CLOTH_LANE_NAME (cloth_lane_staged) (ClothLaneState * state)
   gdouble s = state->stages;
 
   find_others (state);
+  if (state->has_targets || state->pulls.n)
+    memcpy (state->before_v, state->v, state->n * sizeof *state->v);
   for (guint j = 1; j <= state->stages; j++) {
-    gdouble weight = (2. * j - 1.) / j, h = weight * 2. / (s * s + s) *
-        state->dt;
+    gdouble weight = (2. * j - 1.) / j;
+    ClothLane h = state->kick * cloth_lane_set (weight * 2. / (s * s + s));
     gdouble mu = j > 1 ? weight : 1., nu = j > 1 ? (1. - j) / j : 0.;
 
     if (state->grid_alone)
@@ -139,9 +141,10 @@ CLOTH_LANE_NAME (cloth_lane_staged_time_step) (const ClothLaneState * state,
     gdouble damped = CLOTH_LANE_AT (&state->beta, l) * own;
     gdouble omega2 = CLOTH_LANE_AT (&state->omega2, l) +
         CLOTH_LANE_AT (&state->targets.gain, l) + CLOTH_LANE_AT (&pulled, l);
+    /* velocities that change their sign in each step are ahead twice as large */
     gdouble c = CLOTH_LANE_AT (&state->friction, l) +
-        CLOTH_LANE_AT (&state->targets.damping, l) +
-        CLOTH_LANE_AT (&dragged, l) - damped;
+        2. * CLOTH_LANE_AT (&state->targets.damping, l) +
+        2. * CLOTH_LANE_AT (&dragged, l) - damped;
 
     while (longest > LEAST_STEP
         && !is_stable (stages, longest, omega2 / (MARGIN * MARGIN),

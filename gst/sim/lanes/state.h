@@ -26,8 +26,8 @@ typedef struct
 } ClothLaneEffect;
 
 /* Springs that draw the cloth to what was observed: an acceleration of
- * pull + share·change − weight (gain x + damping v), @share of the way from now to next. Where
- * directions are known unequally well the weight is a symmetric matrix: xx, yy, zz, yz, xz, xy. */
+ * pull + share·change − lag·rise − weight (gain x + damping v), @share of the way from now to next.
+ * Where directions are known unequally well the weight is a symmetric matrix: xx, yy, zz, yz, xz, xy. */
 typedef struct
 {
   ClothLane3 *pull, *change;
@@ -157,6 +157,12 @@ typedef struct
   /* of each lane, [frame][held][3]: where the clamps go instead; NULL: where the scene says */
   gdouble *paths[CLOTH_N_LANES];
 
+  /* Of explicit steps, by lane, s: how long before the places the velocities are, half a step
+   * or nothing when they were set; how long forces act in the running one. */
+  ClothLane lag, kick;
+  ClothLane3 *before_v;         /* velocities before the last step */
+  ClothLane ahead;              /* lag over how long forces acted in that */
+
   /* Of steps in stages: velocities a stage ago, forces that don't change meanwhile. */
   guint stages;
   gboolean has_others;
@@ -164,7 +170,7 @@ typedef struct
 
   ClothLaneObstacles *obstacles;
   ClothLaneGrid *grid;          /* NULL: another mesh, or the mass–spring model */
-  ClothLaneImplicit *implicit;  /* NULL: symplectic Euler */
+  ClothLaneImplicit *implicit;  /* NULL: leapfrog */
 
   gdouble time;                 /* s */
   gdouble dt;                   /* of the running step, s */
@@ -275,7 +281,7 @@ void CLOTH_LANE_NAME (cloth_lane_grid_free) (ClothLaneGrid * grid);
 void CLOTH_LANE_NAME (cloth_lane_grid_forces) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_grid_step) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_grid_stage) (ClothLaneState * state,
-    gdouble h, gdouble mu, gdouble nu);
+    ClothLane h, gdouble mu, gdouble nu);
 void CLOTH_LANE_NAME (cloth_lane_own_forces) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_effect_forces) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_inertia) (ClothLaneState * state);
@@ -347,6 +353,15 @@ cloth_lane_targets_share (const ClothLaneState * state, gdouble time_s)
       (cloth_lane_set (time_s) - t->now) / span, zero);
 }
 
+/* The velocity of a particle at the time of its place, to second order. */
+CLOTH_LANE_INLINE ClothLane
+cloth_lane_velocity (const ClothLaneState * state, guint particle, guint k)
+{
+  ClothLane v = state->v[particle][k];
+
+  return v + state->ahead * (v - state->before_v[particle][k]);
+}
+
 /* The observer's acceleration of a particle. */
 CLOTH_LANE_INLINE void
 cloth_lane_target (const ClothLaneState * state, guint particle,
@@ -361,7 +376,7 @@ cloth_lane_target (const ClothLaneState * state, guint particle,
 
     for (guint k = 0; k < 3; k++)
       off[k] = t->gain * state->x[particle][k] +
-          t->damping * state->v[particle][k];
+          t->damping * cloth_lane_velocity (state, particle, k);
     cloth_lane_symmetric (t->matrix[particle], off, drawn);
     for (guint k = 0; k < 3; k++)
       acceleration[k] = t->pull[particle][k] +
@@ -370,5 +385,6 @@ cloth_lane_target (const ClothLaneState * state, guint particle,
   }
   for (guint k = 0; k < 3; k++)
     acceleration[k] = t->pull[particle][k] + share * t->change[particle][k] -
-        gain * state->x[particle][k] - damping * state->v[particle][k];
+        gain * state->x[particle][k] - damping * cloth_lane_velocity (state,
+        particle, k);
 }
