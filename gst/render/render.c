@@ -14,6 +14,7 @@
 
 #include "gst/math/vec3.h"
 #include "gst/render/render-private.h"
+#include "gst/render/scan.h"
 
 #define TILE CLOTH_RENDER_TILE
 
@@ -31,8 +32,6 @@
 /* An exposure is drawn as instants between which no point moves farther, px. */
 #define INSTANT_PX 0.75
 #define MAX_INSTANTS 128
-/* Farther off than any picture: such triangles can't be drawn. */
-#define FAR_PX 1e6
 
 typedef struct
 {
@@ -154,7 +153,8 @@ see_points (gpointer data, guint begin, guint end, guint worker)
     p->depth = good ? camera->R[6] * p->position[0]
         + camera->R[7] * p->position[1] + camera->R[8] * p->position[2]
         + camera->t[2] : 0;
-    if (!(p->depth > 0 && fabs (p->px[0]) < FAR_PX && fabs (p->px[1]) < FAR_PX))
+    if (!(p->depth > 0 && fabs (p->px[0]) < CLOTH_SCAN_FAR_PX
+            && fabs (p->px[1]) < CLOTH_SCAN_FAR_PX))
       p->depth = 0;
     memset (p->normal, 0, sizeof p->normal);
   }
@@ -305,18 +305,6 @@ light_points (ClothRenderer * self, const ClothRenderStyle * style)
 
 /* ---- triangles ---- */
 
-/* The plane through three values over the picture, as value and slopes at point a. */
-static void
-set_plane (gdouble plane[3], gdouble area, const Point * a, const Point * b,
-    const Point * c, gdouble va, gdouble vb, gdouble vc)
-{
-  const gdouble p = vb - va, q = vc - va;
-
-  plane[0] = va;
-  plane[1] = (p * (c->px[1] - a->px[1]) - q * (b->px[1] - a->px[1])) / area;
-  plane[2] = (q * (b->px[0] - a->px[0]) - p * (c->px[0] - a->px[0])) / area;
-}
-
 /* Which levels of the paint fit the triangle: by the longest steps and the area of a pixel
  * of the picture on the paint, where it is nearest and where it is farthest. */
 static void
@@ -359,7 +347,7 @@ set_triangle (const ClothRenderer * self, const guint * corners,
   const ClothPaint *paint = self->job.paint;
   const ClothCamera *camera = &self->capture->camera;
   const Point *p[3];
-  gdouble area, w[3], uv[2][3], low[2], high[2];
+  gdouble area, x[3], y[3], w[3], uv[2][3], light[3], low[2], high[2];
 
   for (gint k = 0; k < 3; k++) {
     p[k] = &self->points[corners[k]];
@@ -386,15 +374,17 @@ set_triangle (const ClothRenderer * self, const guint * corners,
   for (gint k = 0; k < 3; k++) {
     const gfloat *at = self->mesh->uv[corners[k]];
 
+    x[k] = p[k]->px[0];
+    y[k] = p[k]->px[1];
     w[k] = 1 / p[k]->depth;
+    light[k] = p[k]->light[!t->front];
     for (gint j = 0; j < 2; j++)
       uv[j][k] = (at[j] - paint->origin_uv_m[j]) * paint->px_per_m[j] * w[k];
   }
-  set_plane (t->w, area, p[0], p[1], p[2], w[0], w[1], w[2]);
-  set_plane (t->u, area, p[0], p[1], p[2], uv[0][0], uv[0][1], uv[0][2]);
-  set_plane (t->v, area, p[0], p[1], p[2], uv[1][0], uv[1][1], uv[1][2]);
-  set_plane (t->light, area, p[0], p[1], p[2], p[0]->light[!t->front],
-      p[1]->light[!t->front], p[2]->light[!t->front]);
+  cloth_scan_set_plane (t->w, x, y, area, w);
+  cloth_scan_set_plane (t->u, x, y, area, uv[0]);
+  cloth_scan_set_plane (t->v, x, y, area, uv[1]);
+  cloth_scan_set_plane (t->light, x, y, area, light);
   set_levels (paint, t, p);
   for (gint k = 0; k < 3; k++) {
     /* From the lower to the higher of its ends, whichever triangle asks: both get the

@@ -10,10 +10,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/render/scan.h"
 #include "gst/render/surface-private.h"
 
-/* Farther off than any picture: such triangles aren't drawn. */
-#define FAR_PX 1e6
 /* Film is encoded by about this power. */
 #define GAMMA 2.2f
 /* 1/m: nothing is farther off than this, and nothing is divided by less. */
@@ -114,17 +113,8 @@ cloth_surface_new (guint n_vertices, const gfloat * uv, const guint32 * faces,
     self->uv[i] = (gfloat) ((uv[i] - paint->origin_uv_m[i % 2])
         * paint->px_per_m[i % 2]);
   self->triangles = g_new (guint32, 6 * (gsize) n_faces + 1);
-  for (gsize f = 0; f < n_faces; f++) {
-    const guint32 *face = faces + 4 * f;
-
-    for (guint k = 2; k < (face[3] == G_MAXUINT32 ? 3 : 4); k++) {
-      guint32 *t = self->triangles + 3 * (gsize) self->n_triangles++;
-
-      t[0] = face[0];
-      t[1] = face[k - 1];
-      t[2] = face[k];
-    }
-  }
+  self->n_triangles = cloth_scan_list_triangles (faces, n_faces,
+      self->triangles);
   self->rows = CLOTH_SIMD_TABLE (cloth_surface_rows, simd);
   self->n_levels = paint->n_levels;
   for (guint i = 0; i < paint->n_levels; i++)
@@ -201,7 +191,8 @@ see_vertices (ClothSurface * self, const ClothCamera * camera,
     v->x = (px[0] + 0.5) * sx - 0.5;
     v->y = (px[1] + 0.5) * sy - 0.5;
     depth = R[6] * X[0] + R[7] * X[1] + R[8] * X[2] + camera->t[2];
-    if (depth > 0 && fabs (v->x) < FAR_PX && fabs (v->y) < FAR_PX)
+    if (depth > 0 && fabs (v->x) < CLOTH_SCAN_FAR_PX
+        && fabs (v->y) < CLOTH_SCAN_FAR_PX)
       v->w = (gfloat) (1 / depth);
   }
 }
@@ -261,16 +252,14 @@ light_vertices (ClothSurface * self, const gfloat * positions,
 /* ---- triangles ---- */
 
 static void
-set_slopes (gfloat plane[3], const Vertex * const *p, gdouble area, gdouble a,
-    gdouble b, gdouble c)
+set_slopes (gfloat plane[3], const gdouble x[3], const gdouble y[3],
+    gdouble area, const gdouble values[3])
 {
-  const gdouble q = b - a, r = c - a;
+  gdouble exact[3];
 
-  plane[0] = (gfloat) a;
-  plane[1] = (gfloat) ((q * (p[2]->y - p[0]->y) - r * (p[1]->y - p[0]->y))
-      / area);
-  plane[2] = (gfloat) ((r * (p[1]->x - p[0]->x) - q * (p[2]->x - p[0]->x))
-      / area);
+  cloth_scan_set_plane (exact, x, y, area, values);
+  for (guint k = 0; k < 3; k++)
+    plane[k] = (gfloat) exact[k];
 }
 
 /* The scale of the print whose pixels are as large as those of the picture. */
@@ -292,19 +281,22 @@ set_plane (const ClothSurface * self, const guint32 * t,
     const Vertex * const *p, gdouble area, Plane * plane)
 {
   const guint level = choose_level (self, t, area);
-  gdouble w[3], u[3], v[3];
+  gdouble x[3], y[3], w[3], u[3], v[3], light[3];
 
   for (guint k = 0; k < 3; k++) {
+    x[k] = p[k]->x;
+    y[k] = p[k]->y;
+    light[k] = p[k]->light;
     w[k] = p[k]->w;
     u[k] = self->uv[2 * (gsize) t[k]] * w[k];
     v[k] = self->uv[2 * (gsize) t[k] + 1] * w[k];
   }
-  plane->at_x = p[0]->x;
-  plane->at_y = p[0]->y;
-  set_slopes (plane->w, p, area, w[0], w[1], w[2]);
-  set_slopes (plane->u, p, area, u[0], u[1], u[2]);
-  set_slopes (plane->v, p, area, v[0], v[1], v[2]);
-  set_slopes (plane->light, p, area, p[0]->light, p[1]->light, p[2]->light);
+  plane->at_x = x[0];
+  plane->at_y = y[0];
+  set_slopes (plane->w, x, y, area, w);
+  set_slopes (plane->u, x, y, area, u);
+  set_slopes (plane->v, x, y, area, v);
+  set_slopes (plane->light, x, y, area, light);
   plane->level = &self->levels[level];
   plane->scale = ldexpf (1, -(gint) level);
 }
@@ -378,35 +370,6 @@ fill_row (ClothSurface * self, const Plane * plane, gint y, gint begin,
   }
 }
 
-/* An edge from the lower to the higher of its two vertices' numbers: the places where it
- * crosses a row are the same for both of its triangles. */
-typedef struct
-{
-  gdouble x, y, slope, low, high;
-} Edge;
-
-static void
-set_edge (const ClothSurface * self, guint32 i, guint32 j, Edge * edge)
-{
-  const Vertex *a = &self->vertices[MIN (i, j)];
-  const Vertex *b = &self->vertices[MAX (i, j)];
-
-  edge->x = a->x;
-  edge->y = a->y;
-  edge->slope = (b->x - a->x) / (b->y - a->y);
-  edge->low = MIN (a->y, b->y);
-  edge->high = MAX (a->y, b->y);
-}
-
-/* Of what is below FAR_PX; plain SSE2 lacks it. */
-static inline gint
-ceiling (gdouble value)
-{
-  const gint whole = (gint) value;
-
-  return whole + (whole < value);
-}
-
 /* Pixels of a triangle in so many rows of the picture: not more than lie around it there, and
  * in a narrow one a chunk in each row. */
 static gdouble
@@ -420,7 +383,6 @@ count_pixels (const ClothSurface * self, const Vertex * const *p, gdouble area,
   return MIN (rows * MAX (right - left, CHUNK), fabs (area) / 2 + rows * CHUNK);
 }
 
-/* A centre on a border belongs to the triangle to its right or below. */
 static void
 fill_triangle (ClothSurface * self, const guint32 * t, ClothWork * work)
 {
@@ -431,10 +393,10 @@ fill_triangle (ClothSurface * self, const guint32 * t, ClothWork * work)
       (p[1]->y - p[0]->y) * (p[2]->x - p[0]->x);
   const gdouble low = MIN (p[0]->y, MIN (p[1]->y, p[2]->y));
   const gdouble high = MAX (p[0]->y, MAX (p[1]->y, p[2]->y));
-  const gint top = MAX (ceiling (low), 0);
-  const gint end = MIN (ceiling (high), self->height);
+  const gint top = MAX (cloth_scan_ceiling (low), 0);
+  const gint end = MIN (cloth_scan_ceiling (high), self->height);
   Plane plane;
-  Edge edges[3];
+  ClothScanEdge edges[3];
 
   if (!(fabs (area) > 1e-9) || top >= end
       || MAX (p[0]->x, MAX (p[1]->x, p[2]->x)) < 0
@@ -443,23 +405,12 @@ fill_triangle (ClothSurface * self, const guint32 * t, ClothWork * work)
     return;
   set_plane (self, t, p, area, &plane);
   for (guint k = 0; k < 3; k++)
-    set_edge (self, t[k], t[(k + 1) % 3], &edges[k]);
+    cloth_scan_edge_init (&edges[k], p[k]->x, p[k]->y, p[(k + 1) % 3]->x,
+        p[(k + 1) % 3]->y);
   for (gint y = top; y < end; y++) {
-    gdouble left = FAR_PX, right = -FAR_PX;
     gint from, to;
 
-    for (guint k = 0; k < 3; k++) {
-      const Edge *e = &edges[k];
-
-      if (e->low <= y && y < e->high) {
-        const gdouble x = e->x + (y - e->y) * e->slope;
-
-        left = MIN (left, x);
-        right = MAX (right, x);
-      }
-    }
-    from = CLAMP (ceiling (left), 0, self->width);
-    to = CLAMP (ceiling (right), 0, self->width);
+    cloth_scan_row (edges, y, self->width, &from, &to);
     if (from < to)
       fill_row (self, &plane, y, from, to);
   }

@@ -284,10 +284,29 @@ test_resume (void)
   }
 }
 
-static gdouble
-slow_patchy (gpointer data, const gdouble * point, guint worker)
+/* Workers that wait for each other once: behind the start, alone, come four points at a time. */
+typedef struct
 {
-  g_atomic_int_inc (&((gint *) data)[worker]);
+  GMutex lock;
+  GCond all_here;
+  guint threads, n_calls, n_here;
+  gboolean here[4];
+} Workers;
+
+static gdouble
+patchy_together (gpointer data, const gdouble * point, guint worker)
+{
+  Workers *w = data;
+
+  g_mutex_lock (&w->lock);
+  if (w->n_calls++ > 0 && !w->here[worker]) {
+    w->here[worker] = TRUE;
+    if (++w->n_here == w->threads)
+      g_cond_broadcast (&w->all_here);
+  }
+  while (w->n_calls > 1 && w->n_here < w->threads)
+    g_cond_wait (&w->all_here, &w->lock);
+  g_mutex_unlock (&w->lock);
   g_usleep ((gulong) (fabs (point[0]) * 300.));
   return patchy (point);
 }
@@ -302,11 +321,14 @@ test_threads (void)
   prepare (&options, 2, start);
   for (guint threads = 1; threads <= 4; threads++) {
     g_autoptr (ClothSearch) s = cloth_search_new (&options, NULL);
-    gint counts[4] = { 0 };
+    Workers workers = {.threads = threads };
 
-    cloth_search_run (s, slow_patchy, counts, threads);
-    for (guint i = 0; i < threads; i++)
-      g_assert_cmpint (counts[i], >, 0);
+    g_mutex_init (&workers.lock);
+    g_cond_init (&workers.all_here);
+    cloth_search_run (s, patchy_together, &workers, threads);
+    g_assert_cmpuint (workers.n_here, ==, threads);
+    g_cond_clear (&workers.all_here);
+    g_mutex_clear (&workers.lock);
     if (log)
       g_assert_cmpstr (cloth_search_get_log (s), ==, log);
     else

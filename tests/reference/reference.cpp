@@ -345,3 +345,34 @@ cloth_cv_matcher_run (ClothCvMatcher * self, const guint8 * queries, guint n,
     return FALSE;
   }
 }
+
+/* @mask: (out caller-allocates): 255 where a polygon is, else 0; rows of @width without gaps
+ * @corners: x and y of each polygon's, px
+ * @n_corners: of each polygon
+ * @n: how many
+ *
+ * A silhouette as a user of OpenCV would draw it: one call of fillConvexPoly a polygon, with four
+ * bits of a pixel's fraction. It fills the pixels that a border crosses, too.
+ *
+ * Returns: FALSE when OpenCV threw.
+ */
+gboolean
+cloth_cv_fill (guint8 * mask, gint width, gint height, const gdouble * corners,
+    guint n_corners, guint n)
+{
+  try {
+    cv::Mat image (height, width, CV_8UC1, mask);
+    std::vector < cv::Point > polygon (n_corners);
+
+    image.setTo (0);
+    for (guint i = 0; i < n; i++) {
+      for (guint k = 0; k < n_corners; k++, corners += 2)
+        polygon[k] = cv::Point (cvRound (16 * corners[0]),
+            cvRound (16 * corners[1]));
+      cv::fillConvexPoly (image, polygon, cv::Scalar (255), cv::LINE_8, 4);
+    }
+    return TRUE;
+  } catch (...) {
+    return FALSE;
+  }
+}

@@ -44,4 +44,7 @@ void cloth_cv_matcher_free (ClothCvMatcher * self);
 gboolean cloth_cv_matcher_run (ClothCvMatcher * self, const guint8 * queries,
     guint n, guint32 * nearest);
 
+gboolean cloth_cv_fill (guint8 * mask, gint width, gint height,
+    const gdouble * corners, guint n_corners, guint n);
+
 G_END_DECLS

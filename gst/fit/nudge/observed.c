@@ -277,33 +277,17 @@ finish (Maker * m)
   cloth_recording_differentiate (r);
 }
 
-typedef struct
-{
-  gdouble *x;                   /* [n_frames][n][3] */
-  gsize row;
-} Simulated;
-
-static void
-keep_simulated (gpointer data, guint model, guint frame,
-    const gdouble * positions)
-{
-  Simulated *s = data;
-
-  memcpy (s->x + frame * s->row, positions, s->row * sizeof *positions);
-}
-
-/* Simulates the cloth drawn to all that is known, and moves places along their rays there. Returns
- * how far, RMS; NaN: it diverged. */
+/* Simulates the cloth drawn to all that is known, @x in each frame, and moves places along their rays there.
+ * Returns how far, RMS; NaN: it diverged. */
 static gdouble
 turn (Maker * m, const ClothModel * model, gdouble gain,
-    const ClothRolloutOptions * options, Simulated * s, GError ** error)
+    const ClothRolloutOptions * options, gdouble * x, GError ** error)
 {
   const ClothRecording *r = m->r;
   gdouble sum = 0.;
   gboolean sound;
 
-  if (!cloth_rollout_nudged (&r, &model, &gain, 1, options, keep_simulated, s,
-          &sound, error))
+  if (!cloth_rollout_follow (r, model, gain, options, x, &sound, error))
     return NAN;
   if (!sound) {
     g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL, "%s: the "
@@ -314,8 +298,8 @@ turn (Maker * m, const ClothModel * model, gdouble gain,
   for (guint i = 0; i < m->lone->len; i++) {
     const Lone *lone = &g_array_index (m->lone, Lone, i);
 
-    sum += put_on_ray (m->r, lone, s->x + lone->frame * s->row +
-        3 * (gsize) lone->vertex);
+    sum += put_on_ray (m->r, lone, x + 3 * ((gsize) lone->frame * r->n +
+            lone->vertex));
   }
   finish (m);
   return sqrt (sum / MAX (m->lone->len, 1));
@@ -397,7 +381,6 @@ cloth_recording_new_observed (ClothTake * take,
   g_autoptr (ClothRecording) r = recording_new (take, error);
   g_auto (Maker) m = { NULL };
   g_autofree gdouble *x = NULL;
-  Simulated s;
 
   *counts = (ClothObservedCounts) {
   0};
@@ -409,10 +392,8 @@ cloth_recording_new_observed (ClothTake * take,
   if (!cloth_recording_check (r, TRUE, error))
     return NULL;
   x = g_new (gdouble, 3 * (gsize) r->n * r->n_frames);
-  s = (Simulated) {
-  x, 3 * (gsize) r->n};
   for (guint k = 0; m.lone->len && k < MOST_TURNS; k++) {
-    const gdouble moved = turn (&m, model, gain, options, &s, error);
+    const gdouble moved = turn (&m, model, gain, options, x, error);
 
     if (isnan (moved))
       return NULL;

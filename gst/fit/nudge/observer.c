@@ -210,7 +210,8 @@ find_velocities (ClothObserver * self, gdouble * velocity)
     if (!self->known[mask]) {
       for (guint i = 0; i < WINDOW; i++)
         times[i] = self->ring[(oldest + i) % WINDOW].time;
-      cloth_recording_find_weights (times, mask, at, self->table[mask]);
+      cloth_recording_find_weights (times, mask, at, CLOTH_RECORDING_ORDER,
+          self->table[mask]);
       self->known[mask] = TRUE;
     }
     for (guint k = 0; k < 3; k++) {

@@ -321,6 +321,42 @@ cloth_rollout_nudged (const ClothRecording * const *targets,
       && run_through (&run, on_frame, data, sound, error);
 }
 
+typedef struct
+{
+  gdouble *path;
+  gsize row;
+} Path;
+
+static void
+keep_path (gpointer data, guint model, guint frame, const gdouble * positions)
+{
+  const Path *p = data;
+
+  memcpy (p->path + frame * p->row, positions, p->row * sizeof *p->path);
+}
+
+/* @recording: what draws the model, and where it starts
+ * @model: the model
+ * @gain: of its observer, 1/s²
+ * @options: how to simulate
+ * @path: (out) (array): where the model is in each frame, [n_frames][n][3], m
+ * @sound: (out): whether it did not diverge
+ * @error: #ClothSimError, or #ClothFitError when it was stopped
+ *
+ * cloth_rollout_nudged () of one model, kept.
+ */
+gboolean
+cloth_rollout_follow (const ClothRecording * recording,
+    const ClothModel * model, gdouble gain,
+    const ClothRolloutOptions * options, gdouble * path, gboolean * sound,
+    GError ** error)
+{
+  Path keep = { path, 3 * (gsize) recording->n };
+
+  return cloth_rollout_nudged (&recording, &model, &gain, 1, options,
+      keep_path, &keep, sound, error);
+}
+
 /* @recording: where it starts: its first positions and velocities, its scene and times
  * @models: (array length=n_models): the models
  * @n_models: how many, at least 1

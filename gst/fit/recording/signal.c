@@ -22,9 +22,13 @@
 #define MEDIAN_OF_NORMAL 0.6745
 /* Variance of a fourth difference of white noise of variance 1. */
 #define FOURTH_DIFFERENCE 70.
+/* Order of the polynomial through the frames of a path without noise. */
+#define EXACT (CLOTH_RECORDING_WINDOW - 1)
+
 /* @times: (array): of %CLOTH_RECORDING_WINDOW frames, s
  * @mask: which of them count, the first in the lowest bit
  * @at: a time, s
+ * @order: of the polynomial, below %CLOTH_RECORDING_WINDOW
  * @weights: (out) (array): of each frame, 1/s; 0 of those that don't count
  *
  * Weights whose sum with the frames' values is the derivative at @at of the polynomial
@@ -32,12 +36,12 @@
  */
 void
 cloth_recording_find_weights (const gdouble * times, guint mask, gdouble at,
-    gdouble * weights)
+    guint order, gdouble * weights)
 {
-  const guint all = CLOTH_RECORDING_WINDOW, order = CLOTH_RECORDING_ORDER;
-  gdouble normal[(CLOTH_RECORDING_ORDER + 1) * (CLOTH_RECORDING_ORDER + 1)];
-  gdouble powers[CLOTH_RECORDING_WINDOW][CLOTH_RECORDING_ORDER + 1];
-  gdouble slope[CLOTH_RECORDING_ORDER + 1] = { 0., 1. }, scale = 0.;
+  const guint all = CLOTH_RECORDING_WINDOW;
+  gdouble normal[(EXACT + 1) * (EXACT + 1)];
+  gdouble powers[CLOTH_RECORDING_WINDOW][EXACT + 1];
+  gdouble slope[EXACT + 1] = { 0., 1. }, scale = 0.;
   guint n = 0, terms;
 
   for (guint i = 0; i < all; i++) {
@@ -71,27 +75,23 @@ cloth_recording_find_weights (const gdouble * times, guint mask, gdouble at,
       weights[i] += slope[k] * powers[i][k] / scale;
 }
 
-/* @recording: a recording with positions
- *
- * Fills its velocities.
- */
-void
-cloth_recording_differentiate (ClothRecording * recording)
+static void
+differentiate (const ClothRecording * r, const gdouble * path, guint order,
+    gdouble * velocity)
 {
-  ClothRecording *r = recording;
-  gsize row = 3 * (gsize) r->n;
+  const gsize row = 3 * (gsize) r->n;
 
   for (guint frame = 0; frame < r->n_frames; frame++) {
     gint begin = (gint) frame - CLOTH_RECORDING_WINDOW / 2;
     gdouble weights[CLOTH_RECORDING_WINDOW];
-    gdouble *to = r->velocity + frame * row;
+    gdouble *to = velocity + frame * row;
 
     begin = CLAMP (begin, 0, (gint) r->n_frames - CLOTH_RECORDING_WINDOW);
     cloth_recording_find_weights (r->times + begin,
-        (1u << CLOTH_RECORDING_WINDOW) - 1, r->times[frame], weights);
+        (1u << CLOTH_RECORDING_WINDOW) - 1, r->times[frame], order, weights);
     memset (to, 0, row * sizeof *to);
     for (guint i = 0; i < CLOTH_RECORDING_WINDOW; i++) {
-      const gdouble *from = r->y + ((guint) begin + i) * row;
+      const gdouble *from = path + ((guint) begin + i) * row;
 
       for (gsize k = 0; k < row; k++)
         to[k] += weights[i] * from[k];
@@ -99,28 +99,71 @@ cloth_recording_differentiate (ClothRecording * recording)
   }
 }
 
-/* @recording: a recording with positions and velocities
+/* @recording: a recording with positions
  *
- * Fills what draws a simulation: places whose straight lines from frame to frame have the mean of the
- * curved paths, y − a Δt²/12. Else a cloth that follows bends lags inwards, which looks like a
- * force; it matters for the size of numbers that the springs nearly hide, as damping.
+ * Fills its velocities.
  */
 void
-cloth_recording_straighten (ClothRecording * recording)
+cloth_recording_differentiate (ClothRecording * recording)
 {
-  ClothRecording *r = recording;
+  differentiate (recording, recording->y, CLOTH_RECORDING_ORDER,
+      recording->velocity);
+}
+
+/* Adds @sign times @path, moved so that straight lines from frame to frame have the mean of the curve whose
+ * slopes are given: x − x″ Δt²/12. */
+static void
+add_straightened (const ClothRecording * r, const gdouble * path,
+    const gdouble * slopes, gdouble sign, gdouble * to)
+{
   const gsize row = 3 * (gsize) r->n;
 
-  g_free (r->targets);
-  r->targets = g_memdup2 (r->y, r->n_frames * row * sizeof *r->y);
   for (guint f = 0; f < r->n_frames; f++) {
     const guint before = f ? f - 1 : f, after = MIN (f + 1, r->n_frames - 1);
     const gdouble share = (r->times[after] - r->times[before]) /
         ((after - before) * (after - before) * 12.);
 
     for (gsize i = 0; i < row; i++)
-      r->targets[f * row + i] -= share * (r->velocity[after * row + i] -
-          r->velocity[before * row + i]);
+      to[f * row + i] += sign * (path[f * row + i] - share *
+          (slopes[after * row + i] - slopes[before * row + i]));
+  }
+}
+
+/* @recording: (inout): a recording with positions
+ * @drawn: (nullable): where the model at hand was in each frame when it was drawn to the recording,
+ *   [n_frames][n][3], m
+ *
+ * Fills what draws a simulation, @targets and @velocity. Targets lie so that their straight lines from
+ * frame to frame have the mean of the curved paths. Else a cloth that follows bends lags inwards, which
+ * looks like a force.
+ *
+ * A polynomial that smooths noise away makes fast motions slower, too, and the springs then hold the cloth
+ * back. By how much is known of @drawn, a path without noise that moves alike: T (y) + T₁ (x) − T (x), where T is
+ * what smoothing makes of a path and T₁ what it should be, by polynomials through all frames.
+ */
+void
+cloth_recording_straighten (ClothRecording * recording, const gdouble * drawn)
+{
+  ClothRecording *r = recording;
+  const gsize all = 3 * (gsize) r->n * r->n_frames;
+
+  cloth_recording_differentiate (r);
+  g_free (r->targets);
+  r->targets = g_new0 (gdouble, all);
+  add_straightened (r, r->y, r->velocity, 1., r->targets);
+  if (drawn) {
+    g_autofree gdouble *smooth = g_new (gdouble, all);
+    g_autofree gdouble *exact = g_new (gdouble, all);
+    g_autofree gdouble *bent = g_new (gdouble, all);
+
+    differentiate (r, drawn, CLOTH_RECORDING_ORDER, smooth);
+    differentiate (r, drawn, EXACT, exact);
+    differentiate (r, exact, EXACT, bent);
+    add_straightened (r, drawn, smooth, -1., r->targets);
+    add_straightened (r, drawn, exact, 1., r->targets);
+    for (gsize i = 0; i < all; i++)
+      r->velocity[i] -= smooth[i];
+    add_straightened (r, exact, bent, 1., r->velocity);
   }
 }
 

@@ -12,9 +12,10 @@ G_BEGIN_DECLS
 #define CLOTH_RECORDING_ORDER 4
 
 void cloth_recording_find_weights (const gdouble * times, guint mask,
-    gdouble at, gdouble * weights);
+    gdouble at, guint order, gdouble * weights);
 void cloth_recording_differentiate (ClothRecording * recording);
-void cloth_recording_straighten (ClothRecording * recording);
+void cloth_recording_straighten (ClothRecording * recording,
+    const gdouble * drawn);
 gdouble cloth_recording_estimate_sigma (const ClothRecording * recording);
 
 G_END_DECLS

@@ -113,18 +113,7 @@ typedef struct
   const ClothRecording *recording;
   const gdouble *left_out;      /* 1 where a place was seen and left out */
   gdouble sums[N_STRENGTHS];
-  gfloat *x;
 } Drawn;
-
-static void
-keep_drawn (gpointer data, guint model, guint frame, const gdouble * positions)
-{
-  Drawn *d = data;
-  const gsize row = 3 * (gsize) d->recording->n;
-
-  for (gsize i = 0; i < row; i++)
-    d->x[frame * row + i] = (gfloat) positions[i];
-}
 
 /* How far each strength is off what was left out. */
 static void
@@ -202,13 +191,16 @@ draw (ClothSynthesisTake * take, const ClothModel * model,
     const ClothSynthesisOptions * o, GError ** error)
 {
   const ClothRecording *r = take->recording;
-  Drawn drawn = { r,.x = take->positions };
+  const gsize all = 3 * (gsize) r->n * r->n_frames;
+  g_autofree gdouble *path = g_new (gdouble, all);
   gboolean sound;
 
   if (!choose_gain (take, model, o, error)
-      || !cloth_rollout_nudged (&r, &model, &take->gain, 1, &o->rollout,
-          keep_drawn, &drawn, &sound, error))
+      || !cloth_rollout_follow (r, model, take->gain, &o->rollout, path, &sound,
+          error))
     return FALSE;
+  for (gsize i = 0; i < all; i++)
+    take->positions[i] = (gfloat) path[i];
   if (sound)
     return TRUE;
   g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL, "%s: the fitted "
@@ -272,6 +264,25 @@ fit (const ClothSynthesis * s, ClothCandidates * candidates,
       CLOTH_FIT_DEFAULT, o->n_passes, &options, sigmas, error);
 }
 
+/* What draws the cloth: first as smoothing has it, then without what smoothing takes off the motion of the
+ * model at hand. */
+static gboolean
+straighten (ClothRecording * r, const ClothModel * model,
+    const ClothSynthesisOptions * o, GError ** error)
+{
+  g_autofree gdouble *path = g_new (gdouble, 3 * (gsize) r->n * r->n_frames);
+  gboolean sound;
+
+  cloth_recording_straighten (r, NULL);
+  if (!cloth_rollout_follow (r, model, o->gain, &o->rollout, path, &sound,
+          error))
+    return FALSE;
+  /* one that diverges is told by the fit */
+  if (sound)
+    cloth_recording_straighten (r, path);
+  return TRUE;
+}
+
 /* What was seen, of films without a mesh as the model at hand has it. */
 static gboolean
 look (ClothSynthesis * s, const ClothSynthesisInput * inputs,
@@ -280,13 +291,12 @@ look (ClothSynthesis * s, const ClothSynthesisInput * inputs,
   for (guint i = 0; i < s->n_takes; i++) {
     ClothSynthesisTake *take = &s->takes[i];
 
-    if (take->recording && !take->counts.places)
-      continue;
-    cloth_recording_free (take->recording);
-    take->recording = record (&inputs[i], model, o, &take->counts, error);
-    if (!take->recording)
+    if (!take->recording || take->counts.places) {
+      cloth_recording_free (take->recording);
+      take->recording = record (&inputs[i], model, o, &take->counts, error);
+    }
+    if (!take->recording || !straighten (take->recording, model, o, error))
       return FALSE;
-    cloth_recording_straighten (take->recording);
   }
   return TRUE;
 }
@@ -308,7 +318,6 @@ cloth_synthesis_fit (const ClothSynthesisInput * inputs, guint n_inputs,
   g_autoptr (ClothSynthesis) s = g_new0 (ClothSynthesis, 1);
   g_autoptr (ClothCandidates) candidates = NULL;
   g_autofree gdouble *sigmas = NULL;
-  gboolean has_films = FALSE;
 
   s->numbers = g_array_new (FALSE, FALSE, sizeof (ClothSynthesisNumber));
   g_array_set_clear_func (s->numbers, clear_number);
@@ -327,10 +336,8 @@ cloth_synthesis_fit (const ClothSynthesisInput * inputs, guint n_inputs,
     return NULL;
   }
   sigmas = g_new0 (gdouble, candidates->n_free);
-  for (guint i = 0; i < n_inputs; i++)
-    has_films |= s->takes[i].counts.places > 0;
   s->model = cloth_model_copy (model);
-  for (guint turn = 0; turn < (has_films ? MAX (options->turns, 1) : 1); turn++) {
+  for (guint turn = 0; turn < MAX (options->turns, 1); turn++) {
     ClothModel *fitted;
 
     if (turn && !look (s, inputs, s->model, options, error))
