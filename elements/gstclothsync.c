@@ -41,11 +41,12 @@ typedef struct
   guint64 taken;                /* indices in use */
   guint64 released;             /* of pads that the subclass still believes in */
   guint64 n_sets, n_incomplete, n_skipped, n_dropped, n_implausible;
+  gboolean is_playing;          /* while paused no camera gives anything */
 
   /* streaming thread */
   gboolean is_live;
   gboolean has_last;
-  GstClockTimeDiff first_time, last_time;
+  GstClockTimeDiff last_time;
   GstClockTime last_tolerance;
   guint64 last_mask;
 } GstClothSyncPrivate;
@@ -203,6 +204,21 @@ gst_cloth_sync_create_new_pad (GstAggregator * agg, GstPadTemplate * templ,
       "template", templ, NULL);
   pad->index = (guint) index;
   return GST_AGGREGATOR_PAD (pad);
+}
+
+/* The deadline of one stream is not that of several. */
+static GstPad *
+gst_cloth_sync_request_new_pad (GstElement * element, GstPadTemplate * templ,
+    const gchar * name, const GstCaps * caps)
+{
+  GstPad *pad =
+      GST_ELEMENT_CLASS (gst_cloth_sync_parent_class)->request_new_pad (element,
+      templ, name, caps);
+
+  if (pad) {
+    gst_cloth_sync_update_timing (GST_CLOTH_SYNC (element));
+  }
+  return pad;
 }
 
 void
@@ -474,6 +490,41 @@ gst_cloth_sync_stop (GstAggregator * agg)
   return TRUE;
 }
 
+static void
+gst_cloth_sync_set_playing (GstClothSync * self, gboolean is_playing)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+
+  GST_OBJECT_LOCK (self);
+  priv->is_playing = is_playing;
+  GST_OBJECT_UNLOCK (self);
+  if (is_playing) {
+    /* The streaming thread may wait without a deadline: the aggregator wakes it when it is
+     * asked for its latency. */
+    g_autoptr (GstQuery) query = gst_query_new_latency ();
+
+    gst_pad_query (GST_AGGREGATOR_SRC_PAD (self), query);
+  }
+}
+
+static GstStateChangeReturn
+gst_cloth_sync_change_state (GstElement * element, GstStateChange transition)
+{
+  GstStateChangeReturn ret;
+
+  if (transition == GST_STATE_CHANGE_PLAYING_TO_PAUSED) {
+    gst_cloth_sync_set_playing (GST_CLOTH_SYNC (element), FALSE);
+  }
+  ret =
+      GST_ELEMENT_CLASS (gst_cloth_sync_parent_class)->change_state (element,
+      transition);
+  if (transition == GST_STATE_CHANGE_PAUSED_TO_PLAYING
+      && ret != GST_STATE_CHANGE_FAILURE) {
+    gst_cloth_sync_set_playing (GST_CLOTH_SYNC (element), TRUE);
+  }
+  return ret;
+}
+
 /* ---- the joining of streams ----
  *
  * How a set is made. The earliest frame at the head of any pad gives the set its time
@@ -507,23 +558,56 @@ gst_cloth_sync_judge (GstClothSync * self, const GstClothSyncHeads * heads,
       heads->head[i] ? heads->time[i] : GST_CLOCK_STIME_NONE, start, max_jump);
 }
 
+/* Whether silence is to be told of; counts it from now on where it isn't counted yet. */
 static gboolean
-gst_cloth_sync_minds_silence (GstClothSync * self)
+gst_cloth_sync_minds_silence (GstClothSync * self,
+    const GstClothSyncHeads * heads)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  const GstClockTime now =
+      gst_element_get_current_running_time (GST_ELEMENT (self));
+  gboolean is_playing;
+  guint i;
 
-  return priv->is_live && priv->has_last
-      && GST_CLOTH_SYNC_GET_CLASS (self)->prefix;
+  GST_OBJECT_LOCK (self);
+  is_playing = priv->is_playing;
+  GST_OBJECT_UNLOCK (self);
+  if (!is_playing || !GST_CLOCK_TIME_IS_VALID (now)
+      || !GST_CLOTH_SYNC_GET_CLASS (self)->prefix) {
+    return FALSE;
+  }
+  for (i = 0; i < heads->n; i++) {
+    if (heads->pad[i]) {
+      gst_cloth_sync_pad_expect (heads->pad[i],
+          (GstClockTimeDiff) MIN (now, (guint64) G_MAXINT64));
+    }
+  }
+  return TRUE;
+}
+
+/* Notes which camera the pad's frames are of, as the subclass knows by now. */
+static void
+gst_cloth_sync_name_camera (GstClothSync * self, GstClothSyncPad * pad)
+{
+  GstClothSyncClass *klass = GST_CLOTH_SYNC_GET_CLASS (self);
+  const gchar *name =
+      klass->get_camera ? klass->get_camera (self, pad->index) : NULL;
+
+  if (g_strcmp0 (pad->camera_name, name) != 0) {
+    GST_OBJECT_LOCK (self);
+    g_free (pad->camera_name);
+    pad->camera_name = g_strdup (name);
+    GST_OBJECT_UNLOCK (self);
+  }
 }
 
 static void
 gst_cloth_sync_set_silent (GstClothSync * self, GstClothSyncPad * pad,
     gboolean silent, GstClockTimeDiff now)
 {
-  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
-
+  gst_cloth_sync_name_camera (self, pad);
   gst_cloth_sync_pad_set_silent (pad, GST_ELEMENT (self),
-      GST_CLOTH_SYNC_GET_CLASS (self)->prefix, silent, priv->first_time, now);
+      GST_CLOTH_SYNC_GET_CLASS (self)->prefix, silent, now);
 }
 
 /* Tells of the pads of a live stream that have given nothing for long at the common time
@@ -533,6 +617,8 @@ gst_cloth_sync_look_for_silence (GstClothSync * self,
     const GstClothSyncHeads * heads, GstClockTimeDiff now)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  const gboolean minds = priv->is_live
+      && gst_cloth_sync_minds_silence (self, heads);
   guint i;
 
   if (!GST_CLOCK_STIME_IS_VALID (now)) {
@@ -543,9 +629,8 @@ gst_cloth_sync_look_for_silence (GstClothSync * self,
     now = GST_CLOCK_TIME_IS_VALID (clock) ?
         (GstClockTimeDiff) MIN (clock, (guint64) G_MAXINT64) : now;
   }
-  for (i = 0; i < heads->n && gst_cloth_sync_minds_silence (self); i++) {
-    const GstClockTimeDiff time =
-        gst_cloth_sync_heads_silent_at (heads, i, priv->first_time);
+  for (i = 0; i < heads->n && minds; i++) {
+    const GstClockTimeDiff time = gst_cloth_sync_heads_silent_at (heads, i);
 
     if (GST_CLOCK_STIME_IS_VALID (time) && time <= now) {
       gst_cloth_sync_set_silent (self, heads->pad[i], TRUE, now);
@@ -562,7 +647,7 @@ gst_cloth_sync_get_next_time (GstAggregator * agg)
   GstClothSync *self = GST_CLOTH_SYNC (agg);
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
   GstClockTimeDiff first = 0;
-  gboolean has_first = FALSE;
+  gboolean has_first = FALSE, minds;
   GstClothSyncHeads heads;
   guint i;
 
@@ -579,10 +664,9 @@ gst_cloth_sync_get_next_time (GstAggregator * agg)
       has_first = TRUE;
     }
   }
-  for (i = 0; i < heads.n && heads.n_heads == 0
-      && gst_cloth_sync_minds_silence (self); i++) {
-    const GstClockTimeDiff time =
-        gst_cloth_sync_heads_silent_at (&heads, i, priv->first_time);
+  minds = gst_cloth_sync_minds_silence (self, &heads);
+  for (i = 0; i < heads.n && heads.n_heads == 0 && minds; i++) {
+    const GstClockTimeDiff time = gst_cloth_sync_heads_silent_at (&heads, i);
 
     if (GST_CLOCK_STIME_IS_VALID (time)) {
       first = has_first ? MIN (first, time) : time;
@@ -851,27 +935,6 @@ gst_cloth_sync_count_missing (GstClothSync * self, GstClothSyncPad * pad)
   return 1;
 }
 
-/* Notes which cameras the pads' frames are of, as the subclass knows by now. */
-static void
-gst_cloth_sync_name_cameras (GstClothSync * self,
-    const GstClothSyncHeads * heads)
-{
-  GstClothSyncClass *klass = GST_CLOTH_SYNC_GET_CLASS (self);
-  guint i;
-
-  for (i = 0; i < heads->n && klass->get_camera; i++) {
-    GstClothSyncPad *pad = heads->pad[i];
-    const gchar *name = pad ? klass->get_camera (self, i) : NULL;
-
-    if (pad && g_strcmp0 (pad->camera_name, name) != 0) {
-      GST_OBJECT_LOCK (self);
-      g_free (pad->camera_name);
-      pad->camera_name = g_strdup (name);
-      GST_OBJECT_UNLOCK (self);
-    }
-  }
-}
-
 /* Pops the heads of the set and hands them to the subclass. */
 static GstFlowReturn
 gst_cloth_sync_emit (GstClothSync * self, GstClothSyncHeads * heads,
@@ -938,7 +1001,11 @@ gst_cloth_sync_emit (GstClothSync * self, GstClothSyncHeads * heads,
     ret =
         GST_CLOTH_SYNC_GET_CLASS (self)->process_set (self, views, heads->n,
         mask, pts, duration, &out);
-    gst_cloth_sync_name_cameras (self, heads);
+    for (i = 0; i < heads->n; i++) {
+      if (heads->pad[i]) {
+        gst_cloth_sync_name_camera (self, heads->pad[i]);
+      }
+    }
   }
   for (i = 0; i < heads->n; i++) {
     gst_clear_buffer (&views[i]);
@@ -958,8 +1025,29 @@ gst_cloth_sync_emit (GstClothSync * self, GstClothSyncHeads * heads,
   return gst_aggregator_finish_buffer (agg, out);
 }
 
+/* Tells of the pads whose frames were in none of the sets. */
+static void
+gst_cloth_sync_look_for_unused (GstClothSync * self,
+    const GstClothSyncHeads * heads)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  guint i;
+
+  for (i = 0; i < heads->n && GST_CLOTH_SYNC_GET_CLASS (self)->prefix; i++) {
+    gboolean unused;
+
+    GST_OBJECT_LOCK (self);
+    unused = priv->n_sets > 0 && heads->pad[i] && heads->pad[i]->used == 0;
+    GST_OBJECT_UNLOCK (self);
+    if (unused) {
+      gst_cloth_sync_name_camera (self, heads->pad[i]);
+      gst_cloth_sync_say_unused (GST_ELEMENT (self), heads->pad[i]);
+    }
+  }
+}
+
 static GstFlowReturn
-gst_cloth_sync_end (GstClothSync * self)
+gst_cloth_sync_end (GstClothSync * self, const GstClothSyncHeads * heads)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
   gboolean all_skipped;
@@ -975,6 +1063,7 @@ gst_cloth_sync_end (GstClothSync * self)
         ("Lower min-views, raise tolerance, or check that the streams' times "
             "overlap."));
   }
+  gst_cloth_sync_look_for_unused (self, heads);
   return GST_FLOW_EOS;
 }
 
@@ -1008,7 +1097,7 @@ gst_cloth_sync_aggregate (GstAggregator * agg, gboolean timeout)
     goto done;
   }
   if (heads.n_eos == heads.n_pads) {
-    ret = gst_cloth_sync_end (self);
+    ret = gst_cloth_sync_end (self, &heads);
     goto done;
   }
   if (heads.n_waiting > 0 && !timeout) {
@@ -1055,10 +1144,7 @@ gst_cloth_sync_aggregate (GstAggregator * agg, gboolean timeout)
       mask |= G_GUINT64_CONSTANT (1) << i;
     }
   }
-  if (!priv->has_last) {
-    priv->has_last = TRUE;
-    priv->first_time = first;
-  }
+  priv->has_last = TRUE;
   gst_cloth_sync_look_for_silence (self, &heads, first);
   priv->last_time = first;
   priv->last_tolerance = tolerance;
@@ -1139,7 +1225,9 @@ gst_cloth_sync_class_init (GstClothSyncClass * klass)
   object_class->set_property = gst_cloth_sync_set_property;
   object_class->get_property = gst_cloth_sync_get_property;
   object_class->finalize = gst_cloth_sync_finalize;
+  element_class->request_new_pad = gst_cloth_sync_request_new_pad;
   element_class->release_pad = gst_cloth_sync_release_pad;
+  element_class->change_state = gst_cloth_sync_change_state;
   agg_class->create_new_pad = gst_cloth_sync_create_new_pad;
   agg_class->sink_event = gst_cloth_sync_sink_event;
   agg_class->sink_event_pre_queue = gst_cloth_sync_sink_event_pre_queue;

@@ -109,15 +109,19 @@ gst_cloth_sync_heads_get_end (const GstClothSyncHeads * heads, guint i)
 }
 
 GstClockTimeDiff
-gst_cloth_sync_heads_silent_at (const GstClothSyncHeads * heads, guint i,
-    GstClockTimeDiff since)
+gst_cloth_sync_heads_silent_at (const GstClothSyncHeads * heads, guint i)
 {
   GstClothSyncPad *pad = heads->pad[i];
+  GstClockTimeDiff since;
 
   if (!pad || heads->head[i] || pad->silent) {
     return GST_CLOCK_STIME_NONE;
   }
-  since = MAX (gst_cloth_sync_pad_silent_since (pad, since), 0);
+  since = gst_cloth_sync_pad_silent_since (pad);
+  if (!GST_CLOCK_STIME_IS_VALID (since)) {
+    return since;
+  }
+  since = MAX (since, 0);
   return since + (GstClockTimeDiff) MIN (gst_cloth_sync_pad_patience (pad),
       (guint64) (G_MAXINT64 - since));
 }

@@ -38,12 +38,9 @@ void gst_cloth_sync_heads_release (GstClothSyncHeads * heads);
 GstClockTimeDiff gst_cloth_sync_heads_get_end (const GstClothSyncHeads * heads,
     guint i);
 
-/* @since: the earliest that silence is counted from
- *
- * Returns: when pad @i will have been silent for long; GST_CLOCK_STIME_NONE: there is none, or
- * it has a head, or its silence is said already
- */
+/* Returns: when pad @i will have been silent for long; GST_CLOCK_STIME_NONE: there is none, or
+ * it has a head, or nothing is expected of it, or its silence is said already */
 GstClockTimeDiff gst_cloth_sync_heads_silent_at (const GstClothSyncHeads *
-    heads, guint i, GstClockTimeDiff since);
+    heads, guint i);
 
 G_END_DECLS

@@ -144,13 +144,12 @@ gst_cloth_sync_say_late (GstElement * element, GstClothSyncPad * pad,
 
 void
 gst_cloth_sync_pad_set_silent (GstClothSyncPad * pad, GstElement * element,
-    const gchar * prefix, gboolean silent, GstClockTimeDiff since,
-    GstClockTimeDiff now)
+    const gchar * prefix, gboolean silent, GstClockTimeDiff now)
 {
+  const GstClockTimeDiff since = gst_cloth_sync_pad_silent_since (pad);
   g_autofree gchar *name =
       g_strconcat (prefix, silent ? "/silent" : "/back", NULL);
 
-  since = gst_cloth_sync_pad_silent_since (pad, since);
   GST_OBJECT_LOCK (element);
   pad->silent = silent;
   GST_OBJECT_UNLOCK (element);
@@ -159,6 +158,21 @@ gst_cloth_sync_pad_set_silent (GstClothSyncPad * pad, GstElement * element,
               "camera", G_TYPE_STRING, pad->camera_name ? pad->camera_name : "",
               "pad", G_TYPE_STRING, GST_PAD_NAME (pad),
               "seconds", G_TYPE_DOUBLE, seconds (MAX (now - since, 0)), NULL)));
+}
+
+void
+gst_cloth_sync_say_unused (GstElement * element, GstClothSyncPad * pad)
+{
+  g_autofree gchar *stream = name_stream (pad);
+
+  GST_ELEMENT_WARNING_WITH_DETAILS (element, STREAM, FAILED,
+      ("No picture of %s was used, from the beginning to the end.", stream),
+      ("Every set went without it: %" G_GUINT64_FORMAT " of its pictures came "
+          "too late, %" G_GUINT64_FORMAT " had times that can't be. See that "
+          "the camera gives pictures, and that its times are those of the "
+          "others.", pad->dropped, pad->implausible),
+      ("camera", G_TYPE_STRING, pad->camera_name ? pad->camera_name : "",
+          "pad", G_TYPE_STRING, GST_PAD_NAME (pad), NULL));
 }
 
 GstStructure *

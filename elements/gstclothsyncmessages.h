@@ -31,10 +31,13 @@ void gst_cloth_sync_say_late (GstElement * element, GstClothSyncPad * pad,
     GstClockTime late, GstClockTime latency);
 
 /* Marks whether the pad is silent and says so: element message "<prefix>/silent" or
- * "<prefix>/back". @since: the earliest that silence is counted from; @now: common time */
+ * "<prefix>/back". @now: common time */
 void gst_cloth_sync_pad_set_silent (GstClothSyncPad * pad,
     GstElement * element, const gchar * prefix, gboolean silent,
-    GstClockTimeDiff since, GstClockTimeDiff now);
+    GstClockTimeDiff now);
+
+/* The streams have ended, and no frame of the pad came into a set. */
+void gst_cloth_sync_say_unused (GstElement * element, GstClothSyncPad * pad);
 
 /* Returns: (transfer full): the counts of the pad; take the element's object lock */
 GstStructure *gst_cloth_sync_pad_get_stats (GstClothSyncPad * pad);

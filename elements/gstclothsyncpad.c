@@ -122,13 +122,24 @@ gst_cloth_sync_pad_note (GstClothSyncPad * pad, GstClockTimeDiff time,
   GST_OBJECT_UNLOCK (pad);
 }
 
-GstClockTimeDiff
-gst_cloth_sync_pad_silent_since (GstClothSyncPad * pad, GstClockTimeDiff since)
+void
+gst_cloth_sync_pad_expect (GstClothSyncPad * pad, GstClockTimeDiff now)
 {
   GST_OBJECT_LOCK (pad);
-  if (GST_CLOCK_STIME_IS_VALID (pad->last)) {
-    since = MAX (since, pad->last);
+  if (!GST_CLOCK_STIME_IS_VALID (pad->expected)) {
+    pad->expected = now;
   }
+  GST_OBJECT_UNLOCK (pad);
+}
+
+GstClockTimeDiff
+gst_cloth_sync_pad_silent_since (GstClothSyncPad * pad)
+{
+  GstClockTimeDiff since;
+
+  GST_OBJECT_LOCK (pad);
+  /* none is before all times */
+  since = MAX (pad->expected, pad->last);
   GST_OBJECT_UNLOCK (pad);
   return since;
 }
@@ -218,7 +229,7 @@ gst_cloth_sync_pad_reset (GstClothSyncPad * pad)
   GST_OBJECT_LOCK (pad);
   held = g_steal_pointer (&pad->held);
   pad->believed = FALSE;
-  pad->last = GST_CLOCK_STIME_NONE;
+  pad->expected = pad->last = GST_CLOCK_STIME_NONE;
   pad->interval = 0;
   pad->n_flushes++;
   GST_OBJECT_UNLOCK (pad);
@@ -253,5 +264,5 @@ static void
 gst_cloth_sync_pad_init (GstClothSyncPad * pad)
 {
   pad->period = GST_CLOCK_TIME_NONE;
-  pad->last = GST_CLOCK_STIME_NONE;
+  pad->expected = pad->last = GST_CLOCK_STIME_NONE;
 }

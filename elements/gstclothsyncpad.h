@@ -44,6 +44,7 @@ struct _GstClothSyncPad {
   GstBuffer *held;              /* too far ahead: waits for the next frame's word */
   GstClockTimeDiff held_time;   /* by the segment that it came with */
   gboolean believed;            /* the held one is the head */
+  GstClockTimeDiff expected;    /* since when silence counts; NONE: not yet */
   GstClockTimeDiff last;        /* the latest time believed; NONE: none yet */
   guint64 interval;             /* from the time before to @last */
   guint n_flushes;
@@ -108,12 +109,11 @@ GstClothSyncVerdict gst_cloth_sync_pad_judge (GstClothSyncPad * pad,
 void gst_cloth_sync_pad_note (GstClothSyncPad * pad, GstClockTimeDiff time,
     GstClockTimeDiff end);
 
-/* @since: the earliest that silence is counted from
- *
- * Returns: from when on the pad has given nothing
- */
-GstClockTimeDiff gst_cloth_sync_pad_silent_since (GstClothSyncPad * pad,
-    GstClockTimeDiff since);
+/* From @now on the pad is expected to give something, if it wasn't before. */
+void gst_cloth_sync_pad_expect (GstClothSyncPad * pad, GstClockTimeDiff now);
+
+/* Returns: from when on the pad has given nothing; GST_CLOCK_STIME_NONE: nothing was expected */
+GstClockTimeDiff gst_cloth_sync_pad_silent_since (GstClothSyncPad * pad);
 
 /* Returns: how long a pad gives nothing before that is said */
 GstClockTime gst_cloth_sync_pad_patience (const GstClothSyncPad * pad);

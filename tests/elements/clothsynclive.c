@@ -82,18 +82,29 @@ expect_no_silence (Bench * b)
   fail_unless (message == NULL);
 }
 
-/* One pad gives, so each set ends at its deadline. */
+/* The set of @mask, which lacks a pad, ends at its deadline; @pad gives the last of it. */
 static void
-push_alone (Bench * b, GstTestClock * clock, guint pad, GstClockTime pts)
+push_beside (Bench * b, GstTestClock * clock, guint pad, GstClockTime pts,
+    guint64 mask)
 {
   GstClockTime tolerance, latency;
 
   g_object_get (b->sync, "tolerance", &tolerance, "latency", &latency, NULL);
   push (b, pad, pts);
+  for (guint i = 0; i < MAX_PADS; i++) {
+    settle (b, i);
+  }
   wait_for_deadline (clock, pts + latency +
       (GST_CLOCK_TIME_IS_VALID (tolerance) ? tolerance : GST_SECOND / 60));
   fail_unless (gst_test_clock_crank (clock));
-  expect (b, pts, 1 << pad);
+  expect (b, pts, mask);
+}
+
+/* One pad gives. */
+static void
+push_alone (Bench * b, GstTestClock * clock, guint pad, GstClockTime pts)
+{
+  push_beside (b, clock, pad, pts, 1 << pad);
 }
 
 GST_START_TEST (test_live_silent_pad)
@@ -127,6 +138,130 @@ GST_START_TEST (test_live_silent_pad)
   expect_silence (&b, "sync/back", 1, 1.2);
   fail_unless_equals_uint64 (stat_of (&b, "incomplete"), 11);
   gst_object_unref (clock);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* A camera that never gives anything, with caps or without them, is told of as one that
+ * fell silent is; every set lacks it. */
+GST_START_TEST (test_live_never)
+{
+  GstTestClock *clock;
+  GstClockTime pts;
+  Bench b;
+
+  bench_init (&b, 2, TRUE);
+  bench_remove_pad (&b, 1);
+  bench_add_pad (&b, 1,
+      __i__ ? "test/x-frames,framerate=30/1" : NULL);
+  gst_harness_set_live (b.in[1], TRUE);
+  clock = bench_clock (&b);
+  for (pts = 0; pts < 1000 * MS; pts += 110 * MS) {
+    push_alone (&b, clock, 0, pts);
+  }
+  expect_no_silence (&b);
+  push_alone (&b, clock, 0, pts);
+  expect_silence (&b, "sync/silent", 1, 1.1);
+  expect_no_silence (&b);
+  fail_unless_equals_uint64 (stat_of (&b, "incomplete"), 11);
+  fail_unless_equals_uint64 (stat_of (&b, "sets"), 11);
+  fail_unless_equals_uint64 (stat_of_pad (&b, 1, "missing"), 11);
+  fail_unless_equals_uint64 (stat_of_pad (&b, 1, "used"), 0);
+  gst_object_unref (clock);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* None of the cameras ever gives anything. */
+GST_START_TEST (test_live_none_ever)
+{
+  GstTestClock *clock;
+  Bench b;
+
+  bench_init (&b, 2, TRUE);
+  clock = bench_clock (&b);
+  /* as a pipeline does that plays */
+  gst_harness_query_latency (b.src);
+  wait_for_deadline (clock, GST_SECOND + GST_SECOND / 60);
+  expect_no_silence (&b);
+  gst_test_clock_set_time (clock, 2 * GST_SECOND);
+  fail_unless (gst_test_clock_crank (clock));
+  expect_silence (&b, "sync/silent", 0, 2.);
+  expect_silence (&b, "sync/silent", 1, 2.);
+  fail_unless (gst_harness_try_pull (b.src) == NULL);
+  fail_unless_equals_int (gst_test_clock_peek_id_count (clock), 0);
+  push (&b, 0, 3 * GST_SECOND);
+  push (&b, 1, 3 * GST_SECOND);
+  expect (&b, 3 * GST_SECOND, 3);
+  expect_silence (&b, "sync/back", 0, 3.);
+  expect_silence (&b, "sync/back", 1, 3.);
+  gst_object_unref (clock);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* A camera that is linked later has its time from then on. */
+GST_START_TEST (test_live_linked_later)
+{
+  GstTestClock *clock;
+  GstClockTime pts;
+  Bench b;
+
+  bench_init (&b, 2, TRUE);
+  clock = bench_clock (&b);
+  push (&b, 0, 0);
+  push (&b, 1, 0);
+  expect (&b, 0, 3);
+  push (&b, 0, 5000 * MS);
+  push (&b, 1, 5000 * MS);
+  expect (&b, 5000 * MS, 3);
+  gst_test_clock_set_time (clock, 5000 * MS);
+  bench_add_pad (&b, 2, NULL);
+  gst_harness_set_live (b.in[2], TRUE);
+  for (pts = 5110 * MS; pts < 6000 * MS; pts += 110 * MS) {
+    push (&b, 1, pts);
+    push_beside (&b, clock, 0, pts, 3);
+  }
+  expect_no_silence (&b);
+  push (&b, 1, pts);
+  push_beside (&b, clock, 0, pts, 3);
+  expect_silence (&b, "sync/silent", 2, 1.1);
+  gst_object_unref (clock);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* Films are waited for: one that never comes is not silent. */
+GST_START_TEST (test_film_never)
+{
+  g_autoptr (GstMessage) early = NULL, warning = NULL, more = NULL;
+  const GstStructure *details;
+  Bench b;
+
+  bench_init (&b, 2, FALSE);
+  push (&b, 0, 0);
+  gst_test_clock_set_time (bench_clock (&b), 10 * GST_SECOND);
+  fail_unless (gst_harness_try_pull (b.src) == NULL);
+  expect_no_silence (&b);
+  eos (&b, 1);
+  expect (&b, 0, 1);
+  expect_no_silence (&b);
+  /* at the end it is told which stream was never used; that of the other is not */
+  early = message_of (&b, GST_MESSAGE_WARNING);
+  fail_unless (early == NULL);
+  eos (&b, 0);
+  expect_eos (&b);
+  warning = message_of (&b, GST_MESSAGE_WARNING);
+  fail_unless (warning != NULL);
+  gst_message_parse_warning_details (warning, &details);
+  fail_unless_equals_string (gst_structure_get_string (details, "pad"),
+      "sink_1");
+  more = message_of (&b, GST_MESSAGE_WARNING);
+  fail_unless (more == NULL);
   bench_clear (&b);
 }
 
@@ -560,6 +695,10 @@ clothsynclive_suite (void)
   tcase_add_test (tc, test_live_silence);
   tcase_add_test (tc, test_live_silent_pad);
   tcase_add_test (tc, test_live_not_silent);
+  tcase_add_loop_test (tc, test_live_never, 0, 2);
+  tcase_add_test (tc, test_live_none_ever);
+  tcase_add_test (tc, test_live_linked_later);
+  tcase_add_test (tc, test_film_never);
   tcase_add_test (tc, test_film_ends);
   tcase_add_test (tc, test_live_late);
   tcase_add_test (tc, test_film_not_late);
