@@ -72,6 +72,9 @@ show (const ClothRefinement * r)
         100. * camera->focal_sd, 1e3 * camera->late_s, 1e3 * camera->late_sd,
         camera->n);
   }
+  if (!r->settled)
+    g_print ("The numbers still moved when the search ended: refine the rig that "
+        "was written once more.\n");
   g_print ("%u places of the cloth, %u observations. They disagree by %.2f px "
       "beside what the pictures' noise makes.\nReprojection χ² over the "
       "degrees of freedom: %.3f, was %.3f; observations that contradict the "

@@ -206,7 +206,24 @@ test_faults (void)
   g_assert_cmpfloat (result->cameras[1].turned_sd[0], <, 4e-4);
   g_assert_cmpfloat (result->cameras[3].focal_sd, <, 2e-3);
   g_assert_cmpfloat (result->cameras[5].late_sd, <, 2e-3);
+  g_assert_true (result->settled);
+  /* χ² counts what they still disagree by as noise: it is nothing beside the noise's own variance */
   g_assert_cmpfloat_with_epsilon (result->after.chi_square, 1., 0.2);
+  g_assert_cmpfloat (result->error_floor, <, 0.1 * NOISE_PX * NOISE_PX);
+  /* the others stay */
+  for (guint c = 0; c < N_CAMERAS; c++) {
+    const ClothRefineCamera *r = &result->cameras[c];
+
+    for (guint k = 0; k < 3; k++) {
+      if (c != 1)
+        WITHIN (r->turned_rad[k], 0., r->turned_sd[k]);
+      WITHIN (r->moved_m[k], 0., r->moved_sd[k]);
+    }
+    if (c != 3)
+      WITHIN (r->focal, 0., r->focal_sd);
+    if (c != 5)
+      WITHIN (r->late_s, 0., r->late_sd);
+  }
   g_assert_cmpfloat (result->after.contradicted, <, 0.01);
   g_assert_cmpfloat (result->before.contradicted, >, 0.2);
   errors[0] = find_error (rig, observations, &m);
@@ -242,8 +259,49 @@ test_right (void)
     }
     WITHIN (r->focal, 0., r->focal_sd);
     WITHIN (r->late_s, 0., r->late_sd);
+    /* no worse known than before */
+    g_assert_cmpfloat (r->turned_sd[0], <, 5e-4);
+    g_assert_cmpfloat (r->moved_sd[0], <, 5e-4);
+    g_assert_cmpfloat (r->focal_sd, <, 1e-3);
+    g_assert_cmpfloat (r->late_sd, <, 1e-3);
   }
   g_assert_cmpfloat_with_epsilon (result->after.chi_square, 1., 0.1);
+  g_assert_cmpfloat (result->error_floor, <, 0.1 * NOISE_PX * NOISE_PX);
+}
+
+/* A clock that is late by a third of a frame, so that all its pictures are between the others'; a
+ * camera that is blind stays as it was, clock and all, and a pause is no frame. */
+static void
+test_between (void)
+{
+  const gdouble late = 0.013, pause = 30.;
+  const TestGapFilming filming = { N_CAMERAS, NOISE_PX, hide_some };
+  g_autoptr (ClothRig) rig = test_gap_ring (N_CAMERAS, middle);
+  g_autoptr (ClothObservations) filmed = NULL, observations = NULL;
+  g_autoptr (ClothRefinement) result = NULL;
+  g_auto (Motion) m = { NULL };
+
+  motion_init (&m);
+  filmed = test_gap_film (rig, rig, m.truth, m.times, N_FRAMES, N, &filming, 11);
+  observations = cloth_observations_new (test_gap_ring (N_CAMERAS, middle), N);
+  for (guint i = 0; i < filmed->list->len; i++) {
+    const ClothObservation *o = &g_array_index (filmed->list, ClothObservation,
+        i);
+
+    if (o->camera != 2)
+      cloth_observations_add (observations, o->camera, o->time_s +
+          (o->camera == 5 ? late : 0.) + (o->time_s > 0.5 *
+              m.times[N_FRAMES - 1] ? pause : 0.), o->n, o->vertices, o->px,
+          o->covariances, NULL);
+  }
+  result = refine (observations);
+  show (result);
+  WITHIN (result->cameras[5].late_s, late, result->cameras[5].late_sd);
+  g_assert_cmpfloat (result->cameras[5].late_sd, <, 2e-3);
+  g_assert_cmpuint (result->cameras[2].n, ==, 0);
+  g_assert_cmpfloat (result->cameras[2].late_s, ==, 0.);
+  for (guint k = 0; k < 3; k++)
+    g_assert_cmpfloat (result->cameras[2].moved_m[k], ==, 0.);
 }
 
 static void
@@ -276,6 +334,7 @@ main (int argc, char **argv)
   g_test_init (&argc, &argv, NULL);
   g_test_add_func ("/refine/faults", test_faults);
   g_test_add_func ("/refine/right", test_right);
+  g_test_add_func ("/refine/between", test_between);
   g_test_add_func ("/refine/refused", test_refused);
   return g_test_run ();
 }

@@ -64,7 +64,7 @@ typedef struct
   const ClothRig *rig;
   ClothViews *views;
   gdouble frame_s;
-  guint n_cameras, n_frames;
+  guint n_cameras, n_frames, n_seeing;  /* cameras; those with pictures */
   gdouble *times;
   ClothCamera *cameras, *trial;
   gdouble *theta, *trial_theta; /* [camera][EACH], from the rig */
@@ -102,6 +102,7 @@ static gboolean
 find_times (Refine * r, GError ** error)
 {
   g_autofree guint *counts = g_new0 (guint, r->n_cameras);
+  g_autofree gdouble *steps = NULL;
   guint best = 0, n = 0;
 
   for (guint i = 0; i < r->observations->list->len; i++)
@@ -110,6 +111,7 @@ find_times (Refine * r, GError ** error)
     if (counts[c] > counts[best])
       best = c;
     n += counts[c] > 1;
+    r->n_seeing += counts[c] > 0;
   }
   if (n < 2) {
     g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING,
@@ -122,7 +124,11 @@ find_times (Refine * r, GError ** error)
     if (picture (r, i)->camera == best)
       r->times[r->n_frames++] = picture (r, i)->time_s -
           r->rig->cameras[best].offset_s;
-  r->frame_s = (r->times[r->n_frames - 1] - r->times[0]) / (r->n_frames - 1);
+  /* a pause between two parts of the film is no frame */
+  steps = g_new (gdouble, r->n_frames);
+  for (guint f = 1; f < r->n_frames; f++)
+    steps[f - 1] = r->times[f] - r->times[f - 1];
+  r->frame_s = cloth_median (steps, r->n_frames - 1);
   return TRUE;
 }
 
@@ -185,13 +191,13 @@ add_point (Refine * r, guint frame, guint v, const gdouble X[3],
   for (guint c = 0; c < r->n_cameras; c++) {
     const ClothTriangulateView *view = &r->views->views[c];
     const gdouble *rate = rates + 2 * ((gsize) c * r->views->n + v);
-    const Seen seen = { c, {view->x[v], view->y[v]}, {
-        isfinite (rate[0]) ? rate[0] : 0., isfinite (rate[1]) ? rate[1] : 0.},
+    const Seen seen = { c, {view->x[v], view->y[v]}, {rate[0], rate[1]},
     {view->xx[v], view->xy[v], view->yy[v]}
     };
     gdouble px[2];
 
-    if (isfinite (seen.px[0] + seen.px[1])
+    /* where it isn't known how the point moves nothing is known of the clock */
+    if (isfinite (seen.px[0] + seen.px[1] + seen.rate[0] + seen.rate[1])
         && cloth_camera_project (&r->cameras[c], X, px, NULL, NULL)) {
       g_array_append_val (r->seen, seen);
       point.n++;
@@ -210,7 +216,7 @@ count_places (const Refine * r)
 
   for (guint i = 0; i < r->observations->list->len; i++)
     n += picture (r, i)->n;
-  return (guint) MIN (n / MAX (r->n_cameras, 1), G_MAXUINT);
+  return (guint) MIN (n / r->n_seeing, G_MAXUINT);
 }
 
 /* Places and what was seen of them, with the cameras as they are now. Frame after frame other
@@ -373,7 +379,8 @@ prior_cost (const Refine * r, const gdouble * theta)
   return cost;
 }
 
-/* @gathered: θ when what was seen was gathered */
+/* @gathered: θ when what was seen was gathered; @chi_square: of residuals as Huber's weights have
+ * them */
 static gdouble
 find_cost (const Refine * r, gboolean trial, const gdouble * gathered,
     gdouble * chi_square, guint * n)
@@ -397,7 +404,7 @@ find_cost (const Refine * r, gboolean trial, const gdouble * gathered,
         return INFINITY;
       square = e[0] * e[0] + e[1] * e[1];
       cost += huber_cost (square, r->options->huber);
-      sum += square;
+      sum += fmin (square, r->options->huber * sqrt (square));
       count += 2;
     }
   }
@@ -642,17 +649,34 @@ solve (Refine * r)
   }
 }
 
-/* All clocks may run late together: the rig's time is that of most of them. */
+/* Observations of each camera that are used. */
+static guint *
+count_seen (const Refine * r)
+{
+  guint *counts = g_new0 (guint, r->n_cameras);
+
+  for (guint i = 0; i < r->seen->len; i++)
+    counts[g_array_index (r->seen, Seen, i).camera]++;
+  return counts;
+}
+
+/* All clocks may run late together: the rig's time is that of most of them. One that saw nothing
+ * stays. */
 static void
 set_clocks (Refine * r)
 {
+  g_autofree guint *counts = count_seen (r);
   g_autofree gdouble *late = g_new (gdouble, r->n_cameras);
   gdouble usual;
+  guint n = 0;
 
   for (guint c = 0; c < r->n_cameras; c++)
-    late[c] = r->theta[EACH * c + CLOCK];
-  usual = cloth_median (late, r->n_cameras);
+    if (counts[c])
+      late[n++] = r->theta[EACH * c + CLOCK];
+  usual = cloth_median (late, n);
   for (guint c = 0; c < r->n_cameras; c++) {
+    if (!counts[c])
+      continue;
     r->theta[EACH * c + CLOCK] -= usual;
     set_camera (&r->rig->cameras[c], r->theta + EACH * c, &r->cameras[c]);
   }
@@ -764,7 +788,8 @@ refinement_new (Refine * r, GError ** error)
   g_autoptr (ClothRefinement) result = g_new0 (ClothRefinement, 1);
   g_auto (Normal) n = { 0 };
   g_autofree gdouble *covariance = NULL;
-  gdouble sum, scale;
+  g_autofree guint *counts = count_seen (r);
+  gdouble sum, scale, freedom;
   guint count;
 
   result->n_points = r->points->len;
@@ -783,7 +808,17 @@ refinement_new (Refine * r, GError ** error)
   covariance = g_new (gdouble, (gsize) n.m * n.m);
   cloth_cholesky_inverse (n.m, n.U, covariance);
   find_cost (r, FALSE, r->theta, &sum, &count);
-  scale = fmax (1., sum / (count - 3. * r->points->len - n.m));
+  freedom = count - 3. * r->points->len;
+  for (guint c = 0; c < r->n_cameras; c++)
+    freedom -= counts[c] ? EACH : 0;
+  if (!(freedom > 0.)) {
+    g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING,
+        "%u observations of %u places are too few for the cameras; film a "
+        "longer take, seen by more cameras at a time", r->seen->len,
+        r->points->len);
+    return NULL;
+  }
+  scale = fmax (1., sum / freedom);
   result->rig = cloth_rig_new (r->n_cameras);
   result->cameras = g_new0 (ClothRefineCamera, r->n_cameras);
   for (guint c = 0; c < r->n_cameras; c++) {
@@ -810,8 +845,10 @@ refinement_new (Refine * r, GError ** error)
           scale);
       /* a turn is about the centre itself */
       for (guint i = 0; i < 3; i++)
-        variance += pow (camera->R[3 * i + k] * sd[3 + i], 2.);
-      to->moved_sd[k] = sqrt (variance);
+        for (guint j = 0; j < 3; j++)
+          variance += camera->R[3 * i + k] * camera->R[3 * j + k] *
+              covariance[(gsize) (EACH * c + 3 + i) * n.m + EACH * c + 3 + j];
+      to->moved_sd[k] = sqrt (scale * variance);
     }
     to->focal = expm1 (theta[FOCAL]);
     to->focal_sd = sd[FOCAL];
@@ -819,9 +856,8 @@ refinement_new (Refine * r, GError ** error)
       camera->K_sd[k] = sd[FOCAL] * camera->K[k ? 4 : 0];
     to->late_s = theta[CLOCK];
     to->late_sd = sd[CLOCK];
+    to->n = counts[c];
   }
-  for (guint i = 0; i < r->seen->len; i++)
-    result->cameras[g_array_index (r->seen, Seen, i).camera].n++;
   return g_steal_pointer (&result);
 }
 
@@ -840,24 +876,28 @@ cloth_refine_rig (const ClothObservations * observations,
     const ClothRefineOptions * options, GError ** error)
 {
   g_auto (Refine) r = { NULL };
+  g_autoptr (ClothRefinement) result = NULL;
   g_autofree gdouble *before = NULL;
+  gboolean settled = FALSE;
 
   if (!refine_init (&r, observations, options, error))
     return NULL;
   before = g_new0 (gdouble, EACH * (gsize) r.n_cameras);
-  for (guint turn = 0; turn < MOST_TURNS; turn++) {
+  for (guint turn = 0; turn < MOST_TURNS && !settled; turn++) {
     if (!gather (&r, error))
       return NULL;
     solve (&r);
     set_clocks (&r);
     if (!find_floor (&r, r.cameras, &r.floor, error))
       return NULL;
-    if (has_settled (&r, before))
-      break;
+    settled = has_settled (&r, before);
   }
   if (!gather (&r, error))
     return NULL;
-  return refinement_new (&r, error);
+  result = refinement_new (&r, error);
+  if (result)
+    result->settled = settled;
+  return g_steal_pointer (&result);
 }
 
 /* @refinement: (nullable) (transfer full): a refinement

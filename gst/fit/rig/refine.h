@@ -58,6 +58,7 @@ typedef struct {
  * @n_observations: observations of them
  * @error_floor: variance that was added to each observation, px²: what the refined cameras still
  *   disagree by
+ * @settled: whether the numbers stopped moving; if not, they and their deviations are not the last word
  * @before: how the cameras agreed as they were
  * @after: how the refined ones do
  */
@@ -66,6 +67,7 @@ typedef struct {
   ClothRefineCamera *cameras;
   guint n_points, n_observations;
   gdouble error_floor;
+  gboolean settled;
   ClothRefineAgreement before, after;
 } ClothRefinement;
 
