@@ -290,21 +290,6 @@ gst_cloth_sync_forget_released (GstClothSync * self)
   gst_pad_mark_reconfigure (GST_AGGREGATOR_SRC_PAD (self));
 }
 
-static GstClockTime
-gst_cloth_sync_period_of_caps (const GstCaps * caps)
-{
-  const GstStructure *s = gst_caps_get_structure (caps, 0);
-  gint n, d;
-
-  if (gst_structure_get_fraction (s, "framerate", &n, &d) && n > 0 && d > 0) {
-    return gst_util_uint64_scale (GST_SECOND, (guint64) d, (guint64) n);
-  }
-  if (gst_structure_get_fraction (s, "max-framerate", &n, &d) && n > 0 && d > 0) {
-    return gst_util_uint64_scale (GST_SECOND, (guint64) d, (guint64) n);
-  }
-  return GST_CLOCK_TIME_NONE;
-}
-
 static gboolean
 gst_cloth_sync_sink_event (GstAggregator * agg, GstAggregatorPad * aggpad,
     GstEvent * event)
@@ -325,9 +310,7 @@ gst_cloth_sync_sink_event (GstAggregator * agg, GstAggregatorPad * aggpad,
 
     gst_cloth_sync_forget_released (self);
     gst_event_parse_caps (event, &caps);
-    GST_OBJECT_LOCK (self);
-    pad->period = gst_cloth_sync_period_of_caps (caps);
-    GST_OBJECT_UNLOCK (self);
+    gst_cloth_sync_pad_set_period (pad, GST_ELEMENT (self), caps);
     gst_cloth_sync_update_timing (self);
     if (klass->set_pad_caps && !klass->set_pad_caps (self, pad->index, caps)) {
       gst_event_unref (event);
@@ -590,15 +573,9 @@ static void
 gst_cloth_sync_name_camera (GstClothSync * self, GstClothSyncPad * pad)
 {
   GstClothSyncClass *klass = GST_CLOTH_SYNC_GET_CLASS (self);
-  const gchar *name =
-      klass->get_camera ? klass->get_camera (self, pad->index) : NULL;
 
-  if (g_strcmp0 (pad->camera_name, name) != 0) {
-    GST_OBJECT_LOCK (self);
-    g_free (pad->camera_name);
-    pad->camera_name = g_strdup (name);
-    GST_OBJECT_UNLOCK (self);
-  }
+  gst_cloth_sync_pad_set_camera (pad, GST_ELEMENT (self),
+      klass->get_camera ? klass->get_camera (self, pad->index) : NULL);
 }
 
 static void
@@ -815,31 +792,14 @@ gst_cloth_sync_discard_head (GstClothSync * self, GstClothSyncPad * pad)
   GST_LOG_OBJECT (pad, "discarded %" GST_PTR_FORMAT, buffer);
 }
 
-/* How long after the deadline of its set a frame of @time comes; 0 when it doesn't. */
-static GstClockTime
-gst_cloth_sync_get_lateness (GstClothSync * self, GstClockTimeDiff time)
-{
-  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
-  const GstClockTime latency =
-      gst_aggregator_get_latency (GST_AGGREGATOR (self));
-  const GstClockTime now =
-      gst_element_get_current_running_time (GST_ELEMENT (self));
-  GstClockTime set;
-
-  if (!GST_CLOCK_TIME_IS_VALID (latency) || !GST_CLOCK_TIME_IS_VALID (now)
-      || !priv->has_last || time < 0) {
-    return 0;
-  }
-  set = (GstClockTime) MIN (time, MAX (priv->last_time, 0));
-  return now > set && now - set > latency ? now - set - latency : 0;
-}
-
 static void
 gst_cloth_sync_drop (GstClothSync * self, GstClothSyncPad * pad,
     GstBuffer * buffer, GstClockTimeDiff time)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
-  const GstClockTime late = gst_cloth_sync_get_lateness (self, time);
+  const GstClockTime late = priv->has_last ?
+      gst_cloth_sync_get_lateness (GST_AGGREGATOR (self), priv->last_time,
+      time) : 0;
   GstClockTime max_jump, latency;
 
   g_object_get (self, "latency", &latency, NULL);
@@ -899,27 +859,6 @@ gst_cloth_sync_discard (GstClothSync * self, GstClothSyncHeads * heads,
     }
   }
   return discarded;
-}
-
-/* Says downstream that nothing comes for this set. Without it an element that joins our
- * stream with another one would wait, and fill the queues of the other, for ever. */
-static void
-gst_cloth_sync_push_gap (GstClothSync * self, GstClockTime pts,
-    GstClockTime duration)
-{
-  GstPad *srcpad = GST_AGGREGATOR_SRC_PAD (self);
-  g_autoptr (GstEvent) segment = NULL;
-
-  if (!gst_pad_has_current_caps (srcpad)) {
-    return;
-  }
-  segment = gst_pad_get_sticky_event (srcpad, GST_EVENT_SEGMENT, 0);
-  if (!segment) {
-    /* the aggregator sends it with its first buffer only */
-    gst_pad_push_event (srcpad,
-        gst_event_new_segment (&GST_AGGREGATOR_PAD (srcpad)->segment));
-  }
-  gst_pad_push_event (srcpad, gst_event_new_gap (pts, duration));
 }
 
 /* Returns: 1 for a set that lacks @pad, 0 when there is no pad */
@@ -1013,7 +952,7 @@ gst_cloth_sync_emit (GstClothSync * self, GstClothSyncHeads * heads,
   if (ret != GST_FLOW_OK || !out) {
     gst_clear_buffer (&out);
     if (ret == GST_FLOW_OK && GST_CLOCK_TIME_IS_VALID (pts)) {
-      gst_cloth_sync_push_gap (self, pts, duration);
+      gst_cloth_sync_say_gap (GST_AGGREGATOR (self), pts, duration);
     }
     return ret;
   }
@@ -1025,36 +964,16 @@ gst_cloth_sync_emit (GstClothSync * self, GstClothSyncHeads * heads,
   return gst_aggregator_finish_buffer (agg, out);
 }
 
-/* Tells of the pads whose frames were in none of the sets. */
-static void
-gst_cloth_sync_look_for_unused (GstClothSync * self,
-    const GstClothSyncHeads * heads)
-{
-  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
-  guint i;
-
-  for (i = 0; i < heads->n && GST_CLOTH_SYNC_GET_CLASS (self)->prefix; i++) {
-    gboolean unused;
-
-    GST_OBJECT_LOCK (self);
-    unused = priv->n_sets > 0 && heads->pad[i] && heads->pad[i]->used == 0;
-    GST_OBJECT_UNLOCK (self);
-    if (unused) {
-      gst_cloth_sync_name_camera (self, heads->pad[i]);
-      gst_cloth_sync_say_unused (GST_ELEMENT (self), heads->pad[i]);
-    }
-  }
-}
-
 static GstFlowReturn
 gst_cloth_sync_end (GstClothSync * self, const GstClothSyncHeads * heads)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
   gboolean all_skipped;
-  guint min_views;
+  guint min_views, n_sets, i;
 
   GST_OBJECT_LOCK (self);
-  all_skipped = priv->n_sets == 0 && priv->n_skipped > 0;
+  n_sets = priv->n_sets;
+  all_skipped = n_sets == 0 && priv->n_skipped > 0;
   min_views = priv->min_views;
   GST_OBJECT_UNLOCK (self);
   if (all_skipped) {
@@ -1063,7 +982,12 @@ gst_cloth_sync_end (GstClothSync * self, const GstClothSyncHeads * heads)
         ("Lower min-views, raise tolerance, or check that the streams' times "
             "overlap."));
   }
-  gst_cloth_sync_look_for_unused (self, heads);
+  for (i = 0; i < heads->n && GST_CLOTH_SYNC_GET_CLASS (self)->prefix; i++) {
+    if (heads->pad[i] && n_sets > 0) {
+      gst_cloth_sync_name_camera (self, heads->pad[i]);
+      gst_cloth_sync_say_unused (GST_ELEMENT (self), heads->pad[i]);
+    }
+  }
   return GST_FLOW_EOS;
 }
 

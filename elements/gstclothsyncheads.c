@@ -125,3 +125,20 @@ gst_cloth_sync_heads_silent_at (const GstClothSyncHeads * heads, guint i)
   return since + (GstClockTimeDiff) MIN (gst_cloth_sync_pad_patience (pad),
       (guint64) (G_MAXINT64 - since));
 }
+
+GstClockTime
+gst_cloth_sync_get_lateness (GstAggregator * agg, GstClockTimeDiff last_time,
+    GstClockTimeDiff time)
+{
+  const GstClockTime latency = gst_aggregator_get_latency (agg);
+  const GstClockTime now =
+      gst_element_get_current_running_time (GST_ELEMENT (agg));
+  GstClockTime set;
+
+  if (!GST_CLOCK_TIME_IS_VALID (latency) || !GST_CLOCK_TIME_IS_VALID (now)
+      || time < 0) {
+    return 0;
+  }
+  set = (GstClockTime) MIN (time, MAX (last_time, 0));
+  return now > set && now - set > latency ? now - set - latency : 0;
+}

@@ -43,4 +43,10 @@ GstClockTimeDiff gst_cloth_sync_heads_get_end (const GstClothSyncHeads * heads,
 GstClockTimeDiff gst_cloth_sync_heads_silent_at (const GstClothSyncHeads *
     heads, guint i);
 
+/* @last_time: common time of the last set; @time: that of a frame which comes now
+ *
+ * Returns: how long after the deadline of its set it comes; 0 when it doesn't */
+GstClockTime gst_cloth_sync_get_lateness (GstAggregator * agg,
+    GstClockTimeDiff last_time, GstClockTimeDiff time);
+
 G_END_DECLS

@@ -36,10 +36,15 @@ void gst_cloth_sync_pad_set_silent (GstClothSyncPad * pad,
     GstElement * element, const gchar * prefix, gboolean silent,
     GstClockTimeDiff now);
 
-/* The streams have ended, and no frame of the pad came into a set. */
+/* The streams have ended: warns where no frame of the pad came into any of the sets. */
 void gst_cloth_sync_say_unused (GstElement * element, GstClothSyncPad * pad);
 
 /* Returns: (transfer full): the counts of the pad; take the element's object lock */
 GstStructure *gst_cloth_sync_pad_get_stats (GstClothSyncPad * pad);
+
+/* Says downstream that nothing comes for a set. Without it an element that joins this stream with
+ * another one would wait, and fill the queues of the other, for ever. */
+void gst_cloth_sync_say_gap (GstAggregator * agg, GstClockTime pts,
+    GstClockTime duration);
 
 G_END_DECLS

@@ -266,3 +266,39 @@ gst_cloth_sync_pad_init (GstClothSyncPad * pad)
   pad->period = GST_CLOCK_TIME_NONE;
   pad->expected = pad->last = GST_CLOCK_STIME_NONE;
 }
+
+static GstClockTime
+period_of_caps (const GstCaps * caps)
+{
+  const GstStructure *s = gst_caps_get_structure (caps, 0);
+  gint n, d;
+
+  if (gst_structure_get_fraction (s, "framerate", &n, &d) && n > 0 && d > 0) {
+    return gst_util_uint64_scale (GST_SECOND, (guint64) d, (guint64) n);
+  }
+  if (gst_structure_get_fraction (s, "max-framerate", &n, &d) && n > 0 && d > 0) {
+    return gst_util_uint64_scale (GST_SECOND, (guint64) d, (guint64) n);
+  }
+  return GST_CLOCK_TIME_NONE;
+}
+
+void
+gst_cloth_sync_pad_set_period (GstClothSyncPad * pad, GstElement * element,
+    const GstCaps * caps)
+{
+  GST_OBJECT_LOCK (element);
+  pad->period = period_of_caps (caps);
+  GST_OBJECT_UNLOCK (element);
+}
+
+void
+gst_cloth_sync_pad_set_camera (GstClothSyncPad * pad, GstElement * element,
+    const gchar * name)
+{
+  if (g_strcmp0 (pad->camera_name, name) != 0) {
+    GST_OBJECT_LOCK (element);
+    g_free (pad->camera_name);
+    pad->camera_name = g_strdup (name);
+    GST_OBJECT_UNLOCK (element);
+  }
+}

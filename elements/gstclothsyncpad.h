@@ -138,4 +138,11 @@ void gst_cloth_sync_pad_refuse (GstClothSyncPad * pad);
 void gst_cloth_sync_pad_reset (GstClothSyncPad * pad);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (GstClothSyncPad, gst_object_unref)
+/* What is told of a pad, under the element's lock: its usual time from frame to frame by its caps,
+ * and the name of its camera. */
+void gst_cloth_sync_pad_set_period (GstClothSyncPad * pad,
+    GstElement * element, const GstCaps * caps);
+void gst_cloth_sync_pad_set_camera (GstClothSyncPad * pad,
+    GstElement * element, const gchar * name);
+
 G_END_DECLS

@@ -73,7 +73,8 @@ show (const ClothRefinement * r)
         camera->n);
   }
   if (!r->settled)
-    g_print ("The numbers still moved when the search ended: refine the rig that "
+    g_print
+        ("The numbers still moved when the search ended: refine the rig that "
         "was written once more.\n");
   g_print ("%u places of the cloth, %u observations. They disagree by %.2f px "
       "beside what the pictures' noise makes.\nReprojection χ² over the "

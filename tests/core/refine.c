@@ -282,7 +282,8 @@ test_between (void)
   g_auto (Motion) m = { NULL };
 
   motion_init (&m);
-  filmed = test_gap_film (rig, rig, m.truth, m.times, N_FRAMES, N, &filming, 11);
+  filmed =
+      test_gap_film (rig, rig, m.truth, m.times, N_FRAMES, N, &filming, 11);
   observations = cloth_observations_new (test_gap_ring (N_CAMERAS, middle), N);
   for (guint i = 0; i < filmed->list->len; i++) {
     const ClothObservation *o = &g_array_index (filmed->list, ClothObservation,

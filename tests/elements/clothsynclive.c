@@ -153,8 +153,7 @@ GST_START_TEST (test_live_never)
 
   bench_init (&b, 2, TRUE);
   bench_remove_pad (&b, 1);
-  bench_add_pad (&b, 1,
-      __i__ ? "test/x-frames,framerate=30/1" : NULL);
+  bench_add_pad (&b, 1, __i__ ? "test/x-frames,framerate=30/1" : NULL);
   gst_harness_set_live (b.in[1], TRUE);
   clock = bench_clock (&b);
   for (pts = 0; pts < 1000 * MS; pts += 110 * MS) {
