@@ -541,9 +541,9 @@ gst_cloth_sync_judge (GstClothSync * self, const GstClothSyncHeads * heads,
       heads->head[i] ? heads->time[i] : GST_CLOCK_STIME_NONE, start, max_jump);
 }
 
-/* Whether silence is to be told of; counts it from now on where it isn't counted yet. */
+/* Counts silence from now on where it isn't counted yet. Returns whether it is to be told of. */
 static gboolean
-gst_cloth_sync_minds_silence (GstClothSync * self,
+gst_cloth_sync_count_silence (GstClothSync * self,
     const GstClothSyncHeads * heads)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
@@ -595,7 +595,7 @@ gst_cloth_sync_look_for_silence (GstClothSync * self,
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
   const gboolean minds = priv->is_live
-      && gst_cloth_sync_minds_silence (self, heads);
+      && gst_cloth_sync_count_silence (self, heads);
   guint i;
 
   if (!GST_CLOCK_STIME_IS_VALID (now)) {
@@ -641,7 +641,7 @@ gst_cloth_sync_get_next_time (GstAggregator * agg)
       has_first = TRUE;
     }
   }
-  minds = gst_cloth_sync_minds_silence (self, &heads);
+  minds = gst_cloth_sync_count_silence (self, &heads);
   for (i = 0; i < heads.n && heads.n_heads == 0 && minds; i++) {
     const GstClockTimeDiff time = gst_cloth_sync_heads_silent_at (&heads, i);
 

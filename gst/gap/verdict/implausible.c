@@ -372,7 +372,7 @@ cloth_diagnosis_find_implausible_result (ClothDiagnosis * d,
 {
   const ClothRecording *r = cloth_diagnosis_recording (d, 0);
   const ClothGapVerdict verdict = d->result->verdict;
-  gchar *reason;
+  gchar *reason, *size;
 
   if (!isfinite (d->result->gap_before.value))
     return g_strdup ("Nothing was seen in the parts that judge; give a take of "
@@ -382,8 +382,13 @@ cloth_diagnosis_find_implausible_result (ClothDiagnosis * d,
     return NULL;
   if ((reason = check_noise (r)))
     return reason;
-  if (verdict != CLOTH_GAP_UNEXPLAINED && (reason = check_floor (d, r)))
-    return reason;
+  if (verdict != CLOTH_GAP_UNEXPLAINED && (reason = check_floor (d, r))) {
+    /* a simulation of cloth of another size is off by much, too */
+    if (!(size = check_size (r)))
+      return reason;
+    g_free (reason);
+    return size;
+  }
   /* agreement, or nothing that could be seen */
   if (!(d->unknown_probability > 0.5))
     return NULL;
