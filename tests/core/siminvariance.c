@@ -414,6 +414,39 @@ test_drawn (gconstpointer data)
   g_assert_cmpfloat (coarse, <, 5e-6);
 }
 
+/* A falling sheet whose observer comes late falls on as one whose observer had nothing to say until
+ * then. */
+static void
+test_drawn_late (void)
+{
+  g_autofree gdouble *x[2] = { NULL };
+
+  for (guint late = 0; late < 2; late++) {
+    g_autoptr (ClothScene) scene = sheet_new (3, 3, 0.1, 0.1);
+    g_autoptr (ClothModel) model = model_new (0.2, 5.);
+    g_autoptr (ClothSim) sim = NULL;
+    g_autofree gdouble *v = g_new0 (gdouble, 27);
+    gdouble weights[9] = { 0. };
+
+    model->damping_stiffness = 5e-2;
+    model->time_step = 2e-3;
+    sim = run_new (scene, model);
+    for (guint frame = 0; frame < 12; frame++) {
+      for (guint i = 0; i < 9; i++)
+        weights[i] = frame >= 10 ? 1. : 0.;
+      if (frame >= 10 || !late)
+        cloth_sim_set_targets (sim, 0, scene->positions, scene->positions, v, v,
+            weights, NULL, 1., 60., 0.01 * frame, 0.01 * (frame + 1));
+      cloth_sim_advance (sim, 0.01 * (frame + 1));
+    }
+    x[late] = positions_of (sim, 0);
+  }
+  for (guint i = 0; i < 27; i++)
+    assert_within (x[0][i], x[1][i], 1e-9);
+  g_free (x[1]);
+  x[1] = NULL;
+}
+
 /* A copy goes on as the original does. */
 static void
 test_copy (void)
@@ -629,6 +662,7 @@ main (int argc, char **argv)
   g_test_add_data_func ("/sim/drawn", GUINT_TO_POINTER (0), test_drawn);
   g_test_add_data_func ("/sim/drawn-staged", GUINT_TO_POINTER (1), test_drawn);
   g_test_add_data_func ("/sim/drawn-pulls", GUINT_TO_POINTER (2), test_drawn);
+  g_test_add_func ("/sim/drawn-late", test_drawn_late);
   g_test_add_func ("/sim/copy", test_copy);
   g_test_add_data_func ("/sim/targets",
       GUINT_TO_POINTER (CLOTH_INTEGRATOR_EXPLICIT), test_targets);

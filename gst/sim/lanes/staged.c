@@ -77,8 +77,7 @@ void CLOTH_LANE_NAME (cloth_lane_staged) (ClothLaneState * state)
   gdouble s = state->stages;
 
   find_others (state);
-  if (state->has_targets || state->pulls.n)
-    memcpy (state->before_v, state->v, state->n * sizeof *state->v);
+  memcpy (state->before_v, state->v, state->n * sizeof *state->v);
   for (guint j = 1; j <= state->stages; j++) {
     gdouble weight = (2. * j - 1.) / j;
     ClothLane h = state->kick * cloth_lane_set (weight * 2. / (s * s + s));
