@@ -54,7 +54,6 @@ typedef struct
   gsize row;                    /* numbers of a model */
   gdouble *weights;             /* [model][vertex], of the running frame */
   gdouble *x;                   /* [model][vertex][3] */
-  gdouble *steps;               /* of each model, s */
   guint frame;                  /* that is running */
   gboolean nudged;
   /* of the running call of report_frame () */
@@ -77,16 +76,22 @@ run_clear (Run * run)
   g_clear_pointer (&run->pool, cloth_pool_free);
   g_free (run->weights);
   g_free (run->x);
-  g_free (run->steps);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Run, run_clear);
 
 /* The longest step that each model could take by itself, s; of one that can't be simulated none. */
+typedef struct
+{
+  const Run *run;
+  gdouble *each;
+} Steps;
+
 static void
 find_steps (gpointer data, guint begin, guint end, guint worker)
 {
-  Run *run = data;
+  const Steps *steps = data;
+  const Run *run = steps->run;
   const ClothSimOptions options = {
     TRUE, 1, CLOTH_SIMD_BEST, run->options->seed
   };
@@ -95,7 +100,7 @@ find_steps (gpointer data, guint begin, guint end, guint worker)
     g_autoptr (ClothSim) sim = cloth_sim_new (run->targets[0]->scene,
         &run->models[m], 1, &options, NULL);
 
-    run->steps[m] = sim ? cloth_sim_get_time_step (sim) : 0.;
+    steps->each[m] = sim ? cloth_sim_get_time_step (sim) : 0.;
   }
 }
 
@@ -230,7 +235,9 @@ run_init (Run * run, const ClothRecording * const *targets,
     const ClothModel * const *models, const gdouble * gains, guint n_models,
     const ClothRolloutOptions * options, GError ** error)
 {
-  guint n = targets[0]->n;
+  const guint n = targets[0]->n;
+  g_autofree gdouble *each = g_new (gdouble, n_models);
+  Steps steps = { run, each };
 
   *run = (Run) {
   targets, models, n_models, options,.row = 3 * (gsize) n,.nudged =
@@ -241,9 +248,8 @@ run_init (Run * run, const ClothRecording * const *targets,
   run->rank_of = g_new (guint, n_models);
   run->weights = g_new (gdouble, (gsize) n * n_models);
   run->x = g_new (gdouble, run->row * n_models);
-  run->steps = g_new (gdouble, n_models);
-  cloth_pool_run_one_by_one (run->pool, find_steps, run, n_models);
-  list_batches (run, run->steps);
+  cloth_pool_run_one_by_one (run->pool, find_steps, &steps, n_models);
+  list_batches (run, each);
   fill_batches (run);
   for (guint b = 0; b < run->n_batches; b++)
     if (!start_batch (run, &run->batches[b], gains, error))

@@ -372,7 +372,7 @@ cloth_diagnosis_find_implausible_result (ClothDiagnosis * d,
 {
   const ClothRecording *r = cloth_diagnosis_recording (d, 0);
   const ClothGapVerdict verdict = d->result->verdict;
-  gchar *reason, *size;
+  gchar *reason;
 
   if (!isfinite (d->result->gap_before.value))
     return g_strdup ("Nothing was seen in the parts that judge; give a take of "
@@ -384,7 +384,9 @@ cloth_diagnosis_find_implausible_result (ClothDiagnosis * d,
     return reason;
   if (verdict != CLOTH_GAP_UNEXPLAINED && (reason = check_floor (d, r))) {
     /* a simulation of cloth of another size is off by much, too */
-    if (!(size = check_size (r)))
+    gchar *size = check_size (r);
+
+    if (!size)
       return reason;
     g_free (reason);
     return size;

@@ -94,10 +94,8 @@ draw (const ClothLaneState * state, guint begin, guint end, guint n,
     gather (pull, n, (const ClothLane3 *) state->before_v, before);
     interpolate (3, pull->velocity[0], pull->velocity[1], share, velocity);
     for (guint k = 0; k < 3; k++)
-      along[k] += state->ahead * (along[k] - before[k]);
-    for (guint k = 0; k < 3; k++)
       pushed[k] = pulls->gain * away[k] + pulls->damping *
-          (velocity[k] - along[k]);
+          (velocity[k] - cloth_lane_velocity (state, along[k], before[k]));
     cloth_lane_symmetric (information, pushed, force);
     for (guint k = 0; k < 3; k++)
       force[k] *= scale;

@@ -26,8 +26,8 @@ typedef struct
 } ClothLaneEffect;
 
 /* Springs that draw the cloth to what was observed: an acceleration of
- * pull + share·change − lag·rise − weight (gain x + damping v), @share of the way from now to next.
- * Where directions are known unequally well the weight is a symmetric matrix: xx, yy, zz, yz, xz, xy. */
+ * pull + share·change − weight (gain x + damping v), @share of the way from now to next. Where
+ * directions are known unequally well the weight is a symmetric matrix: xx, yy, zz, yz, xz, xy. */
 typedef struct
 {
   ClothLane3 *pull, *change;
@@ -353,13 +353,13 @@ cloth_lane_targets_share (const ClothLaneState * state, gdouble time_s)
       (cloth_lane_set (time_s) - t->now) / span, zero);
 }
 
-/* The velocity of a particle at the time of its place, to second order. */
+/* A velocity at the time of the places, to second order, from what it is and was before the last
+ * step. */
 CLOTH_LANE_INLINE ClothLane
-cloth_lane_velocity (const ClothLaneState * state, guint particle, guint k)
+cloth_lane_velocity (const ClothLaneState * state, ClothLane v,
+    ClothLane before)
 {
-  ClothLane v = state->v[particle][k];
-
-  return v + state->ahead * (v - state->before_v[particle][k]);
+  return v + state->ahead * (v - before);
 }
 
 /* The observer's acceleration of a particle. */
@@ -376,7 +376,8 @@ cloth_lane_target (const ClothLaneState * state, guint particle,
 
     for (guint k = 0; k < 3; k++)
       off[k] = t->gain * state->x[particle][k] +
-          t->damping * cloth_lane_velocity (state, particle, k);
+          t->damping * cloth_lane_velocity (state, state->v[particle][k],
+          state->before_v[particle][k]);
     cloth_lane_symmetric (t->matrix[particle], off, drawn);
     for (guint k = 0; k < 3; k++)
       acceleration[k] = t->pull[particle][k] +
@@ -386,5 +387,5 @@ cloth_lane_target (const ClothLaneState * state, guint particle,
   for (guint k = 0; k < 3; k++)
     acceleration[k] = t->pull[particle][k] + share * t->change[particle][k] -
         gain * state->x[particle][k] - damping * cloth_lane_velocity (state,
-        particle, k);
+        state->v[particle][k], state->before_v[particle][k]);
 }
