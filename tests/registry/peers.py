@@ -2,7 +2,8 @@
 """What other people's programs say of our files and pages. They come from npm's registry.
 
   peers.py formats NPM                         glTF and USD, of a mesh that moves
-  peers.py pages NPM VIEW GAPSHEET TAKE…       pages, by axe-core
+  peers.py pages NPM VIEW GAPSHEET CALIBRATE BOARDS TAKE…
+                                               pages, by axe-core
 
 SPDX-License-Identifier: LGPL-2.1-or-later
 """
@@ -104,14 +105,17 @@ def violations(browser):
                             'fault => [fault.id, fault.impact, fault.nodes[0].html.slice(0, 120)])))')
 
 
-def check_pages(npm, view, gapsheet, *takes):
+def check_pages(npm, view, gapsheet, calibrate, boards, *takes):
     with tempfile.TemporaryDirectory() as folder:
         install(npm, folder)
         with open(os.path.join(folder, 'node_modules/axe-core/axe.min.js'), encoding='utf-8') as file:
             axe = file.read() + '; window.axe = axe'
-        pages = [os.path.join(folder, name) for name in ('view.html', 'report.html')]
+        pages = [os.path.join(folder, name) for name in ('view.html', 'report.html', 'calibration.html')]
         subprocess.run([view, *takes, '--output', pages[0]], check=True)
         subprocess.run([gapsheet, 'sheet', folder], check=True)
+        subprocess.run([calibrate, '--pattern', os.path.join(boards, 'pattern.json'), '--output',
+                        os.path.join(folder, 'rig.json'), *('%s=%s/%s*.jpg' % (side, boards, side) for side in
+                                                            ('left', 'right'))], check=True, stdout=subprocess.DEVNULL)
         faults = []
         with Browser(1240, 900) as browser:
             for page in pages:
@@ -126,7 +130,7 @@ def check_pages(npm, view, gapsheet, *takes):
                         faults += [[os.path.basename(page), scheme, width] + fault for fault in violations(browser)
                                    if fault[1] in ('serious', 'critical')]
                 # It sees what is wrong.
-                browser.run('document.getElementById("time").removeAttribute("aria-label")')
+                browser.run('const input = document.createElement("input"); document.querySelector("main").append(input)')
                 assert any(fault[0] == 'label' for fault in violations(browser)), page
         for fault in faults:
             print(*fault)
