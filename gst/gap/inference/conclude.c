@@ -299,26 +299,6 @@ fill_group (ClothDiagnosis * d)
   cloth_gap_result_add_group (d->result, NULL, NAN);
 }
 
-/* Probability of an explanation without one of its effects, against it: with nothing in that one's place.
- * 0 where that was not among the likeliest, which are compared. */
-static gdouble
-find_without (const GArray * hypotheses, const ClothGapHypothesis * h, guint c)
-{
-  ClothGapHypothesis part = { 0 };
-
-  for (guint k = 0; k < h->n; k++)
-    if (k != c)
-      part.candidates[part.n++] = h->candidates[k];
-  for (guint i = 0; i < hypotheses->len; i++) {
-    const ClothGapHypothesis *other = &g_array_index (hypotheses,
-        ClothGapHypothesis, i);
-
-    if (cloth_gap_hypothesis_is_same (other, &part))
-      return 1. / (1. + exp (other->behind - h->behind));
-  }
-  return 0.;
-}
-
 /* Those of the likeliest explanation that are likelier than not, and without which it is refuted. */
 static void
 accept (ClothDiagnosis * d, const GArray * hypotheses)
@@ -331,7 +311,7 @@ accept (ClothDiagnosis * d, const GArray * hypotheses)
             best->candidates[c])->effect);
 
     if (!e || !(e->probability > 0.5)
-        || find_without (hypotheses, best, c) > REFUTED)
+        || cloth_gap_hypotheses_find_without (hypotheses, best, c) > REFUTED)
       continue;
     /* what it did follows from nothing */
     if (cloth_candidate_is_stochastic (candidate_of (d, best->candidates[c]))) {
