@@ -219,16 +219,16 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
       m->z + model * m->features->size);
 }
 
-/* A share of the recording's noise, and velocities as a recording has them. What was not seen stays hidden.
- * Where the first frame could not be freed of its noise it has it already. */
+/* Noise, and velocities as a recording has them. What was not seen stays hidden. Where the first frame
+ * could not be freed of its noise it has it already. */
 static void
-record (ClothRecording * r, gboolean is_smooth, gdouble noise, guint64 seed)
+record (ClothRecording * r, gboolean is_smooth, guint64 seed)
 {
   ClothRandom random;
 
   cloth_random_init (&random, seed);
   for (gsize i = is_smooth ? 0 : r->n; i < (gsize) r->n * r->n_frames; i++)
-    cloth_recording_add_noise (r, i, noise, &random, r->y + 3 * i);
+    cloth_recording_add_noise (r, i, 1., &random, r->y + 3 * i);
   cloth_recording_interpolate (r);
   cloth_recording_differentiate (r);
 }
@@ -236,8 +236,6 @@ record (ClothRecording * r, gboolean is_smooth, gdouble noise, guint64 seed)
 /* @ensemble: an ensemble
  * @study: of the recording whose scene, noise and gaps the members get
  * @model: what follows them
- * @noise: what the members have of the recording's noise: 1, or less for what a simulator wrote
- * @stream: of random numbers: recordings of different streams have independent noise
  * @options: how to simulate
  * @z: (inout) (array): features of each member's residual, [n][size]; start with zeros
  * @sound: (out) (array length=n): which members did not diverge
@@ -248,8 +246,8 @@ record (ClothRecording * r, gboolean is_smooth, gdouble noise, guint64 seed)
 gboolean
 cloth_ensemble_run (const ClothEnsemble * ensemble,
     const ClothSensitivities * study, const ClothModel * model,
-    gdouble noise, guint stream, ClothEstimateOptions * options, gdouble * z,
-    gboolean * sound, GError ** error)
+    ClothEstimateOptions * options, gdouble * z, gboolean * sound,
+    GError ** error)
 {
   const ClothEnsemble *e = ensemble;
   const ClothRecording *r = study->recording;
@@ -278,7 +276,7 @@ cloth_ensemble_run (const ClothEnsemble * ensemble,
   for (guint i = 0; i < e->n; i++)
     if (sound[i])
       record (m.made[i], cloth_recording_find_start (r, m.made[i]->y, NULL),
-          noise, options->rollout.seed + stream * e->n + i + 1);
+          options->rollout.seed + i + 1);
     else
       memcpy (m.made[i]->y, r->y, all * sizeof (gdouble));
   if (!cloth_rollout_nudged ((const ClothRecording * const *) m.made, models,

@@ -43,8 +43,8 @@ guint cloth_ensemble_find_kin (const ClothEnsemble * ensemble, guint member,
 void cloth_ensemble_free (ClothEnsemble * ensemble);
 gboolean cloth_ensemble_run (const ClothEnsemble * ensemble,
     const ClothSensitivities * study, const ClothModel * model,
-    gdouble noise, guint stream, ClothEstimateOptions * options, gdouble * z,
-    gboolean * sound, GError ** error);
+    ClothEstimateOptions * options, gdouble * z, gboolean * sound,
+    GError ** error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothEnsemble, cloth_ensemble_free)
 G_END_DECLS
