@@ -20,7 +20,7 @@ G_DECLARE_DERIVABLE_TYPE (GstClothFilter, gst_cloth_filter, GST, CLOTH_FILTER,
 
 /* Formats whose luma and chroma take turns in a row, as webcams send them: they are taken
  * apart. */
-#define GST_CLOTH_FILTER_PACKED_FORMATS "{ YUY2, UYVY, YVYU, VYUY }"
+#define GST_CLOTH_FILTER_PACKED_FORMATS "{ YUY2, UYVY, YVYU }"
 
 /* @luma: the picture's luma, mapped for reading
  * @planes: the picture's luma and, of one in colour, its chroma; @luma is that of it

@@ -102,8 +102,8 @@ GST_DEBUG_CATEGORY_STATIC (cloth_overlay_debug);
 #define ASPECT_SLACK 0.01
 
 #define FORMATS "{ GRAY8, I420, YV12, NV12, NV21, Y42B, NV16, NV61, Y444, NV24, " \
-    "Y41B, YUV9, YVU9, A420, YUY2, UYVY, YVYU, VYUY, AYUV, BGRx, RGBx, xBGR, " \
-    "xRGB, BGRA, RGBA, ABGR, ARGB, RGB, BGR }"
+    "Y41B, YUV9, YVU9, A420, YUY2, UYVY, YVYU, AYUV, BGRx, RGBx, xBGR, xRGB, " \
+    "BGRA, RGBA, ABGR, ARGB, RGB, BGR }"
 
 typedef struct
 {

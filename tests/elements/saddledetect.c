@@ -78,7 +78,7 @@ GST_START_TEST (test_formats)
 {
   static const gchar *const formats[] = { "GRAY8", "I420", "YV12", "NV12",
     "NV21", "Y42B", "NV16", "NV61", "Y444", "NV24", "Y41B", "YUV9", "YVU9",
-    "A420", "YUY2", "UYVY", "YVYU", "VYUY"
+    "A420", "YUY2", "UYVY", "YVYU"
   };
   static const gint sizes[][3] = { {96, 64, 0}, {97, 65, 0}, {97, 65, 7},
   {131, 83, 64}
