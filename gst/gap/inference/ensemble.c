@@ -1,10 +1,11 @@
 /* Simulators that the recording might have come from if nothing acted that the model lacks.
  *
  * Model: a real cloth differs from the simulated one as simulators differ from each other. A member
- *   has one of the two force models; the mesh as it is with explicit or with implicit steps, or a mesh
- *   twice as fine, with other diagonals if it has many vertices, with implicit steps; and numbers that no
- *   other member has: free ones θ exp (0.3 N(0, 1)) (of those that may be negative: θ + a quarter of a
- *   prior), and a little of some laws that the model has not: 0.2 N(0, 1) priors.
+ *   has one of the two force models; the mesh as it is with explicit steps, with half of them, or
+ *   with implicit ones, or a mesh twice as fine, with other diagonals if it has many vertices, with
+ *   implicit steps; and free numbers
+ *   θ exp (0.3 N(0, 1)) (of those that may be negative: θ + a quarter of a prior), and a little of
+ *   some laws that the model has not: 0.2 N(0, 1) priors.
  * Formula: a member moves freely in the recorded scene from the recorded start; with the
  *   recording's noise and its gaps it is a recording y'. The model is drawn to y' as it is to the
  *   recording. The features of (simulated − y') are what the residual would be if nothing acted.
@@ -40,6 +41,7 @@ typedef struct
 
 static const Way ways[] = {
   {NULL, 1., CLOTH_INTEGRATOR_EXPLICIT},
+  {"time_step", 0.5, CLOTH_INTEGRATOR_EXPLICIT},
   {NULL, 1., CLOTH_INTEGRATOR_IMPLICIT},
   {"mesh_resolution", 2., CLOTH_INTEGRATOR_IMPLICIT},
 };
@@ -111,34 +113,40 @@ cloth_ensemble_new (const ClothModel * model,
     const ClothTopology * topology, const ClothCandidates * candidates,
     guint64 seed)
 {
-  const guint n = 2 * N_WAYS * CLOTH_ENSEMBLE_DRAWS;
   ClothEnsemble *e = g_new0 (ClothEnsemble, 1);
+  ClothModel *drawn[2 * CLOTH_ENSEMBLE_DRAWS];
   ClothRandom random;
 
   cloth_random_init (&random, seed);
-  e->models = g_new (ClothModel *, n);
-  e->families = g_new (guint, n);
-  for (; e->n < n; e->n++) {
-    const Way *way = &ways[e->n / CLOTH_ENSEMBLE_DRAWS % N_WAYS];
-    const guint family = e->n / (CLOTH_ENSEMBLE_DRAWS * N_WAYS);
-    ClothModel *m = draw_numbers (model, candidates, &random);
+  for (guint i = 0; i < G_N_ELEMENTS (drawn); i++)
+    drawn[i] = draw_numbers (model, candidates, &random);
+  e->models = g_new (ClothModel *, N_WAYS * G_N_ELEMENTS (drawn));
+  e->families = g_new (guint, N_WAYS * G_N_ELEMENTS (drawn));
+  for (guint family = 0; family < 2; family++)
+    for (guint way = 0; way < N_WAYS; way++)
+      for (guint draw = 0; draw < CLOTH_ENSEMBLE_DRAWS; draw++) {
+        ClothModel *m =
+            cloth_model_copy (drawn[family * CLOTH_ENSEMBLE_DRAWS + draw]);
 
-    if (family)
-      m->force_model = m->force_model == CLOTH_FORCE_MEMBRANE ?
-          CLOTH_FORCE_MASS_SPRING : CLOTH_FORCE_MEMBRANE;
-    m->integrator = way->integrator;
-    m->time_step = m->integrator == CLOTH_INTEGRATOR_IMPLICIT ?
-        IMPLICIT_STEP_S : 0.;
-    if (way->effect) {
-      const gboolean coarse = topology->n_vertices > MANY_VERTICES;
+        if (family)
+          m->force_model = m->force_model == CLOTH_FORCE_MEMBRANE ?
+              CLOTH_FORCE_MASS_SPRING : CLOTH_FORCE_MEMBRANE;
+        m->integrator = ways[way].integrator;
+        m->time_step = m->integrator == CLOTH_INTEGRATOR_IMPLICIT ?
+            IMPLICIT_STEP_S : 0.;
+        if (ways[way].effect) {
+          const gboolean coarse = ways[way].factor > 1.
+              && topology->n_vertices > MANY_VERTICES;
 
-      cloth_model_set_effect (m, cloth_effect_find (coarse ?
-              "mesh_diagonals" : way->effect),
-          coarse ? &other_diagonals : &way->factor);
-    }
-    e->families[e->n] = family;
-    e->models[e->n] = m;
-  }
+          cloth_model_set_effect (m, cloth_effect_find (coarse ?
+                  "mesh_diagonals" : ways[way].effect),
+              coarse ? &other_diagonals : &ways[way].factor);
+        }
+        e->families[e->n] = family;
+        e->models[e->n++] = m;
+      }
+  for (guint i = 0; i < G_N_ELEMENTS (drawn); i++)
+    cloth_model_free (drawn[i]);
   return e;
 }
 

@@ -8,7 +8,7 @@
 G_BEGIN_DECLS
 
 /* Draws of the free numbers for each way to compute. */
-#define CLOTH_ENSEMBLE_DRAWS 5
+#define CLOTH_ENSEMBLE_DRAWS 4
 /* With fewer members nothing is known of chance. */
 #define CLOTH_ENSEMBLE_LEAST 8u
 
