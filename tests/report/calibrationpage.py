@@ -6,28 +6,23 @@
 
 SPDX-License-Identifier: LGPL-2.1-or-later
 """
+import functools
 import json
 import os
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from pages import differs, open_page, refuse_webgl
+from pages import calibrate, differs, open_page, refuse_webgl
 from webdriver import Browser
 
 tool, picture, boards = sys.argv[1], sys.argv[3:], os.path.join(sys.argv[2], 'opencv_boards')
+calibrate = functools.partial(calibrate, tool, boards)
 # A file's name may be anything but a folder's.
 HOSTILE = '<img src=x onerror="window.hacked = 1">'
-
-
-def calibrate(folder, *arguments):
-    return subprocess.run([tool, '--pattern', os.path.join(boards, 'pattern.json'), '--output',
-                           os.path.join(folder, 'rig.json'), *arguments], stdin=subprocess.DEVNULL,
-                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding='utf-8', timeout=120)
 
 
 def carried(path):
@@ -49,7 +44,7 @@ def count(browser, selector):
 
 def check_pair(browser, folder):
     """All that a page has, in light and dark, on a desk and on a phone."""
-    done = calibrate(folder, *('%s=%s/%s*.jpg' % (side, boards, side) for side in ('left', 'right')))
+    done = calibrate(folder)
     assert done.returncode == 0, done.stderr
     path = os.path.join(folder, 'calibration.html')
     page, data = carried(path)
@@ -133,7 +128,7 @@ def check_refused(folder):
 
 def take_picture(path):
     with tempfile.TemporaryDirectory() as folder, Browser(1240, 1570) as browser:
-        done = calibrate(folder, *('%s=%s/%s*.jpg' % (side, boards, side) for side in ('left', 'right')))
+        done = calibrate(folder)
         assert done.returncode == 0, done.stderr
         show(browser, os.path.join(folder, 'calibration.html'))
         with open(path, 'wb') as file:

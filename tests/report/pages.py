@@ -2,6 +2,17 @@
 
 SPDX-License-Identifier: LGPL-2.1-or-later
 """
+import os
+import subprocess
+
+
+def calibrate(tool, boards, folder, *arguments):
+    """Calibrates cameras from pictures of the shipped board, into a folder; what is not named otherwise
+    are both cameras."""
+    both = ['%s=%s/%s*.jpg' % (side, boards, side) for side in ('left', 'right')]
+    return subprocess.run([tool, '--pattern', os.path.join(boards, 'pattern.json'), '--output',
+                           os.path.join(folder, 'rig.json'), *(arguments or both)], stdin=subprocess.DEVNULL,
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding='utf-8', timeout=120)
 
 
 def open_page(browser, path):
