@@ -127,7 +127,7 @@ static const Case pairs[][2] = {
   {{"clamp_slip", {-0.015, 0., -0.015, 0.7, 1.}}, {"shear", {0.9}}},
   {{"shrinkage", {0.02, 0.02}}, {"air_drag", {2.}}},
   /* either alone is less likely than wind, which does both */
-  {{"gravity_tilt", {1.7, 1.}}, {"air_drag", {3.5}}},
+  {{"gravity_tilt", {2.2, 1.3}}, {"air_drag", {3.5}}},
 };
 
 /* Shares of a whole are a whole; what could not be measured has a reason. */

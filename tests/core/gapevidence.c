@@ -1,12 +1,16 @@
-/* Evidence against integrals that are computed here, and what prediction and clamps say against closed
- * forms.
+/* Evidence against integrals that are computed here, what prediction, clamps and other explanations say
+ * against closed forms, and what is said when no effect was accepted.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <math.h>
+#include <string.h>
 
+#include "gst/effect/effect.h"
 #include "gst/gap/inference/clamps.h"
+#include "gst/gap/inference/hypotheses.h"
 #include "gst/gap/inference/likelihood.h"
 #include "gst/gap/inference/prediction.h"
+#include "gst/gap/verdict/judge.h"
 #include "gst/math/random.h"
 
 #define N 60
@@ -235,6 +239,62 @@ test_clamps (void)
       -INFINITY);
 }
 
+/* Odds of two sets that differ in one effect, and of one whose rest was not compared. */
+static void
+test_without (void)
+{
+  g_autoptr (GArray) hypotheses = cloth_gap_hypotheses_new ();
+  ClothGapHypothesis h[] = {
+    {.n = 2,.candidates = {3, 7},.behind = 0.},
+    {.n = 1,.candidates = {3},.behind = log (19.)},
+    {.n = 0,.behind = INFINITY},
+  };
+
+  g_array_append_vals (hypotheses, h, 3);
+  g_assert_cmpfloat_with_epsilon (cloth_gap_hypotheses_find_without
+      (hypotheses, &h[0], 1), 0.05, 1e-12);
+  g_assert_cmpfloat (cloth_gap_hypotheses_find_without (hypotheses, &h[0], 0),
+      ==, 0.);
+  g_assert_cmpfloat (cloth_gap_hypotheses_find_without (hypotheses, &h[1], 0),
+      ==, 0.);
+}
+
+/* What is said when no effect was accepted: @none is how likely it is that nothing acts. */
+static void
+check_verdict (gdouble none, gdouble unknown, guint n_references,
+    ClothGapVerdict verdict, gboolean is_named)
+{
+  ClothDiagnosis d = { 0 };
+  gpointer study = NULL;
+
+  d.result = cloth_gap_result_new ();
+  d.camera_effects = g_array_new (FALSE, TRUE, sizeof (ClothGapEffect));
+  d.studies = g_ptr_array_new ();
+  for (guint i = 0; i < n_references; i++)
+    g_ptr_array_add (d.studies, study);
+  cloth_gap_result_add_effect (d.result, cloth_effect_find ("wind"));
+  d.result->rivals.none_acts = none * (1. - unknown);
+  d.unknown_probability = unknown;
+  cloth_diagnosis_decide (&d);
+  g_assert_cmpint (d.result->verdict, ==, verdict);
+  g_assert_true (!is_named == !(d.result->reason
+          && strstr (d.result->reason, "wind")));
+  g_ptr_array_unref (d.studies);
+  g_array_unref (d.camera_effects);
+  cloth_gap_result_free (d.result);
+}
+
+/* No gap stands only where it is likelier than not that nothing acts. */
+static void
+test_likely (void)
+{
+  check_verdict (0.8, 0., 1, CLOTH_GAP_NO_GAP, FALSE);
+  check_verdict (0.8, 0.6, 1, CLOTH_GAP_NO_GAP, FALSE);
+  check_verdict (0.3, 0., 1, CLOTH_GAP_UNDECIDABLE, TRUE);
+  check_verdict (0.3, 0., 0, CLOTH_GAP_UNDECIDABLE, TRUE);
+  check_verdict (0.8, 0., 0, CLOTH_GAP_UNDECIDABLE, FALSE);
+}
+
 int
 main (int argc, char **argv)
 {
@@ -246,5 +306,7 @@ main (int argc, char **argv)
   g_test_add_func ("/gap/evidence/not-finite", test_not_finite);
   g_test_add_func ("/gap/evidence/prediction", test_prediction);
   g_test_add_func ("/gap/evidence/clamps", test_clamps);
+  g_test_add_func ("/gap/evidence/without", test_without);
+  g_test_add_func ("/gap/evidence/likely", test_likely);
   return g_test_run ();
 }

@@ -6,6 +6,8 @@
  *   P(unknown) = o/(1 + o), o = Σ over the rivals of exp (log BF − log (number of effects − 1)): an
  *     unknown field is taken to be as likely as any one effect;
  *   of all explanations the likeliest that have 95% together are listed, with p (1 − P(unknown)).
+ * Accepted is what is in the likeliest explanation, has an inclusion probability above one half, and without
+ *   which, with nothing in its place, that explanation has less than 5% against it.
  * Detection limit of a number: an effect of that size shows with a probability of 95%. With I the
  * information on it beside the nuisances an effect θ moves its score by θ√I, chance by one; raised to the
  * power ζ it is likelier than nothing when ζ/2 x² > ½ log (1 + ζ prior² I) + log (number of effects − 1),
@@ -25,6 +27,8 @@
 
 /* Share of the posterior that the listed explanations have. */
 #define LISTED 0.95
+/* Probability below which an explanation is refuted. */
+#define REFUTED (1. - LISTED)
 /* Normal quantile of 95% on one side. */
 #define QUANTILE 1.645
 /* Most explanations that are listed. */
@@ -295,15 +299,19 @@ fill_group (ClothDiagnosis * d)
   cloth_gap_result_add_group (d->result, NULL, NAN);
 }
 
-/* Those of the likeliest explanation that are likelier than not. */
+/* Those of the likeliest explanation that are likelier than not, and without which it is refuted. */
 static void
-accept (ClothDiagnosis * d, const ClothGapHypothesis * best)
+accept (ClothDiagnosis * d, const GArray * hypotheses)
 {
+  const ClothGapHypothesis *best = &g_array_index (hypotheses,
+      ClothGapHypothesis, 0);
+
   for (guint c = 0; c < best->n; c++) {
     ClothGapEffect *e = find_effect (d->result, candidate_of (d,
             best->candidates[c])->effect);
 
-    if (!e || !(e->probability > 0.5))
+    if (!e || !(e->probability > 0.5)
+        || cloth_gap_hypotheses_find_without (hypotheses, best, c) > REFUTED)
       continue;
     /* what it did follows from nothing */
     if (cloth_candidate_is_stochastic (candidate_of (d, best->candidates[c]))) {
@@ -464,7 +472,7 @@ cloth_diagnosis_conclude (ClothDiagnosis * d, const ClothGapBasis * basis,
   fill_effects (d, hypotheses);
   fill_sets (d, hypotheses, d->unknown_probability);
   fill_group (d);
-  accept (d, &g_array_index (hypotheses, ClothGapHypothesis, 0));
+  accept (d, hypotheses);
   fill_limits (d, basis);
   fill_free_numbers (d, basis);
 }

@@ -860,6 +860,32 @@ cloth_gap_hypothesis_find_p_value (const ClothDiagnosis * d,
   return NAN;
 }
 
+/* @hypotheses: (element-type ClothGapHypothesis): all that were compared
+ * @h: one of them
+ * @c: which of its candidates
+ *
+ * Returns: the probability of @h without that candidate, with nothing in its place, against @h; 0 where that
+ *   was not among the likeliest, which are compared
+ */
+gdouble
+cloth_gap_hypotheses_find_without (const GArray * hypotheses,
+    const ClothGapHypothesis * h, guint c)
+{
+  ClothGapHypothesis part = { 0 };
+
+  for (guint k = 0; k < h->n; k++)
+    if (k != c)
+      part.candidates[part.n++] = h->candidates[k];
+  for (guint i = 0; i < hypotheses->len; i++) {
+    const ClothGapHypothesis *other = &g_array_index (hypotheses,
+        ClothGapHypothesis, i);
+
+    if (cloth_gap_hypothesis_is_same (other, &part))
+      return 1. / (1. + exp (other->behind - h->behind));
+  }
+  return 0.;
+}
+
 /* What a candidate of an explanation adds to its other part. Gusts are not simulated: with them and without
  * it is one simulation. */
 static gdouble

@@ -82,6 +82,8 @@ gboolean cloth_gap_hypothesis_simulate (ClothDiagnosis * d,
     const ClothGapHypothesis * hypothesis, gdouble * z, GError ** error);
 gdouble cloth_gap_hypothesis_find_p_value (const ClothDiagnosis * d,
     const ClothGapHypothesis * hypothesis, guint candidate);
+gdouble cloth_gap_hypotheses_find_without (const GArray * hypotheses,
+    const ClothGapHypothesis * h, guint c);
 gboolean cloth_gap_hypotheses_screen (const ClothDiagnosis * d,
     const ClothGapLinearisation * linearisation, ClothGapEvidence * best);
 gboolean cloth_gap_hypotheses_compare (ClothDiagnosis * d,

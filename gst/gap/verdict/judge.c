@@ -7,9 +7,10 @@
  *     leave more than the floor;
  *   explained: effects act, and no other explanation is among those that have 95% together;
  *   ambiguous: effects act, and others would do as well;
- *   no_gap: nothing acts, and there is a baseline or a twin to say so;
- *   undecidable: there is neither, and nothing acts that could be seen, or something unknown does,
- *     which may be what any simulation of this cloth is off by.
+ *   no_gap: it is likelier than not that nothing acts, and there is a baseline or a twin to say so;
+ *   undecidable: an effect is likelier than nothing, but that nothing acts is not refuted; or there is
+ *     neither baseline nor twin, and nothing acts that could be seen, or something unknown does, which may be
+ *     what any simulation of this cloth is off by.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/verdict/judge.h"
@@ -110,10 +111,20 @@ are_clamps_off (const ClothDiagnosis * d)
       CLOTH_DIAGNOSIS_LEAST_SHARE * pow (d->result->gap_before.value, 2.));
 }
 
+/* The likeliest effect, if it is likelier that effects act than that nothing does. */
+static const ClothEffect *
+find_likely (const ClothDiagnosis * d)
+{
+  return d->result->effects->len && d->result->rivals.none_acts <
+      0.5 * (1. - d->unknown_probability) ?
+      g_array_index (d->result->effects, ClothGapEffect, 0).effect : NULL;
+}
+
 void
 cloth_diagnosis_decide (ClothDiagnosis * d)
 {
   ClothGapResult *r = d->result;
+  const ClothEffect *likely = find_likely (d);
   const gboolean is_unlike = is_unlike_all (d);
   const gboolean clamps_off = are_clamps_off (d);
   const gboolean unknown = clamps_off
@@ -158,6 +169,11 @@ cloth_diagnosis_decide (ClothDiagnosis * d)
         100. * d->unknown_share);
   } else if (d->n_accepted || cloth_diagnosis_count_faults (d)) {
     r->verdict = is_ambiguous (r) ? CLOTH_GAP_AMBIGUOUS : CLOTH_GAP_EXPLAINED;
+  } else if (likely) {
+    r->verdict = CLOTH_GAP_UNDECIDABLE;
+    r->reason = g_strdup_printf ("It is likelier than not that an effect acts, "
+        "%s first of all, but that nothing does is not refuted: a second "
+        "recording of the motion, or a longer one, would tell.", likely->id);
   } else if (cloth_diagnosis_n_references (d)) {
     r->verdict = CLOTH_GAP_NO_GAP;
   } else {
