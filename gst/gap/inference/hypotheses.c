@@ -311,14 +311,30 @@ compare_by_residual (gconstpointer a, gconstpointer b)
   return x->by_residual < y->by_residual ? -1 : x->by_residual > y->by_residual;
 }
 
-static gboolean
-is_listed (const GArray * hypotheses, const ClothGapHypothesis * h)
+/* The one of the list with the same effects, or NULL: none is there twice. */
+static const ClothGapHypothesis *
+find_same (const GArray * hypotheses, const ClothGapHypothesis * h)
 {
-  for (guint i = 0; i < hypotheses->len; i++)
-    if (cloth_gap_hypothesis_is_same (&g_array_index (hypotheses,
-                ClothGapHypothesis, i), h))
-      return TRUE;
-  return FALSE;
+  for (guint i = 0; i < hypotheses->len; i++) {
+    const ClothGapHypothesis *other = &g_array_index (hypotheses,
+        ClothGapHypothesis, i);
+
+    if (cloth_gap_hypothesis_is_same (other, h))
+      return other;
+  }
+  return NULL;
+}
+
+/* The one of the list that lacks one candidate of @h and is the same else, or NULL. */
+static const ClothGapHypothesis *
+find_part (const GArray * hypotheses, const ClothGapHypothesis * h, guint c)
+{
+  ClothGapHypothesis part = { 0 };
+
+  for (guint k = 0; k < h->n; k++)
+    if (k != c)
+      part.candidates[part.n++] = h->candidates[k];
+  return find_same (hypotheses, &part);
 }
 
 /* A set and one more; FALSE when that can't be. */
@@ -358,7 +374,7 @@ grow (const ClothDiagnosis * d, const ClothGapLinearisation * l,
       ClothGapHypothesis h;
 
       if (!cloth_gap_hypothesis_has (set, one)
-          && add_one (d, l->stack, set, one, &h) && !is_listed (grown, &h)
+          && add_one (d, l->stack, set, one, &h) && !find_same (grown, &h)
           && screen (d, l, &h))
         g_array_append_val (grown, h);
     }
@@ -371,7 +387,7 @@ static void
 append_best (GArray * hypotheses, const GArray * from, guint most)
 {
   for (guint i = 0; i < MIN (most, from->len); i++)
-    if (!is_listed (hypotheses, &g_array_index (from, ClothGapHypothesis, i)))
+    if (!find_same (hypotheses, &g_array_index (from, ClothGapHypothesis, i)))
       g_array_append_vals (hypotheses, &g_array_index (from,
               ClothGapHypothesis, i), 1);
 }
@@ -414,7 +430,7 @@ list_hypotheses (const ClothDiagnosis * d, const ClothGapLinearisation * l,
   }
   cloth_gap_hypothesis_init (&none, d->candidates, l->stack, NULL, 0);
   none.is_compared = l->base->n == 0;
-  if (!is_listed (hypotheses, &none))
+  if (!find_same (hypotheses, &none))
     g_array_append_val (hypotheses, none);
   cloth_gap_hypothesis_init (&start, d->candidates, l->stack,
       l->base->candidates, l->base->n);
@@ -746,35 +762,31 @@ blow (const ClothDiagnosis * d, const ClothGapLinearisation * l,
   const gsize size = l->stack->size;
   const guint n_simulated = h->n_directions - h->n_winds;
   guint list[CLOTH_GAP_MAX_EFFECTS], n_list = 0;
+  const ClothGapHypothesis *other;
+  g_autoptr (ClothGapGram) gram = NULL;
   ClothGapHypothesis without;
 
   for (guint c = 0; c < h->n; c++)
     if (!cloth_candidate_is_stochastic (candidate_of (d, h->candidates[c])))
       list[n_list++] = h->candidates[c];
   cloth_gap_hypothesis_init (&without, d->candidates, l->stack, list, n_list);
-  for (guint i = 0; i < hypotheses->len; i++) {
-    const ClothGapHypothesis *other = &g_array_index (hypotheses,
-        ClothGapHypothesis, i);
-    g_autoptr (ClothGapGram) gram = NULL;
-
-    if (!cloth_gap_hypothesis_is_same (other, &without) || !other->z)
-      continue;
-    h->z = g_memdup2 (other->z, size * sizeof *h->z);
-    h->derivatives = g_new (gdouble, h->n_directions * size);
-    memcpy (h->derivatives, other->derivatives,
-        n_simulated * size * sizeof *h->z);
-    memcpy (h->at, other->at, sizeof h->at);
-    for (guint k = n_simulated; k < h->n_directions; k++)
-      h->at[k] = 0.;
-    put_derivatives (d, l, h, n_simulated);
-    gram = cloth_gap_gram_new (l->likelihood, h->z, h->derivatives,
-        h->n_directions);
-    if (find_gust_evidence (gram, all_directions, h->at, h))
-      h->objective = h->evidence.log_evidence - h->evidence.log_volume;
-    else
-      cloth_gap_hypothesis_clear (h);
+  other = find_same (hypotheses, &without);
+  if (!other || !other->z)
     return;
-  }
+  h->z = g_memdup2 (other->z, size * sizeof *h->z);
+  h->derivatives = g_new (gdouble, h->n_directions * size);
+  memcpy (h->derivatives, other->derivatives,
+      n_simulated * size * sizeof *h->z);
+  memcpy (h->at, other->at, sizeof h->at);
+  for (guint k = n_simulated; k < h->n_directions; k++)
+    h->at[k] = 0.;
+  put_derivatives (d, l, h, n_simulated);
+  gram = cloth_gap_gram_new (l->likelihood, h->z, h->derivatives,
+      h->n_directions);
+  if (find_gust_evidence (gram, all_directions, h->at, h))
+    h->objective = h->evidence.log_evidence - h->evidence.log_volume;
+  else
+    cloth_gap_hypothesis_clear (h);
 }
 
 /* How far a candidate of an explanation is from its null by the explanation's own posterior: the numbers that
@@ -871,19 +883,9 @@ gdouble
 cloth_gap_hypotheses_find_without (const GArray * hypotheses,
     const ClothGapHypothesis * h, guint c)
 {
-  ClothGapHypothesis part = { 0 };
+  const ClothGapHypothesis *part = find_part (hypotheses, h, c);
 
-  for (guint k = 0; k < h->n; k++)
-    if (k != c)
-      part.candidates[part.n++] = h->candidates[k];
-  for (guint i = 0; i < hypotheses->len; i++) {
-    const ClothGapHypothesis *other = &g_array_index (hypotheses,
-        ClothGapHypothesis, i);
-
-    if (cloth_gap_hypothesis_is_same (other, &part))
-      return 1. / (1. + exp (other->behind - h->behind));
-  }
-  return 0.;
+  return part ? 1. / (1. + exp (part->behind - h->behind)) : 0.;
 }
 
 /* What a candidate of an explanation adds to its other part. Gusts are not simulated: with them and without
@@ -916,22 +918,14 @@ bound_by_parts (const ClothDiagnosis * d, const ClothGapHypothesis * base,
       for (guint c = 0; c < h->n; c++) {
         const ClothGapHypothesis one = {.n = 1,.candidates = {h->candidates[c]}
         };
-        ClothGapHypothesis part = { 0 };
+        const ClothGapHypothesis *part;
 
         if (cloth_gap_hypothesis_has (base, h->candidates[c]))
           continue;
-        for (guint k = 0; k < h->n; k++)
-          if (k != c)
-            part.candidates[part.n++] = h->candidates[k];
-        for (guint k = 0; k < hypotheses->len; k++) {
-          const ClothGapHypothesis *other = &g_array_index (hypotheses,
-              ClothGapHypothesis, k);
-
-          if (cloth_gap_hypothesis_is_same (other, &part)
-              && isfinite (other->by_residual))
-            h->by_residual = MAX (h->by_residual, other->by_residual -
-                find_added_evidence (d, h, c, other) - log_odds (d, &one));
-        }
+        part = find_part (hypotheses, h, c);
+        if (part && isfinite (part->by_residual))
+          h->by_residual = MAX (h->by_residual, part->by_residual -
+              find_added_evidence (d, h, c, part) - log_odds (d, &one));
       }
     }
 }
