@@ -11,6 +11,7 @@
 #include "gst/file/jsonwriter.h"
 #include "gst/file/output.h"
 #include "gst/fit/error.h"
+#include "gst/fit/synthesis/silhouette.h"
 #include "gst/fit/synthesis/synthesis.h"
 #include "gst/gap/report/view.h"
 #include "gst/rig/rigfile.h"
@@ -98,6 +99,15 @@ load (const Arguments * a, Inputs * i, GError ** error)
   return TRUE;
 }
 
+/* Whether a camera saw the vertex; an outline alone says where it may be. */
+static gboolean
+is_measured (const ClothRecording * r, gsize at)
+{
+  const gdouble *draw = r->noise ? r->noise->draw + 6 * at : NULL;
+
+  return r->seen[at] > 0. && (!draw || draw[0] + draw[1] + draw[2] > 1.5);
+}
+
 /* Where the fitted cloth was, vertex by vertex measured or, where nobody saw it, predicted. */
 static gboolean
 write_take (const ClothSynthesisTake * t, ClothTake * from,
@@ -123,8 +133,8 @@ write_take (const ClothSynthesisTake * t, ClothTake * from,
     return FALSE;
   for (guint f = 0; f < r->n_frames; f++) {
     for (guint v = 0; v < r->n; v++)
-      states[v] = r->seen[(gsize) f * r->n + v] > 0. ? CLOTH_VERTEX_MEASURED :
-          CLOTH_VERTEX_PREDICTED;
+      states[v] = is_measured (r, (gsize) f * r->n + v) ?
+          CLOTH_VERTEX_MEASURED : CLOTH_VERTEX_PREDICTED;
     if (like->held->len && !cloth_take_read_clamps (from, f, clamps, error))
       return FALSE;
     if (!cloth_take_writer_append (writer, r->times[f],
@@ -147,6 +157,28 @@ add_gap (ClothJsonWriter * w, const gchar * name, const ClothSynthesisGap * gap)
   cloth_json_writer_set_one_line (w, FALSE);
 }
 
+/* How well the cloth covers what a camera filmed of it in each picture: drawn, and let go in windows. */
+static void
+add_silhouettes (ClothJsonWriter * w, const ClothSynthesisTake * t,
+    const ClothObservations * o, guint camera)
+{
+  const guint n_frames = t->recording->n_frames;
+  const gfloat *positions[2] = { t->positions, t->let_go };
+  static const gchar *const names[2][2] = {
+    {"drawn_overlap", "drawn_differ_px"}, {"let_go_overlap",
+        "let_go_differ_px"}
+  };
+  g_autofree gdouble *overlaps = g_new (gdouble, n_frames);
+  g_autofree gdouble *differences = g_new (gdouble, n_frames);
+
+  for (guint k = 0; k < 2; k++) {
+    cloth_synthesis_compare_silhouettes (t->recording, positions[k], o, camera,
+        overlaps, differences);
+    cloth_json_writer_numbers (w, names[k][0], overlaps, n_frames);
+    cloth_json_writer_numbers (w, names[k][1], differences, n_frames);
+  }
+}
+
 /* Of each camera RMS distances in each picture: drawn, and let go in windows. */
 static void
 add_cameras (ClothJsonWriter * w, const ClothSynthesisTake * t,
@@ -166,6 +198,8 @@ add_cameras (ClothJsonWriter * w, const ClothSynthesisTake * t,
         n_frames);
     cloth_json_writer_numbers (w, "let_go_px", let_go + (gsize) c * n_frames,
         n_frames);
+    if (cloth_observations_has_silhouettes (o, c))
+      add_silhouettes (w, t, o, c);
     cloth_json_writer_end_object (w);
   }
   cloth_json_writer_end_array (w);
@@ -271,10 +305,11 @@ show (const Arguments * a, const ClothSynthesis * s)
     if (t->counts.places)
       g_print ("  %.0f%% of its places are where rays meet, %.0f%% on one "
           "camera's ray, along which %.0f%% of their motion is the model's "
-          "own; of %.1f%% the cameras contradict each other, %.1f%% are where no "
+          "own, %.0f%% on an outline; of %.1f%% the cameras contradict each other, %.1f%% are where no "
           "cloth can be\n",
           100. * t->counts.triangulated / t->counts.places,
           100. * t->counts.single / t->counts.places, 100. * t->counts.along,
+          100. * t->counts.outlined / t->counts.places,
           100. * t->counts.contradicted / t->counts.places,
           100. * t->counts.torn / t->counts.places);
   }

@@ -30,10 +30,11 @@ typedef struct
 {
   ClothObservations *observations;
   guint camera;
-  gboolean labelled;            /* whether any picture had squares, dots or matches */
+  gboolean labelled;            /* whether any picture had squares, dots, matches or a silhouette */
   GstClothIoPoints *points;
   guint32 *vertices;
   gdouble *px, *covariances;
+  GArray *runs;                 /* of ClothRun */
 } Reader;
 
 static void
@@ -49,6 +50,7 @@ reader_init (Reader * self, ClothObservations * observations, guint camera,
   self->vertices = g_new (guint32, n);
   self->px = g_new (gdouble, 2 * n);
   self->covariances = g_new (gdouble, 3 * n);
+  self->runs = g_array_new (FALSE, FALSE, sizeof (ClothRun));
 }
 
 static void
@@ -58,6 +60,7 @@ reader_clear (Reader * self)
   g_free (self->vertices);
   g_free (self->px);
   g_free (self->covariances);
+  g_array_unref (self->runs);
 }
 
 /* *INDENT-OFF* */
@@ -120,6 +123,37 @@ find_points (Reader * self, GstBuffer * buffer, GError ** error)
   return n;
 }
 
+/* Where the picture that was added last has the cloth. */
+static gboolean
+read_silhouette (Reader * self, GstBuffer * buffer, GError ** error)
+{
+  const GstClothSilhouette *silhouette =
+      gst_buffer_get_cloth_silhouette (buffer);
+  const ClothCamera *camera = &self->observations->rig->cameras[self->camera];
+  const GstClothRun *runs;
+  guint n, width, height;
+
+  if (!silhouette)
+    return TRUE;
+  width = gst_cloth_silhouette_get_width (silhouette);
+  height = gst_cloth_silhouette_get_height (silhouette);
+  if (width != (guint) camera->width || height != (guint) camera->height)
+    return fail (error,
+        "its silhouette is of a picture of %u × %u pixels, but "
+        "“%s” was calibrated with %d × %d: film with that size", width,
+        height, camera->name, camera->width, camera->height);
+  if (!check_name (self, gst_cloth_silhouette_get_camera (silhouette), error))
+    return FALSE;
+  runs = gst_cloth_silhouette_get_runs (silhouette, &n);
+  g_array_set_size (self->runs, n);
+  for (guint i = 0; i < n; i++)
+    g_array_index (self->runs, ClothRun, i) = (ClothRun) {
+    runs[i].row, runs[i].begin, runs[i].end};
+  self->labelled = TRUE;
+  return cloth_observations_set_silhouette (self->observations, n,
+      (const ClothRun *) (gpointer) self->runs->data, error);
+}
+
 static gboolean
 read_picture (Reader * self, const GByteArray * record, GError ** error)
 {
@@ -137,7 +171,8 @@ read_picture (Reader * self, const GByteArray * record, GError ** error)
   n = find_points (self, target, error);
   return n >= 0 && cloth_observations_add (self->observations, self->camera,
       (gdouble) time / GST_SECOND, (guint) n, self->vertices, self->px,
-      self->covariances, error);
+      self->covariances, error)
+      && read_silhouette (self, target, error);
 }
 
 /* Reads the record at @at: its header tells its size. */
@@ -203,9 +238,9 @@ read_all (Reader * self, ClothInput * input, GError ** error)
     return fail (error, "it is empty: nothing was recorded");
   if (!self->labelled)
     return fail (error,
-        "no picture has squares, dots or matches: put “saddledetect "
-        "! quadtrack”, “dotlabel” or “siftmatch” before clothmetapay, or leave the "
-        "file out");
+        "no picture has squares, dots, matches or a silhouette: put “saddledetect "
+        "! quadtrack”, “dotlabel”, “siftmatch” or “silhouette” before clothmetapay, "
+        "or leave the file out");
   return TRUE;
 }
 

@@ -155,6 +155,19 @@ see_dots (guint number, guint columns, guint rows, const GstClothDot * dots,
   return picture;
 }
 
+static GstBuffer *
+see_silhouette (guint number, const gchar * camera, guint width, guint height)
+{
+  static const GstClothRun runs[] = { {3, 10, 20}, {3, 40, 41}, {79, 0, 100} };
+  GstBuffer *picture = new_picture (number);
+  GstClothSilhouette *silhouette = gst_cloth_silhouette_new (camera, number,
+      width, height, runs, G_N_ELEMENTS (runs));
+
+  g_assert_nonnull (silhouette);
+  gst_buffer_add_cloth_silhouette_meta (picture, silhouette);
+  return picture;
+}
+
 static gboolean
 load (const Fixture * f, ClothObservations ** observations, GError ** error)
 {
@@ -351,6 +364,34 @@ test_others (Fixture * f, gconstpointer data)
           2).camera, ==, 1);
   g_assert_cmpfloat (g_array_index (observations->list, ClothObservation,
           2).time_s, ==, 0.2);
+}
+
+/* A camera that tells nothing but where the cloth ends, and one that does so now and then. */
+static void
+test_silhouettes (Fixture * f, gconstpointer data)
+{
+  g_autoptr (ClothObservations) observations = NULL;
+  const ClothObservation *o;
+
+  append (f, see_silhouette (0, "left", 100, 80));
+  end_file (f, "left");
+  append (f, see_quads (0, "right", COLUMNS - 1, ROWS - 1, NULL, 0));
+  append (f, see_silhouette (1, "right", 100, 80));
+  end_file (f, "right");
+  observations = load_well (f);
+  g_assert_cmpuint (observations->list->len, ==, 3);
+  o = (const ClothObservation *) (gpointer) observations->list->data;
+  g_assert_true (o[0].has_silhouette);
+  g_assert_cmpuint (o[0].n, ==, 0);
+  g_assert_cmpuint (o[0].n_runs, ==, 3);
+  g_assert_cmpuint (o[0].runs[1].row, ==, 3);
+  g_assert_cmpuint (o[0].runs[1].begin, ==, 40);
+  g_assert_cmpuint (o[0].runs[1].end, ==, 41);
+  g_assert_cmpuint (o[0].runs[2].end, ==, 100);
+  g_assert_false (o[1].has_silhouette);
+  g_assert_true (o[2].has_silhouette);
+  g_assert_true (cloth_observations_has_silhouettes (observations, 0));
+  g_assert_true (cloth_observations_has_silhouettes (observations, 1));
 }
 
 /* ---- what can't be used ---- */
@@ -634,6 +675,40 @@ test_other_picture (Fixture * f, gconstpointer data)
 }
 
 static void
+test_other_silhouette (Fixture * f, gconstpointer data)
+{
+  append (f, see_silhouette (2, "left", 200, 160));
+  refuse_second (f, "200 × 160 pixels", "calibrated with 100 × 80");
+  append (f, see_silhouette (2, "right", 100, 80));
+  refuse_second (f, "“right”, not of “left”", "camera");
+}
+
+/* Runs that a program adds by itself. */
+static void
+test_runs (Fixture * f, gconstpointer data)
+{
+  static const ClothRun bad[][2] = {
+    {{3, 5, 5}, {4, 0, 1}}, {{3, 9, 5}, {4, 0, 1}}, {{3, 0, 101}, {4, 0, 1}},
+    {{3, 0, 1}, {80, 0, 1}}, {{3, 0, 5}, {3, 4, 9}}, {{3, 0, 5}, {2, 7, 9}}
+  };
+  g_autoptr (ClothObservations) observations = NULL;
+
+  append (f, see_silhouette (0, "left", 100, 80));
+  end_file (f, "left");
+  observations = load_well (f);
+  for (guint i = 0; i < G_N_ELEMENTS (bad); i++) {
+    g_autoptr (GError) error = NULL;
+
+    g_assert_false (cloth_observations_set_silhouette (observations, 2, bad[i],
+            &error));
+    g_assert_nonnull (strstr (error->message, "100 × 80 pixels"));
+    /* what it was stays */
+    g_assert_cmpuint (g_array_index (observations->list, ClothObservation,
+            0).n_runs, ==, 3);
+  }
+}
+
+static void
 test_unlabelled (Fixture * f, gconstpointer data)
 {
   const GstClothSaddle saddle = {.x = 4,.y = 5 };
@@ -666,7 +741,8 @@ main (int argc, char **argv)
     void (*test) (Fixture *, gconstpointer);
   } tests[] = {
     {"none", test_none}, {"squares", test_squares}, {"dots", test_dots},
-    {"matches", test_matches},
+    {"matches", test_matches}, {"silhouettes", test_silhouettes},
+    {"other-silhouette", test_other_silhouette}, {"runs", test_runs},
     {"others", test_others}, {"no-rig", test_no_rig},
     {"names", test_names}, {"no-grid", test_no_grid},
     {"of-take", test_of_take}, {"shrinking", test_shrinking},

@@ -44,7 +44,7 @@ def launch(*words):
 
 def detect(camera):
     return ['filesrc', 'location=%s/cam%d.mp4' % (films, camera), '!', 'decodebin', '!', 'videoconvert',
-            '!', 'siftmatch', 'pattern=%s/pattern.json' % films, 'camera=cam%d' % camera,
+            '!', 'silhouette', 'background=%s/background%d.png' % (films, camera), '!', 'siftmatch', 'pattern=%s/pattern.json' % films, 'camera=cam%d' % camera,
             'follow=true', '!']
 
 
@@ -94,6 +94,11 @@ cameras = told['takes'][0]['cameras']
 seen = [x for c in cameras for x in c['drawn_px'] if x is not None]
 check(len(cameras) == 3 and len(seen) > 50 and np.median(seen) < 5,
       'in the pictures it is %.2f px off in the median' % np.median(seen))
+drawn, let_go = ([x for c in cameras for x in c[name]] for name in ('drawn_overlap', 'let_go_overlap'))
+check(len(drawn) == 60 and np.median(drawn) > 0.98 and np.mean(drawn) > np.mean(let_go) > 0.8,
+      'it covers %.3f of its silhouettes in the median, let go %.3f' % (
+          np.median(drawn), np.median(let_go)))
+check('on an outline' in done.stdout, 'outlines are told of')
 check(told['takes'][0]['after']['drawn_m'] < told['takes'][0]['before']['drawn_m'], 'it is nearer')
 with open(out + '/fitted.json', encoding='utf-8') as file:
     warp = json.load(file)['stretch']['warp']

@@ -79,7 +79,7 @@ ROOMS = [
     Room('gst/fit', 'which numbers fit a recording',
          {'': ['error.h'], 'recording': ['recording.h'], 'features': ['features.h'],
           'rig': ['refine.h'], 'nudge': ['nudge.h'], 'estimate': ['estimate.h'],
-          'synthesis': ['synthesis.h'], 'search': ['search.h', 'evaluate.h']},
+          'synthesis': ['synthesis.h', 'silhouette.h'], 'search': ['search.h', 'evaluate.h']},
          [[''], ['recording', 'search'], ['features', 'rig'], ['nudge'], ['estimate'], ['synthesis']]),
     Room('gst/gap', 'why a simulation is wrong',
          {'': ['diagnose.h', 'inputs.h'],

@@ -3,10 +3,14 @@
  * Model: a camera sees a vertex in a direction with an error N (0, s²) all round. Rays that meet
  *   give a place with its covariance; one ray alone gives the inverse covariance
  *   (I − d dᵀ) / (s r)² at the distance r, of rank 2.
- * Assumption: along a lone ray the cloth is where a simulation is that all rays draw.
+ *   Of what no camera located, an outline tells the place along its normal (outline.c): rank 1 for
+ *   each camera.
+ * Assumption: along a lone ray, and along an outline, the cloth is where a simulation is that all
+ *   rays and outlines draw.
  * Formula: places on lone rays and the simulation are found in turn, until a turn moves no place by
  *   as much as the recording's noise, RMS: y = c + d dᵀ (x − c), x = simulation drawn to y with the
- *   weights of ClothRecordingNoise, which draw across the rays only.
+ *   weights of ClothRecordingNoise, which draw across the rays only. On outlines, with Λ = Σ g gᵀ/s²
+ *   over the cameras, y = x + Λ⁺ Σ g δ/s²; s is what outlines are off at vertices that were located.
  * Reference: Hasler, Asbach, Rosenhahn, Ohm and Seidel, Physically based tracking of cloth, 2006,
  *   section 3.2 (rays as targets).
  *
@@ -17,8 +21,10 @@
 #include <string.h>
 
 #include "gst/fit/error.h"
+#include "gst/fit/nudge/outline.h"
 #include "gst/fit/recording/recording.h"
 #include "gst/math/linalg.h"
+#include "gst/math/statistics.h"
 #include "gst/math/vec3.h"
 #include "gst/rig/errorfloor.h"
 
@@ -26,6 +32,14 @@
 #define MOST_PLACES (1u << 25)
 /* Most turns of places and simulation. */
 #define MOST_TURNS 8
+/* Least turns where outlines are followed. */
+#define LEAST_TURNS 4
+/* Standard deviation of what is cut to whole pixels. */
+#define QUANTISED_PX 0.29
+/* From the median of absolute values to the standard deviation of a normal distribution. */
+#define MAD_TO_SIGMA 1.4826
+/* Directions that outlines tell less of than this share of the best are left to the simulation. */
+#define WEAK 0.1
 /* A ray that is all that is known of a place. */
 typedef struct
 {
@@ -43,6 +57,9 @@ typedef struct
   ClothViews *views;
   ClothRays *rays;
   GArray *lone;
+  ClothOutline *outline;        /* NULL: there are no silhouettes */
+  gdouble outline_px;           /* standard deviation of an outline, px; 0: not known yet */
+  gboolean *outlined;           /* places of which only outlines tell */
   ClothObservedCounts *counts;
 } Maker;
 
@@ -53,14 +70,25 @@ maker_clear (Maker * m)
   cloth_views_free (m->views);
   cloth_rays_free (m->rays);
   g_clear_pointer (&m->lone, g_array_unref);
+  g_clear_pointer (&m->outline, cloth_outline_free);
+  g_free (m->outlined);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Maker, maker_clear);
 
 static gboolean
+has_silhouettes (const ClothObservations * observations)
+{
+  for (guint c = 0; c < observations->rig->n_cameras; c++)
+    if (cloth_observations_has_silhouettes (observations, c))
+      return TRUE;
+  return FALSE;
+}
+
+static gboolean
 maker_init (Maker * m, ClothRecording * r,
-    const ClothObservations * observations, ClothObservedCounts * counts,
-    GError ** error)
+    const ClothObservations * observations, guint threads,
+    ClothObservedCounts * counts, GError ** error)
 {
   const ClothRig *rig = observations->rig;
 
@@ -70,6 +98,10 @@ maker_init (Maker * m, ClothRecording * r,
           r->times[0]) / (r->n_frames - 1));
   m->rays = cloth_rays_new (r->n);
   m->lone = g_array_new (FALSE, FALSE, sizeof (Lone));
+  if (has_silhouettes (observations)) {
+    m->outline = cloth_outline_new (r, observations, threads);
+    m->outlined = g_new0 (gboolean, (gsize) r->n * r->n_frames);
+  }
   if (rig->n_cameras == 1)
     return TRUE;
   m->triangulator = cloth_triangulator_new (rig->n_cameras, rig->cameras,
@@ -200,7 +232,6 @@ weigh (ClothRecording * r, const Lone * lone)
   for (guint k = 0; k < 3; k++) {
     information[k] = square * (1. - d[k] * d[k]);
     information[3 + k] = -square * d[(k + 1) % 3] * d[(k + 2) % 3];
-    r->noise->blind[3 * at + k] = 0;
   }
   r->seen[at] = cloth_recording_noise_set (r->noise, at, information);
 }
@@ -277,6 +308,129 @@ finish (Maker * m)
   cloth_recording_differentiate (r);
 }
 
+/* What outlines are off where the place is known otherwise: robust standard deviation, px. */
+static gdouble
+find_outline_px (const Maker * m, const gdouble * x)
+{
+  g_autoptr (GArray) all = g_array_new (FALSE, FALSE, sizeof (gdouble));
+
+  for (guint f = 0; f < m->r->n_frames; f++)
+    for (guint c = 0; c < m->n_cameras; c++) {
+      if (!cloth_outline_find (m->outline, c, f, x + 3 * (gsize) f * m->r->n))
+        continue;
+      for (guint v = 0; v < m->r->n; v++) {
+        const gdouble off = fabs (m->outline->offsets[v]);
+
+        if (m->outline->counts[v] && m->r->seen[(gsize) f * m->r->n + v] > 0.)
+          g_array_append_val (all, off);
+      }
+    }
+  return fmax (all->len ? MAD_TO_SIGMA * cloth_median ((gdouble *)
+          all->data, all->len) : 0., QUANTISED_PX);
+}
+
+/* A place of which outlines alone tell. @information and @pull: sums over them. */
+static void
+put_on_outlines (Maker * m, gsize at, const gdouble information[6],
+    const gdouble pull[3])
+{
+  const gdouble *s = information;
+  const gdouble full[9] = { s[0], s[5], s[4], s[5], s[1], s[3], s[4], s[3],
+    s[2]
+  };
+  gdouble values[3], vectors[9], told[6] = { 0. };
+
+  if (!cloth_sym_eigen (3, full, values, vectors))
+    return;
+  for (guint k = 0; k < 3; k++) {
+    const gdouble *e = vectors + 3 * k;
+
+    /* what cameras that look alike tell of a second direction is noise */
+    if (!(values[k] > WEAK * values[2]))
+      continue;
+    for (guint i = 0; i < 3; i++) {
+      m->r->y[3 * at + i] += cloth_vec3_dot (e, pull) / values[k] * e[i];
+      told[i] += values[k] * e[i] * e[i];
+      told[3 + i] += values[k] * e[(i + 1) % 3] * e[(i + 2) % 3];
+    }
+  }
+  if (!cloth_recording_noise_set (m->r->noise, at, told))
+    return;
+  /* Springs are as strong as the outline is sharp, gain ~ 1/σ, as those of a steady Kalman filter of a
+   * mass under white forces. Those of two frames are multiplied. */
+  m->r->seen[at] = sqrt (fmin (m->r->sigma * sqrt (values[2]), 1.));
+  m->outlined[at] = TRUE;
+}
+
+static void
+draw_frame (Maker * m, guint frame, const gdouble * x, gdouble * information,
+    gdouble * pulls)
+{
+  const gdouble precision = 1. / (m->outline_px * m->outline_px);
+
+  memset (information, 0, 6 * (gsize) m->r->n * sizeof *information);
+  memset (pulls, 0, 3 * (gsize) m->r->n * sizeof *pulls);
+  for (guint c = 0; c < m->n_cameras; c++) {
+    const ClothOutline *o = m->outline;
+
+    if (!cloth_outline_find (m->outline, c, frame, x))
+      continue;
+    for (guint v = 0; v < m->r->n; v++) {
+      const gdouble *g = o->gradients + 3 * (gsize) v;
+      gdouble *to = information + 6 * (gsize) v;
+
+      for (guint k = 0; o->counts[v] && k < 3; k++) {
+        to[k] += precision * g[k] * g[k];
+        to[3 + k] += precision * g[(k + 1) % 3] * g[(k + 2) % 3];
+        pulls[3 * (gsize) v + k] += precision * g[k] * o->offsets[v];
+      }
+    }
+  }
+}
+
+/* Places of which outlines told are as if nobody had seen them. */
+static void
+forget_outlines (Maker * m)
+{
+  for (gsize at = 0; at < (gsize) m->r->n * m->r->n_frames; at++) {
+    if (m->outlined[at])
+      m->r->seen[at] = 0.;
+    m->outlined[at] = FALSE;
+  }
+  m->counts->outlined = 0;
+}
+
+/* What the outlines of the cloth at @x say of places that nothing else tells of. Where they don't either,
+ * the cloth is at @x: what is outlined comes and goes, and would jump from there to a bridge. */
+static void
+draw_to_outlines (Maker * m, const gdouble * x)
+{
+  ClothRecording *r = m->r;
+  g_autofree gdouble *information = g_new (gdouble, 6 * (gsize) r->n);
+  g_autofree gdouble *pulls = g_new (gdouble, 3 * (gsize) r->n);
+
+  m->outline_px = find_outline_px (m, x);
+  /* where the cloth starts is known */
+  for (guint f = 1; f < r->n_frames; f++) {
+    const gdouble *here = x + 3 * (gsize) f * r->n;
+
+    draw_frame (m, f, here, information, pulls);
+    for (guint v = 0; v < r->n; v++) {
+      const gsize at = (gsize) f * r->n + v;
+      const gdouble *s = information + 6 * (gsize) v;
+
+      if (r->seen[at] > 0.)
+        continue;
+      memcpy (r->y + 3 * at, here + 3 * (gsize) v, 3 * sizeof (gdouble));
+      if (!(s[0] + s[1] + s[2] > 0.))
+        continue;
+      put_on_outlines (m, at, s, pulls + 3 * (gsize) v);
+      m->counts->outlined += m->outlined[at];
+    }
+  }
+  cloth_recording_differentiate (r);
+}
+
 /* Simulates the cloth drawn to all that is known, @x in each frame, and moves places along their rays there.
  * Returns how far, RMS; NaN: it diverged. */
 static gdouble
@@ -301,7 +455,11 @@ turn (Maker * m, const ClothModel * model, gdouble gain,
     sum += put_on_ray (m->r, lone, x + 3 * ((gsize) lone->frame * r->n +
             lone->vertex));
   }
+  if (m->outline)
+    forget_outlines (m);
   finish (m);
+  if (m->outline)
+    draw_to_outlines (m, x);
   return sqrt (sum / MAX (m->lone->len, 1));
 }
 
@@ -384,7 +542,7 @@ cloth_recording_new_observed (ClothTake * take,
 
   *counts = (ClothObservedCounts) {
   0};
-  if (!r || !maker_init (&m, r, observations, counts, error)
+  if (!r || !maker_init (&m, r, observations, options->threads, counts, error)
       || !find_floor (&m, error) || !find_places (&m, error)
       || !guess (&m, cloth_take_get_n_positions (take) > 0, error))
     return NULL;
@@ -392,12 +550,13 @@ cloth_recording_new_observed (ClothTake * take,
   if (!cloth_recording_check (r, TRUE, error))
     return NULL;
   x = g_new (gdouble, 3 * (gsize) r->n * r->n_frames);
-  for (guint k = 0; m.lone->len && k < MOST_TURNS; k++) {
+  for (guint k = 0; (m.lone->len || m.outline) && k < MOST_TURNS; k++) {
     const gdouble moved = turn (&m, model, gain, options, x, error);
 
     if (isnan (moved))
       return NULL;
-    if (moved < r->sigma)
+    /* outlines go on as long as the cloth follows them */
+    if (moved < r->sigma && (!m.outline || k + 1 >= LEAST_TURNS))
       break;
   }
   counts->along = find_share_along (&m);

@@ -13,6 +13,7 @@ G_BEGIN_DECLS
  * @single: those of which only the place across one camera's ray is known: others did not see
  *   them, or along nearly the same line
  * @contradicted: those that the cameras contradict each other about; they count as not seen
+ * @outlined: those that no camera located, but that lie on the outline of a silhouette
  * @torn: those that no cloth can be at, with the others where they are; they count as not seen
  * @along: of the motion of the single ones the share, of its mean square, that lies along their
  *   rays and is the model's own
@@ -23,6 +24,7 @@ typedef struct {
   gsize triangulated;
   gsize single;
   gsize contradicted;
+  gsize outlined;
   gsize torn;
   gdouble along;
   gdouble error_floor;

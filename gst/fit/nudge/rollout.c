@@ -53,6 +53,7 @@ typedef struct
   ClothPool *pool;
   gsize row;                    /* numbers of a model */
   gdouble *weights;             /* [model][vertex], of the running frame */
+  gdouble *matrices;            /* [model][vertex][6], likewise */
   gdouble *x;                   /* [model][vertex][3] */
   guint frame;                  /* that is running */
   gboolean nudged;
@@ -75,6 +76,7 @@ run_clear (Run * run)
   g_free (run->rank_of);
   g_clear_pointer (&run->pool, cloth_pool_free);
   g_free (run->weights);
+  g_free (run->matrices);
   g_free (run->x);
 }
 
@@ -247,6 +249,7 @@ run_init (Run * run, const ClothRecording * const *targets,
   run->batch_of = g_new (guint, n_models);
   run->rank_of = g_new (guint, n_models);
   run->weights = g_new (gdouble, (gsize) n * n_models);
+  run->matrices = g_new (gdouble, 6 * (gsize) n * n_models);
   run->x = g_new (gdouble, run->row * n_models);
   cloth_pool_run_one_by_one (run->pool, find_steps, &steps, n_models);
   list_batches (run, each);
@@ -266,18 +269,34 @@ find_weights (const ClothRecording * r, guint frame, gdouble * weights)
         r->seen[((gsize) frame + 1) * r->n + v];
 }
 
+/* Along which directions the running frame draws: those of which both it and the next one tell, or of the
+ * one that tells of fewer. Along the others a target is where the cloth was taken to be. */
+static void
+find_matrices (const ClothRecording * r, guint frame, gdouble * matrices)
+{
+  const gdouble *now = r->noise->draw + 6 * (gsize) frame * r->n;
+  const gdouble *next = now + 6 * (gsize) r->n;
+
+  for (gsize i = 0; i < 6 * (gsize) r->n; i += 6)
+    memcpy (matrices + i, now[i] + now[i + 1] + now[i + 2] <=
+        next[i] + next[i + 1] + next[i + 2] ? now + i : next + i,
+        6 * sizeof *matrices);
+}
+
 static void
 set_targets (Run * run, Batch * batch)
 {
   for (guint i = 0; i < (batch->shared ? 1 : batch->n); i++) {
     const ClothRecording *r = run->targets[batch->of[i]];
     gdouble *weights = run->weights + (gsize) batch->of[i] * r->n;
-    const gdouble *matrices = r->noise ?
-        r->noise->draw + 2 * run->frame * run->row : NULL;
+    gdouble *matrices = r->noise ?
+        run->matrices + 2 * (gsize) batch->of[i] * run->row : NULL;
     const gdouble *y = (r->targets ? r->targets : r->y) + run->frame * run->row;
     const gdouble *velocity = r->velocity + run->frame * run->row;
 
     find_weights (r, run->frame, weights);
+    if (matrices)
+      find_matrices (r, run->frame, matrices);
     if (batch->shared)
       cloth_sim_set_all_targets (batch->sim, y, y + run->row, velocity,
           velocity + run->row, weights, matrices, batch->gains,

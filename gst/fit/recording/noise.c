@@ -45,39 +45,41 @@ compose (const gdouble f[3], const gdouble e[9], gdouble s[6])
 
 /* @noise: noise
  * @at: which place
- * @information: its inverse covariance: xx, yy, zz, yz, xz, xy, 1/m²; of rank 3, or 2 when
- *   nothing is known along one direction
+ * @information: its inverse covariance: xx, yy, zz, yz, xz, xy, 1/m²; of rank 3, 2 when nothing is
+ *   known along one direction, or 1 when only that along one is known
  *
- * Returns: %FALSE when it is none
+ * Returns: %FALSE when it is none; then nothing is known of the place
  */
 gboolean
 cloth_recording_noise_set (ClothRecordingNoise * noise, gsize at,
     const gdouble information[6])
 {
-  gdouble m[9], values[3], vectors[9], roots[3], sum = 0.;
+  gdouble m[9], values[3], vectors[9], roots[3], known[3], sum = 0.;
+  gboolean is_one = TRUE;
 
+  memset (noise->white + 6 * at, 0, 6 * sizeof (gdouble));
+  memset (noise->draw + 6 * at, 0, 6 * sizeof (gdouble));
   for (guint k = 0; k < 6; k++)
     sum += information[k];
   unpack (information, m);
-  if (!isfinite (sum) || !cloth_sym_eigen (3, m, values, vectors))
+  if (!isfinite (sum) || !cloth_sym_eigen (3, m, values, vectors)
+      || !(values[2] > 0.))
     return FALSE;
   /* they ascend */
-  sum = values[2];
   for (guint k = 0; k < 3; k++) {
-    if (values[k] < -NOTHING * sum)
+    if (values[k] < -NOTHING * values[2])
       return FALSE;
-    if (values[k] <= NOTHING * sum) {
-      if (noise->blind[3 * at] || noise->blind[3 * at + 1]
-          || noise->blind[3 * at + 2])
-        return FALSE;
-      for (guint i = 0; i < 3; i++)
-        noise->blind[3 * at + i] = (gfloat) vectors[3 * k + i];
-      values[k] = 0.;
-    }
-    roots[k] = sqrt (values[k]);
+    known[k] = values[k] > NOTHING * values[2];
+    roots[k] = known[k] > 0. ? sqrt (values[k]) : 0.;
+    is_one = is_one && known[k] > 0.;
   }
   compose (roots, vectors, noise->white + 6 * at);
-  return sum > 0.;
+  if (is_one)
+    noise->draw[6 * at] = noise->draw[6 * at + 1] = noise->draw[6 * at + 2] =
+        1.;
+  else
+    compose (known, vectors, noise->draw + 6 * at);
+  return TRUE;
 }
 
 /* Eigenvalues of the root of an information, and its vectors. */
@@ -108,7 +110,7 @@ gdouble
 cloth_recording_noise_finish (ClothRecordingNoise * noise, const gdouble * seen)
 {
   g_autoptr (GArray) all = g_array_new (FALSE, FALSE, sizeof (gdouble));
-  gdouble sum = 0., sigma;
+  gdouble sum = 0.;
 
   for (gsize at = 0; at < noise->n; at++) {
     gdouble roots[3], vectors[9], information = 0., known = 0.;
@@ -129,18 +131,7 @@ cloth_recording_noise_finish (ClothRecordingNoise * noise, const gdouble * seen)
   if (all->len == 0)
     return NAN;
   noise->square = sum / all->len;
-  sigma = 1. / sqrt (cloth_median ((gdouble *) all->data, all->len));
-  for (gsize at = 0; at < noise->n; at++) {
-    gdouble roots[3], vectors[9], shares[3];
-
-    if (seen[at] == 0.)
-      continue;
-    take_apart (noise, at, roots, vectors);
-    for (guint k = 0; k < 3; k++)
-      shares[k] = roots[k] > 0. ? 1. : 0.;
-    compose (shares, vectors, noise->draw + 6 * at);
-  }
-  return sigma;
+  return 1. / sqrt (cloth_median ((gdouble *) all->data, all->len));
 }
 
 /* @recording: a recording
@@ -172,22 +163,23 @@ cloth_recording_whiten (const ClothRecording * recording, gsize at,
 }
 
 /* @recording: a recording
- * @at: which place
- * @off: (inout): a distance from it, m: what of it lies along a direction of which nothing is known
- *   is taken away
+ * @at: which place, one that was seen
+ * @off: (inout): a distance from it, m: what of it lies along directions of which nothing is known is
+ *   taken away
  */
 void
 cloth_recording_cut_blind (const ClothRecording * recording, gsize at,
     gdouble off[3])
 {
-  const gfloat *blind = recording->noise ?
-      recording->noise->blind + 3 * at : NULL;
-  gdouble along = 0.;
+  const gdouble a[3] = { off[0], off[1], off[2] };
+  const gdouble *s;
 
-  for (guint k = 0; blind && k < 3; k++)
-    along += off[k] * blind[k];
-  for (guint k = 0; blind && k < 3; k++)
-    off[k] -= along * blind[k];
+  if (!recording->noise || recording->seen[at] == 0.)
+    return;
+  s = recording->noise->draw + 6 * at;
+  off[0] = s[0] * a[0] + s[5] * a[1] + s[4] * a[2];
+  off[1] = s[5] * a[0] + s[1] * a[1] + s[3] * a[2];
+  off[2] = s[4] * a[0] + s[3] * a[1] + s[2] * a[2];
 }
 
 /* @recording: a recording

@@ -16,6 +16,7 @@ clear_sight (gpointer item)
   g_free (observation->vertices);
   g_free (observation->px);
   g_free (observation->covariances);
+  g_free (observation->runs);
 }
 
 /* @rig: (transfer full): the cameras as calibrated
@@ -114,6 +115,69 @@ cloth_observations_add (ClothObservations * observations, guint camera,
       sizeof *covariances);
   g_array_append_val (observations->list, observation);
   return TRUE;
+}
+
+static gboolean
+are_runs (const ClothCamera * camera, guint n_runs, const ClothRun * runs)
+{
+  for (guint i = 0; i < n_runs; i++)
+    if (runs[i].begin >= runs[i].end || runs[i].end > camera->width
+        || runs[i].row >= camera->height || (i
+            && (runs[i].row < runs[i - 1].row
+                || (runs[i].row == runs[i - 1].row
+                    && runs[i].begin < runs[i - 1].end))))
+      return FALSE;
+  return TRUE;
+}
+
+/* @observations: pictures, at least one
+ * @n_runs: number of runs, 0 when the picture shows no cloth
+ * @runs: (array length=n_runs): which pixels are cloth, row by row from the left
+ * @error: #ClothFitError
+ *
+ * Says where in the picture that was added last the cloth is; all is copied.
+ *
+ * Returns: %FALSE when it can't be in a picture of that camera
+ */
+gboolean
+cloth_observations_set_silhouette (ClothObservations * observations,
+    guint n_runs, const ClothRun * runs, GError ** error)
+{
+  ClothObservation *last = &g_array_index (observations->list,
+      ClothObservation, observations->list->len - 1);
+  const ClothCamera *camera = &observations->rig->cameras[last->camera];
+
+  if (!are_runs (camera, n_runs, runs)) {
+    g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING,
+        "camera “%s”, %g s: the silhouette's runs are not in order, or not in "
+        "its picture of %d × %d pixels", camera->name, last->time_s,
+        camera->width, camera->height);
+    return FALSE;
+  }
+  g_free (last->runs);
+  last->runs = g_memdup2 (runs, n_runs * sizeof *runs);
+  last->n_runs = n_runs;
+  last->has_silhouette = TRUE;
+  return TRUE;
+}
+
+/* @observations: pictures
+ * @camera: index of a camera in the rig
+ *
+ * Returns: whether any of its pictures has a silhouette
+ */
+gboolean
+cloth_observations_has_silhouettes (const ClothObservations * observations,
+    guint camera)
+{
+  for (guint i = 0; i < observations->list->len; i++) {
+    const ClothObservation *o = &g_array_index (observations->list,
+        ClothObservation, i);
+
+    if (o->camera == camera && o->has_silhouette)
+      return TRUE;
+  }
+  return FALSE;
 }
 
 /* @observations: (nullable) (transfer full): pictures

@@ -15,7 +15,6 @@ cloth_recording_noise_new (gsize n)
   noise->n = n;
   noise->white = g_new0 (gdouble, 6 * n);
   noise->draw = g_new0 (gdouble, 6 * n);
-  noise->blind = g_new0 (gfloat, 3 * n);
   return noise;
 }
 
@@ -36,7 +35,6 @@ clear (gpointer data)
 
   g_free (noise->white);
   g_free (noise->draw);
-  g_free (noise->blind);
 }
 
 /* @noise: (nullable) (transfer full): noise

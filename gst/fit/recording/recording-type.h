@@ -10,8 +10,8 @@ G_BEGIN_DECLS
 
 /* @n: number of places, vertices of all frames
  * @white: root of the inverse covariance of each, xx, yy, zz, yz, xz, xy, 1/m
- * @draw: along which directions the observer draws it, likewise: a projector
- * @blind: unit vector along which nothing is known of it; 0 where all directions are known
+ * @draw: along which directions anything is known of it, and the observer draws it, likewise: a
+ *   projector
  * @square: mean square of the error, m²
  *
  * Noise that differs from place to place and from direction to direction; shared by all recordings
@@ -21,7 +21,6 @@ typedef struct {
   gsize n;
   gdouble *white;
   gdouble *draw;
-  gfloat *blind;
   gdouble square;
 } ClothRecordingNoise;
 
@@ -35,7 +34,8 @@ typedef struct {
  * @y: positions, [n_frames][n][3], m; bridged where nothing was seen
  * @velocity: their derivative, m/s
  * @targets: (nullable): what draws a simulation in place of @y, on straight lines from frame to frame
- * @seen: 1 where a vertex was seen, else 0, [n_frames][n]
+ * @seen: 1 where a vertex was seen, less where that draws less strongly, 0 where it was not,
+ *   [n_frames][n]
  */
 typedef struct {
   gchar *name;
