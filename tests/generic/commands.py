@@ -61,7 +61,7 @@ def run(script, root, build):
         lay_links(root, folder)
         done = subprocess.run(['bash', '-e', '-o', 'pipefail', '-c', script],
                               cwd=folder, env=environment(root, build),
-                              stdin=subprocess.DEVNULL, timeout=570)
+                              stdin=subprocess.DEVNULL, timeout=1170)
         left = [os.path.join(at, name) for at, _, names in os.walk(folder) for name in names]
         # A lock of meson's has nothing in it.
         empty = [name for name in left if not os.path.islink(name) and not os.path.getsize(name)
