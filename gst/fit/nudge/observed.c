@@ -60,6 +60,7 @@ typedef struct
   ClothOutline *outline;        /* NULL: there are no silhouettes */
   gdouble outline_px;           /* standard deviation of an outline, px; 0: not known yet */
   gboolean *outlined;           /* places of which only outlines tell */
+  gboolean has_start;           /* the take says where the cloth starts */
   ClothObservedCounts *counts;
 } Maker;
 
@@ -86,7 +87,7 @@ has_silhouettes (const ClothObservations * observations)
 }
 
 static gboolean
-maker_init (Maker * m, ClothRecording * r,
+maker_init (Maker * m, ClothTake * take, ClothRecording * r,
     const ClothObservations * observations, guint threads,
     ClothObservedCounts * counts, GError ** error)
 {
@@ -94,6 +95,7 @@ maker_init (Maker * m, ClothRecording * r,
 
   *m = (Maker) {
   observations, r,.n_cameras = rig->n_cameras,.counts = counts};
+  m->has_start = cloth_take_get_n_positions (take) > 0;
   m->views = cloth_views_new (observations, (r->times[r->n_frames - 1] -
           r->times[0]) / (r->n_frames - 1));
   m->rays = cloth_rays_new (r->n);
@@ -264,12 +266,12 @@ put_on_ray (ClothRecording * r, const Lone * lone, const gdouble from[3])
 /* The first guess of all that was not triangulated: between those that were, else where the cloth
  * starts. */
 static gboolean
-guess (Maker * m, gboolean has_start, GError ** error)
+guess (Maker * m, GError ** error)
 {
   ClothRecording *r = m->r;
   const gsize row = 3 * (gsize) r->n;
 
-  if (m->counts->triangulated == 0 && !has_start) {
+  if (m->counts->triangulated == 0 && !m->has_start) {
     g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING, "%s: no "
         "two cameras see the same vertex at a time, so nothing says where the "
         "cloth starts; give its places in the first frame as positions.npy "
@@ -305,6 +307,9 @@ finish (Maker * m)
   r->sigma = cloth_recording_noise_finish (r->noise, r->seen);
   m->counts->torn = cloth_recording_remove_torn (r);
   cloth_recording_interpolate (r);
+  /* rather than what cameras made of it */
+  if (m->has_start)
+    memcpy (r->y, r->scene->positions, 3 * (gsize) r->n * sizeof *r->y);
   cloth_recording_differentiate (r);
 }
 
@@ -542,9 +547,11 @@ cloth_recording_new_observed (ClothTake * take,
 
   *counts = (ClothObservedCounts) {
   0};
-  if (!r || !maker_init (&m, r, observations, options->threads, counts, error)
+  if (!r
+      || !maker_init (&m, take, r, observations, options->threads, counts,
+          error)
       || !find_floor (&m, error) || !find_places (&m, error)
-      || !guess (&m, cloth_take_get_n_positions (take) > 0, error))
+      || !guess (&m, error))
     return NULL;
   finish (&m);
   if (!cloth_recording_check (r, TRUE, error))
