@@ -39,9 +39,9 @@ cloth_gap_find_powers (const ClothGapStack * stack, const gdouble * z,
 }
 
 /* Mean over members of the powers of their features. */
-static void
-find_mean_powers (const ClothGapStack * stack, const gdouble * members,
-    gdouble * mean)
+void
+cloth_gap_find_mean_powers (const ClothGapStack * stack,
+    const gdouble * members, gdouble * mean)
 {
   g_autofree gdouble *powers = g_new (gdouble, stack->n_classes);
 
@@ -74,7 +74,7 @@ refit_members (const ClothGapStack * stack, gdouble * members,
   g_autofree gdouble *factor = g_new0 (gdouble, n * n + 1);
   g_autofree gdouble *changes = g_new (gdouble, n + 1);
 
-  find_mean_powers (stack, on_reference, powers);
+  cloth_gap_find_mean_powers (stack, on_reference, powers);
   for (guint k = 0; k < n; k++)
     for (gsize i = 0; i < size; i++)
       weighted[k * size + i] = powers[stack->classes[i]] > 0. ?
@@ -140,7 +140,7 @@ take_reference_off (const ClothGapStack * stack, ClothGapDiscrepancy * d)
       d->free[k * size + i] -= d->slopes[stack->classes[i]] *
           stack->reference_free[k * size + i];
   d->reference_variances = g_new (gdouble, stack->n_classes);
-  find_mean_powers (stack, d->on_reference, d->reference_variances);
+  cloth_gap_find_mean_powers (stack, d->on_reference, d->reference_variances);
 }
 
 /* @stack: features of takes, of an ensemble, and perhaps of a reference
@@ -163,7 +163,7 @@ cloth_gap_discrepancy_new (const ClothGapStack * stack,
   d->variances = g_new (gdouble, stack->n_classes);
   if (stack->reference)
     take_reference_off (stack, d);
-  find_mean_powers (stack, d->members, d->variances);
+  cloth_gap_find_mean_powers (stack, d->members, d->variances);
   if (response) {
     cloth_gap_find_powers (stack, response, powers);
     for (guint c = 0; c < stack->n_classes; c++)

@@ -33,6 +33,8 @@ ClothGapDiscrepancy *cloth_gap_discrepancy_new (const ClothGapStack * stack,
 void cloth_gap_discrepancy_free (ClothGapDiscrepancy * discrepancy);
 void cloth_gap_discrepancy_take_reference_off (const ClothGapDiscrepancy *
     discrepancy, const ClothGapStack * stack, const gdouble * z, gdouble * left);
+void cloth_gap_find_mean_powers (const ClothGapStack * stack,
+    const gdouble * members, gdouble * mean);
 void cloth_gap_find_powers (const ClothGapStack * stack, const gdouble * z,
     gdouble * powers);
 

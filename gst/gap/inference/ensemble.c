@@ -1,13 +1,13 @@
 /* Simulators that the recording might have come from if nothing acted that the model lacks.
  *
  * Model: a real cloth differs from the simulated one as simulators differ from each other. A member
- *   has one of the two force models; the mesh as it is with explicit steps, with half of them, or
- *   with implicit ones, or a mesh twice as fine, with other diagonals if it has many vertices, with
- *   implicit steps; and free numbers
+ *   has one of the two force models; the mesh as it is with explicit steps or with implicit ones, or a
+ *   mesh twice as fine, with other diagonals if it has many vertices, with implicit steps; and free
+ *   numbers
  *   θ exp (0.3 N(0, 1)) (of those that may be negative: θ + a quarter of a prior), and a little of
  *   some laws that the model has not: 0.2 N(0, 1) priors.
  * Formula: a member moves freely in the recorded scene from the recorded start; with the
- *   recording's noise and its gaps it is a recording y'. The model is drawn to y' as it is to the
+ *   recording's noise, of a twin with a twin's, and its gaps it is a recording y'. The model is drawn to y' as it is to the
  *   recording. The features of (simulated − y') are what the residual would be if nothing acted.
  * Reference: Kennedy and O'Hagan 2001 (discrepancy); the members stand for its Gaussian process.
  *
@@ -41,7 +41,6 @@ typedef struct
 
 static const Way ways[] = {
   {NULL, 1., CLOTH_INTEGRATOR_EXPLICIT},
-  {"time_step", 0.5, CLOTH_INTEGRATOR_EXPLICIT},
   {NULL, 1., CLOTH_INTEGRATOR_IMPLICIT},
   {"mesh_resolution", 2., CLOTH_INTEGRATOR_IMPLICIT},
 };
@@ -164,11 +163,12 @@ cloth_ensemble_find_kin (const ClothEnsemble * ensemble, guint member,
   guint way = member / CLOTH_ENSEMBLE_DRAWS % N_WAYS;
   guint family = member / (CLOTH_ENSEMBLE_DRAWS * N_WAYS);
 
-  if (kin == CLOTH_KIN_OTHER_SIMULATOR) {
-    way = (way + 1) % N_WAYS;
-    family = !family;
+  if (kin & CLOTH_KIN_OTHER_CLOTH)
     draw = (draw + 1) % CLOTH_ENSEMBLE_DRAWS;
-  }
+  if (kin & CLOTH_KIN_OTHER_NUMERICS)
+    way = (way + 1) % N_WAYS;
+  if (kin & CLOTH_KIN_OTHER_FORCES)
+    family = !family;
   return (family * N_WAYS + way) * CLOTH_ENSEMBLE_DRAWS + draw;
 }
 
@@ -227,16 +227,16 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
       m->z + model * m->features->size);
 }
 
-/* Noise, and velocities as a recording has them. What was not seen stays hidden. Where the first frame
- * could not be freed of its noise it has it already. */
+/* A share of the recording's noise, and velocities as a recording has them. What was not seen stays hidden.
+ * Where the first frame could not be freed of its noise it has it already. */
 static void
-record (ClothRecording * r, gboolean is_smooth, guint64 seed)
+record (ClothRecording * r, gboolean is_smooth, gdouble noise, guint64 seed)
 {
   ClothRandom random;
 
   cloth_random_init (&random, seed);
   for (gsize i = is_smooth ? 0 : r->n; i < (gsize) r->n * r->n_frames; i++)
-    cloth_recording_add_noise (r, i, 1., &random, r->y + 3 * i);
+    cloth_recording_add_noise (r, i, noise, &random, r->y + 3 * i);
   cloth_recording_interpolate (r);
   cloth_recording_differentiate (r);
 }
@@ -244,6 +244,8 @@ record (ClothRecording * r, gboolean is_smooth, guint64 seed)
 /* @ensemble: an ensemble
  * @study: of the recording whose scene, noise and gaps the members get
  * @model: what follows them
+ * @noise: what the members have of the recording's noise: 1, or less for what a simulator wrote
+ * @stream: of random numbers: recordings of different streams have independent noise
  * @options: how to simulate
  * @z: (inout) (array): features of each member's residual, [n][size]; start with zeros
  * @sound: (out) (array length=n): which members did not diverge
@@ -254,8 +256,8 @@ record (ClothRecording * r, gboolean is_smooth, guint64 seed)
 gboolean
 cloth_ensemble_run (const ClothEnsemble * ensemble,
     const ClothSensitivities * study, const ClothModel * model,
-    ClothEstimateOptions * options, gdouble * z, gboolean * sound,
-    GError ** error)
+    gdouble noise, guint stream, ClothEstimateOptions * options, gdouble * z,
+    gboolean * sound, GError ** error)
 {
   const ClothEnsemble *e = ensemble;
   const ClothRecording *r = study->recording;
@@ -284,7 +286,7 @@ cloth_ensemble_run (const ClothEnsemble * ensemble,
   for (guint i = 0; i < e->n; i++)
     if (sound[i])
       record (m.made[i], cloth_recording_find_start (r, m.made[i]->y, NULL),
-          options->rollout.seed + i + 1);
+          noise, options->rollout.seed + stream * e->n + i + 1);
     else
       memcpy (m.made[i]->y, r->y, all * sizeof (gdouble));
   if (!cloth_rollout_nudged ((const ClothRecording * const *) m.made, models,

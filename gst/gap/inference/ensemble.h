@@ -24,15 +24,20 @@ typedef struct {
   guint *families;
 } ClothEnsemble;
 
-/* @CLOTH_KIN_SAME: what a reference is of is computed as the recording is: the same cloth, the same
- *   simulator
- * @CLOTH_KIN_OTHER_SIMULATOR: by other laws and numbers
+/* @CLOTH_KIN_SAME: the same cloth, computed in the same way
+ * @CLOTH_KIN_OTHER_CLOTH: another cloth: other free numbers and laws
+ * @CLOTH_KIN_OTHER_NUMERICS: computed on another mesh or with other steps
+ * @CLOTH_KIN_OTHER_FORCES: computed with another force model
+ * @CLOTH_N_KINS: how many combinations of these bits there are
  *
- * How a reference is related to the recording.
+ * In what a reference differs from the recording although nothing acts.
  */
 typedef enum {
-  CLOTH_KIN_SAME,
-  CLOTH_KIN_OTHER_SIMULATOR
+  CLOTH_KIN_SAME = 0,
+  CLOTH_KIN_OTHER_CLOTH = 1 << 0,
+  CLOTH_KIN_OTHER_NUMERICS = 1 << 1,
+  CLOTH_KIN_OTHER_FORCES = 1 << 2,
+  CLOTH_N_KINS = 1 << 3
 } ClothEnsembleKin;
 
 ClothEnsemble *cloth_ensemble_new (const ClothModel * model,
@@ -43,8 +48,8 @@ guint cloth_ensemble_find_kin (const ClothEnsemble * ensemble, guint member,
 void cloth_ensemble_free (ClothEnsemble * ensemble);
 gboolean cloth_ensemble_run (const ClothEnsemble * ensemble,
     const ClothSensitivities * study, const ClothModel * model,
-    ClothEstimateOptions * options, gdouble * z, gboolean * sound,
-    GError ** error);
+    gdouble noise, guint stream, ClothEstimateOptions * options, gdouble * z,
+    gboolean * sound, GError ** error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothEnsemble, cloth_ensemble_free)
 G_END_DECLS

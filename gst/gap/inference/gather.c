@@ -54,6 +54,17 @@ find_reference (const ClothDiagnosis * d, guint take)
   return best;
 }
 
+/* What a take's reference has of the noise that its recording is said to have: a twin's σ is that of the
+ * recorded less the simulated, and only the simulator's own is in its places. */
+static gdouble
+find_noise (const ClothDiagnosis * d, guint take)
+{
+  const ClothRecording *twin = cloth_diagnosis_twin (d, take);
+  const gdouble sigma = cloth_diagnosis_recording (d, take)->sigma;
+
+  return twin ? sqrt (fmax (1. - pow (sigma / twin->sigma, 2.), 0.)) : 1.;
+}
+
 /* @d: a diagnosis whose model is fitted
  * @gathered: (out caller-allocates): what it must agree with
  * @error: #ClothSimError or #ClothFitError
@@ -95,8 +106,9 @@ cloth_gap_gather_references (ClothDiagnosis * d, ClothGapGathered * gathered,
       continue;
     if (!cloth_sensitivities_linearise (study, d->candidates, d->model, d->all,
             d->candidates->n_free, &d->study, error)
-        || !cloth_ensemble_run (ensemble, study, d->model, &d->study,
-            gathered->on_references[t], sound, error))
+        || !cloth_ensemble_run (ensemble, study, d->model, find_noise (d, t),
+            gathered->references[t], &d->study, gathered->on_references[t],
+            sound, error))
       return FALSE;
     for (guint m = 0; m < ensemble->n; m++)
       gathered->sound[m] = gathered->sound[m] && sound[m];
@@ -375,8 +387,8 @@ cloth_gap_gather_takes (ClothDiagnosis * d, const ClothGapGathered * gathered,
     g_ptr_array_add (made->made, z);
     if (!cloth_sensitivities_linearise (study, d->candidates, model, d->all,
             d->candidates->directions->len, &d->study, error)
-        || !cloth_ensemble_run (ensemble, study, model, &d->study, z, here,
-            error))
+        || !cloth_ensemble_run (ensemble, study, model, 1., t, &d->study, z,
+            here, error))
       return FALSE;
     for (guint m = 0; m < ensemble->n; m++)
       made->sound[m] = made->sound[m] && here[m];

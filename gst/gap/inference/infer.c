@@ -149,32 +149,49 @@ refit (ClothDiagnosis * d, const ClothModel * start, GError ** error)
   return d->with != NULL;
 }
 
-/* The first round. What reality is, is what the user's simulator makes if nothing acts: taken at its
- * word, a twin is of the same simulator as the recording. Where that leaves more than the members differ
- * by on average, it is another one. */
+/* How the twins are related to the recordings, nobody knows: they are taken for what makes the recordings
+ * likeliest. Without twins, a baseline is of the recorded cloth itself. */
+static gboolean
+find_kin (ClothDiagnosis * d, const ClothGapGathered * gathered,
+    const ClothGapHypothesis * none, Round * first, ClothEnsembleKin * kin,
+    GError ** error)
+{
+  gdouble most = -INFINITY;
+
+  *kin = CLOTH_KIN_SAME;
+  for (guint k = 0; d->twins->len && k < CLOTH_N_KINS; k++) {
+    ClothGapLinearisation l = {.base = none,.is_first = TRUE };
+    ClothGapEvidence best;
+    gdouble log_evidence;
+
+    if (!find_likelihood (d, gathered, k, NULL, first, error))
+      return FALSE;
+    l.likelihood = first->likelihood;
+    l.stack = first->stack;
+    l.gram = first->gram;
+    if (!cloth_gap_hypotheses_screen (d, &l, &best))
+      continue;
+    log_evidence = best.log_evidence +
+        cloth_gap_likelihood_find_constant (first->likelihood);
+    if (log_evidence > most) {
+      most = log_evidence;
+      *kin = k;
+    }
+  }
+  return TRUE;
+}
+
+/* The first round. */
 static gboolean
 run_first (ClothDiagnosis * d, const ClothGapGathered * gathered,
     const ClothGapHypothesis * none, GArray * hypotheses, Round * first,
     ClothEnsembleKin * kin, GError ** error)
 {
-  ClothGapEvidence best;
-
-  *kin = CLOTH_KIN_SAME;
-  if (!cloth_gap_gather_takes (d, gathered, d->model, NULL, &first->made, error)
-      || !find_likelihood (d, gathered, *kin, NULL, first, error))
-    return FALSE;
-  if (d->twins->len) {
-    const ClothGapLinearisation l = { first->likelihood, first->stack,
-      first->gram, none, TRUE
-    };
-
-    if (cloth_gap_hypotheses_screen (d, &l, &best) && best.misfit > 1.)
-      *kin = CLOTH_KIN_OTHER_SIMULATOR;
-    if (*kin != CLOTH_KIN_SAME
-        && !find_likelihood (d, gathered, *kin, NULL, first, error))
-      return FALSE;
-  }
-  return compare (d, first, none, TRUE, hypotheses, error);
+  return cloth_gap_gather_takes (d, gathered, d->model, NULL, &first->made,
+      error)
+      && find_kin (d, gathered, none, first, kin, error)
+      && find_likelihood (d, gathered, *kin, NULL, first, error)
+      && compare (d, first, none, TRUE, hypotheses, error);
 }
 
 /* The rounds; the last one that could be simulated is left in @last, the residual without effects in

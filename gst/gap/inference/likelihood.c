@@ -73,6 +73,28 @@ cloth_gap_likelihood_get_coarsening (void)
   return COARSENING;
 }
 
+/* @likelihood: a likelihood
+ *
+ * Likelihoods of one residual with different V are compared by their evidence with this. The unit is
+ * what members vary by without a reference.
+ *
+ * Returns: the constant that evidence is up to, −½ Σ ζ d_k log V_k
+ */
+gdouble
+cloth_gap_likelihood_find_constant (const ClothGapLikelihood * likelihood)
+{
+  const ClothGapLikelihood *l = likelihood;
+  g_autofree gdouble *units = g_new0 (gdouble, l->n_classes);
+  gdouble sum = 0.;
+
+  cloth_gap_find_mean_powers (l->stack, l->stack->members, units);
+  for (guint c = 0; c < l->n_classes; c++)
+    if (l->freedoms[c] > 0. && l->discrepancy->variances[c] > 0.)
+      sum -= 0.5 * l->freedoms[c] * log (l->discrepancy->variances[c] /
+          units[c]);
+  return sum;
+}
+
 /* @priors: (array length=n): priors
  * @values: (array length=n): values
  * @n: how many
@@ -514,7 +536,6 @@ cloth_gap_gram_find_evidence (const ClothGapGram * gram, const guint * list,
   g_auto (Problem) p = { 0 };
   g_autofree gdouble *x = NULL, *factor = NULL, *prior = NULL, *off = NULL;
   g_autofree gdouble *covariance = NULL;
-  gdouble square = 0., expected = 0.;
 
   problem_fill (gram, list, at, priors, n, &p);
   x = g_new (gdouble, p.n + 1);
@@ -534,10 +555,7 @@ cloth_gap_gram_find_evidence (const ClothGapGram * gram, const guint * list,
 
     evidence->log_evidence -= 0.5 * (SIZE_FREEDOM + l->freedoms[c]) *
         log1p (q / SIZE_FREEDOM);
-    square += q;
-    expected += l->freedoms[c];
   }
-  evidence->misfit = expected > 0. ? square / expected : 0.;
   for (guint i = 0; i < p.n; i++)
     off[i] = x[i] - p.mean[i];
   for (guint i = 0; i < p.n; i++)

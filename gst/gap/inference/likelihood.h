@@ -26,7 +26,6 @@ typedef struct {
 
 /* @log_evidence: logarithm of the marginal likelihood, up to a constant of the likelihood
  * @log_volume: the part of it that the directions' uncertainty contributes (Occam factor)
- * @misfit: squared residual over its expected value, over all classes
  * @modes: most probable values of the directions
  * @values: the same, but of those that can't be negative the mean of that half
  * @covariance: of these, [n][n]
@@ -34,7 +33,6 @@ typedef struct {
 typedef struct {
   gdouble log_evidence;
   gdouble log_volume;
-  gdouble misfit;
   gdouble modes[CLOTH_GAP_MAX_DIRECTIONS];
   gdouble values[CLOTH_GAP_MAX_DIRECTIONS];
   gdouble covariance[CLOTH_GAP_MAX_DIRECTIONS * CLOTH_GAP_MAX_DIRECTIONS];
@@ -46,6 +44,7 @@ typedef struct _ClothGapGram ClothGapGram;
 ClothGapLikelihood *cloth_gap_likelihood_new (const ClothGapStack * stack,
     const ClothGapDiscrepancy * discrepancy, guint left_out);
 gdouble cloth_gap_likelihood_get_coarsening (void);
+gdouble cloth_gap_likelihood_find_constant (const ClothGapLikelihood * likelihood);
 void cloth_gap_likelihood_find_rest (const ClothGapLikelihood * likelihood,
     const gdouble * left, gdouble * powers);
 void cloth_gap_likelihood_find_free_covariance (const ClothGapLikelihood *
