@@ -1,6 +1,8 @@
 /* gst-cloth-fit-1.0: fits a simulated cloth to what cameras saw.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "config.h"
+
 #include <errno.h>
 #include <gio/gio.h>
 #include <glib/gstdio.h>
@@ -11,6 +13,7 @@
 #include "gst/file/jsonwriter.h"
 #include "gst/file/output.h"
 #include "gst/fit/error.h"
+#include "gst/fit/search/evaluate.h"
 #include "gst/fit/synthesis/silhouette.h"
 #include "gst/fit/synthesis/synthesis.h"
 #include "gst/gap/report/view.h"
@@ -21,10 +24,16 @@
 
 typedef struct
 {
-  gchar *model, *rig, *output;
-  gint seed, threads;
+  gchar *model, *rig, *output, *spool, *replay;
+  gint seed, threads, evaluations;
+  gboolean worker, resume, as_they_come;
   gchar **rest;
 } Arguments;
+
+/* How long a worker waits for the manager to begin. */
+#define JOIN_S 60.
+/* First steps of a search, as a share of a number's range. */
+#define FIRST_STEP 0.25
 
 /* All that is read for a fit. */
 typedef struct
@@ -48,6 +57,14 @@ inputs_clear (Inputs * i)
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Inputs, inputs_clear);
+
+/* What a search came to. */
+typedef struct
+{
+  ClothSearchState state;
+  ClothSearchCounts counts;
+  const gchar *log;
+} Searched;
 
 /* Puts another rig of the same cameras in place of the take's. */
 static gboolean
@@ -207,7 +224,7 @@ add_cameras (ClothJsonWriter * w, const ClothSynthesisTake * t,
 
 static gboolean
 write_numbers (const ClothSynthesis * s, const Inputs * inputs,
-    const gchar * path, GError ** error)
+    const Searched * searched, const gchar * path, GError ** error)
 {
   ClothJsonWriter *w = cloth_json_writer_new ();
   g_autofree gchar *text = NULL;
@@ -229,6 +246,17 @@ write_numbers (const ClothSynthesis * s, const Inputs * inputs,
     cloth_json_writer_set_one_line (w, FALSE);
   }
   cloth_json_writer_end_array (w);
+  if (searched) {
+    cloth_json_writer_begin_object (w, "search");
+    cloth_json_writer_set_one_line (w, TRUE);
+    cloth_json_writer_string (w, "ended",
+        searched->state == CLOTH_SEARCH_CONVERGED ? "converged" : "limit");
+    cloth_json_writer_count (w, "evaluations", searched->counts.n_decided);
+    cloth_json_writer_count (w, "diverged", searched->counts.n_failed);
+    cloth_json_writer_count (w, "moves", searched->counts.n_moves);
+    cloth_json_writer_end_object (w);
+    cloth_json_writer_set_one_line (w, FALSE);
+  }
   cloth_json_writer_begin_array (w, "takes");
   for (guint i = 0; i < s->n_takes; i++) {
     const ClothSynthesisTake *t = &s->takes[i];
@@ -253,7 +281,7 @@ write_numbers (const ClothSynthesis * s, const Inputs * inputs,
 
 static gboolean
 write_all (const Arguments * a, const ClothSynthesis * s,
-    const Inputs * inputs, GError ** error)
+    const Inputs * inputs, const Searched * searched, GError ** error)
 {
   g_autofree gchar *model = cloth_model_to_json (s->model);
   g_autofree gchar *fitted = g_build_filename (a->output, "fitted.json", NULL);
@@ -272,8 +300,14 @@ write_all (const Arguments * a, const ClothSynthesis * s,
     if (!write_take (&s->takes[i], take, folder, error))
       return FALSE;
   }
+  if (searched) {
+    g_autofree gchar *log = g_build_filename (a->output, "search.log", NULL);
+
+    if (!cloth_file_write_text (log, searched->log, error))
+      return FALSE;
+  }
   return cloth_file_write_text (fitted, model, error)
-      && write_numbers (s, inputs, numbers, error)
+      && write_numbers (s, inputs, searched, numbers, error)
       && cloth_view_write ((const gchar * const *) shown->pdata,
       MIN (shown->len, CLOTH_VIEW_MAX_TAKES), page, error);
 }
@@ -286,8 +320,11 @@ show (const Arguments * a, const ClothSynthesis * s)
     const ClothSynthesisNumber *n =
         &g_array_index (s->numbers, ClothSynthesisNumber, i);
 
-    g_print ("%-24s %12.4g %12.4g %12.2g%s\n", n->name, n->before, n->value,
-        n->sigma, n->at_end ? "  at the end of its range, which may be too "
+    g_autofree gchar *sigma = isnan (n->sigma) ? g_strdup ("–") :
+        g_strdup_printf ("%.2g", n->sigma);
+
+    g_print ("%-24s %12.4g %12.4g %12s%s\n", n->name, n->before, n->value,
+        sigma, n->at_end ? "  at the end of its range, which may be too "
         "narrow" : "");
   }
   g_print ("\n%-24s %30s %30s\n%-24s %10s%10s%10s %10s%10s%10s\n", "gap, mm",
@@ -324,6 +361,161 @@ go_on (gpointer data, gdouble share)
   return !was_interrupted ();
 }
 
+/* What all that evaluate the same trials must agree in. */
+static gchar *
+describe (const Arguments * a, const Inputs * inputs, const ClothModel * model)
+{
+  g_autofree gchar *json = cloth_model_to_json (model);
+  g_autoptr (GChecksum) sum = g_checksum_new (G_CHECKSUM_SHA256);
+
+  g_checksum_update (sum, (const guchar *) json, -1);
+  for (guint i = 0; i < inputs->inputs->len; i++) {
+    const ClothSynthesisInput *input =
+        &g_array_index (inputs->inputs, ClothSynthesisInput, i);
+    g_autofree gchar *text = g_strdup_printf ("%s %u %u %u %d",
+        cloth_take_get_info (input->take)->name,
+        cloth_take_get_topology (input->take)->n_vertices,
+        cloth_take_get_n_frames (input->take), input->observations ?
+        input->observations->list->len : 0, a->seed);
+
+    g_checksum_update (sum, (const guchar *) text, -1);
+  }
+  return g_strdup_printf ("fit-search %.12s", g_checksum_get_string (sum));
+}
+
+/* Evaluates the trials: by threads, by the workers of a spool, or, of a worker, those of others. */
+static gboolean
+evaluate (const Arguments * a, const gchar * what, ClothSearch * search,
+    ClothSynthesisProblem * problem, GError ** error)
+{
+  const ClothSpoolOptions options = { what, PACKAGE_VERSION, 0. };
+  g_autoptr (ClothSpool) spool = NULL;
+
+  if (!a->spool) {
+    cloth_search_run (search, cloth_synthesis_problem_evaluate, problem,
+        a->threads ? (guint) a->threads : g_get_num_processors ());
+    return TRUE;
+  }
+  spool = a->worker ? cloth_spool_join (a->spool, &options, JOIN_S, error) :
+      cloth_spool_manage (a->spool, &options, what, a->resume, error);
+  if (spool && !a->worker)
+    g_printerr ("the points wait for workers: the same command with --worker, "
+        "without --output\n");
+  return spool && (a->worker ? cloth_search_work_spool (spool,
+          cloth_synthesis_problem_get_n (problem),
+          cloth_synthesis_problem_evaluate, problem, error) :
+      cloth_search_run_spool (search, spool, error));
+}
+
+/* Values that came in an order of their own are taken in it again. */
+static gboolean
+replay (const Arguments * a, ClothSearch * search, GError ** error)
+{
+  g_autofree gchar *log = NULL;
+
+  if (!a->replay)
+    return TRUE;
+  if (g_file_get_contents (a->replay, &log, NULL, error)
+      && cloth_search_replay (search, log, error))
+    return TRUE;
+  g_prefix_error (error, "--replay: ");
+  return FALSE;
+}
+
+static ClothSearch *
+search_new (const Arguments * a, const ClothSynthesisProblem * problem,
+    GError ** error)
+{
+  const guint n = cloth_synthesis_problem_get_n (problem);
+  g_autofree gdouble *start = g_new (gdouble, n);
+  g_autofree gdouble *low = g_new (gdouble, n);
+  g_autofree gdouble *high = g_new (gdouble, n);
+  g_autofree gdouble *scale = g_new (gdouble, n);
+  ClothSearchOptions options;
+
+  cloth_synthesis_problem_get_room (problem, start, low, high);
+  for (guint i = 0; i < n; i++)
+    scale[i] = FIRST_STEP * (high[i] - low[i]);
+  cloth_search_options_init (&options);
+  options.n = n;
+  options.start = start;
+  options.low = low;
+  options.high = high;
+  options.scale = scale;
+  options.most_evaluations = (guint) a->evaluations;
+  options.as_they_come = a->as_they_come;
+  return cloth_search_new (&options, error);
+}
+
+/* Searches, or works for one that does: then there is nothing to show. */
+static ClothSynthesis *
+find (const Arguments * a, const Inputs * inputs, const ClothModel * model,
+    const ClothSynthesisOptions * options, ClothSearch ** search,
+    Searched * searched, GError ** error)
+{
+  g_autoptr (ClothSynthesisProblem) problem =
+      cloth_synthesis_problem_new ((const ClothSynthesisInput *)
+      inputs->inputs->data, inputs->inputs->len, model, options, error);
+  g_autofree gchar *what = describe (a, inputs, model);
+  g_autofree gdouble *point = NULL;
+
+  if (!problem)
+    return NULL;
+  *search = search_new (a, problem, error);
+  if (!*search || !replay (a, *search, error)
+      || !evaluate (a, what, *search, problem, error) || a->worker)
+    return NULL;
+  if (was_interrupted ()) {
+    g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_CANCELLED, "stopped");
+    return NULL;
+  }
+  point = g_new (gdouble, cloth_synthesis_problem_get_n (problem));
+  cloth_search_get_best (*search, point);
+  *searched = (Searched) {
+  cloth_search_get_state (*search), cloth_search_get_counts (*search),
+        cloth_search_get_log (*search)};
+  if (searched->state == CLOTH_SEARCH_NOWHERE) {
+    g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL, "the cloth "
+        "diverges with all numbers that were tried; start with softer cloth or "
+        "more damping, or narrow the ranges");
+    return NULL;
+  }
+  return cloth_synthesis_problem_finish (problem, point, error);
+}
+
+static gint
+check (const Arguments * a)
+{
+  const gboolean searches = a->rest && !strcmp (a->rest[0], "search");
+
+  if (!a->rest || (strcmp (a->rest[0], "fit") && !searches))
+    return complain (BAD_USAGE, "name the command: fit TAKE… --model MODEL "
+        "--output DIR, or search");
+  if (!a->rest[1])
+    return complain (BAD_USAGE, "name the takes to fit");
+  if (!a->model || (!a->output && !a->worker))
+    return complain (BAD_USAGE, "name the model, --model model.json, and the "
+        "folder of what is made, --output DIR");
+  if (a->threads < 0)
+    return complain (BAD_USAGE, "--threads: give 0 for all, or a number");
+  if (!searches && (a->spool || a->worker || a->resume || a->as_they_come
+          || a->replay))
+    return complain (BAD_USAGE,
+        "--spool, --worker, --resume, --as-they-come and "
+        "--replay are of the command search");
+  if (a->evaluations < 1
+      || (guint) a->evaluations > CLOTH_SEARCH_MAX_EVALUATIONS)
+    return complain (BAD_USAGE, "--evaluations: give a number from 1 to %u",
+        CLOTH_SEARCH_MAX_EVALUATIONS);
+  if ((a->worker || a->resume) && !a->spool)
+    return complain (BAD_USAGE, "name the spool: --spool DIR");
+  if (a->worker && (a->output || a->resume || a->replay))
+    return complain (BAD_USAGE,
+        "--worker takes the takes, --model, --rig, --seed "
+        "and --spool: all else is the manager's");
+  return DONE;
+}
+
 static gint
 run (gconstpointer data)
 {
@@ -331,39 +523,45 @@ run (gconstpointer data)
   g_autoptr (GError) error = NULL;
   g_autoptr (ClothModel) model = NULL;
   g_autoptr (ClothSynthesis) synthesis = NULL;
+  g_autoptr (ClothSearch) search = NULL;
   g_auto (Inputs) inputs = { NULL };
+  Searched searched;
   ClothSynthesisOptions options;
 
-  if (!a->rest || strcmp (a->rest[0], "fit"))
-    return complain (BAD_USAGE, "name the command: fit TAKE… --model MODEL "
-        "--output DIR");
-  if (!a->rest[1])
-    return complain (BAD_USAGE, "name the takes to fit");
-  if (!a->model || !a->output)
-    return complain (BAD_USAGE, "name the model, --model model.json, and the "
-        "folder of what is made, --output DIR");
-  if (a->threads < 0)
-    return complain (BAD_USAGE, "--threads: give 0 for all, or a number");
+  if (check (a) != DONE)
+    return BAD_USAGE;
   model = cloth_model_load (a->model, &error);
   if (!model)
     return complain (FAILED, "--model: %s", error->message);
   if (!load (a, &inputs, &error))
     return complain (FAILED, "%s", error->message);
-  if (g_mkdir_with_parents (a->output, 0777) != 0)
+  if (!a->worker && g_mkdir_with_parents (a->output, 0777) != 0)
     return complain (FAILED, "cannot make the folder “%s”: %s", a->output,
         g_strerror (errno));
-  catch_interrupts ();
+  /* a spool keeps what was done, so that its ends may be killed */
+  if (!a->spool)
+    catch_interrupts ();
   cloth_synthesis_options_init (&options);
   options.rollout.seed = (guint64) a->seed;
   options.rollout.threads = (guint) a->threads;
   options.rollout.progress = go_on;
-  synthesis = cloth_synthesis_fit ((const ClothSynthesisInput *)
-      inputs.inputs->data, inputs.inputs->len, model, &options, &error);
-  if (!synthesis || !write_all (a, synthesis, &inputs, &error))
+  if (!strcmp (a->rest[0], "fit"))
+    synthesis = cloth_synthesis_fit ((const ClothSynthesisInput *)
+        inputs.inputs->data, inputs.inputs->len, model, &options, &error);
+  else
+    synthesis = find (a, &inputs, model, &options, &search, &searched, &error);
+  if (a->worker && !error)
+    return DONE;
+  if (!synthesis || !write_all (a, synthesis, &inputs, search ? &searched :
+          NULL, &error))
     return g_error_matches (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_CANCELLED) ?
         complain (FAILED, "stopped; nothing was written") : complain (FAILED,
         "%s", error->message);
   show (a, synthesis);
+  if (search)
+    g_print ("%u points were tried, %u of them diverged; the search %s\n",
+        searched.counts.n_decided, searched.counts.n_failed, searched.state ==
+        CLOTH_SEARCH_CONVERGED ? "converged" : "ended at --evaluations");
   return DONE;
 }
 
@@ -375,13 +573,20 @@ static const ToolCommand commands[] = {
         "deviations and how far the cloth is off in\neach picture, DIR/take0 is "
         "the fitted cloth of the first take, DIR/fit.html shows it.",
       PROGRAM " fit film --model model.json --output fit"},
+  {"search", "TAKE… --model MODEL --output DIR [--spool DIR]",
+        "Finds the free numbers by a pattern search, without derivatives: for cloth "
+        "that folds\nonto itself or touches things. What is made is as of fit, "
+        "without deviations of the\nnumbers, and DIR/search.log has each value. "
+        "With --spool the points are evaluated by\nworkers on this machine or "
+        "others: the same command with --worker, without --output.",
+      PROGRAM " search film --model model.json --output found"},
   {NULL}
 };
 
 int
 main (int argc, char **argv)
 {
-  Arguments a = { 0 };
+  Arguments a = {.evaluations = 1000 };
   const GOptionEntry entries[] = {
     {"model", 'm', 0, G_OPTION_ARG_FILENAME, &a.model,
         "What is known of the cloth, and what is free", "FILE"},
@@ -389,11 +594,25 @@ main (int argc, char **argv)
         "A rig in place of the one in the take's folder", "FILE"},
     {"output", 'o', 0, G_OPTION_ARG_FILENAME, &a.output,
         "The folder of what is made", "DIR"},
+    {"spool", 0, 0, G_OPTION_ARG_FILENAME, &a.spool,
+        "The folder through which workers evaluate (search)", "DIR"},
+    {"worker", 0, 0, G_OPTION_ARG_NONE, &a.worker,
+        "Evaluate for the search of this spool (search)", NULL},
+    {"resume", 0, 0, G_OPTION_ARG_NONE, &a.resume,
+        "Go on with a spool whose search was stopped (search)", NULL},
+    {"as-they-come", 0, 0, G_OPTION_ARG_NONE, &a.as_they_come,
+        "Decide in the order in which values come: no worker waits, and the search "
+          "may be another each time (search)", NULL},
+    {"replay", 0, 0, G_OPTION_ARG_FILENAME, &a.replay,
+          "A search.log, whose values are taken again in its order (search)",
+        "FILE"},
+    {"evaluations", 0, 0, G_OPTION_ARG_INT, &a.evaluations,
+        "Most points that are tried (1000) (search)", "N"},
     {"seed", 0, 0, G_OPTION_ARG_INT, &a.seed, "Of its random numbers (0)", "N"},
     {"threads", 0, 0, G_OPTION_ARG_INT, &a.threads,
         "Threads to use, 0 for all (0)", "N"},
     {G_OPTION_REMAINING, 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &a.rest, NULL,
-        "fit TAKE…"},
+        "fit|search TAKE…"},
     {NULL}
   };
   gint code = tool_main_commands (PROGRAM, "- fit a simulated cloth to what "
@@ -402,6 +621,8 @@ main (int argc, char **argv)
   g_free (a.model);
   g_free (a.rig);
   g_free (a.output);
+  g_free (a.spool);
+  g_free (a.replay);
   g_strfreev (a.rest);
   return code;
 }

@@ -301,6 +301,180 @@ look (ClothSynthesis * s, const ClothSynthesisInput * inputs,
   return TRUE;
 }
 
+struct _ClothSynthesisProblem
+{
+  const ClothSynthesisInput *inputs;
+  const ClothModel *model;      /* where it starts */
+  ClothSynthesisOptions options;
+  ClothCandidates *candidates;
+  ClothSynthesis *s;            /* its recordings */
+};
+
+/* @inputs: (array length=n_inputs): what was filmed, of one cloth; has to outlive the problem
+ * @n_inputs: how many, at least 1
+ * @model: what is known of the cloth, and which numbers are free; so has this
+ * @options: how
+ * @error: #ClothFitError, #ClothSimError, or what reading a take says
+ *
+ * Returns: (transfer full) (nullable): the problem
+ */
+ClothSynthesisProblem *
+cloth_synthesis_problem_new (const ClothSynthesisInput * inputs,
+    guint n_inputs, const ClothModel * model,
+    const ClothSynthesisOptions * options, GError ** error)
+{
+  static const gchar *const no_effects[] = { NULL };
+  g_autoptr (ClothSynthesisProblem) p = g_new0 (ClothSynthesisProblem, 1);
+  ClothSynthesis *s = g_new0 (ClothSynthesis, 1);
+
+  p->inputs = inputs;
+  p->model = model;
+  p->options = *options;
+  p->s = s;
+  s->numbers = g_array_new (FALSE, FALSE, sizeof (ClothSynthesisNumber));
+  g_array_set_clear_func (s->numbers, clear_number);
+  s->takes = g_new0 (ClothSynthesisTake, n_inputs);
+  s->n_takes = n_inputs;
+  if (!look (s, inputs, model, options, error))
+    return NULL;
+  p->candidates = cloth_candidates_new (model, s->takes[0].recording,
+      no_effects, CLOTH_CANDIDATES_DEFAULT, NULL, NULL, error);
+  if (!p->candidates)
+    return NULL;
+  if (p->candidates->n_free == 0) {
+    g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL,
+        "the model has no free numbers; list what to fit under “free”, for "
+        "instance {\"name\": \"stretch.warp\", \"range\": [10, 1000]}");
+    return NULL;
+  }
+  return g_steal_pointer (&p);
+}
+
+/* @problem: a problem
+ *
+ * Returns: how many numbers are free
+ */
+guint
+cloth_synthesis_problem_get_n (const ClothSynthesisProblem * problem)
+{
+  return problem->candidates->n_free;
+}
+
+/* @problem: a problem
+ * @start: (out) (array): where the model has the free numbers; of those that are positive by their
+ *   nature the logarithms
+ * @low: (out) (array): their least values
+ * @high: (out) (array): their greatest ones
+ */
+void
+cloth_synthesis_problem_get_room (const ClothSynthesisProblem * problem,
+    gdouble * start, gdouble * low, gdouble * high)
+{
+  for (guint i = 0; i < problem->candidates->n_free; i++) {
+    const ClothDirection *d = cloth_candidates_direction (problem->candidates,
+        i);
+
+    start[i] = cloth_candidates_place (problem->candidates, problem->model, i);
+    low[i] = d->low;
+    high[i] = d->high;
+  }
+}
+
+static ClothModel *
+move_to (const ClothSynthesisProblem * p, const gdouble * point)
+{
+  const guint n = p->candidates->n_free;
+  g_autofree guint *directions = g_new (guint, n);
+  g_autofree gdouble *changes = g_new (gdouble, n);
+
+  for (guint i = 0; i < n; i++) {
+    directions[i] = i;
+    changes[i] = point[i] - cloth_candidates_place (p->candidates, p->model, i);
+  }
+  return cloth_candidates_move (p->candidates, p->model, directions, changes,
+      n);
+}
+
+/* @problem: a #ClothSynthesisProblem
+ * @point: (array): free numbers, as cloth_synthesis_problem_get_room () has them
+ * @worker: which thread asks
+ *
+ * A #ClothSearchFunc: several threads may call it at once.
+ *
+ * Returns: log (S + N), S the mean square distance of what was seen to the cloth let go in windows, over
+ *   all takes, N that of noise, m²; NaN when it diverges
+ */
+gdouble
+cloth_synthesis_problem_evaluate (gpointer problem, const gdouble * point,
+    guint worker)
+{
+  const ClothSynthesisProblem *p = problem;
+  g_autoptr (ClothModel) model = move_to (p, point);
+  const ClothModel *models[1] = { model };
+  ClothRolloutOptions rollout = p->options.rollout;
+  gdouble sum = 0.;
+
+  rollout.threads = 1;
+  rollout.failed = NULL;
+  for (guint i = 0; i < p->s->n_takes; i++) {
+    ClothWindowedGap **gap = cloth_windowed_gaps_new (p->s->takes[i].recording,
+        models, 1, p->options.gain, p->options.window_s, &rollout, NULL);
+    const gdouble root = gap ? root_of (gap[0]) : NAN;
+
+    cloth_windowed_gaps_free (gap, gap ? 1 : 0);
+    sum += (root * root +
+        cloth_recording_noise_square (p->s->takes[i].recording)) /
+        p->s->n_takes;
+  }
+  return isfinite (sum) ? log (sum) : NAN;
+}
+
+/* Gaps and the drawn cloth with the model that was found. The problem's recordings go with it. */
+static ClothSynthesis *
+finish (ClothSynthesisProblem * p, ClothModel * found, const gdouble * sigmas,
+    GError ** error)
+{
+  g_autoptr (ClothSynthesis) s = g_steal_pointer (&p->s);
+
+  s->model = found;
+  list_numbers (s, p->candidates, p->model, sigmas);
+  for (guint i = 0; i < s->n_takes; i++)
+    if (!measure (&s->takes[i], p->model, s->model, &p->options, error)
+        || !draw (&s->takes[i], s->model, &p->options, error))
+      return NULL;
+  return g_steal_pointer (&s);
+}
+
+/* @problem: a problem; it is used up
+ * @point: (array): the free numbers that were found
+ * @error: #ClothFitError when the cloth diverges with them
+ *
+ * Returns: (transfer full) (nullable): the cloth with these numbers
+ */
+ClothSynthesis *
+cloth_synthesis_problem_finish (ClothSynthesisProblem * problem,
+    const gdouble * point, GError ** error)
+{
+  const guint n = problem->candidates->n_free;
+  g_autofree gdouble *sigmas = g_new (gdouble, n);
+
+  for (guint i = 0; i < n; i++)
+    sigmas[i] = NAN;
+  return finish (problem, move_to (problem, point), sigmas, error);
+}
+
+/* @problem: (nullable) (transfer full): a problem
+ */
+void
+cloth_synthesis_problem_free (ClothSynthesisProblem * problem)
+{
+  if (!problem)
+    return;
+  cloth_candidates_free (problem->candidates);
+  cloth_synthesis_free (problem->s);
+  g_free (problem);
+}
+
 /* @inputs: (array length=n_inputs): what was filmed, of one cloth
  * @n_inputs: how many, at least 1
  * @model: what is known of the cloth; its free numbers are fitted
@@ -314,46 +488,27 @@ cloth_synthesis_fit (const ClothSynthesisInput * inputs, guint n_inputs,
     const ClothModel * model, const ClothSynthesisOptions * options,
     GError ** error)
 {
-  static const gchar *const no_effects[] = { NULL };
-  g_autoptr (ClothSynthesis) s = g_new0 (ClothSynthesis, 1);
-  g_autoptr (ClothCandidates) candidates = NULL;
+  g_autoptr (ClothSynthesisProblem) p = cloth_synthesis_problem_new (inputs,
+      n_inputs, model, options, error);
+  g_autoptr (ClothModel) found = NULL;
   g_autofree gdouble *sigmas = NULL;
 
-  s->numbers = g_array_new (FALSE, FALSE, sizeof (ClothSynthesisNumber));
-  g_array_set_clear_func (s->numbers, clear_number);
-  s->takes = g_new0 (ClothSynthesisTake, n_inputs);
-  s->n_takes = n_inputs;
-  if (!look (s, inputs, model, options, error))
+  if (!p)
     return NULL;
-  candidates = cloth_candidates_new (model, s->takes[0].recording, no_effects,
-      CLOTH_CANDIDATES_DEFAULT, NULL, NULL, error);
-  if (!candidates)
-    return NULL;
-  if (candidates->n_free == 0) {
-    g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL,
-        "the model has no free numbers; list what to fit under “free”, for "
-        "instance {\"name\": \"stretch.warp\", \"range\": [10, 1000]}");
-    return NULL;
-  }
-  sigmas = g_new0 (gdouble, candidates->n_free);
-  s->model = cloth_model_copy (model);
+  sigmas = g_new0 (gdouble, p->candidates->n_free);
+  found = cloth_model_copy (model);
   for (guint turn = 0; turn < MAX (options->turns, 1); turn++) {
     ClothModel *fitted;
 
-    if (turn && !look (s, inputs, s->model, options, error))
+    if (turn && !look (p->s, inputs, found, options, error))
       return NULL;
-    fitted = fit (s, candidates, s->model, options, sigmas, error);
+    fitted = fit (p->s, p->candidates, found, options, sigmas, error);
     if (!fitted)
       return NULL;
-    cloth_model_free (s->model);
-    s->model = fitted;
+    cloth_model_free (found);
+    found = fitted;
   }
-  list_numbers (s, candidates, model, sigmas);
-  for (guint i = 0; i < n_inputs; i++)
-    if (!measure (&s->takes[i], model, s->model, options, error)
-        || !draw (&s->takes[i], s->model, options, error))
-      return NULL;
-  return g_steal_pointer (&s);
+  return finish (p, g_steal_pointer (&found), sigmas, error);
 }
 
 /* @take: a fitted take

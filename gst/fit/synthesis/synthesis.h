@@ -33,7 +33,7 @@ typedef struct {
 /* @name: of the model's number
  * @before: where it started
  * @value: where it is
- * @sigma: its standard deviation, in its unit
+ * @sigma: its standard deviation, in its unit; NaN after a search, which finds none
  * @at_end: it came to an end of its range, where the cloth may be beyond
  */
 typedef struct {
@@ -79,14 +79,30 @@ typedef struct {
   guint n_takes;
 } ClothSynthesis;
 
+/* What is fitted, made once: what was seen, and the numbers that may be moved. */
+typedef struct _ClothSynthesisProblem ClothSynthesisProblem;
+
 void cloth_synthesis_options_init (ClothSynthesisOptions * options);
 ClothSynthesis *cloth_synthesis_fit (const ClothSynthesisInput * inputs,
     guint n_inputs, const ClothModel * model,
     const ClothSynthesisOptions * options, GError ** error);
+ClothSynthesisProblem *cloth_synthesis_problem_new (const ClothSynthesisInput *
+    inputs, guint n_inputs, const ClothModel * model,
+    const ClothSynthesisOptions * options, GError ** error);
+guint cloth_synthesis_problem_get_n (const ClothSynthesisProblem * problem);
+void cloth_synthesis_problem_get_room (const ClothSynthesisProblem * problem,
+    gdouble * start, gdouble * low, gdouble * high);
+gdouble cloth_synthesis_problem_evaluate (gpointer problem,
+    const gdouble * point, guint worker);
+ClothSynthesis *cloth_synthesis_problem_finish (ClothSynthesisProblem * problem,
+    const gdouble * point, GError ** error);
+void cloth_synthesis_problem_free (ClothSynthesisProblem * problem);
 void cloth_synthesis_reproject (const ClothSynthesisTake * take,
     const gfloat * positions, const ClothObservations * observations,
     gdouble * errors);
 void cloth_synthesis_free (ClothSynthesis * synthesis);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothSynthesis, cloth_synthesis_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothSynthesisProblem,
+    cloth_synthesis_problem_free)
 G_END_DECLS
