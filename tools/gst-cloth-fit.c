@@ -84,6 +84,18 @@ replace_rig (ClothObservations * observations, const gchar * path,
           "order", path);
       return FALSE;
     }
+  for (guint c = 0; c < rig->n_cameras; c++) {
+    const ClothCamera *now = &rig->cameras[c];
+    const ClothCamera *own = &observations->rig->cameras[c];
+
+    if (now->width != own->width || now->height != own->height) {
+      g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING,
+          "--rig: “%s” of “%s” has pictures of %d × %d pixels, the take's %d × "
+          "%d", now->name, path, now->width, now->height, own->width,
+          own->height);
+      return FALSE;
+    }
+  }
   cloth_rig_free (observations->rig);
   observations->rig = g_steal_pointer (&rig);
   return TRUE;
@@ -116,15 +128,6 @@ load (const Arguments * a, Inputs * i, GError ** error)
   return TRUE;
 }
 
-/* Whether a camera saw the vertex; an outline alone says where it may be. */
-static gboolean
-is_measured (const ClothRecording * r, gsize at)
-{
-  const gdouble *draw = r->noise ? r->noise->draw + 6 * at : NULL;
-
-  return r->seen[at] > 0. && (!draw || draw[0] + draw[1] + draw[2] > 1.5);
-}
-
 /* Where the fitted cloth was, vertex by vertex measured or, where nobody saw it, predicted. */
 static gboolean
 write_take (const ClothSynthesisTake * t, ClothTake * from,
@@ -150,8 +153,9 @@ write_take (const ClothSynthesisTake * t, ClothTake * from,
     return FALSE;
   for (guint f = 0; f < r->n_frames; f++) {
     for (guint v = 0; v < r->n; v++)
-      states[v] = is_measured (r, (gsize) f * r->n + v) ?
-          CLOTH_VERTEX_MEASURED : CLOTH_VERTEX_PREDICTED;
+      /* an outline says where a vertex may be */
+      states[v] = r->seen[(gsize) f * r->n + v] == 1. ? CLOTH_VERTEX_MEASURED :
+          CLOTH_VERTEX_PREDICTED;
     if (like->held->len && !cloth_take_read_clamps (from, f, clamps, error))
       return FALSE;
     if (!cloth_take_writer_append (writer, r->times[f],
@@ -361,24 +365,38 @@ go_on (gpointer data, gdouble share)
   return !was_interrupted ();
 }
 
-/* What all that evaluate the same trials must agree in. */
+static void
+add_part (GChecksum * sum, const gchar * text, gsize size)
+{
+  g_autofree gchar *head = g_strdup_printf ("%" G_GSIZE_FORMAT " ", size);
+
+  g_checksum_update (sum, (const guchar *) head, -1);
+  g_checksum_update (sum, (const guchar *) text, (gssize) size);
+}
+
+/* What all that evaluate the same trials must agree in: model, takes, rig and seed. */
 static gchar *
-describe (const Arguments * a, const Inputs * inputs, const ClothModel * model)
+describe (const Arguments * a, const Inputs * inputs, const ClothModel * model,
+    GError ** error)
 {
   g_autofree gchar *json = cloth_model_to_json (model);
+  g_autofree gchar *rig = NULL;
+  g_autofree gchar *seed = g_strdup_printf ("%d", a->seed);
   g_autoptr (GChecksum) sum = g_checksum_new (G_CHECKSUM_SHA256);
+  gsize size = 0;
 
-  g_checksum_update (sum, (const guchar *) json, -1);
-  for (guint i = 0; i < inputs->inputs->len; i++) {
-    const ClothSynthesisInput *input =
-        &g_array_index (inputs->inputs, ClothSynthesisInput, i);
-    g_autofree gchar *text = g_strdup_printf ("%s %u %u %u %d",
-        cloth_take_get_info (input->take)->name,
-        cloth_take_get_topology (input->take)->n_vertices,
-        cloth_take_get_n_frames (input->take), input->observations ?
-        input->observations->list->len : 0, a->seed);
+  if (a->rig && !g_file_get_contents (a->rig, &rig, &size, error))
+    return NULL;
+  add_part (sum, json, strlen (json));
+  add_part (sum, rig ? rig : "", size);
+  add_part (sum, seed, strlen (seed));
+  for (guint i = 0; i < inputs->takes->len; i++) {
+    g_autofree gchar *take = cloth_take_sha256 (g_ptr_array_index
+        (inputs->takes, i), error);
 
-    g_checksum_update (sum, (const guchar *) text, -1);
+    if (!take)
+      return NULL;
+    add_part (sum, take, strlen (take));
   }
   return g_strdup_printf ("fit-search %.12s", g_checksum_get_string (sum));
 }
@@ -456,10 +474,10 @@ find (const Arguments * a, const Inputs * inputs, const ClothModel * model,
   g_autoptr (ClothSynthesisProblem) problem =
       cloth_synthesis_problem_new ((const ClothSynthesisInput *)
       inputs->inputs->data, inputs->inputs->len, model, options, error);
-  g_autofree gchar *what = describe (a, inputs, model);
+  g_autofree gchar *what = problem ? describe (a, inputs, model, error) : NULL;
   g_autofree gdouble *point = NULL;
 
-  if (!problem)
+  if (!what)
     return NULL;
   *search = search_new (a, problem, error);
   if (!*search || !replay (a, *search, error)

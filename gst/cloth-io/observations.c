@@ -209,7 +209,8 @@ count_points (const ClothObservations * observations)
   guint64 n = 0;
 
   for (guint i = 0; i < observations->list->len; i++)
-    n += g_array_index (observations->list, ClothObservation, i).n;
+    n += g_array_index (observations->list, ClothObservation, i).n +
+        g_array_index (observations->list, ClothObservation, i).n_runs;
   return n;
 }
 
@@ -223,15 +224,16 @@ read_all (Reader * self, ClothInput * input, GError ** error)
   for (guint n = 0; at < cloth_input_get_size (input); n++) {
     if (n == MAX_PICTURES || n_points > MAX_POINTS)
       return fail (error, "picture %u: too many; at most %u pictures a camera "
-          "and %u points in all are read: cut the take into shorter ones", n,
-          MAX_PICTURES, MAX_POINTS);
+          "and %u points and runs in all are read: cut the take into shorter ones",
+          n, MAX_PICTURES, MAX_POINTS);
     if (!read_record (input, at, record, error)
         || !read_picture (self, record, error)) {
       g_prefix_error (error, "picture %u, at byte %" G_GUINT64_FORMAT ": ", n,
           at);
       return FALSE;
     }
-    n_points += g_array_index (list, ClothObservation, list->len - 1).n;
+    n_points += g_array_index (list, ClothObservation, list->len - 1).n +
+        g_array_index (list, ClothObservation, list->len - 1).n_runs;
     at += record->len;
   }
   if (at == 0)

@@ -143,6 +143,16 @@ test_times (void)
   g_assert_cmpfloat (overlaps[1], ==, 0.);
   g_assert_cmpfloat (differences[1], ==, 240. * 200.);
   g_assert_true (isnan (overlaps[2]));
+  /* nearest frames, and times that are none of the recording's */
+  g_assert_cmpint (cloth_recording_find_frame (&s.recording, -0.4 / FPS), ==,
+      0);
+  g_assert_cmpint (cloth_recording_find_frame (&s.recording, 0.6 / FPS), ==, 1);
+  g_assert_cmpint (cloth_recording_find_frame (&s.recording, 2.5 / FPS), ==, 2);
+  g_assert_cmpint (cloth_recording_find_frame (&s.recording, 2.6 / FPS), ==,
+      -1);
+  g_assert_cmpint (cloth_recording_find_frame (&s.recording, -0.6 / FPS), ==,
+      -1);
+  g_assert_cmpint (cloth_recording_find_frame (&s.recording, NAN), ==, -1);
 }
 
 /* The filmed sheet is moved by whole pixels: vertices of the sides are off by that along the normal, those

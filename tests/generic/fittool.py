@@ -110,7 +110,13 @@ frozen = write(folder + '/frozen.json', dict(MODEL, free=[]))
 bare = os.path.join(folder, 'bare')
 os.makedirs(bare)
 write(bare + '/take.json', info)
+with open(films + '/rig.json', encoding='utf-8') as file:
+    small = json.load(file)
+for camera in small['cameras']:
+    camera['size'] = [640, 480]
 for code, says, arguments in (
+        (1, 'has pictures of 640 × 480 pixels', ('fit', take, '--model', model, '--output', out, '--rig',
+                                                write(folder + '/small.json', small))),
         (1, 'no free numbers', ('fit', take, '--model', frozen, '--output', out)),
         (1, 'positions.npy', ('fit', bare, '--model', model, '--output', out)),
         (1, '--model', ('fit', take, '--model', folder + '/none.json', '--output', out)),

@@ -120,6 +120,7 @@ manager = start('--model', guess, '--output', folder + '/spooled', '--spool', sp
 wait_for('no job comes', os.path.join(spool, 'todo'), 1)
 for code, says, arguments in (
         (1, 'fit-search', ('--model', other, '--spool', spool, '--worker')),
+        (1, 'fit-search', ('--model', guess, '--spool', spool, '--worker', '--seed', '1')),
         (2, '--output', ('--model', guess)),
         (2, '--spool', ('--model', guess, '--worker')),
         (2, '--spool', ('--model', guess, '--output', folder + '/x', '--resume')),

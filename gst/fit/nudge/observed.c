@@ -38,6 +38,10 @@
 #define QUANTISED_PX 0.29
 /* From the median of absolute values to the standard deviation of a normal distribution. */
 #define MAD_TO_SIGMA 1.4826
+/* Where none of the located vertices lies on an outline. */
+#define UNKNOWN_PX 3.
+/* The places of outlines are not seen as others are. */
+#define MOST_SEEN 0.99
 /* Directions that outlines tell less of than this share of the best are left to the simulation. */
 #define WEAK 0.1
 /* A ray that is all that is known of a place. */
@@ -60,7 +64,7 @@ typedef struct
   ClothOutline *outline;        /* NULL: there are no silhouettes */
   gdouble outline_px;           /* standard deviation of an outline, px; 0: not known yet */
   gboolean *outlined;           /* places of which only outlines tell */
-  gboolean has_start;           /* the take says where the cloth starts */
+  gfloat *start;                /* where the take says that the cloth starts, NaN where not; or NULL */
   ClothObservedCounts *counts;
 } Maker;
 
@@ -73,6 +77,7 @@ maker_clear (Maker * m)
   g_clear_pointer (&m->lone, g_array_unref);
   g_clear_pointer (&m->outline, cloth_outline_free);
   g_free (m->outlined);
+  g_free (m->start);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Maker, maker_clear);
@@ -95,7 +100,11 @@ maker_init (Maker * m, ClothTake * take, ClothRecording * r,
 
   *m = (Maker) {
   observations, r,.n_cameras = rig->n_cameras,.counts = counts};
-  m->has_start = cloth_take_get_n_positions (take) > 0;
+  if (cloth_take_get_n_positions (take) > 0) {
+    m->start = g_new (gfloat, 3 * (gsize) r->n);
+    if (!cloth_take_read_positions (take, 0, m->start, error))
+      return FALSE;
+  }
   m->views = cloth_views_new (observations, (r->times[r->n_frames - 1] -
           r->times[0]) / (r->n_frames - 1));
   m->rays = cloth_rays_new (r->n);
@@ -271,7 +280,7 @@ guess (Maker * m, GError ** error)
   ClothRecording *r = m->r;
   const gsize row = 3 * (gsize) r->n;
 
-  if (m->counts->triangulated == 0 && !m->has_start) {
+  if (m->counts->triangulated == 0 && !m->start) {
     g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING, "%s: no "
         "two cameras see the same vertex at a time, so nothing says where the "
         "cloth starts; give its places in the first frame as positions.npy "
@@ -308,8 +317,9 @@ finish (Maker * m)
   m->counts->torn = cloth_recording_remove_torn (r);
   cloth_recording_interpolate (r);
   /* rather than what cameras made of it */
-  if (m->has_start)
-    memcpy (r->y, r->scene->positions, 3 * (gsize) r->n * sizeof *r->y);
+  for (gsize i = 0; m->start && i < 3 * (gsize) r->n; i++)
+    if (isfinite (m->start[i]))
+      r->y[i] = m->start[i];
   cloth_recording_differentiate (r);
 }
 
@@ -330,8 +340,10 @@ find_outline_px (const Maker * m, const gdouble * x)
           g_array_append_val (all, off);
       }
     }
-  return fmax (all->len ? MAD_TO_SIGMA * cloth_median ((gdouble *)
-          all->data, all->len) : 0., QUANTISED_PX);
+  if (all->len == 0)
+    return UNKNOWN_PX;
+  return fmax (MAD_TO_SIGMA * cloth_median ((gdouble *) all->data, all->len),
+      QUANTISED_PX);
 }
 
 /* A place of which outlines alone tell. @information and @pull: sums over them. */
@@ -363,7 +375,7 @@ put_on_outlines (Maker * m, gsize at, const gdouble information[6],
     return;
   /* Springs are as strong as the outline is sharp, gain ~ 1/σ, as those of a steady Kalman filter of a
    * mass under white forces. Those of two frames are multiplied. */
-  m->r->seen[at] = sqrt (fmin (m->r->sigma * sqrt (values[2]), 1.));
+  m->r->seen[at] = fmin (sqrt (m->r->sigma * sqrt (values[2])), MOST_SEEN);
   m->outlined[at] = TRUE;
 }
 
@@ -454,14 +466,15 @@ turn (Maker * m, const ClothModel * model, gdouble gain,
         "the model, or its stiffnesses", r->name);
     return NAN;
   }
+  /* a ray that was lost for a turn is better than an outline */
+  if (m->outline)
+    forget_outlines (m);
   for (guint i = 0; i < m->lone->len; i++) {
     const Lone *lone = &g_array_index (m->lone, Lone, i);
 
     sum += put_on_ray (m->r, lone, x + 3 * ((gsize) lone->frame * r->n +
             lone->vertex));
   }
-  if (m->outline)
-    forget_outlines (m);
   finish (m);
   if (m->outline)
     draw_to_outlines (m, x);

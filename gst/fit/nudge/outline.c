@@ -52,29 +52,26 @@ find_pictures (Outline * self)
 {
   const ClothRecording *r = self->r;
   const ClothRig *rig = self->observations->rig;
-  const gdouble half = (r->times[r->n_frames - 1] - r->times[0]) /
-      (r->n_frames - 1) / 2.;
   const gsize n = (gsize) rig->n_cameras * r->n_frames;
   g_autofree gdouble *off = g_new (gdouble, n);
 
   self->pictures = g_new (gint, n);
   for (gsize i = 0; i < n; i++) {
     self->pictures[i] = -1;
-    off[i] = half * (1. + 1e-6);
+    off[i] = INFINITY;
   }
   for (guint i = 0; i < self->observations->list->len; i++) {
     const ClothObservation *o = &g_array_index (self->observations->list,
         ClothObservation, i);
     const gdouble time = o->time_s - rig->cameras[o->camera].offset_s;
+    const gint f = o->has_silhouette ? cloth_recording_find_frame (r, time) :
+        -1;
+    const gsize at = (gsize) o->camera * r->n_frames + (gsize) MAX (f, 0);
 
-    for (guint f = 0; o->has_silhouette && f < r->n_frames; f++) {
-      const gsize at = (gsize) o->camera * r->n_frames + f;
-
-      if (fabs (time - r->times[f]) >= off[at])
-        continue;
-      off[at] = fabs (time - r->times[f]);
-      self->pictures[at] = (gint) i;
-    }
+    if (f < 0 || fabs (time - r->times[f]) >= off[at])
+      continue;
+    off[at] = fabs (time - r->times[f]);
+    self->pictures[at] = (gint) i;
   }
 }
 

@@ -269,8 +269,8 @@ find_weights (const ClothRecording * r, guint frame, gdouble * weights)
         r->seen[((gsize) frame + 1) * r->n + v];
 }
 
-/* Along which directions the running frame draws: those of which both it and the next one tell, or of the
- * one that tells of fewer. Along the others a target is where the cloth was taken to be. */
+/* Along which directions the running frame draws: those of it or of the next one, whichever tells of
+ * fewer. Along the others a target is where the cloth was taken to be. */
 static void
 find_matrices (const ClothRecording * r, guint frame, gdouble * matrices)
 {

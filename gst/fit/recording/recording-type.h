@@ -34,8 +34,8 @@ typedef struct {
  * @y: positions, [n_frames][n][3], m; bridged where nothing was seen
  * @velocity: their derivative, m/s
  * @targets: (nullable): what draws a simulation in place of @y, on straight lines from frame to frame
- * @seen: 1 where a vertex was seen, less where that draws less strongly, 0 where it was not,
- *   [n_frames][n]
+ * @seen: 1 where a vertex was seen, less where outlines alone tell of it, which draw less strongly, 0 where
+ *   nothing does, [n_frames][n]
  */
 typedef struct {
   gchar *name;

@@ -282,3 +282,30 @@ cloth_recording_resample (const ClothRecording * recording, guint most)
   interpolate (recording, r);
   return r;
 }
+
+/* @recording: a recording of two frames at least
+ * @time: by its clock, s
+ *
+ * Returns: the nearest frame; -1 where the recording is over by more than half the usual distance of
+ *   frames, or has not begun
+ */
+gint
+cloth_recording_find_frame (const ClothRecording * recording, gdouble time)
+{
+  const gdouble *t = recording->times;
+  const guint n = recording->n_frames;
+  const gdouble half = (t[n - 1] - t[0]) / (n - 1) / 2. * (1. + 1e-9);
+  guint low = 0, high = n - 1;
+
+  if (!(time >= t[0] - half && time <= t[n - 1] + half))
+    return -1;
+  while (high - low > 1) {
+    const guint middle = (low + high) / 2;
+
+    if (t[middle] <= time)
+      low = middle;
+    else
+      high = middle;
+  }
+  return (gint) (fabs (time - t[low]) <= fabs (time - t[high]) ? low : high);
+}

@@ -15,24 +15,20 @@
 
 #include "gst/render/coverage.h"
 
-/* Of a picture at @time of the frames' clock: the frame before it, and how far it is on the way to the
- * next one. Returns the nearest frame, or -1 where the recording is not. */
-static gint
-find_frame (const ClothRecording * r, gdouble time, guint * before,
-    gdouble * share)
+/* Where the cloth is at @time, which is nearest to @frame. */
+static void
+place (const ClothRecording * r, const gfloat * positions, gdouble time,
+    guint frame, gdouble * places)
 {
-  const gdouble half = (r->times[r->n_frames - 1] - r->times[0]) /
-      (r->n_frames - 1) / 2.;
-  guint f = 0;
+  const gsize row = 3 * (gsize) r->n;
+  const guint before = MIN (frame - (frame > 0 && time < r->times[frame]),
+      r->n_frames - 2);
+  const gfloat *from = positions + before * row;
+  const gdouble share = CLAMP ((time - r->times[before]) /
+      (r->times[before + 1] - r->times[before]), 0., 1.);
 
-  if (!(time >= r->times[0] - half && time <= r->times[r->n_frames - 1] + half))
-    return -1;
-  while (f + 2 < r->n_frames && r->times[f + 1] <= time)
-    f++;
-  *before = f;
-  *share = CLAMP ((time - r->times[f]) / (r->times[f + 1] - r->times[f]), 0.,
-      1.);
-  return (gint) (f + (*share >= 0.5));
+  for (gsize i = 0; i < row; i++)
+    places[i] = (1. - share) * from[i] + share * from[row + i];
 }
 
 /* How many pixels both have, and how many either has. */
@@ -75,11 +71,10 @@ cloth_synthesis_compare_silhouettes (const ClothRecording * recording,
   const ClothRecording *r = recording;
   const ClothCamera *c = &observations->rig->cameras[camera];
   const ClothTopology *t = r->scene->topology;
-  const gsize row = 3 * (gsize) r->n;
   g_autoptr (ClothPool) pool = cloth_pool_new (0);
   g_autoptr (ClothCoverage) coverage = cloth_coverage_new (t->n_vertices,
       t->faces, t->n_faces);
-  g_autofree gdouble *places = g_new (gdouble, row);
+  g_autofree gdouble *places = g_new (gdouble, 3 * (gsize) r->n);
   g_autofree gdouble *off = g_new (gdouble, r->n_frames);
 
   for (guint f = 0; f < r->n_frames; f++) {
@@ -90,18 +85,14 @@ cloth_synthesis_compare_silhouettes (const ClothRecording * recording,
     const ClothObservation *o = &g_array_index (observations->list,
         ClothObservation, i);
     const gdouble time = o->time_s - c->offset_s;
-    guint before;
-    guint64 both, either;
-    gdouble share;
     const gint frame = o->camera == camera && o->has_silhouette ?
-        find_frame (r, time, &before, &share) : -1;
+        cloth_recording_find_frame (r, time) : -1;
+    guint64 both, either;
 
     if (frame < 0 || fabs (time - r->times[frame]) >= off[frame])
       continue;
     off[frame] = fabs (time - r->times[frame]);
-    for (gsize k = 0; k < row; k++)
-      places[k] = (1. - share) * positions[before * row + k] +
-          share * positions[(before + 1) * row + k];
+    place (r, positions, time, (guint) frame, places);
     cloth_coverage_draw (coverage, c, places, pool);
     count (coverage, o, &both, &either);
     overlaps[frame] = either ? (gdouble) both / (gdouble) either : NAN;

@@ -161,11 +161,17 @@ find_kin (ClothDiagnosis * d, const ClothGapGathered * gathered,
   *kin = CLOTH_KIN_SAME;
   for (guint k = 0; d->twins->len && k < CLOTH_N_KINS; k++) {
     ClothGapLinearisation l = {.base = none,.is_first = TRUE };
+    g_autoptr (GError) failed = NULL;
     ClothGapEvidence best;
     gdouble log_evidence;
 
-    if (!find_likelihood (d, gathered, k, NULL, first, error))
+    /* members without a sound partner of this kind tell nothing of it */
+    if (!find_likelihood (d, gathered, k, NULL, first, &failed)) {
+      if (g_error_matches (failed, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL))
+        continue;
+      g_propagate_error (error, g_steal_pointer (&failed));
       return FALSE;
+    }
     l.likelihood = first->likelihood;
     l.stack = first->stack;
     l.gram = first->gram;
