@@ -1,9 +1,9 @@
 /* Simulators that the recording might have come from if nothing acted that the model lacks.
  *
  * Model: a real cloth differs from the simulated one as simulators differ from each other. A member
- *   has one of the two force models; the mesh as it is with explicit steps or with implicit ones, or a
- *   mesh twice as fine, with other diagonals if it has many vertices, with implicit steps; and free
- *   numbers
+ *   has one of the two force models; the mesh as it is with explicit steps, with half of them, or
+ *   with implicit ones, or a mesh twice as fine, with other diagonals if it has many vertices, with
+ *   implicit steps; and free numbers
  *   θ exp (0.3 N(0, 1)) (of those that may be negative: θ + a quarter of a prior), and a little of
  *   some laws that the model has not: 0.2 N(0, 1) priors.
  * Formula: a member moves freely in the recorded scene from the recorded start; with the
@@ -41,6 +41,7 @@ typedef struct
 
 static const Way ways[] = {
   {NULL, 1., CLOTH_INTEGRATOR_EXPLICIT},
+  {"time_step", 0.5, CLOTH_INTEGRATOR_EXPLICIT},
   {NULL, 1., CLOTH_INTEGRATOR_IMPLICIT},
   {"mesh_resolution", 2., CLOTH_INTEGRATOR_IMPLICIT},
 };
