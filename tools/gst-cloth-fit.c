@@ -58,14 +58,6 @@ inputs_clear (Inputs * i)
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Inputs, inputs_clear);
 
-/* What a search came to. */
-typedef struct
-{
-  ClothSearchState state;
-  ClothSearchCounts counts;
-  const gchar *log;
-} Searched;
-
 /* Puts another rig of the same cameras in place of the take's. */
 static gboolean
 replace_rig (ClothObservations * observations, const gchar * path,
@@ -178,57 +170,63 @@ add_gap (ClothJsonWriter * w, const gchar * name, const ClothSynthesisGap * gap)
   cloth_json_writer_set_one_line (w, FALSE);
 }
 
-/* How well the cloth covers what a camera filmed of it in each picture: drawn, and let go in windows. */
+/* Of each camera how far the cloth is off in each picture, RMS, and how well it covers what was filmed of it:
+ * drawn, and let go in windows. */
 static void
-add_silhouettes (ClothJsonWriter * w, const ClothSynthesisTake * t,
-    const ClothObservations * o, guint camera)
+add_cameras (ClothJsonWriter * w, const Arguments * a,
+    const ClothSynthesisTake * t, const ClothObservations * o)
 {
-  const guint n_frames = t->recording->n_frames;
-  const gfloat *positions[2] = { t->positions, t->let_go };
-  static const gchar *const names[2][2] = {
-    {"drawn_overlap", "drawn_differ_px"}, {"let_go_overlap",
-        "let_go_differ_px"}
+  static const gchar *const names[2][3] = {
+    {"drawn_px", "drawn_overlap", "drawn_differ_px"},
+    {"let_go_px", "let_go_overlap", "let_go_differ_px"}
   };
-  g_autofree gdouble *overlaps = g_new (gdouble, n_frames);
-  g_autofree gdouble *differences = g_new (gdouble, n_frames);
+  const gfloat *positions[2] = { t->positions, t->let_go };
+  const guint n = o->rig->n_cameras, n_frames = t->recording->n_frames;
+  const gsize all = (gsize) n * n_frames;
+  g_autofree gdouble *values = g_new (gdouble, 6 * all);
 
   for (guint k = 0; k < 2; k++) {
-    cloth_synthesis_compare_silhouettes (t->recording, positions[k], o, camera,
-        overlaps, differences);
-    cloth_json_writer_numbers (w, names[k][0], overlaps, n_frames);
-    cloth_json_writer_numbers (w, names[k][1], differences, n_frames);
+    gdouble *to = values + 3 * k * all;
+
+    cloth_synthesis_reproject (t, positions[k], o, to);
+    cloth_synthesis_compare_silhouettes (t->recording, positions[k], o,
+        (guint) a->threads, to + all, to + 2 * all);
   }
-}
-
-/* Of each camera RMS distances in each picture: drawn, and let go in windows. */
-static void
-add_cameras (ClothJsonWriter * w, const ClothSynthesisTake * t,
-    const ClothObservations * o)
-{
-  const guint n = o->rig->n_cameras, n_frames = t->recording->n_frames;
-  g_autofree gdouble *drawn = g_new (gdouble, (gsize) n * n_frames);
-  g_autofree gdouble *let_go = g_new (gdouble, (gsize) n * n_frames);
-
-  cloth_synthesis_reproject (t, t->positions, o, drawn);
-  cloth_synthesis_reproject (t, t->let_go, o, let_go);
   cloth_json_writer_begin_array (w, "cameras");
   for (guint c = 0; c < n; c++) {
+    const guint n_kinds = cloth_observations_has_silhouettes (o, c) ? 3 : 1;
+
     cloth_json_writer_begin_object (w, NULL);
     cloth_json_writer_string (w, "name", o->rig->cameras[c].name);
-    cloth_json_writer_numbers (w, "drawn_px", drawn + (gsize) c * n_frames,
-        n_frames);
-    cloth_json_writer_numbers (w, "let_go_px", let_go + (gsize) c * n_frames,
-        n_frames);
-    if (cloth_observations_has_silhouettes (o, c))
-      add_silhouettes (w, t, o, c);
+    for (guint kind = 0; kind < n_kinds; kind++)
+      for (guint k = 0; k < 2; k++)
+        cloth_json_writer_numbers (w, names[k][kind], values +
+            (3 * k + kind) * all + (gsize) c * n_frames, n_frames);
     cloth_json_writer_end_object (w);
   }
   cloth_json_writer_end_array (w);
 }
 
+static void
+add_search (ClothJsonWriter * w, const ClothSearch * search)
+{
+  const ClothSearchCounts counts = cloth_search_get_counts (search);
+
+  cloth_json_writer_begin_object (w, "search");
+  cloth_json_writer_set_one_line (w, TRUE);
+  cloth_json_writer_string (w, "ended", cloth_search_get_state (search) ==
+      CLOTH_SEARCH_CONVERGED ? "converged" : "limit");
+  cloth_json_writer_count (w, "evaluations", counts.n_decided);
+  cloth_json_writer_count (w, "diverged", counts.n_failed);
+  cloth_json_writer_count (w, "moves", counts.n_moves);
+  cloth_json_writer_end_object (w);
+  cloth_json_writer_set_one_line (w, FALSE);
+}
+
 static gboolean
-write_numbers (const ClothSynthesis * s, const Inputs * inputs,
-    const Searched * searched, const gchar * path, GError ** error)
+write_numbers (const Arguments * a, const ClothSynthesis * s,
+    const Inputs * inputs,
+    const ClothSearch * search, const gchar * path, GError ** error)
 {
   ClothJsonWriter *w = cloth_json_writer_new ();
   g_autofree gchar *text = NULL;
@@ -250,17 +248,8 @@ write_numbers (const ClothSynthesis * s, const Inputs * inputs,
     cloth_json_writer_set_one_line (w, FALSE);
   }
   cloth_json_writer_end_array (w);
-  if (searched) {
-    cloth_json_writer_begin_object (w, "search");
-    cloth_json_writer_set_one_line (w, TRUE);
-    cloth_json_writer_string (w, "ended",
-        searched->state == CLOTH_SEARCH_CONVERGED ? "converged" : "limit");
-    cloth_json_writer_count (w, "evaluations", searched->counts.n_decided);
-    cloth_json_writer_count (w, "diverged", searched->counts.n_failed);
-    cloth_json_writer_count (w, "moves", searched->counts.n_moves);
-    cloth_json_writer_end_object (w);
-    cloth_json_writer_set_one_line (w, FALSE);
-  }
+  if (search)
+    add_search (w, search);
   cloth_json_writer_begin_array (w, "takes");
   for (guint i = 0; i < s->n_takes; i++) {
     const ClothSynthesisTake *t = &s->takes[i];
@@ -273,7 +262,7 @@ write_numbers (const ClothSynthesis * s, const Inputs * inputs,
     add_gap (w, "before", &t->before);
     add_gap (w, "after", &t->after);
     if (input->observations)
-      add_cameras (w, t, input->observations);
+      add_cameras (w, a, t, input->observations);
     cloth_json_writer_end_object (w);
   }
   cloth_json_writer_end_array (w);
@@ -285,7 +274,7 @@ write_numbers (const ClothSynthesis * s, const Inputs * inputs,
 
 static gboolean
 write_all (const Arguments * a, const ClothSynthesis * s,
-    const Inputs * inputs, const Searched * searched, GError ** error)
+    const Inputs * inputs, const ClothSearch * search, GError ** error)
 {
   g_autofree gchar *model = cloth_model_to_json (s->model);
   g_autofree gchar *fitted = g_build_filename (a->output, "fitted.json", NULL);
@@ -304,14 +293,14 @@ write_all (const Arguments * a, const ClothSynthesis * s,
     if (!write_take (&s->takes[i], take, folder, error))
       return FALSE;
   }
-  if (searched) {
+  if (search) {
     g_autofree gchar *log = g_build_filename (a->output, "search.log", NULL);
 
-    if (!cloth_file_write_text (log, searched->log, error))
+    if (!cloth_file_write_text (log, cloth_search_get_log (search), error))
       return FALSE;
   }
   return cloth_file_write_text (fitted, model, error)
-      && write_numbers (s, inputs, searched, numbers, error)
+      && write_numbers (a, s, inputs, search, numbers, error)
       && cloth_view_write ((const gchar * const *) shown->pdata,
       MIN (shown->len, CLOTH_VIEW_MAX_TAKES), page, error);
 }
@@ -469,7 +458,7 @@ search_new (const Arguments * a, const ClothSynthesisProblem * problem,
 static ClothSynthesis *
 find (const Arguments * a, const Inputs * inputs, const ClothModel * model,
     const ClothSynthesisOptions * options, ClothSearch ** search,
-    Searched * searched, GError ** error)
+    GError ** error)
 {
   g_autoptr (ClothSynthesisProblem) problem =
       cloth_synthesis_problem_new ((const ClothSynthesisInput *)
@@ -489,10 +478,7 @@ find (const Arguments * a, const Inputs * inputs, const ClothModel * model,
   }
   point = g_new (gdouble, cloth_synthesis_problem_get_n (problem));
   cloth_search_get_best (*search, point);
-  *searched = (Searched) {
-  cloth_search_get_state (*search), cloth_search_get_counts (*search),
-        cloth_search_get_log (*search)};
-  if (searched->state == CLOTH_SEARCH_NOWHERE) {
+  if (cloth_search_get_state (*search) == CLOTH_SEARCH_NOWHERE) {
     g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL, "the cloth "
         "diverges with all numbers that were tried; start with softer cloth or "
         "more damping, or narrow the ranges");
@@ -543,7 +529,6 @@ run (gconstpointer data)
   g_autoptr (ClothSynthesis) synthesis = NULL;
   g_autoptr (ClothSearch) search = NULL;
   g_auto (Inputs) inputs = { NULL };
-  Searched searched;
   ClothSynthesisOptions options;
 
   if (check (a) != DONE)
@@ -567,19 +552,20 @@ run (gconstpointer data)
     synthesis = cloth_synthesis_fit ((const ClothSynthesisInput *)
         inputs.inputs->data, inputs.inputs->len, model, &options, &error);
   else
-    synthesis = find (a, &inputs, model, &options, &search, &searched, &error);
+    synthesis = find (a, &inputs, model, &options, &search, &error);
   if (a->worker && !error)
     return DONE;
-  if (!synthesis || !write_all (a, synthesis, &inputs, search ? &searched :
-          NULL, &error))
+  if (!synthesis || !write_all (a, synthesis, &inputs, search, &error))
     return g_error_matches (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_CANCELLED) ?
         complain (FAILED, "stopped; nothing was written") : complain (FAILED,
         "%s", error->message);
   show (a, synthesis);
   if (search)
     g_print ("%u points were tried, %u of them diverged; the search %s\n",
-        searched.counts.n_decided, searched.counts.n_failed, searched.state ==
-        CLOTH_SEARCH_CONVERGED ? "converged" : "ended at --evaluations");
+        cloth_search_get_counts (search).n_decided,
+        cloth_search_get_counts (search).n_failed,
+        cloth_search_get_state (search) == CLOTH_SEARCH_CONVERGED ?
+        "converged" : "ended at --evaluations");
   return DONE;
 }
 

@@ -108,7 +108,7 @@ test_overlap (void)
   for (guint i = 0; i < N_FRAMES * 3 * N; i++)
     positions[i] = (gfloat) s.x[i];
   cloth_synthesis_compare_silhouettes (&s.recording, positions, s.observations,
-      0, overlaps, differences);
+      1, overlaps, differences);
   g_assert_cmpfloat (overlaps[0], ==, 1.);
   g_assert_cmpfloat (differences[0], ==, 0.);
   g_assert_true (isnan (overlaps[1]) && isnan (differences[1]));
@@ -138,7 +138,7 @@ test_times (void)
   o[0].time_s += 0.25 / FPS;
   o[1].n_runs = 0;
   cloth_synthesis_compare_silhouettes (&s.recording, positions, s.observations,
-      0, overlaps, differences);
+      1, overlaps, differences);
   g_assert_cmpfloat (overlaps[0], >, 0.999);
   g_assert_cmpfloat (overlaps[1], ==, 0.);
   g_assert_cmpfloat (differences[1], ==, 240. * 200.);

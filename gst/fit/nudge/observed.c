@@ -32,12 +32,10 @@
 #define MOST_PLACES (1u << 25)
 /* Most turns of places and simulation. */
 #define MOST_TURNS 8
-/* Least turns where outlines are followed. */
+/* Least turns where outlines are followed: the cloth comes to them by and by. */
 #define LEAST_TURNS 4
 /* Standard deviation of what is cut to whole pixels. */
 #define QUANTISED_PX 0.29
-/* From the median of absolute values to the standard deviation of a normal distribution. */
-#define MAD_TO_SIGMA 1.4826
 /* Where none of the located vertices lies on an outline. */
 #define UNKNOWN_PX 3.
 /* The places of outlines are not seen as others are. */
@@ -51,6 +49,13 @@ typedef struct
   gdouble centre[3], direction[3], spread;
 } Lone;
 
+/* What outlines tell of a place, if they are off by one pixel: Σ g gᵀ and Σ g δ over the cameras. */
+typedef struct
+{
+  gsize at;
+  gdouble information[6], pull[3];
+} Told;
+
 typedef struct
 {
   const ClothObservations *observations;
@@ -62,7 +67,6 @@ typedef struct
   ClothRays *rays;
   GArray *lone;
   ClothOutline *outline;        /* NULL: there are no silhouettes */
-  gdouble outline_px;           /* standard deviation of an outline, px; 0: not known yet */
   gboolean *outlined;           /* places of which only outlines tell */
   gfloat *start;                /* where the take says that the cloth starts, NaN where not; or NULL */
   ClothObservedCounts *counts;
@@ -165,7 +169,7 @@ keep_point (Maker * m, guint frame, guint v, const ClothTriangulation * t)
 
   if (!cloth_mat3_inverse (full, i)
       || !cloth_recording_noise_set (m->r->noise, at,
-          (const gdouble[6]) { i[0], i[4], i[8], i[5], i[2], i[1] }))
+          (const gdouble[6]) { i[0], i[4], i[8], i[5], i[2], i[1] }, 0.))
     return;
   for (guint k = 0; k < 3; k++)
     m->r->y[3 * at + k] = t->position[k][v];
@@ -244,7 +248,7 @@ weigh (ClothRecording * r, const Lone * lone)
     information[k] = square * (1. - d[k] * d[k]);
     information[3 + k] = -square * d[(k + 1) % 3] * d[(k + 2) % 3];
   }
-  r->seen[at] = cloth_recording_noise_set (r->noise, at, information);
+  r->seen[at] = cloth_recording_noise_set (r->noise, at, information, 0.);
 }
 
 /* To the foot of the perpendicular from where it is. Returns its squared way. Behind the camera
@@ -323,86 +327,79 @@ finish (Maker * m)
   cloth_recording_differentiate (r);
 }
 
-/* What outlines are off where the place is known otherwise: robust standard deviation, px. */
-static gdouble
-find_outline_px (const Maker * m, const gdouble * x)
-{
-  g_autoptr (GArray) all = g_array_new (FALSE, FALSE, sizeof (gdouble));
-
-  for (guint f = 0; f < m->r->n_frames; f++)
-    for (guint c = 0; c < m->n_cameras; c++) {
-      if (!cloth_outline_find (m->outline, c, f, x + 3 * (gsize) f * m->r->n))
-        continue;
-      for (guint v = 0; v < m->r->n; v++) {
-        const gdouble off = fabs (m->outline->offsets[v]);
-
-        if (m->outline->counts[v] && m->r->seen[(gsize) f * m->r->n + v] > 0.)
-          g_array_append_val (all, off);
-      }
-    }
-  if (all->len == 0)
-    return UNKNOWN_PX;
-  return fmax (MAD_TO_SIGMA * cloth_median ((gdouble *) all->data, all->len),
-      QUANTISED_PX);
-}
-
-/* A place of which outlines alone tell. @information and @pull: sums over them. */
+/* Adds what an outline tells of a frame. */
 static void
-put_on_outlines (Maker * m, gsize at, const gdouble information[6],
-    const gdouble pull[3])
+add_outline (const Maker * m, guint frame, Told * told, GArray * off)
 {
-  const gdouble *s = information;
-  const gdouble full[9] = { s[0], s[5], s[4], s[5], s[1], s[3], s[4], s[3],
-    s[2]
-  };
-  gdouble values[3], vectors[9], told[6] = { 0. };
+  const ClothOutline *o = m->outline;
 
-  if (!cloth_sym_eigen (3, full, values, vectors))
-    return;
-  for (guint k = 0; k < 3; k++) {
-    const gdouble *e = vectors + 3 * k;
+  for (guint v = 0; v < o->n; v++) {
+    const gdouble *g = o->gradients + 3 * (gsize) v;
+    const gdouble distance = fabs (o->offsets[v]);
 
-    /* what cameras that look alike tell of a second direction is noise */
-    if (!(values[k] > WEAK * values[2]))
+    if (!o->counts[v])
       continue;
-    for (guint i = 0; i < 3; i++) {
-      m->r->y[3 * at + i] += cloth_vec3_dot (e, pull) / values[k] * e[i];
-      told[i] += values[k] * e[i] * e[i];
-      told[3 + i] += values[k] * e[(i + 1) % 3] * e[(i + 2) % 3];
+    if (m->r->seen[(gsize) frame * m->r->n + v] > 0.) {
+      g_array_append_val (off, distance);
+      continue;
+    }
+    for (guint k = 0; k < 3; k++) {
+      told[v].information[k] += g[k] * g[k];
+      told[v].information[3 + k] += g[(k + 1) % 3] * g[(k + 2) % 3];
+      told[v].pull[k] += g[k] * o->offsets[v];
     }
   }
-  if (!cloth_recording_noise_set (m->r->noise, at, told))
+}
+
+/* All that outlines of the cloth at @x tell of places that nothing else tells of.
+ * Returns: their standard deviation, px: robust, where the place is known otherwise */
+static gdouble
+look_at_outlines (const Maker * m, const gdouble * x, GArray * list)
+{
+  const ClothRecording *r = m->r;
+  g_autoptr (GArray) off = g_array_new (FALSE, FALSE, sizeof (gdouble));
+  g_autofree Told *told = g_new (Told, r->n);
+
+  for (guint f = 0; f < r->n_frames; f++) {
+    memset (told, 0, r->n * sizeof *told);
+    for (guint c = 0; c < m->n_cameras; c++)
+      if (cloth_outline_find (m->outline, c, f, x + 3 * (gsize) f * r->n))
+        add_outline (m, f, told, off);
+    /* where the cloth starts is known */
+    for (guint v = 0; f && v < r->n; v++) {
+      const gdouble *s = told[v].information;
+
+      told[v].at = (gsize) f *r->n + v;
+      if (s[0] + s[1] + s[2] > 0.)
+        g_array_append_val (list, told[v]);
+    }
+  }
+  return off->len == 0 ? UNKNOWN_PX : fmax (CLOTH_MEDIAN_TO_SIGMA *
+      cloth_median ((gdouble *) off->data, off->len), QUANTISED_PX);
+}
+
+/* Moves a place to where outlines have it. */
+static void
+put_on_outlines (Maker * m, const Told * told, gdouble px)
+{
+  ClothRecording *r = m->r;
+  gdouble information[6], pull[3], way[3], root;
+
+  for (guint k = 0; k < 6; k++)
+    information[k] = told->information[k] / (px * px);
+  for (guint k = 0; k < 3; k++)
+    pull[k] = told->pull[k] / (px * px);
+  /* what cameras that look alike tell of a second direction is noise */
+  if (!cloth_recording_noise_set (r->noise, told->at, information, WEAK))
     return;
+  root = cloth_recording_noise_solve (r->noise, told->at, pull, way);
+  for (guint k = 0; k < 3; k++)
+    r->y[3 * told->at + k] += way[k];
   /* Springs are as strong as the outline is sharp, gain ~ 1/σ, as those of a steady Kalman filter of a
    * mass under white forces. Those of two frames are multiplied. */
-  m->r->seen[at] = fmin (sqrt (m->r->sigma * sqrt (values[2])), MOST_SEEN);
-  m->outlined[at] = TRUE;
-}
-
-static void
-draw_frame (Maker * m, guint frame, const gdouble * x, gdouble * information,
-    gdouble * pulls)
-{
-  const gdouble precision = 1. / (m->outline_px * m->outline_px);
-
-  memset (information, 0, 6 * (gsize) m->r->n * sizeof *information);
-  memset (pulls, 0, 3 * (gsize) m->r->n * sizeof *pulls);
-  for (guint c = 0; c < m->n_cameras; c++) {
-    const ClothOutline *o = m->outline;
-
-    if (!cloth_outline_find (m->outline, c, frame, x))
-      continue;
-    for (guint v = 0; v < m->r->n; v++) {
-      const gdouble *g = o->gradients + 3 * (gsize) v;
-      gdouble *to = information + 6 * (gsize) v;
-
-      for (guint k = 0; o->counts[v] && k < 3; k++) {
-        to[k] += precision * g[k] * g[k];
-        to[3 + k] += precision * g[(k + 1) % 3] * g[(k + 2) % 3];
-        pulls[3 * (gsize) v + k] += precision * g[k] * o->offsets[v];
-      }
-    }
-  }
+  r->seen[told->at] = fmin (sqrt (r->sigma * root), MOST_SEEN);
+  m->outlined[told->at] = TRUE;
+  m->counts->outlined++;
 }
 
 /* Places of which outlines told are as if nobody had seen them. */
@@ -423,28 +420,14 @@ static void
 draw_to_outlines (Maker * m, const gdouble * x)
 {
   ClothRecording *r = m->r;
-  g_autofree gdouble *information = g_new (gdouble, 6 * (gsize) r->n);
-  g_autofree gdouble *pulls = g_new (gdouble, 3 * (gsize) r->n);
+  g_autoptr (GArray) list = g_array_new (FALSE, FALSE, sizeof (Told));
+  const gdouble px = look_at_outlines (m, x, list);
 
-  m->outline_px = find_outline_px (m, x);
-  /* where the cloth starts is known */
-  for (guint f = 1; f < r->n_frames; f++) {
-    const gdouble *here = x + 3 * (gsize) f * r->n;
-
-    draw_frame (m, f, here, information, pulls);
-    for (guint v = 0; v < r->n; v++) {
-      const gsize at = (gsize) f * r->n + v;
-      const gdouble *s = information + 6 * (gsize) v;
-
-      if (r->seen[at] > 0.)
-        continue;
-      memcpy (r->y + 3 * at, here + 3 * (gsize) v, 3 * sizeof (gdouble));
-      if (!(s[0] + s[1] + s[2] > 0.))
-        continue;
-      put_on_outlines (m, at, s, pulls + 3 * (gsize) v);
-      m->counts->outlined += m->outlined[at];
-    }
-  }
+  for (gsize at = r->n; at < (gsize) r->n * r->n_frames; at++)
+    if (r->seen[at] == 0.)
+      memcpy (r->y + 3 * at, x + 3 * at, 3 * sizeof (gdouble));
+  for (guint i = 0; i < list->len; i++)
+    put_on_outlines (m, &g_array_index (list, Told, i), px);
   cloth_recording_differentiate (r);
 }
 
@@ -575,7 +558,6 @@ cloth_recording_new_observed (ClothTake * take,
 
     if (isnan (moved))
       return NULL;
-    /* outlines go on as long as the cloth follows them */
     if (moved < r->sigma && (!m.outline || k + 1 >= LEAST_TURNS))
       break;
   }

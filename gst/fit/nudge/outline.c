@@ -46,35 +46,6 @@ typedef struct
   gint *pictures;               /* which of the observations is nearest, [camera][frame]; -1: none */
 } Outline;
 
-/* The pictures with silhouettes that are nearest to each frame. */
-static void
-find_pictures (Outline * self)
-{
-  const ClothRecording *r = self->r;
-  const ClothRig *rig = self->observations->rig;
-  const gsize n = (gsize) rig->n_cameras * r->n_frames;
-  g_autofree gdouble *off = g_new (gdouble, n);
-
-  self->pictures = g_new (gint, n);
-  for (gsize i = 0; i < n; i++) {
-    self->pictures[i] = -1;
-    off[i] = INFINITY;
-  }
-  for (guint i = 0; i < self->observations->list->len; i++) {
-    const ClothObservation *o = &g_array_index (self->observations->list,
-        ClothObservation, i);
-    const gdouble time = o->time_s - rig->cameras[o->camera].offset_s;
-    const gint f = o->has_silhouette ? cloth_recording_find_frame (r, time) :
-        -1;
-    const gsize at = (gsize) o->camera * r->n_frames + (gsize) MAX (f, 0);
-
-    if (f < 0 || fabs (time - r->times[f]) >= off[at])
-      continue;
-    off[at] = fabs (time - r->times[f]);
-    self->pictures[at] = (gint) i;
-  }
-}
-
 /* @recording: mesh and times; has to outlive it
  * @observations: what cameras filmed; so has this
  * @threads: that draw; 0 = one for each processor
@@ -87,6 +58,7 @@ cloth_outline_new (const ClothRecording * recording,
 {
   Outline *self = g_new0 (Outline, 1);
   const ClothTopology *t = recording->scene->topology;
+  const guint n_cameras = observations->rig->n_cameras;
 
   self->r = recording;
   self->observations = observations;
@@ -97,7 +69,10 @@ cloth_outline_new (const ClothRecording * recording,
   self->public.offsets = g_new (gdouble, t->n_vertices);
   self->public.gradients = g_new (gdouble, 3 * (gsize) t->n_vertices);
   self->normals = g_new (gdouble, 2 * (gsize) t->n_vertices);
-  find_pictures (self);
+  self->pictures = g_new (gint, (gsize) n_cameras * recording->n_frames);
+  for (guint c = 0; c < n_cameras; c++)
+    cloth_recording_find_silhouettes (recording, observations, c,
+        self->pictures + (gsize) c * recording->n_frames);
   return &self->public;
 }
 

@@ -31,6 +31,17 @@ unpack (const gdouble s[6], gdouble m[9])
   memcpy (m, full, sizeof full);
 }
 
+/* @to may be @from. */
+static void
+multiply (const gdouble s[6], const gdouble from[3], gdouble to[3])
+{
+  const gdouble a[3] = { from[0], from[1], from[2] };
+
+  to[0] = s[0] * a[0] + s[5] * a[1] + s[4] * a[2];
+  to[1] = s[5] * a[0] + s[1] * a[1] + s[3] * a[2];
+  to[2] = s[4] * a[0] + s[3] * a[1] + s[2] * a[2];
+}
+
 /* Σ f_k e_k e_kᵀ of the rows e_k: xx, yy, zz, yz, xz, xy. */
 static void
 compose (const gdouble f[3], const gdouble e[9], gdouble s[6])
@@ -47,12 +58,13 @@ compose (const gdouble f[3], const gdouble e[9], gdouble s[6])
  * @at: which place
  * @information: its inverse covariance: xx, yy, zz, yz, xz, xy, 1/m²; of rank 3, 2 when nothing is
  *   known along one direction, or 1 when only that along one is known
+ * @least: directions with less than this share of the best one's information count as not known
  *
  * Returns: %FALSE when it is none; then nothing is known of the place
  */
 gboolean
 cloth_recording_noise_set (ClothRecordingNoise * noise, gsize at,
-    const gdouble information[6])
+    const gdouble information[6], gdouble least)
 {
   gdouble m[9], values[3], vectors[9], roots[3], known[3], sum = 0.;
   gboolean is_one = TRUE;
@@ -69,7 +81,7 @@ cloth_recording_noise_set (ClothRecordingNoise * noise, gsize at,
   for (guint k = 0; k < 3; k++) {
     if (values[k] < -NOTHING * values[2])
       return FALSE;
-    known[k] = values[k] > NOTHING * values[2];
+    known[k] = values[k] > fmax (least, NOTHING) * values[2];
     roots[k] = known[k] > 0. ? sqrt (values[k]) : 0.;
     is_one = is_one && known[k] > 0.;
   }
@@ -96,6 +108,30 @@ take_apart (const ClothRecordingNoise * noise, gsize at, gdouble roots[3],
   for (guint k = 0; k < 3; k++)
     if (roots[k] * roots[k] <= NOTHING * roots[2] * roots[2])
       roots[k] = 0.;
+}
+
+/* @noise: noise
+ * @at: which place, one that is set
+ * @pull: Λ times a way, 1/m
+ * @way: (out): the shortest such way, m: Λ⁺ @pull
+ *
+ * Returns: root of the information along the direction that is known best, 1/m
+ */
+gdouble
+cloth_recording_noise_solve (const ClothRecordingNoise * noise, gsize at,
+    const gdouble pull[3], gdouble way[3])
+{
+  gdouble roots[3], vectors[9];
+
+  take_apart (noise, at, roots, vectors);
+  memset (way, 0, 3 * sizeof *way);
+  for (guint k = 0; k < 3; k++) {
+    const gdouble *e = vectors + 3 * k;
+
+    for (guint i = 0; roots[k] > 0. && i < 3; i++)
+      way[i] += cloth_vec3_dot (e, pull) / (roots[k] * roots[k]) * e[i];
+  }
+  return roots[2];
 }
 
 /* @noise: noise of which every place that was seen is set
@@ -154,12 +190,7 @@ void
 cloth_recording_whiten (const ClothRecording * recording, gsize at,
     const gdouble off[3], gdouble white[3])
 {
-  const gdouble *s = recording->noise->white + 6 * at;
-  const gdouble a[3] = { off[0], off[1], off[2] };
-
-  white[0] = s[0] * a[0] + s[5] * a[1] + s[4] * a[2];
-  white[1] = s[5] * a[0] + s[1] * a[1] + s[3] * a[2];
-  white[2] = s[4] * a[0] + s[3] * a[1] + s[2] * a[2];
+  multiply (recording->noise->white + 6 * at, off, white);
 }
 
 /* @recording: a recording
@@ -171,15 +202,8 @@ void
 cloth_recording_cut_blind (const ClothRecording * recording, gsize at,
     gdouble off[3])
 {
-  const gdouble a[3] = { off[0], off[1], off[2] };
-  const gdouble *s;
-
-  if (!recording->noise || recording->seen[at] == 0.)
-    return;
-  s = recording->noise->draw + 6 * at;
-  off[0] = s[0] * a[0] + s[5] * a[1] + s[4] * a[2];
-  off[1] = s[5] * a[0] + s[1] * a[1] + s[3] * a[2];
-  off[2] = s[4] * a[0] + s[3] * a[1] + s[2] * a[2];
+  if (recording->noise && recording->seen[at] != 0.)
+    multiply (recording->noise->draw + 6 * at, off, off);
 }
 
 /* @recording: a recording

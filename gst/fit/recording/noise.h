@@ -8,7 +8,9 @@
 G_BEGIN_DECLS
 
 gboolean cloth_recording_noise_set (ClothRecordingNoise * noise, gsize at,
-    const gdouble information[6]);
+    const gdouble information[6], gdouble least);
+gdouble cloth_recording_noise_solve (const ClothRecordingNoise * noise,
+    gsize at, const gdouble pull[3], gdouble way[3]);
 gdouble cloth_recording_noise_finish (ClothRecordingNoise * noise,
     const gdouble * seen);
 gdouble cloth_recording_noise_square (const ClothRecording * recording);

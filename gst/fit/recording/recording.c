@@ -42,7 +42,7 @@ load_covariances (ClothRecording * r, ClothTake * take, guint frame,
     }
     if (c[0] > 0. && cloth_mat3_inverse (full, i)
         && cloth_recording_noise_set (r->noise, at,
-            (const gdouble[6]) { i[0], i[4], i[8], i[5], i[2], i[1] }))
+            (const gdouble[6]) { i[0], i[4], i[8], i[5], i[2], i[1] }, 0.))
       continue;
     g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING, "%s: the "
         "covariance of vertex %u in frame %u is not positive; give NaN where "
@@ -308,4 +308,36 @@ cloth_recording_find_frame (const ClothRecording * recording, gdouble time)
       high = middle;
   }
   return (gint) (fabs (time - t[low]) <= fabs (time - t[high]) ? low : high);
+}
+
+/* @recording: a recording of two frames at least
+ * @observations: pictures
+ * @camera: whose of them
+ * @pictures: (out) (array): of each frame which of the observations with a silhouette is nearest in time, or
+ *   -1, [n_frames]
+ */
+void
+cloth_recording_find_silhouettes (const ClothRecording * recording,
+    const ClothObservations * observations, guint camera, gint * pictures)
+{
+  const ClothRecording *r = recording;
+  const gdouble late = observations->rig->cameras[camera].offset_s;
+  g_autofree gdouble *off = g_new (gdouble, r->n_frames);
+
+  for (guint f = 0; f < r->n_frames; f++) {
+    pictures[f] = -1;
+    off[f] = INFINITY;
+  }
+  for (guint i = 0; i < observations->list->len; i++) {
+    const ClothObservation *o = &g_array_index (observations->list,
+        ClothObservation, i);
+    const gdouble time = o->time_s - late;
+    const gint f = o->camera == camera && o->has_silhouette ?
+        cloth_recording_find_frame (r, time) : -1;
+
+    if (f < 0 || fabs (time - r->times[f]) >= off[f])
+      continue;
+    off[f] = fabs (time - r->times[f]);
+    pictures[f] = (gint) i;
+  }
 }

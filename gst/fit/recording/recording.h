@@ -23,6 +23,8 @@ G_BEGIN_DECLS
 ClothRecording *cloth_recording_new (ClothTake * take, GError ** error);
 gint cloth_recording_find_frame (const ClothRecording * recording,
     gdouble time);
+void cloth_recording_find_silhouettes (const ClothRecording * recording,
+    const ClothObservations * observations, guint camera, gint * pictures);
 gsize cloth_recording_remove_torn (ClothRecording * recording);
 ClothRecording *cloth_recording_resample (const ClothRecording * recording,
     guint most);

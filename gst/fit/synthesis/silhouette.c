@@ -15,7 +15,7 @@
 
 #include "gst/render/coverage.h"
 
-/* Where the cloth is at @time, which is nearest to @frame. */
+/* Where the cloth is at @time, to which @frame is nearest. */
 static void
 place (const ClothRecording * r, const gfloat * positions, gdouble time,
     guint frame, gdouble * places)
@@ -56,46 +56,46 @@ count (const ClothCoverage * coverage, const ClothObservation * picture,
 /* @recording: mesh and times
  * @positions: (array): where the cloth is, [n_frames][n][3], m
  * @observations: what cameras filmed
- * @camera: which of them is looked through
+ * @threads: that draw; 0 = one for each processor
  * @overlaps: (out) (array): share of the pixels that are cloth in either picture that are so in both,
- *   [n_frames]; of the picture nearest to each frame, NaN where none has a silhouette or no pixel is cloth
- * @differences: (out) (array): pixels that are cloth in only one of them, [n_frames]; NaN the same
+ *   [n_cameras][n_frames]; of the picture nearest to each frame, NaN where none has a silhouette or no
+ *   pixel is cloth
+ * @differences: (out) (array): pixels that are cloth in only one of them, likewise
  *
  * How well the cloth covers what was filmed of it.
  */
 void
 cloth_synthesis_compare_silhouettes (const ClothRecording * recording,
     const gfloat * positions, const ClothObservations * observations,
-    guint camera, gdouble * overlaps, gdouble * differences)
+    guint threads, gdouble * overlaps, gdouble * differences)
 {
   const ClothRecording *r = recording;
-  const ClothCamera *c = &observations->rig->cameras[camera];
+  const ClothRig *rig = observations->rig;
   const ClothTopology *t = r->scene->topology;
-  g_autoptr (ClothPool) pool = cloth_pool_new (0);
+  g_autoptr (ClothPool) pool = cloth_pool_new (threads);
   g_autoptr (ClothCoverage) coverage = cloth_coverage_new (t->n_vertices,
       t->faces, t->n_faces);
   g_autofree gdouble *places = g_new (gdouble, 3 * (gsize) r->n);
-  g_autofree gdouble *off = g_new (gdouble, r->n_frames);
+  g_autofree gint *pictures = g_new (gint, r->n_frames);
 
-  for (guint f = 0; f < r->n_frames; f++) {
-    overlaps[f] = differences[f] = NAN;
-    off[f] = INFINITY;
-  }
-  for (guint i = 0; i < observations->list->len; i++) {
-    const ClothObservation *o = &g_array_index (observations->list,
-        ClothObservation, i);
-    const gdouble time = o->time_s - c->offset_s;
-    const gint frame = o->camera == camera && o->has_silhouette ?
-        cloth_recording_find_frame (r, time) : -1;
-    guint64 both, either;
+  for (guint c = 0; c < rig->n_cameras; c++) {
+    cloth_recording_find_silhouettes (r, observations, c, pictures);
+    for (guint f = 0; f < r->n_frames; f++) {
+      const gsize at = (gsize) c * r->n_frames + f;
+      const ClothObservation *o = pictures[f] < 0 ? NULL :
+          &g_array_index (observations->list, ClothObservation, pictures[f]);
+      guint64 both, either;
 
-    if (frame < 0 || fabs (time - r->times[frame]) >= off[frame])
-      continue;
-    off[frame] = fabs (time - r->times[frame]);
-    place (r, positions, time, (guint) frame, places);
-    cloth_coverage_draw (coverage, c, places, pool);
-    count (coverage, o, &both, &either);
-    overlaps[frame] = either ? (gdouble) both / (gdouble) either : NAN;
-    differences[frame] = either ? (gdouble) (either - both) : NAN;
+      overlaps[at] = differences[at] = NAN;
+      if (!o)
+        continue;
+      place (r, positions, o->time_s - rig->cameras[c].offset_s, f, places);
+      cloth_coverage_draw (coverage, &rig->cameras[c], places, pool);
+      count (coverage, o, &both, &either);
+      if (!either)
+        continue;
+      overlaps[at] = (gdouble) both / (gdouble) either;
+      differences[at] = (gdouble) (either - both);
+    }
   }
 }

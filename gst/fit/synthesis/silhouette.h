@@ -9,6 +9,6 @@ G_BEGIN_DECLS
 
 void cloth_synthesis_compare_silhouettes (const ClothRecording * recording,
     const gfloat * positions, const ClothObservations * observations,
-    guint camera, gdouble * overlaps, gdouble * differences);
+    guint threads, gdouble * overlaps, gdouble * differences);
 
 G_END_DECLS

@@ -421,7 +421,7 @@ cloth_synthesis_problem_evaluate (gpointer problem, const gdouble * point,
         models, 1, p->options.gain, p->options.window_s, &rollout, NULL);
     const gdouble root = gap ? root_of (gap[0]) : NAN;
 
-    cloth_windowed_gaps_free (gap, gap ? 1 : 0);
+    cloth_windowed_gaps_free (gap, 1);
     sum += (root * root +
         cloth_recording_noise_square (p->s->takes[i].recording)) /
         p->s->n_takes;

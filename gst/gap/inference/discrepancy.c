@@ -38,7 +38,10 @@ cloth_gap_find_powers (const ClothGapStack * stack, const gdouble * z,
     powers[c] /= MAX (counts[c], 1);
 }
 
-/* Mean over members of the powers of their features. */
+/* @stack: features
+ * @members: (array): of the members, [n_members][size]
+ * @mean: (out) (array): mean over them of cloth_gap_find_powers (), [n_classes]
+ */
 void
 cloth_gap_find_mean_powers (const ClothGapStack * stack,
     const gdouble * members, gdouble * mean)

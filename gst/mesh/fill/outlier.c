@@ -12,8 +12,6 @@
 #define MOST_PEERS 24
 /* Removing the worst makes its neighbours look better: how often to look again. */
 #define ROUNDS 3
-/* Standard deviations of a normal distribution in its median absolute deviation. */
-#define MEDIAN_TO_SIGMA 1.4826
 /* A median of lengths of normal vectors of three dimensions, in standard deviations. */
 #define MEDIAN_LENGTH 1.538
 

@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "gst/cv/cv.h"
+#include "gst/math/statistics.h"
 #include "gst/rig/rectify.h"
 
 #define MAX_PAIRS (CLOTH_STEREO_MAX_CAMERAS - 1)
@@ -465,8 +466,9 @@ find_sigma (const Pair * pair)
   while (2 * (below + counts[bin]) < n)
     below += counts[bin++];
   /* the bin of 0 is half as wide as the others */
-  return 1.4826 / G_SQRT2 / CLOTH_CV_STEPS * fmax (0, (bin == 0 ? 0 :
-          bin - 0.5) + (bin == 0 ? 0.5 : 1) * (0.5 * n - below) / counts[bin]);
+  return CLOTH_MEDIAN_TO_SIGMA / G_SQRT2 / CLOTH_CV_STEPS * fmax (0,
+      (bin == 0 ? 0 : bin - 0.5) + (bin ==
+          0 ? 0.5 : 1) * (0.5 * n - below) / counts[bin]);
 }
 
 /* How much lies at the ends of the range; what lies beyond them is dropped. Without a mask what
