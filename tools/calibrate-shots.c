@@ -10,6 +10,7 @@
 
 #include "calibrate-picture.h"
 #include "frames.h"
+#include "gst/cv/markers.h"
 #include "gst/rig/planar.h"
 #include "gst/vision/checker/checker.h"
 #include "gst/vision/corner/saddle.h"
@@ -32,6 +33,16 @@ shot_free (gpointer data)
   g_free (shot->cov);
   g_clear_pointer (&shot->picture, g_bytes_unref);
   g_free (shot);
+}
+
+/* @board: (transfer full): a board
+ */
+void
+cloth_shot_board_free (ClothShotBoard * board)
+{
+  g_clear_pointer (&board->pattern, cloth_pattern_free);
+  g_free (board->dictionary);
+  g_free (board);
 }
 
 /* @name: the camera's name
@@ -173,9 +184,10 @@ cloth_shot_cameras_number (GPtrArray * cameras)
 typedef struct
 {
   ClothShotCamera *camera;
-  const ClothPattern *pattern;
   ClothSaddleDetector *detector;
-  ClothBoardFinder *finder;
+  ClothBoardFinder *finder;     /* of a board without markers */
+  ClothCvMarkers *markers;      /* of one with markers */
+  ClothMarkedBoard *marked;
   ClothPictureMaker *maker;
   ClothShot *shot;              /* of a picture; NULL in a film */
   const gchar *file;
@@ -224,16 +236,43 @@ fill_shot (ClothShot * shot, const ClothBoardView * view,
   return TRUE;
 }
 
+/* The corners of the board in a picture; %FALSE with @error unset when it is not there. */
+static gboolean
+find_board (Reader * r, const ClothImage * image, const ClothBoardView ** view,
+    GError ** error)
+{
+  const ClothCvPicture picture = { image->data, image->width, image->height,
+    image->stride
+  };
+  ClothSaddleParams params = cloth_saddle_default_params ();
+  const ClothSaddle *saddles;
+  const gint *ids;
+  const gfloat *corners;
+  guint n, n_saddles;
+
+  params.refine = CLOTH_SADDLE_REFINE_MODEL;
+  if (r->markers) {
+    if (!cloth_cv_markers_find (r->markers, &picture, &n, &ids, &corners, error)
+        || cloth_marked_board_set_markers (r->marked, n, ids, corners) == 0)
+      return FALSE;
+    params.radius = (gfloat) fmin (params.radius,
+        cloth_marked_board_get_margin (r->marked));
+  }
+  cloth_saddle_detector_run (r->detector, &params, image, CLOTH_SIMD_BEST);
+  saddles = cloth_saddle_detector_get_saddles (r->detector, &n_saddles);
+  return r->markers ? cloth_marked_board_find (r->marked, saddles, n_saddles,
+      view) : cloth_board_finder_find (r->finder, image, saddles, n_saddles,
+      view);
+}
+
 static gboolean
 look (const ClothImage * image, guint number, gpointer user_data,
     GError ** error)
 {
   Reader *r = user_data;
   ClothShotCamera *camera = r->camera;
-  ClothSaddleParams params = cloth_saddle_default_params ();
-  const ClothSaddle *saddles;
   const ClothBoardView *view;
-  guint n_saddles;
+  GError *failure = NULL;
 
   if (camera->width == 0) {
     camera->width = image->width;
@@ -246,10 +285,7 @@ look (const ClothImage * image, guint number, gpointer user_data,
     return FALSE;
   }
   camera->n_pictures++;
-  params.refine = CLOTH_SADDLE_REFINE_MODEL;
-  cloth_saddle_detector_run (r->detector, &params, image, CLOTH_SIMD_BEST);
-  saddles = cloth_saddle_detector_get_saddles (r->detector, &n_saddles);
-  if (cloth_board_finder_find (r->finder, image, saddles, n_saddles, &view)) {
+  if (find_board (r, image, &view, &failure)) {
     ClothShot *shot = g_new0 (ClothShot, 1);
 
     if (!fill_shot (shot, view, camera)) {
@@ -266,6 +302,9 @@ look (const ClothImage * image, guint number, gpointer user_data,
     }
     if (shot && r->maker)
       shot->picture = cloth_picture_maker_make (r->maker, image);
+  } else if (failure) {
+    g_propagate_prefixed_error (error, failure, "%s: ", r->file);
+    return FALSE;
   }
   if (camera->film && r->progress)
     r->progress (camera, 0, r->user_data);
@@ -273,7 +312,7 @@ look (const ClothImage * image, guint number, gpointer user_data,
 }
 
 /* @camera: a camera, numbered
- * @pattern: the board
+ * @board: the board
  * @every: of films each so many-th frame is looked at
  * @progress: (nullable) (scope call): called after each picture
  * @user_data: for @progress
@@ -284,18 +323,27 @@ look (const ClothImage * image, guint number, gpointer user_data,
  * Returns: whether all could be read. That the board is in none of them is no error here.
  */
 gboolean
-cloth_shot_camera_read (ClothShotCamera * camera, const ClothPattern * pattern,
+cloth_shot_camera_read (ClothShotCamera * camera, const ClothShotBoard * board,
     guint every, ClothShotProgress progress, gpointer user_data,
     GError ** error)
 {
   g_autoptr (ClothSaddleDetector) detector = cloth_saddle_detector_new ();
-  g_autoptr (ClothBoardFinder) finder = cloth_board_finder_new (pattern);
+  g_autoptr (ClothBoardFinder) finder = cloth_board_finder_new (board->pattern);
+  g_autoptr (ClothCvMarkers) markers = NULL;
+  g_autoptr (ClothMarkedBoard) marked = NULL;
   g_autoptr (GPtrArray) planned = camera->shots;
   g_autoptr (ClothPictureMaker) maker = cloth_picture_maker_new ();
-  Reader reader = { camera, pattern, detector, finder, maker, NULL, NULL,
+  Reader reader = { camera, detector, finder, NULL, NULL, maker, NULL, NULL,
     progress, user_data
   };
 
+  if (board->dictionary) {
+    reader.markers = markers = cloth_cv_markers_new (board->dictionary, error);
+    if (!markers)
+      return FALSE;
+    reader.marked = marked =
+        cloth_marked_board_new (board->pattern, board->marker);
+  }
   camera->shots = g_ptr_array_new_with_free_func (shot_free);
   for (guint i = 0; i < camera->files->len; i++) {
     reader.file = g_ptr_array_index (camera->files, i);

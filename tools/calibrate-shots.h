@@ -8,6 +8,17 @@
 
 G_BEGIN_DECLS
 
+/* What board it is.
+ * @pattern: its squares
+ * @dictionary: (nullable): where its white squares have markers (ChArUco), of which dictionary
+ * @marker: edge of these over that of a square
+ */
+typedef struct {
+  ClothPattern *pattern;
+  gchar *dictionary;
+  gdouble marker;
+} ClothShotBoard;
+
 /* One picture with the board in it. Corners of the board's inside only: those of its rim
  * are no saddles. */
 typedef struct {
@@ -32,14 +43,18 @@ typedef struct {
 typedef void (*ClothShotProgress) (const ClothShotCamera * camera,
     guint n_files_done, gpointer user_data);
 
+void cloth_shot_board_free (ClothShotBoard * board);
+
 ClothShotCamera *cloth_shot_camera_new (const gchar * name);
 void cloth_shot_camera_free (ClothShotCamera * camera);
 gboolean cloth_shot_camera_add (ClothShotCamera * camera,
     const gchar * pattern, GError ** error);
 void cloth_shot_cameras_number (GPtrArray * cameras);
 gboolean cloth_shot_camera_read (ClothShotCamera * camera,
-    const ClothPattern * pattern, guint every, ClothShotProgress progress,
+    const ClothShotBoard * board, guint every, ClothShotProgress progress,
     gpointer user_data, GError ** error);
 void cloth_shot_cameras_choose (GPtrArray * cameras, guint max_views);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothShotBoard, cloth_shot_board_free)
 
 G_END_DECLS

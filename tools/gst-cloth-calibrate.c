@@ -10,6 +10,7 @@
 #include "calibrate-refine.h"
 #include "calibrate-report.h"
 #include "calibrate-shots.h"
+#include "gst/cv/markers.h"
 #include "gst/file/file.h"
 #include "gst/math/vec3.h"
 #include "gst/pattern/pattern.h"
@@ -28,16 +29,57 @@ typedef struct
 {
   gboolean share_lens, intrinsics_only, warp;
   gint columns, rows, every, max_views, leave_out;
-  gchar *pattern, *square, *first, *lens, *world, *size, *output, *report;
+  gchar *pattern, *charuco, *marker, *square, *first, *lens, *world, *size,
+      *output, *report;
   gchar **opencv, *kalibr, **mrcal, *export_mrcal, *points;
   gchar **cameras;
 } Arguments;
 
-static ClothPattern *
-make_pattern (const Arguments * a, gint * code, GError ** error)
+/* How large the markers are, and whether the dictionary has enough of them. */
+static gboolean
+add_markers (const Arguments * a, ClothShotBoard * board, GError ** error)
 {
+  g_autoptr (ClothCvMarkers) markers = cloth_cv_markers_new (a->charuco, error);
+  guint needed = 0;
+  gdouble edge;
+
+  if (!markers)
+    return FALSE;
+  if (!a->marker) {
+    g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
+        "--charuco: say how large the markers are, without the white around "
+        "them: --marker, for instance 15mm");
+    return FALSE;
+  }
+  if (!parse_length ("marker", a->marker, &edge, error))
+    return FALSE;
+  board->marker = edge / board->pattern->square_m;
+  if (!(board->marker > 0 && board->marker < 1)) {
+    g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
+        "--marker %s: markers lie inside of squares of %s", a->marker,
+        a->square);
+    return FALSE;
+  }
+  for (gint i = 0; i < a->columns * a->rows; i++)
+    needed += !cloth_pattern_is_black (board->pattern, i % a->columns,
+        i / a->columns);
+  if (needed > cloth_cv_markers_get_size (markers)) {
+    g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
+        "--charuco %s: it has %u markers, and %d × %d squares want %u",
+        a->charuco, cloth_cv_markers_get_size (markers), a->columns, a->rows,
+        needed);
+    return FALSE;
+  }
+  board->dictionary = g_strdup (a->charuco);
+  return TRUE;
+}
+
+static ClothShotBoard *
+make_board (const Arguments * a, gint * code, GError ** error)
+{
+  g_autoptr (ClothShotBoard) board = g_new0 (ClothShotBoard, 1);
   gdouble square;
-  gboolean described = a->columns || a->rows || a->square;
+  gboolean described = a->columns || a->rows || a->square || a->charuco;
 
   *code = BAD_USAGE;
   if (a->pattern && described) {
@@ -45,9 +87,15 @@ make_pattern (const Arguments * a, gint * code, GError ** error)
         "give --pattern, or --columns, --rows and --square, not both");
     return NULL;
   }
+  if (a->marker && !a->charuco) {
+    g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
+        "--marker: say of which dictionary: --charuco, for instance 5X5_100");
+    return NULL;
+  }
   if (a->pattern) {
     *code = FAILED;
-    return cloth_pattern_load (a->pattern, error);
+    board->pattern = cloth_pattern_load (a->pattern, error);
+    return board->pattern ? g_steal_pointer (&board) : NULL;
   }
   if (!a->columns || !a->rows || !a->square) {
     g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
@@ -62,8 +110,11 @@ make_pattern (const Arguments * a, gint * code, GError ** error)
         "--first %s: give black or white", a->first);
     return NULL;
   }
-  return cloth_pattern_new_checker (a->columns, a->rows, square, square / 2,
-      !strcmp (a->first, "black"), error);
+  board->pattern = cloth_pattern_new_checker (a->columns, a->rows, square,
+      square / 2, !strcmp (a->first, "black"), error);
+  if (!board->pattern || (a->charuco && !add_markers (a, board, error)))
+    return NULL;
+  return g_steal_pointer (&board);
 }
 
 /* CAMERA=FILE arguments by camera, in the order of their first appearance. */
@@ -132,11 +183,13 @@ show_fit (const gchar * stage, gdouble fraction, gpointer user_data)
 
 /* Turns after which a plain board looks the same: half a turn, or any quarter. */
 static void
-add_symmetries (const ClothPattern * pattern, GArray * symmetries)
+add_symmetries (const ClothShotBoard * board, GArray * symmetries)
 {
+  const ClothPattern *pattern = board->pattern;
+  gboolean plain = !pattern->code && !board->dictionary;
   gint columns = pattern->columns, rows = pattern->rows;
 
-  for (gint quarters = 1; quarters < 4 && !pattern->code; quarters++) {
+  for (gint quarters = 1; quarters < 4 && plain; quarters++) {
     gboolean odd = quarters & 1;
     /* Onto which square the first one comes. */
     gint c = quarters == 3 ? 0 : columns - 1, r = quarters == 1 ? 0 : rows - 1;
@@ -169,11 +222,11 @@ add_board (const ClothPattern * pattern, GArray * board)
 
 /* The input of a calibration, over the shots' own arrays. */
 static void
-fill_input (GPtrArray * cameras, const ClothPattern * pattern, ClothLens lens,
+fill_input (GPtrArray * cameras, const ClothShotBoard * seen, ClothLens lens,
     ClothCalibrateInput * in, GArray * views, GArray * numbers, ClothRig * rig,
     GArray * board, GArray * symmetries)
 {
-  add_board (pattern, board);
+  add_board (seen->pattern, board);
   /* Numbers in order, each once, are the poses. */
   for (;;) {
     gint64 least = G_MAXINT64;
@@ -220,7 +273,7 @@ fill_input (GPtrArray * cameras, const ClothPattern * pattern, ClothLens lens,
   in->n_poses = numbers->len;
   in->n_views = views->len;
   in->views = (const ClothBundleView *) views->data;
-  add_symmetries (pattern, symmetries);
+  add_symmetries (seen, symmetries);
   in->n_symmetries = symmetries->len / in->n_vertices;
   in->symmetries = (const guint *) symmetries->data;
 }
@@ -273,8 +326,9 @@ move_calibration (const Arguments * a, ClothCalibration * result,
 
 static gint
 calibrate (const Arguments * a, GPtrArray * cameras,
-    const ClothPattern * pattern, ClothLens lens)
+    const ClothShotBoard * seen, ClothLens lens)
 {
+  const ClothPattern *pattern = seen->pattern;
   g_autoptr (GArray) views = g_array_new (FALSE, FALSE,
       sizeof (ClothBundleView));
   g_autoptr (GArray) numbers = g_array_new (FALSE, FALSE, sizeof (gint64));
@@ -287,8 +341,7 @@ calibrate (const Arguments * a, GPtrArray * cameras,
   ClothCalibrateInput in;
   ClothCalibrateParams params;
 
-  fill_input (cameras, pattern, lens, &in, views, numbers, rig, board,
-      symmetries);
+  fill_input (cameras, seen, lens, &in, views, numbers, rig, board, symmetries);
   cloth_calibrate_params_init (&params);
   params.share_lens = a->share_lens;
   params.warp = a->warp;
@@ -315,25 +368,52 @@ calibrate (const Arguments * a, GPtrArray * cameras,
   return DONE;
 }
 
-/* Whether a camera's first pictures show the board that has so many corners inside as it was
- * said to have squares: what other programs ask for. */
-static gboolean
-corners_counted (const ClothShotCamera * camera, const ClothPattern * pattern,
+/* The share of a camera's first pictures that show this board. */
+static gdouble
+find_share (const ClothShotCamera * camera, const ClothShotBoard * board,
     guint every)
 {
   g_autoptr (GPtrArray) one =
       g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_shot_camera_free);
-  g_autoptr (ClothPattern) larger = cloth_pattern_new_checker
-      (pattern->columns + 1, pattern->rows + 1, pattern->square_m,
-      pattern->square_m / 2, pattern->first_black, NULL);
   ClothShotCamera *probe = cloth_shot_camera_new (camera->name);
 
   g_ptr_array_add (one, probe);
   for (guint i = 0; i < MIN (camera->files->len, N_PROBED); i++)
     cloth_shot_camera_add (probe, g_ptr_array_index (camera->files, i), NULL);
   cloth_shot_cameras_number (one);
-  return larger && cloth_shot_camera_read (probe, larger, every, NULL, NULL,
-      NULL) && probe->shots->len > 0;
+  if (!cloth_shot_camera_read (probe, board, every, NULL, NULL, NULL))
+    return 0;
+  return (gdouble) probe->shots->len / MAX (1, probe->n_pictures);
+}
+
+/* What to give in place of what few of a camera's pictures show, or none: a board with so many corners
+ * inside as it was said to have squares, as other programs count; or one with its markers in the
+ * squares that were said to be black. */
+static gchar *
+find_remedy (const ClothShotCamera * camera, const ClothShotBoard * board,
+    guint every)
+{
+  const ClothPattern *pattern = board->pattern;
+  gboolean black = !!pattern->first_black;
+  gint more = board->dictionary ? 0 : 1;
+  gdouble share = (gdouble) camera->shots->len / MAX (1, camera->n_pictures);
+  ClothShotBoard other = *board;
+  gchar *remedy = NULL;
+
+  if (share > 0.5 || (share > 0 && !board->dictionary))
+    return NULL;
+  other.pattern = cloth_pattern_new_checker (pattern->columns + more,
+      pattern->rows + more, pattern->square_m, pattern->square_m / 2,
+      board->dictionary ? !black : black, NULL);
+  if (other.pattern && find_share (camera, &other, every) > share)
+    remedy = board->dictionary ? g_strdup_printf ("its markers are in the "
+        "squares said to be black: --first %s", black ? "white" : "black")
+        : g_strdup_printf ("its board has %d × %d corners inside, and so "
+        "%d × %d squares, which is what to give: --columns %d --rows %d",
+        pattern->columns, pattern->rows, pattern->columns + 1,
+        pattern->rows + 1, pattern->columns + 1, pattern->rows + 1);
+  g_clear_pointer (&other.pattern, cloth_pattern_free);
+  return remedy;
 }
 
 static gint
@@ -371,7 +451,7 @@ static gboolean
 world_of_board (const Arguments * a, const ClothRig * rig, ClothWorld * world,
     gint * code, GError ** error)
 {
-  g_autoptr (ClothPattern) pattern = make_pattern (a, code, error);
+  g_autoptr (ClothShotBoard) shown = make_board (a, code, error);
   g_autoptr (GPtrArray) cameras = NULL;
   g_autoptr (GArray) views =
       g_array_new (FALSE, TRUE, sizeof (ClothBundleView));
@@ -379,11 +459,11 @@ world_of_board (const Arguments * a, const ClothRig * rig, ClothWorld * world,
   g_autoptr (GArray) symmetries = g_array_new (FALSE, FALSE, sizeof (guint));
   gint64 number = 0;
 
-  if (!pattern || !(cameras = sort_arguments (a->cameras + 2, code, error)))
+  if (!shown || !(cameras = sort_arguments (a->cameras + 2, code, error)))
     return FALSE;
   *code = FAILED;
-  add_symmetries (pattern, symmetries);
-  add_board (pattern, board);
+  add_symmetries (shown, symmetries);
+  add_board (shown->pattern, board);
   cloth_shot_cameras_number (cameras);
   for (guint c = 0; c < cameras->len; c++) {
     ClothShotCamera *camera = g_ptr_array_index (cameras, c);
@@ -392,7 +472,7 @@ world_of_board (const Arguments * a, const ClothRig * rig, ClothWorld * world,
     if (!known)
       return cloth_rig_invalid (error, a->cameras[1], "",
           "has no camera \"%s\"", camera->name);
-    if (!cloth_shot_camera_read (camera, pattern, (guint) a->every,
+    if (!cloth_shot_camera_read (camera, shown, (guint) a->every,
             show_reading, NULL, error))
       return FALSE;
     if (camera->width != known->width || camera->height != known->height)
@@ -486,7 +566,7 @@ static gint
 run (gconstpointer data)
 {
   const Arguments *a = data;
-  g_autoptr (ClothPattern) pattern = NULL;
+  g_autoptr (ClothShotBoard) board = NULL;
   g_autoptr (GPtrArray) cameras = NULL;
   g_autoptr (GError) error = NULL;
   g_autofree gchar *folder = NULL;
@@ -514,8 +594,8 @@ run (gconstpointer data)
   if (a->every < 1 || a->max_views < 3 || a->leave_out < 0 || a->leave_out == 1)
     return complain (BAD_USAGE, "--every takes 1 or more, --max-views 3 or "
         "more, --leave-out 0 or 2 or more");
-  pattern = make_pattern (a, &code, &error);
-  if (!pattern)
+  board = make_board (a, &code, &error);
+  if (!board)
     return complain (code, "%s", error->message);
   cameras = sort_arguments (a->cameras, &code, &error);
   if (!cameras)
@@ -530,7 +610,9 @@ run (gconstpointer data)
   for (guint c = 0; c < cameras->len; c++) {
     ClothShotCamera *camera = g_ptr_array_index (cameras, c);
 
-    if (!cloth_shot_camera_read (camera, pattern, (guint) a->every,
+    g_autofree gchar *remedy = NULL;
+
+    if (!cloth_shot_camera_read (camera, board, (guint) a->every,
             show_reading, NULL, &error)) {
       if (isatty (2))
         g_printerr ("\n");
@@ -538,17 +620,13 @@ run (gconstpointer data)
     }
     if (isatty (2) && camera->film)
       g_printerr ("\n");
-    if (a->columns && camera->shots->len == 0
-        && corners_counted (camera, pattern, (guint) a->every))
-      return complain (FAILED,
-          "camera %s: its board has %d × %d corners inside, "
-          "and so %d × %d squares, which is what to give: --columns %d "
-          "--rows %d", camera->name, pattern->columns, pattern->rows,
-          pattern->columns + 1, pattern->rows + 1, pattern->columns + 1,
-          pattern->rows + 1);
+    if (a->columns)
+      remedy = find_remedy (camera, board, (guint) a->every);
+    if (remedy)
+      return complain (FAILED, "camera %s: %s", camera->name, remedy);
   }
   cloth_shot_cameras_choose (cameras, (guint) a->max_views);
-  return calibrate (a, cameras, pattern, lens);
+  return calibrate (a, cameras, board, lens);
 }
 
 int
@@ -563,6 +641,11 @@ main (int argc, char **argv)
     {"rows", 0, 0, G_OPTION_ARG_INT, &a.rows, "Squares in a column", "N"},
     {"square", 0, 0, G_OPTION_ARG_STRING, &a.square,
         "Edge of a square, measured, for instance 25mm", "LENGTH"},
+    {"charuco", 0, 0, G_OPTION_ARG_STRING, &a.charuco,
+        "The white squares have markers of this dictionary, for instance "
+          "5X5_100", "DICTIONARY"},
+    {"marker", 0, 0, G_OPTION_ARG_STRING, &a.marker,
+        "Edge of such a marker, measured", "LENGTH"},
     {"first", 0, 0, G_OPTION_ARG_STRING, &a.first,
         "Colour of the top-left square (black)", "black|white"},
     {"lens", 0, 0, G_OPTION_ARG_STRING, &a.lens,
@@ -617,6 +700,8 @@ main (int argc, char **argv)
   code = tool_main ("gst-cloth-calibrate-1.0",
       "- calibrate cameras from a board", entries, g_strdupv (argv), run, &a);
   g_free (a.pattern);
+  g_free (a.charuco);
+  g_free (a.marker);
   g_free (a.square);
   g_free (a.first);
   g_free (a.lens);

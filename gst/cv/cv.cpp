@@ -2,6 +2,7 @@
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/cv/cv.h"
+#include "gst/cv/guard-private.h"
 
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
@@ -11,46 +12,12 @@
 
 #include <algorithm>
 #include <cstring>
-#include <exception>
 #include <memory>
-#include <new>
 #include <vector>
 
 /* OpenCV doubles the picture by interpolation between the centres of pixels, but takes
  * column x of the large one for x / 2 of the small one, which is (x - 1/2) / 2. */
 #define SIFT_SHIFT 0.25f
-
-GQuark
-cloth_cv_error_quark (void)
-{
-  return g_quark_from_static_string ("cloth-cv-error-quark");
-}
-
-/* Runs @work with OpenCV's threads off: no exception leaves it. */
-template < typename Work > static gboolean
-guard (GError ** error, Work work)
-{
-  try {
-    static const bool once = (cv::setNumThreads (1), true);
-
-    (void) once;
-    work ();
-    return TRUE;
-  } catch (const std::bad_alloc &) {
-    g_set_error_literal (error, CLOTH_CV_ERROR, CLOTH_CV_ERROR_FAILED,
-        "OpenCV has not enough memory");
-  } catch (const cv::Exception & e) {
-    g_set_error (error, CLOTH_CV_ERROR, CLOTH_CV_ERROR_FAILED,
-        "OpenCV failed in %s: %s", e.func.c_str (), e.err.c_str ());
-  } catch (const std::exception & e) {
-    g_set_error (error, CLOTH_CV_ERROR, CLOTH_CV_ERROR_FAILED,
-        "OpenCV failed: %s", e.what ());
-  } catch (...) {
-    g_set_error_literal (error, CLOTH_CV_ERROR, CLOTH_CV_ERROR_FAILED,
-        "OpenCV failed");
-  }
-  return FALSE;
-}
 
 static gboolean
 check_picture (const guint8 * data, gint width, gint height, gint stride,

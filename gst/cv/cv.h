@@ -5,25 +5,12 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include <glib.h>
+#include "gst/cv/error.h"
 
 G_BEGIN_DECLS
 
 /* Largest width and height of a picture, px. */
 #define CLOTH_CV_MAX_SIZE 16384
-
-/* @CLOTH_CV_ERROR_PICTURE: a picture that can't be, or is too small or too large
- * @CLOTH_CV_ERROR_PARAMETER: a parameter is out of its range
- * @CLOTH_CV_ERROR_FAILED: OpenCV threw an exception
- */
-typedef enum {
-  CLOTH_CV_ERROR_PICTURE,
-  CLOTH_CV_ERROR_PARAMETER,
-  CLOTH_CV_ERROR_FAILED
-} ClothCvError;
-
-#define CLOTH_CV_ERROR (cloth_cv_error_quark ())
-GQuark cloth_cv_error_quark (void);
 
 /* @data: (not nullable): top-left pixel
  * @width: pixels a row, 1 to %CLOTH_CV_MAX_SIZE

@@ -66,7 +66,7 @@ ROOMS = [
     Room('gst/take', 'recordings on disk', ['take.h', 'sequence.h', 'recover.h', 'measurement.h', 'import.h', 'summary.h']),
     Room('gst/render', 'pictures of a known cloth',
          ['render.h', 'surface.h', 'coverage.h', 'wireframe.h', 'paint.h', 'draw.h', 'caption.h', 'work.h']),
-    Room('gst/cv', 'what OpenCV does', ['cv.h']),
+    Room('gst/cv', 'what OpenCV does', ['cv.h', 'markers.h']),
     Room('gst/vision', 'pictures in, points out',
          {'': ['image.h'], 'corner': ['saddle.h', 'corner.h', 'edge.h'], 'checker': ['checker.h'],
           'quad': ['quad.h'], 'dot': ['dot.h'], 'label': ['label.h'], 'feature': ['nearest.h'],

@@ -6,6 +6,7 @@
 
 #include "gst/vision/checker/board.h"
 #include "gst/vision/checker/link.h"
+#include "gst/vision/checker/marked.h"
 #include "gst/vision/checker/outline.h"
 #include "gst/vision/checker/pose.h"
 #include "gst/vision/checker/template.h"
