@@ -457,7 +457,7 @@ gst_cloth_sync_start (GstAggregator * agg)
     GstClothSyncPad *pad = GST_CLOTH_SYNC_PAD (l->data);
 
     pad->warned_ahead = pad->warned_back = FALSE;
-    pad->warned_untimed = pad->warned_late = FALSE;
+    pad->warned_untimed = pad->warned_late = pad->was_silent = FALSE;
     pad->used = pad->missing = pad->dropped = pad->implausible = 0;
   }
   GST_OBJECT_UNLOCK (self);
@@ -968,11 +968,14 @@ static GstFlowReturn
 gst_cloth_sync_end (GstClothSync * self, const GstClothSyncHeads * heads)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  guint64 n_sets, n_incomplete, n_all;
   gboolean all_skipped;
-  guint min_views, n_sets, i;
+  guint min_views, i;
 
   GST_OBJECT_LOCK (self);
   n_sets = priv->n_sets;
+  n_incomplete = priv->n_incomplete;
+  n_all = n_sets + priv->n_skipped;
   all_skipped = n_sets == 0 && priv->n_skipped > 0;
   min_views = priv->min_views;
   GST_OBJECT_UNLOCK (self);
@@ -987,6 +990,10 @@ gst_cloth_sync_end (GstClothSync * self, const GstClothSyncHeads * heads)
       gst_cloth_sync_name_camera (self, heads->pad[i]);
       gst_cloth_sync_say_unused (GST_ELEMENT (self), heads->pad[i]);
     }
+  }
+  if (priv->is_live && n_sets > 0) {
+    gst_cloth_sync_say_lost (GST_ELEMENT (self), heads->pad, heads->n, n_all,
+        n_incomplete);
   }
   return GST_FLOW_EOS;
 }

@@ -135,8 +135,8 @@ gst_cloth_sync_say_late (GstElement * element, GstClothSyncPad * pad,
       ("A frame of %s came %.0f ms too late, and was left out of its set.",
           stream, milliseconds (late)),
       ("Raise latency, now %.0f ms, by as much or more, or make what is before "
-          "this element quicker. Later ones are only counted, as \"dropped\" "
-          "in stats.", milliseconds (latency)),
+          "this element quicker. How many came too late is told at the end, and "
+          "counted as \"dropped\" in stats.", milliseconds (latency)),
       ("camera", G_TYPE_STRING, pad->camera_name ? pad->camera_name : "",
           "pad", G_TYPE_STRING, GST_PAD_NAME (pad),
           "seconds", G_TYPE_DOUBLE, (gdouble) late / GST_SECOND, NULL));
@@ -152,6 +152,7 @@ gst_cloth_sync_pad_set_silent (GstClothSyncPad * pad, GstElement * element,
 
   GST_OBJECT_LOCK (element);
   pad->silent = silent;
+  pad->was_silent |= silent;
   GST_OBJECT_UNLOCK (element);
   gst_element_post_message (element,
       gst_message_new_element (GST_OBJECT (element), gst_structure_new (name,
@@ -180,6 +181,40 @@ gst_cloth_sync_say_unused (GstElement * element, GstClothSyncPad * pad)
           "others.", pad->dropped, pad->implausible),
       ("camera", G_TYPE_STRING, pad->camera_name ? pad->camera_name : "",
           "pad", G_TYPE_STRING, GST_PAD_NAME (pad), NULL));
+}
+
+void
+gst_cloth_sync_say_lost (GstElement * element, GstClothSyncPad * const *pads,
+    guint n_pads, guint64 n_sets, guint64 n_incomplete)
+{
+  g_autoptr (GString) lost = g_string_new (NULL);
+  gboolean told = FALSE;
+
+  GST_OBJECT_LOCK (element);
+  for (guint i = 0; i < n_pads; i++) {
+    GstClothSyncPad *pad = pads[i];
+    g_autofree gchar *stream = NULL;
+
+    if (!pad || pad->missing == 0) {
+      continue;
+    }
+    told |= pad->dropped > 0 || pad->was_silent;
+    stream = name_stream (pad);
+    g_string_append_printf (lost, "%s %s in %" G_GUINT64_FORMAT " (%"
+        G_GUINT64_FORMAT " came too late)", lost->len ? ", that of" : "that of",
+        stream, pad->missing, pad->dropped);
+  }
+  GST_OBJECT_UNLOCK (element);
+  if (!told) {
+    return;
+  }
+  GST_ELEMENT_WARNING_WITH_DETAILS (element, STREAM, FAILED,
+      ("%" G_GUINT64_FORMAT " of %" G_GUINT64_FORMAT " sets lacked a picture: "
+          "%s.", n_incomplete, n_sets, lost->str),
+      ("Where pictures came too late raise latency, or make what is before this "
+          "element quicker; see that each camera gives pictures all the time."),
+      ("incomplete", G_TYPE_UINT64, n_incomplete, "sets", G_TYPE_UINT64, n_sets,
+          NULL));
 }
 
 GstStructure *

@@ -39,6 +39,12 @@ void gst_cloth_sync_pad_set_silent (GstClothSyncPad * pad,
 /* The streams have ended: warns where no frame of the pad came into any of the sets. */
 void gst_cloth_sync_say_unused (GstElement * element, GstClothSyncPad * pad);
 
+/* Live streams have ended: sums up which of them the sets lacked, when pictures came too late or
+ * a stream fell silent. @pads has %NULL where there is none */
+void gst_cloth_sync_say_lost (GstElement * element,
+    GstClothSyncPad * const *pads, guint n_pads, guint64 n_sets,
+    guint64 n_incomplete);
+
 /* Returns: (transfer full): the counts of the pad; take the element's object lock */
 GstStructure *gst_cloth_sync_pad_get_stats (GstClothSyncPad * pad);
 

@@ -25,6 +25,7 @@ typedef struct _GstClothSyncPadClass GstClothSyncPadClass;
  * @dropped: frames that came too late
  * @implausible: frames whose time the next one did not bear out
  * @camera_name: of the camera that its frames are of, %NULL while that isn't known
+ * @was_silent: it has been, since the start
  * @silent: nothing has come for a while; with the counts under the element's object lock
  *
  * A sink pad. A subclass of #GstClothSync that gives its pads properties derives them from
@@ -37,7 +38,7 @@ struct _GstClothSyncPad {
   GstClockTime period;
   guint64 used, missing, dropped, implausible;
   gchar *camera_name;
-  gboolean silent;
+  gboolean silent, was_silent;
 
   /*< private > */
   /* object lock of the pad */

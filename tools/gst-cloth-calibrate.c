@@ -572,6 +572,7 @@ run (gconstpointer data)
   g_autofree gchar *folder = NULL;
   gboolean finished = a->cameras && a->cameras[0]
       && !strcmp (a->cameras[0], "upright");
+  gboolean named;
   ClothLens lens;
   gint code;
 
@@ -597,7 +598,8 @@ run (gconstpointer data)
   board = make_board (a, &code, &error);
   if (!board)
     return complain (code, "%s", error->message);
-  cameras = sort_arguments (a->cameras, &code, &error);
+  named = a->cameras && a->cameras[0] && !strcmp (a->cameras[0], "calibrate");
+  cameras = sort_arguments (a->cameras + named, &code, &error);
   if (!cameras)
     return complain (code, "%s", error->message);
   /* Better now than after an hour of reading. */
@@ -629,67 +631,93 @@ run (gconstpointer data)
   return calibrate (a, cameras, board, lens);
 }
 
+static const ToolCommand commands[] = {
+  {"calibrate", "CAMERA=FILE…",
+        "Calibrates cameras from pictures or films of a board. The word may be left "
+        "out. Cameras of\nother programs are taken over by --import-opencv, "
+        "--import-kalibr and --import-mrcal, without\npictures.",
+      "gst-cloth-calibrate-1.0 calibrate --pattern board/pattern.json "
+        "--output rig.json \\\n    left=left.mp4 right=right.mp4"},
+  {"upright", "RIG [CAMERA=FILE…]",
+        "Moves the world of a finished rig: z up in the first camera's picture, off "
+        "a board that lies\nlevel (--world board, with pictures of it), or as points "
+        "have it whose places are known.",
+      "gst-cloth-calibrate-1.0 upright rig.json --world board "
+        "--pattern board/pattern.json \\\n    --output upright.json left=floor.jpg"},
+  {"refine", "RIG TAKE",
+        "Corrects the cameras of a rig, their directions, places, focal lengths and "
+        "clocks, by what they\nsaw of a cloth: a take with observations.",
+      "gst-cloth-calibrate-1.0 refine rig.json cloth.take --output refined.json"},
+  {NULL}
+};
+
 int
 main (int argc, char **argv)
 {
   Arguments a = {.every = 10,.max_views = 60,.leave_out = 5 };
   const GOptionEntry entries[] = {
     {"pattern", 'p', 0, G_OPTION_ARG_FILENAME, &a.pattern,
-        "The board's pattern.json", "FILE"},
+        "calibrate, upright: The board's pattern.json", "FILE"},
     {"columns", 0, 0, G_OPTION_ARG_INT, &a.columns,
-        "Without it: squares in a row", "N"},
-    {"rows", 0, 0, G_OPTION_ARG_INT, &a.rows, "Squares in a column", "N"},
+        "calibrate, upright: Without it: squares in a row", "N"},
+    {"rows", 0, 0, G_OPTION_ARG_INT, &a.rows,
+        "calibrate, upright: Squares in a column", "N"},
     {"square", 0, 0, G_OPTION_ARG_STRING, &a.square,
-        "Edge of a square, measured, for instance 25mm", "LENGTH"},
+          "calibrate, upright: Edge of a square, measured, for instance 25mm",
+        "LENGTH"},
     {"charuco", 0, 0, G_OPTION_ARG_STRING, &a.charuco,
-        "The white squares have markers of this dictionary, for instance "
+        "calibrate, upright: The white squares have markers of this dictionary, for instance "
           "5X5_100", "DICTIONARY"},
     {"marker", 0, 0, G_OPTION_ARG_STRING, &a.marker,
-        "Edge of such a marker, measured", "LENGTH"},
+        "calibrate, upright: Edge of such a marker, measured", "LENGTH"},
     {"first", 0, 0, G_OPTION_ARG_STRING, &a.first,
-        "Colour of the top-left square (black)", "black|white"},
+          "calibrate, upright: Colour of the top-left square (black)",
+        "black|white"},
     {"lens", 0, 0, G_OPTION_ARG_STRING, &a.lens,
-        "none, brown5, brown8 or fisheye (brown5)", "MODEL"},
+        "calibrate: none, brown5, brown8 or fisheye (brown5)", "MODEL"},
     {"share-lens", 0, 0, G_OPTION_ARG_NONE, &a.share_lens,
-        "All cameras have the same distortion", NULL},
+        "calibrate: All cameras have the same distortion", NULL},
     {"intrinsics-only", 0, 0, G_OPTION_ARG_NONE, &a.intrinsics_only,
-        "The cameras' pictures were not taken at the same moments", NULL},
+          "calibrate: The cameras' pictures were not taken at the same moments",
+        NULL},
     {"warp", 0, 0, G_OPTION_ARG_NONE, &a.warp,
-        "The board may be bent: find how", NULL},
+        "calibrate: The board may be bent: find how", NULL},
     {"world", 0, 0, G_OPTION_ARG_STRING, &a.world,
-          "World's origin: the first camera, z up in its picture; the board "
+          "calibrate, upright: World's origin: the first camera, z up in its picture; the board "
           "in the first picture, z off it; or as --points have it (camera)",
         "camera|board|points"},
     {"points", 0, 0, G_OPTION_ARG_FILENAME, &a.points,
-        "Lines camera,x,y,X,Y,Z: pixels of points whose places in the world "
+        "calibrate, upright: Lines camera,x,y,X,Y,Z: pixels of points whose places in the world "
           "are known, in metres", "FILE"},
     {"every", 0, 0, G_OPTION_ARG_INT, &a.every,
-        "Look at every so many-th frame of films (10)", "N"},
+          "calibrate, upright: Look at every so many-th frame of films (10)",
+        "N"},
     {"max-views", 0, 0, G_OPTION_ARG_INT, &a.max_views,
-        "Keep so many frames of films, those that differ most (60)", "N"},
+          "calibrate: Keep so many frames of films, those that differ most (60)",
+        "N"},
     {"leave-out", 0, 0, G_OPTION_ARG_INT, &a.leave_out,
-          "Check by fitting without every so many-th view; 0: no check (5)",
+          "calibrate: Check by fitting without every so many-th view; 0: no check (5)",
         "N"},
     {"import-opencv", 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &a.opencv,
-        "Take over OpenCV's YAML; several times for intrinsics and extrinsics "
+        "calibrate: Take over OpenCV's YAML; several times for intrinsics and extrinsics "
           "in files of their own, or for several cameras", "FILE"},
     {"import-kalibr", 0, 0, G_OPTION_ARG_FILENAME, &a.kalibr,
-        "Take over Kalibr's camera chain", "FILE"},
+        "calibrate: Take over Kalibr's camera chain", "FILE"},
     {"import-mrcal", 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &a.mrcal,
-          "Take over mrcal's .cameramodel; several times for several cameras",
+          "calibrate: Take over mrcal's .cameramodel; several times for several cameras",
         "FILE"},
     {"export-mrcal", 0, 0, G_OPTION_ARG_FILENAME, &a.export_mrcal,
-        "Also write each camera as .cameramodel", "FOLDER"},
+        "calibrate, upright: Also write each camera as .cameramodel", "FOLDER"},
     {"size", 0, 0, G_OPTION_ARG_STRING, &a.size,
-          "Picture size of an OpenCV calibration that doesn't say it",
+          "calibrate: Picture size of an OpenCV calibration that doesn't say it",
         "WIDTHxHEIGHT"},
     {"output", 'o', 0, G_OPTION_ARG_FILENAME, &a.output,
         "The rig.json to write", "FILE"},
     {"report", 0, 0, G_OPTION_ARG_FILENAME, &a.report,
-          "The page that shows it (calibration.html beside the rig.json)",
+          "calibrate: The page that shows it (calibration.html beside the rig.json)",
         "FILE"},
     {G_OPTION_REMAINING, 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &a.cameras, NULL,
-        "CAMERA=FILE… | upright RIG [CAMERA=FILE…] | refine RIG TAKE"},
+        "[calibrate] CAMERA=FILE… | upright RIG [CAMERA=FILE…] | refine RIG TAKE"},
     {NULL}
   };
   gint code;
@@ -697,8 +725,9 @@ main (int argc, char **argv)
   a.first = g_strdup ("black");
   a.lens = g_strdup ("brown5");
   a.world = g_strdup ("camera");
-  code = tool_main ("gst-cloth-calibrate-1.0",
-      "- calibrate cameras from a board", entries, g_strdupv (argv), run, &a);
+  code = tool_main_commands ("gst-cloth-calibrate-1.0",
+      "- calibrate cameras from a board", commands, entries, g_strdupv (argv),
+      run, &a);
   g_free (a.pattern);
   g_free (a.charuco);
   g_free (a.marker);

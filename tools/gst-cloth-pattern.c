@@ -417,6 +417,30 @@ run (gconstpointer data)
       : run_checker (arguments, kind == CODED);
 }
 
+static const ToolCommand commands[] = {
+  {"checker", "",
+        "A plain checkerboard: for cloth that is seen whole, and for calibration.",
+      "gst-cloth-pattern-1.0 checker --columns 10 --rows 7 --square 25mm --paper A4 "
+        "\\\n    --output board.pdf"},
+  {"coded-checker", "",
+        "A checkerboard with dots in some squares: any 4 × 4 of them tell their place.",
+      "gst-cloth-pattern-1.0 coded-checker --columns 16 --rows 20 --square 40mm "
+        "--output cloth.pdf"},
+  {"m-array", "",
+        "Dots of a few colours, of which any 3 × 3 tell their place: for garments.",
+      "gst-cloth-pattern-1.0 m-array --columns 30 --rows 40 --pitch 20mm "
+        "--two-sided \\\n    --output dots.pdf"},
+  {"picture", "[SCAN]",
+        "A print of shapes without repetition to write, or with a scan the "
+        "pattern.json of cloth\nthat is printed already.",
+      "gst-cloth-pattern-1.0 picture scan.png --width 0.8m --output pattern.json"},
+  {"garment", "DRAWING",
+        "Cuts a garment's panels, drawn as SVG, out of a print of dots.",
+      "gst-cloth-pattern-1.0 garment skirt.svg --pattern dots/pattern.json "
+        "--output skirt"},
+  {NULL}
+};
+
 int
 main (int argc, char **argv)
 {
@@ -426,48 +450,57 @@ main (int argc, char **argv)
   };
   const GOptionEntry entries[] = {
     {"columns", 0, 0, G_OPTION_ARG_INT, &arguments.columns,
-        "Squares in a row (8); dots (76); of a picture vertices of the mesh (as "
+        "checker, coded-checker, m-array, picture: Squares in a row (8); dots (76); of a picture vertices of the mesh (as "
           "make cells of about 20mm)", "N"},
     {"rows", 0, 0, G_OPTION_ARG_INT, &arguments.rows,
-        "Squares in a column (8); dots (251); of a picture vertices", "N"},
+          "checker, coded-checker, m-array, picture: Squares in a column (8); dots (251); of a picture vertices",
+        "N"},
     {"width", 0, 0, G_OPTION_ARG_STRING, &arguments.width,
-        "Width of the cloth that a picture shows", "LENGTH"},
+        "picture: Width of the cloth that a picture shows", "LENGTH"},
     {"height", 0, 0, G_OPTION_ARG_STRING, &arguments.height,
-          "Height of it (by the shape of the scan; of a sheet as its width)",
+          "picture: Height of it (by the shape of the scan; of a sheet as its width)",
         "LENGTH"},
     {"sides", 0, 0, G_OPTION_ARG_INT, &arguments.sides,
-        "2 for a picture that is seen from both sides of the cloth (1)", "N"},
+          "picture: 2 for a picture that is seen from both sides of the cloth (1)",
+        "N"},
     {"square", 0, 0, G_OPTION_ARG_STRING, &arguments.square,
-        "Edge of a square (50mm)", "LENGTH"},
+        "checker, coded-checker: Edge of a square (50mm)", "LENGTH"},
     {"margin", 0, 0, G_OPTION_ARG_STRING, &arguments.margin,
-        "Plain cloth around the board (half a square), or from the centres of "
+        "checker, coded-checker, m-array: Plain cloth around the board (half a square), or from the centres of "
           "the outer dots to the edge (half the pitch)", "LENGTH"},
     {"first", 0, 0, G_OPTION_ARG_STRING, &arguments.first,
-        "Colour of the top-left square (black)", "black|white"},
+          "checker, coded-checker: Colour of the top-left square (black)",
+        "black|white"},
     {"dot-ratio", 0, 0, G_OPTION_ARG_DOUBLE, &arguments.dot_ratio,
-        "Diameter of a code's dot over its square's edge (0.3)", "RATIO"},
+          "coded-checker: Diameter of a code's dot over its square's edge (0.3)",
+        "RATIO"},
     {"pitch", 0, 0, G_OPTION_ARG_STRING, &arguments.pitch,
-        "From the centre of a dot to that of the next (20mm)", "LENGTH"},
+          "m-array: From the centre of a dot to that of the next (20mm)",
+        "LENGTH"},
     {"diameter", 0, 0, G_OPTION_ARG_STRING, &arguments.diameter,
-        "Diameter of a dot (0.65 of the pitch)", "LENGTH"},
+        "m-array: Diameter of a dot (0.65 of the pitch)", "LENGTH"},
     {"colours", 0, 0, G_OPTION_ARG_INT, &arguments.colours,
-        "Colours of dots, 2 to 8 (5)", "N"},
+        "m-array: Colours of dots, 2 to 8 (5)", "N"},
     {"distance", 0, 0, G_OPTION_ARG_INT, &arguments.distance,
-        "Dots by which any two windows of 3 by 3 differ at least (1)", "N"},
+          "m-array: Dots by which any two windows of 3 by 3 differ at least (1)",
+        "N"},
     {"two-sided", 0, 0, G_OPTION_ARG_NONE, &arguments.two_sided,
-          "Tell windows from mirror images: the print is seen from both sides",
+          "m-array: Tell windows from mirror images: the print is seen from both sides",
         NULL},
     {"seed", 0, 0, G_OPTION_ARG_INT64, &arguments.seed,
-        "Which code: equal seeds give equal patterns (1)", "N"},
+          "coded-checker, m-array, picture: Which code: equal seeds give equal patterns (1)",
+        "N"},
     {"paper", 0, 0, G_OPTION_ARG_STRING, &arguments.paper,
-        "A0 to A5, letter, legal, tabloid, a size as 600x900mm, or one page "
+        "checker, coded-checker, m-array, picture: A0 to A5, letter, legal, tabloid, a size as 600x900mm, or one page "
           "as large as it takes (cloth)", "PAPER"},
     {"page-margin", 0, 0, G_OPTION_ARG_STRING, &arguments.page_margin,
-        "Edge of the paper that stays blank (10mm)", "LENGTH"},
+          "checker, coded-checker, m-array, picture: Edge of the paper that stays blank (10mm)",
+        "LENGTH"},
     {"overlap", 0, 0, G_OPTION_ARG_STRING, &arguments.overlap,
-        "What neighbouring sheets share (10mm)", "LENGTH"},
+          "checker, coded-checker, m-array, picture: What neighbouring sheets share (10mm)",
+        "LENGTH"},
     {"pattern", 0, 0, G_OPTION_ARG_FILENAME, &arguments.pattern,
-        "pattern.json of the dots that a garment is cut from", "FILE"},
+        "garment: pattern.json of the dots that a garment is cut from", "FILE"},
     {"output", 'o', 0, G_OPTION_ARG_FILENAME, &arguments.output,
         "File to write, .pdf or .svg; pattern.json is put beside it. Of a "
           "scan the pattern.json, of a garment the folder", "FILE"},
@@ -478,9 +511,9 @@ main (int argc, char **argv)
   gint code;
 
   gst_init (NULL, NULL);
-  code = tool_main ("gst-cloth-pattern-1.0",
-      "- print patterns at true size", entries, g_strdupv (argv), run,
-      &arguments);
+  code = tool_main_commands ("gst-cloth-pattern-1.0",
+      "- print patterns at true size", commands, entries, g_strdupv (argv),
+      run, &arguments);
 
   g_free (arguments.square);
   g_free (arguments.pattern);

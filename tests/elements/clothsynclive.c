@@ -54,6 +54,24 @@ GST_START_TEST (test_live_deadline)
 
 GST_END_TEST;
 
+/* The end sums up what the sets lacked; %NULL: nothing that is worth a word. */
+static void
+expect_loss (Bench * b, const gchar * says)
+{
+  g_autoptr (GstMessage) warning = NULL;
+  g_autoptr (GError) error = NULL;
+
+  eos (b, 0);
+  eos (b, 1);
+  expect_eos (b);
+  warning = message_of (b, GST_MESSAGE_WARNING);
+  fail_unless ((warning != NULL) == (says != NULL));
+  if (warning) {
+    gst_message_parse_warning (warning, &error, NULL);
+    fail_unless (strstr (error->message, says) != NULL, "%s", error->message);
+  }
+}
+
 /* The message says which pad fell silent or is back, and how long it was silent. */
 static void
 expect_silence (Bench * b, const gchar * name, guint pad, gdouble seconds)
@@ -137,6 +155,8 @@ GST_START_TEST (test_live_silent_pad)
   expect (&b, 1200 * MS, 3);
   expect_silence (&b, "sync/back", 1, 1.2);
   fail_unless_equals_uint64 (stat_of (&b, "incomplete"), 11);
+  expect_loss (&b, "11 of 13 sets lacked a picture: that of pad sink_1 in 11 (0 "
+      "came too late)");
   gst_object_unref (clock);
   bench_clear (&b);
 }
@@ -392,6 +412,8 @@ GST_START_TEST (test_live_late)
   more = message_of (&b, GST_MESSAGE_WARNING);
   fail_unless (more == NULL);
   fail_unless_equals_uint64 (stat_of_pad (&b, 1, "dropped"), 2);
+  expect_loss (&b, "2 of 5 sets lacked a picture: that of pad sink_1 in 2 (2 "
+      "came too late)");
   gst_object_unref (clock);
   bench_clear (&b);
 }

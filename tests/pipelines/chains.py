@@ -46,7 +46,7 @@ def check(condition, text):
 
 def run(description, on_buffer=None):
     """Plays a pipeline to its end. Every appsink feeds on_buffer (name, buffer, caps).
-    Returns the element messages and the errors."""
+    Returns how many buffers each got, the error if there was one, and the warnings."""
     print('gst-launch-1.0 ' + description)
     pipeline = Gst.parse_launch(description)
     counts = {}
@@ -72,19 +72,25 @@ def run(description, on_buffer=None):
 
     bus = pipeline.get_bus()
     pipeline.set_state(Gst.State.PLAYING)
-    message = bus.timed_pop_filtered(TIMEOUT_S * Gst.SECOND,
-                                     Gst.MessageType.EOS | Gst.MessageType.ERROR)
+    warnings = []
+    while True:
+        message = bus.timed_pop_filtered(TIMEOUT_S * Gst.SECOND, Gst.MessageType.EOS
+                                         | Gst.MessageType.ERROR | Gst.MessageType.WARNING)
+        if message is None or message.type != Gst.MessageType.WARNING:
+            break
+        warnings.append(message.parse_warning().gerror.message)
+        print('warning: ' + warnings[-1])
     error = None
     if message is None:
         error = 'neither an end nor an error within %d s' % TIMEOUT_S
     elif message.type == Gst.MessageType.ERROR:
         error = message.parse_error().gerror.message
     check(pipeline.set_state(Gst.State.NULL) == Gst.StateChangeReturn.SUCCESS, 'it stops')
-    return counts, error
+    return counts, error, warnings
 
 
 def play(description, on_buffer=None):
-    counts, error = run(description, on_buffer)
+    counts, error, _ = run(description, on_buffer)
     check(error is None, 'it runs to its end' + (': ' + error if error else ''))
     return counts
 
@@ -235,6 +241,32 @@ def case_live_pair(data):
     check(count['sink'] >= 15, '%d meshes' % count['sink'])
 
 
+def case_realtime(data):
+    """Two films in real time: what the meshes lack is told, and nothing lacks where nothing is told.
+    Then one camera comes half a second late, which is more than `latency` waits."""
+    pair = Pair(data)
+    for late in (False, True):
+        empty = [0]
+
+        def keep(name, buffer, caps):
+            mesh = GstCloth.Mesh.from_buffer(buffer)
+            points = numpy.frombuffer(mesh.get_points().get_data(), numpy.float32)
+            empty[0] += not numpy.isfinite(points).any()
+
+        counts, error, warnings = run(
+            '%s ! appsink name=sink  %s ! identity sync=true ! %s ! queue ! join.'
+            '  %s ! identity sync=true ts-offset=%d ! %s ! queue ! join.'
+            % (pair.join(), pair.film('cam0'), pair.track('cam0'), pair.film('cam1'),
+               500000000 * late, pair.track('cam1')), keep)
+        told = [w for w in warnings if 'sets lacked a picture' in w]
+        check(error is None and counts['sink'] > 0, '%d meshes, %d empty: %s' % (counts['sink'], empty[0], told))
+        check(bool(told) == (empty[0] > 0), 'told where meshes are empty, and only there')
+        if late:
+            check(empty[0] > 10 and 'camera "cam1"' in told[0] and any(
+                'camera "cam1"' in w and 'too late' in w for w in warnings if w not in told),
+                  'the late camera is named')
+
+
 def case_early_end(data):
     """One camera ends after 20 frames: the mesh ends in order, nothing hangs."""
     pair = Pair(data)
@@ -311,7 +343,7 @@ def case_bad(data):
              'rig'),
             ('%s ! fakesink  %s %s ! join.' % (pair.join(), chain, pair.track('nobody')),
              'camera')):
-        _, error = run(description)
+        _, error, _ = run(description)
         check(error is not None and word in error.lower(), 'error: %s' % error)
 
 
