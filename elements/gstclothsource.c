@@ -109,7 +109,7 @@ check_times (GstClothSource * self, const GstClothSourceStream * stream)
 /* @source: the source, in its open method
  * @stream: what it is going to send
  *
- * Checks the stream and tells its caps and duration.
+ * Checks the stream and tells its caps.
  *
  * Returns: %FALSE when the stream can't be sent; an error was posted
  */
@@ -143,7 +143,6 @@ gst_cloth_source_publish (GstClothSource * source,
   caps = gst_cloth_topology_to_caps (sent, priv->fps_n, priv->fps_d);
   GST_OBJECT_LOCK (source);
   gst_caps_take (&priv->caps, caps);
-  GST_BASE_SRC (source)->segment.duration = frame_time (priv, priv->n_frames);
   GST_OBJECT_UNLOCK (source);
   GST_INFO_OBJECT (source, "%" G_GINT64_FORMAT " frames, %" GST_TIME_FORMAT,
       priv->n_frames, GST_TIME_ARGS (frame_time (priv, priv->n_frames)));
@@ -197,14 +196,37 @@ gst_cloth_source_stop (GstBaseSrc * src)
   return TRUE;
 }
 
+/* The base has begun a segment. */
 static gboolean
 gst_cloth_source_start (GstBaseSrc * src)
 {
-  if (GST_CLOTH_SOURCE_GET_CLASS (src)->open (GST_CLOTH_SOURCE (src)))
-    return TRUE;
+  GstClothSourcePrivate *priv =
+      gst_cloth_source_get_instance_private (GST_CLOTH_SOURCE (src));
+
+  GST_OBJECT_LOCK (src);
+  src->segment.duration = frame_time (priv, priv->n_frames);
+  GST_OBJECT_UNLOCK (src);
+  return TRUE;
+}
+
+/* What is wrong is said here, before the base starts: after that the base would say that it was
+ * not. */
+static GstStateChangeReturn
+gst_cloth_source_change_state (GstElement * element, GstStateChange transition)
+{
+  GstStateChangeReturn result = GST_STATE_CHANGE_FAILURE;
+  gboolean opens = transition == GST_STATE_CHANGE_READY_TO_PAUSED;
+
+  if (!opens
+      ||
+      GST_CLOTH_SOURCE_GET_CLASS (element)->open (GST_CLOTH_SOURCE (element)))
+    result =
+        GST_ELEMENT_CLASS (gst_cloth_source_parent_class)->change_state
+        (element, transition);
   /* nobody else does when the start has failed */
-  gst_cloth_source_stop (src);
-  return FALSE;
+  if (opens && result == GST_STATE_CHANGE_FAILURE)
+    gst_cloth_source_stop (GST_BASE_SRC (element));
+  return result;
 }
 
 static GstCaps *
@@ -349,6 +371,7 @@ gst_cloth_source_class_init (GstClothSourceClass * klass)
       "base of sources of mesh streams");
   gst_element_class_add_static_pad_template (GST_ELEMENT_CLASS (klass),
       &src_template);
+  GST_ELEMENT_CLASS (klass)->change_state = gst_cloth_source_change_state;
   src_class->start = gst_cloth_source_start;
   src_class->stop = gst_cloth_source_stop;
   src_class->unlock = gst_cloth_source_unlock;

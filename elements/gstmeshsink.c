@@ -332,9 +332,8 @@ warn_of_remains (GstMeshSink * self)
 }
 
 static gboolean
-gst_mesh_sink_start (GstBaseSink * sink)
+check_settings (GstMeshSink * self)
 {
-  GstMeshSink *self = GST_MESH_SINK (sink);
   g_autoptr (GError) error = NULL;
 
   if (!self->settings.location || !*self->settings.location) {
@@ -343,12 +342,32 @@ gst_mesh_sink_start (GstBaseSink * sink)
         ("Set the property location to a file or folder, as cloth.obj."));
     return FALSE;
   }
-  if (!cloth_mesh_format_check (self->settings.location, self->settings.format,
-          &error)) {
-    gst_mesh_post_error (GST_ELEMENT (self), "write", self->settings.location,
-        TRUE, error);
-    return FALSE;
-  }
+  if (cloth_mesh_format_check (self->settings.location, self->settings.format,
+          &error))
+    return TRUE;
+  gst_mesh_post_error (GST_ELEMENT (self), "write", self->settings.location,
+      TRUE, error);
+  return FALSE;
+}
+
+/* What is wrong is said here, before the base starts: after that the base would say that it was
+ * not. */
+static GstStateChangeReturn
+gst_mesh_sink_change_state (GstElement * element, GstStateChange transition)
+{
+  GstMeshSink *self = GST_MESH_SINK (element);
+
+  if (transition == GST_STATE_CHANGE_NULL_TO_READY && !check_settings (self))
+    return GST_STATE_CHANGE_FAILURE;
+  return GST_ELEMENT_CLASS (gst_mesh_sink_parent_class)->change_state (element,
+      transition);
+}
+
+static gboolean
+gst_mesh_sink_start (GstBaseSink * sink)
+{
+  GstMeshSink *self = GST_MESH_SINK (sink);
+
   warn_of_remains (self);
   self->failed = FALSE;
   return TRUE;
@@ -394,6 +413,7 @@ gst_mesh_sink_class_init (GstMeshSinkClass * klass)
       "Sink/File",
       "Writes a mesh stream to OBJ + PC2, PLY, glTF, USD, VTP, C3D, CSV or a take",
       "The gst-cloth developers");
+  element_class->change_state = gst_mesh_sink_change_state;
   sink_class->set_caps = gst_mesh_sink_set_caps;
   sink_class->render = gst_mesh_sink_render;
   sink_class->event = gst_mesh_sink_event;

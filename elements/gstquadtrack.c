@@ -37,6 +37,9 @@ GST_DEBUG_CATEGORY_STATIC (quad_track_debug);
  *     quadtrack columns=8 rows=8 ! clothoverlay ! videoconvert ! autovideosink
  * ```
  */
+/* So many corners are a piece of a board whose place its code tells. */
+#define MIN_CORNERS 16
+
 /* A square given by hand: its corners, px, and which one of the board it is, -1 where that
  * is not told. */
 typedef struct
@@ -72,6 +75,7 @@ struct _GstQuadTrack
   GArray *candidates;           /* GstClothCandidate */
   GArray *quads;                /* GstClothQuad */
   gboolean found;
+  guint n_pictures, n_with_squares;     /* that have corners; of them those tracked */
   gboolean warned_of_start, warned_of_seed;
   Seed first_seed;              /* of the property */
   gboolean has_first_seed, knows_first, was_reset;
@@ -299,6 +303,7 @@ gst_quad_track_start (GstClothFilter * filter)
   }
   self->tracker = cloth_quad_tracker_new (self->pattern);
   self->found = FALSE;
+  self->n_pictures = self->n_with_squares = 0;
   self->warned_of_start = self->warned_of_seed = FALSE;
   return TRUE;
 }
@@ -492,11 +497,39 @@ gst_quad_track_analyse (GstClothFilter * filter,
       MIN (n, GST_CLOTH_MAX_FEATURES));
   check_tracked (self, &params, n_tracked);
   gst_quad_track_tell (self, frame, n_tracked);
+  if (n_saddles >= MIN_CORNERS) {
+    self->n_pictures++;
+    self->n_with_squares += n_tracked > 0;
+  }
   GST_LOG_OBJECT (self, "%u saddles, %u squares tracked", n_saddles, n_tracked);
   return GST_FLOW_OK;
 }
 
 /* Four left clicks make a seed, a right click takes back those made so far. */
+/* The film has ended: says so when in most pictures corners were seen that are not the board's. */
+static void
+tell_of_pattern (GstQuadTrack * self)
+{
+  if (2 * self->n_with_squares >= self->n_pictures)
+    return;
+  GST_ELEMENT_WARNING_WITH_DETAILS (self, STREAM, FAILED,
+      ("Squares were tracked in %u of the %u pictures that show %d corners or "
+          "more.", self->n_with_squares, self->n_pictures, MIN_CORNERS),
+      ("See that pattern is the file of the board that is filmed, and that its "
+          "squares are large enough: eight pixels or more."),
+      ("pictures", G_TYPE_UINT, self->n_pictures, "tracked", G_TYPE_UINT,
+          self->n_with_squares, NULL));
+}
+
+static gboolean
+gst_quad_track_sink_event (GstBaseTransform * trans, GstEvent * event)
+{
+  if (GST_EVENT_TYPE (event) == GST_EVENT_EOS)
+    tell_of_pattern (GST_QUAD_TRACK (trans));
+  return GST_BASE_TRANSFORM_CLASS (gst_quad_track_parent_class)->sink_event
+      (trans, event);
+}
+
 static gboolean
 gst_quad_track_src_event (GstBaseTransform * trans, GstEvent * event)
 {
@@ -571,6 +604,7 @@ gst_quad_track_class_init (GstQuadTrackClass * klass)
       "Filter/Analyzer/Video",
       "Tracks the squares of a checkerboard on cloth",
       "The gst-cloth developers");
+  trans_class->sink_event = gst_quad_track_sink_event;
   trans_class->src_event = gst_quad_track_src_event;
   filter_class->start = gst_quad_track_start;
   filter_class->stop = gst_quad_track_stop;

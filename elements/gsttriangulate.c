@@ -279,8 +279,9 @@ check_judge (Check * check, GstElement * element,
     GST_ELEMENT_WARNING_WITH_DETAILS (element, STREAM, FAILED,
         ("Camera \"%s\" contradicts the others on %.0f%% of the %s it sees.",
             rig->cameras[worst].name, 100. * share, board->features),
-        ("See that each pad has its own camera and that the cameras stand as when "
-            "rig was made; else calibrate again, or raise error-floor."),
+        ("See that each pad has its own camera, that pattern is that of the cloth "
+            "that is filmed, and that the cameras stand as when rig was made; else "
+            "calibrate again, or raise error-floor."),
         ("camera", G_TYPE_STRING, rig->cameras[worst].name, NULL));
   }
 }

@@ -8,6 +8,7 @@ Packages: python3-gi, python3-gst-1.0 (memory without a copy), python3-numpy.
 
 SPDX-License-Identifier: LGPL-2.1-or-later
 """
+import signal
 import sys
 
 import gi
@@ -19,25 +20,26 @@ import numpy
 
 
 def samples(description, **properties):
-    """Each sample that reaches the pipeline's appsink; an error ends the program."""
+    """Each sample that reaches the pipeline's appsink. An error ends the program, warnings go to the
+    error stream: of late pictures, another print than was said, cameras that contradict each other."""
     pipeline = Gst.parse_launch(description + ' ! appsink name=sink sync=false')
     for name, value in properties.items():
         element, _, key = name.partition('_')
         pipeline.get_by_name(element).set_property(key, value)
-    sink = pipeline.get_by_name('sink')
-    message = None
+    sink, bus = pipeline.get_by_name('sink'), pipeline.get_bus()
     pipeline.set_state(Gst.State.PLAYING)
-    while message is None:
-        sample = sink.emit('try-pull-sample', Gst.SECOND // 10)
-        if sample is not None:
-            yield sample
-        elif sink.get_property('eos'):
-            break
-        # An element that can't go on says so on the bus, and sends nothing more.
-        message = pipeline.get_bus().pop_filtered(Gst.MessageType.ERROR)
-    pipeline.set_state(Gst.State.NULL)
-    if message:
-        sys.exit(message.parse_error()[0].message)
+    try:
+        while not sink.get_property('eos'):
+            sample = sink.emit('try-pull-sample', Gst.SECOND // 10)
+            if sample is not None:
+                yield sample
+            # An element that can't go on says so on the bus, and sends nothing more.
+            while message := bus.pop_filtered(Gst.MessageType.ERROR | Gst.MessageType.WARNING):
+                if message.type == Gst.MessageType.ERROR:
+                    sys.exit(message.parse_error()[0].message)
+                print('warning:', message.parse_warning()[0].message, file=sys.stderr)
+    finally:
+        pipeline.set_state(Gst.State.NULL)
 
 
 def squares(film, pattern):
@@ -75,6 +77,8 @@ def meshes(take):
 
 
 Gst.init(None)
+# Who reads only the first lines, as head does, ends this program without a word.
+signal.signal(signal.SIGPIPE, signal.SIG_DFL)
 if len(sys.argv) == 4 and sys.argv[1] == 'squares':
     squares(*sys.argv[2:])
 elif len(sys.argv) == 3 and sys.argv[1] == 'meshes':

@@ -33,28 +33,35 @@ picture_passes (GstPad * pad, GstPadProbeInfo * info, gpointer data)
   return GST_PAD_PROBE_OK;
 }
 
-/* FALSE after an error, which is printed. */
+/* FALSE after an error. It is printed, and so are warnings: of late pictures, of another print
+ * than was said. */
 static gboolean
 play (GstElement * pipeline)
 {
   GstBus *bus = gst_element_get_bus (pipeline);
-  GstMessage *message;
-  gboolean good;
+  gboolean good = TRUE, going_on = TRUE;
 
   gst_element_set_state (pipeline, GST_STATE_PLAYING);
-  message = gst_bus_timed_pop_filtered (bus, GST_CLOCK_TIME_NONE,
-      GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
-  good = GST_MESSAGE_TYPE (message) == GST_MESSAGE_EOS;
-  if (!good) {
+  while (going_on) {
+    GstMessage *message = gst_bus_timed_pop_filtered (bus, GST_CLOCK_TIME_NONE,
+        GST_MESSAGE_EOS | GST_MESSAGE_ERROR | GST_MESSAGE_WARNING);
     GError *error = NULL;
     gchar *debug = NULL;
 
-    gst_message_parse_error (message, &error, &debug);
-    g_printerr ("%s\n%s\n", error->message, debug ? debug : "");
+    if (GST_MESSAGE_TYPE (message) == GST_MESSAGE_WARNING) {
+      gst_message_parse_warning (message, &error, &debug);
+    } else {
+      going_on = FALSE;
+      good = GST_MESSAGE_TYPE (message) == GST_MESSAGE_EOS;
+      if (!good)
+        gst_message_parse_error (message, &error, &debug);
+    }
+    if (error)
+      g_printerr ("%s\n%s\n", error->message, debug ? debug : "");
+    g_clear_error (&error);
     g_free (debug);
-    g_error_free (error);
+    gst_message_unref (message);
   }
-  gst_message_unref (message);
   gst_object_unref (bus);
   gst_element_set_state (pipeline, GST_STATE_NULL);
   return good;

@@ -78,6 +78,8 @@ if ! any_located "$out/cloth.take"; then
       "the picture of the print that was filmed and $rig the cameras as they stood" >&2
   exit 1
 fi
+# Which way was up stays in the take.
+cp "$rig" "$out/cloth.take/rig.json"
 launch meshsrc "location=$out/cloth.take" ! meshsink "location=$out/cloth.obj"
 
 heading "A check over the first film"

@@ -324,6 +324,21 @@ move_calibration (const Arguments * a, ClothCalibration * result,
   return TRUE;
 }
 
+/* A page for each rig of a folder: calibration.html for rig.json, NAME-calibration.html for others. */
+static gchar *
+page_beside (const gchar * rig)
+{
+  g_autofree gchar *folder = g_path_get_dirname (rig);
+  g_autofree gchar *name = g_path_get_basename (rig);
+  g_autofree gchar *page = NULL;
+
+  if (g_str_has_suffix (name, ".json"))
+    name[strlen (name) - strlen (".json")] = 0;
+  page = g_str_equal (name, "rig") ? g_strdup ("calibration.html")
+      : g_strconcat (name, "-calibration.html", NULL);
+  return g_build_filename (folder, page, NULL);
+}
+
 static gint
 calibrate (const Arguments * a, GPtrArray * cameras,
     const ClothShotBoard * seen, ClothLens lens)
@@ -337,7 +352,7 @@ calibrate (const Arguments * a, GPtrArray * cameras,
   g_autoptr (ClothRig) rig = cloth_rig_new (cameras->len);
   g_autoptr (ClothCalibration) result = NULL;
   g_autoptr (GError) error = NULL;
-  g_autofree gchar *report = NULL, *folder = NULL, *page = NULL;
+  g_autofree gchar *report = NULL, *page = NULL;
   ClothCalibrateInput in;
   ClothCalibrateParams params;
 
@@ -352,9 +367,7 @@ calibrate (const Arguments * a, GPtrArray * cameras,
   result = cloth_calibrate (&in, &params, show_fit, NULL, NULL, &error);
   if (isatty (2))
     g_printerr ("\r\033[K");
-  folder = g_path_get_dirname (a->output);
-  page = a->report ? g_strdup (a->report)
-      : g_build_filename (folder, "calibration.html", NULL);
+  page = a->report ? g_strdup (a->report) : page_beside (a->output);
   if (!result || !move_calibration (a, result, &error)
       || !cloth_rig_check (result->rig, &error)
       || !write_models (a, result->rig, &error)
@@ -714,7 +727,7 @@ main (int argc, char **argv)
     {"output", 'o', 0, G_OPTION_ARG_FILENAME, &a.output,
         "The rig.json to write", "FILE"},
     {"report", 0, 0, G_OPTION_ARG_FILENAME, &a.report,
-          "calibrate: The page that shows it (calibration.html beside the rig.json)",
+          "calibrate: The page that shows it (calibration.html beside rig.json, NAME-calibration.html beside NAME.json)",
         "FILE"},
     {G_OPTION_REMAINING, 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &a.cameras, NULL,
         "[calibrate] CAMERA=FILE… | upright RIG [CAMERA=FILE…] | refine RIG TAKE"},

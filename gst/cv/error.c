@@ -3,4 +3,8 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/cv/error.h"
 
-G_DEFINE_QUARK (cloth - cv - error - quark, cloth_cv_error)
+GQuark
+cloth_cv_error_quark (void)
+{
+  return g_quark_from_static_string ("cloth-cv-error-quark");
+}

@@ -357,11 +357,13 @@ add_camera (ClothJsonWriter * w, const ClothCamera * c)
   if (any_set (c->K_sd, 4) || any_set (c->k_sd, n) || any_set (c->r_sd, 3)
       || any_set (c->t_sd, 3)) {
     cloth_json_writer_begin_object (w, "standard_deviations");
+    cloth_json_writer_set_one_line (w, TRUE);
     cloth_json_writer_numbers (w, "K", c->K_sd, 4);
     cloth_json_writer_numbers (w, "distortion", c->k_sd, n);
     cloth_json_writer_numbers (w, "rotation", c->r_sd, 3);
     cloth_json_writer_numbers (w, "t", c->t_sd, 3);
     cloth_json_writer_end_object (w);
+    cloth_json_writer_set_one_line (w, FALSE);
   }
   cloth_json_writer_end_object (w);
 }

@@ -402,7 +402,8 @@ place_positions (Import * self, GError ** error)
 
 /* Of some frames the median; NaN when no neighbours are seen together. */
 static gdouble
-stretch_of (const Import * self, const ClothTopology * topology)
+stretch_of (const Import * self, const ClothTopology * topology,
+    ClothSides sides)
 {
   const guint n_frames = self->source.markers->n_frames;
   const guint step = (n_frames + LOOKS - 1) / LOOKS;
@@ -412,7 +413,7 @@ stretch_of (const Import * self, const ClothTopology * topology)
 
   for (guint i = 0; i < n_frames && n < LOOKS; i += step) {
     looks[n] = cloth_summary_stretch (topology, self->positions +
-        3 * (gsize) i * topology->n_vertices, scratch);
+        3 * (gsize) i * topology->n_vertices, sides, scratch);
     n += isfinite (looks[n]);
   }
   return n > 0 ? cloth_median (looks, n) : NAN;
@@ -430,7 +431,7 @@ fits_turned (const Import * self)
     return FALSE;
   turned = cloth_topology_new_grid (import->rows, import->columns,
       (gfloat) import->height_m, (gfloat) import->width_m);
-  stretch = stretch_of (self, turned);
+  stretch = stretch_of (self, turned, CLOTH_SIDES_ALL);
   return stretch > LEAST_STRETCH && stretch < ODD_STRETCH;
 }
 
@@ -447,10 +448,31 @@ better_unit (gdouble unit_m, gdouble stretch)
   return NULL;
 }
 
+/* One of both directions may be wrong alone. */
+static void
+note_odd_sizes (Import * self)
+{
+  const gboolean grid = self->import->columns > 0;
+
+  for (guint k = 0; k < 2; k++) {
+    const gdouble stretch = stretch_of (self, self->topology,
+        k == 0 ? CLOTH_SIDES_U : CLOTH_SIDES_V);
+
+    if (stretch > ODD_STRETCH || stretch < ODD_SHRINKAGE)
+      cloth_summary_add (self->notes, "note",
+          "along %s neighbours are %.2f times "
+          "as far apart as on the flat cloth: see that %s and the order of the "
+          "vertices are right", grid
+          && k == 0 ? "rows" : grid ? "columns" : k == 0 ? "u" : "v", stretch,
+          grid
+          && k == 0 ? "--width" : grid ? "--height" : "the uv of the mesh");
+  }
+}
+
 static gboolean
 check_size (Import * self, GError ** error)
 {
-  const gdouble stretch = stretch_of (self, self->topology);
+  const gdouble stretch = stretch_of (self, self->topology, CLOTH_SIDES_ALL);
   const gchar *unit;
 
   if (isnan (stretch))
@@ -460,11 +482,8 @@ check_size (Import * self, GError ** error)
       cloth_summary_add (self->notes, "note", "%u columns and %u rows, with "
           "width and height exchanged, would fit the places better",
           self->import->rows, self->import->columns);
-    else if (stretch > ODD_STRETCH || stretch < ODD_SHRINKAGE)
-      cloth_summary_add (self->notes, "note",
-          "neighbours are %.2f times as far "
-          "apart as on the flat cloth: see that width, height and the order of "
-          "the vertices are right", stretch);
+    else
+      note_odd_sizes (self);
     return TRUE;
   }
   unit = better_unit (self->unit_m, stretch);

@@ -16,7 +16,7 @@
  * @n_measured, @n_estimated: vertices, filled or predicted ones apart
  * @least, @least_frame: the frame in which the fewest were measured
  * @lowest, @highest: of what was seen
- * @stretches: (element-type gdouble): of each frame
+ * @stretches: (element-type gdouble): of each frame, along u and along v
  * @clamps: of the last frame
  * @lengths: of each clamp's path
  * @distances: (element-type GArray): of each clamp, how far from its vertex it was
@@ -26,7 +26,7 @@ typedef struct
   guint64 n_measured, n_estimated;
   guint least, least_frame;
   gdouble lowest[3], highest[3];
-  GArray *stretches;
+  GArray *stretches[2];
   gfloat *clamps, *before;
   gdouble *lengths;
   GPtrArray *distances;
@@ -48,14 +48,15 @@ cloth_summary_add (GString * table, const gchar * label,
 
 /* @topology: a mesh
  * @positions: 3 numbers a vertex, NaN when not seen
+ * @sides: which sides of the faces
  * @scratch: (element-type gdouble): reused
  *
- * Returns: how long the sides of the faces are over their length on the flat cloth, in the
+ * Returns: how long these sides are over their length on the flat cloth, in the
  *   median; NaN when no side is seen or the mesh has no uv
  */
 gdouble
 cloth_summary_stretch (const ClothTopology * topology,
-    const gfloat * positions, GArray * scratch)
+    const gfloat * positions, ClothSides sides, GArray * scratch)
 {
   g_array_set_size (scratch, 0);
   for (gsize i = 0; i < topology->n_faces; i++) {
@@ -66,11 +67,13 @@ cloth_summary_stretch (const ClothTopology * topology,
       const gsize a = face[k], b = face[(k + 1) % n];
       const gfloat *p = positions + 3 * a, *q = positions + 3 * b;
       const gfloat *u = topology->uv + 2 * a, *v = topology->uv + 2 * b;
-      const gdouble flat = hypot ((gdouble) u[0] - v[0], (gdouble) u[1] - v[1]);
+      const gdouble du = fabs ((gdouble) u[0] - v[0]);
+      const gdouble dv = fabs ((gdouble) u[1] - v[1]), flat = hypot (du, dv);
       const gdouble stretch = hypot (hypot ((gdouble) p[0] - q[0],
               (gdouble) p[1] - q[1]), (gdouble) p[2] - q[2]) / flat;
 
-      if (isfinite (stretch))
+      if (isfinite (stretch) && (sides == CLOTH_SIDES_ALL
+              || (sides == CLOTH_SIDES_U) == (du > dv)))
         g_array_append_val (scratch, stretch);
     }
   }
@@ -142,15 +145,17 @@ look (ClothTake * take, Pass * pass, GError ** error)
   g_autoptr (GArray) scratch = g_array_new (FALSE, FALSE, sizeof (gdouble));
 
   for (guint i = 0; i < cloth_take_get_n_frames (take); i++) {
-    gdouble stretch;
-
     if (!cloth_take_read_positions (take, i, positions, error) ||
         !cloth_take_read_states (take, i, positions, states, error))
       return FALSE;
     look_at_vertices (pass, i, positions, states, (guint) n);
-    stretch = cloth_summary_stretch (topology, positions, scratch);
-    if (isfinite (stretch))
-      g_array_append_val (pass->stretches, stretch);
+    for (guint k = 0; k < 2; k++) {
+      gdouble stretch = cloth_summary_stretch (topology, positions,
+          k == 0 ? CLOTH_SIDES_U : CLOTH_SIDES_V, scratch);
+
+      if (isfinite (stretch))
+        g_array_append_val (pass->stretches[k], stretch);
+    }
     if (!cloth_take_has_clamps (take))
       continue;
     if (!cloth_take_read_clamps (take, i, pass->clamps, error))
@@ -230,11 +235,17 @@ add_seen (GString * table, const ClothTake * take, const Pass * pass)
   if (pass->n_estimated > 0)
     cloth_summary_add (table, "filled", "%.1f %%, estimated and not seen",
         100 * (gdouble) pass->n_estimated / n);
-  if (pass->stretches->len > 0)
-    cloth_summary_add (table, "stretch",
-        "neighbours are %.3f times as far apart as on the flat cloth, in the "
-        "median", cloth_median ((gdouble *) (gpointer) pass->stretches->data,
-            pass->stretches->len));
+  for (guint k = 0; k < 2; k++) {
+    gboolean grid = !cloth_take_get_info (take)->mesh;
+    GArray *stretches = pass->stretches[k];
+
+    if (stretches->len > 0)
+      cloth_summary_add (table, k == 0 ? "stretch" : "",
+          "along %s neighbours are %.3f times as far apart as on the flat cloth, "
+          "in the median", grid && k == 0 ? "rows" : grid ? "columns" : k == 0 ?
+          "u" : "v", cloth_median ((gdouble *) (gpointer) stretches->data,
+              stretches->len));
+  }
 }
 
 static void
@@ -282,7 +293,8 @@ cloth_take_summarise (ClothTake * take, GError ** error)
 {
   const gsize n_held = cloth_take_get_info (take)->held->len;
   g_autoptr (GString) table = g_string_new (NULL);
-  g_autoptr (GArray) stretches = g_array_new (FALSE, FALSE, sizeof (gdouble));
+  g_autoptr (GArray) along_u = g_array_new (FALSE, FALSE, sizeof (gdouble));
+  g_autoptr (GArray) along_v = g_array_new (FALSE, FALSE, sizeof (gdouble));
   g_autoptr (GPtrArray) distances =
       g_ptr_array_new_with_free_func (free_distances);
   g_autofree gfloat *clamps = g_new0 (gfloat, 6 * n_held);
@@ -290,7 +302,7 @@ cloth_take_summarise (ClothTake * take, GError ** error)
   Pass pass = {
     .lowest = {INFINITY, INFINITY, INFINITY},
     .highest = {-INFINITY, -INFINITY, -INFINITY},
-    .stretches = stretches,.distances = distances,.lengths = lengths,
+    .stretches = {along_u, along_v},.distances = distances,.lengths = lengths,
     .clamps = clamps,.before = clamps + 3 * n_held
   };
 

@@ -40,7 +40,8 @@ compare_with_mrcal (gint n, const gint * use, gdouble limit)
   g_autoptr (ClothCalibration) result = NULL;
   gdouble worst = 0, centre = 0, corner = 0, measured = n * 2 * 702;
   gdouble dof = measured - n * 9 - (n - 1) * 6 - 13 * 6;
-  guint n_lines = 0;
+  gdouble numbers = 0;
+  guint n_lines = 0, n_cameras = 0;
 
   problem_init (&p, (guint) n, 9, 6, 0.025, 13);
   load_corners (&p, use);
@@ -60,6 +61,18 @@ compare_with_mrcal (gint n, const gint * use, gdouble limit)
                 - 1), <, 1e-3);
       continue;
     }
+    if (sscanf (line, "sd %d %d %lf %lf %lf %lf %lf %lf %lf %lf %lf", &count,
+            &side, k, k + 1, k + 2, k + 3, k + 4, k + 5, k + 6, k + 7, k + 8)
+        == 11 && count == n && use[side] >= 0) {
+      for (guint i = 0; i < 9; i++) {
+        gdouble sd;
+
+        parameter (&result->rig->cameras[use[side]], i, &sd);
+        numbers = fmax (numbers, fabs (sd * sqrt (dof / measured) / k[i] - 1));
+      }
+      n_cameras++;
+      continue;
+    }
     if (sscanf (line, "px %d %d %lf %lf %lf %lf", &count, &side, &x, &y, &near,
             &far) != 6 || count != n || use[side] < 0)
       continue;
@@ -77,7 +90,10 @@ compare_with_mrcal (gint n, const gint * use, gdouble limit)
     n_lines++;
   }
   g_test_message ("%d cameras, %u places: within %.2f%% of mrcal's (centre "
-      "%.4f, corner %.4f times)", n, n_lines, 100 * worst, centre, corner);
+      "%.4f, corner %.4f times), deviations of the numbers within %.2f%%", n,
+      n_lines, 100 * worst, centre, corner, 100 * numbers);
+  g_assert_cmpuint (n_cameras, ==, (guint) n);
+  g_assert_cmpfloat (numbers, <, limit);
   g_assert_cmpuint (n_lines, ==, (guint) n * 25);
   g_assert_cmpfloat (worst, <, limit);
 }

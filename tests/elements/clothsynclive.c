@@ -155,7 +155,8 @@ GST_START_TEST (test_live_silent_pad)
   expect (&b, 1200 * MS, 3);
   expect_silence (&b, "sync/back", 1, 1.2);
   fail_unless_equals_uint64 (stat_of (&b, "incomplete"), 11);
-  expect_loss (&b, "11 of 13 sets lacked a picture: that of pad sink_1 in 11 (0 "
+  expect_loss (&b,
+      "11 of 13 sets lacked a picture: that of pad sink_1 in 11 (0 "
       "came too late)");
   gst_object_unref (clock);
   bench_clear (&b);

@@ -101,12 +101,14 @@ expect_error (const gchar * location, const gchar * more, GQuark domain,
     gint code, const gchar * text)
 {
   Player player;
-  g_autoptr (GstMessage) message = NULL;
+  g_autoptr (GstMessage) message = NULL, second = NULL;
   g_autoptr (GError) error = NULL;
   g_autofree gchar *debug = NULL;
+  gboolean at_start;
 
   player_init (&player, location, more);
-  gst_element_set_state (player.pipeline, GST_STATE_PLAYING);
+  at_start = gst_element_set_state (player.pipeline, GST_STATE_PLAYING)
+      == GST_STATE_CHANGE_FAILURE;
   message = gst_bus_timed_pop_filtered (player.bus, GST_CLOCK_TIME_NONE,
       GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
   fail_unless_equals_int (GST_MESSAGE_TYPE (message), GST_MESSAGE_ERROR);
@@ -116,6 +118,8 @@ expect_error (const gchar * location, const gchar * more, GQuark domain,
   fail_unless (g_error_matches (error, domain, code), "%s %d: %s",
       g_quark_to_string (error->domain), error->code, error->message);
   fail_unless (strstr (error->message, text) != NULL, "%s", error->message);
+  second = gst_bus_pop_filtered (player.bus, GST_MESSAGE_ERROR);
+  fail_unless (!at_start || !second);   /* one is enough */
   player_clear (&player);
 }
 

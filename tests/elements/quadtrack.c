@@ -215,6 +215,38 @@ GST_START_TEST (test_board_absent)
 
 GST_END_TEST;
 
+/* A board of other squares than was said is told at the end; so is not one that was only away. */
+GST_START_TEST (test_other_board)
+{
+  for (guint other = 0; other < 2; other++) {
+    GstHarness *h = start (other ? "quadtrack columns=9 rows=6" :
+        "quadtrack" BOARD, "GRAY8", WIDTH, HEIGHT);
+    g_autoptr (GstElement) element = gst_harness_find_element (h, "quadtrack");
+    g_autoptr (GstBus) bus = gst_bus_new ();
+    g_autoptr (GstMessage) message = NULL;
+
+    gst_element_set_bus (element, bus);
+    for (guint frame = 0; frame < 6; frame++)
+      gst_buffer_unref (gst_harness_push_and_pull (h,
+              at (picture ("GRAY8", WIDTH, HEIGHT, 0, LEFT, TOP, frame > 3),
+                  frame)));
+    gst_harness_push_event (h, gst_event_new_eos ());
+    message = gst_bus_pop_filtered (bus, GST_MESSAGE_WARNING);
+    fail_unless ((message != NULL) == (other == 1));
+    if (message) {
+      g_autoptr (GError) error = NULL;
+
+      gst_message_parse_warning (message, &error, NULL);
+      fail_unless (strstr (error->message, "tracked in 0 of the 2 pictures"),
+          "%s", error->message);
+    }
+    gst_element_set_bus (element, NULL);
+    gst_harness_teardown (h);
+  }
+}
+
+GST_END_TEST;
+
 /* The paper's tracker alone: nothing without a seed, the board with one. */
 GST_START_TEST (test_seed)
 {
@@ -668,6 +700,7 @@ quadtrack_suite (void)
   tcase_add_test (tc, test_formats);
   tcase_add_test (tc, test_both_colours);
   tcase_add_test (tc, test_board_absent);
+  tcase_add_test (tc, test_other_board);
   tcase_add_test (tc, test_seed);
   tcase_add_test (tc, test_seed_and_seeks);
   tcase_add_test (tc, test_useless_seed);

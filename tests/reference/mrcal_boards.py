@@ -67,9 +67,20 @@ def distance(model, inputs):
     return float(np.linalg.norm(mrcal.transform_point_rt(model.extrinsics_rt_fromref(), points), axis=-1).mean())
 
 
+def deviations(inputs, n_cameras):
+    """1σ of the intrinsics of each camera: of the scatter of the residuals, through (JᵀJ)⁻¹."""
+    _, x, jacobian, _ = mrcal.optimizer_callback(**inputs)
+    J = jacobian.toarray()
+    scale = np.ones(J.shape[1])
+    mrcal.unpack_state(scale, **inputs)
+    sigma = np.sqrt(np.diag(np.linalg.inv(J.T @ J)) * np.mean(x ** 2)) * scale
+    return [sigma[at:at + 9] for at in (mrcal.state_index_intrinsics(camera, **inputs) for camera in range(n_cameras))]
+
+
 lines = ['# made by tests/reference/mrcal_boards.py with mrcal 2.2 of Debian 12',
          '# cameras in the fit, camera: fx fy cx cy k1 k2 p1 p2 k3, distance (m)',
          '# bent: the same parameters where the board may be, its warp (m), 1σ in the centre, at infinity (px)',
+         '# sd: 1σ of fx fy cx cy k1 k2 p1 p2 k3',
          '# cameras in the fit, camera, x, y: 1σ in the worst direction (px) at that distance, at infinity']
 for sides in ([0], [1], [0, 1]):
     inputs = optimised(sides)
@@ -80,6 +91,8 @@ for sides in ([0], [1], [0, 1]):
             model.write(os.path.join(boards, ('left', 'right')[side] + '.cameramodel'))
         lines.append('lens %d %d ' % (len(sides), side)
                      + ' '.join('%.9g' % value for value in (*model.intrinsics()[1], away)))
+        lines.append('sd %d %d ' % (len(sides), side)
+                     + ' '.join('%.5g' % value for value in deviations(inputs, len(sides))[camera]))
         pixels = np.array([[(SIZE[0] - 1) * i / 4, (SIZE[1] - 1) * j / 4] for j in range(5) for i in range(5)])
         rays = mrcal.unproject(pixels, *model.intrinsics(), normalize=True)
         near = mrcal.projection_uncertainty(rays * away, model, what='worstdirection-stdev')
