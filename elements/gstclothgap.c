@@ -53,10 +53,10 @@
 
 #include <math.h>
 
-#include "elements/gstclothgap-inputs.h"
 #include "elements/gstclothproperties.h"
 #include "elements/gstclothutil.h"
-#include "gst/fit/nudge/nudge.h"
+#include "gst/cloth-io/observations.h"
+#include "gst/gap/inputs.h"
 #include "gst/gap/diagnose.h"
 #include "gst/gap/report/report.h"
 
@@ -67,50 +67,29 @@ GST_DEBUG_CATEGORY_STATIC (cloth_gap_debug);
 #define GAIN 100.0
 #define DAMPING_RATIO 0.5
 
-/* What waits for its turn: a frame that has a gap to come, or what came between. */
 typedef struct
 {
-  GstMiniObject *object;        /* buffer or event */
-  gboolean is_frame;
-  /* of a frame */
-  gdouble time;
-  guint64 sequence;
-} Waiting;
+  gchar *baseline, *simulated, *effects, *output;
+} Settings;
 
 struct _GstGapDiagnose
 {
-  GstElement parent;
-  GstPad *sinkpad, *srcpad;
+  GstClothFollow parent;
 
   /* with the object lock */
-  GstGapSettings settings;
+  Settings settings;
 
-  gint cancelled;               /* atomic */
+  /* from open to close */
+  ClothTake *baseline, *simulated;
+  ClothObservations *observations, *baseline_observations;      /* NULL: the take doesn't say */
+  gchar **effects;
 
-  /* from start to stop */
-  GstGapInputs inputs;          /* setting them also with the object lock */
-  ClothObserver *observer;
-
-  /* with the stream lock; fps also with the object lock */
-  GstSegment segment;
-  gint fps_n, fps_d;            /* 0/1: not known */
-  guint n_vertices;             /* 0: no caps yet */
-  GstGapView *view;             /* of observations; NULL: meshes */
-  GQueue waiting;
-  guint64 n_frames;             /* that came in since the beginning */
-  guint64 n_damaged;            /* that came between these */
-  gdouble last_time;
-  gboolean new_segment, warned;
-  GstGapRecord *record;
-  gfloat *residuals, *sigmas;
-  gfloat *positions;            /* as recorded by one camera */
-  guint8 *states;
+  /* streaming thread */
+  GstFollowRecord *record;
 };
 
 #define CAPS GST_CLOTH_MESH_CAPS "; " GST_CLOTH_OBSERVATIONS_CAPS
 
-static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE ("sink",
-    GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS (CAPS));
 static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE ("src",
     GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS (CAPS));
 
@@ -120,25 +99,10 @@ GST_ELEMENT_REGISTER_DEFINE_WITH_CODE (clothgap, "clothgap", GST_RANK_NONE,
 
 static gpointer gst_gap_diagnose_parent_class;
 
-#define SETTING(member) GST_CLOTH_SETTING (GstGapSettings, member)
+#define SETTING(member) GST_CLOTH_SETTING (Settings, member)
 
 /* *INDENT-OFF* */
 static const GstClothProperty properties[] = {
-  {"model", "Model",
-    "What the simulator knows of the cloth (model.json)",
-    G_TYPE_STRING, SETTING (model), GST_PARAM_MUTABLE_READY},
-  {"location", "Location",
-    "Folder of the take that gives the scene: mesh, paths of the "
-    "clamps, obstacles, gravity; for a stream from a take, that take",
-    G_TYPE_STRING, SETTING (location), GST_PARAM_MUTABLE_READY},
-  {"rig", "Rig",
-    "Calibration file (rig.json) that has the camera of the observations; by "
-    "default the one in the folder of location",
-    G_TYPE_STRING, SETTING (rig), GST_PARAM_MUTABLE_READY},
-  {"camera", "Camera",
-    "Name in the rig of the camera of the observations; by default the one that "
-    "the metadata names, else the only one of the rig",
-    G_TYPE_STRING, SETTING (camera), GST_PARAM_MUTABLE_READY},
   {"baseline", "Baseline",
     "Folder of a take the model is accepted on: its free "
     "parameters are fitted there",
@@ -154,130 +118,88 @@ static const GstClothProperty properties[] = {
   {"output", "Output",
     "Folder for gap.json, report.html and fitted.json; by default none is written",
     G_TYPE_STRING, SETTING (output), GST_PARAM_MUTABLE_READY},
-  {"seed", "Seed", "Seed of all random numbers",
-    G_TYPE_UINT64, SETTING (seed), GST_PARAM_MUTABLE_READY},
-  {"threads", "Threads",
-    "Threads that simulate; 0: one a processor. The result is the same",
-    G_TYPE_UINT, SETTING (threads), GST_PARAM_MUTABLE_READY, 0, 1024},
-  {"window", "Window", "Length of a scored window, seconds",
-    G_TYPE_DOUBLE, SETTING (window), GST_PARAM_MUTABLE_READY, 0.01, 60},
-  GST_CLOTH_DAMAGE_PROPERTIES (GstGapSettings, damage),
 };
 /* *INDENT-ON* */
 
-static const GstGapSettings defaults = {.window = 0.3 };
+static const Settings defaults = { NULL };
 
-/* ---- what waits ---- */
+/* ---- files ---- */
 
-static GstFlowReturn
-send (GstGapDiagnose * self, GstMiniObject * object)
+static gboolean
+load_baseline (GstGapDiagnose * self, const ClothTake * take, GError ** error)
 {
-  if (GST_IS_BUFFER (object))
-    return gst_pad_push (self->srcpad, GST_BUFFER_CAST (object));
-  gst_pad_push_event (self->srcpad, GST_EVENT_CAST (object));
-  return GST_FLOW_OK;
+  const gchar *folder = self->settings.baseline;
+
+  if (!folder)
+    return TRUE;
+  self->baseline = cloth_take_open (folder, error);
+  return self->baseline && cloth_gap_check_same_cloth ("the baseline",
+      cloth_take_get_topology (self->baseline), "the take of location",
+      cloth_take_get_topology (take), error)
+      && gst_cloth_io_observations_load (folder,
+      cloth_take_get_topology (self->baseline), &self->baseline_observations,
+      error);
 }
 
-/* Sends what need not wait for a frame. */
-static GstFlowReturn
-send_others (GstGapDiagnose * self)
+static gboolean
+gst_gap_diagnose_open (GstClothFollow * follow)
 {
-  GstFlowReturn flow = GST_FLOW_OK;
-  Waiting *first;
+  GstGapDiagnose *self = GST_GAP_DIAGNOSE (follow);
+  GstElement *element = GST_ELEMENT (follow);
+  const Settings *settings = &self->settings;
+  const ClothTake *take = gst_cloth_follow_get_inputs (follow)->take;
+  const gchar *location = gst_cloth_follow_get_settings (follow)->location;
+  g_autoptr (GError) error = NULL;
 
-  while (flow == GST_FLOW_OK && (first = g_queue_peek_head (&self->waiting)) &&
-      !first->is_frame) {
-    g_queue_pop_head (&self->waiting);
-    flow = send (self, first->object);
-    g_free (first);
-  }
-  return flow;
-}
-
-static void
-enqueue_frame (GstGapDiagnose * self, GstBuffer * buffer, gdouble time,
-    guint64 sequence)
-{
-  const Waiting waiting =
-      { GST_MINI_OBJECT_CAST (buffer), TRUE, time, sequence };
-
-  g_queue_push_tail (&self->waiting, g_memdup2 (&waiting, sizeof waiting));
-}
-
-static GstFlowReturn
-enqueue_other (GstGapDiagnose * self, gpointer object)
-{
-  const Waiting waiting = { object };
-
-  g_queue_push_tail (&self->waiting, g_memdup2 (&waiting, sizeof waiting));
-  return send_others (self);
+  if (!gst_cloth_io_observations_load (location, cloth_take_get_topology (take),
+          &self->observations, &error))
+    return gst_follow_fail (element, "location", location, error);
+  if (!load_baseline (self, take, &error))
+    return gst_follow_fail (element, "baseline", settings->baseline, error);
+  /* what it is of can be checked once there is a recording */
+  if (settings->simulated
+      && !(self->simulated = cloth_take_open (settings->simulated, &error)))
+    return gst_follow_fail (element, "simulated", settings->simulated, error);
+  self->effects = cloth_gap_effects_parse (settings->effects, &error);
+  return !error || gst_follow_fail (element, "effects", settings->effects,
+      error);
 }
 
 static void
-free_waiting (gpointer data)
+gst_gap_diagnose_restart (GstClothFollow * follow)
 {
-  Waiting *waiting = data;
-
-  gst_mini_object_unref (waiting->object);
-  g_free (waiting);
+  g_clear_pointer (&GST_GAP_DIAGNOSE (follow)->record, gst_follow_record_free);
 }
 
-/* A new recording; frames of the old one that still wait lose their turn. */
 static void
-restart (GstGapDiagnose * self)
+gst_gap_diagnose_close (GstClothFollow * follow)
 {
-  if (self->observer)
-    cloth_observer_restart (self->observer);
-  g_clear_pointer (&self->record, gst_gap_record_free);
-  self->n_frames = self->n_damaged = 0;
+  GstGapDiagnose *self = GST_GAP_DIAGNOSE (follow);
+
+  g_clear_pointer (&self->record, gst_follow_record_free);
+  g_clear_pointer (&self->baseline, cloth_take_free);
+  g_clear_pointer (&self->simulated, cloth_take_free);
+  g_clear_pointer (&self->observations, cloth_observations_free);
+  g_clear_pointer (&self->baseline_observations, cloth_observations_free);
+  g_clear_pointer (&self->effects, g_strfreev);
 }
 
 /* ---- frames ---- */
 
-static void
-post_score (GstGapDiagnose * self, gboolean last)
-{
-  ClothObserverScore score;
-
-  if (!cloth_observer_take_score (self->observer, last, &score))
-    return;
-  GST_DEBUG_OBJECT (self, "%.3f s … %.3f s: %.2f mm, %.0f%% seen",
-      score.from_s, score.to_s, 1000 * score.rms, 100 * score.coverage);
-  gst_element_post_message (GST_ELEMENT (self),
-      gst_message_new_element (GST_OBJECT (self),
-          gst_structure_new ("clothgap/score",
-              "time", G_TYPE_UINT64, (guint64) (score.from_s * 1e9 + 0.5),
-              "duration", G_TYPE_UINT64,
-              (guint64) ((score.to_s - score.from_s) * 1e9 + 0.5),
-              "rms", G_TYPE_DOUBLE, score.rms,
-              "coverage", G_TYPE_DOUBLE, score.coverage, NULL)));
-}
-
-/* Of a mesh's coordinates: its covariances, else what the scene's take says. */
-static void
-find_sigmas (GstGapDiagnose * self, const gfloat * c)
-{
-  gfloat noise =
-      (gfloat) cloth_take_get_info (self->inputs.take)->noise_sigma_m;
-
-  for (gsize i = 0; i < self->n_vertices; i++)
-    self->sigmas[i] = c ? sqrtf ((c[6 * i] + c[6 * i + 3] + c[6 * i + 5]) / 3) :
-        noise;
-}
-
 static gboolean
-record_frame (GstGapDiagnose * self, gdouble time, const gfloat * positions,
-    const guint8 * states, const gfloat * covariances)
+gst_gap_diagnose_record (GstClothFollow * follow,
+    const GstClothFollowFrame * frame)
 {
+  GstGapDiagnose *self = GST_GAP_DIAGNOSE (follow);
+  const GstFollowInputs *inputs = gst_cloth_follow_get_inputs (follow);
   g_autoptr (GError) error = NULL;
 
   if (!self->record)
-    self->record =
-        gst_gap_record_new (cloth_take_get_info (self->inputs.take),
-        self->inputs.scene, &error);
+    self->record = gst_follow_record_new (cloth_take_get_info (inputs->take),
+        inputs->scene, &error);
   if (self->record
-      && gst_gap_record_append (self->record, time, positions, states,
-          covariances, &error))
+      && gst_follow_record_append (self->record, frame->time, frame->positions,
+          frame->states, frame->covariances, &error))
     return TRUE;
   GST_ELEMENT_ERROR (self, RESOURCE, WRITE,
       ("Can't keep the recording for its diagnosis: %s", error->message),
@@ -286,220 +208,15 @@ record_frame (GstGapDiagnose * self, gdouble time, const gfloat * positions,
   return FALSE;
 }
 
-static gboolean
-record_mesh (GstGapDiagnose * self, gdouble time, GstBuffer * buffer)
+static GstBuffer *
+gst_gap_diagnose_leave (GstClothFollow * follow, GstBuffer * buffer,
+    const GstClothFollowFrame * frame)
 {
-  g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_from_buffer (buffer, NULL);
-  const gfloat *covariances = gst_cloth_mesh_get_covariances (mesh, NULL);
-
-  find_sigmas (self, covariances);
-  return record_frame (self, time, gst_cloth_mesh_get_positions (mesh, NULL),
-      gst_cloth_mesh_get_states (mesh, NULL), covariances);
-}
-
-/* As far away as the simulation is. */
-static gboolean
-record_rays (GstGapDiagnose * self, gdouble time)
-{
-  cloth_observer_get_lifted (self->observer, self->positions, self->sigmas);
-  for (gsize i = 0; i < self->n_vertices; i++)
-    self->states[i] = isnan (self->positions[3 * i]) ? CLOTH_VERTEX_UNSEEN :
-        CLOTH_VERTEX_MEASURED;
-  return record_frame (self, time, self->positions, self->states, NULL);
-}
-
-static GstFlowReturn
-send_frame (GstGapDiagnose * self)
-{
-  g_autoptr (GError) error = NULL;
-  g_autofree Waiting *waiting = NULL;
-  g_autoptr (GstBuffer) buffer = NULL;
-  GstFlowReturn flow = send_others (self);
-
-  if (flow != GST_FLOW_OK)
-    return flow;
-  if (!cloth_observer_pop (self->observer, self->residuals, &error)) {
-    GST_ELEMENT_ERROR (self, STREAM, FAILED, ("%s", error->message),
-        ("model=%s", self->settings.model));
-    return GST_FLOW_ERROR;
-  }
-  waiting = g_queue_pop_head (&self->waiting);
-  buffer = GST_BUFFER_CAST (waiting->object);
-  if (!(self->view ? record_rays (self, waiting->time) :
-          record_mesh (self, waiting->time, buffer)))
-    return GST_FLOW_ERROR;
   buffer = gst_buffer_make_writable (buffer);
   gst_buffer_add_cloth_gap_meta (buffer,
-      gst_cloth_gap_new (waiting->sequence, self->n_vertices, self->residuals,
-          self->sigmas));
-  post_score (self, FALSE);
-  flow = gst_pad_push (self->srcpad, g_steal_pointer (&buffer));
-  return flow == GST_FLOW_OK ? send_others (self) : flow;
-}
-
-static GstFlowReturn
-send_ready (GstGapDiagnose * self, guint latency)
-{
-  GstFlowReturn flow = GST_FLOW_OK;
-
-  while (flow == GST_FLOW_OK && self->observer &&
-      cloth_observer_get_n_waiting (self->observer) > latency)
-    flow = send_frame (self);
-  return flow;
-}
-
-/* Everything leaves: the last frames make do with those before them. */
-static GstFlowReturn
-drain (GstGapDiagnose * self)
-{
-  GstFlowReturn flow = send_ready (self, 0);
-
-  return flow == GST_FLOW_OK ? send_others (self) : flow;
-}
-
-/* Seconds of the scene; NaN when the buffer has no time and the caps no rate. */
-static gdouble
-find_time (GstGapDiagnose * self, GstBuffer * buffer)
-{
-  GstClockTime time = gst_cloth_stream_time (&self->segment, buffer);
-
-  if (GST_CLOCK_TIME_IS_VALID (time))
-    return (gdouble) time / GST_SECOND;
-  if (self->fps_n <= 0)
-    return NAN;
-  return self->inputs.scene->times[0] +
-      (gdouble) (self->n_frames + self->n_damaged) * self->fps_d / self->fps_n;
-}
-
-/* Without clamps a scene has no end. */
-static gboolean
-is_in_scene (const GstGapDiagnose * self, gdouble time)
-{
-  const ClothScene *scene = self->inputs.scene;
-  gdouble slack = 0.5 / scene->fps;
-
-  return scene->held->len == 0 || scene->n_frames < 2 ||
-      (time > scene->times[0] - slack &&
-      time < scene->times[scene->n_frames - 1] + slack);
-}
-
-static const gchar *
-get_noun (const GstGapDiagnose * self)
-{
-  return self->view ? "picture" : "mesh";
-}
-
-/* Passes a frame that can't be scored, and says why, once. */
-static GstFlowReturn
-let_pass (GstGapDiagnose * self, GstBuffer * buffer, gdouble time)
-{
-  GstFlowReturn flow = GST_FLOW_OK;
-
-  if (!self->warned) {
-    const ClothScene *scene = self->inputs.scene;
-
-    self->warned = TRUE;
-    if (is_in_scene (self, time))
-      GST_ELEMENT_WARNING (self, STREAM, FORMAT,
-          ("The %s at %.3f s is not later than the one before, and passes "
-              "without a gap; times must rise", get_noun (self), time), (NULL));
-    else
-      GST_ELEMENT_WARNING (self, STREAM, FORMAT,
-          ("The %s at %.3f s lies outside the scene, which knows its clamps "
-              "from %.3f s to %.3f s, and passes without a gap; set location= "
-              "to the take of this recording", get_noun (self), time,
-              scene->times[0], scene->times[scene->n_frames - 1]), (NULL));
-  }
-  /* Behind the scene's end none comes that those waiting could wait for. */
-  if (!is_in_scene (self, time) && time > self->inputs.scene->times[0])
-    flow = send_ready (self, 0);
-  if (flow == GST_FLOW_OK)
-    return enqueue_other (self, buffer);
-  gst_buffer_unref (buffer);
-  return flow;
-}
-
-/* TRUE when it may be scored; else @flow says what became of the buffer. */
-static gboolean
-is_next (GstGapDiagnose * self, GstBuffer * buffer, gdouble time,
-    GstFlowReturn * flow)
-{
-  if (isnan (time)) {
-    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
-        ("A %s has neither a time nor its stream a frame rate",
-            get_noun (self)),
-        ("Stamp the buffers, or give the caps a framerate."));
-    gst_buffer_unref (buffer);
-    *flow = GST_FLOW_ERROR;
-    return FALSE;
-  }
-  if (self->n_frames > 0 && time <= self->last_time && self->new_segment) {
-    GST_INFO_OBJECT (self, "back to %.3f s: a new recording", time);
-    restart (self);
-  }
-  self->new_segment = FALSE;
-  if (is_in_scene (self, time) &&
-      (self->n_frames == 0 || time > self->last_time))
-    return TRUE;
-  *flow = let_pass (self, buffer, time);
-  return FALSE;
-}
-
-static GstFlowReturn
-gst_gap_diagnose_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
-{
-  GstGapDiagnose *self = GST_GAP_DIAGNOSE (parent);
-  g_autoptr (GstClothMesh) mesh = NULL;
-  g_autoptr (GstBuffer) picture = NULL;
-  g_autoptr (GError) error = NULL;
-  const ClothRays *rays = NULL;
-  gdouble time, offset_s = 0;
-  guint64 sequence = 0;
-  GstFlowReturn flow;
-
-  if (self->n_vertices == 0) {
-    gst_buffer_unref (buffer);
-    return GST_FLOW_NOT_NEGOTIATED;
-  }
-  if (self->view) {
-    picture = gst_buffer_new ();
-    gst_cloth_observations_unpack (buffer, picture, &error);
-  } else {
-    mesh = gst_cloth_parse_mesh (buffer, self->n_vertices, &error);
-  }
-  if (error) {
-    self->n_damaged++;
-    gst_buffer_unref (buffer);
-    return gst_cloth_damage_add (&self->settings.damage, GST_ELEMENT (self),
-        error);
-  }
-  if (self->view) {
-    rays = gst_gap_view_read (self->view, GST_ELEMENT (self), picture,
-        &sequence, &offset_s, &error);
-    if (!rays) {
-      gst_buffer_unref (buffer);
-      if (!error)
-        return GST_FLOW_ERROR;
-      self->n_damaged++;
-      return gst_cloth_damage_add (&self->settings.damage, GST_ELEMENT (self),
-          error);
-    }
-  } else {
-    sequence = gst_cloth_mesh_get_sequence (mesh);
-  }
-  time = find_time (self, buffer) - offset_s;
-  if (!is_next (self, buffer, time, &flow))
-    return flow;
-  if (rays)
-    cloth_observer_push_rays (self->observer, time, rays);
-  else
-    cloth_observer_push (self->observer, time,
-        gst_cloth_mesh_get_positions (mesh, NULL));
-  g_clear_pointer (&mesh, gst_cloth_mesh_unref);
-  self->last_time = time;
-  self->n_frames++;
-  enqueue_frame (self, buffer, time, sequence);
-  return send_ready (self, CLOTH_OBSERVER_LATENCY);
+      gst_cloth_gap_new (frame->sequence, frame->n_vertices, frame->residuals,
+          frame->sigmas));
+  return buffer;
 }
 
 /* ---- the end ---- */
@@ -507,10 +224,8 @@ gst_gap_diagnose_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
 static gboolean
 go_on (gpointer data, gdouble share, const gchar * what)
 {
-  GstGapDiagnose *self = data;
-
-  GST_LOG_OBJECT (self, "%.0f%% %s", 100 * share, what);
-  return !g_atomic_int_get (&self->cancelled);
+  GST_LOG_OBJECT (data, "%.0f%% %s", 100 * share, what);
+  return !gst_cloth_follow_is_cancelled (data);
 }
 
 /* An array of structures, as GStreamer's own statistics have it. Without a value where no
@@ -572,42 +287,32 @@ post_verdict (GstElement * element, const ClothGapResult * result,
 /* Of a recording by one camera the other cameras' pictures say nothing: its distances
  * are not measured. */
 static void
-finish (GstGapDiagnose * self)
+gst_gap_diagnose_finish (GstClothFollow * follow)
 {
+  GstGapDiagnose *self = GST_GAP_DIAGNOSE (follow);
+  const GstFollowSettings *settings = gst_cloth_follow_get_settings (follow);
+  const ClothModel *model = gst_cloth_follow_get_inputs (follow)->model;
+  const gboolean rays = gst_cloth_follow_has_rays (follow);
   const ClothGapOptions options = {
-    .baselines = &self->inputs.baseline,
-    .n_baselines = self->inputs.baseline ? 1 : 0,
-    .simulated = &self->inputs.simulated,
-    .n_simulated = self->inputs.simulated ? 1 : 0,
-    .observations = self->view ? NULL : &self->inputs.observations,
-    .baseline_observations =
-        self->view ? NULL : &self->inputs.baseline_observations,
-    .model_file = self->settings.model,
-    .effects = (const gchar * const *) self->inputs.effects,
-    .seed = self->settings.seed,
-    .threads = self->settings.threads,
+    .baselines = &self->baseline,
+    .n_baselines = self->baseline ? 1 : 0,
+    .simulated = &self->simulated,
+    .n_simulated = self->simulated ? 1 : 0,
+    .observations = rays ? NULL : &self->observations,
+    .baseline_observations = rays ? NULL : &self->baseline_observations,
+    .model_file = settings->model,
+    .effects = (const gchar * const *) self->effects,
+    .seed = settings->seed,
+    .threads = settings->threads,
     .progress = go_on,
     .progress_data = self
   };
   g_autoptr (GError) error = NULL;
-  g_autoptr (ClothGapResult) result = NULL;
+  g_autoptr (GstFollowRecord) record = g_steal_pointer (&self->record);
+  g_autoptr (ClothTake) take = gst_follow_record_finish (record, &error);
+  g_autoptr (ClothGapResult) result = take ?
+      cloth_gap_diagnose (&take, 1, model, &options, &error) : NULL;
 
-  if (drain (self) != GST_FLOW_OK)
-    return;
-  post_score (self, TRUE);
-  if (!self->record) {
-    GST_ELEMENT_ERROR (self, STREAM, FAILED,
-        ("The stream ended without a %s to diagnose", get_noun (self)),
-        ("No %s came%s.", get_noun (self), self->warned ?
-            " whose time is the scene's; set location= to its own take" : ""));
-    return;
-  }
-  if (self->view && !gst_gap_view_check_seen (self->view, GST_ELEMENT (self)))
-    return;
-  result =
-      gst_gap_record_diagnose (self->record, self->inputs.model, &options,
-      &error);
-  g_clear_pointer (&self->record, gst_gap_record_free);
   if (result && post_verdict (GST_ELEMENT (self), result,
           self->settings.output, &error))
     return;
@@ -620,232 +325,10 @@ finish (GstGapDiagnose * self)
         ("Can't diagnose the recording: %s", error->message), (NULL));
 }
 
-/* ---- events and queries ---- */
-
-/* One recording is of meshes or of observations: their distances mean different things. */
-static gboolean
-set_kind (GstGapDiagnose * self, gboolean observations)
+static gdouble
+gst_gap_diagnose_get_gain (GstClothFollow * follow)
 {
-  if (observations != (self->view != NULL) && self->n_frames > 0) {
-    GST_ELEMENT_ERROR (self, STREAM, FORMAT,
-        ("The stream changes from %s to %s within a recording.",
-            observations ? "meshes" : "observations",
-            observations ? "observations" : "meshes"),
-        ("Flush before the change, or give each a clothgap of its own."));
-    return FALSE;
-  }
-  if (!observations)
-    g_clear_pointer (&self->view, gst_gap_view_free);
-  else if (!self->view)
-    self->view = gst_gap_view_new (GST_ELEMENT (self), &self->settings,
-        self->inputs.scene->topology);
-  return observations == (self->view != NULL);
-}
-
-static gboolean
-set_caps (GstGapDiagnose * self, GstCaps * caps)
-{
-  GstStructure *s = gst_caps_get_structure (caps, 0);
-  gboolean observations = gst_structure_has_name (s,
-      GST_CLOTH_OBSERVATIONS_MEDIA_TYPE);
-  gint fps_n = 0, fps_d = 1;
-
-  if (!set_kind (self, observations) || !(observations ?
-          gst_gap_view_set_caps (self->view, GST_ELEMENT (self), caps) :
-          gst_gap_inputs_check_mesh (&self->inputs, GST_ELEMENT (self), caps)))
-    return FALSE;
-  gst_structure_get_fraction (s, "framerate", &fps_n, &fps_d);
-  if (self->n_vertices == 0) {
-    self->n_vertices = self->inputs.scene->topology->n_vertices;
-    self->residuals = g_new (gfloat, 3 * (gsize) self->n_vertices);
-    self->sigmas = g_new (gfloat, self->n_vertices);
-    self->positions = g_new (gfloat, 3 * (gsize) self->n_vertices);
-    self->states = g_malloc (self->n_vertices);
-  }
-  GST_OBJECT_LOCK (self);
-  self->fps_n = fps_n;
-  self->fps_d = fps_d;
-  GST_OBJECT_UNLOCK (self);
-  gst_element_post_message (GST_ELEMENT (self),
-      gst_message_new_latency (GST_OBJECT (self)));
-  return TRUE;
-}
-
-static gboolean
-set_segment (GstGapDiagnose * self, GstEvent * event)
-{
-  gst_event_copy_segment (event, &self->segment);
-  self->new_segment = TRUE;
-  if (self->segment.rate > 0)
-    return TRUE;
-  GST_ELEMENT_ERROR (self, STREAM, FORMAT,
-      ("A simulation can't run backwards"), ("Seek with a rate over 0."));
-  return FALSE;
-}
-
-static void
-flush (GstGapDiagnose * self)
-{
-  g_queue_clear_full (&self->waiting, free_waiting);
-  restart (self);
-  gst_segment_init (&self->segment, GST_FORMAT_TIME);
-  self->warned = FALSE;
-  g_atomic_int_set (&self->cancelled, FALSE);
-}
-
-/* What is known of the stream outlives a flush: our peer gets it with the next frame. */
-static void
-keep_sticky_events (GstGapDiagnose * self)
-{
-  for (GList * l = self->waiting.head; l; l = l->next) {
-    Waiting *waiting = l->data;
-
-    if (GST_IS_EVENT (waiting->object) && GST_EVENT_IS_STICKY (waiting->object))
-      gst_pad_store_sticky_event (self->srcpad,
-          GST_EVENT_CAST (waiting->object));
-  }
-}
-
-static gboolean
-gst_gap_diagnose_sink_event (GstPad * pad, GstObject * parent, GstEvent * event)
-{
-  GstGapDiagnose *self = GST_GAP_DIAGNOSE (parent);
-  gboolean good = TRUE;
-
-  switch (GST_EVENT_TYPE (event)) {
-    case GST_EVENT_FLUSH_START:
-      g_atomic_int_set (&self->cancelled, TRUE);
-      break;
-    case GST_EVENT_FLUSH_STOP:
-      keep_sticky_events (self);
-      flush (self);
-      break;
-    case GST_EVENT_CAPS:{
-      GstCaps *caps;
-
-      gst_event_parse_caps (event, &caps);
-      drain (self);
-      good = set_caps (self, caps);
-      break;
-    }
-    case GST_EVENT_SEGMENT:
-      drain (self);
-      good = set_segment (self, event);
-      break;
-    case GST_EVENT_STREAM_START:
-    case GST_EVENT_SEGMENT_DONE:
-      drain (self);
-      break;
-    case GST_EVENT_EOS:
-      finish (self);
-      break;
-    default:
-      if (GST_EVENT_IS_SERIALIZED (event))
-        return enqueue_other (self, event) == GST_FLOW_OK;
-      break;
-  }
-  if (good)
-    return gst_pad_push_event (self->srcpad, event);
-  gst_event_unref (event);
-  return FALSE;
-}
-
-static gboolean
-gst_gap_diagnose_src_query (GstPad * pad, GstObject * parent, GstQuery * query)
-{
-  GstGapDiagnose *self = GST_GAP_DIAGNOSE (parent);
-  GstClockTime own = 0;
-
-  if (GST_QUERY_TYPE (query) != GST_QUERY_LATENCY)
-    return gst_pad_query_default (pad, parent, query);
-  if (!gst_pad_peer_query (self->sinkpad, query))
-    return FALSE;
-  GST_OBJECT_LOCK (self);
-  if (self->fps_n > 0)
-    own = gst_util_uint64_scale_int (CLOTH_OBSERVER_LATENCY * GST_SECOND,
-        self->fps_d, self->fps_n);
-  else if (self->inputs.scene)
-    own =
-        (GstClockTime) (CLOTH_OBSERVER_LATENCY / self->inputs.scene->fps * 1e9);
-  GST_OBJECT_UNLOCK (self);
-  gst_cloth_add_latency (query, own);
-  return TRUE;
-}
-
-/* ---- start and stop ---- */
-
-static gboolean
-start (GstGapDiagnose * self)
-{
-  const GstGapSettings *settings = &self->settings;
-  const ClothObserverOptions options =
-      { GAIN, DAMPING_RATIO, settings->window, settings->seed,
-    settings->threads
-  };
-  g_autoptr (GError) error = NULL;
-  GstGapInputs inputs = { NULL };
-  gboolean good = gst_gap_inputs_load (&inputs, GST_ELEMENT (self),
-      settings);
-
-  GST_OBJECT_LOCK (self);
-  self->inputs = inputs;
-  GST_OBJECT_UNLOCK (self);
-  if (!good)
-    return FALSE;
-  self->observer = cloth_observer_new (inputs.scene, inputs.model, &options,
-      &error);
-  if (!self->observer) {
-    GST_ELEMENT_ERROR (self, RESOURCE, OPEN_READ,
-        ("Can't use the model: %s", error->message),
-        ("model=%s", settings->model));
-    return FALSE;
-  }
-  flush (self);
-  gst_cloth_damage_reset (&self->settings.damage, GST_ELEMENT (self));
-  return TRUE;
-}
-
-static void
-stop (GstGapDiagnose * self)
-{
-  GstGapInputs inputs, none = { NULL };
-
-  flush (self);
-  GST_OBJECT_LOCK (self);
-  inputs = self->inputs;
-  self->inputs = none;
-  self->fps_n = 0;
-  GST_OBJECT_UNLOCK (self);
-  gst_gap_inputs_clear (&inputs);
-  g_clear_pointer (&self->observer, cloth_observer_free);
-  g_clear_pointer (&self->view, gst_gap_view_free);
-  g_clear_pointer (&self->residuals, g_free);
-  g_clear_pointer (&self->sigmas, g_free);
-  g_clear_pointer (&self->positions, g_free);
-  g_clear_pointer (&self->states, g_free);
-  self->n_vertices = 0;
-}
-
-static GstStateChangeReturn
-gst_gap_diagnose_change_state (GstElement * element, GstStateChange transition)
-{
-  GstGapDiagnose *self = GST_GAP_DIAGNOSE (element);
-  GstStateChangeReturn result;
-
-  if (transition == GST_STATE_CHANGE_READY_TO_PAUSED && !start (self)) {
-    stop (self);
-    return GST_STATE_CHANGE_FAILURE;
-  }
-  /* A diagnosis holds the streaming thread, which has to end. */
-  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY)
-    g_atomic_int_set (&self->cancelled, TRUE);
-  result = GST_ELEMENT_CLASS
-      (gst_gap_diagnose_parent_class)->change_state (element, transition);
-  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY ||
-      (transition == GST_STATE_CHANGE_READY_TO_PAUSED &&
-          result == GST_STATE_CHANGE_FAILURE))
-    stop (self);
-  return result;
+  return GAIN;
 }
 
 /* ---- GObject ---- */
@@ -853,11 +336,8 @@ gst_gap_diagnose_change_state (GstElement * element, GstStateChange transition)
 static void
 gst_gap_diagnose_finalize (GObject * object)
 {
-  GstGapDiagnose *self = GST_GAP_DIAGNOSE (object);
-
-  stop (self);
   gst_cloth_clear_settings (properties, G_N_ELEMENTS (properties),
-      &self->settings);
+      &GST_GAP_DIAGNOSE (object)->settings);
   G_OBJECT_CLASS (gst_gap_diagnose_parent_class)->finalize (object);
 }
 
@@ -866,41 +346,34 @@ gst_gap_diagnose_class_init (gpointer klass, gpointer data)
 {
   GObjectClass *object_class = G_OBJECT_CLASS (klass);
   GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
+  GstClothFollowClass *follow_class = GST_CLOTH_FOLLOW_CLASS (klass);
 
   gst_gap_diagnose_parent_class = g_type_class_peek_parent (klass);
   object_class->finalize = gst_gap_diagnose_finalize;
-  element_class->change_state = gst_gap_diagnose_change_state;
   gst_cloth_install_properties (object_class, properties,
       G_N_ELEMENTS (properties), &defaults, G_STRUCT_OFFSET (GstGapDiagnose,
           settings));
-  gst_element_class_add_static_pad_template (element_class, &sink_template);
   gst_element_class_add_static_pad_template (element_class, &src_template);
   gst_element_class_set_static_metadata (element_class, "Cloth gap",
       "Filter/Analyzer",
       "Says where meshes or observations depart from a simulation, and why",
       "The gst-cloth developers");
+  follow_class->open = gst_gap_diagnose_open;
+  follow_class->close = gst_gap_diagnose_close;
+  follow_class->restart = gst_gap_diagnose_restart;
+  follow_class->record = gst_gap_diagnose_record;
+  follow_class->leave = gst_gap_diagnose_leave;
+  follow_class->finish = gst_gap_diagnose_finish;
+  follow_class->get_gain = gst_gap_diagnose_get_gain;
+  follow_class->damping_ratio = DAMPING_RATIO;
+  follow_class->score = "clothgap/score";
+  follow_class->lets_pass = TRUE;
 }
 
 static void
 gst_gap_diagnose_init (GTypeInstance * instance, gpointer klass)
 {
-  GstGapDiagnose *self = GST_GAP_DIAGNOSE (instance);
-
-  self->sinkpad = gst_pad_new_from_static_template (&sink_template, "sink");
-  gst_pad_set_chain_function (self->sinkpad, gst_gap_diagnose_chain);
-  gst_pad_set_event_function (self->sinkpad, gst_gap_diagnose_sink_event);
-  GST_PAD_SET_PROXY_CAPS (self->sinkpad);
-  gst_element_add_pad (GST_ELEMENT (self), self->sinkpad);
-  self->srcpad = gst_pad_new_from_static_template (&src_template, "src");
-  gst_pad_set_query_function (self->srcpad, gst_gap_diagnose_src_query);
-  gst_cloth_damage_watch (&self->settings.damage, GST_ELEMENT (self),
-      self->srcpad);
-  GST_PAD_SET_PROXY_CAPS (self->srcpad);
-  gst_element_add_pad (GST_ELEMENT (self), self->srcpad);
-  g_queue_init (&self->waiting);
-  gst_segment_init (&self->segment, GST_FORMAT_TIME);
-  self->settings = defaults;
-  self->fps_d = 1;
+  GST_GAP_DIAGNOSE (instance)->settings = defaults;
 }
 
 /* In C the type has another name than GstClothGap, the payload that it puts on meshes. What
@@ -911,9 +384,9 @@ gst_gap_diagnose_get_type (void)
   static gsize type;
 
   if (g_once_init_enter (&type))
-    g_once_init_leave (&type, g_type_register_static_simple (GST_TYPE_ELEMENT,
-            "GstClothgap", sizeof (GstGapDiagnoseClass),
-            gst_gap_diagnose_class_init, sizeof (GstGapDiagnose),
-            gst_gap_diagnose_init, 0));
+    g_once_init_leave (&type,
+        g_type_register_static_simple (GST_TYPE_CLOTH_FOLLOW, "GstClothgap",
+            sizeof (GstGapDiagnoseClass), gst_gap_diagnose_class_init,
+            sizeof (GstGapDiagnose), gst_gap_diagnose_init, 0));
   return type;
 }

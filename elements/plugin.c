@@ -9,6 +9,7 @@
 
 #include "elements/gstclothcamera.h"
 #include "elements/gstclothdisparity.h"
+#include "elements/gstclothfit.h"
 #include "elements/gstclothgap.h"
 #include "elements/gstclothjson.h"
 #include "elements/gstclothmetadepay.h"
@@ -33,6 +34,7 @@ plugin_init (GstPlugin * plugin)
 
   registered &= GST_ELEMENT_REGISTER (clothcamera, plugin);
   registered &= GST_ELEMENT_REGISTER (clothdisparity, plugin);
+  registered &= GST_ELEMENT_REGISTER (clothfit, plugin);
   registered &= GST_ELEMENT_REGISTER (clothgap, plugin);
   registered &= GST_ELEMENT_REGISTER (clothjson, plugin);
   registered &= GST_ELEMENT_REGISTER (clothmetadepay, plugin);

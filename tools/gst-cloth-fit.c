@@ -35,7 +35,7 @@ typedef struct
 /* First steps of a search, as a share of a number's range. */
 #define FIRST_STEP 0.25
 
-/* All that is read for a fit. */
+/* All that is read for a fit. @observations: of each take, NULL where it has none */
 typedef struct
 {
   GPtrArray *takes, *observations;
@@ -45,7 +45,8 @@ typedef struct
 static void
 clear_observations (gpointer item)
 {
-  cloth_observations_free (item);
+  if (item)
+    cloth_observations_free (item);
 }
 
 static void
@@ -109,12 +110,13 @@ load (const Arguments * a, Inputs * i, GError ** error)
     g_ptr_array_add (i->takes, take);
     if (!gst_cloth_io_observations_load_take (take, &observations, error))
       return FALSE;
-    if (observations)
-      g_ptr_array_add (i->observations, observations);
+    g_ptr_array_add (i->observations, observations);
     if (observations && a->rig && !replace_rig (observations, a->rig, error))
       return FALSE;
+    /* a mesh says more than what it was made of */
     input = (ClothSynthesisInput) {
-    take, observations};
+    take, cloth_take_get_n_positions (take) ==
+          cloth_take_get_n_frames (take) ? NULL : observations};
     g_array_append_val (i->inputs, input);
   }
   return TRUE;
@@ -253,16 +255,15 @@ write_numbers (const Arguments * a, const ClothSynthesis * s,
   cloth_json_writer_begin_array (w, "takes");
   for (guint i = 0; i < s->n_takes; i++) {
     const ClothSynthesisTake *t = &s->takes[i];
-    const ClothSynthesisInput *input =
-        &g_array_index (inputs->inputs, ClothSynthesisInput, i);
+    const ClothObservations *seen = g_ptr_array_index (inputs->observations, i);
 
     cloth_json_writer_begin_object (w, NULL);
     cloth_json_writer_string (w, "name", t->recording->name);
     cloth_json_writer_number (w, "gain", t->gain);
     add_gap (w, "before", &t->before);
     add_gap (w, "after", &t->after);
-    if (input->observations)
-      add_cameras (w, a, t, input->observations);
+    if (seen)
+      add_cameras (w, a, t, seen);
     cloth_json_writer_end_object (w);
   }
   cloth_json_writer_end_array (w);

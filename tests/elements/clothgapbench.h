@@ -23,6 +23,10 @@
 #define ACCELERATION 1.0
 #define GAIN 100.0
 #define LATENCY 3
+/* The element that is tested, with what it always is given. */
+#ifndef ELEMENT
+#define ELEMENT "clothgap effects=air_drag"
+#endif
 
 static gchar *folder;           /* of all files of this test */
 
@@ -141,7 +145,7 @@ static inline GstElement *
 make_element (const gchar * model, const gchar * take, const gchar * more)
 {
   g_autofree gchar *text =
-      g_strdup_printf ("clothgap %s%s%s %s%s%s effects=air_drag %s",
+      g_strdup_printf (ELEMENT " %s%s%s %s%s%s %s",
       model ? "model=" : "", model ? folder : "", model ? model : "",
       take ? "location=" : "", take ? folder : "", take ? take : "", more);
   g_autoptr (GError) error = NULL;

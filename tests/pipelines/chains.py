@@ -267,6 +267,66 @@ def case_realtime(data):
                   'the late camera is named')
 
 
+def case_fit(data):
+    """A mesh with a large hole from the first frame on, of another program's cloth: the simulated cloth is
+    half as far off there as what is filled in, and whole."""
+    with tempfile.TemporaryDirectory() as folder:
+        hidden, whole, filled = (os.path.join(folder, name) for name in ('hidden', 'whole', 'filled'))
+        shutil.copytree(os.path.join(data, 'arcsim/base'), hidden)
+        truth = numpy.load(hidden + '/positions.npy')
+        seen = truth.copy()
+        seen.reshape(-1, 35, 33, 3)[:, 12:30, 8:24] = numpy.nan
+        numpy.save(hidden + '/positions.npy', seen)
+        play('meshsrc location=%s ! tee name=t  t. ! queue ! meshfill ! meshsink location=%s format=take'
+             '  t. ! queue ! clothfit model=%s/arcsim/model.json location=%s'
+             ' ! meshsink location=%s format=take' % (hidden, filled, data, hidden, whole))
+        lost = numpy.isnan(seen[:, :, 0]) & numpy.isfinite(truth[:, :, 0])
+        # what the springs have not reached yet
+        lost[:10] = False
+        off = {}
+        for take in (whole, filled):
+            places = numpy.load(take + '/positions.npy')
+            off[take] = 1e3 * numpy.sqrt((numpy.linalg.norm(places - truth, axis=2)[lost] ** 2).mean())
+        check(lost.mean() > 0.2 and off[whole] < 8 and off[whole] < off[filled] / 2,
+              'hidden vertices: fitted %.1f mm RMS off, filled %.1f' % (off[whole], off[filled]))
+        states = numpy.load(whole + '/states.npy')
+        check(numpy.isfinite(numpy.load(whole + '/positions.npy')).all() and set(numpy.unique(states)) == {1, 4},
+              'measured or predicted, no holes')
+
+
+def case_fit_film(data):
+    """One camera's film of a sheet that air holds back, and a model whose fabric is wrong: from what is seen
+    across the sight its stiffnesses are found."""
+    with tempfile.TemporaryDirectory() as folder:
+        with open(folder + '/rig.json', 'w', encoding='utf-8') as file:
+            json.dump({'version': 1, 'cameras': [{
+                'name': 'left', 'size': [640, 480], 'K': [[900, 0, 319.5], [0, 900, 239.5], [0, 0, 1]],
+                'distortion': {'model': 'none', 'coefficients': []},
+                'R': [[0.6, 0.8, 0], [0, 0, -1], [-0.8, 0.6, 0]], 't': [-0.114, 1.3, 1.352]}]}, file)
+        with open(folder + '/pattern.json', 'w', encoding='utf-8') as file:
+            json.dump({'version': 1, 'pattern': 'checker', 'columns': 8, 'rows': 8, 'square_m': 0.05,
+                       'origin_uv_m': [0, 0], 'cloth_m': [0.4, 0.4], 'first_square': 'black'}, file)
+        with open(os.path.join(ROOT, 'pipelines/model-knit.json'), encoding='utf-8') as file:
+            model = json.load(file)
+        true = model['stretch']['warp'], model['stretch']['weft'], model['shear']
+        model['stretch'], model['shear'] = {'warp': 50, 'weft': 200}, 20
+        with open(folder + '/wrong.json', 'w', encoding='utf-8') as file:
+            json.dump(model, file)
+        play('meshsrc location=%s/take_drag ! clothcamera rig=%s/rig.json pattern=%s/pattern.json ! saddledetect'
+             ' ! quadtrack pattern=%s/pattern.json ! clothmetapay ! clothfit model=%s/wrong.json rig=%s/rig.json'
+             ' location=%s/take_drag fitted=%s/fitted.json ! meshsink location=%s/whole.take'
+             % (data, folder, folder, folder, folder, folder, data, folder, folder))
+        with open(folder + '/fitted.json', encoding='utf-8') as file:
+            fitted = json.load(file)
+        found = fitted['stretch']['warp'], fitted['stretch']['weft'], fitted['shear']
+        check(all(abs(a / b - 1) < 0.2 for a, b in zip(found, true)),
+              'stretch and shear %s, truly %s' % (numpy.round(found, 1), true))
+        truth = numpy.load(os.path.join(data, 'take_drag/positions.npy'))
+        off = 1e3 * numpy.sqrt((numpy.linalg.norm(numpy.load(folder + '/whole.take/positions.npy') - truth, axis=2)
+                                ** 2).mean())
+        check(off < 15, 'the cloth drawn across the sight is %.1f mm RMS off, with the model as it was' % off)
+
+
 def case_early_end(data):
     """One camera ends after 20 frames: the mesh ends in order, nothing hangs."""
     pair = Pair(data)

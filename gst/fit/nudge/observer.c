@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "gst/fit/recording/recording.h"
+#include "gst/mesh/fill/fill.h"
 #include "gst/mesh/hold.h"
 #include "gst/sim/sim.h"
 
@@ -30,7 +31,7 @@ G_STATIC_ASSERT (WINDOW == 2 * CLOTH_OBSERVER_LATENCY + 1);
 
 typedef struct
 {
-  gdouble time;
+  gdouble time, sigma;
   gdouble *positions;           /* 3 a vertex, NaN when not seen */
   ClothRays *rays;              /* they lie on; unless has_rays, of an older frame */
   gboolean has_rays;
@@ -43,6 +44,7 @@ struct _ClothObserver
   ClothSim *sim;
   ClothSim *forecast;           /* without springs: only for frames of rays */
   gdouble *scene_start;
+  ClothTopology *topology;
   ClothHold *hold;
   ClothOutliers *outliers;
   guint64 n_pushed, n_popped;
@@ -52,7 +54,6 @@ struct _ClothObserver
   gdouble *weights;             /* all 1 */
   gdouble *state, *free_state, *speeds;
   gdouble *ahead, *ahead_speeds, *reference;    /* where rays' vertices may be */
-  gfloat *start;
   /* which frames of the window saw a vertex → their weights in its derivative */
   gdouble table[MASKS][WINDOW];
   gboolean known[MASKS];
@@ -99,7 +100,8 @@ cloth_observer_new (const ClothScene * scene, const ClothModel * model,
   self->sim = g_steal_pointer (&sim);
   self->forecast = forecast;
   self->n = scene->topology->n_vertices;
-  self->hold = cloth_hold_new (scene->topology);
+  self->topology = cloth_topology_copy (scene->topology);
+  self->hold = cloth_hold_new (self->topology);
   self->outliers = cloth_outliers_new (scene->topology);
   n = 3 * (gsize) self->n;
   for (guint i = 0; i < WINDOW; i++) {
@@ -115,7 +117,6 @@ cloth_observer_new (const ClothScene * scene, const ClothModel * model,
   self->state = g_new (gdouble, n);
   self->free_state = g_new (gdouble, n);
   self->speeds = g_new (gdouble, n);
-  self->start = g_new (gfloat, n);
   self->weights = g_new (gdouble, self->n);
   for (guint i = 0; i < self->n; i++)
     self->weights[i] = 1.;
@@ -137,17 +138,19 @@ cloth_observer_restart (ClothObserver * observer)
 /* @observer: an observer that has not more than %CLOTH_OBSERVER_LATENCY frames waiting
  * @time_s: of the frame, seconds of the scene, later than the last one's
  * @positions: 3 numbers a vertex, metres; NaN when not seen
+ * @sigma_m: usual standard deviation of one of them, metres; 0: not known
  *
  * Gives it a frame. Vertices that would have to be torn off the cloth to be there count as
  * not seen.
  */
 void
 cloth_observer_push (ClothObserver * observer, gdouble time_s,
-    const gfloat * positions)
+    const gfloat * positions, gdouble sigma_m)
 {
   Frame *frame = &observer->ring[observer->n_pushed++ % WINDOW];
 
   frame->time = time_s;
+  frame->sigma = sigma_m;
   frame->has_rays = FALSE;
   for (gsize i = 0; i < 3 * (gsize) observer->n; i++)
     frame->positions[i] = positions[i];
@@ -168,6 +171,7 @@ cloth_observer_push_rays (ClothObserver * observer, gdouble time_s,
   Frame *frame = &observer->ring[observer->n_pushed++ % WINDOW];
 
   frame->time = time_s;
+  frame->sigma = 0;
   frame->has_rays = TRUE;
   cloth_rays_copy (frame->rays, rays);
 }
@@ -285,21 +289,75 @@ take_speeds_along (const ClothObserver * self, const ClothRays * rays,
   }
 }
 
-/* Both copies where the first frame saw the cloth. */
+/* Standard deviation of what rays know of a place, RMS, m. */
+static gdouble
+find_spread (const ClothObserver * self, const Frame * frame)
+{
+  const gdouble *c = frame->rays->centre;
+  gdouble sum = 0;
+  guint n = 0;
+
+  for (guint v = 0; v < self->n; v++) {
+    const gdouble *p = frame->positions + 3 * (gsize) v;
+    gdouble square = 0;
+
+    for (guint k = 0; k < 3; k++)
+      square += (p[k] - c[k]) * (p[k] - c[k]);
+    square *= frame->rays->spreads[v] * frame->rays->spreads[v];
+    if (!isfinite (square))
+      continue;
+    sum += square;
+    n++;
+  }
+  return n ? sqrt (sum / n) : 0;
+}
+
+/* Closes the holes of the first frame by thin plates, or by neighbours where plates can't. */
+static void
+fill_start (ClothObserver * self)
+{
+  const gsize n = self->n;
+  const ClothFillParameters parameters = { CLOTH_FILL_PLATE, CLOTH_FILL_NOISE,
+    CLOTH_FILL_MAX_SIGMA, 0., 0.
+  };
+  g_autoptr (ClothFill) fill = cloth_fill_new (self->topology, NULL,
+      &parameters);
+  g_autofree gfloat *places = g_new (gfloat, 6 * n);
+  g_autofree guint8 *states = g_malloc (2 * n);
+  ClothMeshFrame from = { places, states, NULL };
+  ClothMeshFrame to = { places + 3 * n, states + n, NULL };
+  ClothFillCounts counts;
+  const gfloat *filled;
+
+  for (gsize i = 0; i < 3 * n; i++)
+    places[i] = (gfloat) self->state[i];
+  for (gsize i = 0; i < n; i++)
+    states[i] = isnan (places[3 * i]) ? CLOTH_VERTEX_UNSEEN :
+        CLOTH_VERTEX_MEASURED;
+  cloth_fill_run (fill, 0., &from, &to, &counts);
+  filled = cloth_hold_apply (self->hold, to.positions);
+  for (gsize i = 0; i < 3 * n; i++)
+    if (isnan (self->state[i]))
+      self->state[i] = filled[i];
+}
+
+/* Both copies where the first frame saw the cloth: without its noise where the cloth is smooth, since a
+ * sheet with folds as sharp as its mesh bursts. */
 static void
 begin (ClothObserver * self, const Frame * frame, const gdouble * velocity)
 {
-  gsize n = 3 * (gsize) self->n;
-  const gfloat *filled;
+  const gsize n = 3 * (gsize) self->n;
+  g_autofree gdouble *seen = g_new (gdouble, self->n);
 
   for (gsize i = 0; i < n; i++) {
-    self->start[i] = (gfloat) (frame->has_rays && isnan (frame->positions[i]) ?
-        self->scene_start[i] : frame->positions[i]);
+    self->state[i] = frame->has_rays && isnan (frame->positions[i]) ?
+        self->scene_start[i] : frame->positions[i];
     self->speeds[i] = isfinite (velocity[i]) ? velocity[i] : 0;
+    seen[i / 3] = isfinite (frame->positions[i]);
   }
-  filled = cloth_hold_apply (self->hold, self->start);
-  for (gsize i = 0; i < n; i++)
-    self->state[i] = filled[i];
+  if (!cloth_start_smooth (self->topology, seen, frame->has_rays ?
+          find_spread (self, frame) : frame->sigma, self->state, self->speeds))
+    fill_start (self);
   for (guint model = NUDGED; model <= FREE; model++)
     cloth_sim_set_state (self->sim, model, self->state, self->speeds,
         frame->time);
@@ -368,7 +426,7 @@ add_to_window (ClothObserver * self, const Frame * frame)
  *   metres; NaN when not seen. Of rays: what is across them
  * @error: #ClothSimError when the simulation blew up
  *
- * Goes on by one frame. The first frame's residual is 0 where it was seen.
+ * Goes on by one frame. The first frame's residual is 0 where it was seen, or its noise.
  *
  * Returns: %TRUE when there is a residual; after an error only
  *   cloth_observer_restart () helps
@@ -417,6 +475,17 @@ cloth_observer_pop (ClothObserver * observer, gfloat * residuals,
   }
   self->n_popped++;
   return TRUE;
+}
+
+/* @observer: an observer that has popped a frame, and got none since
+ * @positions: (out caller-allocates): where the simulation has the vertices then, drawn by the springs;
+ *   3 numbers a vertex, metres
+ */
+void
+cloth_observer_get_drawn (const ClothObserver * observer, gfloat * positions)
+{
+  for (gsize i = 0; i < 3 * (gsize) observer->n; i++)
+    positions[i] = (gfloat) observer->state[i];
 }
 
 /* @observer: an observer that has popped a frame of rays, and got none since
@@ -481,13 +550,13 @@ cloth_observer_free (ClothObserver * observer)
   g_free (observer->state);
   g_free (observer->free_state);
   g_free (observer->speeds);
-  g_free (observer->start);
   g_free (observer->weights);
   g_free (observer->scene_start);
   g_free (observer->ahead);
   g_free (observer->ahead_speeds);
   g_free (observer->reference);
   cloth_hold_free (observer->hold);
+  cloth_topology_free (observer->topology);
   cloth_outliers_free (observer->outliers);
   cloth_sim_free (observer->sim);
   cloth_sim_free (observer->forecast);

@@ -50,12 +50,14 @@ ClothObserver *cloth_observer_new (const ClothScene * scene,
     GError ** error);
 void cloth_observer_restart (ClothObserver * observer);
 void cloth_observer_push (ClothObserver * observer, gdouble time_s,
-    const gfloat * positions);
+    const gfloat * positions, gdouble sigma_m);
 void cloth_observer_push_rays (ClothObserver * observer, gdouble time_s,
     const ClothRays * rays);
 guint cloth_observer_get_n_waiting (const ClothObserver * observer);
 gboolean cloth_observer_pop (ClothObserver * observer, gfloat * residuals,
     GError ** error);
+void cloth_observer_get_drawn (const ClothObserver * observer,
+    gfloat * positions);
 void cloth_observer_get_lifted (const ClothObserver * observer,
     gfloat * positions, gfloat * sigmas);
 gboolean cloth_observer_take_score (ClothObserver * observer, gboolean last,

@@ -56,19 +56,18 @@ make_terms (const ClothTopology * t)
   return terms;
 }
 
-/* The polynomial of some terms along the first frame's @values, [m][3]; FALSE when the terms can't be told
- * apart. */
+/* The polynomial of some terms along @values, [m][3]; FALSE when the terms can't be told apart. */
 static gboolean
-fit (const ClothRecording * r, const gdouble * terms, guint m,
+fit (guint n, const gdouble * seen, const gdouble * terms, guint m,
     const gdouble * values, gdouble * coefficients)
 {
   g_autofree gdouble *normal = g_new0 (gdouble, m * m);
   gdouble right[3][MAX_TERMS] = { {0.} };
 
-  for (guint v = 0; v < r->n; v++) {
+  for (guint v = 0; v < n; v++) {
     const gdouble *t = terms + (gsize) v * MAX_TERMS;
 
-    if (r->seen[v] == 0.)
+    if (seen[v] == 0.)
       continue;
     for (guint i = 0; i < m; i++) {
       for (guint k = 0; k < m; k++)
@@ -100,21 +99,68 @@ evaluate (const gdouble * terms, guint m, const gdouble * coefficients,
 
 /* Σ|y − x|² of what was seen. */
 static gdouble
-find_rest (const ClothRecording * r, const gdouble * terms, guint m,
-    const gdouble * coefficients)
+find_rest (guint n, const gdouble * seen, const gdouble * positions,
+    const gdouble * terms, guint m, const gdouble * coefficients)
 {
   gdouble sum = 0.;
 
-  for (guint v = 0; v < r->n; v++) {
+  for (guint v = 0; v < n; v++) {
     gdouble place[3];
 
-    if (r->seen[v] == 0.)
+    if (seen[v] == 0.)
       continue;
     evaluate (terms + (gsize) v * MAX_TERMS, m, coefficients, place);
     for (guint k = 0; k < 3; k++)
-      sum += pow (r->y[3 * v + k] - place[k], 2.);
+      sum += pow (positions[3 * v + k] - place[k], 2.);
   }
   return sum;
+}
+
+/* @topology: the cloth's mesh, of n vertices
+ * @seen: (array length=n): 0 where nothing was seen
+ * @sigma: standard deviation of a coordinate, m
+ * @positions: (inout) (array): as seen, then where the cloth may have been, [n][3], m; NaN is taken where
+ *   nothing was seen
+ * @velocities: (inout) (optional) (array): likewise, [n][3], m/s
+ *
+ * Returns: whether they are smoother than what was seen; else they are as they were
+ */
+gboolean
+cloth_start_smooth (const ClothTopology * topology, const gdouble * seen,
+    gdouble sigma, gdouble * positions, gdouble * velocities)
+{
+  const guint n = topology->n_vertices;
+  g_autofree gdouble *terms = NULL;
+  gdouble coefficients[3 * MAX_TERMS];
+  guint n_seen = 0;
+
+  for (guint v = 0; v < n; v++)
+    n_seen += seen[v] != 0.;
+  if (!(sigma > 0.) || !topology->uv)
+    return FALSE;
+  terms = make_terms (topology);
+  for (guint degree = 1; degree <= MAX_DEGREE; degree++) {
+    const guint m = (degree + 1) * (degree + 2) / 2;
+    gdouble count;
+
+    if (m * PER_TERM > n_seen || !fit (n, seen, terms, m, positions,
+            coefficients))
+      return FALSE;
+    count = 3. * (n_seen - m);
+    if (find_rest (n, seen, positions, terms, m, coefficients) > count * sigma *
+        sigma * (1. + CHANCE * sqrt (2. / count)))
+      continue;
+    for (guint v = 0; v < n; v++)
+      evaluate (terms + (gsize) v * MAX_TERMS, m, coefficients,
+          positions + 3 * v);
+    if (!velocities || !fit (n, seen, terms, m, velocities, coefficients))
+      return TRUE;
+    for (guint v = 0; v < n; v++)
+      evaluate (terms + (gsize) v * MAX_TERMS, m, coefficients,
+          velocities + 3 * v);
+    return TRUE;
+  }
+  return FALSE;
 }
 
 /* @recording: a recording
@@ -128,37 +174,10 @@ cloth_recording_find_start (const ClothRecording * recording,
     gdouble * positions, gdouble * velocities)
 {
   const ClothRecording *r = recording;
-  g_autofree gdouble *terms = NULL;
-  gdouble coefficients[3 * MAX_TERMS];
-  guint n = 0;
 
   memcpy (positions, r->y, 3 * (gsize) r->n * sizeof *positions);
   if (velocities)
     memcpy (velocities, r->velocity, 3 * (gsize) r->n * sizeof *velocities);
-  for (guint v = 0; v < r->n; v++)
-    n += r->seen[v] != 0.;
-  if (!(r->sigma > 0.) || !r->scene->topology->uv)
-    return FALSE;
-  terms = make_terms (r->scene->topology);
-  for (guint degree = 1; degree <= MAX_DEGREE; degree++) {
-    const guint m = (degree + 1) * (degree + 2) / 2;
-    gdouble count;
-
-    if (m * PER_TERM > n || !fit (r, terms, m, r->y, coefficients))
-      return FALSE;
-    count = 3. * (n - m);
-    if (find_rest (r, terms, m, coefficients) > count * r->sigma * r->sigma *
-        (1. + CHANCE * sqrt (2. / count)))
-      continue;
-    for (guint v = 0; v < r->n; v++)
-      evaluate (terms + (gsize) v * MAX_TERMS, m, coefficients,
-          positions + 3 * v);
-    if (!velocities || !fit (r, terms, m, r->velocity, coefficients))
-      return TRUE;
-    for (guint v = 0; v < r->n; v++)
-      evaluate (terms + (gsize) v * MAX_TERMS, m, coefficients,
-          velocities + 3 * v);
-    return TRUE;
-  }
-  return FALSE;
+  return cloth_start_smooth (r->scene->topology, r->seen, r->sigma, positions,
+      velocities);
 }

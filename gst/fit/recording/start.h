@@ -7,6 +7,9 @@
 
 G_BEGIN_DECLS
 
+gboolean cloth_start_smooth (const ClothTopology * topology,
+    const gdouble * seen, gdouble sigma, gdouble * positions,
+    gdouble * velocities);
 gboolean cloth_recording_find_start (const ClothRecording * recording,
     gdouble * positions, gdouble * velocities);
 

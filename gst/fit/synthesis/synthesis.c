@@ -37,8 +37,7 @@ record (const ClothSynthesisInput * input, const ClothModel * model,
     const ClothSynthesisOptions * o, ClothObservedCounts * counts,
     GError ** error)
 {
-  if (!input->observations || cloth_take_get_n_positions (input->take) ==
-      cloth_take_get_n_frames (input->take))
+  if (!input->observations)
     return cloth_recording_new (input->take, error);
   return cloth_recording_new_observed (input->take, input->observations, model,
       o->gain, &o->rollout, counts, error);

@@ -23,7 +23,8 @@ typedef struct {
 } ClothSynthesisOptions;
 
 /* @take: mesh, clamps and times
- * @observations: (nullable): what cameras saw of it; %NULL: it has positions
+ * @observations: (nullable): what cameras saw of it, which counts in place of the take's positions but for
+ *   those of the first frame, where the cloth starts; %NULL: the positions count
  */
 typedef struct {
   ClothTake *take;

@@ -1,27 +1,26 @@
-/* clothgap: what a diagnosis is made of: the files that are read at the start, the camera of
- * an observation stream, and the recording that went by.
+/* What a stream is followed with: the files that are read at the start, the camera of an
+ * observation stream, and the recording that went by.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #ifdef HAVE_CONFIG_H
 #include "config.h"
 #endif
 
-#include "elements/gstclothgap-inputs.h"
+#include "elements/gstclothfollow-inputs.h"
 
 #include <glib/gstdio.h>
 #include <math.h>
 
 #include "elements/gstclothutil.h"
 #include "elements/gstmeshformat.h"
-#include "gst/cloth-io/observations.h"
 #include "gst/cloth-io/points.h"
 #include "gst/gap/inputs.h"
 
 /* ---- files ---- */
 
-static gboolean
-fail (GstElement * element, const gchar * property, const gchar * path,
-    const GError * error)
+gboolean
+gst_follow_fail (GstElement * element, const gchar * property,
+    const gchar * path, const GError * error)
 {
   GST_ELEMENT_ERROR (element, RESOURCE, OPEN_READ, ("Can't use the %s: %s",
           property, error->message), ("%s=%s", property, path));
@@ -40,25 +39,11 @@ require (GstElement * element, const gchar * value, const gchar * name,
   return FALSE;
 }
 
-static gboolean
-load_baseline (GstGapInputs * self, const gchar * folder, GError ** error)
-{
-  if (!folder)
-    return TRUE;
-  self->baseline = cloth_take_open (folder, error);
-  return self->baseline && cloth_gap_check_same_cloth ("the baseline",
-      cloth_take_get_topology (self->baseline), "the take of location",
-      cloth_take_get_topology (self->take), error)
-      && gst_cloth_io_observations_load (folder,
-      cloth_take_get_topology (self->baseline), &self->baseline_observations,
-      error);
-}
-
 gboolean
-gst_gap_inputs_load (GstGapInputs * inputs, GstElement * element,
-    const GstGapSettings * settings)
+gst_follow_inputs_load (GstFollowInputs * inputs, GstElement * element,
+    const GstFollowSettings * settings)
 {
-  GstGapInputs *self = inputs;
+  GstFollowInputs *self = inputs;
   g_autoptr (GError) error = NULL;
 
   if (!require (element, settings->model, "model", "a model.json") ||
@@ -67,26 +52,16 @@ gst_gap_inputs_load (GstGapInputs * inputs, GstElement * element,
     return FALSE;
   self->model = cloth_model_load (settings->model, &error);
   if (!self->model)
-    return fail (element, "model", settings->model, error);
+    return gst_follow_fail (element, "model", settings->model, error);
   self->take = cloth_take_open (settings->location, &error);
   self->scene = self->take ? cloth_scene_new_from_take (self->take, &error) :
       NULL;
-  if (!self->scene || !cloth_scene_check_paths (self->scene, &error)
-      || !gst_cloth_io_observations_load (settings->location,
-          cloth_take_get_topology (self->take), &self->observations, &error))
-    return fail (element, "location", settings->location, error);
-  if (!load_baseline (self, settings->baseline, &error))
-    return fail (element, "baseline", settings->baseline, error);
-  /* what it is of can be checked once there is a recording */
-  if (settings->simulated
-      && !(self->simulated = cloth_take_open (settings->simulated, &error)))
-    return fail (element, "simulated", settings->simulated, error);
-  self->effects = cloth_gap_effects_parse (settings->effects, &error);
-  return !error || fail (element, "effects", settings->effects, error);
+  return (self->scene && cloth_scene_check_paths (self->scene, &error))
+      || gst_follow_fail (element, "location", settings->location, error);
 }
 
 gboolean
-gst_gap_inputs_check_mesh (const GstGapInputs * inputs,
+gst_follow_inputs_check_mesh (const GstFollowInputs * inputs,
     GstElement * element, const GstCaps * caps)
 {
   g_autoptr (GError) error = NULL;
@@ -106,21 +81,16 @@ gst_gap_inputs_check_mesh (const GstGapInputs * inputs,
 }
 
 void
-gst_gap_inputs_clear (GstGapInputs * inputs)
+gst_follow_inputs_clear (GstFollowInputs * inputs)
 {
   g_clear_pointer (&inputs->scene, cloth_scene_free);
   g_clear_pointer (&inputs->take, cloth_take_free);
-  g_clear_pointer (&inputs->baseline, cloth_take_free);
-  g_clear_pointer (&inputs->simulated, cloth_take_free);
-  g_clear_pointer (&inputs->observations, cloth_observations_free);
-  g_clear_pointer (&inputs->baseline_observations, cloth_observations_free);
   g_clear_pointer (&inputs->model, cloth_model_free);
-  g_clear_pointer (&inputs->effects, g_strfreev);
 }
 
 /* ---- the camera of an observation stream ---- */
 
-struct _GstGapView
+struct _GstFollowView
 {
   gchar *rig_file;
   gchar *property;              /* NULL: the metas name the camera */
@@ -131,11 +101,12 @@ struct _GstGapView
   GstClothIoPoints *points;
   ClothRays *rays;
   guint64 sequence;             /* of the next picture */
-  gboolean seen;                /* whether any picture had squares, dots or matches */
+  gboolean shows;               /* whether the last picture had squares, dots or matches */
+  gboolean seen;                /* whether any had */
 };
 
 static gboolean
-check_size (const GstGapView * self, GstElement * element)
+check_size (const GstFollowView * self, GstElement * element)
 {
   const ClothCamera *camera = self->camera;
 
@@ -151,7 +122,7 @@ check_size (const GstGapView * self, GstElement * element)
 }
 
 static gboolean
-open_camera (GstGapView * self, GstElement * element, const gchar * name)
+open_camera (GstFollowView * self, GstElement * element, const gchar * name)
 {
   if (self->camera && g_strcmp0 (name, self->name) == 0)
     return TRUE;
@@ -159,7 +130,7 @@ open_camera (GstGapView * self, GstElement * element, const gchar * name)
     GST_ELEMENT_ERROR (element, STREAM, FORMAT,
         ("A picture is of camera “%s”, those before it are of “%s”.",
             name, self->camera->name),
-        ("Give each camera a clothgap of its own, or all of them one "
+        ("Give each camera an element of its own, or all of them one "
             "triangulate before it."));
     return FALSE;
   }
@@ -172,13 +143,13 @@ open_camera (GstGapView * self, GstElement * element, const gchar * name)
   return check_size (self, element);
 }
 
-GstGapView *
-gst_gap_view_new (GstElement * element,
-    const GstGapSettings * settings, const ClothTopology * topology)
+GstFollowView *
+gst_follow_view_new (GstElement * element,
+    const GstFollowSettings * settings, const ClothTopology * topology)
 {
   g_autofree gchar *beside = g_build_filename (settings->location, "rig.json",
       NULL);
-  GstGapView *self;
+  GstFollowView *self;
 
   if (topology->columns < 2 || topology->rows < 2) {
     GST_ELEMENT_ERROR (element, STREAM, FORMAT,
@@ -186,7 +157,7 @@ gst_gap_view_new (GstElement * element,
             "none."), ("location=%s", settings->location));
     return NULL;
   }
-  self = g_new0 (GstGapView, 1);
+  self = g_new0 (GstFollowView, 1);
   if (settings->rig)
     self->rig_file = g_strdup (settings->rig);
   else if (g_file_test (beside, G_FILE_TEST_EXISTS))
@@ -199,7 +170,7 @@ gst_gap_view_new (GstElement * element,
 
 /* What can be known before the first picture is checked now. */
 gboolean
-gst_gap_view_set_caps (GstGapView * view, GstElement * element,
+gst_follow_view_set_caps (GstFollowView * view, GstElement * element,
     const GstCaps * caps)
 {
   const GstStructure *s = gst_caps_get_structure (caps, 0);
@@ -215,7 +186,7 @@ gst_gap_view_set_caps (GstGapView * view, GstElement * element,
 
 /* A picture that shows nothing has no rays, and may not say whose it is. */
 const ClothRays *
-gst_gap_view_read (GstGapView * view, GstElement * element,
+gst_follow_view_read (GstFollowView * view, GstElement * element,
     GstBuffer * picture, guint64 * sequence, gdouble * offset_s,
     GError ** damage)
 {
@@ -223,7 +194,8 @@ gst_gap_view_read (GstGapView * view, GstElement * element,
   g_autoptr (GError) error = NULL;
   const gchar *name;
 
-  if (!gst_cloth_io_points_has_any (picture)) {
+  view->shows = gst_cloth_io_points_has_any (picture);
+  if (!view->shows) {
     cloth_rays_clear (view->rays);
   } else {
     if (!gst_cloth_io_points_find (points, picture, &error)) {
@@ -265,8 +237,16 @@ gst_gap_view_read (GstGapView * view, GstElement * element,
   return view->rays;
 }
 
+const ClothTriangulateView *
+gst_follow_view_get_points (const GstFollowView * view,
+    const ClothCamera ** camera)
+{
+  *camera = view->camera;
+  return view->shows ? &view->points->view : NULL;
+}
+
 gboolean
-gst_gap_view_check_seen (const GstGapView * view, GstElement * element)
+gst_follow_view_check_seen (const GstFollowView * view, GstElement * element)
 {
   if (view->seen)
     return TRUE;
@@ -278,7 +258,7 @@ gst_gap_view_check_seen (const GstGapView * view, GstElement * element)
 }
 
 void
-gst_gap_view_free (GstGapView * view)
+gst_follow_view_free (GstFollowView * view)
 {
   if (!view)
     return;
@@ -293,7 +273,7 @@ gst_gap_view_free (GstGapView * view)
 
 /* ---- the recording ---- */
 
-struct _GstGapRecord
+struct _GstFollowRecord
 {
   gchar *folder;                /* temporary */
   ClothTakeWriter *writer;
@@ -304,19 +284,19 @@ struct _GstGapRecord
 };
 
 /* The take starts with the first mesh that is appended. @info: of the scene's take. */
-GstGapRecord *
-gst_gap_record_new (const ClothTakeInfo * info, const ClothScene * scene,
+GstFollowRecord *
+gst_follow_record_new (const ClothTakeInfo * info, const ClothScene * scene,
     GError ** error)
 {
-  GstGapRecord *record = g_new0 (GstGapRecord, 1);
+  GstFollowRecord *record = g_new0 (GstFollowRecord, 1);
   g_autoptr (ClothTakeInfo) flat = cloth_take_info_copy (info);
   gsize n;
 
-  record->folder = g_dir_make_tmp ("clothgap-XXXXXX", error);
+  record->folder = g_dir_make_tmp ("clothfollow-XXXXXX", error);
   record->writer = record->folder ? cloth_take_writer_new (record->folder, flat,
       scene->topology, error) : NULL;
   if (!record->writer) {
-    gst_gap_record_free (record);
+    gst_follow_record_free (record);
     return NULL;
   }
   record->n_held = scene->held->len;
@@ -334,7 +314,7 @@ gst_gap_record_new (const ClothTakeInfo * info, const ClothScene * scene,
 
 /* Between two logged places a clamp moves evenly, as in the simulation. */
 static void
-find_clamps (GstGapRecord * record, gdouble time)
+find_clamps (GstFollowRecord * record, gdouble time)
 {
   gsize n = 3 * (gsize) record->n_held;
   guint after = 0;
@@ -353,7 +333,7 @@ find_clamps (GstGapRecord * record, gdouble time)
 }
 
 gboolean
-gst_gap_record_append (GstGapRecord * record, gdouble time_s,
+gst_follow_record_append (GstFollowRecord * record, gdouble time_s,
     const gfloat * positions, const guint8 * states, const gfloat * covariances,
     GError ** error)
 {
@@ -363,17 +343,11 @@ gst_gap_record_append (GstGapRecord * record, gdouble time_s,
       positions, states, covariances, record->row, error);
 }
 
-/* Ends the take; the record can then only be freed. */
-ClothGapResult *
-gst_gap_record_diagnose (GstGapRecord * record,
-    const ClothModel * model, const ClothGapOptions * options, GError ** error)
+ClothTake *
+gst_follow_record_finish (GstFollowRecord * record, GError ** error)
 {
-  g_autoptr (ClothTake) take = NULL;
-
-  if (!cloth_take_writer_close (record->writer, error))
-    return NULL;
-  take = cloth_take_open (record->folder, error);
-  return take ? cloth_gap_diagnose (&take, 1, model, options, error) : NULL;
+  return cloth_take_writer_close (record->writer, error) ?
+      cloth_take_open (record->folder, error) : NULL;
 }
 
 static void
@@ -393,7 +367,7 @@ remove_folder (const gchar * folder)
 }
 
 void
-gst_gap_record_free (GstGapRecord * record)
+gst_follow_record_free (GstFollowRecord * record)
 {
   if (!record)
     return;
