@@ -196,13 +196,18 @@ gst_cloth_source_stop (GstBaseSrc * src)
   return TRUE;
 }
 
-/* The base has begun a segment. */
+/* The base has begun a segment. A pad that was deactivated, and is activated again, starts without
+ * a change of state. */
 static gboolean
 gst_cloth_source_start (GstBaseSrc * src)
 {
-  GstClothSourcePrivate *priv =
-      gst_cloth_source_get_instance_private (GST_CLOTH_SOURCE (src));
+  GstClothSource *self = GST_CLOTH_SOURCE (src);
+  GstClothSourcePrivate *priv = gst_cloth_source_get_instance_private (self);
 
+  if (!priv->caps && !GST_CLOTH_SOURCE_GET_CLASS (self)->open (self)) {
+    gst_cloth_source_stop (src);
+    return FALSE;
+  }
   GST_OBJECT_LOCK (src);
   src->segment.duration = frame_time (priv, priv->n_frames);
   GST_OBJECT_UNLOCK (src);

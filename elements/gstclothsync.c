@@ -41,6 +41,7 @@ typedef struct
   guint64 taken;                /* indices in use */
   guint64 released;             /* of pads that the subclass still believes in */
   guint64 n_sets, n_incomplete, n_skipped, n_dropped, n_implausible;
+  guint64 n_lately, n_lacking;  /* sets since the last flush, of them incomplete ones */
   gboolean is_playing;          /* while paused no camera gives anything */
 
   /* streaming thread */
@@ -420,6 +421,7 @@ gst_cloth_sync_restart (GstClothSync * self)
 
   priv->has_last = FALSE;
   GST_OBJECT_LOCK (self);
+  priv->n_lately = priv->n_lacking = 0;
   GST_AGGREGATOR_PAD (GST_AGGREGATOR_SRC_PAD (self))->segment.position =
       GST_CLOCK_TIME_NONE;
   pads = g_list_copy_deep (GST_ELEMENT (self)->sinkpads,
@@ -429,6 +431,9 @@ gst_cloth_sync_restart (GstClothSync * self)
     gst_cloth_sync_pad_reset (GST_CLOTH_SYNC_PAD (l->data));
     GST_OBJECT_LOCK (self);
     GST_CLOTH_SYNC_PAD (l->data)->silent = FALSE;
+    GST_CLOTH_SYNC_PAD (l->data)->was_silent = FALSE;
+    GST_CLOTH_SYNC_PAD (l->data)->lacked = 0;
+    GST_CLOTH_SYNC_PAD (l->data)->late = 0;
     GST_OBJECT_UNLOCK (self);
     gst_object_unref (l->data);
   }
@@ -457,7 +462,7 @@ gst_cloth_sync_start (GstAggregator * agg)
     GstClothSyncPad *pad = GST_CLOTH_SYNC_PAD (l->data);
 
     pad->warned_ahead = pad->warned_back = FALSE;
-    pad->warned_untimed = pad->warned_late = pad->was_silent = FALSE;
+    pad->warned_untimed = pad->warned_late = FALSE;
     pad->used = pad->missing = pad->dropped = pad->implausible = 0;
   }
   GST_OBJECT_UNLOCK (self);
@@ -814,6 +819,9 @@ gst_cloth_sync_drop (GstClothSync * self, GstClothSyncPad * pad,
     gst_cloth_sync_say_far_back (GST_ELEMENT (self), pad, time,
         priv->last_time);
   } else if (late > 0) {
+    GST_OBJECT_LOCK (self);
+    pad->late++;
+    GST_OBJECT_UNLOCK (self);
     gst_cloth_sync_say_late (GST_ELEMENT (self), pad, late, latency);
   }
   gst_cloth_sync_discard_head (self, pad);
@@ -870,6 +878,7 @@ gst_cloth_sync_count_missing (GstClothSync * self, GstClothSyncPad * pad)
   }
   GST_OBJECT_LOCK (self);
   pad->missing++;
+  pad->lacked++;
   GST_OBJECT_UNLOCK (self);
   return 1;
 }
@@ -925,6 +934,8 @@ gst_cloth_sync_emit (GstClothSync * self, GstClothSyncHeads * heads,
   GST_OBJECT_LOCK (self);
   enough = n_views > 0 && n_views >= priv->min_views;
   priv->n_incomplete += n_missing > 0;
+  priv->n_lately++;
+  priv->n_lacking += n_missing > 0;
   if (!enough || !inside) {
     priv->n_skipped++;
   } else {
@@ -968,14 +979,14 @@ static GstFlowReturn
 gst_cloth_sync_end (GstClothSync * self, const GstClothSyncHeads * heads)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
-  guint64 n_sets, n_incomplete, n_all;
+  guint64 n_sets, n_lately, n_lacking;
   gboolean all_skipped;
   guint min_views, i;
 
   GST_OBJECT_LOCK (self);
   n_sets = priv->n_sets;
-  n_incomplete = priv->n_incomplete;
-  n_all = n_sets + priv->n_skipped;
+  n_lately = priv->n_lately;
+  n_lacking = priv->n_lacking;
   all_skipped = n_sets == 0 && priv->n_skipped > 0;
   min_views = priv->min_views;
   GST_OBJECT_UNLOCK (self);
@@ -992,8 +1003,8 @@ gst_cloth_sync_end (GstClothSync * self, const GstClothSyncHeads * heads)
     }
   }
   if (priv->is_live && n_sets > 0) {
-    gst_cloth_sync_say_lost (GST_ELEMENT (self), heads->pad, heads->n, n_all,
-        n_incomplete);
+    gst_cloth_sync_say_lost (GST_ELEMENT (self), heads->pad, heads->n, n_lately,
+        n_lacking);
   }
   return GST_FLOW_EOS;
 }

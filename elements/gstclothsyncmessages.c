@@ -195,14 +195,14 @@ gst_cloth_sync_say_lost (GstElement * element, GstClothSyncPad * const *pads,
     GstClothSyncPad *pad = pads[i];
     g_autofree gchar *stream = NULL;
 
-    if (!pad || pad->missing == 0) {
+    if (!pad || pad->lacked == 0) {
       continue;
     }
-    told |= pad->dropped > 0 || pad->was_silent;
+    told |= pad->late > 0 || pad->was_silent;
     stream = name_stream (pad);
     g_string_append_printf (lost, "%s %s in %" G_GUINT64_FORMAT " (%"
         G_GUINT64_FORMAT " came too late)", lost->len ? ", that of" : "that of",
-        stream, pad->missing, pad->dropped);
+        stream, pad->lacked, pad->late);
   }
   GST_OBJECT_UNLOCK (element);
   if (!told) {

@@ -24,8 +24,10 @@ typedef struct _GstClothSyncPadClass GstClothSyncPadClass;
  * @missing: sets that went without the pad
  * @dropped: frames that came too late
  * @implausible: frames whose time the next one did not bear out
+ * @lacked: sets that went without the pad since the start or the last flush
+ * @late: frames that came after their set's deadline, likewise
  * @camera_name: of the camera that its frames are of, %NULL while that isn't known
- * @was_silent: it has been, since the start
+ * @was_silent: it has been, likewise
  * @silent: nothing has come for a while; with the counts under the element's object lock
  *
  * A sink pad. A subclass of #GstClothSync that gives its pads properties derives them from
@@ -37,6 +39,7 @@ struct _GstClothSyncPad {
   guint index;
   GstClockTime period;
   guint64 used, missing, dropped, implausible;
+  guint64 lacked, late;
   gchar *camera_name;
   gboolean silent, was_silent;
 

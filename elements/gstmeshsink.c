@@ -350,27 +350,20 @@ check_settings (GstMeshSink * self)
   return FALSE;
 }
 
-/* What is wrong is said here, before the base starts: after that the base would say that it was
- * not. */
+/* What is wrong is said here: when the base starts, the location may still change. */
 static GstStateChangeReturn
 gst_mesh_sink_change_state (GstElement * element, GstStateChange transition)
 {
   GstMeshSink *self = GST_MESH_SINK (element);
 
-  if (transition == GST_STATE_CHANGE_NULL_TO_READY && !check_settings (self))
-    return GST_STATE_CHANGE_FAILURE;
+  if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
+    if (!check_settings (self))
+      return GST_STATE_CHANGE_FAILURE;
+    warn_of_remains (self);
+    self->failed = FALSE;
+  }
   return GST_ELEMENT_CLASS (gst_mesh_sink_parent_class)->change_state (element,
       transition);
-}
-
-static gboolean
-gst_mesh_sink_start (GstBaseSink * sink)
-{
-  GstMeshSink *self = GST_MESH_SINK (sink);
-
-  warn_of_remains (self);
-  self->failed = FALSE;
-  return TRUE;
 }
 
 static gboolean
@@ -417,7 +410,6 @@ gst_mesh_sink_class_init (GstMeshSinkClass * klass)
   sink_class->set_caps = gst_mesh_sink_set_caps;
   sink_class->render = gst_mesh_sink_render;
   sink_class->event = gst_mesh_sink_event;
-  sink_class->start = gst_mesh_sink_start;
   sink_class->stop = gst_mesh_sink_stop;
 }
 

@@ -29,7 +29,8 @@ GST_DEBUG_CATEGORY_STATIC (quad_track_debug);
  *
  * The bus is told by the element messages `quadtrack/found` and `quadtrack/lost` when the
  * board comes into sight and when all of it is gone; their fields are `camera`,
- * `sequence`, `timestamp` (PTS, ns) and `squares`, the number of those tracked.
+ * `sequence`, `timestamp` (PTS, ns) and `squares`, the number of those tracked. At the end a warning says
+ * so when none were in most of the pictures that show a board: another `pattern` than was filmed.
  *
  * ## Example
  * ```
@@ -37,7 +38,7 @@ GST_DEBUG_CATEGORY_STATIC (quad_track_debug);
  *     quadtrack columns=8 rows=8 ! clothoverlay ! videoconvert ! autovideosink
  * ```
  */
-/* So many corners are a piece of a board whose place its code tells. */
+/* So many corners are a piece of a board, and no clutter: the least whose place a code tells. */
 #define MIN_CORNERS 16
 
 /* A square given by hand: its corners, px, and which one of the board it is, -1 where that
@@ -327,6 +328,7 @@ gst_quad_track_reset (GstClothFilter * filter)
   if (!self->tracker)
     return;
   cloth_quad_tracker_reset (self->tracker);
+  self->n_pictures = self->n_with_squares = 0;
   self->was_reset = TRUE;
   forget_clicks (self);
 }
@@ -505,12 +507,13 @@ gst_quad_track_analyse (GstClothFilter * filter,
   return GST_FLOW_OK;
 }
 
-/* Four left clicks make a seed, a right click takes back those made so far. */
 /* The film has ended: says so when in most pictures corners were seen that are not the board's. */
 static void
 tell_of_pattern (GstQuadTrack * self)
 {
-  if (2 * self->n_with_squares >= self->n_pictures)
+  /* who was told that nothing can start knows why */
+  if (self->warned_of_start || self->warned_of_seed
+      || 2 * self->n_with_squares >= self->n_pictures)
     return;
   GST_ELEMENT_WARNING_WITH_DETAILS (self, STREAM, FAILED,
       ("Squares were tracked in %u of the %u pictures that show %d corners or "
@@ -530,6 +533,7 @@ gst_quad_track_sink_event (GstBaseTransform * trans, GstEvent * event)
       (trans, event);
 }
 
+/* Four left clicks make a seed, a right click takes back those made so far. */
 static gboolean
 gst_quad_track_src_event (GstBaseTransform * trans, GstEvent * event)
 {

@@ -14,7 +14,7 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 out=${1:-cloth-quickstart}
 export LC_ALL=C.UTF-8
 
-heading () { printf '\n== %s\n' "$*"; }
+. "$root/pipelines/films.sh"
 
 if [ -z "${CLOTH_BUILD:-}" ]; then
   heading "Packages"
@@ -42,7 +42,7 @@ gst-cloth-calibrate-1.0 --pattern "$boards/pattern.json" \
 heading "Real pictures of a board: the squares found"
 mkdir -p "$out/boards"
 for picture in "$boards"/left??.jpg "$boards"/right??.jpg; do
-  gst-launch-1.0 -q filesrc location="$picture" \
+  launch filesrc location="$picture" \
       ! jpegdec ! saddledetect ! quadtrack pattern="$boards/pattern.json" \
       ! videoconvert ! video/x-raw,format=RGB ! clothoverlay ! pngenc \
       ! filesink location="$out/boards/$(basename "$picture" .jpg).png"
@@ -60,7 +60,7 @@ camera ()
       ! filesink location=$out/$1-overlay.webm"
 }
 # shellcheck disable=SC2046
-gst-launch-1.0 -q triangulate name=join rig="$pair/rig.json" pattern="$pair/pattern.json" \
+launch triangulate name=join rig="$pair/rig.json" pattern="$pair/pattern.json" \
     ! tee name=mesh \
     mesh. ! queue ! meshsink location="$out/cloth.obj" \
     mesh. ! queue ! meshsink location="$out/cloth-take" format=take \

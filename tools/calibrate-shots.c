@@ -252,17 +252,23 @@ find_board (Reader * r, const ClothImage * image, const ClothBoardView ** view,
 
   params.refine = CLOTH_SADDLE_REFINE_MODEL;
   if (r->markers) {
-    if (!cloth_cv_markers_find (r->markers, &picture, &n, &ids, &corners, error)
-        || cloth_marked_board_set_markers (r->marked, n, ids, corners) == 0)
+    if (!cloth_cv_markers_find (r->markers, &picture, &n, &ids, &corners,
+            error))
+      return FALSE;
+    r->camera->n_marked += n > 0;
+    if (cloth_marked_board_set_markers (r->marked, n, ids, corners) == 0)
       return FALSE;
     params.radius = (gfloat) fmin (params.radius,
         cloth_marked_board_get_margin (r->marked));
   }
   cloth_saddle_detector_run (r->detector, &params, image, CLOTH_SIMD_BEST);
   saddles = cloth_saddle_detector_get_saddles (r->detector, &n_saddles);
-  return r->markers ? cloth_marked_board_find (r->marked, saddles, n_saddles,
-      view) : cloth_board_finder_find (r->finder, image, saddles, n_saddles,
-      view);
+  if (!r->markers)
+    return cloth_board_finder_find (r->finder, image, saddles, n_saddles, view);
+  if (cloth_marked_board_find (r->marked, saddles, n_saddles, view))
+    return TRUE;
+  r->camera->n_contradicted += cloth_marked_board_is_contradicted (r->marked);
+  return FALSE;
 }
 
 static gboolean
@@ -308,7 +314,9 @@ look (const ClothImage * image, guint number, gpointer user_data,
   }
   if (camera->film && r->progress)
     r->progress (camera, 0, r->user_data);
-  return camera->film;
+  return camera->film
+      && (camera->most_pictures == 0
+      || camera->n_pictures < camera->most_pictures);
 }
 
 /* @camera: a camera, numbered

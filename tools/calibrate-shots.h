@@ -36,7 +36,10 @@ typedef struct {
   GPtrArray *files;
   gboolean film;
   gint width, height;
+  guint most_pictures;          /* of a film to look at; 0: all */
   guint n_pictures;             /* looked at */
+  guint n_marked;               /* that show markers of the board's dictionary */
+  guint n_contradicted;         /* whose markers are not where the board has them */
   GPtrArray *shots;             /* ClothShot, the board found */
 } ClothShotCamera;
 

@@ -79,15 +79,17 @@ make_board (const Arguments * a, gint * code, GError ** error)
 {
   g_autoptr (ClothShotBoard) board = g_new0 (ClothShotBoard, 1);
   gdouble square;
-  gboolean described = a->columns || a->rows || a->square || a->charuco;
+  gboolean described = a->columns || a->rows || a->square || a->charuco
+      || a->marker;
 
   *code = BAD_USAGE;
   if (a->pattern && described) {
     g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
-        "give --pattern, or --columns, --rows and --square, not both");
+        "give --pattern, or --columns, --rows and --square, not both; a board with "
+        "markers (--charuco) has no pattern.json");
     return NULL;
   }
-  if (a->marker && !a->charuco) {
+  if (a->marker && !a->charuco && !a->pattern) {
     g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
         "--marker: say of which dictionary: --charuco, for instance 5X5_100");
     return NULL;
@@ -391,6 +393,7 @@ find_share (const ClothShotCamera * camera, const ClothShotBoard * board,
   ClothShotCamera *probe = cloth_shot_camera_new (camera->name);
 
   g_ptr_array_add (one, probe);
+  probe->most_pictures = N_PROBED;
   for (guint i = 0; i < MIN (camera->files->len, N_PROBED); i++)
     cloth_shot_camera_add (probe, g_ptr_array_index (camera->files, i), NULL);
   cloth_shot_cameras_number (one);
@@ -427,6 +430,28 @@ find_remedy (const ClothShotCamera * camera, const ClothShotBoard * board,
         pattern->rows + 1, pattern->columns + 1, pattern->rows + 1);
   g_clear_pointer (&other.pattern, cloth_pattern_free);
   return remedy;
+}
+
+/* What is wrong with a board of markers that no picture shows. */
+static gchar *
+find_reason (const ClothShotCamera * camera, const ClothShotBoard * board)
+{
+  if (camera->n_marked == 0)
+    return
+        g_strdup_printf ("no picture has a marker of %s: see that this is the "
+        "board's dictionary, and that the pictures are not mirrored",
+        board->dictionary);
+  if (camera->n_contradicted > 0)
+    return
+        g_strdup_printf
+        ("its markers are not where a board of %d × %d squares "
+        "has them, each %.3g of a square: see --columns and --rows, which count "
+        "squares, --marker, --square and --first", board->pattern->columns,
+        board->pattern->rows, board->marker);
+  return
+      g_strdup_printf ("markers are seen in %u pictures, but no corners where "
+      "markers of %.3g of a square have theirs: see --marker and --square",
+      camera->n_marked, board->marker);
 }
 
 static gint
@@ -637,6 +662,8 @@ run (gconstpointer data)
       g_printerr ("\n");
     if (a->columns)
       remedy = find_remedy (camera, board, (guint) a->every);
+    if (!remedy && board->dictionary && camera->shots->len == 0)
+      remedy = find_reason (camera, board);
     if (remedy)
       return complain (FAILED, "camera %s: %s", camera->name, remedy);
   }

@@ -14,6 +14,7 @@
 #define NEW_API 0
 #endif
 
+#include <memory>
 #include <vector>
 
 #define DICTIONARY(name) { #name, cv::aruco::DICT_ ## name }
@@ -63,13 +64,13 @@ cloth_cv_markers_new (const gchar * dictionary, GError ** error)
     if (g_ascii_strcasecmp (name, known.name))
       continue;
     guard (error, [&]() {
-          markers = new ClothCvMarkers;
+          std::unique_ptr < ClothCvMarkers > made (new ClothCvMarkers);
+
+          made->dictionary = cv::aruco::getPredefinedDictionary (known.id);
 #if NEW_API
-          markers->dictionary = cv::aruco::getPredefinedDictionary (known.id);
-          markers->detector = cv::aruco::ArucoDetector (markers->dictionary);
-#else
-          markers->dictionary = cv::aruco::getPredefinedDictionary (known.id);
+          made->detector = cv::aruco::ArucoDetector (made->dictionary);
 #endif
+          markers = made.release ();
         });
     g_string_free (names, TRUE);
     return markers;

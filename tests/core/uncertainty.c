@@ -68,6 +68,7 @@ compare_with_mrcal (gint n, const gint * use, gdouble limit)
         gdouble sd;
 
         parameter (&result->rig->cameras[use[side]], i, &sd);
+        g_assert_true (isfinite (sd));
         numbers = fmax (numbers, fabs (sd * sqrt (dof / measured) / k[i] - 1));
       }
       n_cameras++;

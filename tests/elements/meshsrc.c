@@ -2,6 +2,7 @@
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <gst/check/gstcheck.h>
+#include <gst/check/gstharness.h>
 #include <gst/cloth/cloth.h>
 
 #include "tests/core/meshpeer.h"
@@ -122,6 +123,25 @@ expect_error (const gchar * location, const gchar * more, GQuark domain,
   fail_unless (!at_start || !second);   /* one is enough */
   player_clear (&player);
 }
+
+/* A pad that is let rest and woken again begins anew, without a change of the element's state. */
+GST_START_TEST (test_pad_reactivated)
+{
+  GstHarness *h = gst_harness_new ("meshsrc");
+  GstPad *pad = gst_element_get_static_pad (h->element, "src");
+
+  g_object_set (h->element, "location", TAKE, NULL);
+  gst_harness_play (h);
+  gst_buffer_unref (gst_harness_pull (h));
+  for (guint i = 0; i < 2; i++) {
+    fail_unless (gst_pad_set_active (pad, FALSE));
+    fail_unless (gst_pad_set_active (pad, TRUE));
+  }
+  gst_object_unref (pad);
+  gst_harness_teardown (h);
+}
+
+GST_END_TEST;
 
 /* The same take through every format and back. */
 GST_START_TEST (test_plays_all)
@@ -428,6 +448,7 @@ meshsrc_suite (void)
   TCase *tests = tcase_create ("general");
 
   suite_add_tcase (suite, tests);
+  tcase_add_test (tests, test_pad_reactivated);
   tcase_add_test (tests, test_plays_all);
   tcase_add_test (tests, test_seeks);
   tcase_add_test (tests, test_seek_from_end);

@@ -142,7 +142,11 @@ with tempfile.TemporaryDirectory() as folder:
             (2, 'give a length', ['--charuco', '4X4_50', '--marker', '22']),
             (2, 'of which dictionary', ['--marker', '22mm']),
             (2, 'it has 30 markers', ['--charuco', 'APRILTAG_16h5', '--marker', '22mm', '--columns', '10', '--rows', '7']),
-            (1, 'found in 0 views', ['--charuco', '6X6_50', '--marker', '22mm']),
+            (1, 'no picture has a marker of 6X6_50', ['--charuco', '6X6_50', '--marker', '22mm']),
+            (1, 'not where a board of 6 × 9 squares has them', ['--charuco', '4X4_50', '--marker', '22mm', '--columns', '6',
+                                                               '--rows', '9']),
+            (1, 'each 0.333 of a square', ['--charuco', '4X4_50', '--marker', '10mm']),
+            (2, 'has no pattern.json', ['--pattern', 'x.json', '--marker', '22mm']),
             (2, 'not both', ['--charuco', '4X4_50', '--marker', '22mm', '--pattern', 'x.json'])):
         done = run(*plain, *arguments, '--output', output + '2', films)
         check(done.returncode == code and says in done.stderr and not os.path.exists(output + '2'),

@@ -21,6 +21,8 @@ struct _ClothMarkedBoard
   gdouble *reach;               /* how far off it may be, px; the least */
   gboolean *contradicted;
   gdouble margin;               /* px */
+  gboolean is_contradicted;
+  guint *taken;                 /* of each vertex, which saddle it took */
   ClothBoardView view;
 };
 
@@ -52,6 +54,7 @@ cloth_marked_board_new (const ClothPattern * pattern, gdouble marker)
   board->place = g_new (gdouble, 2 * n);
   board->reach = g_new (gdouble, n);
   board->contradicted = g_new0 (gboolean, n);
+  board->taken = g_new (guint, n);
   board->view.seen = g_new0 (guint8, n);
   board->view.x = g_new0 (gfloat, n);
   board->view.y = g_new0 (gfloat, n);
@@ -70,6 +73,7 @@ cloth_marked_board_free (ClothMarkedBoard * board)
   g_free (board->place);
   g_free (board->reach);
   g_free (board->contradicted);
+  g_free (board->taken);
   g_free (board->view.seen);
   g_free (board->view.x);
   g_free (board->view.y);
@@ -184,6 +188,32 @@ cloth_marked_board_get_margin (const ClothMarkedBoard * board)
   return board->margin;
 }
 
+static gint
+compare_numbers (gconstpointer a, gconstpointer b)
+{
+  const guint m = *(const guint *) a, n = *(const guint *) b;
+
+  return m < n ? -1 : m > n;
+}
+
+/* Whether one saddle is two corners: a misread marker that shares no corner with others puts its own
+ * where those have theirs. */
+static gboolean
+is_taken_twice (ClothMarkedBoard * board)
+{
+  const ClothBoardView *view = &board->view;
+  guint n = 0;
+
+  for (guint v = 0; v < (guint) (view->columns * view->rows); v++)
+    if (view->seen[v] != CLOTH_VERTEX_UNKNOWN)
+      board->taken[n++] = board->taken[v];
+  qsort (board->taken, n, sizeof *board->taken, compare_numbers);
+  for (guint i = 1; i < n; i++)
+    if (board->taken[i] == board->taken[i - 1])
+      return TRUE;
+  return FALSE;
+}
+
 /* @board: the board, its markers set
  * @saddles: (array length=n_saddles): the picture's refined saddles
  * @n_saddles: how many
@@ -205,9 +235,12 @@ cloth_marked_board_find (ClothMarkedBoard * board,
   *view = out;
   out->n_seen = 0;
   memset (out->seen, CLOTH_VERTEX_UNKNOWN, columns * rows);
+  board->is_contradicted = FALSE;
   for (guint v = 0; v < columns * rows; v++)
     if (board->n_told[v] > 1 && board->contradicted[v])
-      return FALSE;
+      board->is_contradicted = TRUE;
+  if (board->is_contradicted)
+    return FALSE;
   for (guint v = 0; v < columns * rows; v++) {
     guint n = board->n_told[v], column = v % columns, row = v / columns;
     gdouble nearest = board->reach[v];
@@ -222,6 +255,7 @@ cloth_marked_board_find (ClothMarkedBoard * board,
       if (!(away < nearest))
         continue;
       nearest = away;
+      board->taken[v] = i;
       out->seen[v] = CLOTH_VERTEX_SADDLE;
       out->x[v] = saddles[i].x;
       out->y[v] = saddles[i].y;
@@ -229,5 +263,20 @@ cloth_marked_board_find (ClothMarkedBoard * board,
     }
     out->n_seen += out->seen[v] != CLOTH_VERTEX_UNKNOWN;
   }
+  if (is_taken_twice (board)) {
+    board->is_contradicted = TRUE;
+    memset (out->seen, CLOTH_VERTEX_UNKNOWN, columns * rows);
+    out->n_seen = 0;
+  }
   return out->n_seen > 0;
+}
+
+/* @board: the board, in whose last picture it was looked for
+ *
+ * Returns: whether it was not found there because markers contradict each other
+ */
+gboolean
+cloth_marked_board_is_contradicted (const ClothMarkedBoard * board)
+{
+  return board->is_contradicted;
 }

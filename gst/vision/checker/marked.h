@@ -19,6 +19,7 @@ guint cloth_marked_board_set_markers (ClothMarkedBoard * board, guint n,
 gdouble cloth_marked_board_get_margin (const ClothMarkedBoard * board);
 gboolean cloth_marked_board_find (ClothMarkedBoard * board,
     const ClothSaddle * saddles, guint n_saddles, const ClothBoardView ** view);
+gboolean cloth_marked_board_is_contradicted (const ClothMarkedBoard * board);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothMarkedBoard, cloth_marked_board_free)
 G_END_DECLS
