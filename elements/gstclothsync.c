@@ -428,13 +428,8 @@ gst_cloth_sync_restart (GstClothSync * self)
       (GCopyFunc) (gpointer) gst_object_ref, NULL);
   GST_OBJECT_UNLOCK (self);
   for (GList * l = pads; l; l = l->next) {
-    gst_cloth_sync_pad_reset (GST_CLOTH_SYNC_PAD (l->data));
-    GST_OBJECT_LOCK (self);
-    GST_CLOTH_SYNC_PAD (l->data)->silent = FALSE;
-    GST_CLOTH_SYNC_PAD (l->data)->was_silent = FALSE;
-    GST_CLOTH_SYNC_PAD (l->data)->lacked = 0;
-    GST_CLOTH_SYNC_PAD (l->data)->late = 0;
-    GST_OBJECT_UNLOCK (self);
+    gst_cloth_sync_pad_restart (GST_CLOTH_SYNC_PAD (l->data),
+        GST_ELEMENT (self));
     gst_object_unref (l->data);
   }
   if (klass->reset) {

@@ -220,7 +220,8 @@ gst_cloth_sync_pad_refuse (GstClothSyncPad * pad)
   GST_OBJECT_UNLOCK (pad);
 }
 
-void
+/* Forgets all times, and what is held. */
+static void
 gst_cloth_sync_pad_reset (GstClothSyncPad * pad)
 {
   /* freed without the lock: who made it may do anything then */
@@ -233,6 +234,16 @@ gst_cloth_sync_pad_reset (GstClothSyncPad * pad)
   pad->interval = 0;
   pad->n_flushes++;
   GST_OBJECT_UNLOCK (pad);
+}
+
+void
+gst_cloth_sync_pad_restart (GstClothSyncPad * pad, GstElement * element)
+{
+  gst_cloth_sync_pad_reset (pad);
+  GST_OBJECT_LOCK (element);
+  pad->silent = pad->was_silent = FALSE;
+  pad->lacked = pad->late = 0;
+  GST_OBJECT_UNLOCK (element);
 }
 
 /* What was looked at before the flush, to know the deadline, is still held. */

@@ -138,8 +138,8 @@ void gst_cloth_sync_pad_hold (GstClothSyncPad * pad, GstBuffer * buffer,
 void gst_cloth_sync_pad_believe (GstClothSyncPad * pad);
 void gst_cloth_sync_pad_refuse (GstClothSyncPad * pad);
 
-/* Forgets all times, and what is held. */
-void gst_cloth_sync_pad_reset (GstClothSyncPad * pad);
+/* The stream begins anew: forgets all times, what is held, and what was counted since. */
+void gst_cloth_sync_pad_restart (GstClothSyncPad * pad, GstElement * element);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (GstClothSyncPad, gst_object_unref)
 /* What is told of a pad, under the element's lock: its usual time from frame to frame by its caps,
