@@ -41,10 +41,10 @@ typedef struct
   guint64 taken;                /* indices in use */
   guint64 released;             /* of pads that the subclass still believes in */
   guint64 n_sets, n_incomplete, n_skipped, n_dropped, n_implausible;
-  guint64 n_lately, n_lacking;  /* sets since the last flush, of them incomplete ones */
   gboolean is_playing;          /* while paused no camera gives anything */
 
   /* streaming thread */
+  guint64 n_lately, n_lacking;  /* sets since the last flush, of them incomplete ones */
   gboolean is_live;
   gboolean has_last;
   GstClockTimeDiff last_time;
@@ -974,14 +974,12 @@ static GstFlowReturn
 gst_cloth_sync_end (GstClothSync * self, const GstClothSyncHeads * heads)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
-  guint64 n_sets, n_lately, n_lacking;
+  guint64 n_sets;
   gboolean all_skipped;
   guint min_views, i;
 
   GST_OBJECT_LOCK (self);
   n_sets = priv->n_sets;
-  n_lately = priv->n_lately;
-  n_lacking = priv->n_lacking;
   all_skipped = n_sets == 0 && priv->n_skipped > 0;
   min_views = priv->min_views;
   GST_OBJECT_UNLOCK (self);
@@ -998,8 +996,8 @@ gst_cloth_sync_end (GstClothSync * self, const GstClothSyncHeads * heads)
     }
   }
   if (priv->is_live && n_sets > 0) {
-    gst_cloth_sync_say_lost (GST_ELEMENT (self), heads->pad, heads->n, n_lately,
-        n_lacking);
+    gst_cloth_sync_say_lost (GST_ELEMENT (self), heads->pad, heads->n,
+        priv->n_lately, priv->n_lacking);
   }
   return GST_FLOW_EOS;
 }
