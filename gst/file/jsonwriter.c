@@ -123,7 +123,7 @@ cloth_json_writer_set_exact (ClothJsonWriter * writer)
 }
 
 /* @writer: a writer
- * @one_line: whether what is begun from now on stays on one line; what is ended with it must
+ * @one_line: whether what is written from now on stays on one line; what is ended with it must
  *   have been begun with it
  */
 void

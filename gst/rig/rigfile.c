@@ -308,16 +308,14 @@ cloth_rig_load (const gchar * path, GError ** error)
   return rig;
 }
 
-/* On one line, as people write it. */
+/* On the line that has begun. */
 static void
 add_matrix (ClothJsonWriter * w, const gchar * key, const gdouble M[9])
 {
   cloth_json_writer_begin_array (w, key);
-  cloth_json_writer_set_one_line (w, TRUE);
   for (guint i = 0; i < 3; i++)
     cloth_json_writer_numbers (w, NULL, M + 3 * i, 3);
   cloth_json_writer_end_array (w);
-  cloth_json_writer_set_one_line (w, FALSE);
 }
 
 static gboolean
@@ -330,40 +328,56 @@ any_set (const gdouble * values, guint n)
   return FALSE;
 }
 
+/* An object on a line of its own. */
+static void
+begin_line (ClothJsonWriter * w, const gchar * key)
+{
+  cloth_json_writer_begin_object (w, key);
+  cloth_json_writer_set_one_line (w, TRUE);
+}
+
+static void
+end_line (ClothJsonWriter * w)
+{
+  cloth_json_writer_end_object (w);
+  cloth_json_writer_set_one_line (w, FALSE);
+}
+
 static void
 add_camera (ClothJsonWriter * w, const ClothCamera * c)
 {
   const guint n = cloth_lens_n_coefficients (c->lens);
   const gdouble size[2] = { c->width, c->height };
 
+  /* A few lines a camera: what it is, its lens, where it stands. */
   cloth_json_writer_begin_object (w, NULL);
   cloth_json_writer_string (w, "name", c->name);
+  cloth_json_writer_set_one_line (w, TRUE);
   cloth_json_writer_numbers (w, "size", size, 2);
   add_matrix (w, "K", c->K);
-  cloth_json_writer_begin_object (w, "distortion");
-  cloth_json_writer_set_one_line (w, TRUE);
-  cloth_json_writer_string (w, "model", cloth_lens_to_string (c->lens));
-  cloth_json_writer_numbers (w, "coefficients", c->k, n);
-  cloth_json_writer_end_object (w);
-  cloth_json_writer_set_one_line (w, FALSE);
-  add_matrix (w, "R", c->R);
-  cloth_json_writer_numbers (w, "t", c->t, 3);
   if (c->device)
     cloth_json_writer_string (w, "device", c->device);
   if (c->rolling_shutter_s != 0)
     cloth_json_writer_number (w, "rolling_shutter_s", c->rolling_shutter_s);
   if (c->offset_s != 0)
     cloth_json_writer_number (w, "offset_s", c->offset_s);
+  cloth_json_writer_set_one_line (w, FALSE);
+  begin_line (w, "distortion");
+  cloth_json_writer_string (w, "model", cloth_lens_to_string (c->lens));
+  cloth_json_writer_numbers (w, "coefficients", c->k, n);
+  end_line (w);
+  cloth_json_writer_numbers (w, "t", c->t, 3);
+  cloth_json_writer_set_one_line (w, TRUE);
+  add_matrix (w, "R", c->R);
+  cloth_json_writer_set_one_line (w, FALSE);
   if (any_set (c->K_sd, 4) || any_set (c->k_sd, n) || any_set (c->r_sd, 3)
       || any_set (c->t_sd, 3)) {
-    cloth_json_writer_begin_object (w, "standard_deviations");
-    cloth_json_writer_set_one_line (w, TRUE);
+    begin_line (w, "standard_deviations");
     cloth_json_writer_numbers (w, "K", c->K_sd, 4);
     cloth_json_writer_numbers (w, "distortion", c->k_sd, n);
     cloth_json_writer_numbers (w, "rotation", c->r_sd, 3);
     cloth_json_writer_numbers (w, "t", c->t_sd, 3);
-    cloth_json_writer_end_object (w);
-    cloth_json_writer_set_one_line (w, FALSE);
+    end_line (w);
   }
   cloth_json_writer_end_object (w);
 }

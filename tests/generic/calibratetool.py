@@ -131,6 +131,8 @@ check(cameras[0]['distortion'] == cameras[1]['distortion'], 'one lens for both')
 
 # The same pictures said to be of a board with another column: no board is found in them.
 check('contradict' not in report, 'pair: views agree')
+with open(output, encoding='utf-8') as file:
+    check(len(file.readlines()) <= 17, 'two cameras, with deviations, in a dozen lines and some')
 refused(1, 'found in 0 views', '--output', output, '--columns', '11', '--rows', '7',
         '--square', '25mm', 'left=%s/left*.jpg' % boards)
 

@@ -267,6 +267,34 @@ def case_realtime(data):
                   'the late camera is named')
 
 
+def case_silent(data):
+    """A camera that never gives anything is told of by each element that joins streams, under its name."""
+    films = os.path.join(data, 'lineart_stereo3')
+    camera = ('videotestsrc is-live=true num-buffers=60 ! video/x-raw,format=GRAY8,width=%d,height=%d,'
+              'framerate=25/1 ! valve drop=%d drop-mode=forward-sticky-events ! %s')
+    pair = Pair(data)
+    disparity = 'clothdisparity name=%s rig=' + films + '/rig.json sink_0::camera=cam0 sink_1::camera=cam1'
+    for what, description in (
+            ('triangulate', '%s ! fakesink  %s  %s' % (
+                pair.join(), camera % (752, 480, 0, pair.track('cam0') + ' ! join.'),
+                camera % (752, 480, 1, pair.track('cam1') + ' ! join.'))),
+            ('clothdisparity', '%s ! fakesink  %s  %s' % (
+                disparity % 'head', camera % (1024, 768, 0, 'head.sink_0'), camera % (1024, 768, 1, 'head.sink_1')))):
+        pipeline = Gst.parse_launch(description)
+        bus = pipeline.get_bus()
+        pipeline.set_state(Gst.State.PLAYING)
+        told = []
+        while True:
+            message = bus.timed_pop_filtered(TIMEOUT_S * Gst.SECOND, Gst.MessageType.EOS | Gst.MessageType.ERROR
+                                             | Gst.MessageType.ELEMENT)
+            if message is None or message.type != Gst.MessageType.ELEMENT:
+                break
+            told.append(message.get_structure().get_name())
+        pipeline.set_state(Gst.State.NULL)
+        check(message is not None and message.type == Gst.MessageType.EOS and what + '/silent' in told,
+              '%s: %s' % (what, sorted(set(told))))
+
+
 def case_fit(data):
     """A mesh with a large hole from the first frame on, of another program's cloth: the simulated cloth is
     half as far off there as what is filled in, and whole."""
