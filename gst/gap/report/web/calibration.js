@@ -1,5 +1,5 @@
 /*! Made by gst/gap/report/web/build.mjs: do not edit.
-sources sha256 eee05eced86bd1abf3f5974349598d07d8eca2e33edebaeb4d2fdad658238b65
+sources sha256 585a4cb550ae7aa2e51236a577663e2062e19d61350f731d997b5690cd77bd3c
 below sha256 5c750294d21ed3a355f8c69bd63cedce7e845357bda1b6ddb009476d250805fd
 
 Our own part: SPDX-License-Identifier: LGPL-2.1-or-later. With it come

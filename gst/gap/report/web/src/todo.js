@@ -60,8 +60,11 @@ function freeShrink(gap) {
   return { value: before > floor && Number.isFinite(share) ? share : null, interval: null };
 }
 
+// A gap that ends below the floor, which is an estimate itself, has lost all that was above it: how many times
+// over says nothing.
 function measure({ value, interval }) {
-  return known(value) ? [bar(value, 'shrink', interval), element('span', {}, percent(value)), ' ',
+  return known(value) ? [bar(value, 'shrink', interval),
+    element('span', {}, value > 1 && !interval ? 'all that is above the floor' : percent(value)), ' ',
     element('span', { class: 'interval' }, range(interval, 100, 0))] : ['not measured'];
 }
 
