@@ -44,7 +44,10 @@
 
 #include "elements/gstclothfit.h"
 
+#include <errno.h>
+#include <glib/gstdio.h>
 #include <math.h>
+#include <unistd.h>
 
 #include "elements/gstclothproperties.h"
 #include "gst/file/file.h"
@@ -105,8 +108,16 @@ static const Settings defaults = {.gain = 1600. };
 static gboolean
 gst_cloth_fit_open (GstClothFollow * follow)
 {
-  if (!GST_CLOTH_FIT (follow)->settings.fitted
-      || gst_cloth_follow_get_inputs (follow)->model->free->len > 0)
+  const gchar *fitted = GST_CLOTH_FIT (follow)->settings.fitted;
+  g_autofree gchar *parent = fitted ? g_path_get_dirname (fitted) : NULL;
+
+  if (fitted && g_access (parent, W_OK) != 0) {
+    GST_ELEMENT_ERROR (follow, RESOURCE, OPEN_WRITE,
+        ("Can't write the fitted model: %s: %s", parent, g_strerror (errno)),
+        ("Set fitted= to a file in a folder that can be written."));
+    return FALSE;
+  }
+  if (!fitted || gst_cloth_follow_get_inputs (follow)->model->free->len > 0)
     return TRUE;
   GST_ELEMENT_ERROR (follow, RESOURCE, SETTINGS,
       ("The model has no free numbers, and fitted= wants them fitted."),
@@ -203,9 +214,12 @@ gst_cloth_fit_came (GstClothFollow * follow, gdouble time,
     covariances[3 * seen + 2] = points->yy[i];
     seen++;
   }
-  return cloth_observations_add (self->observations, 0,
-      time + camera->offset_s, seen, vertices, px, covariances, &error)
-      || fail_to_keep (self, error);
+  if (cloth_observations_add (self->observations, 0, time + camera->offset_s,
+          seen, vertices, px, covariances, &error))
+    return TRUE;
+  GST_ELEMENT_ERROR (self, STREAM, FORMAT,
+      ("A picture can't be fitted: %s", error->message), (NULL));
+  return FALSE;
 }
 
 static gboolean
@@ -252,6 +266,10 @@ gst_cloth_fit_leave (GstClothFollow * follow, GstBuffer * buffer,
   gst_buffer_copy_into (out, buffer, GST_BUFFER_COPY_TIMESTAMPS |
       GST_BUFFER_COPY_FLAGS, 0, -1);
   gst_buffer_unref (buffer);
+  /* the mesh is of the rig's time */
+  if (GST_BUFFER_PTS_IS_VALID (out) && frame->offset_s != 0)
+    GST_BUFFER_PTS (out) = (GstClockTime) MAX (0, GST_CLOCK_DIFF ((gint64)
+            (frame->offset_s * 1e9), (gint64) GST_BUFFER_PTS (out)));
   return out;
 }
 
@@ -329,6 +347,11 @@ gst_cloth_fit_finish (GstClothFollow * follow)
   if (!self->settings.fitted)
     return;
   s = fit (self, &error);
+  if (s && !isfinite (s->takes[0].after.windows)) {
+    GST_ELEMENT_ERROR (self, STREAM, FAILED,
+        ("Can't fit the model: nothing of the cloth was seen"), (NULL));
+    return;
+  }
   if (!s) {
     if (!gst_cloth_follow_is_cancelled (follow))
       GST_ELEMENT_ERROR (self, STREAM, FAILED,

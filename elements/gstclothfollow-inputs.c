@@ -245,6 +245,12 @@ gst_follow_view_get_points (const GstFollowView * view,
   return view->shows ? &view->points->view : NULL;
 }
 
+void
+gst_follow_view_restart (GstFollowView * view)
+{
+  view->shows = view->seen = FALSE;
+}
+
 gboolean
 gst_follow_view_check_seen (const GstFollowView * view, GstElement * element)
 {

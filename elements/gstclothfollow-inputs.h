@@ -60,6 +60,8 @@ const ClothRays *gst_follow_view_read (GstFollowView * view,
  * showed nothing. @camera: whose it is. Both belong to @view. */
 const ClothTriangulateView *gst_follow_view_get_points (const GstFollowView *
     view, const ClothCamera ** camera);
+/* A new recording: no picture so far. */
+void gst_follow_view_restart (GstFollowView * view);
 /* Posts an error when no picture so far showed squares, dots or matches. */
 gboolean gst_follow_view_check_seen (const GstFollowView * view,
     GstElement * element);

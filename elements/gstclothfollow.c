@@ -51,6 +51,8 @@ typedef struct
   GQueue waiting;
   guint64 n_frames;             /* that came in since the beginning */
   guint64 n_damaged;            /* that came between these */
+  guint64 n_before;             /* of both, those before the rate was this one */
+  gdouble before;               /* which took so long, seconds */
   gdouble last_time;
   gboolean new_segment, warned;
   gfloat *residuals, *sigmas;
@@ -166,9 +168,12 @@ restart (Follow * self)
 {
   if (self->observer)
     cloth_observer_restart (self->observer);
+  if (self->view)
+    gst_follow_view_restart (self->view);
   if (self->klass->restart)
     self->klass->restart (GST_CLOTH_FOLLOW (self->element));
-  self->n_frames = self->n_damaged = 0;
+  self->n_frames = self->n_damaged = self->n_before = 0;
+  self->before = 0;
 }
 
 /* ---- frames ---- */
@@ -240,12 +245,15 @@ leave (Follow * self, const Waiting * waiting, GstBuffer * buffer)
 {
   GstClothMesh *mesh = NULL;
   GstClothFollowFrame frame = { waiting->time, waiting->sequence,
-    self->n_vertices, self->residuals, self->sigmas, self->positions,
+    0, self->n_vertices, self->residuals, self->sigmas, self->positions,
     self->states, NULL
   };
+  const ClothCamera *camera;
   gboolean good;
 
   if (self->view) {
+    gst_follow_view_get_points (self->view, &camera);
+    frame.offset_s = camera ? camera->offset_s : 0;
     find_lifted (self);
   } else {
     mesh = gst_cloth_mesh_from_buffer (buffer, NULL);
@@ -322,8 +330,9 @@ find_time (Follow * self, GstBuffer * buffer)
     return (gdouble) time / GST_SECOND;
   if (self->fps_n <= 0)
     return NAN;
-  return self->inputs.scene->times[0] +
-      (gdouble) (self->n_frames + self->n_damaged) * self->fps_d / self->fps_n;
+  return self->inputs.scene->times[0] + self->before +
+      (gdouble) (self->n_frames + self->n_damaged -
+      self->n_before) * self->fps_d / self->fps_n;
 }
 
 /* Without clamps a scene has no end. */
@@ -376,6 +385,10 @@ let_pass (Follow * self, GstBuffer * buffer, gdouble time)
     flow = send_ready (self, 0);
   if (flow == GST_FLOW_OK && self->klass->lets_pass)
     return enqueue_other (self, buffer);
+  /* who joins streams downstream would wait for it */
+  if (flow == GST_FLOW_OK && GST_BUFFER_PTS_IS_VALID (buffer))
+    flow = enqueue_other (self, gst_event_new_gap (GST_BUFFER_PTS (buffer),
+            GST_BUFFER_DURATION (buffer)));
   gst_buffer_unref (buffer);
   return flow;
 }
@@ -493,6 +506,7 @@ finish (Follow * self)
   else if ((!self->view || gst_follow_view_check_seen (self->view,
               self->element)) && self->klass->finish)
     self->klass->finish (GST_CLOTH_FOLLOW (self->element));
+  restart (self);
 }
 
 /* ---- events and queries ---- */
@@ -536,6 +550,12 @@ set_caps (Follow * self, GstCaps * caps)
     self->sigmas = g_new (gfloat, self->n_vertices);
     self->positions = g_new (gfloat, 3 * (gsize) self->n_vertices);
     self->states = g_malloc (self->n_vertices);
+  }
+  if (self->fps_n > 0 && self->n_frames > 0) {
+    const guint64 n = self->n_frames + self->n_damaged;
+
+    self->before += (gdouble) (n - self->n_before) * self->fps_d / self->fps_n;
+    self->n_before = n;
   }
   GST_OBJECT_LOCK (self->element);
   self->fps_n = fps_n;

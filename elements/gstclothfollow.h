@@ -15,6 +15,7 @@ G_DECLARE_DERIVABLE_TYPE (GstClothFollow, gst_cloth_follow, GST, CLOTH_FOLLOW,
 /* Of the frame that leaves.
  * @time: seconds of the scene
  * @sequence: of the mesh or picture
+ * @offset_s: of the camera's clock to that of its rig
  * @n_vertices: of the cloth
  * @residuals: (array): recorded minus simulated, [n_vertices][3], m; NaN when not seen
  * @sigmas: (array length=n_vertices): standard deviation of what was recorded, m
@@ -26,6 +27,7 @@ G_DECLARE_DERIVABLE_TYPE (GstClothFollow, gst_cloth_follow, GST, CLOTH_FOLLOW,
 typedef struct {
   gdouble time;
   guint64 sequence;
+  gdouble offset_s;
   guint n_vertices;
   const gfloat *residuals, *sigmas;
   const gfloat *positions;

@@ -117,6 +117,41 @@ test_left (void)
   }
 }
 
+/* In a small hole the surface is known, in a large one it is not: there nothing is made up. */
+static void
+test_holes (void)
+{
+  for (guint large = 0; large < 2; large++) {
+    g_autoptr (ClothRecording) r = record (FALSE, SIGMA);
+    g_autofree gdouble *x = g_new (gdouble, 3 * N);
+    guint n_unknown = 0, n_hidden = 0;
+
+    memcpy (x, r->y, 3 * N * sizeof *x);
+    for (guint v = 0; v < N; v++) {
+      const gboolean hidden = large ? v / COLUMNS >= ROWS / 2 :
+          v % COLUMNS / 2 == 2 && v / COLUMNS / 2 == 2;
+
+      r->seen[v] = hidden ? 0. : 1.;
+      for (guint k = 0; k < 3 && hidden; k++)
+        x[3 * v + k] = NAN;
+    }
+    g_assert_true (cloth_start_smooth (r->scene->topology, r->seen, SIGMA, x,
+            NULL));
+    for (guint v = 0; v < N; v++) {
+      gdouble place[3], square = 0.;
+
+      n_hidden += r->seen[v] == 0.;
+      n_unknown += isnan (x[3 * v]);
+      find_shape (v, FALSE, place);
+      for (guint k = 0; k < 3; k++)
+        square += pow (x[3 * v + k] - place[k], 2.);
+      g_assert_true (isnan (square) || square < pow (5. * SIGMA, 2.));
+    }
+    g_assert_cmpuint (n_unknown, >=, large ? n_hidden / 2 : 0);
+    g_assert_cmpuint (n_unknown, <=, large ? n_hidden : 0);
+  }
+}
+
 int
 main (int argc, char **argv)
 {
@@ -124,5 +159,6 @@ main (int argc, char **argv)
   g_test_add_func ("/fit/start/bent", test_bent);
   g_test_add_func ("/fit/start/hidden", test_hidden);
   g_test_add_func ("/fit/start/left", test_left);
+  g_test_add_func ("/fit/holes", test_holes);
   return g_test_run ();
 }

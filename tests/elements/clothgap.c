@@ -73,6 +73,25 @@ GST_START_TEST (test_closed_form)
 
 GST_END_TEST;
 
+/* A stream that ends twice: nothing came since. */
+GST_START_TEST (test_ends_twice)
+{
+  Setup setup = set_up_good ("");
+  g_autoptr (GstMessage) first = NULL;
+
+  push (&setup, 0, N_FRAMES);
+  gst_harness_push_event (setup.h, gst_event_new_eos ());
+  first = find_message (&setup, GST_MESSAGE_ERROR, NULL);
+  fail_unless (first == NULL);
+  gst_harness_push_event (setup.h, gst_event_new_stream_start ("again"));
+  begin_segment (&setup);
+  gst_harness_push_event (setup.h, gst_event_new_eos ());
+  expect (&setup, GST_MESSAGE_ERROR, "ended without a mesh");
+  tear_down (&setup);
+}
+
+GST_END_TEST;
+
 /* The meshes themselves are as they were. */
 GST_START_TEST (test_same_bytes)
 {
@@ -610,6 +629,7 @@ clothgap_suite (void)
   suite_add_tcase (s, tc);
   tcase_add_test (tc, test_closed_form);
   tcase_add_test (tc, test_same_bytes);
+  tcase_add_test (tc, test_ends_twice);
   tcase_add_test (tc, test_threads);
   tcase_add_test (tc, test_missing);
   tcase_add_test (tc, test_sigmas);

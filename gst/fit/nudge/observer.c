@@ -45,7 +45,6 @@ struct _ClothObserver
   ClothSim *forecast;           /* without springs: only for frames of rays */
   gdouble *scene_start;
   ClothTopology *topology;
-  ClothHold *hold;
   ClothOutliers *outliers;
   guint64 n_pushed, n_popped;
   Frame ring[WINDOW];           /* frame i at i % WINDOW */
@@ -101,7 +100,6 @@ cloth_observer_new (const ClothScene * scene, const ClothModel * model,
   self->forecast = forecast;
   self->n = scene->topology->n_vertices;
   self->topology = cloth_topology_copy (scene->topology);
-  self->hold = cloth_hold_new (self->topology);
   self->outliers = cloth_outliers_new (scene->topology);
   n = 3 * (gsize) self->n;
   for (guint i = 0; i < WINDOW; i++) {
@@ -314,14 +312,15 @@ find_spread (const ClothObserver * self, const Frame * frame)
 
 /* Closes the holes of the first frame by thin plates, or by neighbours where plates can't. */
 static void
-fill_start (ClothObserver * self)
+fill_start (ClothObserver * self, gdouble sigma)
 {
   const gsize n = self->n;
-  const ClothFillParameters parameters = { CLOTH_FILL_PLATE, CLOTH_FILL_NOISE,
-    CLOTH_FILL_MAX_SIGMA, 0., 0.
+  const ClothFillParameters parameters = { CLOTH_FILL_PLATE,
+    sigma > 0 ? sigma : CLOTH_FILL_NOISE, CLOTH_FILL_MAX_SIGMA, 0., 0.
   };
   g_autoptr (ClothFill) fill = cloth_fill_new (self->topology, NULL,
       &parameters);
+  g_autoptr (ClothHold) hold = cloth_hold_new (self->topology);
   g_autofree gfloat *places = g_new (gfloat, 6 * n);
   g_autofree guint8 *states = g_malloc (2 * n);
   ClothMeshFrame from = { places, states, NULL };
@@ -335,29 +334,36 @@ fill_start (ClothObserver * self)
     states[i] = isnan (places[3 * i]) ? CLOTH_VERTEX_UNSEEN :
         CLOTH_VERTEX_MEASURED;
   cloth_fill_run (fill, 0., &from, &to, &counts);
-  filled = cloth_hold_apply (self->hold, to.positions);
+  filled = cloth_hold_apply (hold, to.positions);
   for (gsize i = 0; i < 3 * n; i++)
     if (isnan (self->state[i]))
       self->state[i] = filled[i];
 }
 
 /* Both copies where the first frame saw the cloth: without its noise where the cloth is smooth, since a
- * sheet with folds as sharp as its mesh bursts. */
+ * sheet with folds as sharp as its mesh bursts. Where it saw nothing at all they start with the scene. */
 static void
 begin (ClothObserver * self, const Frame * frame, const gdouble * velocity)
 {
   const gsize n = 3 * (gsize) self->n;
+  const gdouble sigma = frame->has_rays ? find_spread (self, frame) :
+      frame->sigma;
   g_autofree gdouble *seen = g_new (gdouble, self->n);
+  gboolean any = FALSE;
 
   for (gsize i = 0; i < n; i++) {
     self->state[i] = frame->has_rays && isnan (frame->positions[i]) ?
         self->scene_start[i] : frame->positions[i];
     self->speeds[i] = isfinite (velocity[i]) ? velocity[i] : 0;
     seen[i / 3] = isfinite (frame->positions[i]);
+    any |= seen[i / 3] != 0.;
   }
-  if (!cloth_start_smooth (self->topology, seen, frame->has_rays ?
-          find_spread (self, frame) : frame->sigma, self->state, self->speeds))
-    fill_start (self);
+  if (any) {
+    cloth_start_smooth (self->topology, seen, sigma, self->state, self->speeds);
+    fill_start (self, sigma);
+  } else {
+    memcpy (self->state, self->scene_start, n * sizeof *self->state);
+  }
   for (guint model = NUDGED; model <= FREE; model++)
     cloth_sim_set_state (self->sim, model, self->state, self->speeds,
         frame->time);
@@ -555,7 +561,6 @@ cloth_observer_free (ClothObserver * observer)
   g_free (observer->ahead);
   g_free (observer->ahead_speeds);
   g_free (observer->reference);
-  cloth_hold_free (observer->hold);
   cloth_topology_free (observer->topology);
   cloth_outliers_free (observer->outliers);
   cloth_sim_free (observer->sim);

@@ -56,14 +56,15 @@ make_terms (const ClothTopology * t)
   return terms;
 }
 
-/* The polynomial of some terms along @values, [m][3]; FALSE when the terms can't be told apart. */
+/* The polynomial of some terms along @values, [m][3]; FALSE when the terms can't be told apart.
+ * @normal: (out): the factored normal equations, [m][m] */
 static gboolean
 fit (guint n, const gdouble * seen, const gdouble * terms, guint m,
-    const gdouble * values, gdouble * coefficients)
+    const gdouble * values, gdouble * normal, gdouble * coefficients)
 {
-  g_autofree gdouble *normal = g_new0 (gdouble, m * m);
   gdouble right[3][MAX_TERMS] = { {0.} };
 
+  memset (normal, 0, (gsize) m * m * sizeof *normal);
   for (guint v = 0; v < n; v++) {
     const gdouble *t = terms + (gsize) v * MAX_TERMS;
 
@@ -116,11 +117,38 @@ find_rest (guint n, const gdouble * seen, const gdouble * positions,
   return sum;
 }
 
+/* Whether the polynomial is known somewhere no worse than what is seen there would be: t (TᵀT)⁻¹ t is its
+ * variance over σ². Away from what was seen it grows at once. */
+static gboolean
+is_known (const gdouble * terms, guint m, const gdouble * normal)
+{
+  gdouble solved[MAX_TERMS], variance = 0.;
+
+  memcpy (solved, terms, m * sizeof *solved);
+  cloth_cholesky_solve (m, normal, solved);
+  for (guint i = 0; i < m; i++)
+    variance += terms[i] * solved[i];
+  return variance <= 1.;
+}
+
+/* In place of @values where the polynomial is known. */
+static void
+replace (guint n, const gdouble * seen, const gdouble * terms, guint m,
+    const gdouble * normal, const gdouble * coefficients, gdouble * values)
+{
+  for (guint v = 0; v < n; v++) {
+    const gdouble *t = terms + (gsize) v * MAX_TERMS;
+
+    if (seen[v] != 0. || is_known (t, m, normal))
+      evaluate (t, m, coefficients, values + 3 * v);
+  }
+}
+
 /* @topology: the cloth's mesh, of n vertices
  * @seen: (array length=n): 0 where nothing was seen
  * @sigma: standard deviation of a coordinate, m
  * @positions: (inout) (array): as seen, then where the cloth may have been, [n][3], m; NaN is taken where
- *   nothing was seen
+ *   nothing was seen. In large holes they stay as they were
  * @velocities: (inout) (optional) (array): likewise, [n][3], m/s
  *
  * Returns: whether they are smoother than what was seen; else they are as they were
@@ -130,7 +158,7 @@ cloth_start_smooth (const ClothTopology * topology, const gdouble * seen,
     gdouble sigma, gdouble * positions, gdouble * velocities)
 {
   const guint n = topology->n_vertices;
-  g_autofree gdouble *terms = NULL;
+  g_autofree gdouble *terms = NULL, *normal = NULL;
   gdouble coefficients[3 * MAX_TERMS];
   guint n_seen = 0;
 
@@ -139,25 +167,21 @@ cloth_start_smooth (const ClothTopology * topology, const gdouble * seen,
   if (!(sigma > 0.) || !topology->uv)
     return FALSE;
   terms = make_terms (topology);
+  normal = g_new (gdouble, MAX_TERMS * MAX_TERMS);
   for (guint degree = 1; degree <= MAX_DEGREE; degree++) {
     const guint m = (degree + 1) * (degree + 2) / 2;
     gdouble count;
 
-    if (m * PER_TERM > n_seen || !fit (n, seen, terms, m, positions,
+    if (m * PER_TERM > n_seen || !fit (n, seen, terms, m, positions, normal,
             coefficients))
       return FALSE;
     count = 3. * (n_seen - m);
     if (find_rest (n, seen, positions, terms, m, coefficients) > count * sigma *
         sigma * (1. + CHANCE * sqrt (2. / count)))
       continue;
-    for (guint v = 0; v < n; v++)
-      evaluate (terms + (gsize) v * MAX_TERMS, m, coefficients,
-          positions + 3 * v);
-    if (!velocities || !fit (n, seen, terms, m, velocities, coefficients))
-      return TRUE;
-    for (guint v = 0; v < n; v++)
-      evaluate (terms + (gsize) v * MAX_TERMS, m, coefficients,
-          velocities + 3 * v);
+    replace (n, seen, terms, m, normal, coefficients, positions);
+    if (velocities && fit (n, seen, terms, m, velocities, normal, coefficients))
+      replace (n, seen, terms, m, normal, coefficients, velocities);
     return TRUE;
   }
   return FALSE;
