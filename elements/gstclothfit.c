@@ -50,6 +50,7 @@
 #include <unistd.h>
 
 #include "elements/gstclothproperties.h"
+#include "gst/cloth-io/points.h"
 #include "gst/file/file.h"
 #include "gst/fit/synthesis/synthesis.h"
 
@@ -72,7 +73,9 @@ struct _GstClothFit
   /* streaming thread */
   GstFollowRecord *record;      /* of meshes that are to be fitted */
   ClothObservations *observations;      /* of pictures that are */
-  gfloat *positions;
+  guint32 *vertices;            /* of a picture: what it showed, as lists */
+  gdouble *px, *covariances;
+  gfloat *positions;            /* of the mesh that leaves */
   guint8 *states;
 };
 
@@ -109,15 +112,18 @@ static gboolean
 gst_cloth_fit_open (GstClothFollow * follow)
 {
   const gchar *fitted = GST_CLOTH_FIT (follow)->settings.fitted;
-  g_autofree gchar *parent = fitted ? g_path_get_dirname (fitted) : NULL;
+  g_autofree gchar *parent = NULL;
 
-  if (fitted && g_access (parent, W_OK) != 0) {
+  if (!fitted)
+    return TRUE;
+  parent = g_path_get_dirname (fitted);
+  if (g_access (parent, W_OK) != 0) {
     GST_ELEMENT_ERROR (follow, RESOURCE, OPEN_WRITE,
         ("Can't write the fitted model: %s: %s", parent, g_strerror (errno)),
         ("Set fitted= to a file in a folder that can be written."));
     return FALSE;
   }
-  if (!fitted || gst_cloth_follow_get_inputs (follow)->model->free->len > 0)
+  if (gst_cloth_follow_get_inputs (follow)->model->free->len > 0)
     return TRUE;
   GST_ELEMENT_ERROR (follow, RESOURCE, SETTINGS,
       ("The model has no free numbers, and fitted= wants them fitted."),
@@ -142,6 +148,9 @@ gst_cloth_fit_close (GstClothFollow * follow)
   GstClothFit *self = GST_CLOTH_FIT (follow);
 
   gst_cloth_fit_restart (follow);
+  g_clear_pointer (&self->vertices, g_free);
+  g_clear_pointer (&self->px, g_free);
+  g_clear_pointer (&self->covariances, g_free);
   g_clear_pointer (&self->positions, g_free);
   g_clear_pointer (&self->states, g_free);
 }
@@ -169,16 +178,6 @@ gst_cloth_fit_make_caps (GstClothFollow * follow, const GstCaps * caps)
 
 /* ---- frames ---- */
 
-static gboolean
-fail_to_keep (GstClothFit * self, const GError * error)
-{
-  GST_ELEMENT_ERROR (self, RESOURCE, WRITE,
-      ("Can't keep the stream for its fit: %s", error->message),
-      ("Make room in %s, set TMPDIR to a folder that has, or leave fitted= out.",
-          g_get_tmp_dir ()));
-  return FALSE;
-}
-
 /* One camera of its own, with all that it saw. */
 static gboolean
 gst_cloth_fit_came (GstClothFollow * follow, gdouble time,
@@ -187,10 +186,8 @@ gst_cloth_fit_came (GstClothFollow * follow, gdouble time,
   GstClothFit *self = GST_CLOTH_FIT (follow);
   const guint n =
       gst_cloth_follow_get_inputs (follow)->scene->topology->n_vertices;
-  g_autofree guint32 *vertices = NULL;
-  g_autofree gdouble *px = NULL, *covariances = NULL;
   g_autoptr (GError) error = NULL;
-  guint seen = 0;
+  guint seen;
 
   if (!self->settings.fitted)
     return TRUE;
@@ -200,22 +197,15 @@ gst_cloth_fit_came (GstClothFollow * follow, gdouble time,
     cloth_camera_copy (&rig->cameras[0], camera);
     self->observations = cloth_observations_new (rig, n);
   }
-  vertices = g_new (guint32, n);
-  px = g_new (gdouble, 2 * (gsize) n);
-  covariances = g_new (gdouble, 3 * (gsize) n);
-  for (guint i = 0; i < n; i++) {
-    if (isnan (points->x[i]))
-      continue;
-    vertices[seen] = i;
-    px[2 * seen] = points->x[i];
-    px[2 * seen + 1] = points->y[i];
-    covariances[3 * seen] = points->xx[i];
-    covariances[3 * seen + 1] = points->xy[i];
-    covariances[3 * seen + 2] = points->yy[i];
-    seen++;
+  if (!self->vertices) {
+    self->vertices = g_new (guint32, n);
+    self->px = g_new (gdouble, 2 * (gsize) n);
+    self->covariances = g_new (gdouble, 3 * (gsize) n);
   }
+  seen = gst_cloth_io_points_list (points, n, self->vertices, self->px,
+      self->covariances);
   if (cloth_observations_add (self->observations, 0, time + camera->offset_s,
-          seen, vertices, px, covariances, &error))
+          seen, self->vertices, self->px, self->covariances, &error))
     return TRUE;
   GST_ELEMENT_ERROR (self, STREAM, FORMAT,
       ("A picture can't be fitted: %s", error->message), (NULL));
@@ -227,18 +217,9 @@ gst_cloth_fit_record (GstClothFollow * follow,
     const GstClothFollowFrame * frame)
 {
   GstClothFit *self = GST_CLOTH_FIT (follow);
-  const GstFollowInputs *inputs = gst_cloth_follow_get_inputs (follow);
-  g_autoptr (GError) error = NULL;
 
-  if (!self->settings.fitted || gst_cloth_follow_has_rays (follow))
-    return TRUE;
-  if (!self->record)
-    self->record = gst_follow_record_new (cloth_take_get_info (inputs->take),
-        inputs->scene, &error);
-  return (self->record
-      && gst_follow_record_append (self->record, frame->time, frame->positions,
-          frame->states, frame->covariances, &error))
-      || fail_to_keep (self, error);
+  return !self->settings.fitted || gst_cloth_follow_has_rays (follow)
+      || gst_cloth_follow_keep (follow, &self->record, frame, "fit");
 }
 
 /* The simulated cloth in place of what was seen. */
@@ -347,15 +328,10 @@ gst_cloth_fit_finish (GstClothFollow * follow)
   if (!self->settings.fitted)
     return;
   s = fit (self, &error);
-  if (s && !isfinite (s->takes[0].after.windows)) {
-    GST_ELEMENT_ERROR (self, STREAM, FAILED,
-        ("Can't fit the model: nothing of the cloth was seen"), (NULL));
-    return;
-  }
-  if (!s) {
-    if (!gst_cloth_follow_is_cancelled (follow))
-      GST_ELEMENT_ERROR (self, STREAM, FAILED,
-          ("Can't fit the model: %s", error->message), (NULL));
+  if (!s || !isfinite (s->takes[0].after.windows)) {
+    if (s || !gst_cloth_follow_is_cancelled (follow))
+      GST_ELEMENT_ERROR (self, STREAM, FAILED, ("Can't fit the model: %s",
+              s ? "nothing of the cloth was seen" : error->message), (NULL));
     return;
   }
   json = cloth_model_to_json (s->model);

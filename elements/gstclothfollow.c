@@ -50,9 +50,8 @@ typedef struct
   GstFollowView *view;          /* of observations; NULL: meshes */
   GQueue waiting;
   guint64 n_frames;             /* that came in since the beginning */
-  guint64 n_damaged;            /* that came between these */
-  guint64 n_before;             /* of both, those before the rate was this one */
-  gdouble before;               /* which took so long, seconds */
+  guint64 n_at_rate;            /* they and damaged packets, since the rate is this one */
+  gdouble before;               /* how long those before that took, seconds */
   gdouble last_time;
   gboolean new_segment, warned;
   gfloat *residuals, *sigmas;
@@ -66,6 +65,7 @@ typedef Follow GstClothFollowPrivate;
 
 static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE ("sink",
     GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS (CAPS));
+
 G_DEFINE_ABSTRACT_TYPE_WITH_PRIVATE (GstClothFollow, gst_cloth_follow,
     GST_TYPE_ELEMENT);
 
@@ -172,7 +172,7 @@ restart (Follow * self)
     gst_follow_view_restart (self->view);
   if (self->klass->restart)
     self->klass->restart (GST_CLOTH_FOLLOW (self->element));
-  self->n_frames = self->n_damaged = self->n_before = 0;
+  self->n_frames = self->n_at_rate = 0;
   self->before = 0;
 }
 
@@ -197,27 +197,7 @@ post_score (Follow * self, gboolean last)
               "coverage", G_TYPE_DOUBLE, score.coverage, NULL)));
 }
 
-/* The usual one of a mesh's coordinates: by its covariances, else what the scene's take says. */
-static gdouble
-find_sigma (const Follow * self, const GstClothMesh * mesh)
-{
-  const gfloat *c = gst_cloth_mesh_get_covariances (mesh, NULL);
-  gdouble sum = 0;
-  guint n = 0;
-
-  for (gsize i = 0; c && i < self->n_vertices; i++) {
-    const gdouble trace = (gdouble) c[6 * i] + c[6 * i + 3] + c[6 * i + 5];
-
-    if (!isfinite (trace))
-      continue;
-    sum += trace / 3;
-    n++;
-  }
-  return n ? sqrt (sum / n) :
-      cloth_take_get_info (self->inputs.take)->noise_sigma_m;
-}
-
-/* Of each of a mesh's coordinates, likewise. */
+/* Of a mesh's coordinates: its covariances, else what the scene's take says. */
 static void
 find_sigmas (Follow * self, const gfloat * c)
 {
@@ -227,6 +207,24 @@ find_sigmas (Follow * self, const gfloat * c)
   for (gsize i = 0; i < self->n_vertices; i++)
     self->sigmas[i] = c ? sqrtf ((c[6 * i] + c[6 * i + 3] + c[6 * i + 5]) / 3) :
         noise;
+}
+
+/* The usual one of a mesh's coordinates. */
+static gdouble
+find_sigma (Follow * self, const GstClothMesh * mesh)
+{
+  gdouble sum = 0;
+  guint n = 0;
+
+  find_sigmas (self, gst_cloth_mesh_get_covariances (mesh, NULL));
+  for (gsize i = 0; i < self->n_vertices; i++) {
+    if (!isfinite (self->sigmas[i]))
+      continue;
+    sum += (gdouble) self->sigmas[i] * self->sigmas[i];
+    n++;
+  }
+  return n ? sqrt (sum / n) :
+      cloth_take_get_info (self->inputs.take)->noise_sigma_m;
 }
 
 /* Places on the rays, as far away as the simulation is. */
@@ -331,8 +329,7 @@ find_time (Follow * self, GstBuffer * buffer)
   if (self->fps_n <= 0)
     return NAN;
   return self->inputs.scene->times[0] + self->before +
-      (gdouble) (self->n_frames + self->n_damaged -
-      self->n_before) * self->fps_d / self->fps_n;
+      (gdouble) self->n_at_rate * self->fps_d / self->fps_n;
 }
 
 /* Without clamps a scene has no end. */
@@ -453,7 +450,7 @@ gst_cloth_follow_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
     mesh = gst_cloth_parse_mesh (buffer, self->n_vertices, &error);
   }
   if (error) {
-    self->n_damaged++;
+    self->n_at_rate++;
     gst_buffer_unref (buffer);
     return gst_cloth_damage_add (&self->settings.damage, self->element, error);
   }
@@ -464,7 +461,7 @@ gst_cloth_follow_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
       gst_buffer_unref (buffer);
       if (!error)
         return GST_FLOW_ERROR;
-      self->n_damaged++;
+      self->n_at_rate++;
       return gst_cloth_damage_add (&self->settings.damage, self->element,
           error);
     }
@@ -481,11 +478,14 @@ gst_cloth_follow_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
   if (rays)
     cloth_observer_push_rays (self->observer, time, rays);
   else
+    /* only where a recording begins its noise matters */
     cloth_observer_push (self->observer, time,
-        gst_cloth_mesh_get_positions (mesh, NULL), find_sigma (self, mesh));
+        gst_cloth_mesh_get_positions (mesh, NULL),
+        self->n_frames == 0 ? find_sigma (self, mesh) : 0);
   g_clear_pointer (&mesh, gst_cloth_mesh_unref);
   self->last_time = time;
   self->n_frames++;
+  self->n_at_rate++;
   enqueue_frame (self, buffer, time, sequence);
   return send_ready (self, CLOTH_OBSERVER_LATENCY);
 }
@@ -551,11 +551,9 @@ set_caps (Follow * self, GstCaps * caps)
     self->positions = g_new (gfloat, 3 * (gsize) self->n_vertices);
     self->states = g_malloc (self->n_vertices);
   }
-  if (self->fps_n > 0 && self->n_frames > 0) {
-    const guint64 n = self->n_frames + self->n_damaged;
-
-    self->before += (gdouble) (n - self->n_before) * self->fps_d / self->fps_n;
-    self->n_before = n;
+  if (self->fps_n > 0) {
+    self->before += (gdouble) self->n_at_rate * self->fps_d / self->fps_n;
+    self->n_at_rate = 0;
   }
   GST_OBJECT_LOCK (self->element);
   self->fps_n = fps_n;
@@ -801,6 +799,27 @@ gboolean
 gst_cloth_follow_is_cancelled (GstClothFollow * self)
 {
   return g_atomic_int_get (&follow_of (self)->cancelled);
+}
+
+gboolean
+gst_cloth_follow_keep (GstClothFollow * self, GstFollowRecord ** record,
+    const GstClothFollowFrame * frame, const gchar * purpose)
+{
+  const GstFollowInputs *inputs = gst_cloth_follow_get_inputs (self);
+  g_autoptr (GError) error = NULL;
+
+  if (!*record)
+    *record = gst_follow_record_new (cloth_take_get_info (inputs->take),
+        inputs->scene, &error);
+  if (*record
+      && gst_follow_record_append (*record, frame->time, frame->positions,
+          frame->states, frame->covariances, &error))
+    return TRUE;
+  GST_ELEMENT_ERROR (self, RESOURCE, WRITE,
+      ("Can't keep the recording for its %s: %s", purpose, error->message),
+      ("Make room in %s, or set TMPDIR to a folder that has.",
+          g_get_tmp_dir ()));
+  return FALSE;
 }
 
 /* ---- GObject ---- */

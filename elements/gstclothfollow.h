@@ -83,6 +83,11 @@ const GstFollowSettings *gst_cloth_follow_get_settings (GstClothFollow * self);
 /* Whether the stream is one camera's observations. */
 gboolean gst_cloth_follow_has_rays (GstClothFollow * self);
 ClothObserver *gst_cloth_follow_get_observer (GstClothFollow * self);
+/* Adds a frame to @record, which the first one makes. @purpose: what it is kept for, for the error that is
+ * posted when it can't */
+gboolean gst_cloth_follow_keep (GstClothFollow * self,
+    GstFollowRecord ** record, const GstClothFollowFrame * frame,
+    const gchar * purpose);
 /* Whether a long computation is to end: the element is flushed or stopped. */
 gboolean gst_cloth_follow_is_cancelled (GstClothFollow * self);
 

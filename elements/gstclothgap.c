@@ -190,22 +190,8 @@ static gboolean
 gst_gap_diagnose_record (GstClothFollow * follow,
     const GstClothFollowFrame * frame)
 {
-  GstGapDiagnose *self = GST_GAP_DIAGNOSE (follow);
-  const GstFollowInputs *inputs = gst_cloth_follow_get_inputs (follow);
-  g_autoptr (GError) error = NULL;
-
-  if (!self->record)
-    self->record = gst_follow_record_new (cloth_take_get_info (inputs->take),
-        inputs->scene, &error);
-  if (self->record
-      && gst_follow_record_append (self->record, frame->time, frame->positions,
-          frame->states, frame->covariances, &error))
-    return TRUE;
-  GST_ELEMENT_ERROR (self, RESOURCE, WRITE,
-      ("Can't keep the recording for its diagnosis: %s", error->message),
-      ("Make room in %s, or set TMPDIR to a folder that has.",
-          g_get_tmp_dir ()));
-  return FALSE;
+  return gst_cloth_follow_keep (follow, &GST_GAP_DIAGNOSE (follow)->record,
+      frame, "diagnosis");
 }
 
 static GstBuffer *

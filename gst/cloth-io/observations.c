@@ -97,10 +97,6 @@ check_name (const Reader * self, const gchar * name, GError ** error)
 static gint
 find_points (Reader * self, GstBuffer * buffer, GError ** error)
 {
-  const ClothTriangulateView *view = &self->points->view;
-  guint n_vertices = self->points->columns * self->points->rows;
-  gint n = 0;
-
   if (!gst_cloth_io_points_has_any (buffer))
     return 0;                   /* of a picture that shows nothing */
   self->labelled = TRUE;
@@ -109,18 +105,9 @@ find_points (Reader * self, GstBuffer * buffer, GError ** error)
       || !gst_cloth_io_points_check_places (self->points,
           &self->observations->rig->cameras[self->camera], error))
     return -1;
-  for (guint i = 0; i < n_vertices; i++) {
-    if (isnan (view->x[i]))
-      continue;
-    self->vertices[n] = i;
-    self->px[2 * n] = view->x[i];
-    self->px[2 * n + 1] = view->y[i];
-    self->covariances[3 * n] = view->xx[i];
-    self->covariances[3 * n + 1] = view->xy[i];
-    self->covariances[3 * n + 2] = view->yy[i];
-    n++;
-  }
-  return n;
+  return (gint) gst_cloth_io_points_list (&self->points->view,
+      self->points->columns * self->points->rows, self->vertices, self->px,
+      self->covariances);
 }
 
 /* Where the picture that was added last has the cloth. */

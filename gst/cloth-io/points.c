@@ -216,6 +216,26 @@ gst_cloth_io_points_check_places (const GstClothIoPoints * points,
   return TRUE;
 }
 
+guint
+gst_cloth_io_points_list (const ClothTriangulateView * view, guint n,
+    guint32 * vertices, gdouble * px, gdouble * covariances)
+{
+  guint shown = 0;
+
+  for (guint i = 0; i < n; i++) {
+    if (isnan (view->x[i]))
+      continue;
+    vertices[shown] = i;
+    px[2 * shown] = view->x[i];
+    px[2 * shown + 1] = view->y[i];
+    covariances[3 * shown] = view->xx[i];
+    covariances[3 * shown + 1] = view->xy[i];
+    covariances[3 * shown + 2] = view->yy[i];
+    shown++;
+  }
+  return shown;
+}
+
 void
 gst_cloth_io_points_free (GstClothIoPoints * points)
 {

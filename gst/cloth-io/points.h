@@ -31,6 +31,10 @@ gboolean gst_cloth_io_points_find (GstClothIoPoints * points, GstBuffer * pictur
 /* FALSE when a point of the last picture lies where @camera sees nothing. */
 gboolean gst_cloth_io_points_check_places (const GstClothIoPoints * points,
     const ClothCamera * camera, GError ** error);
+/* Lists what a picture showed of @n vertices: which, where, px, and xx, xy, yy of the covariance, px²;
+ * each has room for all. Returns: how many it showed. */
+guint gst_cloth_io_points_list (const ClothTriangulateView * view, guint n,
+    guint32 * vertices, gdouble * px, gdouble * covariances);
 void gst_cloth_io_points_free (GstClothIoPoints * points);
 
 /* @columns, @rows: of the grid's vertices, row * columns + column. Squares have a vertex at

@@ -454,18 +454,16 @@ note_odd_sizes (Import * self)
 {
   const gboolean grid = self->import->columns > 0;
 
-  for (guint k = 0; k < 2; k++) {
-    const gdouble stretch = stretch_of (self, self->topology,
-        k == 0 ? CLOTH_SIDES_U : CLOTH_SIDES_V);
+  for (ClothSides sides = CLOTH_SIDES_U; sides <= CLOTH_SIDES_V; sides++) {
+    const gdouble stretch = stretch_of (self, self->topology, sides);
+    const gchar *size = sides == CLOTH_SIDES_U ? "--width" : "--height";
 
     if (stretch > ODD_STRETCH || stretch < ODD_SHRINKAGE)
       cloth_summary_add (self->notes, "note",
           "along %s neighbours are %.2f times "
           "as far apart as on the flat cloth: see that %s and the order of the "
-          "vertices are right", grid
-          && k == 0 ? "rows" : grid ? "columns" : k == 0 ? "u" : "v", stretch,
-          grid
-          && k == 0 ? "--width" : grid ? "--height" : "the uv of the mesh");
+          "vertices are right", cloth_summary_name_sides (sides, grid), stretch,
+          grid ? size : "the uv of the mesh");
   }
 }
 

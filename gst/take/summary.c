@@ -11,6 +11,8 @@
 /* Frame intervals that differ by less count as even. */
 #define EVEN 0.01
 
+static const ClothSides SIDES[2] = { CLOTH_SIDES_U, CLOTH_SIDES_V };
+
 /* What one pass over the frames tells.
  *
  * @n_measured, @n_estimated: vertices, filled or predicted ones apart
@@ -44,6 +46,19 @@ cloth_summary_add (GString * table, const gchar * label,
   g_string_append_vprintf (table, format, arguments);
   va_end (arguments);
   g_string_append_c (table, '\n');
+}
+
+/* @sides: those along u or along v
+ * @grid: of a grid
+ *
+ * Returns: what they run along, for people
+ */
+const gchar *
+cloth_summary_name_sides (ClothSides sides, gboolean grid)
+{
+  if (grid)
+    return sides == CLOTH_SIDES_U ? "rows" : "columns";
+  return sides == CLOTH_SIDES_U ? "u" : "v";
 }
 
 /* @topology: a mesh
@@ -151,7 +166,7 @@ look (ClothTake * take, Pass * pass, GError ** error)
     look_at_vertices (pass, i, positions, states, (guint) n);
     for (guint k = 0; k < 2; k++) {
       gdouble stretch = cloth_summary_stretch (topology, positions,
-          k == 0 ? CLOTH_SIDES_U : CLOTH_SIDES_V, scratch);
+          SIDES[k], scratch);
 
       if (isfinite (stretch))
         g_array_append_val (pass->stretches[k], stretch);
@@ -242,8 +257,8 @@ add_seen (GString * table, const ClothTake * take, const Pass * pass)
     if (stretches->len > 0)
       cloth_summary_add (table, k == 0 ? "stretch" : "",
           "along %s neighbours are %.3f times as far apart as on the flat cloth, "
-          "in the median", grid && k == 0 ? "rows" : grid ? "columns" : k == 0 ?
-          "u" : "v", cloth_median ((gdouble *) (gpointer) stretches->data,
+          "in the median", cloth_summary_name_sides (SIDES[k], grid),
+          cloth_median ((gdouble *) (gpointer) stretches->data,
               stretches->len));
   }
 }

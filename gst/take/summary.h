@@ -19,6 +19,7 @@ typedef enum {
 
 void cloth_summary_add (GString * table, const gchar * label,
     const gchar * format, ...) G_GNUC_PRINTF (3, 4);
+const gchar *cloth_summary_name_sides (ClothSides sides, gboolean grid);
 gdouble cloth_summary_stretch (const ClothTopology * topology,
     const gfloat * positions, ClothSides sides, GArray * scratch);
 gchar *cloth_take_summarise (ClothTake * take, GError ** error);

@@ -72,7 +72,6 @@ make_scene (void)
 static ClothModel *
 make_model (gdouble stretch, gdouble drag)
 {
-  ClothModel *model = cloth_model_new ();
   g_autofree gchar *json =
       g_strdup_printf ("{\"version\": 1, \"areal_density\": 0.2, "
       "\"stretch\": {\"warp\": %.9g, \"weft\": %.9g}, \"shear\": 5, "
@@ -80,9 +79,8 @@ make_model (gdouble stretch, gdouble drag)
       "\"stiffness\": 0.0005}, \"effects\": {%s}}", stretch, stretch,
       drag > 0 ? "\"air_drag\": {\"coefficient\": 1}" : "");
   g_autoptr (GError) error = NULL;
+  ClothModel *model = cloth_model_parse (json, strlen (json), &error);
 
-  cloth_model_free (model);
-  model = cloth_model_parse (json, strlen (json), &error);
   g_assert_no_error (error);
   return model;
 }

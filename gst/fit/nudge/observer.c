@@ -136,7 +136,8 @@ cloth_observer_restart (ClothObserver * observer)
 /* @observer: an observer that has not more than %CLOTH_OBSERVER_LATENCY frames waiting
  * @time_s: of the frame, seconds of the scene, later than the last one's
  * @positions: 3 numbers a vertex, metres; NaN when not seen
- * @sigma_m: usual standard deviation of one of them, metres; 0: not known
+ * @sigma_m: usual standard deviation of one of them, metres; 0: not known. That of the first frame
+ *   matters
  *
  * Gives it a frame. Vertices that would have to be torn off the cloth to be there count as
  * not seen.
@@ -287,24 +288,31 @@ take_speeds_along (const ClothObserver * self, const ClothRays * rays,
   }
 }
 
-/* Standard deviation of what rays know of a place, RMS, m. */
+/* Standard deviation of a vertex across its ray, m. */
 static gdouble
-find_spread (const ClothObserver * self, const Frame * frame)
+find_spread (const Frame * frame, guint vertex)
 {
+  const gdouble *p = frame->positions + 3 * (gsize) vertex;
   const gdouble *c = frame->rays->centre;
+
+  return frame->rays->spreads[vertex] *
+      sqrt ((p[0] - c[0]) * (p[0] - c[0]) + (p[1] - c[1]) * (p[1] - c[1]) +
+      (p[2] - c[2]) * (p[2] - c[2]));
+}
+
+/* That of all vertices that are seen, RMS. */
+static gdouble
+find_usual_spread (const ClothObserver * self, const Frame * frame)
+{
   gdouble sum = 0;
   guint n = 0;
 
   for (guint v = 0; v < self->n; v++) {
-    const gdouble *p = frame->positions + 3 * (gsize) v;
-    gdouble square = 0;
+    const gdouble spread = find_spread (frame, v);
 
-    for (guint k = 0; k < 3; k++)
-      square += (p[k] - c[k]) * (p[k] - c[k]);
-    square *= frame->rays->spreads[v] * frame->rays->spreads[v];
-    if (!isfinite (square))
+    if (!isfinite (spread))
       continue;
-    sum += square;
+    sum += spread * spread;
     n++;
   }
   return n ? sqrt (sum / n) : 0;
@@ -346,7 +354,7 @@ static void
 begin (ClothObserver * self, const Frame * frame, const gdouble * velocity)
 {
   const gsize n = 3 * (gsize) self->n;
-  const gdouble sigma = frame->has_rays ? find_spread (self, frame) :
+  const gdouble sigma = frame->has_rays ? find_usual_spread (self, frame) :
       frame->sigma;
   g_autofree gdouble *seen = g_new (gdouble, self->n);
   gboolean any = FALSE;
@@ -504,15 +512,11 @@ cloth_observer_get_lifted (const ClothObserver * observer, gfloat * positions,
     gfloat * sigmas)
 {
   const Frame *frame = &observer->ring[(observer->n_popped - 1) % WINDOW];
-  const gdouble *p = frame->positions, *c = frame->rays->centre;
 
-  for (guint i = 0; i < observer->n; i++, p += 3) {
-    for (guint k = 0; k < 3; k++)
-      positions[3 * (gsize) i + k] = (gfloat) p[k];
-    sigmas[i] = (gfloat) (frame->rays->spreads[i] *
-        sqrt ((p[0] - c[0]) * (p[0] - c[0]) + (p[1] - c[1]) * (p[1] - c[1]) +
-            (p[2] - c[2]) * (p[2] - c[2])));
-  }
+  for (gsize i = 0; i < 3 * (gsize) observer->n; i++)
+    positions[i] = (gfloat) frame->positions[i];
+  for (guint i = 0; i < observer->n; i++)
+    sigmas[i] = (gfloat) find_spread (frame, i);
 }
 
 /* @observer: an observer

@@ -56,35 +56,41 @@ make_terms (const ClothTopology * t)
   return terms;
 }
 
-/* The polynomial of some terms along @values, [m][3]; FALSE when the terms can't be told apart.
- * @normal: (out): the factored normal equations, [m][m] */
+/* The normal equations of some terms, factored, [m][m]; FALSE when the terms can't be told apart. */
 static gboolean
-fit (guint n, const gdouble * seen, const gdouble * terms, guint m,
-    const gdouble * values, gdouble * normal, gdouble * coefficients)
+factor (guint n, const gdouble * seen, const gdouble * terms, guint m,
+    gdouble * normal)
 {
-  gdouble right[3][MAX_TERMS] = { {0.} };
-
   memset (normal, 0, (gsize) m * m * sizeof *normal);
   for (guint v = 0; v < n; v++) {
     const gdouble *t = terms + (gsize) v * MAX_TERMS;
 
-    if (seen[v] == 0.)
-      continue;
-    for (guint i = 0; i < m; i++) {
+    for (guint i = 0; i < m && seen[v] != 0.; i++)
       for (guint k = 0; k < m; k++)
         normal[i * m + k] += t[i] * t[k];
+  }
+  return cloth_cholesky_factor (m, normal);
+}
+
+/* The polynomial along @values, [m][3]. */
+static void
+fit (guint n, const gdouble * seen, const gdouble * terms, guint m,
+    const gdouble * values, const gdouble * normal, gdouble * coefficients)
+{
+  gdouble right[3][MAX_TERMS] = { {0.} };
+
+  for (guint v = 0; v < n; v++) {
+    const gdouble *t = terms + (gsize) v * MAX_TERMS;
+
+    for (guint i = 0; i < m && seen[v] != 0.; i++)
       for (guint k = 0; k < 3; k++)
         right[k][i] += t[i] * values[3 * v + k];
-    }
   }
-  if (!cloth_cholesky_factor (m, normal))
-    return FALSE;
   for (guint k = 0; k < 3; k++) {
     cloth_cholesky_solve (m, normal, right[k]);
     for (guint i = 0; i < m; i++)
       coefficients[3 * i + k] = right[k][i];
   }
-  return TRUE;
 }
 
 static void
@@ -131,17 +137,14 @@ is_known (const gdouble * terms, guint m, const gdouble * normal)
   return variance <= 1.;
 }
 
-/* In place of @values where the polynomial is known. */
+/* In place of @values where the polynomial is @known. */
 static void
-replace (guint n, const gdouble * seen, const gdouble * terms, guint m,
-    const gdouble * normal, const gdouble * coefficients, gdouble * values)
+replace (guint n, const gboolean * known, const gdouble * terms, guint m,
+    const gdouble * coefficients, gdouble * values)
 {
-  for (guint v = 0; v < n; v++) {
-    const gdouble *t = terms + (gsize) v * MAX_TERMS;
-
-    if (seen[v] != 0. || is_known (t, m, normal))
-      evaluate (t, m, coefficients, values + 3 * v);
-  }
+  for (guint v = 0; v < n; v++)
+    if (known[v])
+      evaluate (terms + (gsize) v * MAX_TERMS, m, coefficients, values + 3 * v);
 }
 
 /* @topology: the cloth's mesh, of n vertices
@@ -159,6 +162,7 @@ cloth_start_smooth (const ClothTopology * topology, const gdouble * seen,
 {
   const guint n = topology->n_vertices;
   g_autofree gdouble *terms = NULL, *normal = NULL;
+  g_autofree gboolean *known = NULL;
   gdouble coefficients[3 * MAX_TERMS];
   guint n_seen = 0;
 
@@ -172,16 +176,22 @@ cloth_start_smooth (const ClothTopology * topology, const gdouble * seen,
     const guint m = (degree + 1) * (degree + 2) / 2;
     gdouble count;
 
-    if (m * PER_TERM > n_seen || !fit (n, seen, terms, m, positions, normal,
-            coefficients))
+    if (m * PER_TERM > n_seen || !factor (n, seen, terms, m, normal))
       return FALSE;
+    fit (n, seen, terms, m, positions, normal, coefficients);
     count = 3. * (n_seen - m);
     if (find_rest (n, seen, positions, terms, m, coefficients) > count * sigma *
         sigma * (1. + CHANCE * sqrt (2. / count)))
       continue;
-    replace (n, seen, terms, m, normal, coefficients, positions);
-    if (velocities && fit (n, seen, terms, m, velocities, normal, coefficients))
-      replace (n, seen, terms, m, normal, coefficients, velocities);
+    known = g_new (gboolean, n);
+    for (guint v = 0; v < n; v++)
+      known[v] = seen[v] != 0.
+          || is_known (terms + (gsize) v * MAX_TERMS, m, normal);
+    replace (n, known, terms, m, coefficients, positions);
+    if (velocities) {
+      fit (n, seen, terms, m, velocities, normal, coefficients);
+      replace (n, known, terms, m, coefficients, velocities);
+    }
     return TRUE;
   }
   return FALSE;

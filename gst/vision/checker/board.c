@@ -4,6 +4,7 @@
 #include "gst/vision/checker/board.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "gst/math/linalg.h"
 #include "gst/vision/checker/link.h"
@@ -31,6 +32,45 @@ struct _ClothBoardFinder
   ClothBoardView view;
 };
 
+/* @view: (out): without a corner that is seen; cloth_board_view_clear () frees what it holds
+ * @pattern: the board
+ */
+void
+cloth_board_view_init (ClothBoardView * view, const ClothPattern * pattern)
+{
+  gsize n;
+
+  view->columns = pattern->columns + 1;
+  view->rows = pattern->rows + 1;
+  n = (gsize) view->columns * (gsize) view->rows;
+  view->n_seen = 0;
+  view->seen = g_new0 (guint8, n);
+  view->x = g_new0 (gfloat, n);
+  view->y = g_new0 (gfloat, n);
+  view->cov = g_new0 (gfloat, 3 * n);
+}
+
+/* @view: a view; no corner of it is seen any more
+ */
+void
+cloth_board_view_forget (ClothBoardView * view)
+{
+  memset (view->seen, CLOTH_VERTEX_UNKNOWN,
+      (gsize) view->columns * (gsize) view->rows);
+  view->n_seen = 0;
+}
+
+/* @view: a view
+ */
+void
+cloth_board_view_clear (ClothBoardView * view)
+{
+  g_free (view->seen);
+  g_free (view->x);
+  g_free (view->y);
+  g_free (view->cov);
+}
+
 /* @pattern: the board; copied
  *
  * Returns: (transfer full): a finder for that board; it keeps its memory from picture to
@@ -40,8 +80,6 @@ ClothBoardFinder *
 cloth_board_finder_new (const ClothPattern * pattern)
 {
   ClothBoardFinder *finder = g_new0 (ClothBoardFinder, 1);
-  ClothBoardView *view = &finder->view;
-  gsize n;
 
   finder->pattern = *pattern;
   if (pattern->code)
@@ -49,13 +87,7 @@ cloth_board_finder_new (const ClothPattern * pattern)
         (gsize) pattern->columns * (gsize) pattern->rows);
   finder->linker = cloth_linker_new ();
   finder->pose_finder = cloth_pose_finder_new (pattern);
-  view->columns = pattern->columns + 1;
-  view->rows = pattern->rows + 1;
-  n = (gsize) view->columns * (gsize) view->rows;
-  view->seen = g_new0 (guint8, n);
-  view->x = g_new0 (gfloat, n);
-  view->y = g_new0 (gfloat, n);
-  view->cov = g_new0 (gfloat, 3 * n);
+  cloth_board_view_init (&finder->view, pattern);
   return finder;
 }
 
@@ -68,10 +100,7 @@ cloth_board_finder_free (ClothBoardFinder * finder)
   cloth_linker_free (finder->linker);
   cloth_patch_clear (&finder->patch);
   cloth_pose_finder_free (finder->pose_finder);
-  g_free (finder->view.seen);
-  g_free (finder->view.x);
-  g_free (finder->view.y);
-  g_free (finder->view.cov);
+  cloth_board_view_clear (&finder->view);
   g_free (finder);
 }
 
@@ -321,9 +350,7 @@ cloth_board_finder_find (ClothBoardFinder * finder, const ClothImage * image,
   guint order[MAX_PATCHES], n_links, n, anchor;
   Fate fate[MAX_PATCHES];
 
-  for (gint k = 0; k < out->columns * out->rows; k++)
-    out->seen[k] = CLOTH_VERTEX_UNKNOWN;
-  out->n_seen = 0;
+  cloth_board_view_forget (out);
   *view = out;
   n_links = cloth_linker_run (finder->linker, image, NULL, saddles, n_saddles,
       &links, NULL);
@@ -340,7 +367,6 @@ cloth_board_finder_find (ClothBoardFinder * finder, const ClothImage * image,
         && try_patch (finder, image, saddles, &links[order[k]]) != PLACED)
       out->n_seen = 0;
   if (!out->n_seen)
-    for (gint k = 0; k < out->columns * out->rows; k++)
-      out->seen[k] = CLOTH_VERTEX_UNKNOWN;
+    cloth_board_view_forget (out);
   return out->n_seen > 0;
 }

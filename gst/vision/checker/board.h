@@ -28,6 +28,11 @@ typedef struct {
   gfloat *cov;
 } ClothBoardView;
 
+void cloth_board_view_init (ClothBoardView * view,
+    const ClothPattern * pattern);
+void cloth_board_view_forget (ClothBoardView * view);
+void cloth_board_view_clear (ClothBoardView * view);
+
 typedef struct _ClothBoardFinder ClothBoardFinder;
 
 ClothBoardFinder *cloth_board_finder_new (const ClothPattern * pattern);

@@ -19,9 +19,8 @@ struct _ClothMarkedBoard
   guint *n_told;
   gdouble *place;               /* x, y, px; the sum */
   gdouble *reach;               /* how far off it may be, px; the least */
-  gboolean *contradicted;
   gdouble margin;               /* px */
-  gboolean is_contradicted;
+  gboolean is_contradicted;     /* by another marker, in this picture */
   guint *taken;                 /* of each vertex, which saddle it took */
   ClothBoardView view;
 };
@@ -47,18 +46,12 @@ cloth_marked_board_new (const ClothPattern * pattern, gdouble marker)
             (gint) i / pattern->columns))
       board->squares[board->n_markers++] = i;
   }
-  board->view.columns = pattern->columns + 1;
-  board->view.rows = pattern->rows + 1;
+  cloth_board_view_init (&board->view, pattern);
   n = (guint) (board->view.columns * board->view.rows);
   board->n_told = g_new0 (guint, n);
   board->place = g_new (gdouble, 2 * n);
   board->reach = g_new (gdouble, n);
-  board->contradicted = g_new0 (gboolean, n);
   board->taken = g_new (guint, n);
-  board->view.seen = g_new0 (guint8, n);
-  board->view.x = g_new0 (gfloat, n);
-  board->view.y = g_new0 (gfloat, n);
-  board->view.cov = g_new0 (gfloat, 3 * n);
   return board;
 }
 
@@ -72,12 +65,8 @@ cloth_marked_board_free (ClothMarkedBoard * board)
   g_free (board->n_told);
   g_free (board->place);
   g_free (board->reach);
-  g_free (board->contradicted);
   g_free (board->taken);
-  g_free (board->view.seen);
-  g_free (board->view.x);
-  g_free (board->view.y);
-  g_free (board->view.cov);
+  cloth_board_view_clear (&board->view);
   g_free (board);
 }
 
@@ -94,12 +83,11 @@ tell (ClothMarkedBoard * board, guint vertex, gdouble x, gdouble y,
     place[0] = x;
     place[1] = y;
     board->reach[vertex] = reach;
-    board->contradicted[vertex] = FALSE;
     return;
   }
   board->reach[vertex] = fmin (board->reach[vertex], reach);
   if (hypot (place[0] / n - x, place[1] / n - y) > half)
-    board->contradicted[vertex] = TRUE;
+    board->is_contradicted = TRUE;
   place[0] += x;
   place[1] += y;
 }
@@ -166,6 +154,7 @@ cloth_marked_board_set_markers (ClothMarkedBoard * board, guint n,
   memset (board->seen, 0, board->n_markers * sizeof *board->seen);
   memset (board->n_told, 0, n_vertices * sizeof *board->n_told);
   board->margin = HUGE_VAL;
+  board->is_contradicted = FALSE;
   for (guint i = 0; i < n; i++)
     if (ids[i] >= 0 && (guint) ids[i] < board->n_markers)
       board->seen[ids[i]]++;
@@ -233,12 +222,7 @@ cloth_marked_board_find (ClothMarkedBoard * board,
   const guint columns = (guint) out->columns, rows = (guint) out->rows;
 
   *view = out;
-  out->n_seen = 0;
-  memset (out->seen, CLOTH_VERTEX_UNKNOWN, columns * rows);
-  board->is_contradicted = FALSE;
-  for (guint v = 0; v < columns * rows; v++)
-    if (board->n_told[v] > 1 && board->contradicted[v])
-      board->is_contradicted = TRUE;
+  cloth_board_view_forget (out);
   if (board->is_contradicted)
     return FALSE;
   for (guint v = 0; v < columns * rows; v++) {
@@ -265,8 +249,7 @@ cloth_marked_board_find (ClothMarkedBoard * board,
   }
   if (is_taken_twice (board)) {
     board->is_contradicted = TRUE;
-    memset (out->seen, CLOTH_VERTEX_UNKNOWN, columns * rows);
-    out->n_seen = 0;
+    cloth_board_view_forget (out);
   }
   return out->n_seen > 0;
 }
