@@ -150,8 +150,9 @@ write_take (const ClothSynthesisTake * t, ClothTake * from,
       /* an outline says where a vertex may be */
       states[v] = r->seen[(gsize) f * r->n + v] == 1. ? CLOTH_VERTEX_MEASURED :
           CLOTH_VERTEX_PREDICTED;
-    if (like->held->len && !cloth_take_read_clamps (from, f, clamps, error))
-      return FALSE;
+    for (guint i = 0; i < 3 * like->held->len; i++)
+      clamps[i] =
+          (gfloat) r->scene->clamps[3 * (gsize) f * like->held->len + i];
     if (!cloth_take_writer_append (writer, r->times[f],
             t->positions + 3 * (gsize) f * r->n, states, NULL,
             like->held->len ? clamps : NULL, error))
@@ -209,6 +210,40 @@ add_cameras (ClothJsonWriter * w, const Arguments * a,
   cloth_json_writer_end_array (w);
 }
 
+/* Of each clamp whose path was not logged, in how many frames it was found, and how well it is known there. */
+static void
+add_clamps (ClothJsonWriter * w, const ClothRecording * r)
+{
+  const ClothScene *scene = r->scene;
+  const guint n_held = scene->held->len;
+
+  if (!scene->clamps_sd)
+    return;
+  cloth_json_writer_begin_array (w, "found_clamps");
+  for (guint i = 0; i < n_held; i++) {
+    gdouble sum = 0;
+    guint n = 0;
+
+    for (guint f = 0; f < r->n_frames; f++) {
+      const gdouble sd = scene->clamps_sd[(gsize) f * n_held + i];
+
+      sum += sd * sd;
+      n += sd > 0;
+    }
+    if (n == 0)
+      continue;
+    cloth_json_writer_begin_object (w, NULL);
+    cloth_json_writer_set_one_line (w, TRUE);
+    cloth_json_writer_count (w, "vertex",
+        g_array_index (scene->held, ClothHeld, i).vertex);
+    cloth_json_writer_count (w, "frames", n);
+    cloth_json_writer_number (w, "sigma_m", sqrt (sum / n));
+    cloth_json_writer_end_object (w);
+    cloth_json_writer_set_one_line (w, FALSE);
+  }
+  cloth_json_writer_end_array (w);
+}
+
 static void
 add_search (ClothJsonWriter * w, const ClothSearch * search)
 {
@@ -260,6 +295,7 @@ write_numbers (const Arguments * a, const ClothSynthesis * s,
     cloth_json_writer_begin_object (w, NULL);
     cloth_json_writer_string (w, "name", t->recording->name);
     cloth_json_writer_number (w, "gain", t->gain);
+    add_clamps (w, t->recording);
     add_gap (w, "before", &t->before);
     add_gap (w, "after", &t->after);
     if (seen)

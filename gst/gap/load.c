@@ -36,6 +36,25 @@ note_observed (ClothDiagnosis * d, const gchar * name,
   cloth_gap_result_add_note (d->result, note->str);
 }
 
+/* What a diagnosis can't tell where the clamps' paths come from the cloth itself. */
+static void
+note_paths (ClothDiagnosis * d, const ClothRecording * r)
+{
+  const ClothScene *scene = r->scene;
+  g_autofree gchar *note = NULL;
+  gdouble worst = 0.;
+
+  for (gsize k = 0; scene->clamps_sd
+      && k < (gsize) r->n_frames * scene->held->len; k++)
+    worst = fmax (worst, scene->clamps_sd[k]);
+  if (worst == 0.)
+    return;
+  note = g_strdup_printf ("Of %s the clamps' paths were not all logged; they "
+      "are taken from the cloth, to %.1f mm at worst, so nothing is said of "
+      "what clamps and measurement may do wrong.", r->name, 1e3 * worst);
+  cloth_gap_result_add_note (d->result, note);
+}
+
 /* From its positions, or from what cameras saw. */
 static ClothRecording *
 make_recording (ClothDiagnosis * d, ClothTake * take,
@@ -66,6 +85,10 @@ load_one (ClothDiagnosis * d, ClothTake * take, const ClothModel * model,
   if (!r)
     return FALSE;
   g_ptr_array_add (d->recordings, r);
+  if (!cloth_recording_refine_paths (r, model, d->study.gain,
+          &d->study.rollout, error))
+    return FALSE;
+  note_paths (d, r);
   first = cloth_diagnosis_recording (d, 0);
   if (!cloth_gap_check_same_cloth (r->name, r->scene->topology, first->name,
           first->scene->topology, error) ||

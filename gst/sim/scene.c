@@ -97,6 +97,8 @@ cloth_scene_copy (const ClothScene * scene)
   g_array_append_vals (copy->held, scene->held->data, scene->held->len);
   copy->clamps = g_memdup2 (scene->clamps,
       3 * (gsize) scene->n_frames * scene->held->len * sizeof *scene->clamps);
+  copy->clamps_sd = g_memdup2 (scene->clamps_sd,
+      (gsize) scene->n_frames * scene->held->len * sizeof *scene->clamps_sd);
   g_array_unref (copy->obstacles);
   copy->obstacles = cloth_obstacles_copy (scene->obstacles);
   g_array_append_vals (copy->seams, scene->seams->data, scene->seams->len);
@@ -115,6 +117,7 @@ cloth_scene_free (ClothScene * scene)
   g_free (scene->velocities);
   g_array_unref (scene->held);
   g_free (scene->clamps);
+  g_free (scene->clamps_sd);
   g_free (scene->times);
   g_array_unref (scene->obstacles);
   g_array_unref (scene->seams);
@@ -195,7 +198,8 @@ read_clamps (ClothScene * scene, ClothTake * take, GError ** error)
     return cloth_file_invalid (error,
         "%s: take.json says that %u vertices are held, but there is no clamps.npy "
         "with their paths: float32 of the shape [%u][%u][3], or [1][%u][3] when "
-        "the clamps stand still", cloth_take_get_folder (take),
+        "the clamps stand still; NaN where nobody logged them",
+        cloth_take_get_folder (take),
         scene->held->len, scene->n_frames, scene->held->len, scene->held->len);
   if (n * scene->n_frames > CLOTH_MAX_BUFFER / sizeof (gdouble))
     return cloth_file_invalid (error,
@@ -222,7 +226,7 @@ hang_flat (ClothScene * scene)
   for (guint i = 0; i < scene->held->len; i++) {
     const ClothHeld *held = &g_array_index (scene->held, ClothHeld, i);
 
-    if (!is_held (held, scene->times[0]))
+    if (!is_held (held, scene->times[0]) || isnan (scene->clamps[3 * i]))
       continue;
     for (guint k = 0; k < 3; k++)
       shift[k] += scene->clamps[3 * i + k] -
@@ -257,25 +261,19 @@ read_start (ClothScene * scene, ClothTake * take, GError ** error)
   for (guint i = 0; i < scene->held->len; i++) {
     const ClothHeld *held = &g_array_index (scene->held, ClothHeld, i);
 
-    if (is_held (held, scene->times[0]))
+    if (is_held (held, scene->times[0]) && !isnan (scene->clamps[3 * i]))
       memcpy (scene->positions + 3 * (gsize) held->vertex,
           scene->clamps + 3 * i, 3 * sizeof *scene->positions);
   }
   return TRUE;
 }
 
-/* @take: a take
- * @error: #ClothFileError, #GIOErrorEnum; an element that is wrong is named
- *
- * The scene that was filmed: its mesh, clamps, obstacles, gravity and times. The cloth
- * starts at rest where the first frame saw it; vertices not seen then lie between their
- * neighbours, held ones where their clamps are. When nothing was seen, the sheet hangs
- * flat from its clamps, u along x and v downwards. The scene is checked.
- *
- * Returns: (transfer full): the scene, or %NULL
- */
-ClothScene *
-cloth_scene_new_from_take (ClothTake * take, GError ** error)
+static gboolean check_all (const ClothScene * scene, gboolean open,
+    GError ** error);
+
+/* @open: whether a clamp may have no place where it holds */
+static ClothScene *
+scene_new (ClothTake * take, gboolean open, GError ** error)
 {
   const ClothTakeInfo *info = cloth_take_get_info (take);
   guint n = cloth_take_get_n_frames (take);
@@ -302,9 +300,39 @@ cloth_scene_new_from_take (ClothTake * take, GError ** error)
       return NULL;
     }
   }
-  if (!cloth_scene_check (scene, error))
+  if (!check_all (scene, open, error))
     return NULL;
   return g_steal_pointer (&scene);
+}
+
+/* @take: a take
+ * @error: #ClothFileError, #GIOErrorEnum; an element that is wrong is named
+ *
+ * The scene that was filmed: its mesh, clamps, obstacles, gravity and times. The cloth
+ * starts at rest where the first frame saw it; vertices not seen then lie between their
+ * neighbours, held ones where their clamps are. When nothing was seen, the sheet hangs
+ * flat from its clamps, u along x and v downwards. The scene is checked.
+ *
+ * Returns: (transfer full): the scene, or %NULL
+ */
+ClothScene *
+cloth_scene_new_from_take (ClothTake * take, GError ** error)
+{
+  return scene_new (take, FALSE, error);
+}
+
+/* @take: a take
+ * @error: as of cloth_scene_new_from_take ()
+ *
+ * The same of a take whose clamps' paths need not be logged: where nobody did they are NaN, and have to
+ * be found before anything is simulated.
+ *
+ * Returns: (transfer full): the scene, or %NULL
+ */
+ClothScene *
+cloth_scene_new_with_open_paths (ClothTake * take, GError ** error)
+{
+  return scene_new (take, TRUE, error);
 }
 
 /* ---- what can be simulated ---- */
@@ -481,7 +509,7 @@ check_numbers (const ClothScene * scene, GError ** error)
 }
 
 static gboolean
-check_held (const ClothScene * scene, GError ** error)
+check_held (const ClothScene * scene, gboolean open, GError ** error)
 {
   g_autoptr (GHashTable) last = g_hash_table_new (NULL, NULL);
 
@@ -509,10 +537,12 @@ check_held (const ClothScene * scene, GError ** error)
 
       if (scene->times[frame] >= held->from_s &&
           scene->times[frame] < held->until_s &&
-          !isfinite (place[0] + place[1] + place[2]))
+          !(isfinite (place[0] + place[1] + place[2]) || (open
+                  && isnan (place[0]))))
         return cloth_file_invalid (error,
-            "the clamp of vertex %u has no place in frame " "%u", held->vertex,
-            frame);
+            "the clamp of vertex %u has no place in frame %u: a simulation by "
+            "itself needs its whole path; a fit and a diagnosis find it from "
+            "what was seen of the cloth", held->vertex, frame);
     }
   }
   return TRUE;
@@ -553,17 +583,8 @@ check_obstacles (const ClothScene * scene, GError ** error)
   return TRUE;
 }
 
-/* @scene: a scene, perhaps made by hand
- * @error: #ClothFileError, naming the element and its value
- *
- * Refuses what no simulation could make sense of: faces that are degenerate, there
- * twice or inverted against a neighbour, edges of more than two faces, numbers that
- * are not finite, times that do not rise, what names vertices that are not there.
- *
- * Returns: %TRUE when there is nothing of the kind
- */
-gboolean
-cloth_scene_check (const ClothScene * scene, GError ** error)
+static gboolean
+check_all (const ClothScene * scene, gboolean open, GError ** error)
 {
   if (!cloth_topology_check (scene->topology, error))
     return FALSE;
@@ -571,7 +592,7 @@ cloth_scene_check (const ClothScene * scene, GError ** error)
     return cloth_file_invalid (error, "a mesh without faces");
   if (!check_faces (scene->topology, error) ||
       !check_edges (scene->topology, error) ||
-      !check_numbers (scene, error) || !check_held (scene, error) ||
+      !check_numbers (scene, error) || !check_held (scene, open, error) ||
       !check_obstacles (scene, error))
     return FALSE;
   for (guint i = 0; i < scene->seams->len; i++) {
@@ -584,6 +605,21 @@ cloth_scene_check (const ClothScene * scene, GError ** error)
           seam->a, seam->b, n);
   }
   return TRUE;
+}
+
+/* @scene: a scene, perhaps made by hand
+ * @error: #ClothFileError, naming the element and its value
+ *
+ * Refuses what no simulation could make sense of: faces that are degenerate, there
+ * twice or inverted against a neighbour, edges of more than two faces, numbers that
+ * are not finite, times that do not rise, what names vertices that are not there.
+ *
+ * Returns: %TRUE when there is nothing of the kind
+ */
+gboolean
+cloth_scene_check (const ClothScene * scene, GError ** error)
+{
+  return check_all (scene, FALSE, error);
 }
 
 /* Between frames through which it holds, a clamp goes along its path. */

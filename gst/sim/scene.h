@@ -21,7 +21,10 @@ typedef struct {
  * @positions: where the vertices are at the start, n_vertices · 3, metres
  * @velocities: (nullable): how fast they are then, m/s; %NULL: at rest
  * @held: (element-type ClothHeld): what clamps hold
- * @clamps: logged paths of the clamps, [n_frames][held][3], metres
+ * @clamps: paths of the clamps, [n_frames][held][3], metres
+ * @clamps_sd: (nullable): of places in @clamps that nobody logged and that were found from what was seen of
+ *   the cloth the standard deviation of a coordinate, [n_frames][held], metres; 0 of logged ones; %NULL:
+ *   all were logged
  * @n_frames: number of frames
  * @times: their times, seconds, growing
  * @fps: frames a second
@@ -38,6 +41,7 @@ typedef struct {
   gdouble *velocities;
   GArray *held;
   gdouble *clamps;
+  gdouble *clamps_sd;
   guint n_frames;
   gdouble *times;
   gdouble fps;
@@ -49,6 +53,7 @@ typedef struct {
 ClothScene *cloth_scene_new (ClothTopology * topology, gdouble fps,
     guint n_frames);
 ClothScene *cloth_scene_new_from_take (ClothTake * take, GError ** error);
+ClothScene *cloth_scene_new_with_open_paths (ClothTake * take, GError ** error);
 guint cloth_scene_hold (ClothScene * scene, guint vertex);
 gboolean cloth_scene_sew (ClothScene * scene, const ClothSeamLine * line,
     GError ** error);

@@ -21,6 +21,7 @@ static const ClothSides SIDES[2] = { CLOTH_SIDES_U, CLOTH_SIDES_V };
  * @stretches: (element-type gdouble): of each frame, along u and along v
  * @clamps: of the last frame
  * @lengths: of each clamp's path
+ * @open: frames in which nobody logged its place
  * @distances: (element-type GArray): of each clamp, how far from its vertex it was
  */
 typedef struct
@@ -31,6 +32,7 @@ typedef struct
   GArray *stretches[2];
   gfloat *clamps, *before;
   gdouble *lengths;
+  guint *open;
   GPtrArray *distances;
 } Pass;
 
@@ -142,6 +144,7 @@ look_at_clamps (Pass * pass, const ClothTakeInfo * info,
 
     if (isfinite (moved))
       pass->lengths[i] += moved;
+    pass->open[i] += isnan (pass->clamps[3 * i]);
     if (isfinite (away))
       g_array_append_val ((GArray *) pass->distances->pdata[i], away);
   }
@@ -280,7 +283,10 @@ add_clamps (GString * table, const ClothTake * take, const Pass * pass)
       g_string_append_printf (text, ", held from %.4g s", item->from_s);
     if (isfinite (item->until_s))
       g_string_append_printf (text, ", let go at %.4g s", item->until_s);
-    if (cloth_take_has_clamps (take))
+    if (pass->open[i])
+      g_string_append_printf (text, ", not logged in %u of %u frames",
+          pass->open[i], cloth_take_get_n_frames (take));
+    else if (cloth_take_has_clamps (take))
       g_string_append_printf (text, ", path %.3f m long", pass->lengths[i]);
     if (away->len > 0)
       g_string_append_printf (text, ", %.1f mm from its vertex in the median",
@@ -314,10 +320,12 @@ cloth_take_summarise (ClothTake * take, GError ** error)
       g_ptr_array_new_with_free_func (free_distances);
   g_autofree gfloat *clamps = g_new0 (gfloat, 6 * n_held);
   g_autofree gdouble *lengths = g_new0 (gdouble, n_held);
+  g_autofree guint *open = g_new0 (guint, n_held);
   Pass pass = {
     .lowest = {INFINITY, INFINITY, INFINITY},
     .highest = {-INFINITY, -INFINITY, -INFINITY},
-    .stretches = {along_u, along_v},.distances = distances,.lengths = lengths,
+    .stretches = {along_u, along_v},.distances = distances,.lengths =
+        lengths,.open = open,
     .clamps = clamps,.before = clamps + 3 * n_held
   };
 

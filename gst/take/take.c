@@ -549,10 +549,10 @@ cloth_take_read_covariances (ClothTake * take, guint frame,
 /* @take: a take that has clamps
  * @frame: which frame
  * @clamps: (out caller-allocates): room for 3 numbers a held vertex, metres; of clamps that
- *   stand still the only row
+ *   stand still the only row. NaN where nobody logged a clamp's place
  * @error: #ClothFileError, #GIOErrorEnum
  *
- * Returns: %TRUE when they were read and are finite for as long as they hold
+ * Returns: %TRUE when they were read and are places, or NaN, for as long as they hold
  */
 gboolean
 cloth_take_read_clamps (ClothTake * take, guint frame, gfloat * clamps,
@@ -570,11 +570,15 @@ cloth_take_read_clamps (ClothTake * take, guint frame, gfloat * clamps,
 
     if (time < held->from_s || time >= held->until_s)
       continue;
+    if (isnan (clamps[3 * i]) && isnan (clamps[3 * i + 1])
+        && isnan (clamps[3 * i + 2]))
+      continue;
     for (guint k = 0; k < 3; k++) {
       if (!isfinite (clamps[3 * i + k]))
         return cloth_file_invalid (error,
-            "clamps.npy, frame %u: the clamp of vertex %u has no place", frame,
-            held->vertex);
+            "clamps.npy, frame %u: the clamp of vertex %u is at %g along %c; "
+            "where its place was not logged all three are NaN", frame,
+            held->vertex, clamps[3 * i + k], "xyz"[k]);
     }
   }
   return TRUE;

@@ -530,7 +530,8 @@ static const gchar *const frame_breaks[] = {
   "c='t/covariance.npy'; a=np.load(c); a[2,3,1]=np.inf; np.save(c,a)",
   "a=np.load('t/covariance.npy'); a[2,3,5]=-1; np.save('t/covariance.npy',a)",
   "a=np.load('t/states.npy'); a[2,3]=5; np.save('t/states.npy',a)",
-  "a=np.load('t/clamps.npy'); a[2]=np.nan; np.save('t/clamps.npy',a)",
+  "a=np.load('t/clamps.npy'); a[2]=np.inf; np.save('t/clamps.npy',a)",
+  "a=np.load('t/clamps.npy'); a[2,0,1]=np.nan; np.save('t/clamps.npy',a)",
 };
 
 static const gchar *const frame_files[] = {

@@ -423,6 +423,10 @@ why_not (const ClothEffect * effect, const ClothModel * model,
         "clothmetapay ! filesink; docs/formats.md).";
   if (effect->side == CLOTH_EFFECT_CLAMP && !r->scene->held->len)
     return "Nothing is held in this take.";
+  if (r->scene->clamps_sd && (effect->side == CLOTH_EFFECT_CLAMP
+          || effect->side == CLOTH_EFFECT_MEASUREMENT))
+    return "The paths of clamps were not logged, and are taken from the cloth: "
+        "give them as clamps.npy.";
   if (needs_floor (effect, r) && !(flags & CLOTH_CANDIDATES_TRIALS))
     return "There is no obstacle in this take.";
   if (effect->test == CLOTH_EFFECT_TEST_NONE)

@@ -6,5 +6,6 @@
 
 #include "gst/fit/nudge/observed.h"
 #include "gst/fit/nudge/observer.h"
+#include "gst/fit/nudge/paths.h"
 #include "gst/fit/nudge/rollout.h"
 #include "gst/fit/nudge/windows.h"

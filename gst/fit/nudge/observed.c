@@ -311,9 +311,9 @@ guess (Maker * m, GError ** error)
   return TRUE;
 }
 
-/* Without places that no cloth can be at. */
-static void
-finish (Maker * m)
+/* Without places that no cloth can be at, and with the paths of all clamps. */
+static gboolean
+finish (Maker * m, GError ** error)
 {
   ClothRecording *r = m->r;
 
@@ -324,7 +324,10 @@ finish (Maker * m)
   for (gsize i = 0; m->start && i < 3 * (gsize) r->n; i++)
     if (isfinite (m->start[i]))
       r->y[i] = m->start[i];
+  if (!cloth_recording_find_paths (r, error))
+    return FALSE;
   cloth_recording_differentiate (r);
+  return TRUE;
 }
 
 /* Adds what an outline tells of a frame. */
@@ -458,7 +461,8 @@ turn (Maker * m, const ClothModel * model, gdouble gain,
     sum += put_on_ray (m->r, lone, x + 3 * ((gsize) lone->frame * r->n +
             lone->vertex));
   }
-  finish (m);
+  if (!finish (m, error))
+    return NAN;
   if (m->outline)
     draw_to_outlines (m, x);
   return sqrt (sum / MAX (m->lone->len, 1));
@@ -505,7 +509,7 @@ recording_new (ClothTake * take, GError ** error)
         MOST_PLACES);
     return NULL;
   }
-  r->scene = cloth_scene_new_from_take (take, error);
+  r->scene = cloth_scene_new_with_open_paths (take, error);
   if (!r->scene)
     return NULL;
   r->times = g_new (gdouble, r->n_frames);
@@ -547,9 +551,8 @@ cloth_recording_new_observed (ClothTake * take,
       || !maker_init (&m, take, r, observations, options->threads, counts,
           error)
       || !find_floor (&m, error) || !find_places (&m, error)
-      || !guess (&m, error))
+      || !guess (&m, error) || !finish (&m, error))
     return NULL;
-  finish (&m);
   if (!cloth_recording_check (r, TRUE, error))
     return NULL;
   x = g_new (gdouble, 3 * (gsize) r->n * r->n_frames);

@@ -226,6 +226,8 @@ start_batch (Run * run, Batch * batch, const gdouble * gains, GError ** error)
     batch->dampings[i] = 2. * CLOTH_ROLLOUT_ZETA * sqrt (batch->gains[i]);
     /* it moves from the first frame as it was seen to move */
     cloth_recording_find_start (r, start, speeds);
+    if (r->scene != run->targets[0]->scene)
+      cloth_sim_set_clamps (batch->sim, i, r->scene->clamps);
     cloth_sim_set_state (batch->sim, i, start, speeds, r->times[0]);
   }
   return TRUE;
@@ -421,8 +423,8 @@ repeat (const ClothRecording * recording, guint n)
 }
 
 /* @targets: (array length=n_models): what draws each model, and where it starts. They are of
- *   one scene, that of the first, with the same times; positions, velocities and what was
- *   seen are their own
+ *   one scene, that of the first, with the same times; positions, velocities, what was
+ *   seen and the paths of the clamps are their own
  * @models: (array length=n_models): the models
  * @gains: (array length=n_models): of each model's observer, 1/s²
  * @n_models: how many, at least 1

@@ -102,23 +102,26 @@ spread (Bridge * b)
   }
 }
 
-/* Vertices that were not seen while they were held are where their clamps were. */
+/* Vertices that were not seen while they were held are where their clamps were, if that is known. */
 static gboolean
 find_known (Bridge * b, guint frame, guint vertex)
 {
   const ClothRecording *r = b->recording;
   const ClothScene *scene = r->scene;
   const gint clamp = b->clamp[vertex];
+  const ClothHeld *held;
+  const gdouble *path;
 
   if (r->seen[(gsize) frame * r->n + vertex] > 0.)
     return TRUE;
-  if (clamp < 0 || r->times[frame] < g_array_index (scene->held, ClothHeld,
-          clamp).from_s || r->times[frame] >= g_array_index (scene->held,
-          ClothHeld, clamp).until_s)
+  if (clamp < 0)
     return FALSE;
-  memcpy (place (b, frame, vertex), scene->clamps +
-      3 * ((gsize) frame * scene->held->len + (guint) clamp),
-      3 * sizeof (gdouble));
+  held = &g_array_index (scene->held, ClothHeld, clamp);
+  path = scene->clamps + 3 * ((gsize) frame * scene->held->len + (guint) clamp);
+  if (r->times[frame] < held->from_s || r->times[frame] >= held->until_s
+      || isnan (path[0]))
+    return FALSE;
+  memcpy (place (b, frame, vertex), path, 3 * sizeof *path);
   return TRUE;
 }
 

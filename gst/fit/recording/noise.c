@@ -94,6 +94,25 @@ cloth_recording_noise_set (ClothRecordingNoise * noise, gsize at,
   return TRUE;
 }
 
+/* @noise: noise
+ * @at: which place, one that is set
+ * @information: (inout): what its inverse covariance is added to, 1/m²
+ */
+void
+cloth_recording_noise_add (const ClothRecordingNoise * noise, gsize at,
+    gdouble information[6])
+{
+  const gdouble *s = noise->white + 6 * at;
+
+  for (guint k = 0; k < 3; k++) {
+    const guint a = (k + 1) % 3, b = (k + 2) % 3;
+
+    /* the root's square: rows a and b of the off-diagonal element k */
+    information[k] += s[k] * s[k] + s[3 + a] * s[3 + a] + s[3 + b] * s[3 + b];
+    information[3 + k] += s[3 + k] * (s[a] + s[b]) + s[3 + a] * s[3 + b];
+  }
+}
+
 /* Eigenvalues of the root of an information, and its vectors. */
 static void
 take_apart (const ClothRecordingNoise * noise, gsize at, gdouble roots[3],

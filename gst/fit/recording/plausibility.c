@@ -195,7 +195,9 @@ find_start (const ClothRecording * r, guint held, gdouble scale)
     };
 
     if (r->times[frame] < h->from_s || r->times[frame] >= h->until_s
-        || !is_seen (r, frame, h->vertex))
+        || !is_seen (r, frame, h->vertex) || (r->scene->clamps_sd
+            && r->scene->clamps_sd[(gsize) frame * r->scene->held->len +
+                held] > 0.))
       continue;
     nearest = fmin (nearest, distance (at, place (r, frame, h->vertex)));
     seen++;

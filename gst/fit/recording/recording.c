@@ -152,7 +152,7 @@ cloth_recording_new (ClothTake * take, GError ** error)
         CLOTH_RECORDING_WINDOW);
     return NULL;
   }
-  r->scene = cloth_scene_new_from_take (take, error);
+  r->scene = cloth_scene_new_with_open_paths (take, error);
   if (!r->scene)
     return NULL;
   all = (gsize) r->n_frames * r->n;
@@ -171,6 +171,8 @@ cloth_recording_new (ClothTake * take, GError ** error)
     return NULL;
   cloth_recording_remove_torn (r);
   cloth_recording_interpolate (r);
+  if (!cloth_recording_find_paths (r, error))
+    return NULL;
   cloth_recording_differentiate (r);
   return g_steal_pointer (&r);
 }

@@ -9,6 +9,7 @@
 #include "gst/fit/recording/noise.h"
 #include "gst/fit/recording/observations.h"
 #include "gst/fit/recording/outliers.h"
+#include "gst/fit/recording/paths.h"
 #include "gst/fit/recording/plausibility.h"
 #include "gst/fit/recording/rays.h"
 #include "gst/fit/recording/recording-type.h"

@@ -294,7 +294,10 @@ look (ClothSynthesis * s, const ClothSynthesisInput * inputs,
       cloth_recording_free (take->recording);
       take->recording = record (&inputs[i], model, o, &take->counts, error);
     }
-    if (!take->recording || !straighten (take->recording, model, o, error))
+    if (!take->recording
+        || !cloth_recording_refine_paths (take->recording, model, o->gain,
+            &o->rollout, error)
+        || !straighten (take->recording, model, o, error))
       return FALSE;
   }
   return TRUE;

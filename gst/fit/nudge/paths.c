@@ -1,0 +1,569 @@
+/* Paths of clamps that nobody logged, as the cloth that hangs from them has them.
+ *
+ * Model: a path is off that of cloth_recording_find_paths () by δ(t) = Σ_k c_k B((t − t_k)/Δ), cubic
+ *   B-splines of the knots t_k, c_k ~ N(0, s_k²), s_k as well as the path is known about its knot. The
+ *   simulation that springs of the gain g draw to what was seen is off it, about the clamp, by
+ *   e + J c + N(0, v).
+ * Assumption: vertices about a clamp are off together, and as long as springs remember, so those of the
+ *   frames between two knots count as one; what springs did 3/(ζ√g) ago is forgotten. Where a clamp takes the cloth is linear in small c.
+ * Formula: c = (JᵀJ/v + diag s_k⁻²)⁻¹ Jᵀe/v, v the mean square that is left (Gauss–Newton). Knots that
+ *   far apart have nothing to do with each other, so one simulation moves many at a time: every sixth.
+ * Reference: Hasler, Asbach, Rosenhahn, Ohm and Seidel, Physically based tracking of cloth, 2006,
+ *   section 5 (places of constrained points as unknowns); Curtis, Powell and Reid 1974 (columns of a banded
+ *   Jacobian together).
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "gst/fit/nudge/paths.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gst/fit/error.h"
+#include "gst/fit/recording/recording.h"
+#include "gst/math/band.h"
+
+/* The vertices about a clamp whose places tell of it. */
+#define MOST_ABOUT 64
+/* Clamps whose paths are found at a time; with more, those of the interpolation stand. */
+#define MOST_CLAMPS 4
+/* By how much a knot is moved for a derivative, m. */
+#define STEP 2e-3
+/* Linearisations, turns of each to find the variance that it leaves, and the change of a path that is
+ * none, m. */
+#define MOST_PASSES 4
+#define MOST_TURNS 20
+#define SETTLED 1e-4
+/* A path is not known better, m. */
+#define LOGGED 1e-4
+/* Time constants after which springs have forgotten, and how far a B-spline reaches to a side, knots. */
+#define FORGOTTEN 3.
+#define REACH 2.
+/* Frames between two knots, at least. */
+#define FRAMES 3.
+
+typedef struct
+{
+  ClothRecording *r;
+  guint n_paths;
+  guint *paths;                 /* of all held ones those that are looked for */
+  guint n_about;
+  guint32 *about;               /* vertices about each, [n_paths][n_about] */
+  guint n_knots, period;        /* every period-th knot is moved at a time */
+  gdouble knot_s;
+  guint n_models;               /* simulations: as it is, then 3·n_paths·period */
+  gfloat *places;               /* of the vertices about, [n_frames][n_models][n_paths·n_about][3] */
+    gdouble (*slopes)[3];       /* of a vertex, by model */
+  /* unknowns: [n_knots][n_paths][3], matrices banded */
+  gdouble *data, *right;        /* JᵀJ and Jᵀe */
+  gdouble *precisions;          /* of the priors */
+  gdouble *normal;              /* factor of the normal equations */
+  gdouble *change;              /* c */
+} Paths;
+
+static void
+paths_clear (Paths * p)
+{
+  g_free (p->paths);
+  g_free (p->about);
+  g_free (p->places);
+  g_free (p->slopes);
+  g_free (p->data);
+  g_free (p->right);
+  g_free (p->precisions);
+  g_free (p->normal);
+  g_free (p->change);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Paths, paths_clear);
+
+static guint
+unknowns_of_knot (const Paths * p)
+{
+  return 3 * p->n_paths;
+}
+
+static guint
+bandwidth (const Paths * p)
+{
+  return p->period * unknowns_of_knot (p) - 1;
+}
+
+static guint
+n_unknowns (const Paths * p)
+{
+  return p->n_knots * unknowns_of_knot (p);
+}
+
+static gsize
+n_band (const Paths * p)
+{
+  return (gsize) n_unknowns (p) * (bandwidth (p) + 1);
+}
+
+/* The cubic B-spline of knots at distance 1. */
+static gdouble
+spline (gdouble x)
+{
+  const gdouble a = fabs (x);
+
+  return a >= 2. ? 0. : a >= 1. ? (2. - a) * (2. - a) * (2. - a) / 6. :
+      2. / 3. - a * a + a * a * a / 2.;
+}
+
+/* The first knot reaches as far into the recording as the last: not at all at its ends. */
+static gdouble
+knot_time (const Paths * p, guint knot)
+{
+  return p->r->times[0] + (knot - 1.) * p->knot_s;
+}
+
+static gdouble
+weight_at (const Paths * p, guint knot, guint frame)
+{
+  return spline ((p->r->times[frame] - knot_time (p, knot)) / p->knot_s);
+}
+
+typedef struct
+{
+  gdouble square;
+  guint32 vertex;
+} Near;
+
+static gint
+compare_near (gconstpointer a, gconstpointer b)
+{
+  const Near *x = a, *y = b;
+
+  return x->square < y->square ? -1 : x->square > y->square ? 1 :
+      x->vertex < y->vertex ? -1 : x->vertex > y->vertex;
+}
+
+/* The vertices nearest to what a clamp holds on the flat cloth, without those that are held. */
+static void
+find_about (Paths * p, guint path)
+{
+  const ClothScene *scene = p->r->scene;
+  const gfloat *uv = scene->topology->uv;
+  const guint vertex = g_array_index (scene->held, ClothHeld,
+      p->paths[path]).vertex;
+  g_autofree Near *near = g_new (Near, p->r->n);
+
+  for (guint v = 0; v < p->r->n; v++)
+    near[v] = (Near) {
+    pow (uv[2 * v] - uv[2 * vertex], 2.) +
+        pow (uv[2 * v + 1] - uv[2 * vertex + 1], 2.), v};
+  for (guint i = 0; i < scene->held->len; i++)
+    near[g_array_index (scene->held, ClothHeld, i).vertex].square = INFINITY;
+  qsort (near, p->r->n, sizeof *near, compare_near);
+  for (guint i = 0; i < p->n_about; i++)
+    p->about[path * p->n_about + i] = near[i].vertex;
+}
+
+/* FALSE when there is nothing to look for. */
+static gboolean
+paths_init (Paths * p, ClothRecording * r, gdouble gain)
+{
+  const ClothScene *scene = r->scene;
+  const gdouble forgets_s = 1. / (CLOTH_ROLLOUT_ZETA * sqrt (gain));
+  const gdouble span = r->times[r->n_frames - 1] - r->times[0];
+
+  *p = (Paths) {
+    r,.n_about = MIN (MOST_ABOUT, r->n - scene->held->len)
+  };
+  p->paths = g_new (guint, scene->held->len + 1);
+  for (guint i = 0; i < scene->held->len && scene->clamps_sd; i++)
+    for (guint f = 0; f < r->n_frames; f++)
+      if (scene->clamps_sd[(gsize) f * scene->held->len + i] > 0.) {
+        p->paths[p->n_paths++] = i;
+        break;
+      }
+  if (p->n_paths == 0 || p->n_paths > MOST_CLAMPS || p->n_about == 0)
+    return FALSE;
+  p->about = g_new (guint32, p->n_paths * p->n_about);
+  for (guint i = 0; i < p->n_paths; i++)
+    find_about (p, i);
+  p->knot_s = fmax (2. * forgets_s, FRAMES * span / (r->n_frames - 1));
+  p->period = (guint) ceil (2. * REACH + FORGOTTEN * forgets_s / p->knot_s);
+  p->n_knots = (guint) ceil (span / p->knot_s) + 3;
+  p->n_models = 1 + unknowns_of_knot (p) * p->period;
+  p->places = g_new (gfloat, 3 * (gsize) r->n_frames * p->n_models *
+      p->n_paths * p->n_about);
+  p->slopes = g_malloc (p->n_models * sizeof *p->slopes);
+  p->data = g_new (gdouble, n_band (p));
+  p->normal = g_new (gdouble, n_band (p));
+  p->right = g_new (gdouble, n_unknowns (p));
+  p->precisions = g_new (gdouble, n_unknowns (p));
+  p->change = g_new (gdouble, n_unknowns (p));
+  return TRUE;
+}
+
+static gfloat *
+place (const Paths * p, guint frame, guint model, guint path, guint i)
+{
+  return p->places + 3 * ((((gsize) frame * p->n_models +
+              model) * p->n_paths + path) * p->n_about + i);
+}
+
+static void
+keep (gpointer data, guint model, guint frame, const gdouble * positions)
+{
+  const Paths *p = data;
+
+  for (guint path = 0; path < p->n_paths; path++)
+    for (guint i = 0; i < p->n_about; i++) {
+      const gdouble *from = positions + 3 * p->about[path * p->n_about + i];
+      gfloat *to = place (p, frame, model, path, i);
+
+      for (guint c = 0; c < 3; c++)
+        to[c] = (gfloat) from[c];
+    }
+}
+
+/* Adds a share of B-splines to a path: of every knot @first, @first + @every, … @change[knot · @stride]. */
+static void
+add_splines (const Paths * p, gdouble * clamps, guint path, guint coordinate,
+    guint first, guint every, const gdouble * change, guint stride)
+{
+  const guint n_held = p->r->scene->held->len;
+
+  for (guint knot = first; knot < p->n_knots; knot += every)
+    for (guint f = 0; f < p->r->n_frames; f++)
+      clamps[3 * ((gsize) f * n_held + p->paths[path]) + coordinate] +=
+          weight_at (p, knot, f) * (change ? change[knot * stride] : STEP);
+}
+
+/* Which knot a model has moved that may show in a frame; -1: none yet. */
+static gint
+find_moved (const Paths * p, guint phase, guint frame)
+{
+  const gdouble since = (p->r->times[frame] - p->r->times[0]) / p->knot_s + 1.;
+  gint last = (gint) floor (since + REACH);
+
+  last = MIN (last, (gint) p->n_knots - 1);
+  return last < (gint) phase ? -1 : last - (last - (gint) phase) % (gint)
+      p->period;
+}
+
+/* The simulation as it is, and with each group of knots moved; FALSE with @error set, or without when it
+ * diverges. */
+static gboolean
+simulate (Paths * p, const ClothModel * model, gdouble gain, guint n_models,
+    const ClothRolloutOptions * options, gboolean * sound, GError ** error)
+{
+  ClothRolloutOptions quietly = *options;
+  g_autofree ClothRecording *copies = g_new (ClothRecording, n_models);
+  g_autofree ClothScene *scenes = g_new (ClothScene, n_models);
+  g_autofree const ClothRecording **targets =
+      g_new (const ClothRecording *, n_models);
+  g_autofree const ClothModel **models = g_new (const ClothModel *, n_models);
+  g_autofree gdouble *gains = g_new (gdouble, n_models);
+  const gsize size = 3 * (gsize) p->r->n_frames * p->r->scene->held->len;
+  gboolean good;
+
+  quietly.failed = NULL;
+  for (guint m = 0; m < n_models; m++) {
+    copies[m] = *p->r;
+    scenes[m] = *p->r->scene;
+    if (m > 0) {
+      const guint unknown = (m - 1) / p->period, phase = (m - 1) % p->period;
+
+      scenes[m].clamps = g_memdup2 (p->r->scene->clamps,
+          size * sizeof (gdouble));
+      add_splines (p, scenes[m].clamps, unknown / 3, unknown % 3, phase,
+          p->period, NULL, 0);
+      copies[m].scene = &scenes[m];
+    }
+    targets[m] = &copies[m];
+    models[m] = model;
+    gains[m] = gain;
+  }
+  good = cloth_rollout_nudged (targets, models, gains, n_models, &quietly,
+      keep, p, sound, error);
+  for (guint m = 1; m < n_models; m++)
+    g_free (scenes[m].clamps);
+  return good && sound[0];
+}
+
+/* How far a vertex about a clamp is seen off the simulation; FALSE where it was not seen. */
+static gboolean
+find_off (const Paths * p, guint frame, guint path, guint i, gdouble off[3])
+{
+  const gsize at = (gsize) frame * p->r->n + p->about[path * p->n_about + i];
+  const gfloat *x = place (p, frame, 0, path, i);
+
+  if (p->r->seen[at] < 1.)
+    return FALSE;
+  for (guint c = 0; c < 3; c++)
+    off[c] = p->r->y[3 * at + c] - x[c];
+  cloth_recording_cut_blind (p->r, at, off);
+  return TRUE;
+}
+
+/* Mean square by which vertices about clamps are seen off the simulation, m², and of how many; 0 when
+ * none is seen. */
+static gdouble
+find_square (const Paths * p, gsize * n)
+{
+  gdouble sum = 0.;
+
+  *n = 0;
+  for (guint f = 1; f < p->r->n_frames; f++)
+    for (guint path = 0; path < p->n_paths; path++)
+      for (guint i = 0; i < p->n_about; i++) {
+        gdouble off[3];
+
+        if (!find_off (p, f, path, i, off))
+          continue;
+        sum += off[0] * off[0] + off[1] * off[1] + off[2] * off[2];
+        ++*n;
+      }
+  return *n ? sum / *n : 0.;
+}
+
+/* How well the path is known about a knot. */
+static gdouble
+find_sd (const Paths * p, guint knot, guint path)
+{
+  gdouble sd = INFINITY;
+
+  for (guint f = 0; f < p->r->n_frames; f++)
+    if (weight_at (p, knot, f) > 0.)
+      sd = fmin (sd, p->r->scene->clamps_sd[(gsize) f *
+              p->r->scene->held->len + p->paths[path]]);
+  return isfinite (sd) ? fmax (sd, LOGGED) : LOGGED;
+}
+
+/* Which unknown each model but the first shows in a frame, or -1. */
+static void
+list_unknowns (const Paths * p, guint frame, const gboolean * sound,
+    gint * unknowns)
+{
+  for (guint m = 1; m < p->n_models; m++) {
+    const guint unknown = (m - 1) / p->period;
+    const gint knot = find_moved (p, (m - 1) % p->period, frame);
+
+    unknowns[m] = knot < 0 || !sound[m] ? -1 :
+        knot * (gint) unknowns_of_knot (p) + (gint) unknown;
+  }
+}
+
+/* Adds what one vertex tells: Jᵀe and JᵀJ. */
+static void
+add_vertex (Paths * p, guint frame, guint path, guint i, const gint * unknowns,
+    const gdouble off[3])
+{
+  const gsize at = (gsize) frame * p->r->n + p->about[path * p->n_about + i];
+  const gfloat *x = place (p, frame, 0, path, i);
+  gdouble (*slopes)[3] = p->slopes;
+
+  for (guint m = 1; m < p->n_models; m++) {
+    const gfloat *moved = place (p, frame, m, path, i);
+
+    for (guint c = 0; c < 3; c++)
+      slopes[m][c] = ((gdouble) moved[c] - x[c]) / STEP;
+    cloth_recording_cut_blind (p->r, at, slopes[m]);
+  }
+  for (guint m = 1; m < p->n_models; m++) {
+    if (unknowns[m] < 0)
+      continue;
+    for (guint c = 0; c < 3; c++)
+      p->right[unknowns[m]] += slopes[m][c] * off[c];
+    for (guint o = 1; o < p->n_models; o++) {
+      gdouble product = 0.;
+
+      if (unknowns[o] < 0 || unknowns[o] > unknowns[m])
+        continue;
+      for (guint c = 0; c < 3; c++)
+        product += slopes[m][c] * slopes[o][c];
+      CLOTH_BAND (p->data, bandwidth (p), unknowns[m], unknowns[o]) += product;
+    }
+  }
+}
+
+/* What all that was seen tells. */
+static void
+add_all (Paths * p, const gboolean * sound)
+{
+  g_autofree gint *unknowns = g_new (gint, p->n_models);
+
+  memset (p->data, 0, n_band (p) * sizeof *p->data);
+  memset (p->right, 0, n_unknowns (p) * sizeof *p->right);
+  for (guint f = 1; f < p->r->n_frames; f++) {
+    list_unknowns (p, f, sound, unknowns);
+    for (guint path = 0; path < p->n_paths; path++)
+      for (guint i = 0; i < p->n_about; i++) {
+        gdouble off[3];
+
+        if (find_off (p, f, path, i, off))
+          add_vertex (p, f, path, i, unknowns, off);
+      }
+  }
+}
+
+/* c for the variance v of what is left; FALSE when nothing tells of it. */
+static gboolean
+solve_for (Paths * p, gdouble square, gdouble share)
+{
+  const guint all = n_unknowns (p);
+
+  for (gsize k = 0; k < n_band (p); k++)
+    p->normal[k] = share / square * p->data[k];
+  for (guint k = 0; k < all; k++) {
+    CLOTH_BAND (p->normal, bandwidth (p), k, k) += p->precisions[k];
+    p->change[k] = share / square * p->right[k];
+  }
+  if (!cloth_band_factor (all, bandwidth (p), p->normal))
+    return FALSE;
+  cloth_band_solve (all, bandwidth (p), p->normal, 1, p->change);
+  return TRUE;
+}
+
+/* 2 cᵀJᵀe − cᵀJᵀJc: by how much c lowers the sum of squares. */
+static gdouble
+find_gain (const Paths * p)
+{
+  const guint all = n_unknowns (p), width = bandwidth (p);
+  gdouble sum = 0.;
+
+  for (guint i = 0; i < all; i++) {
+    sum += 2. * p->change[i] * p->right[i];
+    for (guint j = i > width ? i - width : 0; j <= i; j++)
+      sum -= (j < i ? 2. : 1.) * p->change[i] * p->change[j] *
+          CLOTH_BAND (p->data, width, i, j);
+  }
+  return sum;
+}
+
+/* The change of all unknowns, with the variance that it leaves itself: a path that is far off is no noise.
+ * @square is the mean square of @n vertices. FALSE when nothing tells of it. */
+static gboolean
+solve (Paths * p, gdouble square, gsize n, const gboolean * sound)
+{
+  const ClothRecording *r = p->r;
+  const gdouble share = 3. * (r->times[r->n_frames - 1] - r->times[0]) /
+      ((r->n_frames - 1) * p->knot_s * p->n_about);
+  const gdouble least = 3. * fmax (r->sigma * r->sigma, LOGGED * LOGGED);
+  gdouble left = square;
+
+  add_all (p, sound);
+  for (guint k = 0; k < n_unknowns (p); k++) {
+    const gdouble sd = find_sd (p, k / unknowns_of_knot (p),
+        k % unknowns_of_knot (p) / 3);
+
+    p->precisions[k] = 1. / (sd * sd);
+  }
+  for (guint turn = 0; turn < MOST_TURNS; turn++) {
+    const gdouble before = left;
+
+    if (!solve_for (p, left, share))
+      return FALSE;
+    left = fmax (square - find_gain (p) / n, least);
+    if (fabs (left - before) < 0.01 * before)
+      break;
+  }
+  return TRUE;
+}
+
+/* Moves the paths. Returns how far, RMS, m. */
+static gdouble
+move (Paths * p)
+{
+  ClothScene *scene = p->r->scene;
+  const gsize size = 3 * (gsize) p->r->n_frames * scene->held->len;
+  g_autofree gdouble *before = g_memdup2 (scene->clamps,
+      size * sizeof (gdouble));
+  gdouble sum = 0.;
+
+  for (guint u = 0; u < unknowns_of_knot (p); u++)
+    add_splines (p, scene->clamps, u / 3, u % 3, 0, 1, p->change + u,
+        unknowns_of_knot (p));
+  for (gsize k = 0; k < size; k++) {
+    /* what was logged stays */
+    if (scene->clamps_sd[k / 3] == 0.)
+      scene->clamps[k] = before[k];
+    sum += pow (scene->clamps[k] - before[k], 2.);
+  }
+  return sqrt (sum / (p->r->n_frames * p->n_paths));
+}
+
+/* How well the paths are known now: the B-splines' variances, as if they were apart. */
+static void
+find_deviations (Paths * p)
+{
+  const guint each = unknowns_of_knot (p), all = p->n_knots * each;
+  const guint n_held = p->r->scene->held->len;
+  g_autofree gdouble *work = g_new (gdouble, (gsize) all * (bandwidth (p) + 1));
+  g_autofree gdouble *variances = g_new (gdouble, all);
+
+  cloth_band_inverse_diagonal (all, bandwidth (p), p->normal, work, variances);
+  for (guint f = 0; f < p->r->n_frames; f++)
+    for (guint path = 0; path < p->n_paths; path++) {
+      gdouble *sd = &p->r->scene->clamps_sd[(gsize) f * n_held +
+          p->paths[path]];
+      gdouble sum = 0.;
+
+      for (guint k = 0; k < all; k++)
+        if (k % each / 3 == path)
+          sum += pow (weight_at (p, k / each, f), 2.) * variances[k] / 3.;
+      if (*sd > 0.)
+        *sd = fmax (sqrt (sum), LOGGED);
+    }
+}
+
+/* @recording: a recording
+ * @model: what is known of the cloth
+ * @gain: of the springs that draw it to what was seen, 1/s²
+ * @options: how to simulate
+ * @error: #ClothSimError, or #ClothFitError when it was stopped
+ *
+ * Moves the paths of clamps that nobody logged to where the simulated cloth about them is nearest to what was
+ * seen. A simulation that diverges moves none: whoever uses the recording is told.
+ *
+ * Returns: %FALSE with an error
+ */
+gboolean
+cloth_recording_refine_paths (ClothRecording * recording,
+    const ClothModel * model, gdouble gain,
+    const ClothRolloutOptions * options, GError ** error)
+{
+  const gsize size = 3 * (gsize) recording->n_frames *
+      recording->scene->held->len * sizeof (gdouble);
+  g_auto (Paths) p = { NULL };
+  g_autofree gboolean *sound = NULL;
+  g_autofree gdouble *best = NULL;
+  gdouble least = INFINITY, moved = INFINITY;
+  gboolean solved = FALSE;
+  gsize n;
+  GError *stopped = NULL;
+
+  if (!paths_init (&p, recording, gain))
+    return TRUE;
+  sound = g_new (gboolean, p.n_models);
+  best = g_memdup2 (recording->scene->clamps, size);
+  for (guint pass = 0; pass <= MOST_PASSES; pass++) {
+    const gboolean is_last = pass == MOST_PASSES || moved < SETTLED;
+    gdouble square;
+
+    if (!simulate (&p, model, gain, is_last ? 1 : p.n_models, options, sound,
+            &stopped))
+      break;
+    square = find_square (&p, &n);
+    if (!(square > 0.) || !(square < least))
+      break;
+    least = square;
+    memcpy (best, recording->scene->clamps, size);
+    if (is_last)
+      break;
+    solved = solve (&p, square, n, sound);
+    if (!solved)
+      break;
+    moved = move (&p);
+  }
+  memcpy (recording->scene->clamps, best, size);
+  if (solved)
+    find_deviations (&p);
+  cloth_recording_place_held (recording);
+  if (stopped)
+    g_propagate_error (error, stopped);
+  return !stopped;
+}
