@@ -23,47 +23,64 @@ PARAMETERS = [
 ]
 
 
-def link(columns, rows, flat, p):
-    """Pairs of vertices, how long they are and how stiff."""
-    index = numpy.arange(columns * rows).reshape(rows, columns)
-    a, b, k = [], [], []
+def both(rows, columns):
+    """Of each kind of springs the vertices at their two ends, as parts of the grid."""
     for x, y, name in ((1, 0, 'tension'), (0, 1, 'tension'), (1, 1, 'diagonal'),
                        (-1, 1, 'diagonal')):
-        first = index[:rows - y, max(0, -x):columns - max(0, x)]
-        a.append(first.ravel())
-        b.append(index[y:, max(0, x):columns + min(0, x)].ravel())
-        k.append(numpy.full(first.size, float(p[name])))
-    a, b, k = (numpy.concatenate(part) for part in (a, b, k))
-    return a, b, numpy.linalg.norm(flat[a] - flat[b], axis=1), k
+        yield ((slice(0, rows - y), slice(max(0, -x), columns - max(0, x))),
+               (slice(y, rows), slice(max(0, x), columns + min(0, x))), name)
 
 
-def find_areas(x, columns, rows):
-    """Of each vertex, along its normal."""
-    grid = x.reshape(rows, columns, 3)
-    cross = numpy.cross(grid[1:, 1:] - grid[:-1, :-1], grid[1:, :-1] - grid[:-1, 1:]) / 8.
-    area = numpy.zeros_like(grid)
-    for part in (area[1:, 1:], area[:-1, 1:], area[1:, :-1], area[:-1, :-1]):
-        part += cross
-    return area.reshape(-1, 3)
+class Sheet:
+    """Forces of a grid, [3][rows][columns], in few calls of numpy."""
 
+    def __init__(self, flat, p):
+        shape = flat.shape[1:]
+        index = numpy.arange(shape[0] * shape[1]).reshape(shape)
+        self.ends = list(both(*shape))
+        self.a, self.b = (numpy.concatenate([index[end[k]].ravel() for end in self.ends])
+                          for k in (0, 1))
+        self.k = numpy.concatenate([numpy.full(index[end[0]].size, float(p[end[2]]))
+                                    for end in self.ends])
+        ends = numpy.cumsum([0] + [index[end[0]].size for end in self.ends])
+        self.parts = [slice(*part) for part in zip(ends[:-1], ends[1:])]
+        self.rest = numpy.sqrt((self.find_along(flat) ** 2).sum(axis=0))
+        n = numpy.eye(index.size)
+        fold = numpy.concatenate([
+            (n[line[2:]] - 2. * n[line[1:-1]] + n[line[:-2]]).reshape(-1, index.size)
+            for line in (index, index.T)])
+        self.folding, self.drag = -p['folding'] * fold.T @ fold, p['drag']
 
-def find_force(x, v, shape, springs, p):
-    columns, rows = shape
-    a, b, rest, k = springs
-    along = x[b] - x[a]
-    pull = (k * (1. - rest / numpy.linalg.norm(along, axis=1)))[:, None] * along
-    force = numpy.stack([numpy.bincount(a, part, len(x)) - numpy.bincount(b, part, len(x))
-                         for part in pull.T], axis=1)
-    sheet, fold = x.reshape(rows, columns, 3), force.reshape(rows, columns, 3)
-    for to, line in ((fold, sheet), (fold.transpose(1, 0, 2), sheet.transpose(1, 0, 2))):
-        curve = p['folding'] * (line[2:] - 2. * line[1:-1] + line[:-2])
-        to[2:] -= curve
-        to[1:-1] += 2. * curve
-        to[:-2] -= curve
-    area = find_areas(x, columns, rows)
-    speed = (v * area).sum(axis=1, keepdims=True) / (
-        numpy.linalg.norm(area, axis=1, keepdims=True) + 1e-12)
-    return force - p['drag'] * numpy.abs(speed) * speed * area
+    def find_along(self, x):
+        x = x.reshape(3, -1)
+        return x.take(self.b, 1) - x.take(self.a, 1)
+
+    def find_areas(self, x):
+        """Of each vertex, along its normal."""
+        a, b = x[:, 1:, 1:] - x[:, :-1, :-1], x[:, 1:, :-1] - x[:, :-1, 1:]
+        cross = numpy.empty_like(a)
+        for k in range(3):
+            cross[k] = 0.125 * (a[k - 2] * b[k - 1] - a[k - 1] * b[k - 2])
+        area = numpy.zeros_like(x)
+        for part in (area[:, 1:, 1:], area[:, :-1, 1:], area[:, 1:, :-1], area[:, :-1, :-1]):
+            part += cross
+        return area
+
+    def find_force(self, x, v):
+        along = self.find_along(x)
+        along *= self.k * (1. - self.rest / numpy.sqrt(numpy.einsum('ij,ij->j', along, along)))
+        force = (x.reshape(3, -1) @ self.folding).reshape(x.shape)
+        for (a, b, _), part in zip(self.ends, self.parts):
+            to = force[:, a[0], a[1]]
+            pull = along[:, part].reshape(to.shape)
+            to += pull
+            force[:, b[0], b[1]] -= pull
+        if not self.drag:
+            return force
+        area = self.find_areas(x)
+        speed = numpy.einsum('ijk,ijk->jk', v, area) / (
+            numpy.sqrt(numpy.einsum('ijk,ijk->jk', area, area)) + 1e-12)
+        return force - self.drag * numpy.abs(speed) * speed * area
 
 
 def simulate(folder):
@@ -75,23 +92,26 @@ def simulate(folder):
     clamps = numpy.load(folder + '/scene/clamps.npy').astype(float)
     positions = numpy.load(folder + '/scene/positions.npy')
     grid, held = take['grid'], [held['vertex'] for held in take['held']]
-    shape = grid['columns'], grid['rows']
-    v, u = numpy.divmod(numpy.arange(shape[0] * shape[1]), shape[0])
-    flat = numpy.stack([u * grid['width_m'] / (shape[0] - 1),
-                        v * grid['height_m'] / (shape[1] - 1), 0. * u], axis=1)
-    springs = link(*shape, flat, p)
-    mass = 1e-3 * p['weight'] * numpy.abs(find_areas(flat, *shape)[:, 2:])
-    x, v = positions[0].astype(float), numpy.zeros(flat.shape)
+    rows, columns = grid['rows'], grid['columns']
+    row, column = numpy.divmod(numpy.array(held), columns)
+    flat = numpy.zeros((3, rows, columns))
+    flat[0] = numpy.arange(columns) * grid['width_m'] / (columns - 1)
+    flat[1] = numpy.arange(rows)[:, None] * grid['height_m'] / (rows - 1)
+    sheet = Sheet(flat, p)
+    of_mass = 1. / (1e-3 * p['weight'] * numpy.abs(sheet.find_areas(flat)[2]))
+    x, v = positions[0].astype(float).T.reshape(flat.shape).copy(), numpy.zeros(flat.shape)
+    weight = numpy.array([0., 0., -9.81])[:, None, None]
     for frame in range(1, len(times)):
         dt = (times[frame] - times[frame - 1]) / p['steps']
         for step in range(int(p['steps'])):
-            force = find_force(x, v, shape, springs, p)
-            v = (v + dt * (force / mass + [0., 0., -9.81])) * (1. - p['loss'] * dt)
-            x = x + dt * v
+            v += dt * (sheet.find_force(x, v) * of_mass + weight)
+            v *= 1. - p['loss'] * dt
+            x += dt * v
             at = (step + 1.) / p['steps']
-            x[held] = clamps[frame - 1] * (1. - at) + clamps[frame] * at
-            v[held] = (clamps[frame] - clamps[frame - 1]) / (times[frame] - times[frame - 1])
-        positions[frame] = x
+            x[:, row, column] = (clamps[frame - 1] * (1. - at) + clamps[frame] * at).T
+            v[:, row, column] = ((clamps[frame] - clamps[frame - 1]) /
+                                 (times[frame] - times[frame - 1])).T
+        positions[frame] = x.reshape(3, -1).T
     shutil.copytree(folder + '/scene', folder + '/simulated', dirs_exist_ok=True)
     if os.path.exists(folder + '/simulated/states.npy'):
         os.remove(folder + '/simulated/states.npy')
