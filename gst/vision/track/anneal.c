@@ -167,10 +167,13 @@ differ (Silhouette * s, const ClothFlatPose * pose)
     add_edge (s, points[i], points[i + 1]);
   for (gint y = 0; y < height; y++) {
     const guint32 *row = s->sums + (gsize) y * (width + 1);
+    /* what is outside the picture can't be compared */
+    const gdouble from = CLAMP (s->from[y], -0.5, width - 0.5);
+    const gdouble to = CLAMP (s->to[y], -0.5, width - 0.5);
     const gboolean is_drawn = s->from[y] <= s->to[y];
-    const gdouble drawn = is_drawn ? s->to[y] - s->from[y] : 0.;
-    const gdouble both = is_drawn ? count (row, width, s->to[y]) - count (row,
-        width, s->from[y]) : 0.;
+    const gdouble drawn = is_drawn ? to - from : 0.;
+    const gdouble both = is_drawn ? count (row, width, to) - count (row, width,
+        from) : 0.;
 
     sum += drawn + row[width] - 2. * both;
   }

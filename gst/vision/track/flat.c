@@ -6,7 +6,8 @@
  *   outline by h over the tangent of its elevation, away from it: cameras all around undo that.
  * Method: the first and last pixel of each row and column are carried to the plane, where sides are
  *   straight whatever the lens. The smallest rectangle about their convex hull tells which points
- *   belong to which side; a line is fitted to each, neighbours meet in corners. Corners are averaged over
+ *   belong to which side; a line is fitted to each, neighbours meet in corners, which need not be in the
+ *   picture. Corners are averaged over
  *   the cameras, and the known rectangle is laid on them by least squares: with centred model points m
  *   and corners q the angle is atan2 (Σ m × q, Σ m · q).
  * Reference: Hasler, Asbach, Rosenhahn, Ohm and Seidel, Physically based tracking of cloth, 2006,
@@ -130,18 +131,6 @@ flood (guint8 * piece, gint width, gint height, guint start, guint8 label,
 }
 
 static gboolean
-is_cut (const guint8 * piece, gint width, gint height)
-{
-  for (gint x = 0; x < width; x++)
-    if (piece[x] || piece[(gsize) (height - 1) * width + x])
-      return TRUE;
-  for (gint y = 0; y < height; y++)
-    if (piece[(gsize) y * width] || piece[(gsize) y * width + width - 1])
-      return TRUE;
-  return FALSE;
-}
-
-static gboolean
 refuse (const ClothFlatView * view, const gchar * what, GError ** error)
 {
   g_set_error (error, CLOTH_FLAT_ERROR, CLOTH_FLAT_ERROR_SILHOUETTE,
@@ -187,15 +176,11 @@ keep_largest (const ClothFlatView * view, guint8 * piece, GError ** error)
   flood (piece, width, height, where, 2, stack);
   for (guint i = 0; i < n; i++)
     piece[i] = piece[i] == 2;
-  if (is_cut (piece, width, height))
-    return refuse (view,
-        "the edge of its picture cuts the silhouette: all of the "
-        "cloth must be seen in the first picture", error);
   return TRUE;
 }
 
 /* @view: a camera's silhouette
- * @error: #ClothFlatError: it is empty, full, in pieces or cut by the picture's edge
+ * @error: #ClothFlatError: it is empty, full or in pieces
  *
  * Returns: (transfer full): 1 where the largest piece is, else 0, rows without gaps; %NULL with
  *   @error
@@ -261,30 +246,37 @@ add_point (const ClothFlatView * view, gdouble ground, gdouble x, gdouble y,
   return TRUE;
 }
 
-/* Adds to @points both ends of the piece in a line of pixels, half a pixel outside. @step: from one
- * pixel to the next */
+/* Adds to @points both ends of the piece in a line of pixels, half a pixel outside. Ends at the
+ * picture's edge are not the cloth's: they set @is_cut. @step: from one pixel to the next */
 static gboolean
 add_ends (const ClothFlatView * view, gdouble ground, const guint8 * line,
     gint n, gsize step, gboolean is_row, gint at, GArray * points,
-    GError ** error)
+    gboolean * is_cut, GError ** error)
 {
-  gint first = 0, last = n - 1;
+  gint ends[2] = { 0, n - 1 };
 
-  while (first < n && !line[first * step])
-    first++;
-  if (first == n)
+  while (ends[0] < n && !line[ends[0] * step])
+    ends[0]++;
+  if (ends[0] == n)
     return TRUE;
-  while (!line[last * step])
-    last--;
-  return is_row ? add_point (view, ground, first - 0.5, at, points, error)
-      && add_point (view, ground, last + 0.5, at, points, error) :
-      add_point (view, ground, at, first - 0.5, points, error)
-      && add_point (view, ground, at, last + 0.5, points, error);
+  while (!line[ends[1] * step])
+    ends[1]--;
+  for (guint k = 0; k < 2; k++) {
+    const gdouble end = ends[k] + (k == 0 ? -0.5 : 0.5);
+
+    if (ends[k] == 0 || ends[k] == n - 1)
+      *is_cut = TRUE;
+    else if (!add_point (view, ground, is_row ? end : at, is_row ? at : end,
+            points, error))
+      return FALSE;
+  }
+  return TRUE;
 }
 
 /* The outline of the silhouette on the ground. */
 static GArray *
-find_outline (const ClothFlatView * view, gdouble ground, GError ** error)
+find_outline (const ClothFlatView * view, gdouble ground, gboolean * is_cut,
+    GError ** error)
 {
   const gint width = view->mask.width, height = view->mask.height;
   g_autofree guint8 *piece = cloth_flat_find_piece (view, error);
@@ -295,11 +287,11 @@ find_outline (const ClothFlatView * view, gdouble ground, GError ** error)
   points = g_array_new (FALSE, FALSE, sizeof (Point));
   for (gint y = 0; y < height; y++)
     if (!add_ends (view, ground, piece + (gsize) y * width, width, 1, TRUE, y,
-            points, error))
+            points, is_cut, error))
       return NULL;
   for (gint x = 0; x < width; x++)
     if (!add_ends (view, ground, piece + x, height, (gsize) width, FALSE, x,
-            points, error))
+            points, is_cut, error))
       return NULL;
   return g_steal_pointer (&points);
 }
@@ -486,18 +478,21 @@ static gboolean
 find_corners (const ClothFlatParams * params, const ClothFlatView * view,
     Point corners[4], GError ** error)
 {
-  g_autoptr (GArray) points = find_outline (view, params->ground, error);
+  gboolean is_cut = FALSE, fits = FALSE;
+  g_autoptr (GArray) points = find_outline (view, params->ground, &is_cut,
+      error);
+  const gchar *cut = is_cut ? "; the edge of its picture cuts the silhouette: "
+      "more of the cloth must be seen" : "";
   const gdouble *size = params->size;
   Point found[4];
   gdouble rms, sides[2];
-  gboolean fits = FALSE;
 
   if (!points)
     return FALSE;
   if (!fit_sides (points, found, &rms) || rms > params->straight) {
     g_set_error (error, CLOTH_FLAT_ERROR, CLOTH_FLAT_ERROR_SHAPE,
         "camera “%s”: the outline has no four straight sides; the cloth must "
-        "lie flat on the ground in the first picture", get_name (view));
+        "lie flat on the ground in the first picture%s", get_name (view), cut);
     return FALSE;
   }
   for (guint k = 0; k < 4; k++)
@@ -512,8 +507,8 @@ find_corners (const ClothFlatParams * params, const ClothFlatView * view,
     g_set_error (error, CLOTH_FLAT_ERROR, CLOTH_FLAT_ERROR_SHAPE,
         "camera “%s” sees a rectangle of %.3f × %.3f m, the cloth has %.3f × "
         "%.3f m: are its size, the rig and the ground at z = %g m right, and "
-        "does it lie flat?", get_name (view), sides[0], sides[1], size[0],
-        size[1], params->ground);
+        "does it lie flat%s?", get_name (view), sides[0], sides[1], size[0],
+        size[1], params->ground, cut);
     return FALSE;
   }
   return TRUE;

@@ -9,8 +9,9 @@
 G_BEGIN_DECLS
 
 /* @CLOTH_FLAT_ERROR_PARAMETER: a size, view or camera that can't be
- * @CLOTH_FLAT_ERROR_SILHOUETTE: a silhouette is empty, full, cut or in pieces
- * @CLOTH_FLAT_ERROR_SHAPE: what is seen is no rectangle of the known size
+ * @CLOTH_FLAT_ERROR_SILHOUETTE: a silhouette is empty, full or in pieces
+ * @CLOTH_FLAT_ERROR_SHAPE: what is seen is no rectangle of the known size, or too
+ *   much of it is outside the picture
  * @CLOTH_FLAT_ERROR_DISAGREE: the cameras see it at different places
  */
 typedef enum {
