@@ -481,8 +481,8 @@ find_corners (const ClothFlatParams * params, const ClothFlatView * view,
   gboolean is_cut = FALSE, fits = FALSE;
   g_autoptr (GArray) points = find_outline (view, params->ground, &is_cut,
       error);
-  const gchar *cut = is_cut ? "; the edge of its picture cuts the silhouette: "
-      "more of the cloth must be seen" : "";
+  const gchar *cut = is_cut ? " (the edge of its picture cuts the silhouette: "
+      "more of the cloth must be seen)" : "";
   const gdouble *size = params->size;
   Point found[4];
   gdouble rms, sides[2];
@@ -507,7 +507,7 @@ find_corners (const ClothFlatParams * params, const ClothFlatView * view,
     g_set_error (error, CLOTH_FLAT_ERROR, CLOTH_FLAT_ERROR_SHAPE,
         "camera “%s” sees a rectangle of %.3f × %.3f m, the cloth has %.3f × "
         "%.3f m: are its size, the rig and the ground at z = %g m right, and "
-        "does it lie flat%s?", get_name (view), sides[0], sides[1], size[0],
+        "does it lie flat?%s", get_name (view), sides[0], sides[1], size[0],
         size[1], params->ground, cut);
     return FALSE;
   }
