@@ -10,8 +10,8 @@
  *   lost for k frames may be k times as far away.
  * Method: each camera's sights choose among the features in reach; of several that choose the same the most
  *   alike gets it. A marker needs two rays that pass the filters, or there is none in this frame. If rays
- *   don't meet, its references stay what they were; where one camera alone sees it, that goes on seeing
- *   it, but from frame to frame, where a marker that was lost is lost for good.
+ *   don't meet, its references stay what they were; a camera that alone sees it goes on seeing it, and
+ *   of several references others may join again.
  * Reference: Hasler, Asbach, Rosenhahn, Ohm and Seidel, Physically based tracking of cloth, 2006,
  *   sections 4 to 4.3. The paper compares with all features of a picture; see seek.c why this does not.
  *   Kalal, Mikolajczyk and Matas, Forward-backward error, 2010.
@@ -539,7 +539,7 @@ run_descriptors (ClothTracker * t, const ClothTrackerView * views)
 
     if (accept (t, track, views, &alone))
       track->seen = t->frame;
-    else if (!alone || t->kind == CLOTH_TRACKER_FRAMES)
+    else if (!alone)
       continue;
     for (guint s = track->first; s < track->end; s++) {
       Sight *sight = &g_array_index (t->sights, Sight, s);
