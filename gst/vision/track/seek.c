@@ -11,6 +11,9 @@
 
 #include <math.h>
 
+/* Features that may be described at one place. */
+#define MOST 16
+
 /* @a: (array fixed-size=128): a descriptor
  * @b: (array fixed-size=128): another
  *
@@ -59,31 +62,43 @@ compare (const ClothCvFeatures * features, guint feature, guint n,
   return least;
 }
 
-/* The most alike within @reach of @middle, but nearer than @hole to @beside. */
-static guint
-find_best (const ClothCvFeatures * features, const gdouble middle[2],
-    gdouble reach, const gdouble beside[2], gdouble hole, guint n,
-    const guint8 * const *descriptors, guint32 * distance)
+/* A feature in reach, and how unlike it is. */
+typedef struct
 {
-  guint found = CLOTH_SEEK_NONE;
+  guint feature;
+  guint32 distance;
+} Found;
 
-  *distance = G_MAXUINT32;
+/* The most alike features within @reach of @middle, of equal ones the first; at most @most. Returns: how
+ * many */
+static guint
+list_best (const ClothCvFeatures * features, const gdouble middle[2],
+    gdouble reach, guint n, const guint8 * const *descriptors, guint most,
+    Found * best)
+{
+  guint n_best = 0;
+
   for (guint i = find_row (features, middle[1] - reach);
       i < features->n && features->y[i] <= middle[1] + reach; i++) {
-    guint32 least;
+    guint at = n_best;
+    guint32 distance;
 
     if (!(hypot (features->x[i] - middle[0],
-                features->y[i] - middle[1]) <= reach)
-        || hypot (features->x[i] - beside[0],
-            features->y[i] - beside[1]) < hole)
+                features->y[i] - middle[1]) <= reach))
       continue;
-    least = compare (features, i, n, descriptors);
-    if (least < *distance) {
-      *distance = least;
-      found = i;
-    }
+    distance = compare (features, i, n, descriptors);
+    if (n_best == most && distance >= best[most - 1].distance)
+      continue;
+    if (n_best < most)
+      n_best++;
+    else
+      at--;
+    for (; at > 0 && best[at - 1].distance > distance; at--)
+      best[at] = best[at - 1];
+    best[at] = (Found) {
+    i, distance};
   }
-  return found;
+  return n_best;
 }
 
 /* @features: of a picture
@@ -101,15 +116,21 @@ cloth_seek_run (const ClothCvFeatures * features, const gdouble middle[2],
     gdouble reach, gdouble ratio, guint n, const guint8 * const *descriptors,
     guint32 * distance)
 {
-  const guint best = find_best (features, middle, reach, middle, 0., n,
-      descriptors, distance);
-  guint32 second;
+  Found best[MOST];
+  const guint n_best = list_best (features, middle, reach, n, descriptors, MOST,
+      best);
+  guint second = 1;
 
-  if (best == CLOTH_SEEK_NONE)
+  if (n_best == 0)
     return CLOTH_SEEK_NONE;
-  find_best (features, middle, reach, (const gdouble[2]) {
-        features->x[best], features->y[best]
-      }, CLOTH_SEEK_SAME_PX, n, descriptors,
-      &second);
-  return *distance < ratio * ratio * second ? best : CLOTH_SEEK_NONE;
+  *distance = best[0].distance;
+  while (second < n_best && hypot (features->x[best[second].feature] -
+          features->x[best[0].feature], features->y[best[second].feature] -
+          features->y[best[0].feature]) < CLOTH_SEEK_SAME_PX)
+    second++;
+  /* alone in reach; or its double in a crowd that nobody can tell apart */
+  if (second == n_best)
+    return n_best < MOST ? best[0].feature : CLOTH_SEEK_NONE;
+  return *distance < ratio * ratio * best[second].distance ? best[0].feature :
+      CLOTH_SEEK_NONE;
 }
