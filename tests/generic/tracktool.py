@@ -105,6 +105,13 @@ with open(out + '/track.json', encoding='utf-8') as file:
 check(done.returncode == 0 and len(told['frames']) == 3 and 'short.avi ends after 3 pictures' in done.stderr,
       'the shortest film ends it, which is said')
 
+texts = []
+for threads in '1', '3':
+    run(*words('frames', films=[cut(c, 2, 'two%d.avi' % c) for c in range(4)], more=['--threads', threads]))
+    with open(out + '/track.json', encoding='utf-8') as file:
+        texts.append(file.read())
+check(texts[0] == texts[1] and '"tracker": "frames"' in texts[0], 'threads change nothing')
+
 fresh = os.path.join(folder, 'fresh')
 other = os.path.join(data, 'lineart_stereo3')
 with open(folder + '/text.avi', 'w', encoding='utf-8') as file:
@@ -130,7 +137,7 @@ for code, text, line in (
         (1, 'its background has 1024 × 768', words('multi', output=fresh, backgrounds=[
             '--background', other + '/background0.png'] + backgrounds[2:])),
         (1, 'sees a rectangle of', words('multi', size='90cm,67cm', output=fresh)),
-        (1, 'cannot make the folder', words('multi', films=[cut(0, 2, 'two.avi')] + films[1:], output=folder + '/file/in'))):
+        (1, 'cannot make the folder', words('multi', films=[folder + '/two0.avi'] + films[1:], output=folder + '/file/in'))):
     done = run(*line)
     check(done.returncode == code and text in done.stderr and not os.path.exists(fresh), 'refused: ' + text)
     if text not in done.stderr:
