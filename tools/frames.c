@@ -28,75 +28,138 @@ failed (GstBus * bus, const gchar * path, GError ** error)
   return TRUE;
 }
 
+struct _ClothFrameReader
+{
+  gchar *path;
+  GstElement *pipeline, *sink;
+  GstBus *bus;
+  guint number;                 /* of the next picture */
+  GstSample *sample;
+  GstVideoFrame frame;          /* of it, mapped */
+};
+
+/* Gives back the picture that was handed out last. */
+static void
+give_back (ClothFrameReader * reader)
+{
+  if (!reader->sample)
+    return;
+  gst_video_frame_unmap (&reader->frame);
+  g_clear_pointer (&reader->sample, gst_sample_unref);
+}
+
+/* Maps a sample, which it takes. */
 static gboolean
-deliver (GstSample * sample, const gchar * path, guint number,
-    ClothFrameFunc function, gpointer user_data, GError ** error)
+hand_out (ClothFrameReader * reader, GstSample * sample, ClothImage * image,
+    GError ** error)
 {
   GstVideoInfo info;
-  GstVideoFrame frame;
-  ClothImage image;
-  gboolean more;
 
   if (!gst_video_info_from_caps (&info, gst_sample_get_caps (sample))
       || info.width > MAX_SIZE || info.height > MAX_SIZE
-      || !gst_video_frame_map (&frame, &info, gst_sample_get_buffer (sample),
-          GST_MAP_READ)) {
+      || !gst_video_frame_map (&reader->frame, &info,
+          gst_sample_get_buffer (sample), GST_MAP_READ)) {
     g_set_error (error, G_IO_ERROR, G_IO_ERROR_FAILED,
-        "%s: picture %u can't be used, or is larger than %d pixels", path,
-        number, MAX_SIZE);
+        "%s: picture %u can't be used, or is larger than %d pixels",
+        reader->path, reader->number, MAX_SIZE);
+    gst_sample_unref (sample);
     return FALSE;
   }
-  image.data = GST_VIDEO_FRAME_PLANE_DATA (&frame, 0);
-  image.width = info.width;
-  image.height = info.height;
-  image.stride = GST_VIDEO_FRAME_PLANE_STRIDE (&frame, 0);
-  more = function (&image, number, user_data, error);
-  gst_video_frame_unmap (&frame);
-  return more;
+  reader->sample = sample;
+  image->data = GST_VIDEO_FRAME_PLANE_DATA (&reader->frame, 0);
+  image->width = info.width;
+  image->height = info.height;
+  image->stride = GST_VIDEO_FRAME_PLANE_STRIDE (&reader->frame, 0);
+  reader->number++;
+  return TRUE;
 }
 
-/* Reads on until the end, an error, or the function's FALSE. */
-static gboolean
-read_all (GstElement * pipeline, const gchar * path, guint every,
-    ClothFrameFunc function, gpointer user_data, GError ** error)
+/* @path: a picture or a film
+ * @error: what is wrong with the file
+ *
+ * Decodes a file with GStreamer, turning to grey what is not.
+ *
+ * Returns: (transfer full): its reader
+ */
+ClothFrameReader *
+cloth_frame_reader_open (const gchar * path, GError ** error)
 {
-  g_autoptr (GstElement) sink = gst_bin_get_by_name (GST_BIN (pipeline), "out");
-  g_autoptr (GstBus) bus = gst_element_get_bus (pipeline);
-  guint number = 0;
+  ClothFrameReader *reader;
+  GstElement *pipeline;
+  g_autoptr (GstElement) source = NULL;
+
+  if (!g_file_test (path, G_FILE_TEST_IS_REGULAR)) {
+    g_set_error (error, G_FILE_ERROR, G_FILE_ERROR_NOENT,
+        "%s: there is no such file", path);
+    return NULL;
+  }
+  /* else a missing element would leave both a pipeline and an error */
+  pipeline = gst_parse_launch_full ("filesrc name=in ! decodebin ! "
+      "videoconvert dither=none ! video/x-raw,format=GRAY8 ! appsink name=out "
+      "sync=false max-buffers=4", NULL, GST_PARSE_FLAG_FATAL_ERRORS, error);
+  if (!pipeline)
+    return NULL;
+  source = gst_bin_get_by_name (GST_BIN (pipeline), "in");
+  g_object_set (source, "location", path, NULL);
+  reader = g_new0 (ClothFrameReader, 1);
+  reader->path = g_strdup (path);
+  reader->pipeline = pipeline;
+  reader->sink = gst_bin_get_by_name (GST_BIN (pipeline), "out");
+  reader->bus = gst_element_get_bus (pipeline);
+  gst_element_set_state (pipeline, GST_STATE_PLAYING);
+  return reader;
+}
+
+/* @reader: (nullable) (transfer full): a reader
+ */
+void
+cloth_frame_reader_free (ClothFrameReader * reader)
+{
+  if (!reader)
+    return;
+  give_back (reader);
+  gst_element_set_state (reader->pipeline, GST_STATE_NULL);
+  gst_object_unref (reader->bus);
+  gst_object_unref (reader->sink);
+  gst_object_unref (reader->pipeline);
+  g_free (reader->path);
+  g_free (reader);
+}
+
+/* @reader: a reader
+ * @image: (out): the next picture, the reader's until the next call
+ * @error: what is wrong with the file; not set at its end
+ *
+ * Returns: whether there is one
+ */
+gboolean
+cloth_frame_reader_next (ClothFrameReader * reader, ClothImage * image,
+    GError ** error)
+{
   GstClockTime waited = 0;
 
-  gst_element_set_state (pipeline, GST_STATE_PLAYING);
+  give_back (reader);
   for (;;) {
-    g_autoptr (GstSample) sample =
-        gst_app_sink_try_pull_sample (GST_APP_SINK (sink), 50 * GST_MSECOND);
-    GError *stop = NULL;
+    GstSample *sample = gst_app_sink_try_pull_sample (GST_APP_SINK
+        (reader->sink), 50 * GST_MSECOND);
 
-    if (sample) {
-      waited = 0;
-      if (number++ % every == 0
-          && !deliver (sample, path, number - 1, function, user_data, &stop)) {
-        if (stop)
-          g_propagate_error (error, stop);
-        return stop == NULL;
-      }
-      continue;
-    }
-    if (failed (bus, path, error))
+    if (sample)
+      return hand_out (reader, sample, image, error);
+    if (failed (reader->bus, reader->path, error))
       return FALSE;
-    if (gst_app_sink_is_eos (GST_APP_SINK (sink)))
+    if (gst_app_sink_is_eos (GST_APP_SINK (reader->sink)))
       break;
     if ((waited += 50 * GST_MSECOND) >= PATIENCE) {
       g_set_error (error, G_IO_ERROR, G_IO_ERROR_TIMED_OUT,
-          "%s: no picture in %d s", path, (gint) (PATIENCE / GST_SECOND));
+          "%s: no picture in %d s", reader->path,
+          (gint) (PATIENCE / GST_SECOND));
       return FALSE;
     }
   }
-  if (number == 0) {
+  if (reader->number == 0)
     g_set_error (error, G_IO_ERROR, G_IO_ERROR_FAILED, "%s: holds no picture",
-        path);
-    return FALSE;
-  }
-  return TRUE;
+        reader->path);
+  return FALSE;
 }
 
 /* @path: a picture or a film
@@ -105,7 +168,7 @@ read_all (GstElement * pipeline, const gchar * path, guint every,
  * @user_data: for @function
  * @error: what is wrong with the file
  *
- * Decodes a file with GStreamer, turning to grey what is not.
+ * Reads a whole file.
  *
  * Returns: whether it was read to its end, or to where @function stopped it without error.
  */
@@ -113,24 +176,17 @@ gboolean
 cloth_frames_read (const gchar * path, guint every, ClothFrameFunc function,
     gpointer user_data, GError ** error)
 {
-  g_autoptr (GstElement) pipeline = NULL;
-  g_autoptr (GstElement) source = NULL;
-  gboolean ok;
+  g_autoptr (ClothFrameReader) reader = cloth_frame_reader_open (path, error);
+  GError *wrong = NULL;
+  ClothImage image;
 
-  if (!g_file_test (path, G_FILE_TEST_IS_REGULAR)) {
-    g_set_error (error, G_FILE_ERROR, G_FILE_ERROR_NOENT,
-        "%s: there is no such file", path);
+  if (!reader)
     return FALSE;
-  }
-  /* else a missing element would leave both a pipeline and an error */
-  pipeline = gst_parse_launch_full ("filesrc name=in ! decodebin ! "
-      "videoconvert dither=none ! video/x-raw,format=GRAY8 ! appsink name=out "
-      "sync=false max-buffers=4", NULL, GST_PARSE_FLAG_FATAL_ERRORS, error);
-  if (!pipeline)
-    return FALSE;
-  source = gst_bin_get_by_name (GST_BIN (pipeline), "in");
-  g_object_set (source, "location", path, NULL);
-  ok = read_all (pipeline, path, every, function, user_data, error);
-  gst_element_set_state (pipeline, GST_STATE_NULL);
-  return ok;
+  for (guint number = 0; cloth_frame_reader_next (reader, &image, &wrong);
+      number++)
+    if (number % every == 0 && !function (&image, number, user_data, &wrong))
+      break;
+  if (wrong)
+    g_propagate_error (error, wrong);
+  return wrong == NULL;
 }

@@ -12,7 +12,17 @@ G_BEGIN_DECLS
 typedef gboolean (*ClothFrameFunc) (const ClothImage * image, guint number,
     gpointer user_data, GError ** error);
 
+/* A file that is read picture by picture, beside others. */
+typedef struct _ClothFrameReader ClothFrameReader;
+
+ClothFrameReader *cloth_frame_reader_open (const gchar * path,
+    GError ** error);
+void cloth_frame_reader_free (ClothFrameReader * reader);
+gboolean cloth_frame_reader_next (ClothFrameReader * reader,
+    ClothImage * image, GError ** error);
+
 gboolean cloth_frames_read (const gchar * path, guint every,
     ClothFrameFunc function, gpointer user_data, GError ** error);
 
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothFrameReader, cloth_frame_reader_free)
 G_END_DECLS

@@ -18,6 +18,7 @@
 #include "gst/fit/synthesis/synthesis.h"
 #include "gst/gap/report/view.h"
 #include "gst/rig/rigfile.h"
+#include "tools/fit-track.h"
 #include "tools/tool.h"
 
 #define PROGRAM "gst-cloth-fit-1.0"
@@ -27,6 +28,8 @@ typedef struct
   gchar *model, *rig, *output, *spool, *replay;
   gint seed, threads, evaluations;
   gboolean worker, resume, as_they_come;
+  FitTrack track;
+  gchar *tracker, *size, *near;
   gchar **rest;
 } Arguments;
 
@@ -524,14 +527,45 @@ find (const Arguments * a, const Inputs * inputs, const ClothModel * model,
   return cloth_synthesis_problem_finish (problem, point, error);
 }
 
+/* Points of films instead of a fit. */
+static gint
+run_track (const Arguments * a)
+{
+  FitTrack track = a->track;
+
+  if (a->model || a->spool || a->worker || a->resume || a->as_they_come
+      || a->replay)
+    return complain (BAD_USAGE, "--model, --spool, --worker, --resume, "
+        "--as-they-come and --replay are not of the command track");
+  if (!a->rig || !a->tracker || !a->size || !a->output || !a->rest[1]
+      || !track.backgrounds)
+    return complain (BAD_USAGE, "name the films and --rig, --tracker, "
+        "--pattern-size, --background for each film, and --output");
+  if (a->threads < 0)
+    return complain (BAD_USAGE, "--threads: give 0 for all, or a number");
+  track.rig = a->rig;
+  track.tracker = a->tracker;
+  track.size = a->size;
+  track.near = a->near;
+  track.output = a->output;
+  track.films = a->rest + 1;
+  track.seed = a->seed;
+  track.threads = a->threads;
+  return fit_track (&track);
+}
+
 static gint
 check (const Arguments * a)
 {
   const gboolean searches = a->rest && !strcmp (a->rest[0], "search");
 
+  if (a->tracker || a->size || a->near || a->track.backgrounds
+      || a->track.anneal || a->track.ground != 0)
+    return complain (BAD_USAGE, "--tracker, --pattern-size, --background, "
+        "--ground, --near and --anneal are of the command track");
   if (!a->rest || (strcmp (a->rest[0], "fit") && !searches))
     return complain (BAD_USAGE, "name the command: fit TAKE… --model MODEL "
-        "--output DIR, or search");
+        "--output DIR, search, or track");
   if (!a->rest[1])
     return complain (BAD_USAGE, "name the takes to fit");
   if (!a->model || (!a->output && !a->worker))
@@ -568,6 +602,8 @@ run (gconstpointer data)
   g_auto (Inputs) inputs = { NULL };
   ClothSynthesisOptions options;
 
+  if (a->rest && !strcmp (a->rest[0], "track"))
+    return run_track (a);
   if (check (a) != DONE)
     return BAD_USAGE;
   model = cloth_model_load (a->model, &error);
@@ -621,6 +657,18 @@ static const ToolCommand commands[] = {
         "With --spool the points are evaluated by\nworkers on this machine or "
         "others: the same command with --worker, without --output.",
       PROGRAM " search film --model model.json --output found"},
+  {"track",
+        "FILM… --rig RIG --tracker NAME --pattern-size W,H --background FILE… "
+        "--output DIR",
+        "Follows points of a printed cloth that lies flat on the ground in the first "
+        "picture.\nGive a film and a picture of the empty scene for each camera, in the "
+        "rig's order.\nNAME is reference, frames or multi: markers in space, or "
+        "reference-2d, lucas-kanade,\nframes-2d or uvless: features in pictures. "
+        "DIR/track.json has the points of each frame,\nDIR/markers.csv those in "
+        "space.",
+      PROGRAM " track cam0.mp4 cam1.mp4 --rig rig.json --tracker multi \\\n"
+        "    --pattern-size 63cm,67cm --background empty0.png --background empty1.png \\\n"
+        "    --near -0.3,0.3 --output tracks"},
   {NULL}
 };
 
@@ -652,8 +700,22 @@ main (int argc, char **argv)
     {"seed", 0, 0, G_OPTION_ARG_INT, &a.seed, "Of its random numbers (0)", "N"},
     {"threads", 0, 0, G_OPTION_ARG_INT, &a.threads,
         "Threads to use, 0 for all (0)", "N"},
+    {"tracker", 0, 0, G_OPTION_ARG_STRING, &a.tracker,
+        "Which points are followed, and how (track)", "NAME"},
+    {"pattern-size", 0, 0, G_OPTION_ARG_STRING, &a.size,
+        "Width and height of the cloth, as 63cm,67cm (track)", "W,H"},
+    {"background", 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &a.track.backgrounds,
+          "What a camera sees without the cloth; one for each film (track)",
+        "FILE"},
+    {"ground", 0, 0, G_OPTION_ARG_DOUBLE, &a.track.ground,
+          "Height of the lying cloth's surface in the rig's world, m (0) (track)",
+        "Z"},
+    {"near", 0, 0, G_OPTION_ARG_STRING, &a.near,
+        "A place near to the print's top left corner, m (track)", "X,Y"},
+    {"anneal", 0, 0, G_OPTION_ARG_NONE, &a.track.anneal,
+        "Find where the cloth lies by simulated annealing (track)", NULL},
     {G_OPTION_REMAINING, 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &a.rest, NULL,
-        "fit|search TAKE…"},
+        "fit|search TAKE… | track FILM…"},
     {NULL}
   };
   gint code = tool_main_commands (PROGRAM, "- fit a simulated cloth to what "
@@ -664,6 +726,10 @@ main (int argc, char **argv)
   g_free (a.output);
   g_free (a.spool);
   g_free (a.replay);
+  g_free (a.tracker);
+  g_free (a.size);
+  g_free (a.near);
+  g_strfreev (a.track.backgrounds);
   g_strfreev (a.rest);
   return code;
 }

@@ -71,7 +71,7 @@ ROOMS = [
          {'': ['image.h'], 'corner': ['saddle.h', 'corner.h', 'edge.h'], 'checker': ['checker.h'],
           'quad': ['quad.h'], 'dot': ['dot.h'], 'label': ['label.h'], 'feature': ['nearest.h'],
           'mask': ['mask.h'], 'disparity': ['disparity.h'], 'match': ['match.h'], 'uv': ['uv.h'],
-          'stereo': ['stereo.h'], 'track': ['follow.h']},
+          'stereo': ['stereo.h'], 'track': ['follow.h', 'marker.h', 'flat.h', 'anneal.h', 'tracker.h', 'cast.h', 'crest.h']},
          [[''], ['corner', 'dot', 'feature', 'mask', 'disparity'],
           ['checker', 'label', 'match', 'stereo'], ['quad', 'uv', 'track']]),
     Room('gst/sim', 'how a cloth moves',

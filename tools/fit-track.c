@@ -1,0 +1,501 @@
+/* gst-cloth-fit-1.0 track: follows points of a printed cloth through films of several cameras.
+ *
+ * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include "tools/fit-track.h"
+
+#include <errno.h>
+#include <gio/gio.h>
+#include <glib/gstdio.h>
+#include <gst/gst.h>
+#include <math.h>
+#include <string.h>
+
+#include "gst/file/jsonwriter.h"
+#include "gst/file/output.h"
+#include "gst/rig/rigfile.h"
+#include "gst/vision/mask/mask.h"
+#include "gst/vision/track/anneal.h"
+#include "gst/vision/track/tracker.h"
+#include "tools/frames.h"
+#include "tools/tool.h"
+
+/* One camera's film. */
+typedef struct
+{
+  const gchar *path;
+  const ClothCamera *camera;
+  ClothFrameReader *reader;
+  ClothCvSift *sift;
+  ClothMask *mask;
+  guint8 *silhouette;
+  GError *error;                /* of the features */
+} Film;
+
+typedef struct
+{
+  const FitTrack *arguments;
+  ClothTrackerKind kind;
+  ClothFlatParams flat;
+  gdouble near[2];
+  ClothRig *rig;
+  guint n;
+  Film *films;
+  ClothTrackerView *views;
+  ClothPool *pool;
+  ClothFlatPose pose;
+  ClothTracker *tracker;
+  ClothJsonWriter *json;
+  GString *csv;
+  guint frame;
+} Job;
+
+static void
+job_clear (Job * job)
+{
+  for (guint c = 0; c < job->n && job->films; c++) {
+    cloth_frame_reader_free (job->films[c].reader);
+    cloth_cv_sift_free (job->films[c].sift);
+    cloth_mask_free (job->films[c].mask);
+    g_free (job->films[c].silhouette);
+    g_clear_error (&job->films[c].error);
+  }
+  g_free (job->films);
+  g_free (job->views);
+  cloth_tracker_free (job->tracker);
+  g_clear_pointer (&job->rig, cloth_rig_free);
+  cloth_pool_free (job->pool);
+  g_clear_pointer (&job->json, cloth_json_writer_free);
+  if (job->csv)
+    g_string_free (job->csv, TRUE);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Job, job_clear);
+
+/* ---- the command line ---- */
+
+static gboolean
+parse_sides (const gchar * text, gdouble size[2], GError ** error)
+{
+  g_auto (GStrv) parts = g_strsplit (text, ",", -1);
+
+  if (g_strv_length (parts) != 2) {
+    g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
+        "--pattern-size %s: give width and height of the cloth, for instance "
+        "63cm,67cm", text);
+    return FALSE;
+  }
+  return parse_length ("pattern-size", parts[0], &size[0], error)
+      && parse_length ("pattern-size", parts[1], &size[1], error);
+}
+
+static gboolean
+parse_place (const gchar * text, gdouble place[2], GError ** error)
+{
+  gchar *end;
+
+  place[0] = g_ascii_strtod (text, &end);
+  if (end != text && *end == ',') {
+    text = end + 1;
+    place[1] = g_ascii_strtod (text, &end);
+    if (end != text && *end == 0 && isfinite (place[0] + place[1]))
+      return TRUE;
+  }
+  g_set_error_literal (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
+      "--near: give x and y of a place near to the print's top left corner, in "
+      "metres, for instance -0.3,0.35");
+  return FALSE;
+}
+
+static gboolean
+parse (Job * job, GError ** error)
+{
+  const FitTrack *a = job->arguments;
+  gdouble size[2];
+
+  if (!cloth_tracker_kind_from_string (a->tracker, &job->kind)) {
+    g_autoptr (GString) names = g_string_new (NULL);
+
+    for (guint k = 0; k < CLOTH_TRACKER_N_KINDS; k++)
+      g_string_append_printf (names, "%s%s", k ? ", " : "",
+          cloth_tracker_kind_to_string ((ClothTrackerKind) k));
+    g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
+        "--tracker %s: there is none of that name; give one of %s", a->tracker,
+        names->str);
+    return FALSE;
+  }
+  if (!parse_sides (a->size, size, error)
+      || (a->near && !parse_place (a->near, job->near, error)))
+    return FALSE;
+  job->flat = cloth_flat_default_params (size[0], size[1]);
+  job->flat.ground = a->ground;
+  return TRUE;
+}
+
+/* ---- pictures ---- */
+
+static gboolean
+check_size (const gchar * path, const ClothCamera * camera,
+    const ClothImage * image, GError ** error)
+{
+  if (image->width == camera->width && image->height == camera->height)
+    return TRUE;
+  g_set_error (error, G_IO_ERROR, G_IO_ERROR_INVALID_DATA,
+      "%s has %d × %d pixels, camera “%s” of the rig %d × %d: films and "
+      "backgrounds are given in the rig's order", path, image->width,
+      image->height, camera->name, camera->width, camera->height);
+  return FALSE;
+}
+
+static gboolean
+open_films (Job * job, GError ** error)
+{
+  const FitTrack *a = job->arguments;
+  const ClothCvSiftParams sift = cloth_cv_sift_default_params ();
+  const guint n_films = g_strv_length (a->films);
+
+  job->rig = cloth_rig_load (a->rig, error);
+  if (!job->rig)
+    return FALSE;
+  if (n_films != job->rig->n_cameras
+      || g_strv_length (a->backgrounds) != n_films) {
+    g_set_error (error, G_IO_ERROR, G_IO_ERROR_INVALID_ARGUMENT,
+        "the rig has %u cameras, and %u films and %u backgrounds are given: each "
+        "camera needs one of both, in the rig's order", job->rig->n_cameras,
+        n_films, g_strv_length (a->backgrounds));
+    return FALSE;
+  }
+  job->n = n_films;
+  job->films = g_new0 (Film, n_films);
+  job->views = g_new0 (ClothTrackerView, n_films);
+  job->pool = cloth_pool_new ((guint) a->threads);
+  for (guint c = 0; c < n_films; c++) {
+    Film *film = &job->films[c];
+
+    film->path = a->films[c];
+    film->camera = &job->rig->cameras[c];
+    film->mask = cloth_mask_new ();
+    film->reader = cloth_frame_reader_open (film->path, error);
+    if (!film->reader)
+      return FALSE;
+    film->sift = cloth_cv_sift_new (&sift, error);
+    if (!film->sift)
+      return FALSE;
+  }
+  return TRUE;
+}
+
+static void
+describe (gpointer data, guint begin, guint end, guint worker)
+{
+  Job *job = data;
+
+  for (guint c = begin; c < end; c++) {
+    const ClothImage *image = &job->views[c].image;
+    const ClothCvPicture picture =
+        { image->data, image->width, image->height, image->stride };
+
+    cloth_cv_sift_run (job->films[c].sift, &picture, NULL,
+        &job->views[c].features, &job->films[c].error);
+  }
+}
+
+/* The next picture of each film, and its features. @more: whether there is one */
+static gboolean
+read_frame (Job * job, gboolean * more, GError ** error)
+{
+  guint ended = G_MAXUINT, goes_on = G_MAXUINT;
+
+  for (guint c = 0; c < job->n; c++) {
+    Film *film = &job->films[c];
+    GError *wrong = NULL;
+
+    if (cloth_frame_reader_next (film->reader, &job->views[c].image, &wrong)) {
+      goes_on = c;
+      if (!check_size (film->path, film->camera, &job->views[c].image, error))
+        return FALSE;
+    } else if (wrong) {
+      g_propagate_error (error, wrong);
+      return FALSE;
+    } else
+      ended = c;
+  }
+  *more = ended == G_MAXUINT;
+  if (ended != G_MAXUINT && goes_on != G_MAXUINT)
+    g_printerr ("%s ends after %u pictures and %s goes on: the rest of it is "
+        "left out\n", job->films[ended].path, job->frame,
+        job->films[goes_on].path);
+  if (!*more)
+    return TRUE;
+  cloth_pool_run_one_by_one (job->pool, describe, job, job->n);
+  for (guint c = 0; c < job->n; c++)
+    if (job->films[c].error) {
+      g_propagate_error (error, g_steal_pointer (&job->films[c].error));
+      return FALSE;
+    }
+  return TRUE;
+}
+
+/* ---- the start ---- */
+
+static gboolean
+take_background (const ClothImage * image, guint number, gpointer user_data,
+    GError ** error)
+{
+  Film *film = user_data;
+  const ClothPlanarImage view = {.luma = *image };
+
+  if (check_size ("its background", film->camera, image, error))
+    cloth_mask_set_background (film->mask, &view);
+  return FALSE;
+}
+
+static gboolean
+find_silhouette (Job * job, guint c, GError ** error)
+{
+  const ClothMaskParams params = cloth_mask_default_params ();
+  const ClothPlanarImage view = {.luma = job->views[c].image };
+  const gsize width = (gsize) view.luma.width;
+  Film *film = &job->films[c];
+  const ClothRun *runs;
+  guint n_runs;
+  GError *wrong = NULL;
+
+  if (!cloth_frames_read (job->arguments->backgrounds[c], 1, take_background,
+          film, &wrong) || wrong) {
+    g_propagate_prefixed_error (error, wrong, "--background %s: ",
+        job->arguments->backgrounds[c]);
+    return FALSE;
+  }
+  cloth_mask_run (film->mask, &params, &view, job->pool, CLOTH_SIMD_BEST);
+  runs = cloth_mask_get_runs (film->mask, &n_runs);
+  film->silhouette = g_malloc0 (width * (gsize) view.luma.height);
+  for (guint i = 0; i < n_runs; i++)
+    memset (film->silhouette + runs[i].row * width + runs[i].begin, 1,
+        runs[i].end - runs[i].begin);
+  return TRUE;
+}
+
+static gboolean
+find_pose (Job * job, GError ** error)
+{
+  const FitTrack *a = job->arguments;
+  g_autofree ClothFlatView *views = g_new0 (ClothFlatView, job->n);
+  const gdouble *near = a->near ? job->near : NULL;
+  ClothAnnealParams annealing = cloth_anneal_default_params ();
+  ClothFlatPoses poses;
+
+  for (guint c = 0; c < job->n; c++) {
+    if (!find_silhouette (job, c, error))
+      return FALSE;
+    views[c].camera = job->films[c].camera;
+    views[c].mask = (ClothImage) {
+    job->films[c].silhouette, views[c].camera->width,
+          views[c].camera->height, views[c].camera->width};
+  }
+  annealing.seed = (guint64) a->seed;
+  if (a->anneal ? !cloth_anneal_find (&annealing, &job->flat, job->n, views,
+          near, &poses, error) : !cloth_flat_find (&job->flat, job->n, views,
+          near, &poses, error))
+    return FALSE;
+  job->pose = poses.poses[0];
+  g_print ("the cloth lies with its top left corner at %.4f, %.4f m, turned by "
+      "%.1f°\n", job->pose.x, job->pose.y, job->pose.angle * 180. / G_PI);
+  if (!near)
+    g_print ("%u poses fit alike: --near says which corner is the print's top "
+        "left\n", poses.n);
+  return TRUE;
+}
+
+/* ---- what is written ---- */
+
+static void
+begin_report (Job * job)
+{
+  ClothJsonWriter *w = cloth_json_writer_new ();
+
+  job->json = w;
+  cloth_json_writer_begin_object (w, NULL);
+  cloth_json_writer_count (w, "version", 1);
+  cloth_json_writer_string (w, "tracker", job->arguments->tracker);
+  cloth_json_writer_begin_array (w, "cameras");
+  for (guint c = 0; c < job->n; c++)
+    cloth_json_writer_string (w, NULL, job->films[c].camera->name);
+  cloth_json_writer_end_array (w);
+  cloth_json_writer_begin_object (w, "start");
+  cloth_json_writer_number (w, "width_m", job->pose.size[0]);
+  cloth_json_writer_number (w, "height_m", job->pose.size[1]);
+  cloth_json_writer_number (w, "x_m", job->pose.x);
+  cloth_json_writer_number (w, "y_m", job->pose.y);
+  cloth_json_writer_number (w, "z_m", job->pose.ground);
+  cloth_json_writer_number (w, "angle_rad", job->pose.angle);
+  cloth_json_writer_end_object (w);
+  cloth_json_writer_begin_array (w, "frames");
+  if (cloth_tracker_kind_is_3d (job->kind))
+    job->csv = g_string_new ("frame,marker,x_m,y_m,z_m,u_m,v_m,rays\n");
+}
+
+/* One number of each point: @at is where it is in the first. */
+static void
+add_list (ClothJsonWriter * w, const gchar * key, gconstpointer points,
+    gsize size, gsize at, gboolean is_count, guint n)
+{
+  g_autofree gdouble *values = g_new (gdouble, MAX (n, 1));
+
+  for (guint i = 0; i < n; i++) {
+    const guint8 *from = (const guint8 *) points + i * size + at;
+
+    values[i] = is_count ? (gdouble) * (const guint *) from :
+        *(const gdouble *) from;
+  }
+  cloth_json_writer_numbers (w, key, values, n);
+}
+
+#define COUNT(type, key, field) \
+  add_list (w, key, points, sizeof (type), G_STRUCT_OFFSET (type, field), TRUE, n)
+#define NUMBER(type, key, field) \
+  add_list (w, key, points, sizeof (type), G_STRUCT_OFFSET (type, field), FALSE, n)
+
+static void
+report_markers (Job * job)
+{
+  ClothJsonWriter *w = job->json;
+  guint n;
+  const ClothTrackedMarker *points =
+      cloth_tracker_get_markers (job->tracker, &n);
+
+  cloth_json_writer_count (w, "points", n);
+  COUNT (ClothTrackedMarker, "id", id);
+  NUMBER (ClothTrackedMarker, "u_m", uv[0]);
+  NUMBER (ClothTrackedMarker, "v_m", uv[1]);
+  NUMBER (ClothTrackedMarker, "x_m", position[0]);
+  NUMBER (ClothTrackedMarker, "y_m", position[1]);
+  NUMBER (ClothTrackedMarker, "z_m", position[2]);
+  COUNT (ClothTrackedMarker, "rays", n_rays);
+  for (guint i = 0; i < n; i++) {
+    const gdouble values[5] = { points[i].position[0], points[i].position[1],
+      points[i].position[2], points[i].uv[0], points[i].uv[1]
+    };
+
+    g_string_append_printf (job->csv, "%u,%u", job->frame, points[i].id);
+    for (guint k = 0; k < 5; k++) {
+      gchar text[G_ASCII_DTOSTR_BUF_SIZE];
+
+      g_string_append_printf (job->csv, ",%s", g_ascii_formatd (text,
+              sizeof text, "%.6f", values[k]));
+    }
+    g_string_append_printf (job->csv, ",%u\n", points[i].n_rays);
+  }
+}
+
+static void
+report_features (Job * job)
+{
+  ClothJsonWriter *w = job->json;
+  guint n;
+  const ClothTrackedFeature *points =
+      cloth_tracker_get_features (job->tracker, &n);
+
+  cloth_json_writer_count (w, "points", n);
+  COUNT (ClothTrackedFeature, "camera", camera);
+  COUNT (ClothTrackedFeature, "id", id);
+  if (job->kind != CLOTH_TRACKER_UVLESS) {
+    NUMBER (ClothTrackedFeature, "u_m", uv[0]);
+    NUMBER (ClothTrackedFeature, "v_m", uv[1]);
+  }
+  NUMBER (ClothTrackedFeature, "x_px", px[0]);
+  NUMBER (ClothTrackedFeature, "y_px", px[1]);
+  NUMBER (ClothTrackedFeature, "before_x_px", before[0]);
+  NUMBER (ClothTrackedFeature, "before_y_px", before[1]);
+}
+
+static void
+report (Job * job)
+{
+  cloth_json_writer_begin_object (job->json, NULL);
+  if (cloth_tracker_kind_is_3d (job->kind))
+    report_markers (job);
+  else
+    report_features (job);
+  cloth_json_writer_end_object (job->json);
+}
+
+static gboolean
+write_all (Job * job, GError ** error)
+{
+  const gchar *folder = job->arguments->output;
+  g_autofree gchar *path = g_build_filename (folder, "track.json", NULL);
+  g_autofree gchar *table = g_build_filename (folder, "markers.csv", NULL);
+  g_autofree gchar *text = NULL;
+
+  cloth_json_writer_end_array (job->json);
+  cloth_json_writer_end_object (job->json);
+  text = cloth_json_writer_finish (job->json);
+  if (g_mkdir_with_parents (folder, 0777) != 0) {
+    g_set_error (error, G_FILE_ERROR, g_file_error_from_errno (errno),
+        "cannot make the folder “%s”: %s", folder, g_strerror (errno));
+    return FALSE;
+  }
+  return (!job->csv || cloth_file_write_text (table, job->csv->str, error))
+      && cloth_file_write_text (path, text, error);
+}
+
+/* Tracks to the end of the shortest film; says how many points there were. */
+static gboolean
+track (Job * job, GError ** error)
+{
+  const ClothTrackerParams params = cloth_tracker_default_params ();
+  guint n[2], first;
+  gboolean more;
+
+  if (!read_frame (job, &more, error) || !find_pose (job, error))
+    return FALSE;
+  job->tracker = cloth_tracker_new (job->kind, &params, job->n,
+      job->rig->cameras, error);
+  if (!job->tracker || !cloth_tracker_start (job->tracker, &job->pose,
+          job->views, error))
+    return FALSE;
+  begin_report (job);
+  report (job);
+  cloth_tracker_get_markers (job->tracker, &n[0]);
+  cloth_tracker_get_features (job->tracker, &n[1]);
+  first = n[0] + n[1];
+  for (job->frame = 1;; job->frame++) {
+    if (was_interrupted ()) {
+      g_set_error_literal (error, G_IO_ERROR, G_IO_ERROR_CANCELLED,
+          "stopped; nothing was written");
+      return FALSE;
+    }
+    if (!read_frame (job, &more, error))
+      return FALSE;
+    if (!more)
+      break;
+    if (!cloth_tracker_run (job->tracker, job->views, error))
+      return FALSE;
+    report (job);
+  }
+  cloth_tracker_get_markers (job->tracker, &n[0]);
+  cloth_tracker_get_features (job->tracker, &n[1]);
+  g_print ("%u frames; %u points in the first, %u in the last\n", job->frame,
+      first, n[0] + n[1]);
+  return TRUE;
+}
+
+/* @arguments: the command line, with rig, tracker, size and output
+ *
+ * Returns: an exit code
+ */
+gint
+fit_track (const FitTrack * arguments)
+{
+  g_auto (Job) job = {.arguments = arguments };
+  g_autoptr (GError) error = NULL;
+
+  if (!parse (&job, &error))
+    return complain (BAD_USAGE, "%s", error->message);
+  gst_init (NULL, NULL);
+  catch_interrupts ();
+  if (!open_films (&job, &error) || !track (&job, &error)
+      || !write_all (&job, &error))
+    return complain (FAILED, "%s", error->message);
+  return DONE;
+}
